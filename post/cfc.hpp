@@ -1,0 +1,39 @@
+// Filters and measures of accelerations, as in crash tests.
+//
+// Channel frequency class (SAE J211-1): a 2-pole Butterworth filter run forwards and backwards (4 poles, no phase),
+//   w_d = 2 pi CFC 2.0775,  w_a = tan(w_d T/2),  D = 1 + sqrt2 w_a + w_a^2,
+//   a0 = w_a^2/D,  a1 = 2 a0,  a2 = a0,  b1 = -2 (w_a^2 - 1)/D,  b2 = (-1 + sqrt2 w_a - w_a^2)/D,
+//   y_n = a0 x_n + a1 x_{n-1} + a2 x_{n-2} + b1 y_{n-1} + b2 y_{n-2}.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hilo {
+
+struct CfcFilter {
+  double a0, a1, a2, b1, b2;
+};
+/// Coefficients for a class and a sampling interval T [s].
+CfcFilter cfc_filter(double cfc, double T);
+
+/// Filter forwards and backwards.  Both ends are continued by `pad` samples (point reflection, then a constant), so that the ends do not ring.
+std::vector<double> filter_both_ways(const CfcFilter& filter, std::span<const double> x, size_t pad);
+
+/// Uniform times from t.front() to t.back() at the smallest interval of t (or 16 samples per recorded one where that is coarser).
+std::vector<double> uniform_times(std::span<const double> t);
+/// Linear interpolation of (t, x) at `when`.
+std::vector<double> interpolate(std::span<const double> t, std::span<const double> x, std::span<const double> when);
+
+/// One component, filtered on a uniform resampling; values at the uniform times.  Error (at `where`) when an interval of t is longer than
+/// 1/(10 CFC): such a record does not hold what the filter is to pass.
+struct Filtered {
+  std::vector<double> t, x;
+};
+Filtered cfc_filtered(std::span<const double> t, std::span<const double> x, double cfc, const std::string& where);
+void check_rate(std::span<const double> t, double cfc, const std::string& where);
+
+/// The largest level that (t, x), taken as straight between samples, exceeds for `duration` in all (cumulative).  NaN for a shorter record.
+double clip_level(std::span<const double> t, std::span<const double> x, double duration = 3e-3);
+
+}  // namespace hilo

@@ -1,0 +1,187 @@
+#include "post/figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "post/picture.hpp"
+#include "post/ticks.hpp"
+
+namespace hilo {
+namespace {
+
+constexpr double tick_size = 15, label_size = 17, title_size = 20, legend_size = 15;
+
+/// One axis of one panel: the shown range (log10 of it on a logarithmic axis) and its ticks.
+struct Scale {
+  double low = 0, high = 1;
+  bool log = false;
+  int exponent = 0;   // the ticks show value / 10^exponent
+  Ticks ticks;
+  double operator()(double v) const {   // 0..1, NaN where the value cannot be shown
+    if (log) v = v > 0 ? std::log10(v) : std::numeric_limits<double>::quiet_NaN();
+    return (v - low) / (high - low);
+  }
+};
+
+Scale scale_of(const Panel& panel, bool y_axis, int n_ticks) {
+  Scale s;
+  s.log = y_axis ? panel.y.log : panel.x.log;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Curve& c : panel.curves)
+    for (size_t i = 0; i < c.x.size(); ++i) {
+      const double v = y_axis ? c.y[i] : c.x[i];
+      if (!std::isfinite(c.x[i]) || !std::isfinite(c.y[i]) || (s.log && v <= 0)) continue;
+      low = std::min(low, v), high = std::max(high, v);
+    }
+  if (!(low <= high)) low = s.log ? 1 : 0, high = s.log ? 10 : 1;
+  if (s.log) {
+    s.low = std::log10(low), s.high = std::log10(high);
+    const double room = std::max(0.05 * (s.high - s.low), s.high > s.low ? 0.04 : 0.5);
+    s.low -= room, s.high += room;
+    s.ticks = log_ticks(std::pow(10, s.low), std::pow(10, s.high), n_ticks);
+    return s;
+  }
+  if (!(high - low > 1e-12 * std::max(std::abs(high), std::abs(low)))) {   // a constant
+    const double half = high == 0 ? 1 : 0.5 * std::abs(high);
+    low -= half, high += half;
+  } else if (y_axis) {
+    const double room = 0.05 * (high - low);
+    low -= low == 0 ? 0 : room, high += high == 0 ? 0 : room;
+  }
+  s.exponent = common_exponent(std::max(std::abs(low), std::abs(high)));
+  const double unit = std::pow(10, s.exponent);
+  s.low = low, s.high = high;
+  s.ticks = linear_ticks(low / unit, high / unit, n_ticks);
+  for (double& t : s.ticks.at) t *= unit;
+  return s;
+}
+
+std::string label_of(const Axis& axis, const Scale& s) {
+  if (s.exponent == 0) return axis.label;
+  const auto bracket = axis.label.rfind('[');
+  const std::string power = fmt::format("10^{}", s.exponent);
+  if (bracket == std::string::npos) return fmt::format("{} [{}]", axis.label, power);
+  const std::string unit = axis.label.substr(bracket + 1);
+  return axis.label.substr(0, bracket) + "[" + power + (unit == "1]" ? "]" : " " + unit);
+}
+
+/// Widest tick text.
+double widest(Painter& p, const Ticks& ticks) {
+  double w = 0;
+  for (const auto& t : ticks.text) w = std::max(w, p.extent(t, tick_size).x());
+  return w;
+}
+
+void draw_curve(Painter& p, const Curve& c, const Scale& sx, const Scale& sy, const Box& box) {
+  std::vector<Vec2> stretch;
+  const auto flush = [&] {
+    p.line(stretch, c.colour, c.width, c.opacity, c.dashed);
+    stretch.clear();
+  };
+  // Many samples per pixel column: its first, lowest, highest and last point show the same picture.
+  const bool dense = static_cast<double>(c.x.size()) > 6 * box.w && std::is_sorted(c.x.begin(), c.x.end());
+  std::vector<Vec2> column;
+  const auto close_column = [&] {
+    if (column.empty()) return;
+    const auto below = [](const Vec2& a, const Vec2& b) { return a.y() < b.y(); };
+    const auto [low, high] = std::minmax_element(column.begin(), column.end(), below);
+    stretch.push_back(column.front());
+    stretch.push_back(low < high ? *low : *high);
+    stretch.push_back(low < high ? *high : *low);
+    stretch.push_back(column.back());
+    column.clear();
+  };
+  for (size_t i = 0; i < c.x.size(); ++i) {
+    const double u = sx(c.x[i]), v = sy(c.y[i]);
+    if (!std::isfinite(u) || !std::isfinite(v)) {
+      close_column(), flush();
+      continue;
+    }
+    const Vec2 at(box.x + u * box.w, box.y + v * box.h);
+    if (c.markers) p.disc(at, 4.5 * p.scale, c.colour);
+    if (!dense) {
+      stretch.push_back(at);
+      continue;
+    }
+    if (!column.empty() && std::floor(at.x()) != std::floor(column.front().x())) close_column();
+    column.push_back(at);
+  }
+  close_column(), flush();
+}
+
+void draw_axes(Painter& p, const Panel& panel, const Box& box, const Scale& sx, const Scale& sy) {
+  const double gap = 7 * p.scale;
+  for (size_t i = 0; i < sx.ticks.at.size(); ++i) {
+    const double x = box.x + sx(sx.ticks.at[i]) * box.w;
+    p.line({x, box.y}, {x, box.y + box.h}, faint, 1);
+    p.text({x, box.y - gap}, sx.ticks.text[i], tick_size, Across::centre, Up::top);
+  }
+  for (size_t i = 0; i < sy.ticks.at.size(); ++i) {
+    const double y = box.y + sy(sy.ticks.at[i]) * box.h;
+    p.line({box.x, y}, {box.x + box.w, y}, sy.ticks.at[i] == 0 && !sy.log ? Rgb{0.6, 0.61, 0.62} : faint, 1);
+    p.text({box.x - gap, y}, sy.ticks.text[i], tick_size, Across::right, Up::middle);
+  }
+  p.outline(box, {0.45, 0.46, 0.48}, 1);
+  p.text({box.x + box.w / 2, box.y - gap - 22 * p.scale}, label_of(panel.x, sx), label_size, Across::centre, Up::top);
+}
+
+double legend_width(Painter& p, const Panel& panel) {
+  double w = 0;
+  for (const Curve& c : panel.curves)
+    if (!c.label.empty()) w = std::max(w, p.extent(c.label, legend_size).x());
+  return w == 0 ? 0 : w + 62 * p.scale;
+}
+
+void draw_legend(Painter& p, const Panel& panel, const Box& box) {
+  const double row = 22 * p.scale, x = box.x + box.w + 14 * p.scale;
+  double y = box.y + box.h - row / 2;
+  for (const Curve& c : panel.curves) {
+    if (c.label.empty()) continue;
+    p.line(std::array{Vec2(x, y), Vec2(x + 30 * p.scale, y)}, c.colour, c.width, c.opacity, c.dashed);
+    if (c.markers) p.disc({x + 15 * p.scale, y}, 4.5 * p.scale, c.colour);
+    p.text({x + 38 * p.scale, y}, c.label, legend_size);
+    y -= row;
+  }
+}
+
+void draw(Painter& p, const Figure& f) {
+  p.rectangle({0, 0, p.width, p.height}, white);
+  const double s = p.scale, top = f.title.empty() ? 14 * s : 50 * s;
+  if (!f.title.empty()) p.text({p.width / 2, p.height - 26 * s}, f.title, title_size, Across::centre, Up::middle, ink, true);
+  const double slot = (p.height - top - 8 * s) / static_cast<double>(f.panels.size());
+  // Panels share their left and right edges, so that their time axes can be compared.
+  std::vector<Scale> sx, sy;
+  double left = 0, right = 20 * s;
+  for (const Panel& panel : f.panels) {
+    sx.push_back(scale_of(panel, false, 8));
+    sy.push_back(scale_of(panel, true, std::clamp(static_cast<int>(slot / (60 * s)), 2, 7)));
+    left = std::max(left, widest(p, sy.back().ticks) + 50 * s);
+    right = std::max(right, legend_width(p, panel));
+  }
+  for (size_t i = 0; i < f.panels.size(); ++i) {
+    const Panel& panel = f.panels[i];
+    const double head = panel.title.empty() ? 8 * s : 30 * s, foot = 58 * s;
+    const Box box{std::round(left), std::round(p.height - top - static_cast<double>(i + 1) * slot + foot), std::round(p.width - left - right),
+                  std::round(slot - head - foot)};
+    if (!panel.title.empty()) p.text({box.x, box.y + box.h + 6 * s}, panel.title, label_size, Across::left, Up::bottom, ink, true);
+    draw_axes(p, panel, box, sx[i], sy[i]);
+    p.text({18 * s, box.y + box.h / 2}, label_of(panel.y, sy[i]), label_size, Across::centre, Up::middle, ink, false, 90);
+    p.clip(box);
+    for (const Curve& c : panel.curves) draw_curve(p, c, sx[i], sy[i], box);
+    p.unclip();
+    draw_legend(p, panel, box);
+  }
+}
+
+}  // namespace
+
+void write_chart(const Figure& figure, const std::string& path) {
+  Picture picture(figure.width, figure.height);
+  picture.paint([&](Painter& p) { draw(p, figure); });
+  picture.write(path);
+}
+
+}  // namespace hilo

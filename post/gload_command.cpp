@@ -1,0 +1,170 @@
+// hilo-post gload: what the sensors felt, raw and filtered, as a table of peaks, CSV and a chart.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "base/args.hpp"
+#include "base/error.hpp"
+#include "post/cfc.hpp"
+#include "post/figure.hpp"
+#include "post/commands.hpp"
+#include "post/output.hpp"
+#include "post/picture.hpp"
+#include "post/run_file.hpp"
+#include "post/table.hpp"
+
+namespace hilo {
+namespace {
+
+struct Options {
+  std::string run, csv, png, size;
+  std::vector<std::string> sensors{"*"};
+  double cfc = 60;
+  bool json = false;
+};
+
+/// One sensor: raw at its recorded times, filtered at uniform ones; the fourth column is the resultant.
+struct Sensor {
+  std::string name;
+  std::vector<double> t, uniform;            // [s]
+  std::array<std::vector<double>, 4> raw, filtered;   // x y z resultant [g]
+};
+
+std::vector<double> resultant(const std::array<std::vector<double>, 4>& a) {
+  std::vector<double> r;
+  for (size_t i = 0; i < a[0].size(); ++i) r.push_back(std::hypot(a[0][i], a[1][i], a[2][i]));
+  return r;
+}
+
+Sensor read_sensor(const RunFile& run, const std::string& name, double cfc) {
+  const Series series = run.series("sensor." + name);
+  Sensor s{name, series.t, {}, {}, {}};
+  const std::string where = fmt::format("{}: sensor \"{}\"", run.path, name);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    for (size_t row = 0; row < series.rows(); ++row) s.raw[axis].push_back(series.at(row, axis));
+    Filtered f = cfc_filtered(s.t, s.raw[axis], cfc, where);
+    s.uniform = std::move(f.t);
+    s.filtered[axis] = std::move(f.x);
+  }
+  s.raw[3] = resultant(s.raw);
+  s.filtered[3] = resultant(s.filtered);
+  return s;
+}
+
+/// Index of the value largest in size.
+size_t peak(const std::vector<double>& x) {
+  size_t best = 0;
+  for (size_t i = 1; i < x.size(); ++i)
+    if (std::abs(x[i]) > std::abs(x[best])) best = i;
+  return best;
+}
+
+std::vector<std::string> names_of(const RunFile& run, const std::vector<std::string>& globs) {
+  const auto all = run.store().list("/history/sensor");
+  if (all.empty()) throw Error(run.path, "has no sensors", "add [[sensor]] name, on to the scene");
+  std::vector<std::string> names;
+  for (const auto& name : all)
+    for (const auto& glob : globs)
+      if (matches(glob, name) && (names.empty() || names.back() != name)) names.push_back(name);
+  if (names.empty()) {
+    std::string hint = suggest(globs.front(), all);
+    throw Error(run.path, fmt::format("no sensor \"{}\"", globs.front()), hint.empty() ? fmt::format("there is {}", all.front()) : hint);
+  }
+  return names;
+}
+
+void write_csv(const Options& o, const std::vector<Sensor>& sensors) {
+  std::vector<std::string> header{"t [s]"};
+  std::vector<std::vector<double>> columns{sensors.front().t};
+  constexpr const char* axis[] = {"x", "y", "z", "resultant"};
+  for (const Sensor& s : sensors) {
+    for (size_t a = 0; a < 4; ++a) header.push_back(fmt::format("{}.raw_{} [g]", s.name, axis[a])), columns.push_back(s.raw[a]);
+    for (size_t a = 0; a < 4; ++a) {
+      header.push_back(fmt::format("{}.cfc{:g}_{} [g]", s.name, o.cfc, axis[a]));
+      columns.push_back(interpolate(s.uniform, s.filtered[a], s.t));
+    }
+  }
+  write_out(o.csv, csv_text(header, columns));
+}
+
+void write_png(const Options& o, const RunFile& run, const std::vector<Sensor>& sensors) {
+  Figure figure;
+  figure.title = fmt::format("{}: proper acceleration", run.title);
+  std::tie(figure.width, figure.height) = parse_size(o.size.empty() ? fmt::format("1280x{}", std::max<size_t>(720, 330 * sensors.size())) : o.size);
+  for (const Sensor& s : sensors) {
+    Panel panel{s.name, {"time [s]"}, {"acceleration [g]"}, {}};
+    constexpr const char* axis[] = {"x forward", "y left", "z up"};
+    for (size_t a = 0; a < 3; ++a) {
+      const Rgb colour = curve_colour(static_cast<int>(a));
+      panel.curves.push_back({fmt::format("{}, raw", axis[a]), s.t, s.raw[a], blend(colour, white, 0.35), 1.0});
+    }
+    for (size_t a = 0; a < 3; ++a)
+      panel.curves.push_back({fmt::format("{}, CFC {:g}", axis[a], o.cfc), s.uniform, s.filtered[a], curve_colour(static_cast<int>(a)), 2.6});
+    figure.panels.push_back(std::move(panel));
+  }
+  write_chart(figure, o.png);
+}
+
+std::string json_of(const Options& o, const std::vector<Sensor>& sensors) {
+  std::string text = fmt::format("{{\"file\": {}, \"cfc\": {:g}, \"unit\": \"g\", \"clip\": \"3 ms cumulative, of the filtered resultant\", \"sensors\": [",
+                                 json(o.run), o.cfc);
+  for (size_t i = 0; i < sensors.size(); ++i) {
+    const Sensor& s = sensors[i];
+    std::vector<double> raw, filtered;
+    for (const auto& x : s.raw) raw.push_back(x[peak(x)]);
+    for (const auto& x : s.filtered) filtered.push_back(x[peak(x)]);
+    text += fmt::format("{}\n  {{\"name\": {}, \"raw_peak\": {}, \"filtered_peak\": {}, \"resultant_peak_time\": {}, \"clip_3ms\": {}}}", i ? "," : "",
+                        json(s.name), json(raw), json(filtered), json(s.uniform[peak(s.filtered[3])]), json(clip_level(s.uniform, s.filtered[3])));
+  }
+  return text + "\n]}\n";
+}
+
+std::string table_of(const Options& o, const std::vector<Sensor>& sensors) {
+  const std::string f = fmt::format("CFC{:g}", o.cfc);
+  std::vector<std::vector<std::string>> rows{{"sensor", "raw x", "raw y", "raw z", "raw res", f + " x", f + " y", f + " z", f + " res", "at [s]", "3 ms clip"}};
+  for (const Sensor& s : sensors) {
+    std::vector<std::string> row{s.name};
+    for (const auto& x : s.raw) row.push_back(fmt::format("{:.3f}", x[peak(x)]));
+    for (const auto& x : s.filtered) row.push_back(fmt::format("{:.3f}", x[peak(x)]));
+    row.push_back(fmt::format("{:.5f}", s.uniform[peak(s.filtered[3])]));
+    const double clip = clip_level(s.uniform, s.filtered[3]);
+    row.push_back(std::isfinite(clip) ? fmt::format("{:.3f}", clip) : "-");
+    rows.push_back(row);
+  }
+  return aligned(rows, 1);
+}
+
+void run(const Options& o) {
+  const RunFile file(o.run);
+  std::vector<Sensor> sensors;
+  for (const std::string& name : names_of(file, o.sensors)) sensors.push_back(read_sensor(file, name, o.cfc));
+  if (!o.csv.empty()) write_csv(o, sensors);
+  if (!o.png.empty()) write_png(o, file, sensors);
+  if (o.csv != "-") write_out("-", o.json ? json_of(o, sensors) : table_of(o, sensors));
+  if (!is_quiet() && !o.json)
+    fmt::print(stderr,
+               "Peaks in g with their sign; proper acceleration, +1 upward at rest.  CFC {:g}: SAE J211-1, forwards and backwards, ends continued by\n"
+               "point reflection.  3 ms clip: cumulative, of the filtered resultant.{}\n",
+               o.cfc, file.complete ? "" : "  The run is not complete.");
+}
+
+}  // namespace
+
+Command gload_command(CLI::App& app) {
+  auto* sub = app.add_subcommand("gload", "G-loads of the sensors: peaks, 3 ms clip, raw and CFC-filtered curves");
+  const auto o = std::make_shared<Options>();
+  sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
+  sub->add_option("--sensor", o->sensors, "sensors by name or glob")->default_str("*");
+  sub->add_option("--cfc", o->cfc, "channel frequency class of the filter: 60, 180, 600 or 1000 (SAE J211-1)")
+      ->check(CLI::IsMember({60.0, 180.0, 600.0, 1000.0}))
+      ->default_str("60");
+  sub->add_option("-o,--output", o->csv, "CSV of raw and filtered values at the recorded times; - for stdout instead of the table");
+  sub->add_option("--png", o->png, "chart of raw (thin) and filtered (thick) curves");
+  sub->add_option("--size", o->size, "size of the chart, WIDTHxHEIGHT");
+  sub->add_flag("--json", o->json, "the table as JSON");
+  example(*sub, "  hilo-post gload run.h5 --cfc 60 -o gload.csv --png gload.png");
+  return {sub, [o] { run(*o); }};
+}
+
+}  // namespace hilo

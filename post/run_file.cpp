@@ -1,0 +1,123 @@
+#include "post/run_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+#include <toml++/toml.h>
+
+#include "base/error.hpp"
+
+namespace hilo {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string title_of(const Store& store, const std::string& path) {
+  if (store.has("/scene")) try {
+      if (const auto title = toml::parse(store.read_text("/scene"))["title"].value<std::string>(); title && !title->empty()) return *title;
+    } catch (const toml::parse_error&) {   // the scene is only wanted for its title here
+    }
+  return fs::path(path).stem().string();
+}
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts;
+  std::stringstream stream(text);
+  for (std::string part; std::getline(stream, part, at);) parts.push_back(part);
+  return parts;
+}
+
+double number(const std::string& text, const std::string& option) {
+  double x = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw Error(option, fmt::format("\"{}\" is no number", text), "write all, first, last, or numbers with commas", Exit::usage);
+  return x;
+}
+
+}  // namespace
+
+bool matches(const std::string& glob, const std::string& name) { return fnmatch(glob.c_str(), name.c_str(), 0) == 0; }
+
+RunFile::RunFile(const std::string& path) : path(path), store_(Store::open(path)) {
+  const std::string format = store_.text_attribute("/", "format").value_or("");
+  if (format != "hilo run")
+    throw Error(path, format.empty() ? "is no file of hilo" : fmt::format("is a \"{}\", not a run", format), "give the run.h5 of hilo-solve");
+  complete = store_.number_attribute("/", "complete").value_or(0) != 0;
+  title = title_of(store_, path);
+  for (const std::string& key : store_.list("/field"))
+    if (const auto t = store_.number_attribute("/field/" + key, "t")) steps.push_back({key, *t});
+}
+
+const MeshFile& RunFile::mesh_file() {
+  if (mesh_) return *mesh_;
+  const auto link = store_.linked("/mesh");
+  std::string target = path;
+  if (link) {
+    target = link->first;
+    if (fs::path(target).is_relative()) target = (fs::path(path).parent_path() / target).string();
+    if (!fs::exists(target))
+      throw Error(path, fmt::format("the mesh it links to, {}, is not there", target), "keep the mesh beside the run, or move both together");
+  } else if (!has_mesh()) {
+    throw Error(path, "holds no mesh: a scene of bodies alone has no surfaces to draw or export", "its histories are there: hilo-post series --list");
+  }
+  mesh_ = read_mesh_file(target);
+  if (store_.has("/tags/fidelity")) {
+    const auto words = store_.read_strings("/tags/fidelity");
+    if (words.size() != mesh_->mesh.region_name.size())
+      throw Error(path, fmt::format("{} tags but {} regions in {}", words.size(), mesh_->mesh.region_name.size(), target),
+                  "the mesh was changed after the run");
+    mesh_->fidelity.clear();
+    for (const auto& w : words) mesh_->fidelity.push_back(fidelity_of(w, path));
+    mesh_->tagged = true;
+  }
+  if (store_.has("/parts/rank")) mesh_->rank = store_.read<std::int32_t>("/parts/rank");
+  for (const std::int32_t r : mesh_->rank) mesh_->n_parts = std::max(mesh_->n_parts, r + 1);
+  return *mesh_;
+}
+
+std::vector<std::string> RunFile::fields(const Step& step) const { return store_.list("/field/" + step.key); }
+
+RunFile::Field RunFile::field(const Step& step, const std::string& name) const {
+  const std::string array = fmt::format("/field/{}/{}", step.key, name);
+  const auto names = fields(step);
+  if (!store_.has(array)) {
+    std::string hint = suggest(name, names);
+    if (hint.empty()) hint = fmt::format("there are {}", fmt::join(names, ", "));
+    throw Error(path, fmt::format("no field \"{}\" in step {}", name, step.key), hint);
+  }
+  const auto shape = store_.shape(array);
+  return {store_.read<double>(array), shape.size() > 1 ? static_cast<int>(shape[1]) : 1};
+}
+
+std::vector<Step> RunFile::select_steps(const std::string& numbers, const std::string& times) const {
+  if (steps.empty()) throw Error(path, "holds no field output yet", complete ? "see output.interval of the scene" : "the run is in progress");
+  if (!times.empty()) {
+    std::vector<Step> chosen;
+    for (const std::string& text : split(times, ',')) {
+      const double t = number(text, "--times");
+      const auto nearer = [&](const Step& a, const Step& b) { return std::abs(a.t - t) < std::abs(b.t - t); };
+      chosen.push_back(*std::min_element(steps.begin(), steps.end(), nearer));
+    }
+    return chosen;
+  }
+  if (numbers == "all") return steps;
+  if (numbers == "first") return {steps.front()};
+  if (numbers == "last") return {steps.back()};
+  std::vector<Step> chosen;
+  for (const std::string& text : split(numbers, ',')) {
+    const double k = number(text, "--steps");
+    if (k < 0 || k >= static_cast<double>(steps.size()) || k != std::floor(k))
+      throw Error(path, fmt::format("no step {}", text), fmt::format("there are 0 to {}", steps.size() - 1));
+    chosen.push_back(steps[static_cast<size_t>(k)]);
+  }
+  return chosen;
+}
+
+}  // namespace hilo

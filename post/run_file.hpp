@@ -1,0 +1,69 @@
+// A results file as pictures and tables see it: mesh, tags, field steps and histories, read a step at a time.  A run in progress can be read.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/mesh.hpp"
+#include "model/store.hpp"
+
+namespace hilo {
+
+/// One output of the fields: the name of its group and its time.
+struct Step {
+  std::string key;   // "000012"
+  double t;          // [s]
+};
+
+/// One history: a table over time.
+struct Series {
+  std::string name;                  // "joint.trunnion"
+  std::vector<std::string> column;   // Fx, Fy, ...         (n_columns)
+  std::vector<std::string> unit;     //                     (n_columns)
+  std::vector<double> t;             //                     (n_t)  [s]
+  std::vector<double> value;         // row by row          (n_t x n_columns)
+  size_t rows() const { return t.size(); }
+  double at(size_t row, size_t c) const { return value[row * column.size() + c]; }
+};
+
+class RunFile {
+ public:
+  /// Error when the file is missing, is no run, or its mesh.h5 has gone.
+  explicit RunFile(const std::string& path);
+
+  const std::string path;
+  bool complete = false;             // false while the run goes on, and for a run that was stopped
+  std::string title;                 // of the scene, or its file's name
+  std::vector<Step> steps;
+
+  /// Mesh with the fidelity it was run at and the ranks of a parallel run; read at the first call.  Error for a scene of bodies alone.
+  const MeshFile& mesh_file();
+  const Mesh& mesh() { return mesh_file().mesh; }
+  bool has_mesh() const { return store_.has("/mesh"); }
+
+  /// A nodal or cell field of a step and its number of columns; Error with the names there are.
+  struct Field {
+    std::vector<double> value;
+    int columns;
+  };
+  Field field(const Step& step, const std::string& name) const;
+  std::vector<std::string> fields(const Step& step) const;
+  /// Steps by "all", "first", "last" or numbers "0,5,10"; by times "0.01,0.02" the nearest ones.
+  std::vector<Step> select_steps(const std::string& numbers, const std::string& times) const;
+
+  /// Names of all histories: "energy", "joint.trunnion", ...
+  std::vector<std::string> series_names() const;
+  /// Columns and units without the values.
+  Series describe(const std::string& name) const;
+  Series series(const std::string& name) const;
+  const Store& store() const { return store_; }
+
+ private:
+  Store store_;
+  std::optional<MeshFile> mesh_;
+};
+
+/// Does a name match a glob (* ? [abc])?
+bool matches(const std::string& glob, const std::string& name);
+
+}  // namespace hilo

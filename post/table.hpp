@@ -1,0 +1,26 @@
+// Tables of numbers and text with named columns: CSV in and out.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace hilo {
+
+/// Columns by name; cells are text, so that a column of names is kept.
+struct Table {
+  std::vector<std::string> header;               // "t [s]", ...        (n_columns)
+  std::vector<std::vector<std::string>> column;  // cells of each       (n_columns x n_rows)
+  std::string path;                              // where it was read, for errors
+  size_t rows() const { return column.empty() ? 0 : column.front().size(); }
+  /// Column of a name, with or without its unit, or of a number from 1; Error with a suggestion.
+  size_t find(const std::string& name) const;
+  /// A column as numbers; an empty cell is NaN, any other text an Error with its line.
+  std::vector<double> numbers(size_t column) const;
+};
+
+/// Read CSV with one header line; quotes as usual, lines that start with # are skipped.
+Table read_csv(const std::string& path);
+
+/// CSV of columns of numbers, written so that they read back as the same doubles.
+std::string csv_text(const std::vector<std::string>& header, const std::vector<std::vector<double>>& columns);
+
+}  // namespace hilo

@@ -1,0 +1,75 @@
+#include "base/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <new>
+
+namespace hilo {
+namespace {
+
+std::string compose(const std::string& where, const std::string& what, const std::string& hint) {
+  return (where.empty() ? "" : where + ": ") + what + (hint.empty() ? "" : " (" + hint + ")");
+}
+
+/// Damerau-Levenshtein distance (optimal string alignment).
+size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<size_t>> d(a.size() + 1, std::vector<size_t>(b.size() + 1));
+  for (size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (size_t i = 1; i <= a.size(); ++i)
+    for (size_t j = 1; j <= b.size(); ++j) {
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+bool quiet = false;
+std::string current_tool = "hilo";
+
+}  // namespace
+
+Error::Error(std::string where_, std::string what_, std::string hint_, Exit exit_)
+    : std::runtime_error(compose(where_, what_, hint_)),
+      where(std::move(where_)),
+      message(std::move(what_)),
+      hint(std::move(hint_)),
+      exit(exit_) {}
+
+std::string suggest(std::string_view name, std::span<const std::string> candidates) {
+  const std::string* best = nullptr;
+  size_t least = std::max<size_t>(2, name.size() / 3) + 1;
+  for (const auto& c : candidates)
+    if (const size_t d = edit_distance(name, c); d < least) least = d, best = &c;
+  return best ? fmt::format("did you mean \"{}\"?", *best) : "";
+}
+
+void warn(const std::string& where, const std::string& what) {
+  if (!quiet) fmt::print(stderr, "{}: warning: {}{}{}\n", current_tool, where, where.empty() ? "" : ": ", what);
+}
+void quiet_warnings(bool q) { quiet = q; }
+void set_tool_name(std::string_view tool) { current_tool = tool; }
+const std::string& tool_name() { return current_tool; }
+
+int guarded(std::string_view tool, const std::function<void()>& body) {
+  set_tool_name(tool);
+  const auto fail = [&](Exit exit, const std::string& text) {
+    std::fflush(stdout);
+    fmt::print(stderr, "{}: {}\n", tool, text);
+    return static_cast<int>(exit);
+  };
+  try {
+    body();
+    return static_cast<int>(Exit::done);
+  } catch (const Error& e) {
+    return fail(e.exit, e.what());
+  } catch (const std::bad_alloc&) {
+    return fail(Exit::resources, "out of memory");
+  } catch (const std::exception& e) {
+    return fail(Exit::fault, fmt::format("internal fault: {}", e.what()));
+  }
+}
+
+}  // namespace hilo

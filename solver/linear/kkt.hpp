@@ -1,0 +1,65 @@
+// The linear solve of a Newton step: one sparse unsymmetric saddle-point system in 3 x 3 blocks,
+//
+//     [ K    G_left^T ] [ dq      ]     [ r ]
+//     [ G_right     0 ] [ dlambda ] = - [ g ]
+//
+// handed over as dense blocks of cliques (an element, a joint).  It has never heard of an element or a joint.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hilo {
+
+/// Which blocks couple: clique i covers blocks[offset[i] .. offset[i+1]), local numbers (-1: none), dense in that order.
+struct Cliques {
+  std::vector<int> offset{0};
+  std::vector<int> blocks;
+  int add(std::span<const int> list) {
+    blocks.insert(blocks.end(), list.begin(), list.end());
+    offset.push_back(static_cast<int>(blocks.size()));
+    return static_cast<int>(offset.size()) - 2;
+  }
+  std::span<const int> operator[](int i) const { return {blocks.data() + offset[i], static_cast<size_t>(offset[i + 1] - offset[i])}; }
+  int size() const { return static_cast<int>(offset.size()) - 1; }
+};
+
+/// Local blocks and their global numbers.  Each rank owns the global range [first, first + n_owned); local block i has number global[i].
+struct BlockMap {
+  std::vector<std::int64_t> global;  // (n_local)
+  std::int64_t first = 0, n_owned = 0, n_global = 0;
+  std::int64_t first_dense = 0;      // global blocks from here on belong to bodies and multipliers
+};
+
+/// What a solve did.
+struct SolveReport {
+  bool ok = true;
+  double residual = 0;  // |A x - b|/|b| in the maximum norm, by multiplication, not claimed by the solver
+  int iterations = 0;   // 0 for a direct solver
+  std::string message;
+};
+
+class KktSolver {
+ public:
+  virtual ~KktSolver() = default;
+  virtual void structure(const Cliques& cliques, const BlockMap& map) = 0;
+  virtual void zero() = 0;
+  /// Add the dense matrix (3n x 3n, row major) of a clique.
+  virtual void add(int clique, const double* K) = 0;
+  /// Add to the diagonal of a local block (its owner's call only).
+  virtual void add_diagonal(int block, const double d[3]) = 0;
+  /// Sum what ranks hold of shared blocks; afterwards every rank sees the full values of its local blocks.
+  virtual void sum_shared(std::span<double> local) = 0;
+  /// Solve A x = b; b has the full values of the local blocks, x gets them.
+  virtual SolveReport solve(std::span<const double> b, std::span<double> x) = 0;
+  virtual std::string name() const = 0;
+};
+
+/// KLU for small systems, UMFPACK above [davis-2010, davis-2004]; serial, starts in microseconds.
+std::unique_ptr<KktSolver> make_light_solver();
+/// PETSc: "direct" (MUMPS) or "iterative"; loaded when first asked for, since PETSc's start costs more than a small run.
+std::unique_ptr<KktSolver> make_petsc_solver(const std::string& kind, double tolerance);
+
+}  // namespace hilo

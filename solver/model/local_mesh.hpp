@@ -1,0 +1,29 @@
+// The part of a mesh that one rank holds: its cells, and their nodes whether owned or shared.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/comm.hpp"
+#include "model/mesh.hpp"
+
+namespace hilo {
+
+struct LocalMesh {
+  Mesh mesh;                              // local numbering; region and set names are those of the whole mesh on every rank
+  std::vector<Fidelity> fidelity;         // per region
+  bool tagged = false;
+  std::vector<std::int64_t> node_global;  // row of each local node in the file      (n_nodes)
+  std::vector<std::int64_t> cell_global;  // row of each local cell in the file      (n_cells)
+  std::vector<char> node_owned;           // 1 on the one rank that owns the node    (n_nodes)
+  std::int64_t n_nodes_global = 0, n_cells_global = 0;
+  std::string file;                       // mesh, tags or parts file it came from ("" without a mesh)
+  std::vector<std::string> provenance;
+  double length = 1;                      // diagonal of the bounding box of the whole mesh [m]
+};
+
+/// Read a mesh, tags or parts file.  On several ranks each reads its slice of the rows and cells travel to the rank that the parts file
+/// (or a partition made on the spot) gives them, so no rank holds the whole mesh.
+LocalMesh read_local_mesh(const std::string& path, const Comm& comm);
+
+}  // namespace hilo

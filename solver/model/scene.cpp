@@ -1,0 +1,80 @@
+#include "model/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <iterator>
+
+#include "model/scene_read.hpp"
+#include "model/store.hpp"
+
+namespace hilo {
+namespace {
+
+const Value& value_of(const Entry& e, std::string_view key) {
+  const auto v = e.values.find(key);
+  if (v == e.values.end()) throw Error(e.where(""), fmt::format("{}: \"{}\" is missing", e.label(), key));
+  return v->second;
+}
+
+}  // namespace
+
+std::string Place::text() const { return line == 0 ? file : fmt::format("{}:{}:{}", file, line, column); }
+
+bool Entry::has(std::string_view key) const { return values.find(key) != values.end(); }
+bool Entry::given(std::string_view key) const {
+  const auto v = values.find(key);
+  return v != values.end() && v->second.given;
+}
+double Entry::number(std::string_view key) const { return value_of(*this, key).numbers.at(0); }
+Vec3 Entry::vector3(std::string_view key) const { return Vec3(value_of(*this, key).numbers.data()); }
+const std::vector<double>& Entry::numbers(std::string_view key) const { return value_of(*this, key).numbers; }
+const std::string& Entry::text(std::string_view key) const { return value_of(*this, key).texts.at(0); }
+const std::vector<std::string>& Entry::texts(std::string_view key) const { return value_of(*this, key).texts; }
+bool Entry::boolean(std::string_view key) const { return value_of(*this, key).boolean.value(); }
+const History& Entry::history(std::string_view key) const {
+  static const History one{{0}, {1}};
+  const auto v = values.find(key);
+  return v != values.end() && v->second.history ? *v->second.history : one;
+}
+std::string Entry::where(std::string_view key) const {
+  const auto v = values.find(key);
+  return (v != values.end() && v->second.given ? v->second.place : place).text();
+}
+std::string Entry::label() const { return name.empty() ? section : fmt::format("{} \"{}\"", section, name); }
+
+Scene Scene::load(const std::string& path, std::span<const std::string> overrides) {
+  Scene scene;
+  Surroundings around;
+  scene.path = path;
+  if (path == "-") {
+    around.file = "<stdin>";
+    scene.folder = ".";
+    scene.text.assign(std::istreambuf_iterator<char>(std::cin), {});
+  } else {
+    around.file = path;
+    const auto parent = std::filesystem::path(path).parent_path().string();
+    scene.folder = parent.empty() ? "." : parent;
+    scene.text = read_text_file(path);
+  }
+  around.folder = scene.folder;
+  toml::table root = parse_toml(scene.text, around.file);
+  for (const auto& option : overrides) apply_override(root, option);
+  if (!overrides.empty()) scene.text = toml_text(root);
+  scene.entries_ = read_sections(root, around);
+  scene.units = around.units;
+  check_entries(scene.entries_);
+  scene.warnings = find_implausible(scene.entries_);
+  return scene;
+}
+
+std::span<const Entry> Scene::entries(std::string_view section) const {
+  const auto e = entries_.find(section);
+  return e == entries_.end() ? std::span<const Entry>{} : std::span<const Entry>(e->second);
+}
+
+const Entry& Scene::table(std::string_view section) const { return entries_.find(section)->second.front(); }
+
+}  // namespace hilo

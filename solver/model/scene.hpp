@@ -1,0 +1,104 @@
+// The scene: one TOML file, kept as entries with their places.  What the keys mean is in scene_schema; nothing is interpreted here.
+#pragma once
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/math.hpp"
+#include "base/param.hpp"
+
+namespace hilo {
+
+/// file:line:column
+struct Place {
+  std::string file;
+  int line = 0, column = 0;
+  std::string text() const;
+};
+
+/// A load history: values at rising times, linear or smooth (C1 cosine ramps between the points: w = (1 - cos(pi s))/2).
+/// Before the first point the first value, after the last the last.  Two equal times make a jump.
+struct History {
+  std::vector<double> t;       // [s]
+  std::vector<double> value;   // dimension of what it scales
+  bool smooth = false;
+  double operator()(double time) const;   // from the right at a jump
+  double slope(double time) const;
+  double mean(double t0, double t1) const;        // exact average over [t0, t1]
+  /// Times of jumps and kinks inside (t0, t1).
+  std::vector<double> events(double t0, double t1) const;
+  std::vector<double> jumps() const;              // times at which the value jumps
+};
+
+/// One value of an entry, in SI units, with its place.
+struct Value {
+  Place place;
+  std::vector<double> numbers;       // a number is a list of one
+  std::vector<std::string> texts;    // a text is a list of one
+  std::optional<bool> boolean;
+  std::optional<History> history;
+  bool given = true;                 // false: the default is in force
+};
+
+/// A table of the scene: [material.steel] has section "material" and name "steel"; [[joint]] has its kind and name as keys.
+struct Entry {
+  std::string section, kind, name;
+  Place place;
+  std::map<std::string, Value, std::less<>> values;     // checked and completed with defaults by the schema
+
+  bool has(std::string_view key) const;                  // present, given or by default
+  bool given(std::string_view key) const;                // written in the scene
+  double number(std::string_view key) const;
+  Vec3 vector3(std::string_view key) const;
+  const std::vector<double>& numbers(std::string_view key) const;
+  const std::string& text(std::string_view key) const;
+  const std::vector<std::string>& texts(std::string_view key) const;
+  bool boolean(std::string_view key) const;
+  const History& history(std::string_view key) const;    // constant 1 where absent
+  std::string where(std::string_view key) const;         // "scene.toml:14:7" of the key, or of the entry
+  std::string label() const;                             // joint "trunnion"
+};
+
+/// The whole scene, every key known and every value in range.
+class Scene {
+ public:
+  /// Read `path` ("-": standard input), apply overrides "joint.trunnion.stiffness=2e6", check against the schema.
+  /// Unknown sections, keys and kinds, wrong types, values out of range, duplicate names: Error with file:line:column and a suggestion.
+  static Scene load(const std::string& path, std::span<const std::string> overrides = {});
+  /// Entries of a section in file order: material, region, body, point_mass, joint, spring, load, motion, initial, sensor, probe, history.
+  std::span<const Entry> entries(std::string_view section) const;
+  /// The one table of a section (time, solver, output, scene); defaults where it is absent.
+  const Entry& table(std::string_view section) const;
+  std::string path;      // as given
+  std::string folder;    // relative paths in the scene start here
+  std::string text;      // the TOML text after overrides, for provenance
+  std::string units;
+  /// Every value in force as lines "section.name.key = value [unit]  # default|given", for --explain.
+  std::string explain() const;
+  std::vector<std::string> warnings;   // implausible values, one line each, with place
+
+ private:
+  std::map<std::string, std::vector<Entry>, std::less<>> entries_;
+};
+
+/// The schema of scenes: every section, kind and key, with unit, default and meaning.
+struct KindSchema {
+  std::string_view section;       // "joint"
+  std::string_view kind;          // "revolute"; "" where the section has no kinds
+  std::string_view meaning;
+  std::vector<Param> params;
+};
+const std::vector<KindSchema>& scene_schema();
+/// Words a text key may be; empty where any text will do (a `kind` is checked against the schema's kinds).
+std::vector<std::string> choices(std::string_view section, std::string_view key);
+/// How many numbers a list may hold; empty where any number will do.
+std::vector<size_t> lengths(std::string_view section, std::string_view key);
+/// Sections written as [[section]] (lists of tables with a key `name`); the others are [section.NAME] or a single [section].
+bool is_list_section(std::string_view section);
+bool is_single_section(std::string_view section);
+
+}  // namespace hilo

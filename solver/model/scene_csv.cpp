@@ -1,0 +1,116 @@
+// Load histories of a scene: from the keys t and value, or from a CSV file.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+#include "model/scene_read.hpp"
+#include "model/store.hpp"
+
+namespace hilo {
+namespace {
+
+std::string_view trim(std::string_view s) {
+  const auto first = s.find_first_not_of(" \t\r"), last = s.find_last_not_of(" \t\r");
+  return first == s.npos ? "" : s.substr(first, last - first + 1);
+}
+
+struct Field {
+  std::string_view text;
+  int column;
+};
+
+/// Fields between commas, semicolons or tabs.
+std::vector<Field> fields_of(std::string_view line) {
+  std::vector<Field> fields;
+  for (size_t begin = 0; begin <= line.size();) {
+    const size_t end = std::min(line.find_first_of(",;\t", begin), line.size());
+    const std::string_view raw = line.substr(begin, end - begin);
+    const size_t blank = std::min(raw.find_first_not_of(" \r"), raw.size());
+    fields.push_back({trim(raw), static_cast<int>(begin + blank + 1)});
+    begin = end + 1;
+  }
+  return fields;
+}
+
+bool to_number(std::string_view s, double& x) {
+  if (s.starts_with('+')) s.remove_prefix(1);
+  const auto [end, code] = std::from_chars(s.data(), s.data() + s.size(), x);
+  return code == std::errc() && end == s.data() + s.size() && std::isfinite(x);
+}
+
+/// Why point i may not follow the ones before it, or "".
+std::string disorder(const std::vector<double>& t, size_t i) {
+  if (i >= 1 && t[i] < t[i - 1]) return fmt::format("time {} comes after {}", t[i], t[i - 1]);
+  if (i >= 2 && t[i] == t[i - 1] && t[i] == t[i - 2]) return fmt::format("time {} stands three times", t[i]);
+  return "";
+}
+constexpr const char* order_rule = "times must rise; two equal ones make a jump";
+
+}  // namespace
+
+History read_history_csv(const std::string& path, const std::string& where) {
+  if (!std::filesystem::exists(path))
+    throw Error(where, fmt::format("no file {}", path), "paths in a scene are relative to the scene's folder");
+  std::string text = read_text_file(path, where);
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  History h;
+  bool header = false;
+  int line_number = 0;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = std::string_view(text).substr(begin, end - begin);
+    begin = end + 1;
+    ++line_number;
+    if (trim(line).empty() || trim(line).starts_with('#')) continue;
+    const auto fields = fields_of(line);
+    const auto at = [&](size_t i) { return fmt::format("{}:{}:{}", path, line_number, fields[i].column); };
+    if (fields.size() != 2)
+      throw Error(at(fields.size() > 2 ? 2 : 0),
+                  fmt::format("{} column{} where two are expected: time and value", fields.size(), fields.size() == 1 ? "" : "s"));
+    double t = 0, value = 0;
+    const bool numeric = to_number(fields[0].text, t);
+    if (!header) {
+      if (numeric) throw Error(at(0), "no header line", "write \"t,value\" above the first numbers");
+      header = true;
+      continue;
+    }
+    if (!numeric) throw Error(at(0), fmt::format("\"{}\" is not a number", fields[0].text));
+    if (!to_number(fields[1].text, value)) throw Error(at(1), fmt::format("\"{}\" is not a number", fields[1].text));
+    h.t.push_back(t);
+    h.value.push_back(value);
+    if (const auto why = disorder(h.t, h.t.size() - 1); !why.empty()) throw Error(at(0), why, order_rule);
+  }
+  if (h.t.empty())
+    throw Error(fmt::format("{}:{}:1", path, line_number + (line_number == 0)), "no times and values",
+                "a header line, then lines \"t,value\"");
+  return h;
+}
+
+History history_of(const Entry& e, const std::string& label, const Surroundings& around) {
+  const auto fail = [&](std::string_view key, const std::string& what, const std::string& hint) -> History {
+    throw Error(e.where(key), label + ": " + what, hint);
+  };
+  History h;
+  if (e.has("file")) {
+    if (e.has("t") || e.has("value")) return fail("file", "both a file and a table", "give either file or t and value");
+    const std::filesystem::path file = e.text("file");
+    h = read_history_csv((around.folder == "." ? file : std::filesystem::path(around.folder) / file).string(), e.where("file"));
+    for (double& t : h.t) t *= to_si("s", around.units);
+  } else if (e.has("t") && e.has("value")) {
+    h.t = e.numbers("t");
+    h.value = e.numbers("value");
+    if (h.t.empty()) return fail("t", "t is empty", "at least one time and value");
+    if (h.t.size() != h.value.size()) return fail("value", fmt::format("{} times but {} values", h.t.size(), h.value.size()), "");
+    for (size_t i = 1; i < h.t.size(); ++i)
+      if (const auto why = disorder(h.t, i); !why.empty()) return fail("t", why, order_rule);
+  } else {
+    return fail("", "neither a file nor t and value", "write file = \"load.csv\", or t = [...] and value = [...]");
+  }
+  for (double& v : h.value) v *= e.number("scale");
+  h.smooth = e.text("interpolation") == "smooth";
+  return h;
+}
+
+}  // namespace hilo

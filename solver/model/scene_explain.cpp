@@ -1,0 +1,76 @@
+// Every value in force, for --explain.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "model/scene.hpp"
+
+namespace hilo {
+namespace {
+
+std::string text_of(const Value& v) {
+  if (v.history && v.texts.empty() && v.history->t.size() == 1) return fmt::format("{}", v.history->value[0]);
+  if (v.history) {
+    const auto& h = *v.history;
+    return fmt::format("{}({} point{}, {:g} to {:g} s)", v.texts.empty() ? "" : v.texts[0] + " ", h.t.size(), h.t.size() == 1 ? "" : "s",
+                       h.t.front(), h.t.back());
+  }
+  if (v.boolean) return *v.boolean ? "true" : "false";
+  return "";
+}
+
+std::string text_of(const Value& v, Type type) {
+  switch (type) {
+    case Type::number:
+      return fmt::format("{}", v.numbers[0]);
+    case Type::vector3:
+    case Type::numbers:
+      return fmt::format("[{}]", fmt::join(v.numbers, ", "));
+    case Type::text:
+      return fmt::format("\"{}\"", v.texts[0]);
+    case Type::texts:
+      return fmt::format("[\"{}\"]", fmt::join(v.texts, "\", \""));
+    default:
+      return text_of(v);
+  }
+}
+
+std::string path_of(const Entry& e, size_t number) {
+  if (e.section == "scene") return "";
+  if (is_single_section(e.section)) return e.section + ".";
+  const std::string name = e.name.empty() ? std::to_string(number) : e.name.find('.') == std::string::npos ? e.name : "\"" + e.name + "\"";
+  return e.section + "." + name + ".";
+}
+
+}  // namespace
+
+std::string Scene::explain() const {
+  std::vector<std::array<std::string, 3>> rows;
+  std::vector<std::string_view> done;
+  for (const auto& schema : scene_schema()) {
+    if (std::find(done.begin(), done.end(), schema.section) != done.end()) continue;
+    done.push_back(schema.section);
+    size_t number = 0;
+    for (const auto& e : entries(schema.section)) {
+      ++number;
+      const auto kind = std::find_if(scene_schema().begin(), scene_schema().end(),
+                                     [&](const KindSchema& k) { return k.section == e.section && k.kind == e.kind; });
+      for (const auto& p : kind->params) {
+        const auto v = e.values.find(p.key);
+        if (v == e.values.end()) continue;
+        const std::string unit = p.unit.empty() || p.unit == "1" ? "" : fmt::format(" [{}]", p.unit);
+        rows.push_back({fmt::format("{}{}", path_of(e, number), p.key), text_of(v->second, p.type) + unit,
+                        v->second.given ? "given, " + v->second.place.text() : "default"});
+      }
+    }
+  }
+  size_t key = 0, value = 0;
+  for (const auto& r : rows) key = std::max(key, r[0].size()), value = std::max(value, std::min<size_t>(r[1].size(), 40));
+  std::string out;
+  for (const auto& r : rows) out += fmt::format("{:<{}} = {:<{}}  # {}\n", r[0], key, r[1], value, r[2]);
+  return out;
+}
+
+}  // namespace hilo

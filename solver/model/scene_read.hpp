@@ -1,0 +1,40 @@
+// Steps of Scene::load between the TOML tree and the checked entries.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "model/scene_toml.hpp"
+
+namespace hilo {
+
+using Entries = std::map<std::string, std::vector<Entry>, std::less<>>;
+
+/// What reading a value needs to know of the scene around it.
+struct Surroundings {
+  std::string file, folder, units = "m-kg-s";
+  std::map<std::string, History, std::less<>> histories;  // of the [history.NAME] tables
+};
+
+/// Check a TOML value against its parameter and convert it to SI; `label` says whose value it is.
+Value read_value(std::string_view section, const Param& param, const Item& item, const std::string& label, const Surroundings& around);
+/// The parameter's default, which is in SI units.
+Value default_value(const Param& param);
+
+/// Check all keys of a table and complete them with defaults.  Messages begin with `owner`, the entry's label when empty.
+Entry read_entry(std::string_view section, const toml::table& table, const std::string& name, const Place& place,
+                 const Surroundings& around, const std::string& owner = "");
+/// All sections of the scene.
+Entries read_sections(const toml::table& root, Surroundings& around);
+
+/// The history a [history.NAME] or inline table describes: its points, or those of its CSV file.
+History history_of(const Entry& entry, const std::string& label, const Surroundings& around);
+/// Two columns of a CSV file: times (as written) and values.
+History read_history_csv(const std::string& path, const std::string& where);
+
+/// Mistakes that need more than one key to see: Error.
+void check_entries(const Entries& entries);
+/// Values that are possible but not plausible, one line each.
+std::vector<std::string> find_implausible(const Entries& entries);
+
+}  // namespace hilo

@@ -1,0 +1,291 @@
+// What a scene may say: the table behind the checks, --explain and docs/format.md.
+#include "model/scene.hpp"
+
+namespace hilo {
+namespace {
+
+using enum Type;
+constexpr Range any = any_number;
+
+constexpr Param name{"name", text, "", "!", "name, unique within the section"};
+constexpr Param history_key{"history", history, "1", "1",
+                            "factor over time: a name of [history.NAME] or a table {t = [...], value = [...]}"};
+constexpr Param end_a{"a", text, "", "ground", "first end: a rigid region, a body, a set, or ground"};
+constexpr Param end_b{"b", text, "", "!", "second end: a rigid region, a body, a set, or ground"};
+constexpr Param at{"at", vector3, "m", "!", "joint point, reference coordinates"};
+constexpr Param axis{"axis", vector3, "1", "!", "joint axis, inertial axes at the start; need not be of unit length"};
+constexpr Param x_axis{"x", vector3, "1", "", "first axis of the joint frame, made normal to `axis`"};
+
+std::vector<KindSchema> make() {
+  std::vector<KindSchema> s;
+  s.push_back({"scene",
+               "",
+               "keys at the top of the file",
+               {{"title", text, "", "", "one line, shown in pictures"},
+                {"units", text, "", "m-kg-s", "system of the numbers in this file: m-kg-s, mm-t-s, mm-kg-ms, in-lbf-s, ft-lbf-s"},
+                {"mesh", text, "", "", "mesh.h5, tags.h5 or parts-N.h5; the command line overrides it"},
+                {"gravity", vector3, "m/s^2", "[0, 0, 0]", "acceleration of free fall"}}});
+  s.push_back({"material",
+               "stvk",
+               "St. Venant-Kirchhoff: small or moderate strain, large rotation",
+               {{"kind", text, "", "stvk", "stvk or neo-hookean"},
+                {"E", number, "Pa", "", "Young's modulus (may come from the deck)", above(0)},
+                {"nu", number, "1", "", "Poisson's ratio", between(-1, 0.5)},
+                {"density", number, "kg/m^3", "", "reference density", above(0)}}});
+  s.push_back({"material",
+               "neo-hookean",
+               "compressible neo-Hookean solid",
+               {{"kind", text, "", "!", "stvk or neo-hookean"},
+                {"E", number, "Pa", "", "Young's modulus at small strain", above(0)},
+                {"nu", number, "1", "", "Poisson's ratio at small strain", between(-1, 0.5)},
+                {"density", number, "kg/m^3", "", "reference density", above(0)}}});
+  s.push_back({"region",
+               "",
+               "material of a region; the name may be a glob (quoted), the last match wins",
+               {{"material", text, "", "", "a name of [material.NAME]; absent: what the deck carries"},
+                {"mass", number, "kg", "", "scales the density so that the region has this mass", above(0)},
+                {"area", number, "m^2", "", "cross-section of bar cells", above(0)},
+                {"damping", number, "s", "0", "stiffness-proportional damping beta: S += beta C dE/dt", at_least(0)},
+                {"mass_damping", number, "1/s", "0", "mass-proportional damping alpha (brakes rigid motion too)", at_least(0)}}});
+  s.push_back(
+      {"body",
+       "",
+       "a rigid body without a mesh",
+       {name,
+        {"mass", number, "kg", "!", "mass", at_least(0)},
+        {"com", vector3, "m", "!", "centre of mass"},
+        {"inertia", numbers, "kg m^2", "[0, 0, 0]", "about the centre of mass, inertial axes: Jxx Jyy Jzz [Jxy Jxz Jyz] (tensor entries)"},
+        {"axes", numbers, "1", "", "nine numbers: rows are the body axes in which `inertia` is given"}}});
+  s.push_back({"point_mass",
+               "",
+               "mass added to the nodes of a set (shared equally) or to a body",
+               {name,
+                {"on", text, "", "!", "region, set or body"},
+                {"mass", number, "kg", "!", "total mass added", above(0)},
+                {"at", vector3, "m", "", "where on a body; its centre when absent"}}});
+
+  const auto joint = [&](std::string_view kind, std::string_view meaning, bool with_axis) {
+    std::vector<Param> p{{"kind", text, "", "!", "the kind of joint"}, name, end_a, end_b, at};
+    if (with_axis) p.push_back(axis), p.push_back(x_axis);
+    s.push_back({"joint", kind, meaning, std::move(p)});
+  };
+  joint("fixed", "no relative motion (6 rows)", false);
+  joint("spherical", "common point (3 rows)", false);
+  joint("revolute", "common point and axis: one rotation (5 rows)", true);
+  joint("cylindrical", "common axis: one rotation, one slide (4 rows)", true);
+  joint("prismatic", "slide along the axis (5 rows)", true);
+  joint("universal", "common point, the axis of a stays normal to `x` of b (4 rows)", true);
+  s.push_back({"joint",
+               "distance",
+               "constant distance of two points (1 row)",
+               {{"kind", text, "", "!", "the kind of joint"},
+                name,
+                end_a,
+                end_b,
+                {"at_a", vector3, "m", "!", "point on a"},
+                {"at_b", vector3, "m", "!", "point on b"}}});
+
+  s.push_back({"spring",
+               "axial",
+               "spring and damper along the line of two points",
+               {{"kind", text, "", "!", "the kind of spring"},
+                name,
+                end_a,
+                end_b,
+                {"at_a", vector3, "m", "!", "point on a"},
+                {"at_b", vector3, "m", "!", "point on b"},
+                {"stiffness", number, "N/m", "0", "force per extension", at_least(0)},
+                {"damping", number, "N s/m", "0", "force per rate of extension", at_least(0)},
+                {"length", number, "m", "", "free length; the initial distance when absent", at_least(0)},
+                {"preload", number, "N", "0", "tension at the initial distance, added by shifting the free length; needs a stiffness"}}});
+  s.push_back({"spring",
+               "torsion",
+               "spring and damper about an axis that a and b share through a joint",
+               {{"kind", text, "", "!", "the kind of spring"},
+                name,
+                end_a,
+                end_b,
+                axis,
+                {"stiffness", number, "N m/rad", "0", "moment per angle of b relative to a", at_least(0)},
+                {"damping", number, "N m s/rad", "0", "moment per rate of angle", at_least(0)},
+                {"angle", number, "rad", "0", "free angle, measured from the initial position"}}});
+  s.push_back({"spring",
+               "bushing",
+               "six springs and dampers in a frame carried by a",
+               {{"kind", text, "", "!", "the kind of spring"},
+                name,
+                end_a,
+                end_b,
+                at,
+                {"axis", vector3, "1", "[0, 0, 1]", "third axis of the frame"},
+                x_axis,
+                {"stiffness", numbers, "N/m", "[0, 0, 0]", "three translational stiffnesses", at_least(0)},
+                {"damping", numbers, "N s/m", "[0, 0, 0]", "three translational dampings", at_least(0)},
+                {"angular_stiffness", numbers, "N m/rad", "[0, 0, 0]",
+                 "three rotational stiffnesses; the measure is sin(angle) n, good to about 60 degrees", at_least(0)},
+                {"angular_damping", numbers, "N m s/rad", "[0, 0, 0]", "three rotational dampings", at_least(0)}}});
+  s.push_back({"spring",
+               "support",
+               "unilateral spring of a point on b against a plane carried by a, with springs in the plane",
+               {{"kind", text, "", "!", "the kind of spring"},
+                name,
+                end_a,
+                end_b,
+                at,
+                {"axis", vector3, "1", "[0, 0, 1]", "normal of the plane, towards b"},
+                x_axis,
+                {"stiffness", number, "N/m", "!", "normal force per penetration, never a pull", at_least(0)},
+                {"damping", number, "N s/m", "0", "normal damping while in contact", at_least(0)},
+                {"clearance", number, "m", "0", "gap at the start; negative is penetration"},
+                {"tangential_stiffness", numbers, "N/m", "[0, 0]", "along `x` and along axis x `x`", at_least(0)},
+                {"tangential_damping", numbers, "N s/m", "[0, 0]", "along `x` and along axis x `x`", at_least(0)}}});
+
+  const Param on{"on", text, "", "!", "set, region or body it acts on"};
+  s.push_back({"load",
+               "force",
+               "total force shared by the nodes of a set, or on a body's point",
+               {{"kind", text, "", "!", "the kind of load"},
+                name,
+                on,
+                {"force", vector3, "N", "!", "total force, inertial axes"},
+                {"at", vector3, "m", "", "point of a body it acts at; the set's nodes, or the centre of mass, when absent"},
+                {"per_node", boolean, "", "false", "the force is that of each node, as in a deck's *CLOAD"},
+                history_key}});
+  s.push_back(
+      {"load",
+       "traction",
+       "force per reference area on a facet set, inertial axes",
+       {{"kind", text, "", "!", "the kind of load"}, name, on, {"traction", vector3, "Pa", "!", "force per reference area"}, history_key}});
+  s.push_back({"load",
+               "pressure",
+               "follower pressure on a facet set, positive pushes inwards",
+               {{"kind", text, "", "!", "the kind of load"}, name, on, {"pressure", number, "Pa", "!", "pressure"}, history_key}});
+  s.push_back({"load",
+               "torque",
+               "moment on a body, inertial axes, or along an axis carried by the body",
+               {{"kind", text, "", "!", "the kind of load"},
+                name,
+                on,
+                {"torque", vector3, "N m", "!", "moment"},
+                {"follower", boolean, "", "false", "the moment turns with the body"},
+                history_key}});
+
+  s.push_back({"motion",
+               "fixed",
+               "holds the nodes of a set, or a body",
+               {{"kind", text, "", "!", "the kind of motion"},
+                name,
+                on,
+                {"components", texts, "", "[\"x\", \"y\", \"z\"]", "which components are held; a body is always held whole"}}});
+  s.push_back({"motion",
+               "translation",
+               "moves a set or body by a displacement times its history",
+               {{"kind", text, "", "!", "the kind of motion"},
+                name,
+                on,
+                {"displacement", vector3, "m", "!", "displacement at history 1"},
+                {"components", texts, "", "[\"x\", \"y\", \"z\"]", "which components are prescribed; a body is always moved whole"},
+                history_key}});
+  s.push_back({"motion",
+               "rotation",
+               "turns a set or body about an axis by an angle times its history",
+               {{"kind", text, "", "!", "the kind of motion"},
+                name,
+                on,
+                at,
+                axis,
+                {"angle", number, "rad", "!", "angle at history 1"},
+                history_key}});
+
+  s.push_back({"initial",
+               "",
+               "initial velocity and spin of regions, sets or bodies",
+               {{"on", texts, "", "[\"*\"]", "names or globs; later entries override earlier ones"},
+                {"velocity", vector3, "m/s", "[0, 0, 0]", "velocity of the reference point"},
+                {"spin", vector3, "rad/s", "[0, 0, 0]", "angular velocity"},
+                {"about", vector3, "m", "", "reference point of the spin; the centre of mass of what is named when absent"}}});
+  s.push_back({"sensor",
+               "",
+               "accelerometer triad on a set, region or body",
+               {name,
+                on,
+                {"at", vector3, "m", "", "point on a body; mean of the nodes when absent"},
+                {"x", vector3, "1", "[1, 0, 0]", "forward axis at the start (ISO 8855)"},
+                {"z", vector3, "1", "[0, 0, 1]", "upward axis at the start (ISO 8855)"}}});
+  s.push_back({"probe",
+               "",
+               "position, velocity and acceleration of a point",
+               {name, on, {"at", vector3, "m", "", "point on a body, or nearest node of the set; mean of the nodes when absent"}}});
+  s.push_back({"history",
+               "",
+               "a named factor over time",
+               {{"t", numbers, "s", "", "rising times; two equal ones make a jump"},
+                {"value", numbers, "", "", "values, in the unit of what the history scales (1 for a factor)"},
+                {"file", text, "", "", "CSV file with a header line and two columns: t, value"},
+                {"scale", number, "1", "1", "factor on the values"},
+                {"interpolation", text, "", "linear", "linear or smooth"}}});
+  s.push_back({"time",
+               "",
+               "the time axis",
+               {{"end", number, "s", "", "end of the run", above(0)},
+                {"step", number, "s", "", "time step", above(0)},
+                {"start", text, "", "as given", "as given, or equilibrium: a static solve first"},
+                {"integrator", text, "", "energy-momentum", "energy-momentum or generalized-alpha"},
+                {"rho", number, "1", "0.8", "spectral radius at infinite frequency of generalized-alpha", from_to(0, 1)},
+                {"dissipation", number, "1", "0", "chi: stress dissipation of energy-momentum on flexible parts", at_least(0)},
+                {"steps", number, "1", "1", "load steps of a static analysis", at_least(1)},
+                {"analysis", text, "", "dynamic", "dynamic or static (histories then run from 0 to `end`, 1 when absent)"}}});
+  s.push_back({"solver",
+               "",
+               "Newton and the linear solver",
+               {{"kind", text, "", "auto", "auto, light, direct (PETSc/MUMPS) or iterative (PETSc)"},
+                {"tolerance", number, "1", "1e-10",
+                 "Newton: residual relative to the forces it sums, and correction relative to the scene's size", between(0, 1)},
+                {"iterations", number, "1", "25", "Newton iterations before the step is cut", at_least(1)},
+                {"cuts", number, "1", "8", "successive halvings of a step before the run stops", at_least(0)},
+                {"linear_tolerance", number, "1", "1e-10", "relative residual of an iterative linear solve", between(0, 1)}}});
+  s.push_back({"output",
+               "",
+               "what the results hold",
+               {{"interval", number, "s", "", "time between field outputs; every 1/50 of the run when absent", above(0)},
+                {"fields", texts, "", "[\"displacement\", \"velocity\", \"acceleration\", \"stress\", \"von_mises\"]", "nodal fields"},
+                {"precision", text, "", "double", "double or single"}}});
+  return s;
+}
+
+}  // namespace
+
+const std::vector<KindSchema>& scene_schema() {
+  static const std::vector<KindSchema> schema = make();
+  return schema;
+}
+
+std::vector<std::string> choices(std::string_view section, std::string_view key) {
+  static const std::map<std::pair<std::string_view, std::string_view>, std::vector<std::string>> words = {
+      {{"scene", "units"}, unit_systems()},
+      {{"motion", "components"}, {"x", "y", "z"}},
+      {{"history", "interpolation"}, {"linear", "smooth"}},
+      {{"time", "start"}, {"as given", "equilibrium"}},
+      {{"time", "integrator"}, {"energy-momentum", "generalized-alpha"}},
+      {{"time", "analysis"}, {"dynamic", "static"}},
+      {{"solver", "kind"}, {"auto", "light", "direct", "iterative"}},
+      {{"output", "fields"}, {"displacement", "velocity", "acceleration", "stress", "von_mises"}},
+      {{"output", "precision"}, {"double", "single"}},
+  };
+  const auto found = words.find({section, key});
+  return found == words.end() ? std::vector<std::string>{} : found->second;
+}
+
+std::vector<size_t> lengths(std::string_view section, std::string_view key) {
+  if (section == "body") return key == "inertia" ? std::vector<size_t>{3, 6} : std::vector<size_t>{9};
+  if (section == "spring") return key.starts_with("tangential") ? std::vector<size_t>{2} : std::vector<size_t>{3};
+  return {};
+}
+
+bool is_list_section(std::string_view s) {
+  return s == "body" || s == "point_mass" || s == "joint" || s == "spring" || s == "load" || s == "motion" || s == "initial" ||
+         s == "sensor" || s == "probe";
+}
+bool is_single_section(std::string_view s) { return s == "scene" || s == "time" || s == "solver" || s == "output"; }
+
+}  // namespace hilo

@@ -1,0 +1,204 @@
+#include "model/scene_toml.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <sstream>
+
+namespace hilo {
+namespace {
+
+constexpr std::string_view set_prefix = "--set ";
+
+Place place(const toml::source_region& region) {
+  const std::string file = region.path ? *region.path : "";
+  if (file.starts_with(set_prefix)) return {file, 0, 0};
+  return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+}
+
+/// Split a.b."c.d" at the dots outside quotes.
+std::vector<std::string> split_path(std::string_view path, const std::string& where) {
+  std::vector<std::string> parts{""};
+  char quote = 0;
+  for (const char c : path) {
+    if (quote) {
+      if (c == quote)
+        quote = 0;
+      else
+        parts.back() += c;
+    } else if (c == '"' || c == '\'')
+      quote = c;
+    else if (c == '.')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  for (const auto& p : parts)
+    if (p.empty() || quote)
+      throw Error(where, fmt::format("cannot read the path \"{}\"", path), "write SECTION.NAME.KEY=VALUE", Exit::usage);
+  return parts;
+}
+
+std::string_view trim(std::string_view s) {
+  const auto first = s.find_first_not_of(" \t"), last = s.find_last_not_of(" \t");
+  return first == s.npos ? "" : s.substr(first, last - first + 1);
+}
+
+/// The right side of an override as a one-key table; a bare word becomes a text.
+toml::table parse_right_side(std::string_view value, const std::string& where) {
+  try {
+    auto t = toml::parse(fmt::format("x = {}", value), where);
+    if (t.size() == 1) return t;
+  } catch (const toml::parse_error& e) {
+    if (value.empty() || std::string_view("[{\"'").find(value[0]) != std::string_view::npos)
+      throw Error(where, fmt::format("cannot read the value: {}", e.description()), "", Exit::usage);
+  }
+  std::string quoted;
+  for (const char c : value) quoted += c == '"' || c == '\\' ? fmt::format("\\{}", c) : std::string(1, c);
+  return toml::parse(fmt::format("x = \"{}\"", quoted), where);
+}
+
+[[noreturn]] void no_such(const std::string& where, std::string_view what, const std::string& name,
+                          const std::vector<std::string>& candidates) {
+  std::string hint = suggest(name, candidates);
+  if (hint.empty())
+    hint = candidates.empty() ? fmt::format("the scene has no {}", what) : fmt::format("there are: {}", fmt::join(candidates, ", "));
+  throw Error(where, fmt::format("no {} \"{}\"", what, name), hint);
+}
+
+std::vector<std::string> keys_of(const toml::table& t) {
+  std::vector<std::string> keys;
+  for (const auto& [k, v] : t) keys.emplace_back(k.str());
+  return keys;
+}
+
+toml::table& list_entry(toml::table& root, const std::string& section, const std::string& name, const std::string& where) {
+  std::vector<std::string> names;
+  if (auto* list = root[section].as_array()) {
+    size_t number = 0;
+    std::from_chars(name.data(), name.data() + name.size(), number);
+    for (size_t i = 0; i < list->size(); ++i) {
+      auto* t = list->get(i)->as_table();
+      if (!t) continue;
+      const auto found = (*t)["name"].value<std::string>();
+      names.push_back(found ? *found : std::to_string(i + 1));
+      if (found ? *found == name : i + 1 == number) return *t;
+    }
+  }
+  no_such(where, section, name, names);
+}
+
+toml::table& named_entry(toml::table& root, const std::string& section, const std::string& name, const std::string& where) {
+  auto* group = root[section].as_table();
+  if (!group) no_such(where, section, name, {});
+  if (auto* t = (*group)[name].as_table()) return *t;
+  no_such(where, section, name, keys_of(*group));
+}
+
+toml::table& single_entry(toml::table& root, const std::string& section, const std::string& where) {
+  if (section == "scene") return root;
+  if (!root.contains(section)) root.insert(section, std::move(*toml::parse("x = {}", where).get("x")));
+  if (auto* t = root[section].as_table()) return *t;
+  throw Error(where, fmt::format("{} is not a table", section), fmt::format("write [{}]", section));
+}
+
+}  // namespace
+
+toml::table parse_toml(std::string_view text, const std::string& file) {
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& e) {
+    throw Error(Place{file, static_cast<int>(e.source().begin.line), static_cast<int>(e.source().begin.column)}.text(),
+                std::string(e.description()));
+  }
+}
+
+void apply_override(toml::table& root, const std::string& option) {
+  const std::string where = std::string(set_prefix) + option;
+  char quote = 0;
+  size_t equals = 0;
+  for (; equals < option.size() && (quote || option[equals] != '='); ++equals) {
+    const char c = option[equals];
+    if (quote ? c == quote : c == '"' || c == '\'') quote = quote ? 0 : c;
+  }
+  if (equals == option.size()) throw Error(where, "no \"=\"", "write SECTION.NAME.KEY=VALUE", Exit::usage);
+  const auto path = split_path(trim(std::string_view(option).substr(0, equals)), where);
+  auto value = parse_right_side(trim(std::string_view(option).substr(equals + 1)), where);
+
+  toml::table* table = &root;
+  size_t next = 0;
+  if (path.size() > 1) {
+    const std::string& section = path[0];
+    const bool single = is_single_section(section);
+    std::vector<std::string> sections;
+    for (const auto& s : scene_schema())
+      if (sections.empty() || sections.back() != s.section) sections.emplace_back(s.section);
+    if (std::find(sections.begin(), sections.end(), section) == sections.end()) no_such(where, "section", section, sections);
+    if (!single && path.size() == 2)
+      throw Error(where, fmt::format("{}.{} is a table, not a value", section, path[1]),
+                  fmt::format("write {}.{}.KEY=VALUE", section, path[1]));
+    table = single                     ? &single_entry(root, section, where)
+            : is_list_section(section) ? &list_entry(root, section, path[1], where)
+                                       : &named_entry(root, section, path[1], where);
+    next = single ? 1 : 2;
+  }
+  for (; next + 1 < path.size(); ++next) {
+    auto* inner = (*table)[path[next]].as_table();
+    if (!inner) no_such(where, "table", path[next], keys_of(*table));
+    table = inner;
+  }
+  table->insert_or_assign(path.back(), std::move(*value.get("x")));
+}
+
+std::string toml_text(const toml::table& root) {
+  toml::table rest = root;
+  std::ostringstream regions;
+  if (const auto* group = root["region"].as_table()) {
+    for (const auto& item : in_file_order(*group)) {
+      toml::table one, outer;
+      one.insert(item.key, *item.node);
+      outer.insert("region", one);
+      regions << "\n\n" << outer;
+    }
+    rest.erase("region");
+  }
+  std::ostringstream out;
+  out << rest << regions.str() << "\n";
+  return out.str();
+}
+
+std::vector<Item> in_file_order(const toml::table& table) {
+  std::vector<Item> items;
+  for (const auto& [key, node] : table) {
+    const Place value = place(node.source());
+    items.push_back({std::string(key.str()), value.line == 0 ? value : place(key.source()), &node});
+  }
+  std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
+    return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+  });
+  return items;
+}
+
+Place place_of(const toml::node& node) { return place(node.source()); }
+
+std::string_view type_word(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::string:
+      return "text";
+    case toml::node_type::integer:
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "true or false";
+    case toml::node_type::array:
+      return "a list";
+    case toml::node_type::table:
+      return "a table";
+    default:
+      return "a date or time";
+  }
+}
+
+}  // namespace hilo

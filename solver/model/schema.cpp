@@ -1,0 +1,62 @@
+#include "model/schema.hpp"
+
+namespace hilo {
+
+const std::vector<ArraySchema>& file_schema() {
+  static const std::vector<ArraySchema> table = {
+      {"mesh.h5", "/", "", "", "", "attributes: format = \"hilo mesh|tags|parts|run\", version, complete (0|1)"},
+      {"mesh.h5", "/provenance", "string", "(n)", "", "command lines that led to this file, oldest first"},
+      {"mesh.h5", "/mesh/nodes/X", "f8", "(n_nodes, 3)", "m", "reference positions"},
+      {"mesh.h5", "/mesh/nodes/id", "i8", "(n_nodes)", "", "number of the node in the deck"},
+      {"mesh.h5", "/mesh/cells/shape", "u1", "(n_cells)", "", "0 bar2, 1 tet4, 2 tet10, 3 wedge6, 4 wedge15, 5 hex8, 6 hex20"},
+      {"mesh.h5", "/mesh/cells/offset", "i8", "(n_cells + 1)", "", "first entry of each cell in /mesh/cells/nodes"},
+      {"mesh.h5", "/mesh/cells/nodes", "i8", "(n)", "", "nodes of the cells, VTK order"},
+      {"mesh.h5", "/mesh/cells/region", "i4", "(n_cells)", "", "region of each cell"},
+      {"mesh.h5", "/mesh/cells/id", "i8", "(n_cells)", "", "number of the cell in the deck"},
+      {"mesh.h5", "/mesh/regions/name", "string", "(n_regions)", "", "names of the regions"},
+      {"mesh.h5", "/mesh/regions/density", "f8", "(n_regions)", "kg/m^3", "from the deck, NaN where absent"},
+      {"mesh.h5", "/mesh/regions/E", "f8", "(n_regions)", "Pa", "from the deck, NaN where absent"},
+      {"mesh.h5", "/mesh/regions/nu", "f8", "(n_regions)", "1", "from the deck, NaN where absent"},
+      {"mesh.h5", "/mesh/sets/nodes/<name>", "i8", "(n)", "", "a set of nodes"},
+      {"mesh.h5", "/mesh/sets/facets/<name>", "i8", "(n, 2)", "", "a set of facets: cell, local facet"},
+      {"mesh.h5", "/mesh/sets/cells/<name>", "i8", "(n)", "", "a set of cells"},
+      {"mesh.h5", "/mesh/deck_scene", "string", "()", "", "scene lines that the deck's supports and loads became"},
+      {"tags.h5", "/mesh", "link", "", "", "external link to mesh.h5:/mesh; attributes of /: mesh_file, mesh_digest"},
+      {"tags.h5", "/tags/fidelity", "string", "(n_regions)", "", "rigid, linear or nonlinear"},
+      {"parts.h5", "/mesh", "link", "", "", "external link to mesh.h5:/mesh"},
+      {"parts.h5", "/tags", "link", "", "", "external link to tags.h5:/tags (absent for an untagged mesh); attributes of /: tags_file, tags_digest"},
+      {"parts.h5", "/parts/rank", "i4", "(n_cells)", "", "part of each cell; attribute n_parts"},
+      {"run.h5", "/mesh", "link", "", "", "external link to mesh.h5:/mesh (absent for a scene of bodies alone)"},
+      {"run.h5", "/tags/fidelity", "string", "(n_regions)", "", "the fidelity each region was run at"},
+      {"run.h5", "/parts/rank", "i4", "(n_cells)", "", "part of each cell in a parallel run"},
+      {"run.h5", "/scene", "string", "()", "", "the scene as run, overrides applied"},
+      {"run.h5", "/body/name", "string", "(n_bodies)", "", "rigid bodies and patches: regions joined by +"},
+      {"run.h5", "/body/points", "f8", "(n_bodies, 4, 3)", "m", "reference positions of the points of each body: centre of mass and three along the principal axes"},
+      {"run.h5", "/body/mass", "f8", "(n_bodies)", "kg", "mass (0 for a patch)"},
+      {"run.h5", "/body/inertia", "f8", "(n_bodies, 3)", "kg m^2", "principal moments"},
+      {"run.h5", "/body/follower_node", "i8", "(n_followers)", "", "nodes that follow a body"},
+      {"run.h5", "/body/follower_body", "i4", "(n_followers)", "", "the body each follows; its position is sum N_a(X) q_a over the four points"},
+      {"run.h5", "/field/<step>/displacement", "f8", "(n_nodes, 3)", "m", "x - X; attribute t [s] of the group"},
+      {"run.h5", "/field/<step>/velocity", "f8", "(n_nodes, 3)", "m/s", "velocity at t"},
+      {"run.h5", "/field/<step>/acceleration", "f8", "(n_nodes, 3)", "m/s^2", "acceleration at t, second order (mean of the mid-step values around it)"},
+      {"run.h5", "/field/<step>/stress", "f8", "(n_nodes, 6)", "Pa", "Cauchy stress xx yy zz yz xz xy, mean over the cells of the node's first flexible region; 0 on rigid regions"},
+      {"run.h5", "/field/<step>/von_mises", "f8", "(n_nodes)", "Pa", "von Mises stress, mean likewise"},
+      {"run.h5", "/field/<step>/cell_von_mises", "f8", "(n_cells)", "Pa", "von Mises stress of each cell, mean over its integration points; 0 on rigid cells"},
+      {"run.h5", "/history/t", "f8", "(n_t)", "s", "times of all histories below; first row is the start"},
+      {"run.h5", "/history/energy", "f8", "(n_t, 6)", "J", "columns: kinetic, elastic, gravity potential, external work, dissipated, balance E - E0 - W + D"},
+      {"run.h5", "/history/momentum", "f8", "(n_t, 6)", "kg m/s, kg m^2/s", "linear, and angular about the origin"},
+      {"run.h5", "/history/constraint", "f8", "(n_t)", "m", "largest violation of a joint row"},
+      {"run.h5", "/history/newton", "i4", "(n_t)", "", "Newton iterations of the step"},
+      {"run.h5", "/history/body/<name>", "f8", "(n_t, 12)", "m", "positions of the four points of a body"},
+      {"run.h5", "/history/joint/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the joint point, joint frame carried by a"},
+      {"run.h5", "/history/spring/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the point, inertial axes"},
+      {"run.h5", "/history/motion/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on what is held, about the mean of its nodes or the body's centre, inertial axes"},
+      {"run.h5", "/history/sensor/<name>", "f8", "(n_t, 3)", "1", "proper acceleration R^T (a - g)/g0 in sensor axes: +1 upward at rest"},
+      {"run.h5", "/history/probe/<name>", "f8", "(n_t, 9)", "m, m/s, m/s^2", "position, velocity, acceleration"},
+      {"run.h5", "/checkpoint", "group", "", "", "reserved"},
+      {"run.h5", "/cell/state", "group", "", "", "reserved: history variables and element modes, global numbering"},
+  };
+  return table;
+}
+
+}  // namespace hilo

@@ -1,0 +1,131 @@
+// What goes with files besides their arrays: digests, text written as a whole, relative paths, names, command lines.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "model/store.hpp"
+
+namespace hilo {
+namespace fs = std::filesystem;
+namespace {
+
+/// A file that closes itself; exit 4 when it may not be read, 2 when it is not there.
+struct Reader {
+  explicit Reader(const std::string& path, const std::string& where) : file(std::fopen(path.c_str(), "rb")) {
+    const int error = errno;
+    const std::string prefix = where.empty() ? "" : path + ": ";
+    if (!file) {
+      if (error == ENOENT) throw Error(where.empty() ? path : where, prefix + "no such file");
+      throw Error(where.empty() ? path : where, fmt::format("{}cannot read: {}", prefix, std::strerror(error)), "", Exit::resources);
+    }
+    struct stat status;
+    if (::fstat(fileno(file), &status) == 0 && S_ISDIR(status.st_mode)) {
+      std::fclose(file);
+      throw Error(where.empty() ? path : where, prefix + "is a folder, not a file");
+    }
+  }
+  ~Reader() { std::fclose(file); }
+  Reader(const Reader&) = delete;
+  std::FILE* file;
+};
+
+fs::path folder_of(const std::string& file) {
+  const fs::path parent = fs::path(file).parent_path();
+  return fs::weakly_canonical(parent.empty() ? "." : parent);
+}
+
+}  // namespace
+
+std::string to_link_name(const std::string& name) {
+  if (name == ".") return "%2E";
+  std::string out;
+  for (const char c : name) out += c == '/' ? "%2F" : c == '%' ? "%25" : std::string(1, c);
+  return out;
+}
+
+std::string from_link_name(const std::string& link) {
+  std::string out;
+  for (size_t i = 0; i < link.size(); ++i) {
+    const auto code = link.substr(i, 3);
+    if (code == "%2F" || code == "%25" || code == "%2E") out += code == "%2F" ? '/' : code == "%25" ? '%' : '.', i += 2;
+    else out += link[i];
+  }
+  return out;
+}
+
+std::string relative_to(const std::string& from, const std::string& file) {
+  return (folder_of(file) / fs::path(file).filename()).lexically_relative(folder_of(from)).string();
+}
+
+std::string resolved_from(const std::string& from, const std::string& relative) {
+  return (fs::path(from).parent_path() / relative).lexically_normal().string();
+}
+
+std::string digest(const std::string& path) {
+  const Reader reader(path, "");
+  std::uint64_t hash = 14695981039346656037u;
+  std::vector<unsigned char> block(1 << 18);
+  while (const size_t n = std::fread(block.data(), 1, block.size(), reader.file))
+    for (size_t i = 0; i < n; ++i) hash = (hash ^ block[i]) * 1099511628211u;
+  return fmt::format("fnv1a64:{:016x}", hash);
+}
+
+void write_text_file(const std::string& path, const std::string& text) {
+  const std::string temporary = fmt::format("{}.tmp-{}", path, ::getpid());
+  const auto fail = [&](int error) {
+    ::unlink(temporary.c_str());
+    throw Error(path, fmt::format("cannot write: {}", std::strerror(error)), "", Exit::resources);
+  };
+  if (fs::is_directory(path)) fail(EISDIR);
+  const int d = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (d < 0) fail(errno);
+  for (size_t done = 0; done < text.size();) {
+    const auto n = ::write(d, text.data() + done, text.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) {
+      const int error = n < 0 ? errno : ENOSPC;
+      ::close(d);
+      fail(error);
+    }
+    done += static_cast<size_t>(n);
+  }
+  const bool synced = ::fsync(d) == 0 || errno == EINVAL;
+  const int error = errno;
+  if (::close(d) != 0) fail(errno);
+  if (!synced) fail(error);
+  if (::rename(temporary.c_str(), path.c_str()) != 0) fail(errno);
+}
+
+std::string read_text_file(const std::string& path, const std::string& where) {
+  const Reader reader(path, where);
+  std::string text;
+  std::vector<char> block(1 << 16);
+  while (const size_t n = std::fread(block.data(), 1, block.size(), reader.file)) text.append(block.data(), n);
+  if (std::ferror(reader.file)) throw Error(where.empty() ? path : where, "cannot read", "", Exit::resources);
+  return text;
+}
+
+std::string command_line(int argc, char** argv) {
+  std::string line;
+  for (int i = 0; i < argc; ++i) {
+    std::string word = i == 0 ? fs::path(argv[i]).filename().string() : argv[i];
+    const bool plain = !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%^") ==
+                                            std::string::npos;
+    if (!plain) {
+      std::string quoted = "'";
+      for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+      word = quoted + "'";
+    }
+    line += (i ? " " : "") + word;
+  }
+  return line;
+}
+
+}  // namespace hilo

@@ -1,0 +1,54 @@
+// Body of the translation units solid_lanes{2,4,8}.cpp: every kernel for W lanes.  Each unit is compiled for its own instruction set, so
+// nothing here may be shared with other units: all functions are templates on the lane type or have internal linkage.
+#pragma once
+#include "physics/hourglass.hpp"
+#include "physics/material/neo_hookean.hpp"
+#include "physics/material/stvk.hpp"
+#include "physics/shape/hex20.hpp"
+#include "physics/shape/tet10.hpp"
+#include "physics/shape/wedge15.hpp"
+#include "physics/solid_kernel.hpp"
+
+namespace hilo {
+
+template <class S, class Material, class T>
+static void run_kernel(const KernelCall& k) {
+  constexpr int n3 = 3 * S::n;
+  const auto lanes_of = [](const double* p) { return reinterpret_cast<const T*>(p); };
+  const auto clear = [](double* p, int count) {
+    T* t = reinterpret_cast<T*>(p);
+    if (t)
+      for (int i = 0; i < count; ++i) t[i] = T{};
+    return t;
+  };
+  T* least = reinterpret_cast<T*>(k.least_det);
+  if (least) *least = T{} + 1e300;
+  const SolidCall<T> call{lanes_of(k.X), lanes_of(k.x0), lanes_of(k.x1), k.elastic, k.viscous, k.c, clear(k.f, n3), clear(k.K, n3 * n3), clear(k.energy, 1),
+                          clear(k.dissipated, 1), least, k.density, lanes_of(k.a), k.mass_slope};
+  if (k.elastic != 0 || k.viscous != 0 || k.energy) {
+    evaluate_solid<S>(Material{k.c}, call);
+    if constexpr (S::n == 8) add_hourglass(k.c, call);
+  }
+  if (k.a) add_mass<S>(call);
+}
+
+template <class Material, class T>
+static KernelFunction kernel_of_shape(Shape shape) {
+  switch (shape) {
+    case Shape::tet4: return run_kernel<Tet4, Material, T>;
+    case Shape::tet10: return run_kernel<Tet10, Material, T>;
+    case Shape::wedge6: return run_kernel<Wedge6, Material, T>;
+    case Shape::wedge15: return run_kernel<Wedge15, Material, T>;
+    case Shape::hex8: return run_kernel<Hex8, Material, T>;
+    case Shape::hex20: return run_kernel<Hex20, Material, T>;
+    case Shape::bar2: break;
+  }
+  return nullptr;
+}
+
+template <class T>
+static KernelFunction kernel_of(Shape shape, Law law) {
+  return law == Law::stvk ? kernel_of_shape<StVenantKirchhoff, T>(shape) : kernel_of_shape<NeoHookean, T>(shape);
+}
+
+}  // namespace hilo

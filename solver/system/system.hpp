@@ -1,0 +1,184 @@
+// The whole model as one residual and tangent: flexible cells, rigid bodies, joints, springs, loads.
+//
+//   r(q0, q1, lambda) = M a - M g + f_int(q0, q1) + G_left^T lambda - F,      g(q1) = 0
+//
+// Unknowns are 3 x 3 blocks: one per free node, two per free body (translation, rotation vector), ceil(rows/3) per joint.  A body's
+// twelve coordinates are condensed to six by the null space of its length constraints, P = [I, -skew(x - c)], taken at the left
+// configuration for the equations and at q1 for the increments [betsch-leyendecker-2006]; lengths then hold by construction.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "linear/kkt.hpp"
+#include "model/local_mesh.hpp"
+#include "model/scene.hpp"
+#include "physics/connector.hpp"
+#include "physics/solid_kernel.hpp"
+
+namespace hilo {
+
+/// Cells of one region and shape: one kernel, one set of constants.
+struct SolidBatch {
+  Shape shape;
+  Law law;
+  Lame c;
+  double density;             // [kg/m^3]
+  double beta = 0, alpha = 0; // stiffness- and mass-proportional damping [s, 1/s]
+  double area = 0;            // of bars [m^2]
+  int region;
+  std::vector<int> cells;     // local cells
+  std::vector<int> nodes;     // (n_cells x n)
+  int first_clique = 0;
+  SolidKernel kernel;
+};
+
+/// A load: nodal weights or facets or a body, times a history.
+struct Load {
+  enum Kind { nodal, pressure, body_force, body_torque } kind;
+  std::string name;
+  Vec3 value = Vec3::Zero();             // force [N] or torque [N m]; for nodal loads per unit weight
+  double pressure = 0;                   // [Pa]
+  bool follower = false;
+  std::vector<int> nodes;                // nodal
+  std::vector<double> weight;            // share of each node; for a traction its reference area [m^2]
+  std::vector<std::vector<int>> facets;  // pressure: nodes of each facet, outward
+  std::vector<int> cliques;              // of the facets
+  int body = -1;
+  Vec3 arm = Vec3::Zero();               // body axes
+  History history;
+  double factor(double t0, double t1) const { return t1 > t0 ? history.mean(t0, t1) : history(t0); }
+};
+
+/// Prescribed motion of a body (fixed, translation, rotation) or of single components of nodes.
+struct Motion {
+  std::string name;
+  int body = -1;                       // the driven body, or -1: components of nodes
+  std::vector<int> nodes;              // nodes of the components, or followers of the driven body
+  std::array<bool, 3> component{true, true, true};
+  Vec3 displacement = Vec3::Zero();    // at history 1 [m]
+  Vec3 at = Vec3::Zero(), axis = Vec3::Zero();
+  double angle = 0;                    // at history 1 [rad]
+  bool moving = false;
+  History history;
+};
+
+/// A measured place: mean of nodes, or a point of a body.
+struct Station {
+  std::string name;
+  bool sensor = false;
+  int body = -1;
+  Vec3 arm = Vec3::Zero();             // body axes
+  std::vector<int> nodes;              // owned ones
+  double n_nodes = 0;                  // on all ranks
+  Vec3 mean = Vec3::Zero();            // reference mean of the nodes
+  Mat3 axes = Mat3::Identity();        // sensor axes at the start, columns
+};
+
+/// Everything an evaluation needs besides the unknowns; see energy_momentum.cpp and generalized_alpha.cpp for the two settings.
+struct Stage {
+  const Config *q0, *q1;              // elastic pair: start and end of the step, or the end point twice
+  const Config *w0, *w1;              // pair of the rate terms
+  double h = 0;                       // time between w0 and w1 [s]; 0: no rate terms
+  const Config* left;                 // configuration of the left null space: (q0 + q1)/2, or q1
+  double slope = 0.5;                 // d left / d q1
+  double K_factor = 1, C_factor = 1;  // d(elastic, rate forces)/dq1 over the kernels' derivative: 1 at mid-point, 2 at the end point
+  const Config* a;                    // accelerations [m/s^2]
+  const Config* v = nullptr;          // velocities for mass-proportional damping
+  double mass_slope = 0;              // d a / d q1 [1/s^2]
+  double alpha_slope = 0;             // d v / d q1 [1/s]
+  double chi = 0;                     // stress dissipation on flexible parts
+  double t0 = 0, t1 = 0;              // loads: mean over [t0, t1], or value at t0 = t1
+  double load_factor = 1;             // of all loads and gravity, for static load steps
+};
+
+/// Residual with the scales that judge it.
+struct Residual {
+  std::vector<double> r;        // (3 x n_blocks): equations, then constraint rows
+  double force_scale = 0;       // largest force summed into r [N]
+  double least_det = 1e300;     // smallest det F
+  bool finite = true;
+};
+
+class System {
+ public:
+  std::vector<Body> bodies;                    // body 0 is the ground
+  std::vector<int> follower;                   // body each node follows, or -1  (n_nodes)
+  std::vector<Vec3> X;                         // reference positions            (n_nodes)  [m]
+  std::vector<char> node_owned;
+  std::vector<std::array<bool, 3>> fixed;      // prescribed components of nodes
+  std::vector<SolidBatch> batches;
+  std::vector<Connector> joints, springs;
+  std::vector<Load> loads;
+  std::vector<Motion> motions;
+  std::vector<Station> stations;
+  std::vector<std::pair<int, double>> point_masses;      // node, mass [kg], owned nodes
+  std::vector<std::pair<int, double>> node_regions;
+  Vec3 gravity = Vec3::Zero();
+  double length = 1;                           // size of the scene [m]
+  double mass = 0;                             // of everything [kg]
+  Config start, start_velocity;
+  const Comm* comm = nullptr;
+  LocalMesh* mesh = nullptr;                   // null for a scene of bodies alone
+
+  // unknowns
+  std::vector<int> node_block;                 // block of each node, -1 for followers
+  std::vector<int> body_block;                 // first of two blocks, -1 for driven bodies
+  std::vector<int> joint_block;                // first block of its multipliers
+  BlockMap map;
+  Cliques cliques;
+  int n_blocks() const { return static_cast<int>(map.global.size()); }
+
+  /// Number the unknowns and list the cliques; call once after everything is filled in.
+  void number();
+  /// Residual, and tangent into `K` when given.  lambda: (3 x joint blocks), indexed by block - first joint block.
+  void evaluate(const Stage& stage, std::span<const double> lambda, Residual& out, KktSolver* K) const;
+  /// q <- q moved by the increments z (3 x n_blocks); bodies turn by the Cayley rotation of theirs.
+  void move(Config& q, std::span<const double> z) const;
+  /// Positions of followers from their bodies; velocities or accelerations likewise (all maps are linear).
+  void follow(Config& q, bool positions) const;
+  /// Prescribed positions at time t: driven bodies and fixed components.
+  void prescribe(Config& q, double t) const;
+  /// Largest |g| of the active joint rows [m, 1].
+  double constraint_violation(const Config& q) const;
+  int first_joint_block() const { return joint_block.empty() ? n_blocks() : joint_block.front(); }
+  int n_joint_blocks() const { return n_blocks() - first_joint_block(); }
+  bool has_damping() const;
+
+  struct Energy {
+    double kinetic = 0, elastic = 0, gravity = 0;
+    Vec3 momentum = Vec3::Zero(), angular = Vec3::Zero();
+  };
+  Energy energy(const Config& q, const Config& v) const;
+  /// Work of the loads and of prescribed motions, and dissipation of rate terms, over the step of `stage` (from q0 to q1).
+  struct Work {
+    double external = 0, dissipated = 0;
+  };
+  Work work(const Stage& stage, std::span<const double> lambda) const;
+  /// Residual forces before reduction, for reactions: per node, and per body (force, moment about its centre).
+  struct Forces {
+    std::vector<Vec3> node;
+    std::vector<Vec6> body;
+  };
+  void forces(const Stage& stage, std::span<const double> lambda, Forces& out) const;
+  /// Force and moment on what a motion holds.
+  Vec6 reaction(const Motion& m, const Forces& f, const Config& q) const;
+  /// Accept q as the state springs go on from.
+  void commit(const Config& q);
+
+ private:
+  struct Pass;
+  void add_solids(Pass& p) const;
+  void add_bodies(Pass& p) const;
+  void add_connectors(Pass& p) const;
+  void add_loads(Pass& p) const;
+  void reduce(Pass& p) const;
+  int body_clique(int body) const { return body_clique_[body]; }
+  std::vector<int> body_clique_, joint_clique_, spring_clique_;
+  std::vector<char> owns_joint_, owns_spring_;
+};
+
+/// Build the system of a scene.  Errors carry the scene's places.
+std::unique_ptr<System> build_system(const Scene& scene, LocalMesh* mesh, const Comm& comm);
+
+}  // namespace hilo

@@ -1,0 +1,80 @@
+// Faces given by nodes, found among the facets of the cells.
+#include <algorithm>
+#include <array>
+#include <unordered_map>
+
+#include "import/imported.hpp"
+
+namespace hilo {
+namespace {
+
+/// The corner nodes of a facet, sorted: what two facets that touch have in common.
+using Key = std::array<std::int64_t, 4>;
+struct KeyHash {
+  size_t operator()(const Key& k) const {
+    std::uint64_t h = 1469598103934665603ull;
+    for (const auto x : k) h = (h ^ static_cast<std::uint64_t>(x)) * 1099511628211ull, h ^= h >> 29;
+    return h;
+  }
+};
+
+Key key_of(const std::int64_t* nodes, size_t n) {
+  Key k{-1, -1, -1, -1};
+  std::copy(nodes, nodes + n, k.begin());
+  std::sort(k.begin(), k.begin() + static_cast<std::ptrdiff_t>(n));
+  return k;
+}
+
+/// Corner nodes of a facet in its outward order; a facet has 3 or 4 corners, with as many mid-side nodes behind them or none.
+size_t corners(const Mesh& m, std::int64_t c, size_t f, std::int64_t* out) {
+  const ShapeInfo& s = info(m.shape[c]);
+  size_t n = 0;
+  for (const int a : s.facets[f])
+    if (a < s.n_corners && n < 4) out[n++] = m.cell(c)[a];
+  return n;
+}
+
+/// Whether two cyclic lists of the same nodes turn the same way.
+bool same_turn(const std::vector<std::int64_t>& face, const std::int64_t* facet, size_t n) {
+  const auto at = std::find(facet, facet + n, face[0]) - facet;
+  return facet[(at + 1) % static_cast<std::ptrdiff_t>(n)] == face[1];
+}
+
+}  // namespace
+
+std::vector<Facet> match_facets(const Mesh& mesh, const std::vector<std::vector<std::int64_t>>& faces) {
+  std::vector<Facet> found(faces.size(), {-1, -1});
+  std::unordered_map<Key, std::vector<size_t>, KeyHash> index;
+  for (size_t i = 0; i < faces.size(); ++i) index[key_of(faces[i].data(), faces[i].size())].push_back(i);
+  if (index.empty()) return found;
+  std::int64_t nodes[4];
+  for (std::int64_t c = 0; c < mesh.n_cells(); ++c)
+    for (size_t f = 0; f < info(mesh.shape[c]).facets.size(); ++f) {
+      const size_t n = corners(mesh, c, f, nodes);
+      if (n < 3) continue;
+      const auto hit = index.find(key_of(nodes, n));
+      if (hit == index.end()) continue;
+      for (const size_t i : hit->second)
+        if (found[i].cell < 0 || same_turn(faces[i], nodes, n)) found[i] = {c, static_cast<std::int64_t>(f)};
+    }
+  return found;
+}
+
+std::vector<Facet> free_facets(const Mesh& mesh, const std::vector<std::int64_t>& cells) {
+  std::unordered_map<Key, int, KeyHash> count;
+  std::int64_t nodes[4];
+  for (const auto c : cells)
+    for (size_t f = 0; f < info(mesh.shape[c]).facets.size(); ++f)
+      if (const size_t n = corners(mesh, c, f, nodes); n >= 3) count[key_of(nodes, n)] = 0;
+  for (std::int64_t c = 0; c < mesh.n_cells(); ++c)
+    for (size_t f = 0; f < info(mesh.shape[c]).facets.size(); ++f)
+      if (const size_t n = corners(mesh, c, f, nodes); n >= 3)
+        if (const auto it = count.find(key_of(nodes, n)); it != count.end()) ++it->second;
+  std::vector<Facet> free;
+  for (const auto c : cells)
+    for (size_t f = 0; f < info(mesh.shape[c]).facets.size(); ++f)
+      if (const size_t n = corners(mesh, c, f, nodes); n >= 3 && count[key_of(nodes, n)] == 1) free.push_back({c, static_cast<std::int64_t>(f)});
+  return free;
+}
+
+}  // namespace hilo

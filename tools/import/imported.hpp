@@ -1,0 +1,103 @@
+// What a reader of hilo-import hands back: a mesh whose regions and sets are named, and what it has to say aloud.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/mesh.hpp"
+
+namespace hilo {
+
+/// The options of hilo-import, as the readers see them.
+struct ImportOptions {
+  std::string units = "m-kg-s";                            // system of the numbers in the deck
+  double scale = 1;                                        // factor on the geometry alone
+  int order = 1;                                           // 2: quadratic cells
+  std::optional<double> merge;                             // distance below which nodes are one        [unit of the file]
+  std::optional<double> size;                              // largest edge when a geometry is meshed    [unit of the file]
+  std::vector<std::string> regions;                        // element sets that become regions, before what the deck says
+  std::string rest;                                        // name of the region of cells in no region ("" refuses them)
+  std::vector<std::pair<std::string, double>> define;      // parameters of a .geo script
+};
+
+/// A keyword or item of the deck that has no place in the mesh or the scene lines.
+struct NotRead {
+  std::string what;       // "*TIE"
+  std::string place;      // file:line of the first
+  std::int64_t count = 0;
+  bool output = false;    // a request for output: nothing is lost
+};
+
+struct Imported {
+  Mesh mesh;                         // numbers of the deck; region -1 until assign_regions
+  std::vector<std::string> notes;    // said on stderr, one line each
+  std::vector<NotRead> not_read;
+  std::set<std::string> as_listed;   // node sets that order 2 must not complete: the deck's force acts on each of their nodes
+
+  void skip(const std::string& what, const std::string& place, std::int64_t count = 1, bool output = false);
+};
+
+/// A named group of cells; `tag` is its number in the file.
+struct CellGroup {
+  std::string name;
+  std::vector<std::int64_t> cells;
+};
+
+/// Give every cell its region: the groups of --regions first, then `regions` (the later or the earlier group wins where two overlap), then
+/// --rest.  A group that lost cells to another becomes a cell set too.  Cells left over are an Error that says how to name them; `groups`
+/// are the other element sets, offered there and to --regions.
+void assign_regions(Imported& in, const std::string& file, const std::vector<CellGroup>& regions, bool later_wins,
+                    const std::vector<CellGroup>& groups, const ImportOptions& options);
+
+/// Adds sets under names that no region and no other set has: a name already taken gets _facets, _nodes or _cells behind it, and is noted.
+/// Members are sorted, once each.  An empty set is left out and noted; a set equal to the region of its name is left out (the region serves).
+class SetNames {
+ public:
+  explicit SetNames(Imported& in) : in_(in) {}
+  std::string facets(const std::string& name, std::vector<Facet> members);
+  std::string nodes(const std::string& name, std::vector<std::int64_t> members);
+  std::string cells(const std::string& name, std::vector<std::int64_t> members);
+
+ private:
+  bool taken(const std::string& name) const;
+  std::string free_name(const std::string& name, const std::string& suffix);
+  Imported& in_;
+};
+
+/// A name fit for a file: no '/', no blanks at its ends, never empty.
+std::string clean_name(const std::string& name);
+
+/// Faces given by their nodes, found among the facets of the cells.  A face between two cells goes to the one whose outward facet turns the
+/// same way.  facet[i].cell is -1 where no cell has face i.
+std::vector<Facet> match_facets(const Mesh& mesh, const std::vector<std::vector<std::int64_t>>& faces);
+/// Of `candidates`, the facets that no second cell shares.
+std::vector<Facet> free_facets(const Mesh& mesh, const std::vector<std::int64_t>& cells);
+
+/// The readers.  Each throws Error with file:line where the file has lines.
+Imported read_inp(const std::string& path, const ImportOptions& options);
+Imported read_bdf(const std::string& path, const ImportOptions& options);
+Imported read_vtk(const std::string& path, const ImportOptions& options);
+Imported read_gmsh(const std::string& path, const ImportOptions& options);
+/// The reader for the file's ending; Error when there is none or the file cannot be opened.
+Imported read_any(const std::string& path, const ImportOptions& options);
+
+/// What follows every reader: nodes merged, unused nodes dropped, order raised, lengths brought to SI; then the checks (inverted, degenerate).
+void finish(Imported& in, const std::string& file, const ImportOptions& options);
+/// tet4, wedge6, hex8 to tet10, wedge15, hex20 with straight edges.
+void raise_order(Imported& in);
+/// Nodes nearer than `distance` become one; returns how many went.
+std::int64_t merge_nodes(Mesh& mesh, double distance);
+/// Nodes of no cell are dropped, from the sets too; returns how many.
+std::int64_t drop_unused(Imported& in);
+/// Throws Error naming the cells when any is inverted or has no volume.
+void check_cells(const Mesh& mesh, const std::string& file);
+
+/// The table on stdout, and the same as JSON.
+std::string import_table(const Imported& in);
+std::string import_json(const Imported& in, const std::string& file, const std::string& output);
+
+}  // namespace hilo

@@ -1,0 +1,176 @@
+// Names of regions and sets, one meaning each.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "import/imported.hpp"
+
+namespace hilo {
+namespace {
+
+template <class T>
+void sort_unique(std::vector<T>& v) {
+  std::sort(v.begin(), v.end());
+  v.erase(std::unique(v.begin(), v.end()), v.end());
+}
+
+/// "A, B, C and 4 more"
+std::string some(const std::vector<std::string>& names, size_t most = 8) {
+  std::string text;
+  for (size_t i = 0; i < std::min(most, names.size()); ++i) text += (i ? ", " : "") + names[i];
+  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
+  return text;
+}
+
+}  // namespace
+
+void Imported::skip(const std::string& what, const std::string& place, std::int64_t count, bool output) {
+  for (auto& n : not_read)
+    if (n.what == what) {
+      n.count += count;
+      return;
+    }
+  not_read.push_back({what, place, count, output});
+}
+
+std::string clean_name(const std::string& name) {
+  std::string s = name;
+  std::replace(s.begin(), s.end(), '/', '_');
+  for (auto& c : s)
+    if (static_cast<unsigned char>(c) < 32) c = '_';
+  const auto first = s.find_first_not_of(' ');
+  s = first == std::string::npos ? "" : s.substr(first, s.find_last_not_of(' ') - first + 1);
+  return s.empty() || s == "." || s == ".." ? "unnamed" : s;
+}
+
+void assign_regions(Imported& in, const std::string& file, const std::vector<CellGroup>& regions, bool later_wins,
+                    const std::vector<CellGroup>& groups, const ImportOptions& options) {
+  Mesh& m = in.mesh;
+  m.region.assign(m.n_cells(), -1);
+  m.region_name.clear();
+  const auto find_or_add = [&](const std::string& name) {
+    const int r = m.find_region(name);
+    if (r >= 0) return r;
+    m.region_name.push_back(name);
+    return static_cast<int>(m.region_name.size()) - 1;
+  };
+  std::vector<std::string> offered;
+  for (const auto* list : {&regions, &groups})
+    for (const auto& g : *list) offered.push_back(g.name);
+
+  for (const auto& g : regions) {
+    const int r = find_or_add(clean_name(g.name));
+    for (const auto c : g.cells)
+      if (later_wins || m.region[c] < 0) m.region[c] = r;
+  }
+  // --regions speaks before the deck; among themselves the later name wins.
+  for (const auto& name : options.regions) {
+    const CellGroup* found = nullptr;
+    for (const auto* list : {&regions, &groups})
+      for (const auto& g : *list)
+        if (g.name == name) found = found ? found : &g;
+    if (!found) {
+      const std::string near = suggest(name, offered);
+      throw Error(file, fmt::format("--regions: no element set \"{}\"", name),
+                  !near.empty() ? near : offered.empty() ? "the file has none" : "there are " + some(offered));
+    }
+    const int r = find_or_add(clean_name(name));
+    for (const auto c : found->cells) m.region[c] = r;
+  }
+
+  std::vector<std::int64_t> lost;
+  for (std::int64_t c = 0; c < m.n_cells(); ++c)
+    if (m.region[c] < 0) lost.push_back(c);
+  if (!lost.empty() && options.rest.empty()) {
+    const std::string hint = offered.empty() || !regions.empty() ? "give them one with --rest NAME" : "give them one with --rest NAME, or name element sets with --regions: " + some(offered);
+    throw Error(file, fmt::format("{} of {} cells are in no region, the first is cell {}", lost.size(), m.n_cells(), m.cell_id[lost.front()]), hint);
+  }
+  if (!lost.empty()) {
+    const int r = find_or_add(clean_name(options.rest));
+    for (const auto c : lost) m.region[c] = r;
+    in.notes.push_back(fmt::format("{} cells in no region became region \"{}\"", lost.size(), m.region_name[r]));
+  }
+
+  // Regions that lost all their cells go.
+  std::vector<std::int64_t> size(m.region_name.size(), 0);
+  for (const auto r : m.region) ++size[r];
+  std::vector<std::int32_t> number(size.size(), -1);
+  std::vector<std::string> kept;
+  for (size_t r = 0; r < size.size(); ++r)
+    if (size[r] > 0) {
+      number[r] = static_cast<std::int32_t>(kept.size());
+      kept.push_back(m.region_name[r]);
+    }
+  for (auto& r : m.region) r = number[r];
+  m.region_name = kept;
+  m.region_data.assign(kept.size(), {});
+
+  for (const auto& g : regions) {
+    const int r = m.find_region(clean_name(g.name));
+    const auto away = std::count_if(g.cells.begin(), g.cells.end(), [&](std::int64_t c) { return m.region[c] != r; });
+    if (away == 0) continue;
+    const std::string set = SetNames(in).cells(g.name, g.cells);
+    in.notes.push_back(fmt::format("{} of {} cells of \"{}\" belong to another region too; all of them are cell set \"{}\"", away, g.cells.size(), g.name, set));
+  }
+}
+
+bool SetNames::taken(const std::string& name) const {
+  const Mesh& m = in_.mesh;
+  return m.find_region(name) >= 0 || m.node_sets.count(name) || m.facet_sets.count(name) || m.cell_sets.count(name);
+}
+
+std::string SetNames::free_name(const std::string& raw, const std::string& suffix) {
+  const std::string name = clean_name(raw);
+  if (!taken(name)) return name;
+  std::string free = name + suffix;
+  for (int i = 2; taken(free); ++i) free = fmt::format("{}{}_{}", name, suffix, i);
+  in_.notes.push_back(fmt::format("the name \"{}\" is taken by another kind of set or a region: its {} are \"{}\"", name, suffix.substr(1), free));
+  return free;
+}
+
+std::string SetNames::facets(const std::string& name, std::vector<Facet> members) {
+  const auto key = [](const Facet& f) { return std::pair(f.cell, f.facet); };
+  std::sort(members.begin(), members.end(), [&](const Facet& a, const Facet& b) { return key(a) < key(b); });
+  members.erase(std::unique(members.begin(), members.end(), [&](const Facet& a, const Facet& b) { return key(a) == key(b); }), members.end());
+  if (members.empty()) {
+    in_.notes.push_back(fmt::format("facet set \"{}\" is empty: left out", name));
+    return "";
+  }
+  const std::string free = free_name(name, "_facets");
+  in_.mesh.facet_sets[free] = std::move(members);
+  return free;
+}
+
+std::string SetNames::nodes(const std::string& name, std::vector<std::int64_t> members) {
+  sort_unique(members);
+  if (members.empty()) {
+    in_.notes.push_back(fmt::format("node set \"{}\" is empty: left out", name));
+    return "";
+  }
+  const std::string same = clean_name(name);
+  if (in_.mesh.find_region(same) >= 0 && in_.mesh.nodes_of(same, name) == members) return same;
+  const std::string free = free_name(name, "_nodes");
+  in_.mesh.node_sets[free] = std::move(members);
+  return free;
+}
+
+std::string SetNames::cells(const std::string& name, std::vector<std::int64_t> members) {
+  sort_unique(members);
+  if (members.empty()) {
+    in_.notes.push_back(fmt::format("element set \"{}\" is empty: left out", name));
+    return "";
+  }
+  const Mesh& m = in_.mesh;
+  if (const int r = m.find_region(clean_name(name)); r >= 0) {
+    const auto in_r = std::count(m.region.begin(), m.region.end(), r);
+    if (in_r == static_cast<std::ptrdiff_t>(members.size()) &&
+        std::all_of(members.begin(), members.end(), [&](std::int64_t c) { return m.region[c] == r; }))
+      return clean_name(name);
+  }
+  const std::string free = free_name(name, "_cells");
+  in_.mesh.cell_sets[free] = std::move(members);
+  return free;
+}
+
+}  // namespace hilo
