@@ -10,7 +10,7 @@
 #include "post/commands.hpp"
 #include "post/figure.hpp"
 #include "post/picture.hpp"
-#include "post/table.hpp"
+#include "post/csv.hpp"
 
 namespace hilo {
 namespace {
@@ -22,7 +22,7 @@ struct Options {
 };
 
 /// The rows of a table that share a name in column `by`; all rows where there is none.
-std::vector<std::pair<std::string, std::vector<size_t>>> groups(const Table& table, const std::string& by) {
+std::vector<std::pair<std::string, std::vector<size_t>>> groups(const CsvTable& table, const std::string& by) {
   std::vector<std::pair<std::string, std::vector<size_t>>> found;
   for (size_t row = 0; row < table.rows(); ++row) {
     const std::string name = by.empty() ? "" : table.column[table.find(by)][row];
@@ -46,7 +46,7 @@ void run(const Options& o) {
   panel.y.log = o.log.find('y') != std::string::npos;
   bool one_y = true;
   for (const std::string& file : o.files) {
-    const Table table = read_csv(file);
+    const CsvTable table = read_csv(file);
     const size_t x = o.x.empty() ? 0 : table.find(o.x);
     std::vector<size_t> columns;
     for (const auto& name : o.y) columns.push_back(table.find(name));

@@ -157,7 +157,7 @@ void draw(Painter& p, const Figure& f) {
   double left = 0, right = 20 * s;
   for (const Panel& panel : f.panels) {
     sx.push_back(scale_of(panel, false, 8));
-    sy.push_back(scale_of(panel, true, std::clamp(static_cast<int>(slot / (60 * s)), 2, 7)));
+    sy.push_back(scale_of(panel, true, std::clamp(static_cast<int>(slot / (42 * s)), 3, 9)));
     left = std::max(left, widest(p, sy.back().ticks) + 50 * s);
     right = std::max(right, legend_width(p, panel));
   }

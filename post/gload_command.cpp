@@ -6,13 +6,15 @@
 
 #include "base/args.hpp"
 #include "base/error.hpp"
+#include "base/table.hpp"
+#include "model/store.hpp"
 #include "post/cfc.hpp"
 #include "post/figure.hpp"
 #include "post/commands.hpp"
 #include "post/output.hpp"
 #include "post/picture.hpp"
 #include "post/run_file.hpp"
-#include "post/table.hpp"
+#include "post/csv.hpp"
 
 namespace hilo {
 namespace {
@@ -61,7 +63,8 @@ size_t peak(const std::vector<double>& x) {
 }
 
 std::vector<std::string> names_of(const RunFile& run, const std::vector<std::string>& globs) {
-  const auto all = run.store().list("/history/sensor");
+  std::vector<std::string> all;
+  for (const auto& link : run.store().list("/history/sensor")) all.push_back(from_link_name(link));
   if (all.empty()) throw Error(run.path, "has no sensors", "add [[sensor]] name, on to the scene");
   std::vector<std::string> names;
   for (const auto& name : all)
@@ -106,23 +109,13 @@ void write_png(const Options& o, const RunFile& run, const std::vector<Sensor>& 
   write_chart(figure, o.png);
 }
 
-std::string json_of(const Options& o, const std::vector<Sensor>& sensors) {
-  std::string text = fmt::format("{{\"file\": {}, \"cfc\": {:g}, \"unit\": \"g\", \"clip\": \"3 ms cumulative, of the filtered resultant\", \"sensors\": [",
-                                 json(o.run), o.cfc);
-  for (size_t i = 0; i < sensors.size(); ++i) {
-    const Sensor& s = sensors[i];
-    std::vector<double> raw, filtered;
-    for (const auto& x : s.raw) raw.push_back(x[peak(x)]);
-    for (const auto& x : s.filtered) filtered.push_back(x[peak(x)]);
-    text += fmt::format("{}\n  {{\"name\": {}, \"raw_peak\": {}, \"filtered_peak\": {}, \"resultant_peak_time\": {}, \"clip_3ms\": {}}}", i ? "," : "",
-                        json(s.name), json(raw), json(filtered), json(s.uniform[peak(s.filtered[3])]), json(clip_level(s.uniform, s.filtered[3])));
-  }
-  return text + "\n]}\n";
-}
-
 std::string table_of(const Options& o, const std::vector<Sensor>& sensors) {
-  const std::string f = fmt::format("CFC{:g}", o.cfc);
-  std::vector<std::vector<std::string>> rows{{"sensor", "raw x", "raw y", "raw z", "raw res", f + " x", f + " y", f + " z", f + " res", "at [s]", "3 ms clip"}};
+  Table table;
+  table.header = {"sensor"};
+  constexpr const char* part[] = {"x", "y", "z", "res"};
+  for (const char* a : part) table.header.push_back(fmt::format("raw_{}", a));
+  for (const char* a : part) table.header.push_back(fmt::format("cfc{:g}_{}", o.cfc, a));
+  table.header.insert(table.header.end(), {"t_res", "clip_3ms"});
   for (const Sensor& s : sensors) {
     std::vector<std::string> row{s.name};
     for (const auto& x : s.raw) row.push_back(fmt::format("{:.3f}", x[peak(x)]));
@@ -130,9 +123,9 @@ std::string table_of(const Options& o, const std::vector<Sensor>& sensors) {
     row.push_back(fmt::format("{:.5f}", s.uniform[peak(s.filtered[3])]));
     const double clip = clip_level(s.uniform, s.filtered[3]);
     row.push_back(std::isfinite(clip) ? fmt::format("{:.3f}", clip) : "-");
-    rows.push_back(row);
+    table.rows.push_back(row);
   }
-  return aligned(rows, 1);
+  return o.json ? table.json() : table.text();
 }
 
 void run(const Options& o) {
@@ -141,11 +134,11 @@ void run(const Options& o) {
   for (const std::string& name : names_of(file, o.sensors)) sensors.push_back(read_sensor(file, name, o.cfc));
   if (!o.csv.empty()) write_csv(o, sensors);
   if (!o.png.empty()) write_png(o, file, sensors);
-  if (o.csv != "-") write_out("-", o.json ? json_of(o, sensors) : table_of(o, sensors));
+  if (o.csv != "-") write_out("-", table_of(o, sensors));
   if (!is_quiet() && !o.json)
     fmt::print(stderr,
-               "Peaks in g with their sign; proper acceleration, +1 upward at rest.  CFC {:g}: SAE J211-1, forwards and backwards, ends continued by\n"
-               "point reflection.  3 ms clip: cumulative, of the filtered resultant.{}\n",
+               "Peaks in g with their sign (t_res in s); proper acceleration, +1 upward at rest.  CFC {:g}: SAE J211-1, forwards and backwards,\n"
+               "ends continued by point reflection.  clip_3ms: cumulative, of the filtered resultant.{}\n",
                o.cfc, file.complete ? "" : "  The run is not complete.");
 }
 

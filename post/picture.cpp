@@ -7,7 +7,10 @@
 #include <vtkContextDevice2D.h>
 #include <vtkContextItem.h>
 #include <vtkContextScene.h>
+#include <vtkLogger.h>
+#include <vtkMatrix4x4.h>
 #include <vtkObjectFactory.h>
+#include <vtkOpenGLContextDevice2D.h>
 #include <vtkPNGWriter.h>
 #include <vtkPen.h>
 #include <vtkRenderWindow.h>
@@ -169,6 +172,12 @@ class Picture::Item : public vtkContextItem {
   vtkTypeMacro(Item, vtkContextItem);
   bool Paint(vtkContext2D* context) override {
     if (!paint) return false;
+    // VTK lays 0.5..w-0.5 on the whole width; letters are sharp only where a unit is a pixel.
+    if (auto* device = vtkOpenGLContextDevice2D::SafeDownCast(context->GetDevice())) {
+      vtkMatrix4x4* projection = device->GetProjectionMatrix();
+      projection->SetElement(0, 0, 2.0 / width), projection->SetElement(0, 3, -1);
+      projection->SetElement(1, 1, 2.0 / height), projection->SetElement(1, 3, -1);
+    }
     Painter painter(context, width, height, picture_scale(width, height));
     paint(painter);
     return true;
@@ -181,9 +190,13 @@ vtkStandardNewMacro(Picture::Item);
 double picture_scale(int width, int height) { return std::max(0.4, std::min(width / 1280.0, height / 720.0)); }
 
 Picture::Picture(int width, int height) : width(width), height(height), window_(egl_window(width, height)) {
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_ERROR);   // its warnings are for programmers
+  const auto paper = vtkSmartPointer<vtkRenderer>::New();
+  paper->SetBackground(1, 1, 1);
+  window_->AddRenderer(paper);
   top_ = vtkSmartPointer<vtkRenderer>::New();
-  top_->SetBackground(1, 1, 1);
-  top_->InteractiveOff();
+  top_->SetLayer(1);
+  window_->SetNumberOfLayers(2);
   window_->AddRenderer(top_);
   item_ = vtkSmartPointer<Item>::New();
   item_->width = width, item_->height = height;

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <filesystem>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "base/error.hpp"
 
@@ -17,14 +16,6 @@ namespace hilo {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string title_of(const Store& store, const std::string& path) {
-  if (store.has("/scene")) try {
-      if (const auto title = toml::parse(store.read_text("/scene"))["title"].value<std::string>(); title && !title->empty()) return *title;
-    } catch (const toml::parse_error&) {   // the scene is only wanted for its title here
-    }
-  return fs::path(path).stem().string();
-}
 
 std::vector<std::string> split(const std::string& text, char at) {
   std::vector<std::string> parts;
@@ -50,34 +41,33 @@ RunFile::RunFile(const std::string& path) : path(path), store_(Store::open(path)
   if (format != "hilo run")
     throw Error(path, format.empty() ? "is no file of hilo" : fmt::format("is a \"{}\", not a run", format), "give the run.h5 of hilo-solve");
   complete = store_.number_attribute("/", "complete").value_or(0) != 0;
-  title = title_of(store_, path);
+  title = store_.text_attribute("/", "title").value_or("");
+  if (title.empty()) title = fs::path(path).stem().string();
   for (const std::string& key : store_.list("/field"))
     if (const auto t = store_.number_attribute("/field/" + key, "t")) steps.push_back({key, *t});
 }
 
 const MeshFile& RunFile::mesh_file() {
   if (mesh_) return *mesh_;
-  const auto link = store_.linked("/mesh");
-  std::string target = path;
-  if (link) {
-    target = link->first;
-    if (fs::path(target).is_relative()) target = (fs::path(path).parent_path() / target).string();
-    if (!fs::exists(target))
-      throw Error(path, fmt::format("the mesh it links to, {}, is not there", target), "keep the mesh beside the run, or move both together");
-  } else if (!has_mesh()) {
+  if (!has_mesh())
     throw Error(path, "holds no mesh: a scene of bodies alone has no surfaces to draw or export", "its histories are there: hilo-post series --list");
-  }
+  const auto link = store_.linked("/mesh");
+  const std::string target = link ? resolved_from(path, link->first) : path;
+  if (!fs::exists(target)) throw Error(path, fmt::format("the mesh it was run on, {}, is missing", target), "keep it where it was, or move both together");
   mesh_ = read_mesh_file(target);
-  if (store_.has("/tags/fidelity")) {
+  if (store_.has("/tags/fidelity")) {   // as run, which may differ from the tags there are now
     const auto words = store_.read_strings("/tags/fidelity");
     if (words.size() != mesh_->mesh.region_name.size())
-      throw Error(path, fmt::format("{} tags but {} regions in {}", words.size(), mesh_->mesh.region_name.size(), target),
-                  "the mesh was changed after the run");
+      throw Error(path, fmt::format("{} tags, but {} has {} regions", words.size(), target, mesh_->mesh.region_name.size()), "the mesh was changed after the run");
     mesh_->fidelity.clear();
     for (const auto& w : words) mesh_->fidelity.push_back(fidelity_of(w, path));
     mesh_->tagged = true;
   }
+  mesh_->rank.clear();
   if (store_.has("/parts/rank")) mesh_->rank = store_.read<std::int32_t>("/parts/rank");
+  if (!mesh_->rank.empty() && mesh_->rank.size() != mesh_->mesh.shape.size())
+    throw Error(path, fmt::format("ranks of {} cells, but {} has {}", mesh_->rank.size(), target, mesh_->mesh.shape.size()), "the mesh was changed after the run");
+  mesh_->n_parts = 1;
   for (const std::int32_t r : mesh_->rank) mesh_->n_parts = std::max(mesh_->n_parts, r + 1);
   return *mesh_;
 }

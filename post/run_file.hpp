@@ -39,7 +39,7 @@ class RunFile {
   /// Mesh with the fidelity it was run at and the ranks of a parallel run; read at the first call.  Error for a scene of bodies alone.
   const MeshFile& mesh_file();
   const Mesh& mesh() { return mesh_file().mesh; }
-  bool has_mesh() const { return store_.has("/mesh"); }
+  bool has_mesh() const { return store_.linked("/mesh") || store_.has("/mesh"); }
 
   /// A nodal or cell field of a step and its number of columns; Error with the names there are.
   struct Field {

@@ -39,7 +39,7 @@ const std::vector<Layout>& layouts() {
 /// "joint.trunnion" is stored at /history/joint/trunnion; the first dot alone divides.
 std::string array_of(const std::string& name) {
   const auto dot = name.find('.');
-  return "/history/" + (dot == std::string::npos ? name : name.substr(0, dot) + "/" + name.substr(dot + 1));
+  return "/history/" + (dot == std::string::npos ? name : name.substr(0, dot) + "/" + to_link_name(name.substr(dot + 1)));
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ std::vector<std::string> RunFile::series_names() const {
   for (const std::string& item : store_.list("/history")) {
     if (item == "t") continue;
     const auto members = store_.list("/history/" + item);   // of an array: none
-    for (const std::string& member : members) names.push_back(item + "." + member);
+    for (const std::string& member : members) names.push_back(item + "." + from_link_name(member));
     if (members.empty() && !store_.shape("/history/" + item).empty()) names.push_back(item);
   }
   return names;

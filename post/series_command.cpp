@@ -7,12 +7,13 @@
 
 #include "base/args.hpp"
 #include "base/error.hpp"
+#include "base/table.hpp"
 #include "post/figure.hpp"
 #include "post/commands.hpp"
 #include "post/output.hpp"
 #include "post/picture.hpp"
 #include "post/run_file.hpp"
-#include "post/table.hpp"
+#include "post/csv.hpp"
 
 namespace hilo {
 namespace {
@@ -103,18 +104,15 @@ void write_png(const Options& o, const RunFile& run, const std::vector<Picked>& 
 }
 
 void list(const Options& o, const RunFile& run) {
-  std::vector<std::vector<std::string>> rows{{"history", "columns", "units"}};
-  std::string text = "[";
+  Table table{{"history", "columns", "units"}, {}, 3};
   for (const std::string& name : run.series_names()) {
     const Series s = run.describe(name);
     std::vector<std::string> units;
     for (const auto& u : s.unit)
       if (std::find(units.begin(), units.end(), u) == units.end()) units.push_back(u);
-    rows.push_back({name, fmt::format("{}", fmt::join(s.column, " ")), fmt::format("{}", fmt::join(units, ", "))});
-    text += fmt::format("{}\n  {{\"name\": {}, \"columns\": [\"{}\"], \"units\": [\"{}\"]}}", text.size() > 1 ? "," : "", json(name),
-                        fmt::join(s.column, "\", \""), fmt::join(s.unit, "\", \""));
+    table.rows.push_back({name, fmt::format("{}", fmt::join(s.column, " ")), fmt::format("{}", fmt::join(units, ", "))});
   }
-  write_out("-", o.json ? text + "\n]\n" : aligned(rows, 3));
+  write_out("-", o.json ? table.json() : table.text());
 }
 
 void run(const Options& o) {

@@ -12,27 +12,28 @@
 DefineConstant[ SIZE = {0, Name "SIZE"} ];                // 0 small, 1 medium, 2 a million hexahedra in the gun
 
 s = SIZE;
-DefineConstant[                                           // cells along the edges of the blocks      S   M   L
-  n_quarter = {s==0 ? 4 : s==1 ?  8 :  26, Name "n_quarter"}  // around a quarter of barrel and housing
-  n_wall    = {s==0 ? 2 : s==1 ?  4 :  12, Name "n_wall"}     // through the wall of the barrel
-  n_sleeve  = {s==0 ? 2 : s==1 ?  4 :   9, Name "n_sleeve"}   // through the wall of the housing
-  n_rear    = {s==0 ? 8 : s==1 ? 32 : 160, Name "n_rear"}     // along the barrel inside the housing
-  n_taper   = {s==0 ?24 : s==1 ? 96 : 480, Name "n_taper"}    // along the tapered barrel
-  n_breech  = {s==0 ? 2 : s==1 ?  6 :  27, Name "n_breech"}   // along the breech
-  n_plug    = {s==0 ? 1 : s==1 ?  2 :   4, Name "n_plug"}     // round the core of the breech
-  n_flat    = {s==1 ? 8 : 4, Name "n_flat"}                   // across a flat of the cradle
-  n_corner  = {s==1 ? 3 : 1, Name "n_corner"}                 // across half a corner face of the cradle
-  n_cradle  = {s==1 ? 4 : 2, Name "n_cradle"}                 // through the wall of the cradle
-  n_end     = {s==1 ? 9 : 3, Name "n_end"}                    // along the cradle, before and behind the trunnions
-  n_pin     = {s==1 ? 8 : 3, Name "n_pin"}                    // along a trunnion pin
-  n_ring    = {s==1 ? 2 : 1, Name "n_ring"}                   // round the core of a trunnion pin
-  n_around  = {s==1 ? 3 : 2, Name "n_around"}                 // from a trunnion pin to the edge of its zone
-  n_wheel   = {s==1 ? 10 : 6, Name "n_wheel"}                 // around a quarter of a wheel
-  n_tread   = {s==1 ? 4 : 2, Name "n_tread"}                  // along the radius and the width of a wheel
-  n_circle  = {s==1 ? 24 : 12, Name "n_circle"}               // sides of the circle of a pin or bore of tetrahedra
-  n_race    = {s==1 ? 72 : 24, Name "n_race"}                 // of the turret ring
-  n_port    = {s==1 ? 36 : 12, Name "n_port"}                 // of the gun port
-  fine      = {s==1 ? 0.40 : 1, Name "fine"}                  // factor on the sizes of the tetrahedra
+DefineConstant[                                 // cells along the edges of the blocks; the tetrahedra
+  n_quarter = s==0 ? 4 : s==1 ? 8 : 26,         // around a quarter of barrel and housing
+  n_wall    = s==0 ? 2 : s==1 ? 4 : 12,         // through the wall of the barrel
+  n_sleeve  = s==0 ? 2 : s==1 ? 4 : 9,          // through the wall of the housing
+  n_rear    = s==0 ? 8 : s==1 ? 32 : 160,       // along the barrel inside the housing
+  n_taper   = s==0 ? 24 : s==1 ? 96 : 480,      // along the tapered barrel
+  n_breech  = s==0 ? 2 : s==1 ? 6 : 27,         // along the breech
+  n_plug    = s==0 ? 1 : s==1 ? 2 : 4,          // round the core of the breech
+  n_flat    = s==1 ? 8 : 4,                     // across a flat of the cradle
+  n_corner  = s==1 ? 3 : 1,                     // across half a corner face of the cradle
+  n_cradle  = s==1 ? 4 : 2,                     // through the wall of the cradle
+  n_end     = s==1 ? 9 : 3,                     // along the cradle, before and behind the trunnions
+  n_pin     = s==1 ? 8 : 3,                     // along a trunnion pin
+  n_ring    = s==1 ? 2 : 1,                     // round the core of a trunnion pin
+  n_around  = s==1 ? 3 : 2,                     // from a trunnion pin to the edge of its zone
+  n_wheel   = s==1 ? 10 : 6,                    // around a quarter of a wheel
+  n_tread   = s==1 ? 4 : 2,                     // along the radius and the width of a wheel
+  n_circle  = s==1 ? 24 : 12,                   // sides of the circle of a pin or bore of tetrahedra
+  n_along   = s==1 ? 5 : 2,                     // along it
+  n_race    = s==1 ? 72 : 24,                   // of the turret ring
+  n_port    = s==1 ? 36 : 12,                   // of the gun port
+  fine      = s==1 ? 0.38 : 1                   // factor on the sizes of the tetrahedra
 ];
 
 // ---------------------------------------------------------------- dimensions [m]
@@ -83,6 +84,7 @@ eps = 1e-5;
 // ================================================================ tetrahedra: all but the gun and the wheels
 // This kernel goes first: its booleans number anew and would reuse numbers of the other.
 SetFactory("OpenCASCADE");
+Geometry.OCCUnionUnify = 0;                               // keep the four faces of a pin
 
 // A prism with the outline (pX, pZ) from y0 over dy: volume v
 Macro Prism
@@ -114,12 +116,34 @@ Macro Slab
   v = e(1);
 Return
 
+// A rod along y for a pin or a bore: its axis through (xc, zc), radius r, from y0 over dy. Its side is four faces, because
+// gmsh can mesh those regularly and a closed cylinder not; the polygons of pin and bore then stay clear of each other.
+Macro Rod
+  pc = newp; Point(pc) = {xc, y0, zc};
+  pts() = {}; c() = {};
+  For i In {0:3}
+    p = newp; Point(p) = {xc + r*Cos(i*Pi/2), y0, zc + r*Sin(i*Pi/2)}; pts(i) = p;
+  EndFor
+  For i In {0:3}
+    l = newl; Circle(l) = {pts(i), pc, pts((i+1) % 4)}; c(i) = l;
+  EndFor
+  Delete { Point{pc}; }
+  l = newll; Curve Loop(l) = {c()};
+  f = news; Plane Surface(f) = {l};
+  e() = Extrude {0, dy, 0} { Surface{f}; };
+  v = e(1);
+Return
+
 // ---------------------------------------------------------------- hull and what is bonded to it
 z_floor = 0.51;
-pX() = {-3.0, -2.8, 2.3, 3.0, 2.6, 2.0, -3.0}; pZ() = {0.65, 0.45, 0.45, 0.85, 1.15, z_roof, z_roof}; y0 = -y_hull; dy = 2*y_hull;
+pX() = {-3.0, -2.8, 2.3, 3.0, 2.6, 2.0, -3.0};
+pZ() = {0.65, 0.45, 0.45, 0.85, 1.15, z_roof, z_roof};
+y0 = -y_hull; dy = 2*y_hull;
 Call Prism;
 hull = v;
-pX() = {-2.9, -2.75, 2.25, 2.85, 2.5, 1.95, -2.9}; pZ() = {0.69, z_floor, z_floor, 0.87, 1.10, 1.34, 1.34}; y0 = -(y_hull - t_side); dy = -2*y0;
+pX() = {-2.9, -2.75, 2.25, 2.85, 2.5, 1.95, -2.9};
+pZ() = {0.69, z_floor, z_floor, 0.87, 1.10, 1.34, 1.34};
+y0 = -(y_hull - t_side); dy = -2*y0;
 Call Prism;
 cut() = {v};
 r_race = 0.64; R_race = 0.78;                             // of the turret ring
@@ -127,7 +151,9 @@ v = newv; Cylinder(v) = {x_ring, 0, 1.30, 0, 0, 0.2, r_race}; cut() += v;
 For m In {0:1}
   side = 1 - 2*m;
   For j In {0:3}
-    v = newv; Cylinder(v) = {x_wheel(j) + dx_arm, side*(y_hull - t_side - 0.02), r_wheel + dz_arm, 0, side*(t_side + 0.04), 0, r_pivot + g_arm};
+    xc = x_wheel(j) + dx_arm; zc = r_wheel + dz_arm; r = r_pivot + g_arm;
+    y0 = side*(y_hull - t_side - 0.02); dy = side*(t_side + 0.04);
+    Call Rod;
     cut() += v;
   EndFor
 EndFor
@@ -155,10 +181,14 @@ BooleanFragments{ Volume{hulls()}; Delete; }{}            // bonded parts share 
 
 // ---------------------------------------------------------------- turret and what is bonded to it
 z_tur = z_roof + 2*h_ring + g_ring; z_base = z_tur + 0.06; z_top = 2.22;
-pX() = {-1.6, -1.35, 0, 0.5, 0.5, 0, -1.35, -1.6}; pY() = {-0.55, -0.84, -0.84, -0.48, 0.48, 0.84, 0.84, 0.55}; z0 = z_tur; dz = z_top + 0.06 - z_tur;
+pX() = {-1.6, -1.35, 0, 0.5, 0.5, 0, -1.35, -1.6};
+pY() = {-0.55, -0.84, -0.84, -0.48, 0.48, 0.84, 0.84, 0.55};
+z0 = z_tur; dz = z_top + 0.06 - z_tur;
 Call Slab;
 turret = v;
-pX() = {-1.52, -1.32, -0.03, 0.42, 0.42, -0.03, -1.32, -1.52}; pY() = {-0.52, -0.76, -0.76, -0.435, 0.435, 0.76, 0.76, 0.52}; z0 = z_base; dz = z_top - z_base;
+pX() = {-1.52, -1.32, -0.03, 0.42, 0.42, -0.03, -1.32, -1.52};
+pY() = {-0.52, -0.76, -0.76, -0.435, 0.435, 0.76, 0.76, 0.52};
+z0 = z_base; dz = z_top - z_base;
 Call Slab;
 cut() = {v};
 r_port = 0.25;                                            // where the housing passes the front
@@ -168,8 +198,9 @@ turret = v;
 For m In {0:1}
   side = 1 - 2*m;
   v1 = newv; Box(v1) = {x_tr - 0.25, m ? -y_cheek - t_cheek : y_cheek, z_base, 0.50, t_cheek, z_top - z_base};
-  v2 = newv; Cylinder(v2) = {x_tr, side*(y_cheek - 0.01), z_gun, 0, side*(t_cheek + 0.02), 0, r_pin + g_pin};
-  v = newv; BooleanDifference(v) = { Volume{v1}; Delete; }{ Volume{v2}; Delete; };
+  xc = x_tr; zc = z_gun; r = r_pin + g_pin; y0 = side*(y_cheek - 0.01); dy = side*(t_cheek + 0.02);
+  Call Rod;
+  v2 = v; v = newv; BooleanDifference(v) = { Volume{v1}; Delete; }{ Volume{v2}; Delete; };
   cheek(m) = v;
 EndFor
 v1 = newv; Cylinder(v1) = {0.50, 0, z_gun, 0.10, 0, 0, 0.36};
@@ -209,11 +240,16 @@ Physical Volume("sight") = sight;
 // Surfaces are found by their boxes, padded by d. Pins are made after the bores around them, so that a bore's box
 // holds only the bore, and a pin's box is too narrow for the bore.
 d = 1e-3; q = R_race + d;
-Physical Surface("ring_hull") = Surface In BoundingBox {x_ring - q, -q, z_roof + h_ring - d, x_ring + q, q, z_roof + h_ring + d};
-Physical Surface("ring_turret") = Surface In BoundingBox {x_ring - q, -q, z_tur - h_ring - d, x_ring + q, q, z_tur - h_ring + d};
-Physical Surface("seat_driver") = Surface In BoundingBox {1.30 - d, -0.20 - d, z_seat + h_seat - d, 1.70 + d, 0.20 + d, z_seat + h_seat + d};
-Physical Surface("seat_commander") = Surface In BoundingBox {0.60 - d, 0.15 - d, z_seat + h_seat - d, 1.00 + d, 0.55 + d, z_seat + h_seat + d};
-Physical Surface("seat_gunner") = Surface In BoundingBox {0.60 - d, -0.55 - d, z_seat + h_seat - d, 1.00 + d, -0.15 + d, z_seat + h_seat + d};
+Physical Surface("ring_hull") =
+  Surface In BoundingBox {x_ring - q, -q, z_roof + h_ring - d, x_ring + q, q, z_roof + h_ring + d};
+Physical Surface("ring_turret") =
+  Surface In BoundingBox {x_ring - q, -q, z_tur - h_ring - d, x_ring + q, q, z_tur - h_ring + d};
+Physical Surface("seat_driver") =
+  Surface In BoundingBox {1.30 - d, -0.20 - d, z_seat + h_seat - d, 1.70 + d, 0.20 + d, z_seat + h_seat + d};
+Physical Surface("seat_commander") =
+  Surface In BoundingBox {0.60 - d, 0.15 - d, z_seat + h_seat - d, 1.00 + d, 0.55 + d, z_seat + h_seat + d};
+Physical Surface("seat_gunner") =
+  Surface In BoundingBox {0.60 - d, -0.55 - d, z_seat + h_seat - d, 1.00 + d, -0.15 + d, z_seat + h_seat + d};
 q = r_pin + g_pin + d;
 both() = {}; pins() = {};                                // pins: all cylinders, to set the sides of their circles
 For m In {0:1}
@@ -224,7 +260,7 @@ For m In {0:1}
 EndFor
 Physical Surface("turret_bores") = both();
 
-// ---------------------------------------------------------------- trailing arms: a link, a pivot pin inward, an axle outward
+// ---------------------------------------------------------------- trailing arms: link, pivot pin inward, axle outward
 arms() = {};
 phi = Atan2(-dz_arm, -dx_arm); zp = r_wheel + dz_arm; l_pivot = 0.155; l_axle = 0.235;
 For m In {0:1}
@@ -241,9 +277,13 @@ For m In {0:1}
       pX(i+4) = xp - 0.10*Cos(t); pZ(i+4) = zp - 0.10*Sin(t);
     EndFor
     Call Prism;
-    v1 = newv; Cylinder(v1) = {xp, side*y_arm, zp, 0, -side*l_pivot, 0, r_pivot};
-    v2 = newv; Cylinder(v2) = {xw, side*(y_arm + t_arm), r_wheel, 0, side*l_axle, 0, r_axle};
-    arm = newv; BooleanUnion(arm) = { Volume{v}; Delete; }{ Volume{v1, v2}; Delete; };
+    link = v;
+    xc = xp; zc = zp; r = r_pivot; y0 = side*y_arm; dy = -side*l_pivot;
+    Call Rod;
+    v1 = v;
+    xc = xw; zc = r_wheel; r = r_axle; y0 = side*(y_arm + t_arm); dy = side*l_axle;
+    Call Rod;
+    arm = newv; BooleanUnion(arm) = { Volume{link}; Delete; }{ Volume{v1, v}; Delete; };
     arms() += arm;
     Physical Volume(Sprintf(StrCat("arm_", name, "%g"), j + 1)) = arm;
     // the pin without its end face
@@ -262,10 +302,12 @@ EndFor
 MeshSize { PointsOf{ Volume{hulls(), turrets()}; } } = 0.45*fine;
 MeshSize { PointsOf{ Volume{capsule, seat_d, seat_c, seat_g}; } } = 0.30*fine;
 MeshSize { PointsOf{ Volume{cheek(), mantlet}; } } = 0.20*fine;
-MeshSize { PointsOf{ Volume{arms()}; } } = 0.20*fine;
-For i In {0:#pins()-1}
-  c() = CombinedBoundary { Surface{pins(i)}; };
-  Transfinite Curve { c() } = n_circle + 1;
+MeshSize { PointsOf{ Volume{arms()}; } } = 0.16*fine;
+For i In {0:#pins()-1:4}
+  f() = pins({i:i+3}); c() = Abs(CombinedBoundary { Surface{f()}; }); e() = Abs(Boundary { Surface{f()}; }); e() -= c();
+  Transfinite Curve { c() } = n_circle/4 + 1;
+  Transfinite Curve { e() } = n_along + 1;
+  Transfinite Surface { f() };
 EndFor
 q = R_race + d; z_cut() = {1.34, z_roof, z_roof + h_ring, z_tur - h_ring, z_tur};     // turret ring
 For i In {0:4}
@@ -281,8 +323,8 @@ EndFor
 // ================================================================ blocks of hexahedra
 SetFactory("Built-in");
 
-// One edge of a block, from corner ia to ib with n cells: an arc where both ends lie on one circle about the gun axis, or
-// about the y axis through (x_y, z_y), else a straight line. The ranges of radii leave out the cores and the cradle's flats.
+// One edge of a block, from corner ia to ib with n cells: an arc where both ends lie on one circle about the gun axis,
+// or about the y axis through (x_y, z_y), else a straight line. The ranges of radii leave out the cores and the flats.
 bX() = {}; bY() = {}; bZ() = {}; qU() = {}; qW() = {};
 x_y = x_tr; z_y = z_gun; ra_y = 0.9*r_pin; rb_y = 1.1*r_pin;
 Macro Edge
@@ -497,4 +539,5 @@ Physical Surface("cradle_pins") = {pin_l(), pin_r()};
 Mesh.MeshSizeExtendFromBoundary = s == 1;                 // small: let the tetrahedra grow at once behind pins and bores
 Mesh.MeshSizeMax = 0.45*fine;
 Mesh.Algorithm = 5;
+Mesh.OptimizeThreshold = 0.5;                             // work on every tetrahedron worse than this
 Mesh.ElementOrder = 1;

@@ -4,6 +4,10 @@
 #include <mpi.h>
 
 #include <cstdlib>
+#include <limits>
+#include <new>
+
+#include "base/error.hpp"
 
 namespace hilo {
 
@@ -50,27 +54,63 @@ void Comm::finish() {
 template <class T>
 std::vector<std::vector<T>> Comm::exchange(const std::vector<std::vector<T>>& to) const {
   if (size == 1) return to;
-  std::vector<int> n_send(size), n_recv(size), at_send(size), at_recv(size);
-  std::vector<char> out, in;
-  for (int r = 0; r < size; ++r) {
+  constexpr std::int64_t limit = std::numeric_limits<int>::max();
+  std::int64_t n_out = 0, n_in = 0;
+  for (const auto& list : to) n_out += static_cast<std::int64_t>(list.size());
+  std::vector<std::int64_t> n_send(size), n_recv(size);
+  for (int r = 0; r < size; ++r) n_send[r] = n_out > limit ? -1 : static_cast<std::int64_t>(to[r].size());
+  MPI_Alltoall(n_send.data(), 1, MPI_INT64_T, n_recv.data(), 1, MPI_INT64_T, MPI_COMM_WORLD);
+  bool too_much = n_out > limit;
+  for (const auto n : n_recv) too_much = too_much || n < 0, n_in += n;
+  if (max(too_much || n_in > limit) > 0)
+    throw Error("", "more than 2^31 values travel between ranks at once", "use more ranks", Exit::resources);
+  std::vector<int> send(n_send.begin(), n_send.end()), recv(n_recv.begin(), n_recv.end()), at_send(size), at_recv(size);
+  std::vector<T> out, in(static_cast<size_t>(n_in));
+  out.reserve(static_cast<size_t>(n_out));
+  for (int r = 0, at = 0; r < size; at += recv[r++]) {
     at_send[r] = static_cast<int>(out.size());
-    const char* p = reinterpret_cast<const char*>(to[r].data());
-    out.insert(out.end(), p, p + to[r].size() * sizeof(T));
-    n_send[r] = static_cast<int>(out.size()) - at_send[r];
+    out.insert(out.end(), to[r].begin(), to[r].end());
+    at_recv[r] = at;
   }
-  MPI_Alltoall(n_send.data(), 1, MPI_INT, n_recv.data(), 1, MPI_INT, MPI_COMM_WORLD);
-  int total = 0;
-  for (int r = 0; r < size; ++r) at_recv[r] = total, total += n_recv[r];
-  in.resize(total);
-  MPI_Alltoallv(out.data(), n_send.data(), at_send.data(), MPI_CHAR, in.data(), n_recv.data(), at_recv.data(), MPI_CHAR, MPI_COMM_WORLD);
+  MPI_Datatype value;
+  MPI_Type_contiguous(sizeof(T), MPI_BYTE, &value);
+  MPI_Type_commit(&value);
+  MPI_Alltoallv(out.data(), send.data(), at_send.data(), value, in.data(), recv.data(), at_recv.data(), value, MPI_COMM_WORLD);
+  MPI_Type_free(&value);
   std::vector<std::vector<T>> from(size);
-  for (int r = 0; r < size; ++r) {
-    const T* p = reinterpret_cast<const T*>(in.data() + at_recv[r]);
-    from[r].assign(p, p + n_recv[r] / sizeof(T));
-  }
+  for (int r = 0; r < size; ++r) from[r].assign(in.begin() + at_recv[r], in.begin() + at_recv[r] + recv[r]);
   return from;
 }
 template std::vector<std::vector<double>> Comm::exchange(const std::vector<std::vector<double>>&) const;
 template std::vector<std::vector<std::int64_t>> Comm::exchange(const std::vector<std::vector<std::int64_t>>&) const;
+template std::vector<std::vector<char>> Comm::exchange(const std::vector<std::vector<char>>&) const;
+
+void Comm::together(const std::function<void()>& body) const {
+  if (size == 1) return body();
+  std::string parts[3];
+  int code = 0;
+  const auto note = [&](const std::string& where, const std::string& what, const std::string& hint, Exit exit) {
+    parts[0] = where, parts[1] = what, parts[2] = hint, code = static_cast<int>(exit);
+  };
+  try {
+    body();
+  } catch (const Error& e) {
+    note(e.where, e.message, e.hint, e.exit);
+  } catch (const std::bad_alloc&) {
+    note("", "out of memory", "", Exit::resources);
+  }
+  if (max(code) == 0) return;
+  std::vector<char> said;
+  if (code) {
+    said.push_back(static_cast<char>(code));
+    for (const auto& part : parts) said.insert(said.end(), part.begin(), part.end()), said.push_back('\0');
+  }
+  for (const auto& list : exchange(std::vector<std::vector<char>>(size, said))) {
+    if (list.empty()) continue;
+    const char* at = list.data() + 1;
+    for (auto& part : parts) part = at, at += part.size() + 1;
+    throw Error(parts[0], parts[1], parts[2], static_cast<Exit>(list[0]));
+  }
+}
 
 }  // namespace hilo

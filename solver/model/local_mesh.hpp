@@ -1,5 +1,6 @@
 // The part of a mesh that one rank holds: its cells, and their nodes whether owned or shared.
 #pragma once
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,14 +17,19 @@ struct LocalMesh {
   std::vector<std::int64_t> node_global;  // row of each local node in the file      (n_nodes)
   std::vector<std::int64_t> cell_global;  // row of each local cell in the file      (n_cells)
   std::vector<char> node_owned;           // 1 on the one rank that owns the node    (n_nodes)
+  std::map<std::string, std::vector<std::int64_t>> elsewhere;  // local nodes that a region, facet or cell set has through cells of other ranks
   std::int64_t n_nodes_global = 0, n_cells_global = 0;
   std::string file;                       // mesh, tags or parts file it came from ("" without a mesh)
   std::vector<std::string> provenance;
   double length = 1;                      // diagonal of the bounding box of the whole mesh [m]
+
+  /// All local nodes of a name, also those that only a cell of another rank puts there: what Mesh::nodes_of gives on one rank.
+  std::vector<std::int64_t> nodes_of(const std::string& name, const std::string& where) const;
 };
 
 /// Read a mesh, tags or parts file.  On several ranks each reads its slice of the rows and cells travel to the rank that the parts file
-/// (or a partition made on the spot) gives them, so no rank holds the whole mesh.
+/// (or a partition made on the spot) gives them, so no rank holds the whole mesh.  The node of a set of one node is local to every rank
+/// (a joint may end there).  Errors are the same on all ranks.
 LocalMesh read_local_mesh(const std::string& path, const Comm& comm);
 
 }  // namespace hilo

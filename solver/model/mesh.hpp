@@ -93,5 +93,7 @@ struct CellQuality {
   double scaled_jacobian;   // [1]
 };
 CellQuality quality(const Mesh& mesh, std::int64_t cell);
+/// Area vector of a facet, outward [m^2]; zero for the ends of a bar.
+Vec3 facet_area(const Mesh& mesh, const Facet& f);
 
 }  // namespace hilo

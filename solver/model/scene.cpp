@@ -46,19 +46,18 @@ std::string Entry::where(std::string_view key) const {
 std::string Entry::label() const { return name.empty() ? section : fmt::format("{} \"{}\"", section, name); }
 
 Scene Scene::load(const std::string& path, std::span<const std::string> overrides) {
+  const std::string text = path == "-" ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : read_text_file(path);
+  return parse(text, path, overrides);
+}
+
+Scene Scene::parse(const std::string& text, const std::string& path, std::span<const std::string> overrides) {
   Scene scene;
   Surroundings around;
+  const auto parent = std::filesystem::path(path).parent_path().string();
   scene.path = path;
-  if (path == "-") {
-    around.file = "<stdin>";
-    scene.folder = ".";
-    scene.text.assign(std::istreambuf_iterator<char>(std::cin), {});
-  } else {
-    around.file = path;
-    const auto parent = std::filesystem::path(path).parent_path().string();
-    scene.folder = parent.empty() ? "." : parent;
-    scene.text = read_text_file(path);
-  }
+  scene.text = text;
+  scene.folder = path == "-" || parent.empty() ? std::string(".") : parent;
+  around.file = path == "-" ? std::string("<stdin>") : path;
   around.folder = scene.folder;
   toml::table root = parse_toml(scene.text, around.file);
   for (const auto& option : overrides) apply_override(root, option);

@@ -69,6 +69,8 @@ class Scene {
   /// Read `path` ("-": standard input), apply overrides "joint.trunnion.stiffness=2e6", check against the schema.
   /// Unknown sections, keys and kinds, wrong types, values out of range, duplicate names: Error with file:line:column and a suggestion.
   static Scene load(const std::string& path, std::span<const std::string> overrides = {});
+  /// The same for a text that is already there (from another rank, or of a results file); `path` says where it came from.
+  static Scene parse(const std::string& text, const std::string& path, std::span<const std::string> overrides = {});
   /// Entries of a section in file order: material, region, body, point_mass, joint, spring, load, motion, initial, sensor, probe, history.
   std::span<const Entry> entries(std::string_view section) const;
   /// The one table of a section (time, solver, output, scene); defaults where it is absent.
@@ -97,6 +99,8 @@ const std::vector<KindSchema>& scene_schema();
 std::vector<std::string> choices(std::string_view section, std::string_view key);
 /// How many numbers a list may hold; empty where any number will do.
 std::vector<size_t> lengths(std::string_view section, std::string_view key);
+/// The default of a key that has one; defaults are in SI units.
+Value default_value(const Param& param);
 /// Sections written as [[section]] (lists of tables with a key `name`); the others are [section.NAME] or a single [section].
 bool is_list_section(std::string_view section);
 bool is_single_section(std::string_view section);

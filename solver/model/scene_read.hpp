@@ -18,8 +18,6 @@ struct Surroundings {
 
 /// Check a TOML value against its parameter and convert it to SI; `label` says whose value it is.
 Value read_value(std::string_view section, const Param& param, const Item& item, const std::string& label, const Surroundings& around);
-/// The parameter's default, which is in SI units.
-Value default_value(const Param& param);
 
 /// Check all keys of a table and complete them with defaults.  Messages begin with `owner`, the entry's label when empty.
 Entry read_entry(std::string_view section, const toml::table& table, const std::string& name, const Place& place,

@@ -23,7 +23,7 @@ const std::vector<ArraySchema>& file_schema() {
       {"mesh.h5", "/mesh/deck_scene", "string", "()", "", "scene lines that the deck's supports and loads became"},
       {"tags.h5", "/mesh", "link", "", "", "external link to mesh.h5:/mesh; attributes of /: mesh_file, mesh_digest"},
       {"tags.h5", "/tags/fidelity", "string", "(n_regions)", "", "rigid, linear or nonlinear"},
-      {"parts.h5", "/mesh", "link", "", "", "external link to mesh.h5:/mesh"},
+      {"parts.h5", "/mesh", "link", "", "", "external link to mesh.h5:/mesh; attributes of /: mesh_file, mesh_digest"},
       {"parts.h5", "/tags", "link", "", "", "external link to tags.h5:/tags (absent for an untagged mesh); attributes of /: tags_file, tags_digest"},
       {"parts.h5", "/parts/rank", "i4", "(n_cells)", "", "part of each cell; attribute n_parts"},
       {"run.h5", "/mesh", "link", "", "", "external link to mesh.h5:/mesh (absent for a scene of bodies alone)"},

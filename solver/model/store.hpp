@@ -24,16 +24,18 @@ class Store {
   ~Store();
 
   bool has(const std::string& object) const;
-  std::vector<std::string> list(const std::string& group) const;       // names in a group, sorted; empty when there is no such group
+  std::vector<std::string> list(const std::string& group) const;  // names in a group, sorted; empty when there is no such group
   std::vector<std::int64_t> shape(const std::string& array) const;
-  bool is_array(const std::string& object) const;                      // false for a group, and where there is nothing
-  std::string type(const std::string& array) const;                    // as the schema writes it: f8, i8, i4, u1, string
+  bool is_array(const std::string& object) const;    // false for a group, and where there is nothing
+  std::string type(const std::string& array) const;  // as the schema writes it: f8, i8, i4, u1, string
 
-  template <class T> std::vector<T> read(const std::string& array) const;
+  template <class T>
+  std::vector<T> read(const std::string& array) const;
   /// Rows [first, first + count) of the first axis.
-  template <class T> std::vector<T> read_rows(const std::string& array, std::int64_t first, std::int64_t count) const;
+  template <class T>
+  std::vector<T> read_rows(const std::string& array, std::int64_t first, std::int64_t count) const;
   std::vector<std::string> read_strings(const std::string& array) const;
-  std::string read_text(const std::string& array) const;               // a scalar string
+  std::string read_text(const std::string& array) const;  // a scalar string
 
   /// Write an array of shape `shape` (rows first); `unit` and `meaning` become attributes.
   template <class T>
@@ -44,9 +46,10 @@ class Store {
 
   /// An array that grows along its first axis; append() adds one row.
   template <class T>
-  void start_rows(const std::string& array, std::vector<std::int64_t> row_shape, const std::string& unit = "", const std::string& meaning = "",
-                  const std::string& time = "");
-  template <class T> void append(const std::string& array, std::span<const T> row);
+  void start_rows(const std::string& array, std::vector<std::int64_t> row_shape, const std::string& unit = "",
+                  const std::string& meaning = "", const std::string& time = "");
+  template <class T>
+  void append(const std::string& array, std::span<const T> row);
 
   void set(const std::string& object, const std::string& attribute, const std::string& value);
   void set(const std::string& object, const std::string& attribute, double value);
@@ -59,9 +62,9 @@ class Store {
   /// File and object a link points to, or nothing when `name` is no external link.
   std::optional<std::pair<std::string, std::string>> linked(const std::string& name) const;
 
-  void flush();                      // to disk: what was written survives a killed run
-  void publish();                    // flush, fsync, rename to the final name
-  void discard();                    // close and remove
+  void flush();    // to disk: what was written survives a killed run
+  void publish();  // flush, fsync, rename to the final name
+  void discard();  // close and remove
   const std::string& path() const;
 
   struct Impl;

@@ -54,8 +54,10 @@ std::string from_link_name(const std::string& link) {
   std::string out;
   for (size_t i = 0; i < link.size(); ++i) {
     const auto code = link.substr(i, 3);
-    if (code == "%2F" || code == "%25" || code == "%2E") out += code == "%2F" ? '/' : code == "%25" ? '%' : '.', i += 2;
-    else out += link[i];
+    if (code == "%2F" || code == "%25" || code == "%2E")
+      out += code == "%2F" ? '/' : code == "%25" ? '%' : '.', i += 2;
+    else
+      out += link[i];
   }
   return out;
 }
@@ -116,8 +118,9 @@ std::string command_line(int argc, char** argv) {
   std::string line;
   for (int i = 0; i < argc; ++i) {
     std::string word = i == 0 ? fs::path(argv[i]).filename().string() : argv[i];
-    const bool plain = !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%^") ==
-                                            std::string::npos;
+    const bool plain =
+        !word.empty() &&
+        word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%^") == std::string::npos;
     if (!plain) {
       std::string quoted = "'";
       for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);

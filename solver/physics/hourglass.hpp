@@ -29,6 +29,7 @@ struct Hourglass {
   T n[3][8];      // centroid gradients along the cell's axes   [1/m]
   T gamma[4][8];  // hourglass vectors                          [1]
   T half[3];      // half-lengths                               [m]
+  T axes[3][3];   // the cell's axes, columns                   [1]
   T volume;       //                                            [m^3]
   Lame c;
   double E, nu;
@@ -36,7 +37,8 @@ struct Hourglass {
   Hourglass(const T* X, const Lame& moduli) : c(moduli) {
     constexpr const auto& table = stiffness_table<Hex8>;
     nu = c.lambda / (2 * (c.lambda + c.mu)), E = 2 * c.mu * (1 + nu);
-    T g[8][3], R[3][3];  // columns of R: the cell's axes
+    T g[8][3];
+    auto& R = axes;
     volume = table.w[0] * solid::reference_gradients<8>(table.dN[0], X, g);
     for (int A = 0; A < 3; ++A) {
       for (int i = 0; i < 3; ++i) {

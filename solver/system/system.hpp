@@ -35,7 +35,7 @@ struct SolidBatch {
 
 /// A load: nodal weights or facets or a body, times a history.
 struct Load {
-  enum Kind { nodal, pressure, body_force, body_torque } kind;
+  enum class Kind { nodal, pressure, body_force, body_torque } kind;
   std::string name;
   Vec3 value = Vec3::Zero();             // force [N] or torque [N m]; for nodal loads per unit weight
   double pressure = 0;                   // [Pa]
@@ -47,7 +47,8 @@ struct Load {
   int body = -1;
   Vec3 arm = Vec3::Zero();               // body axes
   History history;
-  double factor(double t0, double t1) const { return t1 > t0 ? history.mean(t0, t1) : history(t0); }
+  bool ramped = false;                   // without a history: follows the load factor of a static analysis
+  double factor(double t0, double t1, double ramp) const { return (ramped ? ramp : 1) * (t1 > t0 ? history.mean(t0, t1) : history(t0)); }
 };
 
 /// Prescribed motion of a body (fixed, translation, rotation) or of single components of nodes.
@@ -59,7 +60,7 @@ struct Motion {
   Vec3 displacement = Vec3::Zero();    // at history 1 [m]
   Vec3 at = Vec3::Zero(), axis = Vec3::Zero();
   double angle = 0;                    // at history 1 [rad]
-  bool moving = false;
+  bool moving = false, ramped = false;
   History history;
 };
 
@@ -89,7 +90,8 @@ struct Stage {
   double alpha_slope = 0;             // d v / d q1 [1/s]
   double chi = 0;                     // stress dissipation on flexible parts
   double t0 = 0, t1 = 0;              // loads: mean over [t0, t1], or value at t0 = t1
-  double load_factor = 1;             // of all loads and gravity, for static load steps
+  const Config* work_from = nullptr;  // start of the step for System::work; null: q0
+  double load_factor = 1;             // of gravity and of loads without a history, for static load steps
 };
 
 /// Residual with the scales that judge it.
@@ -97,8 +99,11 @@ struct Residual {
   std::vector<double> r;        // (3 x n_blocks): equations, then constraint rows
   double force_scale = 0;       // largest force summed into r [N]
   double least_det = 1e300;     // smallest det F
+  double sigma = 1;             // scale of the constraint rows; multipliers are found divided by it
   bool finite = true;
 };
+
+struct NodeMap;
 
 class System {
  public:
@@ -112,11 +117,12 @@ class System {
   std::vector<Load> loads;
   std::vector<Motion> motions;
   std::vector<Station> stations;
+  std::vector<std::vector<int>> region_nodes;            // free nodes of each flexible region, for the predictor
   std::vector<std::pair<int, double>> point_masses;      // node, mass [kg], owned nodes
-  std::vector<std::pair<int, double>> node_regions;
   Vec3 gravity = Vec3::Zero();
   double length = 1;                           // size of the scene [m]
   double mass = 0;                             // of everything [kg]
+  double stiffness = 1;                        // a typical one, for scaling without inertia [N/m]
   Config start, start_velocity;
   const Comm* comm = nullptr;
   LocalMesh* mesh = nullptr;                   // null for a scene of bodies alone
@@ -133,14 +139,17 @@ class System {
   void number();
   /// Residual, and tangent into `K` when given.  lambda: (3 x joint blocks), indexed by block - first joint block.
   void evaluate(const Stage& stage, std::span<const double> lambda, Residual& out, KktSolver* K) const;
+  void mask_fixed(std::span<double> r) const;
   /// q <- q moved by the increments z (3 x n_blocks); bodies turn by the Cayley rotation of theirs.
   void move(Config& q, std::span<const double> z) const;
-  /// Positions of followers from their bodies; velocities or accelerations likewise (all maps are linear).
-  void follow(Config& q, bool positions) const;
+  /// Followers from their bodies; the map is linear, so it holds for positions, velocities and accelerations alike.
+  void follow(Config& q) const;
   /// Prescribed positions at time t: driven bodies and fixed components.
-  void prescribe(Config& q, double t) const;
+  void prescribe(Config& q, double t, double ramp = 1) const;
   /// Largest |g| of the active joint rows [m, 1].
   double constraint_violation(const Config& q) const;
+  /// Values of all joint rows, laid out like lambda; being quadratic, differences of them give exact derivatives.
+  std::vector<double> joint_values(const Config& q) const;
   int first_joint_block() const { return joint_block.empty() ? n_blocks() : joint_block.front(); }
   int n_joint_blocks() const { return n_blocks() - first_joint_block(); }
   bool has_damping() const;
@@ -168,11 +177,16 @@ class System {
 
  private:
   struct Pass;
+  void number_globally(int n_node_blocks, int n_local);
+  double constraint_scale(const Stage& s) const;
   void add_solids(Pass& p) const;
   void add_bodies(Pass& p) const;
   void add_connectors(Pass& p) const;
   void add_loads(Pass& p) const;
   void reduce(Pass& p) const;
+  void make_maps(std::span<const int> nodes, std::span<const int> blocks, const Stage& s, std::vector<NodeMap>& maps,
+                 std::vector<std::array<bool, 3>>& masks) const;
+  double solid_dissipation(const Stage& s) const;
   int body_clique(int body) const { return body_clique_[body]; }
   std::vector<int> body_clique_, joint_clique_, spring_clique_;
   std::vector<char> owns_joint_, owns_spring_;

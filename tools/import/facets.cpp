@@ -19,9 +19,9 @@ struct KeyHash {
 };
 
 Key key_of(const std::int64_t* nodes, size_t n) {
-  Key k{-1, -1, -1, -1};
-  std::copy(nodes, nodes + n, k.begin());
-  std::sort(k.begin(), k.begin() + static_cast<std::ptrdiff_t>(n));
+  Key k{-1, -1, -1, -1};   // a triangle keeps one -1
+  for (size_t i = 0; i < n && i < k.size(); ++i) k[i] = nodes[i];
+  std::sort(k.begin(), k.end());
   return k;
 }
 

@@ -93,6 +93,8 @@ void raise_order(Imported& in);
 std::int64_t merge_nodes(Mesh& mesh, double distance);
 /// Nodes of no cell are dropped, from the sets too; returns how many.
 std::int64_t drop_unused(Imported& in);
+/// Least over the corners of the determinant of the edges over the product of their lengths: 1 for a regular cell, <= 0 inverted.
+double scaled_jacobian(const Mesh& mesh, std::int64_t cell);
 /// Throws Error naming the cells when any is inverted or has no volume.
 void check_cells(const Mesh& mesh, const std::string& file);
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "import/imported.hpp"
@@ -65,7 +66,8 @@ struct InpAmplitude {
 struct InpDeck {
   std::vector<Vec3> X;
   std::vector<std::int64_t> node_id;
-  std::unordered_map<std::int64_t, std::int64_t> node;      // number in the deck -> row of X
+  std::unordered_map<std::int64_t, std::int64_t> node;      // number in the deck -> row of X, of nodes that a cell uses
+  std::unordered_set<std::int64_t> unused;                  // nodes of no cell
   std::vector<std::uint8_t> shape;
   std::vector<std::int64_t> cell_id, offset{0}, cell_nodes;  // nodes as numbers of the deck
   std::vector<int> cell_line;
@@ -74,7 +76,8 @@ struct InpDeck {
   std::map<std::string, InpSet> nset, elset;                // by upper-case name
   std::vector<std::string> nset_order, elset_order;
   std::vector<InpSurface> surfaces;
-  std::map<std::string, InpMaterial> materials;
+  std::map<std::string, InpMaterial> materials;             // by upper-case name
+  std::string material;                                     // the one that *ELASTIC and *DENSITY speak of
   std::vector<InpSection> sections;
   std::vector<InpNodal> supports, forces, velocities;
   std::vector<InpDistributed> distributed;
@@ -101,7 +104,7 @@ void write_inp_scene(const InpDeck& deck, Imported& in, SetNames& names, const s
                      const std::map<std::string, std::string>& surface, const ImportOptions& options);
 /// Facets of the deck's faces: the local facet that has the corners of face `face` of an Abaqus element; -1 where there is none.
 int inp_facet(Shape shape, int face);
-/// Rows of the nodes, or cells, that a target names.
+/// Rows of the nodes, or cells, that a target names; numbers that no cell uses are left out.
 std::vector<std::int64_t> inp_nodes(const InpDeck& deck, const std::string& target, std::int64_t id, const std::string& place);
 std::vector<std::int64_t> inp_cells(const InpDeck& deck, const std::string& target, std::int64_t id, const std::string& place);
 

@@ -65,7 +65,7 @@ double DataLine::number(size_t field, double fallback) const {
   for (size_t i = 0; i < f.size(); ++i)
     if (f[i] == 'd' || f[i] == 'D') f[i] = 'e';
   for (size_t i = 1; i < f.size(); ++i)
-    if ((f[i] == '+' || f[i] == '-') && (std::isdigit(static_cast<unsigned char>(f[i - 1])) || f[i - 1] == '.')) f.insert(i++, "e");
+    if ((f[i] == '+' || f[i] == '-') && (std::isdigit(static_cast<unsigned char>(f[i - 1])) || f[i - 1] == '.')) f.insert(i++, 1, 'e');
   if (const auto plus = f.find("e+"); plus != std::string::npos) f.erase(plus + 1, 1);
   auto [end2, bad2] = std::from_chars(f.data(), f.data() + f.size(), x);
   if (bad2 != std::errc() || end2 != f.data() + f.size()) throw Error(place(field), fmt::format("expected a number, found \"{}\"", text(field)));
@@ -205,7 +205,7 @@ bool InpLines::next_card(Card& card) {
     for (const auto& f : fields) {
       if (first && &f == &fields.front()) {
         card.key = upper(f.text.substr(1));
-        card.name = "*";
+        card.name.assign(1, '*');
         for (const char c : strip(f.text.substr(1)))
           if (!(std::isspace(static_cast<unsigned char>(c)) && card.name.back() == ' ')) card.name += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
         continue;

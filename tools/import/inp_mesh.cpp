@@ -42,7 +42,7 @@ void read_nodes(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
   }
 }
 
-void read_elements(const Card& card, InpLines& lines, InpDeck& d) {
+void read_elements(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
   const Shape shape = inp_shape(card);
   const size_t n = static_cast<size_t>(info(shape).n_nodes);
   InpSet* set = card.has("ELSET") ? &set_named(card.need("ELSET"), d.elset, d.elset_order) : nullptr;
@@ -59,7 +59,10 @@ void read_elements(const Card& card, InpLines& lines, InpDeck& d) {
         throw Error(place, fmt::format("element {} has {} of its {} nodes", row.empty() ? 0 : row[0], row.empty() ? 0 : row.size() - 1, n));
       for (size_t i = 0; i < l.fields.size(); ++i) row.push_back(l.integer(i));
     }
-    if (row.size() > n + 1) throw Error(place, fmt::format("element {} has {} nodes, a {} has {}", row[0], row.size() - 1, card.value("TYPE"), n));
+    if (row.size() > n + 1) {   // as CalculiX reads it
+      in.skip(fmt::format("*ELEMENT, TYPE={}: numbers behind its {} nodes", upper(card.value("TYPE")), n), l.place());
+      row.resize(n + 1);
+    }
     if (!d.cell.try_emplace(row[0], static_cast<std::int64_t>(d.shape.size())).second)
       throw Error(place, fmt::format("element {} is given twice", row[0]), "number each element once");
     d.shape.push_back(static_cast<std::uint8_t>(shape));
@@ -228,7 +231,7 @@ bool parse_mesh_card(const Card& card, InpLines& lines, InpDeck& d, Imported& in
   if (card.key == "NODE")
     read_nodes(card, lines, d, in);
   else if (card.key == "ELEMENT")
-    read_elements(card, lines, d);
+    read_elements(card, lines, d, in);
   else if (card.key == "NSET")
     read_set(card, "NSET", lines, d.nset, d.nset_order, d);
   else if (card.key == "ELSET")

@@ -6,7 +6,7 @@
 namespace hilo {
 
 /// Columns by name; cells are text, so that a column of names is kept.
-struct Table {
+struct CsvTable {
   std::vector<std::string> header;               // "t [s]", ...        (n_columns)
   std::vector<std::vector<std::string>> column;  // cells of each       (n_columns x n_rows)
   std::string path;                              // where it was read, for errors
@@ -18,7 +18,7 @@ struct Table {
 };
 
 /// Read CSV with one header line; quotes as usual, lines that start with # are skipped.
-Table read_csv(const std::string& path);
+CsvTable read_csv(const std::string& path);
 
 /// CSV of columns of numbers, written so that they read back as the same doubles.
 std::string csv_text(const std::vector<std::string>& header, const std::vector<std::vector<double>>& columns);

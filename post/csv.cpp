@@ -1,4 +1,4 @@
-#include "post/table.hpp"
+#include "post/csv.hpp"
 
 #include <fmt/format.h>
 
@@ -36,8 +36,8 @@ std::string without_unit(const std::string& name) { return trimmed(name.substr(0
 
 }  // namespace
 
-Table read_csv(const std::string& path) {
-  Table table;
+CsvTable read_csv(const std::string& path) {
+  CsvTable table;
   table.path = path;
   const std::string text = read_text_file(path);
   size_t line_number = 0;
@@ -60,7 +60,7 @@ Table read_csv(const std::string& path) {
   return table;
 }
 
-size_t Table::find(const std::string& name) const {
+size_t CsvTable::find(const std::string& name) const {
   for (size_t c = 0; c < header.size(); ++c)
     if (header[c] == name) return c;
   for (size_t c = 0; c < header.size(); ++c)
@@ -73,7 +73,7 @@ size_t Table::find(const std::string& name) const {
   throw Error(path, fmt::format("no column \"{}\"", name), suggest(name, names));
 }
 
-std::vector<double> Table::numbers(size_t c) const {
+std::vector<double> CsvTable::numbers(size_t c) const {
   std::vector<double> values;
   for (size_t row = 0; row < rows(); ++row) {
     const std::string& cell = column[c][row];

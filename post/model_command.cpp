@@ -1,0 +1,208 @@
+// hilo-post model: the scene before any run, with its joints, springs, loads, supports and sensors.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <vtkCamera.h>
+
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "base/args.hpp"
+#include "base/error.hpp"
+#include "post/commands.hpp"
+#include "post/ellipsoid.hpp"
+#include "post/glyphs.hpp"
+#include "post/names.hpp"
+#include "post/overlay.hpp"
+#include "post/shown_field.hpp"
+#include "post/stage.hpp"
+#include "post/view.hpp"
+
+namespace hilo {
+namespace {
+
+struct Options {
+  std::string scene, mesh, output, camera = "iso", size = "1600x900", title;
+  std::vector<std::string> show, hide, set;
+  bool see_through = false, no_names = false;
+};
+
+/// One line of the legend and how its regions are drawn.
+struct Group {
+  std::string label;
+  Fidelity fidelity;
+  Rgb colour;
+  std::vector<bool> member;   // per region
+};
+
+/// Regions of one fidelity in groups of like names; rigid ones are paler.
+std::vector<Group> groups_of(const MeshFile& file, const std::vector<bool>& shown) {
+  std::vector<Group> groups;
+  for (const Fidelity f : {Fidelity::nonlinear, Fidelity::linear, Fidelity::rigid}) {
+    std::vector<std::string> names;
+    std::vector<size_t> which;
+    for (size_t r = 0; r < shown.size(); ++r)
+      if (shown[r] && file.fidelity[r] == f) names.push_back(file.mesh.region_name[r]), which.push_back(r);
+    for (const NameGroup& g : grouped(names, 8)) {
+      const Rgb colour = category_colour(static_cast<int>(groups.size()));
+      Group group{g.label, f, f == Fidelity::rigid ? blend(colour, {0.88, 0.88, 0.88}, 0.62) : colour, std::vector<bool>(shown.size(), false)};
+      for (const size_t m : g.members) group.member[which[m]] = true;
+      groups.push_back(std::move(group));
+    }
+  }
+  return groups;
+}
+
+std::string mesh_path(const Options& o, const Scene& scene) {
+  if (!o.mesh.empty()) return o.mesh;
+  const Entry& head = scene.table("scene");
+  const std::string mesh = head.has("mesh") ? head.text("mesh") : "";
+  return mesh.empty() ? "" : (std::filesystem::path(scene.folder) / mesh).lexically_normal().string();
+}
+
+void add_meshed(vtkRenderer* stage, const MeshFile& file, const std::vector<Group>& groups, const std::vector<bool>& shown, double pixel, bool see_through) {
+  const Mesh& mesh = file.mesh;
+  const auto facets = boundary_facets(mesh, shown);
+  for (const Group& g : groups) {
+    std::vector<Facet> own;
+    std::vector<std::int64_t> bars;
+    for (const Facet& f : facets)
+      if (g.member[static_cast<size_t>(mesh.region[static_cast<size_t>(f.cell)])]) own.push_back(f);
+    for (std::int64_t c = 0; c < mesh.n_cells(); ++c)
+      if (g.member[static_cast<size_t>(mesh.region[static_cast<size_t>(c)])] && info(mesh.shape[static_cast<size_t>(c)]).dimension == 1) bars.push_back(c);
+    const Skin skin(mesh, own, bars);
+    const bool rigid = g.fidelity == Fidelity::rigid;
+    Look look;
+    look.colour = g.colour;
+    look.opacity = rigid && see_through ? 0.3 : 1;
+    look.bar_width = 5 * pixel;
+    add_skin(stage, skin, look);
+    if (!rigid) add_lines(stage, skin.cell_edges(), {0.1, 0.1, 0.12}, 0.8 * pixel, 0.3);
+    add_lines(stage, skin.feature_edges(), {0.1, 0.1, 0.12}, 1.1 * pixel, rigid ? 0.55 : 0.85);
+  }
+}
+
+std::vector<LegendEntry> legend_of(const std::vector<Group>& groups, const SceneItems& scene, double glyph_size) {
+  std::vector<LegendEntry> entries;
+  const Group* last = nullptr;
+  for (const Group& g : groups) {
+    if (!last || last->fidelity != g.fidelity) entries.push_back({fmt::format("{} regions", word(g.fidelity)), {}, nullptr, true});
+    entries.push_back({g.label, g.colour, nullptr});
+    last = &g;
+  }
+  if (!scene.items.empty()) entries.push_back({"Mechanism and loads", {}, nullptr, true});
+  std::set<std::string> seen;
+  for (const SceneItem& i : scene.items) {
+    if (!seen.insert(i.meaning).second) continue;
+    const auto symbol = [i, glyph_size](Painter& p, const Vec2& at) {
+      const bool two_ends = i.glyph == Glyph::link || i.glyph == Glyph::coil;
+      const Vec2 from = two_ends ? Vec2(at - Vec2(0.55 * glyph_size, 0)) : i.glyph == Glyph::arrow ? Vec2(at + Vec2(0.6 * glyph_size, 0)) : at;
+      const double size = i.glyph == Glyph::arrow ? 0.55 * glyph_size : i.glyph == Glyph::ground ? 0.7 * glyph_size : 0.8 * glyph_size;
+      const Vec2 shift = i.glyph == Glyph::ground || i.glyph == Glyph::clamp ? Vec2(0, 0.3 * glyph_size) : Vec2(0, 0);
+      draw_glyph(p, i.glyph, from + shift, {0.75, 0}, {0, 0.6}, at + Vec2(0.55 * glyph_size, 0), i.colour, size);
+    };
+    entries.push_back({i.meaning, i.colour, symbol});
+  }
+  return entries;
+}
+
+void draw_items(Painter& p, const Options& o, const SceneItems& scene, const Projection& project, const Box& box) {
+  const double size = 26 * p.scale;
+  std::vector<Label> labels;
+  for (const SceneItem& i : scene.items)
+    for (const Vec3& x : i.nodes) p.disc(project(x), 2.1 * p.scale, blend(i.colour, white, 0.15));
+  for (const SceneItem& i : scene.items) {
+    const Vec2 at = project(i.at), to = project(i.to);
+    draw_glyph(p, i.glyph, at, project.direction(i.at, i.along), project.direction(i.at, i.above), to, i.colour, size);
+    const bool two_ends = i.glyph == Glyph::link || i.glyph == Glyph::coil;
+    labels.push_back({two_ends ? Vec2(0.5 * (at + to)) : at, i.name, i.colour});
+  }
+  if (!o.no_names) draw_labels(p, labels, box, 13.5);
+}
+
+/// The direction of gravity beside the cross of axes.
+void draw_gravity(Painter& p, const Vec3& g, const Fit& fit) {
+  if (g.norm() == 0) return;
+  const Vec2 d = Vec2(g.dot(fit.right()), g.dot(fit.up())) / g.norm(), at(150 * p.scale, 78 * p.scale);
+  if (d.norm() < 0.05) return;
+  draw_arrow(p, at, at + 40 * p.scale * d, {0.35, 0.36, 0.38}, 2.2);
+  p.text(at - 12 * p.scale * d.normalized(), "g", 16, Across::centre, Up::middle, {0.35, 0.36, 0.38}, true);
+}
+
+void run(const Options& o) {
+  const Scene scene = Scene::load(o.scene, o.set);
+  for (const auto& w : scene.warnings) fmt::print(stderr, "hilo-post: warning: {}\n", w);
+  const std::string path = mesh_path(o, scene);
+  std::unique_ptr<MeshFile> file;
+  if (!path.empty()) file = std::make_unique<MeshFile>(read_mesh_file(path));
+  const SceneItems items = scene_items(scene, file.get());
+  if (!file && items.bodies.empty()) throw Error(o.scene, "has neither a mesh nor bodies to draw", "give the mesh as second argument");
+
+  const auto [width, height] = parse_size(o.size);
+  const double pixel = picture_scale(width, height);
+  const Frame frame = frame_of(width, height, 250, true);
+  Picture picture(width, height);
+  vtkRenderer* stage = picture.layer(frame.model);
+  light(stage);
+  if (o.see_through) {
+    stage->SetUseDepthPeeling(true);
+    stage->SetMaximumNumberOfPeels(12);
+  }
+  Fit fit(parse_view(o.camera), frame.model.w / frame.model.h, 0.07);
+  std::vector<Group> groups;
+  if (file) {
+    const auto shown = shown_regions(file->mesh, o.show, o.hide);
+    groups = groups_of(*file, shown);
+    add_meshed(stage, *file, groups, shown, pixel, o.see_through);
+    for (std::int64_t c = 0; c < file->mesh.n_cells(); ++c)
+      if (shown[static_cast<size_t>(file->mesh.region[static_cast<size_t>(c)])])
+        for (const auto n : file->mesh.cell(c)) fit.add(file->mesh.X[static_cast<size_t>(n)]);
+  }
+  for (const Ellipsoid& b : items.bodies) {
+    const auto surface = ellipsoid(b);
+    if (b.radii.norm() > 0) add_surface(stage, surface, blend(category_colour(static_cast<int>(&b - items.bodies.data())), white, 0.35));
+    fit.add(b.centre - b.radii.norm() * Vec3::Ones()), fit.add(b.centre + b.radii.norm() * Vec3::Ones());
+  }
+  for (const SceneItem& i : items.items) {
+    fit.add(i.at);
+    if (i.glyph == Glyph::link || i.glyph == Glyph::coil) fit.add(i.to);
+  }
+  fit.aim(stage->GetActiveCamera());
+  stage->ResetCameraClippingRange();
+  const Entry& head = scene.table("scene");
+  const std::string title = !o.title.empty() ? o.title : head.has("title") && !head.text("title").empty() ? head.text("title") : std::filesystem::path(o.scene).stem().string();
+  std::string line = file ? fmt::format("{} regions, {} cells, {} nodes", file->mesh.region_name.size(), file->mesh.n_cells(), file->mesh.n_nodes())
+                          : fmt::format("{} bodies", items.bodies.size());
+  if (file && !file->tagged) line += ", not tagged: all nonlinear";
+  picture.paint([&](Painter& p) {
+    draw_items(p, o, items, Projection(stage, frame.model), frame.model);
+    draw_title(p, title, line);
+    draw_axes_cross(p, fit.right(), fit.up(), fit.back());
+    draw_gravity(p, head.vector3("gravity"), fit);
+    draw_legend(p, frame.side, "", legend_of(groups, items, 24 * p.scale));
+  });
+  picture.write(o.output);
+  fmt::print("{}\n", o.output);
+}
+
+}  // namespace
+
+Command model_command(CLI::App& app) {
+  auto* sub = app.add_subcommand("model", "picture of a scene before any run: regions, joints, loads, supports, sensors");
+  const auto o = std::make_shared<Options>();
+  sub->add_option("scene", o->scene, "scene.toml; - for standard input")->required();
+  sub->add_option("mesh", o->mesh, "mesh.h5, tags.h5 or parts-N.h5; that of the scene by default");
+  sub->add_option("-o,--output", o->output, "PNG file")->required();
+  sub->add_option("--camera", o->camera, fmt::format("{}, or x,y,z towards the camera", fmt::join(view_names(), ", ")))->capture_default_str();
+  sub->add_option("--show", o->show, "regions to draw, by name or glob; all by default");
+  sub->add_option("--hide", o->hide, "regions not to draw");
+  sub->add_flag("--see-through", o->see_through, "rigid regions are transparent");
+  sub->add_flag("--no-names", o->no_names, "symbols without their names");
+  sub->add_option("--set", o->set, "override a key of the scene: joint.trunnion.at=[0,0,1]");
+  sub->add_option("--size", o->size, "size of the picture, WIDTHxHEIGHT")->capture_default_str();
+  sub->add_option("--title", o->title, "title instead of the scene's");
+  example(*sub, "  hilo-post model scene.toml tags.h5 -o model.png");
+  return {sub, [o] { run(*o); }};
+}
+
+}  // namespace hilo

@@ -1,0 +1,98 @@
+#include "post/stage.hpp"
+
+#include <vtkLightKit.h>
+#include <vtkLookupTable.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkSmartPointer.h>
+
+namespace hilo {
+namespace {
+
+void shade(vtkProperty* p, const Rgb& colour, double opacity) {
+  p->SetColor(colour.r, colour.g, colour.b);
+  p->SetOpacity(opacity);
+  p->SetAmbient(0.34);
+  p->SetDiffuse(0.68);
+  p->SetSpecular(0);
+}
+
+vtkSmartPointer<vtkLookupTable> lookup(const Look& look) {
+  const auto table = vtkSmartPointer<vtkLookupTable>::New();
+  constexpr int n = 512;
+  table->SetNumberOfTableValues(n);
+  for (int i = 0; i < n; ++i) {
+    const Rgb c = map_colour(look.map, (i + 0.5) / n);
+    table->SetTableValue(i, c.r, c.g, c.b);
+  }
+  table->SetTableRange(look.low, look.high);
+  return table;
+}
+
+vtkSmartPointer<vtkPolyDataMapper> mapper_of(vtkPolyData* data, const Look& look) {
+  const auto mapper = vtkSmartPointer<vtkPolyDataMapper>::New();
+  mapper->SetInputData(data);
+  mapper->SetScalarVisibility(look.by != Look::By::colour);
+  if (look.by == Look::By::cells) mapper->SetScalarModeToUseCellData();
+  if (look.by == Look::By::values) {
+    mapper->SetScalarModeToUsePointData();
+    mapper->SetLookupTable(lookup(look));
+    mapper->UseLookupTableScalarRangeOn();
+    mapper->InterpolateScalarsBeforeMappingOn();
+  }
+  return mapper;
+}
+
+}  // namespace
+
+void light(vtkRenderer* stage) {
+  const auto kit = vtkSmartPointer<vtkLightKit>::New();
+  kit->SetKeyLightWarmth(0.5);
+  kit->SetFillLightWarmth(0.5);
+  kit->SetHeadLightWarmth(0.5);
+  kit->SetBackLightWarmth(0.5);
+  kit->SetKeyLightIntensity(0.8);
+  kit->SetKeyToFillRatio(2.2);
+  kit->SetKeyToHeadRatio(2.2);
+  kit->AddLightsToRenderer(stage);
+  vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();
+}
+
+void add_skin(vtkRenderer* stage, const Skin& skin, const Look& look) {
+  const auto faces = vtkSmartPointer<vtkActor>::New();
+  const auto mapper = mapper_of(skin.faces(), look);
+  mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 4);
+  faces->SetMapper(mapper);
+  shade(faces->GetProperty(), look.colour, look.opacity);
+  faces->GetProperty()->SetInterpolationToPhong();
+  stage->AddActor(faces);
+  if (skin.bars()->GetNumberOfLines() == 0) return;
+  const auto bars = vtkSmartPointer<vtkActor>::New();
+  bars->SetMapper(mapper_of(skin.bars(), look));
+  shade(bars->GetProperty(), look.colour, look.opacity);
+  bars->GetProperty()->SetLineWidth(static_cast<float>(look.bar_width));
+  bars->GetProperty()->RenderLinesAsTubesOn();
+  stage->AddActor(bars);
+}
+
+vtkActor* add_surface(vtkRenderer* stage, vtkPolyData* data, const Rgb& colour, double opacity) {
+  const auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper_of(data, {}));
+  shade(actor->GetProperty(), colour, opacity);
+  stage->AddActor(actor);
+  return actor;
+}
+
+vtkActor* add_lines(vtkRenderer* stage, vtkPolyData* data, const Rgb& colour, double width, double opacity) {
+  const auto actor = vtkSmartPointer<vtkActor>::New();
+  const auto mapper = mapper_of(data, {});
+  mapper->SetRelativeCoincidentTopologyLineOffsetParameters(-1, -6);
+  actor->SetMapper(mapper);
+  shade(actor->GetProperty(), colour, opacity);
+  actor->GetProperty()->LightingOff();
+  actor->GetProperty()->SetLineWidth(static_cast<float>(width));
+  stage->AddActor(actor);
+  return actor;
+}
+
+}  // namespace hilo

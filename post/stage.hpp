@@ -1,0 +1,29 @@
+// Surfaces and lines on a lit stage.
+#pragma once
+#include <vtkActor.h>
+#include <vtkPolyData.h>
+#include <vtkRenderer.h>
+
+#include "post/colour.hpp"
+#include "post/skin.hpp"
+
+namespace hilo {
+
+/// Even light from all sides, so that no face is black.
+void light(vtkRenderer* stage);
+
+/// How a surface looks: one colour, colours of cells, or nodal values through a colour map between low and high.
+struct Look {
+  enum class By { colour, cells, values } by = By::colour;
+  Rgb colour = neutral;
+  double opacity = 1;
+  ColourMap map = ColourMap::viridis;
+  double low = 0, high = 1;
+  double bar_width = 4;   // of bars  [pixel]
+};
+void add_skin(vtkRenderer* stage, const Skin& skin, const Look& look);
+/// A closed surface with normals, and lines.
+vtkActor* add_surface(vtkRenderer* stage, vtkPolyData* data, const Rgb& colour, double opacity = 1);
+vtkActor* add_lines(vtkRenderer* stage, vtkPolyData* data, const Rgb& colour, double width, double opacity = 1);
+
+}  // namespace hilo

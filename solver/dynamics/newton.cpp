@@ -1,0 +1,125 @@
+#include "dynamics/newton.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace hilo {
+namespace {
+
+/// Residual over its scales: forces by the largest force, moments by force times the body's size, constraints by the scene's length.
+double relative_residual(const System& s, const Residual& r) {
+  const double force = r.force_scale > 0 ? r.force_scale : 1;
+  double worst = 0;
+  const auto visit = [&](int block, double scale) {
+    for (int k = 0; k < 3; ++k) {
+      const double x = std::abs(r.r[3 * block + k]) / scale;
+      if (!(x <= worst)) worst = x;  // keeps a NaN
+    }
+  };
+  for (size_t i = 0; i < s.X.size(); ++i)
+    if (s.node_block[i] >= 0) visit(s.node_block[i], force);
+  for (size_t b = 0; b < s.bodies.size(); ++b)
+    if (s.body_block[b] >= 0) visit(s.body_block[b], force), visit(s.body_block[b] + 1, force * std::max(s.bodies[b].size, 1e-3 * s.length));
+  for (int j = s.first_joint_block(); j < s.n_blocks(); ++j) visit(j, r.sigma * s.length);
+  return worst;
+}
+
+double relative_correction(const System& s, std::span<const double> z) {
+  double worst = 0;
+  const auto visit = [&](int block, double scale) {
+    for (int k = 0; k < 3; ++k) {
+      const double x = std::abs(z[3 * block + k]) * scale;
+      if (!(x <= worst)) worst = x;
+    }
+  };
+  for (size_t i = 0; i < s.X.size(); ++i)
+    if (s.node_block[i] >= 0) visit(s.node_block[i], 1 / s.length);
+  for (size_t b = 0; b < s.bodies.size(); ++b)
+    if (s.body_block[b] >= 0) visit(s.body_block[b], 1 / s.length), visit(s.body_block[b] + 1, s.bodies[b].size / s.length);
+  return worst;
+}
+
+}  // namespace
+
+double wall_clock() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+Phases& phases() {
+  static Phases p;
+  return p;
+}
+
+NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Config&)>& stage, Config& q1, std::vector<double>& lambda,
+                    const NewtonOptions& options) {
+  NewtonReport report;
+  Residual r;
+  std::vector<double> b, z;
+  const auto evaluate = [&](bool tangent) {
+    const double start = wall_clock();
+    system.evaluate(stage(q1), lambda, r, tangent ? &solver : nullptr);
+    solver.sum_shared(r.r);
+    system.mask_fixed(r.r);
+    r.force_scale = system.comm->max(r.force_scale);
+    report.least_det = -system.comm->max(-r.least_det);
+    report.residual = system.comm->max(relative_residual(system, r));
+    phases().assembly += wall_clock() - start;
+    ++phases().evaluations, phases().tangents += tangent;
+  };
+  double previous = 1e300;
+  bool near = false;  // the next residual is likely to be small enough: look at it before building a tangent
+  for (int it = 0;; ++it) {
+    if (near) {
+      evaluate(false);
+      if (report.residual <= options.tolerance) {
+        report.converged = true;
+        return report;
+      }
+    }
+    if (it == options.max_iterations) {
+      report.reason = "no convergence within the iterations allowed";
+      return report;
+    }
+    evaluate(true);
+    if (!std::isfinite(report.residual)) {
+      report.reason = "the residual is not finite";
+      return report;
+    }
+    if (report.residual <= options.tolerance && it > 0) {
+      report.converged = true;
+      return report;
+    }
+    b.resize(r.r.size()), z.assign(r.r.size(), 0.0);
+    for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
+    const double start = wall_clock();
+    const SolveReport solved = solver.solve(b, z);
+    phases().solve += wall_clock() - start;
+    ++phases().solves, phases().linear_iterations += solved.iterations;
+    report.linear_iterations += solved.iterations;
+    ++report.iterations;
+    if (!solved.ok) {
+      report.reason = solver.name() + ": " + solved.message;
+      return report;
+    }
+    report.correction = system.comm->max(relative_correction(system, z));
+    if (!std::isfinite(report.correction) || report.correction > 1e3) {
+      report.reason = "the correction is not finite or leaves the scene";
+      return report;
+    }
+    system.move(q1, z);
+    const int first = 3 * system.first_joint_block();
+    for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += r.sigma * z[first + i];
+    if (report.correction <= options.tolerance * 1e-2) {  // far below what the next one could change
+      report.converged = true;
+      stage(q1);
+      return report;
+    }
+    if (!options.patient && it > 12 && report.correction > 0.5 * previous && report.correction > 1e-6) {
+      report.reason = "the iterations do not contract";
+      return report;
+    }
+    near = report.correction < 1e-4;
+    previous = report.correction;
+  }
+}
+
+}  // namespace hilo

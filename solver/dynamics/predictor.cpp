@@ -1,0 +1,67 @@
+#include "dynamics/predictor.hpp"
+
+#include <Eigen/LU>
+
+namespace hilo {
+namespace {
+
+/// Mean position and velocity and the spin of a cloud of nodes, each of unit mass.
+struct Spin {
+  Vec3 centre = Vec3::Zero(), velocity = Vec3::Zero(), omega = Vec3::Zero();
+};
+
+Spin spin_of(const System& s, const State& state, const std::vector<int>& nodes) {
+  double sum[7] = {};
+  for (int n : nodes)
+    if (s.node_owned[n]) {
+      for (int i = 0; i < 3; ++i) sum[i] += state.q.x[n][i], sum[3 + i] += state.v.x[n][i];
+      sum[6] += 1;
+    }
+  s.comm->sum(sum);
+  Spin out;
+  if (sum[6] < 3) return out;
+  out.centre = Vec3(sum[0], sum[1], sum[2]) / sum[6];
+  out.velocity = Vec3(sum[3], sum[4], sum[5]) / sum[6];
+  Mat3 I = Mat3::Zero();
+  Vec3 L = Vec3::Zero();
+  for (int n : nodes)
+    if (s.node_owned[n]) {
+      const Vec3 d = state.q.x[n] - out.centre;
+      I += d.squaredNorm() * Mat3::Identity() - d * d.transpose();
+      L += d.cross(state.v.x[n] - out.velocity);
+    }
+  double all[12];
+  Eigen::Map<Mat3>(all, 3, 3) = I;
+  Eigen::Map<Vec3>(all + 9, 3) = L;
+  s.comm->sum(all);
+  I = Eigen::Map<Mat3>(all, 3, 3), L = Eigen::Map<Vec3>(all + 9, 3);
+  if (I.determinant() > 1e-12 * std::pow(I.trace(), 3)) out.omega = I.inverse() * L;
+  return out;
+}
+
+}  // namespace
+
+Config predict(const System& s, const State& state, double h, Predictor kind) {
+  Config q = state.q;
+  if (kind == Predictor::hold) return q;
+  for (size_t i = 0; i < q.x.size(); ++i)
+    if (s.node_block[i] >= 0) q.x[i] += h * state.v.x[i];
+  for (size_t b = 0; b < q.c.size(); ++b) {
+    if (s.body_block[b] < 0) continue;
+    const Mat3 W = state.v.R[b] * state.q.R[b].transpose();
+    const Vec3 omega(W(2, 1) - W(1, 2), W(0, 2) - W(2, 0), W(1, 0) - W(0, 1));  // twice the axial vector
+    q.c[b] += h * state.v.c[b];
+    if (kind == Predictor::rigid_rotation) q.R[b] = cayley(h / 2 * omega) * q.R[b];
+  }
+  if (kind == Predictor::rigid_rotation)
+    for (const auto& nodes : s.region_nodes) {
+      const Spin spin = spin_of(s, state, nodes);
+      if ((h * spin.omega).norm() < 1e-4) continue;
+      const Mat3 turn = cayley(h * spin.omega) - Mat3::Identity() - h * skew(spin.omega);  // what q + h v misses
+      for (int n : nodes) q.x[n] += turn * (state.q.x[n] - spin.centre);
+    }
+  s.follow(q);
+  return q;
+}
+
+}  // namespace hilo

@@ -1,0 +1,11 @@
+// First guesses of a step's end configuration.
+#pragma once
+#include "dynamics/integrator.hpp"
+
+namespace hilo {
+
+/// rigid_rotation: bodies, and flexible regions as wholes, turn by the Cayley rotation of their spin; velocity: q + h v; hold: q.
+enum class Predictor { rigid_rotation, velocity, hold };
+Config predict(const System& system, const State& s, double h, Predictor kind);
+
+}  // namespace hilo

@@ -1,0 +1,349 @@
+#include "dynamics/recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+namespace hilo {
+namespace {
+
+/// Four points of a body from its centre and directors: the centre, and one along each principal axis at the radius of gyration.
+std::array<Vec3, 4> body_arms(const Body& b) {
+  std::array<Vec3, 4> arms{Vec3::Zero(), Vec3(b.size, 0, 0), Vec3(0, b.size, 0), Vec3(0, 0, b.size)};
+  if (b.mass > 0 && !b.J.isZero(0)) {
+    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(b.J);
+    Mat3 axes = eigen.eigenvectors();
+    if (axes.determinant() < 0) axes.col(2) *= -1;
+    for (int i = 0; i < 3; ++i) arms[1 + i] = b.size * axes.col(i);
+  }
+  return arms;
+}
+
+}  // namespace
+
+Recorder::Recorder(const System& system, const Scene& scene, Setup setup) : system_(system), scene_(scene), setup_(std::move(setup)) {}
+
+/// Histories that belong to an instant: energies, momentum, violation, points of bodies, stations' positions, velocities and axes.
+std::vector<double> Recorder::point_values(const State& s) {
+  const System::Energy e = system_.energy(s.q, s.v);
+  const double total = e.kinetic + e.elastic + e.gravity;
+  if (rows_.empty()) E0_ = total;
+  max_T_ = std::max({max_T_, e.kinetic, 1e-300});
+  const double balance = total - E0_ - work_ + dissipated_, violation = system_.constraint_violation(s.q);
+  worst_balance_ = std::max(worst_balance_, std::abs(balance));
+  worst_violation_ = std::max(worst_violation_, violation);
+  std::vector<double> v{e.kinetic, e.elastic, e.gravity, work_, dissipated_, balance};
+  for (int i = 0; i < 3; ++i) v.push_back(e.momentum[i]);
+  for (int i = 0; i < 3; ++i) v.push_back(e.angular[i]);
+  v.push_back(violation);
+  for (size_t b = 1; b < system_.bodies.size(); ++b)
+    for (const Vec3& arm : body_arms(system_.bodies[b])) {
+      const Vec3 x = s.q.c[b] + s.q.R[b] * arm;
+      v.insert(v.end(), x.data(), x.data() + 3);
+    }
+  for (const Station& st : system_.stations) {
+    double mean[6] = {};
+    Mat3 axes = st.axes;
+    if (st.body >= 0) {
+      const Vec3 x = s.q.c[st.body] + s.q.R[st.body] * st.arm, u = s.v.c[st.body] + s.v.R[st.body] * st.arm;
+      for (int i = 0; i < 3; ++i) mean[i] = x[i], mean[3 + i] = u[i];
+      axes = s.q.R[st.body] * st.axes;
+    } else {
+      for (int n : st.nodes)
+        for (int i = 0; i < 3; ++i) mean[i] += s.q.x[n][i] / st.n_nodes, mean[3 + i] += s.v.x[n][i] / st.n_nodes;
+      system_.comm->sum(mean);
+      if (st.sensor && st.n_nodes > 2) {  // polar fit of the patch's motion
+        const Vec3 centre(mean[0], mean[1], mean[2]);
+        Mat3 F = Mat3::Zero();
+        for (int n : st.nodes) F += (s.q.x[n] - centre) * (system_.X[n] - st.mean).transpose();
+        system_.comm->sum(std::span<double>(F.data(), 9));
+        const Eigen::JacobiSVD<Mat3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
+        Mat3 D = Mat3::Identity();
+        D(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+        axes = svd.matrixU() * D * svd.matrixV().transpose() * st.axes;
+      }
+    }
+    v.insert(v.end(), mean, mean + 6);
+    v.insert(v.end(), axes.data(), axes.data() + 9);
+  }
+  return v;
+}
+
+/// Histories that belong inside a step: reactions of joints, springs and motions, accelerations of stations.
+std::vector<double> Recorder::mid_values(const State& s, const Stage& stage, std::span<const double> lambda_, const Config& a) {
+  std::vector<double> v;
+  std::vector<double> full;
+  std::span<const double> lambda = lambda_;
+  if (setup_.redundant) full = minimum_norm(system_, *stage.left, lambda_), lambda = full;
+  const auto push = [&](const Vec3& x) { v.insert(v.end(), x.data(), x.data() + 3); };
+  ConnectorGradient left;
+  for (size_t j = 0; j < system_.joints.size(); ++j) {
+    const Connector& c = system_.joints[j];
+    gradient(c, *stage.left, left);
+    const Vec6 f = force_on_b(c, left, lambda.data() + 3 * (system_.joint_block[j] - system_.first_joint_block()), *stage.left);
+    const Mat3 frame = c.end[0].body >= 0 ? Mat3(stage.left->R[c.end[0].body] * c.frame_a) : Mat3::Identity();
+    push(frame.transpose() * f.head<3>());
+    push(frame.transpose() * f.tail<3>());
+  }
+  for (const Connector& c : system_.springs) {
+    const int n = static_cast<int>(c.measures.size());
+    gradient(c, *stage.left, left);
+    SpringLaw::Values e0{}, e1{}, r0{}, r1{};
+    for (int m = 0; m < n; ++m) {
+      e0[m] = c.value(m, *stage.q0), e1[m] = c.value(m, *stage.q1);
+      r0[m] = c.value(m, *stage.w0), r1[m] = c.value(m, *stage.w1);
+    }
+    Response r;
+    c.law->elastic(e0, e1, r);
+    if (stage.h > 0) c.law->viscous(r0, r1, stage.h, r);
+    const Vec6 f = force_on_b(c, left, r.s.data(), *stage.left);
+    push(f.head<3>()), push(f.tail<3>());
+  }
+  if (!system_.motions.empty()) {
+    System::Forces forces;
+    system_.forces(stage, lambda_, forces);
+    for (const Motion& m : system_.motions) {
+      const Vec6 f = system_.reaction(m, forces, *stage.left);
+      push(f.head<3>()), push(f.tail<3>());
+    }
+  }
+  (void)s;
+  for (const Station& st : system_.stations) {
+    Vec3 mean = Vec3::Zero();
+    if (st.body >= 0) {
+      mean = a.c[st.body] + a.R[st.body] * st.arm;
+    } else {
+      for (int n : st.nodes) mean += a.x[n] / st.n_nodes;
+      system_.comm->sum(std::span<double>(mean.data(), 3));
+    }
+    push(mean);
+  }
+  return v;
+}
+
+void Recorder::declare(const State&) {
+  if (system_.comm->rank != 0) return;
+  store_ = std::make_unique<Store>(Store::create_growing(setup_.path));
+  Store& f = *store_;
+  f.set("/", "format", std::string("hilo run"));
+  f.set("/", "version", std::int64_t{1});
+  f.set("/", "complete", std::int64_t{0});
+  f.write_strings("/provenance", setup_.provenance);
+  f.write_text("/scene", scene_.text);
+  f.set("/", "title", scene_.table("scene").has("title") ? scene_.table("scene").text("title") : std::string());
+  if (system_.mesh) {
+    const LocalMesh& m = *system_.mesh;
+    f.link("/mesh", m.file, "/mesh");
+    std::vector<std::string> words;
+    for (Fidelity level : m.fidelity) words.emplace_back(word(level));
+    f.write_strings("/tags/fidelity", words);
+  }
+  std::vector<std::string> names;
+  std::vector<double> points, mass, inertia;
+  for (size_t b = 1; b < system_.bodies.size(); ++b) {
+    const Body& body = system_.bodies[b];
+    names.push_back(body.name);
+    for (const Vec3& arm : body_arms(body)) {
+      const Vec3 x = body.Xc + arm;
+      points.insert(points.end(), x.data(), x.data() + 3);
+    }
+    mass.push_back(body.mass);
+    const Vec3 e = Eigen::SelfAdjointEigenSolver<Mat3>(body.J.trace() * Mat3::Identity() - body.J).eigenvalues();
+    inertia.insert(inertia.end(), e.data(), e.data() + 3);
+  }
+  const auto n_bodies = static_cast<std::int64_t>(names.size());
+  if (n_bodies > 0) {
+    f.write_strings("/body/name", names);
+    f.write<double>("/body/points", points, {n_bodies, 4, 3}, "m", "reference positions of the points of each body");
+    f.write<double>("/body/mass", mass, {n_bodies}, "kg");
+    f.write<double>("/body/inertia", inertia, {n_bodies, 3}, "kg m^2", "principal moments");
+  }
+  f.start_rows<double>("/history/t", {}, "s", "times of the histories");
+  const std::string at = "/history/t";
+  f.start_rows<double>("/history/energy", {6}, "J", "kinetic, elastic, gravity potential, external work, dissipated, balance E - E0 - W + D", at);
+  f.start_rows<double>("/history/momentum", {6}, "kg m/s, kg m^2/s", "linear, and angular about the origin", at);
+  f.start_rows<double>("/history/constraint", {}, "m", "largest violation of a joint row", at);
+  f.start_rows<std::int32_t>("/history/newton", {}, "", "Newton iterations of the step", at);
+  for (size_t b = 1; b < system_.bodies.size(); ++b) f.start_rows<double>("/history/body/" + system_.bodies[b].name, {12}, "m", "positions of the four points", at);
+  for (const Connector& c : system_.joints)
+    f.start_rows<double>("/history/joint/" + c.name, {6}, "N, N m",
+                         setup_.redundant ? "force and moment on b at the joint point, joint frame carried by a; minimum-norm share of redundant joints"
+                                          : "force and moment on b at the joint point, joint frame carried by a",
+                         at);
+  for (const Connector& c : system_.springs) f.start_rows<double>("/history/spring/" + c.name, {6}, "N, N m", "force and moment on b at the point, inertial axes", at);
+  for (const Motion& m : system_.motions) f.start_rows<double>("/history/motion/" + m.name, {6}, "N, N m", "force and moment on what is held, inertial axes", at);
+  for (const Station& s : system_.stations) {
+    if (s.sensor) f.start_rows<double>("/history/sensor/" + s.name, {3}, "1", "proper acceleration R^T (a - g)/g0, +1 upward at rest", at);
+    else f.start_rows<double>("/history/probe/" + s.name, {9}, "m, m/s, m/s^2", "position, velocity, acceleration", at);
+  }
+}
+
+void Recorder::first(const State& s) {
+  Row row;
+  row.t = s.t;
+  row.point = point_values(s);
+  row.field = true;
+  row.q = s.q, row.v = s.v;
+  next_field_ = setup_.interval;
+  rows_.push_back(std::move(row));
+  declare(s);
+  if (system_.mesh) {  // on every rank: the followers and, in parallel, the parts
+    const LocalMesh& m = *system_.mesh;
+    std::vector<double> body(system_.X.size());
+    for (size_t i = 0; i < body.size(); ++i) body[i] = system_.follower[i];
+    body = gather(body, 1);
+    std::vector<std::vector<std::int64_t>> mine(system_.comm->size);
+    mine[0] = m.cell_global;
+    const auto cells = system_.comm->exchange(mine);
+    if (store_) {
+      std::vector<std::int64_t> nodes;
+      std::vector<std::int32_t> bodies;
+      for (size_t i = 0; i < body.size(); ++i)
+        if (body[i] > 0) nodes.push_back(static_cast<std::int64_t>(i)), bodies.push_back(static_cast<std::int32_t>(body[i]) - 1);
+      const auto n = static_cast<std::int64_t>(nodes.size());
+      store_->write<std::int64_t>("/body/follower_node", nodes, {n}, "", "nodes that follow a body");
+      store_->write<std::int32_t>("/body/follower_body", bodies, {n}, "", "the body each follows");
+      std::vector<std::int32_t> rank(m.n_cells_global, 0);
+      for (size_t r = 0; r < cells.size(); ++r)
+        for (std::int64_t c : cells[r]) rank[c] = static_cast<std::int32_t>(r);
+      if (system_.comm->size > 1) store_->write<std::int32_t>("/parts/rank", rank, {m.n_cells_global});
+    }
+  }
+}
+
+void Recorder::step(const State& s, const Stage& stage, std::span<const double> lambda, const Config& a, int iterations) {
+  const double start = wall_clock();
+  const System::Work w = system_.work(stage, lambda);
+  work_ += w.external, dissipated_ += w.dissipated;
+  Interval interval;
+  interval.h = s.t - rows_.back().t;
+  interval.mid = mid_values(s, stage, lambda, a);
+  interval.a = a;
+  intervals_.push_back(std::move(interval));
+  Row row;
+  row.t = s.t;
+  row.newton = iterations;
+  row.point = point_values(s);
+  row.jump = std::any_of(setup_.jumps.begin(), setup_.jumps.end(), [&](double t) { return std::abs(t - s.t) < 1e-9 * std::max(1.0, std::abs(t)); });
+  row.field = setup_.is_static || s.t >= next_field_ * (1 - 1e-9);
+  if (row.field) {
+    row.q = s.q, row.v = s.v;
+    while (next_field_ <= s.t * (1 + 1e-9) && setup_.interval > 0) next_field_ += setup_.interval;
+  }
+  rows_.push_back(std::move(row));
+  advance(false);
+  if (store_ && wall_clock() - last_flush_ > 0.5) store_->flush(), last_flush_ = wall_clock();
+  phases().output += wall_clock() - start;
+}
+
+/// Write every row whose mid-step neighbours are known.
+void Recorder::advance(bool last) {
+  const bool immediate = setup_.own_time == 1 || setup_.is_static;  // values belong to the end of their step
+  const auto ready = [&] {  // row 0 of the deque
+    if (rows_.empty()) return false;
+    if (last) return true;
+    if (immediate) return !intervals_.empty();
+    return intervals_.size() >= (first_written_ ? 3u : 2u);
+  };
+  while (ready()) {
+    // in the deque, intervals_[0] ends at rows_[0] once the first row is out, else it starts there
+    const size_t after = first_written_ ? 1 : 0;
+    const bool has_before = first_written_ && !intervals_.empty(), has_after = intervals_.size() > after;
+    if (immediate) {
+      write_row(0, has_before || (!intervals_.empty() && !setup_.is_static) ? 1 : 0, 0, 0, 0);
+    } else if (has_before && has_after && !rows_[0].jump) {
+      const double hb = intervals_[0].h, ha = intervals_[1].h;
+      write_row(0, ha / (ha + hb), 0, hb / (ha + hb), 1);
+    } else if (has_after) {  // from the right
+      if (intervals_.size() > after + 1) {
+        const double h0 = intervals_[after].h, h1 = intervals_[after + 1].h, w = h0 / (h0 + h1);
+        write_row(0, 1 + w, after, -w, after + 1);
+      } else {
+        write_row(0, 1, after, 0, after);
+      }
+    } else if (has_before) {  // the end: from the left, with the interval kept for it
+      if (before_last_.h > 0) {
+        const double h1 = intervals_[0].h, h0 = before_last_.h, w = h1 / (h0 + h1);
+        intervals_.push_front(before_last_);
+        write_row(0, 1 + w, 1, -w, 0);
+        intervals_.pop_front();
+      } else {
+        write_row(0, 1, 0, 0, 0);
+      }
+    } else {
+      write_row(0, 0, 0, 0, 0);
+    }
+    rows_.pop_front();
+    if (first_written_) before_last_ = std::move(intervals_.front()), intervals_.pop_front();
+    first_written_ = true;
+    if (rows_.empty()) return;
+  }
+}
+
+/// Row n with w0 * interval k0 + w1 * interval k1 as its mid-step values.
+void Recorder::write_row(size_t n, double w0, size_t k0, double w1, size_t k1) {
+  const Row& row = rows_[n];
+  const size_t n_mid = 6 * (system_.joints.size() + system_.springs.size() + system_.motions.size()) + 3 * system_.stations.size();
+  std::vector<double> mid(n_mid, 0.0);
+  if (w0 != 0)
+    for (size_t i = 0; i < n_mid; ++i) mid[i] = w0 * intervals_[k0].mid[i] + (w1 != 0 ? w1 * intervals_[k1].mid[i] : 0);
+  if (row.field) {
+    Config a;
+    if (w0 == 0) combine(a, {{0, &row.q}});
+    else combine(a, {{w0, &intervals_[k0].a}, {w1, &intervals_[k1].a}});
+    write_field(row, a);
+  }
+  ++rows_written_;
+  if (!store_) return;
+  Store& f = *store_;
+  f.append<double>("/history/t", {&row.t, 1});
+  const double* p = row.point.data();
+  const auto take = [&](const std::string& array, size_t count) {
+    f.append<double>(array, {p, count});
+    p += count;
+  };
+  take("/history/energy", 6), take("/history/momentum", 6), take("/history/constraint", 1);
+  const std::int32_t newton = row.newton;
+  f.append<std::int32_t>("/history/newton", {&newton, 1});
+  for (size_t b = 1; b < system_.bodies.size(); ++b) take("/history/body/" + system_.bodies[b].name, 12);
+  const double* m = mid.data();
+  const auto take_mid = [&](const std::string& array) {
+    f.append<double>(array, {m, 6});
+    m += 6;
+  };
+  for (const Connector& c : system_.joints) take_mid("/history/joint/" + c.name);
+  for (const Connector& c : system_.springs) take_mid("/history/spring/" + c.name);
+  for (const Motion& c : system_.motions) take_mid("/history/motion/" + c.name);
+  for (const Station& s : system_.stations) {
+    const Vec3 a(m[0], m[1], m[2]);
+    if (s.sensor) {
+      const Mat3 axes = Eigen::Map<const Mat3>(p + 6);
+      const Vec3 felt = axes.transpose() * (a - system_.gravity) / g0;
+      f.append<double>("/history/sensor/" + s.name, {felt.data(), 3});
+    } else {
+      const double values[9] = {p[0], p[1], p[2], p[3], p[4], p[5], a[0], a[1], a[2]};
+      f.append<double>("/history/probe/" + s.name, values);
+    }
+    m += 3, p += 15;
+  }
+}
+
+void Recorder::finish(bool complete) {
+  advance(true);
+  worst_balance_ /= std::max(max_T_, 1e-300);
+  if (store_) {
+    store_->set("/", "complete", static_cast<std::int64_t>(complete));
+    store_->flush();
+    if (n_fields_ > 0) write_xdmf();
+    store_.reset();
+  }
+}
+
+void Recorder::discard() {
+  if (store_) store_->discard(), store_.reset();
+}
+
+}  // namespace hilo

@@ -1,0 +1,79 @@
+// Results: histories at every step, fields at intervals, each at its own time and second order.
+//
+// Mid-step values (accelerations, reactions of energy-momentum) become values at t_n by linear interpolation between the two mid-points
+// around it, a_n = (h_n a_{n+1/2} + h_{n+1} a_{n-1/2})/(h_n + h_{n+1}); at the ends and where a load jumps, by extrapolation from one side.
+#pragma once
+#include <deque>
+#include <memory>
+
+#include "dynamics/start.hpp"
+#include "model/store.hpp"
+
+namespace hilo {
+
+class Recorder {
+ public:
+  struct Setup {
+    std::string path;                 // run.h5
+    double interval = 0;              // between fields [s]
+    std::vector<std::string> fields;
+    bool single_precision = false;
+    std::vector<double> jumps;        // times at which a load jumps
+    std::vector<std::string> provenance;
+    bool redundant = false;           // reactions by minimum norm
+    double own_time = 0.5;            // where in the step mid values belong
+    bool is_static = false;
+  };
+  Recorder(const System& system, const Scene& scene, Setup setup);
+  /// The state before the first step.
+  void first(const State& s);
+  /// A finished step: the new state, its stage (for reactions), accelerations and Newton iterations.
+  void step(const State& s, const Stage& stage, std::span<const double> lambda, const Config& a, int iterations);
+  /// Last values; publishes the files.  `complete` is false for a run stopped by physics.
+  void finish(bool complete);
+  /// Remove what was written (input error after the file was opened).
+  void discard();
+
+  double balance() const { return worst_balance_; }            // largest |E - E0 - W + D| / max T
+  double violation() const { return worst_violation_; }
+  int n_fields() const { return n_fields_; }
+  std::int64_t n_rows() const { return static_cast<std::int64_t>(rows_written_); }
+
+ private:
+  struct Row {                        // an instant t_n
+    double t = 0;
+    std::vector<double> point;        // values that belong to t_n
+    bool jump = false, field = false;
+    Config q, v;                      // kept where a field is due
+    int newton = 0;
+  };
+  struct Interval {                   // what belongs to the inside of a step
+    double h = 0;
+    std::vector<double> mid;
+    Config a;
+  };
+  void declare(const State& s);
+  std::vector<double> point_values(const State& s);
+  std::vector<double> mid_values(const State& s, const Stage& stage, std::span<const double> lambda, const Config& a);
+  void advance(bool last);
+  void write_row(size_t n, double w0, size_t k0, double w1, size_t k1);
+  void write_field(const Row& row, const Config& a);
+  void write_xdmf() const;
+  std::vector<double> gather(const std::vector<double>& local, int width) const;
+
+  const System& system_;
+  const Scene& scene_;
+  Setup setup_;
+  std::unique_ptr<Store> store_;      // rank 0
+  std::deque<Row> rows_;
+  std::deque<Interval> intervals_;    // interval k starts at row k of rows_
+  Interval before_last_;              // the interval before intervals_[0], for the last row
+  bool first_written_ = false;
+  double next_field_ = 0, E0_ = 0, max_T_ = 0, work_ = 0, dissipated_ = 0, worst_balance_ = 0, worst_violation_ = 0;
+  int n_fields_ = 0, newton_ = 0;
+  long rows_written_ = 0;
+  double last_flush_ = 0;
+  std::vector<double> field_times_;
+};
+
+}  // namespace hilo

@@ -1,0 +1,230 @@
+#include "dynamics/start.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace hilo {
+namespace {
+
+/// Joint rows over the unknowns of bodies and of nodes that carry ends, rotations in units of the scene's length.
+struct Rows {
+  Eigen::MatrixXd G;
+  std::vector<std::pair<int, int>> row;  // joint, measure
+};
+
+Rows joint_rows(const System& s, const Config& left, bool active_only) {
+  Rows out;
+  std::vector<int> column(s.n_blocks(), -1);
+  int n = 0;
+  for (size_t j = 0; j < s.joints.size(); ++j) {
+    const Connector& c = s.joints[j];
+    for (int m = 0; m < c.n_rows(); ++m)
+      if (!active_only || c.active[m]) out.row.emplace_back(static_cast<int>(j), m);
+    for (const Carrier& end : c.end) {
+      const int first = end.body >= 0 ? s.body_block[end.body] : s.node_block[end.node];
+      for (int k = 0; first >= 0 && k < (end.body >= 0 ? 2 : 1); ++k)
+        if (column[first + k] < 0) column[first + k] = n, n += 3;
+    }
+  }
+  out.G = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(out.row.size()), n);
+  ConnectorGradient g;
+  for (size_t r = 0; r < out.row.size(); ++r) {
+    const Connector& c = s.joints[out.row[r].first];
+    if (r == 0 || out.row[r].first != out.row[r - 1].first) gradient(c, left, g);
+    for (int k = 0; k < 2; ++k) {
+      const Carrier& end = c.end[k];
+      const int first = end.body >= 0 ? s.body_block[end.body] : s.node_block[end.node];
+      if (first < 0) continue;
+      out.G.block<1, 3>(r, column[first]) += g.G.block<1, 3>(out.row[r].second, 6 * k);
+      if (end.body >= 0) out.G.block<1, 3>(r, column[first + 1]) += g.G.block<1, 3>(out.row[r].second, 6 * k + 3) / s.length;
+    }
+  }
+  return out;
+}
+
+/// A stage whose tangent is the mass matrix, bordered by the joint rows.
+Stage mass_stage(const Config& q, const Config& zero, double t) {
+  Stage s{};
+  s.q0 = s.q1 = s.w0 = s.w1 = s.left = &q;
+  s.slope = 0;
+  s.K_factor = s.C_factor = 1e-30;  // leaves stiffness out of the sum
+  s.a = &zero, s.mass_slope = 1;
+  s.t0 = s.t1 = t;
+  return s;
+}
+
+}  // namespace
+
+Redundancy drop_redundant_rows(System& system, const Config& q) {
+  Redundancy report;
+  const Rows rows = joint_rows(system, q, false);
+  report.rows = static_cast<int>(rows.row.size());
+  if (report.rows == 0) return report;
+  Eigen::MatrixXd A = rows.G.transpose();
+  for (int r = 0; r < A.cols(); ++r) {
+    const double norm = A.col(r).norm();
+    if (norm > 0) A.col(r) /= norm;
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
+  qr.setThreshold(1e-9);
+  report.rank = static_cast<int>(qr.rank());
+  for (Connector& j : system.joints) j.active.fill(true);
+  if (report.rank == report.rows) return report;
+  const auto& order = qr.colsPermutation().indices();
+  const Eigen::MatrixXd R = qr.matrixR().topRows(report.rank).template triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd depends =
+      R.leftCols(report.rank).triangularView<Eigen::Upper>().solve(R.rightCols(report.rows - report.rank));  // dropped = kept * depends
+  for (int k = report.rank; k < report.rows; ++k) {
+    const auto [joint, measure] = rows.row[order[k]];
+    system.joints[joint].active[measure] = false;
+    std::set<std::string> others;
+    for (int i = 0; i < report.rank; ++i)
+      if (std::abs(depends(i, k - report.rank)) > 1e-6 && rows.row[order[i]].first != joint) others.insert(system.joints[rows.row[order[i]].first].name);
+    report.dropped.push_back(fmt::format("joint \"{}\" row {}{}", system.joints[joint].name, measure + 1,
+                                         others.empty() ? " (depends on the joint's own rows)" : fmt::format(" (depends on {})", fmt::join(others, ", "))));
+  }
+  return report;
+}
+
+std::vector<double> minimum_norm(const System& system, const Config& left, std::span<const double> lambda) {
+  const Rows rows = joint_rows(system, left, false);
+  const int first = system.first_joint_block();
+  Eigen::VectorXd kept(rows.G.rows());
+  for (size_t r = 0; r < rows.row.size(); ++r) {
+    const auto [j, m] = rows.row[r];
+    kept[r] = system.joints[j].active[m] ? lambda[3 * (system.joint_block[j] - first) + m] : 0;
+  }
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> cod;
+  cod.setThreshold(1e-9);
+  cod.compute(rows.G.transpose());
+  const Eigen::VectorXd full = cod.solve(rows.G.transpose() * kept);
+  std::vector<double> out(lambda.size(), 0.0);
+  for (size_t r = 0; r < rows.row.size(); ++r) out[3 * (system.joint_block[rows.row[r].first] - first) + rows.row[r].second] = full[r];
+  return out;
+}
+
+double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v) {
+  Config zero = v;
+  combine(zero, {{0, &v}});
+  std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), b(3 * system.n_blocks(), 0.0), z(b.size(), 0.0);
+  if (lambda.empty()) return 0;
+  // G v from values of the quadratic rows: (g(q + tau v) - g(q - tau v))/(2 tau) is exact
+  const double tau = 1e-3 * system.length / std::max(1e-300, [&] {
+    double top = 0;
+    for (const Vec3& x : v.x) top = std::max(top, x.norm());
+    for (size_t i = 0; i < v.c.size(); ++i) top = std::max({top, v.c[i].norm(), v.R[i].norm() * system.bodies[i].size});
+    return system.comm->max(top);
+  }());
+  if (!(tau < 1e200)) return 0;
+  Config plus, minus;
+  combine(plus, {{1, &q}, {tau, &v}});
+  combine(minus, {{1, &q}, {-tau, &v}});
+  const auto gp = system.joint_values(plus), gm = system.joint_values(minus);
+  Residual r;
+  system.evaluate(mass_stage(q, zero, 0), lambda, r, &solver);
+  const int first = 3 * system.first_joint_block();
+  for (size_t j = 0; j < system.joints.size(); ++j)
+    for (int m = 0; m < system.joints[j].n_rows(); ++m)
+      if (system.joints[j].active[m]) {
+        const int k = 3 * (system.joint_block[j] - system.first_joint_block()) + m;
+        b[first + k] = -r.sigma * (gp[k] - gm[k]) / (2 * tau);
+      }
+  const SolveReport solved = solver.solve(b, z);
+  if (!solved.ok) throw Error("", fmt::format("the joints and masses do not determine the motion: {}", solved.message), "a part may have no mass or inertia");
+  double change = 0;
+  for (size_t i = 0; i < v.x.size(); ++i)
+    if (system.node_block[i] >= 0) {
+      const Vec3 d = Eigen::Map<const Vec3>(z.data() + 3 * system.node_block[i]);
+      v.x[i] += d, change = std::max(change, d.norm());
+    }
+  for (size_t i = 0; i < v.c.size(); ++i)
+    if (const int k = system.body_block[i]; k >= 0) {
+      const Vec3 d = Eigen::Map<const Vec3>(z.data() + 3 * k), w = Eigen::Map<const Vec3>(z.data() + 3 * k + 3);
+      v.c[i] += d, v.R[i] += skew(w) * q.R[i];
+      change = std::max({change, d.norm(), w.norm() * system.bodies[i].size});
+    }
+  system.follow(v);
+  return system.comm->max(change);
+}
+
+void consistent_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda) {
+  // guess: bodies that keep their spin, everything else unaccelerated; the solve adds the rest
+  a = s.v;
+  for (Vec3& x : a.x) x.setZero();
+  for (size_t b = 0; b < a.c.size(); ++b) {
+    const Mat3 S = s.v.R[b] * s.q.R[b].transpose(), W = (S - S.transpose()) / 2;
+    a.c[b].setZero();
+    a.R[b] = W * W * s.q.R[b];
+  }
+  system.follow(a);
+  lambda.assign(3 * system.n_joint_blocks(), 0.0);
+  Stage stage = mass_stage(s.q, a, s.t);
+  Config before, after;
+  const double h = 1e-3;  // [s] of the pair of the rate terms: measures are quadratic, so any h gives the exact rate
+  combine(before, {{1, &s.q}, {-h / 2, &s.v}});
+  combine(after, {{1, &s.q}, {h / 2, &s.v}});
+  stage.w0 = &before, stage.w1 = &after, stage.h = h, stage.v = &s.v;
+  Residual r;
+  system.evaluate(stage, lambda, r, &solver);
+  solver.sum_shared(r.r);
+  system.mask_fixed(r.r);
+  // rows: d2g/dt2 = 0.  Along q + tau v + tau^2/2 a: [g(+) + g(-) - 2 g]/tau^2 for v, (g(+) - g(-))/(2 tau) for a
+  const double tau = 1e-3;
+  Config p, m;
+  combine(p, {{1, &s.q}, {tau, &s.v}});
+  combine(m, {{1, &s.q}, {-tau, &s.v}});
+  const auto vp = system.joint_values(p), vm = system.joint_values(m), g = system.joint_values(s.q);
+  combine(p, {{1, &s.q}, {tau, &a}});
+  combine(m, {{1, &s.q}, {-tau, &a}});
+  const auto ap = system.joint_values(p), am = system.joint_values(m);
+  std::vector<double> b(r.r.size()), z(r.r.size(), 0.0);
+  for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
+  const int first = 3 * system.first_joint_block();
+  for (size_t j = 0; j < system.joints.size(); ++j)
+    for (int k = 0; k < 3 * ((system.joints[j].n_rows() + 2) / 3); ++k) {
+      const int i = 3 * (system.joint_block[j] - system.first_joint_block()) + k;
+      const bool active = k < system.joints[j].n_rows() && system.joints[j].active[k];
+      b[first + i] = active ? -r.sigma * ((vp[i] + vm[i] - 2 * g[i]) / (tau * tau) + (ap[i] - am[i]) / (2 * tau)) : 0;
+    }
+  const SolveReport solved = solver.solve(b, z);
+  if (!solved.ok) throw Error("", fmt::format("the joints and masses do not determine the accelerations: {}", solved.message));
+  for (size_t i = 0; i < a.x.size(); ++i)
+    if (system.node_block[i] >= 0) a.x[i] += Eigen::Map<const Vec3>(z.data() + 3 * system.node_block[i]);
+  for (size_t i = 0; i < a.c.size(); ++i)
+    if (const int k = system.body_block[i]; k >= 0)
+      a.c[i] += Eigen::Map<const Vec3>(z.data() + 3 * k), a.R[i] += skew(Eigen::Map<const Vec3>(z.data() + 3 * k + 3)) * s.q.R[i];
+  system.follow(a);
+  for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += r.sigma * z[first + i];
+}
+
+NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vector<double>& lambda, double t, double ramp, bool mechanism,
+                         const NewtonOptions& options) {
+  system.prescribe(q, t, ramp);
+  Config zero = q;
+  combine(zero, {{0, &q}});
+  Stage s{};
+  s.slope = 1, s.K_factor = 2, s.C_factor = 0;
+  s.a = &zero;
+  s.t0 = s.t1 = t;
+  s.load_factor = ramp;
+  double tau = 0.05;  // of the pseudo mass M/tau^2, grows from iteration to iteration
+  NewtonOptions o = options;
+  if (mechanism) o.max_iterations = std::max(o.max_iterations, 200), o.patient = true;
+  const auto report = newton(
+      system, solver,
+      [&](const Config& q1) {
+        s.q0 = s.q1 = s.w0 = s.w1 = s.left = &q1;
+        s.mass_slope = mechanism ? 1 / (tau * tau) : 0;
+        if (mechanism) tau = std::min(tau * 1.3, 20.0);
+        return s;
+      },
+      q, lambda, o);
+  if (report.converged) system.commit(q);
+  return report;
+}
+
+}  // namespace hilo

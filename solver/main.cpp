@@ -1,0 +1,108 @@
+// hilo-solve: a scene, and the mesh it names, become motion.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "base/args.hpp"
+#include "dynamics/run.hpp"
+
+namespace hilo {
+namespace {
+
+struct Options {
+  std::string scene, mesh, output = "run.h5";
+  std::vector<std::string> overrides;
+  bool dry_run = false, explain = false, profile = false;
+};
+
+/// The mesh file: the command line's, else the scene's (relative to the scene), else none.
+std::string mesh_path(const Options& o, const Scene& scene) {
+  if (!o.mesh.empty()) return o.mesh;
+  const Entry& top = scene.table("scene");
+  if (!top.given("mesh")) return "";
+  const std::filesystem::path p(top.text("mesh"));
+  const std::string path = p.is_absolute() ? p.string() : (std::filesystem::path(scene.folder) / p).string();
+  if (!std::filesystem::exists(path)) throw Error(top.where("mesh"), fmt::format("no file {}", path), "make it with hilo-import, hilo-tag or hilo-part");
+  return path;
+}
+
+void print_plan(const System& s) {
+  size_t cells = 0, patches = 0, free_bodies = 0;
+  for (const SolidBatch& b : s.batches) cells += b.cells.size();
+  for (const Body& b : s.bodies) patches += b.patch, free_bodies += b.free() && !b.patch;
+  fmt::print(stderr, "{} flexible cells, {} rigid bodies, {} patches, {} joints, {} springs, {} loads, {} unknowns\n", cells, free_bodies, patches, s.joints.size(),
+             s.springs.size(), s.loads.size(), 3 * s.map.n_global);
+}
+
+int solve(int argc, char** argv, Comm& comm) {
+  Options o;
+  auto app = make_app({"hilo-solve", "Solve a scene of rigid and flexible parts in time.",
+                       "hilo-solve scene.toml tags.h5 -o run.h5\n  mpirun -n 2 hilo-solve scene.toml parts-2.h5\n  hilo-solve --set time.step=1e-4 --explain scene.toml"});
+  app->add_option("scene", o.scene, "scene file (TOML), - for standard input")->required();
+  app->add_option("mesh", o.mesh, "mesh.h5, tags.h5 or parts-N.h5; overrides the scene's `mesh`");
+  app->add_option("-o,--output", o.output, "results file; .xdmf and .json are written beside it")->capture_default_str();
+  app->add_option("--set", o.overrides, "override a key of the scene, such as joint.trunnion.at=[0,0,1] (repeatable)")->allow_extra_args(false)->expected(1)->take_all();
+  app->add_flag("--dry-run", o.dry_run, "read and check everything, then stop");
+  app->add_flag("--explain", o.explain, "print every value in force, defaults included, then stop");
+  app->add_flag("--profile", o.profile, "print seconds by phase at the end");
+  if (!parse(*app, argc, argv)) return 0;
+  const bool talk = !is_quiet() && comm.rank == 0;
+  if (comm.rank != 0) quiet_warnings(true);
+
+  const Scene scene = Scene::load(o.scene, o.overrides);
+  for (const auto& w : scene.warnings) warn("", w);
+  if (o.explain) {
+    if (comm.rank == 0) fmt::print("{}", scene.explain());
+    return 0;
+  }
+  RunOptions options;
+  options.output = o.output;
+  options.quiet = is_quiet();
+  options.mesh = mesh_path(o, scene);
+  std::unique_ptr<LocalMesh> mesh;
+  if (!options.mesh.empty()) {
+    mesh = std::make_unique<LocalMesh>(read_local_mesh(options.mesh, comm));
+    options.provenance = mesh->provenance;
+    if (talk && !mesh->tagged) fmt::print(stderr, "{} is not tagged: all regions are nonlinear\n", options.mesh);
+  }
+  options.provenance.push_back(command_line(argc, argv));
+  const auto system = build_system(scene, mesh.get(), comm);
+  if (talk) print_plan(*system);
+  if (o.dry_run) return 0;
+  if (!o.output.ends_with(".h5")) throw Error(o.output, "the results file must end in .h5", "-o run.h5", Exit::usage);
+  const auto folder = std::filesystem::path(o.output).parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder)) throw Error(o.output, "no such folder", fmt::format("mkdir -p {}", folder.string()), Exit::resources);
+
+  const RunReport report = run(scene, *system, options);
+  if (o.profile && comm.rank == 0) fmt::print("{}", read_text_file(o.output.substr(0, o.output.size() - 3) + ".json"));
+  if (!report.complete)
+    throw Error(scene.path, fmt::format("stopped at t = {:.6g} s: {}", report.t, report.reason), fmt::format("the last good state is in {}", o.output), Exit::not_converged);
+  if (talk) fmt::print(stderr, "{}: {} steps, {} Newton iterations{}\n", o.output, report.steps, report.iterations, report.cuts ? fmt::format(", {} step cuts", report.cuts) : "");
+  return 0;
+}
+
+}  // namespace
+}  // namespace hilo
+
+int main(int argc, char** argv) {
+  hilo::Comm* comm = nullptr;
+  const int code = hilo::guarded("hilo-solve", [&] {
+    comm = &hilo::Comm::world();
+    if (comm->size == 1) {
+      hilo::solve(argc, argv, *comm);
+      return;
+    }
+    try {
+      hilo::solve(argc, argv, *comm);
+    } catch (...) {
+      if (comm->rank != 0) sleep(2);  // an error all ranks share is told once, by rank 0, which ends the job
+      throw;
+    }
+  });
+  if (comm && comm->size > 1) {
+    if (code != 0) comm->abort(code);
+    comm->finish();
+  }
+  return code;
+}

@@ -1,0 +1,16 @@
+// How mesh, tags and parts files point to one another; shared by the reader of whole files and that of slices.
+#pragma once
+#include <string>
+
+#include "model/store.hpp"
+
+namespace hilo {
+
+/// "mesh", "tags", "parts" or "run"; Error for a file that is not ours, too new or incomplete.
+std::string checked_format(const Store& store);
+/// The file that really holds `/what`: the store's own, or the one it links to.
+std::string holder(const Store& store, const std::string& what);
+/// Warn where `target` is not the file it was when `store` was made from it.
+void warn_if_changed(const Store& store, const std::string& what, const std::string& target);
+
+}  // namespace hilo

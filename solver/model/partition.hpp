@@ -1,0 +1,21 @@
+// A partition made on the spot: recursive coordinate bisection, on cells spread over the ranks.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "base/math.hpp"
+#include "model/comm.hpp"
+
+namespace hilo {
+
+/// Points to divide: this rank's share of them.
+struct Cloud {
+  std::vector<Vec3> x;      // centres of the cells
+  std::vector<double> work; // weight of each
+  std::vector<int> kind;    // 0, 1, ...: each kind is divided for itself, so all of them are balanced
+};
+
+/// Part (0 .. n_parts - 1) of each point of this rank.  Cuts each box across its longest side at the weighted median [berger-bokhari-1987].
+std::vector<int> bisect(const Cloud& cloud, int n_parts, const Comm& comm);
+
+}  // namespace hilo

@@ -1,0 +1,138 @@
+// Inside of Store: handles of the HDF5 library that close themselves, and what an open file remembers.
+#pragma once
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <numeric>
+#include <type_traits>
+#include <utility>
+
+#include "model/store.hpp"
+
+namespace hilo {
+
+/// An HDF5 handle that closes itself.
+class Id {
+ public:
+  Id() = default;
+  Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Id(Id&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Id& operator=(Id&& other) noexcept {
+    std::swap(id_, other.id_), std::swap(close_, other.close_);
+    return *this;
+  }
+  ~Id() {
+    if (id_ >= 0) close_(id_);
+  }
+  operator hid_t() const { return id_; }
+  hid_t release() { return std::exchange(id_, -1); }
+  bool ok() const { return id_ >= 0; }
+
+ private:
+  hid_t id_ = -1;
+  herr_t (*close_)(hid_t) = nullptr;
+};
+
+/// Once per process: no error texts of the library's own, no file locks.
+void start_library();
+
+/// The system error behind the last failed call (0 if none) and the library's own words.
+struct Cause {
+  int error = 0;
+  std::string text;
+};
+Cause last_cause();
+
+/// Type of T in memory and, little-endian, in the file.
+template <class T>
+hid_t memory_type() {
+  if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
+  if constexpr (std::is_same_v<T, float>) return H5T_NATIVE_FLOAT;
+  if constexpr (std::is_same_v<T, std::int32_t>) return H5T_NATIVE_INT32;
+  if constexpr (std::is_same_v<T, std::int64_t>) return H5T_NATIVE_INT64;
+  if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_NATIVE_UINT8;
+}
+template <class T>
+hid_t file_type() {
+  if constexpr (std::is_same_v<T, double>) return H5T_IEEE_F64LE;
+  if constexpr (std::is_same_v<T, float>) return H5T_IEEE_F32LE;
+  if constexpr (std::is_same_v<T, std::int32_t>) return H5T_STD_I32LE;
+  if constexpr (std::is_same_v<T, std::int64_t>) return H5T_STD_I64LE;
+  if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_STD_U8LE;
+}
+
+inline Id text_type() {
+  Id type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, H5T_VARIABLE);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  return type;
+}
+
+inline std::int64_t product(std::span<const std::int64_t> shape) {
+  return std::accumulate(shape.begin(), shape.end(), std::int64_t{1}, std::multiplies<>());
+}
+
+inline Id simple_space(std::span<const std::int64_t> shape) {
+  if (shape.empty()) return {H5Screate(H5S_SCALAR), H5Sclose};
+  const std::vector<hsize_t> dims(shape.begin(), shape.end());
+  return {H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose};
+}
+
+inline std::vector<std::int64_t> extent(hid_t space) {
+  std::vector<hsize_t> dims(std::max(0, H5Sget_simple_extent_ndims(space)));
+  H5Sget_simple_extent_dims(space, dims.data(), nullptr);
+  return {dims.begin(), dims.end()};
+}
+
+/// Room that rows are gathered in before they are written [bytes].
+inline constexpr size_t row_buffer = 1 << 16;
+
+/// An array that grows, with the rows not written yet.
+struct Rows {
+  Id set;
+  hid_t type;
+  size_t row_bytes;
+  std::vector<hsize_t> shape;  // first entry: rows in the file
+  std::vector<std::byte> pending;
+};
+
+struct Store::Impl {
+  std::string path;     // as the user named it
+  std::string on_disk;  // name while it is open
+  Id file;
+  bool writable = false, temporary = false;
+  std::map<std::string, Rows, std::less<>> rows;
+
+  ~Impl();
+
+  bool close();
+
+  /// After a failed write: what the library still wants to write goes nowhere.
+  void abandon();
+
+  [[noreturn]] void fail_write(const std::string& what);
+  [[noreturn]] void fail_read(const std::string& array) const;
+  void need(bool ok, const std::string& what) {
+    if (!ok) fail_write(what);
+  }
+
+  Id open_array(const std::string& array) const;
+
+  bool exists(const std::string& object) const;
+
+  Id make_array(const std::string& array, hid_t type, hid_t space, hid_t creation);
+
+  void attribute(hid_t object, const std::string& name, hid_t type, hid_t memory, const void* value);
+  void text_attribute(hid_t object, const std::string& name, const std::string& value);
+  /// The object an attribute belongs to; a group of that name is made where there is nothing.
+  Id owner(const std::string& object);
+
+  void drain(Rows& r, const std::string& array);
+  void drain() {
+    for (auto& [array, r] : rows) drain(r, array);
+  }
+};
+
+}  // namespace hilo

@@ -1,0 +1,150 @@
+// Store: writing.
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "model/store_impl.hpp"
+
+namespace hilo {
+
+Id Store::Impl::make_array(const std::string& array, hid_t type, hid_t space, hid_t creation) {
+  if (exists(array)) throw Error(path, fmt::format("array {} written twice", array), "", Exit::fault);
+  const Id link(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(link, 1);
+  H5Pset_char_encoding(link, H5T_CSET_UTF8);
+  H5Pset_obj_track_times(creation, false);  // the same content gives the same bytes
+  Id set(H5Dcreate2(file, array.c_str(), type, space, link, creation, H5P_DEFAULT), H5Dclose);
+  need(set.ok(), "cannot create " + array);
+  return set;
+}
+
+void Store::Impl::attribute(hid_t object, const std::string& name, hid_t type, hid_t memory, const void* value) {
+  if (H5Aexists(object, name.c_str()) > 0) need(H5Adelete(object, name.c_str()) >= 0, "cannot replace attribute " + name);
+  const Id space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Id made(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  need(made.ok() && H5Awrite(made, memory, value) >= 0, "cannot write attribute " + name);
+}
+
+void Store::Impl::text_attribute(hid_t object, const std::string& name, const std::string& value) {
+  const Id type = text_type();
+  const char* text = value.c_str();
+  attribute(object, name, type, type, &text);
+}
+
+Id Store::Impl::owner(const std::string& object) {
+  if (exists(object)) return {H5Oopen(file, object.c_str(), H5P_DEFAULT), H5Oclose};
+  const Id link(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(link, 1);
+  Id group(H5Gcreate2(file, object.c_str(), link, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  need(group.ok(), "cannot create group " + object);
+  return group;
+}
+
+void Store::Impl::drain(Rows& r, const std::string& array) {
+  if (r.pending.empty()) return;
+  const hsize_t more = r.pending.size() / r.row_bytes;
+  std::vector<hsize_t> start(r.shape.size(), 0), count = r.shape;
+  start[0] = r.shape[0], count[0] = more;
+  r.shape[0] += more;
+  need(H5Dset_extent(r.set, r.shape.data()) >= 0, "cannot extend " + array);
+  const Id space(H5Dget_space(r.set), H5Sclose);
+  const Id memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose);
+  H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+  need(H5Dwrite(r.set, r.type, memory, space, H5P_DEFAULT, r.pending.data()) >= 0, "cannot write " + array);
+  r.pending.clear();
+}
+
+template <class T>
+void Store::write(const std::string& array, std::span<const T> values, std::vector<std::int64_t> shape, const std::string& unit,
+                  const std::string& meaning) {
+  if (product(shape) != static_cast<std::int64_t>(values.size()))
+    throw Error(impl_->path, fmt::format("{}: {} values for {} places", array, values.size(), product(shape)), "", Exit::fault);
+  const Id space = simple_space(shape), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
+  const Id set = impl_->make_array(array, file_type<T>(), space, creation);
+  if (!values.empty())
+    impl_->need(H5Dwrite(set, memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0, "cannot write " + array);
+  if (!unit.empty()) impl_->text_attribute(set, "unit", unit);
+  if (!meaning.empty()) impl_->text_attribute(set, "meaning", meaning);
+}
+
+void Store::write_strings(const std::string& array, std::span<const std::string> values) {
+  const std::vector<std::int64_t> shape{static_cast<std::int64_t>(values.size())};
+  const Id type = text_type(), space = simple_space(shape), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const Id set = impl_->make_array(array, type, space, creation);
+  std::vector<const char*> raw;
+  for (const auto& v : values) raw.push_back(v.c_str());
+  if (!raw.empty()) impl_->need(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.data()) >= 0, "cannot write " + array);
+}
+
+void Store::write_text(const std::string& array, const std::string& text) {
+  const Id type = text_type(), space = simple_space({}), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const Id set = impl_->make_array(array, type, space, creation);
+  const char* raw = text.c_str();
+  impl_->need(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &raw) >= 0, "cannot write " + array);
+}
+
+template <class T>
+void Store::start_rows(const std::string& array, std::vector<std::int64_t> row_shape, const std::string& unit, const std::string& meaning,
+                       const std::string& time) {
+  const size_t row_bytes = static_cast<size_t>(product(row_shape)) * sizeof(T);
+  std::vector<hsize_t> now{0}, most{H5S_UNLIMITED}, chunk{std::clamp<hsize_t>(row_buffer / 4 / std::max<size_t>(1, row_bytes), 1, 1024)};
+  for (const auto n : row_shape) {
+    now.push_back(static_cast<hsize_t>(n)), most.push_back(static_cast<hsize_t>(n));
+    chunk.push_back(std::max<hsize_t>(1, static_cast<hsize_t>(n)));
+  }
+  const Id space(H5Screate_simple(static_cast<int>(now.size()), now.data(), most.data()), H5Sclose);
+  const Id creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data());
+  Id set = impl_->make_array(array, file_type<T>(), space, creation);
+  if (!unit.empty()) impl_->text_attribute(set, "unit", unit);
+  if (!meaning.empty()) impl_->text_attribute(set, "meaning", meaning);
+  if (!time.empty()) impl_->text_attribute(set, "time", time);
+  impl_->rows.emplace(array, Rows{std::move(set), memory_type<T>(), row_bytes, std::move(now), {}});
+}
+
+template <class T>
+void Store::append(const std::string& array, std::span<const T> row) {
+  const auto found = impl_->rows.find(array);
+  if (found == impl_->rows.end() || row.size_bytes() != found->second.row_bytes || found->second.type != memory_type<T>())
+    throw Error(impl_->path, fmt::format("{}: a row of {} values of {} bytes does not fit", array, row.size(), sizeof(T)), "", Exit::fault);
+  auto& r = found->second;
+  const auto bytes = std::as_bytes(row);
+  r.pending.insert(r.pending.end(), bytes.begin(), bytes.end());
+  if (r.pending.size() >= row_buffer) impl_->drain(r, array);
+}
+
+void Store::set(const std::string& object, const std::string& attribute, const std::string& value) {
+  const Id o = impl_->owner(object);
+  impl_->text_attribute(o, attribute, value);
+}
+void Store::set(const std::string& object, const std::string& attribute, double value) {
+  const Id o = impl_->owner(object);
+  impl_->attribute(o, attribute, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
+}
+void Store::set(const std::string& object, const std::string& attribute, std::int64_t value) {
+  const Id o = impl_->owner(object);
+  impl_->attribute(o, attribute, H5T_STD_I64LE, H5T_NATIVE_INT64, &value);
+}
+
+void Store::link(const std::string& name, const std::string& target, const std::string& object) {
+  const std::string relative = relative_to(impl_->path, target);
+  const Id creation(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(creation, 1);
+  impl_->need(H5Lcreate_external(relative.c_str(), object.c_str(), impl_->file, name.c_str(), creation, H5P_DEFAULT) >= 0,
+              "cannot link " + name);
+}
+
+#define HILO_STORE_TYPE(T)                                                                                                  \
+  template void Store::write<T>(const std::string&, std::span<const T>, std::vector<std::int64_t>, const std::string&,      \
+                                const std::string&);                                                                        \
+  template void Store::start_rows<T>(const std::string&, std::vector<std::int64_t>, const std::string&, const std::string&, \
+                                     const std::string&);                                                                   \
+  template void Store::append<T>(const std::string&, std::span<const T>);
+HILO_STORE_TYPE(double)
+HILO_STORE_TYPE(float)
+HILO_STORE_TYPE(std::int32_t)
+HILO_STORE_TYPE(std::int64_t)
+HILO_STORE_TYPE(std::uint8_t)
+#undef HILO_STORE_TYPE
+
+}  // namespace hilo

@@ -1,0 +1,133 @@
+// Names to carriers: a body, a node, or a patch made on the spot.
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+#include "system/builder.hpp"
+
+namespace hilo {
+
+std::vector<std::string> Builder::all_names() const {
+  std::vector<std::string> names = mesh_ ? mesh_->mesh.all_names() : std::vector<std::string>{};
+  for (const auto& [name, body] : body_by_name_) names.push_back(name);
+  names.push_back("ground");
+  return names;
+}
+
+int Builder::new_body(const std::string& name, const Vec3& Xc) {
+  Body body;
+  body.name = name, body.Xc = Xc;
+  out_->bodies.push_back(body);
+  out_->start.c.push_back(Xc);
+  out_->start.R.push_back(Mat3::Identity());
+  return static_cast<int>(out_->bodies.size()) - 1;
+}
+
+double Builder::count_owned(const std::vector<int>& nodes) const {
+  double n = 0;
+  for (int i : nodes) n += out_->node_owned[i] != 0;
+  return comm_.sum(n);
+}
+
+Vec3 Builder::mean_of(const std::vector<int>& nodes) const {
+  double all[4] = {};
+  for (int i : nodes)
+    if (out_->node_owned[i]) {
+      for (int k = 0; k < 3; ++k) all[k] += out_->X[i][k];
+      all[3] += 1;
+    }
+  comm_.sum(all);
+  return Vec3(all[0], all[1], all[2]) / std::max(1.0, all[3]);
+}
+
+Builder::Found Builder::find(const std::string& name, const std::string& where) const {
+  Found found;
+  if (name == "ground") {
+    found.body = 0;
+    return found;
+  }
+  if (const auto it = body_by_name_.find(name); it != body_by_name_.end()) {
+    found.body = it->second;
+    return found;
+  }
+  const auto names = all_names();
+  if (!mesh_ || std::find(names.begin(), names.end(), name) == names.end())
+    throw Error(where, fmt::format("no region, set or body \"{}\"", name), suggest(name, names));
+  found.region = mesh_->mesh.find_region(name);
+  found.is_region = found.region >= 0;
+  for (std::int64_t i : mesh_->mesh.nodes_of(name, where)) found.nodes.push_back(static_cast<int>(i));
+  found.n_global = static_cast<std::int64_t>(std::llround(count_owned(found.nodes)));
+  if (found.is_region && regions_[found.region].fidelity == Fidelity::rigid) {
+    found.body = regions_[found.region].body;
+    return found;
+  }
+  // a set whose nodes all follow one body is that body
+  double low = 1e300, high = -1e300;
+  for (int i : found.nodes) low = std::min<double>(low, out_->follower[i]), high = std::max<double>(high, out_->follower[i]);
+  low = -comm_.max(-low), high = comm_.max(high);
+  if (low == high && low >= 0) found.body = static_cast<int>(low);
+  return found;
+}
+
+void Builder::set_follower(int node, int body, const std::string& where) {
+  if (out_->follower[node] == body) return;
+  if (out_->follower[node] >= 0)
+    throw Error(where, fmt::format("node {} is held by {} already", mesh_->mesh.node_id[node], held_by_[node].empty() ? "a rigid region" : held_by_[node]),
+                "the sets of two entries overlap");
+  out_->follower[node] = body;
+  held_by_[node] = where;
+}
+
+/// The nodes of a set become followers of one massless body; where some of them belong to a rigid body already, they all join it.
+int Builder::patch_of(const std::string& name, const Found& found, const std::string& where) {
+  if (const auto it = patch_by_name_.find(name); it != patch_by_name_.end()) return it->second;
+  double other = -1;
+  for (int i : found.nodes) other = std::max<double>(other, out_->follower[i]);
+  int body = static_cast<int>(comm_.max(other));
+  const bool joins = body >= 0;
+  if (!joins) {
+    body = new_body(name, mean_of(found.nodes));
+    out_->bodies[body].patch = true;
+    double spread[6] = {};
+    for (int i : found.nodes)
+      if (out_->node_owned[i]) {
+        const Vec3 d = out_->X[i] - out_->bodies[body].Xc;
+        spread[0] += d[0] * d[0], spread[1] += d[1] * d[1], spread[2] += d[2] * d[2];
+        spread[3] += d[0] * d[1], spread[4] += d[0] * d[2], spread[5] += d[1] * d[2];
+      }
+    comm_.sum(spread);
+    Mat3 S;
+    S << spread[0], spread[3], spread[4], spread[3], spread[1], spread[5], spread[4], spread[5], spread[2];
+    const Vec3 values = Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvalues();
+    if (values[1] <= 1e-12 * values[2])
+      throw Error(where, fmt::format("the {} nodes of \"{}\" lie on a line and cannot carry a joint", found.n_global, name), "name a set of nodes on a face");
+    out_->bodies[body].size = std::sqrt(S.trace() / static_cast<double>(found.n_global));
+  }
+  for (int i : found.nodes) set_follower(i, body, where);
+  patch_by_name_[name] = body;
+  return body;
+}
+
+int Builder::body_of(const std::string& name, const Found& found, const std::string& where) {
+  if (found.body >= 0) return found.body;
+  if (found.is_region)
+    throw Error(where, fmt::format("region \"{}\" is flexible: it has no single position", name), "name a set of its nodes, or tag it rigid");
+  return patch_of(name, found, where);
+}
+
+Carrier Builder::carrier(const Entry& entry, std::string_view key, bool needs_orientation) {
+  const std::string& name = entry.text(key);
+  const std::string where = entry.where(key);
+  const Found found = find(name, where);
+  if (found.body < 0 && found.n_global == 1) {
+    if (needs_orientation)
+      throw Error(where, fmt::format("{}: \"{}\" is a single node, which has no orientation", entry.label(), name), "name a set of nodes on a face");
+    return {-1, found.nodes.at(0)};  // single nodes of sets are local to every rank (model/distribute.cpp)
+  }
+  return {body_of(name, found, where), -1};
+}
+
+}  // namespace hilo

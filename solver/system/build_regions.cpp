@@ -1,0 +1,234 @@
+// Regions: material, mass integrals, rigid super-elements, batches of flexible cells.
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <numeric>
+
+#include "system/builder.hpp"
+
+namespace hilo {
+
+void Builder::read_regions() {
+  if (!mesh_) return;
+  for (size_t r = 0; r < mesh_->mesh.region_name.size(); ++r) {
+    Region region;
+    region.name = mesh_->mesh.region_name[r];
+    region.fidelity = mesh_->fidelity[r];
+    const RegionData& deck = mesh_->mesh.region_data[r];
+    region.E = deck.E, region.nu = deck.nu, region.density = deck.density;
+    std::string material;
+    for (const Entry& e : scene_.entries("region")) {
+      if (fnmatch(e.name.c_str(), region.name.c_str(), 0) != 0) continue;
+      if (e.given("material")) material = e.text("material"), region.where = e.where("material");
+      if (e.given("mass")) region.mass_wanted = e.number("mass");
+      if (e.given("area")) region.area = e.number("area");
+      if (e.given("damping")) region.beta = e.number("damping");
+      if (e.given("mass_damping")) region.alpha = e.number("mass_damping");
+    }
+    if (!material.empty()) {
+      const Entry* found = nullptr;
+      std::vector<std::string> names;
+      for (const Entry& m : scene_.entries("material")) {
+        names.push_back(m.name);
+        if (m.name == material) found = &m;
+      }
+      if (!found) throw Error(region.where, fmt::format("no material \"{}\"", material), suggest(material, names));
+      region.material_kind = found->text("kind");
+      if (found->has("E")) region.E = found->number("E");
+      if (found->has("nu")) region.nu = found->number("nu");
+      if (found->has("density")) region.density = found->number("density");
+      region.where = found->place.text();
+    }
+    if (region.where.empty()) region.where = scene_.path;
+    regions_.push_back(std::move(region));
+  }
+  for (const Entry& e : scene_.entries("region")) {
+    bool used = false;
+    for (const Region& r : regions_) used = used || fnmatch(e.name.c_str(), r.name.c_str(), 0) == 0;
+    std::vector<std::string> names;
+    for (const Region& r : regions_) names.push_back(r.name);
+    if (!used) throw Error(e.place.text(), fmt::format("no region matches \"{}\"", e.name), suggest(e.name, names));
+  }
+}
+
+/// int rho, int rho X, int rho X X^T of every region by the mass rule of its cells: the collapsed mass of a rigid region is exactly
+/// sum N^T M_e N over its elements [taylor-2001].
+void Builder::integrate_regions() {
+  if (!mesh_) return;
+  const Mesh& mesh = mesh_->mesh;
+  double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300};
+  for (const Vec3& x : mesh.X)
+    for (int i = 0; i < 3; ++i) lo[i] = std::min(lo[i], x[i]), hi[i] = std::max(hi[i], x[i]);
+  for (int i = 0; i < 3; ++i) origin_[i] = (comm_.max(hi[i]) - comm_.max(-lo[i])) / 2;
+  const int W = lanes();
+  alignas(64) double X[60 * 8], a[60 * 8], f[60 * 8];
+  for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
+    Region& r = regions_[mesh.region[e]];
+    const double density = std::isnan(r.density) ? 0 : r.density;
+    const auto nodes = mesh.cell(e);
+    const SolidKernel kernel = solid_kernel(static_cast<Shape>(mesh.shape[e]), Law::stvk);
+    const int n3 = 3 * static_cast<int>(nodes.size()), w = std::min(W, kernel.width);
+    const auto integrate = [&](auto&& value) {
+      for (int i = 0; i < n3; ++i)
+        for (int l = 0; l < w; ++l) X[i * w + l] = mesh.X[nodes[i / 3]][i % 3] - origin_[i % 3], a[i * w + l] = value(i);
+      kernel.call({X, X, X, 0, 0, {1, 1}, f, nullptr, nullptr, nullptr, nullptr, density, a, 0, r.area});
+    };
+    integrate([](int i) { return i % 3 == 0 ? 1.0 : 0.0; });
+    for (int i = 0; i < n3; i += 3) r.mass += f[i * w];
+    integrate([&](int i) { return mesh.X[nodes[i / 3]][i % 3] - origin_[i % 3]; });
+    for (int i = 0; i < n3; i += 3) {
+      const Vec3 fa(f[i * w], f[(i + 1) * w], f[(i + 2) * w]);
+      r.moment += fa;
+      r.second += (mesh.X[nodes[i / 3]] - origin_) * fa.transpose();
+    }
+  }
+  for (Region& r : regions_) {
+    double all[13] = {r.mass};
+    for (int i = 0; i < 3; ++i) all[1 + i] = r.moment[i];
+    for (int i = 0; i < 9; ++i) all[4 + i] = r.second(i / 3, i % 3);
+    comm_.sum(all);
+    r.mass = all[0];
+    for (int i = 0; i < 3; ++i) r.moment[i] = all[1 + i];
+    for (int i = 0; i < 9; ++i) r.second(i / 3, i % 3) = all[4 + i];
+    if (r.mass_wanted > 0) {
+      if (!(r.mass > 0)) throw Error(r.where, fmt::format("region \"{}\" has a mass but no density to scale", r.name), "give its material a density");
+      const double s = r.mass_wanted / r.mass;
+      r.density *= s, r.mass *= s, r.moment *= s, r.second *= s;
+    }
+    out_->mass += r.mass;
+  }
+}
+
+void Builder::make_rigid_bodies() {
+  if (!mesh_) return;
+  const Mesh& mesh = mesh_->mesh;
+  const int n_regions = static_cast<int>(regions_.size()), n = static_cast<int>(mesh.n_nodes());
+  // rigid region of every local node, also where the rigid cell lives on another rank: rows are kept at rank (row mod ranks)
+  std::vector<std::vector<std::int64_t>> tell(comm_.size), ask(comm_.size);
+  for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
+    if (regions_[mesh.region[e]].fidelity == Fidelity::rigid)
+      for (std::int64_t node : mesh.cell(e)) {
+        const std::int64_t row = mesh_->node_global[node];
+        tell[row % comm_.size].push_back(row), tell[row % comm_.size].push_back(mesh.region[e]);
+      }
+  for (int i = 0; i < n; ++i) ask[mesh_->node_global[i] % comm_.size].push_back(mesh_->node_global[i]);
+  std::map<std::int64_t, int> region_of_row;
+  std::vector<double> shared(static_cast<size_t>(n_regions) * n_regions, 0.0);  // regions that meet at a node
+  for (const auto& list : comm_.exchange(tell))
+    for (size_t k = 0; k + 1 < list.size(); k += 2) {
+      const auto [it, fresh] = region_of_row.try_emplace(list[k], static_cast<int>(list[k + 1]));
+      if (!fresh) shared[static_cast<size_t>(it->second) * n_regions + list[k + 1]] = 1;
+    }
+  comm_.sum(shared);
+  auto questions = comm_.exchange(ask);
+  for (auto& list : questions)
+    for (auto& row : list) {
+      const auto it = region_of_row.find(row);
+      row = it == region_of_row.end() ? -1 : it->second;
+    }
+  const auto answers = comm_.exchange(questions);
+
+  // regions joined by shared nodes are one body
+  std::vector<int> root(n_regions);
+  std::iota(root.begin(), root.end(), 0);
+  const auto find_root = [&](int r) {
+    while (root[r] != r) r = root[r] = root[root[r]];
+    return r;
+  };
+  for (int a = 0; a < n_regions; ++a)
+    for (int b = 0; b < n_regions; ++b)
+      if (shared[static_cast<size_t>(a) * n_regions + b] > 0) root[std::max(find_root(a), find_root(b))] = std::min(find_root(a), find_root(b));
+  for (int r = 0; r < n_regions; ++r) {
+    if (regions_[r].fidelity != Fidelity::rigid || find_root(r) != r) continue;
+    std::string name;
+    double mass = 0;
+    Vec3 moment = Vec3::Zero();
+    Mat3 second = Mat3::Zero();
+    for (int s = r; s < n_regions; ++s)
+      if (regions_[s].fidelity == Fidelity::rigid && find_root(s) == r) {
+        name += (name.empty() ? "" : "+") + regions_[s].name;
+        mass += regions_[s].mass, moment += regions_[s].moment, second += regions_[s].second;
+      }
+    if (!(mass > 0)) throw Error(regions_[r].where, fmt::format("rigid region \"{}\" has no density", regions_[r].name), "give its material a density");
+    const Vec3 com = moment / mass;
+    const int b = new_body(name, origin_ + com);
+    out_->bodies[b].mass = mass;
+    out_->bodies[b].J = second - mass * com * com.transpose();
+    out_->bodies[b].size = std::sqrt(std::max(out_->bodies[b].J.trace() / mass, 1e-300));
+    for (int s = r; s < n_regions; ++s)
+      if (regions_[s].fidelity == Fidelity::rigid && find_root(s) == r) regions_[s].body = b;
+  }
+  std::vector<size_t> cursor(comm_.size, 0);
+  for (int i = 0; i < n; ++i) {
+    const int keeper = static_cast<int>(mesh_->node_global[i] % comm_.size);
+    const auto region = answers[keeper][cursor[keeper]++];
+    if (region >= 0) out_->follower[i] = regions_[region].body;
+  }
+}
+
+void Builder::make_batches() {
+  if (!mesh_) return;
+  const Mesh& mesh = mesh_->mesh;
+  std::map<std::pair<int, int>, SolidBatch> by_kind;
+  for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
+    const Region& r = regions_[mesh.region[e]];
+    if (r.fidelity == Fidelity::rigid) continue;
+    SolidBatch& b = by_kind[{mesh.region[e], mesh.shape[e]}];
+    b.cells.push_back(static_cast<int>(e));
+    for (std::int64_t node : mesh.cell(e)) b.nodes.push_back(static_cast<int>(node));
+  }
+  for (auto& [key, b] : by_kind) {
+    const Region& r = regions_[key.first];
+    b.region = key.first;
+    b.shape = static_cast<Shape>(key.second);
+    const char* hint = "give it with [region.NAME] material = \"...\" and [material....]";
+    if (std::isnan(r.E)) throw Error(r.where, fmt::format("region \"{}\" has no Young's modulus", r.name), hint);
+    if (std::isnan(r.nu)) throw Error(r.where, fmt::format("region \"{}\" has no Poisson's ratio", r.name), hint);
+    if (!(r.nu < 0.5)) throw Error(r.where, fmt::format("region \"{}\": Poisson's ratio {} is not in (-1, 0.5)", r.name, r.nu));
+    const bool is_static = scene_.table("time").text("analysis") == "static";
+    if (std::isnan(r.density) && !is_static) throw Error(r.where, fmt::format("region \"{}\" has no density", r.name), hint);
+    if (b.shape == Shape::bar2 && r.area <= 0) throw Error(r.where, fmt::format("region \"{}\" is made of bars and has no area", r.name), "give [region.NAME] area");
+    b.law = r.material_kind == "neo-hookean" ? Law::neo_hookean : Law::stvk;
+    b.c = lame(r.E, r.nu);
+    b.density = std::isnan(r.density) ? 0 : r.density;
+    b.beta = r.beta, b.alpha = r.alpha, b.area = r.area;
+    b.kernel = solid_kernel(b.shape, b.law);
+    out_->stiffness = std::max(out_->stiffness, r.E * (b.area > 0 ? b.area / mesh_->length : mesh_->length / 100));
+    if (b.shape == Shape::tet4 && comm_.rank == 0)
+      warn(r.name, "linear tetrahedra lock in bending; expect too stiff an answer (hilo-import --order 2 makes them quadratic)");
+    out_->batches.push_back(std::move(b));
+  }
+}
+
+void Builder::add_free_bodies() {
+  for (const Entry& e : scene_.entries("body")) {
+    const int b = new_body(e.name, e.vector3("com"));
+    Body& body = out_->bodies[b];
+    body.mass = e.number("mass");
+    const auto& J = e.numbers("inertia");
+    if (J.size() != 3 && J.size() != 6) throw Error(e.where("inertia"), e.label() + ": inertia has 3 or 6 numbers");
+    Mat3 inertia = Vec3(J[0], J[1], J[2]).asDiagonal();
+    if (J.size() == 6) inertia(0, 1) = inertia(1, 0) = J[3], inertia(0, 2) = inertia(2, 0) = J[4], inertia(1, 2) = inertia(2, 1) = J[5];
+    if (e.given("axes")) {
+      if (e.numbers("axes").size() != 9) throw Error(e.where("axes"), e.label() + ": axes has nine numbers, the rows of a rotation");
+      Mat3 A;
+      for (int i = 0; i < 9; ++i) A(i / 3, i % 3) = e.numbers("axes")[i];
+      if ((A * A.transpose() - Mat3::Identity()).norm() > 1e-6) throw Error(e.where("axes"), e.label() + ": axes is no rotation");
+      inertia = A.transpose() * inertia * A;
+    }
+    body.J = inertia.trace() / 2 * Mat3::Identity() - inertia;
+    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(body.J);
+    if (eigen.eigenvalues().minCoeff() < -1e-9 * inertia.norm())
+      throw Error(e.where("inertia"), e.label() + ": no body has this inertia", "each principal moment is at most the sum of the other two");
+    body.size = std::sqrt(std::max(body.mass > 0 ? body.J.trace() / body.mass : 1.0, 1e-12));
+    if (body_by_name_.contains(e.name) || (mesh_ && mesh_->mesh.find_region(e.name) >= 0))
+      throw Error(e.where("name"), e.label() + ": a region of the mesh has this name too");
+    body_by_name_[e.name] = b;
+    out_->mass += body.mass;
+  }
+}
+
+}  // namespace hilo

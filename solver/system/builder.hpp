@@ -1,0 +1,75 @@
+// Scene and mesh become a System: regions to batches and bodies, names to carriers, entries to connectors, loads and motions.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "system/system.hpp"
+
+namespace hilo {
+
+class Builder {
+ public:
+  Builder(const Scene& scene, LocalMesh* mesh, const Comm& comm);
+  std::unique_ptr<System> build();
+
+ private:
+  /// What a region is made of.
+  struct Region {
+    std::string name, material_kind = "stvk";
+    double E = std::nan(""), nu = std::nan(""), density = std::nan("");
+    double mass_wanted = 0, area = 0, beta = 0, alpha = 0;
+    std::string where;                    // of its material, for errors
+    Fidelity fidelity = Fidelity::nonlinear;
+    int body = -1;                        // rigid: its body
+    double mass = 0;                      // integrals over its cells, all ranks
+    Vec3 moment = Vec3::Zero();           // int rho (X - origin)
+    Mat3 second = Mat3::Zero();           // int rho (X - origin)(X - origin)^T
+    Vec3 com() const { return moment / mass; }
+  };
+
+  // build_regions.cpp
+  void read_regions();
+  void integrate_regions();
+  void make_rigid_bodies();
+  void make_batches();
+  void add_free_bodies();
+  // build_ends.cpp
+  struct Found {                          // what a name means
+    int body = -1;
+    std::vector<int> nodes;               // local nodes of a set or flexible region
+    std::int64_t n_global = 0;
+    bool is_region = false;
+    int region = -1;
+  };
+  Found find(const std::string& name, const std::string& where) const;
+  /// The carrier of a joint's or spring's end; makes a patch of a set on a flexible region.
+  Carrier carrier(const Entry& entry, std::string_view key, bool needs_orientation);
+  int patch_of(const std::string& name, const Found& found, const std::string& where);
+  int body_of(const std::string& name, const Found& found, const std::string& where);
+  int new_body(const std::string& name, const Vec3& Xc);
+  void set_follower(int node, int body, const std::string& where);
+  double count_owned(const std::vector<int>& nodes) const;
+  Vec3 mean_of(const std::vector<int>& nodes) const;
+  // build_entries.cpp
+  void add_motions();
+  void add_joints();
+  void add_springs();
+  void add_loads();
+  void add_stations();
+  void add_point_masses();
+  void set_initial_velocities();
+  std::vector<std::string> all_names() const;
+
+  const Scene& scene_;
+  LocalMesh* mesh_;
+  const Comm& comm_;
+  std::unique_ptr<System> out_;
+  std::vector<Region> regions_;
+  Vec3 origin_ = Vec3::Zero();                     // of the mass integrals
+  std::map<std::string, int> body_by_name_;        // [[body]] entries
+  std::map<std::string, int> patch_by_name_;
+  std::vector<std::string> held_by_;               // per node: the entry that made it a follower of a patch or motion
+};
+
+}  // namespace hilo

@@ -1,0 +1,139 @@
+// Loads within an evaluation: mean of the history over the step, at the step's left configuration.
+#include "system/facet.hpp"
+#include "system/pass.hpp"
+
+namespace hilo {
+
+void System::add_loads(Pass& p) const {
+  const Stage& s = p.s;
+  std::vector<NodeMap> maps;
+  std::vector<std::array<bool, 3>> masks;
+  for (const Load& load : loads) {
+    const double factor = load.factor(s.t0, s.t1, s.load_factor);
+    switch (load.kind) {
+      case Load::Kind::nodal:
+        for (size_t i = 0; i < load.nodes.size(); ++i) {
+          const Vec3 f = factor * load.weight[i] * load.value;
+          p.node[load.nodes[i]] -= f;
+          p.scale(f.norm());
+        }
+        break;
+      case Load::Kind::body_force:
+      case Load::Kind::body_torque: {
+        if (comm->rank != load.body % comm->size) break;
+        const int b = load.body;
+        const bool force = load.kind == Load::Kind::body_force;
+        const Vec3 f = factor * (load.follower ? Vec3(s.left->R[b] * load.value) : load.value);
+        Mat3 K = Mat3::Zero();
+        if (force) {
+          p.body[b].head<3>() -= f;
+          p.body[b].tail<3>() -= (s.left->R[b] * load.arm).cross(f);
+          K = -s.slope * skew(f) * skew(s.q1->R[b] * load.arm);
+        } else {
+          p.body[b].tail<3>() -= f;
+          if (load.follower) K = s.slope * skew(s.q1->R[b] * load.value * factor);
+        }
+        p.scale(force ? f.norm() : f.norm() / bodies[b].size);
+        if (p.K && body_block[b] >= 0) {
+          Eigen::Matrix<double, 6, 6, Eigen::RowMajor> K6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>::Zero();
+          K6.bottomRightCorner<3, 3>() = K;
+          p.K->add(body_clique(b), K6.data());
+        }
+        break;
+      }
+      case Load::Kind::pressure:
+        for (size_t e = 0; e < load.facets.size(); ++e) {
+          const std::vector<int>& nodes = load.facets[e];
+          const int n = static_cast<int>(nodes.size());
+          std::vector<Vec3> x0(n), x1(n), f(n);
+          for (int a = 0; a < n; ++a) x0[a] = s.q0->x[nodes[a]], x1[a] = s.q1->x[nodes[a]];
+          std::vector<double> K(p.K ? 9 * n * n : 0);
+          pressure_force(factor * load.pressure, x0, x1, f, p.K ? K.data() : nullptr);
+          for (int a = 0; a < n; ++a) p.node[nodes[a]] -= f[a], p.scale(f[a].norm());
+          if (!p.K) continue;
+          for (double& k : K) k *= -s.K_factor;
+          const auto blocks = cliques[load.cliques[e]];
+          make_maps(nodes, blocks, s, maps, masks);
+          add_reduced(*p.K, load.cliques[e], n, K.data(), maps.data(), static_cast<int>(blocks.size()), masks.data());
+        }
+        break;
+    }
+  }
+}
+
+/// Work of what acts from outside over the step from q0 to q1: loads, and the forces that prescribed motions exert.
+System::Work System::work(const Stage& s, std::span<const double> lambda) const {
+  const Config& from = s.work_from ? *s.work_from : *s.q0;
+  double external = 0, dissipated = solid_dissipation(s);
+  for (const Load& load : loads) {
+    const double factor = load.factor(s.t0, s.t1, s.load_factor);
+    if (load.kind == Load::Kind::nodal) {
+      for (size_t i = 0; i < load.nodes.size(); ++i)
+        external += factor * load.weight[i] * load.value.dot(s.q1->x[load.nodes[i]] - from.x[load.nodes[i]]);
+    } else if (load.kind == Load::Kind::pressure) {
+      for (const auto& nodes : load.facets) {
+        std::vector<Vec3> x0(nodes.size()), x1(nodes.size()), f(nodes.size());
+        for (size_t a = 0; a < nodes.size(); ++a) x0[a] = from.x[nodes[a]], x1[a] = s.q1->x[nodes[a]];
+        pressure_force(factor * load.pressure, x0, x1, f, nullptr);
+        for (size_t a = 0; a < nodes.size(); ++a) external += f[a].dot(x1[a] - x0[a]);
+      }
+    } else if (comm->rank == load.body % comm->size) {
+      const int b = load.body;
+      const Vec3 f = factor * (load.follower ? Vec3(s.left->R[b] * load.value) : load.value);
+      if (load.kind == Load::Kind::body_force) {
+        external += f.dot(s.q1->c[b] - from.c[b] + (s.q1->R[b] - from.R[b]) * load.arm);
+      } else {  // R1 - R0 = skew(w) (R0 + R1)/2 defines the rotation increment w
+        external += f.dot(rotation_increment(from.R[b], s.q1->R[b]));
+      }
+    }
+  }
+  for (size_t i = 0; i < springs.size(); ++i) {
+    if (!owns_spring_[i] || s.h <= 0) continue;
+    SpringLaw::Values r0{}, r1{};
+    for (size_t m = 0; m < springs[i].measures.size(); ++m) {
+      r0[m] = springs[i].value(static_cast<int>(m), *s.w0);
+      r1[m] = springs[i].value(static_cast<int>(m), *s.w1);
+    }
+    Response response;
+    springs[i].law->viscous(r0, r1, s.h, response);
+    dissipated += response.dissipated;
+  }
+  for (const SolidBatch& b : batches) {  // mass-proportional damping: alpha M v.dx
+    if (b.alpha == 0 || !s.v) continue;
+    const int n = info(b.shape).n_nodes, W = b.kernel.width;
+    alignas(64) double X_[60 * 8], v[60 * 8], f[60 * 8];
+    for (size_t e = 0; e < b.cells.size(); ++e) {
+      const int* nodes = b.nodes.data() + e * n;
+      for (int k = 0; k < n; ++k)
+        for (int i = 0; i < 3; ++i)
+          for (int l = 0; l < W; ++l) X_[(3 * k + i) * W + l] = X[nodes[k]][i], v[(3 * k + i) * W + l] = s.v->x[nodes[k]][i];
+      b.kernel.call({X_, X_, X_, 0, 0, b.c, f, nullptr, nullptr, nullptr, nullptr, b.density * b.alpha, v, 0, b.area});
+      for (int k = 0; k < n; ++k)
+        for (int i = 0; i < 3; ++i) dissipated += f[(3 * k + i) * W] * (s.q1->x[nodes[k]][i] - from.x[nodes[k]][i]);
+    }
+  }
+  bool moving = false;
+  for (const Motion& m : motions) moving = moving || m.moving;
+  if (moving) {
+    Forces f;
+    forces(s, lambda, f);
+    for (const Motion& m : motions) {
+      if (!m.moving) continue;
+      if (m.body >= 0) {
+        if (comm->rank == 0)
+          external += f.body[m.body].head<3>().dot(s.q1->c[m.body] - from.c[m.body]) +
+                      f.body[m.body].tail<3>().dot(rotation_increment(from.R[m.body], s.q1->R[m.body]));
+      } else {
+        for (int node : m.nodes)
+          if (node_owned[node])
+            for (int i = 0; i < 3; ++i)
+              if (m.component[i]) external += f.node[node][i] * (s.q1->x[node][i] - from.x[node][i]);
+      }
+    }
+  }
+  double both[2] = {external, dissipated};
+  comm->sum(both);
+  return {both[0], both[1]};
+}
+
+}  // namespace hilo

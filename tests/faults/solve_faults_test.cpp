@@ -1,0 +1,131 @@
+// Bad scenes: hilo-solve says in one line what is wrong and where, on any number of ranks, and leaves nothing behind.
+#include "faults.hpp"
+
+using namespace hilo::test;
+
+namespace {
+
+constexpr int input = 2, resources = 4;
+
+/// A mistake made in the scene that runs: `from` replaced by `to`.
+struct Mistake {
+  const char* name;
+  std::string from, to, message;
+};
+
+const std::vector<Mistake> mistakes = {
+    {"a syntax error", "end = 2e-3", "end = 2e-3e", "scene.toml:3:..."},
+    {"an unknown key at the top", "gravity", "gravty", "scene.toml:1:1: unknown key \"gravty\" (did you mean \"gravity\"?)"},
+    {"an unknown key", "step =", "stepp =", "scene.toml:4:1: time: unknown key \"stepp\" (did you mean \"step\"?)"},
+    {"an unknown section", "[[joint]]", "[[joints]]", "scene.toml:13:3: unknown section \"joints\" (did you mean \"joint\"?)"},
+    {"an unknown kind", "\"revolute\"", "\"revolut\"",
+     "scene.toml:14:1: joint \"hinge\": unknown kind \"revolut\" (did you mean \"revolute\"?)"},
+    {"a wrong type", "E = 2e11", "E = \"200 GPa\"",
+     "scene.toml:6:5: material \"steel\": E is text, not a number (in Pa of the system m-kg-s, without the unit)"},
+    {"a negative density", "density = 7850", "density = -7850", "scene.toml:8:11: material \"steel\": density = -7850 is not > 0"},
+    {"Poisson's ratio one half", "nu = 0.3", "nu = 0.5", "scene.toml:7:6: material \"steel\": nu = 0.5 is not in (-1, 0.5)"},
+    {"an axis of length zero", "axis = [0, 1, 0]", "axis = [0, 0, 0]",
+     "scene.toml:19:1: joint \"hinge\": axis has length zero (a direction, as in [0, 0, 1])"},
+    {"a joint to a region that does not exist", "b = \"hull\"", "b = \"hul\"", "scene.toml:17:1: ...\"hul\" (did you mean \"hull\"?)"},
+    {"a load on a set that does not exist", "on = \"top\"", "on = \"tip\"", "scene.toml:23:1: ...\"tip\" (did you mean \"top\"?)"},
+    {"a region that does not exist", "[region.mast]", "[region.masts]", "scene.toml:11:9: ...\"masts\" (did you mean \"mast\"?)"},
+    {"a material that does not exist", "material = \"steel\"", "material = \"steal\"",
+     "scene.toml:10:1: region \"hull\": no material \"steal\" (did you mean \"steel\"?)"},
+    {"a history that does not exist", "history = \"pulse\"", "history = \"puls\"",
+     "scene.toml:25:1: load \"push\": no history \"puls\" (did you mean \"pulse\"?)"},
+    {"a load table that does not exist", "\"pulse.csv\"", "\"plus.csv\"",
+     "scene.toml:27:1: no file plus.csv (paths in a scene are relative to the scene's folder)"},
+    {"a name given twice", "[history.pulse]",
+     "[[load]]\nkind = \"torque\"\nname = \"push\"\non = \"hull\"\ntorque = [1, 0, 0]\n[history.pulse]",
+     "scene.toml:28:1: load \"push\" is given twice (first at scene.toml:22:1)"},
+    {"no end of the run", "end = 2e-3\n", "", "scene.toml:2:...end..."},
+};
+
+class BadScene : public Faults {
+ protected:
+  void SetUp() override {
+    Faults::SetUp();
+    make_tags();
+  }
+  void put_scene(const std::string& from, const std::string& to) const {
+    std::string text = scene;
+    ASSERT_NE(text.find(from), text.npos) << from;
+    put("scene.toml", text.replace(text.find(from), from.size(), to));
+  }
+};
+
+}  // namespace
+
+TEST_F(BadScene, IsMadeFromOneThatRuns) {
+  for (const int ranks : {1, 2}) {
+    const std::string command = "hilo-solve scene.toml tags.h5 --quiet -o run" + std::to_string(ranks) + ".h5";
+    const auto o = ranks == 1 ? work.run(command) : mpirun(ranks, command, folder);
+    EXPECT_EQ(o.exit, 0) << o.err;
+    EXPECT_EQ(o.err, "");
+  }
+}
+
+TEST_F(BadScene, IsRefusedAtThePlaceOfTheMistake) {
+  for (const auto& m : mistakes) {
+    SCOPED_TRACE(m.name);
+    put_scene(m.from, m.to);
+    refused("hilo-solve scene.toml tags.h5", input, m.message);
+  }
+}
+
+TEST_F(BadScene, IsRefusedAlikeOnTwoRanks) {
+  for (const auto& m : mistakes) {
+    SCOPED_TRACE(m.name);
+    put_scene(m.from, m.to);
+    refused("hilo-solve scene.toml tags.h5", input, m.message, 2);
+  }
+}
+
+TEST_F(BadScene, WithALoadTableOutOfOrderIsRefusedAtTheLineOfTheTable) {
+  put("pulse.csv", "t,factor\n0,0\n0.1,1\n0.05,0\n");
+  for (const int ranks : {1, 2})
+    refused("hilo-solve scene.toml tags.h5", input,
+            "pulse.csv:4:1: time 0.05 comes after 0.1 (times must rise; two equal ones make a jump)", ranks);
+}
+
+TEST_F(BadScene, WithoutMassIsRefused) {
+  put("scene.toml", "[time]\nend = 1\nstep = 0.1\n");
+  for (const int ranks : {1, 2}) refused("hilo-solve scene.toml", input, "scene.toml: the scene has no mass...", ranks);
+}
+
+TEST_F(BadScene, WithAMeshThatIsMissingTruncatedOrNoMeshIsRefused) {
+  const std::string mesh = bytes("two.h5");
+  put("cut.h5", mesh.substr(0, mesh.size() / 2));
+  for (const int ranks : {1, 2}) {
+    refused("hilo-solve scene.toml absent.h5", input, "absent.h5: no such file", ranks);
+    refused("hilo-solve scene.toml cut.h5", input, "cut.h5: truncated file", ranks);
+    refused("hilo-solve scene.toml two.inp", input, "two.inp: not an HDF5 file", ranks);
+    refused("hilo-solve absent.toml tags.h5", input, "absent.toml: no such file", ranks);
+    refused("hilo-solve scene.toml", input, "scene.toml...", ranks);  // names a joint's region, but no mesh
+  }
+}
+
+TEST_F(BadScene, OverriddenFromTheCommandLineIsRefusedAtTheOption) {
+  for (const int ranks : {1, 2}) {
+    refused("hilo-solve scene.toml tags.h5 --set material.steel.nu=0.5", input,
+            "--set material.steel.nu=0.5: material \"steel\": nu = 0.5 is not in (-1, 0.5)", ranks);
+    refused("hilo-solve scene.toml tags.h5 --set joint.hing.at=[0,0,0]", input,
+            "--set joint.hing.at=[0,0,0]: no joint \"hing\" (did you mean \"hinge\"?)", ranks);
+    refused("hilo-solve scene.toml tags.h5 --set time.step", 1, "--set time.step: no \"=\" (write SECTION.NAME.KEY=VALUE)", ranks);
+  }
+}
+
+TEST_F(BadScene, FromStandardInputIsRefusedAtItsLine) {
+  put_scene("nu = 0.3", "nu = 0.5");
+  const auto o = work.run("hilo-solve - tags.h5 < scene.toml");
+  EXPECT_EQ(o.exit, input);
+  EXPECT_EQ(o.err, "hilo-solve: <stdin>:7:6: material \"steel\": nu = 0.5 is not in (-1, 0.5)\n");
+}
+
+TEST_F(BadScene, OnAFullDiskOrWithoutPermissionLeavesNothingBehind) {
+  for (const int ranks : {1, 2})
+    refused("hilo-solve scene.toml tags.h5 -o two.inp/run.h5", resources, "two.inp/run.h5: cannot write: Not a directory", ranks);
+  for (const int size : {1, 8})
+    refused("hilo-solve scene.toml tags.h5 --quiet -o run.h5", resources, "run.h5: cannot write: ...", 1,
+            "trap '' XFSZ; ulimit -f " + std::to_string(size) + "; ");
+}

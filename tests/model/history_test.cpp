@@ -1,0 +1,104 @@
+// Histories against exact values and integrals.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "model/scene.hpp"
+
+using namespace hilo;
+using std::numbers::pi;
+
+namespace {
+const History ramp{{0, 2, 3}, {0, 4, 1}, false};
+const History step{{0, 1, 1, 2}, {0, 0, 5, 5}, false};
+const History smooth{{0, 2, 3}, {0, 4, 1}, true};
+}  // namespace
+
+TEST(History, IsConstantOutsideItsPoints) {
+  for (const History* h : {&ramp, &smooth}) {
+    EXPECT_EQ((*h)(-1), 0);
+    EXPECT_EQ((*h)(7), 1);
+    EXPECT_EQ(h->mean(-3, -1), 0);
+    EXPECT_EQ(h->mean(4, 5), 1);
+    EXPECT_EQ(h->slope(-1), 0);
+    EXPECT_EQ(h->slope(3.5), 0);
+  }
+}
+
+TEST(History, InterpolatesLinearlyAndByCosines) {
+  EXPECT_DOUBLE_EQ(ramp(0.5), 1);
+  EXPECT_DOUBLE_EQ(ramp(2.5), 2.5);
+  EXPECT_DOUBLE_EQ(smooth(0.5), 4 * (1 - std::cos(pi / 4)) / 2);
+  EXPECT_DOUBLE_EQ(smooth(1), 2);
+  EXPECT_EQ(smooth(2), 4);
+}
+
+TEST(History, TakesTheRightValueAtAJump) {
+  EXPECT_EQ(step(1), 5);
+  EXPECT_EQ(step(std::nextafter(1, 0)), 0);
+  const History at_start{{0, 0, 1}, {0, 3, 3}, false};
+  EXPECT_EQ(at_start(-1e-9), 0);
+  EXPECT_EQ(at_start(0), 3);
+}
+
+TEST(History, MeanIsTheExactIntegralOfALinearOne) {
+  EXPECT_DOUBLE_EQ(ramp.mean(0, 3), (4 + 2.5) / 3);             // triangle 2 x 4 / 2, trapezium (4 + 1)/2
+  EXPECT_DOUBLE_EQ(ramp.mean(1, 2.5), (3 + 0.5 * 3.25) / 1.5);  // (2 + 4)/2 x 1, (4 + 2.5)/2 x 0.5
+  EXPECT_DOUBLE_EQ(ramp.mean(-1, 1), 0.5);
+  EXPECT_DOUBLE_EQ(ramp.mean(2.5, 5), (0.5 * 1.75 + 2 * 1) / 2.5);
+  EXPECT_DOUBLE_EQ(ramp.mean(1, 0), ramp.mean(0, 1));
+  EXPECT_DOUBLE_EQ(ramp.mean(1, 1), ramp(1));
+}
+
+TEST(History, MeanWeighsAJumpByItsTime) {
+  EXPECT_DOUBLE_EQ(step.mean(0.5, 1.5), 2.5);
+  EXPECT_DOUBLE_EQ(step.mean(0.75, 1), 0);
+  EXPECT_DOUBLE_EQ(step.mean(1, 1.25), 5);
+  EXPECT_DOUBLE_EQ(step.mean(0.9, 1.3), 5 * 0.3 / 0.4);
+}
+
+TEST(History, MeanOfASmoothOneIsTheIntegralOfItsCosines) {
+  EXPECT_DOUBLE_EQ(smooth.mean(0, 2), 2);
+  // integral of 2 (1 - cos(pi t/2)) from a to b is 2 (b - a) - (4/pi) (sin(pi b/2) - sin(pi a/2))
+  const double a = 0.3, b = 1.7;
+  EXPECT_NEAR(smooth.mean(a, b), (2 * (b - a) - 4 / pi * (std::sin(pi * b / 2) - std::sin(pi * a / 2))) / (b - a), 1e-15 * 4);
+  EXPECT_DOUBLE_EQ(smooth.mean(0, 3), (4 + 2.5) / 3);
+}
+
+TEST(History, MeanOverAShortIntervalKeepsItsDigits) {
+  const double h = 1e-9, t = 0.7;  // the mean differs from the mid-point value by h^2 f''/24
+  EXPECT_NEAR(smooth.mean(t, t + h), smooth(t + h / 2), 1e-15 * 4);
+  EXPECT_NEAR(ramp.mean(t, t + h), ramp(t + h / 2), 1e-15 * 4);
+}
+
+TEST(History, MeansOfTheHalvesAverageToTheWhole) {
+  for (const History* h : {&ramp, &step, &smooth})
+    for (double t = -0.7; t < 3.5; t += 0.31)
+      EXPECT_NEAR(h->mean(t, t + 0.8), (h->mean(t, t + 0.4) + h->mean(t + 0.4, t + 0.8)) / 2, 1e-14);
+}
+
+TEST(History, SlopeIsTheDerivative) {
+  for (const History* h : {&ramp, &smooth})
+    for (const double t : {0.1, 0.9, 1.9, 2.2, 2.9}) EXPECT_NEAR(h->slope(t), ((*h)(t + 1e-5) - (*h)(t - 1e-5)) / 2e-5, 1e-8) << t;
+  EXPECT_NEAR(smooth.slope(2), 0, 1e-15) << "C1 at its points";
+  EXPECT_EQ(ramp.slope(2), -3) << "from the right at a kink";
+}
+
+TEST(History, EventsAreKinksAndJumpsInside) {
+  EXPECT_EQ(ramp.events(-1, 4), (std::vector<double>{0, 2, 3}));
+  EXPECT_EQ(ramp.events(0, 3), (std::vector<double>{2}));
+  EXPECT_EQ(smooth.events(-1, 4), (std::vector<double>{}));
+  EXPECT_EQ(step.events(0, 2), (std::vector<double>{1}));
+  EXPECT_EQ((History{{0, 1, 2}, {0, 1, 2}, false}.events(0, 2)), (std::vector<double>{})) << "a point on a line is no kink";
+  EXPECT_EQ(step.jumps(), (std::vector<double>{1}));
+  EXPECT_EQ(ramp.jumps(), (std::vector<double>{}));
+}
+
+TEST(History, OfOnePointIsConstant) {
+  const History h{{0}, {3}, false};
+  EXPECT_EQ(h(-1), 3);
+  EXPECT_EQ(h(1), 3);
+  EXPECT_EQ(h.mean(-1, 1), 3);
+  EXPECT_TRUE(h.events(-1, 1).empty());
+}

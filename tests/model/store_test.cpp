@@ -1,0 +1,338 @@
+#include "model/store.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <functional>
+
+#include "base/error.hpp"
+#include "folder.hpp"
+
+namespace hilo {
+namespace {
+
+using test::bytes_of;
+using test::Folder;
+using test::write_bytes;
+
+Error error_of(const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const Error& e) {
+    return e;
+  }
+  ADD_FAILURE() << "no Error was thrown";
+  return Error("", "");
+}
+
+TEST(Store, EveryElementTypeComesBackAsWritten) {
+  const Folder folder;
+  const std::string path = folder / "a.h5";
+  const std::vector<double> d{1.5, -2e300, 0};
+  const std::vector<float> f{1.5f, -2e30f};
+  const std::vector<std::int32_t> i{-5, 7};
+  const std::vector<std::int64_t> l{-(std::int64_t{1} << 62), 3, 4, 5, 6, 7};
+  const std::vector<std::uint8_t> u{0, 255};
+  const std::vector<std::string> s{"rotor", "", "größe"};
+  Store store = Store::create(path);
+  store.write<double>("/x/y/d", d, {3}, "kg/m^3", "density");
+  store.write<float>("/f", f, {2});
+  store.write<std::int32_t>("/i", i, {2});
+  store.write<std::int64_t>("/l", l, {3, 2});
+  store.write<std::uint8_t>("/u", u, {2});
+  store.write<double>("/none", {}, {0, 3});
+  store.write_strings("/s", s);
+  store.write_text("/t", "one\ntwo");
+  store.set("/", "n", std::int64_t{3});
+  store.set("/", "n", std::int64_t{4});
+  store.set("/group", "t", 0.25);
+  store.publish();
+  const Store back = Store::open(path);
+  EXPECT_EQ(back.read<double>("/x/y/d"), d);
+  EXPECT_EQ(back.read<float>("/f"), f);
+  EXPECT_EQ(back.read<std::int32_t>("/i"), i);
+  EXPECT_EQ(back.read<std::int64_t>("/l"), l);
+  EXPECT_EQ(back.read<std::uint8_t>("/u"), u);
+  EXPECT_EQ(back.read<double>("/i"), (std::vector<double>{-5, 7}));
+  EXPECT_EQ(back.read_rows<std::int64_t>("/l", 1, 2), (std::vector<std::int64_t>{4, 5, 6, 7}));
+  EXPECT_EQ(back.shape("/l"), (std::vector<std::int64_t>{3, 2}));
+  EXPECT_EQ(back.shape("/none"), (std::vector<std::int64_t>{0, 3}));
+  EXPECT_EQ(back.type("/u"), "u1");
+  EXPECT_EQ(back.read_strings("/s"), s);
+  EXPECT_EQ(back.read_text("/t"), "one\ntwo");
+  EXPECT_EQ(back.text_attribute("/x/y/d", "unit"), "kg/m^3");
+  EXPECT_EQ(back.number_attribute("/", "n"), 4.);
+  EXPECT_EQ(back.number_attribute("/group", "t"), 0.25);
+  EXPECT_EQ(back.text_attribute("/", "absent"), std::nullopt);
+  EXPECT_EQ(back.list("/x"), std::vector<std::string>{"y"});
+  EXPECT_TRUE(back.list("/nowhere").empty());
+  EXPECT_TRUE(back.has("/x/y/d"));
+  EXPECT_FALSE(back.has("/x/z/d"));
+}
+
+TEST(Store, SameContentGivesSameBytes) {
+  const Folder folder;
+  const auto write = [&](const std::string& path) {
+    Store store = Store::create(path);
+    store.write<double>("/a/b", std::vector<double>(1000, 3.25), {1000}, "m");
+    store.write_strings("/names", std::vector<std::string>{"hull", "turret"});
+    store.set("/", "format", "hilo mesh");
+    store.start_rows<double>("/h/t", {}, "s");
+    store.append<double>("/h/t", std::vector<double>{1});
+    store.publish();
+  };
+  write(folder / "one.h5");
+  ::sleep(1);  // a time stamp would differ
+  write(folder / "two.h5");
+  EXPECT_EQ(bytes_of(folder / "one.h5"), bytes_of(folder / "two.h5"));
+  EXPECT_EQ(digest(folder / "one.h5"), digest(folder / "two.h5"));
+}
+
+TEST(Store, DigestIsTheFnv1aOfTheBytes) {
+  const Folder folder;
+  write_bytes(folder / "empty", "");
+  write_bytes(folder / "a", "foobar");
+  EXPECT_EQ(digest(folder / "empty"), "fnv1a64:cbf29ce484222325");
+  EXPECT_EQ(digest(folder / "a"), "fnv1a64:85944171f73967e8");  // test vector of the FNV authors
+}
+
+TEST(Store, UnpublishedFileLeavesNothingBehind) {
+  const Folder folder;
+  {
+    Store store = Store::create(folder / "a.h5");
+    store.write<double>("/x", std::vector<double>{1}, {1});
+    EXPECT_EQ(folder.files().size(), 1u);
+    EXPECT_FALSE(folder.files().contains("a.h5"));
+  }
+  EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(Store, OldFileStaysUntilTheNewOneIsPublished) {
+  const Folder folder;
+  write_bytes(folder / "a.h5", "old");
+  Store store = Store::create(folder / "a.h5");
+  store.write<double>("/x", std::vector<double>{1}, {1});
+  EXPECT_EQ(bytes_of(folder / "a.h5"), "old");
+  store.publish();
+  EXPECT_EQ(Store::open(folder / "a.h5").read<double>("/x"), std::vector<double>{1});
+  EXPECT_EQ(folder.files(), std::set<std::string>{"a.h5"});
+}
+
+TEST(Store, WrongFilesAreNamedForWhatTheyAre) {
+  const Folder folder;
+  const auto opening = [&](const std::string& name) { return error_of([&] { Store::open(folder / name); }); };
+  EXPECT_EQ(opening("missing.h5").message, "no such file");
+  write_bytes(folder / "text.h5", "solid cube\n");
+  EXPECT_EQ(opening("text.h5").message, "not an HDF5 file");
+  write_bytes(folder / "empty.h5", "");
+  EXPECT_EQ(opening("empty.h5").message, "empty file");
+  std::filesystem::create_directory(folder / "folder.h5");
+  EXPECT_EQ(opening("folder.h5").message, "is a folder, not a file");
+  Store store = Store::create(folder / "whole.h5");
+  store.write<double>("/x", std::vector<double>(10000, 1.), {10000});
+  store.publish();
+  const auto bytes = bytes_of(folder / "whole.h5");
+  for (const size_t kept : {size_t{9}, size_t{100}, size_t{3000}, bytes.size() - 1}) {
+    write_bytes(folder / "cut.h5", bytes.substr(0, kept));
+    const Error e = opening("cut.h5");
+    EXPECT_NE(e.message.find("truncated"), std::string::npos) << kept << ": " << e.message;
+    EXPECT_EQ(e.exit, Exit::input);
+    EXPECT_EQ(e.where, folder / "cut.h5");
+  }
+}
+
+TEST(Store, MissingAndForeignArraysAreErrorsOfTheInput) {
+  const Folder folder;
+  Store store = Store::create(folder / "a.h5");
+  store.write_text("/t", "text");
+  store.write<double>("/x", std::vector<double>{1, 2}, {2});
+  store.publish();
+  const Store back = Store::open(folder / "a.h5");
+  EXPECT_EQ(error_of([&] { back.read<double>("/y"); }).message, "no array /y");
+  EXPECT_EQ(error_of([&] { back.read<double>("/t"); }).message, "/t does not hold numbers");
+  EXPECT_EQ(error_of([&] { back.read_text("/x"); }).message, "/x does not hold text");
+  EXPECT_EQ(error_of([&] { back.read_rows<double>("/x", 1, 2); }).exit, Exit::input);
+}
+
+TEST(Store, GrowingFileCanBeReadAfterEachFlush) {
+  const Folder folder;
+  Store store = Store::create_growing(folder / "run.h5");
+  store.start_rows<double>("/history/t", {}, "s");
+  store.start_rows<double>("/history/f", {2, 3}, "N", "force", "/history/t");
+  store.set("/", "complete", std::int64_t{0});
+  for (int step = 0; step < 5000; ++step) {
+    store.append<double>("/history/t", std::vector<double>{0.5 * step});
+    store.append<double>("/history/f", std::vector<double>(6, step));
+    if (step % 1000 != 999) continue;
+    store.flush();
+    const Store reader = Store::open(folder / "run.h5");
+    EXPECT_EQ(reader.shape("/history/f"), (std::vector<std::int64_t>{step + 1, 2, 3}));
+    EXPECT_EQ(reader.read_rows<double>("/history/t", step, 1), std::vector<double>{0.5 * step});
+    EXPECT_EQ(reader.read_rows<double>("/history/f", step, 1), std::vector<double>(6, step));
+    EXPECT_EQ(reader.text_attribute("/history/f", "time"), "/history/t");
+  }
+}
+
+TEST(Store, WhatWasFlushedSurvivesAKilledRun) {
+  const Folder folder;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    Store store = Store::create_growing(folder / "run.h5");
+    store.start_rows<double>("/t", {});
+    for (int step = 0; step < 300; ++step) {
+      store.append<double>("/t", std::vector<double>{1. * step});
+      if (step == 200) store.flush();
+    }
+    ::raise(SIGKILL);
+  }
+  int status;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  const Store reader = Store::open(folder / "run.h5");
+  ASSERT_EQ(reader.shape("/t"), std::vector<std::int64_t>{201});
+  EXPECT_EQ(reader.read<double>("/t").back(), 200.);
+}
+
+TEST(Store, LinksAreRelativeAndFollowAMovedFolder) {
+  const Folder folder;
+  std::filesystem::create_directories(folder / "case/geometry");
+  std::filesystem::create_directories(folder / "case/out");
+  Store mesh = Store::create(folder / "case/geometry/mesh.h5");
+  mesh.write<double>("/mesh/X", std::vector<double>{1, 2}, {2});
+  mesh.publish();
+  Store tags = Store::create(folder / "case/out/tags.h5");
+  tags.link("/mesh", folder / "case/geometry/mesh.h5", "/mesh");
+  tags.publish();
+  std::filesystem::rename(folder / "case", folder / "moved");
+  const Store reader = Store::open(folder / "moved/out/tags.h5");
+  ASSERT_TRUE(reader.linked("/mesh"));
+  EXPECT_EQ(reader.linked("/mesh")->first, "../geometry/mesh.h5");
+  EXPECT_EQ(reader.read<double>("/mesh/X"), (std::vector<double>{1, 2}));
+  EXPECT_FALSE(reader.linked("/"));
+}
+
+/// Run `body` in a child whose files may not grow beyond `bytes`; the child's exit code is that of the Error.
+int with_file_limit(rlim_t bytes, const std::function<void()>& body, std::string& said) {
+  int ends[2];
+  EXPECT_EQ(::pipe(ends), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::dup2(ends[1], 2);
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{bytes, bytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    ::alarm(20);
+    std::exit(guarded("test", body));
+  }
+  ::close(ends[1]);
+  char buffer[512];
+  for (ssize_t n; (n = ::read(ends[0], buffer, sizeof buffer)) > 0;) said.append(buffer, static_cast<size_t>(n));
+  ::close(ends[0]);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(Store, FullDiskIsExitFourAndLeavesNothing) {
+  const Folder folder;
+  for (const rlim_t room : {0, 1000, 100000, 799000, 801000}) {
+    std::string said;
+    const int code = with_file_limit(
+        room,
+        [&] {
+          Store store = Store::create(folder / "a.h5");
+          store.write<double>("/x", std::vector<double>(100000, 1.), {100000});
+          store.write_strings("/s", std::vector<std::string>(100, "name"));
+          store.publish();
+        },
+        said);
+    EXPECT_EQ(code, 4) << room << ": " << said;
+    EXPECT_NE(said.find("a.h5: cannot write: File too large"), std::string::npos) << room << ": " << said;
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+    EXPECT_TRUE(folder.files().empty()) << room;
+  }
+}
+
+TEST(Store, FullDiskStopsAGrowingFileWithExitFour) {
+  const Folder folder;
+  std::string said;
+  const int code = with_file_limit(
+      200000,
+      [&] {
+        Store store = Store::create_growing(folder / "run.h5");
+        store.start_rows<double>("/t", {100});
+        for (int step = 0; step < 10000; ++step) {
+          store.append<double>("/t", std::vector<double>(100, step));
+          store.flush();
+        }
+      },
+      said);
+  EXPECT_EQ(code, 4) << said;
+  EXPECT_NE(said.find("run.h5: cannot write: File too large"), std::string::npos) << said;
+}
+
+TEST(Store, FolderThatDoesNotExistIsExitFour) {
+  const Folder folder;
+  const Error e = error_of([&] { Store::create(folder / "nowhere/a.h5"); });
+  EXPECT_EQ(e.exit, Exit::resources);
+  EXPECT_EQ(e.message, "cannot write: No such file or directory");
+}
+
+TEST(Store, NoPermissionIsExitFour) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+  const Folder folder;
+  std::filesystem::permissions(folder.path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  const Error e = error_of([&] { Store::create(folder / "a.h5"); });
+  std::filesystem::permissions(folder.path, std::filesystem::perms::owner_all);
+  EXPECT_EQ(e.exit, Exit::resources);
+  EXPECT_EQ(e.message, "cannot write: Permission denied");
+}
+
+TEST(Store, PythonReadsEveryKindOfArray) {
+  if (std::system("/usr/bin/python3 -c 'import h5py' 2> /dev/null") != 0) GTEST_SKIP() << "python3-h5py is not installed";
+  const Folder folder;
+  Store store = Store::create(folder / "a.h5");
+  store.write<double>("/x", std::vector<double>{1.5, 2.5}, {2}, "m");
+  store.write_strings("/names", std::vector<std::string>{"hull", "größe"});
+  store.write_text("/scene", "[time]");
+  store.set("/", "format", "hilo mesh");
+  store.publish();
+  const std::string script =
+      "import h5py; f = h5py.File(\"" + (folder / "a.h5") +
+      "\"); assert list(f[\"x\"][:]) == [1.5, 2.5]; assert f[\"x\"].attrs[\"unit\"] == \"m\"; "
+      "assert list(f[\"names\"].asstr()[:]) == [\"hull\", \"größe\"]; assert f[\"scene\"].asstr()[()] == \"[time]\"; "
+      "assert f.attrs[\"format\"] == \"hilo mesh\"";
+  EXPECT_EQ(std::system(("/usr/bin/python3 -c '" + script + "'").c_str()), 0);
+}
+
+TEST(Store, NamesWithSlashesComeBackUnchanged) {
+  for (const std::string name : {"hull", "a/b", "50%", "%2F", ".", "a.b", "/"}) {
+    EXPECT_EQ(to_link_name(name).find('/'), std::string::npos);
+    EXPECT_EQ(from_link_name(to_link_name(name)), name);
+  }
+}
+
+TEST(TextFile, IsWrittenWholeOrNotAtAll) {
+  const Folder folder;
+  write_text_file(folder / "run.json", "{}\n");
+  EXPECT_EQ(read_text_file(folder / "run.json"), "{}\n");
+  std::string said;
+  EXPECT_EQ(with_file_limit(
+                10, [&] { write_text_file(folder / "run.json", std::string(100, 'x')); }, said),
+            4);
+  EXPECT_EQ(read_text_file(folder / "run.json"), "{}\n");
+  EXPECT_EQ(folder.files(), std::set<std::string>{"run.json"});
+  EXPECT_EQ(error_of([&] { read_text_file(folder / "none"); }).exit, Exit::input);
+}
+
+TEST(CommandLine, IsQuotedSoThatAShellReadsItBack) {
+  const char* argv[] = {"/usr/bin/hilo-tag", "mesh.h5", "--rigid", "wheel_*", "it's", ""};
+  EXPECT_EQ(command_line(6, const_cast<char**>(argv)), "hilo-tag mesh.h5 --rigid 'wheel_*' 'it'\\''s' ''");
+}
+
+}  // namespace
+}  // namespace hilo

@@ -1,0 +1,59 @@
+// What tests of hilo-import share: a folder, runs, and areas and volumes of what was read.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "../cli.hpp"
+#include "model/mesh.hpp"
+
+namespace hilo::test {
+
+/// Total vector area of facets: outward normals times areas, over the corner nodes.
+inline Vec3 vector_area(const Mesh& m, const std::vector<Facet>& facets) {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& f : facets) {
+    const auto n = m.facet_nodes(f);
+    const auto corners = n.size() == 6 || n.size() == 3 ? 3 : 4;
+    const Vec3 &a = m.X[n[0]], &b = m.X[n[1]], &c = m.X[n[2]];
+    sum += corners == 3 ? Vec3((b - a).cross(c - a) / 2) : Vec3((c - a).cross(m.X[n[3]] - b) / 2);
+  }
+  return sum;
+}
+
+inline double volume(const Mesh& m) {
+  double v = 0;
+  for (std::int64_t c = 0; c < m.n_cells(); ++c) v += quality(m, c).volume;
+  return v;
+}
+
+inline std::int64_t cells_of(const Mesh& m, const std::string& region) {
+  const int r = m.find_region(region);
+  return r < 0 ? -1 : std::count(m.region.begin(), m.region.end(), r);
+}
+
+class Import : public testing::Test {
+ protected:
+  /// Imports `file` with `options` and reads the mesh back.
+  Mesh imported(const std::string& file, const std::string& options = "") {
+    const auto ran = place.run("hilo-import " + file + " -o out.h5 " + options);
+    EXPECT_EQ(ran.exit, 0) << file << ' ' << options << ": " << ran.err;
+    out = ran.out, err = ran.err;
+    return ran.exit == 0 ? read_mesh_file(place / "out.h5").mesh : Mesh{};
+  }
+  /// The command must fail with this code and line, say nothing on stdout and leave the folder as it was.
+  void refused(const std::string& arguments, int exit, const std::string& message) {
+    const auto before = place.files();
+    const auto ran = place.run("hilo-import " + arguments);
+    EXPECT_EQ(ran.exit, exit) << arguments;
+    EXPECT_EQ(ran.out, "") << arguments;
+    EXPECT_EQ(ran.err, "hilo-import: " + message + "\n") << arguments;
+    EXPECT_EQ(place.files(), before) << arguments;
+  }
+  static std::string deck(const std::string& name) { return std::string(HILO_SOURCE) + "/tests/tools/decks/" + name; }
+
+  Workplace place;
+  std::string out, err;
+};
+
+}  // namespace hilo::test

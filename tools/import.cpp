@@ -1,0 +1,110 @@
+// hilo-import: a mesh or a geometry becomes mesh.h5.
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "base/args.hpp"
+#include "base/error.hpp"
+#include "base/param.hpp"
+#include "import/imported.hpp"
+#include "model/store.hpp"
+
+using namespace hilo;
+
+namespace {
+
+struct Request {
+  std::string input, output, scene_out;
+  std::vector<std::string> defines;
+  bool json = false;
+  ImportOptions options;
+};
+
+[[noreturn]] void usage(const std::string& what, const std::string& hint = "see hilo-import --help") { throw Error("", what, hint, Exit::usage); }
+
+/// NAME=VALUE of --define
+std::pair<std::string, double> definition(const std::string& text) {
+  const auto eq = text.find('=');
+  char* end = nullptr;
+  const double value = eq == std::string::npos ? 0 : std::strtod(text.c_str() + eq + 1, &end);
+  if (eq == std::string::npos || eq == 0 || end == text.c_str() + eq + 1 || *end) usage(fmt::format("--define {}: expected NAME=NUMBER", text));
+  return {text.substr(0, eq), value};
+}
+
+void check(Request& r) {
+  auto& o = r.options;
+  for (const auto& d : r.defines) o.define.push_back(definition(d));
+  if (o.scale <= 0) usage("--scale must be positive");
+  if (o.order != 1 && o.order != 2) usage("--order is 1 or 2");
+  if (o.merge && *o.merge <= 0) usage("--merge-nodes must be positive");
+  if (o.size && *o.size <= 0) usage("--size must be positive");
+  try {
+    to_si("m", o.units);
+  } catch (const Error& e) {
+    usage("--units: " + e.message, e.hint);
+  }
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  for (const auto& out : {r.output, r.scene_out})
+    if (!out.empty() && fs::exists(out) && fs::equivalent(out, r.input, ignored)) usage(fmt::format("{} is the file to read", out), "write to another name");
+  if (!r.scene_out.empty() && fs::absolute(r.scene_out) == fs::absolute(r.output)) usage("--scene-out and --output name the same file");
+}
+
+/// The scene of --scene-out: the deck's own lines, or where there are none what a scene can name.
+std::string scene_text(const Request& r, const Imported& in) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::absolute(r.scene_out).parent_path();
+  std::string text = fmt::format("# from {}\nmesh = \"{}\"\n", r.input, fs::relative(r.output, folder).generic_string());
+  if (!in.mesh.deck_scene.empty()) return text + in.mesh.deck_scene;
+  text += "# the file carries no materials, supports or loads.  It names:\n";
+  for (const auto& name : in.mesh.all_names()) text += fmt::format("#   {}\n", name);
+  return text;
+}
+
+void talk(const Imported& in) {
+  if (is_quiet()) return;
+  for (const auto& n : in.notes) fmt::print(stderr, "hilo-import: {}\n", n);
+  for (const auto& n : in.not_read)
+    fmt::print(stderr, "hilo-import: not read: {} ({}{}{}){}\n", n.what, n.count, n.place.empty() ? "" : ", ", n.place, n.output ? ", a request for output" : "");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return guarded("hilo-import", [&] {
+    auto app = make_app({"hilo-import", "Reads a mesh, or a geometry that it meshes, and writes mesh.h5: regions, sets, and what the deck says of materials and loads.",
+                         "hilo-import bracket.inp -o bracket.h5 --units mm-t-s\n"
+                         "hilo-import vehicle.geo -o vehicle.h5 --define SIZE=0\n"
+                         "hilo-import part.step -o part.h5 --size 3 --order 2 --scale 1e-3"});
+    Request r;
+    auto& o = r.options;
+    app->add_option("input", r.input, "inp (plain or .gz), bdf, msh, unv, vtk, vtu, mesh; geo, step, brep, iges are meshed")->required()->type_name("FILE");
+    app->add_option("-o,--output", r.output, "mesh file to write")->required()->type_name("mesh.h5");
+    app->add_option("--units", o.units, "system of the file's numbers, all converted to SI: m-kg-s, mm-t-s, mm-kg-ms, in-lbf-s, ft-lbf-s")->type_name("SYSTEM");
+    app->add_option("--scale", o.scale, "factor on the geometry alone")->type_name("S");
+    app->add_option("--order", o.order, "2: quadratic cells (linear ones get nodes in the middle of their edges)")->type_name("N");
+    app->add_option("--size", o.size, "largest cell edge when a geometry is meshed, in the unit of the file")->type_name("H");
+    app->add_option("--define", r.defines, "parameter of a .geo script, may be repeated")->type_name("NAME=VALUE")->allow_extra_args(false);
+    app->add_option("--merge-nodes", o.merge, "nodes nearer than this become one, in the unit of the file")->type_name("TOL");
+    app->add_option("--regions", o.regions, "element sets that become regions, before what the file says")->delimiter(',')->type_name("SET,...")->allow_extra_args(false);
+    app->add_option("--rest", o.rest, "region of the cells that are in none")->type_name("NAME");
+    app->add_option("--scene-out", r.scene_out, "write the deck's materials, supports and loads as a scene too")->type_name("scene.toml");
+    app->add_flag("--json", r.json, "the table as JSON");
+    if (!parse(*app, argc, argv)) return;
+    check(r);
+    Imported in = read_any(r.input, o);
+    finish(in, r.input, o);
+    write_mesh(r.output, in.mesh, {command_line(argc, argv)});
+    if (!r.scene_out.empty()) {
+      try {
+        write_text_file(r.scene_out, scene_text(r, in));
+      } catch (...) {   // both files or none
+        std::filesystem::remove(r.output);
+        throw;
+      }
+    }
+    talk(in);
+    fmt::print("{}", r.json ? import_json(in, r.input, r.output) : import_table(in));
+  });
+}

@@ -1,0 +1,150 @@
+// What follows every reader: nodes merged and dropped, lengths in SI, cells checked.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+
+#include "base/error.hpp"
+#include "base/param.hpp"
+#include "import/imported.hpp"
+
+namespace hilo {
+namespace {
+
+/// Rows of nodes move to `row`; -1 takes them out of the sets.
+void renumber(Mesh& m, const std::vector<std::int64_t>& row, std::int64_t n) {
+  std::vector<Vec3> X(n);
+  std::vector<std::int64_t> id(n, -1);
+  for (size_t a = 0; a < row.size(); ++a)
+    if (row[a] >= 0 && id[row[a]] < 0) X[row[a]] = m.X[a], id[row[a]] = m.node_id[a];
+  m.X = std::move(X);
+  m.node_id = std::move(id);
+  for (auto& a : m.nodes) a = row[a];
+  for (auto& [name, set] : m.node_sets) {
+    for (auto& a : set) a = row[a];
+    std::sort(set.begin(), set.end());
+    set.erase(std::unique(set.begin(), set.end()), set.end());
+    if (!set.empty() && set.front() < 0) set.erase(set.begin());
+  }
+}
+
+std::string first_of(const std::vector<std::int64_t>& ids) {
+  std::string text;
+  for (size_t i = 0; i < std::min<size_t>(5, ids.size()); ++i) text += fmt::format("{}{}", i ? ", " : "", ids[i]);
+  return text + (ids.size() > 5 ? ", ..." : "");
+}
+
+}  // namespace
+
+std::int64_t merge_nodes(Mesh& m, double distance) {
+  const auto n = m.n_nodes();
+  std::vector<std::int64_t> root(n);
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](std::int64_t a) {
+    while (root[a] != a) a = root[a] = root[root[a]];
+    return a;
+  };
+  // boxes as wide as the distance: a near node is in the same box or one beside it
+  struct Box {
+    std::int64_t i, j, k;
+    bool operator==(const Box&) const = default;
+  };
+  struct Hash {
+    size_t operator()(const Box& b) const {
+      return static_cast<size_t>(b.i) * 73856093u ^ static_cast<size_t>(b.j) * 19349663u ^ static_cast<size_t>(b.k) * 83492791u;
+    }
+  };
+  const auto box = [&](const Vec3& x) {
+    return Box{std::llround(std::floor(x.x() / distance)), std::llround(std::floor(x.y() / distance)), std::llround(std::floor(x.z() / distance))};
+  };
+  std::unordered_map<Box, std::vector<std::int64_t>, Hash> boxes;
+  for (std::int64_t a = 0; a < n; ++a) {
+    const Box b = box(m.X[a]);
+    for (int i = -1; i <= 1; ++i)
+      for (int j = -1; j <= 1; ++j)
+        for (int k = -1; k <= 1; ++k)
+          if (const auto it = boxes.find({b.i + i, b.j + j, b.k + k}); it != boxes.end())
+            for (const auto c : it->second)
+              if ((m.X[c] - m.X[a]).norm() <= distance) {
+                const auto low = std::min(find(a), find(c)), high = std::max(find(a), find(c));
+                root[high] = low;
+              }
+    boxes[b].push_back(a);
+  }
+  std::vector<std::int64_t> row(n);
+  std::int64_t kept = 0;
+  for (std::int64_t a = 0; a < n; ++a) row[a] = find(a) == a ? kept++ : row[find(a)];   // a root comes before its members
+  if (kept < n) renumber(m, row, kept);
+  return n - kept;
+}
+
+std::int64_t drop_unused(Imported& in) {
+  Mesh& m = in.mesh;
+  std::vector<std::int64_t> row(m.X.size(), -1);
+  for (const auto a : m.nodes) row[a] = 0;
+  std::int64_t kept = 0;
+  for (auto& r : row)
+    if (r == 0) r = kept++;
+  const auto gone = m.n_nodes() - kept;
+  if (gone == 0) return 0;
+  renumber(m, row, kept);
+  for (auto it = m.node_sets.begin(); it != m.node_sets.end();)
+    if (it->second.empty()) {
+      in.notes.push_back(fmt::format("node set \"{}\" holds only nodes of no cell: left out", it->first));
+      it = m.node_sets.erase(it);
+    } else
+      ++it;
+  return gone;
+}
+
+void check_cells(const Mesh& m, const std::string& file) {
+  std::vector<std::int64_t> inverted, flat;
+  for (std::int64_t c = 0; c < m.n_cells(); ++c) {
+    const auto nodes = m.cell(c);
+    std::vector<std::int64_t> sorted(nodes.begin(), nodes.end());
+    std::sort(sorted.begin(), sorted.end());
+    const bool repeated = std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+    Vec3 low = m.X[nodes[0]], high = low;
+    for (const auto a : nodes) low = low.cwiseMin(m.X[a]), high = high.cwiseMax(m.X[a]);
+    const int dimension = info(m.shape[c]).dimension;
+    const auto q = quality(m, c);
+    const double least = dimension == 1 ? 0 : 1e-12 * std::pow((high - low).norm(), 3);
+    if (repeated || std::abs(q.volume) <= least || std::isnan(q.volume))
+      flat.push_back(m.cell_id[c]);
+    else if (dimension == 3 && !(q.volume > 0 && q.scaled_jacobian > 0 && scaled_jacobian(m, c) > 0))
+      inverted.push_back(m.cell_id[c]);
+  }
+  if (!flat.empty())
+    throw Error(file, fmt::format("{} of {} cells have no volume or name a node twice: {}", flat.size(), m.n_cells(), first_of(flat)),
+                "take them out of the mesh; after --merge-nodes, try a smaller distance");
+  if (!inverted.empty())
+    throw Error(file, fmt::format("{} of {} cells are inverted (scaled Jacobian <= 0 at a corner): {}", inverted.size(), m.n_cells(), first_of(inverted)),
+                static_cast<std::int64_t>(inverted.size()) == m.n_cells() ? "all of them: is the numbering of their nodes mirrored?" : "repair or remesh them");
+}
+
+void finish(Imported& in, const std::string& file, const ImportOptions& options) {
+  Mesh& m = in.mesh;
+  for (std::int64_t a = 0; a < m.n_nodes(); ++a)
+    if (!m.X[a].allFinite()) throw Error(file, fmt::format("node {} has a coordinate that is not a number", m.node_id[a]));
+  if (options.merge) {
+    const auto gone = merge_nodes(m, *options.merge);
+    in.notes.push_back(fmt::format("{} nodes merged with one nearer than {:g}", gone, *options.merge));
+  }
+  if (const auto gone = drop_unused(in)) in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped", gone));
+  if (options.order == 2) raise_order(in);
+  const double factor = options.scale * to_si("m", options.units);
+  if (factor != 1)
+    for (auto& x : m.X) x *= factor;
+  check_cells(m, file);
+  for (size_t r = 0; r < m.region_name.size(); ++r) {
+    auto& data = m.region_data[r];
+    data.density *= to_si("kg/m^3", options.units);
+    data.E *= to_si("Pa", options.units);
+    if (data.density < 0.05 || data.density > 5e4)
+      in.notes.push_back(fmt::format("warning: region \"{}\" has a density of {:g} kg/m^3: is the file in mm-t-s? say so with --units", m.region_name[r], data.density));
+  }
+}
+
+}  // namespace hilo

@@ -1,0 +1,118 @@
+// The table of what was imported.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "base/table.hpp"
+#include "import/imported.hpp"
+
+namespace hilo {
+namespace {
+
+struct RegionRow {
+  std::int64_t cells = 0;
+  std::array<std::int64_t, n_shapes> by_shape{};
+  double volume = 0, length = 0, worst = std::numeric_limits<double>::infinity(), sum = 0;
+  std::int64_t judged = 0;   // cells with a Jacobian: not the bars
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+};
+
+std::vector<RegionRow> rows_of(const Mesh& m) {
+  std::vector<RegionRow> rows(m.region_name.size());
+  for (std::int64_t c = 0; c < m.n_cells(); ++c) {
+    auto& r = rows[m.region[c]];
+    ++r.cells;
+    ++r.by_shape[m.shape[c]];
+    const auto q = quality(m, c);
+    if (info(m.shape[c]).dimension == 3) {
+      r.volume += q.volume;
+      const double j = scaled_jacobian(m, c);
+      r.worst = std::min(r.worst, j);
+      r.sum += j;
+      ++r.judged;
+    } else
+      r.length += q.volume;
+    for (const auto a : m.cell(c)) r.low = r.low.cwiseMin(m.X[a]), r.high = r.high.cwiseMax(m.X[a]);
+  }
+  return rows;
+}
+
+std::string shapes(const RegionRow& r) {
+  std::string s;
+  for (int i = 0; i < n_shapes; ++i)
+    if (r.by_shape[i]) s += fmt::format("{}{} {}", s.empty() ? "" : ", ", r.by_shape[i], info(static_cast<Shape>(i)).name);
+  return s;
+}
+
+struct SetRow {
+  std::string name, kind;
+  size_t count;
+};
+std::vector<SetRow> sets_of(const Mesh& m) {
+  std::vector<SetRow> rows;
+  for (const auto& [name, s] : m.cell_sets) rows.push_back({name, "cells", s.size()});
+  for (const auto& [name, s] : m.facet_sets) rows.push_back({name, "facets", s.size()});
+  for (const auto& [name, s] : m.node_sets) rows.push_back({name, "nodes", s.size()});
+  return rows;
+}
+
+std::string vec_json(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
+
+}  // namespace
+
+std::string import_table(const Imported& in) {
+  const Mesh& m = in.mesh;
+  const auto rows = rows_of(m);
+  Table lines{{"region", "cells", "volume [m^3]", "x from [m]", "to", "y from", "to", "z from", "to", "quality min", "mean", "shapes"}, {}};
+  double volume = 0;
+  const auto g = [](double x) { return fmt::format("{:.5g}", x == 0 ? 0.0 : x); };
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const auto& r = rows[i];
+    volume += r.volume;
+    const bool bars = r.judged == 0;
+    lines.rows.push_back({m.region_name[i], fmt::format("{}", r.cells), bars ? fmt::format("{} m", g(r.length)) : g(r.volume), g(r.low.x()), g(r.high.x()),
+                     g(r.low.y()), g(r.high.y()), g(r.low.z()), g(r.high.z()), bars ? "-" : fmt::format("{:.3f}", r.worst),
+                     bars ? "-" : fmt::format("{:.3f}", r.sum / static_cast<double>(r.judged)), shapes(r)});
+  }
+  std::string text = lines.text();
+  text += fmt::format("{} regions, {} cells, {} nodes, volume {} m^3 (quality: scaled Jacobian, 1 for a regular cell)\n", rows.size(), m.n_cells(), m.n_nodes(), g(volume));
+  const auto sets = sets_of(m);
+  if (!sets.empty()) {
+    Table l{{"set", "of", "count"}, {}};
+    for (const auto& s : sets) l.rows.push_back({s.name, s.kind, fmt::format("{}", s.count)});
+    text += '\n';
+    text += l.text();
+  }
+  return text;
+}
+
+std::string import_json(const Imported& in, const std::string& file, const std::string& output) {
+  const Mesh& m = in.mesh;
+  const auto rows = rows_of(m);
+  std::string s = fmt::format("{{\n  \"file\": {},\n  \"mesh\": {},\n  \"nodes\": {},\n  \"cells\": {},\n  \"regions\": [", json_text(file), json_text(output),
+                              m.n_nodes(), m.n_cells());
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const auto& r = rows[i];
+    std::string by;
+    for (int k = 0; k < n_shapes; ++k)
+      if (r.by_shape[k]) by += fmt::format("{}\"{}\": {}", by.empty() ? "" : ", ", info(static_cast<Shape>(k)).name, r.by_shape[k]);
+    s += fmt::format("{}\n    {{\"name\": {}, \"cells\": {}, \"shapes\": {{{}}}, \"volume\": {}, \"length\": {}, \"box\": [{}, {}], \"quality_min\": {}, \"quality_mean\": {}}}",
+                     i ? "," : "", json_text(m.region_name[i]), r.cells, by, r.volume, r.length, vec_json(r.low), vec_json(r.high),
+                     r.judged ? fmt::format("{}", r.worst) : "null", r.judged ? fmt::format("{}", r.sum / static_cast<double>(r.judged)) : "null");
+  }
+  s += "\n  ],\n  \"sets\": [";
+  const auto sets = sets_of(m);
+  for (size_t i = 0; i < sets.size(); ++i)
+    s += fmt::format("{}\n    {{\"name\": {}, \"kind\": \"{}\", \"count\": {}}}", i ? "," : "", json_text(sets[i].name), sets[i].kind, sets[i].count);
+  s += "\n  ],\n  \"notes\": [";
+  for (size_t i = 0; i < in.notes.size(); ++i) s += fmt::format("{}\n    {}", i ? "," : "", json_text(in.notes[i]));
+  s += "\n  ],\n  \"not_read\": [";
+  for (size_t i = 0; i < in.not_read.size(); ++i)
+    s += fmt::format("{}\n    {{\"what\": {}, \"count\": {}, \"place\": {}, \"output\": {}}}", i ? "," : "", json_text(in.not_read[i].what),
+                     in.not_read[i].count, json_text(in.not_read[i].place), in.not_read[i].output);
+  return s + "\n  ]\n}\n";
+}
+
+}  // namespace hilo

@@ -1,0 +1,110 @@
+// VTK unstructured grids: solid cells, their regions by an integer array of the cells.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "import/imported.hpp"
+#include "import/inp_lines.hpp"
+#include "import/vtk_grid.hpp"
+
+namespace hilo {
+namespace {
+
+constexpr const char* region_arrays[] = {"MATERIALIDS", "MATERIALID", "REGION", "REGIONID", "REGIONS", "CELLENTITYIDS", "GMSH:PHYSICAL", "MATERIAL", "PARTID"};
+
+struct Kind {
+  int type;
+  Shape shape;
+  std::vector<int> p;         // ours[i] = theirs[p[i]]; as many as we keep
+  const char* name;
+  size_t n_nodes;
+};
+const Kind* kind_of(int type) {
+  const auto first = [](int n) {
+    std::vector<int> v(n);
+    for (int i = 0; i < n; ++i) v[i] = i;
+    return v;
+  };
+  static const std::vector<Kind> kinds = {
+      {3, Shape::bar2, first(2), "line", 2},
+      {10, Shape::tet4, first(4), "tetra", 4},
+      {11, Shape::hex8, {0, 1, 3, 2, 4, 5, 7, 6}, "voxel", 8},
+      {12, Shape::hex8, first(8), "hexahedron", 8},
+      {13, Shape::wedge6, first(6), "wedge", 6},
+      {24, Shape::tet10, first(10), "quadratic tetra", 10},
+      {25, Shape::hex20, first(20), "quadratic hexahedron", 20},
+      {26, Shape::wedge15, first(15), "quadratic wedge", 15},
+      {29, Shape::hex20, first(20), "triquadratic hexahedron", 27},
+      {32, Shape::wedge15, first(15), "biquadratic quadratic wedge", 18},
+  };
+  for (const auto& k : kinds)
+    if (k.type == type) return &k;
+  return nullptr;
+}
+bool is_flat(int type) { return type <= 2 || (type >= 4 && type <= 9) || (type >= 21 && type <= 23) || type == 28 || type == 34; }
+
+void check(const VtkGrid& g, const std::string& path) {
+  if (g.points.empty()) throw Error(path, "no points");
+  if (g.types.empty() || g.offsets.size() != g.types.size() + 1)
+    throw Error(path, fmt::format("{} cells but {} cell types", g.offsets.empty() ? 0 : g.offsets.size() - 1, g.types.size()));
+  const auto n = static_cast<std::int64_t>(g.points.size() / 3);
+  for (size_t c = 0; c < g.types.size(); ++c) {
+    if (g.offsets[c] < 0 || g.offsets[c + 1] < g.offsets[c] || g.offsets[c + 1] > static_cast<std::int64_t>(g.connectivity.size()))
+      throw Error(path, fmt::format("cell {} reaches beyond the connectivity", c));
+    for (auto i = g.offsets[c]; i < g.offsets[c + 1]; ++i)
+      if (g.connectivity[i] < 0 || g.connectivity[i] >= n) throw Error(path, fmt::format("cell {} names node {}, which does not exist", c, g.connectivity[i]));
+  }
+}
+
+}  // namespace
+
+Imported read_vtk(const std::string& path, const ImportOptions& options) {
+  const std::string bytes = read_gz(path, "");
+  const bool xml = bytes.find("<VTKFile") < 1000;
+  const VtkGrid g = xml ? read_vtu(path, bytes) : read_vtk_legacy(path, bytes);
+  check(g, path);
+  Imported in;
+  Mesh& m = in.mesh;
+  for (size_t a = 0; 3 * a + 2 < g.points.size(); ++a) {
+    m.X.emplace_back(g.points[3 * a], g.points[3 * a + 1], g.points[3 * a + 2]);
+    m.node_id.push_back(static_cast<std::int64_t>(a));
+  }
+  const bool solids = std::any_of(g.types.begin(), g.types.end(), [](int t) { return kind_of(t) && kind_of(t)->shape != Shape::bar2; });
+  std::vector<std::int64_t> cell_of;   // number in the file
+  std::vector<std::int64_t> nodes;
+  for (size_t c = 0; c < g.types.size(); ++c) {
+    const Kind* k = kind_of(g.types[c]);
+    if (is_flat(g.types[c]) || (k && k->shape == Shape::bar2 && solids)) {
+      in.skip(fmt::format("VTK cells of type {}", g.types[c]), path);
+      continue;
+    }
+    if (!k) throw Error(path, fmt::format("cell {} is of VTK type {}", c, g.types[c]), "supported: lines, tetrahedra, hexahedra, voxels, wedges of order 1 and 2");
+    if (static_cast<size_t>(g.offsets[c + 1] - g.offsets[c]) != k->n_nodes) throw Error(path, fmt::format("cell {}: a {} has {} nodes", c, k->name, k->n_nodes));
+    if (k->p.size() < k->n_nodes) in.skip(fmt::format("nodes inside a {}", k->name), path);
+    nodes.clear();
+    for (const int i : k->p) nodes.push_back(g.connectivity[g.offsets[c] + i]);
+    m.add_cell(k->shape, nodes, -1, static_cast<std::int64_t>(c));
+    cell_of.push_back(static_cast<std::int64_t>(c));
+  }
+  if (m.n_cells() == 0) throw Error(path, "no volume cells and no lines");
+
+  std::vector<CellGroup> regions;
+  for (const char* wanted : region_arrays) {
+    const auto found = std::find_if(g.cell_data.begin(), g.cell_data.end(), [&](const auto& a) { return upper(a.first) == wanted; });
+    if (found == g.cell_data.end() || found->second.size() != g.types.size()) continue;
+    const auto& v = found->second;
+    if (std::any_of(v.begin(), v.end(), [](double x) { return x != std::floor(x); })) continue;
+    std::map<std::int64_t, CellGroup> by_value;
+    for (size_t c = 0; c < cell_of.size(); ++c) by_value[static_cast<std::int64_t>(v[cell_of[c]])].cells.push_back(static_cast<std::int64_t>(c));
+    for (auto& [value, group] : by_value) regions.push_back({fmt::format("region_{}", value), std::move(group.cells)});
+    in.notes.push_back(fmt::format("regions by the values of cell array \"{}\"", found->first));
+    break;
+  }
+  assign_regions(in, path, regions, false, {}, options);
+  return in;
+}
+
+}  // namespace hilo

@@ -1,0 +1,192 @@
+// Legacy VTK files: keyword, numbers, keyword, numbers.
+#include <fmt/format.h>
+
+#include <bit>
+#include <charconv>
+#include <cstring>
+
+#include "base/error.hpp"
+#include "import/inp_lines.hpp"
+#include "import/vtk_grid.hpp"
+
+namespace hilo {
+namespace {
+
+/// Words and big-endian numbers, one after the other.
+class Stream {
+ public:
+  Stream(const std::string& path, const std::string& bytes) : path_(path), s_(bytes) {}
+  bool binary = false;
+
+  std::string line() {
+    const size_t end = std::min(s_.find('\n', at_), s_.size());
+    std::string l = s_.substr(at_, end - at_);
+    at_ = end + 1;
+    if (!l.empty() && l.back() == '\r') l.pop_back();
+    return l;
+  }
+  std::string word() {
+    while (at_ < s_.size() && std::isspace(static_cast<unsigned char>(s_[at_]))) ++at_;
+    const size_t from = at_;
+    while (at_ < s_.size() && !std::isspace(static_cast<unsigned char>(s_[at_]))) ++at_;
+    return s_.substr(from, at_ - from);
+  }
+  std::int64_t count(const std::string& what) {
+    const std::string w = word();
+    std::int64_t n = -1;
+    const auto [end, bad] = std::from_chars(w.data(), w.data() + w.size(), n);
+    if (bad != std::errc() || end != w.data() + w.size() || n < 0 || n > static_cast<std::int64_t>(s_.size())) fail(fmt::format("{}: expected a count, found \"{}\"", what, w));
+    return n;
+  }
+  template <class T>
+  std::vector<T> numbers(std::int64_t n, const std::string& type) {
+    std::vector<T> v;
+    v.reserve(static_cast<size_t>(n));
+    if (!binary) {
+      for (std::int64_t i = 0; i < n; ++i) {
+        const std::string w = word();
+        double x = 0;
+        const char* first = w.data() + (!w.empty() && w[0] == '+');
+        const auto [end, bad] = std::from_chars(first, w.data() + w.size(), x);
+        if (w.empty()) fail("the file ends in the middle of an array");
+        if (bad != std::errc() || end != w.data() + w.size()) fail(fmt::format("expected a number, found \"{}\"", w));
+        v.push_back(static_cast<T>(x));
+      }
+      return v;
+    }
+    if (at_ < s_.size() && s_[at_] == '\r') ++at_;
+    if (at_ < s_.size() && s_[at_] == '\n') ++at_;
+    const auto put = [&]<class U>(U) {
+      if (at_ + static_cast<size_t>(n) * sizeof(U) > s_.size()) fail("the file ends in the middle of an array");
+      for (std::int64_t i = 0; i < n; ++i) {
+        unsigned char b[sizeof(U)];
+        for (size_t k = 0; k < sizeof(U); ++k) b[std::endian::native == std::endian::little ? sizeof(U) - 1 - k : k] = static_cast<unsigned char>(s_[at_ + k]);
+        U x;
+        std::memcpy(&x, b, sizeof(U));
+        v.push_back(static_cast<T>(x));
+        at_ += sizeof(U);
+      }
+    };
+    if (type == "double") put(double{});
+    else if (type == "float") put(float{});
+    else if (type == "int") put(std::int32_t{});
+    else if (type == "unsigned_int") put(std::uint32_t{});
+    else if (type == "long" || type == "vtkidtype" || type == "vtktypeint64") put(std::int64_t{});
+    else if (type == "unsigned_long") put(std::uint64_t{});
+    else if (type == "short") put(std::int16_t{});
+    else if (type == "unsigned_short") put(std::uint16_t{});
+    else if (type == "char" || type == "signed_char") put(std::int8_t{});
+    else if (type == "unsigned_char") put(std::uint8_t{});
+    else fail(fmt::format("unknown type \"{}\"", type));
+    return v;
+  }
+  [[noreturn]] void fail(const std::string& what) const {
+    const auto line = 1 + std::count(s_.begin(), s_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, s_.size())), '\n');
+    throw Error(binary ? path_ : fmt::format("{}:{}", path_, line), what);
+  }
+  size_t mark() const { return at_; }
+  void back(size_t at) { at_ = at; }
+
+ private:
+  const std::string& path_;
+  const std::string& s_;
+  size_t at_ = 0;
+};
+
+std::string lower(std::string s) {
+  for (auto& c : s) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return s;
+}
+
+}  // namespace
+
+VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
+  Stream s(path, bytes);
+  VtkGrid g;
+  if (s.line().rfind("# vtk DataFile Version", 0) != 0) throw Error(path + ":1", "not a VTK file: no \"# vtk DataFile Version\"");
+  s.line();
+  const std::string mode = upper(s.line());
+  if (mode != "ASCII" && mode != "BINARY") throw Error(path + ":3", fmt::format("expected ASCII or BINARY, found \"{}\"", mode));
+  s.binary = mode == "BINARY";
+  bool of_cells = false;
+  std::int64_t n_data = 0;
+  for (std::string w = upper(s.word()); !w.empty(); w = upper(s.word())) {
+    if (w == "DATASET") {
+      if (const std::string kind = upper(s.word()); kind != "UNSTRUCTURED_GRID") s.fail(fmt::format("DATASET {} is not read, UNSTRUCTURED_GRID is", kind));
+    } else if (w == "POINTS") {
+      const auto n = s.count(w);
+      const auto type = lower(s.word());
+      g.points = s.numbers<double>(3 * n, type);
+    } else if (w == "CELLS") {
+      const auto n = s.count(w), size = s.count(w);
+      const size_t here = s.mark();
+      if (upper(s.word()) == "OFFSETS") {   // version 5: n and size count offsets and connectivity
+        const auto type = lower(s.word());
+        g.offsets = s.numbers<std::int64_t>(n, type);
+        if (upper(s.word()) != "CONNECTIVITY") s.fail("expected CONNECTIVITY");
+        const auto type2 = lower(s.word());
+        g.connectivity = s.numbers<std::int64_t>(size, type2);
+      } else {
+        s.back(here);
+        const auto flat = s.numbers<std::int64_t>(size, "int");
+        g.offsets = {0};
+        for (size_t i = 0; i < flat.size();) {
+          const auto k = flat[i];
+          if (k < 0 || i + 1 + static_cast<size_t>(k) > flat.size()) s.fail("CELLS: a cell has more nodes than the list");
+          g.connectivity.insert(g.connectivity.end(), flat.begin() + static_cast<std::ptrdiff_t>(i) + 1, flat.begin() + static_cast<std::ptrdiff_t>(i + 1) + k);
+          g.offsets.push_back(static_cast<std::int64_t>(g.connectivity.size()));
+          i += 1 + static_cast<size_t>(k);
+        }
+        if (static_cast<std::int64_t>(g.offsets.size()) != n + 1) s.fail(fmt::format("CELLS: {} cells announced, {} found", n, g.offsets.size() - 1));
+      }
+    } else if (w == "CELL_TYPES")
+      g.types = s.numbers<int>(s.count(w), "int");
+    else if (w == "CELL_DATA" || w == "POINT_DATA") {
+      of_cells = w == "CELL_DATA";
+      n_data = s.count(w);
+    } else if (w == "SCALARS") {
+      const std::string rest = s.line();   // name type [components]
+      char name[256] = "", type[64] = "";
+      int components = 1;
+      if (std::sscanf(rest.c_str(), "%255s %63s %d", name, type, &components) < 2) s.fail("SCALARS: expected name and type");
+      const size_t here = s.mark();
+      if (upper(s.word()) == "LOOKUP_TABLE") s.word();
+      else s.back(here);
+      auto v = s.numbers<double>(n_data * components, lower(type));
+      if (of_cells && components == 1) g.cell_data[name] = std::move(v);
+    } else if (w == "VECTORS" || w == "NORMALS" || w == "TENSORS") {
+      s.word();
+      const auto type = lower(s.word());
+      s.numbers<double>(n_data * (w == "TENSORS" ? 9 : 3), type);
+    } else if (w == "FIELD") {
+      s.word();
+      const auto arrays = s.count(w);
+      for (std::int64_t i = 0; i < arrays; ++i) {
+        std::string name = s.word();
+        while (name == "METADATA") {   // runs to an empty line
+          s.line();
+          while (!s.line().empty()) {
+          }
+          name = s.word();
+        }
+        const auto components = s.count(name), tuples = s.count(name);
+        const auto type = lower(s.word());
+        if (type == "string") s.fail(fmt::format("array {} of strings is not read", name));
+        auto v = s.numbers<double>(components * tuples, type);
+        if (of_cells && components == 1) g.cell_data[name] = std::move(v);
+      }
+    } else if (w == "LOOKUP_TABLE") {
+      s.word();
+      const auto n = s.count(w);
+      s.numbers<double>(4 * n, s.binary ? "unsigned_char" : "float");
+    } else if (w == "METADATA") {
+      s.line();
+      while (!s.line().empty()) {
+      }
+    } else
+      s.fail(fmt::format("unknown keyword \"{}\"", w));
+  }
+  return g;
+}
+
+}  // namespace hilo

@@ -1,0 +1,58 @@
+// hilo-part: which rank works on which cell.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "base/args.hpp"
+#include "base/error.hpp"
+#include "model/store.hpp"
+#include "part/partition.hpp"
+#include "part/table.hpp"
+
+int main(int argc, char** argv) {
+  using namespace hilo;
+  return guarded("hilo-part", [&] {
+    const auto app = make_app({"hilo-part", "Divide a tagged mesh among ranks, with the flexible and the rigid work balanced separately.",
+                               "hilo-part tags.h5 -n 2 -o parts-2.h5"});
+    std::string mesh_path, scene_path, output, weights = "weighted";
+    int n_parts = 0;
+    bool json = false;
+    app->add_option("mesh", mesh_path, "tags.h5 or mesh.h5")->required();
+    app->add_option("scene", scene_path, "scene.toml: the work of its joints and springs is weighed in");
+    app->add_option("-n,--parts", n_parts, "number of parts (ranks)")->required()->type_name("N")->check(CLI::Range(1, 1 << 20));
+    app->add_option("-o,--output", output, "the parts file to write [parts-N.h5]")->type_name("FILE");
+    app->add_option("--weights", weights, "weighted: flexible and rigid work; uniform: number of cells")
+        ->type_name("WORD")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"weighted", "uniform"}));
+    app->add_flag("--json", json, "the table as JSON");
+    if (!parse(*app, argc, argv)) return;
+    if (output.empty()) output = fmt::format("parts-{}.h5", n_parts);
+    std::error_code absent;
+    if (std::filesystem::equivalent(mesh_path, output, absent))
+      throw Error(output, "would overwrite the file it reads", "give another -o", Exit::usage);
+
+    const MeshFile file = read_mesh_file(mesh_path);
+    std::optional<Scene> scene;
+    if (!scene_path.empty()) scene = Scene::load(scene_path);
+    if (!file.tagged && !is_quiet()) fmt::print(stderr, "hilo-part: {} has no tags, so every region is nonlinear\n", mesh_path);
+    const CellGraph graph = cell_graph(file.mesh, file.fidelity, scene ? &*scene : nullptr);
+    Division division{weights, {}, {}, {}};
+    try {
+      division.part = partition(graph, file.mesh, n_parts, weights == "weighted");
+    } catch (const Error& e) {
+      throw Error(mesh_path, e.message, e.hint, e.exit);
+    }
+    division.report = report(graph, division.part, n_parts);
+    if (const auto flexible = std::ranges::count(graph.is_flexible, 1);
+        flexible > 0 && flexible < graph.n() && n_parts > 1 && n_parts <= flexible)
+      division.other = report(graph, partition(graph, file.mesh, n_parts, weights != "weighted"), n_parts);
+
+    auto provenance = file.provenance;
+    provenance.push_back(command_line(argc, argv));
+    write_parts(output, mesh_path, n_parts, division.part, provenance);
+    fmt::print("{}", json ? division_json(division, graph, output) : division_text(division, graph));
+    for (const auto& line : doubts(division)) warn(mesh_path, line);
+  });
+}

@@ -1,0 +1,24 @@
+// Cells to parts, by METIS, with what METIS does not promise checked: no part empty, the work balanced.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "part/graph.hpp"
+
+namespace hilo {
+
+/// What a partition is worth.
+struct PartReport {
+  std::vector<std::int64_t> cells, flexible_cells, flexible_work, rigid_work;  // per part
+  std::vector<int> pieces;                                                     // connected pieces per part
+  std::int64_t cut = 0, flexible_cut = 0;                                      // facets between parts; those between two flexible cells
+  double flexible_balance = 1, rigid_balance = 1;                              // largest work over the mean
+};
+PartReport report(const CellGraph& graph, const std::vector<std::int32_t>& part, int n_parts);
+
+/// Balance flexible and rigid work separately (weighted), or the number of cells (uniform).  Throws Error when there are more parts than
+/// cells, or than flexible cells while there are some.  Of several attempts the best is returned: first no empty part, then balance, then
+/// few pieces, then a small cut.
+std::vector<std::int32_t> partition(const CellGraph& graph, const Mesh& mesh, int n_parts, bool weighted);
+
+}  // namespace hilo

@@ -1,0 +1,61 @@
+#include "part/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/table.hpp"
+
+namespace hilo {
+namespace {
+
+Table table_of(const PartReport& r) {
+  Table t{{"part", "cells", "flexible", "flexible work", "rigid work", "pieces"}, {}, 0};
+  for (size_t p = 0; p < r.cells.size(); ++p) {
+    std::vector<std::string> row{std::to_string(p)};
+    for (const auto* list : {&r.cells, &r.flexible_cells, &r.flexible_work, &r.rigid_work}) row.push_back(std::to_string((*list)[p]));
+    row.push_back(std::to_string(r.pieces[p]));
+    t.rows.push_back(std::move(row));
+  }
+  return t;
+}
+
+std::string line(const std::string& weights, const PartReport& r) {
+  return fmt::format("{}: largest over mean {:.3f} flexible work, {:.3f} rigid work; cut {} facets, {} between flexible cells\n", weights,
+                     r.flexible_balance, r.rigid_balance, r.cut, r.flexible_cut);
+}
+
+std::string json_of(const PartReport& r) {
+  return fmt::format("{{\"flexible_balance\": {:.6f}, \"rigid_balance\": {:.6f}, \"cut\": {}, \"flexible_cut\": {}}}", r.flexible_balance,
+                     r.rigid_balance, r.cut, r.flexible_cut);
+}
+
+std::string other_name(const Division& d) { return d.weights == "weighted" ? "uniform" : "weighted"; }
+
+}  // namespace
+
+std::string division_text(const Division& d, const CellGraph& graph) {
+  std::string out = table_of(d.report).text() + "\n" + line(d.weights, d.report);
+  if (d.other) out += line(other_name(d), *d.other);
+  if (graph.joints) out += fmt::format("{} joints and springs weighed in\n", graph.joints);
+  return out;
+}
+
+std::string division_json(const Division& d, const CellGraph& graph, const std::string& output) {
+  return fmt::format(
+      "{{\n  \"output\": {},\n  \"n_parts\": {},\n  \"weights\": {},\n  \"joints\": {},\n  \"{}\": {},\n{}  \"parts\": {}\n}}\n",
+      json_text(output), d.report.cells.size(), json_text(d.weights), graph.joints, d.weights, json_of(d.report),
+      d.other ? fmt::format("  \"{}\": {},\n", other_name(d), json_of(*d.other)) : "", table_of(d.report).json());
+}
+
+std::vector<std::string> doubts(const Division& d) {
+  std::vector<std::string> out;
+  const auto empty = std::ranges::count(d.report.cells, 0);
+  if (empty) out.push_back(fmt::format("{} parts are empty", empty));
+  if (d.weights == "weighted" && d.report.flexible_balance > 1.3)
+    out.push_back(fmt::format("the heaviest part has {:.2f} times the mean flexible work; fewer parts would serve as well",
+                              d.report.flexible_balance));
+  return out;
+}
+
+}  // namespace hilo

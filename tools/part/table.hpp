@@ -1,0 +1,22 @@
+// What hilo-part prints.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "part/partition.hpp"
+
+namespace hilo {
+
+struct Division {
+  std::string weights;             // weighted or uniform
+  std::vector<std::int32_t> part;  // (n_cells)
+  PartReport report;
+  std::optional<PartReport> other;  // with the other weights, where they differ
+};
+std::string division_text(const Division& d, const CellGraph& graph);
+std::string division_json(const Division& d, const CellGraph& graph, const std::string& output);
+/// What is less than good about a partition, one line each.
+std::vector<std::string> doubts(const Division& d);
+
+}  // namespace hilo

@@ -1,0 +1,78 @@
+#include "tag/savings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/args.hpp"
+#include "base/error.hpp"
+#include "model/mesh_tags.hpp"
+
+namespace hilo {
+
+std::vector<Fidelity> all_tagged(const Mesh& mesh, const std::vector<std::optional<Fidelity>>& tags) {
+  std::vector<Fidelity> fidelity;
+  std::vector<std::string> untagged;
+  for (size_t r = 0; r < tags.size(); ++r) {
+    fidelity.push_back(tags[r].value_or(Fidelity::nonlinear));
+    if (!tags[r]) untagged.push_back(mesh.region_name[r]);
+  }
+  if (!untagged.empty() && !is_quiet()) {
+    const size_t shown = std::min<size_t>(untagged.size(), 8);
+    fmt::print(stderr, "{}: {} of {} regions not tagged, so nonlinear: {}{}\n", tool_name(), untagged.size(), tags.size(),
+               fmt::join(untagged.begin(), untagged.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+               shown < untagged.size() ? ", ..." : "");
+  }
+  return fidelity;
+}
+
+Savings savings(const Mesh& mesh, const std::vector<Fidelity>& fidelity) {
+  const size_t n = fidelity.size();
+  const auto body = body_of_region(mesh, fidelity);
+  std::vector<std::int64_t> cells(n, 0), nodes(n, 0), before(n, 0), after(n, 0);
+  std::vector<int> first(mesh.X.size(), -1), first_flexible(mesh.X.size(), -1), seen(mesh.X.size(), -1);
+  std::vector<char> rigid(mesh.X.size(), 0);
+  std::vector<std::vector<std::int64_t>> cells_of(n);
+  for (std::int64_t c = 0; c < mesh.n_cells(); ++c) cells_of[mesh.region[c]].push_back(c);
+  for (size_t r = 0; r < n; ++r) {
+    const int region = static_cast<int>(r);
+    cells[r] = static_cast<std::int64_t>(cells_of[r].size());
+    for (const auto c : cells_of[r])
+      for (const auto a : mesh.cell(c)) {
+        if (seen[a] != region) seen[a] = region, ++nodes[r];
+        if (first[a] < 0) first[a] = region;
+        if (fidelity[r] == Fidelity::rigid)
+          rigid[a] = 1;
+        else if (first_flexible[a] < 0)
+          first_flexible[a] = region;
+      }
+  }
+  for (size_t a = 0; a < mesh.X.size(); ++a) {
+    if (first[a] >= 0) before[first[a]] += 3;
+    if (first_flexible[a] >= 0 && !rigid[a]) after[first_flexible[a]] += 3;
+  }
+  Savings s{{{"region", "cells", "nodes", "fidelity", "body", "before", "after"}, {}}};
+  std::vector<char> counted(n, 0);
+  for (size_t r = 0; r < n; ++r) {
+    if (body[r] >= 0 && cells[r] > 0 && !counted[body[r]]) after[r] = 6, counted[body[r]] = 1, ++s.bodies;
+    s.before += before[r], s.after += after[r];
+    s.regions.rows.push_back({mesh.region_name[r], fmt::format("{}", cells[r]), fmt::format("{}", nodes[r]), std::string(word(fidelity[r])),
+                              body[r] < 0 ? "-" : fmt::format("{}", body[r] + 1), fmt::format("{}", before[r]),
+                              fmt::format("{}", after[r])});
+  }
+  return s;
+}
+
+std::string savings_text(const Savings& s) {
+  return fmt::format("{}\nunknowns: {} if all were nonlinear, {} as tagged ({:.1f} %); {} rigid bod{}\n", s.regions.text(), s.before,
+                     s.after, s.before ? 100. * static_cast<double>(s.after) / static_cast<double>(s.before) : 100., s.bodies,
+                     s.bodies == 1 ? "y" : "ies");
+}
+
+std::string savings_json(const Savings& s, const std::string& output) {
+  return fmt::format(
+      "{{\n  \"output\": {},\n  \"unknowns\": {{\"before\": {}, \"after\": {}}},\n  \"bodies\": {},\n  \"regions\": {}\n}}\n",
+      output.empty() ? "null" : json_text(output), s.before, s.after, s.bodies, s.regions.json());
+}
+
+}  // namespace hilo
