@@ -87,7 +87,7 @@ Command chart_command(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   sub->add_option("files", o->files, "CSV files")->required();
   sub->add_option("-x", o->x, "column of the abscissa, by name or number from 1; the first by default");
-  sub->add_option("-y", o->y, "columns to draw; all others by default");
+  sub->add_option("-y", o->y, "columns to draw, -y once for each; all others by default")->allow_extra_args(false);
   sub->add_option("--by", o->by, "column of names: one curve for each name");
   sub->add_option("--log", o->log, "logarithmic axes: x, y or xy")->check(CLI::IsMember({"x", "y", "xy"}));
   sub->add_flag("--markers", o->markers, "mark the points");

@@ -125,7 +125,7 @@ std::string table_of(const Options& o, const std::vector<Sensor>& sensors) {
     row.push_back(std::isfinite(clip) ? fmt::format("{:.3f}", clip) : "-");
     table.rows.push_back(row);
   }
-  return o.json ? table.json() : table.text();
+  return o.json ? table.json("") + "\n" : table.text();
 }
 
 void run(const Options& o) {
@@ -148,7 +148,7 @@ Command gload_command(CLI::App& app) {
   auto* sub = app.add_subcommand("gload", "G-loads of the sensors: peaks, 3 ms clip, raw and CFC-filtered curves");
   const auto o = std::make_shared<Options>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
-  sub->add_option("--sensor", o->sensors, "sensors by name or glob")->default_str("*");
+  sub->add_option("--sensor", o->sensors, "sensors by name or glob")->allow_extra_args(false)->default_str("*");
   sub->add_option("--cfc", o->cfc, "channel frequency class of the filter: 60, 180, 600 or 1000 (SAE J211-1)")
       ->check(CLI::IsMember({60.0, 180.0, 600.0, 1000.0}))
       ->default_str("60");

@@ -144,10 +144,6 @@ void run(const Options& o) {
   Picture picture(width, height);
   vtkRenderer* stage = picture.layer(frame.model);
   light(stage);
-  if (o.see_through) {
-    stage->SetUseDepthPeeling(true);
-    stage->SetMaximumNumberOfPeels(12);
-  }
   Fit fit(parse_view(o.camera), frame.model.w / frame.model.h, 0.07);
   std::vector<Group> groups;
   if (file) {
@@ -194,11 +190,11 @@ Command model_command(CLI::App& app) {
   sub->add_option("mesh", o->mesh, "mesh.h5, tags.h5 or parts-N.h5; that of the scene by default");
   sub->add_option("-o,--output", o->output, "PNG file")->required();
   sub->add_option("--camera", o->camera, fmt::format("{}, or x,y,z towards the camera", fmt::join(view_names(), ", ")))->capture_default_str();
-  sub->add_option("--show", o->show, "regions to draw, by name or glob; all by default");
-  sub->add_option("--hide", o->hide, "regions not to draw");
+  sub->add_option("--show", o->show, "regions to draw, by name or glob; all by default")->allow_extra_args(false);
+  sub->add_option("--hide", o->hide, "regions not to draw")->allow_extra_args(false);
   sub->add_flag("--see-through", o->see_through, "rigid regions are transparent");
   sub->add_flag("--no-names", o->no_names, "symbols without their names");
-  sub->add_option("--set", o->set, "override a key of the scene: joint.trunnion.at=[0,0,1]");
+  sub->add_option("--set", o->set, "override a key of the scene: joint.trunnion.at=[0,0,1]")->allow_extra_args(false);
   sub->add_option("--size", o->size, "size of the picture, WIDTHxHEIGHT")->capture_default_str();
   sub->add_option("--title", o->title, "title instead of the scene's");
   example(*sub, "  hilo-post model scene.toml tags.h5 -o model.png");

@@ -239,9 +239,9 @@ Command render_command(CLI::App& app) {
   sub->add_option("--colours", o->colours, "viridis or cividis")->check(CLI::IsMember({"viridis", "cividis"}))->capture_default_str();
   sub->add_option("--size", o->size, "size of the picture, WIDTHxHEIGHT")->capture_default_str();
   sub->add_option("--edges", o->edges, "none, feature or all")->check(CLI::IsMember({"none", "feature", "all"}))->capture_default_str();
-  sub->add_option("--show", o->show, "regions to draw, by name or glob; all by default");
-  sub->add_option("--hide", o->hide, "regions not to draw");
-  sub->add_option("--zoom", o->zoom, "regions that fill the picture");
+  sub->add_option("--show", o->show, "regions to draw, by name or glob; all by default")->allow_extra_args(false);
+  sub->add_option("--hide", o->hide, "regions not to draw")->allow_extra_args(false);
+  sub->add_option("--zoom", o->zoom, "regions that fill the picture")->allow_extra_args(false);
   sub->add_option("--title", o->title, "title instead of the scene's");
   example(*sub, "  hilo-post render run.h5 --field von_mises --steps last --camera iso -o stress.png");
   return {sub, [o] { Renderer(*o).write_frames(); }};

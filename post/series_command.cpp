@@ -112,7 +112,7 @@ void list(const Options& o, const RunFile& run) {
       if (std::find(units.begin(), units.end(), u) == units.end()) units.push_back(u);
     table.rows.push_back({name, fmt::format("{}", fmt::join(s.column, " ")), fmt::format("{}", fmt::join(units, ", "))});
   }
-  write_out("-", o.json ? table.json() : table.text());
+  write_out("-", o.json ? table.json("") + "\n" : table.text());
 }
 
 void run(const Options& o) {

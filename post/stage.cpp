@@ -65,6 +65,7 @@ void add_skin(vtkRenderer* stage, const Skin& skin, const Look& look) {
   faces->SetMapper(mapper);
   shade(faces->GetProperty(), look.colour, look.opacity);
   faces->GetProperty()->SetInterpolationToPhong();
+  faces->GetProperty()->SetBackfaceCulling(look.opacity < 1);   // of a transparent body the front alone: no sorting needed
   stage->AddActor(faces);
   if (skin.bars()->GetNumberOfLines() == 0) return;
   const auto bars = vtkSmartPointer<vtkActor>::New();

@@ -12,7 +12,7 @@ struct Ticks {
 };
 /// About `n` multiples of 1, 2, 2.5 or 5 times a power of ten within [low, high].
 Ticks linear_ticks(double low, double high, int n);
-/// Powers of ten within [low, high], every so many that at most `n` remain ("10^-3").
+/// Powers of ten within [low, high], every so many that at most `n` remain ("10^-3"); with 2 and 5 times them in a short range.
 Ticks log_ticks(double low, double high, int n);
 
 /// Power of ten (a multiple of three, 0 for handy numbers) that an axis up to `largest` is better divided by.

@@ -6,6 +6,7 @@
 
 #include "base/args.hpp"
 #include "dynamics/run.hpp"
+#include "model/store.hpp"
 
 namespace hilo {
 namespace {

@@ -132,8 +132,7 @@ void Recorder::write_field(const Row& row, const Config& a) {
   field_times_.push_back(row.t);
   if (!store_) return;
   store_->set(group, "t", row.t);
-  store_->flush();
-  write_xdmf();
+  if (wall_clock() - last_xdmf_ > 1) store_->flush(), write_xdmf(), last_xdmf_ = wall_clock();
 }
 
 /// Points ParaView at the arrays of the results file; topology as an XDMF mixed list written beside the fields once.

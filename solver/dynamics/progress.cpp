@@ -25,7 +25,7 @@ Progress::Progress(bool quiet, double start, double end)
 void Progress::show(double t, long step, int iterations, bool force) {
   if (quiet_) return;
   const double now = wall_clock();
-  if (!force && now - last_ < (terminal_ ? 0.1 : 10)) return;
+  if (now - last_ < (terminal_ ? 0.1 : 10) && !(force && open_)) return;
   last_ = now;
   const double done = end_ > start_ ? (t - start_) / (end_ - start_) : 1, left = done > 0 ? (now - began_) * (1 - done) / done : 0;
   if (terminal_) {

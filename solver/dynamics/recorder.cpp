@@ -30,7 +30,8 @@ Recorder::Recorder(const System& system, const Scene& scene, Setup setup) : syst
 std::vector<double> Recorder::point_values(const State& s) {
   const System::Energy e = system_.energy(s.q, s.v);
   const double total = e.kinetic + e.elastic + e.gravity;
-  if (rows_.empty()) E0_ = total;
+  if (!started_) E0_ = total;
+  started_ = true, last_t_ = s.t;
   max_T_ = std::max({max_T_, e.kinetic, 1e-300});
   const double balance = total - E0_ - work_ + dissipated_, violation = system_.constraint_violation(s.q);
   worst_balance_ = std::max(worst_balance_, std::abs(balance));
@@ -219,7 +220,7 @@ void Recorder::step(const State& s, const Stage& stage, std::span<const double> 
   const System::Work w = system_.work(stage, lambda);
   work_ += w.external, dissipated_ += w.dissipated;
   Interval interval;
-  interval.h = s.t - rows_.back().t;
+  interval.h = s.t - last_t_;
   interval.mid = mid_values(s, stage, lambda, a);
   interval.a = a;
   intervals_.push_back(std::move(interval));

@@ -68,11 +68,12 @@ class Recorder {
   std::deque<Row> rows_;
   std::deque<Interval> intervals_;    // interval k starts at row k of rows_
   Interval before_last_;              // the interval before intervals_[0], for the last row
-  bool first_written_ = false;
+  bool first_written_ = false, started_ = false;
+  double last_t_ = 0;
   double next_field_ = 0, E0_ = 0, max_T_ = 0, work_ = 0, dissipated_ = 0, worst_balance_ = 0, worst_violation_ = 0;
   int n_fields_ = 0, newton_ = 0;
   long rows_written_ = 0;
-  double last_flush_ = 0;
+  double last_flush_ = 0, last_xdmf_ = 0;
   std::vector<double> field_times_;
 };
 

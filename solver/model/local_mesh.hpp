@@ -11,17 +11,18 @@
 namespace hilo {
 
 struct LocalMesh {
-  Mesh mesh;                              // local numbering; region and set names are those of the whole mesh on every rank
-  std::vector<Fidelity> fidelity;         // per region
+  Mesh mesh;                       // local numbering; region and set names are those of the whole mesh on every rank
+  std::vector<Fidelity> fidelity;  // per region
   bool tagged = false;
   std::vector<std::int64_t> node_global;  // row of each local node in the file      (n_nodes)
   std::vector<std::int64_t> cell_global;  // row of each local cell in the file      (n_cells)
   std::vector<char> node_owned;           // 1 on the one rank that owns the node    (n_nodes)
-  std::map<std::string, std::vector<std::int64_t>> elsewhere;  // local nodes that a region, facet or cell set has through cells of other ranks
+  std::map<std::string, std::vector<std::int64_t>>
+      elsewhere;  // local nodes that a region, facet or cell set has through cells of other ranks
   std::int64_t n_nodes_global = 0, n_cells_global = 0;
-  std::string file;                       // mesh, tags or parts file it came from ("" without a mesh)
+  std::string file;  // mesh, tags or parts file it came from ("" without a mesh)
   std::vector<std::string> provenance;
-  double length = 1;                      // diagonal of the bounding box of the whole mesh [m]
+  double length = 1;  // diagonal of the bounding box of the whole mesh [m]
 
   /// All local nodes of a name, also those that only a cell of another rank puts there: what Mesh::nodes_of gives on one rank.
   std::vector<std::int64_t> nodes_of(const std::string& name, const std::string& where) const;

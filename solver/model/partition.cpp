@@ -8,10 +8,11 @@ namespace {
 
 /// A box that still has several parts to be cut into.
 struct Group {
-  int kind, first, n;      // parts first .. first + n - 1
-  Vec3 direction;          // of the cut
-  double low, high;        // bounds of direction . x, closing in on the cut
-  double wanted;           // weight to the left of the cut
+  int kind = 0, first = 0, n = 0;  // parts first .. first + n - 1
+  Vec3 direction = Vec3::Zero();   // of the cut
+  double low = 0, high = 0;        // bounds of direction . x, closing in on the cut
+  double wanted = 0;               // weight to the left of the cut
+  Group(int k, int f, int parts) : kind(k), first(f), n(parts) {}
 };
 
 }  // namespace
@@ -23,7 +24,7 @@ std::vector<int> bisect(const Cloud& cloud, int n_parts, const Comm& comm) {
   for (const int k : cloud.kind) n_kinds = std::max(n_kinds, k + 1);
   n_kinds = static_cast<int>(comm.max(n_kinds));
   std::vector<Group> groups;
-  for (int k = 0; k < n_kinds && n_parts > 1; ++k) groups.push_back({k, 0, n_parts, {}, 0, 0, 0});
+  for (int k = 0; k < n_kinds && n_parts > 1; ++k) groups.emplace_back(k, 0, n_parts);
   for (size_t i = 0; i < n; ++i) group[i] = n_parts > 1 ? cloud.kind[i] : -1;
   while (!groups.empty()) {
     const size_t m = groups.size();
@@ -67,7 +68,7 @@ std::vector<int> bisect(const Cloud& cloud, int n_parts, const Comm& comm) {
     for (size_t g = 0; g < m; ++g) {
       const Group& c = groups[g];
       const int n_left = c.n / 2;
-      const std::array<Group, 2> both{Group{c.kind, c.first, n_left, {}, 0, 0, 0}, Group{c.kind, c.first + n_left, c.n - n_left, {}, 0, 0, 0}};
+      const std::array<Group, 2> both{Group(c.kind, c.first, n_left), Group(c.kind, c.first + n_left, c.n - n_left)};
       for (int s = 0; s < 2; ++s) {
         half[g][s] = both[s].n > 1 ? static_cast<int>(halves.size()) : -1;
         if (both[s].n > 1) halves.push_back(both[s]);

@@ -10,12 +10,12 @@ namespace hilo {
 
 /// Points to divide: this rank's share of them.
 struct Cloud {
-  std::vector<Vec3> x;      // centres of the cells
-  std::vector<double> work; // weight of each
-  std::vector<int> kind;    // 0, 1, ...: each kind is divided for itself, so all of them are balanced
+  std::vector<Vec3> x;       // centres of the cells
+  std::vector<double> work;  // weight of each
+  std::vector<int> kind;     // 0, 1, ...: each kind is divided for itself, so all of them are balanced
 };
 
-/// Part (0 .. n_parts - 1) of each point of this rank.  Cuts each box across its longest side at the weighted median [berger-bokhari-1987].
+/// Part (0 .. n_parts - 1) of each point of this rank.  Cuts each box across its longest side at the weighted median.
 std::vector<int> bisect(const Cloud& cloud, int n_parts, const Comm& comm);
 
 }  // namespace hilo

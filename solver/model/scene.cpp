@@ -19,6 +19,13 @@ const Value& value_of(const Entry& e, std::string_view key) {
   return v->second;
 }
 
+/// Keys and options may hold line breaks; a message is one line.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 32; }, ' ');
+  return text;
+}
+
 }  // namespace
 
 std::string Place::text() const { return line == 0 ? file : fmt::format("{}:{}:{}", file, line, column); }
@@ -59,12 +66,16 @@ Scene Scene::parse(const std::string& text, const std::string& path, std::span<c
   scene.folder = path == "-" || parent.empty() ? std::string(".") : parent;
   around.file = path == "-" ? std::string("<stdin>") : path;
   around.folder = scene.folder;
-  toml::table root = parse_toml(scene.text, around.file);
-  for (const auto& option : overrides) apply_override(root, option);
-  if (!overrides.empty()) scene.text = toml_text(root);
-  scene.entries_ = read_sections(root, around);
+  try {
+    toml::table root = parse_toml(scene.text, around.file);
+    for (const auto& option : overrides) apply_override(root, option);
+    if (!overrides.empty()) scene.text = toml_text(root);
+    scene.entries_ = read_sections(root, around);
+    check_entries(scene.entries_);
+  } catch (const Error& e) {
+    throw Error(one_line(e.where), one_line(e.message), one_line(e.hint), e.exit);
+  }
   scene.units = around.units;
-  check_entries(scene.entries_);
   scene.warnings = find_implausible(scene.entries_);
   return scene;
 }

@@ -48,6 +48,8 @@ std::string_view trim(std::string_view s) {
 
 /// The right side of an override as a one-key table; a bare word becomes a text.
 toml::table parse_right_side(std::string_view value, const std::string& where) {
+  if (std::any_of(value.begin(), value.end(), [](unsigned char c) { return c < 32 || c == 127; }))
+    throw Error(where, "the value holds a control character", "", Exit::usage);
   try {
     auto t = toml::parse(fmt::format("x = {}", value), where);
     if (t.size() == 1) return t;

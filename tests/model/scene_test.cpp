@@ -109,6 +109,12 @@ TEST_F(SceneText, IsReadFromStandardInputForADash) {
   EXPECT_EQ(message, "<stdin>:2:1: time: unknown key \"endd\" (did you mean \"end\"?)");
 }
 
+TEST_F(SceneText, FromMemoryIsTheSameAsFromAFile) {
+  const std::string text = "units = \"mm-t-s\"\n" + hinge + pull;
+  const std::string file = (folder / "scene.toml").string();
+  EXPECT_EQ(Scene::parse(text, file).explain(), load(text).explain());
+}
+
 TEST_F(SceneText, IsConvertedToSIFromMillimetreTonneSecond) {
   const Scene s = load(R"(units = "mm-t-s"
 gravity = [0, 0, -9810]
@@ -198,6 +204,10 @@ TEST_F(Mistake, AMissingFileIsNamed) {
     EXPECT_EQ(e.exit, Exit::input);
     EXPECT_NE(std::string(e.what()).find("absent.toml"), std::string::npos);
   }
+}
+
+TEST_F(Mistake, IsSaidInOneLineWhateverTheKeyHolds) {
+  EXPECT_EQ(refusal("[time]\n\"a\\nb\" = 1\n").substr(0, 46), "scene.toml:2:1: time: unknown key \"a b\" (keys:");
 }
 
 TEST_F(Mistake, UnknownSection) {

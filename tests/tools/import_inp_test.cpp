@@ -119,7 +119,7 @@ TEST_F(ImportInp, SupportsAndLoadsBecomeSceneLinesOnTheirSets) {
 
 TEST_F(ImportInp, WhatIsNotReadIsListedWithItsLine) {
   imported(deck("loads.inp"), "--units mm-t-s");
-  for (const char* said : {"1 nodes belong to no cell: dropped, the first is 99", "not read: *DLOAD CENTRIF (1, ", "loads.inp:41)", "not read: *TEMPERATURE (1, ", "loads.inp:42)",
+  for (const char* said : {"1 nodes belong to no cell: dropped, the first is 99", "not read: *DLOAD CENTRIF (1, ", "loads.inp:40)", "not read: *TEMPERATURE (1, ", "loads.inp:41)",
                            "*NODE FILE (1, ", "a request for output", "only the first step becomes scene lines", "*CLOAD in step 2 and later (1, "})
     EXPECT_NE(err.find(said), std::string::npos) << said << "\n" << err;
 }
@@ -227,7 +227,7 @@ TEST_F(ImportInp, WrongDecksAreNamedByLineAndColumnAndLeaveNothing) {
       {two_cubes + "*ELEMENT, TYPE=C3D8\n3, 1, 2, 3, 4, 5, 6\n*NSET, NSET=a\n", "a.inp:19:1: element 3 has 6 of its 8 nodes"},
       {two_cubes + "*ELEMENT, TYPE=S4R, ELSET=a\n3, 1, 2, 3, 4\n",
        "a.inp:18:16: element type \"S4R\": shells are not read (supported: C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 and their I, R, H, M, T variants, T3D2)"},
-      {two_cubes + "*NSET, NSET=a\n1, lefft\n", "a.inp:19:4: no set \"lefft\" so far"},
+      {two_cubes + "*NSET, NSET=left\n1\n*NSET, NSET=a\n1, lefft\n", "a.inp:21:4: no set \"lefft\" so far (did you mean \"left\"?)"},
       {two_cubes + "*BOUNDARY\nleft, 1\n", "a.inp:19: no node set \"LEFT\""},
       {two_cubes + "*CLOAD\n77, 1, 3.\n", "a.inp:19: no node 77"},
       {two_cubes + "*SOLID SECTION, ELSET=lo, MATERIAL=m\n", "a.inp:18:23: *SOLID SECTION: no element set \"LO\" (did you mean \"low\"?)"},

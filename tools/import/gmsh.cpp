@@ -129,18 +129,19 @@ class GmshReader {
     gmsh::open(path_);
     if (const auto e = Session::last_error(); !e.empty()) throw Error(path_, e);
     if (!is_geometry(ext)) return;
-    gmsh::vectorpair volumes;
+    gmsh::vectorpair volumes, bars;
     gmsh::model::getEntities(volumes, 3);
-    if (volumes.empty()) throw Error(path_, "no volume to mesh", "the geometry holds points, curves or surfaces only");
+    gmsh::model::getPhysicalGroups(bars, 1);
+    if (volumes.empty() && bars.empty()) throw Error(path_, "no volume to mesh", "the geometry holds points, curves or surfaces only");
     if (o_.size) {
       gmsh::option::setNumber("Mesh.MeshSizeMax", *o_.size);
       double low;
       gmsh::option::getNumber("Mesh.MeshSizeMin", low);
       if (low > *o_.size) gmsh::option::setNumber("Mesh.MeshSizeMin", *o_.size);
     }
-    gmsh::model::mesh::generate(3);
+    gmsh::model::mesh::generate(volumes.empty() ? 1 : 3);
     if (const auto e = Session::last_error(); !e.empty()) throw Error(path_, "gmsh cannot mesh it: " + e, "try another --size");
-    if (o_.order == 2) gmsh::model::mesh::setOrder(2);
+    if (o_.order == 2 && !volumes.empty()) gmsh::model::mesh::setOrder(2);
     for (const auto& [dim, tag] : volumes) {
       std::vector<int> types;
       std::vector<std::vector<std::size_t>> tags, nodes;

@@ -50,13 +50,10 @@ class Parts {
 };
 
 void check_names(const InpDeck& d) {
-  std::vector<std::string> elsets, materials;
-  for (const auto& [key, s] : d.elset) elsets.push_back(s.name);
-  for (const auto& [key, m] : d.materials) materials.push_back(m.name);
   for (const auto& s : d.sections) {
-    if (!d.elset.count(s.elset)) throw Error(s.place, fmt::format("*SOLID SECTION: no element set \"{}\"", s.elset), suggest(s.elset, elsets));
+    if (!d.elset.count(s.elset)) throw Error(s.place, fmt::format("*SOLID SECTION: no element set \"{}\"", s.elset_name), suggest_name(s.elset, d.elset));
     if (!d.materials.count(s.material))
-      throw Error(s.material_place, fmt::format("*SOLID SECTION: no material \"{}\"", s.material), suggest(s.material, materials));
+      throw Error(s.material_place, fmt::format("*SOLID SECTION: no material \"{}\"", s.material_name), suggest_name(s.material, d.materials));
   }
 }
 

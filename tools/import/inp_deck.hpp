@@ -8,6 +8,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "base/error.hpp"
 #include "import/imported.hpp"
 #include "import/inp_lines.hpp"
 
@@ -35,7 +36,8 @@ struct InpMaterial {
   RegionData data;                  // units of the deck
 };
 struct InpSection {
-  std::string elset, material;      // upper case
+  std::string elset, material;      // upper case, and as written
+  std::string elset_name, material_name;
   std::string place, material_place;
   double area = 0;                  // of bars
 };
@@ -62,6 +64,17 @@ struct InpAmplitude {
   std::string name;
   std::vector<double> t, value;
 };
+
+/// `did you mean "low"?` for a name of which the case does not count.
+template <class Named>
+std::string suggest_name(const std::string& name, const std::map<std::string, Named>& known) {
+  std::vector<std::string> keys;
+  for (const auto& [key, one] : known) keys.push_back(key);
+  std::string hint = suggest(upper(name), keys);
+  for (const auto& [key, one] : known)
+    if (const auto at = hint.find('"' + key + '"'); at != std::string::npos) return hint.replace(at + 1, key.size(), one.name);
+  return hint;
+}
 
 struct InpDeck {
   std::vector<Vec3> X;

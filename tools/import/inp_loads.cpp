@@ -173,7 +173,7 @@ bool parse_material_card(const Card& card, InpLines& lines, InpDeck& d, Imported
     if (!(m.data.density > 0)) throw Error(l.place(0), fmt::format("material {}: density {:g} is not positive", m.name, m.data.density));
     while (lines.next_data(l)) in.skip("*DENSITY at further temperatures", l.place());
   } else if (card.key == "SOLIDSECTION") {
-    InpSection s{upper(card.need("ELSET")), upper(card.need("MATERIAL")), card.place("ELSET"), card.place("MATERIAL")};
+    InpSection s{upper(card.need("ELSET")), upper(card.need("MATERIAL")), card.need("ELSET"), card.need("MATERIAL"), card.place("ELSET"), card.place("MATERIAL")};
     if (card.has("ORIENTATION")) in.skip("*SOLID SECTION, ORIENTATION", card.place());
     if (lines.next_data(l)) s.area = l.number(0);
     d.sections.push_back(s);

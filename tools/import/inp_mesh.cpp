@@ -81,8 +81,6 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
   const std::string name = card.need(key);
   set_named(name, sets, order);
   std::vector<std::int64_t> add;
-  std::vector<std::string> known;
-  for (const auto& [k, s] : sets) known.push_back(s.name);
   if (key == "NSET" && card.has("ELSET")) {   // the nodes of an element set
     const auto it = d.elset.find(card.word("ELSET"));
     if (it == d.elset.end()) throw Error(card.place("ELSET"), fmt::format("no element set \"{}\"", card.value("ELSET")));
@@ -113,7 +111,7 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
       std::string_view text = l.text(i);
       if (text.size() > 1 && text.front() == '"') text = text.substr(1, text.size() - 2);
       const auto it = sets.find(upper(text));
-      if (it == sets.end()) throw Error(l.place(i), fmt::format("no set \"{}\" so far", text), suggest(text, known));
+      if (it == sets.end()) throw Error(l.place(i), fmt::format("no set \"{}\" so far", text), suggest_name(std::string(text), sets));
       add.insert(add.end(), it->second.members.begin(), it->second.members.end());
     }
   }

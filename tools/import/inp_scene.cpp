@@ -387,9 +387,7 @@ std::vector<std::int64_t> inp_nodes(const InpDeck& d, const std::string& target,
   }
   const auto set = d.nset.find(target);
   if (set == d.nset.end()) {
-    std::vector<std::string> known;
-    for (const auto& [key, s] : d.nset) known.push_back(s.name);
-    throw Error(place, fmt::format("no node set \"{}\"", target), suggest(target, known));
+    throw Error(place, fmt::format("no node set \"{}\"", target), suggest_name(target, d.nset));
   }
   for (const auto i : set->second.members)
     if (const auto a = d.node.find(i); a != d.node.end()) rows.push_back(a->second);
@@ -407,9 +405,7 @@ std::vector<std::int64_t> inp_cells(const InpDeck& d, const std::string& target,
   }
   const auto set = d.elset.find(target);
   if (set == d.elset.end()) {
-    std::vector<std::string> known;
-    for (const auto& [key, s] : d.elset) known.push_back(s.name);
-    throw Error(place, fmt::format("no element set \"{}\"", target), suggest(target, known));
+    throw Error(place, fmt::format("no element set \"{}\"", target), suggest_name(target, d.elset));
   }
   for (const auto i : set->second.members)
     if (const auto c = d.cell.find(i); c != d.cell.end()) rows.push_back(c->second);

@@ -1,0 +1,25 @@
+# What every scene's Makefile needs: the tools, built once into build/, and the environment they run in.
+ROOT := $(patsubst %/data/common.mk,%,$(realpath $(lastword $(MAKEFILE_LIST))))
+BUILD ?= $(ROOT)/build
+BIN := $(BUILD)/bin
+TOOLS := hilo-import hilo-tag hilo-part hilo-solve hilo-post hilo-show
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DELETE_ON_ERROR:
+
+export OMPI_ALLOW_RUN_AS_ROOT := 1
+export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
+export OMPI_MCA_rmaps_base_oversubscribe := 1
+export OMPI_MCA_mpi_yield_when_idle := 1
+export OMPI_MCA_hwloc_base_binding_policy := none
+export OPENBLAS_NUM_THREADS := 1
+
+.DEFAULT_GOAL := all
+.PHONY: all build setup
+setup:
+	@$(ROOT)/.setup
+
+# Ninja itself finds out that there is nothing to do.
+build: setup
+	@[ -f $(BUILD)/build.ninja ] || cmake -S $(ROOT) -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release > $(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
+	@cmake --build $(BUILD) --target $(TOOLS) hilo-petsc

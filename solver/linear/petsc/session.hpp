@@ -1,0 +1,23 @@
+// PETSc's start and end, and its errors.
+#pragma once
+#define OMPI_SKIP_MPICXX 1
+#include <petscsys.h>
+
+#include <string>
+
+namespace hilo::petsc {
+
+/// Start PETSc once.  It ends before MPI does, or with the process where PETSc started MPI.
+void start();
+
+/// Throw what PETSc said as an Error (exit 4 where memory ran out, else 5).  With several ranks all of them are ended instead: the others
+/// may be waiting for this one.
+void check(PetscErrorCode code);
+
+/// An Error of one rank that the others do not share; like check().
+[[noreturn]] void fail(const std::string& what, int exit_code);
+
+int rank();
+int size();
+
+}  // namespace hilo::petsc

@@ -1,0 +1,41 @@
+// Loads the PETSc solvers on first use: PETSc's start costs more than a small run, so hilo-solve is not linked to it.
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "linear/kkt.hpp"
+#include "linear/petsc/module.hpp"
+
+namespace hilo {
+namespace {
+
+constexpr const char* library = "libhilo-petsc.so";
+
+using Make = decltype(&hilo_make_petsc_solver);
+
+Make load() {
+  std::error_code ignored;
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+  const std::string beside = (folder.parent_path() / "lib" / library).string();
+  // PETSc and Open MPI load parts of their own, which look for their symbols among the global ones
+  constexpr int flags = RTLD_NOW | RTLD_GLOBAL;
+  const bool is_beside = std::filesystem::exists(beside, ignored);
+  void* handle = dlopen(is_beside ? beside.c_str() : library, flags);
+  if (!handle)
+    throw Error(is_beside ? beside : library, fmt::format("cannot load the PETSc solvers: {}", dlerror()),
+                "solver.kind = \"light\" does without; apt-get install libpetsc-real3.18 for the others", Exit::resources);
+  const auto make = reinterpret_cast<Make>(dlsym(handle, "hilo_make_petsc_solver"));
+  if (!make) throw Error(library, "is not of this version of hilo", "", Exit::resources);
+  return make;
+}
+
+}  // namespace
+
+std::unique_ptr<KktSolver> make_petsc_solver(const std::string& kind, double tolerance) {
+  static const Make make = load();
+  return std::unique_ptr<KktSolver>(make(kind.c_str(), tolerance, tool_name().c_str()));
+}
+
+}  // namespace hilo

@@ -1,0 +1,35 @@
+// Tests that run on several ranks: a test starts its own executable under mpirun, with a filter for the suite that holds there.
+// Such suites are called DISABLED_..., so that they do not run by themselves.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "cli.hpp"
+#include "model/comm.hpp"
+
+namespace hilo::test {
+
+/// Every test of `suite` of this executable passes on `ranks` ranks (1: without mpirun), in `folder`.
+inline void expect_passes_on(int ranks, const std::string& suite, const std::string& folder = ".") {
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+  const std::string launcher =
+      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
+      "OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_hwloc_base_binding_policy=none timeout 300 mpirun -n " +
+      std::to_string(ranks) + " ";
+  const Ran ran = run((ranks == 1 ? "timeout 300 " : launcher) + "'" + self +
+                          "' --gtest_also_run_disabled_tests --gtest_filter='*DISABLED_" + suite + ".*'",
+                      folder);
+  EXPECT_EQ(ran.exit, 0) << suite << " on " << ranks << " ranks:\n" << ran.out << ran.err;
+  EXPECT_NE(ran.out.find("[  PASSED  ]"), std::string::npos) << ran.err;
+  EXPECT_EQ(ran.out.find("Running 0 tests"), std::string::npos) << "no suite " << suite;
+}
+
+/// Ends MPI after the last test, as a main would.
+class EndOfRanks : public testing::Environment {
+  void TearDown() override { Comm::world().finish(); }
+};
+inline testing::Environment* const end_of_ranks = testing::AddGlobalTestEnvironment(new EndOfRanks);
+
+}  // namespace hilo::test

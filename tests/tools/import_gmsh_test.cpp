@@ -1,0 +1,211 @@
+// Meshes and geometries that go through gmsh, written here by gmsh itself: named groups, shapes, orders and formats survive.
+#include <gmsh.h>
+
+#include "import_case.hpp"
+
+namespace hilo {
+namespace {
+
+using test::cells_of;
+using test::vector_area;
+using test::volume;
+
+/// Two unit boxes that share the face x = 1.  `what`: hexahedra, tetrahedra or prisms; the groups are a solid each, faces, a curve, a point.
+std::string boxes(const std::string& what, bool groups = true) {
+  std::string s = R"(DefineConstant[ N = {2, Name "Parameters/cells"} ];
+For i In {0:1}
+  p = newp; Point(p) = {i,0,0}; Point(p+1) = {i+1,0,0}; Point(p+2) = {i+1,1,0}; Point(p+3) = {i,1,0};
+  l = newl; Line(l) = {p,p+1}; Line(l+1) = {p+1,p+2}; Line(l+2) = {p+2,p+3}; Line(l+3) = {p+3,p};
+  c = newll; Curve Loop(c) = {l:l+3}; s = news; Plane Surface(s) = {c};
+  base(i) = s;
+EndFor
+Coherence;
+Transfinite Curve{:} = N + 1;
+Transfinite Surface{:};
+)";
+  if (what == "hex") s += "Recombine Surface{:};\n";
+  if (what == "tet") s += "a() = Extrude {0,0,1} { Surface{base(0)}; };\nb() = Extrude {0,0,1} { Surface{base(1)}; };\n";
+  else s += "a() = Extrude {0,0,1} { Surface{base(0)}; Layers{N}; Recombine; };\nb() = Extrude {0,0,1} { Surface{base(1)}; Layers{N}; Recombine; };\n";
+  if (groups)
+    s += R"(Physical Volume("left") = {a(1)};
+Physical Volume(7) = {b(1)};
+Physical Surface("inlet") = Surface In BoundingBox{-.1,-.1,-.1,.1,1.1,1.1};
+Physical Surface("middle") = Surface In BoundingBox{.9,-.1,-.1,1.1,1.1,1.1};
+Physical Curve("edge") = Curve In BoundingBox{-.1,-.1,-.1,.1,1.1,.1};
+Physical Point("corner") = Point In BoundingBox{-.1,-.1,-.1,.1,.1,.1};
+)";
+  return s;
+}
+
+class ImportGmsh : public test::Import {
+ protected:
+  /// Meshes a .geo script with gmsh and writes `file`.
+  void mesh(const std::string& script, const std::string& file, int order = 1, double version = 4.1, bool binary = false, bool complete = false) {
+    place.write("made.geo", script);
+    gmsh::initialize();
+    gmsh::option::setNumber("General.Terminal", 0);
+    gmsh::option::setNumber("Mesh.ElementOrder", order);
+    gmsh::option::setNumber("Mesh.SecondOrderIncomplete", complete ? 0 : 1);
+    gmsh::option::setNumber("Mesh.MshFileVersion", version);
+    gmsh::option::setNumber("Mesh.Binary", binary ? 1 : 0);
+    gmsh::open(place / "made.geo");
+    gmsh::model::mesh::generate(3);
+    gmsh::write(place / file);
+    gmsh::finalize();
+    std::filesystem::remove(place / "made.geo");
+  }
+  void expect_boxes(const Mesh& m, const std::string& where) {
+    EXPECT_NEAR(volume(m), 2, 1e-12) << where;
+    EXPECT_EQ(m.region_name, (std::vector<std::string>{"left", "volume_7"})) << where;
+    ASSERT_TRUE(m.facet_sets.count("inlet") && m.facet_sets.count("middle")) << where;
+    EXPECT_LT((vector_area(m, m.facet_sets.at("inlet")) - Vec3(-1, 0, 0)).norm(), 1e-12) << where;
+    EXPECT_NEAR(std::abs(vector_area(m, m.facet_sets.at("middle")).x()), 1, 1e-12) << where;
+    ASSERT_TRUE(m.node_sets.count("edge") && m.node_sets.count("corner")) << where;
+    for (const auto a : m.node_sets.at("edge")) EXPECT_EQ(m.X[a].z(), 0) << where;
+    ASSERT_EQ(m.node_sets.at("corner").size(), 1u) << where;
+    EXPECT_EQ(m.X[m.node_sets.at("corner")[0]].norm(), 0) << where;
+    for (std::int64_t c = 0; c < m.n_cells(); ++c) EXPECT_EQ(m.X[m.cell(c)[0]].x() + m.X[m.cell(c)[1]].x() > 2 + 1e-9 ? 1 : m.region[c], m.region[c]) << where;
+  }
+};
+
+TEST_F(ImportGmsh, GroupsSurviveInEveryVersionOfMsh) {
+  for (const double version : {2.2, 4.1})
+    for (const bool binary : {false, true}) {
+      const std::string where = std::to_string(version) + (binary ? " binary" : " ascii");
+      mesh(boxes("hex"), "a.msh", 1, version, binary);
+      const Mesh m = imported("a.msh");
+      EXPECT_EQ(m.n_cells(), 16) << where;
+      EXPECT_EQ(cells_of(m, "left"), 8) << where;
+      EXPECT_EQ(m.facet_sets.at("inlet").size(), 4u) << where;
+      EXPECT_EQ(m.n_nodes(), 45) << where;
+      expect_boxes(m, where);
+    }
+}
+
+TEST_F(ImportGmsh, EveryShapeAndOrderKeepsItsVolumeAndItsMiddles) {
+  const struct {
+    const char* what;
+    int order;
+    bool complete;
+    Shape shape;
+  } cases[] = {{"tet", 1, false, Shape::tet4},      {"tet", 2, false, Shape::tet10}, {"hex", 1, false, Shape::hex8},    {"hex", 2, false, Shape::hex20},
+               {"prism", 1, false, Shape::wedge6}, {"prism", 2, false, Shape::wedge15}, {"hex", 2, true, Shape::hex20}, {"prism", 2, true, Shape::wedge15}};
+  for (const auto& c : cases) {
+    const std::string where = std::string(c.what) + std::to_string(c.order) + (c.complete ? " complete" : "");
+    mesh(boxes(c.what), "a.msh", c.order, 4.1, false, c.complete);
+    const Mesh m = imported("a.msh");
+    expect_boxes(m, where);
+    for (std::int64_t e = 0; e < m.n_cells(); ++e) {
+      ASSERT_EQ(static_cast<Shape>(m.shape[e]), c.shape) << where;
+      // mid-side nodes of a facet stand behind its corners, each in the middle of its edge
+      for (size_t f = 0; f < info(c.shape).facets.size(); ++f) {
+        const auto n = m.facet_nodes({e, static_cast<std::int64_t>(f)});
+        const size_t k = n.size() / 2;
+        for (size_t i = 0; c.order == 2 && i < k; ++i) EXPECT_LT((m.X[n[k + i]] - (m.X[n[i]] + m.X[n[(i + 1) % k]]) / 2).norm(), 1e-9) << where;   // gmsh places nodes to 1e-12
+      }
+    }
+    if (c.complete) {
+      EXPECT_NE(err.find("read without the nodes inside faces and cells"), std::string::npos) << err;
+    }
+  }
+}
+
+TEST_F(ImportGmsh, UnvKeepsGroups) {
+  mesh(boxes("hex"), "a.unv");
+  const Mesh m = imported("a.unv");
+  EXPECT_EQ(m.n_cells(), 16);
+  EXPECT_NEAR(volume(m), 2, 1e-12);
+  EXPECT_EQ(cells_of(m, "left"), 8) << out << err;
+  EXPECT_TRUE(m.facet_sets.count("inlet"));
+}
+
+TEST_F(ImportGmsh, AScriptIsMeshedWithItsParametersSizeAndOrder) {
+  place.write("a.geo", boxes("hex"));
+  EXPECT_EQ(imported("a.geo").n_cells(), 16);
+  EXPECT_EQ(imported("a.geo", "--define N=3").n_cells(), 54);
+  const Mesh m = imported("a.geo", "--define N=1 --order 2");
+  EXPECT_EQ(static_cast<Shape>(m.shape[0]), Shape::hex20);
+  EXPECT_EQ(m.n_nodes(), 12 + 20);
+  place.write("b.geo", "SetFactory(\"OpenCASCADE\"); Box(1) = {0,0,0,1,1,1};\n");
+  const auto coarse = imported("b.geo", "--size 1").n_cells(), fine = imported("b.geo", "--size 0.2").n_cells();
+  EXPECT_GT(fine, 10 * coarse);
+}
+
+TEST_F(ImportGmsh, AGeometryWithoutGroupsHasARegionPerVolume) {
+  place.write("a.geo", boxes("tet", false));
+  const Mesh m = imported("a.geo");
+  EXPECT_EQ(m.region_name, (std::vector<std::string>{"volume_1", "volume_2"}));
+  EXPECT_NE(err.find("no volume groups: each of 2 volumes is a region"), std::string::npos) << err;
+  EXPECT_EQ(imported("a.geo", "--rest all").region_name, std::vector<std::string>{"all"});
+}
+
+TEST_F(ImportGmsh, CadFilesAreMeshedAndNothingButTheTableIsOnStdout) {
+  gmsh::initialize();
+  gmsh::option::setNumber("General.Terminal", 0);
+  gmsh::model::occ::addBox(0, 0, 0, 10, 20, 30);
+  gmsh::model::occ::synchronize();
+  for (const char* file : {"a.step", "a.brep"}) gmsh::write(place / file);
+  gmsh::finalize();
+  for (const char* file : {"a.step", "a.brep"}) {
+    const Mesh m = imported(file, "--size 10 --scale 1e-3");
+    EXPECT_NEAR(volume(m), 6e-6, 1e-15) << file;
+    EXPECT_EQ(out.rfind("region", 0), 0u) << out;
+  }
+}
+
+TEST_F(ImportGmsh, CellsInTwoGroupsGoToTheFirstAndBothStayNamed) {
+  place.write("a.geo", boxes("hex") + "Physical Volume(\"both\", 20) = {a(1), b(1)};\n");
+  const Mesh m = imported("a.geo");
+  EXPECT_EQ(m.region_name, (std::vector<std::string>{"left", "volume_7"})) << "the groups with the lower tags";
+  EXPECT_EQ(m.cell_sets.at("both").size(), 16u);
+  EXPECT_NE(err.find("16 of 16 cells of \"both\" belong to another region too"), std::string::npos) << err;
+}
+
+TEST_F(ImportGmsh, ACurveApartFromTheSolidsIsARegionOfBars) {
+  const std::string cable = "p = newp; Point(p) = {2,1,1}; Point(p+1) = {5,1,1}; l = newl; Line(l) = {p,p+1}; Transfinite Curve{l} = 4;\nPhysical Curve(\"cable\") = {l};\n";
+  place.write("a.geo", boxes("hex") + cable);
+  const Mesh m = imported("a.geo");
+  EXPECT_EQ(cells_of(m, "cable"), 3);
+  EXPECT_TRUE(m.node_sets.count("edge")) << "a curve on a solid is a node set";
+  place.write("b.geo", cable);
+  const Mesh bars = imported("b.geo");   // without solids every curve group is one
+  EXPECT_EQ(bars.region_name, std::vector<std::string>{"cable"});
+  EXPECT_NEAR(volume(bars), 3, 1e-12) << "the length";
+}
+
+TEST_F(ImportGmsh, WrongFilesAreNamedAndLeaveNothing) {
+  refused("absent.msh -o a.h5", 2, "absent.msh: no such file");
+  place.write("a.xyz", "x");
+  refused("a.xyz -o a.h5", 2,
+          "a.xyz: no reader for \".xyz\" files (there is one for .inp .bdf .nas .dat .fem .vtk .vtu .msh .unv .mesh .stl .geo .step .stp .brep .iges .igs .inp.gz)");
+  place.write("a.stl", "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n");
+  refused("a.stl -o a.h5", 2, "a.stl: no volume cells and no bars (a surface alone, as in an STL, has no volume: mesh its inside first)");
+  place.write("a.geo", "Point(1) = {0,0,0};\n");
+  refused("a.geo -o a.h5", 2, "a.geo: no volume to mesh (the geometry holds points, curves or surfaces only)");
+  mesh(boxes("hex") + "Physical Volume(\"rest\") = {};\n", "whole.msh");
+  const std::string text = test::text_of(place / "whole.msh");
+  place.write("cut.msh", text.substr(0, text.size() / 2));
+  const auto before = place.files();
+  const auto ran = place.run("hilo-import cut.msh -o a.h5");
+  EXPECT_EQ(ran.exit, 2) << ran.err;
+  EXPECT_EQ(ran.err.rfind("hilo-import: cut.msh", 0), 0u) << ran.err;
+  EXPECT_EQ(place.files(), before);
+  place.write("b.geo", "Point(1) = {0,0,0\n");
+  const auto syntax = place.run("hilo-import b.geo -o a.h5");
+  EXPECT_EQ(syntax.exit, 2);
+  EXPECT_NE(syntax.err.find("b.geo"), std::string::npos) << syntax.err;
+}
+
+TEST_F(ImportGmsh, CellsInNoGroupAreRefusedUnlessNamed) {
+  mesh(boxes("hex"), "a.msh", 1, 2.2);
+  // physical tag 7 of the second box becomes 0: its cells are in no group
+  std::string text = test::text_of(place / "a.msh");
+  for (size_t at = 0; (at = text.find(" 5 2 7 ", at)) != std::string::npos;) text.replace(at, 7, " 5 2 0 ");
+  place.write("a.msh", text);
+  refused("a.msh -o b.h5", 2, "a.msh: 8 of 16 cells are in no region, the first is cell 29 (give them one with --rest NAME)");
+  const Mesh m = imported("a.msh", "--rest hub");
+  EXPECT_EQ(cells_of(m, "hub"), 8);
+}
+
+}  // namespace
+}  // namespace hilo

@@ -1,0 +1,194 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "../cli.hpp"
+#include "../model/block.hpp"
+
+namespace hilo {
+namespace {
+
+using test::block;
+using test::Workplace;
+
+/// 20 x 4 x 4 hexahedra; the last quarter, `barrel`, is flexible.
+Mesh bar() {
+  return block(20, 4, 4, {"hull", "barrel"}, [](int i) { return i >= 15; });
+}
+
+/// Largest over mean of the number of flexible (or rigid) cells, counted from the file.
+double balance(const MeshFile& f, Fidelity fidelity) {
+  std::vector<double> count(f.n_parts, 0);
+  for (std::int64_t c = 0; c < f.mesh.n_cells(); ++c) count[f.rank[c]] += f.fidelity[f.mesh.region[c]] == fidelity;
+  return *std::max_element(count.begin(), count.end()) * f.n_parts / std::accumulate(count.begin(), count.end(), 0.);
+}
+std::vector<int> cells_of_parts(const MeshFile& f) {
+  std::vector<int> count(f.n_parts, 0);
+  for (const auto r : f.rank) ++count[r];
+  return count;
+}
+
+class Part : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_mesh(place / "mesh.h5", bar(), {"hilo-import bar.msh"});
+    write_tags(place / "tags.h5", place / "mesh.h5", {Fidelity::rigid, Fidelity::nonlinear}, {"hilo-import bar.msh", "hilo-tag"});
+  }
+  MeshFile parted(const std::string& arguments) {
+    const auto ran = place.run("hilo-part " + arguments + " -o parts.h5");
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    return read_mesh_file(place / "parts.h5");
+  }
+  void expect_refused(const std::string& command, int exit, const std::string& message) {
+    const auto before = place.files();
+    const auto ran = place.run(command);
+    EXPECT_EQ(ran.exit, exit) << command;
+    EXPECT_EQ(ran.out, "") << command;
+    EXPECT_EQ(ran.err, "hilo-part: " + message + "\n") << command;
+    EXPECT_EQ(place.files(), before) << command;
+  }
+  Workplace place;
+};
+
+TEST_F(Part, FlexibleAndRigidWorkAreBothBalanced) {
+  for (const int n : {2, 3, 4, 5, 7, 8}) {
+    const MeshFile f = parted("tags.h5 -n " + std::to_string(n));
+    EXPECT_EQ(f.n_parts, n);
+    EXPECT_LE(balance(f, Fidelity::nonlinear), std::ceil(80. / n) / (80. / n) + 0.051) << n;  // no better than whole cells allow
+    EXPECT_LE(balance(f, Fidelity::rigid), 1.5) << n;
+    EXPECT_GT(std::ranges::min(cells_of_parts(f)), 0) << n;
+  }
+}
+
+TEST_F(Part, UniformWeightsBalanceCellsAndLeaveTheFlexibleWorkUneven) {
+  const MeshFile f = parted("tags.h5 -n 8 --weights uniform");
+  const auto cells = cells_of_parts(f);
+  EXPECT_LE(*std::max_element(cells.begin(), cells.end()), 42);
+  EXPECT_GT(balance(f, Fidelity::nonlinear), 1.5);
+}
+
+TEST_F(Part, OnePartHoldsEverything) {
+  const MeshFile f = parted("tags.h5 -n 1");
+  EXPECT_EQ(f.rank, std::vector<std::int32_t>(320, 0));
+  EXPECT_EQ(f.n_parts, 1);
+  EXPECT_TRUE(f.tagged);
+}
+
+TEST_F(Part, AllRigidAndUntaggedMeshesArePartedToo) {
+  write_tags(place / "rigid.h5", place / "mesh.h5", {Fidelity::rigid, Fidelity::rigid}, {});
+  EXPECT_LE(balance(parted("rigid.h5 -n 4"), Fidelity::rigid), 1.15);
+  const auto ran = place.run("hilo-part mesh.h5 -n 4");
+  EXPECT_EQ(ran.err, "hilo-part: mesh.h5 has no tags, so every region is nonlinear\n");
+  EXPECT_LE(balance(read_mesh_file(place / "parts-4.h5"), Fidelity::nonlinear), 1.05);
+}
+
+TEST_F(Part, EveryCellCanHaveAPartOfItsOwn) {
+  write_mesh(place / "small.h5", block(3, 2, 1), {});
+  EXPECT_EQ(cells_of_parts(parted("small.h5 -n 6 --quiet")), std::vector<int>(6, 1));
+  EXPECT_EQ(std::ranges::min(cells_of_parts(parted("tags.h5 -n 80"))), 1);
+}
+
+TEST_F(Part, MoreCostlyShapesWeighMore) {
+  // Ten linear hexahedra apart from ten of twenty nodes: two parts of equal work cannot have equal numbers of cells.
+  Mesh m = block(10, 1, 1);
+  for (int i = 0; i < 10; ++i) {
+    std::vector<std::int64_t> nodes;
+    for (const Vec3& x : test::reference_nodes(Shape::hex20)) {
+      nodes.push_back(m.n_nodes());
+      m.X.push_back(x + Vec3(2. * i, 5, 0)), m.node_id.push_back(m.n_nodes());
+    }
+    m.add_cell(Shape::hex20, nodes, 0, 100 + i);
+  }
+  write_mesh(place / "mixed.h5", m, {});
+  const MeshFile f = parted("mixed.h5 -n 2 --quiet");
+  std::vector<int> work(2, 0);
+  for (std::int64_t c = 0; c < f.mesh.n_cells(); ++c) work[f.rank[c]] += f.mesh.shape[c] == static_cast<int>(Shape::hex20) ? 45 : 10;
+  EXPECT_LE(std::abs(work[0] - work[1]), 45);
+}
+
+TEST_F(Part, ChainOfBarsIsCutIntoConnectedParts) {
+  Mesh m;
+  m.region_name = {"chain"};
+  for (std::int64_t i = 0; i <= 40; ++i) m.X.emplace_back(i, 0, 0), m.node_id.push_back(i);
+  for (std::int64_t i = 0; i < 40; ++i) m.add_cell(Shape::bar2, std::vector<std::int64_t>{i, i + 1}, 0, i);
+  write_mesh(place / "chain.h5", m, {});
+  const MeshFile f = parted("chain.h5 -n 4 --quiet");
+  int changes = 0;
+  for (size_t c = 1; c < f.rank.size(); ++c) changes += f.rank[c] != f.rank[c - 1];
+  EXPECT_EQ(changes, 3);
+}
+
+TEST_F(Part, TableAgreesWithTheFile) {
+  const auto ran = place.run("hilo-part tags.h5 -n 2 -o parts.h5");
+  const MeshFile f = read_mesh_file(place / "parts.h5");
+  const auto cells = cells_of_parts(f);
+  EXPECT_EQ(ran.out.find("part  cells  flexible  flexible work  rigid work  pieces\n"), 0u) << ran.out;
+  EXPECT_NE(ran.out.find("   0    " + std::to_string(cells[0])), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\nweighted: largest over mean 1.0"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\nuniform: largest over mean 2.000 flexible work"), std::string::npos) << ran.out;
+  EXPECT_EQ(f.provenance.back(), "hilo-part tags.h5 -n 2 -o parts.h5");
+  // Facets between parts, counted from the nodes that cells share.
+  std::map<std::set<std::int64_t>, std::vector<std::int64_t>> facets;
+  for (std::int64_t c = 0; c < f.mesh.n_cells(); ++c)
+    for (std::int64_t k = 0; k < 6; ++k) {
+      const auto nodes = f.mesh.facet_nodes({c, k});
+      facets[{nodes.begin(), nodes.end()}].push_back(c);
+    }
+  int cut = 0;
+  for (const auto& [nodes, cells_at] : facets) cut += cells_at.size() == 2 && f.rank[cells_at[0]] != f.rank[cells_at[1]];
+  EXPECT_NE(ran.out.find("rigid work; cut " + std::to_string(cut) + " facets"), std::string::npos) << cut << "\n" << ran.out;
+}
+
+TEST_F(Part, SameInputGivesSameBytes) {
+  place.run("hilo-part tags.h5 -n 7 -o parts.h5 && mv parts.h5 first.h5");
+  EXPECT_EQ(place.run("hilo-part tags.h5 -n 7 -o parts.h5 && cmp parts.h5 first.h5").exit, 0);
+}
+
+TEST_F(Part, JointsOfASceneKeepTheirEndsTogether) {
+  // Two blocks that share no node: a joint between them is an edge of the graph and work of a cell.
+  Mesh m = block(8, 1, 1, {"a", "b"});
+  const Mesh other = block(8, 1, 1);
+  for (const Vec3& x : other.X) m.X.push_back(x + Vec3(9, 0, 0)), m.node_id.push_back(m.n_nodes());
+  for (std::int64_t c = 0; c < 8; ++c) {
+    std::vector<std::int64_t> nodes;
+    for (const auto n : other.cell(c)) nodes.push_back(n + other.n_nodes());
+    m.add_cell(Shape::hex8, nodes, 1, 100 + c);
+  }
+  write_mesh(place / "two.h5", m, {});
+  place.write("scene.toml",
+              "[[joint]]\nkind = \"spherical\"\nname = \"pin\"\na = \"a\"\nb = \"b\"\nat = [8.5, 0.5, 0.5]\n[time]\nend = 1.0\nstep = 0.1\n"
+              "[material.steel]\nE = 2e11\nnu = 0.3\ndensity = 7800\n[region.\"*\"]\nmaterial = \"steel\"\n");
+  const auto ran = place.run("hilo-part two.h5 scene.toml -n 2 --quiet --json");
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_NE(ran.out.find("\"joints\": 1"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\"pieces\": 1"), std::string::npos) << ran.out;
+  EXPECT_EQ(ran.out.find("\"pieces\": 2"), std::string::npos) << ran.out;
+  std::int64_t work = 0;
+  for (size_t at = ran.out.find("\"flexible work\": "); at != std::string::npos; at = ran.out.find("\"flexible work\": ", at + 1))
+    work += std::stoi(ran.out.substr(at + 17));
+  EXPECT_EQ(work, 16 * 10 + 5);
+}
+
+TEST_F(Part, WrongRequestsHaveTheirExitCodes) {
+  expect_refused("hilo-part tags.h5", 1, "--parts is required (see hilo-part --help)");
+  expect_refused("hilo-part tags.h5 -n 0", 1, "--parts: Value 0 not in range 1 to 1048576 (see hilo-part --help)");
+  expect_refused("hilo-part tags.h5 -n 2 --weigths uniform", 1, "unknown option --weigths (did you mean \"--weights\"?)");
+  expect_refused("hilo-part tags.h5 -n 2 -o tags.h5", 1, "tags.h5: would overwrite the file it reads (give another -o)");
+  expect_refused("hilo-part tags.h5 -n 81", 2, "tags.h5: 81 parts of 80 flexible cells would leave parts without work (at most 80)");
+  expect_refused("hilo-part none.h5 -n 2", 2, "none.h5: no such file");
+  expect_refused("hilo-part tags.h5 none.toml -n 2", 2, "none.toml: no such file");
+  expect_refused("hilo-part tags.h5 -n 2 -o nowhere/parts.h5", 4, "nowhere/parts.h5: cannot write: No such file or directory");
+  place.run("mv mesh.h5 elsewhere.h5");
+  expect_refused("hilo-part tags.h5 -n 2", 2,
+                 "tags.h5: mesh is in mesh.h5, which is missing (files that belong together stay in the same places)");
+}
+
+TEST_F(Part, HelpEndsWithAnExampleThatRuns) {
+  const auto help = place.run("hilo-part --help").out;
+  ASSERT_NE(help.rfind("Example:\n"), std::string::npos);
+  EXPECT_EQ(place.run(help.substr(help.rfind("Example:\n") + 9)).exit, 0);
+}
+
+}  // namespace
+}  // namespace hilo
