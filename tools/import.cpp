@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
     app->add_option("--units", o.units, "system of the file's numbers, all converted to SI: m-kg-s, mm-t-s, mm-kg-ms, in-lbf-s, ft-lbf-s")->type_name("SYSTEM");
     app->add_option("--scale", o.scale, "factor on the geometry alone")->type_name("S");
     app->add_option("--order", o.order, "2: quadratic cells (linear ones get nodes in the middle of their edges)")->type_name("N");
-    app->add_option("--size", o.size, "largest cell edge when a geometry is meshed, in the unit of the file")->type_name("H");
+    app->add_option("--size", o.size, "cell edge when CAD is meshed, at most this when a .geo script is; in the unit of the file")->type_name("H");
     app->add_option("--define", r.defines, "parameter of a .geo script, may be repeated")->type_name("NAME=VALUE")->allow_extra_args(false);
     app->add_option("--merge-nodes", o.merge, "nodes nearer than this become one, in the unit of the file")->type_name("TOL");
     app->add_option("--regions", o.regions, "element sets that become regions, before what the file says")->delimiter(',')->type_name("SET,...")->allow_extra_args(false);

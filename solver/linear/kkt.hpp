@@ -30,7 +30,8 @@ struct Cliques {
 struct BlockMap {
   std::vector<std::int64_t> global;  // (n_local)
   std::int64_t first = 0, n_owned = 0, n_global = 0;
-  std::int64_t first_dense = 0;      // global blocks from here on belong to bodies and multipliers
+  std::int64_t first_dense = 0;      // global blocks from here on belong to bodies and multipliers; the last rank owns them
+  std::vector<double> X;             // positions of the local blocks (n_local x 3), or empty: multigrid finds rigid motions from them [m]
 };
 
 /// What a solve did.
@@ -55,6 +56,8 @@ class KktSolver {
   /// Solve A x = b; b has the full values of the local blocks, x gets them.
   virtual SolveReport solve(std::span<const double> b, std::span<double> x) = 0;
   virtual std::string name() const = 0;
+  /// Memory of the matrix and its factors on this rank, where known.
+  virtual double bytes() const { return 0; }
 };
 
 /// KLU for small systems, UMFPACK above [davis-2010, davis-2004]; serial, starts in microseconds.

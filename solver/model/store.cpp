@@ -92,7 +92,9 @@ Store Store::open(const std::string& path) {
     throw Error(path, "no such file");
   }
   if (S_ISDIR(status.st_mode)) throw Error(path, "is a folder, not a file");
-  if (::access(path.c_str(), R_OK) != 0) throw Error(path, fmt::format("cannot read: {}", std::strerror(errno)), "", Exit::resources);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);  // opened by hand first: the library hides why it could not
+  if (descriptor < 0) throw Error(path, fmt::format("cannot read: {}", std::strerror(errno)), "", Exit::resources);
+  ::close(descriptor);
   if (status.st_size == 0) throw Error(path, "empty file");
   if (H5Fis_hdf5(path.c_str()) <= 0) throw Error(path, "not an HDF5 file");
   auto impl = std::make_unique<Impl>();
@@ -112,7 +114,6 @@ namespace {
 
 Id create_file(const std::string& path, const std::string& on_disk) {
   start_library();
-  // Opened by hand first: the library hides why it could not.
   const int descriptor = ::open(on_disk.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor < 0) throw Error(path, fmt::format("cannot write: {}", std::strerror(errno)), "", Exit::resources);
   ::close(descriptor);

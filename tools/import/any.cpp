@@ -16,7 +16,7 @@ struct Format {
   Imported (*read)(const std::string&, const ImportOptions&);
 };
 constexpr Format formats[] = {{".inp", read_inp},  {".bdf", read_bdf},  {".nas", read_bdf},   {".dat", read_bdf},  {".fem", read_bdf},
-                              {".vtk", read_vtk},  {".vtu", read_vtk},  {".msh", read_gmsh},  {".unv", read_gmsh}, {".mesh", read_gmsh},
+                              {".vtk", read_vtk},  {".vtu", read_vtk},  {".msh", read_gmsh},  {".unv", read_unv}, {".mesh", read_gmsh},
                               {".stl", read_gmsh}, {".geo", read_gmsh}, {".step", read_gmsh}, {".stp", read_gmsh}, {".brep", read_gmsh},
                               {".iges", read_gmsh}, {".igs", read_gmsh}};
 

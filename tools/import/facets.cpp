@@ -77,4 +77,22 @@ std::vector<Facet> free_facets(const Mesh& mesh, const std::vector<std::int64_t>
   return free;
 }
 
+LineEnds lines_on_solids(const Mesh& m, const std::vector<std::pair<std::int64_t, std::int64_t>>& lines) {
+  std::vector<char> end(m.X.size(), 0);
+  for (const auto& [a, b] : lines) end[a] = end[b] = 1;
+  const LineEnds wanted(lines.begin(), lines.end());
+  LineEnds found;
+  std::vector<std::int64_t> ends;
+  for (std::int64_t c = 0; c < m.n_cells(); ++c) {
+    if (info(m.shape[c]).dimension != 3) continue;
+    ends.clear();
+    for (int i = 0; i < info(m.shape[c]).n_corners; ++i)
+      if (end[m.cell(c)[i]]) ends.push_back(m.cell(c)[i]);
+    for (const auto a : ends)
+      for (const auto b : ends)
+        if (wanted.count({a, b})) found.insert({a, b});
+  }
+  return found;
+}
+
 }  // namespace hilo

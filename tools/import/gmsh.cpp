@@ -1,4 +1,4 @@
-// Meshes and geometries through the gmsh library: msh, unv, mesh, stl; geo, step, brep, iges are meshed.
+// Meshes and geometries through the gmsh library: msh, mesh, stl; geo, step, brep, iges are meshed.
 // Physical groups: volumes become regions, surfaces facet sets, curves and points node sets.  Without volume groups every volume is a region.
 // A curve group whose lines are no edges of solid cells becomes a region of bars.
 #include <fmt/format.h>
@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <new>
+#include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -134,6 +136,11 @@ class GmshReader {
     gmsh::model::getPhysicalGroups(bars, 1);
     if (volumes.empty() && bars.empty()) throw Error(path_, "no volume to mesh", "the geometry holds points, curves or surfaces only");
     if (o_.size) {
+      if (ext != ".geo") {   // a script may say its own sizes, which the option only bounds
+        gmsh::vectorpair points;
+        gmsh::model::getEntities(points, 0);
+        gmsh::model::mesh::setSize(points, *o_.size);
+      }
       gmsh::option::setNumber("Mesh.MeshSizeMax", *o_.size);
       double low;
       gmsh::option::getNumber("Mesh.MeshSizeMin", low);
@@ -229,25 +236,6 @@ class GmshReader {
     }
   }
 
-  /// Lines with both ends in one solid cell: those of a curve on a solid.
-  std::set<std::pair<std::int64_t, std::int64_t>> lines_on_solids(const std::vector<std::pair<std::int64_t, std::int64_t>>& lines) const {
-    const Mesh& m = in_.mesh;
-    std::vector<char> end(m.X.size(), 0);
-    for (const auto& [a, b] : lines) end[a] = end[b] = 1;
-    const std::set<std::pair<std::int64_t, std::int64_t>> wanted(lines.begin(), lines.end());
-    std::set<std::pair<std::int64_t, std::int64_t>> found;
-    std::vector<std::int64_t> ends;
-    for (std::int64_t c = 0; c < m.n_cells(); ++c) {
-      ends.clear();
-      for (int i = 0; i < info(m.shape[c]).n_corners; ++i)
-        if (end[m.cell(c)[i]]) ends.push_back(m.cell(c)[i]);
-      for (const auto a : ends)
-        for (const auto b : ends)
-          if (wanted.count({a, b})) found.insert({a, b});
-    }
-    return found;
-  }
-
   /// Curve groups: bars where none of the lines is an edge of a solid cell.
   void read_curves() {
     struct Curves {
@@ -276,7 +264,7 @@ class GmshReader {
       all.push_back(std::move(one));
     }
     if (lines.empty()) return;
-    const auto on_solids = lines_on_solids(lines);
+    const auto on_solids = lines_on_solids(in_.mesh, lines);
     std::unordered_set<int> used;
     for (const auto& one : all) {
       if (one.lines.empty() || std::any_of(one.lines.begin(), one.lines.end(), [&](const auto& l) { return on_solids.count(l); })) continue;
@@ -368,6 +356,10 @@ Imported read_gmsh(const std::string& path, const ImportOptions& options) {
     return GmshReader(path, options).read();
   } catch (const std::string& e) {
     throw Error(path, "gmsh: " + e);
+  } catch (const std::bad_alloc&) {
+    throw Error(path, "not enough memory to read it, or its counts are damaged", "", Exit::resources);
+  } catch (const std::length_error&) {
+    throw Error(path, "its counts are damaged");
   } catch (int) {
     throw Error(path, "gmsh: " + Session::last_error());
   }

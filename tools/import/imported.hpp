@@ -77,9 +77,14 @@ std::vector<Facet> match_facets(const Mesh& mesh, const std::vector<std::vector<
 /// Of `candidates`, the facets that no second cell shares.
 std::vector<Facet> free_facets(const Mesh& mesh, const std::vector<std::int64_t>& cells);
 
+/// Of `lines`, given by their ends, those that have both ends in one solid cell: edges of a solid, not bars.
+using LineEnds = std::set<std::pair<std::int64_t, std::int64_t>>;
+LineEnds lines_on_solids(const Mesh& mesh, const std::vector<std::pair<std::int64_t, std::int64_t>>& lines);
+
 /// The readers.  Each throws Error with file:line where the file has lines.
 Imported read_inp(const std::string& path, const ImportOptions& options);
 Imported read_bdf(const std::string& path, const ImportOptions& options);
+Imported read_unv(const std::string& path, const ImportOptions& options);
 Imported read_vtk(const std::string& path, const ImportOptions& options);
 Imported read_gmsh(const std::string& path, const ImportOptions& options);
 /// The reader for the file's ending; Error when there is none or the file cannot be opened.

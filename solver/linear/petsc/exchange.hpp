@@ -19,7 +19,8 @@ std::vector<std::vector<T>> exchange(const std::vector<std::vector<T>>& to) {
   std::vector<int> n_send(n), n_recv(n), at_send(n, 0), at_recv(n, 0);
   size_t total = 0;
   for (int r = 0; r < n; ++r) n_send[r] = static_cast<int>(to[r].size()), total += to[r].size();
-  if (total > std::numeric_limits<int>::max()) fail("more than 2^31 values travel between ranks at once", static_cast<int>(Exit::resources));
+  if (total > std::numeric_limits<int>::max())
+    fail("more than 2^31 values travel between ranks at once", static_cast<int>(Exit::resources));
   MPI_Alltoall(n_send.data(), 1, MPI_INT, n_recv.data(), 1, MPI_INT, PETSC_COMM_WORLD);
   for (int r = 1; r < n; ++r) at_send[r] = at_send[r - 1] + n_send[r - 1], at_recv[r] = at_recv[r - 1] + n_recv[r - 1];
   std::vector<T> out, in(static_cast<size_t>(at_recv[n - 1]) + n_recv[n - 1]);

@@ -15,7 +15,8 @@ std::string& said() {
 }
 
 /// Keeps the first message of an error on its way up.
-PetscErrorCode note(MPI_Comm, int, const char* function, const char*, PetscErrorCode code, PetscErrorType type, const char* message, void*) {
+PetscErrorCode note(MPI_Comm, int, const char* function, const char*, PetscErrorCode code, PetscErrorType type, const char* message,
+                    void*) {
   if (type == PETSC_ERROR_INITIAL) said() = fmt::format("{} in {}", message && *message ? message : "error", function);
   return code;
 }
@@ -60,7 +61,10 @@ void fail(const std::string& what, int exit_code) {
 void check(PetscErrorCode code) {
   if (code == 0) return;
   const bool memory = code == PETSC_ERR_MEM;
-  fail(memory ? "out of memory" : said().empty() ? fmt::format("error {}", code) : said(), static_cast<int>(memory ? Exit::resources : Exit::fault));
+  fail(memory           ? "out of memory"
+       : said().empty() ? fmt::format("error {}", code)
+                        : said(),
+       static_cast<int>(memory ? Exit::resources : Exit::fault));
 }
 
 int rank() {

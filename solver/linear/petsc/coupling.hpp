@@ -1,0 +1,54 @@
+// The dense part of a system - bodies and multipliers - and what couples it to the flexible part:
+//
+//     [ F  B ]      F sparse (BlockMatrix), B and C few columns and rows, D small and dense
+//     [ C  D ]
+#pragma once
+#include <vector>
+
+#include "linear/kkt.hpp"
+#include "linear/petsc/shared.hpp"
+
+namespace hilo::petsc {
+
+class Coupling {
+ public:
+  Coupling(const Cliques& cliques, const BlockMap& map, const SharedBlocks& shared);
+  void zero();
+  /// Add the parts of a clique's matrix outside F.
+  void add(std::span<const int> blocks, const double* K);
+  void add_diagonal(int block, const double d[3]);
+  /// Sum over the ranks: couples go to the owner of their flexible block, D to all.
+  void assemble();
+
+  int m() const { return m_; }  // unknowns of the dense part
+  bool is_dense(int local) const { return dense_[local] >= 0; }
+  bool couples(std::span<const int> blocks) const;              // does a clique touch the dense part?
+  const std::vector<int>& columns() const { return columns_; }  // dense unknowns that couple to flexible ones on some rank
+  const std::vector<double>& D() const { return D_; }           // (m x m)
+
+  /// u += factor B p;  u: owned flexible unknowns, p: all dense unknowns.
+  void add_B(double factor, const double* p, double* u) const;
+  /// Column j of B into u, which is zeroed first.
+  void column(int j, double* u, size_t n) const;
+  /// p += factor C u, this rank's share: to be summed over the ranks.
+  void add_C(double factor, const double* u, double* p) const;
+  double bytes() const { return 8. * (2. * static_cast<double>(D_.size()) + B_.size() + C_.size()); }
+
+ private:
+  size_t find(int flexible, int dense) const;
+  struct Couple {
+    int flexible, dense;  // local block, dense block
+    auto operator<=>(const Couple&) const = default;
+  };
+  int m_ = 0;
+  std::vector<int> dense_;           // dense block of each local block, -1 for flexible ones
+  std::vector<int> position_;        // place of each local flexible block among the owned, -1 otherwise
+  std::vector<Couple> couples_;      // sorted
+  std::vector<size_t> start_;        // first couple of each local block
+  std::vector<double> B_, C_;        // 3 x 3 each, B row flexible, C row dense
+  std::vector<double> D_, summand_;  // (m x m); what this rank has added since the last assemble()
+  std::vector<int> columns_;
+  std::vector<std::vector<size_t>> lent_, borrowed_;  // couples of each rank's blocks held here; couples of own blocks held there
+};
+
+}  // namespace hilo::petsc

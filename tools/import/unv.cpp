@@ -1,0 +1,267 @@
+// I-DEAS universal files: datasets 2411 (nodes), 2412 (elements) and the groups 2429 to 2477.
+// (gmsh 4.8 crashes on groups that name an element it does not know, so the reader is ours.)  Groups of solids are regions, of faces facet sets, of
+// lines bars or node sets as in a gmsh file; without groups of solids a region is a physical property.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <unordered_map>
+
+#include "base/error.hpp"
+#include "import/imported.hpp"
+#include "import/inp_lines.hpp"
+
+namespace hilo {
+namespace {
+
+/// A finite-element descriptor: dimension, our shape of solids and bars, the nodes: ours[i] = theirs[p[i]]; faces keep their corners.
+struct Kind {
+  int id, dimension;
+  Shape shape;
+  std::vector<int> p;
+  size_t n_nodes;
+};
+const Kind* kind_of(int id) {
+  // quadratic cells are listed ring by ring: corner, middle, corner, ...
+  static const std::vector<int> line{0, 1}, line3{0, 2}, tri{0, 1, 2}, tri6{0, 2, 4}, quad{0, 1, 2, 3}, quad8{0, 2, 4, 6};
+  static const std::vector<Kind> kinds = {
+      {11, 1, Shape::bar2, line, 2},
+      {21, 1, Shape::bar2, line, 2},
+      {22, 1, Shape::bar2, line, 2},
+      {24, 1, Shape::bar2, line3, 3},
+      {41, 2, Shape::bar2, tri, 3},
+      {91, 2, Shape::bar2, tri, 3},
+      {42, 2, Shape::bar2, tri6, 6},
+      {92, 2, Shape::bar2, tri6, 6},
+      {44, 2, Shape::bar2, quad, 4},
+      {94, 2, Shape::bar2, quad, 4},
+      {45, 2, Shape::bar2, quad8, 8},
+      {95, 2, Shape::bar2, quad8, 8},
+      {111, 3, Shape::tet4, {0, 1, 2, 3}, 4},
+      {112, 3, Shape::wedge6, {0, 1, 2, 3, 4, 5}, 6},
+      {115, 3, Shape::hex8, {0, 1, 2, 3, 4, 5, 6, 7}, 8},
+      {118, 3, Shape::tet10, {0, 2, 4, 9, 1, 3, 5, 6, 7, 8}, 10},
+      {113, 3, Shape::wedge15, {0, 2, 4, 9, 11, 13, 1, 3, 5, 10, 12, 14, 6, 7, 8}, 15},
+      {116, 3, Shape::hex20, {0, 2, 4, 6, 12, 14, 16, 18, 1, 3, 5, 7, 13, 15, 17, 19, 8, 9, 10, 11}, 20},
+  };
+  for (const auto& k : kinds)
+    if (k.id == id) return &k;
+  return nullptr;
+}
+
+class UnvReader {
+ public:
+  UnvReader(const std::string& path, const ImportOptions& o) : path_(path), o_(o), text_(read_gz(path, "")) {}
+
+  Imported read() {
+    while (line()) {
+      if (l_.fields.size() != 1 || l_.text(0) != "-1") continue;
+      if (!line()) break;
+      const std::string set(l_.text(0));
+      if (set == "2411" || set == "781") nodes();
+      else if (set == "2412") elements();
+      else if (set == "2467" || set == "2477" || set == "2452" || set == "2435") groups(4);
+      else if (set == "2429" || set == "2430" || set == "2432") groups(2);
+      else {
+        in_.skip("dataset " + set, l_.place(), 1, false);
+        while (more()) {
+        }
+      }
+    }
+    if (in_.mesh.X.empty()) throw Error(path_, "no nodes (dataset 2411)", "a universal file of a mesh has datasets 2411 and 2412");
+    if (elements_.empty()) throw Error(path_, "no elements (dataset 2412)");
+    build();
+    return std::move(in_);
+  }
+
+ private:
+  struct Element {
+    const Kind* kind;
+    std::int64_t id, property;
+    std::vector<std::int64_t> nodes;   // rows
+    std::int64_t cell = -1;
+  };
+  struct Group {
+    std::string name;
+    std::vector<std::int64_t> nodes, elements;   // numbers of the file
+  };
+
+  /// The next line, cut at blanks.
+  bool line() {
+    if (at_ >= text_.size()) return false;
+    const size_t end = std::min(text_.find('\n', at_), text_.size());
+    raw_ = std::string_view(text_).substr(at_, end - at_);
+    if (!raw_.empty() && raw_.back() == '\r') raw_.remove_suffix(1);
+    at_ = end + 1;
+    l_.file = &path_;
+    ++l_.line;
+    l_.fields.clear();
+    for (size_t i = 0; (i = raw_.find_first_not_of(" \t", i)) != std::string_view::npos;) {
+      const size_t stop = std::min(raw_.find_first_of(" \t", i), raw_.size());
+      l_.fields.push_back({raw_.substr(i, stop - i), static_cast<int>(i) + 1});
+      i = stop;
+    }
+    return true;
+  }
+  /// The next line of a dataset; false at its end, "-1".
+  bool more() {
+    if (!line()) throw Error(l_.place(), "the file ends inside a dataset");
+    return !(l_.fields.size() == 1 && l_.text(0) == "-1");
+  }
+  void must() {
+    if (!more()) throw Error(l_.place(), "the dataset ends inside a record");
+  }
+
+  void nodes() {
+    while (more()) {
+      const auto id = l_.integer(0);
+      if (!row_.try_emplace(id, in_.mesh.n_nodes()).second) throw Error(l_.place(0), fmt::format("node {} is given twice", id), "number each node once");
+      must();
+      in_.mesh.X.emplace_back(l_.number(0), l_.number(1), l_.number(2));
+      in_.mesh.node_id.push_back(id);
+    }
+  }
+
+  void elements() {
+    while (more()) {
+      Element e{nullptr, l_.integer(0), l_.integer(2), {}};
+      const auto place = l_.place(0);
+      const auto id = static_cast<int>(l_.integer(1));
+      const auto n = static_cast<size_t>(l_.integer(5));
+      e.kind = kind_of(id);
+      if (!e.kind)
+        throw Error(l_.place(1), fmt::format("element {}: descriptor {} is not read", e.id, id), "supported: rods 11, beams as lines 21 22 24, faces 41 42 44 45 91 92 94 95, solids 111 112 113 115 116 118");
+      if (n != e.kind->n_nodes) throw Error(place, fmt::format("element {}: descriptor {} has {} nodes, not {}", e.id, id, e.kind->n_nodes, n));
+      if (e.kind->dimension == 1) must();   // orientation and cross-sections of beams
+      std::vector<std::int64_t> all;
+      while (all.size() < n) {
+        must();
+        for (size_t i = 0; i < l_.fields.size(); ++i) all.push_back(l_.integer(i));
+      }
+      for (const int i : e.kind->p) {
+        const auto a = row_.find(all[static_cast<size_t>(i)]);
+        if (a == row_.end()) throw Error(place, fmt::format("element {} names node {}, which does not exist", e.id, all[static_cast<size_t>(i)]));
+        e.nodes.push_back(a->second);
+      }
+      if (!of_id_.try_emplace(e.id, elements_.size()).second) throw Error(place, fmt::format("element {} is given twice", e.id), "number each element once");
+      elements_.push_back(std::move(e));
+    }
+  }
+
+  /// `width` numbers an entity: type (7 node, 8 element), number, and two that say nothing here.
+  void groups(size_t width) {
+    while (more()) {
+      Group g;
+      const auto number = l_.integer(0), count = l_.integer(7);
+      must();
+      const auto first = raw_.find_first_not_of(' '), last = raw_.find_last_not_of(' ');
+      g.name = first == std::string_view::npos ? fmt::format("group_{}", number) : std::string(raw_.substr(first, last - first + 1));
+      for (std::int64_t got = 0; got < count;) {
+        must();
+        for (size_t i = 0; i + 1 < l_.fields.size(); i += width, ++got) {
+          const auto type = l_.integer(i);
+          if (type == 7) g.nodes.push_back(l_.integer(i + 1));
+          else if (type == 8) g.elements.push_back(l_.integer(i + 1));
+          else in_.skip(fmt::format("group members of type {}", type), l_.place());
+        }
+      }
+      groups_.push_back(std::move(g));
+    }
+  }
+
+  std::vector<Element*> members(const Group& g, int dimension) {
+    std::vector<Element*> found;
+    for (const auto id : g.elements)
+      if (const auto e = of_id_.find(id); e != of_id_.end() && elements_[e->second].kind->dimension == dimension) found.push_back(&elements_[e->second]);
+    return found;
+  }
+
+  void add(Element& e) {
+    if (e.cell >= 0) return;
+    e.cell = in_.mesh.n_cells();
+    in_.mesh.add_cell(e.kind->shape, e.nodes, -1, e.id);
+  }
+
+  void build() {
+    std::vector<CellGroup> regions;
+    for (auto& e : elements_)
+      if (e.kind->dimension == 3) add(e);
+    for (const auto& g : groups_) {
+      CellGroup c{g.name, {}};
+      for (const auto* e : members(g, 3)) c.cells.push_back(e->cell);
+      if (!c.cells.empty()) regions.push_back(std::move(c));
+    }
+    if (regions.empty() && o_.rest.empty()) {
+      std::map<std::int64_t, CellGroup> by_property;
+      for (const auto& e : elements_)
+        if (e.cell >= 0) by_property[e.property].cells.push_back(e.cell);
+      for (auto& [property, c] : by_property) regions.push_back({fmt::format("property_{}", property), std::move(c.cells)});
+      if (!regions.empty()) in_.notes.push_back("no groups of solids: each physical property is a region");
+    }
+    bars(regions);
+    if (in_.mesh.n_cells() == 0) throw Error(path_, "no solid elements and no bars");
+    assign_regions(in_, path_, regions, false, {}, o_);
+    sets();
+  }
+
+  /// Groups of lines that lie on no solid; without solids all lines, in groups or not.
+  void bars(std::vector<CellGroup>& regions) {
+    std::vector<std::pair<std::int64_t, std::int64_t>> lines;
+    for (const auto& e : elements_)
+      if (e.kind->dimension == 1) lines.emplace_back(e.nodes[0], e.nodes[1]);
+    const auto on_solids = lines_on_solids(in_.mesh, lines);
+    const bool solids = in_.mesh.n_cells() > 0;
+    for (const auto& g : groups_) {
+      const auto found = members(g, 1);
+      if (found.empty() || std::any_of(found.begin(), found.end(), [&](const Element* e) { return on_solids.count({e->nodes[0], e->nodes[1]}); })) continue;
+      CellGroup c{g.name, {}};
+      for (auto* e : found) add(*e), c.cells.push_back(e->cell);
+      regions.push_back(std::move(c));
+    }
+    for (auto& e : elements_)
+      if (e.kind->dimension == 1 && e.cell < 0) {
+        if (!solids) add(e);
+        else if (!on_solids.count({e.nodes[0], e.nodes[1]})) in_.skip("lines of no group, on no solid", path_);
+      }
+  }
+
+  void sets() {
+    SetNames names(in_);
+    for (const auto& g : groups_) {
+      std::vector<std::vector<std::int64_t>> faces;
+      for (const auto* e : members(g, 2)) faces.push_back(e->nodes);
+      std::vector<Facet> facets;
+      for (const auto& f : match_facets(in_.mesh, faces))
+        if (f.cell >= 0) facets.push_back(f);
+      if (facets.size() < faces.size())
+        in_.notes.push_back(fmt::format("group \"{}\": {} of its {} faces lie on no cell: left out", g.name, faces.size() - facets.size(), faces.size()));
+      if (!facets.empty()) names.facets(g.name, std::move(facets));
+      std::vector<std::int64_t> rows;
+      for (const auto* e : members(g, 1))
+        if (e->cell < 0) rows.insert(rows.end(), e->nodes.begin(), e->nodes.end());
+      for (const auto id : g.nodes)
+        if (const auto a = row_.find(id); a != row_.end()) rows.push_back(a->second);
+      if (!rows.empty()) names.nodes(g.name, std::move(rows));
+      const auto unknown = std::count_if(g.elements.begin(), g.elements.end(), [&](std::int64_t id) { return !of_id_.count(id); });
+      if (unknown) in_.notes.push_back(fmt::format("group \"{}\": {} of its numbers are no element: left out", g.name, unknown));
+    }
+  }
+
+  std::string path_;
+  const ImportOptions& o_;
+  std::string text_;
+  Imported in_;
+  size_t at_ = 0;
+  DataLine l_;
+  std::string_view raw_;
+  std::unordered_map<std::int64_t, std::int64_t> row_;
+  std::unordered_map<std::int64_t, size_t> of_id_;
+  std::vector<Element> elements_;
+  std::vector<Group> groups_;
+};
+
+}  // namespace
+
+Imported read_unv(const std::string& path, const ImportOptions& options) { return UnvReader(path, options).read(); }
+
+}  // namespace hilo
