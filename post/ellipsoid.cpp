@@ -27,7 +27,7 @@ vtkSmartPointer<vtkPolyData> ellipsoid(const Ellipsoid& body) {
     }
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < around; ++i) {
-      const vtkIdType quad[] = {j * around + i, j * around + (i + 1) % around, (j + 1) * around + (i + 1) % around, (j + 1) * around + i};
+      const vtkIdType quad[] = {j * around + i, (j + 1) * around + i, (j + 1) * around + (i + 1) % around, j * around + (i + 1) % around};
       quads->InsertNextCell(4, quad);
     }
   const auto data = vtkSmartPointer<vtkPolyData>::New();

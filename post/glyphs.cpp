@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "post/overlay.hpp"
+#include "post/stage.hpp"
 
 namespace hilo {
 
@@ -17,9 +18,7 @@ Projection::Projection(vtkRenderer* stage, const Box& box) : box_(box) {
   vtkMatrix4x4* m = camera->GetCompositeProjectionTransformMatrix(box.w / box.h, -1, 1);
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) matrix_(i, j) = m->GetElement(i, j);
-  const double half = camera->GetParallelProjection() ? camera->GetParallelScale()
-                                                      : camera->GetDistance() * std::tan(camera->GetViewAngle() * M_PI / 360);
-  metre_ = 2 * half / box.h;
+  metre_ = 1 / pixels_per_metre(stage, box.h);
 }
 
 Vec2 Projection::operator()(const Vec3& x) const {

@@ -60,7 +60,8 @@ std::string mesh_path(const Options& o, const Scene& scene) {
   return mesh.empty() ? "" : (std::filesystem::path(scene.folder) / mesh).lexically_normal().string();
 }
 
-void add_meshed(vtkRenderer* stage, const MeshFile& file, const std::vector<Group>& groups, const std::vector<bool>& shown, double pixel, bool see_through) {
+void add_meshed(vtkRenderer* stage, const MeshFile& file, const std::vector<Group>& groups, const std::vector<bool>& shown, double pixel, double height,
+                bool see_through) {
   const Mesh& mesh = file.mesh;
   const auto facets = boundary_facets(mesh, shown);
   for (const Group& g : groups) {
@@ -77,7 +78,7 @@ void add_meshed(vtkRenderer* stage, const MeshFile& file, const std::vector<Grou
     look.opacity = rigid && see_through ? 0.3 : 1;
     look.bar_width = 5 * pixel;
     add_skin(stage, skin, look);
-    if (!rigid) add_lines(stage, skin.cell_edges(), {0.1, 0.1, 0.12}, 0.8 * pixel, 0.3);
+    if (!rigid) add_grid(stage, skin, 0.8 * pixel, 0.3, pixels_per_metre(stage, height));
     add_lines(stage, skin.feature_edges(), {0.1, 0.1, 0.12}, 1.1 * pixel, rigid ? 0.55 : 0.85);
   }
 }
@@ -145,25 +146,26 @@ void run(const Options& o) {
   vtkRenderer* stage = picture.layer(frame.model);
   light(stage);
   Fit fit(parse_view(o.camera), frame.model.w / frame.model.h, 0.07);
-  std::vector<Group> groups;
+  std::vector<bool> shown;
   if (file) {
-    const auto shown = shown_regions(file->mesh, o.show, o.hide);
-    groups = groups_of(*file, shown);
-    add_meshed(stage, *file, groups, shown, pixel, o.see_through);
+    shown = shown_regions(file->mesh, o.show, o.hide);
     for (std::int64_t c = 0; c < file->mesh.n_cells(); ++c)
       if (shown[static_cast<size_t>(file->mesh.region[static_cast<size_t>(c)])])
         for (const auto n : file->mesh.cell(c)) fit.add(file->mesh.X[static_cast<size_t>(n)]);
   }
-  for (const Ellipsoid& b : items.bodies) {
-    const auto surface = ellipsoid(b);
-    if (b.radii.norm() > 0) add_surface(stage, surface, blend(category_colour(static_cast<int>(&b - items.bodies.data())), white, 0.35));
-    fit.add(b.centre - b.radii.norm() * Vec3::Ones()), fit.add(b.centre + b.radii.norm() * Vec3::Ones());
-  }
+  for (const Ellipsoid& b : items.bodies) fit.add(b.centre - b.radii.norm() * Vec3::Ones()), fit.add(b.centre + b.radii.norm() * Vec3::Ones());
   for (const SceneItem& i : items.items) {
     fit.add(i.at);
     if (i.glyph == Glyph::link || i.glyph == Glyph::coil) fit.add(i.to);
   }
   fit.aim(stage->GetActiveCamera());
+  std::vector<Group> groups;
+  if (file) {
+    groups = groups_of(*file, shown);
+    add_meshed(stage, *file, groups, shown, pixel, frame.model.h, o.see_through);
+  }
+  for (size_t k = 0; k < items.bodies.size(); ++k)
+    if (items.bodies[k].radii.norm() > 0) add_surface(stage, ellipsoid(items.bodies[k]), blend(category_colour(static_cast<int>(k)), white, 0.35));
   stage->ResetCameraClippingRange();
   const Entry& head = scene.table("scene");
   const std::string title = !o.title.empty() ? o.title : head.has("title") && !head.text("title").empty() ? head.text("title") : std::filesystem::path(o.scene).stem().string();

@@ -61,6 +61,9 @@ class Renderer {
     Picture picture(width, height);
     vtkRenderer* stage = picture.layer(frame.model);
     light(stage);
+    Fit fit(parse_view(o_.camera), frame.model.w / frame.model.h);
+    for (const Vec3& x : extremes_) fit.add(x);
+    fit.aim(stage->GetActiveCamera());
     const double s = picture_scale(width, height);
     Look look;
     look.bar_width = 5 * s;
@@ -73,12 +76,9 @@ class Renderer {
       add_skin(stage, *toned_, look);
     }
     for (const Skin* skin : {coloured_.get(), toned_.get()}) {
-      if (o_.edges == "all") add_lines(stage, skin->cell_edges(), {0.1, 0.1, 0.12}, s, 0.35);
+      if (o_.edges == "all") add_grid(stage, *skin, s, 0.35, pixels_per_metre(stage, frame.model.h));
       if (o_.edges != "none") add_lines(stage, skin->feature_edges(), {0.1, 0.1, 0.12}, 1.3 * s, 0.8);
     }
-    Fit fit(parse_view(o_.camera), frame.model.w / frame.model.h);
-    for (const Vec3& x : extremes_) fit.add(x);
-    fit.aim(stage->GetActiveCamera());
     for (const Step& step : steps_) {
       update(step);
       stage->ResetCameraClippingRange();

@@ -97,6 +97,7 @@ class Collector {
     const Eigen::SelfAdjointEigenSolver<Mat3> principal(tensor);
     const Vec3 I = principal.eigenvalues();
     Ellipsoid b{e.name, e.vector3("com"), principal.eigenvectors(), Vec3::Zero()};
+    if (b.axes.determinant() < 0) b.axes.col(0) *= -1;
     for (int i = 0; i < 3; ++i)   // J_i = m/5 (r_j^2 + r_k^2)
       b.radii[i] = e.number("mass") > 0 ? std::sqrt(std::max(0.0, 2.5 * (I.sum() - 2 * I[i]) / e.number("mass"))) : 0;
     found_.bodies.push_back(b);

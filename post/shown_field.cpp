@@ -39,7 +39,9 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
     f.from_zero = false;
     return f;
   }
-  std::vector<std::string> names = known;
+  std::vector<std::string> names;
+  for (const auto& k : known)
+    if (!k.starts_with("cell_")) names.push_back(k);
   names.insert(names.end(), {"region", "fidelity", "partition", "von_mises", "acceleration", "displacement", "velocity"});
   std::string hint = suggest(name, names);
   throw Error("--field", fmt::format("no field \"{}\"", name), hint.empty() ? "von_mises, acceleration, displacement, velocity, stress.xx, region, fidelity or partition" : hint);

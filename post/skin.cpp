@@ -69,6 +69,7 @@ Skin::Skin(const Mesh& mesh, std::span<const Facet> facets, std::span<const std:
   feature_ = lines(edge_points->GetPoints(), build.feature_edges);
   grid_ = lines(edge_points->GetPoints(), build.facet_edges);
   bars_ = lines(edge_points->GetPoints(), build.bar_ends);
+  for (const auto& e : build.facet_edges) mean_edge_ += build.length(e) / static_cast<double>(build.facet_edges.size());
   move(mesh.X);
 }
 

@@ -31,6 +31,7 @@ class Skin {
   vtkPolyData* bars() const { return bars_; }
   vtkPolyData* feature_edges() const { return feature_; }   // sharp edges, borders, and edges between regions
   vtkPolyData* cell_edges() const { return grid_; }         // borders of all facets
+  double mean_edge() const { return mean_edge_; }           // mean length of those at the start  [m]
   bool empty() const { return face_cell_.empty() && bar_cell_.empty(); }
 
  private:
@@ -41,6 +42,7 @@ class Skin {
   std::vector<std::int64_t> point_;     // point of each drawn vertex      (n_vertices)
   std::vector<std::int64_t> corner_, polygon_{0};   // vertices of the polygons and where each begins
   std::vector<std::int64_t> face_cell_, bar_cell_;  // cell of each polygon and bar
+  double mean_edge_ = 0;
   vtkSmartPointer<vtkPolyData> faces_, bars_, feature_, grid_;
 };
 

@@ -19,6 +19,10 @@ struct SkinBuilder {
   std::vector<std::int64_t> vertex_point;         // point of each vertex
   std::vector<std::array<std::int64_t, 2>> feature_edges, facet_edges, bar_ends;   // pairs of points
 
+  double length(const std::array<std::int64_t, 2>& edge) const {
+    return (position_[static_cast<size_t>(edge[1])] - position_[static_cast<size_t>(edge[0])]).norm();
+  }
+
  private:
   struct PairHash {
     size_t operator()(const std::array<std::int64_t, 3>& k) const {

@@ -1,10 +1,14 @@
 #include "post/stage.hpp"
 
+#include <vtkCamera.h>
 #include <vtkLightKit.h>
 #include <vtkLookupTable.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkSmartPointer.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace hilo {
 namespace {
@@ -12,8 +16,8 @@ namespace {
 void shade(vtkProperty* p, const Rgb& colour, double opacity) {
   p->SetColor(colour.r, colour.g, colour.b);
   p->SetOpacity(opacity);
-  p->SetAmbient(0.34);
-  p->SetDiffuse(0.68);
+  p->SetAmbient(0.40);
+  p->SetDiffuse(0.64);
   p->SetSpecular(0);
 }
 
@@ -94,6 +98,18 @@ vtkActor* add_lines(vtkRenderer* stage, vtkPolyData* data, const Rgb& colour, do
   actor->GetProperty()->SetLineWidth(static_cast<float>(width));
   stage->AddActor(actor);
   return actor;
+}
+
+void add_grid(vtkRenderer* stage, const Skin& skin, double width, double opacity, double pixels_per_metre) {
+  const double apart = skin.mean_edge() * pixels_per_metre, seen = std::clamp((apart / width - 2.5) / 7, 0.0, 1.0);
+  if (seen > 0) add_lines(stage, skin.cell_edges(), {0.1, 0.1, 0.12}, width, opacity * seen);
+}
+
+double pixels_per_metre(vtkRenderer* stage, double height) {
+  vtkCamera* camera = stage->GetActiveCamera();
+  const double half = camera->GetParallelProjection() ? camera->GetParallelScale()
+                                                      : camera->GetDistance() * std::tan(camera->GetViewAngle() * M_PI / 360);
+  return height / (2 * half);
 }
 
 }  // namespace hilo

@@ -14,11 +14,13 @@ namespace hilo::test {
 /// Every test of `suite` of this executable passes on `ranks` ranks (1: without mpirun), in `folder`.
 inline void expect_passes_on(int ranks, const std::string& suite, const std::string& folder = ".") {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+  // what MPI has put into this process' environment would confuse its children
+  const std::string clean = "unset $(compgen -e | grep -E '^(OMPI|OPAL|ORTE|PMIX|PRTE)_') HILO_NOTHING\n";
   const std::string launcher =
       "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
       "OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_hwloc_base_binding_policy=none timeout 300 mpirun -n " +
       std::to_string(ranks) + " ";
-  const Ran ran = run((ranks == 1 ? "timeout 300 " : launcher) + "'" + self +
+  const Ran ran = run(clean + (ranks == 1 ? "timeout 300 " : launcher) + "'" + self +
                           "' --gtest_also_run_disabled_tests --gtest_filter='*DISABLED_" + suite + ".*'",
                       folder);
   EXPECT_EQ(ran.exit, 0) << suite << " on " << ranks << " ranks:\n" << ran.out << ran.err;
@@ -26,10 +28,11 @@ inline void expect_passes_on(int ranks, const std::string& suite, const std::str
   EXPECT_EQ(ran.out.find("Running 0 tests"), std::string::npos) << "no suite " << suite;
 }
 
-/// Ends MPI after the last test, as a main would.
-class EndOfRanks : public testing::Environment {
+/// Starts MPI before the first test and ends it after the last, as a main would.
+class MpiOfTests : public testing::Environment {
+  void SetUp() override { Comm::world(); }
   void TearDown() override { Comm::world().finish(); }
 };
-inline testing::Environment* const end_of_ranks = testing::AddGlobalTestEnvironment(new EndOfRanks);
+inline testing::Environment* const mpi_of_tests = testing::AddGlobalTestEnvironment(new MpiOfTests);
 
 }  // namespace hilo::test

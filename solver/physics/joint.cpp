@@ -46,21 +46,23 @@ Connector make_joint(const std::string& kind, const Carrier& a, const Carrier& b
     same_point();
     return std::move(m.c);
   }
-  int u[3], v[3];
-  for (int i = 0; i < 3; ++i) u[i] = m.direction(0, frame.col(i)), v[i] = m.direction(1, frame.col(i));
+  // columns of the frame carried by a and by b, made when first asked for
+  int ua[3] = {-1, -1, -1}, vb[3] = {-1, -1, -1};
+  const auto u = [&](int i) { return ua[i] < 0 ? ua[i] = m.direction(0, frame.col(i)) : ua[i]; };
+  const auto v = [&](int i) { return vb[i] < 0 ? vb[i] = m.direction(1, frame.col(i)) : vb[i]; };
   if (kind == "fixed") {
     same_point();
-    m.dot(u[0], v[1]), m.dot(u[1], v[2]), m.dot(u[2], v[0]);
+    m.dot(u(0), v(1)), m.dot(u(1), v(2)), m.dot(u(2), v(0));
   } else if (kind == "revolute") {
     same_point();
-    m.dot(u[0], v[2]), m.dot(u[1], v[2]);
+    m.dot(u(0), v(2)), m.dot(u(1), v(2));
   } else if (kind == "universal") {
     same_point();
-    m.dot(u[2], v[0]);
+    m.dot(u(2), v(0));
   } else if (kind == "cylindrical" || kind == "prismatic") {
-    m.zero({Term::slide, u[0], pa, pb}), m.zero({Term::slide, u[1], pa, pb});
-    m.dot(u[0], v[2]), m.dot(u[1], v[2]);
-    if (kind == "prismatic") m.dot(u[0], v[1]);
+    m.zero({Term::slide, u(0), pa, pb}), m.zero({Term::slide, u(1), pa, pb});
+    m.dot(u(0), v(2)), m.dot(u(1), v(2));
+    if (kind == "prismatic") m.dot(u(0), v(1));
   }
   return std::move(m.c);
 }

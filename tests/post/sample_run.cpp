@@ -142,11 +142,13 @@ Mesh machine() {
   return mesh;
 }
 
-double stress(const Mesh& mesh, std::int64_t node, int k, int n) {
+double front(const Mesh& mesh) {
   double most = 0;
   for (const Vec3& x : mesh.X) most = std::max(most, x.x());
-  return 200e6 * k / n * std::max(0.0, mesh.X[static_cast<size_t>(node)].x() / most);
+  return most;
 }
+
+double stress(const Vec3& X, double front, double rise) { return 200e6 * rise * std::max(0.0, X.x() / front); }
 
 Vec3 seat(double t) {
   const double pulse = t > 0.01 && t < 0.03 ? 100 * std::sin(M_PI * (t - 0.01) / 0.02) : 0;
@@ -192,6 +194,7 @@ std::string write_run(const Folder& folder, const Mesh& mesh, int steps, bool co
     run.append<double>("/history/probe/muzzle", std::array{3 + t, 0., 0.6, 1., 0., 0., 0., 0., -9.81});
   }
   const double end = histories.h * (histories.rows - 1);
+  const double most = front(mesh);
   for (int k = 0; k <= steps; ++k) {
     const std::string group = "/field/" + std::string(6 - std::to_string(k).size(), '0') + std::to_string(k);
     const double t = end * k / steps;
@@ -202,7 +205,7 @@ std::string write_run(const Folder& folder, const Mesh& mesh, int steps, bool co
       u.insert(u.end(), {-0.05 * k / steps, 0, bend});
       v.insert(v.end(), {-0.5, 0, 20 * bend});
       a.insert(a.end(), {20 + 10 * X.z(), 0, 3000 * bend});
-      von_mises.push_back(stressed[static_cast<size_t>(n)] ? stress(mesh, n, k, steps) : 0);
+      von_mises.push_back(stressed[static_cast<size_t>(n)] ? stress(X, most, double(k) / steps) : 0);
     }
     const auto rows = mesh.n_nodes();
     run.write<double>(group + "/displacement", u, {rows, 3}, "m");

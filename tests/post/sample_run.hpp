@@ -31,8 +31,9 @@ Vec3 seat(double t);
 /// mesh.h5 and run.h5 in the folder.  The barrel bends and its von Mises stress rises with time; nodes of rigid regions have no stress.
 /// `complete` false leaves the file as a running solver does.
 std::string write_run(const Folder& folder, const Mesh& mesh, int steps, bool complete = true, const Histories& histories = {});
-/// Stress of a node at step k of n: 200 MPa (k/n) times the node's x over the largest x.
-double stress(const Mesh& mesh, std::int64_t node, int k, int n);
+/// Largest x of the nodes, and the von Mises stress at X: 200 MPa at the front at the end, falling to 0 at x = 0 and at the start.
+double front(const Mesh& mesh);
+double stress(const Vec3& X, double front, double rise);
 
 /// Run a command; its exit code, stdout and stderr.
 struct Outcome {

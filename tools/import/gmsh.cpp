@@ -6,7 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <csignal>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <new>
 #include <stdexcept>
@@ -18,6 +21,34 @@
 
 namespace hilo {
 namespace {
+
+/// A damaged file can crash gmsh or OpenCASCADE.  While this lives a crash says so in one line and ends with "bad input".
+class CrashGuard {
+ public:
+  explicit CrashGuard(const std::string& path) {
+    line_ = fmt::format("{}: {}: gmsh crashed on it (is the file damaged?)\n", tool_name(), path);
+    struct sigaction act {};
+    act.sa_handler = [](int) {
+      if (write(2, line_.data(), line_.size()) < 0) _exit(static_cast<int>(Exit::fault));
+      _exit(static_cast<int>(Exit::input));
+    };
+    for (size_t i = 0; i < signals_.size(); ++i) sigaction(signals_[i], &act, &before_[i]);
+    // a second thrown error ends a program with a message of its own; this one goes through the handler alone
+    terminate_ = std::set_terminate([] { std::raise(SIGABRT); });
+  }
+  ~CrashGuard() {
+    std::set_terminate(terminate_);
+    for (size_t i = 0; i < signals_.size(); ++i) sigaction(signals_[i], &before_[i], nullptr);
+  }
+  CrashGuard(const CrashGuard&) = delete;
+  CrashGuard& operator=(const CrashGuard&) = delete;
+
+ private:
+  static constexpr std::array<int, 4> signals_{SIGSEGV, SIGABRT, SIGBUS, SIGFPE};
+  static inline std::string line_;
+  std::array<struct sigaction, 4> before_{};
+  std::terminate_handler terminate_;
+};
 
 /// gmsh as long as this lives.  OpenCASCADE writes to stdout, which is data: it goes to stderr's side and is dropped.
 class Session {
@@ -351,6 +382,7 @@ class GmshReader {
 }  // namespace
 
 Imported read_gmsh(const std::string& path, const ImportOptions& options) {
+  const CrashGuard guard(path);
   const Session session(options);
   try {
     return GmshReader(path, options).read();

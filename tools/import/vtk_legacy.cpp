@@ -1,6 +1,7 @@
 // Legacy VTK files: keyword, numbers, keyword, numbers.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cstring>
@@ -21,7 +22,7 @@ class Stream {
   std::string line() {
     const size_t end = std::min(s_.find('\n', at_), s_.size());
     std::string l = s_.substr(at_, end - at_);
-    at_ = end + 1;
+    at_ = std::min(end + 1, s_.size());
     if (!l.empty() && l.back() == '\r') l.pop_back();
     return l;
   }

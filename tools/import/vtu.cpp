@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
@@ -54,7 +55,9 @@ class Vtu {
  private:
   [[noreturn]] void fail(const std::string& what) const {
     const auto line = 1 + std::count(s_.begin(), s_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, s_.size())), '\n');
-    throw Error(fmt::format("{}:{}", path_, line), what);
+    std::string one_line = what;
+    std::replace_if(one_line.begin(), one_line.end(), [](unsigned char c) { return c < 32; }, ' ');
+    throw Error(fmt::format("{}:{}", path_, line), one_line);
   }
 
   bool next(Tag& t) {

@@ -1,0 +1,35 @@
+// A number with one directional derivative: the kernels run through it unchanged, so a derivative of theirs is exact.
+#pragma once
+#include <cmath>
+
+namespace hilo::test {
+
+struct Dual {
+  double v = 0, d = 0;
+  Dual() = default;
+  Dual(double value, double slope = 0) : v(value), d(slope) {}
+  Dual& operator+=(const Dual& b) { return v += b.v, d += b.d, *this; }
+  Dual& operator-=(const Dual& b) { return v -= b.v, d -= b.d, *this; }
+  friend Dual operator+(Dual a, const Dual& b) { return a += b; }
+  friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
+  friend Dual operator-(const Dual& a) { return {-a.v, -a.d}; }
+  friend Dual operator*(const Dual& a, const Dual& b) { return {a.v * b.v, a.d * b.v + a.v * b.d}; }
+  friend Dual operator/(const Dual& a, const Dual& b) { return {a.v / b.v, (a.d - a.v / b.v * b.d) / b.v}; }
+  friend bool operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
+};
+
+inline Dual log_of(const Dual& x) { return {std::log(x.v), x.d / x.v}; }
+inline Dual root(const Dual& x) { return {std::sqrt(x.v), x.d / (2 * std::sqrt(x.v))}; }
+/// ln(1 + r)/r from its power series, which is not what the kernel uses except near zero; |r| < 0.6.
+inline void log_ratio(const Dual& r, Dual& L, Dual& dL) {
+  double value = 0, slope = 0, power = 1;  // sum (-r)^k/(k + 1)
+  for (int k = 0; k < 200; ++k) {
+    value += power / (k + 1);
+    slope -= (k + 1) * power / (k + 2);
+    power *= -r.v;
+  }
+  L = {value, slope * r.d};
+  dL = {slope, 0};
+}
+
+}  // namespace hilo::test
