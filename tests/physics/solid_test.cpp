@@ -1,4 +1,6 @@
 // The cell kernels of every shape and law: work, derivative, objectivity, balance, mass, rate terms.
+#include <Eigen/Eigenvalues>
+
 #include "physics/cells.hpp"
 #include "physics/dual.hpp"
 
@@ -181,7 +183,7 @@ TYPED_TEST(Solid, MassAndItsFirstMomentAreThoseOfTheVolume) {
   const double bound = is_tet<S> ? 1e-12 : 0.01;
   for (int p = 0; p < S::n; ++p)
     for (int q = 0; q < S::n; ++q) {
-      const double slope = at.K[static_cast<size_t>(3 * p) * 3 * S::n + 3 * q] - evaluate_cell<S, typename TestFixture::M>(rubber, this->X_, this->X_, this->X_, {.elastic = 0}).K[static_cast<size_t>(3 * p) * 3 * S::n + 3 * q];
+      const double slope = at.K[static_cast<size_t>(3 * p) * 3 * S::n + 3 * q];
       ASSERT_NEAR(slope, M(p, q), bound * M.diagonal().maxCoeff()) << p << "," << q;
     }
 }
