@@ -17,7 +17,8 @@ struct CfcFilter {
 /// Coefficients for a class and a sampling interval T [s].
 CfcFilter cfc_filter(double cfc, double T);
 
-/// Filter forwards and backwards.  Both ends are continued by `pad` samples (point reflection, then a constant), so that the ends do not ring.
+/// Filter forwards and backwards.  Both ends are continued by `pad` samples (point reflection, then a constant), so that the ends do not
+/// ring.
 std::vector<double> filter_both_ways(const CfcFilter& filter, std::span<const double> x, size_t pad);
 
 /// Uniform times from t.front() to t.back() at the smallest interval of t (or 16 samples per recorded one where that is coarser).

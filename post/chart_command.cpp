@@ -8,9 +8,9 @@
 #include "base/args.hpp"
 #include "base/error.hpp"
 #include "post/commands.hpp"
+#include "post/csv.hpp"
 #include "post/figure.hpp"
 #include "post/picture.hpp"
-#include "post/csv.hpp"
 
 namespace hilo {
 namespace {
@@ -69,7 +69,7 @@ void run(const Options& o) {
       }
     }
   }
-  if (!one_y) {   // several columns: their common unit, if any, is all that can be said
+  if (!one_y) {  // several columns: their common unit, if any, is all that can be said
     const auto unit = panel.y.label.find('[');
     panel.y.label = unit == std::string::npos ? "" : panel.y.label.substr(unit);
   }

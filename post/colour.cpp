@@ -50,14 +50,18 @@ Rgb oklch(double L, double C, double hue) {
 
 Rgb blend(const Rgb& a, const Rgb& b, double w) { return {a.r + w * (b.r - a.r), a.g + w * (b.g - a.g), a.b + w * (b.b - a.b)}; }
 
-Rgb map_colour(ColourMap map, double s) {
-  return map == ColourMap::cividis ? table_colour(cividis, s) : table_colour(viridis, s);
-}
+Rgb map_colour(ColourMap map, double s) { return map == ColourMap::cividis ? table_colour(cividis, s) : table_colour(viridis, s); }
 
 Rgb category_colour(int n) {
-  // Wong's eight (Nature Methods 8, 441, 2011) without black, a little lighter for surfaces; then hues at the golden angle on three lightnesses.
-  constexpr std::array<Rgb, 7> wong{{{0.337, 0.706, 0.914}, {0.902, 0.624, 0.000}, {0.000, 0.620, 0.451}, {0.800, 0.475, 0.655},
-                                     {0.000, 0.447, 0.698}, {0.835, 0.369, 0.000}, {0.941, 0.894, 0.259}}};
+  // Wong's eight (Nature Methods 8, 441, 2011) without black, a little lighter for surfaces; then hues at the golden angle on three
+  // lightnesses.
+  constexpr std::array<Rgb, 7> wong{{{0.337, 0.706, 0.914},
+                                     {0.902, 0.624, 0.000},
+                                     {0.000, 0.620, 0.451},
+                                     {0.800, 0.475, 0.655},
+                                     {0.000, 0.447, 0.698},
+                                     {0.835, 0.369, 0.000},
+                                     {0.941, 0.894, 0.259}}};
   if (n < static_cast<int>(wong.size())) return blend(wong[static_cast<size_t>(std::max(n, 0))], white, 0.12);
   const int k = n - static_cast<int>(wong.size());
   constexpr double lightness[] = {0.72, 0.56, 0.84}, chroma[] = {0.13, 0.11, 0.09};
@@ -65,8 +69,13 @@ Rgb category_colour(int n) {
 }
 
 Rgb curve_colour(int n) {
-  constexpr std::array<Rgb, 7> dark{{{0.000, 0.447, 0.698}, {0.835, 0.369, 0.000}, {0.000, 0.545, 0.400}, {0.690, 0.290, 0.520},
-                                     {0.25, 0.25, 0.28}, {0.740, 0.520, 0.000}, {0.250, 0.600, 0.830}}};
+  constexpr std::array<Rgb, 7> dark{{{0.000, 0.447, 0.698},
+                                     {0.835, 0.369, 0.000},
+                                     {0.000, 0.545, 0.400},
+                                     {0.690, 0.290, 0.520},
+                                     {0.25, 0.25, 0.28},
+                                     {0.740, 0.520, 0.000},
+                                     {0.250, 0.600, 0.830}}};
   if (n < static_cast<int>(dark.size())) return dark[static_cast<size_t>(std::max(n, 0))];
   return oklch(0.55, 0.12, 0.3 + 2.399963 * n);
 }

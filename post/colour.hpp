@@ -22,6 +22,6 @@ Rgb blend(const Rgb& a, const Rgb& b, double w);
 std::array<std::uint8_t, 3> bytes(const Rgb& c);
 
 inline constexpr Rgb white{1, 1, 1}, ink{0.13, 0.14, 0.16}, faint{0.86, 0.87, 0.88};
-inline constexpr Rgb neutral{0.78, 0.79, 0.80};   ///< what has no value: rigid regions in a picture of stress
+inline constexpr Rgb neutral{0.78, 0.79, 0.80};  ///< what has no value: rigid regions in a picture of stress
 
 }  // namespace hilo

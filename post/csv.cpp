@@ -23,10 +23,14 @@ std::vector<std::string> cells_of(const std::string& line) {
   bool quoted = false;
   for (size_t i = 0; i < line.size(); ++i) {
     const char c = line[i];
-    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') cells.back() += line[++i];
-    else if (c == '"') quoted = !quoted;
-    else if (c == ',' && !quoted) cells.emplace_back();
-    else cells.back() += c;
+    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
+      cells.back() += line[++i];
+    else if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      cells.emplace_back();
+    else
+      cells.back() += c;
   }
   for (auto& cell : cells) cell = trimmed(cell);
   return cells;
@@ -53,7 +57,8 @@ CsvTable read_csv(const std::string& path) {
       continue;
     }
     if (cells.size() != table.header.size())
-      throw Error(fmt::format("{}:{}", path, line_number), fmt::format("{} cells under {} column names", cells.size(), table.header.size()));
+      throw Error(fmt::format("{}:{}", path, line_number),
+                  fmt::format("{} cells under {} column names", cells.size(), table.header.size()));
     for (size_t c = 0; c < cells.size(); ++c) table.column[c].push_back(cells[c]);
   }
   if (table.rows() == 0) throw Error(path, "holds no table", "a line of column names, then rows of numbers with commas");

@@ -11,7 +11,7 @@ namespace hilo {
 
 vtkSmartPointer<vtkPolyData> ellipsoid(const Ellipsoid& body) {
   constexpr int around = 48, rows = 24;
-  const double least = 0.04 * body.radii.maxCoeff();   // a rod has no thickness of its own
+  const double least = 0.04 * body.radii.maxCoeff();  // a rod has no thickness of its own
   const Vec3 r = body.radii.cwiseMax(least);
   const auto points = vtkSmartPointer<vtkPoints>::New();
   const auto normals = vtkSmartPointer<vtkFloatArray>::New();

@@ -43,7 +43,8 @@ vtkSmartPointer<vtkUnstructuredGrid> grid_of(const Mesh& mesh) {
   return grid;
 }
 
-template <class Array, class T> void attach(vtkFieldData* to, const std::string& name, const std::vector<T>& values, int columns) {
+template <class Array, class T>
+void attach(vtkFieldData* to, const std::string& name, const std::vector<T>& values, int columns) {
   const auto array = vtkSmartPointer<Array>::New();
   array->SetName(name.c_str());
   array->SetNumberOfComponents(columns);
@@ -63,9 +64,13 @@ void run(const Options& o) {
   for (const std::string& name : file.fields(step)) {
     const auto field = file.field(step, name);
     const auto rows = static_cast<std::int64_t>(field.value.size()) / field.columns;
-    if (rows == mesh.n_nodes() && !name.starts_with("cell_")) attach<vtkDoubleArray>(grid->GetPointData(), name, field.value, field.columns);
-    else if (rows == mesh.n_cells()) attach<vtkDoubleArray>(grid->GetCellData(), name, field.value, field.columns);
-    else throw Error(o.run, fmt::format("field \"{}\" has {} rows, neither nodes nor cells of the mesh", name, rows), "the mesh was changed after the run");
+    if (rows == mesh.n_nodes() && !name.starts_with("cell_"))
+      attach<vtkDoubleArray>(grid->GetPointData(), name, field.value, field.columns);
+    else if (rows == mesh.n_cells())
+      attach<vtkDoubleArray>(grid->GetCellData(), name, field.value, field.columns);
+    else
+      throw Error(o.run, fmt::format("field \"{}\" has {} rows, neither nodes nor cells of the mesh", name, rows),
+                  "the mesh was changed after the run");
     if (name == "displacement" && o.deformed)
       for (std::int64_t n = 0; n < mesh.n_nodes(); ++n) {
         const Vec3 x = mesh.X[static_cast<size_t>(n)] + Eigen::Map<const Vec3>(field.value.data() + 3 * n);

@@ -18,9 +18,9 @@ constexpr double tick_size = 15, label_size = 17, title_size = 20, legend_size =
 struct Scale {
   double low = 0, high = 1;
   bool log = false;
-  int exponent = 0;   // the ticks show value / 10^exponent
+  int exponent = 0;  // the ticks show value / 10^exponent
   Ticks ticks;
-  double operator()(double v) const {   // 0..1, NaN where the value cannot be shown
+  double operator()(double v) const {  // 0..1, NaN where the value cannot be shown
     if (log) v = v > 0 ? std::log10(v) : std::numeric_limits<double>::quiet_NaN();
     return (v - low) / (high - low);
   }
@@ -44,7 +44,7 @@ Scale scale_of(const Panel& panel, bool y_axis, int n_ticks) {
     s.ticks = log_ticks(std::pow(10, s.low), std::pow(10, s.high), n_ticks);
     return s;
   }
-  if (!(high - low > 1e-12 * std::max(std::abs(high), std::abs(low)))) {   // a constant
+  if (!(high - low > 1e-12 * std::max(std::abs(high), std::abs(low)))) {  // a constant
     const double half = high == 0 ? 1 : 0.5 * std::abs(high);
     low -= half, high += half;
   } else if (y_axis) {
@@ -164,8 +164,8 @@ void draw(Painter& p, const Figure& f) {
   for (size_t i = 0; i < f.panels.size(); ++i) {
     const Panel& panel = f.panels[i];
     const double head = panel.title.empty() ? 8 * s : 30 * s, foot = 58 * s;
-    const Box box{std::round(left), std::round(p.height - top - static_cast<double>(i + 1) * slot + foot), std::round(p.width - left - right),
-                  std::round(slot - head - foot)};
+    const Box box{std::round(left), std::round(p.height - top - static_cast<double>(i + 1) * slot + foot),
+                  std::round(p.width - left - right), std::round(slot - head - foot)};
     if (!panel.title.empty()) p.text({box.x, box.y + box.h + 6 * s}, panel.title, label_size, Across::left, Up::bottom, ink, true);
     draw_axes(p, panel, box, sx[i], sy[i]);
     p.text({18 * s, box.y + box.h / 2}, label_of(panel.y, sy[i]), label_size, Across::centre, Up::middle, ink, false, 90);

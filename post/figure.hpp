@@ -11,13 +11,13 @@ struct Curve {
   std::string label;
   std::vector<double> x, y;
   Rgb colour;
-  double width = 2;        // [unit of text, see Painter]
+  double width = 2;  // [unit of text, see Painter]
   double opacity = 1;
   bool markers = false, dashed = false;
 };
 
 struct Axis {
-  std::string label;       // with its unit: "time [s]"
+  std::string label;  // with its unit: "time [s]"
   bool log = false;
 };
 
@@ -29,7 +29,7 @@ struct Panel {
 
 struct Figure {
   std::string title;
-  std::vector<Panel> panels;   // from top to bottom
+  std::vector<Panel> panels;  // from top to bottom
   int width = 1280, height = 720;
 };
 

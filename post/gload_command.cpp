@@ -9,12 +9,12 @@
 #include "base/table.hpp"
 #include "model/store.hpp"
 #include "post/cfc.hpp"
-#include "post/figure.hpp"
 #include "post/commands.hpp"
+#include "post/csv.hpp"
+#include "post/figure.hpp"
 #include "post/output.hpp"
 #include "post/picture.hpp"
 #include "post/run_file.hpp"
-#include "post/csv.hpp"
 
 namespace hilo {
 namespace {
@@ -29,8 +29,8 @@ struct Options {
 /// One sensor: raw at its recorded times, filtered at uniform ones; the fourth column is the resultant.
 struct Sensor {
   std::string name;
-  std::vector<double> t, uniform;            // [s]
-  std::array<std::vector<double>, 4> raw, filtered;   // x y z resultant [g]
+  std::vector<double> t, uniform;                    // [s]
+  std::array<std::vector<double>, 4> raw, filtered;  // x y z resultant [g]
 };
 
 std::vector<double> resultant(const std::array<std::vector<double>, 4>& a) {
@@ -94,7 +94,8 @@ void write_csv(const Options& o, const std::vector<Sensor>& sensors) {
 void write_png(const Options& o, const RunFile& run, const std::vector<Sensor>& sensors) {
   Figure figure;
   figure.title = fmt::format("{}: proper acceleration", run.title);
-  std::tie(figure.width, figure.height) = parse_size(o.size.empty() ? fmt::format("1280x{}", std::max<size_t>(720, 330 * sensors.size())) : o.size);
+  std::tie(figure.width, figure.height) =
+      parse_size(o.size.empty() ? fmt::format("1280x{}", std::max<size_t>(720, 330 * sensors.size())) : o.size);
   for (const Sensor& s : sensors) {
     Panel panel{s.name, {"time [s]"}, {"acceleration [g]"}, {}};
     constexpr const char* axis[] = {"x forward", "y left", "z up"};
@@ -103,7 +104,8 @@ void write_png(const Options& o, const RunFile& run, const std::vector<Sensor>& 
       panel.curves.push_back({fmt::format("{}, raw", axis[a]), s.t, s.raw[a], blend(colour, white, 0.35), 1.0});
     }
     for (size_t a = 0; a < 3; ++a)
-      panel.curves.push_back({fmt::format("{}, CFC {:g}", axis[a], o.cfc), s.uniform, s.filtered[a], curve_colour(static_cast<int>(a)), 2.6});
+      panel.curves.push_back(
+          {fmt::format("{}, CFC {:g}", axis[a], o.cfc), s.uniform, s.filtered[a], curve_colour(static_cast<int>(a)), 2.6});
     figure.panels.push_back(std::move(panel));
   }
   write_chart(figure, o.png);
@@ -136,10 +138,11 @@ void run(const Options& o) {
   if (!o.png.empty()) write_png(o, file, sensors);
   if (o.csv != "-") write_out("-", table_of(o, sensors));
   if (!is_quiet() && !o.json)
-    fmt::print(stderr,
-               "Peaks in g with their sign (t_res in s); proper acceleration, +1 upward at rest.  CFC {:g}: SAE J211-1, forwards and backwards,\n"
-               "ends continued by point reflection.  clip_3ms: cumulative, of the filtered resultant.{}\n",
-               o.cfc, file.complete ? "" : "  The run is not complete.");
+    fmt::print(
+        stderr,
+        "Peaks in g with their sign (t_res in s); proper acceleration, +1 upward at rest.  CFC {:g}: SAE J211-1, forwards and backwards,\n"
+        "ends continued by point reflection.  clip_3ms: cumulative, of the filtered resultant.{}\n",
+        o.cfc, file.complete ? "" : "  The run is not complete.");
 }
 
 }  // namespace

@@ -70,7 +70,8 @@ void coil(Painter& p, const Vec2& a, const Vec2& b, const Rgb& colour, double am
 
 }  // namespace
 
-void draw_glyph(Painter& p, Glyph glyph, const Vec2& at, const Vec2& along, const Vec2& above, const Vec2& to, const Rgb& colour, double size) {
+void draw_glyph(Painter& p, Glyph glyph, const Vec2& at, const Vec2& along, const Vec2& above, const Vec2& to, const Rgb& colour,
+                double size) {
   const double r = 0.22 * size;
   const Vec2 axis = size * along;
   const auto square = [&](double half, const Rgb& fill) { p.rectangle({at.x() - half, at.y() - half, 2 * half, 2 * half}, fill); };
@@ -87,7 +88,9 @@ void draw_glyph(Painter& p, Glyph glyph, const Vec2& at, const Vec2& along, cons
       draw_arrow(p, at, at + axis, colour, pen), draw_arrow(p, at, at - axis, colour, pen);
       square(r, colour), square(r - 1.8 * p.scale, white);
       break;
-    case Glyph::block: square(r, colour); break;
+    case Glyph::block:
+      square(r, colour);
+      break;
     case Glyph::link:
       p.line(at, to, colour, pen);
       dot_between(p, at, to, colour, size);
@@ -111,19 +114,25 @@ void draw_glyph(Painter& p, Glyph glyph, const Vec2& at, const Vec2& along, cons
       break;
     }
     case Glyph::arrow:
-      if (along.norm() < 0.1) ring(p, at, r, colour), p.disc(at, 0.4 * r, colour);   // along the line of sight
-      else draw_arrow(p, at - 2.2 * axis, at, colour, 1.5 * pen);
+      if (along.norm() < 0.1)
+        ring(p, at, r, colour), p.disc(at, 0.4 * r, colour);  // along the line of sight
+      else
+        draw_arrow(p, at - 2.2 * axis, at, colour, 1.5 * pen);
       break;
     case Glyph::turn:
       p.line(at - axis, at + axis, colour, pen);
       turn(p, at, 0.45 * size, 0.72, -0.3, colour, true, false);
       break;
-    case Glyph::clamp: p.polygon(std::array{at, Vec2(at + Vec2(-0.3 * size, -0.5 * size)), Vec2(at + Vec2(0.3 * size, -0.5 * size))}, colour); break;
+    case Glyph::clamp:
+      p.polygon(std::array{at, Vec2(at + Vec2(-0.3 * size, -0.5 * size)), Vec2(at + Vec2(0.3 * size, -0.5 * size))}, colour);
+      break;
     case Glyph::triad:
       draw_arrow(p, at, at + 1.1 * axis, colour, pen), draw_arrow(p, at, at + 1.1 * size * above, colour, pen);
       p.polygon(std::array{Vec2(at - Vec2(r, 0)), Vec2(at - Vec2(0, r)), Vec2(at + Vec2(r, 0)), Vec2(at + Vec2(0, r))}, colour);
       break;
-    case Glyph::cross: p.line(at - Vec2(r, r), at + Vec2(r, r), colour, pen), p.line(at - Vec2(r, -r), at + Vec2(r, -r), colour, pen); break;
+    case Glyph::cross:
+      p.line(at - Vec2(r, r), at + Vec2(r, r), colour, pen), p.line(at - Vec2(r, -r), at + Vec2(r, -r), colour, pen);
+      break;
     case Glyph::mass: {
       ring(p, at, r, colour);
       for (const double from : {0.0, M_PI}) {
@@ -150,7 +159,7 @@ void draw_labels(Painter& p, const std::vector<Label>& labels, const Box& box, d
     Box best{};
     double least = 1e300;
     for (const double away : {14.0, 26.0, 42.0, 62.0, 86.0, 112.0})
-      for (int k = 0; k < 16; ++k) {   // around the anchor, to the right first
+      for (int k = 0; k < 16; ++k) {  // around the anchor, to the right first
         const double a = (k % 2 ? -1 : 1) * M_PI * ((k + 1) / 2) / 8;
         const Vec2 end = l.anchor + away * p.scale * Vec2(std::cos(a), std::sin(a));
         const Box place{end.x() - 0.5 * e.x() * (1 - std::cos(a)), end.y() - 0.5 * e.y() * (1 - std::sin(a)), e.x(), e.y()};

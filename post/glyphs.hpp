@@ -20,11 +20,12 @@ class Projection {
  private:
   Eigen::Matrix4d matrix_;
   Box box_;
-  double metre_;   // model length of one pixel near the focal point
+  double metre_;  // model length of one pixel near the focal point
 };
 
 /// A symbol about `at`: `along` and `above` are its directions (length at most one), `to` the far end of links and coils; `size` in pixels.
-void draw_glyph(Painter& p, Glyph glyph, const Vec2& at, const Vec2& along, const Vec2& above, const Vec2& to, const Rgb& colour, double size);
+void draw_glyph(Painter& p, Glyph glyph, const Vec2& at, const Vec2& along, const Vec2& above, const Vec2& to, const Rgb& colour,
+                double size);
 
 struct Label {
   Vec2 anchor;

@@ -7,11 +7,12 @@
 
 int main(int argc, char** argv) {
   return hilo::guarded("hilo-post", [&] {
-    setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);   // a run in progress may be read
-    const auto app = hilo::make_app({"hilo-post", "Pictures, tables and charts of a run, and of a scene before it runs; no display is needed.",
-                                     "  hilo-post render run.h5 --field von_mises --steps last -o stress.png\n"
-                                     "  hilo-post gload run.h5 --cfc 60 -o gload.csv --png gload.png\n"
-                                     "  hilo-post series run.h5 --list"});
+    setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);  // a run in progress may be read
+    const auto app =
+        hilo::make_app({"hilo-post", "Pictures, tables and charts of a run, and of a scene before it runs; no display is needed.",
+                        "  hilo-post render run.h5 --field von_mises --steps last -o stress.png\n"
+                        "  hilo-post gload run.h5 --cfc 60 -o gload.csv --png gload.png\n"
+                        "  hilo-post series run.h5 --list"});
     app->require_subcommand(1);
     const hilo::Command commands[] = {hilo::render_command(*app), hilo::model_command(*app), hilo::gload_command(*app),
                                       hilo::series_command(*app), hilo::chart_command(*app), hilo::export_command(*app)};

@@ -32,7 +32,7 @@ struct Group {
   std::string label;
   Fidelity fidelity;
   Rgb colour;
-  std::vector<bool> member;   // per region
+  std::vector<bool> member;  // per region
 };
 
 /// Regions of one fidelity in groups of like names; rigid ones are paler.
@@ -45,7 +45,8 @@ std::vector<Group> groups_of(const MeshFile& file, const std::vector<bool>& show
       if (shown[r] && file.fidelity[r] == f) names.push_back(file.mesh.region_name[r]), which.push_back(r);
     for (const NameGroup& g : grouped(names, 8)) {
       const Rgb colour = category_colour(static_cast<int>(groups.size()));
-      Group group{g.label, f, f == Fidelity::rigid ? blend(colour, {0.88, 0.88, 0.88}, 0.62) : colour, std::vector<bool>(shown.size(), false)};
+      Group group{g.label, f, f == Fidelity::rigid ? blend(colour, {0.88, 0.88, 0.88}, 0.62) : colour,
+                  std::vector<bool>(shown.size(), false)};
       for (const size_t m : g.members) group.member[which[m]] = true;
       groups.push_back(std::move(group));
     }
@@ -60,8 +61,8 @@ std::string mesh_path(const Options& o, const Scene& scene) {
   return mesh.empty() ? "" : (std::filesystem::path(scene.folder) / mesh).lexically_normal().string();
 }
 
-void add_meshed(vtkRenderer* stage, const MeshFile& file, const std::vector<Group>& groups, const std::vector<bool>& shown, double pixel, double height,
-                bool see_through) {
+void add_meshed(vtkRenderer* stage, const MeshFile& file, const std::vector<Group>& groups, const std::vector<bool>& shown, double pixel,
+                double height, bool see_through) {
   const Mesh& mesh = file.mesh;
   const auto facets = boundary_facets(mesh, shown);
   for (const Group& g : groups) {
@@ -70,7 +71,8 @@ void add_meshed(vtkRenderer* stage, const MeshFile& file, const std::vector<Grou
     for (const Facet& f : facets)
       if (g.member[static_cast<size_t>(mesh.region[static_cast<size_t>(f.cell)])]) own.push_back(f);
     for (std::int64_t c = 0; c < mesh.n_cells(); ++c)
-      if (g.member[static_cast<size_t>(mesh.region[static_cast<size_t>(c)])] && info(mesh.shape[static_cast<size_t>(c)]).dimension == 1) bars.push_back(c);
+      if (g.member[static_cast<size_t>(mesh.region[static_cast<size_t>(c)])] && info(mesh.shape[static_cast<size_t>(c)]).dimension == 1)
+        bars.push_back(c);
     const Skin skin(mesh, own, bars);
     const bool rigid = g.fidelity == Fidelity::rigid;
     Look look;
@@ -97,7 +99,9 @@ std::vector<LegendEntry> legend_of(const std::vector<Group>& groups, const Scene
     if (!seen.insert(i.meaning).second) continue;
     const auto symbol = [i, glyph_size](Painter& p, const Vec2& at) {
       const bool two_ends = i.glyph == Glyph::link || i.glyph == Glyph::coil;
-      const Vec2 from = two_ends ? Vec2(at - Vec2(0.55 * glyph_size, 0)) : i.glyph == Glyph::arrow ? Vec2(at + Vec2(0.6 * glyph_size, 0)) : at;
+      const Vec2 from = two_ends                  ? Vec2(at - Vec2(0.55 * glyph_size, 0))
+                        : i.glyph == Glyph::arrow ? Vec2(at + Vec2(0.6 * glyph_size, 0))
+                                                  : at;
       const double size = i.glyph == Glyph::arrow ? 0.55 * glyph_size : i.glyph == Glyph::ground ? 0.7 * glyph_size : 0.8 * glyph_size;
       const Vec2 shift = i.glyph == Glyph::ground || i.glyph == Glyph::clamp ? Vec2(0, 0.3 * glyph_size) : Vec2(0, 0);
       draw_glyph(p, i.glyph, from + shift, {0.75, 0}, {0, 0.6}, at + Vec2(0.55 * glyph_size, 0), i.colour, size);
@@ -153,7 +157,8 @@ void run(const Options& o) {
       if (shown[static_cast<size_t>(file->mesh.region[static_cast<size_t>(c)])])
         for (const auto n : file->mesh.cell(c)) fit.add(file->mesh.X[static_cast<size_t>(n)]);
   }
-  for (const Ellipsoid& b : items.bodies) fit.add(b.centre - b.radii.norm() * Vec3::Ones()), fit.add(b.centre + b.radii.norm() * Vec3::Ones());
+  for (const Ellipsoid& b : items.bodies)
+    fit.add(b.centre - b.radii.norm() * Vec3::Ones()), fit.add(b.centre + b.radii.norm() * Vec3::Ones());
   for (const SceneItem& i : items.items) {
     fit.add(i.at);
     if (i.glyph == Glyph::link || i.glyph == Glyph::coil) fit.add(i.to);
@@ -165,12 +170,16 @@ void run(const Options& o) {
     add_meshed(stage, *file, groups, shown, pixel, frame.model.h, o.see_through);
   }
   for (size_t k = 0; k < items.bodies.size(); ++k)
-    if (items.bodies[k].radii.norm() > 0) add_surface(stage, ellipsoid(items.bodies[k]), blend(category_colour(static_cast<int>(k)), white, 0.35));
+    if (items.bodies[k].radii.norm() > 0)
+      add_surface(stage, ellipsoid(items.bodies[k]), blend(category_colour(static_cast<int>(k)), white, 0.35));
   stage->ResetCameraClippingRange();
   const Entry& head = scene.table("scene");
-  const std::string title = !o.title.empty() ? o.title : head.has("title") && !head.text("title").empty() ? head.text("title") : std::filesystem::path(o.scene).stem().string();
-  std::string line = file ? fmt::format("{} regions, {} cells, {} nodes", file->mesh.region_name.size(), file->mesh.n_cells(), file->mesh.n_nodes())
-                          : fmt::format("{} bodies", items.bodies.size());
+  const std::string title = !o.title.empty()                                   ? o.title
+                            : head.has("title") && !head.text("title").empty() ? head.text("title")
+                                                                               : std::filesystem::path(o.scene).stem().string();
+  std::string line =
+      file ? fmt::format("{} regions, {} cells, {} nodes", file->mesh.region_name.size(), file->mesh.n_cells(), file->mesh.n_nodes())
+           : fmt::format("{} bodies", items.bodies.size());
   if (file && !file->tagged) line += ", not tagged: all nonlinear";
   picture.paint([&](Painter& p) {
     draw_items(p, o, items, Projection(stage, frame.model), frame.model);
@@ -191,7 +200,8 @@ Command model_command(CLI::App& app) {
   sub->add_option("scene", o->scene, "scene.toml; - for standard input")->required();
   sub->add_option("mesh", o->mesh, "mesh.h5, tags.h5 or parts-N.h5; that of the scene by default");
   sub->add_option("-o,--output", o->output, "PNG file")->required();
-  sub->add_option("--camera", o->camera, fmt::format("{}, or x,y,z towards the camera", fmt::join(view_names(), ", ")))->capture_default_str();
+  sub->add_option("--camera", o->camera, fmt::format("{}, or x,y,z towards the camera", fmt::join(view_names(), ", ")))
+      ->capture_default_str();
   sub->add_option("--show", o->show, "regions to draw, by name or glob; all by default")->allow_extra_args(false);
   sub->add_option("--hide", o->hide, "regions not to draw")->allow_extra_args(false);
   sub->add_flag("--see-through", o->see_through, "rigid regions are transparent");

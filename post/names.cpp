@@ -15,8 +15,10 @@ std::string stem(const std::string& name) {
     word.clear();
   };
   for (const char c : name) {
-    if (c == '_' || c == '-' || c == ' ') close();
-    else if (!std::isdigit(static_cast<unsigned char>(c))) word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (c == '_' || c == '-' || c == ' ')
+      close();
+    else if (!std::isdigit(static_cast<unsigned char>(c)))
+      word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
   close();
   return out;
@@ -30,8 +32,10 @@ std::vector<NameGroup> grouped(const std::vector<std::string>& names, size_t few
   for (size_t i = 0; i < names.size(); ++i) {
     const std::string s = names.size() <= few ? names[i] : stem(names[i]);
     const auto found = std::find(stems.begin(), stems.end(), s);
-    if (found == stems.end()) stems.push_back(s), groups.push_back({names[i], {i}});
-    else groups[static_cast<size_t>(found - stems.begin())].members.push_back(i);
+    if (found == stems.end())
+      stems.push_back(s), groups.push_back({names[i], {i}});
+    else
+      groups[static_cast<size_t>(found - stems.begin())].members.push_back(i);
   }
   for (auto& g : groups)
     if (g.members.size() > 1) g.label = fmt::format("{} \u2026 {}", names[g.members.front()], names[g.members.back()]);

@@ -6,8 +6,8 @@
 namespace hilo {
 
 struct NameGroup {
-  std::string label;              // "wheel_1 ... wheel_8"
-  std::vector<size_t> members;    // positions in the list of names
+  std::string label;            // "wheel_1 ... wheel_8"
+  std::vector<size_t> members;  // positions in the list of names
 };
 /// Names grouped by what is left without digits and without the words l, r, left, right; one group each for lists of at most `few`.
 std::vector<NameGroup> grouped(const std::vector<std::string>& names, size_t few = 12);

@@ -20,8 +20,10 @@ std::vector<std::string> wrapped(Painter& p, const std::string& text, double siz
   while (at < text.size()) {
     const size_t end = std::min(text.find(' ', at), text.size());
     const std::string longer = lines.back() + (lines.back().empty() ? "" : " ") + text.substr(at, end - at);
-    if (!lines.back().empty() && p.extent(longer, size).x() > width) lines.push_back(text.substr(at, end - at));
-    else lines.back() = longer;
+    if (!lines.back().empty() && p.extent(longer, size).x() > width)
+      lines.push_back(text.substr(at, end - at));
+    else
+      lines.back() = longer;
     at = end + 1;
   }
   return lines;
@@ -37,7 +39,8 @@ std::string shortened(Painter& p, std::string text, double size, double width) {
 }  // namespace
 
 Frame frame_of(int width, int height, double side_width, bool two_titles) {
-  const double s = picture_scale(width, height), top = std::round((two_titles ? 74 : 48) * s), side = std::round(side_width * s), rim = std::round(12 * s);
+  const double s = picture_scale(width, height), top = std::round((two_titles ? 74 : 48) * s), side = std::round(side_width * s),
+               rim = std::round(12 * s);
   Frame f;
   f.model = {rim, rim, width - side - 2 * rim, height - top - rim};
   f.side = {width - side - rim, rim, side, height - top - rim};
@@ -58,7 +61,7 @@ void draw_colour_bar(Painter& p, const Box& side, const ColourBar& bar) {
   const double foot = side.y + (bar.neutral.empty() ? 44 : 86) * s;
   const Box box{std::round(x), std::round(foot), std::round(24 * s), std::round(top - 1.6 * row - foot)};
   constexpr int strips = 256;
-  for (int i = 0; i < strips; ++i) {   // strips overlap, so that no seam shows
+  for (int i = 0; i < strips; ++i) {  // strips overlap, so that no seam shows
     const double from = box.y + box.h * i / strips;
     p.rectangle({box.x, from, box.w, box.y + box.h - from}, map_colour(bar.map, (i + 0.5) / strips));
   }
@@ -130,12 +133,12 @@ void draw_axes_cross(Painter& p, const Vec3& right, const Vec3& up, const Vec3& 
   const Vec2 origin(64 * s, 62 * s);
   constexpr std::array<Rgb, 3> colours{{{0.75, 0.18, 0.18}, {0.13, 0.52, 0.22}, {0.15, 0.30, 0.70}}};
   constexpr const char* names[] = {"x", "y", "z"};
-  std::array<int, 3> order{0, 1, 2};   // the farthest first
+  std::array<int, 3> order{0, 1, 2};  // the farthest first
   std::sort(order.begin(), order.end(), [&](int a, int b) { return back[a] < back[b]; });
   for (const int i : order) {
     const Vec2 d(right[i], up[i]);
     const auto& colour = colours[static_cast<size_t>(i)];
-    if (d.norm() < 0.05) {   // along the line of sight
+    if (d.norm() < 0.05) {  // along the line of sight
       p.disc(origin, 4 * s, colour);
       continue;
     }

@@ -18,11 +18,11 @@ Frame frame_of(int width, int height, double side_width, bool two_titles);
 void draw_title(Painter& p, const std::string& title, const std::string& line);
 
 struct ColourBar {
-  std::string quantity, unit;   // "von Mises stress", "MPa"
+  std::string quantity, unit;  // "von Mises stress", "MPa"
   ColourMap map = ColourMap::viridis;
-  double low = 0, high = 1;     // of the colours, in `unit`
-  double least = 0, most = 0;   // in this picture, in `unit`; beyond the range the bar gets a point
-  std::string neutral;          // what the neutral tone means; "" when it is not used
+  double low = 0, high = 1;    // of the colours, in `unit`
+  double least = 0, most = 0;  // in this picture, in `unit`; beyond the range the bar gets a point
+  std::string neutral;         // what the neutral tone means; "" when it is not used
 };
 void draw_colour_bar(Painter& p, const Box& side, const ColourBar& bar);
 

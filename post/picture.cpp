@@ -35,7 +35,8 @@ void colour_of(const Rgb& c, double opacity, unsigned char out[4]) {
 
 /// DejaVu Sans where the machine has it (Debian installs it with fontconfig), else VTK's own letters.
 const char* font_file(bool bold) {
-  static const char *plain = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", *strong = "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf";
+  static const char *plain = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+                    *strong = "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf";
   static const bool there = std::filesystem::exists(plain) && std::filesystem::exists(strong);
   return !there ? nullptr : bold ? strong : plain;
 }
@@ -132,8 +133,15 @@ void Painter::text(const Vec2& at, const std::string& text, double size, Across 
   if (text.empty()) return;
   const Vec2 all = extent(text, size, bold);
   const Vec2 along(std::cos(angle * M_PI / 180), std::sin(angle * M_PI / 180)), above(-along.y(), along.x());
-  Vec2 pen = at - (across == Across::left ? 0 : across == Across::centre ? 0.5 : 1) * all.x() * along -
-             (up == Up::bottom ? 0 : up == Up::middle ? 0.5 : 1) * all.y() * above;
+  Vec2 pen = at -
+             (across == Across::left     ? 0
+              : across == Across::centre ? 0.5
+                                         : 1) *
+                 all.x() * along -
+             (up == Up::bottom   ? 0
+              : up == Up::middle ? 0.5
+                                 : 1) *
+                 all.y() * above;
   for (const Run& run : runs_of(text)) {
     const double run_size = run.raised ? raised_size * size : size;
     const double wide = extent(run.text, run_size, bold).x();
@@ -190,7 +198,7 @@ vtkStandardNewMacro(Picture::Item);
 double picture_scale(int width, int height) { return std::max(0.4, std::min(width / 1280.0, height / 720.0)); }
 
 Picture::Picture(int width, int height) : width(width), height(height), window_(egl_window(width, height)) {
-  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_ERROR);   // its warnings are for programmers
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_ERROR);  // its warnings are for programmers
   const auto paper = vtkSmartPointer<vtkRenderer>::New();
   paper->SetBackground(1, 1, 1);
   window_->AddRenderer(paper);

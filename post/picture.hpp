@@ -28,9 +28,10 @@ struct Box {
 /// Draws in pixels.  Sizes of text and widths of lines are given for a picture 720 high and scaled with it.
 class Painter {
  public:
-  Painter(vtkContext2D* context, double width, double height, double scale) : width(width), height(height), scale(scale), context_(context) {}
-  const double width, height;   // of the picture  [pixel]
-  const double scale;           // pixels per unit of text size and line width
+  Painter(vtkContext2D* context, double width, double height, double scale)
+      : width(width), height(height), scale(scale), context_(context) {}
+  const double width, height;  // of the picture  [pixel]
+  const double scale;          // pixels per unit of text size and line width
 
   void line(std::span<const Vec2> points, const Rgb& colour, double width, double opacity = 1, bool dashed = false);
   void line(const Vec2& a, const Vec2& b, const Rgb& colour, double width) { line(std::array{a, b}, colour, width); }

@@ -22,8 +22,8 @@ namespace hilo {
 namespace {
 
 struct Options {
-  std::string run, output, field = "von_mises", steps = "last", times, camera = "iso", range, size = "1280x720", edges = "feature", unit, title,
-                           colours = "viridis";
+  std::string run, output, field = "von_mises", steps = "last", times, camera = "iso", range, size = "1280x720", edges = "feature", unit,
+                           title, colours = "viridis";
   std::vector<std::string> show, hide, zoom;
   double scale = 1;
 };
@@ -44,8 +44,10 @@ class Renderer {
     shown_ = shown_regions(mesh_, o.show, o.hide);
     zoomed_ = o.zoom.empty() ? shown_ : shown_regions(mesh_, o.zoom, o.hide);
     valued_ = shown_;
-    if (is_named_field(o.field)) named_ = named_cells(file_, o.field, shown_, run_.path);
-    else field_ = shown_field(o.field, run_.fields(steps_.front()));
+    if (is_named_field(o.field))
+      named_ = named_cells(file_, o.field, shown_, run_.path);
+    else
+      field_ = shown_field(o.field, run_.fields(steps_.front()));
     for (size_t r = 0; r < shown_.size(); ++r)
       if (field_.flexible_only && file_.fidelity[r] == Fidelity::rigid) valued_[r] = false;
     if (std::none_of(valued_.begin(), valued_.end(), [](bool b) { return b; }))
@@ -95,7 +97,8 @@ class Renderer {
     for (const Facet& f : boundary_facets(mesh_, shown_)) (valued_[region_of(f.cell)] ? coloured : toned).push_back(f);
     std::vector<std::int64_t> coloured_bars, toned_bars;
     for (std::int64_t c = 0; c < mesh_.n_cells(); ++c)
-      if (info(mesh_.shape[static_cast<size_t>(c)]).dimension == 1 && shown_[region_of(c)]) (valued_[region_of(c)] ? coloured_bars : toned_bars).push_back(c);
+      if (info(mesh_.shape[static_cast<size_t>(c)]).dimension == 1 && shown_[region_of(c)])
+        (valued_[region_of(c)] ? coloured_bars : toned_bars).push_back(c);
     coloured_ = std::make_unique<Skin>(mesh_, coloured, coloured_bars);
     toned_ = std::make_unique<Skin>(mesh_, toned, toned_bars);
     counted_.assign(static_cast<size_t>(mesh_.n_nodes()), false);
@@ -118,7 +121,8 @@ class Renderer {
     if (!run_.store().has("/field/" + step.key + "/displacement")) return x;
     const auto u = run_.field(step, "displacement").value;
     if (u.size() != 3 * x.size())
-      throw Error(run_.path, fmt::format("displacements of step {} are not those of the mesh", step.key), "the mesh was changed after the run");
+      throw Error(run_.path, fmt::format("displacements of step {} are not those of the mesh", step.key),
+                  "the mesh was changed after the run");
     for (size_t n = 0; n < x.size(); ++n) x[n] += o_.scale * Vec3(u[3 * n], u[3 * n + 1], u[3 * n + 2]);
     return x;
   }
@@ -141,7 +145,8 @@ class Renderer {
       low = std::min(low, least), high = std::max(high, most);
     }
     if (is_named_field(o_.field)) return;
-    const ShownUnit unit = o_.unit.empty() ? handy_unit(field_.unit, std::max(std::abs(low), std::abs(high))) : wanted_unit(field_.unit, o_.unit);
+    const ShownUnit unit =
+        o_.unit.empty() ? handy_unit(field_.unit, std::max(std::abs(low), std::abs(high))) : wanted_unit(field_.unit, o_.unit);
     factor_ = unit.factor;
     bar_.quantity = field_.label;
     bar_.unit = unit.name;
@@ -212,8 +217,8 @@ class Renderer {
   const MeshFile& file_;
   const Mesh& mesh_;
   std::vector<Step> steps_;
-  std::vector<bool> shown_, zoomed_, valued_;   // per region
-  std::vector<bool> counted_, framed_;          // per node: in the range; in the frame
+  std::vector<bool> shown_, zoomed_, valued_;  // per region
+  std::vector<bool> counted_, framed_;         // per node: in the range; in the frame
   std::vector<Vec3> extremes_;
   std::unique_ptr<Skin> coloured_, toned_;
   ShownField field_;
@@ -228,11 +233,15 @@ Command render_command(CLI::App& app) {
   auto* sub = app.add_subcommand("render", "PNG frames of a run, coloured by a field");
   const auto o = std::make_shared<Options>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
-  sub->add_option("-o,--output", o->output, "PNG file of a single step, or start of the names: out/frame gives out/frame-000012.png")->required();
-  sub->add_option("--field", o->field, "von_mises, acceleration, displacement, velocity (or .x .y .z of these), stress.xx, region, fidelity, partition")->capture_default_str();
+  sub->add_option("-o,--output", o->output, "PNG file of a single step, or start of the names: out/frame gives out/frame-000012.png")
+      ->required();
+  sub->add_option("--field", o->field,
+                  "von_mises, acceleration, displacement, velocity (or .x .y .z of these), stress.xx, region, fidelity, partition")
+      ->capture_default_str();
   sub->add_option("--steps", o->steps, "all, first, last or numbers: 0,5,10")->capture_default_str();
   sub->add_option("--times", o->times, "times in s, instead of --steps: the nearest ones are drawn");
-  sub->add_option("--camera", o->camera, fmt::format("{}, or x,y,z towards the camera", fmt::join(view_names(), ", ")))->capture_default_str();
+  sub->add_option("--camera", o->camera, fmt::format("{}, or x,y,z towards the camera", fmt::join(view_names(), ", ")))
+      ->capture_default_str();
   sub->add_option("--scale", o->scale, "factor on the displacements")->capture_default_str();
   sub->add_option("--range", o->range, "LOW,HIGH of the colours in the shown unit; the range over all drawn steps by default");
   sub->add_option("--unit", o->unit, "unit shown: MPa, mm, g, ...; a handy one by default");

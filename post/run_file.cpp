@@ -39,7 +39,8 @@ bool matches(const std::string& glob, const std::string& name) { return fnmatch(
 RunFile::RunFile(const std::string& path) : path(path), store_(Store::open(path)) {
   const std::string format = store_.text_attribute("/", "format").value_or("");
   if (format != "hilo run")
-    throw Error(path, format.empty() ? "is no file of hilo" : fmt::format("is a \"{}\", not a run", format), "give the run.h5 of hilo-solve");
+    throw Error(path, format.empty() ? "is no file of hilo" : fmt::format("is a \"{}\", not a run", format),
+                "give the run.h5 of hilo-solve");
   complete = store_.number_attribute("/", "complete").value_or(0) != 0;
   title = store_.text_attribute("/", "title").value_or("");
   if (title.empty()) title = fs::path(path).stem().string();
@@ -50,15 +51,18 @@ RunFile::RunFile(const std::string& path) : path(path), store_(Store::open(path)
 const MeshFile& RunFile::mesh_file() {
   if (mesh_) return *mesh_;
   if (!has_mesh())
-    throw Error(path, "holds no mesh: a scene of bodies alone has no surfaces to draw or export", "its histories are there: hilo-post series --list");
+    throw Error(path, "holds no mesh: a scene of bodies alone has no surfaces to draw or export",
+                "its histories are there: hilo-post series --list");
   const auto link = store_.linked("/mesh");
   const std::string target = link ? resolved_from(path, link->first) : path;
-  if (!fs::exists(target)) throw Error(path, fmt::format("the mesh it was run on, {}, is missing", target), "keep it where it was, or move both together");
+  if (!fs::exists(target))
+    throw Error(path, fmt::format("the mesh it was run on, {}, is missing", target), "keep it where it was, or move both together");
   mesh_ = read_mesh_file(target);
-  if (store_.has("/tags/fidelity")) {   // as run, which may differ from the tags there are now
+  if (store_.has("/tags/fidelity")) {  // as run, which may differ from the tags there are now
     const auto words = store_.read_strings("/tags/fidelity");
     if (words.size() != mesh_->mesh.region_name.size())
-      throw Error(path, fmt::format("{} tags, but {} has {} regions", words.size(), target, mesh_->mesh.region_name.size()), "the mesh was changed after the run");
+      throw Error(path, fmt::format("{} tags, but {} has {} regions", words.size(), target, mesh_->mesh.region_name.size()),
+                  "the mesh was changed after the run");
     mesh_->fidelity.clear();
     for (const auto& w : words) mesh_->fidelity.push_back(fidelity_of(w, path));
     mesh_->tagged = true;
@@ -66,7 +70,8 @@ const MeshFile& RunFile::mesh_file() {
   mesh_->rank.clear();
   if (store_.has("/parts/rank")) mesh_->rank = store_.read<std::int32_t>("/parts/rank");
   if (!mesh_->rank.empty() && mesh_->rank.size() != mesh_->mesh.shape.size())
-    throw Error(path, fmt::format("ranks of {} cells, but {} has {}", mesh_->rank.size(), target, mesh_->mesh.shape.size()), "the mesh was changed after the run");
+    throw Error(path, fmt::format("ranks of {} cells, but {} has {}", mesh_->rank.size(), target, mesh_->mesh.shape.size()),
+                "the mesh was changed after the run");
   mesh_->n_parts = 1;
   for (const std::int32_t r : mesh_->rank) mesh_->n_parts = std::max(mesh_->n_parts, r + 1);
   return *mesh_;
@@ -87,7 +92,8 @@ RunFile::Field RunFile::field(const Step& step, const std::string& name) const {
 }
 
 std::vector<Step> RunFile::select_steps(const std::string& numbers, const std::string& times) const {
-  if (steps.empty()) throw Error(path, "holds no field output yet", complete ? "see output.interval of the scene" : "the run is in progress");
+  if (steps.empty())
+    throw Error(path, "holds no field output yet", complete ? "see output.interval of the scene" : "the run is in progress");
   if (!times.empty()) {
     std::vector<Step> chosen;
     for (const std::string& text : split(times, ',')) {

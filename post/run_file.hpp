@@ -1,4 +1,5 @@
-// A results file as pictures and tables see it: mesh, tags, field steps and histories, read a step at a time.  A run in progress can be read.
+// A results file as pictures and tables see it: mesh, tags, field steps and histories, read a step at a time.  A run in progress can be
+// read.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,17 +12,17 @@ namespace hilo {
 
 /// One output of the fields: the name of its group and its time.
 struct Step {
-  std::string key;   // "000012"
-  double t;          // [s]
+  std::string key;  // "000012"
+  double t;         // [s]
 };
 
 /// One history: a table over time.
 struct Series {
-  std::string name;                  // "joint.trunnion"
-  std::vector<std::string> column;   // Fx, Fy, ...         (n_columns)
-  std::vector<std::string> unit;     //                     (n_columns)
-  std::vector<double> t;             //                     (n_t)  [s]
-  std::vector<double> value;         // row by row          (n_t x n_columns)
+  std::string name;                 // "joint.trunnion"
+  std::vector<std::string> column;  // Fx, Fy, ...         (n_columns)
+  std::vector<std::string> unit;    //                     (n_columns)
+  std::vector<double> t;            //                     (n_t)  [s]
+  std::vector<double> value;        // row by row          (n_t x n_columns)
   size_t rows() const { return t.size(); }
   double at(size_t row, size_t c) const { return value[row * column.size() + c]; }
 };
@@ -32,8 +33,8 @@ class RunFile {
   explicit RunFile(const std::string& path);
 
   const std::string path;
-  bool complete = false;             // false while the run goes on, and for a run that was stopped
-  std::string title;                 // of the scene, or its file's name
+  bool complete = false;  // false while the run goes on, and for a run that was stopped
+  std::string title;      // of the scene, or its file's name
   std::vector<Step> steps;
 
   /// Mesh with the fidelity it was run at and the ranks of a parallel run; read at the first call.  Error for a scene of bodies alone.

@@ -22,9 +22,7 @@ const std::vector<Layout>& layouts() {
       {"spring", wrench, newtons},
       {"motion", wrench, newtons},
       {"energy", {"kinetic", "elastic", "gravity", "external_work", "dissipated", "balance"}, {"J", "J", "J", "J", "J", "J"}},
-      {"momentum",
-       {"px", "py", "pz", "Lx", "Ly", "Lz"},
-       {"kg m/s", "kg m/s", "kg m/s", "kg m^2/s", "kg m^2/s", "kg m^2/s"}},
+      {"momentum", {"px", "py", "pz", "Lx", "Ly", "Lz"}, {"kg m/s", "kg m/s", "kg m/s", "kg m^2/s", "kg m^2/s", "kg m^2/s"}},
       {"sensor", {"x", "y", "z"}, {"g", "g", "g"}},
       {"probe", {"x", "y", "z", "vx", "vy", "vz", "ax", "ay", "az"}, {"m", "m", "m", "m/s", "m/s", "m/s", "m/s^2", "m/s^2", "m/s^2"}},
       {"body",
@@ -48,7 +46,7 @@ std::vector<std::string> RunFile::series_names() const {
   std::vector<std::string> names;
   for (const std::string& item : store_.list("/history")) {
     if (item == "t") continue;
-    const auto members = store_.list("/history/" + item);   // of an array: none
+    const auto members = store_.list("/history/" + item);  // of an array: none
     for (const std::string& member : members) names.push_back(item + "." + from_link_name(member));
     if (members.empty() && !store_.shape("/history/" + item).empty()) names.push_back(item);
   }

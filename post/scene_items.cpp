@@ -9,8 +9,8 @@
 namespace hilo {
 namespace {
 
-constexpr Rgb joint_colour{0.56, 0.10, 0.44}, spring_colour{0.10, 0.42, 0.42}, load_colour{0.80, 0.15, 0.12}, support_colour{0.16, 0.30, 0.66},
-    sensor_colour{0.15, 0.50, 0.18}, mass_colour{0.16, 0.17, 0.19};
+constexpr Rgb joint_colour{0.56, 0.10, 0.44}, spring_colour{0.10, 0.42, 0.42}, load_colour{0.80, 0.15, 0.12},
+    support_colour{0.16, 0.30, 0.66}, sensor_colour{0.15, 0.50, 0.18}, mass_colour{0.16, 0.17, 0.19};
 
 /// At most about `most` of the nodes, evenly taken.
 std::vector<Vec3> thinned(const Mesh& mesh, const std::vector<std::int64_t>& nodes, size_t most) {
@@ -98,7 +98,7 @@ class Collector {
     const Vec3 I = principal.eigenvalues();
     Ellipsoid b{e.name, e.vector3("com"), principal.eigenvectors(), Vec3::Zero()};
     if (b.axes.determinant() < 0) b.axes.col(0) *= -1;
-    for (int i = 0; i < 3; ++i)   // J_i = m/5 (r_j^2 + r_k^2)
+    for (int i = 0; i < 3; ++i)  // J_i = m/5 (r_j^2 + r_k^2)
       b.radii[i] = e.number("mass") > 0 ? std::sqrt(std::max(0.0, 2.5 * (I.sum() - 2 * I[i]) / e.number("mass"))) : 0;
     found_.bodies.push_back(b);
     SceneItem& item = add(Glyph::mass, e, "centre of mass of a body", mass_colour);
@@ -106,25 +106,33 @@ class Collector {
   }
 
   void joint(const Entry& e) {
-    const auto glyph = e.kind == "spherical" ? Glyph::ball
-                       : e.kind == "fixed"   ? Glyph::block
-                       : e.kind == "distance" ? Glyph::link
+    const auto glyph = e.kind == "spherical"                              ? Glyph::ball
+                       : e.kind == "fixed"                                ? Glyph::block
+                       : e.kind == "distance"                             ? Glyph::link
                        : e.kind == "prismatic" || e.kind == "cylindrical" ? Glyph::slider
                                                                           : Glyph::hinge;
     SceneItem& item = add(glyph, e, e.kind + " joint", joint_colour);
-    if (glyph == Glyph::link) item.at = e.vector3("at_a"), item.to = e.vector3("at_b");
-    else item.at = e.vector3("at");
+    if (glyph == Glyph::link)
+      item.at = e.vector3("at_a"), item.to = e.vector3("at_b");
+    else
+      item.at = e.vector3("at");
     if (e.has("axis")) item.along = e.vector3("axis");
     add_patch(item, e, "a");
     add_patch(item, e, "b");
   }
 
   void spring(const Entry& e) {
-    const auto glyph = e.kind == "axial" ? Glyph::coil : e.kind == "torsion" ? Glyph::spiral : e.kind == "support" ? Glyph::ground : Glyph::bushing;
+    const auto glyph = e.kind == "axial"     ? Glyph::coil
+                       : e.kind == "torsion" ? Glyph::spiral
+                       : e.kind == "support" ? Glyph::ground
+                                             : Glyph::bushing;
     SceneItem& item = add(glyph, e, e.kind == "bushing" ? "bushing" : e.kind + " spring", spring_colour);
-    if (glyph == Glyph::coil) item.at = e.vector3("at_a"), item.to = e.vector3("at_b");
-    else if (glyph == Glyph::spiral) item.at = shared_joint(e);
-    else item.at = e.vector3("at");
+    if (glyph == Glyph::coil)
+      item.at = e.vector3("at_a"), item.to = e.vector3("at_b");
+    else if (glyph == Glyph::spiral)
+      item.at = shared_joint(e);
+    else
+      item.at = e.vector3("at");
     if (e.has("axis")) item.along = e.vector3("axis");
     add_patch(item, e, "a");
     add_patch(item, e, "b");
@@ -133,7 +141,8 @@ class Collector {
   /// A torsion spring sits at the joint of its two ends.
   Vec3 shared_joint(const Entry& e) const {
     for (const Entry& j : scene_.entries("joint")) {
-      const bool same = j.text("a") == e.text("a") && j.text("b") == e.text("b"), turned = j.text("a") == e.text("b") && j.text("b") == e.text("a");
+      const bool same = j.text("a") == e.text("a") && j.text("b") == e.text("b"),
+                 turned = j.text("a") == e.text("b") && j.text("b") == e.text("a");
       if ((same || turned) && j.has("at")) return j.vector3("at");
     }
     return centre(e, "b");
@@ -148,14 +157,18 @@ class Collector {
     SceneItem& item = add(Glyph::arrow, e, e.kind, load_colour);
     item.at = e.kind == "force" && e.has("at") ? e.vector3("at") : centre(e, "on");
     if (!find_body(e.text("on"))) item.nodes = thinned(file_->mesh, nodes(e, "on"), 150);
-    item.along = e.kind == "force" ? e.vector3("force") : e.kind == "traction" ? e.vector3("traction") : Vec3(inward(e) * e.number("pressure"));
-    if (e.kind == "force" && file_ && file_->mesh.find_region(e.text("on")) >= 0) item.nodes.clear();   // a whole region: the arrow says enough
+    item.along = e.kind == "force"      ? e.vector3("force")
+                 : e.kind == "traction" ? e.vector3("traction")
+                                        : Vec3(inward(e) * e.number("pressure"));
+    if (e.kind == "force" && file_ && file_->mesh.find_region(e.text("on")) >= 0)
+      item.nodes.clear();  // a whole region: the arrow says enough
   }
 
   /// Mean inward normal of a facet set.
   Vec3 inward(const Entry& e) const {
     const auto set = file_ ? file_->mesh.facet_sets.find(e.text("on")) : std::map<std::string, std::vector<Facet>>::const_iterator{};
-    if (!file_ || set == file_->mesh.facet_sets.end()) throw Error(e.where("on"), fmt::format("{}: \"{}\" is no facet set", e.label(), e.text("on")));
+    if (!file_ || set == file_->mesh.facet_sets.end())
+      throw Error(e.where("on"), fmt::format("{}: \"{}\" is no facet set", e.label(), e.text("on")));
     Vec3 sum = Vec3::Zero();
     const auto& X = file_->mesh.X;
     for (const Facet& f : set->second) {

@@ -13,21 +13,21 @@ enum class Glyph { ball, hinge, slider, block, link, coil, spiral, bushing, grou
 
 struct SceneItem {
   Glyph glyph = Glyph::ball;
-  std::string name, meaning;     // "trunnion", "revolute joint"
+  std::string name, meaning;  // "trunnion", "revolute joint"
   Rgb colour;
-  Vec3 at = Vec3::Zero();        // its point          [m]
-  Vec3 to = Vec3::Zero();        // second point of links and coils  [m]
-  Vec3 along = Vec3::Zero();     // axis or direction, of any length
-  Vec3 above = Vec3::Zero();     // second axis of a triad
-  std::vector<Vec3> nodes;       // what it holds: drawn as dots (thinned)
+  Vec3 at = Vec3::Zero();     // its point          [m]
+  Vec3 to = Vec3::Zero();     // second point of links and coils  [m]
+  Vec3 along = Vec3::Zero();  // axis or direction, of any length
+  Vec3 above = Vec3::Zero();  // second axis of a triad
+  std::vector<Vec3> nodes;    // what it holds: drawn as dots (thinned)
 };
 
 /// A body without a mesh: an ellipsoid of its inertia.
 struct Ellipsoid {
   std::string name;
   Vec3 centre;
-  Mat3 axes;        // columns: principal directions
-  Vec3 radii;       // 0 where the body has no inertia
+  Mat3 axes;   // columns: principal directions
+  Vec3 radii;  // 0 where the body has no inertia
 };
 
 struct SceneItems {

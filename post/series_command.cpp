@@ -8,12 +8,12 @@
 #include "base/args.hpp"
 #include "base/error.hpp"
 #include "base/table.hpp"
-#include "post/figure.hpp"
 #include "post/commands.hpp"
+#include "post/csv.hpp"
+#include "post/figure.hpp"
 #include "post/output.hpp"
 #include "post/picture.hpp"
 #include "post/run_file.hpp"
-#include "post/csv.hpp"
 
 namespace hilo {
 namespace {
@@ -26,7 +26,7 @@ struct Options {
 
 /// One column of a history.
 struct Picked {
-  std::string label, unit;   // "joint.trunnion.Fx"
+  std::string label, unit;  // "joint.trunnion.Fx"
   std::vector<double> t, value;
 };
 
@@ -64,9 +64,10 @@ void write_csv(const Options& o, const RunFile& run, const std::vector<Picked>& 
   std::vector<std::string> header{"t [s]"};
   std::vector<std::vector<double>> columns{picked.front().t};
   for (const Picked& p : picked) {
-    const size_t rows = std::min(columns[0].size(), p.t.size());   // a run in progress may be a row ahead in one array
+    const size_t rows = std::min(columns[0].size(), p.t.size());  // a run in progress may be a row ahead in one array
     if (!std::equal(p.t.begin(), p.t.begin() + static_cast<std::ptrdiff_t>(rows), columns[0].begin()))
-      throw Error(run.path, fmt::format("\"{}\" and \"{}\" have different times", picked.front().label, p.label), "write them to two files");
+      throw Error(run.path, fmt::format("\"{}\" and \"{}\" have different times", picked.front().label, p.label),
+                  "write them to two files");
     for (auto& column : columns) column.resize(rows);
     header.push_back(fmt::format("{} [{}]", p.label, p.unit));
     columns.push_back({p.value.begin(), p.value.begin() + static_cast<std::ptrdiff_t>(rows)});
@@ -75,9 +76,9 @@ void write_csv(const Options& o, const RunFile& run, const std::vector<Picked>& 
 }
 
 std::string axis_label(const std::string& unit) {
-  constexpr std::pair<const char*, const char*> names[] = {
-      {"N", "force"}, {"N m", "moment"}, {"J", "energy"}, {"m", "length"}, {"m/s", "velocity"}, {"m/s^2", "acceleration"},
-      {"g", "acceleration"}, {"kg m/s", "momentum"}, {"kg m^2/s", "angular momentum"}};
+  constexpr std::pair<const char*, const char*> names[] = {{"N", "force"},        {"N m", "moment"},      {"J", "energy"},
+                                                           {"m", "length"},       {"m/s", "velocity"},    {"m/s^2", "acceleration"},
+                                                           {"g", "acceleration"}, {"kg m/s", "momentum"}, {"kg m^2/s", "angular momentum"}};
   for (const auto& [u, name] : names)
     if (unit == u) return fmt::format("{} [{}]", name, unit);
   return fmt::format("[{}]", unit);
@@ -93,7 +94,9 @@ void write_png(const Options& o, const RunFile& run, const std::vector<Picked>& 
       const auto dot = common.rfind('.', common.size() - 2);
       common = dot == std::string::npos || common.size() < 2 ? "" : common.substr(0, dot + 1);
     }
-  figure.title = !o.title.empty() ? o.title : common.empty() ? run.title : fmt::format("{}: {}", run.title, common.substr(0, common.size() - 1));
+  figure.title = !o.title.empty() ? o.title
+                 : common.empty() ? run.title
+                                  : fmt::format("{}: {}", run.title, common.substr(0, common.size() - 1));
   for (const Picked& p : picked) {
     const std::string label = axis_label(p.unit);
     auto panel = std::find_if(figure.panels.begin(), figure.panels.end(), [&](const Panel& q) { return q.y.label == label; });
@@ -118,7 +121,8 @@ void list(const Options& o, const RunFile& run) {
 void run(const Options& o) {
   const RunFile file(o.run);
   if (o.list) return list(o, file);
-  if (o.names.empty()) throw Error("series", "which histories?", "give names or globs, such as energy or \"joint.*\", or --list", Exit::usage);
+  if (o.names.empty())
+    throw Error("series", "which histories?", "give names or globs, such as energy or \"joint.*\", or --list", Exit::usage);
   const auto picked = pick(file, o.names);
   if (!o.png.empty()) write_png(o, file, picked);
   if (!o.csv.empty() || o.png.empty()) {

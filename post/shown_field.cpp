@@ -32,7 +32,8 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
     const auto at = std::find(k.components.begin(), k.components.end(), component);
     if ((component.empty() && array != "stress")) return f;
     if (at == k.components.end())
-      throw Error("--field", k.components.empty() ? fmt::format("{} has no components", array) : fmt::format("which component of {}?", array),
+      throw Error("--field",
+                  k.components.empty() ? fmt::format("{} has no components", array) : fmt::format("which component of {}?", array),
                   k.components.empty() ? "" : fmt::format("{0}.{1}", array, fmt::join(k.components, ", " + array + ".")));
     f.component = static_cast<int>(at - k.components.begin());
     f.label = fmt::format("{} {}", f.label, component);
@@ -44,7 +45,8 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
     if (!k.starts_with("cell_")) names.push_back(k);
   names.insert(names.end(), {"region", "fidelity", "partition", "von_mises", "acceleration", "displacement", "velocity"});
   std::string hint = suggest(name, names);
-  throw Error("--field", fmt::format("no field \"{}\"", name), hint.empty() ? "von_mises, acceleration, displacement, velocity, stress.xx, region, fidelity or partition" : hint);
+  throw Error("--field", fmt::format("no field \"{}\"", name),
+              hint.empty() ? "von_mises, acceleration, displacement, velocity, stress.xx, region, fidelity or partition" : hint);
 }
 
 std::vector<double> nodal_values(const RunFile& run, const Step& step, const ShownField& field, std::int64_t n_nodes) {
@@ -72,9 +74,12 @@ bool is_named_field(const std::string& name) { return name == "region" || name =
 
 Rgb fidelity_colour(Fidelity f) {
   switch (f) {
-    case Fidelity::rigid: return neutral;
-    case Fidelity::linear: return {0.40, 0.70, 0.90};
-    default: return {0.93, 0.58, 0.20};
+    case Fidelity::rigid:
+      return neutral;
+    case Fidelity::linear:
+      return {0.40, 0.70, 0.90};
+    default:
+      return {0.93, 0.58, 0.20};
   }
 }
 
@@ -82,7 +87,7 @@ NamedCells named_cells(const MeshFile& file, const std::string& field, const std
   if (field == "partition" && file.rank.empty()) throw Error(path, "was not partitioned", "run hilo-part, or mpirun -n 4 hilo-solve");
   const Mesh& mesh = file.mesh;
   NamedCells named;
-  std::vector<int> group_of(shown.size(), 0);   // of the regions
+  std::vector<int> group_of(shown.size(), 0);  // of the regions
   if (field == "region") {
     std::vector<std::string> names;
     std::vector<size_t> which;

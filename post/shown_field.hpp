@@ -10,11 +10,11 @@ namespace hilo {
 
 /// `von_mises`, the size of `acceleration`, or one component: `acceleration.z`, `stress.xx`.
 struct ShownField {
-  std::string array;       // "acceleration"
-  int component = -1;      // -1: the value, or the size of a vector
-  std::string label, unit; // "acceleration", "m/s^2"
-  bool flexible_only = false;   // stress: rigid regions have none
-  bool from_zero = true;        // never negative
+  std::string array;           // "acceleration"
+  int component = -1;          // -1: the value, or the size of a vector
+  std::string label, unit;     // "acceleration", "m/s^2"
+  bool flexible_only = false;  // stress: rigid regions have none
+  bool from_zero = true;       // never negative
 };
 /// Error (exit 2) with a suggestion for a name that no run can hold.
 ShownField shown_field(const std::string& name, const std::vector<std::string>& known);

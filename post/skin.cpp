@@ -77,7 +77,8 @@ void Skin::move(const std::vector<Vec3>& x) {
   float* point = floats(feature_->GetPoints());
   for (size_t p = 0; p + 1 < first_.size(); ++p) {
     Vec3 sum = Vec3::Zero();
-    for (std::int64_t k = first_[p]; k < first_[p + 1]; ++k) sum += weight_[static_cast<size_t>(k)] * x[static_cast<size_t>(node_[static_cast<size_t>(k)])];
+    for (std::int64_t k = first_[p]; k < first_[p + 1]; ++k)
+      sum += weight_[static_cast<size_t>(k)] * x[static_cast<size_t>(node_[static_cast<size_t>(k)])];
     for (int i = 0; i < 3; ++i) point[3 * p + static_cast<size_t>(i)] = static_cast<float>(sum[i]);
   }
   float* vertex = floats(faces_->GetPoints());
@@ -108,7 +109,8 @@ void Skin::set_values(const std::vector<double>& value) {
   float* point = at_points->GetPointer(0);
   for (size_t p = 0; p + 1 < first_.size(); ++p) {
     double sum = 0;
-    for (std::int64_t k = first_[p]; k < first_[p + 1]; ++k) sum += weight_[static_cast<size_t>(k)] * value[static_cast<size_t>(node_[static_cast<size_t>(k)])];
+    for (std::int64_t k = first_[p]; k < first_[p + 1]; ++k)
+      sum += weight_[static_cast<size_t>(k)] * value[static_cast<size_t>(node_[static_cast<size_t>(k)])];
     point[p] = static_cast<float>(sum);
   }
   const auto at_vertices = vtkSmartPointer<vtkFloatArray>::New();
@@ -124,7 +126,8 @@ void Skin::set_cell_colours(const std::vector<std::array<std::uint8_t, 3>>& colo
     array->SetNumberOfComponents(3);
     array->SetNumberOfTuples(static_cast<vtkIdType>(cell.size()));
     for (size_t f = 0; f < cell.size(); ++f)
-      for (int i = 0; i < 3; ++i) array->SetTypedComponent(static_cast<vtkIdType>(f), i, colour[static_cast<size_t>(cell[f])][static_cast<size_t>(i)]);
+      for (int i = 0; i < 3; ++i)
+        array->SetTypedComponent(static_cast<vtkIdType>(f), i, colour[static_cast<size_t>(cell[f])][static_cast<size_t>(i)]);
     data->GetCellData()->SetScalars(array);
   };
   paint(faces_, face_cell_);

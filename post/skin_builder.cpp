@@ -10,17 +10,22 @@
 namespace hilo {
 namespace {
 
-constexpr double sharp = 0.766;   // cosine of 40 degrees: a wheel of twelve sides is still round
+constexpr double sharp = 0.766;  // cosine of 40 degrees: a wheel of twelve sides is still round
 
 /// Shape functions of a facet with mid-side nodes after its corners.
 std::vector<double> tri6(double r, double s) {
   const double t = 1 - r - s;
   return {t * (2 * t - 1), r * (2 * r - 1), s * (2 * s - 1), 4 * t * r, 4 * r * s, 4 * s * t};
 }
-std::vector<double> quad8(double r, double s) {   // r, s in [-1, 1]
-  return {(1 - r) * (1 - s) * (-r - s - 1) / 4, (1 + r) * (1 - s) * (r - s - 1) / 4, (1 + r) * (1 + s) * (r + s - 1) / 4,
-          (1 - r) * (1 + s) * (-r + s - 1) / 4, (1 - r * r) * (1 - s) / 2,           (1 + r) * (1 - s * s) / 2,
-          (1 - r * r) * (1 + s) / 2,            (1 - r) * (1 - s * s) / 2};
+std::vector<double> quad8(double r, double s) {  // r, s in [-1, 1]
+  return {(1 - r) * (1 - s) * (-r - s - 1) / 4,
+          (1 + r) * (1 - s) * (r - s - 1) / 4,
+          (1 + r) * (1 + s) * (r + s - 1) / 4,
+          (1 - r) * (1 + s) * (-r + s - 1) / 4,
+          (1 - r * r) * (1 - s) / 2,
+          (1 + r) * (1 - s * s) / 2,
+          (1 - r * r) * (1 + s) / 2,
+          (1 - r) * (1 - s * s) / 2};
 }
 
 }  // namespace
@@ -29,7 +34,7 @@ std::vector<Facet> boundary_facets(const Mesh& mesh, const std::vector<bool>& sh
   // Facets meet in a bucket of their smallest corner node, and are the same when the next two corners are too; one seen twice is inside.
   struct Seen {
     std::array<std::int64_t, 2> next;
-    std::int64_t facet;   // 8 cell + local facet, -1 once seen twice
+    std::int64_t facet;  // 8 cell + local facet, -1 once seen twice
   };
   const auto key_of = [&](const Facet& f, std::int64_t& smallest) {
     const auto& local = info(mesh.shape[static_cast<size_t>(f.cell)]).facets[static_cast<size_t>(f.facet)];
@@ -80,8 +85,10 @@ SkinBuilder::SkinBuilder(const Mesh& mesh, std::span<const Facet> facets, std::s
     std::array<std::int64_t, 8> nodes{};
     for (size_t k = 0; k < local.size(); ++k) nodes[k] = mesh.cell(f.cell)[static_cast<size_t>(local[k])];
     const std::span<const std::int64_t> used(nodes.data(), local.size());
-    if (local.size() <= 4) add_linear(used, f.cell);
-    else add_quadratic(used, local.size() == 6 ? 3 : 4, f.cell);
+    if (local.size() <= 4)
+      add_linear(used, f.cell);
+    else
+      add_quadratic(used, local.size() == 6 ? 3 : 4, f.cell);
   }
   for (const std::int64_t c : bars) bar_ends.push_back({point_of_node(mesh.cell(c)[0]), point_of_node(mesh.cell(c)[1])});
   for (auto& e : facet_edges)
@@ -123,8 +130,10 @@ void SkinBuilder::add_linear(std::span<const std::int64_t> nodes, std::int64_t c
   add_polygon({p.data(), nodes.size()}, cell);
 }
 
-std::int64_t SkinBuilder::edge_point(std::span<const std::int64_t> nodes, std::span<const double> weights, std::int64_t a, std::int64_t b, int quarter) {
-  const std::array<std::int64_t, 3> key = a < b ? std::array<std::int64_t, 3>{a, b, quarter} : std::array<std::int64_t, 3>{b, a, 4 - quarter};
+std::int64_t SkinBuilder::edge_point(std::span<const std::int64_t> nodes, std::span<const double> weights, std::int64_t a, std::int64_t b,
+                                     int quarter) {
+  const std::array<std::int64_t, 3> key =
+      a < b ? std::array<std::int64_t, 3>{a, b, quarter} : std::array<std::int64_t, 3>{b, a, 4 - quarter};
   const auto found = on_edge_.find(key);
   if (found != on_edge_.end()) return found->second;
   return on_edge_[key] = new_point(nodes, weights);
@@ -141,22 +150,33 @@ void SkinBuilder::add_quadratic(std::span<const std::int64_t> nodes, int n_corne
       for (double& x : w)
         if (std::abs(x) < 1e-14) x = 0;
       const auto along = [&](size_t a, size_t b, int quarter) {
-        if (quarter == 0) p = point_of_node(nodes[a]);
-        else if (quarter == 4) p = point_of_node(nodes[b]);
-        else p = edge_point(nodes, w, nodes[a], nodes[b], quarter);
+        if (quarter == 0)
+          p = point_of_node(nodes[a]);
+        else if (quarter == 4)
+          p = point_of_node(nodes[b]);
+        else
+          p = edge_point(nodes, w, nodes[a], nodes[b], quarter);
       };
-      if (j == 0) along(0, 1, i);
-      else if (triangle && i + j == 4) along(1, 2, j);
-      else if (!triangle && i == 4) along(1, 2, j);
-      else if (!triangle && j == 4) along(3, 2, i);
-      else if (i == 0) along(0, triangle ? 2 : 3, j);
-      else p = new_point(nodes, w);
+      if (j == 0)
+        along(0, 1, i);
+      else if (triangle && i + j == 4)
+        along(1, 2, j);
+      else if (!triangle && i == 4)
+        along(1, 2, j);
+      else if (!triangle && j == 4)
+        along(3, 2, i);
+      else if (i == 0)
+        along(0, triangle ? 2 : 3, j);
+      else
+        p = new_point(nodes, w);
     }
   const auto at = [&](int i, int j) { return grid[static_cast<size_t>(i)][static_cast<size_t>(j)]; };
   for (int j = 0; j < 4; ++j)
     for (int i = 0; i < (triangle ? 4 - j : 4); ++i) {
-      if (!triangle) add_polygon(std::array{at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}, cell);
-      else add_polygon(std::array{at(i, j), at(i + 1, j), at(i, j + 1)}, cell);
+      if (!triangle)
+        add_polygon(std::array{at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}, cell);
+      else
+        add_polygon(std::array{at(i, j), at(i + 1, j), at(i, j + 1)}, cell);
       if (triangle && i + j < 3) add_polygon(std::array{at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}, cell);
     }
   for (int k = 0; k < 4; ++k) {
@@ -192,7 +212,8 @@ void SkinBuilder::find_feature_edges() {
       sides.push_back({std::min(a, b), std::max(a, b), f});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) { return std::tie(s.a, s.b, s.face) < std::tie(t.a, t.b, t.face); });
+  std::sort(sides.begin(), sides.end(),
+            [](const Side& s, const Side& t) { return std::tie(s.a, s.b, s.face) < std::tie(t.a, t.b, t.face); });
   for (size_t i = 0; i < sides.size();) {
     size_t j = i;
     while (j < sides.size() && sides[j].a == sides[i].a && sides[j].b == sides[i].b) ++j;
@@ -213,13 +234,14 @@ void SkinBuilder::split_at_sharp_edges() {
   for (const auto p : corner) ++start[static_cast<size_t>(p) + 1];
   for (size_t p = 1; p < start.size(); ++p) start[p] += start[p - 1];
   struct Around {
-    std::int64_t place;   // in `corner`
+    std::int64_t place;  // in `corner`
     size_t face;
   };
   std::vector<Around> around(corner.size());
   auto next = start;
   for (size_t f = 0; f < face_cell.size(); ++f)
-    for (std::int64_t k = polygon[f]; k < polygon[f + 1]; ++k) around[static_cast<size_t>(next[static_cast<size_t>(corner[static_cast<size_t>(k)])]++)] = {k, f};
+    for (std::int64_t k = polygon[f]; k < polygon[f + 1]; ++k)
+      around[static_cast<size_t>(next[static_cast<size_t>(corner[static_cast<size_t>(k)])]++)] = {k, f};
 
   std::vector<Vec3> normals(face_cell.size());
   for (size_t f = 0; f < normals.size(); ++f) normals[f] = normal(f);
@@ -228,7 +250,7 @@ void SkinBuilder::split_at_sharp_edges() {
     const auto n = static_cast<size_t>(start[p + 1] - start[p]);
     const Around* here = around.data() + start[p];
     patch.assign(n, n);
-    for (size_t i = 0; i < n; ++i) {   // grow a patch from every face that has none yet
+    for (size_t i = 0; i < n; ++i) {  // grow a patch from every face that has none yet
       if (patch[i] != n) continue;
       const auto vertex = static_cast<std::int64_t>(vertex_point.size());
       vertex_point.push_back(static_cast<std::int64_t>(p));
@@ -240,7 +262,8 @@ void SkinBuilder::split_at_sharp_edges() {
         corner[static_cast<size_t>(here[a].place)] = vertex;
         const auto region = [&](size_t k) { return mesh_.region[static_cast<size_t>(face_cell[here[k].face])]; };
         for (size_t b = 0; b < n; ++b)
-          if (patch[b] == n && region(b) == region(a) && normals[here[a].face].dot(normals[here[b].face]) > sharp) patch[b] = i, open.push_back(b);
+          if (patch[b] == n && region(b) == region(a) && normals[here[a].face].dot(normals[here[b].face]) > sharp)
+            patch[b] = i, open.push_back(b);
       }
     }
   }

@@ -12,12 +12,12 @@ namespace hilo {
 struct SkinBuilder {
   SkinBuilder(const Mesh& mesh, std::span<const Facet> facets, std::span<const std::int64_t> bars);
 
-  std::vector<std::int64_t> first{0}, node;   // combination of each point
+  std::vector<std::int64_t> first{0}, node;  // combination of each point
   std::vector<double> weight;
-  std::vector<std::int64_t> corner, polygon{0};   // points, then vertices, of the polygons
-  std::vector<std::int64_t> face_cell;            // cell of each polygon
-  std::vector<std::int64_t> vertex_point;         // point of each vertex
-  std::vector<std::array<std::int64_t, 2>> feature_edges, facet_edges, bar_ends;   // pairs of points
+  std::vector<std::int64_t> corner, polygon{0};                                   // points, then vertices, of the polygons
+  std::vector<std::int64_t> face_cell;                                            // cell of each polygon
+  std::vector<std::int64_t> vertex_point;                                         // point of each vertex
+  std::vector<std::array<std::int64_t, 2>> feature_edges, facet_edges, bar_ends;  // pairs of points
 
   double length(const std::array<std::int64_t, 2>& edge) const {
     return (position_[static_cast<size_t>(edge[1])] - position_[static_cast<size_t>(edge[0])]).norm();
@@ -26,23 +26,25 @@ struct SkinBuilder {
  private:
   struct PairHash {
     size_t operator()(const std::array<std::int64_t, 3>& k) const {
-      return static_cast<size_t>(k[0]) * 0x9E3779B97F4A7C15ull ^ static_cast<size_t>(k[1]) * 0xC2B2AE3D27D4EB4Full ^ static_cast<size_t>(k[2]);
+      return static_cast<size_t>(k[0]) * 0x9E3779B97F4A7C15ull ^ static_cast<size_t>(k[1]) * 0xC2B2AE3D27D4EB4Full ^
+             static_cast<size_t>(k[2]);
     }
   };
   std::int64_t point_of_node(std::int64_t n);
   std::int64_t new_point(std::span<const std::int64_t> nodes, std::span<const double> weights);
   void add_linear(std::span<const std::int64_t> nodes, std::int64_t cell);
   void add_quadratic(std::span<const std::int64_t> nodes, int n_corners, std::int64_t cell);
-  std::int64_t edge_point(std::span<const std::int64_t> nodes, std::span<const double> weights, std::int64_t a, std::int64_t b, int quarter);
+  std::int64_t edge_point(std::span<const std::int64_t> nodes, std::span<const double> weights, std::int64_t a, std::int64_t b,
+                          int quarter);
   void add_polygon(std::span<const std::int64_t> points, std::int64_t cell);
   void split_at_sharp_edges();
   void find_feature_edges();
   Vec3 normal(size_t face) const;
 
   const Mesh& mesh_;
-  std::vector<std::int64_t> node_point_;                                                     // point of a node or -1
-  std::unordered_map<std::array<std::int64_t, 3>, std::int64_t, PairHash> on_edge_;          // points between nodes, by edge and quarter
-  std::vector<Vec3> position_;                                                               // of the points at the start
+  std::vector<std::int64_t> node_point_;                                             // point of a node or -1
+  std::unordered_map<std::array<std::int64_t, 3>, std::int64_t, PairHash> on_edge_;  // points between nodes, by edge and quarter
+  std::vector<Vec3> position_;                                                       // of the points at the start
 };
 
 }  // namespace hilo

@@ -69,7 +69,7 @@ void add_skin(vtkRenderer* stage, const Skin& skin, const Look& look) {
   faces->SetMapper(mapper);
   shade(faces->GetProperty(), look.colour, look.opacity);
   faces->GetProperty()->SetInterpolationToPhong();
-  faces->GetProperty()->SetBackfaceCulling(look.opacity < 1);   // of a transparent body the front alone: no sorting needed
+  faces->GetProperty()->SetBackfaceCulling(look.opacity < 1);  // of a transparent body the front alone: no sorting needed
   stage->AddActor(faces);
   if (skin.bars()->GetNumberOfLines() == 0) return;
   const auto bars = vtkSmartPointer<vtkActor>::New();
@@ -107,8 +107,8 @@ void add_grid(vtkRenderer* stage, const Skin& skin, double width, double opacity
 
 double pixels_per_metre(vtkRenderer* stage, double height) {
   vtkCamera* camera = stage->GetActiveCamera();
-  const double half = camera->GetParallelProjection() ? camera->GetParallelScale()
-                                                      : camera->GetDistance() * std::tan(camera->GetViewAngle() * M_PI / 360);
+  const double half =
+      camera->GetParallelProjection() ? camera->GetParallelScale() : camera->GetDistance() * std::tan(camera->GetViewAngle() * M_PI / 360);
   return height / (2 * half);
 }
 

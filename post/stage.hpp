@@ -19,7 +19,7 @@ struct Look {
   double opacity = 1;
   ColourMap map = ColourMap::viridis;
   double low = 0, high = 1;
-  double bar_width = 4;   // of bars  [pixel]
+  double bar_width = 4;  // of bars  [pixel]
 };
 void add_skin(vtkRenderer* stage, const Skin& skin, const Look& look);
 /// A closed surface with normals, and lines.

@@ -35,7 +35,7 @@ Ticks linear_ticks(double low, double high, int n) {
 Ticks log_ticks(double low, double high, int n) {
   Ticks ticks;
   const int first = static_cast<int>(std::ceil(std::log10(low) - 1e-9)), last = static_cast<int>(std::floor(std::log10(high) + 1e-9));
-  if (last - first < 2) {   // few powers of ten in sight: 2 and 5 times them as well
+  if (last - first < 2) {  // few powers of ten in sight: 2 and 5 times them as well
     for (int k = first - 1; k <= last; ++k)
       for (const int m : {1, 2, 5})
         if (const double x = m * std::pow(10.0, k); x >= low && x <= high) ticks.at.push_back(x), ticks.text.push_back(short_number(x));

@@ -19,15 +19,19 @@ struct Preset {
   View view;
 };
 const std::vector<Preset>& presets() {
-  static const std::vector<Preset> table = {
-      {"iso", {{1, -1.25, 0.85}, {0, 0, 1}, false}},       {"iso-left", {{1, 1.25, 0.85}, {0, 0, 1}, false}},
-      {"iso-rear", {{-1, -1.25, 0.85}, {0, 0, 1}, false}}, {"iso-below", {{1, -1.25, -0.7}, {0, 0, 1}, false}},
-      {"front", {{1, 0, 0}, {0, 0, 1}, true}},             {"rear", {{-1, 0, 0}, {0, 0, 1}, true}},
-      {"left", {{0, 1, 0}, {0, 0, 1}, true}},              {"right", {{0, -1, 0}, {0, 0, 1}, true}},
-      {"top", {{0, 0, 1}, {0, 1, 0}, true}},               {"bottom", {{0, 0, -1}, {0, -1, 0}, true}}};
+  static const std::vector<Preset> table = {{"iso", {{1, -1.25, 0.85}, {0, 0, 1}, false}},
+                                            {"iso-left", {{1, 1.25, 0.85}, {0, 0, 1}, false}},
+                                            {"iso-rear", {{-1, -1.25, 0.85}, {0, 0, 1}, false}},
+                                            {"iso-below", {{1, -1.25, -0.7}, {0, 0, 1}, false}},
+                                            {"front", {{1, 0, 0}, {0, 0, 1}, true}},
+                                            {"rear", {{-1, 0, 0}, {0, 0, 1}, true}},
+                                            {"left", {{0, 1, 0}, {0, 0, 1}, true}},
+                                            {"right", {{0, -1, 0}, {0, 0, 1}, true}},
+                                            {"top", {{0, 0, 1}, {0, 1, 0}, true}},
+                                            {"bottom", {{0, 0, -1}, {0, -1, 0}, true}}};
   return table;
 }
-constexpr double view_angle = 20;   // [degree], vertical
+constexpr double view_angle = 20;  // [degree], vertical
 
 }  // namespace
 
@@ -54,8 +58,10 @@ View parse_view(const std::string& text) {
   }
   if (numbers && (x.size() == 3 || x.size() == 6)) {
     View v{{x[0], x[1], x[2]}, {0, 0, 1}, false};
-    if (x.size() == 6) v.up = {x[3], x[4], x[5]};
-    else if (std::hypot(x[0], x[1]) < 1e-6 * std::abs(x[2])) v.up = {0, 1, 0};
+    if (x.size() == 6)
+      v.up = {x[3], x[4], x[5]};
+    else if (std::hypot(x[0], x[1]) < 1e-6 * std::abs(x[2]))
+      v.up = {0, 1, 0};
     if (v.towards.cross(v.up).norm() > 1e-9 * v.towards.norm() * v.up.norm()) return v;
     throw Error("--camera", fmt::format("\"{}\" gives no direction and upward direction", text), "", Exit::usage);
   }
@@ -90,7 +96,7 @@ void Fit::aim(vtkCamera* camera) const {
   Vec3 centre = middle * back_;
   centre += 0.5 * (high_[0] + low_[0]) * right_ + 0.5 * (high_[1] + low_[1]) * up_;
   const double size = std::max({high_[0] - low_[0], high_[1] - low_[1], depth});
-  double distance = 3 * size;   // from the centre
+  double distance = 3 * size;  // from the centre
   if (view_.parallel) {
     camera->ParallelProjectionOn();
     camera->SetParallelScale(0.5 * std::max({(high_[0] - low_[0]) / aspect_, high_[1] - low_[1], 1e-6 * size}) / (1 - 2 * room_));

@@ -1,4 +1,5 @@
-// Where the camera stands: presets in vehicle axes (x forward, y left, z up), and the exact distance at which given points fill the picture.
+// Where the camera stands: presets in vehicle axes (x forward, y left, z up), and the exact distance at which given points fill the
+// picture.
 #pragma once
 #include <array>
 #include <string>
@@ -11,9 +12,9 @@ class vtkCamera;
 namespace hilo {
 
 struct View {
-  Vec3 towards{1, -1, 1};   // from the model to the camera
+  Vec3 towards{1, -1, 1};  // from the model to the camera
   Vec3 up{0, 0, 1};
-  bool parallel = false;    // presets along an axis are drawn without perspective
+  bool parallel = false;  // presets along an axis are drawn without perspective
 };
 
 /// "iso", "front", ... or "x,y,z" (direction to the camera) or "x,y,z,ux,uy,uz" (with the upward direction).  Error (exit 1) otherwise.
@@ -34,10 +35,10 @@ class Fit {
 
  private:
   View view_;
-  Vec3 right_, up_, back_;              // axes of the camera; it looks along -back
-  std::array<double, 2> slope_;         // half width and half height of what is seen, per distance; 0 without perspective
-  std::array<double, 2> high_, low_;    // extreme values of (right + slope back), (right - slope back); the same of up
-  double nearest_, farthest_;           // along back
+  Vec3 right_, up_, back_;            // axes of the camera; it looks along -back
+  std::array<double, 2> slope_;       // half width and half height of what is seen, per distance; 0 without perspective
+  std::array<double, 2> high_, low_;  // extreme values of (right + slope back), (right - slope back); the same of up
+  double nearest_, farthest_;         // along back
   double aspect_, room_;
 };
 

@@ -21,14 +21,17 @@ struct Request {
   ImportOptions options;
 };
 
-[[noreturn]] void usage(const std::string& what, const std::string& hint = "see hilo-import --help") { throw Error("", what, hint, Exit::usage); }
+[[noreturn]] void usage(const std::string& what, const std::string& hint = "see hilo-import --help") {
+  throw Error("", what, hint, Exit::usage);
+}
 
 /// NAME=VALUE of --define
 std::pair<std::string, double> definition(const std::string& text) {
   const auto eq = text.find('=');
   char* end = nullptr;
   const double value = eq == std::string::npos ? 0 : std::strtod(text.c_str() + eq + 1, &end);
-  if (eq == std::string::npos || eq == 0 || end == text.c_str() + eq + 1 || *end) usage(fmt::format("--define {}: expected NAME=NUMBER", text));
+  if (eq == std::string::npos || eq == 0 || end == text.c_str() + eq + 1 || *end)
+    usage(fmt::format("--define {}: expected NAME=NUMBER", text));
   return {text.substr(0, eq), value};
 }
 
@@ -47,7 +50,8 @@ void check(Request& r) {
   namespace fs = std::filesystem;
   std::error_code ignored;
   for (const auto& out : {r.output, r.scene_out})
-    if (!out.empty() && fs::exists(out) && fs::equivalent(out, r.input, ignored)) usage(fmt::format("{} is the file to read", out), "write to another name");
+    if (!out.empty() && fs::exists(out) && fs::equivalent(out, r.input, ignored))
+      usage(fmt::format("{} is the file to read", out), "write to another name");
   if (!r.scene_out.empty() && fs::absolute(r.scene_out) == fs::absolute(r.output)) usage("--scene-out and --output name the same file");
 }
 
@@ -66,28 +70,38 @@ void talk(const Imported& in) {
   if (is_quiet()) return;
   for (const auto& n : in.notes) fmt::print(stderr, "hilo-import: {}\n", n);
   for (const auto& n : in.not_read)
-    fmt::print(stderr, "hilo-import: not read: {} ({}{}{}){}\n", n.what, n.count, n.place.empty() ? "" : ", ", n.place, n.output ? ", a request for output" : "");
+    fmt::print(stderr, "hilo-import: not read: {} ({}{}{}){}\n", n.what, n.count, n.place.empty() ? "" : ", ", n.place,
+               n.output ? ", a request for output" : "");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   return guarded("hilo-import", [&] {
-    auto app = make_app({"hilo-import", "Reads a mesh, or a geometry that it meshes, and writes mesh.h5: regions, sets, and what the deck says of materials and loads.",
-                         "hilo-import bracket.inp -o bracket.h5 --units mm-t-s\n"
-                         "hilo-import vehicle.geo -o vehicle.h5 --define SIZE=0\n"
-                         "hilo-import part.step -o part.h5 --size 3 --order 2 --scale 1e-3"});
+    auto app = make_app(
+        {"hilo-import",
+         "Reads a mesh, or a geometry that it meshes, and writes mesh.h5: regions, sets, and what the deck says of materials and loads.",
+         "hilo-import bracket.inp -o bracket.h5 --units mm-t-s\n"
+         "hilo-import vehicle.geo -o vehicle.h5 --define SIZE=0\n"
+         "hilo-import part.step -o part.h5 --size 3 --order 2 --scale 1e-3"});
     Request r;
     auto& o = r.options;
-    app->add_option("input", r.input, "inp (plain or .gz), bdf, msh, unv, vtk, vtu, mesh; geo, step, brep, iges are meshed")->required()->type_name("FILE");
+    app->add_option("input", r.input, "inp (plain or .gz), bdf, msh, unv, vtk, vtu, mesh; geo, step, brep, iges are meshed")
+        ->required()
+        ->type_name("FILE");
     app->add_option("-o,--output", r.output, "mesh file to write")->required()->type_name("mesh.h5");
-    app->add_option("--units", o.units, "system of the file's numbers, all converted to SI: m-kg-s, mm-t-s, mm-kg-ms, in-lbf-s, ft-lbf-s")->type_name("SYSTEM");
+    app->add_option("--units", o.units, "system of the file's numbers, all converted to SI: m-kg-s, mm-t-s, mm-kg-ms, in-lbf-s, ft-lbf-s")
+        ->type_name("SYSTEM");
     app->add_option("--scale", o.scale, "factor on the geometry alone")->type_name("S");
     app->add_option("--order", o.order, "2: quadratic cells (linear ones get nodes in the middle of their edges)")->type_name("N");
-    app->add_option("--size", o.size, "cell edge when CAD is meshed, at most this when a .geo script is; in the unit of the file")->type_name("H");
+    app->add_option("--size", o.size, "cell edge when CAD is meshed, at most this when a .geo script is; in the unit of the file")
+        ->type_name("H");
     app->add_option("--define", r.defines, "parameter of a .geo script, may be repeated")->type_name("NAME=VALUE")->allow_extra_args(false);
     app->add_option("--merge-nodes", o.merge, "nodes nearer than this become one, in the unit of the file")->type_name("TOL");
-    app->add_option("--regions", o.regions, "element sets that become regions, before what the file says")->delimiter(',')->type_name("SET,...")->allow_extra_args(false);
+    app->add_option("--regions", o.regions, "element sets that become regions, before what the file says")
+        ->delimiter(',')
+        ->type_name("SET,...")
+        ->allow_extra_args(false);
     app->add_option("--rest", o.rest, "region of the cells that are in none")->type_name("NAME");
     app->add_option("--scene-out", r.scene_out, "write the deck's materials, supports and loads as a scene too")->type_name("scene.toml");
     app->add_flag("--json", r.json, "the table as JSON");
@@ -99,7 +113,7 @@ int main(int argc, char** argv) {
     if (!r.scene_out.empty()) {
       try {
         write_text_file(r.scene_out, scene_text(r, in));
-      } catch (...) {   // both files or none
+      } catch (...) {  // both files or none
         std::filesystem::remove(r.output);
         throw;
       }

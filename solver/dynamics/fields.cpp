@@ -136,27 +136,37 @@ void Recorder::write_field(const Row& row, const Config& a) {
 }
 
 /// Points ParaView at the arrays of the results file; topology as an XDMF mixed list written beside the fields once.
-void Recorder::write_xdmf() const {
+void Recorder::write_xdmf() {
   if (!system_.mesh || !store_) return;
   const LocalMesh& m = *system_.mesh;
   const std::string path = setup_.path, base = path.substr(path.rfind('/') == std::string::npos ? 0 : path.rfind('/') + 1);
-  if (!store_->has("/xdmf/topology")) {
-    const MeshFile file = read_mesh_file(m.file);
-    std::vector<std::int64_t> mixed;
-    for (std::int64_t c = 0; c < file.mesh.n_cells(); ++c) {
-      const auto nodes = file.mesh.cell(c);
-      mixed.push_back(info(file.mesh.shape[c]).xdmf_type);
-      if (file.mesh.shape[c] == static_cast<std::uint8_t>(Shape::bar2)) mixed.push_back(2);
-      mixed.insert(mixed.end(), nodes.begin(), nodes.end());
+  if (topology_entries_ == 0) {
+    // slice by slice, so that no rank holds the whole mesh
+    const Store mesh = Store::open(m.file);
+    constexpr std::int64_t slice = 1 << 16;
+    store_->start_rows<std::int64_t>("/xdmf/topology", {}, "", "cells as XDMF's mixed list");
+    store_->start_rows<std::int32_t>("/xdmf/region", {}, "", "region of each cell");
+    store_->start_rows<double>("/xdmf/X", {3}, "m", "reference positions, repeated here for ParaView");
+    const auto put = [&](std::int64_t value) { store_->append<std::int64_t>("/xdmf/topology", {&value, 1}), ++topology_entries_; };
+    for (std::int64_t first = 0; first < m.n_cells_global; first += slice) {
+      const std::int64_t count = std::min(slice, m.n_cells_global - first);
+      const auto shape = mesh.read_rows<std::uint8_t>("/mesh/cells/shape", first, count);
+      const auto offset = mesh.read_rows<std::int64_t>("/mesh/cells/offset", first, count + 1);
+      const auto nodes = mesh.read_rows<std::int64_t>("/mesh/cells/nodes", offset.front(), offset.back() - offset.front());
+      for (std::int64_t c = 0; c < count; ++c) {
+        put(info(shape[c]).xdmf_type);
+        if (shape[c] == static_cast<std::uint8_t>(Shape::bar2)) put(2);
+        for (std::int64_t k = offset[c]; k < offset[c + 1]; ++k) put(nodes[k - offset.front()]);
+      }
+      for (std::int32_t r : mesh.read_rows<std::int32_t>("/mesh/cells/region", first, count)) store_->append<std::int32_t>("/xdmf/region", {&r, 1});
     }
-    std::vector<double> X;
-    for (const Vec3& x : file.mesh.X) X.insert(X.end(), x.data(), x.data() + 3);
-    store_->write<std::int64_t>("/xdmf/topology", mixed, {static_cast<std::int64_t>(mixed.size())}, "", "cells as XDMF's mixed list");
-    store_->write<double>("/xdmf/X", X, {m.n_nodes_global, 3}, "m", "reference positions, repeated here for ParaView");
-    store_->write<std::int32_t>("/xdmf/region", file.mesh.region, {m.n_cells_global}, "", "region of each cell");
+    for (std::int64_t first = 0; first < m.n_nodes_global; first += slice) {
+      const auto X = mesh.read_rows<double>("/mesh/nodes/X", first, std::min(slice, m.n_nodes_global - first));
+      for (size_t i = 0; i < X.size(); i += 3) store_->append<double>("/xdmf/X", {X.data() + i, 3});
+    }
     store_->flush();
   }
-  const std::int64_t n = m.n_nodes_global, cells = m.n_cells_global, entries = store_->shape("/xdmf/topology")[0];
+  const std::int64_t n = m.n_nodes_global, cells = m.n_cells_global, entries = topology_entries_;
   std::string t = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   const auto attribute = [&](const std::string& name, const char* type, const char* centre, const std::string& dims, const std::string& at, const char* number) {
     t += fmt::format(

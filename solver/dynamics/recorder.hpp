@@ -58,7 +58,7 @@ class Recorder {
   void advance(bool last);
   void write_row(size_t n, double w0, size_t k0, double w1, size_t k1);
   void write_field(const Row& row, const Config& a);
-  void write_xdmf() const;
+  void write_xdmf();
   std::vector<double> gather(const std::vector<double>& local, int width) const;
 
   const System& system_;
@@ -71,7 +71,8 @@ class Recorder {
   bool first_written_ = false, started_ = false;
   double last_t_ = 0;
   double next_field_ = 0, E0_ = 0, max_T_ = 0, work_ = 0, dissipated_ = 0, worst_balance_ = 0, worst_violation_ = 0;
-  int n_fields_ = 0, newton_ = 0;
+  int n_fields_ = 0;
+  std::int64_t topology_entries_ = 0;
   long rows_written_ = 0;
   double last_flush_ = 0, last_xdmf_ = 0;
   std::vector<double> field_times_;

@@ -53,6 +53,9 @@ const std::vector<ArraySchema>& file_schema() {
       {"run.h5", "/history/motion/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on what is held, about the mean of its nodes or the body's centre, inertial axes"},
       {"run.h5", "/history/sensor/<name>", "f8", "(n_t, 3)", "1", "proper acceleration R^T (a - g)/g0 in sensor axes: +1 upward at rest"},
       {"run.h5", "/history/probe/<name>", "f8", "(n_t, 9)", "m, m/s, m/s^2", "position, velocity, acceleration"},
+      {"run.h5", "/xdmf/topology", "i8", "(n)", "", "cells as XDMF's mixed list, for ParaView"},
+      {"run.h5", "/xdmf/X", "f8", "(n_nodes, 3)", "m", "reference positions, repeated for ParaView"},
+      {"run.h5", "/xdmf/region", "i4", "(n_cells)", "", "region of each cell"},
       {"run.h5", "/checkpoint", "group", "", "", "reserved"},
       {"run.h5", "/cell/state", "group", "", "", "reserved: history variables and element modes, global numbering"},
   };

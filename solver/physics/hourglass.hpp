@@ -1,7 +1,7 @@
 // Physical stabilisation of the one-point hexahedron: the strains its centroid does not see, held by the true moduli of bending,
 // after Belytschko & Bindeman [belytschko-bindeman-1993], written in twelve quadratic strain measures so that energy-momentum is exact:
 //
-//   b_rA = (x n_A).(x gamma_r),   n_A centroid gradients along the cell's own axes,   gamma_r = (h_r - sum_A (h_r.X_A) n_A)/8,
+//   b_rA = (x n_A).(x gamma_r),   n_A mean gradients along the cell's own axes,   gamma_r = (h_r - sum_A (h_r.X_A) n_A)/8,
 //   h = (yz, zx, xy, xyz) at the corners.  For direction r with p, q the other two and half-lengths a:
 //   e1 = b_qp/a_p,  e2 = b_pq/a_q,  e3 = b_qq/a_p + b_pp/a_q,   U = V/6 [E/(1-nu^2)(e1^2 + e2^2 + 2 nu e1 e2) + mu e3^2],
 //   and U = V/18 E (b_4A/a_A)^2 for the warping mode.  All b vanish in any homogeneous deformation: the patch test is exact.
@@ -26,7 +26,7 @@ inline V root(const V& v) {
 /// What the hourglass measures of one cell are made of.
 template <class T>
 struct Hourglass {
-  T n[3][8];      // centroid gradients along the cell's axes   [1/m]
+  T n[3][8];      // mean gradients along the cell's axes       [1/m]
   T gamma[4][8];  // hourglass vectors                          [1]
   T half[3];      // half-lengths                               [m]
   T axes[3][3];   // the cell's axes, columns                   [1]
@@ -39,7 +39,7 @@ struct Hourglass {
     nu = c.lambda / (2 * (c.lambda + c.mu)), E = 2 * c.mu * (1 + nu);
     T g[8][3];
     auto& R = axes;
-    volume = table.w[0] * solid::reference_gradients<8>(table.dN[0], X, g);
+    volume = solid::point_gradients<Hex8>(0, X, g);
     for (int A = 0; A < 3; ++A) {
       for (int i = 0; i < 3; ++i) {
         R[i][A] = X[i] * table.dN[0][0][A];

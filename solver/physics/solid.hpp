@@ -54,6 +54,57 @@ inline T reference_gradients(const double (*dN)[3], const T* X, T (*g)[3]) {
   return det;
 }
 
+/// Gradients of the trilinear hexahedron averaged over the cell, (1/V) int grad N_a dV, and its volume [flanagan-belytschko-1981]; on a
+/// bent mesh the centroid's gradients would fail the patch test.  With x = m_0 + m_1 xi + m_2 eta + m_3 zeta + p_1 eta zeta + p_2 zeta xi +
+/// p_3 xi eta + w xi eta zeta the integral of x_eta x x_zeta dN_a/dxi, and its cyclic likes, is a few products of these vectors.
+template <class T>
+inline T mean_gradients(const T* X, T (*g)[3]) {
+  T m[3][3], p[3][3], w[3];
+  for (int i = 0; i < 3; ++i) {
+    for (int r = 0; r < 3; ++r) m[r][i] = p[r][i] = T{};
+    w[i] = T{};
+    for (int a = 0; a < 8; ++a) {
+      const double* c = hex_corner[a];
+      const T x = X[3 * a + i] / 8;
+      for (int r = 0; r < 3; ++r) m[r][i] += c[r] * x, p[r][i] += c[(r + 1) % 3] * c[(r + 2) % 3] * x;
+      w[i] += c[0] * c[1] * c[2] * x;
+    }
+  }
+  const auto add_cross = [](double f, const T* a, const T* b, T* to) {
+    for (int i = 0; i < 3; ++i) to[i] += f * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
+  };
+  for (int a = 0; a < 8; ++a)
+    for (int i = 0; i < 3; ++i) g[a][i] = T{};
+  for (int r = 0; r < 3; ++r) {
+    const int j = (r + 1) % 3, k = (r + 2) % 3;
+    T constant[3] = {}, along_j[3] = {}, along_k[3] = {};
+    add_cross(1, m[j], m[k], constant), add_cross(1. / 3, p[k], p[j], constant);
+    add_cross(1. / 3, m[j], p[r], along_j), add_cross(1. / 9, p[k], w, along_j);
+    add_cross(1. / 3, p[r], m[k], along_k), add_cross(1. / 9, w, p[j], along_k);
+    for (int a = 0; a < 8; ++a) {
+      const double* c = hex_corner[a];
+      for (int i = 0; i < 3; ++i) g[a][i] += c[r] * (constant[i] + c[j] * along_j[i] + c[k] * along_k[i]);
+    }
+  }
+  T volume = T{};
+  for (int a = 1; a < 8; ++a) volume += (X[3 * a] - X[0]) * g[a][0];
+  const T inverse = 1 / volume;
+  for (int a = 0; a < 8; ++a)
+    for (int i = 0; i < 3; ++i) g[a][i] *= inverse;
+  return volume;
+}
+
+/// Gradients at integration point p of a cell, and the point's weight [m^3].
+template <class S, class T>
+inline T point_gradients(int p, const T* X, T (*g)[3]) {
+  if constexpr (S::n == 8) {
+    return mean_gradients(X, g);
+  } else {
+    constexpr const auto& table = stiffness_table<S>;
+    return table.w[p] * reference_gradients<S::n>(table.dN[p], X, g);
+  }
+}
+
 /// F_ij = sum_a x_ai g_aj
 template <int n, class T>
 inline void gradient(const T* x, const T (*g)[3], T F[3][3]) {
@@ -168,11 +219,10 @@ inline void add_point(const Material& material, const SolidCall<T>& c, const T (
 /// Adds to f, K, energy, dissipated and lowers least_det; the caller clears them.
 template <class S, class Material, class T>
 inline void evaluate_solid(const Material& material, const SolidCall<T>& c) {
-  constexpr const auto& table = stiffness_table<S>;
   for (int p = 0; p < S::n_points; ++p) {
     T g[S::n][3];
-    const T det = solid::reference_gradients<S::n>(table.dN[p], c.X, g);
-    solid::add_point<S::n>(material, c, g, T(table.w[p] * det));
+    const T w = solid::point_gradients<S>(p, c.X, g);
+    solid::add_point<S::n>(material, c, g, w);
   }
 }
 

@@ -55,13 +55,12 @@ void node_coordinates(double (*xi)[3]) {
 
 template <class S>
 void recover(Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x, std::span<Vec6> out) {
-  constexpr const auto& table = stiffness_table<S>;
   const auto rule = S::rule();
   Eigen::Matrix<double, S::n_points, 6> sigma;
   Eigen::Matrix<double, S::n_points, 4> A;
   for (int p = 0; p < S::n_points; ++p) {
     double g[S::n][3], F[3][3], e[6];
-    solid::reference_gradients<S::n>(table.dN[p], X[0].data(), g);
+    solid::point_gradients<S>(p, X[0].data(), g);
     solid::gradient<S::n>(x[0].data(), g, F);
     solid::green_lagrange(F, e);
     sigma.row(p) = cauchy(law, c, F, e).transpose();
@@ -82,7 +81,7 @@ void recover(Law law, const Lame& c, std::span<const Vec3> X, std::span<const Ve
 void recover_hex8(Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x, std::span<Vec6> out) {
   const Hourglass<double> h(X[0].data(), c);
   double g[8][3], F[3][3], e[6], u[3][3], modes[4][3], b[4][3];
-  solid::reference_gradients<8>(stiffness_table<Hex8>.dN[0], X[0].data(), g);
+  solid::point_gradients<Hex8>(0, X[0].data(), g);
   solid::gradient<8>(x[0].data(), g, F);
   solid::green_lagrange(F, e);
   h.measure(x[0].data(), u, modes, b);

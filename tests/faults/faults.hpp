@@ -119,10 +119,11 @@ class Faults : public ::testing::Test {
     return all;
   }
 
-  /// `command` (whose first word is the tool) ends with `exit` and this line on stderr, after "tool: "; "..." stands for any text.
+  /// `command` (whose first word that begins with hilo- is the tool) ends with `exit` and this line on stderr, after "tool: "; "..." stands
+  /// for any text.
   void refused(const std::string& command, int exit, const std::string& message, int ranks = 1, const std::string& before = "") const {
     SCOPED_TRACE(before + command + " on " + std::to_string(ranks) + " rank(s)");
-    const std::string tool = command.substr(0, command.find(' '));
+    const std::string tool = command.substr(command.find("hilo-"), command.find(' ', command.find("hilo-")) - command.find("hilo-"));
     const auto files = snapshot();
     const auto o = ranks > 1 ? mpirun(ranks, command, folder) : run(before + command, folder);
     EXPECT_EQ(o.exit, exit) << o.err;

@@ -112,8 +112,8 @@ TEST_F(Faults, TagsThatFitNoRegionOrContradictAreRefused) {
 
 TEST_F(Faults, APartitionThatCannotBeIsRefused) {
   make_tags();
-  refused("hilo-part tags.h5 -n 0 -o parts.h5", usage, "...-n...");
-  refused("hilo-part tags.h5 -n 3 -o parts.h5", input, "tags.h5: 3 parts of 1 flexible cells would leave parts without work (at most 1)");
+  refused("hilo-part tags.h5 -n 0 -o parts.h5", usage, "--parts: Value 0 not in range 1 to 1048576 (see hilo-part --help)");
+  refused("hilo-part tags.h5 -n 3 -o parts.h5", input, "tags.h5: 3 parts of 2 cells (at most 2)");
 }
 
 TEST_F(Faults, AFullDiskLeavesNothingBehind) {
@@ -121,7 +121,7 @@ TEST_F(Faults, AFullDiskLeavesNothingBehind) {
   for (const int size : {1, 8}) {
     refused("hilo-import two.inp -o mesh.h5", resources, "mesh.h5: cannot write: ...", 1, full_disk(size));
     refused("hilo-tag two.h5 --rigid hull mast -o out.h5", resources, "out.h5: cannot write: ...", 1, full_disk(size));
-    refused("hilo-part two.h5 -n 2 -o parts.h5", resources, "parts.h5: cannot write: ...", 1, full_disk(size));
+    refused("hilo-part tags.h5 -n 1 -o parts.h5", resources, "parts.h5: cannot write: ...", 1, full_disk(size));
   }
 }
 
@@ -136,7 +136,7 @@ TEST_F(Faults, APlaceThatCannotBeWrittenIsNamed) {
   refused("hilo-import two.inp -o two.inp/mesh.h5", resources, "two.inp/mesh.h5: cannot write: Not a directory");
   refused("hilo-import two.inp -o absent/mesh.h5", resources, "absent/mesh.h5: cannot write: No such file or directory");
   refused("hilo-tag two.h5 --rigid hull mast -o two.inp/tags.h5", resources, "two.inp/tags.h5: cannot write: Not a directory");
-  refused("hilo-part two.h5 -n 2 -o two.inp/parts.h5", resources, "two.inp/parts.h5: cannot write: Not a directory");
+  refused("hilo-part tags.h5 -n 1 -o two.inp/parts.h5", resources, "two.inp/parts.h5: cannot write: Not a directory");
 }
 
 TEST_F(Faults, ADeviceOrPipeInPlaceOfTheOutputIsNotReplaced) {

@@ -58,7 +58,7 @@ class BadScene : public Faults {
 
 TEST_F(BadScene, IsMadeFromOneThatRuns) {
   for (const int ranks : {1, 2}) {
-    const std::string command = "hilo-solve scene.toml tags.h5 --quiet -o run" + std::to_string(ranks) + ".h5";
+    const std::string command = "timeout 60 hilo-solve scene.toml tags.h5 --quiet -o run" + std::to_string(ranks) + ".h5";
     const auto o = ranks == 1 ? work.run(command) : mpirun(ranks, command, folder);
     EXPECT_EQ(o.exit, 0) << o.err;
     EXPECT_EQ(o.err, "");
@@ -69,7 +69,7 @@ TEST_F(BadScene, IsRefusedAtThePlaceOfTheMistake) {
   for (const auto& m : mistakes) {
     SCOPED_TRACE(m.name);
     put_scene(m.from, m.to);
-    refused("hilo-solve scene.toml tags.h5", input, m.message);
+    refused("hilo-solve scene.toml tags.h5 --quiet", input, m.message);
   }
 }
 
@@ -77,7 +77,7 @@ TEST_F(BadScene, IsRefusedAlikeOnTwoRanks) {
   for (const auto& m : mistakes) {
     SCOPED_TRACE(m.name);
     put_scene(m.from, m.to);
-    refused("hilo-solve scene.toml tags.h5", input, m.message, 2);
+    refused("hilo-solve scene.toml tags.h5 --quiet", input, m.message, 2);
   }
 }
 
@@ -122,10 +122,21 @@ TEST_F(BadScene, FromStandardInputIsRefusedAtItsLine) {
   EXPECT_EQ(o.err, "hilo-solve: <stdin>:7:6: material \"steel\": nu = 0.5 is not in (-1, 0.5)\n");
 }
 
-TEST_F(BadScene, OnAFullDiskOrWithoutPermissionLeavesNothingBehind) {
+TEST_F(BadScene, WithResultsThatCannotBeWrittenLeavesNothingBehind) {
+  for (const int ranks : {1, 2}) {
+    refused("hilo-solve scene.toml tags.h5 --quiet -o two.inp/run.h5", resources, "two.inp/run.h5: ...", ranks);
+    refused("hilo-solve scene.toml tags.h5 --quiet -o absent/run.h5", resources, "absent/run.h5: no such folder (mkdir -p absent)", ranks);
+  }
+}
+
+TEST_F(BadScene, OnADiskThatFillsAtTheStartOrOnTheWayLeavesNothingBehind) {
+  ASSERT_EQ(work.run("hilo-solve scene.toml tags.h5 --quiet -o run.h5").exit, 0);
+  const auto size = static_cast<int>(std::filesystem::file_size(folder / "run.h5") / 1024);
+  for (const char* name : {"run.h5", "run.xdmf", "run.json"}) std::filesystem::remove(folder / name);
   for (const int ranks : {1, 2})
-    refused("hilo-solve scene.toml tags.h5 -o two.inp/run.h5", resources, "two.inp/run.h5: cannot write: Not a directory", ranks);
-  for (const int size : {1, 8})
-    refused("hilo-solve scene.toml tags.h5 --quiet -o run.h5", resources, "run.h5: cannot write: ...", 1,
-            "trap '' XFSZ; ulimit -f " + std::to_string(size) + "; ");
+    for (const int limit : {1, 8, size / 2, size - 1}) {  // the ranks are limited, not mpirun, which writes files of its own
+      const std::string command =
+          "bash -c \"trap '' XFSZ; ulimit -f " + std::to_string(limit) + "; exec hilo-solve scene.toml tags.h5 --quiet -o run.h5\"";
+      refused(command, resources, "run.h5: ...", ranks);
+    }
 }

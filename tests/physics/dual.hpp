@@ -10,6 +10,7 @@ struct Dual {
   Dual(double value, double slope = 0) : v(value), d(slope) {}
   Dual& operator+=(const Dual& b) { return v += b.v, d += b.d, *this; }
   Dual& operator-=(const Dual& b) { return v -= b.v, d -= b.d, *this; }
+  Dual& operator*=(const Dual& b) { return *this = *this * b; }
   friend Dual operator+(Dual a, const Dual& b) { return a += b; }
   friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
   friend Dual operator-(const Dual& a) { return {-a.v, -a.d}; }
@@ -20,16 +21,18 @@ struct Dual {
 
 inline Dual log_of(const Dual& x) { return {std::log(x.v), x.d / x.v}; }
 inline Dual root(const Dual& x) { return {std::sqrt(x.v), x.d / (2 * std::sqrt(x.v))}; }
-/// ln(1 + r)/r from its power series, which is not what the kernel uses except near zero; |r| < 0.6.
+/// ln(1 + r)/r and its derivative: its power series where that converges fast, else its definition in more digits than the kernel has.
 inline void log_ratio(const Dual& r, Dual& L, Dual& dL) {
-  double value = 0, slope = 0, power = 1;  // sum (-r)^k/(k + 1)
-  for (int k = 0; k < 200; ++k) {
-    value += power / (k + 1);
-    slope -= (k + 1) * power / (k + 2);
-    power *= -r.v;
+  long double value = 0, slope = 0;
+  if (std::abs(r.v) < 0.5) {
+    long double power = 1;  // (-r)^k
+    for (int k = 0; k < 80; ++k, power *= -r.v) value += power / (k + 1), slope -= (k + 1) * power / (k + 2);
+  } else {
+    value = std::log1p(static_cast<long double>(r.v)) / r.v;
+    slope = (1 / (1 + static_cast<long double>(r.v)) - value) / r.v;
   }
-  L = {value, slope * r.d};
-  dL = {slope, 0};
+  L = {static_cast<double>(value), static_cast<double>(slope) * r.d};
+  dL = {static_cast<double>(slope), 0};
 }
 
 }  // namespace hilo::test

@@ -95,7 +95,7 @@ TYPED_TEST(ShapeFunctions, HaveTheGradientsOfTheirValues) {
 
 TYPED_TEST(ShapeFunctions, QuadraticShapesReproduceEveryQuadratic) {
   using S = TypeParam;
-  if (S::n == local_corners<S>().size()) GTEST_SKIP() << "linear shape";
+  if (S::n == local_corners<S>().size()) return;
   const auto nodes = local_nodes<S>();
   for (const Vec3& at : inner_points<S>()) {
     double N[S::n];

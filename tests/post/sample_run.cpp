@@ -1,11 +1,8 @@
 #include "sample_run.hpp"
 
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <map>
 
@@ -30,7 +27,8 @@ std::int64_t new_node(Mesh& mesh, const Vec3& x) {
 }
 
 /// A mapped block of hexahedra; `closed` joins its second direction to a ring.
-void add_block(Mesh& mesh, const std::string& region, std::array<int, 3> n, bool closed, const std::function<Vec3(double, double, double)>& map) {
+void add_block(Mesh& mesh, const std::string& region, std::array<int, 3> n, bool closed,
+               const std::function<Vec3(double, double, double)>& map) {
   const auto r = new_region(mesh, region);
   const int rows = closed ? n[1] : n[1] + 1;
   std::vector<std::int64_t> node;
@@ -64,7 +62,9 @@ void add_curved_hex20(Mesh& mesh, const std::string& region) {
   // A quarter of a thick ring of two cells: mid-side nodes on the circle.
   const auto r = new_region(mesh, region);
   const Vec3 centre(0.6, 0, 0.55);
-  const auto on = [&](double radius, double angle, double y) { return Vec3(centre + Vec3(radius * std::cos(angle), y, radius * std::sin(angle))); };
+  const auto on = [&](double radius, double angle, double y) {
+    return Vec3(centre + Vec3(radius * std::cos(angle), y, radius * std::sin(angle)));
+  };
   constexpr std::array edges{std::pair{0, 1}, std::pair{1, 2}, std::pair{2, 3}, std::pair{3, 0}, std::pair{4, 5}, std::pair{5, 6},
                              std::pair{6, 7}, std::pair{7, 4}, std::pair{0, 4}, std::pair{1, 5}, std::pair{2, 6}, std::pair{3, 7}};
   const auto round = [&](const Vec3& x) {
@@ -77,11 +77,12 @@ void add_curved_hex20(Mesh& mesh, const std::string& region) {
   std::array<std::array<std::int64_t, 4>, 3> ring{};
   for (size_t k = 0; k < 3; ++k) {
     const double a = M_PI / 2 * static_cast<double>(k);
-    ring[k] = {new_node(mesh, on(0.15, a, -0.2)), new_node(mesh, on(0.3, a, -0.2)), new_node(mesh, on(0.3, a, 0.2)), new_node(mesh, on(0.15, a, 0.2))};
+    ring[k] = {new_node(mesh, on(0.15, a, -0.2)), new_node(mesh, on(0.3, a, -0.2)), new_node(mesh, on(0.3, a, 0.2)),
+               new_node(mesh, on(0.15, a, 0.2))};
   }
   for (size_t k = 0; k < 2; ++k) {
-    std::vector<std::int64_t> cell{ring[k + 1].begin(), ring[k + 1].end()};
-    cell.insert(cell.end(), ring[k].begin(), ring[k].end());
+    std::vector<std::int64_t> cell{ring[k].begin(), ring[k].end()};
+    cell.insert(cell.end(), ring[k + 1].begin(), ring[k + 1].end());
     for (const auto& [a, b] : edges) cell.push_back(mid(cell[static_cast<size_t>(a)], cell[static_cast<size_t>(b)]));
     mesh.add_cell(Shape::hex20, cell, r, mesh.n_cells() + 1);
   }
@@ -91,7 +92,8 @@ void add_tet10(Mesh& mesh, const std::string& region) {
   const auto r = new_region(mesh, region);
   MidNodes mid{mesh, nullptr, {}};
   std::array<std::int64_t, 8> box{};
-  for (int i = 0; i < 8; ++i) box[static_cast<size_t>(i)] = new_node(mesh, Vec3(-1.5 + 0.5 * (i & 1), -0.25 + 0.5 * ((i >> 1) & 1), -0.9 + 0.4 * (i >> 2)));
+  for (int i = 0; i < 8; ++i)
+    box[static_cast<size_t>(i)] = new_node(mesh, Vec3(-1.5 + 0.5 * (i & 1), -0.25 + 0.5 * ((i >> 1) & 1), -0.9 + 0.4 * (i >> 2)));
   constexpr int tets[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
   constexpr int edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
   for (const auto& t : tets) {
@@ -104,12 +106,6 @@ void add_tet10(Mesh& mesh, const std::string& region) {
 
 }  // namespace
 
-Folder::Folder(const std::string& name) : path(fs::temp_directory_path() / ("hilo-" + name + "-" + std::to_string(getpid()))) {
-  fs::remove_all(path);
-  fs::create_directories(path);
-}
-Folder::~Folder() { fs::remove_all(path); }
-
 Mesh cube(int n) {
   Mesh mesh;
   add_block(mesh, "cube", {n, n, n}, false, [](double u, double v, double w) { return Vec3(u, v, w); });
@@ -118,7 +114,8 @@ Mesh cube(int n) {
 
 Mesh machine() {
   Mesh mesh;
-  add_block(mesh, "hull", {10, 6, 4}, false, [](double u, double v, double w) { return Vec3(-2 + 3 * u - 0.3 * w, -0.8 + 1.6 * v, -0.5 + 0.8 * w); });
+  add_block(mesh, "hull", {10, 6, 4}, false,
+            [](double u, double v, double w) { return Vec3(-2 + 3 * u - 0.3 * w, -0.8 + 1.6 * v, -0.5 + 0.8 * w); });
   add_block(mesh, "barrel", {40, 24, 2}, true, [](double u, double v, double w) {
     const double radius = 0.11 + (0.07 - 0.03 * u) * w, a = -2 * M_PI * v;
     return Vec3(0.8 + 2.4 * u, radius * std::cos(a), 0.6 + radius * std::sin(a));
@@ -126,13 +123,16 @@ Mesh machine() {
   add_curved_hex20(mesh, "support");
   add_tet10(mesh, "foot");
   const auto strut = new_region(mesh, "strut");
-  const std::array bar{new_node(mesh, {-1.6, -0.6, 0.3}), new_node(mesh, {-1.6, -0.6, 1.1}), new_node(mesh, {-1.6, 0.6, 1.1}), new_node(mesh, {-1.6, 0.6, 0.3})};
+  const std::array bar{new_node(mesh, {-1.6, -0.6, 0.3}), new_node(mesh, {-1.6, -0.6, 1.1}), new_node(mesh, {-1.6, 0.6, 1.1}),
+                       new_node(mesh, {-1.6, 0.6, 0.3})};
   for (size_t k = 0; k < 3; ++k) mesh.add_cell(Shape::bar2, std::array{bar[k], bar[k + 1]}, strut, mesh.n_cells() + 1);
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c) {
     const auto& shape = info(mesh.shape[static_cast<size_t>(c)]);
     for (std::int64_t f = 0; f < static_cast<std::int64_t>(shape.facets.size()); ++f) {
       const auto nodes = mesh.facet_nodes({c, f});
-      const auto all = [&](auto&& test) { return std::all_of(nodes.begin(), nodes.end(), [&](auto n) { return test(mesh.X[static_cast<size_t>(n)]); }); };
+      const auto all = [&](auto&& test) {
+        return std::all_of(nodes.begin(), nodes.end(), [&](auto n) { return test(mesh.X[static_cast<size_t>(n)]); });
+      };
       if (all([](const Vec3& x) { return x.x() > 3.19; })) mesh.facet_sets["muzzle"].push_back({c, f});
       if (all([](const Vec3& x) { return x.z() < -0.89; })) mesh.facet_sets["ground_side"].push_back({c, f});
     }
@@ -155,16 +155,16 @@ Vec3 seat(double t) {
   return {pulse, 5 * std::sin(2 * M_PI * 400 * t), 1};
 }
 
-std::string write_run(const Folder& folder, const Mesh& mesh, int steps, bool complete, const Histories& histories) {
-  write_mesh(folder / "mesh.h5", mesh, {"sample"});
-  const std::string path = folder / "run.h5";
+std::string write_run(const fs::path& folder, const Mesh& mesh, int steps, bool complete, const Histories& histories) {
+  write_mesh((folder / "mesh.h5").string(), mesh, {"sample"});
+  const std::string path = (folder / "run.h5").string();
   Store run = Store::create_growing(path);
   run.set("/", "format", "hilo run");
   run.set("/", "version", schema_version);
   run.set("/", "complete", std::int64_t{0});
   run.set("/", "title", std::string("Concept vehicle, one shot"));
   run.write_strings("/provenance", std::vector<std::string>{"sample"});
-  run.link("/mesh", folder / "mesh.h5", "/mesh");
+  run.link("/mesh", (folder / "mesh.h5").string(), "/mesh");
   run.write_text("/scene", "title = \"Concept vehicle, one shot\"\nunits = \"m-kg-s\"\n");
   std::vector<std::string> words;
   std::vector<bool> stressed(static_cast<size_t>(mesh.n_nodes()), false);
@@ -190,7 +190,8 @@ std::string write_run(const Folder& folder, const Mesh& mesh, int steps, bool co
     run.append<double>("/history/energy", std::array{10 * t, 5 * t * t, -t, 12 * t, 0.1 * t, 1e-9 * std::sin(100 * t)});
     const Vec3 a = seat(t);
     run.append<double>("/history/sensor/seat", std::array{a.x(), a.y(), a.z()});
-    run.append<double>("/history/joint/trunnion", std::array{4e4 * std::sin(40 * t), 200.0 / 3, -1e3 * t, 12.5, 900 * std::cos(20 * t), 0.0});
+    run.append<double>("/history/joint/trunnion",
+                       std::array{4e4 * std::sin(40 * t), 200.0 / 3, -1e3 * t, 12.5, 900 * std::cos(20 * t), 0.0});
     run.append<double>("/history/probe/muzzle", std::array{3 + t, 0., 0.6, 1., 0., 0., 0., 0., -9.81});
   }
   const double end = histories.h * (histories.rows - 1);
@@ -219,13 +220,5 @@ std::string write_run(const Folder& folder, const Mesh& mesh, int steps, bool co
   run.flush();
   return path;
 }
-
-Outcome shell(const std::string& command) {
-  Folder folder("shell");
-  const int status = std::system((command + " > " + folder / "out" + " 2> " + folder / "err").c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text_file(folder / "out"), read_text_file(folder / "err")};
-}
-
-std::string post() { return std::string("env -u DISPLAY '") + HILO_BIN + "/hilo-post'"; }
 
 }  // namespace hilo::sample

@@ -49,14 +49,14 @@ TEST_F(ImportBdf, SmallLargeAndFreeFieldsAreRead) {
   EXPECT_NEAR(volume(m), 1.5, 1e-14);
   EXPECT_DOUBLE_EQ(m.region_data[0].E, 2.1e11);
   EXPECT_DOUBLE_EQ(m.region_data[0].density, 7850);
-  EXPECT_NEAR(m.region_data[1].nu, 7 / 5.2 - 1, 1e-14);   // from E and G
+  EXPECT_NEAR(m.region_data[1].nu, 7 / 5.2 - 1, 1e-14);  // from E and G
   EXPECT_EQ(m.node_sets.at("SPC_1").size(), 4u);
   EXPECT_LT((vector_area(m, m.facet_sets.at("pid_9")) - Vec3(0, 0, -1)).norm(), 1e-14);
   EXPECT_NE(err.find("not read: FORCE (1, a.bdf:28"), std::string::npos) << err;
 }
 
 TEST_F(ImportBdf, WhatGmshWritesKeepsShapesVolumesAndProperties) {
-  for (const int format : {0, 1, 2})   // free, small, large
+  for (const int format : {0, 1, 2})  // free, small, large
     for (const int order : {1, 2})
       for (const bool hex : {false, true}) {
         gmsh::initialize();
@@ -74,7 +74,7 @@ TEST_F(ImportBdf, WhatGmshWritesKeepsShapesVolumesAndProperties) {
         const std::string where = std::to_string(format) + ' ' + std::to_string(order) + (hex ? " hex" : " tet");
         const Mesh m = imported("a.bdf");
         ASSERT_GT(m.n_cells(), 0) << where;
-        EXPECT_NEAR(volume(m), 6, 1e-4) << where;   // its fields hold five digits or more
+        EXPECT_NEAR(volume(m), 6, 1e-4) << where;  // its fields hold five digits or more
         EXPECT_EQ(m.region_name.size(), 1u) << where;
         const Shape expected = hex ? (order == 2 ? Shape::hex20 : Shape::hex8) : order == 2 ? Shape::tet10 : Shape::tet4;
         EXPECT_EQ(static_cast<Shape>(m.shape[0]), expected) << where;

@@ -10,7 +10,8 @@ using test::cells_of;
 using test::vector_area;
 using test::volume;
 
-/// Two unit boxes that share the face x = 1.  `what`: hexahedra, tetrahedra or prisms; the groups are a solid each, faces, a curve, a point.
+/// Two unit boxes that share the face x = 1.  `what`: hexahedra, tetrahedra or prisms; the groups are a solid each, faces, a curve, a
+/// point.
 std::string boxes(const std::string& what, bool groups = true) {
   std::string s = R"(DefineConstant[ N = {2, Name "Parameters/cells"} ];
 For i In {0:1}
@@ -24,8 +25,11 @@ Transfinite Curve{:} = N + 1;
 Transfinite Surface{:};
 )";
   if (what == "hex") s += "Recombine Surface{:};\n";
-  if (what == "tet") s += "a() = Extrude {0,0,1} { Surface{base(0)}; };\nb() = Extrude {0,0,1} { Surface{base(1)}; };\n";
-  else s += "a() = Extrude {0,0,1} { Surface{base(0)}; Layers{N}; Recombine; };\nb() = Extrude {0,0,1} { Surface{base(1)}; Layers{N}; Recombine; };\n";
+  if (what == "tet")
+    s += "a() = Extrude {0,0,1} { Surface{base(0)}; };\nb() = Extrude {0,0,1} { Surface{base(1)}; };\n";
+  else
+    s += "a() = Extrude {0,0,1} { Surface{base(0)}; Layers{N}; Recombine; };\nb() = Extrude {0,0,1} { Surface{base(1)}; Layers{N}; "
+         "Recombine; };\n";
   if (groups)
     s += R"(Physical Volume("left") = {a(1)};
 Physical Volume(7) = {b(1)};
@@ -40,7 +44,8 @@ Physical Point("corner") = Point In BoundingBox{-.1,-.1,-.1,.1,.1,.1};
 class ImportGmsh : public test::Import {
  protected:
   /// Meshes a .geo script with gmsh and writes `file`.
-  void mesh(const std::string& script, const std::string& file, int order = 1, double version = 4.1, bool binary = false, bool complete = false) {
+  void mesh(const std::string& script, const std::string& file, int order = 1, double version = 4.1, bool binary = false,
+            bool complete = false) {
     place.write("made.geo", script);
     gmsh::initialize();
     gmsh::option::setNumber("General.Terminal", 0);
@@ -60,7 +65,8 @@ class ImportGmsh : public test::Import {
       for (size_t f = 0; f < info(m.shape[e]).facets.size(); ++f) {
         const auto n = m.facet_nodes({e, static_cast<std::int64_t>(f)});
         const size_t k = n.size() / 2;
-        for (size_t i = 0; n.size() > 4 && i < k; ++i) EXPECT_LT((m.X[n[k + i]] - (m.X[n[i]] + m.X[n[(i + 1) % k]]) / 2).norm(), 1e-9) << where;
+        for (size_t i = 0; n.size() > 4 && i < k; ++i)
+          EXPECT_LT((m.X[n[k + i]] - (m.X[n[i]] + m.X[n[(i + 1) % k]]) / 2).norm(), 1e-9) << where;
       }
   }
   void expect_boxes(const Mesh& m, const std::string& where) {
@@ -73,7 +79,8 @@ class ImportGmsh : public test::Import {
     for (const auto a : m.node_sets.at("edge")) EXPECT_EQ(m.X[a].z(), 0) << where;
     ASSERT_EQ(m.node_sets.at("corner").size(), 1u) << where;
     EXPECT_EQ(m.X[m.node_sets.at("corner")[0]].norm(), 0) << where;
-    for (std::int64_t c = 0; c < m.n_cells(); ++c) EXPECT_EQ(m.X[m.cell(c)[0]].x() + m.X[m.cell(c)[1]].x() > 2 + 1e-9 ? 1 : m.region[c], m.region[c]) << where;
+    for (std::int64_t c = 0; c < m.n_cells(); ++c)
+      EXPECT_EQ(m.X[m.cell(c)[0]].x() + m.X[m.cell(c)[1]].x() > 2 + 1e-9 ? 1 : m.region[c], m.region[c]) << where;
   }
 };
 
@@ -97,8 +104,9 @@ TEST_F(ImportGmsh, EveryShapeAndOrderKeepsItsVolumeAndItsMiddles) {
     int order;
     bool complete;
     Shape shape;
-  } cases[] = {{"tet", 1, false, Shape::tet4},      {"tet", 2, false, Shape::tet10}, {"hex", 1, false, Shape::hex8},    {"hex", 2, false, Shape::hex20},
-               {"prism", 1, false, Shape::wedge6}, {"prism", 2, false, Shape::wedge15}, {"hex", 2, true, Shape::hex20}, {"prism", 2, true, Shape::wedge15}};
+  } cases[] = {{"tet", 1, false, Shape::tet4},  {"tet", 2, false, Shape::tet10},    {"hex", 1, false, Shape::hex8},
+               {"hex", 2, false, Shape::hex20}, {"prism", 1, false, Shape::wedge6}, {"prism", 2, false, Shape::wedge15},
+               {"hex", 2, true, Shape::hex20},  {"prism", 2, true, Shape::wedge15}};
   for (const auto& c : cases) {
     const std::string where = std::string(c.what) + std::to_string(c.order) + (c.complete ? " complete" : "");
     mesh(boxes(c.what), "a.msh", c.order, 4.1, false, c.complete);
@@ -124,7 +132,8 @@ TEST_F(ImportGmsh, UnvKeepsGroupsShapesAndMiddles) {
       EXPECT_LT((vector_area(m, m.facet_sets.at("inlet")) - Vec3(-1, 0, 0)).norm(), 1e-12) << where;
       EXPECT_TRUE(m.node_sets.count("edge")) << where;
       expect_middles(m, where);
-      EXPECT_NE(err.find("group \"corner\": 1 of its numbers are no element"), std::string::npos) << "gmsh names points it does not write\n" << err;
+      EXPECT_NE(err.find("group \"corner\": 1 of its numbers are no element"), std::string::npos) << "gmsh names points it does not write\n"
+                                                                                                  << err;
     }
 }
 
@@ -137,6 +146,14 @@ TEST_F(ImportGmsh, AScriptIsMeshedWithItsParametersSizeAndOrder) {
   EXPECT_EQ(m.n_nodes(), 12 + 20);
   place.write("b.geo", "SetFactory(\"OpenCASCADE\"); Box(1) = {0,0,0,1,1,1};\n");
   EXPECT_GT(imported("b.geo", "--size 0.05").n_cells(), 4 * imported("b.geo", "--size 0.1").n_cells());
+}
+
+TEST_F(ImportGmsh, OptionsThatWouldDoNothingAreErrors) {
+  place.write("a.geo", boxes("hex"));
+  refused("a.geo -o a.h5 --define M=3", 1, "--define M: the script has no such name (did you mean \"N\"?)");
+  mesh(boxes("hex"), "a.msh");
+  refused("a.msh -o a.h5 --define N=3", 1, "--define is for .geo scripts");
+  refused("a.msh -o a.h5 --size 3", 1, "--size is for a geometry, a.msh is a mesh");
 }
 
 TEST_F(ImportGmsh, AGeometryWithoutGroupsHasARegionPerVolume) {
@@ -171,13 +188,15 @@ TEST_F(ImportGmsh, CellsInTwoGroupsGoToTheFirstAndBothStayNamed) {
 }
 
 TEST_F(ImportGmsh, ACurveApartFromTheSolidsIsARegionOfBars) {
-  const std::string cable = "p = newp; Point(p) = {2,1,1}; Point(p+1) = {5,1,1}; l = newl; Line(l) = {p,p+1}; Transfinite Curve{l} = 4;\nPhysical Curve(\"cable\") = {l};\n";
+  const std::string cable =
+      "p = newp; Point(p) = {2,1,1}; Point(p+1) = {5,1,1}; l = newl; Line(l) = {p,p+1}; Transfinite Curve{l} = 4;\nPhysical "
+      "Curve(\"cable\") = {l};\n";
   place.write("a.geo", boxes("hex") + cable);
   const Mesh m = imported("a.geo");
   EXPECT_EQ(cells_of(m, "cable"), 3);
   EXPECT_TRUE(m.node_sets.count("edge")) << "a curve on a solid is a node set";
   place.write("b.geo", cable);
-  const Mesh bars = imported("b.geo");   // without solids every curve group is one
+  const Mesh bars = imported("b.geo");  // without solids every curve group is one
   EXPECT_EQ(bars.region_name, std::vector<std::string>{"cable"});
   EXPECT_NEAR(volume(bars), 3, 1e-12) << "the length";
 }
@@ -186,8 +205,10 @@ TEST_F(ImportGmsh, WrongFilesAreNamedAndLeaveNothing) {
   refused("absent.msh -o a.h5", 2, "absent.msh: no such file");
   place.write("a.xyz", "x");
   refused("a.xyz -o a.h5", 2,
-          "a.xyz: no reader for \".xyz\" files (there is one for .inp .bdf .nas .dat .fem .vtk .vtu .msh .unv .mesh .stl .geo .step .stp .brep .iges .igs .inp.gz)");
-  place.write("a.stl", "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n");
+          "a.xyz: no reader for \".xyz\" files (there is one for .inp .bdf .nas .dat .fem .unv .vtk .vtu .msh .mesh .stl .geo .step .stp "
+          ".brep .iges .igs .inp.gz)");
+  place.write("a.stl",
+              "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n");
   refused("a.stl -o a.h5", 2, "a.stl: no volume cells and no bars (a surface alone, as in an STL, has no volume: mesh its inside first)");
   place.write("a.geo", "Point(1) = {0,0,0};\n");
   refused("a.geo -o a.h5", 2, "a.geo: no volume to mesh (the geometry holds points, curves or surfaces only)");

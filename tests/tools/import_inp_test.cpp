@@ -45,12 +45,18 @@ TEST_F(ImportInp, EveryShapeKeepsItsVolume) {
 
 TEST_F(ImportInp, FacesOfEveryShapeHaveTheAreaAndOutwardNormalOfTheManual) {
   const Mesh m = imported(deck("shapes.inp"));
-  const auto area = [&](const std::string& name) { return m.facet_sets.count(name) ? vector_area(m, m.facet_sets.at(name)) : Vec3(9, 9, 9); };
+  const auto area = [&](const std::string& name) {
+    return m.facet_sets.count(name) ? vector_area(m, m.facet_sets.at(name)) : Vec3(9, 9, 9);
+  };
   const std::pair<const char*, Vec3> expected[] = {
-      {"tet S1", {0, 0, -.5}}, {"tet S2", {0, -.5, 0}},  {"tet S3", {.5, .5, .5}}, {"tet S4", {-.5, 0, 0}},
-      {"wedge S1", {0, 0, -.5}}, {"wedge S2", {0, 0, .5}}, {"wedge S3", {0, -1, 0}}, {"wedge S4", {1, 1, 0}}, {"wedge S5", {-1, 0, 0}},
-      {"hex S1", {0, 0, -1}}, {"hex S2", {0, 0, 1}}, {"hex S3", {0, -1, 0}}, {"hex S4", {1, 0, 0}}, {"hex S5", {0, 1, 0}}, {"hex S6", {-1, 0, 0}},
-      {"quadratic", Vec3(0, -.5, 0) + Vec3(1, 1, 0) + Vec3(-1, 0, 0)}};
+      {"tet S1", {0, 0, -.5}},   {"tet S2", {0, -.5, 0}},
+      {"tet S3", {.5, .5, .5}},  {"tet S4", {-.5, 0, 0}},
+      {"wedge S1", {0, 0, -.5}}, {"wedge S2", {0, 0, .5}},
+      {"wedge S3", {0, -1, 0}},  {"wedge S4", {1, 1, 0}},
+      {"wedge S5", {-1, 0, 0}},  {"hex S1", {0, 0, -1}},
+      {"hex S2", {0, 0, 1}},     {"hex S3", {0, -1, 0}},
+      {"hex S4", {1, 0, 0}},     {"hex S5", {0, 1, 0}},
+      {"hex S6", {-1, 0, 0}},    {"quadratic", Vec3(0, -.5, 0) + Vec3(1, 1, 0) + Vec3(-1, 0, 0)}};
   for (const auto& [name, a] : expected) EXPECT_LT((area(name) - a).norm(), 1e-14) << name;
   // the free faces of a whole element set close around it
   ASSERT_TRUE(m.facet_sets.count("skin"));
@@ -100,7 +106,7 @@ TEST_F(ImportInp, SupportsAndLoadsBecomeSceneLinesOnTheirSets) {
   EXPECT_LT((moved.vector3("displacement") - Vec3(0, 5e-4, 0)).norm(), 1e-18);
 
   ASSERT_EQ(s.entries("load").size(), 5u);
-  Vec3 force = Vec3::Zero();   // at full amplitude: 4 x (100, 0, 2) on the set, -7 on two nodes
+  Vec3 force = Vec3::Zero();  // at full amplitude: 4 x (100, 0, 2) on the set, -7 on two nodes
   for (const auto& l : s.entries("load"))
     if (l.kind == "force") {
       EXPECT_TRUE(l.boolean("per_node"));
@@ -119,8 +125,9 @@ TEST_F(ImportInp, SupportsAndLoadsBecomeSceneLinesOnTheirSets) {
 
 TEST_F(ImportInp, WhatIsNotReadIsListedWithItsLine) {
   imported(deck("loads.inp"), "--units mm-t-s");
-  for (const char* said : {"1 nodes belong to no cell: dropped, the first is 99", "not read: *DLOAD CENTRIF (1, ", "loads.inp:40)", "not read: *TEMPERATURE (1, ", "loads.inp:41)",
-                           "*NODE FILE (1, ", "a request for output", "only the first step becomes scene lines", "*CLOAD in step 2 and later (1, "})
+  for (const char* said : {"1 nodes belong to no cell: dropped, the first is 99", "not read: *DLOAD CENTRIF (1, ", "loads.inp:40)",
+                           "not read: *TEMPERATURE (1, ", "loads.inp:41)", "*NODE FILE (1, ", "a request for output",
+                           "only the first step becomes scene lines", "*CLOAD in step 2 and later (1, "})
     EXPECT_NE(err.find(said), std::string::npos) << said << "\n" << err;
 }
 
@@ -136,8 +143,8 @@ TEST_F(ImportInp, OrderTwoKeepsVolumeAndFacesAndPutsNodesInTheMiddle) {
   const Mesh m = imported(deck("shapes.inp"), "--order 2");
   for (std::int64_t c = 0; c < m.n_cells(); ++c) {
     EXPECT_GE(info(m.shape[c]).n_nodes, 10);
-    EXPECT_NEAR(quality(m, c).volume, quality(m, (c + 3) % 6).volume, 1e-14);   // the unit cells of both orders
-    for (size_t i = 0; i < m.cell(c).size(); ++i)                               // node for node, too
+    EXPECT_NEAR(quality(m, c).volume, quality(m, (c + 3) % 6).volume, 1e-14);  // the unit cells of both orders
+    for (size_t i = 0; i < m.cell(c).size(); ++i)                              // node for node, too
       EXPECT_LT((m.X[m.cell(c)[i]] - m.X[m.cell((c + 3) % 6)[i]] - Vec3(c < 3 ? -30 : 30, 0, 0)).norm(), 1e-14) << c << ' ' << i;
   }
   EXPECT_LT((vector_area(m, m.facet_sets.at("wedge S4")) - Vec3(1, 1, 0)).norm(), 1e-14);
@@ -146,7 +153,7 @@ TEST_F(ImportInp, OrderTwoKeepsVolumeAndFacesAndPutsNodesInTheMiddle) {
 
 TEST_F(ImportInp, OrderTwoSharesNodesCompletesSetsAndLeavesNodalForcesAlone) {
   const Mesh m = imported(deck("loads.inp"), "--order 2 --scene-out scene.toml");
-  EXPECT_EQ(m.n_nodes(), 20 + (4 * 12 - 3 * 4));   // the edges of the three faces between cells count once
+  EXPECT_EQ(m.n_nodes(), 20 + (4 * 12 - 3 * 4));  // the edges of the three faces between cells count once
   EXPECT_EQ(m.node_sets.at("left").size(), 8u);
   const Scene s = Scene::load(place / "scene.toml");
   Vec3 force = Vec3::Zero();
@@ -157,9 +164,13 @@ TEST_F(ImportInp, OrderTwoSharesNodesCompletesSetsAndLeavesNodalForcesAlone) {
 
 TEST_F(ImportInp, CellsWithoutSectionNeedRegionsOrRest) {
   place.write("a.inp", two_cubes);
-  refused("a.inp -o a.h5", 2, "a.inp: 2 of 2 cells are in no region, the first is cell 1 (give them one with --rest NAME, or name element sets with --regions: low, high)");
+  refused("a.inp -o a.h5", 2,
+          "a.inp: 2 of 2 cells are in no region, the first is cell 1 (give them one with --rest NAME, or name element sets with --regions: "
+          "low, high)");
   refused("a.inp -o a.h5 --regions lov", 2, "a.inp: --regions: no element set \"lov\" (did you mean \"low\"?)");
-  refused("a.inp -o a.h5 --regions low", 2, "a.inp: 1 of 2 cells are in no region, the first is cell 2 (give them one with --rest NAME, or name element sets with --regions: low, high)");
+  refused("a.inp -o a.h5 --regions low", 2,
+          "a.inp: 1 of 2 cells are in no region, the first is cell 2 (give them one with --rest NAME, or name element sets with --regions: "
+          "low, high)");
   EXPECT_EQ(imported("a.inp", "--regions low,high").region_name, (std::vector<std::string>{"low", "high"}));
   const Mesh m = imported("a.inp", "--regions low --rest others");
   EXPECT_EQ(m.region_name, (std::vector<std::string>{"low", "others"}));
@@ -168,8 +179,9 @@ TEST_F(ImportInp, CellsWithoutSectionNeedRegionsOrRest) {
 }
 
 TEST_F(ImportInp, ALaterSectionTakesTheCellsAndTheWholeSetIsKept) {
-  place.write("a.inp", two_cubes + "*ELSET, ELSET=all\nlow, high\n*MATERIAL, NAME=m\n*ELASTIC\n1, 0\n*MATERIAL, NAME=n\n*ELASTIC\n2, 0\n"
-                                   "*SOLID SECTION, ELSET=all, MATERIAL=m\n*SOLID SECTION, ELSET=high, MATERIAL=n\n");
+  place.write("a.inp", two_cubes +
+                           "*ELSET, ELSET=all\nlow, high\n*MATERIAL, NAME=m\n*ELASTIC\n1, 0\n*MATERIAL, NAME=n\n*ELASTIC\n2, 0\n"
+                           "*SOLID SECTION, ELSET=all, MATERIAL=m\n*SOLID SECTION, ELSET=high, MATERIAL=n\n");
   const Mesh m = imported("a.inp");
   EXPECT_EQ(m.region_name, (std::vector<std::string>{"all", "high"}));
   EXPECT_EQ(m.region, (std::vector<std::int32_t>{0, 1}));
@@ -177,7 +189,8 @@ TEST_F(ImportInp, ALaterSectionTakesTheCellsAndTheWholeSetIsKept) {
   EXPECT_EQ(m.cell_sets.at("all_cells").size(), 2u);
   EXPECT_NE(err.find("1 of 2 cells of \"all\" belong to another region too"), std::string::npos) << err;
   // one region over two materials would lose one of them
-  refused("a.inp -o b.h5 --regions all", 2, "a.inp: region \"all\" holds cells of materials \"m\" and \"n\" (choose --regions within one material)");
+  refused("a.inp -o b.h5 --regions all", 2,
+          "a.inp: region \"all\" holds cells of materials \"m\" and \"n\" (choose --regions within one material)");
 }
 
 TEST_F(ImportInp, OneNameForTwoKindsOfSetIsToldApart) {
@@ -189,7 +202,9 @@ TEST_F(ImportInp, OneNameForTwoKindsOfSetIsToldApart) {
 }
 
 TEST_F(ImportInp, TrussesAreBars) {
-  place.write("a.inp", "*NODE\n1,0,0,0\n2,3,4,0\n*ELEMENT,TYPE=T3D2,ELSET=rope\n1,1,2\n*MATERIAL,NAME=m\n*ELASTIC\n1e9,0\n*SOLID SECTION,ELSET=rope,MATERIAL=m\n2.5e-4\n");
+  place.write("a.inp",
+              "*NODE\n1,0,0,0\n2,3,4,0\n*ELEMENT,TYPE=T3D2,ELSET=rope\n1,1,2\n*MATERIAL,NAME=m\n*ELASTIC\n1e9,0\n*SOLID "
+              "SECTION,ELSET=rope,MATERIAL=m\n2.5e-4\n");
   const Mesh m = imported("a.inp", "--scene-out s.toml");
   EXPECT_EQ(static_cast<Shape>(m.shape[0]), Shape::bar2);
   EXPECT_DOUBLE_EQ(quality(m, 0).volume, 5);
@@ -204,7 +219,9 @@ TEST_F(ImportInp, NodesNearerThanTheToleranceBecomeOne) {
   EXPECT_EQ(imported("a.inp", "--rest all").n_nodes(), 16);
   EXPECT_EQ(imported("a.inp", "--rest all --merge-nodes 1e-6").n_nodes(), 12);
   EXPECT_EQ(imported("a.inp", "--rest all --merge-nodes 1e-8").n_nodes(), 14);
-  refused("a.inp -o b.h5 --rest all --merge-nodes 1.001", 2, "a.inp: 2 of 2 cells have no volume or name a node twice: 1, 2 (take them out of the mesh; after --merge-nodes, try a smaller distance)");
+  refused("a.inp -o b.h5 --rest all --merge-nodes 1.001", 2,
+          "a.inp: 2 of 2 cells have no volume or name a node twice: 1, 2 (take them out of the mesh; after --merge-nodes, try a smaller "
+          "distance)");
 }
 
 TEST_F(ImportInp, ZippedDecksAreReadAsTheyAre) {
@@ -226,7 +243,8 @@ TEST_F(ImportInp, WrongDecksAreNamedByLineAndColumnAndLeaveNothing) {
       {two_cubes + "*ELEMENT, TYPE=C3D8\n3, 1, 2, 3, 4, 5, 6, 7, 80\n", "a.inp:19: element 3 names node 80, which does not exist"},
       {two_cubes + "*ELEMENT, TYPE=C3D8\n3, 1, 2, 3, 4, 5, 6\n*NSET, NSET=a\n", "a.inp:19:1: element 3 has 6 of its 8 nodes"},
       {two_cubes + "*ELEMENT, TYPE=S4R, ELSET=a\n3, 1, 2, 3, 4\n",
-       "a.inp:18:16: element type \"S4R\": shells are not read (supported: C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 and their I, R, H, M, T variants, T3D2)"},
+       "a.inp:18:16: element type \"S4R\": shells are not read (supported: C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 and their I, R, H, M, T "
+       "variants, T3D2)"},
       {two_cubes + "*NSET, NSET=left\n1\n*NSET, NSET=a\n1, lefft\n", "a.inp:21:4: no set \"lefft\" so far (did you mean \"left\"?)"},
       {two_cubes + "*BOUNDARY\nleft, 1\n", "a.inp:19: no node set \"LEFT\""},
       {two_cubes + "*CLOAD\n77, 1, 3.\n", "a.inp:19: no node 77"},
@@ -254,8 +272,9 @@ TEST_F(ImportInp, InvertedCellsAreNamed) {
   refused("a.inp -o a.h5 --rest all", 2, "a.inp: 1 of 2 cells are inverted (scaled Jacobian <= 0 at a corner): 1 (repair or remesh them)");
   mirrored.replace(mirrored.find("2, 5, 6, 7, 8, 9, 10, 11, 12"), 28, "2, 9, 10, 11, 12, 5, 6, 7, 8");
   place.write("a.inp", mirrored);
-  refused("a.inp -o a.h5 --rest all", 2,
-          "a.inp: 2 of 2 cells are inverted (scaled Jacobian <= 0 at a corner): 1, 2 (all of them: is the numbering of their nodes mirrored?)");
+  refused(
+      "a.inp -o a.h5 --rest all", 2,
+      "a.inp: 2 of 2 cells are inverted (scaled Jacobian <= 0 at a corner): 1, 2 (all of them: is the numbering of their nodes mirrored?)");
 }
 
 TEST_F(ImportInp, ADensityThatFitsNoMaterialIsSaidAloud) {

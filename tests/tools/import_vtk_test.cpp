@@ -10,8 +10,8 @@ using ImportVtk = test::Import;
 
 /// Two cubes (7), a prism on one of them and a quadratic tetrahedron apart (3), and a square that is no solid.
 TEST_F(ImportVtk, EveryEncodingGivesTheSameMesh) {
-  for (const char* file : {"ascii.vtu", "inline.vtu", "inline_zlib.vtu", "appended_raw.vtu", "appended_base64.vtu", "big_endian.vtu", "ascii_4_2.vtk",
-                           "binary_4_2.vtk", "ascii_5_1.vtk", "binary_5_1.vtk"}) {
+  for (const char* file : {"ascii.vtu", "inline.vtu", "inline_zlib.vtu", "appended_raw.vtu", "appended_base64.vtu", "big_endian.vtu",
+                           "ascii_4_2.vtk", "binary_4_2.vtk", "ascii_5_1.vtk", "binary_5_1.vtk"}) {
     const Mesh m = imported(deck(file));
     ASSERT_EQ(m.n_cells(), 4) << file;
     EXPECT_NEAR(volume(m), 2 + 0.5 + 1. / 6, 1e-12) << file;
@@ -40,12 +40,18 @@ TEST_F(ImportVtk, DamagedFilesAreNamedAndLeaveNothing) {
 }
 
 TEST_F(ImportVtk, CellsWithoutARegionArrayNeedRest) {
-  place.write("a.vtk", "# vtk DataFile Version 3.0\none tetrahedron\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n");
+  place.write("a.vtk",
+              "# vtk DataFile Version 3.0\none tetrahedron\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 "
+              "1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n");
   refused("a.vtk -o a.h5", 2, "a.vtk: 1 of 1 cells are in no region, the first is cell 0 (give them one with --rest NAME)");
   EXPECT_NEAR(volume(imported("a.vtk", "--rest all")), 1. / 6, 1e-7);
-  place.write("b.vtk", "# vtk DataFile Version 3.0\na pyramid\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 1 1 0 0 1 0 0 0 1\nCELLS 1 6\n5 0 1 2 3 4\nCELL_TYPES 1\n14\n");
+  place.write("b.vtk",
+              "# vtk DataFile Version 3.0\na pyramid\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 1 1 0 0 1 0 0 0 "
+              "1\nCELLS 1 6\n5 0 1 2 3 4\nCELL_TYPES 1\n14\n");
   refused("b.vtk -o a.h5", 2, "b.vtk: cell 0 is of VTK type 14 (supported: lines, tetrahedra, hexahedra, voxels, wedges of order 1 and 2)");
-  place.write("c.vtk", "# vtk DataFile Version 3.0\nbad node\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1 0 0 1 1 0\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n");
+  place.write("c.vtk",
+              "# vtk DataFile Version 3.0\nbad node\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1 0 0 1 1 0\nCELLS 1 5\n4 0 1 "
+              "2 3\nCELL_TYPES 1\n10\n");
   refused("c.vtk -o a.h5", 2, "c.vtk: cell 0 names node 3, which does not exist");
 }
 

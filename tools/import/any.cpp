@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "base/error.hpp"
 #include "import/imported.hpp"
@@ -14,11 +16,31 @@ namespace {
 struct Format {
   const char* ending;
   Imported (*read)(const std::string&, const ImportOptions&);
+  bool geometry = false;  // is meshed: --size has a meaning
 };
-constexpr Format formats[] = {{".inp", read_inp},  {".bdf", read_bdf},  {".nas", read_bdf},   {".dat", read_bdf},  {".fem", read_bdf},
-                              {".vtk", read_vtk},  {".vtu", read_vtk},  {".msh", read_gmsh},  {".unv", read_unv}, {".mesh", read_gmsh},
-                              {".stl", read_gmsh}, {".geo", read_gmsh}, {".step", read_gmsh}, {".stp", read_gmsh}, {".brep", read_gmsh},
-                              {".iges", read_gmsh}, {".igs", read_gmsh}};
+constexpr Format formats[] = {{".inp", read_inp},         {".bdf", read_bdf},        {".nas", read_bdf},         {".dat", read_bdf},
+                              {".fem", read_bdf},         {".unv", read_unv},        {".vtk", read_vtk},         {".vtu", read_vtk},
+                              {".msh", read_gmsh},        {".mesh", read_gmsh},      {".stl", read_gmsh},        {".geo", read_gmsh, true},
+                              {".step", read_gmsh, true}, {".stp", read_gmsh, true}, {".brep", read_gmsh, true}, {".iges", read_gmsh, true},
+                              {".igs", read_gmsh, true}};
+
+/// A name given to --define that the script never mentions does nothing: it is an error.  Scripts that include others are trusted.
+void check_defines(const std::string& path, const ImportOptions& options) {
+  std::ifstream in(path);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::set<std::string> words;
+  std::string word;
+  for (const char c : text + ' ')
+    if (std::isalnum(static_cast<unsigned char>(c)) || c == '_')
+      word += c;
+    else if (!word.empty())
+      words.insert(word), word.clear();
+  if (words.count("Include")) return;
+  for (const auto& [name, value] : options.define)
+    if (!words.count(name))
+      throw Error("", fmt::format("--define {}: the script has no such name", name),
+                  suggest(name, std::vector<std::string>(words.begin(), words.end())), Exit::usage);
+}
 
 }  // namespace
 
@@ -34,7 +56,12 @@ Imported read_any(const std::string& path, const ImportOptions& options) {
   if (ending == ".inp.gz") ending = ".inp";
   std::string known;
   for (const auto& f : formats) {
-    if (ending == f.ending) return f.read(path, options);
+    if (ending == f.ending) {
+      if (options.size && !f.geometry) throw Error("", fmt::format("--size is for a geometry, {} is a mesh", path), "", Exit::usage);
+      if (!options.define.empty() && ending != ".geo") throw Error("", "--define is for .geo scripts", "", Exit::usage);
+      if (!options.define.empty()) check_defines(path, options);
+      return f.read(path, options);
+    }
     known += std::string(known.empty() ? "" : " ") + f.ending;
   }
   throw Error(path, fmt::format("no reader for \"{}\" files", ending), "there is one for " + known + " .inp.gz");

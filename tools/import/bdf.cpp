@@ -1,5 +1,6 @@
 // Nastran bulk data: GRID, solids, rods and their properties and materials, in small, large and free fields.
-// (gmsh loses names and the mid-side nodes of long fields, so the reader is ours.)  Shell elements are read where they lie on solids, as facet sets.
+// (gmsh loses names and the mid-side nodes of long fields, so the reader is ours.)  Shell elements are read where they lie on solids, as
+// facet sets.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,20 +25,25 @@ struct SolidKind {
   const char* name;
   size_t corners, nodes;
   Shape linear, quadratic;
-  std::vector<int> p;   // quadratic: ours[i] = Nastran's[p[i]]
+  std::vector<int> p;  // quadratic: ours[i] = Nastran's[p[i]]
 };
 const std::vector<SolidKind> solids = {
     {"CTETRA", 4, 10, Shape::tet4, Shape::tet10, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}},
     {"CPENTA", 6, 15, Shape::wedge6, Shape::wedge15, {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11}},
     {"CHEXA", 8, 20, Shape::hex8, Shape::hex20, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15}},
 };
-const std::map<std::string, std::string> refused = {
-    {"CPYRAM", "pyramids are not read"},   {"CBEAM", "beams are not read"},       {"CBAR", "beams are not read"},
-    {"CTRAX3", "axisymmetric elements are not three-dimensional"},                {"CTRAX6", "axisymmetric elements are not three-dimensional"},
-    {"CELAS1", "springs are not read; say [[spring]] in the scene"},              {"CELAS2", "springs are not read; say [[spring]] in the scene"},
-    {"CBUSH", "bushings are not read; say [[spring]] in the scene"},              {"INCLUDE", "INCLUDE is not read; paste the file"},
-    {"CONM2", "point masses are not read; say [[point_mass]] in the scene"},      {"RBE2", "rigid elements are not read; a set serves as a patch in the scene"},
-    {"RBE3", "rigid elements are not read; a set serves as a patch in the scene"}};
+const std::map<std::string, std::string> refused = {{"CPYRAM", "pyramids are not read"},
+                                                    {"CBEAM", "beams are not read"},
+                                                    {"CBAR", "beams are not read"},
+                                                    {"CTRAX3", "axisymmetric elements are not three-dimensional"},
+                                                    {"CTRAX6", "axisymmetric elements are not three-dimensional"},
+                                                    {"CELAS1", "springs are not read; say [[spring]] in the scene"},
+                                                    {"CELAS2", "springs are not read; say [[spring]] in the scene"},
+                                                    {"CBUSH", "bushings are not read; say [[spring]] in the scene"},
+                                                    {"INCLUDE", "INCLUDE is not read; paste the file"},
+                                                    {"CONM2", "point masses are not read; say [[point_mass]] in the scene"},
+                                                    {"RBE2", "rigid elements are not read; a set serves as a patch in the scene"},
+                                                    {"RBE3", "rigid elements are not read; a set serves as a patch in the scene"}};
 
 class BdfReader {
  public:
@@ -70,12 +76,14 @@ class BdfReader {
     return true;
   }
 
-  void comment(std::string_view l) {   // names that pre-processors leave: $HMNAME PROP 3"hull"
+  void comment(std::string_view l) {  // names that pre-processors leave: $HMNAME PROP 3"hull"
     const std::string s(l);
     int id;
     char name[200];
-    if (std::sscanf(s.c_str(), "$HMNAME PROP %d\"%199[^\"]", &id, name) == 2 || std::sscanf(s.c_str(), "$ANSA_NAME_COMMENT;%d;PSOLID;%199[^;]", &id, name) == 2 ||
-        std::sscanf(s.c_str(), "$ Femap with NX Nastran Property %d : %199[^\n]", &id, name) == 2 || std::sscanf(s.c_str(), "$ Femap Property %d : %199[^\n]", &id, name) == 2)
+    if (std::sscanf(s.c_str(), "$HMNAME PROP %d\"%199[^\"]", &id, name) == 2 ||
+        std::sscanf(s.c_str(), "$ANSA_NAME_COMMENT;%d;PSOLID;%199[^;]", &id, name) == 2 ||
+        std::sscanf(s.c_str(), "$ Femap with NX Nastran Property %d : %199[^\n]", &id, name) == 2 ||
+        std::sscanf(s.c_str(), "$ Femap Property %d : %199[^\n]", &id, name) == 2)
       names_[id] = clean_name(name);
   }
 
@@ -92,8 +100,10 @@ class BdfReader {
       for (size_t i = 0; i <= l.size(); ++i)
         if (i == l.size() || l[i] == ',') {
           const auto f = strip(l.substr(from, i - from));
-          if (n == 0) first = f;
-          else if (n < 9) fields.push_back({f, static_cast<int>(from) + 1});
+          if (n == 0)
+            first = f;
+          else if (n < 9)
+            fields.push_back({f, static_cast<int>(from) + 1});
           from = i + 1, ++n;
         }
       while (n++ < 9) fields.push_back({"", 1});
@@ -111,14 +121,16 @@ class BdfReader {
   bool next(Entry& e) {
     std::string_view l;
     for (;;) {
-      if (ahead_) l = *ahead_, ahead_.reset();
-      else if (!line(l)) return false;
+      if (ahead_)
+        l = *ahead_, ahead_.reset();
+      else if (!line(l))
+        return false;
       if (!l.empty() && l.front() == '$') {
         comment(l);
         continue;
       }
       if (l.find_first_not_of(" \t") == std::string_view::npos) continue;
-      if (upper(l.substr(0, 10)) == "BEGINBULK") {   // all before it was case control
+      if (upper(l.substr(0, 10)) == "BEGINBULK") {  // all before it was case control
         in_bulk_ = true;
         continue;
       }
@@ -137,7 +149,8 @@ class BdfReader {
         comment(l);
         continue;
       }
-      const bool more = !l.empty() && (l.front() == '+' || l.front() == '*' || l.front() == ',' || (l.front() == ' ' && l.find_first_not_of(' ') != std::string_view::npos));
+      const bool more = !l.empty() && (l.front() == '+' || l.front() == '*' || l.front() == ',' ||
+                                       (l.front() == ' ' && l.find_first_not_of(' ') != std::string_view::npos));
       if (!more) {
         ahead_ = l;
         break;
@@ -159,11 +172,14 @@ class BdfReader {
 
   void take(const Entry& e) {
     const auto& d = e.data;
-    if (const auto no = refused.find(e.name); no != refused.end()) throw Error(d.place() + ":1", fmt::format("{}: {}", e.name, no->second), "supported: CTETRA, CPENTA, CHEXA, CROD, CONROD");
+    if (const auto no = refused.find(e.name); no != refused.end())
+      throw Error(d.place() + ":1", fmt::format("{}: {}", e.name, no->second), "supported: CTETRA, CPENTA, CHEXA, CROD, CONROD");
     if (e.name == "GRID") {
       const auto id = d.integer(0);
-      if (!d.empty(1) && d.integer(1) != 0) throw Error(d.place(1), fmt::format("GRID {} is in coordinate system {}", id, d.integer(1)), "write the grids in the basic system");
-      if (!row_.try_emplace(id, in_.mesh.n_nodes()).second) throw Error(d.place(0), fmt::format("node {} is given twice", id), "number each node once");
+      if (!d.empty(1) && d.integer(1) != 0)
+        throw Error(d.place(1), fmt::format("GRID {} is in coordinate system {}", id, d.integer(1)), "write the grids in the basic system");
+      if (!row_.try_emplace(id, in_.mesh.n_nodes()).second)
+        throw Error(d.place(0), fmt::format("node {} is given twice", id), "number each node once");
       in_.mesh.X.emplace_back(d.number(2), d.number(3), d.number(4));
       in_.mesh.node_id.push_back(id);
       return;
@@ -171,7 +187,7 @@ class BdfReader {
     for (const auto& k : solids)
       if (e.name == k.name) return solid(e, k);
     if (e.name == "CROD" || e.name == "CONROD") {
-      const bool own = e.name == "CONROD";   // carries its material itself
+      const bool own = e.name == "CONROD";  // carries its material itself
       add({Shape::bar2, d.integer(0), own ? 0 : d.integer(1), {d.integer(own ? 1 : 2), d.integer(own ? 2 : 3)}, d.place(0)});
     } else if (e.name == "CTRIA3" || e.name == "CTRIA6" || e.name == "CQUAD4" || e.name == "CQUAD8") {
       const size_t corners = e.name[1] == 'T' ? 3 : 4;
@@ -183,15 +199,19 @@ class BdfReader {
     else if (e.name == "MAT1") {
       RegionData m;
       if (!d.empty(1)) m.E = d.number(1);
-      if (!d.empty(3)) m.nu = d.number(3);
-      else if (!d.empty(1) && !d.empty(2)) m.nu = d.number(1) / (2 * d.number(2)) - 1;
+      if (!d.empty(3))
+        m.nu = d.number(3);
+      else if (!d.empty(1) && !d.empty(2))
+        m.nu = d.number(1) / (2 * d.number(2)) - 1;
       if (!d.empty(4)) m.density = d.number(4);
       if (m.E <= 0) throw Error(d.place(1), fmt::format("MAT1 {}: Young's modulus {:g} is not positive", d.integer(0), m.E));
-      if (m.nu <= -1 || m.nu >= 0.5) throw Error(d.place(3), fmt::format("MAT1 {}: Poisson's ratio {:g} is not in (-1, 0.5)", d.integer(0), m.nu));
+      if (m.nu <= -1 || m.nu >= 0.5)
+        throw Error(d.place(3), fmt::format("MAT1 {}: Poisson's ratio {:g} is not in (-1, 0.5)", d.integer(0), m.nu));
       if (m.density <= 0) throw Error(d.place(4), fmt::format("MAT1 {}: density {:g} is not positive", d.integer(0), m.density));
       materials_[d.integer(0)] = m;
     } else if (e.name == "SPC1") {
       auto& set = sets_[fmt::format("SPC_{}", d.integer(0))];
+      if (upper(d.text(3)) == "THRU" && d.integer(4) - d.integer(2) > 1'000'000'000) throw Error(d.place(4), "SPC1: no usable range");
       if (upper(d.text(3)) == "THRU")
         for (auto i = d.integer(2); i <= d.integer(4); ++i) set.push_back(i);
       else
@@ -217,7 +237,8 @@ class BdfReader {
       if (n.back()) ++filled;
     }
     const bool corners = std::all_of(n.begin(), n.begin() + static_cast<std::ptrdiff_t>(k.corners), [](std::int64_t i) { return i != 0; });
-    if (!corners || given > k.nodes) throw Error(d.place(), fmt::format("{} {} has {} nodes, {} or {} are due", k.name, r.id, given, k.corners, k.nodes));
+    if (!corners || given > k.nodes)
+      throw Error(d.place(), fmt::format("{} {} has {} nodes, {} or {} are due", k.name, r.id, given, k.corners, k.nodes));
     if (filled == k.corners)
       r.nodes.assign(n.begin(), n.begin() + static_cast<std::ptrdiff_t>(k.corners));
     else if (filled == k.nodes) {
@@ -271,7 +292,9 @@ class BdfReader {
     const auto found = match_facets(m, faces);
     std::map<std::int64_t, std::vector<Facet>> facets;
     for (size_t i = 0; i < shells_.size(); ++i) {
-      if (found[i].cell < 0) throw Error(shells_[i].place, fmt::format("shell element {} lies on no solid: shells are not read", shells_[i].id), "supported: CTETRA, CPENTA, CHEXA, CROD, CONROD");
+      if (found[i].cell < 0)
+        throw Error(shells_[i].place, fmt::format("shell element {} lies on no solid: shells are not read", shells_[i].id),
+                    "supported: CTETRA, CPENTA, CHEXA, CROD, CONROD");
       facets[shells_[i].pid].push_back(found[i]);
     }
     for (auto& [pid, f] : facets) names.facets(property_name(pid), std::move(f));

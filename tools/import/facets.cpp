@@ -19,7 +19,7 @@ struct KeyHash {
 };
 
 Key key_of(const std::int64_t* nodes, size_t n) {
-  Key k{-1, -1, -1, -1};   // a triangle keeps one -1
+  Key k{-1, -1, -1, -1};  // a triangle keeps one -1
   for (size_t i = 0; i < n && i < k.size(); ++i) k[i] = nodes[i];
   std::sort(k.begin(), k.end());
   return k;
@@ -73,7 +73,8 @@ std::vector<Facet> free_facets(const Mesh& mesh, const std::vector<std::int64_t>
   std::vector<Facet> free;
   for (const auto c : cells)
     for (size_t f = 0; f < info(mesh.shape[c]).facets.size(); ++f)
-      if (const size_t n = corners(mesh, c, f, nodes); n >= 3 && count[key_of(nodes, n)] == 1) free.push_back({c, static_cast<std::int64_t>(f)});
+      if (const size_t n = corners(mesh, c, f, nodes); n >= 3 && count[key_of(nodes, n)] == 1)
+        free.push_back({c, static_cast<std::int64_t>(f)});
   return free;
 }
 

@@ -57,7 +57,8 @@ std::int64_t merge_nodes(Mesh& m, double distance) {
     }
   };
   const auto box = [&](const Vec3& x) {
-    return Box{std::llround(std::floor(x.x() / distance)), std::llround(std::floor(x.y() / distance)), std::llround(std::floor(x.z() / distance))};
+    return Box{std::llround(std::floor(x.x() / distance)), std::llround(std::floor(x.y() / distance)),
+               std::llround(std::floor(x.z() / distance))};
   };
   std::unordered_map<Box, std::vector<std::int64_t>, Hash> boxes;
   for (std::int64_t a = 0; a < n; ++a) {
@@ -75,7 +76,7 @@ std::int64_t merge_nodes(Mesh& m, double distance) {
   }
   std::vector<std::int64_t> row(n);
   std::int64_t kept = 0;
-  for (std::int64_t a = 0; a < n; ++a) row[a] = find(a) == a ? kept++ : row[find(a)];   // a root comes before its members
+  for (std::int64_t a = 0; a < n; ++a) row[a] = find(a) == a ? kept++ : row[find(a)];  // a root comes before its members
   if (kept < n) renumber(m, row, kept);
   return n - kept;
 }
@@ -120,8 +121,11 @@ void check_cells(const Mesh& m, const std::string& file) {
     throw Error(file, fmt::format("{} of {} cells have no volume or name a node twice: {}", flat.size(), m.n_cells(), first_of(flat)),
                 "take them out of the mesh; after --merge-nodes, try a smaller distance");
   if (!inverted.empty())
-    throw Error(file, fmt::format("{} of {} cells are inverted (scaled Jacobian <= 0 at a corner): {}", inverted.size(), m.n_cells(), first_of(inverted)),
-                static_cast<std::int64_t>(inverted.size()) == m.n_cells() ? "all of them: is the numbering of their nodes mirrored?" : "repair or remesh them");
+    throw Error(
+        file,
+        fmt::format("{} of {} cells are inverted (scaled Jacobian <= 0 at a corner): {}", inverted.size(), m.n_cells(), first_of(inverted)),
+        static_cast<std::int64_t>(inverted.size()) == m.n_cells() ? "all of them: is the numbering of their nodes mirrored?"
+                                                                  : "repair or remesh them");
 }
 
 void finish(Imported& in, const std::string& file, const ImportOptions& options) {
@@ -143,7 +147,8 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
     data.density *= to_si("kg/m^3", options.units);
     data.E *= to_si("Pa", options.units);
     if (data.density < 0.05 || data.density > 5e4)
-      in.notes.push_back(fmt::format("warning: region \"{}\" has a density of {:g} kg/m^3: is the file in mm-t-s? say so with --units", m.region_name[r], data.density));
+      in.notes.push_back(fmt::format("warning: region \"{}\" has a density of {:g} kg/m^3: is the file in mm-t-s? say so with --units",
+                                     m.region_name[r], data.density));
   }
 }
 

@@ -1,15 +1,10 @@
 // Meshes and geometries through the gmsh library: msh, mesh, stl; geo, step, brep, iges are meshed.
-// Physical groups: volumes become regions, surfaces facet sets, curves and points node sets.  Without volume groups every volume is a region.
-// A curve group whose lines are no edges of solid cells becomes a region of bars.
+// Physical groups: volumes become regions, surfaces facet sets, curves and points node sets.  Without volume groups every volume is a
+// region. A curve group whose lines are no edges of solid cells becomes a region of bars.
 #include <fmt/format.h>
 #include <gmsh.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <csignal>
-#include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <new>
 #include <stdexcept>
@@ -17,91 +12,17 @@
 #include <unordered_set>
 
 #include "base/error.hpp"
-#include "import/imported.hpp"
+#include "import/gmsh_session.hpp"
 
 namespace hilo {
 namespace {
-
-/// A damaged file can crash gmsh or OpenCASCADE.  While this lives a crash says so in one line and ends with "bad input".
-class CrashGuard {
- public:
-  explicit CrashGuard(const std::string& path) {
-    line_ = fmt::format("{}: {}: gmsh crashed on it (is the file damaged?)\n", tool_name(), path);
-    struct sigaction act {};
-    act.sa_handler = [](int) {
-      if (write(2, line_.data(), line_.size()) < 0) _exit(static_cast<int>(Exit::fault));
-      _exit(static_cast<int>(Exit::input));
-    };
-    for (size_t i = 0; i < signals_.size(); ++i) sigaction(signals_[i], &act, &before_[i]);
-    // a second thrown error ends a program with a message of its own; this one goes through the handler alone
-    terminate_ = std::set_terminate([] { std::raise(SIGABRT); });
-  }
-  ~CrashGuard() {
-    std::set_terminate(terminate_);
-    for (size_t i = 0; i < signals_.size(); ++i) sigaction(signals_[i], &before_[i], nullptr);
-  }
-  CrashGuard(const CrashGuard&) = delete;
-  CrashGuard& operator=(const CrashGuard&) = delete;
-
- private:
-  static constexpr std::array<int, 4> signals_{SIGSEGV, SIGABRT, SIGBUS, SIGFPE};
-  static inline std::string line_;
-  std::array<struct sigaction, 4> before_{};
-  std::terminate_handler terminate_;
-};
-
-/// gmsh as long as this lives.  OpenCASCADE writes to stdout, which is data: it goes to stderr's side and is dropped.
-class Session {
- public:
-  explicit Session(const ImportOptions& o) {
-    std::fflush(stdout);
-    stdout_ = dup(1);
-    if (FILE* null = std::fopen("/dev/null", "w")) {
-      dup2(fileno(null), 1);
-      std::fclose(null);
-    }
-    std::vector<std::string> words{"hilo-import"};
-    for (const auto& [name, value] : o.define) words.insert(words.end(), {"-setnumber", name, fmt::format("{}", value)});
-    std::vector<char*> argv;
-    for (auto& w : words) argv.push_back(w.data());
-    argv.push_back(nullptr);
-    gmsh::initialize(static_cast<int>(words.size()), argv.data(), false);
-    gmsh::option::setNumber("General.Terminal", 0);
-    gmsh::option::setNumber("Mesh.SecondOrderIncomplete", 1);
-    gmsh::logger::start();
-  }
-  ~Session() {
-    try {
-      gmsh::finalize();
-    } catch (...) {
-    }
-    std::fflush(stdout);
-    dup2(stdout_, 1);
-    close(stdout_);
-  }
-  Session(const Session&) = delete;
-  Session& operator=(const Session&) = delete;
-
-  /// The last line that gmsh marked as an error.
-  static std::string last_error() {
-    std::vector<std::string> log;
-    std::string last;
-    gmsh::logger::get(log);
-    for (const auto& l : log)
-      if (l.rfind("Error: ", 0) == 0) last = l.substr(7);
-    return last;
-  }
-
- private:
-  int stdout_;
-};
 
 /// A gmsh element type, ours and the order of its nodes: ours[i] = gmsh[p[i]].
 struct Kind {
   int type;
   Shape shape;
   std::vector<int> p;
-  const char* reduced = nullptr;   // what it was before nodes were left out
+  const char* reduced = nullptr;  // what it was before nodes were left out
 };
 const Kind* kind_of(int type) {
   static const std::vector<int> hex20{0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15};
@@ -127,7 +48,8 @@ const Kind* kind_of(int type) {
 size_t face_corners(int type) { return type == 2 || type == 9 ? 3 : type == 3 || type == 16 || type == 10 ? 4 : 0; }
 
 bool is_geometry(const std::string& ext) {
-  return ext == ".geo" || ext == ".step" || ext == ".stp" || ext == ".brep" || ext == ".iges" || ext == ".igs" || ext == ".xao" || ext == ".geo_unrolled";
+  return ext == ".geo" || ext == ".step" || ext == ".stp" || ext == ".brep" || ext == ".iges" || ext == ".igs" || ext == ".xao" ||
+         ext == ".geo_unrolled";
 }
 
 class GmshReader {
@@ -160,14 +82,14 @@ class GmshReader {
     std::string ext = std::filesystem::path(path_).extension().string();
     std::transform(ext.begin(), ext.end(), ext.begin(), [](unsigned char c) { return std::tolower(c); });
     gmsh::open(path_);
-    if (const auto e = Session::last_error(); !e.empty()) throw Error(path_, e);
+    if (const auto e = GmshSession::last_error(); !e.empty()) throw Error(path_, e);
     if (!is_geometry(ext)) return;
     gmsh::vectorpair volumes, bars;
     gmsh::model::getEntities(volumes, 3);
     gmsh::model::getPhysicalGroups(bars, 1);
     if (volumes.empty() && bars.empty()) throw Error(path_, "no volume to mesh", "the geometry holds points, curves or surfaces only");
     if (o_.size) {
-      if (ext != ".geo") {   // a script may say its own sizes, which the option only bounds
+      if (ext != ".geo") {  // a script may say its own sizes, which the option only bounds
         gmsh::vectorpair points;
         gmsh::model::getEntities(points, 0);
         gmsh::model::mesh::setSize(points, *o_.size);
@@ -178,7 +100,7 @@ class GmshReader {
       if (low > *o_.size) gmsh::option::setNumber("Mesh.MeshSizeMin", *o_.size);
     }
     gmsh::model::mesh::generate(volumes.empty() ? 1 : 3);
-    if (const auto e = Session::last_error(); !e.empty()) throw Error(path_, "gmsh cannot mesh it: " + e, "try another --size");
+    if (const auto e = GmshSession::last_error(); !e.empty()) throw Error(path_, "gmsh cannot mesh it: " + e, "try another --size");
     if (o_.order == 2 && !volumes.empty()) gmsh::model::mesh::setOrder(2);
     for (const auto& [dim, tag] : volumes) {
       std::vector<int> types;
@@ -194,10 +116,11 @@ class GmshReader {
     gmsh::model::mesh::getNodes(tags, x, u);
     Mesh& m = in_.mesh;
     const auto most = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
-    if (most > 50 * tags.size() + 1000000) throw Error(path_, fmt::format("node numbers up to {} for {} nodes", most, tags.size()), "renumber the mesh");
+    if (most > 50 * tags.size() + 1000000)
+      throw Error(path_, fmt::format("node numbers up to {} for {} nodes", most, tags.size()), "renumber the mesh");
     row_.assign(most + 1, -1);
     for (size_t i = 0; i < tags.size(); ++i) {
-      if (row_[tags[i]] >= 0) continue;   // a node on two entities is listed once each
+      if (row_[tags[i]] >= 0) continue;  // a node on two entities is listed once each
       row_[tags[i]] = m.n_nodes();
       m.X.emplace_back(x[3 * i], x[3 * i + 1], x[3 * i + 2]);
       m.node_id.push_back(static_cast<std::int64_t>(tags[i]));
@@ -205,7 +128,8 @@ class GmshReader {
   }
 
   std::int64_t row(std::size_t tag, std::size_t element) const {
-    if (tag >= row_.size() || row_[tag] < 0) throw Error(path_, fmt::format("element {} names node {}, which does not exist", element, tag));
+    if (tag >= row_.size() || row_[tag] < 0)
+      throw Error(path_, fmt::format("element {} names node {}, which does not exist", element, tag));
     return row_[tag];
   }
 
@@ -221,15 +145,19 @@ class GmshReader {
       std::vector<double> local;
       gmsh::model::mesh::getElementProperties(types[t], name, d, order, count, local, primary);
       const Kind* k = kind_of(types[t]);
-      if (!k) throw Error(path_, fmt::format("{} cells of type \"{}\" in {} {} are not read", tags[t].size(), name, dim == 3 ? "volume" : "curve", entity),
-                          "supported: tetrahedra, hexahedra and prisms of order 1 and 2, lines");
+      if (!k)
+        throw Error(
+            path_,
+            fmt::format("{} cells of type \"{}\" in {} {} are not read", tags[t].size(), name, dim == 3 ? "volume" : "curve", entity),
+            "supported: tetrahedra, hexahedra and prisms of order 1 and 2, lines");
       if (k->reduced) reduced_.insert(k->reduced);
       for (size_t e = 0; e < tags[t].size(); ++e) {
         n.clear();
         for (const int i : k->p) n.push_back(row(nodes[t][e * static_cast<size_t>(count) + static_cast<size_t>(i)], tags[t][e]));
         cells.push_back(in_.mesh.n_cells());
         in_.mesh.add_cell(k->shape, n, -1, static_cast<std::int64_t>(tags[t][e]));
-        if (!ids_.insert(tags[t][e]).second) throw Error(path_, fmt::format("element {} is given twice", tags[t][e]), "number each element once");
+        if (!ids_.insert(tags[t][e]).second)
+          throw Error(path_, fmt::format("element {} is given twice", tags[t][e]), "number each element once");
       }
     }
   }
@@ -257,7 +185,7 @@ class GmshReader {
         if (const auto slash = name.rfind('/'); slash != std::string::npos) name = name.substr(slash + 1);
         if (name.empty()) name = fmt::format("volume_{}", tag);
         for (const auto& r : regions_)
-          if (r.name == name) {   // two volumes under one label
+          if (r.name == name) {  // two volumes under one label
             name = fmt::format("{}_{}", name, tag);
             break;
           }
@@ -353,7 +281,9 @@ class GmshReader {
         in_.notes.push_back(fmt::format("surface group \"{}\" lies on no cell: a node set", name));
         continue;
       }
-      if (missing) in_.notes.push_back(fmt::format("surface group \"{}\": {} of its {} faces lie on no cell: left out", name, missing, missing + facets.size()));
+      if (missing)
+        in_.notes.push_back(
+            fmt::format("surface group \"{}\": {} of its {} faces lie on no cell: left out", name, missing, missing + facets.size()));
       names.facets(name, std::move(facets));
     }
   }
@@ -371,7 +301,7 @@ class GmshReader {
   std::string path_;
   const ImportOptions& o_;
   Imported in_;
-  std::vector<std::int64_t> row_;   // node number of gmsh -> row of X, or -1
+  std::vector<std::int64_t> row_;  // node number of gmsh -> row of X, or -1
   std::unordered_set<std::size_t> ids_;
   std::unordered_map<int, std::vector<std::int64_t>> of_volume_;
   std::vector<CellGroup> regions_;
@@ -383,7 +313,7 @@ class GmshReader {
 
 Imported read_gmsh(const std::string& path, const ImportOptions& options) {
   const CrashGuard guard(path);
-  const Session session(options);
+  const GmshSession session(options);
   try {
     return GmshReader(path, options).read();
   } catch (const std::string& e) {
@@ -393,7 +323,7 @@ Imported read_gmsh(const std::string& path, const ImportOptions& options) {
   } catch (const std::length_error&) {
     throw Error(path, "its counts are damaged");
   } catch (int) {
-    throw Error(path, "gmsh: " + Session::last_error());
+    throw Error(path, "gmsh: " + GmshSession::last_error());
   }
 }
 

@@ -14,29 +14,29 @@ namespace hilo {
 
 /// The options of hilo-import, as the readers see them.
 struct ImportOptions {
-  std::string units = "m-kg-s";                            // system of the numbers in the deck
-  double scale = 1;                                        // factor on the geometry alone
-  int order = 1;                                           // 2: quadratic cells
-  std::optional<double> merge;                             // distance below which nodes are one        [unit of the file]
-  std::optional<double> size;                              // largest edge when a geometry is meshed    [unit of the file]
-  std::vector<std::string> regions;                        // element sets that become regions, before what the deck says
-  std::string rest;                                        // name of the region of cells in no region ("" refuses them)
-  std::vector<std::pair<std::string, double>> define;      // parameters of a .geo script
+  std::string units = "m-kg-s";                        // system of the numbers in the deck
+  double scale = 1;                                    // factor on the geometry alone
+  int order = 1;                                       // 2: quadratic cells
+  std::optional<double> merge;                         // distance below which nodes are one        [unit of the file]
+  std::optional<double> size;                          // largest edge when a geometry is meshed    [unit of the file]
+  std::vector<std::string> regions;                    // element sets that become regions, before what the deck says
+  std::string rest;                                    // name of the region of cells in no region ("" refuses them)
+  std::vector<std::pair<std::string, double>> define;  // parameters of a .geo script
 };
 
 /// A keyword or item of the deck that has no place in the mesh or the scene lines.
 struct NotRead {
-  std::string what;       // "*TIE"
-  std::string place;      // file:line of the first
+  std::string what;   // "*TIE"
+  std::string place;  // file:line of the first
   std::int64_t count = 0;
-  bool output = false;    // a request for output: nothing is lost
+  bool output = false;  // a request for output: nothing is lost
 };
 
 struct Imported {
-  Mesh mesh;                         // numbers of the deck; region -1 until assign_regions
-  std::vector<std::string> notes;    // said on stderr, one line each
+  Mesh mesh;                       // numbers of the deck; region -1 until assign_regions
+  std::vector<std::string> notes;  // said on stderr, one line each
   std::vector<NotRead> not_read;
-  std::set<std::string> as_listed;   // node sets that order 2 must not complete: the deck's force acts on each of their nodes
+  std::set<std::string> as_listed;  // node sets that order 2 must not complete: the deck's force acts on each of their nodes
 
   void skip(const std::string& what, const std::string& place, std::int64_t count = 1, bool output = false);
 };
@@ -54,7 +54,8 @@ void assign_regions(Imported& in, const std::string& file, const std::vector<Cel
                     const std::vector<CellGroup>& groups, const ImportOptions& options);
 
 /// Adds sets under names that no region and no other set has: a name already taken gets _facets, _nodes or _cells behind it, and is noted.
-/// Members are sorted, once each.  An empty set is left out and noted; a set equal to the region of its name is left out (the region serves).
+/// Members are sorted, once each.  An empty set is left out and noted; a set equal to the region of its name is left out (the region
+/// serves).
 class SetNames {
  public:
   explicit SetNames(Imported& in) : in_(in) {}
@@ -90,7 +91,8 @@ Imported read_gmsh(const std::string& path, const ImportOptions& options);
 /// The reader for the file's ending; Error when there is none or the file cannot be opened.
 Imported read_any(const std::string& path, const ImportOptions& options);
 
-/// What follows every reader: nodes merged, unused nodes dropped, order raised, lengths brought to SI; then the checks (inverted, degenerate).
+/// What follows every reader: nodes merged, unused nodes dropped, order raised, lengths brought to SI; then the checks (inverted,
+/// degenerate).
 void finish(Imported& in, const std::string& file, const ImportOptions& options);
 /// tet4, wedge6, hex8 to tet10, wedge15, hex20 with straight edges.
 void raise_order(Imported& in);

@@ -11,19 +11,41 @@
 namespace hilo {
 namespace {
 
-const std::set<std::string> outputs = {"NODEPRINT", "NODEFILE",      "NODEOUTPUT",    "ELPRINT",     "ELFILE",        "ELEMENTOUTPUT",
-                                       "OUTPUT",    "CONTACTFILE",   "CONTACTPRINT",  "FACEPRINT",   "CONTACTOUTPUT", "SECTIONPRINT",
-                                       "PREPRINT",  "ENERGYPRINT",   "MONITOR",       "TIMEPOINTS",  "FILEFORMAT",    "ENERGYOUTPUT",
-                                       "RESTART",   "ENERGYFILE",    "SECTIONFILE",   "MODALFILE",   "MODALPRINT",    "PRINT",
+const std::set<std::string> outputs = {"NODEPRINT",  "NODEFILE",         "NODEOUTPUT",   "ELPRINT",    "ELFILE",        "ELEMENTOUTPUT",
+                                       "OUTPUT",     "CONTACTFILE",      "CONTACTPRINT", "FACEPRINT",  "CONTACTOUTPUT", "SECTIONPRINT",
+                                       "PREPRINT",   "ENERGYPRINT",      "MONITOR",      "TIMEPOINTS", "FILEFORMAT",    "ENERGYOUTPUT",
+                                       "RESTART",    "ENERGYFILE",       "SECTIONFILE",  "MODALFILE",  "MODALPRINT",    "PRINT",
                                        "FILEOUTPUT", "INTEGRATEDOUTPUT", "RADIATIONFILE"};
-const std::set<std::string> procedures = {
-    "STATIC",       "DYNAMIC", "FREQUENCY", "COMPLEXFREQUENCY", "BUCKLE", "HEATTRANSFER", "MODALDYNAMIC", "STEADYSTATEDYNAMICS", "VISCO",
-    "COUPLEDTEMPERATURE-DISPLACEMENT", "UNCOUPLEDTEMPERATURE-DISPLACEMENT", "CFD", "ELECTROMAGNETICS", "SENSITIVITY", "GREEN", "NOANALYSIS",
-    "SUBSTRUCTUREGENERATE", "GEOSTATIC", "RANDOMRESPONSE", "CRACKPROPAGATION", "ROBUSTDESIGN", "FEASIBLEDIRECTION"};
-const std::map<std::string, std::string> refused = {
-    {"NGEN", "write the nodes out"},      {"NFILL", "write the nodes out"},       {"NCOPY", "write the nodes out"},
-    {"NMAP", "write the nodes out"},      {"ELGEN", "write the elements out"},    {"ELCOPY", "write the elements out"},
-    {"SYSTEM", "write the nodes in the axes of the model"}, {"PARAMETER", "write the numbers out"}};
+const std::set<std::string> procedures = {"STATIC",
+                                          "DYNAMIC",
+                                          "FREQUENCY",
+                                          "COMPLEXFREQUENCY",
+                                          "BUCKLE",
+                                          "HEATTRANSFER",
+                                          "MODALDYNAMIC",
+                                          "STEADYSTATEDYNAMICS",
+                                          "VISCO",
+                                          "COUPLEDTEMPERATURE-DISPLACEMENT",
+                                          "UNCOUPLEDTEMPERATURE-DISPLACEMENT",
+                                          "CFD",
+                                          "ELECTROMAGNETICS",
+                                          "SENSITIVITY",
+                                          "GREEN",
+                                          "NOANALYSIS",
+                                          "SUBSTRUCTUREGENERATE",
+                                          "GEOSTATIC",
+                                          "RANDOMRESPONSE",
+                                          "CRACKPROPAGATION",
+                                          "ROBUSTDESIGN",
+                                          "FEASIBLEDIRECTION"};
+const std::map<std::string, std::string> refused = {{"NGEN", "write the nodes out"},
+                                                    {"NFILL", "write the nodes out"},
+                                                    {"NCOPY", "write the nodes out"},
+                                                    {"NMAP", "write the nodes out"},
+                                                    {"ELGEN", "write the elements out"},
+                                                    {"ELCOPY", "write the elements out"},
+                                                    {"SYSTEM", "write the nodes in the axes of the model"},
+                                                    {"PARAMETER", "write the numbers out"}};
 
 /// Abaqus parts: one of them is read as if flat, more would need their numbers told apart.
 class Parts {
@@ -44,16 +66,19 @@ class Parts {
 
  private:
   [[noreturn]] static void refuse(const Card& c, const std::string& what) {
-    throw Error(c.place() + ":1", what + " is not read", "write a flat deck: in Abaqus/CAE \"Do not use parts and assemblies in input files\"");
+    throw Error(c.place() + ":1", what + " is not read",
+                "write a flat deck: in Abaqus/CAE \"Do not use parts and assemblies in input files\"");
   }
   int parts_ = 0, instances_ = 0;
 };
 
 void check_names(const InpDeck& d) {
   for (const auto& s : d.sections) {
-    if (!d.elset.count(s.elset)) throw Error(s.place, fmt::format("*SOLID SECTION: no element set \"{}\"", s.elset_name), suggest_name(s.elset, d.elset));
+    if (!d.elset.count(s.elset))
+      throw Error(s.place, fmt::format("*SOLID SECTION: no element set \"{}\"", s.elset_name), suggest_name(s.elset, d.elset));
     if (!d.materials.count(s.material))
-      throw Error(s.material_place, fmt::format("*SOLID SECTION: no material \"{}\"", s.material_name), suggest_name(s.material, d.materials));
+      throw Error(s.material_place, fmt::format("*SOLID SECTION: no material \"{}\"", s.material_name),
+                  suggest_name(s.material, d.materials));
   }
 }
 
@@ -66,7 +91,8 @@ void resolve_cells(InpDeck& d, Imported& in) {
     for (auto i = d.offset[c]; i < d.offset[c + 1]; ++i) {
       const auto it = d.node.find(d.cell_nodes[i]);
       if (it == d.node.end())
-        throw Error(fmt::format("{}:{}", *d.cell_file[c], d.cell_line[c]), fmt::format("element {} names node {}, which does not exist", d.cell_id[c], d.cell_nodes[i]));
+        throw Error(fmt::format("{}:{}", *d.cell_file[c], d.cell_line[c]),
+                    fmt::format("element {} names node {}, which does not exist", d.cell_id[c], d.cell_nodes[i]));
       m.nodes[i] = it->second;
       used[it->second] = 1;
     }
@@ -83,7 +109,8 @@ void resolve_cells(InpDeck& d, Imported& in) {
     }
   for (auto& a : m.nodes) a = row[a];
   if (!d.unused.empty())
-    in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped, the first is {}", d.unused.size(), *std::min_element(d.unused.begin(), d.unused.end())));
+    in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped, the first is {}", d.unused.size(),
+                                   *std::min_element(d.unused.begin(), d.unused.end())));
   m.shape = d.shape;
   m.cell_id = d.cell_id;
   m.offset = d.offset;
@@ -91,8 +118,8 @@ void resolve_cells(InpDeck& d, Imported& in) {
 }
 
 /// Members of a set that exist; the others are counted and said.
-std::vector<std::int64_t> rows(const InpSet& s, const std::unordered_map<std::int64_t, std::int64_t>& of, const std::unordered_set<std::int64_t>* unused,
-                               const char* what, Imported& in) {
+std::vector<std::int64_t> rows(const InpSet& s, const std::unordered_map<std::int64_t, std::int64_t>& of,
+                               const std::unordered_set<std::int64_t>* unused, const char* what, Imported& in) {
   std::vector<std::int64_t> r;
   r.reserve(s.members.size());
   std::int64_t missing = 0;
@@ -115,8 +142,10 @@ void region_materials(const InpDeck& d, Imported& in, const std::string& file) {
   for (std::int64_t c = 0; c < m.n_cells(); ++c) {
     const auto*& r = of_region[m.region[c]];
     if (r && of_cell[c] && r != of_cell[c])
-      throw Error(file, fmt::format("region \"{}\" holds cells of materials \"{}\" and \"{}\"", m.region_name[m.region[c]], r->name, of_cell[c]->name),
-                  "choose --regions within one material");
+      throw Error(
+          file,
+          fmt::format("region \"{}\" holds cells of materials \"{}\" and \"{}\"", m.region_name[m.region[c]], r->name, of_cell[c]->name),
+          "choose --regions within one material");
     if (of_cell[c]) r = of_cell[c];
   }
   for (size_t r = 0; r < of_region.size(); ++r)
@@ -134,7 +163,8 @@ void parse_inp(const std::string& path, InpDeck& d, Imported& in) {
   bool any = false;
   while (lines.next_card(card)) {
     any = true;
-    if (const auto no = refused.find(card.key); no != refused.end()) throw Error(card.place() + ":1", card.name + " is not read", no->second);
+    if (const auto no = refused.find(card.key); no != refused.end())
+      throw Error(card.place() + ":1", card.name + " is not read", no->second);
     if (card.key == "HEADING") {
       if (lines.next_data(l) && d.title.empty())
         for (size_t i = 0; i < l.fields.size(); ++i) d.title += (i ? ", " : "") + std::string(l.text(i));
@@ -202,7 +232,8 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     }
     surface[upper(s.name)] = names.facets(s.name, std::move(facets));
   }
-  for (const auto& key : d.nset_order) node_set[key] = names.nodes(d.nset.at(key).name, rows(d.nset.at(key), d.node, &d.unused, "node", in));
+  for (const auto& key : d.nset_order)
+    node_set[key] = names.nodes(d.nset.at(key).name, rows(d.nset.at(key), d.node, &d.unused, "node", in));
   for (const auto& s : d.surfaces) {
     if (!s.of_nodes) continue;
     std::vector<std::int64_t> nodes;

@@ -51,7 +51,9 @@ std::string upper(std::string_view s) {
 }
 
 std::string DataLine::place() const { return fmt::format("{}:{}", *file, line); }
-std::string DataLine::place(size_t field) const { return fmt::format("{}:{}:{}", *file, line, field < fields.size() ? fields[field].column : 1); }
+std::string DataLine::place(size_t field) const {
+  return fmt::format("{}:{}:{}", *file, line, field < fields.size() ? fields[field].column : 1);
+}
 
 double DataLine::number(size_t field, double fallback) const {
   std::string_view s = text(field);
@@ -68,7 +70,8 @@ double DataLine::number(size_t field, double fallback) const {
     if ((f[i] == '+' || f[i] == '-') && (std::isdigit(static_cast<unsigned char>(f[i - 1])) || f[i - 1] == '.')) f.insert(i++, 1, 'e');
   if (const auto plus = f.find("e+"); plus != std::string::npos) f.erase(plus + 1, 1);
   auto [end2, bad2] = std::from_chars(f.data(), f.data() + f.size(), x);
-  if (bad2 != std::errc() || end2 != f.data() + f.size()) throw Error(place(field), fmt::format("expected a number, found \"{}\"", text(field)));
+  if (bad2 != std::errc() || end2 != f.data() + f.size())
+    throw Error(place(field), fmt::format("expected a number, found \"{}\"", text(field)));
   return x;
 }
 
@@ -87,7 +90,7 @@ std::int64_t DataLine::integer(size_t field) const {
   const auto [end, bad] = std::from_chars(s.data(), s.data() + s.size(), n);
   if (bad != std::errc()) throw Error(place(field), fmt::format("expected a whole number, found \"{}\"", text(field)));
   if (end == s.data() + s.size()) return n;
-  const double x = number(field);   // "3." is read by CalculiX as 3
+  const double x = number(field);  // "3." is read by CalculiX as 3
   if (x != std::floor(x)) throw Error(place(field), fmt::format("expected a whole number, found \"{}\"", text(field)));
   return static_cast<std::int64_t>(x);
 }
@@ -109,7 +112,8 @@ std::string Card::need(const std::string& param) const {
 }
 
 std::string read_gz(const std::string& path, const std::string& place) {
-  if (!std::filesystem::exists(path)) throw Error(place.empty() ? path : place, place.empty() ? "no such file" : fmt::format("no file \"{}\"", path));
+  if (!std::filesystem::exists(path))
+    throw Error(place.empty() ? path : place, place.empty() ? "no such file" : fmt::format("no file \"{}\"", path));
   if (std::filesystem::is_directory(path)) throw Error(place.empty() ? path : place, "a folder, not a file");
   gzFile in = gzopen(path.c_str(), "rb");
   if (!in) throw Error(place.empty() ? path : place, fmt::format("cannot read \"{}\"", path), "", Exit::resources);
@@ -128,7 +132,8 @@ InpLines::InpLines(const std::string& path) : folder_(std::filesystem::path(path
 
 void InpLines::open(const std::string& path, const std::string& place) {
   Source s{std::make_shared<const std::string>(path), std::make_shared<const std::string>(read_gz(path, place)), 0, 0};
-  if (s.text->substr(0, 65536).find('\0') != std::string::npos) throw Error(path, "not a text file", "hilo-import reads .inp decks as text");
+  if (s.text->substr(0, 65536).find('\0') != std::string::npos)
+    throw Error(path, "not a text file", "hilo-import reads .inp decks as text");
   stack_.push_back(s);
   kept_.push_back(s);
 }
@@ -139,9 +144,11 @@ void InpLines::include(std::string_view line, const std::string& place) {
   cut(line, fields);
   std::string name;
   for (const auto& f : fields)
-    if (const auto eq = f.text.find('='); eq != std::string_view::npos && upper(f.text.substr(0, eq)) == "INPUT") name = unquote(strip(f.text.substr(eq + 1)));
+    if (const auto eq = f.text.find('='); eq != std::string_view::npos && upper(f.text.substr(0, eq)) == "INPUT")
+      name = unquote(strip(f.text.substr(eq + 1)));
   if (name.empty()) throw Error(place + ":1", "*INCLUDE lacks INPUT=");
-  if (stack_.size() > 20) throw Error(place, fmt::format("*INCLUDE nested more than 20 deep at \"{}\"", name), "does a file include itself?");
+  if (stack_.size() > 20)
+    throw Error(place, fmt::format("*INCLUDE nested more than 20 deep at \"{}\"", name), "does a file include itself?");
   const fs::path p = fs::path(name).is_absolute() ? fs::path(name) : fs::path(folder_) / name;
   open(p.string(), place);
 }
@@ -207,18 +214,20 @@ bool InpLines::next_card(Card& card) {
         card.key = upper(f.text.substr(1));
         card.name.assign(1, '*');
         for (const char c : strip(f.text.substr(1)))
-          if (!(std::isspace(static_cast<unsigned char>(c)) && card.name.back() == ' ')) card.name += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+          if (!(std::isspace(static_cast<unsigned char>(c)) && card.name.back() == ' '))
+            card.name += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
         continue;
       }
       const auto eq = f.text.find('=');
       const auto key = upper(f.text.substr(0, eq));
       if (key.empty()) continue;
       const auto value = eq == std::string_view::npos ? std::string_view{} : strip(f.text.substr(eq + 1));
-      const int column = eq == std::string_view::npos || value.empty() ? f.column : f.column + static_cast<int>(value.data() - f.text.data());
+      const int column =
+          eq == std::string_view::npos || value.empty() ? f.column : f.column + static_cast<int>(value.data() - f.text.data());
       card.params[key] = {unquote(value), column};
     }
     if (more && !next_line(line)) break;
-    if (more && strip(line).front() == '*') {   // a comma at the end with nothing behind it
+    if (more && strip(line).front() == '*') {  // a comma at the end with nothing behind it
       ahead_ = line;
       break;
     }

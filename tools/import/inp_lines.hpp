@@ -22,8 +22,8 @@ struct DataLine {
   int line = 0;
   std::vector<Field> fields;
 
-  std::string place() const;               // file:line
-  std::string place(size_t field) const;   // file:line:column
+  std::string place() const;              // file:line
+  std::string place(size_t field) const;  // file:line:column
   /// The text of a field, "" behind the last one.
   std::string_view text(size_t field) const { return field < fields.size() ? fields[field].text : std::string_view{}; }
   bool empty(size_t field) const { return text(field).empty(); }
@@ -39,8 +39,8 @@ struct Card {
     std::string value;
     int column;
   };
-  std::string key;                     // "SOLIDSECTION": upper case, blanks removed
-  std::string name;                    // "*SOLID SECTION": as listed to the user
+  std::string key;                      // "SOLIDSECTION": upper case, blanks removed
+  std::string name;                     // "*SOLID SECTION": as listed to the user
   std::map<std::string, Param> params;  // keys as in `key`, values as written, quotes taken off
   const std::string* file = nullptr;
   int line = 0;
@@ -81,7 +81,7 @@ class InpLines {
   /// Goes on with the file that an *INCLUDE line names, seen from the folder of the deck, then returns to this one.
   void include(std::string_view line, const std::string& place);
   std::vector<Source> stack_;
-  std::vector<Source> kept_;   // texts and names that fields and places point into
+  std::vector<Source> kept_;  // texts and names that fields and places point into
   std::string folder_;
   std::optional<std::string_view> ahead_;
   int skipped_ = 0;

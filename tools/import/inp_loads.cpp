@@ -66,7 +66,7 @@ void read_supports(const Card& card, InpLines& lines, InpDeck& d, Imported& in) 
     b.value = l.number(3);
     if (b.first > 3) {
       if (b.first > 6) in.skip(fmt::format("*BOUNDARY on degree of freedom {}", b.first), b.place);
-      continue;   // rotations: the nodes of solids have none
+      continue;  // rotations: the nodes of solids have none
     }
     if (b.first < 1) {
       in.skip(fmt::format("*BOUNDARY on degree of freedom {}", b.first), b.place);
@@ -100,7 +100,7 @@ void read_distributed(const Card& card, InpLines& lines, InpDeck& d, Imported& i
   while (lines.next_data(l)) {
     const std::string label = upper(l.text(1));
     InpDistributed p{"", 0, 0, l.number(2), Vec3::Zero(), card.word("AMPLITUDE"), l.place()};
-    if (l.text(0).empty()) {   // Abaqus: no target means the whole model
+    if (l.text(0).empty()) {  // Abaqus: no target means the whole model
       in.skip(fmt::format("{} without a set", card.name), p.place);
       continue;
     }
@@ -123,7 +123,8 @@ void read_distributed(const Card& card, InpLines& lines, InpDeck& d, Imported& i
 }
 
 void read_amplitude(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
-  if (const auto odd = unknown_param(card, {"NAME", "TIME", "VALUE", "DEFINITION"}); !odd.empty() || (card.has("DEFINITION") && card.word("DEFINITION") != "TABULAR")) {
+  if (const auto odd = unknown_param(card, {"NAME", "TIME", "VALUE", "DEFINITION"});
+      !odd.empty() || (card.has("DEFINITION") && card.word("DEFINITION") != "TABULAR")) {
     in.skip(odd.empty() ? "*AMPLITUDE, DEFINITION=" + card.word("DEFINITION") : odd, card.place());
     return;
   }
@@ -135,7 +136,8 @@ void read_amplitude(const Card& card, InpLines& lines, InpDeck& d, Imported& in)
     for (size_t i = 0; i + 1 < l.fields.size(); i += 2) {
       if (l.empty(i)) continue;
       const double t = l.number(i);
-      if (!a.t.empty() && t < a.t.back()) throw Error(l.place(i), fmt::format("*AMPLITUDE {}: time {:g} is before the one in front of it", name, t));
+      if (!a.t.empty() && t < a.t.back())
+        throw Error(l.place(i), fmt::format("*AMPLITUDE {}: time {:g} is before the one in front of it", name, t));
       a.t.push_back(t);
       a.value.push_back(l.number(i + 1));
     }
@@ -164,7 +166,8 @@ bool parse_material_card(const Card& card, InpLines& lines, InpDeck& d, Imported
     m.data.E = l.number(0);
     m.data.nu = l.number(1);
     if (!(m.data.E > 0)) throw Error(l.place(0), fmt::format("material {}: Young's modulus {:g} is not positive", m.name, m.data.E));
-    if (!(m.data.nu > -1 && m.data.nu < 0.5)) throw Error(l.place(1), fmt::format("material {}: Poisson's ratio {:g} is not in (-1, 0.5)", m.name, m.data.nu));
+    if (!(m.data.nu > -1 && m.data.nu < 0.5))
+      throw Error(l.place(1), fmt::format("material {}: Poisson's ratio {:g} is not in (-1, 0.5)", m.name, m.data.nu));
     while (lines.next_data(l)) in.skip("*ELASTIC at further temperatures", l.place());
   } else if (card.key == "DENSITY") {
     one("mass per volume");
@@ -173,7 +176,8 @@ bool parse_material_card(const Card& card, InpLines& lines, InpDeck& d, Imported
     if (!(m.data.density > 0)) throw Error(l.place(0), fmt::format("material {}: density {:g} is not positive", m.name, m.data.density));
     while (lines.next_data(l)) in.skip("*DENSITY at further temperatures", l.place());
   } else if (card.key == "SOLIDSECTION") {
-    InpSection s{upper(card.need("ELSET")), upper(card.need("MATERIAL")), card.need("ELSET"), card.need("MATERIAL"), card.place("ELSET"), card.place("MATERIAL")};
+    InpSection s{upper(card.need("ELSET")), upper(card.need("MATERIAL")), card.need("ELSET"),
+                 card.need("MATERIAL"),     card.place("ELSET"),          card.place("MATERIAL")};
     if (card.has("ORIENTATION")) in.skip("*SOLID SECTION, ORIENTATION", card.place());
     if (lines.next_data(l)) s.area = l.number(0);
     d.sections.push_back(s);

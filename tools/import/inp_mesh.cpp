@@ -59,7 +59,7 @@ void read_elements(const Card& card, InpLines& lines, InpDeck& d, Imported& in) 
         throw Error(place, fmt::format("element {} has {} of its {} nodes", row.empty() ? 0 : row[0], row.empty() ? 0 : row.size() - 1, n));
       for (size_t i = 0; i < l.fields.size(); ++i) row.push_back(l.integer(i));
     }
-    if (row.size() > n + 1) {   // as CalculiX reads it
+    if (row.size() > n + 1) {  // as CalculiX reads it
       in.skip(fmt::format("*ELEMENT, TYPE={}: numbers behind its {} nodes", upper(card.value("TYPE")), n), l.place());
       row.resize(n + 1);
     }
@@ -76,12 +76,12 @@ void read_elements(const Card& card, InpLines& lines, InpDeck& d, Imported& in) 
 }
 
 /// *NSET and *ELSET; a name among the data stands for the set of that name.
-void read_set(const Card& card, const std::string& key, InpLines& lines, std::map<std::string, InpSet>& sets, std::vector<std::string>& order,
-              InpDeck& d) {
+void read_set(const Card& card, const std::string& key, InpLines& lines, std::map<std::string, InpSet>& sets,
+              std::vector<std::string>& order, InpDeck& d) {
   const std::string name = card.need(key);
   set_named(name, sets, order);
   std::vector<std::int64_t> add;
-  if (key == "NSET" && card.has("ELSET")) {   // the nodes of an element set
+  if (key == "NSET" && card.has("ELSET")) {  // the nodes of an element set
     const auto it = d.elset.find(card.word("ELSET"));
     if (it == d.elset.end()) throw Error(card.place("ELSET"), fmt::format("no element set \"{}\"", card.value("ELSET")));
     for (const auto e : it->second.members)
@@ -91,14 +91,15 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
   DataLine l;
   while (lines.next_data(l)) {
     if (card.has("GENERATE")) {
-      if (!l.is_integer(0)) {   // CalculiX: a set name stands for itself here too
+      if (!l.is_integer(0)) {  // CalculiX: a set name stands for itself here too
         const auto it = sets.find(upper(l.text(0)));
         if (it == sets.end()) throw Error(l.place(0), fmt::format("GENERATE: expected first, last, increment, found \"{}\"", l.text(0)));
         add.insert(add.end(), it->second.members.begin(), it->second.members.end());
         continue;
       }
       const auto first = l.integer(0), last = l.empty(1) ? first : l.integer(1), by = l.empty(2) ? 1 : l.integer(2);
-      if (by < 1 || last < first) throw Error(l.place(0), fmt::format("GENERATE: {}, {}, {} names nothing", first, last, by));
+      if (by < 1 || last < first || (last - first) / by > 1'000'000'000)
+        throw Error(l.place(0), fmt::format("GENERATE: {}, {}, {} names no usable range", first, last, by));
       for (auto i = first; i <= last; i += by) add.push_back(i);
       continue;
     }

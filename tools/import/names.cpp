@@ -73,7 +73,9 @@ void assign_regions(Imported& in, const std::string& file, const std::vector<Cel
     if (!found) {
       const std::string near = suggest(name, offered);
       throw Error(file, fmt::format("--regions: no element set \"{}\"", name),
-                  !near.empty() ? near : offered.empty() ? "the file has none" : "there are " + some(offered));
+                  !near.empty()     ? near
+                  : offered.empty() ? "the file has none"
+                                    : "there are " + some(offered));
     }
     const int r = find_or_add(clean_name(name));
     for (const auto c : found->cells) m.region[c] = r;
@@ -83,8 +85,12 @@ void assign_regions(Imported& in, const std::string& file, const std::vector<Cel
   for (std::int64_t c = 0; c < m.n_cells(); ++c)
     if (m.region[c] < 0) lost.push_back(c);
   if (!lost.empty() && options.rest.empty()) {
-    const std::string hint = offered.empty() || !regions.empty() ? "give them one with --rest NAME" : "give them one with --rest NAME, or name element sets with --regions: " + some(offered);
-    throw Error(file, fmt::format("{} of {} cells are in no region, the first is cell {}", lost.size(), m.n_cells(), m.cell_id[lost.front()]), hint);
+    const std::string hint = offered.empty() || !regions.empty()
+                                 ? "give them one with --rest NAME"
+                                 : "give them one with --rest NAME, or name element sets with --regions: " + some(offered);
+    throw Error(file,
+                fmt::format("{} of {} cells are in no region, the first is cell {}", lost.size(), m.n_cells(), m.cell_id[lost.front()]),
+                hint);
   }
   if (!lost.empty()) {
     const int r = find_or_add(clean_name(options.rest));
@@ -111,7 +117,8 @@ void assign_regions(Imported& in, const std::string& file, const std::vector<Cel
     const auto away = std::count_if(g.cells.begin(), g.cells.end(), [&](std::int64_t c) { return m.region[c] != r; });
     if (away == 0) continue;
     const std::string set = SetNames(in).cells(g.name, g.cells);
-    in.notes.push_back(fmt::format("{} of {} cells of \"{}\" belong to another region too; all of them are cell set \"{}\"", away, g.cells.size(), g.name, set));
+    in.notes.push_back(fmt::format("{} of {} cells of \"{}\" belong to another region too; all of them are cell set \"{}\"", away,
+                                   g.cells.size(), g.name, set));
   }
 }
 
@@ -125,14 +132,16 @@ std::string SetNames::free_name(const std::string& raw, const std::string& suffi
   if (!taken(name)) return name;
   std::string free = name + suffix;
   for (int i = 2; taken(free); ++i) free = fmt::format("{}{}_{}", name, suffix, i);
-  in_.notes.push_back(fmt::format("the name \"{}\" is taken by another kind of set or a region: its {} are \"{}\"", name, suffix.substr(1), free));
+  in_.notes.push_back(
+      fmt::format("the name \"{}\" is taken by another kind of set or a region: its {} are \"{}\"", name, suffix.substr(1), free));
   return free;
 }
 
 std::string SetNames::facets(const std::string& name, std::vector<Facet> members) {
   const auto key = [](const Facet& f) { return std::pair(f.cell, f.facet); };
   std::sort(members.begin(), members.end(), [&](const Facet& a, const Facet& b) { return key(a) < key(b); });
-  members.erase(std::unique(members.begin(), members.end(), [&](const Facet& a, const Facet& b) { return key(a) == key(b); }), members.end());
+  members.erase(std::unique(members.begin(), members.end(), [&](const Facet& a, const Facet& b) { return key(a) == key(b); }),
+                members.end());
   if (members.empty()) {
     in_.notes.push_back(fmt::format("facet set \"{}\" is empty: left out", name));
     return "";

@@ -18,16 +18,22 @@ const Edges& edges_of(Shape s) {
       hex{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
   switch (s) {
     case Shape::tet4:
-    case Shape::tet10: return tet;
+    case Shape::tet10:
+      return tet;
     case Shape::wedge6:
-    case Shape::wedge15: return wedge;
+    case Shape::wedge15:
+      return wedge;
     case Shape::hex8:
-    case Shape::hex20: return hex;
-    default: return none;
+    case Shape::hex20:
+      return hex;
+    default:
+      return none;
   }
 }
 
-Shape quadratic(Shape s) { return s == Shape::tet4 ? Shape::tet10 : s == Shape::wedge6 ? Shape::wedge15 : s == Shape::hex8 ? Shape::hex20 : s; }
+Shape quadratic(Shape s) {
+  return s == Shape::tet4 ? Shape::tet10 : s == Shape::wedge6 ? Shape::wedge15 : s == Shape::hex8 ? Shape::hex20 : s;
+}
 
 struct EdgeHash {
   size_t operator()(const std::pair<std::int64_t, std::int64_t>& e) const {
@@ -51,7 +57,7 @@ void raise_order(Imported& in) {
         middle[ends(m.cell(c)[edges[i][0]], m.cell(c)[edges[i][1]])] = m.cell(c)[info(s).n_corners + static_cast<int>(i)];
   }
   std::int64_t next_id = m.node_id.empty() ? 1 : *std::max_element(m.node_id.begin(), m.node_id.end()) + 1;
-  std::vector<std::array<std::int64_t, 2>> ends_of;   // of the new nodes
+  std::vector<std::array<std::int64_t, 2>> ends_of;  // of the new nodes
   std::vector<std::int64_t> nodes, offset{0};
   for (std::int64_t c = 0; c < m.n_cells(); ++c) {
     const auto s = static_cast<Shape>(m.shape[c]);
@@ -82,7 +88,8 @@ void raise_order(Imported& in) {
     for (size_t i = 0; i < ends_of.size(); ++i)
       if (inside[ends_of[i][0]] && inside[ends_of[i][1]]) set.push_back(n_linear + static_cast<std::int64_t>(i));
   }
-  in.notes.push_back(fmt::format("order 2: {} nodes in the middle of edges; node sets that hold both ends of an edge hold it too", m.n_nodes() - n_linear));
+  in.notes.push_back(fmt::format("order 2: {} nodes in the middle of edges; node sets that hold both ends of an edge hold it too",
+                                 m.n_nodes() - n_linear));
 }
 
 }  // namespace hilo

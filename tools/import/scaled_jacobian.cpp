@@ -1,5 +1,5 @@
-// Scaled Jacobian of a cell: at each corner the determinant of the three edges that meet there over the product of their lengths, least over the
-// corners, as 1 for the regular tetrahedron, the right prism on a regular triangle and the box.
+// Scaled Jacobian of a cell: at each corner the determinant of the three edges that meet there over the product of their lengths, least
+// over the corners, as 1 for the regular tetrahedron, the right prism on a regular triangle and the box.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,10 +31,14 @@ double least(const Mesh& m, std::span<const std::int64_t> nodes, const std::arra
 
 double scaled_jacobian(const Mesh& m, std::int64_t c) {
   switch (info(m.shape[c]).n_corners) {
-    case 4: return least(m, m.cell(c), tet, std::sqrt(0.5));
-    case 6: return least(m, m.cell(c), wedge, std::sqrt(0.75));
-    case 8: return least(m, m.cell(c), hex, 1);
-    default: return 1;
+    case 4:
+      return least(m, m.cell(c), tet, std::sqrt(0.5));
+    case 6:
+      return least(m, m.cell(c), wedge, std::sqrt(0.75));
+    case 8:
+      return least(m, m.cell(c), hex, 1);
+    default:
+      return 1;
   }
 }
 

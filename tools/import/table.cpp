@@ -1,11 +1,12 @@
 // The table of what was imported.
+#include "base/table.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
 
-#include "base/table.hpp"
 #include "import/imported.hpp"
 
 namespace hilo {
@@ -15,7 +16,7 @@ struct RegionRow {
   std::int64_t cells = 0;
   std::array<std::int64_t, n_shapes> by_shape{};
   double volume = 0, length = 0, worst = std::numeric_limits<double>::infinity(), sum = 0;
-  std::int64_t judged = 0;   // cells with a Jacobian: not the bars
+  std::int64_t judged = 0;  // cells with a Jacobian: not the bars
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
 };
 
@@ -72,12 +73,14 @@ std::string import_table(const Imported& in) {
     const auto& r = rows[i];
     volume += r.volume;
     const bool bars = r.judged == 0;
-    lines.rows.push_back({m.region_name[i], fmt::format("{}", r.cells), bars ? fmt::format("{} m", g(r.length)) : g(r.volume), g(r.low.x()), g(r.high.x()),
-                     g(r.low.y()), g(r.high.y()), g(r.low.z()), g(r.high.z()), bars ? "-" : fmt::format("{:.3f}", r.worst),
-                     bars ? "-" : fmt::format("{:.3f}", r.sum / static_cast<double>(r.judged)), shapes(r)});
+    lines.rows.push_back({m.region_name[i], fmt::format("{}", r.cells), bars ? fmt::format("{} m", g(r.length)) : g(r.volume), g(r.low.x()),
+                          g(r.high.x()), g(r.low.y()), g(r.high.y()), g(r.low.z()), g(r.high.z()),
+                          bars ? "-" : fmt::format("{:.3f}", r.worst),
+                          bars ? "-" : fmt::format("{:.3f}", r.sum / static_cast<double>(r.judged)), shapes(r)});
   }
   std::string text = lines.text();
-  text += fmt::format("{} regions, {} cells, {} nodes, volume {} m^3 (quality: scaled Jacobian, 1 for a regular cell)\n", rows.size(), m.n_cells(), m.n_nodes(), g(volume));
+  text += fmt::format("{} regions, {} cells, {} nodes, volume {} m^3 (quality: scaled Jacobian, 1 for a regular cell)\n", rows.size(),
+                      m.n_cells(), m.n_nodes(), g(volume));
   const auto sets = sets_of(m);
   if (!sets.empty()) {
     Table l{{"set", "of", "count"}, {}};
@@ -91,21 +94,24 @@ std::string import_table(const Imported& in) {
 std::string import_json(const Imported& in, const std::string& file, const std::string& output) {
   const Mesh& m = in.mesh;
   const auto rows = rows_of(m);
-  std::string s = fmt::format("{{\n  \"file\": {},\n  \"mesh\": {},\n  \"nodes\": {},\n  \"cells\": {},\n  \"regions\": [", json_text(file), json_text(output),
-                              m.n_nodes(), m.n_cells());
+  std::string s = fmt::format("{{\n  \"file\": {},\n  \"mesh\": {},\n  \"nodes\": {},\n  \"cells\": {},\n  \"regions\": [", json_text(file),
+                              json_text(output), m.n_nodes(), m.n_cells());
   for (size_t i = 0; i < rows.size(); ++i) {
     const auto& r = rows[i];
     std::string by;
     for (int k = 0; k < n_shapes; ++k)
       if (r.by_shape[k]) by += fmt::format("{}\"{}\": {}", by.empty() ? "" : ", ", info(static_cast<Shape>(k)).name, r.by_shape[k]);
-    s += fmt::format("{}\n    {{\"name\": {}, \"cells\": {}, \"shapes\": {{{}}}, \"volume\": {}, \"length\": {}, \"box\": [{}, {}], \"quality_min\": {}, \"quality_mean\": {}}}",
-                     i ? "," : "", json_text(m.region_name[i]), r.cells, by, r.volume, r.length, vec_json(r.low), vec_json(r.high),
-                     r.judged ? fmt::format("{}", r.worst) : "null", r.judged ? fmt::format("{}", r.sum / static_cast<double>(r.judged)) : "null");
+    s += fmt::format(
+        "{}\n    {{\"name\": {}, \"cells\": {}, \"shapes\": {{{}}}, \"volume\": {}, \"length\": {}, \"box\": [{}, {}], \"quality_min\": "
+        "{}, \"quality_mean\": {}}}",
+        i ? "," : "", json_text(m.region_name[i]), r.cells, by, r.volume, r.length, vec_json(r.low), vec_json(r.high),
+        r.judged ? fmt::format("{}", r.worst) : "null", r.judged ? fmt::format("{}", r.sum / static_cast<double>(r.judged)) : "null");
   }
   s += "\n  ],\n  \"sets\": [";
   const auto sets = sets_of(m);
   for (size_t i = 0; i < sets.size(); ++i)
-    s += fmt::format("{}\n    {{\"name\": {}, \"kind\": \"{}\", \"count\": {}}}", i ? "," : "", json_text(sets[i].name), sets[i].kind, sets[i].count);
+    s += fmt::format("{}\n    {{\"name\": {}, \"kind\": \"{}\", \"count\": {}}}", i ? "," : "", json_text(sets[i].name), sets[i].kind,
+                     sets[i].count);
   s += "\n  ],\n  \"notes\": [";
   for (size_t i = 0; i < in.notes.size(); ++i) s += fmt::format("{}\n    {}", i ? "," : "", json_text(in.notes[i]));
   s += "\n  ],\n  \"not_read\": [";

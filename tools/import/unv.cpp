@@ -1,6 +1,6 @@
 // I-DEAS universal files: datasets 2411 (nodes), 2412 (elements) and the groups 2429 to 2477.
-// (gmsh 4.8 crashes on groups that name an element it does not know, so the reader is ours.)  Groups of solids are regions, of faces facet sets, of
-// lines bars or node sets as in a gmsh file; without groups of solids a region is a physical property.
+// (gmsh 4.8 crashes on groups that name an element it does not know, so the reader is ours.)  Groups of solids are regions, of faces facet
+// sets, of lines bars or node sets as in a gmsh file; without groups of solids a region is a physical property.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -58,10 +58,14 @@ class UnvReader {
       if (l_.fields.size() != 1 || l_.text(0) != "-1") continue;
       if (!line()) break;
       const std::string set(l_.text(0));
-      if (set == "2411" || set == "781") nodes();
-      else if (set == "2412") elements();
-      else if (set == "2467" || set == "2477" || set == "2452" || set == "2435") groups(4);
-      else if (set == "2429" || set == "2430" || set == "2432") groups(2);
+      if (set == "2411" || set == "781")
+        nodes();
+      else if (set == "2412")
+        elements();
+      else if (set == "2467" || set == "2477" || set == "2452" || set == "2435")
+        groups(4);
+      else if (set == "2429" || set == "2430" || set == "2432")
+        groups(2);
       else {
         in_.skip("dataset " + set, l_.place(), 1, false);
         while (more()) {
@@ -78,12 +82,12 @@ class UnvReader {
   struct Element {
     const Kind* kind;
     std::int64_t id, property;
-    std::vector<std::int64_t> nodes;   // rows
+    std::vector<std::int64_t> nodes;  // rows
     std::int64_t cell = -1;
   };
   struct Group {
     std::string name;
-    std::vector<std::int64_t> nodes, elements;   // numbers of the file
+    std::vector<std::int64_t> nodes, elements;  // numbers of the file
   };
 
   /// The next line, cut at blanks.
@@ -115,7 +119,8 @@ class UnvReader {
   void nodes() {
     while (more()) {
       const auto id = l_.integer(0);
-      if (!row_.try_emplace(id, in_.mesh.n_nodes()).second) throw Error(l_.place(0), fmt::format("node {} is given twice", id), "number each node once");
+      if (!row_.try_emplace(id, in_.mesh.n_nodes()).second)
+        throw Error(l_.place(0), fmt::format("node {} is given twice", id), "number each node once");
       must();
       in_.mesh.X.emplace_back(l_.number(0), l_.number(1), l_.number(2));
       in_.mesh.node_id.push_back(id);
@@ -130,9 +135,11 @@ class UnvReader {
       const auto n = static_cast<size_t>(l_.integer(5));
       e.kind = kind_of(id);
       if (!e.kind)
-        throw Error(l_.place(1), fmt::format("element {}: descriptor {} is not read", e.id, id), "supported: rods 11, beams as lines 21 22 24, faces 41 42 44 45 91 92 94 95, solids 111 112 113 115 116 118");
-      if (n != e.kind->n_nodes) throw Error(place, fmt::format("element {}: descriptor {} has {} nodes, not {}", e.id, id, e.kind->n_nodes, n));
-      if (e.kind->dimension == 1) must();   // orientation and cross-sections of beams
+        throw Error(l_.place(1), fmt::format("element {}: descriptor {} is not read", e.id, id),
+                    "supported: rods 11, beams as lines 21 22 24, faces 41 42 44 45 91 92 94 95, solids 111 112 113 115 116 118");
+      if (n != e.kind->n_nodes)
+        throw Error(place, fmt::format("element {}: descriptor {} has {} nodes, not {}", e.id, id, e.kind->n_nodes, n));
+      if (e.kind->dimension == 1) must();  // orientation and cross-sections of beams
       std::vector<std::int64_t> all;
       while (all.size() < n) {
         must();
@@ -140,10 +147,12 @@ class UnvReader {
       }
       for (const int i : e.kind->p) {
         const auto a = row_.find(all[static_cast<size_t>(i)]);
-        if (a == row_.end()) throw Error(place, fmt::format("element {} names node {}, which does not exist", e.id, all[static_cast<size_t>(i)]));
+        if (a == row_.end())
+          throw Error(place, fmt::format("element {} names node {}, which does not exist", e.id, all[static_cast<size_t>(i)]));
         e.nodes.push_back(a->second);
       }
-      if (!of_id_.try_emplace(e.id, elements_.size()).second) throw Error(place, fmt::format("element {} is given twice", e.id), "number each element once");
+      if (!of_id_.try_emplace(e.id, elements_.size()).second)
+        throw Error(place, fmt::format("element {} is given twice", e.id), "number each element once");
       elements_.push_back(std::move(e));
     }
   }
@@ -160,9 +169,12 @@ class UnvReader {
         must();
         for (size_t i = 0; i + 1 < l_.fields.size(); i += width, ++got) {
           const auto type = l_.integer(i);
-          if (type == 7) g.nodes.push_back(l_.integer(i + 1));
-          else if (type == 8) g.elements.push_back(l_.integer(i + 1));
-          else in_.skip(fmt::format("group members of type {}", type), l_.place());
+          if (type == 7)
+            g.nodes.push_back(l_.integer(i + 1));
+          else if (type == 8)
+            g.elements.push_back(l_.integer(i + 1));
+          else
+            in_.skip(fmt::format("group members of type {}", type), l_.place());
         }
       }
       groups_.push_back(std::move(g));
@@ -172,7 +184,8 @@ class UnvReader {
   std::vector<Element*> members(const Group& g, int dimension) {
     std::vector<Element*> found;
     for (const auto id : g.elements)
-      if (const auto e = of_id_.find(id); e != of_id_.end() && elements_[e->second].kind->dimension == dimension) found.push_back(&elements_[e->second]);
+      if (const auto e = of_id_.find(id); e != of_id_.end() && elements_[e->second].kind->dimension == dimension)
+        found.push_back(&elements_[e->second]);
     return found;
   }
 
@@ -213,15 +226,20 @@ class UnvReader {
     const bool solids = in_.mesh.n_cells() > 0;
     for (const auto& g : groups_) {
       const auto found = members(g, 1);
-      if (found.empty() || std::any_of(found.begin(), found.end(), [&](const Element* e) { return on_solids.count({e->nodes[0], e->nodes[1]}); })) continue;
+      if (found.empty() || std::any_of(found.begin(), found.end(), [&](const Element* e) {
+            return on_solids.count({e->nodes[0], e->nodes[1]});
+          }))
+        continue;
       CellGroup c{g.name, {}};
       for (auto* e : found) add(*e), c.cells.push_back(e->cell);
       regions.push_back(std::move(c));
     }
     for (auto& e : elements_)
       if (e.kind->dimension == 1 && e.cell < 0) {
-        if (!solids) add(e);
-        else if (!on_solids.count({e.nodes[0], e.nodes[1]})) in_.skip("lines of no group, on no solid", path_);
+        if (!solids)
+          add(e);
+        else if (!on_solids.count({e.nodes[0], e.nodes[1]}))
+          in_.skip("lines of no group, on no solid", path_);
       }
   }
 
@@ -234,7 +252,8 @@ class UnvReader {
       for (const auto& f : match_facets(in_.mesh, faces))
         if (f.cell >= 0) facets.push_back(f);
       if (facets.size() < faces.size())
-        in_.notes.push_back(fmt::format("group \"{}\": {} of its {} faces lie on no cell: left out", g.name, faces.size() - facets.size(), faces.size()));
+        in_.notes.push_back(
+            fmt::format("group \"{}\": {} of its {} faces lie on no cell: left out", g.name, faces.size() - facets.size(), faces.size()));
       if (!facets.empty()) names.facets(g.name, std::move(facets));
       std::vector<std::int64_t> rows;
       for (const auto* e : members(g, 1))

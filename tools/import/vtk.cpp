@@ -13,12 +13,13 @@
 namespace hilo {
 namespace {
 
-constexpr const char* region_arrays[] = {"MATERIALIDS", "MATERIALID", "REGION", "REGIONID", "REGIONS", "CELLENTITYIDS", "GMSH:PHYSICAL", "MATERIAL", "PARTID"};
+constexpr const char* region_arrays[] = {"MATERIALIDS",   "MATERIALID",    "REGION",   "REGIONID", "REGIONS",
+                                         "CELLENTITYIDS", "GMSH:PHYSICAL", "MATERIAL", "PARTID"};
 
 struct Kind {
   int type;
   Shape shape;
-  std::vector<int> p;         // ours[i] = theirs[p[i]]; as many as we keep
+  std::vector<int> p;  // ours[i] = theirs[p[i]]; as many as we keep
   const char* name;
   size_t n_nodes;
 };
@@ -55,7 +56,8 @@ void check(const VtkGrid& g, const std::string& path) {
     if (g.offsets[c] < 0 || g.offsets[c + 1] < g.offsets[c] || g.offsets[c + 1] > static_cast<std::int64_t>(g.connectivity.size()))
       throw Error(path, fmt::format("cell {} reaches beyond the connectivity", c));
     for (auto i = g.offsets[c]; i < g.offsets[c + 1]; ++i)
-      if (g.connectivity[i] < 0 || g.connectivity[i] >= n) throw Error(path, fmt::format("cell {} names node {}, which does not exist", c, g.connectivity[i]));
+      if (g.connectivity[i] < 0 || g.connectivity[i] >= n)
+        throw Error(path, fmt::format("cell {} names node {}, which does not exist", c, g.connectivity[i]));
   }
 }
 
@@ -73,7 +75,7 @@ Imported read_vtk(const std::string& path, const ImportOptions& options) {
     m.node_id.push_back(static_cast<std::int64_t>(a));
   }
   const bool solids = std::any_of(g.types.begin(), g.types.end(), [](int t) { return kind_of(t) && kind_of(t)->shape != Shape::bar2; });
-  std::vector<std::int64_t> cell_of;   // number in the file
+  std::vector<std::int64_t> cell_of;  // number in the file
   std::vector<std::int64_t> nodes;
   for (size_t c = 0; c < g.types.size(); ++c) {
     const Kind* k = kind_of(g.types[c]);
@@ -81,8 +83,11 @@ Imported read_vtk(const std::string& path, const ImportOptions& options) {
       in.skip(fmt::format("VTK cells of type {}", g.types[c]), path);
       continue;
     }
-    if (!k) throw Error(path, fmt::format("cell {} is of VTK type {}", c, g.types[c]), "supported: lines, tetrahedra, hexahedra, voxels, wedges of order 1 and 2");
-    if (static_cast<size_t>(g.offsets[c + 1] - g.offsets[c]) != k->n_nodes) throw Error(path, fmt::format("cell {}: a {} has {} nodes", c, k->name, k->n_nodes));
+    if (!k)
+      throw Error(path, fmt::format("cell {} is of VTK type {}", c, g.types[c]),
+                  "supported: lines, tetrahedra, hexahedra, voxels, wedges of order 1 and 2");
+    if (static_cast<size_t>(g.offsets[c + 1] - g.offsets[c]) != k->n_nodes)
+      throw Error(path, fmt::format("cell {}: a {} has {} nodes", c, k->name, k->n_nodes));
     if (k->p.size() < k->n_nodes) in.skip(fmt::format("nodes inside a {}", k->name), path);
     nodes.clear();
     for (const int i : k->p) nodes.push_back(g.connectivity[g.offsets[c] + i]);
@@ -98,7 +103,8 @@ Imported read_vtk(const std::string& path, const ImportOptions& options) {
     const auto& v = found->second;
     if (std::any_of(v.begin(), v.end(), [](double x) { return x != std::floor(x); })) continue;
     std::map<std::int64_t, CellGroup> by_value;
-    for (size_t c = 0; c < cell_of.size(); ++c) by_value[static_cast<std::int64_t>(v[cell_of[c]])].cells.push_back(static_cast<std::int64_t>(c));
+    for (size_t c = 0; c < cell_of.size(); ++c)
+      by_value[static_cast<std::int64_t>(v[cell_of[c]])].cells.push_back(static_cast<std::int64_t>(c));
     for (auto& [value, group] : by_value) regions.push_back({fmt::format("region_{}", value), std::move(group.cells)});
     in.notes.push_back(fmt::format("regions by the values of cell array \"{}\"", found->first));
     break;

@@ -8,9 +8,9 @@
 namespace hilo {
 
 struct VtkGrid {
-  std::vector<double> points;                          // (n_points x 3)
-  std::vector<std::int64_t> connectivity, offsets;     // offsets: one more than cells, from 0
-  std::vector<int> types;                              // VTK cell types
+  std::vector<double> points;                            // (n_points x 3)
+  std::vector<std::int64_t> connectivity, offsets;       // offsets: one more than cells, from 0
+  std::vector<int> types;                                // VTK cell types
   std::map<std::string, std::vector<double>> cell_data;  // arrays of one component
 };
 

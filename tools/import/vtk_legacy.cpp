@@ -36,7 +36,8 @@ class Stream {
     const std::string w = word();
     std::int64_t n = -1;
     const auto [end, bad] = std::from_chars(w.data(), w.data() + w.size(), n);
-    if (bad != std::errc() || end != w.data() + w.size() || n < 0 || n > static_cast<std::int64_t>(s_.size())) fail(fmt::format("{}: expected a count, found \"{}\"", what, w));
+    if (bad != std::errc() || end != w.data() + w.size() || n < 0 || n > static_cast<std::int64_t>(s_.size()))
+      fail(fmt::format("{}: expected a count, found \"{}\"", what, w));
     return n;
   }
   template <class T>
@@ -61,24 +62,36 @@ class Stream {
       if (at_ + static_cast<size_t>(n) * sizeof(U) > s_.size()) fail("the file ends in the middle of an array");
       for (std::int64_t i = 0; i < n; ++i) {
         unsigned char b[sizeof(U)];
-        for (size_t k = 0; k < sizeof(U); ++k) b[std::endian::native == std::endian::little ? sizeof(U) - 1 - k : k] = static_cast<unsigned char>(s_[at_ + k]);
+        for (size_t k = 0; k < sizeof(U); ++k)
+          b[std::endian::native == std::endian::little ? sizeof(U) - 1 - k : k] = static_cast<unsigned char>(s_[at_ + k]);
         U x;
         std::memcpy(&x, b, sizeof(U));
         v.push_back(static_cast<T>(x));
         at_ += sizeof(U);
       }
     };
-    if (type == "double") put(double{});
-    else if (type == "float") put(float{});
-    else if (type == "int") put(std::int32_t{});
-    else if (type == "unsigned_int") put(std::uint32_t{});
-    else if (type == "long" || type == "vtkidtype" || type == "vtktypeint64") put(std::int64_t{});
-    else if (type == "unsigned_long") put(std::uint64_t{});
-    else if (type == "short") put(std::int16_t{});
-    else if (type == "unsigned_short") put(std::uint16_t{});
-    else if (type == "char" || type == "signed_char") put(std::int8_t{});
-    else if (type == "unsigned_char") put(std::uint8_t{});
-    else fail(fmt::format("unknown type \"{}\"", type));
+    if (type == "double")
+      put(double{});
+    else if (type == "float")
+      put(float{});
+    else if (type == "int")
+      put(std::int32_t{});
+    else if (type == "unsigned_int")
+      put(std::uint32_t{});
+    else if (type == "long" || type == "vtkidtype" || type == "vtktypeint64")
+      put(std::int64_t{});
+    else if (type == "unsigned_long")
+      put(std::uint64_t{});
+    else if (type == "short")
+      put(std::int16_t{});
+    else if (type == "unsigned_short")
+      put(std::uint16_t{});
+    else if (type == "char" || type == "signed_char")
+      put(std::int8_t{});
+    else if (type == "unsigned_char")
+      put(std::uint8_t{});
+    else
+      fail(fmt::format("unknown type \"{}\"", type));
     return v;
   }
   [[noreturn]] void fail(const std::string& what) const {
@@ -113,7 +126,8 @@ VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
   std::int64_t n_data = 0;
   for (std::string w = upper(s.word()); !w.empty(); w = upper(s.word())) {
     if (w == "DATASET") {
-      if (const std::string kind = upper(s.word()); kind != "UNSTRUCTURED_GRID") s.fail(fmt::format("DATASET {} is not read, UNSTRUCTURED_GRID is", kind));
+      if (const std::string kind = upper(s.word()); kind != "UNSTRUCTURED_GRID")
+        s.fail(fmt::format("DATASET {} is not read, UNSTRUCTURED_GRID is", kind));
     } else if (w == "POINTS") {
       const auto n = s.count(w);
       const auto type = lower(s.word());
@@ -121,7 +135,7 @@ VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
     } else if (w == "CELLS") {
       const auto n = s.count(w), size = s.count(w);
       const size_t here = s.mark();
-      if (upper(s.word()) == "OFFSETS") {   // version 5: n and size count offsets and connectivity
+      if (upper(s.word()) == "OFFSETS") {  // version 5: n and size count offsets and connectivity
         const auto type = lower(s.word());
         g.offsets = s.numbers<std::int64_t>(n, type);
         if (upper(s.word()) != "CONNECTIVITY") s.fail("expected CONNECTIVITY");
@@ -134,11 +148,13 @@ VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
         for (size_t i = 0; i < flat.size();) {
           const auto k = flat[i];
           if (k < 0 || i + 1 + static_cast<size_t>(k) > flat.size()) s.fail("CELLS: a cell has more nodes than the list");
-          g.connectivity.insert(g.connectivity.end(), flat.begin() + static_cast<std::ptrdiff_t>(i) + 1, flat.begin() + static_cast<std::ptrdiff_t>(i + 1) + k);
+          g.connectivity.insert(g.connectivity.end(), flat.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                                flat.begin() + static_cast<std::ptrdiff_t>(i + 1) + k);
           g.offsets.push_back(static_cast<std::int64_t>(g.connectivity.size()));
           i += 1 + static_cast<size_t>(k);
         }
-        if (static_cast<std::int64_t>(g.offsets.size()) != n + 1) s.fail(fmt::format("CELLS: {} cells announced, {} found", n, g.offsets.size() - 1));
+        if (static_cast<std::int64_t>(g.offsets.size()) != n + 1)
+          s.fail(fmt::format("CELLS: {} cells announced, {} found", n, g.offsets.size() - 1));
       }
     } else if (w == "CELL_TYPES")
       g.types = s.numbers<int>(s.count(w), "int");
@@ -146,13 +162,15 @@ VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
       of_cells = w == "CELL_DATA";
       n_data = s.count(w);
     } else if (w == "SCALARS") {
-      const std::string rest = s.line();   // name type [components]
+      const std::string rest = s.line();  // name type [components]
       char name[256] = "", type[64] = "";
       int components = 1;
       if (std::sscanf(rest.c_str(), "%255s %63s %d", name, type, &components) < 2) s.fail("SCALARS: expected name and type");
       const size_t here = s.mark();
-      if (upper(s.word()) == "LOOKUP_TABLE") s.word();
-      else s.back(here);
+      if (upper(s.word()) == "LOOKUP_TABLE")
+        s.word();
+      else
+        s.back(here);
       auto v = s.numbers<double>(n_data * components, lower(type));
       if (of_cells && components == 1) g.cell_data[name] = std::move(v);
     } else if (w == "VECTORS" || w == "NORMALS" || w == "TENSORS") {
@@ -164,7 +182,7 @@ VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
       const auto arrays = s.count(w);
       for (std::int64_t i = 0; i < arrays; ++i) {
         std::string name = s.word();
-        while (name == "METADATA") {   // runs to an empty line
+        while (name == "METADATA") {  // runs to an empty line
           s.line();
           while (!s.line().empty()) {
           }

@@ -15,9 +15,9 @@ namespace hilo {
 namespace {
 
 struct Tag {
-  std::string name;   // "/Piece" where it closes
+  std::string name;  // "/Piece" where it closes
   std::map<std::string, std::string> attributes;
-  size_t end = 0;     // behind '>'
+  size_t end = 0;  // behind '>'
   bool empty = false;
 };
 
@@ -33,11 +33,13 @@ class Vtu {
     find_appended();
     while (next(t)) {
       if (t.name == "VTKFile") {
-        if (t.attributes["type"] != "UnstructuredGrid") fail(fmt::format("type \"{}\" is not read, UnstructuredGrid is", t.attributes["type"]));
+        if (t.attributes["type"] != "UnstructuredGrid")
+          fail(fmt::format("type \"{}\" is not read, UnstructuredGrid is", t.attributes["type"]));
         swap_ = (t.attributes["byte_order"] == "BigEndian") == (std::endian::native == std::endian::little);
         wide_ = t.attributes["header_type"] == "UInt64";
         compressed_ = t.attributes.count("compressor") > 0;
-        if (compressed_ && t.attributes["compressor"] != "vtkZLibDataCompressor") fail(fmt::format("compressor \"{}\" is not read, vtkZLibDataCompressor is", t.attributes["compressor"]));
+        if (compressed_ && t.attributes["compressor"] != "vtkZLibDataCompressor")
+          fail(fmt::format("compressor \"{}\" is not read, vtkZLibDataCompressor is", t.attributes["compressor"]));
       } else if (t.name == "Piece") {
         if (piece) fail("more than one Piece is not read");
         piece = true;
@@ -56,7 +58,8 @@ class Vtu {
   [[noreturn]] void fail(const std::string& what) const {
     const auto line = 1 + std::count(s_.begin(), s_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, s_.size())), '\n');
     std::string one_line = what;
-    std::replace_if(one_line.begin(), one_line.end(), [](unsigned char c) { return c < 32; }, ' ');
+    std::replace_if(
+        one_line.begin(), one_line.end(), [](unsigned char c) { return c < 32; }, ' ');
     throw Error(fmt::format("{}:{}", path_, line), one_line);
   }
 
@@ -154,7 +157,7 @@ class Vtu {
   std::string block(size_t at, bool raw) const {
     const size_t word = wide_ ? 8 : 4;
     size_t here = at;
-    if (!compressed_) {   // header and data are one base64 run
+    if (!compressed_) {  // header and data are one base64 run
       const auto n = header(bytes(here, word, raw), 0);
       here = at;
       return bytes(here, word + n, raw).substr(word);
@@ -171,7 +174,9 @@ class Vtu {
     for (size_t i = 0; i < blocks; ++i) {
       std::string part(i + 1 == blocks && last ? last : size, '\0');
       uLongf n = part.size();
-      if (uncompress(reinterpret_cast<Bytef*>(part.data()), &n, reinterpret_cast<const Bytef*>(data.data() + from), header(head, 3 + i)) != Z_OK || n != part.size())
+      if (uncompress(reinterpret_cast<Bytef*>(part.data()), &n, reinterpret_cast<const Bytef*>(data.data() + from), header(head, 3 + i)) !=
+              Z_OK ||
+          n != part.size())
         fail("a compressed array is damaged");
       from += header(head, 3 + i);
       out += part;
@@ -213,17 +218,28 @@ class Vtu {
         v.push_back(static_cast<double>(x));
       }
     };
-    if (type == "Float64") put(double{});
-    else if (type == "Float32") put(float{});
-    else if (type == "Int64") put(std::int64_t{});
-    else if (type == "UInt64") put(std::uint64_t{});
-    else if (type == "Int32") put(std::int32_t{});
-    else if (type == "UInt32") put(std::uint32_t{});
-    else if (type == "Int16") put(std::int16_t{});
-    else if (type == "UInt16") put(std::uint16_t{});
-    else if (type == "Int8") put(std::int8_t{});
-    else if (type == "UInt8") put(std::uint8_t{});
-    else fail(fmt::format("DataArray type \"{}\" is not read", type));
+    if (type == "Float64")
+      put(double{});
+    else if (type == "Float32")
+      put(float{});
+    else if (type == "Int64")
+      put(std::int64_t{});
+    else if (type == "UInt64")
+      put(std::uint64_t{});
+    else if (type == "Int32")
+      put(std::int32_t{});
+    else if (type == "UInt32")
+      put(std::uint32_t{});
+    else if (type == "Int16")
+      put(std::int16_t{});
+    else if (type == "UInt16")
+      put(std::uint16_t{});
+    else if (type == "Int8")
+      put(std::int8_t{});
+    else if (type == "UInt8")
+      put(std::uint8_t{});
+    else
+      fail(fmt::format("DataArray type \"{}\" is not read", type));
     return v;
   }
 

@@ -1,4 +1,4 @@
-// Trilinear hexahedron.  Integrated at its centroid; what one point does not see is held by physics/hourglass.
+// Trilinear hexahedron.  Integrated with its mean gradients; what one point does not see is held by physics/hourglass.
 #pragma once
 #include "physics/shape/shape.hpp"
 

@@ -1,0 +1,123 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.hpp"
+#include "cli.hpp"
+#include "picture_file.hpp"
+#include "post/csv.hpp"
+#include "post/names.hpp"
+#include "post/ticks.hpp"
+
+namespace hilo::test {
+namespace {
+
+TEST(Ticks, are_round_inside_the_range_and_near_the_wanted_number) {
+  for (const auto& [low, high] : {std::pair{0.0, 1.0}, {-3.7, 12.2}, {0.0, 231.4}, {1e-4, 7e-4}, {99.0, 101.0}}) {
+    const Ticks ticks = linear_ticks(low, high, 6);
+    ASSERT_GE(ticks.at.size(), 3u);
+    ASSERT_LE(ticks.at.size(), 8u);
+    for (size_t i = 0; i < ticks.at.size(); ++i) {
+      EXPECT_GE(ticks.at[i], low - 1e-12);
+      EXPECT_LE(ticks.at[i], high + 1e-12);
+      EXPECT_NEAR(std::stod(ticks.text[i]), ticks.at[i], 1e-9 * (high - low));  // the text is the place
+    }
+  }
+}
+
+TEST(Ticks, of_a_logarithmic_axis_are_powers_of_ten) {
+  const Ticks ticks = log_ticks(3e-6, 2e3, 10);
+  EXPECT_EQ(ticks.text.front(), "10^-5");
+  EXPECT_EQ(ticks.text.back(), "10^3");
+}
+
+TEST(Units, are_chosen_by_the_largest_value) {
+  EXPECT_EQ(handy_unit("Pa", 2.3e8).name, "MPa");
+  EXPECT_EQ(handy_unit("Pa", 4e4).name, "kPa");
+  EXPECT_EQ(handy_unit("m", 0.004).name, "mm");
+  EXPECT_EQ(handy_unit("m/s^2", 1e4).name, "m/s^2");
+  EXPECT_NEAR(9.80665 * wanted_unit("m/s^2", "g").factor, 1, 1e-15);
+  EXPECT_THROW(wanted_unit("Pa", "mm"), Error);
+}
+
+TEST(Names, that_differ_in_numbers_and_sides_are_one_group_when_there_are_many) {
+  std::vector<std::string> names{"hull"};
+  for (const char* side : {"l", "r"})
+    for (int i = 1; i <= 8; ++i) names.push_back("wheel_" + std::string(side) + std::to_string(i));
+  const auto groups = grouped(names);
+  ASSERT_EQ(groups.size(), 2u);
+  EXPECT_EQ(groups[1].members.size(), 16u);
+  EXPECT_EQ(grouped({"wheel_1", "wheel_2"}).size(), 2u);
+}
+
+TEST(Csv, reads_quotes_units_and_comments) {
+  const Workplace place;
+  place.write("a.csv", "# made by hand\nt [s],\"force, axial [N]\",name\n0,1.5,a\n1,,\"b \"\"c\"\"\"\n");
+  const CsvTable table = read_csv(place / "a.csv");
+  EXPECT_EQ(table.header[1], "force, axial [N]");
+  EXPECT_EQ(table.find("t"), 0u);
+  EXPECT_EQ(table.find("3"), 2u);
+  EXPECT_EQ(table.column[2][1], "b \"c\"");
+  EXPECT_TRUE(std::isnan(table.numbers(1)[1]));
+  EXPECT_THROW(table.numbers(2), Error);
+  EXPECT_THROW(table.find("forc"), Error);
+}
+
+TEST(Csv, numbers_read_back_as_they_were) {
+  const Workplace place;
+  const std::vector<double> x{1.0 / 3, -2e-300, 6.02214076e23, 0.1};
+  place.write("a.csv", csv_text({"x"}, {x}));
+  EXPECT_EQ(read_csv(place / "a.csv").numbers(0), x);
+}
+
+TEST(Chart, has_the_curve_where_its_numbers_are) {
+  const Workplace place;
+  std::string text = "x,y\n";
+  for (int i = 0; i <= 100; ++i) text += std::to_string(i / 100.0) + "," + std::to_string(i < 50 ? 0 : 1) + "\n";
+  place.write("step.csv", text);
+  const Ran ran = place.run("unset DISPLAY\nhilo-post chart step.csv -o step.png");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const PictureFile picture(place / "step.png");
+  const auto coloured = [&](int x0, int x1, int y0, int y1) {
+    int n = 0;
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x) {
+        const auto c = picture.at(x, y);
+        n += c[2] > c[0] + 60;
+      }
+    return n;
+  };
+  // low in the left half, high in the right one
+  EXPECT_GT(coloured(150, 550, 500, 660), 300);
+  EXPECT_EQ(coloured(150, 550, 30, 300), 0);
+  EXPECT_GT(coloured(750, 1200, 20, 150), 300);
+  EXPECT_EQ(coloured(750, 1200, 300, 640), 0);
+}
+
+TEST(Chart, one_curve_for_each_name_of_a_column) {
+  const Workplace place;
+  place.write("work.csv", "method,cpu [s],error [m]\na,1,0.1\na,10,0.01\nb,1,0.3\nb,10,0.003\n");
+  const Ran ran = place.run("unset DISPLAY\nhilo-post chart work.csv -x cpu -y error --by method --log xy --markers -o work.png");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const PictureFile picture(place / "work.png");
+  int blue = 0, red = 0;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      const auto c = picture.at(x, y);
+      blue += c[2] > c[0] + 100, red += c[0] > c[2] + 100;
+    }
+  EXPECT_GT(blue, 500);
+  EXPECT_GT(red, 500);
+}
+
+TEST(Chart, a_mistyped_column_is_an_error_with_the_nearest_one) {
+  const Workplace place;
+  place.write("a.csv", "time [s],force [N]\n0,1\n");
+  const Ran ran = place.run("hilo-post chart a.csv -y forse -o a.png");
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_EQ(ran.err, "hilo-post: a.csv: no column \"forse\" (did you mean \"force\"?)\n");
+  EXPECT_EQ(place.files(), (std::set<std::string>{"a.csv"}));
+}
+
+}  // namespace
+}  // namespace hilo::test

@@ -1,0 +1,112 @@
+// The picture of a scene before it runs.
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "cli.hpp"
+#include "picture_file.hpp"
+#include "post/scene_items.hpp"
+#include "sample_run.hpp"
+
+namespace hilo::test {
+namespace {
+
+constexpr const char* scene_text = R"(title = "Sample"
+mesh = "mesh.h5"
+gravity = [0, 0, -9.81]
+[material.steel]
+E = 2.1e11
+nu = 0.3
+density = 7850
+[region."*"]
+material = "steel"
+[[joint]]
+kind = "revolute"
+name = "trunnion"
+a = "support"
+b = "breech"
+at = [0.6, 0, 0.55]
+axis = [0, 1, 0]
+[[spring]]
+kind = "torsion"
+name = "bar_spring"
+a = "support"
+b = "breech"
+axis = [0, 1, 0]
+stiffness = 1e4
+[[load]]
+kind = "pressure"
+name = "gas"
+on = "muzzle"
+pressure = 1e6
+[[motion]]
+kind = "fixed"
+name = "floor"
+on = "ground_side"
+[[sensor]]
+name = "driver"
+on = "hull"
+at = [0, 0.3, 0]
+[time]
+end = 0.1
+step = 1e-4
+)";
+
+TEST(Model, things_of_the_scene_are_where_it_says) {
+  const Workplace place;
+  MeshFile file;
+  file.mesh = sample::machine();
+  file.fidelity.assign(file.mesh.region_name.size(), Fidelity::nonlinear);
+  place.write("scene.toml", scene_text);
+  const SceneItems found = scene_items(Scene::load(place / "scene.toml"), &file);
+  ASSERT_EQ(found.items.size(), 5u);
+  EXPECT_EQ(found.items[0].glyph, Glyph::hinge);
+  EXPECT_EQ(found.items[0].at, Vec3(0.6, 0, 0.55));
+  EXPECT_EQ(found.items[1].at, Vec3(0.6, 0, 0.55));                              // a torsion spring sits at the joint of its ends
+  EXPECT_LT((found.items[2].at - Vec3(3.2, 0, 0.6)).norm(), 1e-9);               // the middle of the muzzle
+  EXPECT_LT((found.items[2].along.normalized() - Vec3(-1, 0, 0)).norm(), 1e-9);  // pressure pushes inwards
+  EXPECT_EQ(found.items[3].glyph, Glyph::clamp);
+  EXPECT_EQ(found.items[4].above, Vec3(0, 0, 1));
+}
+
+TEST(Model, an_ellipsoid_has_the_inertia_of_its_body) {
+  const Workplace place;
+  place.write("scene.toml",
+              "[[body]]\nname = \"ball\"\nmass = 5\ncom = [1, 2, 3]\ninertia = [1.3, 1.0, 0.5]\n[time]\nend = 1\nstep = 0.1\n");
+  const SceneItems found = scene_items(Scene::load(place / "scene.toml"), nullptr);
+  ASSERT_EQ(found.bodies.size(), 1u);
+  const Ellipsoid& b = found.bodies[0];
+  const Mat3 J = [&] {  // m/5 (r^2 1 - axes r^2 axes^T)
+    const Mat3 spread = b.axes * b.radii.cwiseProduct(b.radii).asDiagonal() * b.axes.transpose();
+    return Mat3(5.0 / 5 * (spread.trace() * Mat3::Identity() - spread));
+  }();
+  EXPECT_LT((J - Mat3(Vec3(1.3, 1.0, 0.5).asDiagonal())).norm(), 1e-12);
+}
+
+TEST(Model, draws_regions_symbols_and_legend_without_a_display) {
+  const Workplace place;
+  write_mesh(place / "mesh.h5", sample::machine(), {"sample"});
+  place.write("scene.toml", scene_text);
+  const Ran ran = place.run("unset DISPLAY\nhilo-post model scene.toml -o model.png");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const PictureFile picture(place / "model.png");
+  EXPECT_EQ(picture.width, 1600);
+  EXPECT_GT(picture.ink(20, 100, 1260, 880), 0.15);
+  EXPECT_GT(picture.ink(1275, 90, 1590, 500), 0.05);
+  const auto first = text_of(place / "model.png");
+  ASSERT_EQ(place.run("hilo-post model scene.toml -o model.png").exit, 0);
+  EXPECT_EQ(text_of(place / "model.png"), first);
+}
+
+TEST(Model, a_joint_to_a_set_that_is_not_there_is_an_error) {
+  const Workplace place;
+  write_mesh(place / "mesh.h5", sample::machine(), {"sample"});
+  place.write("scene.toml", scene_text);
+  const Ran ran = place.run("hilo-post model scene.toml --set joint.trunnion.b=breach -o model.png");
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_NE(ran.err.find("no region or set \"breach\""), std::string::npos) << ran.err;
+  EXPECT_NE(ran.err.find("did you mean \"breech\"?"), std::string::npos) << ran.err;
+  EXPECT_EQ(place.files(), (std::set<std::string>{"mesh.h5", "scene.toml"}));
+}
+
+}  // namespace
+}  // namespace hilo::test

@@ -1,0 +1,72 @@
+#include "import/gmsh_session.hpp"
+
+#include <fmt/format.h>
+#include <gmsh.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "base/error.hpp"
+
+namespace hilo {
+namespace {
+
+std::string crash_line;  // what the handler of a crash writes: made beforehand, since it may not allocate
+
+}  // namespace
+
+CrashGuard::CrashGuard(const std::string& path) {
+  crash_line = fmt::format("{}: {}: gmsh crashed on it (is the file damaged?)\n", tool_name(), path);
+  struct sigaction act {};
+  act.sa_handler = [](int) {
+    if (write(2, crash_line.data(), crash_line.size()) < 0) _exit(static_cast<int>(Exit::fault));
+    _exit(static_cast<int>(Exit::input));
+  };
+  for (size_t i = 0; i < signals_.size(); ++i) sigaction(signals_[i], &act, &before_[i]);
+  // the default handler would say more than our one line
+  terminate_ = std::set_terminate([] { std::raise(SIGABRT); });
+}
+
+CrashGuard::~CrashGuard() {
+  std::set_terminate(terminate_);
+  for (size_t i = 0; i < signals_.size(); ++i) sigaction(signals_[i], &before_[i], nullptr);
+}
+
+GmshSession::GmshSession(const ImportOptions& o) {
+  std::fflush(stdout);
+  stdout_ = dup(1);
+  if (FILE* null = std::fopen("/dev/null", "w")) {
+    dup2(fileno(null), 1);
+    std::fclose(null);
+  }
+  std::vector<std::string> words{"hilo-import"};
+  for (const auto& [name, value] : o.define) words.insert(words.end(), {"-setnumber", name, fmt::format("{}", value)});
+  std::vector<char*> argv;
+  for (auto& w : words) argv.push_back(w.data());
+  argv.push_back(nullptr);
+  gmsh::initialize(static_cast<int>(words.size()), argv.data(), false);
+  gmsh::option::setNumber("General.Terminal", 0);
+  gmsh::option::setNumber("Mesh.SecondOrderIncomplete", 1);
+  gmsh::logger::start();
+}
+
+GmshSession::~GmshSession() {
+  try {
+    gmsh::finalize();
+  } catch (...) {  // it is closed either way
+  }
+  std::fflush(stdout);
+  dup2(stdout_, 1);
+  close(stdout_);
+}
+
+std::string GmshSession::last_error() {
+  std::vector<std::string> log;
+  std::string last;
+  gmsh::logger::get(log);
+  for (const auto& l : log)
+    if (l.rfind("Error: ", 0) == 0) last = l.substr(7);
+  return last;
+}
+
+}  // namespace hilo

@@ -1,0 +1,40 @@
+// The gmsh library, kept quiet, and its crashes turned into errors.
+#pragma once
+#include <array>
+#include <csignal>
+#include <exception>
+#include <string>
+
+#include "import/imported.hpp"
+
+namespace hilo {
+
+/// A damaged file can crash gmsh or OpenCASCADE.  While this lives a crash says so in one line and ends with "bad input".
+class CrashGuard {
+ public:
+  explicit CrashGuard(const std::string& path);
+  ~CrashGuard();
+  CrashGuard(const CrashGuard&) = delete;
+  CrashGuard& operator=(const CrashGuard&) = delete;
+
+ private:
+  static constexpr std::array<int, 4> signals_{SIGSEGV, SIGABRT, SIGBUS, SIGFPE};
+  std::array<struct sigaction, 4> before_{};
+  std::terminate_handler terminate_;
+};
+
+/// gmsh as long as this lives.  OpenCASCADE writes to stdout, which is data: what it says there is dropped.
+class GmshSession {
+ public:
+  explicit GmshSession(const ImportOptions& options);
+  ~GmshSession();
+  GmshSession(const GmshSession&) = delete;
+  GmshSession& operator=(const GmshSession&) = delete;
+  /// The last line that gmsh marked as an error, "" without one.
+  static std::string last_error();
+
+ private:
+  int stdout_;
+};
+
+}  // namespace hilo
