@@ -50,7 +50,11 @@ Rgb oklch(double L, double C, double hue) {
 
 Rgb blend(const Rgb& a, const Rgb& b, double w) { return {a.r + w * (b.r - a.r), a.g + w * (b.g - a.g), a.b + w * (b.b - a.b)}; }
 
-Rgb map_colour(ColourMap map, double s) { return map == ColourMap::cividis ? table_colour(cividis, s) : table_colour(viridis, s); }
+Rgb map_colour(ColourMap map, double s) {
+  if (map == ColourMap::cividis) return table_colour(cividis, s);
+  constexpr double dark = 0.09;  // the darkest violet is left out: under a shade it would be black
+  return table_colour(viridis, dark + (1 - dark) * std::clamp(s, 0.0, 1.0));
+}
 
 Rgb category_colour(int n) {
   // Wong's eight (Nature Methods 8, 441, 2011) without black, a little lighter for surfaces; then hues at the golden angle on three

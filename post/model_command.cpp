@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 #include <vtkCamera.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -111,16 +112,30 @@ std::vector<LegendEntry> legend_of(const std::vector<Group>& groups, const Scene
   return entries;
 }
 
-void draw_items(Painter& p, const Options& o, const SceneItems& scene, const Projection& project, const Box& box) {
+/// Which items get their name: all, or where there are many the nearest of those that are alike by name (axle_l1, axle_l2, ...).
+std::vector<bool> with_names(const SceneItems& scene, const Vec3& back) {
+  std::vector<std::string> names;
+  for (const SceneItem& i : scene.items) names.push_back(i.name + " " + i.meaning);
+  std::vector<bool> named(names.size(), false);
+  for (const NameGroup& g : grouped(names, 24)) {
+    const auto nearer = [&](size_t a, size_t b) { return scene.items[a].at.dot(back) < scene.items[b].at.dot(back); };
+    if (g.members.size() > 3)
+      named[*std::max_element(g.members.begin(), g.members.end(), nearer)] = true;
+    else
+      for (const size_t m : g.members) named[m] = true;
+  }
+  return named;
+}
+
+void draw_items(Painter& p, const Options& o, const SceneItems& scene, const Projection& project, const Vec3& back, const Box& box) {
   const double size = 26 * p.scale;
   std::vector<Label> labels;
-  for (const SceneItem& i : scene.items)
-    for (const Vec3& x : i.nodes) p.disc(project(x), 2.1 * p.scale, blend(i.colour, white, 0.15));
+  const std::vector<bool> named = with_names(scene, back);
   for (const SceneItem& i : scene.items) {
     const Vec2 at = project(i.at), to = project(i.to);
     draw_glyph(p, i.glyph, at, project.direction(i.at, i.along), project.direction(i.at, i.above), to, i.colour, size);
     const bool two_ends = i.glyph == Glyph::link || i.glyph == Glyph::coil;
-    labels.push_back({two_ends ? Vec2(0.5 * (at + to)) : at, i.name, i.colour});
+    if (named[static_cast<size_t>(&i - scene.items.data())]) labels.push_back({two_ends ? Vec2(0.5 * (at + to)) : at, i.name, i.colour});
   }
   if (!o.no_names) draw_labels(p, labels, box, 13.5);
 }
@@ -172,6 +187,8 @@ void run(const Options& o) {
   for (size_t k = 0; k < items.bodies.size(); ++k)
     if (items.bodies[k].radii.norm() > 0)
       add_surface(stage, ellipsoid(items.bodies[k]), blend(category_colour(static_cast<int>(k)), white, 0.35));
+  for (const SceneItem& i : items.items)
+    if (!i.nodes.empty()) add_dots(stage, i.nodes, blend(i.colour, white, 0.15), 4.5 * pixel);
   stage->ResetCameraClippingRange();
   const Entry& head = scene.table("scene");
   const std::string title = !o.title.empty()                                   ? o.title
@@ -182,7 +199,7 @@ void run(const Options& o) {
            : fmt::format("{} bodies", items.bodies.size());
   if (file && !file->tagged) line += ", not tagged: all nonlinear";
   picture.paint([&](Painter& p) {
-    draw_items(p, o, items, Projection(stage, frame.model), frame.model);
+    draw_items(p, o, items, Projection(stage, frame.model), fit.back(), frame.model);
     draw_title(p, title, line);
     draw_axes_cross(p, fit.right(), fit.up(), fit.back());
     draw_gravity(p, head.vector3("gravity"), fit);

@@ -95,9 +95,14 @@ std::vector<Step> RunFile::select_steps(const std::string& numbers, const std::s
   if (steps.empty())
     throw Error(path, "holds no field output yet", complete ? "see output.interval of the scene" : "the run is in progress");
   if (!times.empty()) {
+    double spacing = 0;
+    for (size_t k = 1; k < steps.size(); ++k) spacing = std::max(spacing, steps[k].t - steps[k - 1].t);
     std::vector<Step> chosen;
     for (const std::string& text : split(times, ',')) {
       const double t = number(text, "--times");
+      if (t < steps.front().t - 0.5 * spacing || t > steps.back().t + 0.5 * spacing)
+        throw Error(path, fmt::format("no output near t = {} s", text),
+                    fmt::format("there are {} to {} s", steps.front().t, steps.back().t));
       const auto nearer = [&](const Step& a, const Step& b) { return std::abs(a.t - t) < std::abs(b.t - t); };
       chosen.push_back(*std::min_element(steps.begin(), steps.end(), nearer));
     }

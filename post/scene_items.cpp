@@ -134,8 +134,6 @@ class Collector {
     else
       item.at = e.vector3("at");
     if (e.has("axis")) item.along = e.vector3("axis");
-    add_patch(item, e, "a");
-    add_patch(item, e, "b");
   }
 
   /// A torsion spring sits at the joint of its two ends.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "base/args.hpp"
 #include "base/error.hpp"
@@ -30,29 +31,27 @@ struct Picked {
   std::vector<double> t, value;
 };
 
+/// Columns in the order they were asked for.
 std::vector<Picked> pick(const RunFile& run, const std::vector<std::string>& globs) {
   std::vector<Picked> picked;
-  std::vector<std::string> known;
-  for (const std::string& name : run.series_names()) {
-    const Series what = run.describe(name);
-    known.push_back(name);
-    std::vector<size_t> columns;
-    for (size_t c = 0; c < what.column.size(); ++c) {
-      const std::string full = name + "." + what.column[c];
-      const auto hit = [&](const std::string& glob) { return matches(glob, name) || matches(glob, full); };
-      if (std::any_of(globs.begin(), globs.end(), hit)) columns.push_back(c);
-    }
-    if (columns.empty()) continue;
-    const Series s = run.series(name);
-    for (const size_t c : columns) {
-      Picked p{name + "." + s.column[c], s.unit[c], s.t, {}};
-      for (size_t row = 0; row < s.rows(); ++row) p.value.push_back(s.at(row, c));
-      picked.push_back(std::move(p));
-    }
-  }
+  const std::vector<std::string> known = run.series_names();
   for (const std::string& glob : globs) {
-    const auto hit = [&](const Picked& p) { return matches(glob, p.label) || matches(glob, p.label.substr(0, p.label.rfind('.'))); };
-    if (std::any_of(picked.begin(), picked.end(), hit)) continue;
+    bool any = false;
+    for (const std::string& name : known) {
+      const Series what = run.describe(name);
+      std::optional<Series> s;
+      for (size_t c = 0; c < what.column.size(); ++c) {
+        const std::string label = name + "." + what.column[c];
+        if (!matches(glob, name) && !matches(glob, label)) continue;
+        any = true;
+        if (std::any_of(picked.begin(), picked.end(), [&](const Picked& p) { return p.label == label; })) continue;
+        if (!s) s = run.series(name);
+        Picked p{label, what.unit[c], s->t, {}};
+        for (size_t row = 0; row < s->rows(); ++row) p.value.push_back(s->at(row, c));
+        picked.push_back(std::move(p));
+      }
+    }
+    if (any) continue;
     const std::string hint = suggest(glob, known);
     throw Error(run.path, fmt::format("no history \"{}\"", glob), hint.empty() ? "see --list" : hint);
   }

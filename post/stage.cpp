@@ -1,8 +1,10 @@
 #include "post/stage.hpp"
 
 #include <vtkCamera.h>
+#include <vtkCellArray.h>
 #include <vtkLightKit.h>
 #include <vtkLookupTable.h>
+#include <vtkPoints.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkSmartPointer.h>
@@ -16,8 +18,8 @@ namespace {
 void shade(vtkProperty* p, const Rgb& colour, double opacity) {
   p->SetColor(colour.r, colour.g, colour.b);
   p->SetOpacity(opacity);
-  p->SetAmbient(0.40);
-  p->SetDiffuse(0.64);
+  p->SetAmbient(0.50);
+  p->SetDiffuse(0.54);
   p->SetSpecular(0);
 }
 
@@ -98,6 +100,27 @@ vtkActor* add_lines(vtkRenderer* stage, vtkPolyData* data, const Rgb& colour, do
   actor->GetProperty()->SetLineWidth(static_cast<float>(width));
   stage->AddActor(actor);
   return actor;
+}
+
+void add_dots(vtkRenderer* stage, const std::vector<Vec3>& at, const Rgb& colour, double size) {
+  const auto points = vtkSmartPointer<vtkPoints>::New();
+  const auto vertices = vtkSmartPointer<vtkCellArray>::New();
+  for (const Vec3& x : at) {
+    const vtkIdType id = points->InsertNextPoint(x.data());
+    vertices->InsertNextCell(1, &id);
+  }
+  const auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetVerts(vertices);
+  const auto mapper = mapper_of(data, {});
+  mapper->SetRelativeCoincidentTopologyPointOffsetParameter(-12);
+  const auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  shade(actor->GetProperty(), colour, 1);
+  actor->GetProperty()->LightingOff();
+  actor->GetProperty()->SetPointSize(static_cast<float>(size));
+  actor->GetProperty()->RenderPointsAsSpheresOn();
+  stage->AddActor(actor);
 }
 
 void add_grid(vtkRenderer* stage, const Skin& skin, double width, double opacity, double pixels_per_metre) {

@@ -26,6 +26,7 @@ void add_skin(vtkRenderer* stage, const Skin& skin, const Look& look);
 vtkActor* add_surface(vtkRenderer* stage, vtkPolyData* data, const Rgb& colour, double opacity = 1);
 vtkActor* add_lines(vtkRenderer* stage, vtkPolyData* data, const Rgb& colour, double width, double opacity = 1);
 
+void add_dots(vtkRenderer* stage, const std::vector<Vec3>& at, const Rgb& colour, double size);
 /// Borders of the facets, fading where they are so near to each other that they would hide the colours.  Aim the camera first.
 void add_grid(vtkRenderer* stage, const Skin& skin, double width, double opacity, double pixels_per_metre);
 /// Height of the layer in pixels over the height it shows at the focal point  [pixel/m].

@@ -141,7 +141,7 @@ void Builder::add_point_masses() {
     out_->mass += m;
     if (found.body > 0) {
       Body& body = out_->bodies[found.body];
-      const Vec3 at = e.has("at") ? e.vector3("at") : found.nodes.empty() || found.is_region ? body.Xc : mean_of(found.nodes);
+      const Vec3 at = e.has("at") ? e.vector3("at") : found.n_global == 0 || found.is_region ? body.Xc : mean_of(found.nodes);
       const double total = body.mass + m;
       const Vec3 d = at - body.Xc, shift = m / total * d;
       // about the new centre: J + mu d d^T with the reduced mass mu
@@ -193,7 +193,7 @@ void Builder::add_loads() {
     };
     if (e.kind == "force") {
       load.value = e.vector3("force");
-      if (found.body >= 0 && (found.nodes.empty() || e.has("at") || found.is_region)) {
+      if (found.body >= 0 && (found.n_global == 0 || e.has("at") || found.is_region)) {
         load.kind = Load::Kind::body_force;
         load.body = found.body;
         if (e.has("at")) load.arm = e.vector3("at") - out_->bodies[found.body].Xc;
@@ -243,7 +243,7 @@ void Builder::add_stations() {
       if (found.body >= 0) {
         s.body = found.body;
         const Body& body = out_->bodies[s.body];
-        const Vec3 at = e.has("at") ? e.vector3("at") : found.nodes.empty() || found.is_region ? body.Xc : mean_of(found.nodes);
+        const Vec3 at = e.has("at") ? e.vector3("at") : found.n_global == 0 || found.is_region ? body.Xc : mean_of(found.nodes);
         s.arm = at - body.Xc;
       } else if (e.has("at") && !s.sensor) {
         int nearest = -1;  // node of the set nearest to the point

@@ -155,13 +155,11 @@ void System::commit(const Config& q) {
 }
 
 void System::number() {
-  region_nodes.clear();
-  std::vector<int> seen(X.size(), -1);
-  for (const SolidBatch& b : batches) {
-    region_nodes.emplace_back();
+  region_nodes.assign(mesh ? mesh->mesh.region_name.size() : 0, {});  // every rank has an entry for every region
+  std::vector<char> seen(X.size(), 0);
+  for (const SolidBatch& b : batches)
     for (int i : b.nodes)
-      if (follower[i] < 0 && seen[i] < 0) seen[i] = 1, region_nodes.back().push_back(i);
-  }
+      if (follower[i] < 0 && !seen[i]) seen[i] = 1, region_nodes[b.region].push_back(i);
   // blocks: nodes, then bodies, then multipliers
   const int n = static_cast<int>(X.size());
   node_block.assign(n, -1);

@@ -117,7 +117,7 @@ class System {
   std::vector<Load> loads;
   std::vector<Motion> motions;
   std::vector<Station> stations;
-  std::vector<std::vector<int>> region_nodes;            // free nodes of each flexible region, for the predictor
+  std::vector<std::vector<int>> region_nodes;            // free nodes of each region, for the predictor
   std::vector<std::pair<int, double>> point_masses;      // node, mass [kg], owned nodes
   Vec3 gravity = Vec3::Zero();
   double length = 1;                           // size of the scene [m]

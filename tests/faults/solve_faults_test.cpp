@@ -133,10 +133,17 @@ TEST_F(BadScene, OnADiskThatFillsAtTheStartOrOnTheWayLeavesNothingBehind) {
   ASSERT_EQ(work.run("hilo-solve scene.toml tags.h5 --quiet -o run.h5").exit, 0);
   const auto size = static_cast<int>(std::filesystem::file_size(folder / "run.h5") / 1024);
   for (const char* name : {"run.h5", "run.xdmf", "run.json"}) std::filesystem::remove(folder / name);
-  for (const int ranks : {1, 2})
-    for (const int limit : {1, 8, size / 2, size - 1}) {  // the ranks are limited, not mpirun, which writes files of its own
-      const std::string command =
-          "bash -c \"trap '' XFSZ; ulimit -f " + std::to_string(limit) + "; exec hilo-solve scene.toml tags.h5 --quiet -o run.h5\"";
-      refused(command, resources, "run.h5: ...", ranks);
-    }
+  for (const int limit : {1, 8, size / 2, size - 1})
+    refused("hilo-solve scene.toml tags.h5 --quiet -o run.h5", resources, "run.h5: ...", 1,
+            "trap '' XFSZ; ulimit -f " + std::to_string(limit) + "; ");
+
+  // A real small disk, for several ranks too: only root may mount one.
+  std::filesystem::create_directory(folder / "disk");
+  for (const int limit : {4, size / 2, size}) {
+    if (work.run("mount -t tmpfs -o size=" + std::to_string(limit / 4 * 4) + "k tmpfs disk").exit != 0)
+      GTEST_SKIP() << "cannot mount a small disk here";
+    for (const int ranks : {1, 2})
+      refused("timeout 60 hilo-solve scene.toml tags.h5 --quiet -o disk/run.h5", resources, "disk/run.h5: ...", ranks);
+    ASSERT_EQ(work.run("umount disk").exit, 0);
+  }
 }

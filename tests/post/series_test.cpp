@@ -42,9 +42,9 @@ TEST(Series, csv_holds_the_very_numbers_that_were_stored) {
 }
 
 TEST(Series, takes_single_columns_and_globs_and_writes_to_stdout) {
-  const Ran ran = post(sample_place(), "series run.h5 'joint.*.Fz' sensor.seat.x");
+  const Ran ran = post(sample_place(), "series run.h5 sensor.seat.x 'joint.*.Fz'");
   ASSERT_EQ(ran.exit, 0) << ran.err;
-  EXPECT_EQ(ran.out.substr(0, ran.out.find('\n')), "t [s],joint.trunnion.Fz [N],sensor.seat.x [g]");
+  EXPECT_EQ(ran.out.substr(0, ran.out.find('\n')), "t [s],sensor.seat.x [g],joint.trunnion.Fz [N]");
   EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 202);
 }
 

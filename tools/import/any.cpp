@@ -31,10 +31,12 @@ void check_defines(const std::string& path, const ImportOptions& options) {
   std::set<std::string> words;
   std::string word;
   for (const char c : text + ' ')
-    if (std::isalnum(static_cast<unsigned char>(c)) || c == '_')
+    if (std::isalnum(static_cast<unsigned char>(c)) || c == '_') {
       word += c;
-    else if (!word.empty())
-      words.insert(word), word.clear();
+    } else {
+      if (!word.empty() && !std::isdigit(static_cast<unsigned char>(word[0]))) words.insert(word);
+      word.clear();
+    }
   if (words.count("Include")) return;
   for (const auto& [name, value] : options.define)
     if (!words.count(name))

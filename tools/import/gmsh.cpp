@@ -101,7 +101,7 @@ class GmshReader {
     }
     gmsh::model::mesh::generate(volumes.empty() ? 1 : 3);
     if (const auto e = GmshSession::last_error(); !e.empty()) throw Error(path_, "gmsh cannot mesh it: " + e, "try another --size");
-    if (o_.order == 2 && !volumes.empty()) gmsh::model::mesh::setOrder(2);
+    if (o_.order == 2 && !volumes.empty()) gmsh::model::mesh::setOrder(2), in_.curved = true;
     for (const auto& [dim, tag] : volumes) {
       std::vector<int> types;
       std::vector<std::vector<std::size_t>> tags, nodes;

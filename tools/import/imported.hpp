@@ -36,6 +36,7 @@ struct Imported {
   Mesh mesh;                       // numbers of the deck; region -1 until assign_regions
   std::vector<std::string> notes;  // said on stderr, one line each
   std::vector<NotRead> not_read;
+  bool curved = false;               // quadratic cells made here follow curved surfaces, which may turn some inside out
   std::set<std::string> as_listed;  // node sets that order 2 must not complete: the deck's force acts on each of their nodes
 
   void skip(const std::string& what, const std::string& place, std::int64_t count = 1, bool output = false);
@@ -96,6 +97,8 @@ Imported read_any(const std::string& path, const ImportOptions& options);
 void finish(Imported& in, const std::string& file, const ImportOptions& options);
 /// tet4, wedge6, hex8 to tet10, wedge15, hex20 with straight edges.
 void raise_order(Imported& in);
+/// Curved cells that are inverted get straight edges, and those their neighbours become inverted by; returns how many.
+std::int64_t straighten(Mesh& mesh);
 /// Nodes nearer than `distance` become one; returns how many went.
 std::int64_t merge_nodes(Mesh& mesh, double distance);
 /// Nodes of no cell are dropped, from the sets too; returns how many.

@@ -92,4 +92,23 @@ void raise_order(Imported& in) {
                                  m.n_nodes() - n_linear));
 }
 
+std::int64_t straighten(Mesh& m) {
+  std::vector<char> done(m.shape.size(), 0);
+  std::int64_t count = 0;
+  for (bool again = true; again;) {
+    again = false;
+    for (std::int64_t c = 0; c < m.n_cells(); ++c) {
+      const auto s = static_cast<Shape>(m.shape[c]);
+      if (done[c] || info(s).n_nodes == info(s).n_corners) continue;
+      if (const auto q = quality(m, c); q.volume > 0 && q.scaled_jacobian > 0) continue;
+      const auto& edges = edges_of(s);
+      for (size_t i = 0; i < edges.size(); ++i)
+        m.X[m.cell(c)[info(s).n_corners + static_cast<int>(i)]] = (m.X[m.cell(c)[edges[i][0]]] + m.X[m.cell(c)[edges[i][1]]]) / 2;
+      done[c] = again = true;
+      ++count;
+    }
+  }
+  return count;
+}
+
 }  // namespace hilo

@@ -1,0 +1,87 @@
+// Floors (docs/design.md): base 0; model, physics 1; system, linear 2; dynamics 3; tools, post and main.cpp 4.  No include points upward or
+// to a neighbour on the same floor, and the arrows are those that are drawn.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+namespace {
+namespace fs = std::filesystem;
+
+const std::map<std::string, std::set<std::string>> may_include{
+    {"base", {"base"}},
+    {"model", {"base", "model"}},
+    {"physics", {"base", "physics"}},
+    {"linear", {"base", "linear", "model/comm.hpp"}},  // communicators come from model; matrices know neither files nor elements
+    {"system", {"base", "model", "physics", "linear", "system"}},
+    {"dynamics", {"base", "model", "physics", "linear", "system", "dynamics"}},
+    {"main", {"base", "model", "physics", "linear", "system", "dynamics"}},
+    {"tools", {"base", "model"}},
+    {"post", {"base", "model"}},
+};
+const std::set<std::string> floors{"base", "model", "physics", "linear", "system", "dynamics"};
+
+/// Includes in quotes of every source below a folder, with the file that has them.
+std::vector<std::pair<fs::path, std::string>> includes(const fs::path& folder) {
+  std::vector<std::pair<fs::path, std::string>> found;
+  const std::regex line(R"(^\s*#\s*include\s*[<"]([^">]+)[">])");
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".hpp" && entry.path().extension() != ".cpp") continue;
+    std::ifstream file(entry.path());
+    for (std::string text; std::getline(file, text);)
+      if (std::smatch m; std::regex_search(text, m, line)) found.emplace_back(entry.path(), m[1]);
+  }
+  return found;
+}
+
+TEST(Floors, NoIncludePointsUpwardOrSideways) {
+  const fs::path root = HILO_SOURCE;
+  int seen = 0;
+  const auto check = [&](const fs::path& folder, const std::function<std::string(const fs::path&)>& floor_of) {
+    for (const auto& [file, included] : includes(folder)) {
+      const std::string target = included.substr(0, included.find('/'));
+      if (included.find('/') == std::string::npos || !floors.contains(target)) continue;
+      const std::string own = floor_of(file);
+      ASSERT_TRUE(may_include.contains(own)) << file << " is on no floor";
+      const auto& allowed = may_include.at(own);
+      EXPECT_TRUE(allowed.contains(target) || allowed.contains(included)) << fs::relative(file, root) << " includes " << included;
+      ++seen;
+    }
+  };
+  check(root / "solver", [&](const fs::path& file) {
+    const fs::path inside = fs::relative(file, root / "solver");
+    return inside == "main.cpp" ? std::string("main") : inside.begin()->string();
+  });
+  check(root / "tools", [](const fs::path&) { return std::string("tools"); });
+  check(root / "post", [](const fs::path&) { return std::string("post"); });
+  EXPECT_GT(seen, 100);
+}
+
+TEST(Floors, EveryFolderOfTheSolverIsOne) {
+  for (const auto& entry : fs::directory_iterator(fs::path(HILO_SOURCE) / "solver"))
+    if (entry.is_directory()) {
+      EXPECT_TRUE(floors.contains(entry.path().filename().string())) << entry.path();
+    }
+}
+
+// The heavy libraries stay where they belong: PETSc in linear, VTK in post, HDF5 in model, gmsh and METIS in tools.
+TEST(Floors, LibrariesAreIncludedOnlyWhereTheyBelong) {
+  const fs::path root = HILO_SOURCE;
+  const std::vector<std::pair<std::regex, std::string>> home{{std::regex("^petsc.*"), "solver/linear"}, {std::regex("^vtk[A-Z_].*"), "post"}, {std::regex("^hdf5\\.h$|^H5.*"), "solver/model"},
+                                                             {std::regex("^gmsh.*"), "tools"},          {std::regex("^metis.*"), "tools"},    {std::regex("^toml\\+\\+.*"), "solver/model"},
+                                                             {std::regex("^mpi\\.h$"), "solver/model"}};
+  for (const char* folder : {"solver", "tools", "post"})
+    for (const auto& [file, included] : includes(root / folder))
+      for (const auto& [library, place] : home)
+        if (std::regex_match(included, library)) {
+          const std::string at = fs::relative(file, root).string();
+          EXPECT_TRUE(at.starts_with(place) || (included == "mpi.h" && at.starts_with("solver/linear"))) << at << " includes " << included;
+        }
+}
+
+}  // namespace

@@ -1,0 +1,174 @@
+// Springs and dampers: discrete gradients of their potentials, never a source of energy.
+#include "physics/connectors.hpp"
+
+namespace hilo::test {
+namespace {
+
+using Values = SpringLaw::Values;
+
+struct Kind {
+  std::string name;
+  std::function<Connector(const Config&)> make;
+  std::function<Values(int)> state;  // admissible measures
+};
+
+std::vector<Kind> kinds() {
+  const Carrier a{1, -1}, b{2, -1};
+  const auto any = [](int seed) {
+    Values e{};
+    for (int i = 0; i < max_measures; ++i) e[i] = 0.7 * scatter(seed + 13 * i);
+    return e;
+  };
+  return {{"axial", [=](const Config& q) { return make_axial_spring(a, b, q, joint_point, other_point, 250, 30, 1.1); },
+           [](int seed) { return Values{std::pow(1 + 0.6 * scatter(seed), 2)}; }},
+          {"torsion", [=](const Config& q) { return make_torsion_spring(a, b, q, some_frame(), 40, 3, 0.2); },
+           [](int seed) {
+             const double t = 1.5 * scatter(seed);
+             return Values{std::sin(t), std::cos(t)};
+           }},
+          {"bushing", [=](const Config& q) { return make_bushing(a, b, q, joint_point, some_frame(), Vec3(100, 200, 50), Vec3(3, 0, 5), Vec3(20, 10, 30), Vec3(1, 2, 3)); }, any},
+          {"support", [=](const Config& q) { return make_support(a, b, q, joint_point, some_frame(), 900, 0, 0.1, Vec3(70, 20, 0), Vec3(2, 1, 0)); }, any}};
+}
+
+class Spring : public testing::TestWithParam<Kind> {
+ protected:
+  const Connector c = GetParam().make(somewhere(3));
+  static double dot(const std::array<double, max_measures>& s, const Values& from, const Values& to) {
+    double sum = 0;
+    for (int i = 0; i < max_measures; ++i) sum += s[i] * (to[i] - from[i]);
+    return sum;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(EveryKind, Spring, testing::ValuesIn(kinds()), [](const auto& p) { return p.param.name; });
+
+// Truth: s.(e1 - e0) = W(e1) - W(e0) for finite steps, in and out of contact too.
+TEST_P(Spring, WorkOfAStepIsTheChangeOfItsEnergy) {
+  for (int seed = 0; seed < 40; ++seed) {
+    const Values e0 = GetParam().state(seed), e1 = GetParam().state(1000 + seed);
+    Response step, start;
+    c.law->elastic(e0, e1, step), c.law->elastic(e0, e0, start);
+    EXPECT_NEAR(dot(step.s, e0, e1), step.energy - start.energy, 1e-13 * (step.energy + start.energy + 1));
+    EXPECT_GE(step.energy, 0);
+  }
+}
+
+// Truth: D = ds/de1; central differences of step 1e-6 leave 1e-9 of truncation and 1e-9 of round-off.
+TEST_P(Spring, TangentIsTheDerivativeOfItsForce) {
+  for (int seed = 0; seed < 40; ++seed) {
+    const Values e0 = GetParam().state(seed), e1 = GetParam().state(1000 + seed);
+    const double h = 0.1;
+    Response at;
+    c.law->elastic(e0, e1, at), c.law->viscous(e0, e1, h, at);
+    for (int j = 0; j < max_measures; ++j) {
+      Values up = e1, down = e1;
+      up[j] += 1e-6, down[j] -= 1e-6;
+      Response p, m;
+      c.law->elastic(e0, up, p), c.law->viscous(e0, up, h, p);
+      c.law->elastic(e0, down, m), c.law->viscous(e0, down, h, m);
+      for (int i = 0; i < max_measures; ++i) EXPECT_NEAR(at.D[i][j], (p.s[i] - m.s[i]) / 2e-6, 1e-5 * (1 + std::abs(at.D[i][j]))) << i << j;
+    }
+  }
+}
+
+// Truth: a damper's force is a positive multiple of its rate, and what it does not give back is what it says it dissipated.
+TEST_P(Spring, DamperTakesEnergyAndSaysHowMuch) {
+  double total = 0;
+  for (int seed = 0; seed < 40; ++seed) {
+    const Values e0 = GetParam().state(seed), e1 = GetParam().state(1000 + seed);
+    Response r;
+    c.law->viscous(e0, e1, 0.05, r);
+    EXPECT_GE(r.dissipated, -1e-13);
+    EXPECT_NEAR(dot(r.s, e0, e1), r.dissipated, 1e-12 * (1 + r.dissipated));
+    total += r.dissipated;
+  }
+  EXPECT_GT(total, 0);
+}
+
+// Truth: Hooke at a standstill: W = k/2 x^2, force k x along the line that shortens the spring.
+TEST(AxialSpring, PullsWithItsStiffnessTimesItsExtension) {
+  const Config q = somewhere(3);
+  const double length = (other_point - joint_point).norm(), k = 250, free = 1.1;
+  const Connector c = make_axial_spring({1, -1}, {2, -1}, q, joint_point, other_point, k, 0, free);
+  const Values e{c.value(0, q)};
+  Response r;
+  c.law->elastic(e, e, r);
+  ConnectorGradient g;
+  gradient(c, q, g);
+  const Vec6 f = force_on_b(c, g, r.s.data(), q);
+  const Vec3 expected = -k * (length - free) * (other_point - joint_point) / length;
+  EXPECT_LT((f.head<3>() - expected).norm(), 1e-12 * expected.norm());
+  EXPECT_LT(f.tail<3>().norm(), 1e-12 * expected.norm());
+  EXPECT_NEAR(r.energy, k / 2 * (length - free) * (length - free), 1e-12);
+}
+
+// Truth: the angle of a spring that has been wound up three turns is 6 pi, not 0.
+TEST(TorsionSpring, CountsItsTurns) {
+  const Config q = somewhere(3);
+  const Connector c = make_torsion_spring({1, -1}, {2, -1}, q, some_frame(), 40, 0, 0);
+  const Vec3 axis = some_frame().col(2);
+  double angle = 0;
+  Values before{c.value(0, q), c.value(1, q)};
+  double work = 0;
+  while (angle < 6 * M_PI - 1e-9) {
+    angle += M_PI / 4;
+    Config turned = q;
+    turned.R[2] = turn(angle * axis) * q.R[2];
+    const Values now{c.value(0, turned), c.value(1, turned)};
+    Response r;
+    c.law->elastic(before, now, r);
+    work += r.s[0] * (now[0] - before[0]) + r.s[1] * (now[1] - before[1]);
+    EXPECT_NEAR(r.energy, 20 * angle * angle, 1e-10 * r.energy);
+    EXPECT_NEAR(work, r.energy, 1e-11 * r.energy);
+    c.law->commit(now);
+    before = now;
+  }
+  ConnectorGradient g;
+  Response r;
+  c.law->elastic(before, before, r);
+  gradient(c, q, g);
+  const Vec6 f = force_on_b(c, g, r.s.data(), q);
+  EXPECT_LT((f.tail<3>() + 40 * 6 * M_PI * axis).norm(), 1e-9) << "moment on b turns it back";
+}
+
+// Truth: the bushing's small-displacement limit is six independent springs in its frame.
+TEST(Bushing, IsSixSpringsForSmallMotions) {
+  const Config q = somewhere(3);
+  const Mat3 frame = some_frame();
+  const Vec3 k(100, 200, 50), ka(20, 10, 30), u(1e-6, -2e-6, 3e-6), w(2e-6, 1e-6, -1e-6);
+  const Connector c = make_bushing({1, -1}, {2, -1}, q, joint_point, frame, k, Vec3::Zero(), ka, Vec3::Zero());
+  Config p = q;
+  const Mat3 B = turn(frame * w);
+  p.c[2] = joint_point + B * (q.c[2] - joint_point) + frame * u, p.R[2] = B * q.R[2];
+  Values e{};
+  for (int m = 0; m < 6; ++m) e[m] = c.value(m, p);
+  Response r;
+  c.law->elastic(e, e, r);
+  ConnectorGradient g;
+  gradient(c, p, g);
+  const Vec6 f = force_on_b(c, g, r.s.data(), p);
+  EXPECT_LT((frame.transpose() * f.head<3>() + k.cwiseProduct(u)).norm(), 1e-9);
+  EXPECT_LT((frame.transpose() * f.tail<3>() + ka.cwiseProduct(w)).norm(), 1e-9);
+}
+
+// Truth: a unilateral contact pushes when closed, never pulls, whatever its damper.
+TEST(Support, NeverPulls) {
+  const Config q = somewhere(3);
+  const Connector c = make_support({1, -1}, {2, -1}, q, joint_point, some_frame(), 900, 80, 0, Vec3::Zero(), Vec3::Zero());
+  for (int i = -10; i <= 10; ++i)
+    for (int j = -10; j <= 10; ++j) {
+      Response r;
+      const Values e0{0.01 * i}, e1{0.01 * j};
+      c.law->elastic(e0, e1, r), c.law->viscous(e0, e1, 0.01, r);
+      EXPECT_LE(r.s[0], 1e-12) << "gap from " << e0[0] << " to " << e1[0];
+      if (i > 0 && j > 0) {
+        EXPECT_EQ(r.s[0], 0);
+      }
+      Response start;
+      c.law->elastic(e0, e0, start);
+      EXPECT_NEAR(r.s[0] * (e1[0] - e0[0]), r.energy - start.energy + r.dissipated, 1e-12);
+      EXPECT_GE(r.dissipated, -1e-12);
+    }
+}
+
+}  // namespace
+}  // namespace hilo::test

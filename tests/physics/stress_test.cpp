@@ -1,0 +1,130 @@
+// Recovered stresses against the closed forms of the laws, and the two-node bar.
+#include "physics/stress.hpp"
+
+#include "physics/cells.hpp"
+
+namespace hilo::test {
+namespace {
+
+class Stress : public testing::TestWithParam<Shape> {
+ protected:
+  std::vector<Vec3> X = [this] {
+    switch (GetParam()) {
+      case Shape::tet4: return some_cell<Tet4>(0.08);
+      case Shape::tet10: return some_cell<Tet10>(0.08);
+      case Shape::wedge6: return some_cell<Wedge6>(0.08);
+      case Shape::wedge15: return some_cell<Wedge15>(0.08);
+      case Shape::hex8: return some_cell<Hex8>(0.08);
+      default: return some_cell<Hex20>(0.08);
+    }
+  }();
+};
+INSTANTIATE_TEST_SUITE_P(EveryShape, Stress, testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20),
+                         [](const auto& p) { return std::string(hilo::info(p.param).name); });
+
+Vec6 voigt(const Mat3& s) {
+  Vec6 v;
+  v << s(0, 0), s(1, 1), s(2, 2), s(1, 2), s(0, 2), s(0, 1);
+  return v;
+}
+
+// Truth: a homogeneous F gives one stress everywhere: J sigma = F (lambda tr E + 2 mu E) F^T, or mu (b - I) + lambda ln J I.
+TEST_P(Stress, OfAHomogeneousDeformationIsTheClosedForm) {
+  Mat3 F;
+  F << 1.2, 0.1, -0.05, 0.2, 0.9, 0.1, -0.1, 0.05, 1.1;
+  std::vector<Vec3> x;
+  for (const Vec3& p : X) x.push_back(F * p + Vec3(1, 2, 3));
+  const double J = F.determinant();
+  const Mat3 I = Mat3::Identity(), E = (F.transpose() * F - I) / 2;
+  const Mat3 stvk = F * (rubber.lambda * E.trace() * I + 2 * rubber.mu * E) * F.transpose() / J;
+  const Mat3 neo = (rubber.mu * (F * F.transpose() - I) + rubber.lambda * std::log(J) * I) / J;
+  for (const auto& [law, exact] : {std::pair{Law::stvk, stvk}, {Law::neo_hookean, neo}}) {
+    std::vector<Vec6> s(X.size());
+    nodal_stress(GetParam(), law, rubber, X, x, s);
+    for (const Vec6& at : s) EXPECT_LT((at - voigt(exact)).norm(), 1e-12 * exact.norm());
+  }
+}
+
+// Truth: no strain, no stress.
+TEST_P(Stress, OfARigidMotionIsZero) {
+  std::vector<Vec3> x;
+  for (const Vec3& p : X) x.push_back(Eigen::AngleAxisd(2, Vec3(1, 1, -1).normalized()).toRotationMatrix() * p + Vec3(1, 2, 3));
+  for (const Law law : {Law::stvk, Law::neo_hookean}) {
+    std::vector<Vec6> s(X.size());
+    nodal_stress(GetParam(), law, rubber, X, x, s);
+    for (const Vec6& at : s) EXPECT_LT(at.norm(), 1e-13 * rubber.mu);
+  }
+}
+
+// Truth: pure bending of a slender brick, u_x = -k x y, u_y = k x^2/2 + nu k (y^2 - z^2)/2, u_z = nu k y z, has sigma_xx = -E k y alone:
+// linear in y, so one quadratic cell, and the assumed strains of the one-point hexahedron, hold it exactly in the small-strain limit.
+TEST(BendingStress, IsLinearOverTheHeightOfOneHexahedron) {
+  const double E = 2e11, nu = 0.3, k = 1e-6;
+  const Lame c = lame(E, nu);
+  for (const Shape shape : {Shape::hex8, Shape::hex20}) {
+    auto X = shape == Shape::hex8 ? local_nodes<Hex8>() : local_nodes<Hex20>();
+    std::vector<Vec3> x;
+    for (Vec3& p : X) {
+      p = Vec3(0.3 * p[0], 0.1 * p[1], 0.05 * p[2]);
+      x.push_back(p + k * Vec3(-p[0] * p[1], p[0] * p[0] / 2 + nu * (p[1] * p[1] - p[2] * p[2]) / 2, nu * p[1] * p[2]));
+    }
+    std::vector<Vec6> s(X.size());
+    nodal_stress(shape, Law::stvk, c, X, x, s);
+    for (size_t a = 0; a < X.size(); ++a) {
+      Vec6 exact = Vec6::Zero();
+      exact[0] = -E * k * X[a][1];
+      EXPECT_LT((s[a] - exact).norm(), 1e-5 * E * k * 0.1) << info(shape).name << " node " << a;
+    }
+  }
+}
+
+TEST(VonMises, IsTheStressOfATensionAndRootThreeOfAShear) {
+  Vec6 s = Vec6::Zero();
+  s[0] = -3;
+  EXPECT_DOUBLE_EQ(von_mises(s), 3);
+  s[1] = s[2] = -3;
+  EXPECT_DOUBLE_EQ(von_mises(s), 0);
+  s.setZero(), s[4] = 2;
+  EXPECT_DOUBLE_EQ(von_mises(s), 2 * std::sqrt(3.0));
+}
+
+// Truth: W = E A L e^2/2 with e = (l^2/L^2 - 1)/2; work over a finite step is its change, K its second derivative in the mid-point sense.
+TEST(Bar, ForceIsADiscreteGradientOfItsEnergy) {
+  const double Y = 7e10, A = 2e-4, rho = 2700;
+  alignas(64) double X[6] = {0, 0, 0, 1, 2, -1}, x0[6] = {0.1, 0, 0, 1.2, 2, -1}, x1[6] = {0, 0.5, 0, -0.8, 2, 1.3}, f[6], K[36], W, W0, unused, a[6] = {};
+  const SolidKernel kernel = solid_kernel(Shape::bar2, Law::stvk);
+  ASSERT_EQ(kernel.width, 1);
+  KernelCall call{};
+  call.X = X, call.x0 = x0, call.x1 = x1, call.elastic = 1, call.c = lame(Y, 0.3), call.f = f, call.K = K, call.energy = &W, call.least_det = &unused, call.area = A;
+  call.density = rho, call.a = a;
+  kernel.call(call);
+  const std::vector<double> force(f, f + 6), tangent(K, K + 36);
+  const auto energy_of = [&](const double* x) {
+    const double L2 = 6, l2 = std::pow(x[3] - x[0], 2) + std::pow(x[4] - x[1], 2) + std::pow(x[5] - x[2], 2);
+    return Y * A * std::sqrt(L2) / 8 * std::pow(l2 / L2 - 1, 2);
+  };
+  EXPECT_NEAR(W, energy_of(x1), 1e-13 * W);
+  W0 = energy_of(x0);
+  double work = 0;
+  for (int i = 0; i < 6; ++i) work += force[i] * (x1[i] - x0[i]);
+  EXPECT_NEAR(work, W - W0, 1e-12 * std::abs(W - W0));
+  const double h = 1e-5;  // central differences: h^2 relative truncation, 1e-16/h round-off
+  for (int j = 0; j < 6; ++j) {
+    double side[2][6];
+    for (int s = 0; s < 2; ++s) {
+      const double keep = x1[j];
+      x1[j] += s ? h : -h;
+      kernel.call(call);
+      x1[j] = keep;
+      std::copy(f, f + 6, side[s]);
+    }
+    for (int i = 0; i < 6; ++i) EXPECT_NEAR(tangent[6 * i + j], (side[1][i] - side[0][i]) / (2 * h), 1e-8 * largest(tangent));
+  }
+  for (double& v : a) v = 1;
+  call.elastic = 0;
+  kernel.call(call);
+  EXPECT_NEAR(f[0] + f[3], rho * A * std::sqrt(6.0), 1e-13 * rho);
+}
+
+}  // namespace
+}  // namespace hilo::test

@@ -1,0 +1,91 @@
+// benchmarks.md O1.  Exact by elliptic functions: T = 4 sqrt(L/g) K(1/sqrt 2); P1(10 s) = (-0.2750874626, -0.9614192051); the rod carries
+// 3 m g = 29.43 N at the bottom whatever its length (energy m g L gives v^2/L = 2 g).
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+const Vec3 exact_at_10(-0.2750874626, -0.9614192051, 0);
+
+double error_at_10(const Case& c, const std::string& options, const std::string& step) {
+  const Results r = c.solved(options + " --set time.step=" + step);
+  return (r.at("probe/P1", 10).head<3>() - exact_at_10).norm();
+}
+
+TEST(Pendulum, PositionAfterTenSecondsConvergesToTheExactOneAtSecondOrder) {
+  const Case c("pendulum");
+  const double e2 = error_at_10(c, "", "2e-3"), e1 = error_at_10(c, "", "1e-3"), e05 = error_at_10(c, "", "5e-4");
+  EXPECT_LT(e1, 1e-4) << "at h = 1e-3";
+  EXPECT_LT(e05, 2.5e-5) << "at h = 5e-4";
+  EXPECT_NEAR(e2 / e1, 4, 0.05);
+  EXPECT_NEAR(e1 / e05, 4, 0.05);
+}
+
+TEST(Pendulum, GeneralizedAlphaConvergesAtSecondOrderInPosition) {
+  const Case c("pendulum");
+  const std::string ga = "--set 'time.integrator=\"generalized-alpha\"' --set time.rho=0.8";
+  const double e2 = error_at_10(c, ga, "2e-3"), e1 = error_at_10(c, ga, "1e-3"), e05 = error_at_10(c, ga, "5e-4");
+  EXPECT_LT(e05, 1e-4);
+  EXPECT_NEAR(e2 / e1, 4, 0.15);
+  EXPECT_NEAR(e1 / e05, 4, 0.15);
+}
+
+TEST(Pendulum, RodCarriesThreeTimesTheWeightAtTheBottom) {
+  const Case c("pendulum");
+  const Results r = c.solved("--set time.step=5e-4");
+  EXPECT_NEAR(r.peak("joint/pin", 0, 3), 29.43, 29.43 * 1e-5);  // the instants recorded miss the bottom by up to h/2: (2.2e-3)^2/2 rad
+  // along the path: F = m (v^2/L - g.r/L) towards the pivot, from position alone: v^2 = -2 g y
+  const auto x = r.history("probe/P1"), f = r.history("joint/pin");
+  for (Eigen::Index i = 10; i + 10 < x.rows(); i += 97) {
+    const double y = x(i, 1);
+    EXPECT_NEAR(f.row(i).head(3).norm(), -3 * 9.81 * y, 1e-4 * 29.43) << "t = " << r.t()[i];
+  }
+}
+
+TEST(Pendulum, EnergyFromPositionAndVelocityStaysBelowTheIFToMMLimitByFarAndTheRodKeepsItsLength) {
+  const Case c("pendulum");
+  const Results r = c.solved("--set time.step=1e-2");
+  const auto x = r.history("probe/P1");
+  double worst = 0, length = 0;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    worst = std::max(worst, std::abs(x.row(i).segment(3, 3).squaredNorm() / 2 + 9.81 * x(i, 1)));
+    length = std::max(length, std::abs(x.row(i).head(3).norm() - 1));
+  }
+  EXPECT_LT(worst, 1e-10) << "IFToMM asks for 5e-5 J";
+  EXPECT_LT(length, 1e-12);
+}
+
+// O1 variants: L = 0.5 m from 90 degrees T = 1.6743171 s (Code_Aster SDNL100), L = 1 m from 60 degrees T = 2.1528747 s (Altair MotionSolve).
+TEST(Pendulum, PeriodsOfThePublishedVariantsAreMet) {
+  const Case c("pendulum");
+  const auto period = [&](const std::string& com, double end) {
+    const Results r = c.solved("--set time.step=1e-3 --set body.bob.com=" + com + " --set time.end=" + std::to_string(end));
+    const auto x = r.history("probe/P1");
+    std::vector<double> turns;  // velocity through zero: the two ends of the swing
+    for (Eigen::Index i = 2; i + 1 < x.rows(); ++i)
+      if (x(i, 3) * x(i + 1, 3) <= 0 && x(i, 1) > -0.99 * x.row(0).head(3).norm() && x(i, 4) * x(i + 1, 4) <= 0)
+        turns.push_back(r.t()[i] + (r.t()[i + 1] - r.t()[i]) * x(i, 3) / (x(i, 3) - x(i + 1, 3)));
+    EXPECT_GE(turns.size(), 2u);
+    return turns.size() < 2 ? 0 : turns[1] - 0;  // released at rest at t = 0: the second end of the swing is a period later
+  };
+  EXPECT_NEAR(period("[-0.5,0,0]", 2.5), 1.6743171, 2e-6);
+  EXPECT_NEAR(period("[-0.8660254037844386,-0.5,0]", 2.5), 2.1528747, 2e-6);
+}
+
+// B10 of the stability notes: energy stays where it is over 1e5 steps of 0.01 s (1000 s); summed from position and velocity.
+TEST(Pendulum, BalanceStaysBelow1em10Over100000Steps) {
+  const Case c("pendulum");
+  const Results r = c.solved("--set time.step=1e-2 --set time.end=1000");
+  const auto x = r.history("probe/P1");
+  ASSERT_EQ(x.rows(), 100001);
+  double worst = 0, top = 0;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const double kinetic = x.row(i).segment(3, 3).squaredNorm() / 2;
+    worst = std::max(worst, std::abs(kinetic + 9.81 * x(i, 1))), top = std::max(top, kinetic);
+  }
+  EXPECT_LT(worst / top, 1e-10);
+  EXPECT_LT(r.history("energy").col(5).cwiseAbs().maxCoeff() / top, 1e-10);
+}
+
+}  // namespace
+}  // namespace hilo::test
