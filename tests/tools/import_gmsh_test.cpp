@@ -167,6 +167,15 @@ TEST_F(ImportGmsh, CadFilesAreMeshedAndNothingButTheTableIsOnStdout) {
   }
 }
 
+TEST_F(ImportGmsh, CurvedCellsThatTurnInsideOutGetStraightEdges) {
+  place.write("ring.geo",
+              "SetFactory(\"OpenCASCADE\");\nCylinder(1) = {0,0,0, 0,0,0.3, 1};\nCylinder(2) = {0,0,0, 0,0,0.3, 0.95};\n"
+              "BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };\nMesh.MeshSizeMin = 0.5;\nMesh.MeshSizeMax = 0.8;\n");
+  const Mesh m = imported("ring.geo", "--order 2");
+  EXPECT_NE(err.find("cells that a curved surface turned inside out have straight edges"), std::string::npos) << err;
+  for (std::int64_t c = 0; c < m.n_cells(); ++c) EXPECT_GT(quality(m, c).scaled_jacobian, 0);
+}
+
 TEST_F(ImportGmsh, CellsInTwoGroupsGoToTheFirstAndBothStayNamed) {
   place.write("a.geo", boxes("hex") + "Physical Volume(\"both\", 20) = {a(1), b(1)};\n");
   const Mesh m = imported("a.geo");

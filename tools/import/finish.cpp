@@ -142,7 +142,8 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
   if (factor != 1)
     for (auto& x : m.X) x *= factor;
   if (in.curved)
-    if (const auto n = straighten(m)) in.notes.push_back(fmt::format("{} cells that a curved surface turned inside out have straight edges", n));
+    if (const auto n = straighten(m))
+      in.notes.push_back(fmt::format("{} cells that a curved surface turned inside out have straight edges", n));
   check_cells(m, file);
   for (size_t r = 0; r < m.region_name.size(); ++r) {
     auto& data = m.region_data[r];

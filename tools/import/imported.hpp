@@ -36,7 +36,7 @@ struct Imported {
   Mesh mesh;                       // numbers of the deck; region -1 until assign_regions
   std::vector<std::string> notes;  // said on stderr, one line each
   std::vector<NotRead> not_read;
-  bool curved = false;               // quadratic cells made here follow curved surfaces, which may turn some inside out
+  bool curved = false;              // quadratic cells made here follow curved surfaces, which may turn some inside out
   std::set<std::string> as_listed;  // node sets that order 2 must not complete: the deck's force acts on each of their nodes
 
   void skip(const std::string& what, const std::string& place, std::int64_t count = 1, bool output = false);

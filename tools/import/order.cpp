@@ -88,8 +88,9 @@ void raise_order(Imported& in) {
     for (size_t i = 0; i < ends_of.size(); ++i)
       if (inside[ends_of[i][0]] && inside[ends_of[i][1]]) set.push_back(n_linear + static_cast<std::int64_t>(i));
   }
-  in.notes.push_back(fmt::format("order 2: {} nodes in the middle of edges; node sets that hold both ends of an edge hold it too",
-                                 m.n_nodes() - n_linear));
+  if (m.n_nodes() > n_linear)
+    in.notes.push_back(fmt::format("order 2: {} nodes in the middle of edges; node sets that hold both ends of an edge hold it too",
+                                   m.n_nodes() - n_linear));
 }
 
 std::int64_t straighten(Mesh& m) {
