@@ -168,17 +168,17 @@ void Recorder::declare(const State&) {
   f.start_rows<double>("/history/momentum", {6}, "kg m/s, kg m^2/s", "linear, and angular about the origin", at);
   f.start_rows<double>("/history/constraint", {}, "m", "largest violation of a joint row", at);
   f.start_rows<std::int32_t>("/history/newton", {}, "", "Newton iterations of the step", at);
-  for (size_t b = 1; b < system_.bodies.size(); ++b) f.start_rows<double>("/history/body/" + system_.bodies[b].name, {12}, "m", "positions of the four points", at);
+  for (size_t b = 1; b < system_.bodies.size(); ++b) f.start_rows<double>("/history/body/" + to_link_name(system_.bodies[b].name), {12}, "m", "positions of the four points", at);
   for (const Connector& c : system_.joints)
-    f.start_rows<double>("/history/joint/" + c.name, {6}, "N, N m",
+    f.start_rows<double>("/history/joint/" + to_link_name(c.name), {6}, "N, N m",
                          setup_.redundant ? "force and moment on b at the joint point, joint frame carried by a; minimum-norm share of redundant joints"
                                           : "force and moment on b at the joint point, joint frame carried by a",
                          at);
-  for (const Connector& c : system_.springs) f.start_rows<double>("/history/spring/" + c.name, {6}, "N, N m", "force and moment on b at the point, inertial axes", at);
-  for (const Motion& m : system_.motions) f.start_rows<double>("/history/motion/" + m.name, {6}, "N, N m", "force and moment on what is held, inertial axes", at);
+  for (const Connector& c : system_.springs) f.start_rows<double>("/history/spring/" + to_link_name(c.name), {6}, "N, N m", "force and moment on b at the point, inertial axes", at);
+  for (const Motion& m : system_.motions) f.start_rows<double>("/history/motion/" + to_link_name(m.name), {6}, "N, N m", "force and moment on what is held, inertial axes", at);
   for (const Station& s : system_.stations) {
-    if (s.sensor) f.start_rows<double>("/history/sensor/" + s.name, {3}, "1", "proper acceleration R^T (a - g)/g0, +1 upward at rest", at);
-    else f.start_rows<double>("/history/probe/" + s.name, {9}, "m, m/s, m/s^2", "position, velocity, acceleration", at);
+    if (s.sensor) f.start_rows<double>("/history/sensor/" + to_link_name(s.name), {3}, "1", "proper acceleration R^T (a - g)/g0, +1 upward at rest", at);
+    else f.start_rows<double>("/history/probe/" + to_link_name(s.name), {9}, "m, m/s, m/s^2", "position, velocity, acceleration", at);
   }
 }
 
@@ -210,7 +210,10 @@ void Recorder::first(const State& s) {
       std::vector<std::int32_t> rank(m.n_cells_global, 0);
       for (size_t r = 0; r < cells.size(); ++r)
         for (std::int64_t c : cells[r]) rank[c] = static_cast<std::int32_t>(r);
-      if (system_.comm->size > 1) store_->write<std::int32_t>("/parts/rank", rank, {m.n_cells_global});
+      if (system_.comm->size > 1) {
+        store_->write<std::int32_t>("/parts/rank", rank, {m.n_cells_global});
+        store_->set("/parts/rank", "n_parts", static_cast<std::int64_t>(system_.comm->size));
+      }
     }
   }
 }
@@ -309,24 +312,24 @@ void Recorder::write_row(size_t n, double w0, size_t k0, double w1, size_t k1) {
   take("/history/energy", 6), take("/history/momentum", 6), take("/history/constraint", 1);
   const std::int32_t newton = row.newton;
   f.append<std::int32_t>("/history/newton", {&newton, 1});
-  for (size_t b = 1; b < system_.bodies.size(); ++b) take("/history/body/" + system_.bodies[b].name, 12);
+  for (size_t b = 1; b < system_.bodies.size(); ++b) take("/history/body/" + to_link_name(system_.bodies[b].name), 12);
   const double* m = mid.data();
   const auto take_mid = [&](const std::string& array) {
     f.append<double>(array, {m, 6});
     m += 6;
   };
-  for (const Connector& c : system_.joints) take_mid("/history/joint/" + c.name);
-  for (const Connector& c : system_.springs) take_mid("/history/spring/" + c.name);
-  for (const Motion& c : system_.motions) take_mid("/history/motion/" + c.name);
+  for (const Connector& c : system_.joints) take_mid("/history/joint/" + to_link_name(c.name));
+  for (const Connector& c : system_.springs) take_mid("/history/spring/" + to_link_name(c.name));
+  for (const Motion& c : system_.motions) take_mid("/history/motion/" + to_link_name(c.name));
   for (const Station& s : system_.stations) {
     const Vec3 a(m[0], m[1], m[2]);
     if (s.sensor) {
       const Mat3 axes = Eigen::Map<const Mat3>(p + 6);
       const Vec3 felt = axes.transpose() * (a - system_.gravity) / g0;
-      f.append<double>("/history/sensor/" + s.name, {felt.data(), 3});
+      f.append<double>("/history/sensor/" + to_link_name(s.name), {felt.data(), 3});
     } else {
       const double values[9] = {p[0], p[1], p[2], p[3], p[4], p[5], a[0], a[1], a[2]};
-      f.append<double>("/history/probe/" + s.name, values);
+      f.append<double>("/history/probe/" + to_link_name(s.name), values);
     }
     m += 3, p += 15;
   }
