@@ -7,6 +7,7 @@
 #include <iostream>
 #include <iterator>
 
+#include "model/comm.hpp"
 #include "model/scene_read.hpp"
 #include "model/store.hpp"
 
@@ -17,6 +18,15 @@ const Value& value_of(const Entry& e, std::string_view key) {
   const auto v = e.values.find(key);
   if (v == e.values.end()) throw Error(e.where(""), fmt::format("{}: \"{}\" is missing", e.label(), key));
   return v->second;
+}
+
+/// Standard input on every rank; mpirun gives it to the first alone.
+std::string standard_input() {
+  const Comm& comm = Comm::world();
+  std::vector<char> text;
+  if (comm.rank == 0) text.assign(std::istreambuf_iterator<char>(std::cin), {});
+  if (comm.size > 1) text = comm.exchange(std::vector<std::vector<char>>(comm.size, text))[0];
+  return {text.begin(), text.end()};
 }
 
 /// Keys and options may hold line breaks; a message is one line.
@@ -53,7 +63,7 @@ std::string Entry::where(std::string_view key) const {
 std::string Entry::label() const { return name.empty() ? section : fmt::format("{} \"{}\"", section, name); }
 
 Scene Scene::load(const std::string& path, std::span<const std::string> overrides) {
-  const std::string text = path == "-" ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : read_text_file(path);
+  const std::string text = path == "-" ? standard_input() : read_text_file(path);
   return parse(text, path, overrides);
 }
 

@@ -15,8 +15,8 @@ TEST(DropOnSpring, HitsAndTurnsWhereTheClosedFormSays) {
   EXPECT_NEAR(x.col(5).minCoeff() / inch, -std::sqrt(27.78489 * 27.78489 + 386 * 386 * 0.5 / 1973.92), 1e-3) << "fastest where the spring carries the weight";
   EXPECT_NEAR(x(r.index(0.07198), 5) / inch, -386 * 0.07198, 1e-6) << "free fall until contact";
   const auto e = r.history("energy");
-  EXPECT_LT(e.col(5).cwiseAbs().maxCoeff(), 1e-10 * e.col(0).maxCoeff());
-  EXPECT_LE(r.history("spring/floor").col(2).minCoeff(), 1e-9) << "before contact no force";
+  EXPECT_LT(e.col(5).cwiseAbs().maxCoeff(), 1e-9 * e.col(0).maxCoeff()) << "11000 steps, each solved to 1e-10 of its forces";
+  EXPECT_GE(r.history("spring/floor").col(2).minCoeff(), -1e-9) << "never a pull";
   EXPECT_NEAR(r.history("spring/floor").col(2).maxCoeff(), 1973.92 * 0.5506656 * 4.4482216152605, 1e-2);
 }
 

@@ -16,7 +16,7 @@ TEST(Parallelogram, RunsWithRedundantRevolutesAndSaysSo) {
   // 4 bodies have 24 freedoms and the mechanism one: rank 23 of 30
   const auto e = r.history("energy");
   for (Eigen::Index i = 0; i < e.rows(); ++i) ASSERT_NEAR(e(i, 0), e(0, 0), 1e-10 * e(0, 0));
-  EXPECT_LT(r.history("constraint").maxCoeff(), 1e-12);
+  EXPECT_LT(r.history("constraint").maxCoeff(), 1e-10) << "dropped rows too";
   // phase error of the mid-point rule: a step turns by 2 atan(omega h/2), relative (omega h)^2/12 = 3e-6
   const Vec3 tip = r.at("probe/B0", 10).head<3>();
   EXPECT_LT((tip - Vec3(std::sin(30.), std::cos(30.), 0)).norm(), 30 * 4e-6);

@@ -1,0 +1,48 @@
+// benchmarks.md O7 (FEBio ri01): with lambda = 0 the block stretches uniformly, l - 1/l = 0.1, so the rigid body moves by 4 (l - 1) = 0.2049969.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+BlockOptions block() {
+  BlockOptions o;
+  o.n[0] = 8, o.n[1] = 2, o.n[2] = 2;
+  o.low = Vec3(-2, 0, 0), o.high = Vec3(2, 1, 1);
+  return o;
+}
+constexpr double exact = 4 * (0.05 + 1.001249219725039 - 1);  // l = 0.05 + sqrt(0.05^2 + 1)
+
+TEST(BlockPull, BodyFixedToTheEndFaceMovesByTheClosedForm) {
+  EXPECT_NEAR(exact, 0.2049969, 1e-7);
+  Case c("block_pull");
+  c.use(block_mesh(block()));
+  c.write("scene.toml", text_of(c.source("scene.toml")) +
+                            "\n[[body]]\nname = \"plate\"\nmass = 1\ncom = [2, 0.5, 0.5]\ninertia = [1, 1, 1]\n\n[[joint]]\nkind = \"fixed\"\nname = \"glue\"\na = \"plate\"\nb "
+                            "= \"xmax\"\nat = [2, 0.5, 0.5]\n");
+  const Ran ran = c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Results r = c.results();
+  EXPECT_NEAR(r.at("probe/plate", 1)[0] - 2, exact, 1e-8);
+  EXPECT_LT((r.at("joint/glue", 1).head<3>() - Vec3(0.05, 0, 0)).norm(), 1e-9) << "the glue carries the force on to b";
+  EXPECT_LT((r.at("motion/wall", 1).head<3>() - Vec3(-0.05, 0, 0)).norm(), 1e-9);
+}
+
+TEST(BlockPull, RigidRegionThatSharesTheFaceMovesByTheClosedForm) {
+  Case c("block_pull");
+  BlockOptions o = block();
+  o.n[0] = 9, o.high[0] = 2.5;
+  o.regions = {"block", "plate"};
+  o.region_of = [](const Vec3& x) { return x[0] > 2 ? 1 : 0; };
+  for (const Shape shape : {Shape::hex8, Shape::hex20, Shape::tet10, Shape::wedge15, Shape::wedge6, Shape::tet4}) {
+    o.shape = shape;
+    c.use(block_mesh(o), {Fidelity::nonlinear, Fidelity::rigid});
+    const std::string scene = text_of(c.source("scene.toml"));
+    c.write("scene.toml", scene + "\n[region.plate]\nmaterial = \"rubber\"\n");
+    const Ran ran = c.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5");
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    EXPECT_NEAR(c.results().at("probe/plate", 1)[0] - 2.25, exact, 1e-6) << info(shape).name;
+  }
+}
+
+}  // namespace
+}  // namespace hilo::test

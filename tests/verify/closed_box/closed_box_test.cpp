@@ -1,0 +1,42 @@
+// Pressure on a closed surface has the potential p V: E + p V stays, and so do the momenta.  V is the volume of the moved cells.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+TEST(ClosedBox, EnergyPlusPressureTimesVolumeStays) {
+  for (const Shape shape : {Shape::hex8, Shape::tet4, Shape::wedge6}) {
+    Case c("closed_box");
+    BlockOptions o;
+    o.shape = shape;
+    o.n[0] = 3, o.n[1] = 2, o.n[2] = 2;
+    o.high = Vec3(0.6, 0.3, 0.3);
+    const Mesh m = block_mesh(o);
+    c.use(m);
+    const Results r = c.solved();
+    const auto e = r.history("energy"), p = r.history("momentum");
+    const double top = e.col(0).maxCoeff();
+    double worst = 0, least = 1e300, most = 0;
+    double first = 0;
+    for (const std::string& step : r.steps()) {
+      Mesh moved = m;
+      const auto u = r.field("displacement", step);
+      for (size_t a = 0; a < u.size(); ++a) moved.X[a] += u[a];
+      double V = 0;
+      for (std::int64_t k = 0; k < m.n_cells(); ++k) V += quality(moved, k).volume;
+      const auto i = r.index(r.field_time(step));
+      const double total = e(i, 0) + e(i, 1) + 2e5 * V;
+      if (step == r.steps().front()) first = total;
+      worst = std::max(worst, std::abs(total - first)), least = std::min(least, V), most = std::max(most, V);
+    }
+    EXPECT_LT(worst, 1e-10 * top) << info(shape).name;
+    EXPECT_GT(2e5 * (most - least), 1e-3 * top) << "the volume really changes";
+    for (Eigen::Index i = 0; i < p.rows(); ++i) {
+      ASSERT_LT((p.row(i).head<3>() - p.row(0).head<3>()).norm(), 1e-10 * 54 * 15 * 0.3) << info(shape).name;
+      ASSERT_LT((p.row(i).tail<3>() - p.row(0).tail<3>()).norm(), 1e-8 * p.row(0).tail<3>().norm()) << info(shape).name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hilo::test

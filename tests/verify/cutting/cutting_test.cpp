@@ -1,0 +1,46 @@
+// A step that is too large is cut and the run goes on; one that cannot be cut further ends the run with exit 3 and the last good state on disk.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+BlockOptions bar() {
+  BlockOptions o;
+  o.n[0] = 4;
+  o.high = Vec3(1, 0.1, 0.1);
+  return o;
+}
+
+TEST(StepControl, CutsAStepThatIsTooLargeAndGoesOn) {
+  Case c("cutting");
+  c.use(block_mesh(bar()));
+  const Ran ran = c.solve();
+  ASSERT_EQ(ran.exit, 0);
+  EXPECT_NE(ran.err.find("step cut"), std::string::npos) << ran.err;
+  const std::string json = text_of(c / "run.json");
+  EXPECT_EQ(json.find("\"cuts\": 0,"), std::string::npos) << json;
+  EXPECT_NE(json.find("\"complete\": true"), std::string::npos);
+  const Results r = c.results();
+  EXPECT_TRUE(r.complete());
+  EXPECT_NEAR(r.t()[r.t().size() - 1], 2, 1e-12);
+  double shortest = 1e300;
+  for (Eigen::Index i = 1; i < r.t().size(); ++i) shortest = std::min(shortest, r.t()[i] - r.t()[i - 1]);
+  EXPECT_LT(shortest, 0.6 * 0.5);
+  EXPECT_LT(r.history("energy").col(5).cwiseAbs().maxCoeff(), 1e-9 * r.history("energy").col(0).maxCoeff());
+}
+
+TEST(StepControl, StopsWithExitThreeAndAReadableFileWhenItMayNotCut) {
+  Case c("cutting");
+  c.use(block_mesh(bar()));
+  const Ran ran = c.solve("--set solver.cuts=0 --set solver.iterations=4", "run.h5", 3);
+  EXPECT_NE(ran.err.find("stopped at t ="), std::string::npos) << ran.err;
+  EXPECT_NE(ran.err.find("run.h5"), std::string::npos);
+  const Results r = c.results();
+  EXPECT_FALSE(r.complete());
+  EXPECT_GE(r.t().size(), 1);
+  EXPECT_EQ(r.history("energy").rows(), r.t().size());
+  EXPECT_NE(text_of(c / "run.json").find("\"complete\": false"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace hilo::test

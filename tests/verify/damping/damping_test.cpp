@@ -1,0 +1,54 @@
+// Stiffness-proportional damping acts as a stress eta C (E1 - E0)/h: energy falls in every step, and neither momentum nor a steady rotation is touched.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+Mesh bar() {
+  BlockOptions o;
+  o.n[0] = 4;
+  o.high = Vec3(1, 0.1, 0.1);
+  return block_mesh(o);
+}
+
+void expect_decay(const std::string& options) {
+  Case c("damping");
+  c.use(bar());
+  const Results r = c.solved(options);
+  const auto e = r.history("energy"), p = r.history("momentum");
+  const double top = e.col(0).maxCoeff();
+  double rise = 0;
+  for (Eigen::Index i = 1; i < e.rows(); ++i) rise = std::max(rise, e(i, 0) + e(i, 1) - e(i - 1, 0) - e(i - 1, 1));
+  EXPECT_LT(rise, 1e-12 * top) << options;
+  const auto n = e.rows() - 1;
+  EXPECT_LT(e(n, 0) + e(n, 1), e(0, 0) * (1 - 1e-4)) << "it does damp: " << options;
+  EXPECT_NEAR(e(n, 4), e(0, 0) + e(0, 1) - e(n, 0) - e(n, 1), 1e-10 * top) << "what is gone is what was dissipated";
+  for (Eigen::Index i = 0; i < p.rows(); ++i) ASSERT_LT((p.row(i).tail<3>() - p.row(0).tail<3>()).norm(), 1e-12 * p.row(0).tail<3>().norm());
+}
+
+TEST(Damping, OfTheMaterialNeverRaisesTheEnergy) { expect_decay("--set region.block.damping=1e-3"); }
+TEST(Damping, OfTheNeoHookeanMaterialNeverRaisesTheEnergy) { expect_decay("--set region.block.damping=1e-3 --set 'material.soft.kind=\"neo-hookean\"'"); }
+TEST(Damping, ByStressDissipationNeverRaisesTheEnergy) { expect_decay("--set region.block.damping=0 --set time.dissipation=0.1"); }
+
+// Truth: once the bar turns steadily about its stiffest axis nothing changes shape, and the damping takes nothing more: the spin stays.
+TEST(Damping, LeavesASteadyRotationAlone) {
+  Case c("damping");
+  c.use(bar());
+  const Results r = c.solved("--set initial.0.spin=[0,0,10] --set time.end=20 --set region.block.damping=0.01");
+  const auto e = r.history("energy");
+  const Eigen::Index n = e.rows() - 1;
+  EXPECT_LT(std::abs(e(n, 0) - e(n / 2, 0)), 1e-6 * e(n, 0)) << "between 10 s and 20 s, 32 turns";
+  EXPECT_GT(e(n, 0), 0.98 * e(0, 0));
+}
+
+// Truth: mass-proportional damping is a drag alpha m v: a free body's velocity falls as exp(-alpha t).
+TEST(Damping, ProportionalToMassBrakesRigidMotionAsADrag) {
+  Case c("damping");
+  c.use(bar());
+  const Results r = c.solved("--set region.block.damping=0 --set region.block.mass_damping=0.5 --set initial.0.spin=[0,0,0] --set initial.0.velocity=[2,0,0] --set time.end=2");
+  EXPECT_NEAR(r.at("momentum", 2)[0], 10 * 2 * std::exp(-1.), 1e-3);
+  EXPECT_LT(r.history("energy").col(5).cwiseAbs().maxCoeff(), 1e-10 * r.history("energy").col(0).maxCoeff());
+}
+
+}  // namespace
+}  // namespace hilo::test

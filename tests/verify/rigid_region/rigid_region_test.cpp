@@ -1,0 +1,136 @@
+// The mass of a rigid region is collapsed from its cells, M_r = sum N^T M_e N: mass, centre and inertia against closed forms to 1e-12.
+#include <Eigen/Eigenvalues>
+
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+/// Mass, centre, principal moments.
+struct Collapsed {
+  double mass;
+  Vec3 centre, moments;
+};
+Collapsed read(const Results& r, Eigen::Index body = 0) {
+  return {r.table("/body/mass")(body, 0), r.table("/body/points").row(body).head<3>().transpose(), r.table("/body/inertia").row(body).transpose()};
+}
+Vec3 principal(const Mat3& second) { return Eigen::SelfAdjointEigenSolver<Mat3>(Mat3(second.trace() * Mat3::Identity() - second)).eigenvalues(); }
+
+class RigidRegion : public testing::TestWithParam<Shape> {};
+INSTANTIATE_TEST_SUITE_P(EveryShape, RigidRegion, testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20),
+                         [](const auto& p) { return std::string(hilo::info(p.param).name); });
+
+// Truth: for a sheared box x = A s, s in the unit cube about its centre: m = rho det A, second moment = m A A^T/12.
+TEST_P(RigidRegion, OfABoxHasTheMassCentreAndInertiaOfTheBox) {
+  Case c("rigid_region");
+  Mat3 A;
+  A << 0.9, 0.2, 0.1, -0.1, 0.5, 0.05, 0.15, -0.05, 0.3;
+  const Vec3 at(3, -2, 7);
+  BlockOptions o;
+  o.shape = GetParam();
+  o.n[0] = 3, o.n[1] = 2, o.n[2] = 2;
+  o.low = Vec3::Constant(-0.5), o.high = Vec3::Constant(0.5);
+  o.map = [&](const Vec3& s) { return Vec3(A * s + at); };
+  c.use(block_mesh(o), {Fidelity::rigid});
+  const Collapsed got = read(c.solved());
+  const double m = 7800 * A.determinant();
+  EXPECT_NEAR(got.mass, m, 1e-12 * m);
+  EXPECT_LT((got.centre - at).norm(), 1e-12 * at.norm());
+  const Vec3 exact = principal(m / 12 * A * A.transpose());
+  EXPECT_LT((got.moments - exact).norm(), 1e-12 * exact.norm());
+}
+
+// Truth: a tetrahedron's second moment is V/20 (sum x_i x_i^T + (sum x_i)(sum x_i)^T); here of bent blocks of tetrahedra.
+TEST(RigidRegionOfTetrahedra, HasTheMassCentreAndInertiaOfItsCells) {
+  for (const Shape shape : {Shape::tet4, Shape::tet10}) {
+    Case c("rigid_region");
+    BlockOptions o;
+    o.shape = shape;
+    o.n[0] = 3, o.n[1] = 2, o.n[2] = 2;
+    o.high = Vec3(1.5, 0.8, 0.6);
+    o.map = [](const Vec3& x) { return Vec3(x + 0.07 * Vec3(scatter(std::lround(10 * x[0] + 31 * x[1] + 57 * x[2])), scatter(std::lround(11 * x[0] + 37 * x[1] + 50 * x[2])), scatter(std::lround(13 * x[0] + 30 * x[1] + 59 * x[2])))); };
+    const Mesh m = block_mesh(o);
+    c.use(m, {Fidelity::rigid});
+    double volume = 0;
+    Vec3 first = Vec3::Zero();
+    Mat3 second = Mat3::Zero();
+    for (std::int64_t e = 0; e < m.n_cells(); ++e) {
+      Vec3 sum = Vec3::Zero();
+      Mat3 squares = Mat3::Zero(), J;
+      for (int a = 0; a < 4; ++a) sum += m.X[m.cell(e)[a]], squares += m.X[m.cell(e)[a]] * m.X[m.cell(e)[a]].transpose();
+      for (int i = 0; i < 3; ++i) J.col(i) = m.X[m.cell(e)[i + 1]] - m.X[m.cell(e)[0]];
+      const double V = J.determinant() / 6;
+      volume += V, first += V / 4 * sum, second += V / 20 * (squares + sum * sum.transpose());
+    }
+    const Collapsed got = read(c.solved());
+    const Vec3 centre = first / volume, exact = principal(7800 * (second - volume * centre * centre.transpose()));
+    EXPECT_NEAR(got.mass, 7800 * volume, 1e-12 * got.mass);
+    EXPECT_LT((got.centre - centre).norm(), 1e-12);
+    EXPECT_LT((got.moments - exact).norm(), 1e-12 * exact.norm());
+  }
+}
+
+// Truth: bent bricks have the mass of their volume, and their consistent mass matrix, here from 2 x 2 x 2 Gauss points written out, is what collapses.
+TEST(RigidRegionOfBentBricks, IsTheSumOfTheirConsistentMassMatrices) {
+  Case c("rigid_region");
+  BlockOptions o;
+  for (int& n : o.n) n = 2;
+  o.map = [](const Vec3& x) { return Vec3(x + 0.1 * Vec3(scatter(std::lround(10 * x[0] + 31 * x[1] + 57 * x[2])), scatter(std::lround(11 * x[0] + 37 * x[1] + 50 * x[2])), scatter(std::lround(13 * x[0] + 30 * x[1] + 59 * x[2])))); };
+  const Mesh m = block_mesh(o);
+  c.use(m, {Fidelity::rigid});
+  double volume = 0, exact_volume = 0;
+  Vec3 first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();
+  const double g = 1 / std::sqrt(3.0), corner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
+  for (std::int64_t e = 0; e < m.n_cells(); ++e) {
+    exact_volume += quality(m, e).volume;
+    for (int p = 0; p < 8; ++p) {
+      const Vec3 xi(g * corner[p][0], g * corner[p][1], g * corner[p][2]);
+      Vec3 x = Vec3::Zero();
+      Mat3 J = Mat3::Zero();
+      for (int a = 0; a < 8; ++a) {
+        const double f[3] = {1 + corner[a][0] * xi[0], 1 + corner[a][1] * xi[1], 1 + corner[a][2] * xi[2]};
+        const Vec3& X = m.X[m.cell(e)[a]];
+        x += f[0] * f[1] * f[2] / 8 * X;
+        J += X * Vec3(corner[a][0] * f[1] * f[2], corner[a][1] * f[0] * f[2], corner[a][2] * f[0] * f[1]).transpose() / 8;
+      }
+      volume += J.determinant(), first += J.determinant() * x, second += J.determinant() * x * x.transpose();
+    }
+  }
+  const Collapsed got = read(c.solved());
+  const Vec3 centre = first / volume, moments = principal(7800 * (second - volume * centre * centre.transpose()));
+  EXPECT_NEAR(got.mass, 7800 * exact_volume, 1e-12 * got.mass);
+  EXPECT_NEAR(got.mass, 7800 * volume, 1e-12 * got.mass);
+  EXPECT_LT((got.centre - centre).norm(), 1e-12);
+  EXPECT_LT((got.moments - moments).norm(), 1e-12 * moments.norm());
+}
+
+// Truth: rigid regions that share nodes are one body, their union; a region apart is another.
+TEST(RigidRegions, ThatTouchAreOneBodyAndThoseApartAreTwo) {
+  Case c("rigid_region");
+  BlockOptions o;
+  o.n[0] = 4;
+  o.high = Vec3(4, 1, 1);
+  o.regions = {"left", "middle", "right"};
+  o.region_of = [](const Vec3& x) { return x[0] < 1 ? 0 : x[0] < 2 ? 1 : 2; };
+  c.use(block_mesh(o), {Fidelity::rigid, Fidelity::rigid, Fidelity::rigid});
+  {
+    const Results r = c.solved();
+    ASSERT_EQ(r.file().read_strings("/body/name"), std::vector<std::string>{"left+middle+right"});
+    const Collapsed got = read(r);
+    EXPECT_NEAR(got.mass, 4 * 7800, 1e-9);
+    const double m = 4 * 7800;
+    EXPECT_LT((got.moments - m / 12 * Vec3(2, 17, 17)).norm(), 1e-12 * m);
+  }
+  c.use(block_mesh(o), {Fidelity::rigid, Fidelity::nonlinear, Fidelity::rigid});
+  const Results r = c.solved("", "two.h5");
+  ASSERT_EQ(r.file().read_strings("/body/name"), (std::vector<std::string>{"left", "right"}));
+  EXPECT_NEAR(read(r, 0).mass, 7800, 1e-9);
+  EXPECT_NEAR(read(r, 1).mass, 2 * 7800, 1e-9);
+  // the nodes of the rigid cells, and only they, follow: x = c + R (X - Xc)
+  const auto nodes = r.file().read<std::int64_t>("/body/follower_node");
+  EXPECT_EQ(nodes.size(), 8u + 12u);
+}
+
+}  // namespace
+}  // namespace hilo::test

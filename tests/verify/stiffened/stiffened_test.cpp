@@ -1,0 +1,50 @@
+// A stiff elastic region is a rigid one with a compliance of 1/E: its tip's distance from the rigid answer falls as 1/E, slope -1 in log E.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+Mesh two_regions() {
+  BlockOptions o;
+  o.n[0] = 8, o.n[1] = 2, o.n[2] = 2;
+  o.high = Vec3(1, 0.1, 0.1);
+  o.regions = {"root", "arm"};
+  o.region_of = [](const Vec3& x) { return x[0] < 0.5 ? 0 : 1; };
+  return block_mesh(o);
+}
+
+TEST(StiffenedRegion, ApproachesTheRigidOneWithSlopeMinusOne) {
+  Case c("stiffened");
+  c.use(two_regions(), {Fidelity::nonlinear, Fidelity::rigid});
+  const auto rigid = c.solved("", "rigid.h5").history("probe/tip").leftCols(3).eval();
+  EXPECT_GT((rigid.row(rigid.rows() - 1) - rigid.row(0)).norm(), 0.01) << "a deflection that matters";
+  c.use(two_regions(), {Fidelity::nonlinear, Fidelity::nonlinear});
+  std::vector<double> distance;
+  for (const char* E : {"1e11", "1e12", "1e13"}) {
+    const auto tip = c.solved(std::string("--set material.stiff.E=") + E).history("probe/tip").leftCols(3).eval();
+    ASSERT_EQ(tip.rows(), rigid.rows());
+    distance.push_back((tip - rigid).rowwise().norm().maxCoeff());
+  }
+  for (size_t i = 0; i + 1 < distance.size(); ++i)
+    EXPECT_NEAR(std::log10(distance[i + 1] / distance[i]), -1, 0.05) << distance[i] << " m, then " << distance[i + 1] << " m";
+}
+
+// Truth: one word per region changes the model and nothing else: with a stiff arm the two runs are the same to the arm's own deflection.
+TEST(ToggledRegion, RunsAtEveryLevelAndAgreesWhenStiff) {
+  Case c("stiffened");
+  const std::string base = "--set material.stiff.E=1e12 ";
+  std::vector<double> tip;
+  const std::pair<Fidelity, Fidelity> levels[] = {{Fidelity::nonlinear, Fidelity::nonlinear}, {Fidelity::nonlinear, Fidelity::rigid}, {Fidelity::rigid, Fidelity::nonlinear}};
+  for (const auto& [root, arm] : levels) {
+    c.use(two_regions(), {root, arm});
+    const Results r = c.solved(base);
+    EXPECT_TRUE(r.complete());
+    tip.push_back(r.at("probe/tip", 0.2)[2] - 0.05);
+    EXPECT_EQ(r.file().read_strings("/tags/fidelity"), (std::vector<std::string>{std::string(word(root)), std::string(word(arm))}));
+  }
+  EXPECT_NEAR(tip[1], tip[0], 2e-3 * tip[0]) << "a rigid arm for a stiff one";
+  EXPECT_GT(tip[0], 10 * tip[2]) << "a rigid root leaves only the arm to bend";
+}
+
+}  // namespace
+}  // namespace hilo::test
