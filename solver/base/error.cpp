@@ -57,11 +57,13 @@ int guarded(std::string_view tool, const std::function<void()>& body) {
   set_tool_name(tool);
   const auto fail = [&](Exit exit, const std::string& text) {
     std::fflush(stdout);
-    fmt::print(stderr, "{}: {}\n", tool, text);
+    const std::string line = fmt::format("{}: {}\n", tool, text);
+    std::fputs(line.c_str(), stderr);  // does not throw when stderr is gone
     return static_cast<int>(exit);
   };
   try {
     body();
+    if (std::fflush(stdout) != 0) return fail(Exit::resources, "cannot write to standard output");
     return static_cast<int>(Exit::done);
   } catch (const Error& e) {
     return fail(e.exit, e.what());

@@ -39,8 +39,10 @@ void Recorder::write_field(const Row& row, const Config& a) {
     if (!store_) return;
     std::vector<std::int64_t> shape{n};
     if (width > 1) shape.push_back(width);
-    if (setup_.single_precision) store_->write<float>(group + "/" + name, std::vector<float>(all.begin(), all.end()), shape, unit);
-    else store_->write<double>(group + "/" + name, all, shape, unit);
+    on_store([&](Store& f) {
+      if (setup_.single_precision) f.write<float>(group + "/" + name, std::vector<float>(all.begin(), all.end()), shape, unit);
+      else f.write<double>(group + "/" + name, all, shape, unit);
+    });
   };
   const auto vectors = [&](const char* name, auto value, const char* unit) {
     std::vector<double> local;
@@ -113,7 +115,7 @@ void Recorder::write_field(const Row& row, const Config& a) {
     for (size_t c = 0; c < cell.size(); ++c)
       if (cell[c] != 0) cells[0].push_back(static_cast<double>(s.mesh->cell_global[c])), cells[0].push_back(cell[c]);
     const auto gathered = s.comm->exchange(cells);
-    if (store_) {
+    on_store([&](Store& f) {
       std::vector<double> stress(6 * n, 0.0), vm(n, 0.0), by_cell(s.mesh->n_cells_global, 0.0);
       for (std::int64_t i = 0; i < n; ++i)
         if (const double count = all[8 * i + 7]; count > 0) {
@@ -122,17 +124,18 @@ void Recorder::write_field(const Row& row, const Config& a) {
         }
       for (const auto& list : gathered)
         for (size_t k = 0; k < list.size(); k += 2) by_cell[static_cast<std::int64_t>(list[k])] = list[k + 1];
-      if (wants("stress")) store_->write<double>(group + "/stress", stress, {n, 6}, "Pa", "Cauchy stress xx yy zz yz xz xy");
+      if (wants("stress")) f.write<double>(group + "/stress", stress, {n, 6}, "Pa", "Cauchy stress xx yy zz yz xz xy");
       if (wants("von_mises")) {
-        store_->write<double>(group + "/von_mises", vm, {n}, "Pa", "von Mises stress");
-        store_->write<double>(group + "/cell_von_mises", by_cell, {s.mesh->n_cells_global}, "Pa", "von Mises stress, mean over the cell");
+        f.write<double>(group + "/von_mises", vm, {n}, "Pa", "von Mises stress");
+        f.write<double>(group + "/cell_von_mises", by_cell, {s.mesh->n_cells_global}, "Pa", "von Mises stress, mean over the cell");
       }
-    }
+    });
   }
   field_times_.push_back(row.t);
-  if (!store_) return;
-  store_->set(group, "t", row.t);
-  if (wall_clock() - last_xdmf_ > 1) store_->flush(), write_xdmf(), last_xdmf_ = wall_clock();
+  on_store([&](Store& f) {
+    f.set(group, "t", row.t);
+    if (wall_clock() - last_xdmf_ > 1) f.flush(), write_xdmf(), last_xdmf_ = wall_clock();
+  });
 }
 
 /// Points ParaView at the arrays of the results file; topology as an XDMF mixed list written beside the fields once.
@@ -192,9 +195,7 @@ void Recorder::write_xdmf() {
     t += "</Grid>\n";
   }
   t += "</Grid>\n</Domain>\n</Xdmf>\n";
-  std::string target = path;
-  if (target.ends_with(".h5")) target.resize(target.size() - 3);
-  write_text_file(target + ".xdmf", t);
+  write_text_file(stem(path) + ".xdmf", t);
 }
 
 }  // namespace hilo

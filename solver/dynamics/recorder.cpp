@@ -1,6 +1,7 @@
 #include "dynamics/recorder.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
@@ -23,6 +24,8 @@ std::array<Vec3, 4> body_arms(const Body& b) {
 }
 
 }  // namespace
+
+std::string stem(const std::string& path) { return path.ends_with(".h5") ? path.substr(0, path.size() - 3) : path; }
 
 Recorder::Recorder(const System& system, const Scene& scene, Setup setup) : system_(system), scene_(scene), setup_(std::move(setup)) {}
 
@@ -125,10 +128,30 @@ std::vector<double> Recorder::mid_values(const State& s, const Stage& stage, std
   return v;
 }
 
-void Recorder::declare(const State&) {
-  if (system_.comm->rank != 0) return;
-  store_ = std::make_unique<Store>(Store::create_growing(setup_.path));
-  Store& f = *store_;
+/// What only rank 0 does and may fail at (a full disk) is noted here and told to all ranks by share_failure.
+void Recorder::on_store(const std::function<void(Store&)>& write) {
+  if (!store_ || failure_) return;
+  try {
+    write(*store_);
+  } catch (const Error& e) {
+    failure_ = e;
+  }
+}
+
+void Recorder::share_failure() const {
+  system_.comm->together([&] {
+    if (failure_) throw *failure_;
+  });
+}
+
+void Recorder::declare() {
+  system_.comm->together([&] {
+    if (system_.comm->rank == 0) store_ = std::make_unique<Store>(Store::create_growing(setup_.path));
+  });
+  on_store([&](Store& f) { declare_arrays(f); });
+}
+
+void Recorder::declare_arrays(Store& f) const {
   f.set("/", "format", std::string("hilo run"));
   f.set("/", "version", std::int64_t{1});
   f.set("/", "complete", std::int64_t{0});
@@ -190,7 +213,7 @@ void Recorder::first(const State& s) {
   row.q = s.q, row.v = s.v;
   next_field_ = setup_.interval;
   rows_.push_back(std::move(row));
-  declare(s);
+  declare();
   if (system_.mesh) {  // on every rank: the followers and, in parallel, the parts
     const LocalMesh& m = *system_.mesh;
     std::vector<double> body(system_.X.size());
@@ -199,23 +222,24 @@ void Recorder::first(const State& s) {
     std::vector<std::vector<std::int64_t>> mine(system_.comm->size);
     mine[0] = m.cell_global;
     const auto cells = system_.comm->exchange(mine);
-    if (store_) {
+    on_store([&](Store& f) {
       std::vector<std::int64_t> nodes;
       std::vector<std::int32_t> bodies;
       for (size_t i = 0; i < body.size(); ++i)
         if (body[i] > 0) nodes.push_back(static_cast<std::int64_t>(i)), bodies.push_back(static_cast<std::int32_t>(body[i]) - 1);
       const auto n = static_cast<std::int64_t>(nodes.size());
-      store_->write<std::int64_t>("/body/follower_node", nodes, {n}, "", "nodes that follow a body");
-      store_->write<std::int32_t>("/body/follower_body", bodies, {n}, "", "the body each follows");
+      f.write<std::int64_t>("/body/follower_node", nodes, {n}, "", "nodes that follow a body");
+      f.write<std::int32_t>("/body/follower_body", bodies, {n}, "", "the body each follows");
       std::vector<std::int32_t> rank(m.n_cells_global, 0);
       for (size_t r = 0; r < cells.size(); ++r)
         for (std::int64_t c : cells[r]) rank[c] = static_cast<std::int32_t>(r);
       if (system_.comm->size > 1) {
-        store_->write<std::int32_t>("/parts/rank", rank, {m.n_cells_global});
-        store_->set("/parts/rank", "n_parts", static_cast<std::int64_t>(system_.comm->size));
+        f.write<std::int32_t>("/parts/rank", rank, {m.n_cells_global});
+        f.set("/parts/rank", "n_parts", static_cast<std::int64_t>(system_.comm->size));
       }
-    }
+    });
   }
+  share_failure();
 }
 
 void Recorder::step(const State& s, const Stage& stage, std::span<const double> lambda, const Config& a, int iterations) {
@@ -226,6 +250,7 @@ void Recorder::step(const State& s, const Stage& stage, std::span<const double> 
   interval.h = s.t - last_t_;
   interval.mid = mid_values(s, stage, lambda, a);
   interval.a = a;
+  interval.starts_at_jump = !rows_.empty() && rows_.back().jump;
   intervals_.push_back(std::move(interval));
   Row row;
   row.t = s.t;
@@ -239,70 +264,78 @@ void Recorder::step(const State& s, const Stage& stage, std::span<const double> 
   }
   rows_.push_back(std::move(row));
   advance(false);
-  if (store_ && wall_clock() - last_flush_ > 0.5) store_->flush(), last_flush_ = wall_clock();
+  if (wall_clock() - last_flush_ > 0.5) on_store([](Store& f) { f.flush(); }), last_flush_ = wall_clock();
+  share_failure();
   phases().output += wall_clock() - start;
 }
 
 /// Write every row whose mid-step neighbours are known.
 void Recorder::advance(bool last) {
   const bool immediate = setup_.own_time == 1 || setup_.is_static;  // values belong to the end of their step
-  const auto ready = [&] {  // row 0 of the deque
+  const auto ready = [&] {                                          // row 0 of the deque
     if (rows_.empty()) return false;
     if (last) return true;
     if (immediate) return !intervals_.empty();
-    return intervals_.size() >= (first_written_ ? 3u : 2u);
+    return intervals_.size() >= (first_written_ ? (rows_[0].jump ? 4u : 2u) : 3u);
   };
   while (ready()) {
     // in the deque, intervals_[0] ends at rows_[0] once the first row is out, else it starts there
     const size_t after = first_written_ ? 1 : 0;
     const bool has_before = first_written_ && !intervals_.empty(), has_after = intervals_.size() > after;
     if (immediate) {
-      write_row(0, has_before || (!intervals_.empty() && !setup_.is_static) ? 1 : 0, 0, 0, 0);
+      if (has_before || (!intervals_.empty() && !setup_.is_static)) write_row({{1, &intervals_[0]}});
+      else write_row({});
     } else if (has_before && has_after && !rows_[0].jump) {
       const double hb = intervals_[0].h, ha = intervals_[1].h;
-      write_row(0, ha / (ha + hb), 0, hb / (ha + hb), 1);
+      write_row({{ha / (ha + hb), &intervals_[0]}, {hb / (ha + hb), &intervals_[1]}});
     } else if (has_after) {  // from the right
-      if (intervals_.size() > after + 1) {
-        const double h0 = intervals_[after].h, h1 = intervals_[after + 1].h, w = h0 / (h0 + h1);
-        write_row(0, 1 + w, after, -w, after + 1);
-      } else {
-        write_row(0, 1, after, 0, after);
-      }
-    } else if (has_before) {  // the end: from the left, with the interval kept for it
-      if (before_last_.h > 0) {
-        const double h1 = intervals_[0].h, h0 = before_last_.h, w = h1 / (h0 + h1);
-        intervals_.push_front(before_last_);
-        write_row(0, 1 + w, 1, -w, 0);
-        intervals_.pop_front();
-      } else {
-        write_row(0, 1, 0, 0, 0);
-      }
+      std::vector<const Interval*> next{&intervals_[after]};
+      for (size_t k = after + 1; k < intervals_.size() && !intervals_[k].starts_at_jump && next.size() < 3; ++k) next.push_back(&intervals_[k]);
+      write_row(extrapolated(next));
+    } else if (has_before) {  // the end: from the left, with the intervals kept for it
+      std::vector<const Interval*> next{&intervals_[0]};
+      for (size_t k = past_.size(); k-- > 0 && !next.back()->starts_at_jump;) next.push_back(&past_[k]);
+      write_row(extrapolated(next));
     } else {
-      write_row(0, 0, 0, 0, 0);
+      write_row({});
     }
     rows_.pop_front();
-    if (first_written_) before_last_ = std::move(intervals_.front()), intervals_.pop_front();
+    if (first_written_) {
+      past_.push_back(std::move(intervals_.front())), intervals_.pop_front();
+      if (past_.size() > 2) past_.pop_front();
+    }
     first_written_ = true;
     if (rows_.empty()) return;
   }
 }
 
-/// Row n with w0 * interval k0 + w1 * interval k1 as its mid-step values.
-void Recorder::write_row(size_t n, double w0, size_t k0, double w1, size_t k1) {
-  const Row& row = rows_[n];
+/// Value at the outer end of the first of up to three neighbouring intervals.  Mid-step values of energy-momentum carry an error that changes
+/// sign from step to step; the line through the means at the two nodes further in is free of it: m1 + h1 (m2 - m3)/(h2 + h3).
+std::vector<std::pair<double, const Recorder::Interval*>> Recorder::extrapolated(const std::vector<const Interval*>& m) {
+  if (m.size() == 1) return {{1, m[0]}};
+  const double w = m[0]->h / (m[1]->h + m[m.size() == 2 ? 0 : 2]->h);
+  if (m.size() == 2) return {{1 + w, m[0]}, {-w, m[1]}};
+  return {{1, m[0]}, {w, m[1]}, {-w, m[2]}};
+}
+
+/// Row 0 of the deque with the weighted sum of intervals as its mid-step values; zeros where there are none.
+void Recorder::write_row(const std::vector<std::pair<double, const Interval*>>& weights) {
+  const Row& row = rows_[0];
   const size_t n_mid = 6 * (system_.joints.size() + system_.springs.size() + system_.motions.size()) + 3 * system_.stations.size();
   std::vector<double> mid(n_mid, 0.0);
-  if (w0 != 0)
-    for (size_t i = 0; i < n_mid; ++i) mid[i] = w0 * intervals_[k0].mid[i] + (w1 != 0 ? w1 * intervals_[k1].mid[i] : 0);
+  for (const auto& [w, interval] : weights)
+    for (size_t i = 0; i < n_mid; ++i) mid[i] += w * interval->mid[i];
   if (row.field) {
-    Config a;
-    if (w0 == 0) combine(a, {{0, &row.q}});
-    else combine(a, {{w0, &intervals_[k0].a}, {w1, &intervals_[k1].a}});
+    Config a, sum;
+    combine(a, {{0, &row.q}});
+    for (const auto& [w, interval] : weights) combine(sum, {{1, &a}, {w, &interval->a}}), std::swap(a, sum);
     write_field(row, a);
   }
   ++rows_written_;
-  if (!store_) return;
-  Store& f = *store_;
+  on_store([&](Store& f) { write_histories(f, row, mid); });
+}
+
+void Recorder::write_histories(Store& f, const Row& row, const std::vector<double>& mid) const {
   f.append<double>("/history/t", {&row.t, 1});
   const double* p = row.point.data();
   const auto take = [&](const std::string& array, size_t count) {
@@ -338,16 +371,20 @@ void Recorder::write_row(size_t n, double w0, size_t k0, double w1, size_t k1) {
 void Recorder::finish(bool complete) {
   advance(true);
   worst_balance_ /= std::max(max_T_, 1e-300);
-  if (store_) {
-    store_->set("/", "complete", static_cast<std::int64_t>(complete));
-    store_->flush();
+  on_store([&](Store& f) {
+    f.set("/", "complete", static_cast<std::int64_t>(complete));
+    f.flush();
     if (n_fields_ > 0) write_xdmf();
-    store_.reset();
-  }
+  });
+  share_failure();
+  store_.reset();
 }
 
 void Recorder::discard() {
-  if (store_) store_->discard(), store_.reset();
+  if (!store_) return;
+  store_->discard();
+  store_.reset();
+  ::unlink((stem(setup_.path) + ".xdmf").c_str());
 }
 
 }  // namespace hilo

@@ -4,12 +4,17 @@
 // around it, a_n = (h_n a_{n+1/2} + h_{n+1} a_{n-1/2})/(h_n + h_{n+1}); at the ends and where a load jumps, by extrapolation from one side.
 #pragma once
 #include <deque>
+#include <functional>
 #include <memory>
+#include <optional>
 
 #include "dynamics/start.hpp"
 #include "model/store.hpp"
 
 namespace hilo {
+
+/// Path without its .h5.
+std::string stem(const std::string& path);
 
 class Recorder {
  public:
@@ -51,12 +56,18 @@ class Recorder {
     double h = 0;
     std::vector<double> mid;
     Config a;
+    bool starts_at_jump = false;
   };
-  void declare(const State& s);
+  void declare();
+  void declare_arrays(Store& f) const;
+  void write_histories(Store& f, const Row& row, const std::vector<double>& mid) const;
+  void on_store(const std::function<void(Store&)>& write);
+  void share_failure() const;
   std::vector<double> point_values(const State& s);
   std::vector<double> mid_values(const State& s, const Stage& stage, std::span<const double> lambda, const Config& a);
   void advance(bool last);
-  void write_row(size_t n, double w0, size_t k0, double w1, size_t k1);
+  static std::vector<std::pair<double, const Interval*>> extrapolated(const std::vector<const Interval*>& m);
+  void write_row(const std::vector<std::pair<double, const Interval*>>& weights);
   void write_field(const Row& row, const Config& a);
   void write_xdmf();
   std::vector<double> gather(const std::vector<double>& local, int width) const;
@@ -65,9 +76,10 @@ class Recorder {
   const Scene& scene_;
   Setup setup_;
   std::unique_ptr<Store> store_;      // rank 0
+  std::optional<Error> failure_;      // of a write on rank 0
   std::deque<Row> rows_;
   std::deque<Interval> intervals_;    // interval k starts at row k of rows_
-  Interval before_last_;              // the interval before intervals_[0], for the last row
+  std::deque<Interval> past_;         // the two intervals before intervals_[0], for the last row
   bool first_written_ = false, started_ = false;
   double last_t_ = 0;
   double next_field_ = 0, E0_ = 0, max_T_ = 0, work_ = 0, dissipated_ = 0, worst_balance_ = 0, worst_violation_ = 0;

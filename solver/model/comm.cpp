@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <cstdlib>
+#include <cmath>
 #include <limits>
 #include <new>
 
@@ -33,6 +34,7 @@ double Comm::sum(double v) const {
   return v;
 }
 double Comm::max(double v) const {
+  if (std::isnan(v)) v = std::numeric_limits<double>::infinity();  // MPI_MAX would let it pass or not by the order of ranks
   if (size > 1) MPI_Allreduce(MPI_IN_PLACE, &v, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
   return v;
 }

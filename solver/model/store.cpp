@@ -141,7 +141,7 @@ void sync(const std::string& path) {
 
 Store Store::create(const std::string& path) {
   auto impl = std::make_unique<Impl>();
-  if (fs::is_directory(path)) throw Error(path, "cannot write: is a folder", "", Exit::resources);
+  refuse_special(path);
   impl->path = path;
   impl->on_disk = fmt::format("{}.tmp-{}", path, ::getpid());
   impl->file = create_file(path, impl->on_disk);
@@ -151,7 +151,7 @@ Store Store::create(const std::string& path) {
 
 Store Store::create_growing(const std::string& path) {
   auto impl = std::make_unique<Impl>();
-  if (fs::is_directory(path)) throw Error(path, "cannot write: is a folder", "", Exit::resources);
+  refuse_special(path);
   if (::unlink(path.c_str()) != 0 && errno != ENOENT)  // whoever still reads the old file keeps it
     throw Error(path, fmt::format("cannot write: {}", std::strerror(errno)), "", Exit::resources);
   impl->path = impl->on_disk = path;

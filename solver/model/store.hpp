@@ -82,6 +82,8 @@ std::string relative_to(const std::string& from, const std::string& file);
 std::string resolved_from(const std::string& from, const std::string& relative);
 /// Content digest of a file, "fnv1a64:<16 hex digits>".
 std::string digest(const std::string& path);
+/// Error (exit 4) where a folder, device or pipe is in the place of a file to be written: a rename would replace it.
+void refuse_special(const std::string& path);
 /// Write a text file as a whole or not at all (temporary file, fsync, rename).
 void write_text_file(const std::string& path, const std::string& text);
 /// A whole text file; Error (exit 2) when it cannot be read.

@@ -79,13 +79,21 @@ std::string digest(const std::string& path) {
   return fmt::format("fnv1a64:{:016x}", hash);
 }
 
+void refuse_special(const std::string& path) {
+  std::error_code ignored;
+  const auto type = fs::status(path, ignored).type();
+  if (type == fs::file_type::directory) throw Error(path, "cannot write: is a folder", "", Exit::resources);
+  if (type != fs::file_type::regular && type != fs::file_type::not_found && type != fs::file_type::none)
+    throw Error(path, "cannot write: a device or pipe is in its place", "name a regular file", Exit::resources);
+}
+
 void write_text_file(const std::string& path, const std::string& text) {
   const std::string temporary = fmt::format("{}.tmp-{}", path, ::getpid());
   const auto fail = [&](int error) {
     ::unlink(temporary.c_str());
     throw Error(path, fmt::format("cannot write: {}", std::strerror(error)), "", Exit::resources);
   };
-  if (fs::is_directory(path)) fail(EISDIR);
+  refuse_special(path);
   const int d = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (d < 0) fail(errno);
   for (size_t done = 0; done < text.size();) {

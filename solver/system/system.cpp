@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "system/pass.hpp"
@@ -156,10 +157,12 @@ void System::commit(const Config& q) {
 
 void System::number() {
   region_nodes.assign(mesh ? mesh->mesh.region_name.size() : 0, {});  // every rank has an entry for every region
-  std::vector<char> seen(X.size(), 0);
+  std::vector<std::int64_t> region(X.size(), std::numeric_limits<std::int64_t>::max());  // the lowest, the same on all ranks that share a node
   for (const SolidBatch& b : batches)
-    for (int i : b.nodes)
-      if (follower[i] < 0 && !seen[i]) seen[i] = 1, region_nodes[b.region].push_back(i);
+    for (int i : b.nodes) region[i] = std::min<std::int64_t>(region[i], b.region);
+  lowest_over_ranks(region);
+  for (size_t i = 0; i < X.size(); ++i)
+    if (follower[i] < 0 && region[i] < static_cast<std::int64_t>(region_nodes.size())) region_nodes[region[i]].push_back(static_cast<int>(i));
   // blocks: nodes, then bodies, then multipliers
   const int n = static_cast<int>(X.size());
   node_block.assign(n, -1);
@@ -224,6 +227,31 @@ void System::number() {
   for (size_t i = 0; i < springs.size(); ++i) {
     spring_clique_.push_back(connector_clique(springs[i], 0));
     owns_spring_.push_back(owns(springs[i], i));
+  }
+}
+
+void System::lowest_over_ranks(std::vector<std::int64_t>& value) const {
+  if (comm->size == 1) return;
+  std::vector<std::vector<std::int64_t>> tell(comm->size), ask(comm->size);
+  for (size_t i = 0; i < X.size(); ++i) {
+    const std::int64_t row = mesh->node_global[i];
+    tell[row % comm->size].push_back(row), tell[row % comm->size].push_back(value[i]);
+    ask[row % comm->size].push_back(row);
+  }
+  std::map<std::int64_t, std::int64_t> lowest;
+  for (const auto& list : comm->exchange(tell))
+    for (size_t k = 0; k + 1 < list.size(); k += 2) {
+      const auto [it, fresh] = lowest.try_emplace(list[k], list[k + 1]);
+      if (!fresh) it->second = std::min(it->second, list[k + 1]);
+    }
+  auto asked = comm->exchange(ask);
+  for (auto& list : asked)
+    for (auto& row : list) row = lowest.at(row);
+  const auto answers = comm->exchange(asked);
+  std::vector<size_t> cursor(comm->size, 0);
+  for (size_t i = 0; i < X.size(); ++i) {
+    const auto keeper = mesh->node_global[i] % comm->size;
+    value[i] = answers[keeper][cursor[keeper]++];
   }
 }
 

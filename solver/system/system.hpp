@@ -177,6 +177,8 @@ class System {
 
  private:
   struct Pass;
+  /// Lowest value of each node over the ranks that share it.
+  void lowest_over_ranks(std::vector<std::int64_t>& value) const;
   void number_globally(int n_node_blocks, int n_local);
   double constraint_scale(const Stage& s) const;
   void add_solids(Pass& p) const;

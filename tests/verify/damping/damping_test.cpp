@@ -34,7 +34,7 @@ TEST(Damping, ByStressDissipationNeverRaisesTheEnergy) { expect_decay("--set reg
 TEST(Damping, LeavesASteadyRotationAlone) {
   Case c("damping");
   c.use(bar());
-  const Results r = c.solved("--set initial.0.spin=[0,0,10] --set time.end=20 --set region.block.damping=0.01");
+  const Results r = c.solved("--set initial.1.spin=[0,0,10] --set time.end=20 --set region.block.damping=0.01");
   const auto e = r.history("energy");
   const Eigen::Index n = e.rows() - 1;
   EXPECT_LT(std::abs(e(n, 0) - e(n / 2, 0)), 1e-6 * e(n, 0)) << "between 10 s and 20 s, 32 turns";
@@ -45,7 +45,7 @@ TEST(Damping, LeavesASteadyRotationAlone) {
 TEST(Damping, ProportionalToMassBrakesRigidMotionAsADrag) {
   Case c("damping");
   c.use(bar());
-  const Results r = c.solved("--set region.block.damping=0 --set region.block.mass_damping=0.5 --set initial.0.spin=[0,0,0] --set initial.0.velocity=[2,0,0] --set time.end=2");
+  const Results r = c.solved("--set region.block.damping=0 --set region.block.mass_damping=0.5 --set initial.1.spin=[0,0,0] --set initial.1.velocity=[2,0,0] --set time.end=2");
   EXPECT_NEAR(r.at("momentum", 2)[0], 10 * 2 * std::exp(-1.), 1e-3);
   EXPECT_LT(r.history("energy").col(5).cwiseAbs().maxCoeff(), 1e-10 * r.history("energy").col(0).maxCoeff());
 }
