@@ -65,7 +65,8 @@ struct Torsion final : SpringLaw {
     const double s[2] = {M * kappa * std::cos(mid), -M * kappa * std::sin(mid)};
     const double ds[2] = {(dM * kappa + M * slope) * std::cos(mid) - M * kappa * std::sin(mid) / 2,
                           -(dM * kappa + M * slope) * std::sin(mid) - M * kappa * std::cos(mid) / 2};
-    const double dtheta[2] = {e1[1], -e1[0]};  // d theta / d(sin, cos)
+    const double square = e1[0] * e1[0] + e1[1] * e1[1];  // 1 once the joint on the axis holds
+    const double dtheta[2] = {e1[1] / square, -e1[0] / square};  // d theta / d(sin, cos)
     for (int i = 0; i < 2; ++i) {
       out.s[i] += s[i];
       for (int j = 0; j < 2; ++j) out.D[i][j] += ds[i] * dtheta[j];
