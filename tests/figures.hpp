@@ -1,4 +1,5 @@
-// Makes gtest print what it compares, passed or not: compile the tests with `-include tests/figures.hpp` to get the figures of docs/verification.md.
+// Makes gtest print what it compares, passed or not: compile the tests with `-include tests/figures.hpp` to get the figures of
+// docs/verification.md.
 #pragma once
 #include <gtest/gtest.h>
 

@@ -2,7 +2,8 @@
 # Geometry of gmsh's own tutorial from file to picture: t5.geo (a cube hung on one of its five spheres, now rigid bodies), t16.geo (nearly
 # the same solid by Boolean operations) and t20_data.step (a part in millimetres), both in free fall.  Usage: gmsh_doc.sh REPO BIN
 set -euo pipefail
-export PATH=$2:$PATH
+bin=$(realpath "$2")
+export PATH=$bin:$PATH
 tutorial=/usr/share/doc/gmsh-doc/doc/gmsh/tutorial
 [ -d "$tutorial" ] || { echo "gmsh_doc: no $tutorial (apt-get install gmsh-doc)" >&2; exit 1; }
 folder=$(mktemp -d)

@@ -2,8 +2,9 @@
 # Runs the example lines at the end of every --help, of each tool and each subcommand, as printed, in a folder that holds the files they
 # name.  What an example writes serves the next ones.  Usage: help_examples.sh REPO BIN
 set -euo pipefail
-repo=$1
-export PATH=$2:$PATH
+repo=$(realpath "$1")
+bin=$(realpath "$2")
+export PATH=$bin:$PATH
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 OPENBLAS_NUM_THREADS=1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -117,7 +118,7 @@ subcommands=$(hilo-post --help | sed -n '/^Subcommands:/,/^$/p' | awk 'NR > 1 &&
 [ -n "$subcommands" ] || fail "hilo-post --help lists no subcommand"
 for subcommand in $subcommands; do try hilo-post "$subcommand"; done
 try hilo-post
-for tool in "${2:?}"/hilo-*; do
+for tool in "$bin"/hilo-*; do
   case "${tool##*/}" in
     hilo-import | hilo-tag | hilo-part | hilo-show | hilo-solve | hilo-post) ;;
     *) [ ! -x "$tool" ] || [ -d "$tool" ] || try "${tool##*/}" ;;

@@ -88,5 +88,22 @@ TEST(SingleJoint, Prismatic02SlidesDownItsGuideExactly) {
   for (double t : {0.0, 1.0, 5.0}) expect_force_on_ground(r, t, {0, 4.90332, -4.90332}, frame);
 }
 
+// Truth: at rest a joint carries the weight at the joint point and its moment r x m g; on b, and with the opposite sign when the ends are swapped.
+TEST(FixedJoint, CarriesWeightAndMomentWithTheirSigns) {
+  const Case c("joints");
+  const std::string scene = text_of(c.source("scene.toml"));
+  const auto at = scene.find("[[joint]]"), end = scene.find("[[probe]]");
+  for (const bool swapped : {false, true}) {
+    const std::string ends = swapped ? "a = \"pendulum\"\nb = \"ground\"\n" : "a = \"ground\"\nb = \"pendulum\"\n";
+    c.write("scene.toml", scene.substr(0, at) + "[[joint]]\nkind = \"fixed\"\nname = \"joint\"\n" + ends + "at = [0.5, 0, 0]\n\n" + scene.substr(end));
+    const Ran ran = c.run("hilo-solve --quiet scene.toml --set time.end=0.01 -o run.h5");
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const auto f = c.results().history("joint/joint");
+    Eigen::Matrix<double, 6, 1> exact;
+    exact << 0, 0, 9.80665, 0, -1.5 * 9.80665, 0;
+    for (Eigen::Index i = 0; i < f.rows(); ++i) ASSERT_LT((f.row(i).transpose() - (swapped ? -1 : 1) * exact).norm(), 1e-7) << f.row(i);
+  }
+}
+
 }  // namespace
 }  // namespace hilo::test

@@ -1,0 +1,31 @@
+// benchmarks.md O3 (IVP test set "andrews", PSIDE at 1e-14): angles of the crank, of K3 and of K5 after 0.03 s, 2.5 turns of the crank.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+struct Angles {
+  double beta, gamma, delta;
+};
+
+Angles errors(const std::string& step) {
+  const Case c("squeezer");
+  const Results r = c.solved("--set time.step=" + step);
+  const auto e = r.history("energy");
+  EXPECT_LT(e.col(5).cwiseAbs().maxCoeff(), 1e-9 * e.col(0).maxCoeff()) << "IFToMM's measure";
+  const Vec3 P = r.at("probe/P", 0.03).head<3>(), Q = r.at("probe/Q", 0.03).head<3>(), H = r.at("probe/H", 0.03).head<3>();
+  const auto turn = [](double a) { return std::remainder(a, 2 * M_PI); };
+  return {turn(std::atan2(P.y(), P.x()) - 15.81077119629904), turn(std::atan2(Q.x() + 0.03635, 0.03273 - Q.y()) - 0.04082224013073101),
+          turn(std::atan2(H.y() + 0.00227, H.x() + 0.06934) - 0.5244099658805304)};
+}
+
+TEST(Squeezer, AnglesConvergeToTheReferenceAtSecondOrder) {
+  const Angles coarse = errors("2e-5"), fine = errors("5e-6");
+  EXPECT_LT(std::abs(fine.beta), 1e-3);
+  EXPECT_LT(std::abs(fine.gamma), 1e-4);
+  EXPECT_LT(std::abs(fine.delta), 1e-4);
+  EXPECT_NEAR(std::log2(std::abs(coarse.beta / fine.beta)) / 2, 2, 0.1);
+}
+
+}  // namespace
+}  // namespace hilo::test
