@@ -187,21 +187,29 @@ void Recorder::declare_arrays(Store& f) const {
   }
   f.start_rows<double>("/history/t", {}, "s", "times of the histories");
   const std::string at = "/history/t";
-  f.start_rows<double>("/history/energy", {6}, "J", "kinetic, elastic, gravity potential, external work, dissipated, balance E - E0 - W + D", at);
+  f.start_rows<double>("/history/energy", {6}, "J",
+                       "kinetic, elastic, gravity potential, external work, dissipated, balance E - E0 - W + D", at);
   f.start_rows<double>("/history/momentum", {6}, "kg m/s, kg m^2/s", "linear, and angular about the origin", at);
   f.start_rows<double>("/history/constraint", {}, "m", "largest violation of a joint row", at);
   f.start_rows<std::int32_t>("/history/newton", {}, "", "Newton iterations of the step", at);
-  for (size_t b = 1; b < system_.bodies.size(); ++b) f.start_rows<double>("/history/body/" + to_link_name(system_.bodies[b].name), {12}, "m", "positions of the four points", at);
+  for (size_t b = 1; b < system_.bodies.size(); ++b)
+    f.start_rows<double>("/history/body/" + to_link_name(system_.bodies[b].name), {12}, "m", "positions of the four points", at);
   for (const Connector& c : system_.joints)
     f.start_rows<double>("/history/joint/" + to_link_name(c.name), {6}, "N, N m",
-                         setup_.redundant ? "force and moment on b at the joint point, joint frame carried by a; minimum-norm share of redundant joints"
-                                          : "force and moment on b at the joint point, joint frame carried by a",
+                         setup_.redundant
+                             ? "force and moment on b at the joint point, joint frame carried by a; minimum-norm share of redundant joints"
+                             : "force and moment on b at the joint point, joint frame carried by a",
                          at);
-  for (const Connector& c : system_.springs) f.start_rows<double>("/history/spring/" + to_link_name(c.name), {6}, "N, N m", "force and moment on b at the point, inertial axes", at);
-  for (const Motion& m : system_.motions) f.start_rows<double>("/history/motion/" + to_link_name(m.name), {6}, "N, N m", "force and moment on what is held, inertial axes", at);
+  for (const Connector& c : system_.springs)
+    f.start_rows<double>("/history/spring/" + to_link_name(c.name), {6}, "N, N m", "force and moment on b at the point, inertial axes", at);
+  for (const Motion& m : system_.motions)
+    f.start_rows<double>("/history/motion/" + to_link_name(m.name), {6}, "N, N m", "force and moment on what is held, inertial axes", at);
   for (const Station& s : system_.stations) {
-    if (s.sensor) f.start_rows<double>("/history/sensor/" + to_link_name(s.name), {3}, "1", "proper acceleration R^T (a - g)/g0, +1 upward at rest", at);
-    else f.start_rows<double>("/history/probe/" + to_link_name(s.name), {9}, "m, m/s, m/s^2", "position, velocity, acceleration", at);
+    if (s.sensor)
+      f.start_rows<double>("/history/sensor/" + to_link_name(s.name), {3}, "1", "proper acceleration R^T (a - g)/g0, +1 upward at rest",
+                           at);
+    else
+      f.start_rows<double>("/history/probe/" + to_link_name(s.name), {9}, "m, m/s, m/s^2", "position, velocity, acceleration", at);
   }
 }
 
@@ -256,7 +264,8 @@ void Recorder::step(const State& s, const Stage& stage, std::span<const double> 
   row.t = s.t;
   row.newton = iterations;
   row.point = point_values(s);
-  row.jump = std::any_of(setup_.jumps.begin(), setup_.jumps.end(), [&](double t) { return std::abs(t - s.t) < 1e-9 * std::max(1.0, std::abs(t)); });
+  row.jump = std::any_of(setup_.jumps.begin(), setup_.jumps.end(),
+                         [&](double t) { return std::abs(t - s.t) < 1e-9 * std::max(1.0, std::abs(t)); });
   row.field = setup_.is_static || s.t >= next_field_ * (1 - 1e-9);
   if (row.field) {
     row.q = s.q, row.v = s.v;
@@ -283,14 +292,17 @@ void Recorder::advance(bool last) {
     const size_t after = first_written_ ? 1 : 0;
     const bool has_before = first_written_ && !intervals_.empty(), has_after = intervals_.size() > after;
     if (immediate) {
-      if (has_before || (!intervals_.empty() && !setup_.is_static)) write_row({{1, &intervals_[0]}});
-      else write_row({});
+      if (has_before || (!intervals_.empty() && !setup_.is_static))
+        write_row({{1, &intervals_[0]}});
+      else
+        write_row({});
     } else if (has_before && has_after && !rows_[0].jump) {
       const double hb = intervals_[0].h, ha = intervals_[1].h;
       write_row({{ha / (ha + hb), &intervals_[0]}, {hb / (ha + hb), &intervals_[1]}});
     } else if (has_after) {  // from the right
       std::vector<const Interval*> next{&intervals_[after]};
-      for (size_t k = after + 1; k < intervals_.size() && !intervals_[k].starts_at_jump && next.size() < 3; ++k) next.push_back(&intervals_[k]);
+      for (size_t k = after + 1; k < intervals_.size() && !intervals_[k].starts_at_jump && next.size() < 3; ++k)
+        next.push_back(&intervals_[k]);
       write_row(extrapolated(next));
     } else if (has_before) {  // the end: from the left, with the intervals kept for it
       std::vector<const Interval*> next{&intervals_[0]};
@@ -309,8 +321,8 @@ void Recorder::advance(bool last) {
   }
 }
 
-/// Value at the outer end of the first of up to three neighbouring intervals.  Mid-step values of energy-momentum carry an error that changes
-/// sign from step to step; the line through the means at the two nodes further in is free of it: m1 + h1 (m2 - m3)/(h2 + h3).
+/// Value at the outer end of the first of up to three neighbouring intervals.  Mid-step values of energy-momentum carry an error that
+/// changes sign from step to step; the line through the means at the two nodes further in is free of it: m1 + h1 (m2 - m3)/(h2 + h3).
 std::vector<std::pair<double, const Recorder::Interval*>> Recorder::extrapolated(const std::vector<const Interval*>& m) {
   if (m.size() == 1) return {{1, m[0]}};
   const double w = m[0]->h / (m[1]->h + m[m.size() == 2 ? 0 : 2]->h);

@@ -19,14 +19,14 @@ std::string stem(const std::string& path);
 class Recorder {
  public:
   struct Setup {
-    std::string path;                 // run.h5
-    double interval = 0;              // between fields [s]
+    std::string path;     // run.h5
+    double interval = 0;  // between fields [s]
     std::vector<std::string> fields;
     bool single_precision = false;
-    std::vector<double> jumps;        // times at which a load jumps
+    std::vector<double> jumps;  // times at which a load jumps
     std::vector<std::string> provenance;
-    bool redundant = false;           // reactions by minimum norm
-    double own_time = 0.5;            // where in the step mid values belong
+    bool redundant = false;  // reactions by minimum norm
+    double own_time = 0.5;   // where in the step mid values belong
     bool is_static = false;
   };
   Recorder(const System& system, const Scene& scene, Setup setup);
@@ -39,20 +39,20 @@ class Recorder {
   /// Remove what was written (input error after the file was opened).
   void discard();
 
-  double balance() const { return worst_balance_; }            // largest |E - E0 - W + D| / max T
+  double balance() const { return worst_balance_; }  // largest |E - E0 - W + D| / max T
   double violation() const { return worst_violation_; }
   int n_fields() const { return n_fields_; }
   std::int64_t n_rows() const { return static_cast<std::int64_t>(rows_written_); }
 
  private:
-  struct Row {                        // an instant t_n
+  struct Row {  // an instant t_n
     double t = 0;
-    std::vector<double> point;        // values that belong to t_n
+    std::vector<double> point;  // values that belong to t_n
     bool jump = false, field = false;
-    Config q, v;                      // kept where a field is due
+    Config q, v;  // kept where a field is due
     int newton = 0;
   };
-  struct Interval {                   // what belongs to the inside of a step
+  struct Interval {  // what belongs to the inside of a step
     double h = 0;
     std::vector<double> mid;
     Config a;
@@ -75,11 +75,11 @@ class Recorder {
   const System& system_;
   const Scene& scene_;
   Setup setup_;
-  std::unique_ptr<Store> store_;      // rank 0
-  std::optional<Error> failure_;      // of a write on rank 0
+  std::unique_ptr<Store> store_;  // rank 0
+  std::optional<Error> failure_;  // of a write on rank 0
   std::deque<Row> rows_;
-  std::deque<Interval> intervals_;    // interval k starts at row k of rows_
-  std::deque<Interval> past_;         // the two intervals before intervals_[0], for the last row
+  std::deque<Interval> intervals_;  // interval k starts at row k of rows_
+  std::deque<Interval> past_;       // the two intervals before intervals_[0], for the last row
   bool first_written_ = false, started_ = false;
   double last_t_ = 0;
   double next_field_ = 0, E0_ = 0, max_T_ = 0, work_ = 0, dissipated_ = 0, worst_balance_ = 0, worst_violation_ = 0;

@@ -161,7 +161,8 @@ inline void add_hourglass(const Lame& moduli, const SolidCall<T>& call) {
   for (int a = 0; a < 8; ++a) {
     T along[4], across[3];  // geometric: 1/2 t_rA (n_A gamma_r^T + gamma_r n_A^T) I
     for (int r = 0; r < 4; ++r) along[r] = (t[r][0] * hg.n[0][a] + t[r][1] * hg.n[1][a] + t[r][2] * hg.n[2][a]) / 2;
-    for (int A = 0; A < 3; ++A) across[A] = (t[0][A] * hg.gamma[0][a] + t[1][A] * hg.gamma[1][a] + t[2][A] * hg.gamma[2][a] + t[3][A] * hg.gamma[3][a]) / 2;
+    for (int A = 0; A < 3; ++A)
+      across[A] = (t[0][A] * hg.gamma[0][a] + t[1][A] * hg.gamma[1][a] + t[2][A] * hg.gamma[2][a] + t[3][A] * hg.gamma[3][a]) / 2;
     for (int b = 0; b < 8; ++b) {
       T geometric = across[0] * hg.n[0][b] + across[1] * hg.n[1][b] + across[2] * hg.n[2][b];
       for (int r = 0; r < 4; ++r) geometric += along[r] * hg.gamma[r][b];

@@ -121,8 +121,10 @@ inline void green_lagrange(const T F[3][3], T e[6]) {
   constexpr int I[6] = {0, 1, 2, 1, 0, 0}, J[6] = {0, 1, 2, 2, 2, 1};
   for (int k = 0; k < 6; ++k) {
     const T dot = F[0][I[k]] * F[0][J[k]] + F[1][I[k]] * F[1][J[k]] + F[2][I[k]] * F[2][J[k]];
-    if (k < 3) e[k] = (dot - 1) / 2;
-    else e[k] = dot;
+    if (k < 3)
+      e[k] = (dot - 1) / 2;
+    else
+      e[k] = dot;
   }
 }
 

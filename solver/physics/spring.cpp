@@ -65,7 +65,7 @@ struct Torsion final : SpringLaw {
     const double s[2] = {M * kappa * std::cos(mid), -M * kappa * std::sin(mid)};
     const double ds[2] = {(dM * kappa + M * slope) * std::cos(mid) - M * kappa * std::sin(mid) / 2,
                           -(dM * kappa + M * slope) * std::sin(mid) - M * kappa * std::cos(mid) / 2};
-    const double square = e1[0] * e1[0] + e1[1] * e1[1];  // 1 once the joint on the axis holds
+    const double square = e1[0] * e1[0] + e1[1] * e1[1];         // 1 once the joint on the axis holds
     const double dtheta[2] = {e1[1] / square, -e1[0] / square};  // d theta / d(sin, cos)
     for (int i = 0; i < 2; ++i) {
       out.s[i] += s[i];
@@ -139,8 +139,8 @@ Connector start(const char* kind, const Carrier& a, const Carrier& b, const Conf
 
 }  // namespace
 
-Connector make_axial_spring(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at_a, const Vec3& at_b, double stiffness, double damping,
-                            double length) {
+Connector make_axial_spring(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at_a, const Vec3& at_b, double stiffness,
+                            double damping, double length) {
   Connector c = start("axial", a, b, q, at_b, Mat3::Identity());
   const int pa = add_point(c, 0, q, at_a), pb = add_point(c, 1, q, at_b);
   c.measures.push_back({{{Term::distance2, pa, pb}}, 0});
@@ -148,7 +148,8 @@ Connector make_axial_spring(const Carrier& a, const Carrier& b, const Config& q,
   return c;
 }
 
-Connector make_torsion_spring(const Carrier& a, const Carrier& b, const Config& q, const Mat3& frame, double stiffness, double damping, double angle) {
+Connector make_torsion_spring(const Carrier& a, const Carrier& b, const Config& q, const Mat3& frame, double stiffness, double damping,
+                              double angle) {
   Connector c = start("torsion", a, b, q, b.body >= 0 ? q.c[b.body] : Vec3::Zero(), frame);
   const int ua = add_direction(c, 0, q, frame.col(0)), va = add_direction(c, 0, q, frame.col(1)), ub = add_direction(c, 1, q, frame.col(0));
   c.measures.push_back({{{Term::dot, va, ub}}, 0});  // sine
@@ -157,8 +158,8 @@ Connector make_torsion_spring(const Carrier& a, const Carrier& b, const Config& 
   return c;
 }
 
-Connector make_bushing(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at, const Mat3& frame, const Vec3& k, const Vec3& c_, const Vec3& k_angle,
-                       const Vec3& c_angle) {
+Connector make_bushing(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at, const Mat3& frame, const Vec3& k,
+                       const Vec3& c_, const Vec3& k_angle, const Vec3& c_angle) {
   Connector c = start("bushing", a, b, q, at, frame);
   const int pa = add_point(c, 0, q, at), pb = add_point(c, 1, q, at);
   int u[3];
@@ -179,8 +180,8 @@ Connector make_bushing(const Carrier& a, const Carrier& b, const Config& q, cons
   return c;
 }
 
-Connector make_support(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at, const Mat3& frame, double k, double c_, double clearance,
-                       const Vec3& k_plane, const Vec3& c_plane) {
+Connector make_support(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at, const Mat3& frame, double k, double c_,
+                       double clearance, const Vec3& k_plane, const Vec3& c_plane) {
   Connector c = start("support", a, b, q, at, frame);
   const int pa = add_point(c, 0, q, at), pb = add_point(c, 1, q, at);
   auto law = std::make_unique<Support>(k, c_);

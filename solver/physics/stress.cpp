@@ -16,8 +16,10 @@ namespace {
 /// sigma = F S F^T / J for the second Piola-Kirchhoff stress of strain e.
 Vec6 cauchy(Law law, const Lame& c, const double F_[3][3], const double e[6]) {
   double s[6] = {};
-  if (law == Law::stvk) StVenantKirchhoff{c}.stress<double>(e, e, s, nullptr);
-  else NeoHookean{c}.stress<double>(e, e, s, nullptr);
+  if (law == Law::stvk)
+    StVenantKirchhoff{c}.stress<double>(e, e, s, nullptr);
+  else
+    NeoHookean{c}.stress<double>(e, e, s, nullptr);
   Mat3 F, S;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) F(i, j) = F_[i][j];
@@ -73,7 +75,8 @@ void recover(Law law, const Lame& c, std::span<const Vec3> X, std::span<const Ve
     const Eigen::Matrix<double, 4, 6> fit = normal.inverse() * (A.transpose() * sigma);
     double xi[S::n][3];
     node_coordinates<S>(xi);
-    for (int a = 0; a < S::n; ++a) out[a] = (fit.row(0) + xi[a][0] * fit.row(1) + xi[a][1] * fit.row(2) + xi[a][2] * fit.row(3)).transpose();
+    for (int a = 0; a < S::n; ++a)
+      out[a] = (fit.row(0) + xi[a][0] * fit.row(1) + xi[a][1] * fit.row(2) + xi[a][2] * fit.row(3)).transpose();
   }
 }
 
@@ -89,7 +92,8 @@ void recover_hex8(Law law, const Lame& c, std::span<const Vec3> X, std::span<con
     Mat3 local = Mat3::Zero();  // additional strain in the cell's axes
     for (int r = 0; r < 3; ++r) {
       const int p = (r + 1) % 3, q = (r + 2) % 3;
-      const double xi = hex_corner[a][r], e1 = b[q][p] / h.half[p], e2 = b[p][q] / h.half[q], e3 = b[q][q] / h.half[p] + b[p][p] / h.half[q];
+      const double xi = hex_corner[a][r], e1 = b[q][p] / h.half[p], e2 = b[p][q] / h.half[q],
+                   e3 = b[q][q] / h.half[p] + b[p][p] / h.half[q];
       local(p, p) += e1 * xi, local(q, q) += e2 * xi, local(r, r) -= h.nu / (1 - h.nu) * (e1 + e2) * xi;
       local(p, q) += e3 * xi / 2, local(q, p) += e3 * xi / 2;
     }
@@ -97,7 +101,8 @@ void recover_hex8(Law law, const Lame& c, std::span<const Vec3> X, std::span<con
     for (int i = 0; i < 3; ++i)
       for (int A = 0; A < 3; ++A) axes(i, A) = h.axes[i][A];
     const Mat3 extra = axes * local * axes.transpose();
-    const double total[6] = {e[0] + extra(0, 0), e[1] + extra(1, 1), e[2] + extra(2, 2), e[3] + 2 * extra(1, 2), e[4] + 2 * extra(0, 2), e[5] + 2 * extra(0, 1)};
+    const double total[6] = {e[0] + extra(0, 0),     e[1] + extra(1, 1),     e[2] + extra(2, 2),
+                             e[3] + 2 * extra(1, 2), e[4] + 2 * extra(0, 2), e[5] + 2 * extra(0, 1)};
     out[a] = cauchy(law, c, F, total);
   }
 }
@@ -111,12 +116,18 @@ double von_mises(const Vec6& s) {
 
 void nodal_stress(Shape shape, Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x, std::span<Vec6> out) {
   switch (shape) {
-    case Shape::tet4: return recover<Tet4>(law, c, X, x, out);
-    case Shape::tet10: return recover<Tet10>(law, c, X, x, out);
-    case Shape::wedge6: return recover<Wedge6>(law, c, X, x, out);
-    case Shape::wedge15: return recover<Wedge15>(law, c, X, x, out);
-    case Shape::hex8: return recover_hex8(law, c, X, x, out);
-    case Shape::hex20: return recover<Hex20>(law, c, X, x, out);
+    case Shape::tet4:
+      return recover<Tet4>(law, c, X, x, out);
+    case Shape::tet10:
+      return recover<Tet10>(law, c, X, x, out);
+    case Shape::wedge6:
+      return recover<Wedge6>(law, c, X, x, out);
+    case Shape::wedge15:
+      return recover<Wedge15>(law, c, X, x, out);
+    case Shape::hex8:
+      return recover_hex8(law, c, X, x, out);
+    case Shape::hex20:
+      return recover<Hex20>(law, c, X, x, out);
     case Shape::bar2: {
       const Vec3 d0 = X[1] - X[0], d = x[1] - x[0];
       const double E = c.mu * (3 * c.lambda + 2 * c.mu) / (c.lambda + c.mu), strain = (d.squaredNorm() / d0.squaredNorm() - 1) / 2;

@@ -163,12 +163,14 @@ void System::commit(const Config& q) {
 
 void System::number() {
   region_nodes.assign(mesh ? mesh->mesh.region_name.size() : 0, {});  // every rank has an entry for every region
-  std::vector<std::int64_t> region(X.size(), std::numeric_limits<std::int64_t>::max());  // the lowest, the same on all ranks that share a node
+  std::vector<std::int64_t> region(X.size(),
+                                   std::numeric_limits<std::int64_t>::max());  // the lowest, the same on all ranks that share a node
   for (const SolidBatch& b : batches)
     for (int i : b.nodes) region[i] = std::min<std::int64_t>(region[i], b.region);
   lowest_over_ranks(region);
   for (size_t i = 0; i < X.size(); ++i)
-    if (follower[i] < 0 && region[i] < static_cast<std::int64_t>(region_nodes.size())) region_nodes[region[i]].push_back(static_cast<int>(i));
+    if (follower[i] < 0 && region[i] < static_cast<std::int64_t>(region_nodes.size()))
+      region_nodes[region[i]].push_back(static_cast<int>(i));
   // blocks: nodes, then bodies, then multipliers
   const int n = static_cast<int>(X.size());
   node_block.assign(n, -1);

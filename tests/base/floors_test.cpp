@@ -72,9 +72,10 @@ TEST(Floors, EveryFolderOfTheSolverIsOne) {
 // The heavy libraries stay where they belong: PETSc in linear, VTK in post, HDF5 in model, gmsh and METIS in tools.
 TEST(Floors, LibrariesAreIncludedOnlyWhereTheyBelong) {
   const fs::path root = HILO_SOURCE;
-  const std::vector<std::pair<std::regex, std::string>> home{{std::regex("^petsc.*"), "solver/linear"}, {std::regex("^vtk[A-Z_].*"), "post"}, {std::regex("^hdf5\\.h$|^H5.*"), "solver/model"},
-                                                             {std::regex("^gmsh.*"), "tools"},          {std::regex("^metis.*"), "tools"},    {std::regex("^toml\\+\\+.*"), "solver/model"},
-                                                             {std::regex("^mpi\\.h$"), "solver/model"}};
+  const std::vector<std::pair<std::regex, std::string>> home{
+      {std::regex("^petsc.*"), "solver/linear"}, {std::regex("^vtk[A-Z_].*"), "post"}, {std::regex("^hdf5\\.h$|^H5.*"), "solver/model"},
+      {std::regex("^gmsh.*"), "tools"},          {std::regex("^metis.*"), "tools"},    {std::regex("^toml\\+\\+.*"), "solver/model"},
+      {std::regex("^mpi\\.h$"), "solver/model"}};
   for (const char* folder : {"solver", "tools", "post"})
     for (const auto& [file, included] : includes(root / folder))
       for (const auto& [library, place] : home)

@@ -1,5 +1,5 @@
-// Orders of position, velocity, acceleration and reaction of a brick hung at its corner (stability.md, PEND3D), against RK4 on Euler's equations
-// in the test itself, which has neither joints nor multipliers.
+// Orders of position, velocity, acceleration and reaction of a brick hung at its corner (stability.md, PEND3D), against RK4 on Euler's
+// equations in the test itself, which has neither joints nor multipliers.
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -77,8 +77,8 @@ Errors errors(const Workplace& w, double t, const std::string& h, const std::str
   const Results r(w / "run.h5");
   const auto p = r.at("probe/far", t);
   const Truth truth = integrate(t);
-  return {(p.head<3>() - truth.x).norm(), (p.segment<3>(3) - truth.v).norm(), (p.tail<3>() - truth.a).norm(), (r.at("joint/corner", t).head<3>() - truth.force).norm(),
-          (r.at("sensor/seat", t) - truth.felt).norm()};
+  return {(p.head<3>() - truth.x).norm(), (p.segment<3>(3) - truth.v).norm(), (p.tail<3>() - truth.a).norm(),
+          (r.at("joint/corner", t).head<3>() - truth.force).norm(), (r.at("sensor/seat", t) - truth.felt).norm()};
 }
 
 void expect_second_order(double t, const std::string& options, const Errors& limit) {
@@ -99,7 +99,9 @@ void expect_second_order(double t, const std::string& options, const Errors& lim
   EXPECT_LT(fine.felt, limit.felt);
 }
 
-TEST(EnergyMomentum, IsOfSecondOrderInPositionVelocityAccelerationAndReaction) { expect_second_order(0.5, "", {1e-5, 1e-4, 1e-3, 1e-3, 1e-4}); }
+TEST(EnergyMomentum, IsOfSecondOrderInPositionVelocityAccelerationAndReaction) {
+  expect_second_order(0.5, "", {1e-5, 1e-4, 1e-3, 1e-3, 1e-4});
+}
 TEST(EnergyMomentum, IsOfSecondOrderInTheLastRowToo) { expect_second_order(1, "", {1e-5, 1e-4, 1e-3, 3e-3, 1e-4}); }
 TEST(EnergyMomentum, IsOfSecondOrderInTheFirstRowToo) { expect_second_order(0, "", {1e-14, 1e-14, 1e-3, 1e-3, 1e-4}); }
 TEST(GeneralizedAlpha, IsOfSecondOrderInPositionAndVelocity) {
@@ -181,7 +183,8 @@ step = 0.01
   EXPECT_NEAR(p[4], 3, 1e-12);
 }
 
-// Truth: a hung scene at rest stays at rest: equilibrium of a mass on a spring is m g/k below the free length, and nothing moves afterwards.
+// Truth: a hung scene at rest stays at rest: equilibrium of a mass on a spring is m g/k below the free length, and nothing moves
+// afterwards.
 TEST(Equilibrium, IsAStateTheRunStaysIn) {
   const Workplace w;
   w.write("scene.toml", R"(

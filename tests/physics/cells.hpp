@@ -19,17 +19,29 @@ namespace hilo::test {
 template <class S>
 struct ShapeOf;
 template <>
-struct ShapeOf<Tet4> { static constexpr Shape shape = Shape::tet4; };
+struct ShapeOf<Tet4> {
+  static constexpr Shape shape = Shape::tet4;
+};
 template <>
-struct ShapeOf<Tet10> { static constexpr Shape shape = Shape::tet10; };
+struct ShapeOf<Tet10> {
+  static constexpr Shape shape = Shape::tet10;
+};
 template <>
-struct ShapeOf<Wedge6> { static constexpr Shape shape = Shape::wedge6; };
+struct ShapeOf<Wedge6> {
+  static constexpr Shape shape = Shape::wedge6;
+};
 template <>
-struct ShapeOf<Wedge15> { static constexpr Shape shape = Shape::wedge15; };
+struct ShapeOf<Wedge15> {
+  static constexpr Shape shape = Shape::wedge15;
+};
 template <>
-struct ShapeOf<Hex8> { static constexpr Shape shape = Shape::hex8; };
+struct ShapeOf<Hex8> {
+  static constexpr Shape shape = Shape::hex8;
+};
 template <>
-struct ShapeOf<Hex20> { static constexpr Shape shape = Shape::hex20; };
+struct ShapeOf<Hex20> {
+  static constexpr Shape shape = Shape::hex20;
+};
 
 template <class S>
 inline constexpr bool is_tet = S::n == 4 || S::n == 10;
@@ -109,11 +121,23 @@ struct Wish {
 
 /// The cell kernel through the same templates as the solver, for any number type.
 template <class S, class Material, class T>
-Evaluated<T> evaluate_cell(const Lame& c, const std::vector<T>& X, const std::vector<T>& x0, const std::vector<T>& x1, const Wish& wish = {},
-                           const std::vector<T>* a = nullptr) {
+Evaluated<T> evaluate_cell(const Lame& c, const std::vector<T>& X, const std::vector<T>& x0, const std::vector<T>& x1,
+                           const Wish& wish = {}, const std::vector<T>* a = nullptr) {
   Evaluated<T> out{std::vector<T>(3 * S::n, T(0.0)), std::vector<T>(wish.tangent ? 9 * S::n * S::n : 0, T(0.0)), T(0.0), T(0.0), T(1e300)};
-  const SolidCall<T> call{X.data(), x0.data(), x1.data(), wish.elastic, wish.viscous, c, out.f.data(), wish.tangent ? out.K.data() : nullptr,
-                          &out.energy, &out.dissipated, &out.least_det, wish.density, a ? a->data() : nullptr, wish.mass_slope};
+  const SolidCall<T> call{X.data(),
+                          x0.data(),
+                          x1.data(),
+                          wish.elastic,
+                          wish.viscous,
+                          c,
+                          out.f.data(),
+                          wish.tangent ? out.K.data() : nullptr,
+                          &out.energy,
+                          &out.dissipated,
+                          &out.least_det,
+                          wish.density,
+                          a ? a->data() : nullptr,
+                          wish.mass_slope};
   evaluate_solid<S>(Material{c}, call);
   if constexpr (S::n == 8) add_hourglass(c, call);
   if (a) add_mass<S>(call);

@@ -62,6 +62,8 @@ inline const std::vector<std::string>& joint_kinds() {
 inline Mat3 some_frame() { return frame_of_axis(Vec3(1, 2, -0.5), Vec3(0, 1, 0)); }
 inline const Vec3 joint_point(0.4, -0.2, 0.9), other_point(-1, 0.3, 0.2);
 
-inline Connector joint(const std::string& kind, const Config& q) { return make_joint(kind, {1, -1}, {2, -1}, q, joint_point, kind == "distance" ? other_point : joint_point, some_frame()); }
+inline Connector joint(const std::string& kind, const Config& q) {
+  return make_joint(kind, {1, -1}, {2, -1}, q, joint_point, kind == "distance" ? other_point : joint_point, some_frame());
+}
 
 }  // namespace hilo::test

@@ -1,4 +1,5 @@
-// Joints: every measure is of degree two, so its mid-point gradient is an exact discrete gradient, and every kind has its own number of rows.
+// Joints: every measure is of degree two, so its mid-point gradient is an exact discrete gradient, and every kind has its own number of
+// rows.
 #include <Eigen/QR>
 
 #include "physics/connectors.hpp"
@@ -63,7 +64,8 @@ TEST_P(Joint, SecondDerivativeTermIsTheDerivativeOfTheForces) {
 
 // Truth: a joint takes away 6 - f motions: fixed 6, spherical 3, revolute 5, cylindrical 4, prismatic 5, universal 4, distance 1.
 TEST_P(Joint, HasAsManyIndependentRowsAsItTakesAwayMotions) {
-  const std::map<std::string, int> rows{{"fixed", 6}, {"spherical", 3}, {"revolute", 5}, {"cylindrical", 4}, {"prismatic", 5}, {"universal", 4}, {"distance", 1}};
+  const std::map<std::string, int> rows{{"fixed", 6},     {"spherical", 3}, {"revolute", 5}, {"cylindrical", 4},
+                                        {"prismatic", 5}, {"universal", 4}, {"distance", 1}};
   gradient(c, made_at, g);
   EXPECT_EQ(c.n_rows(), rows.at(GetParam()));
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(g.G.topRows(c.n_rows()).transpose());
@@ -116,7 +118,8 @@ TEST_P(Joint, ForbiddenMotionsAreSeen) {
   std::vector<Free> forbidden;
   for (int i = 0; i < 3; ++i) {
     const bool slides = (GetParam() == "cylindrical" || GetParam() == "prismatic") && i == 2;
-    const bool turns = GetParam() == "spherical" || ((GetParam() == "revolute" || GetParam() == "cylindrical") && i == 2) || (GetParam() == "universal" && i != 1);
+    const bool turns = GetParam() == "spherical" || ((GetParam() == "revolute" || GetParam() == "cylindrical") && i == 2) ||
+                       (GetParam() == "universal" && i != 1);
     if (GetParam() == "distance") continue;
     if (!slides) forbidden.push_back({Vec3::Zero(), 0.1 * f.col(i)});
     if (!turns) forbidden.push_back({0.1 * f.col(i), Vec3::Zero()});

@@ -32,7 +32,8 @@ bool can_run(int width) {
 
 void expect_close(const std::vector<double>& one, const double* many, int width, int lane, const char* what) {
   const double scale = largest(one);
-  for (size_t i = 0; i < one.size(); ++i) ASSERT_NEAR(many[i * width + lane], one[i], 1e-13 * scale) << what << " entry " << i << " lane " << lane;
+  for (size_t i = 0; i < one.size(); ++i)
+    ASSERT_NEAR(many[i * width + lane], one[i], 1e-13 * scale) << what << " entry " << i << " lane " << lane;
 }
 
 // Truth: lanes hold different cells and do not touch each other; only the order of rounding (fused multiply-add) may differ.
@@ -54,13 +55,15 @@ TYPED_TEST(Lanes, EveryLaneIsTheCellAlone) {
         const auto X_ = flat(cell), x0_ = flat(bent(cell, 0.1 * l, 0.1, l)), x1_ = flat(bent(cell, 0.3 + 0.2 * l, 0.1, 7 * l));
         const auto a_ = flat(bent(cell, 1, 0.5, 3 * l));
         for (int i = 0; i < n3; ++i)
-          lane_of(X)[i * width + l] = X_[i], lane_of(x0)[i * width + l] = x0_[i], lane_of(x1)[i * width + l] = x1_[i], lane_of(a)[i * width + l] = a_[i];
+          lane_of(X)[i * width + l] = X_[i], lane_of(x0)[i * width + l] = x0_[i], lane_of(x1)[i * width + l] = x1_[i],
+                                 lane_of(a)[i * width + l] = a_[i];
         alone.push_back(law == Law::stvk ? evaluate_cell<S, StVenantKirchhoff>(rubber, X_, x0_, x1_, wish, &a_)
                                          : evaluate_cell<S, NeoHookean>(rubber, X_, x0_, x1_, wish, &a_));
       }
       KernelCall call{};
       call.X = lane_of(X), call.x0 = lane_of(x0), call.x1 = lane_of(x1), call.a = lane_of(a);
-      call.elastic = wish.elastic, call.viscous = wish.viscous, call.c = rubber, call.density = wish.density, call.mass_slope = wish.mass_slope;
+      call.elastic = wish.elastic, call.viscous = wish.viscous, call.c = rubber, call.density = wish.density,
+      call.mass_slope = wish.mass_slope;
       call.f = lane_of(f), call.K = lane_of(K);
       alignas(64) double energy[8], dissipated[8], det[8];
       call.energy = energy, call.dissipated = dissipated, call.least_det = det;

@@ -60,7 +60,8 @@ std::string name_of(const testing::TestParamInfo<Patch::ParamType>& p) {
          (std::get<2>(p.param) < 0.01 ? "_small" : "_large");
 }
 INSTANTIATE_TEST_SUITE_P(EveryShape, Patch,
-                         testing::Combine(testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20),
+                         testing::Combine(testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8,
+                                                          Shape::hex20),
                                           testing::Values(Law::stvk, Law::neo_hookean), testing::Values(1e-3, 0.3)),
                          name_of);
 

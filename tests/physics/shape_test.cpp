@@ -45,7 +45,8 @@ double monomial(int i, int j, int k) {
 template <class Rule>
 double integrate(const Rule& rule, int i, int j, int k) {
   double sum = 0;
-  for (size_t p = 0; p < std::size(rule.w); ++p) sum += rule.w[p] * std::pow(rule.xi[p][0], i) * std::pow(rule.xi[p][1], j) * std::pow(rule.xi[p][2], k);
+  for (size_t p = 0; p < std::size(rule.w); ++p)
+    sum += rule.w[p] * std::pow(rule.xi[p][0], i) * std::pow(rule.xi[p][1], j) * std::pow(rule.xi[p][2], k);
   return sum;
 }
 

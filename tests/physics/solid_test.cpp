@@ -29,19 +29,21 @@ struct PairName {
 };
 using SV = StVenantKirchhoff;
 using NH = NeoHookean;
-using Pairs = testing::Types<Pair<Tet4, SV>, Pair<Tet10, SV>, Pair<Wedge6, SV>, Pair<Wedge15, SV>, Pair<Hex8, SV>, Pair<Hex20, SV>, Pair<Tet4, NH>,
-                             Pair<Tet10, NH>, Pair<Wedge6, NH>, Pair<Wedge15, NH>, Pair<Hex8, NH>, Pair<Hex20, NH>>;
+using Pairs = testing::Types<Pair<Tet4, SV>, Pair<Tet10, SV>, Pair<Wedge6, SV>, Pair<Wedge15, SV>, Pair<Hex8, SV>, Pair<Hex20, SV>,
+                             Pair<Tet4, NH>, Pair<Tet10, NH>, Pair<Wedge6, NH>, Pair<Wedge15, NH>, Pair<Hex8, NH>, Pair<Hex20, NH>>;
 TYPED_TEST_SUITE(Solid, Pairs, PairName);
 
 std::vector<Dual> constant(const std::vector<double>& v) { return {v.begin(), v.end()}; }
 
-// Truth: S is a discrete gradient and B_mid (x1 - x0) = E1 - E0, so f.(x1 - x0) is the change of W whatever the step.  1e-13 of the work: round-off.
+// Truth: S is a discrete gradient and B_mid (x1 - x0) = E1 - E0, so f.(x1 - x0) is the change of W whatever the step.  1e-13 of the work:
+// round-off.
 TYPED_TEST(Solid, WorkOfTheForceIsTheChangeOfEnergy) {
   using F = TestFixture;
   const auto step = evaluate_cell<typename F::S, typename F::M>(rubber, this->X_, this->x0_, this->x1_);
   const auto start = evaluate_cell<typename F::S, typename F::M>(rubber, this->X_, this->x0_, this->x0_);
   double work = 0, size = 0;
-  for (size_t i = 0; i < step.f.size(); ++i) work += step.f[i] * (this->x1_[i] - this->x0_[i]), size += std::abs(step.f[i] * (this->x1_[i] - this->x0_[i]));
+  for (size_t i = 0; i < step.f.size(); ++i)
+    work += step.f[i] * (this->x1_[i] - this->x0_[i]), size += std::abs(step.f[i] * (this->x1_[i] - this->x0_[i]));
   ASSERT_GT(step.least_det, 0);
   EXPECT_NEAR(work, step.energy - start.energy, 1e-13 * size);
   EXPECT_GT(std::abs(work), 1e-3 * size) << "a step that does work";
@@ -73,7 +75,8 @@ TYPED_TEST(Solid, TangentIsTheDerivativeOfTheForce) {
   for (size_t j = 0; j < n; ++j) {
     auto x = constant(this->x1_), da = constant(a);
     x[j].d = 1, da[j].d = wish.mass_slope;
-    const auto dual = evaluate_cell<typename F::S, typename F::M, Dual>(rubber, constant(this->X_), constant(this->x0_), x, force_only, &da);
+    const auto dual =
+        evaluate_cell<typename F::S, typename F::M, Dual>(rubber, constant(this->X_), constant(this->x0_), x, force_only, &da);
     for (size_t i = 0; i < n; ++i) ASSERT_NEAR(at.K[i * n + j], dual.f[i].d, 1e-12 * scale) << i << "," << j;
   }
 }
@@ -93,7 +96,8 @@ TYPED_TEST(Solid, RigidMotionGivesNoForceAndNoEnergy) {
   std::vector<Vec3> x;
   for (const Vec3& p : this->X) x.push_back(Eigen::AngleAxisd(2, Vec3(0.3, -1, 0.6).normalized()).toRotationMatrix() * p + Vec3(3, -2, 1));
   const auto turned = flat(x);
-  const auto small = evaluate_cell<typename F::S, typename F::M>(rubber, this->X_, turned, turned), step = evaluate_cell<typename F::S, typename F::M>(rubber, this->X_, this->X_, turned);
+  const auto small = evaluate_cell<typename F::S, typename F::M>(rubber, this->X_, turned, turned),
+             step = evaluate_cell<typename F::S, typename F::M>(rubber, this->X_, this->X_, turned);
   const double stiff = largest(small.K);
   EXPECT_LT(largest(small.f), 1e-14 * stiff);
   EXPECT_LT(largest(step.f), 1e-14 * stiff);
@@ -168,18 +172,20 @@ TYPED_TEST(Solid, MassAndItsFirstMomentAreThoseOfTheVolume) {
         Vec3 x = Vec3::Zero();
         for (int a = 0; a < S::n; ++a) J += this->X[a] * Vec3(dN[a][0], dN[a][1], dN[a][2]).transpose(), x += N[a] * this->X[a];
         const Eigen::Map<const Eigen::Matrix<double, S::n, 1>> n(N);
-        volume += weight * J.determinant(), moment += weight * J.determinant() * x, M += 7800 * weight * J.determinant() * n * n.transpose();
+        volume += weight * J.determinant(), moment += weight * J.determinant() * x,
+            M += 7800 * weight * J.determinant() * n * n.transpose();
       }
   std::vector<double> a(this->X_.size());
   for (size_t i = 0; i < a.size(); ++i) a[i] = i % 3 == 0;
-  const auto at = evaluate_cell<S, typename TestFixture::M>(rubber, this->X_, this->X_, this->X_, {.elastic = 0, .density = 7800, .mass_slope = 1}, &a);
+  const auto at =
+      evaluate_cell<S, typename TestFixture::M>(rubber, this->X_, this->X_, this->X_, {.elastic = 0, .density = 7800, .mass_slope = 1}, &a);
   double mass = 0;
   Vec3 first = Vec3::Zero();
   for (int b = 0; b < S::n; ++b) mass += at.f[3 * b], first += at.f[3 * b] * this->X[b];
   EXPECT_NEAR(mass, 7800 * volume, 1e-12 * mass);
   EXPECT_LT((first - 7800 * moment).norm(), 1e-12 * first.norm());
-  // the matrix itself: exact where the map is affine (tetrahedra); a product of two shape functions and of a bent map's Jacobian is of higher
-  // degree than the rule of the bricks and wedges, by less than 1 % of the largest entry for this cell
+  // the matrix itself: exact where the map is affine (tetrahedra); a product of two shape functions and of a bent map's Jacobian is of
+  // higher degree than the rule of the bricks and wedges, by less than 1 % of the largest entry for this cell
   const double bound = is_tet<S> ? 1e-12 : 0.01;
   for (int p = 0; p < S::n; ++p)
     for (int q = 0; q < S::n; ++q) {

@@ -26,8 +26,14 @@ std::vector<Kind> kinds() {
              const double t = 1.5 * scatter(seed);
              return Values{std::sin(t), std::cos(t)};
            }},
-          {"bushing", [=](const Config& q) { return make_bushing(a, b, q, joint_point, some_frame(), Vec3(100, 200, 50), Vec3(3, 0, 5), Vec3(20, 10, 30), Vec3(1, 2, 3)); }, any},
-          {"support", [=](const Config& q) { return make_support(a, b, q, joint_point, some_frame(), 900, 0, 0.1, Vec3(70, 20, 0), Vec3(2, 1, 0)); }, any}};
+          {"bushing",
+           [=](const Config& q) {
+             return make_bushing(a, b, q, joint_point, some_frame(), Vec3(100, 200, 50), Vec3(3, 0, 5), Vec3(20, 10, 30), Vec3(1, 2, 3));
+           },
+           any},
+          {"support",
+           [=](const Config& q) { return make_support(a, b, q, joint_point, some_frame(), 900, 0, 0.1, Vec3(70, 20, 0), Vec3(2, 1, 0)); },
+           any}};
 }
 
 class Spring : public testing::TestWithParam<Kind> {

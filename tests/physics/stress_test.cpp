@@ -10,16 +10,23 @@ class Stress : public testing::TestWithParam<Shape> {
  protected:
   std::vector<Vec3> X = [this] {
     switch (GetParam()) {
-      case Shape::tet4: return some_cell<Tet4>(0.08);
-      case Shape::tet10: return some_cell<Tet10>(0.08);
-      case Shape::wedge6: return some_cell<Wedge6>(0.08);
-      case Shape::wedge15: return some_cell<Wedge15>(0.08);
-      case Shape::hex8: return some_cell<Hex8>(0.08);
-      default: return some_cell<Hex20>(0.08);
+      case Shape::tet4:
+        return some_cell<Tet4>(0.08);
+      case Shape::tet10:
+        return some_cell<Tet10>(0.08);
+      case Shape::wedge6:
+        return some_cell<Wedge6>(0.08);
+      case Shape::wedge15:
+        return some_cell<Wedge15>(0.08);
+      case Shape::hex8:
+        return some_cell<Hex8>(0.08);
+      default:
+        return some_cell<Hex20>(0.08);
     }
   }();
 };
-INSTANTIATE_TEST_SUITE_P(EveryShape, Stress, testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20),
+INSTANTIATE_TEST_SUITE_P(EveryShape, Stress,
+                         testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20),
                          [](const auto& p) { return std::string(hilo::info(p.param).name); });
 
 Vec6 voigt(const Mat3& s) {
@@ -91,11 +98,13 @@ TEST(VonMises, IsTheStressOfATensionAndRootThreeOfAShear) {
 // Truth: W = E A L e^2/2 with e = (l^2/L^2 - 1)/2; work over a finite step is its change, K its second derivative in the mid-point sense.
 TEST(Bar, ForceIsADiscreteGradientOfItsEnergy) {
   const double Y = 7e10, A = 2e-4, rho = 2700;
-  alignas(64) double X[6] = {0, 0, 0, 1, 2, -1}, x0[6] = {0.1, 0, 0, 1.2, 2, -1}, x1[6] = {0, 0.5, 0, -0.8, 2, 1.3}, f[6], K[36], W, W0, unused, a[6] = {};
+  alignas(64) double X[6] = {0, 0, 0, 1, 2, -1}, x0[6] = {0.1, 0, 0, 1.2, 2, -1}, x1[6] = {0, 0.5, 0, -0.8, 2, 1.3}, f[6], K[36], W, W0,
+                     unused, a[6] = {};
   const SolidKernel kernel = solid_kernel(Shape::bar2, Law::stvk);
   ASSERT_EQ(kernel.width, 1);
   KernelCall call{};
-  call.X = X, call.x0 = x0, call.x1 = x1, call.elastic = 1, call.c = lame(Y, 0.3), call.f = f, call.K = K, call.energy = &W, call.least_det = &unused, call.area = A;
+  call.X = X, call.x0 = x0, call.x1 = x1, call.elastic = 1, call.c = lame(Y, 0.3), call.f = f, call.K = K, call.energy = &W,
+  call.least_det = &unused, call.area = A;
   call.density = rho, call.a = a;
   kernel.call(call);
   const std::vector<double> force(f, f + 6), tangent(K, K + 36);

@@ -137,8 +137,10 @@ class Tangent : public testing::TestWithParam<const char*> {
     write_mesh(place / "mesh.h5", m, {"test"});
     write_tags(place / "tags.h5", place / "mesh.h5", {Fidelity::rigid, Fidelity::nonlinear}, {"test"});
     local = read_local_mesh(place / "tags.h5", Comm::world());
-    // the tangent of generalized-alpha takes the rate terms' gradient at the end point only, which is exact to first order in h: left out there
-    const std::vector<std::string> undamped{"region.*.damping=0", "spring.strut.damping=0", "spring.coil.damping=0", "spring.mount.damping=[0,0,0]", "spring.mount.angular_damping=[0,0,0]"};
+    // the tangent of generalized-alpha takes the rate terms' gradient at the end point only, which is exact to first order in h: left out
+    // there
+    const std::vector<std::string> undamped{"region.*.damping=0", "spring.strut.damping=0", "spring.coil.damping=0",
+                                            "spring.mount.damping=[0,0,0]", "spring.mount.angular_damping=[0,0,0]"};
     scene = Scene::parse(everything, "scene.toml", std::string(GetParam()) == "energy-momentum" ? std::vector<std::string>{} : undamped);
     system = build_system(scene, &local, Comm::world());
   }
@@ -221,11 +223,14 @@ TEST_P(Tangent, OfTheWholeSystemIsTheDerivativeOfItsResidual) {
         }
         continue;
       }
-      ASSERT_NEAR(K.A(i, j), difference(i, j), 2e-7 * scale) << "row " << i << " column " << j << " of " << n << ", multipliers from " << first;
+      ASSERT_NEAR(K.A(i, j), difference(i, j), 2e-7 * scale)
+          << "row " << i << " column " << j << " of " << n << ", multipliers from " << first;
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, Tangent, testing::Values("energy-momentum", "generalized-alpha"), [](const auto& p) { return p.param[0] == 'e' ? std::string("energy_momentum") : std::string("generalized_alpha"); });
+INSTANTIATE_TEST_SUITE_P(Integrators, Tangent, testing::Values("energy-momentum", "generalized-alpha"), [](const auto& p) {
+  return p.param[0] == 'e' ? std::string("energy_momentum") : std::string("generalized_alpha");
+});
 
 }  // namespace
 }  // namespace hilo::test

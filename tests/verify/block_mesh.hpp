@@ -16,9 +16,9 @@ struct BlockOptions {
   Shape shape = Shape::hex8;
   int n[3] = {1, 1, 1};
   Vec3 low = Vec3::Zero(), high = Vec3::Ones();
-  std::function<Vec3(const Vec3&)> map = nullptr;                     // of the corners; edges stay straight
+  std::function<Vec3(const Vec3&)> map = nullptr;  // of the corners; edges stay straight
   std::vector<std::string> regions = {"block"};
-  std::function<int(const Vec3&)> region_of = nullptr;                // by the centre of a brick, before the map
+  std::function<int(const Vec3&)> region_of = nullptr;  // by the centre of a brick, before the map
 };
 
 /// A number in [-1, 1] that looks random and is the same everywhere.
@@ -55,7 +55,8 @@ inline Mesh block_mesh(const BlockOptions& o) {
     return it->second;
   };
   using Edges = std::vector<std::pair<int, int>>;
-  const Edges tet{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}, wedge{{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}},
+  const Edges tet{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}},
+      wedge{{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}},
       hex{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
   const auto add_cell = [&](std::vector<std::int64_t> nodes, int region) {
     const Edges* edges = o.shape == Shape::tet10 ? &tet : o.shape == Shape::wedge15 ? &wedge : o.shape == Shape::hex20 ? &hex : nullptr;
@@ -66,7 +67,7 @@ inline Mesh block_mesh(const BlockOptions& o) {
   for (int k = 0; k < nz; ++k)
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
-        const std::int64_t c[8] = {grid(i, j, k),         grid(i + 1, j, k),         grid(i + 1, j + 1, k),     grid(i, j + 1, k),
+        const std::int64_t c[8] = {grid(i, j, k),     grid(i + 1, j, k),     grid(i + 1, j + 1, k),     grid(i, j + 1, k),
                                    grid(i, j, k + 1), grid(i + 1, j, k + 1), grid(i + 1, j + 1, k + 1), grid(i, j + 1, k + 1)};
         const int region = o.region_of ? o.region_of((plain[c[0]] + plain[c[6]]) / 2) : 0;
         if (o.shape == Shape::hex8 || o.shape == Shape::hex20) {

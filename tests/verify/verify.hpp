@@ -51,7 +51,9 @@ class Results {
   }
   double field_time(const std::string& step) const { return file_.number_attribute("/field/" + step, "t").value(); }
   /// Largest magnitude of a history's columns [first, first + count).
-  double peak(const std::string& name, Eigen::Index first, Eigen::Index count) const { return history(name).middleCols(first, count).rowwise().norm().maxCoeff(); }
+  double peak(const std::string& name, Eigen::Index first, Eigen::Index count) const {
+    return history(name).middleCols(first, count).rowwise().norm().maxCoeff();
+  }
 
  private:
   Store file_;
@@ -64,8 +66,10 @@ class Case : public Workplace {
   explicit Case(const std::string& name) : folder_(std::string(HILO_SOURCE) + "/tests/verify/" + name) {}
   std::string source(const std::string& file) const { return folder_ + "/" + file; }
   /// hilo-solve on `scene`.toml of the case, with options such as --set time.step=1e-3; expects exit code `expected`.
-  Ran solve(const std::string& options = "", const std::string& output = "run.h5", int expected = 0, const std::string& scene = "scene") const {
-    const Ran ran = run("hilo-solve '" + source(scene + ".toml") + "' " + (mesh_.empty() ? "" : "'" + mesh_ + "' ") + options + " -o " + output);
+  Ran solve(const std::string& options = "", const std::string& output = "run.h5", int expected = 0,
+            const std::string& scene = "scene") const {
+    const Ran ran =
+        run("hilo-solve '" + source(scene + ".toml") + "' " + (mesh_.empty() ? "" : "'" + mesh_ + "' ") + options + " -o " + output);
     EXPECT_EQ(ran.exit, expected) << options << "\n" << ran.err;
     return ran;
   }

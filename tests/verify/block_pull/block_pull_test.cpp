@@ -1,4 +1,5 @@
-// benchmarks.md O7 (FEBio ri01): with lambda = 0 the block stretches uniformly, l - 1/l = 0.1, so the rigid body moves by 4 (l - 1) = 0.2049969.
+// benchmarks.md O7 (FEBio ri01): with lambda = 0 the block stretches uniformly, l - 1/l = 0.1, so the rigid body moves by 4 (l - 1) =
+// 0.2049969.
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -17,7 +18,8 @@ TEST(BlockPull, BodyFixedToTheEndFaceMovesByTheClosedForm) {
   Case c("block_pull");
   c.use(block_mesh(block()));
   c.write("scene.toml", text_of(c.source("scene.toml")) +
-                            "\n[[body]]\nname = \"plate\"\nmass = 1\ncom = [2, 0.5, 0.5]\ninertia = [1, 1, 1]\n\n[[joint]]\nkind = \"fixed\"\nname = \"glue\"\na = \"plate\"\nb "
+                            "\n[[body]]\nname = \"plate\"\nmass = 1\ncom = [2, 0.5, 0.5]\ninertia = [1, 1, 1]\n\n[[joint]]\nkind = "
+                            "\"fixed\"\nname = \"glue\"\na = \"plate\"\nb "
                             "= \"xmax\"\nat = [2, 0.5, 0.5]\n");
   const Ran ran = c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5");
   ASSERT_EQ(ran.exit, 0) << ran.err;

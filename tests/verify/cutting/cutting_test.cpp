@@ -1,4 +1,5 @@
-// A step that is too large is cut and the run goes on; one that cannot be cut further ends the run with exit 3 and the last good state on disk.
+// A step that is too large is cut and the run goes on; one that cannot be cut further ends the run with exit 3 and the last good state on
+// disk.
 #include "verify/verify.hpp"
 
 namespace hilo::test {

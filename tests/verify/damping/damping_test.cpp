@@ -1,4 +1,5 @@
-// Stiffness-proportional damping acts as a stress eta C (E1 - E0)/h: energy falls in every step, and neither momentum nor a steady rotation is touched.
+// Stiffness-proportional damping acts as a stress eta C (E1 - E0)/h: energy falls in every step, and neither momentum nor a steady rotation
+// is touched.
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -23,11 +24,14 @@ void expect_decay(const std::string& options) {
   const auto n = e.rows() - 1;
   EXPECT_LT(e(n, 0) + e(n, 1), e(0, 0) * (1 - 1e-4)) << "it does damp: " << options;
   EXPECT_NEAR(e(n, 4), e(0, 0) + e(0, 1) - e(n, 0) - e(n, 1), 1e-10 * top) << "what is gone is what was dissipated";
-  for (Eigen::Index i = 0; i < p.rows(); ++i) ASSERT_LT((p.row(i).tail<3>() - p.row(0).tail<3>()).norm(), 1e-12 * p.row(0).tail<3>().norm());
+  for (Eigen::Index i = 0; i < p.rows(); ++i)
+    ASSERT_LT((p.row(i).tail<3>() - p.row(0).tail<3>()).norm(), 1e-12 * p.row(0).tail<3>().norm());
 }
 
 TEST(Damping, OfTheMaterialNeverRaisesTheEnergy) { expect_decay("--set region.block.damping=1e-3"); }
-TEST(Damping, OfTheNeoHookeanMaterialNeverRaisesTheEnergy) { expect_decay("--set region.block.damping=1e-3 --set 'material.soft.kind=\"neo-hookean\"'"); }
+TEST(Damping, OfTheNeoHookeanMaterialNeverRaisesTheEnergy) {
+  expect_decay("--set region.block.damping=1e-3 --set 'material.soft.kind=\"neo-hookean\"'");
+}
 TEST(Damping, ByStressDissipationNeverRaisesTheEnergy) { expect_decay("--set region.block.damping=0 --set time.dissipation=0.1"); }
 
 // Truth: once the bar turns steadily about its stiffest axis nothing changes shape, and the damping takes nothing more: the spin stays.
@@ -45,7 +49,9 @@ TEST(Damping, LeavesASteadyRotationAlone) {
 TEST(Damping, ProportionalToMassBrakesRigidMotionAsADrag) {
   Case c("damping");
   c.use(bar());
-  const Results r = c.solved("--set region.block.damping=0 --set region.block.mass_damping=0.5 --set initial.1.spin=[0,0,0] --set initial.1.velocity=[2,0,0] --set time.end=2");
+  const Results r = c.solved(
+      "--set region.block.damping=0 --set region.block.mass_damping=0.5 --set initial.1.spin=[0,0,0] --set initial.1.velocity=[2,0,0] "
+      "--set time.end=2");
   EXPECT_NEAR(r.at("momentum", 2)[0], 10 * 2 * std::exp(-1.), 1e-3);
   EXPECT_LT(r.history("energy").col(5).cwiseAbs().maxCoeff(), 1e-10 * r.history("energy").col(0).maxCoeff());
 }

@@ -12,7 +12,8 @@ TEST(DropOnSpring, HitsAndTurnsWhereTheClosedFormSays) {
   Eigen::Index deepest = 0;
   EXPECT_NEAR(x.col(2).minCoeff(&deepest) / inch, -0.5506656, 1e-5);
   EXPECT_NEAR(r.t()[deepest], 0.1004449, 1e-5);
-  EXPECT_NEAR(x.col(5).minCoeff() / inch, -std::sqrt(27.78489 * 27.78489 + 386 * 386 * 0.5 / 1973.92), 1e-3) << "fastest where the spring carries the weight";
+  EXPECT_NEAR(x.col(5).minCoeff() / inch, -std::sqrt(27.78489 * 27.78489 + 386 * 386 * 0.5 / 1973.92), 1e-3)
+      << "fastest where the spring carries the weight";
   EXPECT_NEAR(x(r.index(0.07198), 5) / inch, -386 * 0.07198, 1e-6) << "free fall until contact";
   const auto e = r.history("energy");
   EXPECT_LT(e.col(5).cwiseAbs().maxCoeff(), 1e-9 * e.col(0).maxCoeff()) << "11000 steps, each solved to 1e-10 of its forces";

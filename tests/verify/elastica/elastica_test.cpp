@@ -1,4 +1,5 @@
-// benchmarks.md O10: large deflection of a slender solid.  Published (Sze, Liu, Lo 2004): U = 3.286, W = 6.698; Reissner beam: 3.28946, 6.70011.
+// benchmarks.md O10: large deflection of a slender solid.  Published (Sze, Liu, Lo 2004): U = 3.286, W = 6.698; Reissner
+// beam: 3.28946, 6.70011.
 #include "verify/verify.hpp"
 
 namespace hilo::test {

@@ -1,5 +1,5 @@
-// Balances that hold for any scene, over one that has everything: energy, E - E0 - W + D = 0, and impulse, the change of momentum is the time integral
-// of weight, loads and what the ground exerts through joints, springs and motions.
+// Balances that hold for any scene, over one that has everything: energy, E - E0 - W + D = 0, and impulse, the change of momentum is the
+// time integral of weight, loads and what the ground exerts through joints, springs and motions.
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -35,7 +35,8 @@ TEST(Everything, ImpulseOfAllForcesIsTheChangeOfMomentum) {
   const Results r = c.solved();
   const double mass = 0.4 * 0.3 * 1.2 * 1000 + 3 + 2 + 5;
   const Vec3 constant = mass * Vec3(1, -2, -9.81) + Vec3(50, 20, -30) + 0.3 * 1.2 * Vec3(300, 100, 0);
-  const auto rod = r.history("joint/rod"), mount = r.history("spring/mount"), held = r.history("motion/held"), turned = r.history("motion/turned"), p = r.history("momentum");
+  const auto rod = r.history("joint/rod"), mount = r.history("spring/mount"), held = r.history("motion/held"),
+             turned = r.history("motion/turned"), p = r.history("momentum");
   const auto& t = r.t();
   Vec3 impulse = Vec3::Zero();
   double size = 0;

@@ -1,15 +1,16 @@
-// A free body falls by v t + g t^2/2, exactly under the mid-point rule (constant acceleration), rigid or flexible.  FEBio dy01/dy05 is the same with
-// unit acceleration and 1 s: 0.5.
+// A free body falls by v t + g t^2/2, exactly under the mid-point rule (constant acceleration), rigid or flexible.  FEBio dy01/dy05 is the
+// same with unit acceleration and 1 s: 0.5.
 #include "verify/verify.hpp"
 
 namespace hilo::test {
 namespace {
 
 class FreeFall : public testing::TestWithParam<std::tuple<Shape, Fidelity>> {};
-INSTANTIATE_TEST_SUITE_P(EveryShape, FreeFall,
-                         testing::Combine(testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20),
-                                          testing::Values(Fidelity::nonlinear, Fidelity::rigid)),
-                         [](const auto& p) { return std::string(hilo::info(std::get<0>(p.param)).name) + "_" + std::string(word(std::get<1>(p.param))); });
+INSTANTIATE_TEST_SUITE_P(
+    EveryShape, FreeFall,
+    testing::Combine(testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20),
+                     testing::Values(Fidelity::nonlinear, Fidelity::rigid)),
+    [](const auto& p) { return std::string(hilo::info(std::get<0>(p.param)).name) + "_" + std::string(word(std::get<1>(p.param))); });
 
 TEST_P(FreeFall, EveryNodeFallsAsGalileiSays) {
   const auto [shape, fidelity] = GetParam();
@@ -18,7 +19,10 @@ TEST_P(FreeFall, EveryNodeFallsAsGalileiSays) {
   o.shape = shape;
   o.n[0] = 2, o.n[1] = 1, o.n[2] = 1;
   o.high = Vec3(0.4, 0.2, 0.1);
-  o.map = [](const Vec3& x) { return Vec3(x + 0.02 * Vec3(scatter(std::lround(100 * x[0])), scatter(std::lround(77 * x[1])), scatter(std::lround(99 * x[2] + 7 * x[0])))); };
+  o.map = [](const Vec3& x) {
+    return Vec3(x +
+                0.02 * Vec3(scatter(std::lround(100 * x[0])), scatter(std::lround(77 * x[1])), scatter(std::lround(99 * x[2] + 7 * x[0]))));
+  };
   c.use(block_mesh(o), {fidelity});
   const Results r = c.solved();
   const Vec3 v(3, -1, 2), g(1, 2, -9.81);
@@ -43,7 +47,10 @@ TEST(FreeFallSensor, FeelsNothing) {
   c.write("scene.toml", text_of(c.source("scene.toml")) + "\n[[sensor]]\nname = \"seat\"\non = \"block\"\n");
   ASSERT_EQ(c.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5").exit, 0);
   EXPECT_LT(c.results().history("sensor/seat").cwiseAbs().maxCoeff(), 1e-9);
-  c.write("scene.toml", text_of(c.source("scene.toml")) + "\n[[sensor]]\nname = \"seat\"\non = \"block\"\n[[joint]]\nkind = \"fixed\"\nname = \"bolt\"\nb = \"block\"\nat = [0, 0, 0]\n");
+  c.write(
+      "scene.toml",
+      text_of(c.source("scene.toml")) +
+          "\n[[sensor]]\nname = \"seat\"\non = \"block\"\n[[joint]]\nkind = \"fixed\"\nname = \"bolt\"\nb = \"block\"\nat = [0, 0, 0]\n");
   ASSERT_EQ(c.run("hilo-solve --quiet scene.toml tags.h5 --set gravity=[0,0,-9.80665] -o run.h5").exit, 0);
   const auto felt = c.results().history("sensor/seat");
   for (Eigen::Index i = 0; i < felt.rows(); ++i) ASSERT_LT((felt.row(i).transpose() - Vec3(0, 0, 1)).norm(), 1e-9) << "row " << i;

@@ -1,4 +1,5 @@
-// benchmarks.md O5: centre of gravity and pivot force of the heavy top, integrated independently (RK4 on absolute coordinates, converged to 1e-9).
+// benchmarks.md O5: centre of gravity and pivot force of the heavy top, integrated independently (RK4 on absolute coordinates, converged to
+// 1e-9).
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -7,12 +8,14 @@ namespace {
 TEST(HeavyTop, CentreIsWithinAMillimetreOverTwoSeconds) {
   const Case c("heavy_top");
   const Results r = c.solved();
-  const std::pair<double, Vec3> table[] = {{0.1, {0.421296659, 0.894571974, -0.149164701}}, {0.2, {0.605550561, 0.598957682, -0.523983027}},
-                                           {0.5, {-0.702468297, -0.021165185, -0.711400258}}, {1.0, {0.173343964, 0.640088592, -0.748490791}},
-                                           {1.5, {-0.968165716, 0.250306062, -0.001422084}}, {2.0, {-0.150416823, -0.724165592, -0.673022270}}};
+  const std::pair<double, Vec3> table[] = {
+      {0.1, {0.421296659, 0.894571974, -0.149164701}},   {0.2, {0.605550561, 0.598957682, -0.523983027}},
+      {0.5, {-0.702468297, -0.021165185, -0.711400258}}, {1.0, {0.173343964, 0.640088592, -0.748490791}},
+      {1.5, {-0.968165716, 0.250306062, -0.001422084}},  {2.0, {-0.150416823, -0.724165592, -0.673022270}}};
   for (const auto& [t, x] : table) EXPECT_LT((r.at("probe/cg", t).head<3>() - x).norm(), 1e-3) << "t = " << t << " s at h = 5e-5 s";
   // force on the ground, minus that on the top; the pivot's frame is the inertial one
-  const std::pair<double, Vec3> forces[] = {{0.1, {361.056, 295.393, 212.267}}, {1.0, {517.601, 396.843, -404.575}}, {2.0, {260.735, -613.613, -309.717}}};
+  const std::pair<double, Vec3> forces[] = {
+      {0.1, {361.056, 295.393, 212.267}}, {1.0, {517.601, 396.843, -404.575}}, {2.0, {260.735, -613.613, -309.717}}};
   for (const auto& [t, f] : forces) EXPECT_LT((-r.at("joint/pivot", t).head<3>() - f).norm(), 1e-3 * f.norm()) << "t = " << t;
 }
 
@@ -33,7 +36,9 @@ TEST(HeavyTop, KeepsEnergyAndSpin) {
 TEST(HeavyTop, CentreConvergesAtSecondOrder) {
   const Case c("heavy_top");
   const Vec3 exact(0.605550561, 0.598957682, -0.523983027);
-  const auto error = [&](const std::string& h) { return (c.solved("--set time.end=0.2 --set time.step=" + h).at("probe/cg", 0.2).head<3>() - exact).norm(); };
+  const auto error = [&](const std::string& h) {
+    return (c.solved("--set time.end=0.2 --set time.step=" + h).at("probe/cg", 0.2).head<3>() - exact).norm();
+  };
   const double coarse = error("4e-4"), middle = error("2e-4"), fine = error("1e-4");
   EXPECT_NEAR(std::log2(coarse / middle), 2, 0.1);
   EXPECT_NEAR(std::log2(middle / fine), 2, 0.1);

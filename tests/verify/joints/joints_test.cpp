@@ -1,5 +1,5 @@
-// benchmarks.md O4: positions, rates and reactions of single-joint pendulums as ADAMS gives them (Chrono data/testing/joints).  Rforce is the
-// force on the ground, minus ours, which is on b in the joint frame.  Chrono accepts 1e-3 m, 1e-4 m/s and 2e-2 N; here h = 1e-3 s.
+// benchmarks.md O4: positions, rates and reactions of single-joint pendulums as ADAMS gives them (Chrono data/testing/joints).  Rforce is
+// the force on the ground, minus ours, which is on b in the joint frame.  Chrono accepts 1e-3 m, 1e-4 m/s and 2e-2 N; here h = 1e-3 s.
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -8,7 +8,8 @@ namespace {
 constexpr double position_limit = 1e-4, force_limit = 1e-2;
 
 /// Scene with another joint; vectors as TOML.
-Results run_case(const Case& c, const std::string& kind, const std::string& at, const std::string& axis, const std::string& com, const std::string& inertia, const std::string& x = "[1,0,0]") {
+Results run_case(const Case& c, const std::string& kind, const std::string& at, const std::string& axis, const std::string& com,
+                 const std::string& inertia, const std::string& x = "[1,0,0]") {
   std::string scene = text_of(c.source("scene.toml"));
   const auto replace = [&](const std::string& from, const std::string& to) {
     const auto p = scene.find(from);
@@ -26,7 +27,9 @@ Results run_case(const Case& c, const std::string& kind, const std::string& at, 
   return c.results();
 }
 
-void expect_position(const Results& r, double t, const Vec3& x) { EXPECT_LT((r.at("probe/cg", t).head<3>() - x).norm(), position_limit) << "t = " << t; }
+void expect_position(const Results& r, double t, const Vec3& x) {
+  EXPECT_LT((r.at("probe/cg", t).head<3>() - x).norm(), position_limit) << "t = " << t;
+}
 void expect_force_on_ground(const Results& r, double t, const Vec3& f, const Mat3& frame) {
   EXPECT_LT((-frame * r.at("joint/joint", t).head<3>() - f).norm(), force_limit) << "t = " << t;
 }
@@ -34,7 +37,8 @@ void expect_force_on_ground(const Results& r, double t, const Vec3& f, const Mat
 TEST(SingleJoint, Revolute01SwingsAsInAdamsWithItsReactions) {
   const Case c("joints");
   const Results r = run_case(c, "revolute", "[0,0,0]", "[0,1,0]", "[2,0,0]", "[0.04,0.1,0.1]");
-  expect_position(r, 1, {-0.892381, 0, -1.789880}), expect_position(r, 2, {-1.951120, 0, -0.439479}), expect_position(r, 3, {1.869170, 0, -0.711481});
+  expect_position(r, 1, {-0.892381, 0, -1.789880}), expect_position(r, 2, {-1.951120, 0, -0.439479}),
+      expect_position(r, 3, {1.869170, 0, -0.711481});
   expect_position(r, 4, {1.296960, 0, -1.522460}), expect_position(r, 5, {-1.999680, 0, -0.0355587});
   const Mat3 frame = frame_of_axis({0, 1, 0}, {1, 0, 0});
   expect_force_on_ground(r, 0, {0, 0, -0.239187}, frame), expect_force_on_ground(r, 1, {-11.4612, 0, -23.2273}, frame);
@@ -59,14 +63,18 @@ TEST(SingleJoint, Revolute02SwingsAboutAnInclinedAxis) {
 TEST(SingleJoint, Spherical02SwingsInTheVerticalPlane) {
   const Case c("joints");
   const Results r = run_case(c, "spherical", "[1,2,3]", "", "[3,2,3]", "[0.04,0.1,0.1]");
-  expect_position(r, 1, {0.107619, 2, 1.210120}), expect_position(r, 2, {-0.951117, 2, 2.560520}), expect_position(r, 5, {-0.999684, 2, 2.964440});
+  expect_position(r, 1, {0.107619, 2, 1.210120}), expect_position(r, 2, {-0.951117, 2, 2.560520}),
+      expect_position(r, 5, {-0.999684, 2, 2.964440});
 }
 
 TEST(SingleJoint, Universal01SwingsAboutItsCrossArm) {
   const Case c("joints");
   const Results r = run_case(c, "universal", "[0,0,0]", "[0,0,1]", "[0,2,0]", "[0.1,0.04,0.1]");
-  // ADAMS' universal 01 is off its own revolute 01, the same motion in the x-z plane, by 2.4e-4 m at 2 s and 6.4e-4 m at 5 s: Chrono's 1e-3 m
-  const auto near = [&](double t, const Vec3& x, double limit) { EXPECT_LT((r.at("probe/cg", t).head<3>() - x).norm(), limit) << "t = " << t; };
+  // ADAMS' universal 01 is off its own revolute 01, the same motion in the x-z plane, by 2.4e-4 m at 2 s and 6.4e-4 m at 5 s: Chrono's 1e-3
+  // m
+  const auto near = [&](double t, const Vec3& x, double limit) {
+    EXPECT_LT((r.at("probe/cg", t).head<3>() - x).norm(), limit) << "t = " << t;
+  };
   near(1, {0, -0.892369, -1.789880}, 1e-3), near(2, {0, -1.951060, -0.439720}, 1e-3), near(5, {0, -1.999670, -0.0361929}, 1e-3);
   near(1, {0, -0.892381, -1.789880}, 1e-4), near(2, {0, -1.951120, -0.439479}, 1e-4), near(5, {0, -1.999680, -0.0355587}, 1e-4);
 }
@@ -82,20 +90,25 @@ TEST(SingleJoint, Cylindrical02SwingsAndDoesNotSlide) {
 TEST(SingleJoint, Prismatic02SlidesDownItsGuideExactly) {
   const Case c("joints");
   const Results r = run_case(c, "prismatic", "[1,2,3]", "[0,1,1]", "[3,2,3]", "[0.04,0.1,0.1]");
-  for (double t : {1.0, 2.0, 5.0}) EXPECT_LT((r.at("probe/cg", t).head<3>() - Vec3(3, 2 - 9.80665 * t * t / 4, 3 - 9.80665 * t * t / 4)).norm(), 1e-8) << "round-off of 5000 steps";
-  expect_position(r, 1, {3, -0.451662, 0.548338}), expect_position(r, 2, {3, -7.80665, -6.80665}), expect_position(r, 5, {3, -59.2916, -58.2916});
+  for (double t : {1.0, 2.0, 5.0})
+    EXPECT_LT((r.at("probe/cg", t).head<3>() - Vec3(3, 2 - 9.80665 * t * t / 4, 3 - 9.80665 * t * t / 4)).norm(), 1e-8)
+        << "round-off of 5000 steps";
+  expect_position(r, 1, {3, -0.451662, 0.548338}), expect_position(r, 2, {3, -7.80665, -6.80665}),
+      expect_position(r, 5, {3, -59.2916, -58.2916});
   const Mat3 frame = frame_of_axis({0, 1, 1}, {1, 0, 0});
   for (double t : {0.0, 1.0, 5.0}) expect_force_on_ground(r, t, {0, 4.90332, -4.90332}, frame);
 }
 
-// Truth: at rest a joint carries the weight at the joint point and its moment r x m g; on b, and with the opposite sign when the ends are swapped.
+// Truth: at rest a joint carries the weight at the joint point and its moment r x m g; on b, and with the opposite sign when the ends are
+// swapped.
 TEST(FixedJoint, CarriesWeightAndMomentWithTheirSigns) {
   const Case c("joints");
   const std::string scene = text_of(c.source("scene.toml"));
   const auto at = scene.find("[[joint]]"), end = scene.find("[[probe]]");
   for (const bool swapped : {false, true}) {
     const std::string ends = swapped ? "a = \"pendulum\"\nb = \"ground\"\n" : "a = \"ground\"\nb = \"pendulum\"\n";
-    c.write("scene.toml", scene.substr(0, at) + "[[joint]]\nkind = \"fixed\"\nname = \"joint\"\n" + ends + "at = [0.5, 0, 0]\n\n" + scene.substr(end));
+    c.write("scene.toml",
+            scene.substr(0, at) + "[[joint]]\nkind = \"fixed\"\nname = \"joint\"\n" + ends + "at = [0.5, 0, 0]\n\n" + scene.substr(end));
     const Ran ran = c.run("hilo-solve --quiet scene.toml --set time.end=0.01 -o run.h5");
     ASSERT_EQ(ran.exit, 0) << ran.err;
     const auto f = c.results().history("joint/joint");

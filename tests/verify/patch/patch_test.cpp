@@ -26,10 +26,12 @@ class Patch : public testing::TestWithParam<Shape> {
     return v;
   }
 };
-INSTANTIATE_TEST_SUITE_P(EveryShape, Patch, testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20),
+INSTANTIATE_TEST_SUITE_P(EveryShape, Patch,
+                         testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20),
                          [](const auto& p) { return std::string(hilo::info(p.param).name); });
 
-// Truth: u = H X on the surface is in equilibrium inside (constant stress, no body force): every inner node must take H X too, to 1e-10 of it.
+// Truth: u = H X on the surface is in equilibrium inside (constant stress, no body force): every inner node must take H X too, to 1e-10 of
+// it.
 TEST_P(Patch, LinearDisplacementOfTheSurfaceIsTakenByEveryInnerNode) {
   Case c("patch");
   Mesh m = mesh();
@@ -45,8 +47,10 @@ TEST_P(Patch, LinearDisplacementOfTheSurfaceIsTakenByEveryInnerNode) {
     char line[400];
     // two entries, for x y and for z, so that components and not a rigid patch are prescribed
     for (const char* components : {"\"x\", \"y\"", "\"z\""}) {
-      std::snprintf(line, sizeof line, "\n[[motion]]\nkind = \"translation\"\nname = \"%s%c\"\non = \"%s\"\ncomponents = [%s]\ndisplacement = [%.17g, %.17g, %.17g]\n", name.c_str(),
-                    components[1], name.c_str(), components, u[0], u[1], u[2]);
+      std::snprintf(
+          line, sizeof line,
+          "\n[[motion]]\nkind = \"translation\"\nname = \"%s%c\"\non = \"%s\"\ncomponents = [%s]\ndisplacement = [%.17g, %.17g, %.17g]\n",
+          name.c_str(), components[1], name.c_str(), components, u[0], u[1], u[2]);
       scene += line;
     }
   }
@@ -69,15 +73,16 @@ TEST_P(Patch, LinearDisplacementOfTheSurfaceIsTakenByEveryInnerNode) {
     const Mat3 F = Mat3::Identity() + H, E = (F.transpose() * F - Mat3::Identity()) / 2;
     const Lame k = lame(2e11, 0.3);
     const double J = F.determinant();
-    const Mat3 sigma = std::string(law) == "stvk" ? Mat3(F * (k.lambda * E.trace() * Mat3::Identity() + 2 * k.mu * E) * F.transpose() / J)
-                                                  : Mat3((k.mu * (F * F.transpose() - Mat3::Identity()) + k.lambda * std::log(J) * Mat3::Identity()) / J);
+    const Mat3 sigma = std::string(law) == "stvk"
+                           ? Mat3(F * (k.lambda * E.trace() * Mat3::Identity() + 2 * k.mu * E) * F.transpose() / J)
+                           : Mat3((k.mu * (F * F.transpose() - Mat3::Identity()) + k.lambda * std::log(J) * Mat3::Identity()) / J);
     const auto s = r.table("/field/" + r.steps().back() + "/stress");
     for (Eigen::Index a = 0; a < s.rows(); ++a) ASSERT_LT((s.row(a).transpose() - voigt(sigma)).norm(), 1e-9 * sigma.norm());
   }
 }
 
-// Truth: uniform tractions on the faces of a box on rollers stretch it by F = diag(l1, l2, l2) with S_yy = S_zz = 0: for St. Venant-Kirchhoff
-// T = l1 E e1 with e1 = (l1^2 - 1)/2 and e2 = -nu e1, T the force per reference area.
+// Truth: uniform tractions on the faces of a box on rollers stretch it by F = diag(l1, l2, l2) with S_yy = S_zz = 0: for St.
+// Venant-Kirchhoff T = l1 E e1 with e1 = (l1^2 - 1)/2 and e2 = -nu e1, T the force per reference area.
 TEST_P(Patch, UniformTractionStretchesTheBlockUniformly) {
   Case c("patch");
   const Mesh m = mesh();
@@ -85,8 +90,10 @@ TEST_P(Patch, UniformTractionStretchesTheBlockUniformly) {
   const double E = 2e11, nu = 0.3, l1 = 1.05, e1 = (l1 * l1 - 1) / 2, T = l1 * E * e1, l2 = std::sqrt(1 - 2 * nu * e1);
   char text[1000];
   std::snprintf(text, sizeof text,
-                "\n[[motion]]\nkind = \"fixed\"\nname = \"x\"\non = \"xmin\"\ncomponents = [\"x\"]\n\n[[motion]]\nkind = \"fixed\"\nname = \"y\"\non = \"ymin\"\n"
-                "components = [\"y\"]\n\n[[motion]]\nkind = \"fixed\"\nname = \"z\"\non = \"zmin\"\ncomponents = [\"z\"]\n\n[[load]]\nkind = \"traction\"\nname = "
+                "\n[[motion]]\nkind = \"fixed\"\nname = \"x\"\non = \"xmin\"\ncomponents = [\"x\"]\n\n[[motion]]\nkind = \"fixed\"\nname = "
+                "\"y\"\non = \"ymin\"\n"
+                "components = [\"y\"]\n\n[[motion]]\nkind = \"fixed\"\nname = \"z\"\non = \"zmin\"\ncomponents = [\"z\"]\n\n[[load]]\nkind "
+                "= \"traction\"\nname = "
                 "\"pull\"\non = \"xmax\"\ntraction = [%.17g, 0, 0]\n",
                 T);
   c.write("scene.toml", text_of(c.source("scene.toml")) + text);

@@ -55,7 +55,8 @@ TEST(Pendulum, EnergyFromPositionAndVelocityStaysBelowTheIFToMMLimitByFarAndTheR
   EXPECT_LT(length, 1e-12);
 }
 
-// O1 variants: L = 0.5 m from 90 degrees T = 1.6743171 s (Code_Aster SDNL100), L = 1 m from 60 degrees T = 2.1528747 s (Altair MotionSolve).
+// O1 variants: L = 0.5 m from 90 degrees T = 1.6743171 s (Code_Aster SDNL100), L = 1 m from 60 degrees T = 2.1528747 s (Altair
+// MotionSolve).
 TEST(Pendulum, PeriodsOfThePublishedVariantsAreMet) {
   const Case c("pendulum");
   const auto period = [&](const std::string& com) {

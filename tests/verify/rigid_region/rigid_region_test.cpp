@@ -12,12 +12,16 @@ struct Collapsed {
   Vec3 centre, moments;
 };
 Collapsed read(const Results& r, Eigen::Index body = 0) {
-  return {r.table("/body/mass")(body, 0), r.table("/body/points").row(body).head<3>().transpose(), r.table("/body/inertia").row(body).transpose()};
+  return {r.table("/body/mass")(body, 0), r.table("/body/points").row(body).head<3>().transpose(),
+          r.table("/body/inertia").row(body).transpose()};
 }
-Vec3 principal(const Mat3& second) { return Eigen::SelfAdjointEigenSolver<Mat3>(Mat3(second.trace() * Mat3::Identity() - second)).eigenvalues(); }
+Vec3 principal(const Mat3& second) {
+  return Eigen::SelfAdjointEigenSolver<Mat3>(Mat3(second.trace() * Mat3::Identity() - second)).eigenvalues();
+}
 
 class RigidRegion : public testing::TestWithParam<Shape> {};
-INSTANTIATE_TEST_SUITE_P(EveryShape, RigidRegion, testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20),
+INSTANTIATE_TEST_SUITE_P(EveryShape, RigidRegion,
+                         testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20),
                          [](const auto& p) { return std::string(hilo::info(p.param).name); });
 
 // Truth: for a sheared box x = A s, s in the unit cube about its centre: m = rho det A, second moment = m A A^T/12.
@@ -48,7 +52,11 @@ TEST(RigidRegionOfTetrahedra, HasTheMassCentreAndInertiaOfItsCells) {
     o.shape = shape;
     o.n[0] = 3, o.n[1] = 2, o.n[2] = 2;
     o.high = Vec3(1.5, 0.8, 0.6);
-    o.map = [](const Vec3& x) { return Vec3(x + 0.07 * Vec3(scatter(std::lround(10 * x[0] + 31 * x[1] + 57 * x[2])), scatter(std::lround(11 * x[0] + 37 * x[1] + 50 * x[2])), scatter(std::lround(13 * x[0] + 30 * x[1] + 59 * x[2])))); };
+    o.map = [](const Vec3& x) {
+      return Vec3(x + 0.07 * Vec3(scatter(std::lround(10 * x[0] + 31 * x[1] + 57 * x[2])),
+                                  scatter(std::lround(11 * x[0] + 37 * x[1] + 50 * x[2])),
+                                  scatter(std::lround(13 * x[0] + 30 * x[1] + 59 * x[2]))));
+    };
     const Mesh m = block_mesh(o);
     c.use(m, {Fidelity::rigid});
     double volume = 0;
@@ -70,18 +78,24 @@ TEST(RigidRegionOfTetrahedra, HasTheMassCentreAndInertiaOfItsCells) {
   }
 }
 
-// Truth: bent bricks have the mass of their volume, and their consistent mass matrix, here from 2 x 2 x 2 Gauss points written out, is what collapses.
+// Truth: bent bricks have the mass of their volume, and their consistent mass matrix, here from 2 x 2 x 2 Gauss points written out, is what
+// collapses.
 TEST(RigidRegionOfBentBricks, IsTheSumOfTheirConsistentMassMatrices) {
   Case c("rigid_region");
   BlockOptions o;
   for (int& n : o.n) n = 2;
-  o.map = [](const Vec3& x) { return Vec3(x + 0.1 * Vec3(scatter(std::lround(10 * x[0] + 31 * x[1] + 57 * x[2])), scatter(std::lround(11 * x[0] + 37 * x[1] + 50 * x[2])), scatter(std::lround(13 * x[0] + 30 * x[1] + 59 * x[2])))); };
+  o.map = [](const Vec3& x) {
+    return Vec3(x + 0.1 * Vec3(scatter(std::lround(10 * x[0] + 31 * x[1] + 57 * x[2])),
+                               scatter(std::lround(11 * x[0] + 37 * x[1] + 50 * x[2])),
+                               scatter(std::lround(13 * x[0] + 30 * x[1] + 59 * x[2]))));
+  };
   const Mesh m = block_mesh(o);
   c.use(m, {Fidelity::rigid});
   double volume = 0, exact_volume = 0;
   Vec3 first = Vec3::Zero();
   Mat3 second = Mat3::Zero();
-  const double g = 1 / std::sqrt(3.0), corner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
+  const double g = 1 / std::sqrt(3.0),
+               corner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
   for (std::int64_t e = 0; e < m.n_cells(); ++e) {
     exact_volume += quality(m, e).volume;
     for (int p = 0; p < 8; ++p) {

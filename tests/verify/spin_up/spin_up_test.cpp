@@ -25,7 +25,8 @@ TEST(SpinUp, TipBendsBackAndIsStretchedAsTheBeamSolution) {
   const auto in_hub = [&](Eigen::Index i) -> Vec3 {
     return Eigen::AngleAxisd(-psi(r.t()[i]), Vec3::UnitZ()) * Vec3(x(i, 0), x(i, 1), x(i, 2)) - Vec3(10, 0, 0);
   };
-  const std::pair<int, double> table[] = {{2, -0.10238}, {3, -0.21726}, {4, -0.34227}, {5, -0.46846}, {6, -0.54360}, {7, -0.57133}, {8, -0.54288}, {9, -0.46032}, {10, -0.36287}, {11, -0.25740}, {12, -0.15093}};
+  const std::pair<int, double> table[] = {{2, -0.10238}, {3, -0.21726}, {4, -0.34227},  {5, -0.46846},  {6, -0.54360}, {7, -0.57133},
+                                          {8, -0.54288}, {9, -0.46032}, {10, -0.36287}, {11, -0.25740}, {12, -0.15093}};
   for (const auto& [t, u2] : table) EXPECT_NEAR(in_hub(r.index(t))[1], u2, 0.01 * 0.57385) << "t = " << t;
   double least = 0, when = 0, steady = 0, swing = 0;
   int n = 0;

@@ -34,7 +34,8 @@ TEST(ToggledRegion, RunsAtEveryLevelAndAgreesWhenStiff) {
   Case c("stiffened");
   const std::string base = "--set material.stiff.E=1e12 ";
   std::vector<double> tip;
-  const std::pair<Fidelity, Fidelity> levels[] = {{Fidelity::nonlinear, Fidelity::nonlinear}, {Fidelity::nonlinear, Fidelity::rigid}, {Fidelity::rigid, Fidelity::nonlinear}};
+  const std::pair<Fidelity, Fidelity> levels[] = {
+      {Fidelity::nonlinear, Fidelity::nonlinear}, {Fidelity::nonlinear, Fidelity::rigid}, {Fidelity::rigid, Fidelity::nonlinear}};
   for (const auto& [root, arm] : levels) {
     c.use(two_regions(), {root, arm});
     const Results r = c.solved(base);

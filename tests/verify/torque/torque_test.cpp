@@ -1,4 +1,5 @@
-// Torque on a free body: about a principal axis J omega = M t, the energy is M^2 t^2/(2 J); about any axis the work is the gain of kinetic energy.
+// Torque on a free body: about a principal axis J omega = M t, the energy is M^2 t^2/(2 J); about any axis the work is the gain of kinetic
+// energy.
 #include "verify/verify.hpp"
 
 namespace hilo::test {

@@ -1,5 +1,5 @@
-// A free elastic bar keeps its momenta to 1e-12 and its energy to 1e-10.  Everything is summed here from the positions and velocities of the nodes:
-// mass by 3 x 3 x 3 Gauss points of this file, elastic energy by the law over the cell.
+// A free elastic bar keeps its momenta to 1e-12 and its energy to 1e-10.  Everything is summed here from the positions and velocities of
+// the nodes: mass by 3 x 3 x 3 Gauss points of this file, elastic energy by the law over the cell.
 #include "physics/cells.hpp"
 #include "verify/verify.hpp"
 
@@ -56,7 +56,8 @@ void expect_conservation(const std::string& law, const std::string& options = ""
     if (k == 0) start = now;
     top = std::max(top, now.kinetic), strain = std::max(strain, now.elastic);
     energy = std::max(energy, std::abs(now.kinetic + now.elastic - start.kinetic - start.elastic));
-    momentum = std::max(momentum, (now.momentum - start.momentum).norm()), angular = std::max(angular, (now.angular - start.angular).norm());
+    momentum = std::max(momentum, (now.momentum - start.momentum).norm()),
+    angular = std::max(angular, (now.angular - start.angular).norm());
   }
   EXPECT_LT(angular, 1e-12 * start.angular.norm()) << "angular momentum";
   EXPECT_LT(momentum, 1e-12 * 10 * 15) << "linear momentum, against mass times the speed of the ends";
