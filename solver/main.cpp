@@ -28,11 +28,12 @@ std::string mesh_path(const Options& o, const Scene& scene) {
   return path;
 }
 
-void print_plan(const System& s) {
-  size_t cells = 0, patches = 0, free_bodies = 0;
-  for (const SolidBatch& b : s.batches) cells += b.cells.size();
+void print_plan(const System& s, bool talk) {
+  std::int64_t cells = 0, patches = 0, free_bodies = 0;
+  for (const SolidBatch& b : s.batches) cells += static_cast<std::int64_t>(b.cells.size());
+  cells = s.comm->sum(cells);
   for (const Body& b : s.bodies) patches += b.patch, free_bodies += b.free() && !b.patch;
-  fmt::print(stderr, "{} flexible cells, {} rigid bodies, {} patches, {} joints, {} springs, {} loads, {} unknowns\n", cells, free_bodies, patches, s.joints.size(),
+  if (talk) fmt::print(stderr, "{} flexible cells, {} rigid bodies, {} patches, {} joints, {} springs, {} loads, {} unknowns\n", cells, free_bodies, patches, s.joints.size(),
              s.springs.size(), s.loads.size(), 3 * s.map.n_global);
 }
 
@@ -69,7 +70,7 @@ int solve(int argc, char** argv, Comm& comm) {
   }
   options.provenance.push_back(command_line(argc, argv));
   const auto system = build_system(scene, mesh.get(), comm);
-  if (talk) print_plan(*system);
+  print_plan(*system, talk);
   if (o.dry_run) return 0;
   if (!o.output.ends_with(".h5")) throw Error(o.output, "the results file must end in .h5", "-o run.h5", Exit::usage);
   const auto folder = std::filesystem::path(o.output).parent_path();

@@ -13,7 +13,7 @@
 namespace hilo {
 namespace {
 
-/// The linear solver for the scene: the light one while factors stay small, MUMPS above, GMRES for what no direct solver holds.
+/// The linear solver for the scene, its pattern set: the light one while factors stay small, MUMPS above, GMRES for what no direct solver holds.
 std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& system, bool talk) {
   const Entry& e = scene.table("solver");
   std::string kind = e.text("kind");
@@ -26,6 +26,7 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
   }
   if (kind == "light" && system.comm->size > 1) throw Error(e.where("kind"), "the light solver is serial", "use direct or iterative under mpirun");
   auto solver = kind == "light" ? make_light_solver() : make_petsc_solver(kind, e.number("linear_tolerance"));
+  solver->structure(system.cliques, system.map);
   if (talk) fmt::print(stderr, "solver {}: {}\n", solver->name(), why);
   return solver;
 }
@@ -77,7 +78,6 @@ class Run {
       for (const auto& d : redundancy_.dropped) fmt::print(stderr, "  {}\n", d);
     }
     solver_ = choose_solver(scene_, system_, talk_);
-    solver_->structure(system_.cliques, system_.map);
     state_.lambda.assign(3 * system_.n_joint_blocks(), 0.0);
     open_recorder();
     try {

@@ -47,5 +47,18 @@ TEST(ToggledRegion, RunsAtEveryLevelAndAgreesWhenStiff) {
   EXPECT_GT(tip[0], 10 * tip[2]) << "a rigid root leaves only the arm to bend";
 }
 
+// Truth: two methods of second order converge to the same motion, so their difference falls with h^2.
+TEST(TwoIntegrators, AgreeToSecondOrderOnAFlexibleScene) {
+  Case c("stiffened");
+  c.use(two_regions(), {Fidelity::nonlinear, Fidelity::rigid});
+  const auto difference = [&](const std::string& step) {
+    const std::string common = "--set output.interval=1 --set time.step=" + step + " ";
+    const auto a = c.solved(common).history("probe/tip"), b = c.solved(common + "--set 'time.integrator=\"generalized-alpha\"' --set time.rho=0.9").history("probe/tip");
+    return (a - b).leftCols(3).rowwise().norm().maxCoeff();
+  };
+  const double coarse = difference("1e-3"), fine = difference("2.5e-4");
+  EXPECT_NEAR(std::log2(coarse / fine) / 2, 2, 0.15) << coarse << " " << fine;
+}
+
 }  // namespace
 }  // namespace hilo::test

@@ -1,0 +1,105 @@
+// Locking: slender, nearly incompressible, skewed and twisted cells in bending against beam theory and published values (benchmarks.md O9, O12).
+// Loads are small, so that the answer is the linear one.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+Vec3 tip_of(const Mesh& m, const std::string& options) {
+  Case c("bending");
+  c.use(m);
+  const Results r = c.solved("--set solver.tolerance=1e-9 " + options);
+  return (r.at("probe/tip", 1) - r.at("probe/tip", 0)).head<3>();
+}
+
+Mesh beam(Shape shape, const int (&n)[3], const Vec3& size, double skew = 0) {
+  BlockOptions o;
+  o.shape = shape;
+  for (int i = 0; i < 3; ++i) o.n[i] = n[i];
+  o.high = size;
+  if (skew != 0)  // inner cross-sections lean to and fro: trapezoids
+    o.map = [=](const Vec3& x) {
+      const int i = static_cast<int>(std::lround(x[0] / size[0] * n[0]));
+      const bool inner = i > 0 && i < n[0];
+      return Vec3(x[0] + (inner ? (i % 2 ? 1 : -1) * skew * (x[2] / size[2] - 0.5) : 0), x[1], x[2]);
+    };
+  Mesh m = block_mesh(o);
+  add_node_set(m, "tip", [&](const Vec3& x) { return std::abs(x[0] - size[0]) < 1e-9; });
+  return m;
+}
+
+/// Timoshenko: P L^3/(3 E I) + P L/(5/6 G A).
+double timoshenko(double P, double E, double nu, const Vec3& size) {
+  const double I = size[1] * std::pow(size[2], 3) / 12, A = size[1] * size[2], G = E / (2 * (1 + nu));
+  return P * std::pow(size[0], 3) / (3 * E * I) + P * size[0] / (5. / 6 * G * A);
+}
+
+TEST(Bending, OneLayerOfHexahedraDoesNotLock) {
+  const Vec3 stocky(10, 1, 1), slender(10, 1, 0.1);
+  const auto ratio = [&](Shape shape, const int (&n)[3], const Vec3& size, const std::string& nu, const std::string& P) {
+    return tip_of(beam(shape, n, size), "--set material.solid.nu=" + nu + " --set load.end.force=[0,0," + P + "]")[2] / timoshenko(std::stod(P), 1e7, std::stod(nu), size);
+  };
+  EXPECT_NEAR(ratio(Shape::hex8, {10, 1, 1}, stocky, "0.3", "1e-3"), 0.994, 0.002);
+  EXPECT_NEAR(ratio(Shape::hex8, {10, 1, 1}, stocky, "0.499", "1e-3"), 0.990, 0.002);
+  EXPECT_NEAR(ratio(Shape::hex8, {5, 1, 1}, stocky, "0.3", "1e-3"), 0.985, 0.002);
+  EXPECT_NEAR(ratio(Shape::hex8, {10, 1, 1}, slender, "0.3", "1e-5"), 0.997, 0.003);
+  EXPECT_NEAR(ratio(Shape::hex20, {10, 1, 1}, stocky, "0.3", "1e-3"), 0.997, 0.005);
+  EXPECT_NEAR(ratio(Shape::tet10, {10, 1, 1}, stocky, "0.3", "1e-3"), 0.995, 0.005);
+  EXPECT_GT(ratio(Shape::wedge15, {10, 1, 1}, stocky, "0.3", "1e-3"), 0.97);
+  EXPECT_LT(ratio(Shape::tet4, {10, 1, 1}, stocky, "0.3", "1e-3"), 0.5) << "linear tetrahedra do lock: the warning is deserved";
+}
+
+TEST(Bending, TrapezoidsLoseLessThanAFifth) {
+  const Vec3 size(10, 1, 1);
+  EXPECT_GT(tip_of(beam(Shape::hex8, {10, 1, 1}, size, 0.25), "")[2] / timoshenko(1e-3, 1e7, 0.3, size), 0.8);
+  EXPECT_NEAR(tip_of(beam(Shape::hex20, {10, 1, 1}, size, 0.25), "")[2] / timoshenko(1e-3, 1e7, 0.3, size), 0.994, 0.01);
+}
+
+// MacNeal and Harder 1985: 12 x 1.1 x 0.32, 90 degrees of twist from root to tip, E = 29e6, nu = 0.22, unit force along the tip section's width
+// 0.005424, along its thickness 0.001754.  Peers' hexahedra: 0.986 to 1.052 of these.
+TEST(Bending, TwistedBeamIsAsMacNealAndHarderHaveIt) {
+  for (const auto& [shape, low, high] : {std::tuple{Shape::hex8, 0.97, 1.03}, {Shape::hex20, 0.98, 1.06}}) {
+    BlockOptions o;
+    o.shape = shape;
+    o.n[0] = shape == Shape::hex8 ? 24 : 12, o.n[1] = shape == Shape::hex8 ? 4 : 2, o.n[2] = shape == Shape::hex8 ? 2 : 1;
+    o.low = Vec3(0, -0.55, -0.16), o.high = Vec3(12, 0.55, 0.16);
+    o.map = [](const Vec3& x) { return Vec3(Eigen::AngleAxisd(M_PI / 2 * x[0] / 12, Vec3::UnitX()) * x); };
+    Mesh m = block_mesh(o);
+    add_node_set(m, "tip", [](const Vec3& x) { return std::abs(x[0] - 12) < 1e-9; });
+    const std::string steel = "--set material.solid.E=29e6 --set material.solid.nu=0.22 --set load.end.force=";
+    // after the twist the width of the tip section, y at the root, lies along z
+    const double width = 1e3 * tip_of(m, steel + "[0,0,1e-3]")[2], thickness = 1e3 * tip_of(m, steel + "[0,1e-3,0]")[1];
+    EXPECT_GT(width / 0.005424, low) << info(shape).name;
+    EXPECT_LT(width / 0.005424, high) << info(shape).name;
+    EXPECT_GT(thickness / 0.001754, low) << info(shape).name;
+    EXPECT_LT(thickness / 0.001754, high) << info(shape).name;
+  }
+}
+
+// Cook's membrane as CoFEA has it: 48 x (44, 16) mm, 10 mm thick, half of it with a plane of symmetry, shear 6.25 MPa, E = 70 MPa, nu = 0.33:
+// 32.2 to 32.3 mm by CalculiX, Code_Aster and Elmer.
+TEST(Bending, CooksMembraneIsThatOfItsPeers) {
+  for (const auto& [shape, n] : {std::pair{Shape::hex8, 16}, {Shape::hex20, 8}, {Shape::tet10, 6}}) {
+    BlockOptions o;
+    o.shape = shape;
+    o.n[0] = o.n[1] = n, o.n[2] = 2;
+    o.map = [](const Vec3& s) { return Vec3(48 * s[0], 44 * s[0] + s[1] * (44 - 28 * s[0]), 5 * s[2]); };
+    Mesh m = block_mesh(o);
+    add_node_set(m, "tip", [](const Vec3& x) { return std::abs(x[0] - 48) < 1e-9 && std::abs(x[1] - 60) < 1e-9; });
+    add_node_set(m, "middle plane", [](const Vec3& x) { return std::abs(x[2]) < 1e-9 && x[0] > 1e-9; });
+    Case c("bending");
+    write_mesh(c / "mesh.h5", m, {"test"});
+    std::string scene = text_of(c.source("scene.toml"));
+    scene += "\n[[motion]]\nkind = \"fixed\"\nname = \"symmetry\"\non = \"middle plane\"\ncomponents = [\"z\"]\n";
+    c.write("scene.toml", scene);
+    // 6.25e-5 of the modulus' unit: a millionth of the load, and of the deflection
+    const Ran ran = c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5 --set material.solid.E=70 --set material.solid.nu=0.33 --set load.end.force=[0,5e-4,0]");
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const Results r = c.results();
+    const double u = 1e6 * (r.at("probe/tip", 1) - r.at("probe/tip", 0))[1];
+    EXPECT_NEAR(u, 32.25, 0.015 * 32.25) << info(shape).name;
+  }
+}
+
+}  // namespace
+}  // namespace hilo::test
