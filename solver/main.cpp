@@ -24,7 +24,8 @@ std::string mesh_path(const Options& o, const Scene& scene) {
   if (!top.given("mesh")) return "";
   const std::filesystem::path p(top.text("mesh"));
   const std::string path = p.is_absolute() ? p.string() : (std::filesystem::path(scene.folder) / p).string();
-  if (!std::filesystem::exists(path)) throw Error(top.where("mesh"), fmt::format("no file {}", path), "make it with hilo-import, hilo-tag or hilo-part");
+  if (!std::filesystem::exists(path))
+    throw Error(top.where("mesh"), fmt::format("no file {}", path), "make it with hilo-import, hilo-tag or hilo-part");
   return path;
 }
 
@@ -33,18 +34,23 @@ void print_plan(const System& s, bool talk) {
   for (const SolidBatch& b : s.batches) cells += static_cast<std::int64_t>(b.cells.size());
   cells = s.comm->sum(cells);
   for (const Body& b : s.bodies) patches += b.patch, free_bodies += b.free() && !b.patch;
-  if (talk) fmt::print(stderr, "{} flexible cells, {} rigid bodies, {} patches, {} joints, {} springs, {} loads, {} unknowns\n", cells, free_bodies, patches, s.joints.size(),
-             s.springs.size(), s.loads.size(), 3 * s.map.n_global);
+  if (talk)
+    fmt::print(stderr, "{} flexible cells, {} rigid bodies, {} patches, {} joints, {} springs, {} loads, {} unknowns\n", cells, free_bodies,
+               patches, s.joints.size(), s.springs.size(), s.loads.size(), 3 * s.map.n_global);
 }
 
 int solve(int argc, char** argv, Comm& comm) {
   Options o;
   auto app = make_app({"hilo-solve", "Solve a scene of rigid and flexible parts in time.",
-                       "hilo-solve scene.toml tags.h5 -o run.h5\n  mpirun -n 2 hilo-solve scene.toml parts-2.h5\n  hilo-solve --set time.step=1e-4 --explain scene.toml"});
+                       "hilo-solve scene.toml tags.h5 -o run.h5\n  mpirun -n 2 hilo-solve scene.toml parts-2.h5\n  hilo-solve --set "
+                       "time.step=1e-4 --explain scene.toml"});
   app->add_option("scene", o.scene, "scene file (TOML), - for standard input")->required();
   app->add_option("mesh", o.mesh, "mesh.h5, tags.h5 or parts-N.h5; overrides the scene's `mesh`");
   app->add_option("-o,--output", o.output, "results file; .xdmf and .json are written beside it")->capture_default_str();
-  app->add_option("--set", o.overrides, "override a key of the scene, such as joint.trunnion.at=[0,0,1] (repeatable)")->allow_extra_args(false)->expected(1)->take_all();
+  app->add_option("--set", o.overrides, "override a key of the scene, such as joint.trunnion.at=[0,0,1] (repeatable)")
+      ->allow_extra_args(false)
+      ->expected(1)
+      ->take_all();
   app->add_flag("--dry-run", o.dry_run, "read and check everything, then stop");
   app->add_flag("--explain", o.explain, "print every value in force, defaults included, then stop");
   app->add_flag("--profile", o.profile, "print seconds by phase at the end");
@@ -74,13 +80,17 @@ int solve(int argc, char** argv, Comm& comm) {
   if (o.dry_run) return 0;
   if (!o.output.ends_with(".h5")) throw Error(o.output, "the results file must end in .h5", "-o run.h5", Exit::usage);
   const auto folder = std::filesystem::path(o.output).parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder)) throw Error(o.output, "no such folder", fmt::format("mkdir -p {}", folder.string()), Exit::resources);
+  if (!folder.empty() && !std::filesystem::is_directory(folder))
+    throw Error(o.output, "no such folder", fmt::format("mkdir -p {}", folder.string()), Exit::resources);
 
   const RunReport report = run(scene, *system, options);
   if (o.profile && comm.rank == 0) fmt::print("{}", read_text_file(o.output.substr(0, o.output.size() - 3) + ".json"));
   if (!report.complete)
-    throw Error(scene.path, fmt::format("stopped at t = {:.6g} s: {}", report.t, report.reason), fmt::format("the last good state is in {}", o.output), Exit::not_converged);
-  if (talk) fmt::print(stderr, "{}: {} steps, {} Newton iterations{}\n", o.output, report.steps, report.iterations, report.cuts ? fmt::format(", {} step cuts", report.cuts) : "");
+    throw Error(scene.path, fmt::format("stopped at t = {:.6g} s: {}", report.t, report.reason),
+                fmt::format("the last good state is in {}", o.output), Exit::not_converged);
+  if (talk)
+    fmt::print(stderr, "{}: {} steps, {} Newton iterations{}\n", o.output, report.steps, report.iterations,
+               report.cuts ? fmt::format(", {} step cuts", report.cuts) : "");
   return 0;
 }
 

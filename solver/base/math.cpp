@@ -1,6 +1,5 @@
 #include "base/math.hpp"
 
-
 namespace hilo {
 
 Mat3 frame_of_axis(const Vec3& axis, const Vec3& x) {

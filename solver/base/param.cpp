@@ -17,8 +17,8 @@ struct Dimension {
 
 /// Exponents of the named units in length, mass, time.
 const std::map<std::string, Dimension, std::less<>> dimensions = {
-    {"m", {1, 0, 0}},   {"kg", {0, 1, 0}},  {"s", {0, 0, 1}},   {"N", {1, 1, -2}},  {"Pa", {-1, 1, -2}},
-    {"J", {2, 1, -2}},  {"W", {2, 1, -3}},  {"rad", {0, 0, 0}}, {"Hz", {0, 0, -1}}, {"1", {0, 0, 0}},
+    {"m", {1, 0, 0}},  {"kg", {0, 1, 0}}, {"s", {0, 0, 1}},   {"N", {1, 1, -2}},  {"Pa", {-1, 1, -2}},
+    {"J", {2, 1, -2}}, {"W", {2, 1, -3}}, {"rad", {0, 0, 0}}, {"Hz", {0, 0, -1}}, {"1", {0, 0, 0}},
 };
 
 /// A system of units: SI value of its length, mass and time.
@@ -55,7 +55,8 @@ double to_si(std::string_view unit, std::string_view system) {
   double factor = 1;
   int sign = 1;  // everything behind '/' counts down
   for (size_t i = 0; i < unit.size();) {
-    if (unit[i] == '/') sign = -1, ++i;
+    if (unit[i] == '/')
+      sign = -1, ++i;
     else if (std::isalpha(static_cast<unsigned char>(unit[i]))) {
       size_t j = i;
       while (j < unit.size() && std::isalpha(static_cast<unsigned char>(unit[j]))) ++j;
@@ -66,7 +67,8 @@ double to_si(std::string_view unit, std::string_view system) {
       const auto& [l, m, t] = s->second;
       factor *= std::pow(std::pow(l, d->second.length) * std::pow(m, d->second.mass) * std::pow(t, d->second.time), sign * power);
       i = j;
-    } else ++i;
+    } else
+      ++i;
   }
   return factor;
 }

@@ -33,7 +33,8 @@ struct Param {
   Range range = any_number;
 };
 
-/// Factor that takes a number in `unit` of the system `system` ("m-kg-s", "mm-t-s", "mm-kg-ms", "in-lbf-s", "ft-lbf-s") to SI.  Throws Error for an unknown system.
+/// Factor that takes a number in `unit` of the system `system` ("m-kg-s", "mm-t-s", "mm-kg-ms", "in-lbf-s", "ft-lbf-s") to SI.  Throws
+/// Error for an unknown system.
 double to_si(std::string_view unit, std::string_view system);
 const std::vector<std::string>& unit_systems();
 

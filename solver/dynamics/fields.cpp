@@ -40,8 +40,10 @@ void Recorder::write_field(const Row& row, const Config& a) {
     std::vector<std::int64_t> shape{n};
     if (width > 1) shape.push_back(width);
     on_store([&](Store& f) {
-      if (setup_.single_precision) f.write<float>(group + "/" + name, std::vector<float>(all.begin(), all.end()), shape, unit);
-      else f.write<double>(group + "/" + name, all, shape, unit);
+      if (setup_.single_precision)
+        f.write<float>(group + "/" + name, std::vector<float>(all.begin(), all.end()), shape, unit);
+      else
+        f.write<double>(group + "/" + name, all, shape, unit);
     });
   };
   const auto vectors = [&](const char* name, auto value, const char* unit) {
@@ -53,9 +55,15 @@ void Recorder::write_field(const Row& row, const Config& a) {
     }
     write(name, local, 3, unit);
   };
-  if (wants("displacement")) vectors("displacement", [&](size_t i) { return Vec3(row.q.x[i] - s.X[i]); }, "m");
-  if (wants("velocity")) vectors("velocity", [&](size_t i) { return row.v.x[i]; }, "m/s");
-  if (wants("acceleration")) vectors("acceleration", [&](size_t i) { return a.x[i]; }, "m/s^2");
+  if (wants("displacement"))
+    vectors(
+        "displacement", [&](size_t i) { return Vec3(row.q.x[i] - s.X[i]); }, "m");
+  if (wants("velocity"))
+    vectors(
+        "velocity", [&](size_t i) { return row.v.x[i]; }, "m/s");
+  if (wants("acceleration"))
+    vectors(
+        "acceleration", [&](size_t i) { return a.x[i]; }, "m/s^2");
   if (wants("stress") || wants("von_mises")) {
     // mean over the cells of a node's first flexible region (first: lowest number), summed across ranks through shared nodes
     std::vector<double> sum(8 * s.X.size(), 0.0);  // six stresses, von Mises, count
@@ -161,7 +169,8 @@ void Recorder::write_xdmf() {
         if (shape[c] == static_cast<std::uint8_t>(Shape::bar2)) put(2);
         for (std::int64_t k = offset[c]; k < offset[c + 1]; ++k) put(nodes[k - offset.front()]);
       }
-      for (std::int32_t r : mesh.read_rows<std::int32_t>("/mesh/cells/region", first, count)) store_->append<std::int32_t>("/xdmf/region", {&r, 1});
+      for (std::int32_t r : mesh.read_rows<std::int32_t>("/mesh/cells/region", first, count))
+        store_->append<std::int32_t>("/xdmf/region", {&r, 1});
     }
     for (std::int64_t first = 0; first < m.n_nodes_global; first += slice) {
       const auto X = mesh.read_rows<double>("/mesh/nodes/X", first, std::min(slice, m.n_nodes_global - first));
@@ -170,18 +179,24 @@ void Recorder::write_xdmf() {
     store_->flush();
   }
   const std::int64_t n = m.n_nodes_global, cells = m.n_cells_global, entries = topology_entries_;
-  std::string t = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-  const auto attribute = [&](const std::string& name, const char* type, const char* centre, const std::string& dims, const std::string& at, const char* number) {
+  std::string t =
+      "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"run\" GridType=\"Collection\" "
+      "CollectionType=\"Temporal\">\n";
+  const auto attribute = [&](const std::string& name, const char* type, const char* centre, const std::string& dims, const std::string& at,
+                             const char* number) {
     t += fmt::format(
-        "<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\"><DataItem Format=\"HDF\" NumberType=\"{}\" Precision=\"{}\" Dimensions=\"{}\">{}:{}"
+        "<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\"><DataItem Format=\"HDF\" NumberType=\"{}\" Precision=\"{}\" "
+        "Dimensions=\"{}\">{}:{}"
         "</DataItem></Attribute>\n",
         name, type, centre, number[0] == 'I' ? "Int" : "Float", number[1], dims, base, at);
   };
   for (size_t k = 0; k < field_times_.size(); ++k) {
     const std::string group = fmt::format("/field/{:06}", k);
     t += fmt::format(
-        "<Grid Name=\"t{}\"><Time Value=\"{:.9g}\"/>\n<Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\"><DataItem Format=\"HDF\" NumberType=\"Int\" "
-        "Precision=\"8\" Dimensions=\"{}\">{}:/xdmf/topology</DataItem></Topology>\n<Geometry GeometryType=\"XYZ\"><DataItem Format=\"HDF\" "
+        "<Grid Name=\"t{}\"><Time Value=\"{:.9g}\"/>\n<Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\"><DataItem Format=\"HDF\" "
+        "NumberType=\"Int\" "
+        "Precision=\"8\" Dimensions=\"{}\">{}:/xdmf/topology</DataItem></Topology>\n<Geometry GeometryType=\"XYZ\"><DataItem "
+        "Format=\"HDF\" "
         "NumberType=\"Float\" Precision=\"8\" Dimensions=\"{} 3\">{}:/xdmf/X</DataItem></Geometry>\n",
         k, field_times_[k], cells, entries, base, n, base);
     const char* number = setup_.single_precision ? "F4" : "F8";

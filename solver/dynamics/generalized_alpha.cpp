@@ -1,5 +1,6 @@
 // M a1 + f(q1) + G(q1)^T lambda = F(t1),  g(q1) = 0,  with auxiliary accelerations b:
-//   (1 - alpha_m) b1 + alpha_m b0 = (1 - alpha_f) a1 + alpha_f a0,  q1 = q0 + h v0 + h^2 ((1/2 - beta) b0 + beta b1),  v1 = v0 + h ((1 - gamma) b0 + gamma b1)
+//   (1 - alpha_m) b1 + alpha_m b0 = (1 - alpha_f) a1 + alpha_f a0,  q1 = q0 + h v0 + h^2 ((1/2 - beta) b0 + beta b1),  v1 = v0 + h ((1 -
+//   gamma) b0 + gamma b1)
 #include "dynamics/integrator.hpp"
 
 namespace hilo {
@@ -8,7 +9,10 @@ namespace {
 class GeneralizedAlpha final : public Integrator {
  public:
   explicit GeneralizedAlpha(double rho)
-      : alpha_m_((2 * rho - 1) / (rho + 1)), alpha_f_(rho / (rho + 1)), gamma_(0.5 - alpha_m_ + alpha_f_), beta_((gamma_ + 0.5) * (gamma_ + 0.5) / 4) {}
+      : alpha_m_((2 * rho - 1) / (rho + 1)),
+        alpha_f_(rho / (rho + 1)),
+        gamma_(0.5 - alpha_m_ + alpha_f_),
+        beta_((gamma_ + 0.5) * (gamma_ + 0.5) / 4) {}
   std::string name() const override { return "generalized-alpha"; }
   bool needs_acceleration() const override { return true; }
 

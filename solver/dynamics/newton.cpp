@@ -20,7 +20,8 @@ double relative_residual(const System& s, const Residual& r) {
   for (size_t i = 0; i < s.X.size(); ++i)
     if (s.node_block[i] >= 0) visit(s.node_block[i], force);
   for (size_t b = 0; b < s.bodies.size(); ++b)
-    if (s.body_block[b] >= 0) visit(s.body_block[b], force), visit(s.body_block[b] + 1, force * std::max(s.bodies[b].size, 1e-3 * s.length));
+    if (s.body_block[b] >= 0)
+      visit(s.body_block[b], force), visit(s.body_block[b] + 1, force * std::max(s.bodies[b].size, 1e-3 * s.length));
   for (int j = s.first_joint_block(); j < s.n_blocks(); ++j) visit(j, r.sigma * s.length);
   return worst;
 }
@@ -49,8 +50,8 @@ Phases& phases() {
   return p;
 }
 
-NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Config&)>& stage, Config& q1, std::vector<double>& lambda,
-                    const NewtonOptions& options) {
+NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Config&)>& stage, Config& q1,
+                    std::vector<double>& lambda, const NewtonOptions& options) {
   NewtonReport report;
   Residual r;
   std::vector<double> b, z;

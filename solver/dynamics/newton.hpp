@@ -9,24 +9,24 @@
 namespace hilo {
 
 struct NewtonOptions {
-  double tolerance = 1e-10;   // residual over the largest force it sums; correction over the scene's length
+  double tolerance = 1e-10;  // residual over the largest force it sums; correction over the scene's length
   int max_iterations = 25;
-  bool patient = false;       // do not give up on slow contraction
+  bool patient = false;  // do not give up on slow contraction
 };
 
 struct NewtonReport {
   bool converged = false;
-  int iterations = 0;         // linear solves
-  double correction = 0;      // last one, over the scene's length
-  double residual = 0;        // last one, over the force scale
+  int iterations = 0;     // linear solves
+  double correction = 0;  // last one, over the scene's length
+  double residual = 0;    // last one, over the force scale
   double least_det = 1e300;
   int linear_iterations = 0;
-  std::string reason;         // why it failed
+  std::string reason;  // why it failed
 };
 
 /// Solve for q1 and lambda from the guesses given.  `stage` makes the stage of a configuration.
-NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Config&)>& stage, Config& q1, std::vector<double>& lambda,
-                    const NewtonOptions& options);
+NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Config&)>& stage, Config& q1,
+                    std::vector<double>& lambda, const NewtonOptions& options);
 
 /// Seconds spent by phase since the start of the process.
 struct Phases {

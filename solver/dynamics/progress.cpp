@@ -29,7 +29,8 @@ void Progress::show(double t, long step, int iterations, bool force) {
   last_ = now;
   const double done = end_ > start_ ? (t - start_) / (end_ - start_) : 1, left = done > 0 ? (now - began_) * (1 - done) / done : 0;
   if (terminal_) {
-    fmt::print(stderr, "\r{:5.1f} %  t = {:.6g} s  step {}  {} Newton iterations  {} left   ", 100 * done, t, step, iterations, duration(left));
+    fmt::print(stderr, "\r{:5.1f} %  t = {:.6g} s  step {}  {} Newton iterations  {} left   ", 100 * done, t, step, iterations,
+               duration(left));
     open_ = true;
   } else {
     fmt::print(stderr, "progress={:.4f} t={:.6g} step={} newton={} left_s={:.0f}\n", done, t, step, iterations, left);

@@ -13,7 +13,8 @@
 namespace hilo {
 namespace {
 
-/// The linear solver for the scene, its pattern set: the light one while factors stay small, MUMPS above, GMRES for what no direct solver holds.
+/// The linear solver for the scene, its pattern set: the light one while factors stay small, MUMPS above, GMRES for what no direct solver
+/// holds.
 std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& system, bool talk) {
   const Entry& e = scene.table("solver");
   std::string kind = e.text("kind");
@@ -24,7 +25,8 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
     if (unknowns > 600000) kind = "iterative";
     why = fmt::format("{} unknowns on {} rank{}", unknowns, system.comm->size, system.comm->size == 1 ? "" : "s");
   }
-  if (kind == "light" && system.comm->size > 1) throw Error(e.where("kind"), "the light solver is serial", "use direct or iterative under mpirun");
+  if (kind == "light" && system.comm->size > 1)
+    throw Error(e.where("kind"), "the light solver is serial", "use direct or iterative under mpirun");
   auto solver = kind == "light" ? make_light_solver() : make_petsc_solver(kind, e.number("linear_tolerance"));
   solver->structure(system.cliques, system.map);
   if (talk) fmt::print(stderr, "solver {}: {}\n", solver->name(), why);
@@ -35,8 +37,10 @@ std::string json_text(const std::string& s) {
   std::string out = "\"";
   for (char c : s) {
     if (c == '"' || c == '\\') out += '\\';
-    if (c == '\n') out += "\\n";
-    else if (static_cast<unsigned char>(c) >= 32) out += c;
+    if (c == '\n')
+      out += "\\n";
+    else if (static_cast<unsigned char>(c) >= 32)
+      out += c;
   }
   return out + "\"";
 }
@@ -63,8 +67,10 @@ class Run {
         if (!time.has(key)) throw Error(time.place.text(), fmt::format("[time] has no {}", key), "a dynamic run needs end and step");
     }
     const auto& integrator_name = time.text("integrator");
-    if (integrator_name == "energy-momentum") integrator_ = make_energy_momentum(time.number("dissipation"));
-    else integrator_ = make_generalized_alpha(time.number("rho"));
+    if (integrator_name == "energy-momentum")
+      integrator_ = make_energy_momentum(time.number("dissipation"));
+    else
+      integrator_ = make_generalized_alpha(time.number("rho"));
 
     state_.q = system_.start;
     state_.v = system_.start_velocity;
@@ -74,15 +80,18 @@ class Run {
       throw Error(scene_.path, fmt::format("the joints are apart by {:.2g} at the start", assembled_));
     redundancy_ = drop_redundant_rows(system_, state_.q);
     if (talk_ && !redundancy_.dropped.empty()) {
-      fmt::print(stderr, "{} of {} joint rows are redundant; reactions are the minimum-norm share:\n", redundancy_.rows - redundancy_.rank, redundancy_.rows);
+      fmt::print(stderr, "{} of {} joint rows are redundant; reactions are the minimum-norm share:\n", redundancy_.rows - redundancy_.rank,
+                 redundancy_.rows);
       for (const auto& d : redundancy_.dropped) fmt::print(stderr, "  {}\n", d);
     }
     solver_ = choose_solver(scene_, system_, talk_);
     state_.lambda.assign(3 * system_.n_joint_blocks(), 0.0);
     open_recorder();
     try {
-      if (is_static_) static_steps();
-      else dynamic_steps();
+      if (is_static_)
+        static_steps();
+      else
+        dynamic_steps();
       recorder_->finish(report_.complete);
       peak_ = system_.comm->max(peak_memory());
       system_.comm->together([&] { write_json(); });
@@ -169,7 +178,8 @@ class Run {
       if (talk_) fmt::print(stderr, "equilibrium after {} iterations\n", r.iterations);
     }
     projected_ = project_velocities(system_, *solver_, state_.q, state_.v);
-    if (talk_ && projected_ > 1e-9) fmt::print(stderr, "initial velocities changed by up to {:.3g} m/s to satisfy the joints\n", projected_);
+    if (talk_ && projected_ > 1e-9)
+      fmt::print(stderr, "initial velocities changed by up to {:.3g} m/s to satisfy the joints\n", projected_);
     if (integrator_->needs_acceleration()) consistent_acceleration(system_, *solver_, state_, state_.a, state_.lambda);
     system_.commit(state_.q);
     recorder_->first(state_);
@@ -177,7 +187,8 @@ class Run {
     const long n_steps = std::max(1l, std::lround(std::ceil(end / step - 1e-9)));
     // nominal step k goes from k h to (k+1) h; a failed one is halved, level by level, and grows back at aligned instants
     for (long k = 0; k < n_steps; ++k) {
-      const double t0 = end * static_cast<double>(k) / static_cast<double>(n_steps), t1 = end * static_cast<double>(k + 1) / static_cast<double>(n_steps);
+      const double t0 = end * static_cast<double>(k) / static_cast<double>(n_steps),
+                   t1 = end * static_cast<double>(k + 1) / static_cast<double>(n_steps);
       long done = 0;  // in units of the finest level, 2^-max_cuts
       const long whole = 1l << max_cuts_;
       int level = level_;
@@ -216,7 +227,8 @@ class Run {
       Config q1 = predict(system_, state_, h, p);
       system_.prescribe(q1, state_.t + h);
       std::vector<double> lambda = state_.lambda;
-      const NewtonReport r = newton(system_, *solver_, [&](const Config& q) { return integrator_->stage(q); }, q1, lambda, newton_);
+      const NewtonReport r = newton(
+          system_, *solver_, [&](const Config& q) { return integrator_->stage(q); }, q1, lambda, newton_);
       report_.iterations += r.iterations;
       iterations_ = r.iterations;
       if (!r.converged) {
@@ -301,8 +313,10 @@ class Run {
     add("constraint_violation", fmt::format("{:.6g}", recorder_->violation()));
     add("least_det_F", least_det_ < 1e299 ? fmt::format("{:.6g}", least_det_) : "null");
     add("velocity_change", fmt::format("{:.6g}", projected_));
-    add("seconds", fmt::format("{{\"all\": {:.6g}, \"assembly\": {:.6g}, \"solve\": {:.6g}, \"output\": {:.6g}}}", wall_clock() - began_, p.assembly, p.solve, p.output));
-    add("counts", fmt::format("{{\"evaluations\": {}, \"tangents\": {}, \"solves\": {}, \"linear_iterations\": {}}}", p.evaluations, p.tangents, p.solves, p.linear_iterations));
+    add("seconds", fmt::format("{{\"all\": {:.6g}, \"assembly\": {:.6g}, \"solve\": {:.6g}, \"output\": {:.6g}}}", wall_clock() - began_,
+                               p.assembly, p.solve, p.output));
+    add("counts", fmt::format("{{\"evaluations\": {}, \"tangents\": {}, \"solves\": {}, \"linear_iterations\": {}}}", p.evaluations,
+                              p.tangents, p.solves, p.linear_iterations));
     add("peak_memory_bytes", fmt::format("{:.0f}", peak_));
     add("mesh", json_text(options_.mesh));
     add("scene", json_text(scene_.path));

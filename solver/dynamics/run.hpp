@@ -9,18 +9,18 @@
 namespace hilo {
 
 struct RunOptions {
-  std::string output;                    // run.h5
+  std::string output;  // run.h5
   std::vector<std::string> provenance;
   bool quiet = false;
   bool profile = false;
-  std::string mesh;                      // file used, "" for none
+  std::string mesh;  // file used, "" for none
 };
 
 /// What run.json tells.
 struct RunReport {
   bool complete = false;
-  double t = 0;                          // last time reached [s]
-  std::string reason;                    // why it stopped early
+  double t = 0;        // last time reached [s]
+  std::string reason;  // why it stopped early
   long steps = 0, iterations = 0, cuts = 0;
 };
 

@@ -83,9 +83,11 @@ Redundancy drop_redundant_rows(System& system, const Config& q) {
     system.joints[joint].active[measure] = false;
     std::set<std::string> others;
     for (int i = 0; i < report.rank; ++i)
-      if (std::abs(depends(i, k - report.rank)) > 1e-6 && rows.row[order[i]].first != joint) others.insert(system.joints[rows.row[order[i]].first].name);
-    report.dropped.push_back(fmt::format("joint \"{}\" row {}{}", system.joints[joint].name, measure + 1,
-                                         others.empty() ? " (depends on the joint's own rows)" : fmt::format(" (depends on {})", fmt::join(others, ", "))));
+      if (std::abs(depends(i, k - report.rank)) > 1e-6 && rows.row[order[i]].first != joint)
+        others.insert(system.joints[rows.row[order[i]].first].name);
+    report.dropped.push_back(
+        fmt::format("joint \"{}\" row {}{}", system.joints[joint].name, measure + 1,
+                    others.empty() ? " (depends on the joint's own rows)" : fmt::format(" (depends on {})", fmt::join(others, ", "))));
   }
   return report;
 }
@@ -114,11 +116,11 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
   if (lambda.empty()) return 0;
   // G v from values of the quadratic rows: (g(q + tau v) - g(q - tau v))/(2 tau) is exact
   const double tau = 1e-3 * system.length / std::max(1e-300, [&] {
-    double top = 0;
-    for (const Vec3& x : v.x) top = std::max(top, x.norm());
-    for (size_t i = 0; i < v.c.size(); ++i) top = std::max({top, v.c[i].norm(), v.R[i].norm() * system.bodies[i].size});
-    return system.comm->max(top);
-  }());
+                       double top = 0;
+                       for (const Vec3& x : v.x) top = std::max(top, x.norm());
+                       for (size_t i = 0; i < v.c.size(); ++i) top = std::max({top, v.c[i].norm(), v.R[i].norm() * system.bodies[i].size});
+                       return system.comm->max(top);
+                     }());
   if (!(tau < 1e200)) return 0;
   Config plus, minus;
   combine(plus, {{1, &q}, {tau, &v}});
@@ -134,7 +136,9 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
         b[first + k] = -r.sigma * (gp[k] - gm[k]) / (2 * tau);
       }
   const SolveReport solved = solver.solve(b, z);
-  if (!solved.ok) throw Error("", fmt::format("the joints and masses do not determine the motion: {}", solved.message), "a part may have no mass or inertia");
+  if (!solved.ok)
+    throw Error("", fmt::format("the joints and masses do not determine the motion: {}", solved.message),
+                "a part may have no mass or inertia");
   double change = 0;
   for (size_t i = 0; i < v.x.size(); ++i)
     if (system.node_block[i] >= 0) {

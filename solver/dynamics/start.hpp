@@ -8,7 +8,7 @@ namespace hilo {
 /// What the rank check found.
 struct Redundancy {
   int rows = 0, rank = 0;
-  std::vector<std::string> dropped;   // "joint \"b\" row 3 (depends on joints a, c)"
+  std::vector<std::string> dropped;  // "joint \"b\" row 3 (depends on joints a, c)"
 };
 /// Rank of the joint rows at q by QR with column pivoting; dependent rows are switched off in the system's joints.
 Redundancy drop_redundant_rows(System& system, const Config& q);

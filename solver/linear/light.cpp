@@ -148,7 +148,8 @@ class LightSolver final : public KktSolver {
       for (int i = 0; i < n_; ++i) x[i] += correction_[i];
     }
     // an ill-conditioned matrix leaves no better residual than round-off of what the rows sum
-    if (report.residual > 1e-6 && backward > 1e-12) report.ok = false, report.message = fmt::format("linear residual {:.1e}", report.residual);
+    if (report.residual > 1e-6 && backward > 1e-12)
+      report.ok = false, report.message = fmt::format("linear residual {:.1e}", report.residual);
     return report;
   }
 
@@ -161,7 +162,8 @@ class LightSolver final : public KktSolver {
   }
   bool factor_umfpack() {
     double info[UMFPACK_INFO];
-    if (!umf_symbolic_ && umfpack_di_symbolic(n_, n_, Ap_.data(), Ai_.data(), Ax_.data(), &umf_symbolic_, control_, info) != UMFPACK_OK) return false;
+    if (!umf_symbolic_ && umfpack_di_symbolic(n_, n_, Ap_.data(), Ai_.data(), Ax_.data(), &umf_symbolic_, control_, info) != UMFPACK_OK)
+      return false;
     if (umf_numeric_) umfpack_di_free_numeric(&umf_numeric_);
     const int status = umfpack_di_numeric(Ap_.data(), Ai_.data(), Ax_.data(), umf_symbolic_, &umf_numeric_, control_, info);
     if (status == UMFPACK_ERROR_out_of_memory) throw std::bad_alloc();

@@ -3,8 +3,8 @@
 #define OMPI_SKIP_MPICXX 1
 #include <mpi.h>
 
-#include <cstdlib>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <new>
 

@@ -38,30 +38,32 @@ struct Facet {
 };
 
 struct Mesh {
-  std::vector<Vec3> X;                                     // reference positions           (n_nodes x 3)  [m]
-  std::vector<std::int64_t> node_id;                       // number of the node in the deck (n_nodes)
-  std::vector<std::uint8_t> shape;                         // Shape of each cell            (n_cells)
-  std::vector<std::int64_t> offset{0};                     // first entry in `nodes`        (n_cells + 1)
-  std::vector<std::int64_t> nodes;                         // nodes of the cells            (offset.back())
-  std::vector<std::int32_t> region;                        // region of each cell           (n_cells)
-  std::vector<std::int64_t> cell_id;                       // number of the cell in the deck (n_cells)
-  std::vector<std::string> region_name;                    // (n_regions)
-  std::vector<RegionData> region_data;                     // (n_regions)
-  std::map<std::string, std::vector<std::int64_t>> node_sets;   // named sets of nodes
-  std::map<std::string, std::vector<Facet>> facet_sets;         // named sets of facets (boundary faces)
-  std::map<std::string, std::vector<std::int64_t>> cell_sets;   // named sets of cells
-  std::string deck_scene;                                  // scene lines that the deck's loads and supports became ("" if none)
+  std::vector<Vec3> X;                                         // reference positions           (n_nodes x 3)  [m]
+  std::vector<std::int64_t> node_id;                           // number of the node in the deck (n_nodes)
+  std::vector<std::uint8_t> shape;                             // Shape of each cell            (n_cells)
+  std::vector<std::int64_t> offset{0};                         // first entry in `nodes`        (n_cells + 1)
+  std::vector<std::int64_t> nodes;                             // nodes of the cells            (offset.back())
+  std::vector<std::int32_t> region;                            // region of each cell           (n_cells)
+  std::vector<std::int64_t> cell_id;                           // number of the cell in the deck (n_cells)
+  std::vector<std::string> region_name;                        // (n_regions)
+  std::vector<RegionData> region_data;                         // (n_regions)
+  std::map<std::string, std::vector<std::int64_t>> node_sets;  // named sets of nodes
+  std::map<std::string, std::vector<Facet>> facet_sets;        // named sets of facets (boundary faces)
+  std::map<std::string, std::vector<std::int64_t>> cell_sets;  // named sets of cells
+  std::string deck_scene;                                      // scene lines that the deck's loads and supports became ("" if none)
 
   std::int64_t n_nodes() const { return static_cast<std::int64_t>(X.size()); }
   std::int64_t n_cells() const { return static_cast<std::int64_t>(shape.size()); }
-  std::span<const std::int64_t> cell(std::int64_t c) const { return {nodes.data() + offset[c], static_cast<size_t>(offset[c + 1] - offset[c])}; }
+  std::span<const std::int64_t> cell(std::int64_t c) const {
+    return {nodes.data() + offset[c], static_cast<size_t>(offset[c + 1] - offset[c])};
+  }
   void add_cell(Shape s, std::span<const std::int64_t> cell_nodes, std::int32_t cell_region, std::int64_t id);
   std::vector<std::int64_t> facet_nodes(const Facet& f) const;
   /// The nodes of a region, node set, facet set or cell set of that name, sorted and unique; throws Error with a suggestion.
   /// `where` is what an error is reported at.
   std::vector<std::int64_t> nodes_of(const std::string& name, const std::string& where) const;
-  int find_region(std::string_view name) const;            // -1 when there is none
-  std::vector<std::string> all_names() const;              // regions and sets, for suggestions
+  int find_region(std::string_view name) const;  // -1 when there is none
+  std::vector<std::string> all_names() const;    // regions and sets, for suggestions
 };
 
 /// Fidelity of a region, stored as this word in tags.h5.
@@ -73,24 +75,25 @@ Fidelity fidelity_of(std::string_view word, const std::string& where);
 /// Mesh, tags and partition as one of mesh.h5, tags.h5, parts-N.h5 tells (each links to the one before).
 struct MeshFile {
   Mesh mesh;
-  std::vector<Fidelity> fidelity;        // per region; all nonlinear and `tagged` false for a bare mesh
+  std::vector<Fidelity> fidelity;  // per region; all nonlinear and `tagged` false for a bare mesh
   bool tagged = false;
-  std::vector<std::int32_t> rank;        // part of each cell, empty for an unpartitioned mesh
+  std::vector<std::int32_t> rank;  // part of each cell, empty for an unpartitioned mesh
   int n_parts = 1;
-  std::vector<std::string> provenance;   // command lines so far
+  std::vector<std::string> provenance;  // command lines so far
 };
 MeshFile read_mesh_file(const std::string& path);
 void write_mesh(const std::string& path, const Mesh& mesh, const std::vector<std::string>& provenance);
 /// `from` is the file read (mesh.h5), linked relatively, with its digest.
-void write_tags(const std::string& path, const std::string& from, const std::vector<Fidelity>& fidelity, const std::vector<std::string>& provenance);
+void write_tags(const std::string& path, const std::string& from, const std::vector<Fidelity>& fidelity,
+                const std::vector<std::string>& provenance);
 void write_parts(const std::string& path, const std::string& from, int n_parts, const std::vector<std::int32_t>& rank,
                  const std::vector<std::string>& provenance);
 
 /// Volume (length for bars) of a cell by the isoparametric map, exact for straight-sided cells, and the smallest
 /// Jacobian determinant over its corners divided by the largest (1 for a box, <= 0 inverted).
 struct CellQuality {
-  double volume;            // [m^3]
-  double scaled_jacobian;   // [1]
+  double volume;           // [m^3]
+  double scaled_jacobian;  // [1]
 };
 CellQuality quality(const Mesh& mesh, std::int64_t cell);
 /// Area vector of a facet, outward [m^2]; zero for the ends of a bar.

@@ -23,44 +23,44 @@ struct Place {
 /// A load history: values at rising times, linear or smooth (C1 cosine ramps between the points: w = (1 - cos(pi s))/2).
 /// Before the first point the first value, after the last the last.  Two equal times make a jump.
 struct History {
-  std::vector<double> t;       // [s]
-  std::vector<double> value;   // dimension of what it scales
+  std::vector<double> t;      // [s]
+  std::vector<double> value;  // dimension of what it scales
   bool smooth = false;
-  double operator()(double time) const;   // from the right at a jump
+  double operator()(double time) const;  // from the right at a jump
   double slope(double time) const;
-  double mean(double t0, double t1) const;        // exact average over [t0, t1]
+  double mean(double t0, double t1) const;  // exact average over [t0, t1]
   /// Times of jumps and kinks inside (t0, t1).
   std::vector<double> events(double t0, double t1) const;
-  std::vector<double> jumps() const;              // times at which the value jumps
+  std::vector<double> jumps() const;  // times at which the value jumps
 };
 
 /// One value of an entry, in SI units, with its place.
 struct Value {
   Place place;
-  std::vector<double> numbers;       // a number is a list of one
-  std::vector<std::string> texts;    // a text is a list of one
+  std::vector<double> numbers;     // a number is a list of one
+  std::vector<std::string> texts;  // a text is a list of one
   std::optional<bool> boolean;
   std::optional<History> history;
-  bool given = true;                 // false: the default is in force
+  bool given = true;  // false: the default is in force
 };
 
 /// A table of the scene: [material.steel] has section "material" and name "steel"; [[joint]] has its kind and name as keys.
 struct Entry {
   std::string section, kind, name;
   Place place;
-  std::map<std::string, Value, std::less<>> values;     // checked and completed with defaults by the schema
+  std::map<std::string, Value, std::less<>> values;  // checked and completed with defaults by the schema
 
-  bool has(std::string_view key) const;                  // present, given or by default
-  bool given(std::string_view key) const;                // written in the scene
+  bool has(std::string_view key) const;    // present, given or by default
+  bool given(std::string_view key) const;  // written in the scene
   double number(std::string_view key) const;
   Vec3 vector3(std::string_view key) const;
   const std::vector<double>& numbers(std::string_view key) const;
   const std::string& text(std::string_view key) const;
   const std::vector<std::string>& texts(std::string_view key) const;
   bool boolean(std::string_view key) const;
-  const History& history(std::string_view key) const;    // constant 1 where absent
-  std::string where(std::string_view key) const;         // "scene.toml:14:7" of the key, or of the entry
-  std::string label() const;                             // joint "trunnion"
+  const History& history(std::string_view key) const;  // constant 1 where absent
+  std::string where(std::string_view key) const;       // "scene.toml:14:7" of the key, or of the entry
+  std::string label() const;                           // joint "trunnion"
 };
 
 /// The whole scene, every key known and every value in range.
@@ -75,13 +75,13 @@ class Scene {
   std::span<const Entry> entries(std::string_view section) const;
   /// The one table of a section (time, solver, output, scene); defaults where it is absent.
   const Entry& table(std::string_view section) const;
-  std::string path;      // as given
-  std::string folder;    // relative paths in the scene start here
-  std::string text;      // the TOML text after overrides, for provenance
+  std::string path;    // as given
+  std::string folder;  // relative paths in the scene start here
+  std::string text;    // the TOML text after overrides, for provenance
   std::string units;
   /// Every value in force as lines "section.name.key = value [unit]  # default|given", for --explain.
   std::string explain() const;
-  std::vector<std::string> warnings;   // implausible values, one line each, with place
+  std::vector<std::string> warnings;  // implausible values, one line each, with place
 
  private:
   std::map<std::string, std::vector<Entry>, std::less<>> entries_;
@@ -89,8 +89,8 @@ class Scene {
 
 /// The schema of scenes: every section, kind and key, with unit, default and meaning.
 struct KindSchema {
-  std::string_view section;       // "joint"
-  std::string_view kind;          // "revolute"; "" where the section has no kinds
+  std::string_view section;  // "joint"
+  std::string_view kind;     // "revolute"; "" where the section has no kinds
   std::string_view meaning;
   std::vector<Param> params;
 };

@@ -14,19 +14,21 @@ struct Config {
   std::vector<Vec3> c;  // centres of the bodies       (n_bodies x 3)     [m]
   std::vector<Mat3> R;  // directors, columns          (n_bodies x 3 x 3) [1]
 
-  void resize(size_t n_nodes, size_t n_bodies) { x.resize(n_nodes, Vec3::Zero()), c.resize(n_bodies, Vec3::Zero()), R.resize(n_bodies, Mat3::Zero()); }
+  void resize(size_t n_nodes, size_t n_bodies) {
+    x.resize(n_nodes, Vec3::Zero()), c.resize(n_bodies, Vec3::Zero()), R.resize(n_bodies, Mat3::Zero());
+  }
 };
 
 /// A rigid super-element: rigid regions joined by shared nodes, a massless patch, a body without mesh, or one whose motion is prescribed.
 struct Body {
   std::string name;
-  Vec3 Xc = Vec3::Zero();      // reference position of its centre of mass      [m]
-  double mass = 0;             //                                               [kg]
-  Mat3 J = Mat3::Zero();       // Euler tensor int rho (X - Xc)(X - Xc)^T dV    [kg m^2]
-  double size = 1;             // a length of the body, for scaling             [m]
-  int motion = -1;             // prescribed motion, or -1 for a free body
-  bool ground = false;         // fixed for ever; body 0
-  bool patch = false;          // massless, made for a joint on a flexible region
+  Vec3 Xc = Vec3::Zero();  // reference position of its centre of mass      [m]
+  double mass = 0;         //                                               [kg]
+  Mat3 J = Mat3::Zero();   // Euler tensor int rho (X - Xc)(X - Xc)^T dV    [kg m^2]
+  double size = 1;         // a length of the body, for scaling             [m]
+  int motion = -1;         // prescribed motion, or -1 for a free body
+  bool ground = false;     // fixed for ever; body 0
+  bool patch = false;      // massless, made for a joint on a flexible region
   bool free() const { return motion < 0 && !ground; }
 };
 

@@ -42,16 +42,21 @@ void second_derivatives(const Term& t, Use use) {
       use(t.i, t.i, 2 * t.coef), use(t.j, t.j, 2 * t.coef);
       use(t.i, t.j, -2 * t.coef), use(t.j, t.i, -2 * t.coef);
       break;
-    case Term::coordinate: break;
+    case Term::coordinate:
+      break;
   }
 }
 
 double term_value(const Term& t, const Vec3* y) {
   switch (t.kind) {
-    case Term::dot: return t.coef * y[t.i].dot(y[t.j]);
-    case Term::slide: return t.coef * y[t.i].dot(y[t.k] - y[t.j]);
-    case Term::distance2: return t.coef * (y[t.j] - y[t.i]).squaredNorm();
-    case Term::coordinate: return t.coef * t.unit.dot(y[t.j] - y[t.i]);
+    case Term::dot:
+      return t.coef * y[t.i].dot(y[t.j]);
+    case Term::slide:
+      return t.coef * y[t.i].dot(y[t.k] - y[t.j]);
+    case Term::distance2:
+      return t.coef * (y[t.j] - y[t.i]).squaredNorm();
+    case Term::coordinate:
+      return t.coef * t.unit.dot(y[t.j] - y[t.i]);
   }
   return 0;
 }

@@ -28,7 +28,8 @@ struct Maker {
 
 }  // namespace
 
-Connector make_joint(const std::string& kind, const Carrier& a, const Carrier& b, const Config& q, const Vec3& at, const Vec3& at_b, const Mat3& frame) {
+Connector make_joint(const std::string& kind, const Carrier& a, const Carrier& b, const Config& q, const Vec3& at, const Vec3& at_b,
+                     const Mat3& frame) {
   Maker m{{}, q};
   m.c.kind = kind;
   m.c.end[0] = a, m.c.end[1] = b;

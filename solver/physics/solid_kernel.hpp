@@ -17,7 +17,7 @@ struct KernelCall {
   double density = 0;
   const double* a = nullptr;  // null: no inertia
   double mass_slope = 0;
-  double area = 0;            // of bars [m^2]
+  double area = 0;  // of bars [m^2]
 };
 
 using KernelFunction = void (*)(const KernelCall&);

@@ -23,8 +23,9 @@ static void run_kernel(const KernelCall& k) {
   };
   T* least = reinterpret_cast<T*>(k.least_det);
   if (least) *least = T{} + 1e300;
-  const SolidCall<T> call{lanes_of(k.X), lanes_of(k.x0), lanes_of(k.x1), k.elastic, k.viscous, k.c, clear(k.f, n3), clear(k.K, n3 * n3), clear(k.energy, 1),
-                          clear(k.dissipated, 1), least, k.density, lanes_of(k.a), k.mass_slope};
+  const SolidCall<T> call{lanes_of(k.X), lanes_of(k.x0), lanes_of(k.x1),      k.elastic,          k.viscous,
+                          k.c,           clear(k.f, n3), clear(k.K, n3 * n3), clear(k.energy, 1), clear(k.dissipated, 1),
+                          least,         k.density,      lanes_of(k.a),       k.mass_slope};
   if (k.elastic != 0 || k.viscous != 0 || k.energy) {
     evaluate_solid<S>(Material{k.c}, call);
     if constexpr (S::n == 8) add_hourglass(k.c, call);
@@ -35,13 +36,20 @@ static void run_kernel(const KernelCall& k) {
 template <class Material, class T>
 static KernelFunction kernel_of_shape(Shape shape) {
   switch (shape) {
-    case Shape::tet4: return run_kernel<Tet4, Material, T>;
-    case Shape::tet10: return run_kernel<Tet10, Material, T>;
-    case Shape::wedge6: return run_kernel<Wedge6, Material, T>;
-    case Shape::wedge15: return run_kernel<Wedge15, Material, T>;
-    case Shape::hex8: return run_kernel<Hex8, Material, T>;
-    case Shape::hex20: return run_kernel<Hex20, Material, T>;
-    case Shape::bar2: break;
+    case Shape::tet4:
+      return run_kernel<Tet4, Material, T>;
+    case Shape::tet10:
+      return run_kernel<Tet10, Material, T>;
+    case Shape::wedge6:
+      return run_kernel<Wedge6, Material, T>;
+    case Shape::wedge15:
+      return run_kernel<Wedge15, Material, T>;
+    case Shape::hex8:
+      return run_kernel<Hex8, Material, T>;
+    case Shape::hex20:
+      return run_kernel<Hex20, Material, T>;
+    case Shape::bar2:
+      break;
   }
   return nullptr;
 }

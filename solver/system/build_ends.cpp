@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 
@@ -75,8 +74,10 @@ Builder::Found Builder::find(const std::string& name, const std::string& where) 
 void Builder::set_follower(int node, int body, const std::string& where) {
   if (out_->follower[node] == body) return;
   if (out_->follower[node] >= 0)
-    throw Error(where, fmt::format("node {} is held by {} already", mesh_->mesh.node_id[node], held_by_[node].empty() ? "a rigid region" : held_by_[node]),
-                "the sets of two entries overlap");
+    throw Error(
+        where,
+        fmt::format("node {} is held by {} already", mesh_->mesh.node_id[node], held_by_[node].empty() ? "a rigid region" : held_by_[node]),
+        "the sets of two entries overlap");
   out_->follower[node] = body;
   held_by_[node] = where;
 }
@@ -103,7 +104,8 @@ int Builder::patch_of(const std::string& name, const Found& found, const std::st
     S << spread[0], spread[3], spread[4], spread[3], spread[1], spread[5], spread[4], spread[5], spread[2];
     const Vec3 values = Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvalues();
     if (values[1] <= 1e-12 * values[2])
-      throw Error(where, fmt::format("the {} nodes of \"{}\" lie on a line and cannot carry a joint", found.n_global, name), "name a set of nodes on a face");
+      throw Error(where, fmt::format("the {} nodes of \"{}\" lie on a line and cannot carry a joint", found.n_global, name),
+                  "name a set of nodes on a face");
     out_->bodies[body].size = std::sqrt(S.trace() / static_cast<double>(found.n_global));
   }
   for (int i : found.nodes) set_follower(i, body, where);
@@ -114,7 +116,8 @@ int Builder::patch_of(const std::string& name, const Found& found, const std::st
 int Builder::body_of(const std::string& name, const Found& found, const std::string& where) {
   if (found.body >= 0) return found.body;
   if (found.is_region)
-    throw Error(where, fmt::format("region \"{}\" is flexible: it has no single position", name), "name a set of its nodes, or tag it rigid");
+    throw Error(where, fmt::format("region \"{}\" is flexible: it has no single position", name),
+                "name a set of its nodes, or tag it rigid");
   return patch_of(name, found, where);
 }
 
@@ -124,7 +127,8 @@ Carrier Builder::carrier(const Entry& entry, std::string_view key, bool needs_or
   const Found found = find(name, where);
   if (found.body < 0 && found.n_global == 1) {
     if (needs_orientation)
-      throw Error(where, fmt::format("{}: \"{}\" is a single node, which has no orientation", entry.label(), name), "name a set of nodes on a face");
+      throw Error(where, fmt::format("{}: \"{}\" is a single node, which has no orientation", entry.label(), name),
+                  "name a set of nodes on a face");
     return {-1, found.nodes.at(0)};  // single nodes of sets are local to every rank (model/distribute.cpp)
   }
   return {body_of(name, found, where), -1};

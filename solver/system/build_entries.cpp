@@ -13,7 +13,8 @@ namespace {
 
 Vec3 direction(const Entry& e, std::string_view key) {
   const Vec3 v = e.vector3(key);
-  if (!(v.norm() > 0)) throw Error(e.where(key), e.label() + ": the axis has zero length", fmt::format("give {} a direction, such as [0, 0, 1]", key));
+  if (!(v.norm() > 0))
+    throw Error(e.where(key), e.label() + ": the axis has zero length", fmt::format("give {} a direction, such as [0, 0, 1]", key));
   return v.normalized();
 }
 
@@ -27,7 +28,8 @@ Mat3 frame(const Entry& e) {
 std::array<bool, 3> components(const Entry& e) {
   std::array<bool, 3> c{};
   for (const std::string& t : e.texts("components")) {
-    if (t != "x" && t != "y" && t != "z") throw Error(e.where("components"), fmt::format("{}: unknown component \"{}\"", e.label(), t), "x, y or z");
+    if (t != "x" && t != "y" && t != "z")
+      throw Error(e.where("components"), fmt::format("{}: unknown component \"{}\"", e.label(), t), "x, y or z");
     c[t[0] - 'x'] = true;
   }
   return c;
@@ -59,7 +61,9 @@ void Builder::add_motions() {
     m.moving = e.kind != "fixed";
     if (m.moving) m.history = e.history("history"), m.ramped = !e.given("history");
     const bool whole = m.component[0] && m.component[1] && m.component[2];
-    if (found.body >= 0 && !whole) throw Error(where, fmt::format("{}: \"{}\" is rigid and can only be held whole", e.label(), e.text("on")), "use a joint to the ground");
+    if (found.body >= 0 && !whole)
+      throw Error(where, fmt::format("{}: \"{}\" is rigid and can only be held whole", e.label(), e.text("on")),
+                  "use a joint to the ground");
     if (whole || found.body >= 0) {
       m.body = found.body;
       if (m.body < 0) {
@@ -70,13 +74,15 @@ void Builder::add_motions() {
         for (int i : found.nodes) set_follower(i, m.body, where);
       }
       Body& body = out_->bodies[m.body];
-      if (body.motion >= 0) throw Error(where, fmt::format("{}: motion \"{}\" moves this body already", e.label(), out_->motions[body.motion].name));
+      if (body.motion >= 0)
+        throw Error(where, fmt::format("{}: motion \"{}\" moves this body already", e.label(), out_->motions[body.motion].name));
       body.motion = static_cast<int>(out_->motions.size());
       if (e.kind != "rotation") m.at = body.Xc;
     } else {
       for (int i : found.nodes) {
         if (out_->follower[i] >= 0)
-          throw Error(where, fmt::format("{}: node {} belongs to a rigid body and cannot have single components prescribed", e.label(), mesh_->mesh.node_id[i]));
+          throw Error(where, fmt::format("{}: node {} belongs to a rigid body and cannot have single components prescribed", e.label(),
+                                         mesh_->mesh.node_id[i]));
         for (int k = 0; k < 3; ++k) out_->fixed[i][k] = out_->fixed[i][k] || m.component[k];
         m.nodes.push_back(i);
       }
@@ -90,10 +96,12 @@ void Builder::add_joints() {
     const bool needs = e.kind != "spherical" && e.kind != "distance";
     const Carrier a = carrier(e, "a", needs), b = carrier(e, "b", needs);
     if (a.body == b.body && a.node == b.node)
-      throw Error(e.where("b"), fmt::format("{}: both ends are the same body", e.label()),
-                  a.body > 0 ? fmt::format("\"{}\" and \"{}\" are one rigid body, {}", e.text("a"), e.text("b"), out_->bodies[a.body].name) : "");
+      throw Error(
+          e.where("b"), fmt::format("{}: both ends are the same body", e.label()),
+          a.body > 0 ? fmt::format("\"{}\" and \"{}\" are one rigid body, {}", e.text("a"), e.text("b"), out_->bodies[a.body].name) : "");
     const Vec3 at = e.kind == "distance" ? e.vector3("at_a") : e.vector3("at"), at_b = e.kind == "distance" ? e.vector3("at_b") : at;
-    if (e.kind == "distance" && !((at - at_b).norm() > 0)) throw Error(e.where("at_b"), e.label() + ": the two points coincide", "a spherical joint holds them together");
+    if (e.kind == "distance" && !((at - at_b).norm() > 0))
+      throw Error(e.where("at_b"), e.label() + ": the two points coincide", "a spherical joint holds them together");
     for (const Carrier* end : {&a, &b})
       if (end->node >= 0 && (out_->X[end->node] - (end == &a ? at : at_b)).norm() > 1e-6 * out_->length)
         throw Error(e.where(end == &a ? "a" : "b"), fmt::format("{}: the node is not at the joint point", e.label()));
@@ -121,8 +129,8 @@ void Builder::add_springs() {
     } else if (e.kind == "torsion") {
       c = make_torsion_spring(a, b, q, frame(e), e.number("stiffness"), e.number("damping"), e.number("angle"));
     } else if (e.kind == "bushing") {
-      c = make_bushing(a, b, q, e.vector3("at"), frame(e), vec(padded(e, "stiffness", 3)), vec(padded(e, "damping", 3)), vec(padded(e, "angular_stiffness", 3)),
-                       vec(padded(e, "angular_damping", 3)));
+      c = make_bushing(a, b, q, e.vector3("at"), frame(e), vec(padded(e, "stiffness", 3)), vec(padded(e, "damping", 3)),
+                       vec(padded(e, "angular_stiffness", 3)), vec(padded(e, "angular_damping", 3)));
       out_->stiffness = std::max(out_->stiffness, vec(padded(e, "stiffness", 3)).maxCoeff());
     } else {
       c = make_support(a, b, q, e.vector3("at"), frame(e), e.number("stiffness"), e.number("damping"), e.number("clearance"),
@@ -206,7 +214,8 @@ void Builder::add_loads() {
           for (double& w : load.weight) w /= area;
         } else {
           for (int i : found.nodes)
-            if (out_->node_owned[i]) load.nodes.push_back(i), load.weight.push_back(e.boolean("per_node") ? 1.0 : 1.0 / static_cast<double>(found.n_global));
+            if (out_->node_owned[i])
+              load.nodes.push_back(i), load.weight.push_back(e.boolean("per_node") ? 1.0 : 1.0 / static_cast<double>(found.n_global));
         }
       }
     } else if (e.kind == "traction") {
@@ -369,9 +378,11 @@ std::unique_ptr<System> Builder::build() {
     if (out_->length < 1e-8) out_->length = out_->bodies.size() > 1 ? out_->bodies[1].size : 1;
   }
   const bool is_static = scene_.table("time").text("analysis") == "static";
-  if (!(out_->mass > 0) && !is_static) throw Error(scene_.path, "the scene has no mass: nothing can move", "give a mesh or [[body]] entries, and densities");
+  if (!(out_->mass > 0) && !is_static)
+    throw Error(scene_.path, "the scene has no mass: nothing can move", "give a mesh or [[body]] entries, and densities");
   out_->number();
-  if (comm_.sum(static_cast<double>(out_->n_blocks())) == 0) throw Error(scene_.path, "nothing is free to move", "every region and body is held");
+  if (comm_.sum(static_cast<double>(out_->n_blocks())) == 0)
+    throw Error(scene_.path, "nothing is free to move", "every region and body is held");
   set_initial_velocities();
   return std::move(out_);
 }

@@ -3,7 +3,6 @@
 #include <fnmatch.h>
 
 #include <Eigen/Eigenvalues>
-
 #include <cmath>
 #include <numeric>
 
@@ -94,7 +93,8 @@ void Builder::integrate_regions() {
     for (int i = 0; i < 3; ++i) r.moment[i] = all[1 + i];
     for (int i = 0; i < 9; ++i) r.second(i / 3, i % 3) = all[4 + i];
     if (r.mass_wanted > 0) {
-      if (!(r.mass > 0)) throw Error(r.where, fmt::format("region \"{}\" has a mass but no density to scale", r.name), "give its material a density");
+      if (!(r.mass > 0))
+        throw Error(r.where, fmt::format("region \"{}\" has a mass but no density to scale", r.name), "give its material a density");
       const double s = r.mass_wanted / r.mass;
       r.density *= s, r.mass *= s, r.moment *= s, r.second *= s;
     }
@@ -140,7 +140,8 @@ void Builder::make_rigid_bodies() {
   };
   for (int a = 0; a < n_regions; ++a)
     for (int b = 0; b < n_regions; ++b)
-      if (shared[static_cast<size_t>(a) * n_regions + b] > 0) root[std::max(find_root(a), find_root(b))] = std::min(find_root(a), find_root(b));
+      if (shared[static_cast<size_t>(a) * n_regions + b] > 0)
+        root[std::max(find_root(a), find_root(b))] = std::min(find_root(a), find_root(b));
   for (int r = 0; r < n_regions; ++r) {
     if (regions_[r].fidelity != Fidelity::rigid || find_root(r) != r) continue;
     std::string name;
@@ -152,7 +153,8 @@ void Builder::make_rigid_bodies() {
         name += (name.empty() ? "" : "+") + regions_[s].name;
         mass += regions_[s].mass, moment += regions_[s].moment, second += regions_[s].second;
       }
-    if (!(mass > 0)) throw Error(regions_[r].where, fmt::format("rigid region \"{}\" has no density", regions_[r].name), "give its material a density");
+    if (!(mass > 0))
+      throw Error(regions_[r].where, fmt::format("rigid region \"{}\" has no density", regions_[r].name), "give its material a density");
     const Vec3 com = moment / mass;
     const int b = new_body(name, origin_ + com);
     out_->bodies[b].mass = mass;
@@ -190,7 +192,8 @@ void Builder::make_batches() {
     if (!(r.nu < 0.5)) throw Error(r.where, fmt::format("region \"{}\": Poisson's ratio {} is not in (-1, 0.5)", r.name, r.nu));
     const bool is_static = scene_.table("time").text("analysis") == "static";
     if (std::isnan(r.density) && !is_static) throw Error(r.where, fmt::format("region \"{}\" has no density", r.name), hint);
-    if (b.shape == Shape::bar2 && r.area <= 0) throw Error(r.where, fmt::format("region \"{}\" is made of bars and has no area", r.name), "give [region.NAME] area");
+    if (b.shape == Shape::bar2 && r.area <= 0)
+      throw Error(r.where, fmt::format("region \"{}\" is made of bars and has no area", r.name), "give [region.NAME] area");
     b.law = r.material_kind == "neo-hookean" ? Law::neo_hookean : Law::stvk;
     b.c = lame(r.E, r.nu);
     b.density = std::isnan(r.density) ? 0 : r.density;
@@ -222,7 +225,8 @@ void Builder::add_free_bodies() {
     body.J = inertia.trace() / 2 * Mat3::Identity() - inertia;
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(body.J);
     if (eigen.eigenvalues().minCoeff() < -1e-9 * inertia.norm())
-      throw Error(e.where("inertia"), e.label() + ": no body has this inertia", "each principal moment is at most the sum of the other two");
+      throw Error(e.where("inertia"), e.label() + ": no body has this inertia",
+                  "each principal moment is at most the sum of the other two");
     body.size = std::sqrt(std::max(body.mass > 0 ? body.J.trace() / body.mass : 1.0, 1e-12));
     if (body_by_name_.contains(e.name) || (mesh_ && mesh_->mesh.find_region(e.name) >= 0))
       throw Error(e.where("name"), e.label() + ": a region of the mesh has this name too");

@@ -19,12 +19,12 @@ class Builder {
     std::string name, material_kind = "stvk";
     double E = std::nan(""), nu = std::nan(""), density = std::nan("");
     double mass_wanted = 0, area = 0, beta = 0, alpha = 0;
-    std::string where;                    // of its material, for errors
+    std::string where;  // of its material, for errors
     Fidelity fidelity = Fidelity::nonlinear;
-    int body = -1;                        // rigid: its body
-    double mass = 0;                      // integrals over its cells, all ranks
-    Vec3 moment = Vec3::Zero();           // int rho (X - origin)
-    Mat3 second = Mat3::Zero();           // int rho (X - origin)(X - origin)^T
+    int body = -1;               // rigid: its body
+    double mass = 0;             // integrals over its cells, all ranks
+    Vec3 moment = Vec3::Zero();  // int rho (X - origin)
+    Mat3 second = Mat3::Zero();  // int rho (X - origin)(X - origin)^T
     Vec3 com() const { return moment / mass; }
   };
 
@@ -35,9 +35,9 @@ class Builder {
   void make_batches();
   void add_free_bodies();
   // build_ends.cpp
-  struct Found {                          // what a name means
+  struct Found {  // what a name means
     int body = -1;
-    std::vector<int> nodes;               // local nodes of a set or flexible region
+    std::vector<int> nodes;  // local nodes of a set or flexible region
     std::int64_t n_global = 0;
     bool is_region = false;
     int region = -1;
@@ -66,10 +66,10 @@ class Builder {
   const Comm& comm_;
   std::unique_ptr<System> out_;
   std::vector<Region> regions_;
-  Vec3 origin_ = Vec3::Zero();                     // of the mass integrals
-  std::map<std::string, int> body_by_name_;        // [[body]] entries
+  Vec3 origin_ = Vec3::Zero();               // of the mass integrals
+  std::map<std::string, int> body_by_name_;  // [[body]] entries
   std::map<std::string, int> patch_by_name_;
-  std::vector<std::string> held_by_;               // per node: the entry that made it a follower of a patch or motion
+  std::vector<std::string> held_by_;  // per node: the entry that made it a follower of a patch or motion
 };
 
 }  // namespace hilo

@@ -8,10 +8,10 @@ struct System::Pass {
   const Stage& s;
   std::span<const double> lambda;
   Residual& out;
-  KktSolver* K;                // null: residual only
-  std::vector<Vec3>& node;     // residual of each node before reduction
-  std::vector<Vec6>& body;     // residual of each body: force, moment about its left centre
-  double sigma = 1;            // scale of constraint rows and multiplier columns
+  KktSolver* K;             // null: residual only
+  std::vector<Vec3>& node;  // residual of each node before reduction
+  std::vector<Vec6>& body;  // residual of each body: force, moment about its left centre
+  double sigma = 1;         // scale of constraint rows and multiplier columns
 
   void scale(double force) {
     if (force > out.force_scale) out.force_scale = force;
@@ -20,7 +20,7 @@ struct System::Pass {
 
 /// Left and right maps of a node: identity for a free node, lever arms for a follower.
 struct NodeMap {
-  int slot;          // first row block within the clique's unknowns, -1 when driven
+  int slot;  // first row block within the clique's unknowns, -1 when driven
   bool follower;
   Vec3 left, right;  // arms from the body's centre
 };

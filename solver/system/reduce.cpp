@@ -20,7 +20,8 @@ void add_reduced(KktSolver& solver, int clique, int n, const double* K, const No
       if (maps[b].slot < 0) continue;
       Mat3 A;
       for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) A(i, j) = !maps[a].follower && fixed[a][i] ? 0 : !maps[b].follower && fixed[b][j] ? 0 : K[(3 * a + i) * n3 + 3 * b + j];
+        for (int j = 0; j < 3; ++j)
+          A(i, j) = !maps[a].follower && fixed[a][i] ? 0 : !maps[b].follower && fixed[b][j] ? 0 : K[(3 * a + i) * n3 + 3 * b + j];
       add(maps[a].slot, maps[b].slot, A);
       const Mat3 AR = maps[b].follower ? Mat3(-A * skew(maps[b].right)) : Mat3::Zero();
       if (maps[b].follower) add(maps[a].slot, maps[b].slot + 1, AR);

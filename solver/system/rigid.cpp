@@ -71,8 +71,10 @@ void System::add_connectors(Pass& p) const {
     for (int k = 0; k < 2; ++k) {
       Vec6 f = Vec6::Zero();
       for (size_t m = 0; m < c.measures.size(); ++m) f += force[m] * left.G.block<1, 6>(m, 6 * k).transpose();
-      if (c.end[k].body >= 0) p.body[c.end[k].body] += f;
-      else p.node[c.end[k].node] += f.head<3>();
+      if (c.end[k].body >= 0)
+        p.body[c.end[k].body] += f;
+      else
+        p.node[c.end[k].node] += f.head<3>();
       p.scale(f.head<3>().norm());
     }
   };

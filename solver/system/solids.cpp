@@ -47,12 +47,26 @@ void System::add_solids(Pass& p) const {
   const Vec3 g = gravity * s.load_factor;
   for (const SolidBatch& b : batches) {
     const int W = b.kernel.width, n = info(b.shape).n_nodes, n3 = 3 * n, count = static_cast<int>(b.cells.size());
-    double *X_ = lanes.X.get(n3 * W), *x0 = lanes.x0.get(n3 * W), *x1 = lanes.x1.get(n3 * W), *a = lanes.a.get(n3 * W), *f = lanes.f.get(n3 * W);
+    double *X_ = lanes.X.get(n3 * W), *x0 = lanes.x0.get(n3 * W), *x1 = lanes.x1.get(n3 * W), *a = lanes.a.get(n3 * W),
+           *f = lanes.f.get(n3 * W);
     double* K = p.K ? lanes.K.get(static_cast<size_t>(n3) * n3 * W) : nullptr;
     double* det = lanes.scalar[0].get(W);
     const double rate = s.h > 0 ? b.beta / s.h : 0;
-    KernelCall call{X_, x0, x1, 1, same_pair ? rate + s.chi / 2 : s.chi / 2, b.c, f, K, nullptr, nullptr, det, b.density, a,
-                    (s.mass_slope + b.alpha * s.alpha_slope) / s.K_factor, b.area};
+    KernelCall call{X_,
+                    x0,
+                    x1,
+                    1,
+                    same_pair ? rate + s.chi / 2 : s.chi / 2,
+                    b.c,
+                    f,
+                    K,
+                    nullptr,
+                    nullptr,
+                    det,
+                    b.density,
+                    a,
+                    (s.mass_slope + b.alpha * s.alpha_slope) / s.K_factor,
+                    b.area};
     for (int first = 0; first < count; first += W) {
       gather(b, first, W, X, X_);
       gather(b, first, W, s.q0->x, x0);
@@ -126,7 +140,8 @@ System::Energy System::energy(const Config& q, const Config& v) const {
   double gravity_energy = 0;
   for (const SolidBatch& b : batches) {
     const int W = b.kernel.width, n = info(b.shape).n_nodes, n3 = 3 * n, count = static_cast<int>(b.cells.size());
-    double *X_ = lanes.X.get(n3 * W), *x = lanes.x0.get(n3 * W), *vel = lanes.a.get(n3 * W), *p = lanes.f.get(n3 * W), *W_ = lanes.scalar[0].get(W);
+    double *X_ = lanes.X.get(n3 * W), *x = lanes.x0.get(n3 * W), *vel = lanes.a.get(n3 * W), *p = lanes.f.get(n3 * W),
+           *W_ = lanes.scalar[0].get(W);
     for (int first = 0; first < count; first += W) {
       gather(b, first, W, X, X_);
       gather(b, first, W, q.x, x);
@@ -135,7 +150,8 @@ System::Energy System::energy(const Config& q, const Config& v) const {
       for (int l = 0; l < W && first + l < count; ++l) {
         out.elastic += W_[l];
         for (int k = 0; k < n; ++k) {
-          const Vec3 pk(p[3 * k * W + l], p[(3 * k + 1) * W + l], p[(3 * k + 2) * W + l]), vk(vel[3 * k * W + l], vel[(3 * k + 1) * W + l], vel[(3 * k + 2) * W + l]);
+          const Vec3 pk(p[3 * k * W + l], p[(3 * k + 1) * W + l], p[(3 * k + 2) * W + l]),
+              vk(vel[3 * k * W + l], vel[(3 * k + 1) * W + l], vel[(3 * k + 2) * W + l]);
           const Vec3 xk(x[3 * k * W + l], x[(3 * k + 1) * W + l], x[(3 * k + 2) * W + l]);
           out.kinetic += pk.dot(vk) / 2;
           out.momentum += pk;
@@ -174,7 +190,8 @@ System::Energy System::energy(const Config& q, const Config& v) const {
     springs[i].law->elastic(e, e, r);
     out.elastic += r.energy;
   }
-  double all[9] = {out.kinetic, out.elastic, out.gravity, out.momentum[0], out.momentum[1], out.momentum[2], out.angular[0], out.angular[1], out.angular[2]};
+  double all[9] = {out.kinetic,     out.elastic,    out.gravity,    out.momentum[0], out.momentum[1],
+                   out.momentum[2], out.angular[0], out.angular[1], out.angular[2]};
   comm->sum(all);
   out.kinetic = all[0], out.elastic = all[1], out.gravity = all[2];
   out.momentum = Vec3(all[3], all[4], all[5]), out.angular = Vec3(all[6], all[7], all[8]);

@@ -23,12 +23,12 @@ struct SolidBatch {
   Shape shape;
   Law law;
   Lame c;
-  double density;             // [kg/m^3]
-  double beta = 0, alpha = 0; // stiffness- and mass-proportional damping [s, 1/s]
-  double area = 0;            // of bars [m^2]
+  double density;              // [kg/m^3]
+  double beta = 0, alpha = 0;  // stiffness- and mass-proportional damping [s, 1/s]
+  double area = 0;             // of bars [m^2]
   int region;
-  std::vector<int> cells;     // local cells
-  std::vector<int> nodes;     // (n_cells x n)
+  std::vector<int> cells;  // local cells
+  std::vector<int> nodes;  // (n_cells x n)
   int first_clique = 0;
   SolidKernel kernel;
 };
@@ -37,29 +37,29 @@ struct SolidBatch {
 struct Load {
   enum class Kind { nodal, pressure, body_force, body_torque } kind;
   std::string name;
-  Vec3 value = Vec3::Zero();             // force [N] or torque [N m]; for nodal loads per unit weight
-  double pressure = 0;                   // [Pa]
+  Vec3 value = Vec3::Zero();  // force [N] or torque [N m]; for nodal loads per unit weight
+  double pressure = 0;        // [Pa]
   bool follower = false;
   std::vector<int> nodes;                // nodal
   std::vector<double> weight;            // share of each node; for a traction its reference area [m^2]
   std::vector<std::vector<int>> facets;  // pressure: nodes of each facet, outward
   std::vector<int> cliques;              // of the facets
   int body = -1;
-  Vec3 arm = Vec3::Zero();               // body axes
+  Vec3 arm = Vec3::Zero();  // body axes
   History history;
-  bool ramped = false;                   // without a history: follows the load factor of a static analysis
+  bool ramped = false;  // without a history: follows the load factor of a static analysis
   double factor(double t0, double t1, double ramp) const { return (ramped ? ramp : 1) * (t1 > t0 ? history.mean(t0, t1) : history(t0)); }
 };
 
 /// Prescribed motion of a body (fixed, translation, rotation) or of single components of nodes.
 struct Motion {
   std::string name;
-  int body = -1;                       // the driven body, or -1: components of nodes
-  std::vector<int> nodes;              // nodes of the components, or followers of the driven body
+  int body = -1;           // the driven body, or -1: components of nodes
+  std::vector<int> nodes;  // nodes of the components, or followers of the driven body
   std::array<bool, 3> component{true, true, true};
-  Vec3 displacement = Vec3::Zero();    // at history 1 [m]
+  Vec3 displacement = Vec3::Zero();  // at history 1 [m]
   Vec3 at = Vec3::Zero(), axis = Vec3::Zero();
-  double angle = 0;                    // at history 1 [rad]
+  double angle = 0;  // at history 1 [rad]
   bool moving = false, ramped = false;
   History history;
 };
@@ -69,11 +69,11 @@ struct Station {
   std::string name;
   bool sensor = false;
   int body = -1;
-  Vec3 arm = Vec3::Zero();             // body axes
-  std::vector<int> nodes;              // owned ones
-  double n_nodes = 0;                  // on all ranks
-  Vec3 mean = Vec3::Zero();            // reference mean of the nodes
-  Mat3 axes = Mat3::Identity();        // sensor axes at the start, columns
+  Vec3 arm = Vec3::Zero();       // body axes
+  std::vector<int> nodes;        // owned ones
+  double n_nodes = 0;            // on all ranks
+  Vec3 mean = Vec3::Zero();      // reference mean of the nodes
+  Mat3 axes = Mat3::Identity();  // sensor axes at the start, columns
 };
 
 /// Everything an evaluation needs besides the unknowns; see energy_momentum.cpp and generalized_alpha.cpp for the two settings.
@@ -96,10 +96,10 @@ struct Stage {
 
 /// Residual with the scales that judge it.
 struct Residual {
-  std::vector<double> r;        // (3 x n_blocks): equations, then constraint rows
-  double force_scale = 0;       // largest force summed into r [N]
-  double least_det = 1e300;     // smallest det F
-  double sigma = 1;             // scale of the constraint rows; multipliers are found divided by it
+  std::vector<double> r;     // (3 x n_blocks): equations, then constraint rows
+  double force_scale = 0;    // largest force summed into r [N]
+  double least_det = 1e300;  // smallest det F
+  double sigma = 1;          // scale of the constraint rows; multipliers are found divided by it
   bool finite = true;
 };
 
@@ -107,30 +107,30 @@ struct NodeMap;
 
 class System {
  public:
-  std::vector<Body> bodies;                    // body 0 is the ground
-  std::vector<int> follower;                   // body each node follows, or -1  (n_nodes)
-  std::vector<Vec3> X;                         // reference positions            (n_nodes)  [m]
+  std::vector<Body> bodies;   // body 0 is the ground
+  std::vector<int> follower;  // body each node follows, or -1  (n_nodes)
+  std::vector<Vec3> X;        // reference positions            (n_nodes)  [m]
   std::vector<char> node_owned;
-  std::vector<std::array<bool, 3>> fixed;      // prescribed components of nodes
+  std::vector<std::array<bool, 3>> fixed;  // prescribed components of nodes
   std::vector<SolidBatch> batches;
   std::vector<Connector> joints, springs;
   std::vector<Load> loads;
   std::vector<Motion> motions;
   std::vector<Station> stations;
-  std::vector<std::vector<int>> region_nodes;            // free nodes of each region, for the predictor
-  std::vector<std::pair<int, double>> point_masses;      // node, mass [kg], owned nodes
+  std::vector<std::vector<int>> region_nodes;        // free nodes of each region, for the predictor
+  std::vector<std::pair<int, double>> point_masses;  // node, mass [kg], owned nodes
   Vec3 gravity = Vec3::Zero();
-  double length = 1;                           // size of the scene [m]
-  double mass = 0;                             // of everything [kg]
-  double stiffness = 1;                        // a typical one, for scaling without inertia [N/m]
+  double length = 1;     // size of the scene [m]
+  double mass = 0;       // of everything [kg]
+  double stiffness = 1;  // a typical one, for scaling without inertia [N/m]
   Config start, start_velocity;
   const Comm* comm = nullptr;
-  LocalMesh* mesh = nullptr;                   // null for a scene of bodies alone
+  LocalMesh* mesh = nullptr;  // null for a scene of bodies alone
 
   // unknowns
-  std::vector<int> node_block;                 // block of each node, -1 for followers
-  std::vector<int> body_block;                 // first of two blocks, -1 for driven bodies
-  std::vector<int> joint_block;                // first block of its multipliers
+  std::vector<int> node_block;   // block of each node, -1 for followers
+  std::vector<int> body_block;   // first of two blocks, -1 for driven bodies
+  std::vector<int> joint_block;  // first block of its multipliers
   BlockMap map;
   Cliques cliques;
   int n_blocks() const { return static_cast<int>(map.global.size()); }

@@ -91,7 +91,8 @@ void run() {
         const double both = microseconds(n, [&] { f(call); }) / W;
         call.K = nullptr;
         const double force = microseconds(10 * n, [&] { f(call); }) / W;
-        fmt::print("             {:8} {:12} {:5}  {:15.3f} {:9.3f}\n", names[shape], law == Law::stvk ? "stvk" : "neo-hookean", W, both, force);
+        fmt::print("             {:8} {:12} {:5}  {:15.3f} {:9.3f}\n", names[shape], law == Law::stvk ? "stvk" : "neo-hookean", W, both,
+                   force);
       }
   Block block(24);
   auto solver = make_light_solver();
@@ -105,7 +106,8 @@ void run() {
   const double cells = static_cast<double>(block.system.batches[0].cells.size());
   const double tangent = microseconds(3, [&] { block.system.evaluate(s, {}, r, solver.get()); }) / cells;
   const double residual = microseconds(3, [&] { block.system.evaluate(s, {}, r, nullptr); }) / cells;
-  fmt::print("assembly of {} hex8: residual and tangent into the matrix {:.2f} us per cell, residual alone {:.2f}\n", cells, tangent, residual);
+  fmt::print("assembly of {} hex8: residual and tangent into the matrix {:.2f} us per cell, residual alone {:.2f}\n", cells, tangent,
+             residual);
 }
 
 }  // namespace

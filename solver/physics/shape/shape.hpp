@@ -33,8 +33,8 @@ struct Tabulated {
   }
 };
 
-inline constexpr double gauss2 = 0.57735026918962576451;         // 1/sqrt(3)
-inline constexpr double gauss3 = 0.77459666924148337704;         // sqrt(3/5)
+inline constexpr double gauss2 = 0.57735026918962576451;  // 1/sqrt(3)
+inline constexpr double gauss3 = 0.77459666924148337704;  // sqrt(3/5)
 inline constexpr double gauss3_w[3] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
 
 /// Tensor rule of Q points an axis on [-1, 1]^3, Q = 1, 2, 3.
