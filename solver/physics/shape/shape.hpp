@@ -4,7 +4,7 @@
 //              static constexpr void values(const double* xi, double* N);          N_a(xi)            (n)
 //              static constexpr void gradients(const double* xi, double (*dN)[3]); dN_a/dxi_i         (n x 3)
 //              static constexpr Quadrature<n_points> rule();                       stiffness
-//              static constexpr int n_mass_points; ... mass_rule(); }              exact for N_a N_b on straight-sided cells
+//              static constexpr int n_mass_points; ... mass_rule(); }              exact for N_a N_b where dX/dxi is constant
 //
 // Node order is VTK's.  The rules are those under which the element has no zero-energy mode but the rigid ones.
 #pragma once

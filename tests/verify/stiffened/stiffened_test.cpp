@@ -53,7 +53,8 @@ TEST(TwoIntegrators, AgreeToSecondOrderOnAFlexibleScene) {
   c.use(two_regions(), {Fidelity::nonlinear, Fidelity::rigid});
   const auto difference = [&](const std::string& step) {
     const std::string common = "--set output.interval=1 --set time.step=" + step + " ";
-    const auto a = c.solved(common).history("probe/tip"), b = c.solved(common + "--set 'time.integrator=\"generalized-alpha\"' --set time.rho=0.9").history("probe/tip");
+    const auto a = c.solved(common).history("probe/tip"),
+               b = c.solved(common + "--set 'time.integrator=\"generalized-alpha\"' --set time.rho=0.9").history("probe/tip");
     return (a - b).leftCols(3).rowwise().norm().maxCoeff();
   };
   const double coarse = difference("1e-3"), fine = difference("2.5e-4");
