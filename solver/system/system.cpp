@@ -265,6 +265,10 @@ void System::lowest_over_ranks(std::vector<std::int64_t>& value) const {
 
 void System::number_globally(int n_node_blocks, int n_local) {
   map = BlockMap{};
+  map.X.assign(3 * static_cast<size_t>(n_local), 0.0);
+  for (size_t i = 0; i < X.size(); ++i)
+    if (node_block[i] >= 0)
+      for (int k = 0; k < 3; ++k) map.X[3 * node_block[i] + k] = X[i][k];
   map.global.resize(n_local);
   if (comm->size == 1) {
     for (int i = 0; i < n_local; ++i) map.global[i] = i;

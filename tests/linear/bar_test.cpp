@@ -78,14 +78,6 @@ TEST(DISABLED_Bar, BodiesAndJointsCostNoIterations) {
   EXPECT_LE(with.report.iterations, without.report.iterations * 1.5 + 8);
 }
 
-TEST(DISABLED_Bar, MultigridTakesOverWhereIncompleteFactorsNeedTooMany) {
-  const Problem p = elastic_bar(240, 2, 2, 1e5);  // slender and all but static
-  const auto s = solve(*make_petsc_solver("iterative", 1e-9), p, 3);
-  ASSERT_TRUE(s.report.ok) << s.report.message;
-  EXPECT_LT(residual(p, s.x), 1e-8);
-  EXPECT_NE(s.name.find("multigrid"), std::string::npos) << s.name << " " << s.report.iterations;
-}
-
 TEST(DISABLED_Bar, TwoRunsGiveTheSameNumbers) {
   const Problem p = elastic_bar(12, 4, 5, 10);
   for (const char* kind : {"direct", "iterative"}) {
