@@ -1,0 +1,51 @@
+#!/usr/bin/python3
+"""The firing scene on 1, 2, 3 and 4 ranks (MUMPS, Newton at 1e-12): displacements agree to 1e-8 of the history's peak and reactions to
+1e-6 of theirs, because partition and summation order change round-off only.  Usage: ranks.py REPO BIN"""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import h5py
+
+repo, tools = sys.argv[1:3]
+os.environ.update(PATH=tools + ":" + os.environ["PATH"], OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                  OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1", OPENBLAS_NUM_THREADS="1")
+scene = os.path.join(repo, "data/firing")
+sets = ["--set", "solver.tolerance=1e-12", "--set", "solver.kind=direct", "--set", "time.end=0.0125", "--set", "output.interval=0.0025"]
+
+
+def run(*command):
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+
+
+def difference(a, b):
+    """Largest difference of displacements over their peak, and of reactions (forces and moments apart) over theirs."""
+    peak = max(abs(a["field"][k]["displacement"][:]).max() for k in a["field"])
+    u = max(abs(a["field"][k]["displacement"][:] - b["field"][k]["displacement"][:]).max() for k in a["field"]) / peak
+    worst = 0
+    for kind in ("joint", "spring"):
+        for name in a["history"][kind]:
+            A, B = a["history"][kind][name][:], b["history"][kind][name][:]
+            for part in (slice(0, 3), slice(3, 6)):
+                if abs(A[:, part]).max() > 1e-6 * abs(A).max():
+                    worst = max(worst, abs(A[:, part] - B[:, part]).max() / abs(A[:, part]).max())
+    return u, worst
+
+
+with tempfile.TemporaryDirectory() as folder:
+    for name in ("scene.toml", "load.csv", "tags.toml"):
+        shutil.copy(os.path.join(scene, name), folder)
+    os.chdir(folder)
+    run("hilo-import", os.path.join(scene, "vehicle.geo"), "--define", "SIZE=0", "-o", "mesh.h5")
+    run("hilo-tag", "mesh.h5", "tags.toml", "-o", "tags.h5")
+    run("hilo-solve", "--quiet", *sets, "scene.toml", "tags.h5", "-o", "run-1.h5")
+    failed = False
+    for n in (2, 3, 4):
+        run("hilo-part", "tags.h5", "scene.toml", "-n", str(n), "-o", f"parts-{n}.h5")
+        run("mpirun", "-n", str(n), "hilo-solve", "--quiet", *sets, "scene.toml", f"parts-{n}.h5", "-o", f"run-{n}.h5")
+        u, reaction = difference(h5py.File("run-1.h5"), h5py.File(f"run-{n}.h5"))
+        print(f"{n} ranks: displacements {u:.1e} (limit 1e-8), reactions {reaction:.1e} (limit 1e-6)")
+        failed = failed or u > 1e-8 or reaction > 1e-6
+sys.exit(int(failed))
