@@ -78,11 +78,12 @@ TEST(DISABLED_Bar, BodiesAndJointsCostNoIterations) {
   EXPECT_LE(with.report.iterations, without.report.iterations * 1.5 + 8);
 }
 
-TEST(DISABLED_Bar, TwoRunsGiveTheSameNumbers) {
+TEST(DISABLED_Bar, TwoRunsAgreeToRoundOff) {
   const Problem p = elastic_bar(12, 4, 5, 10);
   for (const char* kind : {"direct", "iterative"}) {
     const auto a = solve(*make_petsc_solver(kind, 1e-8), p), b = solve(*make_petsc_solver(kind, 1e-8), p);
-    EXPECT_EQ(a.x, b.x) << kind;
+    ASSERT_EQ(a.x.size(), b.x.size());
+    for (size_t i = 0; i < a.x.size(); ++i) ASSERT_NEAR(a.x[i], b.x[i], 1e-6) << kind;  // MUMPS schedules its sums dynamically on several ranks
   }
 }
 
