@@ -1,60 +1,69 @@
 // M a1 + f(q1) + G(q1)^T lambda = F(t1),  g(q1) = 0,  with auxiliary accelerations b:
-//   (1 - alpha_m) b1 + alpha_m b0 = (1 - alpha_f) a1 + alpha_f a0,  q1 = q0 + h v0 + h^2 ((1/2 - beta) b0 + beta b1),  v1 = v0 + h ((1 -
-//   gamma) b0 + gamma b1)
+//   (1 - alpha_m) b1 + alpha_m b0 = (1 - alpha_f) a1 + alpha_f a0
+//   q1 = q0 + h v0 + h^2 ((1/2 - beta) b0 + beta b1),   v1 = v0 + h ((1 - gamma) b0 + gamma b1)
+//
+// b_n stands for the acceleration at t_n + (alpha_m - alpha_f) h: it starts there, and moves when h changes, or the order is lost.
 #include "dynamics/integrator.hpp"
 
 namespace hilo {
 namespace {
 
-class GeneralizedAlpha final : public Integrator {
+class GeneralizedAlpha final : public StageIntegrator {
  public:
-  explicit GeneralizedAlpha(double rho)
-      : alpha_m_((2 * rho - 1) / (rho + 1)),
-        alpha_f_(rho / (rho + 1)),
-        gamma_(0.5 - alpha_m_ + alpha_f_),
-        beta_((gamma_ + 0.5) * (gamma_ + 0.5) / 4) {}
-  std::string name() const override { return "generalized-alpha"; }
+  GeneralizedAlpha(const AlphaParameters& p, std::string name) : p_(p), name_(std::move(name)) {}
+  std::string name() const override { return name_; }
   bool needs_acceleration() const override { return true; }
+  void restart() override { h_b_ = 0; }
 
   void begin(const State& s, double h) override {
-    start_ = &s, h_ = h;
-    if (b0_.c.size() != s.a.c.size()) b0_ = s.a, a0_ = s.a;  // b(0) = a(0); the offset of b by a fraction of h costs no order
+    const double offset = p_.alpha_m - p_.alpha_f;
+    t_ = s.t, q0_ = s.q, v0_ = s.v, h_ = h;
+    if (h_b_ == 0) a0_ = s.a, jerk_ = s.jerk, b_at_start_ = s.a;
+    combine(b0_, {{1, &b_at_start_}, {offset * (h - h_b_), &jerk_}});
   }
 
-  Stage stage(const Config& q1) override {
-    const Config &q0 = start_->q, &v0 = start_->v;
-    const double c = 1 / (h_ * h_ * beta_), m = (1 - alpha_m_) / (1 - alpha_f_);
-    combine(b1_, {{c, &q1}, {-c, &q0}, {-c * h_, &v0}, {-c * h_ * h_ * (0.5 - beta_), &b0_}});
-    combine(a1_, {{m, &b1_}, {alpha_m_ / (1 - alpha_f_), &b0_}, {-alpha_f_ / (1 - alpha_f_), &a0_}});
-    combine(v1_, {{1, &v0}, {h_ * (1 - gamma_), &b0_}, {h_ * gamma_, &b1_}});
+  Stage stage(int, const Config& q1) override {
+    const double c = 1 / (h_ * h_ * p_.beta), m = (1 - p_.alpha_m) / (1 - p_.alpha_f);
+    combine(b1_, {{c, &q1}, {-c, &q0_}, {-c * h_, &v0_}, {-c * h_ * h_ * (0.5 - p_.beta), &b0_}});
+    combine(a1_, {{m, &b1_}, {p_.alpha_m / (1 - p_.alpha_f), &b0_}, {-p_.alpha_f / (1 - p_.alpha_f), &a0_}});
+    combine(v1_, {{1, &v0_}, {h_ * (1 - p_.gamma), &b0_}, {h_ * p_.gamma, &b1_}});
     combine(before_, {{1, &q1}, {-h_ / 2, &v1_}});
     combine(after_, {{1, &q1}, {h_ / 2, &v1_}});
-    Stage s{};
-    s.q0 = s.q1 = s.left = &q1;
-    s.slope = 1, s.K_factor = 2;
-    s.w0 = &before_, s.w1 = &after_, s.h = h_, s.C_factor = gamma_ / beta_;
+    Stage s = stage_at(q1, t_ + h_);
+    s.w0 = &before_, s.w1 = &after_, s.h = h_;
     s.a = &a1_, s.mass_slope = m * c;
-    s.v = &v1_, s.alpha_slope = gamma_ / (beta_ * h_);
-    s.t0 = s.t1 = start_->t + h_;
+    s.v = &v1_, s.alpha_slope = p_.gamma / (p_.beta * h_);
     return s;
   }
 
-  void finish(State& s, const Config& q1) override {
-    s.v = v1_, s.q = q1, s.a = a1_;
-    a0_ = a1_, b0_ = b1_;
-    s.t += h_;
+  void finish(State& s, const Config&) override {
+    s.v = v1_;
+    combine(jerk_, {{1 / h_, &a1_}, {-1 / h_, &a0_}});
+    a0_ = a1_, b_at_start_ = b1_, h_b_ = h_;
   }
   const Config& acceleration() const override { return a1_; }
   double own_time() const override { return 1; }
 
  private:
-  double alpha_m_, alpha_f_, gamma_, beta_, h_ = 0;
-  const State* start_ = nullptr;
-  Config a0_, a1_, b0_, b1_, v1_, before_, after_;
+  AlphaParameters p_;
+  std::string name_;
+  double t_ = 0, h_ = 0, h_b_ = 0;  // h_b: the step that b at the start of this one belongs to; 0 at a restart
+  Config q0_, v0_, a0_, jerk_, b_at_start_, b0_, a1_, b1_, v1_, before_, after_;
 };
+
+AlphaParameters second_order(double alpha_m, double alpha_f) {
+  const double gamma = 0.5 - alpha_m + alpha_f;
+  return {alpha_m, alpha_f, (gamma + 0.5) * (gamma + 0.5) / 4, gamma};
+}
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_generalized_alpha(double rho) { return std::make_unique<GeneralizedAlpha>(rho); }
+AlphaParameters generalized_alpha(double rho) { return second_order((2 * rho - 1) / (rho + 1), rho / (rho + 1)); }
+AlphaParameters hht(double rho) { return second_order(0, (1 - rho) / (1 + rho)); }
+AlphaParameters wbz(double rho) { return second_order((rho - 1) / (rho + 1), 0); }
+
+std::unique_ptr<StageIntegrator> make_generalized_alpha(const AlphaParameters& p, const std::string& name) {
+  return std::make_unique<GeneralizedAlpha>(p, name);
+}
 
 }  // namespace hilo

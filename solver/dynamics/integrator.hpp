@@ -1,43 +1,101 @@
-// One-step integrators of the rigid-flexible system.  Each turns the unknown end configuration into a Stage of the system's residual.
+// Time integrators of the rigid-flexible system.  Each turns the unknown end of a step into stages of the system's residual.
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 
+#include "dynamics/newton.hpp"
+#include "dynamics/predictor.hpp"
+#include "dynamics/state.hpp"
 #include "system/system.hpp"
 
 namespace hilo {
 
-/// State at an instant.  `a` is history of the integrator's own (generalized-alpha's auxiliary acceleration), empty where none is kept.
-struct State {
-  double t = 0;
-  Config q, v, a;
-  std::vector<double> lambda;  // multipliers of the last step, (3 x joint blocks)
+/// What a step is solved with.
+struct StepTools {
+  const System& system;
+  KktSolver& solver;
+  NewtonOptions newton;
+};
+
+/// A stage of an accepted step with its multipliers: for work, and the last one for reactions.
+struct Taken {
+  Stage stage;
+  std::vector<double> lambda;
 };
 
 class Integrator {
  public:
   virtual ~Integrator() = default;
   virtual std::string name() const = 0;
-  /// Start a step of length h from s.
-  virtual void begin(const State& s, double h) = 0;
-  /// The stage for an end configuration q1; it refers to arrays of the integrator and to q1.
-  virtual Stage stage(const Config& q1) = 0;
-  /// Accept q1: velocities and history of the end of the step.
-  virtual void finish(State& s, const Config& q1) = 0;
-  /// Accelerations of the accepted step, and where in the step they and its multipliers belong: 1/2 mid, 1 end.
+  /// Solve a step of length h from s, first guess by `predictor`; s is left alone.
+  virtual NewtonReport solve(const StepTools& tools, const State& s, double h, Predictor predictor) = 0;
+  /// s becomes the end of the step solved last.
+  virtual void accept(State& s) = 0;
+  /// Stages of the step solved last; they refer to arrays of the integrator.
+  virtual std::span<const Taken> taken() const = 0;
+  /// Accelerations of the step solved last, and where in the step they and the multipliers belong: 1/2 the middle, 1 the end.
   virtual const Config& acceleration() const = 0;
   virtual double own_time() const = 0;
-  /// Whether a start acceleration consistent with forces and constraints is needed in State::a.
+  /// Whether State::a and State::jerk must be consistent with forces and constraints at the start and after a jump of the loads.
   virtual bool needs_acceleration() const { return false; }
+  /// Forget history kept from earlier steps: the loads have jumped.
+  virtual void restart() {}
+  /// Whether accelerations and multipliers alternate about the true ones from step to step, so that neighbours must be averaged.
+  virtual bool alternates() const { return false; }
+};
+
+/// Methods whose stages are solved one after another, each for one unknown configuration.
+class StageIntegrator : public Integrator {
+ public:
+  NewtonReport solve(const StepTools& tools, const State& s, double h, Predictor predictor) final;
+  void accept(State& s) final;
+  std::span<const Taken> taken() const final { return taken_; }
+
+  /// Start a step of length h from s, which outlives the step.
+  virtual void begin(const State& s, double h) = 0;
+  /// Stage k for its unknown q; the last call for k before that for k + 1 had the accepted q.
+  virtual Stage stage(int k, const Config& q) = 0;
+
+ protected:
+  virtual int n_stages() const { return 1; }
+  virtual double instant(int) const { return 1; }  // of stage k's unknown, in units of the step
+  /// Velocities of the accepted end, and history.
+  virtual void finish(State& s, const Config& q1) = 0;
+
+ private:
+  double h_ = 0;
+  Config start_;                // q0
+  std::vector<Config> solved_;  // per stage
+  std::vector<Taken> taken_;
+  std::vector<double> lambda_;
 };
 
 /// Energy-momentum: mid-point inertia and constraint gradients, discrete-gradient stress [simo-tarnow-1992, betsch-steinmann-2001].
 /// chi adds dissipation chi/2 C (E1 - E0) to the stress of flexible parts.
-std::unique_ptr<Integrator> make_energy_momentum(double chi);
-/// Generalized-alpha for index 3 in the form of Arnold and Bruls, spectral radius rho [arnold-bruls-2007].
-std::unique_ptr<Integrator> make_generalized_alpha(double rho);
-
-/// out = sum of factor * config over the list; all of one size.
-void combine(Config& out, std::initializer_list<std::pair<double, const Config*>> terms);
+std::unique_ptr<StageIntegrator> make_energy_momentum(double chi);
+/// Mid-point rule: everything at (q0 + q1)/2, stress included.
+std::unique_ptr<StageIntegrator> make_mid_point();
+/// Generalized-alpha for index 3 in the form of Arnold and Bruls [arnold-bruls-2007]; Newmark, HHT and WBZ are members of it.
+struct AlphaParameters {
+  double alpha_m, alpha_f, beta, gamma;
+};
+AlphaParameters generalized_alpha(double rho);
+AlphaParameters hht(double rho);  // rho at infinite frequency, 1/2 to 1
+AlphaParameters wbz(double rho);
+std::unique_ptr<StageIntegrator> make_generalized_alpha(const AlphaParameters& p, const std::string& name = "generalized-alpha");
+/// Generalized single-step single-solve family of Zhou and Tamma, U0 (zero-order overshoot in displacement) or V0 (in velocity)
+/// [zhou-tamma-2004]; averaged: stress at the averaged strain, B((1-w) q0 + w q1)^T C [(1-w) E0 + w E1].
+std::unique_ptr<StageIntegrator> make_zhou_tamma(bool velocity_family, const double rho[3], bool averaged);
+/// Composite of trapezoidal rule and three-point backward difference [bathe-2007].
+std::unique_ptr<StageIntegrator> make_bathe();
+/// Two-step backward difference formula at changing steps, started by one step of backward Euler.
+std::unique_ptr<StageIntegrator> make_bdf2();
+/// Three-stage Radau IIA for index 3, all stages solved together; for references, serial [hairer-wanner-1996].
+std::unique_ptr<Integrator> make_radau();
+/// The integrator that [time] asks for.
+std::unique_ptr<Integrator> make_integrator(const Entry& time);
+/// Why the method chosen is known to fail, or "" where it is not [docs/stability.md].
+std::string known_weakness(const Entry& time, const System& system);
 
 }  // namespace hilo

@@ -5,9 +5,7 @@
 #include <cmath>
 
 namespace hilo {
-namespace {
 
-/// Residual over its scales: forces by the largest force, moments by force times the body's size, constraints by the scene's length.
 double relative_residual(const System& s, const Residual& r) {
   const double force = r.force_scale > 0 ? r.force_scale : 1;
   double worst = 0;
@@ -41,8 +39,6 @@ double relative_correction(const System& s, std::span<const double> z) {
   return worst;
 }
 
-}  // namespace
-
 double wall_clock() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 Phases& phases() {
@@ -66,13 +62,33 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     phases().assembly += wall_clock() - start;
     ++phases().evaluations, phases().tangents += tangent;
   };
+  const auto solve = [&] {
+    b.resize(r.r.size()), z.assign(r.r.size(), 0.0);
+    for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
+    const double start = wall_clock();
+    const SolveReport solved = solver.solve(b, z);
+    phases().solve += wall_clock() - start;
+    ++phases().solves, phases().linear_iterations += solved.iterations;
+    report.linear_iterations += solved.iterations;
+    return solved;
+  };
+  const auto move = [&] {
+    system.move(q1, z);
+    const int first = 3 * system.first_joint_block();
+    for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += r.sigma * z[first + i];
+  };
+  // where the last factors serve once more for little, one more correction takes constraints and forces to round-off
+  const auto polish = [&] {
+    if (report.residual > 1e-15 && solver.repeats_cheaply() && solve().ok && relative_correction(system, z) < 1e-6) move();
+    report.converged = true;
+  };
   double previous = 1e300;
   bool near = false;  // the next residual is likely to be small enough: look at it before building a tangent
   for (int it = 0;; ++it) {
     if (near) {
       evaluate(false);
       if (report.residual <= options.tolerance) {
-        report.converged = true;
+        polish();
         return report;
       }
     }
@@ -89,13 +105,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       report.converged = true;
       return report;
     }
-    b.resize(r.r.size()), z.assign(r.r.size(), 0.0);
-    for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
-    const double start = wall_clock();
-    const SolveReport solved = solver.solve(b, z);
-    phases().solve += wall_clock() - start;
-    ++phases().solves, phases().linear_iterations += solved.iterations;
-    report.linear_iterations += solved.iterations;
+    const SolveReport solved = solve();
     ++report.iterations;
     if (!solved.ok) {
       report.reason = solver.name() + ": " + solved.message;
@@ -106,9 +116,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       report.reason = "the correction is not finite or leaves the scene";
       return report;
     }
-    system.move(q1, z);
-    const int first = 3 * system.first_joint_block();
-    for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += r.sigma * z[first + i];
+    move();
     if (report.correction <= options.tolerance * 1e-2) {  // far below what the next one could change
       report.converged = true;
       stage(q1);

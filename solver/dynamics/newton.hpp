@@ -28,6 +28,11 @@ struct NewtonReport {
 NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Config&)>& stage, Config& q1,
                     std::vector<double>& lambda, const NewtonOptions& options);
 
+/// Residual over its scales: forces by the largest force, moments by force times the body's size, constraints by the scene's length.
+double relative_residual(const System& system, const Residual& r);
+/// Largest move of a point by the increments z, over the scene's length.
+double relative_correction(const System& system, std::span<const double> z);
+
 /// Seconds spent by phase since the start of the process.
 struct Phases {
   double assembly = 0, solve = 0, output = 0;

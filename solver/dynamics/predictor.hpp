@@ -1,6 +1,7 @@
 // First guesses of a step's end configuration.
 #pragma once
-#include "dynamics/integrator.hpp"
+#include "dynamics/state.hpp"
+#include "system/system.hpp"
 
 namespace hilo {
 

@@ -95,13 +95,10 @@ std::vector<double> Recorder::mid_values(const State& s, const Stage& stage, std
   for (const Connector& c : system_.springs) {
     const int n = static_cast<int>(c.measures.size());
     gradient(c, *stage.left, left);
-    SpringLaw::Values e0{}, e1{}, r0{}, r1{};
-    for (int m = 0; m < n; ++m) {
-      e0[m] = c.value(m, *stage.q0), e1[m] = c.value(m, *stage.q1);
-      r0[m] = c.value(m, *stage.w0), r1[m] = c.value(m, *stage.w1);
-    }
+    SpringLaw::Values r0{}, r1{};
+    for (int m = 0; m < n; ++m) r0[m] = c.value(m, *stage.w0), r1[m] = c.value(m, *stage.w1);
     Response r;
-    c.law->elastic(e0, e1, r);
+    spring_elastic(c, stage, r);
     if (stage.h > 0) c.law->viscous(r0, r1, stage.h, r);
     const Vec6 f = force_on_b(c, left, r.s.data(), *stage.left);
     push(f.head<3>()), push(f.tail<3>());
@@ -250,13 +247,15 @@ void Recorder::first(const State& s) {
   share_failure();
 }
 
-void Recorder::step(const State& s, const Stage& stage, std::span<const double> lambda, const Config& a, int iterations) {
+void Recorder::step(const State& s, std::span<const Taken> taken, const Config& a, int iterations) {
   const double start = wall_clock();
-  const System::Work w = system_.work(stage, lambda);
-  work_ += w.external, dissipated_ += w.dissipated;
+  for (const Taken& t : taken) {
+    const System::Work w = system_.work(t.stage, t.lambda);
+    work_ += w.external, dissipated_ += w.dissipated;
+  }
   Interval interval;
   interval.h = s.t - last_t_;
-  interval.mid = mid_values(s, stage, lambda, a);
+  interval.mid = mid_values(s, taken.back().stage, taken.back().lambda, a);
   interval.a = a;
   interval.starts_at_jump = !rows_.empty() && rows_.back().jump;
   intervals_.push_back(std::move(interval));
@@ -278,36 +277,32 @@ void Recorder::step(const State& s, const Stage& stage, std::span<const double> 
   phases().output += wall_clock() - start;
 }
 
-/// Write every row whose mid-step neighbours are known.
+/// Write every row whose neighbouring steps are known.  Mid values belong to their own time in the step and are interpolated to its ends.
 void Recorder::advance(bool last) {
-  const bool immediate = setup_.own_time == 1 || setup_.is_static;  // values belong to the end of their step
-  const auto ready = [&] {                                          // row 0 of the deque
+  const double own = setup_.own_time;
+  const size_t from_right = setup_.alternates ? 3 : 2;  // steps an extrapolation takes
+  const auto ready = [&] {                              // row 0 of the deque
     if (rows_.empty()) return false;
-    if (last) return true;
-    if (immediate) return !intervals_.empty();
-    return intervals_.size() >= (first_written_ ? (rows_[0].jump ? 4u : 2u) : 3u);
+    if (last || setup_.is_static) return true;
+    if (!first_written_) return intervals_.size() >= from_right;
+    return intervals_.size() >= (rows_[0].jump ? 1 + from_right : own == 1 ? 1 : 2);
   };
   while (ready()) {
     // in the deque, intervals_[0] ends at rows_[0] once the first row is out, else it starts there
     const size_t after = first_written_ ? 1 : 0;
     const bool has_before = first_written_ && !intervals_.empty(), has_after = intervals_.size() > after;
-    if (immediate) {
-      if (has_before || (!intervals_.empty() && !setup_.is_static))
-        write_row({{1, &intervals_[0]}});
-      else
-        write_row({});
-    } else if (has_before && has_after && !rows_[0].jump) {
-      const double hb = intervals_[0].h, ha = intervals_[1].h;
-      write_row({{ha / (ha + hb), &intervals_[0]}, {hb / (ha + hb), &intervals_[1]}});
-    } else if (has_after) {  // from the right
+    if (has_before && (own == 1 || has_after) && (!rows_[0].jump || setup_.is_static)) {
+      const double before = (1 - own) * intervals_[0].h, behind = own == 1 ? 1 : own * intervals_[1].h;
+      write_row({{behind / (before + behind), &intervals_[0]}, {before / (before + behind), &intervals_[own == 1 ? 0 : 1]}});
+    } else if (has_after && !setup_.is_static) {
       std::vector<const Interval*> next{&intervals_[after]};
-      for (size_t k = after + 1; k < intervals_.size() && !intervals_[k].starts_at_jump && next.size() < 3; ++k)
+      for (size_t k = after + 1; k < intervals_.size() && !intervals_[k].starts_at_jump && next.size() < from_right; ++k)
         next.push_back(&intervals_[k]);
-      write_row(extrapolated(next));
+      write_row(extrapolated(next, true));
     } else if (has_before) {  // the end: from the left, with the intervals kept for it
       std::vector<const Interval*> next{&intervals_[0]};
       for (size_t k = past_.size(); k-- > 0 && !next.back()->starts_at_jump;) next.push_back(&past_[k]);
-      write_row(extrapolated(next));
+      write_row(extrapolated(next, false));
     } else {
       write_row({});
     }
@@ -321,13 +316,18 @@ void Recorder::advance(bool last) {
   }
 }
 
-/// Value at the outer end of the first of up to three neighbouring intervals.  Mid-step values of energy-momentum carry an error that
-/// changes sign from step to step; the line through the means at the two nodes further in is free of it: m1 + h1 (m2 - m3)/(h2 + h3).
-std::vector<std::pair<double, const Recorder::Interval*>> Recorder::extrapolated(const std::vector<const Interval*>& m) {
+/// Value at the outer end of the first of up to three neighbouring intervals: the line through their own times.  Where they alternate
+/// about the truth, the line through the means at the two nodes further in is free of that: m1 + h1 (m2 - m3)/(h2 + h3).
+std::vector<std::pair<double, const Recorder::Interval*>> Recorder::extrapolated(const std::vector<const Interval*>& m,
+                                                                                 bool from_right) const {
   if (m.size() == 1) return {{1, m[0]}};
-  const double w = m[0]->h / (m[1]->h + m[m.size() == 2 ? 0 : 2]->h);
-  if (m.size() == 2) return {{1 + w, m[0]}, {-w, m[1]}};
-  return {{1, m[0]}, {w, m[1]}, {-w, m[2]}};
+  if (setup_.alternates && m.size() == 3) {
+    const double w = m[0]->h / (m[1]->h + m[2]->h);
+    return {{1, m[0]}, {w, m[1]}, {-w, m[2]}};
+  }
+  const double own = from_right ? setup_.own_time : 1 - setup_.own_time;  // distance from the outer end, in steps
+  const double near = own * m[0]->h, far = m[0]->h + own * m[1]->h, w = near / (far - near);
+  return {{1 + w, m[0]}, {-w, m[1]}};
 }
 
 /// Row 0 of the deque with the weighted sum of intervals as its mid-step values; zeros where there are none.

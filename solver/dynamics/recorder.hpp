@@ -27,13 +27,14 @@ class Recorder {
     std::vector<std::string> provenance;
     bool redundant = false;  // reactions by minimum norm
     double own_time = 0.5;   // where in the step mid values belong
+    bool alternates = true;  // whether they alternate about the true ones
     bool is_static = false;
   };
   Recorder(const System& system, const Scene& scene, Setup setup);
   /// The state before the first step.
   void first(const State& s);
-  /// A finished step: the new state, its stage (for reactions), accelerations and Newton iterations.
-  void step(const State& s, const Stage& stage, std::span<const double> lambda, const Config& a, int iterations);
+  /// A finished step: the new state, its stages (all for work, the last for reactions), accelerations and Newton iterations.
+  void step(const State& s, std::span<const Taken> taken, const Config& a, int iterations);
   /// Last values; publishes the files.  `complete` is false for a run stopped by physics.
   void finish(bool complete);
   /// Remove what was written (input error after the file was opened).
@@ -66,7 +67,7 @@ class Recorder {
   std::vector<double> point_values(const State& s);
   std::vector<double> mid_values(const State& s, const Stage& stage, std::span<const double> lambda, const Config& a);
   void advance(bool last);
-  static std::vector<std::pair<double, const Interval*>> extrapolated(const std::vector<const Interval*>& m);
+  std::vector<std::pair<double, const Interval*>> extrapolated(const std::vector<const Interval*>& m, bool from_right) const;
   void write_row(const std::vector<std::pair<double, const Interval*>>& weights);
   void write_field(const Row& row, const Config& a);
   void write_xdmf();

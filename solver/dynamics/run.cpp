@@ -9,6 +9,8 @@
 #include "dynamics/predictor.hpp"
 #include "dynamics/progress.hpp"
 #include "dynamics/recorder.hpp"
+#include "dynamics/start.hpp"
+#include "dynamics/step_control.hpp"
 
 namespace hilo {
 namespace {
@@ -63,14 +65,13 @@ class Run {
     max_cuts_ = static_cast<int>(newton_table.number("cuts"));
     is_static_ = time.text("analysis") == "static";
     if (!is_static_) {
-      for (const char* key : {"end", "step"})
-        if (!time.has(key)) throw Error(time.place.text(), fmt::format("[time] has no {}", key), "a dynamic run needs end and step");
+      if (!time.has("end")) throw Error(time.place.text(), "[time] has no end", "a dynamic run needs end, and step or tolerance");
+      if (!time.has("step") && !time.has("tolerance"))
+        throw Error(time.place.text(), "[time] has no step", "give a step, or a tolerance that chooses it");
     }
-    const auto& integrator_name = time.text("integrator");
-    if (integrator_name == "energy-momentum")
-      integrator_ = make_energy_momentum(time.number("dissipation"));
-    else
-      integrator_ = make_generalized_alpha(time.number("rho"));
+    integrator_ = make_integrator(time);
+    if (const std::string why = is_static_ ? "" : known_weakness(time, system_); !why.empty() && system_.comm->rank == 0)
+      warn(time.where("integrator"), integrator_->name() + ": " + why);
 
     state_.q = system_.start;
     state_.v = system_.start_velocity;
@@ -117,7 +118,7 @@ class Run {
       for (double t : l.history.jumps()) setup.jumps.push_back(t);
     setup.provenance = options_.provenance;
     setup.redundant = redundancy_.rank < redundancy_.rows;
-    setup.own_time = integrator_->own_time();
+    setup.own_time = is_static_ ? 1 : integrator_->own_time(), setup.alternates = !is_static_ && integrator_->alternates();
     setup.is_static = is_static_;
     recorder_ = std::make_unique<Recorder>(system_, scene_, std::move(setup));
   }
@@ -150,12 +151,9 @@ class Run {
       least_det_ = std::min(least_det_, r.least_det);
       Config before = state_.q;
       state_.q = q, state_.lambda = lambda, state_.t = next * end;
-      Stage s{};
-      s.q0 = s.w0 = &before, s.q1 = s.w1 = s.left = &state_.q;
-      s.a = &no_acceleration, s.slope = 1, s.t0 = s.t1 = next * end, s.load_factor = next;
-      Stage at_end = s;
-      at_end.q0 = at_end.w0 = &state_.q;
-      recorder_->step(state_, at_end, state_.lambda, no_acceleration, r.iterations);
+      Taken taken{stage_at(state_.q, next * end), state_.lambda};
+      taken.stage.a = &no_acceleration, taken.stage.load_factor = next, taken.stage.work_from = &before;
+      recorder_->step(state_, {&taken, 1}, no_acceleration, r.iterations);
       done = next;
       ++report_.steps;
       progress.show(done, report_.steps, r.iterations);
@@ -168,7 +166,7 @@ class Run {
 
   void dynamic_steps() {
     const Entry& time = scene_.table("time");
-    const double end = time.number("end"), step = time.number("step");
+    const double end = time.number("end"), step = time.has("step") ? time.number("step") : end / 20;
     if (time.text("start") == "equilibrium") {
       const NewtonReport r = equilibrium(system_, *solver_, state_.q, state_.lambda, 0, 1, true, newton_);
       if (!r.converged) {
@@ -180,55 +178,94 @@ class Run {
     projected_ = project_velocities(system_, *solver_, state_.q, state_.v);
     if (talk_ && projected_ > 1e-9)
       fmt::print(stderr, "initial velocities changed by up to {:.3g} m/s to satisfy the joints\n", projected_);
-    if (integrator_->needs_acceleration()) consistent_acceleration(system_, *solver_, state_, state_.a, state_.lambda);
     system_.commit(state_.q);
-    recorder_->first(state_);
     Progress progress(options_.quiet || system_.comm->rank != 0, 0, end);
-    const long n_steps = std::max(1l, std::lround(std::ceil(end / step - 1e-9)));
-    // nominal step k goes from k h to (k+1) h; a failed one is halved, level by level, and grows back at aligned instants
-    for (long k = 0; k < n_steps; ++k) {
-      const double t0 = end * static_cast<double>(k) / static_cast<double>(n_steps),
-                   t1 = end * static_cast<double>(k + 1) / static_cast<double>(n_steps);
-      long done = 0;  // in units of the finest level, 2^-max_cuts
-      const long whole = 1l << max_cuts_;
-      int level = level_;
-      while (done < whole) {
-        const long piece = whole >> level;
-        const double a = t0 + (t1 - t0) * static_cast<double>(done) / static_cast<double>(whole);
-        const double b = done + piece == whole ? t1 : t0 + (t1 - t0) * static_cast<double>(done + piece) / static_cast<double>(whole);
-        state_.t = a;
-        if (try_step(b - a)) {
-          state_.t = b;
-          done += piece;
-          recorder_->step(state_, stage_, state_.lambda, integrator_->acceleration(), iterations_);
-          ++report_.steps;
-          progress.show(b, report_.steps, iterations_);
-          if (++good_ >= 8 && level > 0 && done % (2 * piece) == 0) --level, good_ = 0;
-        } else if (level < max_cuts_) {
-          ++level, ++report_.cuts, good_ = 0;
-        } else {
-          report_.t = a;
-          progress.done();
-          return stop(failure_);
-        }
+    std::optional<StepControl> control;
+    if (time.has("tolerance")) control.emplace(system_, time.number("tolerance") * system_.length, end, step);
+    std::vector<Event> events = load_events(system_, end, step);
+    events.push_back({end, false});
+    double from = 0;
+    for (size_t i = 0; i < events.size(); ++i) {
+      if (i == 0 || events[i - 1].jump || integrator_->needs_acceleration()) restart(control, step);
+      if (i == 0) recorder_->first(state_);
+      if (!(control ? controlled_steps(*control, events[i].t, progress) : equal_steps(from, events[i].t, step, progress))) {
+        progress.done();
+        return stop(failure_);
       }
-      level_ = level;
+      from = events[i].t;
     }
+    estimated_ = control ? control->sum() : -1;
     progress.show(end, report_.steps, iterations_, true);
     progress.done();
     report_.t = end;
     report_.complete = true;
   }
 
-  /// One step of length h from state_, trying predictors in turn; the state is left alone when it fails.
+  /// At the start and after a jump of the loads: history that belongs to the new forces.
+  void restart(std::optional<StepControl>& control, double step) {
+    if (!integrator_->needs_acceleration() && !control) return;
+    consistent_acceleration(system_, *solver_, state_, 0.05 * step);
+    integrator_->restart();
+    if (control) control->restart(state_);
+  }
+
+  /// Steps of equal length from `from` to `to`.  Step k goes from k h to (k+1) h; a failed one is halved, level by level, and grows back at
+  /// aligned instants.
+  bool equal_steps(double from, double to, double step, Progress& progress) {
+    const long n_steps = std::max(1l, std::lround(std::ceil((to - from) / step - 1e-9)));
+    for (long k = 0; k < n_steps; ++k) {
+      const double t0 = from + (to - from) * static_cast<double>(k) / static_cast<double>(n_steps),
+                   t1 = from + (to - from) * static_cast<double>(k + 1) / static_cast<double>(n_steps);
+      long done = 0;  // in units of the finest level, 2^-max_cuts
+      const long whole = 1l << max_cuts_;
+      while (done < whole) {
+        const long piece = whole >> level_;
+        const double a = t0 + (t1 - t0) * static_cast<double>(done) / static_cast<double>(whole);
+        const double b = done + piece == whole ? t1 : t0 + (t1 - t0) * static_cast<double>(done + piece) / static_cast<double>(whole);
+        state_.t = a;
+        if (try_step(b - a)) {
+          done += piece;
+          accept(b, progress);
+          if (++good_ >= 8 && level_ > 0 && done % (2 * piece) == 0) --level_, good_ = 0;
+        } else if (level_ < max_cuts_) {
+          ++level_, cut();
+        } else {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  /// Steps chosen by the error they make, the last of them ending at `to`.
+  bool controlled_steps(StepControl& control, double to, Progress& progress) {
+    int failures = 0;
+    while (state_.t < to) {
+      const double left = to - state_.t, pieces = std::ceil(left / control.step() - 1e-6), h = pieces < 4 ? left / pieces : control.step();
+      if (!try_step(h)) {
+        if (++failures > max_cuts_) return false;
+        control.cut(h), cut();
+      } else if (!control.accept(*integrator_->taken().back().stage.end, h)) {
+        ++rejected_;
+      } else {
+        failures = 0;
+        accept(pieces == 1 ? to : state_.t + h, progress);
+      }
+    }
+    return true;
+  }
+
+  void cut() {
+    ++report_.cuts, good_ = 0;
+    if (redundancy_.rank < redundancy_.rows && recheck_redundant_rows(system_, state_.q, redundancy_) && talk_)
+      fmt::print(stderr, "t = {:.6g} s: another choice of independent joint rows\n", state_.t);
+  }
+
+  /// One step of length h from state_, trying predictors in turn; the state is left alone.
   bool try_step(double h) {
-    integrator_->begin(state_, h);
+    const StepTools tools{system_, *solver_, newton_};
     for (const Predictor p : {Predictor::rigid_rotation, Predictor::velocity, Predictor::hold}) {
-      Config q1 = predict(system_, state_, h, p);
-      system_.prescribe(q1, state_.t + h);
-      std::vector<double> lambda = state_.lambda;
-      const NewtonReport r = newton(
-          system_, *solver_, [&](const Config& q) { return integrator_->stage(q); }, q1, lambda, newton_);
+      const NewtonReport r = integrator_->solve(tools, state_, h, p);
       report_.iterations += r.iterations;
       iterations_ = r.iterations;
       if (!r.converged) {
@@ -240,49 +277,19 @@ class Run {
         continue;
       }
       least_det_ = std::min(least_det_, r.least_det);
-      restore_rotations(q1);
-      before_ = state_.q;
-      accepted_ = std::move(q1);
-      integrator_->stage(accepted_);
-      integrator_->finish(state_, accepted_);
-      state_.lambda = std::move(lambda);
-      state_.q = accepted_;
-      // the stage for the recorder refers to copies that outlive the state's own change
-      combine(mid_, {{0.5, &before_}, {0.5, &accepted_}});
-      make_recorder_stage(h);
-      system_.commit(state_.q);
       return true;
     }
     return false;
   }
 
-  void make_recorder_stage(double h) {
-    State before{state_.t - h, before_, {}, {}, {}};
-    stage_ = Stage{};
-    const bool end_point = integrator_->own_time() == 1;
-    stage_.q0 = end_point ? &accepted_ : &before_, stage_.q1 = &accepted_;
-    stage_.left = end_point ? &accepted_ : &mid_;
-    stage_.h = h;
-    if (end_point) {
-      combine(rate0_, {{1, &accepted_}, {-h / 2, &state_.v}});
-      combine(rate1_, {{1, &accepted_}, {h / 2, &state_.v}});
-      stage_.w0 = &rate0_, stage_.w1 = &rate1_;
-    } else {
-      stage_.w0 = &before_, stage_.w1 = &accepted_;
-    }
-    stage_.a = &integrator_->acceleration();
-    combine(v_mid_, {{1 / h, &accepted_}, {-1 / h, &before_}});
-    stage_.v = end_point ? &state_.v : &v_mid_;
-    stage_.chi = scene_.table("time").number("dissipation");
-    if (end_point) stage_.chi = 0;
-    stage_.t0 = end_point ? state_.t : state_.t - h, stage_.t1 = state_.t;
-    stage_.work_from = &before_;
-  }
-
-  /// Directors back to orthonormal to round-off, so that lengths do not drift over millions of steps.
-  void restore_rotations(Config& q) const {
-    for (Mat3& R : q.R) R = R * (1.5 * Mat3::Identity() - 0.5 * R.transpose() * R);
-    system_.follow(q);
+  /// The step tried last becomes the state, at time t.
+  void accept(double t, Progress& progress) {
+    integrator_->accept(state_);
+    state_.t = t;
+    system_.commit(state_.q);
+    recorder_->step(state_, integrator_->taken(), integrator_->acceleration(), iterations_);
+    ++report_.steps;
+    progress.show(t, report_.steps, iterations_);
   }
 
   void stop(const std::string& reason) {
@@ -309,6 +316,10 @@ class Run {
     add("ranks", fmt::format("{}", system_.comm->size));
     add("solver", json_text(solver_->name()));
     add("integrator", json_text(is_static_ ? "static" : integrator_->name()));
+    if (estimated_ >= 0) {
+      add("estimated_position_error", fmt::format("{:.6g}", estimated_));
+      add("rejected_steps", fmt::format("{}", rejected_));
+    }
     add("energy_balance", fmt::format("{:.6g}", recorder_->balance()));
     add("constraint_violation", fmt::format("{:.6g}", recorder_->violation()));
     add("least_det_F", least_det_ < 1e299 ? fmt::format("{:.6g}", least_det_) : "null");
@@ -336,11 +347,10 @@ class Run {
   std::unique_ptr<Integrator> integrator_;
   std::unique_ptr<Recorder> recorder_;
   State state_;
-  Stage stage_{};
-  Config before_, accepted_, mid_, v_mid_, rate0_, rate1_;
   std::string failure_;
-  double began_, peak_ = 0, assembled_ = 0, projected_ = 0, least_det_ = 1e300;
+  double began_, peak_ = 0, assembled_ = 0, projected_ = 0, least_det_ = 1e300, estimated_ = -1;
   int max_cuts_ = 8, level_ = 0, good_ = 0, iterations_ = 0;
+  long rejected_ = 0;
   bool is_static_ = false, talk_;
 };
 

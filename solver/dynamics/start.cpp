@@ -48,12 +48,9 @@ Rows joint_rows(const System& s, const Config& left, bool active_only) {
 
 /// A stage whose tangent is the mass matrix, bordered by the joint rows.
 Stage mass_stage(const Config& q, const Config& zero, double t) {
-  Stage s{};
-  s.q0 = s.q1 = s.w0 = s.w1 = s.left = &q;
-  s.slope = 0;
-  s.K_factor = s.C_factor = 1e-30;  // leaves stiffness out of the sum
+  Stage s = stage_at(q, t);
+  s.slope = 0, s.chain = 1e-30;  // leaves stiffness out of the sum
   s.a = &zero, s.mass_slope = 1;
-  s.t0 = s.t1 = t;
   return s;
 }
 
@@ -90,6 +87,17 @@ Redundancy drop_redundant_rows(System& system, const Config& q) {
                     others.empty() ? " (depends on the joint's own rows)" : fmt::format(" (depends on {})", fmt::join(others, ", "))));
   }
   return report;
+}
+
+bool recheck_redundant_rows(System& system, const Config& q, const Redundancy& before) {
+  std::vector<decltype(Connector::active)> kept;
+  for (const Connector& j : system.joints) kept.push_back(j.active);
+  const Redundancy now = drop_redundant_rows(system, q);
+  bool changed = false;
+  for (size_t j = 0; j < kept.size(); ++j) changed = changed || kept[j] != system.joints[j].active;
+  if (now.rank == before.rank) return changed;
+  for (size_t j = 0; j < kept.size(); ++j) system.joints[j].active = kept[j];
+  return false;
 }
 
 std::vector<double> minimum_norm(const System& system, const Config& left, std::span<const double> lambda) {
@@ -155,7 +163,10 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
   return system.comm->max(change);
 }
 
-void consistent_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda) {
+namespace {
+
+/// Accelerations and multipliers that satisfy equations and constraints at (q, v) at time t.
+void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda) {
   // guess: bodies that keep their spin, everything else unaccelerated; the solve adds the rest
   a = s.v;
   for (Vec3& x : a.x) x.setZero();
@@ -205,23 +216,42 @@ void consistent_acceleration(const System& system, KktSolver& solver, const Stat
   for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += r.sigma * z[first + i];
 }
 
+}  // namespace
+
+void consistent_acceleration(const System& system, KktSolver& solver, State& s, double h) {
+  solve_acceleration(system, solver, s, s.a, s.lambda);
+  // jerk by forward differences along q + tau v + tau^2/2 a, whose joints close to third order; forward, since a load may jump here
+  State ahead[2];
+  std::vector<double> unused;
+  for (int k = 0; k < 2; ++k) {
+    const double tau = (k + 1) * h;
+    State& n = ahead[k];
+    n.t = s.t + tau;
+    combine(n.q, {{1, &s.q}, {tau, &s.v}, {tau * tau / 2, &s.a}});
+    for (Mat3& R : n.q.R)
+      for (int i = 0; i < 3; ++i) R = R * (1.5 * Mat3::Identity() - 0.5 * R.transpose() * R);
+    system.follow(n.q);
+    combine(n.v, {{1, &s.v}, {tau, &s.a}});
+    solve_acceleration(system, solver, n, n.a, unused);
+  }
+  combine(s.jerk, {{2 / h, &ahead[0].a}, {-0.5 / h, &ahead[1].a}, {-1.5 / h, &s.a}});
+}
+
 NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vector<double>& lambda, double t, double ramp, bool mechanism,
                          const NewtonOptions& options) {
   system.prescribe(q, t, ramp);
   Config zero = q;
   combine(zero, {{0, &q}});
   Stage s{};
-  s.slope = 1, s.K_factor = 2, s.C_factor = 0;
-  s.a = &zero;
-  s.t0 = s.t1 = t;
-  s.load_factor = ramp;
   double tau = 0.05;  // of the pseudo mass M/tau^2, grows from iteration to iteration
   NewtonOptions o = options;
   if (mechanism) o.max_iterations = std::max(o.max_iterations, 200), o.patient = true;
   const auto report = newton(
       system, solver,
       [&](const Config& q1) {
-        s.q0 = s.q1 = s.w0 = s.w1 = s.left = &q1;
+        s = stage_at(q1, t);
+        s.a = &zero;
+        s.load_factor = ramp;
         s.mass_slope = mechanism ? 1 / (tau * tau) : 0;
         if (mechanism) tau = std::min(tau * 1.3, 20.0);
         return s;

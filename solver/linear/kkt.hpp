@@ -55,6 +55,8 @@ class KktSolver {
   virtual void sum_shared(std::span<double> local) = 0;
   /// Solve A x = b; b has the full values of the local blocks, x gets them.
   virtual SolveReport solve(std::span<const double> b, std::span<double> x) = 0;
+  /// Whether a further solve with the same matrix costs little beside the first.
+  virtual bool repeats_cheaply() const { return false; }
   virtual std::string name() const = 0;
   /// Memory of the matrix and its factors on this rank, where known.
   virtual double bytes() const { return 0; }

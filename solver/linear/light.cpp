@@ -77,7 +77,7 @@ class LightSolver final : public KktSolver {
     small_ = n_ < 1500;
   }
 
-  void zero() override { std::fill(Ax_.begin(), Ax_.end(), 0.0); }
+  void zero() override { std::fill(Ax_.begin(), Ax_.end(), 0.0), factored_ = false; }
 
   void add(int clique, const double* K) override {
     const auto blocks = (*cliques_)[clique];
@@ -106,6 +106,8 @@ class LightSolver final : public KktSolver {
   void sum_shared(std::span<double>) override {}
 
   SolveReport solve(std::span<const double> b, std::span<double> x) override {
+    if (factored_) return refined(b, x, 2);
+    factored_ = true;
     // pivots of the factorisation before serve again while the residual says that they are good ones
     if (small_ && klu_numeric_ && klu_refactor(Ap_.data(), Ai_.data(), Ax_.data(), klu_symbolic_, klu_numeric_, &common_))
       if (const SolveReport report = refined(b, x, 1); report.ok) return report;
@@ -113,9 +115,10 @@ class LightSolver final : public KktSolver {
     if (!small_ && umf_numeric_)
       if (const SolveReport report = refined(b, x, 10, 0.2); report.residual < 1e-9) return report;
     const bool ok = small_ ? factor_klu() : factor_umfpack();
-    if (!ok) return {false, 1, 0, "the matrix is singular"};
+    if (!ok) return factored_ = false, SolveReport{false, 1, 0, "the matrix is singular"};
     return refined(b, x, 3);
   }
+  bool repeats_cheaply() const override { return true; }
 
   std::string name() const override { return small_ ? "light (KLU)" : "light (UMFPACK)"; }
 
@@ -187,7 +190,7 @@ class LightSolver final : public KktSolver {
 
   const Cliques* cliques_ = nullptr;
   int n_ = 0;
-  bool small_ = true;
+  bool small_ = true, factored_ = false;  // factored_: the factors at hand are those of the matrix, or serve it refined
   std::vector<int> block_start_, Ap_, Ai_, position_, diagonal_;
   std::vector<size_t> clique_position_;
   std::vector<double> Ax_, residual_, correction_;

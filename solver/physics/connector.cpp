@@ -84,8 +84,12 @@ double Connector::value(int measure, const Config& q) const {
   return e;
 }
 
-void gradient(const Connector& c, const Config& q, ConnectorGradient& g) {
+void gradient(const Connector& c, const Config& q, const Config& turned, ConnectorGradient& g) {
   place(c, q, g.y, g.arm);
+  if (&turned != &q) {
+    Vec3 y[12];
+    place(c, turned, y, g.arm);
+  }
   g.G.topRows(c.measures.size()).setZero();
   for (size_t m = 0; m < c.measures.size(); ++m) {
     g.e[m] = -c.measures[m].offset;

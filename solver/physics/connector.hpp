@@ -80,7 +80,9 @@ struct ConnectorGradient {
   Eigen::Matrix<double, max_measures, 12> G;  // d e / d(u_a, theta_a, u_b, theta_b)
   Vec3 dy[max_measures][12];                  // d e / d y
 };
-void gradient(const Connector& c, const Config& q, ConnectorGradient& out);
+/// At q; the arms that turn an increment of the unknowns into one of the entities are those of `turned`.
+void gradient(const Connector& c, const Config& q, const Config& turned, ConnectorGradient& out);
+inline void gradient(const Connector& c, const Config& q, ConnectorGradient& out) { gradient(c, q, q, out); }
 
 /// Second derivative term: slope * d/dz1 of (G(q_left)^T s), 12 x 12, added to K.
 void add_geometric(const Connector& c, const ConnectorGradient& left, const ConnectorGradient& right, const double* s, double slope,

@@ -121,13 +121,14 @@ template <class T>
 inline void add_hourglass(const Lame& moduli, const SolidCall<T>& call) {
   const Hourglass<T> hg(call.X, moduli);
   T xm[24], u1[3][3], h1[4][3], b0[4][3], b1[4][3], um[3][3], hm[4][3], t[4][3], unused[4][3];
-  for (int i = 0; i < 24; ++i) xm[i] = (call.x0[i] + call.x1[i]) / 2;
+  for (int i = 0; i < 24; ++i) xm[i] = (1 - call.weight) * call.x0[i] + call.weight * call.x1[i];
   hg.measure(call.x0, u1, h1, b0);
   hg.measure(xm, um, hm, unused);
   hg.measure(call.x1, u1, h1, b1);
   T s[4][3], step[4][3], rate[4][3];
   for (int r = 0; r < 4; ++r)
-    for (int A = 0; A < 3; ++A) s[r][A] = call.elastic * (b0[r][A] + b1[r][A]) / 2 + call.viscous * (b1[r][A] - b0[r][A]);
+    for (int A = 0; A < 3; ++A)
+      s[r][A] = call.elastic * ((1 - call.weight) * b0[r][A] + call.weight * b1[r][A]) + call.viscous * (b1[r][A] - b0[r][A]);
   hg.conjugate(s, t);
   if (call.energy || call.dissipated) {
     T t1[4][3];
@@ -147,7 +148,7 @@ inline void add_hourglass(const Lame& moduli, const SolidCall<T>& call) {
         for (int A = 0; A < 3; ++A)
           for (int i = 0; i < 3; ++i) call.f[3 * a + i] += t[r][A] * (hg.n[A][a] * hm[r][i] + hg.gamma[r][a] * um[A][i]);
   if (!call.K) return;
-  const double slope = call.elastic / 2 + call.viscous;
+  const double slope = call.elastic * call.weight + call.viscous;
   T DB[12][24];  // rows: d t_rA, with the map b -> t applied
   for (int b = 0; b < 8; ++b)
     for (int j = 0; j < 3; ++j) {
@@ -159,10 +160,10 @@ inline void add_hourglass(const Lame& moduli, const SolidCall<T>& call) {
         for (int A = 0; A < 3; ++A) DB[3 * r + A][3 * b + j] = dt[r][A];
     }
   for (int a = 0; a < 8; ++a) {
-    T along[4], across[3];  // geometric: 1/2 t_rA (n_A gamma_r^T + gamma_r n_A^T) I
-    for (int r = 0; r < 4; ++r) along[r] = (t[r][0] * hg.n[0][a] + t[r][1] * hg.n[1][a] + t[r][2] * hg.n[2][a]) / 2;
+    T along[4], across[3];  // geometric: w t_rA (n_A gamma_r^T + gamma_r n_A^T) I
+    for (int r = 0; r < 4; ++r) along[r] = (t[r][0] * hg.n[0][a] + t[r][1] * hg.n[1][a] + t[r][2] * hg.n[2][a]) * call.weight;
     for (int A = 0; A < 3; ++A)
-      across[A] = (t[0][A] * hg.gamma[0][a] + t[1][A] * hg.gamma[1][a] + t[2][A] * hg.gamma[2][a] + t[3][A] * hg.gamma[3][a]) / 2;
+      across[A] = (t[0][A] * hg.gamma[0][a] + t[1][A] * hg.gamma[1][a] + t[2][A] * hg.gamma[2][a] + t[3][A] * hg.gamma[3][a]) * call.weight;
     for (int b = 0; b < 8; ++b) {
       T geometric = across[0] * hg.n[0][b] + across[1] * hg.n[1][b] + across[2] * hg.n[2][b];
       for (int r = 0; r < 4; ++r) geometric += along[r] * hg.gamma[r][b];

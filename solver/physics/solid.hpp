@@ -1,10 +1,11 @@
 // Total Lagrangian solid: residual, tangent and energy of one cell (or of as many as T has lanes) over a step.
 //
-//   E = (F^T F - I)/2,   f_a = int F_mid S grad N_a dV,   S.(E1 - E0) = W1 - W0,   F_mid = (F0 + F1)/2      [simo-tarnow-1992]
-//   K_ab = d f_a / d x1_b = int B_mid,a^T D B_1,b + 1/2 (grad N_a . S grad N_b) I dV,   D = dS/dE1
+//   E = (F^T F - I)/2,   f_a = int F_w S grad N_a dV,   F_w = (1 - w) F0 + w F1
+//   K_ab = d f_a / d x1_b = int B_w,a^T D B_1,b + w (grad N_a . S grad N_b) I dV,   D = dS/dE1
 //
-// E is quadratic in x, so B_mid (x1 - x0) = E1 - E0 and the work of f over the step is exactly the change of W.  With x0 = x1
-// the residual is that of the end point and its full derivative is 2K.  Rate terms act as stress: S += viscous C (E1 - E0).
+// With w = 1/2 the stress is a discrete gradient, S.(E1 - E0) = W1 - W0: E is quadratic in x, so B_mid (x1 - x0) = E1 - E0 and the work
+// of f over the step is exactly the change of W [simo-tarnow-1992].  Otherwise it is S((1 - w) E0 + w E1); w = 1 is the end point.
+// Rate terms act as stress: S += viscous C (E1 - E0).
 #pragma once
 #include "physics/material/voigt.hpp"
 #include "physics/shape/hex8.hpp"
@@ -29,6 +30,7 @@ struct SolidCall {
   double density;     // reference density                          [kg/m^3]
   const T* a;         // acceleration less gravity     (n x 3)      [m/s^2] or null: no inertia
   double mass_slope;  // d a / d x1, what of the mass K holds       [1/s^2]
+  double weight;      // w, share of x1 in the averages             [1]
 };
 
 namespace solid {
@@ -154,12 +156,22 @@ inline void add_point(const Material& material, const SolidCall<T>& c, const T (
   green_lagrange(F0, e0);
   green_lagrange(F1, e1);
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) Fm[i][j] = (F0[i][j] + F1[i][j]) / 2;
+    for (int j = 0; j < 3; ++j) Fm[i][j] = (1 - c.weight) * F0[i][j] + c.weight * F1[i][j];
   for (int i = 0; i < 6; ++i) {
     s[i] = 0 * w;
     for (int j = 0; j < 6; ++j) D[i][j] = 0 * w;
   }
-  if (c.elastic != 0) material.stress(e0, e1, s, c.K ? D : nullptr);
+  if (c.elastic != 0) {
+    if (c.weight == 0.5) {
+      material.stress(e0, e1, s, c.K ? D : nullptr);
+    } else {
+      T e[6];
+      for (int i = 0; i < 6; ++i) e[i] = (1 - c.weight) * e0[i] + c.weight * e1[i];
+      material.stress(e, e, s, c.K ? D : nullptr);  // D holds half the derivative: that by the second argument
+      for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j) D[i][j] *= 2 * c.weight;
+    }
+  }
   if (c.viscous != 0) {
     T rate[6], q[6];
     for (int i = 0; i < 6; ++i) rate[i] = e1[i] - e0[i];
@@ -199,8 +211,9 @@ inline void add_point(const Material& material, const SolidCall<T>& c, const T (
       }
   }
   for (int a = 0; a < n; ++a) {
-    const T sg[3] = {w * (s[0] * g[a][0] + s[5] * g[a][1] + s[4] * g[a][2]) / 2, w * (s[5] * g[a][0] + s[1] * g[a][1] + s[3] * g[a][2]) / 2,
-                     w * (s[4] * g[a][0] + s[3] * g[a][1] + s[2] * g[a][2]) / 2};
+    const T ww = w * c.weight;
+    const T sg[3] = {ww * (s[0] * g[a][0] + s[5] * g[a][1] + s[4] * g[a][2]), ww * (s[5] * g[a][0] + s[1] * g[a][1] + s[3] * g[a][2]),
+                     ww * (s[4] * g[a][0] + s[3] * g[a][1] + s[2] * g[a][2])};
     for (int b = 0; b < n; ++b) {
       const T geometric = sg[0] * g[b][0] + sg[1] * g[b][1] + sg[2] * g[b][2];
       for (int i = 0; i < 3; ++i) c.K[(3 * a + i) * 3 * n + 3 * b + i] += geometric;

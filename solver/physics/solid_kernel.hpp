@@ -17,7 +17,8 @@ struct KernelCall {
   double density = 0;
   const double* a = nullptr;  // null: no inertia
   double mass_slope = 0;
-  double area = 0;  // of bars [m^2]
+  double area = 0;      // of bars [m^2]
+  double weight = 0.5;  // share of x1 in the averages; 1/2: discrete gradient
 };
 
 using KernelFunction = void (*)(const KernelCall&);

@@ -25,7 +25,7 @@ static void run_kernel(const KernelCall& k) {
   if (least) *least = T{} + 1e300;
   const SolidCall<T> call{lanes_of(k.X), lanes_of(k.x0), lanes_of(k.x1),      k.elastic,          k.viscous,
                           k.c,           clear(k.f, n3), clear(k.K, n3 * n3), clear(k.energy, 1), clear(k.dissipated, 1),
-                          least,         k.density,      lanes_of(k.a),       k.mass_slope};
+                          least,         k.density,      lanes_of(k.a),       k.mass_slope,       k.weight};
   if (k.elastic != 0 || k.viscous != 0 || k.energy) {
     evaluate_solid<S>(Material{k.c}, call);
     if constexpr (S::n == 8) add_hourglass(k.c, call);

@@ -28,10 +28,10 @@ void System::add_loads(Pass& p) const {
         if (force) {
           p.body[b].head<3>() -= f;
           p.body[b].tail<3>() -= (s.left->R[b] * load.arm).cross(f);
-          K = -s.slope * skew(f) * skew(s.q1->R[b] * load.arm);
+          K = -s.slope * skew(f) * skew(s.end->R[b] * load.arm);
         } else {
           p.body[b].tail<3>() -= f;
-          if (load.follower) K = s.slope * skew(s.q1->R[b] * load.value * factor);
+          if (load.follower) K = s.slope * skew(s.end->R[b] * load.value * factor);
         }
         p.scale(force ? f.norm() : f.norm() / bodies[b].size);
         if (p.K && body_block[b] >= 0) {
@@ -46,12 +46,14 @@ void System::add_loads(Pass& p) const {
           const std::vector<int>& nodes = load.facets[e];
           const int n = static_cast<int>(nodes.size());
           std::vector<Vec3> x0(n), x1(n), f(n);
-          for (int a = 0; a < n; ++a) x0[a] = s.q0->x[nodes[a]], x1[a] = s.q1->x[nodes[a]];
+          for (int a = 0; a < n; ++a) x0[a] = s.e0->x[nodes[a]], x1[a] = s.e1->x[nodes[a]];
+          if (!s.conserving())
+            for (int a = 0; a < n; ++a) x0[a] = x1[a] = (1 - s.weight) * x0[a] + s.weight * x1[a];
           std::vector<double> K(p.K ? 9 * n * n : 0);
           pressure_force(factor * load.pressure, x0, x1, f, p.K ? K.data() : nullptr);
           for (int a = 0; a < n; ++a) p.node[nodes[a]] -= f[a], p.scale(f[a].norm());
           if (!p.K) continue;
-          for (double& k : K) k *= -s.K_factor;
+          for (double& k : K) k *= -s.chain * (s.conserving() ? 1 : 2 * s.weight);
           const auto blocks = cliques[load.cliques[e]];
           make_maps(nodes, blocks, s, maps, masks);
           add_reduced(*p.K, load.cliques[e], n, K.data(), maps.data(), static_cast<int>(blocks.size()), masks.data());
@@ -63,17 +65,17 @@ void System::add_loads(Pass& p) const {
 
 /// Work of what acts from outside over the step from q0 to q1: loads, and the forces that prescribed motions exert.
 System::Work System::work(const Stage& s, std::span<const double> lambda) const {
-  const Config& from = s.work_from ? *s.work_from : *s.q0;
+  const Config& from = s.work_from ? *s.work_from : *s.e0;
   double external = 0, dissipated = solid_dissipation(s);
   for (const Load& load : loads) {
     const double factor = load.factor(s.t0, s.t1, s.load_factor);
     if (load.kind == Load::Kind::nodal) {
       for (size_t i = 0; i < load.nodes.size(); ++i)
-        external += factor * load.weight[i] * load.value.dot(s.q1->x[load.nodes[i]] - from.x[load.nodes[i]]);
+        external += factor * load.weight[i] * load.value.dot(s.end->x[load.nodes[i]] - from.x[load.nodes[i]]);
     } else if (load.kind == Load::Kind::pressure) {
       for (const auto& nodes : load.facets) {
         std::vector<Vec3> x0(nodes.size()), x1(nodes.size()), f(nodes.size());
-        for (size_t a = 0; a < nodes.size(); ++a) x0[a] = from.x[nodes[a]], x1[a] = s.q1->x[nodes[a]];
+        for (size_t a = 0; a < nodes.size(); ++a) x0[a] = from.x[nodes[a]], x1[a] = s.end->x[nodes[a]];
         pressure_force(factor * load.pressure, x0, x1, f, nullptr);
         for (size_t a = 0; a < nodes.size(); ++a) external += f[a].dot(x1[a] - x0[a]);
       }
@@ -81,9 +83,9 @@ System::Work System::work(const Stage& s, std::span<const double> lambda) const 
       const int b = load.body;
       const Vec3 f = factor * (load.follower ? Vec3(s.left->R[b] * load.value) : load.value);
       if (load.kind == Load::Kind::body_force) {
-        external += f.dot(s.q1->c[b] - from.c[b] + (s.q1->R[b] - from.R[b]) * load.arm);
+        external += f.dot(s.end->c[b] - from.c[b] + (s.end->R[b] - from.R[b]) * load.arm);
       } else {  // R1 - R0 = skew(w) (R0 + R1)/2 defines the rotation increment w
-        external += f.dot(rotation_increment(from.R[b], s.q1->R[b]));
+        external += f.dot(rotation_increment(from.R[b], s.end->R[b]));
       }
     }
   }
@@ -109,7 +111,7 @@ System::Work System::work(const Stage& s, std::span<const double> lambda) const 
           for (int l = 0; l < W; ++l) X_[(3 * k + i) * W + l] = X[nodes[k]][i], v[(3 * k + i) * W + l] = s.v->x[nodes[k]][i];
       b.kernel.call({X_, X_, X_, 0, 0, b.c, f, nullptr, nullptr, nullptr, nullptr, b.density * b.alpha, v, 0, b.area});
       for (int k = 0; k < n; ++k)
-        for (int i = 0; i < 3; ++i) dissipated += f[(3 * k + i) * W] * (s.q1->x[nodes[k]][i] - from.x[nodes[k]][i]);
+        for (int i = 0; i < 3; ++i) dissipated += f[(3 * k + i) * W] * (s.end->x[nodes[k]][i] - from.x[nodes[k]][i]);
     }
   }
   bool moving = false;
@@ -121,13 +123,13 @@ System::Work System::work(const Stage& s, std::span<const double> lambda) const 
       if (!m.moving) continue;
       if (m.body >= 0) {
         if (comm->rank == 0)
-          external += f.body[m.body].head<3>().dot(s.q1->c[m.body] - from.c[m.body]) +
-                      f.body[m.body].tail<3>().dot(rotation_increment(from.R[m.body], s.q1->R[m.body]));
+          external += f.body[m.body].head<3>().dot(s.end->c[m.body] - from.c[m.body]) +
+                      f.body[m.body].tail<3>().dot(rotation_increment(from.R[m.body], s.end->R[m.body]));
       } else {
         for (int node : m.nodes)
           if (node_owned[node])
             for (int i = 0; i < 3; ++i)
-              if (m.component[i]) external += f.node[node][i] * (s.q1->x[node][i] - from.x[node][i]);
+              if (m.component[i]) external += f.node[node][i] * (s.end->x[node][i] - from.x[node][i]);
       }
     }
   }

@@ -48,7 +48,7 @@ void System::reduce(Pass& p) const {
     if (r.isZero(0)) continue;
     p.body[b].head<3>() += r;
     p.body[b].tail<3>() += (p.s.left->x[i] - p.s.left->c[b]).cross(r);
-    if (p.K && body_block[b] >= 0) geometric[b] += p.s.slope * skew(r) * skew(p.s.q1->x[i] - p.s.q1->c[b]);
+    if (p.K && body_block[b] >= 0) geometric[b] += p.s.slope * skew(r) * skew(p.s.end->x[i] - p.s.end->c[b]);
   }
   for (size_t b = 0; b < bodies.size(); ++b) {
     if (body_block[b] < 0) continue;

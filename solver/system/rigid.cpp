@@ -25,10 +25,10 @@ void System::add_bodies(Pass& p) const {
     K.topLeftCorner<3, 3>().diagonal().setConstant(s.mass_slope * body.mass);
     Mat3 Kr = Mat3::Zero();
     for (int i = 0; i < 3; ++i) {
-      Kr += s.slope * skew(AJ.col(i)) * skew(s.q1->R[b].col(i));
+      Kr += s.slope * skew(AJ.col(i)) * skew(s.end->R[b].col(i));
       const Mat3 left = skew(s.left->R[b].col(i));
       for (int j = 0; j < 3; ++j)
-        if (body.J(i, j) != 0) Kr -= s.mass_slope * body.J(i, j) * left * skew(s.q1->R[b].col(j));
+        if (body.J(i, j) != 0) Kr -= s.mass_slope * body.J(i, j) * left * skew(s.end->R[b].col(j));
     }
     K.bottomRightCorner<3, 3>() = Kr;
     p.K->add(body_clique(static_cast<int>(b)), K.data());
@@ -64,8 +64,18 @@ Ends ends_of(const Connector& c, const std::vector<int>& node_block, const std::
 
 }  // namespace
 
+void spring_elastic(const Connector& c, const Stage& s, Response& out) {
+  SpringLaw::Values e0{}, e1{};
+  for (size_t m = 0; m < c.measures.size(); ++m) e0[m] = c.value(static_cast<int>(m), *s.e0), e1[m] = c.value(static_cast<int>(m), *s.e1);
+  if (s.conserving()) return c.law->elastic(e0, e1, out);
+  for (size_t m = 0; m < c.measures.size(); ++m) e0[m] = e1[m] = (1 - s.weight) * e0[m] + s.weight * e1[m];
+  c.law->elastic(e0, e1, out);
+  for (auto& row : out.D)  // so far the derivative by the second argument alone
+    for (double& d : row) d *= 2 * s.weight;
+}
+
 void System::add_connectors(Pass& p) const {
-  thread_local ConnectorGradient left, right, rate0, rate1;
+  thread_local ConnectorGradient left, right;
   const Stage& s = p.s;
   const auto add_force = [&](const Connector& c, const double* force) {
     for (int k = 0; k < 2; ++k) {
@@ -109,8 +119,8 @@ void System::add_connectors(Pass& p) const {
   for (size_t j = 0; j < joints.size(); ++j) {
     if (!owns_joint_[j]) continue;
     const Connector& c = joints[j];
-    gradient(c, *s.left, left);
-    gradient(c, *s.q1, right);
+    gradient(c, *s.left, *s.left, left);
+    gradient(c, *s.end, *s.end, right);
     double force[max_measures];
     const int base = 3 * (joint_block[j] - first_joint_block());
     for (int m = 0; m < c.n_rows(); ++m) {
@@ -127,12 +137,10 @@ void System::add_connectors(Pass& p) const {
     if (!owns_spring_[j]) continue;
     const Connector& c = springs[j];
     const int n = static_cast<int>(c.measures.size());
-    gradient(c, *s.left, left);
-    gradient(c, *s.q1, right);
-    SpringLaw::Values e0{}, e1{};
-    for (int m = 0; m < n; ++m) e1[m] = right.e[m], e0[m] = c.value(m, *s.q0);
+    gradient(c, *s.left, *s.left, left);
+    gradient(c, *s.e1, *s.end, right);
     Response elastic, viscous;
-    c.law->elastic(e0, e1, elastic);
+    spring_elastic(c, s, elastic);
     double force[max_measures];
     for (int m = 0; m < n; ++m) force[m] = elastic.s[m];
     if (s.h > 0) {
@@ -146,7 +154,7 @@ void System::add_connectors(Pass& p) const {
     Eigen::Matrix<double, 12, 12> K = Eigen::Matrix<double, 12, 12>::Zero();
     for (int m = 0; m < n; ++m)
       for (int k = 0; k < n; ++k) {
-        const double D = s.K_factor * elastic.D[m][k] + s.C_factor * viscous.D[m][k];
+        const double D = s.chain * elastic.D[m][k] + s.h * s.alpha_slope * viscous.D[m][k];
         if (D != 0) K += D * left.G.row(m).transpose() * right.G.row(k);
       }
     add_geometric(c, left, right, force, s.slope, K);

@@ -43,7 +43,7 @@ void System::add_solids(Pass& p) const {
   thread_local std::vector<NodeMap> maps;
   thread_local std::vector<std::array<bool, 3>> masks;
   const Stage& s = p.s;
-  const bool same_pair = s.w0 == s.q0;
+  const bool same_pair = s.w0 == s.e0 && s.w1 == s.e1;
   const Vec3 g = gravity * s.load_factor;
   for (const SolidBatch& b : batches) {
     const int W = b.kernel.width, n = info(b.shape).n_nodes, n3 = 3 * n, count = static_cast<int>(b.cells.size());
@@ -52,25 +52,12 @@ void System::add_solids(Pass& p) const {
     double* K = p.K ? lanes.K.get(static_cast<size_t>(n3) * n3 * W) : nullptr;
     double* det = lanes.scalar[0].get(W);
     const double rate = s.h > 0 ? b.beta / s.h : 0;
-    KernelCall call{X_,
-                    x0,
-                    x1,
-                    1,
-                    same_pair ? rate + s.chi / 2 : s.chi / 2,
-                    b.c,
-                    f,
-                    K,
-                    nullptr,
-                    nullptr,
-                    det,
-                    b.density,
-                    a,
-                    (s.mass_slope + b.alpha * s.alpha_slope) / s.K_factor,
-                    b.area};
+    KernelCall call{X_,      x0,  x1,        1, same_pair ? rate + s.chi / 2 : s.chi / 2,           b.c,    f,       K, nullptr,
+                    nullptr, det, b.density, a, (s.mass_slope + b.alpha * s.alpha_slope) / s.chain, b.area, s.weight};
     for (int first = 0; first < count; first += W) {
       gather(b, first, W, X, X_);
-      gather(b, first, W, s.q0->x, x0);
-      gather(b, first, W, s.q1->x, x1);
+      gather(b, first, W, s.e0->x, x0);
+      gather(b, first, W, s.e1->x, x1);
       gather(b, first, W, s.a->x, a);
       for (int k = 0; k < n; ++k)
         for (int i = 0; i < 3; ++i)
@@ -81,16 +68,16 @@ void System::add_solids(Pass& p) const {
         for (int i = 0; i < n3 * W; ++i) a[i] += b.alpha * v[i];
       }
       b.kernel.call(call);
-      if (K && s.K_factor != 1)
-        for (int i = 0; i < n3 * n3 * W; ++i) K[i] *= s.K_factor;
+      if (K && s.chain != 1)
+        for (int i = 0; i < n3 * n3 * W; ++i) K[i] *= s.chain;
       if (!same_pair && rate > 0) {  // rate terms with a pair of their own
         double *f2 = lanes.f2.get(n3 * W), *K2 = K ? lanes.K2.get(static_cast<size_t>(n3) * n3 * W) : nullptr;
         gather(b, first, W, s.w0->x, x0);
         gather(b, first, W, s.w1->x, x1);
         b.kernel.call({X_, x0, x1, 0, rate, b.c, f2, K2, nullptr, nullptr, nullptr, 0, nullptr, 0, b.area});
         for (int i = 0; i < n3 * W; ++i) f[i] += f2[i];
-        if (K)
-          for (int i = 0; i < n3 * n3 * W; ++i) K[i] += s.C_factor * K2[i];
+        if (K)  // the derivative by the rate alone; what is left out is of first order in h
+          for (int i = 0; i < n3 * n3 * W; ++i) K[i] += s.h * s.alpha_slope * K2[i];
       }
       for (int l = 0; l < W && first + l < count; ++l) {
         const int e = first + l;
@@ -128,7 +115,7 @@ void System::make_maps(std::span<const int> nodes, std::span<const int> blocks, 
     for (size_t i = 0; i < blocks.size() && block >= 0; ++i)
       if (blocks[i] == block) maps[k].slot = static_cast<int>(i);
     maps[k].follower = body >= 0;
-    if (body >= 0) maps[k].left = s.left->x[node] - s.left->c[body], maps[k].right = s.q1->x[node] - s.q1->c[body];
+    if (body >= 0) maps[k].left = s.left->x[node] - s.left->c[body], maps[k].right = s.end->x[node] - s.end->c[body];
     masks[k] = fixed[node];
   }
 }
@@ -198,22 +185,25 @@ System::Energy System::energy(const Config& q, const Config& v) const {
   return out;
 }
 
-/// Work of the rate terms of the cells over a step, this rank's share.
+/// Work of the rate terms and of the stress dissipation of the cells over a step, this rank's share.
 double System::solid_dissipation(const Stage& s) const {
   thread_local Lanes lanes;
   double total = 0;
-  for (const SolidBatch& b : batches) {
-    const double viscous = (s.h > 0 ? b.beta / s.h : 0) + s.chi / 2;
-    if (viscous == 0) continue;
+  const auto add = [&](const SolidBatch& b, const Config& q0, const Config& q1, double viscous) {
+    if (viscous == 0) return;
     const int W = b.kernel.width, n = info(b.shape).n_nodes, n3 = 3 * n, count = static_cast<int>(b.cells.size());
     double *X_ = lanes.X.get(n3 * W), *x0 = lanes.x0.get(n3 * W), *x1 = lanes.x1.get(n3 * W), *D = lanes.scalar[0].get(W);
     for (int first = 0; first < count; first += W) {
       gather(b, first, W, X, X_);
-      gather(b, first, W, s.q0->x, x0);
-      gather(b, first, W, s.q1->x, x1);
+      gather(b, first, W, q0.x, x0);
+      gather(b, first, W, q1.x, x1);
       b.kernel.call({X_, x0, x1, 0, viscous, b.c, nullptr, nullptr, nullptr, D, nullptr, 0, nullptr, 0, b.area});
       for (int l = 0; l < W && first + l < count; ++l) total += D[l];
     }
+  };
+  for (const SolidBatch& b : batches) {
+    add(b, *s.e0, *s.e1, s.chi / 2);
+    if (s.h > 0) add(b, *s.w0, *s.w1, b.beta / s.h);
   }
   return total;
 }

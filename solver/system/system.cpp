@@ -38,7 +38,7 @@ void System::evaluate(const Stage& stage, std::span<const double> lambda, Residu
       const double d[3] = {fixed[n][0] ? 0 : f, fixed[n][1] ? 0 : f, fixed[n][2] ? 0 : f};
       K->add_diagonal(node_block[n], d);
     } else if (const int b = follower[n]; body_block[b] >= 0) {
-      const Mat3 left = skew(stage.left->x[n] - stage.left->c[b]), right = skew(stage.q1->x[n] - stage.q1->c[b]);
+      const Mat3 left = skew(stage.left->x[n] - stage.left->c[b]), right = skew(stage.end->x[n] - stage.end->c[b]);
       Eigen::Matrix<double, 6, 6, Eigen::RowMajor> M;
       M << f * Mat3::Identity(), -f * right, f * left, -f * left * right;
       K->add(body_clique(b), M.data());

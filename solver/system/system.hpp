@@ -76,23 +76,38 @@ struct Station {
   Mat3 axes = Mat3::Identity();  // sensor axes at the start, columns
 };
 
-/// Everything an evaluation needs besides the unknowns; see energy_momentum.cpp and generalized_alpha.cpp for the two settings.
+/// Everything an evaluation needs besides the unknowns: where in the step an integrator takes which term.
 struct Stage {
-  const Config *q0, *q1;              // elastic pair: start and end of the step, or the end point twice
-  const Config *w0, *w1;              // pair of the rate terms
+  const Config* end;                  // q1, the unknown: increments and constraint rows live here
+  const Config* left;                 // configuration of the left null space and of the constraint gradients
+  double slope = 0.5;                 // d left / d end
+  const Config *e0, *e1;              // elastic pair: the ends of the step, or one configuration twice
+  double weight = 0.5;                // share of e1 in averages; 1/2 of two different ends means discrete gradients over the step
+  double chain = 1;                   // d e1 / d end
+  const Config *w0, *w1;              // pair of the rate terms: rate = (e(w1) - e(w0))/h
   double h = 0;                       // time between w0 and w1 [s]; 0: no rate terms
-  const Config* left;                 // configuration of the left null space: (q0 + q1)/2, or q1
-  double slope = 0.5;                 // d left / d q1
-  double K_factor = 1, C_factor = 1;  // d(elastic, rate forces)/dq1 over the kernels' derivative: 1 at mid-point, 2 at the end point
   const Config* a;                    // accelerations [m/s^2]
-  const Config* v = nullptr;          // velocities for mass-proportional damping
-  double mass_slope = 0;              // d a / d q1 [1/s^2]
-  double alpha_slope = 0;             // d v / d q1 [1/s]
+  const Config* v = nullptr;          // velocities, for mass-proportional damping
+  double mass_slope = 0;              // d a / d end [1/s^2]
+  double alpha_slope = 0;             // d v / d end [1/s]
   double chi = 0;                     // stress dissipation on flexible parts
   double t0 = 0, t1 = 0;              // loads: mean over [t0, t1], or value at t0 = t1
-  const Config* work_from = nullptr;  // start of the step for System::work; null: q0
+  const Config* work_from = nullptr;  // start of the step for System::work; null: e0
   double load_factor = 1;             // of gravity and of loads without a history, for static load steps
+  bool conserving() const { return weight == 0.5 && e0 != e1; }
 };
+
+/// A stage that takes everything at one configuration: statics, and methods that enforce the equations of motion at an instant.
+inline Stage stage_at(const Config& q, double t) {
+  Stage s{};
+  s.end = s.left = s.e0 = s.e1 = s.w0 = s.w1 = &q;
+  s.slope = s.weight = s.chain = 1;
+  s.t0 = s.t1 = t;
+  return s;
+}
+
+/// Elastic response of a spring at a stage, D by its measures at e1.
+void spring_elastic(const Connector& c, const Stage& s, Response& out);
 
 /// Residual with the scales that judge it.
 struct Residual {

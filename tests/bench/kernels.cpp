@@ -101,7 +101,7 @@ void run() {
   for (Vec3& x : a.x) x.setZero();
   Config mid = block.system.start;
   Stage s{};
-  s.q0 = s.w0 = s.q1 = s.w1 = &block.system.start, s.left = &mid, s.a = &a, s.h = 1e-3, s.mass_slope = 2e6;
+  s.e0 = s.w0 = s.e1 = s.w1 = s.end = &block.system.start, s.left = &mid, s.a = &a, s.h = 1e-3, s.mass_slope = 2e6;
   Residual r;
   const double cells = static_cast<double>(block.system.batches[0].cells.size());
   const double tangent = microseconds(3, [&] { block.system.evaluate(s, {}, r, solver.get()); }) / cells;

@@ -115,7 +115,7 @@ struct Evaluated {
 };
 
 struct Wish {
-  double elastic = 1, viscous = 0, density = 0, mass_slope = 0;
+  double elastic = 1, viscous = 0, density = 0, mass_slope = 0, weight = 0.5;
   bool tangent = true;
 };
 
@@ -137,7 +137,8 @@ Evaluated<T> evaluate_cell(const Lame& c, const std::vector<T>& X, const std::ve
                           &out.least_det,
                           wish.density,
                           a ? a->data() : nullptr,
-                          wish.mass_slope};
+                          wish.mass_slope,
+                          wish.weight};
   evaluate_solid<S>(Material{c}, call);
   if constexpr (S::n == 8) add_hourglass(c, call);
   if (a) add_mass<S>(call);

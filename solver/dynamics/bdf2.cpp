@@ -1,0 +1,45 @@
+// v1 = c1 q1 + c0 q0 + cm q_-1,  a1 = c1 v1 + c0 v0 + cm v_-1,  M a1 + f(q1) + G(q1)^T lambda = F(t1),  g(q1) = 0
+// at changing steps, r = h/h_-1:  c1 = (1 + 2 r)/((1 + r) h),  c0 = -(1 + r)/h,  cm = r^2/((1 + r) h); backward Euler for the first step.
+#include "dynamics/integrator.hpp"
+
+namespace hilo {
+namespace {
+
+class Bdf2 final : public StageIntegrator {
+ public:
+  std::string name() const override { return "bdf2"; }
+  void restart() override { h_before_ = 0; }
+
+  void begin(const State& s, double h) override {
+    t_ = s.t, q0_ = s.q, v0_ = s.v, h_ = h;
+    if (h_before_ == 0) qm_ = s.q, vm_ = s.v;
+  }
+
+  Stage stage(int, const Config& q1) override {
+    const double r = h_before_ > 0 ? h_ / h_before_ : 0;  // r = 0 is backward Euler
+    const double c1 = (1 + 2 * r) / ((1 + r) * h_), c0 = -(1 + r) / h_, cm = r * r / ((1 + r) * h_);
+    combine(v1_, {{c1, &q1}, {c0, &q0_}, {cm, &qm_}});
+    combine(a1_, {{c1, &v1_}, {c0, &v0_}, {cm, &vm_}});
+    combine(before_, {{1, &q1}, {-h_ / 2, &v1_}});
+    combine(after_, {{1, &q1}, {h_ / 2, &v1_}});
+    Stage s = stage_at(q1, t_ + h_);
+    s.w0 = &before_, s.w1 = &after_, s.h = h_;
+    s.a = &a1_, s.mass_slope = c1 * c1;
+    s.v = &v1_, s.alpha_slope = c1;
+    return s;
+  }
+
+  void finish(State& s, const Config&) override { s.v = v1_, qm_ = q0_, vm_ = v0_, h_before_ = h_; }
+  const Config& acceleration() const override { return a1_; }
+  double own_time() const override { return 1; }
+
+ private:
+  double t_ = 0, h_ = 0, h_before_ = 0;
+  Config q0_, v0_, qm_, vm_, v1_, a1_, before_, after_;
+};
+
+}  // namespace
+
+std::unique_ptr<StageIntegrator> make_bdf2() { return std::make_unique<Bdf2>(); }
+
+}  // namespace hilo

@@ -1,0 +1,115 @@
+#include "dynamics/integrator.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hilo {
+namespace {
+
+/// Directors back to orthonormal to round-off, so that lengths do not drift over millions of steps.
+void restore_rotations(const System& system, Config& q) {
+  for (Mat3& R : q.R) R = R * (1.5 * Mat3::Identity() - 0.5 * R.transpose() * R);
+  system.follow(q);
+}
+
+}  // namespace
+
+NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, double h, Predictor predictor) {
+  const System& system = tools.system;
+  begin(s, h);
+  h_ = h, start_ = s.q, lambda_ = s.lambda;
+  solved_.resize(n_stages()), taken_.resize(n_stages());
+  NewtonReport all;
+  all.converged = true;
+  for (int k = 0; k < n_stages(); ++k) {
+    const double dt = instant(k) * h;
+    solved_[k] = predict(system, s, dt, predictor);
+    system.prescribe(solved_[k], s.t + dt);
+    const NewtonReport r = newton(
+        system, tools.solver, [&](const Config& q) { return stage(k, q); }, solved_[k], lambda_, tools.newton);
+    all.iterations += r.iterations, all.linear_iterations += r.linear_iterations;
+    all.correction = r.correction, all.residual = r.residual;
+    all.least_det = std::min(all.least_det, r.least_det);
+    if (!r.converged) {
+      all.converged = false, all.reason = r.reason;
+      return all;
+    }
+    restore_rotations(system, solved_[k]);
+    taken_[k] = {stage(k, solved_[k]), lambda_};
+    taken_[k].stage.work_from = k == 0 ? &start_ : &solved_[k - 1];
+  }
+  return all;
+}
+
+void StageIntegrator::accept(State& s) {
+  finish(s, solved_.back());
+  s.q = solved_.back();
+  s.lambda = lambda_;
+  s.t += h_;
+}
+
+void combine(Config& out, std::initializer_list<std::pair<double, const Config*>> terms) {
+  const Config& first = *terms.begin()->second;
+  out.x.resize(first.x.size()), out.c.resize(first.c.size()), out.R.resize(first.R.size());
+  const auto run = [&](auto member) {
+    auto& to = out.*member;
+    for (size_t i = 0; i < to.size(); ++i) {
+      auto sum = (terms.begin()->first * (terms.begin()->second->*member)[i]).eval();
+      for (auto t = terms.begin() + 1; t != terms.end(); ++t) sum += t->first * (t->second->*member)[i];
+      to[i] = sum;
+    }
+  };
+  run(&Config::x), run(&Config::c), run(&Config::R);
+}
+
+std::unique_ptr<Integrator> make_integrator(const Entry& time) {
+  const std::string& kind = time.text("integrator");
+  const double rho = time.number("rho");
+  if (kind == "energy-momentum") return make_energy_momentum(time.number("dissipation"));
+  if (kind == "mid-point") return make_mid_point();
+  if (kind == "generalized-alpha") return make_generalized_alpha(generalized_alpha(rho));
+  if (kind == "newmark") {
+    const double gamma = time.number("gamma"), beta = time.given("beta") ? time.number("beta") : (gamma + 0.5) * (gamma + 0.5) / 4;
+    return make_generalized_alpha({0, 0, beta, gamma}, "newmark");
+  }
+  if (kind == "hht") {
+    if (rho < 0.5) throw Error(time.where("rho"), fmt::format("rho is {:g}: the spectral radius of HHT is 1/2 to 1", rho));
+    return make_generalized_alpha(hht(rho), "hht");
+  }
+  if (kind == "wbz") return make_generalized_alpha(wbz(rho), "wbz");
+  if (kind == "U0" || kind == "V0") {
+    double r[3];
+    const char* keys[3] = {"rho1", "rho2", "rho3"};
+    for (int i = 0; i < 3; ++i) r[i] = time.has(keys[i]) ? time.number(keys[i]) : rho;
+    return make_zhou_tamma(kind == "V0", r, time.boolean("averaged"));
+  }
+  if (kind == "bathe") return make_bathe();
+  if (kind == "bdf2") return make_bdf2();
+  return make_radau();
+}
+
+std::string known_weakness(const Entry& time, const System& system) {
+  const std::string& kind = time.text("integrator");
+  const double rho = time.number("rho");
+  const bool joints = !system.joints.empty(), turning = joints || !system.bodies.empty();
+  const auto radius = [&](const char* key) { return time.has(key) ? time.number(key) : rho; };
+  if ((kind == "newmark" && time.number("gamma") < 0.55) ||
+      ((kind == "generalized-alpha" || kind == "hht" || kind == "wbz") && rho >= 0.9)) {
+    if (joints) return "with joints its multipliers oscillate and grow until the run stops, sometimes after many thousand steps";
+    if (!system.batches.empty()) return "it gains energy on parts that turn while they deform";
+  }
+  if (kind == "mid-point" && !system.batches.empty())
+    return "the stress at the mid-point lets energy grow without limit on stiff turning parts; energy-momentum averages it";
+  if ((kind == "U0" || kind == "V0") && !time.boolean("averaged") && !system.batches.empty())
+    return "without averaged = true stiff parts that turn are stretched unnoticed";
+  if (kind == "V0" && turning && std::min({radius("rho1"), radius("rho2"), radius("rho3")}) < 1)
+    return "accelerations and multipliers of V0 with a spectral radius below 1 are of first order";
+  if (kind == "U0" && radius("rho1") == 1 && radius("rho2") == 1 && radius("rho3") < 1 && joints)
+    return "U0(1, 1, rho3 < 1) does not damp the oscillation of multipliers";
+  if (kind == "radau" && system.map.n_global > 5000)
+    return "all three stages are solved at once: 27 times the entries of the other methods";
+  return "";
+}
+
+}  // namespace hilo

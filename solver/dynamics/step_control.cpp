@@ -1,0 +1,103 @@
+#include "dynamics/step_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hilo {
+
+std::vector<Event> load_events(const System& system, double end, double step) {
+  std::vector<Event> jumps, kinks;
+  const auto add = [&](const History& h) {
+    const std::vector<double> leaps = h.jumps();
+    for (double t : h.events(0, end)) (std::find(leaps.begin(), leaps.end(), t) != leaps.end() ? jumps : kinks).push_back({t, t > 0});
+  };
+  for (const Load& l : system.loads) add(l.history);
+  for (const Motion& m : system.motions)
+    if (m.moving) add(m.history);
+  const auto earlier = [](const Event& a, const Event& b) { return a.t < b.t; };
+  std::sort(kinks.begin(), kinks.end(), earlier);
+  std::vector<Event> out = jumps;
+  const auto apart = [&](double a, double b) { return std::abs(a - b) > 1e-9 * step; };
+  for (size_t i = 0; i < kinks.size(); ++i) {
+    size_t before = i, behind = i;  // neighbours at another time
+    while (before > 0 && !apart(kinks[before].t, kinks[i].t)) --before;
+    while (behind + 1 < kinks.size() && !apart(kinks[behind].t, kinks[i].t)) ++behind;
+    const bool dense = (apart(kinks[before].t, kinks[i].t) && kinks[i].t - kinks[before].t < step) ||
+                       (apart(kinks[behind].t, kinks[i].t) && kinks[behind].t - kinks[i].t < step);
+    if (!dense) out.push_back({kinks[i].t, false});
+  }
+  std::sort(out.begin(), out.end(), earlier);
+  std::vector<Event> merged;
+  for (const Event& e : out) {
+    if (e.t < 1e-9 * step || e.t > end - 1e-9 * step) continue;
+    if (merged.empty() || apart(merged.back().t, e.t))
+      merged.push_back(e);
+    else
+      merged.back().jump = merged.back().jump || e.jump;
+  }
+  return merged;
+}
+
+StepControl::StepControl(const System& system, double tolerance, double end, double largest_step)
+    : system_(system), rate_wanted_(tolerance / end), end_(end), largest_(largest_step) {}
+
+void StepControl::restart(const State& s) {
+  t_ = s.t;
+  past_.clear();
+  // the error of a step h is h^3/12 |q'''|
+  double top = 0;
+  for (size_t i = 0; i < s.jerk.x.size(); ++i) top = std::max(top, s.jerk.x[i].norm());
+  for (size_t b = 0; b < s.jerk.c.size(); ++b) top = std::max({top, s.jerk.c[b].norm(), s.jerk.R[b].norm() * system_.bodies[b].size});
+  top = system_.comm->max(top);
+  const double wish = top > 0 ? std::sqrt(12 * rate_wanted_ / top) : 1e300;
+  step_ = std::min({wish / 2, largest_, end_ / 200});  // half: forces may grow at once
+  for (double back : {2 * step_, step_, 0.0}) {
+    Past p{s.t - back, {}};
+    combine(p.q, {{1, &s.q}, {-back, &s.v}, {back * back / 2, &s.a}, {-back * back * back / 6, &s.jerk}});
+    past_.push_back(std::move(p));
+  }
+  calm_ = 0;
+}
+
+double StepControl::third_difference(const Config& q1, double h) const {
+  const double t[4] = {past_[0].t, past_[1].t, past_[2].t, t_ + h};
+  double w[4];  // q[t0..t3] = sum w_i q_i
+  for (int i = 0; i < 4; ++i) {
+    w[i] = 1;
+    for (int j = 0; j < 4; ++j)
+      if (j != i) w[i] /= t[i] - t[j];
+  }
+  const Config *a = &past_[0].q, *b = &past_[1].q, *c = &past_[2].q;
+  double top = 0;
+  for (size_t i = 0; i < q1.x.size(); ++i)
+    if (system_.follower[i] < 0) top = std::max(top, (w[0] * a->x[i] + w[1] * b->x[i] + w[2] * c->x[i] + w[3] * q1.x[i]).norm());
+  for (size_t i = 0; i < q1.c.size(); ++i) {
+    if (!system_.bodies[i].free()) continue;
+    top = std::max(top, (w[0] * a->c[i] + w[1] * b->c[i] + w[2] * c->c[i] + w[3] * q1.c[i]).norm());
+    const Mat3 R = w[0] * a->R[i] + w[1] * b->R[i] + w[2] * c->R[i] + w[3] * q1.R[i];
+    top = std::max(top, system_.bodies[i].size * R.colwise().norm().maxCoeff());
+  }
+  return system_.comm->max(top);
+}
+
+bool StepControl::accept(const Config& q1, double h) {
+  const double error = h * h * h / 2 * third_difference(q1, h), rate = error / h;
+  const double ratio = rate > 0 ? rate_wanted_ / rate : 1e300;
+  if (ratio < 0.2) {
+    step_ = h * std::max(0.3, 0.9 * std::sqrt(ratio));
+    calm_ = 0;
+    return false;
+  }
+  sum_ += error;
+  t_ += h;
+  past_.pop_front();
+  past_.push_back({t_, q1});
+  // a smooth sequence of steps keeps the order: exponent 1/3 for 1/2, and a bound on growth, tighter after a cut
+  const double most = ++calm_ < 4 ? 1.0 : 1.2;
+  step_ = std::min(largest_, h * std::clamp(0.97 * std::pow(ratio, 1. / 3), 0.6, calm_ < 2 && ratio > 4 ? 1.2 : most));
+  return true;
+}
+
+void StepControl::cut(double h) { step_ = h / 2, calm_ = 0; }
+
+}  // namespace hilo

@@ -1,0 +1,48 @@
+// Times the steps must hit, and the length of the next step from an estimate of the position error.
+#pragma once
+#include <deque>
+#include <vector>
+
+#include "dynamics/state.hpp"
+#include "system/system.hpp"
+
+namespace hilo {
+
+/// An instant at which a load or a prescribed motion jumps or has a kink.
+struct Event {
+  double t;
+  bool jump;
+};
+/// Events inside (0, end), rising.  Jumps all count; kinks do where they are at least `step` apart from each other: what lies closer is a
+/// measured table, whose mean over a step is exact anyway.
+std::vector<Event> load_events(const System& system, double end, double step);
+
+/// Keeps the sum of local position errors e = h^3/2 |q[n+1, n, n-1, n-2]| (third divided difference, largest over all points) at the
+/// tolerance by sharing it out evenly over the run.
+class StepControl {
+ public:
+  /// tolerance: error of positions allowed over the run [m]; end: length of the run [s].
+  StepControl(const System& system, double tolerance, double end, double largest_step);
+  /// Start, or go on after a jump: earlier positions are taken from the state's own derivatives.  Sets the first length.
+  void restart(const State& s);
+  double step() const { return step_; }
+  /// Whether a step of length h to q1 is good enough; if not, step() is shorter.
+  bool accept(const Config& q1, double h);
+  /// The step failed.
+  void cut(double h);
+  double sum() const { return sum_; }  // of the errors of accepted steps [m]
+
+ private:
+  double third_difference(const Config& q1, double h) const;  // largest over all points [m/s^3], of the divided difference
+  const System& system_;
+  double rate_wanted_, end_, largest_, step_ = 0, sum_ = 0;
+  int calm_ = 0;  // accepted steps since the last cut
+  double t_ = 0;
+  struct Past {
+    double t;
+    Config q;
+  };
+  std::deque<Past> past_;  // three, the last is q_n
+};
+
+}  // namespace hilo

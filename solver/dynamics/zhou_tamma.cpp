@@ -1,0 +1,83 @@
+// M a~ + f + G(q~)^T lambda = F(t~),  g(q1) = 0,  all at t~ = t0 + W1 h, with D = a1 - a0:
+//   a~ = a0 + A D,   v~ = v0 + W1 h a0 + V h D,   q~ = q0 + W1 h v0 + Q h^2 a0 + B h^2 D
+//   q1 = q0 + h v0 + h^2/2 a0 + l3 h^2 D,         v1 = v0 + h a0 + l5 h D
+// a_n stands for the acceleration at t_n + (W1 - A) h: it starts there, and moves when h changes.
+// Averaged: f = B(q_w)^T S((1 - W1) E0 + W1 E1) and G at q_w = (1 - W1) q0 + W1 q1, which for U0 is q~ itself.
+#include <fmt/format.h>
+
+#include "dynamics/integrator.hpp"
+
+namespace hilo {
+namespace {
+
+class ZhouTamma final : public StageIntegrator {
+ public:
+  ZhouTamma(bool velocity_family, const double r[3], bool averaged) : averaged_(averaged) {
+    const double p = (1 + r[0]) * (1 + r[1]), p3 = p * (1 + r[2]);
+    const double third = (3 + r[0] + r[1] - r[0] * r[1]) / (2 * p);
+    A_ = (2 + r[0] + r[1] + r[2] - r[0] * r[1] * r[2]) / p3;
+    B_ = 1 / p3;
+    if (velocity_family) {
+      W_ = third, Q_ = 1 / p, V_ = 2 / p3, l3_ = 0.5 / (1 + r[2]), l5_ = 1 / (1 + r[2]);
+    } else {
+      W_ = 1 / (1 + r[2]), Q_ = W_ / 2, V_ = third * W_, l3_ = 1 / p, l5_ = third;
+    }
+    name_ = fmt::format("{}{}({:g},{:g},{:g})", averaged ? "averaged " : "", velocity_family ? "V0" : "U0", r[0], r[1], r[2]);
+  }
+  std::string name() const override { return name_; }
+  bool needs_acceleration() const override { return true; }
+  void restart() override { h_a_ = 0; }
+
+  void begin(const State& s, double h) override {
+    t_ = s.t, q0_ = s.q, v0_ = s.v, h_ = h;
+    if (h_a_ == 0) jerk_ = s.jerk, a_at_start_ = s.a;
+    combine(a0_, {{1, &a_at_start_}, {(W_ - A_) * (h - h_a_), &jerk_}});
+  }
+
+  Stage stage(int, const Config& q1) override {
+    const double c = 1 / (l3_ * h_ * h_);
+    combine(D_, {{c, &q1}, {-c, &q0_}, {-c * h_, &v0_}, {-c * h_ * h_ / 2, &a0_}});
+    combine(a_, {{1, &a0_}, {A_, &D_}});
+    combine(v_, {{1, &v0_}, {W_ * h_, &a0_}, {V_ * h_, &D_}});
+    if (averaged_)
+      combine(left_, {{1 - W_, &q0_}, {W_, &q1}});
+    else
+      combine(left_, {{1, &q0_}, {W_ * h_, &v0_}, {Q_ * h_ * h_, &a0_}, {B_ * h_ * h_, &D_}});
+    combine(before_, {{1, &left_}, {-h_ / 2, &v_}});
+    combine(after_, {{1, &left_}, {h_ / 2, &v_}});
+    Stage s = stage_at(left_, t_ + W_ * h_);
+    s.end = &q1;
+    s.slope = averaged_ ? W_ : B_ / l3_;
+    if (averaged_)
+      s.e0 = &q0_, s.e1 = &q1, s.weight = W_;
+    else
+      s.chain = s.slope;
+    s.w0 = &before_, s.w1 = &after_, s.h = h_;
+    s.a = &a_, s.mass_slope = A_ * c;
+    s.v = &v_, s.alpha_slope = V_ * h_ * c;
+    return s;
+  }
+
+  void finish(State& s, const Config&) override {
+    combine(s.v, {{1, &v0_}, {h_, &a0_}, {l5_ * h_, &D_}});
+    combine(jerk_, {{1 / h_, &D_}});
+    combine(a_at_start_, {{1, &a0_}, {1, &D_}});
+    h_a_ = h_;
+  }
+  const Config& acceleration() const override { return a_; }
+  double own_time() const override { return W_; }
+
+ private:
+  bool averaged_;
+  std::string name_;
+  double A_, B_, W_, Q_, V_, l3_, l5_, t_ = 0, h_ = 0, h_a_ = 0;
+  Config q0_, v0_, a0_, a_at_start_, jerk_, D_, a_, v_, left_, before_, after_;
+};
+
+}  // namespace
+
+std::unique_ptr<StageIntegrator> make_zhou_tamma(bool velocity_family, const double rho[3], bool averaged) {
+  return std::make_unique<ZhouTamma>(velocity_family, rho, averaged);
+}
+
+}  // namespace hilo
