@@ -20,12 +20,15 @@ struct Place {
   std::string text() const;
 };
 
-/// A load history: values at rising times, linear or smooth (C1 cosine ramps between the points: w = (1 - cos(pi s))/2).
+/// How a history goes from point to point: linear; smooth, w = (1 - cos(pi s))/2 (C1); smoother, w = 35 s^4 - 84 s^5 + 70 s^6 - 20 s^7 (C3).
+enum class Ramp { linear, smooth, smoother };
+
+/// A load history: values at rising times with ramps between them.
 /// Before the first point the first value, after the last the last.  Two equal times make a jump.
 struct History {
   std::vector<double> t;      // [s]
   std::vector<double> value;  // dimension of what it scales
-  bool smooth = false;
+  Ramp ramp = Ramp::linear;
   double operator()(double time) const;  // from the right at a jump
   double slope(double time) const;
   double mean(double t0, double t1) const;  // exact average over [t0, t1]

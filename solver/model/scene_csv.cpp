@@ -109,7 +109,8 @@ History history_of(const Entry& e, const std::string& label, const Surroundings&
     return fail("", "neither a file nor t and value", "write file = \"load.csv\", or t = [...] and value = [...]");
   }
   for (double& v : h.value) v *= e.number("scale");
-  h.smooth = e.text("interpolation") == "smooth";
+  const std::string& ramp = e.text("interpolation");
+  h.ramp = ramp == "smooth" ? Ramp::smooth : ramp == "smoother" ? Ramp::smoother : Ramp::linear;
   return h;
 }
 

@@ -223,7 +223,7 @@ std::vector<KindSchema> make() {
                 {"value", numbers, "", "", "values, in the unit of what the history scales (1 for a factor)"},
                 {"file", text, "", "", "CSV file with a header line and two columns: t, value"},
                 {"scale", number, "1", "1", "factor on the values"},
-                {"interpolation", text, "", "linear", "linear or smooth"}}});
+                {"interpolation", text, "", "linear", "linear, smooth (cosine ramps) or smoother (ramps with three continuous derivatives)"}}});
   s.push_back(
       {"time",
        "",
@@ -275,7 +275,7 @@ std::vector<std::string> choices(std::string_view section, std::string_view key)
   static const std::map<std::pair<std::string_view, std::string_view>, std::vector<std::string>> words = {
       {{"scene", "units"}, unit_systems()},
       {{"motion", "components"}, {"x", "y", "z"}},
-      {{"history", "interpolation"}, {"linear", "smooth"}},
+      {{"history", "interpolation"}, {"linear", "smooth", "smoother"}},
       {{"time", "start"}, {"as given", "equilibrium"}},
       {{"time", "integrator"},
        {"energy-momentum", "mid-point", "generalized-alpha", "newmark", "hht", "wbz", "U0", "V0", "bathe", "bdf2", "radau"}},

@@ -1,5 +1,6 @@
 // Orders of position, velocity, acceleration and reaction of a brick hung at its corner (stability.md, PEND3D), against RK4 on Euler's
 // equations in the test itself, which has neither joints nor multipliers.
+#include "dynamics/truth.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -34,36 +35,12 @@ end = 1
 step = 1e-3
 )";
 
-struct Truth {
-  Vec3 x, v, a, force, felt;  // of the far corner; force of the pin; proper acceleration in body axes, g0
-};
-
-/// Euler's equations about the fixed corner, J_O w' = -w x J_O w + c x m g in inertial axes, by RK4 with 1e-4 s (error 1e-13).
-Truth integrate(double end) {
-  const Vec3 c0(0.5, 0.1, 0.2), g(0, 0, -9.81);
-  const double m = 8;
-  const Mat3 Jc = Vec3(0.13333333333333333, 0.77333333333333333, 0.69333333333333333).asDiagonal();
-  const Mat3 JO = Jc + m * (c0.squaredNorm() * Mat3::Identity() - c0 * c0.transpose());
-  struct State {
-    Mat3 R;
-    Vec3 w;
-  };
-  const auto spin_rate = [&](const State& s) -> Vec3 {
-    const Mat3 J = s.R * JO * s.R.transpose();
-    return J.inverse() * (-s.w.cross(J * s.w) + (s.R * c0).cross(m * g));
-  };
-  const auto rate = [&](const State& s) { return State{skew(s.w) * s.R, spin_rate(s)}; };
-  const auto plus = [](const State& s, const State& d, double h) { return State{s.R + h * d.R, s.w + h * d.w}; };
-  State s{Mat3::Identity(), Vec3(0.5, 1, 2)};
-  const int n = static_cast<int>(std::lround(end / 1e-4));
-  for (int i = 0; i < n; ++i) {
-    const double h = end / n;
-    const State k1 = rate(s), k2 = rate(plus(s, k1, h / 2)), k3 = rate(plus(s, k2, h / 2)), k4 = rate(plus(s, k3, h));
-    s.R += h / 6 * (k1.R + 2 * k2.R + 2 * k3.R + k4.R), s.w += h / 6 * (k1.w + 2 * k2.w + 2 * k3.w + k4.w);
-  }
-  const Vec3 wd = spin_rate(s), x = s.R * Vec3(1, 0.2, 0.4), c = s.R * c0;
-  const auto acceleration = [&](const Vec3& r) { return Vec3(wd.cross(r) + s.w.cross(s.w.cross(r))); };
-  return {x, s.w.cross(x), acceleration(x), m * (acceleration(c) - g), s.R.transpose() * (acceleration(x) - g) / g0};
+/// The far corner at t, and what a sensor there feels [g0].
+std::pair<Truth, Vec3> integrate(double end) {
+  const FixedPoint body{8,           {0.5, 0.1, 0.2}, Vec3(0.13333333333333333, 0.77333333333333333, 0.69333333333333333).asDiagonal(),
+                        {0.5, 1, 2}, {0, 0, -9.81},   {1, 0.2, 0.4}};
+  const Truth t = body.at(end, std::max(1, static_cast<int>(std::lround(end / 1e-4))));
+  return {t, t.R.transpose() * (t.a - body.gravity) / g0};
 }
 
 struct Errors {
@@ -76,9 +53,9 @@ Errors errors(const Workplace& w, double t, const std::string& h, const std::str
   EXPECT_EQ(ran.exit, 0) << ran.err;
   const Results r(w / "run.h5");
   const auto p = r.at("probe/far", t);
-  const Truth truth = integrate(t);
+  const auto [truth, felt] = integrate(t);
   return {(p.head<3>() - truth.x).norm(), (p.segment<3>(3) - truth.v).norm(), (p.tail<3>() - truth.a).norm(),
-          (r.at("joint/corner", t).head<3>() - truth.force).norm(), (r.at("sensor/seat", t) - truth.felt).norm()};
+          (r.at("joint/corner", t).head<3>() - truth.force).norm(), (r.at("sensor/seat", t) - felt).norm()};
 }
 
 void expect_second_order(double t, const std::string& options, const Errors& limit) {

@@ -10,13 +10,13 @@ using namespace hilo;
 using std::numbers::pi;
 
 namespace {
-const History ramp{{0, 2, 3}, {0, 4, 1}, false};
-const History step{{0, 1, 1, 2}, {0, 0, 5, 5}, false};
-const History smooth{{0, 2, 3}, {0, 4, 1}, true};
+const History ramp{{0, 2, 3}, {0, 4, 1}, Ramp::linear};
+const History step{{0, 1, 1, 2}, {0, 0, 5, 5}, Ramp::linear};
+const History smooth{{0, 2, 3}, {0, 4, 1}, Ramp::smooth}, smoother{{0, 2, 3}, {0, 4, 1}, Ramp::smoother};
 }  // namespace
 
 TEST(History, IsConstantOutsideItsPoints) {
-  for (const History* h : {&ramp, &smooth}) {
+  for (const History* h : {&ramp, &smooth, &smoother}) {
     EXPECT_EQ((*h)(-1), 0);
     EXPECT_EQ((*h)(7), 1);
     EXPECT_EQ(h->mean(-3, -1), 0);
@@ -37,7 +37,7 @@ TEST(History, InterpolatesLinearlyAndByCosines) {
 TEST(History, TakesTheRightValueAtAJump) {
   EXPECT_EQ(step(1), 5);
   EXPECT_EQ(step(std::nextafter(1, 0)), 0);
-  const History at_start{{0, 0, 1}, {0, 3, 3}, false};
+  const History at_start{{0, 0, 1}, {0, 3, 3}, Ramp::linear};
   EXPECT_EQ(at_start(-1e-9), 0);
   EXPECT_EQ(at_start(0), 3);
 }
@@ -66,6 +66,16 @@ TEST(History, MeanOfASmoothOneIsTheIntegralOfItsCosines) {
   EXPECT_DOUBLE_EQ(smooth.mean(0, 3), (4 + 2.5) / 3);
 }
 
+// Truth: w' = 140 s^3 (1 - s)^3, so that value, slope and two more derivatives vanish at both ends; its integral over [0, 1] is 1/2.
+TEST(History, SmootherRampHasThreeContinuousDerivatives) {
+  EXPECT_DOUBLE_EQ(smoother(1), 2);
+  EXPECT_NEAR(smoother.mean(0, 2), 2, 1e-14);
+  EXPECT_DOUBLE_EQ(smoother.slope(1), 2 * 140. / 64);
+  const double h = 1e-2;  // s = h/2: 35 s^4 of the height 4, and no lower power
+  EXPECT_NEAR(smoother(h) / (4 * 35 * std::pow(h / 2, 4)), 1, 2.5 * h / 2);
+  EXPECT_NEAR((4 - smoother(2 - h)) / (4 * 35 * std::pow(h / 2, 4)), 1, 2.5 * h / 2);
+}
+
 TEST(History, MeanOverAShortIntervalKeepsItsDigits) {
   const double h = 1e-9, t = 0.7;  // the mean differs from the mid-point value by h^2 f''/24
   EXPECT_NEAR(smooth.mean(t, t + h), smooth(t + h / 2), 1e-15 * 4);
@@ -73,13 +83,13 @@ TEST(History, MeanOverAShortIntervalKeepsItsDigits) {
 }
 
 TEST(History, MeansOfTheHalvesAverageToTheWhole) {
-  for (const History* h : {&ramp, &step, &smooth})
+  for (const History* h : {&ramp, &step, &smooth, &smoother})
     for (double t = -0.7; t < 3.5; t += 0.31)
       EXPECT_NEAR(h->mean(t, t + 0.8), (h->mean(t, t + 0.4) + h->mean(t + 0.4, t + 0.8)) / 2, 1e-14);
 }
 
 TEST(History, SlopeIsTheDerivative) {
-  for (const History* h : {&ramp, &smooth})
+  for (const History* h : {&ramp, &smooth, &smoother})
     for (const double t : {0.1, 0.9, 1.9, 2.2, 2.9}) EXPECT_NEAR(h->slope(t), ((*h)(t + 1e-5) - (*h)(t - 1e-5)) / 2e-5, 1e-8) << t;
   EXPECT_NEAR(smooth.slope(2), 0, 1e-15) << "C1 at its points";
   EXPECT_EQ(ramp.slope(2), -3) << "from the right at a kink";
@@ -90,13 +100,13 @@ TEST(History, EventsAreKinksAndJumpsInside) {
   EXPECT_EQ(ramp.events(0, 3), (std::vector<double>{2}));
   EXPECT_EQ(smooth.events(-1, 4), (std::vector<double>{}));
   EXPECT_EQ(step.events(0, 2), (std::vector<double>{1}));
-  EXPECT_EQ((History{{0, 1, 2}, {0, 1, 2}, false}.events(0, 2)), (std::vector<double>{})) << "a point on a line is no kink";
+  EXPECT_EQ((History{{0, 1, 2}, {0, 1, 2}, Ramp::linear}.events(0, 2)), (std::vector<double>{})) << "a point on a line is no kink";
   EXPECT_EQ(step.jumps(), (std::vector<double>{1}));
   EXPECT_EQ(ramp.jumps(), (std::vector<double>{}));
 }
 
 TEST(History, OfOnePointIsConstant) {
-  const History h{{0}, {3}, false};
+  const History h{{0}, {3}, Ramp::linear};
   EXPECT_EQ(h(-1), 3);
   EXPECT_EQ(h(1), 3);
   EXPECT_EQ(h.mean(-1, 1), 3);
