@@ -165,6 +165,14 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
 
 namespace {
 
+/// Largest vector over all points.
+double size_of(const System& system, const Config& d) {
+  double top = 0;
+  for (const Vec3& x : d.x) top = std::max(top, x.norm());
+  for (size_t b = 0; b < d.c.size(); ++b) top = std::max({top, d.c[b].norm(), system.bodies[b].size * d.R[b].colwise().norm().maxCoeff()});
+  return system.comm->max(top);
+}
+
 /// Accelerations and multipliers that satisfy equations and constraints at (q, v) at time t.
 void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda) {
   // guess: bodies that keep their spin, everything else unaccelerated; the solve adds the rest
@@ -234,7 +242,12 @@ void consistent_acceleration(const System& system, KktSolver& solver, State& s, 
     combine(n.v, {{1, &s.v}, {tau, &s.a}});
     solve_acceleration(system, solver, n, n.a, unused);
   }
+  combine(s.snap, {{1 / (h * h), &ahead[1].a}, {-2 / (h * h), &ahead[0].a}, {1 / (h * h), &s.a}});
   combine(s.jerk, {{2 / h, &ahead[0].a}, {-0.5 / h, &ahead[1].a}, {-1.5 / h, &s.a}});
+  // a curve rather than a line: the jerk is zero (from rest), or the motion is too fast for h, and no jerk is better than a wrong one
+  Config change;
+  combine(change, {{1, &ahead[1].a}, {-1, &s.a}});
+  if (h * h * size_of(system, s.snap) > 0.25 * size_of(system, change)) combine(s.jerk, {{0, &s.jerk}});
 }
 
 NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vector<double>& lambda, double t, double ramp, bool mechanism,

@@ -11,7 +11,7 @@ namespace hilo {
 struct State {
   double t = 0;  // [s]
   Config q, v;
-  Config a, jerk;              // consistent ones at the start and after a jump, for methods that keep such history; else empty
+  Config a, jerk, snap;        // consistent ones at the start and after a jump, for methods that keep such history; else empty
   std::vector<double> lambda;  // multipliers of the last step, (3 x joint blocks)
 };
 

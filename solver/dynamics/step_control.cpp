@@ -42,14 +42,23 @@ StepControl::StepControl(const System& system, double tolerance, double end, dou
     : system_(system), rate_wanted_(tolerance / end), end_(end), largest_(largest_step) {}
 
 void StepControl::restart(const State& s) {
-  t_ = s.t;
+  t_ = started_ = s.t;
   past_.clear();
-  // the error of a step h is h^3/12 |q'''|
-  double top = 0;
-  for (size_t i = 0; i < s.jerk.x.size(); ++i) top = std::max(top, s.jerk.x[i].norm());
-  for (size_t b = 0; b < s.jerk.c.size(); ++b) top = std::max({top, s.jerk.c[b].norm(), s.jerk.R[b].norm() * system_.bodies[b].size});
-  top = system_.comm->max(top);
-  const double wish = top > 0 ? std::sqrt(12 * rate_wanted_ / top) : 1e300;
+  double third = 0, top[2] = {0, 0};  // |q'''|; sqrt(|q''| |q''''|) and the frequency there
+  const auto look = [&](double size, const Vec3& a, const Vec3& jerk, const Vec3& snap) {
+    third = std::max(third, size * jerk.norm());
+    const double wave = size * std::sqrt(a.norm() * snap.norm());
+    if (wave > top[0]) top[0] = wave, top[1] = std::sqrt(snap.norm() / a.norm());
+  };
+  for (size_t i = 0; i < s.a.x.size(); ++i)
+    if (system_.follower[i] < 0) look(1, s.a.x[i], s.jerk.x[i], s.snap.x[i]);
+  for (size_t b = 0; b < s.a.c.size(); ++b) {
+    look(1, s.a.c[b], s.jerk.c[b], s.snap.c[b]);
+    for (int k = 0; k < 3; ++k) look(system_.bodies[b].size, s.a.R[b].col(k), s.jerk.R[b].col(k), s.snap.R[b].col(k));
+  }
+  first_third_ = system_.comm->max(top[0]);
+  fade_ = first_third_ > 0 ? 1 / -system_.comm->max(top[0] == first_third_ ? -top[1] : -1e300) : 0;
+  const double worst = std::max(system_.comm->max(third), first_third_), wish = worst > 0 ? std::sqrt(12 * rate_wanted_ / worst) : 1e300;
   step_ = std::min({wish / 2, largest_, end_ / 200});  // half: forces may grow at once
   for (double back : {2 * step_, step_, 0.0}) {
     Past p{s.t - back, {}};
@@ -59,36 +68,41 @@ void StepControl::restart(const State& s) {
   calm_ = 0;
 }
 
-double StepControl::third_difference(const Config& q1, double h) const {
+double StepControl::error(const Config& q1, double h) const {
   const double t[4] = {past_[0].t, past_[1].t, past_[2].t, t_ + h};
-  double w[4];  // q[t0..t3] = sum w_i q_i
+  double w[4];  // q[t0, t1, t2, t3] = sum w_k q_k
   for (int i = 0; i < 4; ++i) {
     w[i] = 1;
     for (int j = 0; j < 4; ++j)
       if (j != i) w[i] /= t[i] - t[j];
   }
-  const Config *a = &past_[0].q, *b = &past_[1].q, *c = &past_[2].q;
+  const Config* q[4] = {&past_[0].q, &past_[1].q, &past_[2].q, &q1};
   double top = 0;
+  const auto look = [&](double size, const auto& value) {
+    Vec3 d = Vec3::Zero();
+    for (int k = 0; k < 4; ++k) d += w[k] * value(*q[k]);
+    top = std::max(top, size * d.norm());
+  };
   for (size_t i = 0; i < q1.x.size(); ++i)
-    if (system_.follower[i] < 0) top = std::max(top, (w[0] * a->x[i] + w[1] * b->x[i] + w[2] * c->x[i] + w[3] * q1.x[i]).norm());
-  for (size_t i = 0; i < q1.c.size(); ++i) {
-    if (!system_.bodies[i].free()) continue;
-    top = std::max(top, (w[0] * a->c[i] + w[1] * b->c[i] + w[2] * c->c[i] + w[3] * q1.c[i]).norm());
-    const Mat3 R = w[0] * a->R[i] + w[1] * b->R[i] + w[2] * c->R[i] + w[3] * q1.R[i];
-    top = std::max(top, system_.bodies[i].size * R.colwise().norm().maxCoeff());
+    if (system_.follower[i] < 0) look(1, [&](const Config& c) { return c.x[i]; });
+  for (size_t b = 0; b < q1.c.size(); ++b) {
+    if (!system_.bodies[b].free()) continue;
+    look(1, [&](const Config& c) { return c.c[b]; });
+    for (int k = 0; k < 3; ++k) look(system_.bodies[b].size, [&](const Config& c) { return Vec3(c.R[b].col(k)); });
   }
-  return system_.comm->max(top);
+  const double at_first = fade_ > 0 ? first_third_ * std::exp(-(t_ - started_) / fade_) : 0;
+  return h * h * h / 12 * std::max(6 * system_.comm->max(top), at_first);
 }
 
 bool StepControl::accept(const Config& q1, double h) {
-  const double error = h * h * h / 2 * third_difference(q1, h), rate = error / h;
+  const double e = error(q1, h), rate = e / h;
   const double ratio = rate > 0 ? rate_wanted_ / rate : 1e300;
   if (ratio < 0.2) {
     step_ = h * std::max(0.3, 0.9 * std::sqrt(ratio));
     calm_ = 0;
     return false;
   }
-  sum_ += error;
+  sum_ += e;
   t_ += h;
   past_.pop_front();
   past_.push_back({t_, q1});

@@ -18,7 +18,8 @@ struct Event {
 std::vector<Event> load_events(const System& system, double end, double step);
 
 /// Keeps the sum of local position errors e = h^3/2 |q[n+1, n, n-1, n-2]| (third divided difference, largest over all points) at the
-/// tolerance by sharing it out evenly over the run.
+/// tolerance by sharing it out evenly over the run.  Where the third derivative starts at zero, as from rest, it is no measure of the
+/// error in velocity: sqrt(|q''| |q''''|), its like in harmonic motion, stands in for it during the first 1/omega = sqrt(|q''|/|q''''|).
 class StepControl {
  public:
   /// tolerance: error of positions allowed over the run [m]; end: length of the run [s].
@@ -33,11 +34,11 @@ class StepControl {
   double sum() const { return sum_; }  // of the errors of accepted steps [m]
 
  private:
-  double third_difference(const Config& q1, double h) const;  // largest over all points [m/s^3], of the divided difference
+  double error(const Config& q1, double h) const;  // largest over all points [m]
   const System& system_;
   double rate_wanted_, end_, largest_, step_ = 0, sum_ = 0;
-  int calm_ = 0;  // accepted steps since the last cut
-  double t_ = 0;
+  int calm_ = 0;                                             // accepted steps since the last cut
+  double t_ = 0, started_ = 0, first_third_ = 0, fade_ = 0;  // stand-in for |q'''| at the start [m/s^3], its time constant [s]
   struct Past {
     double t;
     Config q;
