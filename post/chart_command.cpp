@@ -18,6 +18,7 @@ namespace {
 struct Options {
   std::vector<std::string> files, y;
   std::string x, by, log, title, x_label, y_label, size = "1280x720", png;
+  std::vector<double> x_range, y_range, slopes;
   bool markers = false;
 };
 
@@ -44,6 +45,16 @@ void run(const Options& o) {
   Panel panel;
   panel.x.log = o.log.find('x') != std::string::npos;
   panel.y.log = o.log.find('y') != std::string::npos;
+  const auto show = [](Axis& axis, const std::vector<double>& range, const char* option) {
+    if (range.empty()) return;
+    if (!(range[0] < range[1]) || (axis.log && range[0] <= 0))
+      throw Error(option, fmt::format("{},{} is no range of this axis", range[0], range[1]), "LOW,HIGH with LOW < HIGH", Exit::usage);
+    axis.low = range[0], axis.high = range[1];
+  };
+  show(panel.x, o.x_range, "--xrange"), show(panel.y, o.y_range, "--yrange");
+  if (!o.slopes.empty() && o.log != "xy")
+    throw Error("--slope", "a slope is a guide between logarithmic axes", "add --log xy", Exit::usage);
+  for (const double slope : o.slopes) panel.guides.push_back({fmt::format("slope {:g}", std::abs(slope)), slope});
   bool one_y = true;
   for (const std::string& file : o.files) {
     const CsvTable table = read_csv(file);
@@ -63,8 +74,10 @@ void run(const Options& o) {
         curve.label = join(o.files.size() > 1 ? std::filesystem::path(file).stem().string() : "", name);
         if (columns.size() > 1 || curve.label.empty()) curve.label = join(curve.label, plain(table.header[c]));
         for (const size_t row : rows) curve.x.push_back(xs[row]), curve.y.push_back(ys[row]);
-        curve.markers = o.markers;
-        curve.colour = curve_colour(static_cast<int>(panel.curves.size()));
+        const int n = static_cast<int>(panel.curves.size());
+        curve.marker = o.markers ? n : -1;
+        curve.colour = curve_colour(n);
+        curve.dashed = n % 2 != 0 && !o.by.empty();
         panel.curves.push_back(std::move(curve));
       }
     }
@@ -90,7 +103,10 @@ Command chart_command(CLI::App& app) {
   sub->add_option("-y", o->y, "columns to draw, -y once for each; all others by default")->allow_extra_args(false);
   sub->add_option("--by", o->by, "column of names: one curve for each name");
   sub->add_option("--log", o->log, "logarithmic axes: x, y or xy")->check(CLI::IsMember({"x", "y", "xy"}));
-  sub->add_flag("--markers", o->markers, "mark the points");
+  sub->add_flag("--markers", o->markers, "mark the points, each curve by a shape of its own");
+  sub->add_option("--xrange", o->x_range, "LOW,HIGH: what the abscissa shows")->delimiter(',')->expected(2);
+  sub->add_option("--yrange", o->y_range, "LOW,HIGH: what the ordinate shows")->delimiter(',')->expected(2);
+  sub->add_option("--slope", o->slopes, "guide y ~ x^SLOPE, --slope once for each; needs --log xy")->allow_extra_args(false);
   sub->add_option("--title", o->title, "title");
   sub->add_option("--xlabel", o->x_label, "label of the abscissa, with its unit in brackets");
   sub->add_option("--ylabel", o->y_label, "label of the ordinate, with its unit in brackets");

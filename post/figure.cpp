@@ -37,10 +37,14 @@ Scale scale_of(const Panel& panel, bool y_axis, int n_ticks) {
       low = std::min(low, v), high = std::max(high, v);
     }
   if (!(low <= high)) low = s.log ? 1 : 0, high = s.log ? 10 : 1;
+  const Axis& axis = y_axis ? panel.y : panel.x;
+  const bool given_low = std::isfinite(axis.low) && (!s.log || axis.low > 0), given_high = std::isfinite(axis.high);
+  if (given_low) low = axis.low, high = std::max(high, low);
+  if (given_high) high = axis.high, low = std::min(low, high);
   if (s.log) {
     s.low = std::log10(low), s.high = std::log10(high);
     const double room = std::max(0.05 * (s.high - s.low), s.high > s.low ? 0.04 : 0.5);
-    s.low -= room, s.high += room;
+    s.low -= given_low ? 0 : room, s.high += given_high ? 0 : room;
     s.ticks = log_ticks(std::pow(10, s.low), std::pow(10, s.high), n_ticks);
     return s;
   }
@@ -49,7 +53,7 @@ Scale scale_of(const Panel& panel, bool y_axis, int n_ticks) {
     low -= half, high += half;
   } else if (y_axis) {
     const double room = 0.05 * (high - low);
-    low -= low == 0 ? 0 : room, high += high == 0 ? 0 : room;
+    low -= low == 0 || given_low ? 0 : room, high += high == 0 || given_high ? 0 : room;
   }
   s.exponent = common_exponent(std::max(std::abs(low), std::abs(high)));
   const double unit = std::pow(10, s.exponent);
@@ -73,6 +77,54 @@ double widest(Painter& p, const Ticks& ticks) {
   double w = 0;
   for (const auto& t : ticks.text) w = std::max(w, p.extent(t, tick_size).x());
   return w;
+}
+
+/// Shapes that differ in outline as well as in filling, so that a grey print keeps them apart.
+void draw_marker(Painter& p, int n, const Vec2& at, const Rgb& colour) {
+  const double r = 5 * p.scale;
+  const int shape = n % 6;
+  const bool hollow = n / 6 % 2 != 0;
+  const auto ring = [&](int corners, double turn, double size) {
+    std::vector<Vec2> outline;
+    for (int i = 0; i < corners; ++i) {
+      const double angle = turn + 2 * M_PI * i / corners;
+      outline.push_back(at + size * r * Vec2(std::cos(angle), std::sin(angle)));
+    }
+    p.polygon(outline, hollow ? white : colour);
+    outline.push_back(outline.front());
+    p.line(outline, colour, 1.6);
+  };
+  const auto stroke = [&](double turn) {
+    const Vec2 d = r * Vec2(std::cos(turn), std::sin(turn));
+    p.line(at - d, at + d, colour, 2.2);
+  };
+  if (shape == 0) ring(24, 0, 0.95);
+  if (shape == 1) ring(4, M_PI / 4, 1.15);
+  if (shape == 2) ring(3, M_PI / 2, 1.25);
+  if (shape == 3) ring(4, 0, 1.25);
+  if (shape == 4) ring(3, -M_PI / 2, 1.25);
+  if (shape == 5) {
+    for (const double turn : {M_PI / 4, 3 * M_PI / 4}) stroke(turn);
+    if (hollow) stroke(0);
+  }
+}
+
+/// Dashed lines y ~ x^slope: steep ones on the left where curves fall, named at their upper end.
+void draw_guides(Painter& p, const Panel& panel, const Scale& sx, const Scale& sy, const Box& box) {
+  if (!sx.log || !sy.log) return;
+  const Rgb grey{0.45, 0.46, 0.48};
+  const double width = sx.high - sx.low, height = sy.high - sy.low;
+  for (const Guide& g : panel.guides) {
+    // as long as fits in a third of either side, its upper end near the upper right (falling) or left (rising)
+    const double run = std::min(0.35 * width, 0.35 * height / std::max(std::abs(g.slope), 1e-9)), rise = std::abs(g.slope) * run;
+    const double x1 = g.slope < 0 ? sx.high - 0.04 * width - run : sx.low + 0.04 * width + run, y1 = sy.high - 0.05 * height;
+    const double x0 = g.slope < 0 ? x1 + run : x1 - run, y0 = y1 - rise;
+    const auto pixel = [&](double x, double y) {
+      return Vec2(box.x + (x - sx.low) / width * box.w, box.y + (y - sy.low) / height * box.h);
+    };
+    p.line(std::array{pixel(x0, y0), pixel(x1, y1)}, grey, 1.5, 1, true);
+    p.text(pixel(x0, y0) - Vec2(0, 4 * p.scale), g.label, legend_size, Across::centre, Up::top, grey);
+  }
 }
 
 void draw_curve(Painter& p, const Curve& c, const Scale& sx, const Scale& sy, const Box& box) {
@@ -101,7 +153,6 @@ void draw_curve(Painter& p, const Curve& c, const Scale& sx, const Scale& sy, co
       continue;
     }
     const Vec2 at(box.x + u * box.w, box.y + v * box.h);
-    if (c.markers) p.disc(at, 4.5 * p.scale, c.colour);
     if (!dense) {
       stretch.push_back(at);
       continue;
@@ -110,6 +161,11 @@ void draw_curve(Painter& p, const Curve& c, const Scale& sx, const Scale& sy, co
     column.push_back(at);
   }
   close_column(), flush();
+  if (c.marker < 0) return;
+  for (size_t i = 0; i < c.x.size(); ++i) {
+    const double u = sx(c.x[i]), v = sy(c.y[i]);
+    if (std::isfinite(u) && std::isfinite(v)) draw_marker(p, c.marker, {box.x + u * box.w, box.y + v * box.h}, c.colour);
+  }
 }
 
 void draw_axes(Painter& p, const Panel& panel, const Box& box, const Scale& sx, const Scale& sy) {
@@ -141,7 +197,7 @@ void draw_legend(Painter& p, const Panel& panel, const Box& box) {
   for (const Curve& c : panel.curves) {
     if (c.label.empty()) continue;
     p.line(std::array{Vec2(x, y), Vec2(x + 30 * p.scale, y)}, c.colour, c.width, c.opacity, c.dashed);
-    if (c.markers) p.disc({x + 15 * p.scale, y}, 4.5 * p.scale, c.colour);
+    if (c.marker >= 0) draw_marker(p, c.marker, {x + 15 * p.scale, y}, c.colour);
     p.text({x + 38 * p.scale, y}, c.label, legend_size);
     y -= row;
   }
@@ -170,7 +226,8 @@ void draw(Painter& p, const Figure& f) {
     draw_axes(p, panel, box, sx[i], sy[i]);
     p.text({18 * s, box.y + box.h / 2}, label_of(panel.y, sy[i]), label_size, Across::centre, Up::middle, ink, false, 90);
     p.clip(box);
-    for (const Curve& c : panel.curves) draw_curve(p, c, sx[i], sy[i], box);
+    draw_guides(p, panel, sx[i], sy[i], box);
+    for (auto c = panel.curves.rbegin(); c != panel.curves.rend(); ++c) draw_curve(p, *c, sx[i], sy[i], box);  // the first on top
     p.unclip();
     draw_legend(p, panel, box);
   }

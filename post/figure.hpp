@@ -1,5 +1,6 @@
 // Charts: panels of curves stacked in one picture, with axes in units and a legend beside the data.
 #pragma once
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,18 +14,27 @@ struct Curve {
   Rgb colour;
   double width = 2;  // [unit of text, see Painter]
   double opacity = 1;
-  bool markers = false, dashed = false;
+  int marker = -1;  // the n-th of an endless row of shapes, none when negative
+  bool dashed = false;
 };
 
 struct Axis {
   std::string label;  // with its unit: "time [s]"
   bool log = false;
+  double low = std::numeric_limits<double>::quiet_NaN(), high = low;  // what is shown; fitted to the curves where not a number
+};
+
+/// A guide of power law y ~ x^slope through the middle of a panel with two logarithmic axes.
+struct Guide {
+  std::string label;
+  double slope = 1;
 };
 
 struct Panel {
   std::string title;
   Axis x, y;
   std::vector<Curve> curves;
+  std::vector<Guide> guides = {};
 };
 
 struct Figure {
