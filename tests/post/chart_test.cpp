@@ -110,6 +110,50 @@ TEST(Chart, one_curve_for_each_name_of_a_column) {
   EXPECT_GT(red, 500);
 }
 
+// The ordinate shown is 0.5 .. 1.5: the half of the curve at 0 is below it, the half at 1 in the middle.
+TEST(Chart, shows_the_range_that_was_asked_for) {
+  const Workplace place;
+  std::string text = "x,y\n";
+  for (int i = 0; i <= 100; ++i) text += std::to_string(i / 100.0) + "," + std::to_string(i < 50 ? 0 : 1) + "\n";
+  place.write("step.csv", text);
+  const Ran ran = place.run("unset DISPLAY\nhilo-post chart step.csv --yrange 0.5,1.5 -o step.png");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const PictureFile picture(place / "step.png");
+  const auto blue = [&](int x0, int x1, int y0, int y1) {
+    int n = 0;
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x) n += picture.at(x, y)[2] > picture.at(x, y)[0] + 60;
+    return n;
+  };
+  EXPECT_EQ(blue(150, 550, 20, 660), 0);
+  EXPECT_GT(blue(750, 1200, 300, 380), 300);
+  EXPECT_EQ(place.run("hilo-post chart step.csv --yrange 1,0 -o no.png").exit, 1);
+  EXPECT_EQ(place.run("hilo-post chart step.csv --slope 2 -o no.png").exit, 1) << "slopes need logarithmic axes";
+}
+
+// A guide of slope -2 between decades: as steep on the picture as the curve y = x^-2 it stands beside.
+TEST(Chart, draws_guides_of_a_slope) {
+  const Workplace place;
+  place.write("work.csv", "steps,error\n10,1e-2\n100,1e-4\n1000,1e-6\n");
+  const Ran ran = place.run("unset DISPLAY\nhilo-post chart work.csv --log xy --slope -2 -o work.png");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const PictureFile picture(place / "work.png");
+  // rows of the curve (blue) and of the guide (grey, to the right of it): mean columns at two heights
+  const auto column = [&](int y0, bool curve) {
+    double sum = 0, n = 0;
+    for (int y = y0; y < y0 + 12; ++y)
+      for (int x = 100; x < 1250; ++x) {
+        const auto c = picture.at(x, y);
+        const bool is_blue = c[2] > c[0] + 60, is_grey = !is_blue && std::abs(c[0] - c[2]) < 12 && c[0] > 90 && c[0] < 140;
+        if (curve ? is_blue : is_grey && x > 700) sum += x, ++n;
+      }
+    return n > 0 ? sum / n : 0;
+  };
+  const double curve = column(200, true) - column(60, true), guide = column(200, false) - column(60, false);
+  ASSERT_GT(curve, 50);
+  EXPECT_NEAR(guide, curve, 0.1 * curve);
+}
+
 TEST(Chart, a_mistyped_column_is_an_error_with_the_nearest_one) {
   const Workplace place;
   place.write("a.csv", "time [s],force [N]\n0,1\n");
