@@ -27,7 +27,7 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
     solved_[k] = predict(system, s, dt, predictor);
     system.prescribe(solved_[k], s.t + dt);
     const NewtonReport r = newton(
-        system, tools.solver, [&](const Config& q) { return stage(k, q); }, solved_[k], lambda_, tools.newton);
+        system, tools.solver, [&](const Config& q) { return from_left(stage(k, q), h); }, solved_[k], lambda_, tools.newton);
     all.iterations += r.iterations, all.linear_iterations += r.linear_iterations;
     all.correction = r.correction, all.residual = r.residual;
     all.least_det = std::min(all.least_det, r.least_det);
@@ -36,7 +36,7 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
       return all;
     }
     restore_rotations(system, solved_[k]);
-    taken_[k] = {stage(k, solved_[k]), lambda_};
+    taken_[k] = {from_left(stage(k, solved_[k]), h), lambda_};
     taken_[k].stage.work_from = k == 0 ? &start_ : &solved_[k - 1];
   }
   return all;

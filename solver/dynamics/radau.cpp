@@ -150,7 +150,7 @@ class Radau final : public Integrator {
       combine(a_[i], {{W_(i, 0) / h_, &v_[0]}, {W_(i, 1) / h_, &v_[1]}, {W_(i, 2) / h_, &v_[2]}, {sum / h_, &v0_}});
       combine(before_[i], {{1, &q_[i]}, {-h_ / 2, &v_[i]}});
       combine(after_[i], {{1, &q_[i]}, {h_ / 2, &v_[i]}});
-      Stage& s = stages_[i] = stage_at(q_[i], t_ + c_[i] * h_);
+      Stage& s = stages_[i] = from_left(stage_at(q_[i], t_ + c_[i] * h_), h_);
       s.w0 = &before_[i], s.w1 = &after_[i], s.h = h_;
       s.a = &a_[i], s.mass_slope = (W_ * W_)(i, i) / (h_ * h_);
       s.v = &v_[i], s.alpha_slope = W_(i, i) / h_;

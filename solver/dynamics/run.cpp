@@ -203,8 +203,7 @@ class Run {
 
   /// At the start and after a jump of the loads: history that belongs to the new forces.
   void restart(std::optional<StepControl>& control, double step) {
-    if (!integrator_->needs_acceleration() && !control) return;
-    consistent_acceleration(system_, *solver_, state_, 0.05 * step);
+    if (integrator_->needs_acceleration() || control) consistent_acceleration(system_, *solver_, state_, 0.05 * step);
     integrator_->restart();
     if (control) control->restart(state_);
   }
@@ -237,11 +236,12 @@ class Run {
     return true;
   }
 
-  /// Steps chosen by the error they make, the last of them ending at `to`.
+  /// Steps chosen by the error they make, the last of them ending at `to`.  The last thirty are fitted in: one short step at the end would
+  /// cost accelerations and multipliers their order there.
   bool controlled_steps(StepControl& control, double to, Progress& progress) {
     int failures = 0;
     while (state_.t < to) {
-      const double left = to - state_.t, pieces = std::ceil(left / control.step() - 1e-6), h = pieces < 4 ? left / pieces : control.step();
+      const double left = to - state_.t, pieces = std::ceil(left / control.step() - 1e-6), h = pieces < 30 ? left / pieces : control.step();
       if (!try_step(h)) {
         if (++failures > max_cuts_) return false;
         control.cut(h), cut();
@@ -309,6 +309,7 @@ class Run {
     add("steps", fmt::format("{}", report_.steps));
     add("newton_iterations", fmt::format("{}", report_.iterations));
     add("cuts", fmt::format("{}", report_.cuts));
+    add("length", fmt::format("{:.12g}", system_.length));
     add("unknowns", fmt::format("{}", 3 * system_.map.n_global));
     add("bodies", fmt::format("{}", system_.bodies.size() - 1));
     add("joint_rows", fmt::format("{}", redundancy_.rows));

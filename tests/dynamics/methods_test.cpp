@@ -1,7 +1,6 @@
 // Orders of every integrator in position, velocity, acceleration and reaction on the scenes of stability.md: PEND3D, TOP and SLIDER
 // against RK4 on one or three coordinates in the test itself, DPSMOOTH (flexible) against Radau IIA5 at a small step.
-#include "dynamics/truth.hpp"
-#include "verify/verify.hpp"
+#include "dynamics/scenes.hpp"
 
 namespace hilo::test {
 namespace {
@@ -13,8 +12,6 @@ struct Method {
 };
 
 [[maybe_unused]] void PrintTo(const Method& m, std::ostream* out) { *out << m.name; }
-
-std::string integrator(const std::string& kind) { return "--set 'time.integrator=\"" + kind + "\"' "; }
 
 const std::vector<Method>& methods() {
   static const std::vector<Method> list = {
@@ -37,15 +34,6 @@ const std::vector<Method>& methods() {
 
 struct Errors {
   double x, v, a, force;
-};
-
-/// A scene, the names of its probe and joint, instants, two steps, and the truth at the instants.
-struct OrderCase {
-  std::string scene, probe, joint;
-  std::array<double, 3> t;
-  double coarse, fine;
-  std::array<Truth, 3> truth;
-  bool by_norm = false;  // force: the joint's frame is not the inertial one
 };
 
 /// Root of the sum of squares over the instants: a single one may be where an error changes sign.
@@ -77,110 +65,6 @@ void expect_orders(const OrderCase& c, const Method& m, const Workplace& w) {
   EXPECT_GT(order(&Errors::force), least) << coarse.force << " " << fine.force;
   EXPECT_LT(order(&Errors::a), most) << "a known exception: " << coarse.a << " " << fine.a;
   EXPECT_LT(order(&Errors::force), most) << coarse.force << " " << fine.force;
-}
-
-std::string body(const std::string& name, double mass, const Vec3& com, const Vec3& J, const std::string& more = "") {
-  std::ostringstream s;
-  s.precision(17);
-  s << "[[body]]\nname = \"" << name << "\"\nmass = " << mass << "\ncom = [" << com[0] << ", " << com[1] << ", " << com[2]
-    << "]\ninertia = [" << J[0] << ", " << J[1] << ", " << J[2] << "]\n"
-    << more;
-  return s.str();
-}
-std::string joint(const std::string& kind, const std::string& name, const std::string& a, const std::string& b, const Vec3& at,
-                  const std::string& more = "") {
-  std::ostringstream s;
-  s.precision(17);
-  s << "[[joint]]\nkind = \"" << kind << "\"\nname = \"" << name << "\"\na = \"" << a << "\"\nb = \"" << b << "\"\nat = [" << at[0] << ", "
-    << at[1] << ", " << at[2] << "]\n"
-    << more;
-  return s.str();
-}
-
-OrderCase pend3d(const Workplace& w) {
-  const Vec3 J(0.13333333333333333, 0.77333333333333333, 0.69333333333333333);
-  w.write("pend3d.toml", "gravity = [0, 0, -9.81]\n" + body("brick", 8, {0.5, 0.1, 0.2}, J) +
-                             joint("spherical", "corner", "ground", "brick", Vec3::Zero()) +
-                             "[[initial]]\non = [\"brick\"]\nspin = [0.5, 1, 2]\nabout = [0, 0, 0]\n"
-                             "[[probe]]\nname = \"far\"\non = \"brick\"\nat = [1, 0.2, 0.4]\n[time]\nend = 1\n");
-  const FixedPoint truth{8, {0.5, 0.1, 0.2}, J.asDiagonal(), {0.5, 1, 2}, {0, 0, -9.81}, {1, 0.2, 0.4}};
-  return {"pend3d.toml", "far", "corner", {0.3, 0.4, 0.5}, 2e-3, 5e-4, {truth.at(0.3, 6000), truth.at(0.4, 8000), truth.at(0.5, 10000)}};
-}
-
-OrderCase top(const Workplace& w) {
-  const Vec3 J(0.234375, 0.46875, 0.234375), spin(0, 150, -4.61538);
-  w.write("top.toml", "gravity = [0, 0, -9.81]\n" + body("top", 15, {0, 1, 0}, J) +
-                          joint("spherical", "pivot", "ground", "top", Vec3::Zero()) +
-                          "[[initial]]\non = [\"top\"]\nspin = [0, 150, -4.61538]\nabout = [0, 0, 0]\n"
-                          "[[probe]]\nname = \"tip\"\non = \"top\"\n[time]\nend = 1\n");
-  const FixedPoint truth{15, {0, 1, 0}, J.asDiagonal(), spin, {0, 0, -9.81}, {0, 1, 0}};
-  return {"top.toml", "tip", "pivot", {0.06, 0.08, 0.1}, 2e-4, 5e-5, {truth.at(0.06, 12000), truth.at(0.08, 16000), truth.at(0.1, 20000)}};
-}
-
-OrderCase slider(const Workplace& w) {
-  const SliderCrank m;
-  const double c = std::cos(m.theta), s = std::sin(m.theta), d = std::sqrt(m.l * m.l - m.r * m.r * s * s);
-  const Vec3 pin(m.r * c, m.r * s, 0), wrist(m.r * c + d, 0, 0);
-  const auto rod = [](double mass, double length) { return Vec3(1e-3, mass * length * length / 12, mass * length * length / 12); };
-  const auto axes = [](const Vec3& u) {
-    std::ostringstream o;
-    o.precision(17);
-    o << "axes = [" << u[0] << ", " << u[1] << ", 0, " << -u[1] << ", " << u[0] << ", 0, 0, 0, 1]\n";
-    return o.str();
-  };
-  const std::string z = "axis = [0, 0, 1]\n";
-  w.write("slider.toml", body("crank", m.m1, pin / 2, rod(m.m1, m.r), axes(pin / m.r)) +
-                             body("rod", m.m2, (pin + wrist) / 2, rod(m.m2, m.l), axes((wrist - pin) / m.l)) +
-                             body("block", m.m3, wrist, Vec3(1e-3, 1e-3, 1e-3)) +
-                             joint("revolute", "main", "ground", "crank", Vec3::Zero(), z) +
-                             joint("revolute", "pin", "crank", "rod", pin, z) + joint("spherical", "wrist", "rod", "block", wrist) +
-                             joint("prismatic", "guide", "ground", "block", wrist, "axis = [1, 0, 0]\n") +
-                             "[[initial]]\non = [\"crank\"]\nspin = [0, 0, 6]\nabout = [0, 0, 0]\n"
-                             "[[probe]]\nname = \"block\"\non = \"block\"\n[time]\nend = 1\n");
-  OrderCase out{"slider.toml", "block", "guide", {0.16, 0.2, 0.24}, 4e-3, 1e-3, {}, true};
-  // the start: velocities of rod and block are found by the projection, in the mass norm, from the crank's alone; the crank slows down
-  const Ran ran = w.run("hilo-solve --quiet slider.toml -o start.h5 --set time.step=1e-3 --set time.end=2e-3 --set solver.tolerance=1e-12");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
-  const Results r(w / "start.h5");
-  SliderCrank truth = m;
-  truth.rate = r.at("probe/block", 0)[3] / m.derivatives(m.theta).x1;
-  for (int i = 0; i < 3; ++i) out.truth[i] = truth.at(out.t[i], 20000);
-  return out;
-}
-
-/// stability.md's DPSMOOTH: a rod and a soft beam of four hexahedra, from rest, loads ramped up with three continuous derivatives.
-OrderCase dpsmooth(const Workplace& w) {
-  const Vec3 along(0.8, 0, -0.6), up(0.6, 0, 0.8);
-  BlockOptions o;
-  o.n[0] = 4;
-  o.low = Vec3(1, -0.05, -0.05), o.high = Vec3(2, 0.05, 0.05);
-  o.regions = {"beam"};
-  o.map = [&](const Vec3& x) { return Vec3(x[0] * along + x[1] * Vec3::UnitY() + x[2] * up); };
-  write_mesh(w / "beam.h5", block_mesh(o), {"test"});
-  w.write("dpsmooth.toml",
-          "mesh = \"beam.h5\"\n[material.soft]\nE = 5e6\nnu = 0.3\ndensity = 500\n[region.beam]\nmaterial = \"soft\"\n" +
-              body("rod", 2, along / 2, Vec3(0.01, 1. / 6, 1. / 6), "axes = [0.8, 0, -0.6, 0, 1, 0, 0.6, 0, 0.8]\n") +
-              joint("spherical", "pin", "ground", "rod", Vec3::Zero()) + joint("spherical", "middle", "rod", "xmin", along) +
-              "[[load]]\nkind = \"force\"\nname = \"of rod\"\non = \"rod\"\nforce = [3, 8, -19.62]\nhistory = \"ramp\"\n"
-              "[[load]]\nkind = \"force\"\nname = \"of beam\"\non = \"surface\"\nforce = [5, -5, -49.05]\nhistory = \"ramp\"\n"
-              "[history.ramp]\nt = [0, 0.5]\nvalue = [0, 1]\ninterpolation = \"smoother\"\n"
-              "[[probe]]\nname = \"tip\"\non = \"xmax\"\n[time]\nend = 1\n");
-  OrderCase out{"dpsmooth.toml", "tip", "middle", {0.36, 0.38, 0.4}, 1e-3, 5e-4, {}, true};
-  static const std::array<Truth, 3> truth = [&] {
-    const Ran ran =
-        w.run("hilo-solve --quiet dpsmooth.toml -o truth.h5 --set time.step=5e-4 --set time.end=0.42 --set solver.tolerance=1e-12 " +
-              integrator("radau"));
-    EXPECT_EQ(ran.exit, 0) << ran.err;
-    const Results r(w / "truth.h5");
-    std::array<Truth, 3> list;
-    for (int i = 0; i < 3; ++i) {
-      const auto p = r.at("probe/tip", out.t[i]);
-      list[i] = {p.head<3>(), p.segment<3>(3), p.tail<3>(), r.at("joint/middle", out.t[i]).head<3>(), Mat3::Identity()};
-    }
-    return list;
-  }();
-  out.truth = truth;
-  return out;
 }
 
 class Orders : public testing::TestWithParam<Method> {};

@@ -1,5 +1,8 @@
 // Rigid bodies turning about a fixed point, and the slider-crank, integrated in the test itself without joints or multipliers.
 #pragma once
+#include <cmath>
+#include <vector>
+
 #include "base/math.hpp"
 
 namespace hilo::test {
@@ -16,7 +19,11 @@ struct FixedPoint {
   Mat3 inertia;  // about the centre of mass [kg m^2]
   Vec3 spin, gravity{0, 0, -9.81}, point;
 
-  Truth at(double end, int n) const {
+  Truth at(double end, int n) const { return series({end}, end / n).front(); }
+
+  /// At rising instants, with steps of at most `step`.
+  std::vector<Truth> series(const std::vector<double>& times, double step) const {
+    std::vector<Truth> out;
     const Mat3 JO = inertia + mass * (centre.squaredNorm() * Mat3::Identity() - centre * centre.transpose());
     struct State {
       Mat3 R;
@@ -29,14 +36,20 @@ struct FixedPoint {
     const auto rate = [&](const State& s) { return State{skew(s.w) * s.R, spin_rate(s)}; };
     const auto plus = [](const State& s, const State& d, double h) { return State{s.R + h * d.R, s.w + h * d.w}; };
     State s{Mat3::Identity(), spin};
-    for (int i = 0; i < n; ++i) {
-      const double h = end / n;
-      const State k1 = rate(s), k2 = rate(plus(s, k1, h / 2)), k3 = rate(plus(s, k2, h / 2)), k4 = rate(plus(s, k3, h));
-      s.R += h / 6 * (k1.R + 2 * k2.R + 2 * k3.R + k4.R), s.w += h / 6 * (k1.w + 2 * k2.w + 2 * k3.w + k4.w);
+    double now = 0;
+    for (const double end : times) {
+      const int n = end > now ? static_cast<int>(std::ceil((end - now) / step - 1e-9)) : 0;
+      const double h = n > 0 ? (end - now) / n : 0;
+      for (int i = 0; i < n; ++i) {
+        const State k1 = rate(s), k2 = rate(plus(s, k1, h / 2)), k3 = rate(plus(s, k2, h / 2)), k4 = rate(plus(s, k3, h));
+        s.R += h / 6 * (k1.R + 2 * k2.R + 2 * k3.R + k4.R), s.w += h / 6 * (k1.w + 2 * k2.w + 2 * k3.w + k4.w);
+      }
+      now = end;
+      const Vec3 wd = spin_rate(s), x = s.R * point, c = s.R * centre;
+      const auto acceleration = [&](const Vec3& r) { return Vec3(wd.cross(r) + s.w.cross(s.w.cross(r))); };
+      out.push_back({x, s.w.cross(x), acceleration(x), mass * (acceleration(c) - gravity), s.R});
     }
-    const Vec3 wd = spin_rate(s), x = s.R * point, c = s.R * centre;
-    const auto acceleration = [&](const Vec3& r) { return Vec3(wd.cross(r) + s.w.cross(s.w.cross(r))); };
-    return {x, s.w.cross(x), acceleration(x), mass * (acceleration(c) - gravity), s.R};
+    return out;
   }
 };
 

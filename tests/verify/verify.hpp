@@ -75,8 +75,8 @@ class Case : public Workplace {
   }
   Results results(const std::string& output = "run.h5") const { return Results(*this / output); }
   /// Run and read.
-  Results solved(const std::string& options = "", const std::string& output = "run.h5") const {
-    const Ran ran = solve("--quiet " + options, output);
+  Results solved(const std::string& options = "", const std::string& output = "run.h5", const std::string& scene = "scene") const {
+    const Ran ran = solve("--quiet " + options, output, 0, scene);
     if (ran.exit != 0) throw std::runtime_error("hilo-solve: " + ran.err);
     return results(output);
   }
