@@ -64,7 +64,7 @@ class KktSolver {
 
 /// KLU for small systems, UMFPACK above [davis-2010, davis-2004]; serial, starts in microseconds.
 std::unique_ptr<KktSolver> make_light_solver();
-/// PETSc: "direct" (MUMPS) or "iterative"; loaded when first asked for, since PETSc's start costs more than a small run.
+/// PETSc: "direct" (MUMPS), "iterative", "bddc" or "feti-dp"; loaded when first asked for, since PETSc's start costs more than a small run.
 std::unique_ptr<KktSolver> make_petsc_solver(const std::string& kind, double tolerance);
 
 }  // namespace hilo

@@ -95,6 +95,10 @@ void BlockMatrix::add_diagonal(int block, const double d[3]) {
   check(MatSetValuesBlocked(A_, 1, &global_[block], 1, &global_[block], D, ADD_VALUES));
 }
 
+void BlockMatrix::add_row(PetscInt row, std::span<const PetscInt> columns, const double* values) {
+  check(MatSetValuesBlocked(A_, 1, &row, static_cast<PetscInt>(columns.size()), columns.data(), values, ADD_VALUES));
+}
+
 void BlockMatrix::assemble() {
   check(MatAssemblyBegin(A_, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(A_, MAT_FINAL_ASSEMBLY));

@@ -5,25 +5,26 @@
 
 #include <vector>
 
-#include "linear/kkt.hpp"
-#include "linear/petsc/shared.hpp"
+#include "linear/petsc/flexible.hpp"
 
 namespace hilo::petsc {
 
-class BlockMatrix {
+class BlockMatrix final : public FlexibleMatrix {
  public:
   /// The blocks with global numbers below `n_global` (rows owned as in the map); cliques pass over the others.
   BlockMatrix(const Cliques& cliques, const BlockMap& map, const SharedBlocks& shared, std::int64_t n_global);
-  ~BlockMatrix();
+  ~BlockMatrix() override;
   BlockMatrix(const BlockMatrix&) = delete;
 
-  void zero();
-  void add(std::span<const int> blocks, const double* K);
-  void add_diagonal(int block, const double d[3]);
-  void assemble();
-  Mat mat() const { return A_; }
-  PetscInt n_owned() const { return n_owned_; }  // blocks
-  double bytes() const;                          // of this rank
+  void zero() override;
+  void add(std::span<const int> blocks, const double* K) override;
+  void add_diagonal(int block, const double d[3]) override;
+  /// Add one row of blocks by global numbers: 3 x 3 each, row major one after the other's columns (3 x 3n).
+  void add_row(PetscInt row, std::span<const PetscInt> columns, const double* values);
+  void assemble() override;
+  Mat mat() const override { return A_; }
+  PetscInt n_owned() const override { return n_owned_; }
+  double bytes() const override;
 
  private:
   Mat A_ = nullptr;

@@ -32,6 +32,12 @@ class Coupling {
   void column(int j, double* u, size_t n) const;
   /// p += factor C u, this rank's share: to be summed over the ranks.
   void add_C(double factor, const double* u, double* p) const;
+  /// The couples of owned flexible blocks: (local block, dense block, 3 x 3 of B, 3 x 3 of C).
+  template <class Visit>
+  void for_each_couple(const Visit& visit) const {
+    for (size_t k = 0; k < couples_.size(); ++k)
+      if (position_[couples_[k].flexible] >= 0) visit(couples_[k].flexible, couples_[k].dense, &B_[9 * k], &C_[9 * k]);
+  }
   double bytes() const { return 8. * (2. * static_cast<double>(D_.size()) + B_.size() + C_.size()); }
 
  private:

@@ -1,116 +1,94 @@
-// One unsymmetric saddle-point matrix, factored by MUMPS [amestoy-2001].
+#include "linear/petsc/direct.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "base/error.hpp"
-#include "linear/petsc/solver.hpp"
 
 namespace hilo::petsc {
-namespace {
 
-class DirectSolver final : public KktSolver {
- public:
-  explicit DirectSolver(double tolerance) : tolerance_(tolerance) {}
-  ~DirectSolver() override { MatDestroy(&factor_); }
+void DirectSolver::structure(const Cliques& cliques, const BlockMap& map) {
+  check(MatDestroy(&factor_));
+  cliques_ = &cliques;
+  shared_.emplace(map);
+  matrix_.reset();
+  matrix_.emplace(cliques, map, *shared_, map.n_global);
+  const PetscInt n = 3 * matrix_->n_owned();
+  x_ = Vector(n), b_ = Vector(n), r_ = Vector(n), dx_ = Vector(n);
+}
 
-  void structure(const Cliques& cliques, const BlockMap& map) override {
-    check(MatDestroy(&factor_));
-    cliques_ = &cliques;
-    shared_.emplace(map);
-    matrix_.reset();
-    matrix_.emplace(cliques, map, *shared_, map.n_global);
-    const PetscInt n = 3 * matrix_->n_owned();
-    x_ = Vector(n), b_ = Vector(n), r_ = Vector(n), dx_ = Vector(n);
+SolveReport DirectSolver::solve(std::span<const double> b, std::span<double> x) {
+  matrix_->assemble();
+  if (const std::string problem = factor(); !problem.empty()) return {false, 1, 0, problem};
+  to_owned(*shared_, b, b_);
+  const double norm = max_norm(b_);
+  SolveReport report;
+  check(MatSolve(factor_, b_, x_));
+  for (int pass = 0;; ++pass) {  // one or two steps of refinement where the residual asks for it
+    check(MatMult(matrix_->mat(), x_, r_));
+    check(VecAYPX(r_, -1, b_));
+    report.residual = norm > 0 ? max_norm(r_) / norm : max_norm(r_);
+    if (!std::isfinite(report.residual)) return {false, report.residual, 0, "the matrix is singular to working precision"};
+    if (report.residual < 1e-12 || pass == 2) break;
+    check(MatSolve(factor_, r_, dx_));
+    check(VecAXPY(x_, 1, dx_));
   }
-  void zero() override { matrix_->zero(); }
-  void add(int clique, const double* K) override { matrix_->add((*cliques_)[clique], K); }
-  void add_diagonal(int block, const double d[3]) override { matrix_->add_diagonal(block, d); }
-  void sum_shared(std::span<double> local) override { shared_->sum(local); }
+  to_local(*shared_, x_, x);
+  PetscReal A = 0;
+  if (report.residual > 1e-6) check(MatNorm(matrix_->mat(), NORM_INFINITY, &A));
+  // an ill-conditioned matrix leaves no better residual than round-off of what its rows sum
+  if (report.residual > std::max(1e-6, tolerance_) && max_norm(r_) > 1e-12 * (A * max_norm(x_) + norm))
+    report.ok = false, report.message = fmt::format("linear residual {:.1e}", report.residual);
+  return report;
+}
 
-  SolveReport solve(std::span<const double> b, std::span<double> x) override {
-    matrix_->assemble();
-    if (const std::string problem = factor(); !problem.empty()) return {false, 1, 0, problem};
-    to_owned(*shared_, b, b_);
-    const double norm = max_norm(b_);
-    SolveReport report;
-    check(MatSolve(factor_, b_, x_));
-    for (int pass = 0;; ++pass) {  // one or two steps of refinement where the residual asks for it
-      check(MatMult(matrix_->mat(), x_, r_));
-      check(VecAYPX(r_, -1, b_));
-      report.residual = norm > 0 ? max_norm(r_) / norm : max_norm(r_);
-      if (!std::isfinite(report.residual)) return {false, report.residual, 0, "the matrix is singular to working precision"};
-      if (report.residual < 1e-12 || pass == 2) break;
-      check(MatSolve(factor_, r_, dx_));
-      check(VecAXPY(x_, 1, dx_));
+std::string DirectSolver::name() const { return size() > 1 ? fmt::format("direct (MUMPS, {} ranks)", size()) : "direct (MUMPS)"; }
+
+/// "" or what went wrong.  The analysis is kept: the pattern does not change.
+std::string DirectSolver::factor() {
+  MatFactorInfo info;
+  check(MatFactorInfoInitialize(&info));
+  if (!factor_) {
+    check(MatGetFactor(matrix_->mat(), MATSOLVERMUMPS, MAT_FACTOR_LU, &factor_));
+    set(14, 35);                               // room for delayed pivots [%]
+    set(24, 1);                                // find null pivots instead of dividing by them
+    set(13, 1);                                // no ScaLAPACK at the root: it would hide them there
+    set(10, 0);                                // refinement is ours
+    check(MatMumpsSetCntl(factor_, 1, 0.01));  // threshold of partial pivoting: multipliers have no diagonal
+    check(MatLUFactorSymbolic(factor_, matrix_->mat(), nullptr, nullptr, &info));
+    if (const auto error = infog(1); error < 0) return failure("analysis", error);
+  }
+  for (PetscInt room = 35;; room *= 2) {
+    check(MatLUFactorNumeric(factor_, matrix_->mat(), &info));
+    const auto error = infog(1);
+    const bool more_room = error == -8 || error == -9 || error == -14 || error == -15 || error == -17 || error == -20;
+    if (more_room && room < 1000) {
+      set(14, 2 * room);
+      continue;
     }
-    to_local(*shared_, x_, x);
-    PetscReal A = 0;
-    if (report.residual > 1e-6) check(MatNorm(matrix_->mat(), NORM_INFINITY, &A));
-    // an ill-conditioned matrix leaves no better residual than round-off of what its rows sum
-    if (report.residual > std::max(1e-6, tolerance_) && max_norm(r_) > 1e-12 * (A * max_norm(x_) + norm))
-      report.ok = false, report.message = fmt::format("linear residual {:.1e}", report.residual);
-    return report;
+    PetscInt megabytes = 0;
+    check(MatMumpsGetInfo(factor_, 16, &megabytes));
+    factor_bytes_ = 1e6 * megabytes;
+    if (error == -10) return "the matrix is singular";
+    if (error < 0) return failure("factorisation", error);
+    if (const auto null = infog(28); null > 0) return fmt::format("the matrix is singular ({} null pivot{})", null, null > 1 ? "s" : "");
+    return "";
   }
+}
 
-  double bytes() const override { return matrix_->bytes() + factor_bytes_; }
-  std::string name() const override { return size() > 1 ? fmt::format("direct (MUMPS, {} ranks)", size()) : "direct (MUMPS)"; }
+/// Memory is an Error, seen by all ranks alike; anything else a failed solve.
+std::string DirectSolver::failure(const char* phase, PetscInt error) const {
+  if (error == -5 || error == -7 || error == -9 || error == -13 || error == -19)
+    throw Error("MUMPS", fmt::format("out of memory in the {}", phase), "use more ranks, or solver.kind = \"iterative\"", Exit::resources);
+  return fmt::format("MUMPS {} failed: INFOG(1) = {}, INFOG(2) = {}", phase, error, infog(2));
+}
 
- private:
-  /// "" or what went wrong.  The analysis is kept: the pattern does not change.
-  std::string factor() {
-    MatFactorInfo info;
-    check(MatFactorInfoInitialize(&info));
-    if (!factor_) {
-      check(MatGetFactor(matrix_->mat(), MATSOLVERMUMPS, MAT_FACTOR_LU, &factor_));
-      set(14, 35);                               // room for delayed pivots [%]
-      set(24, 1);                                // find null pivots instead of dividing by them
-      set(13, 1);                                // no ScaLAPACK at the root: it would hide them there
-      set(10, 0);                                // refinement is ours
-      check(MatMumpsSetCntl(factor_, 1, 0.01));  // threshold of partial pivoting: multipliers have no diagonal
-      check(MatLUFactorSymbolic(factor_, matrix_->mat(), nullptr, nullptr, &info));
-      if (const auto error = infog(1); error < 0) return failure("analysis", error);
-    }
-    for (PetscInt room = 35;; room *= 2) {
-      check(MatLUFactorNumeric(factor_, matrix_->mat(), &info));
-      const auto error = infog(1);
-      const bool more_room = error == -8 || error == -9 || error == -14 || error == -15 || error == -17 || error == -20;
-      if (more_room && room < 1000) {
-        set(14, 2 * room);
-        continue;
-      }
-      PetscInt megabytes = 0;
-      check(MatMumpsGetInfo(factor_, 16, &megabytes));
-      factor_bytes_ = 1e6 * megabytes;
-      if (error == -10) return "the matrix is singular";
-      if (error < 0) return failure("factorisation", error);
-      if (const auto null = infog(28); null > 0) return fmt::format("the matrix is singular ({} null pivot{})", null, null > 1 ? "s" : "");
-      return "";
-    }
-  }
-  /// Memory is an Error, seen by all ranks alike; anything else a failed solve.
-  std::string failure(const char* phase, PetscInt error) const {
-    if (error == -5 || error == -7 || error == -9 || error == -13 || error == -19)
-      throw Error("MUMPS", fmt::format("out of memory in the {}", phase), "use more ranks, or solver.kind = \"iterative\"",
-                  Exit::resources);
-    return fmt::format("MUMPS {} failed: INFOG(1) = {}, INFOG(2) = {}", phase, error, infog(2));
-  }
-  void set(PetscInt control, PetscInt value) { check(MatMumpsSetIcntl(factor_, control, value)); }
-  PetscInt infog(PetscInt i) const {
-    PetscInt value = 0;
-    check(MatMumpsGetInfog(factor_, i, &value));
-    return value;
-  }
-
-  double tolerance_, factor_bytes_ = 0;
-  const Cliques* cliques_ = nullptr;
-  std::optional<SharedBlocks> shared_;
-  std::optional<BlockMatrix> matrix_;
-  Mat factor_ = nullptr;
-  Vector x_, b_, r_, dx_;
-};
-
-}  // namespace
+PetscInt DirectSolver::infog(PetscInt i) const {
+  PetscInt value = 0;
+  check(MatMumpsGetInfog(factor_, i, &value));
+  return value;
+}
 
 std::unique_ptr<KktSolver> make_direct(double tolerance) { return std::make_unique<DirectSolver>(tolerance); }
 

@@ -1,39 +1,63 @@
-// An approximate inverse of the flexible block: one fixed linear operator, so that the Schur complement can be formed with it.
-//
-// Incomplete factors (block Jacobi over the ranks, ILU(0) in 3 x 3 blocks) are best while a wave crosses few hundred elements in a step;
-// beyond, smoothed aggregation multigrid is (docs/accuracy-and-speed.md).  Which one is settled by the iterations the last solve took.
+// The flexible block F of a system, and an approximate inverse of it: one fixed linear operator, so that the Schur complement of bodies
+// and multipliers can be formed with it.
 #pragma once
 #define OMPI_SKIP_MPICXX 1
-#include <petscpc.h>
+#include <petscmat.h>
 
+#include <memory>
+#include <string>
 #include <vector>
 
-#include "linear/petsc/block_matrix.hpp"
+#include "linear/kkt.hpp"
+#include "linear/petsc/shared.hpp"
 
 namespace hilo::petsc {
 
+class FlexibleMatrix {
+ public:
+  virtual ~FlexibleMatrix() = default;
+  virtual void zero() = 0;
+  /// Add the flexible part of a clique's dense matrix.
+  virtual void add(std::span<const int> blocks, const double* K) = 0;
+  virtual void add_diagonal(int block, const double d[3]) = 0;
+  virtual void assemble() = 0;
+  virtual Mat mat() const = 0;
+  virtual PetscInt n_owned() const = 0;  // blocks
+  virtual double bytes() const = 0;      // of this rank
+};
+
 class FlexibleInverse {
  public:
-  enum class Kind { incomplete, multigrid };
-  /// `positions`: of the owned blocks, 3 each, for multigrid's rigid modes; may be empty.
-  FlexibleInverse(const BlockMatrix& F, std::vector<double> positions) : F_(F), positions_(std::move(positions)) {}
-  ~FlexibleInverse() { release(); }
-  FlexibleInverse(const FlexibleInverse&) = delete;
-
+  virtual ~FlexibleInverse() = default;
   /// Make it anew for the matrix as it is now.  False when the factors break down.
-  bool set_up();
-  void apply(Vec b, Vec x) { check(PCApply(pc_, b, x)); }
-  void use(Kind kind);
-  Kind kind() const { return kind_; }
-  double bytes() const;
-
- private:
-  void release();
-  const BlockMatrix& F_;
-  std::vector<double> positions_;
-  Kind kind_ = Kind::incomplete;
-  PC pc_ = nullptr;
-  Mat scalar_ = nullptr;  // F without blocks: multigrid wants it so
+  virtual bool set_up() = 0;
+  virtual void apply(Vec b, Vec x) = 0;
+  /// After a solve of so many iterations, or one that failed: whether a stronger kind takes over.
+  virtual bool strengthen(int iterations, bool failed) = 0;
+  /// Does a set-up cost many iterations?  Then it serves several solves.
+  virtual bool is_dear() const { return false; }
+  /// Is one application itself iterative, so that it differs a little from a linear operator?
+  virtual bool is_iterative() const { return false; }
+  /// Has an application failed since the set-up?  The same on all ranks.
+  virtual bool has_failed() const { return false; }
+  /// Outer iterations after which there is no hope.
+  virtual int most_iterations() const { return 600; }
+  /// Iterations within the applications since the last call.
+  virtual int take_iterations() { return 0; }
+  virtual std::string name() const = 0;
+  virtual double bytes() const = 0;
 };
+
+/// The rigid motions of the owned positions (3 each) as near null space; false where no rank has positions.
+bool set_near_null_space(Mat A, const std::vector<double>& positions);
+
+class BlockMatrix;
+class SubdomainMatrix;
+
+/// Incomplete factors, and multigrid where they need too many iterations.  `positions`: of the owned blocks, 3 each, for the rigid modes;
+/// may be empty.
+std::unique_ptr<FlexibleInverse> make_algebraic_inverse(const BlockMatrix& F, std::vector<double> positions);
+/// BDDC, or with `dual` FETI-DP.
+std::unique_ptr<FlexibleInverse> make_substructured_inverse(SubdomainMatrix& F, std::vector<double> positions, bool dual);
 
 }  // namespace hilo::petsc

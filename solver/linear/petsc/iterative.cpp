@@ -15,33 +15,33 @@
 
 #include "base/error.hpp"
 #include "linear/petsc/coupling.hpp"
-#include "linear/petsc/flexible.hpp"
+#include "linear/petsc/direct.hpp"
 #include "linear/petsc/solver.hpp"
+#include "linear/petsc/subdomain_matrix.hpp"
 
 namespace hilo::petsc {
 namespace {
 
 /// Z is kept (in single precision: it only preconditions) up to so many columns; beyond, F~ is applied a second time per iteration.
 constexpr size_t columns_kept = 100;
-constexpr int many_iterations = 200;  // then multigrid takes over
 
 class IterativeSolver final : public KktSolver {
  public:
-  explicit IterativeSolver(double tolerance) : tolerance_(tolerance) {}
+  IterativeSolver(Kind kind, double tolerance) : kind_(kind), tolerance_(tolerance) {}
   ~IterativeSolver() override { release(); }
 
   void structure(const Cliques& cliques, const BlockMap& map) override {
     release();
-    cliques_ = &cliques;
+    cliques_ = &cliques, map_ = &map;
+    direct_.reset(), inverse_.reset(), matrix_.reset(), coupling_.reset();
     shared_.emplace(map);
-    inverse_.reset(), matrix_.reset(), coupling_.reset();
-    matrix_.emplace(cliques, map, *shared_, map.first_dense);
     coupling_.emplace(cliques, map, *shared_);
     std::vector<double> positions;
     if (!map.X.empty())
-      for (PetscInt k = 0; k < matrix_->n_owned(); ++k)
+      for (std::int64_t k = 0; k < shared_->n_owned() && map.first + k < map.first_dense; ++k)
         positions.insert(positions.end(), map.X.begin() + 3 * shared_->owned(k), map.X.begin() + 3 * shared_->owned(k) + 3);
-    inverse_.emplace(*matrix_, std::move(positions));
+    make_flexible(std::move(positions));
+    ready_ = false;
     touches_dense_.clear();
     for (int e = 0; e < cliques.size(); ++e) touches_dense_.push_back(coupling_->couples(cliques[e]));
     n_flexible_ = 3 * static_cast<size_t>(matrix_->n_owned());
@@ -53,12 +53,17 @@ class IterativeSolver final : public KktSolver {
     p_.assign(m_, 0.0), q_.assign(m_, 0.0);
     make_krylov(3 * map.n_global);
   }
-  void zero() override { matrix_->zero(), coupling_->zero(); }
+  void zero() override {
+    if (direct_) return direct_->zero();
+    matrix_->zero(), coupling_->zero();
+  }
   void add(int clique, const double* K) override {
+    if (direct_) return direct_->add(clique, K);
     matrix_->add((*cliques_)[clique], K);
     if (touches_dense_[clique]) coupling_->add((*cliques_)[clique], K);
   }
   void add_diagonal(int block, const double d[3]) override {
+    if (direct_) return direct_->add_diagonal(block, d);
     if (coupling_->is_dense(block))
       coupling_->add_diagonal(block, d);
     else
@@ -67,33 +72,99 @@ class IterativeSolver final : public KktSolver {
   void sum_shared(std::span<double> local) override { shared_->sum(local); }
 
   SolveReport solve(std::span<const double> b, std::span<double> x) override {
+    if (direct_) return direct_->solve(b, x);
     matrix_->assemble(), coupling_->assemble();
     to_owned(*shared_, b, b_);
-    SolveReport report = attempt();
-    if (!report.ok && inverse_->kind() == FlexibleInverse::Kind::incomplete) {
-      inverse_->use(FlexibleInverse::Kind::multigrid);
-      const int before = report.iterations;
-      report = attempt();
+    check(VecSet(x_, 0));
+    SolveReport report;
+    int before = 0;
+    const bool lagged = ready_ && inverse_->is_dear();
+    if (lagged) {  // the preconditioner of a matrix before serves while it is not much worse than it was for its own
+      report = attempt(2 * fresh_iterations_ + 10);
+      ready_ = report.ok && report.iterations <= fresh_iterations_ + fresh_iterations_ / 2 + 5;
+      before = report.iterations;
+    }
+    if (!lagged || !report.ok) {
+      if (!(report.residual < 1)) check(VecSet(x_, 0));
+      report = set_up_and_attempt();
+      while (inverse_->strengthen(report.iterations, !report.ok) && !report.ok) {
+        before += report.iterations;
+        check(VecSet(x_, 0));
+        report = set_up_and_attempt();
+      }
+      fresh_iterations_ = report.iterations;
       report.iterations += before;
-    } else if (report.iterations > many_iterations) {
-      inverse_->use(FlexibleInverse::Kind::multigrid);
+    }
+    if (!report.ok && inverse_->is_dear()) {
+      if (rank() == 0)
+        warn("", fmt::format("{} fails ({}): the flexible part may be unstable or held by nothing; direct from here on", name(),
+                             report.message));
+      hand_over();
+      before = report.iterations;
+      report = direct_->solve(b, x);
+      report.iterations += before;
+      return report;
     }
     to_local(*shared_, x_, x);
     return report;
   }
 
   double bytes() const override {
+    if (direct_) return direct_->bytes();
     return matrix_->bytes() + coupling_->bytes() + inverse_->bytes() + 4. * n_flexible_ * Z_.size() + 8. * restart_ * n_all_;
   }
   std::string name() const override {
-    const bool multigrid = inverse_ && inverse_->kind() == FlexibleInverse::Kind::multigrid;
-    return fmt::format("iterative (GMRES, {}{})", multigrid ? "multigrid" : "ILU", size() > 1 ? fmt::format(", {} ranks", size()) : "");
+    if (direct_) return direct_->name();
+    if (!inverse_) return kind_ == Kind::bddc ? "BDDC" : kind_ == Kind::feti_dp ? "FETI-DP" : "iterative";
+    const std::string ranks = size() > 1 ? fmt::format(", {} ranks", size()) : "";
+    return kind_ == Kind::algebraic ? fmt::format("iterative (GMRES, {}{})", inverse_->name(), ranks)
+                                    : fmt::format("{} (GMRES{})", inverse_->name(), ranks);
   }
 
  private:
   void release() {
     KSPDestroy(&ksp_);
     MatDestroy(&A_);
+  }
+
+  void make_flexible(std::vector<double> positions) {
+    if (kind_ == Kind::algebraic) {
+      auto F = std::make_unique<BlockMatrix>(*cliques_, *map_, *shared_, map_->first_dense);
+      inverse_ = make_algebraic_inverse(*F, std::move(positions));
+      matrix_ = std::move(F);
+      return;
+    }
+    auto F = std::make_unique<SubdomainMatrix>(*cliques_, *map_, *shared_);
+    inverse_ = make_substructured_inverse(*F, std::move(positions), kind_ == Kind::feti_dp);
+    matrix_ = std::move(F);
+  }
+
+  /// What is assembled goes to the direct solver, which does the rest of the run.
+  void hand_over() {
+    auto direct = std::make_unique<DirectSolver>(tolerance_);
+    direct->structure(*cliques_, *map_);
+    direct->zero();
+    BlockMatrix& A = direct->matrix();
+    const auto first_dense = static_cast<PetscInt>(map_->first_dense);
+    static_cast<SubdomainMatrix&>(*matrix_).for_each_row(
+        [&](PetscInt row, std::span<const PetscInt> columns, const double* values) { A.add_row(row, columns, values); });
+    coupling_->for_each_couple([&](int local, int dense, const double* B, const double* C) {
+      const PetscInt u = static_cast<PetscInt>(map_->global[local]), p = first_dense + dense;
+      A.add_row(u, {&p, 1}, B), A.add_row(p, {&u, 1}, C);
+    });
+    if (n_all_ > n_flexible_)
+      for (int i = 0; i < m_ / 3; ++i)
+        for (int j = 0; j < m_ / 3; ++j) {
+          double d[9];
+          bool any = false;
+          for (int c = 0; c < 9; ++c) d[c] = coupling_->D()[static_cast<size_t>(3 * i + c / 3) * m_ + 3 * j + c % 3], any |= d[c] != 0;
+          const PetscInt column = first_dense + j;
+          if (any) A.add_row(first_dense + i, {&column, 1}, d);
+        }
+    release();
+    Z_.clear();
+    inverse_.reset(), matrix_.reset(), coupling_.reset();
+    direct_ = std::move(direct);
   }
 
   void make_krylov(std::int64_t n_global) {
@@ -106,13 +177,13 @@ class IterativeSolver final : public KktSolver {
                                  return code;
                                })));
     check(KSPCreate(PETSC_COMM_WORLD, &ksp_));
-    check(KSPSetOptionsPrefix(ksp_, "hilo_"));
+    check(KSPSetOptionsPrefix(ksp_, "hilo_outer_"));
     check(KSPSetOperators(ksp_, A_, A_));
-    check(KSPSetType(ksp_, KSPGMRES));
+    check(KSPSetType(ksp_, inverse_->is_iterative() ? KSPFGMRES : KSPGMRES));
     restart_ = n_global > 1000000 ? 50 : 100;  // at 3 million unknowns 50 vectors are 1.2 GB
     check(KSPGMRESSetRestart(ksp_, restart_));
     check(KSPSetPCSide(ksp_, PC_RIGHT));
-    check(KSPSetTolerances(ksp_, tolerance_, 1e-300, PETSC_DEFAULT, 600));
+    check(KSPSetInitialGuessNonzero(ksp_, PETSC_TRUE));
     PC pc;
     check(KSPGetPC(ksp_, &pc));
     check(PCSetType(pc, PCSHELL));
@@ -126,17 +197,27 @@ class IterativeSolver final : public KktSolver {
     check(KSPSetFromOptions(ksp_));
   }
 
-  SolveReport attempt() {
-    SolveReport report;
-    check(VecSet(x_, 0));
+  SolveReport set_up_and_attempt() {
+    ready_ = false;
     if (!inverse_->set_up()) return {false, 1, 0, "the flexible block is singular"};
     if (!factor_schur()) return {false, 1, 0, "the matrix is singular (bodies and joints)"};
+    inverse_->take_iterations();
+    const SolveReport report = attempt(inverse_->most_iterations());
+    ready_ = report.ok;
+    return report;
+  }
+
+  /// From x_ as it is.
+  SolveReport attempt(int iterations_allowed) {
+    SolveReport report;
+    check(KSPSetTolerances(ksp_, tolerance_, 1e-300, PETSC_DEFAULT, iterations_allowed));
     check(KSPSolve(ksp_, b_, x_));
     KSPConvergedReason reason;
     PetscInt iterations;
     check(KSPGetConvergedReason(ksp_, &reason));
     check(KSPGetIterationNumber(ksp_, &iterations));
-    report.iterations = static_cast<int>(iterations);
+    const int within = inverse_->take_iterations();
+    report.iterations = within > 0 ? within : static_cast<int>(iterations);
     multiply(x_, r_);
     check(VecAYPX(r_, -1, b_));
     const double norm = max_norm(b_);
@@ -163,6 +244,7 @@ class IterativeSolver final : public KktSolver {
         coupling_->column(columns[k], f.data(), n_flexible_);
       }
       inverse_->apply(f_, u_);
+      if (inverse_->has_failed()) return false;
       const Values u(u_);
       coupling_->add_C(-1, u.data(), change.col(static_cast<Eigen::Index>(k)).data());
       if (keep_) Z_[k].assign(u.data(), u.data() + n_flexible_);
@@ -260,15 +342,19 @@ class IterativeSolver final : public KktSolver {
     for (size_t i = 0; i < n_flexible_; ++i) u[i] -= w[i];
   }
 
+  Kind kind_;
   double tolerance_;
-  int m_ = 0, restart_ = 100;
+  bool ready_ = false;  // the preconditioner is of a matrix that it solved
+  int fresh_iterations_ = 0, m_ = 0, restart_ = 100;
   size_t n_flexible_ = 0, n_all_ = 0;  // owned unknowns
   const Cliques* cliques_ = nullptr;
+  const BlockMap* map_ = nullptr;
   std::vector<char> touches_dense_;  // (n_cliques)
   std::optional<SharedBlocks> shared_;
-  std::optional<BlockMatrix> matrix_;
+  std::unique_ptr<FlexibleMatrix> matrix_;
   std::optional<Coupling> coupling_;
-  std::optional<FlexibleInverse> inverse_;
+  std::unique_ptr<FlexibleInverse> inverse_;
+  std::unique_ptr<DirectSolver> direct_;  // once substructuring has failed
   Vector x_, b_, r_, f_, u_, w_;
   Mat A_ = nullptr;
   KSP ksp_ = nullptr;
@@ -281,6 +367,6 @@ class IterativeSolver final : public KktSolver {
 
 }  // namespace
 
-std::unique_ptr<KktSolver> make_iterative(double tolerance) { return std::make_unique<IterativeSolver>(tolerance); }
+std::unique_ptr<KktSolver> make_iterative(Kind kind, double tolerance) { return std::make_unique<IterativeSolver>(kind, tolerance); }
 
 }  // namespace hilo::petsc

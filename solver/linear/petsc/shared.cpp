@@ -7,7 +7,8 @@
 
 namespace hilo::petsc {
 
-SharedBlocks::SharedBlocks(const BlockMap& map) : owned_(map.n_owned, -1), is_owned_(map.global.size()), ghosts_(size()), lent_(size()) {
+SharedBlocks::SharedBlocks(const BlockMap& map)
+    : owned_(map.n_owned, -1), is_owned_(map.global.size()), is_shared_(map.global.size(), 1), ghosts_(size()), lent_(size()) {
   const int n = size();
   first_.resize(n + 1);
   MPI_Allgather(&map.first, 1, MPI_INT64_T, first_.data(), 1, MPI_INT64_T, PETSC_COMM_WORLD);
@@ -20,6 +21,7 @@ SharedBlocks::SharedBlocks(const BlockMap& map) : owned_(map.n_owned, -1), is_ow
     is_owned_[i] = k >= 0 && k < map.n_owned;
     if (is_owned_[i]) {
       owned_[k] = static_cast<int>(i);
+      is_shared_[i] = 0;
       continue;
     }
     const int r = owner(map.global[i]);
@@ -30,7 +32,7 @@ SharedBlocks::SharedBlocks(const BlockMap& map) : owned_(map.n_owned, -1), is_ow
     if (i < 0) fail("a rank does not hold a block that it owns", static_cast<int>(Exit::fault));
   const auto asked = exchange(ask);
   for (int r = 0; r < n; ++r)
-    for (const auto g : asked[r]) lent_[r].push_back(owned_[g - map.first]);
+    for (const auto g : asked[r]) lent_[r].push_back(owned_[g - map.first]), is_shared_[lent_[r].back()] = 1;
 }
 
 int SharedBlocks::owner(std::int64_t global) const {

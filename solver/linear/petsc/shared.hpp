@@ -21,13 +21,15 @@ class SharedBlocks {
   int owned(std::int64_t k) const { return owned_[k]; }
   std::int64_t n_owned() const { return static_cast<std::int64_t>(owned_.size()); }
   bool is_owned(int local) const { return is_owned_[local]; }
+  /// Do other ranks hold it too?
+  bool is_shared(int local) const { return is_shared_[local]; }
 
  private:
-  std::vector<std::int64_t> first_;       // first block of each rank, and n_global
-  std::vector<int> owned_;                // local number of each owned block
-  std::vector<char> is_owned_;            // (n_local)
-  std::vector<std::vector<int>> ghosts_;  // local blocks owned by each rank
-  std::vector<std::vector<int>> lent_;    // owned blocks that each rank holds too
+  std::vector<std::int64_t> first_;         // first block of each rank, and n_global
+  std::vector<int> owned_;                  // local number of each owned block
+  std::vector<char> is_owned_, is_shared_;  // (n_local)
+  std::vector<std::vector<int>> ghosts_;    // local blocks owned by each rank
+  std::vector<std::vector<int>> lent_;      // owned blocks that each rank holds too
 };
 
 }  // namespace hilo::petsc

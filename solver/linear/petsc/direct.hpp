@@ -1,0 +1,38 @@
+// One unsymmetric saddle-point matrix, factored by MUMPS [amestoy-2001].
+#pragma once
+#include "linear/petsc/solver.hpp"
+
+namespace hilo::petsc {
+
+class DirectSolver final : public KktSolver {
+ public:
+  explicit DirectSolver(double tolerance) : tolerance_(tolerance) {}
+  ~DirectSolver() override { MatDestroy(&factor_); }
+
+  void structure(const Cliques& cliques, const BlockMap& map) override;
+  void zero() override { matrix_->zero(); }
+  void add(int clique, const double* K) override { matrix_->add((*cliques_)[clique], K); }
+  void add_diagonal(int block, const double d[3]) override { matrix_->add_diagonal(block, d); }
+  void sum_shared(std::span<double> local) override { shared_->sum(local); }
+  SolveReport solve(std::span<const double> b, std::span<double> x) override;
+  double bytes() const override { return matrix_->bytes() + factor_bytes_; }
+  std::string name() const override;
+
+  /// For a solver that gives up and hands over what it has: fill it, then solve().
+  BlockMatrix& matrix() { return *matrix_; }
+
+ private:
+  std::string factor();
+  std::string failure(const char* phase, PetscInt error) const;
+  void set(PetscInt control, PetscInt value) { check(MatMumpsSetIcntl(factor_, control, value)); }
+  PetscInt infog(PetscInt i) const;
+
+  double tolerance_, factor_bytes_ = 0;
+  const Cliques* cliques_ = nullptr;
+  std::optional<SharedBlocks> shared_;
+  std::optional<BlockMatrix> matrix_;
+  Mat factor_ = nullptr;
+  Vector x_, b_, r_, dx_;
+};
+
+}  // namespace hilo::petsc

@@ -1,0 +1,284 @@
+#include "linear/petsc/subdomain_matrix.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "base/error.hpp"
+#include "linear/petsc/exchange.hpp"
+
+namespace hilo::petsc {
+namespace {
+
+/// Of each clique: do several ranks know it?  Only one all of whose flexible blocks are shared can be such.
+std::vector<char> find_common(const Cliques& cliques, const BlockMap& map, const SharedBlocks& shared) {
+  std::vector<char> common(cliques.size(), 0);
+  if (size() == 1) return common;
+  std::vector<std::vector<PetscInt>> ask(size());
+  std::vector<std::vector<int>> asked(size());
+  std::vector<std::int64_t> key;
+  for (int e = 0; e < cliques.size(); ++e) {
+    key.clear();
+    bool alone = false, flexible = false;
+    for (const int i : cliques[e]) {
+      if (i < 0) continue;
+      key.push_back(map.global[i]);
+      flexible |= map.global[i] < map.first_dense;
+      alone |= map.global[i] < map.first_dense && !shared.is_shared(i);
+    }
+    if (alone || !flexible) continue;
+    std::sort(key.begin(), key.end());
+    std::uint64_t hash = 1469598103934665603u;  // FNV-1a over the numbers
+    for (const auto g : key) hash = (hash ^ static_cast<std::uint64_t>(g)) * 1099511628211u;
+    const int r = static_cast<int>((hash >> 33) % static_cast<unsigned>(size()));
+    ask[r].push_back(static_cast<PetscInt>(hash & 0x7fffffff)), ask[r].push_back(static_cast<PetscInt>((hash >> 31) & 0x7fffffff));
+    asked[r].push_back(e);
+  }
+  const auto got = exchange(ask);
+  std::map<std::pair<PetscInt, PetscInt>, std::pair<int, int>> known;  // last rank, number of ranks
+  for (int r = 0; r < size(); ++r)
+    for (size_t k = 0; k < got[r].size(); k += 2) {
+      auto& [last, n] = known.try_emplace({got[r][k], got[r][k + 1]}, -1, 0).first->second;
+      if (last != r) last = r, ++n;
+    }
+  std::vector<std::vector<PetscInt>> answer(size());
+  for (int r = 0; r < size(); ++r)
+    for (size_t k = 0; k < got[r].size(); k += 2) answer[r].push_back(known.at({got[r][k], got[r][k + 1]}).second);
+  const auto told = exchange(answer);
+  for (int r = 0; r < size(); ++r)
+    for (size_t k = 0; k < asked[r].size(); ++k) common[asked[r][k]] = told[r][k] > 1;
+  return common;
+}
+
+}  // namespace
+
+SubdomainMatrix::SubdomainMatrix(const Cliques& cliques, const BlockMap& map, const SharedBlocks& shared) {
+  n_owned_ = static_cast<PetscInt>(std::clamp<std::int64_t>(map.first_dense - map.first, 0, map.n_owned));
+  choose_blocks(cliques, map, shared);
+  find_pattern(cliques);
+  const auto n = static_cast<PetscInt>(3 * global_.size());
+  check(MatCreate(PETSC_COMM_SELF, &local_));
+  check(MatSetSizes(local_, n, n, n, n));
+  check(MatSetType(local_, MATSEQBAIJ));
+  check(MatSetBlockSize(local_, 3));
+  check(MatSeqBAIJSetPreallocationCSR(local_, 3, start_.data(), columns_.data(), nullptr));
+  check(MatSetOption(local_, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
+  A_ = make(local_);
+}
+
+SubdomainMatrix::~SubdomainMatrix() {
+  MatDestroy(&symmetric_), MatDestroy(&symmetric_local_);
+  MatDestroy(&A_), MatDestroy(&local_);
+}
+
+/// A matrix over the ranks of one local matrix each.
+Mat SubdomainMatrix::make(Mat local) const {
+  ISLocalToGlobalMapping blocks;
+  Mat A;
+  check(
+      ISLocalToGlobalMappingCreate(PETSC_COMM_WORLD, 3, static_cast<PetscInt>(global_.size()), global_.data(), PETSC_COPY_VALUES, &blocks));
+  check(MatCreateIS(PETSC_COMM_WORLD, 3, 3 * n_owned_, 3 * n_owned_, PETSC_DETERMINE, PETSC_DETERMINE, blocks, blocks, &A));
+  check(MatISSetLocalMat(A, local));
+  check(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+  check(ISLocalToGlobalMappingDestroy(&blocks));
+  return A;
+}
+
+void SubdomainMatrix::choose_blocks(const Cliques& cliques, const BlockMap& map, const SharedBlocks& shared) {
+  const int n = static_cast<int>(map.global.size());
+  flexible_.resize(n), place_.assign(n, -1), owned_place_.assign(n, -1);
+  for (int i = 0; i < n; ++i) {
+    flexible_[i] = map.global[i] < map.first_dense;
+    if (flexible_[i] && shared.is_owned(i)) owned_place_[i] = static_cast<int>(map.global[i] - map.first);
+  }
+  const auto common = find_common(cliques, map, shared);
+  std::vector<char> mine(n, 0);
+  for (int e = 0; e < cliques.size(); ++e) {
+    if (common[e]) {
+      const auto list = cliques[e];
+      const auto first = std::find_if(list.begin(), list.end(), [&](int i) { return i >= 0 && flexible_[i]; });
+      if (first == list.end() || !shared.is_owned(*first)) continue;
+    }
+    for (const int i : cliques[e])
+      if (i >= 0 && flexible_[i]) mine[i] = 1;
+  }
+  // the owner learns who has its blocks, and takes what nobody has
+  std::vector<std::vector<PetscInt>> tell(size());
+  for (int i = 0; i < n; ++i)
+    if (mine[i]) tell[shared.owner(map.global[i])].push_back(static_cast<PetscInt>(map.global[i]));
+  holders_.assign(n_owned_, {});
+  const auto told = exchange(tell);
+  for (int r = 0; r < size(); ++r)
+    for (const auto g : told[r]) holders_[g - map.first].push_back(r);
+  for (PetscInt k = 0; k < n_owned_; ++k)
+    if (holders_[k].empty()) holders_[k].push_back(rank()), mine[shared.owned(k)] = 1;
+  for (int i = 0; i < n; ++i)
+    if (mine[i]) place_[i] = static_cast<PetscInt>(global_.size()), global_.push_back(static_cast<PetscInt>(map.global[i]));
+  diagonal_.assign(3 * static_cast<size_t>(n_owned_), 0.0), waits_.assign(n_owned_, 0);
+}
+
+void SubdomainMatrix::find_pattern(const Cliques& cliques) {
+  const auto n = static_cast<PetscInt>(global_.size());
+  std::vector<int> start(n + 1, 0), list;
+  const auto place = [&](int i) { return i < 0 ? -1 : place_[i]; };
+  for (const int i : cliques.blocks)
+    if (place(i) >= 0) ++start[place(i) + 1];
+  for (PetscInt i = 0; i < n; ++i) start[i + 1] += start[i];
+  list.resize(start[n]);
+  auto at = start;
+  for (int e = 0; e < cliques.size(); ++e)
+    for (const int i : cliques[e])
+      if (place(i) >= 0) list[at[place(i)]++] = e;
+  std::vector<PetscInt> seen(n, -1), row;
+  for (PetscInt i = 0; i < n; ++i) {
+    row.assign(1, i), seen[i] = i;
+    for (int k = start[i]; k < start[i + 1]; ++k)
+      for (const int b : cliques[list[k]])
+        if (const PetscInt j = place(b); j >= 0 && seen[j] != i) seen[j] = i, row.push_back(j);
+    std::sort(row.begin(), row.end());
+    columns_.insert(columns_.end(), row.begin(), row.end());
+    start_.push_back(static_cast<PetscInt>(columns_.size()));
+  }
+  columns_.shrink_to_fit();
+}
+
+void SubdomainMatrix::zero() {
+  check(MatZeroEntries(local_));
+  std::fill(diagonal_.begin(), diagonal_.end(), 0.0), std::fill(waits_.begin(), waits_.end(), 0);
+}
+
+void SubdomainMatrix::add(std::span<const int> blocks, const double* K) {
+  const size_t n = blocks.size();
+  index_.resize(n);
+  bool outside = false;
+  for (size_t k = 0; k < n; ++k) {
+    index_[k] = blocks[k] < 0 ? -1 : place_[blocks[k]];
+    outside |= blocks[k] >= 0 && index_[k] < 0 && flexible_[blocks[k]];
+  }
+  const auto m = static_cast<PetscInt>(n);
+  check(MatSetValuesBlocked(local_, m, index_.data(), m, index_.data(), K, ADD_VALUES));
+  if (!outside) return;
+  for (size_t a = 0; a < n; ++a)  // a joint may name a block of another subdomain as long as it says nothing of it
+    for (size_t b = 0; b < n; ++b) {
+      if (blocks[a] < 0 || blocks[b] < 0 || !flexible_[blocks[a]] || !flexible_[blocks[b]] || (index_[a] >= 0 && index_[b] >= 0)) continue;
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c)
+          if (K[(3 * a + r) * 3 * n + 3 * b + c] != 0) fail("a rank adds to a block outside its subdomain", static_cast<int>(Exit::fault));
+    }
+}
+
+void SubdomainMatrix::add_diagonal(int block, const double d[3]) {
+  const int k = owned_place_[block];
+  for (int c = 0; c < 3; ++c) diagonal_[3 * static_cast<size_t>(k) + c] += d[c];
+  waits_[k] = 1;
+}
+
+void SubdomainMatrix::assemble() {
+  std::vector<std::vector<double>> send(size());
+  const auto first = [&] {
+    PetscInt begin = 0;
+    check(MatGetOwnershipRange(A_, &begin, nullptr));
+    return begin / 3;
+  }();
+  for (PetscInt k = 0; k < n_owned_; ++k) {
+    if (!waits_[k]) continue;
+    const double share = 1.0 / static_cast<double>(holders_[k].size());
+    for (const int r : holders_[k]) {
+      send[r].push_back(static_cast<double>(first + k));
+      for (int c = 0; c < 3; ++c) send[r].push_back(share * diagonal_[3 * static_cast<size_t>(k) + c]);
+    }
+    waits_[k] = 0;
+    std::fill_n(&diagonal_[3 * static_cast<size_t>(k)], 3, 0.0);
+  }
+  std::map<PetscInt, PetscInt> place;  // of blocks that got something
+  const auto got = exchange(send);
+  for (const auto& list : got)
+    for (size_t k = 0; k < list.size(); k += 4) place[static_cast<PetscInt>(list[k])] = -1;
+  if (!place.empty())
+    for (size_t i = 0; i < global_.size(); ++i)
+      if (const auto it = place.find(global_[i]); it != place.end()) it->second = static_cast<PetscInt>(i);
+  for (const auto& list : got)
+    for (size_t k = 0; k < list.size(); k += 4) {
+      const PetscInt i = place.at(static_cast<PetscInt>(list[k]));
+      const double D[9] = {list[k + 1], 0, 0, 0, list[k + 2], 0, 0, 0, list[k + 3]};
+      check(MatSetValuesBlocked(local_, 1, &i, 1, &i, D, ADD_VALUES));
+    }
+  check(MatAssemblyBegin(local_, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(local_, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyBegin(A_, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(A_, MAT_FINAL_ASSEMBLY));
+}
+
+Mat SubdomainMatrix::symmetric_part() {
+  const auto n = static_cast<PetscInt>(global_.size());
+  if (!symmetric_) {
+    std::vector<PetscInt> start{0}, columns;
+    columns.reserve(9 * columns_.size());
+    for (PetscInt i = 0; i < n; ++i)
+      for (int r = 0; r < 3; ++r) {
+        for (PetscInt k = start_[i]; k < start_[i + 1]; ++k)
+          for (int c = 0; c < 3; ++c) columns.push_back(3 * columns_[k] + c);
+        start.push_back(static_cast<PetscInt>(columns.size()));
+      }
+    check(MatCreate(PETSC_COMM_SELF, &symmetric_local_));
+    check(MatSetSizes(symmetric_local_, 3 * n, 3 * n, 3 * n, 3 * n));
+    check(MatSetType(symmetric_local_, MATSEQAIJ));
+    check(MatSetBlockSize(symmetric_local_, 3));
+    check(MatSeqAIJSetPreallocationCSR(symmetric_local_, start.data(), columns.data(), nullptr));
+    check(MatSetOption(symmetric_local_, MAT_SPD, PETSC_TRUE));
+    check(MatSetOption(symmetric_local_, MAT_SPD_ETERNAL, PETSC_TRUE));
+    symmetric_ = make(symmetric_local_);
+    check(MatSetOption(symmetric_, MAT_SPD, PETSC_TRUE));
+    check(MatSetOption(symmetric_, MAT_SPD_ETERNAL, PETSC_TRUE));
+  }
+  PetscScalar *from, *to;  // from: blocks by columns
+  check(MatSeqBAIJGetArray(local_, &from));
+  check(MatSeqAIJGetArray(symmetric_local_, &to));
+  for (PetscInt i = 0; i < n; ++i) {
+    const PetscInt width = start_[i + 1] - start_[i];
+    for (PetscInt k = start_[i]; k < start_[i + 1]; ++k) {
+      const PetscInt j = columns_[k];
+      const auto begin = columns_.begin() + start_[j], end = columns_.begin() + start_[j + 1];
+      const PetscScalar *a = from + 9 * static_cast<size_t>(k),
+                        *t = from + 9 * static_cast<size_t>(std::lower_bound(begin, end, i) - columns_.begin());
+      PetscScalar* out = to + 9 * static_cast<size_t>(start_[i]) + 3 * static_cast<size_t>(k - start_[i]);
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) out[static_cast<size_t>(r) * 3 * width + c] = 0.5 * (a[3 * c + r] + t[3 * r + c]);
+    }
+  }
+  check(MatSeqAIJRestoreArray(symmetric_local_, &to));
+  check(MatSeqBAIJRestoreArray(local_, &from));
+  check(MatAssemblyBegin(symmetric_, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(symmetric_, MAT_FINAL_ASSEMBLY));
+  return symmetric_;
+}
+
+void SubdomainMatrix::for_each_row(const std::function<void(PetscInt, std::span<const PetscInt>, const double*)>& row) const {
+  PetscScalar* from;
+  check(MatSeqBAIJGetArray(local_, &from));
+  std::vector<PetscInt> columns;
+  std::vector<double> values;
+  for (size_t i = 0; i < global_.size(); ++i) {
+    const size_t width = start_[i + 1] - start_[i];
+    columns.resize(width), values.resize(9 * width);
+    for (size_t k = 0; k < width; ++k) {
+      const PetscScalar* a = from + 9 * (start_[i] + k);
+      columns[k] = global_[columns_[start_[i] + k]];
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) values[r * 3 * width + 3 * k + c] = a[3 * c + r];
+    }
+    row(global_[i], columns, values.data());
+  }
+  check(MatSeqBAIJRestoreArray(local_, &from));
+}
+
+double SubdomainMatrix::bytes() const {
+  MatInfo info;
+  double sum = 8. * static_cast<double>(columns_.size());
+  if (!MatGetInfo(local_, MAT_LOCAL, &info)) sum += info.memory;
+  if (symmetric_local_ && !MatGetInfo(symmetric_local_, MAT_LOCAL, &info)) sum += info.memory;
+  return sum;
+}
+
+}  // namespace hilo::petsc

@@ -1,0 +1,53 @@
+// The flexible block as a sum of subdomains' matrices, one per rank, never assembled over the ranks: what BDDC and FETI-DP start from.
+#pragma once
+#define OMPI_SKIP_MPICXX 1
+#include <petscmat.h>
+
+#include <functional>
+#include <vector>
+
+#include "linear/petsc/flexible.hpp"
+
+namespace hilo::petsc {
+
+class SubdomainMatrix final : public FlexibleMatrix {
+ public:
+  /// Blocks below `map.first_dense`.  A subdomain is what the cliques of its rank touch; a clique that several ranks know (a spring, a
+  /// joint) counts for the owner of its first flexible block.
+  SubdomainMatrix(const Cliques& cliques, const BlockMap& map, const SharedBlocks& shared);
+  ~SubdomainMatrix() override;
+  SubdomainMatrix(const SubdomainMatrix&) = delete;
+
+  void zero() override;
+  void add(std::span<const int> blocks, const double* K) override;
+  /// Shared out evenly among the subdomains that have the block, so that none is left with an empty row.
+  void add_diagonal(int block, const double d[3]) override;
+  void assemble() override;
+  Mat mat() const override { return A_; }
+  PetscInt n_owned() const override { return n_owned_; }
+  double bytes() const override;
+
+  /// The symmetric part, scalar storage, as its own matrix; made anew at each call.
+  Mat symmetric_part();
+  /// Give its rows to `row` by global numbers, 3 x 3n values each (of this subdomain: to be summed).
+  void for_each_row(const std::function<void(PetscInt row, std::span<const PetscInt> columns, const double* values)>& row) const;
+
+ private:
+  void choose_blocks(const Cliques& cliques, const BlockMap& map, const SharedBlocks& shared);
+  void find_pattern(const Cliques& cliques);
+  Mat make(Mat local) const;
+
+  PetscInt n_owned_ = 0;
+  std::vector<PetscInt> place_;   // in the subdomain of each local block, -1 for others
+  std::vector<PetscInt> global_;  // of the subdomain's blocks
+  std::vector<char> flexible_;    // of local blocks
+  std::vector<PetscInt> start_{0}, columns_;
+  std::vector<std::vector<int>> holders_;  // subdomains that have each owned block
+  std::vector<int> owned_place_;           // owned number of each local block, -1 for others'
+  std::vector<double> diagonal_;           // waiting to be shared out, 3 per owned block
+  std::vector<char> waits_;
+  std::vector<PetscInt> index_;
+  Mat A_ = nullptr, local_ = nullptr, symmetric_ = nullptr, symmetric_local_ = nullptr;
+};
+
+}  // namespace hilo::petsc

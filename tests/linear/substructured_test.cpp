@@ -1,0 +1,161 @@
+// BDDC and FETI-DP on an elastic bar between two bodies, in slabs and in irregular parts, against the direct solver.
+#include <gtest/gtest.h>
+
+#include "../ranks.hpp"
+#include "problem.hpp"
+
+namespace hilo {
+namespace {
+
+using test::elastic_bar;
+using test::Problem;
+using test::random_vector;
+using test::Share;
+
+struct Solved {
+  SolveReport report;
+  Eigen::VectorXd x;  // of all blocks, on all ranks
+  std::string name;
+};
+
+/// Parts of a bar as a partitioner would leave them: the nearest of scattered points.
+void scatter(Problem& p, int size) {
+  std::mt19937 random(5);
+  Eigen::Vector3d high = Eigen::Vector3d::Zero();
+  for (size_t i = 0; i < p.X.size(); ++i) high[i % 3] = std::max(high[i % 3], p.X[i]);
+  std::vector<Eigen::Vector3d> seed;
+  for (int r = 0; r < size; ++r) {
+    std::uniform_real_distribution<double> uniform(0, 1);
+    seed.emplace_back(high[0] * (r + uniform(random)) / size, high[1] * uniform(random), high[2] * uniform(random));
+  }
+  for (size_t e = 0; e < p.cliques.size(); ++e) {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    int n = 0;
+    for (const int i : p.cliques[e])
+      if (i >= 0 && i < p.n_flexible) centre += Eigen::Vector3d(p.X[3 * i], p.X[3 * i + 1], p.X[3 * i + 2]), ++n;
+    if (p.everywhere[e] || n == 0) continue;
+    centre /= n;
+    for (int r = 0; r < size; ++r)
+      if ((seed[r] - centre).norm() < (seed[p.rank[e] % size] - centre).norm()) p.rank[e] = r;
+  }
+}
+
+Solved solve(KktSolver& solver, const Problem& p, int times = 1) {
+  const Comm& comm = Comm::world();
+  const Share share(p, comm.rank, comm.size);
+  solver.structure(share.cliques, share.map);
+  Solved out;
+  std::vector<double> x(3 * share.map.global.size());
+  for (int k = 0; k < times; ++k) {
+    share.fill(p, solver, comm.rank, comm.size, 1 + 0.1 * k);
+    out.report = solver.solve(share.of((1 + 0.1 * k) * random_vector(p.size(), 3)), x);
+  }
+  out.x = Eigen::VectorXd::Zero(p.size());
+  for (auto g = share.map.first; g < share.map.first + share.map.n_owned; ++g)
+    for (int c = 0; c < 3; ++c) out.x[3 * g + c] = x[3 * share.local[g] + c];
+  comm.sum(std::span<double>(out.x.data(), out.x.size()));
+  out.name = solver.name();
+  return out;
+}
+
+double residual(const Problem& p, const Eigen::VectorXd& x) {
+  const Eigen::VectorXd b = random_vector(p.size(), 3);
+  return (assembled(p) * x - b).norm() / b.norm();
+}
+
+TEST(DISABLED_Substructured, ReachesItsToleranceWithBodiesAndJoints) {
+  for (const char* kind : {"bddc", "feti-dp"})
+    for (const double cfl : {5., 50.})
+      for (const bool irregular : {false, true}) {
+        Problem p = elastic_bar(16, 6, 5, cfl);
+        irregular ? scatter(p, Comm::world().size) : test::slabs(p, Comm::world().size);
+        const auto s = solve(*make_petsc_solver(kind, 1e-9), p);
+        ASSERT_TRUE(s.report.ok) << kind << s.report.message;
+        EXPECT_LT(residual(p, s.x), 1.01e-9) << kind;
+        EXPECT_LE(s.report.iterations, irregular ? 40 : 25) << kind;  // ragged parts of a few cells are the worst case
+        EXPECT_EQ(s.name.find("direct"), std::string::npos);
+      }
+}
+
+TEST(DISABLED_Substructured, OneSetUpServesSimilarMatrices) {
+  for (const char* kind : {"bddc", "feti-dp"}) {
+    Problem p = elastic_bar(12, 4, 4, 20);
+    test::slabs(p, Comm::world().size);
+    const auto once = solve(*make_petsc_solver(kind, 1e-9), p), thrice = solve(*make_petsc_solver(kind, 1e-9), p, 3);
+    ASSERT_TRUE(once.report.ok && thrice.report.ok) << kind;
+    EXPECT_LE(thrice.report.iterations, 2 * once.report.iterations + 10) << kind;
+    EXPECT_LT((once.x - thrice.x).lpNorm<Eigen::Infinity>(), 1e-6 * once.x.lpNorm<Eigen::Infinity>()) << kind;
+  }
+}
+
+/// The same bar with so much negative inertia that it is no minimum any more.
+Problem indefinite_bar() {
+  Problem p = elastic_bar(12, 4, 4, 20);
+  const auto matrix = p.matrix;
+  p.matrix = [=](int e) {
+    test::Matrix K = matrix(e);
+    if (K.rows() >= 12) K.diagonal().array() -= 0.3;
+    return K;
+  };
+  return p;
+}
+
+TEST(DISABLED_Unsuited, HandsOverAnIndefiniteMatrix) {
+  for (const char* kind : {"bddc", "feti-dp"}) {
+    Problem p = indefinite_bar();
+    test::slabs(p, Comm::world().size);
+    const auto s = solve(*make_petsc_solver(kind, 1e-9), p, 2);
+    ASSERT_TRUE(s.report.ok) << kind << s.report.message;
+    EXPECT_LT(residual(p, s.x), 1e-8) << kind;
+  }
+}
+
+/// A static bar that nothing but three joints hold, each at one node: the whole is regular, its flexible block is singular.
+Problem hung_bar(int nx) {
+  Problem p;
+  const auto node = [](int i, int j, int k) { return 9 * i + 3 * j + k; };
+  p.n_flexible = 9 * (nx + 1), p.n_dense = 3;
+  for (int i = 0; i <= nx; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) p.X.insert(p.X.end(), {double(i), double(j), double(k)});
+  p.X.resize(3 * static_cast<size_t>(p.n_blocks()), 0.0);
+  const auto clique = [&](std::vector<int> blocks, bool everywhere) {
+    p.cliques.push_back(std::move(blocks)), p.rank.push_back(0), p.everywhere.push_back(everywhere);
+  };
+  for (int i = 0; i < nx; ++i)
+    for (int j = 0; j < 2; ++j)
+      for (int k = 0; k < 2; ++k)
+        clique({node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k), node(i, j, k + 1), node(i + 1, j, k + 1),
+                node(i + 1, j + 1, k + 1), node(i, j + 1, k + 1)},
+               false);
+  p.common = {node(0, 0, 0), node(nx, 2, 0), node(nx / 2, 0, 2)};
+  for (int t = 0; t < 3; ++t) clique({p.common[t], p.n_flexible + t}, true);
+  const int n_cells = 4 * nx;
+  p.matrix = [=](int e) {
+    if (e < n_cells) return test::cube_stiffness(1);
+    test::Matrix K = test::Matrix::Zero(6, 6);
+    K.block(3, 0, 3, 3).setIdentity(), K.block(0, 3, 3, 3).setIdentity();
+    return K;
+  };
+  return p;
+}
+
+TEST(DISABLED_Unsuited, HandsOverWhatOnlyJointsHold) {
+  for (const char* kind : {"bddc", "feti-dp"}) {
+    Problem p = hung_bar(12);
+    test::slabs(p, Comm::world().size);
+    const auto s = solve(*make_petsc_solver(kind, 1e-9), p);
+    ASSERT_TRUE(s.report.ok) << kind << s.report.message;
+    EXPECT_LT(residual(p, s.x), 1e-8) << kind;
+  }
+}
+
+TEST(Substructured, HoldsOnOneToFourRanks) {
+  for (const int n : {1, 2, 3, 4}) test::expect_passes_on(n, "Substructured");
+}
+TEST(Substructured, HandsOverWhatIsNotPositiveDefinite) {
+  for (const int n : {1, 2}) test::expect_passes_on(n, "Unsuited");
+}
+
+}  // namespace
+}  // namespace hilo
