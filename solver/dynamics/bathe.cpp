@@ -15,25 +15,25 @@ class Bathe final : public StageIntegrator {
   void restart() override { fresh_ = true; }
 
   void begin(const State& s, double h) override {
-    t_ = s.t, q0_ = s.q, v0_ = s.v, h_ = h;
+    t_ = s.t, v0_ = s.v, h_ = h;
     if (fresh_) a0_ = s.a;
   }
 
-  Stage stage(int k, const Config& q) override {
+  Stage stage(int k, const Unknown& u) override {
     const double h = h_, dt = g * h;
     if (k == 0) {
-      combine(vg_, {{2 / dt, &q}, {-2 / dt, &q0_}, {-1, &v0_}});
+      combine(vg_, {{2 / dt, &u.dq}, {-1, &v0_}});
       combine(ag_, {{2 / dt, &vg_}, {-2 / dt, &v0_}, {-1, &a0_}});
-      qg_ = q;
-      return at(q, vg_, ag_, t_ + dt, 2 / dt);
+      dqg_ = u.dq;
+      return at(u.q, vg_, ag_, t_ + dt, 2 / dt);
     }
     const double c0 = (1 - g) / (g * h), cg = -1 / ((1 - g) * g * h), c1 = (2 - g) / ((1 - g) * h);
-    combine(v1_, {{c0, &q0_}, {cg, &qg_}, {c1, &q}});
+    combine(v1_, {{cg, &dqg_}, {c1, &u.dq}});
     combine(a1_, {{c0, &v0_}, {cg, &vg_}, {c1, &v1_}});
-    return at(q, v1_, a1_, t_ + h, c1);
+    return at(u.q, v1_, a1_, t_ + h, c1);
   }
 
-  void finish(State& s, const Config&) override { s.v = v1_, a0_ = a1_, fresh_ = false; }
+  void finish(State& s) override { s.v = v1_, a0_ = a1_, fresh_ = false; }
   const Config& acceleration() const override { return a1_; }
   double own_time() const override { return 1; }
 
@@ -57,7 +57,7 @@ class Bathe final : public StageIntegrator {
   static constexpr double g = 2 - M_SQRT2;
   bool fresh_ = true;
   double t_ = 0, h_ = 0;
-  Config q0_, v0_, a0_, qg_, vg_, ag_, v1_, a1_, before_[2], after_[2];
+  Config v0_, a0_, dqg_, vg_, ag_, v1_, a1_, before_[2], after_[2];
 };
 
 }  // namespace

@@ -11,31 +11,32 @@ class Bdf2 final : public StageIntegrator {
   void restart() override { h_before_ = 0; }
 
   void begin(const State& s, double h) override {
-    t_ = s.t, q0_ = s.q, v0_ = s.v, h_ = h;
-    if (h_before_ == 0) qm_ = s.q, vm_ = s.v;
+    t_ = s.t, v0_ = s.v, h_ = h;
+    if (h_before_ == 0) combine(before_, {{0, &s.q}}), dq_before_ = before_, vm_ = s.v;
   }
 
-  Stage stage(int, const Config& q1) override {
+  Stage stage(int, const Unknown& u) override {
     const double r = h_before_ > 0 ? h_ / h_before_ : 0;  // r = 0 is backward Euler
     const double c1 = (1 + 2 * r) / ((1 + r) * h_), c0 = -(1 + r) / h_, cm = r * r / ((1 + r) * h_);
-    combine(v1_, {{c1, &q1}, {c0, &q0_}, {cm, &qm_}});
+    combine(v1_, {{c1, &u.dq}, {-cm, &dq_before_}});
+    dq_ = u.dq;
     combine(a1_, {{c1, &v1_}, {c0, &v0_}, {cm, &vm_}});
-    combine(before_, {{1, &q1}, {-h_ / 2, &v1_}});
-    combine(after_, {{1, &q1}, {h_ / 2, &v1_}});
-    Stage s = stage_at(q1, t_ + h_);
+    combine(before_, {{1, &u.q}, {-h_ / 2, &v1_}});
+    combine(after_, {{1, &u.q}, {h_ / 2, &v1_}});
+    Stage s = stage_at(u.q, t_ + h_);
     s.w0 = &before_, s.w1 = &after_, s.h = h_;
     s.a = &a1_, s.mass_slope = c1 * c1;
     s.v = &v1_, s.alpha_slope = c1;
     return s;
   }
 
-  void finish(State& s, const Config&) override { s.v = v1_, qm_ = q0_, vm_ = v0_, h_before_ = h_; }
+  void finish(State& s) override { s.v = v1_, dq_before_ = dq_, vm_ = v0_, h_before_ = h_; }
   const Config& acceleration() const override { return a1_; }
   double own_time() const override { return 1; }
 
  private:
   double t_ = 0, h_ = 0, h_before_ = 0;
-  Config q0_, v0_, qm_, vm_, v1_, a1_, before_, after_;
+  Config v0_, dq_, dq_before_, vm_, v1_, a1_, before_, after_;
 };
 
 }  // namespace

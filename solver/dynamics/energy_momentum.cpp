@@ -9,16 +9,16 @@ class EnergyMomentum final : public StageIntegrator {
   explicit EnergyMomentum(double chi) : chi_(chi) {}
   std::string name() const override { return chi_ > 0 ? "energy-momentum with stress dissipation" : "energy-momentum"; }
 
-  void begin(const State& s, double h) override { t_ = s.t, q0_ = s.q, v0_ = s.v, h_ = h; }
+  void begin(const State& s, double h) override { t_ = s.t, v0_ = s.v, h_ = h; }
 
-  Stage stage(int, const Config& q1) override {
-    combine(mid_, {{0.5, &q0_}, {0.5, &q1}});
-    combine(v_mid_, {{1 / h_, &q1}, {-1 / h_, &q0_}});
+  Stage stage(int, const Unknown& u) override {
+    combine(mid_, {{1, &u.q0}, {0.5, &u.dq}});
+    combine(v_mid_, {{1 / h_, &u.dq}});
     combine(a_, {{2 / h_, &v_mid_}, {-2 / h_, &v0_}});
     Stage s{};
-    s.end = &q1;
+    s.end = &u.q;
     s.left = &mid_, s.slope = 0.5;
-    s.e0 = s.w0 = &q0_, s.e1 = s.w1 = &q1;
+    s.e0 = s.w0 = &u.q0, s.e1 = s.w1 = &u.q;
     s.h = h_;
     s.a = &a_, s.mass_slope = 2 / (h_ * h_);
     s.v = &v_mid_, s.alpha_slope = 1 / h_;
@@ -27,14 +27,14 @@ class EnergyMomentum final : public StageIntegrator {
     return s;
   }
 
-  void finish(State& s, const Config&) override { combine(s.v, {{1, &v0_}, {h_, &a_}}); }
+  void finish(State& s) override { combine(s.v, {{1, &v0_}, {h_, &a_}}); }
   const Config& acceleration() const override { return a_; }
   double own_time() const override { return 0.5; }
   bool alternates() const override { return true; }
 
  private:
   double chi_, t_ = 0, h_ = 0;
-  Config q0_, v0_, mid_, v_mid_, a_;
+  Config v0_, mid_, v_mid_, a_;
 };
 
 }  // namespace

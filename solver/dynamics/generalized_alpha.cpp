@@ -17,26 +17,26 @@ class GeneralizedAlpha final : public StageIntegrator {
 
   void begin(const State& s, double h) override {
     const double offset = p_.alpha_m - p_.alpha_f;
-    t_ = s.t, q0_ = s.q, v0_ = s.v, h_ = h;
+    t_ = s.t, v0_ = s.v, h_ = h;
     if (h_b_ == 0) a0_ = s.a, jerk_ = s.jerk, b_at_start_ = s.a;
     combine(b0_, {{1, &b_at_start_}, {offset * (h - h_b_), &jerk_}});
   }
 
-  Stage stage(int, const Config& q1) override {
+  Stage stage(int, const Unknown& u) override {
     const double c = 1 / (h_ * h_ * p_.beta), m = (1 - p_.alpha_m) / (1 - p_.alpha_f);
-    combine(b1_, {{c, &q1}, {-c, &q0_}, {-c * h_, &v0_}, {-c * h_ * h_ * (0.5 - p_.beta), &b0_}});
+    combine(b1_, {{c, &u.dq}, {-c * h_, &v0_}, {-c * h_ * h_ * (0.5 - p_.beta), &b0_}});
     combine(a1_, {{m, &b1_}, {p_.alpha_m / (1 - p_.alpha_f), &b0_}, {-p_.alpha_f / (1 - p_.alpha_f), &a0_}});
     combine(v1_, {{1, &v0_}, {h_ * (1 - p_.gamma), &b0_}, {h_ * p_.gamma, &b1_}});
-    combine(before_, {{1, &q1}, {-h_ / 2, &v1_}});
-    combine(after_, {{1, &q1}, {h_ / 2, &v1_}});
-    Stage s = stage_at(q1, t_ + h_);
+    combine(before_, {{1, &u.q}, {-h_ / 2, &v1_}});
+    combine(after_, {{1, &u.q}, {h_ / 2, &v1_}});
+    Stage s = stage_at(u.q, t_ + h_);
     s.w0 = &before_, s.w1 = &after_, s.h = h_;
     s.a = &a1_, s.mass_slope = m * c;
     s.v = &v1_, s.alpha_slope = p_.gamma / (p_.beta * h_);
     return s;
   }
 
-  void finish(State& s, const Config&) override {
+  void finish(State& s) override {
     s.v = v1_;
     combine(jerk_, {{1 / h_, &a1_}, {-1 / h_, &a0_}});
     a0_ = a1_, b_at_start_ = b1_, h_b_ = h_;
@@ -48,7 +48,7 @@ class GeneralizedAlpha final : public StageIntegrator {
   AlphaParameters p_;
   std::string name_;
   double t_ = 0, h_ = 0, h_b_ = 0;  // h_b: the step that b at the start of this one belongs to; 0 at a restart
-  Config q0_, v0_, a0_, jerk_, b_at_start_, b0_, a1_, b1_, v1_, before_, after_;
+  Config v0_, a0_, jerk_, b_at_start_, b0_, a1_, b1_, v1_, before_, after_;
 };
 
 AlphaParameters second_order(double alpha_m, double alpha_f) {

@@ -5,29 +5,27 @@
 #include <algorithm>
 
 namespace hilo {
-namespace {
 
-/// Directors back to orthonormal to round-off, so that lengths do not drift over millions of steps.
 void restore_rotations(const System& system, Config& q) {
   for (Mat3& R : q.R) R = R * (1.5 * Mat3::Identity() - 0.5 * R.transpose() * R);
   system.follow(q);
 }
 
-}  // namespace
-
 NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, double h, Predictor predictor) {
   const System& system = tools.system;
   begin(s, h);
   h_ = h, start_ = s.q, lambda_ = s.lambda;
-  solved_.resize(n_stages()), taken_.resize(n_stages());
+  solved_.clear(), solved_.reserve(n_stages());
+  taken_.resize(n_stages());
   NewtonReport all;
   all.converged = true;
   for (int k = 0; k < n_stages(); ++k) {
     const double dt = instant(k) * h;
-    solved_[k] = predict(system, s, dt, predictor);
-    system.prescribe(solved_[k], s.t + dt);
+    Config guess = predict(system, s, dt, predictor);
+    system.prescribe(guess, s.t + dt);
+    solved_.emplace_back(system, s.q, guess);
     const NewtonReport r = newton(
-        system, tools.solver, [&](const Config& q) { return from_left(stage(k, q), h); }, solved_[k], lambda_, tools.newton);
+        system, tools.solver, [&](const Unknown& u) { return from_left(stage(k, u), h); }, solved_[k], lambda_, tools.newton);
     all.iterations += r.iterations, all.linear_iterations += r.linear_iterations;
     all.correction = r.correction, all.residual = r.residual;
     all.least_det = std::min(all.least_det, r.least_det);
@@ -35,16 +33,16 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
       all.converged = false, all.reason = r.reason;
       return all;
     }
-    restore_rotations(system, solved_[k]);
+    restore_rotations(system, solved_[k].q);
     taken_[k] = {from_left(stage(k, solved_[k]), h), lambda_};
-    taken_[k].stage.work_from = k == 0 ? &start_ : &solved_[k - 1];
+    taken_[k].stage.work_from = k == 0 ? &start_ : &solved_[k - 1].q;
   }
   return all;
 }
 
 void StageIntegrator::accept(State& s) {
-  finish(s, solved_.back());
-  s.q = solved_.back();
+  finish(s);
+  s.q = solved_.back().q;
   s.lambda = lambda_;
   s.t += h_;
 }

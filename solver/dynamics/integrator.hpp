@@ -17,6 +17,9 @@ inline Stage from_left(Stage s, double h) {
   return s;
 }
 
+/// Directors back to orthonormal to round-off, so that lengths do not drift over millions of steps.
+void restore_rotations(const System& system, Config& q);
+
 /// What a step is solved with.
 struct StepTools {
   const System& system;
@@ -60,19 +63,19 @@ class StageIntegrator : public Integrator {
 
   /// Start a step of length h from s, which outlives the step.
   virtual void begin(const State& s, double h) = 0;
-  /// Stage k for its unknown q; the last call for k before that for k + 1 had the accepted q.
-  virtual Stage stage(int k, const Config& q) = 0;
+  /// Stage k for its unknown; the last call for k before that for k + 1 had the accepted one.
+  virtual Stage stage(int k, const Unknown& u) = 0;
 
  protected:
   virtual int n_stages() const { return 1; }
   virtual double instant(int) const { return 1; }  // of stage k's unknown, in units of the step
   /// Velocities of the accepted end, and history.
-  virtual void finish(State& s, const Config& q1) = 0;
+  virtual void finish(State& s) = 0;
 
  private:
   double h_ = 0;
-  Config start_;                // q0
-  std::vector<Config> solved_;  // per stage
+  Config start_;                 // q0
+  std::vector<Unknown> solved_;  // per stage
   std::vector<Taken> taken_;
   std::vector<double> lambda_;
 };

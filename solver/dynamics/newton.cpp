@@ -46,14 +46,14 @@ Phases& phases() {
   return p;
 }
 
-NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Config&)>& stage, Config& q1,
+NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Unknown&)>& stage, Unknown& u,
                     std::vector<double>& lambda, const NewtonOptions& options) {
   NewtonReport report;
   Residual r;
   std::vector<double> b, z;
   const auto evaluate = [&](bool tangent) {
     const double start = wall_clock();
-    system.evaluate(stage(q1), lambda, r, tangent ? &solver : nullptr);
+    system.evaluate(stage(u), lambda, r, tangent ? &solver : nullptr);
     solver.sum_shared(r.r);
     system.mask_fixed(r.r);
     r.force_scale = system.comm->max(r.force_scale);
@@ -73,7 +73,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     return solved;
   };
   const auto move = [&] {
-    system.move(q1, z);
+    u.move(system, z);
     const int first = 3 * system.first_joint_block();
     for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += r.sigma * z[first + i];
   };
@@ -119,7 +119,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     move();
     if (report.correction <= options.tolerance * 1e-2) {  // far below what the next one could change
       report.converged = true;
-      stage(q1);
+      stage(u);
       return report;
     }
     if (!options.patient && it > 12 && report.correction > 0.5 * previous && report.correction > 1e-6) {

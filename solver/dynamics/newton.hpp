@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 
+#include "dynamics/unknown.hpp"
 #include "linear/kkt.hpp"
 #include "system/system.hpp"
 
@@ -24,8 +25,8 @@ struct NewtonReport {
   std::string reason;  // why it failed
 };
 
-/// Solve for q1 and lambda from the guesses given.  `stage` makes the stage of a configuration.
-NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Config&)>& stage, Config& q1,
+/// Solve for the unknown and lambda from the guesses given.  `stage` makes the stage of an unknown.
+NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Unknown&)>& stage, Unknown& u,
                     std::vector<double>& lambda, const NewtonOptions& options);
 
 /// Residual over its scales: forces by the largest force, moments by force times the body's size, constraints by the scene's length.

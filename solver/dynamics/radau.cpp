@@ -59,11 +59,13 @@ class Radau final : public Integrator {
   NewtonReport solve(const StepTools& tools, const State& s, double h, Predictor predictor) override {
     const System& system = tools.system;
     if (!whole_) couple(system);
-    t_ = s.t, h_ = h, q0_ = s.q, v0_ = s.v;
+    t_ = s.t, h_ = h, v0_ = s.v;
     std::vector<double> lambda[3];
+    u_.clear(), u_.reserve(3);
     for (int i = 0; i < 3; ++i) {
-      q_[i] = predict(system, s, c_[i] * h, predictor);
-      system.prescribe(q_[i], t_ + c_[i] * h);
+      Config guess = predict(system, s, c_[i] * h, predictor);
+      system.prescribe(guess, t_ + c_[i] * h);
+      u_.emplace_back(system, s.q, guess);
       lambda[i] = s.lambda;
     }
     NewtonReport report;
@@ -98,27 +100,24 @@ class Radau final : public Integrator {
         const std::span<const double> zi(z.data() + i * n, n);
         report.correction = std::max(report.correction, relative_correction(system, zi));
         if (!(report.correction < 1e3)) return report.reason = "the correction is not finite or leaves the scene", report;
-        system.move(q_[i], zi);
+        u_[i].move(system, zi);
         for (size_t k = 0; k < lambda[i].size(); ++k) lambda[i][k] += r[i].sigma * zi[first + k];
       }
       if (report.correction <= tools.newton.tolerance * 1e-2) break;
     }
     report.converged = true;
-    for (Config& q : q_) {
-      for (Mat3& R : q.R) R = R * (1.5 * Mat3::Identity() - 0.5 * R.transpose() * R);
-      system.follow(q);
-    }
+    for (Unknown& u : u_) restore_rotations(system, u.q);
     place();
     taken_.resize(3);
     for (int i = 0; i < 3; ++i) {
-      combine(from_[i], {{1, &q_[i]}, {-h_ * A_(2, i), &v_[i]}});  // quadrature of the work: weight times power at the stage
+      combine(from_[i], {{1, &u_[i].q}, {-h_ * A_(2, i), &v_[i]}});  // quadrature of the work: weight times power at the stage
       taken_[i] = {stages_[i], lambda[i]};
       taken_[i].stage.work_from = &from_[i];
     }
     return report;
   }
 
-  void accept(State& s) override { s.q = q_[2], s.v = v_[2], s.lambda = taken_[2].lambda, s.t = t_ + h_; }
+  void accept(State& s) override { s.q = u_[2].q, s.v = v_[2], s.lambda = taken_[2].lambda, s.t = t_ + h_; }
 
  private:
   /// One system of three times the unknowns, each clique covering its blocks of all stages.
@@ -139,18 +138,15 @@ class Radau final : public Integrator {
     whole_->structure(cliques_, map_);
   }
 
-  /// Velocities, accelerations and stages of q_.
+  /// Velocities, accelerations and stages of u_.
   void place() {
-    for (int i = 0; i < 3; ++i) {
-      const double sum = -W_.row(i).sum();
-      combine(v_[i], {{W_(i, 0) / h_, &q_[0]}, {W_(i, 1) / h_, &q_[1]}, {W_(i, 2) / h_, &q_[2]}, {sum / h_, &q0_}});
-    }
+    for (int i = 0; i < 3; ++i) combine(v_[i], {{W_(i, 0) / h_, &u_[0].dq}, {W_(i, 1) / h_, &u_[1].dq}, {W_(i, 2) / h_, &u_[2].dq}});
     for (int i = 0; i < 3; ++i) {
       const double sum = -W_.row(i).sum();
       combine(a_[i], {{W_(i, 0) / h_, &v_[0]}, {W_(i, 1) / h_, &v_[1]}, {W_(i, 2) / h_, &v_[2]}, {sum / h_, &v0_}});
-      combine(before_[i], {{1, &q_[i]}, {-h_ / 2, &v_[i]}});
-      combine(after_[i], {{1, &q_[i]}, {h_ / 2, &v_[i]}});
-      Stage& s = stages_[i] = from_left(stage_at(q_[i], t_ + c_[i] * h_), h_);
+      combine(before_[i], {{1, &u_[i].q}, {-h_ / 2, &v_[i]}});
+      combine(after_[i], {{1, &u_[i].q}, {h_ / 2, &v_[i]}});
+      Stage& s = stages_[i] = from_left(stage_at(u_[i].q, t_ + c_[i] * h_), h_);
       s.w0 = &before_[i], s.w1 = &after_[i], s.h = h_;
       s.a = &a_[i], s.mass_slope = (W_ * W_)(i, i) / (h_ * h_);
       s.v = &v_[i], s.alpha_slope = W_(i, i) / h_;
@@ -159,14 +155,14 @@ class Radau final : public Integrator {
 
   void add_coupling(const System& system) {
     Config zero;
-    combine(zero, {{0, &q0_}});
+    combine(zero, {{0, &v0_}});
     const std::vector<double> none(3 * system.n_joint_blocks(), 0.0);
     Residual unused;
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         if (i == j) continue;
-        Stage s = stage_at(q_[i], t_);
-        s.end = &q_[j], s.slope = 0, s.chain = 1e-30;  // the mass alone
+        Stage s = stage_at(u_[i].q, t_);
+        s.end = &u_[j].q, s.slope = 0, s.chain = 1e-30;  // the mass alone
         s.a = &zero, s.mass_slope = (W_ * W_)(i, j) / (h_ * h_);
         StageBlock block(*whole_, system, i, j);
         system.evaluate(s, none, unused, &block);
@@ -178,7 +174,8 @@ class Radau final : public Integrator {
   std::unique_ptr<KktSolver> whole_;
   Cliques cliques_;
   BlockMap map_;
-  Config q0_, v0_, q_[3], v_[3], a_[3], before_[3], after_[3], from_[3];
+  std::vector<Unknown> u_;
+  Config v0_, v_[3], a_[3], before_[3], after_[3], from_[3];
   Stage stages_[3];
   std::vector<Taken> taken_;
 };

@@ -259,17 +259,19 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
   double tau = 0.05;  // of the pseudo mass M/tau^2, grows from iteration to iteration
   NewtonOptions o = options;
   if (mechanism) o.max_iterations = std::max(o.max_iterations, 200), o.patient = true;
+  Unknown u(system, q, q);
   const auto report = newton(
       system, solver,
-      [&](const Config& q1) {
-        s = stage_at(q1, t);
+      [&](const Unknown& at) {
+        s = stage_at(at.q, t);
         s.a = &zero;
         s.load_factor = ramp;
         s.mass_slope = mechanism ? 1 / (tau * tau) : 0;
         if (mechanism) tau = std::min(tau * 1.3, 20.0);
         return s;
       },
-      q, lambda, o);
+      u, lambda, o);
+  q = u.q;
   if (report.converged) system.commit(q);
   return report;
 }

@@ -29,27 +29,27 @@ class ZhouTamma final : public StageIntegrator {
   void restart() override { h_a_ = 0; }
 
   void begin(const State& s, double h) override {
-    t_ = s.t, q0_ = s.q, v0_ = s.v, h_ = h;
+    t_ = s.t, v0_ = s.v, h_ = h;
     if (h_a_ == 0) jerk_ = s.jerk, a_at_start_ = s.a;
     combine(a0_, {{1, &a_at_start_}, {(W_ - A_) * (h - h_a_), &jerk_}});
   }
 
-  Stage stage(int, const Config& q1) override {
+  Stage stage(int, const Unknown& u) override {
     const double c = 1 / (l3_ * h_ * h_);
-    combine(D_, {{c, &q1}, {-c, &q0_}, {-c * h_, &v0_}, {-c * h_ * h_ / 2, &a0_}});
+    combine(D_, {{c, &u.dq}, {-c * h_, &v0_}, {-c * h_ * h_ / 2, &a0_}});
     combine(a_, {{1, &a0_}, {A_, &D_}});
     combine(v_, {{1, &v0_}, {W_ * h_, &a0_}, {V_ * h_, &D_}});
     if (averaged_)
-      combine(left_, {{1 - W_, &q0_}, {W_, &q1}});
+      combine(left_, {{1, &u.q0}, {W_, &u.dq}});
     else
-      combine(left_, {{1, &q0_}, {W_ * h_, &v0_}, {Q_ * h_ * h_, &a0_}, {B_ * h_ * h_, &D_}});
+      combine(left_, {{1, &u.q0}, {W_ * h_, &v0_}, {Q_ * h_ * h_, &a0_}, {B_ * h_ * h_, &D_}});
     combine(before_, {{1, &left_}, {-h_ / 2, &v_}});
     combine(after_, {{1, &left_}, {h_ / 2, &v_}});
     Stage s = stage_at(left_, t_ + W_ * h_);
-    s.end = &q1;
+    s.end = &u.q;
     s.slope = averaged_ ? W_ : B_ / l3_;
     if (averaged_)
-      s.e0 = &q0_, s.e1 = &q1, s.weight = W_;
+      s.e0 = &u.q0, s.e1 = &u.q, s.weight = W_;
     else
       s.chain = s.slope;
     s.w0 = &before_, s.w1 = &after_, s.h = h_;
@@ -58,7 +58,7 @@ class ZhouTamma final : public StageIntegrator {
     return s;
   }
 
-  void finish(State& s, const Config&) override {
+  void finish(State& s) override {
     combine(s.v, {{1, &v0_}, {h_, &a0_}, {l5_ * h_, &D_}});
     combine(jerk_, {{1 / h_, &D_}});
     combine(a_at_start_, {{1, &a0_}, {1, &D_}});
@@ -71,7 +71,7 @@ class ZhouTamma final : public StageIntegrator {
   bool averaged_;
   std::string name_;
   double A_, B_, W_, Q_, V_, l3_, l5_, t_ = 0, h_ = 0, h_a_ = 0;
-  Config q0_, v0_, a0_, a_at_start_, jerk_, D_, a_, v_, left_, before_, after_;
+  Config v0_, a0_, a_at_start_, jerk_, D_, a_, v_, left_, before_, after_;
 };
 
 }  // namespace

@@ -188,11 +188,11 @@ TEST_P(Tangent, OfTheWholeSystemIsTheDerivativeOfItsResidual) {
   DenseKkt K;
   K.structure(system->cliques, system->map);
   Residual at;
-  system->evaluate(integrator->stage(0, q1), s.lambda, at, &K);
+  system->evaluate(integrator->stage(0, Unknown(*system, s.q, q1)), s.lambda, at, &K);
   const double scale = K.A.topLeftCorner(first, first).cwiseAbs().maxCoeff();
   const auto residual = [&](const Config& q, const std::vector<double>& lambda) {
     Residual r;
-    system->evaluate(integrator->stage(0, q), lambda, r, nullptr);
+    system->evaluate(integrator->stage(0, Unknown(*system, s.q, q)), lambda, r, nullptr);
     system->mask_fixed(r.r);
     return Eigen::Map<const Eigen::VectorXd>(r.r.data(), n).eval();
   };

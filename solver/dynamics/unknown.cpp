@@ -1,0 +1,37 @@
+#include "dynamics/unknown.hpp"
+
+#include "system/facet.hpp"
+
+namespace hilo {
+
+Unknown::Unknown(const System& system, const Config& start, const Config& guess) : q0(start), q(guess), turn(start.c.size(), Vec3::Zero()) {
+  combine(dq, {{1, &q}, {-1, &q0}});
+  for (size_t b = 0; b < turn.size(); ++b)
+    if (system.body_block[b] >= 0) turn[b] = rotation_increment(q0.R[b], q.R[b]), turn_body(b);
+  system.follow(q), system.follow(dq);
+}
+
+/// R = cay(w) R0,  R - R0 = w x (R + R0)/2.
+void Unknown::turn_body(size_t b) {
+  q.R[b] = cayley(turn[b]) * q0.R[b];
+  dq.R[b] = skew(turn[b]) * (q.R[b] + q0.R[b]) / 2;
+}
+
+void Unknown::move(const System& system, std::span<const double> z) {
+  for (size_t i = 0; i < q.x.size(); ++i)
+    if (const int k = system.node_block[i]; k >= 0) {
+      dq.x[i] += Eigen::Map<const Vec3>(z.data() + 3 * k);
+      q.x[i] = q0.x[i] + dq.x[i];
+    }
+  for (size_t b = 0; b < turn.size(); ++b)
+    if (const int k = system.body_block[b]; k >= 0) {
+      dq.c[b] += Eigen::Map<const Vec3>(z.data() + 3 * k);
+      q.c[b] = q0.c[b] + dq.c[b];
+      const Vec3 w = Eigen::Map<const Vec3>(z.data() + 3 * k + 3), &t = turn[b];
+      turn[b] = (w + t + w.cross(t) / 2) / (1 - w.dot(t) / 4);  // cay(w) cay(t)
+      turn_body(b);
+    }
+  system.follow(q), system.follow(dq);
+}
+
+}  // namespace hilo

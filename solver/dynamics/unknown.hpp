@@ -1,0 +1,24 @@
+// The unknown end of a step, q = q0 + dq.  The increment is known to its own precision, not to that of q: velocities (dq/h) lose no digits
+// to a small step, and momentum does not drift with the round-off of positions.
+#pragma once
+#include <span>
+
+#include "dynamics/state.hpp"
+#include "system/system.hpp"
+
+namespace hilo {
+
+struct Unknown {
+  Config q0, q, dq;
+  std::vector<Vec3> turn;  // Cayley vector of each free body's rotation from q0 to q
+
+  /// From q0, first guess `guess`; what is prescribed in the guess stays.
+  Unknown(const System& system, const Config& q0, const Config& guess);
+  /// Add the increments z (3 x n_blocks).
+  void move(const System& system, std::span<const double> z);
+
+ private:
+  void turn_body(size_t b);
+};
+
+}  // namespace hilo
