@@ -29,6 +29,12 @@ std::string stem(const std::string& path) { return path.ends_with(".h5") ? path.
 
 Recorder::Recorder(const System& system, const Scene& scene, Setup setup) : system_(system), scene_(scene), setup_(std::move(setup)) {}
 
+/// Factor of what follows the load steps of a static analysis.
+double Recorder::load_factor(double t) const {
+  const Entry& time = scene_.table("time");
+  return setup_.is_static ? t / (time.has("end") ? time.number("end") : 1) : 1;
+}
+
 /// Histories that belong to an instant: energies, momentum, violation, points of bodies, stations' positions, velocities and axes.
 std::vector<double> Recorder::point_values(const State& s) {
   const System::Energy e = system_.energy(s.q, s.v);
@@ -36,7 +42,7 @@ std::vector<double> Recorder::point_values(const State& s) {
   if (!started_) E0_ = total;
   started_ = true, last_t_ = s.t;
   max_T_ = std::max({max_T_, e.kinetic, 1e-300});
-  const double balance = total - E0_ - work_ + dissipated_, violation = system_.constraint_violation(s.q);
+  const double balance = total - E0_ - work_ + dissipated_, violation = system_.constraint_violation(s.q, s.t, load_factor(s.t));
   worst_balance_ = std::max(worst_balance_, std::abs(balance));
   worst_violation_ = std::max(worst_violation_, violation);
   std::vector<double> v{e.kinetic, e.elastic, e.gravity, work_, dissipated_, balance};
@@ -81,13 +87,15 @@ std::vector<double> Recorder::mid_values(const State& s, const Stage& stage, std
   std::vector<double> v;
   std::vector<double> full;
   std::span<const double> lambda = lambda_;
-  if (setup_.redundant) full = minimum_norm(system_, *stage.left, lambda_), lambda = full;
+  if (setup_.redundant) full = minimum_norm(system_, stage, lambda_), lambda = full;
   const auto push = [&](const Vec3& x) { v.insert(v.end(), x.data(), x.data() + 3); };
   ConnectorGradient left;
   for (size_t j = 0; j < system_.joints.size(); ++j) {
     const Connector& c = system_.joints[j];
     gradient(c, *stage.left, left);
-    const Vec6 f = force_on_b(c, left, lambda.data() + 3 * (system_.joint_block[j] - system_.first_joint_block()), *stage.left);
+    double s_left[max_measures];
+    joint_forces(c, stage, left, lambda.data() + 3 * (system_.joint_block[j] - system_.first_joint_block()), s_left);
+    const Vec6 f = force_on_b(c, left, s_left, *stage.left);
     const Mat3 frame = c.end[0].body >= 0 ? Mat3(stage.left->R[c.end[0].body] * c.frame_a) : Mat3::Identity();
     push(frame.transpose() * f.head<3>());
     push(frame.transpose() * f.tail<3>());

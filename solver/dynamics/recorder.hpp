@@ -64,6 +64,7 @@ class Recorder {
   void write_histories(Store& f, const Row& row, const std::vector<double>& mid) const;
   void on_store(const std::function<void(Store&)>& write);
   void share_failure() const;
+  double load_factor(double t) const;
   std::vector<double> point_values(const State& s);
   std::vector<double> mid_values(const State& s, const Stage& stage, std::span<const double> lambda, const Config& a);
   void advance(bool last);

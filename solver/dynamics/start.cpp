@@ -16,15 +16,15 @@ struct Rows {
   std::vector<std::pair<int, int>> row;  // joint, measure
 };
 
-Rows joint_rows(const System& s, const Config& left, bool active_only) {
+Rows joint_rows(const System& s, const Stage& stage) {
   Rows out;
   std::vector<int> column(s.n_blocks(), -1);
   int n = 0;
   for (size_t j = 0; j < s.joints.size(); ++j) {
     const Connector& c = s.joints[j];
     for (int m = 0; m < c.n_rows(); ++m)
-      if (!active_only || c.active[m]) out.row.emplace_back(static_cast<int>(j), m);
-    for (const Carrier& end : c.end) {
+      out.row.emplace_back(static_cast<int>(j), m);
+    for (const Carrier& end : c.ends()) {
       const int first = end.body >= 0 ? s.body_block[end.body] : s.node_block[end.node];
       for (int k = 0; first >= 0 && k < (end.body >= 0 ? 2 : 1); ++k)
         if (column[first + k] < 0) column[first + k] = n, n += 3;
@@ -32,15 +32,26 @@ Rows joint_rows(const System& s, const Config& left, bool active_only) {
   }
   out.G = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(out.row.size()), n);
   ConnectorGradient g;
+  RowLaw::Gradient law;
   for (size_t r = 0; r < out.row.size(); ++r) {
-    const Connector& c = s.joints[out.row[r].first];
-    if (r == 0 || out.row[r].first != out.row[r - 1].first) gradient(c, left, g);
-    for (int k = 0; k < 2; ++k) {
+    const auto [joint, row] = out.row[r];
+    const Connector& c = s.joints[joint];
+    if (r == 0 || joint != out.row[r - 1].first) {
+      gradient(c, *stage.left, g);
+      if (c.rows) row_gradient(c, stage, g, law);
+    }
+    Eigen::Matrix<double, 1, max_directions> G = g.G.row(row);
+    if (c.rows) {
+      G.setZero();
+      for (size_t m = 0; m < c.measures.size(); ++m)
+        if (law.d[row][m] != 0) G += law.d[row][m] * g.G.row(m);
+    }
+    for (int k = 0; k < c.n_ends; ++k) {
       const Carrier& end = c.end[k];
       const int first = end.body >= 0 ? s.body_block[end.body] : s.node_block[end.node];
       if (first < 0) continue;
-      out.G.block<1, 3>(r, column[first]) += g.G.block<1, 3>(out.row[r].second, 6 * k);
-      if (end.body >= 0) out.G.block<1, 3>(r, column[first + 1]) += g.G.block<1, 3>(out.row[r].second, 6 * k + 3) / s.length;
+      out.G.block<1, 3>(r, column[first]) += G.segment<3>(6 * k);
+      if (end.body >= 0) out.G.block<1, 3>(r, column[first + 1]) += G.segment<3>(6 * k + 3) / s.length;
     }
   }
   return out;
@@ -58,7 +69,7 @@ Stage mass_stage(const Config& q, const Config& zero, double t) {
 
 Redundancy drop_redundant_rows(System& system, const Config& q) {
   Redundancy report;
-  const Rows rows = joint_rows(system, q, false);
+  const Rows rows = joint_rows(system, mass_stage(q, q, 0));
   report.rows = static_cast<int>(rows.row.size());
   if (report.rows == 0) return report;
   Eigen::MatrixXd A = rows.G.transpose();
@@ -100,8 +111,8 @@ bool recheck_redundant_rows(System& system, const Config& q, const Redundancy& b
   return false;
 }
 
-std::vector<double> minimum_norm(const System& system, const Config& left, std::span<const double> lambda) {
-  const Rows rows = joint_rows(system, left, false);
+std::vector<double> minimum_norm(const System& system, const Stage& stage, std::span<const double> lambda) {
+  const Rows rows = joint_rows(system, stage);
   const int first = system.first_joint_block();
   Eigen::VectorXd kept(rows.G.rows());
   for (size_t r = 0; r < rows.row.size(); ++r) {
@@ -117,23 +128,73 @@ std::vector<double> minimum_norm(const System& system, const Config& left, std::
   return out;
 }
 
+double assemble_positions(System& system, KktSolver& solver, Config& q) {
+  const Config placed = q;
+  Config moved, zero;
+  combine(zero, {{0, &q}});
+  const int first = 3 * system.first_joint_block();
+  std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), none(lambda.size(), 0.0), z(3 * system.n_blocks());
+  Residual with, without;
+  const double enough = 1e-12 * std::max(1.0, system.length);
+  bool done = false;
+  for (int it = 0; it < 100 && !done; ++it) {
+    // M (q - placed) + G^T lambda: what the displacement adds to the residual as an acceleration would
+    combine(moved, {{1, &q}, {-1, &placed}});
+    Stage stage = mass_stage(q, moved, 0);
+    system.evaluate(stage, lambda, with, &solver);
+    stage.a = &zero;
+    system.evaluate(stage, none, without, nullptr);
+    for (int i = 0; i < first; ++i) with.r[i] -= without.r[i];
+    solver.sum_shared(with.r);
+    system.mask_fixed(with.r);
+    for (double& r : with.r) r = -r;
+    std::fill(z.begin(), z.end(), 0.0);
+    const SolveReport solved = solver.solve(with.r, z);
+    if (!solved.ok) break;
+    double turn = 0, shift = 0;  // turns of more than half a radian are taken in parts
+    for (size_t i = 0; i < system.X.size(); ++i)
+      if (const int k = system.node_block[i]; k >= 0) shift = std::max(shift, Eigen::Map<const Vec3>(z.data() + 3 * k).norm());
+    for (size_t b = 0; b < system.bodies.size(); ++b)
+      if (const int k = system.body_block[b]; k >= 0) {
+        shift = std::max(shift, Eigen::Map<const Vec3>(z.data() + 3 * k).norm());
+        turn = std::max(turn, Eigen::Map<const Vec3>(z.data() + 3 * k + 3).norm());
+      }
+    turn = system.comm->max(turn), shift = system.comm->max(shift);
+    if (!std::isfinite(turn + shift) || shift > 1e3 * system.length) break;
+    const double share = turn > 0.5 ? 0.5 / turn : 1;
+    for (double& x : z) x *= share;
+    system.move(q, z);
+    system.commit(q);
+    for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += with.sigma * z[first + i];
+    done = system.constraint_violation(q, 0) <= enough && (turn + shift / system.length < 1e-6 || it > 20);
+  }
+  if (!done) {
+    double worst = 0, g[max_rows];
+    std::string open;
+    for (const Connector& j : system.joints) {
+      j.row_values(j.values(q), g);
+      if (j.drive.row >= 0) g[j.drive.row] -= j.drive.course(0, 1).value;
+      for (int r = 0; r < j.n_rows(); ++r)
+        if (!(std::abs(g[r]) <= worst)) worst = std::abs(g[r]), open = j.name;
+    }
+    throw Error("", fmt::format("the joints cannot be put together at the start: joint \"{}\" stays apart by {:.3g}", open, worst),
+                "check where the joints and bodies are placed, and what drives them at t = 0");
+  }
+  double change = 0;
+  for (size_t i = 0; i < q.x.size(); ++i) change = std::max(change, (q.x[i] - placed.x[i]).norm());
+  for (size_t i = 0; i < q.c.size(); ++i)
+    change = std::max({change, (q.c[i] - placed.c[i]).norm(), (q.R[i] - placed.R[i]).norm() / std::sqrt(2) * system.bodies[i].size});
+  return system.comm->max(change);
+}
+
 double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v) {
   Config zero = v;
   combine(zero, {{0, &v}});
   std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), b(3 * system.n_blocks(), 0.0), z(b.size(), 0.0);
   if (lambda.empty()) return 0;
-  // G v from values of the quadratic rows: (g(q + tau v) - g(q - tau v))/(2 tau) is exact
-  const double tau = 1e-3 * system.length / std::max(1e-300, [&] {
-                       double top = 0;
-                       for (const Vec3& x : v.x) top = std::max(top, x.norm());
-                       for (size_t i = 0; i < v.c.size(); ++i) top = std::max({top, v.c[i].norm(), v.R[i].norm() * system.bodies[i].size});
-                       return system.comm->max(top);
-                     }());
-  if (!(tau < 1e200)) return 0;
-  Config plus, minus;
-  combine(plus, {{1, &q}, {tau, &v}});
-  combine(minus, {{1, &q}, {-tau, &v}});
-  const auto gp = system.joint_values(plus), gm = system.joint_values(minus);
+  std::vector<double> rate;
+  system.row_rates(q, v, nullptr, 0, rate, nullptr);
+  if (std::all_of(rate.begin(), rate.end(), [](double x) { return x == 0; })) return 0;
   Residual r;
   system.evaluate(mass_stage(q, zero, 0), lambda, r, &solver);
   const int first = 3 * system.first_joint_block();
@@ -141,7 +202,7 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
     for (int m = 0; m < system.joints[j].n_rows(); ++m)
       if (system.joints[j].active[m]) {
         const int k = 3 * (system.joint_block[j] - system.first_joint_block()) + m;
-        b[first + k] = -r.sigma * (gp[k] - gm[k]) / (2 * tau);
+        b[first + k] = -r.sigma * rate[k];
       }
   const SolveReport solved = solver.solve(b, z);
   if (!solved.ok)
@@ -195,15 +256,8 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
   system.evaluate(stage, lambda, r, &solver);
   solver.sum_shared(r.r);
   system.mask_fixed(r.r);
-  // rows: d2g/dt2 = 0.  Along q + tau v + tau^2/2 a: [g(+) + g(-) - 2 g]/tau^2 for v, (g(+) - g(-))/(2 tau) for a
-  const double tau = 1e-3;
-  Config p, m;
-  combine(p, {{1, &s.q}, {tau, &s.v}});
-  combine(m, {{1, &s.q}, {-tau, &s.v}});
-  const auto vp = system.joint_values(p), vm = system.joint_values(m), g = system.joint_values(s.q);
-  combine(p, {{1, &s.q}, {tau, &a}});
-  combine(m, {{1, &s.q}, {-tau, &a}});
-  const auto ap = system.joint_values(p), am = system.joint_values(m);
+  std::vector<double> rate, acceleration;  // rows: d2g/dt2 = 0
+  system.row_rates(s.q, s.v, &a, s.t, rate, &acceleration);
   std::vector<double> b(r.r.size()), z(r.r.size(), 0.0);
   for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
   const int first = 3 * system.first_joint_block();
@@ -211,7 +265,7 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
     for (int k = 0; k < 3 * ((system.joints[j].n_rows() + 2) / 3); ++k) {
       const int i = 3 * (system.joint_block[j] - system.first_joint_block()) + k;
       const bool active = k < system.joints[j].n_rows() && system.joints[j].active[k];
-      b[first + i] = active ? -r.sigma * ((vp[i] + vm[i] - 2 * g[i]) / (tau * tau) + (ap[i] - am[i]) / (2 * tau)) : 0;
+      b[first + i] = active ? -r.sigma * acceleration[i] : 0;
     }
   const SolveReport solved = solver.solve(b, z);
   if (!solved.ok) throw Error("", fmt::format("the joints and masses do not determine the accelerations: {}", solved.message));

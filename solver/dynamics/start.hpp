@@ -16,7 +16,11 @@ Redundancy drop_redundant_rows(System& system, const Config& q);
 /// True where the choice has changed.
 bool recheck_redundant_rows(System& system, const Config& q, const Redundancy& before);
 /// Minimum-norm multipliers that give the same forces as `lambda`, all rows of all joints counted; laid out like lambda.
-std::vector<double> minimum_norm(const System& system, const Config& left, std::span<const double> lambda);
+std::vector<double> minimum_norm(const System& system, const Stage& stage, std::span<const double> lambda);
+
+/// Positions at t = 0 that satisfy the joints, as near to q as the mass norm says; returns the largest change [m].
+/// Error naming the joint that is furthest apart where there are none.
+double assemble_positions(System& system, KktSolver& solver, Config& q);
 
 /// Velocities made consistent with the joints in the mass norm; returns the largest change [m/s].
 double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v);

@@ -58,6 +58,14 @@ double History::slope(double time) const {
   return c * (ramp == Ramp::smooth ? pi / 2 * std::sin(pi * s) : septic_slope(s));
 }
 
+double History::curvature(double time) const {
+  const size_t i = end_of_segment(*this, time);
+  const double c = linear_slope(*this, i);
+  if (c == 0 || !smooth) return 0;
+  const double length = t[i] - t[i - 1];
+  return c * pi * pi / (2 * length) * std::cos(pi * (time - t[i - 1]) / length);
+}
+
 double History::mean(double t0, double t1) const {
   if (t0 == t1) return (*this)(t0);
   if (t1 < t0) return mean(t1, t0);

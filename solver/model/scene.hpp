@@ -31,6 +31,7 @@ struct History {
   Ramp ramp = Ramp::linear;
   double operator()(double time) const;  // from the right at a jump
   double slope(double time) const;
+  double curvature(double time) const;      // second derivative
   double mean(double t0, double t1) const;  // exact average over [t0, t1]
   /// Times of jumps and kinks inside (t0, t1).
   std::vector<double> events(double t0, double t1) const;

@@ -64,26 +64,55 @@ std::vector<KindSchema> make() {
                 {"mass", number, "kg", "!", "total mass added", above(0)},
                 {"at", vector3, "m", "", "where on a body; its centre when absent"}}});
 
-  const auto joint = [&](std::string_view kind, std::string_view meaning, bool with_axis) {
-    std::vector<Param> p{{"kind", text, "", "!", "the kind of joint"}, name, end_a, end_b, at};
+  const Param joint_kind{"kind", text, "", "!", "the kind of joint"};
+  const auto joint = [&](std::string_view kind, std::string_view meaning, bool with_axis, std::vector<Param> more = {}) {
+    std::vector<Param> p{joint_kind, name, end_a, end_b, at};
     if (with_axis) p.push_back(axis), p.push_back(x_axis);
+    p.insert(p.end(), more.begin(), more.end());
     s.push_back({"joint", kind, meaning, std::move(p)});
   };
+  constexpr Param angle{"angle", number, "rad", "", "drives the joint: angle of b about the axis at history 1"},
+      spin{"spin", number, "rad/s", "", "drives the joint: rate of the angle at history 1, integrated from t = 0"},
+      displacement{"displacement", number, "m", "", "drives the joint: slide of b along the axis at history 1"},
+      velocity{"velocity", number, "m/s", "", "drives the joint: rate of the slide at history 1, integrated from t = 0"},
+      drive_history{"history", history, "1", "1", "course of what drives the joint, best with interpolation = \"smooth\""},
+      axis_b{"axis_b", vector3, "1", "", "shaft of b where it is bent at the start"},
+      third_end{"carrier", text, "", "ground", "what carries both axes: a rigid region, a body, a set, or ground"};
   joint("fixed", "no relative motion (6 rows)", false);
   joint("spherical", "common point (3 rows)", false);
-  joint("revolute", "common point and axis: one rotation (5 rows)", true);
-  joint("cylindrical", "common axis: one rotation, one slide (4 rows)", true);
-  joint("prismatic", "slide along the axis (5 rows)", true);
+  joint("revolute", "common point and axis: one rotation (5 rows)", true, {angle, spin, drive_history});
+  joint("cylindrical", "common axis: one rotation, one slide (4 rows)", true, {angle, spin, displacement, velocity, drive_history});
+  joint("prismatic", "slide along the axis (5 rows)", true, {displacement, velocity, drive_history});
   joint("universal", "common point, the axis of a stays normal to `x` of b (4 rows)", true);
+  joint("constant-velocity", "common point, shafts of a and b turn by the same angle at any bend (4 rows)", true, {axis_b});
+  joint("screw", "common axis, b slides by the pitch per turn (5 rows)", true,
+        {{"pitch", number, "m", "!", "slide of b along the axis per turn of b about it; negative: left-handed"},
+         angle,
+         spin,
+         displacement,
+         velocity,
+         drive_history});
+  joint("planar", "b moves in a plane of a and turns about its normal, the axis (3 rows)", true);
+  joint("in-plane", "a point of b stays in a plane of a with the normal `axis` (1 row)", true);
+  joint("in-line", "a point of b stays on a line of a along `axis` (2 rows)", true);
+  joint("gear", "angles of a and b about axes of a carrier stay in a ratio; bearings are joints of their own (1 row, a moment on b)", true,
+        {{"axis_b", vector3, "1", "", "axis of b where it differs from that of a"},
+         {"ratio", number, "1", "!", "turns of b per turn of a; negative when they turn against each other"},
+         third_end});
+  joint("rack", "slide of b goes with the angle of a, the pinion; bearings and guides are joints of their own (1 row)", true,
+        {{"direction", vector3, "1", "!", "direction in the carrier along which b moves when a turns positively about `axis`"},
+         {"radius", number, "m", "!", "pitch radius: slide per angle", above(0)},
+         third_end});
   s.push_back({"joint",
                "distance",
                "constant distance of two points (1 row)",
-               {{"kind", text, "", "!", "the kind of joint"},
+               {joint_kind,
                 name,
                 end_a,
                 end_b,
                 {"at_a", vector3, "m", "!", "point on a"},
-                {"at_b", vector3, "m", "!", "point on b"}}});
+                {"at_b", vector3, "m", "!", "point on b"},
+                {"length", number, "m", "", "distance held; that of the two points when absent", above(0)}}});
 
   s.push_back({"spring",
                "axial",

@@ -77,17 +77,33 @@ void place(const Connector& c, const Config& q, Vec3* y, Vec3* arm) {
 }  // namespace
 
 double Connector::value(int measure, const Config& q) const {
-  Vec3 y[12], arm[12];
+  Vec3 y[max_entities], arm[max_entities];
   place(*this, q, y, arm);
   double e = -measures[measure].offset;
   for (const Term& t : measures[measure].terms) e += term_value(t, y);
   return e;
 }
 
+std::array<double, max_measures> Connector::values(const Config& q) const {
+  Vec3 y[max_entities], arm[max_entities];
+  place(*this, q, y, arm);
+  std::array<double, max_measures> e{};
+  for (size_t m = 0; m < measures.size(); ++m) {
+    e[m] = -measures[m].offset;
+    for (const Term& t : measures[m].terms) e[m] += term_value(t, y);
+  }
+  return e;
+}
+
+void Connector::row_values(const std::array<double, max_measures>& e, double* g) const {
+  if (rows) return rows->values(e, g);
+  for (int r = 0; r < n_rows(); ++r) g[r] = e[r];
+}
+
 void gradient(const Connector& c, const Config& q, const Config& turned, ConnectorGradient& g) {
   place(c, q, g.y, g.arm);
   if (&turned != &q) {
-    Vec3 y[12];
+    Vec3 y[max_entities];
     place(c, turned, y, g.arm);
   }
   g.G.topRows(c.measures.size()).setZero();
@@ -108,7 +124,7 @@ void gradient(const Connector& c, const Config& q, const Config& turned, Connect
 }
 
 void add_geometric(const Connector& c, const ConnectorGradient& left, const ConnectorGradient& right, const double* s, double slope,
-                   Eigen::Matrix<double, 12, 12>& K) {
+                   ConnectorMatrix& K) {
   for (size_t m = 0; m < c.measures.size(); ++m) {
     const double f = slope * s[m];
     if (f == 0) continue;

@@ -1,11 +1,14 @@
-// Joints and springs: quadratic measures of points and directions carried by two ends.
+// Joints and springs: quadratic measures of points and directions carried by two ends, or three where a joint needs a carrier.
 //
-// Every measure e(q) is of degree two in the points, so G(q_mid)(q1 - q0) = e(q1) - e(q0) exactly.  A joint holds its measures at zero
-// with multipliers; a spring gives them a potential through a discrete gradient s with s.(e1 - e0) = W1 - W0 [gonzalez-1996].
+// Every measure e(q) is of degree two in the points, so G(q_mid)(q1 - q0) = e(q1) - e(q0) exactly.  A joint holds its measures, or
+// functions of them, at zero or at a given course with multipliers; a spring gives them a potential.  Functions and potentials enter
+// through discrete gradients, d.(e1 - e0) = g1 - g0 and s.(e1 - e0) = W1 - W0 [gonzalez-1996].
 // An end is a body (6 unknowns: translation and rotation vector), a node (3) or something whose motion is known (0).
 #pragma once
 #include <array>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,7 +23,7 @@ struct Carrier {
 
 /// A point (c + R r) or direction (R r) on one of the ends.
 struct Entity {
-  int end;  // 0: a, 1: b
+  int end;  // 0: a, 1: b, 2: carrier
   Vec3 r;   // arm from the body's centre, or direction, body axes
   bool point;
 };
@@ -38,7 +41,8 @@ struct Measure {
   double offset = 0;  // subtracted, so that the reference configuration gives the value wanted
 };
 
-inline constexpr int max_measures = 6;
+inline constexpr int max_measures = 8, max_rows = 6, max_ends = 3, max_entities = 12;
+inline constexpr int max_directions = 6 * max_ends;  // generalised directions: translation and rotation of each end
 
 /// Stress-like response of a spring to its measures over a step.
 struct Response {
@@ -58,43 +62,91 @@ class SpringLaw {
   virtual void commit(const Values&) {}
 };
 
-struct Connector {
-  std::string name, kind;
-  Carrier end[2];
-  std::vector<Entity> entities;
-  std::vector<Measure> measures;
-  std::unique_ptr<SpringLaw> law;                                             // null for a joint
-  Vec3 point_b = Vec3::Zero();                                                // joint point in b: arm from its centre, body axes [m]
-  Mat3 frame_a = Mat3::Identity();                                            // joint frame in a, body axes
-  int first_row = -1;                                                         // first multiplier, joints only
-  std::array<bool, max_measures> active{true, true, true, true, true, true};  // rows kept by the redundancy check
-
-  int n_rows() const { return law ? 0 : static_cast<int>(measures.size()); }
-  double value(int measure, const Config& q) const;
+/// Rows of a joint that are functions g_r(e) of its measures.
+class RowLaw {
+ public:
+  using Values = std::array<double, max_measures>;
+  /// Gradients of the rows by the measures, and their derivatives.
+  struct Gradient {
+    std::array<std::array<double, max_measures>, max_rows> d{};                            // d_r                    (rows x measures)
+    std::array<std::array<std::array<double, max_measures>, max_measures>, max_rows> D{};  // d(d_r)/de1
+  };
+  virtual ~RowLaw() = default;
+  virtual int n_rows() const = 0;
+  virtual void values(const Values& e, double* g) const = 0;
+  /// Discrete gradient, symmetric in its ends, with d_r.(e1 - e0) = g_r(e1) - g_r(e0); at e0 = e1 the gradient, D half its derivative.
+  virtual void gradient(const Values& e0, const Values& e1, Gradient& out) const = 0;
+  /// Accept e as the state to go on from (unwrapped angles).
+  virtual void commit(const Values&) {}
+  /// Why the joint cannot be at e, or nothing.
+  virtual std::string fault(const Values&) const { return {}; }
 };
 
-/// Gradients of the measures over the 12 generalised directions of the two ends: translation and rotation of a, then of b.
+/// Course of a row: the joint holds g = value(t).
+struct Course {
+  double value, rate, acceleration;
+};
+/// Drive of a row; the factor is that of loads without a history in a static analysis.
+struct Drive {
+  int row = -1;
+  std::function<Course(double t, double factor)> course;
+};
+
+struct Connector {
+  std::string name, kind;
+  Carrier end[max_ends];
+  int n_ends = 2;
+  std::vector<Entity> entities;
+  std::vector<Measure> measures;
+  std::unique_ptr<SpringLaw> law;  // springs only
+  std::unique_ptr<RowLaw> rows;    // joints whose rows are not their measures
+  Drive drive;
+  Vec3 point_b = Vec3::Zero();                                            // joint point in b: arm from its centre, body axes [m]
+  Mat3 frame_a = Mat3::Identity();                                        // joint frame in a, body axes
+  std::array<bool, max_rows> active{true, true, true, true, true, true};  // rows kept by the redundancy check
+
+  std::span<const Carrier> ends() const { return {end, static_cast<size_t>(n_ends)}; }
+  int n_directions() const { return 6 * n_ends; }
+  int n_rows() const { return law ? 0 : rows ? rows->n_rows() : static_cast<int>(measures.size()); }
+  double value(int measure, const Config& q) const;
+  std::array<double, max_measures> values(const Config& q) const;
+  /// Rows from the values of the measures; what a drive wants is not yet taken off.
+  void row_values(const std::array<double, max_measures>& e, double* g) const;
+};
+
+/// Gradients of the measures over the generalised directions of the ends: translation and rotation of a, of b, of the carrier.
 struct ConnectorGradient {
-  Vec3 y[12], arm[12];  // entities and their arms
-  double e[max_measures];
-  Eigen::Matrix<double, max_measures, 12> G;  // d e / d(u_a, theta_a, u_b, theta_b)
-  Vec3 dy[max_measures][12];                  // d e / d y
+  Vec3 y[max_entities], arm[max_entities];  // entities and their arms
+  std::array<double, max_measures> e;
+  Eigen::Matrix<double, max_measures, max_directions, Eigen::RowMajor> G;  // d e / d(u_a, theta_a, u_b, theta_b, u_c, theta_c)
+  Vec3 dy[max_measures][max_entities];                                     // d e / d y
 };
 /// At q; the arms that turn an increment of the unknowns into one of the entities are those of `turned`.
 void gradient(const Connector& c, const Config& q, const Config& turned, ConnectorGradient& out);
 inline void gradient(const Connector& c, const Config& q, ConnectorGradient& out) { gradient(c, q, q, out); }
 
-/// Second derivative term: slope * d/dz1 of (G(q_left)^T s), 12 x 12, added to K.
+/// Matrix over the directions of a connector; lives on the stack.
+using ConnectorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_directions, max_directions>;
+/// Second derivative term: slope * d/dz1 of (G(q_left)^T s), added to K.
 void add_geometric(const Connector& c, const ConnectorGradient& left, const ConnectorGradient& right, const double* s, double slope,
-                   Eigen::Matrix<double, 12, 12>& K);
+                   ConnectorMatrix& K);
 
 /// Force and moment on b at its joint point, inertial axes, for conjugate forces s: -(G^T s)_b.
 Vec6 force_on_b(const Connector& c, const ConnectorGradient& left, const double* s, const Config& q);
 
-/// Joint of a kind ("revolute", ...) at `at` with frame `frame` (third column the axis), ends at rest in `q`.
-/// `at_b` differs from `at` for the distance joint only.
-Connector make_joint(const std::string& kind, const Carrier& a, const Carrier& b, const Config& q, const Vec3& at, const Vec3& at_b,
-                     const Mat3& frame);
+/// Where a joint is, what it joins, and what its kind needs besides.
+struct JointPlace {
+  std::string kind;
+  Carrier a, b, carrier{0, -1};        // the carrier of a gear or rack
+  Vec3 at, at_b;                       // joint point on a and on b; they differ for the distance joint only [m]
+  Mat3 frame = Mat3::Identity();       // third column the axis
+  Vec3 axis_b = Vec3::Zero();          // axis of b: gear, constant-velocity; direction of a rack; zero: the axis
+  double ratio = 1;                    // turns of b per turn of a; [m/rad] of a rack or screw
+  double length = 0;                   // of a distance joint, 0: as placed [m]
+  enum class Driven { none, angle, slide } driven = Driven::none;  // a row held to a course: angle or slide of b along the axis
+};
+/// The joint with its ends at rest in `q`.
+Connector make_joint(const JointPlace& place, const Config& q);
 
 /// Springs.  Stiffness and damping triples go with the columns of `frame`.
 Connector make_axial_spring(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at_a, const Vec3& at_b, double stiffness,

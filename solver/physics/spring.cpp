@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "physics/connector.hpp"
+#include "physics/turn.hpp"
 
 namespace hilo {
 namespace {
@@ -48,41 +49,30 @@ struct Diagonal final : SpringLaw {
   }
 };
 
-/// Angle from its sine and cosine, both of degree two: with d = theta1 - theta0, the moment M enters as
-/// s_sin = M kappa cos(theta_mid), s_cos = -M kappa sin(theta_mid), kappa = (d/2)/sin(d/2), so that s.(e1 - e0) = M d exactly.
+/// Angle from its sine and cosine: the moment M acts through the discrete gradient of the angle, so that s.(e1 - e0) = M (theta1 - theta0).
 struct Torsion final : SpringLaw {
-  double k, c, free_angle, committed = 0;
+  double k, c, free_angle;
+  Turn turn;
   Torsion(double k_, double c_, double a) : k(k_), c(c_), free_angle(a) {}
-  /// The angle of (sin, cos) nearest to the committed one.
-  double unwrap(const Values& e) const {
-    const double theta = std::atan2(e[0], e[1]), turn = 2 * M_PI;
-    return theta + turn * std::round((committed - theta) / turn);
-  }
-  void spread(double M, double dM, double theta0, double theta1, const Values& e1, Response& out) const {
-    const double x = (theta1 - theta0) / 2, mid = (theta0 + theta1) / 2;
-    const double kappa = std::abs(x) < 1e-3 ? 1 + x * x / 6 : x / std::sin(x);
-    const double slope = std::abs(x) < 1e-3 ? x / 6 : (std::sin(x) - x * std::cos(x)) / (2 * std::sin(x) * std::sin(x));
-    const double s[2] = {M * kappa * std::cos(mid), -M * kappa * std::sin(mid)};
-    const double ds[2] = {(dM * kappa + M * slope) * std::cos(mid) - M * kappa * std::sin(mid) / 2,
-                          -(dM * kappa + M * slope) * std::sin(mid) - M * kappa * std::cos(mid) / 2};
-    const double square = e1[0] * e1[0] + e1[1] * e1[1];         // 1 once the joint on the axis holds
-    const double dtheta[2] = {e1[1] / square, -e1[0] / square};  // d theta / d(sin, cos)
+  double angle(const Values& e) const { return turn.unwrap(e[0], e[1]); }
+  void spread(double M, double dM, const Values& e0, const Values& e1, Response& out) const {
+    const Turn::Gradient g = turn.gradient(e0.data(), e1.data());
     for (int i = 0; i < 2; ++i) {
-      out.s[i] += s[i];
-      for (int j = 0; j < 2; ++j) out.D[i][j] += ds[i] * dtheta[j];
+      out.s[i] += M * g.d[i];
+      for (int j = 0; j < 2; ++j) out.D[i][j] += dM * g.d[i] * g.dtheta[j] + M * g.D[i][j];
     }
   }
   void elastic(const Values& e0, const Values& e1, Response& out) const override {
-    const double t0 = unwrap(e0), t1 = unwrap(e1);
-    spread(k * ((t0 + t1) / 2 - free_angle), k / 2, t0, t1, e1, out);
+    const double t0 = angle(e0), t1 = angle(e1);
+    spread(k * ((t0 + t1) / 2 - free_angle), k / 2, e0, e1, out);
     out.energy += k / 2 * (t1 - free_angle) * (t1 - free_angle);
   }
   void viscous(const Values& r0, const Values& r1, double h, Response& out) const override {
-    const double t0 = unwrap(r0), t1 = unwrap(r1), rate = (t1 - t0) / h;
-    spread(c * rate, c / h, t0, t1, r1, out);
+    const double rate = (angle(r1) - angle(r0)) / h;
+    spread(c * rate, c / h, r0, r1, out);
     out.dissipated += c * rate * rate * h;
   }
-  void commit(const Values& e) override { committed = unwrap(e); }
+  void commit(const Values& e) override { turn.committed = angle(e); }
 };
 
 /// Measure 0 is the gap: W = k/2 <-gap>^2 with its quotient as discrete gradient; the damper acts while the mean gap is closed and

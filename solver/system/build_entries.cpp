@@ -1,4 +1,4 @@
-// Entries of the scene to motions, joints, springs, loads, stations and initial velocities.
+// Entries of the scene to motions, springs, loads, stations and initial velocities.
 #include <fmt/format.h>
 #include <fnmatch.h>
 
@@ -10,20 +10,6 @@
 
 namespace hilo {
 namespace {
-
-Vec3 direction(const Entry& e, std::string_view key) {
-  const Vec3 v = e.vector3(key);
-  if (!(v.norm() > 0))
-    throw Error(e.where(key), e.label() + ": the axis has zero length", fmt::format("give {} a direction, such as [0, 0, 1]", key));
-  return v.normalized();
-}
-
-Mat3 frame(const Entry& e) {
-  if (!e.has("axis")) return Mat3::Identity();
-  const Vec3 axis = direction(e, "axis"), x = e.has("x") ? direction(e, "x") : Vec3::Zero();
-  if (!x.isZero() && std::abs(x.dot(axis)) > 1 - 1e-9) throw Error(e.where("x"), e.label() + ": x is parallel to the axis");
-  return frame_of_axis(axis, x);
-}
 
 std::array<bool, 3> components(const Entry& e) {
   std::array<bool, 3> c{};
@@ -91,26 +77,6 @@ void Builder::add_motions() {
   }
 }
 
-void Builder::add_joints() {
-  for (const Entry& e : scene_.entries("joint")) {
-    const bool needs = e.kind != "spherical" && e.kind != "distance";
-    const Carrier a = carrier(e, "a", needs), b = carrier(e, "b", needs);
-    if (a.body == b.body && a.node == b.node)
-      throw Error(
-          e.where("b"), fmt::format("{}: both ends are the same body", e.label()),
-          a.body > 0 ? fmt::format("\"{}\" and \"{}\" are one rigid body, {}", e.text("a"), e.text("b"), out_->bodies[a.body].name) : "");
-    const Vec3 at = e.kind == "distance" ? e.vector3("at_a") : e.vector3("at"), at_b = e.kind == "distance" ? e.vector3("at_b") : at;
-    if (e.kind == "distance" && !((at - at_b).norm() > 0))
-      throw Error(e.where("at_b"), e.label() + ": the two points coincide", "a spherical joint holds them together");
-    for (const Carrier* end : {&a, &b})
-      if (end->node >= 0 && (out_->X[end->node] - (end == &a ? at : at_b)).norm() > 1e-6 * out_->length)
-        throw Error(e.where(end == &a ? "a" : "b"), fmt::format("{}: the node is not at the joint point", e.label()));
-    Connector c = make_joint(e.kind, a, b, out_->start, at, at_b, frame(e));
-    c.name = e.name;
-    out_->joints.push_back(std::move(c));
-  }
-}
-
 void Builder::add_springs() {
   for (const Entry& e : scene_.entries("spring")) {
     const bool needs = e.kind != "axial";
@@ -127,13 +93,13 @@ void Builder::add_springs() {
       c = make_axial_spring(a, b, q, pa, pb, k, e.number("damping"), length);
       out_->stiffness = std::max(out_->stiffness, k);
     } else if (e.kind == "torsion") {
-      c = make_torsion_spring(a, b, q, frame(e), e.number("stiffness"), e.number("damping"), e.number("angle"));
+      c = make_torsion_spring(a, b, q, joint_frame(e), e.number("stiffness"), e.number("damping"), e.number("angle"));
     } else if (e.kind == "bushing") {
-      c = make_bushing(a, b, q, e.vector3("at"), frame(e), vec(padded(e, "stiffness", 3)), vec(padded(e, "damping", 3)),
+      c = make_bushing(a, b, q, e.vector3("at"), joint_frame(e), vec(padded(e, "stiffness", 3)), vec(padded(e, "damping", 3)),
                        vec(padded(e, "angular_stiffness", 3)), vec(padded(e, "angular_damping", 3)));
       out_->stiffness = std::max(out_->stiffness, vec(padded(e, "stiffness", 3)).maxCoeff());
     } else {
-      c = make_support(a, b, q, e.vector3("at"), frame(e), e.number("stiffness"), e.number("damping"), e.number("clearance"),
+      c = make_support(a, b, q, e.vector3("at"), joint_frame(e), e.number("stiffness"), e.number("damping"), e.number("clearance"),
                        vec(padded(e, "tangential_stiffness", 2)), vec(padded(e, "tangential_damping", 2)));
       out_->stiffness = std::max(out_->stiffness, e.number("stiffness"));
     }

@@ -8,6 +8,11 @@
 
 namespace hilo {
 
+/// A key that names a direction, of unit length.
+Vec3 direction(const Entry& e, std::string_view key);
+/// Frame of `axis` and `x`, third column the axis; the inertial axes where there is none.
+Mat3 joint_frame(const Entry& e);
+
 class Builder {
  public:
   Builder(const Scene& scene, LocalMesh* mesh, const Comm& comm);
@@ -53,13 +58,14 @@ class Builder {
   Vec3 mean_of(const std::vector<int>& nodes) const;
   // build_entries.cpp
   void add_motions();
-  void add_joints();
   void add_springs();
   void add_loads();
   void add_stations();
   void add_point_masses();
   void set_initial_velocities();
   std::vector<std::string> all_names() const;
+  // build_joints.cpp
+  void add_joints();
 
   const Scene& scene_;
   LocalMesh* mesh_;

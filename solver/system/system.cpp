@@ -133,20 +133,14 @@ void System::prescribe(Config& q, double t, double ramp) const {
   follow(q);
 }
 
-double System::constraint_violation(const Config& q) const {
-  double worst = 0;
-  for (const Connector& j : joints)
-    for (int m = 0; m < j.n_rows(); ++m) worst = std::max(worst, std::abs(j.value(m, q)));
+double System::constraint_violation(const Config& q, double t, double factor) const {
+  double worst = 0, g[max_rows];
+  for (const Connector& j : joints) {
+    j.row_values(j.values(q), g);
+    if (j.drive.row >= 0) g[j.drive.row] -= j.drive.course(t, factor).value;
+    for (int r = 0; r < j.n_rows(); ++r) worst = std::max(worst, std::abs(g[r]));
+  }
   return comm->max(worst);
-}
-
-std::vector<double> System::joint_values(const Config& q) const {
-  std::vector<double> g(3 * n_joint_blocks(), 0.0);
-  for (size_t j = 0; j < joints.size(); ++j)
-    for (int m = 0; m < joints[j].n_rows(); ++m)
-      if (owns_joint_[j]) g[3 * (joint_block[j] - first_joint_block()) + m] = joints[j].value(m, q);
-  comm->sum(g);
-  return g;
 }
 
 bool System::has_damping() const {
@@ -154,11 +148,9 @@ bool System::has_damping() const {
 }
 
 void System::commit(const Config& q) {
-  for (Connector& s : springs) {
-    SpringLaw::Values e{};
-    for (size_t m = 0; m < s.measures.size(); ++m) e[m] = s.value(static_cast<int>(m), q);
-    s.law->commit(e);
-  }
+  for (Connector& s : springs) s.law->commit(s.values(q));
+  for (Connector& j : joints)
+    if (j.rows) j.rows->commit(j.values(q));
 }
 
 void System::number() {
@@ -215,7 +207,7 @@ void System::number() {
     }
   const auto connector_clique = [&](const Connector& c, int first_row_block) {
     list.clear();
-    for (const Carrier& end : c.end) {
+    for (const Carrier& end : c.ends()) {
       if (end.body >= 0 && body_block[end.body] >= 0) list.push_back(body_block[end.body]), list.push_back(body_block[end.body] + 1);
       if (end.body < 0 && end.node >= 0) list.push_back(node_block[end.node]);
     }
@@ -223,7 +215,7 @@ void System::number() {
     return cliques.add(list);
   };
   const auto owns = [&](const Connector& c, size_t index) {
-    for (const Carrier& end : c.end)
+    for (const Carrier& end : c.ends())
       if (end.body < 0) return end.node >= 0 && node_owned[end.node] != 0;
     return static_cast<int>(index) % comm->size == comm->rank;
   };

@@ -162,9 +162,10 @@ class System {
   /// Prescribed positions at time t: driven bodies and fixed components.
   void prescribe(Config& q, double t, double ramp = 1) const;
   /// Largest |g| of the active joint rows [m, 1].
-  double constraint_violation(const Config& q) const;
-  /// Values of all joint rows, laid out like lambda; being quadratic, differences of them give exact derivatives.
-  std::vector<double> joint_values(const Config& q) const;
+  double constraint_violation(const Config& q, double t, double factor = 1) const;
+  /// First and, where asked for, second derivatives by time of all joint rows less their courses, laid out like lambda.
+  void row_rates(const Config& q, const Config& v, const Config* a, double t, std::vector<double>& rate,
+                 std::vector<double>* acceleration) const;
   int first_joint_block() const { return joint_block.empty() ? n_blocks() : joint_block.front(); }
   int n_joint_blocks() const { return n_blocks() - first_joint_block(); }
   bool has_damping() const;
@@ -208,6 +209,11 @@ class System {
   std::vector<int> body_clique_, joint_clique_, spring_clique_;
   std::vector<char> owns_joint_, owns_spring_;
 };
+
+/// Gradient of a joint's rows by its measures as the stage takes it: over the step where it conserves energy, else at `left`.
+void row_gradient(const Connector& c, const Stage& s, const ConnectorGradient& left, RowLaw::Gradient& out);
+/// Forces conjugate to the measures of a joint for the multipliers of its rows.
+void joint_forces(const Connector& c, const Stage& s, const ConnectorGradient& left, const double* lambda, double* force);
 
 /// Build the system of a scene.  Errors carry the scene's places.
 std::unique_ptr<System> build_system(const Scene& scene, LocalMesh* mesh, const Comm& comm);

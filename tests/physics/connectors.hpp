@@ -55,7 +55,8 @@ inline Vec12 increment(const Config& q0, const Config& q1) {
 }
 
 inline const std::vector<std::string>& joint_kinds() {
-  static const std::vector<std::string> kinds{"fixed", "spherical", "revolute", "cylindrical", "prismatic", "universal", "distance"};
+  static const std::vector<std::string> kinds{"fixed",     "spherical", "revolute", "cylindrical", "prismatic", "universal", "distance",
+                                              "planar",    "in-plane",  "in-line",  "constant-velocity"};
   return kinds;
 }
 
@@ -63,7 +64,13 @@ inline Mat3 some_frame() { return frame_of_axis(Vec3(1, 2, -0.5), Vec3(0, 1, 0))
 inline const Vec3 joint_point(0.4, -0.2, 0.9), other_point(-1, 0.3, 0.2);
 
 inline Connector joint(const std::string& kind, const Config& q) {
-  return make_joint(kind, {1, -1}, {2, -1}, q, joint_point, kind == "distance" ? other_point : joint_point, some_frame());
+  return make_joint({.kind = kind,
+                     .a = {1, -1},
+                     .b = {2, -1},
+                     .at = joint_point,
+                     .at_b = kind == "distance" ? other_point : joint_point,
+                     .frame = some_frame()},
+                    q);
 }
 
 }  // namespace hilo::test

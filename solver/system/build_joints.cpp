@@ -1,0 +1,97 @@
+// [[joint]] entries to connectors with multiplier rows.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "system/builder.hpp"
+
+namespace hilo {
+namespace {
+
+/// The key that drives the joint, if any: angle or spin, displacement or velocity, each times the history.
+std::string driving_key(const Entry& e) {
+  std::string found;
+  for (const char* key : {"angle", "spin", "displacement", "velocity"}) {
+    if (!e.has(key)) continue;
+    if (!found.empty())
+      throw Error(e.where(key), fmt::format("{}: both {} and {} are prescribed", e.label(), found, key), "one of them drives the joint");
+    found = key;
+  }
+  if (found.empty() && e.given("history"))
+    throw Error(e.where("history"), e.label() + ": a history without anything that follows it", "give an angle, spin, displacement or velocity");
+  return found;
+}
+
+/// value x history, or its integral from t = 0 for a rate; without a history it follows the load steps of a static analysis.
+std::function<Course(double, double)> course(double value, bool is_rate, const History& h, bool ramped) {
+  if (is_rate)
+    return [=](double t, double) { return Course{value * t * h.mean(0, t), value * h(t), value * h.slope(t)}; };
+  return [=](double t, double factor) {
+    const double f = value * (ramped ? factor : 1);
+    return Course{f * h(t), f * h.slope(t), f * h.curvature(t)};
+  };
+}
+
+}  // namespace
+
+Vec3 direction(const Entry& e, std::string_view key) {
+  const Vec3 v = e.vector3(key);
+  if (!(v.norm() > 0))
+    throw Error(e.where(key), e.label() + ": the axis has zero length", fmt::format("give {} a direction, such as [0, 0, 1]", key));
+  return v.normalized();
+}
+
+Mat3 joint_frame(const Entry& e) {
+  if (!e.has("axis")) return Mat3::Identity();
+  const Vec3 axis = direction(e, "axis"), x = e.has("x") ? direction(e, "x") : Vec3::Zero();
+  if (!x.isZero() && std::abs(x.dot(axis)) > 1 - 1e-9) throw Error(e.where("x"), e.label() + ": x is parallel to the axis");
+  return frame_of_axis(axis, x);
+}
+
+void Builder::add_joints() {
+  for (const Entry& e : scene_.entries("joint")) {
+    const std::string& kind = e.kind;
+    const bool points_only = kind == "spherical" || kind == "distance", point_of_b = points_only || kind == "in-plane" || kind == "in-line";
+    JointPlace j;
+    j.kind = kind;
+    j.a = carrier(e, "a", !points_only), j.b = carrier(e, "b", !point_of_b);
+    if (e.has("carrier")) j.carrier = carrier(e, "carrier", true);
+    const auto different = [&](const Carrier& one, const Carrier& other, const char* key, const char* other_key) {
+      if (one.body != other.body || one.node != other.node) return;
+      throw Error(e.where(key), fmt::format("{}: {} and {} are the same body", e.label(), other_key, key),
+                  one.body > 0 ? fmt::format("\"{}\" and \"{}\" are one rigid body, {}", e.text(other_key), e.text(key), out_->bodies[one.body].name) : "");
+    };
+    different(j.b, j.a, "b", "a");
+    if (e.has("carrier")) different(j.carrier, j.a, "carrier", "a"), different(j.carrier, j.b, "carrier", "b");
+    j.at = kind == "distance" ? e.vector3("at_a") : e.vector3("at"), j.at_b = kind == "distance" ? e.vector3("at_b") : j.at;
+    if (kind == "distance" && !((j.at - j.at_b).norm() > 0))
+      throw Error(e.where("at_b"), e.label() + ": the two points coincide", "a spherical joint holds them together");
+    for (const Carrier* end : {&j.a, &j.b})
+      if (end->node >= 0 && (out_->X[end->node] - (end == &j.a ? j.at : j.at_b)).norm() > 1e-6 * out_->length)
+        throw Error(e.where(end == &j.a ? "a" : "b"), fmt::format("{}: the node is not at the joint point", e.label()));
+    j.frame = joint_frame(e);
+    for (const char* key : {"axis_b", "direction"})
+      if (e.has(key)) j.axis_b = direction(e, key);
+    if (e.has("ratio")) j.ratio = e.number("ratio");
+    if (e.has("radius")) j.ratio = e.number("radius");
+    if (e.has("pitch")) j.ratio = e.number("pitch") / (2 * std::numbers::pi);
+    if (e.has("length")) j.length = e.number("length");
+    const std::string driven = driving_key(e);
+    const bool is_rate = driven == "spin" || driven == "velocity";
+    if (!driven.empty()) j.driven = driven == "angle" || driven == "spin" ? JointPlace::Driven::angle : JointPlace::Driven::slide;
+    Connector c = make_joint(j, out_->start);
+    c.name = e.name;
+    if (!driven.empty()) {
+      const History& h = e.history("history");
+      if (const auto jumps = h.jumps(); !jumps.empty() && !is_rate)
+        throw Error(e.where("history"), fmt::format("{}: the history jumps at t = {:.6g}, so the joint would have to", e.label(), jumps[0]),
+                    "let the values rise over some time, with interpolation = \"smooth\"");
+      c.drive.course = course(e.number(driven), is_rate, h, !e.given("history"));
+    }
+    out_->joints.push_back(std::move(c));
+  }
+}
+
+}  // namespace hilo

@@ -1,0 +1,236 @@
+// Joints and springs within an evaluation.
+#include <algorithm>
+
+#include "system/pass.hpp"
+
+namespace hilo {
+namespace {
+
+using DirectionRows = decltype(ConnectorGradient::G);
+
+/// Unknown blocks of the ends within a connector's clique: how many, and the first direction each of them stands for.
+struct Ends {
+  int n = 0;
+  int row[2 * max_ends];  // in clique order
+};
+
+Ends ends_of(const Connector& c, const std::vector<int>& node_block, const std::vector<int>& body_block) {
+  Ends e;
+  for (int k = 0; k < c.n_ends; ++k) {
+    const Carrier& carrier = c.end[k];
+    if (carrier.body >= 0) {
+      if (body_block[carrier.body] < 0) continue;
+      for (int i = 0; i < 2; ++i) e.row[e.n] = 6 * k + 3 * i, ++e.n;
+    } else if (node_block[carrier.node] >= 0) {
+      e.row[e.n] = 6 * k, ++e.n;
+    }
+  }
+  return e;
+}
+
+/// d (rows x measures) times G (measures x directions).
+void rows_over_directions(const Connector& c, const RowLaw::Gradient& g, const DirectionRows& G, DirectionRows& out) {
+  const int n = c.n_rows(), width = c.n_directions();
+  out.topRows(n).setZero();
+  for (int r = 0; r < n; ++r)
+    for (size_t m = 0; m < c.measures.size(); ++m)
+      if (g.d[r][m] != 0) out.row(r).head(width) += g.d[r][m] * G.row(m).head(width);
+}
+
+}  // namespace
+
+void spring_elastic(const Connector& c, const Stage& s, Response& out) {
+  SpringLaw::Values e0 = c.values(*s.e0), e1 = c.values(*s.e1);
+  if (s.conserving()) return c.law->elastic(e0, e1, out);
+  for (size_t m = 0; m < c.measures.size(); ++m) e0[m] = e1[m] = (1 - s.weight) * e0[m] + s.weight * e1[m];
+  c.law->elastic(e0, e1, out);
+  for (auto& row : out.D)  // so far the derivative by the second argument alone
+    for (double& d : row) d *= 2 * s.weight;
+}
+
+void row_gradient(const Connector& c, const Stage& s, const ConnectorGradient& left, RowLaw::Gradient& out) {
+  if (s.conserving())
+    c.rows->gradient(c.values(*s.e0), c.values(*s.e1), out);
+  else
+    c.rows->gradient(left.e, left.e, out);
+}
+
+void joint_forces(const Connector& c, const Stage& s, const ConnectorGradient& left, const double* lambda, double* force) {
+  const int n_measures = static_cast<int>(c.measures.size());
+  if (!c.rows) {
+    std::copy(lambda, lambda + n_measures, force);
+    return;
+  }
+  thread_local RowLaw::Gradient g;
+  row_gradient(c, s, left, g);
+  std::fill(force, force + n_measures, 0.0);
+  for (int r = 0; r < c.n_rows(); ++r)
+    for (int m = 0; m < n_measures; ++m) force[m] += lambda[r] * g.d[r][m];
+}
+
+void System::add_connectors(Pass& p) const {
+  thread_local ConnectorGradient left, right, mixed;
+  thread_local DirectionRows left_rows, right_rows;
+  thread_local RowLaw::Gradient at_stage, at_end;
+  const Stage& s = p.s;
+  const auto add_force = [&](const Connector& c, const double* force) {
+    for (int k = 0; k < c.n_ends; ++k) {
+      Vec6 f = Vec6::Zero();
+      for (size_t m = 0; m < c.measures.size(); ++m) f += force[m] * left.G.block<1, 6>(m, 6 * k).transpose();
+      if (c.end[k].body >= 0)
+        p.body[c.end[k].body] += f;
+      else
+        p.node[c.end[k].node] += f.head<3>();
+      p.scale(f.head<3>().norm());
+    }
+  };
+  // rows_left, rows_right: gradients of the rows in the equations and in the increments
+  const auto add_clique = [&](const Connector& c, int clique, const ConnectorMatrix& K, int n_multiplier_blocks,
+                              const DirectionRows& rows_left, const DirectionRows& rows_right) {
+    const Ends e = ends_of(c, node_block, body_block);
+    const int m = e.n + n_multiplier_blocks, width = 3 * m;
+    constexpr int most = 3 * (2 * max_ends + (max_rows + 2) / 3);
+    double dense[most * most];
+    std::fill(dense, dense + width * width, 0.0);
+    for (int i = 0; i < e.n; ++i)
+      for (int j = 0; j < e.n; ++j)
+        for (int r = 0; r < 3; ++r)
+          for (int q = 0; q < 3; ++q) dense[(3 * i + r) * width + 3 * j + q] = K(e.row[i] + r, e.row[j] + q);
+    for (int row = 0; row < 3 * n_multiplier_blocks; ++row) {
+      if (row >= c.n_rows() || !c.active[row]) {
+        dense[(3 * e.n + row) * width + 3 * e.n + row] = p.sigma;
+        continue;
+      }
+      for (int i = 0; i < e.n; ++i)
+        for (int r = 0; r < 3; ++r) {
+          dense[(3 * i + r) * width + 3 * e.n + row] = p.sigma * rows_left(row, e.row[i] + r);
+          dense[(3 * e.n + row) * width + 3 * i + r] = p.sigma * rows_right(row, e.row[i] + r);
+        }
+    }
+    for (int i = 0; i < e.n; ++i) {  // prescribed components of a node that carries an end
+      const Carrier& carrier = c.end[e.row[i] / 6];
+      for (int r = 0; r < 3 && carrier.body < 0; ++r)
+        if (fixed[carrier.node][r])
+          for (int j = 0; j < width; ++j) dense[(3 * i + r) * width + j] = dense[j * width + 3 * i + r] = 0;
+    }
+    p.K->add(clique, dense);
+  };
+  for (size_t j = 0; j < joints.size(); ++j) {
+    if (!owns_joint_[j]) continue;
+    const Connector& c = joints[j];
+    gradient(c, *s.left, left);
+    gradient(c, *s.end, right);
+    double g[max_rows], lambda[max_rows], force[max_measures];
+    c.row_values(right.e, g);
+    if (c.drive.row >= 0) g[c.drive.row] -= c.drive.course(s.t1, s.load_factor).value;
+    const int base = 3 * (joint_block[j] - first_joint_block()), n = c.n_rows();
+    for (int r = 0; r < n; ++r) {
+      lambda[r] = c.active[r] ? p.lambda[base + r] : 0;
+      if (c.active[r]) p.out.r[3 * joint_block[j] + r] = p.sigma * g[r];
+    }
+    joint_forces(c, s, left, lambda, force);
+    add_force(c, force);
+    if (!p.K) continue;
+    ConnectorMatrix K = ConnectorMatrix::Zero(c.n_directions(), c.n_directions());
+    add_geometric(c, left, right, force, s.slope, K);
+    if (!c.rows) {
+      add_clique(c, joint_clique_[j], K, (n + 2) / 3, left.G, right.G);
+      continue;
+    }
+    row_gradient(c, s, left, at_stage);
+    c.rows->gradient(right.e, right.e, at_end);
+    const bool pair = s.conserving();  // the rows' gradient depends on e1, else on the left configuration
+    gradient(c, pair ? *s.e1 : *s.left, *s.end, mixed);
+    const int width = c.n_directions(), n_measures = static_cast<int>(c.measures.size());
+    for (int m = 0; m < n_measures; ++m)
+      for (int k = 0; k < n_measures; ++k) {
+        double D = 0;
+        for (int r = 0; r < n; ++r) D += lambda[r] * at_stage.D[r][m][k];
+        if (D != 0) K += (pair ? s.chain : 2 * s.slope) * D * left.G.row(m).head(width).transpose() * mixed.G.row(k).head(width);
+      }
+    rows_over_directions(c, at_stage, left.G, left_rows);
+    rows_over_directions(c, at_end, right.G, right_rows);
+    add_clique(c, joint_clique_[j], K, (n + 2) / 3, left_rows, right_rows);
+  }
+  for (size_t j = 0; j < springs.size(); ++j) {
+    if (!owns_spring_[j]) continue;
+    const Connector& c = springs[j];
+    const int n = static_cast<int>(c.measures.size()), width = c.n_directions();
+    gradient(c, *s.left, left);
+    gradient(c, *s.e1, *s.end, right);
+    Response elastic, viscous;
+    spring_elastic(c, s, elastic);
+    double force[max_measures];
+    for (int m = 0; m < n; ++m) force[m] = elastic.s[m];
+    if (s.h > 0) {
+      c.law->viscous(c.values(*s.w0), c.values(*s.w1), s.h, viscous);
+      for (int m = 0; m < n; ++m) force[m] += viscous.s[m];
+    }
+    add_force(c, force);
+    if (!p.K) continue;
+    ConnectorMatrix K = ConnectorMatrix::Zero(width, width);
+    for (int m = 0; m < n; ++m)
+      for (int k = 0; k < n; ++k) {
+        const double D = s.chain * elastic.D[m][k] + s.h * s.alpha_slope * viscous.D[m][k];
+        if (D != 0) K += D * left.G.row(m).head(width).transpose() * right.G.row(k).head(width);
+      }
+    add_geometric(c, left, right, force, s.slope, K);
+    add_clique(c, spring_clique_[j], K, 0, left.G, right.G);
+  }
+}
+
+/// First and second derivatives of the joint rows by time, less those of their courses, laid out like lambda.  The measures are of degree
+/// two, so differences along q + tau v and q + tau a are exact; rows that are functions of them follow by the chain rule.
+void System::row_rates(const Config& q, const Config& v, const Config* a, double t, std::vector<double>& rate,
+                       std::vector<double>* acceleration) const {
+  const auto combined = [&](double f, const Config& d) {
+    Config out = q;
+    for (size_t i = 0; i < q.x.size(); ++i) out.x[i] += f * d.x[i];
+    for (size_t i = 0; i < q.c.size(); ++i) out.c[i] += f * d.c[i], out.R[i] += f * d.R[i];
+    return out;
+  };
+  // steps over which the differences are as large as the values themselves
+  const auto reach = [&](const Config& d) {
+    double top = 0;
+    for (const Vec3& x : d.x) top = std::max(top, x.norm());
+    for (size_t i = 0; i < d.c.size(); ++i) top = std::max({top, d.c[i].norm(), d.R[i].norm() * bodies[i].size});
+    return top > 0 ? length / top : 1;
+  };
+  const double tau = reach(v), sigma = a ? reach(*a) : 1;
+  const Config forward = combined(tau, v), backward = combined(-tau, v);
+  Config up, down;
+  if (a) up = combined(sigma, *a), down = combined(-sigma, *a);
+  rate.assign(3 * n_joint_blocks(), 0.0);
+  if (acceleration) acceleration->assign(rate.size(), 0.0);
+  RowLaw::Gradient g;
+  for (size_t j = 0; j < joints.size(); ++j) {
+    if (!owns_joint_[j]) continue;
+    const Connector& c = joints[j];
+    const int n = static_cast<int>(c.measures.size()), base = 3 * (joint_block[j] - first_joint_block());
+    const auto e = c.values(q), ep = c.values(forward), em = c.values(backward);
+    std::array<double, max_measures> de{}, dde{};
+    for (int m = 0; m < n; ++m) de[m] = (ep[m] - em[m]) / (2 * tau);
+    if (acceleration) {
+      const auto eu = c.values(up), ed = c.values(down);
+      for (int m = 0; m < n; ++m) dde[m] = (ep[m] + em[m] - 2 * e[m]) / (tau * tau) + (eu[m] - ed[m]) / (2 * sigma);
+    }
+    if (c.rows) c.rows->gradient(e, e, g);
+    for (int r = 0; r < c.n_rows(); ++r) {
+      double first = c.rows ? 0 : de[r], second = c.rows ? 0 : dde[r];
+      for (int m = 0; m < n && c.rows; ++m) {
+        first += g.d[r][m] * de[m], second += g.d[r][m] * dde[m];
+        for (int k = 0; k < n; ++k) second += 2 * g.D[r][m][k] * de[m] * de[k];
+      }
+      if (r == c.drive.row) {
+        const Course course = c.drive.course(t, 1);
+        first -= course.rate, second -= course.acceleration;
+      }
+      rate[base + r] = first;
+      if (acceleration) (*acceleration)[base + r] = second;
+    }
+  }
+  comm->sum(rate);
+  if (acceleration) comm->sum(*acceleration);
+}
+
+}  // namespace hilo
