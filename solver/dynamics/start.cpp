@@ -22,8 +22,7 @@ Rows joint_rows(const System& s, const Stage& stage) {
   int n = 0;
   for (size_t j = 0; j < s.joints.size(); ++j) {
     const Connector& c = s.joints[j];
-    for (int m = 0; m < c.n_rows(); ++m)
-      out.row.emplace_back(static_cast<int>(j), m);
+    for (int m = 0; m < c.n_rows(); ++m) out.row.emplace_back(static_cast<int>(j), m);
     for (const Carrier& end : c.ends()) {
       const int first = end.body >= 0 ? s.body_block[end.body] : s.node_block[end.node];
       for (int k = 0; first >= 0 && k < (end.body >= 0 ? 2 : 1); ++k)

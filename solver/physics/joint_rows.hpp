@@ -13,7 +13,7 @@ class SumRows final : public RowLaw {
  public:
   struct Part {
     double weight;
-    int measure;         // or of the sine
+    int measure;  // or of the sine
     bool angle = false;
   };
   SumRows(int n_plain, std::vector<std::vector<Part>> sums);

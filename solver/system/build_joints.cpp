@@ -20,14 +20,14 @@ std::string driving_key(const Entry& e) {
     found = key;
   }
   if (found.empty() && e.given("history"))
-    throw Error(e.where("history"), e.label() + ": a history without anything that follows it", "give an angle, spin, displacement or velocity");
+    throw Error(e.where("history"), e.label() + ": a history without anything that follows it",
+                "give an angle, spin, displacement or velocity");
   return found;
 }
 
 /// value x history, or its integral from t = 0 for a rate; without a history it follows the load steps of a static analysis.
 std::function<Course(double, double)> course(double value, bool is_rate, const History& h, bool ramped) {
-  if (is_rate)
-    return [=](double t, double) { return Course{value * t * h.mean(0, t), value * h(t), value * h.slope(t)}; };
+  if (is_rate) return [=](double t, double) { return Course{value * t * h.mean(0, t), value * h(t), value * h.slope(t)}; };
   return [=](double t, double factor) {
     const double f = value * (ramped ? factor : 1);
     return Course{f * h(t), f * h.slope(t), f * h.curvature(t)};
@@ -61,7 +61,9 @@ void Builder::add_joints() {
     const auto different = [&](const Carrier& one, const Carrier& other, const char* key, const char* other_key) {
       if (one.body != other.body || one.node != other.node) return;
       throw Error(e.where(key), fmt::format("{}: {} and {} are the same body", e.label(), other_key, key),
-                  one.body > 0 ? fmt::format("\"{}\" and \"{}\" are one rigid body, {}", e.text(other_key), e.text(key), out_->bodies[one.body].name) : "");
+                  one.body > 0
+                      ? fmt::format("\"{}\" and \"{}\" are one rigid body, {}", e.text(other_key), e.text(key), out_->bodies[one.body].name)
+                      : "");
     };
     different(j.b, j.a, "b", "a");
     if (e.has("carrier")) different(j.carrier, j.a, "carrier", "a"), different(j.carrier, j.b, "carrier", "b");

@@ -55,8 +55,8 @@ inline Vec12 increment(const Config& q0, const Config& q1) {
 }
 
 inline const std::vector<std::string>& joint_kinds() {
-  static const std::vector<std::string> kinds{"fixed",     "spherical", "revolute", "cylindrical", "prismatic", "universal", "distance",
-                                              "planar",    "in-plane",  "in-line",  "constant-velocity"};
+  static const std::vector<std::string> kinds{"fixed",    "spherical", "revolute", "cylindrical", "prismatic",        "universal",
+                                              "distance", "planar",    "in-plane", "in-line",     "constant-velocity"};
   return kinds;
 }
 

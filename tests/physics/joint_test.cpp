@@ -67,10 +67,11 @@ TEST_P(Joint, SecondDerivativeTermIsTheDerivativeOfTheForces) {
   }
 }
 
-// Truth: a joint takes away 6 - f motions: fixed 6, spherical 3, revolute 5, cylindrical 4, prismatic 5, universal 4, distance 1.
+// Truth: a joint takes away 6 - f motions, f those that the kind leaves free.
 TEST_P(Joint, HasAsManyIndependentRowsAsItTakesAwayMotions) {
-  const std::map<std::string, int> rows{{"fixed", 6},     {"spherical", 3}, {"revolute", 5}, {"cylindrical", 4},
-                                        {"prismatic", 5}, {"universal", 4}, {"distance", 1}};
+  const std::map<std::string, int> rows{{"fixed", 6},     {"spherical", 3}, {"revolute", 5},         {"cylindrical", 4},
+                                        {"prismatic", 5}, {"universal", 4}, {"distance", 1},         {"planar", 3},
+                                        {"in-plane", 1},  {"in-line", 2},   {"constant-velocity", 4}};
   gradient(c, made_at, g);
   EXPECT_EQ(c.n_rows(), rows.at(GetParam()));
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(g.G.topRows(c.n_rows()).leftCols<12>().transpose());
@@ -84,11 +85,15 @@ struct Free {
 };
 std::vector<Free> free_motions(const std::string& kind) {
   const Mat3 f = some_frame();
-  const Vec3 axis = f.col(2), none = Vec3::Zero();
+  const Vec3 axis = f.col(2), none = Vec3::Zero(), in_plane = 0.9 * f.col(0) - 1.4 * f.col(1), any(0.3, 1.1, -0.7);
   if (kind == "spherical") return {{Vec3(0.3, 1.1, -0.7), none}};
   if (kind == "revolute") return {{1.3 * axis, none}};
   if (kind == "cylindrical") return {{-0.8 * axis, 1.7 * axis}};
   if (kind == "prismatic") return {{none, -2.2 * axis}};
+  if (kind == "planar") return {{-0.8 * axis, in_plane}};
+  if (kind == "in-plane") return {{any, in_plane}};
+  if (kind == "in-line") return {{any, 1.7 * axis}};
+  if (kind == "constant-velocity") return {{in_plane, none}};
   return {{none, none}};
 }
 
@@ -122,10 +127,15 @@ TEST_P(Joint, ForbiddenMotionsAreSeen) {
   const Mat3 f = some_frame();
   std::vector<Free> forbidden;
   for (int i = 0; i < 3; ++i) {
-    const bool slides = (GetParam() == "cylindrical" || GetParam() == "prismatic") && i == 2;
-    const bool turns = GetParam() == "spherical" || ((GetParam() == "revolute" || GetParam() == "cylindrical") && i == 2) ||
-                       (GetParam() == "universal" && i != 1);
-    if (GetParam() == "distance") continue;
+    const std::string& kind = GetParam();
+    if (kind == "distance") continue;
+    const bool along = i == 2;
+    const bool slides = kind == "planar" || kind == "in-plane"                              ? !along
+                        : kind == "cylindrical" || kind == "prismatic" || kind == "in-line" ? along
+                                                                                            : false;
+    const bool turns = kind == "spherical" || kind == "in-plane" || kind == "in-line" ||
+                       ((kind == "revolute" || kind == "cylindrical" || kind == "planar") && along) || (kind == "universal" && i != 1) ||
+                       (kind == "constant-velocity" && !along);
     if (!slides) forbidden.push_back({Vec3::Zero(), 0.1 * f.col(i)});
     if (!turns) forbidden.push_back({0.1 * f.col(i), Vec3::Zero()});
   }

@@ -57,6 +57,79 @@ a = "ground"
 b = "side"
 at_a = [2, 1.5, 1]
 at_b = [0.2, 1.6, 1]
+[[joint]]
+kind = "planar"
+name = "table"
+b = "top"
+at = [0.1, 0.1, 2]
+axis = [0, 0.2, 1]
+[[joint]]
+kind = "in-plane"
+name = "foot"
+a = "zmax"
+b = "side"
+at = [0.3, 1, 1]
+axis = [1, 0.2, 1]
+[[joint]]
+kind = "in-line"
+name = "pin"
+a = "top"
+b = "side"
+at = [0.3, 1, 1]
+axis = [1, 0.2, 1]
+[[joint]]
+kind = "constant-velocity"
+name = "bent"
+a = "top"
+b = "side"
+at = [0.3, 1, 1.2]
+axis = [1, 0.2, 1]
+axis_b = [1, 0.5, 0.5]
+[[joint]]
+kind = "screw"
+name = "spindle"
+a = "side"
+b = "top"
+at = [0.3, 1, 1.2]
+axis = [1, 0.2, 1]
+pitch = 0.4
+angle = 0.3
+history = {t = [0, 1], value = [0, 1], interpolation = "smooth"}
+[[joint]]
+kind = "cylindrical"
+name = "ram"
+a = "zmax"
+b = "side"
+at = [0.3, 1, 1.2]
+axis = [1, 0.2, 1]
+velocity = 0.2
+[[joint]]
+kind = "gear"
+name = "mesh"
+a = "top"
+b = "side"
+at = [0.3, 1, 1.2]
+axis = [1, 0.2, 1]
+axis_b = [0, 0.2, 1]
+ratio = -1.7
+carrier = "zmax"
+[[joint]]
+kind = "rack"
+name = "teeth"
+a = "side"
+b = "top"
+at = [0.1, 1, 2.2]
+axis = [0, 0.2, 1]
+direction = [0, 1, 0.1]
+radius = 0.3
+[[joint]]
+kind = "distance"
+name = "long"
+a = "top"
+b = "side"
+at_a = [2, 1.5, 1]
+at_b = [0.2, 1.6, 1]
+length = 1.7
 [[spring]]
 kind = "axial"
 name = "strut"
