@@ -17,6 +17,7 @@ size_t end_of_segment(const History& h, double time) {
 
 double septic(double s) { return s * s * s * s * (35 + s * (-84 + s * (70 - 20 * s))); }
 double septic_slope(double s) { return 140 * s * s * s * (1 - s) * (1 - s) * (1 - s); }
+double septic_curvature(double s) { return 420 * s * s * (1 - s) * (1 - s) * (1 - 2 * s); }
 
 /// Mean over [a, b] inside the segment that ends at point i, written so that a short interval loses no digits:
 /// the mean of cos(pi s) over [s0, s1] is cos(pi (s0 + s1)/2) sin(x)/x, x = pi (s1 - s0)/2; for degree seven four Gauss points are exact.
@@ -61,9 +62,9 @@ double History::slope(double time) const {
 double History::curvature(double time) const {
   const size_t i = end_of_segment(*this, time);
   const double c = linear_slope(*this, i);
-  if (c == 0 || !smooth) return 0;
-  const double length = t[i] - t[i - 1];
-  return c * pi * pi / (2 * length) * std::cos(pi * (time - t[i - 1]) / length);
+  if (c == 0 || ramp == Ramp::linear) return 0;
+  const double length = t[i] - t[i - 1], s = (time - t[i - 1]) / length;
+  return c / length * (ramp == Ramp::smooth ? pi * pi / 2 * std::cos(pi * s) : septic_curvature(s));
 }
 
 double History::mean(double t0, double t1) const {

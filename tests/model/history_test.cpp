@@ -95,6 +95,12 @@ TEST(History, SlopeIsTheDerivative) {
   EXPECT_EQ(ramp.slope(2), -3) << "from the right at a kink";
 }
 
+TEST(History, CurvatureIsTheDerivativeOfTheSlope) {
+  for (const History* h : {&ramp, &smooth, &smoother})
+    for (double t : {0.3, 1.1, 1.9, 2.4})  // central differences of width 1e-6: truncation below 1e-10
+      EXPECT_NEAR(h->curvature(t), (h->slope(t + 1e-6) - h->slope(t - 1e-6)) / 2e-6, 1e-8);
+}
+
 TEST(History, EventsAreKinksAndJumpsInside) {
   EXPECT_EQ(ramp.events(-1, 4), (std::vector<double>{0, 2, 3}));
   EXPECT_EQ(ramp.events(0, 3), (std::vector<double>{2}));
