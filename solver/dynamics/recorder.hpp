@@ -35,6 +35,8 @@ class Recorder {
   void first(const State& s);
   /// A finished step: the new state, its stages (all for work, the last for reactions), accelerations and Newton iterations.
   void step(const State& s, std::span<const Taken> taken, const Config& a, int iterations);
+  /// Work of a blow between two steps [J].
+  void push(double work) { work_ += work; }
   /// Last values; publishes the files.  `complete` is false for a run stopped by physics.
   void finish(bool complete);
   /// Remove what was written (input error after the file was opened).

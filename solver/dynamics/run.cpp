@@ -114,6 +114,8 @@ class Run {
     setup.single_precision = output.text("precision") == "single";
     for (const Load& l : system_.loads)
       for (double t : l.history.jumps()) setup.jumps.push_back(t);
+    for (const Connector& j : system_.joints)
+      for (double t : j.drive.rate_jumps) setup.jumps.push_back(t);
     setup.provenance = options_.provenance;
     setup.redundant = redundancy_.rank < redundancy_.rows;
     setup.own_time = is_static_ ? 1 : integrator_->own_time(), setup.alternates = !is_static_ && integrator_->alternates();
@@ -173,7 +175,7 @@ class Run {
       }
       if (talk_) fmt::print(stderr, "equilibrium after {} iterations\n", r.iterations);
     }
-    projected_ = project_velocities(system_, *solver_, state_.q, state_.v);
+    projected_ = project_velocities(system_, *solver_, state_.q, state_.v, 0);
     if (talk_ && projected_ > 1e-9)
       fmt::print(stderr, "initial velocities changed by up to {:.3g} m/s to satisfy the joints\n", projected_);
     system_.commit(state_.q);
@@ -201,6 +203,11 @@ class Run {
 
   /// At the start and after a jump of the loads: history that belongs to the new forces.
   void restart(std::optional<StepControl>& control, double step) {
+    if (state_.t > 0 && std::any_of(system_.joints.begin(), system_.joints.end(), [](const Connector& j) { return j.drive.row >= 0; })) {
+      const double before = system_.energy(state_.q, state_.v).kinetic;  // the rate of a drive may jump here
+      project_velocities(system_, *solver_, state_.q, state_.v, state_.t);
+      recorder_->push(system_.energy(state_.q, state_.v).kinetic - before);
+    }
     if (integrator_->needs_acceleration() || control) consistent_acceleration(system_, *solver_, state_, 0.05 * step);
     integrator_->restart();
     if (control) control->restart(state_);
@@ -272,6 +279,10 @@ class Run {
       }
       if (r.least_det <= 0) {
         failure_ = fmt::format("a cell is turned inside out (det F = {:.2g})", r.least_det);
+        continue;
+      }
+      if (std::string fault = system_.fault(*integrator_->taken().back().stage.end); !fault.empty()) {
+        failure_ = std::move(fault);
         continue;
       }
       least_det_ = std::min(least_det_, r.least_det);

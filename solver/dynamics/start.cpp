@@ -186,13 +186,13 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
   return system.comm->max(change);
 }
 
-double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v) {
+double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t) {
   Config zero = v;
   combine(zero, {{0, &v}});
   std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), b(3 * system.n_blocks(), 0.0), z(b.size(), 0.0);
   if (lambda.empty()) return 0;
   std::vector<double> rate;
-  system.row_rates(q, v, nullptr, 0, rate, nullptr);
+  system.row_rates(q, v, nullptr, t, rate, nullptr);
   if (std::all_of(rate.begin(), rate.end(), [](double x) { return x == 0; })) return 0;
   Residual r;
   system.evaluate(mass_stage(q, zero, 0), lambda, r, &solver);

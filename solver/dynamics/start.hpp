@@ -22,8 +22,8 @@ std::vector<double> minimum_norm(const System& system, const Stage& stage, std::
 /// Error naming the joint that is furthest apart where there are none.
 double assemble_positions(System& system, KktSolver& solver, Config& q);
 
-/// Velocities made consistent with the joints in the mass norm; returns the largest change [m/s].
-double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v);
+/// Velocities made consistent with the joints and what drives them at time t, in the mass norm; returns the largest change [m/s].
+double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t);
 /// s.a and s.lambda that satisfy equations and constraints at (q, v) at time t, and s.jerk by forward differences over h.
 void consistent_acceleration(const System& system, KktSolver& solver, State& s, double h);
 

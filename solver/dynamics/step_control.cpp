@@ -14,6 +14,10 @@ std::vector<Event> load_events(const System& system, double end, double step) {
   for (const Load& l : system.loads) add(l.history);
   for (const Motion& m : system.motions)
     if (m.moving) add(m.history);
+  for (const Connector& j : system.joints) {
+    for (double t : j.drive.rate_jumps) jumps.push_back({t, t > 0});
+    for (double t : j.drive.kinks) kinks.push_back({t, false});
+  }
   const auto earlier = [](const Event& a, const Event& b) { return a.t < b.t; };
   std::sort(kinks.begin(), kinks.end(), earlier);
   std::vector<Event> out = jumps;

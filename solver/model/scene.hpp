@@ -91,6 +91,9 @@ class Scene {
   std::map<std::string, std::vector<Entry>, std::less<>> entries_;
 };
 
+/// Points of a CSV file with a header line and three columns, in the numbers of the file.
+std::vector<Vec3> read_points_csv(const std::string& path, const std::string& where);
+
 /// The schema of scenes: every section, kind and key, with unit, default and meaning.
 struct KindSchema {
   std::string_view section;  // "joint"

@@ -88,6 +88,36 @@ History read_history_csv(const std::string& path, const std::string& where) {
   return h;
 }
 
+std::vector<Vec3> read_points_csv(const std::string& path, const std::string& where) {
+  if (!std::filesystem::exists(path))
+    throw Error(where, fmt::format("no file {}", path), "paths in a scene are relative to the scene's folder");
+  const std::string text = read_text_file(path, where);
+  std::vector<Vec3> points;
+  bool header = false;
+  int line_number = 0;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = std::string_view(text).substr(begin, end - begin);
+    begin = end + 1;
+    ++line_number;
+    if (trim(line).empty() || trim(line).starts_with('#')) continue;
+    const auto fields = fields_of(line);
+    const auto at = [&](size_t i) { return fmt::format("{}:{}:{}", path, line_number, fields[i].column); };
+    if (fields.size() != 3)
+      throw Error(at(0), fmt::format("{} column{} where three are expected: x, y and z", fields.size(), fields.size() == 1 ? "" : "s"));
+    double x[3];
+    if (!header) {
+      if (to_number(fields[0].text, x[0])) throw Error(at(0), "no header line", "write \"x,y,z\" above the first numbers");
+      header = true;
+      continue;
+    }
+    for (int k = 0; k < 3; ++k)
+      if (!to_number(fields[k].text, x[k])) throw Error(at(k), fmt::format("\"{}\" is not a number", fields[k].text));
+    points.emplace_back(x[0], x[1], x[2]);
+  }
+  return points;
+}
+
 History history_of(const Entry& e, const std::string& label, const Surroundings& around) {
   const auto fail = [&](std::string_view key, const std::string& what, const std::string& hint) -> History {
     throw Error(e.where(key), label + ": " + what, hint);

@@ -103,6 +103,10 @@ std::vector<KindSchema> make() {
         {{"direction", vector3, "1", "!", "direction in the carrier along which b moves when a turns positively about `axis`"},
          {"radius", number, "m", "!", "pitch radius: slide per angle", above(0)},
          third_end});
+  joint("point-on-curve", "a point of b stays on a smooth curve carried by a, a cubic spline through points (2 rows)", false,
+        {{"points", numbers, "m", "", "points of the curve, [[x, y, z], ...], reference coordinates"},
+         {"file", text, "", "", "CSV file of the points instead: a header line and three columns x, y, z"},
+         {"closed", boolean, "", "false", "the curve returns from its last point to the first; off the end of an open one the run stops"}});
   s.push_back({"joint",
                "distance",
                "constant distance of two points (1 row)",

@@ -52,7 +52,12 @@ std::vector<double> list_of_numbers(const Reading& r, std::vector<size_t> length
            fmt::format("{} has {} number{}, not {}", r.item.key, list->size(), list->size() == 1 ? "" : "s", fmt::join(lengths, " or ")),
            std::string(r.param.meaning));
   std::vector<double> values;
-  for (const auto& x : *list) values.push_back(number(r, x));
+  for (const auto& x : *list) {
+    const auto* row = r.param.key == "points" ? x.as_array() : nullptr;  // points may be rows of three
+    if (row && row->size() != 3) r.fail(place_of(x), fmt::format("a point of {} numbers, not 3", row->size()));
+    for (size_t k = 0; row && k < 3; ++k) values.push_back(number(r, (*row)[k]));
+    if (!row) values.push_back(number(r, x));
+  }
   return values;
 }
 

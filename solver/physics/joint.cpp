@@ -103,11 +103,14 @@ Connector make_joint(const JointPlace& j, const Config& q) {
     slide(2);
   } else if (kind == "in-line") {
     slide(0), slide(1);
+  } else if (kind == "point-on-curve") {
+    slide(0), slide(1), slide(2);
   } else {  // cylindrical, prismatic, screw
     slide(0), slide(1);
     parallel();
     if (kind == "prismatic") m.dot(u(0), v(1));
   }
+  if (kind == "point-on-curve") c.rows = std::make_unique<CurveRows>(*j.curve);
   const int n = static_cast<int>(c.measures.size());
   std::vector<std::vector<SumRows::Part>> sums;
   int along = -1, turned = -1;

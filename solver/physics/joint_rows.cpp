@@ -1,5 +1,7 @@
 #include "physics/joint_rows.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace hilo {
@@ -39,6 +41,86 @@ void SumRows::commit(const Values& e) {
   for (const auto& sum : sums_)
     for (const Part& p : sum)
       if (p.angle) turn_[p.measure].committed = turn_[p.measure].unwrap(e[p.measure], e[p.measure + 1]);
+}
+
+namespace {
+
+Vec3 point_of(const RowLaw::Values& e) { return {e[0], e[1], e[2]}; }
+
+}  // namespace
+
+CurveRows::CurveRows(Curve curve) : curve_(std::move(curve)), s_(curve_.nearest(Vec3::Zero())) {
+  t_ = curve_.at(s_).dx.normalized();
+  const Mat3 frame = frame_of_axis(t_);
+  b_[0] = frame.col(0), b_[1] = frame.col(1);
+}
+
+double CurveRows::parameter(const Vec3& e) const {
+  double s = s_;
+  for (int it = 0; it < 30; ++it) {
+    const Curve::Point p = curve_.at(s);
+    double step = -t_.dot(p.x - e) / std::max(t_.dot(p.dx), 0.1 * p.dx.norm());
+    step = std::clamp(step, -curve_.length() / 4, curve_.length() / 4);
+    s += step;
+    if (std::abs(step) < 1e-15 * curve_.length()) break;
+  }
+  return s;
+}
+
+CurveRows::Local CurveRows::local(const Vec3& e) const {
+  const Curve::Point p = curve_.at(parameter(e));
+  const double along = t_.dot(p.dx);
+  Local out;
+  for (int r = 0; r < 2; ++r) {
+    const double across = b_[r].dot(p.dx);
+    out.g[r] = b_[r].dot(e - p.x);
+    out.d[r] = b_[r] - across / along * t_;
+    out.H[r] = -(b_[r].dot(p.ddx) - across / along * t_.dot(p.ddx)) / (along * along) * t_ * t_.transpose();
+  }
+  return out;
+}
+
+void CurveRows::values(const Values& e, double* g) const {
+  const Local l = local(point_of(e));
+  g[0] = l.g[0], g[1] = l.g[1];
+}
+
+void CurveRows::gradient(const Values& e0, const Values& e1, Gradient& out) const {
+  out = {};
+  const Vec3 a = point_of(e0), b = point_of(e1), step = b - a;
+  const Local mid = local((a + b) / 2);
+  // below this step the correction is smaller than the round-off it is made of
+  const double square = step.squaredNorm(), least = 1e-5 * curve_.length();
+  const bool corrected = square > least * least;
+  const Local start = corrected ? local(a) : Local{}, end = corrected ? local(b) : Local{};
+  for (int r = 0; r < 2; ++r) {
+    Vec3 d = mid.d[r];
+    Mat3 D = mid.H[r] / 2;
+    if (corrected) {
+      const double missing = end.g[r] - start.g[r] - mid.d[r].dot(step);
+      D += step * (end.d[r] - mid.d[r] - mid.H[r] * step / 2).transpose() / square;
+      D -= 2 * missing / (square * square) * step * step.transpose();
+      D.diagonal().array() += missing / square;
+      d += missing / square * step;
+    }
+    for (int i = 0; i < 3; ++i) {
+      out.d[r][i] = d[i];
+      for (int k = 0; k < 3; ++k) out.D[r][i][k] = D(i, k);
+    }
+  }
+}
+
+void CurveRows::commit(const Values& e) {
+  s_ = parameter(point_of(e));
+  if (curve_.closed()) s_ -= curve_.length() * std::floor(s_ / curve_.length());
+  t_ = curve_.at(s_).dx.normalized();
+  b_[0] = (b_[0] - t_.dot(b_[0]) * t_).normalized();
+  b_[1] = t_.cross(b_[0]);
+}
+
+std::string CurveRows::fault(const Values& e) const {
+  const double s = parameter(point_of(e)), slack = 1e-9 * curve_.length();
+  return !curve_.closed() && (s < -slack || s > curve_.length() + slack) ? "ran off the end of its curve" : "";
 }
 
 }  // namespace hilo

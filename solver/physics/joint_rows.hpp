@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "physics/connector.hpp"
+#include "physics/curve.hpp"
 #include "physics/turn.hpp"
 
 namespace hilo {
@@ -26,6 +27,31 @@ class SumRows final : public RowLaw {
   int n_plain_;
   std::vector<std::vector<Part>> sums_;
   std::array<Turn, max_measures> turn_;  // of the angle whose sine is measure i
+};
+
+/// Two rows that hold a point, three measures e in the frame of the curve, on the curve.  With the tangent t and two normals b_r of the
+/// point accepted last, s(e) solves t.(C(s) - e) = 0 and g_r = b_r.(e - C(s)): no parameter is left as an unknown.  The discrete gradient
+/// is Gonzalez's, grad g(e_mid) + (g1 - g0 - grad g(e_mid).de)/|de|^2 de: on the curve it is normal to the chord [gonzalez-1996].
+class CurveRows final : public RowLaw {
+ public:
+  explicit CurveRows(Curve curve);
+  int n_rows() const override { return 2; }
+  void values(const Values& e, double* g) const override;
+  void gradient(const Values& e0, const Values& e1, Gradient& out) const override;
+  void commit(const Values& e) override;
+  std::string fault(const Values& e) const override;
+
+ private:
+  double parameter(const Vec3& e) const;
+  struct Local {
+    double g[2];
+    Vec3 d[2];
+    Mat3 H[2];
+  };
+  Local local(const Vec3& e) const;
+  Curve curve_;
+  double s_;       // of the point accepted last
+  Vec3 t_, b_[2];  // tangent and normals there
 };
 
 }  // namespace hilo

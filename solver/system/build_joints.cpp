@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 #include <numbers>
 
 #include "system/builder.hpp"
@@ -34,6 +36,33 @@ std::function<Course(double, double)> course(double value, bool is_rate, const H
   };
 }
 
+/// The curve of a joint, from its point at the start.
+std::shared_ptr<const Curve> curve(const Entry& e, const Scene& scene, const Vec3& at) {
+  const bool from_file = e.has("file"), closed = e.boolean("closed");
+  if (from_file == e.has("points"))
+    throw Error(e.where("points"), fmt::format("{}: {} points and file", e.label(), from_file ? "both" : "neither"),
+                "points = [[x, y, z], ...] or file = \"curve.csv\"");
+  std::vector<Vec3> points;
+  if (from_file) {
+    const std::filesystem::path file = e.text("file");
+    points = read_points_csv((scene.folder == "." ? file : scene.folder / file).string(), e.where("file"));
+    for (Vec3& x : points) x *= to_si("m", scene.units);
+  } else {
+    const auto& flat = e.numbers("points");
+    if (flat.size() % 3 != 0) throw Error(e.where("points"), e.label() + ": points are not rows of three numbers");
+    for (size_t i = 0; i < flat.size(); i += 3) points.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+  }
+  const char* key = from_file ? "file" : "points";
+  if (closed && points.size() > 1 && points.front() == points.back()) points.pop_back();
+  if (points.size() < (closed ? 3 : 2))
+    throw Error(e.where(key), fmt::format("{}: {} points do not make a curve", e.label(), points.size()),
+                closed ? "at least three" : "at least two");
+  for (size_t i = 1; i < points.size(); ++i)
+    if (points[i] == points[i - 1]) throw Error(e.where(key), fmt::format("{}: points {} and {} are the same", e.label(), i, i + 1));
+  for (Vec3& x : points) x -= at;
+  return std::make_shared<Curve>(std::move(points), closed);
+}
+
 }  // namespace
 
 Vec3 direction(const Entry& e, std::string_view key) {
@@ -53,7 +82,8 @@ Mat3 joint_frame(const Entry& e) {
 void Builder::add_joints() {
   for (const Entry& e : scene_.entries("joint")) {
     const std::string& kind = e.kind;
-    const bool points_only = kind == "spherical" || kind == "distance", point_of_b = points_only || kind == "in-plane" || kind == "in-line";
+    const bool points_only = kind == "spherical" || kind == "distance",
+               point_of_b = points_only || kind == "in-plane" || kind == "in-line" || kind == "point-on-curve";
     JointPlace j;
     j.kind = kind;
     j.a = carrier(e, "a", !points_only), j.b = carrier(e, "b", !point_of_b);
@@ -79,6 +109,7 @@ void Builder::add_joints() {
     if (e.has("ratio")) j.ratio = e.number("ratio");
     if (e.has("radius")) j.ratio = e.number("radius");
     if (e.has("pitch")) j.ratio = e.number("pitch") / (2 * std::numbers::pi);
+    if (kind == "point-on-curve") j.curve = curve(e, scene_, j.at);
     if (e.has("length")) j.length = e.number("length");
     const std::string driven = driving_key(e);
     const bool is_rate = driven == "spin" || driven == "velocity";
@@ -90,6 +121,8 @@ void Builder::add_joints() {
       if (const auto jumps = h.jumps(); !jumps.empty() && !is_rate)
         throw Error(e.where("history"), fmt::format("{}: the history jumps at t = {:.6g}, so the joint would have to", e.label(), jumps[0]),
                     "let the values rise over some time, with interpolation = \"smooth\"");
+      (is_rate ? c.drive.kinks : c.drive.rate_jumps) = h.events(0, std::numeric_limits<double>::infinity());
+      if (is_rate) c.drive.rate_jumps = h.jumps();
       c.drive.course = course(e.number(driven), is_rate, h, !e.given("history"));
     }
     out_->joints.push_back(std::move(c));

@@ -68,6 +68,17 @@ void joint_forces(const Connector& c, const Stage& s, const ConnectorGradient& l
     for (int m = 0; m < n_measures; ++m) force[m] += lambda[r] * g.d[r][m];
 }
 
+double drive_work(const Connector& c, const Stage& s, const Config& from, double lambda) {
+  ConnectorGradient left, start, end;
+  gradient(c, *s.left, left), gradient(c, from, start), gradient(c, *s.end, end);
+  RowLaw::Gradient g;
+  row_gradient(c, s, left, g);
+  double along = 0;  // points move linearly in q, so their differences need no angles
+  for (size_t m = 0; m < c.measures.size(); ++m)
+    for (size_t e = 0; e < c.entities.size(); ++e) along += g.d[c.drive.row][m] * left.dy[m][e].dot(end.y[e] - start.y[e]);
+  return -lambda * along;
+}
+
 void System::add_connectors(Pass& p) const {
   thread_local ConnectorGradient left, right, mixed;
   thread_local DirectionRows left_rows, right_rows;

@@ -89,13 +89,9 @@ System::Work System::work(const Stage& s, std::span<const double> lambda) const 
       }
     }
   }
-  for (size_t j = 0; j < joints.size(); ++j) {  // a drive pushes along its row
-    const Connector& c = joints[j];
-    if (!owns_joint_[j] || c.drive.row < 0 || !c.active[c.drive.row]) continue;
-    double g0[max_rows], g1[max_rows];
-    c.row_values(c.values(from), g0), c.row_values(c.values(*s.end), g1);
-    external -= lambda[3 * (joint_block[j] - first_joint_block()) + c.drive.row] * (g1[c.drive.row] - g0[c.drive.row]);
-  }
+  for (size_t j = 0; j < joints.size(); ++j)
+    if (owns_joint_[j] && joints[j].drive.row >= 0 && joints[j].active[joints[j].drive.row])
+      external += drive_work(joints[j], s, from, lambda[3 * (joint_block[j] - first_joint_block()) + joints[j].drive.row]);
   for (size_t i = 0; i < springs.size(); ++i) {
     if (!owns_spring_[i] || s.h <= 0) continue;
     SpringLaw::Values r0{}, r1{};

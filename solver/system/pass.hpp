@@ -25,6 +25,9 @@ struct NodeMap {
   Vec3 left, right;  // arms from the body's centre
 };
 
+/// Work of a joint's drive from `from` to the end of the stage, for the multiplier of its row.
+double drive_work(const Connector& c, const Stage& s, const Config& from, double lambda);
+
 /// K (3n x 3n over nodes, row major) reduced to the unknowns of the clique's blocks (m blocks) and added to the solver.
 /// Rows go through the left maps, columns through the right ones; prescribed components drop out.
 void add_reduced(KktSolver& solver, int clique, int n, const double* K, const NodeMap* maps, int m, const std::array<bool, 3>* fixed);

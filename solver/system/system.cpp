@@ -143,6 +143,16 @@ double System::constraint_violation(const Config& q, double t, double factor) co
   return comm->max(worst);
 }
 
+std::string System::fault(const Config& q) const {
+  double found = -1;
+  for (size_t j = 0; j < joints.size(); ++j)
+    if (joints[j].rows && !joints[j].rows->fault(joints[j].values(q)).empty()) found = static_cast<double>(j);
+  found = comm->max(found);
+  if (found < 0) return "";
+  const Connector& c = joints[static_cast<size_t>(found)];
+  return "joint \"" + c.name + "\" " + c.rows->fault(c.values(q));
+}
+
 bool System::has_damping() const {
   return std::any_of(batches.begin(), batches.end(), [](const SolidBatch& b) { return b.beta > 0; }) || !springs.empty();
 }

@@ -188,6 +188,8 @@ class System {
   void forces(const Stage& stage, std::span<const double> lambda, Forces& out) const;
   /// Force and moment on what a motion holds.
   Vec6 reaction(const Motion& m, const Forces& f, const Config& q) const;
+  /// Why a joint cannot be at q ("joint ... ran off the end of its curve"), or nothing; the same on all ranks.
+  std::string fault(const Config& q) const;
   /// Accept q as the state springs go on from.
   void commit(const Config& q);
 

@@ -123,6 +123,13 @@ axis = [0, 0.2, 1]
 direction = [0, 1, 0.1]
 radius = 0.3
 [[joint]]
+kind = "point-on-curve"
+name = "cam"
+a = "top"
+b = "side"
+at = [0.3, 1, 1.2]
+points = [[0, 0.8, 1], [0.2, 0.9, 1.2], [0.4, 1.1, 1.1], [0.5, 1.5, 1.3], [0.2, 1.7, 1.2]]
+[[joint]]
 kind = "distance"
 name = "long"
 a = "top"
