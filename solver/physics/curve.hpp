@@ -1,4 +1,4 @@
-// A smooth curve through points: C2 cubic spline over the chord lengths, closed, or open with not-a-knot ends [de-boor-2001].
+// A smooth curve through points: C2 cubic spline over the chord lengths, closed, or open with not-a-knot ends [de-boor-1978].
 #pragma once
 #include <span>
 #include <vector>
