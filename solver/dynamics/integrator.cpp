@@ -21,7 +21,7 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
   all.converged = true;
   for (int k = 0; k < n_stages(); ++k) {
     const double dt = instant(k) * h;
-    Config guess = predict(system, s, dt, predictor);
+    Config guess = predict(system, s, dt, predictor, acceleration());
     system.prescribe(guess, s.t + dt);
     solved_.emplace_back(system, s.q, guess);
     const NewtonReport r = newton(

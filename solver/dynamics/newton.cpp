@@ -87,6 +87,15 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
   for (int it = 0;; ++it) {
     if (near) {
       evaluate(false);
+      // chord steps with the factors at hand: a solve each, no tangent
+      for (int chord = 0; chord < 4 && report.residual > 1e-2 * options.tolerance && solver.repeats_cheaply(); ++chord) {
+        const double residual = report.residual;
+        if (!solve().ok || !(relative_correction(system, z) < 0.1 * report.correction)) break;
+        report.correction = relative_correction(system, z);
+        move();
+        evaluate(false);
+        if (!(report.residual < 0.1 * residual)) break;
+      }
       if (report.residual <= options.tolerance) {
         polish();
         return report;
@@ -126,7 +135,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       report.reason = "the iterations do not contract";
       return report;
     }
-    near = report.correction < 1e-4;
+    near = report.correction < 1e-3;
     previous = report.correction;
   }
 }

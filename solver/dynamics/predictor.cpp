@@ -41,17 +41,21 @@ Spin spin_of(const System& s, const State& state, const std::vector<int>& nodes)
 
 }  // namespace
 
-Config predict(const System& s, const State& state, double h, Predictor kind) {
+Config predict(const System& s, const State& state, double h, Predictor kind, const Config& a) {
   Config q = state.q;
+  const bool bent = a.c.size() == q.c.size() && kind == Predictor::rigid_rotation;
   if (kind == Predictor::hold) return q;
   for (size_t i = 0; i < q.x.size(); ++i)
     if (s.node_block[i] >= 0) q.x[i] += h * state.v.x[i];
   for (size_t b = 0; b < q.c.size(); ++b) {
     if (s.body_block[b] < 0) continue;
-    const Mat3 W = state.v.R[b] * state.q.R[b].transpose();
-    const Vec3 omega(W(2, 1) - W(1, 2), W(0, 2) - W(2, 0), W(1, 0) - W(0, 1));  // twice the axial vector
     q.c[b] += h * state.v.c[b];
-    if (kind == Predictor::rigid_rotation) q.R[b] = cayley(h / 2 * omega) * q.R[b];
+    if (bent) q.c[b] += h * h / 2 * a.c[b];
+    if (kind != Predictor::rigid_rotation) continue;
+    // R1 - R0 = skew(w) R_mid with R1 - R0 = h V_mid, R_mid = R0 + h/2 V_mid
+    const Mat3 V = bent ? Mat3(state.v.R[b] + h / 2 * a.R[b]) : state.v.R[b], W = h * V * (state.q.R[b] + h / 2 * V).inverse();
+    const Vec3 w = Vec3(W(2, 1) - W(1, 2), W(0, 2) - W(2, 0), W(1, 0) - W(0, 1)) / 2;
+    if (w.squaredNorm() < 4) q.R[b] = cayley(w) * q.R[b];
   }
   if (kind == Predictor::rigid_rotation)
     for (const auto& nodes : s.region_nodes) {

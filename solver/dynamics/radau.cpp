@@ -63,7 +63,7 @@ class Radau final : public Integrator {
     std::vector<double> lambda[3];
     u_.clear(), u_.reserve(3);
     for (int i = 0; i < 3; ++i) {
-      Config guess = predict(system, s, c_[i] * h, predictor);
+      Config guess = predict(system, s, c_[i] * h, predictor, a_[2]);
       system.prescribe(guess, t_ + c_[i] * h);
       u_.emplace_back(system, s.q, guess);
       lambda[i] = s.lambda;

@@ -106,6 +106,7 @@ class LightSolver final : public KktSolver {
   void sum_shared(std::span<double>) override {}
 
   SolveReport solve(std::span<const double> b, std::span<double> x) override {
+    if (factored_ && small_) return apply_inverse(b.data(), x.data()), SolveReport{};
     if (factored_) return refined(b, x, 2);
     factored_ = true;
     // pivots of the factorisation before serve again while the residual says that they are good ones
