@@ -1,0 +1,78 @@
+// What the choice of an integrator says and needs.
+#include "dynamics/integrator.hpp"
+#include "dynamics/scenes.hpp"
+#include "dynamics/start.hpp"
+
+namespace hilo::test {
+namespace {
+
+// Truth: the multipliers of a step are unknowns, and energy-momentum keeps none from the step before; where Newton starts does not matter.
+TEST(Multipliers, WrongAtTheStartDoNotChangeAStepOfTheDefault) {
+  const Workplace w;
+  pend3d(w);
+  const Scene scene = Scene::load(w / "pend3d.toml");
+  const auto system = build_system(scene, nullptr, Comm::world());
+  const auto solver = make_light_solver();
+  solver->structure(system->cliques, system->map);
+  NewtonOptions options;
+  options.tolerance = 1e-12;
+  State state;
+  state.q = system->start, state.v = system->start_velocity;
+  const auto after_ten_steps = [&](double lambda) {
+    State s = state;
+    s.lambda.assign(3 * system->n_joint_blocks(), lambda);
+    const auto em = make_energy_momentum(0);
+    for (int i = 0; i < 10; ++i) {
+      const NewtonReport r = em->solve({*system, *solver, options}, s, 0.01, Predictor::rigid_rotation);
+      EXPECT_TRUE(r.converged) << r.reason;
+      em->accept(s);
+    }
+    return s;
+  };
+  const State right = after_ten_steps(0), wrong = after_ten_steps(1e6);
+  EXPECT_LT((right.q.c[1] - wrong.q.c[1]).norm(), 1e-12);
+  EXPECT_LT((right.q.R[1] - wrong.q.R[1]).norm(), 1e-12);
+  for (size_t i = 0; i < right.lambda.size(); ++i) EXPECT_NEAR(right.lambda[i], wrong.lambda[i], 1e-6);
+}
+
+// A method that is known to fail says so where it does (docs/stability.md), and is silent elsewhere.
+TEST(Integrator, KnownToFailWarnsWhereItDoes) {
+  const Workplace w;
+  pend3d(w);
+  const auto warns = [&](const std::string& options) {
+    const Ran ran = w.run("hilo-solve pend3d.toml -o run.h5 --set time.step=0.01 --set time.end=0.05 " + options);
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    return ran.err.find("warning") != std::string::npos && ran.err.find("integrator") != std::string::npos;
+  };
+  EXPECT_TRUE(warns(integrator("newmark")));
+  EXPECT_TRUE(warns(integrator("generalized-alpha") + "--set time.rho=0.95"));
+  EXPECT_TRUE(warns(integrator("hht") + "--set time.rho=1"));
+  EXPECT_TRUE(warns(integrator("V0")));
+  EXPECT_TRUE(warns(integrator("U0") + "--set time.rho1=1 --set time.rho2=1 --set time.rho3=0.5"));
+  EXPECT_FALSE(warns(integrator("energy-momentum")));
+  EXPECT_FALSE(warns(integrator("generalized-alpha") + "--set time.rho=0.6"));
+  EXPECT_FALSE(warns(integrator("U0")));
+  EXPECT_FALSE(warns(integrator("bathe")));
+  EXPECT_FALSE(warns(integrator("mid-point"))) << "on bodies it is energy-momentum";
+  dpsmooth(w);
+  std::filesystem::rename(w / "dpsmooth.toml", w / "pend3d.toml");
+  EXPECT_TRUE(warns(integrator("mid-point"))) << "not where parts are flexible";
+  EXPECT_TRUE(warns(integrator("U0") + "--set time.averaged=false"));
+}
+
+TEST(Integrator, RefusesWhatItCannotBe) {
+  const Workplace w;
+  pend3d(w);
+  const Ran hht = w.run("hilo-solve pend3d.toml -o run.h5 --set time.step=0.01 --set time.rho=0.3 " + integrator("hht"));
+  EXPECT_EQ(hht.exit, 2);
+  EXPECT_NE(hht.err.find("1/2 to 1"), std::string::npos) << hht.err;
+  const Ran misspelt = w.run("hilo-solve pend3d.toml -o run.h5 --set time.step=0.01 " + integrator("newmrk"));
+  EXPECT_EQ(misspelt.exit, 2);
+  EXPECT_NE(misspelt.err.find("newmark"), std::string::npos) << misspelt.err;
+  const Ran neither = w.run("hilo-solve pend3d.toml -o run.h5");
+  EXPECT_EQ(neither.exit, 2);
+  EXPECT_NE(neither.err.find("tolerance"), std::string::npos) << neither.err;
+}
+
+}  // namespace
+}  // namespace hilo::test
