@@ -62,21 +62,6 @@ size_t peak(const std::vector<double>& x) {
   return best;
 }
 
-std::vector<std::string> names_of(const RunFile& run, const std::vector<std::string>& globs) {
-  std::vector<std::string> all;
-  for (const auto& link : run.store().list("/history/sensor")) all.push_back(from_link_name(link));
-  if (all.empty()) throw Error(run.path, "has no sensors", "add [[sensor]] name, on to the scene");
-  std::vector<std::string> names;
-  for (const auto& name : all)
-    for (const auto& glob : globs)
-      if (matches(glob, name) && (names.empty() || names.back() != name)) names.push_back(name);
-  if (names.empty()) {
-    std::string hint = suggest(globs.front(), all);
-    throw Error(run.path, fmt::format("no sensor \"{}\"", globs.front()), hint.empty() ? fmt::format("there is {}", all.front()) : hint);
-  }
-  return names;
-}
-
 void write_csv(const Options& o, const std::vector<Sensor>& sensors) {
   std::vector<std::string> header{"t [s]"};
   std::vector<std::vector<double>> columns{sensors.front().t};
@@ -133,7 +118,7 @@ std::string table_of(const Options& o, const std::vector<Sensor>& sensors) {
 void run(const Options& o) {
   const RunFile file(o.run);
   std::vector<Sensor> sensors;
-  for (const std::string& name : names_of(file, o.sensors)) sensors.push_back(read_sensor(file, name, o.cfc));
+  for (const std::string& name : sensor_names(file, o.sensors)) sensors.push_back(read_sensor(file, name, o.cfc));
   if (!o.csv.empty()) write_csv(o, sensors);
   if (!o.png.empty()) write_png(o, file, sensors);
   if (o.csv != "-") write_out("-", table_of(o, sensors));

@@ -121,4 +121,19 @@ std::vector<Step> RunFile::select_steps(const std::string& numbers, const std::s
   return chosen;
 }
 
+std::vector<std::string> sensor_names(const RunFile& run, const std::vector<std::string>& globs) {
+  std::vector<std::string> all;
+  for (const auto& link : run.store().list("/history/sensor")) all.push_back(from_link_name(link));
+  if (all.empty()) throw Error(run.path, "has no sensors", "add [[sensor]] name, on to the scene");
+  std::vector<std::string> names;
+  for (const auto& name : all)
+    for (const auto& glob : globs)
+      if (matches(glob, name) && (names.empty() || names.back() != name)) names.push_back(name);
+  if (names.empty()) {
+    std::string hint = suggest(globs.front(), all);
+    throw Error(run.path, fmt::format("no sensor \"{}\"", globs.front()), hint.empty() ? fmt::format("there is {}", all.front()) : hint);
+  }
+  return names;
+}
+
 }  // namespace hilo

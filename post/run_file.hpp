@@ -67,4 +67,7 @@ class RunFile {
 /// Does a name match a glob (* ? [abc])?
 bool matches(const std::string& glob, const std::string& name);
 
+/// Sensors of a run that match any of the globs.
+std::vector<std::string> sensor_names(const RunFile& run, const std::vector<std::string>& globs);
+
 }  // namespace hilo
