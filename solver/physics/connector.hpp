@@ -49,7 +49,15 @@ inline constexpr int max_directions = 6 * max_ends;  // generalised directions: 
 struct Response {
   std::array<double, max_measures> s{};                            // conjugate forces
   std::array<std::array<double, max_measures>, max_measures> D{};  // ds/de1
-  double energy = 0, dissipated = 0;                               // at e1 [J]; over the step [J]
+  double energy = 0, dissipated = 0, supplied = 0;                 // at e1 [J]; over the step [J]
+  std::array<double, max_measures> by_load{};                      // ds/d Interval::load
+};
+
+/// What a rate force may ask of the step besides its measures.
+struct Interval {
+  double h;           // [s]
+  double factor = 1;  // of a motor's history
+  double load = 0;    // what presses the surfaces of a joint together [N]
 };
 
 /// The law of a spring.  Elastic forces see (e0, e1), rate forces (r0, r1) over h.
@@ -58,9 +66,9 @@ class SpringLaw {
   using Values = std::array<double, max_measures>;
   virtual ~SpringLaw() = default;
   virtual void elastic(const Values& e0, const Values& e1, Response& out) const = 0;
-  virtual void viscous(const Values& r0, const Values& r1, double h, Response& out) const = 0;
-  /// Accept e1 as the state to go on from (unwrapped angles).
-  virtual void commit(const Values&) {}
+  virtual void viscous(const Values& r0, const Values& r1, const Interval& step, Response& out) const = 0;
+  /// Accept e and its rate as the state to go on from (unwrapped angles, speed of approach).
+  virtual void commit(const Values& /*e*/, const Values& /*rate*/) {}
 };
 
 /// Rows of a joint that are functions g_r(e) of its measures.

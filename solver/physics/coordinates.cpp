@@ -1,0 +1,97 @@
+#include "physics/coordinates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hilo {
+
+void OnCoordinates::spread(const Values& e0, const Values& e1, const Response& along, Response& out) const {
+  RowLaw::Gradient g, at_end;
+  coordinates_->gradient(e0, e1, g);
+  coordinates_->gradient(e1, e1, at_end);
+  const int n = coordinates_->n_rows();
+  out.energy += along.energy, out.dissipated += along.dissipated, out.supplied += along.supplied;
+  for (int r = 0; r < n; ++r)
+    for (int i = 0; i < max_measures; ++i) {
+      const double d = g.d[r][i];
+      out.s[i] += along.s[r] * d;
+      out.by_load[i] += along.by_load[r] * d;
+      for (int j = 0; j < max_measures; ++j) {
+        double D = along.s[r] * g.D[r][i][j];
+        for (int k = 0; k < n; ++k) D += d * along.D[r][k] * at_end.d[k][j];
+        out.D[i][j] += D;
+      }
+    }
+}
+
+void OnCoordinates::elastic(const Values& e0, const Values& e1, Response& out) const {
+  Values x0{}, x1{};
+  coordinates_->values(e0, x0.data()), coordinates_->values(e1, x1.data());
+  Response along;
+  law_->elastic(x0, x1, along);
+  spread(e0, e1, along, out);
+}
+
+void OnCoordinates::viscous(const Values& r0, const Values& r1, const Interval& step, Response& out) const {
+  Values x0{}, x1{};
+  coordinates_->values(r0, x0.data()), coordinates_->values(r1, x1.data());
+  Response along;
+  law_->viscous(x0, x1, step, along);
+  spread(r0, r1, along, out);
+}
+
+void OnCoordinates::commit(const Values& e, const Values& rate) {
+  coordinates_->commit(e);
+  RowLaw::Gradient g;
+  coordinates_->gradient(e, e, g);
+  Values x{}, v{};
+  coordinates_->values(e, x.data());
+  for (int r = 0; r < coordinates_->n_rows(); ++r)
+    for (int i = 0; i < max_measures; ++i) v[r] += g.d[r][i] * rate[i];
+  law_->commit(x, v);
+}
+
+void Length::values(const Values& e, double* x) const { x[0] = std::sqrt(std::max(e[0], 0.0)); }
+
+/// (l1 - l0)/(l1^2 - l0^2) = 1/(l0 + l1).
+void Length::gradient(const Values& e0, const Values& e1, Gradient& out) const {
+  const double l1 = std::sqrt(std::max(e1[0], 1e-300)), sum = std::sqrt(std::max(e0[0], 1e-300)) + l1;
+  out = {};
+  out.d[0][0] = 1 / sum;
+  out.D[0][0][0] = -1 / (sum * sum) / (2 * l1);
+}
+
+namespace {
+
+struct Linear final : SpringLaw {
+  Values k{}, c{}, free{};
+  size_t n;
+  Linear(const std::vector<double>& k_, const std::vector<double>& c_, const std::vector<double>& free_) : n(k_.size()) {
+    std::copy(k_.begin(), k_.end(), k.begin()), std::copy(c_.begin(), c_.end(), c.begin());
+    std::copy(free_.begin(), free_.end(), free.begin());
+  }
+  void elastic(const Values& x0, const Values& x1, Response& out) const override {
+    for (size_t i = 0; i < n; ++i) {
+      out.s[i] += k[i] * ((x0[i] + x1[i]) / 2 - free[i]);
+      out.D[i][i] += k[i] / 2;
+      out.energy += k[i] / 2 * (x1[i] - free[i]) * (x1[i] - free[i]);
+    }
+  }
+  void viscous(const Values& x0, const Values& x1, const Interval& step, Response& out) const override {
+    for (size_t i = 0; i < n; ++i) {
+      const double rate = (x1[i] - x0[i]) / step.h;
+      out.s[i] += c[i] * rate;
+      out.D[i][i] += c[i] / step.h;
+      out.dissipated += c[i] * rate * rate * step.h;
+    }
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<SpringLaw> make_linear(std::vector<double> k, std::vector<double> c, std::vector<double> free) {
+  return std::make_unique<Linear>(k, c, free);
+}
+
+}  // namespace hilo

@@ -1,0 +1,53 @@
+// Forces along coordinates x(e) of a connector rather than along its measures e: an angle, a distance, the row of a joint.
+//
+// With the discrete gradient d of a coordinate, d.(e1 - e0) = x1 - x0, a force f along it acts as s = f d and does the work f (x1 - x0)
+// of the step exactly.  So a law written for x keeps its energy statement: a potential stays conserved, friction stays dissipative.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "physics/connector.hpp"
+
+namespace hilo {
+
+/// A law of coordinates seen by the measures.
+class OnCoordinates final : public SpringLaw {
+ public:
+  OnCoordinates(std::unique_ptr<RowLaw> coordinates, std::unique_ptr<SpringLaw> law)
+      : coordinates_(std::move(coordinates)), law_(std::move(law)) {}
+  void elastic(const Values& e0, const Values& e1, Response& out) const override;
+  void viscous(const Values& r0, const Values& r1, const Interval& step, Response& out) const override;
+  void commit(const Values& e, const Values& rate) override;
+
+ private:
+  void spread(const Values& e0, const Values& e1, const Response& along, Response& out) const;
+  std::unique_ptr<RowLaw> coordinates_;
+  std::unique_ptr<SpringLaw> law_;
+};
+
+/// Distance from its square, measure 0.
+class Length final : public RowLaw {
+ public:
+  int n_rows() const override { return 1; }
+  void values(const Values& e, double* x) const override;
+  void gradient(const Values& e0, const Values& e1, Gradient& out) const override;
+};
+
+/// Independent linear springs and dampers: W = k/2 (x - free)^2, f = c dx/dt.
+std::unique_ptr<SpringLaw> make_linear(std::vector<double> k, std::vector<double> c, std::vector<double> free = {});
+
+/// Stop of one coordinate at `lower` and `upper`: W = k/2 <x - upper>^2 + k/2 <lower - x>^2 and, while it is touched, the damper of Hunt
+/// and Crossley that leaves the fraction `restitution` of the speed of approach [hunt-crossley-1975].  Speeds of approach below
+/// `slow` are damped as that one, so that a part at rest comes to rest.
+std::unique_ptr<SpringLaw> make_stop(double lower, double upper, double k, double restitution, double slow);
+/// y = alpha v of the damper f = k d (1 + alpha dd/dt) for which a mass that hits at speed v leaves at restitution * v.
+double hunt_crossley(double restitution);
+
+/// Motor: force over rate, piecewise linear, continued by its end segments; times the step's factor.
+std::unique_ptr<SpringLaw> make_motor(std::vector<double> rate, std::vector<double> force);
+
+/// Coulomb friction, regularised: the slip velocity has components lever_i dx_i/dt and magnitude u, the friction force is
+/// coefficient * (preload + the step's load) * tanh(u/slip_velocity) against it, and acts on coordinate i through lever_i.
+std::unique_ptr<SpringLaw> make_friction(double coefficient, double preload, double slip_velocity, std::vector<double> lever);
+
+}  // namespace hilo

@@ -1,0 +1,72 @@
+// Stops: an elastic limit that gives its energy back exactly, and a damper that keeps what the restitution asks.
+//
+// A mass m that hits f = k d (1 + alpha dd/dt) at speed v obeys u du/dd = -(k/m) d (1 + alpha u).  The penetration d is 0 at the start and at
+// the end, so int u/(1 + alpha u) du from v to -e v vanishes:  y (1 + e) = ln((1 + y)/(1 - e y)),  y = alpha v.  Mass and stiffness drop
+// out; near e = 1 it is the y = 3/2 (1 - e) of [hunt-crossley-1975].
+#include <cmath>
+#include <utility>
+
+#include "physics/coordinates.hpp"
+
+namespace hilo {
+
+double hunt_crossley(double e) {
+  e = std::max(e, 0.01);  // y tends to 1/e: what rebounds with less than a hundredth of its speed is taken to stay
+  if (e > 1 - 1e-4) return 1.5 * (1 - e);
+  const auto f = [e](double y) { return y * (1 + e) - std::log1p(y) + std::log1p(-e * y); };
+  double low = 0.5 * (1 - e * e) / (1 + e * e * e), high = 1 / e;  // f > 0 below the root: f = (1 - e^2) y^2/2 - (1 + e^3) y^3/3 + ...
+  for (int i = 0; i < 200 && high - low > 1e-15 * high; ++i) {
+    const double mid = (low + high) / 2;
+    (f(mid) > 0 ? low : high) = mid;
+  }
+  return (low + high) / 2;
+}
+
+namespace {
+
+struct Stop final : SpringLaw {
+  double lower, upper, k, y, slow;
+  double approach = 0;  // speed at the last accepted state out of contact
+  bool touched = false;
+  Stop(double l, double u, double k_, double e, double slow_) : lower(l), upper(u), k(k_), y(hunt_crossley(e)), slow(slow_) {}
+
+  /// Signed depth: positive beyond the upper, negative beyond the lower limit.
+  double depth(double x) const { return x > upper ? x - upper : x < lower ? x - lower : 0; }
+  double potential(double x) const { return k / 2 * depth(x) * depth(x); }
+  /// Quotient (W1 - W0)/(x1 - x0) and its derivative by x1.
+  std::pair<double, double> quotient(double x0, double x1) const {
+    if ((x0 >= upper && x1 >= upper) || (x0 <= lower && x1 <= lower)) return {k * (depth(x0) + depth(x1)) / 2, k / 2};
+    if (depth(x0) == 0 && depth(x1) == 0) return {0, 0};
+    const double s = (potential(x1) - potential(x0)) / (x1 - x0);
+    return {s, (k * depth(x1) - s) / (x1 - x0)};
+  }
+  void elastic(const Values& x0, const Values& x1, Response& out) const override {
+    const auto [s, D] = quotient(x0[0], x1[0]);
+    out.s[0] += s, out.D[0][0] += D;
+    out.energy += potential(x1[0]);
+  }
+  /// The damper multiplies the elastic force by 1 + alpha (rate into the stop), which stays at or above 0: the stop never pulls.
+  void viscous(const Values& x0, const Values& x1, const Interval& step, Response& out) const override {
+    if (y == 0) return;
+    const auto [s, D] = quotient(x0[0], x1[0]);
+    if (s == 0) return;
+    const double alpha = std::copysign(y / std::max(approach, slow), s), factor = alpha * (x1[0] - x0[0]) / step.h;
+    const double f = factor > -1 ? s * factor : -s;
+    out.s[0] += f;
+    out.D[0][0] += factor > -1 ? D * factor + s * alpha / step.h : -D;
+    out.dissipated += f * (x1[0] - x0[0]);
+  }
+  void commit(const Values& x, const Values& rate) override {
+    const bool now = depth(x[0]) != 0;
+    if (!now || !touched) approach = std::abs(rate[0]);
+    touched = now;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<SpringLaw> make_stop(double lower, double upper, double k, double restitution, double slow) {
+  return std::make_unique<Stop>(lower, upper, k, restitution, slow);
+}
+
+}  // namespace hilo
