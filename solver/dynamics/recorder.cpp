@@ -107,9 +107,14 @@ std::vector<double> Recorder::mid_values(const State& s, const Stage& stage, std
     for (int m = 0; m < n; ++m) r0[m] = c.value(m, *stage.w0), r1[m] = c.value(m, *stage.w1);
     Response r;
     spring_elastic(c, stage, r);
-    if (stage.h > 0) c.law->viscous(r0, r1, stage.h, r);
+    if (stage.h > 0) c.law->viscous(r0, r1, system_.interval(c, stage, lambda_), r);
     const Vec6 f = force_on_b(c, left, r.s.data(), *stage.left);
-    push(f.head<3>()), push(f.tail<3>());
+    if (c.section == "spring") {
+      push(f.head<3>()), push(f.tail<3>());
+      continue;
+    }
+    const Mat3 frame = c.end[0].body >= 0 ? Mat3(stage.left->R[c.end[0].body] * c.frame_a) : Mat3::Identity();
+    push(frame.transpose() * f.head<3>()), push(frame.transpose() * f.tail<3>());
   }
   if (!system_.motions.empty()) {
     System::Forces forces;
@@ -206,7 +211,10 @@ void Recorder::declare_arrays(Store& f) const {
                              : "force and moment on b at the joint point, joint frame carried by a",
                          at);
   for (const Connector& c : system_.springs)
-    f.start_rows<double>("/history/spring/" + to_link_name(c.name), {6}, "N, N m", "force and moment on b at the point, inertial axes", at);
+    f.start_rows<double>("/history/" + c.section + "/" + to_link_name(c.name), {6}, "N, N m",
+                         c.section == "spring" ? "force and moment on b at the point, inertial axes"
+                                               : "force and moment on b at the joint point, joint frame carried by a",
+                         at);
   for (const Motion& m : system_.motions)
     f.start_rows<double>("/history/motion/" + to_link_name(m.name), {6}, "N, N m", "force and moment on what is held, inertial axes", at);
   for (const Station& s : system_.stations) {
@@ -372,7 +380,7 @@ void Recorder::write_histories(Store& f, const Row& row, const std::vector<doubl
     m += 6;
   };
   for (const Connector& c : system_.joints) take_mid("/history/joint/" + to_link_name(c.name));
-  for (const Connector& c : system_.springs) take_mid("/history/spring/" + to_link_name(c.name));
+  for (const Connector& c : system_.springs) take_mid("/history/" + c.section + "/" + to_link_name(c.name));
   for (const Motion& c : system_.motions) take_mid("/history/motion/" + to_link_name(c.name));
   for (const Station& s : system_.stations) {
     const Vec3 a(m[0], m[1], m[2]);

@@ -178,7 +178,7 @@ class Run {
     projected_ = project_velocities(system_, *solver_, state_.q, state_.v, 0);
     if (talk_ && projected_ > 1e-9)
       fmt::print(stderr, "initial velocities changed by up to {:.3g} m/s to satisfy the joints\n", projected_);
-    system_.commit(state_.q);
+    system_.commit(state_.q, &state_.v);
     Progress progress(options_.quiet || system_.comm->rank != 0, 0, end);
     std::optional<StepControl> control;
     if (time.has("tolerance")) control.emplace(system_, time.number("tolerance") * system_.length, end, step);
@@ -295,7 +295,7 @@ class Run {
   void accept(double t, Progress& progress) {
     integrator_->accept(state_);
     state_.t = t;
-    system_.commit(state_.q);
+    system_.commit(state_.q, &state_.v);
     recorder_->step(state_, integrator_->taken(), integrator_->acceleration(), iterations_);
     ++report_.steps;
     progress.show(t, report_.steps, iterations_);

@@ -118,6 +118,23 @@ std::vector<KindSchema> make() {
                 {"at_b", vector3, "m", "!", "point on b"},
                 {"length", number, "m", "", "distance held; that of the two points when absent", above(0)}}});
 
+  constexpr std::string_view rest_speed_meaning = "slower impacts lose no smaller part of their speed than they would at this one";
+  const Param restitution{"restitution", number, "1", "1", "speed after an impact over that before it; 1 gives the energy back exactly",
+                          from_to(0, 1)};
+  s.push_back({"spring",
+               "stop",
+               "limits of the distance of two points: a rope (upper) or a buffer (lower)",
+               {{"kind", text, "", "!", "the kind of spring"},
+                name,
+                end_a,
+                end_b,
+                {"at_a", vector3, "m", "!", "point on a"},
+                {"at_b", vector3, "m", "!", "point on b"},
+                {"lower", number, "m", "", "least distance"},
+                {"upper", number, "m", "", "greatest distance"},
+                {"stiffness", number, "N/m", "!", "of the stop, beyond the limit", above(0)},
+                restitution,
+                {"rest_speed", number, "m/s", "1e-3", rest_speed_meaning, above(0)}}});
   s.push_back({"spring",
                "axial",
                "spring and damper along the line of two points",
@@ -169,9 +186,58 @@ std::vector<KindSchema> make() {
                 x_axis,
                 {"stiffness", number, "N/m", "!", "normal force per penetration, never a pull", at_least(0)},
                 {"damping", number, "N s/m", "0", "normal damping while in contact", at_least(0)},
+                restitution,
+                {"rest_speed", number, "m/s", "1e-3", rest_speed_meaning, above(0)},
                 {"clearance", number, "m", "0", "gap at the start; negative is penetration"},
                 {"tangential_stiffness", numbers, "N/m", "[0, 0]", "along `x` and along axis x `x`", at_least(0)},
                 {"tangential_damping", numbers, "N s/m", "[0, 0]", "along `x` and along axis x `x`", at_least(0)}}});
+
+  const Param of_joint{"joint", text, "", "!", "name of the [[joint]] along whose axis it acts, on b and in return on a"};
+  const auto stop = [&](std::string_view kind, std::string_view meaning, std::string_view unit, std::string_view per,
+                        std::string_view speed) {
+    s.push_back({"stop",
+                 kind,
+                 meaning,
+                 {{"kind", text, "", "!", "the kind of stop"},
+                  name,
+                  of_joint,
+                  {"lower", number, unit, "", "limit from below, measured from the start"},
+                  {"upper", number, unit, "", "limit from above, measured from the start"},
+                  {"stiffness", number, per, "!", "of the stop, beyond the limit", above(0)},
+                  restitution,
+                  {"rest_speed", number, speed, "1e-3", rest_speed_meaning, above(0)}}});
+  };
+  stop("angle", "limits the angle of a revolute, cylindrical, screw or planar joint", "rad", "N m/rad", "rad/s");
+  stop("slide", "limits the displacement of a prismatic, cylindrical, screw or in-line joint", "m", "N/m", "m/s");
+  s.push_back({"motor",
+               "rotary",
+               "torque about the axis of a revolute, cylindrical, screw or planar joint, from its speed",
+               {{"kind", text, "", "!", "the kind of motor"},
+                name,
+                of_joint,
+                {"rate", numbers, "rad/s", "!", "rising speeds of b relative to a; one number for a constant torque"},
+                {"torque", numbers, "N m", "!", "torque on b at these speeds, linear between them, first and last segment continued"},
+                history_key}});
+  s.push_back({"motor",
+               "linear",
+               "force along the axis of a prismatic, cylindrical, screw or in-line joint, from its speed",
+               {{"kind", text, "", "!", "the kind of motor"},
+                name,
+                of_joint,
+                {"rate", numbers, "m/s", "!", "rising speeds of b relative to a; one number for a constant force"},
+                {"force", numbers, "N", "!", "force on b at these speeds, linear between them, first and last segment continued"},
+                history_key}});
+  s.push_back(
+      {"friction",
+       "",
+       "Coulomb friction in a revolute, cylindrical, prismatic, screw or spherical joint, pressed by the joint's own reaction force",
+       {name,
+        {"joint", text, "", "!", "name of the [[joint]]"},
+        {"coefficient", number, "1", "!", "of friction", at_least(0)},
+        {"radius", number, "m", "", "of the surfaces that turn; not of a prismatic joint", above(0)},
+        {"preload", number, "N", "0", "pressing force besides the reaction", at_least(0)},
+        {"slip_velocity", number, "m/s", "1e-3",
+         "v of the regularisation tanh(slip/v): a fraction p of the limit force creeps at v artanh(p)", above(0)}}});
 
   const Param on{"on", text, "", "!", "set, region or body it acts on"};
   s.push_back({"load",
@@ -328,8 +394,8 @@ std::vector<size_t> lengths(std::string_view section, std::string_view key) {
 }
 
 bool is_list_section(std::string_view s) {
-  return s == "body" || s == "point_mass" || s == "joint" || s == "spring" || s == "load" || s == "motion" || s == "initial" ||
-         s == "sensor" || s == "probe";
+  return s == "body" || s == "point_mass" || s == "joint" || s == "spring" || s == "stop" || s == "motor" || s == "friction" ||
+         s == "load" || s == "motion" || s == "initial" || s == "sensor" || s == "probe";
 }
 bool is_single_section(std::string_view s) { return s == "scene" || s == "time" || s == "solver" || s == "output"; }
 

@@ -42,7 +42,7 @@ struct Measure {
   double offset = 0;  // subtracted, so that the reference configuration gives the value wanted
 };
 
-inline constexpr int max_measures = 8, max_rows = 6, max_ends = 3, max_entities = 12;
+inline constexpr int max_measures = 9, max_rows = 6, max_ends = 3, max_entities = 12;
 inline constexpr int max_directions = 6 * max_ends;  // generalised directions: translation and rotation of each end
 
 /// Stress-like response of a spring to its measures over a step.
@@ -69,6 +69,7 @@ class SpringLaw {
   virtual void viscous(const Values& r0, const Values& r1, const Interval& step, Response& out) const = 0;
   /// Accept e and its rate as the state to go on from (unwrapped angles, speed of approach).
   virtual void commit(const Values& /*e*/, const Values& /*rate*/) {}
+  virtual bool needs_rate() const { return false; }
 };
 
 /// Rows of a joint that are functions g_r(e) of its measures.
@@ -110,6 +111,10 @@ struct Connector {
   std::vector<Measure> measures;
   std::unique_ptr<SpringLaw> law;  // springs only
   std::unique_ptr<RowLaw> rows;    // joints whose rows are not their measures
+  std::string section = "spring";  // of the scene, springs only
+  int load_joint = -1;             // joint whose multipliers `load_rows` make up Interval::load, springs only
+  std::vector<int> load_rows;
+  std::function<double(double t0, double t1)> factor;  // Interval::factor, mean over a step; 1 where empty
   Drive drive;
   Vec3 point_b = Vec3::Zero();                                            // joint point in b: arm from its centre, body axes [m]
   Mat3 frame_a = Mat3::Identity();                                        // joint frame in a, body axes
@@ -166,7 +171,11 @@ Connector make_torsion_spring(const Carrier& a, const Carrier& b, const Config& 
                               double angle);
 Connector make_bushing(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at, const Mat3& frame, const Vec3& k, const Vec3& c,
                        const Vec3& k_angle, const Vec3& c_angle);
+/// A law along the distance of two points.
+Connector make_distance_stop(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at_a, const Vec3& at_b,
+                             std::unique_ptr<SpringLaw> law);
+/// Unilateral: with damper c, or with a restitution below 1.
 Connector make_support(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at, const Mat3& frame, double k, double c,
-                       double clearance, const Vec3& k_plane, const Vec3& c_plane);
+                       double restitution, double rest_speed, double clearance, const Vec3& k_plane, const Vec3& c_plane);
 
 }  // namespace hilo

@@ -18,6 +18,7 @@ class OnCoordinates final : public SpringLaw {
   void elastic(const Values& e0, const Values& e1, Response& out) const override;
   void viscous(const Values& r0, const Values& r1, const Interval& step, Response& out) const override;
   void commit(const Values& e, const Values& rate) override;
+  bool needs_rate() const override { return law_->needs_rate(); }
 
  private:
   void spread(const Values& e0, const Values& e1, const Response& along, Response& out) const;

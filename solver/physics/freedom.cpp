@@ -87,9 +87,12 @@ Connector friction_in(const Connector& joint, const Config& q, double coefficien
   if (slides) lever.push_back(1);
   if (turns) lever.push_back(radius);
   c.law = std::make_unique<OnCoordinates>(plain_and_angle(slides, turns), make_friction(coefficient, preload, slip_velocity, lever));
-  if (joint.kind == "revolute") c.load_rows = {0, 1, 2};
-  else if (joint.kind == "screw") c.load_rows = {0, 1, 4};
-  else c.load_rows = {0, 1};
+  if (joint.kind == "revolute")
+    c.load_rows = {0, 1, 2};
+  else if (joint.kind == "screw")
+    c.load_rows = {0, 1, 4};
+  else
+    c.load_rows = {0, 1};
   return c;
 }
 

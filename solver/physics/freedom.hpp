@@ -7,8 +7,8 @@
 
 namespace hilo {
 
-/// A motion of b relative to a that a joint leaves free: a displacement along its axis [m], or an angle about it [rad]; both are zero at the
-/// start and positive along the axis.
+/// A motion of b relative to a that a joint leaves free: a displacement along its axis [m], or an angle about it [rad]; both are zero at
+/// the start and positive along the axis.
 enum class Freedom { slide, angle };
 
 /// Free directions of a kind of joint, the usual one first; empty where none is a single coordinate.

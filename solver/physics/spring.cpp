@@ -2,6 +2,7 @@
 // damper never feeds energy in.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "physics/coordinates.hpp"
 #include "physics/joint_rows.hpp"
@@ -11,39 +12,30 @@ namespace {
 
 using Values = SpringLaw::Values;
 
-/// Measure 0 is the gap: W = k/2 <-gap>^2 with its quotient as discrete gradient; the damper acts while the mean gap is closed and
+/// Measure 0 is the gap, a stop at 0, with a damper of its own where no restitution is asked: it acts while the mean gap is closed and
 /// never pulls.  Measures 1 and 2 are springs in the plane.
 struct Support final : SpringLaw {
-  double k, c;
-  std::unique_ptr<SpringLaw> plane;
-  Support(double k_, double c_, const Vec3& k_plane, const Vec3& c_plane)
-      : k(k_), c(c_), plane(make_linear({0, k_plane[0], k_plane[1]}, {0, c_plane[0], c_plane[1]})) {}
-  double potential(double gap) const { return gap < 0 ? k / 2 * gap * gap : 0; }
-  /// Quotient (W1 - W0)/(e1 - e0) and its derivative in e1.
-  std::pair<double, double> normal(double g0, double g1) const {
-    if (g0 <= 0 && g1 <= 0) return {k * (g0 + g1) / 2, k / 2};
-    if (g0 >= 0 && g1 >= 0) return {0, 0};
-    const double d = g1 - g0, s = (potential(g1) - potential(g0)) / d;
-    return {s, ((g1 < 0 ? k * g1 : 0) - s) / d};
-  }
-  void elastic(const Values& e0, const Values& e1, Response& out) const override {
-    const auto [s, D] = normal(e0[0], e1[0]);
-    out.s[0] += s, out.D[0][0] += D;
-    out.energy += potential(e1[0]);
-    plane->elastic(e0, e1, out);
-  }
+  double c;
+  std::unique_ptr<SpringLaw> gap, plane;
+  Support(double k, double c_, double restitution, double rest_speed, const Vec3& k_plane, const Vec3& c_plane)
+      : c(c_),
+        gap(make_stop(0, std::numeric_limits<double>::infinity(), k, restitution, rest_speed)),
+        plane(make_linear({0, k_plane[0], k_plane[1]}, {0, c_plane[0], c_plane[1]})) {}
+  void elastic(const Values& e0, const Values& e1, Response& out) const override { gap->elastic(e0, e1, out), plane->elastic(e0, e1, out); }
   void viscous(const Values& r0, const Values& r1, const Interval& step, Response& out) const override {
     plane->viscous(r0, r1, step, out);
-    if (r0[0] + r1[0] >= 0) return;
-    const double elastic_force = normal(r0[0], r1[0]).first, s = c * (r1[0] - r0[0]) / step.h;
-    if (elastic_force + s > 0) {  // would pull: the contact carries no force
-      out.s[0] -= elastic_force, out.D[0][0] -= normal(r0[0], r1[0]).second;
-      out.dissipated -= elastic_force * (r1[0] - r0[0]);
-    } else {
-      out.s[0] += s, out.D[0][0] += c / step.h;
-      out.dissipated += s * (r1[0] - r0[0]);
-    }
+    gap->viscous(r0, r1, step, out);
+    if (c == 0 || r0[0] + r1[0] >= 0) return;
+    Response elastic;
+    gap->elastic(r0, r1, elastic);
+    const double s = c * (r1[0] - r0[0]) / step.h;
+    const bool pulls = elastic.s[0] + s > 0;  // then the contact carries no force
+    out.s[0] += pulls ? -elastic.s[0] : s;
+    out.D[0][0] += pulls ? -elastic.D[0][0] : c / step.h;
+    out.dissipated += (pulls ? -elastic.s[0] : s) * (r1[0] - r0[0]);
   }
+  void commit(const Values& e, const Values& rate) override { gap->commit(e, rate); }
+  bool needs_rate() const override { return gap->needs_rate(); }
 };
 
 int add_point(Connector& c, int end, const Config& q, const Vec3& at) {
@@ -109,14 +101,22 @@ Connector make_bushing(const Carrier& a, const Carrier& b, const Config& q, cons
   return c;
 }
 
+Connector make_distance_stop(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at_a, const Vec3& at_b,
+                             std::unique_ptr<SpringLaw> law) {
+  Connector c = start("stop", a, b, q, at_b, Mat3::Identity());
+  const int pa = add_point(c, 0, q, at_a), pb = add_point(c, 1, q, at_b);
+  c.measures.push_back({{{Term::distance2, pa, pb}}, 0});
+  c.law = std::make_unique<OnCoordinates>(std::make_unique<Length>(), std::move(law));
+  return c;
+}
+
 Connector make_support(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at, const Mat3& frame, double k, double c_,
-                       double clearance, const Vec3& k_plane, const Vec3& c_plane) {
+                       double restitution, double rest_speed, double clearance, const Vec3& k_plane, const Vec3& c_plane) {
   Connector c = start("support", a, b, q, at, frame);
   const int pa = add_point(c, 0, q, at), pb = add_point(c, 1, q, at);
   c.measures.push_back({{{Term::slide, add_direction(c, 0, q, frame.col(2)), pa, pb}}, -clearance});
-  for (int i = 0; i < 2; ++i)
-    c.measures.push_back({{{Term::slide, add_direction(c, 0, q, frame.col(i)), pa, pb}}, 0});
-  c.law = std::make_unique<Support>(k, c_, k_plane, c_plane);
+  for (int i = 0; i < 2; ++i) c.measures.push_back({{{Term::slide, add_direction(c, 0, q, frame.col(i)), pa, pb}}, 0});
+  c.law = std::make_unique<Support>(k, c_, restitution, rest_speed, k_plane, c_plane);
   return c;
 }
 

@@ -1,7 +1,7 @@
 // Stops: an elastic limit that gives its energy back exactly, and a damper that keeps what the restitution asks.
 //
-// A mass m that hits f = k d (1 + alpha dd/dt) at speed v obeys u du/dd = -(k/m) d (1 + alpha u).  The penetration d is 0 at the start and at
-// the end, so int u/(1 + alpha u) du from v to -e v vanishes:  y (1 + e) = ln((1 + y)/(1 - e y)),  y = alpha v.  Mass and stiffness drop
+// A mass m that hits f = k d (1 + alpha dd/dt) at speed v obeys u du/dd = -(k/m) d (1 + alpha u).  The penetration d is 0 at the start and
+// at the end, so int u/(1 + alpha u) du from v to -e v vanishes:  y (1 + e) = ln((1 + y)/(1 - e y)),  y = alpha v.  Mass and stiffness drop
 // out; near e = 1 it is the y = 3/2 (1 - e) of [hunt-crossley-1975].
 #include <cmath>
 #include <utility>
@@ -26,8 +26,7 @@ namespace {
 
 struct Stop final : SpringLaw {
   double lower, upper, k, y, slow;
-  double approach = 0;  // speed at the last accepted state out of contact
-  bool touched = false;
+  double towards_lower = 0, towards_upper = 0;  // speed at the last accepted state before contact
   Stop(double l, double u, double k_, double e, double slow_) : lower(l), upper(u), k(k_), y(hunt_crossley(e)), slow(slow_) {}
 
   /// Signed depth: positive beyond the upper, negative beyond the lower limit.
@@ -50,16 +49,16 @@ struct Stop final : SpringLaw {
     if (y == 0) return;
     const auto [s, D] = quotient(x0[0], x1[0]);
     if (s == 0) return;
+    const double approach = s > 0 ? towards_upper : towards_lower;
     const double alpha = std::copysign(y / std::max(approach, slow), s), factor = alpha * (x1[0] - x0[0]) / step.h;
     const double f = factor > -1 ? s * factor : -s;
     out.s[0] += f;
     out.D[0][0] += factor > -1 ? D * factor + s * alpha / step.h : -D;
     out.dissipated += f * (x1[0] - x0[0]);
   }
+  bool needs_rate() const override { return y > 0; }
   void commit(const Values& x, const Values& rate) override {
-    const bool now = depth(x[0]) != 0;
-    if (!now || !touched) approach = std::abs(rate[0]);
-    touched = now;
+    if (depth(x[0]) == 0) (rate[0] > 0 ? towards_upper : towards_lower) = std::abs(rate[0]);
   }
 };
 

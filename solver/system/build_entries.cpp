@@ -1,4 +1,4 @@
-// Entries of the scene to motions, springs, loads, stations and initial velocities.
+// Entries of the scene to motions, loads, stations and initial velocities.
 #include <fmt/format.h>
 #include <fnmatch.h>
 
@@ -20,17 +20,6 @@ std::array<bool, 3> components(const Entry& e) {
   }
   return c;
 }
-
-std::vector<double> padded(const Entry& e, std::string_view key, size_t n) {
-  std::vector<double> v = e.numbers(key);
-  if (v.size() > n || v.empty()) throw Error(e.where(key), fmt::format("{}: {} has up to {} numbers", e.label(), key, n));
-  for (double x : v)
-    if (!(x >= 0)) throw Error(e.where(key), fmt::format("{}: {} is negative", e.label(), key));
-  v.resize(n, 0.0);
-  return v;
-}
-
-Vec3 vec(const std::vector<double>& v) { return {v[0], v.size() > 1 ? v[1] : 0, v.size() > 2 ? v[2] : 0}; }
 
 }  // namespace
 
@@ -74,37 +63,6 @@ void Builder::add_motions() {
       }
     }
     out_->motions.push_back(std::move(m));
-  }
-}
-
-void Builder::add_springs() {
-  for (const Entry& e : scene_.entries("spring")) {
-    const bool needs = e.kind != "axial";
-    const Carrier a = carrier(e, "a", needs), b = carrier(e, "b", needs && e.kind != "support");
-    if (a.body == b.body && a.node == b.node) throw Error(e.where("b"), fmt::format("{}: both ends are the same body", e.label()));
-    const Config& q = out_->start;
-    Connector c;
-    if (e.kind == "axial") {
-      const Vec3 pa = e.vector3("at_a"), pb = e.vector3("at_b");
-      const double distance = (pb - pa).norm(), k = e.number("stiffness"), preload = e.number("preload");
-      if (!(distance > 0)) throw Error(e.where("at_b"), e.label() + ": the two points coincide");
-      if (preload != 0 && k == 0) throw Error(e.where("preload"), e.label() + ": a preload needs a stiffness");
-      const double length = (e.given("length") ? e.number("length") : distance) - (k > 0 ? preload / k : 0);
-      c = make_axial_spring(a, b, q, pa, pb, k, e.number("damping"), length);
-      out_->stiffness = std::max(out_->stiffness, k);
-    } else if (e.kind == "torsion") {
-      c = make_torsion_spring(a, b, q, joint_frame(e), e.number("stiffness"), e.number("damping"), e.number("angle"));
-    } else if (e.kind == "bushing") {
-      c = make_bushing(a, b, q, e.vector3("at"), joint_frame(e), vec(padded(e, "stiffness", 3)), vec(padded(e, "damping", 3)),
-                       vec(padded(e, "angular_stiffness", 3)), vec(padded(e, "angular_damping", 3)));
-      out_->stiffness = std::max(out_->stiffness, vec(padded(e, "stiffness", 3)).maxCoeff());
-    } else {
-      c = make_support(a, b, q, e.vector3("at"), joint_frame(e), e.number("stiffness"), e.number("damping"), e.number("clearance"),
-                       vec(padded(e, "tangential_stiffness", 2)), vec(padded(e, "tangential_damping", 2)));
-      out_->stiffness = std::max(out_->stiffness, e.number("stiffness"));
-    }
-    c.name = e.name;
-    out_->springs.push_back(std::move(c));
   }
 }
 
@@ -332,6 +290,7 @@ std::unique_ptr<System> Builder::build() {
   add_motions();
   add_joints();
   add_springs();
+  add_joint_forces();
   add_loads();
   add_stations();
   if (!mesh_) {  // size of a scene of bodies: what its points span

@@ -58,11 +58,14 @@ class Builder {
   Vec3 mean_of(const std::vector<int>& nodes) const;
   // build_entries.cpp
   void add_motions();
-  void add_springs();
   void add_loads();
   void add_stations();
   void add_point_masses();
   void set_initial_velocities();
+  // build_springs.cpp
+  void add_springs();
+  void add_joint_forces();
+  int joint_of(const Entry& entry) const;
   std::vector<std::string> all_names() const;
   // build_joints.cpp
   void add_joints();

@@ -1,5 +1,6 @@
 // Joints and springs within an evaluation.
 #include <algorithm>
+#include <cmath>
 
 #include "system/pass.hpp"
 
@@ -79,6 +80,18 @@ double drive_work(const Connector& c, const Stage& s, const Config& from, double
   return -lambda * along;
 }
 
+Interval System::interval(const Connector& c, const Stage& s, std::span<const double> lambda, double* slope) const {
+  Interval step{s.h};
+  if (c.factor) step.factor = c.factor(s.t0, s.t1);
+  if (c.load_joint < 0) return step;
+  const double* multiplier = lambda.data() + 3 * (joint_block[c.load_joint] - first_joint_block());
+  for (const int r : c.load_rows) step.load += multiplier[r] * multiplier[r];
+  step.load = std::sqrt(step.load);
+  for (const int r : c.load_rows)
+    if (slope) slope[r] = step.load > 0 ? multiplier[r] / step.load : 0;
+  return step;
+}
+
 void System::add_connectors(Pass& p) const {
   thread_local ConnectorGradient left, right, mixed;
   thread_local DirectionRows left_rows, right_rows;
@@ -108,7 +121,7 @@ void System::add_connectors(Pass& p) const {
         for (int r = 0; r < 3; ++r)
           for (int q = 0; q < 3; ++q) dense[(3 * i + r) * width + 3 * j + q] = K(e.row[i] + r, e.row[j] + q);
     for (int row = 0; row < 3 * n_multiplier_blocks; ++row) {
-      if (row >= c.n_rows() || !c.active[row]) {
+      if (!c.law && (row >= c.n_rows() || !c.active[row])) {
         dense[(3 * e.n + row) * width + 3 * e.n + row] = p.sigma;
         continue;
       }
@@ -170,11 +183,12 @@ void System::add_connectors(Pass& p) const {
     gradient(c, *s.left, left);
     gradient(c, *s.e1, *s.end, right);
     Response elastic, viscous;
+    double slope[max_rows] = {};
     spring_elastic(c, s, elastic);
     double force[max_measures];
     for (int m = 0; m < n; ++m) force[m] = elastic.s[m];
     if (s.h > 0) {
-      c.law->viscous(c.values(*s.w0), c.values(*s.w1), s.h, viscous);
+      c.law->viscous(c.values(*s.w0), c.values(*s.w1), interval(c, s, p.lambda, slope), viscous);
       for (int m = 0; m < n; ++m) force[m] += viscous.s[m];
     }
     add_force(c, force);
@@ -186,7 +200,16 @@ void System::add_connectors(Pass& p) const {
         if (D != 0) K += D * left.G.row(m).head(width).transpose() * right.G.row(k).head(width);
       }
     add_geometric(c, left, right, force, s.slope, K);
-    add_clique(c, spring_clique_[j], K, 0, left.G, right.G);
+    int blocks = 0;
+    if (c.load_joint >= 0) {  // columns of the multipliers its load is made of; its own rows are none
+      const Connector& joint = joints[c.load_joint];
+      blocks = (joint.n_rows() + 2) / 3;
+      left_rows.setZero(), right_rows.setZero();
+      for (const int r : c.load_rows)
+        for (int m = 0; m < n && joint.active[r]; ++m)
+          left_rows.row(r).head(width) += slope[r] * viscous.by_load[m] * left.G.row(m).head(width);
+    }
+    add_clique(c, spring_clique_[j], K, blocks, left_rows, right_rows);
   }
 }
 

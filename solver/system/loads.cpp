@@ -100,8 +100,8 @@ System::Work System::work(const Stage& s, std::span<const double> lambda) const 
       r1[m] = springs[i].value(static_cast<int>(m), *s.w1);
     }
     Response response;
-    springs[i].law->viscous(r0, r1, s.h, response);
-    dissipated += response.dissipated;
+    springs[i].law->viscous(r0, r1, interval(springs[i], s, lambda), response);
+    dissipated += response.dissipated, external += response.supplied;
   }
   for (const SolidBatch& b : batches) {  // mass-proportional damping: alpha M v.dx
     if (b.alpha == 0 || !s.v) continue;

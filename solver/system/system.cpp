@@ -157,8 +157,25 @@ bool System::has_damping() const {
   return std::any_of(batches.begin(), batches.end(), [](const SolidBatch& b) { return b.beta > 0; }) || !springs.empty();
 }
 
-void System::commit(const Config& q) {
-  for (Connector& s : springs) s.law->commit(s.values(q));
+void System::commit(const Config& q, const Config* v) {
+  Config ahead, behind;
+  const double tau = 1e-3;  // [s]; measures are of degree two, any tau gives the exact rate
+  if (v && std::any_of(springs.begin(), springs.end(), [](const Connector& s) { return s.law->needs_rate(); })) {
+    ahead = behind = q;
+    for (size_t i = 0; i < q.x.size(); ++i) ahead.x[i] += tau * v->x[i], behind.x[i] -= tau * v->x[i];
+    for (size_t b = 0; b < q.c.size(); ++b) {
+      ahead.c[b] += tau * v->c[b], behind.c[b] -= tau * v->c[b];
+      ahead.R[b] += tau * v->R[b], behind.R[b] -= tau * v->R[b];
+    }
+  }
+  for (Connector& s : springs) {
+    SpringLaw::Values rate{};
+    if (!ahead.c.empty() && s.law->needs_rate()) {
+      const auto e1 = s.values(ahead), e0 = s.values(behind);
+      for (size_t m = 0; m < s.measures.size(); ++m) rate[m] = (e1[m] - e0[m]) / (2 * tau);
+    }
+    s.law->commit(s.values(q), rate);
+  }
   for (Connector& j : joints)
     if (j.rows) j.rows->commit(j.values(q));
 }
@@ -221,7 +238,8 @@ void System::number() {
       if (end.body >= 0 && body_block[end.body] >= 0) list.push_back(body_block[end.body]), list.push_back(body_block[end.body] + 1);
       if (end.body < 0 && end.node >= 0) list.push_back(node_block[end.node]);
     }
-    for (int k = 0; k < (c.n_rows() + 2) / 3; ++k) list.push_back(first_row_block + k);
+    const int rows = c.load_joint >= 0 ? joints[c.load_joint].n_rows() : c.n_rows();
+    for (int k = 0; k < (rows + 2) / 3; ++k) list.push_back(first_row_block + k);
     return cliques.add(list);
   };
   const auto owns = [&](const Connector& c, size_t index) {
@@ -235,7 +253,7 @@ void System::number() {
     owns_joint_.push_back(owns(joints[i], i));
   }
   for (size_t i = 0; i < springs.size(); ++i) {
-    spring_clique_.push_back(connector_clique(springs[i], 0));
+    spring_clique_.push_back(connector_clique(springs[i], springs[i].load_joint >= 0 ? joint_block[springs[i].load_joint] : 0));
     owns_spring_.push_back(owns(springs[i], i));
   }
 }

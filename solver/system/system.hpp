@@ -190,8 +190,10 @@ class System {
   Vec6 reaction(const Motion& m, const Forces& f, const Config& q) const;
   /// Why a joint cannot be at q ("joint ... ran off the end of its curve"), or nothing; the same on all ranks.
   std::string fault(const Config& q) const;
-  /// Accept q as the state springs go on from.
-  void commit(const Config& q);
+  /// Accept q, with velocities v, as the state springs and joints go on from.
+  void commit(const Config& q, const Config* v = nullptr);
+  /// What the rate forces of a spring may ask of a stage; `slope`, when given, receives d load / d multiplier for its load rows.
+  Interval interval(const Connector& spring, const Stage& s, std::span<const double> lambda, double* slope = nullptr) const;
 
  private:
   struct Pass;
