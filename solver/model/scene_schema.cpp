@@ -236,6 +236,7 @@ std::vector<KindSchema> make() {
         {"coefficient", number, "1", "!", "of friction", at_least(0)},
         {"radius", number, "m", "", "of the surfaces that turn; not of a prismatic joint", above(0)},
         {"preload", number, "N", "0", "pressing force besides the reaction", at_least(0)},
+        {"reaction", boolean, "", "true", "the joint's reaction presses too; false leaves the preload alone, as of a brake"},
         {"slip_velocity", number, "m/s", "1e-3",
          "v of the regularisation tanh(slip/v): a fraction p of the limit force creeps at v artanh(p)", above(0)}}});
 

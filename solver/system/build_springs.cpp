@@ -117,16 +117,16 @@ void Builder::add_joint_forces() {
     const int j = joint_of(e);
     const Connector& joint = out_->joints[j];
     if (!has_friction(joint.kind))
-      throw Error(e.where("joint"), fmt::format("{}: no friction in a {} joint", e.label(), joint.kind),
+      throw Error(e.where("joint"), fmt::format("{}: no friction in a joint of kind {}", e.label(), joint.kind),
                   "revolute, cylindrical, prismatic, screw and spherical joints have it");
     if (joint.kind != "prismatic" && !e.has("radius"))
-      throw Error(e.where("joint"), fmt::format("{}: what turns in a {} joint needs a radius", e.label(), joint.kind));
+      throw Error(e.where("joint"), fmt::format("{}: a joint of kind {} turns and needs a radius", e.label(), joint.kind));
     if (joint.end[0].body < 0 || joint.end[1].body < 0)
       throw Error(e.where("joint"), fmt::format("{}: both ends of joint \"{}\" must be able to turn", e.label(), joint.name),
                   "name a set of several nodes");
     Connector c = friction_in(joint, q, e.number("coefficient"), e.has("radius") ? e.number("radius") : 0, e.number("preload"),
                               e.number("slip_velocity"));
-    c.load_joint = j;
+    if (e.boolean("reaction")) c.load_joint = j;
     add(std::move(c), e);
   }
 }

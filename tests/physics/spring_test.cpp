@@ -1,5 +1,6 @@
 // Springs and dampers: discrete gradients of their potentials, never a source of energy.
 #include "physics/connectors.hpp"
+#include "physics/freedom.hpp"
 
 namespace hilo::test {
 namespace {
@@ -19,21 +20,43 @@ std::vector<Kind> kinds() {
     for (int i = 0; i < max_measures; ++i) e[i] = 0.7 * scatter(seed + 13 * i);
     return e;
   };
+  const auto turned = [](int seed) {
+    const double t = 1.5 * scatter(seed);
+    return Values{std::sin(t), std::cos(t)};
+  };
   return {{"axial", [=](const Config& q) { return make_axial_spring(a, b, q, joint_point, other_point, 250, 30, 1.1); },
            [](int seed) { return Values{std::pow(1 + 0.6 * scatter(seed), 2)}; }},
-          {"torsion", [=](const Config& q) { return make_torsion_spring(a, b, q, some_frame(), 40, 3, 0.2); },
-           [](int seed) {
-             const double t = 1.5 * scatter(seed);
-             return Values{std::sin(t), std::cos(t)};
-           }},
+          {"torsion", [=](const Config& q) { return make_torsion_spring(a, b, q, some_frame(), 40, 3, 0.2); }, turned},
           {"bushing",
            [=](const Config& q) {
              return make_bushing(a, b, q, joint_point, some_frame(), Vec3(100, 200, 50), Vec3(3, 0, 5), Vec3(20, 10, 30), Vec3(1, 2, 3));
            },
            any},
           {"support",
-           [=](const Config& q) { return make_support(a, b, q, joint_point, some_frame(), 900, 0, 0.1, Vec3(70, 20, 0), Vec3(2, 1, 0)); },
-           any}};
+           [=](const Config& q) {
+             return make_support(a, b, q, joint_point, some_frame(), 900, 0, 0.4, 0.5, 0.1, Vec3(70, 20, 0), Vec3(2, 1, 0));
+           },
+           any},
+          {"rope", [=](const Config& q) { return make_distance_stop(a, b, q, joint_point, other_point, make_stop(0.8, 1.1, 300, 0.6, 1)); },
+           [](int seed) { return Values{std::pow(1 + 0.6 * scatter(seed), 2)}; }},
+          {"angle_stop",
+           [=](const Config& q) { return along_joint(joint("revolute", q), q, Freedom::angle, make_stop(-0.4, 0.5, 80, 0.3, 2)); }, turned},
+          {"slide_stop",
+           [=](const Config& q) { return along_joint(joint("cylindrical", q), q, Freedom::slide, make_stop(-0.2, 0.1, 80, 0, 2)); }, any},
+          {"friction_revolute", [=](const Config& q) { return friction_in(joint("revolute", q), q, 0.3, 0.2, 5, 3); }, turned},
+          {"friction_prismatic", [=](const Config& q) { return friction_in(joint("prismatic", q), q, 0.3, 0, 5, 3); }, any},
+          {"friction_cylindrical", [=](const Config& q) { return friction_in(joint("cylindrical", q), q, 0.3, 0.2, 5, 3); },
+           [=](int seed) {
+             const Values e = turned(seed);
+             return Values{scatter(seed + 4), e[0], e[1]};
+           }},
+          {"friction_spherical", [=](const Config& q) { return friction_in(joint("spherical", q), q, 0.3, 0.2, 5, 3); },
+           [](int seed) {
+             const Mat3 R = turn(2 * scattered(seed));
+             Values e{};
+             for (int i = 0; i < 9; ++i) e[i] = R(i / 3, i % 3);
+             return e;
+           }}};
 }
 
 class Spring : public testing::TestWithParam<Kind> {
@@ -62,15 +85,15 @@ TEST_P(Spring, WorkOfAStepIsTheChangeOfItsEnergy) {
 TEST_P(Spring, TangentIsTheDerivativeOfItsForce) {
   for (int seed = 0; seed < 40; ++seed) {
     const Values e0 = GetParam().state(seed), e1 = GetParam().state(1000 + seed);
-    const double h = 0.1;
+    const Interval step{0.1, 0.7, 40};
     Response at;
-    c.law->elastic(e0, e1, at), c.law->viscous(e0, e1, h, at);
+    c.law->elastic(e0, e1, at), c.law->viscous(e0, e1, step, at);
     for (int j = 0; j < max_measures; ++j) {
       Values up = e1, down = e1;
       up[j] += 1e-6, down[j] -= 1e-6;
       Response p, m;
-      c.law->elastic(e0, up, p), c.law->viscous(e0, up, h, p);
-      c.law->elastic(e0, down, m), c.law->viscous(e0, down, h, m);
+      c.law->elastic(e0, up, p), c.law->viscous(e0, up, step, p);
+      c.law->elastic(e0, down, m), c.law->viscous(e0, down, step, m);
       for (int i = 0; i < max_measures; ++i) EXPECT_NEAR(at.D[i][j], (p.s[i] - m.s[i]) / 2e-6, 1e-5 * (1 + std::abs(at.D[i][j]))) << i << j;
     }
   }
@@ -82,7 +105,7 @@ TEST_P(Spring, DamperTakesEnergyAndSaysHowMuch) {
   for (int seed = 0; seed < 40; ++seed) {
     const Values e0 = GetParam().state(seed), e1 = GetParam().state(1000 + seed);
     Response r;
-    c.law->viscous(e0, e1, 0.05, r);
+    c.law->viscous(e0, e1, {0.05, 1, 300}, r);
     EXPECT_GE(r.dissipated, -1e-13);
     EXPECT_NEAR(dot(r.s, e0, e1), r.dissipated, 1e-12 * (1 + r.dissipated));
     total += r.dissipated;
@@ -125,7 +148,7 @@ TEST(TorsionSpring, CountsItsTurns) {
     work += r.s[0] * (now[0] - before[0]) + r.s[1] * (now[1] - before[1]);
     EXPECT_NEAR(r.energy, 20 * angle * angle, 1e-10 * r.energy);
     EXPECT_NEAR(work, r.energy, 1e-11 * r.energy);
-    c.law->commit(now);
+    c.law->commit(now, {});
     before = now;
   }
   ConnectorGradient g;
@@ -159,12 +182,12 @@ TEST(Bushing, IsSixSpringsForSmallMotions) {
 // Truth: a unilateral contact pushes when closed, never pulls, whatever its damper.
 TEST(Support, NeverPulls) {
   const Config q = somewhere(3);
-  const Connector c = make_support({1, -1}, {2, -1}, q, joint_point, some_frame(), 900, 80, 0, Vec3::Zero(), Vec3::Zero());
+  const Connector c = make_support({1, -1}, {2, -1}, q, joint_point, some_frame(), 900, 80, 1, 1e-3, 0, Vec3::Zero(), Vec3::Zero());
   for (int i = -10; i <= 10; ++i)
     for (int j = -10; j <= 10; ++j) {
       Response r;
       const Values e0{0.01 * i}, e1{0.01 * j};
-      c.law->elastic(e0, e1, r), c.law->viscous(e0, e1, 0.01, r);
+      c.law->elastic(e0, e1, r), c.law->viscous(e0, e1, {0.01}, r);
       EXPECT_LE(r.s[0], 1e-12) << "gap from " << e0[0] << " to " << e1[0];
       if (i > 0 && j > 0) {
         EXPECT_EQ(r.s[0], 0);

@@ -31,6 +31,11 @@ name = "side"
 mass = 2
 com = [0.2, 1.5, 1]
 inertia = [0.1, 0.1, 0.1]
+[[body]]
+name = "slider"
+mass = 1
+com = [0.2, 1.9, 1.1]
+inertia = [0.02, 0.03, 0.04]
 [[point_mass]]
 name = "lump"
 on = "ymax"
@@ -164,6 +169,48 @@ stiffness = [3000, 4000, 5000]
 damping = [10, 20, 30]
 angular_stiffness = [100, 200, 300]
 angular_damping = [1, 2, 3]
+[[joint]]
+kind = "cylindrical"
+name = "sleeve"
+a = "side"
+b = "slider"
+at = [0.2, 1.9, 1.1]
+axis = [0.2, 1, 0.3]
+[[friction]]
+name = "hinge"
+joint = "hinge"
+coefficient = 0.3
+radius = 0.05
+preload = 4
+slip_velocity = 0.4
+[[friction]]
+name = "sleeve"
+joint = "sleeve"
+coefficient = 0.2
+radius = 0.04
+slip_velocity = 0.7
+[[stop]]
+kind = "angle"
+name = "hinge"
+joint = "hinge"
+upper = -0.02
+stiffness = 500
+restitution = 0.4
+[[stop]]
+kind = "slide"
+name = "sleeve"
+joint = "sleeve"
+lower = 0.04
+stiffness = 900
+restitution = 0.6
+rest_speed = 0.5
+[[motor]]
+kind = "rotary"
+name = "sleeve"
+joint = "sleeve"
+rate = [-3, 5]
+torque = [7, -2]
+history = {t = [0, 1], value = [1, 2]}
 [[load]]
 kind = "pressure"
 name = "air"
@@ -228,8 +275,16 @@ class Tangent : public testing::TestWithParam<const char*> {
     write_tags(place / "tags.h5", place / "mesh.h5", {Fidelity::rigid, Fidelity::nonlinear}, {"test"});
     local = read_local_mesh(place / "tags.h5", Comm::world());
     // but for energy-momentum the tangent of the rate terms is that of the rate alone, exact to first order in h: left out there
-    const std::vector<std::string> undamped{"region.*.damping=0", "spring.strut.damping=0", "spring.coil.damping=0",
-                                            "spring.mount.damping=[0,0,0]", "spring.mount.angular_damping=[0,0,0]"};
+    const std::vector<std::string> undamped{"region.*.damping=0",
+                                            "spring.strut.damping=0",
+                                            "spring.coil.damping=0",
+                                            "spring.mount.damping=[0,0,0]",
+                                            "spring.mount.angular_damping=[0,0,0]",
+                                            "friction.hinge.coefficient=0",
+                                            "friction.sleeve.coefficient=0",
+                                            "stop.hinge.restitution=1",
+                                            "stop.sleeve.restitution=1",
+                                            "motor.sleeve.torque=[0,0]"};
     scene = Scene::parse(everything, "scene.toml", std::string(GetParam()) == "energy-momentum" ? std::vector<std::string>{} : undamped);
     system = build_system(scene, &local, Comm::world());
   }

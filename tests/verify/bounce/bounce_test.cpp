@@ -1,0 +1,88 @@
+// A stop gives the energy back that it took, or the part that its restitution asks for.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+/// Heights the flights reach, z + v^2/(2 g) at their first recorded instant; free flight is exact at any step.
+std::vector<double> heights(const Results& r, double floor) {
+  const auto x = r.history("probe/mass");
+  std::vector<double> out;
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    if (x(i, 2) > floor && x(i, 5) >= 0 && (i == 0 || x(i - 1, 2) <= floor))
+      out.push_back(x(i, 2) - floor + x(i, 5) * x(i, 5) / (2 * 9.81));
+  return out;
+}
+
+// Truth: without loss a mass comes back to the height it fell from, at any step, even one that meets the stop with a single point.
+TEST(Bounce, ComesBackToItsHeightForEver) {
+  const Case c("bounce");
+  for (const std::string step : {"1e-3", "7e-3"}) {
+    const Results r = c.solved("--set time.step=" + step);
+    const auto h = heights(r, 0);
+    ASSERT_GE(h.size(), 4u);
+    for (const double height : h) EXPECT_NEAR(height, 0.5, 1e-10);
+    EXPECT_LT(r.history("energy").col(5).cwiseAbs().maxCoeff(), 1e-10 * 9.81);
+    EXPECT_GE(r.history("stop/floor").col(2).minCoeff(), -1e-9) << "never a pull";
+  }
+}
+
+// Truth: a restitution of e leaves e^2 of the height; the contact of 1 ms is met with 100 points.
+TEST(Bounce, LeavesTheSpeedThatTheRestitutionAsks) {
+  const Case c("bounce");
+  for (const double e : {0.8, 0.5, 0.2}) {
+    const Results r = c.solved("--set time.step=1e-5 --set time.end=0.325 --set stop.floor.stiffness=2e7 --set stop.floor.restitution=" +
+                               std::to_string(e));
+    const auto h = heights(r, 0);
+    ASSERT_GE(h.size(), 2u);
+    EXPECT_NEAR(std::sqrt(h[1] / h[0]), e, 0.01 * e) << "the weight, 0.1 % of the force of the impact, goes on through the contact";
+    EXPECT_GE(r.history("stop/floor").col(2).minCoeff(), -1e-9);
+    const auto d = r.history("energy").col(4).eval();
+    EXPECT_GE((d.tail(d.size() - 1) - d.head(d.size() - 1)).minCoeff(), 0) << "dissipation never falls";
+    EXPECT_LT(r.history("energy").col(5).cwiseAbs().maxCoeff(), 1e-7 * 9.81) << "32 500 steps, each solved to 1e-10 of its forces";
+  }
+}
+
+// Truth: in the end it lies still and its weight bends the stop by m g/k.
+TEST(Bounce, ComesToRest) {
+  const Case c("bounce");
+  const Results r = c.solved("--set stop.floor.restitution=0.3 --set time.end=6");
+  const auto x = r.history("probe/mass");
+  EXPECT_NEAR(x(x.rows() - 1, 2), -2 * 9.81 / 2e5, 1e-6);
+  EXPECT_LT(std::abs(x(x.rows() - 1, 5)), 1e-4);
+}
+
+// Truth: a rope without loss keeps the energy, pulls only when taut and only along itself.
+TEST(Bounce, RopeHoldsWhatFalls) {
+  const Case c("bounce");
+  const Ran ran = c.solve("--quiet", "run.h5", 0, "rope");
+  ASSERT_EQ(ran.exit, 0);
+  const Results r = c.results();
+  const auto x = r.history("probe/mass"), f = r.history("spring/rope");
+  EXPECT_LT(r.history("energy").col(5).cwiseAbs().maxCoeff(), 1e-9);
+  int taut = 0;
+  for (Eigen::Index i = 1; i + 1 < x.rows(); ++i) {
+    const Vec3 arm = Vec3(x(i, 0), x(i, 1), x(i, 2)) - Vec3(0, 0, 1), force(f(i, 0), f(i, 1), f(i, 2));
+    EXPECT_LE(force.dot(arm), 1e-9);
+    if (arm.norm() < 0.59) {
+      EXPECT_LT(force.norm(), 1e-9);
+    }
+    taut += force.norm() > 1;
+  }
+  EXPECT_GT(taut, 20);
+}
+
+TEST(Bounce, MistakesAreNamed) {
+  const Case c("bounce");
+  const auto says = [&](const std::string& option, const std::string& text) {
+    const Ran ran = c.solve("--quiet --set " + option, "bad.h5", 2);
+    EXPECT_NE(ran.err.find(text), std::string::npos) << ran.err;
+  };
+  says("'stop.floor.joint=\"gide\"'", "did you mean \"guide\"");
+  says("'stop.floor.kind=\"angle\"'", "no free angle");
+  says("stop.floor.restitution=1.5", "restitution");
+  says("stop.floor.upper=-0.6", "lower is not below upper");
+}
+
+}  // namespace
+}  // namespace hilo::test

@@ -1,0 +1,82 @@
+// Friction in joints: the decelerations, decrements and creeps of Coulomb's law.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+constexpr double g = 9.81;
+
+// Truth: going up, v falls at g (sin 30 + mu cos 30); tanh(v/1e-3) is 1 to 1e-8 while v > 10 slip velocities.
+TEST(Friction, BlockOnAnInclineDecelerates) {
+  const Case c("friction");
+  const Results r = c.solved();
+  const auto x = r.history("probe/block"), f = r.history("friction/rub");
+  const double a = g * (0.5 + 0.25 * std::sqrt(3) / 2);
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const double t = r.t()[i];
+    EXPECT_NEAR(x.row(i).segment(3, 3).norm(), 2 - a * t, 1e-9);
+    EXPECT_NEAR(x.row(i).head(3).norm(), 2 * t - a * t * t / 2, 1e-9);
+    EXPECT_NEAR(f(i, 2), -0.25 * 3 * g * std::sqrt(3) / 2, 1e-6) << "on the block, down the guide";
+  }
+  const auto e = r.history("energy");
+  EXPECT_LT(e.col(5).cwiseAbs().maxCoeff(), 1e-10 * e.col(0).maxCoeff());
+  EXPECT_NEAR(e(e.rows() - 1, 4), 0.25 * 3 * g * std::sqrt(3) / 2 * x.row(x.rows() - 1).head(3).norm(), 1e-8);
+}
+
+// Truth: where mu > tan 30 it stays, as a creep at slip_velocity artanh(tan 30/mu).
+TEST(Friction, BlockSticksAsACreepOfTheStatedVelocity) {
+  const Case c("friction");
+  const Results r = c.solved("--set friction.rub.coefficient=0.8 --set time.end=1.5 --set time.step=2e-3");
+  const auto x = r.history("probe/block");
+  EXPECT_NEAR(x.row(x.rows() - 1).segment(3, 3).norm(), 1e-3 * std::atanh(std::tan(M_PI / 6) / 0.8), 1e-8);
+  EXPECT_LT(x(x.rows() - 1, 5), 0) << "downwards";
+}
+
+// Truth: from one turning point to the next the brake takes M (theta_n + theta_n+1) of the height m g l (cos theta_n+1 - cos theta_n).
+TEST(Friction, PendulumLosesTheSameTorqueEverySwing) {
+  const Case c("friction");
+  const Ran ran = c.solve("--quiet", "run.h5", 0, "pendulum");
+  ASSERT_EQ(ran.exit, 0);
+  const Results r = c.results();
+  const auto x = r.history("probe/bob");
+  std::vector<double> top{M_PI / 2};
+  const auto angle = [&](Eigen::Index i) { return std::atan2(x(i, 0), -x(i, 2)); };
+  for (Eigen::Index i = 1; i + 1 < x.rows(); ++i) {
+    const double b = angle(i - 1), at = angle(i), n = angle(i + 1);
+    if ((at - b) * (n - at) < 0) top.push_back(std::abs(at + (n - b) * (n - b) / (16 * (at - (n + b) / 2))));  // vertex of the parabola
+  }
+  ASSERT_GE(top.size(), 5u);
+  const double M = 0.5 * 0.02 * 20, mgl = 2 * g * 0.5;
+  for (size_t k = 0; k + 1 < top.size(); ++k)
+    EXPECT_NEAR(mgl * (std::cos(top[k + 1]) - std::cos(top[k])), M * (top[k] + top[k + 1]), 2e-5 * mgl) << k;
+  const auto e = r.history("energy");
+  EXPECT_LT(e.col(5).cwiseAbs().maxCoeff(), 1e-10 * mgl);
+}
+
+// Truth: friction pressed by the reaction of the same step keeps the second order of the method.
+TEST(Friction, PressedByTheReactionIsOfSecondOrder) {
+  const Case c("friction");
+  const auto last = [&](const std::string& step) {
+    c.solve("--quiet --set friction.brake.reaction=true --set friction.brake.slip_velocity=0.02 --set time.end=0.5 --set time.step=" + step,
+            "run.h5", 0, "pendulum");
+    const auto x = c.results().history("probe/bob");
+    return Vec3(x(x.rows() - 1, 0), x(x.rows() - 1, 1), x(x.rows() - 1, 2));
+  };
+  const Vec3 a = last("4e-3"), b = last("2e-3"), d = last("1e-3");
+  EXPECT_NEAR(std::log2((b - a).norm() / (d - b).norm()), 2, 0.05);
+}
+
+TEST(Friction, MistakesAreNamed) {
+  const Case c("friction");
+  const auto says = [&](const std::string& option, const std::string& text) {
+    const Ran ran = c.solve("--quiet --set " + option, "bad.h5", 2);
+    EXPECT_NE(ran.err.find(text), std::string::npos) << ran.err;
+  };
+  says("'friction.rub.joint=\"giude\"'", "did you mean \"guide\"");
+  says("'joint.guide.kind=\"cylindrical\"'", "needs a radius");
+  says("'joint.guide.kind=\"in-line\"'", "no friction in a joint of kind in-line");
+  says("friction.rub.slip_velocity=0", "slip_velocity");
+}
+
+}  // namespace
+}  // namespace hilo::test
