@@ -65,10 +65,16 @@ std::vector<KindSchema> make() {
                 {"at", vector3, "m", "", "where on a body; its centre when absent"}}});
 
   const Param joint_kind{"kind", text, "", "!", "the kind of joint"};
+  const std::vector<Param> give_way{
+      {"stiffness", numbers, "N/m", "", "makes the joint give way: along x, y and axis of its frame, or one number for all", at_least(0)},
+      {"angular_stiffness", numbers, "N m/rad", "", "likewise about x, y and axis; the measure is the sine of the angle", at_least(0)},
+      {"damping", numbers, "N s/m", "", "dampers beside these springs", at_least(0)},
+      {"angular_damping", numbers, "N m s/rad", "", "dampers beside these springs", at_least(0)}};
   const auto joint = [&](std::string_view kind, std::string_view meaning, bool with_axis, std::vector<Param> more = {}) {
     std::vector<Param> p{joint_kind, name, end_a, end_b, at};
     if (with_axis) p.push_back(axis), p.push_back(x_axis);
     p.insert(p.end(), more.begin(), more.end());
+    p.insert(p.end(), give_way.begin(), give_way.end());
     s.push_back({"joint", kind, meaning, std::move(p)});
   };
   constexpr Param angle{"angle", number, "rad", "", "drives the joint: angle of b about the axis at history 1"},
@@ -116,7 +122,9 @@ std::vector<KindSchema> make() {
                 end_b,
                 {"at_a", vector3, "m", "!", "point on a"},
                 {"at_b", vector3, "m", "!", "point on b"},
-                {"length", number, "m", "", "distance held; that of the two points when absent", above(0)}}});
+                {"length", number, "m", "", "distance held; that of the two points when absent", above(0)},
+                give_way[0],
+                give_way[2]}});
 
   constexpr std::string_view rest_speed_meaning = "slower impacts lose no smaller part of their speed than they would at this one";
   const Param restitution{"restitution", number, "1", "1", "speed after an impact over that before it; 1 gives the energy back exactly",
@@ -390,6 +398,7 @@ std::vector<std::string> choices(std::string_view section, std::string_view key)
 
 std::vector<size_t> lengths(std::string_view section, std::string_view key) {
   if (section == "body") return key == "inertia" ? std::vector<size_t>{3, 6} : std::vector<size_t>{9};
+  if (section == "joint") return {1, 3};
   if (section == "spring") return key.starts_with("tangential") ? std::vector<size_t>{2} : std::vector<size_t>{3};
   return {};
 }

@@ -106,7 +106,10 @@ Value read_value(std::string_view section, const Param& param, const Item& item,
       v.numbers = list_of_numbers(r, {3});
       break;
     case Type::numbers:
-      v.numbers = list_of_numbers(r, lengths(section, param.key));
+      if (const auto n = lengths(section, param.key); item.node->is_number() && std::find(n.begin(), n.end(), 1u) != n.end())
+        v.numbers = {number(r, *item.node)};
+      else
+        v.numbers = list_of_numbers(r, n);
       break;
     case Type::text:
       v.texts = {word(r, *item.node)};

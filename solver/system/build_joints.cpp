@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "physics/coordinates.hpp"
 #include "system/builder.hpp"
 
 namespace hilo {
@@ -63,6 +64,24 @@ std::shared_ptr<const Curve> curve(const Entry& e, const Scene& scene, const Vec
   return std::make_shared<Curve>(std::move(points), closed);
 }
 
+/// One number for all, or three along or about x, y and axis of the joint frame.
+Vec3 triple(const Entry& e, std::string_view key) {
+  if (!e.has(key)) return Vec3::Zero();
+  const std::vector<double>& v = e.numbers(key);
+  return v.size() == 1 ? Vec3::Constant(v[0]) : Vec3(v[0], v[1], v[2]);
+}
+
+Connector compliant(const Entry& e, Connector joint) {
+  const Vec3 k = triple(e, "stiffness"), k_angle = triple(e, "angular_stiffness");
+  if (const std::string key = missing_stiffness(e.kind, k, k_angle); !key.empty())
+    throw Error(e.has(key) ? e.where(key) : e.place.text(),
+                fmt::format("{}: {} leaves a row of the joint without a spring", e.label(), key),
+                fmt::format("give {} along every row, or leave all stiffnesses out", key));
+  Connector c = make_compliant(std::move(joint), k, triple(e, "damping"), k_angle, triple(e, "angular_damping"));
+  c.name = e.name;
+  return c;
+}
+
 }  // namespace
 
 Vec3 direction(const Entry& e, std::string_view key) {
@@ -112,6 +131,14 @@ void Builder::add_joints() {
     if (kind == "point-on-curve") j.curve = curve(e, scene_, j.at);
     if (e.has("length")) j.length = e.number("length");
     const std::string driven = driving_key(e);
+    if (e.has("stiffness") || e.has("angular_stiffness")) {
+      if (!driven.empty())
+        throw Error(e.where(driven), e.label() + ": a joint that gives way cannot be driven", "put a motor or a rigid joint");
+      out_->springs.push_back(compliant(e, make_joint(j, out_->start)));
+      continue;
+    }
+    for (const char* key : {"damping", "angular_damping"})
+      if (e.has(key)) throw Error(e.where(key), fmt::format("{}: {} without a stiffness", e.label(), key), "rigid rows do not move");
     const bool is_rate = driven == "spin" || driven == "velocity";
     if (!driven.empty()) j.driven = driven == "angle" || driven == "spin" ? JointPlace::Driven::angle : JointPlace::Driven::slide;
     Connector c = make_joint(j, out_->start);

@@ -80,13 +80,15 @@ void Builder::add_springs() {
   }
 }
 
-int Builder::joint_of(const Entry& e) const {
+const Connector& Builder::joint_of(const Entry& e) const {
   const std::string& name = e.text("joint");
   std::vector<std::string> names;
-  for (size_t j = 0; j < out_->joints.size(); ++j) {
-    if (out_->joints[j].name == name) return static_cast<int>(j);
-    names.push_back(out_->joints[j].name);
-  }
+  for (const auto* list : {&out_->joints, &out_->springs})
+    for (const Connector& c : *list) {
+      if (c.law && c.section != "joint") continue;
+      if (c.name == name) return c;
+      names.push_back(c.name);
+    }
   throw Error(e.where("joint"), fmt::format("{}: no joint \"{}\"", e.label(), name), suggest(name, names));
 }
 
@@ -98,7 +100,7 @@ void Builder::add_joint_forces() {
     out_->springs.push_back(std::move(c));
   };
   const auto along = [&](const Entry& e, Freedom freedom, std::unique_ptr<SpringLaw> law) {
-    const Connector& joint = out_->joints[joint_of(e)];
+    const Connector& joint = joint_of(e);
     const auto free = freedoms(joint.kind);
     if (std::find(free.begin(), free.end(), freedom) == free.end())
       throw Error(e.where("joint"), fmt::format("{}: a {} joint has no free {} along its axis", e.label(), joint.kind,
@@ -114,8 +116,7 @@ void Builder::add_joint_forces() {
     add(std::move(c), e);
   }
   for (const Entry& e : scene_.entries("friction")) {
-    const int j = joint_of(e);
-    const Connector& joint = out_->joints[j];
+    const Connector& joint = joint_of(e);
     if (!has_friction(joint.kind))
       throw Error(e.where("joint"), fmt::format("{}: no friction in a joint of kind {}", e.label(), joint.kind),
                   "revolute, cylindrical, prismatic, screw and spherical joints have it");
@@ -126,7 +127,12 @@ void Builder::add_joint_forces() {
                   "name a set of several nodes");
     Connector c = friction_in(joint, q, e.number("coefficient"), e.has("radius") ? e.number("radius") : 0, e.number("preload"),
                               e.number("slip_velocity"));
-    if (e.boolean("reaction")) c.load_joint = j;
+    if (e.boolean("reaction")) {
+      if (joint.law)
+        throw Error(e.where("joint"), fmt::format("{}: joint \"{}\" gives way and has no reaction to press with", e.label(), joint.name),
+                    "say reaction = false and give a preload");
+      c.load_joint = static_cast<int>(&joint - out_->joints.data());
+    }
     add(std::move(c), e);
   }
 }

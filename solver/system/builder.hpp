@@ -65,7 +65,7 @@ class Builder {
   // build_springs.cpp
   void add_springs();
   void add_joint_forces();
-  int joint_of(const Entry& entry) const;
+  const Connector& joint_of(const Entry& entry) const;
   std::vector<std::string> all_names() const;
   // build_joints.cpp
   void add_joints();

@@ -13,6 +13,10 @@ struct Kind {
   std::function<Values(int)> state;  // admissible measures
 };
 
+Connector give_way(const std::string& kind, const Config& q) {
+  return make_compliant(joint(kind, q), Vec3(100, 200, 50), Vec3(3, 0, 5), Vec3(20, 10, 30), Vec3(1, 2, 3));
+}
+
 std::vector<Kind> kinds() {
   const Carrier a{1, -1}, b{2, -1};
   const auto any = [](int seed) {
@@ -43,6 +47,17 @@ std::vector<Kind> kinds() {
            [=](const Config& q) { return along_joint(joint("revolute", q), q, Freedom::angle, make_stop(-0.4, 0.5, 80, 0.3, 2)); }, turned},
           {"slide_stop",
            [=](const Config& q) { return along_joint(joint("cylindrical", q), q, Freedom::slide, make_stop(-0.2, 0.1, 80, 0, 2)); }, any},
+          {"compliant_fixed", [=](const Config& q) { return give_way("fixed", q); }, any},
+          {"compliant_spherical", [=](const Config& q) { return give_way("spherical", q); }, any},
+          {"compliant_constant_velocity", [=](const Config& q) { return give_way("constant-velocity", q); }, any},
+          {"compliant_distance", [=](const Config& q) { return give_way("distance", q); },
+           [](int seed) { return Values{std::pow(1 + 0.6 * scatter(seed), 2)}; }},
+          {"compliant_screw", [=](const Config& q) { return give_way("screw", q); },
+           [=](int seed) {
+             Values e = any(seed);
+             const Values turn = turned(seed);
+             return e[5] = turn[0], e[6] = turn[1], e;
+           }},
           {"friction_revolute", [=](const Config& q) { return friction_in(joint("revolute", q), q, 0.3, 0.2, 5, 3); }, turned},
           {"friction_prismatic", [=](const Config& q) { return friction_in(joint("prismatic", q), q, 0.3, 0, 5, 3); }, any},
           {"friction_cylindrical", [=](const Config& q) { return friction_in(joint("cylindrical", q), q, 0.3, 0.2, 5, 3); },
@@ -177,6 +192,36 @@ TEST(Bushing, IsSixSpringsForSmallMotions) {
   const Vec6 f = force_on_b(c, g, r.s.data(), p);
   EXPECT_LT((frame.transpose() * f.head<3>() + k.cwiseProduct(u)).norm(), 1e-9);
   EXPECT_LT((frame.transpose() * f.tail<3>() + ka.cwiseProduct(w)).norm(), 1e-9);
+}
+
+// Truth: moved a little, a compliant joint answers along and about each axis of its frame that it holds, and along no other.
+TEST(CompliantJoint, IsASpringAlongWhatItHolds) {
+  const Config q = somewhere(3);
+  const Mat3 frame = some_frame();
+  const Vec3 k(100, 200, 50), ka(20, 10, 30), u(1e-6, -2e-6, 3e-6), w(2e-6, 1e-6, -1e-6);
+  const std::map<std::string, std::pair<Vec3, Vec3>> held{
+      {"fixed", {{1, 1, 1}, {1, 1, 1}}},     {"spherical", {{1, 1, 1}, {0, 0, 0}}},         {"revolute", {{1, 1, 1}, {1, 1, 0}}},
+      {"universal", {{1, 1, 1}, {0, 1, 0}}}, {"constant-velocity", {{1, 1, 1}, {0, 0, 1}}}, {"planar", {{0, 0, 1}, {1, 1, 0}}},
+      {"in-plane", {{0, 0, 1}, {0, 0, 0}}},  {"in-line", {{1, 1, 0}, {0, 0, 0}}},           {"cylindrical", {{1, 1, 0}, {1, 1, 0}}},
+      {"prismatic", {{1, 1, 0}, {1, 1, 1}}}};
+  for (const auto& [kind, axes] : held) {
+    ASSERT_TRUE(can_be_compliant(kind));
+    const Connector c = make_compliant(joint(kind, q), k, Vec3::Zero(), ka, Vec3::Zero());
+    Config p = q;
+    const Mat3 B = turn(frame * w);
+    p.c[2] = joint_point + B * (q.c[2] - joint_point) + frame * u, p.R[2] = B * q.R[2];
+    const Values e = c.values(p);
+    Response r;
+    c.law->elastic(e, e, r);
+    ConnectorGradient g;
+    gradient(c, p, g);
+    const Vec6 f = force_on_b(c, g, r.s.data(), p);
+    EXPECT_LT((frame.transpose() * f.head<3>() + k.cwiseProduct(axes.first).cwiseProduct(u)).norm(), 1e-9) << kind;
+    EXPECT_LT((frame.transpose() * f.tail<3>() + ka.cwiseProduct(axes.second).cwiseProduct(w)).norm(), 1e-9) << kind;
+  }
+  EXPECT_EQ(missing_stiffness("revolute", k, Vec3(1, 1, 0)), "");
+  EXPECT_EQ(missing_stiffness("revolute", k, Vec3(1, 0, 1)), "angular_stiffness");
+  EXPECT_EQ(missing_stiffness("in-plane", Vec3(1, 1, 0), ka), "stiffness");
 }
 
 // Truth: a unilateral contact pushes when closed, never pulls, whatever its damper.
