@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/rolling.hpp"
+
 namespace hilo {
 namespace {
 
@@ -95,7 +97,14 @@ std::vector<double> Recorder::mid_values(const State& s, const Stage& stage, std
     gradient(c, *stage.left, left);
     double s_left[max_measures];
     joint_forces(c, stage, left, lambda.data() + 3 * (system_.joint_block[j] - system_.first_joint_block()), s_left);
-    const Vec6 f = force_on_b(c, left, s_left, *stage.left);
+    Vec6 f = force_on_b(c, left, s_left, *stage.left);
+    if (c.velocity_rows) {
+      const double* own = lambda.data() + 3 * (system_.joint_block[j] - system_.first_joint_block());
+      const int b = c.end[1].body;
+      Vec6 slip = Slip(c, *stage.left, stage.v).force(own + c.n_position_rows());
+      slip.tail<3>() -= (stage.left->R[b] * c.point_b).cross(slip.head<3>());
+      f += slip;
+    }
     const Mat3 frame = c.end[0].body >= 0 ? Mat3(stage.left->R[c.end[0].body] * c.frame_a) : Mat3::Identity();
     push(frame.transpose() * f.head<3>());
     push(frame.transpose() * f.tail<3>());

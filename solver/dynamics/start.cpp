@@ -7,6 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "physics/rolling.hpp"
+
 namespace hilo {
 namespace {
 
@@ -39,9 +41,12 @@ Rows joint_rows(const System& s, const Stage& stage) {
       gradient(c, *stage.left, g);
       if (c.rows) row_gradient(c, stage, g, law);
     }
-    Eigen::Matrix<double, 1, max_directions> G = g.G.row(row);
-    if (c.rows) {
-      G.setZero();
+    Eigen::Matrix<double, 1, max_directions> G = Eigen::Matrix<double, 1, max_directions>::Zero();
+    if (row >= c.n_position_rows()) {
+      G.head<12>() = Slip(c, *stage.left, nullptr).A.row(row - c.n_position_rows());
+    } else if (!c.rows) {
+      G = g.G.row(row);
+    } else {
       for (size_t m = 0; m < c.measures.size(); ++m)
         if (law.d[row][m] != 0) G += law.d[row][m] * g.G.row(m);
     }

@@ -113,6 +113,29 @@ std::vector<KindSchema> make() {
         {{"points", numbers, "m", "", "points of the curve, [[x, y, z], ...], reference coordinates"},
          {"file", text, "", "", "CSV file of the points instead: a header line and three columns x, y, z"},
          {"closed", boolean, "", "false", "the curve returns from its last point to the first; off the end of an open one the run stops"}});
+  s.push_back(
+      {"joint",
+       "rolling",
+       "a disc, wheel or ball b rolls without slip on a plane carried by a (3 rows, two of them of velocities); the contact also pulls",
+       {joint_kind,
+        name,
+        end_a,
+        end_b,
+        {"at", vector3, "m", "!", "centre of the disc or ball"},
+        {"axis", vector3, "1", "!", "normal of the plane, from the contact to the centre of an upright disc"},
+        x_axis,
+        {"radius", number, "m", "!", "from the centre to the contact", above(0)},
+        {"axle", vector3, "1", "", "axis of the disc or wheel, carried by b; absent: a ball"}}});
+  s.push_back({"joint",
+               "knife-edge",
+               "a point of b moves along an edge of b and not across it (1 row of velocities); joints of their own keep it on its plane",
+               {joint_kind,
+                name,
+                end_a,
+                end_b,
+                {"at", vector3, "m", "!", "contact point of the edge, carried by b"},
+                {"axis", vector3, "1", "!", "normal of the plane, carried by b for the direction across: axis x edge"},
+                {"edge", vector3, "1", "!", "direction in which b may move"}}});
   s.push_back({"joint",
                "distance",
                "constant distance of two points (1 row)",
@@ -324,14 +347,15 @@ std::vector<KindSchema> make() {
                "",
                "position, velocity and acceleration of a point",
                {name, on, {"at", vector3, "m", "", "point on a body, or nearest node of the set; mean of the nodes when absent"}}});
-  s.push_back({"history",
-               "",
-               "a named factor over time",
-               {{"t", numbers, "s", "", "rising times; two equal ones make a jump"},
-                {"value", numbers, "", "", "values, in the unit of what the history scales (1 for a factor)"},
-                {"file", text, "", "", "CSV file with a header line and two columns: t, value"},
-                {"scale", number, "1", "1", "factor on the values"},
-                {"interpolation", text, "", "linear", "linear, smooth (cosine ramps) or smoother (ramps with three continuous derivatives)"}}});
+  s.push_back(
+      {"history",
+       "",
+       "a named factor over time",
+       {{"t", numbers, "s", "", "rising times; two equal ones make a jump"},
+        {"value", numbers, "", "", "values, in the unit of what the history scales (1 for a factor)"},
+        {"file", text, "", "", "CSV file with a header line and two columns: t, value"},
+        {"scale", number, "1", "1", "factor on the values"},
+        {"interpolation", text, "", "linear", "linear, smooth (cosine ramps) or smoother (ramps with three continuous derivatives)"}}});
   s.push_back(
       {"time",
        "",

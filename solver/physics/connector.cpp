@@ -1,5 +1,9 @@
 #include "physics/connector.hpp"
 
+#include <algorithm>
+
+#include "physics/rolling.hpp"
+
 namespace hilo {
 namespace {
 
@@ -95,9 +99,20 @@ std::array<double, max_measures> Connector::values(const Config& q) const {
   return e;
 }
 
+Connector::Connector() = default;
+Connector::Connector(Connector&&) noexcept = default;
+Connector& Connector::operator=(Connector&&) noexcept = default;
+Connector::~Connector() = default;
+
+int Connector::n_rows() const { return n_position_rows() + (velocity_rows ? velocity_rows->n_rows() : 0); }
+
 void Connector::row_values(const std::array<double, max_measures>& e, double* g) const {
-  if (rows) return rows->values(e, g);
-  for (int r = 0; r < n_rows(); ++r) g[r] = e[r];
+  const int n = n_position_rows();
+  if (rows)
+    rows->values(e, g);
+  else
+    std::copy(e.begin(), e.begin() + n, g);
+  std::fill(g + n, g + n_rows(), 0.0);
 }
 
 void gradient(const Connector& c, const Config& q, const Config& turned, ConnectorGradient& g) {

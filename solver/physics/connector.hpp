@@ -103,16 +103,23 @@ struct Drive {
   std::vector<double> rate_jumps, kinks;  // times at which the rate jumps, and at which its slope does [s]
 };
 
+class VelocityRows;
+
 struct Connector {
+  Connector();
+  Connector(Connector&&) noexcept;
+  Connector& operator=(Connector&&) noexcept;
+  ~Connector();
   std::string name, kind;
   Carrier end[max_ends];
   int n_ends = 2;
   std::vector<Entity> entities;
   std::vector<Measure> measures;
-  std::unique_ptr<SpringLaw> law;  // springs only
-  std::unique_ptr<RowLaw> rows;    // joints whose rows are not their measures
-  std::string section = "spring";  // of the scene, springs only
-  int load_joint = -1;             // joint whose multipliers `load_rows` make up Interval::load, springs only
+  std::unique_ptr<SpringLaw> law;               // springs only
+  std::unique_ptr<RowLaw> rows;                 // joints whose rows are not their measures
+  std::unique_ptr<VelocityRows> velocity_rows;  // joints that hold velocities (rolling.hpp); their rows follow the others
+  std::string section = "spring";               // of the scene, springs only
+  int load_joint = -1;                          // joint whose multipliers `load_rows` make up Interval::load, springs only
   std::vector<int> load_rows;
   std::function<double(double t0, double t1)> factor;  // Interval::factor, mean over a step; 1 where empty
   Drive drive;
@@ -122,10 +129,11 @@ struct Connector {
 
   std::span<const Carrier> ends() const { return {end, static_cast<size_t>(n_ends)}; }
   int n_directions() const { return 6 * n_ends; }
-  int n_rows() const { return law ? 0 : rows ? rows->n_rows() : static_cast<int>(measures.size()); }
+  int n_position_rows() const { return law ? 0 : rows ? rows->n_rows() : static_cast<int>(measures.size()); }
+  int n_rows() const;
   double value(int measure, const Config& q) const;
   std::array<double, max_measures> values(const Config& q) const;
-  /// Rows from the values of the measures; what a drive wants is not yet taken off.
+  /// Rows from the values of the measures, 0 for velocity rows; what a drive wants is not yet taken off.
   void row_values(const std::array<double, max_measures>& e, double* g) const;
 };
 

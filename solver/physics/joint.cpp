@@ -3,6 +3,7 @@
 
 #include "physics/connector.hpp"
 #include "physics/joint_rows.hpp"
+#include "physics/rolling.hpp"
 
 namespace hilo {
 namespace {
@@ -42,6 +43,8 @@ struct Maker {
 }  // namespace
 
 Connector make_joint(const JointPlace& j, const Config& q) {
+  if (j.kind == "rolling") return make_rolling(j, q);
+  if (j.kind == "knife-edge") return make_knife_edge(j, q);
   Maker m{{}, q};
   Connector& c = m.c;
   const std::string& kind = j.kind;

@@ -123,7 +123,7 @@ void Builder::add_joints() {
       if (end->node >= 0 && (out_->X[end->node] - (end == &j.a ? j.at : j.at_b)).norm() > 1e-6 * out_->length)
         throw Error(e.where(end == &j.a ? "a" : "b"), fmt::format("{}: the node is not at the joint point", e.label()));
     j.frame = joint_frame(e);
-    for (const char* key : {"axis_b", "direction"})
+    for (const char* key : {"axis_b", "direction", "axle", "edge"})
       if (e.has(key)) j.axis_b = direction(e, key);
     if (e.has("ratio")) j.ratio = e.number("ratio");
     if (e.has("radius")) j.ratio = e.number("radius");
@@ -141,6 +141,10 @@ void Builder::add_joints() {
       if (e.has(key)) throw Error(e.where(key), fmt::format("{}: {} without a stiffness", e.label(), key), "rigid rows do not move");
     const bool is_rate = driven == "spin" || driven == "velocity";
     if (!driven.empty()) j.driven = driven == "angle" || driven == "spin" ? JointPlace::Driven::angle : JointPlace::Driven::slide;
+    for (const char* key : {"axle", "edge"})
+      if (e.has(key) && std::abs(j.axis_b.dot(j.frame.col(2))) > 1 - 1e-9)
+        throw Error(e.where(key), fmt::format("{}: {} is parallel to the axis", e.label(), key),
+                    kind == "rolling" ? "a disc that lies flat does not roll" : "the edge lies in the plane");
     Connector c = make_joint(j, out_->start);
     c.name = e.name;
     if (!driven.empty()) {

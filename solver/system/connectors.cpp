@@ -1,7 +1,9 @@
 // Joints and springs within an evaluation.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "physics/rolling.hpp"
 #include "system/pass.hpp"
 
 namespace hilo {
@@ -31,11 +33,39 @@ Ends ends_of(const Connector& c, const std::vector<int>& node_block, const std::
 
 /// d (rows x measures) times G (measures x directions).
 void rows_over_directions(const Connector& c, const RowLaw::Gradient& g, const DirectionRows& G, DirectionRows& out) {
-  const int n = c.n_rows(), width = c.n_directions();
+  const int n = c.n_position_rows(), width = c.n_directions();
   out.topRows(n).setZero();
   for (int r = 0; r < n; ++r)
     for (size_t m = 0; m < c.measures.size(); ++m)
       if (g.d[r][m] != 0) out.row(r).head(width) += g.d[r][m] * G.row(m).head(width);
+}
+
+/// What the unit increment `i` of a connector's directions does to its ends at a stage.
+Slip::Move move_of(const Connector& c, const Stage& s, int end, int i) {
+  Slip::Move m{Vec3::Zero(), Vec3::Zero(), Mat3::Zero(), Mat3::Zero()};
+  if (i / 6 != end) return m;
+  if (i % 6 < 3) {
+    m.c[i % 3] = s.slope, m.v[i % 3] = s.alpha_slope;
+  } else {
+    const Mat3 turn = skew(Vec3::Unit(i % 3)) * s.end->R[c.end[end].body];
+    m.R = s.slope * turn, m.V = s.alpha_slope * turn;
+  }
+  return m;
+}
+
+/// Rows that hold velocities, scaled to lengths by the slope of the velocities: (A v)/alpha_slope.  Where a stage has no velocities of its
+/// own (statics, projections), increments slip as little: the rows are A, their value 0.  Adds the derivative of A^T lambda to K.
+void add_velocity_rows(const Connector& c, const Stage& s, const Slip& slip, const double* lambda, DirectionRows& left,
+                       DirectionRows& right, ConnectorMatrix& K) {
+  const int first = c.n_position_rows(), width = c.n_directions();
+  for (int r = 0; r < slip.n; ++r) left.row(first + r).head(width) = slip.A.row(r), right.row(first + r).head(width) = slip.A.row(r);
+  for (int i = 0; i < width; ++i) {
+    const Slip::Change d = slip.change(move_of(c, s, 0, i), move_of(c, s, 1, i));
+    for (int r = 0; r < slip.n; ++r) {
+      if (s.alpha_slope > 0) right(first + r, i) = d.value[r] / s.alpha_slope;
+      K.col(i) += lambda[first + r] * d.A.row(r).transpose();
+    }
+  }
 }
 
 }  // namespace
@@ -65,7 +95,7 @@ void joint_forces(const Connector& c, const Stage& s, const ConnectorGradient& l
   thread_local RowLaw::Gradient g;
   row_gradient(c, s, left, g);
   std::fill(force, force + n_measures, 0.0);
-  for (int r = 0; r < c.n_rows(); ++r)
+  for (int r = 0; r < c.n_position_rows(); ++r)
     for (int m = 0; m < n_measures; ++m) force[m] += lambda[r] * g.d[r][m];
 }
 
@@ -147,18 +177,32 @@ void System::add_connectors(Pass& p) const {
     double g[max_rows], lambda[max_rows], force[max_measures];
     c.row_values(right.e, g);
     if (c.drive.row >= 0) g[c.drive.row] -= c.drive.course(s.t1, s.load_factor).value;
-    const int base = 3 * (joint_block[j] - first_joint_block()), n = c.n_rows();
+    const int base = 3 * (joint_block[j] - first_joint_block()), n = c.n_rows(), n_position = c.n_position_rows();
+    std::optional<Slip> slip;
+    if (c.velocity_rows) slip.emplace(c, *s.left, s.v);
+    for (int r = n_position; r < n && s.alpha_slope > 0; ++r) g[r] = slip->value[r - n_position] / s.alpha_slope;
     for (int r = 0; r < n; ++r) {
       lambda[r] = c.active[r] ? p.lambda[base + r] : 0;
       if (c.active[r]) p.out.r[3 * joint_block[j] + r] = p.sigma * g[r];
     }
     joint_forces(c, s, left, lambda, force);
     add_force(c, force);
+    if (slip) {
+      const Eigen::Matrix<double, 12, 1> f =
+          slip->A.topRows(slip->n).transpose() * Eigen::Map<const Eigen::VectorXd>(lambda + n_position, slip->n);
+      for (int k = 0; k < 2; ++k) p.body[c.end[k].body] += f.segment<6>(6 * k), p.scale(f.segment<3>(6 * k).norm());
+    }
     if (!p.K) continue;
     ConnectorMatrix K = ConnectorMatrix::Zero(c.n_directions(), c.n_directions());
     add_geometric(c, left, right, force, s.slope, K);
-    if (!c.rows) {
+    if (!c.rows && !slip) {
       add_clique(c, joint_clique_[j], K, (n + 2) / 3, left.G, right.G);
+      continue;
+    }
+    if (!c.rows) {
+      left_rows = left.G, right_rows = right.G;
+      add_velocity_rows(c, s, *slip, lambda, left_rows, right_rows, K);
+      add_clique(c, joint_clique_[j], K, (n + 2) / 3, left_rows, right_rows);
       continue;
     }
     row_gradient(c, s, left, at_stage);
@@ -169,11 +213,12 @@ void System::add_connectors(Pass& p) const {
     for (int m = 0; m < n_measures; ++m)
       for (int k = 0; k < n_measures; ++k) {
         double D = 0;
-        for (int r = 0; r < n; ++r) D += lambda[r] * at_stage.D[r][m][k];
+        for (int r = 0; r < n_position; ++r) D += lambda[r] * at_stage.D[r][m][k];
         if (D != 0) K += (pair ? s.chain : 2 * s.slope) * D * left.G.row(m).head(width).transpose() * mixed.G.row(k).head(width);
       }
     rows_over_directions(c, at_stage, left.G, left_rows);
     rows_over_directions(c, at_end, right.G, right_rows);
+    if (slip) add_velocity_rows(c, s, *slip, lambda, left_rows, right_rows, K);
     add_clique(c, joint_clique_[j], K, (n + 2) / 3, left_rows, right_rows);
   }
   for (size_t j = 0; j < springs.size(); ++j) {
@@ -249,7 +294,18 @@ void System::row_rates(const Config& q, const Config& v, const Config* a, double
       for (int m = 0; m < n; ++m) dde[m] = (ep[m] + em[m] - 2 * e[m]) / (tau * tau) + (eu[m] - ed[m]) / (2 * sigma);
     }
     if (c.rows) c.rows->gradient(e, e, g);
-    for (int r = 0; r < c.n_rows(); ++r) {
+    if (c.velocity_rows) {
+      const Slip slip(c, q, &v);
+      const auto along = [&](int body) {
+        return Slip::Move{v.c[body], a ? a->c[body] : Vec3::Zero(), v.R[body], a ? a->R[body] : Mat3::Zero()};
+      };
+      const Slip::Change change = slip.change(along(c.end[0].body), along(c.end[1].body));
+      for (int r = 0; r < slip.n; ++r) {
+        rate[base + c.n_position_rows() + r] = slip.value[r];
+        if (acceleration) (*acceleration)[base + c.n_position_rows() + r] = change.value[r];
+      }
+    }
+    for (int r = 0; r < c.n_position_rows(); ++r) {
       double first = c.rows ? 0 : de[r], second = c.rows ? 0 : dde[r];
       for (int m = 0; m < n && c.rows; ++m) {
         first += g.d[r][m] * de[m], second += g.d[r][m] * dde[m];

@@ -176,6 +176,28 @@ a = "side"
 b = "slider"
 at = [0.2, 1.9, 1.1]
 axis = [0.2, 1, 0.3]
+[[body]]
+name = "coin"
+mass = 1
+com = [0.3, 0.2, 2.3]
+inertia = [0.02, 0.04, 0.03]
+[[joint]]
+kind = "rolling"
+name = "coin"
+a = "top"
+b = "coin"
+at = [0.3, 0.25, 2.3]
+axis = [0.1, 0, 1]
+radius = 0.3
+axle = [0.2, 1, 0.3]
+[[joint]]
+kind = "knife-edge"
+name = "blade"
+a = "side"
+b = "coin"
+at = [0.1, 0.4, 1.2]
+axis = [0.1, 0, 1]
+edge = [0.2, 1, 0.3]
 [[friction]]
 name = "hinge"
 joint = "hinge"

@@ -1,0 +1,136 @@
+// Rolling and knife edges against closed forms, and against the equations of motion of a disc.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+Vec3 place(const Eigen::MatrixXd& x, Eigen::Index i) { return {x(i, 0), x(i, 1), x(i, 2)}; }
+
+// Truth: the centre of a homogeneous ball on a turntable of speed W runs round a circle at 2 W/7, in its own place and at its own speed.
+TEST(Rolling, BallOnATurntableRunsRoundACircle) {
+  const Case c("rolling");
+  const double w = 2.0 * 2 / 7;
+  const auto error = [&](const std::string& options) {
+    EXPECT_EQ(c.solve("--quiet " + options, "run.h5", 0, "turntable").exit, 0);
+    const auto x = c.results().history("probe/ball");
+    const auto t = c.results().t();
+    double worst = 0;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      const Vec3 v0(0, 0.1, 0),
+          exact = Vec3(0.3, 0, 0.1) + (std::sin(w * t[i]) * v0 + (1 - std::cos(w * t[i])) * Vec3::UnitZ().cross(v0)) / w;
+      worst = std::max(worst, (place(x, i) - exact).norm());
+    }
+    return worst;
+  };
+  const double e4 = error("--set time.step=0.02"), e2 = error("--set time.step=0.01"), e1 = error("--set time.step=0.005");
+  EXPECT_LT(e1, 1e-4);
+  EXPECT_GT(std::log2(e4 / e2), 1.95);
+  EXPECT_GT(std::log2(e2 / e1), 1.95);
+  const std::string ga = "--set 'time.integrator=\"generalized-alpha\"' ";
+  EXPECT_GT(std::log2(error(ga + "--set time.step=0.01") / error(ga + "--set time.step=0.005")), 1.9);
+}
+
+/// A thin disc that rolls: (J + m (r^2 I - r r^T)) w' = -w x J w - m r x (w x r') - m r x g with the arm r(e) to the contact, e' = w x e,
+/// c' = -w x r; from m v' = F + m g, (J w)' = r x F.
+struct Disc {
+  double m = 1, radius = 0.5, Ja = 0.125, Jt = 0.0625;
+  using State = Eigen::Matrix<double, 9, 1>;  // c, e, w
+  Vec3 arm(const Vec3& e) const { return -radius * (Vec3::UnitZ() - e.z() * e).normalized(); }
+  State rate(const State& s) const {
+    const Vec3 e = s.segment<3>(3), w = s.tail<3>(), de = w.cross(e), n = Vec3::UnitZ(), p = n - e.z() * e, dp = -de.z() * e - e.z() * de;
+    const Vec3 r = arm(e), dr = -radius * (dp - p * (p.dot(dp) / p.squaredNorm())) / p.norm(), g(0, 0, -9.81);
+    const Mat3 J = Jt * Mat3::Identity() + (Ja - Jt) * e * e.transpose();
+    const Mat3 A = J + m * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+    State d;
+    d << -w.cross(r), de, A.inverse() * (-w.cross(J * w) - m * r.cross(w.cross(dr)) - m * r.cross(g));
+    return d;
+  }
+  State step(const State& s, double h) const {
+    const State a = rate(s), b = rate(s + h / 2 * a), c = rate(s + h / 2 * b), d = rate(s + h * c);
+    return s + h / 6 * (a + 2 * b + 2 * c + d);
+  }
+};
+
+// Truth: the disc's equations of motion by RK4 (1e-4 s, converged to 1e-10), and its energy, which no-slip leaves alone at any step.
+TEST(Rolling, CoinFollowsItsEquationsOfMotion) {
+  const Case c("rolling");
+  Disc disc;
+  Disc::State s;
+  s << 0, 0, 0.4, 0, 0.8, 0.6, 0.5, 6, 1;
+  for (int i = 0; i < 20000; ++i) s = disc.step(s, 1e-4);
+  const Vec3 exact = s.head<3>();
+  double error[2];
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_EQ(c.solve(std::string("--quiet --set time.step=") + (k ? "1e-3" : "2e-3"), "run.h5", 0, "coin").exit, 0);
+    const Results r = c.results();
+    const auto x = r.history("probe/coin"), e = r.history("energy");
+    error[k] = (place(x, x.rows() - 1) - exact).norm();
+    EXPECT_LT(e.col(5).cwiseAbs().maxCoeff(), 1e-10 * (e(0, 0) + e(0, 2)));
+    EXPECT_LT(r.history("constraint").maxCoeff(), 1e-12);
+  }
+  EXPECT_LT(error[1], 1e-3);
+  EXPECT_NEAR(std::log2(error[0] / error[1]), 2, 0.1);
+}
+
+// Truth: a = g sin/(1 + J/(m r^2)): 2/3 of g sin for a disc, 5/7 for a ball; the contact holds the rest back.
+TEST(Rolling, DownASlopeADiscTakesTwoThirdsAndABallFiveSevenths) {
+  const Case c("rolling");
+  const double down = 5.886;
+  for (const bool ball : {false, true}) {
+    const std::string option = ball ? " --set 'body.roller.inertia=[0.032,0.032,0.032]'" : "";
+    EXPECT_EQ(c.solve("--quiet" + option, "run.h5", 0, "incline").exit, 0);
+    const Results r = c.results();
+    const auto x = r.history("probe/roller"), f = r.history("joint/contact");
+    const double a = down * (ball ? 5.0 / 7 : 2.0 / 3);
+    EXPECT_NEAR(x(x.rows() - 1, 0), a / 2, 1e-4) << "(w h)^2/12 of it";
+    EXPECT_NEAR(f(x.rows() / 2, 0), -2 * (down - a), 1e-3);
+    EXPECT_NEAR(f(x.rows() / 2, 2), 2 * 7.848, 1e-6);
+    EXPECT_LT(r.history("energy").col(5).cwiseAbs().maxCoeff(), 1e-10 * 2 * down);
+  }
+}
+
+// Truth: turning at w the edge makes the cycloid x = g sin/(2 w^2) sin^2 w t, y = g sin/(2 w^2) (w t - sin(2 w t)/2): it slides along, not
+// down.
+TEST(Rolling, KnifeEdgeOnASlopeRunsAlongACycloid) {
+  const Case c("rolling");
+  const double w = 3, A = 5.886 / (2 * w * w);
+  const auto error = [&](const std::string& step) {
+    EXPECT_EQ(c.solve("--quiet --set time.step=" + step, "run.h5", 0, "sleigh").exit, 0);
+    const Results r = c.results();
+    const auto x = r.history("probe/sleigh");
+    double worst = 0;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      const double t = r.t()[i];
+      const Vec3 exact(A * std::pow(std::sin(w * t), 2), A * (w * t - std::sin(2 * w * t) / 2), 0);
+      worst = std::max(worst, (place(x, i) - exact).norm());
+    }
+    EXPECT_LT(r.history("energy").col(5).cwiseAbs().maxCoeff(), 1e-10 * 10);
+    return worst;
+  };
+  const double coarse = error("4e-3"), fine = error("2e-3");
+  EXPECT_LT(fine, 1e-4);
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.05);
+}
+
+// Truth: a start that slips is projected onto rolling, J and m deciding how: w = w0 J/(J + m r^2) for a spin w0 alone.
+TEST(Rolling, StartThatSlipsIsMadeToRoll) {
+  const Case c("rolling");
+  const Ran ran = c.solve("--quiet --set 'scene.gravity=[0,0,0]' --set 'initial.0.spin=[0,9,0]'", "run.h5", 0, "incline");
+  ASSERT_EQ(ran.exit, 0);
+  const auto x = c.results().history("probe/roller");
+  EXPECT_NEAR(x(0, 3), 9 * 0.04 / (0.04 + 2 * 0.04) * 0.2, 1e-12);
+}
+
+TEST(Rolling, MistakesAreNamed) {
+  const Case c("rolling");
+  const auto says = [&](const std::string& scene, const std::string& option, const std::string& text) {
+    const Ran ran = c.solve("--quiet --set " + option, "bad.h5", 2, scene);
+    EXPECT_NE(ran.err.find(text), std::string::npos) << ran.err;
+  };
+  says("incline", "'joint.contact.axle=[0,0,1]'", "axle is parallel to the axis");
+  says("incline", "joint.contact.radius=0", "radius");
+  says("sleigh", "'joint.edge.edge=[0,0,2]'", "edge is parallel to the axis");
+}
+
+}  // namespace
+}  // namespace hilo::test
