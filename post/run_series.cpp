@@ -20,6 +20,9 @@ const std::vector<Layout>& layouts() {
   static const std::vector<Layout> table = {
       {"joint", wrench, newtons},
       {"spring", wrench, newtons},
+      {"stop", wrench, newtons},
+      {"motor", wrench, newtons},
+      {"friction", wrench, newtons},
       {"motion", wrench, newtons},
       {"energy", {"kinetic", "elastic", "gravity", "external_work", "dissipated", "balance"}, {"J", "J", "J", "J", "J", "J"}},
       {"momentum", {"px", "py", "pz", "Lx", "Ly", "Lz"}, {"kg m/s", "kg m/s", "kg m/s", "kg m^2/s", "kg m^2/s", "kg m^2/s"}},

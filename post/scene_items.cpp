@@ -122,10 +122,10 @@ class Collector {
   }
 
   void spring(const Entry& e) {
-    const auto glyph = e.kind == "axial"     ? Glyph::coil
-                       : e.kind == "torsion" ? Glyph::spiral
-                       : e.kind == "support" ? Glyph::ground
-                                             : Glyph::bushing;
+    const auto glyph = e.kind == "axial" || e.kind == "stop" ? Glyph::coil
+                       : e.kind == "torsion"                 ? Glyph::spiral
+                       : e.kind == "support"                 ? Glyph::ground
+                                                             : Glyph::bushing;
     SceneItem& item = add(glyph, e, e.kind == "bushing" ? "bushing" : e.kind + " spring", spring_colour);
     if (glyph == Glyph::coil)
       item.at = e.vector3("at_a"), item.to = e.vector3("at_b");

@@ -3,7 +3,7 @@
 // Each row says that the material point of b at the contact does not move against that of a along a direction t:
 //   t.(v_b + w_b x s_b - v_a - w_a x s_a) = 0,      forces t lambda on b at the contact, -t lambda on a.
 // Taken at the configuration of the constraint gradients and with the velocity of the stage; at the mid-point, where the increment of a
-// body is its mid-point velocity times h, A^T lambda does no work at any step size [betsch-2004].
+// body is its mid-point velocity times h, A^T lambda does no work at any step size.
 #pragma once
 #include "physics/connector.hpp"
 
