@@ -82,8 +82,8 @@ TEST(Rolling, DownASlopeADiscTakesTwoThirdsAndABallFiveSevenths) {
     const Results r = c.results();
     const auto x = r.history("probe/roller"), f = r.history("joint/contact");
     const double a = down * (ball ? 5.0 / 7 : 2.0 / 3);
-    EXPECT_NEAR(x(x.rows() - 1, 0), a / 2, 1e-4) << "(w h)^2/12 of it";
-    EXPECT_NEAR(f(x.rows() / 2, 0), -2 * (down - a), 1e-3);
+    EXPECT_NEAR(x(x.rows() - 1, 0), a / 2, 1e-9);
+    EXPECT_NEAR(f(x.rows() / 2, 0), -2 * (down - a), 1e-8);
     EXPECT_NEAR(f(x.rows() / 2, 2), 2 * 7.848, 1e-6);
     EXPECT_LT(r.history("energy").col(5).cwiseAbs().maxCoeff(), 1e-10 * 2 * down);
   }
