@@ -11,10 +11,15 @@ namespace hilo {
 namespace {
 
 /// Takes the blocks of one evaluation into rows of stage `row` and columns of stage `column` of the coupled matrix.  Off the diagonal
-/// only what couples positions counts: constraints belong to their own stage.
+/// only what couples positions counts, and rows that hold velocities, times `share`: other constraints belong to their own stage.
 class StageBlock final : public KktSolver {
  public:
-  StageBlock(KktSolver& whole, const System& system, int row, int column) : whole_(whole), system_(system), row_(row), column_(column) {}
+  StageBlock(KktSolver& whole, const System& system, int row, int column, double share = 1)
+      : whole_(whole), system_(system), row_(row), column_(column), share_(share) {
+    for (const Connector& c : system.joints)
+      for (int r = 0; r < 3 * ((c.n_rows() + 2) / 3); ++r)
+        holds_velocity_.push_back(r >= c.n_position_rows() && r < c.n_rows() && c.active[r]);
+  }
   void structure(const Cliques&, const BlockMap&) override {}
   void zero() override {}
   void add(int clique, const double* K) override {
@@ -22,9 +27,11 @@ class StageBlock final : public KktSolver {
     const int n = static_cast<int>(blocks.size()), width = 9 * n, first_joint = system_.first_joint_block();
     dense_.assign(static_cast<size_t>(width) * width, 0.0);
     for (int i = 0; i < 3 * n; ++i)
-      for (int j = 0; j < 3 * n; ++j)
-        if (row_ == column_ || (blocks[i / 3] < first_joint && blocks[j / 3] < first_joint))
-          dense_[static_cast<size_t>(3 * n * row_ + i) * width + 3 * n * column_ + j] = K[i * 3 * n + j];
+      for (int j = 0; j < 3 * n; ++j) {
+        const bool velocity = blocks[i / 3] >= first_joint && holds_velocity_[3 * (blocks[i / 3] - first_joint) + i % 3];
+        if (row_ == column_ || ((blocks[i / 3] < first_joint || velocity) && blocks[j / 3] < first_joint))
+          dense_[static_cast<size_t>(3 * n * row_ + i) * width + 3 * n * column_ + j] = (velocity ? share_ : 1) * K[i * 3 * n + j];
+      }
     whole_.add(clique, dense_.data());
   }
   void add_diagonal(int block, const double d[3]) override {
@@ -39,6 +46,8 @@ class StageBlock final : public KktSolver {
   KktSolver& whole_;
   const System& system_;
   int row_, column_;
+  double share_;
+  std::vector<char> holds_velocity_;  // (3 x joint blocks)
   std::vector<double> dense_;
 };
 
@@ -164,7 +173,8 @@ class Radau final : public Integrator {
         Stage s = stage_at(u_[i].q, t_);
         s.end = &u_[j].q, s.slope = 0, s.chain = 1e-30;  // the mass alone
         s.a = &zero, s.mass_slope = (W_ * W_)(i, j) / (h_ * h_);
-        StageBlock block(*whole_, system, i, j);
+        s.v = &v_[i], s.alpha_slope = W_(i, j) / h_;
+        StageBlock block(*whole_, system, i, j, W_(i, j) / W_(i, i));  // rows of velocities are over the slope of their own stage
         system.evaluate(s, none, unused, &block);
       }
   }

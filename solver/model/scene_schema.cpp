@@ -422,7 +422,7 @@ std::vector<std::string> choices(std::string_view section, std::string_view key)
 
 std::vector<size_t> lengths(std::string_view section, std::string_view key) {
   if (section == "body") return key == "inertia" ? std::vector<size_t>{3, 6} : std::vector<size_t>{9};
-  if (section == "joint") return {1, 3};
+  if (section == "joint") return key == "points" ? std::vector<size_t>{} : std::vector<size_t>{1, 3};
   if (section == "spring") return key.starts_with("tangential") ? std::vector<size_t>{2} : std::vector<size_t>{3};
   return {};
 }

@@ -14,7 +14,7 @@ std::string_view rows_of(std::string_view kind) {
   constexpr std::pair<std::string_view, std::string_view> table[] = {
       {"fixed", "xyzCAB"}, {"spherical", "xyz"}, {"revolute", "xyzBA"}, {"universal", "xyzB"},   {"constant-velocity", "xyzC"},
       {"planar", "zBA"},   {"in-plane", "z"},    {"in-line", "xy"},     {"cylindrical", "xyBA"}, {"prismatic", "xyBAC"},
-      {"screw", "xyBAz"},  {"gear", "C"},        {"rack", "z"},         {"distance", "z"}};
+      {"screw", "xyBAz"},  {"gear", "C"},        {"rack", "z"},         {"distance", "z"},       {"point-on-curve", "xx"}};
   for (const auto& [name, rows] : table)
     if (name == kind) return rows;
   return {};

@@ -62,7 +62,7 @@ void add_velocity_rows(const Connector& c, const Stage& s, const Slip& slip, con
   for (int i = 0; i < width; ++i) {
     const Slip::Change d = slip.change(move_of(c, s, 0, i), move_of(c, s, 1, i));
     for (int r = 0; r < slip.n; ++r) {
-      if (s.alpha_slope > 0) right(first + r, i) = d.value[r] / s.alpha_slope;
+      if (s.alpha_slope != 0) right(first + r, i) = d.value[r] / s.alpha_slope;
       K.col(i) += lambda[first + r] * d.A.row(r).transpose();
     }
   }
@@ -180,7 +180,7 @@ void System::add_connectors(Pass& p) const {
     const int base = 3 * (joint_block[j] - first_joint_block()), n = c.n_rows(), n_position = c.n_position_rows();
     std::optional<Slip> slip;
     if (c.velocity_rows) slip.emplace(c, *s.left, s.v);
-    for (int r = n_position; r < n && s.alpha_slope > 0; ++r) g[r] = slip->value[r - n_position] / s.alpha_slope;
+    for (int r = n_position; r < n && s.alpha_slope != 0; ++r) g[r] = slip->value[r - n_position] / s.alpha_slope;
     for (int r = 0; r < n; ++r) {
       lambda[r] = c.active[r] ? p.lambda[base + r] : 0;
       if (c.active[r]) p.out.r[3 * joint_block[j] + r] = p.sigma * g[r];
