@@ -73,7 +73,7 @@ void run(const Options& o) {
   if (!is_quiet() && !o.json)
     fmt::print(
         stderr,
-        "DRI: spine model along the sensor's z, from rest, what was felt at the start (1 g) taken out; 17.7: 10 %% risk (STANAG 4569).\n"
+        "DRI: spine model along the sensor's z, from rest, what was felt at the start (1 g) taken out; 17.7: 10 % risk (STANAG 4569).\n"
         "HIC, SI: resultant, CFC 1000; clip_3ms: cumulative, CFC 180 [g]; - where the record is too coarse for the class.\n"
         "DR, beta: Brinkley's model per axis [g] and its combined measure, 1 at the limit of low, moderate, high risk; the limits were\n"
         "not checked against their source and do not replace it.{}\n",

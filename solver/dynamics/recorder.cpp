@@ -29,7 +29,8 @@ std::array<Vec3, 4> body_arms(const Body& b) {
 
 std::string stem(const std::string& path) { return path.ends_with(".h5") ? path.substr(0, path.size() - 3) : path; }
 
-Recorder::Recorder(const System& system, const Scene& scene, Setup setup) : system_(system), scene_(scene), setup_(std::move(setup)) {}
+Recorder::Recorder(const System& system, const Scene& scene, Setup setup)
+    : system_(system), scene_(scene), setup_(std::move(setup)), share_(system) {}
 
 /// Factor of what follows the load steps of a static analysis.
 double Recorder::load_factor(double t) const {
@@ -89,7 +90,7 @@ std::vector<double> Recorder::mid_values(const State& s, const Stage& stage, std
   std::vector<double> v;
   std::vector<double> full;
   std::span<const double> lambda = lambda_;
-  if (setup_.redundant) full = minimum_norm(system_, stage, lambda_), lambda = full;
+  if (setup_.redundant) full = share_(stage, lambda_), lambda = full;
   const auto push = [&](const Vec3& x) { v.insert(v.end(), x.data(), x.data() + 3); };
   ConnectorGradient left;
   for (size_t j = 0; j < system_.joints.size(); ++j) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "dynamics/redundancy.hpp"
 #include "dynamics/start.hpp"
 #include "model/store.hpp"
 
@@ -79,6 +80,7 @@ class Recorder {
   const System& system_;
   const Scene& scene_;
   Setup setup_;
+  MinimumNorm share_;             // of redundant joints
   std::unique_ptr<Store> store_;  // rank 0
   std::optional<Error> failure_;  // of a write on rank 0
   std::deque<Row> rows_;

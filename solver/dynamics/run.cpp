@@ -9,6 +9,7 @@
 #include "dynamics/predictor.hpp"
 #include "dynamics/progress.hpp"
 #include "dynamics/recorder.hpp"
+#include "dynamics/redundancy.hpp"
 #include "dynamics/start.hpp"
 #include "dynamics/step_control.hpp"
 
