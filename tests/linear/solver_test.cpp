@@ -153,6 +153,7 @@ TEST(PetscSolver, KnowsItsKinds) {
     EXPECT_EQ(e.message, "no PETSc solver \"magic\"");
   }
   EXPECT_EQ(make_petsc_solver("direct", 1e-8)->name(), "direct (MUMPS)");
+  EXPECT_EQ(make_petsc_solver("bddc", 1e-8)->name(), "BDDC");
 }
 
 // On several ranks ---------------------------------------------------------------------------------------------------------------------

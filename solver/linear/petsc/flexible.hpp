@@ -57,7 +57,11 @@ class SubdomainMatrix;
 /// Incomplete factors, and multigrid where they need too many iterations.  `positions`: of the owned blocks, 3 each, for the rigid modes;
 /// may be empty.
 std::unique_ptr<FlexibleInverse> make_algebraic_inverse(const BlockMatrix& F, std::vector<double> positions);
-/// BDDC, or with `dual` FETI-DP.
-std::unique_ptr<FlexibleInverse> make_substructured_inverse(SubdomainMatrix& F, std::vector<double> positions, bool dual);
+/// Balancing domain decomposition, one subdomain per rank.
+std::unique_ptr<FlexibleInverse> make_bddc(const SubdomainMatrix& F);
+/// `inner`, made exact on the rigid motions of connected parts.
+std::unique_ptr<FlexibleInverse> make_deflated(std::unique_ptr<FlexibleInverse> inner, const SubdomainMatrix& F,
+                                               std::vector<double> positions);
+std::unique_ptr<FlexibleInverse> make_feti_dp(SubdomainMatrix& F, std::vector<double> positions);
 
 }  // namespace hilo::petsc

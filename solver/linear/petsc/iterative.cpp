@@ -22,8 +22,9 @@
 namespace hilo::petsc {
 namespace {
 
-/// Z is kept (in single precision: it only preconditions) up to so many columns; beyond, F~ is applied a second time per iteration.
-constexpr size_t columns_kept = 100;
+/// Z is kept up to so many values per rank (320 MB); beyond, F~ is applied a second time per iteration.  In double precision: where a body
+/// hangs on stiff parts and little else, the forces of its motions cancel.
+constexpr double values_kept = 4e7;
 
 class IterativeSolver final : public KktSolver {
  public:
@@ -111,7 +112,7 @@ class IterativeSolver final : public KktSolver {
 
   double bytes() const override {
     if (direct_) return direct_->bytes();
-    return matrix_->bytes() + coupling_->bytes() + inverse_->bytes() + 4. * n_flexible_ * Z_.size() + 8. * restart_ * n_all_;
+    return matrix_->bytes() + coupling_->bytes() + inverse_->bytes() + 8. * n_flexible_ * Z_.size() + 8. * restart_ * n_all_;
   }
   std::string name() const override {
     if (direct_) return direct_->name();
@@ -135,7 +136,12 @@ class IterativeSolver final : public KktSolver {
       return;
     }
     auto F = std::make_unique<SubdomainMatrix>(*cliques_, *map_, *shared_);
-    inverse_ = make_substructured_inverse(*F, std::move(positions), kind_ == Kind::feti_dp);
+    const bool placed = largest(positions.empty() ? 0 : 1) > 0;
+    if (kind_ == Kind::feti_dp)
+      inverse_ = make_feti_dp(*F, positions);
+    else
+      inverse_ = make_bddc(*F);
+    if (placed && kind_ == Kind::bddc) inverse_ = make_deflated(std::move(inverse_), *F, std::move(positions));
     matrix_ = std::move(F);
   }
 
@@ -233,7 +239,7 @@ class IterativeSolver final : public KktSolver {
   bool factor_schur() {
     if (m_ == 0) return true;
     const auto& columns = coupling_->columns();
-    keep_ = columns.size() <= columns_kept;
+    keep_ = largest(static_cast<double>(columns.size()) * static_cast<double>(n_flexible_)) <= values_kept;
     Z_.resize(keep_ ? columns.size() : 0);
     Eigen::MatrixXd S(m_, m_), change = Eigen::MatrixXd::Zero(m_, static_cast<Eigen::Index>(columns.size()));
     for (int i = 0; i < m_; ++i)
@@ -262,6 +268,10 @@ class IterativeSolver final : public KktSolver {
     return schur_.rcond() > 1e-14;
   }
 
+  static double largest(double value) {
+    MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
+    return value;
+  }
   static void sum(double* values, int n) {
     if (size() > 1 && n > 0) MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
   }
@@ -327,7 +337,7 @@ class IterativeSolver final : public KktSolver {
     if (keep_) {
       for (size_t k = 0; k < columns.size(); ++k) {
         const double factor = p_[columns[k]];
-        const float* z = Z_[k].data();
+        const double* z = Z_[k].data();
         for (size_t i = 0; i < n_flexible_; ++i) u[i] -= factor * z[i];
       }
       return;
@@ -359,7 +369,7 @@ class IterativeSolver final : public KktSolver {
   Mat A_ = nullptr;
   KSP ksp_ = nullptr;
   bool keep_ = true;
-  std::vector<std::vector<float>> Z_;
+  std::vector<std::vector<double>> Z_;
   std::vector<double> p_, q_;  // dense part, on all ranks
   Eigen::VectorXd row_scale_, column_scale_;
   Eigen::PartialPivLU<Eigen::MatrixXd> schur_;

@@ -32,6 +32,7 @@ class Vector {
   }
   ~Vector() { VecDestroy(&v_); }
   operator Vec() const { return v_; }
+  bool exists() const { return v_ != nullptr; }
 
  private:
   Vec v_ = nullptr;

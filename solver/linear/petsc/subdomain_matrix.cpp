@@ -54,6 +54,7 @@ std::vector<char> find_common(const Cliques& cliques, const BlockMap& map, const
 
 SubdomainMatrix::SubdomainMatrix(const Cliques& cliques, const BlockMap& map, const SharedBlocks& shared) {
   n_owned_ = static_cast<PetscInt>(std::clamp<std::int64_t>(map.first_dense - map.first, 0, map.n_owned));
+  first_ = static_cast<PetscInt>(map.first);
   choose_blocks(cliques, map, shared);
   find_pattern(cliques);
   const auto n = static_cast<PetscInt>(3 * global_.size());
@@ -97,8 +98,9 @@ void SubdomainMatrix::choose_blocks(const Cliques& cliques, const BlockMap& map,
   for (int e = 0; e < cliques.size(); ++e) {
     if (common[e]) {
       const auto list = cliques[e];
-      const auto first = std::find_if(list.begin(), list.end(), [&](int i) { return i >= 0 && flexible_[i]; });
-      if (first == list.end() || !shared.is_owned(*first)) continue;
+      const auto is_flexible = [&](int i) { return i >= 0 && flexible_[i]; };
+      const auto first = std::find_if(list.begin(), list.end(), is_flexible);
+      if (std::count_if(list.begin(), list.end(), is_flexible) < 2 || !shared.is_owned(*first)) continue;
     }
     for (const int i : cliques[e])
       if (i >= 0 && flexible_[i]) mine[i] = 1;
@@ -114,7 +116,11 @@ void SubdomainMatrix::choose_blocks(const Cliques& cliques, const BlockMap& map,
   for (PetscInt k = 0; k < n_owned_; ++k)
     if (holders_[k].empty()) holders_[k].push_back(rank()), mine[shared.owned(k)] = 1;
   for (int i = 0; i < n; ++i)
-    if (mine[i]) place_[i] = static_cast<PetscInt>(global_.size()), global_.push_back(static_cast<PetscInt>(map.global[i]));
+    if (mine[i]) {
+      place_[i] = static_cast<PetscInt>(global_.size());
+      global_.push_back(static_cast<PetscInt>(map.global[i])), owner_.push_back(shared.owner(map.global[i]));
+      if (!map.X.empty()) X_.insert(X_.end(), map.X.begin() + 3 * i, map.X.begin() + 3 * i + 3);
+    }
   diagonal_.assign(3 * static_cast<size_t>(n_owned_), 0.0), waits_.assign(n_owned_, 0);
 }
 
@@ -176,16 +182,11 @@ void SubdomainMatrix::add_diagonal(int block, const double d[3]) {
 
 void SubdomainMatrix::assemble() {
   std::vector<std::vector<double>> send(size());
-  const auto first = [&] {
-    PetscInt begin = 0;
-    check(MatGetOwnershipRange(A_, &begin, nullptr));
-    return begin / 3;
-  }();
   for (PetscInt k = 0; k < n_owned_; ++k) {
     if (!waits_[k]) continue;
     const double share = 1.0 / static_cast<double>(holders_[k].size());
     for (const int r : holders_[k]) {
-      send[r].push_back(static_cast<double>(first + k));
+      send[r].push_back(static_cast<double>(first_ + k));
       for (int c = 0; c < 3; ++c) send[r].push_back(share * diagonal_[3 * static_cast<size_t>(k) + c]);
     }
     waits_[k] = 0;
@@ -252,6 +253,22 @@ Mat SubdomainMatrix::symmetric_part() {
   check(MatAssemblyBegin(symmetric_, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(symmetric_, MAT_FINAL_ASSEMBLY));
   return symmetric_;
+}
+
+void SubdomainMatrix::for_each_symmetric_block(const std::function<void(PetscInt, PetscInt, const double*)>& visit) const {
+  PetscScalar* from;  // blocks by columns
+  check(MatSeqBAIJGetArray(local_, &from));
+  double block[9];
+  for (PetscInt i = 0; i < n_blocks(); ++i)
+    for (PetscInt k = start_[i]; k < start_[i + 1] && columns_[k] <= i; ++k) {
+      const auto row = neighbours(columns_[k]);
+      const auto other = start_[columns_[k]] + (std::lower_bound(row.begin(), row.end(), i) - row.begin());
+      const PetscScalar *a = from + 9 * static_cast<size_t>(k), *t = from + 9 * static_cast<size_t>(other);
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) block[3 * r + c] = 0.5 * (a[3 * c + r] + t[3 * r + c]);
+      visit(i, columns_[k], block);
+    }
+  check(MatSeqBAIJRestoreArray(local_, &from));
 }
 
 void SubdomainMatrix::for_each_row(const std::function<void(PetscInt, std::span<const PetscInt>, const double*)>& row) const {

@@ -13,7 +13,7 @@ namespace hilo::petsc {
 class SubdomainMatrix final : public FlexibleMatrix {
  public:
   /// Blocks below `map.first_dense`.  A subdomain is what the cliques of its rank touch; a clique that several ranks know (a spring, a
-  /// joint) counts for the owner of its first flexible block.
+  /// joint) and that couples flexible blocks counts for the owner of the first.
   SubdomainMatrix(const Cliques& cliques, const BlockMap& map, const SharedBlocks& shared);
   ~SubdomainMatrix() override;
   SubdomainMatrix(const SubdomainMatrix&) = delete;
@@ -27,6 +27,18 @@ class SubdomainMatrix final : public FlexibleMatrix {
   PetscInt n_owned() const override { return n_owned_; }
   double bytes() const override;
 
+  // The subdomain, in blocks of its own numbering
+  PetscInt n_blocks() const { return static_cast<PetscInt>(global_.size()); }
+  std::span<const PetscInt> neighbours(PetscInt i) const {
+    return {columns_.data() + start_[i], static_cast<size_t>(start_[i + 1] - start_[i])};
+  }
+  PetscInt global(PetscInt i) const { return global_[i]; }
+  int owner(PetscInt i) const { return owner_[i]; }
+  const std::vector<double>& positions() const { return X_; }  // (n_blocks x 3), or empty
+  PetscInt first_owned() const { return first_; }
+  /// Visit the blocks (i, j), j <= i, of the symmetric part, 3 x 3 row major.
+  void for_each_symmetric_block(const std::function<void(PetscInt i, PetscInt j, const double* block)>& visit) const;
+
   /// The symmetric part, scalar storage, as its own matrix; made anew at each call.
   Mat symmetric_part();
   /// Give its rows to `row` by global numbers, 3 x 3n values each (of this subdomain: to be summed).
@@ -37,10 +49,12 @@ class SubdomainMatrix final : public FlexibleMatrix {
   void find_pattern(const Cliques& cliques);
   Mat make(Mat local) const;
 
-  PetscInt n_owned_ = 0;
+  PetscInt n_owned_ = 0, first_ = 0;
   std::vector<PetscInt> place_;   // in the subdomain of each local block, -1 for others
   std::vector<PetscInt> global_;  // of the subdomain's blocks
-  std::vector<char> flexible_;    // of local blocks
+  std::vector<int> owner_;        // of the subdomain's blocks
+  std::vector<double> X_;
+  std::vector<char> flexible_;  // of local blocks
   std::vector<PetscInt> start_{0}, columns_;
   std::vector<std::vector<int>> holders_;  // subdomains that have each owned block
   std::vector<int> owned_place_;           // owned number of each local block, -1 for others'

@@ -1,8 +1,5 @@
-// BDDC [dohrmann-2003] and FETI-DP [farhat-2001] on the symmetric part of the flexible block, by PETSc [zampini-2016]: each subdomain is
-// factored by itself, twice (its inside, and all of it but the corners), and what couples subdomains is a coarse problem of corners and
-// of averages over edges and faces.
-//
-// The tangent of averaged methods is unsymmetric by what turns in a step; GMRES works on it, and only the preconditioner is symmetrised.
+// FETI-DP [farhat-2001] on the symmetric part of the flexible block, by PETSc [zampini-2016]: a solve to round-off nearly, by conjugate
+// gradients on the forces between subdomains.  PETSc factors each subdomain twice (its inside, and all of it but the corners).
 #include <petscksp.h>
 
 #include <string>
@@ -33,78 +30,53 @@ void suggest_options(const std::string& prefix, bool corners) {
   }
 }
 
-class SubstructuredInverse final : public FlexibleInverse {
+class FetiDp final : public FlexibleInverse {
  public:
-  SubstructuredInverse(SubdomainMatrix& F, std::vector<double> positions, bool dual)
-      : F_(F), positions_(std::move(positions)), dual_(dual) {
+  FetiDp(SubdomainMatrix& F, std::vector<double> positions) : F_(F), positions_(std::move(positions)) {
     for (size_t i = 0; i < positions_.size(); i += 3)  // PETSc wants the node's position once for each of its unknowns
       for (int c = 0; c < 3; ++c) by_unknown_.insert(by_unknown_.end(), positions_.begin() + i, positions_.begin() + i + 3);
   }
-  ~SubstructuredInverse() override {
-    PCDestroy(&pc_);
-    KSPDestroy(&ksp_);
-  }
+  ~FetiDp() override { KSPDestroy(&ksp_); }
 
   bool set_up() override {
-    const bool fresh = !pc_ && !ksp_;
     failed_ = false;
     const Mat S = F_.symmetric_part();
-    if (fresh) corners_ = set_near_null_space(S, positions_);
-    PCFailedReason reason = PC_NOERROR;
-    if (dual_) {
-      if (fresh) make_dual(S);
-      check(KSPSetOperators(ksp_, S, S));
-      check(KSPSetUp(ksp_));
-      PC inner;
-      check(KSPFETIDPGetInnerBDDC(ksp_, &inner));
-      check(PCGetFailedReason(inner, &reason));
-    } else {
-      if (fresh) make_primal();
-      check(PCSetOperators(pc_, S, S));
-      if (fresh) check(PCSetFromOptions(pc_));
-      check(PCSetUp(pc_));
-      check(PCGetFailedReason(pc_, &reason));
-    }
+    if (!ksp_) make(S);
+    check(KSPSetOperators(ksp_, S, S));
+    check(KSPSetUp(ksp_));
+    PC inner;
+    PCFailedReason reason;
+    check(KSPFETIDPGetInnerBDDC(ksp_, &inner));
+    check(PCGetFailedReason(inner, &reason));
     int failed = reason != PC_NOERROR;
     MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
     return !failed;
   }
 
   void apply(Vec b, Vec x) override {
-    if (!dual_) {
-      check(PCApply(pc_, b, x));
-      return;
-    }
     check(KSPSolve(ksp_, b, x));
     KSP inner;
     PetscInt iterations;
+    KSPConvergedReason reason;
     check(KSPFETIDPGetInnerKSP(ksp_, &inner));
     check(KSPGetIterationNumber(inner, &iterations));
-    KSPConvergedReason reason;
     check(KSPGetConvergedReason(inner, &reason));
-    failed_ |= reason < 0;
     iterations_ += static_cast<int>(iterations);
+    failed_ |= reason < 0;
   }
 
   bool strengthen(int, bool) override { return false; }
   bool is_dear() const override { return true; }
-  bool is_iterative() const override { return dual_; }
+  bool is_iterative() const override { return true; }
   bool has_failed() const override { return failed_; }
-  int most_iterations() const override { return dual_ ? 10 : 150; }
+  int most_iterations() const override { return 10; }
   int take_iterations() override { return std::exchange(iterations_, 0); }
-  std::string name() const override { return dual_ ? "FETI-DP" : "BDDC"; }
+  std::string name() const override { return "FETI-DP"; }
   double bytes() const override { return 6 * F_.bytes(); }  // an estimate: PETSc does not tell
 
  private:
-  void make_primal() {
-    suggest_options("hilo_", corners_);
-    check(PCCreate(PETSC_COMM_WORLD, &pc_));
-    check(PCSetOptionsPrefix(pc_, "hilo_"));
-    check(PCSetErrorIfFailure(pc_, PETSC_FALSE));
-    check(PCSetType(pc_, PCBDDC));
-    set_coordinates(pc_);
-  }
-  void make_dual(Mat S) {
+  void make(Mat S) {
+    corners_ = set_near_null_space(S, positions_);
     suggest_options("hilo_fetidp_bddc_", corners_);
     check(KSPCreate(PETSC_COMM_WORLD, &ksp_));
     check(KSPSetOptionsPrefix(ksp_, "hilo_"));
@@ -113,30 +85,25 @@ class SubstructuredInverse final : public FlexibleInverse {
     check(KSPSetOperators(ksp_, S, S));
     PC inner;
     check(KSPFETIDPGetInnerBDDC(ksp_, &inner));
-    set_coordinates(inner);
+    if (corners_) check(PCSetCoordinates(inner, 3, static_cast<PetscInt>(positions_.size()), by_unknown_.data()));
     KSP dual;
     check(KSPFETIDPGetInnerKSP(ksp_, &dual));
     check(KSPSetTolerances(dual, dual_tolerance, 1e-300, PETSC_DEFAULT, 150));
     check(KSPSetFromOptions(ksp_));
   }
 
-  void set_coordinates(PC pc) {
-    if (corners_) check(PCSetCoordinates(pc, 3, static_cast<PetscInt>(positions_.size()), by_unknown_.data()));
-  }
-
   static constexpr double dual_tolerance = 1e-10;  // on the dual residual: a digit more than the primal one gets
   SubdomainMatrix& F_;
   std::vector<double> positions_, by_unknown_;
-  bool dual_, corners_ = false, failed_ = false;
+  bool corners_ = false, failed_ = false;
   int iterations_ = 0;
-  PC pc_ = nullptr;
   KSP ksp_ = nullptr;
 };
 
 }  // namespace
 
-std::unique_ptr<FlexibleInverse> make_substructured_inverse(SubdomainMatrix& F, std::vector<double> positions, bool dual) {
-  return std::make_unique<SubstructuredInverse>(F, std::move(positions), dual);
+std::unique_ptr<FlexibleInverse> make_feti_dp(SubdomainMatrix& F, std::vector<double> positions) {
+  return std::make_unique<FetiDp>(F, std::move(positions));
 }
 
 }  // namespace hilo::petsc

@@ -1,0 +1,225 @@
+// BDDC [dohrmann-2003] on the symmetric part of the flexible block, with one factor per subdomain.
+//
+// The preconditioner is that of exact static condensation: K^-1 with the inverse of the assembled Schur complement replaced by
+//
+//     sum_j  D_j ( Psi_j K_c^-1 Psi_j^T  +  S_j^-1 restricted to C_j w = 0 ) D_j ,
+//
+// D_j weights that sum to one (by stiffness), C_j the averages and moments of classes of shared nodes, Psi_j the interface motions of least
+// energy with C_j Psi_j = 1, K_c their stiffness.  Floating subdomains are made regular by C^T R C, which changes nothing on C w = 0.  With
+// the interface last in its factor, an application reads each subdomain's factor once forwards and once backwards; PETSc's PCBDDC
+// solves three times with two factors.
+//
+// The tangent of averaged methods is unsymmetric by what turns in a step; GMRES works on it, and only the preconditioner is symmetrised.
+#include <petscvec.h>
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
+
+#include "linear/petsc/exchange.hpp"
+#include "linear/petsc/interface.hpp"
+#include "linear/petsc/solver.hpp"
+#include "linear/petsc/subdomain_factor.hpp"
+
+namespace hilo::petsc {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+class Bddc final : public FlexibleInverse {
+ public:
+  explicit Bddc(const SubdomainMatrix& F) : F_(F), interface_(find_interface(F)), factor_(F, interface_) {
+    n_ = factor_.n(), n_interior_ = factor_.n_interior();
+    for (const auto& c : interface_.classes) n_own_ += static_cast<int>(c.q.cols());
+    C_ = MatrixXd::Zero(n_ - n_interior_, n_own_);
+    int column = 0;
+    for (const auto& c : interface_.classes) {
+      for (size_t k = 0; k < c.blocks.size(); ++k)
+        C_.block(3 * factor_.place(c.blocks[k]) - n_interior_, column, 3, c.q.cols()) = c.q.middleRows(3 * static_cast<Eigen::Index>(k), 3);
+      for (int m = 0; m < c.q.cols(); ++m) number_.push_back(c.first + m);
+      column += static_cast<int>(c.q.cols());
+    }
+    make_scatters();
+  }
+  ~Bddc() override {
+    VecScatterDestroy(&all_), VecScatterDestroy(&edge_);
+    VecDestroy(&local_), VecDestroy(&edge_local_);
+  }
+
+  bool set_up() override {
+    find_weights();
+    std::vector<double> size_of_class;
+    for (const auto& c : interface_.classes) {  // C^T R C about as stiff as the nodes themselves
+      double sum = 0;
+      for (const PetscInt i : c.blocks)
+        for (int k = 0; k < 3; ++k) sum += diagonal_[3 * static_cast<size_t>(factor_.place(i)) + k];
+      size_of_class.push_back(sum / (3. * static_cast<double>(c.blocks.size())));
+    }
+    int good = factor_.factor(F_, interface_, size_of_class);
+    if (good) good = form_coarse_basis(size_of_class);
+    MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
+    return good && factor_coarse();
+  }
+
+  void apply(Vec b, Vec x) override {
+    if (!g_.exists()) g_ = Vector(3 * F_.n_owned());
+    scatter(all_, b, local_, INSERT_VALUES, SCATTER_FORWARD);
+    const Eigen::Index n_edge = n_ - n_interior_;
+    {
+      const Values y(local_), e(edge_local_);
+      std::fill(y.data() + n_interior_, y.data() + n_, 0.0);
+      if (n_ > 0) factor_.forward(0, n_interior_, y.data());
+      std::copy(y.data() + n_interior_, y.data() + n_, e.data());
+    }
+    check(VecCopy(b, g_));
+    scatter(edge_, edge_local_, g_, ADD_VALUES, SCATTER_REVERSE);
+    scatter(edge_, g_, edge_local_, INSERT_VALUES, SCATTER_FORWARD);
+    {
+      const Values y(local_), e(edge_local_);
+      Eigen::Map<VectorXd> edge(e.data(), n_edge), v(y.data() + n_interior_, n_edge);
+      edge.array() *= weight_.array();
+      v = edge;
+      if (n_edge > 0) factor_.forward(n_interior_, n_, y.data()), factor_.backward(n_interior_, n_, y.data());
+      const VectorXd primal = solve_coarse(Psi_.transpose() * edge);
+      edge = (v + Psi_ * (primal - C_.transpose() * v)).cwiseProduct(weight_);
+    }
+    check(VecSet(x, 0));
+    scatter(edge_, edge_local_, x, ADD_VALUES, SCATTER_REVERSE);
+    scatter(edge_, x, edge_local_, INSERT_VALUES, SCATTER_FORWARD);
+    {
+      const Values y(local_), e(edge_local_);
+      std::copy(e.data(), e.data() + n_edge, y.data() + n_interior_);
+      if (n_ > 0) restore_interior(y.data());
+    }
+    scatter(all_, local_, x, INSERT_VALUES, SCATTER_REVERSE);
+  }
+
+  bool strengthen(int, bool) override { return false; }
+  bool is_dear() const override { return true; }
+  int most_iterations() const override { return 150; }
+  std::string name() const override { return "BDDC"; }
+  double bytes() const override { return factor_.bytes() + 16. * static_cast<double>(C_.size()); }
+
+ private:
+  /// y_I := L_II^-T (y_I - L_GI^T y_G)
+  void restore_interior(double* y) const { factor_.backward(0, n_interior_, y); }
+
+  static void scatter(VecScatter how, Vec from, Vec to, InsertMode mode, ScatterMode direction) {
+    check(VecScatterBegin(how, from, to, mode, direction));
+    check(VecScatterEnd(how, from, to, mode, direction));
+  }
+
+  void make_scatters() {
+    std::vector<PetscInt> index;
+    for (PetscInt k = 0; k < F_.n_blocks(); ++k) index.push_back(F_.global(factor_.block(k)));
+    const Vector whole(3 * F_.n_owned());
+    const auto make = [&](PetscInt first, Vec* local, VecScatter* out) {
+      IS from;
+      const auto n = static_cast<PetscInt>(index.size()) - first;
+      check(VecCreateSeq(PETSC_COMM_SELF, 3 * n, local));
+      check(ISCreateBlock(PETSC_COMM_WORLD, 3, n, index.data() + first, PETSC_COPY_VALUES, &from));
+      check(VecScatterCreate(whole, from, *local, nullptr, out));
+      check(ISDestroy(&from));
+    };
+    make(0, &local_, &all_);
+    make(n_interior_ / 3, &edge_local_, &edge_);
+  }
+
+  /// Weights of the interface by the subdomains' diagonals: a stiff side decides.
+  void find_weights() {
+    diagonal_.assign(n_, 0.0);
+    F_.for_each_symmetric_block([&](PetscInt i, PetscInt j, const double* block) {
+      if (i == j)
+        for (int c = 0; c < 3; ++c) diagonal_[3 * static_cast<size_t>(factor_.place(i)) + c] = std::max(0.0, block[4 * c]);
+    });
+    const Eigen::Index n_edge = n_ - n_interior_;
+    const Eigen::Map<const VectorXd> own(diagonal_.data() + n_interior_, n_edge);
+    if (!g_.exists()) g_ = Vector(3 * F_.n_owned());
+    check(VecSet(g_, 0));
+    {
+      const Values e(edge_local_);
+      std::copy(own.data(), own.data() + n_edge, e.data());
+    }
+    scatter(edge_, edge_local_, g_, ADD_VALUES, SCATTER_REVERSE);
+    scatter(edge_, g_, edge_local_, INSERT_VALUES, SCATTER_FORWARD);
+    const Values e(edge_local_);
+    weight_ = own.cwiseQuotient(Eigen::Map<const VectorXd>(e.data(), n_edge));
+  }
+
+  /// Psi = S^-1 C (C^T S^-1 C)^-1 with the regular S, and this subdomain's part of K_c.
+  bool form_coarse_basis(const std::vector<double>& regular) {
+    if (!weight_.allFinite()) return false;
+    const Eigen::Index n_edge = n_ - n_interior_;
+    Psi_.resize(n_edge, n_own_);
+    if (n_own_ == 0) return true;
+    std::vector<double> y(n_, 0.0);
+    for (int k = 0; k < n_own_; ++k) {
+      std::copy(C_.col(k).data(), C_.col(k).data() + n_edge, y.begin() + n_interior_);
+      factor_.forward(n_interior_, n_, y.data()), factor_.backward(n_interior_, n_, y.data());
+      std::copy(y.begin() + n_interior_, y.end(), Psi_.col(k).data());
+    }
+    MatrixXd compliance = C_.transpose() * Psi_;
+    compliance = (0.5 * (compliance + compliance.transpose())).eval();
+    const Eigen::LLT<MatrixXd> inverse(compliance);
+    if (inverse.info() != Eigen::Success) return false;
+    coarse_ = inverse.solve(MatrixXd::Identity(n_own_, n_own_));
+    Psi_ = (Psi_ * coarse_).eval();
+    int column = 0;
+    for (size_t c = 0; c < interface_.classes.size(); ++c)
+      for (Eigen::Index m = 0; m < interface_.classes[c].q.cols(); ++m, ++column) coarse_(column, column) -= regular[c];
+    return coarse_.allFinite();
+  }
+
+  /// K_c from all subdomains to all ranks, factored by each.
+  bool factor_coarse() {
+    if (interface_.n_constraints == 0) return true;
+    std::vector<double> mine, all;
+    for (int a = 0; a < n_own_; ++a)
+      for (int b = 0; b < n_own_; ++b)
+        if (number_[a] >= number_[b])
+          mine.insert(mine.end(), {static_cast<double>(number_[a]), static_cast<double>(number_[b]), coarse_(a, b)});
+    int n = static_cast<int>(mine.size());
+    std::vector<int> counts(size()), at(size(), 0);
+    MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, PETSC_COMM_WORLD);
+    for (int r = 1; r < size(); ++r) at[r] = at[r - 1] + counts[r - 1];
+    all.resize(static_cast<size_t>(at.back()) + counts.back());
+    MPI_Allgatherv(mine.data(), n, MPI_DOUBLE, all.data(), counts.data(), at.data(), MPI_DOUBLE, PETSC_COMM_WORLD);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (size_t k = 0; k < all.size(); k += 3) entries.emplace_back(static_cast<int>(all[k]), static_cast<int>(all[k + 1]), all[k + 2]);
+    Eigen::SparseMatrix<double> K(interface_.n_constraints, interface_.n_constraints);
+    K.setFromTriplets(entries.begin(), entries.end());
+    coarse_factor_.compute(K);
+    return coarse_factor_.info() == Eigen::Success;
+  }
+
+  /// The primal unknowns of this subdomain; `share`: its part of the right-hand side.
+  VectorXd solve_coarse(const VectorXd& share) {
+    if (interface_.n_constraints == 0) return VectorXd::Zero(0);
+    VectorXd all = VectorXd::Zero(interface_.n_constraints);
+    for (int k = 0; k < n_own_; ++k) all[number_[k]] += share[k];
+    MPI_Allreduce(MPI_IN_PLACE, all.data(), interface_.n_constraints, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    all = coarse_factor_.solve(all).eval();
+    VectorXd own(n_own_);
+    for (int k = 0; k < n_own_; ++k) own[k] = all[number_[k]];
+    return own;
+  }
+
+  const SubdomainMatrix& F_;
+  Interface interface_;
+  SubdomainFactor factor_;
+  int n_ = 0, n_interior_ = 0, n_own_ = 0;  // unknowns; constraints of this subdomain
+  std::vector<int> number_;                 // of its constraints among all
+  MatrixXd C_, Psi_, coarse_;               // (interface unknowns x constraints), the same, (constraints x constraints)
+  std::vector<double> diagonal_;
+  VectorXd weight_;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> coarse_factor_;
+  VecScatter all_ = nullptr, edge_ = nullptr;
+  Vec local_ = nullptr, edge_local_ = nullptr;
+  Vector g_;
+};
+
+}  // namespace
+
+std::unique_ptr<FlexibleInverse> make_bddc(const SubdomainMatrix& F) { return std::make_unique<Bddc>(F); }
+
+}  // namespace hilo::petsc

@@ -1,0 +1,130 @@
+// An approximate inverse made exact on the rigid motions of each connected flexible part [nabben-vuik-2008]:
+//
+//     M' = Q + (1 - Q F) M (1 - F Q),    Q = R (R^T F R)^-1 R^T,    so that  M' F R = R  and  R^T F M' = R^T.
+//
+// Where a part floats together with the bodies that hold it, its rigid motion costs next to no force: D p and C F^-1 B p cancel in the
+// Schur complement.  Any error of M there would leave a large stiffness of the wrong sign.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <numeric>
+
+#include "linear/petsc/interface.hpp"
+#include "linear/petsc/solver.hpp"
+
+namespace hilo::petsc {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+class Deflated final : public FlexibleInverse {
+ public:
+  Deflated(std::unique_ptr<FlexibleInverse> inner, const FlexibleMatrix& F, std::vector<double> positions, const std::vector<int>& part)
+      : inner_(std::move(inner)), F_(F) {
+    make_motions(positions, part);
+  }
+
+  bool set_up() override {
+    if (!inner_->set_up()) return false;
+    const auto n = R_.rows(), m = R_.cols();
+    if (!v_.exists()) v_ = Vector(static_cast<PetscInt>(n)), w_ = Vector(static_cast<PetscInt>(n));
+    FR_.resize(n, m), FtR_.resize(n, m);
+    for (Eigen::Index k = 0; k < m; ++k) {
+      {
+        const Values v(v_);
+        std::copy(R_.col(k).data(), R_.col(k).data() + n, v.data());
+      }
+      check(MatMult(F_.mat(), v_, w_));
+      take(FR_.col(k));
+      check(MatMultTranspose(F_.mat(), v_, w_));
+      take(FtR_.col(k));
+    }
+    MatrixXd E = R_.transpose() * FR_;
+    sum(E.data(), static_cast<int>(E.size()));
+    scale_ = E.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    E = (scale_.asDiagonal() * E * scale_.asDiagonal()).eval();
+    E_.setThreshold(1e-12);
+    E_.compute(E);
+    return E.allFinite();
+  }
+
+  void apply(Vec b, Vec x) override {
+    const auto n = R_.rows();
+    check(VecCopy(b, v_));
+    VectorXd c(R_.cols());
+    {
+      const Values v(v_);
+      Eigen::Map<VectorXd> f(v.data(), n);
+      c = solve(R_.transpose() * f);
+      f -= FR_ * c;
+    }
+    inner_->apply(v_, x);
+    const Values out(x);
+    Eigen::Map<VectorXd> u(out.data(), n);
+    c -= solve(FtR_.transpose() * u);
+    u += R_ * c;
+  }
+
+  bool strengthen(int iterations, bool failed) override { return inner_->strengthen(iterations, failed); }
+  bool is_dear() const override { return inner_->is_dear(); }
+  bool is_iterative() const override { return inner_->is_iterative(); }
+  bool has_failed() const override { return inner_->has_failed(); }
+  int most_iterations() const override { return inner_->most_iterations(); }
+  int take_iterations() override { return inner_->take_iterations(); }
+  std::string name() const override { return inner_->name(); }
+  double bytes() const override { return inner_->bytes() + 24. * static_cast<double>(R_.size()); }
+
+ private:
+  void make_motions(const std::vector<double>& X, const std::vector<int>& part) {
+    const int n = static_cast<int>(part.size());
+    int n_parts = 0;
+    for (const int p : part) n_parts = std::max(n_parts, p + 1);
+    MPI_Allreduce(MPI_IN_PLACE, &n_parts, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
+    R_ = MatrixXd::Zero(3 * n, 6 * n_parts);
+    MatrixXd centre = MatrixXd::Zero(4, n_parts);
+    for (int i = 0; i < n; ++i) centre.col(part[i]) += Eigen::Vector4d(X[3 * i], X[3 * i + 1], X[3 * i + 2], 1);
+    sum(centre.data(), static_cast<int>(centre.size()));
+    VectorXd radius = VectorXd::Zero(n_parts);
+    const auto arm = [&](int i) -> Eigen::Vector3d {
+      return Eigen::Vector3d(X[3 * i], X[3 * i + 1], X[3 * i + 2]) - centre.col(part[i]).head<3>() / centre(3, part[i]);
+    };
+    for (int i = 0; i < n; ++i) radius[part[i]] = std::max(radius[part[i]], arm(i).norm());
+    MPI_Allreduce(MPI_IN_PLACE, radius.data(), n_parts, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
+    for (int i = 0; i < n; ++i) {
+      R_.block(3 * i, 6 * part[i], 3, 3).setIdentity();
+      if (!(radius[part[i]] > 0)) continue;
+      const Eigen::Vector3d r = arm(i) / radius[part[i]];
+      R_.block(3 * i, 6 * part[i] + 3, 3, 3) << 0, r[2], -r[1], -r[2], 0, r[0], r[1], -r[0], 0;
+    }
+  }
+  template <class Column>
+  void take(Column&& to) {
+    const Values w(w_);
+    std::copy(w.data(), w.data() + to.size(), to.data());
+  }
+  static void sum(double* values, int n) {
+    if (size() > 1 && n > 0) MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  }
+  /// E^-1 of what the ranks sum to; motions that cost nothing are left out.
+  VectorXd solve(VectorXd share) const {
+    sum(share.data(), static_cast<int>(share.size()));
+    return scale_.asDiagonal() * E_.solve(scale_.asDiagonal() * share);
+  }
+
+  std::unique_ptr<FlexibleInverse> inner_;
+  const FlexibleMatrix& F_;
+  MatrixXd R_, FR_, FtR_;  // (owned unknowns x 6 per part)
+  VectorXd scale_;
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> E_;
+  Vector v_, w_;
+};
+
+}  // namespace
+
+std::unique_ptr<FlexibleInverse> make_deflated(std::unique_ptr<FlexibleInverse> inner, const SubdomainMatrix& F,
+                                               std::vector<double> positions) {
+  const auto part = connected_parts(F);
+  return std::make_unique<Deflated>(std::move(inner), F, std::move(positions), part);
+}
+
+}  // namespace hilo::petsc

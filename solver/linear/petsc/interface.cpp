@@ -1,0 +1,173 @@
+#include "linear/petsc/interface.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "linear/petsc/exchange.hpp"
+
+namespace hilo::petsc {
+namespace {
+
+using Key = std::vector<PetscInt>;  // rank and piece of each holder
+
+/// Connected parts of the blocks that `group` does not leave apart (negative: not asked for).
+template <class Group>
+std::vector<PetscInt> components(const SubdomainMatrix& F, const Group& group) {
+  std::vector<PetscInt> part(F.n_blocks(), -1), stack;
+  PetscInt n = 0;
+  for (PetscInt i = 0; i < F.n_blocks(); ++i) {
+    if (part[i] >= 0 || group(i) < 0) continue;
+    part[i] = n;
+    stack.assign(1, i);
+    while (!stack.empty()) {
+      const PetscInt k = stack.back();
+      stack.pop_back();
+      for (const PetscInt j : F.neighbours(k))
+        if (part[j] < 0 && group(j) == group(k)) part[j] = n, stack.push_back(j);
+    }
+    ++n;
+  }
+  return part;
+}
+
+/// The holders of each block of the subdomain, through its owner.
+std::vector<Key> find_keys(const SubdomainMatrix& F) {
+  const auto piece = components(F, [](PetscInt) { return 0; });
+  std::vector<std::vector<PetscInt>> tell(size());
+  for (PetscInt i = 0; i < F.n_blocks(); ++i) tell[F.owner(i)].insert(tell[F.owner(i)].end(), {F.global(i), piece[i]});
+  const auto told = exchange(tell);
+  std::vector<Key> of_owned(F.n_owned());
+  for (int r = 0; r < size(); ++r)
+    for (size_t k = 0; k < told[r].size(); k += 2) {
+      auto& key = of_owned[told[r][k] - F.first_owned()];
+      key.push_back(r), key.push_back(told[r][k + 1]);
+    }
+  std::vector<std::vector<PetscInt>> answer(size());
+  for (int r = 0; r < size(); ++r)
+    for (size_t k = 0; k < told[r].size(); k += 2) {
+      const auto& key = of_owned[told[r][k] - F.first_owned()];
+      answer[r].push_back(static_cast<PetscInt>(key.size()));
+      answer[r].insert(answer[r].end(), key.begin(), key.end());
+    }
+  const auto answers = exchange(answer);
+  std::vector<size_t> at(size(), 0);
+  std::vector<Key> keys(F.n_blocks());
+  for (PetscInt i = 0; i < F.n_blocks(); ++i) {
+    const auto& list = answers[F.owner(i)];
+    size_t& k = at[F.owner(i)];
+    keys[i].assign(list.begin() + k + 1, list.begin() + k + 1 + list[k]);
+    k += 1 + list[k];
+  }
+  return keys;
+}
+
+/// Rigid motions of nodes, orthonormal; fewer than six where the nodes are in a line.
+Eigen::MatrixXd rigid_motions(const SubdomainMatrix& F, const std::vector<PetscInt>& blocks) {
+  const auto n = static_cast<Eigen::Index>(blocks.size());
+  const auto& X = F.positions();
+  Eigen::MatrixXd modes = Eigen::MatrixXd::Zero(3 * n, X.empty() ? 3 : 6);
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double radius = 0;
+  const auto at = [&](PetscInt i) { return Eigen::Vector3d(X[3 * i], X[3 * i + 1], X[3 * i + 2]); };
+  if (!X.empty()) {
+    for (const PetscInt i : blocks) centre += at(i);
+    centre /= static_cast<double>(n);
+    for (const PetscInt i : blocks) radius = std::max(radius, (at(i) - centre).norm());
+  }
+  for (Eigen::Index k = 0; k < n; ++k) {
+    modes.block(3 * k, 0, 3, 3).setIdentity();
+    if (!(radius > 0)) continue;
+    const Eigen::Vector3d r = (at(blocks[k]) - centre) / radius;
+    modes.block(3 * k, 3, 3, 3) << 0, r[2], -r[1], -r[2], 0, r[0], r[1], -r[0], 0;
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(modes);
+  qr.setThreshold(1e-6);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(3 * n, qr.rank());
+}
+
+}  // namespace
+
+Interface find_interface(const SubdomainMatrix& F) {
+  Interface out;
+  const auto keys = find_keys(F);
+  std::map<Key, PetscInt> group_of;  // of the blocks that this rank, the first of their holders, divides into classes
+  std::vector<PetscInt> group(F.n_blocks(), -1);
+  for (PetscInt i = 0; i < F.n_blocks(); ++i)
+    if (keys[i].size() > 2 && keys[i][0] == rank())
+      group[i] = group_of.try_emplace(keys[i], static_cast<PetscInt>(group_of.size())).first->second;
+  const auto part = components(F, [&](PetscInt i) { return group[i]; });
+  const auto less = [&](PetscInt a, PetscInt b) { return F.global(a) < F.global(b); };
+  std::map<PetscInt, std::vector<PetscInt>> led;
+  for (PetscInt i = 0; i < F.n_blocks(); ++i)
+    if (part[i] >= 0) led[part[i]].push_back(i);
+  for (auto& [unused, blocks] : led) {
+    std::sort(blocks.begin(), blocks.end(), less);
+    out.classes.push_back({blocks, 0, rigid_motions(F, blocks)});
+  }
+  int mine = 0, before = 0;
+  for (const auto& c : out.classes) mine += static_cast<int>(c.q.cols());
+  MPI_Exscan(&mine, &before, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
+  if (rank() == 0) before = 0;
+  MPI_Allreduce(&mine, &out.n_constraints, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
+  // the other holders learn their classes by the number of the first constraint
+  std::vector<std::vector<PetscInt>> send(size());
+  for (auto& c : out.classes) {
+    c.first = before;
+    before += static_cast<int>(c.q.cols());
+    for (const PetscInt i : c.blocks)
+      for (size_t k = 2; k < keys[i].size(); k += 2) send[keys[i][k]].insert(send[keys[i][k]].end(), {F.global(i), c.first});
+  }
+  std::map<PetscInt, PetscInt> place;
+  for (PetscInt i = 0; i < F.n_blocks(); ++i)
+    if (keys[i].size() > 2) place[F.global(i)] = i;
+  std::map<int, std::vector<PetscInt>> others;
+  for (const auto& list : exchange(send))
+    for (size_t k = 0; k < list.size(); k += 2) others[list[k + 1]].push_back(place.at(list[k]));
+  for (auto& [first, blocks] : others) {
+    std::sort(blocks.begin(), blocks.end(), less);
+    out.classes.push_back({blocks, first, rigid_motions(F, blocks)});
+  }
+  return out;
+}
+
+std::vector<int> connected_parts(const SubdomainMatrix& F) {
+  const auto keys = find_keys(F);
+  const auto piece = components(F, [](PetscInt) { return 0; });
+  // links between pieces, to all ranks: (rank, piece) twice each, a piece's link to itself included
+  std::set<std::array<PetscInt, 4>> links;
+  for (PetscInt i = 0; i < F.n_blocks(); ++i)
+    for (size_t k = 0; k < keys[i].size(); k += 2) links.insert({rank(), piece[i], keys[i][k], keys[i][k + 1]});
+  std::vector<PetscInt> mine, all;
+  for (const auto& link : links) mine.insert(mine.end(), link.begin(), link.end());
+  int n = static_cast<int>(mine.size());
+  std::vector<int> counts(size()), at(size(), 0);
+  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, PETSC_COMM_WORLD);
+  for (int r = 1; r < size(); ++r) at[r] = at[r - 1] + counts[r - 1];
+  all.resize(static_cast<size_t>(at.back()) + counts.back());
+  MPI_Allgatherv(mine.data(), n, MPIU_INT, all.data(), counts.data(), at.data(), MPIU_INT, PETSC_COMM_WORLD);
+  std::map<std::pair<PetscInt, PetscInt>, int> number;
+  for (size_t k = 0; k < all.size(); k += 4) number.try_emplace({all[k], all[k + 1]}, static_cast<int>(number.size()));
+  std::vector<int> parent(number.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int a) {
+    while (parent[a] != a) a = parent[a] = parent[parent[a]];
+    return a;
+  };
+  for (size_t k = 0; k < all.size(); k += 4) parent[root(number.at({all[k], all[k + 1]}))] = root(number.at({all[k + 2], all[k + 3]}));
+  std::map<int, int> part_of_root;
+  for (size_t a = 0; a < parent.size(); ++a) part_of_root.try_emplace(root(static_cast<int>(a)), static_cast<int>(part_of_root.size()));
+  // an owned block may lie in another rank's subdomain only: its holders tell
+  std::vector<std::vector<PetscInt>> tell(size());
+  for (PetscInt i = 0; i < F.n_blocks(); ++i)
+    tell[F.owner(i)].insert(tell[F.owner(i)].end(), {F.global(i), part_of_root.at(root(number.at({rank(), piece[i]})))});
+  std::vector<int> part(F.n_owned(), 0);
+  for (const auto& list : exchange(tell))
+    for (size_t k = 0; k < list.size(); k += 2) part[list[k] - F.first_owned()] = list[k + 1];
+  return part;
+}
+
+}  // namespace hilo::petsc

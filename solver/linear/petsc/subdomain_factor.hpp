@@ -1,0 +1,48 @@
+// The Cholesky factor of one subdomain with its interface last [davis-2006]:
+//
+//     [ A_II  A_IG ]   [ L_II      ] [ L_II^T  L_GI^T ]
+//     [ A_GI  A_GG ] = [ L_GI  L_S ] [         L_S^T  ]
+//
+// One factor so serves the interior (L_II), the interface alone (L_S L_S^T is the Schur complement), and what goes between them.
+#pragma once
+#include <suitesparse/cholmod.h>
+
+#include <vector>
+
+#include "linear/petsc/interface.hpp"
+
+namespace hilo::petsc {
+
+class SubdomainFactor {
+ public:
+  /// The pattern is that of F and of dense classes.
+  SubdomainFactor(const SubdomainMatrix& F, const Interface& interface);
+  ~SubdomainFactor();
+  SubdomainFactor(const SubdomainFactor&) = delete;
+
+  /// Factor the symmetric part of F with sum_k weight_k q_k q_k^T of the classes added.  False when it is not positive definite.
+  bool factor(const SubdomainMatrix& F, const Interface& interface, const std::vector<double>& weight);
+
+  int n() const { return 3 * static_cast<int>(place_.size()); }
+  int n_interior() const { return n_interior_; }
+  int place(PetscInt block) const { return place_[block]; }  // of a block in the factor's order
+  PetscInt block(int place) const { return block_[place]; }
+  /// x := L^-1 x, columns [from, to) only: the rows below them are changed too.
+  void forward(int from, int to, double* x) const;
+  /// x := L^-T x, columns [from, to) only, from the rows below as they are.
+  void backward(int from, int to, double* x) const;
+  double bytes() const;
+
+ private:
+  void order(const SubdomainMatrix& F, const std::vector<char>& shared);
+
+  mutable cholmod_common common_{};
+  cholmod_factor* L_ = nullptr;
+  std::vector<int> place_;
+  std::vector<PetscInt> block_;
+  int n_interior_ = 0;
+  std::vector<int> start_, rows_;  // of the lower triangle in blocks, by columns
+  mutable std::vector<double> below_;
+};
+
+}  // namespace hilo::petsc
