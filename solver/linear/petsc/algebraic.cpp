@@ -1,7 +1,7 @@
 // Algebraic preconditioners of the assembled flexible block.
 //
 // Incomplete factors (block Jacobi over the ranks, ILU(0) in 3 x 3 blocks) are best while a wave crosses few hundred elements in a step;
-// beyond, smoothed aggregation multigrid is (docs/accuracy-and-speed.md).  Which one is settled by the iterations the last solve took.
+// beyond, smoothed aggregation multigrid is (docs/solvers.md).  Which one is settled by the iterations the last solve took.
 #include <petscksp.h>
 
 #include "linear/petsc/block_matrix.hpp"
