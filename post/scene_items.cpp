@@ -106,11 +106,14 @@ class Collector {
   }
 
   void joint(const Entry& e) {
-    const auto glyph = e.kind == "spherical"                              ? Glyph::ball
-                       : e.kind == "fixed"                                ? Glyph::block
-                       : e.kind == "distance"                             ? Glyph::link
-                       : e.kind == "prismatic" || e.kind == "cylindrical" ? Glyph::slider
-                                                                          : Glyph::hinge;
+    const auto is = [&](std::initializer_list<std::string_view> kinds) {
+      return std::find(kinds.begin(), kinds.end(), e.kind) != kinds.end();
+    };
+    const auto glyph = is({"spherical", "constant-velocity", "point-on-curve", "in-plane"}) ? Glyph::ball
+                       : is({"fixed"})                                                      ? Glyph::block
+                       : is({"distance"})                                                   ? Glyph::link
+                       : is({"prismatic", "cylindrical", "screw", "in-line", "planar"})     ? Glyph::slider
+                                                                                            : Glyph::hinge;
     SceneItem& item = add(glyph, e, e.kind + " joint", joint_colour);
     if (glyph == Glyph::link)
       item.at = e.vector3("at_a"), item.to = e.vector3("at_b");

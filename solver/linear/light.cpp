@@ -143,8 +143,9 @@ class LightSolver final : public KktSolver {
         norm = std::max(norm, std::abs(b[i])), terms = std::max(terms, sum);
         if (!(std::abs(s) <= worst)) worst = std::abs(s);
       }
-      report.residual = norm > 0 ? worst / norm : worst;
-      backward = terms > 0 ? worst / terms : 0;
+      constexpr double tiny = 1e-280;  // what is at rest but for numbers below the normal ones has no relative residual
+      report.residual = norm > tiny ? worst / norm : worst;
+      backward = terms > tiny ? worst / terms : 0;
       if (!std::isfinite(report.residual)) return {false, report.residual, 0, "the matrix is singular to working precision"};
       if (report.residual < (contraction < 1 ? 1e-9 : 1e-11) || pass == passes || report.residual > contraction * before) break;
       before = report.residual;

@@ -74,6 +74,12 @@ class Case : public Workplace {
     return ran;
   }
   Results results(const std::string& output = "run.h5") const { return Results(*this / output); }
+  /// A number of the last run's JSON report; NaN where it is not there.
+  double reported(const std::string& key) const {
+    const std::string text = text_of(*this / "run.json");
+    const auto at = text.find("\"" + key + "\": ");
+    return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + key.size() + 4));
+  }
   /// Run and read.
   Results solved(const std::string& options = "", const std::string& output = "run.h5", const std::string& scene = "scene") const {
     const Ran ran = solve("--quiet " + options, output, 0, scene);

@@ -1,0 +1,49 @@
+// Start positions that the scene draws apart are put together, velocities follow the drive, and what cannot be put together is named.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+// Exact: the crank stands at 30 degrees and turns at 1 rad/s; the other pin is where the circles of coupler and rocker meet.
+TEST(Assembly, PutsAFourBarWhereItsDriveWantsIt) {
+  const Case c("assembly");
+  const Ran ran = c.solve();
+  EXPECT_NE(ran.err.find("start positions changed by up to"), std::string::npos) << ran.err;
+  EXPECT_GT(c.reported("position_change"), 0.2);
+  const Results r = c.results();
+  for (const double t : {0.0, 0.1}) {
+    const double theta = 0.5235987755982988 + t;
+    const auto low = r.at("probe/low", t), high = r.at("probe/high", t);
+    const Vec3 exact = 0.5 * Vec3(std::cos(theta), 0, std::sin(theta));
+    EXPECT_LT((low.head<3>() - exact).norm(), 1e-12) << t;
+    EXPECT_LT((low.segment<3>(3) - Vec3(-exact[2], 0, exact[0])).norm(), 1e-6) << "velocity at t = " << t;
+    EXPECT_NEAR((high.head<3>() - low.head<3>()).norm(), 1.2, 1e-12);
+    EXPECT_NEAR((high.head<3>() - Vec3(0.8, 0, 1.2)).norm(), 0.3, 1e-12);
+    EXPECT_NEAR((high.head<3>() - low.head<3>()).dot(high.segment<3>(3) - low.segment<3>(3)), 0, 1e-6);
+    EXPECT_LT(high[0], 0.8) << "the branch it was drawn in";
+  }
+  EXPECT_LT(c.reported("energy_balance"), 1e-11);
+}
+
+// Exact: the nearest place on the sphere of radius 6 is along the ray.
+TEST(Assembly, MovesAsLittleAsTheMassesSay) {
+  const Case c("assembly");
+  const Results r = c.solved("", "run.h5", "rod");
+  EXPECT_LT((r.at("probe/ball", 0).head<3>() - 6 * Vec3(0.6, 0.8, 0)).norm(), 1e-9);
+  EXPECT_NEAR(c.reported("position_change"), 1, 1e-9);
+}
+
+TEST(Assembly, NamesTheJointThatCannotBeClosed) {
+  const Case c("assembly");
+  std::string scene = text_of(c.source("rod.toml"));
+  scene += "[[joint]]\nkind = \"spherical\"\nname = \"hook\"\nb = \"ball\"\nat = [3, 4.5, 0]\n";
+  scene += "[[joint]]\nkind = \"spherical\"\nname = \"other hook\"\nb = \"ball\"\nat = [3, 3.5, 0]\n";
+  c.write("scene.toml", scene);
+  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
+  EXPECT_EQ(ran.exit, 2) << ran.err;
+  EXPECT_NE(ran.err.find("the joints cannot be put together at the start: joint \""), std::string::npos) << ran.err;
+  EXPECT_FALSE(std::filesystem::exists(c / "run.h5"));
+}
+
+}  // namespace
+}  // namespace hilo::test

@@ -1,0 +1,50 @@
+// A point on a curve: the tautochrone, momentum and energy of a bead on a moving track, and what happens at the end of a curve.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+// Exact: on x = r (p + sin p), z = r (1 - cos p) the arc is s = 4 r sin(p/2) = s0 cos(omega t) with omega^2 = g/(4 r).
+TEST(PointOnCurve, SwingsOnACycloidWithoutRegardToAmplitude) {
+  for (const double p0 : {1.2, 2.3}) {
+    const Case c("curve");
+    const double r = 0.5, omega = std::sqrt(9.81 / (4 * r)), s0 = 4 * r * std::sin(p0 / 2);
+    const double x = r * (p0 + std::sin(p0)), z = r * (1 - std::cos(p0));
+    char place[200];
+    std::snprintf(place, sizeof place, "--set 'body.bead.com=[%.17g, 0, %.17g]' --set 'joint.wire.at=[%.17g, 0, %.17g]'", x, z, x, z);
+    const Results results = c.solved(place);
+    const auto bead = results.history("probe/bead");
+    double worst = 0;
+    for (Eigen::Index i = 0; i < bead.rows(); ++i) {
+      const double p = 2 * std::asin(s0 * std::cos(omega * results.t()[i]) / (4 * r));
+      worst = std::max(worst, (bead.row(i).head<3>().transpose() - Vec3(r * (p + std::sin(p)), 0, r * (1 - std::cos(p)))).norm());
+    }
+    const double phase = 2 * M_PI * std::pow(omega * 2e-3, 2) / 12;  // of the mid-point rule after a period
+    EXPECT_LT(worst, 1.5 * s0 * phase) << p0;
+    EXPECT_LT(c.reported("energy_balance"), 1e-10) << "to what Newton leaves of the rows, which are not of degree two";
+    EXPECT_LT(c.reported("constraint_violation"), 1e-12);
+  }
+}
+
+// Truth: the reactions of bead and track are opposite and do no work: momentum, angular momentum and energy stay, through many rounds.
+TEST(PointOnCurve, OfAMovingTrackKeepsEnergyAndMomentum) {
+  const Case c("curve");
+  const Results r = c.solved("", "run.h5", "track");
+  const auto m = r.history("momentum");
+  for (Eigen::Index i = 0; i < m.rows(); ++i) ASSERT_LT((m.row(i) - m.row(0)).norm(), 1e-12 * (1 + r.t()[i])) << "t = " << r.t()[i];
+  EXPECT_LT(c.reported("energy_balance"), 1e-11);
+  EXPECT_LT(c.reported("constraint_violation"), 1e-13);
+}
+
+TEST(PointOnCurve, StopsTheRunWhereTheCurveEnds) {
+  const Case c("curve");
+  const Ran ran = c.solve("--quiet --set 'initial=[{on = [\"bead\"], velocity = [6, 0, 3]}]'", "run.h5", 3);
+  EXPECT_NE(ran.err.find("joint \"wire\" ran off the end of its curve"), std::string::npos) << ran.err;
+  const Results r = c.results();
+  EXPECT_FALSE(r.complete());
+  const Vec3 last = r.history("probe/bead").bottomRows(1).leftCols(3).transpose();
+  EXPECT_LT((last - Vec3(1.5502, 0, 0.9045)).norm(), 0.05) << "the run is kept up to the end of the curve";
+}
+
+}  // namespace
+}  // namespace hilo::test

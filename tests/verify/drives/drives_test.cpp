@@ -1,0 +1,81 @@
+// Driven joints: the course is kept to round-off, the reaction is what the motion asks for, the work is accounted for.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+constexpr double g = 9.81;
+
+/// The ramp w(s) = 35 s^4 - 84 s^5 + 70 s^6 - 20 s^7 over two seconds, and its second derivative by time.
+double ramp(double t) {
+  const double s = std::min(t / 2, 1.0);
+  return s * s * s * s * (35 + s * (-84 + s * (70 - 20 * s)));
+}
+double ramp_acceleration(double t) {
+  const double s = std::min(t / 2, 1.0);
+  return 420 * s * s * (1 - s) * (1 - s) * (1 - 2 * s) / 4;
+}
+
+// Exact: moment J_0 theta'' + m g l cos(theta) about the axis, J_0 = J + m l^2; the angle 7 is more than a turn.
+TEST(DrivenRevolute, FollowsItsAngleWithTheMomentItTakes) {
+  for (const std::string method : {"energy-momentum", "generalized-alpha", "mid-point", "radau"}) {
+    const Case c("drives");
+    const Results r = c.solved("--set time.integrator=" + method);
+    for (const double t : {0.4, 1.0, 1.3, 1.9, 2.4}) {
+      const double theta = 7 * ramp(t);
+      EXPECT_LT((r.at("probe/arm", t).head<3>() - 0.5 * Vec3(std::cos(theta), 0, std::sin(theta))).norm(), 1e-12) << method << " " << t;
+      const double moment = (0.2 + 2 * 0.25) * 7 * ramp_acceleration(t) + 2 * g * 0.5 * std::cos(theta);
+      EXPECT_NEAR(r.at("joint/motor", t)[5], moment, 2e-3) << method << " t = " << t;
+    }
+    if (method == "energy-momentum") {
+      EXPECT_LT(c.reported("energy_balance"), 1e-12) << "work of the drive";
+    }
+  }
+}
+
+// Exact: force m (g + z'').
+TEST(DrivenPrismatic, LiftsWithTheForceItTakes) {
+  const Case c("drives");
+  const Results r = c.solved("", "run.h5", "lift");
+  for (const double t : {0.3, 1.2, 2.2}) {
+    EXPECT_NEAR(r.at("probe/lift", t)[2], 1.5 * ramp(t), 1e-13);
+    EXPECT_NEAR(r.at("joint/rope", t)[2], 3 * (g + 1.5 * ramp_acceleration(t)), 1e-4);
+  }
+  EXPECT_LT(c.reported("energy_balance"), 1e-12);
+}
+
+// Exact: a velocity is integrated from its history; here v = 1.5 w(t), whose integral over the ramp of two seconds is 1.5 x 1.
+TEST(DrivenPrismatic, IntegratesAVelocity) {
+  const Case c("drives");
+  std::string scene = text_of(c.source("lift.toml"));
+  scene.replace(scene.find("displacement ="), 12, "velocity");
+  c.write("scene.toml", scene);
+  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Results r = c.results();
+  EXPECT_NEAR(r.at("probe/lift", 2)[2], 1.5, 1e-13);
+  EXPECT_NEAR(r.at("probe/lift", 2.5)[2], 2.25, 1e-13);
+  EXPECT_NEAR(r.at("probe/lift", 2.5)[5], 1.5, 1e-5) << "velocity";
+}
+
+// Truth: where the rate of a drive jumps, the velocities jump with it: m v^2/2 comes from the drive as a blow, and nothing rings after it.
+TEST(DrivenPrismatic, TakesAKinkOfItsCourseAsABlow) {
+  const Case c("drives");
+  const Results r = c.solved("--set 'joint.rope.history={t = [0, 1, 2], value = [0, 0, 1]}'", "run.h5", "lift");
+  EXPECT_NEAR(r.at("probe/lift", 1.5)[2], 0.75, 1e-13);
+  EXPECT_NEAR(r.at("probe/lift", 1.5)[5], 1.5, 1e-9);
+  EXPECT_NEAR(r.at("probe/lift", 1.501)[5], 1.5, 1e-9);
+  EXPECT_NEAR(r.at("joint/rope", 1.5)[2], 3 * g, 1e-6);
+  EXPECT_LT(c.reported("energy_balance"), 1e-11);
+}
+
+TEST(DrivenJoint, RefusesACourseThatJumpsAndTwoDrives) {
+  const Case c("drives");
+  Ran ran = c.solve("--set 'joint.rope.history={t = [0, 1, 1, 2], value = [0, 0, 1, 1]}'", "run.h5", 2, "lift");
+  EXPECT_NE(ran.err.find("the history jumps at t = 1"), std::string::npos) << ran.err;
+  ran = c.solve("--set joint.rope.velocity=1", "run.h5", 2, "lift");
+  EXPECT_NE(ran.err.find("both displacement and velocity"), std::string::npos) << ran.err;
+}
+
+}  // namespace
+}  // namespace hilo::test
