@@ -23,7 +23,7 @@ class EnergyMomentum final : public StageIntegrator {
     s.a = &a_, s.mass_slope = 2 / (h_ * h_);
     s.v = &v_mid_, s.alpha_slope = 1 / h_;
     s.chi = chi_;
-    s.t0 = t_, s.t1 = t_ + h_;
+    s.t0 = t_, s.t1 = s.t_end = t_ + h_;
     return s;
   }
 

@@ -15,7 +15,7 @@ class MidPoint final : public StageIntegrator {
     combine(v_mid_, {{1 / h_, &u.dq}});
     combine(a_, {{2 / h_, &v_mid_}, {-2 / h_, &v0_}});
     Stage s = stage_at(mid_, t_ + h_ / 2);
-    s.end = &u.q, s.slope = s.chain = 0.5;
+    s.end = &u.q, s.t_end = t_ + h_, s.slope = s.chain = 0.5;
     s.w0 = &u.q0, s.w1 = &u.q, s.h = h_;
     s.a = &a_, s.mass_slope = 2 / (h_ * h_);
     s.v = &v_mid_, s.alpha_slope = 1 / h_;

@@ -46,7 +46,7 @@ class ZhouTamma final : public StageIntegrator {
     combine(before_, {{1, &left_}, {-h_ / 2, &v_}});
     combine(after_, {{1, &left_}, {h_ / 2, &v_}});
     Stage s = stage_at(left_, t_ + W_ * h_);
-    s.end = &u.q;
+    s.end = &u.q, s.t_end = t_ + h_;
     s.slope = averaged_ ? W_ : B_ / l3_;
     if (averaged_)
       s.e0 = &u.q0, s.e1 = &u.q, s.weight = W_;

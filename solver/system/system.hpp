@@ -92,6 +92,7 @@ struct Stage {
   double alpha_slope = 0;             // d v / d end [1/s]
   double chi = 0;                     // stress dissipation on flexible parts
   double t0 = 0, t1 = 0;              // loads: mean over [t0, t1], or value at t0 = t1
+  double t_end = 0;                   // time of `end`: driven joints
   const Config* work_from = nullptr;  // start of the step for System::work; null: e0
   double load_factor = 1;             // of gravity and of loads without a history, for static load steps
   bool conserving() const { return weight == 0.5 && e0 != e1; }
@@ -102,7 +103,7 @@ inline Stage stage_at(const Config& q, double t) {
   Stage s{};
   s.end = s.left = s.e0 = s.e1 = s.w0 = s.w1 = &q;
   s.slope = s.weight = s.chain = 1;
-  s.t0 = s.t1 = t;
+  s.t0 = s.t1 = s.t_end = t;
   return s;
 }
 
