@@ -11,11 +11,12 @@ namespace hilo {
 namespace {
 
 /// Takes the blocks of one evaluation into rows of stage `row` and columns of stage `column` of the coupled matrix.  Off the diagonal
-/// only what couples positions counts, and rows that hold velocities, times `share`: other constraints belong to their own stage.
+/// only what couples positions counts, and rows that hold velocities, times share/`scale` of the evaluation: other constraints belong to
+/// their own stage.
 class StageBlock final : public KktSolver {
  public:
-  StageBlock(KktSolver& whole, const System& system, int row, int column, double share = 1)
-      : whole_(whole), system_(system), row_(row), column_(column), share_(share) {
+  StageBlock(KktSolver& whole, const System& system, int row, int column, double share, const double& scale)
+      : whole_(whole), system_(system), row_(row), column_(column), share_(share), scale_(scale) {
     for (const Connector& c : system.joints)
       for (int r = 0; r < 3 * ((c.n_rows() + 2) / 3); ++r)
         holds_velocity_.push_back(r >= c.n_position_rows() && r < c.n_rows() && c.active[r]);
@@ -30,7 +31,8 @@ class StageBlock final : public KktSolver {
       for (int j = 0; j < 3 * n; ++j) {
         const bool velocity = blocks[i / 3] >= first_joint && holds_velocity_[3 * (blocks[i / 3] - first_joint) + i % 3];
         if (row_ == column_ || ((blocks[i / 3] < first_joint || velocity) && blocks[j / 3] < first_joint))
-          dense_[static_cast<size_t>(3 * n * row_ + i) * width + 3 * n * column_ + j] = (velocity ? share_ : 1) * K[i * 3 * n + j];
+          dense_[static_cast<size_t>(3 * n * row_ + i) * width + 3 * n * column_ + j] =
+              (row_ != column_ && velocity ? share_ / scale_ : 1) * K[i * 3 * n + j];
       }
     whole_.add(clique, dense_.data());
   }
@@ -47,6 +49,7 @@ class StageBlock final : public KktSolver {
   const System& system_;
   int row_, column_;
   double share_;
+  const double& scale_;
   std::vector<char> holds_velocity_;  // (3 x joint blocks)
   std::vector<double> dense_;
 };
@@ -87,7 +90,7 @@ class Radau final : public Integrator {
       place();
       report.residual = 0;
       for (int i = 0; i < 3; ++i) {
-        StageBlock block(*whole_, system, i, i);
+        StageBlock block(*whole_, system, i, i, 1, r[i].sigma);
         system.evaluate(stages_[i], lambda[i], r[i], &block);
         system.mask_fixed(r[i].r);
         report.residual = std::max(report.residual, relative_residual(system, r[i]));
@@ -97,7 +100,7 @@ class Radau final : public Integrator {
       if (!std::isfinite(report.residual)) return report.reason = "the residual is not finite", report;
       if (report.residual <= tools.newton.tolerance && report.iterations > 0) break;
       if (report.iterations == tools.newton.max_iterations) return report.reason = "no convergence within the iterations allowed", report;
-      add_coupling(system);
+      add_coupling(system, r);
       const double assembled = wall_clock();
       phases().assembly += assembled - start, phases().evaluations += 9, phases().tangents += 9;
       const SolveReport solved = whole_->solve(b, z);
@@ -162,7 +165,7 @@ class Radau final : public Integrator {
     }
   }
 
-  void add_coupling(const System& system) {
+  void add_coupling(const System& system, const Residual* r) {
     Config zero;
     combine(zero, {{0, &v0_}});
     const std::vector<double> none(3 * system.n_joint_blocks(), 0.0);
@@ -174,7 +177,8 @@ class Radau final : public Integrator {
         s.end = &u_[j].q, s.slope = 0, s.chain = 1e-30;  // the mass alone
         s.a = &zero, s.mass_slope = (W_ * W_)(i, j) / (h_ * h_);
         s.v = &v_[i], s.alpha_slope = W_(i, j) / h_;
-        StageBlock block(*whole_, system, i, j, W_(i, j) / W_(i, i));  // rows of velocities are over the slope of their own stage
+        // rows of velocities are over the slope, and have the scale, of their own stage
+        StageBlock block(*whole_, system, i, j, r[i].sigma * W_(i, j) / W_(i, i), unused.sigma);
         system.evaluate(s, none, unused, &block);
       }
   }

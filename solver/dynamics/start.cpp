@@ -144,30 +144,40 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
   combine(before, {{1, &s.q}, {-h / 2, &s.v}});
   combine(after, {{1, &s.q}, {h / 2, &s.v}});
   stage.w0 = &before, stage.w1 = &after, stage.h = h, stage.v = &s.v;
+  // linear in accelerations and multipliers, but for friction that the multipliers press: Newton then
+  const bool pressed =
+      std::any_of(system.springs.begin(), system.springs.end(), [](const Connector& c) { return c.law && c.load_joint >= 0; });
   Residual r;
-  system.evaluate(stage, lambda, r, &solver);
-  solver.sum_shared(r.r);
-  system.mask_fixed(r.r);
-  std::vector<double> rate, acceleration;  // rows: d2g/dt2 = 0
-  system.row_rates(s.q, s.v, &a, s.t, rate, &acceleration);
-  std::vector<double> b(r.r.size()), z(r.r.size(), 0.0);
-  for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
+  std::vector<double> rate, acceleration, b, z;
   const int first = 3 * system.first_joint_block();
-  for (size_t j = 0; j < system.joints.size(); ++j)
-    for (int k = 0; k < 3 * ((system.joints[j].n_rows() + 2) / 3); ++k) {
-      const int i = 3 * (system.joint_block[j] - system.first_joint_block()) + k;
-      const bool active = k < system.joints[j].n_rows() && system.joints[j].active[k];
-      b[first + i] = active ? -r.sigma * acceleration[i] : 0;
+  for (int it = 0; it < (pressed ? 12 : 1); ++it) {
+    system.evaluate(stage, lambda, r, &solver);
+    solver.sum_shared(r.r);
+    system.mask_fixed(r.r);
+    system.row_rates(s.q, s.v, &a, s.t, rate, &acceleration);  // rows: d2g/dt2 = 0
+    b.resize(r.r.size()), z.assign(r.r.size(), 0.0);
+    for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
+    for (size_t j = 0; j < system.joints.size(); ++j)
+      for (int k = 0; k < 3 * ((system.joints[j].n_rows() + 2) / 3); ++k) {
+        const int i = 3 * (system.joint_block[j] - system.first_joint_block()) + k;
+        const bool active = k < system.joints[j].n_rows() && system.joints[j].active[k];
+        b[first + i] = active ? -r.sigma * acceleration[i] : 0;
+      }
+    const SolveReport solved = solver.solve(b, z);
+    if (!solved.ok) throw Error("", fmt::format("the joints and masses do not determine the accelerations: {}", solved.message));
+    for (size_t i = 0; i < a.x.size(); ++i)
+      if (system.node_block[i] >= 0) a.x[i] += Eigen::Map<const Vec3>(z.data() + 3 * system.node_block[i]);
+    for (size_t i = 0; i < a.c.size(); ++i)
+      if (const int k = system.body_block[i]; k >= 0)
+        a.c[i] += Eigen::Map<const Vec3>(z.data() + 3 * k), a.R[i] += skew(Eigen::Map<const Vec3>(z.data() + 3 * k + 3)) * s.q.R[i];
+    system.follow(a);
+    double change = 0, size = 0;
+    for (size_t i = 0; i < lambda.size(); ++i) {
+      lambda[i] += r.sigma * z[first + i];
+      change = std::max(change, std::abs(r.sigma * z[first + i])), size = std::max(size, std::abs(lambda[i]));
     }
-  const SolveReport solved = solver.solve(b, z);
-  if (!solved.ok) throw Error("", fmt::format("the joints and masses do not determine the accelerations: {}", solved.message));
-  for (size_t i = 0; i < a.x.size(); ++i)
-    if (system.node_block[i] >= 0) a.x[i] += Eigen::Map<const Vec3>(z.data() + 3 * system.node_block[i]);
-  for (size_t i = 0; i < a.c.size(); ++i)
-    if (const int k = system.body_block[i]; k >= 0)
-      a.c[i] += Eigen::Map<const Vec3>(z.data() + 3 * k), a.R[i] += skew(Eigen::Map<const Vec3>(z.data() + 3 * k + 3)) * s.q.R[i];
-  system.follow(a);
-  for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += r.sigma * z[first + i];
+    if (change <= 1e-12 * size) break;
+  }
 }
 
 }  // namespace

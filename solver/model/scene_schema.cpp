@@ -247,17 +247,19 @@ std::vector<KindSchema> make() {
                 name,
                 of_joint,
                 {"rate", numbers, "rad/s", "!", "rising speeds of b relative to a; one number for a constant torque"},
-                {"torque", numbers, "N m", "!", "torque on b at these speeds, linear between them, first and last segment continued"},
+                {"torque", numbers, "N m", "!",
+                 "torque on b at these speeds, linear between them, first and last segment continued; none in statics"},
                 history_key}});
-  s.push_back({"motor",
-               "linear",
-               "force along the axis of a prismatic, cylindrical, screw or in-line joint, from its speed",
-               {{"kind", text, "", "!", "the kind of motor"},
-                name,
-                of_joint,
-                {"rate", numbers, "m/s", "!", "rising speeds of b relative to a; one number for a constant force"},
-                {"force", numbers, "N", "!", "force on b at these speeds, linear between them, first and last segment continued"},
-                history_key}});
+  s.push_back(
+      {"motor",
+       "linear",
+       "force along the axis of a prismatic, cylindrical, screw or in-line joint, from its speed",
+       {{"kind", text, "", "!", "the kind of motor"},
+        name,
+        of_joint,
+        {"rate", numbers, "m/s", "!", "rising speeds of b relative to a; one number for a constant force"},
+        {"force", numbers, "N", "!", "force on b at these speeds, linear between them, first and last segment continued; none in statics"},
+        history_key}});
   s.push_back(
       {"friction",
        "",

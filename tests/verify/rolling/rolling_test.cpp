@@ -112,6 +112,22 @@ TEST(Rolling, KnifeEdgeOnASlopeRunsAlongACycloid) {
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.05);
 }
 
+// Truth: every method keeps its order with rows of velocities, Radau IIA its fifth.
+TEST(Rolling, EveryMethodKeepsItsOrderOnTheCycloid) {
+  const Case c("rolling");
+  const double w = 3, A = 5.886 / (2 * w * w);
+  const auto error = [&](const std::string& method, const std::string& step) {
+    EXPECT_EQ(
+        c.solve("--quiet --set time.end=1 --set 'time.integrator=\"" + method + "\"' --set time.step=" + step, "run.h5", 0, "sleigh").exit,
+        0);
+    const Eigen::VectorXd x = c.results().at("probe/sleigh", 1);
+    return (x.head<3>() - Vec3(A * std::pow(std::sin(w), 2), A * (w - std::sin(2 * w) / 2), 0)).norm();
+  };
+  for (const std::string method : {"mid-point", "generalized-alpha", "newmark", "hht", "wbz", "U0", "V0", "bathe", "bdf2"})
+    EXPECT_GT(std::log2(error(method, "0.01") / error(method, "0.005")), 1.95) << method;
+  EXPECT_GT(std::log2(error("radau", "0.04") / error("radau", "0.02")), 4.5);
+}
+
 // Truth: a start that slips is projected onto rolling, J and m deciding how: w = w0 J/(J + m r^2) for a spin w0 alone.
 TEST(Rolling, StartThatSlipsIsMadeToRoll) {
   const Case c("rolling");
