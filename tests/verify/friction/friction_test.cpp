@@ -69,6 +69,28 @@ TEST(Friction, PressedByTheReactionIsOfSecondOrder) {
   }
 }
 
+// Truth: with p = pitch/(2 pi), L^2 = p^2 + r^2 and N the thread's force, m p alpha = -m g + N + mu N p/L and J alpha = -N (p - mu r^2/L).
+TEST(Friction, NutRunsDownAScrew) {
+  const Case c("friction");
+  ASSERT_EQ(c.solve("--quiet", "run.h5", 0, "screw").exit, 0);
+  const Results r = c.results();
+  const auto x = r.history("probe/nut");
+  const double m = 2, J = 0.01, p = 0.01, rim = 0.02, mu = 0.15, L = std::hypot(p, rim);
+  const double N = m * g / (1 + mu * p / L + m * p * (p - mu * rim * rim / L) / J), alpha = -N * (p - mu * rim * rim / L) / J;
+  EXPECT_NEAR(x(x.rows() - 1, 2), p * (-5 + alpha / 2), 1e-3 * p * 5);
+  EXPECT_LT(r.history("energy").col(5).cwiseAbs().maxCoeff(), 1e-10 * 5);
+}
+
+// Truth: J dw/dt = -mu m g r, whatever w: the spin falls along a line.
+TEST(Friction, TopInABallJointSpinsDownAlongALine) {
+  const Case c("friction");
+  ASSERT_EQ(c.solve("--quiet", "run.h5", 0, "ball").exit, 0);
+  const auto x = c.results().history("probe/rim");
+  const auto t = c.results().t();
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    EXPECT_NEAR(x.row(i).segment(3, 3).norm(), 0.1 * (12 - 0.2 * 2 * g * 0.01 / 0.01 * t[i]), 1e-4);
+}
+
 TEST(Friction, MistakesAreNamed) {
   const Case c("friction");
   const auto says = [&](const std::string& option, const std::string& text) {
