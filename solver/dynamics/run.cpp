@@ -180,6 +180,9 @@ class Run {
       if (talk_) fmt::print(stderr, "equilibrium after {} iterations\n", r.iterations);
     }
     projected_ = project_velocities(system_, *solver_, state_.q, state_.v, 0);
+    if (const std::string name = contradicted_joint(system_, state_.q, state_.v, 0); !name.empty())
+      throw Error(scene_.path, fmt::format("joint \"{}\" cannot move as the driven joints would have it", name),
+                  "two drives, or a drive and a joint, hold the same motion");
     if (talk_ && projected_ > 1e-9)
       fmt::print(stderr, "initial velocities changed by up to {:.3g} m/s to satisfy the joints\n", projected_);
     system_.commit(state_.q, &state_.v);

@@ -69,6 +69,25 @@ TEST(DrivenPrismatic, TakesAKinkOfItsCourseAsABlow) {
   EXPECT_LT(c.reported("energy_balance"), 1e-11);
 }
 
+// Truth: a guide that keeps the arm in the plane z = 0 has no room for a motor about y; a second motor at the same rate does no harm.
+TEST(DrivenJoint, SaysWhichJointItCannotMove) {
+  const Case c("drives");
+  std::string scene = text_of(c.source("scene.toml"));
+  const auto at = scene.find("angle = 7"), end = scene.find("[[probe]]");
+  scene = scene.substr(0, at) + "spin = 2\n\n" + scene.substr(end);
+  c.write("guided.toml", scene + "[[joint]]\nkind = \"planar\"\nname = \"table\"\nb = \"arm\"\nat = [0.5, 0, 0]\naxis = [0, 0, 1]\n");
+  Ran ran = c.run("hilo-solve --quiet guided.toml -o run.h5");
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_NE(ran.err.find("cannot move as the driven joints would have it"), std::string::npos) << ran.err;
+  EXPECT_FALSE(std::filesystem::exists(c / "run.h5"));
+  c.write("twice.toml",
+          scene + "[[joint]]\nkind = \"revolute\"\nname = \"twin\"\nb = \"arm\"\nat = [0, 1, 0]\naxis = [0, -1, 0]\nspin = 2\n");
+  ran = c.run("hilo-solve --quiet twice.toml -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_EQ(c.reported("redundant_rows"), 6);
+  EXPECT_LT(c.reported("constraint_violation"), 1e-12);
+}
+
 TEST(DrivenJoint, RefusesACourseThatJumpsAndTwoDrives) {
   const Case c("drives");
   Ran ran = c.solve("--set 'joint.rope.history={t = [0, 1, 1, 2], value = [0, 0, 1, 1]}'", "run.h5", 2, "lift");
