@@ -109,21 +109,22 @@ void draw_marker(Painter& p, int n, const Vec2& at, const Rgb& colour) {
   }
 }
 
-/// Dashed lines y ~ x^slope: steep ones on the left where curves fall, named at their upper end.
+/// Dashed lines y ~ x^slope in the corner that falling or rising curves leave free, one beside the other, named at their lower end.
 void draw_guides(Painter& p, const Panel& panel, const Scale& sx, const Scale& sy, const Box& box) {
   if (!sx.log || !sy.log) return;
   const Rgb grey{0.45, 0.46, 0.48};
   const double width = sx.high - sx.low, height = sy.high - sy.low;
+  double taken = 0.06 * width;  // from the side inwards
   for (const Guide& g : panel.guides) {
-    // as long as fits in a third of either side, its upper end near the upper right (falling) or left (rising)
-    const double run = std::min(0.35 * width, 0.35 * height / std::max(std::abs(g.slope), 1e-9)), rise = std::abs(g.slope) * run;
-    const double x1 = g.slope < 0 ? sx.high - 0.04 * width - run : sx.low + 0.04 * width + run, y1 = sy.high - 0.05 * height;
-    const double x0 = g.slope < 0 ? x1 + run : x1 - run, y0 = y1 - rise;
-    const auto pixel = [&](double x, double y) {
-      return Vec2(box.x + (x - sx.low) / width * box.w, box.y + (y - sy.low) / height * box.h);
+    const double run = std::min(0.25 * width, 0.3 * height / std::max(std::abs(g.slope), 1e-9)), rise = std::abs(g.slope) * run;
+    const auto pixel = [&](double from_side, double from_top) {
+      const double x = (g.slope < 0 ? width - from_side : from_side) / width;
+      return Vec2(box.x + x * box.w, box.y + (1 - 0.05 - from_top / height) * box.h);
     };
-    p.line(std::array{pixel(x0, y0), pixel(x1, y1)}, grey, 1.5, 1, true);
-    p.text(pixel(x0, y0) - Vec2(0, 4 * p.scale), g.label, legend_size, Across::centre, Up::top, grey);
+    const std::array ends{pixel(taken, rise), pixel(taken + run, 0)};
+    p.line(ends, grey, 1.5, 1, true);
+    p.text(ends[0] - Vec2(0, 4 * p.scale), g.label, legend_size, Across::centre, Up::top, grey);
+    taken += std::max(run, 0.09 * width) + 0.04 * width;
   }
 }
 

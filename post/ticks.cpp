@@ -55,7 +55,7 @@ int common_exponent(double largest) {
 std::string short_number(double x) {
   if (x == 0) return "0";
   const double size = std::abs(x);
-  if (size < 1e5 && size >= 1e-3) return fmt::format("{:.4g}", x);
+  if (size < 9999.5 && size >= 1e-3) return fmt::format("{:.4g}", x);
   const int e = static_cast<int>(std::floor(std::log10(size)));
   return fmt::format("{:.3g}\u00b710^{}", x / std::pow(10, e), e);
 }

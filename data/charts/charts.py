@@ -4,7 +4,8 @@
 charts.py rules                  writes out/rules.mk, and out/SCENE/*.args where they changed
 charts.py reference SCENE        writes out/SCENE/reference.csv
 charts.py measure SCENE METHOD   writes out/SCENE/METHOD.csv: one row for each run that came to its end
-charts.py join SCENE             writes out/SCENE.csv from all of them; exit 1 where a curve of second order is none
+charts.py join SCENE             writes out/SCENE.csv from all of them; exit 1 where the default is not of second order
+charts.py summary                writes out/summary.md: steps and milliseconds to an error of 1e-4, interpolated between runs
 
 Processor time is user + system of the whole process, less that of the same scene run for one step: start-up is not counted, writing
 histories is.  The smaller of two runs counts.
@@ -61,7 +62,7 @@ def rules():
             slopes = "--slope -2 --slope -5" if kind == "steps" else "--slope -2"
             lines.append(f"{picture}: out/{name}.csv charts.toml $(BIN)/hilo-post\n\t@$(BIN)/hilo-post chart $< -x '{column}' -y error --by method --log xy --markers"
                          f" {slopes} --xlabel '{label}' --ylabel 'error of position / length of the scene' --size 1100x680 --title \"{s['title']}\" -o $@\n")
-    write("out/rules.mk", f"PICTURES := {' '.join(pictures)}\n" + "".join(lines))
+    write("out/rules.mk", f"PICTURES := {' '.join(pictures)}\nCSVS := {' '.join(f'out/{n}.csv' for n in scenes)}\n" + "".join(lines))
 
 
 def run(scene, out, sets):
@@ -156,5 +157,37 @@ def join(name):
     return 1 if wrong else 0
 
 
+def reached(rows, column, goal):
+    """Where the last crossing of the goal lies, by straight lines between logarithms; "" where none was seen."""
+    points = [(math.log(float(r["error"])), math.log(float(r[column]))) for r in rows if r["error"] and r[column]]
+    for (e0, c0), (e1, c1) in reversed(list(zip(points, points[1:]))):
+        if e1 <= math.log(goal) <= e0:
+            return math.exp(c0 + (c1 - c0) * (math.log(goal) - e0) / (e1 - e0))
+    return None
+
+
+def milliseconds(t):
+    return format(float(f"{1e3 * t:.2g}"), "g")
+
+
+def summary():
+    shown = [m["name"] for m in methods if not m.get("meshes_only")]
+    lines = ["| steps / ms to 1e-4 | " + " | ".join(shown) + " |", "|---" * (len(shown) + 1) + "|"]
+    for name in scenes:
+        with open(f"out/{name}.csv") as f:
+            rows = list(csv.DictReader(f))
+        cells = []
+        for m in shown:
+            own = [r for r in rows if r["method"] == m]
+            n, t = reached(own, "steps", 1e-4), reached(own, "processor time [s]", 1e-4)
+            first = next((r for r in own if r["error"] and float(r["error"]) < 1e-4), None)
+            if n is None and first is own[0]:  # the coarsest step is good enough
+                cells.append(f"< {first['steps']} / < {milliseconds(float(first['processor time [s]'] or 2e-3))}")
+                continue
+            cells.append("" if n is None else f"{float(f'{n:.2g}'):.0f} / {'< 2' if t is None else milliseconds(t)}")
+        lines.append(f"| {name.replace('_', ' ')} | " + " | ".join(cells) + " |")
+    write("out/summary.md", "\n".join(lines) + "\n")
+
+
 if __name__ == "__main__":
-    sys.exit({"rules": rules, "reference": reference, "measure": measure, "join": join}[sys.argv[1]](*sys.argv[2:]))
+    sys.exit({"rules": rules, "reference": reference, "measure": measure, "join": join, "summary": summary}[sys.argv[1]](*sys.argv[2:]))

@@ -74,7 +74,7 @@ TEST(Pendulum, PeriodsOfThePublishedVariantsAreMet) {
 }
 
 // The benchmark's first form: 2000 s from (1, 0), 844.65 periods, error below 0.1 m ("low precision").  sin(theta/2) = k cd(w t, k),
-// sn by the arithmetic-geometric mean [Abramowitz and Stegun 16.4].
+// sn by the arithmetic-geometric mean [abramowitz-stegun-1964] (16.4).
 TEST(Pendulum, RadauIsWithinTheBenchmarkAfter2000Seconds) {
   const Case c("pendulum");
   const Results r = c.solved("--set 'time.integrator=\"radau\"' --set time.step=0.016 --set time.end=2000 --set body.bob.com=[1,0,0]");
