@@ -27,15 +27,24 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
   const int first = 3 * system.first_joint_block();
   std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), none(lambda.size(), 0.0), z(3 * system.n_blocks());
   Residual with, without;
+  // Flexible parts resist, or the mass norm would shear the cells at the joint: M (q - placed)/tau^2 + f(q) - f(placed), with a tau far
+  // above the periods at which they swing.  Bodies alone follow the mass norm, whatever springs are between them.
+  const bool flexible = system.comm->max(system.batches.empty() ? 0 : 1) > 0;
+  const double tau = 3, largest_turn = flexible ? 0.1 : 0.5;  // [s], [rad]
+  const auto stage_of = [&](const Config& at, const Config& a) {
+    Stage s = mass_stage(at, a, 0);
+    if (flexible) s.slope = s.chain = 1, s.mass_slope = 1 / (tau * tau);
+    return s;
+  };
+  if (flexible) system.evaluate(stage_of(placed, zero), none, without, nullptr);
   const double enough = 1e-12 * std::max(1.0, system.length);
   bool done = false;
-  for (int it = 0; it < 100 && !done; ++it) {
+  for (int it = 0; it < 200 && !done; ++it) {
     // M (q - placed) + G^T lambda: what the displacement adds to the residual as an acceleration would
-    combine(moved, {{1, &q}, {-1, &placed}});
-    Stage stage = mass_stage(q, moved, 0);
-    system.evaluate(stage, lambda, with, &solver);
-    stage.a = &zero;
-    system.evaluate(stage, none, without, nullptr);
+    const double factor = flexible ? 1 / (tau * tau) : 1;
+    combine(moved, {{factor, &q}, {-factor, &placed}});
+    system.evaluate(stage_of(q, moved), lambda, with, &solver);
+    if (!flexible) system.evaluate(stage_of(q, zero), none, without, nullptr);
     for (int i = 0; i < first; ++i) with.r[i] -= without.r[i];
     solver.sum_shared(with.r);
     system.mask_fixed(with.r);
@@ -43,7 +52,7 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
     std::fill(z.begin(), z.end(), 0.0);
     const SolveReport solved = solver.solve(with.r, z);
     if (!solved.ok) break;
-    double turn = 0, shift = 0;  // turns of more than half a radian are taken in parts
+    double turn = 0, shift = 0;  // long turns are taken in parts
     for (size_t i = 0; i < system.X.size(); ++i)
       if (const int k = system.node_block[i]; k >= 0) shift = std::max(shift, Eigen::Map<const Vec3>(z.data() + 3 * k).norm());
     for (size_t b = 0; b < system.bodies.size(); ++b)
@@ -53,12 +62,12 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
       }
     turn = system.comm->max(turn), shift = system.comm->max(shift);
     if (!std::isfinite(turn + shift) || shift > 1e3 * system.length) break;
-    const double share = turn > 0.5 ? 0.5 / turn : 1;
+    const double share = turn > largest_turn ? largest_turn / turn : 1;
     for (double& x : z) x *= share;
     system.move(q, z);
     system.commit(q);
     for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += with.sigma * z[first + i];
-    done = system.constraint_violation(q, 0) <= enough && (turn + shift / system.length < 1e-6 || it > 20);
+    done = system.constraint_violation(q, 0) <= enough && (turn + shift / system.length < 1e-6 || (!flexible && it > 20));
   }
   if (!done) {
     double worst = 0, g[max_rows];

@@ -41,7 +41,7 @@ std::function<Course(double, double)> course(double value, bool is_rate, const H
 std::shared_ptr<const Curve> curve(const Entry& e, const Scene& scene, const Vec3& at) {
   const bool from_file = e.has("file"), closed = e.boolean("closed");
   if (from_file == e.has("points"))
-    throw Error(e.where("points"), fmt::format("{}: {} points and file", e.label(), from_file ? "both" : "neither"),
+    throw Error(e.where("points"), fmt::format("{}: {}", e.label(), from_file ? "both points and a file" : "neither points nor a file"),
                 "points = [[x, y, z], ...] or file = \"curve.csv\"");
   std::vector<Vec3> points;
   if (from_file) {

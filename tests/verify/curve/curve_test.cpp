@@ -46,5 +46,28 @@ TEST(PointOnCurve, StopsTheRunWhereTheCurveEnds) {
   EXPECT_LT((last - Vec3(1.5502, 0, 0.9045)).norm(), 0.05) << "the run is kept up to the end of the curve";
 }
 
+TEST(PointOnCurve, SaysWhatIsWrongWithItsPoints) {
+  const Case c("curve");
+  const std::string scene = text_of(c.source("scene.toml"));
+  const auto refusal = [&](const std::string& instead, const std::string& csv) {
+    std::string text = scene;
+    text.replace(text.find("file = \"cycloid.csv\""), 20, instead);
+    c.write("scene.toml", text);
+    c.write("curve.csv", csv);
+    const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
+    EXPECT_EQ(ran.exit, 2) << instead;
+    return ran.err;
+  };
+  const auto expect = [&](const std::string& err, const std::string& part) { EXPECT_NE(err.find(part), std::string::npos) << err; };
+  expect(refusal("closed = true", ""), "joint \"wire\": neither points nor a file");
+  expect(refusal("points = [[0, 0, 0]]", ""), "1 points do not make a curve");
+  expect(refusal("points = [[0, 0, 0], [1, 0]]", ""), "a point of 2 numbers, not 3");
+  expect(refusal("points = [[0, 0, 0], [0, 0, 0], [1, 0, 0]]", ""), "points 1 and 2 are the same");
+  expect(refusal("file = \"none.csv\"", ""), "no file");
+  expect(refusal("file = \"curve.csv\"", "0,0,0\n1,0,0\n"), "curve.csv:1:1: no header line");
+  expect(refusal("file = \"curve.csv\"", "x,y,z\n0,0,0\n1,oops,0\n"), "curve.csv:3:3: \"oops\" is not a number");
+  expect(refusal("file = \"curve.csv\"", "x,y,z\n0,0\n"), "curve.csv:2:1: 2 columns where three are expected");
+}
+
 }  // namespace
 }  // namespace hilo::test
