@@ -79,7 +79,13 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
   };
   // where the last factors serve once more for little, one more correction takes constraints and forces to round-off
   const auto polish = [&] {
-    if (report.residual > 1e-15 && solver.repeats_cheaply() && solve().ok && relative_correction(system, z) < 1e-6) move();
+    for (int k = 0; k < 4 && report.residual > 1e-15 && solver.repeats_cheaply() && solve().ok; ++k) {
+      const double correction = relative_correction(system, z);
+      if (!(correction < 1e-6)) break;
+      move();
+      if (correction < 1e-12) break;  // what the old factors leave of it is round-off
+      evaluate(false);
+    }
     report.converged = true;
   };
   double previous = 1e300;
