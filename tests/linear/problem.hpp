@@ -257,4 +257,28 @@ inline void slabs(Problem& p, int size) {
     p.rank[e] = p.everywhere[e] ? static_cast<int>(e) % size : static_cast<int>(e * size / p.cliques.size());
 }
 
+/// Irregular parts, as a partitioner would leave them: the nearest of scattered points.
+inline void scattered(Problem& p, int size) {
+  std::mt19937 random(5);
+  Eigen::Vector3d high = Eigen::Vector3d::Zero();
+  for (size_t i = 0; i < p.X.size(); ++i) high[i % 3] = std::max(high[i % 3], p.X[i]);
+  std::vector<Eigen::Vector3d> seed;
+  for (int r = 0; r < size; ++r) {
+    std::uniform_real_distribution<double> uniform(0, 1);
+    seed.emplace_back(high[0] * (r + uniform(random)) / size, high[1] * uniform(random), high[2] * uniform(random));
+  }
+  for (size_t e = 0; e < p.cliques.size(); ++e) {
+    if (p.everywhere[e]) continue;
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    int n = 0;
+    for (const int i : p.cliques[e])
+      if (i >= 0 && i < p.n_flexible) centre += Eigen::Vector3d(p.X[3 * i], p.X[3 * i + 1], p.X[3 * i + 2]), ++n;
+    if (n == 0) continue;
+    centre /= n;
+    p.rank[e] = 0;
+    for (int r = 1; r < size; ++r)
+      if ((seed[r] - centre).norm() < (seed[p.rank[e]] - centre).norm()) p.rank[e] = r;
+  }
+}
+
 }  // namespace hilo::test

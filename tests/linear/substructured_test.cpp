@@ -18,28 +18,6 @@ struct Solved {
   std::string name;
 };
 
-/// Parts of a bar as a partitioner would leave them: the nearest of scattered points.
-void scatter(Problem& p, int size) {
-  std::mt19937 random(5);
-  Eigen::Vector3d high = Eigen::Vector3d::Zero();
-  for (size_t i = 0; i < p.X.size(); ++i) high[i % 3] = std::max(high[i % 3], p.X[i]);
-  std::vector<Eigen::Vector3d> seed;
-  for (int r = 0; r < size; ++r) {
-    std::uniform_real_distribution<double> uniform(0, 1);
-    seed.emplace_back(high[0] * (r + uniform(random)) / size, high[1] * uniform(random), high[2] * uniform(random));
-  }
-  for (size_t e = 0; e < p.cliques.size(); ++e) {
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    int n = 0;
-    for (const int i : p.cliques[e])
-      if (i >= 0 && i < p.n_flexible) centre += Eigen::Vector3d(p.X[3 * i], p.X[3 * i + 1], p.X[3 * i + 2]), ++n;
-    if (p.everywhere[e] || n == 0) continue;
-    centre /= n;
-    for (int r = 0; r < size; ++r)
-      if ((seed[r] - centre).norm() < (seed[p.rank[e] % size] - centre).norm()) p.rank[e] = r;
-  }
-}
-
 Solved solve(KktSolver& solver, const Problem& p, int times = 1) {
   const Comm& comm = Comm::world();
   const Share share(p, comm.rank, comm.size);
@@ -68,7 +46,7 @@ TEST(DISABLED_Substructured, ReachesItsToleranceWithBodiesAndJoints) {
     for (const double cfl : {5., 50.})
       for (const bool irregular : {false, true}) {
         Problem p = elastic_bar(14, 5, 4, cfl);
-        irregular ? scatter(p, Comm::world().size) : test::slabs(p, Comm::world().size);
+        irregular ? test::scattered(p, Comm::world().size) : test::slabs(p, Comm::world().size);
         const auto s = solve(*make_petsc_solver(kind, 1e-9), p);
         ASSERT_TRUE(s.report.ok) << kind << s.report.message;
         EXPECT_LT(residual(p, s.x), 1.01e-9) << kind;

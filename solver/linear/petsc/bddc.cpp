@@ -4,10 +4,10 @@
 //
 //     sum_j  D_j ( Psi_j K_c^-1 Psi_j^T  +  S_j^-1 restricted to C_j w = 0 ) D_j ,
 //
-// D_j weights that sum to one (by stiffness), C_j the averages and moments of classes of shared nodes, Psi_j the interface motions of least
-// energy with C_j Psi_j = 1, K_c their stiffness.  Floating subdomains are made regular by C^T R C, which changes nothing on C w = 0.  With
-// the interface last in its factor, an application reads each subdomain's factor once forwards and once backwards; PETSc's PCBDDC
-// solves three times with two factors.
+// D_j weights that sum to one (by stiffness: of whole classes, "deluxe" [dohrmann-widlund-2016], where they are not too large), C_j the
+// averages and moments of classes of shared nodes, Psi_j the interface motions of least energy with C_j Psi_j = 1, K_c their stiffness.
+// Floating subdomains are made regular by C^T R C, which changes nothing on C w = 0.  With the interface last in its factor, an application
+// reads each subdomain's factor once forwards and once backwards; PETSc's PCBDDC solves three times with two factors.
 //
 // The tangent of averaged methods is unsymmetric by what turns in a step; GMRES works on it, and only the preconditioner is symmetrised.
 #include <petscvec.h>
@@ -25,6 +25,9 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+/// Blocks of a class up to which it gets a dense matrix as weight (two of them: 10 MB).
+constexpr size_t largest_class = 270;
 
 class Bddc final : public FlexibleInverse {
  public:
@@ -58,6 +61,8 @@ class Bddc final : public FlexibleInverse {
     int good = factor_.factor(F_, interface_, size_of_class);
     if (good) good = form_coarse_basis(size_of_class);
     MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
+    if (good) good = find_class_weights(size_of_class);
+    MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
     return good && factor_coarse();
   }
 
@@ -77,11 +82,11 @@ class Bddc final : public FlexibleInverse {
     {
       const Values y(local_), e(edge_local_);
       Eigen::Map<VectorXd> edge(e.data(), n_edge), v(y.data() + n_interior_, n_edge);
-      edge.array() *= weight_.array();
+      edge = weigh(edge, true);
       v = edge;
       if (n_edge > 0) factor_.forward(n_interior_, n_, y.data()), factor_.backward(n_interior_, n_, y.data());
       const VectorXd primal = solve_coarse(Psi_.transpose() * edge);
-      edge = (v + Psi_ * (primal - C_.transpose() * v)).cwiseProduct(weight_);
+      edge = weigh(v + Psi_ * (primal - C_.transpose() * v), false);
     }
     check(VecSet(x, 0));
     scatter(edge_, edge_local_, x, ADD_VALUES, SCATTER_REVERSE);
@@ -144,6 +149,55 @@ class Bddc final : public FlexibleInverse {
     scatter(edge_, g_, edge_local_, INSERT_VALUES, SCATTER_FORWARD);
     const Values e(edge_local_);
     weight_ = own.cwiseQuotient(Eigen::Map<const VectorXd>(e.data(), n_edge));
+  }
+
+  /// Weights of whole classes, (sum_j S_j)^-1 S_j of their parts of the Schur complements: parts of ragged shape share out unevenly.
+  bool find_class_weights(const std::vector<double>& regular) {
+    std::vector<std::vector<double>> send(size());
+    std::vector<MatrixXd> own(interface_.classes.size());
+    for (size_t k = 0; k < own.size(); ++k) {
+      const auto& c = interface_.classes[k];
+      if (c.blocks.size() > largest_class) continue;
+      std::vector<int> unknowns;
+      for (const PetscInt i : c.blocks)
+        for (int a = 0; a < 3; ++a) unknowns.push_back(3 * factor_.place(i) + a);
+      const MatrixXd rows = factor_.schur_rows(unknowns);
+      own[k] = rows * rows.transpose() - regular[k] * c.q * c.q.transpose();
+      for (const int r : c.ranks)
+        if (r != rank()) send[r].insert(send[r].end(), own[k].data(), own[k].data() + own[k].size());
+    }
+    const auto got = exchange(send);
+    std::vector<size_t> at(size(), 0);
+    class_weight_.assign(own.size(), MatrixXd());
+    bool good = true;
+    for (size_t k = 0; k < own.size(); ++k) {
+      if (own[k].size() == 0) continue;
+      MatrixXd all = MatrixXd::Zero(own[k].rows(), own[k].cols());
+      for (const int r : interface_.classes[k].ranks) {  // in the same order on all of them
+        all += r == rank() ? own[k] : MatrixXd(Eigen::Map<const MatrixXd>(got[r].data() + at[r], all.rows(), all.cols()));
+        if (r != rank()) at[r] += static_cast<size_t>(all.size());
+      }
+      const Eigen::LLT<MatrixXd> inverse(all);
+      good = good && inverse.info() == Eigen::Success;
+      if (good) class_weight_[k] = inverse.solve(own[k]);
+    }
+    return good;
+  }
+
+  /// D x, or D^T x.
+  VectorXd weigh(const VectorXd& x, bool transposed) const {
+    VectorXd y = x.cwiseProduct(weight_), part;
+    for (size_t k = 0; k < class_weight_.size(); ++k) {
+      if (class_weight_[k].size() == 0) continue;
+      const auto& blocks = interface_.classes[k].blocks;
+      part.resize(class_weight_[k].rows());
+      for (size_t i = 0; i < blocks.size(); ++i)
+        part.segment<3>(3 * static_cast<Eigen::Index>(i)) = x.segment<3>(3 * factor_.place(blocks[i]) - n_interior_);
+      part = transposed ? VectorXd(class_weight_[k].transpose() * part) : VectorXd(class_weight_[k] * part);
+      for (size_t i = 0; i < blocks.size(); ++i)
+        y.segment<3>(3 * factor_.place(blocks[i]) - n_interior_) = part.segment<3>(3 * static_cast<Eigen::Index>(i));
+    }
+    return y;
   }
 
   /// Psi = S^-1 C (C^T S^-1 C)^-1 with the regular S, and this subdomain's part of K_c.
@@ -212,6 +266,7 @@ class Bddc final : public FlexibleInverse {
   MatrixXd C_, Psi_, coarse_;               // (interface unknowns x constraints), the same, (constraints x constraints)
   std::vector<double> diagonal_;
   VectorXd weight_;
+  std::vector<MatrixXd> class_weight_;  // empty for those too large
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> coarse_factor_;
   VecScatter all_ = nullptr, edge_ = nullptr;
   Vec local_ = nullptr, edge_local_ = nullptr;

@@ -101,12 +101,17 @@ Interface find_interface(const SubdomainMatrix& F) {
       group[i] = group_of.try_emplace(keys[i], static_cast<PetscInt>(group_of.size())).first->second;
   const auto part = components(F, [&](PetscInt i) { return group[i]; });
   const auto less = [&](PetscInt a, PetscInt b) { return F.global(a) < F.global(b); };
+  const auto ranks_of = [&](PetscInt i) {
+    std::vector<int> ranks;
+    for (size_t k = 0; k < keys[i].size(); k += 2) ranks.push_back(keys[i][k]);
+    return ranks;
+  };
   std::map<PetscInt, std::vector<PetscInt>> led;
   for (PetscInt i = 0; i < F.n_blocks(); ++i)
     if (part[i] >= 0) led[part[i]].push_back(i);
   for (auto& [unused, blocks] : led) {
     std::sort(blocks.begin(), blocks.end(), less);
-    out.classes.push_back({blocks, 0, rigid_motions(F, blocks)});
+    out.classes.push_back({blocks, ranks_of(blocks[0]), 0, rigid_motions(F, blocks)});
   }
   int mine = 0, before = 0;
   for (const auto& c : out.classes) mine += static_cast<int>(c.q.cols());
@@ -129,8 +134,9 @@ Interface find_interface(const SubdomainMatrix& F) {
     for (size_t k = 0; k < list.size(); k += 2) others[list[k + 1]].push_back(place.at(list[k]));
   for (auto& [first, blocks] : others) {
     std::sort(blocks.begin(), blocks.end(), less);
-    out.classes.push_back({blocks, first, rigid_motions(F, blocks)});
+    out.classes.push_back({blocks, ranks_of(blocks[0]), first, rigid_motions(F, blocks)});
   }
+  std::sort(out.classes.begin(), out.classes.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   return out;
 }
 

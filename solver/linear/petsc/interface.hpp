@@ -9,6 +9,7 @@ namespace hilo::petsc {
 
 struct InterfaceClass {
   std::vector<PetscInt> blocks;  // of the subdomain, by ascending global number
+  std::vector<int> ranks;        // that have it, ascending, this one among them
   int first = 0;                 // number of its first constraint among those of all ranks
   Eigen::MatrixXd q;             // (3 n_blocks x n_constraints) orthonormal: the rigid motions of its nodes
 };

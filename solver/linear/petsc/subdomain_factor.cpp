@@ -176,6 +176,23 @@ void SubdomainFactor::backward(int from, int to, double* x) const {
   }
 }
 
+Eigen::MatrixXd SubdomainFactor::schur_rows(const std::vector<int>& unknowns) const {
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(unknowns.size()), n() - n_interior_);
+  std::vector<int> wanted(n(), -1);
+  for (size_t k = 0; k < unknowns.size(); ++k) wanted[unknowns[k]] = static_cast<int>(k);
+  const auto* super = static_cast<const int*>(L_->super);
+  const auto *pi = static_cast<const int*>(L_->pi), *px = static_cast<const int*>(L_->px), *rows = static_cast<const int*>(L_->s);
+  const auto* values = static_cast<const double*>(L_->x);
+  for (int s = static_cast<int>(L_->nsuper) - 1; s >= 0 && super[s + 1] > n_interior_; --s) {
+    const int stride = pi[s + 1] - pi[s];
+    for (int c = std::max(n_interior_, super[s]); c < super[s + 1]; ++c)
+      for (int r = c - super[s]; r < stride; ++r)
+        if (const int k = wanted[rows[pi[s] + r]]; k >= 0)
+          M(k, c - n_interior_) = values[px[s] + static_cast<size_t>(c - super[s]) * stride + r];
+  }
+  return M;
+}
+
 double SubdomainFactor::bytes() const { return L_ ? 8. * static_cast<double>(L_->xsize) + 4. * static_cast<double>(L_->ssize) : 0; }
 
 }  // namespace hilo::petsc

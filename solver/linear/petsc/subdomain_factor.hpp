@@ -31,6 +31,8 @@ class SubdomainFactor {
   void forward(int from, int to, double* x) const;
   /// x := L^-T x, columns [from, to) only, from the rows below as they are.
   void backward(int from, int to, double* x) const;
+  /// Rows of L_S, dense: of the given unknowns of the interface (numbers from n_interior on).
+  Eigen::MatrixXd schur_rows(const std::vector<int>& unknowns) const;
   double bytes() const;
 
  private:
