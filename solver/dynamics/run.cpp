@@ -28,7 +28,7 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
     if (unknowns > 600000) kind = "iterative";
     const auto ranks = system.comm->size;
     const auto flexible = 3 * system.map.first_dense;
-    if (ranks >= 2 && flexible > 20000 && flexible / ranks <= 100000 && unknowns - flexible <= 1000) kind = "bddc";
+    if (ranks >= 2 && flexible > 3000 && flexible / ranks <= 100000 && unknowns - flexible <= 1000) kind = "bddc";
     why = fmt::format("{} unknowns on {} rank{}", unknowns, system.comm->size, system.comm->size == 1 ? "" : "s");
   }
   if (kind == "light" && system.comm->size > 1)
