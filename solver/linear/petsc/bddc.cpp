@@ -26,8 +26,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Blocks of a class up to which it gets a dense matrix as weight (two of them: 10 MB).
-constexpr size_t largest_class = 270;
+/// Blocks of a class up to which it gets a dense matrix as weight (15 MB).
+constexpr size_t largest_class = 450;
 
 class Bddc final : public FlexibleInverse {
  public:
