@@ -83,7 +83,8 @@ TEST(DISABLED_Bar, TwoRunsAgreeToRoundOff) {
   for (const char* kind : {"direct", "iterative"}) {
     const auto a = solve(*make_petsc_solver(kind, 1e-8), p), b = solve(*make_petsc_solver(kind, 1e-8), p);
     ASSERT_EQ(a.x.size(), b.x.size());
-    for (size_t i = 0; i < a.x.size(); ++i) ASSERT_NEAR(a.x[i], b.x[i], 1e-6) << kind;  // MUMPS schedules its sums dynamically on several ranks
+    for (size_t i = 0; i < a.x.size(); ++i)
+      ASSERT_NEAR(a.x[i], b.x[i], 1e-6) << kind;  // MUMPS schedules its sums dynamically on several ranks
   }
 }
 
