@@ -43,7 +43,8 @@ Spin spin_of(const System& s, const State& state, const std::vector<int>& nodes)
 
 Config predict(const System& s, const State& state, double h, Predictor kind, const Config& a) {
   Config q = state.q;
-  const bool bent = a.c.size() == q.c.size() && kind == Predictor::rigid_rotation;
+  const bool rigid = s.map.first_dense == 0;  // no flexible nodes, which would be left behind and strained
+  const bool bent = rigid && a.c.size() == q.c.size() && kind == Predictor::rigid_rotation;
   if (kind == Predictor::hold) return q;
   for (size_t i = 0; i < q.x.size(); ++i)
     if (s.node_block[i] >= 0) q.x[i] += h * state.v.x[i];
