@@ -14,7 +14,7 @@ void restore_rotations(const System& system, Config& q) {
 NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, double h, Predictor predictor) {
   const System& system = tools.system;
   begin(s, h);
-  h_ = h, start_ = s.q, lambda_ = s.lambda;
+  h_ = h, lambda_ = s.lambda;
   solved_.clear(), solved_.reserve(n_stages());
   taken_.resize(n_stages());
   NewtonReport all;
@@ -35,7 +35,7 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
     }
     restore_rotations(system, solved_[k].q);
     taken_[k] = {from_left(stage(k, solved_[k]), h), lambda_};
-    taken_[k].stage.work_from = k == 0 ? &start_ : &solved_[k - 1].q;
+    taken_[k].stage.work_from = k == 0 ? &solved_[0].q0 : &solved_[k - 1].q;
   }
   return all;
 }

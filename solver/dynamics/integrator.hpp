@@ -74,7 +74,6 @@ class StageIntegrator : public Integrator {
 
  private:
   double h_ = 0;
-  Config start_;                 // q0
   std::vector<Unknown> solved_;  // per stage
   std::vector<Taken> taken_;
   std::vector<double> lambda_;

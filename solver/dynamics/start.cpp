@@ -217,9 +217,7 @@ void consistent_acceleration(const System& system, KktSolver& solver, State& s, 
     State& n = ahead[k];
     n.t = s.t + tau;
     combine(n.q, {{1, &s.q}, {tau, &s.v}, {tau * tau / 2, &s.a}});
-    for (Mat3& R : n.q.R)
-      for (int i = 0; i < 3; ++i) R = R * (1.5 * Mat3::Identity() - 0.5 * R.transpose() * R);
-    system.follow(n.q);
+    for (int i = 0; i < 3; ++i) restore_rotations(system, n.q);
     combine(n.v, {{1, &s.v}, {tau, &s.a}});
     solve_acceleration(system, solver, n, n.a, unused);
   }

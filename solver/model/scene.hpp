@@ -20,7 +20,8 @@ struct Place {
   std::string text() const;
 };
 
-/// How a history goes from point to point: linear; smooth, w = (1 - cos(pi s))/2 (C1); smoother, w = 35 s^4 - 84 s^5 + 70 s^6 - 20 s^7 (C3).
+/// How a history goes from point to point: linear; smooth, w = (1 - cos(pi s))/2 (C1); smoother, w = 35 s^4 - 84 s^5 + 70 s^6 - 20 s^7
+/// (C3).
 enum class Ramp { linear, smooth, smoother };
 
 /// A load history: values at rising times with ramps between them.

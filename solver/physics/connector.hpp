@@ -160,12 +160,12 @@ Vec6 force_on_b(const Connector& c, const ConnectorGradient& left, const double*
 /// Where a joint is, what it joins, and what its kind needs besides.
 struct JointPlace {
   std::string kind;
-  Carrier a, b, carrier{0, -1};        // the carrier of a gear or rack
-  Vec3 at, at_b;                       // joint point on a and on b; they differ for the distance joint only [m]
-  Mat3 frame = Mat3::Identity();       // third column the axis
-  Vec3 axis_b = Vec3::Zero();          // axis of b: gear, constant-velocity; direction of a rack; zero: the axis
-  double ratio = 1;                    // turns of b per turn of a; [m/rad] of a rack or screw
-  double length = 0;                   // of a distance joint, 0: as placed [m]
+  Carrier a, b, carrier{0, -1};          // the carrier of a gear or rack
+  Vec3 at, at_b;                         // joint point on a and on b; they differ for the distance joint only [m]
+  Mat3 frame = Mat3::Identity();         // third column the axis
+  Vec3 axis_b = Vec3::Zero();            // axis of b: gear, constant-velocity; direction of a rack; zero: the axis
+  double ratio = 1;                      // turns of b per turn of a; [m/rad] of a rack or screw
+  double length = 0;                     // of a distance joint, 0: as placed [m]
   std::shared_ptr<const Curve> curve{};  // of point-on-curve: points in inertial axes from `at`
   enum class Driven { none, angle, slide } driven = Driven::none;  // a row held to a course: angle or slide of b along the axis
 };

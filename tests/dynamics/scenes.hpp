@@ -41,7 +41,8 @@ inline OrderCase pend3d(const Workplace& w) {
   w.write("pend3d.toml", "gravity = [0, 0, -9.81]\n" + body("brick", 8, {0.5, 0.1, 0.2}, J) +
                              joint("spherical", "corner", "ground", "brick", Vec3::Zero()) +
                              "[[initial]]\non = [\"brick\"]\nspin = [0.5, 1, 2]\nabout = [0, 0, 0]\n"
-                             "[[probe]]\nname = \"far\"\non = \"brick\"\nat = [1, 0.2, 0.4]\n[time]\nend = 1\n");
+                             "[[probe]]\nname = \"far\"\non = \"brick\"\nat = [1, 0.2, 0.4]\n[[sensor]]\nname = \"seat\"\non = "
+                             "\"brick\"\nat = [1, 0.2, 0.4]\n[time]\nend = 1\n");
   const FixedPoint truth{8, {0.5, 0.1, 0.2}, J.asDiagonal(), {0.5, 1, 2}, {0, 0, -9.81}, {1, 0.2, 0.4}};
   return {"pend3d.toml", "far", "corner", {0.3, 0.4, 0.5}, 2e-3, 5e-4, {truth.at(0.3, 6000), truth.at(0.4, 8000), truth.at(0.5, 10000)}};
 }

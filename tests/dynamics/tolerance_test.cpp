@@ -11,6 +11,7 @@ namespace {
 struct Controlled {
   std::string name, end, reference_step;
   double first_tolerance = 1e-2;
+  double most = 2;  // true error over tolerance
 };
 
 void write_scene(const Workplace& w, const std::string& name) {
@@ -18,7 +19,7 @@ void write_scene(const Workplace& w, const std::string& name) {
   if (name == "top") top(w);
   if (name == "slider") slider(w);
   if (name == "dpsmooth") dpsmooth(w);
-  for (const char* verified : {"pendulum", "double_four_bar"})
+  for (const char* verified : {"pendulum", "double_four_bar", "squeezer"})
     if (name == verified)
       std::filesystem::copy_file(std::string(HILO_SOURCE) + "/tests/verify/" + name + "/scene.toml", w / (name + ".toml"));
 }
@@ -49,7 +50,7 @@ class Tolerance : public testing::TestWithParam<Controlled> {};
 // Done when, issue 3: true error over tolerance between 0.1 and 2 on six scenes over four decades.
 TEST_P(Tolerance, BoundsTheTrueErrorAndDoesNotWasteIt) {
   const Workplace w;
-  const auto& [name, end, step, first] = GetParam();
+  const auto& [name, end, step, first, most] = GetParam();
   write_scene(w, name);
   const auto run = [&](const std::string& options, const std::string& out) {
     const Ran ran = w.run("hilo-solve --quiet " + name + ".toml -o " + out + " --set time.end=" + end + " " + options);
@@ -67,14 +68,16 @@ TEST_P(Tolerance, BoundsTheTrueErrorAndDoesNotWasteIt) {
     for (size_t i = 0; i < truth.size(); ++i) error = std::max(error, (points[i] - truth[i]).norm());
     const double length = number_of(w, "run.json", "length");
     EXPECT_GT(error / (tolerance * length), 0.1) << tolerance;
-    EXPECT_LT(error / (tolerance * length), 2) << tolerance;
+    EXPECT_LT(error / (tolerance * length), most) << tolerance;
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Tolerance,
                          testing::Values(Controlled{"pend3d", "1", "1e-3"}, Controlled{"top", "0.2", "1e-4"},
                                          Controlled{"slider", "4", "2e-3"}, Controlled{"pendulum", "5", "5e-3"},
-                                         Controlled{"double_four_bar", "1.3", "1e-3"}, Controlled{"dpsmooth", "1.2", "1e-3"}),
+                                         Controlled{"double_four_bar", "1.3", "1e-3"}, Controlled{"dpsmooth", "1.2", "1e-3"},
+                                         // its motion multiplies early errors, which no local estimate sees
+                                         Controlled{"squeezer", "0.015", "1e-5", 1e-2, 4}),
                          [](const auto& p) { return p.param.name; });
 
 // Truth: RK4 on Euler's equations.  Steps change by a factor of three over the run; the order is that of error over number of steps.
