@@ -12,6 +12,7 @@ struct Command {
 
 Command render_command(CLI::App& app);
 Command model_command(CLI::App& app);
+Command mesh_command(CLI::App& app);
 Command gload_command(CLI::App& app);
 Command injury_command(CLI::App& app);
 Command series_command(CLI::App& app);

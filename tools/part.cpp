@@ -17,18 +17,20 @@ int main(int argc, char** argv) {
                                "hilo-part tags.h5 -n 2 -o parts-2.h5"});
     std::string mesh_path, scene_path, output, weights = "weighted";
     int n_parts = 0;
-    bool json = false;
+    bool json = false, table = false;
     app->add_option("mesh", mesh_path, "tags.h5 or mesh.h5")->required();
     app->add_option("scene", scene_path, "scene.toml: the work of its joints and springs is weighed in");
-    app->add_option("-n,--parts", n_parts, "number of parts (ranks)")->required()->type_name("N")->check(CLI::Range(1, 1 << 20));
-    app->add_option("-o,--output", output, "the parts file to write [parts-N.h5]")->type_name("FILE");
+    app->add_option("-n,--parts", n_parts, "number of parts (ranks)")->type_name("N")->check(CLI::Range(1, 1 << 20));
+    app->add_option("-o,--output", output, "the parts file to write [parts-N.h5]; with --table a CSV file [none]")->type_name("FILE");
     app->add_option("--weights", weights, "weighted: flexible and rigid work; uniform: number of cells")
         ->type_name("WORD")
         ->capture_default_str()
         ->check(CLI::IsMember({"weighted", "uniform"}));
+    app->add_flag("--table", table, "compare uniform and weighted partitions into 2, 4, 8 ... N parts [128]; no parts file is written");
     app->add_flag("--json", json, "the table as JSON");
     if (!parse(*app, argc, argv)) return;
-    if (output.empty()) output = fmt::format("parts-{}.h5", n_parts);
+    if (n_parts == 0 && !table) throw Error("", "--parts is required", "see hilo-part --help", Exit::usage);
+    if (output.empty() && !table) output = fmt::format("parts-{}.h5", n_parts);
     std::error_code absent;
     if (std::filesystem::equivalent(mesh_path, output, absent))
       throw Error(output, "would overwrite the file it reads", "give another -o", Exit::usage);
@@ -38,6 +40,12 @@ int main(int argc, char** argv) {
     if (!scene_path.empty()) scene = Scene::load(scene_path);
     if (!file.tagged && !is_quiet()) fmt::print(stderr, "hilo-part: {} has no tags, so every region is nonlinear\n", mesh_path);
     const CellGraph graph = cell_graph(file.mesh, file.fidelity, scene ? &*scene : nullptr);
+    if (table) {
+      const Table t = comparison(graph, file.mesh, n_parts ? n_parts : 128);
+      if (!output.empty()) write_text_file(output, csv(t));
+      fmt::print("{}", json ? t.json() + "\n" : t.text());
+      return;
+    }
     Division division{weights, {}, {}, {}};
     try {
       division.part = partition(graph, file.mesh, n_parts, weights == "weighted");

@@ -28,12 +28,6 @@ void sort_unique(Rows& rows) {
   rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
 }
 
-/// Work of a flexible cell goes with its dense matrix, that of a rigid one with what is stored of it.
-double work_of(std::uint8_t shape, bool rigid) {
-  const double n = info(shape).n_nodes;
-  return rigid ? n : n * n;
-}
-
 class Distribution {
  public:
   Distribution(const std::string& path, const Comm& comm) : comm_(comm), file_(Store::open(path)) { out_.file = path; }
@@ -185,7 +179,7 @@ class Distribution {
       }
       const bool rigid = out_.fidelity[region_[c]] == Fidelity::rigid;
       cloud.x.push_back(centre / static_cast<double>(offset_[c + 1] - offset_[c]));
-      cloud.work.push_back(work_of(shape_[c], rigid));
+      cloud.work.push_back(rigid ? info(shape_[c]).n_nodes : work_of_cell[shape_[c]]);  // of a rigid cell: what is stored
       cloud.kind.push_back(rigid);
     }
     return bisect(cloud, comm_.size, comm_);

@@ -1,12 +1,18 @@
-// A partition made on the spot: recursive coordinate bisection, on cells spread over the ranks.
+// What cells cost, and a partition made on the spot: recursive coordinate bisection, on cells spread over the ranks.
 #pragma once
 #include <span>
 #include <vector>
 
 #include "base/math.hpp"
+#include "base/shape.hpp"
 #include "model/comm.hpp"
 
 namespace hilo {
+
+/// Work of a flexible cell in a Newton iteration by shape, hundredths of a linear hexahedron's: tangent, force, insertion and its share of
+/// a factorisation and a solve, as `costs-bench` (tests/bench/costs.cpp) measures them.  The law of the material changes it by less than
+/// that bench can tell: unknowns are what costs.
+inline constexpr int work_of_cell[n_shapes] = {2, 12, 138, 34, 370, 100, 620};
 
 /// Points to divide: this rank's share of them.
 struct Cloud {

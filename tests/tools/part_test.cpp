@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <sstream>
 
 #include "../cli.hpp"
 #include "../model/block.hpp"
@@ -103,8 +104,43 @@ TEST_F(Part, MoreCostlyShapesWeighMore) {
   write_mesh(place / "mixed.h5", m, {});
   const MeshFile f = parted("mixed.h5 -n 2 --quiet");
   std::vector<int> work(2, 0);
-  for (std::int64_t c = 0; c < f.mesh.n_cells(); ++c) work[f.rank[c]] += f.mesh.shape[c] == static_cast<int>(Shape::hex20) ? 45 : 10;
-  EXPECT_LE(std::abs(work[0] - work[1]), 45);
+  for (std::int64_t c = 0; c < f.mesh.n_cells(); ++c) work[f.rank[c]] += f.mesh.shape[c] == static_cast<int>(Shape::hex20) ? 620 : 100;
+  EXPECT_LE(std::abs(work[0] - work[1]), 620);
+}
+
+TEST_F(Part, FiringSceneIsBalancedFromTwoTo128Parts) {
+  const std::string scene = HILO_SOURCE "/data/firing/";
+  for (const char* size : {"0", "1"}) {
+    ASSERT_EQ(place.run("hilo-import --quiet " + scene + "vehicle.geo -o vehicle.h5 --define SIZE=" + size).exit, 0);
+    ASSERT_EQ(place.run("hilo-tag --quiet vehicle.h5 " + scene + "tags.toml -o vehicle-tags.h5").exit, 0);
+    const auto ran = place.run("hilo-part vehicle-tags.h5 " + scene + "scene.toml --table -o table.csv");
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    std::istringstream lines(place.run("cat table.csv").out);
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line.rfind("parts,uniform work,uniform speed-up,weighted work,weighted speed-up,", 0), 0u);
+    int rows = 0;
+    for (int n = 2; std::getline(lines, line); n *= 2, ++rows) {
+      double parts, uniform, slow, weighted, fast, rigid, pieces, flexible_pieces;
+      std::replace(line.begin(), line.end(), ',', ' ');
+      ASSERT_TRUE(std::istringstream(line) >> parts >> uniform >> slow >> weighted >> fast >> rigid >> pieces >> flexible_pieces) << line;
+      EXPECT_EQ(parts, n);
+      EXPECT_LE(weighted, 1.05) << size << " " << n;
+      EXPECT_GE(weighted, 1) << size << " " << n;
+      EXPECT_GT(uniform, 1.9) << size << " " << n;  // a quarter of the cells and fewer are flexible
+      EXPECT_GE(fast, n / 1.06);
+      EXPECT_LE(slow, n / 1.8);
+      EXPECT_LE(pieces, 3 * n) << line;  // a part is about one piece of the gun and one of the rest
+      EXPECT_LE(flexible_pieces, 1.2 * n + 2) << line;
+    }
+    EXPECT_EQ(rows, 7);
+  }
+}
+
+TEST_F(Part, TableEndsWhereFlexibleCellsDo) {
+  const auto ran = place.run("hilo-part tags.h5 --table -n 128 --json");  // 80 of them
+  EXPECT_NE(ran.out.find("\"parts\": 64"), std::string::npos) << ran.out << ran.err;
+  EXPECT_EQ(ran.out.find("\"parts\": 128"), std::string::npos) << ran.out;
 }
 
 TEST_F(Part, ChainOfBarsIsCutIntoConnectedParts) {
@@ -163,11 +199,11 @@ TEST_F(Part, JointsOfASceneKeepTheirEndsTogether) {
   EXPECT_EQ(ran.exit, 0) << ran.err;
   EXPECT_NE(ran.out.find("\"joints\": 1"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("\"pieces\": 1"), std::string::npos) << ran.out;
-  EXPECT_EQ(ran.out.find("\"pieces\": 2"), std::string::npos) << ran.out;
+  EXPECT_EQ(ran.out.find("\"pieces\": 2", ran.out.find("\"parts\": [")), std::string::npos) << ran.out;
   std::int64_t work = 0;
   for (size_t at = ran.out.find("\"flexible work\": "); at != std::string::npos; at = ran.out.find("\"flexible work\": ", at + 1))
     work += std::stoi(ran.out.substr(at + 17));
-  EXPECT_EQ(work, 16 * 10 + 5);
+  EXPECT_EQ(work, 16 * 100 + 8);
 }
 
 TEST_F(Part, WrongRequestsHaveTheirExitCodes) {

@@ -7,15 +7,14 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "model/partition.hpp"
 
 namespace hilo {
 namespace {
 
 static_assert(sizeof(idx_t) == sizeof(std::int32_t));
 
-/// Work of a flexible cell by shape, a tenth of a linear hexahedron: the size of its tangent and the unknowns that come with it.
-constexpr std::int32_t flexible_work[n_shapes] = {1, 2, 12, 6, 25, 10, 45};
-constexpr std::int32_t joint_work = 5;
+constexpr std::int32_t joint_work = 8;  // with its share of the bodies it joins, by costs-bench
 /// What it costs to part two cells: unknowns are exchanged between flexible ones, next to nothing where one is rigid.
 constexpr std::int32_t between_flexible = 8, beside_rigid = 1, through_joint = 4;
 
@@ -101,7 +100,7 @@ CellGraph cell_graph(const Mesh& mesh, const std::vector<Fidelity>& fidelity, co
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c) {
     const bool flexible = fidelity[mesh.region[c]] != Fidelity::rigid;
     g.is_flexible.push_back(flexible);
-    g.flexible.push_back(flexible ? flexible_work[mesh.shape[c]] : 0);
+    g.flexible.push_back(flexible ? work_of_cell[mesh.shape[c]] : 0);
     g.rigid.push_back(flexible ? 0 : 1);
   }
   build_dual(mesh, g);
@@ -112,12 +111,13 @@ CellGraph cell_graph(const Mesh& mesh, const std::vector<Fidelity>& fidelity, co
   return g;
 }
 
-std::vector<int> pieces_of_parts(const CellGraph& g, const std::vector<std::int32_t>& part, int n_parts) {
+std::vector<int> pieces_of_parts(const CellGraph& g, const std::vector<std::int32_t>& part, int n_parts, bool flexible_only) {
   std::vector<int> pieces(n_parts, 0);
   std::vector<char> seen(part.size(), 0);
   std::vector<std::int32_t> stack;
+  const auto skip = [&](std::int32_t c) { return seen[c] || (flexible_only && !g.is_flexible[c]); };
   for (std::int32_t start = 0; start < g.n(); ++start) {
-    if (seen[start]) continue;
+    if (skip(start)) continue;
     ++pieces[part[start]];
     seen[start] = 1;
     stack.push_back(start);
@@ -125,7 +125,7 @@ std::vector<int> pieces_of_parts(const CellGraph& g, const std::vector<std::int3
       const auto c = stack.back();
       stack.pop_back();
       for (auto k = g.first[c]; k < g.first[c + 1]; ++k)
-        if (const auto b = g.next[k]; !seen[b] && part[b] == part[start]) seen[b] = 1, stack.push_back(b);
+        if (const auto b = g.next[k]; !skip(b) && part[b] == part[start]) seen[b] = 1, stack.push_back(b);
     }
   }
   return pieces;

@@ -4,6 +4,8 @@
 #include <metis.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -88,6 +90,57 @@ Part slices(const CellGraph& g, const Mesh& mesh, int n_parts, bool weighted) {
   return part;
 }
 
+/// Give small pieces that lie apart from the rest of their part to the neighbour that most joins them, where its work allows.
+void join_pieces(const CellGraph& g, Part& part, int n_parts) {
+  PartReport r = report(g, part, n_parts);
+  const auto mean = [&](const std::vector<std::int64_t>& work) {
+    return static_cast<double>(std::accumulate(work.begin(), work.end(), std::int64_t{0})) / n_parts;
+  };
+  const double most_flexible = tolerated * mean(r.flexible_work), most_rigid = tolerated_rigid * mean(r.rigid_work);
+  for (int pass = 0; pass < 4; ++pass) {
+    std::vector<std::vector<std::int32_t>> pieces;  // of all parts
+    std::vector<std::array<std::int64_t, 2>> work;
+    std::vector<char> seen(part.size(), 0);
+    for (std::int32_t start = 0; start < g.n(); ++start) {
+      if (seen[start]) continue;
+      auto& piece = pieces.emplace_back(1, start);
+      auto& sum = work.emplace_back(std::array<std::int64_t, 2>{0, 0});
+      seen[start] = 1;
+      for (size_t i = 0; i < piece.size(); ++i) {
+        const auto c = piece[i];
+        sum[0] += g.flexible[c], sum[1] += g.rigid[c];
+        for (auto k = g.first[c]; k < g.first[c + 1]; ++k)
+          if (const auto b = g.next[k]; !seen[b] && part[b] == part[c]) seen[b] = 1, piece.push_back(b);
+      }
+    }
+    std::vector<size_t> main(n_parts, pieces.size());  // the largest piece of each part stays
+    for (size_t i = 0; i < pieces.size(); ++i) {
+      auto& best = main[part[pieces[i][0]]];
+      if (best == pieces.size() || work[i] > work[best]) best = i;
+    }
+    bool moved = false;
+    for (size_t i = 0; i < pieces.size(); ++i) {
+      const auto from = part[pieces[i][0]];
+      if (main[from] == i) continue;
+      std::map<std::int32_t, std::int64_t> joined;  // weight of the edges to each other part
+      for (const auto c : pieces[i])
+        for (auto k = g.first[c]; k < g.first[c + 1]; ++k)
+          if (part[g.next[k]] != from) joined[part[g.next[k]]] += g.joined[k];
+      std::int32_t to = -1;
+      for (const auto& [p, weight] : joined)
+        if ((to < 0 || weight > joined[to]) && (work[i][0] == 0 || static_cast<double>(r.flexible_work[p] + work[i][0]) <= most_flexible) &&
+            (work[i][1] == 0 || static_cast<double>(r.rigid_work[p] + work[i][1]) <= most_rigid))
+          to = p;
+      if (to < 0) continue;
+      for (const auto c : pieces[i]) part[c] = to;
+      r.flexible_work[from] -= work[i][0], r.rigid_work[from] -= work[i][1];
+      r.flexible_work[to] += work[i][0], r.rigid_work[to] += work[i][1];
+      moved = true;
+    }
+    if (!moved) break;
+  }
+}
+
 /// Order of merit, smaller is better.
 auto merit(const CellGraph& g, const Part& part, int n_parts, bool weighted) {
   const PartReport r = report(g, part, n_parts);
@@ -110,8 +163,12 @@ PartReport report(const CellGraph& g, const Part& part, int n_parts) {
       if (const auto b = g.next[k]; b > c && part[b] != p) ++r.cut, r.flexible_cut += g.is_flexible[c] && g.is_flexible[b];
   }
   r.pieces = pieces_of_parts(g, part, n_parts);
+  r.flexible_pieces = pieces_of_parts(g, part, n_parts, true);
   r.flexible_balance = largest_over_mean(r.flexible_work);
   r.rigid_balance = largest_over_mean(r.rigid_work);
+  std::vector<std::int64_t> work = r.flexible_work;
+  for (int p = 0; p < n_parts; ++p) work[p] += r.rigid_work[p];
+  r.speed_up = n_parts / largest_over_mean(work);
   return r;
 }
 
@@ -125,6 +182,7 @@ Part partition(const CellGraph& g, const Mesh& mesh, int n_parts, bool weighted)
   Part best;
   const auto consider = [&](Part part) {
     if (part.empty()) return;
+    if (weighted) join_pieces(g, part, n_parts);
     if (best.empty() || merit(g, part, n_parts, weighted) < merit(g, best, n_parts, weighted)) best = std::move(part);
   };
   const auto good = [&] {

@@ -10,9 +10,10 @@ namespace hilo {
 /// What a partition is worth.
 struct PartReport {
   std::vector<std::int64_t> cells, flexible_cells, flexible_work, rigid_work;  // per part
-  std::vector<int> pieces;                                                     // connected pieces per part
+  std::vector<int> pieces, flexible_pieces;                                    // connected pieces per part; of its flexible cells alone
   std::int64_t cut = 0, flexible_cut = 0;                                      // facets between parts; those between two flexible cells
   double flexible_balance = 1, rigid_balance = 1;                              // largest work over the mean
+  double speed_up = 1;                                                         // all work over the largest of a part
 };
 PartReport report(const CellGraph& graph, const std::vector<std::int32_t>& part, int n_parts);
 

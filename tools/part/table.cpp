@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/table.hpp"
 
 namespace hilo {
 namespace {
+
+int sum(const std::vector<int>& list) { return std::accumulate(list.begin(), list.end(), 0); }
 
 Table table_of(const PartReport& r) {
   Table t{{"part", "cells", "flexible", "flexible work", "rigid work", "pieces"}, {}, 0};
@@ -21,13 +24,17 @@ Table table_of(const PartReport& r) {
 }
 
 std::string line(const std::string& weights, const PartReport& r) {
-  return fmt::format("{}: largest over mean {:.3f} flexible work, {:.3f} rigid work; cut {} facets, {} between flexible cells\n", weights,
-                     r.flexible_balance, r.rigid_balance, r.cut, r.flexible_cut);
+  return fmt::format(
+      "{}: largest over mean {:.3f} flexible work, {:.3f} rigid work; cut {} facets, {} between flexible cells; {} pieces, {} of flexible "
+      "cells\n",
+      weights, r.flexible_balance, r.rigid_balance, r.cut, r.flexible_cut, sum(r.pieces), sum(r.flexible_pieces));
 }
 
 std::string json_of(const PartReport& r) {
-  return fmt::format("{{\"flexible_balance\": {:.6f}, \"rigid_balance\": {:.6f}, \"cut\": {}, \"flexible_cut\": {}}}", r.flexible_balance,
-                     r.rigid_balance, r.cut, r.flexible_cut);
+  return fmt::format(
+      "{{\"flexible_balance\": {:.6f}, \"rigid_balance\": {:.6f}, \"cut\": {}, \"flexible_cut\": {}, \"speed_up\": {:.4f}, "
+      "\"pieces\": {}, \"flexible_pieces\": {}}}",
+      r.flexible_balance, r.rigid_balance, r.cut, r.flexible_cut, r.speed_up, sum(r.pieces), sum(r.flexible_pieces));
 }
 
 std::string other_name(const Division& d) { return d.weights == "weighted" ? "uniform" : "weighted"; }
@@ -46,6 +53,33 @@ std::string division_json(const Division& d, const CellGraph& graph, const std::
       "{{\n  \"output\": {},\n  \"n_parts\": {},\n  \"weights\": {},\n  \"joints\": {},\n  \"{}\": {},\n{}  \"parts\": {}\n}}\n",
       json_text(output), d.report.cells.size(), json_text(d.weights), graph.joints, d.weights, json_of(d.report),
       d.other ? fmt::format("  \"{}\": {},\n", other_name(d), json_of(*d.other)) : "", table_of(d.report).json());
+}
+
+Table comparison(const CellGraph& graph, const Mesh& mesh, int most) {
+  Table t{{"parts", "uniform work", "uniform speed-up", "weighted work", "weighted speed-up", "rigid work", "pieces", "flexible pieces",
+           "cut", "flexible cut"},
+          {},
+          0};
+  const auto flexible = std::ranges::count(graph.is_flexible, 1);
+  for (int n = 2; n <= most && n <= (flexible ? flexible : graph.n()); n *= 2) {
+    const PartReport u = report(graph, partition(graph, mesh, n, false), n), w = report(graph, partition(graph, mesh, n, true), n);
+    t.rows.push_back({std::to_string(n), fmt::format("{:.3f}", u.flexible_balance), fmt::format("{:.2f}", u.speed_up),
+                      fmt::format("{:.3f}", w.flexible_balance), fmt::format("{:.2f}", w.speed_up), fmt::format("{:.3f}", w.rigid_balance),
+                      std::to_string(sum(w.pieces)), std::to_string(sum(w.flexible_pieces)), std::to_string(w.cut),
+                      std::to_string(w.flexible_cut)});
+  }
+  return t;
+}
+
+std::string csv(const Table& t) {
+  std::string out;
+  const auto line = [&](const std::vector<std::string>& cells) {
+    for (size_t i = 0; i < cells.size(); ++i) out += (i ? "," : "") + cells[i];
+    out += '\n';
+  };
+  line(t.header);
+  for (const auto& row : t.rows) line(row);
+  return out;
 }
 
 std::vector<std::string> doubts(const Division& d) {
