@@ -52,6 +52,10 @@ Rgb blend(const Rgb& a, const Rgb& b, double w) { return {a.r + w * (b.r - a.r),
 
 Rgb map_colour(ColourMap map, double s) {
   if (map == ColourMap::cividis) return table_colour(cividis, s);
+  if (map == ColourMap::diverging) {  // OKLab lightness falls evenly to both ends, hues of 255 and 55 degrees
+    const double x = std::clamp(2 * s - 1, -1.0, 1.0), far = std::abs(x);
+    return oklch(0.97 - 0.52 * far, 0.13 * far * (1.8 - 0.8 * far), (x < 0 ? 255 : 55) * M_PI / 180);
+  }
   constexpr double dark = 0.09;  // the darkest violet is left out: under a shade it would be black
   return table_colour(viridis, dark + (1 - dark) * std::clamp(s, 0.0, 1.0));
 }
@@ -82,6 +86,11 @@ Rgb curve_colour(int n) {
                                      {0.250, 0.600, 0.830}}};
   if (n < static_cast<int>(dark.size())) return dark[static_cast<size_t>(std::max(n, 0))];
   return oklch(0.55, 0.12, 0.3 + 2.399963 * n);
+}
+
+double luminance(const Rgb& c) {
+  const auto linear = [](double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); };
+  return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
 }
 
 std::array<std::uint8_t, 3> bytes(const Rgb& c) {

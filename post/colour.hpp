@@ -10,8 +10,9 @@ struct Rgb {
   double r = 0, g = 0, b = 0;
 };
 
-enum class ColourMap { viridis, cividis };
-/// Colour of s in [0, 1] (clamped).  Monotone in lightness; cividis looks the same to colour-blind eyes.
+enum class ColourMap { viridis, cividis, diverging };
+/// Colour of s in [0, 1] (clamped).  Viridis and cividis rise in lightness, so that grey print keeps their order; cividis looks the same to
+/// colour-blind eyes.  Diverging goes from blue through white, its middle, to orange, which no kind of colour blindness takes for blue.
 Rgb map_colour(ColourMap map, double s);
 /// The n-th of an endless row of colours for categories, neighbours well apart; the first eight survive colour blindness.
 Rgb category_colour(int n);
@@ -19,6 +20,8 @@ Rgb category_colour(int n);
 Rgb curve_colour(int n);
 /// w = 0 gives a, w = 1 gives b.
 Rgb blend(const Rgb& a, const Rgb& b, double w);
+/// Relative luminance, 0 to 1: what grey print keeps [iec-61966-2-1].
+double luminance(const Rgb& c);
 std::array<std::uint8_t, 3> bytes(const Rgb& c);
 
 inline constexpr Rgb white{1, 1, 1}, ink{0.13, 0.14, 0.16}, faint{0.86, 0.87, 0.88};

@@ -11,6 +11,7 @@ struct Command {
 };
 
 Command render_command(CLI::App& app);
+Command movie_command(CLI::App& app);
 Command model_command(CLI::App& app);
 Command mesh_command(CLI::App& app);
 Command gload_command(CLI::App& app);

@@ -58,7 +58,8 @@ void draw_colour_bar(Painter& p, const Box& side, const ColourBar& bar) {
   double top = side.y + side.h - row / 2;
   for (const auto& line : wrapped(p, bar.quantity, text_size, side.w - 4 * s)) p.text({x, top}, line, text_size), top -= row;
   p.text({x, top}, fmt::format("[{}]", bar.unit), text_size);
-  const double foot = side.y + (bar.neutral.empty() ? 44 : 86) * s;
+  const bool signs = bar.low < 0;  // then the least is told too
+  const double foot = side.y + ((bar.neutral.empty() ? 44 : 86) + (signs ? 24 : 0)) * s;
   const Box box{std::round(x), std::round(foot), std::round(24 * s), std::round(top - 1.6 * row - foot)};
   constexpr int strips = 256;
   for (int i = 0; i < strips; ++i) {  // strips overlap, so that no seam shows
@@ -79,6 +80,7 @@ void draw_colour_bar(Painter& p, const Box& side, const ColourBar& bar) {
     p.text({box.x + box.w + 11 * s, y}, ticks.text[i], text_size);
   }
   double y = side.y + (bar.neutral.empty() ? 0 : 42) * s + 12 * s;
+  if (signs) p.text({x, y}, fmt::format("min {}", short_number(bar.least)), text_size), y += 24 * s;
   p.text({x, y}, fmt::format("max {}", short_number(bar.most)), text_size);
   if (bar.neutral.empty()) return;
   y = side.y + 12 * s;

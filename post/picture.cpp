@@ -7,6 +7,7 @@
 #include <vtkContextDevice2D.h>
 #include <vtkContextItem.h>
 #include <vtkContextScene.h>
+#include <vtkImageData.h>
 #include <vtkLogger.h>
 #include <vtkMatrix4x4.h>
 #include <vtkObjectFactory.h>
@@ -19,6 +20,7 @@
 #include <vtkWindowToImageFilter.h>
 
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 
 #include "base/error.hpp"
@@ -232,20 +234,38 @@ void Picture::paint(std::function<void(Painter&)> paint) {
   item_->Modified();
 }
 
-void Picture::write(const std::string& path) {
+vtkSmartPointer<vtkWindowToImageFilter> Picture::grab() {
   window_->Render();
-  const auto grab = vtkSmartPointer<vtkWindowToImageFilter>::New();
+  auto grab = vtkSmartPointer<vtkWindowToImageFilter>::New();
   grab->SetInput(window_);
   grab->ReadFrontBufferOff();
   grab->ShouldRerenderOff();
+  return grab;
+}
+
+std::string Picture::png() {
+  const auto image = grab();
   const auto png = vtkSmartPointer<vtkPNGWriter>::New();
-  png->SetInputConnection(grab->GetOutputPort());
+  png->SetInputConnection(image->GetOutputPort());
   png->WriteToMemoryOn();
   png->Write();
   vtkUnsignedCharArray* data = png->GetResult();
-  if (!data || data->GetNumberOfTuples() == 0) throw Error(path, "the picture could not be encoded", "", Exit::fault);
-  write_out(path, std::string(reinterpret_cast<const char*>(data->GetPointer(0)), static_cast<size_t>(data->GetNumberOfTuples())));
+  if (!data || data->GetNumberOfTuples() == 0) throw Error("picture", "could not be encoded", "", Exit::fault);
+  return {reinterpret_cast<const char*>(data->GetPointer(0)), static_cast<size_t>(data->GetNumberOfTuples())};
 }
+
+std::string Picture::pixels() {
+  const auto image = grab();
+  image->Update();
+  vtkImageData* data = image->GetOutput();
+  const size_t row = 3 * static_cast<size_t>(width);
+  std::string rows(row * static_cast<size_t>(height), '\0');
+  for (int y = 0; y < height; ++y)
+    std::memcpy(rows.data() + static_cast<size_t>(height - 1 - y) * row, data->GetScalarPointer(0, y, 0), row);
+  return rows;
+}
+
+void Picture::write(const std::string& path) { write_out(path, png()); }
 
 std::pair<int, int> parse_size(const std::string& text) {
   int w = 0, h = 0;

@@ -13,6 +13,7 @@
 
 class vtkContext2D;
 class vtkRenderWindow;
+class vtkWindowToImageFilter;
 
 namespace hilo {
 
@@ -68,9 +69,13 @@ class Picture {
   void paint(std::function<void(Painter&)> paint);
   /// Render and write a PNG, whole or not at all; folders are made.
   void write(const std::string& path);
+  /// Render: the same as bytes of a PNG, or as rows of red, green and blue from the top.
+  std::string png();
+  std::string pixels();
   const int width, height;
 
  private:
+  vtkSmartPointer<vtkWindowToImageFilter> grab();
   vtkSmartPointer<vtkRenderWindow> window_;
   vtkSmartPointer<vtkRenderer> top_;
   class Item;

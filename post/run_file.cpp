@@ -37,15 +37,15 @@ double number(const std::string& text, const std::string& option) {
 bool matches(const std::string& glob, const std::string& name) { return fnmatch(glob.c_str(), name.c_str(), 0) == 0; }
 
 RunFile::RunFile(const std::string& path) : path(path), store_(Store::open(path)) {
-  const std::string format = store_.text_attribute("/", "format").value_or("");
+  const std::string format = store_->text_attribute("/", "format").value_or("");
   if (format != "hilo run")
     throw Error(path, format.empty() ? "is no file of hilo" : fmt::format("is a \"{}\", not a run", format),
                 "give the run.h5 of hilo-solve");
-  complete = store_.number_attribute("/", "complete").value_or(0) != 0;
-  title = store_.text_attribute("/", "title").value_or("");
+  complete = store_->number_attribute("/", "complete").value_or(0) != 0;
+  title = store_->text_attribute("/", "title").value_or("");
   if (title.empty()) title = fs::path(path).stem().string();
-  for (const std::string& key : store_.list("/field"))
-    if (const auto t = store_.number_attribute("/field/" + key, "t")) steps.push_back({key, *t});
+  for (const std::string& key : store_->list("/field"))
+    if (const auto t = store_->number_attribute("/field/" + key, "t")) steps.push_back({key, *t});
 }
 
 const MeshFile& RunFile::mesh_file() {
@@ -53,13 +53,13 @@ const MeshFile& RunFile::mesh_file() {
   if (!has_mesh())
     throw Error(path, "holds no mesh: a scene of bodies alone has no surfaces to draw or export",
                 "its histories are there: hilo-post series --list");
-  const auto link = store_.linked("/mesh");
+  const auto link = store_->linked("/mesh");
   const std::string target = link ? resolved_from(path, link->first) : path;
   if (!fs::exists(target))
     throw Error(path, fmt::format("the mesh it was run on, {}, is missing", target), "keep it where it was, or move both together");
   mesh_ = read_mesh_file(target);
-  if (store_.has("/tags/fidelity")) {  // as run, which may differ from the tags there are now
-    const auto words = store_.read_strings("/tags/fidelity");
+  if (store_->has("/tags/fidelity")) {  // as run, which may differ from the tags there are now
+    const auto words = store_->read_strings("/tags/fidelity");
     if (words.size() != mesh_->mesh.region_name.size())
       throw Error(path, fmt::format("{} tags, but {} has {} regions", words.size(), target, mesh_->mesh.region_name.size()),
                   "the mesh was changed after the run");
@@ -68,7 +68,7 @@ const MeshFile& RunFile::mesh_file() {
     mesh_->tagged = true;
   }
   mesh_->rank.clear();
-  if (store_.has("/parts/rank")) mesh_->rank = store_.read<std::int32_t>("/parts/rank");
+  if (store_->has("/parts/rank")) mesh_->rank = store_->read<std::int32_t>("/parts/rank");
   if (!mesh_->rank.empty() && mesh_->rank.size() != mesh_->mesh.shape.size())
     throw Error(path, fmt::format("ranks of {} cells, but {} has {}", mesh_->rank.size(), target, mesh_->mesh.shape.size()),
                 "the mesh was changed after the run");
@@ -77,18 +77,21 @@ const MeshFile& RunFile::mesh_file() {
   return *mesh_;
 }
 
-std::vector<std::string> RunFile::fields(const Step& step) const { return store_.list("/field/" + step.key); }
+void RunFile::close() { store_.reset(); }
+void RunFile::open() { store_ = Store::open(path); }
+
+std::vector<std::string> RunFile::fields(const Step& step) const { return store_->list("/field/" + step.key); }
 
 RunFile::Field RunFile::field(const Step& step, const std::string& name) const {
   const std::string array = fmt::format("/field/{}/{}", step.key, name);
   const auto names = fields(step);
-  if (!store_.has(array)) {
+  if (!store_->has(array)) {
     std::string hint = suggest(name, names);
     if (hint.empty()) hint = fmt::format("there are {}", fmt::join(names, ", "));
     throw Error(path, fmt::format("no field \"{}\" in step {}", name, step.key), hint);
   }
-  const auto shape = store_.shape(array);
-  return {store_.read<double>(array), shape.size() > 1 ? static_cast<int>(shape[1]) : 1};
+  const auto shape = store_->shape(array);
+  return {store_->read<double>(array), shape.size() > 1 ? static_cast<int>(shape[1]) : 1};
 }
 
 std::vector<Step> RunFile::select_steps(const std::string& numbers, const std::string& times) const {

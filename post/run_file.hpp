@@ -40,7 +40,7 @@ class RunFile {
   /// Mesh with the fidelity it was run at and the ranks of a parallel run; read at the first call.  Error for a scene of bodies alone.
   const MeshFile& mesh_file();
   const Mesh& mesh() { return mesh_file().mesh; }
-  bool has_mesh() const { return store_.linked("/mesh") || store_.has("/mesh"); }
+  bool has_mesh() const { return store_->linked("/mesh") || store_->has("/mesh"); }
 
   /// A nodal or cell field of a step and its number of columns; Error with the names there are.
   struct Field {
@@ -57,10 +57,13 @@ class RunFile {
   /// Columns and units without the values.
   Series describe(const std::string& name) const;
   Series series(const std::string& name) const;
-  const Store& store() const { return store_; }
+  const Store& store() const { return *store_; }
+  /// Close the file, and open it again: two processes must not share a handle.  What was read stays.
+  void close();
+  void open();
 
  private:
-  Store store_;
+  std::optional<Store> store_;
   std::optional<MeshFile> mesh_;
 };
 

@@ -47,11 +47,11 @@ std::string array_of(const std::string& name) {
 
 std::vector<std::string> RunFile::series_names() const {
   std::vector<std::string> names;
-  for (const std::string& item : store_.list("/history")) {
+  for (const std::string& item : store_->list("/history")) {
     if (item == "t") continue;
-    const auto members = store_.list("/history/" + item);  // of an array: none
+    const auto members = store_->list("/history/" + item);  // of an array: none
     for (const std::string& member : members) names.push_back(item + "." + from_link_name(member));
-    if (members.empty() && !store_.shape("/history/" + item).empty()) names.push_back(item);
+    if (members.empty() && !store_->shape("/history/" + item).empty()) names.push_back(item);
   }
   return names;
 }
@@ -62,13 +62,13 @@ Series RunFile::describe(const std::string& name) const {
     throw Error(path, fmt::format("no history \"{}\"", name), suggest(name, names));
   Series s;
   s.name = name;
-  const auto shape = store_.shape(array_of(name));
+  const auto shape = store_->shape(array_of(name));
   const size_t columns = shape.size() > 1 ? static_cast<size_t>(shape[1]) : 1;
   const std::string group = name.substr(0, name.find('.'));
   for (const Layout& layout : layouts())
     if (layout.group == group && layout.column.size() == columns) s.column = layout.column, s.unit = layout.unit;
   if (s.column.empty()) {
-    const std::string unit = store_.text_attribute(array_of(name), "unit").value_or("");
+    const std::string unit = store_->text_attribute(array_of(name), "unit").value_or("");
     for (size_t c = 0; c < columns; ++c) s.column.push_back(columns == 1 ? "value" : std::to_string(c)), s.unit.push_back(unit);
   }
   return s;
@@ -77,8 +77,8 @@ Series RunFile::describe(const std::string& name) const {
 Series RunFile::series(const std::string& name) const {
   Series s = describe(name);
   const std::string array = array_of(name);
-  s.value = store_.read<double>(array);
-  s.t = store_.read<double>(store_.text_attribute(array, "time").value_or("/history/t"));
+  s.value = store_->read<double>(array);
+  s.t = store_->read<double>(store_->text_attribute(array, "time").value_or("/history/t"));
   // The arrays of a run in progress may differ by the row being written.
   const size_t rows = std::min(s.t.size(), s.value.size() / s.column.size());
   s.t.resize(rows);

@@ -49,15 +49,13 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
               hint.empty() ? "von_mises, acceleration, displacement, velocity, stress.xx, region, fidelity or partition" : hint);
 }
 
-std::vector<double> nodal_values(const RunFile& run, const Step& step, const ShownField& field, std::int64_t n_nodes) {
-  RunFile::Field raw = run.field(step, field.array);
-  const auto columns = static_cast<size_t>(raw.columns), n = static_cast<size_t>(n_nodes);
-  if (raw.value.size() != n * columns || field.component >= raw.columns)
-    throw Error(run.path, fmt::format("field \"{}\" of step {} has {} numbers for {} nodes", field.array, step.key, raw.value.size(), n),
-                "the mesh was changed after the run, or the step is not written yet");
+std::vector<double> reduced(RunFile::Field raw, const ShownField& field, const std::string& path) {
+  const auto columns = static_cast<size_t>(raw.columns);
+  if (field.component >= raw.columns)
+    throw Error(path, fmt::format("field \"{}\" has {} columns", field.array, raw.columns), "the file was not written by hilo-solve");
   if (columns == 1) return std::move(raw.value);
-  std::vector<double> value(n);
-  for (size_t i = 0; i < n; ++i) {
+  std::vector<double> value(raw.value.size() / columns);
+  for (size_t i = 0; i < value.size(); ++i) {
     const double* x = raw.value.data() + i * columns;
     if (field.component >= 0) {
       value[i] = x[field.component];

@@ -18,8 +18,8 @@ struct ShownField {
 };
 /// Error (exit 2) with a suggestion for a name that no run can hold.
 ShownField shown_field(const std::string& name, const std::vector<std::string>& known);
-/// Nodal numbers in the stored unit.
-std::vector<double> nodal_values(const RunFile& run, const Step& step, const ShownField& field, std::int64_t n_nodes);
+/// One number per row, in the stored unit: the component, or the size of a vector.  `path` is what an error names.
+std::vector<double> reduced(RunFile::Field raw, const ShownField& field, const std::string& path);
 
 /// Cells under names: one of the fields region, fidelity, partition.
 bool is_named_field(const std::string& name);

@@ -10,6 +10,6 @@ awk '/^```sh$/ {on = 1; next} /^```$/ {on = 0} on' "$repo/docs/tour.md" > tour-b
 awk '/^```python$/ {on = 1; next} /^```$/ {on = 0} on' "$repo/docs/tour.md" > read.py
 bash -euo pipefail tour-blocks.sh
 if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then /usr/bin/python3 read.py; fi
-for f in run.h5 run.xdmf run.json model.png hinge.csv hinge.png gload.csv gload.png; do
+for f in run.h5 run.xdmf run.json model.png vm.png two.png arm.mp4 hinge.csv hinge.png gload.csv gload.png; do
   [ -s "$f" ] || { echo "tour: $f is missing" >&2; exit 1; }
 done

@@ -1,0 +1,22 @@
+// What a frame of a run shows and how: the options that render and movie share.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hilo {
+
+struct FrameOptions {
+  std::string run, field = "von_mises", camera = "iso", range, size = "1280x720", edges = "feature", unit, title, colours = "auto", minus;
+  std::vector<std::string> beside, label, show, hide, zoom;
+  double scale = 1;
+};
+void add_frame_options(CLI::App& sub, FrameOptions& o);
+
+/// "low,high" with low < high; Error (exit 1) otherwise.
+std::pair<double, double> parse_range(const std::string& text);
+/// Short names that tell paths apart: the file's stem, or the folders where stems are alike.
+std::vector<std::string> distinct_names(const std::vector<std::string>& paths);
+
+}  // namespace hilo

@@ -1,0 +1,160 @@
+#include "post/run_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace hilo {
+namespace {
+
+/// The fields of two runs can be subtracted only node by node.
+void same_mesh(const Mesh& a, const Mesh& b, const std::string& path_a, const std::string& path_b) {
+  const char* hint = "--minus needs two runs on one mesh; --beside draws any two";
+  if (a.n_nodes() != b.n_nodes() || a.n_cells() != b.n_cells())
+    throw Error(path_b,
+                fmt::format("{} nodes and {} cells, but {} has {} and {}", b.n_nodes(), b.n_cells(), path_a, a.n_nodes(), a.n_cells()),
+                hint);
+  Vec3 low = Vec3::Constant(1e300), high = -low;
+  for (const Vec3& x : a.X) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  const double near = 1e-9 * (high - low).norm();
+  for (size_t n = 0; n < a.X.size(); ++n)
+    if ((a.X[n] - b.X[n]).norm() > near) throw Error(path_b, fmt::format("node {} is elsewhere than in {}", a.node_id[n], path_a), hint);
+  if (a.nodes != b.nodes || a.offset != b.offset)
+    throw Error(path_b, fmt::format("its cells join other nodes than those of {}", path_a), hint);
+}
+
+}  // namespace
+
+RunView::RunView(const FrameOptions& o, const std::string& path)
+    : o_(o), run_(path), file_(run_.mesh_file()), mesh_(file_.mesh), playback_(std::make_unique<Playback>(run_)) {
+  shown_ = shown_regions(mesh_, o.show, o.hide);
+  zoomed_ = o.zoom.empty() ? shown_ : shown_regions(mesh_, o.zoom, o.hide);
+  valued_ = shown_;
+  if (is_named_field(o.field)) {
+    if (!o.minus.empty()) throw Error("--minus", fmt::format("{} has no differences", o.field), "take a field of numbers", Exit::usage);
+    named_ = named_cells(file_, o.field, shown_, run_.path);
+  } else {
+    field_ = shown_field(o.field, run_.fields(run_.steps.front()));
+  }
+  for (size_t r = 0; r < shown_.size(); ++r)
+    if (field_.flexible_only && file_.fidelity[r] == Fidelity::rigid) valued_[r] = false;
+  if (!o.minus.empty()) {
+    minus_ = std::make_unique<RunFile>(o.minus);
+    same_mesh(mesh_, minus_->mesh(), run_.path, minus_->path);
+    for (size_t r = 0; r < shown_.size(); ++r)
+      if (field_.flexible_only && minus_->mesh_file().fidelity[r] == Fidelity::rigid) valued_[r] = false;
+    minus_playback_ = std::make_unique<Playback>(*minus_);
+    field_.from_zero = field_.component < 0 && field_.array != "von_mises";  // the size of a difference
+    field_.label += ", difference";
+  }
+  make_skins();
+}
+
+bool RunView::has_values() const { return std::find(valued_.begin(), valued_.end(), true) != valued_.end(); }
+bool RunView::has_neutral() const { return !toned_->empty(); }
+
+void RunView::close_files() {
+  run_.close();
+  if (minus_) minus_->close();
+}
+
+void RunView::open_files() {
+  run_.open();
+  if (minus_) minus_->open();
+}
+
+void RunView::make_skins() {
+  std::vector<Facet> coloured, toned;
+  for (const Facet& f : boundary_facets(mesh_, shown_)) (valued_[region_of(f.cell)] ? coloured : toned).push_back(f);
+  std::vector<std::int64_t> coloured_bars, toned_bars;
+  for (std::int64_t c = 0; c < mesh_.n_cells(); ++c)
+    if (info(mesh_.shape[static_cast<size_t>(c)]).dimension == 1 && shown_[region_of(c)])
+      (valued_[region_of(c)] ? coloured_bars : toned_bars).push_back(c);
+  coloured_ = std::make_unique<Skin>(mesh_, coloured, coloured_bars);
+  toned_ = std::make_unique<Skin>(mesh_, toned, toned_bars);
+  counted_.assign(static_cast<size_t>(mesh_.n_nodes()), false);
+  framed_ = counted_;
+  for (std::int64_t c = 0; c < mesh_.n_cells(); ++c)
+    for (const std::int64_t n : mesh_.cell(c)) {
+      if (valued_[region_of(c)]) counted_[static_cast<size_t>(n)] = true;
+      if (zoomed_[region_of(c)]) framed_[static_cast<size_t>(n)] = true;
+    }
+  if (!is_named_field(o_.field)) return;
+  std::vector<std::array<std::uint8_t, 3>> colour(static_cast<size_t>(mesh_.n_cells()));
+  for (size_t c = 0; c < colour.size(); ++c) colour[c] = bytes(named_.colours[static_cast<size_t>(named_.name_of[c])]);
+  coloured_->set_cell_colours(colour);
+}
+
+std::vector<Vec3> RunView::positions(double t) {
+  std::vector<Vec3> x = playback_->positions(t);
+  if (o_.scale != 1)
+    for (size_t n = 0; n < x.size(); ++n) x[n] = mesh_.X[n] + o_.scale * (x[n] - mesh_.X[n]);
+  return x;
+}
+
+std::vector<double> RunView::values(double t) {
+  RunFile::Field raw = playback_->field(t, field_.array);
+  if (minus_) {
+    const RunFile::Field other = minus_playback_->field(t, field_.array);
+    for (size_t i = 0; i < raw.value.size(); ++i) raw.value[i] -= other.value[i];
+  }
+  return reduced(std::move(raw), field_, run_.path);
+}
+
+Extent RunView::bounds(const std::vector<double>& value) const {
+  Extent e;
+  for (size_t n = 0; n < value.size(); ++n)
+    if (counted_[n]) e.add(value[n]);
+  return e;
+}
+
+Extent RunView::survey(double t, const Fit& axes, std::vector<Vec3>& extremes) {
+  // Nodes extreme in many directions stand for all of them: enough to frame the picture, whatever the number of instants.
+  const auto x = positions(t);
+  constexpr size_t n = 48;
+  std::array<double, 3 * n> best;
+  std::array<const Vec3*, 3 * n> who{};
+  best.fill(-std::numeric_limits<double>::infinity());
+  std::array<Vec3, 3 * n> direction;
+  for (size_t k = 0; k < n; ++k) {
+    const double a = 2 * M_PI * static_cast<double>(k) / n;
+    for (size_t tilt = 0; tilt < 3; ++tilt)
+      direction[3 * k + tilt] = std::cos(a) * axes.right() + std::sin(a) * axes.up() + 0.2 * (static_cast<double>(tilt) - 1) * axes.back();
+  }
+  for (size_t node = 0; node < x.size(); ++node) {
+    if (!framed_[node]) continue;
+    for (size_t k = 0; k < direction.size(); ++k)
+      if (const double d = direction[k].dot(x[node]); d > best[k]) best[k] = d, who[k] = &x[node];
+  }
+  for (const Vec3* w : who)
+    if (w) extremes.push_back(*w);
+  return is_named_field(o_.field) || !has_values() ? Extent() : bounds(values(t));
+}
+
+void RunView::stage(vtkRenderer* stage, const Look& look, double scale, double height) {
+  Look own = look;
+  if (!coloured_->empty()) add_skin(stage, *coloured_, own);
+  own.by = Look::By::colour;
+  if (!toned_->empty()) add_skin(stage, *toned_, own);
+  for (const Skin* skin : {coloured_.get(), toned_.get()}) {
+    if (o_.edges == "all") add_grid(stage, *skin, scale, 0.35, pixels_per_metre(stage, height));
+    if (o_.edges != "none") add_lines(stage, skin->feature_edges(), {0.1, 0.1, 0.12}, 1.3 * scale, 0.8);
+  }
+}
+
+Extent RunView::show(double t, double factor) {
+  const auto x = positions(t);
+  coloured_->move(x);
+  toned_->move(x);
+  if (is_named_field(o_.field) || !has_values()) return {};
+  auto value = values(t);
+  for (double& v : value) v *= factor;
+  coloured_->set_values(value);
+  return bounds(value);
+}
+
+}  // namespace hilo

@@ -1,0 +1,67 @@
+// One run as it is drawn: what is shown of it, its skins on a stage, moved from instant to instant.
+#pragma once
+#include <vtkRenderer.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "post/frame_options.hpp"
+#include "post/playback.hpp"
+#include "post/shown_field.hpp"
+#include "post/skin.hpp"
+#include "post/stage.hpp"
+#include "post/view.hpp"
+
+namespace hilo {
+
+/// Least and largest of values; empty until the first is added.
+struct Extent {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  void add(double x) { low = std::min(low, x), high = std::max(high, x); }
+  void add(const Extent& e) { low = std::min(low, e.low), high = std::max(high, e.high); }
+  bool empty() const { return !(high >= low); }
+};
+
+class RunView {
+ public:
+  RunView(const FrameOptions& o, const std::string& path);
+
+  RunFile& run() { return run_; }
+  Playback& playback() { return *playback_; }
+  const MeshFile& file() const { return file_; }
+  const std::vector<bool>& shown() const { return shown_; }
+  const ShownField& field() const { return field_; }
+  const NamedCells& named() const { return named_; }
+  bool has_values() const;   // of the field: false where all that is shown is rigid and the field is a stress
+  bool has_neutral() const;  // something shown has no value
+  void close_files();
+  void open_files();
+
+  /// Range of the values drawn at a time, in the stored unit, and the nodes that frame the picture.
+  Extent survey(double t, const Fit& axes, std::vector<Vec3>& extremes);
+  void stage(vtkRenderer* stage, const Look& look, double scale, double height);
+  /// Move to a time; values times `factor` are shown.  The range of what is drawn, in the shown unit.
+  Extent show(double t, double factor);
+
+ private:
+  void make_skins();
+  size_t region_of(std::int64_t cell) const { return static_cast<size_t>(mesh_.region[static_cast<size_t>(cell)]); }
+  std::vector<Vec3> positions(double t);
+  std::vector<double> values(double t);
+  Extent bounds(const std::vector<double>& value) const;
+
+  const FrameOptions& o_;
+  RunFile run_;
+  std::unique_ptr<RunFile> minus_;
+  const MeshFile& file_;
+  const Mesh& mesh_;
+  std::unique_ptr<Playback> playback_, minus_playback_;
+  std::vector<bool> shown_, zoomed_, valued_;  // per region
+  std::vector<bool> counted_, framed_;         // per node: in the range; in the frame
+  std::unique_ptr<Skin> coloured_, toned_;
+  ShownField field_;
+  NamedCells named_;
+};
+
+}  // namespace hilo
