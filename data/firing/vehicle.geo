@@ -496,7 +496,7 @@ For m In {0:1}
 EndFor
 
 // ---------------------------------------------------------------- wheels: solid rings, a node of each on the ground
-z_y = r_wheel; ra_y = r_axle; rb_y = 2*r_wheel; r_hub = r_axle + g_arm;
+z_y = r_wheel; ra_y = r_axle; rb_y = 2*r_wheel; r_hub = r_axle + g_arm; wheels() = {};
 For m In {0:1}
   side = 1 - 2*m;
   For j In {0:3}
@@ -513,6 +513,7 @@ For m In {0:1}
       Call Brick;
       wheel() += v; hub() += bF(0); tread() += bF(1);
     EndFor
+    wheels() += wheel();
     name = StrChoice(m, "r", "l");
     Physical Volume(Sprintf(StrCat("wheel_", name, "%g"), j + 1)) = wheel();
     Physical Surface(Sprintf(StrCat("axle_", name, "%g_wheel"), j + 1)) = hub();
