@@ -13,12 +13,13 @@
 namespace hilo {
 namespace {
 
-/// Four points of a body from its centre and directors: the centre, and one along each principal axis at the radius of gyration.
+/// Four points of a body from its centre and directors: the centre, and one along each principal axis, in the order of rising moments of
+/// inertia (falling ones of the Euler tensor J).
 std::array<Vec3, 4> body_arms(const Body& b) {
   std::array<Vec3, 4> arms{Vec3::Zero(), Vec3(b.size, 0, 0), Vec3(0, b.size, 0), Vec3(0, 0, b.size)};
   if (b.mass > 0 && !b.J.isZero(0)) {
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(b.J);
-    Mat3 axes = eigen.eigenvectors();
+    Mat3 axes = eigen.eigenvectors().rowwise().reverse();
     if (axes.determinant() < 0) axes.col(2) *= -1;
     for (int i = 0; i < 3; ++i) arms[1 + i] = b.size * axes.col(i);
   }

@@ -70,8 +70,8 @@ TEST_F(Show, MeshShowsRegionsWithVolumeAndBoxAndSets) {
   EXPECT_EQ(ran.exit, 0) << ran.err;
   EXPECT_EQ(line(ran.out, "hull "), "hull 6 0.75 7850 2.1e+11 0.3 [0, 0, 0] to [1.5, 1, 0.5]");
   EXPECT_EQ(line(ran.out, "barrel "), "barrel 2 0.25 - - - [1.5, 0, 0] to [2, 1, 0.5]");
-  EXPECT_EQ(line(ran.out, "left "), "left nodes 6 [0, 0, 0] to [0, 1, 0.5]");
-  EXPECT_EQ(line(ran.out, "left face"), "left face facets 2 [0, 0, 0] to [0, 1, 0.5]");
+  EXPECT_EQ(line(ran.out, "left "), "left nodes 6 - [0, 0, 0] to [0, 1, 0.5]");
+  EXPECT_EQ(line(ran.out, "left face"), "left face facets 2 0.5 [0, 0, 0] to [0, 1, 0.5]");
   EXPECT_EQ(line(ran.out, "nodes "), "nodes 30");
   EXPECT_EQ(line(ran.out, "  hex8"), " hex8 8");
   EXPECT_EQ(line(ran.out, "hilo-import"), "hilo-import bar.msh");

@@ -44,18 +44,22 @@ Table regions(const MeshFile& f) {
 }
 
 Table sets(const Mesh& m) {
-  Table t{{"set", "of", "size", "box [m]"}, {}, 2};
-  const auto row = [&](const std::string& name, const std::string& kind, size_t size, const auto& nodes) {
+  Table t{{"set", "of", "size", "area [m^2]", "box [m]"}, {}, 2};
+  const auto row = [&](const std::string& name, const std::string& kind, size_t size, const auto& nodes,
+                       double area = std::numeric_limits<double>::quiet_NaN()) {
     Box box;
     for (const auto a : nodes) box.add(m.X[a]);
-    t.rows.push_back({name, kind, std::to_string(size), box.text()});
+    t.rows.push_back({name, kind, std::to_string(size), number(area), box.text()});
   };
   for (const auto& [name, list] : m.node_sets) row(name, "nodes", list.size(), list);
   for (const auto& [name, list] : m.facet_sets) {
     std::vector<std::int64_t> nodes;
-    for (const auto& f : list)
+    double area = 0;
+    for (const auto& f : list) {
       for (const auto a : m.facet_nodes(f)) nodes.push_back(a);
-    row(name, "facets", list.size(), nodes);
+      area += facet_area(m, f).norm();
+    }
+    row(name, "facets", list.size(), nodes, area);
   }
   for (const auto& [name, list] : m.cell_sets) {
     std::vector<std::int64_t> nodes;
