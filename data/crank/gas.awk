@@ -1,6 +1,6 @@
 # Gauge pressure in the cylinder over time, one row per degree of crank:  awk -f gas.awk > out/gas.csv
 # Four strokes from t0, where the crank stands at the bottom: compression, expansion, exhaust, intake.  One zone of ideal gas,
-# dp/dV = -g p/V + (g - 1)/V dQ/dV, heat by Wiebe's law [heywood-1988]; the valves hold their pressures, and what is left when the exhaust
+# dp/dV = -g p/V + (g - 1)/V dQ/dV, heat by Wiebe's law [ghojel-2010]; the valves hold their pressures, and what is left when the exhaust
 # valve opens blows down.
 BEGIN {
   pi = 3.14159265358979
