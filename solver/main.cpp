@@ -1,5 +1,6 @@
 // hilo-solve: a scene, and the mesh it names, become motion.
 #include <fmt/format.h>
+#include <omp.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -98,6 +99,7 @@ int solve(int argc, char** argv, Comm& comm) {
 }  // namespace hilo
 
 int main(int argc, char** argv) {
+  omp_set_max_active_levels(0);  // a rank is a thread: those of CHOLMOD and others would fight for its core
   hilo::Comm* comm = nullptr;
   const int code = hilo::guarded("hilo-solve", [&] {
     comm = &hilo::Comm::world();

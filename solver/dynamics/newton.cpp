@@ -62,11 +62,19 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     phases().assembly += wall_clock() - start;
     ++phases().evaluations, phases().tangents += tangent;
   };
+  // What a solve may leave of the residual: a tenth of what the next iteration needs for the tolerance, and no less than Newton's own
+  // error, about the square of how far the last iteration came [eisenstat-walker-1996].
+  double last_residual = 0;
+  const auto forcing = [&] {
+    const double enough = 0.1 * options.tolerance / std::max(report.residual, 1e-300);
+    const double contraction = last_residual > 0 ? report.residual / last_residual : 1e-2;
+    return std::clamp(std::max(enough, 0.1 * contraction * contraction), 1e-10, 1e-3);
+  };
   const auto solve = [&] {
     b.resize(r.r.size()), z.assign(r.r.size(), 0.0);
     for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
     const double start = wall_clock();
-    const SolveReport solved = solver.solve(b, z);
+    const SolveReport solved = solver.solve(b, z, forcing());
     phases().solve += wall_clock() - start;
     ++phases().solves, phases().linear_iterations += solved.iterations;
     report.linear_iterations += solved.iterations;
@@ -93,11 +101,17 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
   for (int it = 0;; ++it) {
     if (near) {
       evaluate(false);
-      // chord steps with the factors at hand: a solve each, no tangent
-      for (int chord = 0; chord < 4 && report.residual > 1e-2 * options.tolerance && solver.repeats_cheaply(); ++chord) {
+      // chord steps with the matrix at hand, a solve each, no tangent: where solves are cheap, or little is left to do
+      const auto worth = [&] {
+        return solver.repeats_cheaply() ? report.residual > 1e-2 * options.tolerance
+                                        : report.residual > options.tolerance && report.residual < 1e3 * options.tolerance;
+      };
+      for (int chord = 0; chord < 4 && worth(); ++chord) {
         const double residual = report.residual;
-        if (!solve().ok || !(relative_correction(system, z) < 0.1 * report.correction)) break;
-        report.correction = relative_correction(system, z);
+        if (!solve().ok) break;
+        const double correction = system.comm->max(relative_correction(system, z));
+        if (!(correction < 0.1 * report.correction)) break;
+        report.correction = correction;
         move();
         evaluate(false);
         if (!(report.residual < 0.1 * residual)) break;
@@ -121,6 +135,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       return report;
     }
     const SolveReport solved = solve();
+    last_residual = report.residual;
     ++report.iterations;
     if (!solved.ok) {
       report.reason = solver.name() + ": " + solved.message;

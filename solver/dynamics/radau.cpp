@@ -41,7 +41,7 @@ class StageBlock final : public KktSolver {
     // held components are diagonal in their own stage; point masses are refused before
   }
   void sum_shared(std::span<double>) override {}
-  SolveReport solve(std::span<const double>, std::span<double>) override { return {}; }
+  SolveReport solve(std::span<const double>, std::span<double>, double) override { return {}; }
   std::string name() const override { return "stage block"; }
 
  private:

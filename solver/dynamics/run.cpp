@@ -16,24 +16,25 @@
 namespace hilo {
 namespace {
 
-/// The linear solver for the scene, its pattern set: the light one while factors stay small, MUMPS above, GMRES for what no direct solver
-/// holds; on several ranks BDDC, in a third of MUMPS' time and two thirds of its memory (docs/solvers.md).
+/// The linear solver for the scene, its pattern set: the light one while a factor fits, GMRES with incomplete factors for what no factor
+/// holds; on several ranks BDDC, in a third of the time of MUMPS and two thirds of its memory (docs/solvers.md).
 std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& system, bool talk) {
   const Entry& e = scene.table("solver");
   std::string kind = e.text("kind");
   const auto unknowns = 3 * system.map.n_global;
   std::string why = "asked for";
   if (kind == "auto") {
-    kind = system.comm->size > 1 ? "direct" : unknowns <= 20000 ? "light" : "direct";
-    if (unknowns > 600000) kind = "iterative";
+    kind = system.comm->size > 1 ? "direct" : "light";
+    if (unknowns > 300000) kind = "iterative";
     const auto ranks = system.comm->size;
     const auto flexible = 3 * system.map.first_dense;
     if (ranks >= 2 && flexible > 3000 && flexible / ranks <= 100000 && unknowns - flexible <= 1000) kind = "bddc";
     why = fmt::format("{} unknowns on {} rank{}", unknowns, system.comm->size, system.comm->size == 1 ? "" : "s");
   }
-  if (kind == "light" && system.comm->size > 1)
-    throw Error(e.where("kind"), "the light solver is serial", "use direct or iterative under mpirun");
-  auto solver = kind == "light" ? make_light_solver() : make_petsc_solver(kind, e.number("linear_tolerance"));
+  const bool is_light = kind == "light" || kind == "klu" || kind == "cholesky" || kind == "umfpack";
+  if (is_light && system.comm->size > 1)
+    throw Error(e.where("kind"), "the light solvers are serial", "use bddc, direct or iterative under mpirun");
+  auto solver = is_light ? make_light_solver(kind) : make_petsc_solver(kind, e.number("linear_tolerance"));
   solver->structure(system.cliques, system.map);
   if (talk) fmt::print(stderr, "solver {}: {}\n", solver->name(), why);
   return solver;

@@ -53,8 +53,9 @@ class KktSolver {
   virtual void add_diagonal(int block, const double d[3]) = 0;
   /// Sum what ranks hold of shared blocks; afterwards every rank sees the full values of its local blocks.
   virtual void sum_shared(std::span<double> local) = 0;
-  /// Solve A x = b; b has the full values of the local blocks, x gets them.
-  virtual SolveReport solve(std::span<const double> b, std::span<double> x) = 0;
+  /// Solve A x = b; b has the full values of the local blocks, x gets them.  `tolerance`: the relative residual that suffices, to a solver
+  /// that iterates and could stop there.
+  virtual SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance = 0) = 0;
   /// Whether a further solve with the same matrix costs little beside the first.
   virtual bool repeats_cheaply() const { return false; }
   virtual std::string name() const = 0;
@@ -62,8 +63,8 @@ class KktSolver {
   virtual double bytes() const { return 0; }
 };
 
-/// KLU for small systems, UMFPACK above [davis-2010, davis-2004]; serial, starts in microseconds.
-std::unique_ptr<KktSolver> make_light_solver();
+/// Serial, starts in microseconds: "klu", "cholesky" or "umfpack" (linear/factors.hpp); "light" chooses by size.
+std::unique_ptr<KktSolver> make_light_solver(const std::string& kind = "light");
 /// PETSc: "direct" (MUMPS), "iterative", "bddc" or "feti-dp"; loaded when first asked for, since PETSc's start costs more than a small run.
 std::unique_ptr<KktSolver> make_petsc_solver(const std::string& kind, double tolerance);
 

@@ -1,210 +1,192 @@
-// The light solve: sparse LU with the pattern found once, for scenes too small to start PETSc for.
+// The light solve: serial, for scenes that need not start PETSc.  Factors of one matrix serve the next ones while that is cheaper.
 #include <fmt/format.h>
-#include <suitesparse/klu.h>
-#include <suitesparse/umfpack.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
-#include "linear/kkt.hpp"
+#include "linear/factors.hpp"
+#include "linear/gmres.hpp"
 
 namespace hilo {
 namespace {
 
+constexpr int klu_below = 1500;       // unknowns
+constexpr int dense_at_most = 1200;   // unknowns of bodies and multipliers beside a Cholesky factor
+constexpr int least_iterations = 10;  // that lagged factors are given
+
 class LightSolver final : public KktSolver {
  public:
-  LightSolver() {
-    klu_defaults(&common_);
-    common_.btf = 0;  // the saddle point is one block
-    common_.scale = 2;
-    umfpack_di_defaults(control_);
-    control_[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
-    control_[UMFPACK_IRSTEP] = 0;
-  }
-  ~LightSolver() override { release(); }
+  explicit LightSolver(std::string kind) : kind_(std::move(kind)) {}
 
   void structure(const Cliques& cliques, const BlockMap& map) override {
-    release();
-    const int nb = static_cast<int>(map.global.size());
-    cliques_ = &cliques;
-    n_ = 3 * nb;
-    std::vector<std::vector<int>> neighbours(nb);
-    for (int i = 0; i < nb; ++i) neighbours[i].push_back(i);
-    for (int e = 0; e < cliques.size(); ++e)
-      for (int i : cliques[e])
-        for (int j : cliques[e])
-          if (i >= 0 && j >= 0) neighbours[i].push_back(j);
-    // CSR of the matrix; read as CSC it is the transpose, which the factorisation solves transposed
-    block_start_.assign(nb + 1, 0);
-    std::vector<int> columns;
-    for (int i = 0; i < nb; ++i) {
-      auto& list = neighbours[i];
-      std::sort(list.begin(), list.end());
-      list.erase(std::unique(list.begin(), list.end()), list.end());
-      columns.insert(columns.end(), list.begin(), list.end());
-      block_start_[i + 1] = static_cast<int>(columns.size());
-      std::vector<int>().swap(list);
-    }
-    Ap_.assign(n_ + 1, 0);
-    Ai_.clear();
-    for (int i = 0; i < nb; ++i)
-      for (int r = 0; r < 3; ++r) {
-        for (int k = block_start_[i]; k < block_start_[i + 1]; ++k)
-          for (int c = 0; c < 3; ++c) Ai_.push_back(3 * columns[k] + c);
-        Ap_[3 * i + r + 1] = static_cast<int>(Ai_.size());
-      }
-    Ax_.assign(Ai_.size(), 0);
-    position_.clear();
-    clique_position_.assign(1, 0);
-    for (int e = 0; e < cliques.size(); ++e) {
-      for (int i : cliques[e])
-        for (int j : cliques[e]) {
-          if (i < 0 || j < 0) {
-            position_.push_back(-1);
-            continue;
-          }
-          const auto begin = columns.begin() + block_start_[i], end = columns.begin() + block_start_[i + 1];
-          position_.push_back(Ap_[3 * i] + 3 * static_cast<int>(std::lower_bound(begin, end, j) - begin));
-        }
-      clique_position_.push_back(position_.size());
-    }
-    diagonal_.resize(nb);
-    for (int i = 0; i < nb; ++i) {
-      const auto begin = columns.begin() + block_start_[i], end = columns.begin() + block_start_[i + 1];
-      diagonal_[i] = Ap_[3 * i] + 3 * static_cast<int>(std::lower_bound(begin, end, i) - begin);
-    }
-    small_ = n_ < 1500;
+    A_.structure(cliques, static_cast<int>(map.global.size()));
+    is_dense_.assign(map.global.size(), 0);
+    for (size_t i = 0; i < map.global.size(); ++i) is_dense_[i] = map.global[i] >= map.first_dense;
+    const auto n_dense = 3 * std::count(is_dense_.begin(), is_dense_.end(), 1);
+    std::string kind = kind_;
+    if (kind == "light") kind = A_.n() < klu_below ? "klu" : n_dense <= dense_at_most && 2 * n_dense < A_.n() ? "cholesky" : "umfpack";
+    is_klu_ = kind == "klu";
+    factors_ = is_klu_ ? make_klu() : kind == "umfpack" ? make_umfpack() : make_cholesky(is_dense_);
+    is_definite_ = kind == "cholesky";
+    factored_ = ready_ = false;
+    weight_.clear();
   }
 
-  void zero() override { std::fill(Ax_.begin(), Ax_.end(), 0.0), factored_ = false; }
-
-  void add(int clique, const double* K) override {
-    const auto blocks = (*cliques_)[clique];
-    const size_t n = blocks.size();
-    const int* position = position_.data() + clique_position_[clique];
-    for (size_t i = 0; i < n; ++i) {
-      if (blocks[i] < 0) continue;
-      const int length = 3 * (block_start_[blocks[i] + 1] - block_start_[blocks[i]]);
-      for (size_t j = 0; j < n; ++j) {
-        const int p = position[i * n + j];
-        if (p < 0) continue;
-        for (int r = 0; r < 3; ++r) {
-          double* to = Ax_.data() + p + r * length;
-          const double* from = K + (3 * i + r) * 3 * n + 3 * j;
-          to[0] += from[0], to[1] += from[1], to[2] += from[2];
-        }
-      }
-    }
-  }
-
-  void add_diagonal(int block, const double d[3]) override {
-    const int length = 3 * (block_start_[block + 1] - block_start_[block]);
-    for (int r = 0; r < 3; ++r) Ax_[diagonal_[block] + r * length + r] += d[r];
-  }
-
+  void zero() override { A_.zero(), factored_ = false; }
+  void add(int clique, const double* K) override { A_.add(clique, K); }
+  void add_diagonal(int block, const double d[3]) override { A_.add_diagonal(block, d); }
   void sum_shared(std::span<double>) override {}
 
-  SolveReport solve(std::span<const double> b, std::span<double> x) override {
-    if (factored_ && small_) return apply_inverse(b.data(), x.data()), SolveReport{};
-    if (factored_) return refined(b, x, 2);
-    factored_ = true;
-    // pivots of the factorisation before serve again while the residual says that they are good ones
-    if (small_ && klu_numeric_ && klu_refactor(Ap_.data(), Ai_.data(), Ax_.data(), klu_symbolic_, klu_numeric_, &common_))
-      if (const SolveReport report = refined(b, x, 1); report.ok) return report;
-    // above the size of KLU a factorisation costs a dozen solves: the last one, refined, often serves this matrix too
-    if (!small_ && umf_numeric_)
-      if (const SolveReport report = refined(b, x, 10, 0.2); report.residual < 1e-9) return report;
-    const bool ok = small_ ? factor_klu() : factor_umfpack();
-    if (!ok) return factored_ = false, SolveReport{false, 1, 0, "the matrix is singular"};
-    return refined(b, x, 3);
+  SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) override {
+    return is_klu_ ? solve_refined(b, x) : solve_iterated(b, x, tolerance);
   }
-  bool repeats_cheaply() const override { return small_; }  // UMFPACK: its solves with lagged factors are what a step costs
-
-  std::string name() const override { return small_ ? "light (KLU)" : "light (UMFPACK)"; }
+  bool repeats_cheaply() const override { return is_klu_; }
+  std::string name() const override { return fmt::format("light ({})", factors_->name()); }
+  double bytes() const override { return A_.bytes() + factors_->bytes(); }
 
  private:
-  /// x from the factors, refined until the residual is at round-off or shrinks by less than `contraction` in a pass; not ok when it
-  /// stays above 1e-6.
-  SolveReport refined(std::span<const double> b, std::span<double> x, int passes, double contraction = 1e300) {
+  SolveReport solve_refined(std::span<const double> b, std::span<double> x) {
+    if (factored_) return factors_->solve(b.data(), x.data()), SolveReport{};
+    factored_ = true;
+    // pivots of the factorisation before serve again while the residual says that they are good ones
+    if (factors_->refactor(A_))
+      if (const SolveReport report = refine(b, x, 1); report.ok) return report;
+    if (!factors_->factor(A_)) return factored_ = false, SolveReport{false, 1, 0, "the matrix is singular"};
+    return refine(b, x, 3);
+  }
+
+  /// x from the factors, refined until the residual is at round-off.
+  SolveReport refine(std::span<const double> b, std::span<double> x, int passes) {
+    factors_->solve(b.data(), x.data());
     SolveReport report;
-    double before = 1e300, backward = 0;
-    apply_inverse(b.data(), x.data());
-    residual_.resize(n_), correction_.resize(n_);
     for (int pass = 0;; ++pass) {
-      double worst = 0, norm = 0, terms = 0;  // of the residual, of b, and of the terms summed
-      for (int i = 0; i < n_; ++i) {
-        double s = b[i], sum = std::abs(b[i]);
-        for (int k = Ap_[i]; k < Ap_[i + 1]; ++k) {
-          const double term = Ax_[k] * x[Ai_[k]];
-          s -= term, sum += std::abs(term);
-        }
-        residual_[i] = s;
-        norm = std::max(norm, std::abs(b[i])), terms = std::max(terms, sum);
-        if (!(std::abs(s) <= worst)) worst = std::abs(s);
-      }
-      constexpr double tiny = 1e-280;  // what is at rest but for numbers below the normal ones has no relative residual
-      report.residual = norm > tiny ? worst / norm : worst;
-      backward = terms > tiny ? worst / terms : 0;
-      if (!std::isfinite(report.residual)) return {false, report.residual, 0, "the matrix is singular to working precision"};
-      if (report.residual < (contraction < 1 ? 1e-9 : 1e-11) || pass == passes || report.residual > contraction * before) break;
-      before = report.residual;
-      apply_inverse(residual_.data(), correction_.data());
-      for (int i = 0; i < n_; ++i) x[i] += correction_[i];
+      report = check(b, x);
+      if (!report.ok || report.residual < 1e-11 || pass == passes) return report;
+      correction_.resize(b.size());
+      factors_->solve(residual_.data(), correction_.data());
+      for (size_t i = 0; i < b.size(); ++i) x[i] += correction_[i];
     }
+  }
+
+  /// GMRES on the matrix, with the factors of this one or an earlier one.
+  SolveReport solve_iterated(std::span<const double> b, std::span<double> x, double tolerance) {
+    tolerance = std::max(tolerance, 1e-10);  // about what round-off leaves of stiff scenes
+    if (weight_.empty()) find_weights();
+    int before = 0;
+    if (ready_) {
+      const int allowed = least_iterations + static_cast<int>(factors_->cost());
+      SolveReport report = iterate(b, x, tolerance, allowed);
+      // new factors once what lagging has cost is what they cost
+      const double decades = -std::log10(std::clamp(report.residual, 1e-12, 0.5));
+      excess_ += std::max(0.0, report.iterations - rate_ * decades);
+      ready_ = report.ok && excess_ < factors_->cost();
+      if (report.ok) return report;
+      before = report.iterations;
+    }
+    SolveReport report = factor_and_iterate(b, x, tolerance);
+    if ((!report.ok || rate_ > 1) && factors_->sharpen()) before += report.iterations, report = factor_and_iterate(b, x, tolerance);
+    if (!report.ok && is_definite_) {
+      warn("", fmt::format("{} fails ({}): the flexible part may be unstable or held by nothing; unsymmetric factors from here on", name(),
+                           report.message));
+      factors_ = make_umfpack(), is_definite_ = false;
+      before += report.iterations;
+      report = factor_and_iterate(b, x, tolerance);
+    }
+    report.iterations += before;
+    return report;
+  }
+
+  SolveReport factor_and_iterate(std::span<const double> b, std::span<double> x, double tolerance) {
+    ready_ = false;
+    if (!factors_->factor(A_)) return {false, 1, 0, "the matrix is singular"};
+    find_weights();
+    const SolveReport report = iterate(b, x, tolerance, 60);
+    rate_ = report.iterations / -std::log10(std::clamp(report.residual, 1e-12, 0.5));
+    excess_ = 0;
+    ready_ = report.ok;
+    return report;
+  }
+
+  /// To the tolerance in rows weighted alike, or to round-off of what they sum.
+  SolveReport iterate(std::span<const double> b, std::span<double> x, double tolerance, int most) {
+    const auto multiply = [&](const double* in, double* out) { A_.multiply(in, out); };
+    const auto precondition = [&](const double* in, double* out) { factors_->solve(in, out); };
+    const auto weighted = [&](std::span<const double> r) {
+      double sum = 0;
+      for (size_t i = 0; i < r.size(); ++i) sum += weight_[i] * r[i] * weight_[i] * r[i];
+      return std::sqrt(sum);
+    };
+    const double norm = weighted(b);
+    SolveReport report;
+    int iterations = gmres_.solve(multiply, precondition, weight_, b, x, tolerance, most).iterations;
+    for (bool again = true;; again = false) {
+      report = check(b, x);
+      const double left = norm > 0 ? weighted(residual_) / norm : 0;
+      const bool done = left <= 2 * tolerance || report.ok;
+      if (!std::isfinite(left) || done || !again || iterations >= most) {  // the recurrence may flatter: once more from what is left
+        if (!done) report.message = fmt::format("no convergence in {} iterations, residual {:.1e}", iterations, left);
+        report.ok = done, report.residual = left, report.iterations = iterations;
+        return report;
+      }
+      correction_.resize(b.size());
+      iterations += gmres_.solve(multiply, precondition, weight_, residual_, correction_, tolerance / left, most - iterations).iterations;
+      for (size_t i = 0; i < b.size(); ++i) x[i] += correction_[i];
+    }
+  }
+
+  /// The residual by multiplication, into residual_.
+  SolveReport check(std::span<const double> b, std::span<const double> x) {
+    residual_.resize(b.size());
+    double worst = 0, norm = 0, terms = 0;  // of the residual, of b, and of the terms summed
+    const auto &start = A_.row_start(), &column = A_.column();
+    const auto& value = A_.values();
+    for (size_t i = 0; i < b.size(); ++i) {
+      double s = b[i], sum = std::abs(b[i]);
+      for (int k = start[i]; k < start[i + 1]; ++k) {
+        const double term = value[k] * x[column[k]];
+        s -= term, sum += std::abs(term);
+      }
+      residual_[i] = s;
+      norm = std::max(norm, std::abs(b[i])), terms = std::max(terms, sum);
+      if (!(std::abs(s) <= worst)) worst = std::abs(s);
+    }
+    constexpr double tiny = 1e-280;  // what is at rest but for numbers below the normal ones has no relative residual
+    SolveReport report;
+    report.residual = norm > tiny ? worst / norm : worst;
+    if (!std::isfinite(report.residual)) return {false, report.residual, 0, "the matrix is singular to working precision"};
     // an ill-conditioned matrix leaves no better residual than round-off of what the rows sum
-    if (report.residual > 1e-6 && backward > 1e-12)
+    const double backward = terms > tiny ? worst / terms : 0;
+    if (report.residual > (is_klu_ ? 1e-6 : 1e-12) && backward > (is_klu_ ? 1e-12 : 1e-15))
       report.ok = false, report.message = fmt::format("linear residual {:.1e}", report.residual);
     return report;
   }
 
-  bool factor_klu() {
-    if (klu_numeric_) klu_free_numeric(&klu_numeric_, &common_);
-    if (!klu_symbolic_) klu_symbolic_ = klu_analyze(n_, Ap_.data(), Ai_.data(), &common_);
-    if (!klu_symbolic_) return false;
-    klu_numeric_ = klu_factor(Ap_.data(), Ai_.data(), Ax_.data(), klu_symbolic_, &common_);
-    return klu_numeric_ && common_.status == KLU_OK;
-  }
-  bool factor_umfpack() {
-    double info[UMFPACK_INFO];
-    if (!umf_symbolic_ && umfpack_di_symbolic(n_, n_, Ap_.data(), Ai_.data(), Ax_.data(), &umf_symbolic_, control_, info) != UMFPACK_OK)
-      return false;
-    if (umf_numeric_) umfpack_di_free_numeric(&umf_numeric_);
-    const int status = umfpack_di_numeric(Ap_.data(), Ai_.data(), Ax_.data(), umf_symbolic_, &umf_numeric_, control_, info);
-    if (status == UMFPACK_ERROR_out_of_memory) throw std::bad_alloc();
-    return status == UMFPACK_OK;
-  }
-  void apply_inverse(const double* b, double* x) {
-    if (small_) {
-      std::copy(b, b + n_, x);
-      klu_tsolve(klu_symbolic_, klu_numeric_, n_, 1, x, &common_);
-    } else {
-      double info[UMFPACK_INFO];
-      umfpack_di_solve(UMFPACK_Aat, Ap_.data(), Ai_.data(), Ax_.data(), x, b, umf_numeric_, control_, info);
+  /// One over the largest entry of each row.
+  void find_weights() {
+    weight_.resize(A_.n());
+    const auto& start = A_.row_start();
+    for (int i = 0; i < A_.n(); ++i) {
+      double largest = 0;
+      for (int k = start[i]; k < start[i + 1]; ++k) largest = std::max(largest, std::abs(A_.values()[k]));
+      weight_[i] = largest > 0 ? 1 / largest : 1;
     }
   }
-  void release() {
-    if (klu_numeric_) klu_free_numeric(&klu_numeric_, &common_);
-    if (klu_symbolic_) klu_free_symbolic(&klu_symbolic_, &common_);
-    if (umf_numeric_) umfpack_di_free_numeric(&umf_numeric_);
-    if (umf_symbolic_) umfpack_di_free_symbolic(&umf_symbolic_);
-  }
 
-  const Cliques* cliques_ = nullptr;
-  int n_ = 0;
-  bool small_ = true, factored_ = false;  // factored_: the factors at hand are those of the matrix, or serve it refined
-  std::vector<int> block_start_, Ap_, Ai_, position_, diagonal_;
-  std::vector<size_t> clique_position_;
-  std::vector<double> Ax_, residual_, correction_;
-  klu_common common_{};
-  klu_symbolic* klu_symbolic_ = nullptr;
-  klu_numeric* klu_numeric_ = nullptr;
-  double control_[UMFPACK_CONTROL];
-  void *umf_symbolic_ = nullptr, *umf_numeric_ = nullptr;
+  std::string kind_;
+  BlockCsr A_;
+  std::vector<char> is_dense_;
+  std::unique_ptr<Factors> factors_;
+  bool is_klu_ = true, is_definite_ = false;
+  bool factored_ = false;         // the factors at hand are those of the matrix
+  bool ready_ = false;            // the factors at hand serve it preconditioning
+  double rate_ = 0, excess_ = 0;  // iterations per decade with fresh factors; those lagging has cost since
+  std::vector<double> residual_, correction_, weight_;
+  Gmres gmres_;
 };
 
 }  // namespace
 
-std::unique_ptr<KktSolver> make_light_solver() { return std::make_unique<LightSolver>(); }
+std::unique_ptr<KktSolver> make_light_solver(const std::string& kind) { return std::make_unique<LightSolver>(kind); }
 
 }  // namespace hilo

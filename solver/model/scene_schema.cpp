@@ -414,7 +414,7 @@ std::vector<std::string> choices(std::string_view section, std::string_view key)
       {{"time", "integrator"},
        {"energy-momentum", "mid-point", "generalized-alpha", "newmark", "hht", "wbz", "U0", "V0", "bathe", "bdf2", "radau"}},
       {{"time", "analysis"}, {"dynamic", "static"}},
-      {{"solver", "kind"}, {"auto", "light", "direct", "iterative", "bddc", "feti-dp"}},
+      {{"solver", "kind"}, {"auto", "light", "klu", "cholesky", "umfpack", "direct", "iterative", "bddc", "feti-dp"}},
       {{"output", "fields"}, {"displacement", "velocity", "acceleration", "stress", "von_mises"}},
       {{"output", "precision"}, {"double", "single"}},
   };

@@ -25,7 +25,7 @@ class DenseKkt final : public KktSolver {
     for (int i = 0; i < 3; ++i) A(3 * block + i, 3 * block + i) += d[i];
   }
   void sum_shared(std::span<double>) override {}
-  SolveReport solve(std::span<const double> b, std::span<double> x) override {
+  SolveReport solve(std::span<const double> b, std::span<double> x, double) override {
     const Eigen::Map<const Eigen::VectorXd> rhs(b.data(), static_cast<Eigen::Index>(b.size()));
     Eigen::Map<Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())) = A.partialPivLu().solve(rhs);
     return {};

@@ -18,7 +18,7 @@ void DirectSolver::structure(const Cliques& cliques, const BlockMap& map) {
   x_ = Vector(n), b_ = Vector(n), r_ = Vector(n), dx_ = Vector(n);
 }
 
-SolveReport DirectSolver::solve(std::span<const double> b, std::span<double> x) {
+SolveReport DirectSolver::solve(std::span<const double> b, std::span<double> x, double) {
   matrix_->assemble();
   if (const std::string problem = factor(); !problem.empty()) return {false, 1, 0, problem};
   to_owned(*shared_, b, b_);

@@ -14,7 +14,7 @@ class DirectSolver final : public KktSolver {
   void add(int clique, const double* K) override { matrix_->add((*cliques_)[clique], K); }
   void add_diagonal(int block, const double d[3]) override { matrix_->add_diagonal(block, d); }
   void sum_shared(std::span<double> local) override { shared_->sum(local); }
-  SolveReport solve(std::span<const double> b, std::span<double> x) override;
+  SolveReport solve(std::span<const double> b, std::span<double> x, double) override;
   double bytes() const override { return matrix_->bytes() + factor_bytes_; }
   std::string name() const override;
 

@@ -1,0 +1,90 @@
+#include "linear/block_csr.hpp"
+
+#include <algorithm>
+
+namespace hilo {
+
+void BlockCsr::structure(const Cliques& cliques, int n_blocks) {
+  cliques_ = &cliques;
+  std::vector<std::vector<int>> neighbours(n_blocks);
+  for (int i = 0; i < n_blocks; ++i) neighbours[i].push_back(i);
+  for (int e = 0; e < cliques.size(); ++e)
+    for (int i : cliques[e])
+      for (int j : cliques[e])
+        if (i >= 0 && j >= 0) neighbours[i].push_back(j);
+  block_start_.assign(1, 0);
+  columns_.clear();
+  for (auto& list : neighbours) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    columns_.insert(columns_.end(), list.begin(), list.end());
+    block_start_.push_back(static_cast<int>(columns_.size()));
+    std::vector<int>().swap(list);
+  }
+  row_start_.assign(1, 0);
+  column_.clear();
+  for (int i = 0; i < n_blocks; ++i)
+    for (int r = 0; r < 3; ++r) {
+      for (int k = block_start_[i]; k < block_start_[i + 1]; ++k)
+        for (int c = 0; c < 3; ++c) column_.push_back(3 * columns_[k] + c);
+      row_start_.push_back(static_cast<int>(column_.size()));
+    }
+  values_.assign(column_.size(), 0);
+  position_.clear();
+  clique_position_.assign(1, 0);
+  for (int e = 0; e < cliques.size(); ++e) {
+    for (int i : cliques[e])
+      for (int j : cliques[e]) position_.push_back(i < 0 || j < 0 ? -1 : row_start_[3 * i] + 3 * place(i, j));
+    clique_position_.push_back(position_.size());
+  }
+  diagonal_.resize(n_blocks);
+  for (int i = 0; i < n_blocks; ++i) diagonal_[i] = row_start_[3 * i] + 3 * place(i, i);
+}
+
+int BlockCsr::place(int block, int column) const {
+  const auto list = neighbours(block);
+  return static_cast<int>(std::lower_bound(list.begin(), list.end(), column) - list.begin());
+}
+
+void BlockCsr::zero() { std::fill(values_.begin(), values_.end(), 0.0); }
+
+void BlockCsr::add(int clique, const double* K) {
+  const auto blocks = (*cliques_)[clique];
+  const size_t n = blocks.size();
+  const int* position = position_.data() + clique_position_[clique];
+  for (size_t i = 0; i < n; ++i) {
+    if (blocks[i] < 0) continue;
+    const int length = 3 * (block_start_[blocks[i] + 1] - block_start_[blocks[i]]);
+    for (size_t j = 0; j < n; ++j) {
+      const int p = position[i * n + j];
+      if (p < 0) continue;
+      for (int r = 0; r < 3; ++r) {
+        double* to = values_.data() + p + r * length;
+        const double* from = K + (3 * i + r) * 3 * n + 3 * j;
+        to[0] += from[0], to[1] += from[1], to[2] += from[2];
+      }
+    }
+  }
+}
+
+void BlockCsr::add_diagonal(int block, const double d[3]) {
+  const int length = 3 * (block_start_[block + 1] - block_start_[block]);
+  for (int r = 0; r < 3; ++r) values_[diagonal_[block] + r * length + r] += d[r];
+}
+
+void BlockCsr::multiply(const double* x, double* y) const {
+  for (int i = 0; i < n_blocks(); ++i) {
+    const int first = block_start_[i], last = block_start_[i + 1], length = 3 * (last - first);
+    const double* a = values_.data() + row_start_[3 * i];
+    double y0 = 0, y1 = 0, y2 = 0;
+    for (int k = first; k < last; ++k, a += 3) {
+      const double *v = x + 3 * columns_[k], *b = a + length, *c = b + length;
+      y0 += a[0] * v[0] + a[1] * v[1] + a[2] * v[2];
+      y1 += b[0] * v[0] + b[1] * v[1] + b[2] * v[2];
+      y2 += c[0] * v[0] + c[1] * v[1] + c[2] * v[2];
+    }
+    y[3 * i] = y0, y[3 * i + 1] = y1, y[3 * i + 2] = y2;
+  }
+}
+
+}  // namespace hilo
