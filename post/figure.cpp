@@ -185,10 +185,28 @@ void draw_axes(Painter& p, const Panel& panel, const Box& box, const Scale& sx, 
   p.text({box.x + box.w / 2, box.y - gap - 22 * p.scale}, label_of(panel.x, sx), label_size, Across::centre, Up::top);
 }
 
+void draw_band(Painter& p, const Band& b, const Scale& sx, const Scale& sy, const Box& box) {
+  std::vector<Vec2> low, high;
+  const double step = 0.5;  // [pixel]: many samples per column show as their envelope
+  for (size_t i = 0; i < b.x.size(); ++i) {
+    const double u = sx(b.x[i]), v0 = sy(b.low[i]), v1 = sy(b.high[i]);
+    if (!std::isfinite(u) || !std::isfinite(v0) || !std::isfinite(v1)) continue;
+    const double x = box.x + u * box.w, y0 = box.y + v0 * box.h, y1 = box.y + v1 * box.h;
+    if (!low.empty() && x - low.back().x() < step) {
+      low.back().y() = std::min(low.back().y(), y0), high.back().y() = std::max(high.back().y(), y1);
+      continue;
+    }
+    low.emplace_back(x, y0), high.emplace_back(x, y1);
+  }
+  for (size_t i = 1; i < low.size(); ++i) p.polygon(std::array{low[i - 1], low[i], high[i], high[i - 1]}, b.colour);
+}
+
 double legend_width(Painter& p, const Panel& panel) {
   double w = 0;
   for (const Curve& c : panel.curves)
     if (!c.label.empty()) w = std::max(w, p.extent(c.label, legend_size).x());
+  for (const Band& b : panel.bands)
+    if (!b.label.empty()) w = std::max(w, p.extent(b.label, legend_size).x());
   return w == 0 ? 0 : w + 62 * p.scale;
 }
 
@@ -202,13 +220,20 @@ void draw_legend(Painter& p, const Panel& panel, const Box& box) {
     p.text({x + 38 * p.scale, y}, c.label, legend_size);
     y -= row;
   }
+  for (const Band& b : panel.bands) {
+    if (b.label.empty()) continue;
+    p.rectangle({x, y - 6 * p.scale, 30 * p.scale, 12 * p.scale}, b.colour);
+    p.text({x + 38 * p.scale, y}, b.label, legend_size);
+    y -= row;
+  }
 }
 
-void draw(Painter& p, const Figure& f) {
-  p.rectangle({0, 0, p.width, p.height}, white);
+}  // namespace
+
+void draw_figure(Painter& p, const Figure& f, const Box& page) {
   const double s = p.scale, top = f.title.empty() ? 14 * s : 50 * s;
-  if (!f.title.empty()) p.text({p.width / 2, p.height - 26 * s}, f.title, title_size, Across::centre, Up::middle, ink, true);
-  const double slot = (p.height - top - 8 * s) / static_cast<double>(f.panels.size());
+  if (!f.title.empty()) p.text({page.x + page.w / 2, page.y + page.h - 26 * s}, f.title, title_size, Across::centre, Up::middle, ink, true);
+  const double slot = (page.h - top - 8 * s) / static_cast<double>(f.panels.size());
   // Panels share their left and right edges, so that their time axes can be compared.
   std::vector<Scale> sx, sy;
   double left = 0, right = 20 * s;
@@ -221,11 +246,14 @@ void draw(Painter& p, const Figure& f) {
   for (size_t i = 0; i < f.panels.size(); ++i) {
     const Panel& panel = f.panels[i];
     const double head = panel.title.empty() ? 8 * s : 30 * s, foot = 58 * s;
-    const Box box{std::round(left), std::round(p.height - top - static_cast<double>(i + 1) * slot + foot),
-                  std::round(p.width - left - right), std::round(slot - head - foot)};
+    const Box box{std::round(page.x + left), std::round(page.y + page.h - top - static_cast<double>(i + 1) * slot + foot),
+                  std::round(page.w - left - right), std::round(slot - head - foot)};
     if (!panel.title.empty()) p.text({box.x, box.y + box.h + 6 * s}, panel.title, label_size, Across::left, Up::bottom, ink, true);
+    p.clip(box);
+    for (const Band& b : panel.bands) draw_band(p, b, sx[i], sy[i], box);
+    p.unclip();
     draw_axes(p, panel, box, sx[i], sy[i]);
-    p.text({18 * s, box.y + box.h / 2}, label_of(panel.y, sy[i]), label_size, Across::centre, Up::middle, ink, false, 90);
+    p.text({page.x + 18 * s, box.y + box.h / 2}, label_of(panel.y, sy[i]), label_size, Across::centre, Up::middle, ink, false, 90);
     p.clip(box);
     draw_guides(p, panel, sx[i], sy[i], box);
     for (auto c = panel.curves.rbegin(); c != panel.curves.rend(); ++c) draw_curve(p, *c, sx[i], sy[i], box);  // the first on top
@@ -234,11 +262,12 @@ void draw(Painter& p, const Figure& f) {
   }
 }
 
-}  // namespace
-
 void write_chart(const Figure& figure, const std::string& path) {
   Picture picture(figure.width, figure.height);
-  picture.paint([&](Painter& p) { draw(p, figure); });
+  picture.paint([&](Painter& p) {
+    p.rectangle({0, 0, p.width, p.height}, white);
+    draw_figure(p, figure, {0, 0, p.width, p.height});
+  });
   picture.write(path);
 }
 

@@ -8,6 +8,9 @@
 
 namespace hilo {
 
+class Painter;
+struct Box;
+
 struct Curve {
   std::string label;
   std::vector<double> x, y;
@@ -30,11 +33,19 @@ struct Guide {
   double slope = 1;
 };
 
+/// The room between two curves over the same abscissa, filled.
+struct Band {
+  std::string label;
+  std::vector<double> x, low, high;
+  Rgb colour;
+};
+
 struct Panel {
   std::string title;
   Axis x, y;
   std::vector<Curve> curves;
   std::vector<Guide> guides = {};
+  std::vector<Band> bands = {};
 };
 
 struct Figure {
@@ -42,6 +53,9 @@ struct Figure {
   std::vector<Panel> panels;  // from top to bottom
   int width = 1280, height = 720;
 };
+
+/// Draw into a box of a page.
+void draw_figure(Painter& painter, const Figure& figure, const Box& page);
 
 /// Draw and write as PNG.  Points that are not finite, or not positive on a logarithmic axis, break a curve.
 void write_chart(const Figure& figure, const std::string& path);

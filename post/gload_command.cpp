@@ -12,6 +12,7 @@
 #include "post/commands.hpp"
 #include "post/csv.hpp"
 #include "post/figure.hpp"
+#include "post/gload.hpp"
 #include "post/output.hpp"
 #include "post/picture.hpp"
 #include "post/run_file.hpp"
@@ -26,47 +27,11 @@ struct Options {
   bool json = false;
 };
 
-/// One sensor: raw at its recorded times, filtered at uniform ones; the fourth column is the resultant.
-struct Sensor {
-  std::string name;
-  std::vector<double> t, uniform;                    // [s]
-  std::array<std::vector<double>, 4> raw, filtered;  // x y z resultant [g]
-};
-
-std::vector<double> resultant(const std::array<std::vector<double>, 4>& a) {
-  std::vector<double> r;
-  for (size_t i = 0; i < a[0].size(); ++i) r.push_back(std::hypot(a[0][i], a[1][i], a[2][i]));
-  return r;
-}
-
-Sensor read_sensor(const RunFile& run, const std::string& name, double cfc) {
-  const Series series = run.series("sensor." + name);
-  Sensor s{name, series.t, {}, {}, {}};
-  const std::string where = fmt::format("{}: sensor \"{}\"", run.path, name);
-  for (size_t axis = 0; axis < 3; ++axis) {
-    for (size_t row = 0; row < series.rows(); ++row) s.raw[axis].push_back(series.at(row, axis));
-    Filtered f = cfc_filtered(s.t, s.raw[axis], cfc, where);
-    s.uniform = std::move(f.t);
-    s.filtered[axis] = std::move(f.x);
-  }
-  s.raw[3] = resultant(s.raw);
-  s.filtered[3] = resultant(s.filtered);
-  return s;
-}
-
-/// Index of the value largest in size.
-size_t peak(const std::vector<double>& x) {
-  size_t best = 0;
-  for (size_t i = 1; i < x.size(); ++i)
-    if (std::abs(x[i]) > std::abs(x[best])) best = i;
-  return best;
-}
-
-void write_csv(const Options& o, const std::vector<Sensor>& sensors) {
+void write_csv(const Options& o, const std::vector<SensorRecord>& sensors) {
   std::vector<std::string> header{"t [s]"};
   std::vector<std::vector<double>> columns{sensors.front().t};
   constexpr const char* axis[] = {"x", "y", "z", "resultant"};
-  for (const Sensor& s : sensors) {
+  for (const SensorRecord& s : sensors) {
     for (size_t a = 0; a < 4; ++a) header.push_back(fmt::format("{}.raw_{} [g]", s.name, axis[a])), columns.push_back(s.raw[a]);
     for (size_t a = 0; a < 4; ++a) {
       header.push_back(fmt::format("{}.cfc{:g}_{} [g]", s.name, o.cfc, axis[a]));
@@ -76,12 +41,12 @@ void write_csv(const Options& o, const std::vector<Sensor>& sensors) {
   write_out(o.csv, csv_text(header, columns));
 }
 
-void write_png(const Options& o, const RunFile& run, const std::vector<Sensor>& sensors) {
+void write_png(const Options& o, const RunFile& run, const std::vector<SensorRecord>& sensors) {
   Figure figure;
   figure.title = fmt::format("{}: proper acceleration", run.title);
   std::tie(figure.width, figure.height) =
       parse_size(o.size.empty() ? fmt::format("1280x{}", std::max<size_t>(720, 330 * sensors.size())) : o.size);
-  for (const Sensor& s : sensors) {
+  for (const SensorRecord& s : sensors) {
     Panel panel{s.name, {"time [s]"}, {"acceleration [g]"}, {}};
     constexpr const char* axis[] = {"x forward", "y left", "z up"};
     for (size_t a = 0; a < 3; ++a) {
@@ -96,18 +61,18 @@ void write_png(const Options& o, const RunFile& run, const std::vector<Sensor>& 
   write_chart(figure, o.png);
 }
 
-std::string table_of(const Options& o, const std::vector<Sensor>& sensors) {
+std::string table_of(const Options& o, const std::vector<SensorRecord>& sensors) {
   Table table;
   table.header = {"sensor"};
   constexpr const char* part[] = {"x", "y", "z", "res"};
   for (const char* a : part) table.header.push_back(fmt::format("raw_{}", a));
   for (const char* a : part) table.header.push_back(fmt::format("cfc{:g}_{}", o.cfc, a));
   table.header.insert(table.header.end(), {"t_res", "clip_3ms"});
-  for (const Sensor& s : sensors) {
+  for (const SensorRecord& s : sensors) {
     std::vector<std::string> row{s.name};
-    for (const auto& x : s.raw) row.push_back(fmt::format("{:.3f}", x[peak(x)]));
-    for (const auto& x : s.filtered) row.push_back(fmt::format("{:.3f}", x[peak(x)]));
-    row.push_back(fmt::format("{:.5f}", s.uniform[peak(s.filtered[3])]));
+    for (const auto& x : s.raw) row.push_back(fmt::format("{:.3f}", x[peak_index(x)]));
+    for (const auto& x : s.filtered) row.push_back(fmt::format("{:.3f}", x[peak_index(x)]));
+    row.push_back(fmt::format("{:.5f}", s.uniform[peak_index(s.filtered[3])]));
     const double clip = clip_level(s.uniform, s.filtered[3]);
     row.push_back(std::isfinite(clip) ? fmt::format("{:.3f}", clip) : "-");
     table.rows.push_back(row);
@@ -117,7 +82,7 @@ std::string table_of(const Options& o, const std::vector<Sensor>& sensors) {
 
 void run(const Options& o) {
   const RunFile file(o.run);
-  std::vector<Sensor> sensors;
+  std::vector<SensorRecord> sensors;
   for (const std::string& name : sensor_names(file, o.sensors)) sensors.push_back(read_sensor(file, name, o.cfc));
   if (!o.csv.empty()) write_csv(o, sensors);
   if (!o.png.empty()) write_png(o, file, sensors);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <limits>
 
 namespace hilo {
 namespace {
@@ -99,6 +101,36 @@ double severity_index(std::span<const double> t, std::span<const double> a) {
   std::vector<double> power;
   for (double x : a) power.push_back(std::pow(std::abs(x), 2.5));
   return integral(t, power).back();
+}
+
+Pulse pulse(std::span<const double> t, std::span<const double> x, double fraction) {
+  Pulse p;
+  if (t.empty()) return p;
+  size_t top = 0;
+  for (size_t i = 1; i < x.size(); ++i)
+    if (std::abs(x[i]) > std::abs(x[top])) top = i;
+  const double sign = x[top] < 0 ? -1 : 1, level = fraction * std::abs(x[top]);
+  const auto crossing = [&](size_t in, size_t out) {  // between a sample at least at the level and one below it
+    const double a = sign * x[in], b = sign * x[out], s = a > b ? (a - level) / (a - b) : 0;
+    return t[in] + s * (t[out] - t[in]);
+  };
+  size_t first = top, last = top;
+  while (first > 0 && sign * x[first - 1] >= level) --first;
+  while (last + 1 < x.size() && sign * x[last + 1] >= level) ++last;
+  return {x[top], t[top], first > 0 ? crossing(first, first - 1) : t[first], last + 1 < x.size() ? crossing(last, last + 1) : t[last]};
+}
+
+double level_held(std::span<const double> x, size_t n) {
+  if (x.size() <= n) return std::numeric_limits<double>::quiet_NaN();
+  double best = -std::numeric_limits<double>::infinity();
+  std::deque<size_t> rising;  // samples of the window that can still be its least, least first
+  for (size_t i = 0; i < x.size(); ++i) {
+    while (!rising.empty() && x[rising.back()] >= x[i]) rising.pop_back();
+    rising.push_back(i);
+    if (rising.front() + n < i) rising.pop_front();
+    if (i >= n) best = std::max(best, x[rising.front()]);
+  }
+  return best;
 }
 
 Brinkley brinkley(std::span<const double> t, const std::array<std::span<const double>, 3>& a) {

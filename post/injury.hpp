@@ -28,6 +28,16 @@ HeadInjury head_injury(std::span<const double> t, std::span<const double> a, dou
 /// Gadd's severity index: integral of a^2.5 [g^2.5 s].
 double severity_index(std::span<const double> t, std::span<const double> a);
 
+/// The stretch around the value largest in size where the signal keeps its sign and at least `fraction` of it.
+struct Pulse {
+  double peak = 0, t_peak = 0, begin = 0, end = 0;  // peak with its sign; [s]
+};
+Pulse pulse(std::span<const double> t, std::span<const double> x, double fraction = 0.5);
+
+/// Highest level that a signal, sampled at equal intervals, holds without a break for n of them: max over i of min(x_i .. x_{i+n}); NaN for
+/// a longer n than the record.
+double level_held(std::span<const double> x, size_t n);
+
 /// Brinkley's dynamic response: model responses per axis (x 62.8/0.2, y 58.0/0.09, z 52.9/0.224) and the largest
 /// beta = sqrt(sum (DR_i/limit_i)^2) over time for low, moderate and high risk.
 struct Brinkley {

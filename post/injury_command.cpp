@@ -1,15 +1,16 @@
-// hilo-post injury: what the loads at the sensors do to people, as a table or JSON.
+// hilo-post injury: what the loads at the sensors do to people, as text, JSON, CSV, a page to print and Eiband's chart.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <memory>
 
 #include "base/args.hpp"
-#include "base/error.hpp"
 #include "base/table.hpp"
-#include "post/cfc.hpp"
 #include "post/commands.hpp"
-#include "post/injury.hpp"
+#include "post/csv.hpp"
+#include "post/injury_eiband.hpp"
+#include "post/injury_measures.hpp"
+#include "post/injury_report.hpp"
 #include "post/output.hpp"
 #include "post/run_file.hpp"
 
@@ -17,78 +18,89 @@ namespace hilo {
 namespace {
 
 struct Options {
-  std::string run;
+  std::string run, csv, page, eiband;
   std::vector<std::string> sensors{"*"};
+  double cfc = 60;
   bool json = false;
 };
 
-std::vector<std::string> row_of(const RunFile& run, const std::string& name) {
-  const Series series = run.series("sensor." + name);
-  const std::string where = fmt::format("{}: sensor \"{}\"", run.path, name);
-  // proper acceleration as the seat exerts it; the model starts at rest under gravity, so what it felt then is taken out
-  std::array<std::vector<double>, 3> change;
-  std::array<std::vector<double>, 3> head, chest;  // CFC 1000 and CFC 180
-  std::vector<double> uniform;
-  const auto class_of = [&](double wanted) {  // the highest class the record holds
-    double longest = 0;
-    for (size_t i = 1; i < series.t.size(); ++i) longest = std::max(longest, series.t[i] - series.t[i - 1]);
-    return longest <= 0.1 / wanted * (1 + 1e-9);
-  };
-  const bool fine = class_of(1000), enough = class_of(180);
-  for (size_t axis = 0; axis < 3; ++axis) {
-    std::vector<double> raw;
-    for (size_t i = 0; i < series.rows(); ++i) raw.push_back(series.at(i, axis));
-    for (double x : raw) change[axis].push_back(x - raw.front());
-    if (fine) head[axis] = cfc_filtered(series.t, raw, 1000, where).x;
-    if (enough) {
-      Filtered f = cfc_filtered(series.t, raw, 180, where);
-      chest[axis] = std::move(f.x), uniform = std::move(f.t);
-    }
+std::string cell(const Measure& m) { return std::isfinite(m.value) ? fmt::format("{:.{}f}", m.value, m.digits) : "-"; }
+
+/// A row for each measure: for people.
+std::string text_of(const std::vector<Crew>& crew) {
+  Table table;
+  table.header = {"measure", "unit"};
+  for (const Crew& c : crew) table.header.push_back(c.record.name);
+  table.header.insert(table.header.end(), {"reference", "what"});
+  table.n_text = 2;
+  for (size_t k = 0; k < crew[0].measures.size(); ++k) {
+    const Measure& m = crew[0].measures[k];
+    std::vector<std::string> row{m.key, m.unit};
+    for (const Crew& c : crew) row.push_back(cell(c.measures[k]));
+    row.push_back(std::isfinite(m.reference) ? fmt::format("{:g}", m.reference) : "");
+    row.push_back(m.source.empty() ? m.what : fmt::format("{} ({})", m.what, m.source));
+    table.rows.push_back(row);
   }
-  const auto resultant = [](const std::array<std::vector<double>, 3>& a) {
-    std::vector<double> r;
-    for (size_t i = 0; i < a[0].size(); ++i) r.push_back(std::hypot(a[0][i], a[1][i], a[2][i]));
-    return r;
+  return table.text();
+}
+
+/// A row for each sensor: for programs.
+Table table_of(const std::vector<Crew>& crew, bool units) {
+  Table table;
+  table.header = {"sensor"};
+  for (const Measure& m : crew[0].measures) table.header.push_back(units ? fmt::format("{} [{}]", m.key, m.unit) : m.key);
+  for (const Crew& c : crew) {
+    std::vector<std::string> row{c.record.name};
+    for (const Measure& m : c.measures) row.push_back(cell(m));
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+std::string csv_of(const Table& table) {
+  std::string out;
+  const auto line = [&](const std::vector<std::string>& cells) {
+    for (size_t j = 0; j < cells.size(); ++j) out += (j ? "," : "") + (cells[j] == "-" ? std::string() : cells[j]);
+    out += '\n';
   };
-  std::vector<std::string> row{name};
-  const auto add = [&](double x, int digits) { row.push_back(std::isfinite(x) ? fmt::format("{:.{}f}", x, digits) : "-"); };
-  add(dynamic_response_index(series.t, change[2]), 3);
-  const std::vector<double> h = resultant(head), c = resultant(chest);
-  add(fine ? head_injury(uniform, h, 0.015).value : NAN, 2);
-  add(fine ? head_injury(uniform, h, 0.036).value : NAN, 2);
-  add(enough ? clip_level(uniform, c) : NAN, 3);
-  add(fine ? severity_index(uniform, h) : NAN, 2);
-  const Brinkley b = brinkley(series.t, {change[0], change[1], change[2]});
-  for (const ModelResponse& r : b.axis) add(r.highest > -r.lowest ? r.highest : r.lowest, 3);
-  for (double beta : b.beta) add(beta, 3);
-  return row;
+  line(table.header);
+  for (const auto& row : table.rows) line(row);
+  return out;
 }
 
 void run(const Options& o) {
   const RunFile file(o.run);
-  Table table;
-  table.header = {"sensor", "DRI", "HIC15", "HIC36", "clip_3ms", "SI", "DR_x", "DR_y", "DR_z", "beta_low", "beta_moderate", "beta_high"};
-  for (const std::string& name : sensor_names(file, o.sensors)) table.rows.push_back(row_of(file, name));
-  write_out("-", o.json ? table.json("") + "\n" : table.text());
+  std::vector<Crew> crew;
+  for (const std::string& name : sensor_names(file, o.sensors)) crew.push_back(crew_of(file, name, o.cfc));
+  if (!o.csv.empty()) write_out(o.csv, csv_of(table_of(crew, true)));
+  if (!o.page.empty()) write_report(crew, o.cfc, file.title, file.path, o.page);
+  if (!o.eiband.empty()) write_eiband(crew, o.cfc, file.title, o.eiband);
+  if (o.csv != "-") write_out("-", o.json ? table_of(crew, false).json("") + "\n" : text_of(crew));
   if (!is_quiet() && !o.json)
     fmt::print(
         stderr,
-        "DRI: spine model along the sensor's z, from rest, what was felt at the start (1 g) taken out; 17.7: 10 % risk (STANAG 4569).\n"
-        "HIC, SI: resultant, CFC 1000; clip_3ms: cumulative, CFC 180 [g]; - where the record is too coarse for the class.\n"
-        "DR, beta: Brinkley's model per axis [g] and its combined measure, 1 at the limit of low, moderate, high risk; the limits were\n"
-        "not checked against their source and do not replace it.{}\n",
+        "Proper acceleration in the sensors' axes (x forward, y left, z up), less what was felt at the start (1 g upward at rest).\n"
+        "HIC, SI: resultant, CFC 1000 or the highest class the record holds; clip_3ms: cumulative.  Reference levels do not replace their\n"
+        "sources; Brinkley's limits were not checked against theirs (a second source agrees on +z).{}\n",
         file.complete ? "" : "  The run is not complete.");
 }
 
 }  // namespace
 
 Command injury_command(CLI::App& app) {
-  auto* sub = app.add_subcommand("injury", "what the sensors' loads do to people: DRI, HIC, 3 ms clip, severity, Brinkley");
+  auto* sub =
+      app.add_subcommand("injury", "what the sensors' loads do to people: DRI, HIC, 3 ms clip, Brinkley, ISO 2631; a page to print");
   const auto o = std::make_shared<Options>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("--sensor", o->sensors, "sensors by name or glob")->allow_extra_args(false)->default_str("*");
-  sub->add_flag("--json", o->json, "the table as JSON");
-  example(*sub, "  hilo-post injury run.h5");
+  sub->add_option("--cfc", o->cfc, "channel frequency class of the pulses: 60, 180, 600 or 1000 (SAE J211-1)")
+      ->check(CLI::IsMember({60.0, 180.0, 600.0, 1000.0}))
+      ->default_str("60");
+  sub->add_option("-o,--output", o->csv, "CSV with a row for each sensor; - for stdout instead of the table");
+  sub->add_option("--png", o->page, "report of one page (A4): pulses with their corridor, measures, signs, sources");
+  sub->add_option("--eiband", o->eiband, "PNG: level held against its duration, with Eiband's tolerances (approximate)");
+  sub->add_flag("--json", o->json, "a row for each sensor as JSON");
+  example(*sub, "  hilo-post injury run.h5\n  hilo-post injury run.h5 --cfc 60 -o injury.csv --png report.png --eiband eiband.png");
   return {sub, [o] { run(*o); }};
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "post/cfc.hpp"
@@ -82,6 +83,29 @@ TEST(Brinkley, along_one_axis_is_the_response_over_its_limit) {
   EXPECT_NEAR(b.axis[2].highest, 9, 0.02);
   EXPECT_NEAR(b.beta[0], b.axis[2].highest / 15.2, 1e-3);
   EXPECT_NEAR(b.beta[2], b.axis[2].highest / 22.8, 1e-3);
+}
+
+TEST(Pulse, of_a_half_sine_lies_above_half_of_its_peak_for_two_thirds_of_it) {
+  const Signal s = half_sine(-8, 0.03, 0.1);
+  const Pulse p = pulse(s.t, s.a);
+  EXPECT_NEAR(p.peak, -8, 1e-6);
+  EXPECT_NEAR(p.t_peak, 0.015, 1e-5);
+  EXPECT_NEAR(p.begin, 0.005, 1e-7);
+  EXPECT_NEAR(p.end, 0.025, 1e-7);
+}
+TEST(Pulse, ends_where_the_signal_first_falls_below) {
+  const std::vector<double> t{0, 1, 2, 3, 4, 5}, a{0, 4, 0, 3, 0, 0};
+  EXPECT_NEAR(pulse(t, a).end, 1.5, 1e-12);
+}
+TEST(LevelHeld, of_a_trapezoid_is_its_plateau_for_as_long_as_that_lasts) {
+  // up in 10, 20 at the top, down in 10: held for 20 + 2 (1 - level) 10
+  std::vector<double> x;
+  for (int i = 0; i <= 60; ++i) x.push_back(std::clamp(std::min(i - 10, 50 - i) / 10.0, 0.0, 1.0));
+  EXPECT_EQ(level_held(x, 1), 1);
+  EXPECT_EQ(level_held(x, 20), 1);
+  EXPECT_NEAR(level_held(x, 30), 0.5, 1e-12);
+  EXPECT_EQ(level_held(x, 41), 0);
+  EXPECT_TRUE(std::isnan(level_held(x, 61)));
 }
 
 }  // namespace

@@ -1,0 +1,13 @@
+// One page to print (the ratio of A4): the pulses of all sensors with their corridor, what they do to people, signs, sources.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "post/injury_measures.hpp"
+
+namespace hilo {
+
+/// Error for more sensors than a page has columns.
+void write_report(const std::vector<Crew>& crew, double cfc, const std::string& title, const std::string& run, const std::string& path);
+
+}  // namespace hilo

@@ -1,0 +1,51 @@
+// hilo-post injury as a user runs it: one truth in text, CSV and JSON, and pages that nothing runs out of.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cli.hpp"
+#include "picture_file.hpp"
+#include "post/csv.hpp"
+#include "sample_run.hpp"
+
+namespace hilo::test {
+namespace {
+
+const Workplace& sample_place() {
+  static const Workplace place;
+  static const std::string run = sample::write_run(place.path(), sample::cube(2), 1, true, {2001, 5e-5});  // 20 kHz
+  return place;
+}
+
+// The sample's seat feels a half sine of 100 g and 20 ms along x from 10 ms on.
+TEST(InjuryReport, csv_and_json_hold_the_closed_forms_of_a_half_sine) {
+  const auto& place = sample_place();
+  const Ran ran = place.run("hilo-post injury run.h5 --cfc 1000 --json -o injury.csv");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const CsvTable table = read_csv(place / "injury.csv");
+  const auto value = [&](const std::string& key) { return table.numbers(table.find(key)).front(); };
+  EXPECT_NEAR(value("peak_x"), 100, 0.5);
+  EXPECT_NEAR(value("t_x"), 20, 0.1);
+  EXPECT_NEAR(value("width_x"), 40.0 / 3, 0.1) << "two thirds of 20 ms";
+  EXPECT_NEAR(value("HIC15"), 829.29, 8) << "its window is 13.4 ms; the rattle along y adds a little";
+  EXPECT_NEAR(value("DRI"), 0, 1e-9) << "1 g upward all the time is no change";
+  EXPECT_NE(ran.out.find("\"HIC15\": "), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\"sensor\": \"seat\""), std::string::npos) << ran.out;
+}
+
+TEST(InjuryReport, page_has_the_ratio_of_A4_and_white_margins) {
+  const auto& place = sample_place();
+  const Ran ran = place.run("unset DISPLAY\nhilo-post injury run.h5 --png page.png --eiband eiband.png");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const PictureFile page(place / "page.png");
+  EXPECT_NEAR(static_cast<double>(page.height) / page.width, std::sqrt(2), 1e-3);
+  const int edge = page.width / 60;
+  EXPECT_EQ(page.ink(0, 0, edge, page.height), 0);
+  EXPECT_EQ(page.ink(page.width - edge, 0, page.width, page.height), 0);
+  EXPECT_EQ(page.ink(0, page.height - edge, page.width, page.height), 0);
+  EXPECT_GT(page.ink(0, page.height / 2, page.width, page.height), 0.02);
+  EXPECT_GT(PictureFile(place / "eiband.png").ink(0, 0, 1280, 1600), 0.01);
+}
+
+}  // namespace
+}  // namespace hilo::test
