@@ -8,7 +8,7 @@
 #include <set>
 
 #include "base/error.hpp"
-#include "post/colour.hpp"
+#include "post/shown_field.hpp"
 #include "post/view.hpp"
 
 namespace hilo {
@@ -24,7 +24,21 @@ void add_frame_options(CLI::App& sub, FrameOptions& o) {
   sub.add_option("--label", o.label, "caption of each run, in their order; names of the files by default")->allow_extra_args(false);
   sub.add_option("--camera", o.camera, fmt::format("{}, or x,y,z towards the camera", fmt::join(view_names(), ", ")))
       ->capture_default_str();
-  sub.add_option("--scale", o.scale, "factor on the displacements")->capture_default_str();
+  sub.add_option("--scale", o.scale, "factor on all displacements")->capture_default_str();
+  sub.add_option("--deformed", o.deformed,
+                 "factor on the deformation alone: what of the displacement is no rigid motion, part by connected part")
+      ->capture_default_str();
+  sub.add_option("--track", o.track, "the camera moves with the centre of this region, set, probe or body");
+  sub.add_option("--ride", o.ride, "the camera moves and turns with it");
+  sub.add_option("--cut", o.cut,
+                 "x=0.1 (y, z) or normal and point, 1,0,1@0,0,0.5: what is before this plane is taken away; positions before the run");
+  sub.add_option("--iso", o.iso, "values in the shown unit, 50,100: surfaces on which the field has them, in a transparent model");
+  sub.add_option("--forces", o.forces, "joints, springs, ... by name or glob: an arrow of their force on b at its point")
+      ->allow_extra_args(false);
+  sub.add_option("--force-scale", o.force_scale,
+                 "force in N of an arrow as long as a tenth of the picture's height; a handy one by default")
+      ->check(CLI::PositiveNumber);
+  sub.add_option("--trace", o.trace, "a probe, region, set or body whose way is drawn; may be repeated")->allow_extra_args(false);
   sub.add_option("--range", o.range, "LOW,HIGH of the colours in the shown unit; by default the range over all that is drawn");
   sub.add_option("--unit", o.unit, "unit shown: MPa, mm, g, ...; a handy one by default");
   sub.add_option("--colours", o.colours,
@@ -38,6 +52,22 @@ void add_frame_options(CLI::App& sub, FrameOptions& o) {
   sub.add_option("--hide", o.hide, "regions not to draw")->allow_extra_args(false);
   sub.add_option("--zoom", o.zoom, "regions that fill the picture")->allow_extra_args(false);
   sub.add_option("--title", o.title, "title instead of the scene's");
+}
+
+void check(const FrameOptions& o) {
+  const auto refuse = [](bool wrong, const char* option, const std::string& what, const char* hint) {
+    if (wrong) throw Error(option, what, hint, Exit::usage);
+  };
+  const bool named = is_named_field(o.field), enlarged = o.scale != 1 || o.deformed != 1;
+  refuse(named && !o.minus.empty(), "--minus", fmt::format("{} has no differences", o.field), "take a field of numbers");
+  refuse(named && !o.iso.empty(), "--iso", fmt::format("{} has no values", o.field), "take a field of numbers");
+  refuse(!o.iso.empty() && !o.cut.empty(), "--iso", "and --cut do not go together", "take one");
+  refuse(o.scale != 1 && o.deformed != 1, "--deformed", "and --scale both enlarge", "take one");
+  refuse(!o.track.empty() && !o.ride.empty(), "--ride", "and --track both move the camera", "take one");
+  refuse(enlarged && !o.trace.empty(), "--trace", "belongs to true positions", "take --scale or --deformed away");
+  refuse(enlarged && !o.forces.empty(), "--forces", "belong to true positions", "take --scale or --deformed away");
+  refuse(o.label.size() > 1 + o.beside.size(), "--label", fmt::format("{} captions for {} runs", o.label.size(), 1 + o.beside.size()),
+         "one for each run");
 }
 
 std::pair<double, double> parse_range(const std::string& text) {

@@ -8,11 +8,14 @@
 namespace hilo {
 
 struct FrameOptions {
-  std::string run, field = "von_mises", camera = "iso", range, size = "1280x720", edges = "feature", unit, title, colours = "auto", minus;
-  std::vector<std::string> beside, label, show, hide, zoom;
-  double scale = 1;
+  std::string run, field = "von_mises", camera = "iso", range, size = "1280x720", edges = "feature", unit, title, colours = "auto", minus,
+                   cut, iso, track, ride;
+  std::vector<std::string> beside, label, show, hide, zoom, trace, forces;
+  double scale = 1, deformed = 1, force_scale = 0;
 };
 void add_frame_options(CLI::App& sub, FrameOptions& o);
+/// Error (exit 1) for options that contradict each other.
+void check(const FrameOptions& o);
 
 /// "low,high" with low < high; Error (exit 1) otherwise.
 std::pair<double, double> parse_range(const std::string& text);

@@ -1,10 +1,13 @@
 #include "post/frames.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <vtkCamera.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <sstream>
 
 #include "base/error.hpp"
 #include "post/ticks.hpp"
@@ -13,6 +16,19 @@ namespace hilo {
 namespace {
 
 constexpr double caption_height = 30;  // above each of several runs  [unit of text]
+
+std::vector<double> parse_levels(const std::string& text) {
+  std::vector<double> levels;
+  std::stringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    double x = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), x);
+    if (error != std::errc() || end != part.data() + part.size())
+      throw Error("--iso", fmt::format("\"{}\" is no number", part), "write values in the shown unit, such as 50,100", Exit::usage);
+    levels.push_back(x);
+  }
+  return levels;
+}
 
 /// n boxes in a row or in a column.
 std::vector<Box> divided(const Box& whole, size_t n, bool row, double gap, double caption) {
@@ -37,10 +53,9 @@ std::vector<Box> divided(const Box& whole, size_t n, bool row, double gap, doubl
 }  // namespace
 
 Frames::Frames(const FrameOptions& o) : o_(o) {
+  check(o);
   std::vector<std::string> paths{o.run};
   paths.insert(paths.end(), o.beside.begin(), o.beside.end());
-  if (o.label.size() > paths.size())
-    throw Error("--label", fmt::format("{} captions for {} runs", o.label.size(), paths.size()), "one for each run", Exit::usage);
   for (const auto& path : paths) views_.push_back(std::make_unique<RunView>(o, path));
   title_ = views_.front()->run().title;
   captions_ = distinct_names(paths);
@@ -69,8 +84,14 @@ void Frames::survey(const std::vector<double>& times) {
   extremes_.clear();
   for (const auto& v : views_)
     for (const double t : times) range.add(v->survey(t, axes, extremes_));
-  for (const auto& v : views_) end_ = std::max(end_, v->playback().last());
-  if (by_names()) return;
+  for (const auto& v : views_) {
+    end_ = std::max(end_, v->playback().last());
+    if (v->annotations()) largest_force_ = std::max(largest_force_, v->annotations()->largest_force(times));
+  }
+  if (!by_names()) choose_colours(range);
+}
+
+void Frames::choose_colours(const Extent& range) {
   const ShownField& field = views_.front()->field();
   const double largest = std::max(std::abs(range.low), std::abs(range.high));
   const ShownUnit unit = o_.unit.empty() ? handy_unit(field.unit, largest) : wanted_unit(field.unit, o_.unit);
@@ -93,6 +114,12 @@ void Frames::survey(const std::vector<double>& times) {
   }
   for (const auto& v : views_)
     if (v->has_neutral()) bar_.neutral = "rigid";
+  if (o_.iso.empty()) return;
+  iso_ = parse_levels(o_.iso);
+  bar_.marks = iso_;
+  if (std::none_of(iso_.begin(), iso_.end(), [&](double v) { return v >= range.low * factor_ && v <= range.high * factor_; }))
+    throw Error("--iso", "no value is reached",
+                fmt::format("there are {:.4g} to {:.4g} {}", range.low * factor_, range.high * factor_, unit.name));
 }
 
 std::vector<Box> Frames::boxes() const {
@@ -141,7 +168,7 @@ void Frames::open(const std::string& remark) {
     stages_.push_back(picture_->layer(boxes_[i]));
     light(stages_[i]);
     fit_->aim(stages_[i]->GetActiveCamera());
-    views_[i]->stage(stages_[i], look, s, boxes_[i].h);
+    views_[i]->stage(stages_[i], look, s, boxes_[i].h, iso_);
   }
 }
 
@@ -162,8 +189,12 @@ void Frames::surround(Painter& p, double t) const {
   if (!o_.minus.empty()) line += fmt::format(": {}", difference_);
   line += end_ < 1 ? fmt::format(", t = {:.3f} ms", 1e3 * t) : fmt::format(", t = {:.4f} s", t);
   if (o_.scale != 1) line += fmt::format(", displacements \u00d7 {:g}", o_.scale);
+  if (o_.deformed != 1) line += fmt::format(", deformation \u00d7 {:g}", o_.deformed);
+  if (!iso_.empty()) line += fmt::format(", surfaces of {} {}", fmt::join(iso_, ", "), bar_.unit);
   draw_title(p, o_.title.empty() ? title_ : o_.title, line + remark_);
-  draw_axes_cross(p, fit_->right(), fit_->up(), fit_->back());
+  const Mat3& R = first.drawn().R;  // a camera that rides along sees the axes turn
+  draw_axes_cross(p, R * fit_->right(), R * fit_->up(), R * fit_->back());
+  annotate(p, t);
   for (size_t i = 0; i < views_.size() && views_.size() > 1; ++i) {
     const Box& b = boxes_[i];
     const double y = b.y + b.h + 0.5 * caption_height * p.scale;
@@ -184,6 +215,24 @@ void Frames::surround(Painter& p, double t) const {
   const NamedCells& named = first.named();
   for (size_t i = 0; i < named.names.size(); ++i) entries.push_back({named.names[i], named.colours[i], nullptr});
   draw_legend(p, frame_.side, named.title, entries);
+}
+
+void Frames::annotate(Painter& p, double t) const {
+  const double tenth = 0.1 * p.height, most = largest_force_;
+  double newtons = o_.force_scale > 0 ? o_.force_scale : most > 0 ? most / 2 : 1;  // of an arrow of `tenth`
+  for (size_t i = 0; i < views_.size(); ++i) {
+    Annotations* notes = views_[i]->annotations();
+    if (!notes) continue;
+    const double metres = tenth / pixels_per_metre(stages_[i], boxes_[i].h) / newtons;
+    p.clip(boxes_[i]);
+    notes->draw(p, Projection(stages_[i], boxes_[i]), boxes_[i], t, views_[i]->playback(), views_[i]->drawn(), metres);
+    p.unclip();
+  }
+  if (!(most > 0)) return;
+  const double shown = round_below(newtons * 1.5), length = tenth * shown / newtons;  // the scale of the arrows
+  const Vec2 from(150 * p.scale, 34 * p.scale), to = from + Vec2(length, 0);
+  draw_arrow(p, from, to, ink, 3.4);
+  p.text(to + Vec2(10 * p.scale, 0), force_text(shown) + ", force on b", 15);
 }
 
 }  // namespace hilo

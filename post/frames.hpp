@@ -31,7 +31,9 @@ class Frames {
  private:
   bool by_names() const;
   std::vector<Box> boxes() const;
+  void choose_colours(const Extent& range);
   void surround(Painter& p, double t) const;
+  void annotate(Painter& p, double t) const;
 
   const FrameOptions& o_;
   std::vector<std::unique_ptr<RunView>> views_;
@@ -45,6 +47,8 @@ class Frames {
   std::unique_ptr<Fit> fit_;
   ColourBar bar_;
   std::vector<Extent> seen_;  // of each run in this frame, in the shown unit
+  std::vector<double> iso_;   // levels, in the shown unit
+  double largest_force_ = 0;  // [N]
   double factor_ = 1, end_ = 0;
   std::string remark_;
 };

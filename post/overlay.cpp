@@ -73,6 +73,11 @@ void draw_colour_bar(Painter& p, const Box& side, const ColourBar& bar) {
   if (bar.least < bar.low - slack)
     p.polygon(std::array{Vec2(box.x, box.y), Vec2(box.x + box.w / 2, box.y - tip), Vec2(box.x + box.w, box.y)}, map_colour(bar.map, 0));
   p.outline(box, ink, 1);
+  for (const double m : bar.marks) {
+    const double y = box.y + box.h * (m - bar.low) / (bar.high - bar.low);
+    if (y < box.y || y > box.y + box.h) continue;
+    p.line({box.x, y}, {box.x + box.w, y}, white, 4), p.line({box.x, y}, {box.x + box.w, y}, ink, 2);
+  }
   const Ticks ticks = linear_ticks(bar.low, bar.high, std::clamp(static_cast<int>(box.h / (44 * s)), 2, 8));
   for (size_t i = 0; i < ticks.at.size(); ++i) {
     const double y = box.y + box.h * (ticks.at[i] - bar.low) / (bar.high - bar.low);

@@ -22,6 +22,7 @@ struct ColourBar {
   ColourMap map = ColourMap::viridis;
   double low = 0, high = 1;    // of the colours, in `unit`
   double least = 0, most = 0;  // in this picture, in `unit`; beyond the range the bar gets a point
+  std::vector<double> marks;   // values of iso-surfaces, in `unit`
   std::string neutral;         // what the neutral tone means; "" when it is not used
 };
 void draw_colour_bar(Painter& p, const Box& side, const ColourBar& bar);

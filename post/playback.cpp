@@ -66,12 +66,15 @@ RunFile::Field Playback::field(double t, const std::string& array) {
   return f;
 }
 
-std::vector<Vec3> Playback::positions(double t) {
-  std::vector<Vec3> x = mesh_.X;
-  if (!run_.store().has("/field/" + run_.steps[between(t).a].key + "/displacement")) return x;
+const std::vector<Vec3>& Playback::positions(double t) {
+  if (t == x_time_) return x_;
+  const Between at = between(t);
+  x_ = mesh_.X;
+  x_time_ = t;
+  if (!run_.store().has("/field/" + run_.steps[at.a].key + "/displacement")) return x_;
   const auto u = field(t, "displacement").value;
-  for (size_t n = 0; n < x.size(); ++n) x[n] += Vec3(u[3 * n], u[3 * n + 1], u[3 * n + 2]);
-  return x;
+  for (size_t n = 0; n < x_.size(); ++n) x_[n] += Vec3(u[3 * n], u[3 * n + 1], u[3 * n + 2]);
+  return x_;
 }
 
 }  // namespace hilo

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "base/math.hpp"
@@ -19,7 +20,7 @@ class Playback {
   double first() const { return run_.steps.front().t; }  // [s]
   double last() const { return run_.steps.back().t; }
   /// Current positions of all nodes at a time within the run  (n_nodes)  [m].
-  std::vector<Vec3> positions(double t);
+  const std::vector<Vec3>& positions(double t);
   /// A field at that time, row by row, and its number of columns; displacements are those of positions().
   RunFile::Field field(double t, const std::string& array);
 
@@ -41,6 +42,8 @@ class Playback {
   RunFile& run_;
   const Mesh& mesh_;
   std::vector<Kept> kept_;  // of the two outputs last asked for
+  std::vector<Vec3> x_;     // positions at x_time_
+  double x_time_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace hilo

@@ -35,7 +35,6 @@ RunView::RunView(const FrameOptions& o, const std::string& path)
   zoomed_ = o.zoom.empty() ? shown_ : shown_regions(mesh_, o.zoom, o.hide);
   valued_ = shown_;
   if (is_named_field(o.field)) {
-    if (!o.minus.empty()) throw Error("--minus", fmt::format("{} has no differences", o.field), "take a field of numbers", Exit::usage);
     named_ = named_cells(file_, o.field, shown_, run_.path);
   } else {
     field_ = shown_field(o.field, run_.fields(run_.steps.front()));
@@ -52,6 +51,14 @@ RunView::RunView(const FrameOptions& o, const std::string& path)
     field_.label += ", difference";
   }
   make_skins();
+  if (o.deformed != 1) find_parts();
+  const bool enlarged = o.scale != 1 || o.deformed != 1;
+  if (const std::string& name = o.track.empty() ? o.ride : o.track; !name.empty()) {
+    leader_ = std::make_unique<Follower>(run_, name, o.track.empty() ? "--ride" : "--track");
+    if (enlarged && !leader_->of_nodes())
+      throw Error("--track", fmt::format("\"{}\" has no nodes to enlarge with", name), "track a region or set", Exit::usage);
+  }
+  if (!o.trace.empty() || !o.forces.empty()) annotations_ = std::make_unique<Annotations>(o, run_);
 }
 
 bool RunView::has_values() const { return std::find(valued_.begin(), valued_.end(), true) != valued_.end(); }
@@ -70,12 +77,19 @@ void RunView::open_files() {
 void RunView::make_skins() {
   std::vector<Facet> coloured, toned;
   for (const Facet& f : boundary_facets(mesh_, shown_)) (valued_[region_of(f.cell)] ? coloured : toned).push_back(f);
-  std::vector<std::int64_t> coloured_bars, toned_bars;
-  for (std::int64_t c = 0; c < mesh_.n_cells(); ++c)
-    if (info(mesh_.shape[static_cast<size_t>(c)]).dimension == 1 && shown_[region_of(c)])
-      (valued_[region_of(c)] ? coloured_bars : toned_bars).push_back(c);
-  coloured_ = std::make_unique<Skin>(mesh_, coloured, coloured_bars);
-  toned_ = std::make_unique<Skin>(mesh_, toned, toned_bars);
+  std::vector<std::int64_t> coloured_bars, toned_bars, toned_solid;
+  for (std::int64_t c = 0; c < mesh_.n_cells(); ++c) {
+    if (!shown_[region_of(c)]) continue;
+    const bool bar = info(mesh_.shape[static_cast<size_t>(c)]).dimension == 1, valued = valued_[region_of(c)];
+    if (bar) (valued ? coloured_bars : toned_bars).push_back(c);
+    if (!bar && (!o_.cut.empty() || !o_.iso.empty())) (valued ? solid_ : toned_solid).push_back(c);
+  }
+  Plane plane;
+  if (!o_.cut.empty()) plane = parse_cut(o_.cut, parse_view(o_.camera).towards);
+  const Plane* cut = o_.cut.empty() ? nullptr : &plane;
+  coloured_ = std::make_unique<Skin>(mesh_, coloured, coloured_bars, cut, solid_);
+  toned_ = std::make_unique<Skin>(mesh_, toned, toned_bars, cut, toned_solid);
+  if (coloured_->empty() && toned_->empty()) throw Error("--cut", "takes all that is shown away", "see the box that hilo-show tells");
   counted_.assign(static_cast<size_t>(mesh_.n_nodes()), false);
   framed_ = counted_;
   for (std::int64_t c = 0; c < mesh_.n_cells(); ++c)
@@ -89,10 +103,53 @@ void RunView::make_skins() {
   coloured_->set_cell_colours(colour);
 }
 
+void RunView::find_parts() {
+  std::vector<std::int64_t> parent(static_cast<size_t>(mesh_.n_nodes()));
+  for (size_t n = 0; n < parent.size(); ++n) parent[n] = static_cast<std::int64_t>(n);
+  const auto root = [&](std::int64_t n) {
+    while (parent[static_cast<size_t>(n)] != n)
+      n = parent[static_cast<size_t>(n)] = parent[static_cast<size_t>(parent[static_cast<size_t>(n)])];
+    return n;
+  };
+  for (std::int64_t c = 0; c < mesh_.n_cells(); ++c)
+    for (const auto n : mesh_.cell(c)) parent[static_cast<size_t>(root(n))] = root(mesh_.cell(c)[0]);
+  std::vector<int> number(parent.size(), -1);
+  int count = 0;
+  for (size_t n = 0; n < parent.size(); ++n) {
+    int& k = number[static_cast<size_t>(root(static_cast<std::int64_t>(n)))];
+    if (k < 0) k = count++;
+    part_.push_back(k);
+  }
+}
+
+void RunView::enlarge(std::vector<Vec3>& x) const {
+  std::vector<std::vector<std::int64_t>> nodes;
+  for (size_t n = 0; n < x.size(); ++n) {
+    const auto k = static_cast<size_t>(part_[n]);
+    if (k >= nodes.size()) nodes.resize(k + 1);
+    nodes[k].push_back(static_cast<std::int64_t>(n));
+  }
+  std::vector<Vec3> before, now;
+  for (const auto& part : nodes) {
+    before.clear(), now.clear();
+    for (const auto n : part) before.push_back(mesh_.X[static_cast<size_t>(n)]), now.push_back(x[static_cast<size_t>(n)]);
+    const Pose rigid = best_pose(before, now);
+    for (size_t i = 0; i < part.size(); ++i) {
+      const Vec3 y = rigid(before[i]);
+      x[static_cast<size_t>(part[i])] = y + o_.deformed * (now[i] - y);
+    }
+  }
+}
+
 std::vector<Vec3> RunView::positions(double t) {
   std::vector<Vec3> x = playback_->positions(t);
   if (o_.scale != 1)
     for (size_t n = 0; n < x.size(); ++n) x[n] = mesh_.X[n] + o_.scale * (x[n] - mesh_.X[n]);
+  if (o_.deformed != 1) enlarge(x);
+  if (!leader_) return x;
+  drawn_ = leader_->pose(t, x);
+  if (!o_.track.empty()) drawn_.R = Mat3::Identity();
+  for (Vec3& p : x) p = drawn_.back(p);
   return x;
 }
 
@@ -132,17 +189,24 @@ Extent RunView::survey(double t, const Fit& axes, std::vector<Vec3>& extremes) {
   }
   for (const Vec3* w : who)
     if (w) extremes.push_back(*w);
+  if (annotations_ && o_.zoom.empty()) annotations_->frame(t, *playback_, drawn_, extremes);
   return is_named_field(o_.field) || !has_values() ? Extent() : bounds(values(t));
 }
 
-void RunView::stage(vtkRenderer* stage, const Look& look, double scale, double height) {
+void RunView::stage(vtkRenderer* stage, const Look& look, double scale, double height, const std::vector<double>& iso_levels) {
   Look own = look;
+  const bool glass = !iso_levels.empty();
+  if (glass) {
+    iso_ = std::make_unique<IsoSurface>(mesh_, solid_, iso_levels);
+    add_values(stage, iso_->surface(), look);
+    own.by = Look::By::colour, own.opacity = 0.2;
+  }
   if (!coloured_->empty()) add_skin(stage, *coloured_, own);
   own.by = Look::By::colour;
   if (!toned_->empty()) add_skin(stage, *toned_, own);
   for (const Skin* skin : {coloured_.get(), toned_.get()}) {
     if (o_.edges == "all") add_grid(stage, *skin, scale, 0.35, pixels_per_metre(stage, height));
-    if (o_.edges != "none") add_lines(stage, skin->feature_edges(), {0.1, 0.1, 0.12}, 1.3 * scale, 0.8);
+    if (o_.edges != "none") add_lines(stage, skin->feature_edges(), {0.1, 0.1, 0.12}, 1.3 * scale, glass ? 0.35 : 0.8);
   }
 }
 
@@ -154,6 +218,7 @@ Extent RunView::show(double t, double factor) {
   auto value = values(t);
   for (double& v : value) v *= factor;
   coloured_->set_values(value);
+  if (iso_) iso_->update(value, x);
   return bounds(value);
 }
 

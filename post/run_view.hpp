@@ -6,7 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "post/annotations.hpp"
+#include "post/cut.hpp"
+#include "post/follower.hpp"
 #include "post/frame_options.hpp"
+#include "post/iso_surface.hpp"
 #include "post/playback.hpp"
 #include "post/shown_field.hpp"
 #include "post/skin.hpp"
@@ -38,14 +42,20 @@ class RunView {
   void close_files();
   void open_files();
 
+  Annotations* annotations() { return annotations_.get(); }
+  /// True positions are taken to drawn ones by the inverse of this: what the camera moves with.
+  const Pose& drawn() const { return drawn_; }
+
   /// Range of the values drawn at a time, in the stored unit, and the nodes that frame the picture.
   Extent survey(double t, const Fit& axes, std::vector<Vec3>& extremes);
-  void stage(vtkRenderer* stage, const Look& look, double scale, double height);
+  void stage(vtkRenderer* stage, const Look& look, double scale, double height, const std::vector<double>& iso_levels);
   /// Move to a time; values times `factor` are shown.  The range of what is drawn, in the shown unit.
   Extent show(double t, double factor);
 
  private:
   void make_skins();
+  void find_parts();
+  void enlarge(std::vector<Vec3>& x) const;
   size_t region_of(std::int64_t cell) const { return static_cast<size_t>(mesh_.region[static_cast<size_t>(cell)]); }
   std::vector<Vec3> positions(double t);
   std::vector<double> values(double t);
@@ -60,6 +70,12 @@ class RunView {
   std::vector<bool> shown_, zoomed_, valued_;  // per region
   std::vector<bool> counted_, framed_;         // per node: in the range; in the frame
   std::unique_ptr<Skin> coloured_, toned_;
+  std::unique_ptr<IsoSurface> iso_;
+  std::vector<std::int64_t> solid_;  // cells that have values and a volume
+  std::unique_ptr<Annotations> annotations_;
+  std::unique_ptr<Follower> leader_;  // of the camera
+  std::vector<int> part_;             // connected part of each node, where deformations are enlarged
+  Pose drawn_;
   ShownField field_;
   NamedCells named_;
 };

@@ -41,8 +41,9 @@ float* floats(vtkPoints* points) { return static_cast<float*>(points->GetVoidPoi
 
 }  // namespace
 
-Skin::Skin(const Mesh& mesh, std::span<const Facet> facets, std::span<const std::int64_t> bars) {
-  SkinBuilder build(mesh, facets, bars);
+Skin::Skin(const Mesh& mesh, std::span<const Facet> facets, std::span<const std::int64_t> bars, const Plane* cut,
+           std::span<const std::int64_t> cells) {
+  SkinBuilder build(mesh, facets, bars, cut, cells);
   first_ = std::move(build.first);
   node_ = std::move(build.node);
   weight_ = std::move(build.weight);
@@ -50,7 +51,7 @@ Skin::Skin(const Mesh& mesh, std::span<const Facet> facets, std::span<const std:
   corner_ = std::move(build.corner);
   polygon_ = std::move(build.polygon);
   face_cell_ = std::move(build.face_cell);
-  bar_cell_.assign(bars.begin(), bars.end());
+  bar_cell_ = std::move(build.bar_cell);
 
   const auto n_vertices = static_cast<std::int64_t>(point_.size());
   faces_ = with_points(n_vertices);
@@ -92,8 +93,9 @@ void Skin::move(const std::vector<Vec3>& x) {
   for (size_t f = 0; f + 1 < polygon_.size(); ++f) {
     const auto* c = corner_.data() + polygon_[f];
     const auto n = polygon_[f + 1] - polygon_[f];
-    const Eigen::Vector3f a = n == 3 ? Eigen::Vector3f((at(c[1]) - at(c[0])).cross(at(c[2]) - at(c[0])))
-                                     : Eigen::Vector3f((at(c[2]) - at(c[0])).cross(at(c[3]) - at(c[1])));
+    Eigen::Vector3f a = n == 3 ? Eigen::Vector3f((at(c[1]) - at(c[0])).cross(at(c[2]) - at(c[0])))
+                               : Eigen::Vector3f((at(c[2]) - at(c[0])).cross(at(c[3]) - at(c[1])));
+    for (std::int64_t k = 4; k < n; ++k) a += (at(c[k - 1]) - at(c[0])).cross(at(c[k]) - at(c[0]));
     for (std::int64_t k = 0; k < n; ++k) Eigen::Map<Eigen::Vector3f>(normal + 3 * c[k]) += a;
   }
   for (size_t v = 0; v < point_.size(); ++v) Eigen::Map<Eigen::Vector3f>(normal + 3 * v).normalize();

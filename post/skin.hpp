@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/mesh.hpp"
+#include "post/cut.hpp"
 
 namespace hilo {
 
@@ -18,7 +19,9 @@ std::vector<Facet> boundary_facets(const Mesh& mesh, const std::vector<bool>& sh
 /// point is drawn once for each smooth patch around it, so that edges sharper than 40 degrees stay sharp and the rest is shaded smoothly.
 class Skin {
  public:
-  Skin(const Mesh& mesh, std::span<const Facet> facets, std::span<const std::int64_t> bars = {});
+  /// What `cut` takes away is left out, and the section through `cells` closes the rest.
+  Skin(const Mesh& mesh, std::span<const Facet> facets, std::span<const std::int64_t> bars = {}, const Plane* cut = nullptr,
+       std::span<const std::int64_t> cells = {});
 
   /// Move to nodal positions x.
   void move(const std::vector<Vec3>& x);

@@ -78,8 +78,14 @@ std::vector<Facet> boundary_facets(const Mesh& mesh, const std::vector<bool>& sh
   return outside;
 }
 
-SkinBuilder::SkinBuilder(const Mesh& mesh, std::span<const Facet> facets, std::span<const std::int64_t> bars)
-    : mesh_(mesh), node_point_(static_cast<size_t>(mesh.n_nodes()), -1) {
+SkinBuilder::SkinBuilder(const Mesh& mesh, std::span<const Facet> facets, std::span<const std::int64_t> bars, const Plane* cut,
+                         std::span<const std::int64_t> cells)
+    : mesh_(mesh), node_point_(static_cast<size_t>(mesh.n_nodes()), -1), cut_(cut) {
+  if (cut_) {
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    for (const Vec3& x : mesh.X) low = low.cwiseMin(x), high = high.cwiseMax(x);
+    near_ = 1e-9 * (high - low).norm();
+  }
   for (const Facet& f : facets) {
     const auto& local = info(mesh.shape[static_cast<size_t>(f.cell)]).facets[static_cast<size_t>(f.facet)];
     std::array<std::int64_t, 8> nodes{};
@@ -90,7 +96,12 @@ SkinBuilder::SkinBuilder(const Mesh& mesh, std::span<const Facet> facets, std::s
     else
       add_quadratic(used, local.size() == 6 ? 3 : 4, f.cell);
   }
+  bar_cell.assign(bars.begin(), bars.end());
   for (const std::int64_t c : bars) bar_ends.push_back({point_of_node(mesh.cell(c)[0]), point_of_node(mesh.cell(c)[1])});
+  if (cut_) {
+    clip_edges(facet_edges), clip_edges(bar_ends, &bar_cell);
+    add_section(cells);
+  }
   for (auto& e : facet_edges)
     if (e[0] > e[1]) std::swap(e[0], e[1]);
   std::sort(facet_edges.begin(), facet_edges.end());
@@ -118,6 +129,10 @@ std::int64_t SkinBuilder::point_of_node(std::int64_t n) {
 }
 
 void SkinBuilder::add_polygon(std::span<const std::int64_t> points, std::int64_t cell) {
+  cut_ ? add_clipped(points, cell) : keep_polygon(points, cell);
+}
+
+void SkinBuilder::keep_polygon(std::span<const std::int64_t> points, std::int64_t cell) {
   corner.insert(corner.end(), points.begin(), points.end());
   polygon.push_back(static_cast<std::int64_t>(corner.size()));
   face_cell.push_back(cell);
@@ -194,7 +209,9 @@ void SkinBuilder::add_quadratic(std::span<const std::int64_t> nodes, int n_corne
 Vec3 SkinBuilder::normal(size_t face) const {
   const auto* c = corner.data() + polygon[face];
   const auto x = [&](int k) -> const Vec3& { return position_[static_cast<size_t>(c[k])]; };
-  const Vec3 n = polygon[face + 1] - polygon[face] == 3 ? (x(1) - x(0)).cross(x(2) - x(0)) : (x(2) - x(0)).cross(x(3) - x(1));
+  const auto sides = static_cast<int>(polygon[face + 1] - polygon[face]);
+  Vec3 n = sides == 3 ? (x(1) - x(0)).cross(x(2) - x(0)) : (x(2) - x(0)).cross(x(3) - x(1));
+  for (int k = 4; k < sides; ++k) n += (x(k - 1) - x(0)).cross(x(k) - x(0));  // the rest of a cut polygon
   return n.normalized();
 }
 

@@ -6,16 +6,19 @@
 #include <vector>
 
 #include "model/mesh.hpp"
+#include "post/cut.hpp"
 
 namespace hilo {
 
 struct SkinBuilder {
-  SkinBuilder(const Mesh& mesh, std::span<const Facet> facets, std::span<const std::int64_t> bars);
+  /// What `cut` takes away is left out, and the section through `cells` closes the rest.
+  SkinBuilder(const Mesh& mesh, std::span<const Facet> facets, std::span<const std::int64_t> bars, const Plane* cut = nullptr,
+              std::span<const std::int64_t> cells = {});
 
   std::vector<std::int64_t> first{0}, node;  // combination of each point
   std::vector<double> weight;
   std::vector<std::int64_t> corner, polygon{0};                                   // points, then vertices, of the polygons
-  std::vector<std::int64_t> face_cell;                                            // cell of each polygon
+  std::vector<std::int64_t> face_cell, bar_cell;                                  // cell of each polygon and bar
   std::vector<std::int64_t> vertex_point;                                         // point of each vertex
   std::vector<std::array<std::int64_t, 2>> feature_edges, facet_edges, bar_ends;  // pairs of points
 
@@ -37,6 +40,14 @@ struct SkinBuilder {
   std::int64_t edge_point(std::span<const std::int64_t> nodes, std::span<const double> weights, std::int64_t a, std::int64_t b,
                           int quarter);
   void add_polygon(std::span<const std::int64_t> points, std::int64_t cell);
+  void keep_polygon(std::span<const std::int64_t> points, std::int64_t cell);
+  // skin_cut.cpp
+  double depth(const Vec3& x) const;  // behind the plane below 0; 0 very near to it
+  std::int64_t between(std::int64_t p, std::int64_t q);
+  std::int64_t piece_point(std::span<const std::int64_t> nodes, const std::vector<double>& weights);
+  void add_clipped(std::span<const std::int64_t> points, std::int64_t cell);
+  void clip_edges(std::vector<std::array<std::int64_t, 2>>& edges, std::vector<std::int64_t>* cells = nullptr);
+  void add_section(std::span<const std::int64_t> cells);
   void split_at_sharp_edges();
   void find_feature_edges();
   Vec3 normal(size_t face) const;
@@ -45,6 +56,9 @@ struct SkinBuilder {
   std::vector<std::int64_t> node_point_;                                             // point of a node or -1
   std::unordered_map<std::array<std::int64_t, 3>, std::int64_t, PairHash> on_edge_;  // points between nodes, by edge and quarter
   std::vector<Vec3> position_;                                                       // of the points at the start
+  const Plane* cut_;
+  double near_ = 0;                                              // to the plane is on it  [m]
+  std::unordered_map<std::uint64_t, std::int64_t> piece_point_;  // by a hash of nodes and weights
 };
 
 }  // namespace hilo

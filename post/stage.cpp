@@ -82,6 +82,14 @@ void add_skin(vtkRenderer* stage, const Skin& skin, const Look& look) {
   stage->AddActor(bars);
 }
 
+void add_values(vtkRenderer* stage, vtkPolyData* data, const Look& look) {
+  const auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper_of(data, look));
+  shade(actor->GetProperty(), look.colour, 1);
+  actor->GetProperty()->SetInterpolationToPhong();
+  stage->AddActor(actor);
+}
+
 vtkActor* add_surface(vtkRenderer* stage, vtkPolyData* data, const Rgb& colour, double opacity) {
   const auto actor = vtkSmartPointer<vtkActor>::New();
   actor->SetMapper(mapper_of(data, {}));

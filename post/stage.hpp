@@ -22,6 +22,8 @@ struct Look {
   double bar_width = 4;  // of bars  [pixel]
 };
 void add_skin(vtkRenderer* stage, const Skin& skin, const Look& look);
+/// A surface with values of its points, through the colour map of a look.
+void add_values(vtkRenderer* stage, vtkPolyData* data, const Look& look);
 /// A closed surface with normals, and lines.
 vtkActor* add_surface(vtkRenderer* stage, vtkPolyData* data, const Rgb& colour, double opacity = 1);
 vtkActor* add_lines(vtkRenderer* stage, vtkPolyData* data, const Rgb& colour, double width, double opacity = 1);
