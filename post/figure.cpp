@@ -242,6 +242,7 @@ void draw_figure(Painter& p, const Figure& f, const Box& page) {
     sy.push_back(scale_of(panel, true, std::clamp(static_cast<int>(slot / (42 * s)), 3, 9)));
     left = std::max(left, widest(p, sy.back().ticks) + 50 * s);
     right = std::max(right, legend_width(p, panel));
+    if (!sx.back().ticks.text.empty()) right = std::max(right, p.extent(sx.back().ticks.text.back(), tick_size).x() / 2 + 6 * s);
   }
   for (size_t i = 0; i < f.panels.size(); ++i) {
     const Panel& panel = f.panels[i];

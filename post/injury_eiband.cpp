@@ -39,7 +39,7 @@ Held levels_of(const Crew& crew, size_t axis, int sign) {
 
 void write_eiband(const std::vector<Crew>& crew, double cfc, const std::string& title, const std::string& path) {
   Figure figure;
-  figure.title = fmt::format("{}: level held, CFC {:g}, over Eiband's tolerance (no limit)", title, cfc);
+  figure.title = fmt::format("{}: level held, CFC {:g}, over Eiband's tolerance: an overlay, not a limit", title, cfc);
   figure.width = 1280, figure.height = 1600;
   for (const Tolerance& t : eiband_tolerances()) {
     Panel panel{"Acceleration " + t.name, {"duration [s]", true, 1e-3, 2}, {"level held [g]", true, 0.01, 100}, {}};

@@ -62,7 +62,7 @@ void add_impact(Crew& c, const std::array<std::vector<double>, 3>& change, const
   constexpr const char* level[] = {"beta_low", "beta_moderate", "beta_high"};
   constexpr const char* risk[] = {"low", "moderate", "high"};
   for (size_t k = 0; k < 3; ++k)
-    c.measures.push_back({level[k], "1", fmt::format("response over the limit of {} risk", risk[k]), b.beta[k], 4, 1, "Brinkley 1990"});
+    c.measures.push_back({level[k], "1", fmt::format("over the limit of {} risk", risk[k]), b.beta[k], 4, 1, "Brinkley 1990"});
 }
 
 void add_vibration(Crew& c, const std::array<std::vector<double>, 3>& change) {
@@ -74,13 +74,11 @@ void add_vibration(Crew& c, const std::array<std::vector<double>, 3>& change) {
     v[a] = vibration(c.record.t, weighted(a == 2 ? weighting_k : weighting_d, c.record.t, metric));
   }
   for (size_t a = 0; a < 3; ++a)
-    c.measures.push_back(
-        {fmt::format("aw_{}", axis[a]), "m/s^2", fmt::format("weighted r.m.s. ({}) of the record", a == 2 ? "Wk" : "Wd"), v[a].rms, 4});
+    c.measures.push_back({fmt::format("aw_{}", axis[a]), "m/s^2", fmt::format("weighted r.m.s., {}", a == 2 ? "Wk" : "Wd"), v[a].rms, 4});
   c.measures.push_back({"a_v", "m/s^2", "the three together, k = 1", std::hypot(v[0].rms, v[1].rms, v[2].rms), 4});
   for (size_t a = 0; a < 3; ++a)
-    c.measures.push_back({fmt::format("MTVV_{}", axis[a]), "m/s^2", "largest running r.m.s. over 1 s", v[a].running, 4});
-  for (size_t a = 0; a < 3; ++a)
-    c.measures.push_back({fmt::format("VDV_{}", axis[a]), "m/s^1.75", "vibration dose value of the record", v[a].dose, 4});
+    c.measures.push_back({fmt::format("MTVV_{}", axis[a]), "m/s^2", "largest running r.m.s., 1 s", v[a].running, 4});
+  for (size_t a = 0; a < 3; ++a) c.measures.push_back({fmt::format("VDV_{}", axis[a]), "m/s^1.75", "vibration dose value", v[a].dose, 4});
 }
 
 }  // namespace

@@ -44,6 +44,13 @@ class Page {
     }
     if (!so_far.empty()) line(so_far, size, grey);
   }
+  /// A name cut to a share of the width.
+  std::string fitted(std::string name, double share) {
+    const auto wide = [&](const std::string& text) { return p_.extent(text, middle, true).x() > share * (right - left); };
+    if (!wide(name)) return name;
+    while (name.size() > 1 && wide(name + "...")) name.pop_back();
+    return name + "...";
+  }
   void rule(const Rgb& colour, double thick) { p_.line({left, y + unit(row / 2)}, {right, y + unit(row / 2)}, colour, thick); }
   /// A row of cells; the first `n_left` are set to the left at their place, the others end there.
   void cells(const std::vector<std::string>& text, const std::vector<double>& at, const std::vector<Across>& across, bool bold = false) {
@@ -86,7 +93,7 @@ void pulse_table(Page& page, const std::vector<Crew>& crew) {
   page.cells({"", "x [g]", "at [ms]", "for [ms]", "y [g]", "at [ms]", "for [ms]", "z [g]", "at [ms]", "for [ms]"}, at, across, true);
   page.rule(grey, 1.2);
   for (const Crew& c : crew) {
-    std::vector<std::string> text{c.record.name};
+    std::vector<std::string> text{page.fitted(c.record.name, 0.15)};
     for (const char* axis : {"x", "y", "z"})
       for (const char* what : {"peak_", "t_", "width_"}) {
         const Measure& m = measure(c, std::string(what) + axis);
@@ -97,7 +104,7 @@ void pulse_table(Page& page, const std::vector<Crew>& crew) {
 }
 
 void measure_table(Page& page, const std::vector<Crew>& crew) {
-  const double first = 0.40, last = 0.74, n = static_cast<double>(crew.size());
+  const double first = 0.35, last = 0.745, n = static_cast<double>(crew.size());
   std::vector<double> at{0, 0.13};
   std::vector<Across> across{Across::left, Across::left};
   for (size_t i = 0; i < crew.size(); ++i)
@@ -106,7 +113,7 @@ void measure_table(Page& page, const std::vector<Crew>& crew) {
   page.line("What it does to people", large, ink, true);
   page.gap(4);
   std::vector<std::string> head{"", ""};
-  for (const Crew& c : crew) head.push_back(c.record.name);
+  for (const Crew& c : crew) head.push_back(page.fitted(c.record.name, (last - first) / n - 0.012));
   head.push_back("reference level");
   page.cells(head, at, across, true);
   page.rule(grey, 1.2);
@@ -134,7 +141,7 @@ void draw(Painter& p, const std::vector<Crew>& crew, double cfc, const std::stri
       "whom it carries, 1 g upward at rest. Shown and judged is the change from the start of the run. The corridor is the room between the "
       "lowest and the highest of the sensors.",
       middle);
-  const double h = page.unit(815);
+  const double h = page.unit(795);
   draw_figure(p, pulses(crew, cfc), {page.left - page.unit(20), page.y - h, page.right - page.left + page.unit(20), h});
   page.y -= h + page.unit(14);
   pulse_table(page, crew);
