@@ -98,7 +98,7 @@ void run(const Options& o) {
 Command chart_command(CLI::App& app) {
   auto* sub = app.add_subcommand("chart", "a chart of CSV files: a line of column names \"name [unit]\", then numbers");
   const auto o = std::make_shared<Options>();
-  sub->add_option("files", o->files, "CSV files")->required();
+  sub->add_option("files", o->files, "CSV files; - for stdin")->required();
   sub->add_option("-x", o->x, "column of the abscissa, by name or number from 1; the first by default");
   sub->add_option("-y", o->y, "columns to draw, -y once for each; all others by default")->allow_extra_args(false);
   sub->add_option("--by", o->by, "column of names: one curve for each name");

@@ -16,6 +16,7 @@ Command model_command(CLI::App& app);
 Command mesh_command(CLI::App& app);
 Command gload_command(CLI::App& app);
 Command injury_command(CLI::App& app);
+Command peak_command(CLI::App& app);
 Command series_command(CLI::App& app);
 Command chart_command(CLI::App& app);
 Command export_command(CLI::App& app);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iostream>
+#include <iterator>
 #include <limits>
 
 #include "base/error.hpp"
@@ -42,8 +44,8 @@ std::string without_unit(const std::string& name) { return trimmed(name.substr(0
 
 CsvTable read_csv(const std::string& path) {
   CsvTable table;
-  table.path = path;
-  const std::string text = read_text_file(path);
+  table.path = path == "-" ? "<stdin>" : path;
+  const std::string text = path == "-" ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : read_text_file(path);
   size_t line_number = 0;
   for (size_t at = 0; at < text.size();) {
     const size_t end = std::min(text.find('\n', at), text.size());
@@ -57,11 +59,11 @@ CsvTable read_csv(const std::string& path) {
       continue;
     }
     if (cells.size() != table.header.size())
-      throw Error(fmt::format("{}:{}", path, line_number),
+      throw Error(fmt::format("{}:{}", table.path, line_number),
                   fmt::format("{} cells under {} column names", cells.size(), table.header.size()));
     for (size_t c = 0; c < cells.size(); ++c) table.column[c].push_back(cells[c]);
   }
-  if (table.rows() == 0) throw Error(path, "holds no table", "a line of column names, then rows of numbers with commas");
+  if (table.rows() == 0) throw Error(table.path, "holds no table", "a line of column names, then rows of numbers with commas");
   return table;
 }
 

@@ -30,12 +30,15 @@ Scale scale_of(const Panel& panel, bool y_axis, int n_ticks) {
   Scale s;
   s.log = y_axis ? panel.y.log : panel.x.log;
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Curve& c : panel.curves)
+  bool marked = false;
+  for (const Curve& c : panel.curves) {
+    marked = marked || c.marker >= 0;
     for (size_t i = 0; i < c.x.size(); ++i) {
       const double v = y_axis ? c.y[i] : c.x[i];
       if (!std::isfinite(c.x[i]) || !std::isfinite(c.y[i]) || (s.log && v <= 0)) continue;
       low = std::min(low, v), high = std::max(high, v);
     }
+  }
   if (!(low <= high)) low = s.log ? 1 : 0, high = s.log ? 10 : 1;
   const Axis& axis = y_axis ? panel.y : panel.x;
   const bool given_low = std::isfinite(axis.low) && (!s.log || axis.low > 0), given_high = std::isfinite(axis.high);
@@ -51,7 +54,7 @@ Scale scale_of(const Panel& panel, bool y_axis, int n_ticks) {
   if (!(high - low > 1e-12 * std::max(std::abs(high), std::abs(low)))) {  // a constant
     const double half = high == 0 ? 1 : 0.5 * std::abs(high);
     low -= half, high += half;
-  } else if (y_axis) {
+  } else if (y_axis || marked) {  // a marker at the edge would be cut
     const double room = 0.05 * (high - low);
     low -= low == 0 || given_low ? 0 : room, high += high == 0 || given_high ? 0 : room;
   }
