@@ -4,7 +4,7 @@ BEGIN { FS = ","; print "cheeks,stress [MPa],DRI [1]" }
 NR > 1 && $5 == "converged" {
   if (!($2 in count)) order[++n] = $2
   i = ++count[$2]
-  stress[$2, i] = $7; dri[$2, i] = $8; mass[$2] = $6
+  stress[$2, i] = $7; dri[$2, i] = $8; mass[$2] = sprintf("%.1f", $6)
 }
 END {
   for (k = 1; k <= n; ++k) {
