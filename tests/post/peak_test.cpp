@@ -1,0 +1,49 @@
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "cli.hpp"
+#include "sample_run.hpp"
+
+namespace hilo::test {
+namespace {
+
+TEST(Peak, is_the_largest_value_of_each_flexible_region_with_its_place_and_time) {
+  const Workplace place;
+  const Mesh mesh = sample::machine();
+  sample::write_run(place.path(), mesh, 5);
+  const Ran ran = place.run("hilo-post peak run.h5 --unit MPa --show barrel");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  std::istringstream lines(ran.out);
+  std::string header, region, more;
+  double value = 0, t = 0, node = 0, x = 0;
+  std::getline(lines, header);
+  lines >> region >> value >> t >> node >> x;
+  EXPECT_EQ(region, "barrel");
+  EXPECT_NEAR(value, 200, 1e-3);  // the sample's stress at the front at the end
+  EXPECT_NEAR(x, sample::front(mesh), 1e-4 * sample::front(mesh));
+  EXPECT_NE(header.find("von_mises [MPa]"), std::string::npos);
+  const Ran first = place.run("hilo-post peak run.h5 --unit MPa --show barrel --steps first");
+  EXPECT_NE(first.out.find(" 0 "), std::string::npos);  // unloaded at the start
+}
+
+TEST(Peak, of_rigid_regions_has_no_stress_but_a_displacement) {
+  const Workplace place;
+  sample::write_run(place.path(), sample::machine(), 2);
+  EXPECT_EQ(place.run("hilo-post peak run.h5 --show hull").exit, 2);
+  EXPECT_EQ(place.run("hilo-post peak run.h5 --show hull --field displacement").exit, 0);
+  EXPECT_EQ(place.run("hilo-post peak run.h5 --field partition").exit, 1);
+}
+
+TEST(Chart, reads_a_pipe) {
+  const Workplace place;
+  const Ran ran = place.run("printf 't [s],x [m]\\n0,0\\n1,2\\n' | hilo-post chart - -o a.png");
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_TRUE(std::filesystem::exists(place / "a.png"));
+  const Ran bad = place.run("printf 't [s],x [m]\\n0\\n' | hilo-post chart - -o b.png");
+  EXPECT_EQ(bad.exit, 2);
+  EXPECT_NE(bad.err.find("<stdin>:2"), std::string::npos) << bad.err;
+}
+
+}  // namespace
+}  // namespace hilo::test
