@@ -31,7 +31,9 @@ std::array<Vec3, 4> body_arms(const Body& b) {
 std::string stem(const std::string& path) { return path.ends_with(".h5") ? path.substr(0, path.size() - 3) : path; }
 
 Recorder::Recorder(const System& system, const Scene& scene, Setup setup)
-    : system_(system), scene_(scene), setup_(std::move(setup)), share_(system) {}
+    : system_(system), scene_(scene), setup_(std::move(setup)), share_(system) {
+  for (const Body& b : system.bodies) arms_.push_back(body_arms(b));
+}
 
 /// Factor of what follows the load steps of a static analysis.
 double Recorder::load_factor(double t) const {
@@ -54,7 +56,7 @@ std::vector<double> Recorder::point_values(const State& s) {
   for (int i = 0; i < 3; ++i) v.push_back(e.angular[i]);
   v.push_back(violation);
   for (size_t b = 1; b < system_.bodies.size(); ++b)
-    for (const Vec3& arm : body_arms(system_.bodies[b])) {
+    for (const Vec3& arm : arms_[b]) {
       const Vec3 x = s.q.c[b] + s.q.R[b] * arm;
       v.insert(v.end(), x.data(), x.data() + 3);
     }
@@ -172,7 +174,7 @@ void Recorder::declare() {
   on_store([&](Store& f) { declare_arrays(f); });
 }
 
-void Recorder::declare_arrays(Store& f) const {
+void Recorder::declare_arrays(Store& f) {
   f.set("/", "format", std::string("hilo run"));
   f.set("/", "version", std::int64_t{1});
   f.set("/", "complete", std::int64_t{0});
@@ -191,7 +193,7 @@ void Recorder::declare_arrays(Store& f) const {
   for (size_t b = 1; b < system_.bodies.size(); ++b) {
     const Body& body = system_.bodies[b];
     names.push_back(body.name);
-    for (const Vec3& arm : body_arms(body)) {
+    for (const Vec3& arm : arms_[b]) {
       const Vec3 x = body.Xc + arm;
       points.insert(points.end(), x.data(), x.data() + 3);
     }
@@ -213,27 +215,25 @@ void Recorder::declare_arrays(Store& f) const {
   f.start_rows<double>("/history/momentum", {6}, "kg m/s, kg m^2/s", "linear, and angular about the origin", at);
   f.start_rows<double>("/history/constraint", {}, "m", "largest violation of a joint row", at);
   f.start_rows<std::int32_t>("/history/newton", {}, "", "Newton iterations of the step", at);
-  for (size_t b = 1; b < system_.bodies.size(); ++b)
-    f.start_rows<double>("/history/body/" + to_link_name(system_.bodies[b].name), {12}, "m", "positions of the four points", at);
+  const auto start = [&](const std::string& group, const std::string& name, int width, const char* unit, const char* meaning) {
+    arrays_.push_back("/history/" + group + "/" + to_link_name(name));
+    f.start_rows<double>(arrays_.back(), {width}, unit, meaning, at);
+  };
+  for (size_t b = 1; b < system_.bodies.size(); ++b) start("body", system_.bodies[b].name, 12, "m", "positions of the four points");
   for (const Connector& c : system_.joints)
-    f.start_rows<double>("/history/joint/" + to_link_name(c.name), {6}, "N, N m",
-                         setup_.redundant
-                             ? "force and moment on b at the joint point, joint frame carried by a; minimum-norm share of redundant joints"
-                             : "force and moment on b at the joint point, joint frame carried by a",
-                         at);
+    start("joint", c.name, 6, "N, N m",
+          setup_.redundant ? "force and moment on b at the joint point, joint frame carried by a; minimum-norm share of redundant joints"
+                           : "force and moment on b at the joint point, joint frame carried by a");
   for (const Connector& c : system_.springs)
-    f.start_rows<double>("/history/" + c.section + "/" + to_link_name(c.name), {6}, "N, N m",
-                         c.section == "spring" ? "force and moment on b at the point, inertial axes"
-                                               : "force and moment on b at the joint point, joint frame carried by a",
-                         at);
-  for (const Motion& m : system_.motions)
-    f.start_rows<double>("/history/motion/" + to_link_name(m.name), {6}, "N, N m", "force and moment on what is held, inertial axes", at);
+    start(c.section, c.name, 6, "N, N m",
+          c.section == "spring" ? "force and moment on b at the point, inertial axes"
+                                : "force and moment on b at the joint point, joint frame carried by a");
+  for (const Motion& m : system_.motions) start("motion", m.name, 6, "N, N m", "force and moment on what is held, inertial axes");
   for (const Station& s : system_.stations) {
     if (s.sensor)
-      f.start_rows<double>("/history/sensor/" + to_link_name(s.name), {3}, "1", "proper acceleration R^T (a - g)/g0, +1 upward at rest",
-                           at);
+      start("sensor", s.name, 3, "1", "proper acceleration R^T (a - g)/g0, +1 upward at rest");
     else
-      f.start_rows<double>("/history/probe/" + to_link_name(s.name), {9}, "m, m/s, m/s^2", "position, velocity, acceleration", at);
+      start("probe", s.name, 9, "m, m/s, m/s^2", "position, velocity, acceleration");
   }
 }
 
@@ -384,24 +384,22 @@ void Recorder::write_histories(Store& f, const Row& row, const std::vector<doubl
   take("/history/energy", 6), take("/history/momentum", 6), take("/history/constraint", 1);
   const std::int32_t newton = row.newton;
   f.append<std::int32_t>("/history/newton", {&newton, 1});
-  for (size_t b = 1; b < system_.bodies.size(); ++b) take("/history/body/" + to_link_name(system_.bodies[b].name), 12);
+  auto array = arrays_.begin();  // in the order of declare_arrays
+  for (size_t b = 1; b < system_.bodies.size(); ++b) take(*array++, 12);
   const double* m = mid.data();
-  const auto take_mid = [&](const std::string& array) {
-    f.append<double>(array, {m, 6});
+  for (size_t k = system_.joints.size() + system_.springs.size() + system_.motions.size(); k > 0; --k) {
+    f.append<double>(*array++, {m, 6});
     m += 6;
-  };
-  for (const Connector& c : system_.joints) take_mid("/history/joint/" + to_link_name(c.name));
-  for (const Connector& c : system_.springs) take_mid("/history/" + c.section + "/" + to_link_name(c.name));
-  for (const Motion& c : system_.motions) take_mid("/history/motion/" + to_link_name(c.name));
+  }
   for (const Station& s : system_.stations) {
     const Vec3 a(m[0], m[1], m[2]);
     if (s.sensor) {
       const Mat3 axes = Eigen::Map<const Mat3>(p + 6);
       const Vec3 felt = axes.transpose() * (a - system_.gravity) / g0;
-      f.append<double>("/history/sensor/" + to_link_name(s.name), {felt.data(), 3});
+      f.append<double>(*array++, {felt.data(), 3});
     } else {
       const double values[9] = {p[0], p[1], p[2], p[3], p[4], p[5], a[0], a[1], a[2]};
-      f.append<double>("/history/probe/" + to_link_name(s.name), values);
+      f.append<double>(*array++, values);
     }
     m += 3, p += 15;
   }

@@ -63,7 +63,7 @@ class Recorder {
     bool starts_at_jump = false;
   };
   void declare();
-  void declare_arrays(Store& f) const;
+  void declare_arrays(Store& f);
   void write_histories(Store& f, const Row& row, const std::vector<double>& mid) const;
   void on_store(const std::function<void(Store&)>& write);
   void share_failure() const;
@@ -80,9 +80,11 @@ class Recorder {
   const System& system_;
   const Scene& scene_;
   Setup setup_;
-  MinimumNorm share_;             // of redundant joints
-  std::unique_ptr<Store> store_;  // rank 0
-  std::optional<Error> failure_;  // of a write on rank 0
+  MinimumNorm share_;                      // of redundant joints
+  std::vector<std::array<Vec3, 4>> arms_;  // to the four points of each body
+  std::vector<std::string> arrays_;        // of histories with a name, as declared
+  std::unique_ptr<Store> store_;           // rank 0
+  std::optional<Error> failure_;           // of a write on rank 0
   std::deque<Row> rows_;
   std::deque<Interval> intervals_;  // interval k starts at row k of rows_
   std::deque<Interval> past_;       // the two intervals before intervals_[0], for the last row

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/QR>
-#include <Eigen/SparseCore>
 #include <set>
 
 #include "physics/rolling.hpp"
@@ -11,56 +10,48 @@
 namespace hilo {
 namespace {
 
-/// Joint rows over the unknowns of bodies and of nodes that carry ends, rotations in units of the scene's length.
-struct Rows {
-  Eigen::SparseMatrix<double> G;
-  std::vector<std::pair<int, int>> row;  // joint, measure
-};
-
-Rows joint_rows(const System& s, const Stage& stage) {
-  Rows out;
-  std::vector<int> column(s.n_blocks(), -1);
-  int n = 0;
-  for (size_t j = 0; j < s.joints.size(); ++j) {
-    const Connector& c = s.joints[j];
-    for (int m = 0; m < c.n_rows(); ++m) out.row.emplace_back(static_cast<int>(j), m);
-    for (const Carrier& end : c.ends()) {
-      const int first = end.body >= 0 ? s.body_block[end.body] : s.node_block[end.node];
-      for (int k = 0; first >= 0 && k < (end.body >= 0 ? 2 : 1); ++k)
-        if (column[first + k] < 0) column[first + k] = n, n += 3;
-    }
+/// The unknown blocks that a joint's rows act on: of bodies two, displacement and rotation; of nodes one.
+std::vector<int> joint_blocks(const System& s, const Connector& joint) {
+  std::vector<int> blocks;
+  for (const Carrier& end : joint.ends()) {
+    const int first = end.body >= 0 ? s.body_block[end.body] : s.node_block[end.node];
+    for (int k = 0; first >= 0 && k < (end.body >= 0 ? 2 : 1); ++k) blocks.push_back(first + k);
   }
-  std::vector<Eigen::Triplet<double>> entries;
+  return blocks;
+}
+
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, max_directions, max_directions>;
+using DenseRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, 6, max_directions>;
+
+/// A joint's rows over its blocks (n_rows x 3 n_blocks), rotations in units of the scene's length.
+DenseRows joint_rows(const System& s, const Connector& c, const Stage& stage) {
   ConnectorGradient g;
   RowLaw::Gradient law;
-  for (size_t r = 0; r < out.row.size(); ++r) {
-    const auto [joint, row] = out.row[r];
-    const Connector& c = s.joints[joint];
-    if (r == 0 || joint != out.row[r - 1].first) {
-      gradient(c, *stage.left, g);
-      if (c.rows) row_gradient(c, stage, g, law);
-    }
-    Eigen::Matrix<double, 1, max_directions> G = Eigen::Matrix<double, 1, max_directions>::Zero();
-    if (row >= c.n_position_rows()) {
-      G.head<12>() = Slip(c, *stage.left, nullptr).A.row(row - c.n_position_rows());
-    } else if (!c.rows) {
-      G = g.G.row(row);
+  gradient(c, *stage.left, g);
+  if (c.rows) row_gradient(c, stage, g, law);
+  DenseRows out(c.n_rows(), max_directions);
+  const bool slips = c.n_rows() > c.n_position_rows();
+  if (slips) out.bottomRows(c.n_rows() - c.n_position_rows()).setZero();
+  for (int row = 0; row < c.n_position_rows(); ++row) {
+    if (!c.rows) {
+      out.row(row) = g.G.row(row);
     } else {
+      out.row(row).setZero();
       for (size_t m = 0; m < c.measures.size(); ++m)
-        if (law.d[row][m] != 0) G += law.d[row][m] * g.G.row(m);
-    }
-    for (int k = 0; k < c.n_ends; ++k) {
-      const Carrier& end = c.end[k];
-      const int first = end.body >= 0 ? s.body_block[end.body] : s.node_block[end.node];
-      if (first < 0) continue;
-      for (int i = 0; i < 3; ++i) {
-        entries.emplace_back(static_cast<int>(r), column[first] + i, G[6 * k + i]);
-        if (end.body >= 0) entries.emplace_back(static_cast<int>(r), column[first + 1] + i, G[6 * k + 3 + i] / s.length);
-      }
+        if (law.d[row][m] != 0) out.row(row) += law.d[row][m] * g.G.row(m);
     }
   }
-  out.G.resize(static_cast<Eigen::Index>(out.row.size()), n);
-  out.G.setFromTriplets(entries.begin(), entries.end());
+  if (slips)
+    out.bottomRows(c.n_rows() - c.n_position_rows()).leftCols<12>() =
+        Slip(c, *stage.left, nullptr).A.topRows(c.n_rows() - c.n_position_rows());  // of a, then of b
+  int used = 0;                                                                     // columns of what cannot move drop out
+  for (int k = 0; k < c.n_ends; ++k) {
+    const Carrier& end = c.end[k];
+    if ((end.body >= 0 ? s.body_block[end.body] : s.node_block[end.node]) < 0) continue;
+    out.middleCols<3>(used) = out.middleCols<3>(6 * k).eval(), used += 3;
+    if (end.body >= 0) out.middleCols<3>(used) = (out.middleCols<3>(6 * k + 3) / s.length).eval(), used += 3;
+  }
+  out.conservativeResize(Eigen::NoChange, used);
   return out;
 }
 
@@ -68,10 +59,25 @@ Rows joint_rows(const System& s, const Stage& stage) {
 
 Redundancy drop_redundant_rows(System& system, const Config& q) {
   Redundancy report;
-  const Rows rows = joint_rows(system, stage_at(q, 0));
-  report.rows = static_cast<int>(rows.row.size());
+  std::vector<std::pair<int, int>> rows;  // joint, row
+  std::vector<int> column(system.n_blocks(), -1);
+  int n = 0;
+  for (size_t j = 0; j < system.joints.size(); ++j) {
+    for (int r = 0; r < system.joints[j].n_rows(); ++r) rows.emplace_back(static_cast<int>(j), r);
+    for (const int block : joint_blocks(system, system.joints[j]))
+      if (column[block] < 0) column[block] = n, n += 3;
+  }
+  report.rows = static_cast<int>(rows.size());
   if (report.rows == 0) return report;
-  Eigen::MatrixXd A = Eigen::MatrixXd(rows.G).transpose();
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, report.rows);
+  int at = 0;
+  for (const Connector& joint : system.joints) {
+    const DenseRows G = joint_rows(system, joint, stage_at(q, 0));
+    const auto blocks = joint_blocks(system, joint);
+    for (size_t k = 0; k < blocks.size(); ++k)
+      A.block(column[blocks[k]], at, 3, G.rows()) += G.middleCols<3>(3 * static_cast<Eigen::Index>(k)).transpose();
+    at += static_cast<int>(G.rows());
+  }
   for (int r = 0; r < A.cols(); ++r) {
     const double norm = A.col(r).norm();
     if (norm > 0) A.col(r) /= norm;
@@ -86,12 +92,12 @@ Redundancy drop_redundant_rows(System& system, const Config& q) {
   const Eigen::MatrixXd depends =
       R.leftCols(report.rank).triangularView<Eigen::Upper>().solve(R.rightCols(report.rows - report.rank));  // dropped = kept * depends
   for (int k = report.rank; k < report.rows; ++k) {
-    const auto [joint, measure] = rows.row[order[k]];
+    const auto [joint, measure] = rows[order[k]];
     system.joints[joint].active[measure] = false;
     std::set<std::string> others;
     for (int i = 0; i < report.rank; ++i)
-      if (std::abs(depends(i, k - report.rank)) > 1e-6 && rows.row[order[i]].first != joint)
-        others.insert(system.joints[rows.row[order[i]].first].name);
+      if (std::abs(depends(i, k - report.rank)) > 1e-6 && rows[order[i]].first != joint)
+        others.insert(system.joints[rows[order[i]].first].name);
     report.dropped.push_back(
         fmt::format("joint \"{}\" row {}{}", system.joints[joint].name, measure + 1,
                     others.empty() ? " (depends on the joint's own rows)" : fmt::format(" (depends on {})", fmt::join(others, ", "))));
@@ -110,29 +116,61 @@ bool recheck_redundant_rows(System& system, const Config& q, const Redundancy& b
   return false;
 }
 
-std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const double> lambda) {
-  const Rows rows = joint_rows(system_, stage);
-  const int first = system_.first_joint_block();
-  Eigen::VectorXd kept(rows.G.rows());
-  for (size_t r = 0; r < rows.row.size(); ++r) {
-    const auto [j, m] = rows.row[r];
-    kept[r] = system_.joints[j].active[m] ? lambda[3 * (system_.joint_block[j] - first) + m] : 0;
+MinimumNorm::MinimumNorm(const System& system) : system_(system) {
+  std::vector<int> number(system.n_blocks(), -1);
+  int n = 0;
+  for (const Connector& joint : system.joints) {
+    auto blocks = joint_blocks(system, joint);
+    for (int& block : blocks) {
+      if (number[block] < 0) number[block] = n++;
+      block = number[block];
+    }
+    cliques_.add(blocks);
   }
-  Eigen::SparseMatrix<double> A = rows.G.transpose() * rows.G;
-  const Eigen::VectorXd f = rows.G.transpose() * kept;
-  const double shift = 1e-10 * A.diagonal().maxCoeff();
-  Eigen::SparseMatrix<double> shifted = A;
-  shifted.diagonal().array() += shift;
+  A_.structure(cliques_, n);
+}
+
+std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const double> lambda) {
+  const int first = system_.first_joint_block();
+  const auto n_joints = static_cast<int>(system_.joints.size());
+  A_.zero();
+  std::vector<DenseRows> G(n_joints);
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(A_.n());
+  double largest = 0;
+  for (int j = 0; j < n_joints; ++j) {
+    const Connector& joint = system_.joints[j];
+    G[j] = joint_rows(system_, joint, stage);
+    const Square K = G[j].transpose() * G[j];
+    largest = std::max(largest, K.diagonal().maxCoeff());
+    A_.add(j, K.data());
+    for (int r = 0; r < joint.n_rows(); ++r) {
+      if (!joint.active[r]) continue;
+      const auto blocks = cliques_[j];
+      for (size_t k = 0; k < blocks.size(); ++k)
+        f.segment<3>(3 * blocks[k]) +=
+            lambda[3 * (system_.joint_block[j] - first) + r] * G[j].row(r).segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
+    }
+  }
+  const double shift = 1e-10 * largest;
+  const double d[3] = {shift, shift, shift};
+  for (int i = 0; i < A_.n_blocks(); ++i) A_.add_diagonal(i, d);
+  const Eigen::Map<const Eigen::SparseMatrix<double>> shifted(A_.n(), A_.n(), static_cast<Eigen::Index>(A_.values().size()),
+                                                              A_.row_start().data(), A_.column().data(), A_.values().data());
   if (!analyzed_) factors_.analyzePattern(shifted), analyzed_ = true;
   factors_.factorize(shifted);
-  Eigen::VectorXd y = Eigen::VectorXd::Zero(f.size()), r = f;
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(f.size()), r = f, product(f.size());
   for (int pass = 0; pass < 8 && r.norm() > 1e-14 * f.norm(); ++pass) {
     y += factors_.solve(r);
-    r = f - A * y;
+    A_.multiply(y.data(), product.data());
+    r = f - product + shift * y;
   }
-  const Eigen::VectorXd full = rows.G * y;
   std::vector<double> out(lambda.size(), 0.0);
-  for (size_t i = 0; i < rows.row.size(); ++i) out[3 * (system_.joint_block[rows.row[i].first] - first) + rows.row[i].second] = full[i];
+  Eigen::Matrix<double, max_directions, 1> own;
+  for (int j = 0; j < n_joints; ++j) {
+    const auto blocks = cliques_[j];
+    for (size_t k = 0; k < blocks.size(); ++k) own.segment<3>(3 * static_cast<Eigen::Index>(k)) = y.segment<3>(3 * blocks[k]);
+    Eigen::Map<Eigen::VectorXd>(&out[3 * (system_.joint_block[j] - first)], G[j].rows()) = G[j] * own.head(G[j].cols());
+  }
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "linear/block_csr.hpp"
 #include "system/system.hpp"
 
 namespace hilo {
@@ -23,12 +24,14 @@ bool recheck_redundant_rows(System& system, const Config& q, const Redundancy& b
 /// Cholesky factorization of the slightly shifted matrix and refinement; what the shift adds lies in the null space of G and drops out.
 class MinimumNorm {
  public:
-  explicit MinimumNorm(const System& system) : system_(system) {}
+  explicit MinimumNorm(const System& system);
   /// All rows of all joints counted, at the stage's left configuration; laid out like lambda.
   std::vector<double> operator()(const Stage& stage, std::span<const double> lambda);
 
  private:
   const System& system_;
+  Cliques cliques_;  // of joints
+  BlockCsr A_;       // G^T G, shifted
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors_;
   bool analyzed_ = false;
 };

@@ -17,6 +17,7 @@ class Klu final : public Factors {
     klu_defaults(&common_);
     common_.btf = 0;  // the saddle point is one block
     common_.scale = 2;
+    common_.ordering = 1;  // COLAMD: multipliers have no diagonal, so that pivots move
   }
   ~Klu() override {
     if (numeric_) klu_free_numeric(&numeric_, &common_);

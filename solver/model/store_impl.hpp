@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <map>
 #include <numeric>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 
 #include "model/store.hpp"
@@ -103,7 +103,7 @@ struct Store::Impl {
   std::string on_disk;  // name while it is open
   Id file;
   bool writable = false, temporary = false;
-  std::map<std::string, Rows, std::less<>> rows;
+  std::unordered_map<std::string, Rows> rows;
 
   ~Impl();
 

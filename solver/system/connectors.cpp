@@ -173,7 +173,10 @@ void System::add_connectors(Pass& p) const {
     if (!owns_joint_[j]) continue;
     const Connector& c = joints[j];
     gradient(c, *s.left, left);
-    gradient(c, *s.end, right);
+    if (p.K)
+      gradient(c, *s.end, right);
+    else
+      right.e = c.values(*s.end);
     double g[max_rows], lambda[max_rows], force[max_measures];
     c.row_values(right.e, g);
     if (c.drive.row >= 0) g[c.drive.row] -= c.drive.course(s.t_end, s.load_factor).value;
@@ -226,7 +229,7 @@ void System::add_connectors(Pass& p) const {
     const Connector& c = springs[j];
     const int n = static_cast<int>(c.measures.size()), width = c.n_directions();
     gradient(c, *s.left, left);
-    gradient(c, *s.e1, *s.end, right);
+    if (p.K) gradient(c, *s.e1, *s.end, right);
     Response elastic, viscous;
     double slope[max_rows] = {};
     spring_elastic(c, s, elastic);

@@ -78,7 +78,7 @@ best "$1" "chain of 20" chain.toml
 best "$1" "heavy top, h .001" "$scenes/top.toml" --set time.step=0.001 --set time.end=2
 best "$1" "double four-bar, h .01" "$scenes/double_four_bar.toml" --set time.step=0.01 --set time.end=10
 best "$1" "Bricard, h .01" "$scenes/bricard.toml" --set time.step=0.01 --set time.end=10
-best "$1" "40 four-bars, h .01" forty.toml
+best "$1" "40 four-bars, h .01" forty.toml --set time.end=10
 best "$1" "beam pendulum, h .001" beam.toml
 for k in 1 2 3; do
   start=$(date +%s%N)
