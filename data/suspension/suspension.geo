@@ -213,6 +213,6 @@ Physical Surface("bushing_rear") = Surface In BoundingBox {-x_o(0) - d, y_low - 
 
 // ---------------------------------------------------------------- mesh
 Mesh.MeshSizeFromCurvature = 16;
-Mesh.MeshSizeMin = 0.010;
+Mesh.MeshSizeMin = 0.006;
 Mesh.MeshSizeMax = 0.06;
 Mesh.MeshSizeExtendFromBoundary = 1;
