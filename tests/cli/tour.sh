@@ -13,7 +13,10 @@ fail() { echo "tour: $*" >&2; exit 1; }
 awk '/^```sh$/ {on = 1; next} /^```$/ {on = 0} on' "$repo/docs/tour.md" > blocks.sh
 awk '/^```python$/ {on = 1; next} /^```$/ {on = 0} on' "$repo/docs/tour.md" > read.py
 bash -euo pipefail blocks.sh | tee said.txt
-if /usr/bin/python3 -c 'import h5py' 2> /dev/null; then /usr/bin/python3 read.py; fi
+if /usr/bin/python3 -c 'import h5py' 2> /dev/null; then
+  /usr/bin/python3 read.py
+  "$repo/tests/cli/xdmf.py" run.xdmf
+fi
 # what the blocks say they write is there
 for file in $(grep -oE -- '(-o|--png) [a-z0-9-]+\.[a-z0-9]+' blocks.sh | cut -d' ' -f2); do
   [ -s "$file" ] || fail "$file is missing"
