@@ -11,7 +11,8 @@
 namespace hilo {
 namespace {
 
-constexpr int klu_below = 1500;       // unknowns
+constexpr int klu_below = 900;  // unknowns; where a quarter of them are of bodies and multipliers, a little more
+constexpr int rigid_klu_below = 1500;
 constexpr int dense_at_most = 1200;   // unknowns of bodies and multipliers beside a Cholesky factor
 constexpr int least_iterations = 10;  // that lagged factors are given
 
@@ -25,7 +26,10 @@ class LightSolver final : public KktSolver {
     for (size_t i = 0; i < map.global.size(); ++i) is_dense_[i] = map.global[i] >= map.first_dense;
     const auto n_dense = 3 * std::count(is_dense_.begin(), is_dense_.end(), 1);
     std::string kind = kind_;
-    if (kind == "light") kind = A_.n() < klu_below ? "klu" : n_dense <= dense_at_most && 2 * n_dense < A_.n() ? "cholesky" : "umfpack";
+    if (kind == "light")
+      kind = A_.n() < (4 * n_dense > A_.n() ? rigid_klu_below : klu_below) ? "klu"
+             : n_dense <= dense_at_most && 2 * n_dense < A_.n()            ? "cholesky"
+                                                                           : "umfpack";
     is_klu_ = kind == "klu";
     factors_ = is_klu_ ? make_klu() : kind == "umfpack" ? make_umfpack() : make_cholesky(is_dense_);
     is_definite_ = kind == "cholesky";
