@@ -33,9 +33,9 @@ Make load() {
 
 }  // namespace
 
-std::unique_ptr<KktSolver> make_petsc_solver(const std::string& kind, double tolerance) {
+std::unique_ptr<KktSolver> make_petsc_solver(const std::string& kind, double tolerance, int subdomains) {
   static const Make make = load();
-  return std::unique_ptr<KktSolver>(make(kind.c_str(), tolerance, tool_name().c_str()));
+  return std::unique_ptr<KktSolver>(make(kind.c_str(), tolerance, subdomains, tool_name().c_str()));
 }
 
 }  // namespace hilo

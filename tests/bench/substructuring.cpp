@@ -1,6 +1,7 @@
-// Iterations of BDDC and FETI-DP on a bar between two bodies, one subdomain per rank, in irregular parts:
-//   mpirun -n 16 substructuring-bench NX NY NZ CFL KIND [JUMP]
-// JUMP: every other part is so much stiffer.  Prints ranks, unknowns, iterations, primal constraints' part of memory and seconds.
+// Iterations of BDDC and FETI-DP on a bar between two bodies, in irregular parts, several subdomains per rank:
+//   mpirun -n 2 substructuring-bench NX NY NZ CFL KIND SUBDOMAINS [JUMP]
+// SUBDOMAINS: of all ranks.  JUMP: in every other of as many regions, scattered without regard to the subdomains, the bar is so much
+// stiffer.  Prints unknowns, iterations, megabytes of the solver on the first rank, and seconds.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -13,21 +14,23 @@ using namespace hilo;
 using namespace hilo::test;
 
 int main(int argc, char** argv) {
-  if (argc < 6) {
-    fmt::print(stderr, "usage: mpirun -n N substructuring-bench NX NY NZ CFL KIND [JUMP]\n");
+  if (argc < 7) {
+    fmt::print(stderr, "usage: mpirun -n N substructuring-bench NX NY NZ CFL KIND SUBDOMAINS [JUMP]\n");
     return 1;
   }
   Comm& comm = Comm::world();
   const int code = guarded("substructuring-bench", [&] {
     Problem p = elastic_bar(std::atoi(argv[1]), std::atoi(argv[2]), std::atoi(argv[3]), std::atof(argv[4]));
-    const double jump = argc > 6 ? std::atof(argv[6]) : 1;
-    scattered(p, comm.size);
+    const int subdomains = std::atoi(argv[6]);
+    const double jump = argc > 7 ? std::atof(argv[7]) : 1;
     if (jump != 1) {
+      scattered(p, subdomains);
       const auto matrix = p.matrix;
       const auto rank = p.rank;
       p.matrix = [=](int e) { return Matrix((matrix(e).rows() >= 12 && rank[e] % 2 ? jump : 1) * matrix(e)); };
     }
-    const auto solver = make_petsc_solver(argv[5], 1e-8);
+    scattered(p, comm.size);
+    const auto solver = make_petsc_solver(argv[5], 1e-8, subdomains / comm.size);
     const Share share(p, comm.rank, comm.size);
     const auto start = std::chrono::steady_clock::now();
     solver->structure(share.cliques, share.map);
@@ -36,8 +39,9 @@ int main(int argc, char** argv) {
     const auto report = solver->solve(share.of(random_vector(p.size(), 3)), x);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     if (comm.rank == 0)
-      fmt::print("{:4} ranks {:7} unknowns CFL {:6} jump {:6}: {} {} iterations{}, {:.1f} s\n", comm.size, p.size(), argv[4], jump,
-                 solver->name(), report.iterations, report.ok ? "" : " FAILED", seconds.count());
+      fmt::print("{:4} subdomains {:3} ranks {:7} unknowns CFL {:6} jump {:6}: {} {:3} iterations{}, {:.0f} MB, {:.1f} s\n", subdomains,
+                 comm.size, p.size(), argv[4], jump, solver->name(), report.iterations, report.ok ? "" : " FAILED", solver->bytes() / 1e6,
+                 seconds.count());
   });
   comm.finish();
   return code;

@@ -1,4 +1,4 @@
-// BDDC [dohrmann-2003] on the symmetric part of the flexible block, with one factor per subdomain.
+// BDDC [dohrmann-2003] on the symmetric part of the flexible block, with one factor per rank for all of its subdomains.
 //
 // The preconditioner is that of exact static condensation: K^-1 with the inverse of the assembled Schur complement replaced by
 //
@@ -7,7 +7,7 @@
 // D_j weights that sum to one (by stiffness: of whole classes, "deluxe" [dohrmann-widlund-2016], where they are not too large), C_j the
 // averages and moments of classes of shared nodes, Psi_j the interface motions of least energy with C_j Psi_j = 1, K_c their stiffness.
 // Floating subdomains are made regular by C^T R C, which changes nothing on C w = 0.  With the interface last in its factor, an application
-// reads each subdomain's factor once forwards and once backwards; PETSc's PCBDDC solves three times with two factors.
+// reads the factor once forwards and once backwards; PETSc's PCBDDC solves three times with two factors.
 //
 // The tangent of averaged methods is unsymmetric by what turns in a step; GMRES works on it, and only the preconditioner is symmetrised.
 #include <petscvec.h>
@@ -31,16 +31,22 @@ constexpr size_t largest_class = 450;
 
 class Bddc final : public FlexibleInverse {
  public:
-  explicit Bddc(const SubdomainMatrix& F) : F_(F), interface_(find_interface(F)), factor_(F, interface_) {
+  explicit Bddc(const SubdomainMatrix& F) : F_(F), interface_(find_interface(F)), factor_(F, interface_), pieces_(interface_.n_pieces) {
     n_ = factor_.n(), n_interior_ = factor_.n_interior();
-    for (const auto& c : interface_.classes) n_own_ += static_cast<int>(c.q.cols());
-    C_ = MatrixXd::Zero(n_ - n_interior_, n_own_);
-    int column = 0;
+    for (const auto& c : interface_.classes)
+      for (int m = 0; m < c.q.cols(); ++m) pieces_[c.piece].number.push_back(c.first + m);
+    for (size_t p = 0; p < pieces_.size(); ++p) {
+      pieces_[p].from = factor_.begin(static_cast<int>(p)) - n_interior_;
+      pieces_[p].n = factor_.begin(static_cast<int>(p) + 1) - factor_.begin(static_cast<int>(p));
+      pieces_[p].C = MatrixXd::Zero(pieces_[p].n, static_cast<Eigen::Index>(pieces_[p].number.size()));
+    }
+    std::vector<Eigen::Index> column(pieces_.size(), 0);
     for (const auto& c : interface_.classes) {
+      Piece& piece = pieces_[c.piece];
       for (size_t k = 0; k < c.blocks.size(); ++k)
-        C_.block(3 * factor_.place(c.blocks[k]) - n_interior_, column, 3, c.q.cols()) = c.q.middleRows(3 * static_cast<Eigen::Index>(k), 3);
-      for (int m = 0; m < c.q.cols(); ++m) number_.push_back(c.first + m);
-      column += static_cast<int>(c.q.cols());
+        piece.C.block(3 * factor_.place(c.blocks[k]) - n_interior_ - piece.from, column[c.piece], 3, c.q.cols()) =
+            c.q.middleRows(3 * static_cast<Eigen::Index>(k), 3);
+      column[c.piece] += c.q.cols();
     }
     make_scatters();
   }
@@ -85,8 +91,9 @@ class Bddc final : public FlexibleInverse {
       edge = weigh(edge, true);
       v = edge;
       if (n_edge > 0) factor_.forward(n_interior_, n_, y.data()), factor_.backward(n_interior_, n_, y.data());
-      const VectorXd primal = solve_coarse(Psi_.transpose() * edge);
-      edge = weigh(v + Psi_ * (primal - C_.transpose() * v), false);
+      const VectorXd primal = solve_coarse(edge);
+      for (const Piece& p : pieces_) v.segment(p.from, p.n) += p.Psi * (p.own(primal) - p.C.transpose() * v.segment(p.from, p.n));
+      edge = weigh(v, false);
     }
     check(VecSet(x, 0));
     scatter(edge_, edge_local_, x, ADD_VALUES, SCATTER_REVERSE);
@@ -103,9 +110,26 @@ class Bddc final : public FlexibleInverse {
   bool is_dear() const override { return true; }
   int most_iterations() const override { return 150; }
   std::string name() const override { return "BDDC"; }
-  double bytes() const override { return factor_.bytes() + 16. * static_cast<double>(C_.size()); }
+  double bytes() const override {
+    double sum = factor_.bytes();
+    for (const Piece& p : pieces_) sum += 16. * static_cast<double>(p.C.size());
+    for (const MatrixXd& w : class_weight_) sum += 8. * static_cast<double>(w.size());
+    return sum;
+  }
 
  private:
+  /// The interface of a connected part of a subdomain: unknowns [from, from + n) of this rank's interface.
+  struct Piece {
+    Eigen::Index from = 0, n = 0;
+    std::vector<int> number;  // of its constraints among all
+    MatrixXd C, Psi, coarse;  // (n x constraints), the same, (constraints x constraints)
+    VectorXd own(const VectorXd& primal) const {
+      VectorXd x(static_cast<Eigen::Index>(number.size()));
+      for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = primal[number[k]];
+      return x;
+    }
+  };
+
   /// y_I := L_II^-T (y_I - L_GI^T y_G)
   void restore_interior(double* y) const { factor_.backward(0, n_interior_, y); }
 
@@ -161,25 +185,31 @@ class Bddc final : public FlexibleInverse {
       std::vector<int> unknowns;
       for (const PetscInt i : c.blocks)
         for (int a = 0; a < 3; ++a) unknowns.push_back(3 * factor_.place(i) + a);
-      const MatrixXd rows = factor_.schur_rows(unknowns);
+      const MatrixXd rows = factor_.schur_rows(c.piece, unknowns);
       own[k] = rows * rows.transpose() - regular[k] * c.q * c.q.transpose();
-      for (const int r : c.ranks)
-        if (r != rank()) send[r].insert(send[r].end(), own[k].data(), own[k].data() + own[k].size());
+      int last = rank();
+      for (const auto& holder : c.holders) {  // once to each other rank
+        if (holder.rank != rank() && holder.rank != last)
+          send[holder.rank].insert(send[holder.rank].end(), own[k].data(), own[k].data() + own[k].size());
+        last = holder.rank;
+      }
     }
     const auto got = exchange(send);
     std::vector<size_t> at(size(), 0);
     class_weight_.assign(own.size(), MatrixXd());
     bool good = true;
-    for (size_t k = 0; k < own.size(); ++k) {
+    for (size_t k = 0, next; k < own.size(); k = next) {  // classes [k, next) are one, seen from several pieces of this rank
+      for (next = k + 1; next < own.size() && interface_.classes[next].first == interface_.classes[k].first;) ++next;
       if (own[k].size() == 0) continue;
       MatrixXd all = MatrixXd::Zero(own[k].rows(), own[k].cols());
-      for (const int r : interface_.classes[k].ranks) {  // in the same order on all of them
-        all += r == rank() ? own[k] : MatrixXd(Eigen::Map<const MatrixXd>(got[r].data() + at[r], all.rows(), all.cols()));
+      size_t mine = k;
+      for (const auto& [r, unused] : interface_.classes[k].holders) {  // in the same order on all of them
+        all += r == rank() ? own[mine++] : MatrixXd(Eigen::Map<const MatrixXd>(got[r].data() + at[r], all.rows(), all.cols()));
         if (r != rank()) at[r] += static_cast<size_t>(all.size());
       }
       const Eigen::LLT<MatrixXd> inverse(all);
       good = good && inverse.info() == Eigen::Success;
-      if (good) class_weight_[k] = inverse.solve(own[k]);
+      for (size_t i = k; good && i < next; ++i) class_weight_[i] = inverse.solve(own[i]);
     }
     return good;
   }
@@ -200,38 +230,48 @@ class Bddc final : public FlexibleInverse {
     return y;
   }
 
-  /// Psi = S^-1 C (C^T S^-1 C)^-1 with the regular S, and this subdomain's part of K_c.
+  /// Psi = S^-1 C (C^T S^-1 C)^-1 with the regular S, and the pieces' parts of K_c.
   bool form_coarse_basis(const std::vector<double>& regular) {
     if (!weight_.allFinite()) return false;
-    const Eigen::Index n_edge = n_ - n_interior_;
-    Psi_.resize(n_edge, n_own_);
-    if (n_own_ == 0) return true;
     std::vector<double> y(n_, 0.0);
-    for (int k = 0; k < n_own_; ++k) {
-      std::copy(C_.col(k).data(), C_.col(k).data() + n_edge, y.begin() + n_interior_);
-      factor_.forward(n_interior_, n_, y.data()), factor_.backward(n_interior_, n_, y.data());
-      std::copy(y.begin() + n_interior_, y.end(), Psi_.col(k).data());
+    for (Piece& p : pieces_) {
+      const auto from = n_interior_ + static_cast<int>(p.from), to = from + static_cast<int>(p.n);
+      const auto n = p.C.cols();
+      p.Psi.resize(p.n, n), p.coarse.resize(n, n);
+      if (n == 0) continue;
+      for (Eigen::Index k = 0; k < n; ++k) {
+        std::copy(p.C.col(k).data(), p.C.col(k).data() + p.n, y.begin() + from);
+        factor_.forward(from, to, y.data()), factor_.backward(from, to, y.data());
+        std::copy(y.begin() + from, y.begin() + to, p.Psi.col(k).data());
+      }
+      MatrixXd compliance = p.C.transpose() * p.Psi;
+      compliance = (0.5 * (compliance + compliance.transpose())).eval();
+      const Eigen::LLT<MatrixXd> inverse(compliance);
+      if (inverse.info() != Eigen::Success) return false;
+      p.coarse = inverse.solve(MatrixXd::Identity(n, n));
+      p.Psi = (p.Psi * p.coarse).eval();
     }
-    MatrixXd compliance = C_.transpose() * Psi_;
-    compliance = (0.5 * (compliance + compliance.transpose())).eval();
-    const Eigen::LLT<MatrixXd> inverse(compliance);
-    if (inverse.info() != Eigen::Success) return false;
-    coarse_ = inverse.solve(MatrixXd::Identity(n_own_, n_own_));
-    Psi_ = (Psi_ * coarse_).eval();
-    int column = 0;
-    for (size_t c = 0; c < interface_.classes.size(); ++c)
-      for (Eigen::Index m = 0; m < interface_.classes[c].q.cols(); ++m, ++column) coarse_(column, column) -= regular[c];
-    return coarse_.allFinite();
+    std::vector<Eigen::Index> column(pieces_.size(), 0);
+    for (size_t k = 0; k < interface_.classes.size(); ++k) {
+      const auto& c = interface_.classes[k];
+      for (Eigen::Index m = 0; m < c.q.cols(); ++m) {
+        const auto i = column[c.piece]++;
+        pieces_[c.piece].coarse(i, i) -= regular[k];
+      }
+    }
+    return std::all_of(pieces_.begin(), pieces_.end(), [](const Piece& p) { return p.coarse.allFinite(); });
   }
 
   /// K_c from all subdomains to all ranks, factored by each.
   bool factor_coarse() {
     if (interface_.n_constraints == 0) return true;
     std::vector<double> mine, all;
-    for (int a = 0; a < n_own_; ++a)
-      for (int b = 0; b < n_own_; ++b)
-        if (number_[a] >= number_[b])
-          mine.insert(mine.end(), {static_cast<double>(number_[a]), static_cast<double>(number_[b]), coarse_(a, b)});
+    for (const Piece& p : pieces_)
+      for (size_t a = 0; a < p.number.size(); ++a)
+        for (size_t b = 0; b < p.number.size(); ++b)
+          if (p.number[a] >= p.number[b])
+            mine.insert(mine.end(), {static_cast<double>(p.number[a]), static_cast<double>(p.number[b]),
+                                     p.coarse(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b))});
     int n = static_cast<int>(mine.size());
     std::vector<int> counts(size()), at(size(), 0);
     MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, PETSC_COMM_WORLD);
@@ -246,24 +286,23 @@ class Bddc final : public FlexibleInverse {
     return coarse_factor_.info() == Eigen::Success;
   }
 
-  /// The primal unknowns of this subdomain; `share`: its part of the right-hand side.
-  VectorXd solve_coarse(const VectorXd& share) {
-    if (interface_.n_constraints == 0) return VectorXd::Zero(0);
+  /// All primal unknowns, for forces on the interface.
+  VectorXd solve_coarse(const Eigen::Ref<const VectorXd>& edge) {
     VectorXd all = VectorXd::Zero(interface_.n_constraints);
-    for (int k = 0; k < n_own_; ++k) all[number_[k]] += share[k];
+    if (interface_.n_constraints == 0) return all;
+    for (const Piece& p : pieces_) {
+      const VectorXd share = p.Psi.transpose() * edge.segment(p.from, p.n);
+      for (Eigen::Index k = 0; k < share.size(); ++k) all[p.number[k]] += share[k];
+    }
     MPI_Allreduce(MPI_IN_PLACE, all.data(), interface_.n_constraints, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
-    all = coarse_factor_.solve(all).eval();
-    VectorXd own(n_own_);
-    for (int k = 0; k < n_own_; ++k) own[k] = all[number_[k]];
-    return own;
+    return coarse_factor_.solve(all);
   }
 
   const SubdomainMatrix& F_;
   Interface interface_;
   SubdomainFactor factor_;
-  int n_ = 0, n_interior_ = 0, n_own_ = 0;  // unknowns; constraints of this subdomain
-  std::vector<int> number_;                 // of its constraints among all
-  MatrixXd C_, Psi_, coarse_;               // (interface unknowns x constraints), the same, (constraints x constraints)
+  std::vector<Piece> pieces_;
+  int n_ = 0, n_interior_ = 0;  // unknowns of this rank's subdomains
   std::vector<double> diagonal_;
   VectorXd weight_;
   std::vector<MatrixXd> class_weight_;  // empty for those too large

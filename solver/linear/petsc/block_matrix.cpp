@@ -83,7 +83,7 @@ BlockMatrix::~BlockMatrix() { MatDestroy(&A_); }
 
 void BlockMatrix::zero() { check(MatZeroEntries(A_)); }
 
-void BlockMatrix::add(std::span<const int> blocks, const double* K) {
+void BlockMatrix::add(int, std::span<const int> blocks, const double* K) {
   index_.resize(blocks.size());
   for (size_t k = 0; k < blocks.size(); ++k) index_[k] = blocks[k] < 0 ? -1 : global_[blocks[k]];
   const auto n = static_cast<PetscInt>(blocks.size());

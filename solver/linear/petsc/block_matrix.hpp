@@ -17,7 +17,7 @@ class BlockMatrix final : public FlexibleMatrix {
   BlockMatrix(const BlockMatrix&) = delete;
 
   void zero() override;
-  void add(std::span<const int> blocks, const double* K) override;
+  void add(int clique, std::span<const int> blocks, const double* K) override;
   void add_diagonal(int block, const double d[3]) override;
   /// Add one row of blocks by global numbers: 3 x 3 each, row major one after the other's columns (3 x 3n).
   void add_row(PetscInt row, std::span<const PetscInt> columns, const double* values);

@@ -11,7 +11,7 @@ class DirectSolver final : public KktSolver {
 
   void structure(const Cliques& cliques, const BlockMap& map) override;
   void zero() override { matrix_->zero(); }
-  void add(int clique, const double* K) override { matrix_->add((*cliques_)[clique], K); }
+  void add(int clique, const double* K) override { matrix_->add(clique, (*cliques_)[clique], K); }
   void add_diagonal(int block, const double d[3]) override { matrix_->add_diagonal(block, d); }
   void sum_shared(std::span<double> local) override { shared_->sum(local); }
   SolveReport solve(std::span<const double> b, std::span<double> x, double) override;

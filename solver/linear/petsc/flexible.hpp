@@ -17,8 +17,8 @@ class FlexibleMatrix {
  public:
   virtual ~FlexibleMatrix() = default;
   virtual void zero() = 0;
-  /// Add the flexible part of a clique's dense matrix.
-  virtual void add(std::span<const int> blocks, const double* K) = 0;
+  /// Add the flexible part of a clique's dense matrix; `blocks` are the clique's.
+  virtual void add(int clique, std::span<const int> blocks, const double* K) = 0;
   virtual void add_diagonal(int block, const double d[3]) = 0;
   virtual void assemble() = 0;
   virtual Mat mat() const = 0;
@@ -57,7 +57,7 @@ class SubdomainMatrix;
 /// Incomplete factors, and multigrid where they need too many iterations.  `positions`: of the owned blocks, 3 each, for the rigid modes;
 /// may be empty.
 std::unique_ptr<FlexibleInverse> make_algebraic_inverse(const BlockMatrix& F, std::vector<double> positions);
-/// Balancing domain decomposition, one subdomain per rank.
+/// Balancing domain decomposition.
 std::unique_ptr<FlexibleInverse> make_bddc(const SubdomainMatrix& F);
 /// `inner`, made exact on the rigid motions of connected parts.
 std::unique_ptr<FlexibleInverse> make_deflated(std::unique_ptr<FlexibleInverse> inner, const SubdomainMatrix& F,

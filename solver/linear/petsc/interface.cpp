@@ -34,9 +34,8 @@ std::vector<PetscInt> components(const SubdomainMatrix& F, const Group& group) {
   return part;
 }
 
-/// The holders of each block of the subdomain, through its owner.
-std::vector<Key> find_keys(const SubdomainMatrix& F) {
-  const auto piece = components(F, [](PetscInt) { return 0; });
+/// The holders of each block of the subdomains, through its owner.
+std::vector<Key> find_keys(const SubdomainMatrix& F, const std::vector<PetscInt>& piece) {
   std::vector<std::vector<PetscInt>> tell(size());
   for (PetscInt i = 0; i < F.n_blocks(); ++i) tell[F.owner(i)].insert(tell[F.owner(i)].end(), {F.global(i), piece[i]});
   const auto told = exchange(tell);
@@ -93,26 +92,27 @@ Eigen::MatrixXd rigid_motions(const SubdomainMatrix& F, const std::vector<PetscI
 
 Interface find_interface(const SubdomainMatrix& F) {
   Interface out;
-  const auto keys = find_keys(F);
-  std::map<Key, PetscInt> group_of;  // of the blocks that this rank, the first of their holders, divides into classes
+  out.piece = components(F, [](PetscInt) { return 0; });
+  for (const int p : out.piece) out.n_pieces = std::max(out.n_pieces, p + 1);
+  const auto keys = find_keys(F, out.piece);
+  std::map<Key, PetscInt> group_of;  // of the blocks that a piece of this rank, the first of their holders, divides into classes
   std::vector<PetscInt> group(F.n_blocks(), -1);
   for (PetscInt i = 0; i < F.n_blocks(); ++i)
-    if (keys[i].size() > 2 && keys[i][0] == rank())
+    if (keys[i].size() > 2 && keys[i][0] == rank() && keys[i][1] == out.piece[i])
       group[i] = group_of.try_emplace(keys[i], static_cast<PetscInt>(group_of.size())).first->second;
   const auto part = components(F, [&](PetscInt i) { return group[i]; });
   const auto less = [&](PetscInt a, PetscInt b) { return F.global(a) < F.global(b); };
-  const auto ranks_of = [&](PetscInt i) {
-    std::vector<int> ranks;
-    for (size_t k = 0; k < keys[i].size(); k += 2) ranks.push_back(keys[i][k]);
-    return ranks;
+  const auto new_class = [&](std::vector<PetscInt> blocks, int first) {
+    std::sort(blocks.begin(), blocks.end(), less);
+    const auto& key = keys[blocks[0]];
+    InterfaceClass c{blocks, {}, out.piece[blocks[0]], first, rigid_motions(F, blocks)};
+    for (size_t k = 0; k < key.size(); k += 2) c.holders.push_back({key[k], key[k + 1]});
+    out.classes.push_back(std::move(c));
   };
   std::map<PetscInt, std::vector<PetscInt>> led;
   for (PetscInt i = 0; i < F.n_blocks(); ++i)
     if (part[i] >= 0) led[part[i]].push_back(i);
-  for (auto& [unused, blocks] : led) {
-    std::sort(blocks.begin(), blocks.end(), less);
-    out.classes.push_back({blocks, ranks_of(blocks[0]), 0, rigid_motions(F, blocks)});
-  }
+  for (auto& [unused, blocks] : led) new_class(blocks, 0);
   int mine = 0, before = 0;
   for (const auto& c : out.classes) mine += static_cast<int>(c.q.cols());
   MPI_Exscan(&mine, &before, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
@@ -124,25 +124,24 @@ Interface find_interface(const SubdomainMatrix& F) {
     c.first = before;
     before += static_cast<int>(c.q.cols());
     for (const PetscInt i : c.blocks)
-      for (size_t k = 2; k < keys[i].size(); k += 2) send[keys[i][k]].insert(send[keys[i][k]].end(), {F.global(i), c.first});
+      for (size_t k = 2; k < keys[i].size(); k += 2)
+        send[keys[i][k]].insert(send[keys[i][k]].end(), {F.global(i), keys[i][k + 1], c.first});
   }
-  std::map<PetscInt, PetscInt> place;
+  std::map<std::pair<PetscInt, PetscInt>, PetscInt> place;  // of a shared block in a piece
   for (PetscInt i = 0; i < F.n_blocks(); ++i)
-    if (keys[i].size() > 2) place[F.global(i)] = i;
-  std::map<int, std::vector<PetscInt>> others;
+    if (keys[i].size() > 2) place[{F.global(i), out.piece[i]}] = i;
+  std::map<std::pair<int, int>, std::vector<PetscInt>> others;
   for (const auto& list : exchange(send))
-    for (size_t k = 0; k < list.size(); k += 2) others[list[k + 1]].push_back(place.at(list[k]));
-  for (auto& [first, blocks] : others) {
-    std::sort(blocks.begin(), blocks.end(), less);
-    out.classes.push_back({blocks, ranks_of(blocks[0]), first, rigid_motions(F, blocks)});
-  }
-  std::sort(out.classes.begin(), out.classes.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (size_t k = 0; k < list.size(); k += 3) others[{list[k + 2], list[k + 1]}].push_back(place.at({list[k], list[k + 1]}));
+  for (auto& [first_and_piece, blocks] : others) new_class(blocks, first_and_piece.first);
+  std::sort(out.classes.begin(), out.classes.end(),
+            [](const auto& a, const auto& b) { return std::pair(a.first, a.piece) < std::pair(b.first, b.piece); });
   return out;
 }
 
 std::vector<int> connected_parts(const SubdomainMatrix& F) {
-  const auto keys = find_keys(F);
   const auto piece = components(F, [](PetscInt) { return 0; });
+  const auto keys = find_keys(F, piece);
   // links between pieces, to all ranks: (rank, piece) twice each, a piece's link to itself included
   std::set<std::array<PetscInt, 4>> links;
   for (PetscInt i = 0; i < F.n_blocks(); ++i)

@@ -28,7 +28,7 @@ constexpr double values_kept = 4e7;
 
 class IterativeSolver final : public KktSolver {
  public:
-  IterativeSolver(Kind kind, double tolerance) : kind_(kind), tolerance_(tolerance) {}
+  IterativeSolver(Kind kind, double tolerance, int subdomains) : kind_(kind), tolerance_(tolerance), subdomains_(subdomains) {}
   ~IterativeSolver() override { release(); }
 
   void structure(const Cliques& cliques, const BlockMap& map) override {
@@ -60,7 +60,7 @@ class IterativeSolver final : public KktSolver {
   }
   void add(int clique, const double* K) override {
     if (direct_) return direct_->add(clique, K);
-    matrix_->add((*cliques_)[clique], K);
+    matrix_->add(clique, (*cliques_)[clique], K);
     if (touches_dense_[clique]) coupling_->add((*cliques_)[clique], K);
   }
   void add_diagonal(int block, const double d[3]) override {
@@ -136,7 +136,7 @@ class IterativeSolver final : public KktSolver {
       matrix_ = std::move(F);
       return;
     }
-    auto F = std::make_unique<SubdomainMatrix>(*cliques_, *map_, *shared_);
+    auto F = std::make_unique<SubdomainMatrix>(*cliques_, *map_, *shared_, kind_ == Kind::feti_dp ? 1 : subdomains_);
     const bool placed = largest(positions.empty() ? 0 : 1) > 0;
     if (kind_ == Kind::feti_dp)
       inverse_ = make_feti_dp(*F, positions);
@@ -355,6 +355,7 @@ class IterativeSolver final : public KktSolver {
 
   Kind kind_;
   double tolerance_, wanted_ = 0;  // the tightest; that of the solve at hand
+  int subdomains_ = 1;             // of this rank
   bool ready_ = false;  // the preconditioner is of a matrix that it solved
   int fresh_iterations_ = 0, m_ = 0, restart_ = 100;
   size_t n_flexible_ = 0, n_all_ = 0;  // owned unknowns
@@ -378,6 +379,8 @@ class IterativeSolver final : public KktSolver {
 
 }  // namespace
 
-std::unique_ptr<KktSolver> make_iterative(Kind kind, double tolerance) { return std::make_unique<IterativeSolver>(kind, tolerance); }
+std::unique_ptr<KktSolver> make_iterative(Kind kind, double tolerance, int subdomains) {
+  return std::make_unique<IterativeSolver>(kind, tolerance, subdomains);
+}
 
 }  // namespace hilo::petsc

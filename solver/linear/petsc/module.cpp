@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "linear/petsc/solver.hpp"
 
-hilo::KktSolver* hilo_make_petsc_solver(const char* kind, double tolerance, const char* tool) {
+hilo::KktSolver* hilo_make_petsc_solver(const char* kind, double tolerance, int subdomains, const char* tool) {
   const std::string word = kind;
   hilo::set_tool_name(tool);
   using hilo::petsc::Kind;
@@ -16,5 +16,6 @@ hilo::KktSolver* hilo_make_petsc_solver(const char* kind, double tolerance, cons
   if (word != "direct" && found == iterative.end())
     throw hilo::Error("solver.kind", fmt::format("no PETSc solver \"{}\"", word), "direct, iterative, bddc or feti-dp", hilo::Exit::usage);
   hilo::petsc::start();
-  return (word == "direct" ? hilo::petsc::make_direct(tolerance) : hilo::petsc::make_iterative(found->second, tolerance)).release();
+  return (word == "direct" ? hilo::petsc::make_direct(tolerance) : hilo::petsc::make_iterative(found->second, tolerance, subdomains))
+      .release();
 }

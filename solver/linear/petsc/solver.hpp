@@ -14,7 +14,7 @@ namespace hilo::petsc {
 std::unique_ptr<KktSolver> make_direct(double tolerance);
 /// What approximates the inverse of the flexible block: incomplete factors or multigrid, or substructuring.
 enum class Kind { algebraic, bddc, feti_dp };
-std::unique_ptr<KktSolver> make_iterative(Kind kind, double tolerance);
+std::unique_ptr<KktSolver> make_iterative(Kind kind, double tolerance, int subdomains);
 
 /// A vector of owned unknowns that frees itself.
 class Vector {

@@ -20,7 +20,7 @@ SubdomainFactor::SubdomainFactor(const SubdomainMatrix& F, const Interface& inte
   std::vector<char> shared(n, 0);
   for (const auto& c : interface.classes)
     for (const PetscInt i : c.blocks) shared[i] = 1;
-  order(F, shared);
+  order(F, interface, shared);
   // lower triangle: the matrix and the dense classes
   std::vector<std::vector<int>> extra(n);
   for (const auto& c : interface.classes)
@@ -45,8 +45,8 @@ SubdomainFactor::~SubdomainFactor() {
   cholmod_finish(&common_);
 }
 
-/// Nested dissection of the interior, in its elimination tree's postorder; then the interface.
-void SubdomainFactor::order(const SubdomainMatrix& F, const std::vector<char>& shared) {
+/// Nested dissection of the interior, in its elimination tree's postorder; then the interface, piece after piece.
+void SubdomainFactor::order(const SubdomainMatrix& F, const Interface& interface, const std::vector<char>& shared) {
   const PetscInt n = F.n_blocks();
   std::vector<int> inside(n, -1);
   std::vector<PetscInt> interior;
@@ -76,8 +76,15 @@ void SubdomainFactor::order(const SubdomainMatrix& F, const std::vector<char>& s
   if (analysis) cholmod_free_factor(&analysis, &c);
   cholmod_finish(&c);
   n_interior_ = 3 * static_cast<int>(interior.size());
+  std::vector<std::vector<PetscInt>> edge(interface.n_pieces);
   for (PetscInt i = 0; i < n; ++i)
-    if (shared[i]) block_.push_back(i);
+    if (shared[i]) edge[interface.piece[i]].push_back(i);
+  begin_.clear();
+  for (const auto& blocks : edge) {
+    begin_.push_back(3 * static_cast<int>(block_.size()));
+    block_.insert(block_.end(), blocks.begin(), blocks.end());
+  }
+  begin_.push_back(3 * n);
   place_.resize(n);
   for (PetscInt k = 0; k < n; ++k) place_[block_[k]] = k;
 }
@@ -144,7 +151,7 @@ void SubdomainFactor::forward(int from, int to, double* x) const {
   const auto* values = static_cast<const double*>(L_->x);
   const int one = 1, n_super = static_cast<int>(L_->nsuper);
   const double minus = -1, zero = 0;
-  below_.resize(L_->maxesize + L_->n);
+  if (below_.size() < L_->maxesize + L_->n) below_.resize(L_->maxesize + L_->n);
   for (int s = static_cast<int>(std::upper_bound(super, super + n_super, from) - super) - 1; s < n_super && super[s] < to; ++s) {
     const int a = std::max(from, super[s]), b = std::min(to, super[s + 1]), m = b - a, o = a - super[s], stride = pi[s + 1] - pi[s];
     const double* D = values + px[s] + o + static_cast<size_t>(o) * stride;
@@ -164,7 +171,7 @@ void SubdomainFactor::backward(int from, int to, double* x) const {
   const auto* values = static_cast<const double*>(L_->x);
   const int one = 1, n_super = static_cast<int>(L_->nsuper);
   const double minus = -1, plus = 1;
-  below_.resize(L_->maxesize + L_->n);
+  if (below_.size() < L_->maxesize + L_->n) below_.resize(L_->maxesize + L_->n);
   for (int s = static_cast<int>(std::lower_bound(super, super + n_super, to) - super) - 1; s >= 0 && super[s + 1] > from; --s) {
     const int a = std::max(from, super[s]), b = std::min(to, super[s + 1]), m = b - a, o = a - super[s], stride = pi[s + 1] - pi[s];
     const double* D = values + px[s] + o + static_cast<size_t>(o) * stride;
@@ -176,19 +183,21 @@ void SubdomainFactor::backward(int from, int to, double* x) const {
   }
 }
 
-Eigen::MatrixXd SubdomainFactor::schur_rows(const std::vector<int>& unknowns) const {
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(unknowns.size()), n() - n_interior_);
-  std::vector<int> wanted(n(), -1);
-  for (size_t k = 0; k < unknowns.size(); ++k) wanted[unknowns[k]] = static_cast<int>(k);
+Eigen::MatrixXd SubdomainFactor::schur_rows(int piece, const std::vector<int>& unknowns) const {
+  const int from = begin_[piece], to = begin_[piece + 1];
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(unknowns.size()), to - from);
+  std::vector<int> wanted(to - from, -1);
+  for (size_t k = 0; k < unknowns.size(); ++k) wanted[unknowns[k] - from] = static_cast<int>(k);
   const auto* super = static_cast<const int*>(L_->super);
   const auto *pi = static_cast<const int*>(L_->pi), *px = static_cast<const int*>(L_->px), *rows = static_cast<const int*>(L_->s);
   const auto* values = static_cast<const double*>(L_->x);
-  for (int s = static_cast<int>(L_->nsuper) - 1; s >= 0 && super[s + 1] > n_interior_; --s) {
+  for (int s = static_cast<int>(std::upper_bound(super, super + L_->nsuper, from) - super) - 1;
+       s < static_cast<int>(L_->nsuper) && super[s] < to; ++s) {
     const int stride = pi[s + 1] - pi[s];
-    for (int c = std::max(n_interior_, super[s]); c < super[s + 1]; ++c)
+    for (int c = std::max(from, super[s]); c < std::min(to, super[s + 1]); ++c)
       for (int r = c - super[s]; r < stride; ++r)
-        if (const int k = wanted[rows[pi[s] + r]]; k >= 0)
-          M(k, c - n_interior_) = values[px[s] + static_cast<size_t>(c - super[s]) * stride + r];
+        if (const int k = wanted[rows[pi[s] + r] - from]; k >= 0)
+          M(k, c - from) = values[px[s] + static_cast<size_t>(c - super[s]) * stride + r];
   }
   return M;
 }

@@ -1,4 +1,4 @@
-// The Cholesky factor of one subdomain with its interface last [davis-2006]:
+// The Cholesky factor of a rank's subdomains with their interfaces last [davis-2006]:
 //
 //     [ A_II  A_IG ]   [ L_II      ] [ L_II^T  L_GI^T ]
 //     [ A_GI  A_GG ] = [ L_GI  L_S ] [         L_S^T  ]
@@ -31,18 +31,21 @@ class SubdomainFactor {
   void forward(int from, int to, double* x) const;
   /// x := L^-T x, columns [from, to) only, from the rows below as they are.
   void backward(int from, int to, double* x) const;
-  /// Rows of L_S, dense: of the given unknowns of the interface (numbers from n_interior on).
-  Eigen::MatrixXd schur_rows(const std::vector<int>& unknowns) const;
+  /// The interface of a piece: unknowns [begin(p), begin(p + 1)).
+  int begin(int piece) const { return begin_[piece]; }
+  /// Rows of a piece's L_S, dense (unknowns x its interface): of the given ones of its interface.
+  Eigen::MatrixXd schur_rows(int piece, const std::vector<int>& unknowns) const;
   double bytes() const;
 
  private:
-  void order(const SubdomainMatrix& F, const std::vector<char>& shared);
+  void order(const SubdomainMatrix& F, const Interface& interface, const std::vector<char>& shared);
 
   mutable cholmod_common common_{};
   cholmod_factor* L_ = nullptr;
   std::vector<int> place_;
   std::vector<PetscInt> block_;
   int n_interior_ = 0;
+  std::vector<int> begin_;         // of each piece's interface (n_pieces + 1)
   std::vector<int> start_, rows_;  // of the lower triangle in blocks, by columns
   mutable std::vector<double> below_;
 };
