@@ -32,16 +32,19 @@ int main(int argc, char** argv) {
     scattered(p, comm.size);
     const auto solver = make_petsc_solver(argv[5], 1e-8, subdomains / comm.size);
     const Share share(p, comm.rank, comm.size);
-    const auto start = std::chrono::steady_clock::now();
     solver->structure(share.cliques, share.map);
-    share.fill(p, *solver, comm.rank, comm.size);
     std::vector<double> x(3 * share.map.global.size());
-    const auto report = solver->solve(share.of(random_vector(p.size(), 3)), x);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    if (comm.rank == 0)
-      fmt::print("{:4} subdomains {:3} ranks {:7} unknowns CFL {:6} jump {:6}: {} {:3} iterations{}, {:.0f} MB, {:.1f} s\n", subdomains,
-                 comm.size, p.size(), argv[4], jump, solver->name(), report.iterations, report.ok ? "" : " FAILED", solver->bytes() / 1e6,
-                 seconds.count());
+    for (int k = 0; k < 2; ++k) {  // what took too many iterations is strengthened for the next matrix
+      const auto start = std::chrono::steady_clock::now();
+      share.fill(p, *solver, comm.rank, comm.size);
+      const auto report = solver->solve(share.of(random_vector(p.size(), 3)), x);
+      const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+      if (comm.rank == 0)
+        fmt::print("{:4} subdomains {:3} ranks {:7} unknowns CFL {:6} jump {:6}: {} {:3} iterations{}, {:.0f} MB, {:.1f} s\n", subdomains,
+                   comm.size, p.size(), argv[4], jump, solver->name(), report.iterations, report.ok ? "" : " FAILED", solver->bytes() / 1e6,
+                   seconds.count());
+      if (report.iterations <= 20) break;
+    }
   });
   comm.finish();
   return code;

@@ -5,9 +5,10 @@
 //     sum_j  D_j ( Psi_j K_c^-1 Psi_j^T  +  S_j^-1 restricted to C_j w = 0 ) D_j ,
 //
 // D_j weights that sum to one (by stiffness: of whole classes, "deluxe" [dohrmann-widlund-2016], where they are not too large), C_j the
-// averages and moments of classes of shared nodes, Psi_j the interface motions of least energy with C_j Psi_j = 1, K_c their stiffness.
-// Floating subdomains are made regular by C^T R C, which changes nothing on C w = 0.  With the interface last in its factor, an application
-// reads the factor once forwards and once backwards; PETSc's PCBDDC solves three times with two factors.
+// averages and moments of classes of shared nodes (and more where those do not do, class_matrices.hpp), Psi_j the interface motions of
+// least energy with C_j Psi_j = 1, K_c their stiffness. Floating subdomains are made regular by C^T R C, which changes nothing on C w = 0.
+// With the interface last in its factor, an application reads the factor once forwards and once backwards; PETSc's PCBDDC solves three
+// times with two factors.
 //
 // The tangent of averaged methods is unsymmetric by what turns in a step; GMRES works on it, and only the preconditioner is symmetrised.
 #include <petscvec.h>
@@ -15,7 +16,7 @@
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
 
-#include "linear/petsc/exchange.hpp"
+#include "linear/petsc/class_matrices.hpp"
 #include "linear/petsc/interface.hpp"
 #include "linear/petsc/solver.hpp"
 #include "linear/petsc/subdomain_factor.hpp"
@@ -26,27 +27,16 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Blocks of a class up to which it gets a dense matrix as weight (15 MB).
-constexpr size_t largest_class = 450;
+/// Iterations beyond which constraints are added.
+constexpr int too_many = 20;
 
 class Bddc final : public FlexibleInverse {
  public:
   explicit Bddc(const SubdomainMatrix& F) : F_(F), interface_(find_interface(F)), factor_(F, interface_), pieces_(interface_.n_pieces) {
     n_ = factor_.n(), n_interior_ = factor_.n_interior();
-    for (const auto& c : interface_.classes)
-      for (int m = 0; m < c.q.cols(); ++m) pieces_[c.piece].number.push_back(c.first + m);
     for (size_t p = 0; p < pieces_.size(); ++p) {
       pieces_[p].from = factor_.begin(static_cast<int>(p)) - n_interior_;
       pieces_[p].n = factor_.begin(static_cast<int>(p) + 1) - factor_.begin(static_cast<int>(p));
-      pieces_[p].C = MatrixXd::Zero(pieces_[p].n, static_cast<Eigen::Index>(pieces_[p].number.size()));
-    }
-    std::vector<Eigen::Index> column(pieces_.size(), 0);
-    for (const auto& c : interface_.classes) {
-      Piece& piece = pieces_[c.piece];
-      for (size_t k = 0; k < c.blocks.size(); ++k)
-        piece.C.block(3 * factor_.place(c.blocks[k]) - n_interior_ - piece.from, column[c.piece], 3, c.q.cols()) =
-            c.q.middleRows(3 * static_cast<Eigen::Index>(k), 3);
-      column[c.piece] += c.q.cols();
     }
     make_scatters();
   }
@@ -65,9 +55,12 @@ class Bddc final : public FlexibleInverse {
       size_of_class.push_back(sum / (3. * static_cast<double>(c.blocks.size())));
     }
     int good = factor_.factor(F_, interface_, size_of_class);
-    if (good) good = form_coarse_basis(size_of_class);
     MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
-    if (good) good = find_class_weights(size_of_class);
+    if (good) {
+      good = find_class_matrices(interface_, factor_, size_of_class, is_adaptive_, of_class_);
+      list_constraints();
+      if (good) good = form_coarse_basis(size_of_class);
+    }
     MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
     return good && factor_coarse();
   }
@@ -106,14 +99,18 @@ class Bddc final : public FlexibleInverse {
     scatter(all_, local_, x, INSERT_VALUES, SCATTER_REVERSE);
   }
 
-  bool strengthen(int, bool) override { return false; }
+  /// Rigid motions of classes as constraints serve smooth stiffness; where it jumps within subdomains, others are looked for.
+  bool strengthen(int iterations, bool failed) override {
+    if (is_adaptive_ || (!failed && iterations <= too_many)) return false;
+    return is_adaptive_ = true;
+  }
   bool is_dear() const override { return true; }
-  int most_iterations() const override { return 150; }
-  std::string name() const override { return "BDDC"; }
+  int most_iterations() const override { return is_adaptive_ ? 150 : 60; }
+  std::string name() const override { return is_adaptive_ ? "adaptive BDDC" : "BDDC"; }
   double bytes() const override {
     double sum = factor_.bytes();
     for (const Piece& p : pieces_) sum += 16. * static_cast<double>(p.C.size());
-    for (const MatrixXd& w : class_weight_) sum += 8. * static_cast<double>(w.size());
+    for (const MatrixXd& w : of_class_.weight) sum += 8. * static_cast<double>(w.size());
     return sum;
   }
 
@@ -175,55 +172,40 @@ class Bddc final : public FlexibleInverse {
     weight_ = own.cwiseQuotient(Eigen::Map<const VectorXd>(e.data(), n_edge));
   }
 
-  /// Weights of whole classes, (sum_j S_j)^-1 S_j of their parts of the Schur complements: parts of ragged shape share out unevenly.
-  bool find_class_weights(const std::vector<double>& regular) {
-    std::vector<std::vector<double>> send(size());
-    std::vector<MatrixXd> own(interface_.classes.size());
-    for (size_t k = 0; k < own.size(); ++k) {
-      const auto& c = interface_.classes[k];
-      if (c.blocks.size() > largest_class) continue;
-      std::vector<int> unknowns;
-      for (const PetscInt i : c.blocks)
-        for (int a = 0; a < 3; ++a) unknowns.push_back(3 * factor_.place(i) + a);
-      const MatrixXd rows = factor_.schur_rows(c.piece, unknowns);
-      own[k] = rows * rows.transpose() - regular[k] * c.q * c.q.transpose();
-      int last = rank();
-      for (const auto& holder : c.holders) {  // once to each other rank
-        if (holder.rank != rank() && holder.rank != last)
-          send[holder.rank].insert(send[holder.rank].end(), own[k].data(), own[k].data() + own[k].size());
-        last = holder.rank;
-      }
-    }
-    const auto got = exchange(send);
-    std::vector<size_t> at(size(), 0);
-    class_weight_.assign(own.size(), MatrixXd());
-    bool good = true;
-    for (size_t k = 0, next; k < own.size(); k = next) {  // classes [k, next) are one, seen from several pieces of this rank
-      for (next = k + 1; next < own.size() && interface_.classes[next].first == interface_.classes[k].first;) ++next;
-      if (own[k].size() == 0) continue;
-      MatrixXd all = MatrixXd::Zero(own[k].rows(), own[k].cols());
-      size_t mine = k;
-      for (const auto& [r, unused] : interface_.classes[k].holders) {  // in the same order on all of them
-        all += r == rank() ? own[mine++] : MatrixXd(Eigen::Map<const MatrixXd>(got[r].data() + at[r], all.rows(), all.cols()));
-        if (r != rank()) at[r] += static_cast<size_t>(all.size());
-      }
-      const Eigen::LLT<MatrixXd> inverse(all);
-      good = good && inverse.info() == Eigen::Success;
-      for (size_t i = k; good && i < next; ++i) class_weight_[i] = inverse.solve(own[i]);
-    }
-    return good;
+  /// The pieces' constraints: rigid motions of their classes, then the others.
+  void list_constraints() {
+    n_constraints_ = interface_.n_constraints + of_class_.n_more;
+    const auto& classes = interface_.classes;
+    for (Piece& p : pieces_) p.number.clear();
+    for (const auto& c : classes)
+      for (int m = 0; m < c.q.cols(); ++m) pieces_[c.piece].number.push_back(c.first + m);
+    for (size_t k = 0; k < classes.size(); ++k)
+      for (int m = 0; m < of_class_.more[k].cols(); ++m)
+        pieces_[classes[k].piece].number.push_back(interface_.n_constraints + of_class_.first_more[k] + m);
+    for (Piece& p : pieces_) p.C = MatrixXd::Zero(p.n, static_cast<Eigen::Index>(p.number.size()));
+    std::vector<Eigen::Index> column(pieces_.size(), 0);
+    const auto put = [&](const InterfaceClass& c, const MatrixXd& q) {
+      Piece& piece = pieces_[c.piece];
+      for (size_t k = 0; k < c.blocks.size() && q.cols() > 0; ++k)
+        piece.C.block(3 * factor_.place(c.blocks[k]) - n_interior_ - piece.from, column[c.piece], 3, q.cols()) =
+            q.middleRows(3 * static_cast<Eigen::Index>(k), 3);
+      column[c.piece] += q.cols();
+    };
+    for (const auto& c : classes) put(c, c.q);
+    for (size_t k = 0; k < classes.size(); ++k) put(classes[k], of_class_.more[k]);
   }
 
   /// D x, or D^T x.
   VectorXd weigh(const VectorXd& x, bool transposed) const {
     VectorXd y = x.cwiseProduct(weight_), part;
-    for (size_t k = 0; k < class_weight_.size(); ++k) {
-      if (class_weight_[k].size() == 0) continue;
+    for (size_t k = 0; k < of_class_.weight.size(); ++k) {
+      const MatrixXd& W = of_class_.weight[k];
+      if (W.size() == 0) continue;
       const auto& blocks = interface_.classes[k].blocks;
-      part.resize(class_weight_[k].rows());
+      part.resize(W.rows());
       for (size_t i = 0; i < blocks.size(); ++i)
         part.segment<3>(3 * static_cast<Eigen::Index>(i)) = x.segment<3>(3 * factor_.place(blocks[i]) - n_interior_);
-      part = transposed ? VectorXd(class_weight_[k].transpose() * part) : VectorXd(class_weight_[k] * part);
+      part = transposed ? VectorXd(W.transpose() * part) : VectorXd(W * part);
       for (size_t i = 0; i < blocks.size(); ++i)
         y.segment<3>(3 * factor_.place(blocks[i]) - n_interior_) = part.segment<3>(3 * static_cast<Eigen::Index>(i));
     }
@@ -264,7 +246,7 @@ class Bddc final : public FlexibleInverse {
 
   /// K_c from all subdomains to all ranks, factored by each.
   bool factor_coarse() {
-    if (interface_.n_constraints == 0) return true;
+    if (n_constraints_ == 0) return true;
     std::vector<double> mine, all;
     for (const Piece& p : pieces_)
       for (size_t a = 0; a < p.number.size(); ++a)
@@ -280,7 +262,7 @@ class Bddc final : public FlexibleInverse {
     MPI_Allgatherv(mine.data(), n, MPI_DOUBLE, all.data(), counts.data(), at.data(), MPI_DOUBLE, PETSC_COMM_WORLD);
     std::vector<Eigen::Triplet<double>> entries;
     for (size_t k = 0; k < all.size(); k += 3) entries.emplace_back(static_cast<int>(all[k]), static_cast<int>(all[k + 1]), all[k + 2]);
-    Eigen::SparseMatrix<double> K(interface_.n_constraints, interface_.n_constraints);
+    Eigen::SparseMatrix<double> K(n_constraints_, n_constraints_);
     K.setFromTriplets(entries.begin(), entries.end());
     coarse_factor_.compute(K);
     return coarse_factor_.info() == Eigen::Success;
@@ -288,13 +270,13 @@ class Bddc final : public FlexibleInverse {
 
   /// All primal unknowns, for forces on the interface.
   VectorXd solve_coarse(const Eigen::Ref<const VectorXd>& edge) {
-    VectorXd all = VectorXd::Zero(interface_.n_constraints);
-    if (interface_.n_constraints == 0) return all;
+    VectorXd all = VectorXd::Zero(n_constraints_);
+    if (n_constraints_ == 0) return all;
     for (const Piece& p : pieces_) {
       const VectorXd share = p.Psi.transpose() * edge.segment(p.from, p.n);
       for (Eigen::Index k = 0; k < share.size(); ++k) all[p.number[k]] += share[k];
     }
-    MPI_Allreduce(MPI_IN_PLACE, all.data(), interface_.n_constraints, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, all.data(), n_constraints_, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
     return coarse_factor_.solve(all);
   }
 
@@ -305,7 +287,9 @@ class Bddc final : public FlexibleInverse {
   int n_ = 0, n_interior_ = 0;  // unknowns of this rank's subdomains
   std::vector<double> diagonal_;
   VectorXd weight_;
-  std::vector<MatrixXd> class_weight_;  // empty for those too large
+  ClassMatrices of_class_;
+  int n_constraints_ = 0;     // of all ranks
+  bool is_adaptive_ = false;  // further constraints are looked for
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> coarse_factor_;
   VecScatter all_ = nullptr, edge_ = nullptr;
   Vec local_ = nullptr, edge_local_ = nullptr;

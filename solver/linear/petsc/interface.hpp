@@ -15,7 +15,7 @@ struct Holder {
 
 struct InterfaceClass {
   std::vector<PetscInt> blocks;  // of one subdomain, by ascending global number
-  std::vector<Holder> holders;    // ascending, the one of these blocks among them
+  std::vector<Holder> holders;   // ascending, the one of these blocks among them
   int piece = 0;                 // its number on this rank
   int first = 0;                 // number of its first constraint among those of all ranks
   Eigen::MatrixXd q;             // (3 n_blocks x n_constraints) orthonormal: the rigid motions of its nodes

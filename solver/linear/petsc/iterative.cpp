@@ -89,11 +89,13 @@ class IterativeSolver final : public KktSolver {
     if (!lagged || !report.ok) {
       if (!(report.residual < 1)) check(VecSet(x_, 0));
       report = set_up_and_attempt();
-      while (inverse_->strengthen(report.iterations, !report.ok) && !report.ok) {
+      bool stronger;
+      while ((stronger = inverse_->strengthen(report.iterations, !report.ok)) && !report.ok) {
         before += report.iterations;
         check(VecSet(x_, 0));
         report = set_up_and_attempt();
       }
+      if (stronger) ready_ = false;  // at the next solve
       fresh_iterations_ = report.iterations;
       report.iterations += before;
     }

@@ -5,6 +5,24 @@
 #include <algorithm>
 
 namespace hilo::petsc {
+namespace {
+
+bool hang_together(idx_t n, const idx_t* first, const idx_t* next) {
+  std::vector<char> seen(n, 0);
+  std::vector<idx_t> stack(1, 0);
+  seen[0] = 1;
+  idx_t count = 0;
+  while (!stack.empty()) {
+    const idx_t i = stack.back();
+    stack.pop_back();
+    ++count;
+    for (idx_t k = first[i]; k < first[i + 1]; ++k)
+      if (!seen[next[k]]) seen[next[k]] = 1, stack.push_back(next[k]);
+  }
+  return count == n;
+}
+
+}  // namespace
 
 std::vector<int> split_cliques(const Cliques& cliques, const BlockMap& map, int n) {
   std::vector<int> part(cliques.size(), 0);
@@ -31,11 +49,8 @@ std::vector<int> split_cliques(const Cliques& cliques, const BlockMap& map, int 
   const auto run = [&](auto metis) {
     return metis(&cells, &constraints, first, next, nullptr, nullptr, nullptr, &parts, nullptr, nullptr, options, &cut, of_cell.data());
   };
-  options[METIS_OPTION_CONTIG] = 1;
-  if (run(METIS_PartGraphKway) != METIS_OK) {  // the cells do not hang together
-    options[METIS_OPTION_CONTIG] = 0;
-    if (run(METIS_PartGraphKway) != METIS_OK) std::fill(of_cell.begin(), of_cell.end(), 0);
-  }
+  options[METIS_OPTION_CONTIG] = hang_together(cells, first, next);
+  if (run(METIS_PartGraphKway) != METIS_OK) std::fill(of_cell.begin(), of_cell.end(), 0);
   METIS_Free(first);
   METIS_Free(next);
   // bars, springs and joints go where their first block is

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <new>
+#include <numeric>
 
+extern "C" void dtrtri_(const char*, const char*, const int*, double*, const int*, int*);
 extern "C" void dtrsv_(const char*, const char*, const char*, const int*, const double*, const int*, double*, const int*);
 
 namespace hilo::petsc {
@@ -200,6 +202,17 @@ Eigen::MatrixXd SubdomainFactor::schur_rows(int piece, const std::vector<int>& u
           M(k, c - from) = values[px[s] + static_cast<size_t>(c - super[s]) * stride + r];
   }
   return M;
+}
+
+Eigen::MatrixXd SubdomainFactor::inverse_root(int piece, int most) const {
+  const int n = begin_[piece + 1] - begin_[piece];
+  if (n == 0 || n > most) return {};
+  std::vector<int> unknowns(n);
+  std::iota(unknowns.begin(), unknowns.end(), begin_[piece]);
+  Eigen::MatrixXd L = schur_rows(piece, unknowns);
+  int info = 0;
+  dtrtri_("L", "N", &n, L.data(), &n, &info);
+  return L;
 }
 
 double SubdomainFactor::bytes() const { return L_ ? 8. * static_cast<double>(L_->xsize) + 4. * static_cast<double>(L_->ssize) : 0; }

@@ -35,6 +35,8 @@ class SubdomainFactor {
   int begin(int piece) const { return begin_[piece]; }
   /// Rows of a piece's L_S, dense (unknowns x its interface): of the given ones of its interface.
   Eigen::MatrixXd schur_rows(int piece, const std::vector<int>& unknowns) const;
+  /// Inverse of a piece's L_S, dense; empty where it has more than `most` unknowns.
+  Eigen::MatrixXd inverse_root(int piece, int most) const;
   double bytes() const;
 
  private:
