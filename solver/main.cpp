@@ -54,7 +54,7 @@ int solve(int argc, char** argv, Comm& comm) {
       ->take_all();
   app->add_flag("--dry-run", o.dry_run, "read and check everything, then stop");
   app->add_flag("--explain", o.explain, "print every value in force, defaults included, then stop");
-  app->add_flag("--profile", o.profile, "print seconds by phase at the end");
+  app->add_flag("--profile", o.profile, "print seconds, counts and messages by phase at the end");
   if (!parse(*app, argc, argv)) return 0;
   const bool talk = !is_quiet() && comm.rank == 0;
   if (comm.rank != 0) quiet_warnings(true);
@@ -85,7 +85,7 @@ int solve(int argc, char** argv, Comm& comm) {
     throw Error(o.output, "no such folder", fmt::format("mkdir -p {}", folder.string()), Exit::resources);
 
   const RunReport report = run(scene, *system, options);
-  if (o.profile && comm.rank == 0) fmt::print("{}", read_text_file(o.output.substr(0, o.output.size() - 3) + ".json"));
+  if (o.profile && comm.rank == 0) fmt::print("{}", report.profile);
   if (!report.complete)
     throw Error(scene.path, fmt::format("stopped at t = {:.6g} s: {}", report.t, report.reason),
                 fmt::format("the last good state is in {}", o.output), Exit::not_converged);

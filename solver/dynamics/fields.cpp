@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "dynamics/profile.hpp"
 #include "dynamics/recorder.hpp"
 #include "physics/stress.hpp"
 

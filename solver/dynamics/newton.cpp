@@ -1,8 +1,9 @@
 #include "dynamics/newton.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+
+#include "dynamics/profile.hpp"
 
 namespace hilo {
 
@@ -39,27 +40,19 @@ double relative_correction(const System& s, std::span<const double> z) {
   return worst;
 }
 
-double wall_clock() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-Phases& phases() {
-  static Phases p;
-  return p;
-}
-
 NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Unknown&)>& stage, Unknown& u,
                     std::vector<double>& lambda, const NewtonOptions& options) {
   NewtonReport report;
   Residual r;
   std::vector<double> b, z;
   const auto evaluate = [&](bool tangent) {
-    const double start = wall_clock();
+    const Timed timed(phases().assembly);
     system.evaluate(stage(u), lambda, r, tangent ? &solver : nullptr);
     solver.sum_shared(r.r);
     system.mask_fixed(r.r);
     r.force_scale = system.comm->max(r.force_scale);
     report.least_det = -system.comm->max(-r.least_det);
     report.residual = system.comm->max(relative_residual(system, r));
-    phases().assembly += wall_clock() - start;
     ++phases().evaluations, phases().tangents += tangent;
   };
   // What a solve may leave of the residual: a tenth of what the next iteration needs for the tolerance, and no less than Newton's own
@@ -73,9 +66,8 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
   const auto solve = [&] {
     b.resize(r.r.size()), z.assign(r.r.size(), 0.0);
     for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
-    const double start = wall_clock();
+    const Timed timed(phases().solve);
     const SolveReport solved = solver.solve(b, z, forcing());
-    phases().solve += wall_clock() - start;
     ++phases().solves, phases().linear_iterations += solved.iterations;
     report.linear_iterations += solved.iterations;
     return solved;

@@ -34,12 +34,4 @@ double relative_residual(const System& system, const Residual& r);
 /// Largest move of a point by the increments z, over the scene's length.
 double relative_correction(const System& system, std::span<const double> z);
 
-/// Seconds spent by phase since the start of the process.
-struct Phases {
-  double assembly = 0, solve = 0, output = 0;
-  long evaluations = 0, tangents = 0, solves = 0, linear_iterations = 0;
-};
-Phases& phases();
-double wall_clock();
-
 }  // namespace hilo

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "dynamics/newton.hpp"
+#include "dynamics/profile.hpp"
 
 namespace hilo {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "dynamics/integrator.hpp"
+#include "dynamics/profile.hpp"
 
 namespace hilo {
 namespace {
@@ -102,9 +103,9 @@ class Radau final : public Integrator {
       if (report.iterations == tools.newton.max_iterations) return report.reason = "no convergence within the iterations allowed", report;
       add_coupling(system, r);
       const double assembled = wall_clock();
-      phases().assembly += assembled - start, phases().evaluations += 9, phases().tangents += 9;
+      phases().assembly.seconds += assembled - start, phases().evaluations += 9, phases().tangents += 9;
       const SolveReport solved = whole_->solve(b, z);
-      phases().solve += wall_clock() - assembled, ++phases().solves;
+      phases().solve.seconds += wall_clock() - assembled, ++phases().solves;
       ++report.iterations;
       if (!solved.ok) return report.reason = whole_->name() + ": " + solved.message, report;
       report.correction = 0;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dynamics/profile.hpp"
 #include "physics/rolling.hpp"
 
 namespace hilo {
@@ -275,7 +276,8 @@ void Recorder::first(const State& s) {
 }
 
 void Recorder::step(const State& s, std::span<const Taken> taken, const Config& a, int iterations) {
-  const double start = wall_clock();
+  const Timed timed(phases().output);
+  ++phases().records;
   for (const Taken& t : taken) {
     const System::Work w = system_.work(t.stage, t.lambda);
     work_ += w.external, dissipated_ += w.dissipated;
@@ -301,7 +303,6 @@ void Recorder::step(const State& s, std::span<const Taken> taken, const Config& 
   advance(false);
   if (wall_clock() - last_flush_ > 0.5) on_store([](Store& f) { f.flush(); }), last_flush_ = wall_clock();
   share_failure();
-  phases().output += wall_clock() - start;
 }
 
 /// Write every row whose neighbouring steps are known.  Mid values belong to their own time in the step and are interpolated to its ends.

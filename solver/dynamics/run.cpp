@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "dynamics/predictor.hpp"
+#include "dynamics/profile.hpp"
 #include "dynamics/progress.hpp"
 #include "dynamics/recorder.hpp"
 #include "dynamics/redundancy.hpp"
@@ -34,7 +35,8 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
   const bool is_light = kind == "light" || kind == "klu" || kind == "cholesky" || kind == "umfpack";
   if (is_light && system.comm->size > 1)
     throw Error(e.where("kind"), "the light solvers are serial", "use bddc, direct or iterative under mpirun");
-  auto solver = is_light ? make_light_solver(kind) : make_petsc_solver(kind, e.number("linear_tolerance"));
+  auto solver =
+      is_light ? make_light_solver(kind) : make_petsc_solver(kind, e.number("linear_tolerance"), static_cast<int>(e.number("subdomains")));
   solver->structure(system.cliques, system.map);
   if (talk) fmt::print(stderr, "solver {}: {}\n", solver->name(), why);
   return solver;
@@ -99,9 +101,14 @@ class Run {
         static_steps();
       else
         dynamic_steps();
-      recorder_->finish(report_.complete);
+      {
+        const Timed timed(phases().output);
+        recorder_->finish(report_.complete);
+      }
+      const Profile profile(*system_.comm, *solver_, began_, options_.output);
+      report_.profile = profile.text();
       peak_ = system_.comm->max(peak_memory());
-      system_.comm->together([&] { write_json(); });
+      system_.comm->together([&] { write_json(profile); });
     } catch (...) {  // nothing half-written stays
       recorder_->discard();
       throw;
@@ -315,7 +322,7 @@ class Run {
     report_.t = state_.t;
   }
 
-  void write_json() const {
+  void write_json(const Profile& profile) const {
     if (system_.comm->rank != 0) return;
     const Phases& p = phases();
     std::string j = "{\n";
@@ -344,9 +351,10 @@ class Run {
     add("position_change", fmt::format("{:.6g}", assembled_));
     add("velocity_change", fmt::format("{:.6g}", projected_));
     add("seconds", fmt::format("{{\"all\": {:.6g}, \"assembly\": {:.6g}, \"solve\": {:.6g}, \"output\": {:.6g}}}", wall_clock() - began_,
-                               p.assembly, p.solve, p.output));
+                               p.assembly.seconds, p.solve.seconds, p.output.seconds));
     add("counts", fmt::format("{{\"evaluations\": {}, \"tangents\": {}, \"solves\": {}, \"linear_iterations\": {}}}", p.evaluations,
                               p.tangents, p.solves, p.linear_iterations));
+    j += profile.json();
     add("peak_memory_bytes", fmt::format("{:.0f}", peak_));
     add("mesh", json_text(options_.mesh));
     add("scene", json_text(scene_.path));

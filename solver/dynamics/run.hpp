@@ -12,7 +12,6 @@ struct RunOptions {
   std::string output;  // run.h5
   std::vector<std::string> provenance;
   bool quiet = false;
-  bool profile = false;
   std::string mesh;  // file used, "" for none
 };
 
@@ -22,6 +21,7 @@ struct RunReport {
   double t = 0;        // last time reached [s]
   std::string reason;  // why it stopped early
   long steps = 0, iterations = 0, cuts = 0;
+  std::string profile;  // table of seconds by phase
 };
 
 /// Run the scene; writes run.h5, run.xdmf and, last, run.json.  A run stopped by physics is a report, not an exception.

@@ -59,6 +59,8 @@ class KktSolver {
   /// Whether a further solve with the same matrix costs little beside the first.
   virtual bool repeats_cheaply() const { return false; }
   virtual std::string name() const = 0;
+  /// Seconds so far that went into factors and preconditioners.
+  virtual double set_up_seconds() const { return 0; }
   /// Memory of the matrix and its factors on this rank, where known.
   virtual double bytes() const { return 0; }
 };

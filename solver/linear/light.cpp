@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "linear/factors.hpp"
 #include "linear/gmres.hpp"
 
@@ -48,15 +49,16 @@ class LightSolver final : public KktSolver {
   bool repeats_cheaply() const override { return is_klu_; }
   std::string name() const override { return fmt::format("light ({})", factors_->name()); }
   double bytes() const override { return A_.bytes() + factors_->bytes(); }
+  double set_up_seconds() const override { return set_up_; }
 
  private:
   SolveReport solve_refined(std::span<const double> b, std::span<double> x) {
     if (factored_) return factors_->solve(b.data(), x.data()), SolveReport{};
     factored_ = true;
     // pivots of the factorisation before serve again while the residual says that they are good ones
-    if (factors_->refactor(A_))
+    if (refactor())
       if (const SolveReport report = refine(b, x, 1); report.ok) return report;
-    if (!factors_->factor(A_)) return factored_ = false, SolveReport{false, 1, 0, "the matrix is singular"};
+    if (!factor()) return factored_ = false, SolveReport{false, 1, 0, "the matrix is singular"};
     return refine(b, x, 3);
   }
 
@@ -101,9 +103,18 @@ class LightSolver final : public KktSolver {
     return report;
   }
 
+  bool factor() {
+    const Stopwatch watch(set_up_);
+    return factors_->factor(A_);
+  }
+  bool refactor() {
+    const Stopwatch watch(set_up_);
+    return factors_->refactor(A_);
+  }
+
   SolveReport factor_and_iterate(std::span<const double> b, std::span<double> x, double tolerance) {
     ready_ = false;
-    if (!factors_->factor(A_)) return {false, 1, 0, "the matrix is singular"};
+    if (!factor()) return {false, 1, 0, "the matrix is singular"};
     find_weights();
     const SolveReport report = iterate(b, x, tolerance, 60);
     rate_ = report.iterations / -std::log10(std::clamp(report.residual, 1e-12, 0.5));
@@ -181,6 +192,7 @@ class LightSolver final : public KktSolver {
   BlockCsr A_;
   std::vector<char> is_dense_;
   std::unique_ptr<Factors> factors_;
+  double set_up_ = 0;
   bool is_klu_ = true, is_definite_ = false;
   bool factored_ = false;         // the factors at hand are those of the matrix
   bool ready_ = false;            // the factors at hand serve it preconditioning

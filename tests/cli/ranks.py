@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The firing scene on 1, 2, 3 and 4 ranks (MUMPS, and BDDC on 3; Newton at 1e-12): displacements agree to 1e-8 of the history's peak and
 reactions to 1e-6 of theirs, because partition, summation order and solver change round-off only.  Usage: ranks.py REPO BIN"""
+import json
 import os
 import shutil
 import subprocess
@@ -34,6 +35,19 @@ def difference(a, b):
     return u, worst
 
 
+def profile_is_whole(path, ranks):
+    """The phases of run.json add up to all of it, and messages are counted where there are ranks to send to."""
+    report = json.load(open(path))
+    rows = report["profile"]
+    parts = [row for name, row in rows.items() if name != "all"]
+    seconds = sum(row["seconds"] for row in parts)
+    ok = abs(seconds - rows["all"]["seconds"]) <= 1e-3 * seconds and all(row["imbalance"] >= 0.999 for row in rows.values())
+    ok = ok and report["solver_bytes"] > 0 and report["result_bytes"] == os.path.getsize(path.replace(".json", ".h5"))
+    if ranks == 1:
+        return ok and rows["all"]["messages"] == 0 and rows["all"]["bytes_sent"] == 0
+    return ok and rows["solve"]["messages"] > 0 and rows["all"]["bytes_sent"] > rows["solve"]["bytes_sent"] > 0
+
+
 with tempfile.TemporaryDirectory() as folder:
     for name in ("scene.toml", "load.csv", "tags.toml"):
         shutil.copy(os.path.join(scene, name), folder)
@@ -41,7 +55,7 @@ with tempfile.TemporaryDirectory() as folder:
     run("hilo-import", os.path.join(scene, "vehicle.geo"), "--define", "SIZE=0", "-o", "mesh.h5")
     run("hilo-tag", "mesh.h5", "tags.toml", "-o", "tags.h5")
     run("hilo-solve", "--quiet", *sets, "scene.toml", "tags.h5", "-o", "run-1.h5")
-    failed = False
+    failed = not profile_is_whole("run-1.json", 1)
     for n in (2, 3, 4):
         run("hilo-part", "tags.h5", "scene.toml", "-n", str(n), "-o", f"parts-{n}.h5")
         for kind in ("direct", "bddc") if n == 3 else ("direct",):
@@ -49,5 +63,5 @@ with tempfile.TemporaryDirectory() as folder:
             run("mpirun", "-n", str(n), "hilo-solve", "--quiet", *sets, *solver, "scene.toml", f"parts-{n}.h5", "-o", f"run-{n}.h5")
             u, reaction = difference(h5py.File("run-1.h5"), h5py.File(f"run-{n}.h5"))
             print(f"{n} ranks, {kind}: displacements {u:.1e} (limit 1e-8), reactions {reaction:.1e} (limit 1e-6)")
-            failed = failed or u > 1e-8 or reaction > 1e-6
+            failed = failed or u > 1e-8 or reaction > 1e-6 or not profile_is_whole(f"run-{n}.json", n)
 sys.exit(int(failed))

@@ -84,6 +84,43 @@ TEST(DISABLED_Substructured, JumpsOfStiffnessBetweenSubdomainsCostFewIterations)
   EXPECT_LE(jump.report.iterations, even.report.iterations + 10);
 }
 
+TEST(DISABLED_Substructured, SeveralSubdomainsPerRankGiveTheSameAnswerInAsManyIterations) {
+  Problem p = elastic_bar(18, 6, 6, 1e4);
+  test::scattered(p, Comm::world().size);
+  const auto direct = solve(*make_petsc_solver("direct", 1e-9), p);
+  std::vector<int> iterations;
+  for (const int subdomains : {16, 64}) {
+    const auto s = solve(*make_petsc_solver("bddc", 1e-9, subdomains / Comm::world().size), p);
+    ASSERT_TRUE(s.report.ok) << s.report.message;
+    EXPECT_EQ(s.name.find("direct"), std::string::npos);
+    EXPECT_LT(residual(p, s.x), 1.01e-9);
+    EXPECT_LT((s.x - direct.x).lpNorm<Eigen::Infinity>(), 1e-5 * direct.x.lpNorm<Eigen::Infinity>());
+    iterations.push_back(s.report.iterations);
+  }
+  EXPECT_LE(iterations[1], 20);
+  EXPECT_LE(iterations[1], 1.3 * iterations[0] + 2);
+}
+
+TEST(DISABLED_Substructured, JumpsWithinSubdomainsAreMetByFurtherConstraints) {
+  Problem p = elastic_bar(18, 6, 6, 1e4);
+  test::scattered(p, 16);  // regions of different stiffness, then subdomains that know nothing of them
+  const auto matrix = p.matrix;
+  const auto region = p.rank;
+  p.matrix = [=](int e) {
+    const test::Matrix K = matrix(e);
+    return test::Matrix(K.rows() >= 12 && region[e] % 2 ? 1e4 * K : K);
+  };
+  test::slabs(p, Comm::world().size);
+  const auto solver = make_petsc_solver("bddc", 1e-8, 16 / Comm::world().size);
+  const auto first = solve(*solver, p, 1);
+  const auto again = solve(*make_petsc_solver("bddc", 1e-8, 16 / Comm::world().size), p, 2);
+  ASSERT_TRUE(first.report.ok && again.report.ok) << first.report.message << again.report.message;
+  EXPECT_GT(first.report.iterations, 20);  // or the case is none
+  EXPECT_LE(again.report.iterations, 20);
+  EXPECT_EQ(again.name.find("direct"), std::string::npos);
+  EXPECT_EQ(again.name.find("adaptive"), 0u);
+}
+
 TEST(DISABLED_Substructured, OneSetUpServesSimilarMatrices) {
   for (const char* kind : {"bddc", "feti-dp"}) {
     Problem p = elastic_bar(12, 4, 4, 20);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/stopwatch.hpp"
 
 namespace hilo::petsc {
 
@@ -47,6 +48,7 @@ std::string DirectSolver::name() const { return size() > 1 ? fmt::format("direct
 
 /// "" or what went wrong.  The analysis is kept: the pattern does not change.
 std::string DirectSolver::factor() {
+  const Stopwatch watch(set_up_);
   MatFactorInfo info;
   check(MatFactorInfoInitialize(&info));
   if (!factor_) {

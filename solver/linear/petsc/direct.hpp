@@ -16,6 +16,7 @@ class DirectSolver final : public KktSolver {
   void sum_shared(std::span<double> local) override { shared_->sum(local); }
   SolveReport solve(std::span<const double> b, std::span<double> x, double) override;
   double bytes() const override { return matrix_->bytes() + factor_bytes_; }
+  double set_up_seconds() const override { return set_up_; }
   std::string name() const override;
 
   /// For a solver that gives up and hands over what it has: fill it, then solve().
@@ -27,7 +28,7 @@ class DirectSolver final : public KktSolver {
   void set(PetscInt control, PetscInt value) { check(MatMumpsSetIcntl(factor_, control, value)); }
   PetscInt infog(PetscInt i) const;
 
-  double tolerance_, factor_bytes_ = 0;
+  double tolerance_, factor_bytes_ = 0, set_up_ = 0;
   const Cliques* cliques_ = nullptr;
   std::optional<SharedBlocks> shared_;
   std::optional<BlockMatrix> matrix_;

@@ -14,6 +14,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "linear/petsc/coupling.hpp"
 #include "linear/petsc/direct.hpp"
 #include "linear/petsc/solver.hpp"
@@ -117,6 +118,7 @@ class IterativeSolver final : public KktSolver {
     if (direct_) return direct_->bytes();
     return matrix_->bytes() + coupling_->bytes() + inverse_->bytes() + 8. * n_flexible_ * Z_.size() + 8. * restart_ * n_all_;
   }
+  double set_up_seconds() const override { return set_up_seconds_ + (direct_ ? direct_->set_up_seconds() : 0); }
   std::string name() const override {
     if (direct_) return direct_->name();
     if (!inverse_) return kind_ == Kind::bddc ? "BDDC" : kind_ == Kind::feti_dp ? "FETI-DP" : "iterative";
@@ -208,12 +210,18 @@ class IterativeSolver final : public KktSolver {
 
   SolveReport set_up_and_attempt() {
     ready_ = false;
-    if (!inverse_->set_up()) return {false, 1, 0, "the flexible block is singular"};
-    if (!factor_schur()) return {false, 1, 0, "the matrix is singular (bodies and joints)"};
+    if (const std::string problem = set_up(); !problem.empty()) return {false, 1, 0, problem};
     inverse_->take_iterations();
     const SolveReport report = attempt(inverse_->most_iterations());
     ready_ = report.ok;
     return report;
+  }
+
+  /// What is wrong, or nothing.
+  std::string set_up() {
+    const Stopwatch watch(set_up_seconds_);
+    if (!inverse_->set_up()) return "the flexible block is singular";
+    return factor_schur() ? "" : "the matrix is singular (bodies and joints)";
   }
 
   /// From x_ as it is.
@@ -358,6 +366,7 @@ class IterativeSolver final : public KktSolver {
   Kind kind_;
   double tolerance_, wanted_ = 0;  // the tightest; that of the solve at hand
   int subdomains_ = 1;             // of this rank
+  double set_up_seconds_ = 0;
   bool ready_ = false;  // the preconditioner is of a matrix that it solved
   int fresh_iterations_ = 0, m_ = 0, restart_ = 100;
   size_t n_flexible_ = 0, n_all_ = 0;  // owned unknowns

@@ -1,0 +1,88 @@
+#include "dynamics/profile.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "base/table.hpp"
+
+namespace hilo {
+namespace {
+
+Traffic operator-(const Traffic& a, const Traffic& b) {
+  return {a.messages - b.messages, a.collectives - b.collectives, a.bytes - b.bytes};
+}
+
+}  // namespace
+
+double wall_clock() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+Phases& phases() {
+  static Phases p;
+  return p;
+}
+
+Timed::~Timed() {
+  const Traffic sent = traffic() - sent_;
+  phase_.seconds += wall_clock() - start_;
+  phase_.sent.messages += sent.messages, phase_.sent.collectives += sent.collectives, phase_.sent.bytes += sent.bytes;
+}
+
+Profile::Profile(const Comm& comm, const KktSolver& solver, double began, const std::string& results) {
+  const Phases& p = phases();
+  const double all = wall_clock() - began, set_up = solver.set_up_seconds();
+  const Traffic everything = traffic();
+  Phase rest{all - p.assembly.seconds - p.solve.seconds - p.output.seconds,
+             everything - Traffic{p.assembly.sent.messages + p.solve.sent.messages + p.output.sent.messages,
+                                  p.assembly.sent.collectives + p.solve.sent.collectives + p.output.sent.collectives,
+                                  p.assembly.sent.bytes + p.solve.sent.bytes + p.output.sent.bytes}};
+  const auto row = [&](const char* name, const Phase& phase, std::string count) {
+    Row r{name,
+          comm.sum(phase.seconds) / comm.size,
+          1,
+          comm.max(static_cast<double>(phase.sent.messages)),
+          comm.max(static_cast<double>(phase.sent.collectives)),
+          comm.max(phase.sent.bytes),
+          std::move(count)};
+    if (const double most = comm.max(phase.seconds); r.seconds > 0) r.imbalance = most / r.seconds;
+    return r;
+  };
+  rows[0] = row("assembly", p.assembly, fmt::format("{} evaluations, {} tangents", p.evaluations, p.tangents));
+  rows[1] = row("set-up", {set_up, {}}, "");
+  rows[2] = row("solve", {p.solve.seconds - set_up, p.solve.sent}, fmt::format("{} solves, {} iterations", p.solves, p.linear_iterations));
+  rows[3] = row("output", p.output, fmt::format("{} records", p.records));
+  rows[4] = row("rest", rest, "");
+  rows[5] = row("all", {all, everything}, "");
+  solver_bytes = comm.max(solver.bytes());
+  std::error_code ignored;
+  const auto size = std::filesystem::file_size(results, ignored);
+  result_bytes = ignored ? 0 : static_cast<double>(size);
+}
+
+std::string Profile::json() const {
+  std::string out;
+  for (const Row& r : rows)
+    out += fmt::format(
+        "{}    \"{}\": {{\"seconds\": {:.6g}, \"imbalance\": {:.4g}, \"messages\": {:.0f}, \"collectives\": {:.0f}, \"bytes_sent\": "
+        "{:.0f}}}",
+        out.empty() ? "" : ",\n", r.name, r.seconds, r.imbalance, r.messages, r.collectives, r.bytes);
+  return fmt::format("  \"profile\": {{\n{}\n  }},\n  \"solver_bytes\": {:.0f},\n  \"result_bytes\": {:.0f},\n", out, solver_bytes,
+                     result_bytes);
+}
+
+std::string Profile::text() const {
+  Table t{{"phase", "seconds", "share", "imbalance", "messages", "sums", "MB sent", "what"}, {}, 1};
+  for (const Row& r : rows)
+    t.rows.push_back({r.name, fmt::format("{:.3f}", r.seconds),
+                      fmt::format("{:.1f}%", 100 * r.seconds / std::max(rows.back().seconds, 1e-300)), fmt::format("{:.3f}", r.imbalance),
+                      fmt::format("{:.0f}", r.messages), fmt::format("{:.0f}", r.collectives), fmt::format("{:.3f}", r.bytes / 1e6),
+                      r.count});
+  return t.text() + fmt::format(
+                        "matrix and factors {:.1f} MB, results {:.1f} MB; seconds: mean over the ranks, imbalance: largest over mean; "
+                        "messages, sums and MB: of the rank with most\n",
+                        solver_bytes / 1e6, result_bytes / 1e6);
+}
+
+}  // namespace hilo

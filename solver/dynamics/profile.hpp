@@ -1,0 +1,58 @@
+// Where the time of a run goes: seconds, counts and messages by phase, on every rank.
+#pragma once
+#include <array>
+#include <string>
+
+#include "linear/kkt.hpp"
+#include "model/comm.hpp"
+#include "model/traffic.hpp"
+
+namespace hilo {
+
+/// What a phase has cost on this rank.
+struct Phase {
+  double seconds = 0;
+  Traffic sent;
+};
+
+/// Since the start of the process.
+struct Phases {
+  Phase assembly, solve, output;  // a solve includes the set-up of factors and preconditioners
+  long evaluations = 0, tangents = 0, solves = 0, linear_iterations = 0, records = 0;
+};
+Phases& phases();
+double wall_clock();
+
+/// Adds its own life to a phase.
+class Timed {
+ public:
+  explicit Timed(Phase& phase) : phase_(phase), start_(wall_clock()), sent_(traffic()) {}
+  ~Timed();
+  Timed(const Timed&) = delete;
+
+ private:
+  Phase& phase_;
+  double start_;
+  Traffic sent_;
+};
+
+/// The phases of a run over all ranks.
+struct Profile {
+  struct Row {
+    std::string name;
+    double seconds = 0, imbalance = 1;     // mean over the ranks; largest over mean
+    double messages = 0, collectives = 0;  // of the rank with most of them
+    double bytes = 0;                      // sent by the rank that sent most
+    std::string count;                     // "12 evaluations, 4 tangents"
+  };
+  std::array<Row, 6> rows;                    // assembly, set-up, solve (without it), output, rest, all
+  double solver_bytes = 0, result_bytes = 0;  // matrix and factors of the rank with most; results file
+  /// Collective: every rank takes part.
+  Profile(const Comm& comm, const KktSolver& solver, double began, const std::string& results);
+  /// Lines for run.json: keys profile, solver_bytes, result_bytes.
+  std::string json() const;
+  /// A table for people.
+  std::string text() const;
+};
+
+}  // namespace hilo
