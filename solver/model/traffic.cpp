@@ -15,7 +15,11 @@ double bytes_of(int count, MPI_Datatype type) {
   return static_cast<double>(count) * size;
 }
 void message(double bytes) { ++sum.messages, sum.bytes += bytes; }
-void collective(double bytes) { ++sum.collectives, sum.bytes += bytes; }
+void collective(double bytes, MPI_Comm comm) {
+  int size = 1;
+  PMPI_Comm_size(comm, &size);
+  if (size > 1) ++sum.collectives, sum.bytes += bytes;
+}
 std::map<MPI_Request, double>& prepared() {  // bytes of the persistent sends
   static std::map<MPI_Request, double> list;
   return list;
@@ -66,7 +70,7 @@ int MPI_Startall(int n, MPI_Request requests[]) {
 int MPI_Alltoall(const void* data, int n, MPI_Datatype type, void* to, int n_to, MPI_Datatype to_type, MPI_Comm comm) {
   int size = 1;
   PMPI_Comm_size(comm, &size);
-  collective((size - 1) * bytes_of(n, type));
+  collective((size - 1) * bytes_of(n, type), comm);
   return PMPI_Alltoall(data, n, type, to, n_to, to_type, comm);
 }
 int MPI_Alltoallv(const void* data, const int n[], const int at[], MPI_Datatype type, void* to, const int n_to[], const int at_to[],
@@ -78,28 +82,28 @@ int MPI_Alltoallv(const void* data, const int n[], const int at[], MPI_Datatype 
   return PMPI_Alltoallv(data, n, at, type, to, n_to, at_to, to_type, comm);
 }
 int MPI_Allreduce(const void* data, void* to, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm) {
-  collective(bytes_of(n, type));
+  collective(bytes_of(n, type), comm);
   return PMPI_Allreduce(data, to, n, type, op, comm);
 }
 int MPI_Iallreduce(const void* data, void* to, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm, MPI_Request* request) {
-  collective(bytes_of(n, type));
+  collective(bytes_of(n, type), comm);
   return PMPI_Iallreduce(data, to, n, type, op, comm, request);
 }
 int MPI_Reduce(const void* data, void* to, int n, MPI_Datatype type, MPI_Op op, int root, MPI_Comm comm) {
-  collective(bytes_of(n, type));
+  collective(bytes_of(n, type), comm);
   return PMPI_Reduce(data, to, n, type, op, root, comm);
 }
 int MPI_Bcast(void* data, int n, MPI_Datatype type, int root, MPI_Comm comm) {
-  collective(bytes_of(n, type));
+  collective(bytes_of(n, type), comm);
   return PMPI_Bcast(data, n, type, root, comm);
 }
 int MPI_Allgather(const void* data, int n, MPI_Datatype type, void* to, int n_to, MPI_Datatype to_type, MPI_Comm comm) {
-  collective(data == MPI_IN_PLACE ? bytes_of(n_to, to_type) : bytes_of(n, type));
+  collective(data == MPI_IN_PLACE ? bytes_of(n_to, to_type) : bytes_of(n, type), comm);
   return PMPI_Allgather(data, n, type, to, n_to, to_type, comm);
 }
 int MPI_Allgatherv(const void* data, int n, MPI_Datatype type, void* to, const int n_to[], const int at_to[], MPI_Datatype to_type,
                    MPI_Comm comm) {
-  collective(data == MPI_IN_PLACE ? 0 : bytes_of(n, type));
+  collective(data == MPI_IN_PLACE ? 0 : bytes_of(n, type), comm);
   return PMPI_Allgatherv(data, n, type, to, n_to, at_to, to_type, comm);
 }
 
