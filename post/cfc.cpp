@@ -29,16 +29,32 @@ void pass(const CfcFilter& f, std::vector<double>& x) {
   }
 }
 
+/// Value at the first of `fit` samples of the straight line that best fits 33 points among them, so that finer sampling changes nothing.
+template <class At>
+double end_of_line(size_t fit, At at) {
+  const size_t n = std::min<size_t>(fit, 33);
+  const double m = static_cast<double>(n), middle = (m - 1) / 2;
+  double mean = 0, moment = 0;
+  for (size_t k = 0; k < n; ++k) {
+    const double place = n < 2 ? 0 : static_cast<double>((fit - 1) * k) / (m - 1);
+    const auto i = std::min(static_cast<size_t>(place), fit - 1), j = std::min(i + 1, fit - 1);
+    const double s = place - static_cast<double>(i), x = (1 - s) * at(i) + s * at(j);
+    mean += x / m, moment += (static_cast<double>(k) - middle) * x;
+  }
+  return n < 2 ? mean : mean - middle * moment / (m * (m * m - 1) / 12);
+}
+
 }  // namespace
 
-std::vector<double> filter_both_ways(const CfcFilter& filter, std::span<const double> x, size_t pad) {
+std::vector<double> filter_both_ways(const CfcFilter& filter, std::span<const double> x, size_t pad, size_t fit) {
   if (x.empty()) return {};
   std::vector<double> padded;
   padded.reserve(x.size() + 2 * pad);
-  const size_t last = x.size() - 1;
-  for (size_t k = pad; k > 0; --k) padded.push_back(2 * x[0] - x[std::min(k, last)]);
+  const size_t last = x.size() - 1, n = std::clamp<size_t>(fit, 1, x.size());
+  const double front = end_of_line(n, [&](size_t k) { return x[k]; }), back = end_of_line(n, [&](size_t k) { return x[last - k]; });
+  for (size_t k = pad; k > 0; --k) padded.push_back(2 * front - x[std::min(k, last)]);
   padded.insert(padded.end(), x.begin(), x.end());
-  for (size_t k = 1; k <= pad; ++k) padded.push_back(2 * x[last] - x[last - std::min(k, last)]);
+  for (size_t k = 1; k <= pad; ++k) padded.push_back(2 * back - x[last - std::min(k, last)]);
   pass(filter, padded);
   std::reverse(padded.begin(), padded.end());
   pass(filter, padded);
@@ -92,7 +108,7 @@ Filtered cfc_filtered(std::span<const double> t, std::span<const double> x, doub
   const double T = (f.t.back() - f.t.front()) / static_cast<double>(f.t.size() - 1);
   // At least 10 ms (SAE J211), and long enough for the slowest class to settle.
   const auto pad = static_cast<size_t>(std::ceil(std::max(0.01, 2 / cfc) / T));
-  f.x = filter_both_ways(cfc_filter(cfc, T), interpolate(t, x, f.t), pad);
+  f.x = filter_both_ways(cfc_filter(cfc, T), interpolate(t, x, f.t), pad, static_cast<size_t>(std::lround(0.5 / cfc / T)) + 1);
   return f;
 }
 

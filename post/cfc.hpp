@@ -18,8 +18,9 @@ struct CfcFilter {
 CfcFilter cfc_filter(double cfc, double T);
 
 /// Filter forwards and backwards.  Both ends are continued by `pad` samples (point reflection, then a constant), so that the ends do not
-/// ring.
-std::vector<double> filter_both_ways(const CfcFilter& filter, std::span<const double> x, size_t pad);
+/// ring; they are reflected at the end of a line through the last `fit` samples, so that an oscillation above the class does not pass
+/// there.
+std::vector<double> filter_both_ways(const CfcFilter& filter, std::span<const double> x, size_t pad, size_t fit = 1);
 
 /// Uniform times from t.front() to t.back() at the smallest interval of t (or 16 samples per recorded one where that is coarser).
 std::vector<double> uniform_times(std::span<const double> t);

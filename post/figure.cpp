@@ -39,6 +39,8 @@ Scale scale_of(const Panel& panel, bool y_axis, int n_ticks) {
       low = std::min(low, v), high = std::max(high, v);
     }
   }
+  for (const Band& b : panel.bands)  // they widen the ordinate, not the abscissa
+    for (size_t i = 0; y_axis && !s.log && i < b.x.size(); ++i) low = std::min(low, b.low[i]), high = std::max(high, b.high[i]);
   if (!(low <= high)) low = s.log ? 1 : 0, high = s.log ? 10 : 1;
   const Axis& axis = y_axis ? panel.y : panel.x;
   const bool given_low = std::isfinite(axis.low) && (!s.log || axis.low > 0), given_high = std::isfinite(axis.high);

@@ -18,7 +18,7 @@ namespace hilo {
 namespace {
 
 struct Options {
-  std::string run, csv, page, eiband;
+  std::string run, csv, page, eiband, corridor;
   std::vector<std::string> sensors{"*"};
   double cfc = 60;
   bool json = false;
@@ -72,17 +72,19 @@ void run(const Options& o) {
   const RunFile file(o.run);
   std::vector<Crew> crew;
   for (const std::string& name : sensor_names(file, o.sensors)) crew.push_back(crew_of(file, name, o.cfc));
+  const Corridor corridor = o.corridor.empty() ? Corridor{} : read_corridor(o.corridor);
+  add_corridor(crew, corridor);
   if (!o.csv.empty()) write_out(o.csv, csv_of(table_of(crew, true)));
-  if (!o.page.empty()) write_report(crew, o.cfc, file.title, file.path, o.page);
+  if (!o.page.empty()) write_report(crew, o.cfc, corridor, file.title, file.path, o.page);
   if (!o.eiband.empty()) write_eiband(crew, o.cfc, file.title, o.eiband);
   if (o.csv != "-") write_out("-", o.json ? table_of(crew, false).json("") + "\n" : text_of(crew));
   if (!is_quiet() && !o.json)
-    fmt::print(
-        stderr,
-        "Proper acceleration in the sensors' axes (x forward, y left, z up), less what was felt at the start (1 g upward at rest).\n"
-        "HIC, SI: resultant, CFC 1000 or the highest class the record holds; clip_3ms: cumulative.  Reference levels do not replace their\n"
-        "sources; Brinkley's limits were not checked against theirs (a second source agrees on +z).{}\n",
-        file.complete ? "" : "  The run is not complete.");
+    fmt::print(stderr,
+               "Proper acceleration in the sensors' axes (x forward, y left, z up), less what was felt at the start (1 g upward at rest);\n"
+               "HIC, SI (CFC 1000 or the highest class the record holds) and clip_3ms (cumulative) take the whole resultant.  Reference "
+               "levels do not\n"
+               "replace their sources; Brinkley's limits were not checked against theirs (a second source agrees on +z).{}\n",
+               file.complete ? "" : "  The run is not complete.");
 }
 
 }  // namespace
@@ -98,6 +100,7 @@ Command injury_command(CLI::App& app) {
       ->default_str("60");
   sub->add_option("-o,--output", o->csv, "CSV with a row for each sensor; - for stdout instead of the table");
   sub->add_option("--png", o->page, "report of one page (A4): pulses with their corridor, measures, signs, sources");
+  sub->add_option("--corridor", o->corridor, "CSV with t, x_low, x_high (y_, z_): a corridor for the pulses, changes in g");
   sub->add_option("--eiband", o->eiband, "PNG: level held against its duration, with Eiband's tolerances (approximate)");
   sub->add_flag("--json", o->json, "a row for each sensor as JSON");
   example(*sub, "  hilo-post injury run.h5\n  hilo-post injury run.h5 --cfc 60 -o injury.csv --png report.png --eiband eiband.png");

@@ -65,7 +65,7 @@ const Measure& measure(const Crew& c, const std::string& key) {
   return *std::find_if(c.measures.begin(), c.measures.end(), [&](const Measure& m) { return m.key == key; });
 }
 
-Figure pulses(const std::vector<Crew>& crew, double cfc) {
+Figure pulses(const std::vector<Crew>& crew, double cfc, const Corridor& corridor) {
   Figure figure;
   constexpr const char* title[] = {"x: forward +", "y: to the left +", "z: upward +"};
   for (size_t a = 0; a < 3; ++a) {
@@ -78,7 +78,8 @@ Figure pulses(const std::vector<Crew>& crew, double cfc) {
       panel.curves.push_back({a == 0 ? fmt::format("{}, CFC {:g}", crew[i].record.name, cfc) : "", crew[i].record.uniform, x,
                               curve_colour(static_cast<int>(i)), 1.6 + 1.6 * static_cast<double>(i)});  // what coincides shows as a border
     }
-    if (crew.size() > 1) panel.bands.push_back(std::move(band));
+    if (const auto& given = corridor.axis[a]) band = {band.label, given->t, given->low, given->high, band.colour};
+    if (crew.size() > 1 || corridor.axis[a]) panel.bands.push_back(std::move(band));
     figure.panels.push_back(std::move(panel));
   }
   return figure;
@@ -128,7 +129,8 @@ void measure_table(Page& page, const std::vector<Crew>& crew) {
   }
 }
 
-void draw(Painter& p, const std::vector<Crew>& crew, double cfc, const std::string& title, const std::string& run) {
+void draw(Painter& p, const std::vector<Crew>& crew, double cfc, const Corridor& corridor, const std::string& title,
+          const std::string& run) {
   p.rectangle({0, 0, p.width, p.height}, white);
   Page page(p);
   const auto& t = crew[0].record.t;
@@ -138,11 +140,13 @@ void draw(Painter& p, const std::vector<Crew>& crew, double cfc, const std::stri
   page.gap(2);
   page.paragraph(
       "Axes of each sensor (ISO 8855): x forward, y to the left, z upward. Proper acceleration, in g = 9.80665 m/s^2: what a seat does to "
-      "whom it carries, 1 g upward at rest. Shown and judged is the change from the start of the run. The corridor is the room between the "
-      "lowest and the highest of the sensors.",
+      "whom it carries, 1 g upward at rest. Shown is the change from the start of the run; HIC, SI and 3 ms take the whole. The corridor "
+      "is "
+      "as given, or from the lowest to the highest sensor.",
       middle);
-  const double h = page.unit(795);
-  draw_figure(p, pulses(crew, cfc), {page.left - page.unit(20), page.y - h, page.right - page.left + page.unit(20), h});
+  const double rows = static_cast<double>(crew.size() + crew[0].measures.size());  // the tables' share comes first
+  const double h = page.unit(795 - row * (rows - 34));
+  draw_figure(p, pulses(crew, cfc, corridor), {page.left - page.unit(20), page.y - h, page.right - page.left + page.unit(20), h});
   page.y -= h + page.unit(14);
   pulse_table(page, crew);
   page.gap(14);
@@ -166,11 +170,12 @@ void draw(Painter& p, const std::vector<Crew>& crew, double cfc, const std::stri
 
 }  // namespace
 
-void write_report(const std::vector<Crew>& crew, double cfc, const std::string& title, const std::string& run, const std::string& path) {
+void write_report(const std::vector<Crew>& crew, double cfc, const Corridor& corridor, const std::string& title, const std::string& run,
+                  const std::string& path) {
   if (crew.size() > 5)
     throw Error("--png", fmt::format("{} sensors do not fit on a page", crew.size()), "five at most: choose with --sensor");
   Picture picture(width, height);
-  picture.paint([&](Painter& p) { draw(p, crew, cfc, title, run); });
+  picture.paint([&](Painter& p) { draw(p, crew, cfc, corridor, title, run); });
   picture.write(path);
 }
 

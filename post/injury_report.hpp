@@ -3,11 +3,14 @@
 #include <string>
 #include <vector>
 
+#include "post/injury_corridor.hpp"
 #include "post/injury_measures.hpp"
 
 namespace hilo {
 
-/// Error for more sensors than a page has columns.
-void write_report(const std::vector<Crew>& crew, double cfc, const std::string& title, const std::string& run, const std::string& path);
+/// Where no corridor is given for an axis, it is the room between the lowest and the highest of the sensors.  Error for more sensors than a
+/// page has columns.
+void write_report(const std::vector<Crew>& crew, double cfc, const Corridor& corridor, const std::string& title, const std::string& run,
+                  const std::string& path);
 
 }  // namespace hilo

@@ -33,6 +33,20 @@ TEST(InjuryReport, csv_and_json_hold_the_closed_forms_of_a_half_sine) {
   EXPECT_NE(ran.out.find("\"sensor\": \"seat\""), std::string::npos) << ran.out;
 }
 
+TEST(InjuryReport, tells_how_far_a_pulse_leaves_its_corridor) {
+  const auto& place = sample_place();
+  place.write("corridor.csv", "t [s],x_low [g],x_high [g]\n0,-1,1\n0.0199,-1,80\n0.0201,-1,80\n");  // over by the time of the peak
+  const Ran ran = place.run("hilo-post --quiet injury run.h5 --cfc 1000 --corridor corridor.csv --png within.png -o out.csv");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const CsvTable table = read_csv(place / "out.csv");
+  // half sine 100 sin(pi (t - 0.01)/0.02) over 1 + 79 t/0.0199: farthest at 17.2 ms
+  double most = 0;
+  for (double t = 0.01; t < 0.0199; t += 1e-6) most = std::max(most, 100 * std::sin(M_PI * (t - 0.01) / 0.02) - 1 - 79 * t / 0.0199);
+  EXPECT_NEAR(table.numbers(table.find("outside_x")).front(), most, 0.5);
+  place.write("empty.csv", "t,a\n0,1\n1,2\n");
+  EXPECT_EQ(place.run("hilo-post injury run.h5 --corridor empty.csv").exit, 2);
+}
+
 TEST(InjuryReport, page_has_the_ratio_of_A4_and_white_margins) {
   const auto& place = sample_place();
   const Ran ran = place.run("unset DISPLAY\nhilo-post injury run.h5 --png page.png --eiband eiband.png");
