@@ -228,10 +228,11 @@ class Run {
     if (control) control->restart(state_);
   }
 
-  /// Steps of equal length from `from` to `to`.  Step k goes from k h to (k+1) h; a failed one is halved, level by level, and grows back at
+  /// Steps of equal length from `from` to `to`, up to a thousandth of one longer than asked for: the times of a table are rounded, and one
+  /// more step would change them all.  Step k goes from k h to (k+1) h; a failed one is halved, level by level, and grows back at
   /// aligned instants.
   bool equal_steps(double from, double to, double step, Progress& progress) {
-    const long n_steps = std::max(1l, std::lround(std::ceil((to - from) / step - 1e-9)));
+    const long n_steps = std::max(1l, std::lround(std::ceil((to - from) / step - 1e-3)));
     for (long k = 0; k < n_steps; ++k) {
       const double t0 = from + (to - from) * static_cast<double>(k) / static_cast<double>(n_steps),
                    t1 = from + (to - from) * static_cast<double>(k + 1) / static_cast<double>(n_steps);

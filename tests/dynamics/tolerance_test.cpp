@@ -146,5 +146,26 @@ end = 1
     }
 }
 
+// Truth: the times of a table, multiples of ten steps rounded to six digits, are hit by ten steps each and not by eleven.
+TEST(Events, RoundedTimesKeepTheStep) {
+  const Workplace w;
+  w.write("scene.toml", body("mass", 2, Vec3::Zero(), Vec3::Ones()) + R"(
+[[load]]
+kind = "force"
+name = "push"
+on = "mass"
+force = [10, 0, 0]
+history = {t = [0.033333, 0.066667, 0.100000, 0.133333, 0.166667], value = [0, 2, 1, 2, 0]}
+[time]
+end = 0.2
+step = 3.3333333333333333e-3
+)");
+  const Ran ran = w.run("hilo-solve --quiet scene.toml -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Results r(w / "run.h5");
+  EXPECT_EQ(r.t().size(), 61);
+  for (const double t : {0.033333, 0.066667, 0.1, 0.133333, 0.166667}) EXPECT_NO_THROW(r.index(t)) << t;
+}
+
 }  // namespace
 }  // namespace hilo::test
