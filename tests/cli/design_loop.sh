@@ -51,4 +51,10 @@ touch scene.toml
 planned > stages.txt
 grep -q mesh stages.txt && fail "a changed scene makes meshes: $(cat stages.txt)"
 same "a changed scene" "$(tr ' ' '\n' < stages.txt | grep -c run)" 5
+# a scene from a pipe is the scene with the key set
+sed 's/^mass = 95 .*/mass = 60/' scene.toml | "$bin/hilo-solve" --quiet - out/mesh/t8.h5 -o piped.h5
+"$bin/hilo-solve" --quiet --set region.seat.mass=60 scene.toml out/mesh/t8.h5 -o set.h5
+last() { "$bin/hilo-post" series "$1" sensor.driver probe.barrel | tail -n 1; }
+same "a scene from a pipe" "$(last piped.h5)" "$(last set.h5)"
+[ "$(last piped.h5)" != "$(last out/t8_k100_c6/run.h5)" ] || fail "another driver changes nothing"
 echo "design loop: as promised"
