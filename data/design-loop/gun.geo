@@ -76,7 +76,7 @@ v = newv;
 Box(v) = {-1.60, -0.85, -0.14, 3.20, 1.70, 0.14 - 0.002};                             // deck, and four wheels that stand for looks
 For i In {0:3}
   sx = (i % 2) ? 1 : -1;  sy = (i < 2) ? 1 : -1;
-  Cylinder(v + 1 + i) = {1.10*sx, 0.60*sy, -0.25, 0, 0.24*sy, 0, 0.30};
+  Cylinder(v + 1 + i) = {1.10*sx, 0.60*sy, -0.30, 0, 0.24*sy, 0, 0.25};
 EndFor
 deck[] = BooleanUnion { Volume{v}; Delete; }{ Volume{v + 1 : v + 4}; Delete; };
 Physical Volume("hull") = {deck[]};
