@@ -133,6 +133,18 @@ void draw_glyph(Painter& p, Glyph glyph, const Vec2& at, const Vec2& along, cons
     case Glyph::cross:
       p.line(at - Vec2(r, r), at + Vec2(r, r), colour, pen), p.line(at - Vec2(r, -r), at + Vec2(r, -r), colour, pen);
       break;
+    case Glyph::stop: {  // two walls across the axis
+      const Vec2 d = along.norm() > 0.2 ? Vec2(along.normalized()) : Vec2(1, 0), across(-d.y(), d.x());
+      for (const double side : {-0.62, 0.62})
+        p.line(at + side * size * d - 0.34 * size * across, at + side * size * d + 0.34 * size * across, colour, 1.6 * pen);
+      break;
+    }
+    case Glyph::friction:  // teeth around
+      for (int k = 0; k < 12; ++k) {
+        const Vec2 d(std::cos(M_PI * k / 6), std::sin(M_PI * k / 6));
+        p.line(at + 0.30 * size * d, at + 0.44 * size * d, colour, pen);
+      }
+      break;
     case Glyph::mass: {
       ring(p, at, r, colour);
       for (const double from : {0.0, M_PI}) {

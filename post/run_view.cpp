@@ -76,7 +76,8 @@ void RunView::open_files() {
 
 void RunView::make_skins() {
   std::vector<Facet> coloured, toned;
-  for (const Facet& f : boundary_facets(mesh_, shown_)) (valued_[region_of(f.cell)] ? coloured : toned).push_back(f);
+  const std::vector<Facet> outside = boundary_facets(mesh_, shown_);
+  for (const Facet& f : outside) (valued_[region_of(f.cell)] ? coloured : toned).push_back(f);
   std::vector<std::int64_t> coloured_bars, toned_bars, toned_solid;
   for (std::int64_t c = 0; c < mesh_.n_cells(); ++c) {
     if (!shown_[region_of(c)]) continue;
@@ -91,16 +92,29 @@ void RunView::make_skins() {
   toned_ = std::make_unique<Skin>(mesh_, toned, toned_bars, cut, toned_solid);
   if (coloured_->empty() && toned_->empty()) throw Error("--cut", "takes all that is shown away", "see the box that hilo-show tells");
   counted_.assign(static_cast<size_t>(mesh_.n_nodes()), false);
-  framed_ = counted_;
   for (std::int64_t c = 0; c < mesh_.n_cells(); ++c)
-    for (const std::int64_t n : mesh_.cell(c)) {
-      if (valued_[region_of(c)]) counted_[static_cast<size_t>(n)] = true;
-      if (zoomed_[region_of(c)]) framed_[static_cast<size_t>(n)] = true;
-    }
+    if (valued_[region_of(c)])
+      for (const std::int64_t n : mesh_.cell(c)) counted_[static_cast<size_t>(n)] = true;
+  find_framed(outside);
   if (!is_named_field(o_.field)) return;
   std::vector<std::array<std::uint8_t, 3>> colour(static_cast<size_t>(mesh_.n_cells()));
   for (size_t c = 0; c < colour.size(); ++c) colour[c] = bytes(named_.colours[static_cast<size_t>(named_.name_of[c])]);
   coloured_->set_cell_colours(colour);
+}
+
+void RunView::find_framed(const std::vector<Facet>& outside) {
+  std::vector<bool> in(static_cast<size_t>(mesh_.n_nodes()), false);
+  const auto take = [&](std::int64_t n) {
+    if (!in[static_cast<size_t>(n)]) in[static_cast<size_t>(n)] = true, framed_.push_back(n);
+  };
+  for (const Facet& f : outside)
+    if (zoomed_[region_of(f.cell)])
+      for (const int a : info(mesh_.shape[static_cast<size_t>(f.cell)]).facets[static_cast<size_t>(f.facet)])
+        take(mesh_.cell(f.cell)[static_cast<size_t>(a)]);
+  const bool none = framed_.empty();
+  for (std::int64_t c = 0; c < mesh_.n_cells(); ++c)  // bars, and a region that lies within others
+    if (zoomed_[region_of(c)] && (info(mesh_.shape[static_cast<size_t>(c)]).dimension == 1 || none))
+      for (const std::int64_t n : mesh_.cell(c)) take(n);
 }
 
 void RunView::find_parts() {
@@ -172,7 +186,7 @@ Extent RunView::bounds(const std::vector<double>& value) const {
 Extent RunView::survey(double t, const Fit& axes, std::vector<Vec3>& extremes) {
   // Nodes extreme in many directions stand for all of them: enough to frame the picture, whatever the number of instants.
   const auto x = positions(t);
-  constexpr size_t n = 48;
+  constexpr size_t n = 32;
   std::array<double, 3 * n> best;
   std::array<const Vec3*, 3 * n> who{};
   best.fill(-std::numeric_limits<double>::infinity());
@@ -182,8 +196,8 @@ Extent RunView::survey(double t, const Fit& axes, std::vector<Vec3>& extremes) {
     for (size_t tilt = 0; tilt < 3; ++tilt)
       direction[3 * k + tilt] = std::cos(a) * axes.right() + std::sin(a) * axes.up() + 0.2 * (static_cast<double>(tilt) - 1) * axes.back();
   }
-  for (size_t node = 0; node < x.size(); ++node) {
-    if (!framed_[node]) continue;
+  for (const std::int64_t framed : framed_) {
+    const auto node = static_cast<size_t>(framed);
     for (size_t k = 0; k < direction.size(); ++k)
       if (const double d = direction[k].dot(x[node]); d > best[k]) best[k] = d, who[k] = &x[node];
   }

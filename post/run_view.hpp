@@ -54,6 +54,7 @@ class RunView {
 
  private:
   void make_skins();
+  void find_framed(const std::vector<Facet>& outside);
   void find_parts();
   void enlarge(std::vector<Vec3>& x) const;
   size_t region_of(std::int64_t cell) const { return static_cast<size_t>(mesh_.region[static_cast<size_t>(cell)]); }
@@ -68,7 +69,8 @@ class RunView {
   const Mesh& mesh_;
   std::unique_ptr<Playback> playback_, minus_playback_;
   std::vector<bool> shown_, zoomed_, valued_;  // per region
-  std::vector<bool> counted_, framed_;         // per node: in the range; in the frame
+  std::vector<bool> counted_;                  // per node: in the range of the colours
+  std::vector<std::int64_t> framed_;           // nodes that the picture must hold
   std::unique_ptr<Skin> coloured_, toned_;
   std::unique_ptr<IsoSurface> iso_;
   std::vector<std::int64_t> solid_;  // cells that have values and a volume

@@ -10,7 +10,7 @@ namespace hilo {
 namespace {
 
 constexpr Rgb joint_colour{0.56, 0.10, 0.44}, spring_colour{0.10, 0.42, 0.42}, load_colour{0.80, 0.15, 0.12},
-    support_colour{0.16, 0.30, 0.66}, sensor_colour{0.15, 0.50, 0.18}, mass_colour{0.16, 0.17, 0.19};
+    support_colour{0.16, 0.30, 0.66}, drive_colour{0.72, 0.38, 0.02}, sensor_colour{0.15, 0.50, 0.18}, mass_colour{0.16, 0.17, 0.19};
 
 /// At most about `most` of the nodes, evenly taken.
 std::vector<Vec3> thinned(const Mesh& mesh, const std::vector<std::int64_t>& nodes, size_t most) {
@@ -28,6 +28,8 @@ class Collector {
     for (const Entry& e : scene_.entries("body")) body(e);
     for (const Entry& e : scene_.entries("joint")) joint(e);
     for (const Entry& e : scene_.entries("spring")) spring(e);
+    for (const char* section : {"stop", "motor", "friction"})
+      for (const Entry& e : scene_.entries(section)) on_joint(e);
     for (const Entry& e : scene_.entries("load")) load(e);
     for (const Entry& e : scene_.entries("motion")) motion(e);
     for (const Entry& e : scene_.entries("point_mass")) {
@@ -114,7 +116,10 @@ class Collector {
                        : is({"distance"})                                                   ? Glyph::link
                        : is({"prismatic", "cylindrical", "screw", "in-line", "planar"})     ? Glyph::slider
                                                                                             : Glyph::hinge;
-    SceneItem& item = add(glyph, e, e.kind + " joint", joint_colour);
+    const char* drives[] = {"angle", "spin", "displacement", "velocity"};
+    const bool driven = std::any_of(std::begin(drives), std::end(drives), [&](const char* key) { return e.given(key); });
+    const bool gives = e.has("stiffness") || e.has("angular_stiffness");
+    SceneItem& item = add(glyph, e, e.kind + (driven ? " joint, driven" : gives ? " joint that gives way" : " joint"), joint_colour);
     if (glyph == Glyph::link)
       item.at = e.vector3("at_a"), item.to = e.vector3("at_b");
     else
@@ -122,6 +127,24 @@ class Collector {
     if (e.has("axis")) item.along = e.vector3("axis");
     add_patch(item, e, "a");
     add_patch(item, e, "b");
+  }
+
+  /// Stops, motors and friction sit at the joint they act in, about its symbol.
+  void on_joint(const Entry& e) {
+    std::vector<std::string> names;
+    for (const Entry& j : scene_.entries("joint")) {
+      names.push_back(j.name);
+      if (j.name != e.text("joint")) continue;
+      const auto glyph = e.section == "stop"       ? Glyph::stop
+                         : e.section == "friction" ? Glyph::friction
+                         : e.kind == "rotary"      ? Glyph::turn
+                                                   : Glyph::arrow;
+      SceneItem& item = add(glyph, e, e.section == "friction" ? "friction" : e.kind + " " + e.section, drive_colour);
+      item.at = j.vector3(j.has("at") ? "at" : "at_a");
+      if (j.has("axis")) item.along = j.vector3("axis");
+      return;
+    }
+    throw Error(e.where("joint"), fmt::format("{}: no joint \"{}\"", e.label(), e.text("joint")), suggest(e.text("joint"), names));
   }
 
   void spring(const Entry& e) {

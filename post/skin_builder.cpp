@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <tuple>
 
@@ -26,6 +27,20 @@ std::vector<double> quad8(double r, double s) {  // r, s in [-1, 1]
           (1 + r) * (1 - s * s) / 2,
           (1 - r * r) * (1 + s) / 2,
           (1 - r) * (1 - s * s) / 2};
+}
+
+/// Sort items that name a point first: into buckets of that point by counting, then within these few.
+template <class Item, class Point, class Less>
+void sort_by_point(std::vector<Item>& items, size_t n_points, Point&& point, Less&& less) {
+  std::vector<std::int64_t> start(n_points + 1, 0);
+  for (const Item& i : items) ++start[static_cast<size_t>(point(i)) + 1];
+  for (size_t p = 1; p < start.size(); ++p) start[p] += start[p - 1];
+  std::vector<Item> sorted(items.size());
+  auto next = start;
+  for (const Item& i : items) sorted[static_cast<size_t>(next[static_cast<size_t>(point(i))]++)] = i;
+  for (size_t p = 0; p < n_points; ++p)
+    if (start[p + 1] - start[p] > 1) std::sort(sorted.begin() + start[p], sorted.begin() + start[p + 1], less);
+  items = std::move(sorted);
 }
 
 }  // namespace
@@ -69,12 +84,15 @@ std::vector<Facet> boundary_facets(const Mesh& mesh, const std::vector<bool>& sh
       }
     seen[static_cast<size_t>(end[b]++)] = {next, 8 * f.cell + f.facet};
   });
-  std::vector<Facet> outside;
+  std::vector<std::uint8_t> once(static_cast<size_t>(mesh.n_cells()), 0);  // facets of each cell, one bit each
   for (size_t n = 0; n + 1 < first.size(); ++n)
     for (std::int64_t k = first[n]; k < end[n]; ++k)
-      if (const auto f = seen[static_cast<size_t>(k)].facet; f >= 0) outside.push_back({f / 8, f % 8});
-  const auto before = [](const Facet& a, const Facet& b) { return a.cell != b.cell ? a.cell < b.cell : a.facet < b.facet; };
-  std::sort(outside.begin(), outside.end(), before);
+      if (const auto f = seen[static_cast<size_t>(k)].facet; f >= 0)
+        once[static_cast<size_t>(f / 8)] |= static_cast<std::uint8_t>(1 << (f % 8));
+  std::vector<Facet> outside;
+  for (std::int64_t c = 0; c < mesh.n_cells(); ++c)
+    for (std::int64_t f = 0; once[static_cast<size_t>(c)] >> f; ++f)
+      if (once[static_cast<size_t>(c)] >> f & 1) outside.push_back({c, f});
   return outside;
 }
 
@@ -104,7 +122,8 @@ SkinBuilder::SkinBuilder(const Mesh& mesh, std::span<const Facet> facets, std::s
   }
   for (auto& e : facet_edges)
     if (e[0] > e[1]) std::swap(e[0], e[1]);
-  std::sort(facet_edges.begin(), facet_edges.end());
+  sort_by_point(
+      facet_edges, position_.size(), [](const auto& e) { return e[0]; }, std::less<>());
   facet_edges.erase(std::unique(facet_edges.begin(), facet_edges.end()), facet_edges.end());
   find_feature_edges();
   split_at_sharp_edges();
@@ -229,8 +248,9 @@ void SkinBuilder::find_feature_edges() {
       sides.push_back({std::min(a, b), std::max(a, b), f});
     }
   }
-  std::sort(sides.begin(), sides.end(),
-            [](const Side& s, const Side& t) { return std::tie(s.a, s.b, s.face) < std::tie(t.a, t.b, t.face); });
+  sort_by_point(
+      sides, position_.size(), [](const Side& s) { return s.a; },
+      [](const Side& s, const Side& t) { return std::tie(s.b, s.face) < std::tie(t.b, t.face); });
   for (size_t i = 0; i < sides.size();) {
     size_t j = i;
     while (j < sides.size() && sides[j].a == sides[i].a && sides[j].b == sides[i].b) ++j;

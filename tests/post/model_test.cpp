@@ -68,6 +68,51 @@ TEST(Model, things_of_the_scene_are_where_it_says) {
   EXPECT_EQ(found.items[4].above, Vec3(0, 0, 1));
 }
 
+TEST(Model, stops_motors_and_friction_sit_at_their_joint) {
+  const Workplace place;
+  MeshFile file;
+  file.mesh = sample::machine();
+  file.fidelity.assign(file.mesh.region_name.size(), Fidelity::nonlinear);
+  write_mesh(place / "mesh.h5", file.mesh, {"sample"});
+  const std::string more = std::string(scene_text) + R"(
+[[stop]]
+kind = "angle"
+name = "limit"
+joint = "trunnion"
+upper = 0.3
+stiffness = 1e6
+[[motor]]
+kind = "rotary"
+name = "drive"
+joint = "trunnion"
+rate = [0, 100]
+torque = [50, 0]
+[[friction]]
+name = "seal"
+joint = "trunnion"
+coefficient = 0.1
+radius = 0.05
+)";
+  place.write("scene.toml", more);
+  const SceneItems found = scene_items(Scene::load(place / "scene.toml"), &file);
+  const auto item = [&](const std::string& name) {
+    for (const auto& i : found.items)
+      if (i.name == name) return i;
+    return SceneItem{};
+  };
+  for (const auto& [name, glyph, meaning] :
+       {std::tuple{"limit", Glyph::stop, "angle stop"}, std::tuple{"drive", Glyph::turn, "rotary motor"},
+        std::tuple{"seal", Glyph::friction, "friction"}}) {
+    EXPECT_EQ(item(name).glyph, glyph);
+    EXPECT_EQ(item(name).meaning, meaning);
+    EXPECT_EQ(item(name).at, Vec3(0.6, 0, 0.55));
+    EXPECT_EQ(item(name).along, Vec3(0, 1, 0));
+  }
+  const Ran ran = place.run("hilo-post model scene.toml --set motor.drive.joint=truniom -o model.png");
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_NE(ran.err.find("no joint \"truniom\" (did you mean \"trunnion\"?)"), std::string::npos) << ran.err;
+}
+
 TEST(Model, an_ellipsoid_has_the_inertia_of_its_body) {
   const Workplace place;
   place.write("scene.toml",
