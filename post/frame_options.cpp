@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <type_traits>
 
 #include "base/error.hpp"
 #include "post/shown_field.hpp"
@@ -15,43 +16,46 @@ namespace hilo {
 
 void add_frame_options(CLI::App& sub, FrameOptions& o) {
   sub.add_option("run", o.run, "run.h5 of hilo-solve")->required();
-  sub.add_option("--field", o.field,
-                 "von_mises, acceleration, displacement, velocity (or .x .y .z of these), stress.xx, region, fidelity, partition")
+  const auto add = [&](const char* group, const char* name, auto& value, const std::string& meaning) {
+    auto* option = sub.add_option(name, value, meaning)->group(group);
+    if constexpr (requires { value.push_back(std::string()); } && !std::is_same_v<std::decay_t<decltype(value)>, std::string>)
+      option->allow_extra_args(false);
+    return option;
+  };
+  const char *what = "What is drawn", *camera = "Camera", *colours = "Colours and picture";
+  add(what, "--field", o.field,
+      "von_mises, acceleration, displacement, velocity (or .x .y .z of these), stress.xx, region, fidelity, partition")
       ->capture_default_str();
-  sub.add_option("--beside", o.beside, "another run, drawn beside the first at the same instants, camera and colours; may be repeated")
-      ->allow_extra_args(false);
-  sub.add_option("--minus", o.minus, "a run on the same mesh: its field is subtracted, the difference is drawn");
-  sub.add_option("--label", o.label, "caption of each run, in their order; names of the files by default")->allow_extra_args(false);
-  sub.add_option("--camera", o.camera, fmt::format("{}, or x,y,z towards the camera", fmt::join(view_names(), ", ")))
-      ->capture_default_str();
-  sub.add_option("--scale", o.scale, "factor on all displacements")->capture_default_str();
-  sub.add_option("--deformed", o.deformed,
-                 "factor on the deformation alone: what of the displacement is no rigid motion, part by connected part")
-      ->capture_default_str();
-  sub.add_option("--track", o.track, "the camera moves with the centre of this region, set, probe or body");
-  sub.add_option("--ride", o.ride, "the camera moves and turns with it");
-  sub.add_option("--cut", o.cut,
-                 "x=0.1 (y, z) or normal and point, 1,0,1@0,0,0.5: what is before this plane is taken away; positions before the run");
-  sub.add_option("--iso", o.iso, "values in the shown unit, 50,100: surfaces on which the field has them, in a transparent model");
-  sub.add_option("--forces", o.forces, "joints, springs, ... by name or glob: an arrow of their force on b at its point")
-      ->allow_extra_args(false);
-  sub.add_option("--force-scale", o.force_scale,
-                 "force in N of an arrow as long as a tenth of the picture's height; a handy one by default")
+  add(what, "--show", o.show, "regions to draw, by name or glob; all by default");
+  add(what, "--hide", o.hide, "regions not to draw");
+  add(what, "--cut", o.cut,
+      "x=0.1 (y, z) or normal and point, 1,0,1@0,0,0.5: what is before this plane is taken away. The plane is that of the positions before "
+      "the run, the section moves with the material");
+  add(what, "--iso", o.iso, "50,100: surfaces on which the field has these values, in the shown unit, in a transparent model");
+  add(what, "--forces", o.forces, "joints, springs, stops, motors, held sets, by name or glob: an arrow of the force on b at its point");
+  add(what, "--force-scale", o.force_scale, "force in N of an arrow as long as a tenth of the picture's height; a handy one by default")
       ->check(CLI::PositiveNumber);
-  sub.add_option("--trace", o.trace, "a probe, region, set or body whose way is drawn; may be repeated")->allow_extra_args(false);
-  sub.add_option("--range", o.range, "LOW,HIGH of the colours in the shown unit; by default the range over all that is drawn");
-  sub.add_option("--unit", o.unit, "unit shown: MPa, mm, g, ...; a handy one by default");
-  sub.add_option("--colours", o.colours,
-                 "viridis, cividis (both keep their order in grey print), diverging (blue, white, orange, for signs); auto: diverging "
-                 "where values of both signs are drawn")
+  add(what, "--trace", o.trace, "a probe, region, set, body or x,y,z (the nearest node) whose way is drawn");
+  add(what, "--deformed", o.deformed, "factor on deformations: what is no rigid motion, of each connected part by itself")
+      ->capture_default_str();
+  add(what, "--scale", o.scale, "factor on whole displacements")->capture_default_str();
+  add(what, "--edges", o.edges, "none, feature or all")->check(CLI::IsMember({"none", "feature", "all"}))->capture_default_str();
+  add(what, "--beside", o.beside, "another run, drawn beside the first at the same instants, camera and colours");
+  add(what, "--minus", o.minus, "a run on the same mesh: its field is subtracted, the difference is drawn");
+  add(what, "--label", o.label, "caption of each run, in their order; names of the files by default");
+  add(camera, "--camera", o.camera, fmt::format("{}, or x,y,z towards the camera", fmt::join(view_names(), ", ")))->capture_default_str();
+  add(camera, "--zoom", o.zoom, "regions that fill the picture");
+  add(camera, "--track", o.track, "the camera moves with the centre of this region, set, probe or body");
+  add(camera, "--ride", o.ride, "the camera moves and turns with it");
+  add(colours, "--range", o.range, "LOW,HIGH of the colours in the shown unit; by default the range over all that is drawn");
+  add(colours, "--unit", o.unit, "unit shown: MPa, mm, g, ...; a handy one by default");
+  add(colours, "--colours", o.colours,
+      "viridis, cividis (both keep their order in grey print) or diverging (blue, white, orange); auto takes diverging for values of both "
+      "signs")
       ->check(CLI::IsMember({"auto", "viridis", "cividis", "diverging"}))
       ->capture_default_str();
-  sub.add_option("--size", o.size, "size of the picture, WIDTHxHEIGHT")->capture_default_str();
-  sub.add_option("--edges", o.edges, "none, feature or all")->check(CLI::IsMember({"none", "feature", "all"}))->capture_default_str();
-  sub.add_option("--show", o.show, "regions to draw, by name or glob; all by default")->allow_extra_args(false);
-  sub.add_option("--hide", o.hide, "regions not to draw")->allow_extra_args(false);
-  sub.add_option("--zoom", o.zoom, "regions that fill the picture")->allow_extra_args(false);
-  sub.add_option("--title", o.title, "title instead of the scene's");
+  add(colours, "--size", o.size, "size of the picture, WIDTHxHEIGHT; letters grow with it")->capture_default_str();
+  add(colours, "--title", o.title, "title instead of the scene's");
 }
 
 void check(const FrameOptions& o) {

@@ -150,7 +150,9 @@ Command movie_command(CLI::App& app) {
   sub->add_option("--fps", o->fps, "frames in a second")->check(CLI::Range(1.0, 240.0))->capture_default_str();
   sub->add_flag("--outputs", o->outputs, "one frame for each output of the run, nothing between them")->excludes("--speed");
   sub->add_option("--jobs", o->jobs, "processes that draw frames at the same time; one per core by default")->check(CLI::Range(1, 64));
-  example(*sub, "  hilo-post movie run.h5 --field displacement --speed 0.05 -o run.mp4");
+  example(*sub,
+          "  hilo-post movie run.h5 --field displacement --speed 0.05 -o run.mp4\n"
+          "  hilo-post movie run.h5 --field region --track arm --times 0.02:0.06 --size 640x360 -o arm.mp4");
   return {sub, [o] { run(*o); }};
 }
 
