@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "base/error.hpp"
 #include "model/scene.hpp"
+#include "model/scene_toml.hpp"
 #include "post/overlay.hpp"
 #include "post/ticks.hpp"
 
@@ -14,6 +16,22 @@ namespace hilo {
 namespace {
 
 constexpr Rgb joint_colour{0.56, 0.10, 0.44}, spring_colour{0.05, 0.36, 0.36}, held_colour{0.16, 0.30, 0.66};
+
+/// The scene of a run without its histories: their CSV files may be elsewhere by now.
+Scene scene_of(const RunFile& run) {
+  toml::table root = parse_toml(run.store().read_text("/scene"), run.path);
+  const std::function<void(toml::table&)> strip = [&](toml::table& table) {
+    table.erase("history"), table.erase("file");
+    for (auto&& [key, node] : table) {
+      if (auto* inner = node.as_table()) strip(*inner);
+      if (auto* list = node.as_array())
+        for (auto& item : *list)
+          if (auto* inner = item.as_table()) strip(*inner);
+    }
+  };
+  strip(root);
+  return Scene::parse(toml_text(root), run.path);
+}
 
 const Entry* find(const Scene& scene, const std::string& section, const std::string& name) {
   for (const Entry& e : scene.entries(section))
@@ -100,7 +118,7 @@ Vec3 ForceArrow::point(double t, const std::vector<Vec3>& x) const { return b ? 
 std::vector<ForceArrow> force_arrows(RunFile& run, const std::vector<std::string>& globs) {
   std::vector<ForceArrow> arrows;
   if (globs.empty()) return arrows;
-  const Scene scene = Scene::parse(run.store().read_text("/scene"), run.path);
+  const Scene scene = scene_of(run);
   std::vector<std::string> names, taken;
   for (const auto& h : run.series_names())
     for (const char* group : {"joint.", "spring.", "stop.", "motor.", "friction.", "motion."})

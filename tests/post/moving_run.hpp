@@ -77,6 +77,14 @@ b = "tip"
 at_a = [4, 0.25, -3]
 at_b = [4, 0.25, 0.25]
 stiffness = 1
+[history.gone]
+file = "gone.csv"
+[[load]]
+kind = "force"
+name = "push"
+on = "tip"
+force = [1, 0, 0]
+history = "gone"
 [time]
 end = 1
 step = 0.1
