@@ -94,7 +94,9 @@ void run(Options o) {
   width += width % 2, height += height % 2;  // 4:2:0 has colours for pairs of pixels
   o.size = fmt::format("{}x{}", width, height);
   Frames frames(o);
-  const auto [from, to] = parse_times(o.times, frames.common_times());
+  const auto all = frames.common_times();
+  if (!(all.second > all.first)) throw Error(o.run, "has a single output: nothing moves", "see output.interval of the scene");
+  const auto [from, to] = parse_times(o.times, all);
   std::vector<double> times, outputs;
   const double slack = 1e-9 * (to - from);
   for (const Step& s : frames.run().steps)

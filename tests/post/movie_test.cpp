@@ -84,6 +84,9 @@ TEST(Movie, that_fails_or_is_stopped_leaves_nothing) {
     EXPECT_EQ(ran.exit, f.exit) << f.rest << ran.err;
     EXPECT_NE(ran.err.find(f.text), std::string::npos) << ran.err;
   }
+  const Workplace still;
+  sample::write_run(still.path(), sample::cube(1), 1, true, {1, 5e-4});  // ends where it starts
+  EXPECT_NE(post(still, "movie run.h5 -o run.mp4").err.find("run.h5: has a single output: nothing moves"), std::string::npos);
   EXPECT_NE(post(own, "movie run.h5 -o run.avi").err.find("run.avi: movies are MP4"), std::string::npos);
   const Ran killed = own.run("timeout -s TERM 1 hilo-post movie run.h5 --speed 1e-4 -o stopped.mp4");
   EXPECT_NE(killed.exit, 0);
