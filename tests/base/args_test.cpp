@@ -88,6 +88,13 @@ TEST(Args, ManPageHasEveryOptionOfEveryCommand) {
     EXPECT_NE(page.find(text), std::string::npos) << text << "\n" << page;
 }
 
+TEST(Args, MarkdownPageHasARowForEveryOptionOfEveryCommand) {
+  const std::string page = Tool().printed({"--markdown"});
+  for (const char* text :
+       {"# hilo-saw\n", "| `-b, --blade", "number of the blade", "## hilo-saw cut\n", "| `--depth", "hilo-saw cut log.h5 --depth 0.1\n```"})
+    EXPECT_NE(page.find(text), std::string::npos) << text << "\n" << page;
+}
+
 TEST(Args, CompletionOffersTheOptionsOfTheCommandInUse) {
   const std::string script = Tool().printed({"--completion"});
   const auto offered = [&](const std::string& words) {
