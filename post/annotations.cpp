@@ -7,7 +7,6 @@
 #include <functional>
 
 #include "base/error.hpp"
-#include "model/scene.hpp"
 #include "model/scene_toml.hpp"
 #include "post/overlay.hpp"
 #include "post/ticks.hpp"
@@ -16,22 +15,6 @@ namespace hilo {
 namespace {
 
 constexpr Rgb joint_colour{0.56, 0.10, 0.44}, spring_colour{0.05, 0.36, 0.36}, held_colour{0.16, 0.30, 0.66};
-
-/// The scene of a run without its histories: their CSV files may be elsewhere by now.
-Scene scene_of(const RunFile& run) {
-  toml::table root = parse_toml(run.store().read_text("/scene"), run.path);
-  const std::function<void(toml::table&)> strip = [&](toml::table& table) {
-    table.erase("history"), table.erase("file");
-    for (auto&& [key, node] : table) {
-      if (auto* inner = node.as_table()) strip(*inner);
-      if (auto* list = node.as_array())
-        for (auto& item : *list)
-          if (auto* inner = item.as_table()) strip(*inner);
-    }
-  };
-  strip(root);
-  return Scene::parse(toml_text(root), run.path);
-}
 
 const Entry* find(const Scene& scene, const std::string& section, const std::string& name) {
   for (const Entry& e : scene.entries(section))
@@ -107,6 +90,21 @@ void outlined_arrow(Painter& p, const Vec2& a, const Vec2& b, const Rgb& colour)
 
 }  // namespace
 
+Scene scene_of(const RunFile& run) {
+  toml::table root = parse_toml(run.store().read_text("/scene"), run.path);
+  const std::function<void(toml::table&)> strip = [&](toml::table& table) {
+    table.erase("history"), table.erase("file");
+    for (auto&& [key, node] : table) {
+      if (auto* inner = node.as_table()) strip(*inner);
+      if (auto* list = node.as_array())
+        for (auto& item : *list)
+          if (auto* inner = item.as_table()) strip(*inner);
+    }
+  };
+  strip(root);
+  return Scene::parse(toml_text(root), run.path);
+}
+
 Vec3 ForceArrow::force(double t, const std::vector<Vec3>& x) const {
   const auto row = at_time(history, t);
   const Mat3 R = a ? a->pose(t, x).R : Mat3::Identity();
@@ -174,13 +172,14 @@ void Annotations::draw(Painter& p, const Projection& project, const Box& box, do
     const auto& x = playback.positions(t);
     for (const ForceArrow& f : arrows_) {
       const Vec3 force = f.force(t, x), at = f.point(t, x);
+      if (force.norm() == 0) continue;  // a moment alone, or none
       const Vec2 from = project(drawn.back(at)), to = project(drawn.back(at + metres * force));
       if ((to - from).norm() < 2 * p.scale) {
         p.disc(from, 4.5 * p.scale, white), p.disc(from, 3 * p.scale, f.colour);
       } else {
         outlined_arrow(p, from, to, f.colour);
       }
-      if (force.norm() * metres > 0) labels.push_back({to, fmt::format("{} {}", f.name, force_text(force.norm())), f.colour});
+      labels.push_back({to, fmt::format("{} {}", f.name, force_text(force.norm())), f.colour});
     }
   }
   draw_labels(p, labels, box, 14);

@@ -4,11 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "model/scene.hpp"
 #include "post/follower.hpp"
 #include "post/frame_options.hpp"
 #include "post/glyphs.hpp"
 
 namespace hilo {
+
+/// The scene of a run without its histories: their CSV files may be elsewhere by now.
+Scene scene_of(const RunFile& run);
 
 /// The force of one joint, spring, stop, motor, friction or held set: history, and what turns and carries it.
 struct ForceArrow {

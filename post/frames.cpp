@@ -53,10 +53,14 @@ std::vector<Box> divided(const Box& whole, size_t n, bool row, double gap, doubl
 }  // namespace
 
 Frames::Frames(const FrameOptions& o) : o_(o) {
-  check(o);
+  if (o_.field == "von_mises" && !RunFile(o.run).has_mesh()) {
+    warn(o.run, "bodies without a mesh have no stress: drawn by their names");
+    o_.field = "region";
+  }
+  check(o_);
   std::vector<std::string> paths{o.run};
   paths.insert(paths.end(), o.beside.begin(), o.beside.end());
-  for (const auto& path : paths) views_.push_back(std::make_unique<RunView>(o, path));
+  for (const auto& path : paths) views_.push_back(std::make_unique<RunView>(o_, path));
   title_ = views_.front()->run().title;
   captions_ = distinct_names(paths);
   std::copy(o.label.begin(), o.label.end(), captions_.begin());

@@ -35,7 +35,7 @@ class Frames {
   void surround(Painter& p, double t) const;
   void annotate(Painter& p, double t) const;
 
-  const FrameOptions& o_;
+  FrameOptions o_;
   std::vector<std::unique_ptr<RunView>> views_;
   std::vector<std::string> captions_;
   std::string title_, difference_;  // "soft minus stiff"

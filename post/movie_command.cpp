@@ -97,10 +97,13 @@ void run(Options o) {
   const auto all = frames.common_times();
   if (!(all.second > all.first)) throw Error(o.run, "has a single output: nothing moves", "see output.interval of the scene");
   const auto [from, to] = parse_times(o.times, all);
-  std::vector<double> times, outputs;
+  std::vector<double> times, outputs, seen;
   const double slack = 1e-9 * (to - from);
   for (const Step& s : frames.run().steps)
     if (s.t >= from - slack && s.t <= to + slack) outputs.push_back(s.t);
+  if (!frames.run().has_mesh())  // a row for each step is more than the frame of the picture needs
+    for (size_t k = 0, n = outputs.size() / 400 + 1; n > 1 && k < outputs.size(); ++k)
+      if (k * n < outputs.size()) seen.push_back(outputs[k * n]);
   std::string remark;
   if (o.outputs) {
     times = outputs;
@@ -112,6 +115,7 @@ void run(Options o) {
     remark = ", " + speed_text(o.speed);
   }
   if (times.empty()) throw Error("--times", "holds no output of the run", "without --outputs frames between them are made", Exit::input);
+  if (!seen.empty()) outputs = seen;
   if (outputs.empty() || outputs.front() > from + slack) outputs.insert(outputs.begin(), from);
   if (outputs.back() < to - slack) outputs.push_back(to);
   frames.survey(outputs);

@@ -54,8 +54,7 @@ RunFile::Field Playback::linear(const Between& at, const std::string& array) {
 
 RunFile::Field Playback::field(double t, const std::string& array) {
   const Between at = between(t);
-  const auto has = [&](const char* name) { return run_.store().has("/field/" + run_.steps[at.a].key + "/" + name); };
-  if (array != "displacement" || at.a == at.b || !has("velocity")) return linear(at, array);
+  if (array != "displacement" || at.a == at.b || !run_.has_field(run_.steps[at.a], "velocity")) return linear(at, array);
   const double w = at.w, h = run_.steps[at.b].t - run_.steps[at.a].t;
   const double p0 = (1 + 2 * w) * (1 - w) * (1 - w), p1 = w * w * (3 - 2 * w), m0 = h * w * (1 - w) * (1 - w), m1 = h * w * w * (w - 1);
   RunFile::Field f = stored(at.a, array);
@@ -71,7 +70,7 @@ const std::vector<Vec3>& Playback::positions(double t) {
   const Between at = between(t);
   x_ = mesh_.X;
   x_time_ = t;
-  if (!run_.store().has("/field/" + run_.steps[at.a].key + "/displacement")) return x_;
+  if (!run_.has_field(run_.steps[at.a], "displacement")) return x_;
   const auto u = field(t, "displacement").value;
   for (size_t n = 0; n < x_.size(); ++n) x_[n] += Vec3(u[3 * n], u[3 * n + 1], u[3 * n + 2]);
   return x_;

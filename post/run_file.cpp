@@ -80,16 +80,24 @@ const MeshFile& RunFile::mesh_file() {
 void RunFile::close() { store_.reset(); }
 void RunFile::open() { store_ = Store::open(path); }
 
-std::vector<std::string> RunFile::fields(const Step& step) const { return store_->list("/field/" + step.key); }
+std::vector<std::string> RunFile::fields(const Step& step) const {
+  if (!bodies_.empty()) return {"displacement"};
+  return store_->list("/field/" + step.key);
+}
+
+bool RunFile::has_field(const Step& step, const std::string& name) const {
+  return bodies_.empty() ? store_->has("/field/" + step.key + "/" + name) : name == "displacement";
+}
 
 RunFile::Field RunFile::field(const Step& step, const std::string& name) const {
   const std::string array = fmt::format("/field/{}/{}", step.key, name);
   const auto names = fields(step);
-  if (!store_->has(array)) {
+  if (!has_field(step, name)) {
     std::string hint = suggest(name, names);
     if (hint.empty()) hint = fmt::format("there are {}", fmt::join(names, ", "));
     throw Error(path, fmt::format("no field \"{}\" in step {}", name, step.key), hint);
   }
+  if (!bodies_.empty()) return bodies_displacement(step);
   const auto shape = store_->shape(array);
   return {store_->read<double>(array), shape.size() > 1 ? static_cast<int>(shape[1]) : 1};
 }

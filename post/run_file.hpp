@@ -40,6 +40,9 @@ class RunFile {
   /// Mesh with the fidelity it was run at and the ranks of a parallel run; read at the first call.  Error for a scene of bodies alone.
   const MeshFile& mesh_file();
   const Mesh& mesh() { return mesh_file().mesh; }
+  /// For a scene of bodies alone: ellipsoids of their inertia stand for a mesh, a region each, and the rows of the histories for outputs of
+  /// displacements.  Nothing changes where there is a mesh.
+  void stand_in_bodies();
   bool has_mesh() const { return store_->linked("/mesh") || store_->has("/mesh"); }
 
   /// A nodal or cell field of a step and its number of columns; Error with the names there are.
@@ -49,6 +52,7 @@ class RunFile {
   };
   Field field(const Step& step, const std::string& name) const;
   std::vector<std::string> fields(const Step& step) const;
+  bool has_field(const Step& step, const std::string& name) const;
   /// Steps by "all", "first", "last" or numbers "0,5,10"; by times "0.01,0.02" the nearest ones.
   std::vector<Step> select_steps(const std::string& numbers, const std::string& times) const;
 
@@ -65,6 +69,13 @@ class RunFile {
  private:
   std::optional<Store> store_;
   std::optional<MeshFile> mesh_;
+  struct Body {
+    std::vector<Vec3> X;  // reference points
+    Series way;           // of these points
+    size_t first, last;   // its nodes
+  };
+  Field bodies_displacement(const Step& step) const;
+  std::vector<Body> bodies_;  // that stand in for a mesh
 };
 
 /// Does a name match a glob (* ? [abc])?

@@ -27,10 +27,16 @@ void same_mesh(const Mesh& a, const Mesh& b, const std::string& path_a, const st
     throw Error(path_b, fmt::format("its cells join other nodes than those of {}", path_a), hint);
 }
 
+RunFile opened(const std::string& path) {
+  RunFile run(path);
+  run.stand_in_bodies();
+  return run;
+}
+
 }  // namespace
 
 RunView::RunView(const FrameOptions& o, const std::string& path)
-    : o_(o), run_(path), file_(run_.mesh_file()), mesh_(file_.mesh), playback_(std::make_unique<Playback>(run_)) {
+    : o_(o), run_(opened(path)), file_(run_.mesh_file()), mesh_(file_.mesh), playback_(std::make_unique<Playback>(run_)) {
   shown_ = shown_regions(mesh_, o.show, o.hide);
   zoomed_ = o.zoom.empty() ? shown_ : shown_regions(mesh_, o.zoom, o.hide);
   valued_ = shown_;
@@ -220,7 +226,7 @@ void RunView::stage(vtkRenderer* stage, const Look& look, double scale, double h
   if (!toned_->empty()) add_skin(stage, *toned_, own);
   for (const Skin* skin : {coloured_.get(), toned_.get()}) {
     if (o_.edges == "all") add_grid(stage, *skin, scale, 0.35, pixels_per_metre(stage, height));
-    if (o_.edges != "none") add_lines(stage, skin->feature_edges(), {0.1, 0.1, 0.12}, 1.3 * scale, glass ? 0.35 : 0.8);
+    if (o_.edges != "none" && run_.has_mesh()) add_lines(stage, skin->feature_edges(), {0.1, 0.1, 0.12}, 1.3 * scale, glass ? 0.35 : 0.8);
   }
 }
 

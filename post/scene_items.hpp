@@ -9,7 +9,25 @@
 
 namespace hilo {
 
-enum class Glyph { ball, hinge, slider, block, link, coil, spiral, bushing, ground, arrow, turn, clamp, triad, cross, mass, stop, friction };
+enum class Glyph {
+  ball,
+  hinge,
+  slider,
+  block,
+  link,
+  coil,
+  spiral,
+  bushing,
+  ground,
+  arrow,
+  turn,
+  clamp,
+  triad,
+  cross,
+  mass,
+  stop,
+  friction
+};
 
 struct SceneItem {
   Glyph glyph = Glyph::ball;

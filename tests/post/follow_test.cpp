@@ -148,5 +148,44 @@ TEST(Forces, are_drawn_from_the_point_in_their_direction_with_a_scale) {
   EXPECT_GT(p.ink(150, 680, 180, 690), 0.2);  // the scale
 }
 
+TEST(Bodies, without_a_mesh_fall_as_they_should_and_are_drawn) {
+  const Workplace place;
+  place.write("scene.toml", R"(
+gravity = [0, 0, -10]
+[[body]]
+name = "ball"
+mass = 5
+com = [1, 2, 3]
+inertia = [0.5, 0.4, 0.3]
+[[body]]
+name = "stone"
+mass = 1
+com = [0, 0, 0]
+inertia = [1e-3, 1e-3, 1e-3]
+[time]
+end = 0.5
+step = 0.01
+)");
+  ASSERT_EQ(place.run("hilo-solve --quiet scene.toml -o run.h5").exit, 0);
+  RunFile run(place / "run.h5");
+  EXPECT_FALSE(run.has_mesh());
+  run.stand_in_bodies();
+  ASSERT_EQ(run.steps.size(), 51u);
+  Playback playback(run);
+  const auto& x = playback.positions(0.3);
+  const Vec3 fall(0, 0, -10 * 0.3 * 0.3 / 2);  // exact for a mid-point method
+  for (size_t n = 0; n < x.size(); ++n) EXPECT_LT((x[n] - run.mesh().X[n] - fall).norm(), 1e-12);
+  EXPECT_LT((Follower(run, "ball", "--track").pose(0.3, x).to - Follower(run, "ball", "--track").reference() - fall).norm(), 1e-12);
+  double far = 0;  // the ellipsoid of this inertia: J_x + J_y - J_z = 2/5 m r_z^2
+  for (const Vec3& X : run.mesh().X) far = std::max(far, X.z() - 3);
+  EXPECT_NEAR(far, std::sqrt(2.5 * (0.5 + 0.4 - 0.3) / 5), 1e-9);
+  const Ran ran = place.run("hilo-post render run.h5 --field displacement --times 0.3 --size 320x180 -o b.png");
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_GT(PictureFile(place / "b.png").ink(20, 25, 260, 160), 0.02);
+  const Ran movie = place.run("hilo-post movie run.h5 --fps 5 --size 320x180 --speed 0.5 -o b.mp4");
+  EXPECT_EQ(movie.exit, 0) << movie.err;
+  EXPECT_NE(movie.err.find("warning: run.h5: bodies without a mesh have no stress: drawn by their names"), std::string::npos) << movie.err;
+}
+
 }  // namespace
 }  // namespace hilo::test
