@@ -96,6 +96,15 @@ void IncompleteCholesky::factor(Mat F) {
   check(MatRestoreRowIJ(F, 0, PETSC_FALSE, PETSC_TRUE, &n, &ia, &ja, &done));
 }
 
+/// (sum of p, sum of q, sum of r, 0)
+static IncompleteCholesky::Lane sums(IncompleteCholesky::Lane p, IncompleteCholesky::Lane q, IncompleteCholesky::Lane r) {
+  using Lane = IncompleteCholesky::Lane;
+  constexpr Lane zero{};
+  const Lane pq = __builtin_shufflevector(p, q, 0, 4, 1, 5) + __builtin_shufflevector(p, q, 2, 6, 3, 7);
+  const Lane rz = __builtin_shufflevector(r, zero, 0, 4, 1, 5) + __builtin_shufflevector(r, zero, 2, 6, 3, 7);
+  return __builtin_shufflevector(pq, rz, 0, 1, 4, 5) + __builtin_shufflevector(pq, rz, 2, 3, 6, 7);
+}
+
 void IncompleteCholesky::solve(const double* b, double* x) {
   const size_t n = row_.size();
   double largest = 0;  // within the range of single precision
@@ -116,8 +125,7 @@ void IncompleteCholesky::solve(const double* b, double* x) {
   for (size_t i = n; i-- > 0;) {
     const Lane y = work_[i];
     for (size_t e = start_[i]; e < start_[i + 1]; ++e) {
-      const Lane p = L_[e].c[0] * y, q = L_[e].c[1] * y, r = L_[e].c[2] * y;
-      work_[column_[e]] -= Lane{p[0] + p[1] + p[2], q[0] + q[1] + q[2], r[0] + r[1] + r[2], 0};
+      work_[column_[e]] -= sums(L_[e].c[0] * y, L_[e].c[1] * y, L_[e].c[2] * y);
     }
     double* v = x + 3 * row_[i];
     for (int c = 0; c < 3; ++c) v[c] = largest * y[c];

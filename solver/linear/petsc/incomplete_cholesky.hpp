@@ -19,8 +19,9 @@ class IncompleteCholesky {
   void solve(const double* b, double* x);
   double bytes() const { return 4. * static_cast<double>(L_.size() + inverse_.size()) + 4. * static_cast<double>(column_.size()); }
 
- private:
   using Lane = float __attribute__((vector_size(16)));  // a column of three, padded
+
+ private:
   struct Block {
     Lane c[3];
   };
