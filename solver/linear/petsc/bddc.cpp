@@ -104,7 +104,6 @@ class Bddc final : public FlexibleInverse {
     if (is_adaptive_ || (!failed && iterations <= too_many)) return false;
     return is_adaptive_ = true;
   }
-  bool is_dear() const override { return true; }
   int most_iterations() const override { return is_adaptive_ ? 150 : 60; }
   std::string name() const override { return is_adaptive_ ? "adaptive BDDC" : "BDDC"; }
   double bytes() const override {

@@ -66,7 +66,6 @@ class Deflated final : public FlexibleInverse {
   }
 
   bool strengthen(int iterations, bool failed) override { return inner_->strengthen(iterations, failed); }
-  bool is_dear() const override { return inner_->is_dear(); }
   bool is_iterative() const override { return inner_->is_iterative(); }
   bool has_failed() const override { return inner_->has_failed(); }
   int most_iterations() const override { return inner_->most_iterations(); }

@@ -66,7 +66,6 @@ class FetiDp final : public FlexibleInverse {
   }
 
   bool strengthen(int, bool) override { return false; }
-  bool is_dear() const override { return true; }
   bool is_iterative() const override { return true; }
   bool has_failed() const override { return failed_; }
   int most_iterations() const override { return 10; }

@@ -34,8 +34,6 @@ class FlexibleInverse {
   virtual void apply(Vec b, Vec x) = 0;
   /// After a solve of so many iterations, or one that failed: whether a stronger kind takes over.
   virtual bool strengthen(int iterations, bool failed) = 0;
-  /// Does a set-up cost many iterations?  Then it serves several solves.
-  virtual bool is_dear() const { return false; }
   /// Is one application itself iterative, so that it differs a little from a linear operator?
   virtual bool is_iterative() const { return false; }
   /// Has an application failed since the set-up?  The same on all ranks.

@@ -81,10 +81,11 @@ class IterativeSolver final : public KktSolver {
     check(VecSet(x_, 0));
     SolveReport report;
     int before = 0;
-    const bool lagged = ready_ && inverse_->is_dear();
+    const double decades = -std::log10(wanted_);
+    const bool lagged = ready_;
     if (lagged) {  // the preconditioner of a matrix before serves while it is not much worse than it was for its own
-      report = attempt(2 * fresh_iterations_ + 10);
-      ready_ = report.ok && report.iterations <= fresh_iterations_ + fresh_iterations_ / 2 + 5;
+      report = attempt(static_cast<int>(2 * rate_ * decades) + 10);
+      ready_ = report.ok && report.iterations <= 1.5 * rate_ * decades + 5;
       before = report.iterations;
     }
     if (!lagged || !report.ok) {
@@ -97,10 +98,10 @@ class IterativeSolver final : public KktSolver {
         report = set_up_and_attempt();
       }
       if (stronger) ready_ = false;  // at the next solve
-      fresh_iterations_ = report.iterations;
+      rate_ = report.iterations / decades;
       report.iterations += before;
     }
-    if (!report.ok && inverse_->is_dear()) {
+    if (!report.ok && kind_ != Kind::algebraic) {
       if (rank() == 0)
         warn("", fmt::format("{} fails ({}): the flexible part may be unstable or held by nothing; direct from here on", name(),
                              report.message));
@@ -377,7 +378,8 @@ class IterativeSolver final : public KktSolver {
   int subdomains_ = 1;             // of this rank
   double set_up_seconds_ = 0;
   bool ready_ = false;  // the preconditioner is of a matrix that it solved
-  int fresh_iterations_ = 0, m_ = 0, restart_ = 100;
+  double rate_ = 0;     // iterations a decade, when it was fresh
+  int m_ = 0, restart_ = 100;
   size_t n_flexible_ = 0, n_all_ = 0;  // owned unknowns
   const Cliques* cliques_ = nullptr;
   const BlockMap* map_ = nullptr;
