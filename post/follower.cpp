@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "base/error.hpp"
+#include "post/annotations.hpp"
 
 namespace hilo {
 
@@ -53,15 +54,20 @@ Follower::Follower(RunFile& run, const std::string& name, const std::string& opt
     const auto at = static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin());
     const auto points = run.store().read<double>("/body/points");
     for (size_t k = 0; at < names.size() && k < 4; ++k) body_.emplace_back(&points[12 * at + 3 * k]);
+  } else if (has("sensor." + name)) {
+    const Scene scene = scene_of(run);
+    for (const Entry& e : scene.entries("sensor"))
+      if (e.name == name) *this = Follower(run, e.text("on"), option);
+    return;
   } else if (std::sscanf(name.c_str(), "%lf,%lf,%lf%c", &p.x(), &p.y(), &p.z(), &rest) == 3) {
     const auto nearer = [&](const Vec3& a, const Vec3& b) { return (a - p).squaredNorm() < (b - p).squaredNorm(); };
     nodes_ = {std::min_element(mesh_->X.begin(), mesh_->X.end(), nearer) - mesh_->X.begin()};
   } else {
     for (const auto& h : histories)
-      for (const char* group : {"probe.", "body."})
+      for (const char* group : {"probe.", "sensor.", "body."})
         if (h.starts_with(group)) known.push_back(h.substr(std::string(group).size()));
     const std::string hint = suggest(name, known);
-    throw Error(option, fmt::format("no region, set, probe or body \"{}\"", name),
+    throw Error(option, fmt::format("no region, set, probe, sensor or body \"{}\"", name),
                 hint.empty() ? "or x,y,z for the node that is nearest" : hint);
   }
   if (!nodes_.empty())

@@ -1,4 +1,4 @@
-// Where something named of a run is and how it is turned: a region, a set, a probe, a body without a mesh, or a point.
+// Where something named of a run is and how it is turned: a region, a set, a probe, a sensor, a body, or a point.
 #pragma once
 #include <optional>
 #include <string>
@@ -21,7 +21,7 @@ Pose best_pose(const std::vector<Vec3>& X, const std::vector<Vec3>& x);
 
 class Follower {
  public:
-  /// `name` is that of a region, set, probe or body, or "x,y,z" for the nearest node.  Error at `option`, with a suggestion.
+  /// `name` is that of a region, set, probe, sensor or body, or "x,y,z" for the nearest node.  Error at `option`, with a suggestion.
   Follower(RunFile& run, const std::string& name, const std::string& option);
 
   /// Pose at a time, given the positions of the nodes then.

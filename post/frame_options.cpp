@@ -35,7 +35,7 @@ void add_frame_options(CLI::App& sub, FrameOptions& o) {
   add(what, "--forces", o.forces, "joints, springs, stops, motors, held sets, by name or glob: an arrow of the force on b at its point");
   add(what, "--force-scale", o.force_scale, "force in N of an arrow as long as a tenth of the picture's height; a handy one by default")
       ->check(CLI::PositiveNumber);
-  add(what, "--trace", o.trace, "a probe, region, set, body or x,y,z (the nearest node) whose way is drawn");
+  add(what, "--trace", o.trace, "a probe, sensor, region, set, body or x,y,z (the nearest node) whose way is drawn");
   add(what, "--deformed", o.deformed, "factor on deformations: what is no rigid motion, of each connected part by itself")
       ->capture_default_str();
   add(what, "--scale", o.scale, "factor on whole displacements")->capture_default_str();
@@ -45,7 +45,7 @@ void add_frame_options(CLI::App& sub, FrameOptions& o) {
   add(what, "--label", o.label, "caption of each run, in their order; names of the files by default");
   add(camera, "--camera", o.camera, fmt::format("{}, or x,y,z towards the camera", fmt::join(view_names(), ", ")))->capture_default_str();
   add(camera, "--zoom", o.zoom, "regions that fill the picture");
-  add(camera, "--track", o.track, "the camera moves with the centre of this region, set, probe or body");
+  add(camera, "--track", o.track, "the camera moves with the centre of this region, set, probe, sensor or body");
   add(camera, "--ride", o.ride, "the camera moves and turns with it");
   add(colours, "--range", o.range, "LOW,HIGH of the colours in the shown unit; by default the range over all that is drawn");
   add(colours, "--unit", o.unit, "unit shown: MPa, mm, g, ...; a handy one by default");

@@ -78,6 +78,9 @@ struct Children {
 };
 
 [[noreturn]] void work(int to, size_t first, size_t stride, size_t n, const std::function<std::function<std::string(size_t)>()>& start) {
+  // Mesa's rasterizer shares the cores among the processes instead of taking them all in each.
+  const size_t threads = std::max<size_t>(1, std::thread::hardware_concurrency() / stride);
+  ::setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 0);
   try {
     const auto make = start();
     for (size_t k = first; k < n; k += stride) send(to, 'r', make(k));

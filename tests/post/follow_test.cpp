@@ -48,8 +48,8 @@ TEST(Track, names_that_are_not_there_get_a_suggestion) {
     int exit;
   };
   for (const Fault& f :
-       {Fault{"--track arn", "--track: no region, set, probe or body \"arn\" (did you mean \"arm\"?)", 2},
-        Fault{"--trace ent", "--trace: no region, set, probe or body \"ent\" (did you mean \"end\"?)", 2},
+       {Fault{"--track arn", "--track: no region, set, probe, sensor or body \"arn\" (did you mean \"arm\"?)", 2},
+        Fault{"--trace ent", "--trace: no region, set, probe, sensor or body \"ent\" (did you mean \"end\"?)", 2},
         Fault{"--forces pim", "--forces: no joint or spring \"pim\" (did you mean \"pin\"?)", 2},
         Fault{"--ride arm --track arm", "take one", 1}, Fault{"--scale 2 --trace tip", "take --scale or --deformed away", 1},
         Fault{"--scale 2 --deformed 2", "take one", 1}}) {
@@ -85,7 +85,7 @@ TEST(Deformed, enlarges_what_is_no_rigid_motion) {
   EXPECT_NEAR(stretched.second.y() - stretched.first.y(), 0.5, 1e-9);
 }
 
-TEST(Follower, finds_the_pose_of_regions_sets_probes_and_points) {
+TEST(Follower, finds_the_pose_of_regions_sets_probes_sensors_and_points) {
   const Workplace place;
   RunFile run(write_moving_run(place, spin, 3));
   Playback playback(run);
@@ -97,6 +97,7 @@ TEST(Follower, finds_the_pose_of_regions_sets_probes_and_points) {
     EXPECT_LT((arm.back(spin({3, 1, 2}, t)) - Vec3(3, 1, 2)).norm(), 1e-12);
     EXPECT_LT((Follower(run, "tip", "--track").pose(t, x).to - spin({4, 0.25, 0.25}, t)).norm(), 1e-12);
     EXPECT_LT((Follower(run, "end", "--track").pose(t, x).to - spin({4, 0.25, 0.25}, t)).norm(), 1e-12);
+    EXPECT_LT((Follower(run, "eye", "--track").pose(t, x).to - spin({4, 0.25, 0.25}, t)).norm(), 1e-12);
     EXPECT_LT((Follower(run, "3.9,0.1,0.1", "--track").pose(t, x).to - spin({4, 0, 0}, t)).norm(), 1e-12);
   }
   // The way of the probe has a point for each of its rows, that of the set one for each output; both end where the point is.

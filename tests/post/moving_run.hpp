@@ -77,6 +77,9 @@ b = "tip"
 at_a = [4, 0.25, -3]
 at_b = [4, 0.25, 0.25]
 stiffness = 1
+[[sensor]]
+name = "eye"
+on = "tip"
 [history.gone]
 file = "gone.csv"
 [[load]]
@@ -91,6 +94,7 @@ step = 0.1
 )");
   run.start_rows<double>("/history/t", {}, "s");
   for (const char* name : {"joint/pin", "spring/pull"}) run.start_rows<double>(std::string("/history/") + name, {6}, "N, N m");
+  run.start_rows<double>("/history/sensor/eye", {3}, "1");
   run.start_rows<double>("/history/probe/end", {9}, "m, m/s, m/s^2");
   for (int k = 0; k <= 10 * steps; ++k) {
     const double t = 0.1 * k;
@@ -98,6 +102,7 @@ step = 0.1
     run.append<double>("/history/t", std::array{t});
     run.append<double>("/history/joint/pin", std::array{5., 0., 0., 0., 0., 1.});
     run.append<double>("/history/spring/pull", std::array{0., 0., -40., 0., 0., 0.});
+    run.append<double>("/history/sensor/eye", std::array{0., 0., 1.});
     run.append<double>("/history/probe/end", std::array{p.x(), p.y(), p.z(), 0., 0., 0., 0., 0., 0.});
   }
   for (int k = 0; k <= steps; ++k) {
