@@ -205,8 +205,10 @@ void Frames::surround(Painter& p, double t) const {
     p.text({b.x + 8 * p.scale, y}, captions_[i], 16, Across::left, Up::middle, ink, true);
     if (by_names() || seen_[i].empty()) continue;
     const double after = p.extent(captions_[i] + "   ", 16, true).x();
-    p.text({b.x + 8 * p.scale + after, y}, fmt::format("max {} {}", short_number(seen_[i].high), bar_.unit), 16, Across::left, Up::middle,
-           {0.33, 0.34, 0.36});
+    const Extent& e = seen_[i];
+    const std::string told = bar_.low < 0 ? fmt::format("{} to {} {}", short_number(e.low), short_number(e.high), bar_.unit)
+                                          : fmt::format("max {} {}", short_number(e.high), bar_.unit);
+    p.text({b.x + 8 * p.scale + after, y}, told, 16, Across::left, Up::middle, {0.33, 0.34, 0.36});
   }
   if (!by_names()) {
     ColourBar bar = bar_;
