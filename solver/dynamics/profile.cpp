@@ -55,6 +55,7 @@ Profile::Profile(const Comm& comm, const KktSolver& solver, double began, const 
   rows[3] = row("output", p.output, fmt::format("{} records", p.records));
   rows[4] = row("rest", rest, "");
   rows[5] = row("all", {all, everything}, "");
+  undivided_seconds = comm.max(solver.undivided_seconds());
   solver_bytes = comm.max(solver.bytes());
   std::error_code ignored;
   const auto size = std::filesystem::file_size(results, ignored);
@@ -68,8 +69,9 @@ std::string Profile::json() const {
         "{}    \"{}\": {{\"seconds\": {:.6g}, \"imbalance\": {:.4g}, \"messages\": {:.0f}, \"collectives\": {:.0f}, \"bytes_sent\": "
         "{:.0f}}}",
         out.empty() ? "" : ",\n", r.name, r.seconds, r.imbalance, r.messages, r.collectives, r.bytes);
-  return fmt::format("  \"profile\": {{\n{}\n  }},\n  \"solver_bytes\": {:.0f},\n  \"result_bytes\": {:.0f},\n", out, solver_bytes,
-                     result_bytes);
+  return fmt::format(
+      "  \"profile\": {{\n{}\n  }},\n  \"undivided_seconds\": {:.6g},\n  \"solver_bytes\": {:.0f},\n  \"result_bytes\": {:.0f},\n", out,
+      undivided_seconds, solver_bytes, result_bytes);
 }
 
 std::string Profile::text() const {

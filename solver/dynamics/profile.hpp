@@ -46,6 +46,7 @@ struct Profile {
     std::string count;                     // "12 evaluations, 4 tangents"
   };
   std::array<Row, 6> rows;                    // assembly, set-up, solve (without it), output, rest, all
+  double undivided_seconds = 0;               // coarse problems, which every rank solves whole: largest
   double solver_bytes = 0, result_bytes = 0;  // matrix and factors of the rank with most; results file
   /// Collective: every rank takes part.
   Profile(const Comm& comm, const KktSolver& solver, double began, const std::string& results);

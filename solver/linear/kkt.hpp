@@ -61,6 +61,8 @@ class KktSolver {
   virtual std::string name() const = 0;
   /// Seconds so far that went into factors and preconditioners.
   virtual double set_up_seconds() const { return 0; }
+  /// Seconds so far of what every rank does for itself because it is not divided among them: coarse problems.
+  virtual double undivided_seconds() const { return 0; }
   /// Memory of the matrix and its factors on this rank, where known.
   virtual double bytes() const { return 0; }
 };

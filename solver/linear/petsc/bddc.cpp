@@ -16,6 +16,7 @@
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
 
+#include "base/stopwatch.hpp"
 #include "linear/petsc/class_matrices.hpp"
 #include "linear/petsc/interface.hpp"
 #include "linear/petsc/solver.hpp"
@@ -105,6 +106,7 @@ class Bddc final : public FlexibleInverse {
     return is_adaptive_ = true;
   }
   int most_iterations() const override { return is_adaptive_ ? 150 : 60; }
+  double undivided_seconds() const override { return coarse_seconds_; }
   std::string name() const override { return is_adaptive_ ? "adaptive BDDC" : "BDDC"; }
   double bytes() const override {
     double sum = factor_.bytes();
@@ -259,6 +261,7 @@ class Bddc final : public FlexibleInverse {
     for (int r = 1; r < size(); ++r) at[r] = at[r - 1] + counts[r - 1];
     all.resize(static_cast<size_t>(at.back()) + counts.back());
     MPI_Allgatherv(mine.data(), n, MPI_DOUBLE, all.data(), counts.data(), at.data(), MPI_DOUBLE, PETSC_COMM_WORLD);
+    const Stopwatch watch(coarse_seconds_);
     std::vector<Eigen::Triplet<double>> entries;
     for (size_t k = 0; k < all.size(); k += 3) entries.emplace_back(static_cast<int>(all[k]), static_cast<int>(all[k + 1]), all[k + 2]);
     Eigen::SparseMatrix<double> K(n_constraints_, n_constraints_);
@@ -276,6 +279,7 @@ class Bddc final : public FlexibleInverse {
       for (Eigen::Index k = 0; k < share.size(); ++k) all[p.number[k]] += share[k];
     }
     MPI_Allreduce(MPI_IN_PLACE, all.data(), n_constraints_, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    const Stopwatch watch(coarse_seconds_);
     return coarse_factor_.solve(all);
   }
 
@@ -287,7 +291,8 @@ class Bddc final : public FlexibleInverse {
   std::vector<double> diagonal_;
   VectorXd weight_;
   ClassMatrices of_class_;
-  int n_constraints_ = 0;     // of all ranks
+  int n_constraints_ = 0;  // of all ranks
+  double coarse_seconds_ = 0;
   bool is_adaptive_ = false;  // further constraints are looked for
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> coarse_factor_;
   VecScatter all_ = nullptr, edge_ = nullptr;

@@ -42,6 +42,7 @@ class FlexibleInverse {
   virtual int most_iterations() const { return 600; }
   /// Iterations within the applications since the last call.
   virtual int take_iterations() { return 0; }
+  virtual double undivided_seconds() const { return 0; }
   virtual std::string name() const = 0;
   virtual double bytes() const = 0;
 };

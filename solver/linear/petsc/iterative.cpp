@@ -120,6 +120,7 @@ class IterativeSolver final : public KktSolver {
     return matrix_->bytes() + coupling_->bytes() + inverse_->bytes() + 8. * n_flexible_ * Z_.size() + 8. * restart_ * n_all_;
   }
   double set_up_seconds() const override { return set_up_seconds_ + (direct_ ? direct_->set_up_seconds() : 0); }
+  double undivided_seconds() const override { return inverse_ ? inverse_->undivided_seconds() : 0; }
   std::string name() const override {
     if (direct_) return direct_->name();
     if (!inverse_) return kind_ == Kind::bddc ? "BDDC" : kind_ == Kind::feti_dp ? "FETI-DP" : "iterative";
