@@ -14,7 +14,7 @@ namespace {
 
 static_assert(sizeof(idx_t) == sizeof(std::int32_t));
 
-constexpr std::int32_t joint_work = 8;  // with its share of the bodies it joins, by costs-bench
+constexpr std::int32_t joint_work = 16;  // with its share of the bodies it joins, by costs-bench
 /// What it costs to part two cells: unknowns are exchanged between flexible ones, next to nothing where one is rigid.
 constexpr std::int32_t between_flexible = 8, beside_rigid = 1, through_joint = 4;
 
