@@ -23,3 +23,10 @@ setup:
 build: setup
 	@[ -f $(BUILD)/build.ninja ] || cmake -S $(ROOT) -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release > $(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
 	@cmake --build $(BUILD) --target $(TOOLS) hilo-petsc
+
+# A tool that was rebuilt redoes what it made.  `make -n` takes the tools as they are; so does who says BUILT=1, having built them.
+ifeq ($(findstring n,$(firstword -$(MAKEFLAGS)))$(BUILT),)
+$(TOOLS:%=$(BIN)/%): build ;
+else
+$(TOOLS:%=$(BIN)/%): ;
+endif
