@@ -234,7 +234,8 @@ class IterativeSolver final : public KktSolver {
     KSPConvergedReason reason = KSP_CONVERGED_RTOL;
     PetscInt iterations = 0;
     // a preconditioner in single precision lets the recurrence run ahead of the residual: go on from where that is
-    for (int cycle = 0; cycle < 4 && iterations < iterations_allowed; ++cycle) {
+    const int cycles = kind_ == Kind::algebraic ? 4 : 1;
+    for (int cycle = 0; cycle < cycles && iterations < iterations_allowed; ++cycle) {
       PetscInt more = 0;
       check(KSPSetTolerances(ksp_, wanted_, 1e-300, PETSC_DEFAULT, iterations_allowed - iterations));
       check(KSPSolve(ksp_, b_, x_));
