@@ -1,13 +1,12 @@
 #include "linear/petsc/subdomain_factor.hpp"
 
-#include <petscblaslapack.h>
-
 #include <algorithm>
 #include <new>
 #include <numeric>
 
+#include "linear/supernodal.hpp"
+
 extern "C" void dtrtri_(const char*, const char*, const int*, double*, const int*, int*);
-extern "C" void dtrsv_(const char*, const char*, const char*, const int*, const double*, const int*, double*, const int*);
 
 namespace hilo::petsc {
 
@@ -146,44 +145,8 @@ bool SubdomainFactor::factor(const SubdomainMatrix& F, const Interface& interfac
   return common_.status == CHOLMOD_OK && L_->minor == L_->n && L_->is_super;
 }
 
-void SubdomainFactor::forward(int from, int to, double* x) const {
-  if (from >= to) return;
-  const auto* super = static_cast<const int*>(L_->super);
-  const auto *pi = static_cast<const int*>(L_->pi), *px = static_cast<const int*>(L_->px), *rows = static_cast<const int*>(L_->s);
-  const auto* values = static_cast<const double*>(L_->x);
-  const int one = 1, n_super = static_cast<int>(L_->nsuper);
-  const double minus = -1, zero = 0;
-  if (below_.size() < L_->maxesize + L_->n) below_.resize(L_->maxesize + L_->n);
-  for (int s = static_cast<int>(std::upper_bound(super, super + n_super, from) - super) - 1; s < n_super && super[s] < to; ++s) {
-    const int a = std::max(from, super[s]), b = std::min(to, super[s + 1]), m = b - a, o = a - super[s], stride = pi[s + 1] - pi[s];
-    const double* D = values + px[s] + o + static_cast<size_t>(o) * stride;
-    dtrsv_("L", "N", "N", &m, D, &stride, x + a, &one);
-    const int n_below = stride - o - m;
-    if (n_below == 0) continue;
-    BLASgemv_("N", &n_below, &m, &minus, D + m, &stride, x + a, &one, &zero, below_.data(), &one);
-    const int* row = rows + pi[s] + o + m;
-    for (int k = 0; k < n_below; ++k) x[row[k]] += below_[k];
-  }
-}
-
-void SubdomainFactor::backward(int from, int to, double* x) const {
-  if (from >= to) return;
-  const auto* super = static_cast<const int*>(L_->super);
-  const auto *pi = static_cast<const int*>(L_->pi), *px = static_cast<const int*>(L_->px), *rows = static_cast<const int*>(L_->s);
-  const auto* values = static_cast<const double*>(L_->x);
-  const int one = 1, n_super = static_cast<int>(L_->nsuper);
-  const double minus = -1, plus = 1;
-  if (below_.size() < L_->maxesize + L_->n) below_.resize(L_->maxesize + L_->n);
-  for (int s = static_cast<int>(std::lower_bound(super, super + n_super, to) - super) - 1; s >= 0 && super[s + 1] > from; --s) {
-    const int a = std::max(from, super[s]), b = std::min(to, super[s + 1]), m = b - a, o = a - super[s], stride = pi[s + 1] - pi[s];
-    const double* D = values + px[s] + o + static_cast<size_t>(o) * stride;
-    const int n_below = stride - o - m;
-    const int* row = rows + pi[s] + o + m;
-    for (int k = 0; k < n_below; ++k) below_[k] = x[row[k]];
-    if (n_below > 0) BLASgemv_("T", &n_below, &m, &minus, D + m, &stride, below_.data(), &one, &plus, x + a, &one);
-    dtrsv_("L", "T", "N", &m, D, &stride, x + a, &one);
-  }
-}
+void SubdomainFactor::forward(int from, int to, double* x) const { supernodal::forward(L_, from, to, x, below_); }
+void SubdomainFactor::backward(int from, int to, double* x) const { supernodal::backward(L_, from, to, x, below_); }
 
 Eigen::MatrixXd SubdomainFactor::schur_rows(int piece, const std::vector<int>& unknowns) const {
   const int from = begin_[piece], to = begin_[piece + 1];
