@@ -1,5 +1,6 @@
 #!/bin/bash
-# Small scenes, one thread: microseconds per step, and seconds to start.  Usage: rigid.sh BIN
+# Small scenes, one thread: microseconds per step, and seconds to start; where simbody-bench is built, rigid ones beside Simbody.
+# Usage: rigid.sh BIN
 set -euo pipefail
 scenes=$(cd "$(dirname "$0")/../../data/stability/scenes" && pwd)
 folder=$(mktemp -d)
@@ -33,6 +34,7 @@ cd "$folder"
     pin "L$i" "c$((i - 1))" "k$i" "$((i - 1))" 1
     pin "R$i" "c$i" "k$i" "$i" 1
   done
+  printf '[[probe]]\nname = "B0"\non = "c0"\nat = [0, 1, 0]\n'
 } > forty.toml
 
 # A pendulum of 200 hexahedra (50 x 2 x 2).
@@ -85,3 +87,41 @@ for k in 1 2 3; do
   "$1/hilo-solve" --quiet --dry-run chain.toml
   echo "start-up with the scene read and checked: $((($(date +%s%N) - start) / 1000)) us"
 done
+
+# Beside Simbody: the same scenes and steps, errors against the same positions, the energy at every step.
+[ -x "$1/simbody-bench" ] || exit 0
+export OPENBLAS_NUM_THREADS=1
+row() { printf '%-16s %-34s %8s %8s %10s %10s %10s\n' "$@"; }
+hilo() {  # name, name in simbody-bench, method, probe, scene, options: the fastest of five
+  "$1/simbody-bench" "$3" reference > places
+  for k in 1 2 3 4 5; do
+    "$1/hilo-solve" --quiet "$6" -o run.h5 --set "time.integrator=\"$4\"" "${@:7}" 2> /dev/null
+    awk -F'[:,]' '/"steps"/ {n = $2} /"seconds": {"all"/ {print n, $3 / n * 1e6}' run.json
+  done | sort -k2g | head -1 > cost
+  "$1/hilo-post" series run.h5 "probe.$5" | awk -F'[ ,]' 'NR == FNR {t[NR] = $1; x[NR] = $2; y[NR] = $3; z[NR] = $4; next}
+    FNR > 1 {for (k in t) if (($1 - t[k]) ^ 2 < 1e-16) {e = ($2 - x[k]) ^ 2 + ($3 - y[k]) ^ 2 + ($4 - z[k]) ^ 2; seen++; if (e > most) most = e}}
+    END {if (seen != 10) exit 1; printf "%.2g\n", sqrt(most)}' places - > error
+  "$1/hilo-post" series run.h5 energy | awk -F, 'NR == 2 {E = $2 + $3 + $4} NR > 1 {d = $2 + $3 + $4 - E; d = d < 0 ? -d : d; if (d > most) most = d}
+    END {printf "%.2g\n", most}' > drift
+  row "$2" "hilo $4" "$h" $(awk '{printf "%d %.1f", $1, $2}' cost) "$(cat error)" "$(cat drift)"
+}
+simbody() {  # name, name in simbody-bench, method, fixed or accuracy, value
+  result=$(timeout 120 "$1/simbody-bench" "${@:3:4}" | head -1) || result="failed: too long"
+  [ "${result#failed}" = "$result" ] || result="fails - - -"
+  local what=$([ "$5" = fixed ] && echo "$6" || echo var)
+  row "$2" "Simbody $4${7:-}$([ "$5" = fixed ] || echo ", accuracy $6")" "$what" $result
+}
+beside() {  # name, name in simbody-bench, probe, scene, step, end
+  h=$6
+  hilo "$1" "$2" "$3" energy-momentum "$4" "$5" --set "time.step=$6" --set "time.end=$7"
+  [ "$3" = forty ] || hilo "$1" "$2" "$3" radau "$4" "$5" --set "time.step=$6" --set "time.end=$7"
+  for m in euler merson; do simbody "$1" "$2" "$3" $m fixed "$6"; done
+  simbody "$1" "$2" "$3" merson accuracy 1e-5
+}
+printf '\n'
+row scene "code, method" step steps us/step "error [m]" "|dE| [J]"
+beside "$1" "heavy top" top tip "$scenes/top.toml" 0.001 2
+beside "$1" "double four-bar" double B0 "$scenes/double_four_bar.toml" 0.01 10
+beside "$1" Bricard bricard far "$scenes/bricard.toml" 0.01 10
+simbody "$1" Bricard bricard-as-given merson fixed 0.01 ", redundant row too"
+beside "$1" "40 four-bars" forty B0 forty.toml 0.01 10
