@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 
 #include "base/table.hpp"
@@ -19,6 +20,12 @@ Traffic operator-(const Traffic& a, const Traffic& b) {
 
 double wall_clock() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
+double processor_clock() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 Phases& phases() {
   static Phases p;
   return p;
@@ -30,7 +37,7 @@ Timed::~Timed() {
   phase_.sent.messages += sent.messages, phase_.sent.collectives += sent.collectives, phase_.sent.bytes += sent.bytes;
 }
 
-Profile::Profile(const Comm& comm, const KktSolver& solver, double began, const std::string& results) {
+Profile::Profile(const Comm& comm, const KktSolver& solver, double began, double processor_began, const std::string& results) {
   const Phases& p = phases();
   const double all = wall_clock() - began, set_up = solver.set_up_seconds();
   const Traffic everything = traffic();
@@ -55,6 +62,7 @@ Profile::Profile(const Comm& comm, const KktSolver& solver, double began, const 
   rows[3] = row("output", p.output, fmt::format("{} records", p.records));
   rows[4] = row("rest", rest, "");
   rows[5] = row("all", {all, everything}, "");
+  processor_seconds = comm.sum(processor_clock() - processor_began);
   undivided_seconds = comm.max(solver.undivided_seconds());
   solver_bytes = comm.max(solver.bytes());
   std::error_code ignored;
@@ -70,8 +78,9 @@ std::string Profile::json() const {
         "{:.0f}}}",
         out.empty() ? "" : ",\n", r.name, r.seconds, r.imbalance, r.messages, r.collectives, r.bytes);
   return fmt::format(
-      "  \"profile\": {{\n{}\n  }},\n  \"undivided_seconds\": {:.6g},\n  \"solver_bytes\": {:.0f},\n  \"result_bytes\": {:.0f},\n", out,
-      undivided_seconds, solver_bytes, result_bytes);
+      "  \"profile\": {{\n{}\n  }},\n  \"processor_seconds\": {:.6g},\n  \"undivided_seconds\": {:.6g},\n  \"solver_bytes\": {:.0f},\n  "
+      "\"result_bytes\": {:.0f},\n",
+      out, processor_seconds, undivided_seconds, solver_bytes, result_bytes);
 }
 
 std::string Profile::text() const {

@@ -22,6 +22,8 @@ struct Phases {
 };
 Phases& phases();
 double wall_clock();
+/// Seconds that processors have spent on this process.
+double processor_clock();
 
 /// Adds its own life to a phase.
 class Timed {
@@ -46,11 +48,12 @@ struct Profile {
     std::string count;                     // "12 evaluations, 4 tangents"
   };
   std::array<Row, 6> rows;                    // assembly, set-up, solve (without it), output, rest, all
+  double processor_seconds = 0;               // of all ranks
   double undivided_seconds = 0;               // coarse problems, which every rank solves whole: largest
   double solver_bytes = 0, result_bytes = 0;  // matrix and factors of the rank with most; results file
   /// Collective: every rank takes part.
-  Profile(const Comm& comm, const KktSolver& solver, double began, const std::string& results);
-  /// Lines for run.json: keys profile, solver_bytes, result_bytes.
+  Profile(const Comm& comm, const KktSolver& solver, double began, double processor_began, const std::string& results);
+  /// Lines for run.json: keys profile, processor_seconds, solver_bytes, result_bytes.
   std::string json() const;
   /// A table for people.
   std::string text() const;

@@ -63,7 +63,12 @@ double peak_memory() {
 class Run {
  public:
   Run(const Scene& scene, System& system, const RunOptions& options)
-      : scene_(scene), system_(system), options_(options), began_(wall_clock()), talk_(!options.quiet && system.comm->rank == 0) {}
+      : scene_(scene),
+        system_(system),
+        options_(options),
+        began_(wall_clock()),
+        processor_began_(processor_clock()),
+        talk_(!options.quiet && system.comm->rank == 0) {}
 
   RunReport go() {
     const Entry &time = scene_.table("time"), &newton_table = scene_.table("solver");
@@ -105,7 +110,7 @@ class Run {
         const Timed timed(phases().output);
         recorder_->finish(report_.complete);
       }
-      const Profile profile(*system_.comm, *solver_, began_, options_.output);
+      const Profile profile(*system_.comm, *solver_, began_, processor_began_, options_.output);
       report_.profile = profile.text();
       peak_ = system_.comm->max(peak_memory());
       system_.comm->together([&] { write_json(profile); });
@@ -376,7 +381,7 @@ class Run {
   std::unique_ptr<Recorder> recorder_;
   State state_;
   std::string failure_;
-  double began_, peak_ = 0, assembled_ = 0, projected_ = 0, least_det_ = 1e300, estimated_ = -1;
+  double began_, processor_began_, peak_ = 0, assembled_ = 0, projected_ = 0, least_det_ = 1e300, estimated_ = -1;
   int max_cuts_ = 8, level_ = 0, good_ = 0, iterations_ = 0;
   long rejected_ = 0;
   bool is_static_ = false, talk_;

@@ -88,7 +88,7 @@ for k in 1 2 3; do
   echo "start-up with the scene read and checked: $((($(date +%s%N) - start) / 1000)) us"
 done
 
-# Beside Simbody: the same scenes and steps, errors against the same positions, the energy at every step.
+# Beside Simbody: the same scenes and steps, processor time of both, errors against the same positions, the energy at every step.
 [ -x "$1/simbody-bench" ] || exit 0
 export OPENBLAS_NUM_THREADS=1
 row() { printf '%-16s %-34s %8s %8s %10s %10s %10s\n' "$@"; }
@@ -96,7 +96,7 @@ hilo() {  # name, name in simbody-bench, method, probe, scene, options: the fast
   "$1/simbody-bench" "$3" reference > places
   for k in 1 2 3 4 5; do
     "$1/hilo-solve" --quiet "$6" -o run.h5 --set "time.integrator=\"$4\"" "${@:7}" 2> /dev/null
-    awk -F'[:,]' '/"steps"/ {n = $2} /"seconds": {"all"/ {print n, $3 / n * 1e6}' run.json
+    awk -F'[:,]' '/"steps"/ {n = $2} /"processor_seconds"/ {print n, $2 / n * 1e6}' run.json
   done | sort -k2g | head -1 > cost
   "$1/hilo-post" series run.h5 "probe.$5" | awk -F'[ ,]' 'NR == FNR {t[NR] = $1; x[NR] = $2; y[NR] = $3; z[NR] = $4; next}
     FNR > 1 {for (k in t) if (($1 - t[k]) ^ 2 < 1e-16) {e = ($2 - x[k]) ^ 2 + ($3 - y[k]) ^ 2 + ($4 - z[k]) ^ 2; seen++; if (e > most) most = e}}
