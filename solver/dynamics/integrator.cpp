@@ -12,18 +12,24 @@ void restore_rotations(const System& system, Config& q) {
 }
 
 NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, double h, Predictor predictor) {
-  const System& system = tools.system;
+  const System& system = *(system_ = &tools.system);
   begin(s, h);
   h_ = h, lambda_ = s.lambda;
   solved_.clear(), solved_.reserve(n_stages());
+  missed_.resize(n_stages()), past_.resize(n_stages());
   taken_.resize(n_stages());
   NewtonReport all;
   all.converged = true;
   for (int k = 0; k < n_stages(); ++k) {
     const double dt = instant(k) * h;
-    Config guess = predict(system, s, dt, predictor, acceleration());
+    Config guess = predict(system, s, dt, predictor, {});  // straight: `past_` bends it
     system.prescribe(guess, s.t + dt);
     solved_.emplace_back(system, s.q, guess);
+    missed_[k] = solved_[k].increments(system);
+    if (predictor == Predictor::rigid_rotation) {
+      if (const auto z = past_[k].increments(system, h); !z.empty()) solved_[k].shift(system, z);
+      lambda_ = past_[k].multipliers(lambda_);
+    }
     const NewtonReport r = newton(
         system, tools.solver, [&](const Unknown& u) { return from_left(stage(k, u), h); }, solved_[k], lambda_, tools.newton);
     all.iterations += r.iterations, all.linear_iterations += r.linear_iterations;
@@ -33,8 +39,10 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
       all.converged = false, all.reason = r.reason;
       return all;
     }
+    const std::vector<double> increments = solved_[k].increments(system);
     restore_rotations(system, solved_[k].q);
     taken_[k] = {from_left(stage(k, solved_[k]), h), lambda_};
+    for (size_t i = 0; i < missed_[k].size(); ++i) missed_[k][i] = increments[i] - missed_[k][i];
     taken_[k].stage.work_from = k == 0 ? &solved_[0].q0 : &solved_[k - 1].q;
   }
   return all;
@@ -44,6 +52,7 @@ void StageIntegrator::accept(State& s) {
   finish(s);
   s.q = solved_.back().q;
   s.lambda = lambda_;
+  for (int k = 0; k < n_stages(); ++k) past_[k].accept(*system_, h_, std::move(missed_[k]), taken_[k].lambda);
   s.t += h_;
 }
 

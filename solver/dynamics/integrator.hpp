@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "dynamics/extrapolation.hpp"
 #include "dynamics/newton.hpp"
 #include "dynamics/predictor.hpp"
 #include "dynamics/state.hpp"
@@ -74,7 +75,10 @@ class StageIntegrator : public Integrator {
 
  private:
   double h_ = 0;
-  std::vector<Unknown> solved_;  // per stage
+  const System* system_ = nullptr;
+  std::vector<Unknown> solved_;              // per stage
+  std::vector<Extrapolation> past_;          // per stage
+  std::vector<std::vector<double>> missed_;  // what the first guess of each stage missed
   std::vector<Taken> taken_;
   std::vector<double> lambda_;
 };

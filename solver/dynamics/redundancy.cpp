@@ -128,6 +128,7 @@ MinimumNorm::MinimumNorm(const System& system) : system_(system) {
     cliques_.add(blocks);
   }
   A_.structure(cliques_, n);
+  factors_ = make_klu();
 }
 
 std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const double> lambda) {
@@ -140,7 +141,10 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   for (int j = 0; j < n_joints; ++j) {
     const Connector& joint = system_.joints[j];
     G[j] = joint_rows(system_, joint, stage);
-    const Square K = G[j].transpose() * G[j];
+    Square K = Square::Zero(G[j].cols(), G[j].cols());
+    for (Eigen::Index r = 0; r < G[j].rows(); ++r)
+      for (Eigen::Index i = 0; i < G[j].cols(); ++i)
+        if (G[j](r, i) != 0) K.row(i) += G[j](r, i) * G[j].row(r);
     largest = std::max(largest, K.diagonal().maxCoeff());
     A_.add(j, K.data());
     for (int r = 0; r < joint.n_rows(); ++r) {
@@ -154,13 +158,11 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   const double shift = 1e-10 * largest;
   const double d[3] = {shift, shift, shift};
   for (int i = 0; i < A_.n_blocks(); ++i) A_.add_diagonal(i, d);
-  const Eigen::Map<const Eigen::SparseMatrix<double>> shifted(A_.n(), A_.n(), static_cast<Eigen::Index>(A_.values().size()),
-                                                              A_.row_start().data(), A_.column().data(), A_.values().data());
-  if (!analyzed_) factors_.analyzePattern(shifted), analyzed_ = true;
-  factors_.factorize(shifted);
+  if (!factors_->refactor(A_)) factors_->factor(A_);
   Eigen::VectorXd y = Eigen::VectorXd::Zero(f.size()), r = f, product(f.size());
   for (int pass = 0; pass < 8 && r.norm() > 1e-14 * f.norm(); ++pass) {
-    y += factors_.solve(r);
+    factors_->solve(r.data(), product.data());
+    y += product;
     A_.multiply(y.data(), product.data());
     r = f - product + shift * y;
   }

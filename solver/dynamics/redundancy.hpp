@@ -1,10 +1,10 @@
 // Redundant joint rows: found by rank, switched off, and their share of the reactions.
 #pragma once
-#include <Eigen/SparseCholesky>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "linear/block_csr.hpp"
+#include "linear/factors.hpp"
 #include "system/system.hpp"
 
 namespace hilo {
@@ -20,8 +20,8 @@ Redundancy drop_redundant_rows(System& system, const Config& q);
 /// True where the choice has changed.
 bool recheck_redundant_rows(System& system, const Config& q, const Redundancy& before);
 
-/// Minimum-norm multipliers that give the same forces as those of the rows kept: lambda = G y with G^T G y = G^T lambda_kept, by a sparse
-/// Cholesky factorization of the slightly shifted matrix and refinement; what the shift adds lies in the null space of G and drops out.
+/// Minimum-norm multipliers that give the same forces as those of the rows kept: lambda = G y with G^T G y = G^T lambda_kept, by sparse
+/// factors of the slightly shifted matrix and refinement; what the shift adds lies in the null space of G and drops out.
 class MinimumNorm {
  public:
   explicit MinimumNorm(const System& system);
@@ -32,8 +32,7 @@ class MinimumNorm {
   const System& system_;
   Cliques cliques_;  // of joints
   BlockCsr A_;       // G^T G, shifted
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors_;
-  bool analyzed_ = false;
+  std::unique_ptr<Factors> factors_;
 };
 
 }  // namespace hilo

@@ -34,4 +34,29 @@ void Unknown::move(const System& system, std::span<const double> z) {
   system.follow(q), system.follow(dq);
 }
 
+void Unknown::shift(const System& system, std::span<const double> z) {
+  for (size_t i = 0; i < q.x.size(); ++i)
+    if (const int k = system.node_block[i]; k >= 0) {
+      dq.x[i] += Eigen::Map<const Vec3>(z.data() + 3 * k);
+      q.x[i] = q0.x[i] + dq.x[i];
+    }
+  for (size_t b = 0; b < turn.size(); ++b)
+    if (const int k = system.body_block[b]; k >= 0) {
+      dq.c[b] += Eigen::Map<const Vec3>(z.data() + 3 * k);
+      q.c[b] = q0.c[b] + dq.c[b];
+      turn[b] += Eigen::Map<const Vec3>(z.data() + 3 * k + 3), turn_body(b);
+    }
+  system.follow(q), system.follow(dq);
+}
+
+std::vector<double> Unknown::increments(const System& system) const {
+  std::vector<double> out(3 * static_cast<size_t>(system.first_joint_block()), 0.0);
+  const auto at = [&](int k) { return Eigen::Map<Vec3>(out.data() + 3 * k); };
+  for (size_t i = 0; i < q.x.size(); ++i)
+    if (const int k = system.node_block[i]; k >= 0) at(k) = dq.x[i];
+  for (size_t b = 0; b < turn.size(); ++b)
+    if (const int k = system.body_block[b]; k >= 0) at(k) = dq.c[b], at(k + 1) = turn[b];
+  return out;
+}
+
 }  // namespace hilo

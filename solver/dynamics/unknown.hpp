@@ -16,6 +16,10 @@ struct Unknown {
   Unknown(const System& system, const Config& q0, const Config& guess);
   /// Add the increments z (3 x n_blocks).
   void move(const System& system, std::span<const double> z);
+  /// Add z to the increments from q0 themselves: Cayley vectors are added, not composed.
+  void shift(const System& system, std::span<const double> z);
+  /// The increments from q0, as `shift` adds them (3 x blocks of nodes and bodies).
+  std::vector<double> increments(const System& system) const;
 
  private:
   void turn_body(size_t b);

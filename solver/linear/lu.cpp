@@ -11,6 +11,8 @@ namespace {
 
 // Rows read as columns are the transpose: both factor it and solve transposed.
 
+/// Factors of the entries that have ever differed from zero: many of a joint's never do, and a plane mechanism's motions out of its plane
+/// come apart from those within.
 class Klu final : public Factors {
  public:
   Klu() {
@@ -19,22 +21,21 @@ class Klu final : public Factors {
     common_.scale = 2;
     common_.ordering = 1;  // COLAMD: multipliers have no diagonal, so that pivots move
   }
-  ~Klu() override {
-    if (numeric_) klu_free_numeric(&numeric_, &common_);
-    if (symbolic_) klu_free_symbolic(&symbolic_, &common_);
-  }
+  ~Klu() override { forget(); }
   bool factor(const BlockCsr& A) override {
-    n_ = A.n();
-    int *p = const_cast<int*>(A.row_start().data()), *i = const_cast<int*>(A.column().data());
+    if (!symbolic_ || !gather(A)) {
+      forget();
+      if (++n_patterns_ == most_patterns) kept_.assign(A.values().size(), 1);
+      find_pattern(A), gather(A);
+      symbolic_ = klu_analyze(n_, start_.data(), column_.data(), &common_);
+      if (!symbolic_) return false;
+    }
     if (numeric_) klu_free_numeric(&numeric_, &common_);
-    if (!symbolic_) symbolic_ = klu_analyze(n_, p, i, &common_);
-    if (!symbolic_) return false;
-    numeric_ = klu_factor(p, i, const_cast<double*>(A.values().data()), symbolic_, &common_);
+    numeric_ = klu_factor(start_.data(), column_.data(), value_.data(), symbolic_, &common_);
     return numeric_ && common_.status == KLU_OK;
   }
   bool refactor(const BlockCsr& A) override {
-    return numeric_ && klu_refactor(const_cast<int*>(A.row_start().data()), const_cast<int*>(A.column().data()),
-                                    const_cast<double*>(A.values().data()), symbolic_, numeric_, &common_);
+    return numeric_ && gather(A) && klu_refactor(start_.data(), column_.data(), value_.data(), symbolic_, numeric_, &common_);
   }
   void solve(const double* b, double* x) override {
     std::copy(b, b + n_, x);
@@ -45,7 +46,36 @@ class Klu final : public Factors {
   double bytes() const override { return static_cast<double>(common_.memusage); }
 
  private:
-  int n_ = 0;
+  void forget() {
+    if (numeric_) klu_free_numeric(&numeric_, &common_);
+    if (symbolic_) klu_free_symbolic(&symbolic_, &common_);
+  }
+  void find_pattern(const BlockCsr& A) {
+    n_ = A.n();
+    const auto& values = A.values();
+    kept_.resize(values.size(), 0);
+    start_.assign(1, 0), column_.clear(), place_.clear();
+    for (int i = 0; i < n_; ++i) {
+      for (int k = A.row_start()[i]; k < A.row_start()[i + 1]; ++k)
+        if (kept_[k] |= values[k] != 0; kept_[k]) column_.push_back(A.column()[k]), place_.push_back(k);
+      start_.push_back(static_cast<int>(column_.size()));
+    }
+    value_.resize(column_.size());
+  }
+  /// The entries of the pattern; false where another one differs from zero.
+  bool gather(const BlockCsr& A) {
+    const double* from = A.values().data();
+    long here = 0, all = 0;
+    for (size_t j = 0; j < place_.size(); ++j) value_[j] = from[place_[j]], here += value_[j] != 0;
+    for (size_t k = 0; k < A.values().size(); ++k) all += from[k] != 0;
+    return here == all;
+  }
+
+  static constexpr int most_patterns = 20;  // before all entries are taken
+  int n_ = 0, n_patterns_ = 0;
+  std::vector<char> kept_;                   // of the matrix's entries
+  std::vector<int> start_, column_, place_;  // the pattern, and the entries it takes
+  std::vector<double> value_;
   klu_common common_{};
   klu_symbolic* symbolic_ = nullptr;
   klu_numeric* numeric_ = nullptr;

@@ -1,0 +1,83 @@
+#include "dynamics/extrapolation.hpp"
+
+#include <cmath>
+
+namespace hilo {
+namespace {
+
+struct Rule {
+  int n;               // steps it takes
+  double weight[6]{};  // of the last step, the one before, ...
+};
+constexpr Rule rules[] = {{0},
+                          {1, {1}},
+                          {2, {2, -1}},
+                          {3, {1, 1, -1}},
+                          {3, {3, -3, 1}},
+                          {4, {2, 0, -2, 1}},
+                          {4, {4, -6, 4, -1}},
+                          {5, {3, -2, -2, 3, -1}},
+                          {6, {4, -5, 0, 5, -4, 1}}};
+
+double square(double x) { return x * x; }
+
+}  // namespace
+
+std::span<const double> Extrapolation::increments(const System& system, double h) {
+  if (past_.empty() || rules[rule_].n == 0) return {};
+  if (std::abs(h - h_) > 1e-6 * h_) {  // an error of second order in the step
+    past_.resize(1);
+    for (double& x : past_[0].missed) x *= square(h / h_);
+    h_ = h, rule_ = 1, lambda_rule_ = 1;
+  }
+  increments_.assign(3 * system.n_blocks(), 0.0);
+  for (int k = 0; k < rules[rule_].n; ++k)
+    if (const double w = rules[rule_].weight[k]; w != 0)
+      for (size_t i = 0; i < past_[k].missed.size(); ++i) increments_[i] += w * past_[k].missed[i];
+  return increments_;
+}
+
+std::vector<double> Extrapolation::multipliers(const std::vector<double>& last) const {
+  if (past_.empty() || rules[lambda_rule_].n < 2) return last;
+  std::vector<double> out(last.size(), 0.0);
+  for (int k = 0; k < rules[lambda_rule_].n; ++k)
+    for (size_t i = 0; i < out.size(); ++i) out[i] += rules[lambda_rule_].weight[k] * past_[k].lambda[i];
+  return out;
+}
+
+void Extrapolation::accept(const System& s, double h, std::vector<double> missed, std::vector<double> lambda) {
+  if (!past_.empty() && std::abs(h - h_) > 1e-6 * h_) clear();
+  h_ = h;
+  // errors that the rules would have made, of positions and of multipliers
+  std::array<double, 2 * n_rules> error{};
+  for (int r = 0; r < n_rules; ++r) {
+    if (rules[r].n > static_cast<int>(past_.size())) continue;
+    const auto left = [&](int i) {
+      double x = missed[i];
+      for (int k = 0; k < rules[r].n; ++k) x -= rules[r].weight[k] * past_[k].missed[i];
+      return x;
+    };
+    for (size_t i = 0; i < s.X.size(); ++i)
+      if (s.node_block[i] >= 0 && s.node_owned[i])
+        for (int k = 0; k < 3; ++k) error[r] += square(left(3 * s.node_block[i] + k));
+    for (size_t b = 0; b < s.bodies.size() && s.comm->rank == 0; ++b)
+      for (int k = 0; k < 3 && s.body_block[b] >= 0; ++k)
+        error[r] += square(left(3 * s.body_block[b] + k)) + square(s.bodies[b].size * left(3 * s.body_block[b] + 3 + k));
+    for (size_t i = 0; i < lambda.size() && s.comm->rank == 0; ++i) {
+      double x = lambda[i];
+      for (int k = 0; k < rules[r].n; ++k) x -= rules[r].weight[k] * past_[k].lambda[i];
+      error[n_rules + r] += square(x);
+    }
+  }
+  s.comm->sum(error);
+  rule_ = 0, lambda_rule_ = 1;
+  for (int r = 0; r < n_rules && rules[r].n <= static_cast<int>(past_.size()); ++r) {
+    if (error[r] < error[rule_]) rule_ = r;
+    if (r > 0 && error[n_rules + r] < error[n_rules + lambda_rule_]) lambda_rule_ = r;
+  }
+  if (past_.empty()) rule_ = 1;
+  past_.push_front({std::move(missed), std::move(lambda)});
+  if (past_.size() > most) past_.pop_back();
+}
+
+}  // namespace hilo
