@@ -52,12 +52,16 @@ void BlockCsr::add(int clique, const double* K) {
   const auto blocks = (*cliques_)[clique];
   const size_t n = blocks.size();
   const int* position = position_.data() + clique_position_[clique];
+  // what the next clique adds to is fetched meanwhile; as a rule it is as large as this one
+  const int* next = clique_position_[clique + 1] + n * n <= position_.size() ? position + n * n : position;
   for (size_t i = 0; i < n; ++i) {
     if (blocks[i] < 0) continue;
     const int length = 3 * (block_start_[blocks[i] + 1] - block_start_[blocks[i]]);
     for (size_t j = 0; j < n; ++j) {
       const int p = position[i * n + j];
       if (p < 0) continue;
+      const double* soon = values_.data() + std::max(next[i * n + j], 0);
+      for (int r = 0; r < 3; ++r) __builtin_prefetch(soon + r * length, 1);
       for (int r = 0; r < 3; ++r) {
         double* to = values_.data() + p + r * length;
         const double* from = K + (3 * i + r) * 3 * n + 3 * j;
