@@ -17,7 +17,7 @@
 namespace hilo {
 namespace {
 
-/// The linear solver for the scene, its pattern set: the light one while a factor fits, GMRES with incomplete factors for what no factor
+/// The linear solver for the scene, its pattern set: the light one while a factor fits, CG with incomplete factors for what no factor
 /// holds; on several ranks BDDC, in a third of the time of MUMPS and two thirds of its memory (docs/solvers.md).
 std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& system, bool talk) {
   const Entry& e = scene.table("solver");
@@ -26,7 +26,7 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
   std::string why = "asked for";
   if (kind == "auto") {
     kind = system.comm->size > 1 ? "direct" : "light";
-    if (unknowns > 300000) kind = "iterative";
+    if (unknowns > 300000) kind = "cg";
     const auto ranks = system.comm->size;
     const auto flexible = 3 * system.map.first_dense;
     if (ranks >= 2 && flexible > 3000 && flexible / ranks <= 100000 && unknowns - flexible <= 1000) kind = "bddc";
@@ -34,7 +34,7 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
   }
   const bool is_light = kind == "light" || kind == "klu" || kind == "cholesky" || kind == "umfpack";
   if (is_light && system.comm->size > 1)
-    throw Error(e.where("kind"), "the light solvers are serial", "use bddc, direct or iterative under mpirun");
+    throw Error(e.where("kind"), "the light solvers are serial", "use bddc, direct, cg or iterative under mpirun");
   auto solver =
       is_light ? make_light_solver(kind) : make_petsc_solver(kind, e.number("linear_tolerance"), static_cast<int>(e.number("subdomains")));
   solver->structure(system.cliques, system.map);

@@ -383,7 +383,7 @@ std::vector<KindSchema> make() {
   s.push_back({"solver",
                "",
                "Newton and the linear solver",
-               {{"kind", text, "", "auto", "auto, light, direct (PETSc/MUMPS), or of PETSc iterative, bddc, feti-dp"},
+               {{"kind", text, "", "auto", "auto, light, direct (PETSc/MUMPS), or of PETSc cg, iterative, bddc, feti-dp"},
                 {"tolerance", number, "1", "1e-10",
                  "Newton: residual relative to the forces it sums, and correction relative to the scene's size", between(0, 1)},
                 {"iterations", number, "1", "25", "Newton iterations before the step is cut", at_least(1)},
@@ -415,7 +415,7 @@ std::vector<std::string> choices(std::string_view section, std::string_view key)
       {{"time", "integrator"},
        {"energy-momentum", "mid-point", "generalized-alpha", "newmark", "hht", "wbz", "U0", "V0", "bathe", "bdf2", "radau"}},
       {{"time", "analysis"}, {"dynamic", "static"}},
-      {{"solver", "kind"}, {"auto", "light", "klu", "cholesky", "umfpack", "direct", "iterative", "bddc", "feti-dp"}},
+      {{"solver", "kind"}, {"auto", "light", "klu", "cholesky", "umfpack", "direct", "cg", "iterative", "bddc", "feti-dp"}},
       {{"output", "fields"}, {"displacement", "velocity", "acceleration", "stress", "von_mises"}},
       {{"output", "precision"}, {"double", "single"}},
   };

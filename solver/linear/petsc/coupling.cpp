@@ -125,6 +125,20 @@ void Coupling::assemble() {
       for (int c = 0; c < 9; ++c) B_[9 * borrowed_[r][n] + c] += got[r][18 * n + c], C_[9 * borrowed_[r][n] + c] += got[r][18 * n + 9 + c];
 }
 
+void Coupling::symmetrise() {
+  for (size_t k = 0; k < couples_.size(); ++k)
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) {
+        double &b = B_[9 * k + 3 * r + c], &t = C_[9 * k + 3 * c + r];
+        b = t = (b + t) / 2;
+      }
+  for (int i = 0; i < m_; ++i)
+    for (int j = 0; j < i; ++j) {
+      double &a = D_[static_cast<size_t>(i) * m_ + j], &t = D_[static_cast<size_t>(j) * m_ + i];
+      a = t = (a + t) / 2;
+    }
+}
+
 void Coupling::add_B(double factor, const double* p, double* u) const {
   for (size_t k = 0; k < couples_.size(); ++k) {
     const int at = position_[couples_[k].flexible];

@@ -20,6 +20,9 @@ class Coupling {
   /// Sum over the ranks: couples go to the owner of their flexible block, D to all.
   void assemble();
 
+  /// Make B and C^T the mean of both, and D symmetric.
+  void symmetrise();
+
   int m() const { return m_; }  // unknowns of the dense part
   bool is_dense(int local) const { return dense_[local] >= 0; }
   bool couples(std::span<const int> blocks) const;              // does a clique touch the dense part?

@@ -4,6 +4,7 @@
 #define OMPI_SKIP_MPICXX 1
 #include <petscmat.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -52,10 +53,14 @@ bool set_near_null_space(Mat A, const std::vector<double>& positions);
 
 class BlockMatrix;
 class SubdomainMatrix;
+class SymmetricMatrix;
 
 /// Incomplete factors, and multigrid where they need too many iterations.  `positions`: of the owned blocks, 3 each, for the rigid modes;
 /// may be empty.
 std::unique_ptr<FlexibleInverse> make_algebraic_inverse(const BlockMatrix& F, std::vector<double> positions);
+/// Likewise; `make_whole` makes an empty matrix of the same pattern, for multigrid.
+std::unique_ptr<FlexibleInverse> make_algebraic_inverse(const SymmetricMatrix& F, std::function<std::unique_ptr<BlockMatrix>()> make_whole,
+                                                        std::vector<double> positions);
 /// Balancing domain decomposition.
 std::unique_ptr<FlexibleInverse> make_bddc(const SubdomainMatrix& F);
 /// `inner`, made exact on the rigid motions of connected parts.

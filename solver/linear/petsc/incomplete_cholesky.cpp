@@ -3,133 +3,80 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
-#include "linear/petsc/session.hpp"
-
 namespace hilo::petsc {
 
 using Eigen::Matrix3d;
 
-/// Breadth first from a peripheral row, turned round [cuthill-mckee-1969]: factors without fill are better for it, and neighbours are near.
-void IncompleteCholesky::find_order(const PetscInt* ia, const PetscInt* ja, PetscInt n) {
-  row_.clear();
-  place_.assign(n, -1);
-  for (PetscInt seed = 0; seed < n; ++seed) {
-    if (place_[seed] >= 0) continue;
-    PetscInt from = seed;
-    for (int sweep = 0; sweep < 2; ++sweep) {  // the last row reached is far away: start there
-      const size_t first = row_.size();
-      row_.push_back(from), place_[from] = 0;
-      for (size_t k = first; k < row_.size(); ++k)
-        for (PetscInt e = ia[row_[k]]; e < ia[row_[k] + 1]; ++e)
-          if (place_[ja[e]] < 0) place_[ja[e]] = 0, row_.push_back(ja[e]);
-      if (sweep == 1) break;
-      from = row_.back();
-      for (size_t k = first; k < row_.size(); ++k) place_[row_[k]] = -1;
-      row_.resize(first);
-    }
-  }
-  std::reverse(row_.begin(), row_.end());
-  for (PetscInt k = 0; k < n; ++k) place_[row_[k]] = static_cast<int>(k);
-}
+static void store(const Matrix3d& m, float* to) { Eigen::Map<Eigen::Matrix3f>{to} = m.cast<float>(); }
+static Matrix3d fetch(const float* from) { return Eigen::Map<const Eigen::Matrix3f>(from).cast<double>(); }
 
-void IncompleteCholesky::factor(Mat F) {
-  PetscInt n = 0;
-  const PetscInt *ia = nullptr, *ja = nullptr;
-  PetscBool done = PETSC_FALSE;
-  check(MatGetRowIJ(F, 0, PETSC_FALSE, PETSC_TRUE, &n, &ia, &ja, &done));
-  double* values = nullptr;
-  check(MatSeqBAIJGetArray(F, &values));
-  if (static_cast<PetscInt>(row_.size()) != n) {
-    find_order(ia, ja, n);
-    start_.assign(1, 0), column_.clear();
-    for (PetscInt i = 0; i < n; ++i) {
-      for (PetscInt e = ia[row_[i]]; e < ia[row_[i] + 1]; ++e)
-        if (place_[ja[e]] < i) column_.push_back(place_[ja[e]]);
-      std::sort(column_.begin() + static_cast<std::ptrdiff_t>(start_.back()), column_.end());
-      start_.push_back(column_.size());
-    }
-    L_.resize(column_.size()), inverse_.resize(n), work_.resize(n);
-  }
-  const auto block = [&](PetscInt row, PetscInt column) -> Matrix3d {  // of the matrix; zero outside its pattern
-    const PetscInt* at = std::lower_bound(ja + ia[row], ja + ia[row + 1], column);
-    if (at == ja + ia[row + 1] || *at != column) return Matrix3d::Zero();
-    return Eigen::Map<const Matrix3d>(values + 9 * (at - ja));
-  };
-  const auto store = [](const Matrix3d& m) {
-    Block b;
-    for (int c = 0; c < 3; ++c) b.c[c] = Lane{static_cast<float>(m(0, c)), static_cast<float>(m(1, c)), static_cast<float>(m(2, c)), 0};
-    return b;
-  };
-  const auto fetch = [](const Block& b) {
-    Matrix3d m;
-    for (int c = 0; c < 3; ++c) m.col(c) << b.c[c][0], b.c[c][1], b.c[c][2];
-    return m;
-  };
-  std::vector<Matrix3d> scaled;  // L_ij D_j of the row at hand
-  for (PetscInt i = 0; i < n; ++i) {
-    const size_t first = start_[i], last = start_[i + 1];
-    const Matrix3d own = block(row_[i], row_[i]);
-    Matrix3d D = (own + own.transpose()) / 2;
-    scaled.resize(last - first);
+void IncompleteCholesky::factor(const LowerPattern& pattern, int n, const Row& row) {
+  pattern_ = &pattern;
+  if (inverse_.size() != static_cast<size_t>(n)) L_.resize(pattern.start[n]), inverse_.resize(n), work_.resize(n);
+  const auto& start = pattern.start;
+  const auto& column = pattern.column;
+  std::vector<Matrix3d> S, unscaled;  // of F; L_ij D_j
+  for (int i = 0; i < n; ++i) {
+    const size_t first = start[i], last = start[i + 1];
+    S.resize(last - first), unscaled.resize(last - first);
+    Matrix3d own;
+    row(i, S.data(), own);
+    Matrix3d D = own;
     for (size_t e = first; e < last; ++e) {
-      const int k = column_[e];
-      Matrix3d S = (block(row_[i], row_[k]) + block(row_[k], row_[i]).transpose()) / 2;
-      size_t a = first, b = start_[k];
-      while (a < e && b < start_[k + 1]) {  // common columns
-        if (column_[a] < column_[b])
+      const int k = column[e];
+      Matrix3d& s = S[e - first];
+      size_t a = first, b = start[k];
+      while (a < e && b < start[k + 1]) {  // common columns
+        if (column[a] < column[b])
           ++a;
-        else if (column_[b] < column_[a])
+        else if (column[b] < column[a])
           ++b;
         else
-          S.noalias() -= scaled[a++ - first] * fetch(L_[b++]).transpose();
+          s.noalias() -= unscaled[a++ - first] * fetch(L_[b++]).transpose();
       }
-      scaled[e - first] = S;
-      const Matrix3d L = S * fetch(inverse_[k]);
-      L_[e] = store(L);
-      D.noalias() -= S * L.transpose();
+      unscaled[e - first] = s;
+      const Matrix3d L = s * fetch(inverse_[k]);
+      store(L, L_[e]);
+      D.noalias() -= s * L.transpose();
     }
     const Eigen::LLT<Matrix3d> llt(D);
     const bool good = llt.info() == Eigen::Success && D.trace() > 1e-3 * own.trace();
-    inverse_[i] = store(good ? Matrix3d(llt.solve(Matrix3d::Identity())) : Matrix3d(((own + own.transpose()) / 2).inverse()));
+    store(good ? Matrix3d(llt.solve(Matrix3d::Identity())) : Matrix3d(own.inverse()), inverse_[i]);
   }
-  check(MatSeqBAIJRestoreArray(F, &values));
-  check(MatRestoreRowIJ(F, 0, PETSC_FALSE, PETSC_TRUE, &n, &ia, &ja, &done));
 }
 
-/// (sum of p, sum of q, sum of r, 0)
-static IncompleteCholesky::Lane sums(IncompleteCholesky::Lane p, IncompleteCholesky::Lane q, IncompleteCholesky::Lane r) {
-  using Lane = IncompleteCholesky::Lane;
-  constexpr Lane zero{};
-  const Lane pq = __builtin_shufflevector(p, q, 0, 4, 1, 5) + __builtin_shufflevector(p, q, 2, 6, 3, 7);
-  const Lane rz = __builtin_shufflevector(r, zero, 0, 4, 1, 5) + __builtin_shufflevector(r, zero, 2, 6, 3, 7);
-  return __builtin_shufflevector(pq, rz, 0, 1, 4, 5) + __builtin_shufflevector(pq, rz, 2, 3, 6, 7);
+/// Forwards and backwards; work: (n).
+HILO_VECTOR_WIDTHS static void substitute(const LowerPattern& pattern, const FloatBlocks& L, const FloatBlocks& inverse, double scale,
+                                          const double* b, std::vector<Lane>& work, double* x) {
+  const auto& [row, place, start, column] = pattern;
+  const size_t n = work.size();
+  for (size_t i = 0; i < n; ++i) {
+    __builtin_prefetch(b + 3 * row[std::min(i + 16, n - 1)]);
+    const double* v = b + 3 * row[i];
+    Lane y{static_cast<float>(scale * v[0]), static_cast<float>(scale * v[1]), static_cast<float>(scale * v[2]), 0};
+    for (size_t e = start[i]; e < start[i + 1]; ++e) y -= times(L.load(e), work[column[e]]);
+    work[i] = y;
+  }
+  for (size_t i = 0; i < n; ++i) work[i] = without_last(times(inverse.load(i), work[i]));
+  for (size_t i = n; i-- > 0;) {
+    const Lane y = work[i];
+    for (size_t e = start[i + 1]; e-- > start[i];)  // downwards all through: memory is read ahead in one direction
+      work[column[e]] -= transposed_times(L.load(e), y);
+    __builtin_prefetch(x + 3 * row[i < 16 ? 0 : i - 16], 1);
+    double* v = x + 3 * row[i];
+    for (int c = 0; c < 3; ++c) v[c] = y[c] / scale;
+  }
 }
 
 void IncompleteCholesky::solve(const double* b, double* x) {
-  const size_t n = row_.size();
   double largest = 0;  // within the range of single precision
-  for (size_t i = 0; i < 3 * n; ++i) largest = std::max(largest, std::abs(b[i]));
+  const size_t n = 3 * work_.size();
+  for (size_t i = 0; i < n; ++i) largest = std::max(largest, std::abs(b[i]));
   if (!(largest > 0)) {
-    std::fill(x, x + 3 * n, largest);
+    std::fill(x, x + n, largest);
     return;
   }
-  const double scale = 1 / largest;
-  const auto times = [](const Block& m, const Lane& v) { return m.c[0] * v[0] + m.c[1] * v[1] + m.c[2] * v[2]; };
-  for (size_t i = 0; i < n; ++i) {
-    const double* v = b + 3 * row_[i];
-    Lane y{static_cast<float>(scale * v[0]), static_cast<float>(scale * v[1]), static_cast<float>(scale * v[2]), 0};
-    for (size_t e = start_[i]; e < start_[i + 1]; ++e) y -= times(L_[e], work_[column_[e]]);
-    work_[i] = y;
-  }
-  for (size_t i = 0; i < n; ++i) work_[i] = times(inverse_[i], work_[i]);
-  for (size_t i = n; i-- > 0;) {
-    const Lane y = work_[i];
-    for (size_t e = start_[i]; e < start_[i + 1]; ++e) {
-      work_[column_[e]] -= sums(L_[e].c[0] * y, L_[e].c[1] * y, L_[e].c[2] * y);
-    }
-    double* v = x + 3 * row_[i];
-    for (int c = 0; c < 3; ++c) v[c] = largest * y[c];
-  }
+  substitute(*pattern_, L_, inverse_, 1 / largest, b, work_, x);
 }
 
 }  // namespace hilo::petsc

@@ -4,34 +4,28 @@
 //
 // Kept in single precision: an application reads all of it at memory speed, twice.
 #pragma once
-#define OMPI_SKIP_MPICXX 1
-#include <petscmat.h>
-
+#include <Eigen/Core>
+#include <functional>
 #include <vector>
+
+#include "linear/petsc/float_blocks.hpp"
+#include "linear/petsc/lower_pattern.hpp"
 
 namespace hilo::petsc {
 
 class IncompleteCholesky {
  public:
-  /// Of a sequential matrix of 3 x 3 blocks (SEQBAIJ).  Blocks that come out indefinite are taken as they stand in F.
-  void factor(Mat F);
+  /// The blocks of one row of sym(F), those of its lower columns and the diagonal one, by its place in the pattern's order.
+  using Row = std::function<void(int place, Eigen::Matrix3d* lower, Eigen::Matrix3d& diagonal)>;
+  /// Of the first `n` places of a pattern that outlives the factors.  Blocks that come out indefinite are taken as they stand in F.
+  void factor(const LowerPattern& pattern, int n, const Row& row);
   /// x := (L D L^T)^-1 b; both have the matrix's rows.
   void solve(const double* b, double* x);
-  double bytes() const { return 4. * static_cast<double>(L_.size() + inverse_.size()) + 4. * static_cast<double>(column_.size()); }
-
-  using Lane = float __attribute__((vector_size(16)));  // a column of three, padded
+  double bytes() const { return L_.bytes() + inverse_.bytes() + static_cast<double>(work_.size() * sizeof(Lane)); }
 
  private:
-  struct Block {
-    Lane c[3];
-  };
-  void find_order(const PetscInt* ia, const PetscInt* ja, PetscInt n);
-
-  std::vector<PetscInt> row_;       // of the matrix, for each place in the order
-  std::vector<int> place_;          // and back
-  std::vector<size_t> start_;       // of each row of L (n + 1)
-  std::vector<int> column_;         // places, ascending
-  std::vector<Block> L_, inverse_;  // and of D
+  const LowerPattern* pattern_ = nullptr;
+  FloatBlocks L_, inverse_;  // and of D
   std::vector<Lane> work_;
 };
 

@@ -19,6 +19,7 @@
 #include "linear/petsc/direct.hpp"
 #include "linear/petsc/solver.hpp"
 #include "linear/petsc/subdomain_matrix.hpp"
+#include "linear/petsc/symmetric_matrix.hpp"
 
 namespace hilo::petsc {
 namespace {
@@ -26,6 +27,9 @@ namespace {
 /// Z is kept up to so many values per rank (320 MB); beyond, F~ is applied a second time per iteration.  In double precision: where a body
 /// hangs on stiff parts and little else, the forces of its motions cancel.
 constexpr double values_kept = 4e7;
+
+/// CG solves with the symmetric part, in single precision: digits beyond these are not the tangent's.
+constexpr double worth_wanting = 1e-4;
 
 class IterativeSolver final : public KktSolver {
  public:
@@ -51,6 +55,7 @@ class IterativeSolver final : public KktSolver {
     m_ = coupling_->m();
     const auto nf = static_cast<PetscInt>(n_flexible_), na = static_cast<PetscInt>(n_all_);
     x_ = Vector(na), b_ = Vector(na), r_ = Vector(na);
+    if (kind_ == Kind::cg) dx_ = Vector(na);
     f_ = Vector(nf), u_ = Vector(nf), w_ = Vector(nf);
     p_.assign(m_, 0.0), q_.assign(m_, 0.0);
     make_krylov(3 * map.n_global);
@@ -75,8 +80,9 @@ class IterativeSolver final : public KktSolver {
 
   SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) override {
     if (direct_) return direct_->solve(b, x, tolerance);
-    wanted_ = std::max(tolerance, tolerance_);
+    wanted_ = std::max({tolerance, tolerance_, kind_ == Kind::cg ? worth_wanting : 0.});
     matrix_->assemble(), coupling_->assemble();
+    if (kind_ == Kind::cg) coupling_->symmetrise();
     to_owned(*shared_, b, b_);
     check(VecSet(x_, 0));
     SolveReport report;
@@ -101,7 +107,7 @@ class IterativeSolver final : public KktSolver {
       rate_ = report.iterations / decades;
       report.iterations += before;
     }
-    if (!report.ok && kind_ != Kind::algebraic) {
+    if (!report.ok && is_substructured()) {
       if (rank() == 0)
         warn("", fmt::format("{} fails ({}): the flexible part may be unstable or held by nothing; direct from here on", name(),
                              report.message));
@@ -117,7 +123,7 @@ class IterativeSolver final : public KktSolver {
 
   double bytes() const override {
     if (direct_) return direct_->bytes();
-    return matrix_->bytes() + coupling_->bytes() + inverse_->bytes() + 8. * n_flexible_ * Z_.size() + 8. * restart_ * n_all_;
+    return matrix_->bytes() + coupling_->bytes() + inverse_->bytes() + 8. * n_flexible_ * Z_.size() + 8. * (is_cg_ ? 3 : restart_) * n_all_;
   }
   double set_up_seconds() const override { return set_up_seconds_ + (direct_ ? direct_->set_up_seconds() : 0); }
   double undivided_seconds() const override { return inverse_ ? inverse_->undivided_seconds() : 0; }
@@ -125,8 +131,9 @@ class IterativeSolver final : public KktSolver {
     if (direct_) return direct_->name();
     if (!inverse_) return kind_ == Kind::bddc ? "BDDC" : kind_ == Kind::feti_dp ? "FETI-DP" : "iterative";
     const std::string ranks = size() > 1 ? fmt::format(", {} ranks", size()) : "";
-    return kind_ == Kind::algebraic ? fmt::format("iterative (GMRES, {}{})", inverse_->name(), ranks)
-                                    : fmt::format("{} (GMRES{})", inverse_->name(), ranks);
+    const char* method = is_cg_ ? "CG" : "GMRES";
+    return is_substructured() ? fmt::format("{} ({}{})", inverse_->name(), method, ranks)
+                              : fmt::format("iterative ({}, {}{})", method, inverse_->name(), ranks);
   }
 
  private:
@@ -135,10 +142,19 @@ class IterativeSolver final : public KktSolver {
     MatDestroy(&A_);
   }
 
+  bool is_substructured() const { return kind_ == Kind::bddc || kind_ == Kind::feti_dp; }
+
   void make_flexible(std::vector<double> positions) {
     if (kind_ == Kind::algebraic) {
       auto F = std::make_unique<BlockMatrix>(*cliques_, *map_, *shared_, map_->first_dense);
       inverse_ = make_algebraic_inverse(*F, std::move(positions));
+      matrix_ = std::move(F);
+      return;
+    }
+    if (kind_ == Kind::cg) {
+      auto F = std::make_unique<SymmetricMatrix>(*cliques_, *map_, *shared_);
+      const auto make_whole = [this] { return std::make_unique<BlockMatrix>(*cliques_, *map_, *shared_, map_->first_dense); };
+      inverse_ = make_algebraic_inverse(*F, make_whole, std::move(positions));
       matrix_ = std::move(F);
       return;
     }
@@ -192,10 +208,9 @@ class IterativeSolver final : public KktSolver {
     check(KSPCreate(PETSC_COMM_WORLD, &ksp_));
     check(KSPSetOptionsPrefix(ksp_, "hilo_outer_"));
     check(KSPSetOperators(ksp_, A_, A_));
-    check(KSPSetType(ksp_, inverse_->is_iterative() ? KSPFGMRES : KSPGMRES));
+    is_cg_ = kind_ == Kind::cg;
     restart_ = n_global > 1000000 ? 50 : 100;  // at 3 million unknowns 50 vectors are 1.2 GB
-    check(KSPGMRESSetRestart(ksp_, restart_));
-    check(KSPSetPCSide(ksp_, PC_RIGHT));
+    choose_method();
     check(KSPSetInitialGuessNonzero(ksp_, PETSC_TRUE));
     PC pc;
     check(KSPGetPC(ksp_, &pc));
@@ -208,6 +223,21 @@ class IterativeSolver final : public KktSolver {
       return code;
     }));
     check(KSPSetFromOptions(ksp_));
+  }
+
+  void choose_method() {
+    check(KSPSetType(ksp_, is_cg_ ? KSPCG : inverse_->is_iterative() ? KSPFGMRES : KSPGMRES));
+    check(KSPSetPCSide(ksp_, is_cg_ ? PC_LEFT : PC_RIGHT));
+    check(KSPSetNormType(ksp_, KSP_NORM_UNPRECONDITIONED));
+    if (!is_cg_) check(KSPGMRESSetRestart(ksp_, restart_));
+  }
+
+  /// From x to where the rows of the dense part hold exactly.
+  void step_to_dense_rows() {
+    multiply(x_, r_);
+    check(VecAYPX(r_, -1, b_));
+    precondition(r_, dx_);
+    check(VecAXPY(x_, 1, dx_));
   }
 
   SolveReport set_up_and_attempt() {
@@ -234,14 +264,23 @@ class IterativeSolver final : public KktSolver {
     KSPConvergedReason reason = KSP_CONVERGED_RTOL;
     PetscInt iterations = 0;
     // a preconditioner in single precision lets the recurrence run ahead of the residual: go on from where that is
-    const int cycles = kind_ == Kind::algebraic ? 4 : 1;
+    const int cycles = is_substructured() ? 1 : 4;
     for (int cycle = 0; cycle < cycles && iterations < iterations_allowed; ++cycle) {
       PetscInt more = 0;
+      if (is_cg_) step_to_dense_rows();
       check(KSPSetTolerances(ksp_, wanted_, 1e-300, PETSC_DEFAULT, iterations_allowed - iterations));
       check(KSPSolve(ksp_, b_, x_));
       check(KSPGetConvergedReason(ksp_, &reason));
       check(KSPGetIterationNumber(ksp_, &more));
       iterations += more;
+      if (is_cg_ && (reason == KSP_DIVERGED_INDEFINITE_MAT || reason == KSP_DIVERGED_INDEFINITE_PC)) {
+        if (rank() == 0) warn("", "CG: the tangent is indefinite; GMRES from here on");
+        is_cg_ = false;
+        choose_method();
+        check(VecSet(x_, 0));
+        more = 1, left = INFINITY;
+        continue;
+      }
       multiply(x_, r_);
       check(VecAYPX(r_, -1, b_));
       check(VecNorm(r_, NORM_2, &left));
@@ -391,7 +430,8 @@ class IterativeSolver final : public KktSolver {
   std::optional<Coupling> coupling_;
   std::unique_ptr<FlexibleInverse> inverse_;
   std::unique_ptr<DirectSolver> direct_;  // once substructuring has failed
-  Vector x_, b_, r_, f_, u_, w_;
+  bool is_cg_ = false;
+  Vector x_, b_, r_, dx_, f_, u_, w_;
   Mat A_ = nullptr;
   KSP ksp_ = nullptr;
   bool keep_ = true;

@@ -2,6 +2,6 @@
 #pragma once
 #include "linear/kkt.hpp"
 
-/// "direct", "iterative", "bddc" or "feti-dp"; starts PETSc (and MPI where it does not run yet) at the first call.  `tool` is named in
-/// errors.
+/// "direct", "cg", "iterative", "bddc" or "feti-dp"; starts PETSc (and MPI where it does not run yet) at the first call.  `tool` is named
+/// in errors.
 extern "C" hilo::KktSolver* hilo_make_petsc_solver(const char* kind, double tolerance, int subdomains, const char* tool);
