@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "dynamics/profile.hpp"
 #include "dynamics/redundancy.hpp"
 #include "dynamics/start.hpp"
 #include "model/store.hpp"
@@ -94,7 +95,7 @@ class Recorder {
   int n_fields_ = 0;
   std::int64_t topology_entries_ = 0;
   long rows_written_ = 0;
-  double last_flush_ = 0, last_xdmf_ = 0;
+  double last_flush_ = wall_clock(), last_xdmf_ = wall_clock();
   std::vector<double> field_times_;
 };
 

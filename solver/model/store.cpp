@@ -101,6 +101,7 @@ Store Store::open(const std::string& path) {
   impl->path = impl->on_disk = path;
   const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
+  H5Pset_elink_file_cache_size(access, 4);  // a file behind a link is opened once, not for every array
   impl->file = Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
   if (!impl->file.ok()) {
     const Cause cause = last_cause();

@@ -84,7 +84,7 @@ std::string resolved_from(const std::string& from, const std::string& relative);
 std::string digest(const std::string& path);
 /// Error (exit 4) where a folder, device or pipe is in the place of a file to be written: a rename would replace it.
 void refuse_special(const std::string& path);
-/// Write a text file as a whole or not at all (temporary file, fsync, rename).
+/// Write a text file as a whole or not at all (temporary file, rename).
 void write_text_file(const std::string& path, const std::string& text);
 /// A whole text file; Error (exit 2) when it cannot be read.
 std::string read_text_file(const std::string& path, const std::string& where = "");

@@ -70,6 +70,13 @@ inline Id text_type() {
   return type;
 }
 
+/// How texts are read and written: converted in a buffer of 4 kB, not the megabyte that the library would clear each time.
+inline Id text_transfer() {
+  Id transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
+  H5Pset_buffer(transfer, 4096, nullptr, nullptr);
+  return transfer;
+}
+
 inline std::int64_t product(std::span<const std::int64_t> shape) {
   return std::accumulate(shape.begin(), shape.end(), std::int64_t{1}, std::multiplies<>());
 }

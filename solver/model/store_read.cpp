@@ -132,7 +132,7 @@ std::vector<std::string> Store::read_strings(const std::string& array) const {
   const Id set = impl_->open_array(array);
   const Id type(H5Dget_type(set), H5Tclose), space(H5Dget_space(set), H5Sclose);
   if (H5Tget_class(type) != H5T_STRING) throw Error(impl_->path, fmt::format("{} does not hold text", array));
-  auto texts = strings_of(type, space, [&](hid_t t, void* to) { return H5Dread(set, t, H5S_ALL, H5S_ALL, H5P_DEFAULT, to); });
+  auto texts = strings_of(type, space, [&](hid_t t, void* to) { return H5Dread(set, t, H5S_ALL, H5S_ALL, text_transfer(), to); });
   if (!texts) impl_->fail_read(array);
   return *texts;
 }

@@ -106,10 +106,7 @@ void write_text_file(const std::string& path, const std::string& text) {
     }
     done += static_cast<size_t>(n);
   }
-  const bool synced = ::fsync(d) == 0 || errno == EINVAL;
-  const int error = errno;
   if (::close(d) != 0) fail(errno);
-  if (!synced) fail(error);
   if (::rename(temporary.c_str(), path.c_str()) != 0) fail(errno);
 }
 

@@ -73,14 +73,14 @@ void Store::write_strings(const std::string& array, std::span<const std::string>
   const Id set = impl_->make_array(array, type, space, creation);
   std::vector<const char*> raw;
   for (const auto& v : values) raw.push_back(v.c_str());
-  if (!raw.empty()) impl_->need(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.data()) >= 0, "cannot write " + array);
+  if (!raw.empty()) impl_->need(H5Dwrite(set, type, H5S_ALL, H5S_ALL, text_transfer(), raw.data()) >= 0, "cannot write " + array);
 }
 
 void Store::write_text(const std::string& array, const std::string& text) {
   const Id type = text_type(), space = simple_space({}), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   const Id set = impl_->make_array(array, type, space, creation);
   const char* raw = text.c_str();
-  impl_->need(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &raw) >= 0, "cannot write " + array);
+  impl_->need(H5Dwrite(set, type, H5S_ALL, H5S_ALL, text_transfer(), &raw) >= 0, "cannot write " + array);
 }
 
 template <class T>
