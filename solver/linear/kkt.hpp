@@ -40,6 +40,7 @@ struct SolveReport {
   double residual = 0;  // |A x - b|/|b| in the maximum norm, by multiplication, not claimed by the solver
   int iterations = 0;   // 0 for a direct solver
   std::string message;
+  int most_within = 0;  // of one solve within the preconditioner, where that iterates
 };
 
 class KktSolver {

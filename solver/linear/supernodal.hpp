@@ -14,6 +14,7 @@ void dgemv_(const char*, const int*, const int*, const double*, const double*, c
             double*, const int*);
 void sgemv_(const char*, const int*, const int*, const float*, const float*, const int*, const float*, const int*, const float*, float*,
             const int*);
+void dtrmv_(const char*, const char*, const char*, const int*, const double*, const int*, double*, const int*);
 }
 
 namespace hilo::supernodal {
@@ -86,6 +87,32 @@ void backward(const cholmod_factor* L, int from, int to, T* x, std::vector<T>& s
     if (n_below > 0) multiply("T", n_below, m, T(-1), D + m, stride, scratch.data(), T(1), x + a);
     solve_triangle("T", m, D, stride, x + a);
   }
+}
+
+/// x[from .. n) := L L^T x, columns [from, n) only.
+inline void multiply(const cholmod_factor* L, int from, double* x, std::vector<double>& scratch) {
+  const auto* super = static_cast<const int*>(L->super);
+  const auto *pi = static_cast<const int*>(L->pi), *px = static_cast<const int*>(L->px), *rows = static_cast<const int*>(L->s);
+  const auto* values = static_cast<const double*>(L->x);
+  const int one = 1, n_super = static_cast<int>(L->nsuper);
+  scratch.resize(L->maxesize + L->n);
+  const int first = static_cast<int>(std::upper_bound(super, super + n_super, from) - super) - 1;
+  const auto visit = [&](int s, auto&& f) {
+    const int a = std::max(from, super[s]), m = super[s + 1] - a, o = a - super[s], stride = pi[s + 1] - pi[s];
+    f(m, values + px[s] + o + static_cast<size_t>(o) * stride, stride, x + a, stride - o - m, rows + pi[s] + o + m);
+  };
+  for (int s = first; s < n_super; ++s)
+    visit(s, [&](int m, const double* D, int stride, double* y, int n_below, const int* row) {
+      dtrmv_("L", "T", "N", &m, D, &stride, y, &one);
+      for (int k = 0; k < n_below; ++k) scratch[k] = x[row[k]];
+      if (n_below > 0) multiply("T", n_below, m, 1., D + m, stride, scratch.data(), 1., y);
+    });
+  for (int s = n_super - 1; s >= first; --s)
+    visit(s, [&](int m, const double* D, int stride, double* y, int n_below, const int* row) {
+      if (n_below > 0) multiply("N", n_below, m, 1., D + m, stride, y, 0., scratch.data());
+      for (int k = 0; k < n_below; ++k) x[row[k]] += scratch[k];
+      dtrmv_("L", "N", "N", &m, D, &stride, y, &one);
+    });
 }
 
 }  // namespace hilo::supernodal

@@ -69,7 +69,7 @@ class Deflated final : public FlexibleInverse {
   bool is_iterative() const override { return inner_->is_iterative(); }
   bool has_failed() const override { return inner_->has_failed(); }
   int most_iterations() const override { return inner_->most_iterations(); }
-  int take_iterations() override { return inner_->take_iterations(); }
+  Within take_iterations() override { return inner_->take_iterations(); }
   double undivided_seconds() const override { return inner_->undivided_seconds(); }
   std::string name() const override { return inner_->name(); }
   double bytes() const override { return inner_->bytes() + 24. * static_cast<double>(R_.size()); }

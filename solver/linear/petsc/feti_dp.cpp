@@ -1,108 +1,84 @@
-// FETI-DP [farhat-2001] on the symmetric part of the flexible block, by PETSc [zampini-2016]: a solve to round-off nearly, by conjugate
-// gradients on the forces between subdomains.  PETSc factors each subdomain twice (its inside, and all of it but the corners).
-#include <petscksp.h>
-
-#include <string>
+// FETI-DP [farhat-2001] on the symmetric part of the flexible block: conjugate gradients on the forces lambda between subdomains,
+//
+//     F lambda = B S~^-1 g,    F = B S~^-1 B^T,    preconditioned by  B_D S B_D^T  (Dirichlet),    B_D^T B = P_D = 1 - E_D,
+//
+// with the spaces, primal constraints and weights of BDDC (dual_primal.hpp), so that the spectrum is that of BDDC but for zeros and ones
+// [mandel-dohrmann-tezaur-2005].  lambda is held as the forces B^T lambda on the pieces, which cancel where pieces meet, the residual as
+// w = S~^-1 (g - B^T lambda), which still jumps: no B is needed, and at the end w is the answer.  The first w, averaged, is what BDDC
+// gives.  An iteration reads of the factors what belongs to the interface alone.
+#include <algorithm>
 #include <utility>
 
-#include "linear/petsc/flexible.hpp"
-#include "linear/petsc/subdomain_matrix.hpp"
+#include "linear/petsc/dual_primal.hpp"
 
 namespace hilo::petsc {
 namespace {
 
-/// Unless PETSC_OPTIONS has its own.
-void suggest(const std::string& key, const char* value) {
-  PetscBool given;
-  check(PetscOptionsHasName(nullptr, nullptr, key.c_str(), &given));
-  if (!given) check(PetscOptionsSetValue(nullptr, key.c_str(), value));
-}
-
-/// What worked on bars, tubes and the vehicle: corners for three-dimensional elasticity, averages over edges and faces.
-void suggest_options(const std::string& prefix, bool corners) {
-  const std::string p = "-" + prefix;
-  if (corners) suggest(p + "pc_bddc_corner_selection", "1");
-  suggest(p + "pc_bddc_use_faces", "1");
-  suggest(p + "pc_bddc_detect_disconnected", "1");
-  for (const char* local : {"pc_bddc_dirichlet_", "pc_bddc_neumann_"}) {
-    suggest(p + local + "pc_type", "cholesky");
-    suggest(p + local + "pc_factor_mat_solver_type", "mumps");
-  }
-}
+using Eigen::VectorXd;
 
 class FetiDp final : public FlexibleInverse {
  public:
-  FetiDp(SubdomainMatrix& F, std::vector<double> positions) : F_(F), positions_(std::move(positions)) {
-    for (size_t i = 0; i < positions_.size(); i += 3)  // PETSc wants the node's position once for each of its unknowns
-      for (int c = 0; c < 3; ++c) by_unknown_.insert(by_unknown_.end(), positions_.begin() + i, positions_.begin() + i + 3);
-  }
-  ~FetiDp() override { KSPDestroy(&ksp_); }
+  explicit FetiDp(const SubdomainMatrix& F) : spaces_(F) {}
 
   bool set_up() override {
-    failed_ = false;
-    const Mat S = F_.symmetric_part();
-    if (!ksp_) make(S);
-    check(KSPSetOperators(ksp_, S, S));
-    check(KSPSetUp(ksp_));
-    PC inner;
-    PCFailedReason reason;
-    check(KSPFETIDPGetInnerBDDC(ksp_, &inner));
-    check(PCGetFailedReason(inner, &reason));
-    int failed = reason != PC_NOERROR;
-    MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
-    return !failed;
+    failed_ = false, most_ = 0;
+    return spaces_.set_up(is_adaptive_);
   }
 
   void apply(Vec b, Vec x) override {
-    check(KSPSolve(ksp_, b, x));
-    KSP inner;
-    PetscInt iterations;
-    KSPConvergedReason reason;
-    check(KSPFETIDPGetInnerKSP(ksp_, &inner));
-    check(KSPGetIterationNumber(inner, &iterations));
-    check(KSPGetConvergedReason(inner, &reason));
-    iterations_ += static_cast<int>(iterations);
-    failed_ |= reason < 0;
+    const VectorXd g = spaces_.condense(b);
+    VectorXd w = spaces_.solve(g), p = VectorXd::Zero(w.size());
+    const double energy = dot(g, w), most = is_adaptive_ ? 150 : 60;
+    double before = 1, enough = 0;
+    int k = 0;
+    for (;; ++k) {
+      const VectorXd jump = w - spaces_.average(w), force = spaces_.multiply(jump);
+      const double now = dot(jump, force);  // the residual B w, squared, in the norm of the preconditioner
+      if (k == 0) enough = std::max(tolerance * tolerance * now, round_off * round_off * energy);
+      if (now <= enough) break;
+      if (!(now > 0) || k == most) {
+        failed_ = true;
+        break;
+      }
+      p = force - spaces_.average_transposed(force) + (k == 0 ? 0 : now / before) * p;
+      const VectorXd q = spaces_.solve(p);
+      w -= now / dot(p, q) * q;
+      before = now;
+    }
+    taken_.all += k, taken_.most = std::max(taken_.most, k);
+    most_ = std::max(most_, k);
+    spaces_.expand(w, x);
   }
 
-  bool strengthen(int, bool) override { return false; }
+  bool strengthen(int, bool) override {
+    if (is_adaptive_ || most_ <= too_many_iterations) return false;
+    return is_adaptive_ = true;
+  }
   bool is_iterative() const override { return true; }
   bool has_failed() const override { return failed_; }
-  int most_iterations() const override { return 10; }
-  int take_iterations() override { return std::exchange(iterations_, 0); }
-  std::string name() const override { return "FETI-DP"; }
-  double bytes() const override { return 6 * F_.bytes(); }  // an estimate: PETSc does not tell
+  int most_iterations() const override { return 30; }
+  Within take_iterations() override { return std::exchange(taken_, {}); }
+  double undivided_seconds() const override { return spaces_.coarse_seconds(); }
+  std::string name() const override { return is_adaptive_ ? "adaptive FETI-DP" : "FETI-DP"; }
+  double bytes() const override { return spaces_.bytes(); }
 
  private:
-  void make(Mat S) {
-    corners_ = set_near_null_space(S, positions_);
-    suggest_options("hilo_fetidp_bddc_", corners_);
-    check(KSPCreate(PETSC_COMM_WORLD, &ksp_));
-    check(KSPSetOptionsPrefix(ksp_, "hilo_"));
-    check(KSPSetErrorIfNotConverged(ksp_, PETSC_FALSE));
-    check(KSPSetType(ksp_, KSPFETIDP));
-    check(KSPSetOperators(ksp_, S, S));
-    PC inner;
-    check(KSPFETIDPGetInnerBDDC(ksp_, &inner));
-    if (corners_) check(PCSetCoordinates(inner, 3, static_cast<PetscInt>(positions_.size()), by_unknown_.data()));
-    KSP dual;
-    check(KSPFETIDPGetInnerKSP(ksp_, &dual));
-    check(KSPSetTolerances(dual, dual_tolerance, 1e-300, PETSC_DEFAULT, 150));
-    check(KSPSetFromOptions(ksp_));
+  static double dot(const VectorXd& a, const VectorXd& b) {
+    double sum = a.dot(b);
+    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    return sum;
   }
 
-  static constexpr double dual_tolerance = 1e-10;  // on the dual residual: a digit more than the primal one gets
-  SubdomainMatrix& F_;
-  std::vector<double> positions_, by_unknown_;
-  bool corners_ = false, failed_ = false;
-  int iterations_ = 0;
-  KSP ksp_ = nullptr;
+  static constexpr double tolerance = 1e-10;  // of the first residual
+  static constexpr double round_off = 1e-14;  // of the answer
+  DualPrimal spaces_;
+  bool is_adaptive_ = false, failed_ = false;
+  Within taken_;
+  int most_ = 0;  // iterations of an application since the set-up
 };
 
 }  // namespace
 
-std::unique_ptr<FlexibleInverse> make_feti_dp(SubdomainMatrix& F, std::vector<double> positions) {
-  return std::make_unique<FetiDp>(F, std::move(positions));
-}
+std::unique_ptr<FlexibleInverse> make_feti_dp(const SubdomainMatrix& F) { return std::make_unique<FetiDp>(F); }
 
 }  // namespace hilo::petsc

@@ -41,8 +41,11 @@ class FlexibleInverse {
   virtual bool has_failed() const { return false; }
   /// Outer iterations after which there is no hope.
   virtual int most_iterations() const { return 600; }
-  /// Iterations within the applications since the last call.
-  virtual int take_iterations() { return 0; }
+  /// Iterations within the applications since the last call: of all, and of the one with most.
+  struct Within {
+    int all = 0, most = 0;
+  };
+  virtual Within take_iterations() { return {}; }
   virtual double undivided_seconds() const { return 0; }
   virtual std::string name() const = 0;
   virtual double bytes() const = 0;
@@ -61,11 +64,11 @@ std::unique_ptr<FlexibleInverse> make_algebraic_inverse(const BlockMatrix& F, st
 /// Likewise; `make_whole` makes an empty matrix of the same pattern, for multigrid.
 std::unique_ptr<FlexibleInverse> make_algebraic_inverse(const SymmetricMatrix& F, std::function<std::unique_ptr<BlockMatrix>()> make_whole,
                                                         std::vector<double> positions);
-/// Balancing domain decomposition.
+/// Balancing domain decomposition, and solving for the forces between subdomains.
 std::unique_ptr<FlexibleInverse> make_bddc(const SubdomainMatrix& F);
+std::unique_ptr<FlexibleInverse> make_feti_dp(const SubdomainMatrix& F);
 /// `inner`, made exact on the rigid motions of connected parts.
 std::unique_ptr<FlexibleInverse> make_deflated(std::unique_ptr<FlexibleInverse> inner, const SubdomainMatrix& F,
                                                std::vector<double> positions);
-std::unique_ptr<FlexibleInverse> make_feti_dp(SubdomainMatrix& F, std::vector<double> positions);
 
 }  // namespace hilo::petsc

@@ -86,6 +86,7 @@ class IterativeSolver final : public KktSolver {
     to_owned(*shared_, b, b_);
     check(VecSet(x_, 0));
     SolveReport report;
+    within_ = {};
     int before = 0;
     const double decades = -std::log10(wanted_);
     const bool lagged = ready_;
@@ -117,6 +118,7 @@ class IterativeSolver final : public KktSolver {
       report.iterations += before;
       return report;
     }
+    if (within_.all > 0) report.iterations = within_.all, report.most_within = within_.most;
     to_local(*shared_, x_, x);
     return report;
   }
@@ -158,13 +160,10 @@ class IterativeSolver final : public KktSolver {
       matrix_ = std::move(F);
       return;
     }
-    auto F = std::make_unique<SubdomainMatrix>(*cliques_, *map_, *shared_, kind_ == Kind::feti_dp ? 1 : subdomains_);
+    auto F = std::make_unique<SubdomainMatrix>(*cliques_, *map_, *shared_, subdomains_);
     const bool placed = largest(positions.empty() ? 0 : 1) > 0;
-    if (kind_ == Kind::feti_dp)
-      inverse_ = make_feti_dp(*F, positions);
-    else
-      inverse_ = make_bddc(*F);
-    if (placed && kind_ == Kind::bddc) inverse_ = make_deflated(std::move(inverse_), *F, std::move(positions));
+    inverse_ = kind_ == Kind::feti_dp ? make_feti_dp(*F) : make_bddc(*F);
+    if (placed) inverse_ = make_deflated(std::move(inverse_), *F, std::move(positions));
     matrix_ = std::move(F);
   }
 
@@ -243,7 +242,7 @@ class IterativeSolver final : public KktSolver {
   SolveReport set_up_and_attempt() {
     ready_ = false;
     if (const std::string problem = set_up(); !problem.empty()) return {false, 1, 0, problem};
-    inverse_->take_iterations();
+    inverse_->take_iterations();  // those of the set-up
     const SolveReport report = attempt(inverse_->most_iterations());
     ready_ = report.ok;
     return report;
@@ -286,8 +285,9 @@ class IterativeSolver final : public KktSolver {
       check(VecNorm(r_, NORM_2, &left));
       if (reason < 0 || more == 0 || !(left > 2 * wanted_ * size)) break;
     }
-    const int within = inverse_->take_iterations();
-    report.iterations = within > 0 ? within : static_cast<int>(iterations);
+    report.iterations = static_cast<int>(iterations);
+    const auto [all, most] = inverse_->take_iterations();
+    within_.all += all, within_.most = std::max(within_.most, most);
     const double norm = max_norm(b_);
     report.residual = norm > 0 ? max_norm(r_) / norm : max_norm(r_);
     report.ok = std::isfinite(report.residual) && (reason > 0 || report.residual <= wanted_);
@@ -420,6 +420,7 @@ class IterativeSolver final : public KktSolver {
   double set_up_seconds_ = 0;
   bool ready_ = false;  // the preconditioner is of a matrix that it solved
   double rate_ = 0;     // iterations a decade, when it was fresh
+  FlexibleInverse::Within within_;
   int m_ = 0, restart_ = 100;
   size_t n_flexible_ = 0, n_all_ = 0;  // owned unknowns
   const Cliques* cliques_ = nullptr;

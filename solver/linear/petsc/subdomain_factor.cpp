@@ -147,6 +147,9 @@ bool SubdomainFactor::factor(const SubdomainMatrix& F, const Interface& interfac
 
 void SubdomainFactor::forward(int from, int to, double* x) const { supernodal::forward(L_, from, to, x, below_); }
 void SubdomainFactor::backward(int from, int to, double* x) const { supernodal::backward(L_, from, to, x, below_); }
+void SubdomainFactor::multiply_schur(double* x) const {
+  if (n_interior_ < n()) supernodal::multiply(L_, n_interior_, x, below_);
+}
 
 Eigen::MatrixXd SubdomainFactor::schur_rows(int piece, const std::vector<int>& unknowns) const {
   const int from = begin_[piece], to = begin_[piece + 1];

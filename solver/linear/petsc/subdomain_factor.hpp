@@ -31,6 +31,8 @@ class SubdomainFactor {
   void forward(int from, int to, double* x) const;
   /// x := L^-T x, columns [from, to) only, from the rows below as they are.
   void backward(int from, int to, double* x) const;
+  /// x := L_S L_S^T x of all interfaces; x of all unknowns.
+  void multiply_schur(double* x) const;
   /// The interface of a piece: unknowns [begin(p), begin(p + 1)).
   int begin(int piece) const { return begin_[piece]; }
   /// Rows of a piece's L_S, dense (unknowns x its interface): of the given ones of its interface.

@@ -69,7 +69,6 @@ SubdomainMatrix::SubdomainMatrix(const Cliques& cliques, const BlockMap& map, co
 }
 
 SubdomainMatrix::~SubdomainMatrix() {
-  MatDestroy(&symmetric_), MatDestroy(&symmetric_local_);
   MatDestroy(&A_), MatDestroy(&local_);
   VecScatterDestroy(&all_);
   VecDestroy(&in_), VecDestroy(&out_);
@@ -264,54 +263,6 @@ void SubdomainMatrix::assemble() {
   check(MatAssemblyEnd(local_, MAT_FINAL_ASSEMBLY));
 }
 
-Mat SubdomainMatrix::symmetric_part() {
-  const auto n = static_cast<PetscInt>(global_.size());
-  if (!symmetric_) {
-    std::vector<PetscInt> start{0}, columns;
-    columns.reserve(9 * columns_.size());
-    for (PetscInt i = 0; i < n; ++i)
-      for (int r = 0; r < 3; ++r) {
-        for (PetscInt k = start_[i]; k < start_[i + 1]; ++k)
-          for (int c = 0; c < 3; ++c) columns.push_back(3 * columns_[k] + c);
-        start.push_back(static_cast<PetscInt>(columns.size()));
-      }
-    check(MatCreate(PETSC_COMM_SELF, &symmetric_local_));
-    check(MatSetSizes(symmetric_local_, 3 * n, 3 * n, 3 * n, 3 * n));
-    check(MatSetType(symmetric_local_, MATSEQAIJ));
-    check(MatSetBlockSize(symmetric_local_, 3));
-    check(MatSeqAIJSetPreallocationCSR(symmetric_local_, start.data(), columns.data(), nullptr));
-    check(MatSetOption(symmetric_local_, MAT_SPD, PETSC_TRUE));
-    check(MatSetOption(symmetric_local_, MAT_SPD_ETERNAL, PETSC_TRUE));
-    ISLocalToGlobalMapping blocks;
-    check(ISLocalToGlobalMappingCreate(PETSC_COMM_WORLD, 3, n, global_.data(), PETSC_COPY_VALUES, &blocks));
-    check(MatCreateIS(PETSC_COMM_WORLD, 3, 3 * n_owned_, 3 * n_owned_, PETSC_DETERMINE, PETSC_DETERMINE, blocks, blocks, &symmetric_));
-    check(MatISSetLocalMat(symmetric_, symmetric_local_));
-    check(ISLocalToGlobalMappingDestroy(&blocks));
-    check(MatSetOption(symmetric_, MAT_SPD, PETSC_TRUE));
-    check(MatSetOption(symmetric_, MAT_SPD_ETERNAL, PETSC_TRUE));
-  }
-  PetscScalar *from, *to;  // from: blocks by columns
-  check(MatSeqBAIJGetArray(local_, &from));
-  check(MatSeqAIJGetArray(symmetric_local_, &to));
-  for (PetscInt i = 0; i < n; ++i) {
-    const PetscInt width = start_[i + 1] - start_[i];
-    for (PetscInt k = start_[i]; k < start_[i + 1]; ++k) {
-      const PetscInt j = columns_[k];
-      const auto begin = columns_.begin() + start_[j], end = columns_.begin() + start_[j + 1];
-      const PetscScalar *a = from + 9 * static_cast<size_t>(k),
-                        *t = from + 9 * static_cast<size_t>(std::lower_bound(begin, end, i) - columns_.begin());
-      PetscScalar* out = to + 9 * static_cast<size_t>(start_[i]) + 3 * static_cast<size_t>(k - start_[i]);
-      for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) out[static_cast<size_t>(r) * 3 * width + c] = 0.5 * (a[3 * c + r] + t[3 * r + c]);
-    }
-  }
-  check(MatSeqAIJRestoreArray(symmetric_local_, &to));
-  check(MatSeqBAIJRestoreArray(local_, &from));
-  check(MatAssemblyBegin(symmetric_, MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(symmetric_, MAT_FINAL_ASSEMBLY));
-  return symmetric_;
-}
-
 void SubdomainMatrix::for_each_symmetric_block(const std::function<void(PetscInt, PetscInt, const double*)>& visit) const {
   PetscScalar* from;  // blocks by columns
   check(MatSeqBAIJGetArray(local_, &from));
@@ -351,7 +302,6 @@ double SubdomainMatrix::bytes() const {
   MatInfo info;
   double sum = 8. * static_cast<double>(columns_.size());
   if (!MatGetInfo(local_, MAT_LOCAL, &info)) sum += info.memory;
-  if (symmetric_local_ && !MatGetInfo(symmetric_local_, MAT_LOCAL, &info)) sum += info.memory;
   return sum;
 }
 

@@ -40,8 +40,6 @@ class SubdomainMatrix final : public FlexibleMatrix {
   /// Visit the blocks (i, j), j <= i, of the symmetric part, 3 x 3 row major.
   void for_each_symmetric_block(const std::function<void(PetscInt i, PetscInt j, const double* block)>& visit) const;
 
-  /// The symmetric part, scalar storage, as its own matrix over the ranks (of one subdomain each); made anew at each call.
-  Mat symmetric_part();
   /// Give its rows to `row` by global numbers, 3 x 3n values each (of each subdomain: to be summed).
   void for_each_row(const std::function<void(PetscInt row, std::span<const PetscInt> columns, const double* values)>& row) const;
 
@@ -63,7 +61,7 @@ class SubdomainMatrix final : public FlexibleMatrix {
   std::vector<int> owned_place_;           // owned number of each local block, -1 for others'
   std::vector<double> diagonal_;           // waiting to be shared out, 3 per owned block
   std::vector<char> waits_;
-  Mat A_ = nullptr, local_ = nullptr, symmetric_ = nullptr, symmetric_local_ = nullptr;
+  Mat A_ = nullptr, local_ = nullptr;
   VecScatter all_ = nullptr;  // to the subdomains' blocks
   Vec in_ = nullptr, out_ = nullptr;
 };

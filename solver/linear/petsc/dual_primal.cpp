@@ -1,0 +1,251 @@
+#include "linear/petsc/dual_primal.hpp"
+
+#include <petscvec.h>
+
+#include <algorithm>
+
+#include "base/stopwatch.hpp"
+
+namespace hilo::petsc {
+namespace {
+
+void scatter(VecScatter how, Vec from, Vec to, InsertMode mode, ScatterMode direction) {
+  check(VecScatterBegin(how, from, to, mode, direction));
+  check(VecScatterEnd(how, from, to, mode, direction));
+}
+
+}  // namespace
+
+Eigen::VectorXd DualPrimal::Piece::own(const VectorXd& primal) const {
+  VectorXd x(static_cast<Eigen::Index>(number.size()));
+  for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = primal[number[k]];
+  return x;
+}
+
+DualPrimal::DualPrimal(const SubdomainMatrix& F)
+    : F_(F), interface_(find_interface(F)), factor_(F, interface_), pieces_(interface_.n_pieces), g_(3 * F.n_owned()) {
+  n_ = factor_.n(), n_interior_ = factor_.n_interior(), n_edge_ = n_ - n_interior_;
+  for (size_t p = 0; p < pieces_.size(); ++p) {
+    pieces_[p].from = factor_.begin(static_cast<int>(p)) - n_interior_;
+    pieces_[p].n = factor_.begin(static_cast<int>(p) + 1) - factor_.begin(static_cast<int>(p));
+  }
+  work_ = VectorXd::Zero(n_);
+  make_scatters();
+}
+
+DualPrimal::~DualPrimal() {
+  VecScatterDestroy(&all_), VecScatterDestroy(&edge_);
+  VecDestroy(&local_), VecDestroy(&edge_local_);
+}
+
+void DualPrimal::make_scatters() {
+  std::vector<PetscInt> index;
+  for (PetscInt k = 0; k < F_.n_blocks(); ++k) index.push_back(F_.global(factor_.block(k)));
+  const auto make = [&](PetscInt first, Vec* local, VecScatter* out) {
+    IS from;
+    const auto n = static_cast<PetscInt>(index.size()) - first;
+    check(VecCreateSeq(PETSC_COMM_SELF, 3 * n, local));
+    check(ISCreateBlock(PETSC_COMM_WORLD, 3, n, index.data() + first, PETSC_COPY_VALUES, &from));
+    check(VecScatterCreate(g_, from, *local, nullptr, out));
+    check(ISDestroy(&from));
+  };
+  make(0, &local_, &all_);
+  make(n_interior_ / 3, &edge_local_, &edge_);
+}
+
+bool DualPrimal::set_up(bool more_constraints) {
+  find_weights();
+  std::vector<double> regular;
+  for (const auto& c : interface_.classes) {  // C^T r C about as stiff as the nodes themselves
+    double sum = 0;
+    for (const PetscInt i : c.blocks) sum += diagonal_.segment<3>(3 * factor_.place(i)).sum();
+    regular.push_back(sum / (3. * static_cast<double>(c.blocks.size())));
+  }
+  int good = factor_.factor(F_, interface_, regular);
+  MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
+  if (good) {
+    good = find_class_matrices(interface_, factor_, regular, more_constraints, of_class_);
+    list_constraints(regular);
+    if (good) good = form_coarse_basis();
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
+  return good && factor_coarse();
+}
+
+/// Weights of the interface by the subdomains' diagonals: a stiff side decides.
+void DualPrimal::find_weights() {
+  diagonal_ = VectorXd::Zero(n_);
+  F_.for_each_symmetric_block([&](PetscInt i, PetscInt j, const double* block) {
+    if (i == j)
+      for (int c = 0; c < 3; ++c) diagonal_[3 * factor_.place(i) + c] = std::max(0.0, block[4 * c]);
+  });
+  const VectorXd own = diagonal_.tail(n_edge_);
+  weight_ = own.cwiseQuotient(sum(own));
+}
+
+/// The pieces' constraints: rigid motions of their classes, made regular, then the others.
+void DualPrimal::list_constraints(const std::vector<double>& regular) {
+  n_constraints_ = interface_.n_constraints + of_class_.n_more;
+  const auto& classes = interface_.classes;
+  std::vector<Eigen::Index> count(pieces_.size(), 0), column(pieces_.size(), 0);
+  for (size_t k = 0; k < classes.size(); ++k) count[classes[k].piece] += classes[k].q.cols() + of_class_.more[k].cols();
+  for (size_t p = 0; p < pieces_.size(); ++p) {
+    pieces_[p].number.clear();
+    pieces_[p].C = MatrixXd::Zero(pieces_[p].n, count[p]), pieces_[p].regular = VectorXd::Zero(count[p]);
+  }
+  const auto put = [&](const InterfaceClass& c, const MatrixXd& q, int first, double r) {
+    Piece& piece = pieces_[c.piece];
+    auto& at = column[c.piece];
+    for (size_t k = 0; k < c.blocks.size() && q.cols() > 0; ++k)
+      piece.C.block(3 * factor_.place(c.blocks[k]) - n_interior_ - piece.from, at, 3, q.cols()) =
+          q.middleRows(3 * static_cast<Eigen::Index>(k), 3);
+    for (int m = 0; m < q.cols(); ++m) piece.number.push_back(first + m), piece.regular[at++] = r;
+  };
+  for (size_t k = 0; k < classes.size(); ++k) put(classes[k], classes[k].q, classes[k].first, regular[k]);
+  for (size_t k = 0; k < classes.size(); ++k) put(classes[k], of_class_.more[k], interface_.n_constraints + of_class_.first_more[k], 0);
+}
+
+/// Psi = S^-1 C (C^T S^-1 C)^-1 with the regular S, and the pieces' parts of K_c.
+bool DualPrimal::form_coarse_basis() {
+  if (!weight_.allFinite()) return false;
+  for (Piece& p : pieces_) {
+    const auto from = n_interior_ + static_cast<int>(p.from), to = from + static_cast<int>(p.n);
+    const auto n = p.C.cols();
+    p.Psi.resize(p.n, n), p.coarse.resize(n, n);
+    if (n == 0) continue;
+    for (Eigen::Index k = 0; k < n; ++k) {
+      work_.segment(from, p.n) = p.C.col(k);
+      factor_.forward(from, to, work_.data()), factor_.backward(from, to, work_.data());
+      p.Psi.col(k) = work_.segment(from, p.n);
+    }
+    MatrixXd compliance = p.C.transpose() * p.Psi;
+    compliance = (0.5 * (compliance + compliance.transpose())).eval();
+    const Eigen::LLT<MatrixXd> inverse(compliance);
+    if (inverse.info() != Eigen::Success) return false;
+    p.coarse = inverse.solve(MatrixXd::Identity(n, n));
+    p.Psi = (p.Psi * p.coarse).eval();
+    p.coarse.diagonal() -= p.regular;
+    if (!p.coarse.allFinite()) return false;
+  }
+  return true;
+}
+
+/// K_c from all subdomains to all ranks, factored by each.
+bool DualPrimal::factor_coarse() {
+  if (n_constraints_ == 0) return true;
+  std::vector<double> mine, all;
+  for (const Piece& p : pieces_)
+    for (size_t a = 0; a < p.number.size(); ++a)
+      for (size_t b = 0; b < p.number.size(); ++b)
+        if (p.number[a] >= p.number[b])
+          mine.insert(mine.end(), {static_cast<double>(p.number[a]), static_cast<double>(p.number[b]),
+                                   p.coarse(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b))});
+  int n = static_cast<int>(mine.size());
+  std::vector<int> counts(size()), at(size(), 0);
+  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, PETSC_COMM_WORLD);
+  for (int r = 1; r < size(); ++r) at[r] = at[r - 1] + counts[r - 1];
+  all.resize(static_cast<size_t>(at.back()) + counts.back());
+  MPI_Allgatherv(mine.data(), n, MPI_DOUBLE, all.data(), counts.data(), at.data(), MPI_DOUBLE, PETSC_COMM_WORLD);
+  const Stopwatch watch(coarse_seconds_);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (size_t k = 0; k < all.size(); k += 3) entries.emplace_back(static_cast<int>(all[k]), static_cast<int>(all[k + 1]), all[k + 2]);
+  Eigen::SparseMatrix<double> K(n_constraints_, n_constraints_);
+  K.setFromTriplets(entries.begin(), entries.end());
+  coarse_factor_.compute(K);
+  return coarse_factor_.info() == Eigen::Success;
+}
+
+/// All primal unknowns, for forces on the interface.
+Eigen::VectorXd DualPrimal::solve_coarse(const VectorXd& f) {
+  VectorXd all = VectorXd::Zero(n_constraints_);
+  if (n_constraints_ == 0) return all;
+  for (const Piece& p : pieces_) {
+    const VectorXd share = p.Psi.transpose() * f.segment(p.from, p.n);
+    for (Eigen::Index k = 0; k < share.size(); ++k) all[p.number[k]] += share[k];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, all.data(), n_constraints_, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  const Stopwatch watch(coarse_seconds_);
+  return coarse_factor_.solve(all);
+}
+
+/// D x, or D^T x.
+Eigen::VectorXd DualPrimal::weigh(const VectorXd& x, bool transposed) const {
+  VectorXd y = x.cwiseProduct(weight_), part;
+  for (size_t k = 0; k < of_class_.weight.size(); ++k) {
+    const MatrixXd& W = of_class_.weight[k];
+    if (W.size() == 0) continue;
+    const auto& blocks = interface_.classes[k].blocks;
+    part.resize(W.rows());
+    for (size_t i = 0; i < blocks.size(); ++i)
+      part.segment<3>(3 * static_cast<Eigen::Index>(i)) = x.segment<3>(3 * factor_.place(blocks[i]) - n_interior_);
+    part = transposed ? VectorXd(W.transpose() * part) : VectorXd(W * part);
+    for (size_t i = 0; i < blocks.size(); ++i)
+      y.segment<3>(3 * factor_.place(blocks[i]) - n_interior_) = part.segment<3>(3 * static_cast<Eigen::Index>(i));
+  }
+  return y;
+}
+
+/// Values of the interface added to those of g, and the sums back to all that share them.
+Eigen::VectorXd DualPrimal::add(const VectorXd& x, Vec g) {
+  {
+    const Values e(edge_local_);
+    std::copy(x.data(), x.data() + n_edge_, e.data());
+  }
+  scatter(edge_, edge_local_, g, ADD_VALUES, SCATTER_REVERSE);
+  scatter(edge_, g, edge_local_, INSERT_VALUES, SCATTER_FORWARD);
+  const Values e(edge_local_);
+  return Eigen::Map<const VectorXd>(e.data(), n_edge_);
+}
+
+Eigen::VectorXd DualPrimal::sum(const VectorXd& x) {
+  check(VecSet(g_, 0));
+  return add(x, g_);
+}
+
+Eigen::VectorXd DualPrimal::condense(Vec b) {
+  scatter(all_, b, local_, INSERT_VALUES, SCATTER_FORWARD);
+  {
+    const Values y(local_);
+    work_.head(n_interior_) = Eigen::Map<const VectorXd>(y.data(), n_interior_);
+  }
+  work_.tail(n_edge_).setZero();
+  factor_.forward(0, n_interior_, work_.data());
+  check(VecCopy(b, g_));
+  return weigh(add(work_.tail(n_edge_), g_), true);
+}
+
+void DualPrimal::expand(const VectorXd& w, Vec x) {
+  work_.tail(n_edge_) = average(w);
+  factor_.backward(0, n_interior_, work_.data());  // y_I := L_II^-T (y_I - L_GI^T w)
+  {
+    const Values y(local_);
+    std::copy(work_.data(), work_.data() + n_, y.data());
+  }
+  scatter(all_, local_, x, INSERT_VALUES, SCATTER_REVERSE);
+}
+
+Eigen::VectorXd DualPrimal::solve(const VectorXd& f) {
+  work_.tail(n_edge_) = f;
+  factor_.forward(n_interior_, n_, work_.data()), factor_.backward(n_interior_, n_, work_.data());
+  VectorXd w = work_.tail(n_edge_);
+  const VectorXd primal = solve_coarse(f);
+  for (const Piece& p : pieces_) w.segment(p.from, p.n) += p.Psi * (p.own(primal) - p.C.transpose() * w.segment(p.from, p.n));
+  return w;
+}
+
+Eigen::VectorXd DualPrimal::multiply(const VectorXd& w) const {
+  work_.tail(n_edge_) = w;
+  factor_.multiply_schur(work_.data());
+  VectorXd f = work_.tail(n_edge_);
+  for (const Piece& p : pieces_) f.segment(p.from, p.n) -= p.C * p.regular.cwiseProduct(p.C.transpose() * w.segment(p.from, p.n));
+  return f;
+}
+
+double DualPrimal::bytes() const {
+  double sum = factor_.bytes();
+  for (const Piece& p : pieces_) sum += 16. * static_cast<double>(p.C.size());
+  for (const MatrixXd& w : of_class_.weight) sum += 8. * static_cast<double>(w.size());
+  return sum;
+}
+
+}  // namespace hilo::petsc
