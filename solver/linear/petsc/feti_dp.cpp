@@ -69,7 +69,7 @@ class FetiDp final : public FlexibleInverse {
     return sum;
   }
 
-  static constexpr double tolerance = 1e-10;  // of the first residual
+  static constexpr double tolerance = 1e-8;   // of the first residual
   static constexpr double round_off = 1e-14;  // of the answer
   DualPrimal spaces_;
   bool is_adaptive_ = false, failed_ = false;
