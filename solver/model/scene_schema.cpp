@@ -389,7 +389,7 @@ std::vector<KindSchema> make() {
                 {"iterations", number, "1", "25", "Newton iterations before the step is cut", at_least(1)},
                 {"cuts", number, "1", "8", "successive halvings of a step before the run stops", at_least(0)},
                 {"linear_tolerance", number, "1", "1e-10", "relative residual of an iterative linear solve", between(0, 1)},
-                {"subdomains", number, "1", "1", "bddc: into how many each rank divides its flexible part", at_least(1)}}});
+                {"subdomains", number, "1", "1", "bddc, feti-dp: into how many each rank divides its flexible part", at_least(1)}}});
   s.push_back({"output",
                "",
                "what the results hold",
