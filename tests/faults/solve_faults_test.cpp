@@ -126,6 +126,22 @@ TEST_F(BadScene, MadeGoodRunsFromStandardInputOnTwoRanksToo) {
   EXPECT_EQ(o.exit, 0) << o.err;
 }
 
+// The last rank is the one that notes its process number last.
+TEST_F(BadScene, MadeGoodEndsInSecondsWithAMessageWhereARankIsKilledOnTheWay) {
+  const auto o = mpirun(2,
+                        "bash -c 'echo $$ > rank$OMPI_COMM_WORLD_RANK; exec timeout 60 hilo-solve scene.toml tags.h5 -o run.h5 --set "
+                        "time.end=1000' > progress 2>&1 &\n"
+                        "for k in $(seq 300); do grep -q ^solver progress && break; sleep 0.1; done; sleep 1\n"
+                        "grep -q ^solver progress || exit 90\n"
+                        "pkill -9 -P $(cat rank1)\n"
+                        "start=$SECONDS; wait $!; code=$?\n"
+                        "echo $((SECONDS - start)); cat progress; exit $((code > 0 ? 91 : 0))",
+                        folder);
+  EXPECT_EQ(o.exit, 91) << o.out << o.err;
+  EXPECT_LE(std::atoi(o.out.c_str()), 5);
+  EXPECT_NE(o.out.find("exited on signal 9"), o.out.npos) << o.out;
+}
+
 TEST_F(BadScene, WithResultsThatCannotBeWrittenLeavesNothingBehind) {
   for (const int ranks : {1, 2}) {
     refused("hilo-solve scene.toml tags.h5 --quiet -o two.inp/run.h5", resources, "two.inp/run.h5: ...", ranks);
