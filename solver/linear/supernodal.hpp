@@ -5,37 +5,49 @@
 
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 #include <vector>
 
+#define HILO_BLAS(T, p)                                                                                                               \
+  void p##trsv_(const char*, const char*, const char*, const int*, const T*, const int*, T*, const int*);                             \
+  void p##gemv_(const char*, const int*, const int*, const T*, const T*, const int*, const T*, const int*, const T*, T*, const int*); \
+  void p##trsm_(const char*, const char*, const char*, const char*, const int*, const int*, const T*, const T*, const int*, T*,       \
+                const int*);                                                                                                          \
+  void p##gemm_(const char*, const char*, const int*, const int*, const int*, const T*, const T*, const int*, const T*, const int*,   \
+                const T*, T*, const int*);
 extern "C" {
-void dtrsv_(const char*, const char*, const char*, const int*, const double*, const int*, double*, const int*);
-void strsv_(const char*, const char*, const char*, const int*, const float*, const int*, float*, const int*);
-void dgemv_(const char*, const int*, const int*, const double*, const double*, const int*, const double*, const int*, const double*,
-            double*, const int*);
-void sgemv_(const char*, const int*, const int*, const float*, const float*, const int*, const float*, const int*, const float*, float*,
-            const int*);
+HILO_BLAS(double, d)
+HILO_BLAS(float, s)
 void dtrmv_(const char*, const char*, const char*, const int*, const double*, const int*, double*, const int*);
 }
+#undef HILO_BLAS
 
 namespace hilo::supernodal {
 
-inline void solve_triangle(const char* transposed, int n, const double* L, int stride, double* x) {
+/// X := op(L)^-1 X, (n x columns) with columns `next` apart.
+template <class T>
+void solve_triangle(const char* transposed, int n, const T* L, int stride, T* X, int next, int columns) {
   const int one = 1;
-  dtrsv_("L", transposed, "N", &n, L, &stride, x, &one);
+  const T unit = 1;
+  if constexpr (std::is_same_v<T, double>)
+    columns == 1 ? dtrsv_("L", transposed, "N", &n, L, &stride, X, &one)
+                 : dtrsm_("L", "L", transposed, "N", &n, &columns, &unit, L, &stride, X, &next);
+  else
+    columns == 1 ? strsv_("L", transposed, "N", &n, L, &stride, X, &one)
+                 : strsm_("L", "L", transposed, "N", &n, &columns, &unit, L, &stride, X, &next);
 }
-inline void solve_triangle(const char* transposed, int n, const float* L, int stride, float* x) {
-  const int one = 1;
-  strsv_("L", transposed, "N", &n, L, &stride, x, &one);
-}
-/// y := alpha op(A) x + beta y
-inline void multiply(const char* transposed, int m, int n, double alpha, const double* A, int stride, const double* x, double beta,
-                     double* y) {
-  const int one = 1;
-  dgemv_(transposed, &m, &n, &alpha, A, &stride, x, &one, &beta, y, &one);
-}
-inline void multiply(const char* transposed, int m, int n, float alpha, const float* A, int stride, const float* x, float beta, float* y) {
-  const int one = 1;
-  sgemv_(transposed, &m, &n, &alpha, A, &stride, x, &one, &beta, y, &one);
+
+/// Y := alpha op(A) X + beta Y; A: (m x n).
+template <class T>
+void multiply(const char* transposed, int m, int n, T alpha, const T* A, int stride, const T* X, int next_X, T beta, T* Y, int next_Y,
+              int columns) {
+  const int one = 1, rows = *transposed == 'T' ? n : m, inner = *transposed == 'T' ? m : n;
+  if constexpr (std::is_same_v<T, double>)
+    columns == 1 ? dgemv_(transposed, &m, &n, &alpha, A, &stride, X, &one, &beta, Y, &one)
+                 : dgemm_(transposed, "N", &rows, &columns, &inner, &alpha, A, &stride, X, &next_X, &beta, Y, &next_Y);
+  else
+    columns == 1 ? sgemv_(transposed, &m, &n, &alpha, A, &stride, X, &one, &beta, Y, &one)
+                 : sgemm_(transposed, "N", &rows, &columns, &inner, &alpha, A, &stride, X, &next_X, &beta, Y, &next_Y);
 }
 
 /// The values of a factor in single precision, in the place of the double ones; the next factorisation overwrites them.
@@ -48,44 +60,52 @@ inline void narrow(cholmod_factor* L) {
   }
 }
 
-/// x[from .. to) := L_ft^-1 x, and the rows below follow: x_below -= L_below x.  `scratch`: at least L->maxesize + L->n.
+/// x[from .. to) := L_ft^-1 x, and the rows below follow: x_below -= L_below x.  x: (n x columns), all of the factor's rows.
 template <class T>
-void forward(const cholmod_factor* L, int from, int to, T* x, std::vector<T>& scratch) {
+void forward(const cholmod_factor* L, int from, int to, T* x, std::vector<T>& scratch, int columns = 1) {
   if (from >= to) return;
   const auto* super = static_cast<const int*>(L->super);
   const auto *pi = static_cast<const int*>(L->pi), *px = static_cast<const int*>(L->px), *rows = static_cast<const int*>(L->s);
   const auto* values = static_cast<const T*>(L->x);
-  const int n_super = static_cast<int>(L->nsuper);
-  scratch.resize(L->maxesize + L->n);
+  const int n_super = static_cast<int>(L->nsuper), n = static_cast<int>(L->n);
+  scratch.resize(L->n * columns);
   for (int s = static_cast<int>(std::upper_bound(super, super + n_super, from) - super) - 1; s < n_super && super[s] < to; ++s) {
     const int a = std::max(from, super[s]), b = std::min(to, super[s + 1]), m = b - a, o = a - super[s], stride = pi[s + 1] - pi[s];
     const T* D = values + px[s] + o + static_cast<size_t>(o) * stride;
-    solve_triangle("N", m, D, stride, x + a);
+    solve_triangle("N", m, D, stride, x + a, n, columns);
     const int n_below = stride - o - m;
     if (n_below == 0) continue;
-    multiply("N", n_below, m, T(-1), D + m, stride, x + a, T(0), scratch.data());
+    multiply("N", n_below, m, T(-1), D + m, stride, x + a, n, T(0), scratch.data(), n_below, columns);
     const int* row = rows + pi[s] + o + m;
-    for (int k = 0; k < n_below; ++k) x[row[k]] += scratch[k];
+    for (int c = 0; c < columns; ++c) {
+      T* to_x = x + static_cast<size_t>(c) * n;
+      const T* part = scratch.data() + static_cast<size_t>(c) * n_below;
+      for (int k = 0; k < n_below; ++k) to_x[row[k]] += part[k];
+    }
   }
 }
 
 /// x[from .. to) := L_ft^-T (x - L_below^T x_below)
 template <class T>
-void backward(const cholmod_factor* L, int from, int to, T* x, std::vector<T>& scratch) {
+void backward(const cholmod_factor* L, int from, int to, T* x, std::vector<T>& scratch, int columns = 1) {
   if (from >= to) return;
   const auto* super = static_cast<const int*>(L->super);
   const auto *pi = static_cast<const int*>(L->pi), *px = static_cast<const int*>(L->px), *rows = static_cast<const int*>(L->s);
   const auto* values = static_cast<const T*>(L->x);
-  const int n_super = static_cast<int>(L->nsuper);
-  scratch.resize(L->maxesize + L->n);
+  const int n_super = static_cast<int>(L->nsuper), n = static_cast<int>(L->n);
+  scratch.resize(L->n * columns);
   for (int s = static_cast<int>(std::lower_bound(super, super + n_super, to) - super) - 1; s >= 0 && super[s + 1] > from; --s) {
     const int a = std::max(from, super[s]), b = std::min(to, super[s + 1]), m = b - a, o = a - super[s], stride = pi[s + 1] - pi[s];
     const T* D = values + px[s] + o + static_cast<size_t>(o) * stride;
     const int n_below = stride - o - m;
     const int* row = rows + pi[s] + o + m;
-    for (int k = 0; k < n_below; ++k) scratch[k] = x[row[k]];
-    if (n_below > 0) multiply("T", n_below, m, T(-1), D + m, stride, scratch.data(), T(1), x + a);
-    solve_triangle("T", m, D, stride, x + a);
+    for (int c = 0; c < columns; ++c) {
+      const T* of_x = x + static_cast<size_t>(c) * n;
+      T* part = scratch.data() + static_cast<size_t>(c) * n_below;
+      for (int k = 0; k < n_below; ++k) part[k] = of_x[row[k]];
+    }
+    if (n_below > 0) multiply("T", n_below, m, T(-1), D + m, stride, scratch.data(), n_below, T(1), x + a, n, columns);
+    solve_triangle("T", m, D, stride, x + a, n, columns);
   }
 }
 
@@ -95,7 +115,7 @@ inline void multiply(const cholmod_factor* L, int from, double* x, std::vector<d
   const auto *pi = static_cast<const int*>(L->pi), *px = static_cast<const int*>(L->px), *rows = static_cast<const int*>(L->s);
   const auto* values = static_cast<const double*>(L->x);
   const int one = 1, n_super = static_cast<int>(L->nsuper);
-  scratch.resize(L->maxesize + L->n);
+  scratch.resize(L->n);
   const int first = static_cast<int>(std::upper_bound(super, super + n_super, from) - super) - 1;
   const auto visit = [&](int s, auto&& f) {
     const int a = std::max(from, super[s]), m = super[s + 1] - a, o = a - super[s], stride = pi[s + 1] - pi[s];
@@ -105,11 +125,11 @@ inline void multiply(const cholmod_factor* L, int from, double* x, std::vector<d
     visit(s, [&](int m, const double* D, int stride, double* y, int n_below, const int* row) {
       dtrmv_("L", "T", "N", &m, D, &stride, y, &one);
       for (int k = 0; k < n_below; ++k) scratch[k] = x[row[k]];
-      if (n_below > 0) multiply("T", n_below, m, 1., D + m, stride, scratch.data(), 1., y);
+      if (n_below > 0) multiply("T", n_below, m, 1., D + m, stride, scratch.data(), n_below, 1., y, m, 1);
     });
   for (int s = n_super - 1; s >= first; --s)
     visit(s, [&](int m, const double* D, int stride, double* y, int n_below, const int* row) {
-      if (n_below > 0) multiply("N", n_below, m, 1., D + m, stride, y, 0., scratch.data());
+      if (n_below > 0) multiply("N", n_below, m, 1., D + m, stride, y, m, 0., scratch.data(), n_below, 1);
       for (int k = 0; k < n_below; ++k) x[row[k]] += scratch[k];
       dtrmv_("L", "N", "N", &m, D, &stride, y, &one);
     });

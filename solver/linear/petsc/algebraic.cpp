@@ -57,15 +57,19 @@ class AlgebraicInverse : public FlexibleInverse {
     return !failed;
   }
 
-  void apply(Vec b, Vec x) override {
-    if (multigrid_) return check(PCApply(pc_, b, x));
-    const double* in;
-    check(VecGetArrayRead(b, &in));
-    {
-      const Values out(x);
-      incomplete_.solve(in, out.data());
+  void apply(Eigen::Ref<Eigen::MatrixXd> X) override {
+    if (multigrid_ && !b_.exists()) b_ = Vector(static_cast<PetscInt>(X.rows())), x_ = Vector(static_cast<PetscInt>(X.rows()));
+    for (Eigen::Index k = 0; k < X.cols(); ++k) {
+      if (!multigrid_) {
+        incomplete_.solve(X.col(k).data(), X.col(k).data());
+        continue;
+      }
+      check(VecPlaceArray(b_, X.col(k).data()));
+      check(PCApply(pc_, b_, x_));
+      check(VecResetArray(b_));
+      const Values x(x_);
+      std::copy_n(x.data(), X.rows(), X.col(k).data());
     }
-    check(VecRestoreArrayRead(b, &in));
   }
 
   bool strengthen(int iterations, bool failed) override {
@@ -89,6 +93,7 @@ class AlgebraicInverse : public FlexibleInverse {
   IncompleteCholesky incomplete_;
   PC pc_ = nullptr;
   Mat scalar_ = nullptr;  // F without blocks: multigrid wants it so
+  Vector b_, x_;
 };
 
 /// Of a whole matrix; the factors are those of its symmetric part.

@@ -13,7 +13,7 @@ class Bddc final : public FlexibleInverse {
   explicit Bddc(const SubdomainMatrix& F) : spaces_(F) {}
 
   bool set_up() override { return spaces_.set_up(is_adaptive_); }
-  void apply(Vec b, Vec x) override { spaces_.expand(spaces_.solve(spaces_.condense(b)), x); }
+  void apply(Eigen::Ref<Eigen::MatrixXd> X) override { spaces_.expand(spaces_.solve(spaces_.condense(X)), X); }
   /// Rigid motions of classes as constraints serve smooth stiffness; where it jumps within subdomains, others are looked for.
   bool strengthen(int iterations, bool failed) override {
     if (is_adaptive_ || (!failed && iterations <= too_many_iterations)) return false;

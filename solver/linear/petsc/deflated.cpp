@@ -48,21 +48,12 @@ class Deflated final : public FlexibleInverse {
     return E.allFinite();
   }
 
-  void apply(Vec b, Vec x) override {
-    const auto n = R_.rows();
-    check(VecCopy(b, v_));
-    VectorXd c(R_.cols());
-    {
-      const Values v(v_);
-      Eigen::Map<VectorXd> f(v.data(), n);
-      c = solve(R_.transpose() * f);
-      f -= FR_ * c;
-    }
-    inner_->apply(v_, x);
-    const Values out(x);
-    Eigen::Map<VectorXd> u(out.data(), n);
-    c -= solve(FtR_.transpose() * u);
-    u += R_ * c;
+  void apply(Eigen::Ref<MatrixXd> X) override {
+    MatrixXd c = solve(R_.transpose() * X);
+    X -= FR_ * c;
+    inner_->apply(X);
+    c -= solve(FtR_.transpose() * X);
+    X += R_ * c;
   }
 
   bool strengthen(int iterations, bool failed) override { return inner_->strengthen(iterations, failed); }
@@ -106,7 +97,7 @@ class Deflated final : public FlexibleInverse {
     if (size() > 1 && n > 0) MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
   }
   /// E^-1 of what the ranks sum to; motions that cost nothing are left out.
-  VectorXd solve(VectorXd share) const {
+  MatrixXd solve(MatrixXd share) const {
     sum(share.data(), static_cast<int>(share.size()));
     return scale_.asDiagonal() * E_.solve(scale_.asDiagonal() * share);
   }

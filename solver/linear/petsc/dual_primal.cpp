@@ -16,9 +16,9 @@ void scatter(VecScatter how, Vec from, Vec to, InsertMode mode, ScatterMode dire
 
 }  // namespace
 
-Eigen::VectorXd DualPrimal::Piece::own(const VectorXd& primal) const {
-  VectorXd x(static_cast<Eigen::Index>(number.size()));
-  for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = primal[number[k]];
+Eigen::MatrixXd DualPrimal::Piece::own(const MatrixXd& primal) const {
+  MatrixXd x(static_cast<Eigen::Index>(number.size()), primal.cols());
+  for (Eigen::Index k = 0; k < x.rows(); ++k) x.row(k) = primal.row(number[k]);
   return x;
 }
 
@@ -29,7 +29,6 @@ DualPrimal::DualPrimal(const SubdomainMatrix& F)
     pieces_[p].from = factor_.begin(static_cast<int>(p)) - n_interior_;
     pieces_[p].n = factor_.begin(static_cast<int>(p) + 1) - factor_.begin(static_cast<int>(p));
   }
-  work_ = VectorXd::Zero(n_);
   make_scatters();
 }
 
@@ -108,15 +107,16 @@ void DualPrimal::list_constraints(const std::vector<double>& regular) {
 /// Psi = S^-1 C (C^T S^-1 C)^-1 with the regular S, and the pieces' parts of K_c.
 bool DualPrimal::form_coarse_basis() {
   if (!weight_.allFinite()) return false;
+  VectorXd x = VectorXd::Zero(n_);
   for (Piece& p : pieces_) {
     const auto from = n_interior_ + static_cast<int>(p.from), to = from + static_cast<int>(p.n);
     const auto n = p.C.cols();
     p.Psi.resize(p.n, n), p.coarse.resize(n, n);
     if (n == 0) continue;
     for (Eigen::Index k = 0; k < n; ++k) {
-      work_.segment(from, p.n) = p.C.col(k);
-      factor_.forward(from, to, work_.data()), factor_.backward(from, to, work_.data());
-      p.Psi.col(k) = work_.segment(from, p.n);
+      x.segment(from, p.n) = p.C.col(k);
+      factor_.forward(from, to, x.data()), factor_.backward(from, to, x.data());
+      p.Psi.col(k) = x.segment(from, p.n);
     }
     MatrixXd compliance = p.C.transpose() * p.Psi;
     compliance = (0.5 * (compliance + compliance.transpose())).eval();
@@ -156,87 +156,97 @@ bool DualPrimal::factor_coarse() {
 }
 
 /// All primal unknowns, for forces on the interface.
-Eigen::VectorXd DualPrimal::solve_coarse(const VectorXd& f) {
-  VectorXd all = VectorXd::Zero(n_constraints_);
+Eigen::MatrixXd DualPrimal::solve_coarse(const Columns& f) {
+  MatrixXd all = MatrixXd::Zero(n_constraints_, f.cols());
   if (n_constraints_ == 0) return all;
   for (const Piece& p : pieces_) {
-    const VectorXd share = p.Psi.transpose() * f.segment(p.from, p.n);
-    for (Eigen::Index k = 0; k < share.size(); ++k) all[p.number[k]] += share[k];
+    const MatrixXd share = p.Psi.transpose() * f.middleRows(p.from, p.n);
+    for (Eigen::Index k = 0; k < share.rows(); ++k) all.row(p.number[k]) += share.row(k);
   }
-  MPI_Allreduce(MPI_IN_PLACE, all.data(), n_constraints_, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
   const Stopwatch watch(coarse_seconds_);
   return coarse_factor_.solve(all);
 }
 
 /// D x, or D^T x.
-Eigen::VectorXd DualPrimal::weigh(const VectorXd& x, bool transposed) const {
-  VectorXd y = x.cwiseProduct(weight_), part;
+Eigen::MatrixXd DualPrimal::weigh(const Columns& x, bool transposed) const {
+  MatrixXd y = weight_.asDiagonal() * x, part;
   for (size_t k = 0; k < of_class_.weight.size(); ++k) {
     const MatrixXd& W = of_class_.weight[k];
     if (W.size() == 0) continue;
     const auto& blocks = interface_.classes[k].blocks;
-    part.resize(W.rows());
-    for (size_t i = 0; i < blocks.size(); ++i)
-      part.segment<3>(3 * static_cast<Eigen::Index>(i)) = x.segment<3>(3 * factor_.place(blocks[i]) - n_interior_);
-    part = transposed ? VectorXd(W.transpose() * part) : VectorXd(W * part);
-    for (size_t i = 0; i < blocks.size(); ++i)
-      y.segment<3>(3 * factor_.place(blocks[i]) - n_interior_) = part.segment<3>(3 * static_cast<Eigen::Index>(i));
+    part.resize(W.rows(), x.cols());
+    const auto rows = [&](auto& m, size_t i) { return m.middleRows(3 * factor_.place(blocks[i]) - n_interior_, 3); };
+    for (size_t i = 0; i < blocks.size(); ++i) part.middleRows(3 * static_cast<Eigen::Index>(i), 3) = rows(x, i);
+    part = transposed ? MatrixXd(W.transpose() * part) : MatrixXd(W * part);
+    for (size_t i = 0; i < blocks.size(); ++i) rows(y, i) = part.middleRows(3 * static_cast<Eigen::Index>(i), 3);
   }
   return y;
 }
 
-/// Values of the interface added to those of g, and the sums back to all that share them.
-Eigen::VectorXd DualPrimal::add(const VectorXd& x, Vec g) {
-  {
+/// Values of the interface added to those of g, columns of owned unknowns (or nothing), and the sums back to all that share them.
+Eigen::MatrixXd DualPrimal::add(const Columns& x, const double* g) {
+  MatrixXd sums(n_edge_, x.cols());
+  const auto n_owned = 3 * static_cast<size_t>(F_.n_owned());
+  for (Eigen::Index k = 0; k < x.cols(); ++k) {
+    {
+      const Values e(edge_local_), own(g_);
+      std::copy_n(x.col(k).data(), n_edge_, e.data());
+      if (g)
+        std::copy_n(g + k * n_owned, n_owned, own.data());
+      else
+        std::fill_n(own.data(), n_owned, 0.0);
+    }
+    scatter(edge_, edge_local_, g_, ADD_VALUES, SCATTER_REVERSE);
+    scatter(edge_, g_, edge_local_, INSERT_VALUES, SCATTER_FORWARD);
     const Values e(edge_local_);
-    std::copy(x.data(), x.data() + n_edge_, e.data());
+    std::copy_n(e.data(), n_edge_, sums.col(k).data());
   }
-  scatter(edge_, edge_local_, g, ADD_VALUES, SCATTER_REVERSE);
-  scatter(edge_, g, edge_local_, INSERT_VALUES, SCATTER_FORWARD);
-  const Values e(edge_local_);
-  return Eigen::Map<const VectorXd>(e.data(), n_edge_);
+  return sums;
 }
 
-Eigen::VectorXd DualPrimal::sum(const VectorXd& x) {
-  check(VecSet(g_, 0));
-  return add(x, g_);
-}
-
-Eigen::VectorXd DualPrimal::condense(Vec b) {
-  scatter(all_, b, local_, INSERT_VALUES, SCATTER_FORWARD);
-  {
+Eigen::MatrixXd DualPrimal::condense(const Columns& b) {
+  work_.resize(n_, b.cols());
+  for (Eigen::Index k = 0; k < b.cols(); ++k) {
+    check(VecPlaceArray(g_, b.col(k).data()));
+    scatter(all_, g_, local_, INSERT_VALUES, SCATTER_FORWARD);
+    check(VecResetArray(g_));
     const Values y(local_);
-    work_.head(n_interior_) = Eigen::Map<const VectorXd>(y.data(), n_interior_);
+    std::copy_n(y.data(), n_interior_, work_.col(k).data());
   }
-  work_.tail(n_edge_).setZero();
-  factor_.forward(0, n_interior_, work_.data());
-  check(VecCopy(b, g_));
-  return weigh(add(work_.tail(n_edge_), g_), true);
+  work_.bottomRows(n_edge_).setZero();
+  factor_.forward(0, n_interior_, work_.data(), static_cast<int>(b.cols()));
+  return weigh(add(work_.bottomRows(n_edge_), b.data()), true);
 }
 
-void DualPrimal::expand(const VectorXd& w, Vec x) {
-  work_.tail(n_edge_) = average(w);
-  factor_.backward(0, n_interior_, work_.data());  // y_I := L_II^-T (y_I - L_GI^T w)
-  {
-    const Values y(local_);
-    std::copy(work_.data(), work_.data() + n_, y.data());
+void DualPrimal::expand(const Columns& w, Eigen::Ref<MatrixXd> x) {
+  work_.bottomRows(n_edge_) = average(w);
+  factor_.backward(0, n_interior_, work_.data(), static_cast<int>(w.cols()));  // y_I := L_II^-T (y_I - L_GI^T w)
+  for (Eigen::Index k = 0; k < w.cols(); ++k) {
+    {
+      const Values y(local_);
+      std::copy_n(work_.col(k).data(), n_, y.data());
+    }
+    check(VecPlaceArray(g_, x.col(k).data()));
+    scatter(all_, local_, g_, INSERT_VALUES, SCATTER_REVERSE);
+    check(VecResetArray(g_));
   }
-  scatter(all_, local_, x, INSERT_VALUES, SCATTER_REVERSE);
 }
 
-Eigen::VectorXd DualPrimal::solve(const VectorXd& f) {
-  work_.tail(n_edge_) = f;
-  factor_.forward(n_interior_, n_, work_.data()), factor_.backward(n_interior_, n_, work_.data());
-  VectorXd w = work_.tail(n_edge_);
-  const VectorXd primal = solve_coarse(f);
-  for (const Piece& p : pieces_) w.segment(p.from, p.n) += p.Psi * (p.own(primal) - p.C.transpose() * w.segment(p.from, p.n));
+Eigen::MatrixXd DualPrimal::solve(const Columns& f) {
+  const auto columns = static_cast<int>(f.cols());
+  work_.bottomRows(n_edge_) = f;
+  factor_.forward(n_interior_, n_, work_.data(), columns), factor_.backward(n_interior_, n_, work_.data(), columns);
+  MatrixXd w = work_.bottomRows(n_edge_);
+  const MatrixXd primal = solve_coarse(f);
+  for (const Piece& p : pieces_) w.middleRows(p.from, p.n) += p.Psi * (p.own(primal) - p.C.transpose() * w.middleRows(p.from, p.n));
   return w;
 }
 
-Eigen::VectorXd DualPrimal::multiply(const VectorXd& w) const {
-  work_.tail(n_edge_) = w;
+Eigen::VectorXd DualPrimal::multiply(const VectorXd& w) {
+  work_.bottomRows(n_edge_) = w;
   factor_.multiply_schur(work_.data());
-  VectorXd f = work_.tail(n_edge_);
+  VectorXd f = work_.bottomRows(n_edge_);
   for (const Piece& p : pieces_) f.segment(p.from, p.n) -= p.C * p.regular.cwiseProduct(p.C.transpose() * w.segment(p.from, p.n));
   return f;
 }

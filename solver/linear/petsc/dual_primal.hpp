@@ -22,11 +22,13 @@ namespace hilo::petsc {
 /// Iterations beyond which further constraints are looked for: rigid motions of classes serve where stiffness is smooth.
 constexpr int too_many_iterations = 20;
 
-/// Vectors of W and of forces on it: the unknowns of the interfaces of this rank's pieces (n_edge), piece after piece.
+/// Vectors of W and of forces on it: the unknowns of the interfaces of this rank's pieces (n_edge), piece after piece; several of them
+/// side by side are the columns of a matrix.
 class DualPrimal {
  public:
   using VectorXd = Eigen::VectorXd;
   using MatrixXd = Eigen::MatrixXd;
+  using Columns = Eigen::Ref<const Eigen::MatrixXd>;
 
   explicit DualPrimal(const SubdomainMatrix& F);
   ~DualPrimal();
@@ -35,15 +37,15 @@ class DualPrimal {
   /// Factors of the matrix as it is now, with more than rigid motions as constraints or not.  False when it is not positive definite.
   bool set_up(bool more_constraints);
   /// Eliminate the inside: the forces that b leaves on the interface, shared out by D^T.
-  VectorXd condense(Vec b);
+  MatrixXd condense(const Columns& b);
   /// x := E_D w on the interface and, for the b condensed last, the equilibrium inside.
-  void expand(const VectorXd& w, Vec x);
+  void expand(const Columns& w, Eigen::Ref<MatrixXd> x);
   /// S~^-1 f
-  VectorXd solve(const VectorXd& f);
+  MatrixXd solve(const Columns& f);
   /// S w
-  VectorXd multiply(const VectorXd& w) const;
-  VectorXd average(const VectorXd& w) { return sum(weigh(w, false)); }            // E_D w
-  VectorXd average_transposed(const VectorXd& f) { return weigh(sum(f), true); }  // E_D^T f
+  VectorXd multiply(const VectorXd& w);
+  MatrixXd average(const Columns& w) { return sum(weigh(w, false)); }            // E_D w
+  MatrixXd average_transposed(const Columns& f) { return weigh(sum(f), true); }  // E_D^T f
 
   double coarse_seconds() const { return coarse_seconds_; }
   double bytes() const;
@@ -55,7 +57,7 @@ class DualPrimal {
     std::vector<int> number;  // of its constraints among all
     VectorXd regular;         // r of each of its constraints
     MatrixXd C, Psi, coarse;  // (n x constraints), the same, (constraints x constraints)
-    VectorXd own(const VectorXd& primal) const;
+    MatrixXd own(const MatrixXd& primal) const;
   };
 
   void make_scatters();
@@ -63,10 +65,10 @@ class DualPrimal {
   void list_constraints(const std::vector<double>& regular);
   bool form_coarse_basis();
   bool factor_coarse();
-  VectorXd solve_coarse(const VectorXd& f);
-  VectorXd weigh(const VectorXd& x, bool transposed) const;
-  VectorXd add(const VectorXd& x, Vec g);
-  VectorXd sum(const VectorXd& x);
+  MatrixXd solve_coarse(const Columns& f);
+  MatrixXd weigh(const Columns& x, bool transposed) const;
+  MatrixXd add(const Columns& x, const double* g);
+  MatrixXd sum(const Columns& x) { return add(x, nullptr); }
 
   const SubdomainMatrix& F_;
   Interface interface_;
@@ -82,7 +84,7 @@ class DualPrimal {
   VecScatter all_ = nullptr, edge_ = nullptr;
   Vec local_ = nullptr, edge_local_ = nullptr;
   Vector g_;
-  mutable VectorXd work_;  // (n) the inside, as condense leaves it for expand; the interface at work
+  MatrixXd work_;  // (n x columns) the inside, as condense leaves it for expand; the interface at work
 };
 
 }  // namespace hilo::petsc

@@ -25,8 +25,26 @@ class FetiDp final : public FlexibleInverse {
     return spaces_.set_up(is_adaptive_);
   }
 
-  void apply(Vec b, Vec x) override {
-    const VectorXd g = spaces_.condense(b);
+  void apply(Eigen::Ref<Eigen::MatrixXd> X) override {
+    for (Eigen::Index k = 0; k < X.cols(); ++k) solve(X.col(k));
+  }
+
+  bool strengthen(int, bool) override {
+    if (is_adaptive_ || most_ <= too_many_iterations) return false;
+    return is_adaptive_ = true;
+  }
+  bool is_iterative() const override { return true; }
+  bool has_failed() const override { return failed_; }
+  int most_iterations() const override { return 30; }
+  Within take_iterations() override { return std::exchange(taken_, {}); }
+  double undivided_seconds() const override { return spaces_.coarse_seconds(); }
+  std::string name() const override { return is_adaptive_ ? "adaptive FETI-DP" : "FETI-DP"; }
+  double bytes() const override { return spaces_.bytes(); }
+
+ private:
+  /// One column.
+  void solve(Eigen::Ref<Eigen::MatrixXd> x) {
+    const VectorXd g = spaces_.condense(x);
     VectorXd w = spaces_.solve(g), p = VectorXd::Zero(w.size());
     const double energy = dot(g, w), most = is_adaptive_ ? 150 : 60;
     double before = 1, enough = 0;
@@ -50,19 +68,6 @@ class FetiDp final : public FlexibleInverse {
     spaces_.expand(w, x);
   }
 
-  bool strengthen(int, bool) override {
-    if (is_adaptive_ || most_ <= too_many_iterations) return false;
-    return is_adaptive_ = true;
-  }
-  bool is_iterative() const override { return true; }
-  bool has_failed() const override { return failed_; }
-  int most_iterations() const override { return 30; }
-  Within take_iterations() override { return std::exchange(taken_, {}); }
-  double undivided_seconds() const override { return spaces_.coarse_seconds(); }
-  std::string name() const override { return is_adaptive_ ? "adaptive FETI-DP" : "FETI-DP"; }
-  double bytes() const override { return spaces_.bytes(); }
-
- private:
   static double dot(const VectorXd& a, const VectorXd& b) {
     double sum = a.dot(b);
     MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);

@@ -4,6 +4,7 @@
 #define OMPI_SKIP_MPICXX 1
 #include <petscmat.h>
 
+#include <Eigen/Core>
 #include <functional>
 #include <memory>
 #include <string>
@@ -32,7 +33,8 @@ class FlexibleInverse {
   virtual ~FlexibleInverse() = default;
   /// Make it anew for the matrix as it is now.  False when the factors break down.
   virtual bool set_up() = 0;
-  virtual void apply(Vec b, Vec x) = 0;
+  /// X := M X, owned flexible unknowns; several columns at once read the factors once.
+  virtual void apply(Eigen::Ref<Eigen::MatrixXd> X) = 0;
   /// After a solve of so many iterations, or one that failed: whether a stronger kind takes over.
   virtual bool strengthen(int iterations, bool failed) = 0;
   /// Is one application itself iterative, so that it differs a little from a linear operator?

@@ -19,7 +19,7 @@ class IncompleteCholesky {
   using Row = std::function<void(int place, Eigen::Matrix3d* lower, Eigen::Matrix3d& diagonal)>;
   /// Of the first `n` places of a pattern that outlives the factors.  Blocks that come out indefinite are taken as they stand in F.
   void factor(const LowerPattern& pattern, int n, const Row& row);
-  /// x := (L D L^T)^-1 b; both have the matrix's rows.
+  /// x := (L D L^T)^-1 b; both have the matrix's rows and may be the same.
   void solve(const double* b, double* x);
   double bytes() const { return L_.bytes() + inverse_.bytes() + static_cast<double>(work_.size() * sizeof(Lane)); }
 

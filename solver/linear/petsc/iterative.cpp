@@ -27,6 +27,8 @@ namespace {
 /// Z is kept up to so many values per rank (320 MB); beyond, F~ is applied a second time per iteration.  In double precision: where a body
 /// hangs on stiff parts and little else, the forces of its motions cancel.
 constexpr double values_kept = 4e7;
+/// Columns of Z that go through F~ together, which reads its factors once for them.
+constexpr Eigen::Index columns_at_once = 24;
 
 /// CG solves with the symmetric part, in single precision: digits beyond these are not the tangent's.
 constexpr double worth_wanting = 1e-4;
@@ -56,7 +58,7 @@ class IterativeSolver final : public KktSolver {
     const auto nf = static_cast<PetscInt>(n_flexible_), na = static_cast<PetscInt>(n_all_);
     x_ = Vector(na), b_ = Vector(na), r_ = Vector(na);
     if (kind_ == Kind::cg) dx_ = Vector(na);
-    f_ = Vector(nf), u_ = Vector(nf), w_ = Vector(nf);
+    f_ = Vector(nf), u_ = Vector(nf);
     p_.assign(m_, 0.0), q_.assign(m_, 0.0);
     make_krylov(3 * map.n_global);
   }
@@ -125,7 +127,8 @@ class IterativeSolver final : public KktSolver {
 
   double bytes() const override {
     if (direct_) return direct_->bytes();
-    return matrix_->bytes() + coupling_->bytes() + inverse_->bytes() + 8. * n_flexible_ * Z_.size() + 8. * (is_cg_ ? 3 : restart_) * n_all_;
+    return matrix_->bytes() + coupling_->bytes() + inverse_->bytes() + 8. * static_cast<double>(Z_.size()) +
+           8. * (is_cg_ ? 3 : restart_) * n_all_;
   }
   double set_up_seconds() const override { return set_up_seconds_ + (direct_ ? direct_->set_up_seconds() : 0); }
   double undivided_seconds() const override { return inverse_ ? inverse_->undivided_seconds() : 0; }
@@ -190,7 +193,7 @@ class IterativeSolver final : public KktSolver {
           if (any) A.add_row(first_dense + i, {&column, 1}, d);
         }
     release();
-    Z_.clear();
+    Z_.resize(0, 0);
     inverse_.reset(), matrix_.reset(), coupling_.reset();
     direct_ = std::move(direct);
   }
@@ -301,22 +304,21 @@ class IterativeSolver final : public KktSolver {
   bool factor_schur() {
     if (m_ == 0) return true;
     const auto& columns = coupling_->columns();
-    keep_ = largest(static_cast<double>(columns.size()) * static_cast<double>(n_flexible_)) <= values_kept;
-    Z_.resize(keep_ ? columns.size() : 0);
-    Eigen::MatrixXd S(m_, m_), change = Eigen::MatrixXd::Zero(m_, static_cast<Eigen::Index>(columns.size()));
+    const auto n_columns = static_cast<Eigen::Index>(columns.size()), n = static_cast<Eigen::Index>(n_flexible_);
+    keep_ = largest(static_cast<double>(n_columns) * static_cast<double>(n)) <= values_kept;
+    Z_.resize(n, keep_ ? n_columns : std::min(n_columns, columns_at_once));
+    Eigen::MatrixXd S(m_, m_), change = Eigen::MatrixXd::Zero(m_, n_columns);
     for (int i = 0; i < m_; ++i)
       for (int j = 0; j < m_; ++j) S(i, j) = coupling_->D()[static_cast<size_t>(i) * m_ + j];
-    for (size_t k = 0; k < columns.size(); ++k) {
-      {
-        const Values f(f_);
-        coupling_->column(columns[k], f.data(), n_flexible_);
-      }
-      inverse_->apply(f_, u_);
+    for (Eigen::Index k = 0; k < n_columns; k += columns_at_once) {
+      const auto some = std::min(columns_at_once, n_columns - k);
+      auto Z = Z_.middleCols(keep_ ? k : 0, some);
+      for (Eigen::Index j = 0; j < some; ++j) coupling_->column(columns[k + j], Z.col(j).data(), n_flexible_);
+      inverse_->apply(Z);
       if (inverse_->has_failed()) return false;
-      const Values u(u_);
-      coupling_->add_C(-1, u.data(), change.col(static_cast<Eigen::Index>(k)).data());
-      if (keep_) Z_[k].assign(u.data(), u.data() + n_flexible_);
+      for (Eigen::Index j = 0; j < some; ++j) coupling_->add_C(-1, Z.col(j).data(), change.col(k + j).data());
     }
+    if (!keep_) Z_.resize(0, 0);
     sum(change.data(), static_cast<int>(change.size()));
     for (size_t k = 0; k < columns.size(); ++k) S.col(columns[k]) += change.col(static_cast<Eigen::Index>(k));
     // rows of bodies and of constraints differ by many orders
@@ -374,9 +376,8 @@ class IterativeSolver final : public KktSolver {
     check(VecGetArrayRead(x, &in));
     {
       const Values out(y);
-      check(VecPlaceArray(f_, in)), check(VecPlaceArray(u_, out.data()));
-      inverse_->apply(f_, u_);
-      check(VecResetArray(f_)), check(VecResetArray(u_));
+      std::copy_n(in, n_flexible_, out.data());
+      inverse_->apply(Eigen::Map<Eigen::MatrixXd>(out.data(), static_cast<Eigen::Index>(n_flexible_), 1));
       if (m_ > 0) {
         get_dense(in);
         std::fill(q_.begin(), q_.end(), 0.0);
@@ -396,22 +397,17 @@ class IterativeSolver final : public KktSolver {
   void subtract_Z(double* u) {
     const auto& columns = coupling_->columns();
     if (columns.empty()) return;
+    const auto n = static_cast<Eigen::Index>(n_flexible_);
     if (keep_) {
-      for (size_t k = 0; k < columns.size(); ++k) {
-        const double factor = p_[columns[k]];
-        const double* z = Z_[k].data();
-        for (size_t i = 0; i < n_flexible_; ++i) u[i] -= factor * z[i];
-      }
+      Eigen::VectorXd p(Z_.cols());
+      for (Eigen::Index k = 0; k < p.size(); ++k) p[k] = p_[columns[k]];
+      Eigen::Map<Eigen::VectorXd>(u, n).noalias() -= Z_ * p;
       return;
     }
-    check(VecSet(f_, 0));
-    {
-      const Values f(f_);
-      coupling_->add_B(1, p_.data(), f.data());
-    }
-    inverse_->apply(f_, w_);
-    const Values w(w_);
-    for (size_t i = 0; i < n_flexible_; ++i) u[i] -= w[i];
+    Eigen::MatrixXd w = Eigen::MatrixXd::Zero(n, 1);
+    coupling_->add_B(1, p_.data(), w.data());
+    inverse_->apply(w);
+    Eigen::Map<Eigen::VectorXd>(u, n) -= w;
   }
 
   Kind kind_;
@@ -432,11 +428,11 @@ class IterativeSolver final : public KktSolver {
   std::unique_ptr<FlexibleInverse> inverse_;
   std::unique_ptr<DirectSolver> direct_;  // once substructuring has failed
   bool is_cg_ = false;
-  Vector x_, b_, r_, dx_, f_, u_, w_;
+  Vector x_, b_, r_, dx_, f_, u_;
   Mat A_ = nullptr;
   KSP ksp_ = nullptr;
   bool keep_ = true;
-  std::vector<std::vector<double>> Z_;
+  Eigen::MatrixXd Z_;
   std::vector<double> p_, q_;  // dense part, on all ranks
   Eigen::VectorXd row_scale_, column_scale_;
   Eigen::PartialPivLU<Eigen::MatrixXd> schur_;

@@ -145,8 +145,8 @@ bool SubdomainFactor::factor(const SubdomainMatrix& F, const Interface& interfac
   return common_.status == CHOLMOD_OK && L_->minor == L_->n && L_->is_super;
 }
 
-void SubdomainFactor::forward(int from, int to, double* x) const { supernodal::forward(L_, from, to, x, below_); }
-void SubdomainFactor::backward(int from, int to, double* x) const { supernodal::backward(L_, from, to, x, below_); }
+void SubdomainFactor::forward(int from, int to, double* x, int columns) const { supernodal::forward(L_, from, to, x, below_, columns); }
+void SubdomainFactor::backward(int from, int to, double* x, int columns) const { supernodal::backward(L_, from, to, x, below_, columns); }
 void SubdomainFactor::multiply_schur(double* x) const {
   if (n_interior_ < n()) supernodal::multiply(L_, n_interior_, x, below_);
 }

@@ -27,10 +27,10 @@ class SubdomainFactor {
   int n_interior() const { return n_interior_; }
   int place(PetscInt block) const { return place_[block]; }  // of a block in the factor's order
   PetscInt block(int place) const { return block_[place]; }
-  /// x := L^-1 x, columns [from, to) only: the rows below them are changed too.
-  void forward(int from, int to, double* x) const;
-  /// x := L^-T x, columns [from, to) only, from the rows below as they are.
-  void backward(int from, int to, double* x) const;
+  /// x := L^-1 x, columns [from, to) of L only: the rows below them are changed too.  x: (n x columns).
+  void forward(int from, int to, double* x, int columns = 1) const;
+  /// x := L^-T x, columns [from, to) of L only, from the rows below as they are.
+  void backward(int from, int to, double* x, int columns = 1) const;
   /// x := L_S L_S^T x of all interfaces; x of all unknowns.
   void multiply_schur(double* x) const;
   /// The interface of a piece: unknowns [begin(p), begin(p + 1)).
