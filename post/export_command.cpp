@@ -62,8 +62,12 @@ void run(const Options& o) {
   const Mesh& mesh = tagged.mesh;
   const auto grid = grid_of(mesh);
   for (const std::string& name : file.fields(step)) {
-    const auto field = file.field(step, name);
+    auto field = file.field(step, name);
     const auto rows = static_cast<std::int64_t>(field.value.size()) / field.columns;
+    const auto shown = field.value;
+    if (file.is_skin())
+      for (size_t i = 0; i < field.value.size(); ++i)
+        if (!file.holds(static_cast<std::int64_t>(i) / field.columns)) field.value[i] = std::numeric_limits<double>::quiet_NaN();
     if (rows == mesh.n_nodes() && !name.starts_with("cell_"))
       attach<vtkDoubleArray>(grid->GetPointData(), name, field.value, field.columns);
     else if (rows == mesh.n_cells())
@@ -73,7 +77,7 @@ void run(const Options& o) {
                   "the mesh was changed after the run");
     if (name == "displacement" && o.deformed)
       for (std::int64_t n = 0; n < mesh.n_nodes(); ++n) {
-        const Vec3 x = mesh.X[static_cast<size_t>(n)] + Eigen::Map<const Vec3>(field.value.data() + 3 * n);
+        const Vec3 x = mesh.X[static_cast<size_t>(n)] + Eigen::Map<const Vec3>(shown.data() + 3 * n);
         grid->GetPoints()->SetPoint(n, x.data());
       }
   }

@@ -49,6 +49,7 @@ void run(const Options& o) {
                   "the mesh was changed after the run");
     for (size_t r = 0; r < shown.size(); ++r)
       for (const std::int64_t n : nodes[r]) {
+        if (!run.holds(n)) continue;
         const double x = value[static_cast<size_t>(n)];
         if (peaks[r].node >= 0 && std::abs(x) <= std::abs(peaks[r].value)) continue;
         peaks[r] = {x, step.t, n};

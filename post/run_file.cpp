@@ -74,7 +74,33 @@ const MeshFile& RunFile::mesh_file() {
                 "the mesh was changed after the run");
   mesh_->n_parts = 1;
   for (const std::int32_t r : mesh_->rank) mesh_->n_parts = std::max(mesh_->n_parts, r + 1);
+  if (is_skin()) read_skin();
   return *mesh_;
+}
+
+void RunFile::read_skin() {
+  const Mesh& mesh = mesh_->mesh;
+  row_.assign(mesh.X.size(), -1);
+  held_.assign(mesh.X.size(), false);
+  const auto nodes = store_->read<std::int64_t>("/skin/node");
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i] < 0 || nodes[i] >= mesh.n_nodes())
+      throw Error(path, fmt::format("holds fields of node {}, but the mesh has {}", nodes[i], mesh.n_nodes()),
+                  "the mesh was changed after the run");
+    row_[static_cast<size_t>(nodes[i])] = static_cast<std::int64_t>(i), held_[static_cast<size_t>(nodes[i])] = true;
+  }
+  for (bool more = true; more;) {  // inwards, a layer of cells at a time
+    more = false;
+    std::vector<std::pair<std::int64_t, std::int64_t>> reached;
+    for (std::int64_t c = 0; c < mesh.n_cells(); ++c) {
+      std::int64_t from = -1;
+      for (const std::int64_t n : mesh.cell(c)) from = std::max(from, row_[static_cast<size_t>(n)]);
+      if (from < 0) continue;
+      for (const std::int64_t n : mesh.cell(c))
+        if (row_[static_cast<size_t>(n)] < 0) reached.emplace_back(n, from);
+    }
+    for (const auto& [n, from] : reached) row_[static_cast<size_t>(n)] = from, more = true;
+  }
 }
 
 void RunFile::close() { store_.reset(); }
@@ -99,7 +125,14 @@ RunFile::Field RunFile::field(const Step& step, const std::string& name) const {
   }
   if (!bodies_.empty()) return bodies_displacement(step);
   const auto shape = store_->shape(array);
-  return {store_->read<double>(array), shape.size() > 1 ? static_cast<int>(shape[1]) : 1};
+  Field f{store_->read<double>(array), shape.size() > 1 ? static_cast<int>(shape[1]) : 1};
+  if (row_.empty()) return f;
+  const auto width = static_cast<size_t>(f.columns);
+  std::vector<double> all(row_.size() * width);
+  for (size_t n = 0; n < row_.size(); ++n)
+    std::copy_n(f.value.begin() + static_cast<std::ptrdiff_t>(static_cast<size_t>(std::max<std::int64_t>(0, row_[n])) * width), width,
+                all.begin() + static_cast<std::ptrdiff_t>(n * width));
+  return {std::move(all), f.columns};
 }
 
 std::vector<Step> RunFile::select_steps(const std::string& numbers, const std::string& times) const {

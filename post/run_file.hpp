@@ -53,6 +53,10 @@ class RunFile {
   Field field(const Step& step, const std::string& name) const;
   std::vector<std::string> fields(const Step& step) const;
   bool has_field(const Step& step, const std::string& name) const;
+  /// Does the run hold the fields of a node?  One that keeps the skin of its regions alone gives each inner node the values of the nearest
+  /// node of the skin, counted in cells: in no picture without a cut are they seen.
+  bool holds(std::int64_t node) const { return row_.empty() || held_[static_cast<size_t>(node)]; }
+  bool is_skin() const { return store_->has("/skin/node"); }
   /// Steps by "all", "first", "last" or numbers "0,5,10"; by times "0.01,0.02" the nearest ones.
   std::vector<Step> select_steps(const std::string& numbers, const std::string& times) const;
 
@@ -68,7 +72,10 @@ class RunFile {
 
  private:
   std::optional<Store> store_;
+  void read_skin();
   std::optional<MeshFile> mesh_;
+  std::vector<std::int64_t> row_;  // of the fields, for each node; empty: the node's own
+  std::vector<bool> held_;         // by the fields
   struct Body {
     std::vector<Vec3> X;  // reference points
     Series way;           // of these points

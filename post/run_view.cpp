@@ -37,6 +37,10 @@ RunFile opened(const std::string& path) {
 
 RunView::RunView(const FrameOptions& o, const std::string& path)
     : o_(o), run_(opened(path)), file_(run_.mesh_file()), mesh_(file_.mesh), playback_(std::make_unique<Playback>(run_)) {
+  for (const auto& [asked, option] : {std::pair{!o.cut.empty(), "--cut"}, {!o.iso.empty(), "--iso"}})
+    if (asked && run_.is_skin())
+      throw Error(run_.path, fmt::format("holds the skin of its regions alone: nothing to draw inside ({})", option),
+                  "solve with output.nodes = \"all\"");
   shown_ = shown_regions(mesh_, o.show, o.hide);
   zoomed_ = o.zoom.empty() ? shown_ : shown_regions(mesh_, o.zoom, o.hide);
   valued_ = shown_;
@@ -100,7 +104,7 @@ void RunView::make_skins() {
   counted_.assign(static_cast<size_t>(mesh_.n_nodes()), false);
   for (std::int64_t c = 0; c < mesh_.n_cells(); ++c)
     if (valued_[region_of(c)])
-      for (const std::int64_t n : mesh_.cell(c)) counted_[static_cast<size_t>(n)] = true;
+      for (const std::int64_t n : mesh_.cell(c)) counted_[static_cast<size_t>(n)] = run_.holds(n) && (!minus_ || minus_->holds(n));
   find_framed(outside);
   if (!is_named_field(o_.field)) return;
   std::vector<std::array<std::uint8_t, 3>> colour(static_cast<size_t>(mesh_.n_cells()));

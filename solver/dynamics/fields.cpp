@@ -1,4 +1,4 @@
-// Fields of the recorder: displacement, velocity, acceleration and stress of every node, and the XDMF sidecar for ParaView.
+// Fields of the recorder: displacement, velocity, acceleration and stress of nodes, and the XDMF sidecar for ParaView.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,47 +6,99 @@
 
 #include "dynamics/profile.hpp"
 #include "dynamics/recorder.hpp"
+#include "model/region_surface.hpp"
 #include "physics/stress.hpp"
 
 namespace hilo {
 
-/// Owned rows of all ranks on rank 0, in the order of the file; `width` numbers a node.
-std::vector<double> Recorder::gather(const std::vector<double>& local, int width) const {
+/// Rows of the fields: all nodes in the order of the mesh file, or those on the surfaces of regions; followers and, in parallel, parts.
+void Recorder::declare_rows() {
   const System& s = system_;
-  if (s.comm->size == 1) return local;
-  std::vector<std::vector<double>> send(s.comm->size);
-  for (size_t i = 0; i < s.X.size(); ++i)
-    if (s.node_owned[i]) {
-      send[0].push_back(static_cast<double>(s.mesh->node_global[i]));
-      send[0].insert(send[0].end(), local.begin() + i * width, local.begin() + (i + 1) * width);
+  const LocalMesh& m = *s.mesh;
+  const Comm& comm = *s.comm;
+  const auto n_nodes = static_cast<std::int64_t>(s.X.size());
+  std::int64_t n = m.n_nodes_global;
+  node_row_ = m.node_global;
+  std::vector<Facet> facets;
+  std::vector<std::int64_t> skin;
+  if (setup_.skin) {
+    facets = region_surface(m, comm);
+    for (const Facet& f : facets)
+      for (const std::int64_t node : m.mesh.facet_nodes(f)) skin.push_back(m.node_global[node]);
+    for (std::int64_t c = 0; c < m.mesh.n_cells(); ++c)
+      if (info(m.mesh.shape[c]).dimension < 3)
+        for (const std::int64_t node : m.mesh.cell(c)) skin.push_back(m.node_global[node]);
+    const auto unite = [&] {
+      std::sort(skin.begin(), skin.end());
+      skin.erase(std::unique(skin.begin(), skin.end()), skin.end());
+    };
+    unite();
+    const auto all = comm.exchange(std::vector<std::vector<std::int64_t>>(comm.size, skin));
+    for (const auto& list : all) skin.insert(skin.end(), list.begin(), list.end());
+    unite();
+    n = static_cast<std::int64_t>(skin.size());
+    for (std::int64_t& row : node_row_) {
+      const auto at = std::lower_bound(skin.begin(), skin.end(), row);
+      row = at != skin.end() && *at == row ? at - skin.begin() : -1;
     }
-  const auto received = s.comm->exchange(send);
-  if (s.comm->rank != 0) return {};
-  std::vector<double> all(s.mesh->n_nodes_global * width);
-  for (const auto& list : received)
-    for (size_t k = 0; k < list.size(); k += width + 1)
-      std::copy(list.begin() + k + 1, list.begin() + k + 1 + width, all.begin() + static_cast<std::int64_t>(list[k]) * width);
-  return all;
+  }
+  std::vector<std::int64_t> mine = node_row_, everyones = m.node_global;
+  for (std::int64_t i = 0; i < n_nodes; ++i)
+    if (!s.node_owned[i]) mine[i] = everyones[i] = -1;
+  nodes_.emplace(comm, std::move(mine), n);
+  cells_.emplace(comm, m.cell_global, m.n_cells_global);
+
+  std::vector<std::vector<std::int64_t>> followers(comm.size);  // node, body
+  for (std::int64_t i = 0; i < n_nodes; ++i)
+    if (s.node_owned[i] && s.follower[i] > 0) followers[0].push_back(m.node_global[i]), followers[0].push_back(s.follower[i] - 1);
+  const auto received = comm.exchange(followers);
+  on_store([&](Store& f) {
+    std::vector<std::pair<std::int64_t, std::int32_t>> pairs;
+    for (const auto& list : received)
+      for (size_t k = 0; k < list.size(); k += 2) pairs.emplace_back(list[k], static_cast<std::int32_t>(list[k + 1]));
+    std::sort(pairs.begin(), pairs.end());
+    std::vector<std::int64_t> nodes;
+    std::vector<std::int32_t> bodies;
+    for (const auto& [node, body] : pairs) nodes.push_back(node), bodies.push_back(body);
+    const auto count = static_cast<std::int64_t>(nodes.size());
+    f.write<std::int64_t>("/body/follower_node", nodes, {count}, "", "nodes that follow a body");
+    f.write<std::int32_t>("/body/follower_body", bodies, {count}, "", "the body each follows");
+    if (setup_.skin) f.write<std::int64_t>("/skin/node", skin, {n}, "", "nodes of the mesh that the fields hold, a row each");
+  });
+  if (comm.size > 1) {
+    const std::vector<double> rank(m.cell_global.size(), comm.rank);
+    const auto piece = cells_->collect(rank, 1);
+    std::vector<std::vector<std::int64_t>> to(comm.size);
+    for (const double r : piece) to[0].push_back(static_cast<std::int64_t>(r));
+    const auto pieces = comm.exchange(to);
+    on_store([&](Store& f) {
+      std::vector<std::int32_t> all;
+      for (const auto& list : pieces) all.insert(all.end(), list.begin(), list.end());
+      f.write<std::int32_t>("/parts/rank", all, {m.n_cells_global});
+      f.set("/parts/rank", "n_parts", static_cast<std::int64_t>(comm.size));
+    });
+  }
+  if (setup_.skin) write_skin(facets);
+}
+
+void Recorder::write_piece(const Slabs& rows, const std::string& array, const std::vector<double>& piece, int width, const char* unit,
+                           const char* meaning) {
+  try {
+    Store* f = failure_ ? nullptr : store_.get();
+    if (setup_.single_precision)
+      rows.write<float>(f, setup_.path, array, piece, width, unit, meaning);
+    else
+      rows.write<double>(f, setup_.path, array, piece, width, unit, meaning);
+  } catch (const Error& e) {
+    if (!failure_) failure_ = e;
+  }
 }
 
 void Recorder::write_field(const Row& row, const Config& a) {
   const System& s = system_;
   if (!s.mesh) return;
   const std::string group = fmt::format("/field/{:06}", n_fields_++);
-  const std::int64_t n = s.mesh->n_nodes_global;
   const auto wants = [&](const char* field) { return std::find(setup_.fields.begin(), setup_.fields.end(), field) != setup_.fields.end(); };
-  const auto write = [&](const char* name, const std::vector<double>& local, int width, const char* unit) {
-    const auto all = gather(local, width);
-    if (!store_) return;
-    std::vector<std::int64_t> shape{n};
-    if (width > 1) shape.push_back(width);
-    on_store([&](Store& f) {
-      if (setup_.single_precision)
-        f.write<float>(group + "/" + name, std::vector<float>(all.begin(), all.end()), shape, unit);
-      else
-        f.write<double>(group + "/" + name, all, shape, unit);
-    });
-  };
   const auto vectors = [&](const char* name, auto value, const char* unit) {
     std::vector<double> local;
     local.reserve(3 * s.X.size());
@@ -54,7 +106,7 @@ void Recorder::write_field(const Row& row, const Config& a) {
       const Vec3 v = value(i);
       local.insert(local.end(), v.data(), v.data() + 3);
     }
-    write(name, local, 3, unit);
+    write_piece(*nodes_, group + "/" + name, nodes_->collect(local, 3), 3, unit, "");
   };
   if (wants("displacement"))
     vectors(
@@ -65,81 +117,7 @@ void Recorder::write_field(const Row& row, const Config& a) {
   if (wants("acceleration"))
     vectors(
         "acceleration", [&](size_t i) { return a.x[i]; }, "m/s^2");
-  if (wants("stress") || wants("von_mises")) {
-    // mean over the cells of a node's first flexible region (first: lowest number), summed across ranks through shared nodes
-    std::vector<double> sum(8 * s.X.size(), 0.0);  // six stresses, von Mises, count
-    std::vector<int> region(s.X.size(), -1);
-    for (const SolidBatch& b : s.batches)
-      for (int i : b.nodes)
-        if (region[i] < 0 || b.region < region[i]) region[i] = b.region;
-    std::vector<double> cell(s.mesh->mesh.n_cells(), 0.0);
-    for (const SolidBatch& b : s.batches) {
-      const int k = info(b.shape).n_nodes;
-      std::vector<Vec3> X(k), x(k);
-      std::vector<Vec6> stress(k);
-      for (size_t e = 0; e < b.cells.size(); ++e) {
-        const int* nodes = b.nodes.data() + e * k;
-        for (int i = 0; i < k; ++i) X[i] = s.X[nodes[i]], x[i] = row.q.x[nodes[i]];
-        nodal_stress(b.shape, b.law, b.c, X, x, stress);
-        for (int i = 0; i < k; ++i) {
-          const double vm = von_mises(stress[i]);
-          cell[b.cells[e]] += vm / k;
-          if (region[nodes[i]] != b.region) continue;
-          double* to = sum.data() + 8 * nodes[i];
-          for (int c = 0; c < 6; ++c) to[c] += stress[i][c];
-          to[6] += vm, to[7] += 1;
-        }
-      }
-    }
-    // every rank's share goes to the row of the file
-    std::vector<double> all(8 * (s.comm->size == 1 ? s.X.size() : 0));
-    if (s.comm->size == 1) {
-      all = std::move(sum);
-    } else {
-      std::vector<std::vector<double>> send(s.comm->size);
-      for (size_t i = 0; i < s.X.size(); ++i)
-        if (region[i] >= 0) {
-          send[0].push_back(static_cast<double>(s.mesh->node_global[i]));
-          send[0].push_back(region[i]);
-          send[0].insert(send[0].end(), sum.begin() + 8 * i, sum.begin() + 8 * i + 8);
-        }
-      const auto received = s.comm->exchange(send);
-      if (s.comm->rank == 0) {
-        all.assign(8 * n, 0.0);
-        std::vector<int> first(n, -1);
-        for (const auto& list : received)
-          for (size_t k = 0; k < list.size(); k += 10) {
-            const auto r = static_cast<std::int64_t>(list[k]);
-            if (first[r] < 0 || list[k + 1] < first[r]) first[r] = static_cast<int>(list[k + 1]);
-          }
-        for (const auto& list : received)
-          for (size_t k = 0; k < list.size(); k += 10) {
-            const auto r = static_cast<std::int64_t>(list[k]);
-            if (static_cast<int>(list[k + 1]) == first[r])
-              for (int c = 0; c < 8; ++c) all[8 * r + c] += list[k + 2 + c];
-          }
-      }
-    }
-    std::vector<std::vector<double>> cells(s.comm->size);
-    for (size_t c = 0; c < cell.size(); ++c)
-      if (cell[c] != 0) cells[0].push_back(static_cast<double>(s.mesh->cell_global[c])), cells[0].push_back(cell[c]);
-    const auto gathered = s.comm->exchange(cells);
-    on_store([&](Store& f) {
-      std::vector<double> stress(6 * n, 0.0), vm(n, 0.0), by_cell(s.mesh->n_cells_global, 0.0);
-      for (std::int64_t i = 0; i < n; ++i)
-        if (const double count = all[8 * i + 7]; count > 0) {
-          for (int c = 0; c < 6; ++c) stress[6 * i + c] = all[8 * i + c] / count;
-          vm[i] = all[8 * i + 6] / count;
-        }
-      for (const auto& list : gathered)
-        for (size_t k = 0; k < list.size(); k += 2) by_cell[static_cast<std::int64_t>(list[k])] = list[k + 1];
-      if (wants("stress")) f.write<double>(group + "/stress", stress, {n, 6}, "Pa", "Cauchy stress xx yy zz yz xz xy");
-      if (wants("von_mises")) {
-        f.write<double>(group + "/von_mises", vm, {n}, "Pa", "von Mises stress");
-        f.write<double>(group + "/cell_von_mises", by_cell, {s.mesh->n_cells_global}, "Pa", "von Mises stress, mean over the cell");
-      }
-    });
-  }
+  if (wants("stress") || wants("von_mises")) write_stress(row, group);
   field_times_.push_back(row.t);
   on_store([&](Store& f) {
     f.set(group, "t", row.t);
@@ -147,39 +125,146 @@ void Recorder::write_field(const Row& row, const Config& a) {
   });
 }
 
-/// Points ParaView at the arrays of the results file; topology as an XDMF mixed list written beside the fields once.
+/// Mean over the cells of a node's first flexible region (first: lowest number), summed across ranks through shared nodes.
+void Recorder::write_stress(const Row& row, const std::string& group) {
+  const System& s = system_;
+  const auto wants = [&](const char* field) { return std::find(setup_.fields.begin(), setup_.fields.end(), field) != setup_.fields.end(); };
+  std::vector<double> sum(8 * s.X.size(), 0.0);  // six stresses, von Mises, count
+  std::vector<int> region(s.X.size(), -1);
+  for (const SolidBatch& b : s.batches)
+    for (int i : b.nodes)
+      if (region[i] < 0 || b.region < region[i]) region[i] = b.region;
+  std::vector<double> cell(s.mesh->mesh.n_cells(), 0.0);
+  for (const SolidBatch& b : s.batches) {
+    const int k = info(b.shape).n_nodes;
+    std::vector<Vec3> X(k), x(k);
+    std::vector<Vec6> stress(k);
+    for (size_t e = 0; e < b.cells.size(); ++e) {
+      const int* nodes = b.nodes.data() + e * k;
+      for (int i = 0; i < k; ++i) X[i] = s.X[nodes[i]], x[i] = row.q.x[nodes[i]];
+      nodal_stress(b.shape, b.law, b.c, X, x, stress);
+      for (int i = 0; i < k; ++i) {
+        const double vm = von_mises(stress[i]);
+        cell[b.cells[e]] += vm / k;
+        if (region[nodes[i]] != b.region) continue;
+        double* to = sum.data() + 8 * nodes[i];
+        for (int c = 0; c < 6; ++c) to[c] += stress[i][c];
+        to[6] += vm, to[7] += 1;
+      }
+    }
+  }
+  std::vector<std::vector<double>> send(s.comm->size);  // row, region, sums, to the rank that writes the row
+  for (size_t i = 0; i < s.X.size(); ++i)
+    if (region[i] >= 0 && node_row_[i] >= 0) {
+      auto& to = send[nodes_->rank_of(node_row_[i])];
+      to.push_back(static_cast<double>(node_row_[i])), to.push_back(region[i]);
+      to.insert(to.end(), sum.begin() + 8 * i, sum.begin() + 8 * i + 8);
+    }
+  const auto received = s.comm->exchange(send);
+  std::vector<int> first(nodes_->count(), -1);
+  std::vector<double> stress(6 * nodes_->count(), 0.0), vm(nodes_->count(), 0.0), count(nodes_->count(), 0.0);
+  const auto each = [&](auto&& visit) {
+    for (const auto& list : received)
+      for (size_t k = 0; k < list.size(); k += 10)
+        visit(static_cast<std::int64_t>(list[k]) - nodes_->first(), static_cast<int>(list[k + 1]), &list[k + 2]);
+  };
+  each([&](std::int64_t i, int r, const double*) { first[i] = first[i] < 0 ? r : std::min(first[i], r); });
+  each([&](std::int64_t i, int r, const double* v) {
+    if (r != first[i]) return;
+    for (int c = 0; c < 6; ++c) stress[6 * i + c] += v[c];
+    vm[i] += v[6], count[i] += v[7];
+  });
+  for (size_t i = 0; i < count.size(); ++i)
+    if (count[i] > 0) {
+      for (int c = 0; c < 6; ++c) stress[6 * i + c] /= count[i];
+      vm[i] /= count[i];
+    }
+  if (wants("stress")) write_piece(*nodes_, group + "/stress", stress, 6, "Pa", "Cauchy stress xx yy zz yz xz xy");
+  if (!wants("von_mises")) return;
+  write_piece(*nodes_, group + "/von_mises", vm, 1, "Pa", "von Mises stress");
+  if (!setup_.skin)
+    write_piece(*cells_, group + "/cell_von_mises", cells_->collect(cell, 1), 1, "Pa", "von Mises stress, mean over the cell");
+}
+
+/// The drawn facets and bars as XDMF's mixed list, in the order of the cells, with the positions of their nodes.
+void Recorder::write_skin(const std::vector<Facet>& facets) {
+  const LocalMesh& m = *system_.mesh;
+  std::vector<std::vector<std::int64_t>> send(system_.comm->size);  // cell, facet, region, length, entries
+  const auto put = [&](std::int64_t c, std::int64_t facet, std::initializer_list<std::int64_t> head, std::span<const std::int64_t> nodes) {
+    auto& to = send[0];
+    to.insert(to.end(), {m.cell_global[c], facet, m.mesh.region[c], static_cast<std::int64_t>(head.size() + nodes.size())});
+    to.insert(to.end(), head.begin(), head.end());
+    for (const std::int64_t n : nodes) to.push_back(node_row_[n]);
+  };
+  for (const Facet& f : facets) {
+    const auto nodes = m.mesh.facet_nodes(f);
+    const size_t n = nodes.size();
+    put(f.cell, f.facet, {n == 3 ? 4 : n == 4 ? 5 : n == 6 ? 36 : 37}, nodes);  // triangle, quadrilateral, their quadratic likes
+  }
+  for (std::int64_t c = 0; c < m.mesh.n_cells(); ++c)
+    if (info(m.mesh.shape[c]).dimension < 3) put(c, 0, {info(m.mesh.shape[c]).xdmf_type, 2}, m.mesh.cell(c));
+  const auto received = system_.comm->exchange(send);
+  std::vector<const std::int64_t*> items;
+  for (const auto& list : received)
+    for (size_t k = 0; k < list.size(); k += 4 + list[k + 3]) items.push_back(&list[k]);
+  std::sort(items.begin(), items.end(), [](const auto* a, const auto* b) { return std::pair(a[0], a[1]) < std::pair(b[0], b[1]); });
+  std::vector<std::int64_t> topology;
+  std::vector<std::int32_t> region;
+  for (const auto* item : items) {
+    region.push_back(static_cast<std::int32_t>(item[2]));
+    topology.insert(topology.end(), item + 4, item + 4 + item[3]);
+  }
+  topology_entries_ = static_cast<std::int64_t>(topology.size()), topology_cells_ = static_cast<std::int64_t>(region.size());
+  on_store([&](Store& f) {
+    f.write<std::int64_t>("/xdmf/topology", topology, {topology_entries_}, "", "cells as XDMF's mixed list");
+    f.write<std::int32_t>("/xdmf/region", region, {topology_cells_}, "", "region of each cell");
+  });
+  std::vector<double> X;
+  for (const Vec3& x : system_.X) X.insert(X.end(), x.data(), x.data() + 3);
+  try {
+    nodes_->write<double>(failure_ ? nullptr : store_.get(), setup_.path, "/xdmf/X", nodes_->collect(X, 3), 3, "m",
+                          "reference positions, repeated here for ParaView");
+  } catch (const Error& e) {
+    if (!failure_) failure_ = e;
+  }
+}
+
+/// The cells of the mesh file as XDMF's mixed list, slice by slice, so that no rank holds the whole mesh.
+void Recorder::write_topology() {
+  const LocalMesh& m = *system_.mesh;
+  const Store mesh = Store::open(m.file);
+  constexpr std::int64_t slice = 1 << 16;
+  store_->start_rows<std::int64_t>("/xdmf/topology", {}, "", "cells as XDMF's mixed list");
+  store_->start_rows<std::int32_t>("/xdmf/region", {}, "", "region of each cell");
+  store_->start_rows<double>("/xdmf/X", {3}, "m", "reference positions, repeated here for ParaView");
+  const auto put = [&](std::int64_t value) { store_->append<std::int64_t>("/xdmf/topology", {&value, 1}), ++topology_entries_; };
+  for (std::int64_t first = 0; first < m.n_cells_global; first += slice) {
+    const std::int64_t count = std::min(slice, m.n_cells_global - first);
+    const auto shape = mesh.read_rows<std::uint8_t>("/mesh/cells/shape", first, count);
+    const auto offset = mesh.read_rows<std::int64_t>("/mesh/cells/offset", first, count + 1);
+    const auto nodes = mesh.read_rows<std::int64_t>("/mesh/cells/nodes", offset.front(), offset.back() - offset.front());
+    for (std::int64_t c = 0; c < count; ++c) {
+      put(info(shape[c]).xdmf_type);
+      if (shape[c] == static_cast<std::uint8_t>(Shape::bar2)) put(2);
+      for (std::int64_t k = offset[c]; k < offset[c + 1]; ++k) put(nodes[k - offset.front()]);
+    }
+    for (std::int32_t r : mesh.read_rows<std::int32_t>("/mesh/cells/region", first, count))
+      store_->append<std::int32_t>("/xdmf/region", {&r, 1});
+  }
+  topology_cells_ = m.n_cells_global;
+  for (std::int64_t first = 0; first < m.n_nodes_global; first += slice) {
+    const auto X = mesh.read_rows<double>("/mesh/nodes/X", first, std::min(slice, m.n_nodes_global - first));
+    for (size_t i = 0; i < X.size(); i += 3) store_->append<double>("/xdmf/X", {X.data() + i, 3});
+  }
+  store_->flush();
+}
+
+/// Points ParaView at the arrays of the results file.
 void Recorder::write_xdmf() {
   if (!system_.mesh || !store_) return;
-  const LocalMesh& m = *system_.mesh;
   const std::string path = setup_.path, base = path.substr(path.rfind('/') == std::string::npos ? 0 : path.rfind('/') + 1);
-  if (topology_entries_ == 0) {
-    // slice by slice, so that no rank holds the whole mesh
-    const Store mesh = Store::open(m.file);
-    constexpr std::int64_t slice = 1 << 16;
-    store_->start_rows<std::int64_t>("/xdmf/topology", {}, "", "cells as XDMF's mixed list");
-    store_->start_rows<std::int32_t>("/xdmf/region", {}, "", "region of each cell");
-    store_->start_rows<double>("/xdmf/X", {3}, "m", "reference positions, repeated here for ParaView");
-    const auto put = [&](std::int64_t value) { store_->append<std::int64_t>("/xdmf/topology", {&value, 1}), ++topology_entries_; };
-    for (std::int64_t first = 0; first < m.n_cells_global; first += slice) {
-      const std::int64_t count = std::min(slice, m.n_cells_global - first);
-      const auto shape = mesh.read_rows<std::uint8_t>("/mesh/cells/shape", first, count);
-      const auto offset = mesh.read_rows<std::int64_t>("/mesh/cells/offset", first, count + 1);
-      const auto nodes = mesh.read_rows<std::int64_t>("/mesh/cells/nodes", offset.front(), offset.back() - offset.front());
-      for (std::int64_t c = 0; c < count; ++c) {
-        put(info(shape[c]).xdmf_type);
-        if (shape[c] == static_cast<std::uint8_t>(Shape::bar2)) put(2);
-        for (std::int64_t k = offset[c]; k < offset[c + 1]; ++k) put(nodes[k - offset.front()]);
-      }
-      for (std::int32_t r : mesh.read_rows<std::int32_t>("/mesh/cells/region", first, count))
-        store_->append<std::int32_t>("/xdmf/region", {&r, 1});
-    }
-    for (std::int64_t first = 0; first < m.n_nodes_global; first += slice) {
-      const auto X = mesh.read_rows<double>("/mesh/nodes/X", first, std::min(slice, m.n_nodes_global - first));
-      for (size_t i = 0; i < X.size(); i += 3) store_->append<double>("/xdmf/X", {X.data() + i, 3});
-    }
-    store_->flush();
-  }
-  const std::int64_t n = m.n_nodes_global, cells = m.n_cells_global, entries = topology_entries_;
+  if (topology_entries_ == 0) write_topology();
+  const std::int64_t n = nodes_->n_rows(), cells = topology_cells_, entries = topology_entries_;
   std::string t =
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"run\" GridType=\"Collection\" "
       "CollectionType=\"Temporal\">\n";
@@ -204,8 +289,8 @@ void Recorder::write_xdmf() {
     for (const char* name : {"displacement", "velocity", "acceleration"})
       if (store_->has(group + "/" + name)) attribute(name, "Vector", "Node", fmt::format("{} 3", n), group + "/" + name, number);
     if (store_->has(group + "/von_mises")) {
-      attribute("von Mises [Pa]", "Scalar", "Node", fmt::format("{}", n), group + "/von_mises", "F8");
-      attribute("cell von Mises [Pa]", "Scalar", "Cell", fmt::format("{}", cells), group + "/cell_von_mises", "F8");
+      attribute("von Mises [Pa]", "Scalar", "Node", fmt::format("{}", n), group + "/von_mises", number);
+      if (!setup_.skin) attribute("cell von Mises [Pa]", "Scalar", "Cell", fmt::format("{}", cells), group + "/cell_von_mises", number);
     }
     attribute("region", "Scalar", "Cell", fmt::format("{}", cells), "/xdmf/region", "I4");
     t += "</Grid>\n";

@@ -152,7 +152,7 @@ std::vector<double> Recorder::mid_values(const State& s, const Stage& stage, std
   return v;
 }
 
-/// What only rank 0 does and may fail at (a full disk) is noted here and told to all ranks by share_failure.
+/// What a rank alone does and may fail at (a full disk) is noted here and told to all ranks by share_failure.
 void Recorder::on_store(const std::function<void(Store&)>& write) {
   if (!store_ || failure_) return;
   try {
@@ -247,31 +247,7 @@ void Recorder::first(const State& s) {
   next_field_ = setup_.interval;
   rows_.push_back(std::move(row));
   declare();
-  if (system_.mesh) {  // on every rank: the followers and, in parallel, the parts
-    const LocalMesh& m = *system_.mesh;
-    std::vector<double> body(system_.X.size());
-    for (size_t i = 0; i < body.size(); ++i) body[i] = system_.follower[i];
-    body = gather(body, 1);
-    std::vector<std::vector<std::int64_t>> mine(system_.comm->size);
-    mine[0] = m.cell_global;
-    const auto cells = system_.comm->exchange(mine);
-    on_store([&](Store& f) {
-      std::vector<std::int64_t> nodes;
-      std::vector<std::int32_t> bodies;
-      for (size_t i = 0; i < body.size(); ++i)
-        if (body[i] > 0) nodes.push_back(static_cast<std::int64_t>(i)), bodies.push_back(static_cast<std::int32_t>(body[i]) - 1);
-      const auto n = static_cast<std::int64_t>(nodes.size());
-      f.write<std::int64_t>("/body/follower_node", nodes, {n}, "", "nodes that follow a body");
-      f.write<std::int32_t>("/body/follower_body", bodies, {n}, "", "the body each follows");
-      std::vector<std::int32_t> rank(m.n_cells_global, 0);
-      for (size_t r = 0; r < cells.size(); ++r)
-        for (std::int64_t c : cells[r]) rank[c] = static_cast<std::int32_t>(r);
-      if (system_.comm->size > 1) {
-        f.write<std::int32_t>("/parts/rank", rank, {m.n_cells_global});
-        f.set("/parts/rank", "n_parts", static_cast<std::int64_t>(system_.comm->size));
-      }
-    });
-  }
+  if (system_.mesh) declare_rows();
   share_failure();
 }
 

@@ -10,6 +10,7 @@
 
 #include "dynamics/profile.hpp"
 #include "dynamics/redundancy.hpp"
+#include "dynamics/slabs.hpp"
 #include "dynamics/start.hpp"
 #include "model/store.hpp"
 
@@ -25,6 +26,7 @@ class Recorder {
     double interval = 0;  // between fields [s]
     std::vector<std::string> fields;
     bool single_precision = false;
+    bool skin = false;          // fields of the nodes on the surfaces of regions alone
     std::vector<double> jumps;  // times at which a load jumps
     std::vector<std::string> provenance;
     bool redundant = false;  // reactions by minimum norm
@@ -75,8 +77,13 @@ class Recorder {
   std::vector<std::pair<double, const Interval*>> extrapolated(const std::vector<const Interval*>& m, bool from_right) const;
   void write_row(const std::vector<std::pair<double, const Interval*>>& weights);
   void write_field(const Row& row, const Config& a);
+  void write_stress(const Row& row, const std::string& group);
+  void write_piece(const Slabs& rows, const std::string& array, const std::vector<double>& piece, int width, const char* unit,
+                   const char* meaning);
+  void declare_rows();
+  void write_skin(const std::vector<Facet>& facets);
+  void write_topology();
   void write_xdmf();
-  std::vector<double> gather(const std::vector<double>& local, int width) const;
 
   const System& system_;
   const Scene& scene_;
@@ -85,7 +92,7 @@ class Recorder {
   std::vector<std::array<Vec3, 4>> arms_;  // to the four points of each body
   std::vector<std::string> arrays_;        // of histories with a name, as declared
   std::unique_ptr<Store> store_;           // rank 0
-  std::optional<Error> failure_;           // of a write on rank 0
+  std::optional<Error> failure_;           // of a write of this rank
   std::deque<Row> rows_;
   std::deque<Interval> intervals_;  // interval k starts at row k of rows_
   std::deque<Interval> past_;       // the two intervals before intervals_[0], for the last row
@@ -93,7 +100,9 @@ class Recorder {
   double last_t_ = 0;
   double next_field_ = 0, E0_ = 0, max_T_ = 0, work_ = 0, dissipated_ = 0, worst_balance_ = 0, worst_violation_ = 0;
   int n_fields_ = 0;
-  std::int64_t topology_entries_ = 0;
+  std::optional<Slabs> nodes_, cells_;                      // rows of the fields
+  std::vector<std::int64_t> node_row_;                      // of local nodes, also those of other ranks; -1: not written
+  std::int64_t topology_entries_ = 0, topology_cells_ = 0;  // of XDMF's list
   long rows_written_ = 0;
   double last_flush_ = wall_clock(), last_xdmf_ = wall_clock();
   std::vector<double> field_times_;

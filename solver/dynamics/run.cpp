@@ -129,6 +129,7 @@ class Run {
     setup.interval = output.given("interval") ? output.number("interval") : is_static_ ? 0 : time.number("end") / 50;
     setup.fields = output.texts("fields");
     setup.single_precision = output.text("precision") == "single";
+    setup.skin = output.text("nodes") == "skin";
     for (const Load& l : system_.loads)
       for (double t : l.history.jumps()) setup.jumps.push_back(t);
     for (const Connector& j : system_.joints)

@@ -39,7 +39,11 @@ const std::vector<ArraySchema>& file_schema() {
       {"run.h5", "/body/follower_node", "i8", "(n_followers)", "", "nodes that follow a body"},
       {"run.h5", "/body/follower_body", "i4", "(n_followers)", "",
        "the body each follows; its position is sum N_a(X) q_a over the four points"},
-      {"run.h5", "/field/<step>/displacement", "f8", "(n_nodes, 3)", "m", "x - X; attribute t [s] of the group"},
+      {"run.h5", "/skin/node", "i8", "(n_skin)", "",
+       "nodes on the surface of a region: with output.nodes = \"skin\" the nodal fields below, and /xdmf, have a row for each of these "
+       "alone"},
+      {"run.h5", "/field/<step>/displacement", "f8", "(n_nodes, 3)", "m",
+       "x - X; attribute t [s] of the group; f4, like all fields, with output.precision = \"single\""},
       {"run.h5", "/field/<step>/velocity", "f8", "(n_nodes, 3)", "m/s", "velocity at t"},
       {"run.h5", "/field/<step>/acceleration", "f8", "(n_nodes, 3)", "m/s^2",
        "acceleration at t, second order (mean of the mid-step values around it)"},

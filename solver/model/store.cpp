@@ -100,8 +100,9 @@ Store Store::open(const std::string& path) {
   auto impl = std::make_unique<Impl>();
   impl->path = impl->on_disk = path;
   const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
-  H5Pset_elink_file_cache_size(access, 4);  // a file behind a link is opened once, not for every array
+  // A file behind a link is opened once, not for every array.  The library does so with its own way of closing; with another one
+  // (H5F_CLOSE_STRONG) here or where files are made we could not open that file too.
+  H5Pset_elink_file_cache_size(access, 4);
   impl->file = Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
   if (!impl->file.ok()) {
     const Cause cause = last_cause();
@@ -119,7 +120,7 @@ Id create_file(const std::string& path, const std::string& on_disk) {
   if (descriptor < 0) throw Error(path, fmt::format("cannot write: {}", std::strerror(errno)), "", Exit::resources);
   ::close(descriptor);
   const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
+  H5Pset_alignment(access, 4 * slab_rows, 4 * slab_rows);  // a page
   Id file(H5Fcreate(on_disk.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
   if (!file.ok()) {
     const Cause cause = last_cause();

@@ -44,6 +44,10 @@ class Store {
   void write_strings(const std::string& array, std::span<const std::string> values);
   void write_text(const std::string& array, const std::string& text);
 
+  /// Room for an array that several ranks fill by write_at(): its first byte in the file, -1 for an empty one.
+  template <class T>
+  std::int64_t reserve(const std::string& array, std::vector<std::int64_t> shape, const std::string& unit = "",
+                       const std::string& meaning = "");
   /// An array that grows along its first axis; append() adds one row.
   template <class T>
   void start_rows(const std::string& array, std::vector<std::int64_t> row_shape, const std::string& unit = "",
@@ -73,6 +77,11 @@ class Store {
   explicit Store(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+/// Bytes at their place in a file that another process holds open as a Store; Error (exit 4) where the disk is full.
+void write_at(const std::string& path, std::int64_t place, std::span<const std::byte> bytes);
+/// Rows whose bytes are whole pages of the file, whatever the type: pieces of a reserved array that begin at multiples share no page.
+inline constexpr std::int64_t slab_rows = 1024;
 
 /// Names as HDF5 can hold them: '/' and '%' become %2F and %25, a lone "." %2E.  from_link_name is the inverse.
 std::string to_link_name(const std::string& name);

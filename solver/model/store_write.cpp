@@ -1,5 +1,11 @@
 // Store: writing.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cerrno>
+#include <cstring>
 
 #include "base/error.hpp"
 #include "model/store_impl.hpp"
@@ -65,6 +71,35 @@ void Store::write(const std::string& array, std::span<const T> values, std::vect
     impl_->need(H5Dwrite(set, memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0, "cannot write " + array);
   if (!unit.empty()) impl_->text_attribute(set, "unit", unit);
   if (!meaning.empty()) impl_->text_attribute(set, "meaning", meaning);
+}
+
+template <class T>
+std::int64_t Store::reserve(const std::string& array, std::vector<std::int64_t> shape, const std::string& unit,
+                            const std::string& meaning) {
+  static_assert(std::endian::native == std::endian::little, "write_at copies memory into a little-endian file");
+  const Id space = simple_space(shape), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
+  H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
+  const Id set = impl_->make_array(array, file_type<T>(), space, creation);
+  if (!unit.empty()) impl_->text_attribute(set, "unit", unit);
+  if (!meaning.empty()) impl_->text_attribute(set, "meaning", meaning);
+  if (product(shape) == 0) return -1;
+  const haddr_t place = H5Dget_offset(set);
+  impl_->need(place != HADDR_UNDEF, "no room for " + array);
+  return static_cast<std::int64_t>(place);
+}
+
+void write_at(const std::string& path, std::int64_t place, std::span<const std::byte> bytes) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  bool ok = file >= 0;
+  for (size_t done = 0; ok && done < bytes.size();) {
+    const auto n = ::pwrite(file, bytes.data() + done, bytes.size() - done, place + static_cast<std::int64_t>(done));
+    ok = n > 0 || (n < 0 && errno == EINTR);
+    if (n > 0) done += static_cast<size_t>(n);
+  }
+  const int error = errno;
+  if (file >= 0 && ::close(file) != 0) ok = false;
+  if (!ok) throw Error(path, fmt::format("cannot write: {}", std::strerror(error)), "", Exit::resources);
 }
 
 void Store::write_strings(const std::string& array, std::span<const std::string> values) {
@@ -134,11 +169,12 @@ void Store::link(const std::string& name, const std::string& target, const std::
               "cannot link " + name);
 }
 
-#define HILO_STORE_TYPE(T)                                                                                                  \
-  template void Store::write<T>(const std::string&, std::span<const T>, std::vector<std::int64_t>, const std::string&,      \
-                                const std::string&);                                                                        \
-  template void Store::start_rows<T>(const std::string&, std::vector<std::int64_t>, const std::string&, const std::string&, \
-                                     const std::string&);                                                                   \
+#define HILO_STORE_TYPE(T)                                                                                                        \
+  template void Store::write<T>(const std::string&, std::span<const T>, std::vector<std::int64_t>, const std::string&,            \
+                                const std::string&);                                                                              \
+  template std::int64_t Store::reserve<T>(const std::string&, std::vector<std::int64_t>, const std::string&, const std::string&); \
+  template void Store::start_rows<T>(const std::string&, std::vector<std::int64_t>, const std::string&, const std::string&,       \
+                                     const std::string&);                                                                         \
   template void Store::append<T>(const std::string&, std::span<const T>);
 HILO_STORE_TYPE(double)
 HILO_STORE_TYPE(float)

@@ -1,0 +1,121 @@
+// What the results hold does not depend on how much of it is kept, nor on who writes it.  Truth: the run that one rank writes whole.
+#include <fmt/format.h>
+
+#include "model/block.hpp"
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+constexpr int nx = 12, ny = 10, nz = 10, border = 5;  // more rows than a rank writes by itself
+
+void use_two_blocks(Case& c) {
+  Mesh mesh = block(nx, ny, nz, {"front", "back"}, [](int i) { return i < border ? 0 : 1; });
+  for (std::int64_t n = 0; n < mesh.n_nodes(); ++n)
+    if (mesh.X[n].x() == nx) mesh.node_sets["end"].push_back(n);
+  c.use(mesh);
+}
+
+Results on_ranks(const Case& c, int ranks, const std::string& options, const std::string& output) {
+  const std::string parts = fmt::format("parts-{}.h5", ranks);
+  EXPECT_EQ(c.run(fmt::format("hilo-part --quiet mesh.h5 -n {} -o {}", ranks, parts)).exit, 0);
+  const Ran ran =
+      mpirun(ranks, fmt::format("hilo-solve --quiet '{}' {} {} -o {}", c.source("scene.toml"), parts, options, output), c.path());
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  return c.results(output);
+}
+
+/// Largest difference of the rows `nodes` of a field from those of `part`, over the peak of the field.
+double difference(const Results& whole, const Results& part, const std::string& field, const std::vector<std::int64_t>& nodes) {
+  double worst = 0, peak = 0;
+  for (const std::string& step : whole.steps()) {
+    const auto a = whole.table("/field/" + step + "/" + field), b = part.table("/field/" + step + "/" + field);
+    EXPECT_EQ(b.rows(), static_cast<Eigen::Index>(nodes.size())) << field;
+    for (size_t i = 0; i < nodes.size(); ++i) worst = std::max(worst, (a.row(nodes[i]) - b.row(i)).cwiseAbs().maxCoeff());
+    peak = std::max(peak, a.cwiseAbs().maxCoeff());
+  }
+  EXPECT_GT(peak, 0) << field;
+  return worst / peak;
+}
+
+const char* const fields[] = {"displacement", "velocity", "acceleration", "stress", "von_mises"};
+
+std::vector<std::int64_t> all_nodes() {
+  std::vector<std::int64_t> nodes;
+  for (std::int64_t n = 0; n < (nx + 1) * (ny + 1) * (nz + 1); ++n) nodes.push_back(n);
+  return nodes;
+}
+
+/// A node of the blocks is on the skin of a region unless it lies strictly inside one of the two.
+std::vector<std::int64_t> skin_nodes() {
+  std::vector<std::int64_t> nodes;
+  for (const std::int64_t n : all_nodes()) {
+    const auto i = n % (nx + 1), j = n / (nx + 1) % (ny + 1), k = n / (nx + 1) / (ny + 1);
+    if (i % nx == 0 || i == border || j % ny == 0 || k % nz == 0) nodes.push_back(n);
+  }
+  return nodes;
+}
+
+TEST(Output, OfTheSkinIsThatOfAllNodesOnTheSurfacesOfRegions) {
+  Case c("output");
+  use_two_blocks(c);
+  const Results all = c.solved("", "all.h5"), skin = c.solved("--set 'output.nodes=\"skin\"'", "skin.h5");
+  EXPECT_EQ(skin.file().read<std::int64_t>("/skin/node"), skin_nodes());
+  for (const char* field : fields) EXPECT_EQ(difference(all, skin, field, skin_nodes()), 0) << field;
+  // two closed boxes of quadrilaterals, each an XDMF number and four nodes
+  const std::int64_t facets = 4 * ny * nz + 2 * nx * (ny + nz);
+  EXPECT_EQ(skin.file().shape("/xdmf/region"), std::vector<std::int64_t>{facets});
+  EXPECT_EQ(skin.file().shape("/xdmf/topology"), std::vector<std::int64_t>{5 * facets});
+  EXPECT_EQ(c.run("hilo-show --check skin.h5").exit, 0);
+}
+
+TEST(Output, OfTheSkinIsEnoughForPicturesAndPeaksOfRegionsButNotForCuts) {
+  Case c("output");
+  use_two_blocks(c);
+  c.solved("", "all.h5"), c.solved("--set 'output.nodes=\"skin\"'", "skin.h5");
+  const Ran peak = c.run("hilo-post peak skin.h5 --field displacement --hide front");
+  EXPECT_EQ(peak.exit, 0) << peak.err;
+  EXPECT_EQ(peak.out, c.run("hilo-post peak all.h5 --field displacement --hide front").out) << "the largest displacement is at the surface";
+  const std::string picture = "hilo-post render --steps last --hide back --deformed 2 --size 200x150 ";
+  ASSERT_EQ(c.run(picture + "all.h5 -o all.png").exit, 0);
+  const Ran drawn = c.run(picture + "skin.h5 -o skin.png");
+  ASSERT_EQ(drawn.exit, 0) << drawn.err;
+  const Ran cut = c.run("hilo-post render skin.h5 --cut y=5 -o cut.png");
+  EXPECT_EQ(cut.exit, 2);
+  EXPECT_NE(cut.err.find("output.nodes"), std::string::npos) << cut.err;
+}
+
+TEST(Output, IsTheSameWhoeverWritesIt) {
+  Case c("output");
+  use_two_blocks(c);
+  const Results one = c.solved("", "one.h5");
+  for (const int ranks : {2, 3}) {
+    const Results whole = on_ranks(c, ranks, "", "whole.h5");
+    const Results skin = on_ranks(c, ranks, "--set 'output.nodes=\"skin\"'", "skin.h5");
+    EXPECT_EQ(skin.file().read<std::int64_t>("/skin/node"), skin_nodes());
+    for (const char* field : fields) {
+      EXPECT_LT(difference(one, whole, field, all_nodes()), 1e-8) << field << " on " << ranks;
+      EXPECT_LT(difference(one, skin, field, skin_nodes()), 1e-8) << field << " on " << ranks;
+    }
+    EXPECT_EQ(one.file().read<std::int64_t>("/xdmf/topology"), whole.file().read<std::int64_t>("/xdmf/topology"));
+    EXPECT_EQ(one.file().read<double>("/xdmf/X"), whole.file().read<double>("/xdmf/X"));
+    EXPECT_EQ(whole.file().shape("/parts/rank"), std::vector<std::int64_t>{nx * ny * nz});
+    EXPECT_EQ(c.run("hilo-show --check whole.h5 && hilo-show --check skin.h5").exit, 0);
+  }
+}
+
+TEST(Output, InSinglePrecisionIsRoundedAndHalfAsLarge) {
+  Case c("output");
+  use_two_blocks(c);
+  const Results fine = c.solved("", "double.h5"), single = c.solved("--set 'output.precision=\"single\"'", "single.h5");
+  double largest = 0;
+  for (const char* field : fields) {
+    EXPECT_EQ(single.file().type("/field/000001/" + std::string(field)), "f4");
+    largest = std::max(largest, difference(fine, single, field, all_nodes()));
+  }
+  EXPECT_LT(largest, 6e-8) << "half a unit in the last place of 24 bits";
+  EXPECT_GT(largest, 0);
+}
+
+}  // namespace
+}  // namespace hilo::test
