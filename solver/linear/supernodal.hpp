@@ -19,6 +19,8 @@ extern "C" {
 HILO_BLAS(double, d)
 HILO_BLAS(float, s)
 void dtrmv_(const char*, const char*, const char*, const int*, const double*, const int*, double*, const int*);
+void dtrmm_(const char*, const char*, const char*, const char*, const int*, const int*, const double*, const double*, const int*, double*,
+            const int*);
 }
 #undef HILO_BLAS
 
@@ -109,29 +111,36 @@ void backward(const cholmod_factor* L, int from, int to, T* x, std::vector<T>& s
   }
 }
 
-/// x[from .. n) := L L^T x, columns [from, n) only.
-inline void multiply(const cholmod_factor* L, int from, double* x, std::vector<double>& scratch) {
+/// x[from .. n) := L L^T x, columns [from, n) of L only.
+inline void multiply(const cholmod_factor* L, int from, double* x, std::vector<double>& scratch, int columns = 1) {
   const auto* super = static_cast<const int*>(L->super);
   const auto *pi = static_cast<const int*>(L->pi), *px = static_cast<const int*>(L->px), *rows = static_cast<const int*>(L->s);
   const auto* values = static_cast<const double*>(L->x);
-  const int one = 1, n_super = static_cast<int>(L->nsuper);
-  scratch.resize(L->n);
+  const int one = 1, n_super = static_cast<int>(L->nsuper), n = static_cast<int>(L->n);
+  const double unit = 1;
+  scratch.resize(L->n * columns);
   const int first = static_cast<int>(std::upper_bound(super, super + n_super, from) - super) - 1;
   const auto visit = [&](int s, auto&& f) {
     const int a = std::max(from, super[s]), m = super[s + 1] - a, o = a - super[s], stride = pi[s + 1] - pi[s];
     f(m, values + px[s] + o + static_cast<size_t>(o) * stride, stride, x + a, stride - o - m, rows + pi[s] + o + m);
   };
+  const auto triangle = [&](const char* transposed, int m, const double* D, int stride, double* y) {
+    columns == 1 ? dtrmv_("L", transposed, "N", &m, D, &stride, y, &one)
+                 : dtrmm_("L", "L", transposed, "N", &m, &columns, &unit, D, &stride, y, &n);
+  };
   for (int s = first; s < n_super; ++s)
     visit(s, [&](int m, const double* D, int stride, double* y, int n_below, const int* row) {
-      dtrmv_("L", "T", "N", &m, D, &stride, y, &one);
-      for (int k = 0; k < n_below; ++k) scratch[k] = x[row[k]];
-      if (n_below > 0) multiply("T", n_below, m, 1., D + m, stride, scratch.data(), n_below, 1., y, m, 1);
+      triangle("T", m, D, stride, y);
+      for (int c = 0; c < columns; ++c)
+        for (int k = 0; k < n_below; ++k) scratch[k + static_cast<size_t>(c) * n_below] = x[row[k] + static_cast<size_t>(c) * n];
+      if (n_below > 0) multiply("T", n_below, m, 1., D + m, stride, scratch.data(), n_below, 1., y, n, columns);
     });
   for (int s = n_super - 1; s >= first; --s)
     visit(s, [&](int m, const double* D, int stride, double* y, int n_below, const int* row) {
-      if (n_below > 0) multiply("N", n_below, m, 1., D + m, stride, y, m, 0., scratch.data(), n_below, 1);
-      for (int k = 0; k < n_below; ++k) x[row[k]] += scratch[k];
-      dtrmv_("L", "N", "N", &m, D, &stride, y, &one);
+      if (n_below > 0) multiply("N", n_below, m, 1., D + m, stride, y, n, 0., scratch.data(), n_below, columns);
+      for (int c = 0; c < columns; ++c)
+        for (int k = 0; k < n_below; ++k) x[row[k] + static_cast<size_t>(c) * n] += scratch[k + static_cast<size_t>(c) * n_below];
+      triangle("N", m, D, stride, y);
     });
 }
 

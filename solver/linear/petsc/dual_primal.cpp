@@ -107,16 +107,19 @@ void DualPrimal::list_constraints(const std::vector<double>& regular) {
 /// Psi = S^-1 C (C^T S^-1 C)^-1 with the regular S, and the pieces' parts of K_c.
 bool DualPrimal::form_coarse_basis() {
   if (!weight_.allFinite()) return false;
-  VectorXd x = VectorXd::Zero(n_);
+  constexpr Eigen::Index at_once = 24;  // columns that share the reading of the factor
+  MatrixXd x;
   for (Piece& p : pieces_) {
     const auto from = n_interior_ + static_cast<int>(p.from), to = from + static_cast<int>(p.n);
     const auto n = p.C.cols();
     p.Psi.resize(p.n, n), p.coarse.resize(n, n);
     if (n == 0) continue;
-    for (Eigen::Index k = 0; k < n; ++k) {
-      x.segment(from, p.n) = p.C.col(k);
-      factor_.forward(from, to, x.data()), factor_.backward(from, to, x.data());
-      p.Psi.col(k) = x.segment(from, p.n);
+    for (Eigen::Index k = 0; k < n; k += at_once) {
+      const auto some = std::min(at_once, n - k);
+      x.resize(n_, some);
+      x.middleRows(from, p.n) = p.C.middleCols(k, some);
+      factor_.forward(from, to, x.data(), static_cast<int>(some)), factor_.backward(from, to, x.data(), static_cast<int>(some));
+      p.Psi.middleCols(k, some) = x.middleRows(from, p.n);
     }
     MatrixXd compliance = p.C.transpose() * p.Psi;
     compliance = (0.5 * (compliance + compliance.transpose())).eval();
@@ -243,11 +246,14 @@ Eigen::MatrixXd DualPrimal::solve(const Columns& f) {
   return w;
 }
 
-Eigen::VectorXd DualPrimal::multiply(const VectorXd& w) {
+Eigen::MatrixXd DualPrimal::multiply(const Columns& w) {
   work_.bottomRows(n_edge_) = w;
-  factor_.multiply_schur(work_.data());
-  VectorXd f = work_.bottomRows(n_edge_);
-  for (const Piece& p : pieces_) f.segment(p.from, p.n) -= p.C * p.regular.cwiseProduct(p.C.transpose() * w.segment(p.from, p.n));
+  factor_.multiply_schur(work_.data(), static_cast<int>(w.cols()));
+  MatrixXd f = work_.bottomRows(n_edge_);
+  for (const Piece& p : pieces_) {
+    const MatrixXd primal = p.regular.asDiagonal() * (p.C.transpose() * w.middleRows(p.from, p.n));
+    f.middleRows(p.from, p.n) -= p.C * primal;
+  }
   return f;
 }
 

@@ -43,7 +43,7 @@ class DualPrimal {
   /// S~^-1 f
   MatrixXd solve(const Columns& f);
   /// S w
-  VectorXd multiply(const VectorXd& w);
+  MatrixXd multiply(const Columns& w);
   MatrixXd average(const Columns& w) { return sum(weigh(w, false)); }            // E_D w
   MatrixXd average_transposed(const Columns& f) { return weigh(sum(f), true); }  // E_D^T f
 

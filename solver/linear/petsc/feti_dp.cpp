@@ -14,7 +14,8 @@
 namespace hilo::petsc {
 namespace {
 
-using Eigen::VectorXd;
+using Eigen::ArrayXd;
+using Eigen::MatrixXd;
 
 class FetiDp final : public FlexibleInverse {
  public:
@@ -25,8 +26,32 @@ class FetiDp final : public FlexibleInverse {
     return spaces_.set_up(is_adaptive_);
   }
 
-  void apply(Eigen::Ref<Eigen::MatrixXd> X) override {
-    for (Eigen::Index k = 0; k < X.cols(); ++k) solve(X.col(k));
+  /// Columns side by side, each with its own steps.
+  void apply(Eigen::Ref<MatrixXd> X) override {
+    const MatrixXd g = spaces_.condense(X);
+    MatrixXd w = spaces_.solve(g), p = MatrixXd::Zero(w.rows(), w.cols());
+    const ArrayXd energy = dot(g, w);
+    const int most = is_adaptive_ ? 150 : 60;
+    ArrayXd before = ArrayXd::Ones(w.cols()), enough;
+    int k = 0;
+    for (;; ++k) {
+      const MatrixXd jump = w - spaces_.average(w), force = spaces_.multiply(jump);
+      const ArrayXd now = dot(jump, force);  // the residual B w, squared, in the norm of the preconditioner
+      if (k == 0) enough = (tolerance * tolerance * now).max(round_off * round_off * energy);
+      const Eigen::Array<bool, Eigen::Dynamic, 1> open = now > enough;
+      const bool fails = !now.allFinite() || (open.any() && k == most);
+      failed_ |= fails;
+      if (fails || !open.any()) break;
+      taken_.all += static_cast<int>(open.count());
+      const ArrayXd beta = open.select(now / before, 0);
+      p = force - spaces_.average_transposed(force) + p * beta.matrix().asDiagonal();
+      const MatrixXd q = spaces_.solve(p);
+      const ArrayXd alpha = open.select(now / dot(p, q), 0);
+      w -= q * alpha.matrix().asDiagonal();
+      before = now;
+    }
+    taken_.most = std::max(taken_.most, k), most_ = std::max(most_, k);
+    spaces_.expand(w, X);
   }
 
   bool strengthen(int, bool) override {
@@ -42,35 +67,10 @@ class FetiDp final : public FlexibleInverse {
   double bytes() const override { return spaces_.bytes(); }
 
  private:
-  /// One column.
-  void solve(Eigen::Ref<Eigen::MatrixXd> x) {
-    const VectorXd g = spaces_.condense(x);
-    VectorXd w = spaces_.solve(g), p = VectorXd::Zero(w.size());
-    const double energy = dot(g, w), most = is_adaptive_ ? 150 : 60;
-    double before = 1, enough = 0;
-    int k = 0;
-    for (;; ++k) {
-      const VectorXd jump = w - spaces_.average(w), force = spaces_.multiply(jump);
-      const double now = dot(jump, force);  // the residual B w, squared, in the norm of the preconditioner
-      if (k == 0) enough = std::max(tolerance * tolerance * now, round_off * round_off * energy);
-      if (now <= enough) break;
-      if (!(now > 0) || k == most) {
-        failed_ = true;
-        break;
-      }
-      p = force - spaces_.average_transposed(force) + (k == 0 ? 0 : now / before) * p;
-      const VectorXd q = spaces_.solve(p);
-      w -= now / dot(p, q) * q;
-      before = now;
-    }
-    taken_.all += k, taken_.most = std::max(taken_.most, k);
-    most_ = std::max(most_, k);
-    spaces_.expand(w, x);
-  }
-
-  static double dot(const VectorXd& a, const VectorXd& b) {
-    double sum = a.dot(b);
-    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  /// Of each column, over all ranks.
+  static ArrayXd dot(const MatrixXd& a, const MatrixXd& b) {
+    ArrayXd sum = a.cwiseProduct(b).colwise().sum();
+    MPI_Allreduce(MPI_IN_PLACE, sum.data(), static_cast<int>(sum.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
     return sum;
   }
 

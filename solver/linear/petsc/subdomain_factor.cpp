@@ -147,8 +147,8 @@ bool SubdomainFactor::factor(const SubdomainMatrix& F, const Interface& interfac
 
 void SubdomainFactor::forward(int from, int to, double* x, int columns) const { supernodal::forward(L_, from, to, x, below_, columns); }
 void SubdomainFactor::backward(int from, int to, double* x, int columns) const { supernodal::backward(L_, from, to, x, below_, columns); }
-void SubdomainFactor::multiply_schur(double* x) const {
-  if (n_interior_ < n()) supernodal::multiply(L_, n_interior_, x, below_);
+void SubdomainFactor::multiply_schur(double* x, int columns) const {
+  if (n_interior_ < n()) supernodal::multiply(L_, n_interior_, x, below_, columns);
 }
 
 Eigen::MatrixXd SubdomainFactor::schur_rows(int piece, const std::vector<int>& unknowns) const {

@@ -32,7 +32,7 @@ class SubdomainFactor {
   /// x := L^-T x, columns [from, to) of L only, from the rows below as they are.
   void backward(int from, int to, double* x, int columns = 1) const;
   /// x := L_S L_S^T x of all interfaces; x of all unknowns.
-  void multiply_schur(double* x) const;
+  void multiply_schur(double* x, int columns = 1) const;
   /// The interface of a piece: unknowns [begin(p), begin(p + 1)).
   int begin(int piece) const { return begin_[piece]; }
   /// Rows of a piece's L_S, dense (unknowns x its interface): of the given ones of its interface.
