@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "base/stopwatch.hpp"
-
 namespace hilo::petsc {
 namespace {
 
@@ -133,29 +131,15 @@ bool DualPrimal::form_coarse_basis() {
   return true;
 }
 
-/// K_c from all subdomains to all ranks, factored by each.
 bool DualPrimal::factor_coarse() {
-  if (n_constraints_ == 0) return true;
-  std::vector<double> mine, all;
+  std::vector<CoarseProblem::Entry> entries;
   for (const Piece& p : pieces_)
     for (size_t a = 0; a < p.number.size(); ++a)
       for (size_t b = 0; b < p.number.size(); ++b)
         if (p.number[a] >= p.number[b])
-          mine.insert(mine.end(), {static_cast<double>(p.number[a]), static_cast<double>(p.number[b]),
-                                   p.coarse(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b))});
-  int n = static_cast<int>(mine.size());
-  std::vector<int> counts(size()), at(size(), 0);
-  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, PETSC_COMM_WORLD);
-  for (int r = 1; r < size(); ++r) at[r] = at[r - 1] + counts[r - 1];
-  all.resize(static_cast<size_t>(at.back()) + counts.back());
-  MPI_Allgatherv(mine.data(), n, MPI_DOUBLE, all.data(), counts.data(), at.data(), MPI_DOUBLE, PETSC_COMM_WORLD);
-  const Stopwatch watch(coarse_seconds_);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (size_t k = 0; k < all.size(); k += 3) entries.emplace_back(static_cast<int>(all[k]), static_cast<int>(all[k + 1]), all[k + 2]);
-  Eigen::SparseMatrix<double> K(n_constraints_, n_constraints_);
-  K.setFromTriplets(entries.begin(), entries.end());
-  coarse_factor_.compute(K);
-  return coarse_factor_.info() == Eigen::Success;
+          entries.push_back({static_cast<double>(p.number[a]), static_cast<double>(p.number[b]),
+                             p.coarse(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b))});
+  return coarse_.factor(n_constraints_, entries);
 }
 
 /// All primal unknowns, for forces on the interface.
@@ -167,8 +151,8 @@ Eigen::MatrixXd DualPrimal::solve_coarse(const Columns& f) {
     for (Eigen::Index k = 0; k < share.rows(); ++k) all.row(p.number[k]) += share.row(k);
   }
   MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
-  const Stopwatch watch(coarse_seconds_);
-  return coarse_factor_.solve(all);
+  coarse_.solve(all);
+  return all;
 }
 
 /// D x, or D^T x.
@@ -258,7 +242,7 @@ Eigen::MatrixXd DualPrimal::multiply(const Columns& w) {
 }
 
 double DualPrimal::bytes() const {
-  double sum = factor_.bytes();
+  double sum = factor_.bytes() + coarse_.bytes();
   for (const Piece& p : pieces_) sum += 16. * static_cast<double>(p.C.size());
   for (const MatrixXd& w : of_class_.weight) sum += 8. * static_cast<double>(w.size());
   return sum;

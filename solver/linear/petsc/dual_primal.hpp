@@ -10,9 +10,9 @@
 // large.  Floating pieces are made regular by C^T r C, which changes nothing on C w = 0.
 #pragma once
 #include <Eigen/Dense>
-#include <Eigen/SparseCholesky>
 
 #include "linear/petsc/class_matrices.hpp"
+#include "linear/petsc/coarse_problem.hpp"
 #include "linear/petsc/interface.hpp"
 #include "linear/petsc/solver.hpp"
 #include "linear/petsc/subdomain_factor.hpp"
@@ -47,7 +47,7 @@ class DualPrimal {
   MatrixXd average(const Columns& w) { return sum(weigh(w, false)); }            // E_D w
   MatrixXd average_transposed(const Columns& f) { return weigh(sum(f), true); }  // E_D^T f
 
-  double coarse_seconds() const { return coarse_seconds_; }
+  double coarse_seconds() const { return coarse_.seconds(); }
   double bytes() const;
 
  private:
@@ -79,8 +79,7 @@ class DualPrimal {
   VectorXd diagonal_, weight_;  // of all unknowns; of the interface
   ClassMatrices of_class_;
   int n_constraints_ = 0;  // of all ranks
-  double coarse_seconds_ = 0;
-  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> coarse_factor_;
+  CoarseProblem coarse_;
   VecScatter all_ = nullptr, edge_ = nullptr;
   Vec local_ = nullptr, edge_local_ = nullptr;
   Vector g_;
