@@ -77,9 +77,10 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     const int first = 3 * system.first_joint_block();
     for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += r.sigma * z[first + i];
   };
-  // where the last factors serve once more for little, one more correction takes constraints and forces to round-off
+  // where the last factors serve once more for little, one more correction takes constraints and forces to round-off (or, where the
+  // tolerance asked for is a loose one, to five digits beyond)
   const auto polish = [&] {
-    for (int k = 0; k < 4 && report.residual > 1e-15 && solver.repeats_cheaply() && solve().ok; ++k) {
+    for (int k = 0; k < 4 && report.residual > 1e-5 * options.tolerance && solver.repeats_cheaply() && solve().ok; ++k) {
       const double correction = relative_correction(system, z);
       if (!(correction < 1e-6)) break;
       move();

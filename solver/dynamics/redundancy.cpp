@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/QR>
+#include <Eigen/SparseCore>
+#include <Eigen/SparseQR>
+#include <numeric>
 #include <set>
 
 #include "physics/rolling.hpp"
@@ -55,52 +58,110 @@ DenseRows joint_rows(const System& s, const Connector& c, const Stage& stage) {
   return out;
 }
 
+/// Columns of a matrix sorted: `rank` independent ones come first, each of the others is those times a column of `depends`.
+struct Independence {
+  Eigen::VectorXi order;
+  Eigen::Index rank = 0;
+  Eigen::MatrixXd depends;
+};
+
+constexpr size_t dense_at_most = 600;  // rows
+constexpr double dependent = 1e-9;     // what others leave of a unit row
+
+/// The best independent columns, by dense QR with column pivoting.
+Independence choose_dense(const Eigen::SparseMatrix<double>& A) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr{Eigen::MatrixXd(A)};
+  qr.setThreshold(dependent);
+  Independence out{qr.colsPermutation().indices(), qr.rank(), {}};
+  const Eigen::MatrixXd R = qr.matrixR().topRows(out.rank).template triangularView<Eigen::Upper>();
+  out.depends = R.leftCols(out.rank).triangularView<Eigen::Upper>().solve(R.rightCols(A.cols() - out.rank));
+  return out;
+}
+
+/// Independent columns in the order of least fill, for what a dense matrix would take minutes.
+Independence choose_sparse(const Eigen::SparseMatrix<double>& A) {
+  Eigen::SparseQR<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> qr;
+  qr.setPivotThreshold(dependent);
+  qr.compute(A);
+  Independence out{qr.colsPermutation().indices(), qr.rank(), {}};
+  const Eigen::SparseMatrix<double> R = qr.matrixR(), kept = R.topLeftCorner(out.rank, out.rank);
+  out.depends = kept.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd(R.topRightCorner(out.rank, A.cols() - out.rank)));
+  return out;
+}
+
+/// Columns that share no row, directly or through others, tell nothing of each other: lists of those that do.
+std::vector<std::vector<int>> connected_columns(const Eigen::SparseMatrix<double>& A) {
+  std::vector<int> parent(A.cols()), first(A.rows(), -1);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int k) {
+    while (parent[k] != k) k = parent[k] = parent[parent[k]];
+    return k;
+  };
+  for (int k = 0; k < A.cols(); ++k)
+    for (Eigen::SparseMatrix<double>::InnerIterator it(A, k); it; ++it)
+      if (int& other = first[it.row()]; other < 0)
+        other = k;
+      else
+        parent[root(k)] = root(other);
+  std::vector<std::vector<int>> groups(A.cols());
+  for (int k = 0; k < A.cols(); ++k) groups[root(k)].push_back(k);
+  std::erase_if(groups, [](const auto& g) { return g.empty(); });
+  return groups;
+}
+
+/// The columns of a list, over the rows that they meet.
+Eigen::SparseMatrix<double> part(const Eigen::SparseMatrix<double>& A, const std::vector<int>& columns) {
+  std::vector<int> number(A.rows(), -1);
+  std::vector<Eigen::Triplet<double>> entries;
+  int n = 0;
+  for (size_t k = 0; k < columns.size(); ++k)
+    for (Eigen::SparseMatrix<double>::InnerIterator it(A, columns[k]); it; ++it) {
+      if (number[it.row()] < 0) number[it.row()] = n++;
+      entries.emplace_back(number[it.row()], static_cast<int>(k), it.value());
+    }
+  Eigen::SparseMatrix<double> out(n, static_cast<Eigen::Index>(columns.size()));
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
 }  // namespace
 
 Redundancy drop_redundant_rows(System& system, const Config& q) {
   Redundancy report;
-  std::vector<std::pair<int, int>> rows;  // joint, row
-  std::vector<int> column(system.n_blocks(), -1);
-  int n = 0;
+  std::vector<std::pair<int, int>> rows;        // joint, row
+  std::vector<Eigen::Triplet<double>> entries;  // of unit rows, as columns
   for (size_t j = 0; j < system.joints.size(); ++j) {
-    for (int r = 0; r < system.joints[j].n_rows(); ++r) rows.emplace_back(static_cast<int>(j), r);
-    for (const int block : joint_blocks(system, system.joints[j]))
-      if (column[block] < 0) column[block] = n, n += 3;
+    Connector& joint = system.joints[j];
+    joint.active.fill(true);
+    const DenseRows G = joint_rows(system, joint, stage_at(q, 0));
+    const auto blocks = joint_blocks(system, joint);
+    for (int r = 0; r < joint.n_rows(); ++r) {
+      const double norm = G.row(r).norm();
+      for (Eigen::Index c = 0; c < G.cols(); ++c)
+        if (const double x = norm > 0 ? G(r, c) / norm : 0; std::abs(x) > 1e-14)
+          entries.emplace_back(3 * blocks[c / 3] + static_cast<int>(c % 3), static_cast<int>(rows.size()), x);
+      rows.emplace_back(static_cast<int>(j), r);
+    }
   }
   report.rows = static_cast<int>(rows.size());
   if (report.rows == 0) return report;
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, report.rows);
-  int at = 0;
-  for (const Connector& joint : system.joints) {
-    const DenseRows G = joint_rows(system, joint, stage_at(q, 0));
-    const auto blocks = joint_blocks(system, joint);
-    for (size_t k = 0; k < blocks.size(); ++k)
-      A.block(column[blocks[k]], at, 3, G.rows()) += G.middleCols<3>(3 * static_cast<Eigen::Index>(k)).transpose();
-    at += static_cast<int>(G.rows());
-  }
-  for (int r = 0; r < A.cols(); ++r) {
-    const double norm = A.col(r).norm();
-    if (norm > 0) A.col(r) /= norm;
-  }
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
-  qr.setThreshold(1e-9);
-  report.rank = static_cast<int>(qr.rank());
-  for (Connector& j : system.joints) j.active.fill(true);
-  if (report.rank == report.rows) return report;
-  const auto& order = qr.colsPermutation().indices();
-  const Eigen::MatrixXd R = qr.matrixR().topRows(report.rank).template triangularView<Eigen::Upper>();
-  const Eigen::MatrixXd depends =
-      R.leftCols(report.rank).triangularView<Eigen::Upper>().solve(R.rightCols(report.rows - report.rank));  // dropped = kept * depends
-  for (int k = report.rank; k < report.rows; ++k) {
-    const auto [joint, measure] = rows[order[k]];
-    system.joints[joint].active[measure] = false;
-    std::set<std::string> others;
-    for (int i = 0; i < report.rank; ++i)
-      if (std::abs(depends(i, k - report.rank)) > 1e-6 && rows[order[i]].first != joint)
-        others.insert(system.joints[rows[order[i]].first].name);
-    report.dropped.push_back(
-        fmt::format("joint \"{}\" row {}{}", system.joints[joint].name, measure + 1,
-                    others.empty() ? " (depends on the joint's own rows)" : fmt::format(" (depends on {})", fmt::join(others, ", "))));
+  Eigen::SparseMatrix<double> A(3 * static_cast<Eigen::Index>(system.n_blocks()), report.rows);
+  A.setFromTriplets(entries.begin(), entries.end());
+  for (const auto& group : connected_columns(A)) {
+    const Eigen::SparseMatrix<double> own = part(A, group);
+    const Independence found = group.size() <= dense_at_most ? choose_dense(own) : choose_sparse(own);
+    report.rank += static_cast<int>(found.rank);
+    for (Eigen::Index k = found.rank; k < own.cols(); ++k) {
+      const auto [joint, measure] = rows[group[found.order[k]]];
+      system.joints[joint].active[measure] = false;
+      std::set<std::string> others;
+      for (Eigen::Index i = 0; i < found.rank; ++i)
+        if (const int other = rows[group[found.order[i]]].first; std::abs(found.depends(i, k - found.rank)) > 1e-6 && other != joint)
+          others.insert(system.joints[other].name);
+      report.dropped.push_back(
+          fmt::format("joint \"{}\" row {}{}", system.joints[joint].name, measure + 1,
+                      others.empty() ? " (depends on the joint's own rows)" : fmt::format(" (depends on {})", fmt::join(others, ", "))));
+    }
   }
   return report;
 }

@@ -14,7 +14,7 @@ struct Redundancy {
   int rows = 0, rank = 0;
   std::vector<std::string> dropped;  // "joint \"b\" row 3 (depends on joints a, c)"
 };
-/// Rank of the joint rows at q by QR with column pivoting; dependent rows are switched off in the system's joints.
+/// Rank of the joint rows at q by QR, group by group of connected rows; dependent ones are switched off in the system's joints.
 Redundancy drop_redundant_rows(System& system, const Config& q);
 /// The same at a later q, where a step failed: another choice of as many rows is taken, fewer (a singular position) are not.
 /// True where the choice has changed.

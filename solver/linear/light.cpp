@@ -13,9 +13,10 @@ namespace hilo {
 namespace {
 
 constexpr int klu_below = 900;  // unknowns; where a quarter of them are of bodies and multipliers, a little more
-constexpr int rigid_klu_below = 1500;
-constexpr int dense_at_most = 1200;   // unknowns of bodies and multipliers beside a Cholesky factor
-constexpr int least_iterations = 10;  // that lagged factors are given
+constexpr int mixed_klu_below = 1500;
+constexpr int rigid_klu_below = 30000;  // where all of them are
+constexpr int dense_at_most = 1200;     // unknowns of bodies and multipliers beside a Cholesky factor
+constexpr int least_iterations = 10;    // that lagged factors are given
 
 class LightSolver final : public KktSolver {
  public:
@@ -28,9 +29,12 @@ class LightSolver final : public KktSolver {
     const auto n_dense = 3 * std::count(is_dense_.begin(), is_dense_.end(), 1);
     std::string kind = kind_;
     if (kind == "light")
-      kind = A_.n() < (4 * n_dense > A_.n() ? rigid_klu_below : klu_below) ? "klu"
-             : n_dense <= dense_at_most && 2 * n_dense < A_.n()            ? "cholesky"
-                                                                           : "umfpack";
+      kind = A_.n() < (n_dense == A_.n()      ? rigid_klu_below
+                       : 4 * n_dense > A_.n() ? mixed_klu_below
+                                              : klu_below)
+                 ? "klu"
+             : n_dense <= dense_at_most && 2 * n_dense < A_.n() ? "cholesky"
+                                                                : "umfpack";
     is_klu_ = kind == "klu";
     factors_ = is_klu_ ? make_klu() : kind == "umfpack" ? make_umfpack() : make_cholesky(is_dense_);
     is_definite_ = kind == "cholesky";
