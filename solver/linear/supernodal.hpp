@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "linear/panel.hpp"
+
 #define HILO_BLAS(T, p)                                                                                                               \
   void p##trsv_(const char*, const char*, const char*, const int*, const T*, const int*, T*, const int*);                             \
   void p##gemv_(const char*, const int*, const int*, const T*, const T*, const int*, const T*, const int*, const T*, T*, const int*); \
@@ -74,8 +76,17 @@ void forward(const cholmod_factor* L, int from, int to, T* x, std::vector<T>& sc
   for (int s = static_cast<int>(std::upper_bound(super, super + n_super, from) - super) - 1; s < n_super && super[s] < to; ++s) {
     const int a = std::max(from, super[s]), b = std::min(to, super[s + 1]), m = b - a, o = a - super[s], stride = pi[s + 1] - pi[s];
     const T* D = values + px[s] + o + static_cast<size_t>(o) * stride;
-    solve_triangle("N", m, D, stride, x + a, n, columns);
     const int n_below = stride - o - m;
+    if (columns == 1) {
+      T* y = scratch.data();
+      std::copy_n(x + a, m, y), std::fill_n(y + m, n_below, T{});
+      forward_panel(m, m + n_below, D, stride, y);
+      std::copy_n(y, m, x + a);
+      const int* row = rows + pi[s] + o + m;
+      for (int k = 0; k < n_below; ++k) x[row[k]] += y[m + k];
+      continue;
+    }
+    solve_triangle("N", m, D, stride, x + a, n, columns);
     if (n_below == 0) continue;
     multiply("N", n_below, m, T(-1), D + m, stride, x + a, n, T(0), scratch.data(), n_below, columns);
     const int* row = rows + pi[s] + o + m;
@@ -101,6 +112,14 @@ void backward(const cholmod_factor* L, int from, int to, T* x, std::vector<T>& s
     const T* D = values + px[s] + o + static_cast<size_t>(o) * stride;
     const int n_below = stride - o - m;
     const int* row = rows + pi[s] + o + m;
+    if (columns == 1) {
+      T* y = scratch.data();
+      std::copy_n(x + a, m, y);
+      for (int k = 0; k < n_below; ++k) y[m + k] = x[row[k]];
+      backward_panel(m, m + n_below, D, stride, y);
+      std::copy_n(y, m, x + a);
+      continue;
+    }
     for (int c = 0; c < columns; ++c) {
       const T* of_x = x + static_cast<size_t>(c) * n;
       T* part = scratch.data() + static_cast<size_t>(c) * n_below;
