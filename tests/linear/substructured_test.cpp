@@ -92,6 +92,7 @@ TEST(DISABLED_Substructured, SeveralSubdomainsPerRankGiveTheSameAnswerInAsManyIt
     Problem p = elastic_bar(18, 6, 6, cfl);
     test::scattered(p, Comm::world().size);
     const auto direct = solve(*make_petsc_solver("direct", 1e-9), p);
+    std::vector<int> of_bddc;
     for (const char* kind : {"bddc", "feti-dp"}) {
       std::vector<int> taken;
       for (const int subdomains : {4, 64}) {
@@ -105,6 +106,9 @@ TEST(DISABLED_Substructured, SeveralSubdomainsPerRankGiveTheSameAnswerInAsManyIt
       }
       EXPECT_GT(taken.front(), 4) << kind;  // or the count means nothing
       EXPECT_LE(taken.back(), 1.3 * taken.front() + 2) << kind;
+      if (of_bddc.empty()) of_bddc = taken;
+      // spectra agree but for zeros and ones [mandel-dohrmann-tezaur-2005]; nine digits of all unknowns, eight of the forces
+      for (size_t k = 0; k < taken.size(); ++k) EXPECT_NEAR(taken[k], of_bddc[k], 3) << taken[k];
     }
   }
 }
