@@ -1,7 +1,5 @@
 #include "linear/petsc/coupling.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
 
@@ -13,9 +11,6 @@ namespace hilo::petsc {
 Coupling::Coupling(const Cliques& cliques, const BlockMap& map, const SharedBlocks& shared) {
   const int n_local = static_cast<int>(map.global.size());
   m_ = static_cast<int>(3 * (map.n_global - map.first_dense));
-  if (m_ > 6000)
-    throw Error("", fmt::format("{} unknowns of bodies and joints are too many for the iterative solver", m_), "solver.kind = \"direct\"",
-                Exit::resources);
   dense_.resize(n_local), position_.assign(n_local, -1);
   for (int i = 0; i < n_local; ++i) {
     const auto g = map.global[i];
@@ -66,7 +61,44 @@ Coupling::Coupling(const Cliques& cliques, const BlockMap& map, const SharedBloc
   for (int j = 0; j < m_; ++j)
     if (active[j / 3]) columns_.push_back(j);
   B_.assign(9 * couples_.size(), 0.0), C_ = B_;
-  D_.assign(static_cast<size_t>(m_) * m_, 0.0), summand_ = D_;
+  find_pattern_of_D(cliques);
+}
+
+void Coupling::find_pattern_of_D(const Cliques& cliques) {
+  const int n = m_ / 3;
+  std::vector<PetscInt> pairs;  // row, column
+  for (int e = 0; e < cliques.size(); ++e)
+    for (const int i : cliques[e])
+      for (const int j : cliques[e])
+        if (i >= 0 && j >= 0 && dense_[i] >= 0 && dense_[j] >= 0) pairs.push_back(dense_[i]), pairs.push_back(dense_[j]);
+  std::vector<std::vector<int>> columns(n);
+  const auto take = [&](const std::vector<PetscInt>& list) {
+    for (size_t k = 0; k < list.size(); k += 2) columns[list[k]].push_back(list[k + 1]);
+    for (auto& row : columns) {
+      std::sort(row.begin(), row.end());
+      row.erase(std::unique(row.begin(), row.end()), row.end());
+    }
+  };
+  take(pairs);
+  if (size() > 1) {
+    pairs.clear();
+    for (int i = 0; i < n; ++i)
+      for (const int j : columns[i]) pairs.push_back(i), pairs.push_back(j);
+    for (const auto& list : exchange(std::vector<std::vector<PetscInt>>(size(), pairs))) take(list);
+  }
+  D_start_.assign(1, 0);
+  for (int i = 0; i < n; ++i) {
+    if (!std::binary_search(columns[i].begin(), columns[i].end(), i))
+      columns[i].insert(std::upper_bound(columns[i].begin(), columns[i].end(), i), i);
+    D_column_.insert(D_column_.end(), columns[i].begin(), columns[i].end());
+    D_start_.push_back(static_cast<int>(D_column_.size()));
+  }
+  D_.assign(9 * D_column_.size(), 0.0), summand_ = D_;
+}
+
+size_t Coupling::find_D(int row, int column) const {
+  const auto at = std::lower_bound(D_column_.begin() + D_start_[row], D_column_.begin() + D_start_[row + 1], column);
+  return 9 * static_cast<size_t>(at - D_column_.begin());
 }
 
 bool Coupling::couples(std::span<const int> blocks) const {
@@ -86,9 +118,9 @@ void Coupling::zero() {
 
 void Coupling::add(std::span<const int> blocks, const double* K) {
   const size_t n = blocks.size(), width = 3 * n;
-  const auto add_block = [](double* to, size_t stride, const double* from, size_t from_stride) {
+  const auto add_block = [](double* to, const double* from, size_t stride) {
     for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) to[r * stride + c] += from[r * from_stride + c];
+      for (int c = 0; c < 3; ++c) to[3 * r + c] += from[r * stride + c];
   };
   for (size_t a = 0; a < n; ++a) {
     if (blocks[a] < 0) continue;
@@ -97,15 +129,16 @@ void Coupling::add(std::span<const int> blocks, const double* K) {
       if (blocks[b] < 0) continue;
       const int j = dense_[blocks[b]];
       const double* from = K + 3 * a * width + 3 * b;
-      if (i >= 0 && j >= 0) add_block(&summand_[static_cast<size_t>(3 * i) * m_ + 3 * j], m_, from, width);
-      if (i < 0 && j >= 0) add_block(&B_[9 * find(blocks[a], j)], 3, from, width);
-      if (i >= 0 && j < 0) add_block(&C_[9 * find(blocks[b], i)], 3, from, width);
+      if (i >= 0 && j >= 0) add_block(&summand_[find_D(i, j)], from, width);
+      if (i < 0 && j >= 0) add_block(&B_[9 * find(blocks[a], j)], from, width);
+      if (i >= 0 && j < 0) add_block(&C_[9 * find(blocks[b], i)], from, width);
     }
   }
 }
 
 void Coupling::add_diagonal(int block, const double d[3]) {
-  for (int c = 0; c < 3; ++c) summand_[static_cast<size_t>(3 * dense_[block] + c) * (m_ + 1)] += d[c];
+  const size_t at = find_D(dense_[block], dense_[block]);
+  for (int c = 0; c < 3; ++c) summand_[at + 4 * c] += d[c];
 }
 
 void Coupling::assemble() {
@@ -132,11 +165,21 @@ void Coupling::symmetrise() {
         double &b = B_[9 * k + 3 * r + c], &t = C_[9 * k + 3 * c + r];
         b = t = (b + t) / 2;
       }
-  for (int i = 0; i < m_; ++i)
-    for (int j = 0; j < i; ++j) {
-      double &a = D_[static_cast<size_t>(i) * m_ + j], &t = D_[static_cast<size_t>(j) * m_ + i];
-      a = t = (a + t) / 2;
+  for (int i = 0; i < m_ / 3; ++i)
+    for (int k = D_start_[i]; k < D_start_[i + 1] && D_column_[k] <= i; ++k) {
+      const size_t other = find_D(D_column_[k], i);
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) {
+          double &a = D_[9 * static_cast<size_t>(k) + 3 * r + c], &t = D_[other + 3 * c + r];
+          a = t = (a + t) / 2;
+        }
     }
+}
+
+void Coupling::add_D(const double* p, double* q) const {
+  for_each_D([&](int i, int j, const double* D) {
+    for (int r = 0; r < 3; ++r) q[3 * i + r] += D[3 * r] * p[3 * j] + D[3 * r + 1] * p[3 * j + 1] + D[3 * r + 2] * p[3 * j + 2];
+  });
 }
 
 void Coupling::add_B(double factor, const double* p, double* u) const {

@@ -1,6 +1,6 @@
-// The dense part of a system - bodies and multipliers - and what couples it to the flexible part:
+// The part of a system that is not flexible - bodies and multipliers, "dense" - and what couples it to the flexible part:
 //
-//     [ F  B ]      F sparse (BlockMatrix), B and C few columns and rows, D small and dense
+//     [ F  B ]      F large (FlexibleMatrix), B and C few columns and rows, D small and sparse: all of it on every rank
 //     [ C  D ]
 #pragma once
 #include <vector>
@@ -27,8 +27,15 @@ class Coupling {
   bool is_dense(int local) const { return dense_[local] >= 0; }
   bool couples(std::span<const int> blocks) const;              // does a clique touch the dense part?
   const std::vector<int>& columns() const { return columns_; }  // dense unknowns that couple to flexible ones on some rank
-  const std::vector<double>& D() const { return D_; }           // (m x m)
 
+  /// The blocks of D, row after row: visit(row, column, 3 x 3 row major).
+  template <class Visit>
+  void for_each_D(const Visit& visit) const {
+    for (int i = 0; i < m_ / 3; ++i)
+      for (int k = D_start_[i]; k < D_start_[i + 1]; ++k) visit(i, D_column_[k], &D_[9 * static_cast<size_t>(k)]);
+  }
+  /// q += D p
+  void add_D(const double* p, double* q) const;
   /// u += factor B p;  u: owned flexible unknowns, p: all dense unknowns.
   void add_B(double factor, const double* p, double* u) const;
   /// Column j of B into u, which is zeroed first.
@@ -41,21 +48,24 @@ class Coupling {
     for (size_t k = 0; k < couples_.size(); ++k)
       if (position_[couples_[k].flexible] >= 0) visit(couples_[k].flexible, couples_[k].dense, &B_[9 * k], &C_[9 * k]);
   }
-  double bytes() const { return 8. * (2. * static_cast<double>(D_.size()) + B_.size() + C_.size()); }
+  double bytes() const { return 8. * static_cast<double>(D_.size() + summand_.size() + B_.size() + C_.size()); }
 
  private:
   size_t find(int flexible, int dense) const;
+  size_t find_D(int row, int column) const;  // where its nine values begin
+  void find_pattern_of_D(const Cliques& cliques);
   struct Couple {
     int flexible, dense;  // local block, dense block
     auto operator<=>(const Couple&) const = default;
   };
   int m_ = 0;
-  std::vector<int> dense_;           // dense block of each local block, -1 for flexible ones
-  std::vector<int> position_;        // place of each local flexible block among the owned, -1 otherwise
-  std::vector<Couple> couples_;      // sorted
-  std::vector<size_t> start_;        // first couple of each local block
-  std::vector<double> B_, C_;        // 3 x 3 each, B row flexible, C row dense
-  std::vector<double> D_, summand_;  // (m x m); what this rank has added since the last assemble()
+  std::vector<int> dense_;               // dense block of each local block, -1 for flexible ones
+  std::vector<int> position_;            // place of each local flexible block among the owned, -1 otherwise
+  std::vector<Couple> couples_;          // sorted
+  std::vector<size_t> start_;            // first couple of each local block
+  std::vector<double> B_, C_;            // 3 x 3 each, B row flexible, C row dense
+  std::vector<int> D_start_, D_column_;  // blocks of each row of blocks, ascending
+  std::vector<double> D_, summand_;      // 9 each; what this rank has added since the last assemble()
   std::vector<int> columns_;
   std::vector<std::vector<size_t>> lent_, borrowed_;  // couples of each rank's blocks held here; couples of own blocks held there
 };

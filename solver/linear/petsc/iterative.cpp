@@ -17,6 +17,7 @@
 #include "base/stopwatch.hpp"
 #include "linear/petsc/coupling.hpp"
 #include "linear/petsc/direct.hpp"
+#include "linear/petsc/schur_factor.hpp"
 #include "linear/petsc/solver.hpp"
 #include "linear/petsc/subdomain_matrix.hpp"
 #include "linear/petsc/symmetric_matrix.hpp"
@@ -184,14 +185,10 @@ class IterativeSolver final : public KktSolver {
       A.add_row(u, {&p, 1}, B), A.add_row(p, {&u, 1}, C);
     });
     if (n_all_ > n_flexible_)
-      for (int i = 0; i < m_ / 3; ++i)
-        for (int j = 0; j < m_ / 3; ++j) {
-          double d[9];
-          bool any = false;
-          for (int c = 0; c < 9; ++c) d[c] = coupling_->D()[static_cast<size_t>(3 * i + c / 3) * m_ + 3 * j + c % 3], any |= d[c] != 0;
-          const PetscInt column = first_dense + j;
-          if (any) A.add_row(first_dense + i, {&column, 1}, d);
-        }
+      coupling_->for_each_D([&](int i, int j, const double* D) {
+        const PetscInt column = first_dense + j;
+        A.add_row(first_dense + i, {&column, 1}, D);
+      });
     release();
     Z_.resize(0, 0);
     inverse_.reset(), matrix_.reset(), coupling_.reset();
@@ -307,9 +304,7 @@ class IterativeSolver final : public KktSolver {
     const auto n_columns = static_cast<Eigen::Index>(columns.size()), n = static_cast<Eigen::Index>(n_flexible_);
     keep_ = largest(static_cast<double>(n_columns) * static_cast<double>(n)) <= values_kept;
     Z_.resize(n, keep_ ? n_columns : std::min(n_columns, columns_at_once));
-    Eigen::MatrixXd S(m_, m_), change = Eigen::MatrixXd::Zero(m_, n_columns);
-    for (int i = 0; i < m_; ++i)
-      for (int j = 0; j < m_; ++j) S(i, j) = coupling_->D()[static_cast<size_t>(i) * m_ + j];
+    Eigen::MatrixXd change = Eigen::MatrixXd::Zero(m_, n_columns), of_touched(n_columns, n_columns);
     for (Eigen::Index k = 0; k < n_columns; k += columns_at_once) {
       const auto some = std::min(columns_at_once, n_columns - k);
       auto Z = Z_.middleCols(keep_ ? k : 0, some);
@@ -319,17 +314,9 @@ class IterativeSolver final : public KktSolver {
       for (Eigen::Index j = 0; j < some; ++j) coupling_->add_C(-1, Z.col(j).data(), change.col(k + j).data());
     }
     if (!keep_) Z_.resize(0, 0);
-    sum(change.data(), static_cast<int>(change.size()));
-    for (size_t k = 0; k < columns.size(); ++k) S.col(columns[k]) += change.col(static_cast<Eigen::Index>(k));
-    // rows of bodies and of constraints differ by many orders
-    row_scale_ = S.cwiseAbs().rowwise().maxCoeff();
-    if (!(row_scale_.minCoeff() > 0) || !S.allFinite()) return false;
-    row_scale_ = row_scale_.cwiseInverse();
-    const Eigen::VectorXd column_scale = (row_scale_.asDiagonal() * S).cwiseAbs().colwise().maxCoeff().transpose();
-    if (!(column_scale.minCoeff() > 0)) return false;
-    column_scale_ = column_scale.cwiseInverse();
-    schur_.compute(row_scale_.asDiagonal() * S * column_scale_.asDiagonal());
-    return schur_.rcond() > 1e-14;
+    for (Eigen::Index k = 0; k < n_columns; ++k) of_touched.row(k) = change.row(columns[k]);  // C touches no others
+    sum(of_touched.data(), static_cast<int>(of_touched.size()));
+    return schur_.factor(*coupling_, columns, of_touched);
   }
 
   static double largest(double value) {
@@ -362,9 +349,8 @@ class IterativeSolver final : public KktSolver {
       coupling_->add_C(1, in, q_.data());
       sum(q_.data(), m_);
       if (n_all_ > n_flexible_) {
-        const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> D(coupling_->D().data(), m_, m_);
-        Eigen::Map<Eigen::VectorXd>(out.data() + n_flexible_, m_) =
-            Eigen::Map<const Eigen::VectorXd>(q_.data(), m_) + D * Eigen::Map<const Eigen::VectorXd>(p_.data(), m_);
+        coupling_->add_D(p_.data(), q_.data());
+        std::copy_n(q_.data(), m_, out.data() + n_flexible_);
       }
     }
     check(VecRestoreArrayRead(x, &in));
@@ -383,9 +369,8 @@ class IterativeSolver final : public KktSolver {
         std::fill(q_.begin(), q_.end(), 0.0);
         coupling_->add_C(1, out.data(), q_.data());
         sum(q_.data(), m_);
-        Eigen::Map<Eigen::VectorXd> g(p_.data(), m_);
-        const Eigen::VectorXd t = row_scale_.cwiseProduct(g - Eigen::Map<const Eigen::VectorXd>(q_.data(), m_));
-        g = column_scale_.cwiseProduct(schur_.solve(t));
+        for (int i = 0; i < m_; ++i) p_[i] -= q_[i];
+        schur_.solve(p_.data());
         subtract_Z(out.data());
         if (n_all_ > n_flexible_) std::copy_n(p_.begin(), m_, out.data() + n_flexible_);
       }
@@ -434,8 +419,7 @@ class IterativeSolver final : public KktSolver {
   bool keep_ = true;
   Eigen::MatrixXd Z_;
   std::vector<double> p_, q_;  // dense part, on all ranks
-  Eigen::VectorXd row_scale_, column_scale_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> schur_;
+  SchurFactor schur_;
 };
 
 }  // namespace
