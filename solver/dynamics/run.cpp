@@ -29,7 +29,7 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
     if (unknowns > 300000) kind = "cg";
     const auto ranks = system.comm->size;
     const auto flexible = 3 * system.map.first_dense;
-    if (ranks >= 2 && flexible > 3000 && flexible / ranks <= 100000 && unknowns - flexible <= 1000) kind = "bddc";
+    if (ranks >= 2 && flexible > 3000 && flexible / ranks <= 100000 && unknowns - flexible <= 3000) kind = "bddc";
     why = fmt::format("{} unknowns on {} rank{}", unknowns, system.comm->size, system.comm->size == 1 ? "" : "s");
   }
   const bool is_light = kind == "light" || kind == "klu" || kind == "cholesky" || kind == "umfpack";
