@@ -12,13 +12,21 @@ class Bddc final : public FlexibleInverse {
  public:
   explicit Bddc(const SubdomainMatrix& F) : spaces_(F) {}
 
-  bool set_up() override { return spaces_.set_up(is_adaptive_); }
-  void apply(Eigen::Ref<Eigen::MatrixXd> X) override { spaces_.expand(spaces_.solve(spaces_.condense(X)), X); }
-  /// Rigid motions of classes as constraints serve smooth stiffness; where it jumps within subdomains, others are looked for.
-  bool strengthen(int iterations, bool failed) override {
-    if (is_adaptive_ || (!failed && iterations <= too_many_iterations)) return false;
-    return is_adaptive_ = true;
+  bool set_up() override {
+    const bool good = spaces_.set_up(is_adaptive_);
+    if (good && is_single_) spaces_.narrow();
+    return good;
   }
+  void apply(Eigen::Ref<Eigen::MatrixXd> X) override { spaces_.expand(spaces_.solve(spaces_.condense(X)), X); }
+  /// Where single precision may not do, double; rigid motions of classes as constraints serve smooth stiffness: where it jumps within
+  /// subdomains, others are looked for.
+  bool strengthen(int iterations, bool failed) override {
+    const bool wide = is_single_ && (failed || iterations > many_iterations),
+               more = !is_adaptive_ && (failed || iterations > too_many_iterations);
+    is_single_ &= !wide, is_adaptive_ |= more;
+    return wide || more;
+  }
+  bool varies() const override { return true; }
   int most_iterations() const override { return is_adaptive_ ? 150 : 60; }
   double undivided_seconds() const override { return spaces_.coarse_seconds(); }
   std::string name() const override { return is_adaptive_ ? "adaptive BDDC" : "BDDC"; }
@@ -26,6 +34,8 @@ class Bddc final : public FlexibleInverse {
 
  private:
   DualPrimal spaces_;
+  static constexpr int many_iterations = 12;
+  bool is_single_ = true;     // factors are kept in single precision: GMRES mends the digits
   bool is_adaptive_ = false;  // further constraints are looked for
 };
 

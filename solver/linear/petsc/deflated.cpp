@@ -57,7 +57,7 @@ class Deflated final : public FlexibleInverse {
   }
 
   bool strengthen(int iterations, bool failed) override { return inner_->strengthen(iterations, failed); }
-  bool is_iterative() const override { return inner_->is_iterative(); }
+  bool varies() const override { return inner_->varies(); }
   bool has_failed() const override { return inner_->has_failed(); }
   int most_iterations() const override { return inner_->most_iterations(); }
   Within take_iterations() override { return inner_->take_iterations(); }

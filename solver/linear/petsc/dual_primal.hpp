@@ -36,6 +36,8 @@ class DualPrimal {
 
   /// Factors of the matrix as it is now, with more than rigid motions as constraints or not.  False when it is not positive definite.
   bool set_up(bool more_constraints);
+  /// Until the next set-up, S~^-1 in single precision; S w cannot be had any more.
+  void narrow() { factor_.narrow(); }
   /// Eliminate the inside: the forces that b leaves on the interface, shared out by D^T.
   MatrixXd condense(const Columns& b);
   /// x := E_D w on the interface and, for the b condensed last, the equilibrium inside.

@@ -58,7 +58,7 @@ class FetiDp final : public FlexibleInverse {
     if (is_adaptive_ || most_ <= too_many_iterations) return false;
     return is_adaptive_ = true;
   }
-  bool is_iterative() const override { return true; }
+  bool varies() const override { return true; }
   bool has_failed() const override { return failed_; }
   int most_iterations() const override { return 30; }
   Within take_iterations() override { return std::exchange(taken_, {}); }

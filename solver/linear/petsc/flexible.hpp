@@ -37,8 +37,8 @@ class FlexibleInverse {
   virtual void apply(Eigen::Ref<Eigen::MatrixXd> X) = 0;
   /// After a solve of so many iterations, or one that failed: whether a stronger kind takes over.
   virtual bool strengthen(int iterations, bool failed) = 0;
-  /// Is one application itself iterative, so that it differs a little from a linear operator?
-  virtual bool is_iterative() const { return false; }
+  /// Does an application differ a little from a linear operator: iterative itself, or in single precision?
+  virtual bool varies() const { return false; }
   /// Has an application failed since the set-up?  The same on all ranks.
   virtual bool has_failed() const { return false; }
   /// Outer iterations after which there is no hope.

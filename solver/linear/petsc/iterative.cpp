@@ -225,7 +225,7 @@ class IterativeSolver final : public KktSolver {
   }
 
   void choose_method() {
-    check(KSPSetType(ksp_, is_cg_ ? KSPCG : inverse_->is_iterative() ? KSPFGMRES : KSPGMRES));
+    check(KSPSetType(ksp_, is_cg_ ? KSPCG : inverse_->varies() ? KSPFGMRES : KSPGMRES));
     check(KSPSetPCSide(ksp_, is_cg_ ? PC_LEFT : PC_RIGHT));
     check(KSPSetNormType(ksp_, KSP_NORM_UNPRECONDITIONED));
     if (!is_cg_) check(KSPGMRESSetRestart(ksp_, restart_));

@@ -91,6 +91,7 @@ void SubdomainFactor::order(const SubdomainMatrix& F, const Interface& interface
 }
 
 bool SubdomainFactor::factor(const SubdomainMatrix& F, const Interface& interface, const std::vector<double>& weight) {
+  single_ = false;
   const int n_blocks = static_cast<int>(place_.size());
   if (n_blocks == 0) return true;
   // scalar columns: the first of a block's three holds the whole diagonal block's column, the next one less, ...
@@ -145,8 +146,34 @@ bool SubdomainFactor::factor(const SubdomainMatrix& F, const Interface& interfac
   return common_.status == CHOLMOD_OK && L_->minor == L_->n && L_->is_super;
 }
 
-void SubdomainFactor::forward(int from, int to, double* x, int columns) const { supernodal::forward(L_, from, to, x, below_, columns); }
-void SubdomainFactor::backward(int from, int to, double* x, int columns) const { supernodal::backward(L_, from, to, x, below_, columns); }
+void SubdomainFactor::narrow() {
+  if (L_) supernodal::narrow(L_), single_ = true;
+}
+
+/// Rounded and back, within the range of single precision.
+template <class Solve>
+void SubdomainFactor::in_single(double* x, int columns, const Solve& solve) const {
+  Eigen::Map<Eigen::MatrixXd> X(x, n(), columns);
+  x_.resize(X.size());
+  const Eigen::RowVectorXd scale = X.cwiseAbs().colwise().maxCoeff().cwiseMax(1e-300);
+  Eigen::Map<Eigen::MatrixXf> Y(x_.data(), n(), columns);
+  for (int k = 0; k < columns; ++k) Y.col(k) = (X.col(k) / scale[k]).cast<float>();
+  solve(x_.data());
+  for (int k = 0; k < columns; ++k) X.col(k) = scale[k] * Y.col(k).cast<double>();
+}
+
+void SubdomainFactor::forward(int from, int to, double* x, int columns) const {
+  if (single_)
+    in_single(x, columns, [&](float* y) { supernodal::forward(L_, from, to, y, below_single_, columns); });
+  else
+    supernodal::forward(L_, from, to, x, below_, columns);
+}
+void SubdomainFactor::backward(int from, int to, double* x, int columns) const {
+  if (single_)
+    in_single(x, columns, [&](float* y) { supernodal::backward(L_, from, to, y, below_single_, columns); });
+  else
+    supernodal::backward(L_, from, to, x, below_, columns);
+}
 void SubdomainFactor::multiply_schur(double* x, int columns) const {
   if (n_interior_ < n()) supernodal::multiply(L_, n_interior_, x, below_, columns);
 }

@@ -27,6 +27,8 @@ class SubdomainFactor {
   int n_interior() const { return n_interior_; }
   int place(PetscInt block) const { return place_[block]; }  // of a block in the factor's order
   PetscInt block(int place) const { return block_[place]; }
+  /// From here to the next factor() it solves in single precision, in half the time; of L itself nothing can be had any more.
+  void narrow();
   /// x := L^-1 x, columns [from, to) of L only: the rows below them are changed too.  x: (n x columns).
   void forward(int from, int to, double* x, int columns = 1) const;
   /// x := L^-T x, columns [from, to) of L only, from the rows below as they are.
@@ -42,6 +44,8 @@ class SubdomainFactor {
   double bytes() const;
 
  private:
+  template <class Solve>
+  void in_single(double* x, int columns, const Solve& solve) const;
   void order(const SubdomainMatrix& F, const Interface& interface, const std::vector<char>& shared);
 
   mutable cholmod_common common_{};
@@ -51,7 +55,9 @@ class SubdomainFactor {
   int n_interior_ = 0;
   std::vector<int> begin_;         // of each piece's interface (n_pieces + 1)
   std::vector<int> start_, rows_;  // of the lower triangle in blocks, by columns
+  bool single_ = false;
   mutable std::vector<double> below_;
+  mutable std::vector<float> x_, below_single_;
 };
 
 }  // namespace hilo::petsc
