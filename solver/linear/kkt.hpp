@@ -70,8 +70,8 @@ class KktSolver {
 
 /// Serial, starts in microseconds: "klu", "cholesky" or "umfpack" (linear/factors.hpp); "light" chooses by size.
 std::unique_ptr<KktSolver> make_light_solver(const std::string& kind = "light");
-/// PETSc: "direct" (MUMPS), "cg", "iterative", "bddc" or "feti-dp"; loaded when first asked for, since PETSc's start costs more than a small run.
-/// `subdomains`: into how many "bddc" and "feti-dp" divide the flexible part of each rank.
+/// PETSc: "direct" (MUMPS), "cg", "iterative", "bddc" or "feti-dp"; loaded when first asked for, since PETSc's start costs more than a
+/// small run. `subdomains`: into how many "bddc" and "feti-dp" divide the flexible part of each rank.
 std::unique_ptr<KktSolver> make_petsc_solver(const std::string& kind, double tolerance, int subdomains = 1);
 
 }  // namespace hilo
