@@ -56,18 +56,18 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     ++phases().evaluations, phases().tangents += tangent;
   };
   // What a solve may leave of the residual: a tenth of what the next iteration needs for the tolerance, and no less than Newton's own
-  // error, about the square of how far the last iteration came [eisenstat-walker-1996].
+  // error, about the square of how far the last iteration came [eisenstat-walker-1996], or a chord's, which comes as far as the last one.
   double last_residual = 0;
-  const auto forcing = [&] {
+  const auto forcing = [&](bool chord) {
     const double enough = 0.1 * options.tolerance / std::max(report.residual, 1e-300);
     const double contraction = last_residual > 0 ? report.residual / last_residual : 1e-2;
-    return std::clamp(std::max(enough, 0.1 * contraction * contraction), 1e-10, 1e-3);
+    return std::clamp(std::max(enough, 0.1 * contraction * (chord ? 1 : contraction)), 1e-10, 1e-3);
   };
-  const auto solve = [&] {
+  const auto solve = [&](bool chord) {
     b.resize(r.r.size()), z.assign(r.r.size(), 0.0);
     for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
     const Timed timed(phases().solve);
-    const SolveReport solved = solver.solve(b, z, forcing());
+    const SolveReport solved = solver.solve(b, z, forcing(chord));
     ++phases().solves, phases().linear_iterations += solved.iterations;
     report.linear_iterations += solved.iterations;
     return solved;
@@ -80,7 +80,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
   // where the last factors serve once more for little, one more correction takes constraints and forces to round-off (or, where the
   // tolerance asked for is a loose one, to five digits beyond)
   const auto polish = [&] {
-    for (int k = 0; k < 4 && report.residual > 1e-5 * options.tolerance && solver.repeats_cheaply() && solve().ok; ++k) {
+    for (int k = 0; k < 4 && report.residual > 1e-5 * options.tolerance && solver.repeats_cheaply() && solve(true).ok; ++k) {
       const double correction = relative_correction(system, z);
       if (!(correction < 1e-6)) break;
       move();
@@ -94,14 +94,18 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
   for (int it = 0;; ++it) {
     if (near) {
       evaluate(false);
-      // chord steps with the matrix at hand, a solve each, no tangent: where solves are cheap, or little is left to do
+      // chord steps with the matrix at hand, a solve each, no tangent: where solves are cheap, or as much again as the last one did is
+      // enough
       const auto worth = [&] {
-        return solver.repeats_cheaply() ? report.residual > 1e-2 * options.tolerance
-                                        : report.residual > options.tolerance && report.residual < 1e3 * options.tolerance;
+        return solver.repeats_cheaply()
+                   ? report.residual > 1e-2 * options.tolerance
+                   : report.residual > options.tolerance &&
+                         report.residual < std::max(1e3 * options.tolerance, std::sqrt(10 * options.tolerance * last_residual));
       };
       for (int chord = 0; chord < 4 && worth(); ++chord) {
         const double residual = report.residual;
-        if (!solve().ok) break;
+        if (!solve(true).ok) break;
+        last_residual = residual;
         const double correction = system.comm->max(relative_correction(system, z));
         if (!(correction < 0.1 * report.correction)) break;
         report.correction = correction;
@@ -127,7 +131,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       report.converged = true;
       return report;
     }
-    const SolveReport solved = solve();
+    const SolveReport solved = solve(false);
     last_residual = report.residual;
     ++report.iterations;
     if (!solved.ok) {
