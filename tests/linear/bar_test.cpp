@@ -115,6 +115,16 @@ TEST(DISABLED_Bar, ConjugateGradientsTakeTheSymmetricPart) {
   EXPECT_GT(residual(p, s.x), 1e-2);
 }
 
+TEST(DISABLED_Bar, WherePartsTurnFarTheNextTangentIsTakenWhole) {
+  const auto turning = solve(*make_petsc_solver("cg", 1e-8), turning_bar(20, 0.1), 2);
+  ASSERT_TRUE(turning.report.ok) << turning.report.message;
+  EXPECT_NE(turning.name.find("GMRES"), std::string::npos) << turning.name;
+  EXPECT_LT(residual(turning_bar(20, 0.1), turning.x), 1.1e-8);
+  const auto slowly = solve(*make_petsc_solver("cg", 1e-8), turning_bar(20, 1e-3), 2);
+  ASSERT_TRUE(slowly.report.ok) << slowly.report.message;
+  EXPECT_NE(slowly.name.find("CG"), std::string::npos) << slowly.name;
+}
+
 TEST(DISABLED_Bar, IndefiniteTangentsGoFromConjugateGradientsToGmres) {
   Problem p = elastic_bar(16, 6, 5, 20);
   for (int i = 0; i < p.n_flexible; i += 7) p.diagonal[i] = Eigen::Vector3d::Constant(-0.8);  // softer than nothing

@@ -33,6 +33,8 @@ constexpr Eigen::Index columns_at_once = 24;
 
 /// CG solves with the symmetric part, in single precision: digits beyond these are not the tangent's.
 constexpr double worth_wanting = 1e-4;
+/// Part of an element's tangent that is not symmetric beyond which Newton with the symmetric part takes thrice the iterations.
+constexpr double too_unsymmetric = 0.01;
 
 class IterativeSolver final : public KktSolver {
  public:
@@ -65,6 +67,7 @@ class IterativeSolver final : public KktSolver {
   }
   void zero() override {
     if (direct_) return direct_->zero();
+    if (turns_) take_whole_tangent();
     matrix_->zero(), coupling_->zero();
   }
   void add(int clique, const double* K) override {
@@ -85,7 +88,10 @@ class IterativeSolver final : public KktSolver {
     if (direct_) return direct_->solve(b, x, tolerance);
     wanted_ = std::max({tolerance, tolerance_, kind_ == Kind::cg ? worth_wanting : 0.});
     matrix_->assemble(), coupling_->assemble();
-    if (kind_ == Kind::cg) coupling_->symmetrise();
+    if (kind_ == Kind::cg) {
+      coupling_->symmetrise();
+      turns_ = largest(static_cast<SymmetricMatrix&>(*matrix_).asymmetry()) > too_unsymmetric;
+    }
     to_owned(*shared_, b, b_);
     check(VecSet(x_, 0));
     SolveReport report;
@@ -149,6 +155,13 @@ class IterativeSolver final : public KktSolver {
   }
 
   bool is_substructured() const { return kind_ == Kind::bddc || kind_ == Kind::feti_dp; }
+
+  /// From the next matrix on; this one is at hand as its symmetric part alone.
+  void take_whole_tangent() {
+    if (rank() == 0) warn("", "CG: parts turn too far in a step for a symmetric tangent; GMRES with the whole one from here on");
+    turns_ = false, kind_ = Kind::algebraic;
+    structure(*cliques_, *map_);
+  }
 
   void make_flexible(std::vector<double> positions) {
     if (kind_ == Kind::algebraic) {
@@ -412,7 +425,7 @@ class IterativeSolver final : public KktSolver {
   std::optional<Coupling> coupling_;
   std::unique_ptr<FlexibleInverse> inverse_;
   std::unique_ptr<DirectSolver> direct_;  // once substructuring has failed
-  bool is_cg_ = false;
+  bool is_cg_ = false, turns_ = false;
   Vector x_, b_, r_, dx_, f_, u_;
   Mat A_ = nullptr;
   KSP ksp_ = nullptr;

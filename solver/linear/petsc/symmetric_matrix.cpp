@@ -98,11 +98,13 @@ void SymmetricMatrix::lend(const BlockMap& map) {
 
 void SymmetricMatrix::zero() {
   L_.zero();
+  asymmetry_ = 0;
   std::fill(R_.begin(), R_.end(), 0.0);
 }
 
 void SymmetricMatrix::add(int, std::span<const int> blocks, const double* K) {
   const size_t n = blocks.size(), width = 3 * n;
+  double sums = 0, differences = 0;
   for (size_t a = 0; a < n; ++a) {
     const int i = blocks[a] < 0 ? -1 : place_[blocks[a]];
     if (i < 0) continue;
@@ -114,12 +116,14 @@ void SymmetricMatrix::add(int, std::span<const int> blocks, const double* K) {
       float* to = i > j ? L_[find(i, j)] : nullptr;
       for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) {
-          const double value = 0.5 * (k[r * width + c] + t[c * width + r]);
+          const double value = 0.5 * (k[r * width + c] + t[c * width + r]), half = value - t[c * width + r];
+          sums += value * value, differences += half * half;
           sum[3 * c + r] += value;
           if (to) to[3 * c + r] += static_cast<float>(value);
         }
     }
   }
+  if (differences > asymmetry_ * sums) asymmetry_ = differences / sums;
 }
 
 void SymmetricMatrix::add_diagonal(int block, const double d[3]) {

@@ -10,6 +10,7 @@
 #include <petscmat.h>
 
 #include <Eigen/Core>
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -33,6 +34,9 @@ class SymmetricMatrix final : public FlexibleMatrix {
   Mat mat() const override { return A_; }
   PetscInt n_owned() const override { return n_owned_; }
   double bytes() const override;
+
+  /// The largest |K - K^T| / |K + K^T| of the cliques added on this rank since zero() (Frobenius).
+  double asymmetry() const { return std::sqrt(asymmetry_); }
 
   /// Places: owned blocks first, rows by their owned numbers; then those of others.
   const LowerPattern& pattern() const { return pattern_; }
@@ -65,6 +69,7 @@ class SymmetricMatrix final : public FlexibleMatrix {
   std::vector<std::vector<Entry>> borrowed_;  // and those others hold of blocks owned here
   std::vector<double> all_, x_;               // a vector of local blocks (n_local x 3), of places (n x 4)
   std::vector<Lane> y_;
+  double asymmetry_ = 0;  // squared
   Mat A_ = nullptr;
 };
 
