@@ -1,8 +1,7 @@
 // The outside of what is shown of a mesh.
-#include <algorithm>
 #include <array>
-#include <limits>
 
+#include "model/facet_key.hpp"
 #include "post/skin.hpp"
 
 namespace hilo {
@@ -14,12 +13,7 @@ std::vector<Facet> boundary_facets(const Mesh& mesh, const std::vector<bool>& sh
     std::int64_t facet;  // 8 cell + local facet, -1 once seen twice
   };
   const auto key_of = [&](const Facet& f, std::int64_t& smallest) {
-    const auto& local = info(mesh.shape[static_cast<size_t>(f.cell)]).facets[static_cast<size_t>(f.facet)];
-    const auto cell = mesh.cell(f.cell);
-    std::array<std::int64_t, 4> corner;
-    corner.fill(std::numeric_limits<std::int64_t>::max());
-    for (size_t k = 0; k < (local.size() % 3 == 0 ? 3 : 4); ++k) corner[k] = cell[static_cast<size_t>(local[k])];
-    std::sort(corner.begin(), corner.end());
+    const auto corner = facet_key(mesh, f, [](std::int64_t n) { return n; });
     smallest = corner[0];
     return std::array{corner[1], corner[2]};
   };

@@ -156,11 +156,13 @@ void RunView::enlarge(std::vector<Vec3>& x) const {
   std::vector<Vec3> before, now;
   for (const auto& part : nodes) {
     before.clear(), now.clear();
-    for (const auto n : part) before.push_back(mesh_.X[static_cast<size_t>(n)]), now.push_back(x[static_cast<size_t>(n)]);
+    for (const auto n : part)
+      if (run_.holds(n)) before.push_back(mesh_.X[static_cast<size_t>(n)]), now.push_back(x[static_cast<size_t>(n)]);
+    if (before.empty()) continue;
     const Pose rigid = best_pose(before, now);
-    for (size_t i = 0; i < part.size(); ++i) {
-      const Vec3 y = rigid(before[i]);
-      x[static_cast<size_t>(part[i])] = y + o_.deformed * (now[i] - y);
+    for (const auto n : part) {
+      const Vec3 y = rigid(mesh_.X[static_cast<size_t>(n)]);
+      x[static_cast<size_t>(n)] = y + o_.deformed * (x[static_cast<size_t>(n)] - y);
     }
   }
 }

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "dynamics/profile.hpp"
 #include "dynamics/recorder.hpp"
@@ -82,10 +81,10 @@ void Recorder::declare_rows() {
 }
 
 void Recorder::write_piece(const Slabs& rows, const std::string& array, const std::vector<double>& piece, int width, const char* unit,
-                           const char* meaning) {
+                           const char* meaning, bool exact) {
   try {
     Store* f = failure_ ? nullptr : store_.get();
-    if (setup_.single_precision)
+    if (setup_.single_precision && !exact)
       rows.write<float>(f, setup_.path, array, piece, width, unit, meaning);
     else
       rows.write<double>(f, setup_.path, array, piece, width, unit, meaning);
@@ -98,7 +97,6 @@ void Recorder::write_field(const Row& row, const Config& a) {
   const System& s = system_;
   if (!s.mesh) return;
   const std::string group = fmt::format("/field/{:06}", n_fields_++);
-  const auto wants = [&](const char* field) { return std::find(setup_.fields.begin(), setup_.fields.end(), field) != setup_.fields.end(); };
   const auto vectors = [&](const char* name, auto value, const char* unit) {
     std::vector<double> local;
     local.reserve(3 * s.X.size());
@@ -108,16 +106,16 @@ void Recorder::write_field(const Row& row, const Config& a) {
     }
     write_piece(*nodes_, group + "/" + name, nodes_->collect(local, 3), 3, unit, "");
   };
-  if (wants("displacement"))
+  if (setup_.wants("displacement"))
     vectors(
         "displacement", [&](size_t i) { return Vec3(row.q.x[i] - s.X[i]); }, "m");
-  if (wants("velocity"))
+  if (setup_.wants("velocity"))
     vectors(
         "velocity", [&](size_t i) { return row.v.x[i]; }, "m/s");
-  if (wants("acceleration"))
+  if (setup_.wants("acceleration"))
     vectors(
         "acceleration", [&](size_t i) { return a.x[i]; }, "m/s^2");
-  if (wants("stress") || wants("von_mises")) write_stress(row, group);
+  if (setup_.wants("stress") || setup_.wants("von_mises")) write_stress(row, group);
   field_times_.push_back(row.t);
   on_store([&](Store& f) {
     f.set(group, "t", row.t);
@@ -128,7 +126,6 @@ void Recorder::write_field(const Row& row, const Config& a) {
 /// Mean over the cells of a node's first flexible region (first: lowest number), summed across ranks through shared nodes.
 void Recorder::write_stress(const Row& row, const std::string& group) {
   const System& s = system_;
-  const auto wants = [&](const char* field) { return std::find(setup_.fields.begin(), setup_.fields.end(), field) != setup_.fields.end(); };
   std::vector<double> sum(8 * s.X.size(), 0.0);  // six stresses, von Mises, count
   std::vector<int> region(s.X.size(), -1);
   for (const SolidBatch& b : s.batches)
@@ -179,8 +176,8 @@ void Recorder::write_stress(const Row& row, const std::string& group) {
       for (int c = 0; c < 6; ++c) stress[6 * i + c] /= count[i];
       vm[i] /= count[i];
     }
-  if (wants("stress")) write_piece(*nodes_, group + "/stress", stress, 6, "Pa", "Cauchy stress xx yy zz yz xz xy");
-  if (!wants("von_mises")) return;
+  if (setup_.wants("stress")) write_piece(*nodes_, group + "/stress", stress, 6, "Pa", "Cauchy stress xx yy zz yz xz xy");
+  if (!setup_.wants("von_mises")) return;
   write_piece(*nodes_, group + "/von_mises", vm, 1, "Pa", "von Mises stress");
   if (!setup_.skin)
     write_piece(*cells_, group + "/cell_von_mises", cells_->collect(cell, 1), 1, "Pa", "von Mises stress, mean over the cell");
@@ -221,12 +218,7 @@ void Recorder::write_skin(const std::vector<Facet>& facets) {
   });
   std::vector<double> X;
   for (const Vec3& x : system_.X) X.insert(X.end(), x.data(), x.data() + 3);
-  try {
-    nodes_->write<double>(failure_ ? nullptr : store_.get(), setup_.path, "/xdmf/X", nodes_->collect(X, 3), 3, "m",
-                          "reference positions, repeated here for ParaView");
-  } catch (const Error& e) {
-    if (!failure_) failure_ = e;
-  }
+  write_piece(*nodes_, "/xdmf/X", nodes_->collect(X, 3), 3, "m", "reference positions, repeated here for ParaView", true);
 }
 
 /// The cells of the mesh file as XDMF's mixed list, slice by slice, so that no rank holds the whole mesh.

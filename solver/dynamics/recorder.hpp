@@ -3,10 +3,12 @@
 // Mid-step values (accelerations, reactions of energy-momentum) become values at t_n by linear interpolation between the two mid-points
 // around it, a_n = (h_n a_{n+1/2} + h_{n+1} a_{n-1/2})/(h_n + h_{n+1}); at the ends and where a load jumps, by extrapolation from one side.
 #pragma once
+#include <algorithm>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "dynamics/profile.hpp"
 #include "dynamics/redundancy.hpp"
@@ -33,6 +35,8 @@ class Recorder {
     double own_time = 0.5;   // where in the step mid values belong
     bool alternates = true;  // whether they alternate about the true ones
     bool is_static = false;
+
+    bool wants(std::string_view field) const { return std::find(fields.begin(), fields.end(), field) != fields.end(); }
   };
   Recorder(const System& system, const Scene& scene, Setup setup);
   /// The state before the first step.
@@ -79,7 +83,7 @@ class Recorder {
   void write_field(const Row& row, const Config& a);
   void write_stress(const Row& row, const std::string& group);
   void write_piece(const Slabs& rows, const std::string& array, const std::vector<double>& piece, int width, const char* unit,
-                   const char* meaning);
+                   const char* meaning, bool exact = false);
   void declare_rows();
   void write_skin(const std::vector<Facet>& facets);
   void write_topology();

@@ -1,6 +1,7 @@
 #include "dynamics/slabs.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "base/error.hpp"
 

@@ -1,7 +1,5 @@
 // Rows of an output array shared out over the ranks in runs of consecutive rows: each rank writes one piece of the file, none holds it all.
 #pragma once
-#include <functional>
-
 #include "model/comm.hpp"
 #include "model/store.hpp"
 

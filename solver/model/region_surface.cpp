@@ -2,26 +2,21 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
+
+#include "model/facet_key.hpp"
 
 namespace hilo {
 namespace {
 
-/// Two facets of a region are the same when their three smallest corners are.
 struct Key {
-  std::array<std::int64_t, 4> at;  // global numbers of the corners, region
+  std::array<std::int64_t, 4> at;  // global numbers of the three smallest corners, region
   std::int64_t place;              // among the facets looked at
 };
 
 Key key_of(const LocalMesh& local, const Facet& f, std::int64_t place) {
-  const Mesh& m = local.mesh;
-  const auto& shape = info(m.shape[f.cell]).facets[f.facet];
-  const auto cell = m.cell(f.cell);
-  std::array<std::int64_t, 4> corner;
-  corner.fill(std::numeric_limits<std::int64_t>::max());
-  for (size_t k = 0; k < (shape.size() % 3 == 0 ? 3 : 4); ++k) corner[k] = local.node_global[cell[shape[k]]];
-  std::sort(corner.begin(), corner.end());
-  corner[3] = m.region[f.cell];
-  return {corner, place};
+  const auto corner = facet_key(local.mesh, f, [&](std::int64_t n) { return local.node_global[n]; });
+  return {{corner[0], corner[1], corner[2], local.mesh.region[f.cell]}, place};
 }
 
 /// Leaves those that are there once.

@@ -97,8 +97,8 @@ void write_at(const std::string& path, std::int64_t place, std::span<const std::
     ok = n > 0 || (n < 0 && errno == EINTR);
     if (n > 0) done += static_cast<size_t>(n);
   }
-  const int error = errno;
-  if (file >= 0 && ::close(file) != 0) ok = false;
+  int error = errno;
+  if (file >= 0 && ::close(file) != 0 && ok) ok = false, error = errno;  // a full disk may show only here
   if (!ok) throw Error(path, fmt::format("cannot write: {}", std::strerror(error)), "", Exit::resources);
 }
 

@@ -126,7 +126,7 @@ TEST_F(BadScene, MadeGoodRunsFromStandardInputOnTwoRanksToo) {
   EXPECT_EQ(o.exit, 0) << o.err;
 }
 
-// The last rank is the one that notes its process number last.
+// Rank 1 is killed by the number it wrote.
 TEST_F(BadScene, MadeGoodEndsInSecondsWithAMessageWhereARankIsKilledOnTheWay) {
   const auto o = mpirun(2,
                         "bash -c 'echo $$ > rank$OMPI_COMM_WORLD_RANK; exec timeout 60 hilo-solve scene.toml tags.h5 -o run.h5 --set "
