@@ -3,6 +3,8 @@
 // PCBDDC solves three times with two factors.
 //
 // The tangent of averaged methods is unsymmetric by what turns in a step; GMRES works on it, and only the preconditioner is symmetrised.
+#include <utility>
+
 #include "linear/petsc/dual_primal.hpp"
 
 namespace hilo::petsc {
@@ -18,13 +20,12 @@ class Bddc final : public FlexibleInverse {
     return good;
   }
   void apply(Eigen::Ref<Eigen::MatrixXd> X) override { spaces_.expand(spaces_.solve(spaces_.condense(X)), X); }
-  /// Where single precision may not do, double; rigid motions of classes as constraints serve smooth stiffness: where it jumps within
-  /// subdomains, others are looked for.
+  /// Rigid motions of classes as constraints serve smooth stiffness; where it jumps within subdomains, others are looked for.  Where they
+  /// do not help, single precision is given up.
   bool strengthen(int iterations, bool failed) override {
-    const bool wide = is_single_ && (failed || iterations > many_iterations),
-               more = !is_adaptive_ && (failed || iterations > too_many_iterations);
-    is_single_ &= !wide, is_adaptive_ |= more;
-    return wide || more;
+    if (!failed && iterations <= too_many_iterations) return false;
+    if (!is_adaptive_) return is_adaptive_ = true;
+    return std::exchange(is_single_, false);
   }
   bool varies() const override { return true; }
   int most_iterations() const override { return is_adaptive_ ? 150 : 60; }
@@ -34,7 +35,6 @@ class Bddc final : public FlexibleInverse {
 
  private:
   DualPrimal spaces_;
-  static constexpr int many_iterations = 12;
   bool is_single_ = true;     // factors are kept in single precision: GMRES mends the digits
   bool is_adaptive_ = false;  // further constraints are looked for
 };

@@ -6,7 +6,6 @@
 // Schur complement.  Any error of M there would leave a large stiffness of the wrong sign.
 #include <Eigen/Dense>
 #include <algorithm>
-#include <numeric>
 
 #include "linear/petsc/interface.hpp"
 #include "linear/petsc/solver.hpp"

@@ -1,5 +1,5 @@
-// The flexible block F of a system, and an approximate inverse of it: one fixed linear operator, so that the Schur complement of bodies
-// and multipliers can be formed with it.
+// The flexible block F of a system, and an approximate inverse of it: a fixed linear operator, or nearly so, so that the Schur complement
+// of bodies and multipliers can be formed with it.
 #pragma once
 #define OMPI_SKIP_MPICXX 1
 #include <petscmat.h>

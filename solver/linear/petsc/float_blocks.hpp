@@ -5,9 +5,6 @@
 
 namespace hilo::petsc {
 
-/// A function in two versions, of which the machine's is taken when the library is loaded.
-#define HILO_VECTOR_WIDTHS __attribute__((target_clones("arch=haswell", "default")))
-
 using Lane = float __attribute__((vector_size(16)));  // three values, padded
 
 struct FloatBlock {

@@ -2,6 +2,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
+
+#include "base/wide.hpp"
 
 namespace hilo::petsc {
 
@@ -46,8 +49,8 @@ void IncompleteCholesky::factor(const LowerPattern& pattern, int n, const Row& r
 }
 
 /// Forwards and backwards; work: (n).
-HILO_VECTOR_WIDTHS static void substitute(const LowerPattern& pattern, const FloatBlocks& L, const FloatBlocks& inverse, double scale,
-                                          const double* b, std::vector<Lane>& work, double* x) {
+HILO_WIDE static void substitute(const LowerPattern& pattern, const FloatBlocks& L, const FloatBlocks& inverse, double scale,
+                                 const double* b, std::vector<Lane>& work, double* x) {
   const auto& [row, place, start, column] = pattern;
   const size_t n = work.size();
   for (size_t i = 0; i < n; ++i) {
@@ -71,7 +74,8 @@ HILO_VECTOR_WIDTHS static void substitute(const LowerPattern& pattern, const Flo
 void IncompleteCholesky::solve(const double* b, double* x) {
   double largest = 0;  // within the range of single precision
   const size_t n = 3 * work_.size();
-  for (size_t i = 0; i < n; ++i) largest = std::max(largest, std::abs(b[i]));
+  for (size_t i = 0; i < n && !std::isnan(largest); ++i)
+    if (!(std::abs(b[i]) <= largest)) largest = std::abs(b[i]);
   if (!(largest > 0)) {
     std::fill(x, x + n, largest);
     return;

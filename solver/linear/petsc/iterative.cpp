@@ -1,6 +1,7 @@
-// GMRES on the whole system, preconditioned from the right by a block factorisation in which only F is approximated:
+// A Krylov method on the whole system - GMRES, or CG on its symmetric part - preconditioned by a block factorisation in which only F is
+// approximated:
 //
-//     P = [ F~  B ]     with  S = D - C F~^-1 B  dense and exact for F~:   p = S^-1 (g - C F~^-1 f),   u = F~^-1 f - Z p,   Z = F~^-1 B.
+//     P = [ F~  B ]     with  S = D - C F~^-1 B  sparse and exact for F~:  p = S^-1 (g - C F~^-1 f),   u = F~^-1 f - Z p,   Z = F~^-1 B.
 //         [ C   D ]
 //
 // P^-1 A - 1 then vanishes outside the flexible block, so bodies and multipliers cost no iterations beyond those of F~ on F (for
@@ -10,7 +11,7 @@
 #include <fmt/format.h>
 #include <petscksp.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -135,7 +136,11 @@ class IterativeSolver final : public KktSolver {
   double bytes() const override {
     if (direct_) return direct_->bytes();
     return matrix_->bytes() + coupling_->bytes() + inverse_->bytes() + 8. * static_cast<double>(Z_.size()) +
-           8. * (is_cg_ ? 3 : restart_) * n_all_;
+           8. *
+               (is_cg_               ? 3
+                : inverse_->varies() ? 2 * restart_
+                                     : restart_) *
+               n_all_;
   }
   double set_up_seconds() const override { return set_up_seconds_ + (direct_ ? direct_->set_up_seconds() : 0); }
   double undivided_seconds() const override { return inverse_ ? inverse_->undivided_seconds() : 0; }
@@ -265,7 +270,8 @@ class IterativeSolver final : public KktSolver {
   std::string set_up() {
     const Stopwatch watch(set_up_seconds_);
     if (!inverse_->set_up()) return "the flexible block is singular";
-    return factor_schur() ? "" : "the matrix is singular (bodies and joints)";
+    if (factor_schur()) return "";
+    return inverse_->has_failed() ? inverse_->name() + " does not converge" : "the matrix is singular (bodies and joints)";
   }
 
   /// From x_ as it is.
@@ -289,8 +295,8 @@ class IterativeSolver final : public KktSolver {
         if (rank() == 0) warn("", "CG: the tangent is indefinite; GMRES from here on");
         is_cg_ = false;
         choose_method();
-        check(VecSet(x_, 0));
-        more = 1, left = INFINITY;
+        check(VecSet(x_, 0)), check(VecCopy(b_, r_));
+        reason = KSP_DIVERGED_ITS;
         continue;
       }
       multiply(x_, r_);
@@ -317,17 +323,24 @@ class IterativeSolver final : public KktSolver {
     const auto n_columns = static_cast<Eigen::Index>(columns.size()), n = static_cast<Eigen::Index>(n_flexible_);
     keep_ = largest(static_cast<double>(n_columns) * static_cast<double>(n)) <= values_kept;
     Z_.resize(n, keep_ ? n_columns : std::min(n_columns, columns_at_once));
-    Eigen::MatrixXd change = Eigen::MatrixXd::Zero(m_, n_columns), of_touched(n_columns, n_columns);
+    if (n_columns > 6000)
+      throw Error("", fmt::format("{} unknowns of bodies and joints touch flexible nodes: too many for this solver", n_columns),
+                  "solver.kind = \"direct\"", Exit::resources);
+    Eigen::MatrixXd of_touched(n_columns, n_columns);  // C touches no other rows
+    std::vector<double> change(m_);
     for (Eigen::Index k = 0; k < n_columns; k += columns_at_once) {
       const auto some = std::min(columns_at_once, n_columns - k);
       auto Z = Z_.middleCols(keep_ ? k : 0, some);
       for (Eigen::Index j = 0; j < some; ++j) coupling_->column(columns[k + j], Z.col(j).data(), n_flexible_);
       inverse_->apply(Z);
       if (inverse_->has_failed()) return false;
-      for (Eigen::Index j = 0; j < some; ++j) coupling_->add_C(-1, Z.col(j).data(), change.col(k + j).data());
+      for (Eigen::Index j = 0; j < some; ++j) {
+        std::fill(change.begin(), change.end(), 0.0);
+        coupling_->add_C(-1, Z.col(j).data(), change.data());
+        for (Eigen::Index i = 0; i < n_columns; ++i) of_touched(i, k + j) = change[columns[i]];
+      }
     }
     if (!keep_) Z_.resize(0, 0);
-    for (Eigen::Index k = 0; k < n_columns; ++k) of_touched.row(k) = change.row(columns[k]);  // C touches no others
     sum(of_touched.data(), static_cast<int>(of_touched.size()));
     return schur_.factor(*coupling_, columns, of_touched);
   }

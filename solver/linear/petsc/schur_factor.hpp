@@ -1,5 +1,5 @@
 // Sparse LU of the small system that is left of bodies and multipliers: S = D + what the flexible part gives to the unknowns it touches.
-// Rows of bodies and of constraints differ by many orders; KLU [davis-2010] scales them.
+// Rows and columns of bodies and of constraints differ by many orders: they are scaled before KLU [davis-2010] factors.
 #pragma once
 #include <suitesparse/klu.h>
 
@@ -12,14 +12,14 @@ namespace hilo::petsc {
 
 class SchurFactor {
  public:
-  SchurFactor() { klu_defaults(&common_), common_.scale = 2; }
+  SchurFactor() { klu_defaults(&common_), common_.scale = -1; }
   ~SchurFactor() { forget(); }
   SchurFactor(const SchurFactor&) = delete;
 
   /// D with `given` (k x k) added at rows and columns `touched`.  False when it is singular.
   bool factor(const Coupling& coupling, const std::vector<int>& touched, const Eigen::MatrixXd& given);
   /// x := S^-1 x
-  void solve(double* x) { klu_solve(symbolic_, numeric_, n_, 1, x, &common_); }
+  void solve(double* x);
 
  private:
   void forget() {
@@ -28,7 +28,7 @@ class SchurFactor {
   }
   int n_ = 0;
   std::vector<int> start_, row_;  // by columns
-  std::vector<double> value_;
+  std::vector<double> value_, row_scale_, column_scale_;
   klu_common common_{};
   klu_symbolic* symbolic_ = nullptr;
   klu_numeric* numeric_ = nullptr;

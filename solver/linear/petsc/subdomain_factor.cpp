@@ -150,27 +150,28 @@ void SubdomainFactor::narrow() {
   if (L_) supernodal::narrow(L_), single_ = true;
 }
 
-/// Rounded and back, within the range of single precision.
+/// Rows from `from` on rounded, and those up to `to` back, within the range of single precision.
 template <class Solve>
-void SubdomainFactor::in_single(double* x, int columns, const Solve& solve) const {
-  Eigen::Map<Eigen::MatrixXd> X(x, n(), columns);
-  x_.resize(X.size());
+void SubdomainFactor::in_single(int from, int to, double* x, int columns, const Solve& solve) const {
+  auto X = Eigen::Map<Eigen::MatrixXd>(x, n(), columns).bottomRows(n() - from);
+  x_.resize(static_cast<size_t>(n()) * columns);
+  auto Y = Eigen::Map<Eigen::MatrixXf>(x_.data(), n(), columns).bottomRows(n() - from);
+  if (X.size() == 0) return;
   const Eigen::RowVectorXd scale = X.cwiseAbs().colwise().maxCoeff().cwiseMax(1e-300);
-  Eigen::Map<Eigen::MatrixXf> Y(x_.data(), n(), columns);
   for (int k = 0; k < columns; ++k) Y.col(k) = (X.col(k) / scale[k]).cast<float>();
   solve(x_.data());
-  for (int k = 0; k < columns; ++k) X.col(k) = scale[k] * Y.col(k).cast<double>();
+  for (int k = 0; k < columns; ++k) X.col(k).head(to - from) = scale[k] * Y.col(k).head(to - from).cast<double>();
 }
 
 void SubdomainFactor::forward(int from, int to, double* x, int columns) const {
   if (single_)
-    in_single(x, columns, [&](float* y) { supernodal::forward(L_, from, to, y, below_single_, columns); });
+    in_single(from, n(), x, columns, [&](float* y) { supernodal::forward(L_, from, to, y, below_single_, columns); });
   else
     supernodal::forward(L_, from, to, x, below_, columns);
 }
 void SubdomainFactor::backward(int from, int to, double* x, int columns) const {
   if (single_)
-    in_single(x, columns, [&](float* y) { supernodal::backward(L_, from, to, y, below_single_, columns); });
+    in_single(from, to, x, columns, [&](float* y) { supernodal::backward(L_, from, to, y, below_single_, columns); });
   else
     supernodal::backward(L_, from, to, x, below_, columns);
 }

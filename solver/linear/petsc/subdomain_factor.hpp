@@ -45,10 +45,10 @@ class SubdomainFactor {
 
  private:
   template <class Solve>
-  void in_single(double* x, int columns, const Solve& solve) const;
+  void in_single(int from, int to, double* x, int columns, const Solve& solve) const;
   void order(const SubdomainMatrix& F, const Interface& interface, const std::vector<char>& shared);
 
-  mutable cholmod_common common_{};
+  cholmod_common common_{};
   cholmod_factor* L_ = nullptr;
   std::vector<int> place_;
   std::vector<PetscInt> block_;

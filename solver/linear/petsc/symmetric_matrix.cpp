@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/wide.hpp"
 #include "linear/petsc/exchange.hpp"
 #include "linear/petsc/solver.hpp"
 
@@ -183,7 +184,7 @@ void SymmetricMatrix::for_each_block(const std::function<void(PetscInt, PetscInt
 }
 
 /// y_i += sum_j A_ij (x_j - x_i), both halves at once; x: (n x 4), y: zero.
-HILO_VECTOR_WIDTHS static void add_differences(const LowerPattern& pattern, const FloatBlocks& L, const double* x, Lane* y) {
+HILO_WIDE static void add_differences(const LowerPattern& pattern, const FloatBlocks& L, const double* x, Lane* y) {
   const auto load = [&](int i) {
     Double4 v;
     std::memcpy(&v, x + 4 * static_cast<size_t>(i), sizeof(v));
