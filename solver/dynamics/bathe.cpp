@@ -12,7 +12,7 @@ class Bathe final : public StageIntegrator {
  public:
   std::string name() const override { return "bathe"; }
   bool needs_acceleration() const override { return true; }
-  void restart() override { fresh_ = true; }
+  void forget() override { fresh_ = true; }
 
   void begin(const State& s, double h) override {
     t_ = s.t, v0_ = s.v, h_ = h;

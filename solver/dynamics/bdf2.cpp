@@ -8,7 +8,7 @@ namespace {
 class Bdf2 final : public StageIntegrator {
  public:
   std::string name() const override { return "bdf2"; }
-  void restart() override { h_before_ = 0; }
+  void forget() override { h_before_ = 0; }
 
   void begin(const State& s, double h) override {
     t_ = s.t, v0_ = s.v, h_ = h;

@@ -1,5 +1,6 @@
 #include "dynamics/extrapolation.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hilo {
@@ -24,12 +25,13 @@ double square(double x) { return x * x; }
 }  // namespace
 
 std::span<const double> Extrapolation::increments(const System& system, double h) {
-  if (past_.empty() || rules[rule_].n == 0) return {};
+  if (past_.empty()) return {};
   if (std::abs(h - h_) > 1e-6 * h_) {  // an error of second order in the step
     past_.resize(1);
     for (double& x : past_[0].missed) x *= square(h / h_);
-    h_ = h, rule_ = 1, lambda_rule_ = 1;
+    h_ = h, rule_ = std::min(rule_, 1), lambda_rule_ = 1;
   }
+  if (rules[rule_].n == 0) return {};
   increments_.assign(3 * system.n_blocks(), 0.0);
   for (int k = 0; k < rules[rule_].n; ++k)
     if (const double w = rules[rule_].weight[k]; w != 0)
@@ -46,6 +48,7 @@ std::vector<double> Extrapolation::multipliers(const std::vector<double>& last) 
 }
 
 void Extrapolation::accept(const System& s, double h, std::vector<double> missed, std::vector<double> lambda) {
+  static_assert(std::size(rules) == n_rules && std::ranges::max(rules, {}, &Rule::n).n == most && std::size(Rule{}.weight) == most);
   if (!past_.empty() && std::abs(h - h_) > 1e-6 * h_) clear();
   h_ = h;
   // errors that the rules would have made, of positions and of multipliers

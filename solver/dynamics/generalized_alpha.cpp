@@ -13,7 +13,7 @@ class GeneralizedAlpha final : public StageIntegrator {
   GeneralizedAlpha(const AlphaParameters& p, std::string name) : p_(p), name_(std::move(name)) {}
   std::string name() const override { return name_; }
   bool needs_acceleration() const override { return true; }
-  void restart() override { h_b_ = 0; }
+  void forget() override { h_b_ = 0; }
 
   void begin(const State& s, double h) override {
     const double offset = p_.alpha_m - p_.alpha_f;

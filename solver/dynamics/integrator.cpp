@@ -14,7 +14,7 @@ void restore_rotations(const System& system, Config& q) {
 NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, double h, Predictor predictor) {
   const System& system = *(system_ = &tools.system);
   begin(s, h);
-  h_ = h, lambda_ = s.lambda;
+  h_ = h, predictor_ = predictor, lambda_ = s.lambda;
   solved_.clear(), solved_.reserve(n_stages());
   missed_.resize(n_stages()), past_.resize(n_stages());
   taken_.resize(n_stages());
@@ -52,7 +52,11 @@ void StageIntegrator::accept(State& s) {
   finish(s);
   s.q = solved_.back().q;
   s.lambda = lambda_;
-  for (int k = 0; k < n_stages(); ++k) past_[k].accept(*system_, h_, std::move(missed_[k]), taken_[k].lambda);
+  for (int k = 0; k < n_stages(); ++k)
+    if (predictor_ == Predictor::rigid_rotation)
+      past_[k].accept(*system_, h_, std::move(missed_[k]), taken_[k].lambda);
+    else  // what another guess missed says nothing of this one
+      past_[k].clear();
   s.t += h_;
 }
 

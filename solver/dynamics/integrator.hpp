@@ -61,6 +61,7 @@ class StageIntegrator : public Integrator {
   NewtonReport solve(const StepTools& tools, const State& s, double h, Predictor predictor) final;
   void accept(State& s) final;
   std::span<const Taken> taken() const final { return taken_; }
+  void restart() final { past_.clear(), forget(); }
 
   /// Start a step of length h from s, which outlives the step.
   virtual void begin(const State& s, double h) = 0;
@@ -72,9 +73,12 @@ class StageIntegrator : public Integrator {
   virtual double instant(int) const { return 1; }  // of stage k's unknown, in units of the step
   /// Velocities of the accepted end, and history.
   virtual void finish(State& s) = 0;
+  /// Its own history, at a restart.
+  virtual void forget() {}
 
  private:
   double h_ = 0;
+  Predictor predictor_ = Predictor::hold;  // of the step solved last
   const System* system_ = nullptr;
   std::vector<Unknown> solved_;              // per stage
   std::vector<Extrapolation> past_;          // per stage

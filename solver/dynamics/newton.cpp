@@ -94,8 +94,8 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
   for (int it = 0;; ++it) {
     if (near) {
       evaluate(false);
-      // chord steps with the matrix at hand, a solve each, no tangent: where solves are cheap, or as much again as the last one did is
-      // enough
+      // chord steps with the matrix at hand, a solve each, no tangent: where solves are cheap, or the residual is within 1000 of the
+      // tolerance, or one that comes as far as the last iteration did ends within 10 of it
       const auto worth = [&] {
         return solver.repeats_cheaply()
                    ? report.residual > 1e-2 * options.tolerance
@@ -105,12 +105,12 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       for (int chord = 0; chord < 4 && worth(); ++chord) {
         const double residual = report.residual;
         if (!solve(true).ok) break;
-        last_residual = residual;
         const double correction = system.comm->max(relative_correction(system, z));
         if (!(correction < 0.1 * report.correction)) break;
         report.correction = correction;
         move();
         evaluate(false);
+        last_residual = residual;
         if (!(report.residual < 0.1 * residual)) break;
       }
       if (report.residual <= options.tolerance) {

@@ -53,7 +53,7 @@ struct Profile {
   double solver_bytes = 0, result_bytes = 0;  // matrix and factors of the rank with most; results file
   /// Collective: every rank takes part.
   Profile(const Comm& comm, const KktSolver& solver, double began, double processor_began, const std::string& results);
-  /// Lines for run.json: keys profile, processor_seconds, solver_bytes, result_bytes.
+  /// Lines for run.json: keys profile, processor_seconds, undivided_seconds, solver_bytes, result_bytes.
   std::string json() const;
   /// A table for people.
   std::string text() const;

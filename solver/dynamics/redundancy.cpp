@@ -58,11 +58,13 @@ DenseRows joint_rows(const System& s, const Connector& c, const Stage& stage) {
   return out;
 }
 
-/// Columns of a matrix sorted: `rank` independent ones come first, each of the others is those times a column of `depends`.
+/// Columns of a matrix sorted: `rank` independent ones come first.  Of A P = Q R, the part of R that they and the others have.
 struct Independence {
   Eigen::VectorXi order;
   Eigen::Index rank = 0;
-  Eigen::MatrixXd depends;
+  Eigen::SparseMatrix<double> kept, others;
+  /// Column rank + k is the independent ones times these.
+  Eigen::VectorXd depends(Eigen::Index k) const { return kept.triangularView<Eigen::Upper>().solve(Eigen::VectorXd(others.col(k))); }
 };
 
 constexpr size_t dense_at_most = 600;  // rows
@@ -72,10 +74,9 @@ constexpr double dependent = 1e-9;     // what others leave of a unit row
 Independence choose_dense(const Eigen::SparseMatrix<double>& A) {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr{Eigen::MatrixXd(A)};
   qr.setThreshold(dependent);
-  Independence out{qr.colsPermutation().indices(), qr.rank(), {}};
-  const Eigen::MatrixXd R = qr.matrixR().topRows(out.rank).template triangularView<Eigen::Upper>();
-  out.depends = R.leftCols(out.rank).triangularView<Eigen::Upper>().solve(R.rightCols(A.cols() - out.rank));
-  return out;
+  const Eigen::Index rank = qr.rank();
+  const Eigen::MatrixXd R = qr.matrixR().topRows(rank).template triangularView<Eigen::Upper>();
+  return {qr.colsPermutation().indices(), rank, R.leftCols(rank).sparseView(), R.rightCols(A.cols() - rank).sparseView()};
 }
 
 /// Independent columns in the order of least fill, for what a dense matrix would take minutes.
@@ -83,10 +84,9 @@ Independence choose_sparse(const Eigen::SparseMatrix<double>& A) {
   Eigen::SparseQR<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> qr;
   qr.setPivotThreshold(dependent);
   qr.compute(A);
-  Independence out{qr.colsPermutation().indices(), qr.rank(), {}};
-  const Eigen::SparseMatrix<double> R = qr.matrixR(), kept = R.topLeftCorner(out.rank, out.rank);
-  out.depends = kept.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd(R.topRightCorner(out.rank, A.cols() - out.rank)));
-  return out;
+  const Eigen::Index rank = qr.rank();
+  const Eigen::SparseMatrix<double> R = qr.matrixR();
+  return {qr.colsPermutation().indices(), rank, R.topLeftCorner(rank, rank), R.topRightCorner(rank, A.cols() - rank)};
 }
 
 /// Columns that share no row, directly or through others, tell nothing of each other: lists of those that do.
@@ -109,9 +109,8 @@ std::vector<std::vector<int>> connected_columns(const Eigen::SparseMatrix<double
   return groups;
 }
 
-/// The columns of a list, over the rows that they meet.
-Eigen::SparseMatrix<double> part(const Eigen::SparseMatrix<double>& A, const std::vector<int>& columns) {
-  std::vector<int> number(A.rows(), -1);
+/// The columns of a list, over the rows that they meet.  `number`: -1 for each row of A, and so again at the end.
+Eigen::SparseMatrix<double> part(const Eigen::SparseMatrix<double>& A, const std::vector<int>& columns, std::vector<int>& number) {
   std::vector<Eigen::Triplet<double>> entries;
   int n = 0;
   for (size_t k = 0; k < columns.size(); ++k)
@@ -119,6 +118,8 @@ Eigen::SparseMatrix<double> part(const Eigen::SparseMatrix<double>& A, const std
       if (number[it.row()] < 0) number[it.row()] = n++;
       entries.emplace_back(number[it.row()], static_cast<int>(k), it.value());
     }
+  for (const int column : columns)
+    for (Eigen::SparseMatrix<double>::InnerIterator it(A, column); it; ++it) number[it.row()] = -1;
   Eigen::SparseMatrix<double> out(n, static_cast<Eigen::Index>(columns.size()));
   out.setFromTriplets(entries.begin(), entries.end());
   return out;
@@ -147,16 +148,18 @@ Redundancy drop_redundant_rows(System& system, const Config& q) {
   if (report.rows == 0) return report;
   Eigen::SparseMatrix<double> A(3 * static_cast<Eigen::Index>(system.n_blocks()), report.rows);
   A.setFromTriplets(entries.begin(), entries.end());
+  std::vector<int> number(A.rows(), -1);
   for (const auto& group : connected_columns(A)) {
-    const Eigen::SparseMatrix<double> own = part(A, group);
+    const Eigen::SparseMatrix<double> own = part(A, group, number);
     const Independence found = group.size() <= dense_at_most ? choose_dense(own) : choose_sparse(own);
     report.rank += static_cast<int>(found.rank);
     for (Eigen::Index k = found.rank; k < own.cols(); ++k) {
       const auto [joint, measure] = rows[group[found.order[k]]];
       system.joints[joint].active[measure] = false;
+      const Eigen::VectorXd depends = found.depends(k - found.rank);
       std::set<std::string> others;
       for (Eigen::Index i = 0; i < found.rank; ++i)
-        if (const int other = rows[group[found.order[i]]].first; std::abs(found.depends(i, k - found.rank)) > 1e-6 && other != joint)
+        if (const int other = rows[group[found.order[i]]].first; std::abs(depends[i]) > 1e-6 && other != joint)
           others.insert(system.joints[other].name);
       report.dropped.push_back(
           fmt::format("joint \"{}\" row {}{}", system.joints[joint].name, measure + 1,

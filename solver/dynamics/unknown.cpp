@@ -17,36 +17,29 @@ void Unknown::turn_body(size_t b) {
   dq.R[b] = skew(turn[b]) * (q.R[b] + q0.R[b]) / 2;
 }
 
-void Unknown::move(const System& system, std::span<const double> z) {
+template <class Turned>
+void Unknown::add(const System& system, std::span<const double> z, Turned turned) {
+  const auto of = [&](int k) { return Eigen::Map<const Vec3>(z.data() + 3 * k); };
   for (size_t i = 0; i < q.x.size(); ++i)
     if (const int k = system.node_block[i]; k >= 0) {
-      dq.x[i] += Eigen::Map<const Vec3>(z.data() + 3 * k);
+      dq.x[i] += of(k);
       q.x[i] = q0.x[i] + dq.x[i];
     }
   for (size_t b = 0; b < turn.size(); ++b)
     if (const int k = system.body_block[b]; k >= 0) {
-      dq.c[b] += Eigen::Map<const Vec3>(z.data() + 3 * k);
+      dq.c[b] += of(k);
       q.c[b] = q0.c[b] + dq.c[b];
-      const Vec3 w = Eigen::Map<const Vec3>(z.data() + 3 * k + 3), &t = turn[b];
-      turn[b] = (w + t + w.cross(t) / 2) / (1 - w.dot(t) / 4);  // cay(w) cay(t)
-      turn_body(b);
+      turn[b] = turned(Vec3(of(k + 1)), turn[b]), turn_body(b);
     }
   system.follow(q), system.follow(dq);
 }
 
+void Unknown::move(const System& system, std::span<const double> z) {  // cay(w) cay(t)
+  add(system, z, [](const Vec3& w, const Vec3& t) -> Vec3 { return (w + t + w.cross(t) / 2) / (1 - w.dot(t) / 4); });
+}
+
 void Unknown::shift(const System& system, std::span<const double> z) {
-  for (size_t i = 0; i < q.x.size(); ++i)
-    if (const int k = system.node_block[i]; k >= 0) {
-      dq.x[i] += Eigen::Map<const Vec3>(z.data() + 3 * k);
-      q.x[i] = q0.x[i] + dq.x[i];
-    }
-  for (size_t b = 0; b < turn.size(); ++b)
-    if (const int k = system.body_block[b]; k >= 0) {
-      dq.c[b] += Eigen::Map<const Vec3>(z.data() + 3 * k);
-      q.c[b] = q0.c[b] + dq.c[b];
-      turn[b] += Eigen::Map<const Vec3>(z.data() + 3 * k + 3), turn_body(b);
-    }
-  system.follow(q), system.follow(dq);
+  add(system, z, [](const Vec3& w, const Vec3& t) -> Vec3 { return t + w; });
 }
 
 std::vector<double> Unknown::increments(const System& system) const {

@@ -23,6 +23,8 @@ struct Unknown {
 
  private:
   void turn_body(size_t b);
+  template <class Turned>
+  void add(const System& system, std::span<const double> z, Turned turned);
 };
 
 }  // namespace hilo

@@ -26,7 +26,7 @@ class ZhouTamma final : public StageIntegrator {
   }
   std::string name() const override { return name_; }
   bool needs_acceleration() const override { return true; }
-  void restart() override { h_a_ = 0; }
+  void forget() override { h_a_ = 0; }
 
   void begin(const State& s, double h) override {
     t_ = s.t, v0_ = s.v, h_ = h;
