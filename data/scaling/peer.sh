@@ -18,14 +18,17 @@ calculix() {  # mesh, element
   awk -v head="CalculiX $2,$name,$unknowns" -v all="$all" -v n="$iterations" '
     NF == 4 && $1 ~ /^[0-9]+$/ {s += $4; m++} END {printf "%s,%.3f,%.5f,%d,%.4f\n", head, all, s / m, n, all / n}' "ccx-$name.dat"
 }
-hilo() {  # row, mesh, deck, region, scene
+hilo() {  # row, mesh, deck, region, scene, options
   local all
   hilo-import --quiet "$3" -o mesh.h5 --regions "$4" > /dev/null
-  all=$(spent hilo-solve --quiet "$here/$5" mesh.h5 -o run.h5)
+  all=$(spent hilo-solve --quiet "$here/$5" mesh.h5 -o run.h5 "${@:6}")
   hilo-post series run.h5 probe.tip | tail -1 | awk -F, -v head="$1,$2,$(number unknowns)" -v all="$all" -v n="$(number newton_iterations)" \
     -v own="$(number processor_seconds)" '{printf "%s,%.3f,%.5f,%d,%.4f\n", head, all, $4, n, own / n}'
 }
-linear() { local name=${1// /x}; "$here/bar.sh" $1 > "bar-$name.inp"; hilo "hilo hex8" "$name" "bar-$name.inp" bar bar.toml; }
+linear() {  # mesh, row, options
+  local name=${1// /x}
+  "$here/bar.sh" $1 > "bar-$name.inp"; hilo "${2:-hilo hex8}" "$name" "bar-$name.inp" bar bar.toml "${@:3}"
+}
 best() { for k in 1 2; do "$@"; done | sort -t, -k4g | head -1; }
 
 # Times as fast as CalculiX on the mesh before, or as its cheapest way to the accuracy.
@@ -38,6 +41,7 @@ ratio() {
   calculix "160 8 8" C3D8I
   best linear "160 8 8"
   linear "240 12 12"
+  linear "240 12 12" "hilo hex8 to 1e-10" --set solver.tolerance=1e-10
   best calculix "20 1 1" C3D20R
   "$here/bar.sh" 16 1 1 4 C3D20 > bar-20.inp
   best hilo "hilo best" "16x1x1 hex20" bar-20.inp bar accuracy.toml
