@@ -1,4 +1,7 @@
 // M (v1 - v0)/h + f(q0, q1) + G(q_mid)^T lambda = F_mean,   (q1 - q0)/h = (v0 + v1)/2,   g(q1) = 0
+#include <optional>
+
+#include "dynamics/clock.hpp"
 #include "dynamics/integrator.hpp"
 
 namespace hilo {
@@ -7,9 +10,15 @@ namespace {
 class EnergyMomentum final : public StageIntegrator {
  public:
   explicit EnergyMomentum(double chi) : chi_(chi) {}
-  std::string name() const override { return chi_ > 0 ? "energy-momentum with stress dissipation" : "energy-momentum"; }
+  std::string name() const override {
+    if (clock_) return "energy-momentum on the clock of one degree of freedom";
+    return chi_ > 0 ? "energy-momentum with stress dissipation" : "energy-momentum";
+  }
 
-  void begin(const State& s, double h) override { t_ = s.t, v0_ = s.v, h_ = h; }
+  void begin(const State& s, double h) override {
+    t_ = s.t, t_end_ = s.t + h, v0_ = s.v;
+    h_ = clock_ ? clock_->length(s.v, h) : h;
+  }
 
   Stage stage(int, const Unknown& u) override {
     combine(mid_, {{1, &u.q0}, {0.5, &u.dq}});
@@ -23,17 +32,25 @@ class EnergyMomentum final : public StageIntegrator {
     s.a = &a_, s.mass_slope = 2 / (h_ * h_);
     s.v = &v_mid_, s.alpha_slope = 1 / h_;
     s.chi = chi_;
-    s.t0 = t_, s.t1 = s.t_end = t_ + h_;
+    s.t0 = t_, s.t1 = s.t_end = t_end_;
     return s;
   }
 
-  void finish(State& s) override { combine(s.v, {{1, &v0_}, {h_, &a_}}); }
+  void finish(State& s) override {
+    combine(s.v, {{1, &v0_}, {h_, &a_}});
+    if (clock_) clock_->accept(s.v, a_);
+  }
+  void forget() override {
+    if (clock_) clock_->restart();
+  }
+  void keep_time(const System& system) override { clock_.emplace(system); }
   const Config& acceleration() const override { return a_; }
   double own_time() const override { return 0.5; }
   bool alternates() const override { return true; }
 
  private:
-  double chi_, t_ = 0, h_ = 0;
+  double chi_, t_ = 0, t_end_ = 0, h_ = 0;
+  std::optional<Clock> clock_;
   Config v0_, mid_, v_mid_, a_;
 };
 

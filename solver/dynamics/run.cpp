@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dynamics/clock.hpp"
 #include "dynamics/predictor.hpp"
 #include "dynamics/profile.hpp"
 #include "dynamics/progress.hpp"
@@ -203,6 +204,8 @@ class Run {
     Progress progress(options_.quiet || system_.comm->rank != 0, 0, end);
     std::optional<StepControl> control;
     if (time.has("tolerance")) control.emplace(system_, time.number("tolerance") * system_.length, end, step);
+    if (!control && goes_by_itself(system_, redundancy_)) integrator_->keep_time(system_);
+    if (talk_) fmt::print(stderr, "integrator: {}\n", integrator_->name());
     std::vector<Event> events = load_events(system_, end, step);
     events.push_back({end, false});
     double from = 0;

@@ -70,6 +70,8 @@ class SpringLaw {
   /// Accept e and its rate as the state to go on from (unwrapped angles, speed of approach).
   virtual void commit(const Values& /*e*/, const Values& /*rate*/) {}
   virtual bool needs_rate() const { return false; }
+  /// Whether it is a potential and nothing else.
+  virtual bool conserves() const { return false; }
 };
 
 /// Rows of a joint that are functions g_r(e) of its measures.

@@ -86,6 +86,7 @@ struct Linear final : SpringLaw {
       out.dissipated += c[i] * rate * rate * step.h;
     }
   }
+  bool conserves() const override { return c == Values{}; }
 };
 
 }  // namespace
