@@ -1,8 +1,8 @@
-# The scene o17.toml with the velocities of the IVP test set at the start: those of the rigid rod and of two sine modes, section by section.
-#   awk -f o17-start.awk o17.toml > scene.toml
+# A scene of o17-*.toml with the velocities of the IVP test set at the start: those of the rigid rod and of two sine modes, section by section.
+#   awk -v n=20 -f o17-start.awk o17-solid.toml > scene.toml, with n cells along the rod
 { print }
 END {
-  pi = 3.14159265358979; r = 0.15; l = 0.30; rate = 150; q1 = 0.444896105; q2 = 0.00463434311; n = 20
+  pi = 3.14159265358979; r = 0.15; l = 0.30; rate = 150; q1 = 0.444896105; q2 = 0.00463434311
   for (i = 0; i <= n; ++i) {
     s = i/n
     v = rate*r*(1 - s) + q1*sin(pi*s) + q2*sin(2*pi*s)
