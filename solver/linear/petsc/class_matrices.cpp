@@ -7,6 +7,10 @@
 
 extern "C" void dsyevr_(const char*, const char*, const char*, const int*, double*, const int*, const double*, const double*, const int*,
                         const int*, const double*, int*, double*, double*, const int*, int*, double*, const int*, int*, const int*, int*);
+extern "C" void dsyrk_(const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*, double*,
+                       const int*);
+extern "C" void dpotrf_(const char*, const int*, double*, const int*, int*);
+extern "C" void dpotrs_(const char*, const int*, const int*, const double*, const int*, double*, const int*, int*);
 
 namespace hilo::petsc {
 namespace {
@@ -62,6 +66,34 @@ MatrixXd stiff_jumps(const MatrixXd& A_inverse, MatrixXd B_inverse, const Matrix
   qr.setThreshold(1e-6);
   return qr.householderQ() * MatrixXd::Identity(n, qr.rank());
 }
+
+/// M M^T, by the BLAS, whose products are several times as fast as Eigen's without wide vectors.
+MatrixXd gram(const MatrixXd& M) {
+  const int n = static_cast<int>(M.rows()), m = static_cast<int>(M.cols());
+  const double one = 1, zero = 0;
+  MatrixXd G = MatrixXd::Zero(n, n);
+  if (n > 0 && m > 0) dsyrk_("L", "N", &n, &m, &one, M.data(), &n, &zero, G.data(), &n);
+  G.triangularView<Eigen::StrictlyUpper>() = G.transpose();
+  return G;
+}
+
+/// A symmetric positive definite matrix, factored.
+class Positive {
+ public:
+  explicit Positive(MatrixXd A) : L_(std::move(A)), n_(static_cast<int>(L_.rows())) { dpotrf_("L", &n_, L_.data(), &n_, &info_); }
+  bool good() const { return info_ == 0; }
+  /// A^-1 X
+  MatrixXd solve(MatrixXd X) const {
+    const int columns = static_cast<int>(X.cols());
+    int info = 0;
+    dpotrs_("L", &n_, &columns, L_.data(), &n_, X.data(), &n_, &info);
+    return X;
+  }
+
+ private:
+  MatrixXd L_;
+  int n_, info_ = 0;
+};
 
 std::vector<int> unknowns_of(const InterfaceClass& c, const SubdomainFactor& factor) {
   std::vector<int> unknowns;
@@ -145,7 +177,7 @@ bool find_class_matrices(const Interface& interface, const SubdomainFactor& fact
   for (size_t k = 0; k < n; ++k) {
     if (classes[k].blocks.size() > largest_class) continue;
     const MatrixXd rows = factor.schur_rows(classes[k].piece, unknowns_of(classes[k], factor));
-    own[k] = rows * rows.transpose() - regular[k] * classes[k].q * classes[k].q.transpose();
+    own[k] = gram(rows) - regular[k] * classes[k].q * classes[k].q.transpose();
     for_other_ranks(classes[k], [&](int r) { put(send[r], own[k]); });
   }
   if (more_constraints)
@@ -181,8 +213,8 @@ bool find_class_matrices(const Interface& interface, const SubdomainFactor& fact
       at += here;
     }
     if (formed) out.more[k] = stiff_jumps(A_inverse, B_inverse, c.q), mine += static_cast<int>(out.more[k].cols());
-    const Eigen::LLT<MatrixXd> total(all);
-    good = good && total.info() == Eigen::Success;
+    const Positive total(std::move(all));
+    good = good && total.good();
     for (size_t i = k; good && i < next; ++i) out.weight[i] = total.solve(own[i]);
   }
   if (!more_constraints) return good;
