@@ -89,6 +89,11 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     }
     report.converged = true;
   };
+  // a correction far below the tolerance, and a residual within ten of it: what is left is what rounded positions make stiff cells feel,
+  // and another solve would only draw it anew
+  const auto is_rounding = [&] {
+    return !solver.repeats_cheaply() && report.correction <= 1e-2 * options.tolerance && report.residual <= 10 * options.tolerance;
+  };
   double previous = 1e300;
   bool near = false;  // the next residual is likely to be small enough: look at it before building a tangent
   for (int it = 0;; ++it) {
@@ -99,7 +104,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       const auto worth = [&] {
         return solver.repeats_cheaply()
                    ? report.residual > 1e-2 * options.tolerance
-                   : report.residual > options.tolerance &&
+                   : report.residual > options.tolerance && !is_rounding() &&
                          report.residual < std::max(1e3 * options.tolerance, std::sqrt(10 * options.tolerance * last_residual));
       };
       for (int chord = 0; chord < 4 && worth(); ++chord) {
@@ -113,7 +118,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
         last_residual = residual;
         if (!(report.residual < 0.1 * residual)) break;
       }
-      if (report.residual <= options.tolerance) {
+      if (report.residual <= options.tolerance || is_rounding()) {
         polish();
         return report;
       }

@@ -18,8 +18,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Blocks of a class up to which it gets a dense matrix as weight (15 MB).
-constexpr size_t largest_class = 450;
+/// Blocks of a class up to which it gets a dense matrix as weight (26 MB).
+constexpr size_t largest_class = 600;
 /// Unknowns of a piece's interface up to which its inverse is formed (200 MB).
 constexpr int largest_interface = 5000;
 /// Jumps whose energy weighing may raise by more become constraints.
