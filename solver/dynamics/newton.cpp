@@ -89,10 +89,11 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     }
     report.converged = true;
   };
-  // a correction far below the tolerance, and a residual within ten of it: what is left is what rounded positions make stiff cells feel,
-  // and another solve would only draw it anew
+  // A correction far below the tolerance, one to come that is nothing to the scene, and a residual within ten of the tolerance: what is
+  // left is what rounded positions make stiff cells feel, and another solve would only draw it anew.
   const auto is_rounding = [&] {
-    return !solver.repeats_cheaply() && report.correction <= 1e-2 * options.tolerance && report.residual <= 10 * options.tolerance;
+    return !solver.repeats_cheaply() && report.correction <= 1e-2 * options.tolerance &&
+           report.correction * report.residual <= 1e-13 * last_residual && report.residual <= 10 * options.tolerance;
   };
   double previous = 1e300;
   bool near = false;  // the next residual is likely to be small enough: look at it before building a tangent
