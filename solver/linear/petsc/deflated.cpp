@@ -28,7 +28,7 @@ class Deflated final : public FlexibleInverse {
     const auto n = R_.rows(), m = R_.cols();
     if (!v_.exists()) v_ = Vector(static_cast<PetscInt>(n)), w_ = Vector(static_cast<PetscInt>(n));
     FR_.resize(n, m), FtR_.resize(n, m);
-    for (Eigen::Index k = 0; k < m; ++k) {
+    for (Eigen::Index k = 0; k < m; ++k) {  // of all parts at once: F does not join them
       {
         const Values v(v_);
         std::copy(R_.col(k).data(), R_.col(k).data() + n, v.data());
@@ -38,7 +38,9 @@ class Deflated final : public FlexibleInverse {
       check(MatMultTranspose(F_.mat(), v_, w_));
       take(FtR_.col(k));
     }
-    MatrixXd E = R_.transpose() * FR_;
+    MatrixXd E = MatrixXd::Zero(6 * n_parts_, 6 * n_parts_);
+    for (const Run& r : runs_)
+      E.block<6, 6>(6 * r.part, 6 * r.part) += R_.middleRows(r.from, r.n).transpose() * FR_.middleRows(r.from, r.n);
     sum(E.data(), static_cast<int>(E.size()));
     scale_ = E.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     E = (scale_.asDiagonal() * E * scale_.asDiagonal()).eval();
@@ -48,11 +50,11 @@ class Deflated final : public FlexibleInverse {
   }
 
   void apply(Eigen::Ref<MatrixXd> X) override {
-    MatrixXd c = solve(R_.transpose() * X);
-    X -= FR_ * c;
+    MatrixXd c = solve(along(R_, X));
+    add(FR_, -c, X);
     inner_->apply(X);
-    c -= solve(FtR_.transpose() * X);
-    X += R_ * c;
+    c -= solve(along(FtR_, X));
+    add(R_, c, X);
   }
 
   bool strengthen(int iterations, bool failed) override { return inner_->strengthen(iterations, failed); }
@@ -70,7 +72,12 @@ class Deflated final : public FlexibleInverse {
     int n_parts = 0;
     for (const int p : part) n_parts = std::max(n_parts, p + 1);
     MPI_Allreduce(MPI_IN_PLACE, &n_parts, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
-    R_ = MatrixXd::Zero(3 * n, 6 * n_parts);
+    n_parts_ = n_parts;
+    R_ = MatrixXd::Zero(3 * n, 6);
+    for (int i = 0; i < n; ++i) {
+      if (runs_.empty() || runs_.back().part != part[i]) runs_.push_back({part[i], 3 * i, 0});
+      runs_.back().n += 3;
+    }
     MatrixXd centre = MatrixXd::Zero(4, n_parts);
     for (int i = 0; i < n; ++i) centre.col(part[i]) += Eigen::Vector4d(X[3 * i], X[3 * i + 1], X[3 * i + 2], 1);
     sum(centre.data(), static_cast<int>(centre.size()));
@@ -81,11 +88,20 @@ class Deflated final : public FlexibleInverse {
     for (int i = 0; i < n; ++i) radius[part[i]] = std::max(radius[part[i]], arm(i).norm());
     MPI_Allreduce(MPI_IN_PLACE, radius.data(), n_parts, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
     for (int i = 0; i < n; ++i) {
-      R_.block(3 * i, 6 * part[i], 3, 3).setIdentity();
+      R_.block<3, 3>(3 * i, 0).setIdentity();
       if (!(radius[part[i]] > 0)) continue;
       const Eigen::Vector3d r = arm(i) / radius[part[i]];
-      R_.block(3 * i, 6 * part[i] + 3, 3, 3) << 0, r[2], -r[1], -r[2], 0, r[0], r[1], -r[0], 0;
+      R_.block<3, 3>(3 * i, 3) << 0, r[2], -r[1], -r[2], 0, r[0], r[1], -r[0], 0;
     }
+  }
+  /// The sums of M^T X over each part, this rank's share.
+  MatrixXd along(const MatrixXd& M, const Eigen::Ref<MatrixXd>& X) const {
+    MatrixXd c = MatrixXd::Zero(6 * n_parts_, X.cols());
+    for (const Run& r : runs_) c.middleRows<6>(6 * r.part).noalias() += M.middleRows(r.from, r.n).transpose() * X.middleRows(r.from, r.n);
+    return c;
+  }
+  void add(const MatrixXd& M, const MatrixXd& c, Eigen::Ref<MatrixXd> X) const {
+    for (const Run& r : runs_) X.middleRows(r.from, r.n).noalias() += M.middleRows(r.from, r.n) * c.middleRows<6>(6 * r.part);
   }
   template <class Column>
   void take(Column&& to) {
@@ -103,7 +119,13 @@ class Deflated final : public FlexibleInverse {
 
   std::unique_ptr<FlexibleInverse> inner_;
   const FlexibleMatrix& F_;
-  MatrixXd R_, FR_, FtR_;  // (owned unknowns x 6 per part)
+  struct Run {  // owned unknowns of one part that follow each other
+    int part;
+    Eigen::Index from, n;
+  };
+  std::vector<Run> runs_;
+  int n_parts_ = 0;
+  MatrixXd R_, FR_, FtR_;  // (owned unknowns x 6): each of the motions of its part
   VectorXd scale_;
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> E_;
   Vector v_, w_;
