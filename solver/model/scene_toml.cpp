@@ -46,12 +46,28 @@ std::string_view trim(std::string_view s) {
   return first == s.npos ? "" : s.substr(first, last - first + 1);
 }
 
+/// Numbers as people type them, as TOML wants them: .5 becomes 0.5, and 1. becomes 1.0.
+std::string with_all_digits(std::string_view value) {
+  const auto is_digit = [&](size_t i) { return i < value.size() && value[i] >= '0' && value[i] <= '9'; };
+  std::string out;
+  char quote = 0;
+  for (size_t i = 0; i < value.size(); ++i) {
+    const char c = value[i];
+    if (quote ? c == quote : c == '"' || c == '\'') quote = quote ? 0 : c;
+    const bool point = c == '.' && !quote, before = i > 0 && is_digit(i - 1), after = is_digit(i + 1);
+    if (point && !before && after) out += '0';
+    out += c;
+    if (point && before && !after) out += '0';
+  }
+  return out;
+}
+
 /// The right side of an override as a one-key table; a bare word becomes a text.
 toml::table parse_right_side(std::string_view value, const std::string& where) {
   if (std::any_of(value.begin(), value.end(), [](unsigned char c) { return c < 32 || c == 127; }))
     throw Error(where, "the value holds a control character", "", Exit::usage);
   try {
-    auto t = toml::parse(fmt::format("x = {}", value), where);
+    auto t = toml::parse(fmt::format("x = {}", with_all_digits(value)), where);
     if (t.size() == 1) return t;
   } catch (const toml::parse_error& e) {
     if (value.empty() || std::string_view("[{\"'").find(value[0]) != std::string_view::npos)

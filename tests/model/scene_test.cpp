@@ -358,6 +358,16 @@ TEST_F(Override, ReplacesAddsAndCreates) {
   EXPECT_EQ(s.entries("joint")[0].where("axis"), "--set joint.trunnion.axis=[1, 0, 0]");
 }
 
+TEST_F(Override, TakesNumbersAsPeopleTypeThem) {
+  const std::pair<const char*, double> typed[] = {{".001", 0.001}, {"1.", 1},        {"+2", 2},    {"1E3", 1000},
+                                                  {"+.5", 0.5},    {"2.e-3", 0.002}, {"3.5", 3.5}, {"1e-3", 0.001}};
+  for (const auto& [text, value] : typed)
+    EXPECT_EQ(load("", {std::string("time.step=") + text}).table("time").number("step"), value) << text;
+  EXPECT_EQ(load(hinge, {"joint.trunnion.axis=[-.5, 1., +2.]"}).entries("joint")[0].vector3("axis"), Vec3(-0.5, 1, 2));
+  EXPECT_EQ(load("", {"scene.title=of 2. and .5"}).table("scene").text("title"), "of 2. and .5") << "a text stays as it is";
+  EXPECT_EQ(load("", {"scene.title='.5'"}).table("scene").text("title"), ".5");
+}
+
 TEST_F(Override, LeavesATextThatGivesTheSameScene) {
   const std::string text = hinge + pull + "[region.b]\ndamping = 0.1\n[region.\"*\"]\ndamping = 0.2\n[region.\"a.c\"]\ndamping = 0.3\n";
   const Scene once = load(text, {"joint.trunnion.at=[0.1, 1e-7, 3]", "region.\"a.c\".mass=7"});
