@@ -55,6 +55,8 @@ class StageBlock final : public KktSolver {
   std::vector<double> dense_;
 };
 
+constexpr int most_excess = 5;
+
 class Radau final : public Integrator {
  public:
   Radau() {
@@ -70,69 +72,148 @@ class Radau final : public Integrator {
   double own_time() const override { return 1; }
 
   NewtonReport solve(const StepTools& tools, const State& s, double h, Predictor predictor) override {
-    const System& system = tools.system;
+    const System& system = *(system_ = &tools.system);
     if (!whole_) couple(system);
-    t_ = s.t, h_ = h, v0_ = s.v;
-    std::vector<double> lambda[3];
-    u_.clear(), u_.reserve(3);
-    for (int i = 0; i < 3; ++i) {
-      Config guess = predict(system, s, c_[i] * h, predictor, a_[2]);
-      system.prescribe(guess, t_ + c_[i] * h);
-      u_.emplace_back(system, s.q, guess);
-      lambda[i] = s.lambda;
-    }
-    NewtonReport report;
-    const int n = 3 * system.n_blocks(), first = 3 * system.first_joint_block();
-    Residual r[3];
-    std::vector<double> b(3 * n), z(3 * n);
-    for (;;) {
-      whole_->zero();
-      const double start = wall_clock();
-      place();
-      report.residual = 0;
-      for (int i = 0; i < 3; ++i) {
-        StageBlock block(*whole_, system, i, i, 1, r[i].sigma);
-        system.evaluate(stages_[i], lambda[i], r[i], &block);
-        system.mask_fixed(r[i].r);
-        report.residual = std::max(report.residual, relative_residual(system, r[i]));
-        report.least_det = std::min(report.least_det, r[i].least_det);
-        for (int k = 0; k < n; ++k) b[i * n + k] = -r[i].r[k];
-      }
-      if (!std::isfinite(report.residual)) return report.reason = "the residual is not finite", report;
-      if (report.residual <= tools.newton.tolerance && report.iterations > 0) break;
-      if (report.iterations == tools.newton.max_iterations) return report.reason = "no convergence within the iterations allowed", report;
-      add_coupling(system, r);
-      const double assembled = wall_clock();
-      phases().assembly.seconds += assembled - start, phases().evaluations += 9, phases().tangents += 9;
-      const SolveReport solved = whole_->solve(b, z);
-      phases().solve.seconds += wall_clock() - assembled, ++phases().solves;
-      ++report.iterations;
-      if (!solved.ok) return report.reason = whole_->name() + ": " + solved.message, report;
-      report.correction = 0;
-      for (int i = 0; i < 3; ++i) {
-        const std::span<const double> zi(z.data() + i * n, n);
-        report.correction = std::max(report.correction, relative_correction(system, zi));
-        if (!(report.correction < 1e3)) return report.reason = "the correction is not finite or leaves the scene", report;
-        u_[i].move(system, zi);
-        for (size_t k = 0; k < lambda[i].size(); ++k) lambda[i][k] += r[i].sigma * zi[first + k];
-      }
-      if (report.correction <= tools.newton.tolerance * 1e-2) break;
-    }
-    report.converged = true;
-    for (Unknown& u : u_) restore_rotations(system, u.q);
-    place();
     taken_.resize(3);
+    if (tried_) kept_ = false;  // the step before was refused: joint rows may have been chosen anew
+    tried_ = true;
+    t_ = s.t, h_ = h, v0_ = s.v, predictor_ = predictor;
+    guess(system, s);
+    const NewtonReport report = iterate(system, tools.newton);
+    if (!report.converged) return kept_ = false, report;
+    for (int i = 0; i < 3; ++i) {
+      const std::vector<double> reached = u_[i].increments(system);
+      for (size_t k = 0; k < reached.size(); ++k) missed_[i][k] = reached[k] - missed_[i][k];
+      restore_rotations(system, u_[i].q);
+    }
+    place();
     for (int i = 0; i < 3; ++i) {
       combine(from_[i], {{1, &u_[i].q}, {-h_ * A_(2, i), &v_[i]}});  // quadrature of the work: weight times power at the stage
-      taken_[i] = {stages_[i], lambda[i]};
+      taken_[i].stage = stages_[i], taken_[i].lambda = lambda_[i];
       taken_[i].stage.work_from = &from_[i];
     }
     return report;
   }
 
-  void accept(State& s) override { s.q = u_[2].q, s.v = v_[2], s.lambda = taken_[2].lambda, s.t = t_ + h_; }
+  void accept(State& s) override {
+    tried_ = false;
+    s.q = u_[2].q, s.v = v_[2], s.lambda = taken_[2].lambda, s.t = t_ + h_;
+    for (int i = 0; i < 3; ++i)
+      if (predictor_ == Predictor::rigid_rotation)
+        past_[i].accept(*system_, h_, missed_[i], lambda_[i]);
+      else
+        past_[i].clear();
+  }
+
+  void restart() override {
+    for (Extrapolation& p : past_) p.clear();
+    kept_ = false;
+  }
 
  private:
+  void guess(const System& system, const State& s) {
+    u_.clear();
+    for (int i = 0; i < 3; ++i) {
+      Config q = predict(system, s, c_[i] * h_, predictor_, {});  // straight: `past_` bends it
+      system.prescribe(q, t_ + c_[i] * h_);
+      u_.emplace_back(system, s.q, q);
+      missed_[i] = u_[i].increments(system);
+      lambda_[i] = s.lambda;
+      if (predictor_ != Predictor::rigid_rotation) continue;
+      if (const auto z = past_[i].increments(system, h_); !z.empty()) u_[i].shift(system, z);
+      lambda_[i] = past_[i].multipliers(lambda_[i]);
+    }
+  }
+
+  /// Residuals of the stages, and the matrix of all of them where the one at hand serves no more; the largest relative residual.
+  void evaluate(const System& system, NewtonReport& report) {
+    const Timed timed(phases().assembly);
+    place();
+    if (!kept_) whole_->zero();
+    report.residual = 0;
+    for (int i = 0; i < 3; ++i) {
+      StageBlock block(*whole_, system, i, i, 1, r_[i].sigma);
+      system.evaluate(stages_[i], lambda_[i], r_[i], kept_ ? nullptr : &block);
+      system.mask_fixed(r_[i].r);
+      const double x = relative_residual(system, r_[i]);
+      if (!(x <= report.residual)) report.residual = x;  // keeps a NaN
+      report.least_det = std::min(report.least_det, r_[i].least_det);
+    }
+    phases().evaluations += 3;
+    if (kept_) return;
+    add_coupling(system);
+    phases().evaluations += 6, phases().tangents += 9;
+    for (int i = 0; i < 3; ++i) kept_sigma_[i] = r_[i].sigma;
+  }
+
+  /// Simplified Newton [hairer-wanner-1996, IV.8]: the matrix stays while corrections with it fall fast.
+  NewtonReport iterate(const System& system, const NewtonOptions& options) {
+    NewtonReport report;
+    const int n = 3 * system.n_blocks(), first = 3 * system.first_joint_block();
+    const double enough = 1e-4 * options.tolerance;  // of positions over the scene's length
+    b_.resize(3 * n), z_.resize(3 * n);
+    if (kept_ && (excess_ >= most_excess || h_ > 2 * kept_h_ || kept_h_ > 2 * h_)) kept_ = false;
+    const bool lagged = kept_;
+    for (double last = 0;;) {
+      const bool fresh = !kept_;
+      evaluate(system, report);
+      if (!std::isfinite(report.residual)) return report.reason = "the residual is not finite", report;
+      if (report.residual <= 1e-5 * options.tolerance && report.iterations > 0) break;
+      if (report.iterations == options.max_iterations) return report.reason = "no convergence within the iterations allowed", report;
+      if (fresh) kept_ = true, kept_h_ = h_, excess_ = 0;
+      // inertia and rows have the scale sigma, so that the matrix of another step length serves
+      for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < n; ++k) b_[i * n + k] = -r_[i].r[k] * (kept_sigma_[i] / r_[i].sigma);
+      const double start = wall_clock();
+      const SolveReport solved = whole_->solve(b_, z_);
+      phases().solve.seconds += wall_clock() - start, ++phases().solves;
+      ++report.iterations;
+      if (!solved.ok) {
+        if (!fresh) {
+          kept_ = false;
+          continue;
+        }
+        return report.reason = whole_->name() + ": " + solved.message, report;
+      }
+      const double correction = largest_correction(system);
+      double rate = fresh ? 1e-3 : std::min(0.3, 2 * rate_);  // of the first correction
+      if (last > 0) rate = correction / last;
+      if (!fresh && !(rate < 1) && correction > 1e-2 * options.tolerance) {
+        kept_ = false;
+        continue;
+      }
+      report.correction = correction;
+      if (!(report.correction < 1e3)) return report.reason = "the correction is not finite or leaves the scene", report;
+      for (int i = 0; i < 3; ++i) {
+        const std::span<const double> zi(z_.data() + i * n, n);
+        u_[i].move(system, zi);
+        for (size_t k = 0; k < lambda_[i].size(); ++k) lambda_[i][k] += r_[i].sigma * zi[first + k];
+      }
+      if (!fresh && last > 0 && correction > 1e-14) rate_ = rate;
+      const double left = rate < 1 ? rate / (1 - rate) : 1e300;
+      const bool settled = correction <= 1e-2 * options.tolerance;
+      if (getenv("RT")) fprintf(stderr, "   it %d %s res %.1e corr %.1e rate %.1e\n", report.iterations, fresh ? "fresh" : "kept", report.residual, correction, rate);
+      if (left * correction <= enough && (settled || left * report.residual <= options.tolerance)) break;
+      if (settled && rate > 0.3) break;  // round-off
+      // more of the like than a new matrix costs?
+      if (last > 0 && std::log(left * correction / enough) > -4 * std::log(rate)) kept_ = false;
+      last = kept_ ? correction : 0;
+    }
+    if (lagged && kept_) excess_ += std::max(0, report.iterations - 2);
+    report.converged = true;
+    return report;
+  }
+
+  double largest_correction(const System& system) const {
+    const size_t n = z_.size() / 3;
+    double worst = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double x = relative_correction(system, {z_.data() + i * n, n});
+      if (!(x <= worst)) worst = x;
+    }
+    return worst;
+  }
+
   /// One system of three times the unknowns, each clique covering its blocks of all stages.
   void couple(const System& system) {
     if (system.comm->size > 1) throw Error("", "radau is serial", "run it without mpirun, or choose another time.integrator");
@@ -149,6 +230,7 @@ class Radau final : public Integrator {
     map_.n_owned = map_.n_global = 3 * n;
     whole_ = make_light_solver();
     whole_->structure(cliques_, map_);
+    u_.reserve(3);
   }
 
   /// Velocities, accelerations and stages of u_.
@@ -166,7 +248,7 @@ class Radau final : public Integrator {
     }
   }
 
-  void add_coupling(const System& system, const Residual* r) {
+  void add_coupling(const System& system) {
     Config zero;
     combine(zero, {{0, &v0_}});
     const std::vector<double> none(3 * system.n_joint_blocks(), 0.0);
@@ -179,13 +261,21 @@ class Radau final : public Integrator {
         s.a = &zero, s.mass_slope = (W_ * W_)(i, j) / (h_ * h_);
         s.v = &v_[i], s.alpha_slope = W_(i, j) / h_;
         // rows of velocities are over the slope, and have the scale, of their own stage
-        StageBlock block(*whole_, system, i, j, r[i].sigma * W_(i, j) / W_(i, i), unused.sigma);
+        StageBlock block(*whole_, system, i, j, r_[i].sigma * W_(i, j) / W_(i, i), unused.sigma);
         system.evaluate(s, none, unused, &block);
       }
   }
 
   Eigen::Matrix3d A_, W_;
   double c_[3], t_ = 0, h_ = 0;
+  const System* system_ = nullptr;
+  Predictor predictor_ = Predictor::hold;
+  Extrapolation past_[3];
+  std::vector<double> missed_[3], lambda_[3], b_, z_;
+  Residual r_[3];
+  bool tried_ = false, kept_ = false;  // the step solved last is not accepted yet; the matrix at hand serves
+  double kept_h_ = 0, kept_sigma_[3]{}, rate_ = 0;
+  int excess_ = 0;
   std::unique_ptr<KktSolver> whole_;
   Cliques cliques_;
   BlockMap map_;
