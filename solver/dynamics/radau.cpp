@@ -150,17 +150,17 @@ class Radau final : public Integrator {
   NewtonReport iterate(const System& system, const NewtonOptions& options) {
     NewtonReport report;
     const int n = 3 * system.n_blocks(), first = 3 * system.first_joint_block();
-    const double enough = 1e-4 * options.tolerance;  // of positions over the scene's length
     b_.resize(3 * n), z_.resize(3 * n);
     if (kept_ && (excess_ >= most_excess || h_ > 2 * kept_h_ || kept_h_ > 2 * h_)) kept_ = false;
     const bool lagged = kept_;
-    for (double last = 0;;) {
+    bool built = false;
+    for (double last = 0, last_residual = 0;;) {
       const bool fresh = !kept_;
       evaluate(system, report);
       if (!std::isfinite(report.residual)) return report.reason = "the residual is not finite", report;
       if (report.residual <= 1e-5 * options.tolerance && report.iterations > 0) break;
       if (report.iterations == options.max_iterations) return report.reason = "no convergence within the iterations allowed", report;
-      if (fresh) kept_ = true, kept_h_ = h_, excess_ = 0;
+      if (fresh) kept_ = built = true, kept_h_ = h_, rate_ = 1, excess_ = 0;
       // inertia and rows have the scale sigma, so that the matrix of another step length serves
       for (int i = 0; i < 3; ++i)
         for (int k = 0; k < n; ++k) b_[i * n + k] = -r_[i].r[k] * (kept_sigma_[i] / r_[i].sigma);
@@ -176,9 +176,9 @@ class Radau final : public Integrator {
         return report.reason = whole_->name() + ": " + solved.message, report;
       }
       const double correction = largest_correction(system);
-      double rate = fresh ? 1e-3 : std::min(0.3, 2 * rate_);  // of the first correction
-      if (last > 0) rate = correction / last;
-      if (!fresh && !(rate < 1) && correction > 1e-2 * options.tolerance) {
+      double rate = fresh ? 1e-3 : std::clamp(2 * rate_, 0.1, 1.);          // of the first correction
+      if (last > 0) rate = correction > 2e-15 ? correction / last : report.residual / last_residual;
+      if (!fresh && last > 0 && !(rate < 1) && correction > 1e-2 * options.tolerance) {
         kept_ = false;
         continue;
       }
@@ -189,19 +189,29 @@ class Radau final : public Integrator {
         u_[i].move(system, zi);
         for (size_t k = 0; k < lambda_[i].size(); ++k) lambda_[i][k] += r_[i].sigma * zi[first + k];
       }
-      if (!fresh && last > 0 && correction > 1e-14) rate_ = rate;
-      const double left = rate < 1 ? rate / (1 - rate) : 1e300;
+      if (!fresh && last > 0) rate_ = rate;
+      const double enough = sufficient(system, options.tolerance);
+      const double left = rate < 1 ? rate / (1 - rate) : 1e300;  // of what remains, per what was
       const bool settled = correction <= 1e-2 * options.tolerance;
       if (getenv("RT")) fprintf(stderr, "   it %d %s res %.1e corr %.1e rate %.1e\n", report.iterations, fresh ? "fresh" : "kept", report.residual, correction, rate);
-      if (left * correction <= enough && (settled || left * report.residual <= options.tolerance)) break;
-      if (settled && rate > 0.3) break;  // round-off
+      if (left * correction <= enough && left * report.residual <= 1e-2 * options.tolerance) break;
+      if (settled && built && rate > 0.3) break;  // round-off
       // more of the like than a new matrix costs?
-      if (last > 0 && std::log(left * correction / enough) > -4 * std::log(rate)) kept_ = false;
-      last = kept_ ? correction : 0;
+      if (last > 0 && (rate > 0.3 || std::log(left * correction / enough) > -4 * std::log(rate))) kept_ = false;
+      last = kept_ ? correction : 0, last_residual = report.residual;
     }
     if (lagged && kept_) excess_ += std::max(0, report.iterations - 2);
     report.converged = true;
     return report;
+  }
+
+  /// Correction of positions, over the scene's length, that counts no more: below round-off of accelerations to 1e-8 (at the usual
+  /// tolerance), to which a position error of (W^2)_ii/h^2 times itself adds.
+  double sufficient(const System& system, double tolerance) const {
+    double force = 0, inertia = 0;
+    for (const Residual& r : r_)
+      force = std::max(force, r.force_scale), inertia = std::max(inertia, r.sigma * static_cast<double>(system.map.n_global));
+    return std::max(2e-16, tolerance * std::min(1e-5, 10 * force / (inertia * system.length)));
   }
 
   double largest_correction(const System& system) const {
