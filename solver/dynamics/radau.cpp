@@ -16,7 +16,7 @@ namespace {
 /// their own stage.
 class StageBlock final : public KktSolver {
  public:
-  StageBlock(KktSolver& whole, const System& system, int row, int column, double share, const double& scale)
+  StageBlock(SerialKktSolver& whole, const System& system, int row, int column, double share, const double& scale)
       : whole_(whole), system_(system), row_(row), column_(column), share_(share), scale_(scale) {
     for (const Connector& c : system.joints)
       for (int r = 0; r < 3 * ((c.n_rows() + 2) / 3); ++r)
@@ -26,16 +26,21 @@ class StageBlock final : public KktSolver {
   void zero() override {}
   void add(int clique, const double* K) override {
     const auto blocks = system_.cliques[clique];
-    const int n = static_cast<int>(blocks.size()), width = 9 * n, first_joint = system_.first_joint_block();
-    dense_.assign(static_cast<size_t>(width) * width, 0.0);
-    for (int i = 0; i < 3 * n; ++i)
-      for (int j = 0; j < 3 * n; ++j) {
-        const bool velocity = blocks[i / 3] >= first_joint && holds_velocity_[3 * (blocks[i / 3] - first_joint) + i % 3];
-        if (row_ == column_ || ((blocks[i / 3] < first_joint || velocity) && blocks[j / 3] < first_joint))
-          dense_[static_cast<size_t>(3 * n * row_ + i) * width + 3 * n * column_ + j] =
-              (row_ != column_ && velocity ? share_ / scale_ : 1) * K[i * 3 * n + j];
+    const int n = static_cast<int>(blocks.size()), width = 3 * n, first_joint = system_.first_joint_block();
+    const auto is_joint = [&](int i) { return blocks[i / 3] >= first_joint; };
+    if (row_ != column_ && is_joint(width - 1)) {
+      part_.assign(K, K + width * width);
+      for (int i = 0; i < width; ++i) {
+        const bool velocity = is_joint(i) && holds_velocity_[3 * (blocks[i / 3] - first_joint) + i % 3];
+        for (int j = 0; j < width; ++j)
+          if (is_joint(j) || (is_joint(i) && !velocity))
+            part_[i * width + j] = 0;
+          else if (velocity)
+            part_[i * width + j] *= share_ / scale_;
       }
-    whole_.add(clique, dense_.data());
+      K = part_.data();
+    }
+    whole_.add_part(clique, n * row_, n * column_, n, K);
   }
   void add_diagonal(int block, const double d[3]) override {
     if (row_ == column_) return whole_.add_diagonal(block + row_ * system_.n_blocks(), d);
@@ -46,13 +51,13 @@ class StageBlock final : public KktSolver {
   std::string name() const override { return "stage block"; }
 
  private:
-  KktSolver& whole_;
+  SerialKktSolver& whole_;
   const System& system_;
   int row_, column_;
   double share_;
   const double& scale_;
   std::vector<char> holds_velocity_;  // (3 x joint blocks)
-  std::vector<double> dense_;
+  std::vector<double> part_;
 };
 
 constexpr int most_excess = 5;
@@ -268,6 +273,7 @@ class Radau final : public Integrator {
         if (i == j) continue;
         Stage s = stage_at(u_[i].q, t_);
         s.end = &u_[j].q, s.slope = 0, s.chain = 1e-30;  // the mass alone
+        s.inertia_alone = true;
         s.a = &zero, s.mass_slope = (W_ * W_)(i, j) / (h_ * h_);
         s.v = &v_[i], s.alpha_slope = W_(i, j) / h_;
         // rows of velocities are over the slope, and have the scale, of their own stage
@@ -286,7 +292,7 @@ class Radau final : public Integrator {
   bool tried_ = false, kept_ = false;  // the step solved last is not accepted yet; the matrix at hand serves
   double kept_h_ = 0, kept_sigma_[3]{}, rate_ = 0;
   int excess_ = 0;
-  std::unique_ptr<KktSolver> whole_;
+  std::unique_ptr<SerialKktSolver> whole_;
   Cliques cliques_;
   BlockMap map_;
   std::vector<Unknown> u_;

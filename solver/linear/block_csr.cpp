@@ -71,6 +71,23 @@ void BlockCsr::add(int clique, const double* K) {
   }
 }
 
+void BlockCsr::add_part(int clique, int row, int column, int n, const double* K) {
+  const auto blocks = (*cliques_)[clique];
+  const int* position = position_.data() + clique_position_[clique] + static_cast<size_t>(row) * blocks.size() + column;
+  for (int i = 0; i < n; ++i, position += blocks.size()) {
+    if (blocks[row + i] < 0) continue;
+    const int length = 3 * (block_start_[blocks[row + i] + 1] - block_start_[blocks[row + i]]);
+    for (int j = 0; j < n; ++j) {
+      if (position[j] < 0) continue;
+      for (int r = 0; r < 3; ++r) {
+        double* to = values_.data() + position[j] + r * length;
+        const double* from = K + (3 * i + r) * 3 * n + 3 * j;
+        to[0] += from[0], to[1] += from[1], to[2] += from[2];
+      }
+    }
+  }
+}
+
 void BlockCsr::add_diagonal(int block, const double d[3]) {
   const int length = 3 * (block_start_[block + 1] - block_start_[block]);
   for (int r = 0; r < 3; ++r) values_[diagonal_[block] + r * length + r] += d[r];

@@ -13,6 +13,7 @@ class BlockCsr {
   void structure(const Cliques& cliques, int n_blocks);
   void zero();
   void add(int clique, const double* K);
+  void add_part(int clique, int row, int column, int n, const double* K);
   void add_diagonal(int block, const double d[3]);
 
   /// y := A x.

@@ -68,8 +68,14 @@ class KktSolver {
   virtual double bytes() const { return 0; }
 };
 
+class SerialKktSolver : public KktSolver {
+ public:
+  /// Add a part (3n x 3n, row major) of the matrix of a clique: rows from its block `row` on, columns from its block `column` on.
+  virtual void add_part(int clique, int row, int column, int n, const double* K) = 0;
+};
+
 /// Serial, starts in microseconds: "klu", "cholesky" or "umfpack" (linear/factors.hpp); "light" chooses by size.
-std::unique_ptr<KktSolver> make_light_solver(const std::string& kind = "light");
+std::unique_ptr<SerialKktSolver> make_light_solver(const std::string& kind = "light");
 /// PETSc: "direct" (MUMPS), "cg", "iterative", "bddc" or "feti-dp"; loaded when first asked for, since PETSc's start costs more than a
 /// small run. `subdomains`: into how many "bddc" and "feti-dp" divide the flexible part of each rank.
 std::unique_ptr<KktSolver> make_petsc_solver(const std::string& kind, double tolerance, int subdomains = 1);

@@ -18,7 +18,7 @@ constexpr int rigid_klu_below = 30000;  // where all of them are
 constexpr int dense_at_most = 1200;     // unknowns of bodies and multipliers beside a Cholesky factor
 constexpr int least_iterations = 10;    // that lagged factors are given
 
-class LightSolver final : public KktSolver {
+class LightSolver final : public SerialKktSolver {
  public:
   explicit LightSolver(std::string kind) : kind_(std::move(kind)) {}
 
@@ -44,6 +44,7 @@ class LightSolver final : public KktSolver {
 
   void zero() override { A_.zero(), factored_ = false; }
   void add(int clique, const double* K) override { A_.add(clique, K); }
+  void add_part(int clique, int row, int column, int n, const double* K) override { A_.add_part(clique, row, column, n, K); }
   void add_diagonal(int block, const double d[3]) override { A_.add_diagonal(block, d); }
   void sum_shared(std::span<double>) override {}
 
@@ -207,6 +208,6 @@ class LightSolver final : public KktSolver {
 
 }  // namespace
 
-std::unique_ptr<KktSolver> make_light_solver(const std::string& kind) { return std::make_unique<LightSolver>(kind); }
+std::unique_ptr<SerialKktSolver> make_light_solver(const std::string& kind) { return std::make_unique<LightSolver>(kind); }
 
 }  // namespace hilo

@@ -172,6 +172,7 @@ void System::add_connectors(Pass& p) const {
   for (size_t j = 0; j < joints.size(); ++j) {
     if (!owns_joint_[j]) continue;
     const Connector& c = joints[j];
+    if (s.inertia_alone && !c.velocity_rows) continue;
     gradient(c, *s.left, left);
     if (p.K)
       gradient(c, *s.end, right);
@@ -224,7 +225,7 @@ void System::add_connectors(Pass& p) const {
     if (slip) add_velocity_rows(c, s, *slip, lambda, left_rows, right_rows, K);
     add_clique(c, joint_clique_[j], K, (n + 2) / 3, left_rows, right_rows);
   }
-  for (size_t j = 0; j < springs.size(); ++j) {
+  for (size_t j = 0; j < springs.size() && !s.inertia_alone; ++j) {
     if (!owns_spring_[j]) continue;
     const Connector& c = springs[j];
     const int n = static_cast<int>(c.measures.size()), width = c.n_directions();

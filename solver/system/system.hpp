@@ -94,6 +94,7 @@ struct Stage {
   double t0 = 0, t1 = 0;              // loads: mean over [t0, t1], or value at t0 = t1
   double t_end = 0;                   // time of `end`: driven joints
   const Config* work_from = nullptr;  // start of the step for System::work; null: e0
+  bool inertia_alone = false;         // how accelerations, and rows of velocities, act on the equations of another stage
   double load_factor = 1;             // of gravity and of loads without a history, for static load steps
   bool conserving() const { return weight == 0.5 && e0 != e1; }
 };
