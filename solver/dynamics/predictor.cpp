@@ -42,10 +42,16 @@ Spin spin_of(const System& s, const State& state, const std::vector<int>& nodes)
 }  // namespace
 
 Config predict(const System& s, const State& state, double h, Predictor kind, const Config& a) {
-  Config q = state.q;
+  Config q;
+  predict(s, state, h, kind, a, q);
+  return q;
+}
+
+void predict(const System& s, const State& state, double h, Predictor kind, const Config& a, Config& q) {
+  q = state.q;
   const bool rigid = s.map.first_dense == 0;  // no flexible nodes, which would be left behind and strained
   const bool bent = rigid && a.c.size() == q.c.size() && kind == Predictor::rigid_rotation;
-  if (kind == Predictor::hold) return q;
+  if (kind == Predictor::hold) return;
   for (size_t i = 0; i < q.x.size(); ++i)
     if (s.node_block[i] >= 0) q.x[i] += h * state.v.x[i];
   for (size_t b = 0; b < q.c.size(); ++b) {
@@ -66,7 +72,6 @@ Config predict(const System& s, const State& state, double h, Predictor kind, co
       for (int n : nodes) q.x[n] += turn * (state.q.x[n] - spin.centre);
     }
   s.follow(q);
-  return q;
 }
 
 }  // namespace hilo

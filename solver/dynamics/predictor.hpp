@@ -9,5 +9,6 @@ namespace hilo {
 /// `a`, where it has values, is the acceleration of the step before: it bends the path of the bodies of a rigid scene.
 enum class Predictor { rigid_rotation, velocity, hold };
 Config predict(const System& system, const State& s, double h, Predictor kind, const Config& a);
+void predict(const System& system, const State& s, double h, Predictor kind, const Config& a, Config& q);
 
 }  // namespace hilo

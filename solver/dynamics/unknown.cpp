@@ -4,7 +4,9 @@
 
 namespace hilo {
 
-Unknown::Unknown(const System& system, const Config& start, const Config& guess) : q0(start), q(guess), turn(start.c.size(), Vec3::Zero()) {
+void Unknown::start(const System& system, const Config& from, const Config& guess) {
+  q0 = from, q = guess;
+  turn.assign(from.c.size(), Vec3::Zero());
   combine(dq, {{1, &q}, {-1, &q0}});
   for (size_t b = 0; b < turn.size(); ++b)
     if (system.body_block[b] >= 0) turn[b] = rotation_increment(q0.R[b], q.R[b]), turn_body(b);
@@ -43,13 +45,18 @@ void Unknown::shift(const System& system, std::span<const double> z) {
 }
 
 std::vector<double> Unknown::increments(const System& system) const {
-  std::vector<double> out(3 * static_cast<size_t>(system.first_joint_block()), 0.0);
+  std::vector<double> out;
+  increments(system, out);
+  return out;
+}
+
+void Unknown::increments(const System& system, std::vector<double>& out) const {
+  out.assign(3 * static_cast<size_t>(system.first_joint_block()), 0.0);
   const auto at = [&](int k) { return Eigen::Map<Vec3>(out.data() + 3 * k); };
   for (size_t i = 0; i < q.x.size(); ++i)
     if (const int k = system.node_block[i]; k >= 0) at(k) = dq.x[i];
   for (size_t b = 0; b < turn.size(); ++b)
     if (const int k = system.body_block[b]; k >= 0) at(k) = dq.c[b], at(k + 1) = turn[b];
-  return out;
 }
 
 }  // namespace hilo
