@@ -53,7 +53,7 @@ class Radau final : public Integrator {
   }
 
   void accept(State& s) override {
-    tried_ = false;
+    tried_ = false, a_end_ = a_[2];
     s.q = u_[2].q, s.v = v_[2], s.lambda = lambda_[2], s.t = t_ + h_;
     for (int i = 0; i < 3; ++i)
       if (predictor_ == Predictor::rigid_rotation)
@@ -64,7 +64,7 @@ class Radau final : public Integrator {
 
   void restart() override {
     for (Extrapolation& p : past_) p.clear();
-    kept_ = false;
+    kept_ = false, a_end_ = {};
   }
 
  private:
@@ -90,7 +90,7 @@ class Radau final : public Integrator {
 
   void guess(const System& system, const State& s) {
     for (int i = 0; i < 3; ++i) {
-      predict(system, s, c_[i] * h_, predictor_, {}, guess_);  // straight: `past_` bends it
+      predict(system, s, c_[i] * h_, predictor_, a_end_, guess_);
       system.prescribe(guess_, t_ + c_[i] * h_);
       u_[i].start(system, s.q, guess_);
       u_[i].increments(system, missed_[i]);
@@ -107,6 +107,7 @@ class Radau final : public Integrator {
     if (h_ > 2 * kept_h_ || kept_h_ > 2 * h_) kept_ = false;
     const bool lagged = kept_;
     bool built = false;                                      // the matrix belongs to this step
+    bool full = false;                                       // Newton: the step is too far from linear for less
     double last = 0, last_residual = 0, now = wall_clock();  // of the iteration before with the same matrix
     const auto lap = [&](Phase& phase) {
       const double then = now;
@@ -131,8 +132,8 @@ class Radau final : public Integrator {
       double rate = fresh ? 1e-3 : std::clamp(2 * rate_, 0.1, 1.0);
       if (last > 0) rate = correction > 2e-15 ? correction / last : report.residual / last_residual;
       const bool settled = correction <= 1e-2 * options.tolerance;
-      if (!fresh && !settled && !(last > 0 ? rate < 1 : correction < 1e3)) {
-        kept_ = false, last = 0;  // it leads astray
+      if (!fresh && !settled && !(correction < 1e-3 && (last == 0 || rate < 1))) {
+        kept_ = false, full = built, last = 0;  // it leads astray
         continue;
       }
       report.correction = correction;
@@ -145,9 +146,11 @@ class Radau final : public Integrator {
       if (!fresh && last > 0) rate_ = rate;
       const double left = rate < 1 ? rate / (1 - rate) : 1e300, enough = sufficient(system, options.tolerance);
       if (left * correction <= enough && left * report.residual <= 1e-2 * options.tolerance) break;
-      if (settled && built && rate > 0.3) break;  // round-off
-      // a new matrix costs about four iterations
-      if (last > 0 && (rate > 0.3 || std::log(left * correction / enough) > -4 * std::log(rate))) kept_ = false;
+      if (full ? settled : built && rate > 0.3 && (settled || report.residual <= options.tolerance)) break;  // round-off
+      // a new matrix costs about five iterations
+      if (last > 0 && (rate > 0.3 || std::log(left * correction / enough) > -5 * std::log(rate))) kept_ = false;
+      if (built && last > 0 && rate > 0.3) full = true;
+      if (full || correction > 1e-3) kept_ = false;
       last = kept_ ? correction : 0, last_residual = report.residual;
     }
     if (lagged && kept_ && (excess_ += std::max(0, report.iterations - 2)) >= 2) kept_ = false;
@@ -260,7 +263,7 @@ class Radau final : public Integrator {
   Extrapolation past_[3];
   std::vector<double> lambda_[3], missed_[3], reached_, b_, z_;
   Residual r_[3], unused_;
-  Config guess_, zero_, v0_, v_[3], a_[3], before_[3], after_[3], from_[3];
+  Config guess_, zero_, a_end_, v0_, v_[3], a_[3], before_[3], after_[3], from_[3];
   Stage stages_[3];
   std::vector<Taken> taken_;
 };
