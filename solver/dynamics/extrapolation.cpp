@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hilo {
 namespace {
@@ -21,6 +22,14 @@ constexpr Rule rules[] = {{0},
                           {6, {4, -5, 0, 5, -4, 1}}};
 
 double square(double x) { return x * x; }
+
+/// What rule r makes of the last values, the last one first.
+template <int r>
+double value(const double* x) {
+  double sum = 0;
+  for (int k = 0; k < rules[r].n; ++k) sum += rules[r].weight[k] * x[k];
+  return sum;
+}
 
 }  // namespace
 
@@ -53,25 +62,23 @@ void Extrapolation::accept(const System& s, double h, std::vector<double> missed
   h_ = h;
   // errors that the rules would have made, of positions and of multipliers
   std::array<double, 2 * n_rules> error{};
-  for (int r = 0; r < n_rules; ++r) {
-    if (rules[r].n > static_cast<int>(past_.size())) continue;
-    const auto left = [&](int i) {
-      double x = missed[i];
-      for (int k = 0; k < rules[r].n; ++k) x -= rules[r].weight[k] * past_[k].missed[i];
-      return x;
-    };
-    for (size_t i = 0; i < s.X.size(); ++i)
-      if (s.node_block[i] >= 0 && s.node_owned[i])
-        for (int k = 0; k < 3; ++k) error[r] += square(left(3 * s.node_block[i] + k));
-    for (size_t b = 0; b < s.bodies.size() && s.comm->rank == 0; ++b)
-      for (int k = 0; k < 3 && s.body_block[b] >= 0; ++k)
-        error[r] += square(left(3 * s.body_block[b] + k)) + square(s.bodies[b].size * left(3 * s.body_block[b] + 3 + k));
-    for (size_t i = 0; i < lambda.size() && s.comm->rank == 0; ++i) {
-      double x = lambda[i];
-      for (int k = 0; k < rules[r].n; ++k) x -= rules[r].weight[k] * past_[k].lambda[i];
-      error[n_rules + r] += square(x);
-    }
-  }
+  const int n_past = static_cast<int>(past_.size());
+  const double* at[most] = {};
+  const auto add = [&](double* sum, const double* now, int i, double weight) {
+    double x[most] = {};
+    for (int k = 0; k < n_past; ++k) x[k] = at[k][i];
+    [&]<int... r>(std::integer_sequence<int, r...>) { ((sum[r] += weight * square(now[i] - value<r>(x))), ...); }
+    (std::make_integer_sequence<int, n_rules>());
+  };
+  for (int k = 0; k < n_past; ++k) at[k] = past_[k].missed.data();
+  for (size_t i = 0; i < s.X.size(); ++i)
+    if (s.node_block[i] >= 0 && s.node_owned[i])
+      for (int k = 0; k < 3; ++k) add(error.data(), missed.data(), 3 * s.node_block[i] + k, 1);
+  for (size_t b = 0; b < s.bodies.size() && s.comm->rank == 0; ++b)
+    for (int k = 0; k < 6 && s.body_block[b] >= 0; ++k)
+      add(error.data(), missed.data(), 3 * s.body_block[b] + k, k < 3 ? 1 : square(s.bodies[b].size));
+  for (int k = 0; k < n_past; ++k) at[k] = past_[k].lambda.data();
+  for (size_t i = 0; i < lambda.size() && s.comm->rank == 0; ++i) add(error.data() + n_rules, lambda.data(), static_cast<int>(i), 1);
   s.comm->sum(error);
   rule_ = 0, lambda_rule_ = 1;
   for (int r = 0; r < n_rules && rules[r].n <= static_cast<int>(past_.size()); ++r) {
