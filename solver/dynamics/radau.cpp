@@ -106,8 +106,8 @@ class Radau final : public Integrator {
     const int n = 3 * system.n_blocks(), first = 3 * system.first_joint_block();
     if (h_ > 2 * kept_h_ || kept_h_ > 2 * h_) kept_ = false;
     const bool lagged = kept_;
-    bool built = false;                                      // the matrix belongs to this step
-    bool full = false;                                       // Newton: the step is too far from linear for less
+    int built = 0;                                           // matrices in this step, iterations of Newton; those between are chords
+    bool full = false;                                       // Newton alone: the step is too far from linear for less
     double last = 0, last_residual = 0, now = wall_clock();  // of the iteration before with the same matrix
     const auto lap = [&](Phase& phase) {
       const double then = now;
@@ -117,8 +117,11 @@ class Radau final : public Integrator {
       const bool fresh = !kept_;
       evaluate(system, report);
       if (!std::isfinite(report.residual)) return report.reason = "the residual is not finite", report;
-      if (report.iterations == options.max_iterations) return report.reason = "no convergence within the iterations allowed", report;
-      if (fresh) kept_ = built = true, kept_h_ = h_, rate_ = 1, excess_ = 0;
+      if (fresh && ++built > options.max_iterations) {
+        if (report.residual <= options.tolerance) break;
+        return report.reason = "no convergence within the iterations allowed", report;
+      }
+      if (fresh) kept_ = true, kept_h_ = h_, rate_ = 1, excess_ = 0;
       // inertia and constraint rows are to the scale sigma, so that the matrix of another step length serves
       for (int i = 0; i < 3; ++i)
         for (int k = 0; k < n; ++k) b_[i * n + k] = -r_[i].r[k] * (kept_sigma_[i] / r_[i].sigma);
@@ -133,7 +136,7 @@ class Radau final : public Integrator {
       if (last > 0) rate = correction > 2e-15 ? correction / last : report.residual / last_residual;
       const bool settled = correction <= 1e-2 * options.tolerance;
       if (!fresh && !settled && !(correction < 1e-3 && (last == 0 || rate < 1))) {
-        kept_ = false, full = built, last = 0;  // it leads astray
+        kept_ = false, full = built > 0, last = 0;  // it leads astray
         continue;
       }
       report.correction = correction;

@@ -109,5 +109,24 @@ TEST(Radau, IsOfOrderFiveInPositionOnRigidScenes) {
   }
 }
 
+TEST(Radau, KeepsItsMatrixOverStepsAndTheJointToRoundOff) {
+  const Workplace w;
+  top(w);
+  ASSERT_EQ(w.run("hilo-solve --quiet top.toml -o run.h5 --set time.step=1e-3 " + integrator("radau")).exit, 0);
+  EXPECT_LT(Results(w / "run.h5").history("constraint").maxCoeff(), 1e-14);
+  EXPECT_LT(number_of(w, "run.json", "tangents"), 9 * 1000 / 3) << "nine tangents make a matrix";
+  EXPECT_LT(number_of(w, "run.json", "newton_iterations"), 2500);
+}
+
+TEST(Radau, GoesOnFromARefusedStepAsIfItHadNotBeen) {
+  const Workplace w;
+  const OrderCase c = top(w);
+  const double whole = errors(w, c, integrator("radau"), 4e-3).x;
+  ASSERT_EQ(number_of(w, "run.json", "cuts"), 0);
+  const double cut = errors(w, c, integrator("radau") + "--set solver.iterations=1", 4e-3).x;  // one matrix a step is not always enough
+  ASSERT_GT(number_of(w, "run.json", "cuts"), 0);
+  EXPECT_LT(cut, 1.01 * whole);
+}
+
 }  // namespace
 }  // namespace hilo::test

@@ -18,6 +18,14 @@ struct OrderCase {
   bool by_norm = false;  // force: the joint's frame is not the inertial one
 };
 
+/// A number of a run's JSON file.
+inline double number_of(const Workplace& w, const std::string& file, const std::string& key) {
+  std::ifstream in(w / file);
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  const auto at = text.find("\"" + key + "\": ");
+  return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + key.size() + 4));
+}
+
 inline std::string body(const std::string& name, double mass, const Vec3& com, const Vec3& J, const std::string& more = "") {
   std::ostringstream s;
   s.precision(17);

@@ -38,13 +38,6 @@ std::vector<Vec3> last_points(const Results& r, bool flexible) {
   return out;
 }
 
-double number_of(const Workplace& w, const std::string& file, const std::string& key) {
-  std::ifstream in(w / file);
-  const std::string text((std::istreambuf_iterator<char>(in)), {});
-  const auto at = text.find("\"" + key + "\": ");
-  return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + key.size() + 4));
-}
-
 class Tolerance : public testing::TestWithParam<Controlled> {};
 
 // Done when, issue 3: true error over tolerance between 0.1 and 2 on six scenes over four decades.
