@@ -13,14 +13,15 @@ void Unknown::start(const System& system, const Config& from, const Config& gues
   system.follow(q), system.follow(dq);
 }
 
-/// R = cay(w) R0,  R - R0 = w x (R + R0)/2 = (w x R0 + w x (w x R0)/2)/(1 + w^2/4).
+/// R = cay(w) R0 = R0 + (w x R0 + w x (w x R0)/2)/(1 + w^2/4),  R - R0 = w x (R + R0)/2.  Towards half a turn the latter loses its digits,
+/// and with them Newton the roots that are there.
 void Unknown::turn_body(size_t b) {
   const Vec3& w = turn[b];
   const double scale = 1 / (1 + w.squaredNorm() / 4);
   for (int i = 0; i < 3; ++i) {
-    const Vec3 once = w.cross(q0.R[b].col(i)), moved = scale * (once + w.cross(once) / 2);
-    dq.R[b].col(i) = moved;
-    q.R[b].col(i) = q0.R[b].col(i) + moved;
+    const Vec3 before = q0.R[b].col(i), once = w.cross(before), after = before + scale * (once + w.cross(once) / 2);
+    q.R[b].col(i) = after;
+    dq.R[b].col(i) = w.cross(after + before) / 2;
   }
 }
 
