@@ -7,7 +7,7 @@ here=$(cd "$(dirname "$0")" && pwd); cd "$1"
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 TIMEFORMAT='%3U %3S'
 spent() { { time "$@" > log 2>&1; } 2> clock || { cat log >&2; exit 1; }; awk '{printf "%.3f", $1 + $2}' clock; }
-number() { sed -n "s/.*\"$1\": \([-0-9.e+]*\).*/\1/p" run.json | head -1; }
+number() { sed -n "s/.*\"$1\": \([-0-9.e+]*\).*/\1/p" peer.json | head -1; }
 
 calculix() {  # mesh, element
   local name=${1// /x} all iterations unknowns
@@ -20,9 +20,9 @@ calculix() {  # mesh, element
 }
 hilo() {  # row, mesh, deck, region, scene, options
   local all
-  hilo-import --quiet "$3" -o mesh.h5 --regions "$4" > /dev/null
-  all=$(spent hilo-solve --quiet "$here/$5" mesh.h5 -o run.h5 "${@:6}")
-  hilo-post series run.h5 probe.tip | tail -1 | awk -F, -v head="$1,$2,$(number unknowns)" -v all="$all" -v n="$(number newton_iterations)" \
+  hilo-import --quiet "$3" -o peer-mesh.h5 --regions "$4" > /dev/null
+  all=$(spent hilo-solve --quiet "$here/$5" peer-mesh.h5 -o peer.h5 "${@:6}")
+  hilo-post series peer.h5 probe.tip | tail -1 | awk -F, -v head="$1,$2,$(number unknowns)" -v all="$all" -v n="$(number newton_iterations)" \
     -v own="$(number processor_seconds)" '{printf "%s,%.3f,%.5f,%d,%.4f\n", head, all, $4, n, own / n}'
 }
 linear() {  # mesh, row, options
