@@ -145,7 +145,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       return report;
     }
     report.correction = system.comm->max(relative_correction(system, z));
-    if (!std::isfinite(report.correction) || report.correction > 1e3) {
+    if (!(report.correction <= options.reach)) {
       report.reason = "the correction is not finite or leaves the scene";
       return report;
     }

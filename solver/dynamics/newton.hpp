@@ -13,6 +13,7 @@ struct NewtonOptions {
   double tolerance = 1e-10;  // residual over the largest force it sums; correction over the scene's length
   int max_iterations = 25;
   bool patient = false;  // do not give up on slow contraction
+  double reach = 1e3;    // largest correction, in lengths of the scene; a guess farther off may lead to another root
 };
 
 struct NewtonReport {

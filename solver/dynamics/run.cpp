@@ -293,8 +293,9 @@ class Run {
 
   /// One step of length h from state_, trying predictors in turn; the state is left alone.
   bool try_step(double h) {
-    const StepTools tools{system_, *solver_, newton_};
+    StepTools tools{system_, *solver_, newton_};
     for (const Predictor p : {Predictor::rigid_rotation, Predictor::velocity, Predictor::hold}) {
+      tools.newton.reach = p == Predictor::rigid_rotation ? 1 : newton_.reach;
       const NewtonReport r = integrator_->solve(tools, state_, h, p);
       report_.iterations += r.iterations;
       iterations_ = r.iterations;
