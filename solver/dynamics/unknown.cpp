@@ -13,8 +13,8 @@ void Unknown::start(const System& system, const Config& from, const Config& gues
   system.follow(q), system.follow(dq);
 }
 
-/// R = cay(w) R0 = R0 + (w x R0 + w x (w x R0)/2)/(1 + w^2/4),  R - R0 = w x (R + R0)/2.  Towards half a turn the latter loses its digits,
-/// and with them Newton the roots that are there.
+/// R = cay(w) R0 = R0 + (w x R0 + w x (w x R0)/2)/(1 + w^2/4),  R - R0 = w x (R + R0)/2.  Towards half a turn the latter loses its digits:
+/// a step that turns so far is refused.
 void Unknown::turn_body(size_t b) {
   const Vec3& w = turn[b];
   const double scale = 1 / (1 + w.squaredNorm() / 4);
