@@ -55,13 +55,13 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     report.residual = system.comm->max(relative_residual(system, r));
     ++phases().evaluations, phases().tangents += tangent;
   };
-  // What a solve may leave of the residual: a tenth of what the next iteration needs for the tolerance, and no less than Newton's own
-  // error, about the square of how far the last iteration came [eisenstat-walker-1996], or a chord's, which comes as far as the last one.
+  // What a solve may leave of the residual: a tenth of what is left to the tolerance, and no less than Newton's own error, about the square
+  // of how far the last iteration came [eisenstat-walker-1996], or a chord's, which comes as far as the last one.
   double last_residual = 0;
   const auto forcing = [&](bool chord) {
     const double enough = 0.1 * options.tolerance / std::max(report.residual, 1e-300);
     const double contraction = last_residual > 0 ? report.residual / last_residual : 1e-2;
-    return std::clamp(std::max(enough, 0.1 * contraction * (chord ? 1 : contraction)), 1e-10, 1e-3);
+    return std::clamp(std::max(std::min(enough, 0.1), std::min(0.1 * contraction * (chord ? 1 : contraction), 1e-3)), 1e-10, 0.1);
   };
   const auto solve = [&](bool chord) {
     b.resize(r.r.size()), z.assign(r.r.size(), 0.0);
