@@ -1,14 +1,12 @@
 // Runs commands as a user would, with hilo's binaries first in the path.
 #pragma once
-#include <stdlib.h>
 #include <sys/wait.h>
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <set>
 #include <string>
+
+#include "folder.hpp"
 
 namespace hilo::test {
 
@@ -17,39 +15,12 @@ struct Ran {
   std::string out, err;
 };
 
-inline std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// A temporary folder, removed at the end.
-class Workplace {
+/// A temporary folder to run commands in.
+class Workplace : public Folder {
  public:
-  Workplace() {
-    std::string name = (std::filesystem::temp_directory_path() / "hilo-test-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Workplace() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Workplace(const Workplace&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-
   /// Run a bash command line in the folder.
   inline Ran run(const std::string& command) const;
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name, std::ios::binary) << text; }
-  /// Names of all files in the folder, to compare before and after.
-  std::set<std::string> files() const {
-    std::set<std::string> names;
-    for (const auto& e : std::filesystem::recursive_directory_iterator(path_))
-      if (!e.is_directory()) names.insert(e.path().lexically_relative(path_).string());
-    return names;
-  }
-
- private:
-  std::filesystem::path path_;
+  void write(const std::string& name, const std::string& text) const { write_text(path() / name, text); }
 };
 
 /// Run a bash command line in `folder`; nothing is written there but by the command.
@@ -76,6 +47,6 @@ inline Ran mpirun(int ranks, const std::string& command, const std::filesystem::
       folder);
 }
 
-inline Ran Workplace::run(const std::string& command) const { return test::run(command, path_); }
+inline Ran Workplace::run(const std::string& command) const { return test::run(command, path()); }
 
 }  // namespace hilo::test

@@ -18,9 +18,7 @@ bool goes_by_itself(const System& s, const Redundancy& rows) {
 /// v.M w
 double Clock::inner(const Config& v, const Config& w) const {
   double sum = 0;
-  for (size_t b = 0; b < system_.bodies.size(); ++b)
-    if (const Body& body = system_.bodies[b]; body.mass != 0)
-      sum += body.mass * v.c[b].dot(w.c[b]) + (v.R[b] * body.J).cwiseProduct(w.R[b]).sum();
+  for (size_t b = 0; b < system_.bodies.size(); ++b) sum += system_.bodies[b].inertia(v.c[b], v.R[b], w.c[b], w.R[b]);
   return sum;
 }
 

@@ -22,7 +22,8 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
   all.converged = true;
   for (int k = 0; k < n_stages(); ++k) {
     const double dt = instant(k) * h;
-    Config guess = predict(system, s, dt, predictor, {});  // straight: `past_` bends it
+    Config guess;
+    predict(system, s, dt, predictor, {}, guess);  // straight: `past_` bends it
     system.prescribe(guess, s.t + dt);
     solved_.emplace_back(system, s.q, guess);
     missed_[k] = solved_[k].increments(system);

@@ -41,12 +41,6 @@ Spin spin_of(const System& s, const State& state, const std::vector<int>& nodes)
 
 }  // namespace
 
-Config predict(const System& s, const State& state, double h, Predictor kind, const Config& a) {
-  Config q;
-  predict(s, state, h, kind, a, q);
-  return q;
-}
-
 void predict(const System& s, const State& state, double h, Predictor kind, const Config& a, Config& q) {
   q = state.q;
   const bool rigid = s.map.first_dense == 0;  // no flexible nodes, which would be left behind and strained

@@ -8,7 +8,6 @@ namespace hilo {
 /// rigid_rotation: bodies, and flexible regions as wholes, turn by the Cayley rotation of their spin; velocity: q + h v; hold: q.
 /// `a`, where it has values, is the acceleration of the step before: it bends the path of the bodies of a rigid scene.
 enum class Predictor { rigid_rotation, velocity, hold };
-Config predict(const System& system, const State& s, double h, Predictor kind, const Config& a);
 void predict(const System& system, const State& s, double h, Predictor kind, const Config& a, Config& q);
 
 }  // namespace hilo

@@ -140,7 +140,7 @@ class Radau final : public Integrator {
         continue;
       }
       report.correction = correction;
-      if (!(correction < 1e3)) return report.reason = "the correction is not finite or leaves the scene", report;
+      if (!(correction <= options.reach)) return report.reason = "the correction is not finite or leaves the scene", report;
       for (int i = 0; i < 3; ++i) {
         const std::span<const double> zi(z_.data() + i * n, n);
         u_[i].move(system, zi);

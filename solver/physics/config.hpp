@@ -30,6 +30,10 @@ struct Body {
   bool ground = false;     // fixed for ever; body 0
   bool patch = false;      // massless, made for a joint on a flexible region
   bool free() const { return motion < 0 && !ground; }
+  /// v.M w of velocities of its centre and directors [J].
+  double inertia(const Vec3& v, const Mat3& V, const Vec3& w, const Mat3& W) const {
+    return mass * v.dot(w) + (V * J).cwiseProduct(W).sum();
+  }
 };
 
 }  // namespace hilo

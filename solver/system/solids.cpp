@@ -161,7 +161,7 @@ System::Energy System::energy(const Config& q, const Config& v) const {
   for (size_t b = 0; b < bodies.size(); ++b) {
     if (static_cast<int>(b) % comm->size != comm->rank || bodies[b].mass == 0) continue;
     const Body& body = bodies[b];
-    out.kinetic += body.mass * v.c[b].squaredNorm() / 2 + (v.R[b] * body.J).cwiseProduct(v.R[b]).sum() / 2;
+    out.kinetic += body.inertia(v.c[b], v.R[b], v.c[b], v.R[b]) / 2;
     out.momentum += body.mass * v.c[b];
     out.angular += body.mass * q.c[b].cross(v.c[b]);
     const Mat3 RJ = q.R[b] * body.J;

@@ -114,6 +114,7 @@ simbody() {  # name, name in simbody-bench, method, fixed or accuracy, value
 beside() {  # name, name in simbody-bench, probe, scene, step, end
   h=$6
   hilo "$1" "$2" "$3" energy-momentum "$4" "$5" --set "time.step=$6" --set "time.end=$7"
+  [ "$3" = top ] || hilo "$1" "$2" "$3" mid-point "$4" "$5" --set "time.step=$6" --set "time.end=$7"  # the default without its clock
   [ "$3" = forty ] || hilo "$1" "$2" "$3" radau "$4" "$5" --set "time.step=$6" --set "time.end=$7"
   for m in euler merson; do simbody "$1" "$2" "$3" $m fixed "$6"; done
   simbody "$1" "$2" "$3" merson accuracy 1e-5

@@ -53,7 +53,7 @@ TEST(Clock, TakesPositionsOfASliderCrankToFourthOrder) {
   EXPECT_GT(std::log2(coarse[1] / fine[1]), 1.95) << "across the path velocities stay of second order";
 }
 
-/// A disc on a torsion spring: phi = cos(sqrt(k/J) t), exactly.
+/// A disc on a torsion spring at rest at 0.5 rad: phi = (1 - cos(sqrt(k/J) t))/2, exactly.
 TEST(Clock, TakesASpringToFourthOrder) {
   const Workplace w;
   w.write("scene.toml", body("disc", 1, Vec3::Zero(), {0.1, 0.1, 0.2}) + joint("revolute", "pin", "ground", "disc", Vec3::Zero(), pin) +
@@ -70,7 +70,7 @@ TEST(Clock, TakesASpringToFourthOrder) {
   EXPECT_GT(std::log2(coarse / fine), 3.8) << coarse << " " << fine;
 }
 
-/// Energies kept, and places on the same curve, whatever the clock does: also at steps of a fifth of the motion.
+/// Energies kept, and places on the same curve, whatever the clock does: also at steps of a tenth of a swing.
 TEST(Clock, LeavesEnergyAloneAtLongSteps) {
   const Workplace w;
   w.write("scene.toml", pendulum + "[time]\nend = 40\nstep = 0.2\n");

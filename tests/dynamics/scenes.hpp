@@ -20,8 +20,7 @@ struct OrderCase {
 
 /// A number of a run's JSON file.
 inline double number_of(const Workplace& w, const std::string& file, const std::string& key) {
-  std::ifstream in(w / file);
-  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  const std::string text = text_of(w / file);
   const auto at = text.find("\"" + key + "\": ");
   return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + key.size() + 4));
 }

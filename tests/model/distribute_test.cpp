@@ -220,13 +220,13 @@ TEST(Distribute, MeshIsTheSameOnOneToFourRanks) {
   bad.node_sets["few"][0] = -5;
   write_mesh(folder / "bad-set.h5", bad, {});
   for (int n = 1; n <= 4; ++n)
-    for (const char* suite : {"Spread", "SpreadFaults"}) test::expect_passes_on(n, suite, folder.path.string());
+    for (const char* suite : {"Spread", "SpreadFaults"}) test::expect_passes_on(n, suite, folder.path().string());
 }
 
 TEST(Distribute, MoreRanksThanCellsLeavesSomeEmpty) {
   const Folder folder;
   write_mesh(folder / "mesh.h5", test::one_cell(Shape::tet10), {});
-  test::expect_passes_on(3, "Few", folder.path.string());
+  test::expect_passes_on(3, "Few", folder.path().string());
 }
 
 TEST(DISABLED_Few, OneCellOnThreeRanksIsOnOneOfThem) {

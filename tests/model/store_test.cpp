@@ -13,9 +13,9 @@
 namespace hilo {
 namespace {
 
-using test::bytes_of;
 using test::Folder;
-using test::write_bytes;
+using test::text_of;
+using test::write_text;
 
 Error error_of(const std::function<void()>& body) {
   try {
@@ -86,14 +86,14 @@ TEST(Store, SameContentGivesSameBytes) {
   write(folder / "one.h5");
   ::sleep(1);  // a time stamp would differ
   write(folder / "two.h5");
-  EXPECT_EQ(bytes_of(folder / "one.h5"), bytes_of(folder / "two.h5"));
+  EXPECT_EQ(text_of(folder / "one.h5"), text_of(folder / "two.h5"));
   EXPECT_EQ(digest(folder / "one.h5"), digest(folder / "two.h5"));
 }
 
 TEST(Store, DigestIsTheFnv1aOfTheBytes) {
   const Folder folder;
-  write_bytes(folder / "empty", "");
-  write_bytes(folder / "a", "foobar");
+  write_text(folder / "empty", "");
+  write_text(folder / "a", "foobar");
   EXPECT_EQ(digest(folder / "empty"), "fnv1a64:cbf29ce484222325");
   EXPECT_EQ(digest(folder / "a"), "fnv1a64:85944171f73967e8");  // test vector of the FNV authors
 }
@@ -111,10 +111,10 @@ TEST(Store, UnpublishedFileLeavesNothingBehind) {
 
 TEST(Store, OldFileStaysUntilTheNewOneIsPublished) {
   const Folder folder;
-  write_bytes(folder / "a.h5", "old");
+  write_text(folder / "a.h5", "old");
   Store store = Store::create(folder / "a.h5");
   store.write<double>("/x", std::vector<double>{1}, {1});
-  EXPECT_EQ(bytes_of(folder / "a.h5"), "old");
+  EXPECT_EQ(text_of(folder / "a.h5"), "old");
   store.publish();
   EXPECT_EQ(Store::open(folder / "a.h5").read<double>("/x"), std::vector<double>{1});
   EXPECT_EQ(folder.files(), std::set<std::string>{"a.h5"});
@@ -124,18 +124,18 @@ TEST(Store, WrongFilesAreNamedForWhatTheyAre) {
   const Folder folder;
   const auto opening = [&](const std::string& name) { return error_of([&] { Store::open(folder / name); }); };
   EXPECT_EQ(opening("missing.h5").message, "no such file");
-  write_bytes(folder / "text.h5", "solid cube\n");
+  write_text(folder / "text.h5", "solid cube\n");
   EXPECT_EQ(opening("text.h5").message, "not an HDF5 file");
-  write_bytes(folder / "empty.h5", "");
+  write_text(folder / "empty.h5", "");
   EXPECT_EQ(opening("empty.h5").message, "empty file");
   std::filesystem::create_directory(folder / "folder.h5");
   EXPECT_EQ(opening("folder.h5").message, "is a folder, not a file");
   Store store = Store::create(folder / "whole.h5");
   store.write<double>("/x", std::vector<double>(10000, 1.), {10000});
   store.publish();
-  const auto bytes = bytes_of(folder / "whole.h5");
+  const auto bytes = text_of(folder / "whole.h5");
   for (const size_t kept : {size_t{9}, size_t{100}, size_t{3000}, bytes.size() - 1}) {
-    write_bytes(folder / "cut.h5", bytes.substr(0, kept));
+    write_text(folder / "cut.h5", bytes.substr(0, kept));
     const Error e = opening("cut.h5");
     EXPECT_NE(e.message.find("truncated"), std::string::npos) << kept << ": " << e.message;
     EXPECT_EQ(e.exit, Exit::input);
@@ -222,16 +222,16 @@ TEST(Store, FolderThatDoesNotExistIsExitFour) {
 
 TEST(Store, NoPermissionIsExitFour) {
   const Folder folder;
-  write_bytes(folder / "secret.h5", "x");
+  write_text(folder / "secret.h5", "x");
   std::filesystem::permissions(folder / "secret.h5", std::filesystem::perms::none);
-  std::filesystem::permissions(folder.path, std::filesystem::perms(0555));
+  std::filesystem::permissions(folder.path(), std::filesystem::perms(0555));
   const uid_t me = ::geteuid();
   ASSERT_TRUE(me != 0 || ::seteuid(65534) == 0);  // root may write anywhere
   const Error writing = error_of([&] { Store::create(folder / "a.h5"); }),
               growing = error_of([&] { Store::create_growing(folder / "a.h5"); });
   const Error reading = error_of([&] { Store::open(folder / "secret.h5"); });
   ASSERT_TRUE(me != 0 || ::seteuid(0) == 0);
-  std::filesystem::permissions(folder.path, std::filesystem::perms::owner_all);
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
   for (const Error& e : {writing, growing}) {
     EXPECT_EQ(e.exit, Exit::resources);
     EXPECT_EQ(e.message, "cannot write: Permission denied");
