@@ -9,7 +9,7 @@ bool goes_by_itself(const System& s, const Redundancy& rows) {
   const auto none = [](const auto& list, auto&& bad) { return std::none_of(list.begin(), list.end(), bad); };
   int unknowns = 0;
   for (int block : s.body_block) unknowns += block >= 0 ? 6 : 0;
-  return s.batches.empty() && unknowns - rows.rank == 1 && none(s.node_block, [](int block) { return block >= 0; }) &&
+  return !s.flexible && unknowns - rows.rank == 1 && s.map.first_dense == 0 &&  // no free nodes on any rank
          none(s.springs, [](const Connector& c) { return !c.law->conserves(); }) &&
          none(s.loads, [](const Load& l) { return l.kind != Load::Kind::body_force || l.follower || !l.ramped; }) &&
          none(s.motions, [](const Motion& m) { return m.moving; }) && none(s.joints, [](const Connector& j) { return j.drive.row >= 0; });

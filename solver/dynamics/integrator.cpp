@@ -109,11 +109,11 @@ std::string known_weakness(const Entry& time, const System& system) {
   if ((kind == "newmark" && time.number("gamma") < 0.55) ||
       ((kind == "generalized-alpha" || kind == "hht" || kind == "wbz") && rho >= 0.9)) {
     if (joints) return "with joints its multipliers oscillate and grow until the run stops, sometimes after many thousand steps";
-    if (!system.batches.empty()) return "it gains energy on parts that turn while they deform";
+    if (system.flexible) return "it gains energy on parts that turn while they deform";
   }
-  if (kind == "mid-point" && !system.batches.empty())
+  if (kind == "mid-point" && system.flexible)
     return "the stress at the mid-point lets energy grow without limit on stiff turning parts; energy-momentum averages it";
-  if ((kind == "U0" || kind == "V0") && !time.boolean("averaged") && !system.batches.empty())
+  if ((kind == "U0" || kind == "V0") && !time.boolean("averaged") && system.flexible)
     return "without averaged = true stiff parts that turn are stretched unnoticed";
   if (kind == "V0" && turning && std::min({radius("rho1"), radius("rho2"), radius("rho3")}) < 1)
     return "accelerations and multipliers of V0 with a spectral radius below 1 are of first order";

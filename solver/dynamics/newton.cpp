@@ -81,7 +81,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
   // tolerance asked for is a loose one, to five digits beyond)
   const auto polish = [&] {
     for (int k = 0; k < 4 && report.residual > 1e-5 * options.tolerance && solver.repeats_cheaply() && solve(true).ok; ++k) {
-      const double correction = relative_correction(system, z);
+      const double correction = system.comm->max(relative_correction(system, z));
       if (!(correction < 1e-6)) break;
       move();
       if (correction < 1e-12) break;  // what the old factors leave of it is round-off

@@ -29,7 +29,7 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
   Residual with, without;
   // Flexible parts resist, or the mass norm would shear the cells at the joint: M (q - placed)/tau^2 + f(q) - f(placed), with a tau far
   // above the periods at which they swing.  Bodies alone follow the mass norm, whatever springs are between them.
-  const bool flexible = system.comm->max(system.batches.empty() ? 0 : 1) > 0;
+  const bool flexible = system.flexible;
   const double tau = 3, largest_turn = flexible ? 0.1 : 0.5;  // [s], [rad]
   const auto stage_of = [&](const Config& at, const Config& a) {
     Stage s = mass_stage(at, a, 0);

@@ -42,6 +42,18 @@ Vec3 Builder::mean_of(const std::vector<int>& nodes) const {
   return Vec3(all[0], all[1], all[2]) / std::max(1.0, all[3]);
 }
 
+/// The node nearest to a point, of equally near ones the first of the mesh, on the rank that owns it; -1 on the others.  Collective.
+int Builder::nearest_owned(const std::vector<int>& nodes, const Vec3& at) const {
+  int nearest = -1;
+  double least = 1e300;
+  for (int i : nodes)  // in the order of the mesh file
+    if (out_->node_owned[i])
+      if (const double d = (out_->X[i] - at).norm(); d < least) least = d, nearest = i;
+  const bool candidate = least <= -comm_.max(-least) && nearest >= 0;
+  const double row = candidate ? static_cast<double>(mesh_->node_global[nearest]) : 1e300, first = -comm_.max(-row);
+  return candidate && row == first ? nearest : -1;
+}
+
 Builder::Found Builder::find(const std::string& name, const std::string& where) const {
   Found found;
   if (name == "ground") {
@@ -57,7 +69,7 @@ Builder::Found Builder::find(const std::string& name, const std::string& where) 
     throw Error(where, fmt::format("no region, set or body \"{}\"", name), suggest(name, names));
   found.region = mesh_->mesh.find_region(name);
   found.is_region = found.region >= 0;
-  for (std::int64_t i : mesh_->mesh.nodes_of(name, where)) found.nodes.push_back(static_cast<int>(i));
+  for (std::int64_t i : mesh_->nodes_of(name, where)) found.nodes.push_back(static_cast<int>(i));
   found.n_global = static_cast<std::int64_t>(std::llround(count_owned(found.nodes)));
   if (found.is_region && regions_[found.region].fidelity == Fidelity::rigid) {
     found.body = regions_[found.region].body;
@@ -80,6 +92,13 @@ void Builder::set_follower(int node, int body, const std::string& where) {
         "the sets of two entries overlap");
   out_->follower[node] = body;
   held_by_[node] = where;
+}
+
+/// An overlap may show on one rank alone: all of them refuse it.
+void Builder::follow_all(const std::vector<int>& nodes, int body, const std::string& where) {
+  comm_.together([&] {
+    for (int i : nodes) set_follower(i, body, where);
+  });
 }
 
 /// The nodes of a set become followers of one massless body; where some of them belong to a rigid body already, they all join it.
@@ -108,7 +127,7 @@ int Builder::patch_of(const std::string& name, const Found& found, const std::st
                   "name a set of nodes on a face");
     out_->bodies[body].size = std::sqrt(S.trace() / static_cast<double>(found.n_global));
   }
-  for (int i : found.nodes) set_follower(i, body, where);
+  follow_all(found.nodes, body, where);
   patch_by_name_[name] = body;
   return body;
 }

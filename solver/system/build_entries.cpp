@@ -46,7 +46,7 @@ void Builder::add_motions() {
         for (int i : found.nodes) other = std::max<double>(other, out_->follower[i]);
         m.body = static_cast<int>(comm_.max(other));
         if (m.body < 0) m.body = new_body(e.name, mean_of(found.nodes));
-        for (int i : found.nodes) set_follower(i, m.body, where);
+        follow_all(found.nodes, m.body, where);
       }
       Body& body = out_->bodies[m.body];
       if (body.motion >= 0)
@@ -54,10 +54,13 @@ void Builder::add_motions() {
       body.motion = static_cast<int>(out_->motions.size());
       if (e.kind != "rotation") m.at = body.Xc;
     } else {
+      comm_.together([&] {  // a rank alone may have the node
+        for (int i : found.nodes)
+          if (out_->follower[i] >= 0)
+            throw Error(where, fmt::format("{}: node {} belongs to a rigid body and cannot have single components prescribed", e.label(),
+                                           mesh_->mesh.node_id[i]));
+      });
       for (int i : found.nodes) {
-        if (out_->follower[i] >= 0)
-          throw Error(where, fmt::format("{}: node {} belongs to a rigid body and cannot have single components prescribed", e.label(),
-                                         mesh_->mesh.node_id[i]));
         for (int k = 0; k < 3; ++k) out_->fixed[i][k] = out_->fixed[i][k] || m.component[k];
         m.nodes.push_back(i);
       }
@@ -179,12 +182,7 @@ void Builder::add_stations() {
         const Vec3 at = e.has("at") ? e.vector3("at") : found.n_global == 0 || found.is_region ? body.Xc : mean_of(found.nodes);
         s.arm = at - body.Xc;
       } else if (e.has("at") && !s.sensor) {
-        int nearest = -1;  // node of the set nearest to the point
-        double least = 1e300;
-        for (int i : found.nodes)
-          if (out_->node_owned[i])
-            if (const double d = (out_->X[i] - e.vector3("at")).norm(); d < least) least = d, nearest = i;
-        if (nearest >= 0 && least <= -comm_.max(-least)) s.nodes.push_back(nearest);
+        if (const int nearest = nearest_owned(found.nodes, e.vector3("at")); nearest >= 0) s.nodes.push_back(nearest);
         s.n_nodes = 1;
         s.mean = e.vector3("at");
       } else {
@@ -220,13 +218,12 @@ void Builder::set_initial_velocities() {
         }
       if (!used) {
         for (int i : find(pattern, e.where("on")).nodes) node[i] = 1;
-        if (!e.has("about") && e.vector3("spin").norm() > 0) throw Error(e.place.text(), e.label() + "a spin of a set needs `about`");
+        if (!e.has("about") && e.vector3("spin").norm() > 0) throw Error(e.place.text(), e.label() + ": a spin of a set needs `about`");
       }
     }
-    if (mesh_)
-      for (std::int64_t c = 0; c < mesh_->mesh.n_cells(); ++c)
-        if (region[mesh_->mesh.region[c]])
-          for (std::int64_t i : mesh_->mesh.cell(c)) node[i] = 1;
+    for (size_t r = 0; r < regions_.size(); ++r)
+      if (region[r])
+        for (std::int64_t i : mesh_->nodes_of(regions_[r].name, e.where("on"))) node[i] = 1;
     const Vec3 velocity = e.vector3("velocity"), spin = e.vector3("spin");
     const Vec3 about = e.has("about") ? e.vector3("about") : mass > 0 ? Vec3(moment / mass) : Vec3::Zero();
     for (size_t i = 0; i < node.size(); ++i)
@@ -285,7 +282,7 @@ std::unique_ptr<System> Builder::build() {
   integrate_regions();
   make_rigid_bodies();
   add_free_bodies();
-  make_batches();
+  comm_.together([&] { make_batches(); });  // a region that lacks something may have its cells on one rank
   add_point_masses();
   add_motions();
   add_joints();
@@ -305,6 +302,7 @@ std::unique_ptr<System> Builder::build() {
   const bool is_static = scene_.table("time").text("analysis") == "static";
   if (!(out_->mass > 0) && !is_static)
     throw Error(scene_.path, "the scene has no mass: nothing can move", "give a mesh or [[body]] entries, and densities");
+  out_->stiffness = comm_.max(out_->stiffness), out_->flexible = comm_.max(out_->batches.empty() ? 0 : 1) > 0;  // cells are on their ranks
   out_->number();
   if (comm_.sum(static_cast<double>(out_->n_blocks())) == 0)
     throw Error(scene_.path, "nothing is free to move", "every region and body is held");

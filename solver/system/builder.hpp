@@ -54,8 +54,10 @@ class Builder {
   int body_of(const std::string& name, const Found& found, const std::string& where);
   int new_body(const std::string& name, const Vec3& Xc);
   void set_follower(int node, int body, const std::string& where);
+  void follow_all(const std::vector<int>& nodes, int body, const std::string& where);
   double count_owned(const std::vector<int>& nodes) const;
   Vec3 mean_of(const std::vector<int>& nodes) const;
+  int nearest_owned(const std::vector<int>& nodes, const Vec3& at) const;
   // build_entries.cpp
   void add_motions();
   void add_loads();

@@ -129,10 +129,9 @@ System::Work System::work(const Stage& s, std::span<const double> lambda) const 
           external += f.body[m.body].head<3>().dot(s.end->c[m.body] - from.c[m.body]) +
                       f.body[m.body].tail<3>().dot(rotation_increment(from.R[m.body], s.end->R[m.body]));
       } else {
-        for (int node : m.nodes)
-          if (node_owned[node])
-            for (int i = 0; i < 3; ++i)
-              if (m.component[i]) external += f.node[node][i] * (s.end->x[node][i] - from.x[node][i]);
+        for (int node : m.nodes)  // every rank adds its share of a shared node
+          for (int i = 0; i < 3; ++i)
+            if (m.component[i]) external += f.node[node][i] * (s.end->x[node][i] - from.x[node][i]);
       }
     }
   }

@@ -129,7 +129,8 @@ class System {
   std::vector<Vec3> X;        // reference positions            (n_nodes)  [m]
   std::vector<char> node_owned;
   std::vector<std::array<bool, 3>> fixed;  // prescribed components of nodes
-  std::vector<SolidBatch> batches;
+  std::vector<SolidBatch> batches;         // of the cells of this rank
+  bool flexible = false;                   // some rank has cells
   std::vector<Connector> joints, springs;
   std::vector<Load> loads;
   std::vector<Motion> motions;
