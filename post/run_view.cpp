@@ -57,7 +57,7 @@ RunView::RunView(const FrameOptions& o, const std::string& path)
     for (size_t r = 0; r < shown_.size(); ++r)
       if (field_.flexible_only && minus_->mesh_file().fidelity[r] == Fidelity::rigid) valued_[r] = false;
     minus_playback_ = std::make_unique<Playback>(*minus_);
-    field_.from_zero = field_.component < 0 && field_.array != "von_mises";  // the size of a difference
+    field_.from_zero = field_.component < 0 && field_.unit != "Pa";  // the size of a difference
     field_.label += ", difference";
   }
   make_skins();

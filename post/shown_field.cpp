@@ -18,6 +18,7 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
   };
   const std::vector<std::string> xyz{"x", "y", "z"};
   const std::vector<Known> table = {{"von_mises", "von Mises stress", "Pa", {}},
+                                    {"stress_error", "error of stress", "Pa", {}},
                                     {"stress", "stress", "Pa", {"xx", "yy", "zz", "yz", "xz", "xy"}},
                                     {"displacement", "displacement", "m", xyz},
                                     {"velocity", "velocity", "m/s", xyz},
@@ -43,10 +44,10 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
   std::vector<std::string> names;
   for (const auto& k : known)
     if (!k.starts_with("cell_")) names.push_back(k);
-  names.insert(names.end(), {"region", "fidelity", "partition", "von_mises", "acceleration", "displacement", "velocity"});
+  names.insert(names.end(), {"region", "fidelity", "partition", "von_mises", "stress_error", "acceleration", "displacement", "velocity"});
   std::string hint = suggest(name, names);
   throw Error("--field", fmt::format("no field \"{}\"", name),
-              hint.empty() ? "von_mises, acceleration, displacement, velocity, stress.xx, region, fidelity or partition" : hint);
+              hint.empty() ? "von_mises, stress_error, acceleration, displacement, velocity, stress.xx, region, fidelity or partition" : hint);
 }
 
 std::vector<double> reduced(RunFile::Field raw, const ShownField& field, const std::string& path) {

@@ -6,7 +6,6 @@
 #include "dynamics/profile.hpp"
 #include "dynamics/recorder.hpp"
 #include "model/region_surface.hpp"
-#include "physics/stress.hpp"
 
 namespace hilo {
 
@@ -115,72 +114,12 @@ void Recorder::write_field(const Row& row, const Config& a) {
   if (setup_.wants("acceleration"))
     vectors(
         "acceleration", [&](size_t i) { return a.x[i]; }, "m/s^2");
-  if (setup_.wants("stress") || setup_.wants("von_mises")) write_stress(row, group);
+  if (setup_.wants("stress") || setup_.wants("von_mises") || setup_.wants("stress_error")) write_stress(row, group);
   field_times_.push_back(row.t);
   on_store([&](Store& f) {
     f.set(group, "t", row.t);
     if (wall_clock() - last_xdmf_ > 1) f.flush(), write_xdmf(), last_xdmf_ = wall_clock();
   });
-}
-
-/// Mean over the cells of a node's first flexible region (first: lowest number), summed across ranks through shared nodes.
-void Recorder::write_stress(const Row& row, const std::string& group) {
-  const System& s = system_;
-  std::vector<double> sum(8 * s.X.size(), 0.0);  // six stresses, von Mises, count
-  std::vector<int> region(s.X.size(), -1);
-  for (const SolidBatch& b : s.batches)
-    for (int i : b.nodes)
-      if (region[i] < 0 || b.region < region[i]) region[i] = b.region;
-  std::vector<double> cell(s.mesh->mesh.n_cells(), 0.0);
-  for (const SolidBatch& b : s.batches) {
-    const int k = info(b.shape).n_nodes;
-    std::vector<Vec3> X(k), x(k);
-    std::vector<Vec6> stress(k);
-    for (size_t e = 0; e < b.cells.size(); ++e) {
-      const int* nodes = b.nodes.data() + e * k;
-      for (int i = 0; i < k; ++i) X[i] = s.X[nodes[i]], x[i] = row.q.x[nodes[i]];
-      nodal_stress(b.shape, b.law, b.c, X, x, stress);
-      for (int i = 0; i < k; ++i) {
-        const double vm = von_mises(stress[i]);
-        cell[b.cells[e]] += vm / k;
-        if (region[nodes[i]] != b.region) continue;
-        double* to = sum.data() + 8 * nodes[i];
-        for (int c = 0; c < 6; ++c) to[c] += stress[i][c];
-        to[6] += vm, to[7] += 1;
-      }
-    }
-  }
-  std::vector<std::vector<double>> send(s.comm->size);  // row, region, sums, to the rank that writes the row
-  for (size_t i = 0; i < s.X.size(); ++i)
-    if (region[i] >= 0 && node_row_[i] >= 0) {
-      auto& to = send[nodes_->rank_of(node_row_[i])];
-      to.push_back(static_cast<double>(node_row_[i])), to.push_back(region[i]);
-      to.insert(to.end(), sum.begin() + 8 * i, sum.begin() + 8 * i + 8);
-    }
-  const auto received = s.comm->exchange(send);
-  std::vector<int> first(nodes_->count(), -1);
-  std::vector<double> stress(6 * nodes_->count(), 0.0), vm(nodes_->count(), 0.0), count(nodes_->count(), 0.0);
-  const auto each = [&](auto&& visit) {
-    for (const auto& list : received)
-      for (size_t k = 0; k < list.size(); k += 10)
-        visit(static_cast<std::int64_t>(list[k]) - nodes_->first(), static_cast<int>(list[k + 1]), &list[k + 2]);
-  };
-  each([&](std::int64_t i, int r, const double*) { first[i] = first[i] < 0 ? r : std::min(first[i], r); });
-  each([&](std::int64_t i, int r, const double* v) {
-    if (r != first[i]) return;
-    for (int c = 0; c < 6; ++c) stress[6 * i + c] += v[c];
-    vm[i] += v[6], count[i] += v[7];
-  });
-  for (size_t i = 0; i < count.size(); ++i)
-    if (count[i] > 0) {
-      for (int c = 0; c < 6; ++c) stress[6 * i + c] /= count[i];
-      vm[i] /= count[i];
-    }
-  if (setup_.wants("stress")) write_piece(*nodes_, group + "/stress", stress, 6, "Pa", "Cauchy stress xx yy zz yz xz xy");
-  if (!setup_.wants("von_mises")) return;
-  write_piece(*nodes_, group + "/von_mises", vm, 1, "Pa", "von Mises stress");
-  if (!setup_.skin)
-    write_piece(*cells_, group + "/cell_von_mises", cells_->collect(cell, 1), 1, "Pa", "von Mises stress, mean over the cell");
 }
 
 /// The drawn facets and bars as XDMF's mixed list, in the order of the cells, with the positions of their nodes.
@@ -284,6 +223,8 @@ void Recorder::write_xdmf() {
       attribute("von Mises [Pa]", "Scalar", "Node", fmt::format("{}", n), group + "/von_mises", number);
       if (!setup_.skin) attribute("cell von Mises [Pa]", "Scalar", "Cell", fmt::format("{}", cells), group + "/cell_von_mises", number);
     }
+    if (store_->has(group + "/stress_error"))
+      attribute("stress error [Pa]", "Scalar", "Node", fmt::format("{}", n), group + "/stress_error", number);
     attribute("region", "Scalar", "Cell", fmt::format("{}", cells), "/xdmf/region", "I4");
     t += "</Grid>\n";
   }

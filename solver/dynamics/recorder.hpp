@@ -18,6 +18,8 @@
 
 namespace hilo {
 
+class StressRecovery;
+
 /// Path without its .h5.
 std::string stem(const std::string& path);
 
@@ -104,6 +106,7 @@ class Recorder {
   double last_t_ = 0;
   double next_field_ = 0, E0_ = 0, max_T_ = 0, work_ = 0, dissipated_ = 0, worst_balance_ = 0, worst_violation_ = 0;
   int n_fields_ = 0;
+  std::shared_ptr<const StressRecovery> recovery_;          // made with the first field that needs it
   std::optional<Slabs> nodes_, cells_;                      // rows of the fields
   std::vector<std::int64_t> node_row_;                      // of local nodes, also those of other ranks; -1: not written
   std::int64_t topology_entries_ = 0, topology_cells_ = 0;  // of XDMF's list

@@ -1,6 +1,7 @@
-// Stress recovery: Cauchy stress at the nodes of a cell.
+// Stress of one cell at points of it, as its kernel sees it: what recovery (dynamics/stress_recovery) is made from.
 #pragma once
 #include <span>
+#include <vector>
 
 #include "base/math.hpp"
 #include "base/shape.hpp"
@@ -8,10 +9,38 @@
 
 namespace hilo {
 
-/// Cauchy stress xx yy zz yz xz xy at each node of a cell [Pa]: from the integration points by a least-squares linear field in the
-/// cell's own coordinates; for the one-point hexahedron from its assumed strain field.
-void nodal_stress(Shape shape, Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x, std::span<Vec6> stress);
+/// Which points of a cell.
+///  - integration: those of its stiffness; of the one-point hexahedron 2 x 2 x 2, where its assumed strains vary;
+///  - samples: where stresses are best.  Of quadratic hexahedra 2 x 2 x 2, whatever they are integrated with [barlow-1976]; else
+///  integration;
+///  - everywhere: those of its mass, enough to integrate the square of an error.
+enum class StressPoints { integration, samples, everywhere };
 
+struct StressPoint {
+  Vec3 X;           // reference position                         [m]
+  double w;         // reference volume                           [m^3]
+  Mat3 F;           // deformation gradient; of hex8 its mean     [1]
+  Vec6 S;           // second Piola-Kirchhoff xx yy zz yz xz xy   [Pa]
+  const double* N;  // shape functions of the cell                 [1]
+};
+
+/// Points of a solid cell at positions x of its nodes.
+void stress_points(Shape shape, Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
+                   std::vector<StressPoint>& out);
+
+/// Deformation gradient at each node of a solid cell; where the cell has no volume at a node (collapsed corners), its mean.
+void nodal_gradients(Shape shape, std::span<const Vec3> X, std::span<const Vec3> x, std::span<Mat3> F);
+
+/// Values at the nodes of a cell from those at its samples (n_nodes x n_samples), by least squares in the cell's own coordinates: linear
+/// functions, of hexahedra and wedges their products across the axes too; the mean where cells are linear.
+const Eigen::MatrixXd& to_nodes(Shape shape);
+
+/// Cauchy stress F S F^T / det F.
+Vec6 cauchy(const Mat3& F, const Vec6& S);
+/// Cauchy stress of a bar of two nodes: along the bar alone.
+Vec6 bar_stress(const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x);
+
+/// A norm of deviators: |von_mises(a) - von_mises(b)| <= von_mises(a - b).
 double von_mises(const Vec6& s);
 
 }  // namespace hilo

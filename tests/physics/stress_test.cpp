@@ -1,4 +1,4 @@
-// Recovered stresses against the closed forms of the laws, and the two-node bar.
+// Stresses at points of cells against the closed forms of the laws, and the two-node bar.
 #include "physics/stress.hpp"
 
 #include "physics/cells.hpp"
@@ -35,6 +35,8 @@ Vec6 voigt(const Mat3& s) {
   return v;
 }
 
+constexpr StressPoints kinds[] = {StressPoints::integration, StressPoints::samples, StressPoints::everywhere};
+
 // Truth: a homogeneous F gives one stress everywhere: J sigma = F (lambda tr E + 2 mu E) F^T, or mu (b - I) + lambda ln J I.
 TEST_P(Stress, OfAHomogeneousDeformationIsTheClosedForm) {
   Mat3 F;
@@ -45,22 +47,61 @@ TEST_P(Stress, OfAHomogeneousDeformationIsTheClosedForm) {
   const Mat3 I = Mat3::Identity(), E = (F.transpose() * F - I) / 2;
   const Mat3 stvk = F * (rubber.lambda * E.trace() * I + 2 * rubber.mu * E) * F.transpose() / J;
   const Mat3 neo = (rubber.mu * (F * F.transpose() - I) + rubber.lambda * std::log(J) * I) / J;
-  for (const auto& [law, exact] : {std::pair{Law::stvk, stvk}, {Law::neo_hookean, neo}}) {
-    std::vector<Vec6> s(X.size());
-    nodal_stress(GetParam(), law, rubber, X, x, s);
-    for (const Vec6& at : s) EXPECT_LT((at - voigt(exact)).norm(), 1e-12 * exact.norm());
-  }
+  for (const auto& [law, exact] : {std::pair{Law::stvk, stvk}, {Law::neo_hookean, neo}})
+    for (const StressPoints kind : kinds) {
+      std::vector<StressPoint> points;
+      stress_points(GetParam(), law, rubber, X, x, kind, points);
+      for (const StressPoint& at : points) {
+        EXPECT_LT((cauchy(at.F, at.S) - voigt(exact)).norm(), 1e-12 * exact.norm());
+        EXPECT_GT(at.w, 0);
+      }
+    }
+  std::vector<Mat3> nodal(X.size());
+  nodal_gradients(GetParam(), X, x, nodal);
+  for (const Mat3& at : nodal) EXPECT_LT((at - F).norm(), 1e-12);
 }
 
 // Truth: no strain, no stress.
 TEST_P(Stress, OfARigidMotionIsZero) {
   std::vector<Vec3> x;
   for (const Vec3& p : X) x.push_back(Eigen::AngleAxisd(2, Vec3(1, 1, -1).normalized()).toRotationMatrix() * p + Vec3(1, 2, 3));
-  for (const Law law : {Law::stvk, Law::neo_hookean}) {
-    std::vector<Vec6> s(X.size());
-    nodal_stress(GetParam(), law, rubber, X, x, s);
-    for (const Vec6& at : s) EXPECT_LT(at.norm(), 1e-13 * rubber.mu);
-  }
+  for (const Law law : {Law::stvk, Law::neo_hookean})
+    for (const StressPoints kind : kinds) {
+      std::vector<StressPoint> points;
+      stress_points(GetParam(), law, rubber, X, x, kind, points);
+      for (const StressPoint& at : points) EXPECT_LT(at.S.norm(), 1e-13 * rubber.mu);
+    }
+}
+
+// Truth: an edge collapsed to a point (a hexahedron that stands for a wedge) has no volume at that node; gradients there stay finite.
+TEST(NodalGradients, StayFiniteWhereACornerIsCollapsed) {
+  auto X = local_nodes<Hex8>();
+  X[2] = X[1], X[6] = X[5];
+  std::vector<Vec3> x;
+  for (const Vec3& p : X) x.push_back(1.5 * p);
+  std::vector<Mat3> F(8);
+  nodal_gradients(Shape::hex8, X, x, F);
+  for (const Mat3& at : F) EXPECT_LT((at - 1.5 * Mat3::Identity()).norm(), 1e-10);
+}
+
+// Truth: what is linear along the axes of a quadratic cell is found at its nodes from its samples; weights of a constant sum to 1.
+TEST_P(Stress, OfTheNodesIsExtrapolatedFromTheSamples) {
+  std::vector<StressPoint> points;
+  stress_points(GetParam(), Law::stvk, rubber, X, X, StressPoints::samples, points);
+  const Eigen::MatrixXd& W = to_nodes(GetParam());
+  ASSERT_EQ(W.cols(), static_cast<Eigen::Index>(points.size()));
+  EXPECT_LT((W.rowwise().sum() - Eigen::VectorXd::Ones(W.rows())).norm(), 1e-12);
+  if (X.size() <= 8) return;
+  const auto straight = GetParam() == Shape::tet10     ? local_nodes<Tet10>()
+                        : GetParam() == Shape::wedge15 ? local_nodes<Wedge15>()
+                                                       : local_nodes<Hex20>();
+  stress_points(GetParam(), Law::stvk, rubber, straight, straight, StressPoints::samples, points);
+  for (int i = 0; i < 3; ++i)
+    for (size_t a = 0; a < straight.size(); ++a) {
+      double value = 0;
+      for (size_t p = 0; p < points.size(); ++p) value += W(a, p) * points[p].X[i];
+      EXPECT_NEAR(value, straight[a][i], 1e-12);
+    }
 }
 
 // Truth: pure bending of a slender brick, u_x = -k x y, u_y = k x^2/2 + nu k (y^2 - z^2)/2, u_z = nu k y z, has sigma_xx = -E k y alone:
@@ -75,12 +116,14 @@ TEST(BendingStress, IsLinearOverTheHeightOfOneHexahedron) {
       p = Vec3(0.3 * p[0], 0.1 * p[1], 0.05 * p[2]);
       x.push_back(p + k * Vec3(-p[0] * p[1], p[0] * p[0] / 2 + nu * (p[1] * p[1] - p[2] * p[2]) / 2, nu * p[1] * p[2]));
     }
-    std::vector<Vec6> s(X.size());
-    nodal_stress(shape, Law::stvk, c, X, x, s);
-    for (size_t a = 0; a < X.size(); ++a) {
-      Vec6 exact = Vec6::Zero();
-      exact[0] = -E * k * X[a][1];
-      EXPECT_LT((s[a] - exact).norm(), 1e-5 * E * k * 0.1) << info(shape).name << " node " << a;
+    for (const StressPoints kind : kinds) {
+      std::vector<StressPoint> points;
+      stress_points(shape, Law::stvk, c, X, x, kind, points);
+      for (const StressPoint& at : points) {
+        Vec6 exact = Vec6::Zero();
+        exact[0] = -E * k * at.X[1];
+        EXPECT_LT((cauchy(at.F, at.S) - exact).norm(), 1e-5 * E * k * 0.1) << info(shape).name;
+      }
     }
   }
 }

@@ -38,7 +38,7 @@ double difference(const Results& whole, const Results& part, const std::string& 
   return worst / peak;
 }
 
-const char* const fields[] = {"displacement", "velocity", "acceleration", "stress", "von_mises"};
+const char* const fields[] = {"displacement", "velocity", "acceleration", "stress", "von_mises", "stress_error"};
 
 std::vector<std::int64_t> all_nodes() {
   std::vector<std::int64_t> nodes;

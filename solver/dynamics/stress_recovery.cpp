@@ -1,0 +1,290 @@
+#include "dynamics/stress_recovery.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "model/mesh.hpp"
+
+namespace hilo {
+namespace {
+
+bool quadratic(Shape s) { return info(s).n_nodes > info(s).n_corners; }
+bool is_bar(Shape s) { return info(s).dimension < 3; }
+
+struct Positions {
+  std::vector<Vec3> X, x;
+  void gather(const System& s, const std::vector<Vec3>& now, const int* nodes, int n) {
+    X.resize(n), x.resize(n);
+    for (int i = 0; i < n; ++i) X[i] = s.X[nodes[i]], x[i] = now[nodes[i]];
+  }
+};
+
+/// Mean stress of a linear cell, where it is, and the slope of its assumed strains: least squares over its points.
+struct CellMean {
+  Vec3 X = Vec3::Zero();
+  Vec6 S = Vec6::Zero();
+  Eigen::Matrix<double, 6, 3> slope = Eigen::Matrix<double, 6, 3>::Zero();
+  explicit CellMean(const std::vector<StressPoint>& points) {
+    double w = 0;
+    for (const StressPoint& p : points) X += p.w * p.X, S += p.w * p.S, w += p.w;
+    X /= w, S /= w;
+    if (points.size() < 4) return;
+    Mat3 spread = Mat3::Zero();
+    Eigen::Matrix<double, 6, 3> with = Eigen::Matrix<double, 6, 3>::Zero();
+    for (const StressPoint& p : points) {
+      spread += p.w * (p.X - X) * (p.X - X).transpose();
+      with += p.w * (p.S - S) * (p.X - X).transpose();
+    }
+    slope = with * spread.inverse();
+  }
+};
+
+}  // namespace
+
+/// Visit the cells of the patches: batch and its number, number of the cell in it, patches of its corners, positions of its nodes.
+template <class Visit>
+void StressRecovery::each_cell(const Patches& p, const std::vector<Vec3>& x, Visit&& visit) const {
+  Positions at;
+  for (size_t b = 0; b < system_.batches.size(); ++b) {
+    const SolidBatch& batch = system_.batches[b];
+    const int n = info(batch.shape).n_nodes, corners = info(batch.shape).n_corners;
+    if (p.corner[b].empty()) continue;
+    for (size_t e = 0; e < batch.cells.size(); ++e) {
+      at.gather(system_, x, batch.nodes.data() + e * n, n);
+      visit(b, e, std::span(p.corner[b].data() + e * corners, corners), at);
+    }
+  }
+}
+
+StressRecovery::StressRecovery(const System& s) : system_(s) {
+  find_sites();
+  std::vector<double> second(s.mesh->mesh.region_name.size(), 0.0);  // regions with quadratic cells
+  for (const SolidBatch& b : s.batches)
+    if (quadratic(b.shape)) second[b.region] = 1;
+  s.comm->sum(second);
+  for (const int order : {1, 2}) patches_.push_back(made_patches(order, second));
+}
+
+void StressRecovery::find_sites() {
+  const System& s = system_;
+  std::vector<std::int64_t> key;
+  std::unordered_map<std::int64_t, int> index;
+  for (const SolidBatch& b : s.batches) {
+    auto& of = site_of_.emplace_back();
+    const int region = 2 * b.region + is_bar(b.shape);
+    for (const int node : b.nodes) {
+      const std::int64_t k = region * s.mesh->n_nodes_global + s.mesh->node_global[node];
+      const auto [it, fresh] = index.try_emplace(k, static_cast<int>(key.size()));
+      if (fresh) key.push_back(k), site_.push_back({node, region});
+      of.push_back(it->second);
+    }
+  }
+  sites_.emplace(*s.comm, key);
+}
+
+StressRecovery::Patches StressRecovery::made_patches(int order, const std::vector<double>& second) const {
+  const System& s = system_;
+  std::vector<int> nodes;
+  std::vector<std::vector<int>> corners_of(s.batches.size());
+  std::vector<std::int64_t> key;
+  std::unordered_map<std::int64_t, int> index;
+  for (size_t b = 0; b < s.batches.size(); ++b) {
+    const SolidBatch& batch = s.batches[b];
+    if (is_bar(batch.shape) || (second[batch.region] > 0) != (order == 2)) continue;
+    const int n = info(batch.shape).n_nodes, corners = info(batch.shape).n_corners;
+    for (size_t e = 0; e < batch.cells.size(); ++e)
+      for (int a = 0; a < corners; ++a) {
+        const int node = batch.nodes[e * n + a];
+        const std::int64_t k = batch.region * s.mesh->n_nodes_global + s.mesh->node_global[node];
+        const auto [it, fresh] = index.try_emplace(k, static_cast<int>(key.size()));
+        if (fresh) key.push_back(k), nodes.push_back(node);
+        corners_of[b].push_back(it->second);
+      }
+  }
+  Patches p{order, std::move(nodes), {}, std::move(corners_of), Sharing(*s.comm, key)};
+  const size_t n = key.size();
+  std::vector<double> shape(n * PatchFit::n_shape, 0.0);
+  std::vector<StressPoint> points;
+  std::vector<Vec3> samples;
+  const auto sample = [&](const SolidBatch& b, const Positions& at) {
+    stress_points(b.shape, b.law, b.c, at.X, at.x, StressPoints::samples, points);
+    samples.clear();
+    if (order == 2 && quadratic(b.shape))
+      for (const StressPoint& q : points) samples.push_back(q.X);
+    else
+      samples.push_back(CellMean(points).X);
+  };
+  each_cell(p, s.X, [&](size_t b, size_t, std::span<const int> corner, const Positions& at) {
+    const SolidBatch& batch = s.batches[b];
+    sample(batch, at);
+    stress_points(batch.shape, batch.law, batch.c, at.X, at.x, StressPoints::everywhere, points);
+    for (const int v : corner) {
+      double* to = shape.data() + static_cast<size_t>(v) * PatchFit::n_shape;
+      for (const Vec3& X : samples) PatchFit::add_sample(X - s.X[p.node[v]], to);
+      for (const StressPoint& q : points) PatchFit::add_extent(q.X - s.X[p.node[v]], q.w, to);
+    }
+  });
+  p.sharing.combine(shape, PatchFit::n_shape);
+  p.fit.reserve(n);
+  for (size_t v = 0; v < n; ++v) p.fit.emplace_back(order, shape.data() + v * PatchFit::n_shape);
+  const int width = PatchFit::n_moments(order);
+  std::vector<double> moments(n * width, 0.0);
+  each_cell(p, s.X, [&](size_t b, size_t, std::span<const int> corner, const Positions& at) {
+    sample(s.batches[b], at);
+    for (const int v : corner)
+      for (const Vec3& X : samples) p.fit[v].add_moments(X - s.X[p.node[v]], moments.data() + static_cast<size_t>(v) * width);
+  });
+  p.sharing.combine(moments, width);
+  for (size_t v = 0; v < n; ++v) p.fit[v].finish(moments.data() + v * width);
+  return p;
+}
+
+/// Polynomials of all patches about their corners (n x rows x 6).
+std::vector<double> StressRecovery::polynomials(const Patches& p, const std::vector<Vec3>& x) const {
+  const size_t n = p.node.size(), width = PatchFit::n_sums(p.order), size = static_cast<size_t>(PatchFit::n_rows(p.order)) * 6;
+  std::vector<double> sums(n * width, 0.0), polynomial(n * size);
+  std::vector<StressPoint> points;
+  each_cell(p, x, [&](size_t b, size_t, std::span<const int> corner, const Positions& at) {
+    const SolidBatch& batch = system_.batches[b];
+    stress_points(batch.shape, batch.law, batch.c, at.X, at.x, StressPoints::samples, points);
+    if (p.order == 2 && quadratic(batch.shape)) {
+      for (const int v : corner)
+        for (const StressPoint& q : points) p.fit[v].add_stress(q.X - system_.X[p.node[v]], q.S, sums.data() + v * width);
+    } else {
+      const CellMean cell(points);
+      for (const int v : corner) {
+        p.fit[v].add_stress(cell.X - system_.X[p.node[v]], cell.S, sums.data() + v * width);
+        if (p.order == 1) PatchFit::add_slope(cell.slope, sums.data() + v * width);
+      }
+    }
+  });
+  p.sharing.combine(sums, static_cast<int>(width));
+  for (size_t v = 0; v < n; ++v) p.fit[v].solve(sums.data() + v * width, polynomial.data() + v * size);
+  return polynomial;
+}
+
+namespace {
+
+/// Mean of the polynomials of a cell's corners: of the fullest patches alone, and the more the deeper a corner lies inside the region.
+class CellPolynomial {
+ public:
+  template <class Fit>
+  CellPolynomial(const System& s, const std::vector<int>& node, const std::vector<Fit>& fit, const double* polynomial, int rows,
+                 std::span<const int> corner) {
+    int best = 0;
+    for (const int v : corner) best = std::max(best, fit[v].rank());
+    double least = 1e300, sum = 0;
+    for (const int v : corner)
+      if (fit[v].rank() == best) least = std::min(least, fit[v].off_centre2());
+    for (const int v : corner) {
+      if (fit[v].rank() < best) continue;
+      const double w = std::exp(-2 * (fit[v].off_centre2() - least));
+      terms_.push_back({s.X[node[v]], w, Rows(polynomial + static_cast<size_t>(v) * rows * 6, rows, 6)});
+      sum += w;
+    }
+    for (Term& t : terms_) t.weight /= sum;
+  }
+  Vec6 operator()(const Vec3& X) const {
+    Vec6 S = Vec6::Zero();
+    for (const Term& t : terms_) S += t.weight * polynomial_at(t.p, X - t.centre);
+    return S;
+  }
+
+ private:
+  using Rows = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>>;
+  struct Term {
+    Vec3 centre;
+    double weight;
+    Rows p;
+  };
+  std::vector<Term> terms_;
+};
+
+constexpr int n_values = 16;  // of a site: cells, S, F
+
+}  // namespace
+
+/// Bars have their own stress alone: the sums of its components and of their von Mises stresses.
+void StressRecovery::add_bars(const std::vector<Vec3>& x, std::vector<double>& at, std::vector<double>& cell) const {
+  Positions ends;
+  for (size_t b = 0; b < system_.batches.size(); ++b) {
+    const SolidBatch& batch = system_.batches[b];
+    for (size_t e = 0; is_bar(batch.shape) && e < batch.cells.size(); ++e) {
+      ends.gather(system_, x, batch.nodes.data() + 2 * e, 2);
+      const Vec6 stress = bar_stress(batch.c, ends.X, ends.x);
+      cell[batch.cells[e]] = von_mises(stress);
+      for (const int end : {0, 1}) {
+        double* to = at.data() + static_cast<size_t>(site_of_[b][2 * e + end]) * n_values;
+        to[0] += 1, to[7] += von_mises(stress);
+        for (int c = 0; c < 6; ++c) to[1 + c] += stress[c];
+      }
+    }
+  }
+}
+
+StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x) const {
+  const System& s = system_;
+  Result out;
+  out.cell.assign(s.mesh->mesh.n_cells(), 0.0);
+  std::vector<double> at_site(site_.size() * n_values, 0.0);
+  std::vector<StressPoint> points;
+  std::vector<Mat3> F;
+  for (const Patches& p : patches_) {
+    const auto polynomial = polynomials(p, x);
+    each_cell(p, x, [&](size_t b, size_t e, std::span<const int> corner, const Positions& at) {
+      const SolidBatch& batch = s.batches[b];
+      const CellPolynomial P(s, p.node, p.fit, polynomial.data(), PatchFit::n_rows(p.order), corner);
+      stress_points(batch.shape, batch.law, batch.c, at.X, at.x, StressPoints::samples, points);
+      Eigen::Matrix<double, 6, Eigen::Dynamic> rest(6, points.size());
+      for (size_t q = 0; q < points.size(); ++q) rest.col(q) = points[q].S - P(points[q].X);
+      const Eigen::Matrix<double, 6, Eigen::Dynamic> extrapolated = rest * to_nodes(batch.shape).transpose();
+      F.resize(at.X.size());
+      nodal_gradients(batch.shape, at.X, at.x, F);
+      for (size_t a = 0; a < at.X.size(); ++a) {
+        double* to = at_site.data() + static_cast<size_t>(site_of_[b][e * at.X.size() + a]) * n_values;
+        const Vec6 S = P(at.X[a]) + extrapolated.col(a);
+        to[0] += 1;
+        for (int c = 0; c < 6; ++c) to[1 + c] += S[c];
+        for (int c = 0; c < 9; ++c) to[7 + c] += F[a].data()[c];
+      }
+    });
+  }
+  add_bars(x, at_site, out.cell);
+  sites_->combine(at_site, n_values);
+  for (size_t i = 0; i < site_.size(); ++i)
+    for (int c = 1; c < n_values; ++c) at_site[i * n_values + c] /= at_site[i * n_values];
+
+  std::vector<double> error(2 * site_.size(), 0.0);  // sum over the cells of V e^2 and of V
+  for (const Patches& p : patches_)
+    each_cell(p, x, [&](size_t b, size_t e, std::span<const int>, const Positions& at) {
+      const SolidBatch& batch = s.batches[b];
+      const int* site = site_of_[b].data() + e * at.X.size();
+      stress_points(batch.shape, batch.law, batch.c, at.X, at.x, StressPoints::integration, points);
+      double& mean = out.cell[batch.cells[e]];
+      for (const StressPoint& q : points) mean += von_mises(cauchy(q.F, q.S)) / static_cast<double>(points.size());
+      stress_points(batch.shape, batch.law, batch.c, at.X, at.x, StressPoints::everywhere, points);
+      double square = 0, volume = 0;
+      for (const StressPoint& q : points) {
+        Vec6 off = -q.S;
+        for (size_t a = 0; a < at.X.size(); ++a)
+          off += q.N[a] * Eigen::Map<const Vec6>(at_site.data() + static_cast<size_t>(site[a]) * n_values + 1);
+        const double vm = von_mises(cauchy(q.F, off));
+        square += q.w * vm * vm, volume += q.w;
+      }
+      for (size_t a = 0; a < at.X.size(); ++a) error[2 * site[a]] += square, error[2 * site[a] + 1] += volume;
+    });
+  sites_->combine(error, 2);
+  for (size_t i = 0; i < site_.size(); ++i) {
+    const double* v = at_site.data() + i * n_values;
+    const Eigen::Map<const Vec6> S(v + 1);
+    const bool bar = site_[i].region % 2;
+    out.stress.push_back(bar ? Vec6(S) : cauchy(Eigen::Map<const Mat3>(v + 7), S));
+    out.von_mises.push_back(bar ? v[7] : von_mises(out.stress.back()));
+    out.error.push_back(bar ? 0 : std::sqrt(error[2 * i] / error[2 * i + 1]));
+  }
+  return out;
+}
+
+}  // namespace hilo

@@ -1,0 +1,70 @@
+// Stress at the nodes, recovered from where the cells have it best [zienkiewicz-zhu-1992], region by region: never across a material.
+//
+// Each corner v of a region's cells gets a polynomial p_v, fitted to the second Piola-Kirchhoff stress at the sample points of the cells
+// around it (physics/patch_fit): quadratic where cells are, else linear.  A cell takes the mean P of those of its corners, the fullest
+// patches alone and the more the deeper a corner lies inside the region: at the surface points are one cell deep and tell no curvature.
+// What P leaves of the samples is extrapolated to the nodes in the cell's own coordinates, and the cells of a node are averaged:
+//
+//   S*_a = mean over cells of  P(X_a) + sum_p W_ap (S_p - P(X_p))
+//
+// so values come from the cell itself and only the curvature that its points do not see from around it.  Linear stress is exact from any
+// mesh, the rest of third order on the surface too (verify.SurfaceStress).  S lives in the reference configuration: it stays the same when
+// a body turns, and stays a polynomial along a beam bent into a circle, where the components of Cauchy stress do not.  At the node it is
+// carried to Cauchy stress F S* F^T/det F with the mean F of the cells there.
+//
+// The error at a node is the root of the mean square of the von Mises norm of (sum_a N_a S*_a - S) over the cells at it: raw stress at all
+// points of a cell against the recovered one.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "model/sharing.hpp"
+#include "physics/patch_fit.hpp"
+#include "physics/stress.hpp"
+#include "system/system.hpp"
+
+namespace hilo {
+
+class StressRecovery {
+ public:
+  /// Collective.
+  explicit StressRecovery(const System& system);
+
+  /// A node as a region sees it: one at the border of two regions is two sites.
+  struct Site {
+    int node;    // local
+    int region;  // 2 r for the cells of region r, 2 r + 1 for its bars
+  };
+  struct Result {
+    std::vector<Vec6> stress;       // Cauchy, of each site                             [Pa]
+    std::vector<double> von_mises;  // of it; of bars the mean of theirs                [Pa]
+    std::vector<double> error;      // 0 at bars                                        [Pa]
+    std::vector<double> cell;       // von Mises, mean over the integration points      [Pa]
+  };
+  const std::vector<Site>& sites() const { return site_; }
+  /// At positions x of the nodes.  Collective; the same on all ranks that hold a site.
+  Result recover(const std::vector<Vec3>& x) const;
+
+ private:
+  struct Patches {  // corners of the cells of one order: a patch each
+    int order;
+    std::vector<int> node;                 // (n)
+    std::vector<PatchFit> fit;             // (n)
+    std::vector<std::vector<int>> corner;  // per batch: patch of each corner of each cell (n_cells x n_corners); empty for other batches
+    Sharing sharing;
+  };
+  void find_sites();
+  Patches made_patches(int order, const std::vector<double>& second) const;
+  template <class Visit>
+  void each_cell(const Patches& p, const std::vector<Vec3>& x, Visit&& visit) const;
+  std::vector<double> polynomials(const Patches& p, const std::vector<Vec3>& x) const;
+  void add_bars(const std::vector<Vec3>& x, std::vector<double>& at, std::vector<double>& cell) const;
+
+  const System& system_;
+  std::vector<Site> site_;
+  std::vector<std::vector<int>> site_of_;  // per batch: site of each node of each cell (n_cells x n)
+  std::optional<Sharing> sites_;
+  std::vector<Patches> patches_;           // of order 1 and 2
+};
+
+}  // namespace hilo

@@ -1,0 +1,101 @@
+// Stress where it matters, on the surface: NAFEMS LE10 on coarse meshes, and the rate on a thick tube (Lame) for every shape.
+#include <numbers>
+#include <set>
+
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+/// A block whose nodes, mid-side ones too, lie where `map` puts them.
+Mesh curved(Shape shape, const std::array<int, 3>& n, const std::function<Vec3(const Vec3&)>& map) {
+  BlockOptions o;
+  o.shape = shape;
+  for (int i = 0; i < 3; ++i) o.n[i] = n[i];
+  Mesh m = block_mesh(o);
+  for (Vec3& X : m.X) X = map(X);
+  return m;
+}
+
+/// n: cells from the hole outwards, around, through the thickness.
+Mesh le10(Shape shape, const std::array<int, 3>& n) {
+  Mesh m = curved(shape, n, [](const Vec3& s) {
+    const double t = s[1] * std::numbers::pi / 2;
+    return Vec3((2 + 1.25 * s[0]) * std::cos(t), (1 + 1.75 * s[0]) * std::sin(t), 0.6 * s[2]);
+  });
+  std::set<std::int64_t> outer;
+  for (const Facet& f : m.facet_sets["xmax"])
+    for (const std::int64_t a : m.facet_nodes(f)) outer.insert(a);
+  for (const std::int64_t a : outer) {
+    const Vec3& X = m.X[a];
+    m.node_sets[X[0] < 1e-9 ? "outer and ymax" : X[1] < 1e-9 ? "outer and ymin" : "outer"].push_back(a);
+    if (std::abs(X[2] - 0.3) < 1e-9) m.node_sets["middle of outer"].push_back(a);
+  }
+  return m;
+}
+
+// Truth: sigma_yy = -5.38 MPa at the hole's edge, on top, on the long axis (NAFEMS LE10).
+TEST(SurfaceStress, OfCoarseLe10IsWithinThreePercentOfNafems) {
+  for (const auto& [shape, n] :
+       {std::pair{Shape::hex20, std::array{4, 6, 2}}, {Shape::hex20, {8, 12, 4}}, {Shape::wedge15, {4, 6, 2}}, {Shape::tet10, {4, 6, 2}}}) {
+    Case c("surface_stress");
+    const Mesh m = le10(shape, n);
+    c.use(m);
+    const Results r = c.solved("", "run.h5", "le10");
+    const auto s = r.table("/field/" + r.steps().back() + "/stress");
+    const auto error = r.table("/field/" + r.steps().back() + "/stress_error");
+    for (std::int64_t a = 0; a < m.n_nodes(); ++a) {
+      if ((m.X[a] - Vec3(2, 0, 0.6)).norm() > 1e-9) continue;
+      EXPECT_NEAR(s(a, 1), -5.38e6, 0.03 * 5.38e6) << info(shape).name << " " << n[0] << " x " << n[1] << " x " << n[2];
+      EXPECT_LT(std::abs(s(a, 1) + 5.38e6), error(a, 0) + 0.03 * 5.38e6);
+    }
+  }
+}
+
+/// Lame's thick tube from r = 1 to 2 under pressure p inside, plane strain: s_r, s_t = A -+ B/r^2, s_z = 2 nu A.
+struct Tube {
+  static constexpr double p = 1e4, A = p / 3, B = 4 * p / 3;
+  static Vec6 stress(const Vec3& X) {
+    const double r = std::hypot(X[0], X[1]), c = X[0] / r, s = X[1] / r, radial = A - B / (r * r), hoop = A + B / (r * r);
+    Vec6 v;
+    v << radial * c * c + hoop * s * s, radial * s * s + hoop * c * c, 0.6 * A, 0, 0, (radial - hoop) * c * s;
+    return v;
+  }
+  double inner = 0, outer = 0;  // largest error of the stress on the surfaces over p
+  double estimate = 0;          // largest stress_error over p
+  Tube(Shape shape, int n) {
+    Case c("surface_stress");
+    Mesh m = curved(shape, {n, n, 2}, [&](const Vec3& s) {
+      const double angle = s[1] * std::numbers::pi / 2, r = 1 + s[0];
+      return Vec3(r * std::cos(angle), r * std::sin(angle), 2 * s[2] / n);
+    });
+    add_node_set(m, "ends", [&](const Vec3& X) { return X[2] < 1e-9 || X[2] > 2.0 / n - 1e-9; });
+    c.use(m);
+    const Results run = c.solved("", "run.h5", "tube");
+    const auto s = run.table("/field/" + run.steps().back() + "/stress");
+    const auto error = run.table("/field/" + run.steps().back() + "/stress_error");
+    for (std::int64_t a = 0; a < m.n_nodes(); ++a) {
+      const double r = std::hypot(m.X[a][0], m.X[a][1]), off = (s.row(a).transpose() - stress(m.X[a])).norm() / p;
+      if (r < 1 + 1e-9) inner = std::max(inner, off);
+      if (r > 2 - 1e-9) outer = std::max(outer, off);
+      estimate = std::max(estimate, error(a, 0) / p);
+    }
+  }
+};
+
+// Truth: on the surface too the error falls with a power above that of the raw stress: 2 for quadratic cells, 1 for linear ones.
+TEST(SurfaceStress, OfAThickTubeConvergesFasterThanTheCellsOwn) {
+  for (const auto& [shape, inner, outer] :
+       {std::tuple{Shape::hex20, 0.020, 2.2}, {Shape::wedge15, 0.022, 2.0}, {Shape::tet10, 0.025, 2.0}}) {
+    const Tube coarse(shape, 4), fine(shape, 8);
+    EXPECT_LT(fine.inner, inner) << info(shape).name;
+    EXPECT_GT(std::log2(coarse.inner / fine.inner), outer) << info(shape).name;
+    EXPECT_GT(std::log2(coarse.outer / fine.outer), 2.3) << info(shape).name;
+  }
+  const Tube coarse(Shape::hex8, 8), fine(Shape::hex8, 16);
+  EXPECT_LT(fine.inner, 0.05);
+  EXPECT_GT(std::log2(coarse.inner / fine.inner), 1.6);
+}
+
+}  // namespace
+}  // namespace hilo::test
