@@ -7,7 +7,7 @@ folder=$(mktemp -d); trap 'rm -rf "$folder"' EXIT
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_mpi_yield_when_idle=1
 export OMPI_MCA_hwloc_base_binding_policy=none OPENBLAS_NUM_THREADS=1
 "$bin/hilo-import" "$scene/vehicle.geo" -o "$folder/mesh.h5" --define SIZE=1 > "$folder/log"
-"$bin/hilo-tag" "$folder/mesh.h5" "$scene/tags.toml" -o "$folder/tags.h5" >> "$folder/log"
+"$bin/hilo-tag" "$folder/mesh.h5" "$scene/../scaling/tags.toml" -o "$folder/tags.h5" >> "$folder/log"
 "$bin/hilo-part" "$folder/tags.h5" "$scene/scene.toml" -n "$ranks" -o "$folder/parts.h5" >> "$folder/log"
 peak() { sed -n 's/.*"peak_memory_bytes": \([0-9]*\),.*/\1/p' "$1"; }
 options=(--quiet --set time.end=0.0005 --set output.interval=0.0005 "$@")
