@@ -33,7 +33,8 @@ class Bathe final : public StageIntegrator {
     return at(u.q, v1_, a1_, t_ + h, c1);
   }
 
-  void finish(State& s) override { s.v = v1_, a0_ = a1_, fresh_ = false; }
+  void end_velocity(Config& v) override { v = v1_; }
+  void finish(const Config&) override { a0_ = a1_, fresh_ = false; }
   const Config& acceleration() const override { return a1_; }
   double own_time() const override { return 1; }
 

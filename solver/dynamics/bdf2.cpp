@@ -30,7 +30,8 @@ class Bdf2 final : public StageIntegrator {
     return s;
   }
 
-  void finish(State& s) override { s.v = v1_, dq_before_ = dq_, vm_ = v0_, h_before_ = h_; }
+  void end_velocity(Config& v) override { v = v1_; }
+  void finish(const Config&) override { dq_before_ = dq_, vm_ = v0_, h_before_ = h_; }
   const Config& acceleration() const override { return a1_; }
   double own_time() const override { return 1; }
 

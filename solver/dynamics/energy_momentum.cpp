@@ -36,9 +36,9 @@ class EnergyMomentum final : public StageIntegrator {
     return s;
   }
 
-  void finish(State& s) override {
-    combine(s.v, {{1, &v0_}, {h_, &a_}});
-    if (clock_) clock_->accept(s.v, a_);
+  void end_velocity(Config& v) override { combine(v, {{1, &v0_}, {h_, &a_}}); }
+  void finish(const Config& v) override {
+    if (clock_) clock_->accept(v, a_);
   }
   void forget() override {
     if (clock_) clock_->restart();
@@ -47,6 +47,7 @@ class EnergyMomentum final : public StageIntegrator {
   const Config& acceleration() const override { return a_; }
   double own_time() const override { return 0.5; }
   bool alternates() const override { return true; }
+  bool keeps_energy() const override { return true; }
 
  private:
   double chi_, t_ = 0, t_end_ = 0, h_ = 0;

@@ -36,8 +36,8 @@ class GeneralizedAlpha final : public StageIntegrator {
     return s;
   }
 
-  void finish(State& s) override {
-    s.v = v1_;
+  void end_velocity(Config& v) override { v = v1_; }
+  void finish(const Config&) override {
     combine(jerk_, {{1 / h_, &a1_}, {-1 / h_, &a0_}});
     a0_ = a1_, b_at_start_ = b1_, h_b_ = h_;
   }

@@ -34,7 +34,7 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
     const NewtonReport r = newton(
         system, tools.solver, [&](const Unknown& u) { return from_left(stage(k, u), h); }, solved_[k], lambda_, tools.newton);
     all.iterations += r.iterations, all.linear_iterations += r.linear_iterations;
-    all.correction = r.correction, all.residual = r.residual;
+    all.correction = r.correction, all.residual = r.residual, all.force = std::max(all.force, r.force);
     all.least_det = std::min(all.least_det, r.least_det);
     if (!r.converged) {
       all.converged = false, all.reason = r.reason;
@@ -49,10 +49,14 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
   return all;
 }
 
+void StageIntegrator::end(State& s) {
+  end_velocity(s.v);
+  s.q = solved_.back().q, s.lambda = lambda_;
+}
+
 void StageIntegrator::accept(State& s) {
-  finish(s);
-  s.q = solved_.back().q;
-  s.lambda = lambda_;
+  end(s);
+  finish(s.v);
   for (int k = 0; k < n_stages(); ++k)
     if (predictor_ == Predictor::rigid_rotation)
       past_[k].accept(*system_, h_, std::move(missed_[k]), taken_[k].lambda);

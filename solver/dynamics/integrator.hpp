@@ -40,6 +40,8 @@ class Integrator {
   virtual std::string name() const = 0;
   /// Solve a step of length h from s, first guess by `predictor`; s is left alone.
   virtual NewtonReport solve(const StepTools& tools, const State& s, double h, Predictor predictor) = 0;
+  /// Positions, velocities and multipliers at the end of the step solved last; nothing is remembered yet.
+  virtual void end(State& s) = 0;
   /// s becomes the end of the step solved last.
   virtual void accept(State& s) = 0;
   /// Stages of the step solved last; they refer to arrays of the integrator.
@@ -55,12 +57,15 @@ class Integrator {
   virtual void restart() {}
   /// Whether accelerations and multipliers alternate about the true ones from step to step, so that neighbours must be averaged.
   virtual bool alternates() const { return false; }
+  /// Whether the balance of energy closes over every step, up to what Newton leaves.
+  virtual bool keeps_energy() const { return false; }
 };
 
 /// Methods whose stages are solved one after another, each for one unknown configuration.
 class StageIntegrator : public Integrator {
  public:
   NewtonReport solve(const StepTools& tools, const State& s, double h, Predictor predictor) final;
+  void end(State& s) final;
   void accept(State& s) final;
   std::span<const Taken> taken() const final { return taken_; }
   void restart() final { past_.clear(), forget(); }
@@ -73,8 +78,10 @@ class StageIntegrator : public Integrator {
  protected:
   virtual int n_stages() const { return 1; }
   virtual double instant(int) const { return 1; }  // of stage k's unknown, in units of the step
-  /// Velocities of the accepted end, and history.
-  virtual void finish(State& s) = 0;
+  /// Velocities at the end of the step solved last.
+  virtual void end_velocity(Config& v) = 0;
+  /// The step is accepted with end velocities v: history.
+  virtual void finish(const Config& v) = 0;
   /// Its own history, at a restart.
   virtual void forget() {}
 

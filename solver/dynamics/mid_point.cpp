@@ -22,7 +22,8 @@ class MidPoint final : public StageIntegrator {
     return s;
   }
 
-  void finish(State& s) override { combine(s.v, {{1, &v0_}, {h_, &a_}}); }
+  void end_velocity(Config& v) override { combine(v, {{1, &v0_}, {h_, &a_}}); }
+  void finish(const Config&) override {}
   const Config& acceleration() const override { return a_; }
   double own_time() const override { return 0.5; }
   bool alternates() const override { return true; }

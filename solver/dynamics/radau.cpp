@@ -52,9 +52,11 @@ class Radau final : public Integrator {
     return report;
   }
 
+  void end(State& s) override { s.q = u_[2].q, s.v = v_[2], s.lambda = lambda_[2]; }
+
   void accept(State& s) override {
-    tried_ = false, a_end_ = a_[2];
-    s.q = u_[2].q, s.v = v_[2], s.lambda = lambda_[2], s.t = t_ + h_;
+    end(s);
+    tried_ = false, a_end_ = a_[2], s.t = t_ + h_;
     for (int i = 0; i < 3; ++i)
       if (predictor_ == Predictor::rigid_rotation)
         past_[i].accept(*system_, h_, std::move(missed_[i]), lambda_[i]);
@@ -172,7 +174,7 @@ class Radau final : public Integrator {
       system.mask_fixed(r_[i].r);
       const double x = relative_residual(system, r_[i]);
       if (!(x <= report.residual)) report.residual = x;  // keeps a NaN
-      report.least_det = std::min(report.least_det, r_[i].least_det);
+      report.least_det = std::min(report.least_det, r_[i].least_det), report.force = std::max(report.force, r_[i].force_scale);
     }
     phases().evaluations += 3;
     if (kept_) return;

@@ -36,26 +36,14 @@ Recorder::Recorder(const System& system, const Scene& scene, Setup setup)
   for (const Body& b : system.bodies) arms_.push_back(body_arms(b));
 }
 
-/// Factor of what follows the load steps of a static analysis.
-double Recorder::load_factor(double t) const {
-  const Entry& time = scene_.table("time");
-  return setup_.is_static ? t / (time.has("end") ? time.number("end") : 1) : 1;
-}
-
 /// Histories that belong to an instant: energies, momentum, violation, points of bodies, stations' positions, velocities and axes.
-std::vector<double> Recorder::point_values(const State& s) {
-  const System::Energy e = system_.energy(s.q, s.v);
-  const double total = e.kinetic + e.elastic + e.gravity;
-  if (!started_) E0_ = total;
-  started_ = true, last_t_ = s.t;
-  max_T_ = std::max({max_T_, e.kinetic, 1e-300});
-  const double balance = total - E0_ - work_ + dissipated_, violation = system_.constraint_violation(s.q, s.t, load_factor(s.t));
-  worst_balance_ = std::max(worst_balance_, std::abs(balance));
-  worst_violation_ = std::max(worst_violation_, violation);
-  std::vector<double> v{e.kinetic, e.elastic, e.gravity, work_, dissipated_, balance};
+std::vector<double> Recorder::point_values(const State& s, const Ledger& ledger) {
+  const System::Energy& e = ledger.energy;
+  last_t_ = s.t;
+  std::vector<double> v{e.kinetic, e.elastic, e.gravity, ledger.work, ledger.dissipated, ledger.balance};
   for (int i = 0; i < 3; ++i) v.push_back(e.momentum[i]);
   for (int i = 0; i < 3; ++i) v.push_back(e.angular[i]);
-  v.push_back(violation);
+  v.push_back(ledger.rows.worst());
   for (size_t b = 1; b < system_.bodies.size(); ++b)
     for (const Vec3& arm : arms_[b]) {
       const Vec3 x = s.q.c[b] + s.q.R[b] * arm;
@@ -90,7 +78,7 @@ std::vector<double> Recorder::point_values(const State& s) {
 }
 
 /// Histories that belong inside a step: reactions of joints, springs and motions, accelerations of stations.
-std::vector<double> Recorder::mid_values(const State& s, const Stage& stage, std::span<const double> lambda_, const Config& a) {
+std::vector<double> Recorder::mid_values(const Stage& stage, std::span<const double> lambda_, const Config& a) {
   std::vector<double> v;
   std::vector<double> full;
   std::span<const double> lambda = lambda_;
@@ -138,7 +126,6 @@ std::vector<double> Recorder::mid_values(const State& s, const Stage& stage, std
       push(f.head<3>()), push(f.tail<3>());
     }
   }
-  (void)s;
   for (const Station& st : system_.stations) {
     Vec3 mean = Vec3::Zero();
     if (st.body >= 0) {
@@ -238,10 +225,10 @@ void Recorder::declare_arrays(Store& f) {
   }
 }
 
-void Recorder::first(const State& s) {
+void Recorder::first(const State& s, const Ledger& ledger) {
   Row row;
   row.t = s.t;
-  row.point = point_values(s);
+  row.point = point_values(s, ledger);
   row.field = true;
   row.q = s.q, row.v = s.v;
   next_field_ = setup_.interval;
@@ -251,23 +238,19 @@ void Recorder::first(const State& s) {
   share_failure();
 }
 
-void Recorder::step(const State& s, std::span<const Taken> taken, const Config& a, int iterations) {
+void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, const Config& a, int iterations) {
   const Timed timed(phases().output);
   ++phases().records;
-  for (const Taken& t : taken) {
-    const System::Work w = system_.work(t.stage, t.lambda);
-    work_ += w.external, dissipated_ += w.dissipated;
-  }
   Interval interval;
   interval.h = s.t - last_t_;
-  interval.mid = mid_values(s, taken.back().stage, taken.back().lambda, a);
+  interval.mid = mid_values(taken.stage, taken.lambda, a);
   interval.a = a;
   interval.starts_at_jump = !rows_.empty() && rows_.back().jump;
   intervals_.push_back(std::move(interval));
   Row row;
   row.t = s.t;
   row.newton = iterations;
-  row.point = point_values(s);
+  row.point = point_values(s, ledger);
   row.jump = std::any_of(setup_.jumps.begin(), setup_.jumps.end(),
                          [&](double t) { return std::abs(t - s.t) < 1e-9 * std::max(1.0, std::abs(t)); });
   row.field = setup_.is_static || s.t >= next_field_ * (1 - 1e-9);
@@ -384,7 +367,6 @@ void Recorder::write_histories(Store& f, const Row& row, const std::vector<doubl
 
 void Recorder::finish(bool complete) {
   advance(true);
-  worst_balance_ /= std::max(max_T_, 1e-300);
   on_store([&](Store& f) {
     f.set("/", "complete", static_cast<std::int64_t>(complete));
     f.flush();

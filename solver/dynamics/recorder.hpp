@@ -10,6 +10,7 @@
 #include <optional>
 #include <string_view>
 
+#include "dynamics/audit.hpp"
 #include "dynamics/profile.hpp"
 #include "dynamics/redundancy.hpp"
 #include "dynamics/slabs.hpp"
@@ -42,18 +43,14 @@ class Recorder {
   };
   Recorder(const System& system, const Scene& scene, Setup setup);
   /// The state before the first step.
-  void first(const State& s);
-  /// A finished step: the new state, its stages (all for work, the last for reactions), accelerations and Newton iterations.
-  void step(const State& s, std::span<const Taken> taken, const Config& a, int iterations);
-  /// Work of a blow between two steps [J].
-  void push(double work) { work_ += work; }
+  void first(const State& s, const Ledger& ledger);
+  /// A finished step: the new state and its account, the last stage for reactions, accelerations and Newton iterations.
+  void step(const State& s, const Ledger& ledger, const Taken& taken, const Config& a, int iterations);
   /// Last values; publishes the files.  `complete` is false for a run stopped by physics.
   void finish(bool complete);
   /// Remove what was written (input error after the file was opened).
   void discard();
 
-  double balance() const { return worst_balance_; }  // largest |E - E0 - W + D| / max T
-  double violation() const { return worst_violation_; }
   int n_fields() const { return n_fields_; }
   std::int64_t n_rows() const { return static_cast<std::int64_t>(rows_written_); }
 
@@ -76,9 +73,8 @@ class Recorder {
   void write_histories(Store& f, const Row& row, const std::vector<double>& mid) const;
   void on_store(const std::function<void(Store&)>& write);
   void share_failure() const;
-  double load_factor(double t) const;
-  std::vector<double> point_values(const State& s);
-  std::vector<double> mid_values(const State& s, const Stage& stage, std::span<const double> lambda, const Config& a);
+  std::vector<double> point_values(const State& s, const Ledger& ledger);
+  std::vector<double> mid_values(const Stage& stage, std::span<const double> lambda, const Config& a);
   void advance(bool last);
   std::vector<std::pair<double, const Interval*>> extrapolated(const std::vector<const Interval*>& m, bool from_right) const;
   void write_row(const std::vector<std::pair<double, const Interval*>>& weights);
@@ -102,9 +98,8 @@ class Recorder {
   std::deque<Row> rows_;
   std::deque<Interval> intervals_;  // interval k starts at row k of rows_
   std::deque<Interval> past_;       // the two intervals before intervals_[0], for the last row
-  bool first_written_ = false, started_ = false;
-  double last_t_ = 0;
-  double next_field_ = 0, E0_ = 0, max_T_ = 0, work_ = 0, dissipated_ = 0, worst_balance_ = 0, worst_violation_ = 0;
+  bool first_written_ = false;
+  double last_t_ = 0, next_field_ = 0;
   int n_fields_ = 0;
   std::shared_ptr<const StressRecovery> recovery_;          // made with the first field that needs it
   std::optional<Slabs> nodes_, cells_;                      // rows of the fields

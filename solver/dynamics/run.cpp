@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/table.hpp"
+#include "dynamics/audit.hpp"
 #include "dynamics/clock.hpp"
 #include "dynamics/predictor.hpp"
 #include "dynamics/profile.hpp"
@@ -43,18 +45,6 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
   return solver;
 }
 
-std::string json_text(const std::string& s) {
-  std::string out = "\"";
-  for (char c : s) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (c == '\n')
-      out += "\\n";
-    else if (static_cast<unsigned char>(c) >= 32)
-      out += c;
-  }
-  return out + "\"";
-}
-
 double peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -90,7 +80,7 @@ class Run {
     state_.v = system_.start_velocity;
     system_.prescribe(state_.q, 0, is_static_ && !time.has("end") ? 0 : 1);
     solver_ = choose_solver(scene_, system_, talk_);
-    if (!is_static_ && system_.constraint_violation(state_.q, 0) > 1e-11 * std::max(1.0, system_.length)) {
+    if (!is_static_ && system_.violation(state_.q, 0).worst() > 1e-11 * std::max(1.0, system_.length)) {
       assembled_ = assemble_positions(system_, *solver_, state_.q);
       if (talk_) fmt::print(stderr, "start positions changed by up to {:.3g} m to put the joints together\n", assembled_);
     }
@@ -101,6 +91,7 @@ class Run {
       for (const auto& d : redundancy_.dropped) fmt::print(stderr, "  {}\n", d);
     }
     state_.lambda.assign(3 * system_.n_joint_blocks(), 0.0);
+    audit_.emplace(system_, !is_static_ && integrator_->keeps_energy(), newton_.tolerance);
     open_recorder();
     try {
       if (is_static_)
@@ -146,7 +137,8 @@ class Run {
     const Entry& time = scene_.table("time");
     const int n = static_cast<int>(time.number("steps"));
     const double end = time.has("end") ? time.number("end") : 1;
-    recorder_->first(state_);
+    audit_->start(state_);
+    recorder_->first(state_, audit_->ledger());
     Progress progress(options_.quiet || system_.comm->rank != 0, 0, 1);
     const Config no_acceleration = [&] {
       Config zero;
@@ -155,24 +147,26 @@ class Run {
     }();
     double done = 0, dt = 1.0 / n;
     int cuts = 0;
+    State reached = state_;
     while (done < 1 - 1e-12) {
       const double next = std::min(1.0, done + dt);
-      Config q = state_.q;
-      std::vector<double> lambda = state_.lambda;
-      const NewtonReport r = equilibrium(system_, *solver_, q, lambda, next * end, next, false, newton_);
+      reached.q = state_.q, reached.lambda = state_.lambda, reached.t = next * end;
+      const NewtonReport r = equilibrium(system_, *solver_, reached.q, reached.lambda, reached.t, next, false, newton_);
       report_.iterations += r.iterations;
-      if (!r.converged) {
-        if (++cuts > max_cuts_) return stop(r.reason);
+      Taken taken{stage_at(reached.q, reached.t), reached.lambda};
+      taken.stage.a = &no_acceleration, taken.stage.load_factor = next, taken.stage.work_from = &state_.q;
+      failure_ = r.converged ? audit_->look(state_.q, reached, {&taken, 1}, r, next) : r.reason;
+      if (!failure_.empty()) {
+        system_.commit(state_.q);
+        if (++cuts > max_cuts_) return stop(failure_);
         ++report_.cuts, dt /= 2;
         continue;
       }
       cuts = 0;
-      least_det_ = std::min(least_det_, r.least_det);
-      Config before = state_.q;
-      state_.q = q, state_.lambda = lambda, state_.t = next * end;
-      Taken taken{stage_at(state_.q, next * end), state_.lambda};
-      taken.stage.a = &no_acceleration, taken.stage.load_factor = next, taken.stage.work_from = &before;
-      recorder_->step(state_, {&taken, 1}, no_acceleration, r.iterations);
+      audit_->accept(reached.t);
+      std::swap(state_, reached);
+      taken.stage.work_from = nullptr;
+      recorder_->step(state_, audit_->ledger(), taken, no_acceleration, r.iterations);
       done = next;
       ++report_.steps;
       progress.show(done, report_.steps, r.iterations);
@@ -189,7 +183,8 @@ class Run {
     if (time.text("start") == "equilibrium") {
       const NewtonReport r = equilibrium(system_, *solver_, state_.q, state_.lambda, 0, 1, true, newton_);
       if (!r.converged) {
-        recorder_->first(state_);
+        audit_->start(state_);
+        recorder_->first(state_, audit_->ledger());
         return stop("no static equilibrium at the start: " + r.reason);
       }
       if (talk_) fmt::print(stderr, "equilibrium after {} iterations\n", r.iterations);
@@ -211,7 +206,7 @@ class Run {
     double from = 0;
     for (size_t i = 0; i < events.size(); ++i) {
       if (i == 0 || events[i - 1].jump || integrator_->needs_acceleration()) restart(control, step);
-      if (i == 0) recorder_->first(state_);
+      if (i == 0) audit_->start(state_), recorder_->first(state_, audit_->ledger());
       if (!(control ? controlled_steps(*control, events[i].t, progress) : equal_steps(from, events[i].t, step, progress))) {
         progress.done();
         return stop(failure_);
@@ -230,7 +225,7 @@ class Run {
     if (state_.t > 0 && std::any_of(system_.joints.begin(), system_.joints.end(), [](const Connector& j) { return j.drive.row >= 0; })) {
       const double before = system_.energy(state_.q, state_.v).kinetic;  // the rate of a drive may jump here
       project_velocities(system_, *solver_, state_.q, state_.v, state_.t);
-      recorder_->push(system_.energy(state_.q, state_.v).kinetic - before);
+      audit_->push(system_.energy(state_.q, state_.v).kinetic - before);
     }
     if (integrator_->needs_acceleration() || control) consistent_acceleration(system_, *solver_, state_, 0.05 * step);
     integrator_->restart();
@@ -303,16 +298,10 @@ class Run {
         failure_ = r.reason;
         continue;
       }
-      if (r.least_det <= 0) {
-        failure_ = fmt::format("a cell is turned inside out (det F = {:.2g})", r.least_det);
-        continue;
-      }
-      if (std::string fault = system_.fault(*integrator_->taken().back().stage.end); !fault.empty()) {
-        failure_ = std::move(fault);
-        continue;
-      }
-      least_det_ = std::min(least_det_, r.least_det);
-      return true;
+      integrator_->end(end_);
+      failure_ = system_.fault(end_.q);
+      if (failure_.empty()) failure_ = audit_->look(state_.q, end_, integrator_->taken(), r);
+      if (failure_.empty()) return true;
     }
     return false;
   }
@@ -322,7 +311,8 @@ class Run {
     integrator_->accept(state_);
     state_.t = t;
     system_.commit(state_.q, &state_.v);
-    recorder_->step(state_, integrator_->taken(), integrator_->acceleration(), iterations_);
+    audit_->accept(t);
+    recorder_->step(state_, audit_->ledger(), integrator_->taken().back(), integrator_->acceleration(), iterations_);
     ++report_.steps;
     progress.show(t, report_.steps, iterations_);
   }
@@ -356,9 +346,11 @@ class Run {
       add("estimated_position_error", fmt::format("{:.6g}", estimated_));
       add("rejected_steps", fmt::format("{}", rejected_));
     }
-    add("energy_balance", fmt::format("{:.6g}", recorder_->balance()));
-    add("constraint_violation", fmt::format("{:.6g}", recorder_->violation()));
-    add("least_det_F", least_det_ < 1e299 ? fmt::format("{:.6g}", least_det_) : "null");
+    const double balance = audit_->balance(), det = audit_->least_det();
+    add("energy_balance", std::isnan(balance) ? "null" : fmt::format("{:.6g}", balance));
+    add("constraint_violation", fmt::format("{:.6g}", audit_->violation()));
+    add("least_det_F", det < 1e299 ? fmt::format("{:.6g}", det) : "null");
+    add("audit", audit_->json(report_.complete ? "" : report_.reason));
     add("position_change", fmt::format("{:.6g}", assembled_));
     add("velocity_change", fmt::format("{:.6g}", projected_));
     add("seconds", fmt::format("{{\"all\": {:.6g}, \"assembly\": {:.6g}, \"solve\": {:.6g}, \"output\": {:.6g}}}", wall_clock() - began_,
@@ -384,9 +376,10 @@ class Run {
   std::unique_ptr<KktSolver> solver_;
   std::unique_ptr<Integrator> integrator_;
   std::unique_ptr<Recorder> recorder_;
-  State state_;
+  std::optional<Audit> audit_;
+  State state_, end_;  // accepted; of the step tried last
   std::string failure_;
-  double began_, processor_began_, peak_ = 0, assembled_ = 0, projected_ = 0, least_det_ = 1e300, estimated_ = -1;
+  double began_, processor_began_, peak_ = 0, assembled_ = 0, projected_ = 0, estimated_ = -1;
   int max_cuts_ = 8, level_ = 0, good_ = 0, iterations_ = 0;
   long rejected_ = 0;
   bool is_static_ = false, talk_;

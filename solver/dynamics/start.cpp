@@ -67,7 +67,7 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
     system.move(q, z);
     system.commit(q);
     for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += with.sigma * z[first + i];
-    done = system.constraint_violation(q, 0) <= enough && (turn + shift / system.length < 1e-6 || (!flexible && it > 20));
+    done = system.violation(q, 0).worst() <= enough && (turn + shift / system.length < 1e-6 || (!flexible && it > 20));
   }
   if (!done) {
     double worst = 0, g[max_rows];

@@ -58,8 +58,8 @@ class ZhouTamma final : public StageIntegrator {
     return s;
   }
 
-  void finish(State& s) override {
-    combine(s.v, {{1, &v0_}, {h_, &a0_}, {l5_ * h_, &D_}});
+  void end_velocity(Config& v) override { combine(v, {{1, &v0_}, {h_, &a0_}, {l5_ * h_, &D_}}); }
+  void finish(const Config&) override {
     combine(jerk_, {{1 / h_, &D_}});
     combine(a_at_start_, {{1, &a0_}, {1, &D_}});
     h_a_ = h_;

@@ -14,12 +14,13 @@
 
 namespace hilo {
 
-/// What a shape is: name, nodes, dimension, VTK cell type, XDMF topology number, and the local nodes of its facets
-/// (outward, corner nodes first, then mid-side nodes).
+/// What a shape is: name, nodes, dimension, VTK cell type, XDMF topology number, the local nodes of its facets
+/// (outward, corner nodes first, then mid-side nodes), and the corners at the far ends of the edges from node 0 (right-handed).
 struct ShapeInfo {
   std::string_view name;
   int n_nodes, n_corners, dimension, vtk_type, xdmf_type;
   std::vector<std::vector<int>> facets;
+  std::vector<int> edges;
 };
 const ShapeInfo& info(Shape shape);
 inline const ShapeInfo& info(std::uint8_t shape) { return info(static_cast<Shape>(shape)); }

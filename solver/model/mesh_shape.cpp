@@ -17,7 +17,10 @@ struct Kind {
 
 Kind make(std::string_view name, int corners, int dimension, int vtk, int xdmf, const Lists& facets, Lists neighbours,
           const Lists& edges = {}) {
-  Kind k{{name, corners + static_cast<int>(edges.size()), corners, dimension, vtk, xdmf, facets}, std::move(neighbours), {}};
+  Kind k{{name, corners + static_cast<int>(edges.size()), corners, dimension, vtk, xdmf, facets,
+          neighbours.empty() ? std::vector<int>{1} : neighbours[0]},
+         std::move(neighbours),
+         {}};
   for (auto& row : k.middle) row.fill(-1);
   for (size_t e = 0; e < edges.size(); ++e)
     k.middle[edges[e][0]][edges[e][1]] = k.middle[edges[e][1]][edges[e][0]] = corners + static_cast<int>(e);

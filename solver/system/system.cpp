@@ -133,14 +133,27 @@ void System::prescribe(Config& q, double t, double ramp) const {
   follow(q);
 }
 
-double System::constraint_violation(const Config& q, double t, double factor) const {
-  double worst = 0, g[max_rows];
-  for (const Connector& j : joints) {
+System::Violation System::violation(const Config& q, double t, double factor) const {
+  Violation out;
+  double g[max_rows];
+  for (size_t i = 0; i < joints.size(); ++i) {
+    const Connector& j = joints[i];
     j.row_values(j.values(q), g);
     if (j.drive.row >= 0) g[j.drive.row] -= j.drive.course(t, factor).value;
-    for (int r = 0; r < j.n_rows(); ++r) worst = std::max(worst, std::abs(g[r]));
+    for (int r = 0; r < j.n_rows(); ++r) {
+      double& worst = j.active[r] ? out.kept : out.dropped;
+      if (const double x = std::isnan(g[r]) ? 1e300 : std::abs(g[r]); x > worst)
+        worst = x, (j.active[r] ? out.kept_joint : out.dropped_joint) = static_cast<int>(i);
+    }
   }
-  return comm->max(worst);
+  if (comm->size == 1) return out;
+  const auto share = [&](double& worst, int& joint) {
+    const double own = worst;
+    worst = comm->max(own);
+    joint = static_cast<int>(comm->max(own == worst ? joint : -1));
+  };
+  share(out.kept, out.kept_joint), share(out.dropped, out.dropped_joint);
+  return out;
 }
 
 std::string System::fault(const Config& q) const {

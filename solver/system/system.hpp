@@ -164,8 +164,21 @@ class System {
   void follow(Config& q) const;
   /// Prescribed positions at time t: driven bodies and fixed components.
   void prescribe(Config& q, double t, double ramp = 1) const;
-  /// Largest |g| of the active joint rows [m, 1].
-  double constraint_violation(const Config& q, double t, double factor = 1) const;
+  /// Largest |g| of the joint rows that are kept and of those dropped as redundant [m, 1], with their joints, or -1.
+  struct Violation {
+    double kept = 0, dropped = 0;
+    int kept_joint = -1, dropped_joint = -1;
+    double worst() const { return std::max(kept, dropped); }
+  };
+  Violation violation(const Config& q, double t, double factor = 1) const;
+  /// Largest angle by which a body or a cell turns from q0 to q1, and which, the same on all ranks.
+  struct Turn {
+    double angle = 0;  // [rad]
+    int body = -1, region = -1;
+  };
+  Turn largest_turn(const Config& q0, const Config& q1) const;
+  /// "body \"b\"" or "a cell of region \"r\"".
+  std::string name(const Turn& turn) const;
   /// First and, where asked for, second derivatives by time of all joint rows less their courses, laid out like lambda.
   void row_rates(const Config& q, const Config& v, const Config* a, double t, std::vector<double>& rate,
                  std::vector<double>* acceleration) const;

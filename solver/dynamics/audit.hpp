@@ -1,0 +1,69 @@
+// The audit of a run: what is known exactly is checked at every step, before the step is accepted.
+//
+//   energy      |dE - dW + dD|, where the method keeps it    <= bound x (largest kinetic energy so far, or force x motion of the step)
+//   joint rows  |g|, of the rows kept and of those dropped   <= bound x length of the scene
+//   turn        of every body and cell over the step         <= 2 rad: at half a turn (R0 + R1)/2 loses rank, and with it equations vanish
+//   everything finite; det F of every cell above zero (Newton's report)
+//
+// with bound = max(1e-8, 10 solver.tolerance) of energy and a tenth of it of rows.
+#pragma once
+#include <span>
+#include <string>
+
+#include "dynamics/integrator.hpp"
+
+namespace hilo {
+
+/// Energies at an instant, the work and dissipation until then [J], and how far joints are open.
+struct Ledger {
+  System::Energy energy;
+  double work = 0, dissipated = 0, balance = 0;  // balance: E - E0 - W + D
+  System::Violation rows;
+};
+
+class Audit {
+ public:
+  Audit(const System& system, bool keeps_energy, double tolerance);
+  /// The state before the first step.
+  void start(const State& s);
+  /// The step from q0 to `end`: why it cannot be accepted, or "".  `load_factor` is that of a static analysis.
+  std::string look(const Config& q0, const State& end, std::span<const Taken> taken, const NewtonReport& newton, double load_factor = 1);
+  /// The step looked at last is accepted.
+  void accept(double t);
+  /// Work of a blow between two steps [J].
+  void push(double work) { sums_.work += work; }
+  /// Whether the step looked at last opens a row that was dropped as redundant.
+  bool opens_dropped_row() const { return opens_dropped_row_; }
+  /// The account at the end of the step accepted last.
+  const Ledger& ledger() const { return now_; }
+  /// Largest |E - E0 - W + D| over the largest kinetic energy; NaN where nothing ever moved.
+  double balance() const;
+  double violation() const { return worst_.rows.worst(); }
+  double least_det() const { return worst_.det; }
+  /// The verdict as a JSON object; `failure`: why the run stopped, or "".
+  std::string json(const std::string& failure) const;
+
+ private:
+  struct Worst {  // of the accepted steps, each with its time
+    double step = 0, step_t = 0, sum = 0, sum_t = 0;  // energy, over what it is judged by
+    System::Violation rows;
+    double kept_t = 0, dropped_t = 0;
+    System::Turn turn;
+    double turn_t = 0, det = 1e300, det_t = 0;
+  };
+  double motion(const Config& q0, const Config& q1) const;
+  const System& system_;
+  bool keeps_energy_;
+  double energy_bound_, row_bound_;
+  bool opens_dropped_row_ = false;
+  double E0_ = 0, moving_ = 0, n_steps_ = 0, largest_ = 0;  // largest kinetic energy; largest |E - E0 - W + D| [J]
+  Ledger now_, next_;
+  struct {
+    double work = 0, dissipated = 0;
+  } sums_;
+  double step_ = 0, sum_ = 0, det_ = 1e300, moving_next_ = 0;  // of the step looked at last
+  System::Turn turn_;
+  Worst worst_;
+};
+
+}  // namespace hilo
