@@ -1,6 +1,6 @@
 // The audit of a run: what is known exactly is checked at every step, before the step is accepted.
 //
-//   energy      |dE - dW + dD|, where the method keeps it    <= bound x (largest kinetic energy so far, or force x motion of the step)
+//   energy      |dE - dW + dD|, where the method keeps it    <= bound x largest kinetic energy so far + rounding
 //   joint rows  |g|, of the rows kept and of those dropped   <= bound x length of the scene
 //   turn        of every body and cell over the step         <= 2 rad: at half a turn (R0 + R1)/2 loses rank, and with it equations vanish
 //   everything finite; det F of every cell above zero (Newton's report)
@@ -36,7 +36,9 @@ class Audit {
   bool opens_dropped_row() const { return opens_dropped_row_; }
   /// The account at the end of the step accepted last.
   const Ledger& ledger() const { return now_; }
-  /// Largest |E - E0 - W + D| over the largest kinetic energy; NaN where nothing ever moved.
+  /// At the end of the run: why it must not be called complete, or "".
+  std::string verdict() const;
+  /// Largest |E - E0 - W + D| over the largest kinetic energy; NaN where nothing ever moved but by rounding.
   double balance() const;
   double violation() const { return worst_.rows.worst(); }
   double least_det() const { return worst_.det; }
@@ -44,24 +46,23 @@ class Audit {
   std::string json(const std::string& failure) const;
 
  private:
-  struct Worst {  // of the accepted steps, each with its time
+  struct Worst {                                      // of the accepted steps, each with its time
     double step = 0, step_t = 0, sum = 0, sum_t = 0;  // energy, over what it is judged by
     System::Violation rows;
     double kept_t = 0, dropped_t = 0;
     System::Turn turn;
     double turn_t = 0, det = 1e300, det_t = 0;
   };
-  double motion(const Config& q0, const Config& q1) const;
   const System& system_;
   bool keeps_energy_;
   double energy_bound_, row_bound_;
   bool opens_dropped_row_ = false;
-  double E0_ = 0, moving_ = 0, n_steps_ = 0, largest_ = 0;  // largest kinetic energy; largest |E - E0 - W + D| [J]
+  double t_ = 0, E0_ = 0, rounding_ = 0, moving_ = 0, n_steps_ = 0, largest_ = 0;  // largest kinetic energy; largest |E - E0 - W + D| [J]
   Ledger now_, next_;
   struct {
     double work = 0, dissipated = 0;
   } sums_;
-  double step_ = 0, sum_ = 0, det_ = 1e300, moving_next_ = 0;  // of the step looked at last
+  double step_ = 0, sum_ = 0, det_ = 1e300, moving_next_ = 0, rounding_next_ = 0;  // of the step looked at last
   System::Turn turn_;
   Worst worst_;
 };

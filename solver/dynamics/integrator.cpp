@@ -34,7 +34,7 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
     const NewtonReport r = newton(
         system, tools.solver, [&](const Unknown& u) { return from_left(stage(k, u), h); }, solved_[k], lambda_, tools.newton);
     all.iterations += r.iterations, all.linear_iterations += r.linear_iterations;
-    all.correction = r.correction, all.residual = r.residual, all.force = std::max(all.force, r.force);
+    all.correction = r.correction, all.residual = r.residual;
     all.least_det = std::min(all.least_det, r.least_det);
     if (!r.converged) {
       all.converged = false, all.reason = r.reason;

@@ -53,7 +53,6 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     r.force_scale = system.comm->max(r.force_scale);
     report.least_det = -system.comm->max(-r.least_det);
     report.residual = system.comm->max(relative_residual(system, r));
-    report.force = r.force_scale;
     ++phases().evaluations, phases().tangents += tangent;
   };
   // What a solve may leave of the residual: a tenth of what is left to the tolerance, and no less than Newton's own error, about the square

@@ -22,7 +22,6 @@ struct NewtonReport {
   double correction = 0;  // last one, over the scene's length
   double residual = 0;    // last one, over the force scale
   double least_det = 1e300;
-  double force = 0;  // largest force summed into the residual [N]
   int linear_iterations = 0;
   std::string reason;  // why it failed
 };

@@ -11,8 +11,8 @@
 #include <string_view>
 
 #include "dynamics/audit.hpp"
+#include "dynamics/minimum_norm.hpp"
 #include "dynamics/profile.hpp"
-#include "dynamics/redundancy.hpp"
 #include "dynamics/slabs.hpp"
 #include "dynamics/start.hpp"
 #include "model/store.hpp"

@@ -1,38 +1,41 @@
-// Redundant joint rows: found by rank, switched off, and their share of the reactions.
+// Redundant joint rows: found by rank, and switched off.
 #pragma once
-#include <memory>
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "linear/factors.hpp"
 #include "system/system.hpp"
 
 namespace hilo {
+
+using Active = std::array<bool, max_rows>;
 
 /// What the rank check found.
 struct Redundancy {
   int rows = 0, rank = 0;
   std::vector<std::string> dropped;  // "joint \"b\" row 3 (depends on joints a, c)"
+  struct Held {
+    int joint;
+    std::string by;  // joints that leave its drive nothing to drive
+  };
+  std::vector<Held> held;
+  // A singular position (a mechanism drawn flat, a dead point) has fewer independent rows than the poses beside it:
+  std::vector<Active> at_pose;  // rows independent there, for solves at that very pose; empty where it is not singular
+  int rank_at_pose = 0;
+  std::vector<std::string> singular_joints;  // those with a row that depends on others there alone
+  bool singular() const { return !at_pose.empty(); }
 };
-/// Rank of the joint rows at q by QR, group by group of connected rows; dependent ones are switched off in the system's joints.
-Redundancy drop_redundant_rows(System& system, const Config& q);
-/// The same at a later q, where a step failed: another choice of as many rows is taken, fewer (a singular position) are not.
+/// Rank of the joint rows at q by QR, group by group of connected rows; dependent ones are switched off in the system's joints.  Whether
+/// they depend on the others beside q too is seen by moving there: what opens is no redundant row and stays.  Drives come last.
+Redundancy drop_redundant_rows(System& system, const Config& q, double t);
+/// The same at a later q, where a step failed: another choice of as many rows or more is taken, fewer (a singular position) are not.
 /// True where the choice has changed.
-bool recheck_redundant_rows(System& system, const Config& q, const Redundancy& before);
-
-/// Minimum-norm multipliers that give the same forces as those of the rows kept: lambda = G y with G^T G y = G^T lambda_kept, by sparse
-/// factors of the slightly shifted matrix and refinement; what the shift adds lies in the null space of G and drops out.
-class MinimumNorm {
- public:
-  explicit MinimumNorm(const System& system);
-  /// All rows of all joints counted, at the stage's left configuration; laid out like lambda.
-  std::vector<double> operator()(const Stage& stage, std::span<const double> lambda);
-
- private:
-  const System& system_;
-  Cliques cliques_;  // of joints
-  BlockCsr A_;       // G^T G, shifted
-  std::unique_ptr<Factors> factors_;
-};
+bool recheck_redundant_rows(System& system, const Config& q, double t, Redundancy& now);
+/// The rows of all joints that are on, and switching them; an empty list changes nothing.
+std::vector<Active> active_rows(const System& system);
+void set_rows(System& system, const std::vector<Active>& rows);
+/// A pose that the active rows allow, a little ahead of q along v; nothing at rest.
+std::optional<Config> pose_ahead(const System& system, const Config& q, const Config& v, double t);
 
 }  // namespace hilo

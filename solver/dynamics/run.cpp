@@ -9,6 +9,7 @@
 #include "base/table.hpp"
 #include "dynamics/audit.hpp"
 #include "dynamics/clock.hpp"
+#include "dynamics/contradiction.hpp"
 #include "dynamics/predictor.hpp"
 #include "dynamics/profile.hpp"
 #include "dynamics/progress.hpp"
@@ -84,12 +85,16 @@ class Run {
       assembled_ = assemble_positions(system_, *solver_, state_.q);
       if (talk_) fmt::print(stderr, "start positions changed by up to {:.3g} m to put the joints together\n", assembled_);
     }
-    redundancy_ = drop_redundant_rows(system_, state_.q);
+    redundancy_ = drop_redundant_rows(system_, state_.q, 0);
+    if (!is_static_) refuse_contradictions(scene_, system_, redundancy_, time.number("end"));
     if (talk_ && !redundancy_.dropped.empty()) {
       fmt::print(stderr, "{} of {} joint rows are redundant; reactions are the minimum-norm share:\n", redundancy_.rows - redundancy_.rank,
                  redundancy_.rows);
       for (const auto& d : redundancy_.dropped) fmt::print(stderr, "  {}\n", d);
     }
+    if (talk_ && redundancy_.singular())
+      fmt::print(stderr, "a singular position: {} more joint rows depend on others at the start alone\n",
+                 redundancy_.rank - redundancy_.rank_at_pose);
     state_.lambda.assign(3 * system_.n_joint_blocks(), 0.0);
     audit_.emplace(system_, !is_static_ && integrator_->keeps_energy(), newton_.tolerance);
     open_recorder();
@@ -180,6 +185,8 @@ class Run {
   void dynamic_steps() {
     const Entry& time = scene_.table("time");
     const double end = time.number("end"), step = time.has("step") ? time.number("step") : end / 20;
+    const std::vector<Active> rows = active_rows(system_);
+    set_rows(system_, redundancy_.at_pose);
     if (time.text("start") == "equilibrium") {
       const NewtonReport r = equilibrium(system_, *solver_, state_.q, state_.lambda, 0, 1, true, newton_);
       if (!r.converged) {
@@ -193,6 +200,7 @@ class Run {
     if (const std::string name = contradicted_joint(system_, state_.q, state_.v, 0); !name.empty())
       throw Error(scene_.path, fmt::format("joint \"{}\" cannot move as the driven joints would have it", name),
                   "two drives, or a drive and a joint, hold the same motion");
+    if (redundancy_.singular()) leave_singular_position(rows, step);
     if (talk_ && projected_ > 1e-9)
       fmt::print(stderr, "initial velocities changed by up to {:.3g} m/s to satisfy the joints\n", projected_);
     system_.commit(state_.q, &state_.v);
@@ -216,8 +224,17 @@ class Run {
     estimated_ = control ? control->sum() : -1;
     progress.show(end, report_.steps, iterations_, true);
     progress.done();
+    if (failure_ = audit_->verdict(); !failure_.empty()) return stop(failure_);
     report_.t = end;
     report_.complete = true;
+  }
+
+  /// At a singular position mechanisms branch: the accelerations there tell which way, and velocities follow the joints a little ahead.
+  void leave_singular_position(const std::vector<Active>& rows, double step) {
+    consistent_acceleration(system_, *solver_, state_, 0.05 * step);
+    set_rows(system_, rows);
+    if (const std::optional<Config> ahead = pose_ahead(system_, state_.q, state_.v, 0))
+      projected_ = std::max(projected_, project_velocities(system_, *solver_, *ahead, state_.v, 0));
   }
 
   /// At the start and after a jump of the loads: history that belongs to the new forces.
@@ -227,7 +244,10 @@ class Run {
       project_velocities(system_, *solver_, state_.q, state_.v, state_.t);
       audit_->push(system_.energy(state_.q, state_.v).kinetic - before);
     }
+    const std::vector<Active> rows = active_rows(system_);
+    if (report_.steps == 0) set_rows(system_, redundancy_.at_pose);
     if (integrator_->needs_acceleration() || control) consistent_acceleration(system_, *solver_, state_, 0.05 * step);
+    set_rows(system_, rows);
     integrator_->restart();
     if (control) control->restart(state_);
   }
@@ -282,14 +302,16 @@ class Run {
 
   void cut() {
     ++report_.cuts, good_ = 0;
-    if (redundancy_.rank < redundancy_.rows && recheck_redundant_rows(system_, state_.q, redundancy_) && talk_)
+    if (redundancy_.rank < redundancy_.rows && recheck_redundant_rows(system_, state_.q, state_.t, redundancy_) && talk_)
       fmt::print(stderr, "t = {:.6g} s: another choice of independent joint rows\n", state_.t);
   }
 
   /// One step of length h from state_, trying predictors in turn; the state is left alone.
   bool try_step(double h) {
     StepTools tools{system_, *solver_, newton_};
-    for (const Predictor p : {Predictor::rigid_rotation, Predictor::velocity, Predictor::hold}) {
+    const bool leaving = redundancy_.singular() && report_.steps == 0;
+    for (const Predictor p : {Predictor::accelerated, Predictor::rigid_rotation, Predictor::velocity, Predictor::hold}) {
+      if (p == Predictor::accelerated && !leaving) continue;
       tools.newton.reach = p == Predictor::rigid_rotation ? 1 : newton_.reach;
       const NewtonReport r = integrator_->solve(tools, state_, h, p);
       report_.iterations += r.iterations;
@@ -298,7 +320,7 @@ class Run {
         failure_ = r.reason;
         continue;
       }
-      integrator_->end(end_);
+      integrator_->end(end_), end_.t = state_.t + h;
       failure_ = system_.fault(end_.q);
       if (failure_.empty()) failure_ = audit_->look(state_.q, end_, integrator_->taken(), r);
       if (failure_.empty()) return true;
@@ -319,6 +341,11 @@ class Run {
 
   void stop(const std::string& reason) {
     report_.reason = reason.empty() ? "no convergence" : reason;
+    if (redundancy_.singular() && report_.steps == 0)
+      report_.reason +=
+          fmt::format("; nothing leads out of the singular position at the start, where rows of {} \"{}\" depend on others",
+                      redundancy_.singular_joints.size() > 1 ? "joints" : "joint", fmt::join(redundancy_.singular_joints, "\", \""));
+    if (audit_->opens_dropped_row() && is_driven(system_)) report_.reason += "; what is driven or moved contradicts it";
     report_.complete = false;
     report_.t = state_.t;
   }

@@ -125,22 +125,6 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
   return system.comm->max(change);
 }
 
-std::string contradicted_joint(const System& system, const Config& q, const Config& v, double t) {
-  double driven = 0, worst = 0;
-  for (const Connector& j : system.joints)
-    if (j.drive.row >= 0) driven = std::max(driven, std::abs(j.drive.course(t, 1).rate));
-  if (driven == 0) return "";
-  std::vector<double> rate;
-  system.row_rates(q, v, nullptr, t, rate, nullptr);
-  std::string name;
-  for (size_t j = 0; j < system.joints.size(); ++j)
-    for (int m = 0; m < system.joints[j].n_rows(); ++m) {
-      const double r = std::abs(rate[3 * (system.joint_block[j] - system.first_joint_block()) + m]);
-      if (!system.joints[j].active[m] && r > worst) worst = r, name = system.joints[j].name;
-    }
-  return worst > 1e-8 * driven ? name : "";
-}
-
 namespace {
 
 /// Largest vector over all points.

@@ -11,8 +11,6 @@ double assemble_positions(System& system, KktSolver& solver, Config& q);
 
 /// Velocities made consistent with the joints and what drives them at time t, in the mass norm; returns the largest change [m/s].
 double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t);
-/// A joint whose redundant rows do not move as what drives others would have it, or "" where all agree.
-std::string contradicted_joint(const System& system, const Config& q, const Config& v, double t);
 /// s.a and s.lambda that satisfy equations and constraints at (q, v) at time t, and s.jerk by forward differences over h.
 void consistent_acceleration(const System& system, KktSolver& solver, State& s, double h);
 

@@ -1,0 +1,86 @@
+#include "dynamics/contradiction.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hilo {
+namespace {
+
+constexpr int samples = 1000;  // instants of a run that are looked at
+
+std::string place_of(const Scene& scene, const std::string& joint) {
+  for (const Entry& e : scene.entries("joint"))
+    if (e.name == joint) return e.place.text();
+  return scene.path;
+}
+
+}  // namespace
+
+void refuse_contradictions(const Scene& scene, const System& system, const Redundancy& redundancy, double end) {
+  const double open = 1e-9 * system.length;
+  for (const auto& [j, by] : redundancy.held) {
+    const Connector& joint = system.joints[j];
+    const double start = joint.drive.course(0, 1).value;
+    for (int k = 1; k <= samples; ++k) {
+      const double t = end * k / samples;
+      if (std::abs(joint.drive.course(t, 1).value - start) <= open) continue;
+      throw Error(place_of(scene, joint.name),
+                  fmt::format("joint \"{}\" is to be driven, but {} at t = {:.3g} s", joint.name,
+                              by.empty() ? "its own rows hold it" : fmt::format("joint \"{}\" holds it still", by), t),
+                  "take away the drive, or what holds the same motion");
+    }
+  }
+  const auto prescribed = [&](const Carrier& end_of) {
+    return end_of.body >= 0 ? system.body_block[end_of.body] < 0 : system.node_block[end_of.node] < 0;
+  };
+  Config q = system.start;
+  std::vector<const Connector*> fixed_ends;  // without angles, which would have to be unwrapped
+  for (const Connector& joint : system.joints) {
+    const auto ends = joint.ends();
+    if (!joint.rows && std::all_of(ends.begin(), ends.end(), prescribed)) fixed_ends.push_back(&joint);
+  }
+  for (int k = 0; k <= samples && !fixed_ends.empty(); ++k) {
+    const double t = end * k / samples;
+    system.prescribe(q, t);
+    for (const Connector* joint : fixed_ends) {
+      double g[max_rows];
+      joint->row_values(joint->values(q), g);
+      if (joint->drive.row >= 0) g[joint->drive.row] -= joint->drive.course(t, 1).value;
+      const double worst =
+          std::abs(*std::max_element(g, g + joint->n_rows(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+      if (worst <= open) continue;
+      std::string moves;
+      for (const Carrier& end_of : joint->ends())
+        if (end_of.body >= 0 && system.bodies[end_of.body].motion >= 0) moves = system.motions[system.bodies[end_of.body].motion].name;
+      throw Error(
+          place_of(scene, joint->name),
+          fmt::format("joint \"{}\" holds what motion \"{}\" moves: it would open by {:.3g} at t = {:.3g} s", joint->name, moves, worst, t),
+          "take away the joint or the motion");
+    }
+  }
+}
+
+bool is_driven(const System& system) {
+  return std::any_of(system.joints.begin(), system.joints.end(), [](const Connector& j) { return j.drive.row >= 0; }) ||
+         std::any_of(system.motions.begin(), system.motions.end(), [](const Motion& m) { return m.moving; });
+}
+
+std::string contradicted_joint(const System& system, const Config& q, const Config& v, double t) {
+  double driven = 0, worst = 0;
+  for (const Connector& j : system.joints)
+    if (j.drive.row >= 0) driven = std::max(driven, std::abs(j.drive.course(t, 1).rate));
+  if (driven == 0) return "";
+  std::vector<double> rate;
+  system.row_rates(q, v, nullptr, t, rate, nullptr);
+  std::string name;
+  for (size_t j = 0; j < system.joints.size(); ++j)
+    for (int m = 0; m < system.joints[j].n_rows(); ++m) {
+      const double r = std::abs(rate[3 * (system.joint_block[j] - system.first_joint_block()) + m]);
+      if (!system.joints[j].active[m] && r > worst) worst = r, name = system.joints[j].name;
+    }
+  return worst > 1e-8 * driven ? name : "";
+}
+
+}  // namespace hilo
