@@ -47,16 +47,18 @@ Independence choose_sparse(const Eigen::SparseMatrix<double>& A, double dependen
 
 Independence independent_columns(const Eigen::SparseMatrix<double>& A, Eigen::Index n_plain, double dependent) {
   const bool dense = A.cols() <= static_cast<Eigen::Index>(dense_at_most);
-  const Eigen::SparseMatrix<double> plain = A.leftCols(n_plain);
-  Independence first =
-      dense ? choose_dense(Eigen::MatrixXd(plain), dependent) : choose_sparse<Eigen::COLAMDOrdering<int>>(plain, dependent);
-  if (n_plain == A.cols()) return first;
+  const auto among = [&](const Eigen::SparseMatrix<double>& columns) {
+    return dense ? choose_dense(Eigen::MatrixXd(columns), dependent) : choose_sparse<Eigen::COLAMDOrdering<int>>(columns, dependent);
+  };
+  if (n_plain == 0 || n_plain == A.cols()) return among(A);
+  const Independence first = among(A.leftCols(n_plain));
   // in the order found, drives behind those kept: a QR without pivoting but for dependent columns, which go to the end
   Eigen::VectorXi order(A.cols());
   order.head(first.rank) = first.order.head(first.rank);
   for (Eigen::Index k = n_plain; k < A.cols(); ++k) order[first.rank + k - n_plain] = static_cast<int>(k);
   order.tail(n_plain - first.rank) = first.order.tail(n_plain - first.rank);
-  const Eigen::SparseMatrix<double> sorted = A * Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>(order);
+  Eigen::SparseMatrix<double> sorted = A * Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>(order);
+  sorted.makeCompressed();
   Independence out = choose_sparse<Eigen::NaturalOrdering<int>>(sorted, dependent);
   for (int& k : out.order) k = order[k];
   return out;

@@ -169,9 +169,8 @@ class Run {
       }
       cuts = 0;
       audit_->accept(reached.t);
+      recorder_->step(reached, audit_->ledger(), taken, no_acceleration, r.iterations);
       std::swap(state_, reached);
-      taken.stage.work_from = nullptr;
-      recorder_->step(state_, audit_->ledger(), taken, no_acceleration, r.iterations);
       done = next;
       ++report_.steps;
       progress.show(done, report_.steps, r.iterations);
