@@ -112,7 +112,7 @@ TEST_F(Part, FiringSceneIsBalancedFromTwoTo128Parts) {
   const std::string scene = HILO_SOURCE "/data/firing/";
   for (const char* size : {"0", "1"}) {
     ASSERT_EQ(place.run("hilo-import --quiet " + scene + "vehicle.geo -o vehicle.h5 --define SIZE=" + size).exit, 0);
-    ASSERT_EQ(place.run("hilo-tag --quiet vehicle.h5 " + scene + "tags.toml -o vehicle-tags.h5").exit, 0);
+    ASSERT_EQ(place.run("hilo-tag --quiet vehicle.h5 " HILO_SOURCE "/data/scaling/tags.toml -o vehicle-tags.h5").exit, 0);
     const auto ran = place.run("hilo-part vehicle-tags.h5 " + scene + "scene.toml --table -o table.csv");
     ASSERT_EQ(ran.exit, 0) << ran.err;
     std::istringstream lines(place.run("cat table.csv").out);
