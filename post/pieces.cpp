@@ -23,6 +23,7 @@ class Maker {
     switch (shape_) {
       case Shape::hex8:
       case Shape::hex20:
+      case Shape::hex20r:
         for (int i = 0; i < n; ++i)
           for (int j = 0; j < n; ++j)
             for (int k = 0; k < n; ++k) {
@@ -69,7 +70,7 @@ class Maker {
 
   /// Are these points on one face of the cell?
   bool border(std::initializer_list<Vec3> points) const {
-    const bool box = shape_ == Shape::hex8 || shape_ == Shape::hex20, prism = shape_ == Shape::wedge6 || shape_ == Shape::wedge15;
+    const bool box = info(shape_).n_corners == 8, prism = shape_ == Shape::wedge6 || shape_ == Shape::wedge15;
     const auto all = [&](auto&& value) {
       return std::all_of(points.begin(), points.end(), [&](const Vec3& p) { return std::abs(value(p)) < 1e-9; });
     };

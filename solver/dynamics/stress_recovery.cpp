@@ -213,7 +213,7 @@ void StressRecovery::add_bars(const std::vector<Vec3>& x, std::vector<double>& a
     const SolidBatch& batch = system_.batches[b];
     for (size_t e = 0; is_bar(batch.shape) && e < batch.cells.size(); ++e) {
       ends.gather(system_, x, batch.nodes.data() + 2 * e, 2);
-      const Vec6 stress = bar_stress(batch.c, ends.X, ends.x);
+      const Vec6 stress = bar_stress(batch.law, batch.c, ends.X, ends.x);
       cell[batch.cells[e]] = von_mises(stress);
       for (const int end : {0, 1}) {
         double* to = at.data() + static_cast<size_t>(site_of_[b][2 * e + end]) * n_values;

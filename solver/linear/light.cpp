@@ -98,8 +98,7 @@ class LightSolver final : public SerialKktSolver {
     SolveReport report = factor_and_iterate(b, x, tolerance);
     if ((!report.ok || rate_ > 1) && factors_->sharpen()) before += report.iterations, report = factor_and_iterate(b, x, tolerance);
     if (!report.ok && is_definite_) {
-      warn("", fmt::format("{} fails ({}): the flexible part may be unstable or held by nothing; unsymmetric factors from here on", name(),
-                           report.message));
+      warn("", fmt::format("{} fails ({}); unsymmetric factors from here on", name(), report.message));
       factors_ = make_umfpack(), is_definite_ = false;
       before += report.iterations;
       report = factor_and_iterate(b, x, tolerance);
@@ -119,7 +118,9 @@ class LightSolver final : public SerialKktSolver {
 
   SolveReport factor_and_iterate(std::span<const double> b, std::span<double> x, double tolerance) {
     ready_ = false;
-    if (!factor()) return {false, 1, 0, "the matrix is singular"};
+    if (!factor())
+      return {false, 1, 0,
+              is_definite_ ? "not positive definite: the flexible part may be unstable or held by too little" : "the matrix is singular"};
     find_weights();
     const SolveReport report = iterate(b, x, tolerance, 60);
     rate_ = report.iterations / -std::log10(std::clamp(report.residual, 1e-12, 0.5));

@@ -47,8 +47,9 @@ const Kind& kind(Shape shape) {
     t.push_back(
         make("wedge15", 6, 3, 26, 40, wedge, wedge_corners, {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}));
     t.push_back(make("hex8", 8, 3, 12, 9, hex, hex_corners));
-    t.push_back(make("hex20", 8, 3, 25, 48, hex, hex_corners,
-                     {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}));
+    for (const char* name : {"hex20", "hex20r"})
+      t.push_back(make(name, 8, 3, 25, 48, hex, hex_corners,
+                       {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}));
     return t;
   }();
   return table[static_cast<size_t>(shape)];

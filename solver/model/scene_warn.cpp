@@ -30,7 +30,6 @@ void check_material(const Entry& m, Warnings& w) {
     const double c = std::sqrt(E / density);
     if (c < 1 || c > 2e4) w.add(m, "E", fmt::format("waves of {:.4g} m/s in a bar{}", c, units_hint));
   }
-  if (m.has("nu") && m.number("nu") > 0.495) w.add(m, "nu", "nearly incompressible: displacement elements may lock");
 }
 
 /// No set of positive masses has these principal moments, unless each is at most the sum of the others.

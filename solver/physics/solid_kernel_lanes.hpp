@@ -1,12 +1,11 @@
 // Body of the translation units solid_lanes{2,4,8}.cpp: every kernel for W lanes.  Each unit is compiled for its own instruction set, so
 // nothing here may be shared with other units: all functions are templates on the lane type or have internal linkage.
 #pragma once
-#include "physics/hourglass.hpp"
 #include "physics/material/neo_hookean.hpp"
 #include "physics/material/stvk.hpp"
-#include "physics/shape/hex20.hpp"
 #include "physics/shape/tet10.hpp"
 #include "physics/shape/wedge15.hpp"
+#include "physics/solid_cell.hpp"
 #include "physics/solid_kernel.hpp"
 
 namespace hilo {
@@ -26,10 +25,7 @@ static void run_kernel(const KernelCall& k) {
   const SolidCall<T> call{lanes_of(k.X), lanes_of(k.x0), lanes_of(k.x1),      k.elastic,          k.viscous,
                           k.c,           clear(k.f, n3), clear(k.K, n3 * n3), clear(k.energy, 1), clear(k.dissipated, 1),
                           least,         k.density,      lanes_of(k.a),       k.mass_slope,       k.weight};
-  if (k.elastic != 0 || k.viscous != 0 || k.energy) {
-    evaluate_solid<S>(Material{k.c}, call);
-    if constexpr (S::n == 8) add_hourglass(k.c, call);
-  }
+  if (k.elastic != 0 || k.viscous != 0 || k.energy) evaluate_strain<S, Material>(k.c, call);
   if (k.a) add_mass<S>(call);
 }
 
@@ -48,6 +44,8 @@ static KernelFunction kernel_of_shape(Shape shape) {
       return run_kernel<Hex8, Material, T>;
     case Shape::hex20:
       return run_kernel<Hex20, Material, T>;
+    case Shape::hex20r:
+      return run_kernel<Hex20R, Material, T>;
     case Shape::bar2:
       break;
   }

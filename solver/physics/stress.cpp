@@ -4,12 +4,10 @@
 #include <array>
 #include <cmath>
 
-#include "physics/hourglass.hpp"
-#include "physics/material/neo_hookean.hpp"
-#include "physics/material/stvk.hpp"
-#include "physics/shape/hex20.hpp"
+#include "physics/bar.hpp"
 #include "physics/shape/tet10.hpp"
 #include "physics/shape/wedge15.hpp"
+#include "physics/solid_cell.hpp"
 
 namespace hilo {
 namespace {
@@ -21,6 +19,40 @@ Vec6 second_piola(Law law, const Lame& c, const double e[6]) {
   else
     NeoHookean{c}.stress<double>(e, e, s.data(), nullptr);
   return s;
+}
+
+/// What the mean dilatation of a cell adds (physics/mean_dilatation.hpp).
+struct CellMean {
+  double lambda = 0, dilatation = 0;  // lambda_m [Pa]; mean of tr E, or of det C
+
+  /// S = lambda theta I, or S = lambda/2 ln D/D cof C
+  void add(Law law, const double e[6], Vec6& s) const {
+    if (lambda == 0) return;
+    if (law == Law::stvk) {
+      for (int i = 0; i < 3; ++i) s[i] += lambda * dilatation;
+      return;
+    }
+    double M[6], A[6], cof1[6], D0, D1;
+    NeoHookean::dilatation(e, e, M, A, cof1, D0, D1);
+    for (int i = 0; i < 6; ++i) s[i] += lambda / 2 * std::log(dilatation) / dilatation * A[i];
+  }
+};
+
+template <class S>
+CellMean mean_of(Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x) {
+  CellMean mean{mean_lambda<S>(c), 0};
+  if (mean.lambda == 0) return mean;
+  double volume = 0;
+  for (int p = 0; p < S::n_points; ++p) {
+    double g[S::n][3], F[3][3], e[6];
+    const double w = solid::point_gradients<S>(p, X[0].data(), g);
+    solid::gradient<S::n>(x[0].data(), g, F);
+    solid::green_lagrange(F, e);
+    const double J = solid::determinant(F);
+    volume += w, mean.dilatation += w * (law == Law::stvk ? e[0] + e[1] + e[2] : J * J);
+  }
+  mean.dilatation /= volume;
+  return mean;
 }
 
 /// Local coordinates of the nodes of a shape: where N_a = 1.
@@ -69,7 +101,7 @@ Eigen::MatrixXd fitted(const Quadrature<P>& rule) {
 }
 
 template <class S, int P>
-void points_of(const Tabulated<S, P>& table, Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x,
+void points_of(const Tabulated<S, P>& table, Law law, const Lame& c, const CellMean& mean, std::span<const Vec3> X, std::span<const Vec3> x,
                std::vector<StressPoint>& out) {
   out.resize(P);
   for (int p = 0; p < P; ++p) {
@@ -78,7 +110,8 @@ void points_of(const Tabulated<S, P>& table, Law law, const Lame& c, std::span<c
     at.w = table.w[p] * solid::reference_gradients<S::n>(table.dN[p], X[0].data(), g);
     solid::gradient<S::n>(x[0].data(), g, F);
     solid::green_lagrange(F, e);
-    at.S = second_piola(law, c, e);
+    at.S = second_piola(law, {c.lambda - mean.lambda, c.mu}, e);
+    mean.add(law, e, at.S);
     at.X.setZero();
     for (int a = 0; a < S::n; ++a) at.X += table.N[p][a] * X[a];
     for (int i = 0; i < 3; ++i)
@@ -93,10 +126,11 @@ inline constexpr Tabulated<Hex8, 8> hex8_table{hex_rule<2>()};
 template <class S>
 void solid_points(Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
                   std::vector<StressPoint>& out) {
-  if (which == StressPoints::everywhere) return points_of(mass_table<S>, law, c, X, x, out);
+  const CellMean mean = mean_of<S>(law, c, X, x);
+  if (which == StressPoints::everywhere) return points_of(mass_table<S>, law, c, mean, X, x, out);
   if constexpr (S::n == 20)
-    if (which == StressPoints::samples) return points_of(barlow_table, law, c, X, x, out);
-  points_of(stiffness_table<S>, law, c, X, x, out);
+    if (which == StressPoints::samples) return points_of(barlow_table, law, c, mean, X, x, out);
+  points_of(stiffness_table<S>, law, c, mean, X, x, out);
 }
 
 /// Strain of the centroid, plus the bending strains that the hourglass measures stand for (physics/hourglass.hpp), linear in the cell.
@@ -177,11 +211,11 @@ Vec6 cauchy(const Mat3& F, const Vec6& s) {
   return out;
 }
 
-Vec6 bar_stress(const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x) {
+Vec6 bar_stress(Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x) {
   const Vec3 d0 = X[1] - X[0], d = x[1] - x[0];
-  const double E = c.mu * (3 * c.lambda + 2 * c.mu) / (c.lambda + c.mu), strain = (d.squaredNorm() / d0.squaredNorm() - 1) / 2;
+  const BarState bar = bar_state(law, c, (d.squaredNorm() / d0.squaredNorm() - 1) / 2);
   const Vec3 n = d.normalized();
-  const double s = E * strain * d.norm() / d0.norm();
+  const double s = bar.S * d.norm() / d0.norm() / bar.t;
   Vec6 out;
   out << s * n[0] * n[0], s * n[1] * n[1], s * n[2] * n[2], s * n[1] * n[2], s * n[0] * n[2], s * n[0] * n[1];
   return out;
@@ -202,6 +236,8 @@ void stress_points(Shape shape, Law law, const Lame& c, std::span<const Vec3> X,
       return hex8_points(law, c, X, x, out);
     case Shape::hex20:
       return solid_points<Hex20>(law, c, X, x, which, out);
+    case Shape::hex20r:
+      return solid_points<Hex20R>(law, c, X, x, which, out);
     case Shape::bar2:
       out.clear();
   }
@@ -214,7 +250,8 @@ const Eigen::MatrixXd& to_nodes(Shape shape) {
                                                             fitted<Wedge6>(Wedge6::rule()),
                                                             fitted<Wedge15>(Wedge15::rule()),
                                                             fitted<Hex8>(hex_rule<2>()),
-                                                            fitted<Hex20>(hex_rule<2>())};
+                                                            fitted<Hex20>(hex_rule<2>()),
+                                                            fitted<Hex20R>(hex_rule<2>())};
   return tables[static_cast<size_t>(shape)];
 }
 
@@ -231,6 +268,7 @@ void nodal_gradients(Shape shape, std::span<const Vec3> X, std::span<const Vec3>
     case Shape::hex8:
       return gradients_at_nodes<Hex8>(X, x, F);
     case Shape::hex20:
+    case Shape::hex20r:
       return gradients_at_nodes<Hex20>(X, x, F);
     case Shape::bar2:
       return;

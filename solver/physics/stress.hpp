@@ -38,7 +38,7 @@ const Eigen::MatrixXd& to_nodes(Shape shape);
 /// Cauchy stress F S F^T / det F.
 Vec6 cauchy(const Mat3& F, const Vec6& S);
 /// Cauchy stress of a bar of two nodes: along the bar alone.
-Vec6 bar_stress(const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x);
+Vec6 bar_stress(Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x);
 
 /// A norm of deviators: |von_mises(a) - von_mises(b)| <= von_mises(a - b).
 double von_mises(const Vec6& s);

@@ -200,10 +200,9 @@ void Builder::make_batches() {
     b.beta = r.beta, b.alpha = r.alpha, b.area = r.area;
     b.kernel = solid_kernel(b.shape, b.law);
     out_->stiffness = std::max(out_->stiffness, r.E * (b.area > 0 ? b.area / mesh_->length : mesh_->length / 100));
-    if (b.shape == Shape::tet4 && comm_.rank == 0)
-      warn(r.name, "linear tetrahedra lock in bending; expect too stiff an answer (hilo-import --order 2 makes them quadratic)");
     out_->batches.push_back(std::move(b));
   }
+  warn_of_limits();
 }
 
 void Builder::add_free_bodies() {

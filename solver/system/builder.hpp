@@ -39,6 +39,8 @@ class Builder {
   void make_rigid_bodies();
   void make_batches();
   void add_free_bodies();
+  // element_limits.cpp
+  void warn_of_limits() const;
   // build_ends.cpp
   struct Found {  // what a name means
     int body = -1;

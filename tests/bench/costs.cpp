@@ -71,7 +71,8 @@ int main() {
                                  {Shape::tet10, 6},
                                  {Shape::wedge6, 12},
                                  {Shape::wedge15, 7},
-                                 {Shape::hex20, 7}})
+                                 {Shape::hex20, 7},
+                                 {Shape::hex20r, 7}})
     for (const Law law : {Law::stvk, Law::neo_hookean}) measure(shape, law, n, hex8);
   measure_joints(100, hex8);
 }

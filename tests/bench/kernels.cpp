@@ -138,8 +138,13 @@ int main(int argc, char** argv) {
   fmt::print("one core, {} lanes: peak {:.1f} GFLOP/s, triad {:.1f} GB/s\n\n", lanes(), machine.peak / 1e3, machine.triad / 1e3);
   fmt::print("                      kernel, us per cell                          assembled, us per cell\n");
   fmt::print("shape    law            force    both    kflop  GFLOP/s   peak     force     both      kB    GB/s  triad\n");
-  for (const auto& [shape, n] :
-       {std::pair{Shape::hex8, 32}, {Shape::tet4, 32}, {Shape::tet10, 15}, {Shape::wedge6, 32}, {Shape::wedge15, 13}, {Shape::hex20, 14}})
+  for (const auto& [shape, n] : {std::pair{Shape::hex8, 32},
+                                 {Shape::tet4, 32},
+                                 {Shape::tet10, 15},
+                                 {Shape::wedge6, 32},
+                                 {Shape::wedge15, 13},
+                                 {Shape::hex20, 14},
+                                 {Shape::hex20r, 14}})
     for (const Law law : {Law::stvk, Law::neo_hookean})
       if (argc < 2 || argv[1] == info(shape).name) measure(shape, law, n, machine);
 }

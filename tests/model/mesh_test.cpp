@@ -29,7 +29,7 @@ std::string message_of(const std::function<void()>& body) {
 
 class EveryShape : public testing::TestWithParam<Shape> {};
 INSTANTIATE_TEST_SUITE_P(Mesh, EveryShape,
-                         testing::Values(Shape::bar2, Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20),
+                         testing::Values(Shape::bar2, Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20, Shape::hex20r),
                          [](const auto& p) { return std::string(hilo::info(p.param).name); });
 
 double reference_volume(Shape s) {

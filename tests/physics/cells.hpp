@@ -6,12 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "physics/hourglass.hpp"
 #include "physics/material/neo_hookean.hpp"
 #include "physics/material/stvk.hpp"
-#include "physics/shape/hex20.hpp"
 #include "physics/shape/tet10.hpp"
 #include "physics/shape/wedge15.hpp"
+#include "physics/solid_cell.hpp"
 #include "verify/block_mesh.hpp"
 
 namespace hilo::test {
@@ -41,6 +40,10 @@ struct ShapeOf<Hex8> {
 template <>
 struct ShapeOf<Hex20> {
   static constexpr Shape shape = Shape::hex20;
+};
+template <>
+struct ShapeOf<Hex20R> {
+  static constexpr Shape shape = Shape::hex20r;
 };
 
 template <class S>
@@ -139,8 +142,7 @@ Evaluated<T> evaluate_cell(const Lame& c, const std::vector<T>& X, const std::ve
                           a ? a->data() : nullptr,
                           wish.mass_slope,
                           wish.weight};
-  evaluate_solid<S>(Material{c}, call);
-  if constexpr (S::n == 8) add_hourglass(c, call);
+  evaluate_strain<S, Material>(c, call);
   if (a) add_mass<S>(call);
   return out;
 }
@@ -151,6 +153,6 @@ inline double largest(const std::vector<double>& v) {
   return top;
 }
 
-inline constexpr Lame rubber = lame(2.5e6, 0.3);
+inline constexpr Lame rubber = lame(2.5e6, 0.3), nearly_incompressible = lame(2.5e6, 0.4999);
 
 }  // namespace hilo::test

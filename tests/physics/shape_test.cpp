@@ -12,7 +12,7 @@ struct ShapeName {
     return std::string(info(ShapeOf<S>::shape).name);
   }
 };
-using AllShapes = testing::Types<Tet4, Tet10, Wedge6, Wedge15, Hex8, Hex20>;
+using AllShapes = testing::Types<Tet4, Tet10, Wedge6, Wedge15, Hex8, Hex20, Hex20R>;
 TYPED_TEST_SUITE(ShapeFunctions, AllShapes, ShapeName);
 
 /// Points inside the reference cell.

@@ -1,6 +1,7 @@
 // Stresses at points of cells against the closed forms of the laws, and the two-node bar.
 #include "physics/stress.hpp"
 
+#include "physics/bar.hpp"
 #include "physics/cells.hpp"
 
 namespace hilo::test {
@@ -26,7 +27,8 @@ class Stress : public testing::TestWithParam<Shape> {
   }();
 };
 INSTANTIATE_TEST_SUITE_P(EveryShape, Stress,
-                         testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20),
+                         testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20,
+                                         Shape::hex20r),
                          [](const auto& p) { return std::string(hilo::info(p.param).name); });
 
 Vec6 voigt(const Mat3& s) {
@@ -45,20 +47,22 @@ TEST_P(Stress, OfAHomogeneousDeformationIsTheClosedForm) {
   for (const Vec3& p : X) x.push_back(F * p + Vec3(1, 2, 3));
   const double J = F.determinant();
   const Mat3 I = Mat3::Identity(), E = (F.transpose() * F - I) / 2;
-  const Mat3 stvk = F * (rubber.lambda * E.trace() * I + 2 * rubber.mu * E) * F.transpose() / J;
-  const Mat3 neo = (rubber.mu * (F * F.transpose() - I) + rubber.lambda * std::log(J) * I) / J;
-  for (const auto& [law, exact] : {std::pair{Law::stvk, stvk}, {Law::neo_hookean, neo}})
-    for (const StressPoints kind : kinds) {
-      std::vector<StressPoint> points;
-      stress_points(GetParam(), law, rubber, X, x, kind, points);
-      for (const StressPoint& at : points) {
-        EXPECT_LT((cauchy(at.F, at.S) - voigt(exact)).norm(), 1e-12 * exact.norm());
-        EXPECT_GT(at.w, 0);
+  for (const Lame& c : {rubber, nearly_incompressible}) {
+    const Mat3 stvk = F * (c.lambda * E.trace() * I + 2 * c.mu * E) * F.transpose() / J;
+    const Mat3 neo = (c.mu * (F * F.transpose() - I) + c.lambda * std::log(J) * I) / J;
+    for (const auto& [law, exact] : {std::pair{Law::stvk, stvk}, {Law::neo_hookean, neo}})
+      for (const StressPoints kind : kinds) {
+        std::vector<StressPoint> points;
+        stress_points(GetParam(), law, c, X, x, kind, points);
+        for (const StressPoint& at : points) {
+          EXPECT_LT((cauchy(at.F, at.S) - voigt(exact)).norm(), 1e-12 * exact.norm());
+          EXPECT_GT(at.w, 0);
+        }
       }
-    }
-  std::vector<Mat3> nodal(X.size());
-  nodal_gradients(GetParam(), X, x, nodal);
-  for (const Mat3& at : nodal) EXPECT_LT((at - F).norm(), 1e-12);
+    std::vector<Mat3> nodal(X.size());
+    nodal_gradients(GetParam(), X, x, nodal);
+    for (const Mat3& at : nodal) EXPECT_LT((at - F).norm(), 1e-12);
+  }
 }
 
 // Truth: no strain, no stress.
@@ -176,6 +180,43 @@ TEST(Bar, ForceIsADiscreteGradientOfItsEnergy) {
   call.elastic = 0;
   kernel.call(call);
   EXPECT_NEAR(f[0] + f[3], rho * A * std::sqrt(6.0), 1e-13 * rho);
+}
+
+// Truth: under uniaxial stress the lateral stress of the law is zero; a cube of the solid's own law gives axial force, energy and area.
+TEST(Bar, IsItsMaterialUnderUniaxialStress) {
+  const Lame c = rubber;
+  for (const Law law : {Law::stvk, Law::neo_hookean})
+    for (const double stretch : {0.6, 0.9, 1.001, 1.5, 2.5}) {
+      if (law == Law::stvk && stretch > 2) continue;  // its lateral stretch squared, 1 - 2 nu e, is negative there
+      const BarState bar = bar_state(law, c, (stretch * stretch - 1) / 2);
+      const double lateral = std::sqrt(bar.t);
+      const double e[6] = {(stretch * stretch - 1) / 2, (bar.t - 1) / 2, (bar.t - 1) / 2, 0, 0, 0};
+      double s[6];
+      double W = 0;
+      if (law == Law::stvk)
+        StVenantKirchhoff{c}.stress<double>(e, e, s, nullptr), W = StVenantKirchhoff{c}.energy<double>(e);
+      else
+        NeoHookean{c}.stress<double>(e, e, s, nullptr), W = NeoHookean{c}.energy<double>(e);
+      const double scale = c.mu * std::abs(stretch - 1);
+      EXPECT_NEAR(s[1], 0, 1e-10 * scale) << stretch;
+      EXPECT_NEAR(s[0], bar.S, 1e-10 * scale) << stretch;
+      EXPECT_NEAR(W, bar.W, 1e-10 * scale) << stretch;
+      const Vec3 X[2] = {Vec3::Zero(), Vec3::UnitX()}, x[2] = {Vec3::Zero(), Vec3(0, 0, stretch)};
+      EXPECT_NEAR(bar_stress(law, c, X, x)[2], bar.S * stretch / (lateral * lateral), 1e-12 * c.mu)
+          << "Cauchy stress: force on the area as it is";
+    }
+}
+
+// Truth: the work of a finite step, long or short, is the change of energy: of a neo-Hookean bar as of any solid.
+TEST(Bar, OfANeoHookeanMaterialKeepsEnergy) {
+  for (const double step : {1e-9, 1e-4, 0.015, 0.1, 1.0}) {
+    const double e0 = -0.2, e1 = e0 + step, h = 1e-6;
+    const BarStep s = bar_step(Law::neo_hookean, rubber, e0, e1);
+    const double dW = bar_state(Law::neo_hookean, rubber, e1).W - bar_state(Law::neo_hookean, rubber, e0).W;
+    EXPECT_NEAR(s.S * step, dW, 2e-15 * rubber.mu) << step;
+    const double slope = (bar_step(Law::neo_hookean, rubber, e0, e1 + h).S - bar_step(Law::neo_hookean, rubber, e0, e1 - h).S) / (2 * h);
+    EXPECT_NEAR(s.slope, slope, 1e-6 * rubber.mu) << step;
+  }
 }
 
 }  // namespace

@@ -101,9 +101,9 @@ TEST(Cut, cells_with_mid_side_nodes_have_the_section_of_their_shape) {
 }
 
 TEST(Pieces, fill_every_shape_and_have_its_border_as_their_border) {
-  for (const Shape shape : {Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20}) {
+  for (const Shape shape : {Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20, Shape::hex20r}) {
     // Corners of the unit cell; mid-side nodes where their weights say.
-    const bool box = shape == Shape::hex8 || shape == Shape::hex20, prism = shape == Shape::wedge6 || shape == Shape::wedge15;
+    const bool box = info(shape).n_corners == 8, prism = shape == Shape::wedge6 || shape == Shape::wedge15;
     const std::vector<Vec3> corner =
         box     ? std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}
         : prism ? std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}

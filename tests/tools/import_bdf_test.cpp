@@ -68,7 +68,7 @@ TEST_F(ImportBdf, WhatGmshWritesKeepsShapesVolumesAndProperties) {
         ASSERT_GT(m.n_cells(), 0) << where;
         EXPECT_NEAR(volume(m), 6, 1e-4) << where;  // its fields hold five digits or more
         EXPECT_EQ(m.region_name.size(), 1u) << where;
-        const Shape expected = hex ? (order == 2 ? Shape::hex20 : Shape::hex8) : order == 2 ? Shape::tet10 : Shape::tet4;
+        const Shape expected = hex ? (order == 2 ? Shape::hex20r : Shape::hex8) : order == 2 ? Shape::tet10 : Shape::tet4;
         EXPECT_EQ(static_cast<Shape>(m.shape[0]), expected) << where;
       }
 }

@@ -97,8 +97,8 @@ TEST_F(ImportGmsh, EveryShapeAndOrderKeepsItsVolumeAndItsMiddles) {
     bool complete;
     Shape shape;
   } cases[] = {{"tet", 1, false, Shape::tet4},  {"tet", 2, false, Shape::tet10},    {"hex", 1, false, Shape::hex8},
-               {"hex", 2, false, Shape::hex20}, {"prism", 1, false, Shape::wedge6}, {"prism", 2, false, Shape::wedge15},
-               {"hex", 2, true, Shape::hex20},  {"prism", 2, true, Shape::wedge15}};
+               {"hex", 2, false, Shape::hex20r}, {"prism", 1, false, Shape::wedge6}, {"prism", 2, false, Shape::wedge15},
+               {"hex", 2, true, Shape::hex20r},  {"prism", 2, true, Shape::wedge15}};
   for (const auto& c : cases) {
     const std::string where = std::string(c.what) + std::to_string(c.order) + (c.complete ? " complete" : "");
     mesh(boxes(c.what), "a.msh", c.order, 4.1, false, c.complete);
@@ -134,7 +134,7 @@ TEST_F(ImportGmsh, AScriptIsMeshedWithItsParametersSizeAndOrder) {
   EXPECT_EQ(imported("a.geo").n_cells(), 16);
   EXPECT_EQ(imported("a.geo", "--define N=3").n_cells(), 54);
   const Mesh m = imported("a.geo", "--define N=1 --order 2");
-  EXPECT_EQ(static_cast<Shape>(m.shape[0]), Shape::hex20);
+  EXPECT_EQ(static_cast<Shape>(m.shape[0]), Shape::hex20r);
   EXPECT_EQ(m.n_nodes(), 12 + 20);
   place.write("b.geo", "SetFactory(\"OpenCASCADE\"); Box(1) = {0,0,0,1,1,1};\n");
   EXPECT_GT(imported("b.geo", "--size 0.05").n_cells(), 4 * imported("b.geo", "--size 0.1").n_cells());

@@ -1,5 +1,8 @@
 // Abaqus and CalculiX decks: cells, sets, surfaces, materials, supports and loads survive; what is wrong is named by line.
+#include <fmt/format.h>
+
 #include "import_case.hpp"
+#include "model/block.hpp"
 #include "model/scene.hpp"
 #include "model/store.hpp"
 
@@ -41,6 +44,30 @@ TEST_F(ImportInp, EveryShapeKeepsItsVolume) {
   EXPECT_EQ(m.region_name, std::vector<std::string>{"all"});
   EXPECT_EQ(m.cell_sets.at("wedge15"), std::vector<std::int64_t>{4});
   EXPECT_EQ(m.n_nodes(), 4 + 6 + 8 + 10 + 15 + 20);
+}
+
+// A deck says which integration it means; two cells that differ in nothing else keep theirs, and the faces of both are found.
+TEST_F(ImportInp, ReducedIntegrationOfTwentyNodesIsKept) {
+  std::string text = "*NODE\n";
+  const auto nodes = test::reference_nodes(Shape::hex20);
+  for (int cell = 0; cell < 2; ++cell)
+    for (size_t a = 0; a < nodes.size(); ++a)
+      text += fmt::format("{}, {}, {}, {}\n", 20 * cell + a + 1, nodes[a][0] + 3 * cell, nodes[a][1], nodes[a][2]);
+  const int order[20] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19};
+  for (const auto& [cell, type] : {std::pair{0, "C3D20"}, {1, "C3D20R"}}) {
+    text += fmt::format("*ELEMENT, TYPE={}, ELSET=all\n{}", type, cell + 1);
+    for (int a = 0; a < 20; ++a) text += fmt::format(",{}{}", a == 12 ? "\n" : "", 20 * cell + order[a] + 1);
+    text += "\n";
+  }
+  text += "*SURFACE, NAME=top\n1, S2\n2, S2\n*MATERIAL, NAME=m\n*ELASTIC\n1e7, .3\n*SOLID SECTION, ELSET=all, MATERIAL=m\n";
+  place.write("two.inp", text);
+  const Mesh m = imported(place / "two.inp");
+  ASSERT_EQ(m.n_cells(), 2);
+  EXPECT_EQ(static_cast<Shape>(m.shape[0]), Shape::hex20);
+  EXPECT_EQ(static_cast<Shape>(m.shape[1]), Shape::hex20r);
+  EXPECT_NEAR(volume(m), 2, 1e-14);
+  EXPECT_LT((vector_area(m, m.facet_sets.at("top")) - Vec3(0, 0, 2)).norm(), 1e-14);
+  EXPECT_NE(out.find("1 hex20, 1 hex20r"), std::string::npos) << out;
 }
 
 TEST_F(ImportInp, FacesOfEveryShapeHaveTheAreaAndOutwardNormalOfTheManual) {

@@ -59,7 +59,7 @@ inline Mesh block_mesh(const BlockOptions& o) {
       wedge{{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}},
       hex{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
   const auto add_cell = [&](std::vector<std::int64_t> nodes, int region) {
-    const Edges* edges = o.shape == Shape::tet10 ? &tet : o.shape == Shape::wedge15 ? &wedge : o.shape == Shape::hex20 ? &hex : nullptr;
+    const Edges* edges = o.shape == Shape::tet10 ? &tet : o.shape == Shape::wedge15 ? &wedge : info(o.shape).n_nodes == 20 ? &hex : nullptr;
     if (edges)
       for (const auto& [a, b] : *edges) nodes.push_back(between(nodes[a], nodes[b]));
     m.add_cell(o.shape, nodes, region, m.n_cells() + 1);
@@ -70,7 +70,7 @@ inline Mesh block_mesh(const BlockOptions& o) {
         const std::int64_t c[8] = {grid(i, j, k),     grid(i + 1, j, k),     grid(i + 1, j + 1, k),     grid(i, j + 1, k),
                                    grid(i, j, k + 1), grid(i + 1, j, k + 1), grid(i + 1, j + 1, k + 1), grid(i, j + 1, k + 1)};
         const int region = o.region_of ? o.region_of((plain[c[0]] + plain[c[6]]) / 2) : 0;
-        if (o.shape == Shape::hex8 || o.shape == Shape::hex20) {
+        if (info(o.shape).n_corners == 8) {
           add_cell({c, c + 8}, region);
         } else if (o.shape == Shape::wedge6 || o.shape == Shape::wedge15) {
           add_cell({c[0], c[1], c[2], c[4], c[5], c[6]}, region);

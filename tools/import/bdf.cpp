@@ -30,7 +30,7 @@ struct SolidKind {
 const std::vector<SolidKind> solids = {
     {"CTETRA", 4, 10, Shape::tet4, Shape::tet10, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}},
     {"CPENTA", 6, 15, Shape::wedge6, Shape::wedge15, {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11}},
-    {"CHEXA", 8, 20, Shape::hex8, Shape::hex20, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15}},
+    {"CHEXA", 8, 20, Shape::hex8, Shape::hex20r, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15}},
 };
 const std::map<std::string, std::string> refused = {{"CPYRAM", "pyramids are not read"},
                                                     {"CBEAM", "beams are not read"},

@@ -34,8 +34,8 @@ const Kind* kind_of(int type) {
       {5, Shape::hex8, {0, 1, 2, 3, 4, 5, 6, 7}},
       {6, Shape::wedge6, {0, 1, 2, 3, 4, 5}},
       {11, Shape::tet10, {0, 1, 2, 3, 4, 5, 6, 7, 9, 8}},
-      {17, Shape::hex20, hex20},
-      {12, Shape::hex20, hex20, "hex27"},
+      {17, Shape::hex20r, hex20},
+      {12, Shape::hex20r, hex20, "hex27"},
       {18, Shape::wedge15, wedge15},
       {13, Shape::wedge15, wedge15, "wedge18"},
   };

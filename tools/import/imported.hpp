@@ -95,7 +95,7 @@ Imported read_any(const std::string& path, const ImportOptions& options);
 /// What follows every reader: nodes merged, unused nodes dropped, order raised, lengths brought to SI; then the checks (inverted,
 /// degenerate).
 void finish(Imported& in, const std::string& file, const ImportOptions& options);
-/// tet4, wedge6, hex8 to tet10, wedge15, hex20 with straight edges.
+/// tet4, wedge6, hex8 to tet10, wedge15, hex20r with straight edges.
 void raise_order(Imported& in);
 /// Curved cells that are inverted get straight edges, and those their neighbours become inverted by; returns how many.
 std::int64_t straighten(Mesh& mesh);

@@ -171,7 +171,7 @@ Shape inp_shape(const Card& card) {
       if (nodes == "8") return Shape::hex8;
       if (nodes == "10") return Shape::tet10;
       if (nodes == "15") return Shape::wedge15;
-      if (nodes == "20") return Shape::hex20;
+      if (nodes == "20") return variant.find('R') == std::string::npos ? Shape::hex20 : Shape::hex20r;
     }
     if (nodes == "5" || nodes == "13") throw refuse("pyramids are not read");
     throw refuse("this solid is not read");

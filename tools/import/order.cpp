@@ -25,6 +25,7 @@ const Edges& edges_of(Shape s) {
       return wedge;
     case Shape::hex8:
     case Shape::hex20:
+    case Shape::hex20r:
       return hex;
     default:
       return none;
@@ -32,7 +33,7 @@ const Edges& edges_of(Shape s) {
 }
 
 Shape quadratic(Shape s) {
-  return s == Shape::tet4 ? Shape::tet10 : s == Shape::wedge6 ? Shape::wedge15 : s == Shape::hex8 ? Shape::hex20 : s;
+  return s == Shape::tet4 ? Shape::tet10 : s == Shape::wedge6 ? Shape::wedge15 : s == Shape::hex8 ? Shape::hex20r : s;
 }
 
 struct EdgeHash {

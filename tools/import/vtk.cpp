@@ -36,9 +36,9 @@ const Kind* kind_of(int type) {
       {12, Shape::hex8, first(8), "hexahedron", 8},
       {13, Shape::wedge6, first(6), "wedge", 6},
       {24, Shape::tet10, first(10), "quadratic tetra", 10},
-      {25, Shape::hex20, first(20), "quadratic hexahedron", 20},
+      {25, Shape::hex20r, first(20), "quadratic hexahedron", 20},
       {26, Shape::wedge15, first(15), "quadratic wedge", 15},
-      {29, Shape::hex20, first(20), "triquadratic hexahedron", 27},
+      {29, Shape::hex20r, first(20), "triquadratic hexahedron", 27},
       {32, Shape::wedge15, first(15), "biquadratic quadratic wedge", 18},
   };
   for (const auto& k : kinds)

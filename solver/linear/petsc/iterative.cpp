@@ -119,9 +119,7 @@ class IterativeSolver final : public KktSolver {
       report.iterations += before;
     }
     if (!report.ok && is_substructured()) {
-      if (rank() == 0)
-        warn("", fmt::format("{} fails ({}): the flexible part may be unstable or held by nothing; direct from here on", name(),
-                             report.message));
+      if (rank() == 0) warn("", fmt::format("{} fails ({}); direct from here on", name(), report.message));
       hand_over();
       before = report.iterations;
       report = direct_->solve(b, x, tolerance);

@@ -61,17 +61,10 @@ struct NeoHookean {
   /// S = mu I + k ln(1 + r)/(r D0) A,  k = -mu + lambda (ln D0 + ln D1)/4,  r = (D1 - D0)/D0,  gives S:(E1 - E0) = W1 - W0.
   template <class T>
   void stress(const T e0[6], const T e1[6], T s[6], T (*D)[6]) const {
-    T C0[6], C1[6], mean[6], step[6], cof0[6], cof1[6], A[6], cof_step[6];
-    right_cauchy_green(e0, C0);
-    right_cauchy_green(e1, C1);
-    for (int i = 0; i < 6; ++i) mean[i] = (C0[i] + C1[i]) / 2, step[i] = C1[i] - C0[i];
-    cofactor(C0, cof0);
-    cofactor(C1, cof1);
-    cofactor(mean, A);
-    cofactor(step, cof_step);
-    for (int i = 0; i < 6; ++i) A[i] += cof_step[i] / 12;
-    const T D0 = determinant(C0, cof0), D1 = determinant(C1, cof1);
-    const T dD = A[0] * step[0] + A[1] * step[1] + A[2] * step[2] + 2 * (A[3] * step[3] + A[4] * step[4] + A[5] * step[5]);
+    T M[6], A[6], cof1[6], D0 = 0 * e0[0], D1 = D0;
+    dilatation(e0, e1, M, A, cof1, D0, D1);
+    const T dD = 2 * (A[0] * (e1[0] - e0[0]) + A[1] * (e1[1] - e0[1]) + A[2] * (e1[2] - e0[2]) + A[3] * (e1[3] - e0[3]) +
+                      A[4] * (e1[4] - e0[4]) + A[5] * (e1[5] - e0[5]));
     const T k = -c.mu + c.lambda / 4 * (log_of(D0) + log_of(D1));
     T L = D0, dL = D0;
     log_ratio(T(dD / D0), L, dL);
@@ -80,12 +73,28 @@ struct NeoHookean {
     if (!D) return;
     // dS = psi A (cof C1 : dC1) + phi dA,  dA = dcof(mean/2 + step/12)[dC1],  dC1 = 2 dE1
     const T psi = (c.lambda / 4 / D1) * L / D0 + k * dL / (D0 * D0);
-    T M[6];
-    for (int i = 0; i < 6; ++i) M[i] = mean[i] / 2 + step[i] / 12;
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 6; ++j) D[i][j] += 2 * psi * A[i] * cof1[j];
-    // derivative of the cofactor, columns in strain form (off-diagonal variation counted once)
-    const T f = 2 * phi;
+    add_cofactor_slope(M, T(2 * phi), D);
+  }
+
+  /// det C over a step: D1 - D0 = A:(C1 - C0), and the cofactor at its end; M = mean/2 + step/12 is what dA/dC1 is made of.
+  template <class T>
+  static void dilatation(const T e0[6], const T e1[6], T M[6], T A[6], T cof1[6], T& D0, T& D1) {
+    T C0[6], C1[6], mean[6], step[6], cof0[6], cof_step[6];
+    right_cauchy_green(e0, C0);
+    right_cauchy_green(e1, C1);
+    for (int i = 0; i < 6; ++i) mean[i] = (C0[i] + C1[i]) / 2, step[i] = C1[i] - C0[i];
+    cofactor(C0, cof0);
+    cofactor(C1, cof1);
+    cofactor(mean, A);
+    cofactor(step, cof_step);
+    for (int i = 0; i < 6; ++i) A[i] += cof_step[i] / 12, M[i] = mean[i] / 2 + step[i] / 12;
+    D0 = determinant(C0, cof0), D1 = determinant(C1, cof1);
+  }
+  /// D += f dcof(M), columns in strain form (off-diagonal variation counted once).
+  template <class T>
+  static void add_cofactor_slope(const T M[6], const T& f, T (*D)[6]) {
     D[0][1] += f * M[2], D[0][2] += f * M[1], D[0][3] -= f * M[3];
     D[1][0] += f * M[2], D[1][2] += f * M[0], D[1][4] -= f * M[4];
     D[2][0] += f * M[1], D[2][1] += f * M[0], D[2][5] -= f * M[5];

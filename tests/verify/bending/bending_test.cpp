@@ -1,5 +1,7 @@
 // Locking: slender, nearly incompressible, skewed and twisted cells in bending against beam theory and published values (benchmarks.md O9,
 // O12). Loads are small, so that the answer is the linear one.
+#include <fmt/format.h>
+
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -135,6 +137,132 @@ TEST(Bending, CooksMembraneIsThatOfItsPeers) {
               "--set material.solid.E=70 --set material.solid.nu=0.33 --set load.end.force=[0,100e-6,0] --set 'motion.plane.on=\"all\"'");
     EXPECT_NEAR(corner, 32.25, 0.011 * 32.25) << info(shape).name << ", plane strain";
   }
+}
+
+/// A block whose mid-side nodes lie on the map too.
+Mesh curved_block(BlockOptions o, const std::function<Vec3(const Vec3&)>& map) {
+  o.map = map;
+  Mesh m = block_mesh(o);
+  o.map = nullptr;
+  const Mesh plain = block_mesh(o);
+  for (std::int64_t a = 0; a < m.n_nodes(); ++a) m.X[a] = map(plain.X[a]);
+  return m;
+}
+
+/// Elastic energy of a static scene made from that of bending/.
+double elastic_energy(Case& c, const Mesh& m, const std::string& scene, std::string* talk = nullptr) {
+  write_mesh(c / "mesh.h5", m, {"test"});
+  c.write("scene.toml", scene);
+  const Ran ran = c.run("hilo-solve scene.toml mesh.h5 -o run.h5 --set solver.tolerance=1e-9");
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  if (talk) *talk = ran.err;
+  const auto e = c.results().history("energy");
+  return e(e.rows() - 1, 1);
+}
+
+/// Half a pipe bent by 90 degrees about a radius of 3, of radius 1 and wall 1/20, one cell through the wall, clamped at one end, pulled at
+/// the other; its energy over that of the converged mesh.
+double pipe_ratio(Shape shape, int around, int along, std::string* talk = nullptr) {
+  BlockOptions o;
+  o.shape = shape;
+  o.n[0] = along, o.n[1] = around, o.n[2] = 1;
+  const Mesh m = curved_block(o, [](const Vec3& s) {
+    const double bend = M_PI / 2 * s[0], turn = M_PI * s[1], r = 1 + 0.05 * (s[2] - 0.5), R = 3 + r * std::cos(turn);
+    return Vec3(R * std::sin(bend), R * std::cos(bend), -r * std::sin(turn));
+  });
+  Case c("bending");
+  std::string scene = text_of(c.source("scene.toml"));
+  scene.replace(scene.find("[[probe]]"), scene.find("[time]") - scene.find("[[probe]]"), "");
+  scene.replace(scene.find("force = [0, 0, 1e-3]"), 20, "force = [0, 1e-3, 0]");
+  for (const std::string side : {"ymin", "ymax"})
+    scene += "\n[[motion]]\nkind = \"fixed\"\nname = \"" + side + "\"\non = \"" + side + "\"\ncomponents = [\"z\"]\n";
+  // 1.1754e-6 for a traction of 1 on pi/20: cells of 36 x 36 give 1.1752e-6 with 8 points, 1.1723e-6 with 27, both still rising
+  const double converged = 1e-6 * 1.1754e-6 / std::pow(M_PI / 20, 2) / 2;
+  return elastic_energy(c, m, scene, talk) / converged;
+}
+
+// Truth: a converged mesh.  27 points see the membrane strains that quadratic displacements make up in a curved wall, 8 do not.
+TEST(Bending, PipeBendOfOneCellThroughTheWallIsThatOfAConvergedMesh) {
+  std::string talk;
+  EXPECT_NEAR(pipe_ratio(Shape::hex20r, 8, 8, &talk), 1, 0.01);
+  EXPECT_EQ(talk.find("bulge"), std::string::npos) << talk;
+  EXPECT_NEAR(pipe_ratio(Shape::hex20r, 4, 3), 1, 0.1);
+  EXPECT_LT(pipe_ratio(Shape::hex20, 8, 8, &talk), 0.9);
+  EXPECT_NE(talk.find("block: curved walls of hex20"), std::string::npos) << talk;
+}
+
+// Truth: Timoshenko's beam at nu = .4999, one cell high.
+TEST(Bending, NearlyIncompressibleBeamsAreWithinTwoPerCent) {
+  const Vec3 size(10, 1, 1);
+  for (const Shape shape : {Shape::hex8, Shape::hex20, Shape::hex20r, Shape::tet10, Shape::wedge15}) {
+    const int n[3] = {10, 1, 1};
+    EXPECT_NEAR(beam_ratio(beam(shape, n, size), size, "0.4999", "1e-3"), 1, 0.02) << info(shape).name;
+  }
+}
+
+// Lame: u(r) = (1 + nu) p a^2/(E (b^2 - a^2)) ((1 - 2 nu) r + b^2/r) of a thick tube in plane strain.  Energies of quadratic cells converge
+// with the fourth power of the size, also where the pressure is most of the stress.
+TEST(Bending, ThickTubeConvergesWithTheFourthPower) {
+  const double E = 1e7, p = 1e-2, a = 1, b = 2;
+  for (const Shape shape : {Shape::hex20r, Shape::hex20})
+    for (const double nu : {0.3, 0.4999}) {
+      double error[2];
+      for (int k = 0; k < 2; ++k) {
+        BlockOptions o;
+        o.shape = shape;
+        o.n[0] = 2 << k, o.n[1] = 3 << k;
+        const Mesh m = curved_block(o, [&](const Vec3& s) {
+          const double r = a + (b - a) * s[0], t = M_PI / 2 * s[1];
+          return Vec3(r * std::sin(t), -r * std::cos(t), s[2]);
+        });
+        Case c("bending");
+        std::string scene = text_of(c.source("scene.toml"));
+        scene = scene.substr(0, scene.find("[[motion]]")) + scene.substr(scene.find("[time]"));
+        scene.replace(scene.find("nu = 0.3"), 8, fmt::format("nu = {}", nu));
+        for (const auto& [name, on, held] : {std::tuple{"a", "ymin", "x"}, {"b", "ymax", "y"}, {"c", "zmin", "z"}, {"d", "zmax", "z"}})
+          scene += fmt::format("\n[[motion]]\nkind = \"fixed\"\nname = \"{}\"\non = \"{}\"\ncomponents = [\"{}\"]\n", name, on, held);
+        scene += fmt::format("\n[[load]]\nkind = \"pressure\"\nname = \"inside\"\non = \"xmin\"\npressure = {}\n", p);
+        const double u = (1 + nu) * p * a * a / (E * (b * b - a * a)) * ((1 - 2 * nu) * a + b * b / a);
+        error[k] = std::abs(elastic_energy(c, m, scene) / (p * u * M_PI / 4 * a) - 1);
+      }
+      EXPECT_LT(error[1], 2e-3) << info(shape).name << " nu " << nu;
+      EXPECT_GT(std::log2(error[0] / error[1]), 3) << info(shape).name << " nu " << nu << ": " << error[0] << " " << error[1];
+    }
+}
+
+// Truth: what the warnings say of these beams is what they do; regular ones are not warned of.
+TEST(Bending, SkewedAndLinearCellsAreToldByRegion) {
+  const Vec3 size(10, 1, 1);
+  const auto talk_of = [&](Shape shape, double moved) {
+    BlockOptions o;
+    o.shape = shape;
+    o.n[0] = 10, o.n[1] = o.n[2] = 2, o.high = size;
+    o.map = [=](const Vec3& x) {
+      Vec3 y = x;
+      const int at[3] = {static_cast<int>(std::lround(x[0])), static_cast<int>(std::lround(2 * x[1])),
+                         static_cast<int>(std::lround(2 * x[2]))};
+      for (int i = 0; i < 3; ++i)
+        if (at[i] > 0 && at[i] < o.n[i]) y[i] += moved * size[i] / o.n[i] * scatter(3 * (at[0] + 31 * (at[1] + 17 * at[2])) + i);
+      return y;
+    };
+    Mesh m = block_mesh(o);
+    add_node_set(m, "tip", [&](const Vec3& x) { return std::abs(x[0] - size[0]) < 1e-9; });
+    Case c("bending");
+    c.use(m);
+    const Ran ran = c.solve();
+    const Results r = c.results();
+    const double tip = (r.at("probe/tip", 1) - r.at("probe/tip", 0))[2];
+    return std::pair(ran.err, tip / (3.995e-4 * 1e-3));  // of the converged mesh, all shapes that do not lock
+  };
+  EXPECT_EQ(talk_of(Shape::hex8, 0).first.find("block:"), std::string::npos);
+  const auto [skewed, tip] = talk_of(Shape::hex8, 0.2);
+  EXPECT_NE(skewed.find("block: skewed hex8"), std::string::npos) << skewed;
+  const double said = std::stod(skewed.substr(skewed.find("about") + 5)) / 100;
+  EXPECT_NEAR(1 / tip - 1, said, 0.05) << "the warning's own figure";
+  EXPECT_EQ(talk_of(Shape::hex20r, 0.2).first.find("block:"), std::string::npos);
+  EXPECT_NEAR(talk_of(Shape::hex20r, 0.2).second, 1, 0.01);
+  EXPECT_NE(talk_of(Shape::wedge6, 0).first.find("block: linear wedges lock"), std::string::npos);
+  EXPECT_NE(talk_of(Shape::tet4, 0).first.find("block: linear tetrahedra lock"), std::string::npos);
 }
 
 }  // namespace

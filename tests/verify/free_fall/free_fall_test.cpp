@@ -8,7 +8,7 @@ namespace {
 class FreeFall : public testing::TestWithParam<std::tuple<Shape, Fidelity>> {};
 INSTANTIATE_TEST_SUITE_P(
     EveryShape, FreeFall,
-    testing::Combine(testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20),
+    testing::Combine(testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20, Shape::hex20r),
                      testing::Values(Fidelity::nonlinear, Fidelity::rigid)),
     [](const auto& p) { return std::string(hilo::info(std::get<0>(p.param)).name) + "_" + std::string(word(std::get<1>(p.param))); });
 

@@ -1,0 +1,134 @@
+// Nearly incompressible cells: what Poisson's ratio has above a bound acts on the mean dilatation of the cell, not at every point of it.
+// Pressures that differ from point to point are more conditions than the nodes can meet, and the cell locks [nagtegaal-parks-rice-1974].
+//
+//   lambda = lambda_p + lambda_m,   lambda_p = the value at the same mu and the bound nu_p;   points have (lambda_p, mu), and the cell
+//   St. Venant-Kirchhoff   U = V lambda_m/2 theta^2,      theta = mean of tr E
+//   neo-Hookean            U = V lambda_m/8 (ln D)^2,     D = mean of det C
+//
+// The rest at points keeps bending stiff where one cell is all there is across it.  tr E is quadratic in positions and det C1 - det C0 =
+// A:(C1 - C0) exactly (material/neo_hookean.hpp), so their means have exact discrete gradients and energy-momentum is kept.  Rate terms:
+// lambda_m of the linear moduli on theta.  At nu_p and below nothing changes.
+#pragma once
+#include "physics/material/neo_hookean.hpp"
+#include "physics/material/stvk.hpp"
+#include "physics/solid.hpp"
+
+namespace hilo {
+
+/// nu_p of a shape [1]: the largest for which it is within 2 % at nu = .4999 in bending, one cell high (docs/elements.md); 1/2 for shapes
+/// of one point, whose dilatation is its mean already.
+template <class S>
+inline constexpr double pointwise_nu = S::n_points == 1          ? 0.5
+                                       : S::n == 10 || S::n == 6 ? 0.40
+                                                                 : 0.45;
+
+/// lambda_m [Pa]; lambda_p is the rest.
+template <class S>
+constexpr double mean_lambda(const Lame& c) {
+  constexpr double nu = pointwise_nu<S>;
+  if constexpr (nu >= 0.5) return 0;
+  const double most = 2 * c.mu * nu / (1 - 2 * nu);
+  return c.lambda > most * (1 + 1e-12) ? c.lambda - most : 0;
+}
+
+/// Stress of the mean at a point: S = theta I + 2 D A, A the gradient of det C over the step; a law for solid::add_point.
+template <class T>
+struct MeanStress {
+  T theta, D;  // derivatives of the energy density by theta and by the mean of det C [Pa]
+
+  T energy(const T e[6]) const { return 0 * e[0]; }
+  void stress(const T e0[6], const T e1[6], T s[6], T (*tangent)[6]) const {
+    T M[6], A[6], cof1[6], D0, D1;
+    NeoHookean::dilatation(e0, e1, M, A, cof1, D0, D1);
+    for (int i = 0; i < 3; ++i) s[i] = theta + 2 * D * A[i], s[i + 3] = 2 * D * A[i + 3];
+    if (tangent) NeoHookean::add_cofactor_slope(M, T(4 * D), tangent);
+  }
+};
+
+/// Adds the energy of the mean to f, K, energy and dissipated (conventions of SolidCall); `lambda` is lambda_m.
+template <class S, class Material, class T>
+inline void add_mean_dilatation(double lambda, const SolidCall<T>& c) {
+  constexpr int n = S::n, n3 = 3 * n;
+  constexpr bool is_stvk = std::is_same_v<Material, StVenantKirchhoff>;
+  const double w = c.weight;
+  const T zero = 0 * c.X[0];
+  T volume = zero, theta0 = zero, theta1 = zero, D0 = zero, D1 = zero, D_end = zero;
+  T theta_m[n3], theta_1[n3], D_m[n3], D_1[n3];  // gradients of the sums over the points: at the middle, and that by x1
+  for (int i = 0; i < n3; ++i) theta_m[i] = theta_1[i] = D_m[i] = D_1[i] = zero;
+  const auto add_gradient = [](const T F[3][3], const T s[6], const T(*g)[3], const T& weight, T* f) {
+    for (int i = 0; i < 3; ++i) {
+      const T P[3] = {weight * (F[i][0] * s[0] + F[i][1] * s[5] + F[i][2] * s[4]),
+                      weight * (F[i][0] * s[5] + F[i][1] * s[1] + F[i][2] * s[3]),
+                      weight * (F[i][0] * s[4] + F[i][1] * s[3] + F[i][2] * s[2])};
+      for (int a = 0; a < n; ++a) f[3 * a + i] += P[0] * g[a][0] + P[1] * g[a][1] + P[2] * g[a][2];
+    }
+  };
+  for (int p = 0; p < S::n_points; ++p) {
+    T g[n][3], F0[3][3], F1[3][3], Fm[3][3], e0[6], e1[6];
+    const T weight = solid::point_gradients<S>(p, c.X, g);
+    solid::gradient<n>(c.x0, g, F0);
+    solid::gradient<n>(c.x1, g, F1);
+    solid::green_lagrange(F0, e0);
+    solid::green_lagrange(F1, e1);
+    volume += weight, theta0 += weight * (e0[0] + e0[1] + e0[2]), theta1 += weight * (e1[0] + e1[1] + e1[2]);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) Fm[i][j] = (1 - w) * F0[i][j] + w * F1[i][j];
+    if (c.K) {
+      const T one = 1 + zero, unit[6] = {one, one, one, zero, zero, zero};
+      add_gradient(Fm, unit, g, weight, theta_m);
+      add_gradient(F1, unit, g, weight, theta_1);
+    }
+    if constexpr (!is_stvk) {
+      T M[6], A[6], cof1[6], d0, d1;
+      const T J = solid::determinant(F1);
+      D_end += weight * J * J;
+      if (w != 0.5)
+        for (int i = 0; i < 6; ++i) e0[i] = e1[i] = (1 - w) * e0[i] + w * e1[i];
+      NeoHookean::dilatation(e0, e1, M, A, cof1, d0, d1);
+      D0 += weight * d0, D1 += weight * d1;
+      if (c.K) {
+        add_gradient(Fm, A, g, T(2 * weight), D_m);
+        add_gradient(F1, cof1, g, T(2 * weight), D_1);
+      }
+    }
+  }
+  theta0 = theta0 / volume, theta1 = theta1 / volume;
+  const T rate = lambda * c.viscous * (theta1 - theta0);
+  MeanStress<T> mean{rate, zero};
+  if (c.dissipated) *c.dissipated += volume * rate * (theta1 - theta0);
+  double slope_theta = lambda * c.viscous;
+  T slope_D = zero;
+  if constexpr (is_stvk) {
+    mean.theta += lambda * c.elastic * ((1 - w) * theta0 + w * theta1);
+    slope_theta += lambda * c.elastic * w;
+    if (c.energy) *c.energy += volume * (lambda / 2) * theta1 * theta1;
+  } else {
+    D0 = D0 / volume, D1 = D1 / volume;
+    if (c.elastic != 0) {  // lambda/8 (ln^2 D1 - ln^2 D0)/(D1 - D0) = lambda/8 (ln D0 + ln D1) ln(1 + r)/(r D0)
+      T L = zero, dL = zero;
+      log_ratio(T((D1 - D0) / D0), L, dL);
+      const T sum = (lambda / 8) * (log_of(D0) + log_of(D1)), factor = c.elastic / D0;
+      mean.D = factor * sum * L;
+      slope_D = factor * ((lambda / 8) * L / D1 + sum * dL / D0) * (w == 0.5 ? 1 : 2 * w);
+    }
+    if (c.energy) {
+      const T log_D = log_of(T(D_end / volume));
+      *c.energy += volume * (lambda / 8) * log_D * log_D;
+    }
+  }
+  SolidCall<T> stress_only = c;
+  stress_only.elastic = 1, stress_only.viscous = 0;
+  stress_only.energy = stress_only.dissipated = stress_only.least_det = nullptr;
+  for (int p = 0; p < S::n_points && (c.f || c.K); ++p) {
+    T g[n][3];
+    const T weight = solid::point_gradients<S>(p, c.X, g);
+    solid::add_point<n>(mean, stress_only, g, weight);
+  }
+  if (!c.K) return;
+  for (int i = 0; i < n3; ++i) {
+    const T by_theta = slope_theta / volume * theta_m[i], by_D = slope_D / volume * D_m[i];
+    for (int j = 0; j < n3; ++j) c.K[n3 * i + j] += by_theta * theta_1[j] + by_D * D_1[j];
+  }
+}
+
+}  // namespace hilo
