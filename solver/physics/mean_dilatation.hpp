@@ -1,5 +1,5 @@
 // Nearly incompressible cells: what Poisson's ratio has above a bound acts on the mean dilatation of the cell, not at every point of it.
-// Pressures that differ from point to point are more conditions than the nodes can meet, and the cell locks [nagtegaal-parks-rice-1974].
+// Pressures that differ from point to point are more conditions than the nodes can meet, and the cell locks.
 //
 //   lambda = lambda_p + lambda_m,   lambda_p = the value at the same mu and the bound nu_p;   points have (lambda_p, mu), and the cell
 //   St. Venant-Kirchhoff   U = V lambda_m/2 theta^2,      theta = mean of tr E

@@ -1,6 +1,7 @@
 // What the cells of a flexible region cannot do, told when a scene has them (docs/elements.md has the figures).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/shape/hex20.hpp"
@@ -10,8 +11,9 @@
 namespace hilo {
 namespace {
 
-/// How far a hexahedron is from a parallelepiped: the largest angle, in radians, by which two of its opposite edges or faces are turned
-/// against each other.  With x = m_r xi_r + p_r xi_j xi_k + ... it is 2 |p_r|/(2 min(|m_j|, |m_k|)).
+/// How far a hexahedron is from a parallelepiped: the angle, in radians, by which its opposite edges are turned against each other in the
+/// second worst of its three planes.  With x = m_r xi_r + p_r xi_j xi_k + ... the angle of plane jk is |p_r|/min(|m_j|, |m_k|).  A taper in
+/// one plane alone (rings, fans) hinders only what bends in that plane; it counts, in the same measure, in cells of thin walls.
 double skew(const Mesh& mesh, std::int64_t c) {
   Vec3 m[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}, p[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   const auto nodes = mesh.cell(c);
@@ -20,9 +22,11 @@ double skew(const Mesh& mesh, std::int64_t c) {
       const double* h = hex_corner[a];
       m[r] += h[r] * mesh.X[nodes[a]], p[r] += h[(r + 1) % 3] * h[(r + 2) % 3] * mesh.X[nodes[a]];
     }
-  double worst = 0;
-  for (int r = 0; r < 3; ++r) worst = std::max(worst, p[r].norm() / std::min(m[(r + 1) % 3].norm(), m[(r + 2) % 3].norm()));
-  return worst;
+  double angle[3], length[3];
+  for (int r = 0; r < 3; ++r) angle[r] = p[r].norm() / std::min(m[(r + 1) % 3].norm(), m[(r + 2) % 3].norm()), length[r] = m[r].norm();
+  std::sort(angle, angle + 3), std::sort(length, length + 3);
+  constexpr double thin = 4, worst_over_second = 1.7;  // of corners moved at random
+  return std::max(angle[1], length[1] > thin * length[0] ? angle[2] / worst_over_second : 0);
 }
 
 /// How far the longest way an edge of a quadratic cell leaves the straight line goes across the cell, along its shortest edge and over that
@@ -58,10 +62,10 @@ double measure(const Mesh& mesh, std::int64_t c) {
   }
 }
 
-/// Mean square skew and bulge from which a region is warned of: a beam or wall bent is then 4 % too stiff.
-constexpr double much_skew = 0.15, much_bulge = 0.15;
-/// What is too stiff of a beam of skewed hex8: this times skew^2, over the square of the cells across.
-constexpr double stiffness_of_skew = 7;
+/// Root mean square skew and bulge from which a region is warned of: a beam (two cells high) or a wall bent is then 4 to 6 % too stiff.
+constexpr double much_skew = 0.1, much_bulge = 0.15;
+/// How much too stiff a beam of skewed hex8 is: this times skew^2, over the square of the cells across.
+constexpr double stiffness_of_skew = 24;
 /// Share of a region's cells below which a shape is not worth a word: fillers between better ones.
 constexpr double few = 0.05;
 constexpr double nearly_incompressible = 0.45;
@@ -96,7 +100,7 @@ void Builder::warn_of_limits() const {
                          region.nu > nearly_incompressible ? fmt::format(" and at a Poisson's ratio of {:g}", region.nu) : ""));
       else if (shape == Shape::hex8 && mean > much_skew)
         warn(region.name,
-             fmt::format("skewed hex8, opposite faces turned by {:.2g} rad (mean): in bending about {:.0f} % too stiff with two cells "
+             fmt::format("skewed hex8, opposite edges turned by {:.2g} rad (mean): in bending about {:.0f} % too stiff with two cells "
                          "across, a quarter of that with four (smaller cells, or hilo-import --order 2)",
                          mean, 100 * stiffness_of_skew * mean * mean / 4));
       else if (mean > much_bulge)

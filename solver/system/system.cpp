@@ -191,6 +191,7 @@ void System::commit(const Config& q, const Config* v) {
   }
   for (Connector& j : joints)
     if (j.rows) j.rows->commit(j.values(q));
+  watch_strain(q);
 }
 
 void System::number() {

@@ -228,6 +228,8 @@ class System {
   int body_clique(int body) const { return body_clique_[body]; }
   std::vector<int> body_clique_, joint_clique_, spring_clique_;
   std::vector<char> owns_joint_, owns_spring_;
+  void watch_strain(const Config& q);
+  std::vector<char> strain_told_;  // by region: its compression has been told
 };
 
 /// Gradient of a joint's rows by its measures as the stage takes it: over the step where it conserves energy, else at `left`.

@@ -8,13 +8,13 @@ Difference = largest component of u - u_ref over the largest component of u_ref.
 prescribed displacements are multiplied by a factor that makes the displacements SMALL of the model's extent, and the displacements divided by it.
 
 Limits: where CalculiX integrates the same element by the same points the two answers are one number, up to its printed digits (SAME).  C3D20R
-has 2 x 2 x 2 points and hilo's hex20 has 3 x 3 x 3, on four elements over a beam's length that is half a per cent (REDUCED)."""
+leaves six modes of a cell without stiffness, hilo's hex20r holds them by a tenth of theirs (REDUCED); beampic was solved by iteration (ITERATED)."""
 import gzip, os, re, subprocess, sys, tempfile
 import h5py
 import numpy as np
 
 FOLDER = "/usr/share/doc/calculix-ccx-test/examples/test/"
-SMALL, SAME, REDUCED, WANTED = 1e-6, 1e-5, 1e-2, 15
+SMALL, SAME, REDUCED, ITERATED, WANTED = 1e-6, 1e-5, 3e-4, 3e-3, 15
 DECKS = {  # deck: limit
     "beam10p": SAME,             # tip force, 4 points
     "beam20p": SAME,             # tip force, 27 points
@@ -27,7 +27,7 @@ DECKS = {  # deck: limit
     "beamidset": REDUCED,        # material and section by set
     "beampset": REDUCED,         # set of sets
     "beamp2stage": REDUCED,      # supports in two *BOUNDARY blocks
-    "beampic": REDUCED,          # another solver of CalculiX
+    "beampic": ITERATED,         # another solver of CalculiX
     "beampis": REDUCED,          # another solver; 500 times the force: the linear answer is 43 long on a beam of 8
     "beampfix": REDUCED,         # first of two steps
     "changesolidsection": REDUCED,

@@ -58,6 +58,9 @@ std::string shapes() {
     }
     out += fmt::format("| {} | {} | {} | {} | {} | {} |\n", k, s.name, s.n_nodes, s.vtk_type, s.xdmf_type, fmt::join(facets, ", "));
   }
+  out +=
+      "\nhex20 and hex20r have the same nodes; hex20 integrates with 3 x 3 x 3 points, hex20r with 2 x 2 x 2 ([elements](elements.md)).\n"
+      "A deck's C3D20 becomes hex20, its C3D20R hex20r; files that do not say, and `hilo-import --order 2`, give hex20r.\n";
   return out;
 }
 

@@ -265,5 +265,37 @@ TEST(Bending, SkewedAndLinearCellsAreToldByRegion) {
   EXPECT_NE(talk_of(Shape::tet4, 0).first.find("block: linear tetrahedra lock"), std::string::npos);
 }
 
+// Truth: S l = Y l (l^2 - 1)/2 falls below l = 1/sqrt 3 = .577; the warning comes there, once, and not before.
+TEST(Compression, BeyondWhatALawOrACellStandsForIsTold) {
+  const auto talk_of = [](Shape shape, const std::string& kind, double pressed) {
+    BlockOptions o;
+    o.shape = shape;
+    for (int& n : o.n) n = 2;
+    Mesh m = block_mesh(o);
+    add_node_set(m, "tip", [](const Vec3& x) { return x.norm() < 1e-9; });
+    Case c("bending");
+    write_mesh(c / "mesh.h5", m, {"test"});
+    std::string scene = text_of(c.source("scene.toml"));
+    scene.replace(scene.find("stvk"), 4, kind);
+    scene.erase(scene.find("[[load]]"), scene.find("[[probe]]") - scene.find("[[load]]"));
+    scene.replace(scene.find("on = \"xmin\""), 11, "on = \"xmin\"\ncomponents = [\"x\"]");
+    scene += fmt::format(
+        "\n[history.ramp]\nt = [0, 1]\nvalue = [0, 1]\n[[motion]]\nkind = \"translation\"\nname = \"press\"\non = \"xmax\"\n"
+        "displacement = [-{}, 0, 0]\nhistory = \"ramp\"\n",
+        pressed);
+    c.write("scene.toml", scene);
+    const Ran ran =
+        c.run("hilo-solve scene.toml mesh.h5 -o run.h5 --set time.steps=10 --set 'motion.clamp.components=[\"x\",\"y\",\"z\"]'");
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    return ran.err;
+  };
+  EXPECT_EQ(talk_of(Shape::hex20, "stvk", 0.2).find("compressed to"), std::string::npos);
+  EXPECT_EQ(talk_of(Shape::hex8, "neo-hookean", 0.3).find("compressed to"), std::string::npos);
+  const std::string law = talk_of(Shape::hex20, "stvk", 0.4), cell = talk_of(Shape::hex8, "neo-hookean", 0.55);
+  EXPECT_NE(law.find("block: compressed to 0.5"), std::string::npos) << law;
+  EXPECT_EQ(law.find("compressed to"), law.rfind("compressed to")) << law;
+  EXPECT_NE(cell.find("fold in modes"), std::string::npos) << cell;
+}
+
 }  // namespace
 }  // namespace hilo::test
