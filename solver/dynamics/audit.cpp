@@ -15,6 +15,14 @@ constexpr double rounding = 1e-12;  // of sums over the scene
 
 double total(const System::Energy& e) { return e.kinetic + e.elastic + e.gravity; }
 
+/// Energies, the kinetic one of what moves by a law that of the law, so that the balance sees velocities that are not.
+System::Energy energy_of(const System& system, const State& s, Side side) {
+  if (!system.moves() || system.same_time == 0) return system.energy(s.q, s.v);  // statics have no velocities
+  Config v = s.v;
+  system.prescribe_rates(s.t, side, &v, nullptr);
+  return system.energy(s.q, v);
+}
+
 std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : "null"; }
 
 }  // namespace
@@ -24,7 +32,7 @@ Audit::Audit(const System& system, bool keeps_energy, double tolerance)
 
 void Audit::start(const State& s) {
   t_ = s.t, now_ = {};
-  now_.energy = system_.energy(s.q, s.v);
+  now_.energy = energy_of(system_, s, Side::right);
   now_.rows = system_.violation(s.q, s.t);
   E0_ = total(now_.energy), moving_ = now_.energy.kinetic;
   worst_.rows = now_.rows, worst_.kept_t = worst_.dropped_t = s.t;
@@ -33,7 +41,7 @@ void Audit::start(const State& s) {
 std::string Audit::look(const Config& q0, const State& end, std::span<const Taken> taken, const NewtonReport& newton, double load_factor) {
   opens_dropped_row_ = false;
   next_ = {};
-  next_.energy = system_.energy(end.q, end.v);
+  next_.energy = energy_of(system_, end, Side::left);
   next_.work = sums_.work, next_.dissipated = sums_.dissipated;
   for (const Taken& part : taken) {
     const System::Work w = system_.work(part.stage, part.lambda);

@@ -14,9 +14,10 @@ class Bathe final : public StageIntegrator {
   bool needs_acceleration() const override { return true; }
   void forget() override { fresh_ = true; }
 
-  void begin(const State& s, double h) override {
+  void begin(const System& system, const State& s, double h) override {
     t_ = s.t, v0_ = s.v, h_ = h;
     if (fresh_) a0_ = s.a;
+    given_[0].at(system, t_ + g * h_, v0_), given_[1].at(system, t_ + h_, v0_);
   }
 
   Stage stage(int k, const Unknown& u) override {
@@ -24,12 +25,14 @@ class Bathe final : public StageIntegrator {
     if (k == 0) {
       combine(vg_, {{2 / dt, &u.dq}, {-1, &v0_}});
       combine(ag_, {{2 / dt, &vg_}, {-2 / dt, &v0_}, {-1, &a0_}});
+      given_[0].put(&vg_, &ag_);
       dqg_ = u.dq;
       return at(u.q, vg_, ag_, t_ + dt, 2 / dt);
     }
     const double c0 = (1 - g) / (g * h), cg = -1 / ((1 - g) * g * h), c1 = (2 - g) / ((1 - g) * h);
     combine(v1_, {{cg, &dqg_}, {c1, &u.dq}});
     combine(a1_, {{c0, &v0_}, {cg, &vg_}, {c1, &v1_}});
+    given_[1].put(&v1_, &a1_);
     return at(u.q, v1_, a1_, t_ + h, c1);
   }
 
@@ -59,6 +62,7 @@ class Bathe final : public StageIntegrator {
   bool fresh_ = true;
   double t_ = 0, h_ = 0;
   Config v0_, a0_, dqg_, vg_, ag_, v1_, a1_, before_[2], after_[2];
+  GivenRates given_[2];
 };
 
 }  // namespace

@@ -1,5 +1,7 @@
 // v1 = c1 q1 + c0 q0 + cm q_-1,  a1 = c1 v1 + c0 v0 + cm v_-1,  M a1 + f(q1) + G(q1)^T lambda = F(t1),  g(q1) = 0
-// at changing steps, r = h/h_-1:  c1 = (1 + 2 r)/((1 + r) h),  c0 = -(1 + r)/h,  cm = r^2/((1 + r) h); backward Euler for the first step.
+// at changing steps, r = h/h_-1:  c1 = (1 + 2 r)/((1 + r) h),  c0 = -(1 + r)/h,  cm = r^2/((1 + r) h).
+// Before the first step stands one that was not taken, q_-1 = q0 - h v0 + h^2/2 a0 - h^3/6 j0, and the velocities of both have the error
+// -h^2/3 j that those of the formula have, so that accelerations and forces are right from the first step on.
 #include "dynamics/integrator.hpp"
 
 namespace hilo {
@@ -8,19 +10,26 @@ namespace {
 class Bdf2 final : public StageIntegrator {
  public:
   std::string name() const override { return "bdf2"; }
+  bool needs_acceleration() const override { return true; }
   void forget() override { h_before_ = 0; }
 
-  void begin(const State& s, double h) override {
+  void begin(const System& system, const State& s, double h) override {
     t_ = s.t, v0_ = s.v, h_ = h;
-    if (h_before_ == 0) combine(before_, {{0, &s.q}}), dq_before_ = before_, vm_ = s.v;
+    if (fresh()) {
+      combine(dq_before_, {{h, &s.v}, {-h * h / 2, &s.a}, {h * h * h / 6, &s.jerk}});
+      combine(vm_, {{1, &s.v}, {-h, &s.a}, {h * h / 6, &s.jerk}});
+      combine(v0_, {{1, &s.v}, {-h * h / 3, &s.jerk}});
+    }
+    given_.at(system, t_ + h_, v0_);
   }
 
   Stage stage(int, const Unknown& u) override {
-    const double r = h_before_ > 0 ? h_ / h_before_ : 0;  // r = 0 is backward Euler
+    const double r = fresh() ? 1 : h_ / h_before_;
     const double c1 = (1 + 2 * r) / ((1 + r) * h_), c0 = -(1 + r) / h_, cm = r * r / ((1 + r) * h_);
     combine(v1_, {{c1, &u.dq}, {-cm, &dq_before_}});
     dq_ = u.dq;
     combine(a1_, {{c1, &v1_}, {c0, &v0_}, {cm, &vm_}});
+    given_.put(&v1_, &a1_);
     combine(before_, {{1, &u.q}, {-h_ / 2, &v1_}});
     combine(after_, {{1, &u.q}, {h_ / 2, &v1_}});
     Stage s = stage_at(u.q, t_ + h_);
@@ -36,8 +45,10 @@ class Bdf2 final : public StageIntegrator {
   double own_time() const override { return 1; }
 
  private:
+  bool fresh() const { return h_before_ == 0; }
   double t_ = 0, h_ = 0, h_before_ = 0;
   Config v0_, dq_, dq_before_, vm_, v1_, a1_, before_, after_;
+  GivenRates given_;
 };
 
 }  // namespace

@@ -22,10 +22,10 @@ void refuse_contradictions(const Scene& scene, const System& system, const Redun
   const double open = 1e-9 * system.length;
   for (const auto& [j, by] : redundancy.held) {
     const Connector& joint = system.joints[j];
-    const double start = joint.drive.course(0, 1).value;
+    const double start = joint.drive.law.at(0).value;
     for (int k = 1; k <= samples; ++k) {
       const double t = end * k / samples;
-      if (std::abs(joint.drive.course(t, 1).value - start) <= open) continue;
+      if (std::abs(joint.drive.law.at(t).value - start) <= open) continue;
       throw Error(place_of(scene, joint.name),
                   fmt::format("joint \"{}\" is to be driven, but {} at t = {:.3g} s", joint.name,
                               by.empty() ? "its own rows hold it" : fmt::format("joint \"{}\" holds it still", by), t),
@@ -47,7 +47,7 @@ void refuse_contradictions(const Scene& scene, const System& system, const Redun
     for (const Connector* joint : fixed_ends) {
       double g[max_rows];
       joint->row_values(joint->values(q), g);
-      if (joint->drive.row >= 0) g[joint->drive.row] -= joint->drive.course(t, 1).value;
+      if (joint->drive.row >= 0) g[joint->drive.row] -= joint->drive.law.at(t).value;
       const double worst =
           std::abs(*std::max_element(g, g + joint->n_rows(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
       if (worst <= open) continue;
@@ -70,7 +70,7 @@ bool is_driven(const System& system) {
 std::string contradicted_joint(const System& system, const Config& q, const Config& v, double t) {
   double driven = 0, worst = 0;
   for (const Connector& j : system.joints)
-    if (j.drive.row >= 0) driven = std::max(driven, std::abs(j.drive.course(t, 1).rate));
+    if (j.drive.row >= 0) driven = std::max(driven, std::abs(j.drive.law.at(t, system.beside(t, Side::right)).rate));
   if (driven == 0) return "";
   std::vector<double> rate;
   system.row_rates(q, v, nullptr, t, rate, nullptr);

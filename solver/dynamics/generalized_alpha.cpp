@@ -15,11 +15,12 @@ class GeneralizedAlpha final : public StageIntegrator {
   bool needs_acceleration() const override { return true; }
   void forget() override { h_b_ = 0; }
 
-  void begin(const State& s, double h) override {
+  void begin(const System& system, const State& s, double h) override {
     const double offset = p_.alpha_m - p_.alpha_f;
     t_ = s.t, v0_ = s.v, h_ = h;
     if (h_b_ == 0) a0_ = s.a, jerk_ = s.jerk, b_at_start_ = s.a;
     combine(b0_, {{1, &b_at_start_}, {offset * (h - h_b_), &jerk_}});
+    given_.at(system, t_ + h_, v0_);
   }
 
   Stage stage(int, const Unknown& u) override {
@@ -27,6 +28,7 @@ class GeneralizedAlpha final : public StageIntegrator {
     combine(b1_, {{c, &u.dq}, {-c * h_, &v0_}, {-c * h_ * h_ * (0.5 - p_.beta), &b0_}});
     combine(a1_, {{m, &b1_}, {p_.alpha_m / (1 - p_.alpha_f), &b0_}, {-p_.alpha_f / (1 - p_.alpha_f), &a0_}});
     combine(v1_, {{1, &v0_}, {h_ * (1 - p_.gamma), &b0_}, {h_ * p_.gamma, &b1_}});
+    given_.put(&v1_, &a1_), given_.put(nullptr, &b1_);
     combine(before_, {{1, &u.q}, {-h_ / 2, &v1_}});
     combine(after_, {{1, &u.q}, {h_ / 2, &v1_}});
     Stage s = stage_at(u.q, t_ + h_);
@@ -49,6 +51,7 @@ class GeneralizedAlpha final : public StageIntegrator {
   std::string name_;
   double t_ = 0, h_ = 0, h_b_ = 0;  // h_b: the step that b at the start of this one belongs to; 0 at a restart
   Config v0_, a0_, jerk_, b_at_start_, b0_, a1_, b1_, v1_, before_, after_;
+  GivenRates given_;
 };
 
 AlphaParameters second_order(double alpha_m, double alpha_f) {

@@ -11,14 +11,32 @@ void restore_rotations(const System& system, Config& q) {
   system.follow(q);
 }
 
+void GivenRates::at(const System& system, double t, const Config& like) {
+  system_ = system.moves() ? &system : nullptr;
+  if (!system_) return;
+  v_.resize(like.x.size(), like.c.size()), a_.resize(like.x.size(), like.c.size());
+  system.prescribe_rates(t, Side::left, &v_, &a_);
+}
+
+void GivenRates::mean_from(const Config& v0, double h) {
+  if (system_) combine(a_, {{1 / h, &v_}, {-1 / h, &v0}});
+}
+
+void GivenRates::put(Config* v, Config* a) const {
+  if (system_ && v) system_->copy_prescribed(v_, *v);
+  if (system_ && a) system_->copy_prescribed(a_, *a);
+}
+
 NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, double h, Predictor predictor) {
   const System& system = *(system_ = &tools.system);
-  begin(s, h);
+  NewtonReport all;
+  all.reason = system.too_far(s.t, s.t + h);
+  if (!all.reason.empty()) return all;
+  begin(system, s, h);
   h_ = h, predictor_ = predictor, lambda_ = s.lambda;
   solved_.clear(), solved_.reserve(n_stages());
   missed_.resize(n_stages()), past_.resize(n_stages());
   taken_.resize(n_stages());
-  NewtonReport all;
   all.converged = true;
   for (int k = 0; k < n_stages(); ++k) {
     const double dt = instant(k) * h;

@@ -21,6 +21,20 @@ inline Stage from_left(Stage s, double h) {
 /// Directors back to orthonormal to round-off, so that lengths do not drift over millions of steps.
 void restore_rotations(const System& system, Config& q);
 
+/// Velocities and accelerations of what moves by a law at an instant that ends a step or stage: they come from the law, not from the
+/// update formulas, which would make a jump of them ring for ever (v1 = 2 dq/h - v0).
+class GivenRates {
+ public:
+  void at(const System& system, double t, const Config& like);
+  /// Accelerations become the mean ones of the step from v0 to here.
+  void mean_from(const Config& v0, double h);
+  void put(Config* v, Config* a) const;
+
+ private:
+  const System* system_ = nullptr;  // null: nothing moves
+  Config v_, a_;
+};
+
 /// What a step is solved with.
 struct StepTools {
   const System& system;
@@ -71,7 +85,7 @@ class StageIntegrator : public Integrator {
   void restart() final { past_.clear(), forget(); }
 
   /// Start a step of length h from s, which outlives the step.
-  virtual void begin(const State& s, double h) = 0;
+  virtual void begin(const System& system, const State& s, double h) = 0;
   /// Stage k for its unknown; the last call for k before that for k + 1 had the accepted one.
   virtual Stage stage(int k, const Unknown& u) = 0;
 

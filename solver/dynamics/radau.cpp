@@ -30,10 +30,12 @@ class Radau final : public Integrator {
 
   NewtonReport solve(const StepTools& tools, const State& s, double h, Predictor predictor) override {
     const System& system = *(system_ = &tools.system);
+    if (NewtonReport refused; !(refused.reason = system.too_far(s.t, s.t + h)).empty()) return refused;
     if (!whole_) couple(system);
     if (tried_) kept_ = false;  // the step before was refused: joint rows may have been chosen anew
     tried_ = true;
     t_ = s.t, h_ = h, v0_ = s.v, predictor_ = predictor;
+    for (int i = 0; i < 3; ++i) given_[i].at(system, t_ + c_[i] * h_, v0_);
     guess(system, s);
     const NewtonReport report = iterate(system, tools.newton);
     if (!report.converged) return kept_ = false, report;
@@ -204,6 +206,7 @@ class Radau final : public Integrator {
   void place() {
     differentiate(&Config::x), differentiate(&Config::c), differentiate(&Config::R);
     for (int i = 0; i < 3; ++i) {
+      given_[i].put(&v_[i], &a_[i]);
       Stage& s = stages_[i] = from_left(stage_at(u_[i].q, t_ + c_[i] * h_), h_);
       s.a = &a_[i], s.mass_slope = (W_ * W_)(i, i) / (h_ * h_);
       s.v = &v_[i], s.alpha_slope = W_(i, i) / h_;
@@ -269,6 +272,7 @@ class Radau final : public Integrator {
   std::vector<double> lambda_[3], missed_[3], reached_, b_, z_;
   Residual r_[3], unused_;
   Config guess_, zero_, a_end_, v0_, v_[3], a_[3], before_[3], after_[3], from_[3];
+  GivenRates given_[3];
   Stage stages_[3];
   std::vector<Taken> taken_;
 };

@@ -251,8 +251,8 @@ void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, co
   row.t = s.t;
   row.newton = iterations;
   row.point = point_values(s, ledger);
-  row.jump = std::any_of(setup_.jumps.begin(), setup_.jumps.end(),
-                         [&](double t) { return std::abs(t - s.t) < 1e-9 * std::max(1.0, std::abs(t)); });
+  row.jump =
+      std::any_of(setup_.jumps.begin(), setup_.jumps.end(), [&](double t) { return std::abs(t - s.t) <= 1.001 * system_.same_time; });
   row.field = setup_.is_static || s.t >= next_field_ * (1 - 1e-9);
   if (row.field) {
     row.q = s.q, row.v = s.v;

@@ -32,7 +32,7 @@ class Recorder {
     std::vector<std::string> fields;
     bool single_precision = false;
     bool skin = false;          // fields of the nodes on the surfaces of regions alone
-    std::vector<double> jumps;  // times at which a load jumps
+    std::vector<double> jumps;  // times at which forces or velocities jump
     std::vector<std::string> provenance;
     bool redundant = false;  // reactions by minimum norm
     double own_time = 0.5;   // where in the step mid values belong

@@ -8,6 +8,7 @@
 
 #include "base/table.hpp"
 #include "dynamics/audit.hpp"
+#include "dynamics/blow.hpp"
 #include "dynamics/clock.hpp"
 #include "dynamics/contradiction.hpp"
 #include "dynamics/predictor.hpp"
@@ -77,6 +78,11 @@ class Run {
     if (const std::string why = is_static_ ? "" : known_weakness(time, system_); !why.empty() && system_.comm->rank == 0)
       warn(time.where("integrator"), integrator_->name() + ": " + why);
 
+    if (!is_static_) {
+      const double end = time.number("end"), step = time.has("step") ? time.number("step") : end / 20;
+      events_ = events(system_, end, step), system_.same_time = 1e-9 * step;
+      events_.push_back({end, false});
+    }
     state_.q = system_.start;
     state_.v = system_.start_velocity;
     system_.prescribe(state_.q, 0, is_static_ && !time.has("end") ? 0 : 1);
@@ -127,10 +133,8 @@ class Run {
     setup.fields = output.texts("fields");
     setup.single_precision = output.text("precision") == "single";
     setup.skin = output.text("nodes") == "skin";
-    for (const Load& l : system_.loads)
-      for (double t : l.history.jumps()) setup.jumps.push_back(t);
-    for (const Connector& j : system_.joints)
-      for (double t : j.drive.rate_jumps) setup.jumps.push_back(t);
+    for (const Event& e : events_)
+      if (e.jump) setup.jumps.push_back(e.t);
     setup.provenance = options_.provenance;
     setup.redundant = redundancy_.rank < redundancy_.rows;
     setup.own_time = is_static_ ? 1 : integrator_->own_time(), setup.alternates = !is_static_ && integrator_->alternates();
@@ -195,7 +199,7 @@ class Run {
       }
       if (talk_) fmt::print(stderr, "equilibrium after {} iterations\n", r.iterations);
     }
-    projected_ = project_velocities(system_, *solver_, state_.q, state_.v, 0);
+    projected_ = blows_.strike(system_, *solver_, state_, talk_).change;
     if (const std::string name = contradicted_joint(system_, state_.q, state_.v, 0); !name.empty())
       throw Error(scene_.path, fmt::format("joint \"{}\" cannot move as the driven joints would have it", name),
                   "two drives, or a drive and a joint, hold the same motion");
@@ -208,17 +212,15 @@ class Run {
     if (time.has("tolerance")) control.emplace(system_, time.number("tolerance") * system_.length, end, step);
     if (!control && goes_by_itself(system_, redundancy_)) integrator_->keep_time(system_);
     if (talk_) fmt::print(stderr, "integrator: {}\n", integrator_->name());
-    std::vector<Event> events = load_events(system_, end, step);
-    events.push_back({end, false});
     double from = 0;
-    for (size_t i = 0; i < events.size(); ++i) {
-      if (i == 0 || events[i - 1].jump || integrator_->needs_acceleration()) restart(control, step);
+    for (size_t i = 0; i < events_.size(); ++i) {
+      if (i == 0 || events_[i - 1].jump || integrator_->needs_acceleration()) restart(control, step);
       if (i == 0) audit_->start(state_), recorder_->first(state_, audit_->ledger());
-      if (!(control ? controlled_steps(*control, events[i].t, progress) : equal_steps(from, events[i].t, step, progress))) {
+      if (!(control ? controlled_steps(*control, events_[i].t, progress) : equal_steps(from, events_[i].t, step, progress))) {
         progress.done();
         return stop(failure_);
       }
-      from = events[i].t;
+      from = events_[i].t;
     }
     estimated_ = control ? control->sum() : -1;
     progress.show(end, report_.steps, iterations_, true);
@@ -238,11 +240,8 @@ class Run {
 
   /// At the start and after a jump of the loads: history that belongs to the new forces.
   void restart(std::optional<StepControl>& control, double step) {
-    if (state_.t > 0 && std::any_of(system_.joints.begin(), system_.joints.end(), [](const Connector& j) { return j.drive.row >= 0; })) {
-      const double before = system_.energy(state_.q, state_.v).kinetic;  // the rate of a drive may jump here
-      project_velocities(system_, *solver_, state_.q, state_.v, state_.t);
-      audit_->push(system_.energy(state_.q, state_.v).kinetic - before);
-    }
+    const bool driven = std::any_of(system_.joints.begin(), system_.joints.end(), [](const Connector& j) { return j.drive.row >= 0; });
+    if (state_.t > 0 && (driven || system_.moves())) audit_->push(blows_.strike(system_, *solver_, state_, talk_).work);
     const std::vector<Active> rows = active_rows(system_);
     if (report_.steps == 0) set_rows(system_, redundancy_.at_pose);
     if (integrator_->needs_acceleration() || control) consistent_acceleration(system_, *solver_, state_, 0.05 * step);
@@ -379,6 +378,7 @@ class Run {
     add("audit", audit_->json(report_.complete ? "" : report_.reason));
     add("position_change", fmt::format("{:.6g}", assembled_));
     add("velocity_change", fmt::format("{:.6g}", projected_));
+    add("blows", blows_.json());
     add("seconds", fmt::format("{{\"all\": {:.6g}, \"assembly\": {:.6g}, \"solve\": {:.6g}, \"output\": {:.6g}}}", wall_clock() - began_,
                                p.assembly.seconds, p.solve.seconds, p.output.seconds));
     add("counts", fmt::format("{{\"evaluations\": {}, \"tangents\": {}, \"solves\": {}, \"linear_iterations\": {}}}", p.evaluations,
@@ -403,7 +403,9 @@ class Run {
   std::unique_ptr<Integrator> integrator_;
   std::unique_ptr<Recorder> recorder_;
   std::optional<Audit> audit_;
-  State state_, end_;  // accepted; of the step tried last
+  State state_, end_;          // accepted; of the step tried last
+  std::vector<Event> events_;  // the last is the end
+  Blows blows_;
   std::string failure_;
   double began_, processor_began_, peak_ = 0, assembled_ = 0, projected_ = 0, estimated_ = -1;
   int max_cuts_ = 8, level_ = 0, good_ = 0, iterations_ = 0;

@@ -74,7 +74,7 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
     std::string open;
     for (const Connector& j : system.joints) {
       j.row_values(j.values(q), g);
-      if (j.drive.row >= 0) g[j.drive.row] -= j.drive.course(0, 1).value;
+      if (j.drive.row >= 0) g[j.drive.row] -= j.drive.law.at(0).value;
       for (int r = 0; r < j.n_rows(); ++r)
         if (!(std::abs(g[r]) <= worst)) worst = std::abs(g[r]), open = j.name;
     }
@@ -89,14 +89,29 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
 }
 
 double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t) {
-  Config zero = v;
+  Config zero = v, jump = v;
   combine(zero, {{0, &v}});
+  system.prescribe_rates(t, Side::right, &v, nullptr);
   std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), b(3 * system.n_blocks(), 0.0), z(b.size(), 0.0);
-  if (lambda.empty()) return 0;
+  Residual r;
+  if (system.moves()) {  // a jump of what moves by a law is felt by what shares mass with it: M dv = -M jump
+    combine(jump, {{1, &v}, {-1, &jump}});
+    Residual without;
+    Stage inertia = mass_stage(system.start, jump, t);  // without strain
+    inertia.left = inertia.end = &q;
+    inertia.inertia_alone = true, inertia.load_factor = 0;
+    system.evaluate(inertia, lambda, r, nullptr);
+    inertia.a = &zero;
+    system.evaluate(inertia, lambda, without, nullptr);  // the round-off of stiff cells
+    for (size_t i = 0; i < r.r.size(); ++i) r.r[i] -= without.r[i];
+    solver.sum_shared(r.r);
+    system.mask_fixed(r.r);
+    for (int i = 0; i < 3 * system.first_joint_block(); ++i) b[i] = -r.r[i];
+  }
   std::vector<double> rate;
   system.row_rates(q, v, nullptr, t, rate, nullptr);
-  if (std::all_of(rate.begin(), rate.end(), [](double x) { return x == 0; })) return 0;
-  Residual r;
+  const auto is_zero = [](double x) { return x == 0; };
+  if (system.comm->max(std::all_of(rate.begin(), rate.end(), is_zero) && std::all_of(b.begin(), b.end(), is_zero) ? 0 : 1) == 0) return 0;
   system.evaluate(mass_stage(q, zero, 0), lambda, r, &solver);
   const int first = 3 * system.first_joint_block();
   for (size_t j = 0; j < system.joints.size(); ++j)
@@ -146,6 +161,7 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
     a.R[b] = W * W * s.q.R[b];
   }
   system.follow(a);
+  system.prescribe_rates(s.t, Side::right, nullptr, &a);
   lambda.assign(3 * system.n_joint_blocks(), 0.0);
   Stage stage = mass_stage(s.q, a, s.t);
   Config before, after;
@@ -203,6 +219,8 @@ void consistent_acceleration(const System& system, KktSolver& solver, State& s, 
     combine(n.q, {{1, &s.q}, {tau, &s.v}, {tau * tau / 2, &s.a}});
     for (int i = 0; i < 3; ++i) restore_rotations(system, n.q);
     combine(n.v, {{1, &s.v}, {tau, &s.a}});
+    system.prescribe(n.q, n.t);
+    system.prescribe_rates(n.t, Side::right, &n.v, nullptr);
     solve_acceleration(system, solver, n, n.a, unused);
   }
   combine(s.snap, {{1 / (h * h), &ahead[1].a}, {-2 / (h * h), &ahead[0].a}, {1 / (h * h), &s.a}});

@@ -9,7 +9,8 @@ namespace hilo {
 /// Error naming the joint that is furthest apart where there are none.
 double assemble_positions(System& system, KktSolver& solver, Config& q);
 
-/// Velocities made consistent with the joints and what drives them at time t, in the mass norm; returns the largest change [m/s].
+/// Velocities from time t on, in the mass norm: those of the laws for what moves by one, and consistent with the joints and what drives
+/// them for the rest; returns the largest change of what is free [m/s].
 double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t);
 /// s.a and s.lambda that satisfy equations and constraints at (q, v) at time t, and s.jerk by forward differences over h.
 void consistent_acceleration(const System& system, KktSolver& solver, State& s, double h);

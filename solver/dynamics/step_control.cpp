@@ -5,30 +5,24 @@
 
 namespace hilo {
 
-std::vector<Event> load_events(const System& system, double end, double step) {
-  std::vector<Event> jumps, kinks;
-  const auto add = [&](const History& h) {
-    const std::vector<double> leaps = h.jumps();
-    for (double t : h.events(0, end)) (std::find(leaps.begin(), leaps.end(), t) != leaps.end() ? jumps : kinks).push_back({t, t > 0});
-  };
-  for (const Load& l : system.loads) add(l.history);
-  for (const Motion& m : system.motions)
-    if (m.moving) add(m.history);
-  for (const Connector& j : system.joints) {
-    for (double t : j.drive.rate_jumps) jumps.push_back({t, t > 0});
-    for (double t : j.drive.kinks) kinks.push_back({t, false});
-  }
+std::vector<Event> events(const System& system, double end, double step) {
+  std::vector<Event> out, sparse;  // those that all count, and those that do where they are apart
+  for (const UsedHistory& used : system.histories)
+    for (const History::Break& b : used.history.breaks()) {
+      const int order = b.order - static_cast<int>(used.acts);  // of the derivative of forces that jumps; -1: velocities jump
+      if (order > 1) continue;
+      (order < 0 || b.order == 0 ? out : sparse).push_back({b.t, order <= 0});
+    }
   const auto earlier = [](const Event& a, const Event& b) { return a.t < b.t; };
-  std::sort(kinks.begin(), kinks.end(), earlier);
-  std::vector<Event> out = jumps;
+  std::sort(sparse.begin(), sparse.end(), earlier);
   const auto apart = [&](double a, double b) { return std::abs(a - b) > 1e-9 * step; };
-  for (size_t i = 0; i < kinks.size(); ++i) {
+  for (size_t i = 0; i < sparse.size(); ++i) {
     size_t before = i, behind = i;  // neighbours at another time
-    while (before > 0 && !apart(kinks[before].t, kinks[i].t)) --before;
-    while (behind + 1 < kinks.size() && !apart(kinks[behind].t, kinks[i].t)) ++behind;
-    const bool dense = (apart(kinks[before].t, kinks[i].t) && kinks[i].t - kinks[before].t < step) ||
-                       (apart(kinks[behind].t, kinks[i].t) && kinks[behind].t - kinks[i].t < step);
-    if (!dense) out.push_back({kinks[i].t, false});
+    while (before > 0 && !apart(sparse[before].t, sparse[i].t)) --before;
+    while (behind + 1 < sparse.size() && !apart(sparse[behind].t, sparse[i].t)) ++behind;
+    const bool dense = (apart(sparse[before].t, sparse[i].t) && sparse[i].t - sparse[before].t < step) ||
+                       (apart(sparse[behind].t, sparse[i].t) && sparse[behind].t - sparse[i].t < step);
+    if (!dense) out.push_back(sparse[i]);
   }
   std::sort(out.begin(), out.end(), earlier);
   std::vector<Event> merged;
@@ -54,9 +48,15 @@ void StepControl::restart(const State& s) {
     const double wave = size * std::sqrt(a.norm() * snap.norm());
     if (wave > top[0]) top[0] = wave, top[1] = std::sqrt(snap.norm() / a.norm());
   };
+  const auto free = [&](size_t i, Vec3 x) {  // components that move by a law are as they should be
+    for (int k = 0; k < 3; ++k)
+      if (system_.fixed[i][k]) x[k] = 0;
+    return x;
+  };
   for (size_t i = 0; i < s.a.x.size(); ++i)
-    if (system_.follower[i] < 0) look(1, s.a.x[i], s.jerk.x[i], s.snap.x[i]);
+    if (system_.follower[i] < 0) look(1, free(i, s.a.x[i]), free(i, s.jerk.x[i]), free(i, s.snap.x[i]));
   for (size_t b = 0; b < s.a.c.size(); ++b) {
+    if (!system_.bodies[b].free()) continue;
     look(1, s.a.c[b], s.jerk.c[b], s.snap.c[b]);
     for (int k = 0; k < 3; ++k) look(system_.bodies[b].size, s.a.R[b].col(k), s.jerk.R[b].col(k), s.snap.R[b].col(k));
   }
@@ -82,17 +82,20 @@ double StepControl::error(const Config& q1, double h) const {
   }
   const Config* q[4] = {&past_[0].q, &past_[1].q, &past_[2].q, &q1};
   double top = 0;
-  const auto look = [&](double size, const auto& value) {
+  constexpr std::array<bool, 3> all_free{};
+  const auto look = [&](double size, const std::array<bool, 3>& fixed, const auto& value) {
     Vec3 d = Vec3::Zero();
     for (int k = 0; k < 4; ++k) d += w[k] * value(*q[k]);
+    for (int k = 0; k < 3; ++k)
+      if (fixed[k]) d[k] = 0;  // moves by a law
     top = std::max(top, size * d.norm());
   };
   for (size_t i = 0; i < q1.x.size(); ++i)
-    if (system_.follower[i] < 0) look(1, [&](const Config& c) { return c.x[i]; });
+    if (system_.follower[i] < 0) look(1, system_.fixed[i], [&](const Config& c) { return c.x[i]; });
   for (size_t b = 0; b < q1.c.size(); ++b) {
     if (!system_.bodies[b].free()) continue;
-    look(1, [&](const Config& c) { return c.c[b]; });
-    for (int k = 0; k < 3; ++k) look(system_.bodies[b].size, [&](const Config& c) { return Vec3(c.R[b].col(k)); });
+    look(1, all_free, [&](const Config& c) { return c.c[b]; });
+    for (int k = 0; k < 3; ++k) look(system_.bodies[b].size, all_free, [&](const Config& c) { return Vec3(c.R[b].col(k)); });
   }
   const double at_first = fade_ > 0 ? first_third_ * std::exp(-(t_ - started_) / fade_) : 0;
   return h * h * h / 12 * std::max(6 * system_.comm->max(top), at_first);

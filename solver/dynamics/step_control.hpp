@@ -8,14 +8,15 @@
 
 namespace hilo {
 
-/// An instant at which a load or a prescribed motion jumps or has a kink.
+/// An instant at which forces, or by a law of motion velocities, jump or have a kink.
 struct Event {
   double t;
   bool jump;
 };
-/// Events inside (0, end), rising.  Jumps all count; kinks do where they are at least `step` apart from each other: what lies closer is a
-/// measured table, whose mean over a step is exact anyway.
-std::vector<Event> load_events(const System& system, double end, double step);
+/// Events inside (0, end), rising, of all histories of the system.  Where velocities or the values of loads jump they all count; kinks, and
+/// jumps of prescribed accelerations, do where they are at least `step` apart from each other: what lies closer is a measured table, whose
+/// mean over a step is exact anyway.
+std::vector<Event> events(const System& system, double end, double step);
 
 /// Keeps the sum of local position errors e = h^3/2 |q[n+1, n, n-1, n-2]| (third divided difference, largest over all points) at the
 /// tolerance by sharing it out evenly over the run.  Where the third derivative starts at zero, as from rest, it is no measure of the

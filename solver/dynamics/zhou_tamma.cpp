@@ -28,10 +28,11 @@ class ZhouTamma final : public StageIntegrator {
   bool needs_acceleration() const override { return true; }
   void forget() override { h_a_ = 0; }
 
-  void begin(const State& s, double h) override {
+  void begin(const System& system, const State& s, double h) override {
     t_ = s.t, v0_ = s.v, h_ = h;
     if (h_a_ == 0) jerk_ = s.jerk, a_at_start_ = s.a;
     combine(a0_, {{1, &a_at_start_}, {(W_ - A_) * (h - h_a_), &jerk_}});
+    given_.at(system, t_ + W_ * h_, v0_), given_end_.at(system, t_ + h_, v0_);
   }
 
   Stage stage(int, const Unknown& u) override {
@@ -39,6 +40,7 @@ class ZhouTamma final : public StageIntegrator {
     combine(D_, {{c, &u.dq}, {-c * h_, &v0_}, {-c * h_ * h_ / 2, &a0_}});
     combine(a_, {{1, &a0_}, {A_, &D_}});
     combine(v_, {{1, &v0_}, {W_ * h_, &a0_}, {V_ * h_, &D_}});
+    given_.put(&v_, &a_);
     if (averaged_)
       combine(left_, {{1, &u.q0}, {W_, &u.dq}});
     else
@@ -58,7 +60,10 @@ class ZhouTamma final : public StageIntegrator {
     return s;
   }
 
-  void end_velocity(Config& v) override { combine(v, {{1, &v0_}, {h_, &a0_}, {l5_ * h_, &D_}}); }
+  void end_velocity(Config& v) override {
+    combine(v, {{1, &v0_}, {h_, &a0_}, {l5_ * h_, &D_}});
+    given_end_.put(&v, nullptr);
+  }
   void finish(const Config&) override {
     combine(jerk_, {{1 / h_, &D_}});
     combine(a_at_start_, {{1, &a0_}, {1, &D_}});
@@ -72,6 +77,7 @@ class ZhouTamma final : public StageIntegrator {
   std::string name_;
   double A_, B_, W_, Q_, V_, l3_, l5_, t_ = 0, h_ = 0, h_a_ = 0;
   Config v0_, a0_, a_at_start_, jerk_, D_, a_, v_, left_, before_, after_;
+  GivenRates given_, given_end_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/history.hpp"
 #include "base/math.hpp"
 #include "base/param.hpp"
 
@@ -18,25 +19,6 @@ struct Place {
   std::string file;
   int line = 0, column = 0;
   std::string text() const;
-};
-
-/// How a history goes from point to point: linear; smooth, w = (1 - cos(pi s))/2 (C1); smoother, w = 35 s^4 - 84 s^5 + 70 s^6 - 20 s^7
-/// (C3).
-enum class Ramp { linear, smooth, smoother };
-
-/// A load history: values at rising times with ramps between them.
-/// Before the first point the first value, after the last the last.  Two equal times make a jump.
-struct History {
-  std::vector<double> t;      // [s]
-  std::vector<double> value;  // dimension of what it scales
-  Ramp ramp = Ramp::linear;
-  double operator()(double time) const;  // from the right at a jump
-  double slope(double time) const;
-  double curvature(double time) const;      // second derivative
-  double mean(double t0, double t1) const;  // exact average over [t0, t1]
-  /// Times of jumps and kinks inside (t0, t1).
-  std::vector<double> events(double t0, double t1) const;
-  std::vector<double> jumps() const;  // times at which the value jumps
 };
 
 /// One value of an entry, in SI units, with its place.

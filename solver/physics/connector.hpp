@@ -14,6 +14,7 @@
 
 #include "physics/config.hpp"
 #include "physics/curve.hpp"
+#include "physics/motion_law.hpp"
 
 namespace hilo {
 
@@ -94,15 +95,11 @@ class RowLaw {
   virtual std::string fault(const Values&) const { return {}; }
 };
 
-/// Course of a row: the joint holds g = value(t).
-struct Course {
-  double value, rate, acceleration;
-};
-/// Drive of a row; the factor is that of loads without a history in a static analysis.
+/// A row that is held to a law: g = law(t).
 struct Drive {
   int row = -1;
-  std::function<Course(double t, double factor)> course;
-  std::vector<double> rate_jumps, kinks;  // times at which the rate jumps, and at which its slope does [s]
+  MotionLaw law;
+  const char* unit = "";  // of its rate
 };
 
 class VelocityRows;

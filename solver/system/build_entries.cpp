@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "system/builder.hpp"
 #include "system/facet.hpp"
@@ -21,7 +22,27 @@ std::array<bool, 3> components(const Entry& e) {
   return c;
 }
 
+/// Two motions of components of nodes that prescribe the same one of the same node.
+bool share_component(const Motion& a, const Motion& b) {
+  bool same = false;
+  for (int k = 0; k < 3; ++k) same = same || (a.component[k] && b.component[k]);
+  if (!same || a.body >= 0 || b.body >= 0) return false;  // a node follows one body at most
+  const std::set<int> of_a(a.nodes.begin(), a.nodes.end());
+  return std::any_of(b.nodes.begin(), b.nodes.end(), [&](int i) { return of_a.contains(i); });
+}
+
 }  // namespace
+
+const History& Builder::use_history(const Entry& e, Acts acts) {
+  const History& h = e.history("history");
+  const bool is_static = scene_.table("time").text("analysis") == "static";
+  for (const History::Break& b : h.breaks())
+    if (b.order == 0 && acts == Acts::as_position && !is_static)
+      throw Error(e.where("history"), fmt::format("{}: the history jumps at t = {:.6g}, so what it moves would have to", e.label(), b.t),
+                  "let the values rise over some time, with interpolation = \"smooth\"");
+  out_->histories.push_back({e.label(), h, acts});
+  return h;
+}
 
 void Builder::add_motions() {
   for (const Entry& e : scene_.entries("motion")) {
@@ -34,7 +55,7 @@ void Builder::add_motions() {
     if (e.kind == "translation") m.displacement = e.vector3("displacement");
     if (e.kind == "rotation") m.at = e.vector3("at"), m.axis = direction(e, "axis"), m.angle = e.number("angle");
     m.moving = e.kind != "fixed";
-    if (m.moving) m.history = e.history("history"), m.ramped = !e.given("history");
+    if (m.moving) m.law = MotionLaw(1, false, use_history(e, Acts::as_position), !e.given("history"));
     const bool whole = m.component[0] && m.component[1] && m.component[2];
     if (found.body >= 0 && !whole)
       throw Error(where, fmt::format("{}: \"{}\" is rigid and can only be held whole", e.label(), e.text("on")),
@@ -61,10 +82,14 @@ void Builder::add_motions() {
                                            mesh_->mesh.node_id[i]));
       });
       for (int i : found.nodes) {
-        for (int k = 0; k < 3; ++k) out_->fixed[i][k] = out_->fixed[i][k] || m.component[k];
+        for (int k = 0; k < 3; ++k)
+          if (m.component[k]) out_->fixed[i][k] = true;
         m.nodes.push_back(i);
       }
     }
+    for (const Motion& other : out_->motions)  // of the same components of a node only one may move
+      if (comm_.max((m.moving || other.moving) && share_component(m, other) ? 1 : 0) > 0)
+        throw Error(where, fmt::format("{}: motion \"{}\" prescribes the same component of a node", e.label(), other.name));
     out_->motions.push_back(std::move(m));
   }
 }
@@ -98,7 +123,7 @@ void Builder::add_loads() {
   for (const Entry& e : scene_.entries("load")) {
     Load load;
     load.name = e.name;
-    load.history = e.history("history");
+    load.history = use_history(e, Acts::as_force);
     load.ramped = !e.given("history");
     const std::string where = e.where("on"), &on = e.text("on");
     const Found found = find(on, where);
@@ -217,7 +242,9 @@ void Builder::set_initial_velocities() {
           mass += out_->bodies[b].mass, moment += out_->bodies[b].mass * out_->bodies[b].Xc;
         }
       if (!used) {
-        for (int i : find(pattern, e.where("on")).nodes) node[i] = 1;
+        const Found found = find(pattern, e.where("on"));
+        for (int i : found.nodes) node[i] = 1;
+        if (found.body > 0) body[found.body] = true;  // a set of a rigid body is that body
         if (!e.has("about") && e.vector3("spin").norm() > 0) throw Error(e.place.text(), e.label() + ": a spin of a set needs `about`");
       }
     }
@@ -229,7 +256,8 @@ void Builder::set_initial_velocities() {
     for (size_t i = 0; i < node.size(); ++i)
       if (node[i]) {
         v.x[i] = velocity + spin.cross(out_->X[i] - about);
-        if (out_->follower[i] > 0 && out_->bodies[out_->follower[i]].patch) body[out_->follower[i]] = true;
+        if (const int b = out_->follower[i]; b > 0 && (out_->bodies[b].patch || (out_->bodies[b].motion >= 0 && out_->bodies[b].mass == 0)))
+          body[b] = true;  // made of nodes for a joint or a motion
       }
     for (size_t b = 1; b < body.size(); ++b)
       if (body[b]) v.c[b] = velocity + spin.cross(out_->bodies[b].Xc - about), v.R[b] = skew(spin);
@@ -249,11 +277,14 @@ void Builder::set_initial_velocities() {
       for (int k = 0; k < 9; ++k) v.R[b](k / 3, k % 3) = all[12 * b + 3 + k];
     }
   }
+  // what is held has none; what moves by a law takes that of its law from the one given here, by a blow where they differ
+  const auto rests = [&](const Body& b) { return b.ground || (b.motion >= 0 && !out_->motions[b.motion].moving); };
   for (size_t b = 0; b < out_->bodies.size(); ++b)
-    if (!out_->bodies[b].free()) v.c[b].setZero(), v.R[b].setZero();
-  for (size_t i = 0; i < out_->X.size(); ++i)
-    for (int k = 0; k < 3; ++k)
-      if (out_->fixed[i][k]) v.x[i][k] = 0;
+    if (rests(out_->bodies[b])) v.c[b].setZero(), v.R[b].setZero();
+  for (const Motion& m : out_->motions)
+    for (int i : m.nodes)
+      for (int k = 0; k < 3; ++k)
+        if (m.body < 0 && m.component[k] && !m.moving) v.x[i][k] = 0;
   Config full = v;
   out_->follow(full);
   for (size_t i = 0; i < out_->X.size(); ++i)

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <numbers>
 
 #include "physics/coordinates.hpp"
@@ -26,15 +25,6 @@ std::string driving_key(const Entry& e) {
     throw Error(e.where("history"), e.label() + ": a history without anything that follows it",
                 "give an angle, spin, displacement or velocity");
   return found;
-}
-
-/// value x history, or its integral from t = 0 for a rate; without a history it follows the load steps of a static analysis.
-std::function<Course(double, double)> course(double value, bool is_rate, const History& h, bool ramped) {
-  if (is_rate) return [=](double t, double) { return Course{value * t * h.mean(0, t), value * h(t), value * h.slope(t)}; };
-  return [=](double t, double factor) {
-    const double f = value * (ramped ? factor : 1);
-    return Course{f * h(t), f * h.slope(t), f * h.curvature(t)};
-  };
 }
 
 /// The curve of a joint, from its point at the start.
@@ -148,13 +138,8 @@ void Builder::add_joints() {
     Connector c = make_joint(j, out_->start);
     c.name = e.name;
     if (!driven.empty()) {
-      const History& h = e.history("history");
-      if (const auto jumps = h.jumps(); !jumps.empty() && !is_rate)
-        throw Error(e.where("history"), fmt::format("{}: the history jumps at t = {:.6g}, so the joint would have to", e.label(), jumps[0]),
-                    "let the values rise over some time, with interpolation = \"smooth\"");
-      (is_rate ? c.drive.kinks : c.drive.rate_jumps) = h.events(0, std::numeric_limits<double>::infinity());
-      if (is_rate) c.drive.rate_jumps = h.jumps();
-      c.drive.course = course(e.number(driven), is_rate, h, !e.given("history"));
+      c.drive.law = MotionLaw(e.number(driven), is_rate, use_history(e, is_rate ? Acts::as_rate : Acts::as_position), !e.given("history"));
+      c.drive.unit = j.driven == JointPlace::Driven::angle ? "rad/s" : "m/s";
     }
     out_->joints.push_back(std::move(c));
   }

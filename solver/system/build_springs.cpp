@@ -112,7 +112,7 @@ void Builder::add_joint_forces() {
     const bool turns = e.kind == "rotary";
     Connector c = along(e, turns ? Freedom::angle : Freedom::slide, motor_law(e, turns ? "torque" : "force"));
     if (e.given("history"))
-      c.factor = [history = e.history("history")](double t0, double t1) { return t1 > t0 ? history.mean(t0, t1) : history(t0); };
+      c.factor = [history = use_history(e, Acts::as_force)](double t0, double t1) { return t1 > t0 ? history.mean(t0, t1) : history(t0); };
     add(std::move(c), e);
   }
   for (const Entry& e : scene_.entries("friction")) {

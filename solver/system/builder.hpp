@@ -61,6 +61,8 @@ class Builder {
   Vec3 mean_of(const std::vector<int>& nodes) const;
   int nearest_owned(const std::vector<int>& nodes, const Vec3& at) const;
   // build_entries.cpp
+  /// The history of an entry; every one that acts on the system is taken through here, so that its jumps and kinks are known.
+  const History& use_history(const Entry& entry, Acts acts);
   void add_motions();
   void add_loads();
   void add_stations();

@@ -180,7 +180,7 @@ void System::add_connectors(Pass& p) const {
       right.e = c.values(*s.end);
     double g[max_rows], lambda[max_rows], force[max_measures];
     c.row_values(right.e, g);
-    if (c.drive.row >= 0) g[c.drive.row] -= c.drive.course(s.t_end, s.load_factor).value;
+    if (c.drive.row >= 0) g[c.drive.row] -= c.drive.law.at(s.t_end, s.t_end, s.load_factor).value;
     const int base = 3 * (joint_block[j] - first_joint_block()), n = c.n_rows(), n_position = c.n_position_rows();
     std::optional<Slip> slip;
     if (c.velocity_rows) slip.emplace(c, *s.left, s.v);

@@ -117,24 +117,7 @@ System::Work System::work(const Stage& s, std::span<const double> lambda) const 
         for (int i = 0; i < 3; ++i) dissipated += f[(3 * k + i) * W] * (s.end->x[nodes[k]][i] - from.x[nodes[k]][i]);
     }
   }
-  bool moving = false;
-  for (const Motion& m : motions) moving = moving || m.moving;
-  if (moving) {
-    Forces f;
-    forces(s, lambda, f);
-    for (const Motion& m : motions) {
-      if (!m.moving) continue;
-      if (m.body >= 0) {
-        if (comm->rank == 0)
-          external += f.body[m.body].head<3>().dot(s.end->c[m.body] - from.c[m.body]) +
-                      f.body[m.body].tail<3>().dot(rotation_increment(from.R[m.body], s.end->R[m.body]));
-      } else {
-        for (int node : m.nodes)  // every rank adds its share of a shared node
-          for (int i = 0; i < 3; ++i)
-            if (m.component[i]) external += f.node[node][i] * (s.end->x[node][i] - from.x[node][i]);
-      }
-    }
-  }
+  external += motion_work(s, lambda, from);
   double both[2] = {external, dissipated};
   comm->sum(both);
   return {both[0], both[1]};

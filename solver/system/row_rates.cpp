@@ -60,7 +60,7 @@ void System::row_rates(const Config& q, const Config& v, const Config* a, double
         for (int k = 0; k < n; ++k) second += 2 * g.D[r][m][k] * de[m] * de[k];
       }
       if (r == c.drive.row) {
-        const Course course = c.drive.course(t, 1);
+        const Course course = c.drive.law.at(t, beside(t, Side::right));
         first -= course.rate, second -= course.acceleration;
       }
       rate[base + r] = first;

@@ -79,27 +79,6 @@ void System::forces(const Stage& stage, std::span<const double> lambda, Forces& 
   }
 }
 
-Vec6 System::reaction(const Motion& m, const Forces& f, const Config& q) const {
-  Vec6 r = Vec6::Zero();
-  if (m.body >= 0) return f.body[m.body];
-  double count = 0;
-  Vec3 mean = Vec3::Zero();
-  for (int n : m.nodes)
-    if (node_owned[n]) mean += q.x[n], ++count;
-  double all[4] = {mean[0], mean[1], mean[2], count};
-  comm->sum(all);
-  mean = Vec3(all[0], all[1], all[2]) / std::max(1.0, all[3]);
-  for (int n : m.nodes) {
-    Vec3 force = Vec3::Zero();
-    for (int i = 0; i < 3; ++i)
-      if (m.component[i]) force[i] = f.node[n][i];
-    r.head<3>() += force;
-    r.tail<3>() += (q.x[n] - mean).cross(force);
-  }
-  comm->sum(std::span<double>(r.data(), 6));
-  return r;
-}
-
 void System::move(Config& q, std::span<const double> z) const {
   for (size_t i = 0; i < X.size(); ++i)
     if (node_block[i] >= 0) q.x[i] += Eigen::Map<const Vec3>(z.data() + 3 * node_block[i]);
@@ -116,30 +95,13 @@ void System::follow(Config& q) const {
     if (const int b = follower[i]; b >= 0) q.x[i] = q.c[b] + q.R[b] * (X[i] - bodies[b].Xc);
 }
 
-void System::prescribe(Config& q, double t, double ramp) const {
-  for (const Motion& m : motions) {
-    if (!m.moving) continue;
-    const double f = (m.ramped ? ramp : 1) * m.history(t);
-    if (m.body >= 0) {
-      const Mat3 R = m.angle != 0 ? Mat3(Eigen::AngleAxisd(f * m.angle, m.axis).toRotationMatrix()) : Mat3::Identity();
-      q.c[m.body] = m.at + R * (bodies[m.body].Xc - m.at) + f * m.displacement;
-      q.R[m.body] = R;
-    } else {
-      for (int n : m.nodes)
-        for (int i = 0; i < 3; ++i)
-          if (m.component[i]) q.x[n][i] = X[n][i] + f * m.displacement[i];
-    }
-  }
-  follow(q);
-}
-
 System::Violation System::violation(const Config& q, double t, double factor) const {
   Violation out;
   double g[max_rows];
   for (size_t i = 0; i < joints.size(); ++i) {
     const Connector& j = joints[i];
     j.row_values(j.values(q), g);
-    if (j.drive.row >= 0) g[j.drive.row] -= j.drive.course(t, factor).value;
+    if (j.drive.row >= 0) g[j.drive.row] -= j.drive.law.at(t, t, factor).value;
     for (int r = 0; r < j.n_rows(); ++r) {
       double& worst = j.active[r] ? out.kept : out.dropped;
       if (const double x = std::isnan(g[r]) ? 1e300 : std::abs(g[r]); x > worst)
@@ -217,6 +179,13 @@ void System::number() {
   joint_block.clear();
   for (const Connector& j : joints) joint_block.push_back(next), next += (j.n_rows() + 2) / 3;
   number_globally(n_node_blocks, next);
+
+  moves_ = false;
+  for (Motion& m : motions) {
+    moves_ = moves_ || m.moving;
+    for (int i = 0; i < n && m.body >= 0; ++i)
+      if (follower[i] == m.body) m.nodes.push_back(i);
+  }
 
   cliques = Cliques{};
   std::vector<int> list;

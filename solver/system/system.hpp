@@ -57,12 +57,24 @@ struct Motion {
   int body = -1;           // the driven body, or -1: components of nodes
   std::vector<int> nodes;  // nodes of the components, or followers of the driven body
   std::array<bool, 3> component{true, true, true};
-  Vec3 displacement = Vec3::Zero();  // at history 1 [m]
+  Vec3 displacement = Vec3::Zero();  // at law 1 [m]
   Vec3 at = Vec3::Zero(), axis = Vec3::Zero();
-  double angle = 0;  // at history 1 [rad]
-  bool moving = false, ramped = false;
-  History history;
+  double angle = 0;     // at law 1 [rad]
+  bool moving = false;  // fixed: the law rests at 0
+  MotionLaw law;
 };
+
+/// A history that acts on the system, and the lowest of its derivatives that forces follow: the value of a load or motor, the slope of a
+/// prescribed rate, the curvature of a prescribed position.
+enum class Acts { as_force = 0, as_rate = 1, as_position = 2 };
+struct UsedHistory {
+  std::string owner;
+  History history;
+  Acts acts;
+};
+
+/// From which side an instant is reached: the end of a step from the left, its start from the right.
+enum class Side { left = -1, right = 1 };
 
 /// A measured place: mean of nodes, or a point of a body.
 struct Station {
@@ -94,6 +106,7 @@ struct Stage {
   double t0 = 0, t1 = 0;              // loads: mean over [t0, t1], or value at t0 = t1
   double t_end = 0;                   // time of `end`: driven joints
   const Config* work_from = nullptr;  // start of the step for System::work; null: e0
+  const Config* v0 = nullptr;         // start velocities, where v1 = v0 + h a: there inertia works through h (v0 + v1)/2
   bool inertia_alone = false;         // how accelerations, and rows of velocities, act on the equations of another stage
   double load_factor = 1;             // of gravity and of loads without a history, for static load steps
   bool conserving() const { return weight == 0.5 && e0 != e1; }
@@ -134,6 +147,7 @@ class System {
   std::vector<Connector> joints, springs;
   std::vector<Load> loads;
   std::vector<Motion> motions;
+  std::vector<UsedHistory> histories;  // all of them
   std::vector<Station> stations;
   std::vector<std::vector<int>> region_nodes;        // free nodes of each region, for the predictor
   std::vector<std::pair<int, double>> point_masses;  // node, mass [kg], owned nodes
@@ -141,6 +155,7 @@ class System {
   double length = 1;     // size of the scene [m]
   double mass = 0;       // of everything [kg]
   double stiffness = 1;  // a typical one, for scaling without inertia [N/m]
+  double same_time = 0;  // instants closer than this are one [s]
   Config start, start_velocity;
   const Comm* comm = nullptr;
   LocalMesh* mesh = nullptr;  // null for a scene of bodies alone
@@ -162,7 +177,7 @@ class System {
   void move(Config& q, std::span<const double> z) const;
   /// Followers from their bodies; the map is linear, so it holds for positions, velocities and accelerations alike.
   void follow(Config& q) const;
-  /// Prescribed positions at time t: driven bodies and fixed components.
+  /// Positions of what moves by a law at time t: driven bodies and components of nodes.
   void prescribe(Config& q, double t, double ramp = 1) const;
   /// Largest |g| of the joint rows that are kept and of those dropped as redundant [m, 1], with their joints, or -1.
   struct Violation {
@@ -179,6 +194,15 @@ class System {
   Turn largest_turn(const Config& q0, const Config& q1) const;
   /// "body \"b\"" or "a cell of region \"r\"".
   std::string name(const Turn& turn) const;
+  /// Their velocities and accelerations (either may be null), the limits from one side.
+  void prescribe_rates(double t, Side side, Config* v, Config* a) const;
+  /// What moves by a law in `to` becomes that of `from`.
+  void copy_prescribed(const Config& from, Config& to) const;
+  /// Why a step from t0 to t1 is too long for a law, or nothing: a body that turns by more than a quarter of a turn in it has no mean.
+  std::string too_far(double t0, double t1) const;
+  bool moves() const { return moves_; }  // whether anything moves by a law of its own
+  /// A time on the given side of t, by which the laws are asked.
+  double beside(double t, Side side) const { return t + static_cast<int>(side) * same_time; }
   /// First and, where asked for, second derivatives by time of all joint rows less their courses, laid out like lambda.
   void row_rates(const Config& q, const Config& v, const Config* a, double t, std::vector<double>& rate,
                  std::vector<double>* acceleration) const;
@@ -217,6 +241,7 @@ class System {
   void lowest_over_ranks(std::vector<std::int64_t>& value) const;
   void number_globally(int n_node_blocks, int n_local);
   double constraint_scale(const Stage& s) const;
+  double motion_work(const Stage& s, std::span<const double> lambda, const Config& from) const;
   void add_solids(Pass& p) const;
   void add_bodies(Pass& p) const;
   void add_connectors(Pass& p) const;
@@ -230,6 +255,7 @@ class System {
   std::vector<char> owns_joint_, owns_spring_;
   void watch_strain(const Config& q);
   std::vector<char> strain_told_;  // by region: its compression has been told
+  bool moves_ = false;
 };
 
 /// Gradient of a joint's rows by its measures as the stage takes it: over the step where it conserves energy, else at `left`.

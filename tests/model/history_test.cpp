@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "model/scene.hpp"
 
@@ -101,14 +102,34 @@ TEST(History, CurvatureIsTheDerivativeOfTheSlope) {
       EXPECT_NEAR(h->curvature(t), (h->slope(t + 1e-6) - h->slope(t - 1e-6)) / 2e-6, 1e-8);
 }
 
-TEST(History, EventsAreKinksAndJumpsInside) {
-  EXPECT_EQ(ramp.events(-1, 4), (std::vector<double>{0, 2, 3}));
-  EXPECT_EQ(ramp.events(0, 3), (std::vector<double>{2}));
-  EXPECT_EQ(smooth.events(-1, 4), (std::vector<double>{}));
-  EXPECT_EQ(step.events(0, 2), (std::vector<double>{1}));
-  EXPECT_EQ((History{{0, 1, 2}, {0, 1, 2}, Ramp::linear}.events(0, 2)), (std::vector<double>{})) << "a point on a line is no kink";
-  EXPECT_EQ(step.jumps(), (std::vector<double>{1}));
-  EXPECT_EQ(ramp.jumps(), (std::vector<double>{}));
+/// "t:order t:order"
+std::string breaks_of(const History& h) {
+  std::ostringstream out;
+  for (const History::Break& b : h.breaks()) out << (out.str().empty() ? "" : " ") << b.t << ":" << b.order;
+  return out.str();
+}
+
+TEST(History, BreaksAreWhereADerivativeJumps) {
+  EXPECT_EQ(breaks_of(ramp), "0:1 2:1 3:1");
+  EXPECT_EQ(breaks_of(step), "1:0");
+  EXPECT_EQ(breaks_of(smooth), "0:2 2:2 3:2") << "curvature of a cosine ramp";
+  EXPECT_EQ(breaks_of(smoother), "");
+  EXPECT_EQ(breaks_of({{0, 1, 2}, {0, 1, 0}, Ramp::smooth}), "0:2 2:2") << "the curvature is the same on both sides of an even summit";
+  EXPECT_EQ(breaks_of({{0, 1, 2}, {1, 2, 3}, Ramp::linear}), "0:1 2:1") << "a point on a line is no kink";
+  EXPECT_EQ(breaks_of({{0, 1, 1, 2}, {0, 1, 1, 1}, Ramp::linear}), "0:1 1:1") << "the same point twice is no jump";
+}
+
+// Truth: the limits from the left and from the right of a point where value, slope or curvature jump.
+TEST(History, HasASideWhereItJumps) {
+  EXPECT_EQ(step.at(1, 1 - 1e-9).value, 0);
+  EXPECT_EQ(step.at(1, 1 + 1e-9).value, 5);
+  EXPECT_EQ(ramp.at(2, 2 - 1e-9).slope, 2);
+  EXPECT_EQ(ramp.at(2, 2 + 1e-9).slope, -3);
+  EXPECT_EQ(ramp.at(3, 3 - 1e-9).slope, -3);
+  EXPECT_EQ(ramp.at(3, 3 + 1e-9).slope, 0);
+  EXPECT_NEAR(smooth.at(2, 2 - 1e-9).curvature, -pi * pi / 2, 1e-12);
+  EXPECT_NEAR(smooth.at(2, 2 + 1e-9).curvature, -3 * pi * pi / 2, 1e-12);
+  EXPECT_NEAR(smooth.at(1.3, 1.7).slope, smooth.slope(1.3), 1e-15);
 }
 
 TEST(History, OfOnePointIsConstant) {
@@ -116,5 +137,5 @@ TEST(History, OfOnePointIsConstant) {
   EXPECT_EQ(h(-1), 3);
   EXPECT_EQ(h(1), 3);
   EXPECT_EQ(h.mean(-1, 1), 3);
-  EXPECT_TRUE(h.events(-1, 1).empty());
+  EXPECT_TRUE(h.breaks().empty());
 }

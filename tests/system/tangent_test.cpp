@@ -335,7 +335,7 @@ TEST_P(Tangent, OfTheWholeSystemIsTheDerivativeOfItsResidual) {
   s.a = s.jerk = s.v;
   s.lambda.assign(3 * system->n_joint_blocks(), 0.0);
   for (size_t i = 0; i < s.lambda.size(); ++i) s.lambda[i] = 20 * scatter(900 + static_cast<int>(i));
-  integrator->begin(s, 0.02);
+  integrator->begin(*system, s, 0.02);
   Config q1 = s.q;
   for (int i = 0; i < n; ++i) kick[i] = 0.02 * scatter(5000 + i);
   system->move(q1, kick);

@@ -1,9 +1,8 @@
-// Load histories: value, slope and exact mean of piecewise linear or smooth functions of time.
+#include "base/history.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include "model/scene.hpp"
 
 namespace hilo {
 namespace {
@@ -51,21 +50,20 @@ double History::operator()(double time) const {
   return mean_in_segment(*this, i, time, time);
 }
 
-double History::slope(double time) const {
-  const size_t i = end_of_segment(*this, time);
-  const double c = linear_slope(*this, i);
-  if (c == 0 || ramp == Ramp::linear) return c;
-  const double s = (time - t[i - 1]) / (t[i] - t[i - 1]);
-  return c * (ramp == Ramp::smooth ? pi / 2 * std::sin(pi * s) : septic_slope(s));
+History::Jet History::at(double time, double near) const {
+  const size_t i = end_of_segment(*this, near);
+  if (i == 0) return {value.front(), 0, 0};
+  if (i == t.size()) return {value.back(), 0, 0};
+  const double length = t[i] - t[i - 1], inside = std::clamp(time, t[i - 1], t[i]), s = (inside - t[i - 1]) / length;
+  const double v = mean_in_segment(*this, i, inside, inside), c = (value[i] - value[i - 1]) / length;
+  if (ramp == Ramp::linear) return {v, c, 0};
+  const bool cosine = ramp == Ramp::smooth;
+  return {v, c * (cosine ? pi / 2 * std::sin(pi * s) : septic_slope(s)),
+          c / length * (cosine ? pi * pi / 2 * std::cos(pi * s) : septic_curvature(s))};
 }
 
-double History::curvature(double time) const {
-  const size_t i = end_of_segment(*this, time);
-  const double c = linear_slope(*this, i);
-  if (c == 0 || ramp == Ramp::linear) return 0;
-  const double length = t[i] - t[i - 1], s = (time - t[i - 1]) / length;
-  return c / length * (ramp == Ramp::smooth ? pi * pi / 2 * std::cos(pi * s) : septic_curvature(s));
-}
+double History::slope(double time) const { return at(time, time).slope; }
+double History::curvature(double time) const { return at(time, time).curvature; }
 
 double History::mean(double t0, double t1) const {
   if (t0 == t1) return (*this)(t0);
@@ -84,22 +82,21 @@ double History::mean(double t0, double t1) const {
   return integral / (t1 - t0);
 }
 
-std::vector<double> History::events(double t0, double t1) const {
-  std::vector<double> found;
-  for (size_t i = 0; i < t.size(); ++i) {
-    if (t[i] <= t0 || t[i] >= t1) continue;
-    const bool jump = i > 0 && t[i] == t[i - 1] && value[i] != value[i - 1];
-    const double before = linear_slope(*this, i), after = linear_slope(*this, i + 1);
-    const bool kink = ramp == Ramp::linear && std::abs(after - before) > 1e-9 * std::max(std::abs(after), std::abs(before));
-    if ((jump || kink) && (found.empty() || found.back() != t[i])) found.push_back(t[i]);
+std::vector<History::Break> History::breaks() const {
+  std::vector<Break> found;
+  const auto differ = [](double a, double b) { return std::abs(a - b) > 1e-9 * std::max(std::abs(a), std::abs(b)); };
+  for (size_t i = 0, j; i < t.size(); i = j + 1) {
+    for (j = i; j + 1 < t.size() && t[j + 1] == t[i];) ++j;
+    const double before = linear_slope(*this, i), behind = linear_slope(*this, j + 1);
+    // a cosine ramp of slope c over the length L leaves with the curvature pi^2/2 c/L and arrives with its negative
+    const double arriving = before == 0 ? 0 : -before / (t[i] - t[i - 1]), leaving = behind == 0 ? 0 : behind / (t[j + 1] - t[j]);
+    if (value[j] != value[i])
+      found.push_back({t[i], 0});
+    else if (ramp == Ramp::linear && differ(before, behind))
+      found.push_back({t[i], 1});
+    else if (ramp == Ramp::smooth && differ(arriving, leaving))
+      found.push_back({t[i], 2});
   }
-  return found;
-}
-
-std::vector<double> History::jumps() const {
-  std::vector<double> found;
-  for (size_t i = 1; i < t.size(); ++i)
-    if (t[i] == t[i - 1] && value[i] != value[i - 1]) found.push_back(t[i]);
   return found;
 }
 

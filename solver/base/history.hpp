@@ -1,0 +1,34 @@
+// Histories: factors over time as piecewise linear or smooth functions, with exact means and one-sided derivatives.
+#pragma once
+#include <vector>
+
+namespace hilo {
+
+/// How a history goes from point to point: linear; smooth, w = (1 - cos(pi s))/2 (C1); smoother, w = 35 s^4 - 84 s^5 + 70 s^6 - 20 s^7
+/// (C3).
+enum class Ramp { linear, smooth, smoother };
+
+/// Values at rising times with ramps between them.
+/// Before the first point the first value, after the last the last.  Two equal times make a jump.
+struct History {
+  std::vector<double> t;      // [s]
+  std::vector<double> value;  // dimension of what it scales
+  Ramp ramp = Ramp::linear;
+  double operator()(double time) const;  // from the right at a jump
+  double slope(double time) const;       // from the right where it jumps, as the next one
+  double curvature(double time) const;   // second derivative
+  /// Value, slope and curvature at `time` in the segment that holds `near`: the limits from one side where they jump.
+  struct Jet {
+    double value, slope, curvature;
+  };
+  Jet at(double time, double near) const;
+  double mean(double t0, double t1) const;  // exact average over [t0, t1]
+  /// Points at which a derivative jumps, and the order of the lowest that does: 0 a jump, 1 a kink, 2 a jump of the curvature.
+  struct Break {
+    double t;
+    int order;
+  };
+  std::vector<Break> breaks() const;
+};
+
+}  // namespace hilo
