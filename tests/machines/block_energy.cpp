@@ -15,17 +15,26 @@
 namespace hilo::test {
 namespace {
 
-/// St. Venant-Kirchhoff or compressible neo-Hookean energy of the displacement gradient H = F - I [J/m^3], without the loss of digits that
-/// F and ln det F would bring where strains are small: J^2 - 1 = 2 tr E + 4 tr cof E + 8 det E.
-double density(const MachineBlock& b, const Mat3& H) {
-  const double mu = b.E / (2 * (1 + b.nu)), lambda = b.E * b.nu / ((1 + b.nu) * (1 - 2 * b.nu));
-  const Mat3 E = (H + H.transpose() + H.transpose() * H) / 2;
-  if (b.neo_hookean) {
-    const double minors = (E.trace() * E.trace() - E.squaredNorm()) / 2;
-    const double log_J = std::log1p(2 * E.trace() + 4 * minors + 8 * E.determinant()) / 2;
-    return mu * (E.trace() - log_J) + lambda / 2 * log_J * log_J;
+/// Strain of a displacement gradient H = F - I, and det C - 1 = 2 tr E + 4 tr cof E + 8 det E, without the loss of digits that F and
+/// det F would bring where strains are small.
+struct Strain {
+  Mat3 E;
+  double swelling;
+  explicit Strain(const Mat3& H) : E((H + H.transpose() + H.transpose() * H) / 2) {
+    swelling = 2 * E.trace() + 2 * (E.trace() * E.trace() - E.squaredNorm()) + 8 * E.determinant();
   }
-  return lambda / 2 * E.trace() * E.trace() + mu * E.squaredNorm();
+};
+
+/// St. Venant-Kirchhoff or compressible neo-Hookean energy [J/m^3].
+double density(bool neo_hookean, double mu, double lambda, const Strain& s) {
+  const double log_J = std::log1p(s.swelling) / 2, trace = s.E.trace();
+  return neo_hookean ? mu * (trace - log_J) + lambda / 2 * log_J * log_J : lambda / 2 * trace * trace + mu * s.E.squaredNorm();
+}
+
+/// Poisson's ratio above which the rest of lambda acts on the cell's mean dilatation (docs/elements.md); shapes of one point have no other.
+template <class S>
+double pointwise_nu() {
+  return S::n == 4 || S::n == 8 ? 0.5 : S::n == 10 || S::n == 6 ? 0.40 : 0.45;
 }
 
 template <class S>
@@ -50,16 +59,23 @@ void add_cell(const MachineBlock& block, const Vec3* X, const Vec3* x, const Vec
     out.mass += m, out.first_moment += m * place, out.momentum += m * velocity, out.angular += m * place.cross(velocity);
     out.kinetic += m / 2 * velocity.squaredNorm(), out.gravity -= m * gravity.dot(place);
   }
+  const double mu = block.E / (2 * (1 + block.nu)), lambda = block.E * block.nu / ((1 + block.nu) * (1 - 2 * block.nu));
+  const double nu = std::min(block.nu, pointwise_nu<S>()), at_points = block.nu > nu ? 2 * mu * nu / (1 - 2 * nu) : lambda;
   const auto rule = S::rule();
+  double volume = 0, trace = 0, swelling = 0;  // the last two: integrals over the cell
   for (int p = 0; p < S::n_points; ++p) {
     double dN[S::n][3], det = 0;
     S::gradients(rule.xi[p], dN);
     const Mat3 H = (now - at) * gradients(dN, det);  // boxes: the gradients at the centre of a hexahedron are its mean ones
+    const Strain strain(H);
+    const double weight = rule.w[p] * det;
     out.least_det = std::min(out.least_det, (Mat3::Identity() + H).determinant());
-    out.elastic += rule.w[p] * det * density(block, H);
+    out.elastic += weight * density(block.neo_hookean, mu, at_points, strain);
+    volume += weight, trace += weight * strain.E.trace(), swelling += weight * strain.swelling;
   }
+  const double mean = block.neo_hookean ? std::log1p(swelling / volume) / 2 : trace / volume;
+  out.elastic += volume * (lambda - at_points) / 2 * mean * mean;
   if constexpr (S::n == 8) {
-    const double mu = block.E / (2 * (1 + block.nu)), lambda = block.E * block.nu / ((1 + block.nu) * (1 - 2 * block.nu));
     const Hourglass<double> hourglass(at.data(), Lame{lambda, mu});
     double u[3][3], h[4][3], b[4][3], t[4][3];
     hourglass.measure(now.data(), u, h, b);

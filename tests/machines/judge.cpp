@@ -124,7 +124,10 @@ Energies Judge::energies(const Instant& at, size_t row) {
     const MachineSpring& s = m_.springs[i];
     const Pose a = pose(s.a, at), b = pose(s.b, at);
     double stretch = 0;
-    if (s.kind == "axial") {
+    if (s.kind == "stop") {
+      const double apart = (b.at(s.at_b) - a.at(s.at_a)).norm();
+      stretch = apart > s.upper ? apart - s.upper : apart < s.lower ? apart - s.lower : 0;
+    } else if (s.kind == "axial") {
       stretch = (b.at(s.at_b) - a.at(s.at_a)).norm() - s.rest;
     } else {
       if (!spring_turn_[i].follow(a.R, b.R, s.axis)) wrong(fmt::format("t = {:.6g}: spring s{} lost a turn", at.t, i));
@@ -145,7 +148,8 @@ void Judge::check_joints(const Instant& at) {
   joint_turn_.resize(2 * m_.joints.size());
   for (size_t i = 0; i < m_.joints.size(); ++i) {
     const MachineJoint& j = m_.joints[i];
-    const double open = opening(j, pose(j.a, at), pose(j.b, at), pose(j.carrier, at), length_, &joint_turn_[2 * i]);
+    if (j.gives) continue;
+    const double open = opening(j, pose(j.a, at), pose(j.b, at), pose(j.carrier, at), at.t, length_, &joint_turn_[2 * i]);
     if (open > limits_.joint && out_.joint <= limits_.joint)
       wrong(fmt::format("t = {:.6g}: joint j{} ({}) open by {:.3g}", at.t, i, j.kind, open));
     out_.joint = std::max(out_.joint, open);
@@ -167,7 +171,7 @@ void Judge::check_momentum() {
     if (grounded(j.a) || grounded(j.b) || (grounded(j.carrier) && (j.kind == "gear" || j.kind == "rack"))) return;
   for (const auto& s : m_.springs)
     if (grounded(s.a) || grounded(s.b)) return;
-  if (!m_.more.empty()) return;
+  if (m_.energy == Machine::Energy::unknown) return;
   Vec3 P0, L0;
   double most = 1e-300, most_angular = 1e-300, worst = 0, worst_angular = 0;
   for (size_t i = 0; i < row_.size(); ++i) {
@@ -225,20 +229,21 @@ Verdict Judge::go() {
   for (const auto& b : m_.blocks) mass += b.density * (b.high - b.low).prod();
   const double rest = mass * length_ * (1e-6 * m_.gravity.norm() + 1e-12 * length_);  // what a machine that stands still has of round-off
   const double scale = std::max({kinetic, elastic, high - low, rest});
-  if (m_.more.empty() && limits_.energy > 0) {
+  const bool kept = m_.energy == Machine::Energy::kept;
+  if (m_.energy != Machine::Energy::unknown && limits_.energy > 0) {
     for (size_t i = 1; i < energy.size(); ++i) {
       const Energies &a = energy[i - 1], &b = energy[i];
       const double change = b.total() - a.total(), sum = b.total() - energy[0].total();
       const double local = a.kinetic + b.kinetic + std::abs(b.gravity - a.gravity) + a.elastic + b.elastic + 1e-4 * scale + rest;
-      const double step = (m_.keeps_energy ? std::abs(change) : change) / local, whole = (m_.keeps_energy ? std::abs(sum) : sum) / scale;
+      const double step = (kept ? std::abs(change) : change) / local, whole = (kept ? std::abs(sum) : sum) / scale;
       if (step > limits_.energy && out_.step_energy <= limits_.energy)
-        wrong(fmt::format("t = {:.6g}: energy {} by {:.3g} of itself in one step", row_[i].t, m_.keeps_energy ? "changes" : "grows", step));
+        wrong(fmt::format("t = {:.6g}: energy {} by {:.3g} of itself in one step", row_[i].t, kept ? "changes" : "grows", step));
       out_.step_energy = std::max(out_.step_energy, step), out_.energy = std::max(out_.energy, whole);
     }
     if (out_.energy > limits_.energy) wrong(fmt::format("energy is off by {:.3g} in the run", out_.energy));
   }
   const Table told = read(file_, "/history/energy");
-  for (size_t i = 0; i < energy.size() && m_.more.empty(); ++i) {
+  for (size_t i = 0; i < energy.size() && m_.energy != Machine::Energy::unknown; ++i) {
     const auto r = static_cast<Eigen::Index>(i);
     const double off = std::max({std::abs(told(r, 0) - energy[i].kinetic), std::abs(told(r, 1) - energy[i].elastic)}) / scale;
     if (off > 1e-7) {

@@ -12,7 +12,7 @@ struct Limits {
   double energy = 1e-8;    // of a run, and of each step, over the energies at hand
   double joint = 1e-9;     // lengths over the scene's length, directions as they are
   double momentum = 1e-9;  // over the largest momentum
-  double turn = 2.1;       // of a body in one accepted step [rad]
+  double turn = 2.000001;  // of a body in one accepted step: the solver refuses more than 2 rad (dynamics/audit)
 };
 
 /// The worst of each kind found in a run; an entry of `wrong` for each limit that was passed.
@@ -36,6 +36,8 @@ struct Outcome {
 };
 /// Runs a machine in this process, as hilo-solve does.
 Outcome run_machine(const Machine& m, const TimeAxis& time, const std::string& folder, const Limits& limits = {});
+/// Positions of all probes, row by row, at the end of the run in `folder`; empty where there is no run.
+std::vector<Vec3> end_positions(const Machine& m, const std::string& folder);
 /// A step at which nothing turns, swings or oscillates by more than a few degrees: from the speeds after the projection on the joints.
 double sensible_step(const Machine& m, const std::string& folder);
 

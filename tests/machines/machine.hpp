@@ -64,13 +64,17 @@ struct MachineJoint {
   double pitch = 0, ratio = 0, radius = 0;
   Vec3 axis_b = Vec3::Zero();
   Side carrier;
+  double turn = 0, turn_over = 0;  // driven: angle [rad] reached after this time [s], smoothly
+  bool gives = false;              // a compliant joint, which may be open
+  std::string more;                // further keys
 };
 
 struct MachineSpring {
-  std::string kind;  // axial or torsion
+  std::string kind;  // axial, torsion, or a stop: a rope and a buffer of two points
   Side a, b;
   Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero(), axis = Vec3::UnitZ();
-  double stiffness = 0, damping = 0, rest = 0;  // rest: free length or angle
+  double stiffness = 0, damping = 0, rest = 0;   // rest: free length or angle
+  double lower = 0, upper = 0, restitution = 1;  // of a stop [m]
 };
 
 /// A flexible block of one shape between two faces; with `hub` the cells at its far end are a rigid region of that name.
@@ -90,9 +94,9 @@ struct Machine {
   std::vector<MachineBody> bodies;
   std::vector<MachineJoint> joints;
   std::vector<MachineSpring> springs;
-  std::vector<MachineBlock> blocks;  // none or one
-  std::string more;                  // further sections of the scene, for attacks that the judge knows no energy of
-  bool keeps_energy = true;          // neither dampers nor anything that supplies power
+  std::vector<MachineBlock> blocks;                                  // none or one
+  std::string more;                                                  // further sections of the scene
+  enum class Energy { kept, falls, unknown } energy = Energy::kept;  // unknown: something supplies power, or stores it out of sight
   bool damped() const;
   double length() const;  // largest extent of all its points [m]
 };
@@ -111,7 +115,7 @@ std::string write_machine(const Machine& m, const TimeAxis& time, const std::str
 /// Families the generator knows, rigid ones first.
 struct Family {
   std::string name, meaning;
-  bool flexible = false;
+  bool flexible = false, suite = true;
 };
 const std::vector<Family>& families();
 inline void PrintTo(const Family& f, std::ostream* out) { *out << f.name; }

@@ -44,7 +44,7 @@ bool Turned::follow(const Mat3& Ra, const Mat3& Rb, const Vec3& axis) {
   return same;
 }
 
-double opening(const MachineJoint& j, const Pose& a, const Pose& b, const Pose& carrier, double length, Turned* turns) {
+double opening(const MachineJoint& j, const Pose& a, const Pose& b, const Pose& carrier, double t, double length, Turned* turns) {
   const std::string& kind = j.kind;
   const Vec3 pa = a.at(j.at), pb = b.at(kind == "distance" ? j.at_b : j.at);
   const Vec3 gap = (pb - pa) / length, axis = j.axis.normalized();
@@ -54,7 +54,15 @@ double opening(const MachineJoint& j, const Pose& a, const Pose& b, const Pose& 
   const double twist = (a.R - b.R).norm();
   if (kind == "spherical") return apart;
   if (kind == "fixed") return std::max(apart, twist);
-  if (kind == "revolute") return std::max(apart, tilt);
+  if (kind == "revolute") {
+    double off = 0;
+    if (j.turn != 0) {
+      turns[0].follow(a.R, b.R, axis);
+      const double s = std::min(1.0, t / j.turn_over), s4 = s * s * s * s;
+      off = std::abs(turns[0].angle - j.turn * s4 * (35 + s * (-84 + s * (70 - 20 * s))));
+    }
+    return std::max({apart, tilt, off});
+  }
   if (kind == "cylindrical") return std::max(across, tilt);
   if (kind == "prismatic") return std::max(across, twist);
   if (kind == "planar") return std::max(std::abs(along), tilt);

@@ -26,7 +26,8 @@ struct Turned {
   bool follow(const Mat3& Ra, const Mat3& Rb, const Vec3& axis);
 };
 
-/// The largest residual of a joint: lengths over `length`, directions as cosines, angles in radians.  `turns`: two, kept by the caller.
-double opening(const MachineJoint& j, const Pose& a, const Pose& b, const Pose& carrier, double length, Turned* turns);
+/// The largest residual of a joint: lengths over `length`, directions as cosines, angles in radians.  `turns`: two,
+/// kept by the caller; `t`: the time, of driven joints [s].
+double opening(const MachineJoint& j, const Pose& a, const Pose& b, const Pose& carrier, double t, double length, Turned* turns);
 
 }  // namespace hilo::test

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -5,6 +7,7 @@
 #include "base/error.hpp"
 #include "dynamics/run.hpp"
 #include "machines/judge.hpp"
+#include "model/store.hpp"
 
 namespace hilo::test {
 namespace {
@@ -41,6 +44,18 @@ Outcome run_machine(const Machine& m, const TimeAxis& time, const std::string& f
   Outcome out = solve(write_machine(m, time, folder), folder + "/run.h5");
   out.step = time.step;
   if (out.complete) out.verdict = judge(m, folder + "/run.h5", limits);
+  return out;
+}
+
+std::vector<Vec3> end_positions(const Machine& m, const std::string& folder) {
+  std::vector<Vec3> out;
+  const Store file = Store::open(folder + "/run.h5");
+  for (size_t b = 0; b < m.bodies.size(); ++b)
+    for (int k = 0; k < 4; ++k) {
+      const auto rows = file.read<double>(fmt::format("/history/probe/b{}p{}", b, k));
+      const double* last = rows.data() + rows.size() - 9;
+      out.emplace_back(last[0], last[1], last[2]);
+    }
   return out;
 }
 

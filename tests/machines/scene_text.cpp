@@ -30,16 +30,24 @@ std::string joint_text(const MachineJoint& j, size_t i) {
   std::string out = fmt::format("[[joint]]\nkind = \"{}\"\nname = \"j{}\"\na = \"{}\"\nb = \"{}\"\n", j.kind, i, side(j.a), side(j.b));
   if (j.kind == "distance") return out + fmt::format("at_a = {}\nat_b = {}\n", list(j.at), list(j.at_b));
   out += fmt::format("at = {}\n", list(j.at));
-  if (j.kind == "spherical" || j.kind == "fixed") return out;
+  if (j.kind == "spherical" || j.kind == "fixed") return out + j.more;
   out += fmt::format("axis = {}\nx = {}\n", list(j.axis), list(j.x));
   if (j.kind == "screw") out += fmt::format("pitch = {:.17g}\n", j.pitch);
   if (j.kind == "gear") out += fmt::format("ratio = {:.17g}\naxis_b = {}\ncarrier = \"{}\"\n", j.ratio, list(j.axis_b), side(j.carrier));
   if (j.kind == "rack")
     out += fmt::format("radius = {:.17g}\ndirection = {}\ncarrier = \"{}\"\n", j.radius, list(j.axis_b), side(j.carrier));
-  return out;
+  if (j.turn != 0)
+    out += fmt::format("angle = {:.17g}\nhistory = {{ t = [0, {:.17g}], value = [0, 1], interpolation = \"smoother\" }}\n", j.turn,
+                       j.turn_over);
+  return out + j.more;
 }
 
 std::string spring_text(const MachineSpring& s, size_t i) {
+  if (s.kind == "stop")
+    return fmt::format("[[spring]]\nkind = \"stop\"\nname = \"s{}\"\na = \"{}\"\nb = \"{}\"\nat_a = {}\nat_b = {}\n", i, side(s.a),
+                       side(s.b), list(s.at_a), list(s.at_b)) +
+           fmt::format("lower = {:.17g}\nupper = {:.17g}\nstiffness = {:.17g}\nrestitution = {:.17g}\n", s.lower, s.upper, s.stiffness,
+                       s.restitution);
   std::string out =
       fmt::format("[[spring]]\nkind = \"{}\"\nname = \"s{}\"\na = \"{}\"\nb = \"{}\"\nstiffness = {:.17g}\ndamping = {:.17g}\n", s.kind, i,
                   side(s.a), side(s.b), s.stiffness, s.damping);
@@ -108,7 +116,7 @@ double Machine::length() const {
   for (const auto& b : bodies) add(b.com);
   for (const auto& j : joints) add(j.at), add(j.kind == "distance" ? j.at_b : j.at);
   for (const auto& s : springs)
-    if (s.kind == "axial") add(s.at_a), add(s.at_b);
+    if (s.kind != "torsion") add(s.at_a), add(s.at_b);
   for (const auto& b : blocks) add(b.low), add(b.high);
   return (high - low).norm();
 }
