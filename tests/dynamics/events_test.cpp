@@ -75,9 +75,9 @@ struct Found {
   }
 };
 
-class Events : public testing::Test {
+class HistoryEvents : public testing::Test {
  protected:
-  Events() {
+  HistoryEvents() {
     write_mesh(place / "mesh.h5", block_mesh({}), {"test"});
     local = read_local_mesh(place / "mesh.h5", Comm::world());
   }
@@ -89,7 +89,7 @@ class Events : public testing::Test {
   LocalMesh local;
 };
 
-TEST_F(Events, FollowEveryHistoryOfTheSchema) {
+TEST_F(HistoryEvents, FollowEveryHistoryOfTheSchema) {
   int tried = 0;
   for (const KindSchema& kind : scene_schema())
     for (const Param& key : kind.params) {
@@ -110,7 +110,7 @@ TEST_F(Events, FollowEveryHistoryOfTheSchema) {
 }
 
 // Truth: forces follow the value of a load, the slope of a prescribed rate, the curvature of a prescribed position.
-TEST_F(Events, AreJumpsWhereForcesOrVelocitiesJumpAndKinksWhereTheirSlopesDo) {
+TEST_F(HistoryEvents, AreJumpsWhereForcesOrVelocitiesJumpAndKinksWhereTheirSlopesDo) {
   const std::string load = surroundings + "[[load]]\nkind = \"force\"\nname = \"f\"\non = \"wheel\"\nforce = [1, 0, 0]\nhistory = ";
   const std::string motion =
       surroundings + "[[motion]]\nkind = \"translation\"\nname = \"m\"\non = \"wheel\"\ndisplacement = [1, 0, 0]\nhistory = ";
@@ -129,7 +129,7 @@ TEST_F(Events, AreJumpsWhereForcesOrVelocitiesJumpAndKinksWhereTheirSlopesDo) {
   EXPECT_TRUE(of(motion + smoother).all.empty());
 }
 
-TEST_F(Events, LeaveOutTheKinksOfAMeasuredTableAndKeepItsBlows) {
+TEST_F(HistoryEvents, LeaveOutTheKinksOfAMeasuredTableAndKeepItsBlows) {
   std::ostringstream table;
   for (int i = 0; i < 50; ++i) table << (i ? ", " : "") << i * 1.07e-3;
   std::ostringstream values;
