@@ -86,7 +86,8 @@ void run(const Options& o) {
   for (const std::string& name : sensor_names(file, o.sensors)) sensors.push_back(read_sensor(file, name, o.cfc));
   if (!o.csv.empty()) write_csv(o, sensors);
   if (!o.png.empty()) write_png(o, file, sensors);
-  if (o.csv != "-") write_out("-", table_of(o, sensors));
+  const bool in_files = !o.csv.empty() || !o.png.empty();
+  if (o.csv != "-" && (o.json || !in_files || !is_quiet())) write_out("-", table_of(o, sensors));
   if (!is_quiet() && !o.json)
     fmt::print(
         stderr,

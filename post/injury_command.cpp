@@ -77,7 +77,8 @@ void run(const Options& o) {
   if (!o.csv.empty()) write_out(o.csv, csv_of(table_of(crew, true)));
   if (!o.page.empty()) write_report(crew, o.cfc, corridor, file.title, file.path, o.page);
   if (!o.eiband.empty()) write_eiband(crew, o.cfc, file.title, o.eiband);
-  if (o.csv != "-") write_out("-", o.json ? table_of(crew, false).json("") + "\n" : text_of(crew));
+  const bool in_files = !o.csv.empty() || !o.page.empty() || !o.eiband.empty();
+  if (o.csv != "-" && (o.json || !in_files || !is_quiet())) write_out("-", o.json ? table_of(crew, false).json("") + "\n" : text_of(crew));
   if (!is_quiet() && !o.json)
     fmt::print(stderr,
                "Proper acceleration in the sensors' axes (x forward, y left, z up), less what was felt at the start (1 g upward at rest);\n"

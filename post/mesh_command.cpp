@@ -60,7 +60,7 @@ void run(const Options& o) {
     draw_legend(p, frame.side, named.title, entries);
   });
   picture.write(o.output);
-  fmt::print("{}\n", o.output);
+  if (!is_quiet()) fmt::print("{}\n", o.output);
 }
 
 }  // namespace

@@ -206,7 +206,7 @@ void run(const Options& o) {
     draw_legend(p, frame.side, "", legend_of(groups, items, 24 * p.scale));
   });
   picture.write(o.output);
-  fmt::print("{}\n", o.output);
+  if (!is_quiet()) fmt::print("{}\n", o.output);
 }
 
 }  // namespace

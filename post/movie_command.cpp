@@ -9,6 +9,7 @@
 
 #include "base/args.hpp"
 #include "base/error.hpp"
+#include "model/inputs.hpp"
 #include "post/commands.hpp"
 #include "post/frames.hpp"
 #include "post/movie_file.hpp"
@@ -94,6 +95,7 @@ void run(Options o) {
   width += width % 2, height += height % 2;  // 4:2:0 has colours for pairs of pixels
   o.size = fmt::format("{}x{}", width, height);
   Frames frames(o);
+  if (o.output != "-") check_output(o.output);
   const auto all = frames.common_times();
   if (!(all.second > all.first)) throw Error(o.run, "has a single output: nothing moves", "see output.interval of the scene");
   const auto [from, to] = parse_times(o.times, all);
@@ -136,7 +138,7 @@ void run(Options o) {
     progress.show(k + 1);
   });
   write_out(o.output, movie.finish());
-  if (o.output != "-")
+  if (o.output != "-" && !is_quiet())
     fmt::print("{}: {} frames, {:.1f} s, {:g} to {:g} s of the run{}\n", o.output, times.size(), static_cast<double>(times.size()) / o.fps,
                times.front(), times.back(), remark);
 }

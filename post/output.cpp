@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <set>
 
 #include "base/error.hpp"
 #include "model/store.hpp"
@@ -18,6 +19,9 @@ void write_out(const std::string& path, const std::string& bytes) {
   std::error_code failed;
   if (!folder.empty()) std::filesystem::create_directories(folder, failed);
   if (failed) throw Error(path, "cannot make the folder: " + failed.message(), "", Exit::resources);
+  static std::set<std::filesystem::path> written;
+  if (!written.insert(std::filesystem::absolute(path).lexically_normal()).second)
+    throw Error(path, "two outputs have this name", "give each its own", Exit::usage);
   write_text_file(path, bytes);
 }
 

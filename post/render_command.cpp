@@ -43,7 +43,7 @@ void run(const Options& o) {
   in_processes(steps.size(), o.jobs > 0 ? o.jobs : default_jobs(steps.size()), start, [&](size_t k, const std::string& png) {
     const std::string path = path_of(o, steps[k], steps.size());
     write_out(path, png);
-    if (path != "-") fmt::print("{}\n", path);
+    if (path != "-" && !is_quiet()) fmt::print("{}\n", path);
   });
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/args.hpp"
 #include "dynamics/run.hpp"
+#include "model/inputs.hpp"
 #include "model/store.hpp"
 
 namespace hilo {
@@ -84,7 +85,14 @@ int solve(int argc, char** argv, Comm& comm) {
   if (!folder.empty() && !std::filesystem::is_directory(folder))
     throw Error(o.output, "no such folder", fmt::format("mkdir -p {}", folder.string()), Exit::resources);
 
-  const RunReport report = run(scene, *system, options);
+  for (const char* ending : {".h5", ".xdmf", ".json"}) check_output(o.output.substr(0, o.output.size() - 3) + ending);
+  const RunReport report = [&] {
+    try {
+      return run(scene, *system, options);
+    } catch (const Error& e) {  // of the whole, not of a place in it
+      throw Error(e.where.empty() ? scene.path : e.where, e.message, e.hint, e.exit);
+    }
+  }();
   if (o.profile && comm.rank == 0) fmt::print("{}", report.profile);
   if (!report.complete)
     throw Error(scene.path, fmt::format("stopped at t = {:.6g} s: {}", report.t, report.reason),

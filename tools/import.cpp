@@ -8,6 +8,8 @@
 #include "base/error.hpp"
 #include "base/param.hpp"
 #include "import/imported.hpp"
+#include "model/inputs.hpp"
+#include "model/mesh_source.hpp"
 #include "model/store.hpp"
 
 using namespace hilo;
@@ -48,10 +50,9 @@ void check(Request& r) {
     usage("--units: " + e.message, e.hint);
   }
   namespace fs = std::filesystem;
-  std::error_code ignored;
+  note_input(r.input);
   for (const auto& out : {r.output, r.scene_out})
-    if (!out.empty() && fs::exists(out) && fs::equivalent(out, r.input, ignored))
-      usage(fmt::format("{} is the file to read", out), "write to another name");
+    if (!out.empty()) check_output(out);
   if (!r.scene_out.empty() && fs::absolute(r.scene_out) == fs::absolute(r.output)) usage("--scene-out and --output name the same file");
 }
 
@@ -109,16 +110,10 @@ int main(int argc, char** argv) {
     check(r);
     Imported in = read_any(r.input, o);
     finish(in, r.input, o);
-    write_mesh(r.output, in.mesh, {command_line(argc, argv)});
-    if (!r.scene_out.empty()) {
-      try {
-        write_text_file(r.scene_out, scene_text(r, in));
-      } catch (...) {  // both files or none
-        std::filesystem::remove(r.output);
-        throw;
-      }
-    }
+    Store mesh = unpublished_mesh(r.output, in.mesh, {command_line(argc, argv)});
+    if (!r.scene_out.empty()) write_text_file(r.scene_out, scene_text(r, in));  // both files or none
+    mesh.publish();
     talk(in);
-    fmt::print("{}", r.json ? import_json(in, r.input, r.output) : import_table(in));
+    if (r.json || !is_quiet()) fmt::print("{}", r.json ? import_json(in, r.input, r.output) : import_table(in));
   });
 }

@@ -1,11 +1,11 @@
 // hilo-part: which rank works on which cell.
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <optional>
 
 #include "base/args.hpp"
 #include "base/error.hpp"
+#include "model/inputs.hpp"
 #include "model/store.hpp"
 #include "part/partition.hpp"
 #include "part/table.hpp"
@@ -31,19 +31,17 @@ int main(int argc, char** argv) {
     if (!parse(*app, argc, argv)) return;
     if (n_parts == 0 && !table) throw Error("", "--parts is required", "see hilo-part --help", Exit::usage);
     if (output.empty() && !table) output = fmt::format("parts-{}.h5", n_parts);
-    std::error_code absent;
-    if (std::filesystem::equivalent(mesh_path, output, absent))
-      throw Error(output, "would overwrite the file it reads", "give another -o", Exit::usage);
 
     const MeshFile file = read_mesh_file(mesh_path);
     std::optional<Scene> scene;
     if (!scene_path.empty()) scene = Scene::load(scene_path);
+    if (!output.empty()) check_output(output);
     if (!file.tagged && !is_quiet()) fmt::print(stderr, "hilo-part: {} has no tags, so every region is nonlinear\n", mesh_path);
     const CellGraph graph = cell_graph(file.mesh, file.fidelity, scene ? &*scene : nullptr);
     if (table) {
       const Table t = comparison(graph, file.mesh, n_parts ? n_parts : 128);
       if (!output.empty()) write_text_file(output, csv(t));
-      fmt::print("{}", json ? t.json() + "\n" : t.text());
+      if (json || output.empty() || !is_quiet()) fmt::print("{}", json ? t.json() + "\n" : t.text());
       return;
     }
     Division division{weights, {}, {}, {}};
@@ -60,7 +58,7 @@ int main(int argc, char** argv) {
     auto provenance = file.provenance;
     provenance.push_back(command_line(argc, argv));
     write_parts(output, mesh_path, n_parts, division.part, provenance);
-    fmt::print("{}", json ? division_json(division, graph, output) : division_text(division, graph));
+    if (json || !is_quiet()) fmt::print("{}", json ? division_json(division, graph, output) : division_text(division, graph));
     for (const auto& line : doubts(division)) warn(mesh_path, line);
   });
 }

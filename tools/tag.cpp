@@ -1,10 +1,9 @@
 // hilo-tag: which region is rigid and which is flexible.
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "base/args.hpp"
 #include "base/error.hpp"
+#include "model/inputs.hpp"
 #include "model/mesh_tags.hpp"
 #include "model/store.hpp"
 #include "tag/savings.hpp"
@@ -37,17 +36,15 @@ int main(int argc, char** argv) {
     for (const auto f : {Fidelity::rigid, Fidelity::nonlinear, Fidelity::linear})
       for (const auto& w : words[static_cast<int>(f)]) rules.rules.push_back(tag_rule_of_option(f, fmt::format("--{}", word(f)), w));
     if (!rest.empty()) rules.rest = fidelity_of(rest, "--rest");
-    std::error_code absent;
-    if (!dry && std::filesystem::equivalent(mesh_path, output, absent))
-      throw Error(output, "would overwrite the file it reads", "give another -o", Exit::usage);
-
     const MeshFile file = read_mesh_file(mesh_path);
+    if (!dry) check_output(output);
     const auto fidelity = all_tagged(file.mesh, apply_tag_rules(file.mesh, rules));
     if (!dry) {
       auto provenance = file.provenance;
       provenance.push_back(command_line(argc, argv));
       write_tags(output, mesh_path, fidelity, provenance);
     }
+    if (is_quiet() && !json && !dry) return;
     const Savings s = savings(file.mesh, fidelity);
     fmt::print("{}", json ? savings_json(s, dry ? "" : output) : savings_text(s));
   });

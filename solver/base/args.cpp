@@ -128,7 +128,7 @@ std::unique_ptr<CLI::App> make_app(const ToolInfo& info) {
   app->set_help_flag("-h,--help", "this text");
   app->set_version_flag("--version", fmt::format("{} {}", info.name, version()), "the version");
   app->add_flag_callback(
-      "--quiet", [] { quiet_warnings(quiet = true); }, "neither warnings nor progress");
+      "--quiet", [] { quiet_warnings(quiet = true); }, "neither warnings nor progress, nor tables beside a file that was asked for");
   app->fallthrough();  // --quiet is understood behind a subcommand too
   app->get_formatter()->column_width(34);
   example(*app, info.example);

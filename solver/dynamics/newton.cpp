@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dynamics/free_part.hpp"
 #include "dynamics/profile.hpp"
 
 namespace hilo {
@@ -142,6 +143,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     ++report.iterations;
     if (!solved.ok) {
       report.reason = solver.name() + ": " + solved.message;
+      if (solved.message.find("singular") != std::string::npos) report.reason += free_part(system, solver, r.sigma);
       return report;
     }
     report.correction = system.comm->max(relative_correction(system, z));

@@ -157,7 +157,9 @@ void Recorder::share_failure() const {
 
 void Recorder::declare() {
   system_.comm->together([&] {
-    if (system_.comm->rank == 0) store_ = std::make_unique<Store>(Store::create_growing(setup_.path));
+    if (system_.comm->rank != 0) return;
+    store_ = std::make_unique<Store>(Store::create_growing(setup_.path));
+    for (const char* of_former : {".xdmf", ".json"}) ::unlink((stem(setup_.path) + of_former).c_str());  // they told of the file replaced
   });
   on_store([&](Store& f) { declare_arrays(f); });
 }
@@ -256,7 +258,7 @@ void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, co
   row.field = setup_.is_static || s.t >= next_field_ * (1 - 1e-9);
   if (row.field) {
     row.q = s.q, row.v = s.v;
-    while (next_field_ <= s.t * (1 + 1e-9) && setup_.interval > 0) next_field_ += setup_.interval;
+    if (setup_.interval > 0) next_field_ = setup_.interval * (std::floor(s.t * (1 + 1e-9) / setup_.interval) + 1);
   }
   rows_.push_back(std::move(row));
   advance(false);

@@ -23,7 +23,7 @@ namespace hilo {
 namespace {
 
 /// The linear solver for the scene, its pattern set: the light one while a factor fits, CG with incomplete factors for what no factor
-/// holds; on several ranks BDDC, in a third of the time of MUMPS and two thirds of its memory (docs/solvers.md).
+/// holds; on several ranks that share few nodes BDDC, in a third of the time of MUMPS and two thirds of its memory (docs/solvers.md).
 std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& system, bool talk) {
   const Entry& e = scene.table("solver");
   std::string kind = e.text("kind");
@@ -32,9 +32,9 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
   if (kind == "auto") {
     kind = system.comm->size > 1 ? "direct" : "light";
     if (unknowns > 300000) kind = "cg";
-    const auto ranks = system.comm->size;
-    const auto flexible = 3 * system.map.first_dense;
-    if (ranks >= 2 && flexible > 3000 && flexible / ranks <= 100000 && unknowns - flexible <= 3000) kind = "bddc";
+    const std::int64_t ranks = system.comm->size, flexible = 3 * system.map.first_dense;
+    const auto held = system.comm->sum(std::count_if(system.node_block.begin(), system.node_block.end(), [](int k) { return k >= 0; }));
+    if (ranks >= 2 && flexible > 3000 && flexible / ranks <= 100000 && unknowns - flexible <= 3000 && 2 * held < flexible) kind = "bddc";
     why = fmt::format("{} unknowns on {} rank{}", unknowns, system.comm->size, system.comm->size == 1 ? "" : "s");
   }
   const bool is_light = kind == "light" || kind == "klu" || kind == "cholesky" || kind == "umfpack";
@@ -285,6 +285,7 @@ class Run {
     int failures = 0;
     while (state_.t < to) {
       const double left = to - state_.t, pieces = std::ceil(left / control.step() - 1e-6), h = pieces < 30 ? left / pieces : control.step();
+      if (!(state_.t + h > state_.t)) return failure_ = fmt::format("time.tolerance asks for steps of {:.2g} s", h), false;
       if (!try_step(h)) {
         if (++failures > max_cuts_) return false;
         control.cut(h), cut();

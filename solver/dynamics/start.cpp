@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dynamics/free_part.hpp"
 #include "physics/rolling.hpp"
 
 namespace hilo {
@@ -122,7 +123,8 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
       }
   const SolveReport solved = solver.solve(b, z);
   if (!solved.ok)
-    throw Error("", fmt::format("the joints and masses do not determine the motion: {}", solved.message),
+    throw Error("",
+                fmt::format("the joints and masses do not determine the motion: {}{}", solved.message, free_part(system, solver, r.sigma)),
                 "a part may have no mass or inertia");
   double change = 0;
   for (size_t i = 0; i < v.x.size(); ++i)
@@ -189,7 +191,9 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
         b[first + i] = active ? -r.sigma * acceleration[i] : 0;
       }
     const SolveReport solved = solver.solve(b, z);
-    if (!solved.ok) throw Error("", fmt::format("the joints and masses do not determine the accelerations: {}", solved.message));
+    if (!solved.ok)
+      throw Error("", fmt::format("the joints and masses do not determine the accelerations: {}{}", solved.message,
+                                  free_part(system, solver, r.sigma)));
     for (size_t i = 0; i < a.x.size(); ++i)
       if (system.node_block[i] >= 0) a.x[i] += Eigen::Map<const Vec3>(z.data() + 3 * system.node_block[i]);
     for (size_t i = 0; i < a.c.size(); ++i)

@@ -179,6 +179,10 @@ MeshFile read_mesh_file(const std::string& path) {
 }
 
 void write_mesh(const std::string& path, const Mesh& m, const std::vector<std::string>& provenance) {
+  unpublished_mesh(path, m, provenance).publish();
+}
+
+Store unpublished_mesh(const std::string& path, const Mesh& m, const std::vector<std::string>& provenance) {
   Store store = Store::create(path);
   head(store, "mesh", provenance);
   const auto n = m.n_nodes();
@@ -205,7 +209,8 @@ void write_mesh(const std::string& path, const Mesh& m, const std::vector<std::s
     put<std::int64_t>(store, "/mesh/sets/facets/" + to_link_name(name), {set.empty() ? nullptr : &set[0].cell, 2 * set.size()},
                       {static_cast<std::int64_t>(set.size()), 2});
   store.write_text("/mesh/deck_scene", m.deck_scene);
-  store.publish();
+  store.flush();
+  return store;
 }
 
 void write_tags(const std::string& path, const std::string& from, const std::vector<Fidelity>& fidelity,

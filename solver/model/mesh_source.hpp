@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "model/mesh.hpp"
 #include "model/store.hpp"
 
 namespace hilo {
@@ -12,5 +13,8 @@ std::string checked_format(const Store& store);
 std::string holder(const Store& store, const std::string& what);
 /// Warn where `target` is not the file it was when `store` was made from it.
 void warn_if_changed(const Store& store, const std::string& what, const std::string& target);
+
+/// What write_mesh() publishes, whole on disk under its temporary name.
+Store unpublished_mesh(const std::string& path, const Mesh& mesh, const std::vector<std::string>& provenance);
 
 }  // namespace hilo

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "model/comm.hpp"
+#include "model/inputs.hpp"
 #include "model/scene_read.hpp"
 #include "model/store.hpp"
 
@@ -24,7 +25,13 @@ const Value& value_of(const Entry& e, std::string_view key) {
 std::string standard_input() {
   const Comm& comm = Comm::world();
   std::vector<char> text;
-  if (comm.rank == 0) text.assign(std::istreambuf_iterator<char>(std::cin), {});
+  comm.together([&] {
+    char block[4096];
+    while (comm.rank == 0 && (std::cin.read(block, sizeof block), std::cin.gcount() > 0)) {
+      text.insert(text.end(), block, block + std::cin.gcount());
+      if (text.size() > most_text) throw Error("<stdin>", fmt::format("more than {} MB of text", most_text >> 20));
+    }
+  });
   if (comm.size > 1) text = comm.exchange(std::vector<std::vector<char>>(comm.size, text))[0];
   return {text.begin(), text.end()};
 }

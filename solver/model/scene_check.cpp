@@ -46,6 +46,14 @@ void check_bodies(std::span<const Entry> bodies, std::span<const Entry> regions)
   }
 }
 
+/// A run that would not end.
+void check_time(const Entry& time) {
+  constexpr double most_steps = 1e9;
+  if (time.text("analysis") == "static" || !time.has("end") || !time.has("step")) return;
+  if (const double n = time.number("end") / time.number("step"); n > most_steps)
+    fail(time, "step", fmt::format("{:.3g} steps to the end, at most {:g} are taken", n, most_steps), "a longer step, or an earlier end");
+}
+
 }  // namespace
 
 void check_entries(const Entries& entries) {
@@ -58,6 +66,7 @@ void check_entries(const Entries& entries) {
   for (const auto* section : {"joint", "spring"})
     for (const auto& e : of(section)) check_ends(e);
   check_bodies(of("body"), of("region"));
+  for (const auto& e : of("time")) check_time(e);
   std::vector<std::string> materials;
   for (const auto& m : of("material")) materials.push_back(m.name);
   for (const auto& r : of("region")) {

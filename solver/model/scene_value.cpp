@@ -28,7 +28,11 @@ struct Reading {
   }
 };
 
-bool is_whole(const Param& p) { return p.key == "steps" || p.key == "iterations" || p.key == "cuts"; }
+bool is_whole(const Param& p) { return p.key == "steps" || p.key == "iterations" || p.key == "cuts" || p.key == "subdomains"; }
+
+/// Sizes whose squares and products a double still holds.  What must be positive is not below the lower one; anything else may be next to
+/// zero.
+constexpr double largest = 1e30, smallest = 1e-30;
 
 double number(const Reading& r, const toml::node& node) {
   const auto x = node.value<double>();
@@ -40,6 +44,10 @@ double number(const Reading& r, const toml::node& node) {
     const bool interval = std::isfinite(range.low) && std::isfinite(range.high);
     r.fail(place_of(node), fmt::format("{} = {} {} {}", r.item.key, *x, interval ? "is not in" : "is not", range.text()));
   }
+  if (std::abs(si) > largest || (r.param.range.low == 0 && r.param.range.low_open && si < smallest))
+    r.fail(place_of(node), fmt::format("{} = {} is beyond what can be computed with", r.item.key, *x),
+           fmt::format("sizes from {:g} to {:g}{}", smallest, largest,
+                       r.param.unit.empty() || r.param.unit == "1" ? "" : fmt::format(" {}, in SI units", r.param.unit)));
   if (is_whole(r.param) && si != std::floor(si)) r.fail(place_of(node), fmt::format("{} = {} is not a whole number", r.item.key, *x));
   return si;
 }

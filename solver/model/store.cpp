@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "model/inputs.hpp"
 #include "model/store_impl.hpp"
 
 namespace hilo {
@@ -84,6 +85,18 @@ Store& Store::operator=(Store&&) noexcept = default;
 Store::~Store() = default;
 const std::string& Store::path() const { return impl_->path; }
 
+namespace {
+
+Id reading() {
+  Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  // A file behind a link is opened once, not for every array.  The library does so with its own way of closing; with another one
+  // (H5F_CLOSE_STRONG) here or where files are made we could not open that file too.
+  H5Pset_elink_file_cache_size(access, 4);
+  return access;
+}
+
+}  // namespace
+
 Store Store::open(const std::string& path) {
   start_library();
   struct stat status;
@@ -92,6 +105,7 @@ Store Store::open(const std::string& path) {
     throw Error(path, "no such file");
   }
   if (S_ISDIR(status.st_mode)) throw Error(path, "is a folder, not a file");
+  if (!S_ISREG(status.st_mode)) throw Error(path, "is a device or pipe, not a file");
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);  // opened by hand first: the library hides why it could not
   if (descriptor < 0) throw Error(path, fmt::format("cannot read: {}", std::strerror(errno)), "", Exit::resources);
   ::close(descriptor);
@@ -99,17 +113,43 @@ Store Store::open(const std::string& path) {
   if (H5Fis_hdf5(path.c_str()) <= 0) throw Error(path, "not an HDF5 file");
   auto impl = std::make_unique<Impl>();
   impl->path = impl->on_disk = path;
-  const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  // A file behind a link is opened once, not for every array.  The library does so with its own way of closing; with another one
-  // (H5F_CLOSE_STRONG) here or where files are made we could not open that file too.
-  H5Pset_elink_file_cache_size(access, 4);
+  const Id access = reading();
   impl->file = Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
   if (!impl->file.ok()) {
     const Cause cause = last_cause();
     const bool cut = cause.text.find("truncated") != std::string::npos || cause.text.find("eof") != std::string::npos;
     throw Error(path, cut ? "truncated file" : fmt::format("truncated or damaged HDF5 file: {}", cause.text));
   }
-  return Store(std::move(impl));
+  Store store(std::move(impl));
+  std::vector<std::string> chain;
+  Impl::follow_links(store, chain);
+  return store;
+}
+
+/// Files behind the links of a file that is read are read as well; links that lead in a circle are refused by name.  `chain`: the files
+/// that led here.
+void Store::Impl::follow_links(Store& store, std::vector<std::string>& chain) {
+  const std::string& path = store.path();
+  note_input(path);
+  chain.push_back(path);
+  for (const char* name : {"/mesh", "/tags"}) {
+    const auto link = store.linked(name);
+    if (!link) continue;
+    const std::string target = resolved_from(path, link->first);
+    std::error_code ignored;
+    for (const auto& before : chain)
+      if (fs::equivalent(before, target, ignored))
+        throw Error(path, fmt::format("its link {} leads in a circle, to {}", name, target),
+                    "a file it was made from was replaced: make them again");
+    auto behind = std::make_unique<Impl>();
+    behind->path = behind->on_disk = target;
+    const Id access = reading();
+    behind->file = Id(H5Fopen(target.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
+    if (!behind->file.ok()) continue;  // who needs it says what is wrong
+    Store next(std::move(behind));
+    follow_links(next, chain);
+  }
+  chain.pop_back();
 }
 
 namespace {
@@ -143,7 +183,7 @@ void sync(const std::string& path) {
 
 Store Store::create(const std::string& path) {
   auto impl = std::make_unique<Impl>();
-  refuse_special(path);
+  check_output(path);
   impl->path = path;
   impl->on_disk = fmt::format("{}.tmp-{}", path, ::getpid());
   impl->file = create_file(path, impl->on_disk);
@@ -153,7 +193,7 @@ Store Store::create(const std::string& path) {
 
 Store Store::create_growing(const std::string& path) {
   auto impl = std::make_unique<Impl>();
-  refuse_special(path);
+  check_output(path);
   if (::unlink(path.c_str()) != 0 && errno != ENOENT)  // whoever still reads the old file keeps it
     throw Error(path, fmt::format("cannot write: {}", std::strerror(errno)), "", Exit::resources);
   impl->path = impl->on_disk = path;

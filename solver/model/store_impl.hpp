@@ -119,6 +119,8 @@ struct Store::Impl {
   /// After a failed write: what the library still wants to write goes nowhere.
   void abandon();
 
+  static void follow_links(Store& store, std::vector<std::string>& chain);
+
   [[noreturn]] void fail_write(const std::string& what);
   [[noreturn]] void fail_read(const std::string& array) const;
   void need(bool ok, const std::string& what) {

@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "model/inputs.hpp"
 #include "model/store.hpp"
 
 namespace hilo {
@@ -26,10 +27,12 @@ struct Reader {
       throw Error(where.empty() ? path : where, fmt::format("{}cannot read: {}", prefix, std::strerror(error)), "", Exit::resources);
     }
     struct stat status;
-    if (::fstat(fileno(file), &status) == 0 && S_ISDIR(status.st_mode)) {
+    const bool known = ::fstat(fileno(file), &status) == 0, folder = known && S_ISDIR(status.st_mode);
+    if (folder || (known && (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)))) {  // a pipe is welcome: <(command)
       std::fclose(file);
-      throw Error(where.empty() ? path : where, prefix + "is a folder, not a file");
+      throw Error(where.empty() ? path : where, fmt::format("{}is a {}, not a file", prefix, folder ? "folder" : "device"));
     }
+    note_input(path);
   }
   ~Reader() { std::fclose(file); }
   Reader(const Reader&) = delete;
@@ -93,7 +96,7 @@ void write_text_file(const std::string& path, const std::string& text) {
     ::unlink(temporary.c_str());
     throw Error(path, fmt::format("cannot write: {}", std::strerror(error)), "", Exit::resources);
   };
-  refuse_special(path);
+  check_output(path);
   const int d = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (d < 0) fail(errno);
   for (size_t done = 0; done < text.size();) {
@@ -114,7 +117,12 @@ std::string read_text_file(const std::string& path, const std::string& where) {
   const Reader reader(path, where);
   std::string text;
   std::vector<char> block(1 << 16);
-  while (const size_t n = std::fread(block.data(), 1, block.size(), reader.file)) text.append(block.data(), n);
+  while (const size_t n = std::fread(block.data(), 1, block.size(), reader.file)) {
+    text.append(block.data(), n);
+    if (text.size() > most_text)
+      throw Error(where.empty() ? path : where,
+                  fmt::format("{}more than {} MB of text", where.empty() ? "" : path + ": ", most_text >> 20));
+  }
   if (std::ferror(reader.file)) throw Error(where.empty() ? path : where, "cannot read", "", Exit::resources);
   return text;
 }

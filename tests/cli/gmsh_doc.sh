@@ -48,21 +48,21 @@ last() { hilo-post series "$1" "$2" | tail -n 1 | awk -F, '{print $NF}'; }
 # near WHAT VALUE TRUTH RELATIVE
 near() { awk -v a="$2" -v b="$3" -v r="$4" 'BEGIN {d = a - b; if (d < 0) d = -d; exit !(d <= r * (b < 0 ? -b : b))}' || fail "$1 is $2, not $3"; }
 
-hilo-import --quiet t5.geo -o t5.h5 --size 0.2 > t5.txt
+hilo-import t5.geo -o t5.h5 --size 0.2 > t5.txt
 [ "$(grep -c '^volume_' t5.txt)" = 6 ] || fail "t5.geo has six volume groups"
-hilo-tag --quiet t5.h5 --rigid 'volume_[1-5]' --rest nonlinear -o t5-tags.h5 > t5-tags.txt
+hilo-tag t5.h5 --rigid 'volume_[1-5]' --rest nonlinear -o t5-tags.h5 > t5-tags.txt
 scene t5
 printf '\n[[motion]]\nkind = "fixed"\nname = "hook"\non = "volume_1"\n' >> t5.toml
 solve_and_look t5 von_mises
 
-hilo-import --quiet t16.geo -o t16.h5 --size 0.2 > t16.txt
+hilo-import t16.geo -o t16.h5 --size 0.2 > t16.txt
 [ "$(grep -c '^volume_' t16.txt)" = 6 ] || fail "t16.geo has six volume groups"
-hilo-tag --quiet t16.h5 --rest nonlinear -o t16-tags.h5 > t16-tags.txt
+hilo-tag t16.h5 --rest nonlinear -o t16-tags.h5 > t16-tags.txt
 scene t16
 solve_and_look t16 displacement
 
-hilo-import --quiet t20_data.step -o t20.h5 --size 15 --scale 1e-3 > t20.txt
-hilo-tag --quiet t20.h5 --rest nonlinear -o t20-tags.h5 > t20-tags.txt
+hilo-import t20_data.step -o t20.h5 --size 15 --scale 1e-3 > t20.txt
+hilo-tag t20.h5 --rest nonlinear -o t20-tags.h5 > t20-tags.txt
 scene t20
 solve_and_look t20 displacement
 

@@ -90,7 +90,7 @@ TEST_F(Faults, AMistypedOptionIsCorrected) {
 
 TEST_F(Faults, AnOutputThatWouldOverwriteItsInputIsRefused) {
   make_mesh();
-  refused("hilo-import two.inp -o two.inp", usage, "two.inp is the file to read (write to another name)");
+  refused("hilo-import two.inp -o two.inp", usage, "two.inp: would overwrite the file it reads (give another -o)");
   refused("hilo-tag two.h5 --rigid hull mast -o two.h5", usage, "two.h5: would overwrite the file it reads (give another -o)");
 }
 

@@ -72,7 +72,7 @@ TEST_F(ImportCommand, WrongCommandLinesAreUsageErrors) {
   refused("bar.inp -o a.h5 --scale 0", 1, "--scale must be positive (see hilo-import --help)");
   refused("bar.inp -o a.h5 --order 3", 1, "--order is 1 or 2 (see hilo-import --help)");
   refused("bar.inp -o a.h5 --define SIZE", 1, "--define SIZE: expected NAME=NUMBER (see hilo-import --help)");
-  refused("bar.inp -o bar.inp", 1, "bar.inp is the file to read (write to another name)");
+  refused("bar.inp -o bar.inp", 1, "bar.inp: would overwrite the file it reads (give another -o)");
   refused("bar.inp -o a.h5 --scene-out a.h5", 1, "--scene-out and --output name the same file (see hilo-import --help)");
 }
 

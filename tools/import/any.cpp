@@ -9,6 +9,8 @@
 
 #include "base/error.hpp"
 #include "import/imported.hpp"
+#include "model/inputs.hpp"
+#include "model/store.hpp"
 
 namespace hilo {
 namespace {
@@ -44,12 +46,26 @@ void check_defines(const std::string& path, const ImportOptions& options) {
                   suggest(name, std::vector<std::string>(words.begin(), words.end())), Exit::usage);
 }
 
+/// What a script merges or includes, gmsh reads for itself: every text in quotes that is the name of a file beside the script.
+void note_files_of_script(const std::string& path) {
+  const std::string text = read_text_file(path);
+  for (size_t from = 0; (from = text.find('"', from)) != text.npos;) {
+    const size_t to = text.find('"', ++from);
+    if (to == text.npos) break;
+    const auto file = std::filesystem::path(path).parent_path() / text.substr(from, to - from);
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(file, ignored)) note_input(file.string());
+    from = to + 1;
+  }
+}
+
 }  // namespace
 
 Imported read_any(const std::string& path, const ImportOptions& options) {
   namespace fs = std::filesystem;
   if (!fs::exists(path)) throw Error(path, "no such file");
   if (fs::is_directory(path)) throw Error(path, "a folder, not a file");
+  if (!fs::is_regular_file(path)) throw Error(path, "a device or pipe, not a file");
   if (!std::ifstream(path)) throw Error(path, "cannot be read", "permissions?", Exit::resources);
   if (fs::file_size(path) == 0) throw Error(path, "an empty file");
   std::string ending = fs::path(path).extension().string();
@@ -62,6 +78,7 @@ Imported read_any(const std::string& path, const ImportOptions& options) {
       if (options.size && !f.geometry) throw Error("", fmt::format("--size is for a geometry, {} is a mesh", path), "", Exit::usage);
       if (!options.define.empty() && ending != ".geo") throw Error("", "--define is for .geo scripts", "", Exit::usage);
       if (!options.define.empty()) check_defines(path, options);
+      if (ending == ".geo") note_files_of_script(path);
       return f.read(path, options);
     }
     known += std::string(known.empty() ? "" : " ") + f.ending;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -77,6 +78,7 @@ std::string suggest_name(const std::string& name, const std::map<std::string, Na
 }
 
 struct InpDeck {
+  std::set<std::string> files;  // that lines came from, for messages
   std::vector<Vec3> X;
   std::vector<std::int64_t> node_id;
   std::unordered_map<std::int64_t, std::int64_t> node;  // number in the deck -> row of X, of nodes that a cell uses

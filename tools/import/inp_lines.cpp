@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "model/inputs.hpp"
 
 namespace hilo {
 namespace {
@@ -115,6 +116,7 @@ std::string read_gz(const std::string& path, const std::string& place) {
   if (!std::filesystem::exists(path))
     throw Error(place.empty() ? path : place, place.empty() ? "no such file" : fmt::format("no file \"{}\"", path));
   if (std::filesystem::is_directory(path)) throw Error(place.empty() ? path : place, "a folder, not a file");
+  note_input(path);
   gzFile in = gzopen(path.c_str(), "rb");
   if (!in) throw Error(place.empty() ? path : place, fmt::format("cannot read \"{}\"", path), "", Exit::resources);
   gzbuffer(in, 1 << 18);

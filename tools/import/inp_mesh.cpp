@@ -51,7 +51,7 @@ void read_elements(const Card& card, InpLines& lines, InpDeck& d, Imported& in) 
   while (lines.next_data(l)) {
     const std::string place = l.place(0);
     const int line = l.line;
-    const std::string* file = l.file;
+    const std::string* file = &*d.files.insert(*l.file).first;  // the lines close before the cells are resolved
     row.clear();
     for (size_t i = 0; i < l.fields.size(); ++i) row.push_back(l.integer(i));
     while (row.size() < n + 1) {

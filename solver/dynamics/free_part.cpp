@@ -1,0 +1,66 @@
+#include "dynamics/free_part.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hilo {
+namespace {
+
+std::string free(const std::string& what) { return fmt::format(": {} is not held, or has no mass", what); }
+
+/// What the unknowns of a local block belong to.
+std::string owner_of(const System& s, int block) {
+  for (size_t b = 0; b < s.bodies.size(); ++b)
+    if (s.body_block[b] >= 0 && (block == s.body_block[b] || block == s.body_block[b] + 1))
+      return free(fmt::format("{} \"{}\"", s.bodies[b].patch ? "set" : "body", s.bodies[b].name));
+  for (size_t j = s.joints.size(); j-- > 0;)
+    if (block >= s.joint_block[j]) return fmt::format(": joint \"{}\" holds what is held already", s.joints[j].name);
+  for (size_t i = 0; i < s.X.size(); ++i) {
+    if (s.node_block[i] != block) continue;
+    for (size_t r = 0; r < s.region_nodes.size(); ++r)
+      if (std::find(s.region_nodes[r].begin(), s.region_nodes[r].end(), static_cast<int>(i)) != s.region_nodes[r].end())
+        return free(fmt::format("region \"{}\", at node {},", s.mesh->mesh.region_name[r], s.mesh->mesh.node_id[i]));
+    return free(fmt::format("node {}", s.mesh->mesh.node_id[i]));
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string free_part(const System& s, KktSolver& solver, double sigma) {
+  const Comm& comm = *s.comm;
+  const int n = s.n_blocks();
+  const auto shift = [&](int block, double length) {
+    const double x = 1e-9 * sigma * length * length, d[3] = {x, x, x};
+    solver.add_diagonal(block, d);
+  };
+  for (size_t i = 0; i < s.X.size(); ++i)
+    if (s.node_block[i] >= 0 && s.node_owned[i]) shift(s.node_block[i], 1);
+  if (comm.rank == comm.size - 1) {  // which owns bodies and multipliers
+    for (size_t b = 0; b < s.bodies.size(); ++b)
+      if (s.body_block[b] >= 0) shift(s.body_block[b], 1), shift(s.body_block[b] + 1, s.bodies[b].size);
+    for (int k = s.first_joint_block(); k < n; ++k) shift(k, 1);
+  }
+  std::vector<double> b(3 * n), x(3 * n, 0.0);
+  for (int k = 0; k < n; ++k)  // any vector with something of everything
+    for (int c = 0; c < 3; ++c) b[3 * k + c] = std::cos(static_cast<double>(3 * s.map.global[k] + c));
+  int block = -1;
+  double mine = 0, most = 0;
+  for (int pass = 0; pass < 4; ++pass) {
+    solver.solve(b, x);
+    mine = 0, block = -1;
+    for (int i = 0; i < 3 * n; ++i)
+      if (!(std::abs(x[i]) <= mine)) mine = std::abs(x[i]), block = i / 3;
+    most = comm.max(mine);
+    if (!std::isfinite(most) || most == 0) return "";
+    for (int i = 0; i < 3 * n; ++i) b[i] = x[i] / most;
+  }
+  const std::string text = mine == most ? owner_of(s, block) : "";
+  for (const auto& said : comm.exchange(std::vector(comm.size, std::vector<char>(text.begin(), text.end()))))
+    if (!said.empty()) return {said.begin(), said.end()};
+  return "";
+}
+
+}  // namespace hilo
