@@ -63,6 +63,7 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
     taken_[k] = {from_left(stage(k, solved_[k]), h), lambda_};
     for (size_t i = 0; i < missed_[k].size(); ++i) missed_[k][i] = increments[i] - missed_[k][i];
     taken_[k].stage.work_from = k == 0 ? &solved_[0].q0 : &solved_[k - 1].q;
+    taken_[k].stage.span = (k + 1 == n_stages() ? 1 : instant(k)) * h - (k == 0 ? 0 : instant(k - 1)) * h;
   }
   return all;
 }

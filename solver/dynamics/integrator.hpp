@@ -131,7 +131,7 @@ std::unique_ptr<StageIntegrator> make_bathe();
 /// Two-step backward difference formula at changing steps, started by one step of backward Euler.
 std::unique_ptr<StageIntegrator> make_bdf2();
 /// Three-stage Radau IIA for index 3, all stages solved together; for references, serial [hairer-wanner-1996].
-std::unique_ptr<Integrator> make_radau();
+std::unique_ptr<Integrator> make_radau(std::unique_ptr<SerialKktSolver> solver = make_light_solver());
 /// The integrator that [time] asks for.
 std::unique_ptr<Integrator> make_integrator(const Entry& time);
 /// Why the method chosen is known to fail, or "" where it is not [docs/stability.md].

@@ -1,6 +1,6 @@
 // Radau IIA of three stages, order 5 in positions for index 3:
 //   Q_i = q0 + h sum_j A_ij V_j,   V_i = v0 + h sum_j A_ij A_j,   equations of motion and g(Q_i) = 0 at every stage, q1 = Q_3, v1 = V_3
-// With W = A^-1:  V_i = sum_j W_ij (Q_j - q0)/h,  A_i = sum_j W_ij (V_j - v0)/h; the stages couple through the mass alone.
+// With W = A^-1:  V_i = sum_j W_ij (Q_j - q0)/h,  A_i = sum_j W_ij (V_j - v0)/h; the stages couple through the mass and what asks for rates.
 //
 // Simplified Newton [hairer-wanner-1996, IV.8]: matrix and factors stay, over steps too, while corrections with them fall fast.
 #include <Eigen/Dense>
@@ -16,7 +16,7 @@ namespace {
 
 class Radau final : public Integrator {
  public:
-  Radau() {
+  explicit Radau(std::unique_ptr<SerialKktSolver> solver) : whole_(std::move(solver)) {
     const double s = std::sqrt(6.0);
     A_ << (88 - 7 * s) / 360, (296 - 169 * s) / 1800, (-2 + 3 * s) / 225, (296 + 169 * s) / 1800, (88 + 7 * s) / 360, (-2 - 3 * s) / 225,
         (16 - s) / 36, (16 + s) / 36, 1. / 9;
@@ -31,7 +31,7 @@ class Radau final : public Integrator {
   NewtonReport solve(const StepTools& tools, const State& s, double h, Predictor predictor) override {
     const System& system = *(system_ = &tools.system);
     if (NewtonReport refused; !(refused.reason = system.too_far(s.t, s.t + h)).empty()) return refused;
-    if (!whole_) couple(system);
+    if (map_.global.empty()) couple(system);
     if (tried_) kept_ = false;  // the step before was refused: joint rows may have been chosen anew
     tried_ = true;
     t_ = s.t, h_ = h, v0_ = s.v, predictor_ = predictor;
@@ -49,7 +49,7 @@ class Radau final : public Integrator {
     for (int i = 0; i < 3; ++i) {
       combine(from_[i], {{1, &u_[i].q}, {-h_ * A_(2, i), &v_[i]}});  // quadrature of the work: weight times power at the stage
       taken_[i].stage = stages_[i], taken_[i].lambda = lambda_[i];
-      taken_[i].stage.work_from = &from_[i];
+      taken_[i].stage.work_from = &from_[i], taken_[i].stage.span = h_ * A_(2, i);
     }
     return report;
   }
@@ -86,7 +86,6 @@ class Radau final : public Integrator {
     }
     for (int i = 0; i < 3 * n; ++i) map_.global.push_back(i);
     map_.n_owned = map_.n_global = 3 * n;
-    whole_ = make_light_solver();
     whole_->structure(cliques_, map_);
     has_rates_ = !system.springs.empty() || !system.batches.empty();
     b_.resize(9 * static_cast<size_t>(n)), z_.resize(b_.size());
@@ -240,18 +239,17 @@ class Radau final : public Integrator {
 
   void add_coupling(const System& system) {
     combine(zero_, {{0, &v0_}});
-    const std::vector<double> none(3 * system.n_joint_blocks(), 0.0);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         if (i == j) continue;
-        Stage s = stage_at(u_[i].q, t_);
+        Stage s = stages_[i];
         s.end = &u_[j].q, s.slope = 0, s.chain = 1e-30;
-        s.inertia_alone = true;
+        s.rates_alone = true;
         s.a = &zero_, s.mass_slope = (W_ * W_)(i, j) / (h_ * h_);
-        s.v = &v_[i], s.alpha_slope = W_(i, j) / h_;
+        s.alpha_slope = W_(i, j) / h_;
         // rows of velocities are over the slope, and have the scale, of their own stage
         StageBlock block(*whole_, system, i, j, r_[i].sigma * W_(i, j) / W_(i, i), unused_.sigma);
-        system.evaluate(s, none, unused_, &block);
+        system.evaluate(s, lambda_[i], unused_, &block);
       }
   }
 
@@ -279,6 +277,6 @@ class Radau final : public Integrator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_radau() { return std::make_unique<Radau>(); }
+std::unique_ptr<Integrator> make_radau(std::unique_ptr<SerialKktSolver> solver) { return std::make_unique<Radau>(std::move(solver)); }
 
 }  // namespace hilo

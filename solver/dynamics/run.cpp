@@ -11,6 +11,7 @@
 #include "dynamics/blow.hpp"
 #include "dynamics/clock.hpp"
 #include "dynamics/contradiction.hpp"
+#include "dynamics/held.hpp"
 #include "dynamics/predictor.hpp"
 #include "dynamics/profile.hpp"
 #include "dynamics/progress.hpp"
@@ -146,6 +147,7 @@ class Run {
     const Entry& time = scene_.table("time");
     const int n = static_cast<int>(time.number("steps"));
     const double end = time.has("end") ? time.number("end") : 1;
+    require_held(system_, state_.q, end / n, 1.0 / n, time.where("analysis"));
     audit_->start(state_);
     recorder_->first(state_, audit_->ledger());
     Progress progress(options_.quiet || system_.comm->rank != 0, 0, 1);
@@ -157,6 +159,7 @@ class Run {
     double done = 0, dt = 1.0 / n;
     int cuts = 0;
     State reached = state_;
+    std::string why;  // of the first failure since the last good state, or that a cell would be inside out
     while (done < 1 - 1e-12) {
       const double next = std::min(1.0, done + dt);
       reached.q = state_.q, reached.lambda = state_.lambda, reached.t = next * end;
@@ -167,11 +170,12 @@ class Run {
       failure_ = r.converged ? audit_->look(state_.q, reached, {&taken, 1}, r, next) : r.reason;
       if (!failure_.empty()) {
         system_.commit(state_.q);
-        if (++cuts > max_cuts_) return stop(failure_);
+        if (why.empty() || r.least_det <= 0) why = failure_;
+        if (++cuts > max_cuts_) return stop(why + unheld(system_, system_.start));
         ++report_.cuts, dt /= 2;
         continue;
       }
-      cuts = 0;
+      cuts = 0, why.clear();
       audit_->accept(reached.t);
       recorder_->step(reached, audit_->ledger(), taken, no_acceleration, r.iterations);
       std::swap(state_, reached);
@@ -191,11 +195,12 @@ class Run {
     const std::vector<Active> rows = active_rows(system_);
     set_rows(system_, redundancy_.at_pose);
     if (time.text("start") == "equilibrium") {
+      require_rest(system_, state_.q, time.where("start"));
       const NewtonReport r = equilibrium(system_, *solver_, state_.q, state_.lambda, 0, 1, true, newton_);
       if (!r.converged) {
         audit_->start(state_);
         recorder_->first(state_, audit_->ledger());
-        return stop("no static equilibrium at the start: " + r.reason);
+        return stop("no static equilibrium at the start: " + r.reason + unheld(system_, system_.start));
       }
       if (talk_) fmt::print(stderr, "equilibrium after {} iterations\n", r.iterations);
     }

@@ -245,7 +245,7 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
   NewtonOptions o = options;
   if (mechanism) o.max_iterations = std::max(o.max_iterations, 200), o.patient = true;
   Unknown u(system, q, q);
-  const auto report = newton(
+  NewtonReport report = newton(
       system, solver,
       [&](const Unknown& at) {
         s = stage_at(at.q, t);
@@ -257,6 +257,10 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
       },
       u, lambda, o);
   q = u.q;
+  if (report.least_det <= 0) {
+    report.converged = false;
+    report.reason = fmt::format("a cell is turned inside out (det F = {:.2g})", report.least_det);
+  }
   if (report.converged) system.commit(q);
   return report;
 }

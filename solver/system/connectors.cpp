@@ -53,6 +53,16 @@ Slip::Move move_of(const Connector& c, const Stage& s, int end, int i) {
   return m;
 }
 
+/// Rate forces of a spring, D by its measures at w1, and `D0` by those at w0.  All laws of rates are symmetric in their ends when the time
+/// between them changes its sign too, so the former of the exchanged pair is the latter.
+void spring_viscous(const Connector& c, const Stage& s, const Interval& step, Response& out, Response& exchanged) {
+  const auto r0 = c.values(*s.w0), r1 = c.values(*s.w1);
+  c.law->viscous(r0, r1, step, out);
+  Interval back = step;
+  back.h = -step.h;
+  if (s.slope0() != 0) c.law->viscous(r1, r0, back, exchanged);
+}
+
 /// Rows that hold velocities, scaled to lengths by the slope of the velocities: (A v)/alpha_slope.  Where a stage has no velocities of its
 /// own (statics, projections), increments slip as little: the rows are A, their value 0.  Adds the derivative of A^T lambda to K.
 void add_velocity_rows(const Connector& c, const Stage& s, const Slip& slip, const double* lambda, DirectionRows& left,
@@ -172,7 +182,7 @@ void System::add_connectors(Pass& p) const {
   for (size_t j = 0; j < joints.size(); ++j) {
     if (!owns_joint_[j]) continue;
     const Connector& c = joints[j];
-    if (s.inertia_alone && !c.velocity_rows) continue;
+    if (s.rates_alone && !c.velocity_rows) continue;
     gradient(c, *s.left, left);
     if (p.K)
       gradient(c, *s.end, right);
@@ -225,29 +235,33 @@ void System::add_connectors(Pass& p) const {
     if (slip) add_velocity_rows(c, s, *slip, lambda, left_rows, right_rows, K);
     add_clique(c, joint_clique_[j], K, (n + 2) / 3, left_rows, right_rows);
   }
-  for (size_t j = 0; j < springs.size() && !s.inertia_alone; ++j) {
-    if (!owns_spring_[j]) continue;
+  for (size_t j = 0; j < springs.size(); ++j) {
+    if (!owns_spring_[j] || (s.rates_alone && s.h <= 0)) continue;
     const Connector& c = springs[j];
     const int n = static_cast<int>(c.measures.size()), width = c.n_directions();
     gradient(c, *s.left, left);
-    if (p.K) gradient(c, *s.e1, *s.end, right);
-    Response elastic, viscous;
+    Response elastic, viscous, before;  // `before`: by the measures at w0
     double slope[max_rows] = {};
     spring_elastic(c, s, elastic);
     double force[max_measures];
     for (int m = 0; m < n; ++m) force[m] = elastic.s[m];
     if (s.h > 0) {
-      c.law->viscous(c.values(*s.w0), c.values(*s.w1), interval(c, s, p.lambda, slope), viscous);
+      spring_viscous(c, s, interval(c, s, p.lambda, slope), viscous, before);
       for (int m = 0; m < n; ++m) force[m] += viscous.s[m];
     }
     add_force(c, force);
     if (!p.K) continue;
     ConnectorMatrix K = ConnectorMatrix::Zero(width, width);
-    for (int m = 0; m < n; ++m)
-      for (int k = 0; k < n; ++k) {
-        const double D = s.chain * elastic.D[m][k] + s.h * s.alpha_slope * viscous.D[m][k];
-        if (D != 0) K += D * left.G.row(m).head(width).transpose() * right.G.row(k).head(width);
-      }
+    const auto add_slope = [&](const Config& at, double f, const Response& response) {
+      if (f == 0) return;
+      gradient(c, at, *s.end, right);
+      for (int m = 0; m < n; ++m)
+        for (int k = 0; k < n; ++k)
+          if (const double D = f * response.D[m][k]; D != 0)
+            K += D * left.G.row(m).head(width).transpose() * right.G.row(k).head(width);
+    };
+    if (s.h > 0) add_slope(*s.w0, s.slope0(), before), add_slope(*s.w1, s.slope1(), viscous);
+    add_slope(*s.e1, s.chain, elastic);
     add_geometric(c, left, right, force, s.slope, K);
     int blocks = 0;
     if (c.load_joint >= 0) {  // columns of the multipliers its load is made of; its own rows are none

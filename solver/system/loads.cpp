@@ -101,7 +101,8 @@ System::Work System::work(const Stage& s, std::span<const double> lambda) const 
     }
     Response response;
     springs[i].law->viscous(r0, r1, interval(springs[i], s, lambda), response);
-    dissipated += response.dissipated, external += response.supplied;
+    const double share = s.span > 0 ? s.span / s.h : 1;
+    dissipated += share * response.dissipated, external += share * response.supplied;
   }
   for (const SolidBatch& b : batches) {  // mass-proportional damping: alpha M v.dx
     if (b.alpha == 0 || !s.v) continue;

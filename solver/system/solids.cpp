@@ -76,8 +76,11 @@ void System::add_solids(Pass& p) const {
         gather(b, first, W, s.w1->x, x1);
         b.kernel.call({X_, x0, x1, 0, rate, b.c, f2, K2, nullptr, nullptr, nullptr, 0, nullptr, 0, b.area});
         for (int i = 0; i < n3 * W; ++i) f[i] += f2[i];
-        if (K)  // the derivative by the rate alone; what is left out is of first order in h
-          for (int i = 0; i < n3 * n3 * W; ++i) K[i] += s.h * s.alpha_slope * K2[i];
+        for (int i = 0; K && i < n3 * n3 * W; ++i) K[i] += s.slope1() * K2[i];
+        if (K && s.slope0() != 0) {  // by x0: the ends exchanged, and with them the sign of the rate
+          b.kernel.call({X_, x1, x0, 0, -rate, b.c, f2, K2, nullptr, nullptr, nullptr, 0, nullptr, 0, b.area});
+          for (int i = 0; i < n3 * n3 * W; ++i) K[i] += s.slope0() * K2[i];
+        }
       }
       for (int l = 0; l < W && first + l < count; ++l) {
         const int e = first + l;

@@ -22,7 +22,7 @@ void System::evaluate(const Stage& stage, std::span<const double> lambda, Residu
   add_solids(p);
   add_bodies(p);
   add_connectors(p);
-  if (!stage.inertia_alone) add_loads(p);
+  if (!stage.rates_alone) add_loads(p);
   reduce(p);
   if (!K) return;
   for (size_t i = 0; i < X.size(); ++i) {

@@ -96,8 +96,9 @@ struct Stage {
   const Config *e0, *e1;              // elastic pair: the ends of the step, or one configuration twice
   double weight = 0.5;                // share of e1 in averages; 1/2 of two different ends means discrete gradients over the step
   double chain = 1;                   // d e1 / d end
-  const Config *w0, *w1;              // pair of the rate terms: rate = (e(w1) - e(w0))/h
+  const Config *w0, *w1;              // pair of the rate terms, rate = (e(w1) - e(w0))/h: v h/2 on either side of `left`
   double h = 0;                       // time between w0 and w1 [s]; 0: no rate terms
+  double span = 0;                    // time that the stage stands for in the work of the rate terms [s]; 0: h
   const Config* a;                    // accelerations [m/s^2]
   const Config* v = nullptr;          // velocities, for mass-proportional damping
   double mass_slope = 0;              // d a / d end [1/s^2]
@@ -107,8 +108,14 @@ struct Stage {
   double t_end = 0;                   // time of `end`: driven joints
   const Config* work_from = nullptr;  // start of the step for System::work; null: e0
   const Config* v0 = nullptr;         // start velocities, where v1 = v0 + h a: there inertia works through h (v0 + v1)/2
-  bool inertia_alone = false;         // how accelerations, and rows of velocities, act on the equations of another stage
+  bool rates_alone = false;           // how accelerations, rates and rows of velocities act on the equations of another stage
   double load_factor = 1;             // of gravity and of loads without a history, for static load steps
+  /// Derivatives of w0 and w1 by `end`.
+  double slope0() const {
+    const double x = slope - h * alpha_slope / 2;
+    return x > 1e-12 || x < -1e-12 ? x : 0;  // w0 is the start of the step
+  }
+  double slope1() const { return slope + h * alpha_slope / 2; }
   bool conserving() const { return weight == 0.5 && e0 != e1; }
 };
 
@@ -228,6 +235,12 @@ class System {
   void forces(const Stage& stage, std::span<const double> lambda, Forces& out) const;
   /// Force and moment on what a motion holds.
   Vec6 reaction(const Motion& m, const Forces& f, const Config& q) const;
+  /// Motions of parts as rigid bodies that neither stiffness nor joints nor prescribed motions resist at a static stage.
+  struct Loose {
+    std::string text;                           // 'region "bar" is free to turn about ...', or nothing
+    std::vector<std::vector<double>> straight;  // increments of those in which nothing turns
+  };
+  Loose loose(const Stage& stage, bool with_loads) const;
   /// Why a joint cannot be at q ("joint ... ran off the end of its curve"), or nothing; the same on all ranks.
   std::string fault(const Config& q) const;
   /// Accept q, with velocities v, as the state springs and joints go on from.
@@ -239,6 +252,8 @@ class System {
   struct Pass;
   /// Lowest value of each node over the ranks that share it.
   void lowest_over_ranks(std::vector<std::int64_t>& value) const;
+  /// Cluster of each free node, numbered over all ranks, the highest integer for a node of no cell; how many there are.
+  int clusters(std::vector<std::int64_t>& cluster_of) const;
   void number_globally(int n_node_blocks, int n_local);
   double constraint_scale(const Stage& s) const;
   double motion_work(const Stage& s, std::span<const double> lambda, const Config& from) const;
