@@ -2,61 +2,191 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace hilo {
+namespace {
 
-bool goes_by_itself(const System& s, const Redundancy& rows) {
-  const auto none = [](const auto& list, auto&& bad) { return std::none_of(list.begin(), list.end(), bad); };
-  int unknowns = 0;
-  for (int block : s.body_block) unknowns += block >= 0 ? 6 : 0;
-  return !s.flexible && unknowns - rows.rank == 1 && s.map.first_dense == 0 &&  // no free nodes on any rank
-         none(s.springs, [](const Connector& c) { return !c.law->conserves(); }) &&
-         none(s.loads, [](const Load& l) { return l.kind != Load::Kind::body_force || l.follower || !l.ramped; }) &&
-         none(s.motions, [](const Motion& m) { return m.moving; }) && none(s.joints, [](const Connector& j) { return j.drive.row >= 0; });
+/// Whether a drive's course changes at any time: looked at between its kinks.
+bool moves(const Drive& drive) {
+  std::vector<double> t{0};
+  t.insert(t.end(), drive.rate_jumps.begin(), drive.rate_jumps.end());
+  t.insert(t.end(), drive.kinks.begin(), drive.kinks.end());
+  std::sort(t.begin(), t.end());
+  t.push_back(t.back() + 1);
+  for (size_t k = 1; k < t.size(); ++k) {
+    const Course course = drive.course((t[k - 1] + t[k]) / 2, 1);
+    if (course.rate != 0 || course.acceleration != 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> mechanisms_of_one_freedom(const System& s) {
+  const auto n = static_cast<int>(s.bodies.size());
+  std::vector<int> parent(n), freedoms(n, 0);
+  std::vector<char> no(n, 0);  // something flexible, or moved from outside
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int k) {
+    while (parent[k] != k) k = parent[k] = parent[parent[k]];
+    return k;
+  };
+  const auto free = [&](int b) { return b >= 0 && s.body_block[b] >= 0; };
+  const auto connect = [&](const Connector& c) {
+    int first = -1;
+    for (const Carrier& end : c.ends())
+      if (free(end.body)) {
+        if (first < 0) first = end.body;
+        parent[root(end.body)] = root(first);
+      }
+    for (const Carrier& end : c.ends()) {
+      const bool moved = end.body > 0 && !free(end.body) && !s.bodies[end.body].ground &&
+                         std::any_of(s.motions.begin(), s.motions.end(), [&](const Motion& m) { return m.body == end.body && m.moving; });
+      if (first >= 0 && (moved || (end.body < 0 && end.node >= 0))) no[first] = 1;
+    }
+    return first;
+  };
+  for (const Connector& spring : s.springs) connect(spring);
+  for (const Connector& joint : s.joints) {
+    const int first = connect(joint);
+    if (first < 0) continue;
+    for (int r = 0; r < joint.n_rows(); ++r) freedoms[first] -= joint.active[r];
+    if (joint.drive.row >= 0 && moves(joint.drive)) no[first] = 1;
+  }
+  for (const SolidBatch& b : s.batches)
+    for (const int node : b.nodes)
+      if (const int body = s.follower[node]; free(body)) no[body] = 1;
+  std::vector<std::vector<int>> parts(n);
+  for (int b = 0; b < n; ++b)
+    if (free(b)) parts[root(b)].push_back(b);
+  std::erase_if(parts, [&](const std::vector<int>& part) {
+    int sum = 0;
+    bool out = part.empty();
+    for (const int b : part) sum += 6 + freedoms[b], out = out || no[b];
+    return out || sum != 1;
+  });
+  return parts;
+}
+
+Clocks::Clocks(const System& system) : system_(system), tempo_(system.bodies.size(), 1.0) {
+  std::vector<int> mechanism_of(system.bodies.size(), -1);
+  for (auto& part : mechanisms_of_one_freedom(system)) {
+    for (const int b : part) mechanism_of[b] = static_cast<int>(mechanisms_.size());
+    mechanisms_.emplace_back().bodies = std::move(part);
+  }
+  const auto of = [&](int b) { return b >= 0 && mechanism_of[b] >= 0 ? &mechanisms_[mechanism_of[b]] : nullptr; };
+  for (const Load& l : system.loads) {
+    if (l.ramped) continue;
+    const auto add = [&](int b, double force) {  // or the force that a torque is at the body's size
+      if (Mechanism* m = of(b)) m->loads.push_back({&l, force * force / std::max(system.bodies[b].mass, 1e-300)});
+    };
+    if (l.body >= 0) add(l.body, l.value.norm() / (l.kind == Load::Kind::body_torque ? system.bodies[l.body].size : 1));
+    for (size_t i = 0; i < l.nodes.size(); ++i) add(system.follower[l.nodes[i]], l.weight[i] * l.value.norm());
+    for (const auto& facet : l.facets)
+      for (const int node : facet) add(system.follower[node], 1e300);
+  }
+  for (const Connector& c : system.springs)
+    for (const Carrier& end : c.ends())
+      if (Mechanism* m = of(end.body); m && !c.law->conserves()) {
+        m->factored = m->factored || c.factor;
+        if (m->dampers.empty() || m->dampers.back() != &c) m->dampers.push_back(&c);
+      }
+}
+
+std::vector<std::string> Clocks::names() const {
+  std::vector<std::string> out;
+  for (const Mechanism& m : mechanisms_) {
+    std::string name;
+    for (const int b : m.bodies) name += (name.empty() ? "" : ", ") + system_.bodies[b].name;
+    out.push_back(std::move(name));
+  }
+  return out;
 }
 
 /// v.M w
-double Clock::inner(const Config& v, const Config& w) const {
+double Clocks::inner(const Mechanism& m, const Config& v, const Config& w) const {
   double sum = 0;
-  for (size_t b = 0; b < system_.bodies.size(); ++b) sum += system_.bodies[b].inertia(v.c[b], v.R[b], w.c[b], w.R[b]);
+  for (const int b : m.bodies) sum += system_.bodies[b].inertia(v.c[b], v.R[b], w.c[b], w.R[b]);
+  for (const auto& [node, mass] : system_.point_masses)
+    if (std::find(m.bodies.begin(), m.bodies.end(), system_.follower[node]) != m.bodies.end()) sum += mass * v.x[node].dot(w.x[node]);
   return sum;
 }
 
-/// tau - T of the step between two instants [s].
-double Clock::excess(const Node& from, const Node& to) const {
+/// What loads do differently in the step from t than in the one before, by the time alone: sum of f.M^-1 f [N^2/kg].
+double Clocks::change(const Mechanism& m, double t) const {
+  double sum = m.factored ? 1e300 : 0;
+  for (const Timed& l : m.loads)
+    if (const double df = l.load->factor(t, t + T_, 1) - l.load->factor(t - T_, t, 1); df != 0) sum += df * df * l.square;
+  return std::min(sum, 1e300);
+}
+
+/// tau - T of the step between two instants [s], in full up to a few hundredths of T; beyond, the step does not resolve the motion, and
+/// the formula nothing.
+double Clocks::excess(const Node& from, const Node& to) const {
   const double vMv = from.vMv + to.vMv;  // of both ends: it does not vanish where the motion turns back
-  return vMv > 0 ? -T_ * T_ * T_ / 12 * (from.vMj + to.vMj) / vMv : 0;
+  if (!(vMv > 0)) return 0;
+  const double x = -T_ * T_ / 12 * (from.vMj + to.vMj) / vMv, far = x / 0.1;
+  return std::min(from.share, to.share) * T_ * x / (1 + far * far * far * far);
 }
 
-double Clock::length(const Config& v, double T) {
+/// Up to a hundredth of the change of M a may be by the time.
+double Clocks::own_share(const Mechanism& m) {
+  if (m.changed == 0) return 1;
+  return m.all > 0 ? std::max(0.0, 1 - 1e4 * m.changed / m.all) : 0;
+}
+
+void Clocks::plan(const Config& v, double t, double T) {
   if (std::abs(T - T_) > 1e-9 * T) restart();
-  if (nodes_.empty()) v_ = v, nodes_.push_front({inner(v, v), 0});
-  T_ = tau_ = T;
-  if (nodes_.size() < 5) return T;
-  // parabolas through the last three that are known: nodes 0, 1, 2 of the speed, 1, 2, 3 of the jerk
-  const auto& n = nodes_;
-  const Node now{n[0].vMv, 3 * n[1].vMj - 3 * n[2].vMj + n[3].vMj};
-  const Node next{std::max(0.0, 3 * n[0].vMv - 3 * n[1].vMv + n[2].vMv), 6 * n[1].vMj - 8 * n[2].vMj + 3 * n[3].vMj};
-  const double wish = owed_ + excess(n[1], now) + excess(now, next);
-  return tau_ = T + std::clamp(wish, -T / 5, T / 5);
+  T_ = T;
+  for (Mechanism& m : mechanisms_) {
+    if (m.nodes.empty()) v_ = v, m.nodes.push_front({inner(m, v, v), 0});
+    m.tau = T, m.changed = change(m, t);
+    if (const auto& n = m.nodes; n.size() >= 5) {
+      // parabolas through the last three that are known: nodes 0, 1, 2 of the speed, 1, 2, 3 of the jerk
+      const double share = std::min({own_share(m), n[1].share, n[2].share, n[3].share});
+      const Node now{n[0].vMv, 3 * n[1].vMj - 3 * n[2].vMj + n[3].vMj, share};
+      const Node next{std::max(0.0, 3 * n[0].vMv - 3 * n[1].vMv + n[2].vMv), 6 * n[1].vMj - 8 * n[2].vMj + 3 * n[3].vMj, share};
+      m.tau += std::clamp(m.owed + excess(n[1], now) + excess(now, next), -T / 5, T / 5);
+    }
+    for (const int b : m.bodies) tempo_[b] = T / m.tau;
+  }
 }
 
-void Clock::accept(const Config& v, const Config& a) {
-  if (!a_.c.empty()) {
-    combine(a_, {{-1, &a_}, {1, &a}});
-    nodes_[0].vMj = inner(v_, a_) / T_;
+void Clocks::accept(const Config& v, const Config& a, const Taken& step) {
+  const bool known = !a_.c.empty();
+  if (known) combine(jerk_, {{1, &a}, {-1, &a_}});  // times T
+  for (Mechanism& m : mechanisms_) {
+    auto& n = m.nodes;
+    double taken = 0;
+    for (const Connector* c : m.dampers) {
+      Response response;
+      c->law->viscous(c->values(*step.stage.w0), c->values(*step.stage.w1), system_.interval(*c, step.stage, step.lambda), response);
+      taken += std::abs(response.dissipated) + std::abs(response.supplied);
+    }
+    if (known) {
+      n[0].vMj = inner(m, v_, jerk_) / T_;
+      m.all = inner(m, jerk_, jerk_);
+      const double swing = T_ * std::sqrt(n[0].vMv * std::abs(n[0].vMj)), damped = (m.taken + taken) / 2;  // v.Mv omega T
+      n[0].share = own_share(m) * (damped > 0 ? swing * swing / (swing * swing + 25 * damped * damped) : 1);
+    }
+    if (n.size() < 4) m.owed = 0;
+    if (n.size() == 4) {  // jerk at the start by the parabola, and all three steps between known ones at once
+      n[3].vMj = 3 * n[2].vMj - 3 * n[1].vMj + n[0].vMj;
+      for (int k = 0; k < 3; ++k) m.owed += excess(n[k + 1], n[k]);
+    } else if (n.size() > 4) {
+      m.owed += excess(n[1], n[0]);
+    }
+    m.owed -= m.tau - T_, m.taken = taken;
+    n.push_front({inner(m, v, v), 0});
+    if (n.size() > 5) n.pop_back();
   }
-  if (nodes_.size() < 4) owed_ = 0;
-  if (nodes_.size() == 4) {  // jerk at the start by the parabola, and all three steps between known ones at once
-    nodes_[3].vMj = 3 * nodes_[2].vMj - 3 * nodes_[1].vMj + nodes_[0].vMj;
-    for (int k = 0; k < 3; ++k) owed_ += excess(nodes_[k + 1], nodes_[k]);
-  } else if (nodes_.size() > 4) {
-    owed_ += excess(nodes_[1], nodes_[0]);
-  }
-  owed_ -= tau_ - T_;
   v_ = v, a_ = a;
-  nodes_.push_front({inner(v, v), 0});
-  if (nodes_.size() > 5) nodes_.pop_back();
+}
+
+void Clocks::restart() {
+  for (Mechanism& m : mechanisms_) m.nodes.clear();
+  a_ = {};
 }
 
 }  // namespace hilo

@@ -1,4 +1,4 @@
-// Clock of a mechanism of one degree of freedom that goes by itself.
+// Clocks of mechanisms of one degree of freedom.
 //
 // Such a mechanism runs along a fixed curve, and a method that keeps its energy has the right speed at every place of it: what is left of
 // the error is the time of arrival.  A step of length tau goes q1 - q0 = tau (v0 + v1)/2, and the motion takes the time T for it,
@@ -6,37 +6,70 @@
 // so that in the metric of the mass, along the velocity,
 //   tau = T - T^3/12 (v.M j)/(v.M v),   j = da/dt.
 // A step of that length ends T later to fourth order, and energy and momentum are kept as ever.
+//
+// Every mechanism has a clock of its own: what no joint and no spring connects does not feel how long the step of another is.  The
+// correction fades out, so that what does little changes little,
+// - where dampers, friction or motors make the speed itself wrong: the share falls to a half where what they take in a step is 0.2 of
+//   v.Mv omega T, omega^2 = |v.M j|/v.Mv (of an oscillator: where it is damped by a tenth of critical);
+// - where forces change by the time and not by the place: their impulse is exact at equal steps alone;
+// - where a step does not resolve the motion (an impact).
 #pragma once
 #include <deque>
+#include <string>
+#include <vector>
 
-#include "dynamics/redundancy.hpp"
-#include "dynamics/state.hpp"
+#include "dynamics/integrator.hpp"
+#include "system/system.hpp"
 
 namespace hilo {
 
-/// Whether the system is rigid, has one degree of freedom, and nothing acts but constant forces and springs without dampers.
-bool goes_by_itself(const System& system, const Redundancy& rows);
+/// Rigid mechanisms of one degree of freedom that nothing moves from outside: their bodies.
+std::vector<std::vector<int>> mechanisms_of_one_freedom(const System& system);
 
-class Clock {
+class Clocks {
  public:
-  explicit Clock(const System& system) : system_(system) {}
-  /// Length of the step from velocities v that shall take the time T [s].
-  double length(const Config& v, double T);
+  explicit Clocks(const System& system);
+  bool empty() const { return mechanisms_.empty(); }
+  std::vector<std::string> names() const;
+  /// Plan a step from velocities v at t that shall take the time T [s].
+  void plan(const Config& v, double t, double T);
+  /// T over the length of the step planned last, for each body.
+  const std::vector<double>& tempo() const { return tempo_; }
   /// The step planned last is taken: v at its end, a in its middle.
-  void accept(const Config& v, const Config& a);
-  void restart() { nodes_.clear(), a_ = {}; }
+  void accept(const Config& v, const Config& a, const Taken& taken);
+  void restart();
 
  private:
   struct Node {
     double vMv = 0, vMj = 0;  // [J, W/s]
+    double share = 1;         // of the correction that is taken
   };
-  double inner(const Config& v, const Config& w) const;
+  /// A load with a history, as seen by a mechanism.
+  struct Timed {
+    const Load* load;
+    double square;  // f.M^-1 f at factor 1 [N^2/kg]
+  };
+  struct Mechanism {
+    std::vector<int> bodies;
+    std::deque<Node> nodes;  // instants between steps, the last first; of that one the jerk is not known yet
+    double tau = 0;          // of the step planned last [s]
+    std::vector<Timed> loads;
+    std::vector<const Connector*> dampers;
+    bool factored = false;  // a motor has a history
+    double taken = 0;       // by dampers in the last step, or given by motors [J]
+    double all = 0;         // change of M a between the last two steps: a.M a [N^2/kg]
+    double changed = 0;     // by the time alone over the step planned last: f.M^-1 f [N^2/kg]
+    double owed = 0;        // tau - T still to come for steps whose ends' jerks are known [s]
+  };
+  double inner(const Mechanism& m, const Config& v, const Config& w) const;
   double excess(const Node& from, const Node& to) const;
+  double change(const Mechanism& m, double t) const;
+  static double own_share(const Mechanism& m);
   const System& system_;
-  std::deque<Node> nodes_;  // instants between steps, the last first; of that one the jerk is not known yet
-  Config v_, a_;            // at the last instant; in the middle of the step before it, or empty
-  double T_ = 0, tau_ = 0;  // of the step planned last [s]
-  double owed_ = 0;         // tau - T still to come for steps whose ends' jerks are known [s]
+  std::vector<Mechanism> mechanisms_;
+  std::vector<double> tempo_;
+  Config v_, a_, jerk_;  // at the last instant; in the middle of the step before it, or empty; times T between two middles
+  double T_ = 0;         // of the step planned last [s]
 };
 
 }  // namespace hilo

@@ -65,8 +65,10 @@ class Integrator {
   virtual double own_time() const = 0;
   /// Whether State::a and State::jerk must be consistent with forces and constraints at the start and after a jump of the loads.
   virtual bool needs_acceleration() const { return false; }
-  /// The system goes by itself (clock.hpp): correct the time of its steps, where the method keeps energy.
+  /// Steps are equal: correct the time of mechanisms of one degree of freedom (clock.hpp), where the method keeps energy.
   virtual void keep_time(const System&) {}
+  /// The mechanisms whose time is corrected, by the names of their bodies.
+  virtual std::vector<std::string> timed() const { return {}; }
   /// Forget history kept from earlier steps: the loads have jumped.
   virtual void restart() {}
   /// Whether accelerations and multipliers alternate about the true ones from step to step, so that neighbours must be averaged.

@@ -9,7 +9,6 @@
 #include "base/table.hpp"
 #include "dynamics/audit.hpp"
 #include "dynamics/blow.hpp"
-#include "dynamics/clock.hpp"
 #include "dynamics/contradiction.hpp"
 #include "dynamics/held.hpp"
 #include "dynamics/predictor.hpp"
@@ -158,6 +157,7 @@ class Run {
     }();
     double done = 0, dt = 1.0 / n;
     int cuts = 0;
+    double least = 1e300;  // det F
     State reached = state_;
     std::string why;  // of the first failure since the last good state, or that a cell would be inside out
     while (done < 1 - 1e-12) {
@@ -171,11 +171,14 @@ class Run {
       if (!failure_.empty()) {
         system_.commit(state_.q);
         if (why.empty() || r.least_det <= 0) why = failure_;
-        if (++cuts > max_cuts_) return stop(why + unheld(system_, system_.start));
+        if (++cuts > max_cuts_) {
+          if (least < 0.01 && r.least_det > 0) why += fmt::format("; a cell is all but turned inside out (det F = {:.2g})", least);
+          return stop(why + unheld(system_, system_.start));
+        }
         ++report_.cuts, dt /= 2;
         continue;
       }
-      cuts = 0, why.clear();
+      cuts = 0, why.clear(), least = std::min(least, r.least_det);
       audit_->accept(reached.t);
       recorder_->step(reached, audit_->ledger(), taken, no_acceleration, r.iterations);
       std::swap(state_, reached);
@@ -215,8 +218,13 @@ class Run {
     Progress progress(options_.quiet || system_.comm->rank != 0, 0, end);
     std::optional<StepControl> control;
     if (time.has("tolerance")) control.emplace(system_, time.number("tolerance") * system_.length, end, step);
-    if (!control && goes_by_itself(system_, redundancy_)) integrator_->keep_time(system_);
-    if (talk_) fmt::print(stderr, "integrator: {}\n", integrator_->name());
+    if (!control) integrator_->keep_time(system_);
+    const size_t clocks = integrator_->timed().size();
+    if (talk_)
+      fmt::print(stderr, "integrator: {}{}\n", integrator_->name(),
+                 clocks ? fmt::format(", {} mechanism{} of one degree of freedom on a clock of {} own", clocks, clocks > 1 ? "s" : "",
+                                      clocks > 1 ? "their" : "its")
+                        : "");
     double from = 0;
     for (size_t i = 0; i < events_.size(); ++i) {
       if (i == 0 || events_[i - 1].jump || integrator_->needs_acceleration()) restart(control, step);
@@ -373,6 +381,9 @@ class Run {
     add("ranks", fmt::format("{}", system_.comm->size));
     add("solver", json_text(solver_->name()));
     add("integrator", json_text(is_static_ ? "static" : integrator_->name()));
+    std::string clocks;
+    for (const auto& mechanism : integrator_->timed()) clocks += (clocks.empty() ? "" : ", ") + json_text(mechanism);
+    add("clocks", "[" + clocks + "]");
     if (estimated_ >= 0) {
       add("estimated_position_error", fmt::format("{:.6g}", estimated_));
       add("rejected_steps", fmt::format("{}", rejected_));

@@ -100,7 +100,7 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
     Residual without;
     Stage inertia = mass_stage(system.start, jump, t);  // without strain
     inertia.left = inertia.end = &q;
-    inertia.inertia_alone = true, inertia.load_factor = 0;
+    inertia.rates_alone = true, inertia.load_factor = 0;
     system.evaluate(inertia, lambda, r, nullptr);
     inertia.a = &zero;
     system.evaluate(inertia, lambda, without, nullptr);  // the round-off of stiff cells

@@ -122,6 +122,8 @@ double drive_work(const Connector& c, const Stage& s, const Config& from, double
 
 Interval System::interval(const Connector& c, const Stage& s, std::span<const double> lambda, double* slope) const {
   Interval step{s.h};
+  for (const Carrier& end : c.ends())
+    if (s.tempo && end.body >= 0 && body_block[end.body] >= 0) step.h = s.h / s.tempo[end.body];
   if (c.factor) step.factor = c.factor(s.t0, s.t1);
   if (c.load_joint < 0) return step;
   const double* multiplier = lambda.data() + 3 * (joint_block[c.load_joint] - first_joint_block());
@@ -257,8 +259,7 @@ void System::add_connectors(Pass& p) const {
       gradient(c, at, *s.end, right);
       for (int m = 0; m < n; ++m)
         for (int k = 0; k < n; ++k)
-          if (const double D = f * response.D[m][k]; D != 0)
-            K += D * left.G.row(m).head(width).transpose() * right.G.row(k).head(width);
+          if (const double D = f * response.D[m][k]; D != 0) K += D * left.G.row(m).head(width).transpose() * right.G.row(k).head(width);
     };
     if (s.h > 0) add_slope(*s.w0, s.slope0(), before), add_slope(*s.w1, s.slope1(), viscous);
     add_slope(*s.e1, s.chain, elastic);

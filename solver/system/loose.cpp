@@ -101,9 +101,18 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
       s[0] += 1, s[4] += q.x[i].squaredNorm();
       for (int k = 0; k < 3; ++k) s[1 + k] += q.x[i][k];
     }
-  for (const SolidBatch& b : batches)
-    for (const int i : b.nodes)
-      if (cluster_of[i] < n_clusters) of(cluster_of[i])[5 + b.region] = 1;
+  for (const SolidBatch& b : batches) {  // a cell is of the cluster that most of its nodes are in
+    const auto n = static_cast<size_t>(info(b.shape).n_nodes);
+    for (size_t e = 0; e < b.cells.size(); ++e) {
+      const std::span<const int> nodes(b.nodes.data() + e * n, n);
+      std::pair<std::ptrdiff_t, std::int64_t> most{0, n_clusters};
+      for (const int i : nodes)
+        if (cluster_of[i] < n_clusters)
+          most = std::max(
+              most, {std::count_if(nodes.begin(), nodes.end(), [&](int k) { return cluster_of[k] == cluster_of[i]; }), cluster_of[i]});
+      if (most.second < n_clusters) of(most.second)[5 + b.region] = 1;
+    }
+  }
   comm->sum(sums);
   std::vector<Part> parts(n_parts);
   for (int c = 0; c < n_clusters; ++c) {
@@ -195,7 +204,7 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
   std::sort(order.begin(), order.end());
   for (const auto& [late, k] : order) {
     if (lines.size() == 3 || (late && !lines.empty())) break;
-    std::string line = parts[k].name + " " + told(Z.middleRows<6>(6 * k), parts[k]);
+    std::string line = parts[k].name + (parts[k].name.starts_with("regions") ? " are " : " is ") + told(Z.middleRows<6>(6 * k), parts[k]);
     if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(std::move(line));
   }
   out.text = fmt::format("{}", fmt::join(lines, "; "));

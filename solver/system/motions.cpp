@@ -108,7 +108,7 @@ double System::motion_work(const Stage& s, std::span<const double> lambda, const
   }
   if (!s.v0) return work;
   Stage inertia = s;
-  inertia.inertia_alone = true, inertia.load_factor = 0, inertia.v = nullptr, inertia.chi = 0, inertia.h = 0;
+  inertia.rates_alone = true, inertia.load_factor = 0, inertia.v = nullptr, inertia.chi = 0, inertia.h = 0;
   inertia.e0 = inertia.e1 = inertia.w0 = inertia.w1 = &start;  // without strain
   const std::vector<double> none(lambda.size(), 0.0);
   forces(inertia, none, f);

@@ -21,14 +21,15 @@ void System::add_bodies(Pass& p) const {
     p.body[b].tail<3>() += moment;
     p.scale(std::max({body.mass * s.a->c[b].norm(), body.mass * gravity.norm(), AJ.norm() / body.size}));
     if (!p.K || body_block[b] < 0) continue;
+    const double mass_slope = s.mass_slope * (s.tempo ? s.tempo[b] * s.tempo[b] : 1);
     RowMatrix6 K = RowMatrix6::Zero();
-    K.topLeftCorner<3, 3>().diagonal().setConstant(s.mass_slope * body.mass);
+    K.topLeftCorner<3, 3>().diagonal().setConstant(mass_slope * body.mass);
     Mat3 Kr = Mat3::Zero();
     for (int i = 0; i < 3; ++i) {
       Kr += s.slope * skew(AJ.col(i)) * skew(s.end->R[b].col(i));
       const Mat3 left = skew(s.left->R[b].col(i));
       for (int j = 0; j < 3; ++j)
-        if (body.J(i, j) != 0) Kr -= s.mass_slope * body.J(i, j) * left * skew(s.end->R[b].col(j));
+        if (body.J(i, j) != 0) Kr -= mass_slope * body.J(i, j) * left * skew(s.end->R[b].col(j));
     }
     K.bottomRightCorner<3, 3>() = Kr;
     p.K->add(body_clique(static_cast<int>(b)), K.data());

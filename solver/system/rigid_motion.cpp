@@ -74,7 +74,7 @@ std::string told(const Motions& Z, const Part& part) {
     while (rank < svd.singularValues().size() && svd.singularValues()[rank] > 1e-6) ++rank;
     return Motions(svd.matrixU().leftCols(rank));
   }();
-  if (orthonormal.cols() == 6) return "is free to move and to turn in every direction";
+  if (orthonormal.cols() == 6) return "free to move and to turn in every direction";
   const Motions straight = vanishing(orthonormal, orthonormal.bottomRows(3));
   std::vector<std::string> ways;
   if (straight.cols() == 3) ways.emplace_back("move in every direction");
@@ -92,7 +92,7 @@ std::string told(const Motions& Z, const Part& part) {
                                  vector_text(part.centre + w.cross(v) / w.squaredNorm(), 1e-6 * part.length),
                                  std::abs(pitch) > 1e-6 * part.length ? fmt::format(" and {:.4g} m/rad along it", pitch) : ""));
     }
-  return fmt::format("is free to {}", fmt::join(ways, " and to "));
+  return fmt::format("free to {}", fmt::join(ways, " and to "));
 }
 
 }  // namespace hilo

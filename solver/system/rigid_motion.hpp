@@ -21,7 +21,7 @@ struct Part {
 Motions null_vectors(const Eigen::SparseMatrix<double>& N);
 /// Combinations of the columns of `all` for which `part` (as many columns) vanishes.
 Motions vanishing(const Motions& all, const Motions& part);
-/// How a part moves in the motions Z (6 x k): "is free to move along (0, 0, 1)".
+/// How a part moves in the motions Z (6 x k): "free to move along (0, 0, 1)".
 std::string told(const Motions& Z, const Part& part);
 
 }  // namespace hilo

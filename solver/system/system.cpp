@@ -33,11 +33,12 @@ void System::evaluate(const Stage& stage, std::span<const double> lambda, Residu
     }
   }
   for (const auto& [n, m] : point_masses) {
-    const double f = m * stage.mass_slope;
     if (node_block[n] >= 0) {
+      const double f = m * stage.mass_slope;
       const double d[3] = {fixed[n][0] ? 0 : f, fixed[n][1] ? 0 : f, fixed[n][2] ? 0 : f};
       K->add_diagonal(node_block[n], d);
     } else if (const int b = follower[n]; body_block[b] >= 0) {
+      const double f = m * stage.mass_slope * (stage.tempo ? stage.tempo[b] * stage.tempo[b] : 1);
       const Mat3 left = skew(stage.left->x[n] - stage.left->c[b]), right = skew(stage.end->x[n] - stage.end->c[b]);
       Eigen::Matrix<double, 6, 6, Eigen::RowMajor> M;
       M << f * Mat3::Identity(), -f * right, f * left, -f * left * right;

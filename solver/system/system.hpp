@@ -102,6 +102,7 @@ struct Stage {
   const Config* a;                    // accelerations [m/s^2]
   const Config* v = nullptr;          // velocities, for mass-proportional damping
   double mass_slope = 0;              // d a / d end [1/s^2]
+  const double* tempo = nullptr;      // step over the one by its own clock, of each body; null: 1
   double alpha_slope = 0;             // d v / d end [1/s]
   double chi = 0;                     // stress dissipation on flexible parts
   double t0 = 0, t1 = 0;              // loads: mean over [t0, t1], or value at t0 = t1

@@ -1,0 +1,393 @@
+// Every kind of joint, force, load and motion that a scene can name, under every integrator: the matrix of Newton is the derivative of its
+// equations.  Kinds, keys and integrators are taken from the schema, so that a new one cannot be forgotten.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "dynamics/integrator.hpp"
+#include "model/local_mesh.hpp"
+#include "system/dense_kkt.hpp"
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+const char* const base = R"(
+gravity = [1, -2, -9.81]
+[material.soft]
+kind = "neo-hookean"
+E = 2e5
+nu = 0.3
+density = 1000
+[region.block]
+material = "soft"
+REGION
+[[body]]
+name = "one"
+mass = 3
+com = [0.2, 0.1, 2]
+inertia = [0.2, 0.3, 0.4, 0.02, -0.01, 0.03]
+[[body]]
+name = "two"
+mass = 2
+com = [0.4, 1.2, 1.6]
+inertia = [0.1, 0.12, 0.15]
+[[body]]
+name = "arm"
+mass = 1
+com = [0.9, 0.5, 1.1]
+inertia = [0.02, 0.03, 0.04]
+[[joint]]
+kind = "JOINT"
+name = "sleeve"
+a = "one"
+b = "two"
+at = [0.3, 0.7, 1.7]
+AXIS
+[history.course]
+t = [0, 1]
+value = [0.3, 1]
+interpolation = "smooth"
+[time]
+end = 1
+step = 0.02
+)";
+
+/// What a key is given; the joint that forces act along is `sleeve`.
+std::string value_of(const KindSchema& kind, const Param& p) {
+  static const std::map<std::string_view, std::string> values = {
+      {"a", "\"one\""},
+      {"b", "\"two\""},
+      {"carrier", "\"arm\""},
+      {"joint", "\"sleeve\""},
+      {"history", "\"course\""},
+      {"at", "[0.3, 0.6, 1.8]"},
+      {"at_a", "[0.1, 0.1, 1.2]"},
+      {"at_b", "[0.2, 1.5, 1.9]"},
+      {"axis", "[0.1, 0.2, 1]"},
+      {"x", "[1, 0.1, 0.2]"},
+      {"axis_b", "[0.2, 0.4, 1]"},
+      {"axle", "[0.2, 1, 0.3]"},
+      {"edge", "[0.2, 1, 0.3]"},
+      {"direction", "[0, 1, 0.1]"},
+      {"radius", "0.3"},
+      {"ratio", "-1.7"},
+      {"pitch", "0.4"},
+      {"length", "0.8"},
+      {"points", "[[0.3, 0.4, 1.6], [0.2, 0.5, 1.7], [0.3, 0.6, 1.8], [0.5, 0.9, 1.9], [0.2, 1.1, 1.7]]"},
+      {"closed", "true"},
+      {"angle", "0.3"},
+      {"spin", "0.7"},
+      {"displacement", "0.2"},
+      {"velocity", "0.4"},
+      {"rate", "[-30, 50]"},
+      {"torque", "[7, -2]"},
+      {"force", "[9, -4]"},
+      {"coefficient", "0.3"},
+      {"preload", "40"},
+      {"slip_velocity", "0.7"},
+      {"reaction", "false"},
+      {"lower", "0.9"},
+      {"upper", "-0.9"},
+      {"restitution", "0.5"},
+      {"rest_speed", "0.4"},
+      {"clearance", "-0.4"},
+      {"tangential_stiffness", "[2000, 3000]"},
+      {"tangential_damping", "[20, 30]"},
+      {"per_node", "true"},
+      {"traction", "[300, 200, -500]"},
+      {"pressure", "3000"},
+      {"follower", "true"},
+      {"components", "[\"x\", \"z\"]"},
+      {"mass", "5"},
+      {"damping", "30"},
+      {"stiffness", "4000"},
+      {"angular_stiffness", "[500, 600, 700]"},
+      {"angular_damping", "[5, 6, 7]"}};
+  const std::string key(p.key);
+  if (key == "name") return "\"it\"";
+  if (kind.section == "region") return key == "damping" ? "0.02" : "0.7";
+  if (key == "kind") return '"' + std::string(kind.kind) + '"';
+  if (key == "on") return kind.kind == "torque" ? "\"two\"" : kind.section == "motion" ? "\"line\"" : "\"xmax\"";
+  if (key == "displacement" && p.type == Type::vector3) return "[0.1, 0.2, -0.1]";
+  if ((key == "torque" || key == "force") && p.type == Type::vector3) return "[50, 20, -30]";
+  if ((key == "damping" || key == "stiffness") && p.type == Type::numbers) return key == "damping" ? "[20, 30, 40]" : "[3000, 4000, 5000]";
+  if (kind.section == "spring" && kind.kind == "stop" && (key == "lower" || key == "upper")) return key == "lower" ? "5" : "0.2";
+  if (const auto it = values.find(key); it != values.end()) return it->second;
+  ADD_FAILURE() << kind.section << " " << kind.kind << ": a value for the new key `" << key << "`, please";
+  return "1";
+}
+
+struct Variant {
+  std::string name, scene;
+};
+
+/// The kind with what it must be given, and once more with each of the other keys.
+void add_variants(const KindSchema& kind, std::vector<Variant>& out) {
+  const auto find = [&](std::string_view key) {
+    const auto it = std::find_if(kind.params.begin(), kind.params.end(), [&](const Param& p) { return p.key == key; });
+    return it == kind.params.end() ? nullptr : &*it;
+  };
+  std::vector<std::string> more{""};
+  for (const Param& p : kind.params)
+    if (p.fallback != "!" && p.key != "name" && p.key != "a" && p.key != "file") more.emplace_back(p.key);
+  for (const std::string& key : more) {
+    std::set<std::string> keys{key};
+    for (const Param& p : kind.params)
+      if (p.fallback == "!" || p.key == "name" || p.key == "a" || (p.key == "points")) keys.insert(std::string(p.key));
+    if (kind.section == "joint" && (key.find("stiffness") != key.npos || key.find("damping") != key.npos))
+      keys.insert("stiffness"), keys.insert("angular_stiffness");
+    if (kind.section == "joint" && key == "history") continue;  // of what drives the joint: with those
+    if (kind.section == "joint" && (key == "angle" || key == "spin" || key == "displacement" || key == "velocity")) keys.insert("history");
+    if (key == "restitution" || key == "rest_speed") keys.insert("restitution");
+    if ((kind.section == "stop" || kind.kind == "stop") && key != "lower") keys.insert("upper");
+    if (key == "length" || key == "preload" || (key == "angle" && kind.section == "spring")) keys.insert("stiffness");
+    if (kind.section == "friction") keys.insert("radius"), keys.insert("slip_velocity");  // its default is too sharp for differences
+    if (kind.section == "friction" && key == "reaction") keys.insert("preload");
+    if (kind.section == "stop" && key == "lower") keys.erase("upper");
+    std::string entry = "[[" + std::string(kind.section) + "]]\n";
+    for (const std::string& k : keys)
+      if (const Param* p = find(k)) entry += k + " = " + value_of(kind, *p) + "\n";
+    const bool per_node = key == "per_node", on_body = kind.section == "load" && key == "at";
+    if (on_body) entry.replace(entry.find("xmax"), 4, "two");
+    if (per_node && entry.find("at =") != entry.npos) continue;
+    std::vector<std::string> helpers{"spherical"};
+    if (kind.section == "stop") helpers = {kind.kind == "angle" ? "revolute" : "prismatic", "cylindrical"};
+    if (kind.section == "motor") helpers = {kind.kind == "rotary" ? "revolute" : "prismatic", "screw"};
+    if (kind.section == "friction") helpers = {"revolute", "cylindrical", "screw", "spherical"};
+    for (const std::string& helper : helpers) {
+      std::string text = base;
+      const auto put = [&](const std::string& word, const std::string& by) { text.replace(text.find(word), word.size(), by); };
+      put("REGION", kind.section == "region" ? entry.substr(entry.find('\n') + 1) : "");
+      put("JOINT", helper);
+      put("AXIS", std::string(helper == "spherical" ? "" : "axis = [0.2, 1, 0.3]\n") + (helper == "screw" ? "pitch = 0.3\n" : ""));
+      if (kind.section != "region") text += entry;
+      out.push_back({std::string(kind.section) + " " + std::string(kind.kind) + " " + key + " on " + helper, text});
+    }
+  }
+}
+
+std::vector<Variant> all_variants() {
+  std::vector<Variant> out;
+  // sections that no equation of motion is made of
+  const std::set<std::string_view> others{"scene", "material", "body", "initial", "sensor", "probe", "history", "time", "solver", "output"};
+  for (const KindSchema& kind : scene_schema()) {
+    if (others.contains(kind.section)) continue;
+    if (kind.section != "region") {
+      add_variants(kind, out);
+      continue;
+    }
+    KindSchema damping = kind;  // the other keys of a region are its material and mass
+    std::erase_if(damping.params, [](const Param& p) { return p.key.find("damping") == p.key.npos; });
+    add_variants(damping, out);
+  }
+  return out;
+}
+
+/// Newton's matrix times a direction, and the same by differences.
+struct Comparison {
+  Eigen::VectorXd product, difference;
+  double scale = 0;  // of the largest row
+};
+
+/// Stands in for the solver of Radau's coupled stages: keeps the first matrix and answers with steps along a direction, 1, then 1/10.
+class Along final : public SerialKktSolver {
+ public:
+  explicit Along(const std::function<double(int)>& direction) : direction_(direction) {}
+  Eigen::MatrixXd A;
+  std::vector<Eigen::VectorXd> b;
+  static constexpr double step = 1e-7;
+  Eigen::VectorXd d;
+  void structure(const Cliques& cliques, const BlockMap& map) override {
+    cliques_ = cliques;
+    const auto n = 3 * static_cast<Eigen::Index>(map.global.size());
+    A = Eigen::MatrixXd::Zero(n, n), d.resize(n);
+    for (Eigen::Index i = 0; i < n; ++i) d[i] = direction_(static_cast<int>(i));
+  }
+  void zero() override {
+    if (b.empty()) A.setZero();
+  }
+  void add(int, const double*) override {}
+  void add_part(int clique, int row, int column, int n, const double* K) override {
+    const auto blocks = cliques_[clique];
+    for (int i = 0; i < 3 * n && b.empty(); ++i)
+      for (int j = 0; j < 3 * n; ++j)
+        if (const int r = blocks[row + i / 3], c = blocks[column + j / 3]; r >= 0 && c >= 0)
+          A(3 * r + i % 3, 3 * c + j % 3) += K[3 * n * i + j];
+  }
+  void add_diagonal(int block, const double v[3]) override {
+    for (int i = 0; i < 3 && b.empty(); ++i) A(3 * block + i, 3 * block + i) += v[i];
+  }
+  void sum_shared(std::span<double>) override {}
+  SolveReport solve(std::span<const double> rhs, std::span<double> x, double) override {
+    b.emplace_back(Eigen::Map<const Eigen::VectorXd>(rhs.data(), static_cast<Eigen::Index>(rhs.size())));
+    const double along = b.size() == 1 ? step : -0.9 * step;
+    for (size_t i = 0; i < x.size(); ++i) x[i] = along * d[static_cast<Eigen::Index>(i)];
+    return {b.size() < 3, 0, 0, "enough"};
+  }
+  std::string name() const override { return "along"; }
+
+ private:
+  std::function<double(int)> direction_;
+  Cliques cliques_;
+};
+
+class Laws : public testing::TestWithParam<std::string> {
+ protected:
+  static const LocalMesh& mesh() {
+    static const Workplace place;
+    static LocalMesh local = [] {
+      BlockOptions o;
+      o.n[2] = 2;
+      o.high = Vec3(0.4, 0.3, 0.8);
+      o.map = [](const Vec3& x) { return Vec3(x + 0.02 * Vec3(std::sin(7 * x[2]), 0, 0)); };
+      Mesh m = block_mesh(o);
+      add_node_set(m, "line", [](const Vec3& x) { return std::abs(x[2] - 0.8) < 1e-9 && x[0] > 0.2; });
+      write_mesh(place / "mesh.h5", m, {"test"});
+      return read_local_mesh(place / "mesh.h5", Comm::world());
+    }();
+    return local;
+  }
+};
+
+/// A start somewhere off, with velocities, so that nothing vanishes by symmetry.
+State state_of(const System& system) {
+  const int n = 3 * system.n_blocks();
+  State s;
+  s.t = 0.3;
+  s.q = system.start, s.v = system.start_velocity;
+  std::vector<double> kick(n);
+  for (int i = 0; i < n; ++i) kick[i] = 0.03 * scatter(i);
+  system.move(s.q, kick);
+  s.v.resize(s.q.x.size(), s.q.c.size());
+  for (size_t i = 0; i < s.v.x.size(); ++i) s.v.x[i] = Vec3(scatter(i), scatter(3 * i + 1), scatter(7 * i + 2));
+  for (size_t b = 1; b < s.v.c.size(); ++b)
+    if (system.bodies[b].free()) s.v.c[b] = Vec3(scatter(b), 1, -1), s.v.R[b] = skew(Vec3(1, scatter(b + 5), -2)) * s.q.R[b];
+  system.follow(s.v);
+  system.prescribe(s.q, s.t);
+  s.a = s.jerk = s.v;
+  s.lambda.assign(3 * system.n_joint_blocks(), 0.0);
+  for (size_t i = 0; i < s.lambda.size(); ++i) s.lambda[i] = 20 * scatter(900 + static_cast<int>(i));
+  return s;
+}
+
+/// Numbers of unknowns that stand for something: not prescribed, not padding of joint rows, not dropped.
+std::vector<char> in_use(const System& system) {
+  std::vector<char> used(3 * system.n_blocks(), 1);
+  for (size_t i = 0; i < system.X.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      if (system.node_block[i] >= 0 && system.fixed[i][k]) used[3 * system.node_block[i] + k] = 0;
+  for (size_t j = 0; j < system.joints.size(); ++j)
+    for (int r = system.joints[j].n_rows(); r < 3 * ((system.joints[j].n_rows() + 2) / 3); ++r) used[3 * system.joint_block[j] + r] = 0;
+  return used;
+}
+
+void expect_equal(const Comparison& c, const std::vector<char>& used, const std::string& what) {
+  const size_t n = used.size();
+  for (Eigen::Index i = 0; i < c.product.size(); ++i) {
+    if (!used[static_cast<size_t>(i) % n]) continue;
+    ASSERT_NEAR(c.product[i], c.difference[i], 1e-7 * c.scale) << what << ", row " << i;
+  }
+}
+
+TEST_P(Laws, EveryMatrixOfNewtonIsTheDerivativeOfItsEquations) {
+  static const std::vector<Variant> variants = all_variants();
+  const double h = 0.02;
+  int compared = 0;
+  std::set<std::string> refused, sections;
+  for (const Variant& v : variants) {
+    LocalMesh local = mesh();
+    std::string how = GetParam();
+    const bool averaged = how.starts_with("averaged ");
+    if (averaged) how = how.substr(9);
+    const std::vector<std::string> set{"time.integrator=\"" + how + "\"", "time.dissipation=0.1",
+                                       std::string("time.averaged=") + (averaged ? "true" : "false"), "time.rho1=0.9", "time.rho3=0.5"};
+    std::unique_ptr<System> system;
+    std::unique_ptr<Scene> scene;
+    try {
+      scene = std::make_unique<Scene>(Scene::parse(v.scene, "scene.toml", set));
+      system = build_system(*scene, &local, Comm::world());
+    } catch (const Error& e) {
+      refused.insert(v.name.substr(0, v.name.find(" on ")) + ": " + e.what());
+      continue;
+    }
+    const std::vector<char> used = in_use(*system);
+    const int n = static_cast<int>(used.size());
+    const State s = state_of(*system);
+    system->commit(s.q, &s.v);
+    for (int seed = 0; seed < 2; ++seed) {
+      const auto direction = [&](int i) { return used[i % n] ? scatter(1000 * seed + 77 + i) : 0.0; };
+      Comparison c;
+      if (how == "radau") {
+        if (!system->point_masses.empty()) continue;  // refused by name
+        auto solver = std::make_unique<Along>(direction);
+        Along& along = *solver;
+        DenseKkt none;
+        const StepTools tools{*system, none, {1e-300, 25, false, 1e3}};
+        const auto radau = make_radau(std::move(solver));
+        radau->solve(tools, s, h, Predictor::velocity);
+        ASSERT_EQ(along.b.size(), 3u) << v.name;
+        c.product = along.A * along.d;
+        c.difference = (along.b[1] - 100 * along.b[2] + 99 * along.b[0]) / (9 * Along::step);
+        c.scale = (along.A.cwiseAbs() * along.d.cwiseAbs()).maxCoeff();
+        expect_equal(c, used, v.name);
+        ++compared;
+        continue;
+      }
+      const auto made = make_integrator(scene->table("time"));
+      auto& integrator = dynamic_cast<StageIntegrator&>(*made);
+      integrator.begin(s, h);
+      Config q1 = s.q;
+      std::vector<double> kick(n);
+      for (int i = 0; i < n; ++i) kick[i] = h * scatter(5000 + i);
+      system->move(q1, kick);
+      system->prescribe(q1, s.t + h);
+      for (int stage = 0; stage < (how == "bathe" ? 2 : 1); ++stage) {
+        DenseKkt K;
+        K.structure(system->cliques, system->map);
+        Residual at;
+        system->evaluate(integrator.stage(stage, Unknown(*system, s.q, q1)), s.lambda, at, &K);
+        const int first = 3 * system->first_joint_block();
+        const auto residual = [&](double f) {
+          std::vector<double> z(n);
+          for (int i = 0; i < n; ++i) z[i] = f * direction(i);
+          Config q = q1;
+          system->move(q, z);
+          auto lambda = s.lambda;
+          for (int i = first; i < n; ++i) lambda[i - first] += at.sigma * z[i];
+          Residual r;
+          system->evaluate(integrator.stage(stage, Unknown(*system, s.q, q)), lambda, r, nullptr);
+          system->mask_fixed(r.r);
+          return Eigen::Map<const Eigen::VectorXd>(r.r.data(), n).eval();
+        };
+        Eigen::VectorXd d(n);
+        for (int i = 0; i < n; ++i) d[i] = direction(i);
+        c.product = K.A * d;
+        c.difference = (residual(1e-7) - residual(-1e-7)) / 2e-7;
+        c.scale = (K.A.cwiseAbs() * d.cwiseAbs()).maxCoeff();
+        expect_equal(c, used, v.name);
+        ++compared;
+      }
+    }
+    sections.insert(v.name.substr(0, v.name.find(' ')));
+  }
+  EXPECT_EQ(sections.size(), 9u) << "joint, spring, stop, motor, friction, load, motion, region, point_mass";
+  EXPECT_GT(compared, 200);
+  for (const std::string& r : refused) std::cout << "refused: " << r << "\n";
+}
+
+std::vector<std::string> integrators() {
+  auto list = choices("time", "integrator");
+  for (const char* averaged : {"averaged U0", "averaged V0"}) list.emplace_back(averaged);
+  return list;
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, Laws, testing::ValuesIn(integrators()), [](const auto& p) {
+  std::string name = p.param;
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
+  return name;
+});
+
+}  // namespace
+}  // namespace hilo::test
