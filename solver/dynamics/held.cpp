@@ -46,7 +46,7 @@ void require_rest(const System& system, const Config& q, const std::string& wher
       Config there = q;
       system.move(there, far);
       const double before = system.energy(q, zero).elastic, after = system.energy(there, zero).elastic;
-      for_ever = for_ever && system.constraint_violation(there, 0) < system.constraint_violation(q, 0) + 1e-9 * system.length &&
+      for_ever = for_ever && system.violation(there, 0).worst() < system.violation(q, 0).worst() + 1e-9 * system.length &&
                  std::abs(after - before) < 1e-9 * force * system.length;
     }
     if (for_ever)

@@ -218,7 +218,12 @@ class Run {
     Progress progress(options_.quiet || system_.comm->rank != 0, 0, end);
     std::optional<StepControl> control;
     if (time.has("tolerance")) control.emplace(system_, time.number("tolerance") * system_.length, end, step);
-    if (!control) integrator_->keep_time(system_);
+    if (!control) {
+      const std::vector<Active> now = active_rows(system_);
+      set_rows(system_, rows);  // the freedoms of mechanisms are those beside a singular pose
+      integrator_->keep_time(system_);
+      set_rows(system_, now);
+    }
     const size_t clocks = integrator_->timed().size();
     if (talk_)
       fmt::print(stderr, "integrator: {}{}\n", integrator_->name(),

@@ -36,14 +36,15 @@ class Held : public testing::Test {
   Workplace place;
 };
 
-/// A block pressed to three times its height below its foot: at a third of the way it has no thickness.
+/// A block pressed to three times its height below its foot: at a third of the way it has no thickness; before that its cells buckle.
 TEST_F(Held, CellsThatTurnInsideOutStopAStaticAnalysisWhereTheyDo) {
   const Ran ran = run(weight + soft + clamp +
                       "[[motion]]\nkind = \"translation\"\nname = \"push\"\non = \"zmax\"\ndisplacement = [0, 0, -3]\nhistory = {t = [0, "
                       "1], value = [0, 1]}\n[time]\nend = 1\nanalysis = \"static\"\nsteps = 10\n");
   EXPECT_EQ(ran.exit, 3) << ran.err;
-  EXPECT_NE(ran.err.find("inside out"), std::string::npos) << ran.err;
-  EXPECT_NEAR(number_of(place, "run.json", "t"), 1. / 3, 0.01);
+  EXPECT_NE(ran.err.find("a cell"), std::string::npos) << ran.err;
+  EXPECT_LT(number_of(place, "run.json", "t"), 1. / 3);
+  EXPECT_GT(number_of(place, "run.json", "t"), 0.2);
   EXPECT_GT(number_of(place, "run.json", "least_det_F"), 0);
 }
 
