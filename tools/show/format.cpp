@@ -74,6 +74,24 @@ std::string files() {
   return out;
 }
 
+constexpr auto run_json = R"(
+## run.json
+Written last, in one piece: what make depends on. `complete` and, where it is false, `reason`; counts, seconds and memory; and the verdict of the audit, which looks at every step before it is accepted
+and refuses what fails (the step is cut; a run that cannot pass ends with exit 3). In `audit`:
+
+| key | what is looked at | bound |
+|---|---|---|
+| `passed`, `failed` | the verdict; where it is false, why the run stopped | |
+| `energy` | kinetic + elastic + potential - work + dissipated: largest change in a step (`step`) and in all (`sum`), over the largest kinetic energy, each with its time. Text where the method does not keep it | max(1e-8, 10 `solver.tolerance`), beside rounding; `sum` after N > 1000 steps N/1000 times that |
+| `joint_rows` | largest value of a joint's row, which joint, when | a tenth of the former, times the scene's length |
+| `dropped_rows` | the same of rows that are redundant and not solved for | the same |
+| `turn` | largest angle by which a body or a cell turned in a step, which, when | 2 rad |
+| `det_F` | least det F of a cell, when; null without cells | above 0 |
+| `finite` | positions, velocities and energies | true |
+
+`energy_balance` is the largest |E - E0 - W + D| over the largest kinetic energy, null where nothing moved but by rounding; `constraint_violation` the largest row of a joint.
+)";
+
 std::string_view type_word(Type type) {
   switch (type) {
     case Type::number:
@@ -123,6 +141,6 @@ std::string scenes() {
 
 }  // namespace
 
-std::string format_page() { return fmt::format(fmt::runtime(head), schema_version) + shapes() + files() + scenes(); }
+std::string format_page() { return fmt::format(fmt::runtime(head), schema_version) + shapes() + files() + run_json + scenes(); }
 
 }  // namespace hilo
