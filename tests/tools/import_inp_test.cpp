@@ -40,7 +40,7 @@ TEST_F(ImportInp, EveryShapeKeepsItsVolume) {
     EXPECT_NEAR(quality(m, c).volume, expected[c], 1e-14) << info(m.shape[c]).name;
     EXPECT_EQ(m.cell_id[c], c + 1);
   }
-  EXPECT_EQ(static_cast<Shape>(m.shape[5]), Shape::hex20);
+  EXPECT_EQ(static_cast<Shape>(m.shape[5]), Shape::hex20r);
   EXPECT_EQ(m.region_name, std::vector<std::string>{"all"});
   EXPECT_EQ(m.cell_sets.at("wedge15"), std::vector<std::int64_t>{4});
   EXPECT_EQ(m.n_nodes(), 4 + 6 + 8 + 10 + 15 + 20);
