@@ -28,7 +28,10 @@ std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x
 }  // namespace
 
 Audit::Audit(const System& system, bool keeps_energy, double tolerance)
-    : system_(system), keeps_energy_(keeps_energy), energy_bound_(std::max(1e-8, 10 * tolerance)), row_bound_(energy_bound_ / 10) {}
+    : system_(system),
+      keeps_energy_(keeps_energy),
+      energy_bound_(std::max(1e-8, 10 * tolerance)),
+      row_bound_(std::max(1e-9, 20 * tolerance)) {}
 
 void Audit::start(const State& s) {
   t_ = s.t, now_ = {};

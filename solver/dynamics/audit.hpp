@@ -5,7 +5,7 @@
 //   turn        of every body and cell over the step         <= 2 rad: at half a turn (R0 + R1)/2 loses rank, and with it equations vanish
 //   everything finite; det F of every cell above zero (Newton's report)
 //
-// with bound = max(1e-8, 10 solver.tolerance) of energy and a tenth of it of rows.
+// with bound = max(1e-8, 10 solver.tolerance) of energy and max(1e-9, 20 solver.tolerance) of rows: Newton leaves up to ten of the latter.
 #pragma once
 #include <span>
 #include <string>

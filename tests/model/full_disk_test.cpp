@@ -10,7 +10,6 @@
 
 #include "base/error.hpp"
 #include "folder.hpp"
-#include "model/inputs.hpp"
 #include "model/store.hpp"
 
 namespace hilo {
@@ -82,7 +81,6 @@ TEST(TextFile, IsWrittenWholeOrNotAtAll) {
   const Folder folder;
   write_text_file(folder / "run.json", "{}\n");
   EXPECT_EQ(read_text_file(folder / "run.json"), "{}\n");
-  forget_inputs();
   std::string said;
   EXPECT_EQ(with_file_limit(
                 10, [&] { write_text_file(folder / "run.json", std::string(100, 'x')); }, said),

@@ -2,7 +2,6 @@
 
 #include "../cli.hpp"
 #include "../model/block.hpp"
-#include "model/inputs.hpp"
 #include "model/scene.hpp"
 #include "model/schema.hpp"
 #include "model/store.hpp"
@@ -137,7 +136,6 @@ TEST_F(Show, CheckFindsFilesThatAreIncompleteOrDoNotFit) {
   place.run("rm tags.h5");
   expect_refused("hilo-show --check parts.h5", 2, "parts.h5: tags is in tags.h5, which is missing");
   place.run("mv keep.h5 tags.h5");
-  forget_inputs();
   write_mesh(place / "mesh.h5", block(4, 2, 1, {"hull", "barrel"}, [](int i) { return i == 2; }), {});
   expect_refused("hilo-show --check tags.h5", 2, "tags.h5: mesh.h5 has changed since this file was made (make it again)");
 }

@@ -83,7 +83,7 @@ and refuses what fails (the step is cut; a run that cannot pass ends with exit 3
 |---|---|---|
 | `passed`, `failed` | the verdict; where it is false, why the run stopped | |
 | `energy` | kinetic + elastic + potential - work + dissipated: largest change in a step (`step`) and in all (`sum`), over the largest kinetic energy, each with its time. Text where the method does not keep it | max(1e-8, 10 `solver.tolerance`), beside rounding; `sum` after N > 1000 steps N/1000 times that |
-| `joint_rows` | largest value of a joint's row, which joint, when | a tenth of the former, times the scene's length |
+| `joint_rows` | largest value of a joint's row, which joint, when | max(1e-9, 20 `solver.tolerance`), times the scene's length |
 | `dropped_rows` | the same of rows that are redundant and not solved for | the same |
 | `turn` | largest angle by which a body or a cell turned in a step, which, when | 2 rad |
 | `det_F` | least det F of a cell, when; null without cells | above 0 |
