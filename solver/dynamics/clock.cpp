@@ -5,23 +5,6 @@
 #include <numeric>
 
 namespace hilo {
-namespace {
-
-/// Whether a drive's course changes at any time: looked at between its kinks.
-bool moves(const Drive& drive) {
-  std::vector<double> t{0};
-  t.insert(t.end(), drive.rate_jumps.begin(), drive.rate_jumps.end());
-  t.insert(t.end(), drive.kinks.begin(), drive.kinks.end());
-  std::sort(t.begin(), t.end());
-  t.push_back(t.back() + 1);
-  for (size_t k = 1; k < t.size(); ++k) {
-    const Course course = drive.course((t[k - 1] + t[k]) / 2, 1);
-    if (course.rate != 0 || course.acceleration != 0) return true;
-  }
-  return false;
-}
-
-}  // namespace
 
 std::vector<std::vector<int>> mechanisms_of_one_freedom(const System& s) {
   const auto n = static_cast<int>(s.bodies.size());
@@ -52,7 +35,7 @@ std::vector<std::vector<int>> mechanisms_of_one_freedom(const System& s) {
     const int first = connect(joint);
     if (first < 0) continue;
     for (int r = 0; r < joint.n_rows(); ++r) freedoms[first] -= joint.active[r];
-    if (joint.drive.row >= 0 && moves(joint.drive)) no[first] = 1;
+    if (joint.drive.row >= 0 && joint.drive.law.top_rate() != 0) no[first] = 1;
   }
   for (const SolidBatch& b : s.batches)
     for (const int node : b.nodes)
@@ -168,7 +151,7 @@ void Clocks::accept(const Config& v, const Config& a, const Taken& step) {
       n[0].vMj = inner(m, v_, jerk_) / T_;
       m.all = inner(m, jerk_, jerk_);
       const double swing = T_ * std::sqrt(n[0].vMv * std::abs(n[0].vMj)), damped = (m.taken + taken) / 2;  // v.Mv omega T
-      n[0].share = own_share(m) * (damped > 0 ? swing * swing / (swing * swing + 25 * damped * damped) : 1);
+      n[0].share = own_share(m) * (damped > 0 ? swing * swing / (swing * swing + 2500 * damped * damped) : 1);
     }
     if (n.size() < 4) m.owed = 0;
     if (n.size() == 4) {  // jerk at the start by the parabola, and all three steps between known ones at once

@@ -9,8 +9,8 @@
 //
 // Every mechanism has a clock of its own: what no joint and no spring connects does not feel how long the step of another is.  The
 // correction fades out, so that what does little changes little,
-// - where dampers, friction or motors make the speed itself wrong: the share falls to a half where what they take in a step is 0.2 of
-//   v.Mv omega T, omega^2 = |v.M j|/v.Mv (of an oscillator: where it is damped by a tenth of critical);
+// - where dampers, friction or motors make the speed itself wrong: the share falls to a half where what they take in a step is 0.02 of
+//   v.Mv omega T, omega^2 = |v.M j|/v.Mv (of an oscillator: where it is damped by a hundredth of critical);
 // - where forces change by the time and not by the place: their impulse is exact at equal steps alone;
 // - where a step does not resolve the motion (an impact).
 #pragma once

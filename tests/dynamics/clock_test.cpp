@@ -72,7 +72,7 @@ TEST(Clock, TwoScenesThatMeanTheSameHaveTheSameAnswer) {
   for (const auto& more : {spring("1e-6"), torque("1e-6")}) EXPECT_LT((end(more) - alone).norm(), 1e-5) << more;
 }
 
-/// A brake, a torque, both with gravity: three times the error is the most, where two errors of the method without it happen to cancel.
+/// A brake, a torque, both with gravity: near the error without it, or far below.
 TEST(Clock, DoesLittleHarmWhereWorkIsNotExact) {
   const Workplace w;
   for (const double c : {0.03, 0.3, 3.0})
@@ -94,7 +94,7 @@ TEST(Clock, DoesLittleHarmWhereWorkIsNotExact) {
       const auto truth = end("--set time.step=1e-3 " + integrator("mid-point"));
       const double with = (end("--set time.step=0.02") - truth).norm(),
                    without = (end("--set time.step=0.02 " + integrator("mid-point")) - truth).norm();
-      EXPECT_LT(with, 3 * without) << c << " " << torque;
+      EXPECT_LT(with, 1.2 * without) << c << " " << torque;
     }
 }
 

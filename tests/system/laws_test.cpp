@@ -336,7 +336,7 @@ TEST_P(Laws, EveryMatrixOfNewtonIsTheDerivativeOfItsEquations) {
       }
       const auto made = make_integrator(scene->table("time"));
       auto& integrator = dynamic_cast<StageIntegrator&>(*made);
-      integrator.begin(s, h);
+      integrator.begin(*system, s, h);
       Config q1 = s.q;
       std::vector<double> kick(n);
       for (int i = 0; i < n; ++i) kick[i] = h * scatter(5000 + i);
