@@ -71,10 +71,10 @@ TEST_F(Inputs, OfPostAreNotReplacedNorWhatTheyLinkTo) {
   ASSERT_EQ(work.run("hilo-post series run.h5 energy -o energy.csv").exit, 0);
   spares("hilo-post chart energy.csv -o OUT", {"energy.csv"});
   fs::copy(folder / "run.h5", folder / "run.png"), fs::copy(folder / "run.h5", folder / "run.mp4");
-  spares("hilo-post render run.png --steps last --size 64x64 -o OUT", {"run.png"});
-  spares("hilo-post mesh two.h5 --size 64x64 -o OUT", {"two.h5"});
-  spares("hilo-post model scene.toml tags.h5 --size 64x64 -o OUT", {"scene.toml", "tags.h5"});
-  spares("hilo-post movie run.mp4 --size 64x64 -o OUT", {"run.mp4"}, ".mp4");
+  spares("hilo-post render run.png --steps last --size 320x240 -o OUT", {"run.png"});
+  spares("hilo-post mesh two.h5 --size 320x240 -o OUT", {"two.h5"});
+  spares("hilo-post model scene.toml tags.h5 --size 320x240 -o OUT", {"scene.toml", "tags.h5"});
+  spares("hilo-post movie run.mp4 --size 320x240 -o OUT", {"run.mp4"}, ".mp4");
 }
 
 TEST_F(Inputs, OfCommandsThatWriteElsewhereAreReadAsBefore) {
