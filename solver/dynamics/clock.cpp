@@ -9,7 +9,7 @@ namespace hilo {
 std::vector<std::vector<int>> mechanisms_of_one_freedom(const System& s) {
   const auto n = static_cast<int>(s.bodies.size());
   std::vector<int> parent(n), freedoms(n, 0);
-  std::vector<char> no(n, 0);  // something flexible, or moved from outside
+  std::vector<double> no(n, 0);  // something flexible, or moved from outside
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int k) {
     while (parent[k] != k) k = parent[k] = parent[parent[k]];
@@ -40,13 +40,14 @@ std::vector<std::vector<int>> mechanisms_of_one_freedom(const System& s) {
   for (const SolidBatch& b : s.batches)
     for (const int node : b.nodes)
       if (const int body = s.follower[node]; free(body)) no[body] = 1;
+  s.comm->sum(no);  // cells are on their ranks alone
   std::vector<std::vector<int>> parts(n);
   for (int b = 0; b < n; ++b)
     if (free(b)) parts[root(b)].push_back(b);
   std::erase_if(parts, [&](const std::vector<int>& part) {
     int sum = 0;
     bool out = part.empty();
-    for (const int b : part) sum += 6 + freedoms[b], out = out || no[b];
+    for (const int b : part) sum += 6 + freedoms[b], out = out || no[b] > 0;
     return out || sum != 1;
   });
   return parts;
@@ -60,14 +61,19 @@ Clocks::Clocks(const System& system) : system_(system), tempo_(system.bodies.siz
   }
   const auto of = [&](int b) { return b >= 0 && mechanism_of[b] >= 0 ? &mechanisms_[mechanism_of[b]] : nullptr; };
   for (const Load& l : system.loads) {
-    if (l.ramped) continue;
-    const auto add = [&](int b, double force) {  // or the force that a torque is at the body's size
-      if (Mechanism* m = of(b)) m->loads.push_back({&l, force * force / std::max(system.bodies[b].mass, 1e-300)});
+    if (l.ramped || mechanisms_.empty()) continue;
+    std::vector<double> square(mechanisms_.size(), 0.0);  // f.M^-1 f
+    const auto add = [&](int b, double force) {           // or the force that a torque is at the body's size
+      if (b >= 0 && mechanism_of[b] >= 0) square[mechanism_of[b]] += force * force / std::max(system.bodies[b].mass, 1e-300);
     };
-    if (l.body >= 0) add(l.body, l.value.norm() / (l.kind == Load::Kind::body_torque ? system.bodies[l.body].size : 1));
+    if (l.body >= 0 && system.comm->rank == 0)
+      add(l.body, l.value.norm() / (l.kind == Load::Kind::body_torque ? system.bodies[l.body].size : 1));
     for (size_t i = 0; i < l.nodes.size(); ++i) add(system.follower[l.nodes[i]], l.weight[i] * l.value.norm());
     for (const auto& facet : l.facets)
-      for (const int node : facet) add(system.follower[node], 1e300);
+      for (const int node : facet) add(system.follower[node], 1e100);
+    system.comm->sum(square);
+    for (size_t i = 0; i < square.size(); ++i)
+      if (square[i] > 0) mechanisms_[i].loads.push_back({&l, square[i]});
   }
   for (const Connector& c : system.springs)
     for (const Carrier& end : c.ends())
@@ -89,11 +95,11 @@ std::vector<std::string> Clocks::names() const {
 
 /// v.M w
 double Clocks::inner(const Mechanism& m, const Config& v, const Config& w) const {
-  double sum = 0;
+  double sum = 0, masses = 0;
   for (const int b : m.bodies) sum += system_.bodies[b].inertia(v.c[b], v.R[b], w.c[b], w.R[b]);
   for (const auto& [node, mass] : system_.point_masses)
-    if (std::find(m.bodies.begin(), m.bodies.end(), system_.follower[node]) != m.bodies.end()) sum += mass * v.x[node].dot(w.x[node]);
-  return sum;
+    if (std::find(m.bodies.begin(), m.bodies.end(), system_.follower[node]) != m.bodies.end()) masses += mass * v.x[node].dot(w.x[node]);
+  return sum + system_.comm->sum(masses);
 }
 
 /// What loads do differently in the step from t than in the one before, by the time alone: sum of f.M^-1 f [N^2/kg].
