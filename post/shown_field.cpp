@@ -46,8 +46,9 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
     if (!k.starts_with("cell_")) names.push_back(k);
   names.insert(names.end(), {"region", "fidelity", "partition", "von_mises", "stress_error", "acceleration", "displacement", "velocity"});
   std::string hint = suggest(name, names);
-  throw Error("--field", fmt::format("no field \"{}\"", name),
-              hint.empty() ? "von_mises, stress_error, acceleration, displacement, velocity, stress.xx, region, fidelity or partition" : hint);
+  throw Error(
+      "--field", fmt::format("no field \"{}\"", name),
+      hint.empty() ? "von_mises, stress_error, acceleration, displacement, velocity, stress.xx, region, fidelity or partition" : hint);
 }
 
 std::vector<double> reduced(RunFile::Field raw, const ShownField& field, const std::string& path) {

@@ -64,7 +64,7 @@ class StressRecovery {
   std::vector<Site> site_;
   std::vector<std::vector<int>> site_of_;  // per batch: site of each node of each cell (n_cells x n)
   std::optional<Sharing> sites_;
-  std::vector<Patches> patches_;           // of order 1 and 2
+  std::vector<Patches> patches_;  // of order 1 and 2
 };
 
 }  // namespace hilo

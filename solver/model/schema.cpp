@@ -53,7 +53,8 @@ const std::vector<ArraySchema>& file_schema() {
       {"run.h5", "/field/<step>/stress_error", "f8", "(n_nodes)", "Pa",
        "von Mises stress of recovered less raw stress, root mean square over the cells at the node: what the mesh leaves open"},
       {"run.h5", "/field/<step>/cell_von_mises", "f8", "(n_cells)", "Pa",
-       "von Mises stress of each cell, mean over its integration points (hex8: 2 x 2 x 2 of its assumed strains), not recovered; 0 on rigid "
+       "von Mises stress of each cell, mean over its integration points (hex8: 2 x 2 x 2 of its assumed strains), not recovered; 0 on "
+       "rigid "
        "cells"},
       {"run.h5", "/history/t", "f8", "(n_t)", "s", "times of all histories below; first row is the start"},
       {"run.h5", "/history/energy", "f8", "(n_t, 6)", "J",

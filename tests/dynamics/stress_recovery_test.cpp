@@ -57,7 +57,8 @@ Vec3 perturbed(const Vec3& X) {
 
 class RecoveryOf : public testing::TestWithParam<Shape> {};
 INSTANTIATE_TEST_SUITE_P(EveryShape, RecoveryOf,
-                         testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20, Shape::hex20r),
+                         testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20,
+                                         Shape::hex20r),
                          [](const auto& p) { return std::string(hilo::info(p.param).name); });
 
 // Truth: one strain everywhere is one stress everywhere, at corners, edges and surfaces too, and there is no error.

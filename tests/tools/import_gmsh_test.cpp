@@ -96,7 +96,7 @@ TEST_F(ImportGmsh, EveryShapeAndOrderKeepsItsVolumeAndItsMiddles) {
     int order;
     bool complete;
     Shape shape;
-  } cases[] = {{"tet", 1, false, Shape::tet4},  {"tet", 2, false, Shape::tet10},    {"hex", 1, false, Shape::hex8},
+  } cases[] = {{"tet", 1, false, Shape::tet4},   {"tet", 2, false, Shape::tet10},    {"hex", 1, false, Shape::hex8},
                {"hex", 2, false, Shape::hex20r}, {"prism", 1, false, Shape::wedge6}, {"prism", 2, false, Shape::wedge15},
                {"hex", 2, true, Shape::hex20r},  {"prism", 2, true, Shape::wedge15}};
   for (const auto& c : cases) {

@@ -27,7 +27,8 @@ class Patch : public testing::TestWithParam<Shape> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(EveryShape, Patch,
-                         testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20, Shape::hex20r),
+                         testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20,
+                                         Shape::hex20r),
                          [](const auto& p) { return std::string(hilo::info(p.param).name); });
 
 // Truth: u = H X on the surface is in equilibrium inside (constant stress, no body force): every inner node must take H X too, to 1e-10 of

@@ -21,7 +21,8 @@ Vec3 principal(const Mat3& second) {
 
 class RigidRegion : public testing::TestWithParam<Shape> {};
 INSTANTIATE_TEST_SUITE_P(EveryShape, RigidRegion,
-                         testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20, Shape::hex20r),
+                         testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20,
+                                         Shape::hex20r),
                          [](const auto& p) { return std::string(hilo::info(p.param).name); });
 
 // Truth: for a sheared box x = A s, s in the unit cube about its centre: m = rho det A, second moment = m A A^T/12.

@@ -6,7 +6,8 @@ namespace {
 
 class TurnedBar : public testing::TestWithParam<Shape> {};
 INSTANTIATE_TEST_SUITE_P(EveryShape, TurnedBar,
-                         testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20, Shape::hex20r),
+                         testing::Values(Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex8, Shape::hex20,
+                                         Shape::hex20r),
                          [](const auto& p) { return std::string(hilo::info(p.param).name); });
 
 TEST_P(TurnedBar, FollowsWithoutStress) {
