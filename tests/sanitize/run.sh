@@ -13,6 +13,7 @@ while getopts j:R: option; do
     *) exit 1 ;;
   esac
 done
+mkdir -p "$folder"
 here=$repo/tests/sanitize
 if [ "$kind" = sanitizers ]; then
   # assertions on as well; of undefined behaviour all that is found is reported, not the first alone
