@@ -55,7 +55,7 @@ std::string Audit::look(const Config& q0, const State& end, std::span<const Take
   det_ = newton.least_det;
   turn_ = system_.largest_turn(q0, end.q);
   if (!std::isfinite(next_.balance)) return "energies are not finite";
-  if (det_ <= 0) return fmt::format("a cell is turned inside out (det F = {:.2g})", det_);
+  if (det_.det <= 0) return system_.inside_out(det_);
   if (turn_.angle > largest_turn) return fmt::format("{} turns by {:.3g} rad in one step", system_.name(turn_), turn_.angle);
   const System::Violation& g = next_.rows;
   const double open = row_bound_ * system_.length;
@@ -92,7 +92,7 @@ void Audit::accept(double t) {
   if (now_.rows.dropped > worst_.rows.dropped)
     worst_.rows.dropped = now_.rows.dropped, worst_.rows.dropped_joint = now_.rows.dropped_joint, worst_.dropped_t = t;
   if (turn_.angle > worst_.turn.angle) worst_.turn = turn_, worst_.turn_t = t;
-  if (det_ < worst_.det) worst_.det = det_, worst_.det_t = t;
+  if (det_.det < worst_.det.det) worst_.det = det_, worst_.det_t = t;
 }
 
 std::string Audit::verdict() const {
@@ -118,8 +118,9 @@ std::string Audit::json(const std::string& failure) const {
   rows("dropped_rows", worst_.rows.dropped, worst_.rows.dropped_joint, worst_.dropped_t);
   out += fmt::format("    \"turn\": {{\"largest\": {}, \"of\": {}, \"t\": {}, \"bound\": {}}},\n", number(worst_.turn.angle),
                      worst_.turn.angle > 0 ? json_text(system_.name(worst_.turn)) : "null", number(worst_.turn_t), number(largest_turn));
-  out +=
-      fmt::format("    \"det_F\": {{\"least\": {}, \"t\": {}}},\n", worst_.det < 1e299 ? number(worst_.det) : "null", number(worst_.det_t));
+  const auto& [det, region] = worst_.det;
+  out += fmt::format("    \"det_F\": {{\"least\": {}, \"region\": {}, \"t\": {}}},\n", region >= 0 ? number(det) : "null",
+                     region >= 0 ? json_text(system_.mesh->mesh.region_name[region]) : "null", number(worst_.det_t));
   return out + "    \"finite\": true\n  }";
 }
 

@@ -41,7 +41,7 @@ class Audit {
   /// Largest |E - E0 - W + D| over the largest kinetic energy; NaN where nothing ever moved but by rounding.
   double balance() const;
   double violation() const { return worst_.rows.worst(); }
-  double least_det() const { return worst_.det; }
+  double least_det() const { return worst_.det.det; }
   /// The verdict as a JSON object; `failure`: why the run stopped, or "".
   std::string json(const std::string& failure) const;
 
@@ -51,7 +51,8 @@ class Audit {
     System::Violation rows;
     double kept_t = 0, dropped_t = 0;
     System::Turn turn;
-    double turn_t = 0, det = 1e300, det_t = 0;
+    double turn_t = 0, det_t = 0;
+    LeastDet det;
   };
   const System& system_;
   bool keeps_energy_;
@@ -62,8 +63,9 @@ class Audit {
   struct {
     double work = 0, dissipated = 0;
   } sums_;
-  double step_ = 0, sum_ = 0, det_ = 1e300, moving_next_ = 0, rounding_next_ = 0;  // of the step looked at last
+  double step_ = 0, sum_ = 0, moving_next_ = 0, rounding_next_ = 0;  // of the step looked at last
   System::Turn turn_;
+  LeastDet det_;
   Worst worst_;
 };
 

@@ -53,7 +53,7 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
         system, tools.solver, [&](const Unknown& u) { return from_left(stage(k, u), h); }, solved_[k], lambda_, tools.newton);
     all.iterations += r.iterations, all.linear_iterations += r.linear_iterations;
     all.correction = r.correction, all.residual = r.residual;
-    all.least_det = std::min(all.least_det, r.least_det);
+    all.least_det.take(r.least_det);
     if (!r.converged) {
       all.converged = false, all.reason = r.reason;
       return all;

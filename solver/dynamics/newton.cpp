@@ -52,7 +52,11 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     solver.sum_shared(r.r);
     system.mask_fixed(r.r);
     r.force_scale = system.comm->max(r.force_scale);
-    report.least_det = -system.comm->max(-r.least_det);
+    report.least_det = r.least_det;
+    if (system.comm->size > 1) {
+      report.least_det.det = -system.comm->max(-r.least_det.det);
+      report.least_det.region = static_cast<int>(system.comm->max(r.least_det.det == report.least_det.det ? r.least_det.region : -1));
+    }
     report.residual = system.comm->max(relative_residual(system, r));
     ++phases().evaluations, phases().tangents += tangent;
   };
@@ -93,8 +97,8 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
   // A correction far below the tolerance, one to come that is nothing to the scene, and a residual within ten of the tolerance: what is
   // left is what rounded positions make stiff cells feel, and another solve would only draw it anew.
   const auto is_rounding = [&] {
-    return !solver.repeats_cheaply() && report.correction <= 1e-2 * options.tolerance &&
-           report.correction * report.residual <= 1e-13 * last_residual && report.residual <= 10 * options.tolerance;
+    return report.correction <= 1e-2 * options.tolerance && report.correction * report.residual <= 1e-13 * last_residual &&
+           report.residual <= 10 * options.tolerance;
   };
   double previous = 1e300;
   bool near = false;  // the next residual is likely to be small enough: look at it before building a tangent

@@ -21,7 +21,7 @@ struct NewtonReport {
   int iterations = 0;     // linear solves
   double correction = 0;  // last one, over the scene's length
   double residual = 0;    // last one, over the force scale
-  double least_det = 1e300;
+  LeastDet least_det;
   int linear_iterations = 0;
   std::string reason;  // why it failed
 };

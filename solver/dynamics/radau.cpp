@@ -176,7 +176,7 @@ class Radau final : public Integrator {
       system.mask_fixed(r_[i].r);
       const double x = relative_residual(system, r_[i]);
       if (!(x <= report.residual)) report.residual = x;  // keeps a NaN
-      report.least_det = std::min(report.least_det, r_[i].least_det);
+      report.least_det.take(r_[i].least_det);
     }
     phases().evaluations += 3;
     if (kept_) return;

@@ -133,7 +133,7 @@ class Run {
     }();
     double done = 0, dt = 1.0 / n;
     int cuts = 0;
-    double least = 1e300;  // det F
+    LeastDet least;
     State reached = state_;
     std::string why;  // of the first failure since the last good state, or that a cell would be inside out
     while (done < 1 - 1e-12) {
@@ -146,15 +146,15 @@ class Run {
       failure_ = r.converged ? audit_->look(state_.q, reached, {&taken, 1}, r, next) : r.reason;
       if (!failure_.empty()) {
         system_.commit(state_.q);
-        if (why.empty() || r.least_det <= 0) why = failure_;
+        if (why.empty() || r.least_det.det <= 0) why = failure_;
         if (++cuts > max_cuts_) {
-          if (least < 0.01 && r.least_det > 0) why += fmt::format("; a cell is all but turned inside out (det F = {:.2g})", least);
+          if (least.det < 0.01 && r.least_det.det > 0) why += "; " + system_.inside_out(least);
           return stop(why + unheld(system_, system_.start));
         }
         ++report_.cuts, dt /= 2;
         continue;
       }
-      cuts = 0, why.clear(), least = std::min(least, r.least_det);
+      cuts = 0, why.clear(), least.take(r.least_det);
       audit_->accept(reached.t);
       recorder_->step(reached, audit_->ledger(), taken, no_acceleration, r.iterations);
       std::swap(state_, reached);

@@ -257,10 +257,7 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
       },
       u, lambda, o);
   q = u.q;
-  if (report.least_det <= 0) {
-    report.converged = false;
-    report.reason = fmt::format("a cell is turned inside out (det F = {:.2g})", report.least_det);
-  }
+  if (report.least_det.det <= 0) report.converged = false, report.reason = system.inside_out(report.least_det);
   if (report.converged) system.commit(q);
   return report;
 }

@@ -85,7 +85,7 @@ void System::add_solids(Pass& p) const {
       for (int l = 0; l < W && first + l < count; ++l) {
         const int e = first + l;
         const int* nodes = b.nodes.data() + static_cast<size_t>(e) * n;
-        if (!(det[l] > p.out.least_det)) p.out.least_det = det[l];
+        p.out.least_det.take({det[l], b.region});
         bool plain = true;
         for (int k = 0; k < n; ++k) {
           Vec3 fk(f[3 * k * W + l], f[(3 * k + 1) * W + l], f[(3 * k + 2) * W + l]);

@@ -15,7 +15,7 @@ void System::evaluate(const Stage& stage, std::span<const double> lambda, Residu
   node.assign(X.size(), Vec3::Zero());
   body.assign(bodies.size(), Vec6::Zero());
   out.r.assign(3 * n_blocks(), 0.0);
-  out.force_scale = 0, out.least_det = 1e300, out.finite = true;
+  out.force_scale = 0, out.least_det = {}, out.finite = true;
   out.sigma = constraint_scale(stage);
   Pass p{stage, lambda, out, K, node, body, out.sigma};
   if (K) K->zero();

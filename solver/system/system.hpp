@@ -132,11 +132,20 @@ inline Stage stage_at(const Config& q, double t) {
 /// Elastic response of a spring at a stage, D by its measures at e1.
 void spring_elastic(const Connector& c, const Stage& s, Response& out);
 
+/// Smallest det F of a cell, and the region it is in, or -1.
+struct LeastDet {
+  double det = 1e300;
+  int region = -1;
+  void take(const LeastDet& other) {
+    if (!(other.det > det)) *this = other;  // keeps a NaN
+  }
+};
+
 /// Residual with the scales that judge it.
 struct Residual {
   std::vector<double> r;     // (3 x n_blocks): equations, then constraint rows
   double force_scale = 0;    // largest force summed into r [N]
-  double least_det = 1e300;  // smallest det F
+  LeastDet least_det;
   double sigma = 1;          // scale of the constraint rows; multipliers are found divided by it
   bool finite = true;
 };
@@ -202,6 +211,8 @@ class System {
   Turn largest_turn(const Config& q0, const Config& q1) const;
   /// "body \"b\"" or "a cell of region \"r\"".
   std::string name(const Turn& turn) const;
+  /// 'a cell of region "r" is [all but] turned inside out (det F = -0.1)'.
+  std::string inside_out(const LeastDet& least) const;
   /// Their velocities and accelerations (either may be null), the limits from one side.
   void prescribe_rates(double t, Side side, Config* v, Config* a) const;
   /// What moves by a law in `to` becomes that of `from`.

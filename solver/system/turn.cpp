@@ -1,4 +1,6 @@
 // How far bodies and cells turn from one configuration to another.
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -54,6 +56,11 @@ System::Turn System::largest_turn(const Config& q0, const Config& q1) const {
 std::string System::name(const Turn& turn) const {
   if (turn.body >= 0) return "body \"" + bodies[turn.body].name + "\"";
   return turn.region >= 0 ? "a cell of region \"" + mesh->mesh.region_name[turn.region] + "\"" : "";
+}
+
+std::string System::inside_out(const LeastDet& least) const {
+  return fmt::format("a cell of region \"{}\" is {}turned inside out (det F = {:.2g})", mesh->mesh.region_name[least.region],
+                     least.det > 0 ? "all but " : "", least.det);
 }
 
 }  // namespace hilo

@@ -11,6 +11,7 @@ namespace hilo::petsc {
 
 void DirectSolver::structure(const Cliques& cliques, const BlockMap& map) {
   check(MatDestroy(&factor_));
+  factored_ = false;
   cliques_ = &cliques;
   shared_.emplace(map);
   matrix_.reset();
@@ -20,8 +21,11 @@ void DirectSolver::structure(const Cliques& cliques, const BlockMap& map) {
 }
 
 SolveReport DirectSolver::solve(std::span<const double> b, std::span<double> x, double) {
-  matrix_->assemble();
-  if (const std::string problem = factor(); !problem.empty()) return {false, 1, 0, problem};
+  if (!factored_) {
+    matrix_->assemble();
+    if (const std::string problem = factor(); !problem.empty()) return {false, 1, 0, problem};
+    factored_ = true;
+  }
   to_owned(*shared_, b, b_);
   const double norm = max_norm(b_);
   SolveReport report;

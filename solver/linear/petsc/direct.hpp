@@ -10,11 +10,12 @@ class DirectSolver final : public KktSolver {
   ~DirectSolver() override { MatDestroy(&factor_); }
 
   void structure(const Cliques& cliques, const BlockMap& map) override;
-  void zero() override { matrix_->zero(); }
+  void zero() override { matrix_->zero(), factored_ = false; }
   void add(int clique, const double* K) override { matrix_->add(clique, (*cliques_)[clique], K); }
   void add_diagonal(int block, const double d[3]) override { matrix_->add_diagonal(block, d); }
   void sum_shared(std::span<double> local) override { shared_->sum(local); }
   SolveReport solve(std::span<const double> b, std::span<double> x, double) override;
+  bool repeats_cheaply() const override { return true; }
   double bytes() const override { return matrix_->bytes() + factor_bytes_; }
   double set_up_seconds() const override { return set_up_; }
   std::string name() const override;
@@ -29,6 +30,7 @@ class DirectSolver final : public KktSolver {
   PetscInt infog(PetscInt i) const;
 
   double tolerance_, factor_bytes_ = 0, set_up_ = 0;
+  bool factored_ = false;  // the factors are those of the matrix
   const Cliques* cliques_ = nullptr;
   std::optional<SharedBlocks> shared_;
   std::optional<BlockMatrix> matrix_;

@@ -48,7 +48,7 @@ double drift(const Results& r) {
 }
 
 TEST(Audit, NoBodyTurnsByHalfATurnInAStep) {
-  const Case c("audit");
+  const Case c("../cases");
   const struct {
     const char *scene, *more;
     std::vector<std::string> bodies;
@@ -68,7 +68,7 @@ TEST(Audit, NoBodyTurnsByHalfATurnInAStep) {
 }
 
 TEST(Audit, AMechanismDrawnFlatKeepsEveryJoint) {
-  const Case c("audit");
+  const Case c("../cases");
   for (const char* scene : {"flat_parallelogram", "flat_parallelogram_driven"}) {
     const Results r = c.solved("", "run.h5", scene);
     EXPECT_LT(gap(r, "", "crank", Vec3(0, 0, 0)), 1e-12) << scene;
@@ -93,7 +93,7 @@ TEST(Audit, AMechanismDrawnFlatKeepsEveryJoint) {
 }
 
 TEST(Audit, ABarBetweenTwoPinsDoesNotFall) {
-  const Case c("audit");
+  const Case c("../cases");
   const Ran ran = c.solve("", "run.h5", 3, "dead_point");
   EXPECT_NE(ran.err.find("singular position"), std::string::npos) << ran.err;
   EXPECT_NE(ran.err.find("\"B\""), std::string::npos) << ran.err;
@@ -105,7 +105,7 @@ const char* arm =
     "[[joint]]\nkind = \"revolute\"\nname = \"drive\"\nb = \"arm\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\nangle = 1.57\n";
 
 TEST(Audit, ContradictionsAreRefusedByName) {
-  const Case c("audit");
+  const Case c("../cases");
   Ran ran = c.solve("", "run.h5", 2, "held_and_moved");
   EXPECT_NE(ran.err.find("joint \"w1\" holds what motion \"mv\" moves"), std::string::npos) << ran.err;
   const std::string smooth = "history = {t = [0, 1], value = [0, 1], interpolation = \"smooth\"}\n",
@@ -123,7 +123,7 @@ TEST(Audit, ContradictionsAreRefusedByName) {
 
 // Two drives on one freedom do no harm while they agree; where they part company the run stops, and says so.
 TEST(Audit, DrivesThatPartCompanyStopTheRun) {
-  const Case c("audit");
+  const Case c("../cases");
   const auto second = [&](const char* value) {
     return std::string("[[joint]]\nkind = \"revolute\"\nname = \"twin\"\nb = \"arm\"\nat = [0, 0, 0.3]\naxis = [0, 0, 1]\nangle = 1.57\n") +
            "history = {t = [0, 0.5, 1], value = [0, 0.5, " + value + "], interpolation = \"linear\"}\n";
