@@ -20,7 +20,11 @@ struct UnitRows {
   Eigen::SparseMatrix<double> A;  // (3 blocks x rows)
 };
 
-UnitRows unit_rows(const System& system, const Config& q, bool active_alone) {
+bool is_drive(const System& system, std::pair<int, int> row) { return system.joints[row.first].drive.row == row.second; }
+
+enum class Rows { all, active, plain };  // plain: all but those of drives
+
+UnitRows unit_rows(const System& system, const Config& q, Rows which) {
   UnitRows out;
   std::vector<Eigen::Triplet<double>> entries;
   for (size_t j = 0; j < system.joints.size(); ++j) {
@@ -28,7 +32,8 @@ UnitRows unit_rows(const System& system, const Config& q, bool active_alone) {
     const DenseRows G = joint_rows(system, joint, stage_at(q, 0));
     const auto blocks = joint_blocks(system, joint);
     for (int r = 0; r < joint.n_rows(); ++r) {
-      if (active_alone && !joint.active[r]) continue;
+      if (which == Rows::active && !joint.active[r]) continue;
+      if (which == Rows::plain && is_drive(system, {static_cast<int>(j), r})) continue;
       const double norm = G.row(r).norm();
       for (Eigen::Index c = 0; c < G.cols(); ++c)
         if (const double x = norm > 0 ? G(r, c) / norm : 0; std::abs(x) > 1e-14)
@@ -41,13 +46,11 @@ UnitRows unit_rows(const System& system, const Config& q, bool active_alone) {
   return out;
 }
 
-bool is_drive(const System& system, std::pair<int, int> row) { return system.joints[row.first].drive.row == row.second; }
-
 /// Rows that depend on others at q, up to `dependent` of a unit row, are switched off.
 Redundancy choose_rows(System& system, const Config& q, double dependent) {
   Redundancy report;
   for (Connector& joint : system.joints) joint.active.fill(true);
-  const UnitRows all = unit_rows(system, q, false);
+  const UnitRows all = unit_rows(system, q, Rows::all);
   report.rows = static_cast<int>(all.rows.size());
   if (report.rows == 0) return report;
   std::vector<int> number(all.A.rows());
@@ -112,25 +115,63 @@ Eigen::VectorXd least(const Eigen::SparseMatrix<double>& A, const Normal& normal
 
 constexpr double round_off = 1e-9;  // what others leave of a unit row that depends on them
 constexpr double aside = 1e-3;      // how far to look, over the scene's length
+const double independent_beside =
+    std::pow(aside, 1.5);  // what others leave there of a unit row that depends on them at q alone is about `aside`
 
-/// A pose beside q that the active rows allow, along the part of `direction` that they leave; nothing where they leave none.
-std::optional<Config> beside(const System& system, const Config& q, const Eigen::VectorXd& direction, double t) {
-  UnitRows unit = unit_rows(system, q, true);
-  Normal normal(unit.A.transpose() * unit.A);
-  if (normal.info() != Eigen::Success) return {};
+/// A pose beside q that these rows allow, along the part of `direction` that they leave; nothing where they leave none or do not close.
+/// Dependent rows may be among them: A^T A + mu finds the increments of what is independent.  They stay in the plane `far` ahead, or
+/// branches would draw them back to q, where all of them meet.
+std::optional<Config> beside(const System& system, const Config& q, const Eigen::VectorXd& direction, double t, double far, Rows rows) {
+  constexpr double mu = 1e-10;  // far below the square of `far`, which rows that are independent beside q alone have
+  constexpr int iterations = 40;
+  UnitRows unit = unit_rows(system, q, rows);
+  Eigen::VectorXd plane;
+  Normal normal;
+  const auto factor = [&] {
+    if (plane.size() > 0) {
+      unit.A.conservativeResize(unit.A.rows(), unit.A.cols() + 1);
+      for (Eigen::Index i = 0; i < plane.size(); ++i)
+        if (plane[i] != 0) unit.A.insert(i, unit.A.cols() - 1) = plane[i];
+    }
+    Eigen::SparseMatrix<double> N = unit.A.transpose() * unit.A, I(N.rows(), N.cols());
+    I.setIdentity();
+    N += mu * I;
+    normal.compute(N);
+    return normal.info() == Eigen::Success;
+  };
+  if (!factor()) return {};
   Eigen::VectorXd y = direction - least(unit.A, normal, unit.A.transpose() * direction);
   if (!(y.norm() > 1e-6 * direction.norm())) return {};
-  y *= aside * system.length / y.cwiseAbs().maxCoeff();
+  y *= far * system.length / y.cwiseAbs().maxCoeff();
+  plane = y.normalized();
   Config out = q;
   displace(system, out, y);
-  for (int k = 0; k < 8; ++k) {
-    unit = unit_rows(system, out, true);
-    const Eigen::VectorXd g = gaps(system, unit, out, t);
-    if (g.size() == 0 || g.cwiseAbs().maxCoeff() < 1e-14 * system.length) break;
-    normal.compute(unit.A.transpose() * unit.A);
-    if (normal.info() != Eigen::Success) return {};
+  for (int k = 0; k < iterations; ++k) {
+    unit = unit_rows(system, out, rows);
+    Eigen::VectorXd g = gaps(system, unit, out, t);
+    if (g.size() == 0 || g.cwiseAbs().maxCoeff() < 1e-14 * system.length) return out;
+    if (!factor()) return {};
+    g.conservativeResize(unit.A.cols());
+    g[g.size() - 1] = 0;
     displace(system, out, -least(unit.A, normal, g));
   }
+  const Eigen::VectorXd g = gaps(system, unit_rows(system, out, rows), out, t);
+  if (g.cwiseAbs().maxCoeff() < 1e-12 * system.length) return out;
+  return {};
+}
+
+/// Largest move of a body's centre, and turn times the scene's length, between two poses.
+double way(const System& system, const Config& a, const Config& b) {
+  double out = 0;
+  for (size_t i = 0; i < a.x.size(); ++i) out = std::max(out, (b.x[i] - a.x[i]).norm());
+  for (size_t i = 0; i < a.c.size(); ++i) out = std::max({out, (b.c[i] - a.c[i]).norm(), system.length * (b.R[i] - a.R[i]).norm()});
+  return system.comm->max(out);
+}
+
+/// A pose beside q that all rows but those of drives allow; nothing where they lead back.
+std::optional<Config> branch(const System& system, const Config& q, const Eigen::VectorXd& direction, double t, double far) {
+  std::optional<Config> out = beside(system, q, direction, t, far, Rows::plain);
+  if (out && way(system, q, *out) < 0.1 * far * system.length) out.reset();
   return out;
 }
 
@@ -162,15 +203,18 @@ void set_rows(System& system, const std::vector<Active>& rows) {
 Redundancy drop_redundant_rows(System& system, const Config& q, double t) {
   Redundancy here = choose_rows(system, q, round_off);
   if (here.dropped.empty()) return here;
-  // Rows that depend on others at q alone open with the square of the way aside, redundant ones do not.
+  // Rows that depend on others at q alone open with the square of the way aside, redundant ones do not.  A branch that closes all of them
+  // tells which are independent along it: more than at q, and fewer than at any pose off the branches.
   const std::vector<Active> at_pose = active_rows(system);
   for (unsigned seed = 1; seed <= 2; ++seed) {
-    const std::optional<Config> near = beside(system, q, some_direction(system, seed), t);
+    const Eigen::VectorXd direction = some_direction(system, seed);
+    std::optional<Config> near = beside(system, q, direction, t, aside, Rows::active);
     if (!near) break;
-    const UnitRows all = unit_rows(system, *near, false);
+    const UnitRows all = unit_rows(system, *near, Rows::all);
     const Eigen::VectorXd g = gaps(system, all, *near, t);
     if (g.cwiseAbs().maxCoeff() < 1e-4 * aside * aside * system.length) continue;
-    Redundancy there = choose_rows(system, *near, std::pow(aside, 1.5));
+    if (const auto pose = branch(system, q, direction, t, aside)) near = pose;
+    Redundancy there = choose_rows(system, *near, independent_beside);
     if (there.rank > here.rank) {
       there.at_pose = at_pose, there.rank_at_pose = here.rank;
       for (size_t j = 0; j < at_pose.size(); ++j)
@@ -194,7 +238,7 @@ bool recheck_redundant_rows(System& system, const Config& q, double t, Redundanc
   return false;
 }
 
-std::optional<Config> pose_ahead(const System& system, const Config& q, const Config& v, double t) {
+std::optional<Config> pose_ahead(const System& system, const Config& q, const Config& v, double t, double far) {
   Eigen::VectorXd y = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(system.n_blocks()));
   for (size_t i = 0; i < v.x.size(); ++i)
     if (const int k = system.node_block[i]; k >= 0) y.segment<3>(3 * k) = v.x[i];
@@ -205,7 +249,16 @@ std::optional<Config> pose_ahead(const System& system, const Config& q, const Co
       y.segment<3>(3 * k + 3) = system.length / 2 * Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1));
     }
   if (y.isZero(0)) return {};
-  return beside(system, q, y, t);
+  return branch(system, q, y, t, far);
+}
+
+std::optional<Config> pose_aside(const System& system, const Config& q, unsigned seed, double t, double far) {
+  return branch(system, q, some_direction(system, seed), t, far);
+}
+
+void choose_rows_beside(System& system, const Config& q, Redundancy& now) {
+  Redundancy there = choose_rows(system, q, independent_beside);
+  now.rank = there.rank, now.dropped = std::move(there.dropped);
 }
 
 }  // namespace hilo

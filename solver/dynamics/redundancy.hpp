@@ -35,7 +35,11 @@ bool recheck_redundant_rows(System& system, const Config& q, double t, Redundanc
 /// The rows of all joints that are on, and switching them; an empty list changes nothing.
 std::vector<Active> active_rows(const System& system);
 void set_rows(System& system, const std::vector<Active>& rows);
-/// A pose that the active rows allow, a little ahead of q along v; nothing at rest.
-std::optional<Config> pose_ahead(const System& system, const Config& q, const Config& v, double t);
+/// A pose on a branch that all rows but those of drives allow, ahead of q along v by `far` of the scene's length; nothing at rest.
+std::optional<Config> pose_ahead(const System& system, const Config& q, const Config& v, double t, double far);
+/// The same along some direction, the same on all ranks.
+std::optional<Config> pose_aside(const System& system, const Config& q, unsigned seed, double t, double far);
+/// Rows independent at q, a pose beside the singular one.
+void choose_rows_beside(System& system, const Config& q, Redundancy& now);
 
 }  // namespace hilo

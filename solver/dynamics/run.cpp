@@ -17,6 +17,7 @@
 #include "dynamics/progress.hpp"
 #include "dynamics/recorder.hpp"
 #include "dynamics/redundancy.hpp"
+#include "dynamics/singular_start.hpp"
 #include "dynamics/start.hpp"
 #include "dynamics/step_control.hpp"
 
@@ -227,9 +228,7 @@ class Run {
   /// At a singular position mechanisms branch: the accelerations there tell which way, and velocities follow the joints a little ahead.
   void leave_singular_position(const std::vector<Active>& rows, double step) {
     consistent_acceleration(system_, *solver_, state_, 0.05 * step);
-    set_rows(system_, rows);
-    if (const std::optional<Config> ahead = pose_ahead(system_, state_.q, state_.v, 0))
-      projected_ = std::max(projected_, project_velocities(system_, *solver_, *ahead, state_.v, 0));
+    projected_ = std::max(projected_, follow_branch(system_, *solver_, state_, redundancy_, rows));
   }
 
   /// At the start and after a jump of the loads: history that belongs to the new forces.

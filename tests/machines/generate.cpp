@@ -67,7 +67,7 @@ const std::vector<Family>& families() {
       {"rubbing", "friction in joints", false, false},
       {"driven", "a hinge of a tree or polygon turned by its drive", false, false},
       {"motored", "a motor in a hinge", false, false},
-      {"flat", "parallelograms drawn flat", false, false},
+      {"flat", "parallelograms drawn flat, two to four cranks: they start where branches meet"},
       {"compliant", "trees whose joints give way", false, false},
   };
   return list;

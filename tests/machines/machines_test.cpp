@@ -1,4 +1,4 @@
-// Random machines against the default integrator: 342 rigid and 60 flexible runs, judged by machines/judge and not by the program.
+// Random machines against the default integrator: 380 rigid and 60 flexible runs, judged by machines/judge and not by the program.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
