@@ -10,7 +10,7 @@ namespace {
 
 constexpr int samples = 1000;  // instants of a run that are looked at
 
-std::string place_of(const Scene& scene, const std::string& joint) {
+std::string place_of_joint(const Scene& scene, const std::string& joint) {
   for (const Entry& e : scene.entries("joint"))
     if (e.name == joint) return e.place.text();
   return scene.path;
@@ -26,7 +26,7 @@ void refuse_contradictions(const Scene& scene, const System& system, const Redun
     for (int k = 1; k <= samples; ++k) {
       const double t = end * k / samples;
       if (std::abs(joint.drive.law.at(t).value - start) <= open) continue;
-      throw Error(place_of(scene, joint.name),
+      throw Error(place_of_joint(scene, joint.name),
                   fmt::format("joint \"{}\" is to be driven, but {} at t = {:.3g} s", joint.name,
                               by.empty() ? "its own rows hold it" : fmt::format("joint \"{}\" holds it still", by), t),
                   "take away the drive, or what holds the same motion");
@@ -55,7 +55,7 @@ void refuse_contradictions(const Scene& scene, const System& system, const Redun
       for (const Carrier& end_of : joint->ends())
         if (end_of.body >= 0 && system.bodies[end_of.body].motion >= 0) moves = system.motions[system.bodies[end_of.body].motion].name;
       throw Error(
-          place_of(scene, joint->name),
+          place_of_joint(scene, joint->name),
           fmt::format("joint \"{}\" holds what motion \"{}\" moves: it would open by {:.3g} at t = {:.3g} s", joint->name, moves, worst, t),
           "take away the joint or the motion");
     }

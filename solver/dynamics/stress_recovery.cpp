@@ -109,7 +109,7 @@ StressRecovery::Patches StressRecovery::made_patches(int order, const std::vecto
   std::vector<StressPoint> points;
   std::vector<Vec3> samples;
   const auto sample = [&](const SolidBatch& b, const Positions& at) {
-    stress_points(b.shape, b.law, b.c, at.X, at.x, StressPoints::samples, points);
+    stress_points(b.shape, b.material, at.X, at.x, StressPoints::samples, points);
     samples.clear();
     if (order == 2 && quadratic(b.shape))
       for (const StressPoint& q : points) samples.push_back(q.X);
@@ -119,7 +119,7 @@ StressRecovery::Patches StressRecovery::made_patches(int order, const std::vecto
   each_cell(p, s.X, [&](size_t b, size_t, std::span<const int> corner, const Positions& at) {
     const SolidBatch& batch = s.batches[b];
     sample(batch, at);
-    stress_points(batch.shape, batch.law, batch.c, at.X, at.x, StressPoints::everywhere, points);
+    stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::everywhere, points);
     for (const int v : corner) {
       double* to = shape.data() + static_cast<size_t>(v) * PatchFit::n_shape;
       for (const Vec3& X : samples) PatchFit::add_sample(X - s.X[p.node[v]], to);
@@ -148,7 +148,7 @@ std::vector<double> StressRecovery::polynomials(const Patches& p, const std::vec
   std::vector<StressPoint> points;
   each_cell(p, x, [&](size_t b, size_t, std::span<const int> corner, const Positions& at) {
     const SolidBatch& batch = system_.batches[b];
-    stress_points(batch.shape, batch.law, batch.c, at.X, at.x, StressPoints::samples, points);
+    stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::samples, points);
     if (p.order == 2 && quadratic(batch.shape)) {
       for (const int v : corner)
         for (const StressPoint& q : points) p.fit[v].add_stress(q.X - system_.X[p.node[v]], q.S, sums.data() + v * width);
@@ -213,7 +213,7 @@ void StressRecovery::add_bars(const std::vector<Vec3>& x, std::vector<double>& a
     const SolidBatch& batch = system_.batches[b];
     for (size_t e = 0; is_bar(batch.shape) && e < batch.cells.size(); ++e) {
       ends.gather(system_, x, batch.nodes.data() + 2 * e, 2);
-      const Vec6 stress = bar_stress(batch.law, batch.c, ends.X, ends.x);
+      const Vec6 stress = bar_stress(batch.material, ends.X, ends.x);
       cell[batch.cells[e]] = von_mises(stress);
       for (const int end : {0, 1}) {
         double* to = at.data() + static_cast<size_t>(site_of_[b][2 * e + end]) * n_values;
@@ -236,7 +236,7 @@ StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x) const
     each_cell(p, x, [&](size_t b, size_t e, std::span<const int> corner, const Positions& at) {
       const SolidBatch& batch = s.batches[b];
       const CellPolynomial P(s, p.node, p.fit, polynomial.data(), PatchFit::n_rows(p.order), corner);
-      stress_points(batch.shape, batch.law, batch.c, at.X, at.x, StressPoints::samples, points);
+      stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::samples, points);
       Eigen::Matrix<double, 6, Eigen::Dynamic> rest(6, points.size());
       for (size_t q = 0; q < points.size(); ++q) rest.col(q) = points[q].S - P(points[q].X);
       const Eigen::Matrix<double, 6, Eigen::Dynamic> extrapolated = rest * to_nodes(batch.shape).transpose();
@@ -261,10 +261,10 @@ StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x) const
     each_cell(p, x, [&](size_t b, size_t e, std::span<const int>, const Positions& at) {
       const SolidBatch& batch = s.batches[b];
       const int* site = site_of_[b].data() + e * at.X.size();
-      stress_points(batch.shape, batch.law, batch.c, at.X, at.x, StressPoints::integration, points);
+      stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::integration, points);
       double& mean = out.cell[batch.cells[e]];
       for (const StressPoint& q : points) mean += von_mises(cauchy(q.F, q.S)) / static_cast<double>(points.size());
-      stress_points(batch.shape, batch.law, batch.c, at.X, at.x, StressPoints::everywhere, points);
+      stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::everywhere, points);
       double square = 0, volume = 0;
       for (const StressPoint& q : points) {
         Vec6 off = -q.S;

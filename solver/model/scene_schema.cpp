@@ -1,5 +1,6 @@
 // What a scene may say: the table behind the checks, --explain and docs/format.md.
 #include "model/scene.hpp"
+#include "physics/material/materials.hpp"
 
 namespace hilo {
 namespace {
@@ -25,20 +26,18 @@ std::vector<KindSchema> make() {
                 {"units", text, "", "m-kg-s", "system of the numbers in this file: m-kg-s, mm-t-s, mm-kg-ms, in-lbf-s, ft-lbf-s"},
                 {"mesh", text, "", "", "mesh.h5, tags.h5 or parts-N.h5; the command line overrides it"},
                 {"gravity", vector3, "m/s^2", "[0, 0, 0]", "acceleration of free fall"}}});
-  s.push_back({"material",
-               "stvk",
-               "St. Venant-Kirchhoff: small or moderate strain, large rotation",
-               {{"kind", text, "", "stvk", "stvk or neo-hookean"},
-                {"E", number, "Pa", "", "Young's modulus (may come from the deck)", above(0)},
-                {"nu", number, "1", "", "Poisson's ratio", between(-1, 0.5)},
-                {"density", number, "kg/m^3", "", "reference density", above(0)}}});
-  s.push_back({"material",
-               "neo-hookean",
-               "compressible neo-Hookean solid",
-               {{"kind", text, "", "!", "stvk or neo-hookean"},
-                {"E", number, "Pa", "", "Young's modulus at small strain", above(0)},
-                {"nu", number, "1", "", "Poisson's ratio at small strain", between(-1, 0.5)},
-                {"density", number, "kg/m^3", "", "reference density", above(0)}}});
+  static const std::string material_words = [] {
+    std::string words;
+    const auto& kinds = material_kinds();
+    for (size_t k = 0; k < kinds.size(); ++k) words += (k == 0 ? "" : k + 1 < kinds.size() ? ", " : " or ") + std::string(kinds[k].kind);
+    return words;
+  }();
+  for (const MaterialKind& m : material_kinds()) {
+    KindSchema rows{"material", m.kind, m.meaning, {{"kind", text, "", s.back().section == "material" ? "!" : m.kind, material_words}}};
+    rows.params.insert(rows.params.end(), m.keys.begin(), m.keys.end());
+    rows.params.push_back({"density", number, "kg/m^3", "", "reference density", above(0)});
+    s.push_back(std::move(rows));
+  }
   s.push_back({"region",
                "",
                "material of a region; the name may be a glob (quoted), the last match wins",

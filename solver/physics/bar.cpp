@@ -1,16 +1,13 @@
 #include "physics/bar.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hilo {
-
 namespace {
 
-double young(const Lame& c) { return c.mu * (3 * c.lambda + 2 * c.mu) / (c.lambda + c.mu); }
-
-template <Law law>
+template <class M>
 void run_bar(const KernelCall& k) {
+  const M& law = *static_cast<const M*>(k.law);
   const double w = k.weight;
   double d0[3], d1[3], dm[3], L2 = 0, l0 = 0, l1 = 0;
   for (int i = 0; i < 3; ++i) {
@@ -21,14 +18,14 @@ void run_bar(const KernelCall& k) {
   const double L = std::sqrt(L2), e0 = (l0 / L2 - 1) / 2, e1 = (l1 / L2 - 1) / 2;
   BarStep step{0, 0};
   if (k.elastic != 0 && w == 0.5) {
-    step = bar_step(law, k.c, e0, e1);
+    step = law.bar_step(e0, e1);
   } else if (k.elastic != 0) {
-    const BarState s = bar_state(law, k.c, (1 - w) * e0 + w * e1);
+    const BarState s = law.bar((1 - w) * e0 + w * e1);
     step = {s.S, w * s.slope};
   }
-  const double rate = k.viscous * young(k.c), S = k.area * (k.elastic * step.S + rate * (e1 - e0)),
+  const double rate = k.viscous * young_of(law.linear()), S = k.area * (k.elastic * step.S + rate * (e1 - e0)),
                D = k.area * (k.elastic * step.slope + rate);
-  if (k.energy) *k.energy = k.area * L * bar_state(law, k.c, e1).W;
+  if (k.energy) *k.energy = k.area * L * law.bar(e1).W;
   if (k.dissipated) *k.dissipated = k.area * L * rate * (e1 - e0) * (e1 - e0);
   if (k.least_det) *k.least_det = 1;
   const double m = k.density * k.area * L / 6;
@@ -42,49 +39,14 @@ void run_bar(const KernelCall& k) {
     }
 }
 
+template <class... M>
+KernelFunction kernel_in(size_t law, const std::variant<M...>*) {
+  constexpr KernelFunction of_law[] = {run_bar<M>...};
+  return of_law[law];
+}
+
 }  // namespace
 
-BarState bar_state(Law law, const Lame& c, double e) {
-  if (law == Law::stvk) {
-    const double Y = young(c), nu = c.lambda / (2 * (c.lambda + c.mu));
-    return {Y * e * e / 2, Y * e, Y, std::max(1 - 2 * nu * e, 0.01)};
-  }
-  const double a = 1 + 2 * e, half = std::log(a) / 2;
-  // in y = ln t: mu (exp(y) - 1) + lambda (half + y) = 0, whose left side is convex and rising: Newton's method converges
-  double y = -c.lambda / (c.lambda + c.mu) * half;
-  for (int it = 0; it < 60; ++it) {
-    const double step = (c.mu * std::expm1(y) + c.lambda * (half + y)) / (c.mu * std::exp(y) + c.lambda);
-    y -= step;
-    if (!(std::abs(step) > 1e-15 * (1 + std::abs(y)))) break;
-  }
-  const double t = std::exp(y), log_J = half + y, dt = -c.lambda / (2 * a) / (c.mu + c.lambda / t);
-  return {c.mu / 2 * (2 * e + 2 * std::expm1(y)) - c.mu * log_J + c.lambda / 2 * log_J * log_J, c.mu * (a - t) / a,
-          2 * c.mu * (t / (a * a) - dt / a), t};
-}
-
-BarStep bar_step(Law law, const Lame& c, double e0, double e1) {
-  const double step = e1 - e0;
-  if (law == Law::stvk) {
-    const double Y = young(c);
-    return {Y * (e0 + e1) / 2, Y / 2};
-  }
-  if (std::abs(step) > 0.02 * std::min(1 + 2 * e0, 1 + 2 * e1)) {
-    const BarState s0 = bar_state(law, c, e0), s1 = bar_state(law, c, e1);
-    const double S = (s1.W - s0.W) / step;
-    return {S, (s1.S - S) / step};
-  }
-  // the mean of S over a short step, by Gauss's four points: the remainder is of the eighth power of the step
-  constexpr double x[4] = {-0.86113631159405258, -0.33998104358485626, 0.33998104358485626, 0.86113631159405258};
-  constexpr double weight[4] = {0.34785484513745386, 0.65214515486254614, 0.65214515486254614, 0.34785484513745386};
-  BarStep out{0, 0};
-  for (int p = 0; p < 4; ++p) {
-    const double at = (1 + x[p]) / 2;
-    const BarState s = bar_state(law, c, e0 + at * step);
-    out.S += weight[p] / 2 * s.S, out.slope += weight[p] / 2 * at * s.slope;
-  }
-  return out;
-}
-
-KernelFunction bar_kernel(Law law) { return law == Law::stvk ? run_bar<Law::stvk> : run_bar<Law::neo_hookean>; }
+KernelFunction bar_kernel(size_t law) { return kernel_in(law, static_cast<const Material*>(nullptr)); }
 
 }  // namespace hilo

@@ -2,15 +2,14 @@
 // Pressures that differ from point to point are more conditions than the nodes can meet, and the cell locks.
 //
 //   lambda = lambda_p + lambda_m,   lambda_p = the value at the same mu and the bound nu_p;   points have (lambda_p, mu), and the cell
-//   St. Venant-Kirchhoff   U = V lambda_m/2 theta^2,      theta = mean of tr E
-//   neo-Hookean            U = V lambda_m/8 (ln D)^2,     D = mean of det C
+//   U = V lambda_m/2 theta^2,    theta = mean of tr E     where the law has lambda/2 (tr E)^2
+//   U = V lambda_m/8 (ln D)^2,   D = mean of det C        where it has lambda/8 (ln det C)^2
 //
 // The rest at points keeps bending stiff where one cell is all there is across it.  tr E is quadratic in positions and det C1 - det C0 =
 // A:(C1 - C0) exactly (material/neo_hookean.hpp), so their means have exact discrete gradients and energy-momentum is kept.  Rate terms:
 // lambda_m of the linear moduli on theta.  At nu_p and below nothing changes.
 #pragma once
 #include "physics/material/neo_hookean.hpp"
-#include "physics/material/stvk.hpp"
 #include "physics/solid.hpp"
 
 namespace hilo {
@@ -46,10 +45,10 @@ struct MeanStress {
 };
 
 /// Adds the energy of the mean to f, K, energy and dissipated (conventions of SolidCall); `lambda` is lambda_m.
-template <class S, class Material, class T>
+template <class S, Dilatation form, class T>
 inline void add_mean_dilatation(double lambda, const SolidCall<T>& c) {
   constexpr int n = S::n, n3 = 3 * n;
-  constexpr bool is_stvk = std::is_same_v<Material, StVenantKirchhoff>;
+  constexpr bool by_trace = form == Dilatation::trace;
   const double w = c.weight;
   const T zero = 0 * c.X[0];
   T volume = zero, theta0 = zero, theta1 = zero, D0 = zero, D1 = zero, D_end = zero;
@@ -78,7 +77,7 @@ inline void add_mean_dilatation(double lambda, const SolidCall<T>& c) {
       add_gradient(Fm, unit, g, weight, theta_m);
       add_gradient(F1, unit, g, weight, theta_1);
     }
-    if constexpr (!is_stvk) {
+    if constexpr (!by_trace) {
       T M[6], A[6], cof1[6], d0, d1;
       const T J = solid::determinant(F1);
       D_end += weight * J * J;
@@ -98,7 +97,7 @@ inline void add_mean_dilatation(double lambda, const SolidCall<T>& c) {
   if (c.dissipated) *c.dissipated += volume * rate * (theta1 - theta0);
   double slope_theta = lambda * c.viscous;
   T slope_D = zero;
-  if constexpr (is_stvk) {
+  if constexpr (by_trace) {
     mean.theta += lambda * c.elastic * ((1 - w) * theta0 + w * theta1);
     slope_theta += lambda * c.elastic * w;
     if (c.energy) *c.energy += volume * (lambda / 2) * theta1 * theta1;

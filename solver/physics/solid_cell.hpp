@@ -6,17 +6,18 @@
 
 namespace hilo {
 
-/// Adds to f, K, energy, dissipated and lowers least_det; the caller clears them.  c are the moduli of the law.
-template <class S, class Material, class T>
-inline void evaluate_strain(const Lame& c, const SolidCall<T>& call) {
+/// Adds to f, K, energy, dissipated and lowers least_det; the caller clears them.
+template <class S, class M, class T>
+inline void evaluate_strain(const M& law, const SolidCall<T>& call) {
+  const Lame c = law.linear();
   const double mean = mean_lambda<S>(c);
   if (mean > 0) {
     SolidCall<T> points = call;
     points.linear.lambda -= mean;
-    evaluate_solid<S>(Material{{c.lambda - mean, c.mu}}, points);
-    add_mean_dilatation<S, Material>(mean, call);
+    evaluate_solid<S>(law.with_lambda(c.lambda - mean), points);
+    add_mean_dilatation<S, M::bulk>(mean, call);
   } else {
-    evaluate_solid<S>(Material{c}, call);
+    evaluate_solid<S>(law, call);
   }
   if constexpr (std::is_same_v<S, Hex8>) add_hourglass(c, call);
   if constexpr (std::is_same_v<S, Hex20R>) add_hourglass20(c, call);

@@ -7,9 +7,9 @@
 
 namespace hilo {
 
-KernelFunction kernel_lanes2(Shape, Law);
-KernelFunction kernel_lanes4(Shape, Law);
-KernelFunction kernel_lanes8(Shape, Law);
+KernelFunction kernel_lanes2(Shape, size_t);
+KernelFunction kernel_lanes4(Shape, size_t);
+KernelFunction kernel_lanes8(Shape, size_t);
 
 int lanes() {
   static const int width = [] {
@@ -24,7 +24,7 @@ int lanes() {
   return width;
 }
 
-SolidKernel solid_kernel(Shape shape, Law law) {
+SolidKernel solid_kernel(Shape shape, size_t law) {
   if (shape == Shape::bar2) return {bar_kernel(law), 1};
   const int w = lanes();
   return {w == 8 ? kernel_lanes8(shape, law) : w == 4 ? kernel_lanes4(shape, law) : kernel_lanes2(shape, law), w};

@@ -1,18 +1,15 @@
 // The solid kernels by shape and material, in the widest vectors this machine has.
 #pragma once
 #include "base/shape.hpp"
-#include "physics/material/voigt.hpp"
+#include "physics/material/materials.hpp"
 
 namespace hilo {
-
-/// Material laws known to the solid kernels.
-enum class Law { stvk, neo_hookean };
 
 /// Arguments of one call on `width` cells; arrays are (entry x width), lane fastest.  See SolidCall for the meaning.
 struct KernelCall {
   const double *X, *x0, *x1;
   double elastic, viscous;
-  Lame c;
+  const void* law;                                  // parameters(material) of the law that the kernel is of
   double *f, *K, *energy, *dissipated, *least_det;  // null where not wanted; set, not added to
   double density = 0;
   const double* a = nullptr;  // null: no inertia
@@ -23,13 +20,13 @@ struct KernelCall {
 
 using KernelFunction = void (*)(const KernelCall&);
 
-/// Kernel of a shape and law and the number of cells it takes at once.
+/// Kernel of a shape and a law (Material::index()) and the number of cells it takes at once.
 struct SolidKernel {
   KernelFunction call;
   int width;
 };
 /// Chosen at run time by what the processor can do; HILO_LANES=2|4|8 lowers the choice.
-SolidKernel solid_kernel(Shape shape, Law law);
+SolidKernel solid_kernel(Shape shape, size_t law);
 int lanes();
 
 }  // namespace hilo

@@ -1,7 +1,7 @@
 #include "physics/solid_kernel_lanes.hpp"
 
 namespace hilo {
-KernelFunction kernel_lanes4(Shape shape, Law law) {
+KernelFunction kernel_lanes4(Shape shape, size_t law) {
   typedef double Lanes __attribute__((vector_size(8 * 4)));
   return kernel_of<Lanes>(shape, law);
 }

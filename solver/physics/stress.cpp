@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "physics/bar.hpp"
 #include "physics/shape/tet10.hpp"
 #include "physics/shape/wedge15.hpp"
 #include "physics/solid_cell.hpp"
@@ -12,12 +11,10 @@
 namespace hilo {
 namespace {
 
-Vec6 second_piola(Law law, const Lame& c, const double e[6]) {
+template <class M>
+Vec6 second_piola(const M& law, const double e[6]) {
   Vec6 s = Vec6::Zero();
-  if (law == Law::stvk)
-    StVenantKirchhoff{c}.stress<double>(e, e, s.data(), nullptr);
-  else
-    NeoHookean{c}.stress<double>(e, e, s.data(), nullptr);
+  law.template stress<double>(e, e, s.data(), nullptr);
   return s;
 }
 
@@ -26,9 +23,9 @@ struct CellMean {
   double lambda = 0, dilatation = 0;  // lambda_m [Pa]; mean of tr E, or of det C
 
   /// S = lambda theta I, or S = lambda/2 ln D/D cof C
-  void add(Law law, const double e[6], Vec6& s) const {
+  void add(Dilatation form, const double e[6], Vec6& s) const {
     if (lambda == 0) return;
-    if (law == Law::stvk) {
+    if (form == Dilatation::trace) {
       for (int i = 0; i < 3; ++i) s[i] += lambda * dilatation;
       return;
     }
@@ -39,7 +36,7 @@ struct CellMean {
 };
 
 template <class S>
-CellMean mean_of(Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x) {
+CellMean mean_of(Dilatation form, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x) {
   CellMean mean{mean_lambda<S>(c), 0};
   if (mean.lambda == 0) return mean;
   double volume = 0;
@@ -49,7 +46,7 @@ CellMean mean_of(Law law, const Lame& c, std::span<const Vec3> X, std::span<cons
     solid::gradient<S::n>(x[0].data(), g, F);
     solid::green_lagrange(F, e);
     const double J = solid::determinant(F);
-    volume += w, mean.dilatation += w * (law == Law::stvk ? e[0] + e[1] + e[2] : J * J);
+    volume += w, mean.dilatation += w * (form == Dilatation::trace ? e[0] + e[1] + e[2] : J * J);
   }
   mean.dilatation /= volume;
   return mean;
@@ -100,8 +97,9 @@ Eigen::MatrixXd fitted(const Quadrature<P>& rule) {
   return at_nodes * (at_points.transpose() * at_points).inverse() * at_points.transpose();
 }
 
-template <class S, int P>
-void points_of(const Tabulated<S, P>& table, Law law, const Lame& c, const CellMean& mean, std::span<const Vec3> X, std::span<const Vec3> x,
+/// `law` without what the mean has of it.
+template <class S, int P, class M>
+void points_of(const Tabulated<S, P>& table, const M& law, const CellMean& mean, std::span<const Vec3> X, std::span<const Vec3> x,
                std::vector<StressPoint>& out) {
   out.resize(P);
   for (int p = 0; p < P; ++p) {
@@ -110,8 +108,8 @@ void points_of(const Tabulated<S, P>& table, Law law, const Lame& c, const CellM
     at.w = table.w[p] * solid::reference_gradients<S::n>(table.dN[p], X[0].data(), g);
     solid::gradient<S::n>(x[0].data(), g, F);
     solid::green_lagrange(F, e);
-    at.S = second_piola(law, {c.lambda - mean.lambda, c.mu}, e);
-    mean.add(law, e, at.S);
+    at.S = second_piola(law, e);
+    mean.add(M::bulk, e, at.S);
     at.X.setZero();
     for (int a = 0; a < S::n; ++a) at.X += table.N[p][a] * X[a];
     for (int i = 0; i < 3; ++i)
@@ -123,19 +121,21 @@ void points_of(const Tabulated<S, P>& table, Law law, const Lame& c, const CellM
 inline constexpr Tabulated<Hex20, 8> barlow_table{hex_rule<2>()};
 inline constexpr Tabulated<Hex8, 8> hex8_table{hex_rule<2>()};
 
-template <class S>
-void solid_points(Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
-                  std::vector<StressPoint>& out) {
-  const CellMean mean = mean_of<S>(law, c, X, x);
-  if (which == StressPoints::everywhere) return points_of(mass_table<S>, law, c, mean, X, x, out);
+template <class S, class M>
+void solid_points(const M& whole, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which, std::vector<StressPoint>& out) {
+  const Lame c = whole.linear();
+  const CellMean mean = mean_of<S>(M::bulk, c, X, x);
+  const M law = whole.with_lambda(c.lambda - mean.lambda);
+  if (which == StressPoints::everywhere) return points_of(mass_table<S>, law, mean, X, x, out);
   if constexpr (S::n == 20)
-    if (which == StressPoints::samples) return points_of(barlow_table, law, c, mean, X, x, out);
-  points_of(stiffness_table<S>, law, c, mean, X, x, out);
+    if (which == StressPoints::samples) return points_of(barlow_table, law, mean, X, x, out);
+  points_of(stiffness_table<S>, law, mean, X, x, out);
 }
 
 /// Strain of the centroid, plus the bending strains that the hourglass measures stand for (physics/hourglass.hpp), linear in the cell.
-void hex8_points(Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x, std::vector<StressPoint>& out) {
-  const Hourglass<double> h(X[0].data(), c);
+template <class M>
+void hex8_points(const M& law, std::span<const Vec3> X, std::span<const Vec3> x, std::vector<StressPoint>& out) {
+  const Hourglass<double> h(X[0].data(), law.linear());
   double g[8][3], F[3][3], e[6], u[3][3], modes[4][3], b[4][3];
   solid::point_gradients<Hex8>(0, X[0].data(), g);
   solid::gradient<8>(x[0].data(), g, F);
@@ -158,7 +158,7 @@ void hex8_points(Law law, const Lame& c, std::span<const Vec3> X, std::span<cons
     const Mat3 extra = axes * local * axes.transpose();
     const double total[6] = {e[0] + extra(0, 0),     e[1] + extra(1, 1),     e[2] + extra(2, 2),
                              e[3] + 2 * extra(1, 2), e[4] + 2 * extra(0, 2), e[5] + 2 * extra(0, 1)};
-    at.S = second_piola(law, c, total);
+    at.S = second_piola(law, total);
     at.w = h.volume / 8;
     at.X.setZero();
     at.N = hex8_table.N[k];
@@ -195,6 +195,29 @@ void gradients_at_nodes(std::span<const Vec3> X, std::span<const Vec3> x, std::s
   }
 }
 
+template <class M>
+void points_of_law(Shape shape, const M& law, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
+                   std::vector<StressPoint>& out) {
+  switch (shape) {
+    case Shape::tet4:
+      return solid_points<Tet4>(law, X, x, which, out);
+    case Shape::tet10:
+      return solid_points<Tet10>(law, X, x, which, out);
+    case Shape::wedge6:
+      return solid_points<Wedge6>(law, X, x, which, out);
+    case Shape::wedge15:
+      return solid_points<Wedge15>(law, X, x, which, out);
+    case Shape::hex8:
+      return hex8_points(law, X, x, out);
+    case Shape::hex20:
+      return solid_points<Hex20>(law, X, x, which, out);
+    case Shape::hex20r:
+      return solid_points<Hex20R>(law, X, x, which, out);
+    case Shape::bar2:
+      out.clear();
+  }
+}
+
 }  // namespace
 
 double von_mises(const Vec6& s) {
@@ -211,9 +234,10 @@ Vec6 cauchy(const Mat3& F, const Vec6& s) {
   return out;
 }
 
-Vec6 bar_stress(Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x) {
+Vec6 bar_stress(const Material& material, std::span<const Vec3> X, std::span<const Vec3> x) {
   const Vec3 d0 = X[1] - X[0], d = x[1] - x[0];
-  const BarState bar = bar_state(law, c, (d.squaredNorm() / d0.squaredNorm() - 1) / 2);
+  const double e = (d.squaredNorm() / d0.squaredNorm() - 1) / 2;
+  const BarState bar = std::visit([&](const auto& law) { return law.bar(e); }, material);
   const Vec3 n = d.normalized();
   const double s = bar.S * d.norm() / d0.norm() / bar.t;
   Vec6 out;
@@ -221,26 +245,9 @@ Vec6 bar_stress(Law law, const Lame& c, std::span<const Vec3> X, std::span<const
   return out;
 }
 
-void stress_points(Shape shape, Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
+void stress_points(Shape shape, const Material& material, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
                    std::vector<StressPoint>& out) {
-  switch (shape) {
-    case Shape::tet4:
-      return solid_points<Tet4>(law, c, X, x, which, out);
-    case Shape::tet10:
-      return solid_points<Tet10>(law, c, X, x, which, out);
-    case Shape::wedge6:
-      return solid_points<Wedge6>(law, c, X, x, which, out);
-    case Shape::wedge15:
-      return solid_points<Wedge15>(law, c, X, x, which, out);
-    case Shape::hex8:
-      return hex8_points(law, c, X, x, out);
-    case Shape::hex20:
-      return solid_points<Hex20>(law, c, X, x, which, out);
-    case Shape::hex20r:
-      return solid_points<Hex20R>(law, c, X, x, which, out);
-    case Shape::bar2:
-      out.clear();
-  }
+  std::visit([&](const auto& law) { points_of_law(shape, law, X, x, which, out); }, material);
 }
 
 const Eigen::MatrixXd& to_nodes(Shape shape) {

@@ -25,7 +25,7 @@ struct StressPoint {
 };
 
 /// Points of a solid cell at positions x of its nodes.
-void stress_points(Shape shape, Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
+void stress_points(Shape shape, const Material& material, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
                    std::vector<StressPoint>& out);
 
 /// Deformation gradient at each node of a solid cell; where the cell has no volume at a node (collapsed corners), its mean.
@@ -38,7 +38,7 @@ const Eigen::MatrixXd& to_nodes(Shape shape);
 /// Cauchy stress F S F^T / det F.
 Vec6 cauchy(const Mat3& F, const Vec6& S);
 /// Cauchy stress of a bar of two nodes: along the bar alone.
-Vec6 bar_stress(Law law, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x);
+Vec6 bar_stress(const Material& material, std::span<const Vec3> X, std::span<const Vec3> x);
 
 /// A norm of deviators: |von_mises(a) - von_mises(b)| <= von_mises(a - b).
 double von_mises(const Vec6& s);

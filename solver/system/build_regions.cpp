@@ -3,12 +3,18 @@
 #include <fnmatch.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "system/builder.hpp"
 
 namespace hilo {
+namespace {
+
+const char* const give_material = "give it with [region.NAME] material = \"...\" and [material....]";
+
+}  // namespace
 
 void Builder::read_regions() {
   if (!mesh_) return;
@@ -35,7 +41,7 @@ void Builder::read_regions() {
         if (m.name == material) found = &m;
       }
       if (!found) throw Error(region.where, fmt::format("no material \"{}\"", material), suggest(material, names));
-      region.material_kind = found->text("kind");
+      region.material = found;
       if (found->has("E")) region.E = found->number("E");
       if (found->has("nu")) region.nu = found->number("nu");
       if (found->has("density")) region.density = found->number("density");
@@ -63,17 +69,18 @@ void Builder::integrate_regions() {
     for (int i = 0; i < 3; ++i) lo[i] = std::min(lo[i], x[i]), hi[i] = std::max(hi[i], x[i]);
   for (int i = 0; i < 3; ++i) origin_[i] = (comm_.max(hi[i]) - comm_.max(-lo[i])) / 2;
   const int W = lanes();
+  const StVenantKirchhoff no_matter{{1, 1}};  // the mass alone is asked for
   alignas(64) double X[60 * 8], a[60 * 8], f[60 * 8];
   for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
     Region& r = regions_[mesh.region[e]];
     const double density = std::isnan(r.density) ? 0 : r.density;
     const auto nodes = mesh.cell(e);
-    const SolidKernel kernel = solid_kernel(static_cast<Shape>(mesh.shape[e]), Law::stvk);
+    const SolidKernel kernel = solid_kernel(static_cast<Shape>(mesh.shape[e]), place_of<StVenantKirchhoff>);
     const int n3 = 3 * static_cast<int>(nodes.size()), w = std::min(W, kernel.width);
     const auto integrate = [&](auto&& value) {
       for (int i = 0; i < n3; ++i)
         for (int l = 0; l < w; ++l) X[i * w + l] = mesh.X[nodes[i / 3]][i % 3] - origin_[i % 3], a[i * w + l] = value(i);
-      kernel.call({X, X, X, 0, 0, {1, 1}, f, nullptr, nullptr, nullptr, nullptr, density, a, 0, r.area});
+      kernel.call({X, X, X, 0, 0, &no_matter, f, nullptr, nullptr, nullptr, nullptr, density, a, 0, r.area});
     };
     integrate([](int i) { return i % 3 == 0 ? 1.0 : 0.0; });
     for (int i = 0; i < n3; i += 3) r.mass += f[i * w];
@@ -171,6 +178,37 @@ void Builder::make_rigid_bodies() {
   }
 }
 
+/// The law of a region: its kind in the list of materials, its values from the scene, or from the deck.
+Material Builder::material_of(const Region& r) const {
+  const auto& kinds = material_kinds();
+  const MaterialKind* kind = &kinds.front();
+  std::vector<std::string> names;
+  for (const MaterialKind& k : kinds) {
+    names.emplace_back(k.kind);
+    if (r.material && r.material->kind == k.kind) kind = &k;
+  }
+  if (r.material && r.material->kind != kind->kind)
+    throw Error(r.where, fmt::format("no law \"{}\"", r.material->kind), suggest(r.material->kind, names));
+  const auto number = [&](std::string_view key) {
+    const Param& p = *std::find_if(kind->keys.begin(), kind->keys.end(), [&](const Param& k) { return k.key == key; });
+    const double value = key == "E"                           ? r.E
+                         : key == "nu"                        ? r.nu
+                         : r.material && r.material->has(key) ? r.material->number(key)
+                                                              : std::nan("");
+    const std::string_view what = p.meaning.substr(0, p.meaning.find_first_of(",("));
+    if (std::isnan(value)) throw Error(r.where, fmt::format("region \"{}\" has no {}", r.name, what), give_material);
+    if (!p.range.contains(value))
+      throw Error(r.where, fmt::format("region \"{}\": {} {} is not in {}", r.name, what, value, p.range.text()));
+    return value;
+  };
+  const auto has = [&](std::string_view key) { return r.material && r.material->has(key); };
+  const auto numbers = [&](std::string_view key) { return has(key) ? r.material->numbers(key) : std::vector<double>{}; };
+  const auto refuse = [&](std::string_view key, const std::string& why) {
+    throw Error(r.material ? r.material->where(key) : r.where, fmt::format("region \"{}\": {}", r.name, why));
+  };
+  return kind->make({has, number, numbers, refuse});
+}
+
 void Builder::make_batches() {
   if (!mesh_) return;
   const Mesh& mesh = mesh_->mesh;
@@ -186,20 +224,16 @@ void Builder::make_batches() {
     const Region& r = regions_[key.first];
     b.region = key.first;
     b.shape = static_cast<Shape>(key.second);
-    const char* hint = "give it with [region.NAME] material = \"...\" and [material....]";
-    if (std::isnan(r.E)) throw Error(r.where, fmt::format("region \"{}\" has no Young's modulus", r.name), hint);
-    if (std::isnan(r.nu)) throw Error(r.where, fmt::format("region \"{}\" has no Poisson's ratio", r.name), hint);
-    if (!(r.nu < 0.5)) throw Error(r.where, fmt::format("region \"{}\": Poisson's ratio {} is not in (-1, 0.5)", r.name, r.nu));
+    b.material = material_of(r);
     const bool is_static = scene_.table("time").text("analysis") == "static";
-    if (std::isnan(r.density) && !is_static) throw Error(r.where, fmt::format("region \"{}\" has no density", r.name), hint);
+    if (std::isnan(r.density) && !is_static) throw Error(r.where, fmt::format("region \"{}\" has no density", r.name), give_material);
     if (b.shape == Shape::bar2 && r.area <= 0)
       throw Error(r.where, fmt::format("region \"{}\" is made of bars and has no area", r.name), "give [region.NAME] area");
-    b.law = r.material_kind == "neo-hookean" ? Law::neo_hookean : Law::stvk;
-    b.c = lame(r.E, r.nu);
     b.density = std::isnan(r.density) ? 0 : r.density;
     b.beta = r.beta, b.alpha = r.alpha, b.area = r.area;
-    b.kernel = solid_kernel(b.shape, b.law);
-    out_->stiffness = std::max(out_->stiffness, r.E * (b.area > 0 ? b.area / mesh_->length : mesh_->length / 100));
+    b.kernel = solid_kernel(b.shape, b.material.index());
+    out_->stiffness =
+        std::max(out_->stiffness, young_of(linear_moduli(b.material)) * (b.area > 0 ? b.area / mesh_->length : mesh_->length / 100));
     out_->batches.push_back(std::move(b));
   }
   warn_of_limits();

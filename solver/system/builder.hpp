@@ -21,7 +21,8 @@ class Builder {
  private:
   /// What a region is made of.
   struct Region {
-    std::string name, material_kind = "stvk";
+    std::string name;
+    const Entry* material = nullptr;  // null: what the deck carries, and the first kind
     double E = std::nan(""), nu = std::nan(""), density = std::nan("");
     double mass_wanted = 0, area = 0, beta = 0, alpha = 0;
     std::string where;  // of its material, for errors
@@ -37,6 +38,7 @@ class Builder {
   void read_regions();
   void integrate_regions();
   void make_rigid_bodies();
+  Material material_of(const Region& r) const;
   void make_batches();
   void add_free_bodies();
   // element_limits.cpp

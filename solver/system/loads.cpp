@@ -113,7 +113,7 @@ System::Work System::work(const Stage& s, std::span<const double> lambda) const 
       for (int k = 0; k < n; ++k)
         for (int i = 0; i < 3; ++i)
           for (int l = 0; l < W; ++l) X_[(3 * k + i) * W + l] = X[nodes[k]][i], v[(3 * k + i) * W + l] = s.v->x[nodes[k]][i];
-      b.kernel.call({X_, X_, X_, 0, 0, b.c, f, nullptr, nullptr, nullptr, nullptr, b.density * b.alpha, v, 0, b.area});
+      b.kernel.call({X_, X_, X_, 0, 0, parameters(b.material), f, nullptr, nullptr, nullptr, nullptr, b.density * b.alpha, v, 0, b.area});
       for (int k = 0; k < n; ++k)
         for (int i = 0; i < 3; ++i) dissipated += f[(3 * k + i) * W] * (s.end->x[nodes[k]][i] - from.x[nodes[k]][i]);
     }

@@ -52,8 +52,22 @@ void System::add_solids(Pass& p) const {
     double* K = p.K ? lanes.K.get(static_cast<size_t>(n3) * n3 * W) : nullptr;
     double* det = lanes.scalar[0].get(W);
     const double rate = s.h > 0 ? b.beta / s.h : 0;
-    KernelCall call{X_,      x0,  x1,        1, same_pair ? rate + s.chi / 2 : s.chi / 2,           b.c,    f,       K, nullptr,
-                    nullptr, det, b.density, a, (s.mass_slope + b.alpha * s.alpha_slope) / s.chain, b.area, s.weight};
+    KernelCall call{X_,
+                    x0,
+                    x1,
+                    1,
+                    same_pair ? rate + s.chi / 2 : s.chi / 2,
+                    parameters(b.material),
+                    f,
+                    K,
+                    nullptr,
+                    nullptr,
+                    det,
+                    b.density,
+                    a,
+                    (s.mass_slope + b.alpha * s.alpha_slope) / s.chain,
+                    b.area,
+                    s.weight};
     for (int first = 0; first < count; first += W) {
       gather(b, first, W, X, X_);
       gather(b, first, W, s.e0->x, x0);
@@ -74,11 +88,11 @@ void System::add_solids(Pass& p) const {
         double *f2 = lanes.f2.get(n3 * W), *K2 = K ? lanes.K2.get(static_cast<size_t>(n3) * n3 * W) : nullptr;
         gather(b, first, W, s.w0->x, x0);
         gather(b, first, W, s.w1->x, x1);
-        b.kernel.call({X_, x0, x1, 0, rate, b.c, f2, K2, nullptr, nullptr, nullptr, 0, nullptr, 0, b.area});
+        b.kernel.call({X_, x0, x1, 0, rate, parameters(b.material), f2, K2, nullptr, nullptr, nullptr, 0, nullptr, 0, b.area});
         for (int i = 0; i < n3 * W; ++i) f[i] += f2[i];
         for (int i = 0; K && i < n3 * n3 * W; ++i) K[i] += s.slope1() * K2[i];
         if (K && s.slope0() != 0) {  // by x0: the ends exchanged, and with them the sign of the rate
-          b.kernel.call({X_, x1, x0, 0, -rate, b.c, f2, K2, nullptr, nullptr, nullptr, 0, nullptr, 0, b.area});
+          b.kernel.call({X_, x1, x0, 0, -rate, parameters(b.material), f2, K2, nullptr, nullptr, nullptr, 0, nullptr, 0, b.area});
           for (int i = 0; i < n3 * n3 * W; ++i) K[i] += s.slope0() * K2[i];
         }
       }
@@ -136,7 +150,7 @@ System::Energy System::energy(const Config& q, const Config& v) const {
       gather(b, first, W, X, X_);
       gather(b, first, W, q.x, x);
       gather(b, first, W, v.x, vel);
-      b.kernel.call({X_, x, x, 0, 0, b.c, p, nullptr, W_, nullptr, nullptr, b.density, vel, 0, b.area});
+      b.kernel.call({X_, x, x, 0, 0, parameters(b.material), p, nullptr, W_, nullptr, nullptr, b.density, vel, 0, b.area});
       for (int l = 0; l < W && first + l < count; ++l) {
         out.elastic += W_[l];
         for (int k = 0; k < n; ++k) {
@@ -149,7 +163,7 @@ System::Energy System::energy(const Config& q, const Config& v) const {
         }
       }
       if (gravity.isZero(0)) continue;
-      b.kernel.call({X_, x, x, 0, 0, b.c, p, nullptr, nullptr, nullptr, nullptr, b.density, x, 0, b.area});
+      b.kernel.call({X_, x, x, 0, 0, parameters(b.material), p, nullptr, nullptr, nullptr, nullptr, b.density, x, 0, b.area});
       for (int l = 0; l < W && first + l < count; ++l)
         for (int k = 0; k < n; ++k)
           for (int i = 0; i < 3; ++i) gravity_energy -= gravity[i] * p[(3 * k + i) * W + l];
@@ -200,7 +214,7 @@ double System::solid_dissipation(const Stage& s) const {
       gather(b, first, W, X, X_);
       gather(b, first, W, q0.x, x0);
       gather(b, first, W, q1.x, x1);
-      b.kernel.call({X_, x0, x1, 0, viscous, b.c, nullptr, nullptr, nullptr, D, nullptr, 0, nullptr, 0, b.area});
+      b.kernel.call({X_, x0, x1, 0, viscous, parameters(b.material), nullptr, nullptr, nullptr, D, nullptr, 0, nullptr, 0, b.area});
       for (int l = 0; l < W && first + l < count; ++l) total += D[l];
     }
   };

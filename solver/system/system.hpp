@@ -21,8 +21,7 @@ namespace hilo {
 /// Cells of one region and shape: one kernel, one set of constants.
 struct SolidBatch {
   Shape shape;
-  Law law;
-  Lame c;
+  Material material;
   double density;              // [kg/m^3]
   double beta = 0, alpha = 0;  // stiffness- and mass-proportional damping [s, 1/s]
   double area = 0;             // of bars [m^2]

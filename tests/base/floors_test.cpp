@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 const std::map<std::string, std::set<std::string>> may_include{
     {"base", {"base"}},
-    {"model", {"base", "model"}},
+    {"model", {"base", "model", "physics/material/materials.hpp"}},  // each law brings its rows of the scene's schema
     {"physics", {"base", "physics"}},
     {"linear", {"base", "linear", "model/comm.hpp"}},  // communicators come from model; matrices know neither files nor elements
     {"system", {"base", "model", "physics", "linear", "system"}},

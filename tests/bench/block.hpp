@@ -42,13 +42,15 @@ inline std::vector<std::array<Vec3, 4>> cells_of_cube(int n_corners) {
   return out;
 }
 
+inline const Material laws[] = {StVenantKirchhoff{lame(1e9, 0.3)}, NeoHookean{lame(1e9, 0.3)}};
+
 /// n x n x n cubes filled with cells of one shape and law, as a system.
 struct Block {
   LocalMesh local;
   System system;
-  Block(Shape shape, Law law, int n) {
+  Block(Shape shape, const Material& law, int n) {
     SolidBatch b{};
-    b.shape = shape, b.law = law, b.c = lame(1e9, 0.3), b.density = 1000, b.area = 0.1, b.kernel = solid_kernel(shape, law);
+    b.shape = shape, b.material = law, b.density = 1000, b.area = 0.1, b.kernel = solid_kernel(shape, law.index());
     const auto reference = test::reference_nodes(shape);
     std::map<std::tuple<int, int, int>, int> node;  // by twice the position
     for (int k = 0; k < n; ++k)

@@ -50,12 +50,12 @@ void measure_joints(int n, double hex8) {
   print("joint", "revolute", n, *system, cost(*system), hex8);
 }
 
-void measure(Shape shape, Law law, int n, double& hex8) {
+void measure(Shape shape, const Material& law, int n, double& hex8) {
   const Block block(shape, law, n);
   const Cost c = cost(block.system);
   const auto cells = static_cast<double>(block.system.batches[0].cells.size());
-  if (shape == Shape::hex8 && law == Law::stvk) hex8 = (c.tangent + c.solve) / cells;
-  print(info(shape).name, law == Law::stvk ? "stvk" : "neo-hookean", cells, block.system, c, hex8);
+  if (shape == Shape::hex8 && law.index() == place_of<StVenantKirchhoff>) hex8 = (c.tangent + c.solve) / cells;
+  print(info(shape).name, material_kinds()[law.index()].kind, cells, block.system, c, hex8);
 }
 
 }  // namespace
@@ -73,6 +73,6 @@ int main() {
                                  {Shape::wedge15, 7},
                                  {Shape::hex20, 7},
                                  {Shape::hex20r, 7}})
-    for (const Law law : {Law::stvk, Law::neo_hookean}) measure(shape, law, n, hex8);
+    for (const Material& law : bench::laws) measure(shape, law, n, hex8);
   measure_joints(100, hex8);
 }

@@ -52,14 +52,15 @@ struct Problem {
     int n = 0;
     for (size_t i = 0; i < held.size(); ++i)
       if (!held[i]) row[i] = n++;
+    const StVenantKirchhoff law{lame(E, nu)};
     alignas(64) static double X[60 * 8], f[60 * 8], K[3600 * 8], det[8];
     for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
       const auto nodes = mesh.cell(e);
-      const SolidKernel kernel = solid_kernel(static_cast<Shape>(mesh.shape[e]), Law::stvk);
+      const SolidKernel kernel = solid_kernel(static_cast<Shape>(mesh.shape[e]), place_of<StVenantKirchhoff>);
       const int n3 = 3 * static_cast<int>(nodes.size()), W = kernel.width;
       for (int i = 0; i < n3; ++i)
         for (int l = 0; l < W; ++l) X[i * W + l] = mesh.X[nodes[i / 3]][i % 3];
-      kernel.call({X, X, X, 1, 0, lame(E, nu), f, K, nullptr, nullptr, det, 0, nullptr, 0, 0, 1});
+      kernel.call({X, X, X, 1, 0, &law, f, K, nullptr, nullptr, det, 0, nullptr, 0, 0, 1});
       for (int i = 0; i < n3; ++i)
         for (int j = 0; j < n3; ++j) {
           const int r = row[3 * nodes[i / 3] + i % 3], c = row[3 * nodes[j / 3] + j % 3];

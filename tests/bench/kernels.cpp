@@ -89,14 +89,14 @@ struct Cell {
   static double* at64(std::vector<double>& v) {
     return reinterpret_cast<double*>((reinterpret_cast<std::uintptr_t>(v.data()) + 63) / 64 * 64);
   }
-  Cell(Shape shape, int W) {
+  Cell(Shape shape, const Material& law, int W) {
     const auto nodes = test::reference_nodes(shape);
     const size_t n3 = 3 * nodes.size();
     for (auto* v : {&X, &x1, &f, &a}) v->assign(n3 * W + 8, 1);
     K.resize(n3 * n3 * W + 8), least.resize(W + 8);
     for (size_t i = 0; i < n3; ++i)
       for (int l = 0; l < W; ++l) at64(X)[i * W + l] = nodes[i / 3][i % 3], at64(x1)[i * W + l] = nodes[i / 3][i % 3] * (1 + 1e-3 * l);
-    call = {at64(X), at64(X), at64(x1), 1, 0, lame(1e9, 0.3), at64(f), at64(K), nullptr, nullptr, at64(least), 1000, at64(a), 1e6};
+    call = {at64(X), at64(X), at64(x1), 1, 0, parameters(law), at64(f), at64(K), nullptr, nullptr, at64(least), 1000, at64(a), 1e6};
   }
 };
 
@@ -104,12 +104,12 @@ struct Machine {
   double peak, triad;
 };
 
-void measure(Shape shape, Law law, int n, const Machine& machine) {
-  Cell one(shape, 1), cell(shape, lanes());
+void measure(Shape shape, const Material& law, int n, const Machine& machine) {
+  Cell one(shape, law, 1), cell(shape, law, lanes());
   Counted::flops = 0;
-  kernel_of<Counted>(shape, law)(one.call);
+  kernel_of<Counted>(shape, law.index())(one.call);
   const auto flops = static_cast<double>(Counted::flops);
-  const SolidKernel kernel = solid_kernel(shape, law);
+  const SolidKernel kernel = solid_kernel(shape, law.index());
   const int repeats = 200 + 20000000 / static_cast<int>(flops);
   const double both = microseconds(repeats, [&] { kernel.call(cell.call); }) / kernel.width;
   cell.call.K = nullptr;
@@ -125,8 +125,8 @@ void measure(Shape shape, Law law, int n, const Machine& machine) {
   // read and written: blocks of the matrix; read: their places, four vectors of each node and its number; twice: nodal forces
   const double nodes = info(shape).n_nodes, bytes = nodes * nodes * (2 * 72 + 4) + nodes * (4 * 24 + 4 + 2 * 24);
   fmt::print("{:8} {:12} {:7.2f} {:7.2f} {:8.1f} {:8.1f} {:5.0f}%  {:8.2f} {:8.2f} {:7.1f} {:7.1f} {:5.0f}%\n", info(shape).name,
-             law == Law::stvk ? "stvk" : "neo-hookean", force, both, flops / 1e3, flops / both / 1e3, 100 * flops / both / machine.peak,
-             residual, assembled, bytes / 1e3, bytes / assembled / 1e3, 100 * bytes / assembled / machine.triad);
+             material_kinds()[law.index()].kind, force, both, flops / 1e3, flops / both / 1e3, 100 * flops / both / machine.peak, residual,
+             assembled, bytes / 1e3, bytes / assembled / 1e3, 100 * bytes / assembled / machine.triad);
 }
 
 }  // namespace
@@ -145,6 +145,6 @@ int main(int argc, char** argv) {
                                  {Shape::wedge15, 13},
                                  {Shape::hex20, 14},
                                  {Shape::hex20r, 14}})
-    for (const Law law : {Law::stvk, Law::neo_hookean})
+    for (const Material& law : bench::laws)
       if (argc < 2 || argv[1] == info(shape).name) measure(shape, law, n, machine);
 }

@@ -1,7 +1,6 @@
 // Stresses at points of cells against the closed forms of the laws, and the two-node bar.
 #include "physics/stress.hpp"
 
-#include "physics/bar.hpp"
 #include "physics/cells.hpp"
 
 namespace hilo::test {
@@ -50,10 +49,10 @@ TEST_P(Stress, OfAHomogeneousDeformationIsTheClosedForm) {
   for (const Lame& c : {rubber, nearly_incompressible}) {
     const Mat3 stvk = F * (c.lambda * E.trace() * I + 2 * c.mu * E) * F.transpose() / J;
     const Mat3 neo = (c.mu * (F * F.transpose() - I) + c.lambda * std::log(J) * I) / J;
-    for (const auto& [law, exact] : {std::pair{Law::stvk, stvk}, {Law::neo_hookean, neo}})
+    for (const auto& [law, exact] : {std::pair{Material(StVenantKirchhoff{c}), stvk}, {NeoHookean{c}, neo}})
       for (const StressPoints kind : kinds) {
         std::vector<StressPoint> points;
-        stress_points(GetParam(), law, c, X, x, kind, points);
+        stress_points(GetParam(), law, X, x, kind, points);
         for (const StressPoint& at : points) {
           EXPECT_LT((cauchy(at.F, at.S) - voigt(exact)).norm(), 1e-12 * exact.norm());
           EXPECT_GT(at.w, 0);
@@ -69,10 +68,10 @@ TEST_P(Stress, OfAHomogeneousDeformationIsTheClosedForm) {
 TEST_P(Stress, OfARigidMotionIsZero) {
   std::vector<Vec3> x;
   for (const Vec3& p : X) x.push_back(Eigen::AngleAxisd(2, Vec3(1, 1, -1).normalized()).toRotationMatrix() * p + Vec3(1, 2, 3));
-  for (const Law law : {Law::stvk, Law::neo_hookean})
+  for (const Material& law : both_laws)
     for (const StressPoints kind : kinds) {
       std::vector<StressPoint> points;
-      stress_points(GetParam(), law, rubber, X, x, kind, points);
+      stress_points(GetParam(), law, X, x, kind, points);
       for (const StressPoint& at : points) EXPECT_LT(at.S.norm(), 1e-13 * rubber.mu);
     }
 }
@@ -91,7 +90,7 @@ TEST(NodalGradients, StayFiniteWhereACornerIsCollapsed) {
 // Truth: what is linear along the axes of a quadratic cell is found at its nodes from its samples; weights of a constant sum to 1.
 TEST_P(Stress, OfTheNodesIsExtrapolatedFromTheSamples) {
   std::vector<StressPoint> points;
-  stress_points(GetParam(), Law::stvk, rubber, X, X, StressPoints::samples, points);
+  stress_points(GetParam(), StVenantKirchhoff{rubber}, X, X, StressPoints::samples, points);
   const Eigen::MatrixXd& W = to_nodes(GetParam());
   ASSERT_EQ(W.cols(), static_cast<Eigen::Index>(points.size()));
   EXPECT_LT((W.rowwise().sum() - Eigen::VectorXd::Ones(W.rows())).norm(), 1e-12);
@@ -99,7 +98,7 @@ TEST_P(Stress, OfTheNodesIsExtrapolatedFromTheSamples) {
   const auto straight = GetParam() == Shape::tet10     ? local_nodes<Tet10>()
                         : GetParam() == Shape::wedge15 ? local_nodes<Wedge15>()
                                                        : local_nodes<Hex20>();
-  stress_points(GetParam(), Law::stvk, rubber, straight, straight, StressPoints::samples, points);
+  stress_points(GetParam(), StVenantKirchhoff{rubber}, straight, straight, StressPoints::samples, points);
   for (int i = 0; i < 3; ++i)
     for (size_t a = 0; a < straight.size(); ++a) {
       double value = 0;
@@ -122,7 +121,7 @@ TEST(BendingStress, IsLinearOverTheHeightOfOneHexahedron) {
     }
     for (const StressPoints kind : kinds) {
       std::vector<StressPoint> points;
-      stress_points(shape, Law::stvk, c, X, x, kind, points);
+      stress_points(shape, StVenantKirchhoff{c}, X, x, kind, points);
       for (const StressPoint& at : points) {
         Vec6 exact = Vec6::Zero();
         exact[0] = -E * k * at.X[1];
@@ -147,10 +146,11 @@ TEST(Bar, ForceIsADiscreteGradientOfItsEnergy) {
   const double Y = 7e10, A = 2e-4, rho = 2700;
   alignas(64) double X[6] = {0, 0, 0, 1, 2, -1}, x0[6] = {0.1, 0, 0, 1.2, 2, -1}, x1[6] = {0, 0.5, 0, -0.8, 2, 1.3}, f[6], K[36], W, W0,
                      unused, a[6] = {};
-  const SolidKernel kernel = solid_kernel(Shape::bar2, Law::stvk);
+  const SolidKernel kernel = solid_kernel(Shape::bar2, place_of<StVenantKirchhoff>);
   ASSERT_EQ(kernel.width, 1);
+  const StVenantKirchhoff law{lame(Y, 0.3)};
   KernelCall call{};
-  call.X = X, call.x0 = x0, call.x1 = x1, call.elastic = 1, call.c = lame(Y, 0.3), call.f = f, call.K = K, call.energy = &W,
+  call.X = X, call.x0 = x0, call.x1 = x1, call.elastic = 1, call.law = &law, call.f = f, call.K = K, call.energy = &W,
   call.least_det = &unused, call.area = A;
   call.density = rho, call.a = a;
   kernel.call(call);
@@ -185,15 +185,16 @@ TEST(Bar, ForceIsADiscreteGradientOfItsEnergy) {
 // Truth: under uniaxial stress the lateral stress of the law is zero; a cube of the solid's own law gives axial force, energy and area.
 TEST(Bar, IsItsMaterialUnderUniaxialStress) {
   const Lame c = rubber;
-  for (const Law law : {Law::stvk, Law::neo_hookean})
+  for (const Material& material : both_laws)
     for (const double stretch : {0.6, 0.9, 1.001, 1.5, 2.5}) {
-      if (law == Law::stvk && stretch > 2) continue;  // its lateral stretch squared, 1 - 2 nu e, is negative there
-      const BarState bar = bar_state(law, c, (stretch * stretch - 1) / 2);
+      const bool stvk = std::holds_alternative<StVenantKirchhoff>(material);
+      if (stvk && stretch > 2) continue;  // its lateral stretch squared, 1 - 2 nu e, is negative there
+      const BarState bar = std::visit([&](const auto& law) { return law.bar((stretch * stretch - 1) / 2); }, material);
       const double lateral = std::sqrt(bar.t);
       const double e[6] = {(stretch * stretch - 1) / 2, (bar.t - 1) / 2, (bar.t - 1) / 2, 0, 0, 0};
       double s[6];
       double W = 0;
-      if (law == Law::stvk)
+      if (stvk)
         StVenantKirchhoff{c}.stress<double>(e, e, s, nullptr), W = StVenantKirchhoff{c}.energy<double>(e);
       else
         NeoHookean{c}.stress<double>(e, e, s, nullptr), W = NeoHookean{c}.energy<double>(e);
@@ -202,7 +203,7 @@ TEST(Bar, IsItsMaterialUnderUniaxialStress) {
       EXPECT_NEAR(s[0], bar.S, 1e-10 * scale) << stretch;
       EXPECT_NEAR(W, bar.W, 1e-10 * scale) << stretch;
       const Vec3 X[2] = {Vec3::Zero(), Vec3::UnitX()}, x[2] = {Vec3::Zero(), Vec3(0, 0, stretch)};
-      EXPECT_NEAR(bar_stress(law, c, X, x)[2], bar.S * stretch / (lateral * lateral), 1e-12 * c.mu)
+      EXPECT_NEAR(bar_stress(material, X, x)[2], bar.S * stretch / (lateral * lateral), 1e-12 * c.mu)
           << "Cauchy stress: force on the area as it is";
     }
 }
@@ -211,10 +212,11 @@ TEST(Bar, IsItsMaterialUnderUniaxialStress) {
 TEST(Bar, OfANeoHookeanMaterialKeepsEnergy) {
   for (const double step : {1e-9, 1e-4, 0.015, 0.1, 1.0}) {
     const double e0 = -0.2, e1 = e0 + step, h = 1e-6;
-    const BarStep s = bar_step(Law::neo_hookean, rubber, e0, e1);
-    const double dW = bar_state(Law::neo_hookean, rubber, e1).W - bar_state(Law::neo_hookean, rubber, e0).W;
+    const NeoHookean law{rubber};
+    const BarStep s = law.bar_step(e0, e1);
+    const double dW = law.bar(e1).W - law.bar(e0).W;
     EXPECT_NEAR(s.S * step, dW, 2e-15 * rubber.mu) << step;
-    const double slope = (bar_step(Law::neo_hookean, rubber, e0, e1 + h).S - bar_step(Law::neo_hookean, rubber, e0, e1 - h).S) / (2 * h);
+    const double slope = (law.bar_step(e0, e1 + h).S - law.bar_step(e0, e1 - h).S) / (2 * h);
     EXPECT_NEAR(s.slope, slope, 1e-6 * rubber.mu) << step;
   }
 }

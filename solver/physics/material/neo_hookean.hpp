@@ -3,7 +3,7 @@
 #include <cmath>
 #include <complex>
 
-#include "physics/material/voigt.hpp"
+#include "physics/material/material.hpp"
 
 namespace hilo {
 
@@ -45,8 +45,16 @@ inline void log_ratio(const V& r, V& L, V& dL) {
 }
 
 struct NeoHookean {
-  static constexpr const char* kind = "neo-hookean";
+  static constexpr std::string_view kind = "neo-hookean", meaning = "compressible neo-Hookean solid";
+  static std::vector<Param> keys() { return {young, poisson}; }
+  static NeoHookean make(const MaterialValues& v) { return {lame(v.number("E"), v.number("nu"))}; }
+  static constexpr Dilatation bulk = Dilatation::log_det;
+  static constexpr double soft_below = 0;
+  static constexpr std::string_view soft_because = "";
   Lame c;
+
+  Lame linear() const { return c; }
+  NeoHookean with_lambda(double lambda) const { return {{lambda, c.mu}}; }
 
   template <class T>
   T energy(const T e[6]) const {
@@ -102,6 +110,22 @@ struct NeoHookean {
     D[4][1] -= f * M[4], D[4][4] -= f * M[1] / 2, D[4][3] += f * M[5] / 2, D[4][5] += f * M[3] / 2;
     D[5][2] -= f * M[5], D[5][5] -= f * M[2] / 2, D[5][3] += f * M[4] / 2, D[5][4] += f * M[3] / 2;
   }
+
+  /// a = 1 + 2 e,  mu (t - 1) + lambda (ln a/2 + ln t) = 0,  S = mu (a - t)/a     (dW/dt = 0, 2 dW/da)
+  BarState bar(double e) const {
+    const double a = 1 + 2 * e, half = std::log(a) / 2;
+    // in y = ln t: mu (exp(y) - 1) + lambda (half + y) = 0, whose left side is convex and rising: Newton's method converges
+    double y = -c.lambda / (c.lambda + c.mu) * half;
+    for (int it = 0; it < 60; ++it) {
+      const double step = (c.mu * std::expm1(y) + c.lambda * (half + y)) / (c.mu * std::exp(y) + c.lambda);
+      y -= step;
+      if (!(std::abs(step) > 1e-15 * (1 + std::abs(y)))) break;
+    }
+    const double t = std::exp(y), log_J = half + y, dt = -c.lambda / (2 * a) / (c.mu + c.lambda / t);
+    return {c.mu / 2 * (2 * e + 2 * std::expm1(y)) - c.mu * log_J + c.lambda / 2 * log_J * log_J, c.mu * (a - t) / a,
+            2 * c.mu * (t / (a * a) - dt / a), t};
+  }
+  BarStep bar_step(double e0, double e1) const { return quotient_step(*this, e0, e1); }
 
  private:
   /// Tensor entries of C = I + 2E, so e[3] = 2 E23 = C23.

@@ -8,6 +8,8 @@ struct Lame {
   double lambda, mu;
 };
 constexpr Lame lame(double E, double nu) { return {E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))}; }
+/// Young's modulus [Pa].
+constexpr double young_of(const Lame& c) { return c.mu * (3 * c.lambda + 2 * c.mu) / (c.lambda + c.mu); }
 
 /// s = C : e for the isotropic linear law.
 template <class T>

@@ -86,7 +86,7 @@ struct Tube {
     for (std::int64_t e = 0; e < m.n_cells(); ++e) {
       std::vector<Vec3> X, x;
       for (const std::int64_t a : m.cell(e)) X.push_back(m.X[a]), x.push_back(m.X[a] + u[a]);
-      stress_points(shape, Law::stvk, lame(2e11, 0.3), X, x, StressPoints::everywhere, points);
+      stress_points(shape, StVenantKirchhoff{lame(2e11, 0.3)}, X, x, StressPoints::everywhere, points);
       for (const StressPoint& q : points) {
         Vec6 at = Vec6::Zero();
         double told = 0;
