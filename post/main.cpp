@@ -3,7 +3,7 @@
 
 #include "base/args.hpp"
 #include "base/error.hpp"
-#include "post/commands.hpp"
+#include "post/commands/commands.hpp"
 
 int main(int argc, char** argv) {
   return hilo::guarded("hilo-post", [&] {
@@ -15,10 +15,10 @@ int main(int argc, char** argv) {
                         "  hilo-post gload run.h5 --cfc 60 -o gload.csv --png gload.png\n"
                         "  hilo-post series run.h5 --list"});
     app->require_subcommand(1);
-    const hilo::Command commands[] = {hilo::render_command(*app), hilo::movie_command(*app), hilo::model_command(*app),
-                                      hilo::mesh_command(*app),   hilo::gload_command(*app), hilo::injury_command(*app),
-                                      hilo::series_command(*app), hilo::chart_command(*app), hilo::export_command(*app),
-                                      hilo::peak_command(*app)};
+    const hilo::Command commands[] = {hilo::render_command(*app), hilo::movie_command(*app),   hilo::model_command(*app),
+                                      hilo::mesh_command(*app),   hilo::gload_command(*app),   hilo::injury_command(*app),
+                                      hilo::series_command(*app), hilo::compare_command(*app), hilo::chart_command(*app),
+                                      hilo::export_command(*app), hilo::peak_command(*app)};
     if (!hilo::parse(*app, argc, argv)) return;
     for (const auto& command : commands)
       if (command.app->parsed()) command.run();

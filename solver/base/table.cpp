@@ -44,11 +44,16 @@ std::string json_number(double x) { return std::isfinite(x) ? fmt::format("{}", 
 
 std::string Table::text() const {
   if (rows.empty()) return "";
+  std::vector<std::vector<std::string>> shown = rows;
+  if (digits > 0)
+    for (auto& row : shown)
+      for (size_t j = n_text; j < row.size(); ++j)
+        if (is_number(row[j])) row[j] = fmt::format("{:.{}g}", std::stod(row[j]), digits);
   std::vector<size_t> wide(header.size());
   std::vector<char> numeric(header.size(), 1);
   for (size_t j = 0; j < header.size(); ++j) {
     wide[j] = width(header[j]);
-    for (const auto& row : rows) {
+    for (const auto& row : shown) {
       wide[j] = std::max(wide[j], width(row[j]));
       numeric[j] = j >= n_text && numeric[j] && (is_number(row[j]) || row[j] == "-" || row[j].empty());
     }
@@ -63,7 +68,7 @@ std::string Table::text() const {
     out += text.substr(0, text.find_last_not_of(' ') + 1) + '\n';
   };
   line(header);
-  for (const auto& row : rows) line(row);
+  for (const auto& row : shown) line(row);
   return out;
 }
 

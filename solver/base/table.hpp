@@ -16,6 +16,7 @@ struct Table {
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
   size_t n_text = 1;  // leading columns that are text even where they look like numbers
+  int digits = 0;     // significant digits of numbers in text(); 0: as they are.  JSON has all of them
   /// Lines "name   cells"; an empty table prints nothing.
   std::string text() const;
   /// [{"name": "hull", "cells": 12}, ...]

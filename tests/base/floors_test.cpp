@@ -69,6 +69,26 @@ TEST(Floors, EveryFolderOfTheSolverIsOne) {
     }
 }
 
+// The rooms of post/: no circle among them, and a new one must be drawn here.
+TEST(Floors, RoomsOfPostUseOnlyThoseBelow) {
+  const std::map<std::string, std::set<std::string>> below{{"files", {}},
+                                                           {"run", {}},
+                                                           {"surface", {}},
+                                                           {"picture", {"files"}},
+                                                           {"charts", {"picture"}},
+                                                           {"scene", {"run", "surface", "picture", "charts"}},
+                                                           {"injury", {"files", "run", "picture", "charts"}},
+                                                           {"commands", {"files", "run", "picture", "charts", "scene", "injury"}}};
+  const fs::path root = fs::path(HILO_SOURCE) / "post";
+  for (const auto& [file, included] : includes(root)) {
+    const fs::path inside = fs::relative(file, root);
+    if (inside == "main.cpp" || included.rfind("post/", 0) != 0) continue;
+    const std::string own = inside.begin()->string(), target = fs::path(included).parent_path().filename().string();
+    ASSERT_TRUE(below.contains(own)) << inside << " is in no room";
+    EXPECT_TRUE(own == target || below.at(own).contains(target)) << inside << " includes " << included;
+  }
+}
+
 // The heavy libraries stay where they belong: PETSc in linear, VTK in post, HDF5 in model, gmsh in tools, METIS there and where a rank's
 // cells are split into subdomains.
 TEST(Floors, LibrariesAreIncludedOnlyWhereTheyBelong) {

@@ -7,9 +7,9 @@
 #include "cli.hpp"
 #include "model/store.hpp"
 #include "picture_file.hpp"
-#include "post/colour.hpp"
-#include "post/frames.hpp"
-#include "post/playback.hpp"
+#include "post/picture/colour.hpp"
+#include "post/run/playback.hpp"
+#include "post/scene/frames.hpp"
 #include "sample_run.hpp"
 
 namespace hilo::test {

@@ -1,5 +1,5 @@
 // The filter against the published figures of benchmarks.md O16.
-#include "post/cfc.hpp"
+#include "post/injury/cfc.hpp"
 
 #include <gtest/gtest.h>
 

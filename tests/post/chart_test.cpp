@@ -5,9 +5,9 @@
 #include "base/error.hpp"
 #include "cli.hpp"
 #include "picture_file.hpp"
-#include "post/csv.hpp"
-#include "post/names.hpp"
-#include "post/ticks.hpp"
+#include "post/charts/ticks.hpp"
+#include "post/files/csv.hpp"
+#include "post/scene/names.hpp"
 
 namespace hilo::test {
 namespace {

@@ -6,8 +6,8 @@
 #include "base/error.hpp"
 #include "moving_run.hpp"
 #include "picture_file.hpp"
-#include "post/annotations.hpp"
-#include "post/run_view.hpp"
+#include "post/scene/annotations.hpp"
+#include "post/scene/run_view.hpp"
 
 namespace hilo::test {
 namespace {
@@ -85,26 +85,26 @@ TEST(Deformed, enlarges_what_is_no_rigid_motion) {
   EXPECT_NEAR(stretched.second.y() - stretched.first.y(), 0.5, 1e-9);
 }
 
-TEST(Follower, finds_the_pose_of_regions_sets_probes_sensors_and_points) {
+TEST(Marker, finds_the_pose_of_regions_sets_probes_sensors_and_points) {
   const Workplace place;
   RunFile run(write_moving_run(place, spin, 3));
   Playback playback(run);
   for (const double t : {0.0, 1.0, 3.0}) {
     const auto& x = playback.positions(t);
-    const Pose arm = Follower(run, "arm", "--track").pose(t, x);
+    const Pose arm = Marker(run, "arm", "--track").pose(t, x);
     EXPECT_LT((arm.R - turned(t)).norm(), 1e-12);
     EXPECT_LT((arm({2, 0, 0}) - spin({2, 0, 0}, t)).norm(), 1e-12);
     EXPECT_LT((arm.back(spin({3, 1, 2}, t)) - Vec3(3, 1, 2)).norm(), 1e-12);
-    EXPECT_LT((Follower(run, "tip", "--track").pose(t, x).to - spin({4, 0.25, 0.25}, t)).norm(), 1e-12);
-    EXPECT_LT((Follower(run, "end", "--track").pose(t, x).to - spin({4, 0.25, 0.25}, t)).norm(), 1e-12);
-    EXPECT_LT((Follower(run, "eye", "--track").pose(t, x).to - spin({4, 0.25, 0.25}, t)).norm(), 1e-12);
-    EXPECT_LT((Follower(run, "3.9,0.1,0.1", "--track").pose(t, x).to - spin({4, 0, 0}, t)).norm(), 1e-12);
+    EXPECT_LT((Marker(run, "tip", "--track").pose(t, x).to - spin({4, 0.25, 0.25}, t)).norm(), 1e-12);
+    EXPECT_LT((Marker(run, "end", "--track").pose(t, x).to - spin({4, 0.25, 0.25}, t)).norm(), 1e-12);
+    EXPECT_LT((Marker(run, "eye", "--track").pose(t, x).to - spin({4, 0.25, 0.25}, t)).norm(), 1e-12);
+    EXPECT_LT((Marker(run, "3.9,0.1,0.1", "--track").pose(t, x).to - spin({4, 0, 0}, t)).norm(), 1e-12);
   }
   // The way of the probe has a point for each of its rows, that of the set one for each output; both end where the point is.
-  const auto fine = Follower(run, "end", "--trace").way(2.05, playback);
+  const auto fine = Marker(run, "end", "--trace").way(2.05, playback);
   ASSERT_EQ(fine.size(), 22u);
   EXPECT_LT((fine[7] - spin({4, 0.25, 0.25}, 0.7)).norm(), 1e-12);
-  Follower tip(run, "tip", "--trace");
+  Marker tip(run, "tip", "--trace");
   ASSERT_EQ(tip.way(2, playback).size(), 3u);
   EXPECT_LT((tip.way(3, playback)[2] - spin({4, 0.25, 0.25}, 2)).norm(), 1e-12);
 }
@@ -176,7 +176,7 @@ step = 0.01
   const auto& x = playback.positions(0.3);
   const Vec3 fall(0, 0, -10 * 0.3 * 0.3 / 2);  // exact for a mid-point method
   for (size_t n = 0; n < x.size(); ++n) EXPECT_LT((x[n] - run.mesh().X[n] - fall).norm(), 1e-12);
-  EXPECT_LT((Follower(run, "ball", "--track").pose(0.3, x).to - Follower(run, "ball", "--track").reference() - fall).norm(), 1e-12);
+  EXPECT_LT((Marker(run, "ball", "--track").pose(0.3, x).to - Marker(run, "ball", "--track").reference() - fall).norm(), 1e-12);
   double far = 0;  // the ellipsoid of this inertia: J_x + J_y - J_z = 2/5 m r_z^2
   for (const Vec3& X : run.mesh().X) far = std::max(far, X.z() - 3);
   EXPECT_NEAR(far, std::sqrt(2.5 * (0.5 + 0.4 - 0.3) / 5), 1e-9);

@@ -1,12 +1,12 @@
 // Measures of injury against the closed forms of benchmarks.md O16.
-#include "post/injury.hpp"
+#include "post/injury/injury.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "post/cfc.hpp"
+#include "post/injury/cfc.hpp"
 
 namespace hilo {
 namespace {

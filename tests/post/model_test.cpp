@@ -4,7 +4,7 @@
 #include "base/error.hpp"
 #include "cli.hpp"
 #include "picture_file.hpp"
-#include "post/scene_items.hpp"
+#include "post/scene/scene_items.hpp"
 #include "sample_run.hpp"
 
 namespace hilo::test {
@@ -66,6 +66,18 @@ TEST(Model, things_of_the_scene_are_where_it_says) {
   EXPECT_LT((found.items[2].along.normalized() - Vec3(-1, 0, 0)).norm(), 1e-9);  // pressure pushes inwards
   EXPECT_EQ(found.items[3].glyph, Glyph::clamp);
   EXPECT_EQ(found.items[4].above, Vec3(0, 0, 1));
+}
+
+TEST(Model, every_kind_of_the_schema_has_a_symbol) {
+  size_t seen = 0;
+  for (const KindSchema& k : scene_schema())
+    for (const char* section : {"joint", "spring", "stop", "motor", "friction", "load", "motion"})
+      if (k.section == section) {
+        EXPECT_NO_THROW(glyph_of(k.section, k.kind)) << k.section << " " << k.kind;
+        ++seen;
+      }
+  EXPECT_GT(seen, 30u);
+  EXPECT_THROW(glyph_of("joint", "glued"), Error);
 }
 
 TEST(Model, stops_motors_and_friction_sit_at_their_joint) {

@@ -7,7 +7,7 @@
 #include "cli.hpp"
 #include "movie_file_reader.hpp"
 #include "picture_file.hpp"
-#include "post/workers.hpp"
+#include "post/picture/workers.hpp"
 #include "sample_run.hpp"
 
 namespace hilo::test {

@@ -8,9 +8,9 @@
 
 #include "base/error.hpp"
 #include "moving_run.hpp"
-#include "post/iso_surface.hpp"
-#include "post/pieces.hpp"
-#include "post/skin.hpp"
+#include "post/surface/iso_surface.hpp"
+#include "post/surface/pieces.hpp"
+#include "post/surface/skin.hpp"
 #include "sample_run.hpp"
 
 namespace hilo::test {

@@ -7,7 +7,7 @@
 #include "cli.hpp"
 #include "model/store.hpp"
 #include "picture_file.hpp"
-#include "post/csv.hpp"
+#include "post/files/csv.hpp"
 #include "sample_run.hpp"
 
 namespace hilo::test {

@@ -1,4 +1,4 @@
-#include "post/skin.hpp"
+#include "post/surface/skin.hpp"
 
 #include <gtest/gtest.h>
 #include <vtkCell.h>

@@ -1,10 +1,10 @@
 // Frequency weighting against the standard's table of factors at third-octave bands [iso-2631, table 3], and what it does to a signal in
 // time against what it does at a frequency.
+#include "post/injury/weighting.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "post/injury_weighting.hpp"
 
 namespace hilo {
 namespace {

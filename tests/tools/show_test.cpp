@@ -32,7 +32,8 @@ class Show : public testing::Test {
     run.link("/mesh", place / "mesh.h5", "/mesh");
     run.write_strings("/body/name", std::vector<std::string>{"hull"});
     run.write<double>("/body/mass", std::vector<double>{12.5}, {1}, "kg");
-    run.write<double>("/body/inertia", std::vector<double>{1, 2, 3}, {1, 3}, "kg m^2");
+    run.write<double>("/body/inertia", std::vector<double>{1, 2, 3.00000001}, {1, 3}, "kg m^2");
+    run.write<double>("/body/points", std::vector<double>{0.5, 0.25, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, {1, 4, 3}, "m");
     run.write<std::int64_t>("/body/follower_node", std::vector<std::int64_t>{0, 1}, {2});
     run.write<std::int32_t>("/body/follower_body", std::vector<std::int32_t>{0, 0}, {2});
     run.start_rows<double>("/history/t", {}, "s");
@@ -90,11 +91,13 @@ TEST_F(Show, RunShowsBodiesFieldsAndTheLargestValueOfEachHistory) {
   const auto ran = place.run("hilo-show run.h5");
   EXPECT_EQ(ran.exit, 0) << ran.err;
   EXPECT_EQ(line(ran.out, "complete"), "complete yes");
-  EXPECT_NE(ran.out.find("\nhull       12.5            1            2            3      2\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\nhull       12.5            1            2            3    0.5   0.25      0      2\n"), std::string::npos)
+      << ran.out;
+  EXPECT_NE(place.run("hilo-show --json run.h5").out.find("\"J3 [kg m^2]\": 3.00000001, \"x [m]\": 0.5"), std::string::npos);
   EXPECT_EQ(line(ran.out, "history ends"), "history ends at t [s] 1");
   EXPECT_EQ(line(ran.out, "joint trunnion"), "joint trunnion 3 6 700 N, N m");
   EXPECT_EQ(line(ran.out, "displacement"), "displacement 30 3 m");
-  EXPECT_EQ(place.run("hilo-show --check run.h5").out, "run.h5: ok, 9 arrays\n");
+  EXPECT_EQ(place.run("hilo-show --check run.h5").out, "run.h5: ok, 10 arrays\n");
 }
 
 TEST_F(Show, SceneShowsItsEntriesWithTheirPlaces) {

@@ -15,17 +15,6 @@
 namespace hilo {
 namespace {
 
-struct Format {
-  const char* ending;
-  Imported (*read)(const std::string&, const ImportOptions&);
-  bool geometry = false;  // is meshed: --size has a meaning
-};
-constexpr Format formats[] = {{".inp", read_inp},         {".bdf", read_bdf},        {".nas", read_bdf},         {".dat", read_bdf},
-                              {".fem", read_bdf},         {".unv", read_unv},        {".vtk", read_vtk},         {".vtu", read_vtk},
-                              {".msh", read_gmsh},        {".mesh", read_gmsh},      {".stl", read_gmsh},        {".geo", read_gmsh, true},
-                              {".step", read_gmsh, true}, {".stp", read_gmsh, true}, {".brep", read_gmsh, true}, {".iges", read_gmsh, true},
-                              {".igs", read_gmsh, true}};
-
 /// A name given to --define that the script never mentions does nothing: it is an error.  Scripts that include others are trusted.
 void check_defines(const std::string& path, const ImportOptions& options) {
   std::ifstream in(path);
@@ -61,7 +50,15 @@ void note_files_of_script(const std::string& path) {
 
 }  // namespace
 
-Imported read_any(const std::string& path, const ImportOptions& options) {
+std::vector<MeshFormat> mesh_formats() {
+  return {{".inp", read_inp},         {".bdf", read_bdf},        {".nas", read_bdf},         {".dat", read_bdf},
+          {".fem", read_bdf},         {".unv", read_unv},        {".vtk", read_vtk},         {".vtu", read_vtk},
+          {".msh", read_gmsh},        {".mesh", read_gmsh},      {".stl", read_gmsh},        {".geo", read_gmsh, true},
+          {".step", read_gmsh, true}, {".stp", read_gmsh, true}, {".brep", read_gmsh, true}, {".iges", read_gmsh, true},
+          {".igs", read_gmsh, true}};
+}
+
+Imported read_any(const std::string& path, const ImportOptions& options, const std::vector<MeshFormat>& formats) {
   namespace fs = std::filesystem;
   if (!fs::exists(path)) throw Error(path, "no such file");
   if (fs::is_directory(path)) throw Error(path, "a folder, not a file");

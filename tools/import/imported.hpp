@@ -89,8 +89,17 @@ Imported read_bdf(const std::string& path, const ImportOptions& options);
 Imported read_unv(const std::string& path, const ImportOptions& options);
 Imported read_vtk(const std::string& path, const ImportOptions& options);
 Imported read_gmsh(const std::string& path, const ImportOptions& options);
-/// The reader for the file's ending; Error when there is none or the file cannot be opened.
-Imported read_any(const std::string& path, const ImportOptions& options);
+
+/// A kind of file by the ending of its name.
+struct MeshFormat {
+  const char* ending;  // ".inp"
+  Imported (*read)(const std::string&, const ImportOptions&);
+  bool geometry = false;  // is meshed: --size has a meaning
+};
+/// Those there are; another reader is one file and a row here.
+std::vector<MeshFormat> mesh_formats();
+/// The reader for the file's ending; Error with the endings known when there is none, or when the file cannot be opened.
+Imported read_any(const std::string& path, const ImportOptions& options, const std::vector<MeshFormat>& formats = mesh_formats());
 
 /// What follows every reader: nodes merged, unused nodes dropped, order raised, lengths brought to SI; then the checks (inverted,
 /// degenerate).

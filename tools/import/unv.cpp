@@ -8,8 +8,8 @@
 #include <unordered_map>
 
 #include "base/error.hpp"
+#include "import/data_line.hpp"
 #include "import/imported.hpp"
-#include "import/inp_lines.hpp"
 
 namespace hilo {
 namespace {
@@ -58,14 +58,8 @@ class UnvReader {
       if (l_.fields.size() != 1 || l_.text(0) != "-1") continue;
       if (!line()) break;
       const std::string set(l_.text(0));
-      if (set == "2411" || set == "781")
-        nodes();
-      else if (set == "2412")
-        elements();
-      else if (set == "2467" || set == "2477" || set == "2452" || set == "2435")
-        groups(4);
-      else if (set == "2429" || set == "2430" || set == "2432")
-        groups(2);
+      if (const auto known = datasets().find(set); known != datasets().end())
+        known->second(*this);
       else {
         in_.skip("dataset " + set, l_.place(), 1, false);
         while (more()) {
@@ -79,6 +73,18 @@ class UnvReader {
   }
 
  private:
+  /// Datasets by number, and what reads them.
+  static const std::map<std::string, void (*)(UnvReader&)>& datasets() {
+    using R = UnvReader;
+    static const auto nodes = [](R& r) { r.nodes(); };
+    static const auto fours = [](R& r) { r.groups(4); };  // four numbers for each member
+    static const auto twos = [](R& r) { r.groups(2); };
+    static const std::map<std::string, void (*)(R&)> table{{"2411", nodes}, {"781", nodes},  {"2412", [](R& r) { r.elements(); }},
+                                                           {"2467", fours}, {"2477", fours}, {"2452", fours},
+                                                           {"2435", fours}, {"2429", twos},  {"2430", twos},
+                                                           {"2432", twos}};
+    return table;
+  }
   struct Element {
     const Kind* kind;
     std::int64_t id, property;

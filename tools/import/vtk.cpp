@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "import/data_line.hpp"
 #include "import/imported.hpp"
-#include "import/inp_lines.hpp"
 #include "import/vtk_grid.hpp"
 
 namespace hilo {

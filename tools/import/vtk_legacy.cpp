@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
-#include "import/inp_lines.hpp"
+#include "import/data_line.hpp"
 #include "import/vtk_grid.hpp"
 
 namespace hilo {

@@ -18,7 +18,7 @@ struct Box {
   }
 };
 
-std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : "-"; }
+std::string number(double x) { return std::isfinite(x) ? fmt::format("{}", x) : "-"; }
 
 Table regions(const MeshFile& f) {
   const Mesh& m = f.mesh;
@@ -32,7 +32,7 @@ Table regions(const MeshFile& f) {
     if (info(m.shape[c]).dimension == 3) volume[r] += quality(m, c).volume;
     for (const auto a : m.cell(c)) box[r].add(m.X[a]);
   }
-  Table t{{"region", "cells", "volume [m^3]", "density [kg/m^3]", "E [Pa]", "nu", "box [m]"}, {}};
+  Table t{{"region", "cells", "volume [m^3]", "density [kg/m^3]", "E [Pa]", "nu", "box [m]"}, {}, 1, 6};
   if (f.tagged) t.header.insert(t.header.begin() + 1, "fidelity"), t.n_text = 2;
   for (size_t r = 0; r < n; ++r) {
     const RegionData& d = m.region_data[r];
@@ -44,7 +44,7 @@ Table regions(const MeshFile& f) {
 }
 
 Table sets(const Mesh& m) {
-  Table t{{"set", "of", "size", "area [m^2]", "box [m]"}, {}, 2};
+  Table t{{"set", "of", "size", "area [m^2]", "box [m]"}, {}, 2, 6};
   const auto row = [&](const std::string& name, const std::string& kind, size_t size, const auto& nodes,
                        double area = std::numeric_limits<double>::quiet_NaN()) {
     Box box;

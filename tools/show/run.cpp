@@ -10,17 +10,23 @@ namespace hilo {
 namespace {
 
 Table bodies(const Store& store) {
-  Table t{{"body", "mass [kg]", "J1 [kg m^2]", "J2 [kg m^2]", "J3 [kg m^2]", "nodes"}, {}};
+  Table t{{"body", "mass [kg]", "J1 [kg m^2]", "J2 [kg m^2]", "J3 [kg m^2]", "x [m]", "y [m]", "z [m]", "nodes"}, {}, 1, 6};
   if (!store.has("/body/name")) return t;
   const auto names = store.read_strings("/body/name");
   const auto mass = store.read<double>("/body/mass"), inertia = store.read<double>("/body/inertia");
+  std::vector<double> points;  // the first of four is the centre of mass
+  if (store.has("/body/points")) points = store.read<double>("/body/points");
   std::vector<std::int64_t> followers(names.size(), 0);
   if (store.has("/body/follower_body"))
     for (const auto b : store.read<std::int32_t>("/body/follower_body"))
       if (b >= 0 && b < static_cast<std::int32_t>(names.size())) ++followers[b];
-  for (size_t b = 0; b < names.size() && b < mass.size() && 3 * b + 2 < inertia.size(); ++b)
-    t.rows.push_back({names[b], fmt::format("{:.6g}", mass[b]), fmt::format("{:.6g}", inertia[3 * b]),
-                      fmt::format("{:.6g}", inertia[3 * b + 1]), fmt::format("{:.6g}", inertia[3 * b + 2]), std::to_string(followers[b])});
+  for (size_t b = 0; b < names.size() && b < mass.size() && 3 * b + 2 < inertia.size(); ++b) {
+    std::vector<std::string> row{names[b], fmt::format("{}", mass[b])};
+    for (size_t k = 0; k < 3; ++k) row.push_back(fmt::format("{}", inertia[3 * b + k]));
+    for (size_t k = 0; k < 3; ++k) row.push_back(12 * b + k < points.size() ? fmt::format("{}", points[12 * b + k]) : "-");
+    row.push_back(std::to_string(followers[b]));
+    t.rows.push_back(std::move(row));
+  }
   return t;
 }
 

@@ -1,0 +1,25 @@
+// The subcommands of hilo-post: each adds its options to the app and is run after the command line was read.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace hilo {
+
+struct Command {
+  CLI::App* app;
+  std::function<void()> run;
+};
+
+Command render_command(CLI::App& app);
+Command movie_command(CLI::App& app);
+Command model_command(CLI::App& app);
+Command mesh_command(CLI::App& app);
+Command gload_command(CLI::App& app);
+Command injury_command(CLI::App& app);
+Command peak_command(CLI::App& app);
+Command series_command(CLI::App& app);
+Command compare_command(CLI::App& app);
+Command chart_command(CLI::App& app);
+Command export_command(CLI::App& app);
+
+}  // namespace hilo

@@ -1,0 +1,87 @@
+// hilo-post mesh: a mesh, its tags or its parts, coloured by region, fidelity or part.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <vtkCamera.h>
+
+#include <memory>
+
+#include "base/args.hpp"
+#include "base/error.hpp"
+#include "post/commands/commands.hpp"
+#include "post/scene/overlay.hpp"
+#include "post/scene/shown_field.hpp"
+#include "post/scene/stage.hpp"
+#include "post/scene/view.hpp"
+
+namespace hilo {
+namespace {
+
+struct Options {
+  std::string mesh, output, field = "region", camera = "iso", size = "1280x720", edges = "feature", title;
+  std::vector<std::string> show, hide;
+};
+
+void run(const Options& o) {
+  const MeshFile file = read_mesh_file(o.mesh);
+  const Mesh& mesh = file.mesh;
+  const auto shown = shown_regions(mesh, o.show, o.hide);
+  const NamedCells named = named_cells(file, o.field, shown, o.mesh);
+  const auto [width, height] = parse_size(o.size);
+  const double pixel = picture_scale(width, height);
+  const Frame frame = frame_of(width, height, 230, true);
+  Picture picture(width, height);
+  vtkRenderer* stage = picture.layer(frame.model);
+  light(stage);
+  const auto region_of = [&](std::int64_t cell) { return static_cast<size_t>(mesh.region[static_cast<size_t>(cell)]); };
+  Fit fit(parse_view(o.camera), frame.model.w / frame.model.h);
+  std::vector<std::array<std::uint8_t, 3>> colour;
+  std::vector<std::int64_t> bars;
+  for (std::int64_t c = 0; c < mesh.n_cells(); ++c) {
+    colour.push_back(bytes(named.colours[static_cast<size_t>(named.name_of[static_cast<size_t>(c)])]));
+    if (!shown[region_of(c)]) continue;
+    if (info(mesh.shape[static_cast<size_t>(c)]).dimension == 1) bars.push_back(c);
+    for (const auto n : mesh.cell(c)) fit.add(mesh.X[static_cast<size_t>(n)]);
+  }
+  fit.aim(stage->GetActiveCamera());
+  Skin skin(mesh, boundary_facets(mesh, shown), bars);
+  skin.set_cell_colours(colour);
+  Look look;
+  look.by = Look::By::cells;
+  look.bar_width = 5 * pixel;
+  add_skin(stage, skin, look);
+  if (o.edges == "all") add_grid(stage, skin, pixel, 0.35, pixels_per_metre(stage, frame.model.h));
+  if (o.edges != "none") add_lines(stage, skin.feature_edges(), {0.1, 0.1, 0.12}, 1.3 * pixel, 0.8);
+  stage->ResetCameraClippingRange();
+  picture.paint([&](Painter& p) {
+    draw_title(p, o.title.empty() ? o.mesh : o.title, fmt::format("{} cells, {} nodes", mesh.n_cells(), mesh.n_nodes()));
+    draw_axes_cross(p, fit.right(), fit.up(), fit.back());
+    std::vector<LegendEntry> entries;
+    for (size_t i = 0; i < named.names.size(); ++i) entries.push_back({named.names[i], named.colours[i], nullptr});
+    draw_legend(p, frame.side, named.title, entries);
+  });
+  picture.write(o.output);
+  if (!is_quiet()) fmt::print("{}\n", o.output);
+}
+
+}  // namespace
+
+Command mesh_command(CLI::App& app) {
+  auto* sub = app.add_subcommand("mesh", "picture of a mesh, its tags or its parts");
+  const auto o = std::make_shared<Options>();
+  sub->add_option("mesh", o->mesh, "mesh.h5, tags.h5 or parts-N.h5")->required();
+  sub->add_option("-o,--output", o->output, "PNG file")->required();
+  sub->add_option("--field", o->field, "region, fidelity or partition")
+      ->check(CLI::IsMember({"region", "fidelity", "partition"}))
+      ->capture_default_str();
+  sub->add_option("--camera", o->camera, fmt::format("{}, or x,y,z towards the camera", fmt::join(view_names(), ", ")))
+      ->capture_default_str();
+  sub->add_option("--show", o->show, "regions to draw, by name or glob; all by default")->allow_extra_args(false);
+  sub->add_option("--hide", o->hide, "regions not to draw")->allow_extra_args(false);
+  sub->add_option("--edges", o->edges, "none, feature or all")->check(CLI::IsMember({"none", "feature", "all"}))->capture_default_str();
+  sub->add_option("--size", o->size, "size of the picture, WIDTHxHEIGHT")->capture_default_str();
+  sub->add_option("--title", o->title, "title instead of the file's name");
+  example(*sub, "  hilo-post mesh tags.h5 --field fidelity -o fidelity.png");
+  return {sub, [o] { run(*o); }};
+}
+
+}  // namespace hilo

@@ -1,0 +1,91 @@
+// hilo-post peak: the largest value of a field in every region over all steps of a run, with its place and time.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "base/args.hpp"
+#include "base/error.hpp"
+#include "base/table.hpp"
+#include "post/charts/ticks.hpp"
+#include "post/commands/commands.hpp"
+#include "post/files/output.hpp"
+#include "post/run/run_file.hpp"
+#include "post/scene/shown_field.hpp"
+
+namespace hilo {
+namespace {
+
+struct Options {
+  std::string run, field = "von_mises", steps = "all", times, unit;
+  std::vector<std::string> show, hide;
+  bool json = false;
+};
+
+struct Peak {
+  double value = 0, t = 0;  // [unit of the file], [s]
+  std::int64_t node = -1;
+};
+
+void run(const Options& o) {
+  RunFile run(o.run);
+  const MeshFile& file = run.mesh_file();
+  const Mesh& mesh = file.mesh;
+  const auto steps = run.select_steps(o.steps, o.times);
+  if (is_named_field(o.field)) throw Error("--field", fmt::format("{} is a name, not a number", o.field), "", Exit::usage);
+  const ShownField field = shown_field(o.field, run.fields(steps.front()));
+  std::vector<bool> shown = shown_regions(mesh, o.show, o.hide);
+  for (size_t r = 0; r < shown.size(); ++r)
+    if (field.flexible_only && file.fidelity[r] == Fidelity::rigid) shown[r] = false;
+  std::vector<std::vector<std::int64_t>> nodes(shown.size());
+  for (size_t r = 0; r < shown.size(); ++r)
+    if (shown[r]) nodes[r] = mesh.nodes_of(mesh.region_name[r], run.path);
+  std::vector<Peak> peaks(shown.size());
+  double largest = 0;
+  for (const Step& step : steps) {
+    const auto value = reduced(run.field(step, field.array), field, run.path);
+    if (static_cast<std::int64_t>(value.size()) != mesh.n_nodes())
+      throw Error(run.path, fmt::format("step {} holds {} numbers for {} nodes", step.key, value.size(), mesh.n_nodes()),
+                  "the mesh was changed after the run");
+    for (size_t r = 0; r < shown.size(); ++r)
+      for (const std::int64_t n : nodes[r]) {
+        if (!run.holds(n)) continue;
+        const double x = value[static_cast<size_t>(n)];
+        if (peaks[r].node >= 0 && std::abs(x) <= std::abs(peaks[r].value)) continue;
+        peaks[r] = {x, step.t, n};
+        largest = std::max(largest, std::abs(x));
+      }
+  }
+  const ShownUnit unit = o.unit.empty() ? handy_unit(field.unit, largest) : wanted_unit(field.unit, o.unit);
+  Table table{{"region", fmt::format("{} [{}]", o.field, unit.name), "t [s]", "node", "X [m]", "Y [m]", "Z [m]"}, {}, 1};
+  for (size_t r = 0; r < shown.size(); ++r) {
+    if (peaks[r].node < 0) continue;
+    const Vec3& X = mesh.X[static_cast<size_t>(peaks[r].node)];
+    table.rows.push_back({mesh.region_name[r], fmt::format("{:.6g}", peaks[r].value * unit.factor), fmt::format("{:.6g}", peaks[r].t),
+                          fmt::format("{}", peaks[r].node), fmt::format("{:.5g}", X[0]), fmt::format("{:.5g}", X[1]),
+                          fmt::format("{:.5g}", X[2])});
+  }
+  if (table.rows.empty())
+    throw Error(run.path, fmt::format("all regions asked for are rigid: they have no {}", field.label), "try --field acceleration");
+  write_out("-", o.json ? table.json("") + "\n" : table.text());
+}
+
+}  // namespace
+
+Command peak_command(CLI::App& app) {
+  auto* sub = app.add_subcommand("peak", "largest value of a field in every region over the steps written, with place and time");
+  const auto o = std::make_shared<Options>();
+  sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
+  sub->add_option("--field", o->field, "von_mises, stress_error, acceleration, displacement, velocity (or .x .y .z of these), stress.xx")
+      ->capture_default_str();
+  sub->add_option("--steps", o->steps, "all, first, last or numbers: 0,5,10")->capture_default_str();
+  sub->add_option("--times", o->times, "times in s, instead of --steps: the nearest ones");
+  sub->add_option("--show", o->show, "regions, by name or glob; all by default")->allow_extra_args(false);
+  sub->add_option("--hide", o->hide, "regions to leave out")->allow_extra_args(false);
+  sub->add_option("--unit", o->unit, "unit shown: MPa, mm, g, ...; a handy one by default");
+  sub->add_flag("--json", o->json, "the table as JSON");
+  example(*sub, "  hilo-post peak run.h5 --field von_mises --unit MPa");
+  return {sub, [o] { run(*o); }};
+}
+
+}  // namespace hilo

@@ -1,0 +1,150 @@
+// hilo-post series: any history of a run as CSV or as a chart.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "base/args.hpp"
+#include "base/error.hpp"
+#include "base/table.hpp"
+#include "post/charts/figure.hpp"
+#include "post/commands/commands.hpp"
+#include "post/files/csv.hpp"
+#include "post/files/output.hpp"
+#include "post/picture/picture.hpp"
+#include "post/run/columns.hpp"
+#include "post/run/expression.hpp"
+#include "post/run/times.hpp"
+
+namespace hilo {
+namespace {
+
+struct Options {
+  std::string run, csv, png, size = "1280x720", title, x, times;
+  std::vector<std::string> names, lets;
+  bool list = false, json = false;
+};
+
+/// The abscissa, and the columns over it, within --times.
+struct Picked {
+  Column x;
+  std::vector<Column> y;
+};
+
+Picked pick(const Options& o, const RunFile& run) {
+  RunColumns columns(run, o.lets);
+  Picked p{{}, columns.pick(o.names)};
+  p.x = o.x.empty() ? Column{"t", "s", p.y.front().t, p.y.front().t} : columns.one(o.x);
+  size_t rows = p.x.t.size();  // a run in progress may be a row ahead in one array
+  for (const Column& c : p.y) rows = std::min(rows, c.t.size());
+  for (const Column& c : p.y)
+    if (!std::equal(p.x.t.begin(), p.x.t.begin() + static_cast<std::ptrdiff_t>(rows), c.t.begin()))
+      throw Error(run.path, fmt::format("\"{}\" and \"{}\" have different times", o.x.empty() ? p.y.front().label : p.x.label, c.label),
+                  "write them to two files");
+  std::vector<size_t> kept;
+  if (rows > 0) {
+    const double first = p.x.t.front(), last = p.x.t[rows - 1], slack = 1e-9 * (last - first);
+    const auto [from, to] = parse_times(o.times, {first, last});
+    for (size_t i = 0; i < rows; ++i)
+      if (p.x.t[i] >= from - slack && p.x.t[i] <= to + slack) kept.push_back(i);
+  }
+  const auto cut = [&](Column& c) {
+    for (size_t i = 0; i < kept.size(); ++i) c.t[i] = c.t[kept[i]], c.value[i] = c.value[kept[i]];
+    c.t.resize(kept.size()), c.value.resize(kept.size());
+  };
+  cut(p.x);
+  for (Column& c : p.y) cut(c);
+  return p;
+}
+
+std::string title_of(const Column& c) { return fmt::format("{} [{}]", c.label, c.unit); }
+
+void write_csv(const std::string& path, const Picked& picked) {
+  std::vector<std::string> header{title_of(picked.x)};
+  std::vector<std::vector<double>> columns{picked.x.value};
+  for (const Column& c : picked.y) header.push_back(title_of(c)), columns.push_back(c.value);
+  write_out(path, csv_text(header, columns));
+}
+
+std::string axis_label(const std::string& unit) {
+  constexpr std::pair<const char*, const char*> names[] = {{"N", "force"},        {"N m", "moment"},      {"J", "energy"},
+                                                           {"m", "length"},       {"m/s", "velocity"},    {"m/s^2", "acceleration"},
+                                                           {"g", "acceleration"}, {"kg m/s", "momentum"}, {"kg m^2/s", "angular momentum"}};
+  for (const auto& [u, name] : names)
+    if (unit == u) return fmt::format("{} [{}]", name, unit);
+  return fmt::format("[{}]", unit);
+}
+
+/// One panel for each unit; labels lose what all have in common.
+void write_png(const Options& o, const RunFile& run, const Picked& picked) {
+  Figure figure;
+  std::tie(figure.width, figure.height) = parse_size(o.size);
+  std::string common = picked.y.front().label.substr(0, picked.y.front().label.rfind('.') + 1);
+  for (const Column& p : picked.y)
+    while (!common.empty() && p.label.compare(0, common.size(), common) != 0) {
+      const auto dot = common.rfind('.', common.size() - 2);
+      common = dot == std::string::npos || common.size() < 2 ? "" : common.substr(0, dot + 1);
+    }
+  figure.title = !o.title.empty() ? o.title
+                 : common.empty() ? run.title
+                                  : fmt::format("{}: {}", run.title, common.substr(0, common.size() - 1));
+  const std::string x = o.x.empty() ? "time [s]" : title_of(picked.x);
+  for (const Column& p : picked.y) {
+    const std::string label = axis_label(p.unit);
+    auto panel = std::find_if(figure.panels.begin(), figure.panels.end(), [&](const Panel& q) { return q.y.label == label; });
+    if (panel == figure.panels.end()) panel = figure.panels.insert(figure.panels.end(), Panel{"", {x}, {label}, {}});
+    panel->curves.push_back({p.label.substr(common.size()), picked.x.value, p.value, curve_colour(static_cast<int>(panel->curves.size()))});
+  }
+  write_chart(figure, o.png);
+}
+
+void list(const Options& o, const RunFile& run) {
+  Table table{{"history", "columns", "units"}, {}, 3};
+  for (const std::string& name : run.series_names()) {
+    const Series s = run.describe(name);
+    std::vector<std::string> units;
+    for (const auto& u : s.unit)
+      if (std::find(units.begin(), units.end(), u) == units.end()) units.push_back(u);
+    table.rows.push_back({name, fmt::format("{}", fmt::join(s.column, " ")), fmt::format("{}", fmt::join(units, ", "))});
+  }
+  write_out("-", o.json ? table.json("") + "\n" : table.text());
+}
+
+void run(const Options& o) {
+  const RunFile file(o.run);
+  if (o.list) return list(o, file);
+  if (o.names.empty())
+    throw Error("series", "which histories?", "give names or globs, such as energy or \"joint.*\", or --list", Exit::usage);
+  const Picked picked = pick(o, file);
+  if (!o.png.empty()) write_png(o, file, picked);
+  if (!o.csv.empty() || o.png.empty()) write_csv(o.csv.empty() ? "-" : o.csv, picked);
+}
+
+}  // namespace
+
+Command series_command(CLI::App& app) {
+  auto* sub = app.add_subcommand("series", "histories (reactions, energies, probes, ...) as CSV or as a chart");
+  const auto o = std::make_shared<Options>();
+  sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
+  sub->add_option("names", o->names,
+                  "histories or columns by name or glob: energy, joint.trunnion, \"joint.*.Fx\"; or a formula: \"pull [kN] = "
+                  "hypot(joint.pin.Fx, joint.pin.Fy)/1e3\", of columns, t [s], pi, + - * / ^ and " +
+                      expression_functions() + " (d: rate, start: first value)");
+  sub->add_option("--let", o->lets, "NAME = FORMULA: a name for formulas behind it, no column; --let once for each")
+      ->allow_extra_args(false);
+  sub->add_option("-x", o->x, "abscissa: a column or a formula, \"angle [deg] = 360*t\"; the time by default");
+  sub->add_option("--times", o->times, "FROM:TO in s; the whole run by default");
+  sub->add_option("-o,--output", o->csv, "CSV file; stdout when neither this nor --png is given");
+  sub->add_option("--png", o->png, "chart, one panel for each unit");
+  sub->add_option("--title", o->title, "title of the chart");
+  sub->add_option("--size", o->size, "size of the chart, WIDTHxHEIGHT")->capture_default_str();
+  sub->add_flag("--list", o->list, "list the histories there are");
+  sub->add_flag("--json", o->json, "the list as JSON");
+  example(*sub,
+          "  hilo-post series run.h5 energy -o energy.csv --png energy.png\n"
+          "  hilo-post series run.h5 'energy in all [J] = energy.kinetic + energy.elastic + energy.gravity' --times 0.01: -o all.csv");
+  return {sub, [o] { run(*o); }};
+}
+
+}  // namespace hilo

@@ -1,0 +1,111 @@
+#include "post/run/columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "post/run/expression.hpp"
+
+namespace hilo {
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const auto from = text.find_first_not_of(' '), to = text.find_last_not_of(' ');
+  return from == std::string::npos ? "" : text.substr(from, to - from + 1);
+}
+
+}  // namespace
+
+RunColumns::RunColumns(const RunFile& run, const std::vector<std::string>& lets) : run_(run), known_(run.series_names()) {
+  for (const std::string& text : lets) {
+    if (text.find('=') == std::string::npos) throw Error("--let", fmt::format("\"{}\" has no =", text), "NAME = FORMULA", Exit::usage);
+    Column c = formula(text);
+    let_[c.label] = std::move(c);
+  }
+}
+
+const Series& RunColumns::history(const std::string& name) {
+  auto found = read_.find(name);
+  if (found == read_.end()) found = read_.emplace(name, run_.series(name)).first;
+  return found->second;
+}
+
+Column RunColumns::column(const std::string& name, const Series& what, size_t c) {
+  const Series& s = history(name);
+  Column p{name + "." + what.column[c], what.unit[c], s.t, {}};
+  for (size_t row = 0; row < s.rows(); ++row) p.value.push_back(s.at(row, c));
+  return p;
+}
+
+Column RunColumns::named(const std::string& name) {
+  if (const auto let = let_.find(name); let != let_.end()) return let->second;
+  std::vector<std::string> labels;
+  for (const std::string& history : known_) {
+    const Series what = run_.describe(history);
+    for (size_t c = 0; c < what.column.size(); ++c) {
+      labels.push_back(history + "." + what.column[c]);
+      if (labels.back() == name) return column(history, what, c);
+    }
+  }
+  for (const auto& [let, value] : let_) labels.push_back(let);
+  const std::string hint = suggest(name, labels);
+  throw Error(run_.path, fmt::format("no column \"{}\"", name),
+              hint.empty() ? "see --list; a name with other signs than letters, digits, _ and dots stands in double quotes" : hint);
+}
+
+Column RunColumns::formula(const std::string& text) {
+  const auto equals = text.find('=');
+  const std::string left = trimmed(text.substr(0, equals)), right = trimmed(text.substr(equals + 1));
+  const auto bracket = left.find(" [");
+  Column c{trimmed(left.substr(0, bracket)), bracket == std::string::npos ? "1" : left.substr(bracket + 2), {}, {}};
+  if (c.unit.ends_with(']')) c.unit.pop_back();
+  if (c.label.empty()) throw Error("", fmt::format("\"{}\" gives its column no name", text), "NAME [UNIT] = FORMULA", Exit::usage);
+  c.t = run_.store().read<double>("/history/t");
+  for (size_t rows = c.t.size();; c.t.resize(rows)) {  // a run in progress may be a row ahead in one array
+    c.value = evaluate(right, c.t, [&](const std::string& name) {
+      Column found = named(name);
+      rows = std::min(rows, found.t.size());
+      if (!std::equal(c.t.begin(), c.t.begin() + static_cast<std::ptrdiff_t>(rows), found.t.begin()))
+        throw Error(run_.path, fmt::format("\"{}\" has other times than the histories beside it", name), "a formula is over one time");
+      found.value.resize(c.t.size());
+      return found.value;
+    });
+    if (rows == c.t.size()) break;
+  }
+  return c;
+}
+
+std::vector<Column> RunColumns::pick(const std::vector<std::string>& wanted) {
+  std::vector<Column> picked;
+  const auto have = [&](const std::string& label) {
+    return std::any_of(picked.begin(), picked.end(), [&](const Column& p) { return p.label == label; });
+  };
+  for (const std::string& glob : wanted) {
+    if (glob.find('=') != std::string::npos) {
+      picked.push_back(formula(glob));
+      continue;
+    }
+    bool any = false;
+    for (const std::string& name : known_) {
+      const Series what = run_.describe(name);
+      for (size_t c = 0; c < what.column.size(); ++c) {
+        const std::string label = name + "." + what.column[c];
+        if (!matches(glob, name) && !matches(glob, label)) continue;
+        any = true;
+        if (!have(label)) picked.push_back(column(name, what, c));
+      }
+    }
+    if (any) continue;
+    const std::string hint = suggest(glob, known_);
+    throw Error(run_.path, fmt::format("no history \"{}\"", glob), hint.empty() ? "see --list" : hint);
+  }
+  return picked;
+}
+
+Column RunColumns::one(const std::string& wanted) {
+  if (wanted.find('=') != std::string::npos) return formula(wanted);
+  return named(wanted);
+}
+
+}  // namespace hilo

@@ -1,0 +1,183 @@
+#include "post/run/run_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include "base/error.hpp"
+
+namespace hilo {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts;
+  std::stringstream stream(text);
+  for (std::string part; std::getline(stream, part, at);) parts.push_back(part);
+  return parts;
+}
+
+double number(const std::string& text, const std::string& option) {
+  double x = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw Error(option, fmt::format("\"{}\" is no number", text), "write all, first, last, or numbers with commas", Exit::usage);
+  return x;
+}
+
+}  // namespace
+
+bool matches(const std::string& glob, const std::string& name) { return fnmatch(glob.c_str(), name.c_str(), 0) == 0; }
+
+RunFile::RunFile(const std::string& path) : path(path), store_(Store::open(path)) {
+  const std::string format = store_->text_attribute("/", "format").value_or("");
+  if (format != "hilo run")
+    throw Error(path, format.empty() ? "is no file of hilo" : fmt::format("is a \"{}\", not a run", format),
+                "give the run.h5 of hilo-solve");
+  complete = store_->number_attribute("/", "complete").value_or(0) != 0;
+  title = store_->text_attribute("/", "title").value_or("");
+  if (title.empty()) title = fs::path(path).stem().string();
+  for (const std::string& key : store_->list("/field"))
+    if (const auto t = store_->number_attribute("/field/" + key, "t")) steps.push_back({key, *t});
+}
+
+const MeshFile& RunFile::mesh_file() {
+  if (mesh_) return *mesh_;
+  if (!has_mesh())
+    throw Error(path, "holds no mesh: a scene of bodies alone has no surfaces to draw or export",
+                "its histories are there: hilo-post series --list");
+  const auto link = store_->linked("/mesh");
+  const std::string target = link ? resolved_from(path, link->first) : path;
+  if (!fs::exists(target))
+    throw Error(path, fmt::format("the mesh it was run on, {}, is missing", target), "keep it where it was, or move both together");
+  mesh_ = read_mesh_file(target);
+  if (store_->has("/tags/fidelity")) {  // as run, which may differ from the tags there are now
+    const auto words = store_->read_strings("/tags/fidelity");
+    if (words.size() != mesh_->mesh.region_name.size())
+      throw Error(path, fmt::format("{} tags, but {} has {} regions", words.size(), target, mesh_->mesh.region_name.size()),
+                  "the mesh was changed after the run");
+    mesh_->fidelity.clear();
+    for (const auto& w : words) mesh_->fidelity.push_back(fidelity_of(w, path));
+    mesh_->tagged = true;
+  }
+  mesh_->rank.clear();
+  if (store_->has("/parts/rank")) mesh_->rank = store_->read<std::int32_t>("/parts/rank");
+  if (!mesh_->rank.empty() && mesh_->rank.size() != mesh_->mesh.shape.size())
+    throw Error(path, fmt::format("ranks of {} cells, but {} has {}", mesh_->rank.size(), target, mesh_->mesh.shape.size()),
+                "the mesh was changed after the run");
+  mesh_->n_parts = 1;
+  for (const std::int32_t r : mesh_->rank) mesh_->n_parts = std::max(mesh_->n_parts, r + 1);
+  if (is_skin()) read_skin();
+  return *mesh_;
+}
+
+void RunFile::read_skin() {
+  const Mesh& mesh = mesh_->mesh;
+  row_.assign(mesh.X.size(), -1);
+  held_.assign(mesh.X.size(), false);
+  const auto nodes = store_->read<std::int64_t>("/skin/node");
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i] < 0 || nodes[i] >= mesh.n_nodes())
+      throw Error(path, fmt::format("holds fields of node {}, but the mesh has {}", nodes[i], mesh.n_nodes()),
+                  "the mesh was changed after the run");
+    row_[static_cast<size_t>(nodes[i])] = static_cast<std::int64_t>(i), held_[static_cast<size_t>(nodes[i])] = true;
+  }
+  for (bool more = true; more;) {  // inwards, a layer of cells at a time
+    more = false;
+    std::vector<std::pair<std::int64_t, std::int64_t>> reached;
+    for (std::int64_t c = 0; c < mesh.n_cells(); ++c) {
+      std::int64_t from = -1;
+      for (const std::int64_t n : mesh.cell(c)) from = std::max(from, row_[static_cast<size_t>(n)]);
+      if (from < 0) continue;
+      for (const std::int64_t n : mesh.cell(c))
+        if (row_[static_cast<size_t>(n)] < 0) reached.emplace_back(n, from);
+    }
+    for (const auto& [n, from] : reached) row_[static_cast<size_t>(n)] = from, more = true;
+  }
+}
+
+void RunFile::close() { store_.reset(); }
+void RunFile::open() { store_ = Store::open(path); }
+
+std::vector<std::string> RunFile::fields(const Step& step) const {
+  if (!bodies_.empty()) return {"displacement"};
+  return store_->list("/field/" + step.key);
+}
+
+bool RunFile::has_field(const Step& step, const std::string& name) const {
+  return bodies_.empty() ? store_->has("/field/" + step.key + "/" + name) : name == "displacement";
+}
+
+RunFile::Field RunFile::field(const Step& step, const std::string& name) const {
+  const std::string array = fmt::format("/field/{}/{}", step.key, name);
+  const auto names = fields(step);
+  if (!has_field(step, name)) {
+    std::string hint = suggest(name, names);
+    if (hint.empty()) hint = fmt::format("there are {}", fmt::join(names, ", "));
+    throw Error(path, fmt::format("no field \"{}\" in step {}", name, step.key), hint);
+  }
+  if (!bodies_.empty()) return bodies_displacement(step);
+  const auto shape = store_->shape(array);
+  Field f{store_->read<double>(array), shape.size() > 1 ? static_cast<int>(shape[1]) : 1};
+  if (row_.empty()) return f;
+  const auto width = static_cast<size_t>(f.columns);
+  std::vector<double> all(row_.size() * width);
+  for (size_t n = 0; n < row_.size(); ++n)
+    std::copy_n(f.value.begin() + static_cast<std::ptrdiff_t>(static_cast<size_t>(std::max<std::int64_t>(0, row_[n])) * width), width,
+                all.begin() + static_cast<std::ptrdiff_t>(n * width));
+  return {std::move(all), f.columns};
+}
+
+std::vector<Step> RunFile::select_steps(const std::string& numbers, const std::string& times) const {
+  if (steps.empty())
+    throw Error(path, "holds no field output yet", complete ? "see output.interval of the scene" : "the run is in progress");
+  if (!times.empty()) {
+    double spacing = 0;
+    for (size_t k = 1; k < steps.size(); ++k) spacing = std::max(spacing, steps[k].t - steps[k - 1].t);
+    std::vector<Step> chosen;
+    for (const std::string& text : split(times, ',')) {
+      const double t = number(text, "--times");
+      if (t < steps.front().t - 0.5 * spacing || t > steps.back().t + 0.5 * spacing)
+        throw Error(path, fmt::format("no output near t = {} s", text),
+                    fmt::format("there are {} to {} s", steps.front().t, steps.back().t));
+      const auto nearer = [&](const Step& a, const Step& b) { return std::abs(a.t - t) < std::abs(b.t - t); };
+      chosen.push_back(*std::min_element(steps.begin(), steps.end(), nearer));
+    }
+    return chosen;
+  }
+  if (numbers == "all") return steps;
+  if (numbers == "first") return {steps.front()};
+  if (numbers == "last") return {steps.back()};
+  std::vector<Step> chosen;
+  for (const std::string& text : split(numbers, ',')) {
+    const double k = number(text, "--steps");
+    if (k < 0 || k >= static_cast<double>(steps.size()) || k != std::floor(k))
+      throw Error(path, fmt::format("no step {}", text), fmt::format("there are 0 to {}", steps.size() - 1));
+    chosen.push_back(steps[static_cast<size_t>(k)]);
+  }
+  return chosen;
+}
+
+std::vector<std::string> sensor_names(const RunFile& run, const std::vector<std::string>& globs) {
+  std::vector<std::string> all;
+  for (const auto& link : run.store().list("/history/sensor")) all.push_back(from_link_name(link));
+  if (all.empty()) throw Error(run.path, "has no sensors", "add [[sensor]] name, on to the scene");
+  std::vector<std::string> names;
+  for (const auto& name : all)
+    for (const auto& glob : globs)
+      if (matches(glob, name) && (names.empty() || names.back() != name)) names.push_back(name);
+  if (names.empty()) {
+    std::string hint = suggest(globs.front(), all);
+    throw Error(run.path, fmt::format("no sensor \"{}\"", globs.front()), hint.empty() ? fmt::format("there is {}", all.front()) : hint);
+  }
+  return names;
+}
+
+}  // namespace hilo

@@ -1,0 +1,98 @@
+// A results file as pictures and tables see it: mesh, tags, field steps and histories, read a step at a time.  A run in progress can be
+// read.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/mesh.hpp"
+#include "model/scene.hpp"
+#include "model/store.hpp"
+
+namespace hilo {
+
+/// One output of the fields: the name of its group and its time.
+struct Step {
+  std::string key;  // "000012"
+  double t;         // [s]
+};
+
+/// One history: a table over time.
+struct Series {
+  std::string name;                 // "joint.trunnion"
+  std::vector<std::string> column;  // Fx, Fy, ...         (n_columns)
+  std::vector<std::string> unit;    //                     (n_columns)
+  std::vector<double> t;            //                     (n_t)  [s]
+  std::vector<double> value;        // row by row          (n_t x n_columns)
+  size_t rows() const { return t.size(); }
+  double at(size_t row, size_t c) const { return value[row * column.size() + c]; }
+};
+
+class RunFile {
+ public:
+  /// Error when the file is missing, is no run, or its mesh.h5 has gone.
+  explicit RunFile(const std::string& path);
+
+  const std::string path;
+  bool complete = false;  // false while the run goes on, and for a run that was stopped
+  std::string title;      // of the scene, or its file's name
+  std::vector<Step> steps;
+
+  /// Mesh with the fidelity it was run at and the ranks of a parallel run; read at the first call.  Error for a scene of bodies alone.
+  const MeshFile& mesh_file();
+  const Mesh& mesh() { return mesh_file().mesh; }
+  /// For a scene of bodies alone: ellipsoids of their inertia stand for a mesh, a region each, and the rows of the histories for outputs of
+  /// displacements.  Nothing changes where there is a mesh.
+  void stand_in_bodies();
+  bool has_mesh() const { return store_->linked("/mesh") || store_->has("/mesh"); }
+
+  /// A nodal or cell field of a step and its number of columns; Error with the names there are.
+  struct Field {
+    std::vector<double> value;
+    int columns;
+  };
+  Field field(const Step& step, const std::string& name) const;
+  std::vector<std::string> fields(const Step& step) const;
+  bool has_field(const Step& step, const std::string& name) const;
+  /// Does the run hold the fields of a node?  One that keeps the skin of its regions alone gives each inner node the values of the nearest
+  /// node of the skin, counted in cells: in no picture without a cut are they seen.
+  bool holds(std::int64_t node) const { return row_.empty() || held_[static_cast<size_t>(node)]; }
+  bool is_skin() const { return store_->has("/skin/node"); }
+  /// Steps by "all", "first", "last" or numbers "0,5,10"; by times "0.01,0.02" the nearest ones.
+  std::vector<Step> select_steps(const std::string& numbers, const std::string& times) const;
+
+  /// Names of all histories: "energy", "joint.trunnion", ...
+  std::vector<std::string> series_names() const;
+  /// Columns and units without the values.
+  Series describe(const std::string& name) const;
+  Series series(const std::string& name) const;
+  const Store& store() const { return *store_; }
+  /// Close the file, and open it again: two processes must not share a handle.  What was read stays.
+  void close();
+  void open();
+
+ private:
+  std::optional<Store> store_;
+  void read_skin();
+  std::optional<MeshFile> mesh_;
+  std::vector<std::int64_t> row_;  // of the fields, for each node; empty: the node's own
+  std::vector<bool> held_;         // by the fields
+  struct Body {
+    std::vector<Vec3> X;  // reference points
+    Series way;           // of these points
+    size_t first, last;   // its nodes
+  };
+  Field bodies_displacement(const Step& step) const;
+  std::vector<Body> bodies_;  // that stand in for a mesh
+};
+
+/// The scene of a run without its histories: their CSV files may be elsewhere by now.
+Scene scene_of(const RunFile& run);
+
+/// Does a name match a glob (* ? [abc])?
+bool matches(const std::string& glob, const std::string& name);
+
+/// Sensors of a run that match any of the globs.
+std::vector<std::string> sensor_names(const RunFile& run, const std::vector<std::string>& globs);
+
+}  // namespace hilo

@@ -1,0 +1,12 @@
+// The surface of an ellipsoid: how a body without a mesh is drawn.
+#pragma once
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+
+#include "post/run/ellipsoid.hpp"
+
+namespace hilo {
+
+vtkSmartPointer<vtkPolyData> ellipsoid(const Ellipsoid& body);
+
+}  // namespace hilo

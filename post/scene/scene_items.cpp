@@ -1,0 +1,221 @@
+#include "post/scene/scene_items.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hilo {
+namespace {
+
+constexpr Rgb joint_colour{0.56, 0.10, 0.44}, spring_colour{0.10, 0.42, 0.42}, load_colour{0.80, 0.15, 0.12},
+    support_colour{0.16, 0.30, 0.66}, drive_colour{0.72, 0.38, 0.02}, sensor_colour{0.15, 0.50, 0.18}, mass_colour{0.16, 0.17, 0.19};
+
+/// At most about `most` of the nodes, evenly taken.
+std::vector<Vec3> thinned(const Mesh& mesh, const std::vector<std::int64_t>& nodes, size_t most) {
+  std::vector<Vec3> x;
+  const size_t stride = std::max<size_t>(1, nodes.size() / most);
+  for (size_t i = 0; i < nodes.size(); i += stride) x.push_back(mesh.X[static_cast<size_t>(nodes[i])]);
+  return x;
+}
+
+struct Symbol {
+  std::string_view section, kind;
+  Glyph glyph;
+};
+constexpr Symbol symbols[] = {
+    {"joint", "fixed", Glyph::block},         {"joint", "spherical", Glyph::ball},     {"joint", "constant-velocity", Glyph::ball},
+    {"joint", "point-on-curve", Glyph::ball}, {"joint", "in-plane", Glyph::ball},      {"joint", "distance", Glyph::link},
+    {"joint", "prismatic", Glyph::slider},    {"joint", "cylindrical", Glyph::slider}, {"joint", "screw", Glyph::slider},
+    {"joint", "in-line", Glyph::slider},      {"joint", "planar", Glyph::slider},      {"joint", "revolute", Glyph::hinge},
+    {"joint", "universal", Glyph::hinge},     {"joint", "gear", Glyph::hinge},         {"joint", "rack", Glyph::hinge},
+    {"joint", "rolling", Glyph::hinge},       {"joint", "knife-edge", Glyph::hinge},   {"spring", "axial", Glyph::coil},
+    {"spring", "stop", Glyph::coil},          {"spring", "torsion", Glyph::spiral},    {"spring", "support", Glyph::ground},
+    {"spring", "bushing", Glyph::bushing},    {"stop", "angle", Glyph::stop},          {"stop", "slide", Glyph::stop},
+    {"motor", "rotary", Glyph::turn},         {"motor", "linear", Glyph::arrow},       {"friction", "", Glyph::friction},
+    {"load", "force", Glyph::arrow},          {"load", "traction", Glyph::arrow},      {"load", "pressure", Glyph::arrow},
+    {"load", "torque", Glyph::turn},          {"motion", "fixed", Glyph::clamp},       {"motion", "translation", Glyph::arrow},
+    {"motion", "rotation", Glyph::turn}};
+
+class Collector {
+ public:
+  Collector(const Scene& scene, const MeshFile* file) : scene_(scene), file_(file) {}
+
+  SceneItems collect() {
+    for (const Entry& e : scene_.entries("body")) body(e);
+    for (const Entry& e : scene_.entries("joint")) joint(e);
+    for (const Entry& e : scene_.entries("spring")) spring(e);
+    for (const char* section : {"stop", "motor", "friction"})
+      for (const Entry& e : scene_.entries(section)) on_joint(e);
+    for (const Entry& e : scene_.entries("load")) load(e);
+    for (const Entry& e : scene_.entries("motion")) motion(e);
+    for (const Entry& e : scene_.entries("point_mass")) {
+      SceneItem& item = add(Glyph::mass, e, "point mass", mass_colour);
+      item.at = e.has("at") ? e.vector3("at") : centre(e, "on");
+    }
+    for (const Entry& e : scene_.entries("sensor")) {
+      SceneItem& item = add(Glyph::triad, e, "sensor: forward and up", sensor_colour);
+      item.at = e.has("at") ? e.vector3("at") : centre(e, "on");
+      item.along = e.vector3("x"), item.above = e.vector3("z");
+    }
+    for (const Entry& e : scene_.entries("probe")) {
+      SceneItem& item = add(Glyph::cross, e, "probe", sensor_colour);
+      item.at = e.has("at") ? e.vector3("at") : centre(e, "on");
+    }
+    return std::move(found_);
+  }
+
+ private:
+  SceneItem& add(Glyph glyph, const Entry& e, const std::string& meaning, const Rgb& colour) {
+    SceneItem& item = found_.items.emplace_back();
+    item.glyph = glyph, item.name = e.name, item.meaning = meaning, item.colour = colour;
+    return item;
+  }
+
+  const Ellipsoid* find_body(const std::string& name) const {
+    for (const auto& b : found_.bodies)
+      if (b.name == name) return &b;
+    return nullptr;
+  }
+
+  std::vector<std::int64_t> nodes(const Entry& e, std::string_view key) const {
+    if (file_) return file_->mesh.nodes_of(e.text(key), e.where(key));
+    std::vector<std::string> names;
+    for (const auto& b : found_.bodies) names.push_back(b.name);
+    throw Error(e.where(key), fmt::format("{}: no body \"{}\"", e.label(), e.text(key)), suggest(e.text(key), names));
+  }
+
+  Vec3 centre(const Entry& e, std::string_view key) const {
+    if (const auto* b = find_body(e.text(key))) return b->centre;
+    Vec3 sum = Vec3::Zero();
+    const auto list = nodes(e, key);
+    for (const auto n : list) sum += file_->mesh.X[static_cast<size_t>(n)];
+    return list.empty() ? sum : Vec3(sum / static_cast<double>(list.size()));
+  }
+
+  /// Nodes of an end that is a set: the patch it holds.
+  void add_patch(SceneItem& item, const Entry& e, std::string_view key) const {
+    const std::string& name = e.text(key);
+    if (name == "ground" || find_body(name)) return;
+    const auto list = nodes(e, key);
+    if (file_->mesh.find_region(name) >= 0) return;
+    const auto dots = thinned(file_->mesh, list, 150);
+    item.nodes.insert(item.nodes.end(), dots.begin(), dots.end());
+  }
+
+  void body(const Entry& e) {
+    const Ellipsoid b = ellipsoid_of(e);
+    found_.bodies.push_back(b);
+    SceneItem& item = add(Glyph::mass, e, "centre of mass of a body", mass_colour);
+    item.at = b.centre;
+  }
+
+  void joint(const Entry& e) {
+    const auto glyph = glyph_of(e.section, e.kind);
+    const char* drives[] = {"angle", "spin", "displacement", "velocity"};
+    const bool driven = std::any_of(std::begin(drives), std::end(drives), [&](const char* key) { return e.given(key); });
+    const bool gives = e.has("stiffness") || e.has("angular_stiffness");
+    SceneItem& item = add(glyph, e, e.kind + (driven ? " joint, driven" : gives ? " joint that gives way" : " joint"), joint_colour);
+    if (glyph == Glyph::link)
+      item.at = e.vector3("at_a"), item.to = e.vector3("at_b");
+    else
+      item.at = e.vector3("at");
+    if (e.has("axis")) item.along = e.vector3("axis");
+    add_patch(item, e, "a");
+    add_patch(item, e, "b");
+  }
+
+  /// Stops, motors and friction sit at the joint they act in, about its symbol.
+  void on_joint(const Entry& e) {
+    std::vector<std::string> names;
+    for (const Entry& j : scene_.entries("joint")) {
+      names.push_back(j.name);
+      if (j.name != e.text("joint")) continue;
+      const auto glyph = glyph_of(e.section, e.kind);
+      SceneItem& item = add(glyph, e, e.section == "friction" ? "friction" : e.kind + " " + e.section, drive_colour);
+      item.at = j.vector3(j.has("at") ? "at" : "at_a");
+      if (j.has("axis")) item.along = j.vector3("axis");
+      return;
+    }
+    throw Error(e.where("joint"), fmt::format("{}: no joint \"{}\"", e.label(), e.text("joint")), suggest(e.text("joint"), names));
+  }
+
+  void spring(const Entry& e) {
+    const auto glyph = glyph_of(e.section, e.kind);
+    SceneItem& item = add(glyph, e, e.kind == "bushing" ? "bushing" : e.kind + " spring", spring_colour);
+    if (glyph == Glyph::coil)
+      item.at = e.vector3("at_a"), item.to = e.vector3("at_b");
+    else if (glyph == Glyph::spiral)
+      item.at = shared_joint(e);
+    else
+      item.at = e.vector3("at");
+    if (e.has("axis")) item.along = e.vector3("axis");
+  }
+
+  /// A torsion spring sits at the joint of its two ends.
+  Vec3 shared_joint(const Entry& e) const {
+    for (const Entry& j : scene_.entries("joint")) {
+      const bool same = j.text("a") == e.text("a") && j.text("b") == e.text("b"),
+                 turned = j.text("a") == e.text("b") && j.text("b") == e.text("a");
+      if ((same || turned) && j.has("at")) return j.vector3("at");
+    }
+    return centre(e, "b");
+  }
+
+  void load(const Entry& e) {
+    const auto glyph = glyph_of(e.section, e.kind);
+    if (glyph == Glyph::turn) {
+      SceneItem& item = add(glyph, e, e.kind, load_colour);
+      item.at = centre(e, "on"), item.along = e.vector3("torque");
+      return;
+    }
+    SceneItem& item = add(glyph, e, e.kind, load_colour);
+    item.at = e.kind == "force" && e.has("at") ? e.vector3("at") : centre(e, "on");
+    if (!find_body(e.text("on"))) item.nodes = thinned(file_->mesh, nodes(e, "on"), 150);
+    item.along = e.kind == "pressure" ? Vec3(inward(e) * e.number("pressure")) : e.vector3(e.kind);
+    if (e.kind == "force" && file_ && file_->mesh.find_region(e.text("on")) >= 0)
+      item.nodes.clear();  // a whole region: the arrow says enough
+  }
+
+  /// Mean inward normal of a facet set.
+  Vec3 inward(const Entry& e) const {
+    const auto set = file_ ? file_->mesh.facet_sets.find(e.text("on")) : std::map<std::string, std::vector<Facet>>::const_iterator{};
+    if (!file_ || set == file_->mesh.facet_sets.end())
+      throw Error(e.where("on"), fmt::format("{}: \"{}\" is no facet set", e.label(), e.text("on")));
+    Vec3 sum = Vec3::Zero();
+    const auto& X = file_->mesh.X;
+    for (const Facet& f : set->second) {
+      const auto n = file_->mesh.facet_nodes(f);
+      const auto x = [&](size_t k) -> const Vec3& { return X[static_cast<size_t>(n[k])]; };
+      const bool triangle = n.size() % 3 == 0;
+      sum -= triangle ? (x(1) - x(0)).cross(x(2) - x(0)) : (x(2) - x(0)).cross(x(3) - x(1));
+    }
+    return sum.norm() > 0 ? Vec3(sum.normalized()) : Vec3(0, 0, -1);
+  }
+
+  void motion(const Entry& e) {
+    const bool on_body = find_body(e.text("on")) != nullptr;
+    const auto glyph = glyph_of(e.section, e.kind);
+    SceneItem& item = add(glyph, e, e.kind == "fixed" ? "held" : "prescribed " + e.kind, support_colour);
+    item.at = e.kind == "rotation" ? e.vector3("at") : centre(e, "on");
+    if (!on_body) item.nodes = thinned(file_->mesh, nodes(e, "on"), 150);
+    if (e.kind == "rotation") item.along = e.vector3("axis") * e.number("angle");
+    if (e.kind == "translation") item.along = e.vector3("displacement");
+  }
+
+  const Scene& scene_;
+  const MeshFile* file_;
+  SceneItems found_;
+};
+
+}  // namespace
+
+Glyph glyph_of(std::string_view section, std::string_view kind) {
+  for (const Symbol& s : symbols)
+    if (s.section == section && s.kind == kind) return s.glyph;
+  throw Error("", fmt::format("no symbol for a {} of kind \"{}\"", section, kind), "a row is missing in post/scene/scene_items.cpp",
+              Exit::fault);
+}
+
+SceneItems scene_items(const Scene& scene, const MeshFile* mesh) { return Collector(scene, mesh).collect(); }
+
+}  // namespace hilo

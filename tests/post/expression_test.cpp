@@ -1,0 +1,138 @@
+// Formulas over histories, and tables set beside each other, through the command line and by themselves.
+#include "post/run/expression.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.hpp"
+#include "cli.hpp"
+#include "model/store.hpp"
+#include "post/files/csv.hpp"
+#include "sample_run.hpp"
+
+namespace hilo::test {
+namespace {
+
+const std::vector<double> times{0, 0.5, 1.5, 2};
+
+std::vector<double> value(const std::string& formula) {
+  return evaluate(formula, times, [](const std::string& name) {
+    if (name == "a.x") return std::vector<double>{1, 2, 3, 4};
+    if (name == "a.my-arm") return std::vector<double>{10, 20, 30, 40};
+    throw Error("", "no column " + name);
+  });
+}
+
+TEST(Expression, OperatorsBindAsInAlgebra) {
+  for (const auto& [formula, expected] : {std::pair{"1 + 2*3", 7.0},
+                                          {"(1 + 2)*3", 9.0},
+                                          {"2^3^2", 512.0},
+                                          {"-2^2", -4.0},
+                                          {"2^-1", 0.5},
+                                          {"8/2/2", 2.0},
+                                          {"1 - 2 - 3", -4.0},
+                                          {"--3", 3.0},
+                                          {"1e3", 1e3},
+                                          {".5", 0.5},
+                                          {"cos(pi)", -1.0},
+                                          {"atan2(1, -1)", 3 * M_PI / 4},
+                                          {"hypot(2, 3, 6)", 7.0},
+                                          {"max(1, 5, 2) - min(4, 3)", 2.0}})
+    EXPECT_DOUBLE_EQ(value(formula)[2], expected) << formula;
+}
+
+TEST(Expression, NamesAreColumnsAndTimesAreT) {
+  EXPECT_EQ(value("a.x*t"), (std::vector<double>{0, 1, 4.5, 8}));
+  EXPECT_EQ(value("\"a.my-arm\"/10 - start(a.x)"), (std::vector<double>{0, 1, 2, 3}));
+}
+
+TEST(Expression, TheRateOfALineIsItsSlopeAndHasNoEnds) {
+  const auto rate = value("d(3*t - 1)");
+  EXPECT_TRUE(std::isnan(rate.front()) && std::isnan(rate.back()));
+  EXPECT_DOUBLE_EQ(rate[1], 3);
+  EXPECT_DOUBLE_EQ(rate[2], 3);
+}
+
+TEST(Expression, WhatIsNoFormulaIsToldWithItsColumn) {
+  for (const auto& [formula, message] : {std::pair{"1 +", "column 4: ends too early"},
+                                         {"(1", "column 3: expected \")\""},
+                                         {"1 2", "column 3: expected an operator"},
+                                         {"sine(t)", "column 1: no function \"sine\"; there are abs"},
+                                         {"atan2(1)", "takes 2 of them, here are 1"},
+                                         {"a.my-arm", "no column a.my"},
+                                         {"\"a", "column 1: a quote without its end"},
+                                         {"1 + *2", "column 5: expected a number"}})
+    try {
+      value(formula);
+      ADD_FAILURE() << formula;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(message), std::string::npos) << e.what();
+    }
+}
+
+const Workplace& sample_place() {
+  static const Workplace place;
+  static const std::string run = sample::write_run(place.path(), sample::cube(2), 1);
+  return place;
+}
+Ran post(const std::string& rest) { return sample_place().run("unset DISPLAY\nhilo-post " + rest); }
+
+TEST(SeriesFormula, ColumnsAreTheFormulaOfWhatIsStoredOverTheAbscissaAskedFor) {
+  const Ran ran = post(
+      "series run.h5 'pull [kN] = F/1e3' 'turned [1] = sensor.seat.x' --let 'F = hypot(joint.trunnion.Fx, joint.trunnion.Fy)' "
+      "-x 'angle [deg] = 360*t' --times 0.02:0.05 -o out.csv");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const CsvTable table = read_csv(sample_place() / "out.csv");
+  EXPECT_EQ(table.header, (std::vector<std::string>{"angle [deg]", "pull [kN]", "turned [1]"}));
+  const Store store = Store::open(sample_place() / "run.h5");
+  const auto t = store.read<double>("/history/t"), joint = store.read<double>("/history/joint/trunnion");
+  ASSERT_EQ(table.rows(), 61u);  // both ends, 0.5 ms apart
+  const auto angle = table.numbers(0), pull = table.numbers(1);
+  for (size_t i = 0; i < table.rows(); ++i) {
+    EXPECT_DOUBLE_EQ(angle[i], 360 * t[i + 40]);
+    EXPECT_DOUBLE_EQ(pull[i], std::hypot(joint[6 * (i + 40)], joint[6 * (i + 40) + 1]) / 1e3);
+  }
+}
+
+TEST(SeriesFormula, AnUnknownColumnIsAnErrorWithTheNearestOne) {
+  const Ran ran = post("series run.h5 'x = joint.trunnion.Fq'");
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_EQ(ran.err, "hilo-post: run.h5: no column \"joint.trunnion.Fq\" (did you mean \"joint.trunnion.Fx\"?)\n");
+  EXPECT_EQ(post("series run.h5 'x = 1 +'").exit, 1);
+}
+
+TEST(Compare, FindsWhereTablesAreFarthestApartAtSharedInstantsOnly) {
+  const Workplace place;
+  place.write("truth.csv", "t [s],a [N],b [m]\n0,1,2\n1,-4,2\n2,3,2\n");
+  place.write("run.csv", "t [s],b [m],a [N]\n0,2,1\n0.5,9,9\n1,2.5,-3\n1.5,9,9\n2.0001,2,3.5\n");
+  const Ran ran = place.run("hilo-post compare truth.csv run.csv --json");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_NE(ran.err.find("run.csv: 3 of its 5 rows"), std::string::npos) << ran.err;
+  EXPECT_NE(ran.out.find(R"({"column": "a [N]", "of": "truth", "start": 1, "peak": 4, "off by": null)"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find(R"("of": "run", "start": 1, "peak": 9, "off by": 1, "in % of peak": 25, "at t [s]": 1})"), std::string::npos);
+  EXPECT_NE(ran.out.find(R"("off by": 0.5, "in % of peak": 25, "at t [s]": 1})"), std::string::npos) << ran.out;
+}
+
+TEST(Compare, TablesWithoutASharedInstantOrColumnAreRefused) {
+  const Workplace place;
+  place.write("a.csv", "t [s],a [N]\n0,1\n1,-4\n");
+  place.write("b.csv", "t [s],a [N]\n0.4,1\n1.4,-4\n");
+  place.write("c.csv", "t [s],c [N]\n0,1\n1,-4\n");
+  place.write("d.csv", "t [s],a [N]\n1,1\n0,-4\n");
+  EXPECT_NE(place.run("hilo-post compare a.csv b.csv").err.find("b.csv: has no t [s] in common with a.csv"), std::string::npos);
+  EXPECT_NE(place.run("hilo-post compare a.csv c.csv").err.find("a.csv: has no column in common"), std::string::npos);
+  EXPECT_NE(place.run("hilo-post compare a.csv d.csv").err.find("d.csv: \"t [s]\" does not rise"), std::string::npos);
+  EXPECT_EQ(place.run("hilo-post compare a.csv d.csv").exit, 2);
+}
+
+TEST(Compare, ARunDiffersFromItselfByNothing) {
+  const Ran ran = post("compare run.h5 run.h5 -y energy -y 'pull [kN] = joint.trunnion.Fx/1e3' --json");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_NE(ran.out.find("\"column\": \"pull [kN]\""), std::string::npos) << ran.out;
+  EXPECT_EQ(ran.out.find("\"off by\": 1"), std::string::npos);
+  EXPECT_NE(ran.out.find("\"off by\": 0"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace hilo::test

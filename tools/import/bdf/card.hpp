@@ -1,0 +1,44 @@
+// The entries of a Nastran file that are known: a name and what reads it.  Another entry is one more row of the table in cards.cpp.
+#pragma once
+#include <map>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "import/bdf/entries.hpp"
+#include "import/imported.hpp"
+
+namespace hilo {
+
+inline constexpr const char* bdf_supported = "supported: CTETRA, CPENTA, CHEXA, CROD, CONROD";
+
+/// What a Nastran file says, in its own numbers, before it becomes a mesh.
+struct BdfDeck {
+  struct Cell {
+    Shape shape;
+    std::int64_t id, property;
+    std::vector<std::int64_t> nodes;
+    std::string place;
+  };
+  std::vector<Vec3> X;
+  std::vector<std::int64_t> node_id;
+  std::unordered_map<std::int64_t, std::int64_t> row;  // number of a grid -> row of X
+  std::vector<Cell> cells, shells;
+  std::set<std::int64_t> cell_ids;
+  std::map<std::int64_t, std::int64_t> material_of;  // property -> material
+  std::map<std::int64_t, RegionData> materials;      // units of the deck
+  std::map<std::string, std::vector<std::int64_t>> sets;
+};
+
+struct BdfCard {
+  const char* name;  // "CHEXA"
+  void (*read)(const BdfEntry&, BdfDeck&, Imported&);
+};
+using BdfCards = std::vector<BdfCard>;
+BdfCards bdf_cards();
+
+/// Reads the entries.  One that is not among `cards` is counted in `in.not_read`.
+void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards& cards);
+
+}  // namespace hilo

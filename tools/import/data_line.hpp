@@ -1,0 +1,39 @@
+// Text decks: a line cut into fields that know where they stand, and the numbers in them.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hilo {
+
+/// A field of a data line, blanks stripped, and where it stands.
+struct Field {
+  std::string_view text;
+  int column = 1;
+};
+
+/// A data line.  Fields are views into the file's text, which the reader keeps.
+struct DataLine {
+  const std::string* file = nullptr;
+  int line = 0;
+  std::vector<Field> fields;
+
+  std::string place() const;              // file:line
+  std::string place(size_t field) const;  // file:line:column
+  /// The text of a field, "" behind the last one.
+  std::string_view text(size_t field) const { return field < fields.size() ? fields[field].text : std::string_view{}; }
+  bool empty(size_t field) const { return text(field).empty(); }
+  /// A number; an empty field is `fallback`.  Throws Error with the place.
+  double number(size_t field, double fallback = 0) const;
+  std::int64_t integer(size_t field) const;
+  bool is_integer(size_t field) const;
+};
+
+/// Upper case, blanks removed.
+std::string upper(std::string_view s);
+
+/// The whole text of a plain or gzip file; Error when it cannot be read.
+std::string read_gz(const std::string& path, const std::string& place);
+
+}  // namespace hilo

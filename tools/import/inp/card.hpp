@@ -1,0 +1,45 @@
+// The cards of an .inp deck that are known: a keyword and what reads it.  Another card is one more row in the table of its family.
+#pragma once
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "import/inp/deck.hpp"
+
+namespace hilo {
+
+/// A deck being read: where it stands, and what it has said so far.
+struct InpReading {
+  InpLines lines;
+  InpDeck& deck;
+  Imported& in;
+  Card card = {};                // the card at hand
+  int step = 0;                  // 0 before the first *STEP
+  int parts = 0, instances = 0;  // *PART, *INSTANCE so far
+  void skip(const std::string& what) { in.skip(what, card.place()); }
+};
+
+struct InpCard {
+  const char* key;  // "SOLIDSECTION": upper case, blanks removed
+  void (*read)(InpReading&);
+  bool first_step_only = false;  // what it says of a second step does not become scene lines
+};
+using InpCards = std::vector<InpCard>;
+
+/// The families, one file each.
+std::span<const InpCard> inp_mesh_cards();      // *NODE, *ELEMENT, sets, surfaces
+std::span<const InpCard> inp_material_cards();  // *MATERIAL and what follows it, sections
+std::span<const InpCard> inp_load_cards();      // supports, loads, histories
+std::span<const InpCard> inp_step_cards();      // heading, parts, steps, procedures
+std::span<const InpCard> inp_unread_cards();    // requests for output, and cards without which the mesh would be another
+/// All of them.
+InpCards inp_cards();
+
+/// Reads the cards.  One that is not among `cards` is counted in `in.not_read`.
+void parse_inp(const std::string& path, InpDeck& deck, Imported& in, const InpCards& cards);
+
+/// The first parameter of a card that is not among those known, as "*CLOAD, SECTOR"; "" when all are.
+std::string unknown_param(const Card& card, std::initializer_list<const char*> known);
+
+}  // namespace hilo

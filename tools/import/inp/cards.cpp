@@ -1,0 +1,24 @@
+// The table of contents of the .inp reader.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "import/inp/card.hpp"
+
+namespace hilo {
+
+InpCards inp_cards() {
+  InpCards all;
+  for (const auto& family : {inp_mesh_cards(), inp_material_cards(), inp_load_cards(), inp_step_cards(), inp_unread_cards()})
+    all.insert(all.end(), family.begin(), family.end());
+  return all;
+}
+
+std::string unknown_param(const Card& card, std::initializer_list<const char*> known) {
+  for (const auto& [key, p] : card.params)
+    if (std::find_if(known.begin(), known.end(), [&](const char* k) { return key == k; }) == known.end())
+      return fmt::format("{}, {}{}", card.name, key, p.value.empty() ? "" : "=" + p.value);
+  return "";
+}
+
+}  // namespace hilo

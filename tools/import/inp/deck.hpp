@@ -1,0 +1,118 @@
+// What an Abaqus or CalculiX deck says, in its own numbers and units, before it becomes a mesh and a scene.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "base/error.hpp"
+#include "import/imported.hpp"
+#include "import/inp/lines.hpp"
+
+namespace hilo {
+
+/// *NSET or *ELSET: numbers of the deck.
+struct InpSet {
+  std::string name;  // as first written
+  std::vector<std::int64_t> members;
+};
+/// *SURFACE: lines "target, face"; face 0 means the free faces, and in a node surface nothing.
+struct InpSurface {
+  struct Line {
+    std::string target;  // set, upper case, or ""
+    std::int64_t id;     // element or node where there is no set
+    int face;
+    std::string place;
+  };
+  std::string name;
+  bool of_nodes = false;
+  std::vector<Line> lines;
+};
+struct InpMaterial {
+  std::string name;
+  RegionData data;  // units of the deck
+};
+struct InpSection {
+  std::string elset, material;  // upper case, and as written
+  std::string elset_name, material_name;
+  std::string place, material_place;
+  double area = 0;  // of bars
+};
+/// One line of *BOUNDARY, *CLOAD or *INITIAL CONDITIONS, TYPE=VELOCITY: a value on degrees of freedom first..last of a node or node set.
+struct InpNodal {
+  std::string target;  // node set, upper case, or "" for node `id`
+  std::int64_t id;
+  int first, last;
+  double value;
+  std::string amplitude;  // upper case, "" without
+  std::string place;
+};
+/// One line of *DLOAD or *DSLOAD: pressure on a face of elements, or gravity.
+struct InpDistributed {
+  std::string target;  // element set or surface, upper case, or "" for element `id`
+  std::int64_t id;
+  int face;  // 1.., 0: a whole surface, -1: gravity
+  double value;
+  Vec3 direction;
+  std::string amplitude;
+  std::string place;
+};
+struct InpAmplitude {
+  std::string name;
+  std::vector<double> t, value;
+};
+
+/// `did you mean "low"?` for a name of which the case does not count.
+template <class Named>
+std::string suggest_name(const std::string& name, const std::map<std::string, Named>& known) {
+  std::vector<std::string> keys;
+  for (const auto& [key, one] : known) keys.push_back(key);
+  std::string hint = suggest(upper(name), keys);
+  for (const auto& [key, one] : known)
+    if (const auto at = hint.find('"' + key + '"'); at != std::string::npos) return hint.replace(at + 1, key.size(), one.name);
+  return hint;
+}
+
+struct InpDeck {
+  std::set<std::string> files;  // that lines came from, for messages
+  std::vector<Vec3> X;
+  std::vector<std::int64_t> node_id;
+  std::unordered_map<std::int64_t, std::int64_t> node;  // number in the deck -> row of X, of nodes that a cell uses
+  std::unordered_set<std::int64_t> unused;              // nodes of no cell
+  std::vector<std::uint8_t> shape;
+  std::vector<std::int64_t> cell_id, offset{0}, cell_nodes;  // nodes as numbers of the deck
+  std::vector<int> cell_line;
+  std::vector<const std::string*> cell_file;
+  std::unordered_map<std::int64_t, std::int64_t> cell;
+  std::map<std::string, InpSet> nset, elset;  // by upper-case name
+  std::vector<std::string> nset_order, elset_order;
+  std::vector<InpSurface> surfaces;
+  std::map<std::string, InpMaterial> materials;  // by upper-case name
+  std::string material;                          // the one that *ELASTIC and *DENSITY speak of
+  std::vector<InpSection> sections;
+  std::vector<InpNodal> supports, forces, velocities;
+  std::vector<InpDistributed> distributed;
+  std::map<std::string, InpAmplitude> amplitudes;
+  std::vector<std::string> transformed;  // node sets (upper case) or numbers with axes of their own
+  std::string title, procedure;          // "*STATIC"
+  double step_increment = 0, step_end = 0;
+};
+
+/// The shape of an element type, or an Error at the card that says why there is none.
+Shape inp_shape(const Card& card);
+
+/// Scene lines of the deck's materials, supports and loads (mesh.deck_scene), and the sets that they name.  `node_set` gives the final name
+/// of a node set of the deck, `surface` that of a surface.
+void write_inp_scene(const InpDeck& deck, Imported& in, SetNames& names, const std::map<std::string, std::string>& node_set,
+                     const std::map<std::string, std::string>& surface, const ImportOptions& options);
+/// Facets of the deck's faces: the local facet that has the corners of face `face` of an Abaqus element; -1 where there is none.
+int inp_facet(Shape shape, int face);
+/// Rows of the nodes, or cells, that a target names; numbers that no cell uses are left out.
+std::vector<std::int64_t> inp_nodes(const InpDeck& deck, const std::string& target, std::int64_t id, const std::string& place);
+std::vector<std::int64_t> inp_cells(const InpDeck& deck, const std::string& target, std::int64_t id, const std::string& place);
+
+}  // namespace hilo

@@ -1,0 +1,182 @@
+#include "import/inp/groups.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "base/error.hpp"
+
+namespace hilo {
+namespace {
+
+/// Components of one set, held on the same nodes in the same way, are one motion.
+void merge_components(std::vector<Held>& groups) {
+  for (auto& h : groups) std::sort(h.nodes.begin(), h.nodes.end());
+  for (size_t i = 0; i < groups.size(); ++i)
+    for (size_t j = i + 1; j < groups.size();) {
+      Held &a = groups[i], &b = groups[j];
+      const bool apart = !(a.on[0] && b.on[0]) && !(a.on[1] && b.on[1]) && !(a.on[2] && b.on[2]);
+      if (a.target.empty() || a.target != b.target || a.amplitude != b.amplitude || a.moved != b.moved || !apart || a.nodes != b.nodes) {
+        ++j;
+        continue;
+      }
+      for (int k = 0; k < 3; ++k)
+        if (b.on[k]) a.on[k] = true, a.value[k] = b.value[k];
+      groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(j));
+    }
+}
+
+}  // namespace
+
+std::vector<char> turned_nodes(const InpDeck& d, const Mesh& mesh) {
+  std::vector<char> turned(mesh.X.size(), 0);
+  for (const auto& key : d.transformed)
+    if (d.nset.count(key))
+      for (const auto a : inp_nodes(d, key, 0, "")) turned[a] = 1;
+  return turned;
+}
+
+std::vector<Held> held_groups(const InpDeck& d, const std::vector<char>& turned, Imported& in) {
+  // the last line that speaks of a component of a node holds it
+  std::unordered_map<std::int64_t, size_t> claim;
+  for (size_t i = 0; i < d.supports.size(); ++i) {
+    const auto& b = d.supports[i];
+    if (b.target.empty() && d.unused.count(b.id)) in.skip("*BOUNDARY on a node of no cell", b.place);
+    for (const auto a : inp_nodes(d, b.target, b.id, b.place))
+      for (int k = b.first - 1; k < b.last; ++k) claim[3 * a + k] = i;
+  }
+  const auto fixed = [&](std::int64_t a, int k) {
+    const auto c = claim.find(3 * a + k);
+    return c != claim.end() && d.supports[c->second].value == 0;
+  };
+  std::int64_t lost = 0;
+  for (std::int64_t a = 0; a < in.mesh.n_nodes(); ++a)
+    if (turned[a] && !(fixed(a, 0) && fixed(a, 1) && fixed(a, 2)))
+      for (int k = 0; k < 3; ++k) lost += static_cast<std::int64_t>(claim.erase(3 * a + k));
+  if (lost) in.skip("*BOUNDARY in axes of *TRANSFORM", "", lost);
+
+  std::vector<Held> groups;
+  std::map<std::tuple<std::string, std::string, int, double>, size_t> of_set;  // target, amplitude, component, value
+  std::map<std::int64_t, std::array<std::int64_t, 3>> of_node;                 // single nodes: line of each component
+  for (size_t i = 0; i < d.supports.size(); ++i) {
+    const auto& b = d.supports[i];
+    const std::string amplitude = b.value == 0 ? "" : b.amplitude;
+    for (int k = b.first - 1; k < b.last; ++k)
+      for (const auto a : inp_nodes(d, b.target, b.id, b.place)) {
+        const auto c = claim.find(3 * a + k);
+        if (c == claim.end() || c->second != i) continue;
+        if (b.target.empty()) {
+          of_node.try_emplace(a, std::array<std::int64_t, 3>{-1, -1, -1}).first->second[k] = static_cast<std::int64_t>(i);
+          continue;
+        }
+        const auto [it, fresh] = of_set.try_emplace({b.target, amplitude, k, b.value}, groups.size());
+        if (fresh) {
+          Held h{b.target, amplitude, b.place};
+          h.on[k] = true, h.value[k] = b.value, h.moved = b.value != 0;
+          groups.push_back(h);
+        }
+        groups[it->second].nodes.push_back(a);
+      }
+  }
+  for (const auto& [a, line] : of_node)
+    for (const bool moved : {false, true}) {  // the held and the moved components of one node are two groups
+      std::map<std::string, Held> by_amplitude;
+      for (int k = 0; k < 3; ++k) {
+        if (line[k] < 0) continue;
+        const auto& b = d.supports[line[k]];
+        if ((b.value != 0) != moved) continue;
+        auto& h = by_amplitude[moved ? b.amplitude : ""];
+        h.on[k] = true, h.value[k] = b.value, h.moved = moved, h.place = b.place, h.amplitude = moved ? b.amplitude : "";
+      }
+      for (auto& [amplitude, h] : by_amplitude) {
+        const auto same = std::find_if(groups.begin(), groups.end(), [&, &h = h](const Held& g) {
+          return g.target.empty() && g.moved == moved && g.on == h.on && g.value == h.value && g.amplitude == h.amplitude;
+        });
+        if (same == groups.end())
+          groups.push_back(h), groups.back().nodes = {a};
+        else
+          same->nodes.push_back(a);
+      }
+    }
+  merge_components(groups);
+  return groups;
+}
+
+std::vector<Nodal> nodal_groups(const InpDeck& d, const std::vector<InpNodal>& lines, const char* what, bool add,
+                                const std::vector<char>& turned, Imported& in) {
+  std::vector<Nodal> groups;
+  std::map<std::pair<std::string, std::string>, size_t> of_set;
+  std::map<std::pair<std::int64_t, std::string>, Nodal> of_node;
+  for (const auto& f : lines) {
+    if (f.target.empty() && d.unused.count(f.id)) in.skip(fmt::format("{} on a node of no cell", what), f.place);
+    Rows nodes = inp_nodes(d, f.target, f.id, f.place);
+    const auto away = std::count_if(nodes.begin(), nodes.end(), [&](std::int64_t a) { return turned[a]; });
+    if (away) {
+      in.skip(fmt::format("{} in axes of *TRANSFORM", what), f.place, away);
+      continue;
+    }
+    if (nodes.empty()) continue;
+    Nodal* n;
+    if (f.target.empty())
+      n = &of_node[{nodes[0], f.amplitude}];
+    else {
+      const auto [it, fresh] = of_set.try_emplace({f.target, f.amplitude}, groups.size());
+      if (fresh) groups.push_back({f.target, f.amplitude, f.place, Vec3::Zero(), nodes});
+      n = &groups[it->second];
+    }
+    n->amplitude = f.amplitude;
+    if (n->place.empty()) n->place = f.place;
+    n->value[f.first - 1] = f.value + (add ? n->value[f.first - 1] : 0);
+  }
+  for (const auto& [key, n] : of_node) {
+    const auto same = std::find_if(groups.begin(), groups.end(), [&, &n = n](const Nodal& g) {
+      return g.target.empty() && g.value == n.value && g.amplitude == n.amplitude;
+    });
+    if (same == groups.end())
+      groups.push_back(n), groups.back().nodes = {key.first};
+    else
+      same->nodes.push_back(key.first);
+  }
+  return groups;
+}
+
+std::vector<std::int64_t> inp_nodes(const InpDeck& d, const std::string& target, std::int64_t id, const std::string& place) {
+  Rows rows;
+  if (target.empty()) {
+    if (const auto a = d.node.find(id); a != d.node.end())
+      rows.push_back(a->second);
+    else if (!d.unused.count(id))
+      throw Error(place, fmt::format("no node {}", id));
+    return rows;
+  }
+  const auto set = d.nset.find(target);
+  if (set == d.nset.end()) {
+    throw Error(place, fmt::format("no node set \"{}\"", target), suggest_name(target, d.nset));
+  }
+  for (const auto i : set->second.members)
+    if (const auto a = d.node.find(i); a != d.node.end()) rows.push_back(a->second);
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  return rows;
+}
+
+std::vector<std::int64_t> inp_cells(const InpDeck& d, const std::string& target, std::int64_t id, const std::string& place) {
+  Rows rows;
+  if (target.empty()) {
+    const auto c = d.cell.find(id);
+    if (c == d.cell.end()) throw Error(place, fmt::format("no element {}", id));
+    return {c->second};
+  }
+  const auto set = d.elset.find(target);
+  if (set == d.elset.end()) {
+    throw Error(place, fmt::format("no element set \"{}\"", target), suggest_name(target, d.elset));
+  }
+  for (const auto i : set->second.members)
+    if (const auto c = d.cell.find(i); c != d.cell.end()) rows.push_back(c->second);
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  return rows;
+}
+
+}  // namespace hilo

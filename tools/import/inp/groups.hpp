@@ -1,0 +1,33 @@
+// Nodes that a deck holds or pushes, in groups that each become one entry of the scene.
+#pragma once
+#include "import/inp/deck.hpp"
+
+namespace hilo {
+
+using Rows = std::vector<std::int64_t>;
+
+/// A group of nodes held in the same components to the same values.
+struct Held {
+  std::string target, amplitude, place;
+  std::array<bool, 3> on{};
+  Vec3 value = Vec3::Zero();
+  bool moved = false;
+  Rows nodes = {};
+};
+/// *BOUNDARY by set, or equal supports of single nodes together; the last line that speaks of a component of a node holds it.
+std::vector<Held> held_groups(const InpDeck& deck, const std::vector<char>& turned, Imported& in);
+
+/// A vector on each node of a group.
+struct Nodal {
+  std::string target, amplitude, place;
+  Vec3 value = Vec3::Zero();
+  Rows nodes;
+};
+/// *CLOAD (values on the same node add up) or initial velocities (the last one holds): by set, or equal vectors of single nodes together.
+std::vector<Nodal> nodal_groups(const InpDeck& deck, const std::vector<InpNodal>& lines, const char* what, bool add,
+                                const std::vector<char>& turned, Imported& in);
+
+/// Which nodes have axes of their own (*TRANSFORM).
+std::vector<char> turned_nodes(const InpDeck& deck, const Mesh& mesh);
+
+}  // namespace hilo

@@ -1,0 +1,171 @@
+// Abaqus and CalculiX decks: the cards in turn, then the mesh they make.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <stdexcept>
+
+#include "base/error.hpp"
+#include "import/inp/card.hpp"
+
+namespace hilo {
+namespace {
+
+void check_names(const InpDeck& d) {
+  for (const auto& s : d.sections) {
+    if (!d.elset.count(s.elset))
+      throw Error(s.place, fmt::format("*SOLID SECTION: no element set \"{}\"", s.elset_name), suggest_name(s.elset, d.elset));
+    if (!d.materials.count(s.material))
+      throw Error(s.material_place, fmt::format("*SOLID SECTION: no material \"{}\"", s.material_name),
+                  suggest_name(s.material, d.materials));
+  }
+}
+
+/// Node numbers of the cells become rows; nodes that no cell uses go.
+void resolve_cells(InpDeck& d, Imported& in) {
+  Mesh& m = in.mesh;
+  std::vector<char> used(d.X.size(), 0);
+  m.nodes.resize(d.cell_nodes.size());
+  for (size_t c = 0; c < d.shape.size(); ++c)
+    for (auto i = d.offset[c]; i < d.offset[c + 1]; ++i) {
+      const auto it = d.node.find(d.cell_nodes[i]);
+      if (it == d.node.end())
+        throw Error(fmt::format("{}:{}", *d.cell_file[c], d.cell_line[c]),
+                    fmt::format("element {} names node {}, which does not exist", d.cell_id[c], d.cell_nodes[i]));
+      m.nodes[i] = it->second;
+      used[it->second] = 1;
+    }
+  std::vector<std::int64_t> row(d.X.size(), -1);
+  for (size_t a = 0; a < d.X.size(); ++a)
+    if (used[a]) {
+      row[a] = static_cast<std::int64_t>(m.X.size());
+      d.node[d.node_id[a]] = row[a];
+      m.X.push_back(d.X[a]);
+      m.node_id.push_back(d.node_id[a]);
+    } else {
+      d.node.erase(d.node_id[a]);
+      d.unused.insert(d.node_id[a]);
+    }
+  for (auto& a : m.nodes) a = row[a];
+  if (!d.unused.empty())
+    in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped, the first is {}", d.unused.size(),
+                                   *std::min_element(d.unused.begin(), d.unused.end())));
+  m.shape = d.shape;
+  m.cell_id = d.cell_id;
+  m.offset = d.offset;
+  m.region.assign(d.shape.size(), -1);
+}
+
+/// Members of a set that exist; the others are counted and said.
+std::vector<std::int64_t> rows(const InpSet& s, const std::unordered_map<std::int64_t, std::int64_t>& of,
+                               const std::unordered_set<std::int64_t>* unused, const char* what, Imported& in) {
+  std::vector<std::int64_t> r;
+  r.reserve(s.members.size());
+  std::int64_t missing = 0;
+  for (const auto id : s.members)
+    if (const auto it = of.find(id); it != of.end())
+      r.push_back(it->second);
+    else if (!unused || !unused->count(id))
+      ++missing;
+  if (missing) in.notes.push_back(fmt::format("set \"{}\": {} of its numbers are no {}: left out", s.name, missing, what));
+  return r;
+}
+
+/// The material of every cell goes to the data of its region.
+void region_materials(const InpDeck& d, Imported& in, const std::string& file) {
+  Mesh& m = in.mesh;
+  std::vector<const InpMaterial*> of_cell(m.shape.size(), nullptr), of_region(m.region_name.size(), nullptr);
+  for (const auto& s : d.sections)
+    for (const auto id : d.elset.at(s.elset).members)
+      if (const auto c = d.cell.find(id); c != d.cell.end()) of_cell[c->second] = &d.materials.at(s.material);
+  for (std::int64_t c = 0; c < m.n_cells(); ++c) {
+    const auto*& r = of_region[m.region[c]];
+    if (r && of_cell[c] && r != of_cell[c])
+      throw Error(
+          file,
+          fmt::format("region \"{}\" holds cells of materials \"{}\" and \"{}\"", m.region_name[m.region[c]], r->name, of_cell[c]->name),
+          "choose --regions within one material");
+    if (of_cell[c]) r = of_cell[c];
+  }
+  for (size_t r = 0; r < of_region.size(); ++r)
+    if (of_region[r]) m.region_data[r] = of_region[r]->data;
+}
+
+}  // namespace
+
+void parse_inp(const std::string& path, InpDeck& d, Imported& in, const InpCards& cards) {
+  std::map<std::string_view, const InpCard*> by_key;
+  for (const auto& c : cards)
+    if (!by_key.try_emplace(c.key, &c).second) throw std::logic_error(fmt::format("two readers of *{}", c.key));
+  InpReading r{InpLines(path), d, in};
+  bool any = false;
+  while (r.lines.next_card(r.card)) {
+    any = true;
+    const auto known = by_key.find(r.card.key);
+    if (r.step > 1 && (known == by_key.end() || known->second->first_step_only))
+      r.skip(r.card.name + " in step 2 and later");
+    else if (known == by_key.end())
+      r.skip(r.card.name);
+    else
+      known->second->read(r);
+  }
+  if (!any) throw Error(path, "no keyword in it", "an Abaqus or CalculiX deck has lines such as *NODE");
+}
+
+Imported read_inp(const std::string& path, const ImportOptions& options) {
+  Imported in;
+  InpDeck d;
+  parse_inp(path, d, in, inp_cards());
+  if (d.X.empty()) throw Error(path, "no nodes", "a deck has *NODE");
+  if (d.shape.empty()) throw Error(path, "no elements", "a deck has *ELEMENT");
+  check_names(d);
+  resolve_cells(d, in);
+
+  std::vector<CellGroup> regions, groups;
+  std::set<std::string> in_section;
+  for (const auto& s : d.sections) {
+    const auto& set = d.elset.at(s.elset);
+    if (in_section.insert(s.elset).second) regions.push_back({set.name, rows(set, d.cell, nullptr, "element", in)});
+  }
+  for (const auto& key : d.elset_order)
+    if (!in_section.count(key)) groups.push_back({d.elset.at(key).name, rows(d.elset.at(key), d.cell, nullptr, "element", in)});
+  assign_regions(in, path, regions, true, groups, options);
+  region_materials(d, in, path);
+
+  SetNames names(in);
+  std::map<std::string, std::string> surface, node_set;
+  for (const auto& s : d.surfaces) {
+    if (s.of_nodes) continue;
+    std::vector<Facet> facets;
+    for (const auto& line : s.lines) {
+      const auto cells = inp_cells(d, line.target, line.id, line.place);
+      if (line.face == 0) {
+        const auto free = free_facets(in.mesh, cells);
+        facets.insert(facets.end(), free.begin(), free.end());
+      } else
+        for (const auto c : cells) {
+          const int f = inp_facet(static_cast<Shape>(in.mesh.shape[c]), line.face);
+          if (f < 0) throw Error(line.place, fmt::format("*SURFACE {}: element {} has no face S{}", s.name, in.mesh.cell_id[c], line.face));
+          facets.push_back({c, f});
+        }
+    }
+    surface[upper(s.name)] = names.facets(s.name, std::move(facets));
+  }
+  for (const auto& key : d.nset_order)
+    node_set[key] = names.nodes(d.nset.at(key).name, rows(d.nset.at(key), d.node, &d.unused, "node", in));
+  for (const auto& s : d.surfaces) {
+    if (!s.of_nodes) continue;
+    std::vector<std::int64_t> nodes;
+    for (const auto& line : s.lines) {
+      const auto more = inp_nodes(d, line.target, line.id, line.place);
+      nodes.insert(nodes.end(), more.begin(), more.end());
+    }
+    names.nodes(s.name, std::move(nodes));
+  }
+  for (const auto& g : groups) names.cells(g.name, g.cells);
+  write_inp_scene(d, in, names, node_set, surface, options);
+  return in;
+}
+
+}  // namespace hilo

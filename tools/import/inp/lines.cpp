@@ -1,0 +1,169 @@
+#include "import/inp/lines.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <filesystem>
+
+#include "base/error.hpp"
+
+namespace hilo {
+namespace {
+
+std::string_view strip(std::string_view s) {
+  while (!s.empty() && std::isspace(static_cast<unsigned char>(s.front()))) s.remove_prefix(1);
+  while (!s.empty() && std::isspace(static_cast<unsigned char>(s.back()))) s.remove_suffix(1);
+  return s;
+}
+
+/// Cut at commas outside double quotes.
+void cut(std::string_view line, std::vector<Field>& fields) {
+  fields.clear();
+  size_t from = 0;
+  bool quoted = false;
+  for (size_t i = 0; i <= line.size(); ++i) {
+    if (i < line.size() && line[i] == '"') quoted = !quoted;
+    if (i < line.size() && (line[i] != ',' || quoted)) continue;
+    const auto raw = line.substr(from, i - from);
+    const auto text = strip(raw);
+    const size_t lead = text.empty() ? 0 : static_cast<size_t>(text.data() - raw.data());
+    fields.push_back({text, static_cast<int>(from + lead) + 1});
+    from = i + 1;
+  }
+  while (!fields.empty() && fields.back().text.empty()) fields.pop_back();
+}
+
+std::string unquote(std::string_view s) {
+  if (s.size() > 1 && s.front() == '"' && s.back() == '"') s = s.substr(1, s.size() - 2);
+  return std::string(s);
+}
+
+}  // namespace
+
+std::string Card::place() const { return fmt::format("{}:{}", *file, line); }
+std::string Card::place(const std::string& param) const {
+  const auto p = params.find(param);
+  return fmt::format("{}:{}:{}", *file, line, p == params.end() ? 1 : p->second.column);
+}
+std::string Card::value(const std::string& param, const std::string& fallback) const {
+  const auto p = params.find(param);
+  return p == params.end() ? fallback : p->second.value;
+}
+std::string Card::word(const std::string& param) const { return upper(value(param)); }
+std::string Card::need(const std::string& param) const {
+  const auto p = params.find(param);
+  if (p == params.end() || p->second.value.empty()) throw Error(fmt::format("{}:1", place()), fmt::format("{} lacks {}=", name, param));
+  return p->second.value;
+}
+
+InpLines::InpLines(const std::string& path) : folder_(std::filesystem::path(path).parent_path().string()) { open(path, ""); }
+
+void InpLines::open(const std::string& path, const std::string& place) {
+  Source s{std::make_shared<const std::string>(path), std::make_shared<const std::string>(read_gz(path, place)), 0, 0};
+  if (s.text->substr(0, 65536).find('\0') != std::string::npos)
+    throw Error(path, "not a text file", "hilo-import reads .inp decks as text");
+  stack_.push_back(s);
+  kept_.push_back(s);
+}
+
+void InpLines::include(std::string_view line, const std::string& place) {
+  namespace fs = std::filesystem;
+  std::vector<Field> fields;
+  cut(line, fields);
+  std::string name;
+  for (const auto& f : fields)
+    if (const auto eq = f.text.find('='); eq != std::string_view::npos && upper(f.text.substr(0, eq)) == "INPUT")
+      name = unquote(strip(f.text.substr(eq + 1)));
+  if (name.empty()) throw Error(place + ":1", "*INCLUDE lacks INPUT=");
+  if (stack_.size() > 20)
+    throw Error(place, fmt::format("*INCLUDE nested more than 20 deep at \"{}\"", name), "does a file include itself?");
+  const fs::path p = fs::path(name).is_absolute() ? fs::path(name) : fs::path(folder_) / name;
+  open(p.string(), place);
+}
+
+bool InpLines::next_line(std::string_view& line) {
+  if (ahead_) {
+    line = *ahead_;
+    ahead_.reset();
+    return true;
+  }
+  while (!stack_.empty()) {
+    Source& s = stack_.back();
+    if (s.at >= s.text->size()) {
+      stack_.pop_back();
+      continue;
+    }
+    const size_t end = std::min(s.text->find('\n', s.at), s.text->size());
+    line = std::string_view(*s.text).substr(s.at, end - s.at);
+    s.at = end + 1;
+    ++s.line;
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    const auto bare = strip(line);
+    if (bare.empty() || bare.substr(0, 2) == "**") continue;
+    if (bare.size() > 8 && bare.front() == '*' && upper(bare.substr(0, 8)) == "*INCLUDE") {
+      include(bare, fmt::format("{}:{}", *s.path, s.line));
+      continue;
+    }
+    return true;
+  }
+  return false;
+}
+
+bool InpLines::next_data(DataLine& data) {
+  std::string_view line;
+  if (!next_line(line)) return false;
+  if (strip(line).front() == '*') {
+    ahead_ = line;
+    return false;
+  }
+  data.file = stack_.back().path.get();
+  data.line = stack_.back().line;
+  cut(line, data.fields);
+  return true;
+}
+
+bool InpLines::next_card(Card& card) {
+  std::string_view line;
+  for (;;) {
+    if (!next_line(line)) return false;
+    if (strip(line).front() == '*') break;
+  }
+  card.file = stack_.back().path.get();
+  card.line = stack_.back().line;
+  card.params.clear();
+  std::vector<Field> fields;
+  for (bool first = true, more = true; more; first = false) {
+    cut(line, fields);
+    more = strip(line).back() == ',';
+    for (const auto& f : fields) {
+      if (first && &f == &fields.front()) {
+        card.key = upper(f.text.substr(1));
+        card.name.assign(1, '*');
+        for (const char c : strip(f.text.substr(1)))
+          if (!(std::isspace(static_cast<unsigned char>(c)) && card.name.back() == ' '))
+            card.name += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        continue;
+      }
+      const auto eq = f.text.find('=');
+      const auto key = upper(f.text.substr(0, eq));
+      if (key.empty()) continue;
+      const auto value = eq == std::string_view::npos ? std::string_view{} : strip(f.text.substr(eq + 1));
+      const int column =
+          eq == std::string_view::npos || value.empty() ? f.column : f.column + static_cast<int>(value.data() - f.text.data());
+      card.params[key] = {unquote(value), column};
+    }
+    if (more && !next_line(line)) break;
+    if (more && strip(line).front() == '*') {  // a comma at the end with nothing behind it
+      ahead_ = line;
+      break;
+    }
+    // CalculiX decks end a card with a comma by mistake: a line of plain numbers is data
+    if (more && line.find('=') == std::string_view::npos && !std::isalpha(static_cast<unsigned char>(strip(line).front()))) {
+      ahead_ = line;
+      break;
+    }
+  }
+  return true;
+}
+
+}  // namespace hilo

@@ -1,0 +1,63 @@
+// The lines of an Abaqus or CalculiX deck: keyword cards with parameters, and data lines cut at commas.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "import/data_line.hpp"
+
+namespace hilo {
+
+/// A keyword card, "*SOLID SECTION, ELSET=EALL".
+struct Card {
+  struct Param {
+    std::string value;
+    int column;
+  };
+  std::string key;                      // "SOLIDSECTION": upper case, blanks removed
+  std::string name;                     // "*SOLID SECTION": as listed to the user
+  std::map<std::string, Param> params;  // keys as in `key`, values as written, quotes taken off
+  const std::string* file = nullptr;
+  int line = 0;
+
+  std::string place() const;
+  std::string place(const std::string& param) const;
+  bool has(const std::string& param) const { return params.count(param) > 0; }
+  std::string value(const std::string& param, const std::string& fallback = "") const;
+  /// The value upper case without blanks: what keywords are compared with.
+  std::string word(const std::string& param) const;
+  /// The value of a parameter that must be there.
+  std::string need(const std::string& param) const;
+};
+
+/// Reads a deck card by card, line by line; *INCLUDE is followed in place.  Plain or gzip text.
+class InpLines {
+ public:
+  explicit InpLines(const std::string& path);
+  /// The next keyword card; data lines not asked for are skipped.  False at the end of the deck.
+  bool next_card(Card& card);
+  /// The next data line before the next card.
+  bool next_data(DataLine& line);
+
+ private:
+  struct Source {
+    std::shared_ptr<const std::string> path;
+    std::shared_ptr<const std::string> text;
+    size_t at = 0;
+    int line = 0;
+  };
+  bool next_line(std::string_view& line);
+  void open(const std::string& path, const std::string& place);
+  /// Goes on with the file that an *INCLUDE line names, seen from the folder of the deck, then returns to this one.
+  void include(std::string_view line, const std::string& place);
+  std::vector<Source> stack_;
+  std::vector<Source> kept_;  // texts and names that fields and places point into
+  std::string folder_;
+  std::optional<std::string_view> ahead_;
+};
+
+}  // namespace hilo

@@ -1,0 +1,183 @@
+// The cards of an .inp deck that say supports, loads, initial velocities and histories.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "import/inp/card.hpp"
+
+namespace hilo {
+namespace {
+
+/// Target of a line: a number or the name of a set.
+void target_of(const DataLine& l, std::string& target, std::int64_t& id) {
+  id = 0;
+  target.clear();
+  if (l.is_integer(0)) {
+    id = l.integer(0);
+    return;
+  }
+  std::string_view text = l.text(0);
+  if (text.size() > 1 && text.front() == '"') text = text.substr(1, text.size() - 2);
+  target = upper(text);
+  if (target.empty()) throw Error(l.place(0), "expected a number or the name of a set");
+}
+
+/// Abaqus names for supports of solids: the held translations as first, last pairs.
+std::vector<std::pair<int, int>> named_support(const std::string& word) {
+  if (word == "ENCASTRE" || word == "PINNED") return {{1, 3}};
+  if (word == "XSYMM") return {{1, 1}};
+  if (word == "YSYMM") return {{2, 2}};
+  if (word == "ZSYMM") return {{3, 3}};
+  if (word == "XASYMM") return {{2, 3}};
+  if (word == "YASYMM") return {{1, 1}, {3, 3}};
+  if (word == "ZASYMM") return {{1, 2}};
+  return {};
+}
+
+/// Another load case than the first is not read.
+bool other_case(InpReading& r) {
+  const Card& card = r.card;
+  const bool other = card.has("LOADCASE") && card.word("LOADCASE") != "1";
+  if (other) r.skip(fmt::format("{}, LOADCASE={}", card.name, card.word("LOADCASE")));
+  return other;
+}
+
+void read_supports(InpReading& r) {
+  const Card& card = r.card;
+  InpDeck& d = r.deck;
+  Imported& in = r.in;
+  if (const auto odd = unknown_param(card, {"OP", "AMPLITUDE", "TYPE", "FIXED", "LOADCASE"}); !odd.empty()) return r.skip(odd);
+  if (card.has("TYPE") && card.word("TYPE") != "DISPLACEMENT") return r.skip("*BOUNDARY, TYPE=" + card.word("TYPE"));
+  if (other_case(r)) return;
+  if (r.step > 0 && card.word("OP") == "NEW") d.supports.clear();  // forgets what was said before the step
+  const std::string amplitude = card.word("AMPLITUDE");
+  DataLine l;
+  while (r.lines.next_data(l)) {
+    InpNodal b;
+    b.amplitude = amplitude;
+    b.place = l.place();
+    target_of(l, b.target, b.id);
+    if (!l.is_integer(1)) {
+      const auto pairs = named_support(upper(l.text(1)));
+      if (pairs.empty()) throw Error(l.place(1), fmt::format("*BOUNDARY: expected a degree of freedom, found \"{}\"", l.text(1)));
+      for (const auto& [first, last] : pairs) {
+        b.first = first, b.last = last, b.value = 0;
+        d.supports.push_back(b);
+      }
+      continue;
+    }
+    b.first = static_cast<int>(l.integer(1));
+    b.last = l.empty(2) ? b.first : static_cast<int>(l.integer(2));
+    b.value = l.number(3);
+    if (b.first > 3) {
+      if (b.first > 6) in.skip(fmt::format("*BOUNDARY on degree of freedom {}", b.first), b.place);
+      continue;  // rotations: the nodes of solids have none
+    }
+    if (b.first < 1) {
+      in.skip(fmt::format("*BOUNDARY on degree of freedom {}", b.first), b.place);
+      continue;
+    }
+    b.last = std::min(b.last, 3);
+    d.supports.push_back(b);
+  }
+}
+
+/// A value on a degree of freedom of a node or set, line by line.
+void read_nodal(InpReading& r, std::vector<InpNodal>& into) {
+  const Card& card = r.card;
+  DataLine l;
+  while (r.lines.next_data(l)) {
+    InpNodal f;
+    f.amplitude = card.word("AMPLITUDE");
+    f.place = l.place();
+    target_of(l, f.target, f.id);
+    f.first = f.last = static_cast<int>(l.integer(1));
+    f.value = l.number(2);
+    if (f.first < 1 || f.first > 3)
+      r.in.skip(fmt::format("{} on degree of freedom {}", card.name, f.first), f.place);
+    else
+      into.push_back(f);
+  }
+}
+
+void read_forces(InpReading& r) {
+  if (const auto odd = unknown_param(r.card, {"OP", "AMPLITUDE", "LOADCASE"}); !odd.empty()) return r.skip(odd);
+  if (!other_case(r)) read_nodal(r, r.deck.forces);
+}
+
+void read_initial(InpReading& r) {
+  if (r.card.word("TYPE") != "VELOCITY") return r.skip("*INITIAL CONDITIONS, TYPE=" + r.card.word("TYPE"));
+  read_nodal(r, r.deck.velocities);
+}
+
+void read_distributed(InpReading& r) {
+  const Card& card = r.card;
+  Imported& in = r.in;
+  if (const auto odd = unknown_param(card, {"OP", "AMPLITUDE", "LOADCASE"}); !odd.empty()) return r.skip(odd);
+  if (other_case(r)) return;
+  const bool surface = card.key == "DSLOAD";
+  DataLine l;
+  while (r.lines.next_data(l)) {
+    const std::string label = upper(l.text(1));
+    InpDistributed p{"", 0, 0, l.number(2), Vec3::Zero(), card.word("AMPLITUDE"), l.place()};
+    if (l.text(0).empty()) {  // Abaqus: no target means the whole model
+      in.skip(fmt::format("{} without a set", card.name), p.place);
+      continue;
+    }
+    target_of(l, p.target, p.id);
+    if (surface && label == "P")
+      p.face = 0;
+    else if (!surface && label == "GRAV") {
+      p.face = -1;
+      p.direction = Vec3(l.number(3), l.number(4), l.number(5));
+      if (p.direction.norm() == 0) throw Error(l.place(3), "GRAV: the direction has no length");
+      p.direction.normalize();
+    } else if (!surface && label.size() == 2 && label[0] == 'P' && label[1] >= '1' && label[1] <= '6')
+      p.face = label[1] - '0';
+    else {
+      in.skip(fmt::format("{} {}", card.name, label), p.place);
+      continue;
+    }
+    r.deck.distributed.push_back(p);
+  }
+}
+
+void read_amplitude(InpReading& r) {
+  const Card& card = r.card;
+  if (const auto odd = unknown_param(card, {"NAME", "TIME", "VALUE", "DEFINITION"});
+      !odd.empty() || (card.has("DEFINITION") && card.word("DEFINITION") != "TABULAR")) {
+    r.skip(odd.empty() ? "*AMPLITUDE, DEFINITION=" + card.word("DEFINITION") : odd);
+    return;
+  }
+  const std::string name = card.need("NAME");
+  auto& a = r.deck.amplitudes[upper(name)];
+  a.name = name;
+  DataLine l;
+  while (r.lines.next_data(l))
+    for (size_t i = 0; i + 1 < l.fields.size(); i += 2) {
+      if (l.empty(i)) continue;
+      const double t = l.number(i);
+      if (!a.t.empty() && t < a.t.back())
+        throw Error(l.place(i), fmt::format("*AMPLITUDE {}: time {:g} is before the one in front of it", name, t));
+      a.t.push_back(t);
+      a.value.push_back(l.number(i + 1));
+    }
+}
+
+}  // namespace
+
+std::span<const InpCard> inp_load_cards() {
+  static constexpr InpCard cards[] = {
+      {"BOUNDARY", read_supports, true},
+      {"CLOAD", read_forces, true},
+      {"DLOAD", read_distributed, true},
+      {"DSLOAD", read_distributed, true},
+      {"INITIALCONDITIONS", read_initial, true},
+      {"AMPLITUDE", read_amplitude, true},
+      {"TRANSFORM", [](InpReading& r) { r.deck.transformed.push_back(r.card.has("NSET") ? r.card.word("NSET") : ""); }, true},
+  };
+  return cards;
+}
+
+}  // namespace hilo

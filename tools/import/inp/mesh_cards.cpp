@@ -1,0 +1,240 @@
+// The cards of an .inp deck that make the mesh: *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "import/inp/card.hpp"
+
+namespace hilo {
+namespace {
+
+constexpr const char* supported = "C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 and their I, R, H, M, T variants, T3D2";
+
+InpSet& set_named(const std::string& name, std::map<std::string, InpSet>& sets, std::vector<std::string>& order) {
+  const std::string key = upper(name);
+  auto [it, fresh] = sets.try_emplace(key);
+  if (fresh) {
+    it->second.name = name;
+    order.push_back(key);
+  }
+  return it->second;
+}
+
+void read_nodes(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
+  if (card.has("SYSTEM") && card.word("SYSTEM") != "R")
+    throw Error(card.place("SYSTEM"), "*NODE in cylindrical or spherical axes is not read", "write the nodes in rectangular axes");
+  InpSet* set = card.has("NSET") ? &set_named(card.need("NSET"), d.nset, d.nset_order) : nullptr;
+  DataLine l;
+  while (lines.next_data(l)) {
+    const auto id = l.integer(0);
+    if (id < 1) throw Error(l.place(0), fmt::format("node number {} is not positive", id));
+    const Vec3 x(l.number(1), l.number(2), l.number(3));
+    const auto [it, fresh] = d.node.try_emplace(id, static_cast<std::int64_t>(d.X.size()));
+    if (fresh) {
+      d.X.push_back(x);
+      d.node_id.push_back(id);
+    } else if (d.X[it->second] == x)
+      in.skip("*NODE: the same node again, at the same place", l.place());
+    else
+      throw Error(l.place(0), fmt::format("node {} is given twice, at two places", id), "number each node once");
+    if (set) set->members.push_back(id);
+  }
+}
+
+void read_elements(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
+  const Shape shape = inp_shape(card);
+  const size_t n = static_cast<size_t>(info(shape).n_nodes);
+  InpSet* set = card.has("ELSET") ? &set_named(card.need("ELSET"), d.elset, d.elset_order) : nullptr;
+  DataLine l;
+  std::vector<std::int64_t> row;
+  while (lines.next_data(l)) {
+    const std::string place = l.place(0);
+    const int line = l.line;
+    const std::string* file = &*d.files.insert(*l.file).first;  // the lines close before the cells are resolved
+    row.clear();
+    for (size_t i = 0; i < l.fields.size(); ++i) row.push_back(l.integer(i));
+    while (row.size() < n + 1) {
+      if (!lines.next_data(l))
+        throw Error(place, fmt::format("element {} has {} of its {} nodes", row.empty() ? 0 : row[0], row.empty() ? 0 : row.size() - 1, n));
+      for (size_t i = 0; i < l.fields.size(); ++i) row.push_back(l.integer(i));
+    }
+    if (row.size() > n + 1) {  // as CalculiX reads it
+      in.skip(fmt::format("*ELEMENT, TYPE={}: numbers behind its {} nodes", upper(card.value("TYPE")), n), l.place());
+      row.resize(n + 1);
+    }
+    if (!d.cell.try_emplace(row[0], static_cast<std::int64_t>(d.shape.size())).second)
+      throw Error(place, fmt::format("element {} is given twice", row[0]), "number each element once");
+    d.shape.push_back(static_cast<std::uint8_t>(shape));
+    d.cell_id.push_back(row[0]);
+    d.cell_nodes.insert(d.cell_nodes.end(), row.begin() + 1, row.end());
+    d.offset.push_back(static_cast<std::int64_t>(d.cell_nodes.size()));
+    d.cell_line.push_back(line);
+    d.cell_file.push_back(file);
+    if (set) set->members.push_back(row[0]);
+  }
+}
+
+/// *NSET and *ELSET; a name among the data stands for the set of that name.
+void read_set(const Card& card, const std::string& key, InpLines& lines, std::map<std::string, InpSet>& sets,
+              std::vector<std::string>& order, InpDeck& d) {
+  const std::string name = card.need(key);
+  set_named(name, sets, order);
+  std::vector<std::int64_t> add;
+  if (key == "NSET" && card.has("ELSET")) {  // the nodes of an element set
+    const auto it = d.elset.find(card.word("ELSET"));
+    if (it == d.elset.end()) throw Error(card.place("ELSET"), fmt::format("no element set \"{}\"", card.value("ELSET")));
+    for (const auto e : it->second.members)
+      if (const auto c = d.cell.find(e); c != d.cell.end())
+        add.insert(add.end(), d.cell_nodes.begin() + d.offset[c->second], d.cell_nodes.begin() + d.offset[c->second + 1]);
+  }
+  DataLine l;
+  while (lines.next_data(l)) {
+    if (card.has("GENERATE")) {
+      if (!l.is_integer(0)) {  // CalculiX: a set name stands for itself here too
+        const auto it = sets.find(upper(l.text(0)));
+        if (it == sets.end()) throw Error(l.place(0), fmt::format("GENERATE: expected first, last, increment, found \"{}\"", l.text(0)));
+        add.insert(add.end(), it->second.members.begin(), it->second.members.end());
+        continue;
+      }
+      const auto first = l.integer(0), last = l.empty(1) ? first : l.integer(1), by = l.empty(2) ? 1 : l.integer(2);
+      if (by < 1 || last < first || (last - first) / by > 1'000'000'000)
+        throw Error(l.place(0), fmt::format("GENERATE: {}, {}, {} names no usable range", first, last, by));
+      for (auto i = first; i <= last; i += by) add.push_back(i);
+      continue;
+    }
+    for (size_t i = 0; i < l.fields.size(); ++i) {
+      if (l.empty(i)) continue;
+      if (l.is_integer(i)) {
+        add.push_back(l.integer(i));
+        continue;
+      }
+      std::string_view text = l.text(i);
+      if (text.size() > 1 && text.front() == '"') text = text.substr(1, text.size() - 2);
+      const auto it = sets.find(upper(text));
+      if (it == sets.end()) throw Error(l.place(i), fmt::format("no set \"{}\" so far", text), suggest_name(std::string(text), sets));
+      add.insert(add.end(), it->second.members.begin(), it->second.members.end());
+    }
+  }
+  auto& members = sets[upper(name)].members;
+  members.insert(members.end(), add.begin(), add.end());
+}
+
+void read_surface(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
+  InpSurface s;
+  s.name = card.need("NAME");
+  const std::string type = card.has("TYPE") ? card.word("TYPE") : "ELEMENT";
+  s.of_nodes = type == "NODE";
+  if (!s.of_nodes && type != "ELEMENT") {
+    in.skip(fmt::format("*SURFACE, TYPE={}", type), card.place());
+    return;
+  }
+  DataLine l;
+  while (lines.next_data(l)) {
+    InpSurface::Line one{"", 0, 0, l.place()};
+    if (l.is_integer(0))
+      one.id = l.integer(0);
+    else {
+      std::string_view text = l.text(0);
+      if (text.size() > 1 && text.front() == '"') text = text.substr(1, text.size() - 2);
+      one.target = upper(text);
+    }
+    const std::string face = upper(l.text(1));
+    if (!s.of_nodes && !face.empty()) {
+      if (face.size() != 2 || face[0] != 'S' || face[1] < '1' || face[1] > '6') {
+        in.skip(fmt::format("*SURFACE: face {}", face), l.place());
+        continue;
+      }
+      one.face = face[1] - '0';
+    }
+    s.lines.push_back(one);
+  }
+  d.surfaces.push_back(std::move(s));
+}
+
+}  // namespace
+
+Shape inp_shape(const Card& card) {
+  const std::string type = upper(card.need("TYPE"));
+  const std::string place = card.place("TYPE");
+  const auto refuse = [&](const std::string& why) {
+    return Error(place, fmt::format("element type \"{}\": {}", type, why), fmt::format("supported: {}", supported));
+  };
+  if (type == "T3D2") return Shape::bar2;
+  if (type.substr(0, 3) == "C3D") {
+    size_t i = 3;
+    while (i < type.size() && std::isdigit(static_cast<unsigned char>(type[i]))) ++i;
+    const std::string nodes = type.substr(3, i - 3), variant = type.substr(i);
+    if (variant.find_first_not_of("IRHMST") == std::string::npos) {
+      if (nodes == "4") return Shape::tet4;
+      if (nodes == "6") return Shape::wedge6;
+      if (nodes == "8") return Shape::hex8;
+      if (nodes == "10") return Shape::tet10;
+      if (nodes == "15") return Shape::wedge15;
+      if (nodes == "20") return variant.find('R') == std::string::npos ? Shape::hex20 : Shape::hex20r;
+    }
+    if (nodes == "5" || nodes == "13") throw refuse("pyramids are not read");
+    throw refuse("this solid is not read");
+  }
+  // Prefixes from the longest to the shortest, each with its reason.
+  static const std::pair<const char*, const char*> reasons[] = {
+      {"DCOUP", "a coupling element is not a solid; a set serves as a patch in the scene"},
+      {"SPRING", "springs are not read; say [[spring]] in the scene"},
+      {"DASHPOT", "dampers are not read; say [[spring]] in the scene"},
+      {"CONN3D", "connectors are not read; say [[joint]] in the scene"},
+      {"MASS", "point masses are not read; say [[point_mass]] in the scene"},
+      {"ROTARYI", "rotary inertia is not read; say [[body]] in the scene"},
+      {"GAP", "gap elements are not read"},
+      {"COH", "cohesive elements are not read"},
+      {"DC3D", "heat-transfer elements are not read"},
+      {"CAX", "axisymmetric elements are not three-dimensional"},
+      {"CPS", "plane-stress elements are not three-dimensional"},
+      {"CPE", "plane-strain elements are not three-dimensional"},
+      {"SAX", "axisymmetric shells are not three-dimensional"},
+      {"F3D", "fluid elements are not read"},
+      {"M3D", "membranes are not read"},
+      {"SFM3D", "surface elements are not read"},
+      {"T2D", "plane trusses are not read"},
+      {"T3D", "trusses of three nodes are not read"},
+      {"R3D", "rigid elements are not read; make the region rigid with hilo-tag"},
+      {"B2", "beams are not read"},
+      {"B3", "beams are not read"},
+      {"S", "shells are not read"},
+      {"D", "network elements are not read"},
+      {"U", "user elements are not read"},
+  };
+  for (const auto& [prefix, why] : reasons)
+    if (type.rfind(prefix, 0) == 0) throw refuse(why);
+  throw refuse("unknown to hilo");
+}
+
+int inp_facet(Shape shape, int face) {
+  // corners of the faces S1.. of an element, counted from 0
+  static const std::vector<std::vector<int>> tet{{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {0, 2, 3}};
+  static const std::vector<std::vector<int>> wedge{{0, 1, 2}, {3, 4, 5}, {0, 1, 3, 4}, {1, 2, 4, 5}, {0, 2, 3, 5}};
+  static const std::vector<std::vector<int>> hex{{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 4, 5}, {1, 2, 5, 6}, {2, 3, 6, 7}, {0, 3, 4, 7}};
+  const ShapeInfo& s = info(shape);
+  const auto& faces = s.n_corners == 4 ? tet : s.n_corners == 6 ? wedge : hex;
+  if (s.dimension != 3 || face < 1 || face > static_cast<int>(faces.size())) return -1;
+  for (size_t f = 0; f < s.facets.size(); ++f) {
+    std::vector<int> corners;
+    for (const int a : s.facets[f])
+      if (a < s.n_corners) corners.push_back(a);
+    std::sort(corners.begin(), corners.end());
+    if (corners == faces[face - 1]) return static_cast<int>(f);
+  }
+  return -1;
+}
+
+std::span<const InpCard> inp_mesh_cards() {
+  static constexpr InpCard cards[] = {
+      {"NODE", [](InpReading& r) { read_nodes(r.card, r.lines, r.deck, r.in); }},
+      {"ELEMENT", [](InpReading& r) { read_elements(r.card, r.lines, r.deck, r.in); }},
+      {"NSET", [](InpReading& r) { read_set(r.card, "NSET", r.lines, r.deck.nset, r.deck.nset_order, r.deck); }},
+      {"ELSET", [](InpReading& r) { read_set(r.card, "ELSET", r.lines, r.deck.elset, r.deck.elset_order, r.deck); }},
+      {"SURFACE", [](InpReading& r) { read_surface(r.card, r.lines, r.deck, r.in); }},
+  };
+  return cards;
+}
+
+}  // namespace hilo

@@ -1,0 +1,268 @@
+// The scene lines that a deck's materials, supports and loads become, and the sets that those lines name.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/param.hpp"
+#include "import/inp/groups.hpp"
+
+namespace hilo {
+namespace {
+
+constexpr std::array<const char*, 3> axes{"x", "y", "z"};
+
+std::string quoted(const std::string& s) {
+  std::string q(1, '"');
+  for (const char c : s) {
+    if (c == '"' || c == '\\') q += '\\';
+    q += static_cast<unsigned char>(c) < 32 ? ' ' : c;
+  }
+  q += '"';
+  return q;
+}
+
+std::string num(double x) {
+  std::string s = fmt::format("{}", x == 0 ? 0.0 : x);
+  return s.find_first_of(".en") == std::string::npos ? s + ".0" : s;
+}
+std::string list(const std::vector<double>& v) {
+  std::string s = "[";
+  for (size_t i = 0; i < v.size(); ++i) s += (i ? ", " : "") + num(v[i]);
+  return s + "]";
+}
+std::string list(const Vec3& v) { return list(std::vector<double>{v.x(), v.y(), v.z()}); }
+
+/// Writes the lines in the order of a scene file.
+class Writer {
+ public:
+  Writer(const InpDeck& d, Imported& in, SetNames& names, const std::map<std::string, std::string>& node_set,
+         const std::map<std::string, std::string>& surface, const ImportOptions& o)
+      : d_(d), in_(in), names_(names), node_set_(node_set), surface_(surface), o_(o), turned_(turned_nodes(d, in.mesh)) {}
+
+  std::string text() {
+    gravity();
+    materials();
+    supports();
+    forces();
+    pressures();
+    velocities();
+    histories();
+    time();
+    if (tables_.empty() && head_.empty()) return "";
+    std::string s = "units = \"m-kg-s\"\n";
+    if (!d_.title.empty()) s = fmt::format("title = {}\n", quoted(d_.title)) + s;
+    s += head_ + tables_;
+    for (const auto& n : in_.not_read)
+      if (!n.output) s += fmt::format("# not read: {} ({}, {})\n", n.what, n.count, n.place);
+    return s;
+  }
+
+ private:
+  double si(const char* unit) const { return to_si(unit, o_.units); }
+
+  std::string unique(const std::string& section, const std::string& wish) {
+    std::string name = wish;
+    for (int i = 2; !used_.insert(section + "/" + name).second; ++i) name = fmt::format("{}_{}", wish, i);
+    return name;
+  }
+
+  /// The set that holds just these nodes: the one named in the deck where it is that, else a new one.
+  std::string set_of(const std::string& target, Rows nodes, const std::string& wish, bool each) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    const bool as_listed = each && o_.order == 2;  // a force per node stays on the nodes it was given for
+    if (!target.empty() && !as_listed) {
+      const auto& name = node_set_.at(target);
+      if (!name.empty() && in_.mesh.nodes_of(name, name) == nodes) return name;
+    }
+    const std::string name = names_.nodes(
+        target.empty() ? fmt::format("{}_{}", wish, ++made_[wish]) : d_.nset.at(target).name + (as_listed ? "_load" : "_part"), nodes);
+    if (as_listed) in_.as_listed.insert(name);
+    return name;
+  }
+
+  /// " history" line of an amplitude, or false when the deck's amplitude was not read.
+  bool history(const std::string& amplitude, const std::string& what, const std::string& place, std::string& line) {
+    line.clear();
+    if (amplitude.empty()) return true;
+    const auto a = d_.amplitudes.find(amplitude);
+    if (a == d_.amplitudes.end() || a->second.t.empty()) {
+      in_.skip(fmt::format("{} with *AMPLITUDE {}", what, amplitude), place);
+      return false;
+    }
+    wanted_.insert(amplitude);
+    line = fmt::format("history = {}\n", quoted(clean_name(a->second.name)));
+    return true;
+  }
+
+  void gravity() {
+    std::vector<Vec3> g;
+    bool odd = false;
+    std::string place;
+    for (const auto& p : d_.distributed) {
+      if (p.face != -1) continue;
+      place = p.place;
+      if (!p.amplitude.empty()) {
+        in_.skip("*DLOAD GRAV with AMPLITUDE", p.place);
+        continue;
+      }
+      g.resize(in_.mesh.shape.size(), Vec3::Zero());
+      for (const auto c : inp_cells(d_, p.target, p.id, p.place)) g[c] += p.value * p.direction;
+    }
+    for (const auto& x : g) odd = odd || x != g[0];
+    if (odd)
+      in_.skip("*DLOAD GRAV on a part of the model", place);
+    else if (!g.empty())
+      head_ += fmt::format("gravity = {}\n", list(Vec3(g[0] * si("m/s^2"))));
+  }
+
+  void materials() {
+    std::map<std::string, const InpMaterial*> used;
+    const Mesh& m = in_.mesh;
+    std::vector<std::string> lines(m.region_name.size());
+    std::vector<int> seen(m.region_name.size(), 0);
+    for (const auto& s : d_.sections) {
+      const auto& mat = d_.materials.at(s.material);
+      for (const auto id : d_.elset.at(s.elset).members) {
+        const auto c = d_.cell.find(id);
+        if (c == d_.cell.end() || seen[m.region[c->second]]++) continue;
+        const auto r = m.region[c->second];
+        if (std::isnan(mat.data.E)) {
+          lines[r] = fmt::format("# region {}: material {} is not linear and isotropic, give it one\n", quoted(m.region_name[r]),
+                                 quoted(mat.name));
+          continue;
+        }
+        used[s.material] = &mat;
+        lines[r] = fmt::format("[region.{}]\nmaterial = {}\n", quoted(m.region_name[r]), quoted(clean_name(mat.name)));
+        if (static_cast<Shape>(m.shape[c->second]) == Shape::bar2 && s.area > 0)
+          lines[r] += fmt::format("area = {}\n", num(s.area * si("m^2")));
+      }
+    }
+    for (const auto& [key, mat] : used) {
+      tables_ += fmt::format("\n[material.{}]\nkind = \"stvk\"\nE = {}\nnu = {}\n", quoted(clean_name(mat->name)),
+                             num(mat->data.E * si("Pa")), num(mat->data.nu));
+      if (!std::isnan(mat->data.density)) tables_ += fmt::format("density = {}\n", num(mat->data.density * si("kg/m^3")));
+    }
+    for (const auto& l : lines)
+      if (!l.empty()) tables_ += "\n" + l;
+  }
+
+  void supports() {
+    for (const auto& h : held_groups(d_, turned_, in_)) write(h);
+  }
+
+  void write(const Held& h) {
+    std::string past, parts;
+    if (!history(h.amplitude, "*BOUNDARY", h.place, past)) return;
+    for (int k = 0; k < 3; ++k)
+      if (h.on[k]) parts += fmt::format("{}\"{}\"", parts.empty() ? "" : ", ", axes[k]);
+    const std::string set = set_of(h.target, h.nodes, "support", false);
+    tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"{}\"\nname = {}\non = {}\ncomponents = [{}]\n", h.place,
+                           h.moved ? "translation" : "fixed", quoted(unique("motion", set)), quoted(set), parts);
+    if (h.moved) tables_ += fmt::format("displacement = {}\n", list(Vec3(h.value * si("m")))) + past;
+  }
+
+  void forces() {
+    for (const auto& g : nodal_groups(d_, d_.forces, "*CLOAD", true, turned_, in_)) {
+      std::string past;
+      if (g.value.norm() == 0 || !history(g.amplitude, "*CLOAD", g.place, past)) continue;
+      const std::string set = set_of(g.target, g.nodes, "force", true);
+      tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", g.place,
+                             quoted(unique("load", set)), quoted(set), list(Vec3(g.value * si("N")))) +
+                 past;
+    }
+  }
+
+  void pressures() {
+    struct Group {
+      std::string wish, name, amplitude, place;
+      double value;
+      std::vector<Facet> facets;
+    };
+    std::vector<Group> groups;
+    const auto group = [&](const Group& g) -> Group& {
+      for (auto& old : groups)
+        if (old.wish == g.wish && old.name == g.name && old.amplitude == g.amplitude && old.value == g.value) return old;
+      groups.push_back(g);
+      return groups.back();
+    };
+    for (const auto& p : d_.distributed) {
+      if (p.face < 0) continue;
+      if (p.face == 0) {
+        const auto s = surface_.find(p.target);
+        if (s == surface_.end()) throw Error(p.place, fmt::format("*DSLOAD: no element surface \"{}\"", p.target));
+        if (!s->second.empty()) group({"", s->second, p.amplitude, p.place, p.value, {}});
+        continue;
+      }
+      const auto cells = inp_cells(d_, p.target, p.id, p.place);
+      auto& g = group({p.target.empty() ? std::string() : fmt::format("{}_P{}", d_.elset.at(p.target).name, p.face),
+                       "",
+                       p.amplitude,
+                       p.place,
+                       p.value,
+                       {}});
+      for (const auto c : cells) {
+        const int f = inp_facet(static_cast<Shape>(in_.mesh.shape[c]), p.face);
+        if (f < 0) throw Error(p.place, fmt::format("*DLOAD: element {} has no face P{}", in_.mesh.cell_id[c], p.face));
+        g.facets.push_back({c, f});
+      }
+    }
+    for (auto& g : groups) {
+      std::string past;
+      if (!history(g.amplitude, "*DLOAD", g.place, past)) continue;
+      if (g.name.empty()) g.name = names_.facets(g.wish.empty() ? fmt::format("pressure_{}", ++made_["pressure"]) : g.wish, g.facets);
+      if (g.name.empty()) continue;
+      tables_ += fmt::format("\n[[load]]   # {}\nkind = \"pressure\"\nname = {}\non = {}\npressure = {}\n", g.place,
+                             quoted(unique("load", g.name)), quoted(g.name), num(g.value * si("Pa"))) +
+                 past;
+    }
+  }
+
+  void velocities() {
+    for (const auto& g : nodal_groups(d_, d_.velocities, "*INITIAL CONDITIONS, TYPE=VELOCITY", false, turned_, in_)) {
+      const std::string set = set_of(g.target, g.nodes, "velocity", false);
+      tables_ += fmt::format("\n[[initial]]   # {}\non = [{}]\nvelocity = {}\n", g.place, quoted(set), list(Vec3(g.value * si("m/s"))));
+    }
+  }
+
+  void histories() {
+    for (const auto& key : wanted_) {
+      const auto& a = d_.amplitudes.at(key);
+      std::vector<double> t = a.t;
+      for (auto& x : t) x *= si("s");
+      tables_ += fmt::format("\n[history.{}]\nt = {}\nvalue = {}\n", quoted(clean_name(a.name)), list(t), list(a.value));
+    }
+  }
+
+  void time() {
+    const double end = (d_.step_end > 0 ? d_.step_end : 1) * si("s");
+    if (d_.procedure == "*STATIC") {
+      tables_ += "\n[time]\nanalysis = \"static\"\n";
+      if (!wanted_.empty()) tables_ += fmt::format("end = {}\n", num(end));
+    } else if (d_.procedure == "*DYNAMIC") {
+      tables_ += fmt::format("\n[time]\nend = {}\n", num(end));
+      if (d_.step_increment > 0) tables_ += fmt::format("step = {}\n", num(d_.step_increment * si("s")));
+    }
+  }
+
+  const InpDeck& d_;
+  Imported& in_;
+  SetNames& names_;
+  const std::map<std::string, std::string>&node_set_, &surface_;
+  const ImportOptions& o_;
+  std::vector<char> turned_;             // nodes with axes of their own (n_nodes)
+  std::set<std::string> used_, wanted_;  // names given; amplitudes that a line scales by
+  std::map<std::string, int> made_;      // sets made of single nodes or elements
+  std::string head_, tables_;
+};
+
+}  // namespace
+
+void write_inp_scene(const InpDeck& d, Imported& in, SetNames& names, const std::map<std::string, std::string>& node_set,
+                     const std::map<std::string, std::string>& surface, const ImportOptions& options) {
+  in.mesh.deck_scene = Writer(d, in, names, node_set, surface, options).text();
+}
+
+}  // namespace hilo

@@ -1,0 +1,88 @@
+// The cards of an .inp deck that divide it: heading, parts, steps and what a step computes.
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "import/inp/card.hpp"
+
+namespace hilo {
+namespace {
+
+void read_heading(InpReading& r) {
+  DataLine l;
+  if (r.lines.next_data(l) && r.deck.title.empty())
+    for (size_t i = 0; i < l.fields.size(); ++i) r.deck.title += (i ? ", " : "") + std::string(l.text(i));
+}
+
+// Abaqus parts: one of them is read as if flat, more would need their numbers told apart.
+[[noreturn]] void refuse(const InpReading& r, const std::string& what) {
+  throw Error(r.card.place() + ":1", what + " is not read",
+              "write a flat deck: in Abaqus/CAE \"Do not use parts and assemblies in input files\"");
+}
+void read_part(InpReading& r) {
+  if (++r.parts > 1) refuse(r, "more than one *PART");
+}
+void read_instance(InpReading& r) {
+  if (++r.instances > 1) refuse(r, "more than one *INSTANCE");
+  DataLine l;
+  if (!r.lines.next_data(l)) return;
+  if (l.fields.size() > 3) refuse(r, "a turned *INSTANCE");
+  if (Vec3(l.number(0), l.number(1), l.number(2)).norm() > 0) refuse(r, "a moved *INSTANCE");
+}
+
+void read_step(InpReading& r) {
+  if (++r.step == 2) r.in.notes.push_back(fmt::format("{}: only the first step becomes scene lines", r.card.place()));
+}
+
+/// *STATIC and *DYNAMIC become scene lines.
+void read_procedure(InpReading& r) {
+  r.deck.procedure = r.card.name;
+  DataLine l;
+  if (r.lines.next_data(l)) r.deck.step_increment = l.number(0), r.deck.step_end = l.number(1);
+  for (const auto& [key, p] : r.card.params) r.skip(fmt::format("{}, {}", r.card.name, key));
+}
+void other_procedure(InpReading& r) {
+  r.deck.procedure = r.card.name;
+  r.skip(r.card.name);
+}
+void nothing(InpReading&) {}
+
+}  // namespace
+
+std::span<const InpCard> inp_step_cards() {
+  static constexpr InpCard cards[] = {
+      {"HEADING", read_heading},
+      {"PART", read_part},
+      {"ENDPART", nothing},
+      {"ASSEMBLY", nothing},
+      {"ENDASSEMBLY", nothing},
+      {"INSTANCE", read_instance},
+      {"ENDINSTANCE", nothing},
+      {"STEP", read_step},
+      {"ENDSTEP", nothing},
+      {"STATIC", read_procedure, true},
+      {"DYNAMIC", read_procedure, true},
+      {"FREQUENCY", other_procedure, true},
+      {"COMPLEXFREQUENCY", other_procedure, true},
+      {"BUCKLE", other_procedure, true},
+      {"HEATTRANSFER", other_procedure, true},
+      {"MODALDYNAMIC", other_procedure, true},
+      {"STEADYSTATEDYNAMICS", other_procedure, true},
+      {"VISCO", other_procedure, true},
+      {"COUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, true},
+      {"UNCOUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, true},
+      {"CFD", other_procedure, true},
+      {"ELECTROMAGNETICS", other_procedure, true},
+      {"SENSITIVITY", other_procedure, true},
+      {"GREEN", other_procedure, true},
+      {"NOANALYSIS", other_procedure, true},
+      {"SUBSTRUCTUREGENERATE", other_procedure, true},
+      {"GEOSTATIC", other_procedure, true},
+      {"RANDOMRESPONSE", other_procedure, true},
+      {"CRACKPROPAGATION", other_procedure, true},
+      {"ROBUSTDESIGN", other_procedure, true},
+      {"FEASIBLEDIRECTION", other_procedure, true},
+  };
+  return cards;
+}
+
+}  // namespace hilo
