@@ -77,7 +77,7 @@ def prepare():
     shutil.copytree(os.path.join(repo, "data"), "data", ignore=shutil.ignore_patterns("out"))
     os.chdir("data")
     os.makedirs("crank/out")
-    run("bash", "-c", "awk -f crank/gas.awk > crank/out/gas.csv")
+    run("bash", "-c", "crank/truth.py gas > crank/out/gas.csv")
     run("bash", "-c", "scaling/bar.sh 20 2 2 > bar.inp; scaling/bar.sh 20 2 2 > turning.inp; scaling/tube.sh 12 2 10 > tube.inp")
     blocks = open(os.path.join(repo, "docs/tour.md")).read().split("```sh\n")[1:]
     for block in blocks:
