@@ -24,13 +24,14 @@ else
 fi
 cmake --build "$folder" -j "$jobs"
 
-# A report is a file, so that none is lost in a test that expects a failure; 99 is no exit code of hilo's.
+# A report is a file, so that none is lost in a test that expects a failure; 99 is no exit code of hilo's.  Leaks leave the exit code as it
+# is: Open MPI keeps memory in modules that are unloaded before the end and so have no names to suppress.
 reports=$folder/reports
 rm -rf "$reports"
 mkdir -p "$reports"
 export ASAN_OPTIONS="log_path=$reports/report:exitcode=99:detect_leaks=1:malloc_context_size=20:allocator_may_return_null=1"
 export UBSAN_OPTIONS="log_path=$reports/report:print_stacktrace=1"
-export LSAN_OPTIONS="suppressions=$here/leaks.txt:print_suppressions=0:exitcode=99"
+export LSAN_OPTIONS="suppressions=$here/leaks.txt:print_suppressions=0:exitcode=0"
 failed=0
 ctest --test-dir "$folder" -j "$jobs" -R "$tests" --output-on-failure --no-tests=error > "$folder/ctest.log" 2>&1 || failed=1
 tail -n 40 "$folder/ctest.log"
@@ -48,6 +49,10 @@ if [ "$tests" = . ]; then
     fi
   done
 fi
+# A leak is ours where a frame of it is a file of the repository.
+grep -lr "ERROR: LeakSanitizer" "$reports" | while read -r report; do
+  grep -qE "$repo/(solver|tools|post|tests)/" "$report" || grep -qE "ERROR: AddressSanitizer|runtime error" "$report" || rm "$report"
+done || true
 found=$(find "$reports" -type f | wc -l)
 echo "$kind: $found reports in $reports"
 find "$reports" -type f -exec grep -hE "ERROR: |runtime error: |SUMMARY: " {} + | sed -E 's/^==[0-9]+==//' | sort | uniq -c | sort -rn | head -n 40 || true
