@@ -21,6 +21,7 @@ RunColumns::RunColumns(const RunFile& run, const std::vector<std::string>& lets)
   for (const std::string& text : lets) {
     if (text.find('=') == std::string::npos) throw Error("--let", fmt::format("\"{}\" has no =", text), "NAME = FORMULA", Exit::usage);
     Column c = formula(text);
+    if (c.label == "t" || c.label == "pi") throw Error("--let", fmt::format("\"{}\" has a meaning already", c.label), "", Exit::usage);
     let_[c.label] = std::move(c);
   }
 }

@@ -36,6 +36,10 @@ Values fold(std::span<const Values> x, const Values&) {
   return y;
 }
 
+/// Where an argument is no number, neither is the result.
+double least(double a, double b) { return std::isnan(a) || a < b ? a : b; }
+double greatest(double a, double b) { return std::isnan(a) || a > b ? a : b; }
+
 /// Central difference in time; none at the ends.
 Values rate(std::span<const Values> x, const Values& t) {
   Values y(t.size(), none);
@@ -46,21 +50,11 @@ Values start(std::span<const Values> x, const Values& t) { return Values(t.size(
 
 constexpr size_t many = 99;
 constexpr Function functions[] = {
-    {"abs", 1, 1, each<std::fabs>},
-    {"sqrt", 1, 1, each<std::sqrt>},
-    {"exp", 1, 1, each<std::exp>},
-    {"log", 1, 1, each<std::log>},
-    {"sin", 1, 1, each<std::sin>},
-    {"cos", 1, 1, each<std::cos>},
-    {"tan", 1, 1, each<std::tan>},
-    {"asin", 1, 1, each<std::asin>},
-    {"acos", 1, 1, each<std::acos>},
-    {"atan", 1, 1, each<std::atan>},
-    {"atan2", 2, 2, fold<std::atan2>},
-    {"min", 2, many, fold<std::fmin>},
-    {"max", 2, many, fold<std::fmax>},
-    {"hypot", 2, many, fold<std::hypot>},
-    {"d", 1, 1, rate},
+    {"abs", 1, 1, each<std::fabs>},   {"sqrt", 1, 1, each<std::sqrt>},      {"exp", 1, 1, each<std::exp>},
+    {"log", 1, 1, each<std::log>},    {"sin", 1, 1, each<std::sin>},        {"cos", 1, 1, each<std::cos>},
+    {"tan", 1, 1, each<std::tan>},    {"asin", 1, 1, each<std::asin>},      {"acos", 1, 1, each<std::acos>},
+    {"atan", 1, 1, each<std::atan>},  {"atan2", 2, 2, fold<std::atan2>},    {"min", 2, many, fold<least>},
+    {"max", 2, many, fold<greatest>}, {"hypot", 2, many, fold<std::hypot>}, {"d", 1, 1, rate},
     {"start", 1, 1, start},
 };
 

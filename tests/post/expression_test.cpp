@@ -50,6 +50,7 @@ TEST(Expression, NamesAreColumnsAndTimesAreT) {
 TEST(Expression, TheRateOfALineIsItsSlopeAndHasNoEnds) {
   const auto rate = value("d(3*t - 1)");
   EXPECT_TRUE(std::isnan(rate.front()) && std::isnan(rate.back()));
+  EXPECT_TRUE(std::isnan(value("max(d(t), 0)").front()) && std::isnan(value("min(0, d(t))").front())) << "no end is not zero";
   EXPECT_DOUBLE_EQ(rate[1], 3);
   EXPECT_DOUBLE_EQ(rate[2], 3);
 }
@@ -100,6 +101,7 @@ TEST(SeriesFormula, AnUnknownColumnIsAnErrorWithTheNearestOne) {
   EXPECT_EQ(ran.exit, 2);
   EXPECT_EQ(ran.err, "hilo-post: run.h5: no column \"joint.trunnion.Fq\" (did you mean \"joint.trunnion.Fx\"?)\n");
   EXPECT_EQ(post("series run.h5 'x = 1 +'").exit, 1);
+  EXPECT_EQ(post("series run.h5 'x = t' --let 't = 2'").exit, 1) << "t is the time";
 }
 
 TEST(Compare, FindsWhereTablesAreFarthestApartAtSharedInstantsOnly) {

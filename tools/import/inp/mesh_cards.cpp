@@ -209,13 +209,16 @@ Shape inp_shape(const Card& card) {
 }
 
 int inp_facet(Shape shape, int face) {
-  // corners of the faces S1.. of an element, counted from 0
-  static const std::vector<std::vector<int>> tet{{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {0, 2, 3}};
-  static const std::vector<std::vector<int>> wedge{{0, 1, 2}, {3, 4, 5}, {0, 1, 3, 4}, {1, 2, 4, 5}, {0, 2, 3, 5}};
-  static const std::vector<std::vector<int>> hex{{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 4, 5}, {1, 2, 5, 6}, {2, 3, 6, 7}, {0, 3, 4, 7}};
+  // corners of the faces S1.. of an element, counted from 0, by its number of corners
+  static const std::map<int, std::vector<std::vector<int>>> of_corners{
+      {4, {{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {0, 2, 3}}},
+      {6, {{0, 1, 2}, {3, 4, 5}, {0, 1, 3, 4}, {1, 2, 4, 5}, {0, 2, 3, 5}}},
+      {8, {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 4, 5}, {1, 2, 5, 6}, {2, 3, 6, 7}, {0, 3, 4, 7}}}};
   const ShapeInfo& s = info(shape);
-  const auto& faces = s.n_corners == 4 ? tet : s.n_corners == 6 ? wedge : hex;
-  if (s.dimension != 3 || face < 1 || face > static_cast<int>(faces.size())) return -1;
+  const auto known = of_corners.find(s.n_corners);
+  if (s.dimension != 3 || known == of_corners.end()) return -1;
+  const auto& faces = known->second;
+  if (face < 1 || face > static_cast<int>(faces.size())) return -1;
   for (size_t f = 0; f < s.facets.size(); ++f) {
     std::vector<int> corners;
     for (const int a : s.facets[f])
