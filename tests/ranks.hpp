@@ -7,7 +7,7 @@
 #include <string>
 
 #include "cli.hpp"
-#include "model/comm.hpp"
+#include "base/comm.hpp"
 
 namespace hilo::test {
 

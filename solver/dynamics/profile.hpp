@@ -4,8 +4,8 @@
 #include <string>
 
 #include "linear/kkt.hpp"
-#include "model/comm.hpp"
-#include "model/traffic.hpp"
+#include "base/comm.hpp"
+#include "base/traffic.hpp"
 
 namespace hilo {
 

@@ -1,6 +1,6 @@
 // Rows of an output array shared out over the ranks in runs of consecutive rows: each rank writes one piece of the file, none holds it all.
 #pragma once
-#include "model/comm.hpp"
+#include "base/comm.hpp"
 #include "model/store.hpp"
 
 namespace hilo {

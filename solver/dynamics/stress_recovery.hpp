@@ -18,7 +18,7 @@
 #include <optional>
 #include <vector>
 
-#include "model/sharing.hpp"
+#include "base/sharing.hpp"
 #include "physics/patch_fit.hpp"
 #include "physics/stress.hpp"
 #include "system/system.hpp"

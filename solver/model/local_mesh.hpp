@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "model/comm.hpp"
+#include "base/comm.hpp"
 #include "model/mesh.hpp"
 
 namespace hilo {

@@ -5,7 +5,7 @@
 
 #include "base/math.hpp"
 #include "base/shape.hpp"
-#include "model/comm.hpp"
+#include "base/comm.hpp"
 
 namespace hilo {
 

@@ -7,7 +7,7 @@
 #include <iostream>
 #include <iterator>
 
-#include "model/comm.hpp"
+#include "base/comm.hpp"
 #include "model/inputs.hpp"
 #include "model/scene_read.hpp"
 #include "model/store.hpp"

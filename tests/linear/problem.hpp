@@ -11,7 +11,7 @@
 
 #include "base/math.hpp"
 #include "linear/kkt.hpp"
-#include "model/comm.hpp"
+#include "base/comm.hpp"
 
 namespace hilo::test {
 

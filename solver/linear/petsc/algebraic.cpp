@@ -52,9 +52,7 @@ class AlgebraicInverse : public FlexibleInverse {
     check(PCSetUp(pc_));
     PCFailedReason reason;
     check(PCGetFailedReason(pc_, &reason));
-    int failed = reason != PC_NOERROR;
-    MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
-    return !failed;
+    return comm().max(reason == PC_NOERROR ? 0 : 1) == 0;
   }
 
   void apply(Eigen::Ref<Eigen::MatrixXd> X) override {

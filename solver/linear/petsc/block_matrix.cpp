@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "linear/petsc/exchange.hpp"
+#include "linear/petsc/session.hpp"
 
 namespace hilo::petsc {
 namespace {
@@ -45,7 +45,7 @@ Pattern find_pattern(const Cliques& cliques, const std::vector<PetscInt>& global
     to.insert(to.end(), row.begin(), row.end());
   }
   std::vector<std::pair<PetscInt, PetscInt>> others;
-  for (const auto& got : exchange(send))
+  for (const auto& got : comm().exchange(send))
     for (size_t k = 0; k < got.size(); k += 2 + got[k + 1])
       for (PetscInt c = 0; c < got[k + 1]; ++c) others.emplace_back(got[k], got[k + 2 + c]);
   std::sort(others.begin(), others.end());

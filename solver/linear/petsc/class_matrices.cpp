@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
-#include "linear/petsc/exchange.hpp"
+#include "linear/petsc/session.hpp"
 
 extern "C" void dsyevr_(const char*, const char*, const char*, const int*, double*, const int*, const double*, const double*, const int*,
                         const int*, const double*, int*, double*, double*, const int*, int*, double*, const int*, int*, const int*, int*);
@@ -151,7 +151,7 @@ void for_other_ranks(const InterfaceClass& c, const Visit& visit) {
 /// Takes matrices out of what the ranks sent, in the order in which they were put in.
 class Inbox {
  public:
-  explicit Inbox(const std::vector<std::vector<double>>& send) : got_(exchange(send)), at_(got_.size(), 0) {}
+  explicit Inbox(const std::vector<std::vector<double>>& send) : got_(comm().exchange(send)), at_(got_.size(), 0) {}
   double number(int from) { return got_[from][at_[from]++]; }
   MatrixXd matrix(int from, Eigen::Index rows, Eigen::Index columns) {
     const double* data = got_[from].data() + at_[from];
@@ -218,10 +218,8 @@ bool find_class_matrices(const Interface& interface, const SubdomainFactor& fact
     for (size_t i = k; good && i < next; ++i) out.weight[i] = total.solve(own[i]);
   }
   if (!more_constraints) return good;
-  int before = 0;
-  MPI_Exscan(&mine, &before, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
-  if (rank() == 0) before = 0;
-  MPI_Allreduce(&mine, &out.n_more, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
+  int before = static_cast<int>(comm().before(mine));
+  out.n_more = static_cast<int>(comm().sum(std::int64_t{mine}));
   std::vector<std::vector<double>> tell(size());
   for (size_t k = 0; k < n; ++k) {
     if (k > 0 && classes[k].first == classes[k - 1].first) {

@@ -25,12 +25,7 @@ CoarseProblem::~CoarseProblem() {
 
 bool CoarseProblem::factor(int n, const std::vector<Entry>& mine) {
   if (n == 0) return true;
-  const int n_mine = 3 * static_cast<int>(mine.size());
-  std::vector<int> counts(size()), at(size(), 0);
-  MPI_Allgather(&n_mine, 1, MPI_INT, counts.data(), 1, MPI_INT, PETSC_COMM_WORLD);
-  for (int r = 1; r < size(); ++r) at[r] = at[r - 1] + counts[r - 1];
-  std::vector<Entry> all((static_cast<size_t>(at.back()) + counts.back()) / 3);
-  MPI_Allgatherv(mine.data(), n_mine, MPI_DOUBLE, all.data(), counts.data(), at.data(), MPI_DOUBLE, PETSC_COMM_WORLD);
+  const std::vector<Entry> all = comm().gather(mine);
   const Stopwatch watch(seconds_);
   cholmod_triplet* T = cholmod_allocate_triplet(n, n, all.size(), -1, CHOLMOD_REAL, &common_);
   if (!T) throw std::bad_alloc();

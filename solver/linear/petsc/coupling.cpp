@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
-#include "linear/petsc/exchange.hpp"
+#include "linear/petsc/session.hpp"
 
 namespace hilo::petsc {
 
@@ -43,7 +43,7 @@ Coupling::Coupling(const Cliques& cliques, const BlockMap& map, const SharedBloc
     send[r].push_back(c.dense);
     sent[r].push_back(c);
   }
-  const auto got = exchange(send);
+  const auto got = comm().exchange(send);
   for (const auto& list : got)
     for (size_t k = 0; k < list.size(); k += 2) couples_.push_back({shared.owned(list[k] - map.first), list[k + 1]});
   tidy();
@@ -55,11 +55,11 @@ Coupling::Coupling(const Cliques& cliques, const BlockMap& map, const SharedBloc
     for (const Couple& c : sent[r]) lent_[r].push_back(find(c.flexible, c.dense));
     for (size_t k = 0; k < got[r].size(); k += 2) borrowed_[r].push_back(find(shared.owned(got[r][k] - map.first), got[r][k + 1]));
   }
-  std::vector<int> active(m_ / 3, 0);
+  std::vector<double> active(m_ / 3, 0);
   for (const Couple& c : couples_) active[c.dense] = 1;
-  MPI_Allreduce(MPI_IN_PLACE, active.data(), m_ / 3, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
+  comm().max(active);
   for (int j = 0; j < m_; ++j)
-    if (active[j / 3]) columns_.push_back(j);
+    if (active[j / 3] > 0) columns_.push_back(j);
   B_.assign(9 * couples_.size(), 0.0), C_ = B_;
   find_pattern_of_D(cliques);
 }
@@ -84,7 +84,7 @@ void Coupling::find_pattern_of_D(const Cliques& cliques) {
     pairs.clear();
     for (int i = 0; i < n; ++i)
       for (const int j : columns[i]) pairs.push_back(i), pairs.push_back(j);
-    for (const auto& list : exchange(std::vector<std::vector<PetscInt>>(size(), pairs))) take(list);
+    for (const auto& list : comm().exchange(std::vector<std::vector<PetscInt>>(size(), pairs))) take(list);
   }
   D_start_.assign(1, 0);
   for (int i = 0; i < n; ++i) {
@@ -142,7 +142,7 @@ void Coupling::add_diagonal(int block, const double d[3]) {
 }
 
 void Coupling::assemble() {
-  if (size() > 1) MPI_Allreduce(MPI_IN_PLACE, summand_.data(), static_cast<int>(summand_.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  comm().sum(summand_);
   for (size_t k = 0; k < D_.size(); ++k) D_[k] += summand_[k];
   std::fill(summand_.begin(), summand_.end(), 0.0);
   std::vector<std::vector<double>> send(size());
@@ -152,7 +152,7 @@ void Coupling::assemble() {
       send[r].insert(send[r].end(), &C_[9 * k], &C_[9 * k] + 9);
       std::fill_n(&B_[9 * k], 9, 0.0), std::fill_n(&C_[9 * k], 9, 0.0);
     }
-  const auto got = exchange(send);
+  const auto got = comm().exchange(send);
   for (int r = 0; r < size(); ++r)
     for (size_t n = 0; n < borrowed_[r].size(); ++n)
       for (int c = 0; c < 9; ++c) B_[9 * borrowed_[r][n] + c] += got[r][18 * n + c], C_[9 * borrowed_[r][n] + c] += got[r][18 * n + 9 + c];

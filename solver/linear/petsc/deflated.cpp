@@ -71,8 +71,7 @@ class Deflated final : public FlexibleInverse {
     const int n = static_cast<int>(part.size());
     int n_parts = 0;
     for (const int p : part) n_parts = std::max(n_parts, p + 1);
-    MPI_Allreduce(MPI_IN_PLACE, &n_parts, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
-    n_parts_ = n_parts;
+    n_parts_ = n_parts = static_cast<int>(comm().max(n_parts));
     R_ = MatrixXd::Zero(3 * n, 6);
     for (int i = 0; i < n; ++i) {
       if (runs_.empty() || runs_.back().part != part[i]) runs_.push_back({part[i], 3 * i, 0});
@@ -86,7 +85,7 @@ class Deflated final : public FlexibleInverse {
       return Eigen::Vector3d(X[3 * i], X[3 * i + 1], X[3 * i + 2]) - centre.col(part[i]).head<3>() / centre(3, part[i]);
     };
     for (int i = 0; i < n; ++i) radius[part[i]] = std::max(radius[part[i]], arm(i).norm());
-    MPI_Allreduce(MPI_IN_PLACE, radius.data(), n_parts, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
+    comm().max(std::span(radius.data(), static_cast<size_t>(n_parts)));
     for (int i = 0; i < n; ++i) {
       R_.block<3, 3>(3 * i, 0).setIdentity();
       if (!(radius[part[i]] > 0)) continue;
@@ -109,7 +108,7 @@ class Deflated final : public FlexibleInverse {
     std::copy(w.data(), w.data() + to.size(), to.data());
   }
   static void sum(double* values, int n) {
-    if (size() > 1 && n > 0) MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    if (n > 0) comm().sum({values, static_cast<size_t>(n)});
   }
   /// E^-1 of what the ranks sum to; motions that cost nothing are left out.
   MatrixXd solve(MatrixXd share) const {

@@ -58,15 +58,14 @@ bool DualPrimal::set_up(bool more_constraints) {
     for (const PetscInt i : c.blocks) sum += diagonal_.segment<3>(3 * factor_.place(i)).sum();
     regular.push_back(sum / (3. * static_cast<double>(c.blocks.size())));
   }
-  int good = factor_.factor(F_, interface_, regular);
-  MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
+  const auto everywhere = [](bool good) { return comm().max(good ? 0 : 1) == 0; };
+  bool good = everywhere(factor_.factor(F_, interface_, regular));
   if (good) {
     good = find_class_matrices(interface_, factor_, regular, more_constraints, of_class_);
     list_constraints(regular);
     if (good) good = form_coarse_basis();
   }
-  MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
-  return good && factor_coarse();
+  return everywhere(good) && factor_coarse();
 }
 
 /// Weights of the interface by the subdomains' diagonals: a stiff side decides.
@@ -150,7 +149,7 @@ Eigen::MatrixXd DualPrimal::solve_coarse(const Columns& f) {
     const MatrixXd share = p.Psi.transpose() * f.middleRows(p.from, p.n);
     for (Eigen::Index k = 0; k < share.rows(); ++k) all.row(p.number[k]) += share.row(k);
   }
-  MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  comm().sum({all.data(), static_cast<size_t>(all.size())});
   coarse_.solve(all);
   return all;
 }

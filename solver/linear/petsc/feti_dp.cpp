@@ -70,7 +70,7 @@ class FetiDp final : public FlexibleInverse {
   /// Of each column, over all ranks.
   static ArrayXd dot(const MatrixXd& a, const MatrixXd& b) {
     ArrayXd sum = a.cwiseProduct(b).colwise().sum();
-    MPI_Allreduce(MPI_IN_PLACE, sum.data(), static_cast<int>(sum.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    comm().sum({sum.data(), static_cast<size_t>(sum.size())});
     return sum;
   }
 

@@ -5,9 +5,7 @@
 namespace hilo::petsc {
 
 bool set_near_null_space(Mat A, const std::vector<double>& positions) {
-  int any = !positions.empty();
-  MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
-  if (!any) return false;
+  if (comm().max(positions.empty() ? 0 : 1) == 0) return false;
   Vec x;
   MatNullSpace modes;
   check(VecCreateMPIWithArray(PETSC_COMM_WORLD, 3, static_cast<PetscInt>(positions.size()), PETSC_DETERMINE, positions.data(), &x));

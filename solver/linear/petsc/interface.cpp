@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "linear/petsc/exchange.hpp"
+#include "linear/petsc/session.hpp"
 
 namespace hilo::petsc {
 namespace {
@@ -38,7 +38,7 @@ std::vector<PetscInt> components(const SubdomainMatrix& F, const Group& group) {
 std::vector<Key> find_keys(const SubdomainMatrix& F, const std::vector<PetscInt>& piece) {
   std::vector<std::vector<PetscInt>> tell(size());
   for (PetscInt i = 0; i < F.n_blocks(); ++i) tell[F.owner(i)].insert(tell[F.owner(i)].end(), {F.global(i), piece[i]});
-  const auto told = exchange(tell);
+  const auto told = comm().exchange(tell);
   std::vector<Key> of_owned(F.n_owned());
   for (int r = 0; r < size(); ++r)
     for (size_t k = 0; k < told[r].size(); k += 2) {
@@ -52,7 +52,7 @@ std::vector<Key> find_keys(const SubdomainMatrix& F, const std::vector<PetscInt>
       answer[r].push_back(static_cast<PetscInt>(key.size()));
       answer[r].insert(answer[r].end(), key.begin(), key.end());
     }
-  const auto answers = exchange(answer);
+  const auto answers = comm().exchange(answer);
   std::vector<size_t> at(size(), 0);
   std::vector<Key> keys(F.n_blocks());
   for (PetscInt i = 0; i < F.n_blocks(); ++i) {
@@ -113,11 +113,10 @@ Interface find_interface(const SubdomainMatrix& F) {
   for (PetscInt i = 0; i < F.n_blocks(); ++i)
     if (part[i] >= 0) led[part[i]].push_back(i);
   for (auto& [unused, blocks] : led) new_class(blocks, 0);
-  int mine = 0, before = 0;
+  int mine = 0;
   for (const auto& c : out.classes) mine += static_cast<int>(c.q.cols());
-  MPI_Exscan(&mine, &before, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
-  if (rank() == 0) before = 0;
-  MPI_Allreduce(&mine, &out.n_constraints, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
+  int before = static_cast<int>(comm().before(mine));
+  out.n_constraints = static_cast<int>(comm().sum(std::int64_t{mine}));
   // the other holders learn their classes by the number of the first constraint
   std::vector<std::vector<PetscInt>> send(size());
   for (auto& c : out.classes) {
@@ -131,7 +130,7 @@ Interface find_interface(const SubdomainMatrix& F) {
   for (PetscInt i = 0; i < F.n_blocks(); ++i)
     if (keys[i].size() > 2) place[{F.global(i), out.piece[i]}] = i;
   std::map<std::pair<int, int>, std::vector<PetscInt>> others;
-  for (const auto& list : exchange(send))
+  for (const auto& list : comm().exchange(send))
     for (size_t k = 0; k < list.size(); k += 3) others[{list[k + 2], list[k + 1]}].push_back(place.at({list[k], list[k + 1]}));
   for (auto& [first_and_piece, blocks] : others) new_class(blocks, first_and_piece.first);
   std::sort(out.classes.begin(), out.classes.end(),
@@ -146,14 +145,9 @@ std::vector<int> connected_parts(const SubdomainMatrix& F) {
   std::set<std::array<PetscInt, 4>> links;
   for (PetscInt i = 0; i < F.n_blocks(); ++i)
     for (size_t k = 0; k < keys[i].size(); k += 2) links.insert({rank(), piece[i], keys[i][k], keys[i][k + 1]});
-  std::vector<PetscInt> mine, all;
+  std::vector<PetscInt> mine;
   for (const auto& link : links) mine.insert(mine.end(), link.begin(), link.end());
-  int n = static_cast<int>(mine.size());
-  std::vector<int> counts(size()), at(size(), 0);
-  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, PETSC_COMM_WORLD);
-  for (int r = 1; r < size(); ++r) at[r] = at[r - 1] + counts[r - 1];
-  all.resize(static_cast<size_t>(at.back()) + counts.back());
-  MPI_Allgatherv(mine.data(), n, MPIU_INT, all.data(), counts.data(), at.data(), MPIU_INT, PETSC_COMM_WORLD);
+  const std::vector<PetscInt> all = comm().gather(mine);
   std::map<std::pair<PetscInt, PetscInt>, int> number;
   for (size_t k = 0; k < all.size(); k += 4) number.try_emplace({all[k], all[k + 1]}, static_cast<int>(number.size()));
   std::vector<int> parent(number.size());
@@ -170,7 +164,7 @@ std::vector<int> connected_parts(const SubdomainMatrix& F) {
   for (PetscInt i = 0; i < F.n_blocks(); ++i)
     tell[F.owner(i)].insert(tell[F.owner(i)].end(), {F.global(i), part_of_root.at(root(number.at({rank(), piece[i]})))});
   std::vector<int> part(F.n_owned(), 0);
-  for (const auto& list : exchange(tell))
+  for (const auto& list : comm().exchange(tell))
     for (size_t k = 0; k < list.size(); k += 2) part[list[k] - F.first_owned()] = list[k + 1];
   return part;
 }

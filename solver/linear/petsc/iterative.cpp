@@ -343,19 +343,16 @@ class IterativeSolver final : public KktSolver {
     return schur_.factor(*coupling_, columns, of_touched);
   }
 
-  static double largest(double value) {
-    MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
-    return value;
-  }
+  static double largest(double value) { return comm().max(value); }
   static void sum(double* values, int n) {
-    if (size() > 1 && n > 0) MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    if (n > 0) comm().sum({values, static_cast<size_t>(n)});
   }
 
   /// The dense part of a vector, from the end of the last rank's unknowns to all.
   void get_dense(const double* x) {
     if (m_ == 0) return;
     if (n_all_ > n_flexible_) std::copy_n(x + n_flexible_, m_, p_.begin());
-    if (size() > 1) MPI_Bcast(p_.data(), m_, MPI_DOUBLE, size() - 1, PETSC_COMM_WORLD);
+    comm().copy(std::span(p_.data(), static_cast<size_t>(m_)), size() - 1);
   }
 
   /// y = A x.

@@ -67,15 +67,4 @@ void check(PetscErrorCode code) {
        static_cast<int>(memory ? Exit::resources : Exit::fault));
 }
 
-int rank() {
-  int r;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &r);
-  return r;
-}
-int size() {
-  int n;
-  MPI_Comm_size(PETSC_COMM_WORLD, &n);
-  return n;
-}
-
 }  // namespace hilo::petsc

@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "base/comm.hpp"
+
 namespace hilo::petsc {
 
 /// Start PETSc once.  It ends before MPI does, or with the process where PETSc started MPI.
@@ -17,7 +19,9 @@ void check(PetscErrorCode code);
 /// An Error of one rank that the others do not share; like check().
 [[noreturn]] void fail(const std::string& what, int exit_code);
 
-int rank();
-int size();
+/// The ranks; PETSc runs on all of them.
+inline const Comm& comm() { return Comm::world(); }
+inline int rank() { return comm().rank; }
+inline int size() { return comm().size; }
 
 }  // namespace hilo::petsc

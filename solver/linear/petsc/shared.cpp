@@ -3,16 +3,15 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "linear/petsc/exchange.hpp"
+#include "linear/petsc/session.hpp"
 
 namespace hilo::petsc {
 
 SharedBlocks::SharedBlocks(const BlockMap& map)
     : owned_(map.n_owned, -1), is_owned_(map.global.size()), is_shared_(map.global.size(), 1), ghosts_(size()), lent_(size()) {
   const int n = size();
-  first_.resize(n + 1);
-  MPI_Allgather(&map.first, 1, MPI_INT64_T, first_.data(), 1, MPI_INT64_T, PETSC_COMM_WORLD);
-  first_[n] = map.n_global;
+  first_ = comm().gather(std::vector{map.first});
+  first_.push_back(map.n_global);
   if (3 * map.n_global > std::numeric_limits<PetscInt>::max())
     throw Error("", "more unknowns than PETSc's 32-bit numbers reach", "use a coarser mesh", Exit::resources);
   std::vector<std::vector<PetscInt>> ask(n);
@@ -30,7 +29,7 @@ SharedBlocks::SharedBlocks(const BlockMap& map)
   }
   for (const int i : owned_)
     if (i < 0) fail("a rank does not hold a block that it owns", static_cast<int>(Exit::fault));
-  const auto asked = exchange(ask);
+  const auto asked = comm().exchange(ask);
   for (int r = 0; r < n; ++r)
     for (const auto g : asked[r]) lent_[r].push_back(owned_[g - map.first]), is_shared_[lent_[r].back()] = 1;
 }

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "base/error.hpp"
-#include "linear/petsc/exchange.hpp"
+#include "linear/petsc/session.hpp"
 #include "linear/petsc/split.hpp"
 
 namespace hilo::petsc {
@@ -34,7 +34,7 @@ std::vector<char> find_common(const Cliques& cliques, const BlockMap& map, const
     ask[r].push_back(static_cast<PetscInt>(hash & 0x7fffffff)), ask[r].push_back(static_cast<PetscInt>((hash >> 31) & 0x7fffffff));
     asked[r].push_back(e);
   }
-  const auto got = exchange(ask);
+  const auto got = comm().exchange(ask);
   std::map<std::pair<PetscInt, PetscInt>, std::pair<int, int>> known;  // last rank, number of ranks
   for (int r = 0; r < size(); ++r)
     for (size_t k = 0; k < got[r].size(); k += 2) {
@@ -44,7 +44,7 @@ std::vector<char> find_common(const Cliques& cliques, const BlockMap& map, const
   std::vector<std::vector<PetscInt>> answer(size());
   for (int r = 0; r < size(); ++r)
     for (size_t k = 0; k < got[r].size(); k += 2) answer[r].push_back(known.at({got[r][k], got[r][k + 1]}).second);
-  const auto told = exchange(answer);
+  const auto told = comm().exchange(answer);
   for (int r = 0; r < size(); ++r)
     for (size_t k = 0; k < asked[r].size(); ++k) common[asked[r][k]] = told[r][k] > 1;
   return common;
@@ -141,7 +141,7 @@ void SubdomainMatrix::choose_blocks(const Cliques& cliques, const BlockMap& map,
   for (const auto& blocks : mine)
     for (const int i : blocks) tell[shared.owner(map.global[i])].push_back(static_cast<PetscInt>(map.global[i]));
   holders_.assign(n_owned_, {});
-  const auto told = exchange(tell);
+  const auto told = comm().exchange(tell);
   for (int r = 0; r < size(); ++r)
     for (const auto g : told[r]) holders_[g - map.first].push_back(r);
   for (PetscInt k = 0; k < n_owned_; ++k)
@@ -244,7 +244,7 @@ void SubdomainMatrix::assemble() {
     std::fill_n(&diagonal_[3 * static_cast<size_t>(k)], 3, 0.0);
   }
   std::map<PetscInt, std::vector<PetscInt>> places;  // of blocks that got something, the last first
-  const auto got = exchange(send);
+  const auto got = comm().exchange(send);
   for (const auto& list : got)
     for (size_t k = 0; k < list.size(); k += 4) places[static_cast<PetscInt>(list[k])];
   if (!places.empty())

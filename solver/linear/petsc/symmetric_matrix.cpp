@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/wide.hpp"
-#include "linear/petsc/exchange.hpp"
+#include "linear/petsc/session.hpp"
 #include "linear/petsc/solver.hpp"
 
 namespace hilo::petsc {
@@ -80,7 +80,7 @@ void SymmetricMatrix::lend(const BlockMap& map) {
       ask[r].push_back(global_[i]), ask[r].push_back(global_[j]);
       lent_[r].push_back(e);
     }
-  const auto asked = exchange(ask);
+  const auto asked = comm().exchange(ask);
   for (int r = 0; r < size(); ++r)
     for (size_t k = 0; k < asked[r].size(); k += 2) {
       const int i = pattern_.place[asked[r][k] - map.first], j = pattern_.place[asked[r][k + 1] - map.first];
@@ -88,7 +88,7 @@ void SymmetricMatrix::lend(const BlockMap& map) {
       answer[r].push_back(at < pattern_.column.size());
       if (answer[r].back()) borrowed_[r].push_back({at, i < j});
     }
-  const auto answered = exchange(answer);
+  const auto answered = comm().exchange(answer);
   for (int r = 0; r < size(); ++r) {
     size_t kept = 0;
     for (size_t k = 0; k < lent_[r].size(); ++k)
@@ -139,7 +139,7 @@ void SymmetricMatrix::assemble() {
       send[r].insert(send[r].end(), L_[e], L_[e] + 9);
       std::fill_n(L_[e], 9, 0.0f);
     }
-  const auto got = exchange(send);
+  const auto got = comm().exchange(send);
   for (int r = 0; r < size(); ++r)
     for (size_t k = 0; k < borrowed_[r].size(); ++k) {
       const auto [at, transposed] = borrowed_[r][k];

@@ -1,4 +1,4 @@
-#include "model/traffic.hpp"
+#include "base/traffic.hpp"
 
 #define OMPI_SKIP_MPICXX 1
 #include <mpi.h>
@@ -84,6 +84,10 @@ int MPI_Alltoallv(const void* data, const int n[], const int at[], MPI_Datatype 
 int MPI_Allreduce(const void* data, void* to, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm) {
   collective(bytes_of(n, type), comm);
   return PMPI_Allreduce(data, to, n, type, op, comm);
+}
+int MPI_Exscan(const void* data, void* to, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm) {
+  collective(bytes_of(n, type), comm);
+  return PMPI_Exscan(data, to, n, type, op, comm);
 }
 int MPI_Iallreduce(const void* data, void* to, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm, MPI_Request* request) {
   collective(bytes_of(n, type), comm);

@@ -1,4 +1,4 @@
-#include "model/sharing.hpp"
+#include "base/sharing.hpp"
 
 #include <algorithm>
 #include <unordered_map>

@@ -2,8 +2,10 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <numeric>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace hilo {
@@ -17,6 +19,21 @@ class Comm {
   double sum(double value) const;
   double max(double value) const;
   std::int64_t sum(std::int64_t value) const;
+  void max(std::span<double> values) const;  // in place
+  /// Sum of the values of the ranks before this one.
+  std::int64_t before(std::int64_t value) const;
+  /// The values of rank `from` to all.
+  void copy(std::span<double> values, int from) const;
+  /// The lists of all ranks, one after the other; T has no pointers in it.
+  template <class T>
+  std::vector<T> gather(const std::vector<T>& mine) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    if (size == 1) return mine;
+    const std::vector<int> count = counts(mine.size());
+    std::vector<T> all(std::accumulate(count.begin(), count.end(), size_t{0}));
+    gather(mine.data(), all.data(), count, sizeof(T));
+    return all;
+  }
   void barrier() const;
   /// Row i of the result is what rank i sent to this rank.  More than 2^31 values at once are an Error on all ranks (exit 4).
   template <class T>
@@ -30,6 +47,8 @@ class Comm {
 
  private:
   Comm();
+  std::vector<int> counts(size_t mine) const;
+  void gather(const void* mine, void* all, const std::vector<int>& count, size_t bytes_each) const;
 };
 
 }  // namespace hilo

@@ -1,6 +1,6 @@
 // Things that several ranks hold (a node, a patch of cells about it), known by a number of their own, and sums over their holders.
 #pragma once
-#include "model/comm.hpp"
+#include "base/comm.hpp"
 
 namespace hilo {
 

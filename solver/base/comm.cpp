@@ -1,4 +1,4 @@
-#include "model/comm.hpp"
+#include "base/comm.hpp"
 
 #define OMPI_SKIP_MPICXX 1
 #include <mpi.h>
@@ -21,7 +21,9 @@ Comm::Comm() {
   const char* n = std::getenv("OMPI_COMM_WORLD_SIZE");
   if (!n) n = std::getenv("PMI_SIZE");
   if (!n || std::atoi(n) < 2) return;
-  MPI_Init(nullptr, nullptr);
+  int runs = 0;
+  MPI_Initialized(&runs);  // a module with a copy of this object (libhilo-petsc.so) finds it running
+  if (!runs) MPI_Init(nullptr, nullptr);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &size);
 }
@@ -42,6 +44,19 @@ std::int64_t Comm::sum(std::int64_t v) const {
   if (size > 1) MPI_Allreduce(MPI_IN_PLACE, &v, 1, MPI_INT64_T, MPI_SUM, MPI_COMM_WORLD);
   return v;
 }
+void Comm::max(std::span<double> v) const {
+  for (double& x : v)
+    if (std::isnan(x)) x = std::numeric_limits<double>::infinity();
+  if (size > 1) MPI_Allreduce(MPI_IN_PLACE, v.data(), static_cast<int>(v.size()), MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+}
+std::int64_t Comm::before(std::int64_t v) const {
+  std::int64_t out = 0;
+  if (size > 1) MPI_Exscan(&v, &out, 1, MPI_INT64_T, MPI_SUM, MPI_COMM_WORLD);
+  return rank == 0 ? 0 : out;  // Exscan leaves that of rank 0 undefined
+}
+void Comm::copy(std::span<double> v, int from) const {
+  if (size > 1) MPI_Bcast(v.data(), static_cast<int>(v.size()), MPI_DOUBLE, from, MPI_COMM_WORLD);
+}
 void Comm::barrier() const {
   if (size > 1) MPI_Barrier(MPI_COMM_WORLD);
 }
@@ -53,19 +68,51 @@ void Comm::finish() {
   if (size > 1) MPI_Finalize();
 }
 
+namespace {
+
+/// A value of any type, as so many bytes.
+class Bytes {
+ public:
+  explicit Bytes(size_t n) { MPI_Type_contiguous(static_cast<int>(n), MPI_BYTE, &type), MPI_Type_commit(&type); }
+  ~Bytes() { MPI_Type_free(&type); }
+  Bytes(const Bytes&) = delete;
+  Bytes& operator=(const Bytes&) = delete;
+  MPI_Datatype type;
+};
+
+constexpr std::int64_t most = std::numeric_limits<int>::max();  // values that MPI counts
+[[noreturn]] void too_many() {
+  throw Error("", "more than 2^31 values travel between ranks at once", "use more ranks", Exit::resources);
+}
+
+}  // namespace
+
+std::vector<int> Comm::counts(size_t mine) const {
+  const auto n = static_cast<std::int64_t>(mine);
+  std::vector<std::int64_t> all(size);
+  MPI_Allgather(&n, 1, MPI_INT64_T, all.data(), 1, MPI_INT64_T, MPI_COMM_WORLD);
+  if (std::accumulate(all.begin(), all.end(), std::int64_t{0}) > most) too_many();
+  return {all.begin(), all.end()};
+}
+
+void Comm::gather(const void* mine, void* all, const std::vector<int>& count, size_t bytes_each) const {
+  std::vector<int> at(size, 0);
+  for (int r = 1; r < size; ++r) at[r] = at[r - 1] + count[r - 1];
+  const Bytes value(bytes_each);
+  MPI_Allgatherv(mine, count[rank], value.type, all, count.data(), at.data(), value.type, MPI_COMM_WORLD);
+}
+
 template <class T>
 std::vector<std::vector<T>> Comm::exchange(const std::vector<std::vector<T>>& to) const {
   if (size == 1) return to;
-  constexpr std::int64_t limit = std::numeric_limits<int>::max();
   std::int64_t n_out = 0, n_in = 0;
   for (const auto& list : to) n_out += static_cast<std::int64_t>(list.size());
   std::vector<std::int64_t> n_send(size), n_recv(size);
-  for (int r = 0; r < size; ++r) n_send[r] = n_out > limit ? -1 : static_cast<std::int64_t>(to[r].size());
+  for (int r = 0; r < size; ++r) n_send[r] = n_out > most ? -1 : static_cast<std::int64_t>(to[r].size());
   MPI_Alltoall(n_send.data(), 1, MPI_INT64_T, n_recv.data(), 1, MPI_INT64_T, MPI_COMM_WORLD);
   bool too_much = n_out > limit;
   for (const auto n : n_recv) too_much = too_much || n < 0, n_in += n;
-  if (max(too_much || n_in > limit) > 0)
-    throw Error("", "more than 2^31 values travel between ranks at once", "use more ranks", Exit::resources);
+  if (max(too_much || n_in > most) > 0) too_many();
   std::vector<int> send(n_send.begin(), n_send.end()), recv(n_recv.begin(), n_recv.end()), at_send(size), at_recv(size);
   std::vector<T> out, in(static_cast<size_t>(n_in));
   out.reserve(static_cast<size_t>(n_out));
@@ -74,16 +121,14 @@ std::vector<std::vector<T>> Comm::exchange(const std::vector<std::vector<T>>& to
     out.insert(out.end(), to[r].begin(), to[r].end());
     at_recv[r] = at;
   }
-  MPI_Datatype value;
-  MPI_Type_contiguous(sizeof(T), MPI_BYTE, &value);
-  MPI_Type_commit(&value);
-  MPI_Alltoallv(out.data(), send.data(), at_send.data(), value, in.data(), recv.data(), at_recv.data(), value, MPI_COMM_WORLD);
-  MPI_Type_free(&value);
+  const Bytes value(sizeof(T));
+  MPI_Alltoallv(out.data(), send.data(), at_send.data(), value.type, in.data(), recv.data(), at_recv.data(), value.type, MPI_COMM_WORLD);
   std::vector<std::vector<T>> from(size);
   for (int r = 0; r < size; ++r) from[r].assign(in.begin() + at_recv[r], in.begin() + at_recv[r] + recv[r]);
   return from;
 }
 template std::vector<std::vector<double>> Comm::exchange(const std::vector<std::vector<double>>&) const;
+template std::vector<std::vector<std::int32_t>> Comm::exchange(const std::vector<std::vector<std::int32_t>>&) const;
 template std::vector<std::vector<std::int64_t>> Comm::exchange(const std::vector<std::vector<std::int64_t>>&) const;
 template std::vector<std::vector<char>> Comm::exchange(const std::vector<std::vector<char>>&) const;
 
