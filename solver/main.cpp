@@ -32,13 +32,10 @@ std::string mesh_path(const Options& o, const Scene& scene) {
 }
 
 void print_plan(const System& s, bool talk) {
-  std::int64_t cells = 0, patches = 0, free_bodies = 0;
-  for (const SolidBatch& b : s.batches) cells += static_cast<std::int64_t>(b.cells.size());
-  cells = s.comm->sum(cells);
-  for (const Body& b : s.bodies) patches += b.patch, free_bodies += b.free() && !b.patch;
-  if (talk)
-    fmt::print(stderr, "{} flexible cells, {} rigid bodies, {} patches, {} joints, {} springs, {} loads, {} unknowns\n", cells, free_bodies,
-               patches, s.joints.size(), s.springs.size(), s.loads.size(), 3 * s.map.n_global);
+  std::string plan;
+  for (const auto& part : s.parts())
+    if (const std::string count = part->count(); !count.empty()) plan += count + ", ";
+  if (talk) fmt::print(stderr, "{}{} unknowns\n", plan, 3 * s.map.n_global);
 }
 
 int solve(int argc, char** argv, Comm& comm) {

@@ -81,9 +81,7 @@ class Bytes {
 };
 
 constexpr std::int64_t most = std::numeric_limits<int>::max();  // values that MPI counts
-[[noreturn]] void too_many() {
-  throw Error("", "more than 2^31 values travel between ranks at once", "use more ranks", Exit::resources);
-}
+[[noreturn]] void too_many() { throw Error("", "more than 2^31 values travel between ranks at once", "use more ranks", Exit::resources); }
 
 }  // namespace
 
@@ -110,7 +108,7 @@ std::vector<std::vector<T>> Comm::exchange(const std::vector<std::vector<T>>& to
   std::vector<std::int64_t> n_send(size), n_recv(size);
   for (int r = 0; r < size; ++r) n_send[r] = n_out > most ? -1 : static_cast<std::int64_t>(to[r].size());
   MPI_Alltoall(n_send.data(), 1, MPI_INT64_T, n_recv.data(), 1, MPI_INT64_T, MPI_COMM_WORLD);
-  bool too_much = n_out > limit;
+  bool too_much = n_out > most;
   for (const auto n : n_recv) too_much = too_much || n < 0, n_in += n;
   if (max(too_much || n_in > most) > 0) too_many();
   std::vector<int> send(n_send.begin(), n_send.end()), recv(n_recv.begin(), n_recv.end()), at_send(size), at_recv(size);

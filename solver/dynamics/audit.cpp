@@ -13,10 +13,10 @@ namespace {
 constexpr double largest_turn = 2;  // [rad]
 constexpr double rounding = 1e-12;  // of sums over the scene
 
-double total(const System::Energy& e) { return e.kinetic + e.elastic + e.gravity; }
+double total(const Energy& e) { return e.kinetic + e.elastic + e.gravity; }
 
 /// Energies, the kinetic one of what moves by a law that of the law, so that the balance sees velocities that are not.
-System::Energy energy_of(const System& system, const State& s, Side side) {
+Energy energy_of(const System& system, const State& s, Side side) {
   if (!system.moves() || system.same_time == 0) return system.energy(s.q, s.v);  // statics have no velocities
   Config v = s.v;
   system.prescribe_rates(s.t, side, &v, nullptr);
@@ -47,7 +47,7 @@ std::string Audit::look(const Config& q0, const State& end, std::span<const Take
   next_.energy = energy_of(system_, end, Side::left);
   next_.work = sums_.work, next_.dissipated = sums_.dissipated;
   for (const Taken& part : taken) {
-    const System::Work w = system_.work(part.stage, part.lambda);
+    const Work w = system_.work(part.stage, part.lambda);
     next_.work += w.external, next_.dissipated += w.dissipated;
   }
   next_.rows = system_.violation(end.q, end.t, load_factor);
@@ -57,12 +57,12 @@ std::string Audit::look(const Config& q0, const State& end, std::span<const Take
   if (!std::isfinite(next_.balance)) return "energies are not finite";
   if (det_.det <= 0) return system_.inside_out(det_);
   if (turn_.angle > largest_turn) return fmt::format("{} turns by {:.3g} rad in one step", system_.name(turn_), turn_.angle);
-  const System::Violation& g = next_.rows;
+  const Violation& g = next_.rows;
   const double open = row_bound_ * system_.length;
-  if (!(g.kept <= open)) return fmt::format("joint \"{}\" opens by {:.2g}", system_.joints[g.kept_joint].name, g.kept);
+  if (!(g.kept <= open)) return fmt::format("{} opens by {:.2g}", system_.row_owner(g.kept_block), g.kept);
   if (!(g.dropped <= open)) {
     opens_dropped_row_ = true;
-    return fmt::format("joint \"{}\" opens by {:.2g} along a row that seemed redundant", system_.joints[g.dropped_joint].name, g.dropped);
+    return fmt::format("{} opens by {:.2g} along a row that seemed redundant", system_.row_owner(g.dropped_block), g.dropped);
   }
   moving_next_ = std::max(moving_, next_.energy.kinetic);
   step_ = sum_ = 0;
@@ -88,9 +88,9 @@ void Audit::accept(double t) {
   if (step_ > worst_.step) worst_.step = step_, worst_.step_t = t;
   if (sum_ > worst_.sum) worst_.sum = sum_, worst_.sum_t = t;
   if (now_.rows.kept > worst_.rows.kept)
-    worst_.rows.kept = now_.rows.kept, worst_.rows.kept_joint = now_.rows.kept_joint, worst_.kept_t = t;
+    worst_.rows.kept = now_.rows.kept, worst_.rows.kept_block = now_.rows.kept_block, worst_.kept_t = t;
   if (now_.rows.dropped > worst_.rows.dropped)
-    worst_.rows.dropped = now_.rows.dropped, worst_.rows.dropped_joint = now_.rows.dropped_joint, worst_.dropped_t = t;
+    worst_.rows.dropped = now_.rows.dropped, worst_.rows.dropped_block = now_.rows.dropped_block, worst_.dropped_t = t;
   if (turn_.angle > worst_.turn.angle) worst_.turn = turn_, worst_.turn_t = t;
   if (det_.det < worst_.det.det) worst_.det = det_, worst_.det_t = t;
 }
@@ -103,7 +103,7 @@ std::string Audit::verdict() const {
 double Audit::balance() const { return moving_ > rounding_ ? largest_ / moving_ : std::nan(""); }
 
 std::string Audit::json(const std::string& failure) const {
-  const auto joint = [&](int j) { return j >= 0 ? json_text(system_.joints[j].name) : "null"; };
+  const auto joint = [&](int block) { return block >= 0 ? json_text(system_.joints.at_block(block).name) : "null"; };
   std::string out = fmt::format("{{\n    \"passed\": {},\n", failure.empty());
   if (!failure.empty()) out += fmt::format("    \"failed\": {},\n", json_text(failure));
   out += keeps_energy_
@@ -114,8 +114,8 @@ std::string Audit::json(const std::string& failure) const {
     out += fmt::format("    \"{}\": {{\"worst\": {}, \"joint\": {}, \"t\": {}, \"bound\": {}}},\n", key, number(worst), joint(by),
                        number(t), number(row_bound_ * system_.length));
   };
-  rows("joint_rows", worst_.rows.kept, worst_.rows.kept_joint, worst_.kept_t);
-  rows("dropped_rows", worst_.rows.dropped, worst_.rows.dropped_joint, worst_.dropped_t);
+  rows("joint_rows", worst_.rows.kept, worst_.rows.kept_block, worst_.kept_t);
+  rows("dropped_rows", worst_.rows.dropped, worst_.rows.dropped_block, worst_.dropped_t);
   out += fmt::format("    \"turn\": {{\"largest\": {}, \"of\": {}, \"t\": {}, \"bound\": {}}},\n", number(worst_.turn.angle),
                      worst_.turn.angle > 0 ? json_text(system_.name(worst_.turn)) : "null", number(worst_.turn_t), number(largest_turn));
   const auto& [det, region] = worst_.det;

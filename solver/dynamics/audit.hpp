@@ -16,9 +16,9 @@ namespace hilo {
 
 /// Energies at an instant, the work and dissipation until then [J], and how far joints are open.
 struct Ledger {
-  System::Energy energy;
+  Energy energy;
   double work = 0, dissipated = 0, balance = 0;  // balance: E - E0 - W + D
-  System::Violation rows;
+  Violation rows;
 };
 
 class Audit {
@@ -48,7 +48,7 @@ class Audit {
  private:
   struct Worst {                                      // of the accepted steps, each with its time
     double step = 0, step_t = 0, sum = 0, sum_t = 0;  // energy, over what it is judged by
-    System::Violation rows;
+    Violation rows;
     double kept_t = 0, dropped_t = 0;
     System::Turn turn;
     double turn_t = 0, det_t = 0;

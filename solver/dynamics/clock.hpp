@@ -44,30 +44,23 @@ class Clocks {
     double vMv = 0, vMj = 0;  // [J, W/s]
     double share = 1;         // of the correction that is taken
   };
-  /// A load with a history, as seen by a mechanism.
-  struct Timed {
-    const Load* load;
-    double square;  // f.M^-1 f at factor 1 [N^2/kg]
-  };
   struct Mechanism {
     std::vector<int> bodies;
     std::deque<Node> nodes;  // instants between steps, the last first; of that one the jerk is not known yet
     double tau = 0;          // of the step planned last [s]
-    std::vector<Timed> loads;
-    std::vector<const Connector*> dampers;
-    bool factored = false;  // a motor has a history
-    double taken = 0;       // by dampers in the last step, or given by motors [J]
-    double all = 0;         // change of M a between the last two steps: a.M a [N^2/kg]
-    double changed = 0;     // by the time alone over the step planned last: f.M^-1 f [N^2/kg]
-    double owed = 0;        // tau - T still to come for steps whose ends' jerks are known [s]
+    double taken = 0;        // by dampers in the last step, or given by motors [J]
+    double all = 0;          // change of M a between the last two steps: a.M a [N^2/kg]
+    double changed = 0;      // by the time alone over the step planned last: f.M^-1 f [N^2/kg]
+    double owed = 0;         // tau - T still to come for steps whose ends' jerks are known [s]
   };
-  double inner(const Mechanism& m, const Config& v, const Config& w) const;
+  void inner(const Config& v, const Config& w, std::vector<double>& out) const;
   double excess(const Node& from, const Node& to) const;
-  double change(const Mechanism& m, double t) const;
   static double own_share(const Mechanism& m);
   const System& system_;
   std::vector<Mechanism> mechanisms_;
+  std::vector<int> group_;  // mechanism of each body, or -1
   std::vector<double> tempo_;
+  std::vector<double> vMv_, vMj_, jMj_, changed_, taken_;  // of the mechanisms
   Config v_, a_, jerk_;  // at the last instant; in the middle of the step before it, or empty; times T between two middles
   double T_ = 0;         // of the step planned last [s]
 };

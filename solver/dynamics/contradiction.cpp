@@ -46,25 +46,19 @@ void refuse_contradictions(const Scene& scene, const System& system, const Redun
     system.prescribe(q, t);
     for (const Connector* joint : fixed_ends) {
       double g[max_rows];
-      joint->row_values(joint->values(q), g);
-      if (joint->drive.row >= 0) g[joint->drive.row] -= joint->drive.law.at(t).value;
+      gaps(*joint, q, t, 1, g);
       const double worst =
           std::abs(*std::max_element(g, g + joint->n_rows(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
       if (worst <= open) continue;
       std::string moves;
       for (const Carrier& end_of : joint->ends())
-        if (end_of.body >= 0 && system.bodies[end_of.body].motion >= 0) moves = system.motions[system.bodies[end_of.body].motion].name;
+        if (end_of.body >= 0 && system.bodies[end_of.body].held) moves = system.bodies[end_of.body].motion;
       throw Error(
           place_of_joint(scene, joint->name),
           fmt::format("joint \"{}\" holds what motion \"{}\" moves: it would open by {:.3g} at t = {:.3g} s", joint->name, moves, worst, t),
           "take away the joint or the motion");
     }
   }
-}
-
-bool is_driven(const System& system) {
-  return std::any_of(system.joints.begin(), system.joints.end(), [](const Connector& j) { return j.drive.row >= 0; }) ||
-         std::any_of(system.motions.begin(), system.motions.end(), [](const Motion& m) { return m.moving; });
 }
 
 std::string contradicted_joint(const System& system, const Config& q, const Config& v, double t) {
@@ -77,7 +71,7 @@ std::string contradicted_joint(const System& system, const Config& q, const Conf
   std::string name;
   for (size_t j = 0; j < system.joints.size(); ++j)
     for (int m = 0; m < system.joints[j].n_rows(); ++m) {
-      const double r = std::abs(rate[3 * (system.joint_block[j] - system.first_joint_block()) + m]);
+      const double r = std::abs(rate[system.joints.row(j) + m]);
       if (!system.joints[j].active[m] && r > worst) worst = r, name = system.joints[j].name;
     }
   return worst > 1e-8 * driven ? name : "";

@@ -10,8 +10,6 @@ namespace hilo {
 /// Error (exit 2) naming a drive that ever moves what other joints hold, or a motion that opens a joint between things whose motion is
 /// prescribed, at any time until `end` [s].
 void refuse_contradictions(const Scene& scene, const System& system, const Redundancy& redundancy, double end);
-/// Whether anything has a course of its own: a drive or a motion.
-bool is_driven(const System& system);
 /// A joint whose redundant rows do not move as what drives others would have it at (q, v, t), or "" where all agree.
 std::string contradicted_joint(const System& system, const Config& q, const Config& v, double t);
 

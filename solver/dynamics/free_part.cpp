@@ -8,23 +8,12 @@
 namespace hilo {
 namespace {
 
-std::string free(const std::string& what) { return fmt::format(": {} is not held, or has no mass", what); }
-
 /// What the unknowns of a local block belong to.
 std::string owner_of(const System& s, int block) {
-  for (size_t b = 0; b < s.bodies.size(); ++b)
-    if (s.body_block[b] >= 0 && (block == s.body_block[b] || block == s.body_block[b] + 1))
-      return free(fmt::format("{} \"{}\"", s.bodies[b].patch ? "set" : "body", s.bodies[b].name));
-  for (size_t j = s.joints.size(); j-- > 0;)
-    if (block >= s.joint_block[j]) return fmt::format(": joint \"{}\" holds what is held already", s.joints[j].name);
-  for (size_t i = 0; i < s.X.size(); ++i) {
-    if (s.node_block[i] != block) continue;
-    for (size_t r = 0; r < s.region_nodes.size(); ++r)
-      if (std::find(s.region_nodes[r].begin(), s.region_nodes[r].end(), static_cast<int>(i)) != s.region_nodes[r].end())
-        return free(fmt::format("region \"{}\", at node {},", s.mesh->mesh.region_name[r], s.mesh->mesh.node_id[i]));
-    return free(fmt::format("node {}", s.mesh->mesh.node_id[i]));
-  }
-  return "";
+  const std::string who = s.owner(block);
+  if (who.empty()) return "";
+  return block >= s.first_joint_block() ? fmt::format(": {} holds what is held already", who)
+                                        : fmt::format(": {} is not held, or has no mass", who);
 }
 
 }  // namespace

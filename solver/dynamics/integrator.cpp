@@ -127,18 +127,19 @@ std::unique_ptr<Integrator> make_integrator(const Entry& time) {
 std::string known_weakness(const Entry& time, const System& system) {
   const std::string& kind = time.text("integrator");
   const double rho = time.number("rho");
-  const bool joints = !system.joints.empty(), turning = joints || !system.bodies.empty();
+  const Traits& has = system.traits();
+  const bool joints = has.constrains;
   const auto radius = [&](const char* key) { return time.has(key) ? time.number(key) : rho; };
   if ((kind == "newmark" && time.number("gamma") < 0.55) ||
       ((kind == "generalized-alpha" || kind == "hht" || kind == "wbz") && rho >= 0.9)) {
     if (joints) return "with joints its multipliers oscillate and grow until the run stops, sometimes after many thousand steps";
-    if (system.flexible) return "it gains energy on parts that turn while they deform";
+    if (has.deforms) return "it gains energy on parts that turn while they deform";
   }
-  if (kind == "mid-point" && system.flexible)
+  if (kind == "mid-point" && has.deforms)
     return "the stress at the mid-point lets energy grow without limit on stiff turning parts; energy-momentum averages it";
-  if ((kind == "U0" || kind == "V0") && !time.boolean("averaged") && system.flexible)
+  if ((kind == "U0" || kind == "V0") && !time.boolean("averaged") && has.deforms)
     return "without averaged = true stiff parts that turn are stretched unnoticed";
-  if (kind == "V0" && turning && std::min({radius("rho1"), radius("rho2"), radius("rho3")}) < 1)
+  if (kind == "V0" && std::min({radius("rho1"), radius("rho2"), radius("rho3")}) < 1)
     return "accelerations and multipliers of V0 with a spectral radius below 1 are of first order";
   if (kind == "U0" && radius("rho1") == 1 && radius("rho2") == 1 && radius("rho3") < 1 && joints)
     return "U0(1, 1, rho3 < 1) does not damp the oscillation of multipliers";

@@ -20,7 +20,6 @@ MinimumNorm::MinimumNorm(const System& system) : system_(system) {
 }
 
 std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const double> lambda) {
-  const int first = system_.first_joint_block();
   const auto n_joints = static_cast<int>(system_.joints.size());
   A_.zero();
   std::vector<DenseRows> G(n_joints);
@@ -41,7 +40,7 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
       const auto blocks = cliques_[j];
       for (size_t k = 0; k < blocks.size(); ++k)
         f.segment<3>(3 * blocks[k]) +=
-            lambda[3 * (system_.joint_block[j] - first) + r] * G[j].row(r).segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
+            lambda[system_.joints.row(j) + r] * G[j].row(r).segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
     }
   }
   const double shift = 1e-10 * largest;
@@ -60,7 +59,7 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   for (int j = 0; j < n_joints; ++j) {
     const auto blocks = cliques_[j];
     for (size_t k = 0; k < blocks.size(); ++k) own.segment<3>(3 * static_cast<Eigen::Index>(k)) = y.segment<3>(3 * blocks[k]);
-    Eigen::Map<Eigen::VectorXd>(&out[3 * (system_.joint_block[j] - first)], G[j].rows()) = G[j] * own.head(G[j].cols());
+    Eigen::Map<Eigen::VectorXd>(&out[system_.joints.row(j)], G[j].rows()) = G[j] * own.head(G[j].cols());
   }
   return out;
 }

@@ -76,7 +76,7 @@ class Radau final : public Integrator {
   /// One system of three times the unknowns, each clique covering its blocks of all stages.
   void couple(const System& system) {
     if (system.comm->size > 1) throw Error("", "radau is serial", "run it without mpirun, or choose another time.integrator");
-    if (!system.point_masses.empty()) throw Error("", "radau knows no point masses on flexible parts", "use [[body]] entries");
+    if (system.traits().lumps_masses) throw Error("", "radau knows no point masses on flexible parts", "use [[body]] entries");
     const int n = system.n_blocks();
     std::vector<int> list;
     for (int e = 0; e < system.cliques.size(); ++e) {
@@ -88,7 +88,7 @@ class Radau final : public Integrator {
     for (int i = 0; i < 3 * n; ++i) map_.global.push_back(i);
     map_.n_owned = map_.n_global = 3 * n;
     whole_->structure(cliques_, map_);
-    has_rates_ = !system.springs.empty() || !system.batches.empty();
+    has_rates_ = system.traits().has_rates;
     b_.resize(9 * static_cast<size_t>(n)), z_.resize(b_.size());
   }
 

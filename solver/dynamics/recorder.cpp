@@ -9,133 +9,40 @@
 #include <cmath>
 
 #include "dynamics/profile.hpp"
-#include "physics/rolling.hpp"
+#include "model/schema.hpp"
+#include "system/bodies.hpp"
 
 namespace hilo {
-namespace {
-
-/// Four points of a body from its centre and directors: the centre, and one along each principal axis, in the order of rising moments of
-/// inertia (falling ones of the Euler tensor J).
-std::array<Vec3, 4> body_arms(const Body& b) {
-  std::array<Vec3, 4> arms{Vec3::Zero(), Vec3(b.size, 0, 0), Vec3(0, b.size, 0), Vec3(0, 0, b.size)};
-  if (b.mass > 0 && !b.J.isZero(0)) {
-    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(b.J);
-    Mat3 axes = eigen.eigenvectors().rowwise().reverse();
-    if (axes.determinant() < 0) axes.col(2) *= -1;
-    for (int i = 0; i < 3; ++i) arms[1 + i] = b.size * axes.col(i);
-  }
-  return arms;
-}
-
-}  // namespace
-
 std::string stem(const std::string& path) { return path.ends_with(".h5") ? path.substr(0, path.size() - 3) : path; }
 
 Recorder::Recorder(const System& system, const Scene& scene, Setup setup)
     : system_(system), scene_(scene), setup_(std::move(setup)), share_(system) {
-  for (const Body& b : system.bodies) arms_.push_back(body_arms(b));
+  for (const auto& part : system.parts())
+    for (Output& output : part->outputs()) {
+      n_mid_ += static_cast<size_t>(output.n_mid);
+      outputs_.push_back(std::move(output));
+    }
 }
 
-/// Histories that belong to an instant: energies, momentum, violation, points of bodies, stations' positions, velocities and axes.
+/// What belongs to an instant: energies, momentum, violation, and what the contributions have to say.
 std::vector<double> Recorder::point_values(const State& s, const Ledger& ledger) {
-  const System::Energy& e = ledger.energy;
+  const Energy& e = ledger.energy;
   last_t_ = s.t;
   std::vector<double> v{e.kinetic, e.elastic, e.gravity, ledger.work, ledger.dissipated, ledger.balance};
   for (int i = 0; i < 3; ++i) v.push_back(e.momentum[i]);
   for (int i = 0; i < 3; ++i) v.push_back(e.angular[i]);
   v.push_back(ledger.rows.worst());
-  for (size_t b = 1; b < system_.bodies.size(); ++b)
-    for (const Vec3& arm : arms_[b]) {
-      const Vec3 x = s.q.c[b] + s.q.R[b] * arm;
-      v.insert(v.end(), x.data(), x.data() + 3);
-    }
-  for (const Station& st : system_.stations) {
-    double mean[6] = {};
-    Mat3 axes = st.axes;
-    if (st.body >= 0) {
-      const Vec3 x = s.q.c[st.body] + s.q.R[st.body] * st.arm, u = s.v.c[st.body] + s.v.R[st.body] * st.arm;
-      for (int i = 0; i < 3; ++i) mean[i] = x[i], mean[3 + i] = u[i];
-      axes = s.q.R[st.body] * st.axes;
-    } else {
-      for (int n : st.nodes)
-        for (int i = 0; i < 3; ++i) mean[i] += s.q.x[n][i] / st.n_nodes, mean[3 + i] += s.v.x[n][i] / st.n_nodes;
-      system_.comm->sum(mean);
-      if (st.sensor && st.n_nodes > 2) {  // polar fit of the patch's motion
-        const Vec3 centre(mean[0], mean[1], mean[2]);
-        Mat3 F = Mat3::Zero();
-        for (int n : st.nodes) F += (s.q.x[n] - centre) * (system_.X[n] - st.mean).transpose();
-        system_.comm->sum(std::span<double>(F.data(), 9));
-        const Eigen::JacobiSVD<Mat3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
-        Mat3 D = Mat3::Identity();
-        D(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-        axes = svd.matrixU() * D * svd.matrixV().transpose() * st.axes;
-      }
-    }
-    v.insert(v.end(), mean, mean + 6);
-    v.insert(v.end(), axes.data(), axes.data() + 9);
-  }
+  for (const auto& part : system_.parts()) part->add_end_values(s.q, s.v, v);
   return v;
 }
 
-/// Histories that belong inside a step: reactions of joints, springs and motions, accelerations of stations.
-std::vector<double> Recorder::mid_values(const Stage& stage, std::span<const double> lambda_, const Config& a) {
-  std::vector<double> v;
+/// What belongs inside a step: reactions, accelerations of stations.
+std::vector<double> Recorder::mid_values(const Stage& stage, std::span<const double> lambda, const Config& a) {
   std::vector<double> full;
-  std::span<const double> lambda = lambda_;
-  if (setup_.redundant) full = share_(stage, lambda_), lambda = full;
-  const auto push = [&](const Vec3& x) { v.insert(v.end(), x.data(), x.data() + 3); };
-  ConnectorGradient left;
-  for (size_t j = 0; j < system_.joints.size(); ++j) {
-    const Connector& c = system_.joints[j];
-    gradient(c, *stage.left, left);
-    double s_left[max_measures];
-    joint_forces(c, stage, left, lambda.data() + 3 * (system_.joint_block[j] - system_.first_joint_block()), s_left);
-    Vec6 f = force_on_b(c, left, s_left, *stage.left);
-    if (c.velocity_rows) {
-      const double* own = lambda.data() + 3 * (system_.joint_block[j] - system_.first_joint_block());
-      const int b = c.end[1].body;
-      Vec6 slip = Slip(c, *stage.left, stage.v).force(own + c.n_position_rows());
-      slip.tail<3>() -= (stage.left->R[b] * c.point_b).cross(slip.head<3>());
-      f += slip;
-    }
-    const Mat3 frame = c.end[0].body >= 0 ? Mat3(stage.left->R[c.end[0].body] * c.frame_a) : Mat3::Identity();
-    push(frame.transpose() * f.head<3>());
-    push(frame.transpose() * f.tail<3>());
-  }
-  for (const Connector& c : system_.springs) {
-    const int n = static_cast<int>(c.measures.size());
-    gradient(c, *stage.left, left);
-    SpringLaw::Values r0{}, r1{};
-    for (int m = 0; m < n; ++m) r0[m] = c.value(m, *stage.w0), r1[m] = c.value(m, *stage.w1);
-    Response r;
-    spring_elastic(c, stage, r);
-    if (stage.h > 0) c.law->viscous(r0, r1, system_.interval(c, stage, lambda_), r);
-    const Vec6 f = force_on_b(c, left, r.s.data(), *stage.left);
-    if (c.section == "spring") {
-      push(f.head<3>()), push(f.tail<3>());
-      continue;
-    }
-    const Mat3 frame = c.end[0].body >= 0 ? Mat3(stage.left->R[c.end[0].body] * c.frame_a) : Mat3::Identity();
-    push(frame.transpose() * f.head<3>()), push(frame.transpose() * f.tail<3>());
-  }
-  if (!system_.motions.empty()) {
-    System::Forces forces;
-    system_.forces(stage, lambda_, forces);
-    for (const Motion& m : system_.motions) {
-      const Vec6 f = system_.reaction(m, forces, *stage.left);
-      push(f.head<3>()), push(f.tail<3>());
-    }
-  }
-  for (const Station& st : system_.stations) {
-    Vec3 mean = Vec3::Zero();
-    if (st.body >= 0) {
-      mean = a.c[st.body] + a.R[st.body] * st.arm;
-    } else {
-      for (int n : st.nodes) mean += a.x[n] / st.n_nodes;
-      system_.comm->sum(std::span<double>(mean.data(), 3));
-    }
-    push(mean);
-  }
+  if (setup_.redundant) full = share_(stage, lambda);
+  const Moment moment(system_, stage, lambda, setup_.redundant ? full : lambda, &a);
+  std::vector<double> v;
+  for (const auto& part : system_.parts()) part->add_mid_values(moment, v);
   return v;
 }
 
@@ -183,7 +90,7 @@ void Recorder::declare_arrays(Store& f) {
   for (size_t b = 1; b < system_.bodies.size(); ++b) {
     const Body& body = system_.bodies[b];
     names.push_back(body.name);
-    for (const Vec3& arm : arms_[b]) {
+    for (const Vec3& arm : body_arms(body)) {
       const Vec3 x = body.Xc + arm;
       points.insert(points.end(), x.data(), x.data() + 3);
     }
@@ -198,32 +105,17 @@ void Recorder::declare_arrays(Store& f) {
     f.write<double>("/body/mass", mass, {n_bodies}, "kg");
     f.write<double>("/body/inertia", inertia, {n_bodies, 3}, "kg m^2", "principal moments");
   }
-  f.start_rows<double>("/history/t", {}, "s", "times of the histories");
   const std::string at = "/history/t";
-  f.start_rows<double>("/history/energy", {6}, "J",
-                       "kinetic, elastic, gravity potential, external work, dissipated, balance E - E0 - W + D", at);
-  f.start_rows<double>("/history/momentum", {6}, "kg m/s, kg m^2/s", "linear, and angular about the origin", at);
-  f.start_rows<double>("/history/constraint", {}, "m", "largest violation of a joint row", at);
-  f.start_rows<std::int32_t>("/history/newton", {}, "", "Newton iterations of the step", at);
-  const auto start = [&](const std::string& group, const std::string& name, int width, const char* unit, const char* meaning) {
-    arrays_.push_back("/history/" + group + "/" + to_link_name(name));
-    f.start_rows<double>(arrays_.back(), {width}, unit, meaning, at);
+  const auto start = [&]<class T>(const std::string& path, T) {
+    const ArraySchema& of = run_array(path);
+    f.start_rows<T>(path, row_shape(of), std::string(of.unit), std::string(of.meaning), path == at ? "" : at);
   };
-  for (size_t b = 1; b < system_.bodies.size(); ++b) start("body", system_.bodies[b].name, 12, "m", "positions of the four points");
-  for (const Connector& c : system_.joints)
-    start("joint", c.name, 6, "N, N m",
-          setup_.redundant ? "force and moment on b at the joint point, joint frame carried by a; minimum-norm share of redundant joints"
-                           : "force and moment on b at the joint point, joint frame carried by a");
-  for (const Connector& c : system_.springs)
-    start(c.section, c.name, 6, "N, N m",
-          c.section == "spring" ? "force and moment on b at the point, inertial axes"
-                                : "force and moment on b at the joint point, joint frame carried by a");
-  for (const Motion& m : system_.motions) start("motion", m.name, 6, "N, N m", "force and moment on what is held, inertial axes");
-  for (const Station& s : system_.stations) {
-    if (s.sensor)
-      start("sensor", s.name, 3, "1", "proper acceleration R^T (a - g)/g0, +1 upward at rest");
-    else
-      start("probe", s.name, 9, "m, m/s, m/s^2", "position, velocity, acceleration");
+  start(at, double{});
+  start("/history/energy", double{}), start("/history/momentum", double{}), start("/history/constraint", double{});
+  start("/history/newton", std::int32_t{});
+  for (const Output& output : outputs_) {
+    arrays_.push_back("/history/" + output.group + "/" + to_link_name(output.name));
+    start(arrays_.back(), double{});
   }
 }
 
@@ -322,10 +214,9 @@ std::vector<std::pair<double, const Recorder::Interval*>> Recorder::extrapolated
 /// Row 0 of the deque with the weighted sum of intervals as its mid-step values; zeros where there are none.
 void Recorder::write_row(const std::vector<std::pair<double, const Interval*>>& weights) {
   const Row& row = rows_[0];
-  const size_t n_mid = 6 * (system_.joints.size() + system_.springs.size() + system_.motions.size()) + 3 * system_.stations.size();
-  std::vector<double> mid(n_mid, 0.0);
+  std::vector<double> mid(n_mid_, 0.0);
   for (const auto& [w, interval] : weights)
-    for (size_t i = 0; i < n_mid; ++i) mid[i] += w * interval->mid[i];
+    for (size_t i = 0; i < n_mid_; ++i) mid[i] += w * interval->mid[i];
   if (row.field) {
     Config a, sum;
     combine(a, {{0, &row.q}});
@@ -346,24 +237,18 @@ void Recorder::write_histories(Store& f, const Row& row, const std::vector<doubl
   take("/history/energy", 6), take("/history/momentum", 6), take("/history/constraint", 1);
   const std::int32_t newton = row.newton;
   f.append<std::int32_t>("/history/newton", {&newton, 1});
-  auto array = arrays_.begin();  // in the order of declare_arrays
-  for (size_t b = 1; b < system_.bodies.size(); ++b) take(*array++, 12);
   const double* m = mid.data();
-  for (size_t k = system_.joints.size() + system_.springs.size() + system_.motions.size(); k > 0; --k) {
-    f.append<double>(*array++, {m, 6});
-    m += 6;
-  }
-  for (const Station& s : system_.stations) {
-    const Vec3 a(m[0], m[1], m[2]);
-    if (s.sensor) {
-      const Mat3 axes = Eigen::Map<const Mat3>(p + 6);
-      const Vec3 felt = axes.transpose() * (a - system_.gravity) / g0;
-      f.append<double>(*array++, {felt.data(), 3});
+  std::vector<double> values;
+  for (size_t k = 0; k < outputs_.size(); ++k) {
+    const Output& output = outputs_[k];
+    if (output.row) {
+      output.row(p, m, values);
     } else {
-      const double values[9] = {p[0], p[1], p[2], p[3], p[4], p[5], a[0], a[1], a[2]};
-      f.append<double>(*array++, values);
+      values.assign(p, p + output.n_end);
+      values.insert(values.end(), m, m + output.n_mid);
     }
-    m += 3, p += 15;
+    f.append<double>(arrays_[k], values);
+    p += output.n_end, m += output.n_mid;
   }
 }
 

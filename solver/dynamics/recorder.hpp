@@ -90,11 +90,12 @@ class Recorder {
   const System& system_;
   const Scene& scene_;
   Setup setup_;
-  MinimumNorm share_;                      // of redundant joints
-  std::vector<std::array<Vec3, 4>> arms_;  // to the four points of each body
-  std::vector<std::string> arrays_;        // of histories with a name, as declared
-  std::unique_ptr<Store> store_;           // rank 0
-  std::optional<Error> failure_;           // of a write of this rank
+  MinimumNorm share_;                // of redundant joints
+  std::vector<Output> outputs_;      // of the contributions
+  std::vector<std::string> arrays_;  // theirs, as declared
+  size_t n_mid_ = 0;                 // numbers of all outputs that belong inside a step
+  std::unique_ptr<Store> store_;     // rank 0
+  std::optional<Error> failure_;     // of a write of this rank
   std::deque<Row> rows_;
   std::deque<Interval> intervals_;  // interval k starts at row k of rows_
   std::deque<Interval> past_;       // the two intervals before intervals_[0], for the last row

@@ -90,8 +90,7 @@ Eigen::VectorXd gaps(const System& system, const UnitRows& unit, const Config& q
     const auto [j, r] = unit.rows[k];
     const Connector& joint = system.joints[j];
     if (k == 0 || unit.rows[k - 1].first != j) {
-      joint.row_values(joint.values(q), g);
-      if (joint.drive.row >= 0) g[joint.drive.row] -= joint.drive.law.at(t).value;
+      hilo::gaps(joint, q, t, 1, g);
     }
     out[static_cast<Eigen::Index>(k)] = unit.norm[k] > 0 ? g[r] / unit.norm[k] : 0;
   }

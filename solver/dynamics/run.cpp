@@ -233,8 +233,7 @@ class Run {
 
   /// At the start and after a jump of the loads: history that belongs to the new forces.
   void restart(std::optional<StepControl>& control, double step) {
-    const bool driven = std::any_of(system_.joints.begin(), system_.joints.end(), [](const Connector& j) { return j.drive.row >= 0; });
-    if (state_.t > 0 && (driven || system_.moves())) audit_->push(blows_.strike(system_, *solver_, state_, talk_).work);
+    if (state_.t > 0 && system_.traits().is_driven) audit_->push(blows_.strike(system_, *solver_, state_, talk_).work);
     const std::vector<Active> rows = active_rows(system_);
     if (report_.steps == 0) set_rows(system_, redundancy_.at_pose);
     if (integrator_->needs_acceleration() || control) consistent_acceleration(system_, *solver_, state_, 0.05 * step);
@@ -337,7 +336,7 @@ class Run {
       report_.reason +=
           fmt::format("; nothing leads out of the singular position at the start, where rows of {} \"{}\" depend on others",
                       redundancy_.singular_joints.size() > 1 ? "joints" : "joint", fmt::join(redundancy_.singular_joints, "\", \""));
-    if (audit_->opens_dropped_row() && is_driven(system_)) report_.reason += "; what is driven or moved contradicts it";
+    if (audit_->opens_dropped_row() && system_.traits().is_driven) report_.reason += "; what is driven or moved contradicts it";
     report_.complete = false;
     report_.t = state_.t;
   }

@@ -30,7 +30,7 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
   Residual with, without;
   // Flexible parts resist, or the mass norm would shear the cells at the joint: M (q - placed)/tau^2 + f(q) - f(placed), with a tau far
   // above the periods at which they swing.  Bodies alone follow the mass norm, whatever springs are between them.
-  const bool flexible = system.flexible;
+  const bool flexible = system.traits().deforms;
   const double tau = 3, largest_turn = flexible ? 0.1 : 0.5;  // [s], [rad]
   const auto stage_of = [&](const Config& at, const Config& a) {
     Stage s = mass_stage(at, a, 0);
@@ -74,8 +74,7 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
     double worst = 0, g[max_rows];
     std::string open;
     for (const Connector& j : system.joints) {
-      j.row_values(j.values(q), g);
-      if (j.drive.row >= 0) g[j.drive.row] -= j.drive.law.at(0).value;
+      gaps(j, q, 0, 1, g);
       for (int r = 0; r < j.n_rows(); ++r)
         if (!(std::abs(g[r]) <= worst)) worst = std::abs(g[r]), open = j.name;
     }
@@ -118,7 +117,7 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
   for (size_t j = 0; j < system.joints.size(); ++j)
     for (int m = 0; m < system.joints[j].n_rows(); ++m)
       if (system.joints[j].active[m]) {
-        const int k = 3 * (system.joint_block[j] - system.first_joint_block()) + m;
+        const int k = system.joints.row(j) + m;
         b[first + k] = -r.sigma * rate[k];
       }
   const SolveReport solved = solver.solve(b, z);
@@ -172,8 +171,7 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
   combine(after, {{1, &s.q}, {h / 2, &s.v}});
   stage.w0 = &before, stage.w1 = &after, stage.h = h, stage.v = &s.v;
   // linear in accelerations and multipliers, but for friction that the multipliers press: Newton then
-  const bool pressed =
-      std::any_of(system.springs.begin(), system.springs.end(), [](const Connector& c) { return c.law && c.load_joint >= 0; });
+  const bool pressed = system.traits().is_pressed;
   Residual r;
   std::vector<double> rate, acceleration, b, z;
   const int first = 3 * system.first_joint_block();
@@ -186,7 +184,7 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
     for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
     for (size_t j = 0; j < system.joints.size(); ++j)
       for (int k = 0; k < 3 * ((system.joints[j].n_rows() + 2) / 3); ++k) {
-        const int i = 3 * (system.joint_block[j] - system.first_joint_block()) + k;
+        const int i = system.joints.row(j) + k;
         const bool active = k < system.joints[j].n_rows() && system.joints[j].active[k];
         b[first + i] = active ? -r.sigma * acceleration[i] : 0;
       }

@@ -47,8 +47,8 @@ struct CellMean {
 template <class Visit>
 void StressRecovery::each_cell(const Patches& p, const std::vector<Vec3>& x, Visit&& visit) const {
   Positions at;
-  for (size_t b = 0; b < system_.batches.size(); ++b) {
-    const SolidBatch& batch = system_.batches[b];
+  for (size_t b = 0; b < solids_.batches.size(); ++b) {
+    const SolidBatch& batch = solids_.batches[b];
     const int n = info(batch.shape).n_nodes, corners = info(batch.shape).n_corners;
     if (p.corner[b].empty()) continue;
     for (size_t e = 0; e < batch.cells.size(); ++e) {
@@ -58,10 +58,10 @@ void StressRecovery::each_cell(const Patches& p, const std::vector<Vec3>& x, Vis
   }
 }
 
-StressRecovery::StressRecovery(const System& s) : system_(s) {
+StressRecovery::StressRecovery(const System& s) : system_(s), solids_(s.part<Solids>()) {
   find_sites();
   std::vector<double> second(s.mesh->mesh.region_name.size(), 0.0);  // regions with quadratic cells
-  for (const SolidBatch& b : s.batches)
+  for (const SolidBatch& b : solids_.batches)
     if (quadratic(b.shape)) second[b.region] = 1;
   s.comm->sum(second);
   for (const int order : {1, 2}) patches_.push_back(made_patches(order, second));
@@ -71,7 +71,7 @@ void StressRecovery::find_sites() {
   const System& s = system_;
   std::vector<std::int64_t> key;
   std::unordered_map<std::int64_t, int> index;
-  for (const SolidBatch& b : s.batches) {
+  for (const SolidBatch& b : solids_.batches) {
     auto& of = site_of_.emplace_back();
     const int region = 2 * b.region + is_bar(b.shape);
     for (const int node : b.nodes) {
@@ -87,11 +87,11 @@ void StressRecovery::find_sites() {
 StressRecovery::Patches StressRecovery::made_patches(int order, const std::vector<double>& second) const {
   const System& s = system_;
   std::vector<int> nodes;
-  std::vector<std::vector<int>> corners_of(s.batches.size());
+  std::vector<std::vector<int>> corners_of(solids_.batches.size());
   std::vector<std::int64_t> key;
   std::unordered_map<std::int64_t, int> index;
-  for (size_t b = 0; b < s.batches.size(); ++b) {
-    const SolidBatch& batch = s.batches[b];
+  for (size_t b = 0; b < solids_.batches.size(); ++b) {
+    const SolidBatch& batch = solids_.batches[b];
     if (is_bar(batch.shape) || (second[batch.region] > 0) != (order == 2)) continue;
     const int n = info(batch.shape).n_nodes, corners = info(batch.shape).n_corners;
     for (size_t e = 0; e < batch.cells.size(); ++e)
@@ -117,7 +117,7 @@ StressRecovery::Patches StressRecovery::made_patches(int order, const std::vecto
       samples.push_back(CellMean(points).X);
   };
   each_cell(p, s.X, [&](size_t b, size_t, std::span<const int> corner, const Positions& at) {
-    const SolidBatch& batch = s.batches[b];
+    const SolidBatch& batch = solids_.batches[b];
     sample(batch, at);
     stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::everywhere, points);
     for (const int v : corner) {
@@ -132,7 +132,7 @@ StressRecovery::Patches StressRecovery::made_patches(int order, const std::vecto
   const int width = PatchFit::n_moments(order);
   std::vector<double> moments(n * width, 0.0);
   each_cell(p, s.X, [&](size_t b, size_t, std::span<const int> corner, const Positions& at) {
-    sample(s.batches[b], at);
+    sample(solids_.batches[b], at);
     for (const int v : corner)
       for (const Vec3& X : samples) p.fit[v].add_moments(X - s.X[p.node[v]], moments.data() + static_cast<size_t>(v) * width);
   });
@@ -147,7 +147,7 @@ std::vector<double> StressRecovery::polynomials(const Patches& p, const std::vec
   std::vector<double> sums(n * width, 0.0), polynomial(n * size);
   std::vector<StressPoint> points;
   each_cell(p, x, [&](size_t b, size_t, std::span<const int> corner, const Positions& at) {
-    const SolidBatch& batch = system_.batches[b];
+    const SolidBatch& batch = solids_.batches[b];
     stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::samples, points);
     if (p.order == 2 && quadratic(batch.shape)) {
       for (const int v : corner)
@@ -209,8 +209,8 @@ constexpr int n_values = 16;  // of a site: cells, S, F
 /// Bars have their own stress alone: the sums of its components and of their von Mises stresses.
 void StressRecovery::add_bars(const std::vector<Vec3>& x, std::vector<double>& at, std::vector<double>& cell) const {
   Positions ends;
-  for (size_t b = 0; b < system_.batches.size(); ++b) {
-    const SolidBatch& batch = system_.batches[b];
+  for (size_t b = 0; b < solids_.batches.size(); ++b) {
+    const SolidBatch& batch = solids_.batches[b];
     for (size_t e = 0; is_bar(batch.shape) && e < batch.cells.size(); ++e) {
       ends.gather(system_, x, batch.nodes.data() + 2 * e, 2);
       const Vec6 stress = bar_stress(batch.material, ends.X, ends.x);
@@ -234,7 +234,7 @@ StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x) const
   for (const Patches& p : patches_) {
     const auto polynomial = polynomials(p, x);
     each_cell(p, x, [&](size_t b, size_t e, std::span<const int> corner, const Positions& at) {
-      const SolidBatch& batch = s.batches[b];
+      const SolidBatch& batch = solids_.batches[b];
       const CellPolynomial P(s, p.node, p.fit, polynomial.data(), PatchFit::n_rows(p.order), corner);
       stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::samples, points);
       Eigen::Matrix<double, 6, Eigen::Dynamic> rest(6, points.size());
@@ -259,7 +259,7 @@ StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x) const
   std::vector<double> error(2 * site_.size(), 0.0);  // sum over the cells of V e^2 and of V
   for (const Patches& p : patches_)
     each_cell(p, x, [&](size_t b, size_t e, std::span<const int>, const Positions& at) {
-      const SolidBatch& batch = s.batches[b];
+      const SolidBatch& batch = solids_.batches[b];
       const int* site = site_of_[b].data() + e * at.X.size();
       stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::integration, points);
       double& mean = out.cell[batch.cells[e]];

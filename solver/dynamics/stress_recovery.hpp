@@ -21,6 +21,7 @@
 #include "base/sharing.hpp"
 #include "physics/patch_fit.hpp"
 #include "physics/stress.hpp"
+#include "system/solids.hpp"
 #include "system/system.hpp"
 
 namespace hilo {
@@ -61,6 +62,7 @@ class StressRecovery {
   void add_bars(const std::vector<Vec3>& x, std::vector<double>& at, std::vector<double>& cell) const;
 
   const System& system_;
+  const Solids& solids_;
   std::vector<Site> site_;
   std::vector<std::vector<int>> site_of_;  // per batch: site of each node of each cell (n_cells x n)
   std::optional<Sharing> sites_;

@@ -1,5 +1,11 @@
 #include "model/schema.hpp"
 
+#include <algorithm>
+#include <charconv>
+#include <string>
+
+#include "base/error.hpp"
+
 namespace hilo {
 
 const std::vector<ArraySchema>& file_schema() {
@@ -63,7 +69,8 @@ const std::vector<ArraySchema>& file_schema() {
       {"run.h5", "/history/constraint", "f8", "(n_t)", "m", "largest violation of a joint row"},
       {"run.h5", "/history/newton", "i4", "(n_t)", "", "Newton iterations of the step"},
       {"run.h5", "/history/body/<name>", "f8", "(n_t, 12)", "m", "positions of the four points of a body"},
-      {"run.h5", "/history/joint/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the joint point, joint frame carried by a"},
+      {"run.h5", "/history/joint/<name>", "f8", "(n_t, 6)", "N, N m",
+       "force and moment on b at the joint point, joint frame carried by a; of redundant joints the minimum-norm share"},
       {"run.h5", "/history/spring/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the point, inertial axes"},
       {"run.h5", "/history/stop/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the joint point, joint frame carried by a"},
       {"run.h5", "/history/motor/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the joint point, joint frame carried by a"},
@@ -80,6 +87,48 @@ const std::vector<ArraySchema>& file_schema() {
       {"run.h5", "/cell/state", "group", "", "", "reserved: history variables and element modes, global numbering"},
   };
   return table;
+}
+
+namespace {
+
+/// Part by part; <name> is any name, <step> six digits.
+bool is_path(std::string_view pattern, std::string_view path) {
+  const auto cut = [](std::string_view& rest) {
+    const auto at = std::min(rest.find('/'), rest.size());
+    const std::string_view part = rest.substr(0, at);
+    rest.remove_prefix(std::min(at + 1, rest.size()));
+    return part;
+  };
+  while (!pattern.empty() && !path.empty()) {
+    const std::string_view wanted = cut(pattern), part = cut(path);
+    const bool digits = part.size() == 6 && part.find_first_not_of("0123456789") == part.npos;
+    if (wanted == "<name>" ? part.empty() : wanted == "<step>" ? !digits : wanted != part) return false;
+  }
+  return pattern.empty() && path.empty();
+}
+
+}  // namespace
+
+const ArraySchema* find_array(std::string_view file, std::string_view path) {
+  const auto& table = file_schema();
+  const auto at = std::find_if(table.begin(), table.end(), [&](const ArraySchema& a) { return a.file == file && is_path(a.path, path); });
+  return at == table.end() ? nullptr : &*at;
+}
+
+const ArraySchema& run_array(std::string_view path) {
+  if (const ArraySchema* found = find_array("run.h5", path)) return *found;
+  throw Error("", "the schema has no array " + std::string(path), "", Exit::fault);
+}
+
+std::vector<std::int64_t> row_shape(const ArraySchema& array) {
+  std::vector<std::int64_t> shape;
+  for (auto at = array.shape.find(','); at != array.shape.npos; at = array.shape.find(',', at + 1)) {
+    const char* digits = array.shape.data() + array.shape.find_first_not_of(", ", at);
+    std::int64_t n = 0;
+    std::from_chars(digits, array.shape.data() + array.shape.size(), n);
+    shape.push_back(n);
+  }
+  return shape;
 }
 
 }  // namespace hilo

@@ -18,5 +18,11 @@ struct ArraySchema {
   std::string_view meaning;
 };
 const std::vector<ArraySchema>& file_schema();
+/// The row of the table that an array of a file is written by, or null: "/history/joint/pin" is "/history/joint/<name>".
+const ArraySchema* find_array(std::string_view file, std::string_view path);
+/// The same of run.h5; a path that the table does not have is an Error (our own fault).
+const ArraySchema& run_array(std::string_view path);
+/// Shape of a row, from that of the array: {6} of "(n_t, 6)", {} of "(n_t)".
+std::vector<std::int64_t> row_shape(const ArraySchema& array);
 
 }  // namespace hilo

@@ -26,10 +26,12 @@ struct Body {
   double mass = 0;         //                                               [kg]
   Mat3 J = Mat3::Zero();   // Euler tensor int rho (X - Xc)(X - Xc)^T dV    [kg m^2]
   double size = 1;         // a length of the body, for scaling             [m]
-  int motion = -1;         // prescribed motion, or -1 for a free body
+  std::string motion;      // that prescribes it
+  bool held = false;       // by that motion
+  bool moving = false;     // by the law of that motion
   bool ground = false;     // fixed for ever; body 0
   bool patch = false;      // massless, made for a joint on a flexible region
-  bool free() const { return motion < 0 && !ground; }
+  bool free() const { return !held && !ground; }
   /// v.M w of velocities of its centre and directors [J].
   double inertia(const Vec3& v, const Mat3& V, const Vec3& w, const Mat3& W) const {
     return mass * v.dot(w) + (V * J).cwiseProduct(W).sum();

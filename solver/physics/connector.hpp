@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "physics/config.hpp"
 #include "physics/curve.hpp"
 #include "physics/motion_law.hpp"
@@ -71,6 +72,8 @@ class SpringLaw {
   /// Accept e and its rate as the state to go on from (unwrapped angles, speed of approach).
   virtual void commit(const Values& /*e*/, const Values& /*rate*/) {}
   virtual bool needs_rate() const { return false; }
+  /// All that commit() leaves.
+  virtual void archive(Archive&) {}
   /// Whether it is a potential and nothing else.
   virtual bool conserves() const { return false; }
 };
@@ -91,6 +94,8 @@ class RowLaw {
   virtual void gradient(const Values& e0, const Values& e1, Gradient& out) const = 0;
   /// Accept e as the state to go on from (unwrapped angles).
   virtual void commit(const Values&) {}
+  /// All that commit() leaves.
+  virtual void archive(Archive&) {}
   /// Why the joint cannot be at e, or nothing.
   virtual std::string fault(const Values&) const { return {}; }
 };

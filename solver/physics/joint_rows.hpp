@@ -22,6 +22,7 @@ class SumRows final : public RowLaw {
   void values(const Values& e, double* g) const override;
   void gradient(const Values& e0, const Values& e1, Gradient& out) const override;
   void commit(const Values& e) override;
+  void archive(Archive& a) override { a("angles", turn_); }
 
  private:
   int n_plain_;
@@ -39,6 +40,7 @@ class CurveRows final : public RowLaw {
   void values(const Values& e, double* g) const override;
   void gradient(const Values& e0, const Values& e1, Gradient& out) const override;
   void commit(const Values& e) override;
+  void archive(Archive& a) override { a("curve", s_, t_, b_[0], b_[1]); }
   std::string fault(const Values& e) const override;
 
  private:

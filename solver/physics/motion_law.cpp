@@ -16,6 +16,8 @@ Course MotionLaw::at(double t, double near, double factor) const {
   return {f * h.value, f * h.slope, f * h.curvature};
 }
 
+double MotionLaw::jump(double t, double near) const { return std::abs(at(t, t + near).rate - at(t, t - near).rate); }
+
 double MotionLaw::top_rate() const {
   double top = 0;
   for (size_t i = 0; i < history_.t.size(); ++i) {

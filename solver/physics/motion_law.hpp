@@ -18,6 +18,8 @@ class MotionLaw {
   /// At t, the derivatives those of the side on which `near` lies; `factor` is that of the load step.
   Course at(double t, double near, double factor = 1) const;
   Course at(double t) const { return at(t, t); }
+  /// By how much its rate jumps at t; instants `near` and closer are one.
+  double jump(double t, double near) const;
   /// The largest rate of its ramps were they straight, to compare jumps with.
   double top_rate() const;
 

@@ -36,6 +36,7 @@ struct Support final : SpringLaw {
   }
   void commit(const Values& e, const Values& rate) override { gap->commit(e, rate); }
   bool needs_rate() const override { return gap->needs_rate(); }
+  void archive(Archive& a) override { gap->archive(a), plane->archive(a); }
 };
 
 int add_point(Connector& c, int end, const Config& q, const Vec3& at) {

@@ -57,6 +57,7 @@ struct Stop final : SpringLaw {
     out.dissipated += f * (x1[0] - x0[0]);
   }
   bool needs_rate() const override { return y > 0; }
+  void archive(Archive& a) override { a("stop", towards_lower, towards_upper); }
   void commit(const Values& x, const Values& rate) override {
     if (depth(x[0]) == 0) (rate[0] > 0 ? towards_upper : towards_lower) = std::abs(rate[0]);
   }

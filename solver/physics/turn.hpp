@@ -6,10 +6,13 @@
 #pragma once
 #include <cmath>
 
+#include "base/archive.hpp"
+
 namespace hilo {
 
 struct Turn {
   double committed = 0;  // angle to unwrap towards [rad]
+  void archive(Archive& a) { a("turn", committed); }
 
   /// The angle of (sin, cos) nearest to the committed one.
   double unwrap(double sine, double cosine) const {

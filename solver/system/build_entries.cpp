@@ -70,9 +70,8 @@ void Builder::add_motions() {
         follow_all(found.nodes, m.body, where);
       }
       Body& body = out_->bodies[m.body];
-      if (body.motion >= 0)
-        throw Error(where, fmt::format("{}: motion \"{}\" moves this body already", e.label(), out_->motions[body.motion].name));
-      body.motion = static_cast<int>(out_->motions.size());
+      if (body.held) throw Error(where, fmt::format("{}: motion \"{}\" moves this body already", e.label(), body.motion));
+      body.held = true, body.moving = m.moving, body.motion = m.name;
       if (e.kind != "rotation") m.at = body.Xc;
     } else {
       comm_.together([&] {  // a rank alone may have the node
@@ -87,10 +86,10 @@ void Builder::add_motions() {
         m.nodes.push_back(i);
       }
     }
-    for (const Motion& other : out_->motions)  // of the same components of a node only one may move
+    for (const Motion& other : motions_->list)  // of the same components of a node only one may move
       if (comm_.max((m.moving || other.moving) && share_component(m, other) ? 1 : 0) > 0)
         throw Error(where, fmt::format("{}: motion \"{}\" prescribes the same component of a node", e.label(), other.name));
-    out_->motions.push_back(std::move(m));
+    motions_->list.push_back(std::move(m));
   }
 }
 
@@ -114,7 +113,7 @@ void Builder::add_point_masses() {
     } else {
       const double share = m / static_cast<double>(std::max<std::int64_t>(1, found.n_global));
       for (int i : found.nodes)
-        if (out_->node_owned[i]) out_->point_masses.emplace_back(i, share);
+        if (out_->node_owned[i]) point_masses_->add(i, share);
     }
   }
 }
@@ -185,7 +184,7 @@ void Builder::add_loads() {
       load.follower = e.boolean("follower");
       load.body = body_of(on, found, where);
     }
-    out_->loads.push_back(std::move(load));
+    loads_->list.push_back(std::move(load));
   }
 }
 
@@ -216,7 +215,7 @@ void Builder::add_stations() {
         s.n_nodes = static_cast<double>(found.n_global);
         s.mean = mean_of(found.nodes);
       }
-      out_->stations.push_back(std::move(s));
+      stations_->list.push_back(std::move(s));
     }
 }
 
@@ -256,7 +255,7 @@ void Builder::set_initial_velocities() {
     for (size_t i = 0; i < node.size(); ++i)
       if (node[i]) {
         v.x[i] = velocity + spin.cross(out_->X[i] - about);
-        if (const int b = out_->follower[i]; b > 0 && (out_->bodies[b].patch || (out_->bodies[b].motion >= 0 && out_->bodies[b].mass == 0)))
+        if (const int b = out_->follower[i]; b > 0 && (out_->bodies[b].patch || (out_->bodies[b].held && out_->bodies[b].mass == 0)))
           body[b] = true;  // made of nodes for a joint or a motion
       }
     for (size_t b = 1; b < body.size(); ++b)
@@ -278,10 +277,10 @@ void Builder::set_initial_velocities() {
     }
   }
   // what is held has none; what moves by a law takes that of its law from the one given here, by a blow where they differ
-  const auto rests = [&](const Body& b) { return b.ground || (b.motion >= 0 && !out_->motions[b.motion].moving); };
+  const auto rests = [&](const Body& b) { return b.ground || (b.held && !b.moving); };
   for (size_t b = 0; b < out_->bodies.size(); ++b)
     if (rests(out_->bodies[b])) v.c[b].setZero(), v.R[b].setZero();
-  for (const Motion& m : out_->motions)
+  for (const Motion& m : motions_->list)
     for (int i : m.nodes)
       for (int k = 0; k < 3; ++k)
         if (m.body < 0 && m.component[k] && !m.moving) v.x[i][k] = 0;
@@ -293,8 +292,22 @@ void Builder::set_initial_velocities() {
 
 Builder::Builder(const Scene& scene, LocalMesh* mesh, const Comm& comm) : scene_(scene), mesh_(mesh), comm_(comm) {}
 
+/// All that takes part in the equations; evaluations, results and the line that tells them go in this order.
+void Builder::add_contributions() {
+  System& s = *out_;
+  solids_ = &s.add<Solids>(s);
+  s.add<Bodies>(s);
+  point_masses_ = &s.add<PointMasses>(s);
+  s.place_joints();
+  springs_ = &s.add<Springs>(s, s.joints);
+  loads_ = &s.add<Loads>(s);
+  motions_ = &s.add<Motions>(s);
+  stations_ = &s.add<Stations>(s);
+}
+
 std::unique_ptr<System> Builder::build() {
   out_ = std::make_unique<System>();
+  add_contributions();
   out_->comm = &comm_;
   out_->mesh = mesh_;
   out_->gravity = scene_.table("scene").vector3("gravity");
@@ -333,7 +346,7 @@ std::unique_ptr<System> Builder::build() {
   const bool is_static = scene_.table("time").text("analysis") == "static";
   if (!(out_->mass > 0) && !is_static)
     throw Error(scene_.path, "the scene has no mass: nothing can move", "give a mesh or [[body]] entries, and densities");
-  out_->stiffness = comm_.max(out_->stiffness), out_->flexible = comm_.max(out_->batches.empty() ? 0 : 1) > 0;  // cells are on their ranks
+  out_->stiffness = comm_.max(out_->stiffness);  // cells are on their ranks
   out_->number();
   if (comm_.sum(static_cast<double>(out_->n_blocks())) == 0)
     throw Error(scene_.path, "nothing is free to move", "every region and body is held");

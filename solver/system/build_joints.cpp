@@ -124,7 +124,7 @@ void Builder::add_joints() {
     if (e.has("stiffness") || e.has("angular_stiffness")) {
       if (!driven.empty())
         throw Error(e.where(driven), e.label() + ": a joint that gives way cannot be driven", "put a motor or a rigid joint");
-      out_->springs.push_back(compliant(e, make_joint(j, out_->start)));
+      springs_->list.push_back(compliant(e, make_joint(j, out_->start)));
       continue;
     }
     for (const char* key : {"damping", "angular_damping"})
@@ -141,7 +141,7 @@ void Builder::add_joints() {
       c.drive.law = MotionLaw(e.number(driven), is_rate, use_history(e, is_rate ? Acts::as_rate : Acts::as_position), !e.given("history"));
       c.drive.unit = j.driven == JointPlace::Driven::angle ? "rad/s" : "m/s";
     }
-    out_->joints.push_back(std::move(c));
+    out_->joints.list.push_back(std::move(c));
   }
 }
 

@@ -234,7 +234,7 @@ void Builder::make_batches() {
     b.kernel = solid_kernel(b.shape, b.material.index());
     out_->stiffness =
         std::max(out_->stiffness, young_of(linear_moduli(b.material)) * (b.area > 0 ? b.area / mesh_->length : mesh_->length / 100));
-    out_->batches.push_back(std::move(b));
+    solids_->batches.push_back(std::move(b));
   }
   warn_of_limits();
 }

@@ -76,14 +76,14 @@ void Builder::add_springs() {
       out_->stiffness = std::max(out_->stiffness, e.number("stiffness"));
     }
     c.name = e.name;
-    out_->springs.push_back(std::move(c));
+    springs_->list.push_back(std::move(c));
   }
 }
 
 const Connector& Builder::joint_of(const Entry& e) const {
   const std::string& name = e.text("joint");
   std::vector<std::string> names;
-  for (const auto* list : {&out_->joints, &out_->springs})
+  for (const auto* list : {&out_->joints.list, &springs_->list})
     for (const Connector& c : *list) {
       if (c.law && c.section != "joint") continue;
       if (c.name == name) return c;
@@ -97,7 +97,7 @@ void Builder::add_joint_forces() {
   const Config& q = out_->start;
   const auto add = [&](Connector c, const Entry& e) {
     c.name = e.name, c.section = e.section;
-    out_->springs.push_back(std::move(c));
+    springs_->list.push_back(std::move(c));
   };
   const auto along = [&](const Entry& e, Freedom freedom, std::unique_ptr<SpringLaw> law) {
     const Connector& joint = joint_of(e);
@@ -131,7 +131,7 @@ void Builder::add_joint_forces() {
       if (joint.law)
         throw Error(e.where("joint"), fmt::format("{}: joint \"{}\" gives way and has no reaction to press with", e.label(), joint.name),
                     "say reaction = false and give a preload");
-      c.load_joint = static_cast<int>(&joint - out_->joints.data());
+      c.load_joint = static_cast<int>(&joint - out_->joints.list.data());
     }
     add(std::move(c), e);
   }

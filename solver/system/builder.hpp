@@ -4,6 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "system/bodies.hpp"
+#include "system/loads.hpp"
+#include "system/motions.hpp"
+#include "system/point_masses.hpp"
+#include "system/solids.hpp"
+#include "system/springs.hpp"
+#include "system/stations.hpp"
 #include "system/system.hpp"
 
 namespace hilo {
@@ -63,6 +70,7 @@ class Builder {
   Vec3 mean_of(const std::vector<int>& nodes) const;
   int nearest_owned(const std::vector<int>& nodes, const Vec3& at) const;
   // build_entries.cpp
+  void add_contributions();
   /// The history of an entry; every one that acts on the system is taken through here, so that its jumps and kinks are known.
   const History& use_history(const Entry& entry, Acts acts);
   void add_motions();
@@ -82,6 +90,12 @@ class Builder {
   LocalMesh* mesh_;
   const Comm& comm_;
   std::unique_ptr<System> out_;
+  Solids* solids_ = nullptr;  // the contributions of out_
+  PointMasses* point_masses_ = nullptr;
+  Springs* springs_ = nullptr;
+  Loads* loads_ = nullptr;
+  Motions* motions_ = nullptr;
+  Stations* stations_ = nullptr;
   std::vector<Region> regions_;
   Vec3 origin_ = Vec3::Zero();               // of the mass integrals
   std::map<std::string, int> body_by_name_;  // [[body]] entries

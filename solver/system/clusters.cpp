@@ -3,13 +3,16 @@
 #include <limits>
 #include <numeric>
 
-#include "system/system.hpp"
+#include "system/solids.hpp"
 
 namespace hilo {
 
 /// Cells that share a face are a cluster, with the nodes that no earlier one has; a node that only bars have is one of its own.  Each rank
 /// forms its own; a node that ranks share belongs to the lowest.
-int System::clusters(std::vector<std::int64_t>& cluster_of) const {
+int Solids::clusters(std::vector<std::int64_t>& cluster_of) const {
+  const auto& follower = points_.follower;
+  const auto& node_owned = points_.node_owned;
+  const Comm& comm = *points_.comm;
   const auto for_cells = [&](auto&& visit) {
     int cell = 0;
     for (const SolidBatch& b : batches)
@@ -41,7 +44,7 @@ int System::clusters(std::vector<std::int64_t>& cluster_of) const {
     if (faces[k].first == faces[k - 1].first) parent[root(faces[k].second)] = root(faces[k - 1].second);
   faces = {};
   constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
-  cluster_of.assign(X.size(), none);
+  cluster_of.assign(points_.X.size(), none);
   std::vector<int> number(parent.size(), -1);
   int n_own = 0;
   for_cells([&](int cell, const SolidBatch& b, std::span<const int> nodes) {
@@ -55,14 +58,14 @@ int System::clusters(std::vector<std::int64_t>& cluster_of) const {
     for (const int i : nodes)
       if (follower[i] < 0 && node_owned[i] && cluster_of[i] == none) cluster_of[i] = n_own++;
   });
-  std::vector<double> counts(comm->size, 0.0);
-  counts[comm->rank] = n_own;
-  comm->sum(counts);
-  const auto before = static_cast<int>(std::accumulate(counts.begin(), counts.begin() + comm->rank, 0.0));
+  std::vector<double> counts(comm.size, 0.0);
+  counts[comm.rank] = n_own;
+  comm.sum(counts);
+  const auto before = static_cast<int>(std::accumulate(counts.begin(), counts.begin() + comm.rank, 0.0));
   const auto n_clusters = static_cast<int>(std::accumulate(counts.begin(), counts.end(), 0.0));
   for (std::int64_t& c : cluster_of)
     if (c != none) c += before;
-  lowest_over_ranks(cluster_of);
+  points_.lowest_over_ranks(cluster_of);
   return n_clusters;
 }
 

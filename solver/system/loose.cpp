@@ -13,8 +13,9 @@
 #include <bit>
 #include <cmath>
 
-#include "system/pass.hpp"
 #include "system/rigid_motion.hpp"
+#include "system/solids.hpp"
+#include "system/system.hpp"
 
 namespace hilo {
 namespace {
@@ -85,7 +86,8 @@ class Resistance final : public KktSolver {
 
 System::Loose System::loose(const Stage& stage, bool with_loads) const {
   std::vector<std::int64_t> cluster_of;
-  const int n_clusters = clusters(cluster_of);
+  const auto& solids = part<Solids>();
+  const int n_clusters = solids.clusters(cluster_of);
   std::vector<int> moving;  // bodies
   for (size_t b = 0; b < bodies.size(); ++b)
     if (body_block[b] >= 0) moving.push_back(static_cast<int>(b));
@@ -101,7 +103,7 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
       s[0] += 1, s[4] += q.x[i].squaredNorm();
       for (int k = 0; k < 3; ++k) s[1 + k] += q.x[i][k];
     }
-  for (const SolidBatch& b : batches) {  // a cell is of the cluster that most of its nodes are in
+  for (const SolidBatch& b : solids.batches) {  // a cell is of the cluster that most of its nodes are in
     const auto n = static_cast<size_t>(info(b.shape).n_nodes);
     for (size_t e = 0; e < b.cells.size(); ++e) {
       const std::span<const int> nodes(b.nodes.data() + e * n, n);
@@ -145,7 +147,7 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
       if (fixed[i][k]) b.V.row(k).setZero(), b.inner = false;
     if (node_owned[i]) gram[b.part] += b.V.transpose() * b.V;
   }
-  for (const SolidBatch& b : batches) {
+  for (const SolidBatch& b : solids.batches) {
     const auto n = static_cast<size_t>(info(b.shape).n_nodes);
     for (size_t e = 0; e < b.cells.size(); ++e) {
       const std::span<const int> nodes(b.nodes.data() + e * n, n);
@@ -170,9 +172,8 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
   std::vector<double> lambda(3 * n_joint_blocks(), 0.0);
   Residual unused;
   unused.r.assign(3 * n_blocks(), 0.0);
-  Pass p{stage, lambda, unused, &resistance, node, body, 1};
-  add_solids(p), add_bodies(p), add_connectors(p);
-  if (with_loads) add_loads(p);
+  Pass p{stage, lambda, unused, &resistance, node, body, 1, with_loads};
+  for (const auto& contribution : parts_) contribution->evaluate(p);
 
   std::vector<std::vector<std::int64_t>> tell(comm->size);
   for (auto& list : tell)

@@ -1,7 +1,8 @@
 // Flexible cells: gather, kernel on as many cells as there are lanes, scatter.
-#include <cstring>
+#include "system/solids.hpp"
 
-#include "system/pass.hpp"
+#include <algorithm>
+#include <cstdint>
 
 namespace hilo {
 namespace {
@@ -37,14 +38,17 @@ void gather(const SolidBatch& b, int first, int W, const std::vector<Vec3>& from
 
 }  // namespace
 
-void System::add_solids(Pass& p) const {
+void Solids::evaluate(Pass& p) const {
   thread_local Lanes lanes;
   thread_local std::vector<double> Ke;
   thread_local std::vector<NodeMap> maps;
   thread_local std::vector<std::array<bool, 3>> masks;
   const Stage& s = p.s;
   const bool same_pair = s.w0 == s.e0 && s.w1 == s.e1;
-  const Vec3 g = gravity * s.load_factor;
+  const Vec3 g = points_.gravity * s.load_factor;
+  const auto& X = points_.X;
+  const auto& follower = points_.follower;
+  const auto& fixed = points_.fixed;
   for (const SolidBatch& b : batches) {
     const int W = b.kernel.width, n = info(b.shape).n_nodes, n3 = 3 * n, count = static_cast<int>(b.cells.size());
     double *X_ = lanes.X.get(n3 * W), *x0 = lanes.x0.get(n3 * W), *x1 = lanes.x1.get(n3 * W), *a = lanes.a.get(n3 * W),
@@ -113,8 +117,8 @@ void System::add_solids(Pass& p) const {
         if (plain) {
           p.K->add(b.first_clique + e, Ke.data());
         } else {
-          const auto blocks = cliques[b.first_clique + e];
-          make_maps({nodes, static_cast<size_t>(n)}, blocks, s, maps, masks);
+          const auto blocks = points_.cliques[b.first_clique + e];
+          points_.make_maps({nodes, static_cast<size_t>(n)}, blocks, s, maps, masks);
           add_reduced(*p.K, b.first_clique + e, n, Ke.data(), maps.data(), static_cast<int>(blocks.size()), masks.data());
         }
       }
@@ -122,26 +126,11 @@ void System::add_solids(Pass& p) const {
   }
 }
 
-void System::make_maps(std::span<const int> nodes, std::span<const int> blocks, const Stage& s, std::vector<NodeMap>& maps,
-                       std::vector<std::array<bool, 3>>& masks) const {
-  maps.resize(nodes.size());
-  masks.resize(nodes.size());
-  for (size_t k = 0; k < nodes.size(); ++k) {
-    const int node = nodes[k], body = follower[node], block = body < 0 ? node_block[node] : body_block[body];
-    maps[k].slot = -1;
-    for (size_t i = 0; i < blocks.size() && block >= 0; ++i)
-      if (blocks[i] == block) maps[k].slot = static_cast<int>(i);
-    maps[k].follower = body >= 0;
-    if (body >= 0) maps[k].left = s.left->x[node] - s.left->c[body], maps[k].right = s.end->x[node] - s.end->c[body];
-    masks[k] = fixed[node];
-  }
-}
-
 /// Elastic energy at q, kinetic energy and momenta at v, of the cells.
-System::Energy System::energy(const Config& q, const Config& v) const {
+void Solids::add_energy(const Config& q, const Config& v, Energy& out) const {
   thread_local Lanes lanes;
-  Energy out;
-  double gravity_energy = 0;
+  const auto& X = points_.X;
+  const Vec3& gravity = points_.gravity;
   for (const SolidBatch& b : batches) {
     const int W = b.kernel.width, n = info(b.shape).n_nodes, n3 = 3 * n, count = static_cast<int>(b.cells.size());
     double *X_ = lanes.X.get(n3 * W), *x = lanes.x0.get(n3 * W), *vel = lanes.a.get(n3 * W), *p = lanes.f.get(n3 * W),
@@ -166,45 +155,15 @@ System::Energy System::energy(const Config& q, const Config& v) const {
       b.kernel.call({X_, x, x, 0, 0, parameters(b.material), p, nullptr, nullptr, nullptr, nullptr, b.density, x, 0, b.area});
       for (int l = 0; l < W && first + l < count; ++l)
         for (int k = 0; k < n; ++k)
-          for (int i = 0; i < 3; ++i) gravity_energy -= gravity[i] * p[(3 * k + i) * W + l];
+          for (int i = 0; i < 3; ++i) out.gravity -= gravity[i] * p[(3 * k + i) * W + l];
     }
   }
-  for (const auto& [node, m] : point_masses) {
-    out.kinetic += m * v.x[node].squaredNorm() / 2;
-    out.momentum += m * v.x[node];
-    out.angular += m * q.x[node].cross(v.x[node]);
-    gravity_energy -= m * gravity.dot(q.x[node]);
-  }
-  for (size_t b = 0; b < bodies.size(); ++b) {
-    if (static_cast<int>(b) % comm->size != comm->rank || bodies[b].mass == 0) continue;
-    const Body& body = bodies[b];
-    out.kinetic += body.inertia(v.c[b], v.R[b], v.c[b], v.R[b]) / 2;
-    out.momentum += body.mass * v.c[b];
-    out.angular += body.mass * q.c[b].cross(v.c[b]);
-    const Mat3 RJ = q.R[b] * body.J;
-    for (int i = 0; i < 3; ++i) out.angular += RJ.col(i).cross(v.R[b].col(i));
-    gravity_energy -= body.mass * gravity.dot(q.c[b]);
-  }
-  out.gravity = gravity_energy;
-  for (size_t i = 0; i < springs.size(); ++i) {
-    if (!owns_spring_[i]) continue;
-    SpringLaw::Values e{};
-    for (size_t m = 0; m < springs[i].measures.size(); ++m) e[m] = springs[i].value(static_cast<int>(m), q);
-    Response r;
-    springs[i].law->elastic(e, e, r);
-    out.elastic += r.energy;
-  }
-  double all[9] = {out.kinetic,     out.elastic,    out.gravity,    out.momentum[0], out.momentum[1],
-                   out.momentum[2], out.angular[0], out.angular[1], out.angular[2]};
-  comm->sum(all);
-  out.kinetic = all[0], out.elastic = all[1], out.gravity = all[2];
-  out.momentum = Vec3(all[3], all[4], all[5]), out.angular = Vec3(all[6], all[7], all[8]);
-  return out;
 }
 
 /// Work of the rate terms and of the stress dissipation of the cells over a step, this rank's share.
-double System::solid_dissipation(const Stage& s) const {
+double Solids::dissipation(const Stage& s) const {
   thread_local Lanes lanes;
+  const auto& X = points_.X;
   double total = 0;
   const auto add = [&](const SolidBatch& b, const Config& q0, const Config& q1, double viscous) {
     if (viscous == 0) return;
@@ -224,5 +183,27 @@ double System::solid_dissipation(const Stage& s) const {
   }
   return total;
 }
+
+/// Mass-proportional damping: alpha M v.dx.
+double Solids::mass_damping(const Stage& s) const {
+  double total = 0;
+  for (const SolidBatch& b : batches) {
+    if (b.alpha == 0 || !s.v) continue;
+    const int n = info(b.shape).n_nodes, W = b.kernel.width;
+    alignas(64) double X_[60 * 8], v[60 * 8], f[60 * 8];
+    for (size_t e = 0; e < b.cells.size(); ++e) {
+      const int* nodes = b.nodes.data() + e * n;
+      for (int k = 0; k < n; ++k)
+        for (int i = 0; i < 3; ++i)
+          for (int l = 0; l < W; ++l) X_[(3 * k + i) * W + l] = points_.X[nodes[k]][i], v[(3 * k + i) * W + l] = s.v->x[nodes[k]][i];
+      b.kernel.call({X_, X_, X_, 0, 0, parameters(b.material), f, nullptr, nullptr, nullptr, nullptr, b.density * b.alpha, v, 0, b.area});
+      for (int k = 0; k < n; ++k)
+        for (int i = 0; i < 3; ++i) total += f[(3 * k + i) * W] * (s.end->x[nodes[k]][i] - s.from().x[nodes[k]][i]);
+    }
+  }
+  return total;
+}
+
+void Solids::add_work(const Moment& m, Work& sum) const { sum.dissipated += dissipation(m.s) + mass_damping(m.s); }
 
 }  // namespace hilo

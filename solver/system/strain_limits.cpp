@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "physics/stretch.hpp"
-#include "system/system.hpp"
+#include "system/solids.hpp"
 
 namespace hilo {
 namespace {
@@ -20,9 +20,8 @@ double limit(const SolidBatch& b) { return kind(b).soft_below > 0 ? kind(b).soft
 
 }  // namespace
 
-void System::watch_strain(const Config& q) {
-  if (!mesh || !flexible) return;
-  const auto& names = mesh->mesh.region_name;
+void Solids::watch_strain(const Config& q) {
+  const auto& names = points_.mesh->mesh.region_name;
   strain_told_.resize(names.size(), 0);
   std::vector<double> beyond(3 * names.size(), 0.0);  // by region: how far below the limit, of the law and of the cells; the law
   std::vector<Vec3> from, to;
@@ -34,20 +33,20 @@ void System::watch_strain(const Config& q) {
     double& worst = beyond[3 * b.region + (kind(b).soft_below > 0 ? 0 : 1)];
     beyond[3 * b.region + 2] = static_cast<double>(b.material.index());
     for (size_t e = 0; e < b.cells.size(); ++e) {
-      for (size_t a = 0; a < n; ++a) from[a] = X[b.nodes[e * n + a]], to[a] = q.x[b.nodes[e * n + a]];
+      for (size_t a = 0; a < n; ++a) from[a] = points_.X[b.nodes[e * n + a]], to[a] = q.x[b.nodes[e * n + a]];
       worst = std::max(worst, floor - least_stretch(b.shape, from, to, floor));
     }
   }
   double any = 0;
   for (size_t r = 0; r < names.size(); ++r) any = std::max({any, beyond[3 * r], beyond[3 * r + 1]});
-  if (!(comm->max(any) > 0)) return;
-  for (double& v : beyond) v = comm->max(v);
+  if (!(points_.comm->max(any) > 0)) return;
+  for (double& v : beyond) v = points_.comm->max(v);
   for (size_t r = 0; r < names.size(); ++r) {
     const double law = beyond[3 * r], cells = beyond[3 * r + 1];
     const MaterialKind& its = material_kinds()[static_cast<size_t>(beyond[3 * r + 2])];
     if (!(law > 0 || cells > 0)) continue;
     strain_told_[r] = 1;
-    if (comm->rank != 0) continue;
+    if (points_.comm->rank != 0) continue;
     if (law > 0)
       warn(names[r],
            fmt::format("compressed to {:.2g} of a length: below {:g} {}", its.soft_below - law, its.soft_below, its.soft_because));

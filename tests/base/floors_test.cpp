@@ -89,8 +89,8 @@ TEST(Floors, RoomsOfPostUseOnlyThoseBelow) {
   }
 }
 
-// The heavy libraries stay where they belong: MPI in base, PETSc in linear, VTK in post, HDF5 in model, gmsh in tools, METIS there and where
-// a rank's cells are split into subdomains.
+// The heavy libraries stay where they belong: MPI in base, PETSc in linear, VTK in post, HDF5 in model, gmsh in tools, METIS there and
+// where a rank's cells are split into subdomains.
 TEST(Floors, LibrariesAreIncludedOnlyWhereTheyBelong) {
   const fs::path root = HILO_SOURCE;
   const std::vector<std::pair<std::regex, std::string>> home{

@@ -8,6 +8,7 @@
 
 #include "../model/block.hpp"
 #include "physics/solid_kernel.hpp"
+#include "system/solids.hpp"
 #include "system/system.hpp"
 
 namespace hilo::bench {
@@ -77,7 +78,7 @@ struct Block {
     ground.ground = true;
     system.bodies.push_back(ground);
     system.start.x = system.X, system.start.c = {Vec3::Zero()}, system.start.R = {Mat3::Identity()};
-    system.batches.push_back(std::move(b));
+    system.add<Solids>(system).batches.push_back(std::move(b));
     system.number();
   }
 };

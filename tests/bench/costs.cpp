@@ -53,7 +53,7 @@ void measure_joints(int n, double hex8) {
 void measure(Shape shape, const Material& law, int n, double& hex8) {
   const Block block(shape, law, n);
   const Cost c = cost(block.system);
-  const auto cells = static_cast<double>(block.system.batches[0].cells.size());
+  const auto cells = static_cast<double>(block.system.part<Solids>().batches[0].cells.size());
   if (shape == Shape::hex8 && law.index() == place_of<StVenantKirchhoff>) hex8 = (c.tangent + c.solve) / cells;
   print(info(shape).name, material_kinds()[law.index()].kind, cells, block.system, c, hex8);
 }

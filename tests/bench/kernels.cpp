@@ -116,7 +116,7 @@ void measure(Shape shape, const Material& law, int n, const Machine& machine) {
   const double force = microseconds(10 * repeats, [&] { kernel.call(cell.call); }) / kernel.width;
 
   const Block block(shape, law, n);
-  const auto cells = static_cast<double>(block.system.batches[0].cells.size());
+  const auto cells = static_cast<double>(block.system.part<Solids>().batches[0].cells.size());
   const auto solver = make_light_solver();
   solver->structure(block.system.cliques, block.system.map);
   AtRest r(block.system);

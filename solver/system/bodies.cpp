@@ -1,0 +1,107 @@
+#include "system/bodies.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+
+namespace hilo {
+
+using RowMatrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+
+std::string Bodies::count() const {
+  int patches = 0, free = 0;
+  for (const Body& b : points_.bodies) patches += b.patch, free += b.free() && !b.patch;
+  return fmt::format("{} rigid bodies, {} patches", free, patches);
+}
+
+std::string Bodies::owner(int block) const {
+  for (size_t b = 0; b < points_.bodies.size(); ++b)
+    if (const int first = points_.body_block[b]; first >= 0 && (block == first || block == first + 1))
+      return fmt::format("{} \"{}\"", points_.bodies[b].patch ? "set" : "body", points_.bodies[b].name);
+  return "";
+}
+
+/// Inertia of a body in its natural coordinates: m (a_c - g) at the centre, and as moment sum_i d_i x (A J)_i with A the second derivative
+/// of the directors.
+void Bodies::evaluate(Pass& p) const {
+  const Stage& s = p.s;
+  const Vec3& gravity = points_.gravity;
+  for (size_t b = 0; b < points_.bodies.size(); ++b) {
+    const Body& body = points_.bodies[b];
+    if (body.mass == 0 && body.J.isZero(0)) continue;
+    if (!points_.counts(static_cast<int>(b))) continue;
+    const Vec3 force = body.mass * (s.a->c[b] - gravity * s.load_factor);
+    const Mat3 AJ = s.a->R[b] * body.J;
+    Vec3 moment = Vec3::Zero();
+    for (int i = 0; i < 3; ++i) moment += s.left->R[b].col(i).cross(AJ.col(i));
+    p.body[b].head<3>() += force;
+    p.body[b].tail<3>() += moment;
+    p.scale(std::max({body.mass * s.a->c[b].norm(), body.mass * gravity.norm(), AJ.norm() / body.size}));
+    if (!p.K || points_.body_block[b] < 0) continue;
+    const double mass_slope = s.mass_slope * (s.tempo ? s.tempo[b] * s.tempo[b] : 1);
+    RowMatrix6 K = RowMatrix6::Zero();
+    K.topLeftCorner<3, 3>().diagonal().setConstant(mass_slope * body.mass);
+    Mat3 Kr = Mat3::Zero();
+    for (int i = 0; i < 3; ++i) {
+      Kr += s.slope * skew(AJ.col(i)) * skew(s.end->R[b].col(i));
+      const Mat3 left = skew(s.left->R[b].col(i));
+      for (int j = 0; j < 3; ++j)
+        if (body.J(i, j) != 0) Kr -= mass_slope * body.J(i, j) * left * skew(s.end->R[b].col(j));
+    }
+    K.bottomRightCorner<3, 3>() = Kr;
+    p.K->add(points_.body_clique[b], K.data());
+  }
+}
+
+void Bodies::add_energy(const Config& q, const Config& v, Energy& sum) const {
+  for (size_t b = 0; b < points_.bodies.size(); ++b) {
+    const Body& body = points_.bodies[b];
+    if (!points_.counts(static_cast<int>(b)) || body.mass == 0) continue;
+    sum.kinetic += body.inertia(v.c[b], v.R[b], v.c[b], v.R[b]) / 2;
+    sum.momentum += body.mass * v.c[b];
+    sum.angular += body.mass * q.c[b].cross(v.c[b]);
+    const Mat3 RJ = q.R[b] * body.J;
+    for (int i = 0; i < 3; ++i) sum.angular += RJ.col(i).cross(v.R[b].col(i));
+    sum.gravity -= body.mass * points_.gravity.dot(q.c[b]);
+  }
+}
+
+/// R0^T R1 has the trace 1 + 2 cos(angle).
+void Bodies::look_at_turn(const Config& q0, const Config& q1, int part, Turned& most) const {
+  for (size_t b = 0; b < points_.bodies.size(); ++b)
+    if (!points_.bodies[b].ground) most.look((q0.R[b].cwiseProduct(q1.R[b]).sum() + 1) / 4, part, static_cast<int>(b));
+}
+
+void Bodies::add_inertia(std::span<const int> group, const Config& v, const Config& w, std::span<double> sum) const {
+  for (size_t b = 0; b < group.size(); ++b)
+    if (group[b] >= 0 && points_.counts(static_cast<int>(b))) sum[group[b]] += points_.bodies[b].inertia(v.c[b], v.R[b], w.c[b], w.R[b]);
+}
+
+std::array<Vec3, 4> body_arms(const Body& b) {
+  std::array<Vec3, 4> arms{Vec3::Zero(), Vec3(b.size, 0, 0), Vec3(0, b.size, 0), Vec3(0, 0, b.size)};
+  if (b.mass > 0 && !b.J.isZero(0)) {
+    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(b.J);
+    Mat3 axes = eigen.eigenvectors().rowwise().reverse();
+    if (axes.determinant() < 0) axes.col(2) *= -1;
+    for (int i = 0; i < 3; ++i) arms[1 + i] = b.size * axes.col(i);
+  }
+  return arms;
+}
+
+std::vector<Output> Bodies::outputs() const {
+  std::vector<Output> out;
+  for (size_t b = 1; b < points_.bodies.size(); ++b) out.push_back({.group = "body", .name = points_.bodies[b].name, .n_end = 12});
+  return out;
+}
+
+void Bodies::add_end_values(const Config& q, const Config&, std::vector<double>& out) const {
+  if (arms_.empty())
+    for (const Body& b : points_.bodies) arms_.push_back(body_arms(b));
+  for (size_t b = 1; b < points_.bodies.size(); ++b)
+    for (const Vec3& arm : arms_[b]) {
+      const Vec3 x = q.c[b] + q.R[b] * arm;
+      out.insert(out.end(), x.data(), x.data() + 3);
+    }
+}
+
+}  // namespace hilo

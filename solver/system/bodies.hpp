@@ -1,0 +1,30 @@
+// Rigid bodies: inertia and weight in natural coordinates, and the positions of their points.
+#pragma once
+#include "system/contribution.hpp"
+
+namespace hilo {
+
+class Bodies final : public Contribution {
+ public:
+  explicit Bodies(const Points& points) : points_(points) {}
+  std::string count() const override;
+  std::string owner(int block) const override;
+  void evaluate(Pass& p) const override;
+  void add_energy(const Config& q, const Config& v, Energy& sum) const override;
+  void look_at_turn(const Config& q0, const Config& q1, int part, Turned& most) const override;
+  std::string name(int item) const override { return "body \"" + points_.bodies[item].name + "\""; }
+  std::vector<Output> outputs() const override;
+  void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
+  void tie(Ties&) const override {}  // each is alone
+  void add_inertia(std::span<const int> group, const Config& v, const Config& w, std::span<double> sum) const override;
+
+ private:
+  const Points& points_;
+  mutable std::vector<std::array<Vec3, 4>> arms_;  // to the four points of each body, when first asked for
+};
+
+/// Four points of a body from its centre and directors: the centre, and one along each principal axis, in the order of rising moments of
+/// inertia (falling ones of the Euler tensor J).
+std::array<Vec3, 4> body_arms(const Body& b);
+
+}  // namespace hilo

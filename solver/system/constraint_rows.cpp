@@ -1,0 +1,176 @@
+// Constraint rows of joints: their blocks, values, rates and reactions.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/rolling.hpp"
+#include "system/joints.hpp"
+
+namespace hilo {
+namespace {
+
+int n_blocks(const Connector& joint) { return (joint.n_rows() + 2) / 3; }
+
+}  // namespace
+
+void gaps(const Connector& joint, const Config& q, double t, double factor, double* g) {
+  joint.row_values(joint.values(q), g);
+  if (joint.drive.row >= 0) g[joint.drive.row] -= joint.drive.law.at(t, t, factor).value;
+}
+
+Traits Joints::traits() const {
+  return {.constrains = !list.empty(), .is_driven = std::any_of(begin(), end(), [](const Connector& j) { return j.drive.row >= 0; })};
+}
+
+std::string Joints::count() const { return fmt::format("{} joints", list.size()); }
+
+void Joints::take_blocks(int& next) {
+  block_.clear();
+  for (const Connector& j : list) block_.push_back(next), next += n_blocks(j);
+}
+
+void Joints::add_cliques(Cliques& cliques) {
+  clique_.clear(), owned_.clear();
+  for (size_t j = 0; j < list.size(); ++j) {
+    std::vector<int> blocks = blocks_of_ends(points_, list[j]);
+    for (int k = 0; k < n_blocks(list[j]); ++k) blocks.push_back(block_[j] + k);
+    clique_.push_back(cliques.add(blocks));
+    owned_.push_back(is_owned(points_, list[j], j));
+  }
+}
+
+const Connector& Joints::at_block(int k) const {
+  const auto after = std::upper_bound(block_.begin(), block_.end(), points_.first_joint_block() + k);
+  return list[static_cast<size_t>(after - block_.begin()) - 1];
+}
+
+std::string Joints::owner(int block) const {
+  const int k = block - points_.first_joint_block();
+  return k >= 0 && !block_.empty() && block < block_.back() + n_blocks(list.back()) ? fmt::format("joint \"{}\"", at_block(k).name) : "";
+}
+
+void Joints::look_at_rows(const Config& q, double t, double factor, Violation& out) const {
+  double g[max_rows];
+  for (size_t j = 0; j < list.size(); ++j) {
+    gaps(list[j], q, t, factor, g);
+    for (int r = 0; r < list[j].n_rows(); ++r) {
+      const bool on = list[j].active[r];
+      double& worst = on ? out.kept : out.dropped;
+      if (const double x = std::isnan(g[r]) ? 1e300 : std::abs(g[r]); x > worst)
+        worst = x, (on ? out.kept_block : out.dropped_block) = block_[j] - points_.first_joint_block();
+    }
+  }
+}
+
+/// The measures are of degree two, so differences along q + tau v and q + tau a are exact; rows that are functions of them follow by the
+/// chain rule.
+void Joints::add_row_rates(const Rates& at, std::vector<double>& rate, std::vector<double>* acceleration) const {
+  RowLaw::Gradient g;
+  for (size_t j = 0; j < list.size(); ++j) {
+    if (!owned_[j]) continue;
+    const Connector& c = list[j];
+    const int n = static_cast<int>(c.measures.size()), base = row(j);
+    const auto e = c.values(at.q), ep = c.values(at.forward), em = c.values(at.backward);
+    std::array<double, max_measures> de{}, dde{};
+    for (int m = 0; m < n; ++m) de[m] = (ep[m] - em[m]) / (2 * at.tau);
+    if (acceleration) {
+      const auto eu = c.values(at.up), ed = c.values(at.down);
+      for (int m = 0; m < n; ++m) dde[m] = (ep[m] + em[m] - 2 * e[m]) / (at.tau * at.tau) + (eu[m] - ed[m]) / (2 * at.sigma);
+    }
+    if (c.rows) c.rows->gradient(e, e, g);
+    if (c.velocity_rows) {
+      const Slip slip(c, at.q, &at.v);
+      const auto along = [&](int body) {
+        return Slip::Move{at.v.c[body], at.a ? at.a->c[body] : Vec3::Zero(), at.v.R[body], at.a ? at.a->R[body] : Mat3::Zero()};
+      };
+      const Slip::Change change = slip.change(along(c.end[0].body), along(c.end[1].body));
+      for (int r = 0; r < slip.n; ++r) {
+        rate[base + c.n_position_rows() + r] = slip.value[r];
+        if (acceleration) (*acceleration)[base + c.n_position_rows() + r] = change.value[r];
+      }
+    }
+    for (int r = 0; r < c.n_position_rows(); ++r) {
+      double first = c.rows ? 0 : de[r], second = c.rows ? 0 : dde[r];
+      for (int m = 0; m < n && c.rows; ++m) {
+        first += g.d[r][m] * de[m], second += g.d[r][m] * dde[m];
+        for (int k = 0; k < n; ++k) second += 2 * g.D[r][m][k] * de[m] * de[k];
+      }
+      if (r == c.drive.row) {
+        const Course course = c.drive.law.at(at.t, points_.beside(at.t, Side::right));
+        first -= course.rate, second -= course.acceleration;
+      }
+      rate[base + r] = first;
+      if (acceleration) (*acceleration)[base + r] = second;
+    }
+  }
+}
+
+void Joints::add_jumps(double t, const Config&, const Config&, std::span<const double> slack, std::vector<Jump>& jumps) const {
+  for (size_t j = 0; j < list.size(); ++j) {
+    const Drive& d = list[j].drive;
+    if (d.row < 0) continue;
+    const double by = t > 0 ? d.law.jump(t, points_.same_time) : std::abs(slack[row(j) + d.row]);
+    jumps.push_back({by, d.law.top_rate(), fmt::format("joint \"{}\"", list[j].name), by, d.unit});
+  }
+}
+
+/// Joints are on all ranks, but q may differ by rounding where they meet.
+std::string Joints::fault(const Config& q) const {
+  double found = -1;
+  for (size_t j = 0; j < list.size(); ++j)
+    if (list[j].rows && !list[j].rows->fault(list[j].values(q)).empty()) found = static_cast<double>(j);
+  found = points_.comm->max(found);
+  if (found < 0) return "";
+  const Connector& c = list[static_cast<size_t>(found)];
+  return "joint \"" + c.name + "\" " + c.rows->fault(c.values(q));
+}
+
+void Joints::commit(const Config& q, const Config*) {
+  for (Connector& j : list)
+    if (j.rows) j.rows->commit(j.values(q));
+}
+
+void Joints::archive(Archive& a) {
+  for (Connector& j : list) {
+    a("joint", j.name, j.active);
+    if (j.rows) j.rows->archive(a);
+  }
+}
+
+std::vector<Output> Joints::outputs() const {
+  std::vector<Output> out;
+  for (const Connector& c : list) out.push_back({.group = "joint", .name = c.name, .n_mid = 6});
+  return out;
+}
+
+/// Reactions: force and moment on b at the joint point, in the joint frame carried by a.
+void Joints::add_mid_values(const Moment& m, std::vector<double>& out) const {
+  const Config& q = *m.s.left;
+  ConnectorGradient left;
+  double force[max_measures];
+  for (size_t j = 0; j < list.size(); ++j) {
+    const Connector& c = list[j];
+    const double* lambda = m.shared.data() + row(j);
+    gradient(c, q, left);
+    joint_forces(c, m.s, left, lambda, force);
+    Vec6 f = force_on_b(c, left, force, q);
+    if (c.velocity_rows) {
+      Vec6 slip = Slip(c, q, m.s.v).force(lambda + c.n_position_rows());
+      slip.tail<3>() -= (q.R[c.end[1].body] * c.point_b).cross(slip.head<3>());
+      f += slip;
+    }
+    append_in_frame(c, f, q, out);
+  }
+}
+
+void Joints::tie(Ties& ties) const {
+  for (const Connector& joint : list) {
+    const int first = tie_ends(points_, joint, ties);
+    if (first < 0) continue;
+    ties.hold(first, static_cast<int>(std::count(joint.active.begin(), joint.active.begin() + joint.n_rows(), true)));
+    if (joint.drive.row >= 0 && joint.drive.law.top_rate() != 0) ties.exclude(first);
+  }
+}
+
+}  // namespace hilo

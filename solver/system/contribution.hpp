@@ -1,0 +1,188 @@
+// What takes part in the equations of motion: flexible cells, rigid bodies, joints, springs, loads, motions, each in one file behind this
+// interface.  The system and the recorder loop over contributions and know none by name; a new kind is one file, and a line in
+// Builder::build.  A contribution holds many things of its kind (all cells, all joints), so that a call costs nothing beside its work.
+//
+// All ranks have the same contributions in the same order, also where a rank has nothing of one: functions may be collective.
+#pragma once
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/archive.hpp"
+#include "system/pass.hpp"
+
+namespace hilo {
+
+/// What integrators and solvers ask of what they solve.
+struct Traits {
+  bool deforms = false;       // flexible cells
+  bool constrains = false;    // rows with multipliers
+  bool has_rates = false;     // forces that follow rates
+  bool is_pressed = false;    // forces that depend on multipliers beyond their rows
+  bool is_driven = false;     // moves by a law
+  bool lumps_masses = false;  // masses on the diagonal, outside of cliques
+  Traits& operator|=(const Traits& other);
+};
+
+struct Energy {
+  double kinetic = 0, elastic = 0, gravity = 0;          // [J]
+  Vec3 momentum = Vec3::Zero(), angular = Vec3::Zero();  // [kg m/s], about the origin [kg m^2/s]
+};
+
+/// Over the step of a stage: work of loads, of motors and of prescribed motions, and dissipation of rate terms [J].
+struct Work {
+  double external = 0, dissipated = 0;
+};
+
+/// Largest |g| of the constraint rows that are kept and of those dropped as redundant [m, 1], with the multiplier blocks (from the first
+/// one on) that they belong to, or -1.
+struct Violation {
+  double kept = 0, dropped = 0;
+  int kept_block = -1, dropped_block = -1;
+  double worst() const { return std::max(kept, dropped); }
+};
+
+/// The largest turn of a body or a cell: cos^2(angle/2), and who.
+struct Turned {
+  double cos2 = 1;
+  int part = -1, item = -1;
+  void look(double c2, int of_part, int of_item) {
+    if (!(c2 >= -1)) c2 = -1;  // not finite
+    if (c2 < cos2) cos2 = c2, part = of_part, item = of_item;
+  }
+};
+
+/// How bodies hang together: mechanisms, for clocks of their own (dynamics/clock).
+class Ties {
+ public:
+  explicit Ties(int n_bodies);
+  /// Bodies are connected.
+  void connect(int a, int b);
+  /// So many freedoms less of the mechanism of body b.
+  void hold(int b, int rows) { freedoms_[b] -= rows; }
+  /// The mechanism of body b is flexible, or moved from outside.
+  void exclude(int b) { excluded_[b] = 1; }
+  int root(int b) const;
+  int freedoms(int b) const { return freedoms_[b]; }
+  bool is_excluded(int b) const { return excluded_[b] > 0; }
+  std::vector<double>& excluded() { return excluded_; }
+
+ private:
+  mutable std::vector<int> parent_;
+  std::vector<int> freedoms_;
+  std::vector<double> excluded_;  // some contributions know their part of the model alone: summed over the ranks
+};
+
+/// Positions, velocities and, where given, accelerations at an instant, with positions moved along them, over ways as long as the scene.
+struct Rates {
+  const Config &q, &v;
+  const Config* a;
+  double t;
+  double tau, sigma;  // q + tau v, q - tau v [s]; q + sigma a, q - sigma a [s^2]
+  Config forward, backward, up, down;
+};
+
+/// A velocity that a law makes jump at an instant.
+struct Jump {
+  double by = 0, scale = 0;  // and the largest rate that occurs [m/s, or as the law]
+  std::string who;           // `motion "m"`
+  double told = 0;           // by how much, in `unit`
+  const char* unit = "";
+};
+
+/// An array of the results that a contribution fills: /history/GROUP/NAME, of which unit and meaning are in model/schema.cpp.  Its numbers
+/// are `n_end` that belong to the end of a step and `n_mid` that belong to its inside, which the recorder takes to the end.
+struct Output {
+  std::string group, name;
+  int n_end = 0, n_mid = 0;
+  /// The row from both; null: the one and then the other.
+  std::function<void(const double* end, const double* mid, std::vector<double>& row)> row = nullptr;
+};
+
+class System;
+
+/// A stage that is taken: with multipliers and accelerations, for outputs and work.
+class Moment {
+ public:
+  Moment(const System& system, const Stage& s, std::span<const double> lambda, std::span<const double> shared, const Config* a)
+      : s(s), lambda(lambda), shared(shared), a(a), system_(system) {}
+  /// Another stage of the same system.
+  Moment(const Moment& other, const Stage& s, std::span<const double> lambda) : Moment(other.system_, s, lambda, lambda, nullptr) {}
+  const Stage& s;
+  std::span<const double> lambda;  // multipliers
+  std::span<const double> shared;  // the same, in minimum norm where rows are redundant
+  const Config* a;                 // accelerations of the step
+  /// Forces of everything, before reduction; found when first asked for.  Collective.
+  const Forces& forces() const;
+
+ private:
+  const System& system_;
+  mutable std::optional<Forces> forces_;
+};
+
+class Contribution {
+ public:
+  virtual ~Contribution() = default;
+  virtual Traits traits() const { return {}; }
+  /// "12 joints", for the line that tells what a scene has; "": not told.  Collective.
+  virtual std::string count() const { return {}; }
+
+  // unknowns
+  /// Multiplier blocks from `next` on, which moves past them.  The blocks of nodes and bodies are known.
+  virtual void take_blocks(int& /*next*/) {}
+  virtual void add_cliques(Cliques& /*cliques*/) {}
+  /// What the unknowns of a local block belong to (`region "r", at node 7`), or "".
+  virtual std::string owner(int /*block*/) const { return {}; }
+  /// Free nodes that move about as one body, for the first guess of a step.
+  virtual void add_groups(std::vector<std::vector<int>>& /*groups*/) const {}
+
+  // equations
+  virtual void evaluate(Pass& p) const = 0;
+  /// This rank's share; of work, over the step from s.from() to s.end.
+  virtual void add_energy(const Config& /*q*/, const Config& /*v*/, Energy& /*sum*/) const {}
+  virtual void add_work(const Moment& /*m*/, Work& /*sum*/) const {}
+  virtual void look_at_rows(const Config& /*q*/, double /*t*/, double /*factor*/, Violation& /*worst*/) const {}
+  /// First and, where given, second derivatives by time of its rows less their courses, laid out like lambda.
+  virtual void add_row_rates(const Rates& /*at*/, std::vector<double>& /*rate*/, std::vector<double>* /*acceleration*/) const {}
+  virtual void look_at_turn(const Config& /*q0*/, const Config& /*q1*/, int /*part*/, Turned& /*most*/) const {}
+  virtual std::string name(int /*item*/) const { return {}; }
+
+  // laws of motion
+  virtual bool moves() const { return false; }  // nodes or bodies move by a law of its own
+  virtual void prescribe(Config& /*q*/, double /*t*/, double /*ramp*/) const {}
+  virtual void prescribe_rates(double /*t*/, Side /*side*/, Config* /*v*/, Config* /*a*/) const {}
+  virtual void copy_prescribed(const Config& /*from*/, Config& /*to*/) const {}
+  virtual std::string too_far(double /*t0*/, double /*t1*/) const { return {}; }
+  /// Velocities that jump at t from `before` to `after`; `slack`: rates of the rows with those before, laid out like lambda.  Collective.
+  virtual void add_jumps(double /*t*/, const Config& /*before*/, const Config& /*after*/, std::span<const double> /*slack*/,
+                         std::vector<Jump>& /*jumps*/) const {}
+
+  // state
+  /// Why q cannot be, or "" ("joint \"j\" ran off the end of its curve"); the same on all ranks.
+  virtual std::string fault(const Config& /*q*/) const { return {}; }
+  /// Accept q, with velocities v where they are known, as the state to go on from.
+  virtual void commit(const Config& /*q*/, const Config* /*v*/) {}
+  /// All that it remembers from accepted steps.
+  virtual void archive(Archive& /*a*/) {}
+
+  // results
+  virtual std::vector<Output> outputs() const { return {}; }
+  /// Numbers of all outputs in their order, put behind `out`.  Collective.
+  virtual void add_end_values(const Config& /*q*/, const Config& /*v*/, std::vector<double>& /*out*/) const {}
+  virtual void add_mid_values(const Moment& /*m*/, std::vector<double>& /*out*/) const {}
+
+  // clocks
+  /// How it connects, holds or moves bodies.  There is no default: what is forgotten here would make clocks wrong without a word.
+  virtual void tie(Ties& ties) const = 0;
+  /// v.M w of the bodies of each group.
+  virtual void add_inertia(std::span<const int> /*group*/, const Config& /*v*/, const Config& /*w*/, std::span<double> /*sum*/) const {}
+  /// What forces do differently in [t, t + T] than in [t - T, t] by the time alone: f.M^-1 f of each group [N^2/kg].
+  virtual void add_timed(std::span<const int> /*group*/, double /*t*/, double /*T*/, std::span<double> /*sum*/) const {}
+  /// Energy that rate forces take from, or give to, each group in a step [J].
+  virtual void add_taken(std::span<const int> /*group*/, const Stage& /*s*/, std::span<const double> /*lambda*/,
+                         std::span<double> /*sum*/) const {}
+};
+
+}  // namespace hilo

@@ -1,0 +1,57 @@
+// Joints: constraint rows with multipliers.
+#pragma once
+#include "system/connector_clique.hpp"
+
+namespace hilo {
+
+class Joints final : public Contribution {
+ public:
+  explicit Joints(const Points& points) : points_(points) {}
+  std::vector<Connector> list;
+  // as a list of its own: whoever treats rows goes through the joints
+  auto begin() { return list.begin(); }
+  auto end() { return list.end(); }
+  auto begin() const { return list.begin(); }
+  auto end() const { return list.end(); }
+  size_t size() const { return list.size(); }
+  bool empty() const { return list.empty(); }
+  Connector& operator[](size_t j) { return list[j]; }
+  const Connector& operator[](size_t j) const { return list[j]; }
+  /// First block of the multipliers of a joint, and where these begin in lambda.
+  int block(size_t j) const { return block_[j]; }
+  int row(size_t j) const { return 3 * (block_[j] - points_.first_joint_block()); }
+  /// The joint whose multipliers are in a block, counted from the first of them.
+  const Connector& at_block(int k) const;
+
+  Traits traits() const override;
+  std::string count() const override;
+  void take_blocks(int& next) override;
+  void add_cliques(Cliques& cliques) override;
+  std::string owner(int block) const override;
+  void evaluate(Pass& p) const override;
+  void add_work(const Moment& m, Work& sum) const override;
+  void look_at_rows(const Config& q, double t, double factor, Violation& worst) const override;
+  void add_row_rates(const Rates& at, std::vector<double>& rate, std::vector<double>* acceleration) const override;
+  void add_jumps(double t, const Config& before, const Config& after, std::span<const double> slack,
+                 std::vector<Jump>& jumps) const override;
+  std::string fault(const Config& q) const override;
+  void commit(const Config& q, const Config* v) override;
+  void archive(Archive& a) override;
+  std::vector<Output> outputs() const override;
+  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
+  void tie(Ties& ties) const override;
+
+ private:
+  const Points& points_;
+  std::vector<int> block_, clique_;
+  std::vector<char> owned_;
+};
+
+/// Values of a joint's rows less what drives them, at time t; `factor` is that of the load step.
+void gaps(const Connector& joint, const Config& q, double t, double factor, double* g);
+/// Gradient of a joint's rows by its measures as the stage takes it: over the step where it conserves energy, else at `left`.
+void row_gradient(const Connector& c, const Stage& s, const ConnectorGradient& left, RowLaw::Gradient& out);
+/// Forces conjugate to the measures of a joint for the multipliers of its rows.
+void joint_forces(const Connector& c, const Stage& s, const ConnectorGradient& left, const double* lambda, double* force);
+
+}  // namespace hilo

@@ -1,0 +1,46 @@
+// What is held or moves by a law: bodies, and single components of nodes.
+#pragma once
+#include "physics/motion_law.hpp"
+#include "system/contribution.hpp"
+
+namespace hilo {
+
+/// Prescribed motion of a body (fixed, translation, rotation) or of single components of nodes.
+struct Motion {
+  std::string name;
+  int body = -1;           // the driven body, or -1: components of nodes
+  std::vector<int> nodes;  // nodes of the components, or followers of the driven body
+  std::array<bool, 3> component{true, true, true};
+  Vec3 displacement = Vec3::Zero();  // at law 1 [m]
+  Vec3 at = Vec3::Zero(), axis = Vec3::Zero();
+  double angle = 0;     // at law 1 [rad]
+  bool moving = false;  // fixed: the law rests at 0
+  MotionLaw law;
+};
+
+class Motions final : public Contribution {
+ public:
+  explicit Motions(const Points& points) : points_(points) {}
+  std::vector<Motion> list;
+
+  Traits traits() const override;
+  void take_blocks(int& next) override;
+  void evaluate(Pass&) const override {}  // what is held has no equations
+  void add_work(const Moment& m, Work& sum) const override;
+  bool moves() const override;
+  void prescribe(Config& q, double t, double ramp) const override;
+  void prescribe_rates(double t, Side side, Config* v, Config* a) const override;
+  void copy_prescribed(const Config& from, Config& to) const override;
+  std::string too_far(double t0, double t1) const override;
+  void add_jumps(double t, const Config& before, const Config& after, std::span<const double> slack,
+                 std::vector<Jump>& jumps) const override;
+  std::vector<Output> outputs() const override;
+  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
+  void tie(Ties&) const override {}  // what a moving body is joined to says so (Body::moving)
+
+ private:
+  Vec6 reaction(const Motion& m, const Forces& f, const Config& q) const;
+  const Points& points_;
+};
+
+}  // namespace hilo

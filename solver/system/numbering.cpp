@@ -1,0 +1,112 @@
+// Numbers of the unknowns, here and over all ranks.
+#include <algorithm>
+#include <map>
+
+#include "system/points.hpp"
+
+namespace hilo {
+
+int Points::number_points() {
+  const int n = static_cast<int>(X.size());
+  node_block.assign(n, -1), body_block.assign(bodies.size(), -1), body_clique.assign(bodies.size(), -1);
+  int next = 0;
+  for (int i = 0; i < n; ++i)
+    if (follower[i] < 0) node_block[i] = next++;
+  const int n_node_blocks = next;
+  cliques = Cliques{};
+  for (size_t b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b].free()) continue;
+    const int blocks[2] = {next, next + 1};
+    body_block[b] = next, next += 2;
+    body_clique[b] = cliques.add(blocks);
+  }
+  first_joint_block_ = next;
+  return n_node_blocks;
+}
+
+void Points::lowest_over_ranks(std::vector<std::int64_t>& value) const {
+  if (comm->size == 1) return;
+  std::vector<std::vector<std::int64_t>> tell(comm->size), ask(comm->size);
+  for (size_t i = 0; i < X.size(); ++i) {
+    const std::int64_t row = mesh->node_global[i];
+    tell[row % comm->size].push_back(row), tell[row % comm->size].push_back(value[i]);
+    ask[row % comm->size].push_back(row);
+  }
+  std::map<std::int64_t, std::int64_t> lowest;
+  for (const auto& list : comm->exchange(tell))
+    for (size_t k = 0; k + 1 < list.size(); k += 2) {
+      const auto [it, fresh] = lowest.try_emplace(list[k], list[k + 1]);
+      if (!fresh) it->second = std::min(it->second, list[k + 1]);
+    }
+  auto asked = comm->exchange(ask);
+  for (auto& list : asked)
+    for (auto& row : list) row = lowest.at(row);
+  const auto answers = comm->exchange(asked);
+  std::vector<size_t> cursor(comm->size, 0);
+  for (size_t i = 0; i < X.size(); ++i) {
+    const auto keeper = mesh->node_global[i] % comm->size;
+    value[i] = answers[keeper][cursor[keeper]++];
+  }
+}
+
+void Points::number_globally(int n_node_blocks, int n_local) {
+  map = BlockMap{};
+  map.X.assign(3 * static_cast<size_t>(n_local), 0.0);
+  for (size_t i = 0; i < X.size(); ++i)
+    if (node_block[i] >= 0)
+      for (int k = 0; k < 3; ++k) map.X[3 * node_block[i] + k] = X[i][k];
+  map.global.resize(n_local);
+  if (comm->size == 1) {
+    for (int i = 0; i < n_local; ++i) map.global[i] = i;
+    map.n_owned = map.n_global = n_local;
+    map.first_dense = n_node_blocks;
+    return;
+  }
+  // owned nodes are numbered rank after rank; bodies and multipliers come last and belong to the last rank
+  std::int64_t owned = 0;
+  for (size_t i = 0; i < X.size(); ++i) owned += node_block[i] >= 0 && node_owned[i];
+  std::vector<double> counts(comm->size, 0.0);
+  counts[comm->rank] = static_cast<double>(owned);
+  comm->sum(counts);
+  std::int64_t before = 0, total = 0;
+  for (int r = 0; r < comm->size; ++r) {
+    if (r < comm->rank) before += static_cast<std::int64_t>(counts[r]);
+    total += static_cast<std::int64_t>(counts[r]);
+  }
+  // shared nodes ask for their number at the rank that keeps the row of the file (row modulo ranks)
+  std::vector<std::vector<std::int64_t>> tell(comm->size), ask(comm->size);
+  std::int64_t next = before;
+  for (size_t i = 0; i < X.size(); ++i) {
+    if (node_block[i] < 0) continue;
+    const std::int64_t row = mesh->node_global[i];
+    const int keeper = static_cast<int>(row % comm->size);
+    if (node_owned[i]) {
+      map.global[node_block[i]] = next;
+      tell[keeper].push_back(row), tell[keeper].push_back(next);
+      ++next;
+    } else {
+      ask[keeper].push_back(row);
+    }
+  }
+  std::map<std::int64_t, std::int64_t> number_of_row;
+  for (const auto& list : comm->exchange(tell))
+    for (size_t k = 0; k + 1 < list.size(); k += 2) number_of_row[list[k]] = list[k + 1];
+  auto asked = comm->exchange(ask);
+  for (auto& list : asked)
+    for (auto& row : list) row = number_of_row.at(row);
+  const auto answers = comm->exchange(asked);
+  std::vector<size_t> cursor(comm->size, 0);
+  for (size_t i = 0; i < X.size(); ++i)
+    if (node_block[i] >= 0 && !node_owned[i]) {
+      const int keeper = static_cast<int>(mesh->node_global[i] % comm->size);
+      map.global[node_block[i]] = answers[keeper][cursor[keeper]++];
+    }
+  for (int i = n_node_blocks; i < n_local; ++i) map.global[i] = total + (i - n_node_blocks);
+  map.first = before;
+  map.n_owned = owned;
+  map.first_dense = total;
+  map.n_global = total + (n_local - n_node_blocks);
+  if (comm->rank == comm->size - 1) map.n_owned += n_local - n_node_blocks;
+}
+
+}  // namespace hilo

@@ -1,0 +1,40 @@
+#include "system/point_masses.hpp"
+
+namespace hilo {
+
+void PointMasses::evaluate(Pass& p) const {
+  const Stage& s = p.s;
+  for (const auto& [n, m] : masses_) {
+    const Vec3 force = m * (s.a->x[n] - points_.gravity * s.load_factor);
+    p.node[n] += force;
+    p.scale(force.norm());
+    if (!p.K) continue;
+    if (points_.node_block[n] >= 0) {
+      const auto& fixed = points_.fixed[n];
+      const double f = m * s.mass_slope, d[3] = {fixed[0] ? 0 : f, fixed[1] ? 0 : f, fixed[2] ? 0 : f};
+      p.K->add_diagonal(points_.node_block[n], d);
+    } else if (const int b = points_.follower[n]; points_.body_block[b] >= 0) {
+      const double f = m * s.mass_slope * (s.tempo ? s.tempo[b] * s.tempo[b] : 1);
+      const Mat3 left = skew(s.left->x[n] - s.left->c[b]), right = skew(s.end->x[n] - s.end->c[b]);
+      Eigen::Matrix<double, 6, 6, Eigen::RowMajor> M;
+      M << f * Mat3::Identity(), -f * right, f * left, -f * left * right;
+      p.K->add(points_.body_clique[b], M.data());
+    }
+  }
+}
+
+void PointMasses::add_energy(const Config& q, const Config& v, Energy& sum) const {
+  for (const auto& [n, m] : masses_) {
+    sum.kinetic += m * v.x[n].squaredNorm() / 2;
+    sum.momentum += m * v.x[n];
+    sum.angular += m * q.x[n].cross(v.x[n]);
+    sum.gravity -= m * points_.gravity.dot(q.x[n]);
+  }
+}
+
+void PointMasses::add_inertia(std::span<const int> group, const Config& v, const Config& w, std::span<double> sum) const {
+  for (const auto& [n, m] : masses_)
+    if (const int b = points_.follower[n]; b >= 0 && group[b] >= 0) sum[group[b]] += m * v.x[n].dot(w.x[n]);
+}
+
+}  // namespace hilo

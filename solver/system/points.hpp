@@ -1,0 +1,81 @@
+// What moves: nodes and rigid bodies, which node follows which body, and the blocks of unknowns of both.
+//
+// Unknowns are 3 x 3 blocks: one per free node, two per free body (translation, rotation vector), and the multipliers of constraint rows
+// behind them.  A body's twelve coordinates are condensed to six by the null space of its length constraints, P = [I, -skew(x - c)], taken
+// at the left configuration for the equations and at q1 for the increments [betsch-leyendecker-2006]; lengths then hold by construction.
+#pragma once
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "linear/kkt.hpp"
+#include "model/local_mesh.hpp"
+#include "system/stage.hpp"
+
+namespace hilo {
+
+/// Left and right maps of a node: identity for a free node, lever arms for a follower.
+struct NodeMap {
+  int slot;  // first row block within the clique's unknowns, -1 when driven
+  bool follower;
+  Vec3 left, right;  // arms from the body's centre
+};
+
+class Points {
+ public:
+  std::vector<Body> bodies;   // body 0 is the ground
+  std::vector<int> follower;  // body each node follows, or -1  (n_nodes)
+  std::vector<Vec3> X;        // reference positions            (n_nodes)  [m]
+  std::vector<char> node_owned;
+  std::vector<std::array<bool, 3>> fixed;  // prescribed components of nodes
+  Vec3 gravity = Vec3::Zero();
+  double length = 1;     // size of the scene [m]
+  double mass = 0;       // of everything [kg]
+  double stiffness = 1;  // a typical one, for scaling without inertia [N/m]
+  double same_time = 0;  // instants closer than this are one [s]
+  Config start, start_velocity;
+  const Comm* comm = nullptr;
+  LocalMesh* mesh = nullptr;  // null for a scene of bodies alone
+
+  // unknowns
+  std::vector<int> node_block;   // block of each node, -1 for followers
+  std::vector<int> body_block;   // first of two blocks, -1 for driven bodies
+  std::vector<int> body_clique;  // of these two, -1 for driven bodies
+  BlockMap map;
+  Cliques cliques;
+  int n_blocks() const { return static_cast<int>(map.global.size()); }
+  int first_joint_block() const { return first_joint_block_; }  // multipliers begin here
+  int n_joint_blocks() const { return n_blocks() - first_joint_block_; }
+
+  /// q <- q moved by the increments z (3 x n_blocks); bodies turn by the Cayley rotation of theirs.
+  void move(Config& q, std::span<const double> z) const;
+  /// Followers from their bodies; the map is linear, so it holds for positions, velocities and accelerations alike.
+  void follow(Config& q) const;
+  /// Zeros in the rows of prescribed components.
+  void mask_fixed(std::span<double> r) const;
+  /// A time on the given side of t, by which the laws are asked.
+  double beside(double t, Side side) const { return t + static_cast<int>(side) * same_time; }
+  /// Whether this rank counts what all ranks hold of a body.
+  bool counts(int body) const { return body % comm->size == comm->rank; }
+
+  /// Blocks of nodes, those of free nodes first, then those of the bodies that the others follow.
+  std::vector<int> blocks_of(std::span<const int> nodes) const;
+  void make_maps(std::span<const int> nodes, std::span<const int> blocks, const Stage& s, std::vector<NodeMap>& maps,
+                 std::vector<std::array<bool, 3>>& masks) const;
+  /// Lowest value of each node over the ranks that share it.
+  void lowest_over_ranks(std::vector<std::int64_t>& value) const;
+
+ protected:
+  /// Local blocks of nodes and bodies, and the cliques of bodies; returns the number of node blocks.
+  int number_points();
+  /// Local blocks, `n_node_blocks` of them of nodes, over all ranks.
+  void number_globally(int n_node_blocks, int n_local);
+  int first_joint_block_ = 0;
+};
+
+/// K (3n x 3n over nodes, row major) reduced to the unknowns of the clique's blocks (m blocks) and added to the solver.
+/// Rows go through the left maps, columns through the right ones; prescribed components drop out.
+void add_reduced(KktSolver& solver, int clique, int n, const double* K, const NodeMap* maps, int m, const std::array<bool, 3>* fixed);
+
+}  // namespace hilo

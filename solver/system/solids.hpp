@@ -1,0 +1,55 @@
+// Flexible cells: batches of one shape and law, each a run of calls of one kernel.
+#pragma once
+#include "physics/solid_kernel.hpp"
+#include "system/contribution.hpp"
+
+namespace hilo {
+
+/// Cells of one region and shape: one kernel, one set of constants.
+struct SolidBatch {
+  Shape shape;
+  Material material;
+  double density;              // [kg/m^3]
+  double beta = 0, alpha = 0;  // stiffness- and mass-proportional damping [s, 1/s]
+  double area = 0;             // of bars [m^2]
+  int region;
+  std::vector<int> cells;  // local cells
+  std::vector<int> nodes;  // (n_cells x n)
+  int first_clique = 0;
+  SolidKernel kernel;
+};
+
+class Solids final : public Contribution {
+ public:
+  explicit Solids(const Points& points) : points_(points) {}
+  std::vector<SolidBatch> batches;  // of the cells of this rank
+
+  Traits traits() const override;
+  std::string count() const override;
+  void take_blocks(int& next) override;
+  void add_cliques(Cliques& cliques) override;
+  std::string owner(int block) const override;
+  void add_groups(std::vector<std::vector<int>>& groups) const override { groups.insert(groups.end(), nodes_.begin(), nodes_.end()); }
+  void evaluate(Pass& p) const override;
+  void add_energy(const Config& q, const Config& v, Energy& sum) const override;
+  void add_work(const Moment& m, Work& sum) const override;
+  void look_at_turn(const Config& q0, const Config& q1, int part, Turned& most) const override;
+  std::string name(int item) const override;
+  void commit(const Config& q, const Config* v) override;
+  void archive(Archive& a) override { a("solids", strain_told_); }
+  void tie(Ties& ties) const override;
+
+  /// Cluster of each free node, numbered over all ranks, the highest integer for a node of no cell; how many there are.
+  int clusters(std::vector<std::int64_t>& cluster_of) const;
+
+ private:
+  double dissipation(const Stage& s) const;
+  double mass_damping(const Stage& s) const;
+  void watch_strain(const Config& q);
+  const Points& points_;
+  bool some_ = false;                    // some rank has cells
+  std::vector<std::vector<int>> nodes_;  // free ones of each region
+  std::vector<char> strain_told_;        // by region: its compression has been told
+};
+
+}  // namespace hilo

@@ -1,0 +1,133 @@
+// What springs remember, take, give and show.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "system/springs.hpp"
+
+namespace hilo {
+namespace {
+
+/// The group that a spring without a potential alone acts in, or -1: its ends are of one.
+int group_of(const Connector& c, std::span<const int> group) {
+  if (c.law->conserves()) return -1;
+  for (const Carrier& end : c.ends())
+    if (end.body >= 0 && group[end.body] >= 0) return group[end.body];
+  return -1;
+}
+
+}  // namespace
+
+Traits Springs::traits() const {
+  return {.has_rates = !list.empty(),
+          .is_pressed = std::any_of(list.begin(), list.end(), [](const Connector& c) { return c.load_joint >= 0; })};
+}
+
+std::string Springs::count() const { return fmt::format("{} springs", list.size()); }
+
+void Springs::add_cliques(Cliques& cliques) {
+  clique_.clear(), owned_.clear();
+  for (size_t i = 0; i < list.size(); ++i) {
+    std::vector<int> blocks = blocks_of_ends(points_, list[i]);
+    if (const int j = list[i].load_joint; j >= 0)
+      for (int k = 0; k < (joints_[j].n_rows() + 2) / 3; ++k) blocks.push_back(joints_.block(j) + k);
+    clique_.push_back(cliques.add(blocks));
+    owned_.push_back(is_owned(points_, list[i], i));
+  }
+}
+
+void Springs::viscous(const Connector& c, const Stage& s, std::span<const double> lambda, Response& out) const {
+  c.law->viscous(c.values(*s.w0), c.values(*s.w1), interval(c, s, lambda), out);
+}
+
+void Springs::add_energy(const Config& q, const Config&, Energy& sum) const {
+  for (size_t i = 0; i < list.size(); ++i) {
+    if (!owned_[i]) continue;
+    const SpringLaw::Values e = list[i].values(q);
+    Response r;
+    list[i].law->elastic(e, e, r);
+    sum.elastic += r.energy;
+  }
+}
+
+void Springs::add_work(const Moment& m, Work& sum) const {
+  const double share = m.s.span > 0 ? m.s.span / m.s.h : 1;
+  for (size_t i = 0; i < list.size(); ++i) {
+    if (!owned_[i] || m.s.h <= 0) continue;
+    Response r;
+    viscous(list[i], m.s, m.lambda, r);
+    sum.dissipated += share * r.dissipated, sum.external += share * r.supplied;
+  }
+}
+
+void Springs::commit(const Config& q, const Config* v) {
+  Config ahead, behind;
+  const double tau = 1e-3;  // [s]; measures are of degree two, any tau gives the exact rate
+  if (v && std::any_of(list.begin(), list.end(), [](const Connector& s) { return s.law->needs_rate(); })) {
+    ahead = behind = q;
+    for (size_t i = 0; i < q.x.size(); ++i) ahead.x[i] += tau * v->x[i], behind.x[i] -= tau * v->x[i];
+    for (size_t b = 0; b < q.c.size(); ++b) {
+      ahead.c[b] += tau * v->c[b], behind.c[b] -= tau * v->c[b];
+      ahead.R[b] += tau * v->R[b], behind.R[b] -= tau * v->R[b];
+    }
+  }
+  for (Connector& s : list) {
+    SpringLaw::Values rate{};
+    if (!ahead.c.empty() && s.law->needs_rate()) {
+      const auto e1 = s.values(ahead), e0 = s.values(behind);
+      for (size_t m = 0; m < s.measures.size(); ++m) rate[m] = (e1[m] - e0[m]) / (2 * tau);
+    }
+    s.law->commit(s.values(q), rate);
+  }
+}
+
+void Springs::archive(Archive& a) {
+  for (Connector& c : list) {
+    a("spring", c.name);
+    c.law->archive(a);
+  }
+}
+
+std::vector<Output> Springs::outputs() const {
+  std::vector<Output> out;
+  for (const Connector& c : list) out.push_back({.group = c.section, .name = c.name, .n_mid = 6});
+  return out;
+}
+
+/// Force and moment on b: at the point, in inertial axes, or for what acts along or in a joint, in its frame.
+void Springs::add_mid_values(const Moment& m, std::vector<double>& out) const {
+  ConnectorGradient left;
+  for (const Connector& c : list) {
+    gradient(c, *m.s.left, left);
+    Response r;
+    spring_elastic(c, m.s, r);
+    if (m.s.h > 0) viscous(c, m.s, m.lambda, r);
+    const Vec6 f = force_on_b(c, left, r.s.data(), *m.s.left);
+    if (c.section == "spring")
+      out.insert(out.end(), f.data(), f.data() + 6);
+    else
+      append_in_frame(c, f, *m.s.left, out);
+  }
+}
+
+void Springs::tie(Ties& ties) const {
+  for (const Connector& c : list) tie_ends(points_, c, ties);
+}
+
+/// A motor with a history: how much is not asked.
+void Springs::add_timed(std::span<const int> group, double, double, std::span<double> sum) const {
+  for (const Connector& c : list)
+    if (const int g = c.factor ? group_of(c, group) : -1; g >= 0) sum[g] += 1e300;
+}
+
+void Springs::add_taken(std::span<const int> group, const Stage& s, std::span<const double> lambda, std::span<double> sum) const {
+  for (const Connector& c : list)
+    if (const int g = group_of(c, group); g >= 0) {
+      Response r;
+      viscous(c, s, lambda, r);
+      sum[g] += std::abs(r.dissipated) + std::abs(r.supplied);
+    }
+}
+
+}  // namespace hilo

@@ -1,0 +1,90 @@
+#include "system/springs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hilo {
+namespace {
+
+/// Rate forces of a spring, D by its measures at w1, and `D0` by those at w0.  All laws of rates are symmetric in their ends when the time
+/// between them changes its sign too, so the former of the exchanged pair is the latter.
+void spring_viscous(const Connector& c, const Stage& s, const Interval& step, Response& out, Response& exchanged) {
+  const auto r0 = c.values(*s.w0), r1 = c.values(*s.w1);
+  c.law->viscous(r0, r1, step, out);
+  Interval back = step;
+  back.h = -step.h;
+  if (s.slope0() != 0) c.law->viscous(r1, r0, back, exchanged);
+}
+
+}  // namespace
+
+void spring_elastic(const Connector& c, const Stage& s, Response& out) {
+  SpringLaw::Values e0 = c.values(*s.e0), e1 = c.values(*s.e1);
+  if (s.conserving()) return c.law->elastic(e0, e1, out);
+  for (size_t m = 0; m < c.measures.size(); ++m) e0[m] = e1[m] = (1 - s.weight) * e0[m] + s.weight * e1[m];
+  c.law->elastic(e0, e1, out);
+  for (auto& row : out.D)  // so far the derivative by the second argument alone
+    for (double& d : row) d *= 2 * s.weight;
+}
+
+Interval Springs::interval(const Connector& c, const Stage& s, std::span<const double> lambda, double* slope) const {
+  Interval step{s.h};
+  for (const Carrier& end : c.ends())
+    if (s.tempo && end.body >= 0 && points_.body_block[end.body] >= 0) step.h = s.h / s.tempo[end.body];
+  if (c.factor) step.factor = c.factor(s.t0, s.t1);
+  if (c.load_joint < 0) return step;
+  const double* multiplier = lambda.data() + joints_.row(c.load_joint);
+  for (const int r : c.load_rows) step.load += multiplier[r] * multiplier[r];
+  step.load = std::sqrt(step.load);
+  for (const int r : c.load_rows)
+    if (slope) slope[r] = step.load > 0 ? multiplier[r] / step.load : 0;
+  return step;
+}
+
+void Springs::evaluate(Pass& p) const {
+  thread_local ConnectorGradient left, right;
+  thread_local DirectionRows left_rows, right_rows;
+  const Stage& s = p.s;
+  for (size_t j = 0; j < list.size(); ++j) {
+    if (!owned_[j] || (s.rates_alone && s.h <= 0)) continue;
+    const Connector& c = list[j];
+    const int n = static_cast<int>(c.measures.size()), width = c.n_directions();
+    gradient(c, *s.left, left);
+    Response elastic, viscous, before;  // `before`: by the measures at w0
+    double slope[max_rows] = {};
+    spring_elastic(c, s, elastic);
+    double force[max_measures];
+    for (int m = 0; m < n; ++m) force[m] = elastic.s[m];
+    if (s.h > 0) {
+      spring_viscous(c, s, interval(c, s, p.lambda, slope), viscous, before);
+      for (int m = 0; m < n; ++m) force[m] += viscous.s[m];
+    }
+    add_force(p, c, left, force);
+    if (!p.K) continue;
+    ConnectorMatrix K = ConnectorMatrix::Zero(width, width);
+    const auto add_slope = [&](const Config& at, double f, const Response& response) {
+      if (f == 0) return;
+      gradient(c, at, *s.end, right);
+      for (int m = 0; m < n; ++m)
+        for (int k = 0; k < n; ++k)
+          if (const double D = f * response.D[m][k]; D != 0) K += D * left.G.row(m).head(width).transpose() * right.G.row(k).head(width);
+    };
+    if (s.h > 0) add_slope(*s.w0, s.slope0(), before), add_slope(*s.w1, s.slope1(), viscous);
+    add_slope(*s.e1, s.chain, elastic);
+    add_geometric(c, left, right, force, s.slope, K);
+    CliqueRows rows{0, &left_rows, &right_rows};
+    if (c.load_joint >= 0) {  // columns of the multipliers its load is made of; its own rows are none
+      const Connector& joint = joints_[c.load_joint];
+      rows.blocks = (joint.n_rows() + 2) / 3;
+      left_rows.setZero(), right_rows.setZero();
+      for (const int r : c.load_rows)
+        for (int m = 0; m < n && joint.active[r]; ++m)
+          left_rows.row(r).head(width) += slope[r] * viscous.by_load[m] * left.G.row(m).head(width);
+    }
+    add_clique(p, points_, c, clique_[j], K, rows);
+  }
+}
+
+}  // namespace hilo

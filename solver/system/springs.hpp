@@ -1,0 +1,40 @@
+// Springs, dampers, stops, motors, friction and joints that give way: forces of connectors, without rows.
+#pragma once
+#include "system/joints.hpp"
+
+namespace hilo {
+
+class Springs final : public Contribution {
+ public:
+  Springs(const Points& points, const Joints& joints) : points_(points), joints_(joints) {}
+  std::vector<Connector> list;
+
+  Traits traits() const override;
+  std::string count() const override;
+  void add_cliques(Cliques& cliques) override;
+  void evaluate(Pass& p) const override;
+  void add_energy(const Config& q, const Config& v, Energy& sum) const override;
+  void add_work(const Moment& m, Work& sum) const override;
+  void commit(const Config& q, const Config* v) override;
+  void archive(Archive& a) override;
+  std::vector<Output> outputs() const override;
+  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
+  void tie(Ties& ties) const override;
+  void add_timed(std::span<const int> group, double t, double T, std::span<double> sum) const override;
+  void add_taken(std::span<const int> group, const Stage& s, std::span<const double> lambda, std::span<double> sum) const override;
+
+ private:
+  /// What the rate forces of a spring may ask of a stage; `slope`, when given, receives d load / d multiplier for its load rows.
+  Interval interval(const Connector& c, const Stage& s, std::span<const double> lambda, double* slope = nullptr) const;
+  /// Rate forces of a stage, added to `out`.
+  void viscous(const Connector& c, const Stage& s, std::span<const double> lambda, Response& out) const;
+  const Points& points_;
+  const Joints& joints_;
+  std::vector<int> clique_;
+  std::vector<char> owned_;
+};
+
+/// Elastic response of a spring at a stage, D by its measures at e1.
+void spring_elastic(const Connector& c, const Stage& s, Response& out);
+
+}  // namespace hilo

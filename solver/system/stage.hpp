@@ -1,0 +1,52 @@
+// Where in a step an integrator takes which term.
+#pragma once
+#include "physics/config.hpp"
+
+namespace hilo {
+
+/// From which side an instant is reached: the end of a step from the left, its start from the right.
+enum class Side { left = -1, right = 1 };
+
+/// Everything an evaluation needs besides the unknowns.
+struct Stage {
+  const Config* end;                  // q1, the unknown: increments and constraint rows live here
+  const Config* left;                 // configuration of the left null space and of the constraint gradients
+  double slope = 0.5;                 // d left / d end
+  const Config *e0, *e1;              // elastic pair: the ends of the step, or one configuration twice
+  double weight = 0.5;                // share of e1 in averages; 1/2 of two different ends means discrete gradients over the step
+  double chain = 1;                   // d e1 / d end
+  const Config *w0, *w1;              // pair of the rate terms, rate = (e(w1) - e(w0))/h: v h/2 on either side of `left`
+  double h = 0;                       // time between w0 and w1 [s]; 0: no rate terms
+  double span = 0;                    // time that the stage stands for in the work of the rate terms [s]; 0: h
+  const Config* a;                    // accelerations [m/s^2]
+  const Config* v = nullptr;          // velocities, for mass-proportional damping
+  double mass_slope = 0;              // d a / d end [1/s^2]
+  const double* tempo = nullptr;      // step over the one by its own clock, of each body; null: 1
+  double alpha_slope = 0;             // d v / d end [1/s]
+  double chi = 0;                     // stress dissipation on flexible parts
+  double t0 = 0, t1 = 0;              // loads: mean over [t0, t1], or value at t0 = t1
+  double t_end = 0;                   // time of `end`: driven joints
+  const Config* work_from = nullptr;  // start of the step for System::work; null: e0
+  const Config* v0 = nullptr;         // start velocities, where v1 = v0 + h a: there inertia works through h (v0 + v1)/2
+  bool rates_alone = false;           // how accelerations, rates and rows of velocities act on the equations of another stage
+  double load_factor = 1;             // of gravity and of loads without a history, for static load steps
+  /// Derivatives of w0 and w1 by `end`.
+  double slope0() const {
+    const double x = slope - h * alpha_slope / 2;
+    return x > 1e-12 || x < -1e-12 ? x : 0;  // w0 is the start of the step
+  }
+  double slope1() const { return slope + h * alpha_slope / 2; }
+  bool conserving() const { return weight == 0.5 && e0 != e1; }
+  const Config& from() const { return work_from ? *work_from : *e0; }
+};
+
+/// A stage that takes everything at one configuration: statics, and methods that enforce the equations of motion at an instant.
+inline Stage stage_at(const Config& q, double t) {
+  Stage s{};
+  s.end = s.left = s.e0 = s.e1 = s.w0 = s.w1 = &q;
+  s.slope = s.weight = s.chain = 1;
+  s.t0 = s.t1 = s.t_end = t;
+  return s;
+}
+
+}  // namespace hilo

@@ -1,0 +1,37 @@
+// Sensors and probes: places that are measured.
+#pragma once
+#include "system/contribution.hpp"
+
+namespace hilo {
+
+/// A measured place: mean of nodes, or a point of a body.
+struct Station {
+  std::string name;
+  bool sensor = false;
+  int body = -1;
+  Vec3 arm = Vec3::Zero();       // body axes
+  std::vector<int> nodes;        // owned ones
+  double n_nodes = 0;            // on all ranks
+  Vec3 mean = Vec3::Zero();      // reference mean of the nodes
+  Mat3 axes = Mat3::Identity();  // sensor axes at the start, columns
+};
+
+class Stations final : public Contribution {
+ public:
+  explicit Stations(const Points& points) : points_(points) {}
+  std::vector<Station> list;
+
+  void evaluate(Pass&) const override {}
+  std::vector<Output> outputs() const override;
+  void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
+  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
+  void tie(Ties&) const override {}
+
+ private:
+  /// Position, velocity or acceleration.
+  Vec3 mean(const Station& s, const Config& of) const;
+  Mat3 axes(const Station& s, const Config& q, const Vec3& centre) const;
+  const Points& points_;
+};
+
+}  // namespace hilo

@@ -1,0 +1,24 @@
+#include <numeric>
+
+#include "system/contribution.hpp"
+
+namespace hilo {
+
+Ties::Ties(int n_bodies) : parent_(n_bodies), freedoms_(n_bodies, 0), excluded_(n_bodies, 0) {
+  std::iota(parent_.begin(), parent_.end(), 0);
+}
+
+int Ties::root(int b) const {
+  while (parent_[b] != b) b = parent_[b] = parent_[parent_[b]];
+  return b;
+}
+
+void Ties::connect(int a, int b) { parent_[root(a)] = root(b); }
+
+Traits& Traits::operator|=(const Traits& o) {
+  deforms |= o.deforms, constrains |= o.constrains, has_rates |= o.has_rates;
+  is_pressed |= o.is_pressed, is_driven |= o.is_driven, lumps_masses |= o.lumps_masses;
+  return *this;
+}
+
+}  // namespace hilo
