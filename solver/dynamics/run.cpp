@@ -15,7 +15,7 @@
 #include "dynamics/predictor.hpp"
 #include "dynamics/profile.hpp"
 #include "dynamics/progress.hpp"
-#include "dynamics/recorder.hpp"
+#include "dynamics/record/recorder.hpp"
 #include "dynamics/redundancy.hpp"
 #include "dynamics/singular_start.hpp"
 #include "dynamics/start.hpp"

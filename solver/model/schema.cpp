@@ -33,6 +33,7 @@ const std::vector<ArraySchema>& file_schema() {
       {"parts.h5", "/tags", "link", "", "",
        "external link to tags.h5:/tags (absent for an untagged mesh); attributes of /: tags_file, tags_digest"},
       {"parts.h5", "/parts/rank", "i4", "(n_cells)", "", "part of each cell; attribute n_parts"},
+      {"run.h5", "/provenance", "string", "(n)", "", "command lines that led to this file, oldest first"},
       {"run.h5", "/mesh", "link", "", "", "external link to mesh.h5:/mesh (absent for a scene of bodies alone)"},
       {"run.h5", "/tags/fidelity", "string", "(n_regions)", "", "the fidelity each region was run at"},
       {"run.h5", "/parts/rank", "i4", "(n_cells)", "", "part of each cell in a parallel run"},

@@ -8,6 +8,7 @@
 
 #include "physics/coordinates.hpp"
 #include "system/builder.hpp"
+#include "system/springs.hpp"
 
 namespace hilo {
 namespace {
@@ -124,7 +125,7 @@ void Builder::add_joints() {
     if (e.has("stiffness") || e.has("angular_stiffness")) {
       if (!driven.empty())
         throw Error(e.where(driven), e.label() + ": a joint that gives way cannot be driven", "put a motor or a rigid joint");
-      springs_->list.push_back(compliant(e, make_joint(j, out_->start)));
+      out_->part<Springs>().list.push_back(compliant(e, make_joint(j, out_->start)));
       continue;
     }
     for (const char* key : {"damping", "angular_damping"})

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "system/builder.hpp"
+#include "system/solids.hpp"
 
 namespace hilo {
 namespace {
@@ -234,7 +235,7 @@ void Builder::make_batches() {
     b.kernel = solid_kernel(b.shape, b.material.index());
     out_->stiffness =
         std::max(out_->stiffness, young_of(linear_moduli(b.material)) * (b.area > 0 ? b.area / mesh_->length : mesh_->length / 100));
-    solids_->batches.push_back(std::move(b));
+    out_->part<Solids>().batches.push_back(std::move(b));
   }
   warn_of_limits();
 }

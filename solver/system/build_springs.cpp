@@ -7,6 +7,7 @@
 
 #include "physics/freedom.hpp"
 #include "system/builder.hpp"
+#include "system/springs.hpp"
 
 namespace hilo {
 namespace {
@@ -76,14 +77,14 @@ void Builder::add_springs() {
       out_->stiffness = std::max(out_->stiffness, e.number("stiffness"));
     }
     c.name = e.name;
-    springs_->list.push_back(std::move(c));
+    out_->part<Springs>().list.push_back(std::move(c));
   }
 }
 
 const Connector& Builder::joint_of(const Entry& e) const {
   const std::string& name = e.text("joint");
   std::vector<std::string> names;
-  for (const auto* list : {&out_->joints.list, &springs_->list})
+  for (const auto* list : {&out_->joints.list, &out_->part<Springs>().list})
     for (const Connector& c : *list) {
       if (c.law && c.section != "joint") continue;
       if (c.name == name) return c;
@@ -97,7 +98,7 @@ void Builder::add_joint_forces() {
   const Config& q = out_->start;
   const auto add = [&](Connector c, const Entry& e) {
     c.name = e.name, c.section = e.section;
-    springs_->list.push_back(std::move(c));
+    out_->part<Springs>().list.push_back(std::move(c));
   };
   const auto along = [&](const Entry& e, Freedom freedom, std::unique_ptr<SpringLaw> law) {
     const Connector& joint = joint_of(e);

@@ -4,13 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "system/bodies.hpp"
-#include "system/loads.hpp"
-#include "system/motions.hpp"
-#include "system/point_masses.hpp"
-#include "system/solids.hpp"
-#include "system/springs.hpp"
-#include "system/stations.hpp"
+#include "physics/solid_kernel.hpp"
 #include "system/system.hpp"
 
 namespace hilo {
@@ -69,15 +63,18 @@ class Builder {
   double count_owned(const std::vector<int>& nodes) const;
   Vec3 mean_of(const std::vector<int>& nodes) const;
   int nearest_owned(const std::vector<int>& nodes, const Vec3& at) const;
-  // build_entries.cpp
+  // build.cpp
   void add_contributions();
+  // build_motions.cpp
+  void add_motions();
+  void set_initial_velocities();
+  // build_loads.cpp
+  void add_loads();
+  // build_entries.cpp
   /// The history of an entry; every one that acts on the system is taken through here, so that its jumps and kinks are known.
   const History& use_history(const Entry& entry, Acts acts);
-  void add_motions();
-  void add_loads();
   void add_stations();
   void add_point_masses();
-  void set_initial_velocities();
   // build_springs.cpp
   void add_springs();
   void add_joint_forces();
@@ -90,12 +87,6 @@ class Builder {
   LocalMesh* mesh_;
   const Comm& comm_;
   std::unique_ptr<System> out_;
-  Solids* solids_ = nullptr;  // the contributions of out_
-  PointMasses* point_masses_ = nullptr;
-  Springs* springs_ = nullptr;
-  Loads* loads_ = nullptr;
-  Motions* motions_ = nullptr;
-  Stations* stations_ = nullptr;
   std::vector<Region> regions_;
   Vec3 origin_ = Vec3::Zero();               // of the mass integrals
   std::map<std::string, int> body_by_name_;  // [[body]] entries

@@ -133,7 +133,7 @@ void Joints::commit(const Config& q, const Config*) {
 
 void Joints::archive(Archive& a) {
   for (Connector& j : list) {
-    a("joint", j.name, j.active);
+    a("joint " + j.name, j.active);
     if (j.rows) j.rows->archive(a);
   }
 }

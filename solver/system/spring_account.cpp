@@ -84,7 +84,7 @@ void Springs::commit(const Config& q, const Config* v) {
 
 void Springs::archive(Archive& a) {
   for (Connector& c : list) {
-    a("spring", c.name);
+    a("spring " + c.name);
     c.law->archive(a);
   }
 }

@@ -36,10 +36,14 @@ class System : public Points {
   std::span<const std::unique_ptr<Contribution>> parts() const { return parts_; }
   /// The contribution of a type, for what is about that type alone.
   template <class T>
-  const T& part() const {
+  T& part() {
     for (const auto& part : parts_)
-      if (const auto* found = dynamic_cast<const T*>(part.get())) return *found;
+      if (auto* found = dynamic_cast<T*>(part.get())) return *found;
     throw Error("", "the system lacks a contribution", "", Exit::fault);
+  }
+  template <class T>
+  const T& part() const {
+    return const_cast<System*>(this)->part<T>();
   }
 
  private:

@@ -1,4 +1,4 @@
-#include "dynamics/slabs.hpp"
+#include "dynamics/record/slabs.hpp"
 
 #include <algorithm>
 #include <optional>

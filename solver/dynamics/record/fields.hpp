@@ -1,0 +1,61 @@
+// Fields: what nodes and cells have at an instant.  Sources of fields, one file each, are looped over; a further one is a file, a line in
+// field_sources() and its rows in model/schema.cpp.
+#pragma once
+#include <algorithm>
+
+#include "dynamics/record/run_file.hpp"
+#include "system/system.hpp"
+
+namespace hilo {
+
+/// One array of a field: /field/<step>/NAME.
+struct Field {
+  std::string name;
+  std::string key = name;  // of output.fields, by which it is asked for
+  std::string label = {};  // in ParaView; "": not shown there
+  bool of_cells = false;   // else of nodes
+};
+
+/// Positions, velocities and accelerations at an instant.
+struct Snapshot {
+  const Config &q, &v, &a;
+};
+
+/// Where the fields of one instant go.
+class FieldWriter {
+ public:
+  FieldWriter(RunFile& file, const std::vector<std::string>& wanted, const Slabs& nodes, const Slabs& cells, bool all_cells)
+      : file_(file), wanted_(wanted), nodes_(nodes), cells_(cells), all_cells_(all_cells) {}
+  bool wants(const std::string& key) const { return std::find(wanted_.begin(), wanted_.end(), key) != wanted_.end(); }
+  /// Values of the local nodes (n x width), or of this rank's piece of the rows.  Collective, like all of these.
+  void nodes(const std::string& name, const std::vector<double>& local, int width) { piece(name, nodes_.collect(local, width)); }
+  void piece(const std::string& name, const std::vector<double>& rows) { file_.write_piece(nodes_, group + "/" + name, rows); }
+  /// Values of the local cells; left out where the file has no rows for all cells.
+  void cells(const std::string& name, const std::vector<double>& local, int width) {
+    if (all_cells_) file_.write_piece(cells_, group + "/" + name, cells_.collect(local, width));
+  }
+  const Slabs& node_rows() const { return nodes_; }
+  std::string group;  // /field/<step>
+
+ private:
+  RunFile& file_;
+  const std::vector<std::string>& wanted_;
+  const Slabs &nodes_, &cells_;
+  bool all_cells_;
+};
+
+class FieldSource {
+ public:
+  virtual ~FieldSource() = default;
+  virtual std::vector<Field> fields() const = 0;
+  /// Called where one of its keys is wanted.  Collective.
+  virtual void write(const Snapshot& at, FieldWriter& to) = 0;
+};
+
+/// Displacement, velocity and acceleration of nodes.
+std::unique_ptr<FieldSource> motion_fields(const System& system);
+/// Recovered stress of nodes and stress of cells; node_row: row of each local node, -1 for those not written.
+std::unique_ptr<FieldSource> stress_fields(const System& system, const std::vector<std::int64_t>& node_row);
+std::vector<std::unique_ptr<FieldSource>> field_sources(const System& system, const std::vector<std::int64_t>& node_row);
+
+}  // namespace hilo

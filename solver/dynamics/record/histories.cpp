@@ -1,0 +1,66 @@
+#include "dynamics/record/histories.hpp"
+
+#include "dynamics/record/run_file.hpp"
+
+namespace hilo {
+namespace {
+
+const std::string times = "/history/t", iterations = "/history/newton";
+
+}  // namespace
+
+Histories::Histories(const System& system) : system_(system) {
+  outputs_ = {{.group = "", .name = "energy", .n_end = 6},
+              {.group = "", .name = "momentum", .n_end = 6},
+              {.group = "", .name = "constraint", .n_end = 1}};
+  for (const auto& part : system.parts())
+    for (Output& output : part->outputs()) outputs_.push_back(std::move(output));
+  for (const Output& output : outputs_) {
+    arrays_.push_back("/history/" + (output.group.empty() ? output.name : output.group + "/" + to_link_name(output.name)));
+    n_mid_ += static_cast<size_t>(output.n_mid);
+  }
+}
+
+std::vector<double> Histories::end_values(const State& s, const Ledger& ledger) const {
+  const Energy& e = ledger.energy;
+  std::vector<double> v{e.kinetic, e.elastic, e.gravity, ledger.work, ledger.dissipated, ledger.balance};
+  v.insert(v.end(), e.momentum.data(), e.momentum.data() + 3);
+  v.insert(v.end(), e.angular.data(), e.angular.data() + 3);
+  v.push_back(ledger.rows.worst());
+  for (const auto& part : system_.parts()) part->add_end_values(s.q, s.v, v);
+  return v;
+}
+
+std::vector<double> Histories::mid_values(const Moment& moment) const {
+  std::vector<double> v;
+  v.reserve(n_mid_);
+  for (const auto& part : system_.parts()) part->add_mid_values(moment, v);
+  return v;
+}
+
+void Histories::declare(Store& f) {
+  start_array<double>(f, times);
+  start_array<std::int32_t>(f, iterations, times);
+  for (const std::string& array : arrays_) start_array<double>(f, array, times);
+}
+
+void Histories::append(Store& f, double t, int newton, const std::vector<double>& end, const std::vector<double>& mid) const {
+  f.append<double>(times, {&t, 1});
+  const std::int32_t n = newton;
+  f.append<std::int32_t>(iterations, {&n, 1});
+  const double *e = end.data(), *m = mid.data();
+  std::vector<double> row;
+  for (size_t k = 0; k < outputs_.size(); ++k) {
+    const Output& output = outputs_[k];
+    if (output.row) {
+      output.row(e, m, row);
+    } else {
+      row.assign(e, e + output.n_end);
+      row.insert(row.end(), m, m + output.n_mid);
+    }
+    f.append<double>(arrays_[k], row);
+    e += output.n_end, m += output.n_mid;
+  }
+}
+
+}  // namespace hilo

@@ -1,0 +1,29 @@
+// Histories: a row at every step of all that the run and the contributions put out.
+#pragma once
+#include "dynamics/audit.hpp"
+#include "dynamics/state.hpp"
+#include "model/store.hpp"
+#include "system/system.hpp"
+
+namespace hilo {
+
+class Histories {
+ public:
+  explicit Histories(const System& system);
+  /// Numbers of a row that belong to an instant, and those that belong inside the step before it.  Collective.
+  std::vector<double> end_values(const State& s, const Ledger& ledger) const;
+  std::vector<double> mid_values(const Moment& moment) const;
+  size_t n_mid() const { return n_mid_; }
+  /// The arrays, without rows.
+  void declare(Store& f);
+  /// A row; `mid` as interpolated to its instant.
+  void append(Store& f, double t, int newton, const std::vector<double>& end, const std::vector<double>& mid) const;
+
+ private:
+  const System& system_;
+  std::vector<Output> outputs_;      // of the run, then of the contributions
+  std::vector<std::string> arrays_;  // their paths
+  size_t n_mid_ = 0;
+};
+
+}  // namespace hilo

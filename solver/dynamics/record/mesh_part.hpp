@@ -1,0 +1,40 @@
+// What the results file has of nodes and cells: which of them have rows, the fields of those rows, and the sidecar that shows them.
+#pragma once
+#include <optional>
+
+#include "dynamics/profile.hpp"
+#include "dynamics/record/fields.hpp"
+
+namespace hilo {
+
+class MeshPart {
+ public:
+  /// `skin`: fields of the nodes on the surfaces of regions alone.
+  MeshPart(const System& system, RunFile& file, std::vector<std::string> fields, bool skin)
+      : system_(system), file_(file), wanted_(std::move(fields)), skin_(skin) {}
+  /// Rows of the fields, followers and, in parallel, parts.  Collective, like all of these.
+  void declare();
+  void write(double t, const Snapshot& at);
+  /// Points ParaView at the arrays of the results file, where it has fields.
+  void finish();
+  int n_fields() const { return static_cast<int>(times_.size()); }
+
+ private:
+  void write_followers();
+  void write_parts();
+  void write_skin(const std::vector<Facet>& facets);
+  void write_topology(Store& f);
+  void write_xdmf(Store& f);
+  const System& system_;
+  RunFile& file_;
+  std::vector<std::string> wanted_;
+  bool skin_;
+  std::optional<Slabs> nodes_, cells_;  // rows of the fields
+  std::vector<std::int64_t> node_row_;  // of local nodes, also those of other ranks; -1: not written
+  std::vector<std::unique_ptr<FieldSource>> sources_;
+  std::int64_t topology_entries_ = 0, topology_cells_ = 0;  // of XDMF's list
+  std::vector<double> times_;
+  double last_xdmf_ = wall_clock();
+};
+
+}  // namespace hilo

@@ -1,0 +1,144 @@
+#include "dynamics/record/recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/profile.hpp"
+
+namespace hilo {
+
+Recorder::Recorder(const System& system, const Scene& scene, Setup setup)
+    : system_(system),
+      scene_(scene),
+      setup_(std::move(setup)),
+      share_(system),
+      file_(*system.comm, setup_.path, setup_.single_precision),
+      histories_(system) {
+  if (system.mesh) mesh_.emplace(system, file_, setup_.fields, setup_.skin);
+}
+
+void Recorder::first(const State& s, const Ledger& ledger) {
+  Row row;
+  row.t = s.t;
+  row.point = histories_.end_values(s, ledger);
+  row.field = true;
+  row.q = s.q, row.v = s.v;
+  next_field_ = setup_.interval;
+  rows_.push_back(std::move(row));
+  last_t_ = s.t;
+  file_.create();
+  file_.on_store([&](Store& f) { declare_run(f), declare_bodies(f), histories_.declare(f); });
+  if (mesh_) mesh_->declare();
+  file_.share_failure();
+}
+
+void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, const Config& a, int iterations) {
+  const Timed timed(phases().output);
+  ++phases().records;
+  Interval interval;
+  interval.h = s.t - last_t_;
+  std::vector<double> shared;
+  if (setup_.redundant) shared = share_(taken.stage, taken.lambda);
+  const std::span<const double> lambda = taken.lambda;
+  interval.mid = histories_.mid_values(Moment(system_, taken.stage, lambda, setup_.redundant ? shared : lambda, &a));
+  interval.a = a;
+  interval.starts_at_jump = !rows_.empty() && rows_.back().jump;
+  intervals_.push_back(std::move(interval));
+  Row row;
+  row.t = s.t;
+  row.newton = iterations, last_t_ = s.t;
+  row.point = histories_.end_values(s, ledger);
+  row.jump =
+      std::any_of(setup_.jumps.begin(), setup_.jumps.end(), [&](double t) { return std::abs(t - s.t) <= 1.001 * system_.same_time; });
+  row.field = setup_.is_static || s.t >= next_field_ * (1 - 1e-9);
+  if (row.field) {
+    row.q = s.q, row.v = s.v;
+    if (setup_.interval > 0) next_field_ = setup_.interval * (std::floor(s.t * (1 + 1e-9) / setup_.interval) + 1);
+  }
+  rows_.push_back(std::move(row));
+  advance(false);
+  if (wall_clock() - last_flush_ > 0.5) file_.on_store([](Store& f) { f.flush(); }), last_flush_ = wall_clock();
+  file_.share_failure();
+}
+
+/// Write every row whose neighbouring steps are known.  Mid values belong to their own time in the step and are interpolated to its ends.
+void Recorder::advance(bool last) {
+  const double own = setup_.own_time;
+  const size_t from_right = setup_.alternates ? 3 : 2;  // steps an extrapolation takes
+  const auto ready = [&] {                              // row 0 of the deque
+    if (rows_.empty()) return false;
+    if (last || setup_.is_static) return true;
+    if (!first_written_) return intervals_.size() >= from_right;
+    return intervals_.size() >= (rows_[0].jump ? 1 + from_right : own == 1 ? 1 : 2);
+  };
+  while (ready()) {
+    // in the deque, intervals_[0] ends at rows_[0] once the first row is out, else it starts there
+    const size_t after = first_written_ ? 1 : 0;
+    const bool has_before = first_written_ && !intervals_.empty(), has_after = intervals_.size() > after;
+    if (has_before && (own == 1 || has_after) && (!rows_[0].jump || setup_.is_static)) {
+      const double before = (1 - own) * intervals_[0].h, behind = own == 1 ? 1 : own * intervals_[1].h;
+      write_row({{behind / (before + behind), &intervals_[0]}, {before / (before + behind), &intervals_[own == 1 ? 0 : 1]}});
+    } else if (has_after && !setup_.is_static) {
+      std::vector<const Interval*> next{&intervals_[after]};
+      for (size_t k = after + 1; k < intervals_.size() && !intervals_[k].starts_at_jump && next.size() < from_right; ++k)
+        next.push_back(&intervals_[k]);
+      write_row(extrapolated(next, true));
+    } else if (has_before) {  // the end: from the left, with the intervals kept for it
+      std::vector<const Interval*> next{&intervals_[0]};
+      for (size_t k = past_.size(); k-- > 0 && !next.back()->starts_at_jump;) next.push_back(&past_[k]);
+      write_row(extrapolated(next, false));
+    } else {
+      write_row({});
+    }
+    rows_.pop_front();
+    if (first_written_) {
+      past_.push_back(std::move(intervals_.front())), intervals_.pop_front();
+      if (past_.size() > 2) past_.pop_front();
+    }
+    first_written_ = true;
+    if (rows_.empty()) return;
+  }
+}
+
+/// Value at the outer end of the first of up to three neighbouring intervals: the line through their own times.  Where they alternate
+/// about the truth, the line through the means at the two nodes further in is free of that: m1 + h1 (m2 - m3)/(h2 + h3).
+std::vector<std::pair<double, const Recorder::Interval*>> Recorder::extrapolated(const std::vector<const Interval*>& m,
+                                                                                 bool from_right) const {
+  if (m.size() == 1) return {{1, m[0]}};
+  if (setup_.alternates && m.size() == 3) {
+    const double w = m[0]->h / (m[1]->h + m[2]->h);
+    return {{1, m[0]}, {w, m[1]}, {-w, m[2]}};
+  }
+  const double own = from_right ? setup_.own_time : 1 - setup_.own_time;  // distance from the outer end, in steps
+  const double near = own * m[0]->h, far = m[0]->h + own * m[1]->h, w = near / (far - near);
+  return {{1 + w, m[0]}, {-w, m[1]}};
+}
+
+/// Row 0 of the deque with the weighted sum of intervals as its mid-step values; zeros where there are none.
+void Recorder::write_row(const std::vector<std::pair<double, const Interval*>>& weights) {
+  const Row& row = rows_[0];
+  std::vector<double> mid(histories_.n_mid(), 0.0);
+  for (const auto& [w, interval] : weights)
+    for (size_t i = 0; i < mid.size(); ++i) mid[i] += w * interval->mid[i];
+  if (row.field && mesh_) {
+    Config a, sum;
+    combine(a, {{0, &row.q}});
+    for (const auto& [w, interval] : weights) combine(sum, {{1, &a}, {w, &interval->a}}), std::swap(a, sum);
+    mesh_->write(row.t, {row.q, row.v, a});
+  }
+  ++rows_written_;
+  file_.on_store([&](Store& f) { histories_.append(f, row.t, row.newton, row.point, mid); });
+}
+
+void Recorder::finish(bool complete) {
+  advance(true);
+  file_.on_store([&](Store& f) {
+    f.set("/", "complete", static_cast<std::int64_t>(complete));
+    f.flush();
+  });
+  if (mesh_) mesh_->finish();
+  file_.share_failure();
+  file_.close();
+}
+
+}  // namespace hilo

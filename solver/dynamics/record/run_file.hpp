@@ -1,0 +1,58 @@
+// The results file: open on one rank, written by all, each array as the schema has it (model/schema: unit and meaning).
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "dynamics/record/slabs.hpp"
+#include "model/schema.hpp"
+#include "model/store.hpp"
+
+namespace hilo {
+
+/// Path without its .h5.
+std::string stem(const std::string& path);
+
+/// A whole array.
+template <class T>
+void write_array(Store& f, const std::string& path, const std::vector<T>& values, std::vector<std::int64_t> shape) {
+  const ArraySchema& of = run_array(path);
+  f.write<T>(path, values, std::move(shape), std::string(of.unit), std::string(of.meaning));
+}
+/// One that grows by rows; `time`: the array that has their times.
+template <class T>
+void start_array(Store& f, const std::string& path, const std::string& time = "") {
+  const ArraySchema& of = run_array(path);
+  f.start_rows<T>(path, row_shape(of), std::string(of.unit), std::string(of.meaning), time);
+}
+
+class RunFile {
+ public:
+  RunFile(const Comm& comm, std::string path, bool single_precision)
+      : comm_(comm), path_(std::move(path)), single_precision_(single_precision) {}
+  const std::string& path() const { return path_; }
+  /// How fields are stored: "F4" or "F8".
+  const char* number() const { return single_precision_ ? "F4" : "F8"; }
+  /// Collective.
+  void create();
+  /// What a rank alone does and may fail at (a full disk) is noted here and told to all ranks by share_failure.
+  void on_store(const std::function<void(Store&)>& write);
+  void share_failure() const;
+  /// An array of which every rank has its piece, in the precision of fields unless `exact`.  Collective.
+  void write_piece(const Slabs& rows, const std::string& array, const std::vector<double>& piece, bool exact = false);
+  /// No more is written; without a file where it is discarded.
+  void close() { store_.reset(); }
+  void discard();
+
+ private:
+  const Comm& comm_;
+  std::string path_;
+  bool single_precision_;
+  std::unique_ptr<Store> store_;  // rank 0
+  std::optional<Error> failure_;  // of a write of this rank
+};
+
+}  // namespace hilo

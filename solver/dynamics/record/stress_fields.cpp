@@ -1,0 +1,66 @@
+// Stress of nodes and cells in the result: recovered by the ranks, brought together where the rows are written.
+#include <algorithm>
+#include <optional>
+
+#include "dynamics/record/fields.hpp"
+#include "dynamics/stress_recovery.hpp"
+
+namespace hilo {
+namespace {
+
+class StressFields final : public FieldSource {
+ public:
+  StressFields(const System& system, const std::vector<std::int64_t>& node_row) : system_(system), node_row_(node_row) {}
+  std::vector<Field> fields() const override {
+    return {{.name = "stress"},
+            {.name = "stress_error", .label = "stress error [Pa]"},
+            {.name = "von_mises", .label = "von Mises [Pa]"},
+            {.name = "cell_von_mises", .key = "von_mises", .label = "cell von Mises [Pa]", .of_cells = true}};
+  }
+
+  /// A node's stress is that of its first flexible region (first: lowest number) over all ranks.
+  void write(const Snapshot& instant, FieldWriter& to) override {
+    constexpr int n_sent = 10;  // row, region, stress, von Mises, error
+    if (!recovery_) recovery_.emplace(system_);
+    const auto at = recovery_->recover(instant.q.x);
+    const Slabs& rows = to.node_rows();
+    std::vector<std::vector<double>> send(system_.comm->size);
+    for (size_t i = 0; i < recovery_->sites().size(); ++i) {
+      const auto& site = recovery_->sites()[i];
+      const std::int64_t to_row = node_row_[site.node];
+      if (to_row < 0) continue;
+      auto& list = send[rows.rank_of(to_row)];
+      list.push_back(static_cast<double>(to_row)), list.push_back(site.region);
+      list.insert(list.end(), at.stress[i].data(), at.stress[i].data() + 6);
+      list.push_back(at.von_mises[i]), list.push_back(at.error[i]);
+    }
+    const auto count = static_cast<size_t>(rows.count());
+    std::vector<double> region(count, -1.0), stress(6 * count, 0.0), vm(count, 0.0), error(count, 0.0);
+    for (const auto& list : system_.comm->exchange(send))
+      for (size_t k = 0; k < list.size(); k += n_sent) {
+        const auto i = static_cast<size_t>(static_cast<std::int64_t>(list[k]) - rows.first());
+        if (region[i] >= 0 && region[i] <= list[k + 1]) continue;
+        region[i] = list[k + 1];
+        std::copy_n(list.data() + k + 2, 6, stress.data() + 6 * i);
+        vm[i] = list[k + 8], error[i] = list[k + 9];
+      }
+    if (to.wants("stress")) to.piece("stress", stress);
+    if (to.wants("stress_error")) to.piece("stress_error", error);
+    if (!to.wants("von_mises")) return;
+    to.piece("von_mises", vm);
+    to.cells("cell_von_mises", at.cell, 1);
+  }
+
+ private:
+  const System& system_;
+  const std::vector<std::int64_t>& node_row_;
+  std::optional<StressRecovery> recovery_;  // made with the first field that needs it
+};
+
+}  // namespace
+
+std::unique_ptr<FieldSource> stress_fields(const System& system, const std::vector<std::int64_t>& node_row) {
+  return std::make_unique<StressFields>(system, node_row);
+}
+
+}  // namespace hilo

@@ -1,0 +1,82 @@
+// The system of a scene, step by step.
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "system/bodies.hpp"
+#include "system/builder.hpp"
+#include "system/loads.hpp"
+#include "system/motions.hpp"
+#include "system/point_masses.hpp"
+#include "system/solids.hpp"
+#include "system/springs.hpp"
+#include "system/stations.hpp"
+
+namespace hilo {
+
+Builder::Builder(const Scene& scene, LocalMesh* mesh, const Comm& comm) : scene_(scene), mesh_(mesh), comm_(comm) {}
+
+/// All that takes part in the equations; evaluations, results and the line that tells them go in this order.
+void Builder::add_contributions() {
+  System& s = *out_;
+  s.add<Solids>(s);
+  s.add<Bodies>(s);
+  s.add<PointMasses>(s);
+  s.place_joints();
+  s.add<Springs>(s, s.joints);
+  s.add<Loads>(s);
+  s.add<Motions>(s);
+  s.add<Stations>(s);
+}
+
+std::unique_ptr<System> Builder::build() {
+  out_ = std::make_unique<System>();
+  add_contributions();
+  out_->comm = &comm_;
+  out_->mesh = mesh_;
+  out_->gravity = scene_.table("scene").vector3("gravity");
+  if (mesh_) {
+    out_->X = mesh_->mesh.X;
+    out_->node_owned = mesh_->node_owned;
+    out_->length = mesh_->length;
+  }
+  out_->start.x = out_->X;
+  out_->follower.assign(out_->X.size(), -1);
+  out_->fixed.assign(out_->X.size(), {false, false, false});
+  held_by_.resize(out_->X.size());
+  new_body("ground", Vec3::Zero());
+  out_->bodies[0].ground = true;
+  read_regions();
+  integrate_regions();
+  make_rigid_bodies();
+  add_free_bodies();
+  comm_.together([&] { make_batches(); });  // a region that lacks something may have its cells on one rank
+  add_point_masses();
+  add_motions();
+  add_joints();
+  add_springs();
+  add_joint_forces();
+  add_loads();
+  add_stations();
+  if (!mesh_) {  // size of a scene of bodies: what its points span
+    Eigen::AlignedBox3d box;
+    for (size_t b = 1; b < out_->bodies.size(); ++b) box.extend(out_->bodies[b].Xc);
+    for (const Connector& j : out_->joints)
+      for (const Entity& e : j.entities)
+        if (e.point && j.end[e.end].body >= 0) box.extend(Vec3(out_->bodies[j.end[e.end].body].Xc + e.r));
+    out_->length = box.isEmpty() ? 1 : std::max(box.diagonal().norm(), 1e-9);
+    if (out_->length < 1e-8) out_->length = out_->bodies.size() > 1 ? out_->bodies[1].size : 1;
+  }
+  const bool is_static = scene_.table("time").text("analysis") == "static";
+  if (!(out_->mass > 0) && !is_static)
+    throw Error(scene_.path, "the scene has no mass: nothing can move", "give a mesh or [[body]] entries, and densities");
+  out_->stiffness = comm_.max(out_->stiffness);  // cells are on their ranks
+  out_->number();
+  if (comm_.sum(static_cast<double>(out_->n_blocks())) == 0)
+    throw Error(scene_.path, "nothing is free to move", "every region and body is held");
+  set_initial_velocities();
+  return std::move(out_);
+}
+
+std::unique_ptr<System> build_system(const Scene& scene, LocalMesh* mesh, const Comm& comm) { return Builder(scene, mesh, comm).build(); }
+
+}  // namespace hilo

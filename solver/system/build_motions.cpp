@@ -1,0 +1,156 @@
+// [[motion]] and [[initial]] entries: what is held or moves by a law, and velocities at the start.
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <set>
+
+#include "system/builder.hpp"
+#include "system/motions.hpp"
+
+namespace hilo {
+namespace {
+
+std::array<bool, 3> components(const Entry& e) {
+  std::array<bool, 3> c{};
+  for (const std::string& t : e.texts("components")) {
+    if (t != "x" && t != "y" && t != "z")
+      throw Error(e.where("components"), fmt::format("{}: unknown component \"{}\"", e.label(), t), "x, y or z");
+    c[t[0] - 'x'] = true;
+  }
+  return c;
+}
+
+/// Two motions of components of nodes that prescribe the same one of the same node.
+bool share_component(const Motion& a, const Motion& b) {
+  bool same = false;
+  for (int k = 0; k < 3; ++k) same = same || (a.component[k] && b.component[k]);
+  if (!same || a.body >= 0 || b.body >= 0) return false;  // a node follows one body at most
+  const std::set<int> of_a(a.nodes.begin(), a.nodes.end());
+  return std::any_of(b.nodes.begin(), b.nodes.end(), [&](int i) { return of_a.contains(i); });
+}
+
+}  // namespace
+
+void Builder::add_motions() {
+  std::vector<Motion>& motions = out_->part<Motions>().list;
+  for (const Entry& e : scene_.entries("motion")) {
+    Motion m;
+    m.name = e.name;
+    const std::string where = e.where("on");
+    const Found found = find(e.text("on"), where);
+    if (found.body == 0) throw Error(where, e.label() + ": the ground does not move");
+    if (e.kind != "rotation") m.component = components(e);
+    if (e.kind == "translation") m.displacement = e.vector3("displacement");
+    if (e.kind == "rotation") m.at = e.vector3("at"), m.axis = direction(e, "axis"), m.angle = e.number("angle");
+    m.moving = e.kind != "fixed";
+    if (m.moving) m.law = MotionLaw(1, false, use_history(e, Acts::as_position), !e.given("history"));
+    const bool whole = m.component[0] && m.component[1] && m.component[2];
+    if (found.body >= 0 && !whole)
+      throw Error(where, fmt::format("{}: \"{}\" is rigid and can only be held whole", e.label(), e.text("on")),
+                  "use a joint to the ground");
+    if (whole || found.body >= 0) {
+      m.body = found.body;
+      if (m.body < 0) {
+        double other = -1;  // nodes of a rigid body among them: it is held too
+        for (int i : found.nodes) other = std::max<double>(other, out_->follower[i]);
+        m.body = static_cast<int>(comm_.max(other));
+        if (m.body < 0) m.body = new_body(e.name, mean_of(found.nodes));
+        follow_all(found.nodes, m.body, where);
+      }
+      Body& body = out_->bodies[m.body];
+      if (body.held) throw Error(where, fmt::format("{}: motion \"{}\" moves this body already", e.label(), body.motion));
+      body.held = true, body.moving = m.moving, body.motion = m.name;
+      if (e.kind != "rotation") m.at = body.Xc;
+    } else {
+      comm_.together([&] {  // a rank alone may have the node
+        for (int i : found.nodes)
+          if (out_->follower[i] >= 0)
+            throw Error(where, fmt::format("{}: node {} belongs to a rigid body and cannot have single components prescribed", e.label(),
+                                           mesh_->mesh.node_id[i]));
+      });
+      for (int i : found.nodes) {
+        for (int k = 0; k < 3; ++k)
+          if (m.component[k]) out_->fixed[i][k] = true;
+        m.nodes.push_back(i);
+      }
+    }
+    for (const Motion& other : motions)  // of the same components of a node only one may move
+      if (comm_.max((m.moving || other.moving) && share_component(m, other) ? 1 : 0) > 0)
+        throw Error(where, fmt::format("{}: motion \"{}\" prescribes the same component of a node", e.label(), other.name));
+    motions.push_back(std::move(m));
+  }
+}
+
+void Builder::set_initial_velocities() {
+  Config& v = out_->start_velocity;
+  v.resize(out_->X.size(), out_->bodies.size());
+  for (const Entry& e : scene_.entries("initial")) {
+    std::vector<bool> region(regions_.size(), false), body(out_->bodies.size(), false);
+    std::vector<char> node(out_->X.size(), 0);
+    double mass = 0;
+    Vec3 moment = Vec3::Zero();
+    for (const std::string& pattern : e.texts("on")) {
+      bool used = false;
+      for (size_t r = 0; r < regions_.size(); ++r)
+        if (!region[r] && fnmatch(pattern.c_str(), regions_[r].name.c_str(), 0) == 0) {
+          region[r] = used = true;
+          mass += regions_[r].mass, moment += regions_[r].moment + regions_[r].mass * origin_;
+          if (regions_[r].body >= 0) body[regions_[r].body] = true;
+        }
+      for (const auto& [name, b] : body_by_name_)
+        if (fnmatch(pattern.c_str(), name.c_str(), 0) == 0) {
+          body[b] = used = true;
+          mass += out_->bodies[b].mass, moment += out_->bodies[b].mass * out_->bodies[b].Xc;
+        }
+      if (!used) {
+        const Found found = find(pattern, e.where("on"));
+        for (int i : found.nodes) node[i] = 1;
+        if (found.body > 0) body[found.body] = true;  // a set of a rigid body is that body
+        if (!e.has("about") && e.vector3("spin").norm() > 0) throw Error(e.place.text(), e.label() + ": a spin of a set needs `about`");
+      }
+    }
+    for (size_t r = 0; r < regions_.size(); ++r)
+      if (region[r])
+        for (std::int64_t i : mesh_->nodes_of(regions_[r].name, e.where("on"))) node[i] = 1;
+    const Vec3 velocity = e.vector3("velocity"), spin = e.vector3("spin");
+    const Vec3 about = e.has("about") ? e.vector3("about") : mass > 0 ? Vec3(moment / mass) : Vec3::Zero();
+    for (size_t i = 0; i < node.size(); ++i)
+      if (node[i]) {
+        v.x[i] = velocity + spin.cross(out_->X[i] - about);
+        if (const int b = out_->follower[i]; b > 0 && (out_->bodies[b].patch || (out_->bodies[b].held && out_->bodies[b].mass == 0)))
+          body[b] = true;  // made of nodes for a joint or a motion
+      }
+    for (size_t b = 1; b < body.size(); ++b)
+      if (body[b]) v.c[b] = velocity + spin.cross(out_->bodies[b].Xc - about), v.R[b] = skew(spin);
+  }
+  // a patch made on another rank's nodes must know its velocity too
+  if (comm_.size > 1) {
+    std::vector<double> all(12 * v.c.size());
+    for (size_t b = 0; b < v.c.size(); ++b) {
+      double found = comm_.max(v.c[b].isZero(0) && v.R[b].isZero(0) ? 0.0 : static_cast<double>(comm_.rank + 1));
+      if (static_cast<int>(found) != comm_.rank + 1) continue;
+      for (int k = 0; k < 3; ++k) all[12 * b + k] = v.c[b][k];
+      for (int k = 0; k < 9; ++k) all[12 * b + 3 + k] = v.R[b](k / 3, k % 3);
+    }
+    comm_.sum(all);
+    for (size_t b = 0; b < v.c.size(); ++b) {
+      for (int k = 0; k < 3; ++k) v.c[b][k] = all[12 * b + k];
+      for (int k = 0; k < 9; ++k) v.R[b](k / 3, k % 3) = all[12 * b + 3 + k];
+    }
+  }
+  // what is held has none; what moves by a law takes that of its law from the one given here, by a blow where they differ
+  const auto rests = [&](const Body& b) { return b.ground || (b.held && !b.moving); };
+  for (size_t b = 0; b < out_->bodies.size(); ++b)
+    if (rests(out_->bodies[b])) v.c[b].setZero(), v.R[b].setZero();
+  for (const Motion& m : out_->part<Motions>().list)
+    for (int i : m.nodes)
+      for (int k = 0; k < 3; ++k)
+        if (m.body < 0 && m.component[k] && !m.moving) v.x[i][k] = 0;
+  Config full = v;
+  out_->follow(full);
+  for (size_t i = 0; i < out_->X.size(); ++i)
+    if (out_->follower[i] >= 0) v.x[i] = full.x[i];
+}
+
+}  // namespace hilo

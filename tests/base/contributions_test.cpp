@@ -1,0 +1,60 @@
+// What takes part in the equations of motion is listed once (Builder::add_contributions), and nobody else knows more than a few by name: a
+// list that stands twice is one that forgets.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace {
+namespace fs = std::filesystem;
+
+/// Source without comments and texts.
+std::string code_of(const fs::path& file) {
+  std::stringstream text;
+  text << std::ifstream(file).rdbuf();
+  return std::regex_replace(text.str(), std::regex(R"(//[^\n]*|"([^"\\\n]|\\.)*")"), "");
+}
+
+std::map<fs::path, std::string> sources(const fs::path& folder) {
+  std::map<fs::path, std::string> out;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.path().extension() == ".hpp" || entry.path().extension() == ".cpp") out[entry.path()] = code_of(entry.path());
+  return out;
+}
+
+std::set<std::string> words_of(const std::string& code, const std::set<std::string>& wanted) {
+  std::set<std::string> out;
+  const std::regex word(R"(\b[A-Z]\w*\b)");
+  for (auto at = std::sregex_iterator(code.begin(), code.end(), word); at != std::sregex_iterator(); ++at)
+    if (wanted.contains(at->str())) out.insert(at->str());
+  return out;
+}
+
+TEST(Contributions, NoListOfThemStandsTwice) {
+  const auto files = sources(fs::path(HILO_SOURCE) / "solver");
+  std::set<std::string> kinds;
+  const std::regex declared(R"(\bclass (\w+) final : public Contribution\b)");
+  for (const auto& [file, code] : files)
+    for (auto at = std::sregex_iterator(code.begin(), code.end(), declared); at != std::sregex_iterator(); ++at) kinds.insert((*at)[1]);
+  ASSERT_GE(kinds.size(), 8u);
+  int lists = 0;
+  for (const auto& [file, code] : files) {
+    const std::set<std::string> named = words_of(code, kinds);
+    if (named.size() < 3) continue;
+    ++lists;
+    EXPECT_EQ(named, kinds) << fs::relative(file, HILO_SOURCE) << " names some contributions and not the others";
+  }
+  EXPECT_EQ(lists, 1) << "files that list the contributions";
+}
+
+TEST(Contributions, NobodyAboveTheSystemAsksWhichOneItHas) {
+  for (const auto& [file, code] : sources(fs::path(HILO_SOURCE) / "solver" / "dynamics"))
+    EXPECT_EQ(code.find("dynamic_cast"), code.npos) << fs::relative(file, HILO_SOURCE);
+}
+
+}  // namespace

@@ -1,0 +1,114 @@
+// Every array of a results file is one of the schema's, with its type, row, unit and meaning; and every array of the schema is written by
+// some run.  docs/format.md is printed from the same table.
+#include "model/schema.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+/// Arrays and links of a file.
+void list(const Store& file, const std::string& group, std::vector<std::string>& out) {
+  for (const auto& name : file.list(group)) {
+    const std::string path = (group == "/" ? "" : group) + "/" + name;
+    if (file.linked(path) || file.is_array(path))
+      out.push_back(path);
+    else
+      list(file, path, out);
+  }
+}
+
+void hold_against_schema(const Store& file, std::set<std::string>& met) {
+  std::vector<std::string> paths;
+  list(file, "/", paths);
+  for (const std::string& path : paths) {
+    const ArraySchema* row = find_array("run.h5", path);
+    ASSERT_NE(row, nullptr) << path << " is not in the schema";
+    met.insert(std::string(row->path));
+    if (file.linked(path)) {
+      EXPECT_EQ(row->type, "link") << path;
+      continue;
+    }
+    const bool may_be_single = path.starts_with("/field/");
+    EXPECT_TRUE(file.type(path) == row->type || (may_be_single && file.type(path) == "f4")) << path << ": " << file.type(path);
+    if (row->type == "string") continue;
+    EXPECT_EQ(file.text_attribute(path, "unit").value_or(""), row->unit) << path;
+    EXPECT_EQ(file.text_attribute(path, "meaning").value_or(""), row->meaning) << path;
+    const auto shape = file.shape(path), rest = row_shape(*row);
+    EXPECT_EQ(std::vector(shape.begin() + 1, shape.end()), rest) << path;
+  }
+}
+
+Mesh half_rigid() {
+  BlockOptions o;
+  o.n[2] = 3;
+  o.high = Vec3(0.4, 0.3, 1.2);
+  o.regions = {"heavy", "soft"};
+  o.region_of = [](const Vec3& x) { return x[2] < 0.4 ? 0 : 1; };
+  Mesh m = block_mesh(o);
+  add_node_set(m, "corner", [](const Vec3& x) { return std::abs(x[2] - 0.8) < 1e-9 && x[0] < 0.2 && x[1] < 0.1; });
+  add_node_set(m, "line", [](const Vec3& x) { return std::abs(x[2] - 0.8) < 1e-9 && x[0] > 0.2; });
+  return m;
+}
+
+TEST(ResultsSchema, HoldsEveryArrayAndEveryArrayIsWritten) {
+  Case c("everything");
+  c.use(half_rigid(), {Fidelity::rigid, Fidelity::nonlinear});
+  std::ofstream(c / "more.toml") << text_of(c.source("scene.toml")) << R"(
+[[joint]]
+kind = "cylindrical"
+name = "sleeve"
+a = "top"
+b = "arm"
+at = [0.2, 0.1, 2]
+axis = [0, 0, 1]
+[[body]]
+name = "arm"
+mass = 1
+com = [0.3, 0.1, 2]
+inertia = [0.01, 0.01, 0.01]
+[[stop]]
+kind = "angle"
+name = "a/limit"
+joint = "sleeve"
+lower = -1
+upper = 1
+stiffness = 100
+[[motor]]
+kind = "linear"
+name = "push"
+joint = "sleeve"
+rate = [-1, 1]
+force = [2, -2]
+[[friction]]
+name = "rub"
+joint = "sleeve"
+coefficient = 0.1
+radius = 0.1
+[[sensor]]
+name = "seat"
+on = "top"
+[[probe]]
+name = "tip"
+on = "zmax"
+)";
+  std::set<std::string> met;
+  for (const char* options : {"", "--set output.precision=single", "--set output.nodes=skin"}) {
+    const Ran ran = c.run(std::string("hilo-solve --quiet more.toml tags.h5 --set time.end=0.003 --set output.interval=0.001 ") + options);
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    hold_against_schema(Store::open(c / "run.h5"), met);
+  }
+  const std::set<std::string> elsewhere{"/parts/rank", "/checkpoint", "/cell/state"};  // of runs on several ranks; reserved
+  for (const ArraySchema& row : file_schema()) {
+    if (row.file == "run.h5" && !elsewhere.contains(std::string(row.path))) {
+      EXPECT_TRUE(met.contains(std::string(row.path))) << row.path << " is in the schema and no run has it";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hilo::test
