@@ -71,12 +71,9 @@ void Extrapolation::accept(const System& s, double h, std::vector<double> missed
     (std::make_integer_sequence<int, n_rules>());
   };
   for (int k = 0; k < n_past; ++k) at[k] = past_[k].missed.data();
-  for (size_t i = 0; i < s.X.size(); ++i)
-    if (s.node_block[i] >= 0 && s.node_owned[i])
-      for (int k = 0; k < 3; ++k) add(error.data(), missed.data(), 3 * s.node_block[i] + k, 1);
-  for (size_t b = 0; b < s.bodies.size() && s.comm->rank == 0; ++b)
-    for (int k = 0; k < 6 && s.body_block[b] >= 0; ++k)
-      add(error.data(), missed.data(), 3 * s.body_block[b] + k, k < 3 ? 1 : square(s.bodies[b].size));
+  for (const UnknownField& f : s.unknowns)
+    for (size_t i = 0; i < f.size(); ++i)
+      for (int k = 0; k < 3 && s.owns(f.block(i)); ++k) add(error.data(), missed.data(), 3 * f.block(i) + k, square(f.scale(i)));
   for (int k = 0; k < n_past; ++k) at[k] = past_[k].lambda.data();
   for (size_t i = 0; i < lambda.size() && s.comm->rank == 0; ++i) add(error.data() + n_rules, lambda.data(), static_cast<int>(i), 1);
   s.comm->sum(error);

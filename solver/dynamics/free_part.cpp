@@ -25,13 +25,11 @@ std::string free_part(const System& s, KktSolver& solver, double sigma) {
     const double x = 1e-9 * sigma * length * length, d[3] = {x, x, x};
     solver.add_diagonal(block, d);
   };
-  for (size_t i = 0; i < s.X.size(); ++i)
-    if (s.node_block[i] >= 0 && s.node_owned[i]) shift(s.node_block[i], 1);
-  if (comm.rank == comm.size - 1) {  // which owns bodies and multipliers
-    for (size_t b = 0; b < s.bodies.size(); ++b)
-      if (s.body_block[b] >= 0) shift(s.body_block[b], 1), shift(s.body_block[b] + 1, s.bodies[b].size);
-    for (int k = s.first_joint_block(); k < n; ++k) shift(k, 1);
-  }
+  for (const UnknownField& f : s.unknowns)
+    for (size_t k = 0; k < f.size(); ++k)
+      if (s.owns(f.block(k))) shift(f.block(k), f.scale(k));
+  for (int k = s.first_joint_block(); k < n; ++k)
+    if (s.owns(k)) shift(k, 1);
   std::vector<double> b(3 * n), x(3 * n, 0.0);
   for (int k = 0; k < n; ++k)  // any vector with something of everything
     for (int c = 0; c < 3; ++c) b[3 * k + c] = std::cos(static_cast<double>(3 * s.map.global[k] + c));

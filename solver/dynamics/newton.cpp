@@ -17,11 +17,8 @@ double relative_residual(const System& s, const Residual& r) {
       if (!(x <= worst)) worst = x;  // keeps a NaN
     }
   };
-  for (size_t i = 0; i < s.X.size(); ++i)
-    if (s.node_block[i] >= 0) visit(s.node_block[i], force);
-  for (size_t b = 0; b < s.bodies.size(); ++b)
-    if (s.body_block[b] >= 0)
-      visit(s.body_block[b], force), visit(s.body_block[b] + 1, force * std::max(s.bodies[b].size, 1e-3 * s.length));
+  for (const UnknownField& f : s.unknowns)
+    for (size_t k = 0; k < f.size(); ++k) visit(f.block(k), f.turns() ? force * std::max(f.scale(k), 1e-3 * s.length) : force);
   for (int j = s.first_joint_block(); j < s.n_blocks(); ++j) visit(j, r.sigma * s.length);
   return worst;
 }
@@ -34,10 +31,8 @@ double relative_correction(const System& s, std::span<const double> z) {
       if (!(x <= worst)) worst = x;
     }
   };
-  for (size_t i = 0; i < s.X.size(); ++i)
-    if (s.node_block[i] >= 0) visit(s.node_block[i], 1 / s.length);
-  for (size_t b = 0; b < s.bodies.size(); ++b)
-    if (s.body_block[b] >= 0) visit(s.body_block[b], 1 / s.length), visit(s.body_block[b] + 1, s.bodies[b].size / s.length);
+  for (const UnknownField& f : s.unknowns)
+    for (size_t k = 0; k < f.size(); ++k) visit(f.block(k), f.scale(k) / s.length);
   return worst;
 }
 

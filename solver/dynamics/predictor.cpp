@@ -48,18 +48,20 @@ void predict(const System& s, const State& state, double h, Predictor kind, cons
   const bool rigid = s.map.first_dense == 0;  // no flexible nodes, which would be left behind and strained
   const bool bent = a.c.size() == q.c.size() && (accelerated || (rigid && kind == Predictor::rigid_rotation));
   if (kind == Predictor::hold) return;
-  for (size_t i = 0; i < q.x.size(); ++i)
-    if (s.node_block[i] >= 0) q.x[i] += h * state.v.x[i] + (accelerated && bent ? Vec3(h * h / 2 * a.x[i]) : Vec3::Zero());
-  for (size_t b = 0; b < q.c.size(); ++b) {
-    if (s.body_block[b] < 0) continue;
-    q.c[b] += h * state.v.c[b];
-    if (bent) q.c[b] += h * h / 2 * a.c[b];
-    if (kind == Predictor::velocity) continue;
-    // R1 - R0 = skew(w) R_mid with R1 - R0 = h V_mid, R_mid = R0 + h/2 V_mid
-    const Mat3 V = bent ? Mat3(state.v.R[b] + h / 2 * a.R[b]) : state.v.R[b], W = h * V * (state.q.R[b] + h / 2 * V).inverse();
-    const Vec3 w = Vec3(W(2, 1) - W(1, 2), W(0, 2) - W(2, 0), W(1, 0) - W(0, 1)) / 2;
-    if (w.squaredNorm() < 4) q.R[b] = cayley(w) * q.R[b];
-  }
+  for (const UnknownField& f : s.unknowns)
+    for (size_t k = 0; k < f.size(); ++k) {
+      const int i = f.item[k];
+      if (!f.turns()) {
+        (q.*f.array)[i] += h * (state.v.*f.array)[i];
+        if (bent) (q.*f.array)[i] += h * h / 2 * (a.*f.array)[i];
+        continue;
+      }
+      if (kind == Predictor::velocity) continue;
+      // R1 - R0 = skew(w) R_mid with R1 - R0 = h V_mid, R_mid = R0 + h/2 V_mid
+      const Mat3 V = bent ? Mat3(state.v.R[i] + h / 2 * a.R[i]) : state.v.R[i], W = h * V * (state.q.R[i] + h / 2 * V).inverse();
+      const Vec3 w = Vec3(W(2, 1) - W(1, 2), W(0, 2) - W(2, 0), W(1, 0) - W(0, 1)) / 2;
+      if (w.squaredNorm() < 4) q.R[i] = cayley(w) * q.R[i];
+    }
   if (kind == Predictor::rigid_rotation)
     for (const auto& nodes : s.region_nodes) {
       const Spin spin = spin_of(s, state, nodes);

@@ -3,9 +3,9 @@
 #include <array>
 #include <string>
 
-#include "linear/kkt.hpp"
 #include "base/comm.hpp"
 #include "base/traffic.hpp"
+#include "linear/kkt.hpp"
 
 namespace hilo {
 

@@ -99,9 +99,9 @@ Eigen::VectorXd gaps(const System& system, const UnitRows& unit, const Config& q
 
 void displace(const System& system, Config& q, const Eigen::VectorXd& y) {
   std::vector<double> z(y.data(), y.data() + y.size());
-  for (size_t b = 0; b < system.bodies.size(); ++b)
-    if (const int k = system.body_block[b]; k >= 0)
-      for (int i = 0; i < 3; ++i) z[3 * (k + 1) + i] /= system.length;
+  for (const UnknownField& f : system.unknowns)
+    for (size_t k = 0; k < f.size() && f.turns(); ++k)
+      for (int i = 0; i < 3; ++i) z[3 * f.block(k) + i] /= system.length;
   system.move(q, z);
 }
 
@@ -239,13 +239,15 @@ bool recheck_redundant_rows(System& system, const Config& q, double t, Redundanc
 
 std::optional<Config> pose_ahead(const System& system, const Config& q, const Config& v, double t, double far) {
   Eigen::VectorXd y = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(system.n_blocks()));
-  for (size_t i = 0; i < v.x.size(); ++i)
-    if (const int k = system.node_block[i]; k >= 0) y.segment<3>(3 * k) = v.x[i];
-  for (size_t b = 0; b < v.c.size(); ++b)
-    if (const int k = system.body_block[b]; k >= 0) {
-      const Mat3 S = v.R[b] * q.R[b].transpose();
-      y.segment<3>(3 * k) = v.c[b];
-      y.segment<3>(3 * k + 3) = system.length / 2 * Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1));
+  for (const UnknownField& f : system.unknowns)
+    for (size_t k = 0; k < f.size(); ++k) {
+      const int i = f.item[k];
+      if (!f.turns()) {
+        y.segment<3>(3 * f.block(k)) = (v.*f.array)[i];
+        continue;
+      }
+      const Mat3 S = v.R[i] * q.R[i].transpose();
+      y.segment<3>(3 * f.block(k)) = system.length / 2 * Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1));
     }
   if (y.isZero(0)) return {};
   return branch(system, q, y, t, far);

@@ -54,12 +54,10 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
     const SolveReport solved = solver.solve(with.r, z);
     if (!solved.ok) break;
     double turn = 0, shift = 0;  // long turns are taken in parts
-    for (size_t i = 0; i < system.X.size(); ++i)
-      if (const int k = system.node_block[i]; k >= 0) shift = std::max(shift, Eigen::Map<const Vec3>(z.data() + 3 * k).norm());
-    for (size_t b = 0; b < system.bodies.size(); ++b)
-      if (const int k = system.body_block[b]; k >= 0) {
-        shift = std::max(shift, Eigen::Map<const Vec3>(z.data() + 3 * k).norm());
-        turn = std::max(turn, Eigen::Map<const Vec3>(z.data() + 3 * k + 3).norm());
+    for (const UnknownField& f : system.unknowns)
+      for (size_t k = 0; k < f.size(); ++k) {
+        double& most = f.turns() ? turn : shift;
+        most = std::max(most, Eigen::Map<const Vec3>(z.data() + 3 * f.block(k)).norm());
       }
     turn = system.comm->max(turn), shift = system.comm->max(shift);
     if (!std::isfinite(turn + shift) || shift > 1e3 * system.length) break;
@@ -125,20 +123,7 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
     throw Error("",
                 fmt::format("the joints and masses do not determine the motion: {}{}", solved.message, free_part(system, solver, r.sigma)),
                 "a part may have no mass or inertia");
-  double change = 0;
-  for (size_t i = 0; i < v.x.size(); ++i)
-    if (system.node_block[i] >= 0) {
-      const Vec3 d = Eigen::Map<const Vec3>(z.data() + 3 * system.node_block[i]);
-      v.x[i] += d, change = std::max(change, d.norm());
-    }
-  for (size_t i = 0; i < v.c.size(); ++i)
-    if (const int k = system.body_block[i]; k >= 0) {
-      const Vec3 d = Eigen::Map<const Vec3>(z.data() + 3 * k), w = Eigen::Map<const Vec3>(z.data() + 3 * k + 3);
-      v.c[i] += d, v.R[i] += skew(w) * q.R[i];
-      change = std::max({change, d.norm(), w.norm() * system.bodies[i].size});
-    }
-  system.follow(v);
-  return system.comm->max(change);
+  return system.comm->max(system.add_rates(v, q, z));
 }
 
 namespace {
@@ -192,12 +177,7 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
     if (!solved.ok)
       throw Error("", fmt::format("the joints and masses do not determine the accelerations: {}{}", solved.message,
                                   free_part(system, solver, r.sigma)));
-    for (size_t i = 0; i < a.x.size(); ++i)
-      if (system.node_block[i] >= 0) a.x[i] += Eigen::Map<const Vec3>(z.data() + 3 * system.node_block[i]);
-    for (size_t i = 0; i < a.c.size(); ++i)
-      if (const int k = system.body_block[i]; k >= 0)
-        a.c[i] += Eigen::Map<const Vec3>(z.data() + 3 * k), a.R[i] += skew(Eigen::Map<const Vec3>(z.data() + 3 * k + 3)) * s.q.R[i];
-    system.follow(a);
+    system.add_rates(a, s.q, z);
     double change = 0, size = 0;
     for (size_t i = 0; i < lambda.size(); ++i) {
       lambda[i] += r.sigma * z[first + i];

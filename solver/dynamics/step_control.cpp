@@ -48,18 +48,18 @@ void StepControl::restart(const State& s) {
     const double wave = size * std::sqrt(a.norm() * snap.norm());
     if (wave > top[0]) top[0] = wave, top[1] = std::sqrt(snap.norm() / a.norm());
   };
-  const auto free = [&](size_t i, Vec3 x) {  // components that move by a law are as they should be
+  const auto free = [](const std::array<bool, 3>& held, Vec3 x) {  // components that move by a law are as they should be
     for (int k = 0; k < 3; ++k)
-      if (system_.fixed[i][k]) x[k] = 0;
+      if (held[k]) x[k] = 0;
     return x;
   };
-  for (size_t i = 0; i < s.a.x.size(); ++i)
-    if (system_.follower[i] < 0) look(1, free(i, s.a.x[i]), free(i, s.jerk.x[i]), free(i, s.snap.x[i]));
-  for (size_t b = 0; b < s.a.c.size(); ++b) {
-    if (!system_.bodies[b].free()) continue;
-    look(1, s.a.c[b], s.jerk.c[b], s.snap.c[b]);
-    for (int k = 0; k < 3; ++k) look(system_.bodies[b].size, s.a.R[b].col(k), s.jerk.R[b].col(k), s.snap.R[b].col(k));
-  }
+  for (const UnknownField& f : system_.unknowns)
+    for (size_t k = 0; k < f.size(); ++k) {
+      const int i = f.item[k];
+      const auto held = f.held_of(k);
+      if (!f.turns()) look(f.scale(k), free(held, (s.a.*f.array)[i]), free(held, (s.jerk.*f.array)[i]), free(held, (s.snap.*f.array)[i]));
+      for (int c = 0; c < 3 && f.turns(); ++c) look(f.scale(k), s.a.R[i].col(c), s.jerk.R[i].col(c), s.snap.R[i].col(c));
+    }
   first_third_ = system_.comm->max(top[0]);
   fade_ = first_third_ > 0 ? 1 / -system_.comm->max(top[0] == first_third_ ? -top[1] : -1e300) : 0;
   const double worst = std::max(system_.comm->max(third), first_third_), wish = worst > 0 ? std::sqrt(12 * rate_wanted_ / worst) : 1e300;
@@ -82,21 +82,19 @@ double StepControl::error(const Config& q1, double h) const {
   }
   const Config* q[4] = {&past_[0].q, &past_[1].q, &past_[2].q, &q1};
   double top = 0;
-  constexpr std::array<bool, 3> all_free{};
-  const auto look = [&](double size, const std::array<bool, 3>& fixed, const auto& value) {
+  const auto look = [&](double size, const std::array<bool, 3>& held, const auto& value) {
     Vec3 d = Vec3::Zero();
     for (int k = 0; k < 4; ++k) d += w[k] * value(*q[k]);
     for (int k = 0; k < 3; ++k)
-      if (fixed[k]) d[k] = 0;  // moves by a law
+      if (held[k]) d[k] = 0;  // moves by a law
     top = std::max(top, size * d.norm());
   };
-  for (size_t i = 0; i < q1.x.size(); ++i)
-    if (system_.follower[i] < 0) look(1, system_.fixed[i], [&](const Config& c) { return c.x[i]; });
-  for (size_t b = 0; b < q1.c.size(); ++b) {
-    if (!system_.bodies[b].free()) continue;
-    look(1, all_free, [&](const Config& c) { return c.c[b]; });
-    for (int k = 0; k < 3; ++k) look(system_.bodies[b].size, all_free, [&](const Config& c) { return Vec3(c.R[b].col(k)); });
-  }
+  for (const UnknownField& f : system_.unknowns)
+    for (size_t k = 0; k < f.size(); ++k) {
+      const int i = f.item[k];
+      if (!f.turns()) look(f.scale(k), f.held_of(k), [&](const Config& c) { return (c.*f.array)[i]; });
+      for (int c = 0; c < 3 && f.turns(); ++c) look(f.scale(k), {}, [&](const Config& at) { return Vec3(at.R[i].col(c)); });
+    }
   const double at_first = fade_ > 0 ? first_third_ * std::exp(-(t_ - started_) / fade_) : 0;
   return h * h * h / 12 * std::max(6 * system_.comm->max(top), at_first);
 }

@@ -8,8 +8,11 @@ void Unknown::start(const System& system, const Config& from, const Config& gues
   q0 = from, q = guess;
   turn.assign(from.c.size(), Vec3::Zero());
   combine(dq, {{1, &q}, {-1, &q0}});
-  for (size_t b = 0; b < turn.size(); ++b)
-    if (system.body_block[b] >= 0) turn[b] = rotation_increment(q0.R[b], q.R[b]), turn_body(b);
+  for (const UnknownField& f : system.unknowns)
+    for (size_t k = 0; k < f.size() && f.turns(); ++k) {
+      const int b = f.item[k];
+      turn[b] = rotation_increment(q0.R[b], q.R[b]), turn_body(b);
+    }
   system.follow(q), system.follow(dq);
 }
 
@@ -28,16 +31,16 @@ void Unknown::turn_body(size_t b) {
 template <class Turned>
 void Unknown::add(const System& system, std::span<const double> z, Turned turned) {
   const auto of = [&](int k) { return Eigen::Map<const Vec3>(z.data() + 3 * k); };
-  for (size_t i = 0; i < q.x.size(); ++i)
-    if (const int k = system.node_block[i]; k >= 0) {
-      dq.x[i] += of(k);
-      q.x[i] = q0.x[i] + dq.x[i];
-    }
-  for (size_t b = 0; b < turn.size(); ++b)
-    if (const int k = system.body_block[b]; k >= 0) {
-      dq.c[b] += of(k);
-      q.c[b] = q0.c[b] + dq.c[b];
-      turn[b] = turned(Vec3(of(k + 1)), turn[b]), turn_body(b);
+  for (const UnknownField& f : system.unknowns)
+    for (size_t k = 0; k < f.size(); ++k) {
+      const int i = f.item[k];
+      if (f.turns()) {
+        turn[i] = turned(Vec3(of(f.block(k))), turn[i]), turn_body(i);
+      } else {
+        Vec3& d = (dq.*f.array)[i];
+        d += of(f.block(k));
+        (q.*f.array)[i] = (q0.*f.array)[i] + d;
+      }
     }
   system.follow(q), system.follow(dq);
 }
@@ -59,10 +62,8 @@ std::vector<double> Unknown::increments(const System& system) const {
 void Unknown::increments(const System& system, std::vector<double>& out) const {
   out.assign(3 * static_cast<size_t>(system.first_joint_block()), 0.0);
   const auto at = [&](int k) { return Eigen::Map<Vec3>(out.data() + 3 * k); };
-  for (size_t i = 0; i < q.x.size(); ++i)
-    if (const int k = system.node_block[i]; k >= 0) at(k) = dq.x[i];
-  for (size_t b = 0; b < turn.size(); ++b)
-    if (const int k = system.body_block[b]; k >= 0) at(k) = dq.c[b], at(k + 1) = turn[b];
+  for (const UnknownField& f : system.unknowns)
+    for (size_t k = 0; k < f.size(); ++k) at(f.block(k)) = f.turns() ? turn[f.item[k]] : (dq.*f.array)[f.item[k]];
 }
 
 }  // namespace hilo

@@ -9,17 +9,22 @@ namespace hilo {
 int Points::number_points() {
   const int n = static_cast<int>(X.size());
   node_block.assign(n, -1), body_block.assign(bodies.size(), -1), body_clique.assign(bodies.size(), -1);
+  UnknownField nodes{.array = &Config::x, .held = &fixed}, centres{.array = &Config::c, .stride = 2},
+      turns{.update = UnknownField::Update::turn, .stride = 2};
   int next = 0;
   for (int i = 0; i < n; ++i)
-    if (follower[i] < 0) node_block[i] = next++;
+    if (follower[i] < 0) node_block[i] = next++, nodes.item.push_back(i);
   const int n_node_blocks = next;
+  centres.first = next, turns.first = next + 1;
   cliques = Cliques{};
   for (size_t b = 0; b < bodies.size(); ++b) {
     if (!bodies[b].free()) continue;
     const int blocks[2] = {next, next + 1};
     body_block[b] = next, next += 2;
     body_clique[b] = cliques.add(blocks);
+    centres.item.push_back(static_cast<int>(b)), turns.item.push_back(static_cast<int>(b)), turns.lever.push_back(bodies[b].size);
   }
+  unknowns = {std::move(nodes), std::move(centres), std::move(turns)};
   first_joint_block_ = next;
   return n_node_blocks;
 }

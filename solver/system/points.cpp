@@ -5,14 +5,30 @@
 namespace hilo {
 
 void Points::move(Config& q, std::span<const double> z) const {
-  for (size_t i = 0; i < X.size(); ++i)
-    if (node_block[i] >= 0) q.x[i] += Eigen::Map<const Vec3>(z.data() + 3 * node_block[i]);
-  for (size_t b = 0; b < bodies.size(); ++b) {
-    if (body_block[b] < 0) continue;
-    q.c[b] += Eigen::Map<const Vec3>(z.data() + 3 * body_block[b]);
-    q.R[b] = cayley(Eigen::Map<const Vec3>(z.data() + 3 * body_block[b] + 3)) * q.R[b];
-  }
+  for (const UnknownField& f : unknowns)
+    for (size_t k = 0; k < f.size(); ++k) {
+      const Eigen::Map<const Vec3> by(z.data() + 3 * f.block(k));
+      if (f.turns())
+        q.R[f.item[k]] = cayley(by) * q.R[f.item[k]];
+      else
+        (q.*f.array)[f.item[k]] += by;
+    }
   follow(q);
+}
+
+double Points::add_rates(Config& v, const Config& q, std::span<const double> z) const {
+  double change = 0;
+  for (const UnknownField& f : unknowns)
+    for (size_t k = 0; k < f.size(); ++k) {
+      const Eigen::Map<const Vec3> by(z.data() + 3 * f.block(k));
+      change = std::max(change, by.norm() * f.scale(k));
+      if (f.turns())
+        v.R[f.item[k]] += skew(by) * q.R[f.item[k]];
+      else
+        (v.*f.array)[f.item[k]] += by;
+    }
+  follow(v);
+  return change;
 }
 
 void Points::follow(Config& q) const {

@@ -22,6 +22,22 @@ struct NodeMap {
   Vec3 left, right;  // arms from the body's centre
 };
 
+/// A kind of unknowns: things with a block of three each.  What solves and steps loops over these fields and names no node and no body.
+struct UnknownField {
+  enum class Update { add, turn };  // to a vector of a configuration; of the directors of a body, by the Cayley rotation of the block
+  Update update = Update::add;
+  std::vector<Vec3> Config::*array = nullptr;              // add: which vectors
+  int first = 0, stride = 1;                               // blocks: first, first + stride, ...
+  std::vector<int> item;                                   // entries of the array, or bodies
+  std::vector<double> lever;                               // metres that a unit of the unknown is; empty: 1
+  const std::vector<std::array<bool, 3>>* held = nullptr;  // components that move by a law, by item
+  size_t size() const { return item.size(); }
+  int block(size_t k) const { return first + stride * static_cast<int>(k); }
+  double scale(size_t k) const { return lever.empty() ? 1 : lever[k]; }
+  bool turns() const { return update == Update::turn; }
+  std::array<bool, 3> held_of(size_t k) const { return held ? (*held)[item[k]] : std::array<bool, 3>{}; }
+};
+
 class Points {
  public:
   std::vector<Body> bodies;   // body 0 is the ground
@@ -39,9 +55,10 @@ class Points {
   LocalMesh* mesh = nullptr;  // null for a scene of bodies alone
 
   // unknowns
-  std::vector<int> node_block;   // block of each node, -1 for followers
-  std::vector<int> body_block;   // first of two blocks, -1 for driven bodies
-  std::vector<int> body_clique;  // of these two, -1 for driven bodies
+  std::vector<int> node_block;         // block of each node, -1 for followers
+  std::vector<int> body_block;         // first of two blocks, -1 for driven bodies
+  std::vector<int> body_clique;        // of these two, -1 for driven bodies
+  std::vector<UnknownField> unknowns;  // all of these
   BlockMap map;
   Cliques cliques;
   int n_blocks() const { return static_cast<int>(map.global.size()); }
@@ -50,6 +67,10 @@ class Points {
 
   /// q <- q moved by the increments z (3 x n_blocks); bodies turn by the Cayley rotation of theirs.
   void move(Config& q, std::span<const double> z) const;
+  /// Velocities or accelerations v, at q, by the increments z; the largest change [m/s or m/s^2].
+  double add_rates(Config& v, const Config& q, std::span<const double> z) const;
+  /// Whether a local block belongs to this rank: each to one.
+  bool owns(int block) const { return map.global[block] >= map.first && map.global[block] < map.first + map.n_owned; }
   /// Followers from their bodies; the map is linear, so it holds for positions, velocities and accelerations alike.
   void follow(Config& q) const;
   /// Zeros in the rows of prescribed components.

@@ -116,6 +116,48 @@ TEST_F(Motions, TakeAKinkAtAnOddTimeAsABlow) {
     }
 }
 
+// Exact: a load on what moves by a law changes nothing but the hand, which takes over its work.
+TEST_F(Motions, DoNotFeelALoadOnWhatTheyMove) {
+  write_mesh(*this / "mesh.h5", block_mesh({}), {"test"});
+  const std::string scene = R"([material.soft]
+E = 1e5
+nu = 0.3
+density = 1000
+[region."*"]
+material = "soft"
+[[motion]]
+kind = "fixed"
+name = "held"
+on = "xmin"
+components = ["x", "y", "z"]
+[[motion]]
+kind = "translation"
+name = "pull"
+on = "xmax"
+components = ["x"]
+displacement = [0.1, 0, 0]
+history = {t = [0, 0.2], value = [0, 1], interpolation = "smooth"}
+[time]
+end = 0.2
+step = 0.005
+)";
+  write("scene.toml", scene);
+  const Results alone = solved("", "mesh.h5");
+  const Eigen::VectorXd work = alone.history("energy").col(3);
+  write("scene.toml", scene + R"([[load]]
+kind = "force"
+name = "push"
+on = "xmax"
+force = [3e4, 0, 0]
+history = {t = [0, 0.2], value = [1, 0.5]}
+)");
+  const Results pushed = solved("", "mesh.h5");
+  EXPECT_GT(work.cwiseAbs().maxCoeff(), 1);
+  EXPECT_LT((pushed.history("energy").col(3) - work).cwiseAbs().maxCoeff(), 1e-10 * 3e4 * 0.1);
+  const auto hand = [&](const Results& r, double t) { return r.at("motion/pull", t)[0]; };
+  EXPECT_NEAR(hand(pushed, 0.1), hand(alone, 0.1) - 0.75 * 3e4, 1e-6 * 3e4);
+}
+
 // Invariant: the same motion a little later gives the same answer a little later.
 TEST_F(Motions, DoNotAskWhenTheyStart) {
   write("scene.toml", cart("{t = [0, 1], value = [0, 1]}"));
