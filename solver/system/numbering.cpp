@@ -9,8 +9,10 @@ namespace hilo {
 int Points::number_points() {
   const int n = static_cast<int>(X.size());
   node_block.assign(n, -1), body_block.assign(bodies.size(), -1), body_clique.assign(bodies.size(), -1);
-  UnknownField nodes{.array = &Config::x, .held = &fixed}, centres{.array = &Config::c, .stride = 2},
-      turns{.update = UnknownField::Update::turn, .stride = 2};
+  UnknownField nodes, centres, turns;
+  nodes.array = &Config::x, nodes.held = &fixed;
+  centres.array = &Config::c, centres.stride = 2;
+  turns.update = UnknownField::Update::turn, turns.stride = 2;
   int next = 0;
   for (int i = 0; i < n; ++i)
     if (follower[i] < 0) node_block[i] = next++, nodes.item.push_back(i);

@@ -13,9 +13,9 @@ class StressFields final : public FieldSource {
   StressFields(const System& system, const std::vector<std::int64_t>& node_row) : system_(system), node_row_(node_row) {}
   std::vector<Field> fields() const override {
     return {{.name = "stress"},
-            {.name = "stress_error", .label = "stress error [Pa]"},
             {.name = "von_mises", .label = "von Mises [Pa]"},
-            {.name = "cell_von_mises", .key = "von_mises", .label = "cell von Mises [Pa]", .of_cells = true}};
+            {.name = "cell_von_mises", .key = "von_mises", .label = "cell von Mises [Pa]", .of_cells = true},
+            {.name = "stress_error", .label = "stress error [Pa]"}};
   }
 
   /// A node's stress is that of its first flexible region (first: lowest number) over all ranks.
