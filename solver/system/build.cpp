@@ -22,7 +22,8 @@ void Builder::add_contributions() {
   s.add<Bodies>(s);
   s.add<PointMasses>(s);
   s.place_joints();
-  s.add<Springs>(s, s.joints);
+  const Joints& joints = s.joints;
+  s.add<Springs>(s, joints);
   s.add<Loads>(s);
   s.add<Motions>(s);
   s.add<Stations>(s);

@@ -73,7 +73,7 @@ com = [0.3, 0.1, 2]
 inertia = [0.01, 0.01, 0.01]
 [[stop]]
 kind = "angle"
-name = "a/limit"
+name = "limit"
 joint = "sleeve"
 lower = -1
 upper = 1
