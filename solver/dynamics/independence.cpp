@@ -39,7 +39,8 @@ Independence choose_sparse(const Eigen::SparseMatrix<double>& A, double dependen
   qr.setPivotThreshold(dependent);
   qr.compute(A);
   const Eigen::Index rank = qr.rank();
-  const Eigen::SparseMatrix<double> R = qr.matrixR();
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> sorted = qr.matrixR();  // matrixR() has the entries of a column in any order, and
+  const Eigen::SparseMatrix<double> R = sorted;                              // a part of it would lose some of them
   return {qr.colsPermutation().indices(), rank, R.topLeftCorner(rank, rank), R.topRightCorner(rank, A.cols() - rank)};
 }
 
