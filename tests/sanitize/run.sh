@@ -25,11 +25,12 @@ fi
 cmake --build "$folder" -j "$jobs"
 
 # A report is a file, so that none is lost in a test that expects a failure; 99 is no exit code of hilo's.  Leaks leave the exit code as it
-# is: Open MPI keeps memory in modules that are unloaded before the end and so have no names to suppress.
+# is: Open MPI keeps memory in modules that are unloaded before the end and so have no names to suppress.  gmsh 4.8 deletes arrays of its
+# own by the wrong operator (ClosureGen, prisms of second order), so that check is off; nothing of ours allocates arrays by new.
 reports=$folder/reports
 rm -rf "$reports"
 mkdir -p "$reports"
-export ASAN_OPTIONS="log_path=$reports/report:exitcode=99:detect_leaks=1:malloc_context_size=20:allocator_may_return_null=1"
+export ASAN_OPTIONS="log_path=$reports/report:exitcode=99:detect_leaks=1:malloc_context_size=20:allocator_may_return_null=1:alloc_dealloc_mismatch=0"
 export UBSAN_OPTIONS="log_path=$reports/report:print_stacktrace=1"
 export LSAN_OPTIONS="suppressions=$here/leaks.txt:print_suppressions=0:exitcode=0"
 failed=0
