@@ -30,7 +30,7 @@ class Audit {
   std::string look(const Config& q0, const State& end, std::span<const Taken> taken, const NewtonReport& newton, double load_factor = 1);
   /// The step looked at last is accepted.
   void accept(double t);
-  /// Work of a blow between two steps [J].
+  /// Work of an impulse between two steps [J].
   void push(double work) { sums_.work += work; }
   /// Whether the step looked at last opens a row that was dropped as redundant.
   bool opens_dropped_row() const { return opens_dropped_row_; }

@@ -56,18 +56,19 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     ++phases().evaluations, phases().tangents += tangent;
   };
   // What a solve may leave of the residual: a tenth of what is left to the tolerance, and no less than Newton's own error, about the square
-  // of how far the last iteration came [eisenstat-walker-1996], or a chord's, which comes as far as the last one.
+  // of how far the last iteration came [eisenstat-walker-1996], or that of an iteration with old factors, which comes as far as the last
+  // one.
   double last_residual = 0;
-  const auto forcing = [&](bool chord) {
+  const auto forcing = [&](bool old_factors) {
     const double enough = 0.1 * options.tolerance / std::max(report.residual, 1e-300);
     const double contraction = last_residual > 0 ? report.residual / last_residual : 1e-2;
-    return std::clamp(std::max(std::min(enough, 0.1), std::min(0.1 * contraction * (chord ? 1 : contraction), 1e-3)), 1e-10, 0.1);
+    return std::clamp(std::max(std::min(enough, 0.1), std::min(0.1 * contraction * (old_factors ? 1 : contraction), 1e-3)), 1e-10, 0.1);
   };
-  const auto solve = [&](bool chord) {
+  const auto solve = [&](bool old_factors) {
     b.resize(r.r.size()), z.assign(r.r.size(), 0.0);
     for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
     const Timed timed(phases().solve);
-    const SolveReport solved = solver.solve(b, z, forcing(chord));
+    const SolveReport solved = solver.solve(b, z, forcing(old_factors));
     ++phases().solves, phases().linear_iterations += solved.iterations;
     report.linear_iterations += solved.iterations;
     return solved;
@@ -90,7 +91,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     report.converged = true;
   };
   // A correction far below the tolerance, one to come that is nothing to the scene, and a residual within ten of the tolerance: what is
-  // left is what rounded positions make stiff cells feel, and another solve would only draw it anew.
+  // left is the round-off of positions amplified by stiffness; another solve would only draw other digits of it.
   const auto is_rounding = [&] {
     return report.correction <= 1e-2 * options.tolerance && report.correction * report.residual <= 1e-13 * last_residual &&
            report.residual <= 10 * options.tolerance;
@@ -100,15 +101,15 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
   for (int it = 0;; ++it) {
     if (near) {
       evaluate(false);
-      // chord steps with the matrix at hand, a solve each, no tangent: where solves are cheap, or the residual is within 1000 of the
-      // tolerance, or one that comes as far as the last iteration did ends within 10 of it
+      // modified Newton: iterations with the factors of the last tangent.  They pay where solves are cheap, where the residual is within
+      // 1000 of the tolerance, or where an iteration that gains as much as the last one ends within 10 of it
       const auto worth = [&] {
         return solver.repeats_cheaply()
                    ? report.residual > 1e-2 * options.tolerance
                    : report.residual > options.tolerance && !is_rounding() &&
                          report.residual < std::max(1e3 * options.tolerance, std::sqrt(10 * options.tolerance * last_residual));
       };
-      for (int chord = 0; chord < 4 && worth(); ++chord) {
+      for (int reuse = 0; reuse < 4 && worth(); ++reuse) {
         const double residual = report.residual;
         if (!solve(true).ok) break;
         const double correction = system.comm->max(relative_correction(system, z));

@@ -110,8 +110,8 @@ class Radau final : public Integrator {
     const int n = 3 * system.n_blocks(), first = 3 * system.first_joint_block();
     if (h_ > 2 * kept_h_ || kept_h_ > 2 * h_) kept_ = false;
     const bool lagged = kept_;
-    int built = 0;                                           // matrices in this step, iterations of Newton; those between are chords
-    bool full = false;                                       // Newton alone: the step is too far from linear for less
+    int built = 0;      // matrices in this step, iterations of Newton; those between are modified Newton
+    bool full = false;  // Newton alone: the step is too far from linear for less
     double last = 0, last_residual = 0, now = wall_clock();  // of the iteration before with the same matrix
     const auto lap = [&](Phase& phase) {
       const double then = now;

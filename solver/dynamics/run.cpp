@@ -8,10 +8,10 @@
 
 #include "base/table.hpp"
 #include "dynamics/audit.hpp"
-#include "dynamics/blow.hpp"
 #include "dynamics/choose_solver.hpp"
 #include "dynamics/contradiction.hpp"
 #include "dynamics/held.hpp"
+#include "dynamics/impulse.hpp"
 #include "dynamics/predictor.hpp"
 #include "dynamics/profile.hpp"
 #include "dynamics/progress.hpp"
@@ -184,7 +184,7 @@ class Run {
       }
       if (talk_) fmt::print(stderr, "equilibrium after {} iterations\n", r.iterations);
     }
-    projected_ = blows_.strike(system_, *solver_, state_, talk_).change;
+    projected_ = impulses_.strike(system_, *solver_, state_, talk_).change;
     if (const std::string name = contradicted_joint(system_, state_.q, state_.v, 0); !name.empty())
       throw Error(scene_.path, fmt::format("joint \"{}\" cannot move as the driven joints would have it", name),
                   "two drives, or a drive and a joint, hold the same motion");
@@ -233,7 +233,7 @@ class Run {
 
   /// At the start and after a jump of the loads: history that belongs to the new forces.
   void restart(std::optional<StepControl>& control, double step) {
-    if (state_.t > 0 && system_.traits().is_driven) audit_->push(blows_.strike(system_, *solver_, state_, talk_).work);
+    if (state_.t > 0 && system_.traits().is_driven) audit_->push(impulses_.strike(system_, *solver_, state_, talk_).work);
     const std::vector<Active> rows = active_rows(system_);
     if (report_.steps == 0) set_rows(system_, redundancy_.at_pose);
     if (integrator_->needs_acceleration() || control) consistent_acceleration(system_, *solver_, state_, 0.05 * step);
@@ -374,7 +374,7 @@ class Run {
     add("audit", audit_->json(report_.complete ? "" : report_.reason));
     add("position_change", fmt::format("{:.6g}", assembled_));
     add("velocity_change", fmt::format("{:.6g}", projected_));
-    add("blows", blows_.json());
+    add("impulses", impulses_.json());
     add("seconds", fmt::format("{{\"all\": {:.6g}, \"assembly\": {:.6g}, \"solve\": {:.6g}, \"output\": {:.6g}}}", wall_clock() - began_,
                                p.assembly.seconds, p.solve.seconds, p.output.seconds));
     add("counts", fmt::format("{{\"evaluations\": {}, \"tangents\": {}, \"solves\": {}, \"linear_iterations\": {}}}", p.evaluations,
@@ -401,7 +401,7 @@ class Run {
   std::optional<Audit> audit_;
   State state_, end_;          // accepted; of the step tried last
   std::vector<Event> events_;  // the last is the end
-  Blows blows_;
+  Impulses impulses_;
   std::string failure_;
   double began_, processor_began_, peak_ = 0, assembled_ = 0, projected_ = 0, estimated_ = -1;
   int max_cuts_ = 8, level_ = 0, good_ = 0, iterations_ = 0;

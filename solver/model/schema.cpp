@@ -43,9 +43,9 @@ const std::vector<ArraySchema>& file_schema() {
        "reference positions of the points of each body: centre of mass and three along the principal axes"},
       {"run.h5", "/body/mass", "f8", "(n_bodies)", "kg", "mass (0 for a patch)"},
       {"run.h5", "/body/inertia", "f8", "(n_bodies, 3)", "kg m^2", "principal moments, rising, about the axes of its points"},
-      {"run.h5", "/body/follower_node", "i8", "(n_followers)", "", "nodes that follow a body"},
+      {"run.h5", "/body/follower_node", "i8", "(n_followers)", "", "dependent nodes: their positions follow from a body"},
       {"run.h5", "/body/follower_body", "i4", "(n_followers)", "",
-       "the body each follows; its position is sum N_a(X) q_a over the four points"},
+       "the body each depends on; its position is sum N_a(X) q_a over the four points"},
       {"run.h5", "/skin/node", "i8", "(n_skin)", "",
        "nodes on the surface of a region: with output.nodes = \"skin\" the nodal fields below, and /xdmf, have a row for each of these "
        "alone"},

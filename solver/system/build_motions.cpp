@@ -139,7 +139,7 @@ void Builder::set_initial_velocities() {
       for (int k = 0; k < 9; ++k) v.R[b](k / 3, k % 3) = all[12 * b + 3 + k];
     }
   }
-  // what is held has none; what moves by a law takes that of its law from the one given here, by a blow where they differ
+  // what is held has none; what moves by a law takes that of its law from the one given here, by an impulse where they differ
   const auto rests = [&](const Body& b) { return b.ground || (b.held && !b.moving); };
   for (size_t b = 0; b < out_->bodies.size(); ++b)
     if (rests(out_->bodies[b])) v.c[b].setZero(), v.R[b].setZero();

@@ -84,8 +84,9 @@ TEST_F(Motions, OfABodyHaveItsSpeedFromTheFirstStepWithEveryIntegrator) {
       EXPECT_NEAR(bob(i, 0), 1 + t - std::sin(10 * t) / 10, 1e-3);
       EXPECT_NEAR(force(i, 0), 10 * std::sin(10 * t), 0.15);
     }
-    EXPECT_NE(err.find("motion \"drive\" changes its speed by 1 m/s at once: a blow of 0.5 J"), std::string::npos) << err;
-    EXPECT_NE(text_of(*this / "run.json").find("\"blows\": {\"count\": 1, \"work\": 0.5}"), std::string::npos);
+    EXPECT_NE(err.find("motion \"drive\" changes its speed by 1 m/s at once: an impulse that does work of 0.5 J"), std::string::npos)
+        << err;
+    EXPECT_NE(text_of(*this / "run.json").find("\"impulses\": {\"count\": 1, \"work\": 0.5}"), std::string::npos);
     if (kind == "energy-momentum" || kind == "mid-point") {
       EXPECT_LT(reported("energy_balance"), 1e-13);
     }
@@ -339,7 +340,7 @@ TEST_F(Motions, OfASetOfABarThatMovesAlongLeaveItWithoutStress) {
         if (ranks == 1) {
           solved(with(kind), "mesh.h5");
           EXPECT_EQ(err.find("initial velocities changed"), std::string::npos) << err;
-          EXPECT_EQ(err.find("blow"), std::string::npos) << err;
+          EXPECT_EQ(err.find("impulse"), std::string::npos) << err;
         } else if (kind == "energy-momentum" || kind == "generalized-alpha") {
           ASSERT_EQ(mpirun(2, "hilo-solve --quiet scene.toml parts.h5 -o run.h5", path()).exit, 0);
         } else {
@@ -355,7 +356,7 @@ TEST_F(Motions, OfASetOfABarThatMovesAlongLeaveItWithoutStress) {
     }
 }
 
-// Invariant: an end moved by a motion and one moved by a driven joint are the same, from rest (a blow), over kinks, and on two ranks.
+// Invariant: an end moved by a motion and one moved by a driven joint are the same, from rest (an impulse), over kinks, and on two ranks.
 TEST_F(Motions, OfASetAreThoseOfADrivenJoint) {
   write_mesh(*this / "mesh.h5", bar(), {"test"});
   share(*this);
@@ -375,7 +376,7 @@ TEST_F(Motions, OfASetAreThoseOfADrivenJoint) {
     write("scene.toml",
           steel + "[[motion]]\nkind = \"translation\"\nname = \"drive\"\non = \"xmin\"\ndisplacement = [1, 0, 0]\n" + history);
     solved(with(kind) + fields, "mesh.h5");
-    EXPECT_NE(err.find("a blow of"), std::string::npos) << err;
+    EXPECT_NE(err.find("an impulse that does work of"), std::string::npos) << err;
     if (kind == "energy-momentum") {
       EXPECT_LT(reported("energy_balance"), 1e-9);
       const Results one(*this / "run.h5");
@@ -411,7 +412,7 @@ TEST_F(Motions, TurnAFlexibleSetThroughLargeAngles) {
             history);
   const Results moved = solved(soft, "mesh.h5");
   EXPECT_EQ(err.find("initial velocities changed"), std::string::npos) << err;
-  EXPECT_EQ(err.find("blow"), std::string::npos) << err;
+  EXPECT_EQ(err.find("impulse"), std::string::npos) << err;
   EXPECT_LT(reported("energy_balance"), 1e-10);
   for (const double t : {0.001, 0.08, 0.16}) {
     const Vec3 v = moved.at("probe/root", t).segment<3>(3);

@@ -1,4 +1,4 @@
-// Blows: instants at which laws of motion ask for a jump of velocities, as at every point of a history that is interpolated linearly.
+// Impulses: instants at which laws of motion ask for a jump of velocities, as at every point of a history that is interpolated linearly.
 #pragma once
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace hilo {
 
-struct Blow {
+struct Impulse {
   std::string by;         // `motion "drive"`, the one that jumps most; empty: no law jumps
   double speed = 0;       // how far, largest over its points, or rate of its joint
   const char* unit = "";  // of speed
@@ -18,12 +18,12 @@ struct Blow {
 
 /// Velocities of the state from s.t on: those of the laws, and of the rest what masses and joints make of it.  At the start the velocities
 /// before are those given in the scene.
-Blow strike(const System& system, KktSolver& solver, State& s);
+Impulse strike(const System& system, KktSolver& solver, State& s);
 
-/// The blows of a run, told as they come.
-class Blows {
+/// The impulses of a run, told as they come.
+class Impulses {
  public:
-  Blow strike(const System& system, KktSolver& solver, State& s, bool talk);
+  Impulse strike(const System& system, KktSolver& solver, State& s, bool talk);
   std::string json() const;
 
  private:
