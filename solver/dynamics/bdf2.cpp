@@ -33,7 +33,7 @@ class Bdf2 final : public StageIntegrator {
     combine(before_, {{1, &u.q}, {-h_ / 2, &v1_}});
     combine(after_, {{1, &u.q}, {h_ / 2, &v1_}});
     Stage s = stage_at(u.q, t_ + h_);
-    s.w0 = &before_, s.w1 = &after_, s.h = h_;
+    s.w0 = &before_, s.w1 = &after_, s.h = h_, s.elapsed = h_;
     s.a = &a1_, s.mass_slope = c1 * c1;
     s.v = &v1_, s.alpha_slope = c1;
     return s;
@@ -42,6 +42,7 @@ class Bdf2 final : public StageIntegrator {
   void end_velocity(Config& v) override { v = v1_; }
   void finish(const Config&) override { dq_before_ = dq_, vm_ = v0_, h_before_ = h_; }
   const Config& acceleration() const override { return a1_; }
+  bool carries_state() const override { return true; }
   double own_time() const override { return 1; }
 
  private:

@@ -28,7 +28,7 @@ class EnergyMomentum final : public StageIntegrator {
     s.end = &u.q;
     s.left = &mid_, s.slope = 0.5;
     s.e0 = s.w0 = &u.q0, s.e1 = s.w1 = &u.q;
-    s.h = h_;
+    s.h = h_, s.elapsed = h_;
     s.a = &a_, s.v0 = &v0_, s.mass_slope = 2 / (h_ * h_);
     if (clocks_) s.tempo = clocks_->tempo().data();
     s.v = &v_mid_, s.alpha_slope = 1 / h_;
@@ -59,6 +59,7 @@ class EnergyMomentum final : public StageIntegrator {
   }
   std::vector<std::string> timed() const override { return clocks_ ? clocks_->names() : std::vector<std::string>{}; }
   const Config& acceleration() const override { return a_; }
+  bool carries_state() const override { return true; }
   double own_time() const override { return 0.5; }
   bool alternates() const override { return true; }
   bool keeps_energy() const override { return true; }

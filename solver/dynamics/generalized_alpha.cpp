@@ -32,7 +32,7 @@ class GeneralizedAlpha final : public StageIntegrator {
     combine(before_, {{1, &u.q}, {-h_ / 2, &v1_}});
     combine(after_, {{1, &u.q}, {h_ / 2, &v1_}});
     Stage s = stage_at(u.q, t_ + h_);
-    s.w0 = &before_, s.w1 = &after_, s.h = h_;
+    s.w0 = &before_, s.w1 = &after_, s.h = h_, s.elapsed = h_;
     s.a = &a1_, s.mass_slope = m * c;
     s.v = &v1_, s.alpha_slope = p_.gamma / (p_.beta * h_);
     return s;
@@ -44,6 +44,7 @@ class GeneralizedAlpha final : public StageIntegrator {
     a0_ = a1_, b_at_start_ = b1_, h_b_ = h_;
   }
   const Config& acceleration() const override { return a1_; }
+  bool carries_state() const override { return true; }
   double own_time() const override { return 1; }
 
  private:

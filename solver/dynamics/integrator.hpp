@@ -73,6 +73,8 @@ class Integrator {
   virtual void restart() {}
   /// Whether accelerations and multipliers alternate about the true ones from step to step, so that neighbours must be averaged.
   virtual bool alternates() const { return false; }
+  /// Whether its stages take materials that remember from the accepted state to the end of the step.
+  virtual bool carries_state() const { return false; }
   /// Whether the balance of energy closes over every step, up to what Newton leaves.
   virtual bool keeps_energy() const { return false; }
 };

@@ -55,6 +55,9 @@ class Run {
     if (const std::string why = is_static_ ? "" : known_weakness(time, system_); !why.empty() && system_.comm->rank == 0)
       warn(time.where("integrator"), integrator_->name() + ": " + why);
 
+    if (!is_static_ && system_.traits().remembers && !integrator_->carries_state())
+      throw Error(time.where("integrator"), integrator_->name() + " does not carry what a material remembers (plastic strain)",
+                  "energy-momentum, newmark, hht, wbz, generalized-alpha and bdf2 do");
     if (!is_static_) {
       const double end = time.number("end"), step = time.has("step") ? time.number("step") : end / 20;
       events_ = events(system_, end, step), system_.same_time = 1e-9 * step;
@@ -136,28 +139,42 @@ class Run {
     int cuts = 0;
     LeastDet least;
     State reached = state_;
-    std::string why;  // of the first failure since the last good state, or that a cell would be inside out
+    std::string why;             // of the first failure since the last good state, or that a cell would be inside out
+    std::vector<double> breaks;  // of the histories: where a load turns back what remembers must have been
+    for (const UsedHistory& used : system_.histories)
+      for (const History::Break& b : used.history.breaks()) breaks.push_back(b.t / end);
+    const auto step_end = [&] {  // the next multiple of dt, or the break before it
+      double to = std::min(1.0, (std::floor(done / dt + 1e-9) + 1) * dt);
+      for (const double b : breaks)
+        if (b > done + 1e-9 && b < to - 1e-9) to = b;
+      return to;
+    };
     while (done < 1 - 1e-12) {
-      const double next = std::min(1.0, done + dt);
+      const double next = step_end();
       reached.q = state_.q, reached.lambda = state_.lambda, reached.t = next * end;
       const NewtonReport r = equilibrium(system_, *solver_, reached.q, reached.lambda, reached.t, next, false, newton_);
       report_.iterations += r.iterations;
       Taken taken{stage_at(reached.q, reached.t), reached.lambda};
+      taken.stage.elapsed = slow;
+      if (r.converged) system_.advance(taken.stage);
       taken.stage.a = &no_acceleration, taken.stage.load_factor = next, taken.stage.work_from = &state_.q;
       failure_ = r.converged ? audit_->look(state_.q, reached, {&taken, 1}, r, next) : r.reason;
       if (!failure_.empty()) {
-        system_.commit(state_.q);
+        system_.commit(state_.q), system_.settle(false);
         if (why.empty() || r.least_det.det <= 0) why = failure_;
         if (++cuts > max_cuts_) {
           if (least.det < 0.01 && r.least_det.det > 0) why += "; " + system_.inside_out(least);
           return stop(why + unheld(system_, system_.start));
         }
-        ++report_.cuts, dt /= 2;
+        ++report_.cuts;
+        do dt /= 2;
+        while (step_end() >= next);
         continue;
       }
       cuts = 0, why.clear(), least.take(r.least_det);
       audit_->accept(reached.t);
       recorder_->step(reached, audit_->ledger(), taken, no_acceleration, r.iterations);
+      system_.settle(true);
       std::swap(state_, reached);
       done = next;
       ++report_.steps;
@@ -182,6 +199,8 @@ class Run {
         recorder_->first(state_, audit_->ledger());
         return stop("no static equilibrium at the start: " + r.reason + unheld(system_, system_.start));
       }
+      Stage rest = stage_at(state_.q, 0);
+      rest.elapsed = slow, system_.advance(rest), system_.settle(true);
       if (talk_) fmt::print(stderr, "equilibrium after {} iterations\n", r.iterations);
     }
     projected_ = impulses_.strike(system_, *solver_, state_, talk_).change;
@@ -282,7 +301,7 @@ class Run {
         if (++failures > max_cuts_) return false;
         control.cut(h), cut();
       } else if (!control.accept(*integrator_->taken().back().stage.end, h)) {
-        ++rejected_;
+        ++rejected_, system_.settle(false);
       } else {
         failures = 0;
         accept(pieces == 1 ? to : state_.t + h, progress);
@@ -293,6 +312,7 @@ class Run {
 
   void cut() {
     ++report_.cuts, good_ = 0;
+    system_.settle(false);
     if (redundancy_.rank < redundancy_.rows && recheck_redundant_rows(system_, state_.q, state_.t, redundancy_) && talk_)
       fmt::print(stderr, "t = {:.6g} s: another choice of independent joint rows\n", state_.t);
   }
@@ -312,6 +332,7 @@ class Run {
         continue;
       }
       integrator_->end(end_), end_.t = state_.t + h;
+      system_.advance(integrator_->taken().back().stage);
       failure_ = system_.fault(end_.q);
       if (failure_.empty()) failure_ = audit_->look(state_.q, end_, integrator_->taken(), r);
       if (failure_.empty()) return true;
@@ -326,6 +347,7 @@ class Run {
     system_.commit(state_.q, &state_.v);
     audit_->accept(t);
     recorder_->step(state_, audit_->ledger(), integrator_->taken().back(), integrator_->acceleration(), iterations_);
+    system_.settle(true);
     ++report_.steps;
     progress.show(t, report_.steps, iterations_);
   }

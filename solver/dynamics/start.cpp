@@ -228,7 +228,7 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
       [&](const Unknown& at) {
         s = stage_at(at.q, t);
         s.a = &zero;
-        s.load_factor = ramp;
+        s.load_factor = ramp, s.elapsed = slow;
         s.mass_slope = mechanism ? 1 / (tau * tau) : 0;
         if (mechanism) tau = std::min(tau * 1.3, 20.0);
         return s;

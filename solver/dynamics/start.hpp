@@ -1,5 +1,7 @@
 // Before the first step: positions and velocities that satisfy the constraints, consistent accelerations, static equilibrium.
 #pragma once
+#include <limits>
+
 #include "dynamics/integrator.hpp"
 #include "dynamics/newton.hpp"
 
@@ -14,6 +16,9 @@ double assemble_positions(System& system, KktSolver& solver, Config& q);
 double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t);
 /// s.a and s.lambda that satisfy equations and constraints at (q, v) at time t, and s.jerk by forward differences over h.
 void consistent_acceleration(const System& system, KktSolver& solver, State& s, double h);
+
+/// Time of a step of statics, for materials: so slow that rates do not count.
+inline constexpr double slow = std::numeric_limits<double>::infinity();
 
 /// Newton to rest under the loads at time t times `ramp`.  With `mechanism`, a pseudo mass that fades away holds motions nothing resists.
 NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vector<double>& lambda, double t, double ramp, bool mechanism,

@@ -41,6 +41,11 @@ struct CellMean {
   }
 };
 
+/// What a cell remembers; null where nothing is.
+const double* of_cell(const SolidBatch& b, const StressRecovery::Memory& memory, size_t batch, size_t cell) {
+  return b.kernel.n_state > 0 ? memory[batch].data() + cell * static_cast<size_t>(b.kernel.n_state) : nullptr;
+}
+
 }  // namespace
 
 /// Visit the cells of the patches: batch and its number, number of the cell in it, patches of its corners, positions of its nodes.
@@ -142,13 +147,13 @@ StressRecovery::Patches StressRecovery::made_patches(int order, const std::vecto
 }
 
 /// Polynomials of all patches about their corners (n x rows x 6).
-std::vector<double> StressRecovery::polynomials(const Patches& p, const std::vector<Vec3>& x) const {
+std::vector<double> StressRecovery::polynomials(const Patches& p, const std::vector<Vec3>& x, const Memory& memory) const {
   const size_t n = p.node.size(), width = PatchFit::n_sums(p.order), size = static_cast<size_t>(PatchFit::n_rows(p.order)) * 6;
   std::vector<double> sums(n * width, 0.0), polynomial(n * size);
   std::vector<StressPoint> points;
-  each_cell(p, x, [&](size_t b, size_t, std::span<const int> corner, const Positions& at) {
+  each_cell(p, x, [&](size_t b, size_t e, std::span<const int> corner, const Positions& at) {
     const SolidBatch& batch = solids_.batches[b];
-    stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::samples, points);
+    stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::samples, points, of_cell(batch, memory, b, e));
     if (p.order == 2 && quadratic(batch.shape)) {
       for (const int v : corner)
         for (const StressPoint& q : points) p.fit[v].add_stress(q.X - system_.X[p.node[v]], q.S, sums.data() + v * width);
@@ -224,19 +229,19 @@ void StressRecovery::add_bars(const std::vector<Vec3>& x, std::vector<double>& a
   }
 }
 
-StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x) const {
+StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x, const Memory& memory) const {
   const System& s = system_;
   Result out;
-  out.cell.assign(s.mesh->mesh.n_cells(), 0.0);
+  out.cell.assign(s.mesh->mesh.n_cells(), 0.0), out.plastic = out.cell;
   std::vector<double> at_site(site_.size() * n_values, 0.0);
   std::vector<StressPoint> points;
   std::vector<Mat3> F;
   for (const Patches& p : patches_) {
-    const auto polynomial = polynomials(p, x);
+    const auto polynomial = polynomials(p, x, memory);
     each_cell(p, x, [&](size_t b, size_t e, std::span<const int> corner, const Positions& at) {
       const SolidBatch& batch = solids_.batches[b];
       const CellPolynomial P(s, p.node, p.fit, polynomial.data(), PatchFit::n_rows(p.order), corner);
-      stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::samples, points);
+      stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::samples, points, of_cell(batch, memory, b, e));
       Eigen::Matrix<double, 6, Eigen::Dynamic> rest(6, points.size());
       for (size_t q = 0; q < points.size(); ++q) rest.col(q) = points[q].S - P(points[q].X);
       const Eigen::Matrix<double, 6, Eigen::Dynamic> extrapolated = rest * to_nodes(batch.shape).transpose();
@@ -261,10 +266,13 @@ StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x) const
     each_cell(p, x, [&](size_t b, size_t e, std::span<const int>, const Positions& at) {
       const SolidBatch& batch = solids_.batches[b];
       const int* site = site_of_[b].data() + e * at.X.size();
-      stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::integration, points);
+      stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::integration, points, of_cell(batch, memory, b, e));
       double& mean = out.cell[batch.cells[e]];
-      for (const StressPoint& q : points) mean += von_mises(cauchy(q.F, q.S)) / static_cast<double>(points.size());
-      stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::everywhere, points);
+      for (const StressPoint& q : points) {
+        mean += von_mises(cauchy(q.F, q.S)) / static_cast<double>(points.size());
+        out.plastic[batch.cells[e]] += q.plastic / static_cast<double>(points.size());
+      }
+      stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::everywhere, points, of_cell(batch, memory, b, e));
       double square = 0, volume = 0;
       for (const StressPoint& q : points) {
         Vec6 off = -q.S;

@@ -41,10 +41,13 @@ class StressRecovery {
     std::vector<double> von_mises;  // of it; of bars the mean of theirs                [Pa]
     std::vector<double> error;      // 0 at bars                                        [Pa]
     std::vector<double> cell;       // von Mises, mean over the integration points      [Pa]
+    std::vector<double> plastic;    // equivalent plastic strain, likewise              [1]
   };
   const std::vector<Site>& sites() const { return site_; }
-  /// At positions x of the nodes.  Collective; the same on all ranks that hold a site.
-  Result recover(const std::vector<Vec3>& x) const;
+  using Memory = std::vector<std::vector<double>>;
+  /// At positions x of the nodes, the cells of each batch remembering what `memory` says.  Collective; the same on all ranks that hold a
+  /// site.
+  Result recover(const std::vector<Vec3>& x, const Memory& memory = {}) const;
 
  private:
   struct Patches {  // corners of the cells of one order: a patch each
@@ -58,7 +61,7 @@ class StressRecovery {
   Patches made_patches(int order, const std::vector<double>& second) const;
   template <class Visit>
   void each_cell(const Patches& p, const std::vector<Vec3>& x, Visit&& visit) const;
-  std::vector<double> polynomials(const Patches& p, const std::vector<Vec3>& x) const;
+  std::vector<double> polynomials(const Patches& p, const std::vector<Vec3>& x, const Memory& memory) const;
   void add_bars(const std::vector<Vec3>& x, std::vector<double>& at, std::vector<double>& cell) const;
 
   const System& system_;

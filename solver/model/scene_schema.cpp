@@ -394,7 +394,8 @@ std::vector<KindSchema> make() {
        "",
        "what the results hold",
        {{"interval", number, "s", "", "time between field outputs; every 1/50 of the run when absent", above(0)},
-        {"fields", texts, "", "[\"displacement\", \"velocity\", \"acceleration\", \"stress\", \"von_mises\", \"stress_error\"]",
+        {"fields", texts, "",
+         "[\"displacement\", \"velocity\", \"acceleration\", \"stress\", \"von_mises\", \"stress_error\", \"plastic_strain\"]",
          "nodal fields"},
         {"nodes", text, "", "all", "whose fields: all, or skin: those on the surface of a region, which pictures without cuts show"},
         {"precision", text, "", "double", "double or single"}}});
@@ -418,7 +419,7 @@ std::vector<std::string> choices(std::string_view section, std::string_view key)
        {"energy-momentum", "mid-point", "generalized-alpha", "newmark", "hht", "wbz", "U0", "V0", "bathe", "bdf2", "radau"}},
       {{"time", "analysis"}, {"dynamic", "static"}},
       {{"solver", "kind"}, {"auto", "light", "klu", "cholesky", "umfpack", "direct", "cg", "iterative", "bddc", "feti-dp"}},
-      {{"output", "fields"}, {"displacement", "velocity", "acceleration", "stress", "von_mises", "stress_error"}},
+      {{"output", "fields"}, {"displacement", "velocity", "acceleration", "stress", "von_mises", "stress_error", "plastic_strain"}},
       {{"output", "nodes"}, {"all", "skin"}},
       {{"output", "precision"}, {"double", "single"}},
   };

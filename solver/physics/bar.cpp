@@ -39,9 +39,15 @@ void run_bar(const KernelCall& k) {
     }
 }
 
+/// Null where a law has no bars.
+template <class M>
+constexpr KernelFunction bar_of() {
+  if constexpr (requires(const M& law) { law.bar(0.0); }) return run_bar<M>;
+  return nullptr;
+}
 template <class... M>
 KernelFunction kernel_in(size_t law, const std::variant<M...>*) {
-  constexpr KernelFunction of_law[] = {run_bar<M>...};
+  constexpr KernelFunction of_law[] = {bar_of<M>()...};
   return of_law[law];
 }
 

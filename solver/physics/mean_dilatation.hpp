@@ -21,9 +21,11 @@ inline constexpr double pointwise_nu = S::n_points == 1          ? 0.5
                                        : S::n == 10 || S::n == 6 ? 0.40
                                                                  : 0.45;
 
-/// lambda_m [Pa]; lambda_p is the rest.
-template <class S>
+/// lambda_m [Pa]; lambda_p is the rest.  Where a hexahedron of eight nodes flows all of the bulk modulus acts on the mean: flow keeps the
+/// volume, and eight points would be more conditions than its nodes can meet [nagtegaal-1974].
+template <class S, bool flows = false>
 constexpr double mean_lambda(const Lame& c) {
+  if constexpr (flows && S::n == 8) return c.lambda + 2 * c.mu / 3;
   constexpr double nu = pointwise_nu<S>;
   if constexpr (nu >= 0.5) return 0;
   const double most = 2 * c.mu * nu / (1 - 2 * nu);

@@ -7,6 +7,9 @@
 // of f over the step is exactly the change of W [simo-tarnow-1992].  Otherwise it is S((1 - w) E0 + w E1); w = 1 is the end point.
 // Rate terms act as stress: S += viscous C (E1 - E0).
 #pragma once
+#include <type_traits>
+
+#include "physics/material/point_step.hpp"
 #include "physics/material/voigt.hpp"
 #include "physics/shape/hex8.hpp"
 #include "physics/shape/shape.hpp"
@@ -31,6 +34,17 @@ struct SolidCall {
   const T* a;         // acceleration less gravity     (n x 3)      [m/s^2] or null: no inertia
   double mass_slope;  // d a / d x1, what of the mass K holds       [1/s^2]
   double weight;      // w, share of x1 in the averages             [1]
+  // of laws that remember (physics/material/point_step.hpp):
+  const T* h0 = nullptr;  // state at the start     (n_points x n_state)
+  T* h1 = nullptr;        // state at the end       (n_points x n_state)      or null
+  double elapsed = 0;     // time of the step; 0: nothing flows     [s]
+  double mean = 0;        // what of lambda the mean dilatation has [Pa]
+};
+
+/// A law whose points have a state.
+template <class M>
+concept Remembers = requires {
+  M::n_state;
 };
 
 namespace solid {
@@ -99,7 +113,7 @@ inline T mean_gradients(const T* X, T (*g)[3]) {
 /// Gradients at integration point p of a cell, and the point's weight [m^3].
 template <class S, class T>
 inline T point_gradients(int p, const T* X, T (*g)[3]) {
-  if constexpr (S::n == 8) {
+  if constexpr (std::is_same_v<S, Hex8>) {
     return mean_gradients(X, g);
   } else {
     constexpr const auto& table = stiffness_table<S>;
@@ -147,9 +161,33 @@ inline void strain_operator(const T F[3][3], const T g[3], T B[6][3]) {
   }
 }
 
-/// Contribution of one integration point of weight w [m^3] (already times det).
+/// Stress, slope, state and energies of point p under a law that remembers: lane by lane, in a function of the law's own.
+template <class M, class T>
+inline void step_point(const M& law, const SolidCall<T>& c, int p, const T& w, const T e0[6], const T e1[6], T s[6], T (*D)[6]) {
+  constexpr int lanes = sizeof(T) / sizeof(double), n = M::n_state;
+  const auto get = [](const T& x, int lane) { return reinterpret_cast<const double*>(&x)[lane]; };
+  const auto put = [](T& x, int lane, double value) { reinterpret_cast<double*>(&x)[lane] = value; };
+  for (int l = 0; l < lanes; ++l) {
+    double start[6], end[6], before[n], after[n], stress[6], slope[36];
+    for (int i = 0; i < 6; ++i) start[i] = get(e0[i], l), end[i] = get(e1[i], l);
+    for (int i = 0; i < n; ++i) before[i] = get(c.h0[p * n + i], l);
+    PointStep step{start, end, before, c.elapsed, c.weight == 0.5, c.mean};
+    if (c.elastic != 0 && (c.f || c.K)) step.s = stress, step.D = D ? slope : nullptr;
+    if (c.h1) step.h1 = after;
+    law.respond(step);
+    for (int i = 0; i < 6 && step.s; ++i) {
+      put(s[i], l, stress[i]);
+      for (int j = 0; j < 6 && step.D; ++j) put(D[i][j], l, slope[6 * i + j]);
+    }
+    for (int i = 0; i < n && c.h1; ++i) put(c.h1[p * n + i], l, after[i]);
+    if (c.energy) put(*c.energy, l, get(*c.energy, l) + get(w, l) * step.energy);
+    if (c.elastic != 0 && c.dissipated) put(*c.dissipated, l, get(*c.dissipated, l) + get(w, l) * step.dissipated);
+  }
+}
+
+/// Contribution of integration point p of weight w [m^3] (already times det).
 template <int n, class Material, class T>
-inline void add_point(const Material& material, const SolidCall<T>& c, const T (*g)[3], const T& w) {
+inline void add_point(const Material& material, const SolidCall<T>& c, const T (*g)[3], const T& w, [[maybe_unused]] int p = 0) {
   T F0[3][3], F1[3][3], Fm[3][3], e0[6], e1[6], s[6], D[6][6];
   gradient<n>(c.x0, g, F0);
   gradient<n>(c.x1, g, F1);
@@ -161,7 +199,9 @@ inline void add_point(const Material& material, const SolidCall<T>& c, const T (
     s[i] = 0 * w;
     for (int j = 0; j < 6; ++j) D[i][j] = 0 * w;
   }
-  if (c.elastic != 0) {
+  if constexpr (Remembers<Material>) {
+    if (c.elastic != 0 || c.energy) step_point(material, c, p, w, e0, e1, s, c.K ? D : nullptr);
+  } else if (c.elastic != 0) {
     if (c.weight == 0.5) {
       material.stress(e0, e1, s, c.K ? D : nullptr);
     } else {
@@ -182,7 +222,8 @@ inline void add_point(const Material& material, const SolidCall<T>& c, const T (
     }
     if (c.K) add_linear_tangent(c.linear, c.viscous, D);
   }
-  if (c.energy) *c.energy += w * material.energy(e1);
+  if constexpr (!Remembers<Material>)
+    if (c.energy) *c.energy += w * material.energy(e1);
   if (c.least_det) {
     const T J = determinant(F1);
     *c.least_det = J < *c.least_det ? J : *c.least_det;
@@ -237,7 +278,7 @@ inline void evaluate_solid(const Material& material, const SolidCall<T>& c) {
   for (int p = 0; p < S::n_points; ++p) {
     T g[S::n][3];
     const T w = solid::point_gradients<S>(p, c.X, g);
-    solid::add_point<S::n>(material, c, g, w);
+    solid::add_point<S::n>(material, c, g, w, p);
   }
 }
 

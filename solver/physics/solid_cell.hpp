@@ -10,11 +10,15 @@ namespace hilo {
 template <class S, class M, class T>
 inline void evaluate_strain(const M& law, const SolidCall<T>& call) {
   const Lame c = law.linear();
-  const double mean = mean_lambda<S>(c);
+  const double mean = mean_lambda<S, Remembers<M>>(c);
   if (mean > 0) {
     SolidCall<T> points = call;
     points.linear.lambda -= mean;
-    evaluate_solid<S>(law.with_lambda(c.lambda - mean), points);
+    points.mean = mean;
+    if constexpr (Remembers<M>)
+      evaluate_solid<S>(law, points);
+    else
+      evaluate_solid<S>(law.with_lambda(c.lambda - mean), points);
     add_mean_dilatation<S, M::bulk>(mean, call);
   } else {
     evaluate_solid<S>(law, call);

@@ -4,6 +4,10 @@
 #include <cstdlib>
 
 #include "physics/bar.hpp"
+#include "physics/shape/hex20r.hpp"
+#include "physics/shape/tet10.hpp"
+#include "physics/shape/wedge15.hpp"
+#include "physics/solid.hpp"
 
 namespace hilo {
 
@@ -24,10 +28,48 @@ int lanes() {
   return width;
 }
 
+namespace {
+
+int flowing_points(Shape shape) {
+  switch (shape) {
+    case Shape::tet4:
+      return Tet4::n_points;
+    case Shape::tet10:
+      return Tet10::n_points;
+    case Shape::wedge6:
+      return Wedge6::n_points;
+    case Shape::wedge15:
+      return Wedge15::n_points;
+    case Shape::hex8:
+      return Hex8Full::n_points;
+    case Shape::hex20:
+      return Hex20::n_points;
+    case Shape::hex20r:
+      return Hex20R::n_points;
+    case Shape::bar2:
+      break;
+  }
+  return 0;
+}
+
+template <class M>
+constexpr int state_of_point() {
+  if constexpr (Remembers<M>) return M::n_state;
+  return 0;
+}
+template <class... M>
+int state_of_cell(Shape shape, size_t law, const std::variant<M...>*) {
+  constexpr int of_law[] = {state_of_point<M>()...};
+  return of_law[law] * flowing_points(shape);
+}
+
+}  // namespace
+
 SolidKernel solid_kernel(Shape shape, size_t law) {
-  if (shape == Shape::bar2) return {bar_kernel(law), 1};
+  const int n_state = state_of_cell(shape, law, static_cast<const Material*>(nullptr));
+  if (shape == Shape::bar2) return {bar_kernel(law), 1, n_state};
   const int w = lanes();
-  return {w == 8 ? kernel_lanes8(shape, law) : w == 4 ? kernel_lanes4(shape, law) : kernel_lanes2(shape, law), w};
+  return {w == 8 ? kernel_lanes8(shape, law) : w == 4 ? kernel_lanes4(shape, law) : kernel_lanes2(shape, law), w, n_state};
 }
 
 }  // namespace hilo

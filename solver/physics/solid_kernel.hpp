@@ -14,16 +14,20 @@ struct KernelCall {
   double density = 0;
   const double* a = nullptr;  // null: no inertia
   double mass_slope = 0;
-  double area = 0;      // of bars [m^2]
-  double weight = 0.5;  // share of x1 in the averages; 1/2: discrete gradient
+  double area = 0;             // of bars [m^2]
+  double weight = 0.5;         // share of x1 in the averages; 1/2: discrete gradient
+  const double* h0 = nullptr;  // of laws that remember: see SolidCall
+  double* h1 = nullptr;
+  double elapsed = 0;
 };
 
 using KernelFunction = void (*)(const KernelCall&);
 
-/// Kernel of a shape and a law (Material::index()) and the number of cells it takes at once.
+/// Kernel of a shape and a law (Material::index()) and the number of cells it takes at once; no function where the law has no such cells.
 struct SolidKernel {
   KernelFunction call;
   int width;
+  int n_state;  // numbers that a cell remembers
 };
 /// Chosen at run time by what the processor can do; HILO_LANES=2|4|8 lowers the choice.
 SolidKernel solid_kernel(Shape shape, size_t law);

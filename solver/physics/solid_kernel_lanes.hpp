@@ -21,9 +21,24 @@ static void run_kernel(const KernelCall& k) {
   T* least = reinterpret_cast<T*>(k.least_det);
   if (least) *least = T{} + 1e300;
   const M& law = *static_cast<const M*>(k.law);
-  const SolidCall<T> call{lanes_of(k.X), lanes_of(k.x0), lanes_of(k.x1),      k.elastic,          k.viscous,
-                          law.linear(),  clear(k.f, n3), clear(k.K, n3 * n3), clear(k.energy, 1), clear(k.dissipated, 1),
-                          least,         k.density,      lanes_of(k.a),       k.mass_slope,       k.weight};
+  const SolidCall<T> call{lanes_of(k.X),
+                          lanes_of(k.x0),
+                          lanes_of(k.x1),
+                          k.elastic,
+                          k.viscous,
+                          law.linear(),
+                          clear(k.f, n3),
+                          clear(k.K, n3 * n3),
+                          clear(k.energy, 1),
+                          clear(k.dissipated, 1),
+                          least,
+                          k.density,
+                          lanes_of(k.a),
+                          k.mass_slope,
+                          k.weight,
+                          lanes_of(k.h0),
+                          reinterpret_cast<T*>(k.h1),
+                          k.elapsed};
   if (k.elastic != 0 || k.viscous != 0 || k.energy) evaluate_strain<S>(law, call);
   if (k.a) add_mass<S>(call);
 }
@@ -40,7 +55,7 @@ static KernelFunction kernel_of_shape(Shape shape) {
     case Shape::wedge15:
       return run_kernel<Wedge15, M, T>;
     case Shape::hex8:
-      return run_kernel<Hex8, M, T>;
+      return run_kernel<std::conditional_t<Remembers<M>, Hex8Full, Hex8>, M, T>;
     case Shape::hex20:
       return run_kernel<Hex20, M, T>;
     case Shape::hex20r:

@@ -121,6 +121,42 @@ void points_of(const Tabulated<S, P>& table, const M& law, const CellMean& mean,
 inline constexpr Tabulated<Hex20, 8> barlow_table{hex_rule<2>()};
 inline constexpr Tabulated<Hex8, 8> hex8_table{hex_rule<2>()};
 
+/// At the integration points, where the state is.
+template <class S, class M>
+void remembered_points(const M& law, std::span<const Vec3> X, std::span<const Vec3> x, const double* state, std::vector<StressPoint>& out) {
+  constexpr const auto& table = stiffness_table<S>;
+  CellMean mean{mean_lambda<S, true>(law.linear()), 0};
+  static const std::vector<double> nothing(M::n_state, 0.0);
+  double volume = 0, swelling = 0;
+  out.resize(S::n_points);
+  for (int p = 0; p < S::n_points; ++p) {
+    StressPoint& at = out[p];
+    double g[S::n][3], F[3][3];
+    at.w = table.w[p] * solid::reference_gradients<S::n>(table.dN[p], X[0].data(), g);
+    solid::gradient<S::n>(x[0].data(), g, F);
+    at.X.setZero();
+    for (int a = 0; a < S::n; ++a) at.X += table.N[p][a] * X[a];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) at.F(i, j) = F[i][j];
+    at.N = table.N[p];
+    volume += at.w, swelling += at.w * std::pow(at.F.determinant(), 2);
+  }
+  mean.dilatation = swelling / volume;
+  for (int p = 0; p < S::n_points; ++p) {
+    StressPoint& at = out[p];
+    double F[3][3], e[6];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) F[i][j] = at.F(i, j);
+    solid::green_lagrange(F, e);
+    const double* own = state ? state + p * M::n_state : nothing.data();
+    PointStep step{e, e, own, 0, false, mean.lambda};
+    step.s = at.S.data();
+    law.respond(step);
+    at.plastic = own[M::plastic_strain];
+    mean.add(M::bulk, e, at.S);
+  }
+}
+
 template <class S, class M>
 void solid_points(const M& whole, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which, std::vector<StressPoint>& out) {
   const Lame c = whole.linear();
@@ -196,25 +232,46 @@ void gradients_at_nodes(std::span<const Vec3> X, std::span<const Vec3> x, std::s
 }
 
 template <class M>
-void points_of_law(Shape shape, const M& law, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
+void points_of_law(Shape shape, const M& law, std::span<const Vec3> X, std::span<const Vec3> x, const double* state, StressPoints which,
                    std::vector<StressPoint>& out) {
-  switch (shape) {
-    case Shape::tet4:
-      return solid_points<Tet4>(law, X, x, which, out);
-    case Shape::tet10:
-      return solid_points<Tet10>(law, X, x, which, out);
-    case Shape::wedge6:
-      return solid_points<Wedge6>(law, X, x, which, out);
-    case Shape::wedge15:
-      return solid_points<Wedge15>(law, X, x, which, out);
-    case Shape::hex8:
-      return hex8_points(law, X, x, out);
-    case Shape::hex20:
-      return solid_points<Hex20>(law, X, x, which, out);
-    case Shape::hex20r:
-      return solid_points<Hex20R>(law, X, x, which, out);
-    case Shape::bar2:
-      out.clear();
+  if constexpr (Remembers<M>) {
+    switch (shape) {
+      case Shape::tet4:
+        return remembered_points<Tet4>(law, X, x, state, out);
+      case Shape::tet10:
+        return remembered_points<Tet10>(law, X, x, state, out);
+      case Shape::wedge6:
+        return remembered_points<Wedge6>(law, X, x, state, out);
+      case Shape::wedge15:
+        return remembered_points<Wedge15>(law, X, x, state, out);
+      case Shape::hex8:
+        return remembered_points<Hex8Full>(law, X, x, state, out);
+      case Shape::hex20:
+        return remembered_points<Hex20>(law, X, x, state, out);
+      case Shape::hex20r:
+        return remembered_points<Hex20R>(law, X, x, state, out);
+      case Shape::bar2:
+        return out.clear();
+    }
+  } else {
+    switch (shape) {
+      case Shape::tet4:
+        return solid_points<Tet4>(law, X, x, which, out);
+      case Shape::tet10:
+        return solid_points<Tet10>(law, X, x, which, out);
+      case Shape::wedge6:
+        return solid_points<Wedge6>(law, X, x, which, out);
+      case Shape::wedge15:
+        return solid_points<Wedge15>(law, X, x, which, out);
+      case Shape::hex8:
+        return hex8_points(law, X, x, out);
+      case Shape::hex20:
+        return solid_points<Hex20>(law, X, x, which, out);
+      case Shape::hex20r:
+        return solid_points<Hex20R>(law, X, x, which, out);
+      case Shape::bar2:
+        out.clear();
+    }
   }
 }
 
@@ -237,7 +294,14 @@ Vec6 cauchy(const Mat3& F, const Vec6& s) {
 Vec6 bar_stress(const Material& material, std::span<const Vec3> X, std::span<const Vec3> x) {
   const Vec3 d0 = X[1] - X[0], d = x[1] - x[0];
   const double e = (d.squaredNorm() / d0.squaredNorm() - 1) / 2;
-  const BarState bar = std::visit([&](const auto& law) { return law.bar(e); }, material);
+  const BarState bar = std::visit(
+      [&]<class M>(const M& law) {
+        if constexpr (Remembers<M>)
+          return BarState{};  // has no bars
+        else
+          return law.bar(e);
+      },
+      material);
   const Vec3 n = d.normalized();
   const double s = bar.S * d.norm() / d0.norm() / bar.t;
   Vec6 out;
@@ -246,8 +310,8 @@ Vec6 bar_stress(const Material& material, std::span<const Vec3> X, std::span<con
 }
 
 void stress_points(Shape shape, const Material& material, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
-                   std::vector<StressPoint>& out) {
-  std::visit([&](const auto& law) { points_of_law(shape, law, X, x, which, out); }, material);
+                   std::vector<StressPoint>& out, const double* state) {
+  std::visit([&](const auto& law) { points_of_law(shape, law, X, x, state, which, out); }, material);
 }
 
 const Eigen::MatrixXd& to_nodes(Shape shape) {

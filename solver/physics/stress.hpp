@@ -17,16 +17,17 @@ namespace hilo {
 enum class StressPoints { integration, samples, everywhere };
 
 struct StressPoint {
-  Vec3 X;           // reference position                         [m]
-  double w;         // reference volume                           [m^3]
-  Mat3 F;           // deformation gradient; of hex8 its mean     [1]
-  Vec6 S;           // second Piola-Kirchhoff xx yy zz yz xz xy   [Pa]
-  const double* N;  // shape functions of the cell                 [1]
+  Vec3 X;              // reference position                         [m]
+  double w;            // reference volume                           [m^3]
+  Mat3 F;              // deformation gradient; of hex8 its mean     [1]
+  Vec6 S;              // second Piola-Kirchhoff xx yy zz yz xz xy   [Pa]
+  const double* N;     // shape functions of the cell                 [1]
+  double plastic = 0;  // equivalent plastic strain                [1]
 };
 
-/// Points of a solid cell at positions x of its nodes.
+/// Points of a solid cell at positions x of its nodes; where its law remembers, the integration points, with their state (null: as new).
 void stress_points(Shape shape, const Material& material, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
-                   std::vector<StressPoint>& out);
+                   std::vector<StressPoint>& out, const double* state = nullptr);
 
 /// Deformation gradient at each node of a solid cell; where the cell has no volume at a node (collapsed corners), its mean.
 void nodal_gradients(Shape shape, std::span<const Vec3> X, std::span<const Vec3> x, std::span<Mat3> F);

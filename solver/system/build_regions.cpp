@@ -221,6 +221,7 @@ void Builder::make_batches() {
     b.cells.push_back(static_cast<int>(e));
     for (std::int64_t node : mesh.cell(e)) b.nodes.push_back(static_cast<int>(node));
   }
+  std::vector<double> reduced(regions_.size(), 0.0);
   for (auto& [key, b] : by_kind) {
     const Region& r = regions_[key.first];
     b.region = key.first;
@@ -233,10 +234,20 @@ void Builder::make_batches() {
     b.density = std::isnan(r.density) ? 0 : r.density;
     b.beta = r.beta, b.alpha = r.alpha, b.area = r.area;
     b.kernel = solid_kernel(b.shape, b.material.index());
+    if (b.kernel.n_state > 0 && b.shape == Shape::hex20) {  // 27 points are more conditions on the volume of flow than 20 nodes can meet
+      b.shape = Shape::hex20r, b.kernel = solid_kernel(b.shape, b.material.index());
+      reduced[b.region] = 1;
+    }
+    if (!b.kernel.call)
+      throw Error(r.where,
+                  fmt::format("region \"{}\" is made of bars: kind = \"{}\" has none", r.name, material_kinds()[b.material.index()].kind),
+                  "bars are stvk or neo-hookean");
+    b.h0.assign(b.cells.size() * static_cast<size_t>(b.kernel.n_state), 0.0), b.h1 = b.h0;
     out_->stiffness =
         std::max(out_->stiffness, young_of(linear_moduli(b.material)) * (b.area > 0 ? b.area / mesh_->length : mesh_->length / 100));
     out_->part<Solids>().batches.push_back(std::move(b));
   }
+  reduced_.swap(reduced);
   warn_of_limits();
 }
 

@@ -88,6 +88,7 @@ class Builder {
   const Comm& comm_;
   std::unique_ptr<System> out_;
   std::vector<Region> regions_;
+  std::vector<double> reduced_;              // by region: hex20 taken as hex20r on this rank
   Vec3 origin_ = Vec3::Zero();               // of the mass integrals
   std::map<std::string, int> body_by_name_;  // [[body]] entries
   std::map<std::string, int> patch_by_name_;

@@ -22,6 +22,7 @@ struct Traits {
   bool has_rates = false;     // forces that follow rates
   bool is_pressed = false;    // forces that depend on multipliers beyond their rows
   bool is_driven = false;     // moves by a law
+  bool remembers = false;     // state that a step moves on: plastic strain
   bool lumps_masses = false;  // masses on the diagonal, outside of cliques
   Traits& operator|=(const Traits& other);
 };
@@ -162,6 +163,10 @@ class Contribution {
   // state
   /// Why q cannot be, or "" ("joint \"j\" ran off the end of its curve"); the same on all ranks.
   virtual std::string fault(const Config& /*q*/) const { return {}; }
+  /// The state at the end of a step of this stage, beside the accepted one, which evaluations go on from until settle().
+  virtual void advance(const Stage& /*stage*/) {}
+  /// What advance() found becomes the accepted state, or is forgotten.
+  virtual void settle(bool /*accepted*/) {}
   /// Accept q, with velocities v where they are known, as the state to go on from.
   virtual void commit(const Config& /*q*/, const Config* /*v*/) {}
   /// All that it remembers from accepted steps.

@@ -21,7 +21,7 @@ double half_cosine2(const Mat3& D0, const Mat3& D1, int dimension) {
 
 }  // namespace
 
-Traits Solids::traits() const { return {.deforms = some_, .has_rates = some_}; }
+Traits Solids::traits() const { return {.deforms = some_, .has_rates = some_, .remembers = remembers_}; }
 
 std::string Solids::count() const {
   std::int64_t cells = 0;
@@ -30,7 +30,9 @@ std::string Solids::count() const {
 }
 
 void Solids::take_blocks(int&) {
-  some_ = points_.comm->max(batches.empty() ? 0 : 1) > 0;                       // cells are on their ranks
+  some_ = points_.comm->max(batches.empty() ? 0 : 1) > 0;  // cells are on their ranks
+  const auto remembers = [](const SolidBatch& b) { return b.kernel.n_state > 0; };
+  remembers_ = points_.comm->max(std::any_of(batches.begin(), batches.end(), remembers) ? 1 : 0) > 0;
   nodes_.assign(points_.mesh ? points_.mesh->mesh.region_name.size() : 0, {});  // every rank has an entry for every region
   // the lowest region, the same on all ranks that share a node
   std::vector<std::int64_t> region(points_.X.size(), std::numeric_limits<std::int64_t>::max());

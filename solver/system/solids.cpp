@@ -22,7 +22,7 @@ class Scratch {
 
 /// Arrays of one call, (entry x lanes).
 struct Lanes {
-  Scratch X, x0, x1, a, f, K, f2, K2, scalar[3];
+  Scratch X, x0, x1, a, f, K, f2, K2, h0, h1, scalar[3];
 };
 
 void gather(const SolidBatch& b, int first, int W, const std::vector<Vec3>& from, double* to) {
@@ -33,6 +33,15 @@ void gather(const SolidBatch& b, int first, int W, const std::vector<Vec3>& from
       const Vec3& v = from[nodes[k]];
       for (int i = 0; i < 3; ++i) to[(3 * k + i) * W + l] = v[i];
     }
+  }
+}
+
+/// States of W cells, (entry x lanes).
+void gather_state(const SolidBatch& b, int first, int W, const std::vector<double>& from, double* to) {
+  const int n = b.kernel.n_state, last = static_cast<int>(b.cells.size()) - 1;
+  for (int l = 0; l < W; ++l) {
+    const double* cell = from.data() + static_cast<size_t>(std::min(first + l, last)) * n;
+    for (int k = 0; k < n; ++k) to[k * W + l] = cell[k];
   }
 }
 
@@ -72,11 +81,14 @@ void Solids::evaluate(Pass& p) const {
                     (s.mass_slope + b.alpha * s.alpha_slope) / s.chain,
                     b.area,
                     s.weight};
+    double* h0 = lanes.h0.get(static_cast<size_t>(b.kernel.n_state) * W);
+    call.h0 = h0, call.elapsed = s.elapsed;
     for (int first = 0; first < count; first += W) {
       gather(b, first, W, X, X_);
       gather(b, first, W, s.e0->x, x0);
       gather(b, first, W, s.e1->x, x1);
       gather(b, first, W, s.a->x, a);
+      if (b.kernel.n_state > 0) gather_state(b, first, W, b.h0, h0);
       for (int k = 0; k < n; ++k)
         for (int i = 0; i < 3; ++i)
           for (int l = 0; l < W; ++l) a[(3 * k + i) * W + l] -= g[i];
@@ -139,7 +151,13 @@ void Solids::add_energy(const Config& q, const Config& v, Energy& out) const {
       gather(b, first, W, X, X_);
       gather(b, first, W, q.x, x);
       gather(b, first, W, v.x, vel);
-      b.kernel.call({X_, x, x, 0, 0, parameters(b.material), p, nullptr, W_, nullptr, nullptr, b.density, vel, 0, b.area});
+      KernelCall call{X_, x, x, 0, 0, parameters(b.material), p, nullptr, W_, nullptr, nullptr, b.density, vel, 0, b.area};
+      if (b.kernel.n_state > 0) {
+        double* state = lanes.h0.get(static_cast<size_t>(b.kernel.n_state) * W);
+        gather_state(b, first, W, b.h1, state);
+        call.h0 = state;
+      }
+      b.kernel.call(call);
       for (int l = 0; l < W && first + l < count; ++l) {
         out.elastic += W_[l];
         for (int k = 0; k < n; ++k) {
@@ -160,7 +178,46 @@ void Solids::add_energy(const Config& q, const Config& v, Energy& out) const {
   }
 }
 
-/// Work of the rate terms and of the stress dissipation of the cells over a step, this rank's share.
+void Solids::advance(const Stage& s) {
+  thread_local Lanes lanes;
+  for (SolidBatch& b : batches) {
+    if (b.kernel.n_state == 0) continue;
+    const int W = b.kernel.width, n3 = 3 * info(b.shape).n_nodes, count = static_cast<int>(b.cells.size()), m = b.kernel.n_state;
+    double *X_ = lanes.X.get(n3 * W), *x0 = lanes.x0.get(n3 * W), *x1 = lanes.x1.get(n3 * W), *D = lanes.scalar[0].get(W),
+           *h0 = lanes.h0.get(static_cast<size_t>(m) * W), *h1 = lanes.h1.get(static_cast<size_t>(m) * W);
+    b.dissipated = 0;
+    for (int first = 0; first < count; first += W) {
+      gather(b, first, W, points_.X, X_);
+      gather(b, first, W, s.e0->x, x0);
+      gather(b, first, W, s.e1->x, x1);
+      gather_state(b, first, W, b.h0, h0);
+      KernelCall call{X_, x0, x1, 1, 0, parameters(b.material), nullptr, nullptr, nullptr, D, nullptr, 0, nullptr, 0, b.area, s.weight};
+      call.h0 = h0, call.h1 = h1, call.elapsed = s.elapsed;
+      b.kernel.call(call);
+      for (int l = 0; l < W && first + l < count; ++l) {  // what fills the lanes up has no state of its own
+        b.dissipated += D[l];
+        for (int k = 0; k < m; ++k) b.h1[static_cast<size_t>(first + l) * m + k] = h1[k * W + l];
+      }
+    }
+  }
+}
+
+void Solids::settle(bool accepted) {
+  for (SolidBatch& b : batches) (accepted ? b.h0 : b.h1) = accepted ? b.h1 : b.h0;
+}
+
+std::vector<std::vector<double>> Solids::memory() const {
+  std::vector<std::vector<double>> out;
+  for (const SolidBatch& b : batches) out.push_back(b.h1);
+  return out;
+}
+
+void Solids::archive(Archive& a) {
+  a("solids", strain_told_);
+  for (SolidBatch& b : batches) a("cells", b.h0), b.h1 = b.h0;
+}
+
+/// Dissipation by flow, and work of the rate terms and of the stress dissipation of the cells over a step, this rank's share.
 double Solids::dissipation(const Stage& s) const {
   thread_local Lanes lanes;
   const auto& X = points_.X;
@@ -178,6 +235,7 @@ double Solids::dissipation(const Stage& s) const {
     }
   };
   for (const SolidBatch& b : batches) {
+    if (s.elapsed > 0) total += b.dissipated;
     add(b, *s.e0, *s.e1, s.chi / 2);
     if (s.h > 0) add(b, *s.w0, *s.w1, b.beta / s.h);
   }

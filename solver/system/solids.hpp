@@ -17,6 +17,10 @@ struct SolidBatch {
   std::vector<int> nodes;  // (n_cells x n)
   int first_clique = 0;
   SolidKernel kernel;
+  // What the cells remember (n_cells x kernel.n_state), evaluations read h0 and nothing but advance() writes h1, so that neither a step
+  // that is cut nor an evaluation beside the steps leaves a trace.
+  std::vector<double> h0, h1;  // accepted; at the end of the step tried last
+  double dissipated = 0;       // by flow in that step [J]
 };
 
 class Solids final : public Contribution {
@@ -35,8 +39,12 @@ class Solids final : public Contribution {
   void add_work(const Moment& m, Work& sum) const override;
   void look_at_turn(const Config& q0, const Config& q1, int part, Turned& most) const override;
   std::string name(int item) const override;
+  void advance(const Stage& stage) override;
+  void settle(bool accepted) override;
+  /// The state at the end of the step tried last, by batch.
+  std::vector<std::vector<double>> memory() const;
   void commit(const Config& q, const Config* v) override;
-  void archive(Archive& a) override { a("solids", strain_told_); }
+  void archive(Archive& a) override;
   void tie(Ties& ties) const override;
 
   /// Cluster of each free node, numbered over all ranks, the highest integer for a node of no cell; how many there are.
@@ -47,6 +55,7 @@ class Solids final : public Contribution {
   double mass_damping(const Stage& s) const;
   void watch_strain(const Config& q);
   const Points& points_;
+  bool remembers_ = false;               // some rank has cells with a state
   bool some_ = false;                    // some rank has cells
   std::vector<std::vector<int>> nodes_;  // free ones of each region
   std::vector<char> strain_told_;        // by region: its compression has been told

@@ -103,6 +103,14 @@ void System::forces(const Stage& stage, std::span<const double> lambda, Forces& 
   }
 }
 
+void System::advance(const Stage& stage) {
+  for (const auto& part : parts_) part->advance(stage);
+}
+
+void System::settle(bool accepted) {
+  for (const auto& part : parts_) part->settle(accepted);
+}
+
 Energy System::energy(const Config& q, const Config& v) const {
   Energy out;
   for (const auto& part : parts_) part->add_energy(q, v, out);

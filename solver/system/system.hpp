@@ -62,7 +62,11 @@ class System : public Points {
   void evaluate(const Stage& stage, std::span<const double> lambda, Residual& out, KktSolver* K) const;
   /// Residual forces before reduction, for reactions.  Collective.
   void forces(const Stage& stage, std::span<const double> lambda, Forces& out) const;
+  /// At the state of the step tried last (advance), or else the accepted one.
   Energy energy(const Config& q, const Config& v) const;
+  /// The state of what remembers at the end of a step of this stage, then to be kept or forgotten.
+  void advance(const Stage& stage);
+  void settle(bool accepted);
   /// Work from s.from() to s.end.
   Work work(const Stage& stage, std::span<const double> lambda) const;
   Violation violation(const Config& q, double t, double factor = 1) const;

@@ -28,7 +28,7 @@ NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5
            "t": "[0, 1]", "value": "[0, 1]", "scale": "1", "gravity": "[0, 0, -9.81]", "about": "[0, 0, 0]", "z": "[0, 0, 1]",
            "preload": "1", "area": "1", "mass_damping": "1", "clearance": "0.1", "tangential_stiffness": "[1, 1]",
            "tangential_damping": "[1, 1]", "axes": "[1, 0, 0, 0, 1, 0, 0, 0, 1]", "restitution": "0.5", "rest_speed": "1e-3",
-           "slip_velocity": "1e-3"}
+           "slip_velocity": "1e-3", "yield": "1e6"}
 BODIES = """[[body]]
 name = "arm"
 mass = 1

@@ -16,9 +16,10 @@ struct Field {
   bool of_cells = false;   // else of nodes
 };
 
-/// Positions, velocities and accelerations at an instant.
+/// Positions, velocities and accelerations at an instant, and what the cells remember, by batch (Solids::memory).
 struct Snapshot {
   const Config &q, &v, &a;
+  const std::vector<std::vector<double>>& memory;
 };
 
 /// Where the fields of one instant go.

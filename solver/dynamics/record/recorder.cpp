@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "dynamics/profile.hpp"
+#include "system/solids.hpp"
 
 namespace hilo {
 
@@ -22,7 +23,7 @@ void Recorder::first(const State& s, const Ledger& ledger) {
   row.t = s.t;
   row.point = histories_.end_values(s, ledger);
   row.field = true;
-  row.q = s.q, row.v = s.v;
+  row.q = s.q, row.v = s.v, row.memory = system_.part<Solids>().memory();
   next_field_ = setup_.interval;
   rows_.push_back(std::move(row));
   last_t_ = s.t;
@@ -52,7 +53,7 @@ void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, co
       std::any_of(setup_.jumps.begin(), setup_.jumps.end(), [&](double t) { return std::abs(t - s.t) <= 1.001 * system_.same_time; });
   row.field = setup_.is_static || s.t >= next_field_ * (1 - 1e-9);
   if (row.field) {
-    row.q = s.q, row.v = s.v;
+    row.q = s.q, row.v = s.v, row.memory = system_.part<Solids>().memory();
     if (setup_.interval > 0) next_field_ = setup_.interval * (std::floor(s.t * (1 + 1e-9) / setup_.interval) + 1);
   }
   rows_.push_back(std::move(row));
@@ -124,7 +125,7 @@ void Recorder::write_row(const std::vector<std::pair<double, const Interval*>>& 
     Config a, sum;
     combine(a, {{0, &row.q}});
     for (const auto& [w, interval] : weights) combine(sum, {{1, &a}, {w, &interval->a}}), std::swap(a, sum);
-    mesh_->write(row.t, {row.q, row.v, a});
+    mesh_->write(row.t, {row.q, row.v, a, row.memory});
   }
   ++rows_written_;
   file_.on_store([&](Store& f) { histories_.append(f, row.t, row.newton, row.point, mid); });

@@ -45,7 +45,8 @@ class Recorder {
     double t = 0;
     std::vector<double> point;  // values that belong to t_n
     bool jump = false, field = false;
-    Config q, v;  // kept where a field is due
+    Config q, v;  // kept where a field is due, and what the cells remember, by batch
+    std::vector<std::vector<double>> memory;
     int newton = 0;
   };
   struct Interval {  // what belongs to the inside of a step

@@ -15,14 +15,15 @@ class StressFields final : public FieldSource {
     return {{.name = "stress"},
             {.name = "von_mises", .label = "von Mises [Pa]"},
             {.name = "cell_von_mises", .key = "von_mises", .label = "cell von Mises [Pa]", .of_cells = true},
-            {.name = "stress_error", .label = "stress error [Pa]"}};
+            {.name = "stress_error", .label = "stress error [Pa]"},
+            {.name = "cell_plastic_strain", .key = "plastic_strain", .label = "cell plastic strain", .of_cells = true}};
   }
 
   /// A node's stress is that of its first flexible region (first: lowest number) over all ranks.
   void write(const Snapshot& instant, FieldWriter& to) override {
     constexpr int n_sent = 10;  // row, region, stress, von Mises, error
     if (!recovery_) recovery_.emplace(system_);
-    const auto at = recovery_->recover(instant.q.x);
+    const auto at = recovery_->recover(instant.q.x, instant.memory);
     const Slabs& rows = to.node_rows();
     std::vector<std::vector<double>> send(system_.comm->size);
     for (size_t i = 0; i < recovery_->sites().size(); ++i) {
@@ -44,6 +45,7 @@ class StressFields final : public FieldSource {
         std::copy_n(list.data() + k + 2, 6, stress.data() + 6 * i);
         vm[i] = list[k + 8], error[i] = list[k + 9];
       }
+    if (to.wants("plastic_strain") && system_.traits().remembers) to.cells("cell_plastic_strain", at.plastic, 1);
     if (to.wants("stress")) to.piece("stress", stress);
     if (to.wants("stress_error")) to.piece("stress_error", error);
     if (!to.wants("von_mises")) return;

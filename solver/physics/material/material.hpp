@@ -16,6 +16,13 @@
 //     BarState bar(double e) const;  BarStep bar_step(double e0, double e1) const;          under uniaxial stress
 //   };
 //
+// A law that remembers has instead of energy, stress, with_lambda and bars
+//
+//     static constexpr int n_state, plastic_strain;           numbers a point remembers, 0 as new; which of them is the plastic strain
+//     void respond(PointStep& step) const;                    all of the above for one point and step (point_step.hpp); in a file of its
+//     own,
+//                                                             since kernels are compiled for several processors
+//
 // energy and stress are written once for any number type T: a double, a vector of cells, a number with its derivative.
 #pragma once
 #include <functional>

@@ -1,0 +1,121 @@
+// Metal that flows: closed forms through the whole program, the balance of energy of a bar that yields as it tumbles, published values.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+// Truth: uniaxial stress at finite strain.  ln(l/L) = tau/E + e_p, tau is the Kirchhoff stress, the force tau A/l.  Isotropic hardening H
+// and kinematic hardening H_k: tau = +-(Y + H p) + H_k e_p while it flows.
+TEST(Plasticity, BlockUnderACycleHasTheForceOfTheClosedForm) {
+  constexpr double E = 200e9, Y = 400e6, H = 3e9, Hk = 5e9;
+  for (const Shape shape : {Shape::hex8, Shape::hex20r, Shape::hex20, Shape::tet10, Shape::wedge15, Shape::wedge6, Shape::tet4}) {
+    // steps that are no part of a second end where the history turns all the same
+    const std::string steps = shape == Shape::hex8 ? "--set time.steps=7" : "";
+    Case c("plasticity");
+    BlockOptions o;
+    o.shape = shape;
+    c.use(block_mesh(o));
+    const Results r = c.solved(steps, "run.h5", "uniaxial");
+    const auto force = r.history("motion/pull"), energy = r.history("energy");
+    double p = 0, ep = 0, worst = 0;
+    for (Eigen::Index k = 1; k < r.t().size(); ++k) {
+      const double t = r.t()[k], u = t < 1 ? 0.3 * t : t < 2 ? 0.3 - 0.4 * (t - 1) : -0.1 + 0.25 * (t - 2), strain = std::log1p(u);
+      double tau = E * (strain - ep);
+      if (const double over = std::abs(tau - Hk * ep) - (Y + H * p); over > 0) {
+        const double sign = tau > Hk * ep ? 1 : -1, dp = over / (E + H + Hk);
+        p += dp, ep += sign * dp, tau = E * (strain - ep);
+      }
+      worst = std::max(worst, std::abs(force(k, 0) - tau / (1 + u)));
+    }
+    EXPECT_LT(worst, 1e-8 * Y) << info(shape).name;
+    EXPECT_GT(p, 0.5);
+    const auto plastic = r.table("/field/" + r.steps().back() + "/cell_plastic_strain");
+    for (Eigen::Index e = 0; e < plastic.rows(); ++e) EXPECT_NEAR(plastic(e, 0), p, 1e-9);
+    // stored: (tau^2/E + H_k e_p^2)/2; dissipated: Y p + H p^2/2 by the trapezoidal rule, exact for a linear one
+    EXPECT_NEAR(energy(energy.rows() - 1, 4), Y * p + H * p * p / 2, 1e-8 * Y * p);
+  }
+}
+
+// Truth: E + D - W stays as it was to 1e-10 over every step, D never falls, momentum stays to 1e-12, on cells of any shape: the stress of a
+// step is made so that its work is what is stored and dissipated.
+TEST(Plasticity, BarThatTumblesAndYieldsKeepsTheBalanceOfEnergy) {
+  for (const Shape shape : {Shape::hex8, Shape::hex20r, Shape::tet10}) {
+    Case c("plasticity");
+    BlockOptions o;
+    o.shape = shape;
+    o.n[0] = 6, o.high = Vec3(1, 0.1, 0.1);
+    Mesh m = block_mesh(o);
+    add_node_set(m, "middle", [](const Vec3& x) { return std::abs(x[0] - 0.5) < 0.1; });
+    c.use(m);
+    const Results r = c.solved(shape == Shape::hex8 ? "--set time.end=0.6" : "--set time.end=0.1", "run.h5", "tumbling");
+    const auto e = r.history("energy"), p = r.history("momentum");
+    const double top = e.col(0).maxCoeff();
+    EXPECT_LT(e.col(5).cwiseAbs().maxCoeff(), 1e-10 * top) << info(shape).name;
+    for (Eigen::Index k = 1; k < e.rows(); ++k) ASSERT_GE(e(k, 4), e(k - 1, 4)) << "what flow took is not given back";
+    EXPECT_GT(e(e.rows() - 1, 4), 0.01 * top) << "a bar that really yields";
+    const Vec3 before = p.row(0).tail<3>(), after = p.row(p.rows() - 1).tail<3>();
+    EXPECT_LT((after - before).norm(), 1e-12 * before.norm() * 10) << info(shape).name;
+  }
+}
+
+// Hill, exact: P/Y = ln(c/a) + (1 - c^2/b^2)/2 with Y = 2 yield/sqrt3, u_b = Y c^2 (1 - nu^2)/(E b): 0.1533015 mm at 0.18 GPa;
+// here at a hundredth of loads and yield stress, since the theory is of small strain.
+TEST(Plasticity, ThickCylinderWidensAsHillSays) {
+  Case c("plasticity");
+  BlockOptions o;
+  o.shape = Shape::hex20r;
+  o.n[0] = 8, o.n[1] = 12, o.high = Vec3(1, 1, 0.1);
+  o.map = [](const Vec3& s) {
+    const double r = 0.1 + 0.1 * s[0], a = M_PI / 2 * s[1];
+    return Vec3(r * std::cos(a), r * std::sin(a), 0.1 * s[2]);
+  };
+  Mesh m = block_mesh(o);
+  for (auto& x : m.X)  // middles of the arcs on the circle
+    if (const double r = std::hypot(x[0], x[1]), on = std::round(r * 160) / 160; std::abs(r - on) < 6e-4) x[0] *= on / r, x[1] *= on / r;
+  const auto near = [](double a) { return std::abs(a) < 1e-9; };
+  add_node_set(m, "left", [&](const Vec3& x) { return near(x[0]); });
+  add_node_set(m, "bottom", [&](const Vec3& x) { return near(x[1]); });
+  add_node_set(m, "outer", [&](const Vec3& x) { return near(x[1]) && near(x[0] - 0.2) && near(x[2]); });
+  c.use(m);
+  const Results r = c.solved("", "run.h5", "cylinder");
+  const auto at = r.history("probe/outer");
+  EXPECT_NEAR(at(at.rows() - 1, 0) - 0.2, 0.1533015e-5, 0.005 * 0.1533015e-5);
+}
+
+// Corner 6.9227 mm with 32 x 32 cells of enhanced strain [simo-armero-1992], 6.94 taken as converged; within 1 %.
+TEST(Plasticity, CookMembraneFallsAsPublished) {
+  Case c("plasticity");
+  BlockOptions o;
+  o.n[0] = o.n[1] = 32;
+  o.high = Vec3(1, 1, 1e-3);
+  o.map = [](const Vec3& s) {  // mm, in m
+    const double x = 48 * s[0], low = 44 * s[0], high = 44 + 16 * s[0];
+    return Vec3(1e-3 * Vec3(x, low + s[1] * (high - low), 1000 * s[2]));
+  };
+  Mesh m = block_mesh(o);
+  add_node_set(m, "corner", [](const Vec3& x) { return x[0] > 0.048 - 1e-9 && x[1] > 0.06 - 1e-9; });
+  c.use(m);
+  const Results r = c.solved("", "run.h5", "cook");
+  const auto at = r.history("probe/corner");
+  EXPECT_NEAR(at(at.rows() - 1, 1) - at(0, 1), 6.9227e-3, 0.01 * 6.9227e-3);
+}
+
+// An integrator that would not carry the plastic strain through its stages is refused, and so is a bar.
+TEST(Plasticity, WhatDoesNotCarryPlasticStrainIsRefused) {
+  Case c("plasticity");
+  BlockOptions o;
+  o.n[0] = 2;
+  Mesh m = block_mesh(o);
+  m.node_sets["middle"] = {0};
+  c.use(m);
+  for (const char* method : {"mid-point", "U0", "V0", "bathe", "radau"}) {
+    const Ran ran = c.solve(std::string("--set 'time.integrator=\"") + method + "\"'", "run.h5", 2, "tumbling");
+    EXPECT_NE(ran.err.find("does not carry what a material remembers"), std::string::npos) << ran.err;
+  }
+  for (const char* method : {"newmark", "hht", "wbz", "generalized-alpha", "bdf2"})
+    c.solve(std::string("--quiet --set time.end=0.02 --set time.rho=0.8 --set 'time.integrator=\"") + method + "\"'", "run.h5", 0,
+            "tumbling");
+}
+
+}  // namespace
+}  // namespace hilo::test
