@@ -21,7 +21,7 @@ std::string place_of_joint(const Scene& scene, const std::string& joint) {
 void refuse_contradictions(const Scene& scene, const System& system, const Redundancy& redundancy, double end) {
   const double open = 1e-9 * system.length;
   for (const auto& [j, by] : redundancy.held) {
-    const Connector& joint = system.joints[j];
+    const Joint& joint = system.joints[j];
     const double start = joint.drive.law.at(0).value;
     for (int k = 1; k <= samples; ++k) {
       const double t = end * k / samples;
@@ -36,15 +36,15 @@ void refuse_contradictions(const Scene& scene, const System& system, const Redun
     return end_of.body >= 0 ? system.body_block[end_of.body] < 0 : system.node_block[end_of.node] < 0;
   };
   Config q = system.start;
-  std::vector<const Connector*> fixed_ends;  // without angles, which would have to be unwrapped
-  for (const Connector& joint : system.joints) {
+  std::vector<const Joint*> fixed_ends;  // without angles, which would have to be unwrapped
+  for (const Joint& joint : system.joints) {
     const auto ends = joint.ends();
     if (!joint.rows && std::all_of(ends.begin(), ends.end(), prescribed)) fixed_ends.push_back(&joint);
   }
   for (int k = 0; k <= samples && !fixed_ends.empty(); ++k) {
     const double t = end * k / samples;
     system.prescribe(q, t);
-    for (const Connector* joint : fixed_ends) {
+    for (const Joint* joint : fixed_ends) {
       double g[max_rows];
       gaps(*joint, q, t, 1, g);
       const double worst =
@@ -63,7 +63,7 @@ void refuse_contradictions(const Scene& scene, const System& system, const Redun
 
 std::string contradicted_joint(const System& system, const Config& q, const Config& v, double t) {
   double driven = 0, worst = 0;
-  for (const Connector& j : system.joints)
+  for (const Joint& j : system.joints)
     if (j.drive.row >= 0) driven = std::max(driven, std::abs(j.drive.law.at(t, system.beside(t, Side::right)).rate));
   if (driven == 0) return "";
   std::vector<double> rate;

@@ -13,7 +13,7 @@ std::vector<int> joint_blocks(const System& s, const Connector& joint) {
   return blocks;
 }
 
-DenseRows joint_rows(const System& s, const Connector& c, const Stage& stage) {
+DenseRows joint_rows(const System& s, const Joint& c, const Stage& stage) {
   ConnectorGradient g;
   RowLaw::Gradient law;
   gradient(c, *stage.left, g);

@@ -7,7 +7,7 @@ namespace hilo {
 MinimumNorm::MinimumNorm(const System& system) : system_(system) {
   std::vector<int> number(system.n_blocks(), -1);
   int n = 0;
-  for (const Connector& joint : system.joints) {
+  for (const Joint& joint : system.joints) {
     auto blocks = joint_blocks(system, joint);
     for (int& block : blocks) {
       if (number[block] < 0) number[block] = n++;
@@ -26,7 +26,7 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   Eigen::VectorXd f = Eigen::VectorXd::Zero(A_.n());
   double largest = 0;
   for (int j = 0; j < n_joints; ++j) {
-    const Connector& joint = system_.joints[j];
+    const Joint& joint = system_.joints[j];
     G[j] = joint_rows(system_, joint, stage);
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, max_directions, max_directions> K =
         decltype(K)::Zero(G[j].cols(), G[j].cols());

@@ -28,7 +28,7 @@ UnitRows unit_rows(const System& system, const Config& q, Rows which) {
   UnitRows out;
   std::vector<Eigen::Triplet<double>> entries;
   for (size_t j = 0; j < system.joints.size(); ++j) {
-    const Connector& joint = system.joints[j];
+    const Joint& joint = system.joints[j];
     const DenseRows G = joint_rows(system, joint, stage_at(q, 0));
     const auto blocks = joint_blocks(system, joint);
     for (int r = 0; r < joint.n_rows(); ++r) {
@@ -49,7 +49,7 @@ UnitRows unit_rows(const System& system, const Config& q, Rows which) {
 /// Rows that depend on others at q, up to `dependent` of a unit row, are switched off.
 Redundancy choose_rows(System& system, const Config& q, double dependent) {
   Redundancy report;
-  for (Connector& joint : system.joints) joint.active.fill(true);
+  for (Joint& joint : system.joints) joint.active.fill(true);
   const UnitRows all = unit_rows(system, q, Rows::all);
   report.rows = static_cast<int>(all.rows.size());
   if (report.rows == 0) return report;
@@ -88,7 +88,7 @@ Eigen::VectorXd gaps(const System& system, const UnitRows& unit, const Config& q
   double g[max_rows];
   for (size_t k = 0; k < unit.rows.size(); ++k) {
     const auto [j, r] = unit.rows[k];
-    const Connector& joint = system.joints[j];
+    const Joint& joint = system.joints[j];
     if (k == 0 || unit.rows[k - 1].first != j) {
       hilo::gaps(joint, q, t, 1, g);
     }
@@ -178,7 +178,7 @@ std::optional<Config> branch(const System& system, const Config& q, const Eigen:
 Eigen::VectorXd some_direction(const System& system, unsigned seed) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(system.n_blocks()));
   std::minstd_rand random(seed);
-  for (const Connector& joint : system.joints)
+  for (const Joint& joint : system.joints)
     for (const int block : joint_blocks(system, joint))
       for (int i = 0; i < 3; ++i) {
         const double x = static_cast<double>(random()) / std::minstd_rand::max() - 0.5;
@@ -191,7 +191,7 @@ Eigen::VectorXd some_direction(const System& system, unsigned seed) {
 
 std::vector<Active> active_rows(const System& system) {
   std::vector<Active> out;
-  for (const Connector& j : system.joints) out.push_back(j.active);
+  for (const Joint& j : system.joints) out.push_back(j.active);
   return out;
 }
 

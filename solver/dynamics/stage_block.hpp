@@ -17,7 +17,7 @@ class StageBlock final : public KktSolver {
   StageBlock(SerialKktSolver& whole, const System& system, int row, int column, double share, const double& scale)
       : whole_(whole), system_(system), row_(row), column_(column), share_(share), scale_(scale) {
     if (row == column) return;
-    for (const Connector& c : system.joints)
+    for (const Joint& c : system.joints)
       for (int r = 0; r < 3 * ((c.n_rows() + 2) / 3); ++r)
         holds_velocity_.push_back(r >= c.n_position_rows() && r < c.n_rows() && c.active[r]);
   }

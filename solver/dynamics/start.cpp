@@ -71,7 +71,7 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
   if (!done) {
     double worst = 0, g[max_rows];
     std::string open;
-    for (const Connector& j : system.joints) {
+    for (const Joint& j : system.joints) {
       gaps(j, q, 0, 1, g);
       for (int r = 0; r < j.n_rows(); ++r)
         if (!(std::abs(g[r]) <= worst)) worst = std::abs(g[r]), open = j.name;

@@ -1,8 +1,6 @@
 #include "physics/connector.hpp"
 
-#include <algorithm>
-
-#include "physics/rolling.hpp"
+#include <utility>
 
 namespace hilo {
 namespace {
@@ -99,20 +97,32 @@ std::array<double, max_measures> Connector::values(const Config& q) const {
   return e;
 }
 
-Connector::Connector() = default;
-Connector::Connector(Connector&&) noexcept = default;
-Connector& Connector::operator=(Connector&&) noexcept = default;
-Connector::~Connector() = default;
+int Connector::add_point(int of_end, const Config& q, const Vec3& at) {
+  const int b = end[of_end].body;
+  entities.push_back({of_end, b < 0 ? Vec3::Zero() : Vec3(q.R[b].transpose() * (at - q.c[b])), true});
+  return static_cast<int>(entities.size()) - 1;
+}
 
-int Connector::n_rows() const { return n_position_rows() + (velocity_rows ? velocity_rows->n_rows() : 0); }
+int Connector::add_direction(int of_end, const Config& q, const Vec3& d) {
+  entities.push_back({of_end, q.R[end[of_end].body].transpose() * d, false});
+  return static_cast<int>(entities.size()) - 1;
+}
 
-void Connector::row_values(const std::array<double, max_measures>& e, double* g) const {
-  const int n = n_position_rows();
-  if (rows)
-    rows->values(e, g);
-  else
-    std::copy(e.begin(), e.begin() + n, g);
-  std::fill(g + n, g + n_rows(), 0.0);
+int Connector::add_measure(std::vector<Term> terms) {
+  measures.push_back({std::move(terms), 0});
+  return static_cast<int>(measures.size()) - 1;
+}
+
+int Connector::add_zero_measure(std::vector<Term> terms, const Config& q) {
+  const int m = add_measure(std::move(terms));
+  measures[m].offset = value(m, q);
+  return m;
+}
+
+void Connector::join(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at_b, const Mat3& frame) {
+  end[0] = a, end[1] = b;
+  if (a.body >= 0) frame_a = q.R[a.body].transpose() * frame;
+  if (b.body >= 0) point_b = q.R[b.body].transpose() * (at_b - q.c[b.body]);
 }
 
 void gradient(const Connector& c, const Config& q, const Config& turned, ConnectorGradient& g) {

@@ -6,7 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "physics/connector.hpp"
+#include "physics/force_law.hpp"
+#include "physics/row_law.hpp"
 
 namespace hilo {
 
@@ -52,12 +53,5 @@ std::unique_ptr<SpringLaw> make_motor(std::vector<double> rate, std::vector<doub
 /// Coulomb friction, regularised: the slip velocity has components lever_i dx_i/dt and magnitude u, the friction force is
 /// coefficient * (preload + the step's load) * tanh(u/slip_velocity) against it, and acts on coordinate i through lever_i.
 std::unique_ptr<SpringLaw> make_friction(double coefficient, double preload, double slip_velocity, std::vector<double> lever);
-
-/// A joint whose rows give way: stiffness and damping along (k, c) and about (k_angle, c_angle) the columns of its frame.  Turns are
-/// measured by their sine.  The joint keeps its kind, ends, point and frame, so forces have the axes and the sign of the joint's reactions.
-Connector make_compliant(Connector joint, const Vec3& k, const Vec3& c, const Vec3& k_angle, const Vec3& c_angle);
-bool can_be_compliant(std::string_view joint_kind);
-/// The key that leaves a row of the joint without a spring, or nothing.
-std::string missing_stiffness(std::string_view joint_kind, const Vec3& k, const Vec3& k_angle);
 
 }  // namespace hilo

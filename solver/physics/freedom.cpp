@@ -1,17 +1,18 @@
-#include "physics/freedom.hpp"
-
+// What acts along the free directions of joints: stops, motors, friction.
 #include <algorithm>
 #include <cmath>
 
+#include "physics/coordinates.hpp"
 #include "physics/joint_rows.hpp"
+#include "physics/spring.hpp"
 
 namespace hilo {
 namespace {
 
 /// A connector between the ends of a joint, with the joint's points as entities 0 (on a) and 1 (on b).
-Connector beside(const Connector& joint) {
-  Connector c;
-  c.kind = joint.kind;
+Spring beside(const Connector& joint) {
+  Spring c;
+  c.axes = Spring::Axes::of_joint;
   c.end[0] = joint.end[0], c.end[1] = joint.end[1];
   c.entities = {joint.entities[0], joint.entities[1]};
   c.frame_a = joint.frame_a, c.point_b = joint.point_b;
@@ -45,28 +46,19 @@ std::unique_ptr<RowLaw> plain_and_angle(int n_plain, bool angle) {
 
 }  // namespace
 
-std::vector<Freedom> freedoms(std::string_view kind) {
-  if (kind == "revolute" || kind == "planar") return {Freedom::angle};
-  if (kind == "prismatic" || kind == "in-line") return {Freedom::slide};
-  if (kind == "cylindrical" || kind == "screw") return {Freedom::angle, Freedom::slide};
-  return {};
-}
-
-Connector along_joint(const Connector& joint, const Config& q, Freedom freedom, std::unique_ptr<SpringLaw> law) {
-  Connector c = beside(joint);
+Spring along_joint(const Connector& joint, const Config& q, Freedom freedom, std::unique_ptr<SpringLaw> law) {
+  Spring c = beside(joint);
   const bool angle = freedom == Freedom::angle;
   angle ? add_angle(c, q) : add_slide(c, q);
   c.law = std::make_unique<OnCoordinates>(plain_and_angle(angle ? 0 : 1, angle), std::move(law));
   return c;
 }
 
-bool has_friction(std::string_view kind) {
-  return kind == "revolute" || kind == "cylindrical" || kind == "prismatic" || kind == "screw" || kind == "spherical";
-}
-
-Connector friction_in(const Connector& joint, const Config& q, double coefficient, double radius, double preload, double slip_velocity) {
-  Connector c = beside(joint);
-  if (joint.kind == "spherical") {
+Spring friction_in(const Connector& joint, const JointKind& kind, const Config& q, const FrictionIn& f) {
+  Spring c = beside(joint);
+  c.pressing.rows = kind.pressing;
+  const bool slides = kind.frees(Freedom::slide), turns = kind.frees(Freedom::angle);
+  if (!slides && !turns) {  // a ball
     // the nine products of directions are the entries of the relative rotation; the sum of the squares of their rates is twice that of
     // the relative angular velocity
     int u[3], v[3];
@@ -75,24 +67,14 @@ Connector friction_in(const Connector& joint, const Config& q, double coefficien
       c.entities.push_back({1, Vec3::Unit(i), false}), v[i] = static_cast<int>(c.entities.size()) - 1;
     }
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) c.measures.push_back({{{Term::dot, u[i], v[j]}}, 0});
-    c.law = make_friction(coefficient, preload, slip_velocity, std::vector<double>(9, radius / std::sqrt(2.0)));
-    c.load_rows = {0, 1, 2};
+      for (int j = 0; j < 3; ++j) c.add_measure({{Term::dot, u[i], v[j]}});
+    c.law = make_friction(f.coefficient, f.preload, f.slip_velocity, std::vector<double>(9, f.radius / std::sqrt(2.0)));
     return c;
   }
-  const bool slides = joint.kind != "revolute", turns = joint.kind != "prismatic";
-  if (slides) add_slide(c, q);
-  if (turns) add_angle(c, q);
   std::vector<double> lever;
-  if (slides) lever.push_back(1);
-  if (turns) lever.push_back(radius);
-  c.law = std::make_unique<OnCoordinates>(plain_and_angle(slides, turns), make_friction(coefficient, preload, slip_velocity, lever));
-  if (joint.kind == "revolute")
-    c.load_rows = {0, 1, 2};
-  else if (joint.kind == "screw")
-    c.load_rows = {0, 1, 4};
-  else
-    c.load_rows = {0, 1};
+  if (slides) add_slide(c, q), lever.push_back(1);
+  if (turns) add_angle(c, q), lever.push_back(f.radius);
+  c.law = std::make_unique<OnCoordinates>(plain_and_angle(slides, turns), make_friction(f.coefficient, f.preload, f.slip_velocity, lever));
   return c;
 }
 

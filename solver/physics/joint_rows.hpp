@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
-#include "physics/connector.hpp"
 #include "physics/curve.hpp"
+#include "physics/row_law.hpp"
 #include "physics/turn.hpp"
 
 namespace hilo {

@@ -31,7 +31,7 @@ void Slip::fill(const VelocityRows::Contact& at, const Vec3& arm_a, Eigen::Matri
     out.row(r) << -at.t[r].transpose(), -arm_a.cross(at.t[r]).transpose(), at.t[r].transpose(), at.arm.cross(at.t[r]).transpose();
 }
 
-Slip::Slip(const Connector& joint, const Config& q, const Config* v)
+Slip::Slip(const Joint& joint, const Config& q, const Config* v)
     : n(joint.velocity_rows->n_rows()),
       rows_(*joint.velocity_rows),
       a_(end_of(q, v, joint.end[0].body)),
@@ -113,9 +113,8 @@ struct Height final : RowLaw {
 };
 
 /// Ends, frame and the joint's points.
-Connector between(const JointPlace& j, const Config& q) {
-  Connector c;
-  c.kind = j.kind;
+Joint between(const JointPlace& j, const Config& q) {
+  Joint c;
   c.end[0] = j.a, c.end[1] = j.b;
   c.frame_a = q.R[j.a.body].transpose() * j.frame;
   c.point_b = q.R[j.b.body].transpose() * (j.at - q.c[j.b.body]);
@@ -125,8 +124,8 @@ Connector between(const JointPlace& j, const Config& q) {
 
 }  // namespace
 
-Connector make_rolling(const JointPlace& j, const Config& q) {
-  Connector c = between(j, q);
+Joint make_rolling(const JointPlace& j, const Config& q) {
+  Joint c = between(j, q);
   auto rolling = std::make_unique<Rolling>();
   rolling->frame = c.frame_a, rolling->centre = c.point_b, rolling->radius = j.ratio;
   rolling->axle = q.R[j.b.body].transpose() * j.axis_b;
@@ -144,8 +143,8 @@ Connector make_rolling(const JointPlace& j, const Config& q) {
   return c;
 }
 
-Connector make_knife_edge(const JointPlace& j, const Config& q) {
-  Connector c = between(j, q);
+Joint make_knife_edge(const JointPlace& j, const Config& q) {
+  Joint c = between(j, q);
   auto edge = std::make_unique<KnifeEdge>();
   edge->point = c.point_b;
   edge->across = q.R[j.b.body].transpose() * j.frame.col(2).cross(j.axis_b).normalized();

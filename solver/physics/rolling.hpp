@@ -5,7 +5,7 @@
 // Taken at the configuration of the constraint gradients and with the velocity of the stage; at the mid-point, where the increment of a
 // body is its mid-point velocity times h, A^T lambda does no work at any step size.
 #pragma once
-#include "physics/connector.hpp"
+#include "physics/joint.hpp"
 
 namespace hilo {
 
@@ -27,7 +27,7 @@ class VelocityRows {
 /// The velocity rows of a joint at positions q and velocities v (null: at rest).
 class Slip {
  public:
-  Slip(const Connector& joint, const Config& q, const Config* v);
+  Slip(const Joint& joint, const Config& q, const Config* v);
   int n = 0;
   double value[2] = {};            // t.(slip velocity) [m/s]
   Eigen::Matrix<double, 2, 12> A;  // over translation and rotation of a, then of b
@@ -61,8 +61,8 @@ class Slip {
 
 /// Disc or wheel of radius `ratio` with the axle `axis_b` carried by b, or a ball where it is zero, on a plane carried by a: centre `at`,
 /// normal the third column of the frame.  Row 1 keeps the height of the centre, rows 2 and 3 the rolling along x and y of the frame.
-Connector make_rolling(const JointPlace& place, const Config& q);
+Joint make_rolling(const JointPlace& place, const Config& q);
 /// A point of b that moves along its edge `axis_b` and not across it, in a plane with the normal `axis`: one row.
-Connector make_knife_edge(const JointPlace& place, const Config& q);
+Joint make_knife_edge(const JointPlace& place, const Config& q);
 
 }  // namespace hilo

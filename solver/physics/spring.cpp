@@ -1,5 +1,7 @@
 // Springs and dampers: discrete gradients of potentials in quadratic measures, so that the elastic work of a step is exact and a
 // damper never feeds energy in.
+#include "physics/spring.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,13 +16,14 @@ using Values = SpringLaw::Values;
 
 /// Measure 0 is the gap, a stop at 0, with a damper of its own where no restitution is asked: it acts while the mean gap is closed and
 /// never pulls.  Measures 1 and 2 are springs in the plane.
-struct Support final : SpringLaw {
+struct Contact final : SpringLaw {
   double c;
   std::unique_ptr<SpringLaw> gap, plane;
-  Support(double k, double c_, double restitution, double rest_speed, const Vec3& k_plane, const Vec3& c_plane)
-      : c(c_),
-        gap(make_stop(0, std::numeric_limits<double>::infinity(), k, restitution, rest_speed)),
-        plane(make_linear({0, k_plane[0], k_plane[1]}, {0, c_plane[0], c_plane[1]})) {}
+  explicit Contact(const Support& s)
+      : c(s.damping),
+        gap(make_stop(0, std::numeric_limits<double>::infinity(), s.stiffness, s.restitution, s.rest_speed)),
+        plane(make_linear({0, s.tangential_stiffness[0], s.tangential_stiffness[1]},
+                          {0, s.tangential_damping[0], s.tangential_damping[1]})) {}
   void elastic(const Values& e0, const Values& e1, Response& out) const override { gap->elastic(e0, e1, out), plane->elastic(e0, e1, out); }
   void viscous(const Values& r0, const Values& r1, const Interval& step, Response& out) const override {
     plane->viscous(r0, r1, step, out);
@@ -39,85 +42,70 @@ struct Support final : SpringLaw {
   void archive(Archive& a) override { gap->archive(a), plane->archive(a); }
 };
 
-int add_point(Connector& c, int end, const Config& q, const Vec3& at) {
-  const int b = c.end[end].body;
-  c.entities.push_back({end, b < 0 ? Vec3::Zero() : Vec3(q.R[b].transpose() * (at - q.c[b])), true});
-  return static_cast<int>(c.entities.size()) - 1;
-}
-int add_direction(Connector& c, int end, const Config& q, const Vec3& d) {
-  c.entities.push_back({end, q.R[c.end[end].body].transpose() * d, false});
-  return static_cast<int>(c.entities.size()) - 1;
-}
 /// The angle whose sine and cosine are measures 0 and 1.
 std::unique_ptr<RowLaw> angle_row() { return std::make_unique<SumRows>(0, std::vector<std::vector<SumRows::Part>>{{{1, 0, true}}}); }
 
-Connector start(const char* kind, const Carrier& a, const Carrier& b, const Config& q, const Vec3& at_b, const Mat3& frame) {
-  Connector c;
-  c.kind = kind;
-  c.end[0] = a, c.end[1] = b;
-  if (a.body >= 0) c.frame_a = q.R[a.body].transpose() * frame;
-  if (b.body >= 0) c.point_b = q.R[b.body].transpose() * (at_b - q.c[b.body]);
-  return c;
-}
+std::vector<double> listed(const Vec3& v) { return {v.begin(), v.end()}; }
 
 }  // namespace
 
-Connector make_axial_spring(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at_a, const Vec3& at_b, double stiffness,
-                            double damping, double length) {
-  Connector c = start("axial", a, b, q, at_b, Mat3::Identity());
-  const int pa = add_point(c, 0, q, at_a), pb = add_point(c, 1, q, at_b);
-  c.measures.push_back({{{Term::distance2, pa, pb}}, 0});
-  c.law = std::make_unique<OnCoordinates>(std::make_unique<Length>(), make_linear({stiffness}, {damping}, {length}));
+Spring make_axial_spring(const AxialSpring& s, const Config& q) {
+  Spring c;
+  c.join(s.a, s.b, q, s.at_b, Mat3::Identity());
+  const int pa = c.add_point(0, q, s.at_a), pb = c.add_point(1, q, s.at_b);
+  c.add_measure({{Term::distance2, pa, pb}});
+  c.law = std::make_unique<OnCoordinates>(std::make_unique<Length>(), make_linear({s.stiffness}, {s.damping}, {s.length}));
   return c;
 }
 
-Connector make_torsion_spring(const Carrier& a, const Carrier& b, const Config& q, const Mat3& frame, double stiffness, double damping,
-                              double angle) {
-  Connector c = start("torsion", a, b, q, b.body >= 0 ? q.c[b.body] : Vec3::Zero(), frame);
-  const int ua = add_direction(c, 0, q, frame.col(0)), va = add_direction(c, 0, q, frame.col(1)), ub = add_direction(c, 1, q, frame.col(0));
-  c.measures.push_back({{{Term::dot, va, ub}}, 0});  // sine
-  c.measures.push_back({{{Term::dot, ua, ub}}, 0});  // cosine
-  c.law = std::make_unique<OnCoordinates>(angle_row(), make_linear({stiffness}, {damping}, {angle}));
+Spring make_torsion_spring(const TorsionSpring& s, const Config& q) {
+  Spring c;
+  c.join(s.a, s.b, q, s.b.body >= 0 ? q.c[s.b.body] : Vec3::Zero(), s.frame);
+  const int ua = c.add_direction(0, q, s.frame.col(0)), va = c.add_direction(0, q, s.frame.col(1)),
+            ub = c.add_direction(1, q, s.frame.col(0));
+  c.add_measure({{Term::dot, va, ub}});  // sine
+  c.add_measure({{Term::dot, ua, ub}});  // cosine
+  c.law = std::make_unique<OnCoordinates>(angle_row(), make_linear({s.stiffness}, {s.damping}, {s.angle}));
   return c;
 }
 
-Connector make_bushing(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at, const Mat3& frame, const Vec3& k,
-                       const Vec3& c_, const Vec3& k_angle, const Vec3& c_angle) {
-  Connector c = start("bushing", a, b, q, at, frame);
-  const int pa = add_point(c, 0, q, at), pb = add_point(c, 1, q, at);
+Spring make_bushing(const Bushing& s, const Config& q) {
+  Spring c;
+  c.join(s.a, s.b, q, s.at, s.frame);
+  const int pa = c.add_point(0, q, s.at), pb = c.add_point(1, q, s.at);
   int u[3];
-  for (int i = 0; i < 3; ++i) u[i] = add_direction(c, 0, q, frame.col(i));
-  for (int i = 0; i < 3; ++i) c.measures.push_back({{{Term::slide, u[i], pa, pb}}, 0});
-  std::vector<double> stiffness(k.begin(), k.end()), damping(c_.begin(), c_.end());
-  if (k_angle.norm() + c_angle.norm() > 0) {  // sin(angle) n_i = (d_j . e_k - d_k . e_j)/2 with d on a, e on b
-    int v[3];
-    for (int i = 0; i < 3; ++i) v[i] = add_direction(c, 1, q, frame.col(i));
+  for (int i = 0; i < 3; ++i) u[i] = c.add_direction(0, q, s.frame.col(i));
+  for (int i = 0; i < 3; ++i) c.add_measure({{Term::slide, u[i], pa, pb}});
+  std::vector<double> stiffness = listed(s.stiffness.along), damping = listed(s.stiffness.damping);
+  if (s.stiffness.about.norm() + s.stiffness.angular_damping.norm() > 0) {
+    int v[3];  // sin(angle) n_i = (d_j . e_k - d_k . e_j)/2 with d on a, e on b
+    for (int i = 0; i < 3; ++i) v[i] = c.add_direction(1, q, s.frame.col(i));
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3, l = (i + 2) % 3;
-      c.measures.push_back({{{Term::dot, u[l], v[j], 0, 0.5}, {Term::dot, u[j], v[l], 0, -0.5}}, 0});
-      stiffness.push_back(k_angle[i]), damping.push_back(c_angle[i]);
+      c.add_measure({{Term::dot, u[l], v[j], 0, 0.5}, {Term::dot, u[j], v[l], 0, -0.5}});
+      stiffness.push_back(s.stiffness.about[i]), damping.push_back(s.stiffness.angular_damping[i]);
     }
   }
   c.law = make_linear(stiffness, damping);
   return c;
 }
 
-Connector make_distance_stop(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at_a, const Vec3& at_b,
-                             std::unique_ptr<SpringLaw> law) {
-  Connector c = start("stop", a, b, q, at_b, Mat3::Identity());
-  const int pa = add_point(c, 0, q, at_a), pb = add_point(c, 1, q, at_b);
-  c.measures.push_back({{{Term::distance2, pa, pb}}, 0});
+Spring make_distance_stop(const DistanceLaw& s, const Config& q, std::unique_ptr<SpringLaw> law) {
+  Spring c;
+  c.join(s.a, s.b, q, s.at_b, Mat3::Identity());
+  const int pa = c.add_point(0, q, s.at_a), pb = c.add_point(1, q, s.at_b);
+  c.add_measure({{Term::distance2, pa, pb}});
   c.law = std::make_unique<OnCoordinates>(std::make_unique<Length>(), std::move(law));
   return c;
 }
 
-Connector make_support(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at, const Mat3& frame, double k, double c_,
-                       double restitution, double rest_speed, double clearance, const Vec3& k_plane, const Vec3& c_plane) {
-  Connector c = start("support", a, b, q, at, frame);
-  const int pa = add_point(c, 0, q, at), pb = add_point(c, 1, q, at);
-  c.measures.push_back({{{Term::slide, add_direction(c, 0, q, frame.col(2)), pa, pb}}, -clearance});
-  for (int i = 0; i < 2; ++i) c.measures.push_back({{{Term::slide, add_direction(c, 0, q, frame.col(i)), pa, pb}}, 0});
-  c.law = std::make_unique<Support>(k, c_, restitution, rest_speed, k_plane, c_plane);
+Spring make_support(const Support& s, const Config& q) {
+  Spring c;
+  c.join(s.a, s.b, q, s.at, s.frame);
+  const int pa = c.add_point(0, q, s.at), pb = c.add_point(1, q, s.at);
+  for (const int i : {2, 0, 1}) c.add_measure({{Term::slide, c.add_direction(0, q, s.frame.col(i)), pa, pb}});
+  c.measures[0].offset = -s.clearance;
+  c.law = std::make_unique<Contact>(s);
   return c;
 }
 

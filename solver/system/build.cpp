@@ -61,7 +61,7 @@ std::unique_ptr<System> Builder::build() {
   if (!mesh_) {  // size of a scene of bodies: what its points span
     Eigen::AlignedBox3d box;
     for (size_t b = 1; b < out_->bodies.size(); ++b) box.extend(out_->bodies[b].Xc);
-    for (const Connector& j : out_->joints)
+    for (const Joint& j : out_->joints)
       for (const Entity& e : j.entities)
         if (e.point && j.end[e.end].body >= 0) box.extend(Vec3(out_->bodies[j.end[e.end].body].Xc + e.r));
     out_->length = box.isEmpty() ? 1 : std::max(box.diagonal().norm(), 1e-9);

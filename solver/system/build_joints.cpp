@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <numbers>
 
-#include "physics/coordinates.hpp"
 #include "system/builder.hpp"
 #include "system/springs.hpp"
 
@@ -62,13 +61,16 @@ Vec3 triple(const Entry& e, std::string_view key) {
   return v.size() == 1 ? Vec3::Constant(v[0]) : Vec3(v[0], v[1], v[2]);
 }
 
-Connector compliant(const Entry& e, Connector joint) {
-  const Vec3 k = triple(e, "stiffness"), k_angle = triple(e, "angular_stiffness");
-  if (const std::string key = missing_stiffness(e.kind, k, k_angle); !key.empty())
+Spring compliant(const Entry& e, Joint joint) {
+  const Stiffness s{.along = triple(e, "stiffness"),
+                    .damping = triple(e, "damping"),
+                    .about = triple(e, "angular_stiffness"),
+                    .angular_damping = triple(e, "angular_damping")};
+  if (const std::string key = missing_stiffness(*joint.kind, s); !key.empty())
     throw Error(e.has(key) ? e.where(key) : e.place.text(),
                 fmt::format("{}: {} leaves a row of the joint without a spring", e.label(), key),
                 fmt::format("give {} along every row, or leave all stiffnesses out", key));
-  Connector c = make_compliant(std::move(joint), k, triple(e, "damping"), k_angle, triple(e, "angular_damping"));
+  Spring c = make_compliant(std::move(joint), s);
   c.name = e.name;
   return c;
 }
@@ -136,7 +138,7 @@ void Builder::add_joints() {
       if (e.has(key) && std::abs(j.axis_b.dot(j.frame.col(2))) > 1 - 1e-9)
         throw Error(e.where(key), fmt::format("{}: {} is parallel to the axis", e.label(), key),
                     kind == "rolling" ? "a disc that lies flat does not roll" : "the edge lies in the plane");
-    Connector c = make_joint(j, out_->start);
+    Joint c = make_joint(j, out_->start);
     c.name = e.name;
     if (!driven.empty()) {
       c.drive.law = MotionLaw(e.number(driven), is_rate, use_history(e, is_rate ? Acts::as_rate : Acts::as_position), !e.given("history"));

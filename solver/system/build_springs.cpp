@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "physics/freedom.hpp"
+#include "physics/coordinates.hpp"
 #include "system/builder.hpp"
 #include "system/springs.hpp"
 
@@ -50,89 +50,116 @@ void Builder::add_springs() {
     const Carrier a = carrier(e, "a", needs), b = carrier(e, "b", needs && e.kind != "support");
     if (a.body == b.body && a.node == b.node) throw Error(e.where("b"), fmt::format("{}: both ends are the same body", e.label()));
     const Config& q = out_->start;
-    Connector c;
+    Spring c;
     if (e.kind == "axial") {
       const Vec3 pa = e.vector3("at_a"), pb = e.vector3("at_b");
       const double distance = (pb - pa).norm(), k = e.number("stiffness"), preload = e.number("preload");
       if (!(distance > 0)) throw Error(e.where("at_b"), e.label() + ": the two points coincide");
       if (preload != 0 && k == 0) throw Error(e.where("preload"), e.label() + ": a preload needs a stiffness");
       const double length = (e.given("length") ? e.number("length") : distance) - (k > 0 ? preload / k : 0);
-      c = make_axial_spring(a, b, q, pa, pb, k, e.number("damping"), length);
+      c = make_axial_spring({.a = a, .b = b, .at_a = pa, .at_b = pb, .stiffness = k, .damping = e.number("damping"), .length = length}, q);
       out_->stiffness = std::max(out_->stiffness, k);
     } else if (e.kind == "torsion") {
-      c = make_torsion_spring(a, b, q, joint_frame(e), e.number("stiffness"), e.number("damping"), e.number("angle"));
+      c = make_torsion_spring({.a = a,
+                               .b = b,
+                               .frame = joint_frame(e),
+                               .stiffness = e.number("stiffness"),
+                               .damping = e.number("damping"),
+                               .angle = e.number("angle")},
+                              q);
     } else if (e.kind == "bushing") {
-      c = make_bushing(a, b, q, e.vector3("at"), joint_frame(e), vec(padded(e, "stiffness", 3)), vec(padded(e, "damping", 3)),
-                       vec(padded(e, "angular_stiffness", 3)), vec(padded(e, "angular_damping", 3)));
-      out_->stiffness = std::max(out_->stiffness, vec(padded(e, "stiffness", 3)).maxCoeff());
+      const Stiffness s{.along = vec(padded(e, "stiffness", 3)),
+                        .damping = vec(padded(e, "damping", 3)),
+                        .about = vec(padded(e, "angular_stiffness", 3)),
+                        .angular_damping = vec(padded(e, "angular_damping", 3))};
+      c = make_bushing({.a = a, .b = b, .at = e.vector3("at"), .frame = joint_frame(e), .stiffness = s}, q);
+      out_->stiffness = std::max(out_->stiffness, s.along.maxCoeff());
     } else if (e.kind == "stop") {
-      c = make_distance_stop(a, b, q, e.vector3("at_a"), e.vector3("at_b"), stop_law(e));
+      c = make_distance_stop({.a = a, .b = b, .at_a = e.vector3("at_a"), .at_b = e.vector3("at_b")}, q, stop_law(e));
       out_->stiffness = std::max(out_->stiffness, e.number("stiffness"));
-    } else {
+    } else if (e.kind == "support") {
       if (e.given("restitution") && e.number("damping") > 0)
         throw Error(e.where("restitution"), e.label() + ": restitution and damping are two ways to say the same", "leave one out");
-      c = make_support(a, b, q, e.vector3("at"), joint_frame(e), e.number("stiffness"), e.number("damping"), e.number("restitution"),
-                       e.number("rest_speed"), e.number("clearance"), vec(padded(e, "tangential_stiffness", 2)),
-                       vec(padded(e, "tangential_damping", 2)));
+      c = make_support({.a = a,
+                        .b = b,
+                        .at = e.vector3("at"),
+                        .frame = joint_frame(e),
+                        .stiffness = e.number("stiffness"),
+                        .damping = e.number("damping"),
+                        .restitution = e.number("restitution"),
+                        .rest_speed = e.number("rest_speed"),
+                        .clearance = e.number("clearance"),
+                        .tangential_stiffness = vec(padded(e, "tangential_stiffness", 2)),
+                        .tangential_damping = vec(padded(e, "tangential_damping", 2))},
+                       q);
       out_->stiffness = std::max(out_->stiffness, e.number("stiffness"));
+    } else {
+      throw Error(e.place.text(), fmt::format("{}: no spring of kind {}", e.label(), e.kind), "", Exit::fault);
     }
     c.name = e.name;
     out_->part<Springs>().list.push_back(std::move(c));
   }
 }
 
-const Connector& Builder::joint_of(const Entry& e) const {
+Builder::Host Builder::joint_of(const Entry& e) const {
   const std::string& name = e.text("joint");
   std::vector<std::string> names;
-  for (const auto* list : {&out_->joints.list, &out_->part<Springs>().list})
-    for (const Connector& c : *list) {
-      if (c.law && c.section != "joint") continue;
-      if (c.name == name) return c;
-      names.push_back(c.name);
-    }
+  for (size_t j = 0; j < out_->joints.size(); ++j) {
+    const Joint& joint = out_->joints[j];
+    if (joint.name == name) return {joint, *joint.kind, static_cast<int>(j)};
+    names.push_back(joint.name);
+  }
+  for (const Spring& c : out_->part<Springs>().list) {
+    if (!c.gives_way) continue;
+    if (c.name == name) return {c, *c.gives_way, -1};
+    names.push_back(c.name);
+  }
   throw Error(e.where("joint"), fmt::format("{}: no joint \"{}\"", e.label(), name), suggest(name, names));
 }
 
 /// Stops, motors and friction act along the free directions of a joint.
 void Builder::add_joint_forces() {
   const Config& q = out_->start;
-  const auto add = [&](Connector c, const Entry& e) {
-    c.name = e.name, c.section = e.section;
+  const auto add = [&](Spring c, const Entry& e) {
+    c.name = e.name, c.group = e.section;
     out_->part<Springs>().list.push_back(std::move(c));
   };
   const auto along = [&](const Entry& e, Freedom freedom, std::unique_ptr<SpringLaw> law) {
-    const Connector& joint = joint_of(e);
-    const auto free = freedoms(joint.kind);
-    if (std::find(free.begin(), free.end(), freedom) == free.end())
-      throw Error(e.where("joint"), fmt::format("{}: a {} joint has no free {} along its axis", e.label(), joint.kind,
+    const Host host = joint_of(e);
+    if (!host.kind.frees(freedom))
+      throw Error(e.where("joint"), fmt::format("{}: a {} joint has no free {} along its axis", e.label(), host.kind.name,
                                                 freedom == Freedom::angle ? "angle" : "displacement"));
-    return along_joint(joint, q, freedom, std::move(law));
+    return along_joint(host.geometry, q, freedom, std::move(law));
   };
   for (const Entry& e : scene_.entries("stop")) add(along(e, e.kind == "angle" ? Freedom::angle : Freedom::slide, stop_law(e)), e);
   for (const Entry& e : scene_.entries("motor")) {
     const bool turns = e.kind == "rotary";
-    Connector c = along(e, turns ? Freedom::angle : Freedom::slide, motor_law(e, turns ? "torque" : "force"));
-    if (e.given("history"))
-      c.factor = [history = use_history(e, Acts::as_force)](double t0, double t1) { return t1 > t0 ? history.mean(t0, t1) : history(t0); };
+    Spring c = along(e, turns ? Freedom::angle : Freedom::slide, motor_law(e, turns ? "torque" : "force"));
+    if (e.given("history")) c.history = use_history(e, Acts::as_force);
     add(std::move(c), e);
   }
   for (const Entry& e : scene_.entries("friction")) {
-    const Connector& joint = joint_of(e);
-    if (!has_friction(joint.kind))
-      throw Error(e.where("joint"), fmt::format("{}: no friction in a joint of kind {}", e.label(), joint.kind),
+    const Host host = joint_of(e);
+    if (host.kind.pressing.empty())
+      throw Error(e.where("joint"), fmt::format("{}: no friction in a joint of kind {}", e.label(), host.kind.name),
                   "revolute, cylindrical, prismatic, screw and spherical joints have it");
-    if (joint.kind != "prismatic" && !e.has("radius"))
-      throw Error(e.where("joint"), fmt::format("{}: a joint of kind {} turns and needs a radius", e.label(), joint.kind));
-    if (joint.end[0].body < 0 || joint.end[1].body < 0)
-      throw Error(e.where("joint"), fmt::format("{}: both ends of joint \"{}\" must be able to turn", e.label(), joint.name),
+    const bool turns = host.kind.frees(Freedom::angle) || !host.kind.frees(Freedom::slide);
+    if (turns && !e.has("radius"))
+      throw Error(e.where("joint"), fmt::format("{}: a joint of kind {} turns and needs a radius", e.label(), host.kind.name));
+    if (host.geometry.end[0].body < 0 || host.geometry.end[1].body < 0)
+      throw Error(e.where("joint"), fmt::format("{}: both ends of joint \"{}\" must be able to turn", e.label(), host.geometry.name),
                   "name a set of several nodes");
-    Connector c = friction_in(joint, q, e.number("coefficient"), e.has("radius") ? e.number("radius") : 0, e.number("preload"),
-                              e.number("slip_velocity"));
+    Spring c = friction_in(host.geometry, host.kind, q,
+                           {.coefficient = e.number("coefficient"),
+                            .radius = e.has("radius") ? e.number("radius") : 0,
+                            .preload = e.number("preload"),
+                            .slip_velocity = e.number("slip_velocity")});
     if (e.boolean("reaction")) {
-      if (joint.law)
-        throw Error(e.where("joint"), fmt::format("{}: joint \"{}\" gives way and has no reaction to press with", e.label(), joint.name),
+      if (host.joint < 0)
+        throw Error(e.where("joint"),
+                    fmt::format("{}: joint \"{}\" gives way and has no reaction to press with", e.label(), host.geometry.name),
                     "say reaction = false and give a preload");
-      c.load_joint = static_cast<int>(&joint - out_->joints.list.data());
+      c.pressing.joint = host.joint;
     }
     add(std::move(c), e);
   }

@@ -78,7 +78,13 @@ class Builder {
   // build_springs.cpp
   void add_springs();
   void add_joint_forces();
-  const Connector& joint_of(const Entry& entry) const;
+  /// A joint that an entry names: its geometry and kind, and its number, or -1 where it gives way.
+  struct Host {
+    const Connector& geometry;
+    const JointKind& kind;
+    int joint;
+  };
+  Host joint_of(const Entry& entry) const;
   std::vector<std::string> all_names() const;
   // build_joints.cpp
   void add_joints();

@@ -10,24 +10,24 @@
 namespace hilo {
 namespace {
 
-int n_blocks(const Connector& joint) { return (joint.n_rows() + 2) / 3; }
+int n_blocks(const Joint& joint) { return (joint.n_rows() + 2) / 3; }
 
 }  // namespace
 
-void gaps(const Connector& joint, const Config& q, double t, double factor, double* g) {
+void gaps(const Joint& joint, const Config& q, double t, double factor, double* g) {
   joint.row_values(joint.values(q), g);
   if (joint.drive.row >= 0) g[joint.drive.row] -= joint.drive.law.at(t, t, factor).value;
 }
 
 Traits Joints::traits() const {
-  return {.constrains = !list.empty(), .is_driven = std::any_of(begin(), end(), [](const Connector& j) { return j.drive.row >= 0; })};
+  return {.constrains = !list.empty(), .is_driven = std::any_of(begin(), end(), [](const Joint& j) { return j.drive.row >= 0; })};
 }
 
 std::string Joints::count() const { return fmt::format("{} joints", list.size()); }
 
 void Joints::take_blocks(int& next) {
   block_.clear();
-  for (const Connector& j : list) block_.push_back(next), next += n_blocks(j);
+  for (const Joint& j : list) block_.push_back(next), next += n_blocks(j);
 }
 
 void Joints::add_cliques(Cliques& cliques) {
@@ -40,7 +40,7 @@ void Joints::add_cliques(Cliques& cliques) {
   }
 }
 
-const Connector& Joints::at_block(int k) const {
+const Joint& Joints::at_block(int k) const {
   const auto after = std::upper_bound(block_.begin(), block_.end(), points_.first_joint_block() + k);
   return list[static_cast<size_t>(after - block_.begin()) - 1];
 }
@@ -69,7 +69,7 @@ void Joints::add_row_rates(const Rates& at, std::vector<double>& rate, std::vect
   RowLaw::Gradient g;
   for (size_t j = 0; j < list.size(); ++j) {
     if (!owned_[j]) continue;
-    const Connector& c = list[j];
+    const Joint& c = list[j];
     const int n = static_cast<int>(c.measures.size()), base = row(j);
     const auto e = c.values(at.q), ep = c.values(at.forward), em = c.values(at.backward);
     std::array<double, max_measures> de{}, dde{};
@@ -122,17 +122,17 @@ std::string Joints::fault(const Config& q) const {
     if (list[j].rows && !list[j].rows->fault(list[j].values(q)).empty()) found = static_cast<double>(j);
   found = points_.comm->max(found);
   if (found < 0) return "";
-  const Connector& c = list[static_cast<size_t>(found)];
+  const Joint& c = list[static_cast<size_t>(found)];
   return "joint \"" + c.name + "\" " + c.rows->fault(c.values(q));
 }
 
 void Joints::commit(const Config& q, const Config*) {
-  for (Connector& j : list)
+  for (Joint& j : list)
     if (j.rows) j.rows->commit(j.values(q));
 }
 
 void Joints::archive(Archive& a) {
-  for (Connector& j : list) {
+  for (Joint& j : list) {
     a("joint " + j.name, j.active);
     if (j.rows) j.rows->archive(a);
   }
@@ -140,7 +140,7 @@ void Joints::archive(Archive& a) {
 
 std::vector<Output> Joints::outputs() const {
   std::vector<Output> out;
-  for (const Connector& c : list) out.push_back({.group = "joint", .name = c.name, .n_mid = 6});
+  for (const Joint& c : list) out.push_back({.group = "joint", .name = c.name, .n_mid = 6});
   return out;
 }
 
@@ -150,7 +150,7 @@ void Joints::add_mid_values(const Moment& m, std::vector<double>& out) const {
   ConnectorGradient left;
   double force[max_measures];
   for (size_t j = 0; j < list.size(); ++j) {
-    const Connector& c = list[j];
+    const Joint& c = list[j];
     const double* lambda = m.shared.data() + row(j);
     gradient(c, q, left);
     joint_forces(c, m.s, left, lambda, force);
@@ -165,7 +165,7 @@ void Joints::add_mid_values(const Moment& m, std::vector<double>& out) const {
 }
 
 void Joints::tie(Ties& ties) const {
-  for (const Connector& joint : list) {
+  for (const Joint& joint : list) {
     const int first = tie_ends(points_, joint, ties);
     if (first < 0) continue;
     ties.hold(first, static_cast<int>(std::count(joint.active.begin(), joint.active.begin() + joint.n_rows(), true)));

@@ -12,7 +12,7 @@ namespace hilo {
 namespace {
 
 /// d (rows x measures) times G (measures x directions).
-void rows_over_directions(const Connector& c, const RowLaw::Gradient& g, const DirectionRows& G, DirectionRows& out) {
+void rows_over_directions(const Joint& c, const RowLaw::Gradient& g, const DirectionRows& G, DirectionRows& out) {
   const int n = c.n_position_rows(), width = c.n_directions();
   out.topRows(n).setZero();
   for (int r = 0; r < n; ++r)
@@ -21,7 +21,7 @@ void rows_over_directions(const Connector& c, const RowLaw::Gradient& g, const D
 }
 
 /// What the unit increment `i` of a connector's directions does to its ends at a stage.
-Slip::Move move_of(const Connector& c, const Stage& s, int end, int i) {
+Slip::Move move_of(const Joint& c, const Stage& s, int end, int i) {
   Slip::Move m{Vec3::Zero(), Vec3::Zero(), Mat3::Zero(), Mat3::Zero()};
   if (i / 6 != end) return m;
   if (i % 6 < 3) {
@@ -35,8 +35,8 @@ Slip::Move move_of(const Connector& c, const Stage& s, int end, int i) {
 
 /// Rows that hold velocities, scaled to lengths by the slope of the velocities: (A v)/alpha_slope.  Where a stage has no velocities of its
 /// own (statics, projections), increments slip as little: the rows are A, their value 0.  Adds the derivative of A^T lambda to K.
-void add_velocity_rows(const Connector& c, const Stage& s, const Slip& slip, const double* lambda, DirectionRows& left,
-                       DirectionRows& right, ConnectorMatrix& K) {
+void add_velocity_rows(const Joint& c, const Stage& s, const Slip& slip, const double* lambda, DirectionRows& left, DirectionRows& right,
+                       ConnectorMatrix& K) {
   const int first = c.n_position_rows(), width = c.n_directions();
   for (int r = 0; r < slip.n; ++r) left.row(first + r).head(width) = slip.A.row(r), right.row(first + r).head(width) = slip.A.row(r);
   for (int i = 0; i < width; ++i) {
@@ -49,7 +49,7 @@ void add_velocity_rows(const Connector& c, const Stage& s, const Slip& slip, con
 }
 
 /// Work of a joint's drive over the step of a stage, for the multiplier of its row.
-double drive_work(const Connector& c, const Stage& s, double lambda) {
+double drive_work(const Joint& c, const Stage& s, double lambda) {
   ConnectorGradient left, start, end;
   gradient(c, *s.left, left), gradient(c, s.from(), start), gradient(c, *s.end, end);
   RowLaw::Gradient g;
@@ -62,14 +62,14 @@ double drive_work(const Connector& c, const Stage& s, double lambda) {
 
 }  // namespace
 
-void row_gradient(const Connector& c, const Stage& s, const ConnectorGradient& left, RowLaw::Gradient& out) {
+void row_gradient(const Joint& c, const Stage& s, const ConnectorGradient& left, RowLaw::Gradient& out) {
   if (s.conserving())
     c.rows->gradient(c.values(*s.e0), c.values(*s.e1), out);
   else
     c.rows->gradient(left.e, left.e, out);
 }
 
-void joint_forces(const Connector& c, const Stage& s, const ConnectorGradient& left, const double* lambda, double* force) {
+void joint_forces(const Joint& c, const Stage& s, const ConnectorGradient& left, const double* lambda, double* force) {
   const int n_measures = static_cast<int>(c.measures.size());
   if (!c.rows) {
     std::copy(lambda, lambda + n_measures, force);
@@ -89,7 +89,7 @@ void Joints::evaluate(Pass& p) const {
   const Stage& s = p.s;
   for (size_t j = 0; j < list.size(); ++j) {
     if (!owned_[j]) continue;
-    const Connector& c = list[j];
+    const Joint& c = list[j];
     if (s.rates_alone && !c.velocity_rows) continue;
     gradient(c, *s.left, left);
     if (p.K)

@@ -1,5 +1,6 @@
 // Joints: constraint rows with multipliers.
 #pragma once
+#include "physics/joint.hpp"
 #include "system/connector_clique.hpp"
 
 namespace hilo {
@@ -7,7 +8,7 @@ namespace hilo {
 class Joints final : public Contribution {
  public:
   explicit Joints(const Points& points) : points_(points) {}
-  std::vector<Connector> list;
+  std::vector<Joint> list;
   // as a list of its own: whoever treats rows goes through the joints
   auto begin() { return list.begin(); }
   auto end() { return list.end(); }
@@ -15,13 +16,13 @@ class Joints final : public Contribution {
   auto end() const { return list.end(); }
   size_t size() const { return list.size(); }
   bool empty() const { return list.empty(); }
-  Connector& operator[](size_t j) { return list[j]; }
-  const Connector& operator[](size_t j) const { return list[j]; }
+  Joint& operator[](size_t j) { return list[j]; }
+  const Joint& operator[](size_t j) const { return list[j]; }
   /// First block of the multipliers of a joint, and where these begin in lambda.
   int block(size_t j) const { return block_[j]; }
   int row(size_t j) const { return 3 * (block_[j] - points_.first_joint_block()); }
   /// The joint whose multipliers are in a block, counted from the first of them.
-  const Connector& at_block(int k) const;
+  const Joint& at_block(int k) const;
 
   Traits traits() const override;
   std::string count() const override;
@@ -48,10 +49,10 @@ class Joints final : public Contribution {
 };
 
 /// Values of a joint's rows less what drives them, at time t; `factor` is that of the load step.
-void gaps(const Connector& joint, const Config& q, double t, double factor, double* g);
+void gaps(const Joint& joint, const Config& q, double t, double factor, double* g);
 /// Gradient of a joint's rows by its measures as the stage takes it: over the step where it conserves energy, else at `left`.
-void row_gradient(const Connector& c, const Stage& s, const ConnectorGradient& left, RowLaw::Gradient& out);
+void row_gradient(const Joint& c, const Stage& s, const ConnectorGradient& left, RowLaw::Gradient& out);
 /// Forces conjugate to the measures of a joint for the multipliers of its rows.
-void joint_forces(const Connector& c, const Stage& s, const ConnectorGradient& left, const double* lambda, double* force);
+void joint_forces(const Joint& c, const Stage& s, const ConnectorGradient& left, const double* lambda, double* force);
 
 }  // namespace hilo

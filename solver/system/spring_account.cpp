@@ -10,7 +10,7 @@ namespace hilo {
 namespace {
 
 /// The group that a spring without a potential alone acts in, or -1: its ends are of one.
-int group_of(const Connector& c, std::span<const int> group) {
+int group_of(const Spring& c, std::span<const int> group) {
   if (c.law->conserves()) return -1;
   for (const Carrier& end : c.ends())
     if (end.body >= 0 && group[end.body] >= 0) return group[end.body];
@@ -21,7 +21,7 @@ int group_of(const Connector& c, std::span<const int> group) {
 
 Traits Springs::traits() const {
   return {.has_rates = !list.empty(),
-          .is_pressed = std::any_of(list.begin(), list.end(), [](const Connector& c) { return c.load_joint >= 0; })};
+          .is_pressed = std::any_of(list.begin(), list.end(), [](const Spring& c) { return c.pressing.joint >= 0; })};
 }
 
 std::string Springs::count() const { return fmt::format("{} springs", list.size()); }
@@ -30,14 +30,14 @@ void Springs::add_cliques(Cliques& cliques) {
   clique_.clear(), owned_.clear();
   for (size_t i = 0; i < list.size(); ++i) {
     std::vector<int> blocks = blocks_of_ends(points_, list[i]);
-    if (const int j = list[i].load_joint; j >= 0)
+    if (const int j = list[i].pressing.joint; j >= 0)
       for (int k = 0; k < (joints_[j].n_rows() + 2) / 3; ++k) blocks.push_back(joints_.block(j) + k);
     clique_.push_back(cliques.add(blocks));
     owned_.push_back(is_owned(points_, list[i], i));
   }
 }
 
-void Springs::viscous(const Connector& c, const Stage& s, std::span<const double> lambda, Response& out) const {
+void Springs::viscous(const Spring& c, const Stage& s, std::span<const double> lambda, Response& out) const {
   c.law->viscous(c.values(*s.w0), c.values(*s.w1), interval(c, s, lambda), out);
 }
 
@@ -64,7 +64,7 @@ void Springs::add_work(const Moment& m, Work& sum) const {
 void Springs::commit(const Config& q, const Config* v) {
   Config ahead, behind;
   const double tau = 1e-3;  // [s]; measures are of degree two, any tau gives the exact rate
-  if (v && std::any_of(list.begin(), list.end(), [](const Connector& s) { return s.law->needs_rate(); })) {
+  if (v && std::any_of(list.begin(), list.end(), [](const Spring& s) { return s.law->needs_rate(); })) {
     ahead = behind = q;
     for (size_t i = 0; i < q.x.size(); ++i) ahead.x[i] += tau * v->x[i], behind.x[i] -= tau * v->x[i];
     for (size_t b = 0; b < q.c.size(); ++b) {
@@ -72,7 +72,7 @@ void Springs::commit(const Config& q, const Config* v) {
       ahead.R[b] += tau * v->R[b], behind.R[b] -= tau * v->R[b];
     }
   }
-  for (Connector& s : list) {
+  for (Spring& s : list) {
     SpringLaw::Values rate{};
     if (!ahead.c.empty() && s.law->needs_rate()) {
       const auto e1 = s.values(ahead), e0 = s.values(behind);
@@ -83,7 +83,7 @@ void Springs::commit(const Config& q, const Config* v) {
 }
 
 void Springs::archive(Archive& a) {
-  for (Connector& c : list) {
+  for (Spring& c : list) {
     a("spring " + c.name);
     c.law->archive(a);
   }
@@ -91,20 +91,20 @@ void Springs::archive(Archive& a) {
 
 std::vector<Output> Springs::outputs() const {
   std::vector<Output> out;
-  for (const Connector& c : list) out.push_back({.group = c.section, .name = c.name, .n_mid = 6});
+  for (const Spring& c : list) out.push_back({.group = c.group, .name = c.name, .n_mid = 6});
   return out;
 }
 
 /// Force and moment on b: at the point, in inertial axes, or for what acts along or in a joint, in its frame.
 void Springs::add_mid_values(const Moment& m, std::vector<double>& out) const {
   ConnectorGradient left;
-  for (const Connector& c : list) {
+  for (const Spring& c : list) {
     gradient(c, *m.s.left, left);
     Response r;
     spring_elastic(c, m.s, r);
     if (m.s.h > 0) viscous(c, m.s, m.lambda, r);
     const Vec6 f = force_on_b(c, left, r.s.data(), *m.s.left);
-    if (c.section == "spring")
+    if (c.axes == Spring::Axes::inertial)
       out.insert(out.end(), f.data(), f.data() + 6);
     else
       append_in_frame(c, f, *m.s.left, out);
@@ -112,17 +112,17 @@ void Springs::add_mid_values(const Moment& m, std::vector<double>& out) const {
 }
 
 void Springs::tie(Ties& ties) const {
-  for (const Connector& c : list) tie_ends(points_, c, ties);
+  for (const Spring& c : list) tie_ends(points_, c, ties);
 }
 
 /// A motor with a history: how much is not asked.
 void Springs::add_timed(std::span<const int> group, double, double, std::span<double> sum) const {
-  for (const Connector& c : list)
-    if (const int g = c.factor ? group_of(c, group) : -1; g >= 0) sum[g] += 1e300;
+  for (const Spring& c : list)
+    if (const int g = c.history ? group_of(c, group) : -1; g >= 0) sum[g] += 1e300;
 }
 
 void Springs::add_taken(std::span<const int> group, const Stage& s, std::span<const double> lambda, std::span<double> sum) const {
-  for (const Connector& c : list)
+  for (const Spring& c : list)
     if (const int g = group_of(c, group); g >= 0) {
       Response r;
       viscous(c, s, lambda, r);

@@ -10,7 +10,7 @@ namespace {
 
 /// Rate forces of a spring, D by its measures at w1, and `D0` by those at w0.  All laws of rates are symmetric in their ends when the time
 /// between them changes its sign too, so the former of the exchanged pair is the latter.
-void spring_viscous(const Connector& c, const Stage& s, const Interval& step, Response& out, Response& exchanged) {
+void spring_viscous(const Spring& c, const Stage& s, const Interval& step, Response& out, Response& exchanged) {
   const auto r0 = c.values(*s.w0), r1 = c.values(*s.w1);
   c.law->viscous(r0, r1, step, out);
   Interval back = step;
@@ -20,7 +20,7 @@ void spring_viscous(const Connector& c, const Stage& s, const Interval& step, Re
 
 }  // namespace
 
-void spring_elastic(const Connector& c, const Stage& s, Response& out) {
+void spring_elastic(const Spring& c, const Stage& s, Response& out) {
   SpringLaw::Values e0 = c.values(*s.e0), e1 = c.values(*s.e1);
   if (s.conserving()) return c.law->elastic(e0, e1, out);
   for (size_t m = 0; m < c.measures.size(); ++m) e0[m] = e1[m] = (1 - s.weight) * e0[m] + s.weight * e1[m];
@@ -29,16 +29,16 @@ void spring_elastic(const Connector& c, const Stage& s, Response& out) {
     for (double& d : row) d *= 2 * s.weight;
 }
 
-Interval Springs::interval(const Connector& c, const Stage& s, std::span<const double> lambda, double* slope) const {
+Interval Springs::interval(const Spring& c, const Stage& s, std::span<const double> lambda, double* slope) const {
   Interval step{s.h};
   for (const Carrier& end : c.ends())
     if (s.tempo && end.body >= 0 && points_.body_block[end.body] >= 0) step.h = s.h / s.tempo[end.body];
-  if (c.factor) step.factor = c.factor(s.t0, s.t1);
-  if (c.load_joint < 0) return step;
-  const double* multiplier = lambda.data() + joints_.row(c.load_joint);
-  for (const int r : c.load_rows) step.load += multiplier[r] * multiplier[r];
+  if (c.history) step.factor = s.t1 > s.t0 ? c.history->mean(s.t0, s.t1) : (*c.history)(s.t0);
+  if (c.pressing.joint < 0) return step;
+  const double* multiplier = lambda.data() + joints_.row(c.pressing.joint);
+  for (const int r : c.pressing.rows) step.load += multiplier[r] * multiplier[r];
   step.load = std::sqrt(step.load);
-  for (const int r : c.load_rows)
+  for (const int r : c.pressing.rows)
     if (slope) slope[r] = step.load > 0 ? multiplier[r] / step.load : 0;
   return step;
 }
@@ -49,7 +49,7 @@ void Springs::evaluate(Pass& p) const {
   const Stage& s = p.s;
   for (size_t j = 0; j < list.size(); ++j) {
     if (!owned_[j] || (s.rates_alone && s.h <= 0)) continue;
-    const Connector& c = list[j];
+    const Spring& c = list[j];
     const int n = static_cast<int>(c.measures.size()), width = c.n_directions();
     gradient(c, *s.left, left);
     Response elastic, viscous, before;  // `before`: by the measures at w0
@@ -75,11 +75,11 @@ void Springs::evaluate(Pass& p) const {
     add_slope(*s.e1, s.chain, elastic);
     add_geometric(c, left, right, force, s.slope, K);
     CliqueRows rows{0, &left_rows, &right_rows};
-    if (c.load_joint >= 0) {  // columns of the multipliers its load is made of; its own rows are none
-      const Connector& joint = joints_[c.load_joint];
+    if (c.pressing.joint >= 0) {  // columns of the multipliers its load is made of; its own rows are none
+      const Joint& joint = joints_[c.pressing.joint];
       rows.blocks = (joint.n_rows() + 2) / 3;
       left_rows.setZero(), right_rows.setZero();
-      for (const int r : c.load_rows)
+      for (const int r : c.pressing.rows)
         for (int m = 0; m < n && joint.active[r]; ++m)
           left_rows.row(r).head(width) += slope[r] * viscous.by_load[m] * left.G.row(m).head(width);
     }

@@ -1,5 +1,6 @@
 // Springs, dampers, stops, motors, friction and joints that give way: forces of connectors, without rows.
 #pragma once
+#include "physics/spring.hpp"
 #include "system/joints.hpp"
 
 namespace hilo {
@@ -7,7 +8,7 @@ namespace hilo {
 class Springs final : public Contribution {
  public:
   Springs(const Points& points, const Joints& joints) : points_(points), joints_(joints) {}
-  std::vector<Connector> list;
+  std::vector<Spring> list;
 
   Traits traits() const override;
   std::string count() const override;
@@ -25,9 +26,9 @@ class Springs final : public Contribution {
 
  private:
   /// What the rate forces of a spring may ask of a stage; `slope`, when given, receives d load / d multiplier for its load rows.
-  Interval interval(const Connector& c, const Stage& s, std::span<const double> lambda, double* slope = nullptr) const;
+  Interval interval(const Spring& c, const Stage& s, std::span<const double> lambda, double* slope = nullptr) const;
   /// Rate forces of a stage, added to `out`.
-  void viscous(const Connector& c, const Stage& s, std::span<const double> lambda, Response& out) const;
+  void viscous(const Spring& c, const Stage& s, std::span<const double> lambda, Response& out) const;
   const Points& points_;
   const Joints& joints_;
   std::vector<int> clique_;
@@ -35,6 +36,6 @@ class Springs final : public Contribution {
 };
 
 /// Elastic response of a spring at a stage, D by its measures at e1.
-void spring_elastic(const Connector& c, const Stage& s, Response& out);
+void spring_elastic(const Spring& c, const Stage& s, Response& out);
 
 }  // namespace hilo

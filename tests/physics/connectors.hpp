@@ -2,7 +2,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include "physics/connector.hpp"
+#include "physics/joint.hpp"
 #include "verify/block_mesh.hpp"
 
 namespace hilo::test {
@@ -63,7 +63,7 @@ inline const std::vector<std::string>& joint_kinds() {
 inline Mat3 some_frame() { return frame_of_axis(Vec3(1, 2, -0.5), Vec3(0, 1, 0)); }
 inline const Vec3 joint_point(0.4, -0.2, 0.9), other_point(-1, 0.3, 0.2);
 
-inline Connector joint(const std::string& kind, const Config& q) {
+inline hilo::Joint joint(const std::string& kind, const Config& q) {
   return make_joint({.kind = kind,
                      .a = {1, -1},
                      .b = {2, -1},

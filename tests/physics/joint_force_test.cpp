@@ -2,7 +2,8 @@
 #include <cmath>
 
 #include "physics/connectors.hpp"
-#include "physics/freedom.hpp"
+#include "physics/coordinates.hpp"
+#include "physics/spring.hpp"
 
 namespace hilo::test {
 namespace {
@@ -136,7 +137,8 @@ TEST(Friction, KnowsHowItDependsOnTheLoad) {
 TEST(Friction, OfABallJointOpposesTheRelativeSpin) {
   const Config q = somewhere(4);
   const double mu = 0.3, r = 0.2, N = 70, slow = 1.5, h = 1e-6;
-  const Connector c = friction_in(joint("spherical", q), q, mu, r, 0, slow);
+  const hilo::Joint ball = joint("spherical", q);
+  const hilo::Spring c = friction_in(ball, *ball.kind, q, {.coefficient = mu, .radius = r, .slip_velocity = slow});
   const Vec3 w(1, -2, 0.5);
   Config q0 = q, q1 = q;
   q0.R[2] = turn(-h / 2 * w) * q.R[2], q1.R[2] = turn(h / 2 * w) * q.R[2];
@@ -155,7 +157,7 @@ TEST(Freedom, MeasuresWhatTheJointLeavesFree) {
   const Config q = somewhere(2);
   const Mat3 frame = some_frame();
   for (const Freedom freedom : {Freedom::angle, Freedom::slide}) {
-    const Connector c = along_joint(joint("cylindrical", q), q, freedom, make_linear({2}, {0}));
+    const hilo::Spring c = along_joint(joint("cylindrical", q), q, freedom, make_linear({2}, {0}));
     Config p = q;
     const double moved = 0.4;
     if (freedom == Freedom::angle) {

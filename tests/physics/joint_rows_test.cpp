@@ -35,7 +35,7 @@ Config on_course(const Config& q, const Course3& c, double t) {
 }
 
 /// Largest row along a course of ten turns, the state being accepted every tenth of a turn.
-double worst_row(Connector& c, const Config& q, const Course3& course) {
+double worst_row(hilo::Joint& c, const Config& q, const Course3& course) {
   double worst = 0, g[max_rows];
   for (int i = 0; i <= 100; ++i) {
     const Config now = on_course(q, course, i / 10.0);
@@ -52,10 +52,10 @@ TEST(ScrewJoint, SlidesByItsPitchPerTurn) {
   const Config q = somewhere(3);
   JointPlace p = place("screw");
   p.ratio = 0.3 / (2 * pi);
-  Connector c = make_joint(p, q);
+  hilo::Joint c = make_joint(p, q);
   EXPECT_EQ(c.n_rows(), 5);
   EXPECT_LT(worst_row(c, q, {[](double t) { return 2 * pi * t; }, [](double t) { return 0.3 * t; }, still}), 1e-12);
-  Connector other = make_joint(p, q);
+  hilo::Joint other = make_joint(p, q);
   EXPECT_GT(worst_row(other, q, {[](double t) { return 2 * pi * t; }, [](double t) { return -0.3 * t; }, still}), 1) << "the other hand";
 }
 
@@ -64,7 +64,7 @@ TEST(GearJoint, KeepsTheRatioOfTheAnglesOverManyTurns) {
   q.R[0] = Mat3::Identity(), q.c[0].setZero();
   JointPlace p = place("gear");
   p.ratio = -2.5;
-  Connector c = make_joint(p, q);
+  hilo::Joint c = make_joint(p, q);
   EXPECT_EQ(c.n_rows(), 1);
   const auto a = [](double t) { return 2 * pi * 0.4 * t; };
   EXPECT_LT(worst_row(c, q, {[&](double t) { return -2.5 * a(t); }, still, a}), 1e-12);
@@ -74,7 +74,7 @@ TEST(RackJoint, SlidesByTheRadiusTimesTheAngle) {
   const Config q = somewhere(3);
   JointPlace p = place("rack");
   p.ratio = 0.2, p.axis_b = axis;  // any direction: here along the axis, where the slide of the course is
-  Connector c = make_joint(p, q);
+  hilo::Joint c = make_joint(p, q);
   EXPECT_EQ(c.n_rows(), 1);
   const auto a = [](double t) { return 4 * t; };
   EXPECT_LT(worst_row(c, q, {still, [&](double t) { return 0.2 * a(t); }, a}), 1e-12);
@@ -85,7 +85,7 @@ TEST(DrivenJoint, MeasuresAngleOrSlide) {
   for (const auto driven : {JointPlace::Driven::angle, JointPlace::Driven::slide}) {
     JointPlace p = place("cylindrical");
     p.driven = driven;
-    Connector c = make_joint(p, q);
+    hilo::Joint c = make_joint(p, q);
     EXPECT_EQ(c.n_rows(), 5);
     EXPECT_EQ(c.drive.row, 4);
     double g[max_rows];

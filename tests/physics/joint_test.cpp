@@ -11,7 +11,7 @@ namespace {
 class Joint : public testing::TestWithParam<std::string> {
  protected:
   const Config made_at = somewhere(3);
-  const Connector c = joint(GetParam(), made_at);
+  const hilo::Joint c = joint(GetParam(), made_at);
   ConnectorGradient g, h;
 };
 INSTANTIATE_TEST_SUITE_P(EveryKind, Joint, testing::ValuesIn(joint_kinds()), [](const auto& p) {
@@ -163,7 +163,7 @@ TEST_P(Joint, ForceOnBHasThePowerOfItsRows) {
 // Truth: the axis of the universal joint in a and the cross arm of b stay at a right angle: the Hooke joint.
 TEST(UniversalJoint, LetsTheTwoShaftsTurnTogetherAsAHookeJoint) {
   const Config q = somewhere(3);
-  const Connector c = joint("universal", q);
+  const hilo::Joint c = joint("universal", q);
   const Mat3 f = some_frame();
   Config turned = q;  // b turns about x of b and then about the axis of a: both arms of the cross
   const Mat3 B = turn(0.7 * f.col(2)) * turn(-0.4 * f.col(0));
@@ -173,7 +173,7 @@ TEST(UniversalJoint, LetsTheTwoShaftsTurnTogetherAsAHookeJoint) {
 
 TEST(JointOnANode, PullsTheNodeAlongTheLine) {
   const Config q = somewhere(8);
-  const Connector c = make_joint({.kind = "distance", .a = {1, -1}, .b = {-1, 0}, .at = joint_point, .at_b = q.x[0]}, q);
+  const hilo::Joint c = make_joint({.kind = "distance", .a = {1, -1}, .b = {-1, 0}, .at = joint_point, .at_b = q.x[0]}, q);
   ConnectorGradient g;
   gradient(c, q, g);
   const Vec3 along = 2 * (q.x[0] - joint_point);

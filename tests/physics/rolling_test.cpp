@@ -6,7 +6,7 @@
 namespace hilo::test {
 namespace {
 
-Connector rolling(const std::string& kind, const Config& q) {
+hilo::Joint rolling(const std::string& kind, const Config& q) {
   JointPlace j{.kind = kind == "knife-edge" ? kind : "rolling", .a = {1, -1}, .b = {2, -1}, .at = joint_point, .at_b = joint_point};
   j.frame = some_frame();
   j.ratio = 0.3;
@@ -26,7 +26,7 @@ INSTANTIATE_TEST_SUITE_P(EveryKind, VelocityRow, testing::Values("ball", "disc",
 TEST_P(VelocityRow, RowsTimesTheIncrementAreTheSlipOfAMidPointStep) {
   const double h = 0.1;
   const Config q0 = somewhere(3);
-  const Connector c = rolling(GetParam(), q0);
+  const hilo::Joint c = rolling(GetParam(), q0);
   Config q1 = q0;
   for (int b = 1; b < 3; ++b) q1.c[b] += 0.1 * scattered(7 * b), q1.R[b] = turn(0.8 * scattered(11 * b)) * q0.R[b];
   Config v = q0;
@@ -39,7 +39,7 @@ TEST_P(VelocityRow, RowsTimesTheIncrementAreTheSlipOfAMidPointStep) {
 // Truth: the change is the derivative, by central differences of step 1e-5.
 TEST_P(VelocityRow, ChangeIsTheDerivative) {
   Config q = somewhere(3);
-  const Connector c = rolling(GetParam(), q);
+  const hilo::Joint c = rolling(GetParam(), q);
   Config v = q, dq = q, dv = q;
   for (int b = 0; b < 3; ++b) {
     const Mat3 any = skew(scattered(b)) + 0.1 * scattered(b + 40) * scattered(b + 50).transpose();
@@ -67,7 +67,7 @@ TEST_P(VelocityRow, ChangeIsTheDerivative) {
 // Truth: b spinning about its contact on a resting plane rolls: nothing slips.
 TEST_P(VelocityRow, SpinningAboutTheContactIsRolling) {
   const Config q = somewhere(3);
-  const Connector c = rolling(GetParam(), q);
+  const hilo::Joint c = rolling(GetParam(), q);
   const Mat3 frame = some_frame();
   Vec3 contact = joint_point, w = frame.col(2);
   if (std::string(GetParam()) != "knife-edge") {
@@ -85,7 +85,7 @@ TEST_P(VelocityRow, SpinningAboutTheContactIsRolling) {
 // Truth: a disc of radius r tilted to the angle b from upright has its centre at r cos b.
 TEST(Rolling, DiscKeepsItsRimOnThePlane) {
   const Config q = somewhere(3);
-  const Connector c = rolling("disc", q);
+  const hilo::Joint c = rolling("disc", q);
   const Vec3 n = some_frame().col(2), axle = (some_frame() * Vec3(0.8, 0.5, 0.4)).normalized();
   const auto height = [&](const Vec3& e) { return 0.3 * std::sqrt(1 - std::pow(n.dot(e), 2)); };
   for (int seed = 0; seed < 10; ++seed) {

@@ -1,6 +1,8 @@
 // Springs and dampers: discrete gradients of their potentials, never a source of energy.
+#include "physics/spring.hpp"
+
 #include "physics/connectors.hpp"
-#include "physics/freedom.hpp"
+#include "physics/coordinates.hpp"
 
 namespace hilo::test {
 namespace {
@@ -9,12 +11,18 @@ using Values = SpringLaw::Values;
 
 struct Kind {
   std::string name;
-  std::function<Connector(const Config&)> make;
+  std::function<hilo::Spring(const Config&)> make;
   std::function<Values(int)> state;  // admissible measures
 };
 
-Connector give_way(const std::string& kind, const Config& q) {
-  return make_compliant(joint(kind, q), Vec3(100, 200, 50), Vec3(3, 0, 5), Vec3(20, 10, 30), Vec3(1, 2, 3));
+const Stiffness some_stiffness{
+    .along = Vec3(100, 200, 50), .damping = Vec3(3, 0, 5), .about = Vec3(20, 10, 30), .angular_damping = Vec3(1, 2, 3)};
+
+hilo::Spring give_way(const std::string& kind, const Config& q) { return make_compliant(joint(kind, q), some_stiffness); }
+
+hilo::Spring friction(const std::string& kind, double radius, const Config& q) {
+  const hilo::Joint host = joint(kind, q);
+  return friction_in(host, *host.kind, q, {.coefficient = 0.3, .radius = radius, .preload = 5, .slip_velocity = 3});
 }
 
 std::vector<Kind> kinds() {
@@ -28,20 +36,41 @@ std::vector<Kind> kinds() {
     const double t = 1.5 * scatter(seed);
     return Values{std::sin(t), std::cos(t)};
   };
-  return {{"axial", [=](const Config& q) { return make_axial_spring(a, b, q, joint_point, other_point, 250, 30, 1.1); },
+  return {{"axial",
+           [=](const Config& q) {
+             return make_axial_spring(
+                 {.a = a, .b = b, .at_a = joint_point, .at_b = other_point, .stiffness = 250, .damping = 30, .length = 1.1}, q);
+           },
            [](int seed) { return Values{std::pow(1 + 0.6 * scatter(seed), 2)}; }},
-          {"torsion", [=](const Config& q) { return make_torsion_spring(a, b, q, some_frame(), 40, 3, 0.2); }, turned},
+          {"torsion",
+           [=](const Config& q) {
+             return make_torsion_spring({.a = a, .b = b, .frame = some_frame(), .stiffness = 40, .damping = 3, .angle = 0.2}, q);
+           },
+           turned},
           {"bushing",
            [=](const Config& q) {
-             return make_bushing(a, b, q, joint_point, some_frame(), Vec3(100, 200, 50), Vec3(3, 0, 5), Vec3(20, 10, 30), Vec3(1, 2, 3));
+             return make_bushing({.a = a, .b = b, .at = joint_point, .frame = some_frame(), .stiffness = some_stiffness}, q);
            },
            any},
           {"support",
            [=](const Config& q) {
-             return make_support(a, b, q, joint_point, some_frame(), 900, 0, 0.4, 0.5, 0.1, Vec3(70, 20, 0), Vec3(2, 1, 0));
+             return make_support({.a = a,
+                                  .b = b,
+                                  .at = joint_point,
+                                  .frame = some_frame(),
+                                  .stiffness = 900,
+                                  .restitution = 0.4,
+                                  .rest_speed = 0.5,
+                                  .clearance = 0.1,
+                                  .tangential_stiffness = Vec3(70, 20, 0),
+                                  .tangential_damping = Vec3(2, 1, 0)},
+                                 q);
            },
            any},
-          {"rope", [=](const Config& q) { return make_distance_stop(a, b, q, joint_point, other_point, make_stop(0.8, 1.1, 300, 0.6, 1)); },
+          {"rope",
+           [=](const Config& q) {
+             return make_distance_stop({.a = a, .b = b, .at_a = joint_point, .at_b = other_point}, q, make_stop(0.8, 1.1, 300, 0.6, 1));
+           },
            [](int seed) { return Values{std::pow(1 + 0.6 * scatter(seed), 2)}; }},
           {"angle_stop",
            [=](const Config& q) { return along_joint(joint("revolute", q), q, Freedom::angle, make_stop(-0.4, 0.5, 80, 0.3, 2)); }, turned},
@@ -58,14 +87,14 @@ std::vector<Kind> kinds() {
              const Values turn = turned(seed);
              return e[5] = turn[0], e[6] = turn[1], e;
            }},
-          {"friction_revolute", [=](const Config& q) { return friction_in(joint("revolute", q), q, 0.3, 0.2, 5, 3); }, turned},
-          {"friction_prismatic", [=](const Config& q) { return friction_in(joint("prismatic", q), q, 0.3, 0, 5, 3); }, any},
-          {"friction_cylindrical", [=](const Config& q) { return friction_in(joint("cylindrical", q), q, 0.3, 0.2, 5, 3); },
+          {"friction_revolute", [=](const Config& q) { return friction("revolute", 0.2, q); }, turned},
+          {"friction_prismatic", [=](const Config& q) { return friction("prismatic", 0, q); }, any},
+          {"friction_cylindrical", [=](const Config& q) { return friction("cylindrical", 0.2, q); },
            [=](int seed) {
              const Values e = turned(seed);
              return Values{scatter(seed + 4), e[0], e[1]};
            }},
-          {"friction_spherical", [=](const Config& q) { return friction_in(joint("spherical", q), q, 0.3, 0.2, 5, 3); },
+          {"friction_spherical", [=](const Config& q) { return friction("spherical", 0.2, q); },
            [](int seed) {
              const Mat3 R = turn(2 * scattered(seed));
              Values e{};
@@ -76,7 +105,7 @@ std::vector<Kind> kinds() {
 
 class Spring : public testing::TestWithParam<Kind> {
  protected:
-  const Connector c = GetParam().make(somewhere(3));
+  const hilo::Spring c = GetParam().make(somewhere(3));
   static double dot(const std::array<double, max_measures>& s, const Values& from, const Values& to) {
     double sum = 0;
     for (int i = 0; i < max_measures; ++i) sum += s[i] * (to[i] - from[i]);
@@ -132,7 +161,8 @@ TEST_P(Spring, DamperTakesEnergyAndSaysHowMuch) {
 TEST(AxialSpring, PullsWithItsStiffnessTimesItsExtension) {
   const Config q = somewhere(3);
   const double length = (other_point - joint_point).norm(), k = 250, free = 1.1;
-  const Connector c = make_axial_spring({1, -1}, {2, -1}, q, joint_point, other_point, k, 0, free);
+  const hilo::Spring c =
+      make_axial_spring({.a = {1, -1}, .b = {2, -1}, .at_a = joint_point, .at_b = other_point, .stiffness = k, .length = free}, q);
   const Values e{c.value(0, q)};
   Response r;
   c.law->elastic(e, e, r);
@@ -148,7 +178,7 @@ TEST(AxialSpring, PullsWithItsStiffnessTimesItsExtension) {
 // Truth: the angle of a spring that has been wound up three turns is 6 pi, not 0.
 TEST(TorsionSpring, CountsItsTurns) {
   const Config q = somewhere(3);
-  const Connector c = make_torsion_spring({1, -1}, {2, -1}, q, some_frame(), 40, 0, 0);
+  const hilo::Spring c = make_torsion_spring({.a = {1, -1}, .b = {2, -1}, .frame = some_frame(), .stiffness = 40}, q);
   const Vec3 axis = some_frame().col(2);
   double angle = 0;
   Values before{c.value(0, q), c.value(1, q)};
@@ -179,7 +209,8 @@ TEST(Bushing, IsSixSpringsForSmallMotions) {
   const Config q = somewhere(3);
   const Mat3 frame = some_frame();
   const Vec3 k(100, 200, 50), ka(20, 10, 30), u(1e-6, -2e-6, 3e-6), w(2e-6, 1e-6, -1e-6);
-  const Connector c = make_bushing({1, -1}, {2, -1}, q, joint_point, frame, k, Vec3::Zero(), ka, Vec3::Zero());
+  const hilo::Spring c =
+      make_bushing({.a = {1, -1}, .b = {2, -1}, .at = joint_point, .frame = frame, .stiffness = {.along = k, .about = ka}}, q);
   Config p = q;
   const Mat3 B = turn(frame * w);
   p.c[2] = joint_point + B * (q.c[2] - joint_point) + frame * u, p.R[2] = B * q.R[2];
@@ -205,8 +236,8 @@ TEST(CompliantJoint, IsASpringAlongWhatItHolds) {
       {"in-plane", {{0, 0, 1}, {0, 0, 0}}},  {"in-line", {{1, 1, 0}, {0, 0, 0}}},           {"cylindrical", {{1, 1, 0}, {1, 1, 0}}},
       {"prismatic", {{1, 1, 0}, {1, 1, 1}}}};
   for (const auto& [kind, axes] : held) {
-    ASSERT_TRUE(can_be_compliant(kind));
-    const Connector c = make_compliant(joint(kind, q), k, Vec3::Zero(), ka, Vec3::Zero());
+    ASSERT_FALSE(joint_kind(kind).holds.empty());
+    const hilo::Spring c = make_compliant(joint(kind, q), {.along = k, .about = ka});
     Config p = q;
     const Mat3 B = turn(frame * w);
     p.c[2] = joint_point + B * (q.c[2] - joint_point) + frame * u, p.R[2] = B * q.R[2];
@@ -219,15 +250,16 @@ TEST(CompliantJoint, IsASpringAlongWhatItHolds) {
     EXPECT_LT((frame.transpose() * f.head<3>() + k.cwiseProduct(axes.first).cwiseProduct(u)).norm(), 1e-9) << kind;
     EXPECT_LT((frame.transpose() * f.tail<3>() + ka.cwiseProduct(axes.second).cwiseProduct(w)).norm(), 1e-9) << kind;
   }
-  EXPECT_EQ(missing_stiffness("revolute", k, Vec3(1, 1, 0)), "");
-  EXPECT_EQ(missing_stiffness("revolute", k, Vec3(1, 0, 1)), "angular_stiffness");
-  EXPECT_EQ(missing_stiffness("in-plane", Vec3(1, 1, 0), ka), "stiffness");
+  EXPECT_EQ(missing_stiffness(joint_kind("revolute"), {.along = k, .about = Vec3(1, 1, 0)}), "");
+  EXPECT_EQ(missing_stiffness(joint_kind("revolute"), {.along = k, .about = Vec3(1, 0, 1)}), "angular_stiffness");
+  EXPECT_EQ(missing_stiffness(joint_kind("in-plane"), {.along = Vec3(1, 1, 0), .about = ka}), "stiffness");
 }
 
 // Truth: a unilateral contact pushes when closed, never pulls, whatever its damper.
 TEST(Support, NeverPulls) {
   const Config q = somewhere(3);
-  const Connector c = make_support({1, -1}, {2, -1}, q, joint_point, some_frame(), 900, 80, 1, 1e-3, 0, Vec3::Zero(), Vec3::Zero());
+  const hilo::Spring c = make_support(
+      {.a = {1, -1}, .b = {2, -1}, .at = joint_point, .frame = some_frame(), .stiffness = 900, .damping = 80, .rest_speed = 1e-3}, q);
   for (int i = -10; i <= 10; ++i)
     for (int j = -10; j <= 10; ++j) {
       Response r;
