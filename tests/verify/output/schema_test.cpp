@@ -103,21 +103,6 @@ on = "zmax"
     ASSERT_EQ(ran.exit, 0) << ran.err;
     hold_against_schema(Store::open(c / "run.h5"), met);
   }
-  std::ofstream(c / "metal.toml") << R"([material.metal]
-kind = "j2"
-E = 2e5
-nu = 0.3
-yield = 1e3
-density = 1000
-[region."*"]
-material = "metal"
-[time]
-end = 0.001
-step = 0.001
-)";
-  const Ran metal = c.run("hilo-solve --quiet metal.toml mesh.h5");
-  ASSERT_EQ(metal.exit, 0) << metal.err;
-  hold_against_schema(Store::open(c / "run.h5"), met);
   const std::set<std::string> elsewhere{"/parts/rank", "/checkpoint", "/cell/state"};  // of runs on several ranks; reserved
   for (const ArraySchema& row : file_schema()) {
     if (row.file == "run.h5" && !elsewhere.contains(std::string(row.path))) {
