@@ -163,7 +163,7 @@ TEST_F(BadScene, OnADiskThatFillsAtTheStartOrOnTheWayLeavesNothingBehind) {
     if (work.run("mount -t tmpfs -o size=" + std::to_string(limit / 4 * 4) + "k tmpfs disk").exit != 0)
       GTEST_SKIP() << "cannot mount a small disk here";
     for (const int ranks : {1, 2})
-      refused("timeout 60 hilo-solve scene.toml tags.h5 --quiet -o disk/run.h5", resources, "disk/run.h5: ...", ranks);
+      refused("timeout 200 hilo-solve scene.toml tags.h5 --quiet -o disk/run.h5", resources, "disk/run.h5: ...", ranks);
     ASSERT_EQ(work.run("umount -l disk").exit, 0);
   }
 }
