@@ -28,7 +28,8 @@ NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5
            "t": "[0, 1]", "value": "[0, 1]", "scale": "1", "gravity": "[0, 0, -9.81]", "about": "[0, 0, 0]", "z": "[0, 0, 1]",
            "preload": "1", "area": "1", "mass_damping": "1", "clearance": "0.1", "tangential_stiffness": "[1, 1]",
            "tangential_damping": "[1, 1]", "axes": "[1, 0, 0, 0, 1, 0, 0, 0, 1]", "restitution": "0.5", "rest_speed": "1e-3",
-           "slip_velocity": "1e-3", "yield": "1e6"}
+           "slip_velocity": "1e-3", "yield": "1e6", "saturation": "2e6", "saturation_rate": "10",
+           "hardening_strain": "[0, 0.1]", "hardening_stress": "[1e6, 2e6]"}
 BODIES = """[[body]]
 name = "arm"
 mass = 1
@@ -130,6 +131,10 @@ def entry(section, kind, keys, tried, value):
         beside |= {"t", "value"}
     if section == "material":
         beside |= {"E", "nu", "density"}
+        if tried.startswith("saturation"):
+            beside |= {"saturation", "saturation_rate"}
+        if tried.startswith("hardening_"):
+            beside |= {"hardening_strain", "hardening_stress"}
     if section == "body":
         beside.add("inertia")
     for key, type_, default in keys:
