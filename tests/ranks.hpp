@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "cli.hpp"
 #include "base/comm.hpp"
+#include "cli.hpp"
 
 namespace hilo::test {
 

@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "base/comm.hpp"
 #include "base/math.hpp"
 #include "base/shape.hpp"
-#include "base/comm.hpp"
 
 namespace hilo {
 

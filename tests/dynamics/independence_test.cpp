@@ -1,4 +1,5 @@
 // Independent columns of sparse matrices, dense and sparse alike: what is called dependent is the sum that it is said to be.
+// With assertions on (make -C tests sanitize) Eigen also stops where a part is taken of a matrix whose columns are not sorted.
 #include "dynamics/independence.hpp"
 
 #include <gtest/gtest.h>

@@ -9,9 +9,9 @@
 #include <set>
 #include <vector>
 
+#include "base/comm.hpp"
 #include "base/math.hpp"
 #include "linear/kkt.hpp"
-#include "base/comm.hpp"
 
 namespace hilo::test {
 

@@ -58,7 +58,8 @@ TEST(DrivenPrismatic, IntegratesAVelocity) {
   EXPECT_NEAR(r.at("probe/lift", 2.5)[5], 1.5, 1e-5) << "velocity";
 }
 
-// Truth: where the rate of a drive jumps, the velocities jump with it: m v^2/2 comes from the drive as an impulse, and nothing rings after it.
+// Truth: where the rate of a drive jumps, the velocities jump with it: m v^2/2 comes from the drive as an impulse, and nothing rings after
+// it.
 TEST(DrivenPrismatic, TakesAKinkOfItsCourseAsABlow) {
   const Case c("drives");
   const Results r = c.solved("--set 'joint.rope.history={t = [0, 1, 2], value = [0, 0, 1]}'", "run.h5", "lift");
