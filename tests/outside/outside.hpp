@@ -1,0 +1,22 @@
+// What this program adds to hilo's lists, and a run of a scene in it.
+#pragma once
+#include "dynamics/run.hpp"
+#include "verify/verify.hpp"
+
+namespace outside {
+
+// `void add_NAME();` of each, in the file of its name; main() calls them all before the first scene is read
+
+/// The results of a scene, of a mesh file where one is named.
+inline hilo::test::Results run_scene(const hilo::test::Workplace& place, const std::string& text, const std::string& mesh = "") {
+  const hilo::Comm& comm = hilo::Comm::world();
+  const hilo::Scene scene = hilo::Scene::parse(text, "scene.toml");
+  std::unique_ptr<hilo::LocalMesh> local;
+  if (!mesh.empty()) local = std::make_unique<hilo::LocalMesh>(hilo::read_local_mesh(place / mesh, comm));
+  const auto system = hilo::build_system(scene, local.get(), comm);
+  const hilo::RunReport report = hilo::run(scene, *system, {.output = place / "run.h5", .provenance = {"outside"}, .quiet = true});
+  if (!report.complete) throw std::runtime_error(report.reason);
+  return hilo::test::Results(place / "run.h5");
+}
+
+}  // namespace outside
