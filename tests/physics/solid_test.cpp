@@ -53,7 +53,7 @@ TYPED_TEST(Solid, WorkOfTheForceIsTheChangeOfEnergy) {
       work += step.f[i] * (this->x1_[i] - this->x0_[i]), size += std::abs(step.f[i] * (this->x1_[i] - this->x0_[i]));
     ASSERT_GT(step.least_det, 0);
     EXPECT_NEAR(work, step.energy - start.energy, 1e-13 * size);
-    EXPECT_GT(std::abs(work), 1e-3 * size) << "a step that does work";
+    EXPECT_GT(std::abs(work), 1e-4 * size) << "a step that does work";
   }
 }
 

@@ -36,7 +36,16 @@ TEST_F(ImportMaterial, AYieldTableAndItsRatesReachTheScene) {
   place.write("own.toml", "[time]\nend = 1\nstep = 0.1\n");
   const auto ran = place.run("hilo-solve own.toml out.h5");
   EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("region \"all\" has no Young's modulus"), std::string::npos) << ran.err;
+  EXPECT_NE(ran.err.find("region \"all\" has no "), std::string::npos) << ran.err;
+}
+
+TEST_F(ImportMaterial, TheSceneNamesItsMeshTheFirstTimeToo) {
+  place.write("a.inp", with("*ELASTIC\n2.1e11, .3\n"));
+  imported("a.inp", "--scene-out s.toml");
+  EXPECT_EQ(Scene::load(place / "s.toml").table("scene").text("mesh"), "out.h5");
+  std::filesystem::create_directory(place.path() / "scenes");
+  imported("a.inp", "--scene-out scenes/s.toml");
+  EXPECT_EQ(Scene::load(place / "scenes/s.toml").table("scene").text("mesh"), "../out.h5");
 }
 
 TEST_F(ImportMaterial, KinematicHardeningOfOneSlopeIsAModulus) {
@@ -69,9 +78,9 @@ TEST_F(ImportMaterial, WhatHasNoLawHereIsNeverTakenForElastic) {
   }
   place.write("a.inp", with("*ELASTIC\n2.1e11, .3\n*PLASTIC\n3e8, .1\n"));
   refused("a.inp -o b.h5", 2,
-          "a.inp:19:6: material m: the first yield stress is at a plastic strain of 0.1 (the table begins at plastic strain 0)");
+          "a.inp:22:6: material m: the first yield stress is at a plastic strain of 0.1 (the table begins at plastic strain 0)");
   place.write("a.inp", with("*ELASTIC\n2.1e11, .3\n*PLASTIC\n3e8, 0.\n4e8, 0.\n"));
-  refused("a.inp -o b.h5", 2, "a.inp:20:6: material m: plastic strain does not rise");
+  refused("a.inp -o b.h5", 2, "a.inp:23:6: material m: plastic strain does not rise");
 }
 
 TEST_F(ImportMaterial, OrthotropicModuliAreTurnedBySections) {

@@ -35,7 +35,8 @@ TEST(Laws, BeamOfWoodBendsByItsOwnModuli) {
     Mesh m = block_mesh(o);
     add_node_set(m, "foot", [](const Vec3& x) { return std::abs(x[0]) < 1e-9; });
     c.use(m);
-    const Results r = c.solved(along ? "" : "--set 'material.wood.axis_1=[0, 1, 0]' --set 'material.wood.axis_2=[1, 0, 0]'", "run.h5", "beam");
+    const Results r =
+        c.solved(along ? "" : "--set 'material.wood.axis_1=[0, 1, 0]' --set 'material.wood.axis_2=[1, 0, 0]'", "run.h5", "beam");
     const double h = 0.05, F = 10 * h * h, I = h * h * h * h / 12, E = along ? 11e9 : 0.9e9, G = along ? 0.6e9 : 0.04e9;
     const auto at = r.history("probe/tip");
     const double exact = F / (3 * E * I) + F / (5. / 6 * G * h * h);
