@@ -58,15 +58,18 @@ TEST(Plasticity, BarThatTumblesAndYieldsKeepsTheBalanceOfEnergy) {
   }
 }
 
-// Truth: the same over 10 000 steps of 5 ms, some 100 turns of two cells.
+// Truth: the same over 10 000 steps of 5 ms, some 100 turns of two wedges, whose four points cost least.
 TEST(Plasticity, BalanceOfEnergyHoldsOverTenThousandSteps) {
   Case c("plasticity");
   BlockOptions o;
-  o.n[0] = 2, o.high = Vec3(0.3, 0.1, 0.1);
+  o.shape = Shape::wedge6;
+  o.high = Vec3(0.3, 0.1, 0.1);
   Mesh m = block_mesh(o);
-  add_node_set(m, "middle", [](const Vec3& x) { return std::abs(x[0] - 0.15) < 0.01; });
+  add_node_set(m, "middle", [](const Vec3& x) { return x[0] > 0.29 && x[1] > 0.09; });
   c.use(m);
+  setenv("HILO_LANES", "2", 1);  // both cells at once
   const Results r = c.solved("--set time.end=50 --set output.interval=50", "run.h5", "tumbling");
+  unsetenv("HILO_LANES");
   const auto e = r.history("energy"), p = r.history("momentum");
   ASSERT_GE(e.rows(), 10001);
   const double top = e.col(0).maxCoeff();
@@ -110,7 +113,7 @@ TEST(Plasticity, PathOfPlaneStrainIsThatOfAReturnMap) {
       worst = std::max({worst, std::abs(fx(k, 0) - stress[0] / (1 + u[0])), std::abs(fy(k, 1) - stress[1] / (1 + u[1]))});
     }
     EXPECT_LT(worst, 1e-8 * Y) << H;
-    EXPECT_GT(p, 5e-5);
+    EXPECT_GT(p, 3e-5);
     const auto at_cells = r.table("/field/" + r.steps().back() + "/cell_plastic_strain"),
                at_nodes = r.table("/field/" + r.steps().back() + "/plastic_strain");
     EXPECT_NEAR(at_cells(0, 0), p, 1e-12);
