@@ -2,6 +2,7 @@
 //
 //   void archive(Archive& a) { a("spring", angle_, past_); }
 //
+// A plain struct is walked through all its members (base/members), so a member added later is not forgotten.
 // Bits are kept, so what goes on from restored values goes on as it would have.  A mark goes before each list of values; a walk that
 // restores others than were kept is an Error (our own fault), not a wrong number.
 #pragma once
@@ -19,6 +20,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/members.hpp"
 
 namespace hilo {
 
@@ -75,6 +77,10 @@ class Archive {
       x.archive(*this);
     else
       raw(&x, sizeof x);
+  }
+  template <class T>
+  requires(std::is_aggregate_v<T>&& std::is_class_v<T> && !Archived<T>) void walk(T& x) {
+    with_members(x, [this](auto&... member) { (walk(member), ...); });
   }
   template <class T, int rows, int columns, int options>
   void walk(Eigen::Matrix<T, rows, columns, options>& x) {

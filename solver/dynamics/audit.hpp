@@ -23,7 +23,8 @@ struct Ledger {
 
 class Audit {
  public:
-  Audit(const System& system, bool keeps_energy, double tolerance);
+  /// `energy_unchecked`: why the balance of energy is not checked, or "".
+  Audit(const System& system, std::string energy_unchecked, double tolerance);
   /// The state before the first step.
   void start(const State& s);
   /// The step from q0 to `end`: why it cannot be accepted, or "".  `load_factor` is that of a static analysis.
@@ -44,6 +45,7 @@ class Audit {
   double least_det() const { return worst_.det.det; }
   /// The verdict as a JSON object; `failure`: why the run stopped, or "".
   std::string json(const std::string& failure) const;
+  void archive(Archive& a) { a("audit", t_, E0_, rounding_, moving_, n_steps_, largest_, now_, sums_, worst_, opens_dropped_row_); }
 
  private:
   struct Worst {                                      // of the accepted steps, each with its time
@@ -55,12 +57,12 @@ class Audit {
     LeastDet det;
   };
   const System& system_;
-  bool keeps_energy_;
+  std::string energy_unchecked_;
   double energy_bound_, row_bound_;
   bool opens_dropped_row_ = false;
   double t_ = 0, E0_ = 0, rounding_ = 0, moving_ = 0, n_steps_ = 0, largest_ = 0;  // largest kinetic energy; largest |E - E0 - W + D| [J]
   Ledger now_, next_;
-  struct {
+  struct Sums {
     double work = 0, dissipated = 0;
   } sums_;
   double step_ = 0, sum_ = 0, moving_next_ = 0, rounding_next_ = 0;  // of the step looked at last

@@ -38,6 +38,7 @@ class Clocks {
   /// The step planned last is taken: v at its end, a in its middle.
   void accept(const Config& v, const Config& a, const Taken& taken);
   void restart();
+  void archive(Archive& a) { a("clocks", mechanisms_, group_, tempo_, v_, a_, T_); }
 
  private:
   struct Node {

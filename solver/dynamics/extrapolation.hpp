@@ -22,6 +22,7 @@ class Extrapolation {
   /// A step of length h is accepted: what its guess missed, and its multipliers.
   void accept(const System& system, double h, std::vector<double> missed, std::vector<double> lambda);
   void clear() { past_.clear(), rule_ = lambda_rule_ = 0; }
+  void archive(Archive& a) { a("extrapolation", past_, h_, rule_, lambda_rule_); }
 
  private:
   static constexpr int n_rules = 9, most = 6;  // rules, and the steps they take

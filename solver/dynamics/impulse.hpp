@@ -25,6 +25,7 @@ class Impulses {
  public:
   Impulse strike(const System& system, KktSolver& solver, State& s, bool talk);
   std::string json() const;
+  void archive(Archive& a) { a("impulses", count_, work_); }
 
  private:
   long count_ = 0;

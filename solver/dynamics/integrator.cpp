@@ -1,9 +1,5 @@
 #include "dynamics/integrator.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 namespace hilo {
 
 void restore_rotations(const System& system, Config& q) {
@@ -96,56 +92,6 @@ void combine(Config& out, std::initializer_list<std::pair<double, const Config*>
     }
   };
   run(&Config::x), run(&Config::c), run(&Config::R);
-}
-
-std::unique_ptr<Integrator> make_integrator(const Entry& time) {
-  const std::string& kind = time.text("integrator");
-  const double rho = time.number("rho");
-  if (kind == "energy-momentum") return make_energy_momentum(time.number("dissipation"));
-  if (kind == "mid-point") return make_mid_point();
-  if (kind == "generalized-alpha") return make_generalized_alpha(generalized_alpha(rho));
-  if (kind == "newmark") {
-    const double gamma = time.number("gamma"), beta = time.given("beta") ? time.number("beta") : (gamma + 0.5) * (gamma + 0.5) / 4;
-    return make_generalized_alpha({0, 0, beta, gamma}, "newmark");
-  }
-  if (kind == "hht") {
-    if (rho < 0.5) throw Error(time.where("rho"), fmt::format("rho is {:g}: the spectral radius of HHT is 1/2 to 1", rho));
-    return make_generalized_alpha(hht(rho), "hht");
-  }
-  if (kind == "wbz") return make_generalized_alpha(wbz(rho), "wbz");
-  if (kind == "U0" || kind == "V0") {
-    double r[3];
-    const char* keys[3] = {"rho1", "rho2", "rho3"};
-    for (int i = 0; i < 3; ++i) r[i] = time.has(keys[i]) ? time.number(keys[i]) : rho;
-    return make_zhou_tamma(kind == "V0", r, time.boolean("averaged"));
-  }
-  if (kind == "bathe") return make_bathe();
-  if (kind == "bdf2") return make_bdf2();
-  return make_radau();
-}
-
-std::string known_weakness(const Entry& time, const System& system) {
-  const std::string& kind = time.text("integrator");
-  const double rho = time.number("rho");
-  const Traits& has = system.traits();
-  const bool joints = has.constrains;
-  const auto radius = [&](const char* key) { return time.has(key) ? time.number(key) : rho; };
-  if ((kind == "newmark" && time.number("gamma") < 0.55) ||
-      ((kind == "generalized-alpha" || kind == "hht" || kind == "wbz") && rho >= 0.9)) {
-    if (joints) return "with joints its multipliers oscillate and grow until the run stops, sometimes after many thousand steps";
-    if (has.deforms) return "it gains energy on parts that turn while they deform";
-  }
-  if (kind == "mid-point" && has.deforms)
-    return "the stress at the mid-point lets energy grow without limit on stiff turning parts; energy-momentum averages it";
-  if ((kind == "U0" || kind == "V0") && !time.boolean("averaged") && has.deforms)
-    return "without averaged = true stiff parts that turn are stretched unnoticed";
-  if (kind == "V0" && std::min({radius("rho1"), radius("rho2"), radius("rho3")}) < 1)
-    return "accelerations and multipliers of V0 with a spectral radius below 1 are of first order";
-  if (kind == "U0" && radius("rho1") == 1 && radius("rho2") == 1 && radius("rho3") < 1 && joints)
-    return "U0(1, 1, rho3 < 1) does not damp the oscillation of multipliers";
-  if (kind == "radau" && system.map.n_global > 5000)
-    return "all three stages are solved at once: 27 times the entries of the other methods";
-  return "";
 }
 
 }  // namespace hilo

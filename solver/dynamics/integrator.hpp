@@ -71,12 +71,10 @@ class Integrator {
   virtual std::vector<std::string> timed() const { return {}; }
   /// Forget history kept from earlier steps: the loads have jumped.
   virtual void restart() {}
+  /// All that it remembers between two steps.  A matrix and its factors are given up, kept or restored: they are made anew on either side.
+  virtual void archive(Archive& a, const System& system) = 0;
   /// Whether accelerations and multipliers alternate about the true ones from step to step, so that neighbours must be averaged.
   virtual bool alternates() const { return false; }
-  /// Whether its stages take materials that remember from the accepted state to the end of the step.
-  virtual bool carries_state() const { return false; }
-  /// Whether the balance of energy closes over every step, up to what Newton leaves.
-  virtual bool keeps_energy() const { return false; }
 };
 
 /// Methods whose stages are solved one after another, each for one unknown configuration.
@@ -87,6 +85,10 @@ class StageIntegrator : public Integrator {
   void accept(State& s) final;
   std::span<const Taken> taken() const final { return taken_; }
   void restart() final { past_.clear(), forget(); }
+  void archive(Archive& a, const System& system) final {
+    a(name(), past_);
+    archive_history(a, system);
+  }
 
   /// Start a step of length h from s, which outlives the step.
   virtual void begin(const System& system, const State& s, double h) = 0;
@@ -102,6 +104,8 @@ class StageIntegrator : public Integrator {
   virtual void finish(const Config& v) = 0;
   /// Its own history, at a restart.
   virtual void forget() {}
+  /// The same, kept or restored; between two steps.
+  virtual void archive_history(Archive& a, const System& system) = 0;
 
  private:
   double h_ = 0;
@@ -113,32 +117,5 @@ class StageIntegrator : public Integrator {
   std::vector<Taken> taken_;
   std::vector<double> lambda_;
 };
-
-/// Energy-momentum: mid-point inertia and constraint gradients, discrete-gradient stress [simo-tarnow-1992, betsch-steinmann-2001].
-/// chi adds dissipation chi/2 C (E1 - E0) to the stress of flexible parts.
-std::unique_ptr<StageIntegrator> make_energy_momentum(double chi);
-/// Mid-point rule: everything at (q0 + q1)/2, stress included.
-std::unique_ptr<StageIntegrator> make_mid_point();
-/// Generalized-alpha for index 3 in the form of Arnold and Bruls [arnold-bruls-2007]; Newmark, HHT and WBZ are members of it.
-struct AlphaParameters {
-  double alpha_m, alpha_f, beta, gamma;
-};
-AlphaParameters generalized_alpha(double rho);
-AlphaParameters hht(double rho);  // rho at infinite frequency, 1/2 to 1
-AlphaParameters wbz(double rho);
-std::unique_ptr<StageIntegrator> make_generalized_alpha(const AlphaParameters& p, const std::string& name = "generalized-alpha");
-/// Generalized single-step single-solve family of Zhou and Tamma, U0 (zero-order overshoot in displacement) or V0 (in velocity)
-/// [zhou-tamma-2004]; averaged: stress at the averaged strain, B((1-w) q0 + w q1)^T C [(1-w) E0 + w E1].
-std::unique_ptr<StageIntegrator> make_zhou_tamma(bool velocity_family, const double rho[3], bool averaged);
-/// Composite of trapezoidal rule and three-point backward difference [bathe-2007].
-std::unique_ptr<StageIntegrator> make_bathe();
-/// Two-step backward difference formula at changing steps, started by one step of backward Euler.
-std::unique_ptr<StageIntegrator> make_bdf2();
-/// Three-stage Radau IIA for index 3, all stages solved together; for references, serial [hairer-wanner-1996].
-std::unique_ptr<Integrator> make_radau(std::unique_ptr<SerialKktSolver> solver = make_light_solver());
-/// The integrator that [time] asks for.
-std::unique_ptr<Integrator> make_integrator(const Entry& time);
-/// Why the method chosen is known to fail, or "" where it is not [docs/stability.md].
-std::string known_weakness(const Entry& time, const System& system);
 
 }  // namespace hilo

@@ -15,6 +15,9 @@ namespace {
 Traffic operator-(const Traffic& a, const Traffic& b) {
   return {a.messages - b.messages, a.collectives - b.collectives, a.bytes - b.bytes};
 }
+Traffic operator+(const Traffic& a, const Traffic& b) {
+  return {a.messages + b.messages, a.collectives + b.collectives, a.bytes + b.bytes};
+}
 
 }  // namespace
 
@@ -39,8 +42,8 @@ Timed::~Timed() {
 
 Profile::Profile(const Comm& comm, const KktSolver& solver, double began, double processor_began, const std::string& results) {
   const Phases& p = phases();
-  const double all = wall_clock() - began, set_up = solver.set_up_seconds();
-  const Traffic everything = traffic();
+  const double all = p.earlier.wall + wall_clock() - began, set_up = p.earlier.set_up + solver.set_up_seconds();
+  const Traffic everything = p.earlier.sent + traffic();
   Phase rest{all - p.assembly.seconds - p.solve.seconds - p.output.seconds,
              everything - Traffic{p.assembly.sent.messages + p.solve.sent.messages + p.output.sent.messages,
                                   p.assembly.sent.collectives + p.solve.sent.collectives + p.output.sent.collectives,
@@ -62,8 +65,8 @@ Profile::Profile(const Comm& comm, const KktSolver& solver, double began, double
   rows[3] = row("output", p.output, fmt::format("{} records", p.records));
   rows[4] = row("rest", rest, "");
   rows[5] = row("all", {all, everything}, "");
-  processor_seconds = comm.sum(processor_clock() - processor_began);
-  undivided_seconds = comm.max(solver.undivided_seconds());
+  processor_seconds = comm.sum(p.earlier.processor + processor_clock() - processor_began);
+  undivided_seconds = comm.max(p.earlier.undivided + solver.undivided_seconds());
   solver_bytes = comm.max(solver.bytes());
   std::error_code ignored;
   const auto size = std::filesystem::file_size(results, ignored);

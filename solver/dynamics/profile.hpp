@@ -15,10 +15,14 @@ struct Phase {
   Traffic sent;
 };
 
-/// Since the start of the process.
+/// Since the start of the run.
 struct Phases {
   Phase assembly, solve, output;  // a solve includes the set-up of factors and preconditioners
   long evaluations = 0, tangents = 0, solves = 0, linear_iterations = 0, records = 0;
+  struct Earlier {  // what is not counted here: of solvers given up, and of processes that this one goes on from
+    double set_up = 0, undivided = 0, wall = 0, processor = 0;  // [s]
+    Traffic sent;
+  } earlier;
 };
 Phases& phases();
 double wall_clock();
@@ -51,7 +55,7 @@ struct Profile {
   double processor_seconds = 0;               // of all ranks
   double undivided_seconds = 0;               // coarse problems, which every rank solves whole: largest
   double solver_bytes = 0, result_bytes = 0;  // matrix and factors of the rank with most; results file
-  /// Collective: every rank takes part.
+  /// Collective: every rank takes part.  `began`: when the process took up the run, by both clocks.
   Profile(const Comm& comm, const KktSolver& solver, double began, double processor_began, const std::string& results);
   /// Lines for run.json: keys profile, processor_seconds, undivided_seconds, solver_bytes, result_bytes.
   std::string json() const;

@@ -1,5 +1,7 @@
 // A whole run: start, steps with cutting, results, report.
 #pragma once
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -8,11 +10,20 @@
 
 namespace hilo {
 
+/// What a run remembers between two steps, of this rank: bits of everything that the steps to come depend on, but for the factors of
+/// matrices.  Those fill many times the memory and belong to other libraries; a run that is kept gives its own up and makes new ones, as
+/// does the one that goes on from there, so that both take the same steps bit by bit.
+using Kept = std::vector<std::byte>;
+
 struct RunOptions {
   std::string output;  // run.h5
-  std::vector<std::string> provenance;
+  std::vector<std::string> provenance = {};
   bool quiet = false;
-  std::string mesh;  // file used, "" for none
+  std::string mesh = {};  // file used, "" for none
+  /// Called between steps, so many behind the start, on all ranks alike: it may call `keep`, which is collective.
+  std::function<void(long steps, const std::function<Kept()>& keep)> between_steps = {};
+  /// What was kept of a run of the same scene on as many ranks: this one goes on from there.  Its file has the rows from there on.
+  Kept from = {};
 };
 
 /// What run.json tells.

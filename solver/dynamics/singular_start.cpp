@@ -1,5 +1,7 @@
 #include "dynamics/singular_start.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "dynamics/start.hpp"
@@ -32,7 +34,13 @@ double follow_branch(System& system, KktSolver& solver, State& s, Redundancy& re
     if (k > 0) {  // on the same branch
       combine(way, {{1, &*ahead}, {-1, &s.q}});
       ahead = pose_ahead(system, s.q, way, s.t, far / (1 << k));
-      if (!ahead) return 0;
+      if (!ahead) {
+        warn("",
+             fmt::format("the branch that leads out of the singular position at the start is lost {:.2g} m away from it: velocities stay "
+                         "those of all branches",
+                         far / (1 << k) * system.length));
+        return 0;
+      }
     }
     tangent[k] = carried(s.v, s.q, *ahead);
     project_velocities(system, solver, *ahead, tangent[k], s.t);

@@ -33,6 +33,7 @@ class StepControl {
   /// The step failed.
   void cut(double h);
   double sum() const { return sum_; }  // of the errors of accepted steps [m]
+  void archive(Archive& a) { a("step control", step_, sum_, calm_, t_, started_, first_third_, fade_, past_); }
 
  private:
   double error(const Config& q1, double h) const;  // largest over all points [m]

@@ -1,5 +1,7 @@
 // What a scene may say: the table behind the checks, --explain and docs/format.md.
+#include "dynamics/integrators.hpp"
 #include "model/scene.hpp"
+#include "model/time_schema.hpp"
 #include "physics/material/materials.hpp"
 
 namespace hilo {
@@ -357,28 +359,7 @@ std::vector<KindSchema> make() {
         {"file", text, "", "", "CSV file with a header line and two columns: t, value"},
         {"scale", number, "1", "1", "factor on the values"},
         {"interpolation", text, "", "linear", "linear, smooth (cosine ramps) or smoother (ramps with three continuous derivatives)"}}});
-  s.push_back(
-      {"time",
-       "",
-       "the time axis",
-       {{"end", number, "s", "", "end of the run", above(0)},
-        {"step", number, "s", "", "time step", above(0)},
-        {"start", text, "", "as given", "as given, or equilibrium: a static solve first"},
-        {"tolerance", number, "1", "",
-         "error of positions allowed over the run, as a fraction of the scene's length: chooses the steps, `step` being the largest",
-         from_to(1e-13, 1)},
-        {"integrator", text, "", "energy-momentum",
-         "energy-momentum, mid-point, generalized-alpha, newmark, hht, wbz, U0, V0, bathe, bdf2 or radau"},
-        {"dissipation", number, "1", "0", "chi: stress dissipation of energy-momentum on flexible parts", from_to(0, 100)},
-        {"rho", number, "1", "0.8", "spectral radius at infinite frequency of generalized-alpha, hht, wbz, U0 and V0", from_to(0, 1)},
-        {"rho1", number, "1", "", "principal spectral radius of U0 and V0; rho when absent", from_to(0, 1)},
-        {"rho2", number, "1", "", "second principal spectral radius of U0 and V0; rho when absent", from_to(0, 1)},
-        {"rho3", number, "1", "", "spurious spectral radius of U0 and V0; rho when absent", from_to(0, 1)},
-        {"averaged", boolean, "", "true", "U0 and V0 take the stress of the averaged strain, not that of the averaged position"},
-        {"gamma", number, "1", "0.5", "Newmark's gamma", from_to(0.5, 2)},
-        {"beta", number, "1", "", "Newmark's beta; (gamma + 1/2)^2/4 when absent", from_to(1e-3, 10)},
-        {"steps", number, "1", "1", "load steps of a static analysis", from_to(1, 1e6)},
-        {"analysis", text, "", "dynamic", "dynamic or static (histories then run from 0 to `end`, 1 when absent)"}}});
+  s.push_back(time_schema());
   s.push_back({"solver",
                "",
                "Newton and the linear solver",
@@ -410,13 +391,12 @@ const std::vector<KindSchema>& scene_schema() {
 }
 
 std::vector<std::string> choices(std::string_view section, std::string_view key) {
+  if (section == "time" && key == "integrator") return integrator_words().words();
   static const std::map<std::pair<std::string_view, std::string_view>, std::vector<std::string>> words = {
       {{"scene", "units"}, unit_systems()},
       {{"motion", "components"}, {"x", "y", "z"}},
       {{"history", "interpolation"}, {"linear", "smooth", "smoother"}},
       {{"time", "start"}, {"as given", "equilibrium"}},
-      {{"time", "integrator"},
-       {"energy-momentum", "mid-point", "generalized-alpha", "newmark", "hht", "wbz", "U0", "V0", "bathe", "bdf2", "radau"}},
       {{"time", "analysis"}, {"dynamic", "static"}},
       {{"solver", "kind"}, {"auto", "light", "klu", "cholesky", "umfpack", "direct", "cg", "iterative", "bddc", "feti-dp"}},
       {{"output", "fields"}, {"displacement", "velocity", "acceleration", "stress", "von_mises", "stress_error", "plastic_strain"}},

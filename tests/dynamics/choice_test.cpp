@@ -1,5 +1,6 @@
 // What the choice of an integrator says and needs.
 #include "dynamics/integrator.hpp"
+#include "dynamics/integrators.hpp"
 #include "dynamics/scenes.hpp"
 #include "dynamics/start.hpp"
 

@@ -1,5 +1,6 @@
 // What a guess missed is continued only where the same guess, step and loads go on.
 #include "dynamics/integrator.hpp"
+#include "dynamics/integrators.hpp"
 #include "dynamics/scenes.hpp"
 #include "system/system.hpp"
 

@@ -4,6 +4,7 @@
 #include "outside.hpp"
 
 int main(int argc, char** argv) {
+  outside::add_integrator();
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }

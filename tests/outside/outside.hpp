@@ -6,6 +6,7 @@
 namespace outside {
 
 // `void add_NAME();` of each, in the file of its name; main() calls them all before the first scene is read
+void add_integrator();
 
 /// The results of a scene, of a mesh file where one is named.
 inline hilo::test::Results run_scene(const hilo::test::Workplace& place, const std::string& text, const std::string& mesh = "") {

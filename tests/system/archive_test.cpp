@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "dynamics/integrator.hpp"
+#include "dynamics/integrators.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {

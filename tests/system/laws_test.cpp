@@ -5,6 +5,7 @@
 #include <set>
 
 #include "dynamics/integrator.hpp"
+#include "dynamics/integrator_kinds.hpp"
 #include "model/local_mesh.hpp"
 #include "system/dense_kkt.hpp"
 #include "verify/verify.hpp"

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "dynamics/integrator.hpp"
+#include "dynamics/integrators.hpp"
 #include "dynamics/start.hpp"
 #include "model/local_mesh.hpp"
 #include "system/dense_kkt.hpp"

@@ -17,7 +17,7 @@ class MeshPart {
   void write(double t, const Snapshot& at);
   /// Points ParaView at the arrays of the results file, where it has fields.
   void finish();
-  int n_fields() const { return static_cast<int>(times_.size()); }
+  void archive(Archive& a) { a("fields", times_); }
 
  private:
   void write_followers();

@@ -12,9 +12,9 @@ Recorder::Recorder(const System& system, const Scene& scene, Setup setup)
     : system_(system),
       scene_(scene),
       setup_(std::move(setup)),
-      share_(system),
       file_(*system.comm, setup_.path, setup_.single_precision),
       histories_(system) {
+  if (setup_.redundant) share_.emplace(system);
   if (system.mesh) mesh_.emplace(system, file_, setup_.fields, setup_.skin);
 }
 
@@ -27,10 +27,21 @@ void Recorder::first(const State& s, const Ledger& ledger) {
   next_field_ = setup_.interval;
   rows_.push_back(std::move(row));
   last_t_ = s.t;
+  open();
+}
+
+void Recorder::open() {
   file_.create();
   file_.on_store([&](Store& f) { declare_run(f), declare_bodies(f), histories_.declare(f); });
   if (mesh_) mesh_->declare();
   file_.share_failure();
+}
+
+void Recorder::archive(Archive& a) {
+  a("recorder", rows_, intervals_, past_, first_written_, last_t_, next_field_);
+  if (mesh_) mesh_->archive(a);
+  if (share_) share_.emplace(system_);  // its factors are made anew on either side
+  if (a.restores()) open();
 }
 
 void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, const Config& a, int iterations) {
@@ -39,7 +50,7 @@ void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, co
   Interval interval;
   interval.h = s.t - last_t_;
   std::vector<double> shared;
-  if (setup_.redundant) shared = share_(taken.stage, taken.lambda);
+  if (share_) shared = (*share_)(taken.stage, taken.lambda);
   const std::span<const double> lambda = taken.lambda;
   interval.mid = histories_.mid_values(Moment(system_, taken.stage, lambda, setup_.redundant ? shared : lambda, &a));
   interval.a = a;
@@ -127,7 +138,6 @@ void Recorder::write_row(const std::vector<std::pair<double, const Interval*>>& 
     for (const auto& [w, interval] : weights) combine(sum, {{1, &a}, {w, &interval->a}}), std::swap(a, sum);
     mesh_->write(row.t, {row.q, row.v, a, row.memory});
   }
-  ++rows_written_;
   file_.on_store([&](Store& f) { histories_.append(f, row.t, row.newton, row.point, mid); });
 }
 

@@ -30,15 +30,15 @@ class Recorder {
   Recorder(const System& system, const Scene& scene, Setup setup);
   /// The state before the first step.
   void first(const State& s, const Ledger& ledger);
+  /// Rows not written yet, and how far the files are, between two steps.  Restored: the files begin with the row that would have come next,
+  /// fields are numbered on.
+  void archive(Archive& a);
   /// A finished step: the new state and its account, the last stage for reactions, accelerations and Newton iterations.
   void step(const State& s, const Ledger& ledger, const Taken& taken, const Config& a, int iterations);
   /// Last values; publishes the files.  `complete` is false for a run stopped by physics.
   void finish(bool complete);
   /// Remove what was written (input error after the file was opened).
   void discard() { file_.discard(); }
-
-  int n_fields() const { return mesh_ ? mesh_->n_fields() : 0; }
-  std::int64_t n_rows() const { return static_cast<std::int64_t>(rows_written_); }
 
  private:
   struct Row {  // an instant t_n
@@ -55,6 +55,7 @@ class Recorder {
     Config a;
     bool starts_at_jump = false;
   };
+  void open();
   void declare_run(Store& f) const;
   void declare_bodies(Store& f) const;
   void advance(bool last);
@@ -64,7 +65,7 @@ class Recorder {
   const System& system_;
   const Scene& scene_;
   Setup setup_;
-  MinimumNorm share_;  // of redundant joints
+  std::optional<MinimumNorm> share_;  // of redundant joints
   RunFile file_;
   Histories histories_;
   std::optional<MeshPart> mesh_;  // where the scene has a mesh
@@ -73,7 +74,6 @@ class Recorder {
   std::deque<Interval> past_;       // the two intervals before intervals_[0], for the last row
   bool first_written_ = false;
   double last_t_ = 0, next_field_ = 0;
-  long rows_written_ = 0;
   double last_flush_ = wall_clock();
 };
 

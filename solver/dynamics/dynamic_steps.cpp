@@ -1,0 +1,242 @@
+// Steps in time, from event to event: equal ones, halved where one fails, or those that the tolerance chooses.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/contradiction.hpp"
+#include "dynamics/held.hpp"
+#include "dynamics/predictor.hpp"
+#include "dynamics/run_parts.hpp"
+#include "dynamics/singular_start.hpp"
+#include "dynamics/start.hpp"
+
+namespace hilo {
+namespace {
+
+class DynamicSteps final : public Steps {
+ public:
+  DynamicSteps(RunParts& run, std::function<void()> pause)
+      : Steps(run, std::move(pause)),
+        time_(run.scene.table("time")),
+        end_(time_.number("end")),
+        step_(time_.has("step") ? time_.number("step") : end_ / 20),
+        progress_(run.options.quiet || run.system.comm->rank != 0, 0, end_) {
+    if (time_.has("tolerance")) control_.emplace(run_.system, time_.number("tolerance") * run_.system.length, end_, step_);
+  }
+
+  void archive(Archive& a) override {
+    a("dynamic steps", at_);
+    if (control_) control_->archive(a);
+  }
+
+  void take() override {
+    if (run_.report.steps == 0 && !start()) return;
+    for (const std::vector<Event>& events = run_.events; at_.event < events.size(); ++at_.event, at_.begun = false) {
+      const size_t i = at_.event;
+      const double from = i == 0 ? 0 : events[i - 1].t, to = events[i].t;
+      if (!at_.begun) {
+        if (i == 0 || events[i - 1].jump || run_.integrator->needs_acceleration()) restart();
+        if (i == 0) run_.audit->start(run_.state), run_.recorder->first(run_.state, run_.audit->ledger());
+        at_.begun = true, at_.step = at_.done = 0;
+      }
+      if (!(control_ ? controlled_steps(to) : equal_steps(from, to))) {
+        progress_.done();
+        return run_.stop(failure_);
+      }
+    }
+    run_.figures.estimated = control_ ? control_->sum() : -1;
+    progress_.show(end_, run_.report.steps, iterations_, true);
+    progress_.done();
+    if (failure_ = run_.audit->verdict(); !failure_.empty()) return run_.stop(failure_);
+    run_.report.t = end_;
+    run_.report.complete = true;
+  }
+
+ private:
+  /// Positions and velocities to start from; false where there are none.
+  bool start() {
+    System& system = run_.system;
+    State& state = run_.state;
+    const Redundancy& redundancy = run_.redundancy;
+    const std::vector<Active> rows = active_rows(system);
+    set_rows(system, redundancy.at_pose);
+    if (time_.text("start") == "equilibrium" && !settle_down()) return false;
+    run_.figures.projected = run_.impulses.strike(system, *run_.solver, state, run_.talk).change;
+    if (const std::string name = contradicted_joint(system, state.q, state.v, 0); !name.empty())
+      throw Error(run_.scene.path, fmt::format("joint \"{}\" cannot move as the driven joints would have it", name),
+                  "two drives, or a drive and a joint, hold the same motion");
+    if (redundancy.singular()) leave_singular_position(rows);
+    if (run_.talk && run_.figures.projected > 1e-9)
+      fmt::print(stderr, "initial velocities changed by up to {:.3g} m/s to satisfy the joints\n", run_.figures.projected);
+    system.commit(state.q, &state.v);
+    if (!control_) {
+      const std::vector<Active> now = active_rows(system);
+      set_rows(system, rows);  // the freedoms of mechanisms are those beside a singular pose
+      run_.integrator->keep_time(system);
+      set_rows(system, now);
+    }
+    const size_t clocks = run_.integrator->timed().size();
+    if (run_.talk)
+      fmt::print(stderr, "integrator: {}{}\n", run_.integrator->name(),
+                 clocks ? fmt::format(", {} mechanism{} of one degree of freedom on a clock of {} own", clocks, clocks > 1 ? "s" : "",
+                                      clocks > 1 ? "their" : "its")
+                        : "");
+    return true;
+  }
+
+  /// Static equilibrium under the loads at the start.
+  bool settle_down() {
+    System& system = run_.system;
+    State& state = run_.state;
+    require_rest(system, state.q, time_.where("start"));
+    const NewtonReport r = equilibrium(system, *run_.solver, state.q, state.lambda, 0, 1, true, run_.newton);
+    if (!r.converged) {
+      run_.audit->start(state);
+      run_.recorder->first(state, run_.audit->ledger());
+      run_.stop("no static equilibrium at the start: " + r.reason + unheld(system, system.start));
+      return false;
+    }
+    Stage rest = stage_at(state.q, 0);
+    rest.elapsed = slow, system.advance(rest), system.settle(true);
+    if (run_.talk) fmt::print(stderr, "equilibrium after {} iterations\n", r.iterations);
+    return true;
+  }
+
+  /// At a singular position mechanisms branch: the accelerations there tell which way, and velocities follow the joints a little ahead.
+  void leave_singular_position(const std::vector<Active>& rows) {
+    consistent_acceleration(run_.system, *run_.solver, run_.state, 0.05 * step_);
+    run_.figures.projected = std::max(run_.figures.projected, follow_branch(run_.system, *run_.solver, run_.state, run_.redundancy, rows));
+  }
+
+  /// At the start and after a jump of the loads: history that belongs to the new forces.
+  void restart() {
+    System& system = run_.system;
+    State& state = run_.state;
+    if (state.t > 0 && system.traits().is_driven) run_.audit->push(run_.impulses.strike(system, *run_.solver, state, run_.talk).work);
+    const std::vector<Active> rows = active_rows(system);
+    if (run_.report.steps == 0) set_rows(system, run_.redundancy.at_pose);
+    if (run_.integrator->needs_acceleration() || control_) consistent_acceleration(system, *run_.solver, state, 0.05 * step_);
+    set_rows(system, rows);
+    run_.integrator->restart();
+    if (control_) control_->restart(state);
+  }
+
+  /// Steps of equal length from `from` to `to`, up to a thousandth of one longer than asked for: the times of a table are rounded, and one
+  /// more step would change them all.  Step k goes from k h to (k+1) h; a failed one is halved, level by level, and grows back at
+  /// aligned instants.
+  bool equal_steps(double from, double to) {
+    const long n_steps = std::max(1l, std::lround(std::ceil((to - from) / step_ - 1e-3)));
+    const long whole = 1l << run_.max_cuts;
+    while (at_.step < n_steps) {
+      const double t0 = from + (to - from) * static_cast<double>(at_.step) / static_cast<double>(n_steps),
+                   t1 = from + (to - from) * static_cast<double>(at_.step + 1) / static_cast<double>(n_steps);
+      const long piece = whole >> at_.level;
+      const double a = t0 + (t1 - t0) * static_cast<double>(at_.done) / static_cast<double>(whole);
+      const double b = at_.done + piece == whole ? t1 : t0 + (t1 - t0) * static_cast<double>(at_.done + piece) / static_cast<double>(whole);
+      run_.state.t = a;
+      if (try_step(b - a)) {
+        at_.done += piece;
+        accept(b);
+        if (++at_.good >= 8 && at_.level > 0 && at_.done % (2 * piece) == 0) --at_.level, at_.good = 0;
+        if (at_.done == whole) ++at_.step, at_.done = 0;
+        pause_();
+      } else if (at_.level < run_.max_cuts) {
+        ++at_.level, cut();
+      } else {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Steps chosen by the error they make, the last of them ending at `to`.  The last thirty are fitted in: one short step at the end would
+  /// cost accelerations and multipliers their order there.
+  bool controlled_steps(double to) {
+    int failures = 0;
+    StepControl& control = *control_;
+    while (run_.state.t < to) {
+      const double t = run_.state.t, left = to - t, pieces = std::ceil(left / control.step() - 1e-6),
+                   h = pieces < 30 ? left / pieces : control.step();
+      if (!(t + h > t)) return failure_ = fmt::format("time.tolerance asks for steps of {:.2g} s", h), false;
+      if (!try_step(h)) {
+        if (++failures > run_.max_cuts) return false;
+        control.cut(h), cut();
+      } else if (!control.accept(*run_.integrator->taken().back().stage.end, h)) {
+        ++run_.figures.rejected, run_.system.settle(false);
+      } else {
+        failures = 0;
+        accept(pieces == 1 ? to : t + h);
+        pause_();
+      }
+    }
+    return true;
+  }
+
+  void cut() {
+    ++run_.report.cuts, at_.good = 0;
+    run_.system.settle(false);
+    if (run_.redundancy.rank < run_.redundancy.rows && recheck_redundant_rows(run_.system, run_.state.q, run_.state.t, run_.redundancy) &&
+        run_.talk)
+      fmt::print(stderr, "t = {:.6g} s: another choice of independent joint rows\n", run_.state.t);
+  }
+
+  /// One step of length h from the state, trying predictors in turn; the state is left alone.
+  bool try_step(double h) {
+    StepTools tools{run_.system, *run_.solver, run_.newton};
+    const State& state = run_.state;
+    const bool leaving = run_.redundancy.singular() && run_.report.steps == 0;
+    for (const Predictor p : {Predictor::accelerated, Predictor::rigid_rotation, Predictor::velocity, Predictor::hold}) {
+      if (p == Predictor::accelerated && !leaving) continue;
+      tools.newton.reach = p == Predictor::rigid_rotation ? 1 : run_.newton.reach;
+      const NewtonReport r = run_.integrator->solve(tools, state, h, p);
+      run_.report.iterations += r.iterations;
+      iterations_ = r.iterations;
+      if (!r.converged) {
+        failure_ = r.reason;
+        continue;
+      }
+      run_.integrator->end(reached_), reached_.t = state.t + h;
+      run_.system.advance(run_.integrator->taken().back().stage);
+      failure_ = run_.system.fault(reached_.q);
+      if (failure_.empty()) failure_ = run_.audit->look(state.q, reached_, run_.integrator->taken(), r);
+      if (failure_.empty()) return true;
+    }
+    return false;
+  }
+
+  /// The step tried last becomes the state, at time t.
+  void accept(double t) {
+    State& state = run_.state;
+    run_.integrator->accept(state);
+    state.t = t;
+    run_.system.commit(state.q, &state.v);
+    run_.audit->accept(t);
+    run_.recorder->step(state, run_.audit->ledger(), run_.integrator->taken().back(), run_.integrator->acceleration(), iterations_);
+    run_.system.settle(true);
+    ++run_.report.steps;
+    progress_.show(t, run_.report.steps, iterations_);
+  }
+
+  const Entry& time_;
+  double end_, step_;                   // of the run, of a step at most [s]
+  std::optional<StepControl> control_;  // where the tolerance chooses the steps
+  struct Place {
+    size_t event = 0;         // the one that steps go to
+    bool begun = false;       // from the one before
+    long step = 0, done = 0;  // equal steps since then; parts of this one, of 2^max_cuts
+    int level = 0, good = 0;  // how often steps are halved; steps since the last cut
+  } at_;
+  State reached_;        // of the step tried last,
+  std::string failure_;  // and why it cannot be accepted
+  int iterations_ = 0;   // of Newton
+  Progress progress_;
+};
+
+}  // namespace
+
+std::unique_ptr<Steps> dynamic_steps(RunParts& run, std::function<void()> pause) {
+  return std::make_unique<DynamicSteps>(run, std::move(pause));
+}
+
+}  // namespace hilo

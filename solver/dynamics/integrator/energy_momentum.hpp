@@ -1,0 +1,19 @@
+// Energy-momentum: mid-point inertia and constraint gradients, discrete-gradient stress [simo-tarnow-1992, betsch-steinmann-2001].
+#pragma once
+#include "dynamics/integrator/method.hpp"
+
+namespace hilo {
+
+struct EnergyMomentum : Method {
+  static constexpr std::string_view name = "energy-momentum", meaning = "keeps energy and momentum, of second order";
+  static std::vector<Param> keys() {
+    return {{"dissipation", Type::number, "1", "0", "chi, stress dissipation on flexible parts", from_to(0, 100)}};
+  }
+  static constexpr bool keeps_energy = true, carries_state = true;
+  static std::unique_ptr<Integrator> make(const Entry& time);
+};
+
+/// chi adds dissipation chi/2 C (E1 - E0) to the stress of flexible parts.
+std::unique_ptr<StageIntegrator> make_energy_momentum(double chi);
+
+}  // namespace hilo

@@ -1,0 +1,15 @@
+// Mid-point rule: everything at (q0 + q1)/2, stress included.
+#pragma once
+#include "dynamics/integrator/method.hpp"
+
+namespace hilo {
+
+struct MidPoint : Method {
+  static constexpr std::string_view name = "mid-point", meaning = "everything at the middle of the step, stress too";
+  static std::unique_ptr<Integrator> make(const Entry& time);
+  static std::string weakness(const Entry& time, const System& system);
+};
+
+std::unique_ptr<StageIntegrator> make_mid_point();
+
+}  // namespace hilo

@@ -1,0 +1,71 @@
+// A run on its way: what it is made of, and the steps that take it from its start to its end.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dynamics/audit.hpp"
+#include "dynamics/impulse.hpp"
+#include "dynamics/progress.hpp"
+#include "dynamics/record/recorder.hpp"
+#include "dynamics/redundancy.hpp"
+#include "dynamics/run.hpp"
+#include "dynamics/step_control.hpp"
+
+namespace hilo {
+
+/// What run.json tells beside the report, the audit and the profile.
+struct RunFigures {
+  double assembled = 0, projected = 0;  // changes of positions at the start [m], of velocities [m/s]
+  double estimated = -1;                // sum of position errors [m], where the tolerance chooses the steps
+  long rejected = 0;                    // steps
+};
+
+struct RunParts {
+  const Scene& scene;
+  System& system;
+  const RunOptions& options;
+  bool is_static, talk;
+  std::string energy_unchecked = {};  // why the audit does not check the balance of energy, or ""
+  NewtonOptions newton = {};
+  int max_cuts = 8;
+  std::vector<Event> events = {};  // of a dynamic run; the last is the end
+  std::unique_ptr<KktSolver> solver = {};
+  std::unique_ptr<Integrator> integrator = {};
+  std::optional<Audit> audit = {};
+  std::unique_ptr<Recorder> recorder = {};
+  Redundancy redundancy = {};
+  State state = {};  // accepted
+  RunReport report = {};
+  RunFigures figures = {};
+  Impulses impulses = {};
+
+  /// The run ends here for this reason.
+  void stop(const std::string& reason);
+};
+
+/// From the start of a run to its end, or to where it stops.
+class Steps {
+ public:
+  /// `pause` is called between two of them.
+  Steps(RunParts& run, std::function<void()> pause) : run_(run), pause_(std::move(pause)) {}
+  virtual ~Steps() = default;
+  /// From the start, or on from where archive() has restored them to.
+  virtual void take() = 0;
+  /// Where it is; between two steps.
+  virtual void archive(Archive& a) = 0;
+
+ protected:
+  RunParts& run_;
+  std::function<void()> pause_;
+};
+
+std::unique_ptr<Steps> static_steps(RunParts& run, std::function<void()> pause);
+std::unique_ptr<Steps> dynamic_steps(RunParts& run, std::function<void()> pause);
+
+class Profile;
+/// run.json, beside the results.
+void write_run_json(const RunParts& run, const Profile& profile, double peak_memory);
+
+}  // namespace hilo

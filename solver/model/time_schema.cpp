@@ -1,0 +1,60 @@
+#include "model/time_schema.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <deque>
+
+#include "dynamics/integrators.hpp"
+
+namespace hilo {
+namespace {
+
+/// A text that stays, for the tables.
+std::string_view kept(std::string text) {
+  static std::deque<std::string> texts;
+  return texts.emplace_back(std::move(text));
+}
+
+/// What methods there are.
+std::string_view methods() {
+  std::vector<std::string> out;
+  for (const IntegratorWords& m : integrator_words()) out.push_back(fmt::format("{}: {}", m.name, m.meaning));
+  return kept(fmt::format("method; {}", fmt::join(out, "; ")));
+}
+
+/// Keys that methods bring, each told with the methods that have it.
+std::vector<Param> keys_of_methods() {
+  std::vector<Param> out;
+  for (const IntegratorWords& method : integrator_words())
+    for (const Param& p : method.keys) {
+      if (std::any_of(out.begin(), out.end(), [&](const Param& known) { return known.key == p.key; })) continue;
+      std::vector<std::string_view> who;
+      for (const IntegratorWords& other : integrator_words())
+        if (std::any_of(other.keys.begin(), other.keys.end(), [&](const Param& of) { return of.key == p.key; })) who.push_back(other.name);
+      out.push_back(p), out.back().meaning = kept(fmt::format("{}: {}", fmt::join(who, ", "), p.meaning));
+    }
+  return out;
+}
+
+}  // namespace
+
+KindSchema time_schema() {
+  using enum Type;
+  std::vector<Param> keys{
+      {"end", number, "s", "", "end of the run", above(0)},
+      {"step", number, "s", "", "time step", above(0)},
+      {"start", text, "", "as given", "as given, or equilibrium: a static solve first"},
+      {"tolerance", number, "1", "",
+       "error of positions allowed over the run, as a fraction of the scene's length: chooses the steps, `step` being the largest",
+       from_to(1e-13, 1)},
+      {"integrator", text, "", integrator_words()[0].name, methods()}};
+  for (const Param& p : keys_of_methods()) keys.push_back(p);
+  keys.push_back({"steps", number, "1", "1", "load steps of a static analysis", from_to(1, 1e6)});
+  keys.push_back({"analysis", text, "", "dynamic", "dynamic or static (histories then run from 0 to `end`, 1 when absent)"});
+  integrator_words().close();
+  return {"time", "", "the time axis", std::move(keys)};
+}
+
+}  // namespace hilo

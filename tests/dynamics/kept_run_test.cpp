@@ -1,0 +1,166 @@
+// What a run remembers can be kept between two steps: another run that goes on from there takes the same steps, bit by bit, with every
+// integrator, whatever the scene remembers; results, counts and verdict of the audit are those of the run that was never left.
+#include "dynamics/kept_run.hpp"
+
+#include "dynamics/integrator_kinds.hpp"
+#include "dynamics/scenes.hpp"
+#include "ranks.hpp"
+
+namespace hilo::test {
+namespace {
+
+std::string revolute(const std::string& name, const std::string& a, const std::string& b, const Vec3& at, const std::string& more = "") {
+  return joint("revolute", name, a, b, at, "axis = [0, 0, 1]\n" + more);
+}
+
+/// Bodies alone: a loop with redundant rows on a clock of its own, a stop that remembers its blows, a spring and a screw that count turns,
+/// a bead on a curve, a motor with friction, a drive and a motion with kinks, a load that jumps.
+std::string machine() {
+  const Vec3 bar(0.08, 0.08, 0.08);
+  return "gravity = [0, -9.81, 0]\n" + body("crank", 1, {0, 0.5, 0}, bar) + body("rocker", 1, {1, 0.5, 0}, bar) +
+         body("coupler", 2, {0.5, 1, 0}, {0.01, 0.3, 0.3}) + revolute("A0", "ground", "crank", {0, 0, 0}) +
+         revolute("B0", "crank", "coupler", {0, 1, 0}) + revolute("A1", "ground", "rocker", {1, 0, 0}) +
+         revolute("B1", "rocker", "coupler", {1, 1, 0}) + body("arm", 2, {0.3, 3, 0}, {0.01, 0.05, 0.05}) +
+         revolute("pin", "ground", "arm", {0, 3, 0}) +
+         "[[spring]]\nkind = \"torsion\"\nname = \"coil\"\na = \"ground\"\nb = \"arm\"\naxis = [0, 0, 1]\nstiffness = 3\n"
+         "[[stop]]\nkind = \"angle\"\nname = \"limit\"\njoint = \"pin\"\nlower = -0.4\nupper = 0.4\nstiffness = 2e3\nrestitution = 0.6\n" +
+         body("nut", 1, {0, 6, 0}, {0.02, 0.02, 0.02}) +
+         joint("screw", "thread", "ground", "nut", {0, 6, 0}, "axis = [0, 0, 1]\npitch = 0.31415926535897931\n") +
+         body("bead", 0.5, {1, 9, 0}, {0.001, 0.001, 0.001}) +
+         joint("point-on-curve", "wire", "ground", "bead", {1, 9, 0},
+               "points = [[1, 9, 0], [1.4, 8.7, 0.2], [1.8, 8.5, 0], [2.4, 8.1, -0.3], [3, 7.8, 0]]\n") +
+         body("wheel", 5, {-3, 0, 0}, {0.3, 0.3, 0.4}) + revolute("bearing", "ground", "wheel", {-3, 0, 0}) +
+         "[[motor]]\nkind = \"rotary\"\nname = \"drive\"\njoint = \"bearing\"\nrate = [0, 50]\ntorque = [20, 0]\n"
+         "[[friction]]\nname = \"rub\"\njoint = \"bearing\"\ncoefficient = 0.2\nradius = 0.05\nslip_velocity = 1e-2\n" +
+         body("turned", 2, {-6.5, 0, 0}, {0.01, 0.2, 0.2}) +
+         revolute("servo", "ground", "turned", {-7, 0, 0},
+                  "angle = 2\nhistory = {t = [0, 0.1, 0.2], value = [0, 0.2, 1], interpolation = \"smooth\"}\n") +
+         body("hung", 1, {-6, 0, 0}, {0.1, 0.1, 0.1}) + joint("spherical", "link", "turned", "hung", {-6, 0, 0}) +
+         body("cart", 1, {-9, 0, 0}, {0.1, 0.1, 0.1}) + body("bob", 1, {-9, -1, 0}, {0.1, 0.1, 0.1}) +
+         joint("spherical", "rope", "cart", "bob", {-9, 0, 0}) +
+         "[[motion]]\nkind = \"translation\"\nname = \"shuttle\"\non = \"cart\"\ndisplacement = [1, 0, 0]\n"
+         "history = {t = [0, 0.0837, 0.3], value = [0, 0.1, -0.1]}\n"
+         "[[load]]\nkind = \"force\"\nname = \"push\"\non = \"coupler\"\nforce = [3, 1, 0]\n"
+         "history = {t = [0, 0.1037, 0.1037, 1], value = [0.5, 1, 4, 1]}\n"
+         "[[initial]]\non = [\"arm\"]\nspin = [0, 0, 5]\nabout = [0, 3, 0]\n"
+         "[[initial]]\non = [\"nut\"]\nspin = [0, 0, 20]\nvelocity = [0, 0, 1]\n"
+         "[[initial]]\non = [\"crank\"]\nspin = [0, 0, -3]\n[[probe]]\nname = \"far\"\non = \"bob\"\nat = [-9, -1.5, 0]\n"
+         "[[sensor]]\nname = \"seat\"\non = \"coupler\"\n[time]\nend = 0.2\nstep = 5e-3\n[output]\ninterval = 0.04\n";
+}
+
+/// A bar, partly rigid, of a material with damping, on a hinge with a body: written as mesh.h5 and tags.h5.
+std::string bar(const std::filesystem::path& folder, const std::string& law) {
+  BlockOptions o;
+  o.n[0] = 6, o.n[1] = 1, o.n[2] = 1;
+  o.high = Vec3(1.2, 0.2, 0.2);
+  o.regions = {"foot", "block"};
+  o.region_of = [](const Vec3& x) { return x[0] < 0.3 ? 0 : 1; };
+  if (Comm::world().rank == 0) {
+    Mesh mesh = block_mesh(o);
+    add_node_set(mesh, "edge", [](const Vec3& x) { return x[0] > 1.19 && x[2] < 0.01; });
+    write_mesh((folder / "mesh.h5").string(), mesh, {"test"});
+    write_tags((folder / "tags.h5").string(), (folder / "mesh.h5").string(), {Fidelity::rigid, Fidelity::nonlinear}, {"test"});
+  }
+  Comm::world().barrier();
+  return "gravity = [0, 0, -9.81]\n[material.m]\n" + law + "E = 1e7\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n" +
+         "damping = 1e-3\n" + body("bob", 20, {1.2, 0.1, -0.5}, {1, 1, 1}) +
+         joint("revolute", "hinge", "xmax", "bob", {1.2, 0.1, 0.1}, "axis = [0, 1, 0]\n") +
+         "[[spring]]\nkind = \"bushing\"\nname = \"mount\"\nb = \"foot\"\nat = [0, 0.1, 0.1]\nstiffness = [3e4, 4e4, 5e4]\n"
+         "angular_stiffness = [1e3, 2e3, 3e3]\n"
+         "[[load]]\nkind = \"traction\"\nname = \"wind\"\non = \"zmax\"\ntraction = [0, 2000, -9000]\n"
+         "history = {t = [0, 0.021, 0.021, 1], value = [0, 1, 0.4, 0.4]}\n"
+         "[[probe]]\nname = \"tip\"\non = \"xmax\"\n[time]\nend = 0.06\nstep = 2e-3\n[output]\ninterval = 0.01\n"
+         "[solver]\ntolerance = 1e-9\n";
+}
+const std::string metal = "kind = \"j2\"\nyield = 2e4\nhardening = 1e5\nkinematic = 2e5\n";
+
+std::string method(const std::string& word) { return "time.integrator=\"" + word + "\""; }
+
+class KeptRuns : public testing::TestWithParam<std::string> {
+ public:
+  KeptRuns() { quiet_warnings(true); }
+  ~KeptRuns() override { quiet_warnings(false); }
+};
+
+TEST_P(KeptRuns, GoOnBitByBitWithBodies) {
+  const Folder folder;
+  expect_goes_on(folder.path(), machine(), "", {1, 2, 5, 21, 30}, {method(GetParam())});
+}
+
+TEST_P(KeptRuns, GoOnBitByBitWithFlexibleParts) {
+  const Folder folder;
+  const Scene scene = Scene::parse("[time]\nend = 1\nstep = 1\n", "scene.toml", std::vector{method(GetParam())});
+  const bool remembers = integrator_kind(scene.table("time")).carries_state;
+  expect_goes_on(folder.path(), bar(folder.path(), remembers ? metal : ""), "tags.h5", {1, 4, 13}, {method(GetParam())});
+}
+
+TEST_P(KeptRuns, GoOnBitByBitWithStepsByTolerance) {
+  const Folder folder;
+  expect_goes_on(folder.path(), machine(), "", {1, 3, 40, 90}, {method(GetParam()), "time.tolerance=1e-5", "time.end=0.12"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, KeptRuns, testing::ValuesIn(choices("time", "integrator")), [](const auto& p) {
+  std::string name = p.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+// Steps that are halved around instants at which the run is kept.
+TEST(KeptRun, GoesOnBetweenStepsThatWereCut) {
+  const Folder folder;
+  std::set<long> every, second;
+  for (long k = 1; k <= 40; ++k) every.insert(k), second.insert(2 * k);
+  EXPECT_GT(expect_goes_on(folder.path(), machine(), "", every, {"solver.iterations=1", "time.end=0.3", "time.step=0.03"}).cuts, 2);
+  EXPECT_GT(
+      expect_goes_on(folder.path(), machine(), "", second, {"solver.iterations=1", "time.tolerance=1e-3", "stop.limit.stiffness=2e6"}).cuts,
+      2);
+}
+
+TEST(KeptRun, GoesOnWithEachOfTheSerialSolvers) {
+  const Folder folder;
+  for (const char* kind : {"klu", "cholesky", "umfpack"})
+    expect_goes_on(folder.path(), bar(folder.path(), metal), "tags.h5", {3, 14}, {std::string("solver.kind=\"") + kind + "\""});
+}
+
+TEST(KeptRun, GoesOnInAStaticAnalysis) {
+  const Folder folder;
+  BlockOptions o;
+  o.n[0] = 2;
+  write_mesh(folder / "mesh.h5", block_mesh(o), {"test"});
+  std::string scene = text_of(std::string(HILO_SOURCE) + "/tests/verify/plasticity/uniaxial.toml");
+  const RunReport report = expect_goes_on(folder.path(), scene, "mesh.h5", {1, 7, 8, 20}, {"solver.iterations=4", "solver.cuts=20"});
+  EXPECT_GT(report.cuts, 0);
+  EXPECT_NE(told(folder / "later.h5").find("not checked: a static analysis"), std::string::npos) << "why its energy is not checked";
+}
+
+// What is kept gives up factors of matrices, so the steps behind it differ from those of a run that is not kept: by round-off.
+TEST(KeptRun, IsTheRunThatWasNotKeptButForRoundOff) {
+  const Folder folder;
+  KeptRun kept(folder.path(), machine(), "", {}), plain(folder.path(), machine(), "", {});
+  kept.run("kept.h5", {2, 11, 17}), plain.run("plain.h5", {});
+  const Results a(folder / "kept.h5"), b(folder / "plain.h5");
+  for (const char* history : {"probe/far", "joint/A0", "joint/bearing", "energy", "sensor/seat"})
+    EXPECT_LT((a.history(history) - b.history(history)).cwiseAbs().maxCoeff(), 1e-8 * b.history(history).cwiseAbs().maxCoeff()) << history;
+}
+
+TEST(KeptRun, RefusesWhatBelongsToAnotherScene) {
+  const Folder folder;
+  KeptRun one(folder.path(), machine(), "", {}), other(folder.path(), machine(), "", {"load.push.force=[1,1,1]"});
+  one.run("run.h5", {3});
+  Kept cut = one.kept().at(3), kept = cut;
+  cut.pop_back();
+  EXPECT_THROW(other.run("other.h5", {}, kept), Error);
+  EXPECT_THROW(one.run("cut.h5", {}, cut), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "cut.h5")) << "half a file stays";
+}
+
+TEST(DISABLED_KeptOnRanks, GoesOnBitByBit) { expect_goes_on(".", machine(), "", {4, 20}, {"time.end=0.15"}); }
+TEST(DISABLED_KeptOnRanks, GoesOnBitByBitWithCells) { expect_goes_on(".", bar(".", metal), "tags.h5", {3, 14}); }
+
+TEST(KeptRun, GoesOnOnTwoRanks) {
+  const Folder folder;
+  expect_passes_on(2, "KeptOnRanks", folder.path().string());
+}
+
+}  // namespace
+}  // namespace hilo::test
