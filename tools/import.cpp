@@ -60,7 +60,8 @@ void check(Request& r) {
 std::string scene_text(const Request& r, const Imported& in) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::absolute(r.scene_out).parent_path();
-  std::string text = fmt::format("# from {}\nmesh = \"{}\"\n", r.input, fs::relative(r.output, folder).generic_string());
+  std::string text = fmt::format("# from {}\nmesh = \"{}\"\n", r.input,
+                                 fs::absolute(r.output).lexically_normal().lexically_relative(folder.lexically_normal()).generic_string());
   if (!in.mesh.deck_scene.empty()) return text + in.mesh.deck_scene;
   text += "# the file carries no materials, supports or loads.  It names:\n";
   for (const auto& name : in.mesh.all_names()) text += fmt::format("#   {}\n", name);

@@ -17,18 +17,17 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
     std::vector<std::string> components;
   };
   const std::vector<std::string> xyz{"x", "y", "z"};
-  const std::vector<Known> table = {{"von_mises", "von Mises stress", "Pa", {}},
-                                    {"stress_error", "error of stress", "Pa", {}},
-                                    {"stress", "stress", "Pa", {"xx", "yy", "zz", "yz", "xz", "xy"}},
-                                    {"displacement", "displacement", "m", xyz},
-                                    {"velocity", "velocity", "m/s", xyz},
-                                    {"acceleration", "acceleration", "m/s^2", xyz}};
+  const std::vector<Known> table = {
+      {"von_mises", "von Mises stress", "Pa", {}},   {"stress_error", "error of stress", "Pa", {}},
+      {"plastic_strain", "plastic strain", "1", {}}, {"stress", "stress", "Pa", {"xx", "yy", "zz", "yz", "xz", "xy"}},
+      {"displacement", "displacement", "m", xyz},    {"velocity", "velocity", "m/s", xyz},
+      {"acceleration", "acceleration", "m/s^2", xyz}};
   const auto dot = name.find('.');
   const std::string array = name.substr(0, dot);
   for (const Known& k : table) {
     if (array != k.array) continue;
     ShownField f{array, -1, k.label, k.unit};
-    f.flexible_only = f.unit == "Pa";
+    f.flexible_only = f.unit == "Pa" || f.unit == "1";
     const std::string component = dot == std::string::npos ? "" : name.substr(dot + 1);
     const auto at = std::find(k.components.begin(), k.components.end(), component);
     if ((component.empty() && array != "stress")) return f;
@@ -44,11 +43,14 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
   std::vector<std::string> names;
   for (const auto& k : known)
     if (!k.starts_with("cell_")) names.push_back(k);
-  names.insert(names.end(), {"region", "fidelity", "partition", "von_mises", "stress_error", "acceleration", "displacement", "velocity"});
+  names.insert(names.end(), {"region", "fidelity", "partition", "von_mises", "stress_error", "plastic_strain", "acceleration",
+                             "displacement", "velocity"});
   std::string hint = suggest(name, names);
   throw Error(
       "--field", fmt::format("no field \"{}\"", name),
-      hint.empty() ? "von_mises, stress_error, acceleration, displacement, velocity, stress.xx, region, fidelity or partition" : hint);
+      hint.empty()
+          ? "von_mises, stress_error, plastic_strain, acceleration, displacement, velocity, stress.xx, region, fidelity or partition"
+          : hint);
 }
 
 std::vector<double> reduced(RunFile::Field raw, const ShownField& field, const std::string& path) {

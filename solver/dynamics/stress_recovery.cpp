@@ -207,7 +207,7 @@ class CellPolynomial {
   std::vector<Term> terms_;
 };
 
-constexpr int n_values = 16;  // of a site: cells, S, F
+constexpr int n_values = 17;  // of a site: cells, S, F, plastic strain
 
 }  // namespace
 
@@ -232,7 +232,7 @@ void StressRecovery::add_bars(const std::vector<Vec3>& x, std::vector<double>& a
 StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x, const Memory& memory) const {
   const System& s = system_;
   Result out;
-  out.cell.assign(s.mesh->mesh.n_cells(), 0.0), out.plastic = out.cell;
+  out.cell.assign(s.mesh->mesh.n_cells(), 0.0), out.cell_plastic = out.cell;
   std::vector<double> at_site(site_.size() * n_values, 0.0);
   std::vector<StressPoint> points;
   std::vector<Mat3> F;
@@ -245,6 +245,9 @@ StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x, const
       Eigen::Matrix<double, 6, Eigen::Dynamic> rest(6, points.size());
       for (size_t q = 0; q < points.size(); ++q) rest.col(q) = points[q].S - P(points[q].X);
       const Eigen::Matrix<double, 6, Eigen::Dynamic> extrapolated = rest * to_nodes(batch.shape).transpose();
+      Eigen::VectorXd plastic(points.size());
+      for (size_t q = 0; q < points.size(); ++q) plastic[q] = points[q].plastic;
+      const Eigen::VectorXd plastic_at_nodes = to_nodes(batch.shape) * plastic;
       F.resize(at.X.size());
       nodal_gradients(batch.shape, at.X, at.x, F);
       for (size_t a = 0; a < at.X.size(); ++a) {
@@ -253,6 +256,7 @@ StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x, const
         to[0] += 1;
         for (int c = 0; c < 6; ++c) to[1 + c] += S[c];
         for (int c = 0; c < 9; ++c) to[7 + c] += F[a].data()[c];
+        to[16] += plastic_at_nodes[a];
       }
     });
   }
@@ -270,7 +274,7 @@ StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x, const
       double& mean = out.cell[batch.cells[e]];
       for (const StressPoint& q : points) {
         mean += von_mises(cauchy(q.F, q.S)) / static_cast<double>(points.size());
-        out.plastic[batch.cells[e]] += q.plastic / static_cast<double>(points.size());
+        out.cell_plastic[batch.cells[e]] += q.plastic / static_cast<double>(points.size());
       }
       stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::everywhere, points, of_cell(batch, memory, b, e));
       double square = 0, volume = 0;
@@ -290,6 +294,7 @@ StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x, const
     const bool bar = site_[i].region % 2;
     out.stress.push_back(bar ? Vec6(S) : cauchy(Eigen::Map<const Mat3>(v + 7), S));
     out.von_mises.push_back(bar ? v[7] : von_mises(out.stress.back()));
+    out.plastic.push_back(std::max(0.0, v[16]));  // what is extrapolated may fall below
     out.error.push_back(bar ? 0 : std::sqrt(error[2 * i] / error[2 * i + 1]));
   }
   return out;

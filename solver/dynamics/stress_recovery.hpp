@@ -37,11 +37,12 @@ class StressRecovery {
     int region;  // 2 r for the cells of region r, 2 r + 1 for its bars
   };
   struct Result {
-    std::vector<Vec6> stress;       // Cauchy, of each site                             [Pa]
-    std::vector<double> von_mises;  // of it; of bars the mean of theirs                [Pa]
-    std::vector<double> error;      // 0 at bars                                        [Pa]
-    std::vector<double> cell;       // von Mises, mean over the integration points      [Pa]
-    std::vector<double> plastic;    // equivalent plastic strain, likewise              [1]
+    std::vector<Vec6> stress;          // Cauchy, of each site                             [Pa]
+    std::vector<double> von_mises;     // of it; of bars the mean of theirs                [Pa]
+    std::vector<double> error;         // 0 at bars                                        [Pa]
+    std::vector<double> plastic;       // equivalent plastic strain, of what the points remember, extrapolated in each cell and averaged [1]
+    std::vector<double> cell;          // von Mises, mean over the integration points      [Pa]
+    std::vector<double> cell_plastic;  // equivalent plastic strain, likewise           [1]
   };
   const std::vector<Site>& sites() const { return site_; }
   using Memory = std::vector<std::vector<double>>;

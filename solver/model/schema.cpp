@@ -63,6 +63,10 @@ const std::vector<ArraySchema>& file_schema() {
        "von Mises stress of each cell, mean over its integration points (hex8: 2 x 2 x 2 of its assumed strains), not recovered; 0 on "
        "rigid "
        "cells"},
+      {"run.h5", "/field/<step>/plastic_strain", "f8", "(n_nodes)", "1",
+       "equivalent plastic strain: that of the integration points extrapolated in each cell of the node's first flexible region, their "
+       "mean; "
+       "only where a material has one"},
       {"run.h5", "/field/<step>/cell_plastic_strain", "f8", "(n_cells)", "1",
        "equivalent plastic strain of each cell, mean over its integration points; only where a material has one"},
       {"run.h5", "/history/t", "f8", "(n_t)", "s", "times of all histories below; first row is the start"},

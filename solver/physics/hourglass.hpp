@@ -5,38 +5,28 @@
 //   h = (yz, zx, xy, xyz) at the corners.  For direction r with p, q the other two and half-lengths a:
 //   e1 = b_qp/a_p,  e2 = b_pq/a_q,  e3 = b_qq/a_p + b_pp/a_q,   U = V/6 [E/(1-nu^2)(e1^2 + e2^2 + 2 nu e1 e2) + mu e3^2],
 //   and U = V/18 E (b_4A/a_A)^2 for the warping mode.  All b vanish in any homogeneous deformation: the patch test is exact.
+// Moduli that differ with direction stand in for E, nu and mu in the planes of the cell (physics/bending_moduli.hpp).
 #pragma once
 #include <cmath>
-#include <complex>
 
+#include "physics/bending_moduli.hpp"
+#include "physics/lane_functions.hpp"
 #include "physics/solid.hpp"
 
 namespace hilo {
 
-[[gnu::always_inline]] inline double root(double x) { return std::sqrt(x); }
-inline std::complex<double> root(const std::complex<double>& x) { return std::sqrt(x); }
-/// Lane by lane for a vector of doubles.
-template <class V>
-inline V root(const V& v) {
-  V r;
-  for (unsigned i = 0; i < sizeof(V) / sizeof(double); ++i) r[i] = __builtin_sqrt(v[i]);
-  return r;
-}
-
 /// What the hourglass measures of one cell are made of.
-template <class T>
+template <class T, class Moduli = Lame>
 struct Hourglass {
   T n[3][8];      // mean gradients along the cell's axes       [1/m]
   T gamma[4][8];  // hourglass vectors                          [1]
   T half[3];      // half-lengths                               [m]
   T axes[3][3];   // the cell's axes, columns                   [1]
   T volume;       //                                            [m^3]
-  Lame c;
-  double E, nu;
+  BendingModuli<T, Moduli> moduli;
 
-  Hourglass(const T* X, const Lame& moduli) : c(moduli) {
+  Hourglass(const T* X, const Moduli& c) {
     constexpr const auto& table = stiffness_table<Hex8>;
-    nu = c.lambda / (2 * (c.lambda + c.mu)), E = 2 * c.mu * (1 + nu);
     T g[8][3];
     auto& R = axes;
     volume = solid::point_gradients<Hex8>(0, X, g);
@@ -49,6 +39,7 @@ struct Hourglass {
       for (int i = 0; i < 3; ++i) R[i][A] = R[i][A] / half[A];
     }
     nearest_rotation(R);
+    moduli = {c, axes};
     for (int a = 0; a < 8; ++a)
       for (int A = 0; A < 3; ++A) n[A][a] = g[a][0] * R[0][A] + g[a][1] * R[1][A] + g[a][2] * R[2][A];
     for (int r = 0; r < 4; ++r) {
@@ -91,13 +82,14 @@ struct Hourglass {
     for (int r = 0; r < 3; ++r) {
       const int p = (r + 1) % 3, q = (r + 2) % 3;
       const T e1 = b[q][p] / half[p], e2 = b[p][q] / half[q], e3 = b[q][q] / half[p] + b[p][p] / half[q];
-      const double plane = E / (1 - nu * nu);
-      t[q][p] += k * plane * (e1 + nu * e2) / half[p];
-      t[p][q] += k * plane * (e2 + nu * e1) / half[q];
-      t[q][q] += k * c.mu * e3 / half[p];
-      t[p][p] += k * c.mu * e3 / half[q];
+      T s[3];
+      moduli.plane(r, e1, e2, e3, s);
+      t[q][p] += k * s[0] / half[p];
+      t[p][q] += k * s[1] / half[q];
+      t[q][q] += k * s[2] / half[p];
+      t[p][p] += k * s[2] / half[q];
     }
-    for (int A = 0; A < 3; ++A) t[3][A] = k * (E / 3) * b[3][A] / (half[A] * half[A]);
+    for (int A = 0; A < 3; ++A) t[3][A] = k * (moduli.young(A) / 3) * b[3][A] / (half[A] * half[A]);
   }
 
   /// Higham's iteration R <- (R + R^-T)/2 from nearly orthonormal columns.
@@ -117,9 +109,9 @@ struct Hourglass {
 };
 
 /// Adds the stabilisation to f, K, energy and dissipated (conventions of SolidCall).
-template <class T>
-inline void add_hourglass(const Lame& moduli, const SolidCall<T>& call) {
-  const Hourglass<T> hg(call.X, moduli);
+template <class T, class Moduli>
+inline void add_hourglass(const Moduli& moduli, const SolidCall<T>& call) {
+  const Hourglass<T, Moduli> hg(call.X, moduli);
   T xm[24], u1[3][3], h1[4][3], b0[4][3], b1[4][3], um[3][3], hm[4][3], t[4][3], unused[4][3];
   for (int i = 0; i < 24; ++i) xm[i] = (1 - call.weight) * call.x0[i] + call.weight * call.x1[i];
   hg.measure(call.x0, u1, h1, b0);

@@ -2,14 +2,14 @@
 // Pressures that differ from point to point are more conditions than the nodes can meet, and the cell locks.
 //
 //   lambda = lambda_p + lambda_m,   lambda_p = the value at the same mu and the bound nu_p;   points have (lambda_p, mu), and the cell
-//   U = V lambda_m/2 theta^2,    theta = mean of tr E     where the law has lambda/2 (tr E)^2
-//   U = V lambda_m/8 (ln D)^2,   D = mean of det C        where it has lambda/8 (ln det C)^2
+//   U = V lambda_m/2 theta^2,   theta = mean of tr E     where the law has lambda/2 (tr E)^2
+//   U = V lambda_m U(D),        D = mean of det C        where it has lambda U(det C) (material/dilatation.hpp)
 //
 // The rest at points keeps bending stiff where one cell is all there is across it.  tr E is quadratic in positions and det C1 - det C0 =
-// A:(C1 - C0) exactly (material/neo_hookean.hpp), so their means have exact discrete gradients and energy-momentum is kept.  Rate terms:
-// lambda_m of the linear moduli on theta.  At nu_p and below nothing changes.
+// A:(C1 - C0) exactly, so their means have exact discrete gradients and energy-momentum is kept.  Rate terms: lambda_m of the linear moduli
+// on theta.  At nu_p and below nothing changes.
 #pragma once
-#include "physics/material/neo_hookean.hpp"
+#include "physics/material/dilatation.hpp"
 #include "physics/solid.hpp"
 
 namespace hilo {
@@ -23,13 +23,23 @@ inline constexpr double pointwise_nu = S::n_points == 1          ? 0.5
 
 /// lambda_m [Pa]; lambda_p is the rest.  Where a hexahedron of eight nodes flows all of the bulk modulus acts on the mean: flow keeps the
 /// volume, and eight points would be more conditions than its nodes can meet [nagtegaal-1974].
-template <class S, bool flows = false>
+template <class S, class Bulk, bool flows = false>
 constexpr double mean_lambda(const Lame& c) {
+  if constexpr (std::is_same_v<Bulk, NoBulk>) return 0;
   if constexpr (flows && S::n == 8) return c.lambda + 2 * c.mu / 3;
   constexpr double nu = pointwise_nu<S>;
   if constexpr (nu >= 0.5) return 0;
   const double most = 2 * c.mu * nu / (1 - 2 * nu);
   return c.lambda > most * (1 + 1e-12) ? c.lambda - most : 0;
+}
+
+/// The law of the points.
+template <class M>
+inline M without_mean(const M& law, double lambda_m) {
+  if constexpr (requires { law.with_lambda(0.0); })
+    return law.with_lambda(law.linear().lambda - lambda_m);
+  else
+    return law;
 }
 
 /// Stress of the mean at a point: S = theta I + 2 D A, A the gradient of det C over the step; a law for solid::add_point.
@@ -40,20 +50,20 @@ struct MeanStress {
   T energy(const T e[6]) const { return 0 * e[0]; }
   void stress(const T e0[6], const T e1[6], T s[6], T (*tangent)[6]) const {
     T M[6], A[6], cof1[6], D0, D1;
-    NeoHookean::dilatation(e0, e1, M, A, cof1, D0, D1);
+    volume::over_step(e0, e1, M, A, cof1, D0, D1);
     for (int i = 0; i < 3; ++i) s[i] = theta + 2 * D * A[i], s[i + 3] = 2 * D * A[i + 3];
-    if (tangent) NeoHookean::add_cofactor_slope(M, T(4 * D), tangent);
+    if (tangent) volume::add_cofactor_slope(M, T(4 * D), tangent);
   }
 };
 
 /// Adds the energy of the mean to f, K, energy and dissipated (conventions of SolidCall); `lambda` is lambda_m.
-template <class S, Dilatation form, class T>
+template <class S, class Bulk, class T>
 inline void add_mean_dilatation(double lambda, const SolidCall<T>& c) {
   constexpr int n = S::n, n3 = 3 * n;
-  constexpr bool by_trace = form == Dilatation::trace;
+  constexpr bool by_trace = std::is_same_v<Bulk, SquareOfTrace>;
   const double w = c.weight;
   const T zero = 0 * c.X[0];
-  T volume = zero, theta0 = zero, theta1 = zero, D0 = zero, D1 = zero, D_end = zero;
+  T size = zero, theta0 = zero, theta1 = zero, D0 = zero, D1 = zero, D_end = zero;
   T theta_m[n3], theta_1[n3], D_m[n3], D_1[n3];  // gradients of the sums over the points: at the middle, and that by x1
   for (int i = 0; i < n3; ++i) theta_m[i] = theta_1[i] = D_m[i] = D_1[i] = zero;
   const auto add_gradient = [](const T F[3][3], const T s[6], const T(*g)[3], const T& weight, T* f) {
@@ -71,7 +81,7 @@ inline void add_mean_dilatation(double lambda, const SolidCall<T>& c) {
     solid::gradient<n>(c.x1, g, F1);
     solid::green_lagrange(F0, e0);
     solid::green_lagrange(F1, e1);
-    volume += weight, theta0 += weight * (e0[0] + e0[1] + e0[2]), theta1 += weight * (e1[0] + e1[1] + e1[2]);
+    size += weight, theta0 += weight * (e0[0] + e0[1] + e0[2]), theta1 += weight * (e1[0] + e1[1] + e1[2]);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) Fm[i][j] = (1 - w) * F0[i][j] + w * F1[i][j];
     if (c.K) {
@@ -85,7 +95,7 @@ inline void add_mean_dilatation(double lambda, const SolidCall<T>& c) {
       D_end += weight * J * J;
       if (w != 0.5)
         for (int i = 0; i < 6; ++i) e0[i] = e1[i] = (1 - w) * e0[i] + w * e1[i];
-      NeoHookean::dilatation(e0, e1, M, A, cof1, d0, d1);
+      volume::over_step(e0, e1, M, A, cof1, d0, d1);
       D0 += weight * d0, D1 += weight * d1;
       if (c.K) {
         add_gradient(Fm, A, g, T(2 * weight), D_m);
@@ -93,29 +103,23 @@ inline void add_mean_dilatation(double lambda, const SolidCall<T>& c) {
       }
     }
   }
-  theta0 = theta0 / volume, theta1 = theta1 / volume;
+  theta0 = theta0 / size, theta1 = theta1 / size;
   const T rate = lambda * c.viscous * (theta1 - theta0);
   MeanStress<T> mean{rate, zero};
-  if (c.dissipated) *c.dissipated += volume * rate * (theta1 - theta0);
+  if (c.dissipated) *c.dissipated += size * rate * (theta1 - theta0);
   double slope_theta = lambda * c.viscous;
   T slope_D = zero;
   if constexpr (by_trace) {
     mean.theta += lambda * c.elastic * ((1 - w) * theta0 + w * theta1);
     slope_theta += lambda * c.elastic * w;
-    if (c.energy) *c.energy += volume * (lambda / 2) * theta1 * theta1;
+    if (c.energy) *c.energy += size * (lambda / 2) * theta1 * theta1;
   } else {
-    D0 = D0 / volume, D1 = D1 / volume;
-    if (c.elastic != 0) {  // lambda/8 (ln^2 D1 - ln^2 D0)/(D1 - D0) = lambda/8 (ln D0 + ln D1) ln(1 + r)/(r D0)
-      T L = zero, dL = zero;
-      log_ratio(T((D1 - D0) / D0), L, dL);
-      const T sum = (lambda / 8) * (log_of(D0) + log_of(D1)), factor = c.elastic / D0;
-      mean.D = factor * sum * L;
-      slope_D = factor * ((lambda / 8) * L / D1 + sum * dL / D0) * (w == 0.5 ? 1 : 2 * w);
+    D0 = D0 / size, D1 = D1 / size;
+    if (c.elastic != 0) {
+      Bulk::quotient(D0, D1, mean.D, slope_D);
+      mean.D *= lambda * c.elastic, slope_D *= lambda * c.elastic * (w == 0.5 ? 1 : 2 * w);
     }
-    if (c.energy) {
-      const T log_D = log_of(T(D_end / volume));
-      *c.energy += volume * (lambda / 8) * log_D * log_D;
-    }
+    if (c.energy) *c.energy += size * lambda * Bulk::energy(T(D_end / size));
   }
   SolidCall<T> stress_only = c;
   stress_only.elastic = 1, stress_only.viscous = 0;
@@ -127,7 +131,7 @@ inline void add_mean_dilatation(double lambda, const SolidCall<T>& c) {
   }
   if (!c.K) return;
   for (int i = 0; i < n3; ++i) {
-    const T by_theta = slope_theta / volume * theta_m[i], by_D = slope_D / volume * D_m[i];
+    const T by_theta = slope_theta / size * theta_m[i], by_D = slope_D / size * D_m[i];
     for (int j = 0; j < n3; ++j) c.K[n3 * i + j] += by_theta * theta_1[j] + by_D * D_1[j];
   }
 }

@@ -9,6 +9,7 @@
 #pragma once
 #include <type_traits>
 
+#include "physics/anisotropic.hpp"
 #include "physics/material/point_step.hpp"
 #include "physics/material/voigt.hpp"
 #include "physics/shape/hex8.hpp"
@@ -215,12 +216,20 @@ inline void add_point(const Material& material, const SolidCall<T>& c, const T (
   if (c.viscous != 0) {
     T rate[6], q[6];
     for (int i = 0; i < 6; ++i) rate[i] = e1[i] - e0[i];
-    linear_stress(c.linear, rate, q);
+    if constexpr (Directed<Material>)
+      material.moduli.stress(rate, q);
+    else
+      linear_stress(c.linear, rate, q);
     for (int i = 0; i < 6; ++i) {
       s[i] += c.viscous * q[i];
       if (c.dissipated) *c.dissipated += w * c.viscous * q[i] * rate[i];
     }
-    if (c.K) add_linear_tangent(c.linear, c.viscous, D);
+    if (c.K) {
+      if constexpr (Directed<Material>)
+        material.moduli.add_tangent(c.viscous, D);
+      else
+        add_linear_tangent(c.linear, c.viscous, D);
+    }
   }
   if constexpr (!Remembers<Material>)
     if (c.energy) *c.energy += w * material.energy(e1);

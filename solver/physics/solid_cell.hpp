@@ -10,20 +10,21 @@ namespace hilo {
 template <class S, class M, class T>
 inline void evaluate_strain(const M& law, const SolidCall<T>& call) {
   const Lame c = law.linear();
-  const double mean = mean_lambda<S, Remembers<M>>(c);
-  if (mean > 0) {
+  using Bulk = typename M::Bulk;
+  const double mean = mean_lambda<S, Bulk, Remembers<M>>(c);
+  if (mean == 0) {
+    evaluate_solid<S>(law, call);
+  } else if constexpr (!std::is_same_v<Bulk, NoBulk>) {
     SolidCall<T> points = call;
     points.linear.lambda -= mean;
     points.mean = mean;
     if constexpr (Remembers<M>)
       evaluate_solid<S>(law, points);
     else
-      evaluate_solid<S>(law.with_lambda(c.lambda - mean), points);
-    add_mean_dilatation<S, M::bulk>(mean, call);
-  } else {
-    evaluate_solid<S>(law, call);
+      evaluate_solid<S>(without_mean(law, mean), points);
+    add_mean_dilatation<S, Bulk>(mean, call);
   }
-  if constexpr (std::is_same_v<S, Hex8>) add_hourglass(c, call);
+  if constexpr (std::is_same_v<S, Hex8>) add_hourglass(moduli_of(law), call);
   if constexpr (std::is_same_v<S, Hex20R>) add_hourglass20(c, call);
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "physics/cell_mean.hpp"
 #include "physics/shape/tet10.hpp"
 #include "physics/shape/wedge15.hpp"
 #include "physics/solid_cell.hpp"
@@ -16,40 +17,6 @@ Vec6 second_piola(const M& law, const double e[6]) {
   Vec6 s = Vec6::Zero();
   law.template stress<double>(e, e, s.data(), nullptr);
   return s;
-}
-
-/// What the mean dilatation of a cell adds (physics/mean_dilatation.hpp).
-struct CellMean {
-  double lambda = 0, dilatation = 0;  // lambda_m [Pa]; mean of tr E, or of det C
-
-  /// S = lambda theta I, or S = lambda/2 ln D/D cof C
-  void add(Dilatation form, const double e[6], Vec6& s) const {
-    if (lambda == 0) return;
-    if (form == Dilatation::trace) {
-      for (int i = 0; i < 3; ++i) s[i] += lambda * dilatation;
-      return;
-    }
-    double M[6], A[6], cof1[6], D0, D1;
-    NeoHookean::dilatation(e, e, M, A, cof1, D0, D1);
-    for (int i = 0; i < 6; ++i) s[i] += lambda / 2 * std::log(dilatation) / dilatation * A[i];
-  }
-};
-
-template <class S>
-CellMean mean_of(Dilatation form, const Lame& c, std::span<const Vec3> X, std::span<const Vec3> x) {
-  CellMean mean{mean_lambda<S>(c), 0};
-  if (mean.lambda == 0) return mean;
-  double volume = 0;
-  for (int p = 0; p < S::n_points; ++p) {
-    double g[S::n][3], F[3][3], e[6];
-    const double w = solid::point_gradients<S>(p, X[0].data(), g);
-    solid::gradient<S::n>(x[0].data(), g, F);
-    solid::green_lagrange(F, e);
-    const double J = solid::determinant(F);
-    volume += w, mean.dilatation += w * (form == Dilatation::trace ? e[0] + e[1] + e[2] : J * J);
-  }
-  mean.dilatation /= volume;
-  return mean;
 }
 
 /// Local coordinates of the nodes of a shape: where N_a = 1.
@@ -99,8 +66,8 @@ Eigen::MatrixXd fitted(const Quadrature<P>& rule) {
 
 /// `law` without what the mean has of it.
 template <class S, int P, class M>
-void points_of(const Tabulated<S, P>& table, const M& law, const CellMean& mean, std::span<const Vec3> X, std::span<const Vec3> x,
-               std::vector<StressPoint>& out) {
+void points_of(const Tabulated<S, P>& table, const M& law, const CellMean<typename M::Bulk>& mean, std::span<const Vec3> X,
+               std::span<const Vec3> x, std::vector<StressPoint>& out) {
   out.resize(P);
   for (int p = 0; p < P; ++p) {
     StressPoint& at = out[p];
@@ -109,7 +76,7 @@ void points_of(const Tabulated<S, P>& table, const M& law, const CellMean& mean,
     solid::gradient<S::n>(x[0].data(), g, F);
     solid::green_lagrange(F, e);
     at.S = second_piola(law, e);
-    mean.add(M::bulk, e, at.S);
+    mean.add(e, at.S);
     at.X.setZero();
     for (int a = 0; a < S::n; ++a) at.X += table.N[p][a] * X[a];
     for (int i = 0; i < 3; ++i)
@@ -125,7 +92,7 @@ inline constexpr Tabulated<Hex8, 8> hex8_table{hex_rule<2>()};
 template <class S, class M>
 void remembered_points(const M& law, std::span<const Vec3> X, std::span<const Vec3> x, const double* state, std::vector<StressPoint>& out) {
   constexpr const auto& table = stiffness_table<S>;
-  CellMean mean{mean_lambda<S, true>(law.linear()), 0};
+  CellMean<typename M::Bulk> mean{mean_lambda<S, typename M::Bulk, true>(law.linear()), 0};
   static const std::vector<double> nothing(M::n_state, 0.0);
   double volume = 0, swelling = 0;
   out.resize(S::n_points);
@@ -153,25 +120,31 @@ void remembered_points(const M& law, std::span<const Vec3> X, std::span<const Ve
     step.s = at.S.data();
     law.respond(step);
     at.plastic = own[M::plastic_strain];
-    mean.add(M::bulk, e, at.S);
+    mean.add(e, at.S);
   }
 }
 
 template <class S, class M>
 void solid_points(const M& whole, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which, std::vector<StressPoint>& out) {
   const Lame c = whole.linear();
-  const CellMean mean = mean_of<S>(M::bulk, c, X, x);
-  const M law = whole.with_lambda(c.lambda - mean.lambda);
+  const CellMean mean = mean_of<S, typename M::Bulk>(c, X, x);
+  const M law = without_mean(whole, mean.lambda);
   if (which == StressPoints::everywhere) return points_of(mass_table<S>, law, mean, X, x, out);
   if constexpr (S::n == 20)
     if (which == StressPoints::samples) return points_of(barlow_table, law, mean, X, x, out);
   points_of(stiffness_table<S>, law, mean, X, x, out);
 }
 
+Mat3 tensor_of_strain(const double e[6]) {
+  Mat3 m;
+  m << e[0], e[5] / 2, e[4] / 2, e[5] / 2, e[1], e[3] / 2, e[4] / 2, e[3] / 2, e[2];
+  return m;
+}
+
 /// Strain of the centroid, plus the bending strains that the hourglass measures stand for (physics/hourglass.hpp), linear in the cell.
 template <class M>
 void hex8_points(const M& law, std::span<const Vec3> X, std::span<const Vec3> x, std::vector<StressPoint>& out) {
-  const Hourglass<double> h(X[0].data(), law.linear());
+  const Hourglass<double, decltype(moduli_of(law))> h(X[0].data(), moduli_of(law));
   double g[8][3], F[3][3], e[6], u[3][3], modes[4][3], b[4][3];
   solid::point_gradients<Hex8>(0, X[0].data(), g);
   solid::gradient<8>(x[0].data(), g, F);
@@ -187,9 +160,10 @@ void hex8_points(const M& law, std::span<const Vec3> X, std::span<const Vec3> x,
     Mat3 local = Mat3::Zero();  // additional strain in the cell's axes
     for (int r = 0; r < 3; ++r) {
       const int p = (r + 1) % 3, q = (r + 2) % 3;
-      const double xi = rule.xi[k][r], e1 = b[q][p] / h.half[p], e2 = b[p][q] / h.half[q], e3 = b[q][q] / h.half[p] + b[p][p] / h.half[q];
-      local(p, p) += e1 * xi, local(q, q) += e2 * xi, local(r, r) -= h.nu / (1 - h.nu) * (e1 + e2) * xi;
-      local(p, q) += e3 * xi / 2, local(q, p) += e3 * xi / 2;
+      const double bent[3] = {b[q][p] / h.half[p], b[p][q] / h.half[q], b[q][q] / h.half[p] + b[p][p] / h.half[q]};
+      double all[6];
+      h.moduli.across(r, bent, all);
+      local += rule.xi[k][r] * tensor_of_strain(all);
     }
     const Mat3 extra = axes * local * axes.transpose();
     const double total[6] = {e[0] + extra(0, 0),     e[1] + extra(1, 1),     e[2] + extra(2, 2),
@@ -295,11 +269,11 @@ Vec6 bar_stress(const Material& material, std::span<const Vec3> X, std::span<con
   const Vec3 d0 = X[1] - X[0], d = x[1] - x[0];
   const double e = (d.squaredNorm() / d0.squaredNorm() - 1) / 2;
   const BarState bar = std::visit(
-      [&]<class M>(const M& law) {
-        if constexpr (Remembers<M>)
-          return BarState{};  // has no bars
-        else
+      [&](const auto& law) {
+        if constexpr (requires { law.bar(e); })
           return law.bar(e);
+        else
+          return BarState{};  // has no bars
       },
       material);
   const Vec3 n = d.normalized();

@@ -238,10 +238,14 @@ void Builder::make_batches() {
       b.shape = Shape::hex20r, b.kernel = solid_kernel(b.shape, b.material.index());
       reduced[b.region] = 1;
     }
-    if (!b.kernel.call)
+    if (!b.kernel.call) {
+      std::string with_bars;
+      for (size_t k = 0; k < material_kinds().size(); ++k)
+        if (solid_kernel(Shape::bar2, k).call) with_bars += (with_bars.empty() ? "" : ", ") + std::string(material_kinds()[k].kind);
       throw Error(r.where,
                   fmt::format("region \"{}\" is made of bars: kind = \"{}\" has none", r.name, material_kinds()[b.material.index()].kind),
-                  "bars are stvk or neo-hookean");
+                  "kinds that have: " + with_bars);
+    }
     b.h0.assign(b.cells.size() * static_cast<size_t>(b.kernel.n_state), 0.0), b.h1 = b.h0;
     out_->stiffness =
         std::max(out_->stiffness, young_of(linear_moduli(b.material)) * (b.area > 0 ? b.area / mesh_->length : mesh_->length / 100));

@@ -106,12 +106,14 @@ void Builder::warn_of_limits() const {
       if (!(row[s] > few * all)) continue;
       const auto shape = static_cast<Shape>(s);
       const double mean = std::sqrt(row[n_shapes + s] / row[s]);
-      if (shape == Shape::tet4 || shape == Shape::wedge6)
+      if (shape == Shape::tet4 || shape == Shape::wedge6) {
+        const Lame c = linear_moduli(material_of(region));
+        const double nu = c.lambda / (2 * (c.lambda + c.mu));
         warn(region.name,
              fmt::format("linear {} lock in bending{}{}; expect too stiff an answer (hilo-import --order 2 makes them quadratic)",
                          shape == Shape::tet4 ? "tetrahedra" : "wedges", metal ? ", and where they flow" : "",
-                         region.nu > nearly_incompressible ? fmt::format(" and at a Poisson's ratio of {:g}", region.nu) : ""));
-      else if (shape == Shape::hex8 && metal)
+                         nu > nearly_incompressible ? fmt::format(" and at a Poisson's ratio of {:.4g}", nu) : ""));
+      } else if (shape == Shape::hex8 && metal)
         warn(region.name,
              "hex8 of a material that flows have eight points and one mean dilatation: bending of walls one cell thick is 20 to 50 % off, "
              "with "

@@ -28,6 +28,7 @@ struct Counted {
 };
 inline Counted log_of(Counted x) { return Counted::of(std::log(x.v)); }
 inline Counted root(Counted x) { return Counted::of(std::sqrt(x.v)); }
+inline Counted cube_root(Counted x) { return Counted::of(std::cbrt(x.v)); }
 inline void log_ratio(Counted r, Counted& L, Counted& dL) {
   log_ratio(r.v, L.v, dL.v);
   Counted::flops += 20;  // the series

@@ -9,7 +9,7 @@ namespace hilo::test {
 namespace {
 
 /// A block between rigid bodies, or between one and the ground.
-void add_block(Maker& k, bool damped, bool free) {
+void add_block(Maker& k, bool damped, bool free, bool metal = false) {
   Dice& d = k.dice;
   MachineBlock b;
   static constexpr Shape shapes[] = {Shape::hex8, Shape::hex8, Shape::tet4, Shape::tet10, Shape::wedge6, Shape::wedge15, Shape::hex20};
@@ -21,6 +21,10 @@ void add_block(Maker& k, bool damped, bool free) {
   b.E = d.logarithmic(1e6, 1e10), b.nu = d.in(0, 0.45), b.density = d.logarithmic(300, 3000);
   b.neo_hookean = d.chance(0.4), b.hub = d.chance(0.3);
   if (damped) b.damping = d.logarithmic(1e-4, 1e-2);
+  if (metal) {
+    b.yield = b.E * d.logarithmic(1e-3, 3e-2), b.hardening = d.chance(0.5) ? b.E * d.logarithmic(1e-4, 0.1) : 0;
+    b.kinematic = d.chance(0.4) ? b.E * d.logarithmic(1e-3, 0.1) : 0;
+  }
   k.m.blocks.push_back(b);
   const Vec3 near(0, b.high[1] / 2, b.high[2] / 2), far(b.high[0], b.high[1] / 2, b.high[2] / 2);
   const Side end = Side::at(b.hub ? "hub" : "xmax");
@@ -62,6 +66,8 @@ const std::vector<Family>& families() {
       {"block", "a flexible block on the ground, bodies behind it", true},
       {"floating-block", "bodies on both sides of a flexible block, no ground: momentum is kept", true},
       {"damped-block", "a block with material damping", true},
+      {"metal-block", "a block of metal on the ground: what flow takes is told", true},
+      {"floating-metal", "the same without ground: momentum is kept", true},
       {"geared", "wheels on a carrier, gears, racks and screws", false, false},
       {"stopped", "trees with ropes and buffers", false, false},
       {"rubbing", "friction in joints", false, false},
@@ -105,6 +111,8 @@ Machine random_machine(const std::string& family, std::uint64_t seed) {
     add_block(k, family == "damped-block", false);
   } else if (family == "floating-block") {
     add_block(k, false, true);
+  } else if (family == "metal-block" || family == "floating-metal") {
+    add_block(k, false, family == "floating-metal", true);
   } else {
     return wide_machine(family, k);
   }

@@ -83,6 +83,7 @@ struct MachineBlock {
   int n[3] = {2, 1, 1};
   Vec3 low = Vec3::Zero(), high = Vec3::Ones();
   double E = 1e7, nu = 0.3, density = 1000, damping = 0;
+  double yield = 0, hardening = 0, kinematic = 0;  // of a metal; no yield stress: elastic [Pa]
   bool neo_hookean = false, hub = false;
   Vec3 spin = Vec3::Zero();
 };

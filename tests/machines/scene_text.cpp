@@ -57,7 +57,11 @@ std::string spring_text(const MachineSpring& s, size_t i) {
 
 std::string block_text(const MachineBlock& b) {
   std::string out = fmt::format("[material.soft]\nkind = \"{}\"\nE = {:.17g}\nnu = {:.17g}\ndensity = {:.17g}\n",
-                                b.neo_hookean ? "neo-hookean" : "stvk", b.E, b.nu, b.density);
+                                b.yield > 0     ? "j2"
+                                : b.neo_hookean ? "neo-hookean"
+                                                : "stvk",
+                                b.E, b.nu, b.density);
+  if (b.yield > 0) out += fmt::format("yield = {:.17g}\nhardening = {:.17g}\nkinematic = {:.17g}\n", b.yield, b.hardening, b.kinematic);
   out += fmt::format("[region.block]\nmaterial = \"soft\"\ndamping = {:.17g}\n", b.damping);
   if (b.hub) out += "[region.hub]\nmaterial = \"soft\"\n";
   if (!b.spin.isZero())

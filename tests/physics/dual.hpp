@@ -21,6 +21,7 @@ struct Dual {
 
 inline Dual log_of(const Dual& x) { return {std::log(x.v), x.d / x.v}; }
 inline Dual root(const Dual& x) { return {std::sqrt(x.v), x.d / (2 * std::sqrt(x.v))}; }
+inline Dual cube_root(const Dual& x) { return {std::cbrt(x.v), x.d / (3 * std::cbrt(x.v) * std::cbrt(x.v))}; }
 /// ln(1 + r)/r and its derivative: its power series where that converges fast, else its definition in more digits than the kernel has.
 inline void log_ratio(const Dual& r, Dual& L, Dual& dL) {
   long double value = 0, slope = 0;

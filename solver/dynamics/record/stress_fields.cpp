@@ -16,12 +16,13 @@ class StressFields final : public FieldSource {
             {.name = "von_mises", .label = "von Mises [Pa]"},
             {.name = "cell_von_mises", .key = "von_mises", .label = "cell von Mises [Pa]", .of_cells = true},
             {.name = "stress_error", .label = "stress error [Pa]"},
+            {.name = "plastic_strain", .label = "plastic strain"},
             {.name = "cell_plastic_strain", .key = "plastic_strain", .label = "cell plastic strain", .of_cells = true}};
   }
 
   /// A node's stress is that of its first flexible region (first: lowest number) over all ranks.
   void write(const Snapshot& instant, FieldWriter& to) override {
-    constexpr int n_sent = 10;  // row, region, stress, von Mises, error
+    constexpr int n_sent = 11;  // row, region, stress, von Mises, error, plastic strain
     if (!recovery_) recovery_.emplace(system_);
     const auto at = recovery_->recover(instant.q.x, instant.memory);
     const Slabs& rows = to.node_rows();
@@ -33,19 +34,22 @@ class StressFields final : public FieldSource {
       auto& list = send[rows.rank_of(to_row)];
       list.push_back(static_cast<double>(to_row)), list.push_back(site.region);
       list.insert(list.end(), at.stress[i].data(), at.stress[i].data() + 6);
-      list.push_back(at.von_mises[i]), list.push_back(at.error[i]);
+      list.push_back(at.von_mises[i]), list.push_back(at.error[i]), list.push_back(at.plastic[i]);
     }
     const auto count = static_cast<size_t>(rows.count());
-    std::vector<double> region(count, -1.0), stress(6 * count, 0.0), vm(count, 0.0), error(count, 0.0);
+    std::vector<double> region(count, -1.0), stress(6 * count, 0.0), vm(count, 0.0), error(count, 0.0), plastic(count, 0.0);
     for (const auto& list : system_.comm->exchange(send))
       for (size_t k = 0; k < list.size(); k += n_sent) {
         const auto i = static_cast<size_t>(static_cast<std::int64_t>(list[k]) - rows.first());
         if (region[i] >= 0 && region[i] <= list[k + 1]) continue;
         region[i] = list[k + 1];
         std::copy_n(list.data() + k + 2, 6, stress.data() + 6 * i);
-        vm[i] = list[k + 8], error[i] = list[k + 9];
+        vm[i] = list[k + 8], error[i] = list[k + 9], plastic[i] = list[k + 10];
       }
-    if (to.wants("plastic_strain") && system_.traits().remembers) to.cells("cell_plastic_strain", at.plastic, 1);
+    if (to.wants("plastic_strain") && system_.traits().remembers) {
+      to.piece("plastic_strain", plastic);
+      to.cells("cell_plastic_strain", at.cell_plastic, 1);
+    }
     if (to.wants("stress")) to.piece("stress", stress);
     if (to.wants("stress_error")) to.piece("stress_error", error);
     if (!to.wants("von_mises")) return;

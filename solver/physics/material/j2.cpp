@@ -75,7 +75,7 @@ void J2::respond(PointStep& step) const {
   const double p0 = step.h0[15];
   const auto strain_of = [&](const double* e) { return Mat3(sym(G.transpose() * tensor(e, 0.5) * G) + plastic); };
   const Mat3 E1 = strain_of(step.e1);
-  const LogStrain at1(E1);
+  const LogStrain at1(E1, step.D);
   const Mat3& h1 = at1.value();
   const Mat3 trial = hooke(at_point, h1);
   const Flow f = flow(*this, trial, X, p0, step.elapsed);
@@ -126,35 +126,30 @@ void J2::respond(PointStep& step) const {
     });
   }
   const Mat3 E0 = strain_of(step.e0), dE = E1 - E0;
-  const LogStrain at0(E0), atm((E0 + E1) / 2);
-  const Mat3 T0 = hooke(at_point, at0.value()), Tm = (T0 + trial) / 2, dh = h1 - at0.value();
-  const auto Q = [&](const Mat3& x) { return Mat3((at0.Q(x) + 4 * atm.Q(x) + at1.Q(x)) / 6); };
+  const LogStrain at0(E0);
   double slope;
-  const double q_start = std::max(std::sqrt(1.5) * (deviator(T0) - X).norm(), hardened(p0, slope));
+  const double q_start = std::max(std::sqrt(1.5) * (deviator(hooke(at_point, at0.value())) - X).norm(), hardened(p0, slope));
   step.dissipated = (q_start + f.q_trial - (3 * mu + kinematic) * f.Dp) / 2 * f.Dp;
   if (!step.s && !step.D) return;
-  // the correction k: what Simpson's rule leaves of the elastic work is below round-off for short steps, and is left there
-  const double d2 = dE.squaredNorm(), reach = d2 / 1e-6;  // |E1 - E0| over 1e-3
-  const double gate = reach * reach / (1 + reach * reach), gate_slope = 2 * reach / ((1 + reach * reach) * (1 + reach * reach)) / 1e-6;
-  const Mat3 QdE = Q(dE), w = dh - QdE, Q1dE = at1.Q(dE), muDh = mu * f.Dh;
-  const double elastic = dot(Tm, w), flowing = (f.q_trial - q_start) / 2 * f.Dp - dot(muDh, Q1dE);
-  const double k = d2 > 0 ? (gate * elastic - flowing) / d2 : 0;
-  const Mat3 QTm = Q(Tm), Q1muDh = at1.Q(muDh);
-  store(QTm - Q1muDh + k * dE);
+  const LogStep elastic(at0, at1, at_point, step.D);
+  if (!(f.Dp > 0)) {
+    store(elastic.stress());
+    if (step.D) tangent([&](const Mat3& x) { return elastic.slope(x); });
+    return;
+  }
+  const double d2 = dE.squaredNorm();
+  const Mat3 Q1dE = at1.Q(dE), muDh = mu * f.Dh, Q1muDh = at1.Q(muDh);
+  const double flowing = (f.q_trial - q_start) / 2 * f.Dp - dot(muDh, Q1dE), k = d2 > 0 ? -flowing / d2 : 0;
+  store(elastic.stress() - Q1muDh + k * dE);
   if (!step.D) return;
-  const auto second_m = atm.second(Tm), second_1 = at1.second(Tm / 6 - muDh);
+  const auto flow_1 = at1.second(muDh);
   Mat3 dk = Mat3::Zero();
   if (d2 > 0) {
-    const auto elastic_1 = at1.second(Tm / 6), flow_1 = at1.second(muDh);
-    const Mat3 by_elastic = at1.Q(hooke(at_point, w) / 2) + at1.Q(Tm) - QTm - atm.L(second_m, dE) / 3 - at1.L(elastic_1, dE);
-    Mat3 by_flow = -at1.L(flow_1, dE) - Q1muDh - at1.Q(A(Q1dE)) / 2;
-    if (f.Dp > 0) by_flow += (f.Dp / 2 + (f.q_trial - q_start) / (2 * f.total)) * six * at1.Q(f.N);
-    dk = (gate * by_elastic + elastic * gate_slope * 2 * dE - by_flow - 2 * k * dE) / d2;
+    const double by_q = f.Dp / 2 + (f.q_trial - q_start) / (2 * f.total);
+    const Mat3 by_flow = by_q * six * at1.Q(f.N) - at1.L(flow_1, dE) - Q1muDh - at1.Q(A(Q1dE)) / 2;
+    dk = -(by_flow + 2 * k * dE) / d2;
   }
-  tangent([&](const Mat3& x) {
-    const Mat3 y = at1.Q(x);
-    return Mat3(Q(hooke(at_point, y) / 2) + atm.L(second_m, x) / 3 + at1.L(second_1, x) - at1.Q(A(y)) / 2 + k * x + dot(dk, x) * dE);
-  });
+  tangent([&](const Mat3& x) { return Mat3(elastic.slope(x) - at1.L(flow_1, x) - at1.Q(A(at1.Q(x))) / 2 + k * x + dot(dk, x) * dE); });
 }
 
 }  // namespace hilo

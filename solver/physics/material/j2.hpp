@@ -9,17 +9,18 @@
 // h1 = ln(I + 2 E~1)/2, and flows by the return map  Dp: q_trial - (3 mu + H_k) Dp = s(...), Dh = (3/2) N Dp [simo-hughes-1998].  The
 // elastic strain is h1 - Dh, and G1 = G exp(-h1) exp(h1 - Dh) has exactly it, coaxial (isotropic hardening, the exponential map) or not.
 //
-// Energy over a step [meng-laursen-2002, noels-stainier-2006]: with T_m = (T0 + T_trial)/2, D = (q_start + q_end)/2 Dp >= 0,
-// q_start = max(q0, s(p0)),
+// Energy over a step [meng-laursen-2002, noels-stainier-2006]: with G~ the exact difference quotient of the elastic energy from E~0 to the
+// trial E~1 (LogStep, log_strain.hpp), D = (q_start + q_end)/2 Dp >= 0, q_start = max(q0, s(p0)),
 //
-//   S~ = T_m : (Q0 + 4 Q_m + Q1)/6 - mu Dh : Q1 + k (E~1 - E~0),   Q = dh/dE~ at E~0, (E~0 + E~1)/2, E~1,      S = G S~ G^T
-//   k |E~1 - E~0|^2 = T_m:(h1 - h0 - (Q0 + 4 Q_m + Q1)/6 : (E~1 - E~0)) - (R - mu Dh : Q1 : (E~1 - E~0)),   R = (q_trial - q_start)/2 Dp
+//   S~ = G~ - mu Dh : Q1 + k (E~1 - E~0),   Q1 = dh/dE~ at E~1,      S = G S~ G^T
+//   k |E~1 - E~0|^2 = mu Dh : Q1 : (E~1 - E~0) - R,                  R = (q_trial - q_start)/2 Dp
 //
-// so S.(E1 - E0) = W1 - W0 + D whatever the step: the elastic part of W1 - W0 is T_m:(h1 - h0), and flow takes R + D of it.
+// so S.(E1 - E0) = W1 - W0 + D whatever the step: the elastic part of W1 - W0 is G~:(E~1 - E~0), and flow takes R + D of it.
 #pragma once
 #include <cmath>
 #include <vector>
 
+#include "physics/material/dilatation.hpp"
 #include "physics/material/material.hpp"
 #include "physics/material/point_step.hpp"
 
@@ -45,7 +46,7 @@ struct J2 {
   }
   static J2 make(const MaterialValues& v);
 
-  static constexpr Dilatation bulk = Dilatation::log_det;
+  using Bulk = LogOfDet;
   static constexpr double soft_below = 0;
   static constexpr std::string_view soft_because = "";
   static constexpr int n_state = 16;  // Fp^-1 - I by rows, a, p

@@ -3,30 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/material/principal_axes.hpp"
+
 namespace hilo {
 namespace {
-
-/// Eigenvectors (columns of V) and values of a symmetric matrix by Jacobi's rotations: small entries keep their digits.
-void principal_axes(Mat3 A, Mat3& V, Vec3& e) {
-  V.setIdentity();
-  for (int sweep = 0; sweep < 12; ++sweep) {
-    const double off = A(0, 1) * A(0, 1) + A(0, 2) * A(0, 2) + A(1, 2) * A(1, 2), size = A.diagonal().squaredNorm();
-    if (off <= 1e-34 * size || off < 1e-300) break;
-    for (int p = 0; p < 2; ++p)
-      for (int q = p + 1; q < 3; ++q) {
-        if (A(p, q) == 0) continue;
-        const double theta = (A(q, q) - A(p, p)) / (2 * A(p, q));
-        const double t = (theta >= 0 ? 1 : -1) / (std::abs(theta) + std::sqrt(theta * theta + 1)), c = 1 / std::sqrt(t * t + 1), s = t * c;
-        const int r = 3 - p - q;
-        const double apq = A(p, q), apr = A(p, r), aqr = A(q, r);
-        A(p, p) -= t * apq, A(q, q) += t * apq, A(p, q) = A(q, p) = 0;
-        A(p, r) = A(r, p) = c * apr - s * aqr, A(q, r) = A(r, q) = s * apr + c * aqr;
-        const Vec3 vp = V.col(p), vq = V.col(q);
-        V.col(p) = c * vp - s * vq, V.col(q) = s * vp + c * vq;
-      }
-  }
-  e = A.diagonal();
-}
 
 /// phi[a, b] = ln((1 + 2b)/(1 + 2a))/(2 (b - a)) = ln(1 + r)/r/(1 + 2a), r = 2 (b - a)/(1 + 2a)
 double first_difference(double a, double b) {
@@ -53,19 +33,57 @@ double second_difference(double a, double b, double c) {
 
 }  // namespace
 
-LogStrain::LogStrain(const Mat3& E) {
+LogStrain::LogStrain(const Mat3& E, bool twice) {
   principal_axes(E, V_, e_);
-  value_.setZero();
-  for (int i = 0; i < 3; ++i) {
-    value_ += std::log1p(2 * e_[i]) / 2 * V_.col(i) * V_.col(i).transpose();
+  for (int i = 0; i < 3; ++i) phi_[i] = std::log1p(2 * e_[i]) / 2;
+  value_ = V_ * phi_.asDiagonal() * V_.transpose();
+  for (int i = 0; i < 3; ++i)
     for (int j = i; j < 3; ++j) {
       first_(i, j) = first_(j, i) = first_difference(e_[i], e_[j]);
-      for (int k = j; k < 3; ++k) {
+      for (int k = j; k < 3 && twice; ++k) {
         const double f = second_difference(e_[i], e_[j], e_[k]);
         third_[i][j][k] = third_[i][k][j] = third_[j][i][k] = third_[j][k][i] = third_[k][i][j] = third_[k][j][i] = f;
       }
     }
-  }
+}
+
+LogStep::LogStep(const LogStrain& from, const LogStrain& to, const Lame& c, bool twice)
+    : N_(to.V_), M_(from.V_), P_(to.V_.transpose() * from.V_) {
+  const double mean = (from.phi_.sum() + to.phi_.sum()) / 2;  // of tr h
+  Mat3 first, of_trace, of_all;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      first(i, j) = first_difference(to.e_[i], from.e_[j]);
+      of_trace(i, j) = first(i, j) * P_(i, j);
+      of_all(i, j) = (c.lambda * mean + c.mu * (to.phi_[i] + from.phi_[j])) * of_trace(i, j);
+    }
+  const auto joined = [&](const Mat3& m) {
+    const Mat3 g = N_ * m * M_.transpose();
+    return Mat3((g + g.transpose()) / 2);
+  };
+  stress_ = joined(of_all);
+  if (!twice) return;
+  trace_ = c.lambda / 2 * joined(of_trace);
+  by_trace_ = N_ * to.first_.diagonal().asDiagonal() * N_.transpose();
+  for (int i = 0; i < 3; ++i)
+    for (int k = i; k < 3; ++k)
+      for (int j = 0; j < 3; ++j) {
+        const double f = second_difference(to.e_[i], to.e_[k], from.e_[j]);
+        // of phi^2, symmetric in i and k
+        const double square = (to.phi_[i] + from.phi_[j]) * f + to.first_(i, k) * first(k, j);
+        twice_[i][k][j] = twice_[k][i][j] = c.lambda * mean * f + c.mu * square;
+      }
+}
+
+Mat3 LogStep::slope(const Mat3& x) const {
+  const Mat3 local = N_.transpose() * x * N_;
+  Mat3 m;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      m(i, j) =
+          local(i, 0) * twice_[i][0][j] * P_(0, j) + local(i, 1) * twice_[i][1][j] * P_(1, j) + local(i, 2) * twice_[i][2][j] * P_(2, j);
+  const Mat3 g = N_ * m * M_.transpose();
+  return (g + g.transpose()) / 2 + by_trace_.cwiseProduct(x).sum() * trace_;
 }
 
 Mat3 LogStrain::Q(const Mat3& x) const {

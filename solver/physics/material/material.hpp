@@ -5,15 +5,17 @@
 //     static constexpr std::string_view kind, meaning;        the word of [material.NAME] kind, and a line for the page of the format
 //     static std::vector<Param> keys();                       its keys in the scene, without kind and density
 //     static M make(const MaterialValues&);                   from checked values in SI units
-//     static constexpr Dilatation bulk;                 which part of its energy a nearly incompressible cell takes by its mean
+//     using Bulk = ...;                                       form of the part that a nearly incompressible cell takes by its mean
+//                                                             (dilatation.hpp)
 //     static constexpr double soft_below;                     stretch below which it no longer stands for a material, 0: none
 //     static constexpr std::string_view soft_because;         why, in the warning
 //     Lame linear() const;                                    moduli at small strain: of rate terms and of hourglass stiffness
-//     M with_lambda(double) const;                            the same law with another lambda
+//     M with_lambda(double) const;                            the same law with another lambda; not with NoBulk
 //     T energy(const T e[6]) const;                           per reference volume, of the Green-Lagrange strain     [J/m^3]
 //     void stress(const T e0[6], const T e1[6], T s[6], T (*D)[6]) const;
 //         second Piola-Kirchhoff stress with s.(e1 - e0) = W1 - W0 exactly, and at e0 = e1 dW/de; D += ds/de1 where given
-//     BarState bar(double e) const;  BarStep bar_step(double e0, double e1) const;          under uniaxial stress
+//     BarState bar(double e) const;  BarStep bar_step(double e0, double e1) const;          under uniaxial stress; without: no bars
+//     Anisotropic moduli;                                     where they differ with direction (physics/anisotropic.hpp)
 //   };
 //
 // A law that remembers has instead of energy, stress, with_lambda and bars
@@ -32,9 +34,6 @@
 #include "physics/material/voigt.hpp"
 
 namespace hilo {
-
-/// Form of the energy of a change of volume: lambda/2 (tr E)^2, or lambda/8 (ln det C)^2.
-enum class Dilatation { trace, log_det };
 
 /// The values of a material's keys.
 struct MaterialValues {

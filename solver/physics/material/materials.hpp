@@ -3,13 +3,16 @@
 #include <variant>
 
 #include "physics/material/j2.hpp"
+#include "physics/material/mooney_rivlin.hpp"
 #include "physics/material/neo_hookean.hpp"
+#include "physics/material/ogden.hpp"
+#include "physics/material/orthotropic.hpp"
 #include "physics/material/stvk.hpp"
 
 namespace hilo {
 
 /// A law with its parameters; the first is what a region has whose material does not say its kind.
-using Material = std::variant<StVenantKirchhoff, NeoHookean, J2>;
+using Material = std::variant<StVenantKirchhoff, NeoHookean, J2, MooneyRivlin, Ogden, Orthotropic>;
 
 /// What is known of a law before it has parameters.
 struct MaterialKind {

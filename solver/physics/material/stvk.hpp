@@ -1,5 +1,6 @@
 // St. Venant-Kirchhoff solid.   W = lambda/2 (tr E)^2 + mu E:E,   S = lambda tr(E) I + 2 mu E
 #pragma once
+#include "physics/material/dilatation.hpp"
 #include "physics/material/material.hpp"
 
 namespace hilo {
@@ -8,7 +9,7 @@ struct StVenantKirchhoff {
   static constexpr std::string_view kind = "stvk", meaning = "St. Venant-Kirchhoff: small or moderate strain, large rotation";
   static std::vector<Param> keys() { return {young, poisson}; }
   static StVenantKirchhoff make(const MaterialValues& v) { return {lame(v.number("E"), v.number("nu"))}; }
-  static constexpr Dilatation bulk = Dilatation::trace;
+  using Bulk = SquareOfTrace;
   // A bar of stretch l carries S l = Y l (l^2 - 1)/2, which falls from l = 1/sqrt 3 on: it softens, and inverts without resistance.
   static constexpr double soft_below = 0.58;
   static constexpr std::string_view soft_because =

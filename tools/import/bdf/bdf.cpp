@@ -21,6 +21,32 @@ std::vector<std::int64_t> rows(const BdfDeck& deck, const BdfDeck::Cell& r) {
   return nodes;
 }
 
+/// The lines of a scene for the regions whose material is more than elastic: the mesh carries no moduli of these.
+void write_scene(const BdfDeck& deck, const std::map<std::int64_t, CellGroup>& by_property, const ImportOptions& options, Imported& in) {
+  Mesh& m = in.mesh;
+  std::map<std::int64_t, std::string> used;
+  std::map<std::string, std::string> lines;  // by region
+  for (const auto& [pid, g] : by_property) {
+    const auto mid = deck.material_of.find(pid);
+    const auto mat = mid == deck.material_of.end() ? deck.materials.end() : deck.materials.find(mid->second);
+    if (mat == deck.materials.end() || mat->second.elastic() || g.cells.empty()) continue;
+    const std::string& region = m.region_name[m.region[g.cells.front()]];
+    if (!mat->second.no_law.empty()) {
+      lines[region] =
+          fmt::format("\n# region {}: material {} has no law here ({}), give it one\n", toml_text(region), mat->first, mat->second.no_law);
+      continue;
+    }
+    used[mat->first] = mat->second.name;
+    lines[region] = fmt::format("\n[region.{}]\nmaterial = {}\n", toml_text(region), toml_text(mat->second.name));
+    in.notes.push_back(fmt::format("region \"{}\": its material \"{}\" ({}) stands in the scene lines alone (--scene-out)", region,
+                                   mat->second.name, mat->second.kind));
+  }
+  if (lines.empty()) return;
+  m.deck_scene = "units = \"m-kg-s\"\n";
+  for (const auto& [id, name] : used) m.deck_scene += deck.materials.at(id).table(name, options.units);
+  for (const auto& [region, text] : lines) m.deck_scene += text;
+}
+
 /// Cells by property, shells as sets of facets, supports as sets of nodes.
 void build(BdfDeck& deck, const std::map<std::int64_t, std::string>& names_of, const std::string& path, const ImportOptions& options,
            Imported& in) {
@@ -45,8 +71,9 @@ void build(BdfDeck& deck, const std::map<std::int64_t, std::string>& names_of, c
     const auto mid = deck.material_of.find(pid);
     const auto mat = mid == deck.material_of.end() ? deck.materials.end() : deck.materials.find(mid->second);
     for (const auto c : g.cells)
-      if (mat != deck.materials.end()) m.region_data[m.region[c]] = mat->second;
+      if (mat != deck.materials.end()) m.region_data[m.region[c]] = mat->second.carried();
   }
+  write_scene(deck, by_property, options, in);
   SetNames names(in);
   std::vector<std::vector<std::int64_t>> faces;
   for (const auto& s : deck.shells) faces.push_back(rows(deck, s));
@@ -88,6 +115,7 @@ Imported read_bdf(const std::string& path, const ImportOptions& options) {
   parse_bdf(entries, deck, in, bdf_cards());
   if (deck.X.empty()) throw Error(path, "no GRID", "a Nastran file has GRID entries");
   if (deck.cells.empty()) throw Error(path, "no solid elements and no rods", bdf_supported);
+  resolve_metals(deck, in);
   build(deck, entries.property_names(), path, options, in);
   return in;
 }

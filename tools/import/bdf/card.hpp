@@ -2,11 +2,13 @@
 #pragma once
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
 #include "import/bdf/entries.hpp"
+#include "import/deck_material.hpp"
 #include "import/imported.hpp"
 
 namespace hilo {
@@ -26,8 +28,10 @@ struct BdfDeck {
   std::unordered_map<std::int64_t, std::int64_t> row;  // number of a grid -> row of X
   std::vector<Cell> cells, shells;
   std::set<std::int64_t> cell_ids;
-  std::map<std::int64_t, std::int64_t> material_of;  // property -> material
-  std::map<std::int64_t, RegionData> materials;      // units of the deck
+  std::map<std::int64_t, std::int64_t> material_of;                       // property -> material
+  std::map<std::int64_t, DeckMaterial> materials;                         // by MID
+  std::vector<DataLine> metals;                                           // MATS1
+  std::map<std::int64_t, std::vector<std::pair<double, double>>> tables;  // TABLES1: x, y
   std::map<std::string, std::vector<std::int64_t>> sets;
 };
 
@@ -37,6 +41,9 @@ struct BdfCard {
 };
 using BdfCards = std::vector<BdfCard>;
 BdfCards bdf_cards();
+std::span<const BdfCard> bdf_material_cards();
+/// MATS1 and the tables it names, into the materials.
+void resolve_metals(BdfDeck& deck, Imported& in);
 
 /// Reads the entries.  One that is not among `cards` is counted in `in.not_read`.
 void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards& cards);

@@ -82,22 +82,6 @@ void read_shell(const BdfEntry& e, BdfDeck& deck, Imported&) {
 
 void read_property(const BdfEntry& e, BdfDeck& deck, Imported&) { deck.material_of[e.data.integer(0)] = e.data.integer(1); }
 
-void read_mat1(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
-  RegionData m;
-  if (!d.empty(1)) m.E = d.number(1);
-  if (!d.empty(3))
-    m.nu = d.number(3);
-  else if (!d.empty(1) && !d.empty(2))
-    m.nu = d.number(1) / (2 * d.number(2)) - 1;
-  if (!d.empty(4)) m.density = d.number(4);
-  if (m.E <= 0) throw Error(d.place(1), fmt::format("MAT1 {}: Young's modulus {:g} is not positive", d.integer(0), m.E));
-  if (m.nu <= -1 || m.nu >= 0.5)
-    throw Error(d.place(3), fmt::format("MAT1 {}: Poisson's ratio {:g} is not in (-1, 0.5)", d.integer(0), m.nu));
-  if (m.density <= 0) throw Error(d.place(4), fmt::format("MAT1 {}: density {:g} is not positive", d.integer(0), m.density));
-  deck.materials[d.integer(0)] = m;
-}
-
 // Supports: which nodes they hold is a set, what they hold them to is not read.
 void read_spc1(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
@@ -135,17 +119,37 @@ void rigid_element(const BdfEntry& e, BdfDeck&, Imported&) {
 }  // namespace
 
 BdfCards bdf_cards() {
-  return {
-      {"GRID", read_grid},       {"CTETRA", read_solid},    {"CPENTA", read_solid},
-      {"CHEXA", read_solid},     {"CROD", read_rod},        {"CONROD", read_conrod},
-      {"CTRIA3", read_shell<3>}, {"CTRIA6", read_shell<3>}, {"CQUAD4", read_shell<4>},
-      {"CQUAD8", read_shell<4>}, {"PSOLID", read_property}, {"PROD", read_property},
-      {"MAT1", read_mat1},       {"SPC1", read_spc1},       {"SPC", read_spc},
-      {"CPYRAM", pyramid},       {"CBEAM", beam},           {"CBAR", beam},
-      {"CTRAX3", axisymmetric},  {"CTRAX6", axisymmetric},  {"CELAS1", spring},
-      {"CELAS2", spring},        {"CBUSH", bushing},        {"INCLUDE", include},
-      {"CONM2", point_mass},     {"RBE2", rigid_element},   {"RBE3", rigid_element},
+  BdfCards all{
+      {"GRID", read_grid},
+      {"CTETRA", read_solid},
+      {"CPENTA", read_solid},
+      {"CHEXA", read_solid},
+      {"CROD", read_rod},
+      {"CONROD", read_conrod},
+      {"CTRIA3", read_shell<3>},
+      {"CTRIA6", read_shell<3>},
+      {"CQUAD4", read_shell<4>},
+      {"CQUAD8", read_shell<4>},
+      {"PSOLID", read_property},
+      {"PROD", read_property},
+      {"SPC1", read_spc1},
+      {"SPC", read_spc},
+      {"CPYRAM", pyramid},
+      {"CBEAM", beam},
+      {"CBAR", beam},
+      {"CTRAX3", axisymmetric},
+      {"CTRAX6", axisymmetric},
+      {"CELAS1", spring},
+      {"CELAS2", spring},
+      {"CBUSH", bushing},
+      {"INCLUDE", include},
+      {"CONM2", point_mass},
+      {"RBE2", rigid_element},
+      {"RBE3", rigid_element},
   };
+  const auto materials = bdf_material_cards();
+  all.insert(all.end(), materials.begin(), materials.end());
+  return all;
 }
 
 }  // namespace hilo

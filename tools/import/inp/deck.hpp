@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "import/deck_material.hpp"
 #include "import/imported.hpp"
 #include "import/inp/lines.hpp"
 
@@ -32,15 +33,20 @@ struct InpSurface {
   bool of_nodes = false;
   std::vector<Line> lines;
 };
-struct InpMaterial {
+/// *ORIENTATION of rectangular axes: a on axis 1, b in the plane of axes 1 and 2.
+struct InpOrientation {
   std::string name;
-  RegionData data;  // units of the deck
+  Vec3 a = Vec3::UnitX(), b = Vec3::UnitY();
+  std::string not_read = {};  // "*ORIENTATION, SYSTEM=CYLINDRICAL"
+  std::string place;
 };
 struct InpSection {
   std::string elset, material;  // upper case, and as written
   std::string elset_name, material_name;
   std::string place, material_place;
   double area = 0;  // of bars
+  std::string orientation = {}, orientation_name = {}, orientation_place = {};
+  std::string law = {};  // key of InpDeck::laws
 };
 /// One line of *BOUNDARY, *CLOAD or *INITIAL CONDITIONS, TYPE=VELOCITY: a value on degrees of freedom first..last of a node or node set.
 struct InpNodal {
@@ -91,8 +97,10 @@ struct InpDeck {
   std::map<std::string, InpSet> nset, elset;  // by upper-case name
   std::vector<std::string> nset_order, elset_order;
   std::vector<InpSurface> surfaces;
-  std::map<std::string, InpMaterial> materials;  // by upper-case name
-  std::string material;                          // the one that *ELASTIC and *DENSITY speak of
+  std::map<std::string, DeckMaterial> materials;  // by upper-case name
+  std::map<std::string, InpOrientation> orientations;
+  std::map<std::string, DeckMaterial> laws;  // those that sections use, turned by their orientation
+  std::string material;                      // the one that *ELASTIC and *DENSITY speak of
   std::vector<InpSection> sections;
   std::vector<InpNodal> supports, forces, velocities;
   std::vector<InpDistributed> distributed;

@@ -19,6 +19,27 @@ void check_names(const InpDeck& d) {
     if (!d.materials.count(s.material))
       throw Error(s.material_place, fmt::format("*SOLID SECTION: no material \"{}\"", s.material_name),
                   suggest_name(s.material, d.materials));
+    if (!s.orientation.empty() && !d.orientations.count(s.orientation))
+      throw Error(s.orientation_place, fmt::format("*SOLID SECTION: no orientation \"{}\"", s.orientation_name),
+                  suggest_name(s.orientation, d.orientations));
+  }
+}
+
+/// The law of each section: its material, where it differs with direction turned by the section's orientation.
+void turn_materials(InpDeck& d, Imported& in) {
+  for (auto& s : d.sections) {
+    DeckMaterial law = d.materials.at(s.material);
+    s.law = s.material;
+    if (law.kind == "orthotropic" && law.no_law.empty() && !s.orientation.empty()) {
+      const InpOrientation& o = d.orientations.at(s.orientation);
+      s.law += "\n" + s.orientation;
+      law.name += "_" + o.name;
+      law.set({"axis_1", {o.a.x(), o.a.y(), o.a.z()}, "1", true});
+      law.set({"axis_2", {o.b.x(), o.b.y(), o.b.z()}, "1", true});
+      law.no_law = o.not_read;
+      if (!o.not_read.empty()) in.skip(o.not_read, o.place);
+    }
+    d.laws.try_emplace(s.law, std::move(law));
   }
 }
 
@@ -75,10 +96,10 @@ std::vector<std::int64_t> rows(const InpSet& s, const std::unordered_map<std::in
 /// The material of every cell goes to the data of its region.
 void region_materials(const InpDeck& d, Imported& in, const std::string& file) {
   Mesh& m = in.mesh;
-  std::vector<const InpMaterial*> of_cell(m.shape.size(), nullptr), of_region(m.region_name.size(), nullptr);
+  std::vector<const DeckMaterial*> of_cell(m.shape.size(), nullptr), of_region(m.region_name.size(), nullptr);
   for (const auto& s : d.sections)
     for (const auto id : d.elset.at(s.elset).members)
-      if (const auto c = d.cell.find(id); c != d.cell.end()) of_cell[c->second] = &d.materials.at(s.material);
+      if (const auto c = d.cell.find(id); c != d.cell.end()) of_cell[c->second] = &d.laws.at(s.law);
   for (std::int64_t c = 0; c < m.n_cells(); ++c) {
     const auto*& r = of_region[m.region[c]];
     if (r && of_cell[c] && r != of_cell[c])
@@ -89,7 +110,12 @@ void region_materials(const InpDeck& d, Imported& in, const std::string& file) {
     if (of_cell[c]) r = of_cell[c];
   }
   for (size_t r = 0; r < of_region.size(); ++r)
-    if (of_region[r]) m.region_data[r] = of_region[r]->data;
+    if (of_region[r]) {
+      m.region_data[r] = of_region[r]->carried();
+      if (!of_region[r]->elastic() && of_region[r]->no_law.empty())
+        in.notes.push_back(fmt::format("region \"{}\": its material \"{}\" ({}) stands in the scene lines alone (--scene-out)",
+                                       m.region_name[r], of_region[r]->name, of_region[r]->kind));
+    }
 }
 
 }  // namespace
@@ -120,6 +146,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   if (d.X.empty()) throw Error(path, "no nodes", "a deck has *NODE");
   if (d.shape.empty()) throw Error(path, "no elements", "a deck has *ELEMENT");
   check_names(d);
+  turn_materials(d, in);
   resolve_cells(d, in);
 
   std::vector<CellGroup> regions, groups;

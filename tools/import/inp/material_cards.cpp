@@ -1,6 +1,8 @@
 // The cards of an .inp deck that say materials and which cells are of them.
 #include <fmt/format.h>
 
+#include <Eigen/LU>
+
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
 
@@ -13,28 +15,148 @@ void read_material(InpReading& r) {
   r.deck.materials[r.deck.material].name = name;
 }
 
-/// The material that a card speaks of, and the card's first data line.
-InpMaterial& material_of(InpReading& r, DataLine& l, const char* expected) {
-  if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", fmt::format("{} lacks its data line", r.card.name), expected);
+/// The material that a card speaks of.
+DeckMaterial& material_of(InpReading& r) {
   if (r.deck.material.empty()) throw Error(r.card.place() + ":1", fmt::format("{} stands before any *MATERIAL", r.card.name));
   return r.deck.materials[r.deck.material];
 }
+/// And the card's first data line.
+DeckMaterial& material_of(InpReading& r, DataLine& l, const char* expected) {
+  if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", fmt::format("{} lacks its data line", r.card.name), expected);
+  return material_of(r);
+}
+
+/// The material is of a law that hilo has not: its regions get none, and that is said.
+void no_law(InpReading& r, DeckMaterial& m, const std::string& what) {
+  r.skip(what);
+  if (m.no_law.empty()) m.no_law = fmt::format("{}, {}", what, r.card.place());
+}
+void read_no_law(InpReading& r) { no_law(r, material_of(r), r.card.name); }
 
 /// Lines behind the first are for further temperatures.
 void skip_temperatures(InpReading& r, DataLine& l) {
   while (r.lines.next_data(l)) r.in.skip(fmt::format("{} at further temperatures", r.card.name), l.place());
 }
 
+/// `count` numbers, eight on a line.
+std::vector<double> numbers(InpReading& r, DataLine& l, size_t count) {
+  std::vector<double> v;
+  for (size_t i = 0; i < count; ++i) {
+    if (i > 0 && i % 8 == 0 && !r.lines.next_data(l))
+      throw Error(l.place(), fmt::format("{} has {} numbers on two lines", r.card.name, count));
+    v.push_back(l.number(i % 8));
+  }
+  return v;
+}
+
+void set_orthotropic(DeckMaterial& m, const std::vector<double>& v) {
+  m.become("orthotropic");
+  const char* keys[] = {"E1", "E2", "E3", "nu12", "nu13", "nu23", "G12", "G13", "G23"};
+  for (size_t i = 0; i < 9; ++i) m.set({keys[i], {v[i]}, i < 3 || i > 5 ? "Pa" : "1"});
+}
+
 void read_elastic(InpReading& r) {
   const std::string type = r.card.has("TYPE") ? r.card.word("TYPE") : "ISO";
-  if (type.substr(0, 3) != "ISO") return r.skip("*ELASTIC, TYPE=" + type);
   DataLine l;
+  if (type.starts_with("ENGINEERING")) {
+    auto& m = material_of(r, l, "E1, E2, E3, nu12, nu13, nu23, G12, G13 and on the next line G23");
+    set_orthotropic(m, numbers(r, l, 9));
+    return skip_temperatures(r, l);
+  }
+  if (type.starts_with("ORTHO")) {
+    auto& m = material_of(r, l, "D1111, D1122, D2222, D1133, D2233, D3333, D1212, D1313 and on the next line D2323");
+    const std::string place = l.place();
+    const auto d = numbers(r, l, 9);
+    Mat3 C;
+    C << d[0], d[1], d[3], d[1], d[2], d[4], d[3], d[4], d[5];
+    if (!(C.determinant() > 0)) throw Error(place, fmt::format("material {}: these moduli yield energy", m.name));
+    const Mat3 S = C.inverse();
+    set_orthotropic(m,
+                    {1 / S(0, 0), 1 / S(1, 1), 1 / S(2, 2), -S(0, 1) / S(0, 0), -S(0, 2) / S(0, 0), -S(1, 2) / S(1, 1), d[6], d[7], d[8]});
+    return skip_temperatures(r, l);
+  }
+  if (!type.starts_with("ISO")) return no_law(r, material_of(r), "*ELASTIC, TYPE=" + type);
   auto& m = material_of(r, l, "Young's modulus, Poisson's ratio");
   m.data.E = l.number(0);
   m.data.nu = l.number(1);
   if (!(m.data.E > 0)) throw Error(l.place(0), fmt::format("material {}: Young's modulus {:g} is not positive", m.name, m.data.E));
   if (!(m.data.nu > -1 && m.data.nu < 0.5))
     throw Error(l.place(1), fmt::format("material {}: Poisson's ratio {:g} is not in (-1, 0.5)", m.name, m.data.nu));
+  skip_temperatures(r, l);
+}
+
+/// Yield stress by equivalent plastic strain, of the first temperature.
+void read_plastic(InpReading& r) {
+  DataLine l;
+  auto& m = material_of(r, l, "yield stress, plastic strain");
+  std::vector<double> strain, stress;
+  const double temperature = l.number(2);
+  do {
+    if (l.number(2) != temperature) {
+      r.in.skip("*PLASTIC at further temperatures", l.place());
+      continue;
+    }
+    stress.push_back(l.number(0)), strain.push_back(l.number(1));
+    if (!(stress.back() > 0)) throw Error(l.place(0), fmt::format("material {}: a yield stress of {:g}", m.name, stress.back()));
+    if (strain.size() == 1 && strain[0] != 0)
+      throw Error(l.place(1), fmt::format("material {}: the first yield stress is at a plastic strain of {:g}", m.name, strain[0]),
+                  "the table begins at plastic strain 0");
+    if (strain.size() > 1 && !(strain.back() > strain[strain.size() - 2]))
+      throw Error(l.place(1), fmt::format("material {}: plastic strain does not rise", m.name));
+  } while (r.lines.next_data(l));
+  const std::string hardening = r.card.has("HARDENING") ? r.card.word("HARDENING") : "ISOTROPIC";
+  if (const auto odd = unknown_param(r.card, {"HARDENING", "EXTRAPOLATION"}); !odd.empty()) return no_law(r, m, odd);
+  if (hardening != "ISOTROPIC" && hardening != "KINEMATIC") return no_law(r, m, "*PLASTIC, HARDENING=" + hardening);
+  if (r.card.has("EXTRAPOLATION") && r.card.word("EXTRAPOLATION") != "CONSTANT") return no_law(r, m, "*PLASTIC, EXTRAPOLATION");
+  if (const auto why = set_hardening(m, strain, stress, hardening == "KINEMATIC" ? 1 : 0); !why.empty()) no_law(r, m, "*PLASTIC " + why);
+}
+
+/// rate of plastic strain = D (q/yield - 1)^n
+void read_rates(InpReading& r) {
+  DataLine l;
+  auto& m = material_of(r, l, "D, n");
+  const std::string type = r.card.has("TYPE") ? r.card.word("TYPE") : "POWERLAW";
+  if (type != "POWERLAW") return no_law(r, m, "*RATE DEPENDENT, TYPE=" + type);
+  const double D = l.number(0), n = l.number(1);
+  if (!(D > 0)) throw Error(l.place(0), fmt::format("material {}: *RATE DEPENDENT: D = {:g} is not positive", m.name, D));
+  if (!(n >= 1)) return no_law(r, m, "*RATE DEPENDENT with n below 1");
+  m.set({"reference_rate", {D}, "1/s"});
+  m.set({"rate_exponent", {n}});
+  skip_temperatures(r, l);
+}
+
+/// W in powers of invariants or stretches, 1/D1 (J - 1)^2: bulk modulus 2/D1.
+void read_rubber(InpReading& r) {
+  DataLine l;
+  auto& m = material_of(r, l, "the factors of the potential, then D1");
+  const bool mooney = r.card.has("MOONEY-RIVLIN"), neo = r.card.has("NEOHOOKE"), ogden = r.card.has("OGDEN");
+  if (const auto odd = unknown_param(r.card, {"MOONEY-RIVLIN", "NEOHOOKE", "OGDEN", "N"}); !odd.empty() || mooney + neo + ogden != 1)
+    return no_law(r, m, odd.empty() ? "*HYPERELASTIC" : odd);
+  const size_t terms = ogden && r.card.has("N") ? std::stoul(r.card.word("N")) : 1, n = ogden ? 3 * terms : mooney ? 3 : 2;
+  const auto v = numbers(r, l, n);
+  double mu = 0;
+  if (ogden) {
+    DeckKey factor{"mu", {}, "Pa", true}, exponent{"alpha", {}, "1", true};
+    for (size_t p = 0; p < terms; ++p) factor.values.push_back(v[2 * p]), exponent.values.push_back(v[2 * p + 1]), mu += v[2 * p];
+    m.become("ogden"), m.set(factor), m.set(exponent);
+  } else {
+    m.become("mooney-rivlin");
+    m.set({"c10", {v[0]}, "Pa"});
+    if (mooney) m.set({"c01", {v[1]}, "Pa"});
+    mu = 2 * (v[0] + (mooney ? v[1] : 0));
+  }
+  for (size_t p = 1; p < terms; ++p)
+    if (v[2 * terms + p] != 0) return no_law(r, m, fmt::format("{} with D{}", r.card.name, p + 1));
+  double D1 = v[n - terms];
+  if (!(mu > 0)) throw Error(l.place(), fmt::format("material {}: a shear modulus of {:g}", m.name, mu));
+  if (D1 < 0) throw Error(l.place(), fmt::format("material {}: D1 = {:g} is negative", m.name, D1));
+  if (D1 == 0) {
+    D1 = 0.1 / mu;
+    r.in.notes.push_back(
+        fmt::format("{}: material {} has D1 = 0 (incompressible): taken as 0.1/mu, a Poisson's ratio of 0.475, as CalculiX does",
+                    r.card.place(), m.name));
+  }
+  m.set({"bulk", {2 / D1}, "Pa"});
   skip_temperatures(r, l);
 }
 
@@ -46,11 +168,32 @@ void read_density(InpReading& r) {
   skip_temperatures(r, l);
 }
 
+void read_orientation(InpReading& r) {
+  InpOrientation o;
+  o.name = r.card.need("NAME"), o.place = r.card.place();
+  DataLine l;
+  const std::string system = r.card.has("SYSTEM") ? r.card.word("SYSTEM") : "RECTANGULAR";
+  if (system != "RECTANGULAR") {
+    o.not_read = "*ORIENTATION, SYSTEM=" + system;
+  } else if (const auto odd = unknown_param(r.card, {"NAME", "SYSTEM"}); !odd.empty()) {
+    o.not_read = odd;
+  } else {
+    if (!r.lines.next_data(l))
+      throw Error(r.card.place() + ":1", "*ORIENTATION lacks its data line", "a point on axis 1, one in the plane 1-2");
+    for (int i = 0; i < 3; ++i) o.a[i] = l.number(i) - l.number(6 + i), o.b[i] = l.number(3 + i) - l.number(6 + i);
+    if (!(o.a.cross(o.b).norm() > 0)) throw Error(l.place(), fmt::format("*ORIENTATION {}: the two points span no plane", o.name));
+    if (r.lines.next_data(l) && l.number(1) != 0) o.not_read = "*ORIENTATION turned about an axis";
+  }
+  r.deck.orientations[upper(o.name)] = o;
+}
+
 void read_section(InpReading& r) {
   const Card& card = r.card;
   InpSection s{upper(card.need("ELSET")), upper(card.need("MATERIAL")), card.need("ELSET"),
                card.need("MATERIAL"),     card.place("ELSET"),          card.place("MATERIAL")};
-  if (card.has("ORIENTATION")) r.skip("*SOLID SECTION, ORIENTATION");
+  if (card.has("ORIENTATION"))
+    s.orientation_name = card.need("ORIENTATION"), s.orientation = upper(s.orientation_name),
+    s.orientation_place = card.place("ORIENTATION");
   DataLine l;
   if (r.lines.next_data(l)) s.area = l.number(0);
   r.deck.sections.push_back(s);
@@ -60,7 +203,24 @@ void read_section(InpReading& r) {
 
 std::span<const InpCard> inp_material_cards() {
   static constexpr InpCard cards[] = {
-      {"MATERIAL", read_material}, {"ELASTIC", read_elastic}, {"DENSITY", read_density}, {"SOLIDSECTION", read_section}};
+      {"MATERIAL", read_material},
+      {"ELASTIC", read_elastic},
+      {"DENSITY", read_density},
+      {"SOLIDSECTION", read_section},
+      {"PLASTIC", read_plastic},
+      {"RATEDEPENDENT", read_rates},
+      {"HYPERELASTIC", read_rubber},
+      {"ORIENTATION", read_orientation},
+      {"CYCLICHARDENING", read_no_law},
+      {"CREEP", read_no_law},
+      {"DEFORMATIONPLASTICITY", read_no_law},
+      {"DRUCKERPRAGER", read_no_law},
+      {"MOHRCOULOMB", read_no_law},
+      {"VISCOELASTIC", read_no_law},
+      {"HYPERFOAM", read_no_law},
+      {"USERMATERIAL", read_no_law},
+      {"POTENTIAL", read_no_law},
+  };
   return cards;
 }
 

@@ -13,25 +13,9 @@ namespace {
 
 constexpr std::array<const char*, 3> axes{"x", "y", "z"};
 
-std::string quoted(const std::string& s) {
-  std::string q(1, '"');
-  for (const char c : s) {
-    if (c == '"' || c == '\\') q += '\\';
-    q += static_cast<unsigned char>(c) < 32 ? ' ' : c;
-  }
-  q += '"';
-  return q;
-}
-
-std::string num(double x) {
-  std::string s = fmt::format("{}", x == 0 ? 0.0 : x);
-  return s.find_first_of(".en") == std::string::npos ? s + ".0" : s;
-}
-std::string list(const std::vector<double>& v) {
-  std::string s = "[";
-  for (size_t i = 0; i < v.size(); ++i) s += (i ? ", " : "") + num(v[i]);
-  return s + "]";
-}
+std::string quoted(const std::string& s) { return toml_text(s); }
+std::string num(double x) { return toml_number(x); }
+std::string list(const std::vector<double>& v) { return toml_list(v); }
 std::string list(const Vec3& v) { return list(std::vector<double>{v.x(), v.y(), v.z()}); }
 
 /// Writes the lines in the order of a scene file.
@@ -119,32 +103,28 @@ class Writer {
   }
 
   void materials() {
-    std::map<std::string, const InpMaterial*> used;
+    std::set<std::string> used;
     const Mesh& m = in_.mesh;
     std::vector<std::string> lines(m.region_name.size());
     std::vector<int> seen(m.region_name.size(), 0);
     for (const auto& s : d_.sections) {
-      const auto& mat = d_.materials.at(s.material);
+      const auto& mat = d_.laws.at(s.law);
       for (const auto id : d_.elset.at(s.elset).members) {
         const auto c = d_.cell.find(id);
         if (c == d_.cell.end() || seen[m.region[c->second]]++) continue;
         const auto r = m.region[c->second];
-        if (std::isnan(mat.data.E)) {
-          lines[r] = fmt::format("# region {}: material {} is not linear and isotropic, give it one\n", quoted(m.region_name[r]),
-                                 quoted(mat.name));
+        if (!mat.no_law.empty() || (mat.kind == "stvk" && std::isnan(mat.data.E))) {
+          lines[r] = fmt::format("# region {}: material {} has no law here{}, give it one\n", quoted(m.region_name[r]), quoted(mat.name),
+                                 mat.no_law.empty() ? "" : " (" + mat.no_law + ")");
           continue;
         }
-        used[s.material] = &mat;
+        used.insert(s.law);
         lines[r] = fmt::format("[region.{}]\nmaterial = {}\n", quoted(m.region_name[r]), quoted(clean_name(mat.name)));
         if (static_cast<Shape>(m.shape[c->second]) == Shape::bar2 && s.area > 0)
           lines[r] += fmt::format("area = {}\n", num(s.area * si("m^2")));
       }
     }
-    for (const auto& [key, mat] : used) {
-      tables_ += fmt::format("\n[material.{}]\nkind = \"stvk\"\nE = {}\nnu = {}\n", quoted(clean_name(mat->name)),
-                             num(mat->data.E * si("Pa")), num(mat->data.nu));
-      if (!std::isnan(mat->data.density)) tables_ += fmt::format("density = {}\n", num(mat->data.density * si("kg/m^3")));
-    }
+    for (const auto& key : used) tables_ += d_.laws.at(key).table(d_.laws.at(key).name, o_.units);
     for (const auto& l : lines)
       if (!l.empty()) tables_ += "\n" + l;
   }

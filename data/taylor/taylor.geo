@@ -1,0 +1,28 @@
+// A quarter of a cylinder, length 32.4 mm, radius 3.2 mm: N cells along a third of the arc each way, M along the length.  mm
+DefineConstant[ N = {4, Name "N"}, M = {30, Name "M"} ];
+R = 3.2; L = 32.4; c = 0.5 * R; d = 0.42 * R; s = R / Sqrt(2);
+Point(1) = {0, 0, 0};
+Point(2) = {c, 0, 0};
+Point(3) = {d, d, 0};
+Point(4) = {0, c, 0};
+Point(5) = {R, 0, 0};
+Point(6) = {s, s, 0};
+Point(7) = {0, R, 0};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Line(5) = {2, 5}; Line(6) = {3, 6}; Line(7) = {4, 7};
+Circle(8) = {5, 1, 6}; Circle(9) = {6, 1, 7};
+Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};
+Curve Loop(2) = {5, 8, -6, -2}; Plane Surface(2) = {2};
+Curve Loop(3) = {6, 9, -7, -3}; Plane Surface(3) = {3};
+Transfinite Curve {:} = N + 1;
+Transfinite Surface {:};
+Recombine Surface {:};
+out1[] = Extrude {0, 0, L} { Surface{1}; Layers{ {M / 2, M / 2}, {0.15, 1} }; Recombine; };
+out2[] = Extrude {0, 0, L} { Surface{2}; Layers{ {M / 2, M / 2}, {0.15, 1} }; Recombine; };
+out3[] = Extrude {0, 0, L} { Surface{3}; Layers{ {M / 2, M / 2}, {0.15, 1} }; Recombine; };
+Physical Volume("bar") = {out1[1], out2[1], out3[1]};
+Physical Surface("face") = {1, 2, 3};
+Physical Surface("x0") = {out1[5], out3[4]};
+Physical Surface("y0") = {out1[2], out2[2]};
+Physical Point("rim") = {5};
+Physical Surface("end") = {out1[0], out2[0], out3[0]};

@@ -1,0 +1,44 @@
+// A material as a deck says it: a law of hilo with the values of its keys, or why it has none.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "import/imported.hpp"
+
+namespace hilo {
+
+/// A key of [material.NAME] in units of the deck.
+struct DeckKey {
+  std::string key;
+  std::vector<double> values;
+  const char* unit = "1";
+  bool list = false;  // written as one, however many they are
+};
+
+struct DeckMaterial {
+  std::string name;
+  RegionData data;                 // units of the deck
+  std::string kind = "stvk";       // of the law
+  std::vector<DeckKey> keys = {};  // besides E, nu and density
+  std::string no_law = {};         // what has none in hilo, with its place; "" where all has
+  bool elastic() const { return no_law.empty() && kind == "stvk"; }
+  void become(const std::string& other);  // of another kind; two of them are none
+  void set(DeckKey k);                    // in place of an earlier value of the key
+
+  /// What a region of it carries: moduli only where they say all, so that no metal or rubber becomes elastic where the scene lines are left
+  /// out.
+  RegionData carried() const;
+  /// [material.NAME] in SI.
+  std::string table(const std::string& as, const std::string& units) const;
+};
+
+/// A yield stress by equivalent plastic strain becomes a metal's keys; "" or why it cannot.  `kinematic`: the share of hardening that moves
+/// the yield surface; a share above 0 asks for one slope.
+std::string set_hardening(DeckMaterial& m, const std::vector<double>& strain, const std::vector<double>& stress, double kinematic);
+
+/// TOML.
+std::string toml_text(const std::string& s);
+std::string toml_number(double x);
+std::string toml_list(const std::vector<double>& v);
+
+}  // namespace hilo
