@@ -15,7 +15,9 @@ inline hilo::test::Results run_scene(const hilo::test::Workplace& place, const s
   std::unique_ptr<hilo::LocalMesh> local;
   if (!mesh.empty()) local = std::make_unique<hilo::LocalMesh>(hilo::read_local_mesh(place / mesh, comm));
   const auto system = hilo::build_system(scene, local.get(), comm);
-  const hilo::RunReport report = hilo::run(scene, *system, {.output = place / "run.h5", .provenance = {"outside"}, .quiet = true});
+  hilo::RunOptions options;
+  options.output = place / "run.h5", options.provenance = {"outside"}, options.quiet = true;
+  const hilo::RunReport report = hilo::run(scene, *system, options);
   if (!report.complete) throw std::runtime_error(report.reason);
   return hilo::test::Results(place / "run.h5");
 }
