@@ -38,6 +38,7 @@ class Cholesky final : public Factors {
   bool factor(const BlockCsr& A) override {
     if (start_.empty()) find_pattern(A);
     fill(A);
+    single_values_.clear();
     cholmod_sparse F{};
     F.nrow = F.ncol = 3 * flexible_.size();
     F.nzmax = values_.size();
@@ -49,7 +50,7 @@ class Cholesky final : public Factors {
       return false;
     }
     if (common_.status != CHOLMOD_OK || L_->minor != L_->n || !L_->is_super || !factor_schur(A)) return false;
-    if (single_) supernodal::narrow(L_);
+    if (single_) single_values_.take_from(L_, common_);
     return true;
   }
 
@@ -58,10 +59,10 @@ class Cholesky final : public Factors {
     f_.resize(n), g_.resize(3 * static_cast<Eigen::Index>(dense_.size()));
     for (size_t k = 0; k < flexible_.size(); ++k) std::copy_n(b + 3 * flexible_[k], 3, f_.data() + 3 * k);
     for (size_t k = 0; k < dense_.size(); ++k) std::copy_n(b + 3 * dense_[k], 3, g_.data() + 3 * k);
-    if (single_)
-      apply(f_, single_work_, single_scratch_);
+    if (single_values_.exist())
+      apply(single_values_, f_, single_work_, single_scratch_);
     else
-      apply(f_, double_work_, double_scratch_);
+      apply(supernodal::DoubleValues(L_), f_, double_work_, double_scratch_);
     double* u = f_.data();
     if (!dense_.empty()) {
       for (size_t k = 0; k < touching_.size(); ++k) {
@@ -83,7 +84,9 @@ class Cholesky final : public Factors {
   }
   std::string name() const override { return "CHOLMOD"; }
   double bytes() const override {
-    return L_ ? 8. * static_cast<double>(L_->xsize + values_.size() + Z_.size()) + 4. * static_cast<double>(L_->ssize + rows_.size()) : 0;
+    if (!L_) return 0;
+    return supernodal::bytes_of(L_, single_values_) + 8. * static_cast<double>(values_.size() + Z_.size()) +
+           4. * static_cast<double>(rows_.size());
   }
 
  private:
@@ -190,16 +193,16 @@ class Cholesky final : public Factors {
   }
 
   /// u := F^-1 u
-  template <class T>
-  void apply(Eigen::VectorXd& u, std::vector<T>& work, std::vector<T>& scratch) {
+  template <class T, class Values>
+  void apply(const Values& values, Eigen::VectorXd& u, std::vector<T>& work, std::vector<T>& scratch) {
     const double largest = u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0;
     if (!(largest > 0)) return;
     const auto* order = static_cast<const int*>(L_->Perm);
     const int n = static_cast<int>(u.size());
     work.resize(n);
     for (int i = 0; i < n; ++i) work[i] = static_cast<T>(u[order[i]] / largest);  // within the range of single precision
-    supernodal::forward(L_, 0, n, work.data(), scratch);
-    supernodal::backward(L_, 0, n, work.data(), scratch);
+    supernodal::forward(L_, values, 0, n, work.data(), scratch);
+    supernodal::backward(L_, values, 0, n, work.data(), scratch);
     for (int i = 0; i < n; ++i) u[order[i]] = largest * work[i];
   }
 
@@ -221,6 +224,7 @@ class Cholesky final : public Factors {
   Eigen::VectorXd scale_, f_, g_, p_;
   Eigen::PartialPivLU<Eigen::MatrixXd> schur_;
   bool single_ = true;
+  supernodal::SingleValues single_values_;  // of L
   std::vector<float> single_work_, single_scratch_;
   std::vector<double> double_work_, double_scratch_;
   cholmod_common common_{};

@@ -3,14 +3,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
+#include "linear/lapack.hpp"
 #include "linear/petsc/session.hpp"
-
-extern "C" void dsyevr_(const char*, const char*, const char*, const int*, double*, const int*, const double*, const double*, const int*,
-                        const int*, const double*, int*, double*, double*, const int*, int*, double*, const int*, int*, const int*, int*);
-extern "C" void dsyrk_(const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*, double*,
-                       const int*);
-extern "C" void dpotrf_(const char*, const int*, double*, const int*, int*);
-extern "C" void dpotrs_(const char*, const int*, const int*, const double*, const int*, double*, const int*, int*);
 
 namespace hilo::petsc {
 namespace {
@@ -70,9 +64,8 @@ MatrixXd stiff_jumps(const MatrixXd& A_inverse, MatrixXd B_inverse, const Matrix
 /// M M^T, by the BLAS, whose products are several times as fast as Eigen's without wide vectors.
 MatrixXd gram(const MatrixXd& M) {
   const int n = static_cast<int>(M.rows()), m = static_cast<int>(M.cols());
-  const double one = 1, zero = 0;
   MatrixXd G = MatrixXd::Zero(n, n);
-  if (n > 0 && m > 0) dsyrk_("L", "N", &n, &m, &one, M.data(), &n, &zero, G.data(), &n);
+  if (n > 0 && m > 0) lapack::gram(n, m, M.data(), G.data());
   G.triangularView<Eigen::StrictlyUpper>() = G.transpose();
   return G;
 }
@@ -80,19 +73,17 @@ MatrixXd gram(const MatrixXd& M) {
 /// A symmetric positive definite matrix, factored.
 class Positive {
  public:
-  explicit Positive(MatrixXd A) : L_(std::move(A)), n_(static_cast<int>(L_.rows())) { dpotrf_("L", &n_, L_.data(), &n_, &info_); }
-  bool good() const { return info_ == 0; }
+  explicit Positive(MatrixXd A) : L_(std::move(A)), good_(lapack::factor(static_cast<int>(L_.rows()), L_.data())) {}
+  bool good() const { return good_; }
   /// A^-1 X
   MatrixXd solve(MatrixXd X) const {
-    const int columns = static_cast<int>(X.cols());
-    int info = 0;
-    dpotrs_("L", &n_, &columns, L_.data(), &n_, X.data(), &n_, &info);
+    lapack::solve(static_cast<int>(L_.rows()), static_cast<int>(X.cols()), L_.data(), X.data());
     return X;
   }
 
  private:
   MatrixXd L_;
-  int n_, info_ = 0;
+  bool good_;
 };
 
 std::vector<int> unknowns_of(const InterfaceClass& c, const SubdomainFactor& factor) {

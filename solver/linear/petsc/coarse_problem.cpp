@@ -55,8 +55,8 @@ void CoarseProblem::solve(Eigen::MatrixXd& x) {
   const Eigen::Map<const Eigen::VectorXi> order(static_cast<const int*>(L_->Perm), x.rows());
   Eigen::MatrixXd y = x(order, Eigen::all);
   const int n = static_cast<int>(x.rows()), columns = static_cast<int>(x.cols());
-  supernodal::forward(L_, 0, n, y.data(), scratch_, columns);
-  supernodal::backward(L_, 0, n, y.data(), scratch_, columns);
+  supernodal::forward(L_, supernodal::DoubleValues(L_), 0, n, y.data(), scratch_, columns);
+  supernodal::backward(L_, supernodal::DoubleValues(L_), 0, n, y.data(), scratch_, columns);
   x(order, Eigen::all) = y;
 }
 

@@ -26,6 +26,8 @@ class FlexibleMatrix {
   virtual Mat mat() const = 0;
   virtual PetscInt n_owned() const = 0;  // blocks
   virtual double bytes() const = 0;      // of this rank
+  /// The largest |K - K^T| / |K + K^T| of the cliques added on this rank since zero(), where the kind keeps the symmetric part alone.
+  virtual double asymmetry() const { return 0; }
 };
 
 class FlexibleInverse {
@@ -51,6 +53,11 @@ class FlexibleInverse {
   virtual double undivided_seconds() const { return 0; }
   virtual std::string name() const = 0;
   virtual double bytes() const = 0;
+};
+
+struct Flexible {
+  std::unique_ptr<FlexibleMatrix> matrix;
+  std::unique_ptr<FlexibleInverse> inverse;  // refers to the matrix
 };
 
 /// The rigid motions of the owned positions (3 each) as near null space; false where no rank has positions.

@@ -12,11 +12,6 @@
 namespace hilo::petsc {
 
 std::unique_ptr<KktSolver> make_direct(double tolerance);
-/// What approximates the inverse of the flexible block: incomplete factors or multigrid, or substructuring.  `cg`: the former, for the
-/// symmetric part of the whole matrix.
-enum class Kind { algebraic, cg, bddc, feti_dp };
-std::unique_ptr<KktSolver> make_iterative(Kind kind, double tolerance, int subdomains);
-
 /// A vector of owned unknowns that frees itself.
 class Vector {
  public:

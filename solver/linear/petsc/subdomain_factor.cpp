@@ -6,8 +6,6 @@
 
 #include "linear/supernodal.hpp"
 
-extern "C" void dtrtri_(const char*, const char*, const int*, double*, const int*, int*);
-
 namespace hilo::petsc {
 
 SubdomainFactor::SubdomainFactor(const SubdomainMatrix& F, const Interface& interface) {
@@ -91,7 +89,7 @@ void SubdomainFactor::order(const SubdomainMatrix& F, const Interface& interface
 }
 
 bool SubdomainFactor::factor(const SubdomainMatrix& F, const Interface& interface, const std::vector<double>& weight) {
-  single_ = false;
+  single_.clear();
   const int n_blocks = static_cast<int>(place_.size());
   if (n_blocks == 0) return true;
   // scalar columns: the first of a block's three holds the whole diagonal block's column, the next one less, ...
@@ -147,7 +145,7 @@ bool SubdomainFactor::factor(const SubdomainMatrix& F, const Interface& interfac
 }
 
 void SubdomainFactor::narrow() {
-  if (L_) supernodal::narrow(L_), single_ = true;
+  if (L_) single_.take_from(L_, common_);
 }
 
 /// Rows from `from` on rounded, and those up to `to` back, within the range of single precision.
@@ -164,16 +162,16 @@ void SubdomainFactor::in_single(int from, int to, double* x, int columns, const 
 }
 
 void SubdomainFactor::forward(int from, int to, double* x, int columns) const {
-  if (single_)
-    in_single(from, n(), x, columns, [&](float* y) { supernodal::forward(L_, from, to, y, below_single_, columns); });
+  if (single_.exist())
+    in_single(from, n(), x, columns, [&](float* y) { supernodal::forward(L_, single_, from, to, y, below_single_, columns); });
   else
-    supernodal::forward(L_, from, to, x, below_, columns);
+    supernodal::forward(L_, supernodal::DoubleValues(L_), from, to, x, below_, columns);
 }
 void SubdomainFactor::backward(int from, int to, double* x, int columns) const {
-  if (single_)
-    in_single(from, to, x, columns, [&](float* y) { supernodal::backward(L_, from, to, y, below_single_, columns); });
+  if (single_.exist())
+    in_single(from, to, x, columns, [&](float* y) { supernodal::backward(L_, single_, from, to, y, below_single_, columns); });
   else
-    supernodal::backward(L_, from, to, x, below_, columns);
+    supernodal::backward(L_, supernodal::DoubleValues(L_), from, to, x, below_, columns);
 }
 void SubdomainFactor::multiply_schur(double* x, int columns) const {
   if (n_interior_ < n()) supernodal::multiply(L_, n_interior_, x, below_, columns);
@@ -185,15 +183,15 @@ Eigen::MatrixXd SubdomainFactor::schur_rows(int piece, const std::vector<int>& u
   std::vector<int> wanted(to - from, -1);
   for (size_t k = 0; k < unknowns.size(); ++k) wanted[unknowns[k] - from] = static_cast<int>(k);
   const auto* super = static_cast<const int*>(L_->super);
-  const auto *pi = static_cast<const int*>(L_->pi), *px = static_cast<const int*>(L_->px), *rows = static_cast<const int*>(L_->s);
-  const auto* values = static_cast<const double*>(L_->x);
+  const auto *pi = static_cast<const int*>(L_->pi), *rows = static_cast<const int*>(L_->s);
+  const supernodal::DoubleValues values(L_);
   for (int s = static_cast<int>(std::upper_bound(super, super + L_->nsuper, from) - super) - 1;
        s < static_cast<int>(L_->nsuper) && super[s] < to; ++s) {
     const int stride = pi[s + 1] - pi[s];
     for (int c = std::max(from, super[s]); c < std::min(to, super[s + 1]); ++c)
       for (int r = c - super[s]; r < stride; ++r)
         if (const int k = wanted[rows[pi[s] + r] - from]; k >= 0)
-          M(k, c - from) = values[px[s] + static_cast<size_t>(c - super[s]) * stride + r];
+          M(k, c - from) = values[s][static_cast<size_t>(c - super[s]) * stride + r];
   }
   return M;
 }
@@ -204,11 +202,10 @@ Eigen::MatrixXd SubdomainFactor::inverse_root(int piece, int most) const {
   std::vector<int> unknowns(n);
   std::iota(unknowns.begin(), unknowns.end(), begin_[piece]);
   Eigen::MatrixXd L = schur_rows(piece, unknowns);
-  int info = 0;
-  dtrtri_("L", "N", &n, L.data(), &n, &info);
+  lapack::invert_triangle(n, L.data());
   return L;
 }
 
-double SubdomainFactor::bytes() const { return L_ ? 8. * static_cast<double>(L_->xsize) + 4. * static_cast<double>(L_->ssize) : 0; }
+double SubdomainFactor::bytes() const { return L_ ? supernodal::bytes_of(L_, single_) : 0; }
 
 }  // namespace hilo::petsc

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "linear/petsc/interface.hpp"
+#include "linear/supernodal.hpp"
 
 namespace hilo::petsc {
 
@@ -27,7 +28,8 @@ class SubdomainFactor {
   int n_interior() const { return n_interior_; }
   int place(PetscInt block) const { return place_[block]; }  // of a block in the factor's order
   PetscInt block(int place) const { return block_[place]; }
-  /// From here to the next factor() it solves in single precision, in half the time; of L itself nothing can be had any more.
+  /// From here to the next factor() forward and backward are in single precision, in half the time; of L itself nothing
+  /// can be had any more.
   void narrow();
   /// x := L^-1 x, columns [from, to) of L only: the rows below them are changed too.  x: (n x columns).
   void forward(int from, int to, double* x, int columns = 1) const;
@@ -53,9 +55,9 @@ class SubdomainFactor {
   std::vector<int> place_;
   std::vector<PetscInt> block_;
   int n_interior_ = 0;
-  std::vector<int> begin_;         // of each piece's interface (n_pieces + 1)
-  std::vector<int> start_, rows_;  // of the lower triangle in blocks, by columns
-  bool single_ = false;
+  std::vector<int> begin_;           // of each piece's interface (n_pieces + 1)
+  std::vector<int> start_, rows_;    // of the lower triangle in blocks, by columns
+  supernodal::SingleValues single_;  // of L, once narrowed
   mutable std::vector<double> below_;
   mutable std::vector<float> x_, below_single_;
 };

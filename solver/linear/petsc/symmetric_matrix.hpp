@@ -35,8 +35,7 @@ class SymmetricMatrix final : public FlexibleMatrix {
   PetscInt n_owned() const override { return n_owned_; }
   double bytes() const override;
 
-  /// The largest |K - K^T| / |K + K^T| of the cliques added on this rank since zero() (Frobenius).
-  double asymmetry() const { return std::sqrt(asymmetry_); }
+  double asymmetry() const override { return std::sqrt(asymmetry_); }  // Frobenius norms
 
   /// Places: owned blocks first, rows by their owned numbers; then those of others.
   const LowerPattern& pattern() const { return pattern_; }

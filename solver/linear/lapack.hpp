@@ -1,0 +1,85 @@
+// BLAS and LAPACK: the one place where their Fortran symbols are declared.  Matrices by columns, `stride` apart; triangles are lower ones.
+#pragma once
+
+#define HILO_BLAS(T, p)                                                                                                               \
+  void p##trsv_(const char*, const char*, const char*, const int*, const T*, const int*, T*, const int*);                             \
+  void p##gemv_(const char*, const int*, const int*, const T*, const T*, const int*, const T*, const int*, const T*, T*, const int*); \
+  void p##trsm_(const char*, const char*, const char*, const char*, const int*, const int*, const T*, const T*, const int*, T*,       \
+                const int*);                                                                                                          \
+  void p##gemm_(const char*, const char*, const int*, const int*, const int*, const T*, const T*, const int*, const T*, const int*,   \
+                const T*, T*, const int*);
+extern "C" {
+HILO_BLAS(double, d)
+HILO_BLAS(float, s)
+void dtrmv_(const char*, const char*, const char*, const int*, const double*, const int*, double*, const int*);
+void dtrmm_(const char*, const char*, const char*, const char*, const int*, const int*, const double*, const double*, const int*, double*,
+            const int*);
+void dsyrk_(const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*, double*, const int*);
+void dpotrf_(const char*, const int*, double*, const int*, int*);
+void dpotrs_(const char*, const int*, const int*, const double*, const int*, double*, const int*, int*);
+void dtrtri_(const char*, const char*, const int*, double*, const int*, int*);
+void dsyevr_(const char*, const char*, const char*, const int*, double*, const int*, const double*, const double*, const int*, const int*,
+             const double*, int*, double*, double*, const int*, int*, double*, const int*, int*, const int*, int*);
+}
+#undef HILO_BLAS
+
+namespace hilo::lapack {
+
+/// X := op(L)^-1 X, (n x columns) with columns `next` apart; `transposed`: 'N' or 'T'.
+#define HILO_SOLVE_TRIANGLE(T, p)                                                                           \
+  inline void solve_triangle(char transposed, int n, const T* L, int stride, T* X, int next, int columns) { \
+    const int one = 1;                                                                                      \
+    const T unit = 1;                                                                                       \
+    columns == 1 ? p##trsv_("L", &transposed, "N", &n, L, &stride, X, &one)                                 \
+                 : p##trsm_("L", "L", &transposed, "N", &n, &columns, &unit, L, &stride, X, &next);         \
+  }
+HILO_SOLVE_TRIANGLE(double, d)
+HILO_SOLVE_TRIANGLE(float, s)
+#undef HILO_SOLVE_TRIANGLE
+
+/// Y := alpha op(A) X + beta Y; A: (m x n).
+#define HILO_MULTIPLY(T, p)                                                                                                              \
+  inline void multiply(char transposed, int m, int n, T alpha, const T* A, int stride, const T* X, int next_X, T beta, T* Y, int next_Y, \
+                       int columns) {                                                                                                    \
+    const int one = 1, rows = transposed == 'T' ? n : m, inner = transposed == 'T' ? m : n;                                              \
+    columns == 1 ? p##gemv_(&transposed, &m, &n, &alpha, A, &stride, X, &one, &beta, Y, &one)                                            \
+                 : p##gemm_(&transposed, "N", &rows, &columns, &inner, &alpha, A, &stride, X, &next_X, &beta, Y, &next_Y);               \
+  }
+HILO_MULTIPLY(double, d)
+HILO_MULTIPLY(float, s)
+#undef HILO_MULTIPLY
+
+/// X := op(L) X, (n x columns) with columns `next` apart.
+inline void multiply_triangle(char transposed, int n, const double* L, int stride, double* X, int next, int columns) {
+  const int one = 1;
+  const double unit = 1;
+  columns == 1 ? dtrmv_("L", &transposed, "N", &n, L, &stride, X, &one)
+               : dtrmm_("L", "L", &transposed, "N", &n, &columns, &unit, L, &stride, X, &next);
+}
+
+/// G := M M^T, lower triangle; M: (n x m), G: (n x n).
+inline void gram(int n, int m, const double* M, double* G) {
+  const double one = 1, zero = 0;
+  dsyrk_("L", "N", &n, &m, &one, M, &n, &zero, G, &n);
+}
+
+/// A := its Cholesky factor, (n x n).  False when it is not positive definite.
+inline bool factor(int n, double* A) {
+  int info = 0;
+  dpotrf_("L", &n, A, &n, &info);
+  return info == 0;
+}
+
+/// X := (L L^T)^-1 X, (n x columns).
+inline void solve(int n, int columns, const double* L, double* X) {
+  int info = 0;
+  dpotrs_("L", &n, &columns, L, &n, X, &n, &info);
+}
+
+/// L := L^-1, (n x n).
+inline void invert_triangle(int n, double* L) {
+  int info = 0;
+  dtrtri_("L", "N", &n, L, &n, &info);
+}
+
+}  // namespace hilo::lapack

@@ -1,0 +1,13 @@
+// From a solver that gives up to MUMPS, which does the rest of the run.
+#pragma once
+#include "linear/petsc/coupling.hpp"
+#include "linear/petsc/direct.hpp"
+#include "linear/petsc/subdomain_matrix.hpp"
+
+namespace hilo::petsc {
+
+/// A direct solver with the matrix as it is assembled in `F` and `coupling`.
+std::unique_ptr<DirectSolver> hand_over(const SubdomainMatrix& F, const Coupling& coupling, const Cliques& cliques, const BlockMap& map,
+                                        double tolerance);
+
+}  // namespace hilo::petsc
