@@ -118,7 +118,7 @@ class IterativeSolver final : public KktSolver {
   /// From the next matrix on; this one is at hand as its symmetric part alone.
   void take_whole_tangent() {
     if (rank() == 0) warn("", "CG: parts turn too far in a step for a symmetric tangent; GMRES with the whole one from here on");
-    turns_ = false, kind_ = find_kind("iterative");
+    turns_ = false, kind_ = &solver_kinds().at("iterative");
     structure(*cliques_, *map_);
   }
 

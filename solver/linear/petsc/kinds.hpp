@@ -2,10 +2,10 @@
 #pragma once
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "base/registry.hpp"
 #include "linear/petsc/flexible.hpp"
 
 namespace hilo::petsc {
@@ -19,17 +19,15 @@ struct FlexibleInput {
 };
 
 struct SolverKind {
-  std::string word;   // of the scene
+  std::string name;   // of the scene
   std::string title;  // before it has a system
   std::function<Flexible(const FlexibleInput&)> make;
   bool is_symmetric = false;  // conjugate gradients, on the symmetric part of the whole matrix in single precision
   bool goes_direct = false;   // MUMPS does the rest of the run where it fails; its matrix is a SubdomainMatrix
 };
 
-/// All of them; a kind is one row.
-std::span<const SolverKind> solver_kinds();
-/// The row of a word, or null.
-const SolverKind* find_kind(const std::string& word);
+/// All of them.
+Registry<SolverKind>& solver_kinds();
 
 std::unique_ptr<KktSolver> make_iterative(const SolverKind& kind, double tolerance, int subdomains);
 

@@ -270,28 +270,28 @@ Flexible on_subdomains(const FlexibleInput& in, const char* name, const Options&
 
 const SolverKind* find_peer(const std::string& word) {
   static const std::vector<SolverKind> peers{
-      {.word = "petsc-icc",
+      {.name = "petsc-icc",
        .title = "PETSc",
        .make = [](const auto& in) { return on_upper(in, "PETSc ICC", incomplete_cholesky); },
        .is_symmetric = true},
-      {.word = "petsc-gamg",
+      {.name = "petsc-gamg",
        .title = "PETSc",
        .make = [](const auto& in) { return on_blocks(in, MATAIJ, "GAMG", gamg); },
        .is_symmetric = true},
-      {.word = "petsc-hypre",
+      {.name = "petsc-hypre",
        .title = "PETSc",
        .make = [](const auto& in) { return on_blocks(in, MATAIJ, "BoomerAMG", hypre); },
        .is_symmetric = true},
-      {.word = "petsc-ilu", .title = "PETSc", .make = [](const auto& in) { return on_blocks(in, nullptr, "PETSc ILU", incomplete_lu); }},
-      {.word = "petsc-cholmod", .title = "PETSc", .make = [](const auto& in) { return on_blocks(in, MATAIJ, "CHOLMOD", cholmod); }},
-      {.word = "petsc-bddc", .title = "PETSc", .make = [](const auto& in) { return on_subdomains(in, "PCBDDC", bddc); }},
-      {.word = "petsc-bddc-deluxe", .title = "PETSc", .make = [](const auto& in) { return on_subdomains(in, "PCBDDC deluxe", deluxe); }},
-      {.word = "petsc-bddc-adaptive",
+      {.name = "petsc-ilu", .title = "PETSc", .make = [](const auto& in) { return on_blocks(in, nullptr, "PETSc ILU", incomplete_lu); }},
+      {.name = "petsc-cholmod", .title = "PETSc", .make = [](const auto& in) { return on_blocks(in, MATAIJ, "CHOLMOD", cholmod); }},
+      {.name = "petsc-bddc", .title = "PETSc", .make = [](const auto& in) { return on_subdomains(in, "PCBDDC", bddc); }},
+      {.name = "petsc-bddc-deluxe", .title = "PETSc", .make = [](const auto& in) { return on_subdomains(in, "PCBDDC deluxe", deluxe); }},
+      {.name = "petsc-bddc-adaptive",
        .title = "PETSc",
        .make = [](const auto& in) { return on_subdomains(in, "PCBDDC adaptive", adaptive); }},
-      {.word = "petsc-fetidp", .title = "PETSc", .make = [](const auto& in) { return on_subdomains(in, "KSPFETIDP", bddc, true); }},
+      {.name = "petsc-fetidp", .title = "PETSc", .make = [](const auto& in) { return on_subdomains(in, "KSPFETIDP", bddc, true); }},
   };
-  const auto found = std::find_if(peers.begin(), peers.end(), [&](const SolverKind& k) { return k.word == word; });
+  const auto found = std::find_if(peers.begin(), peers.end(), [&](const SolverKind& k) { return k.name == word; });
   return found == peers.end() ? nullptr : &*found;
 }
 
