@@ -4,6 +4,7 @@
 #include <suitesparse/cholmod.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "linear/lapack.hpp"
@@ -39,11 +40,12 @@ class SingleValues {
       auto& copy = pieces_.emplace_back(held - first[from]);
       std::transform(values + first[from], values + held, copy.begin(), [](double v) { return static_cast<float>(v); });
       for (int s = from; s < to; ++s) start_[s] = copy.data() + (first[s] - first[from]);
-      const auto left = static_cast<size_t>(first[from]);
-      L->x = left > 0 ? cholmod_realloc(left, sizeof(double), L->x, &held, &common) : cholmod_free(held, sizeof(double), L->x, &common);
-      held = left, to = from;
+      L->x = cholmod_realloc(std::max(first[from], 1), sizeof(double), L->x, &held, &common);
+      to = from;
     }
+    const size_t size = std::exchange(L->xsize, held);  // what CHOLMOD gives back now
     cholmod_change_factor(CHOLMOD_PATTERN, 1, 1, 1, 1, L, &common);
+    L->xsize = size;
   }
   void clear() { pieces_.clear(), start_.clear(); }
   bool exist() const { return !start_.empty(); }

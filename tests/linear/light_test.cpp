@@ -73,6 +73,18 @@ TEST(Light, StopsAtTheToleranceAskedFor) {
   EXPECT_LT(few, light.report.iterations);
 }
 
+TEST(Light, CholeskyFactorsAnewWhereTheOldFactorsDoNotServe) {
+  Light light(elastic_bar(16, 4, 4, 30), "cholesky");
+  for (const double jump : {1., 1e4, 1e-4, 1.}) {
+    light.p.matrix = [matrix = elastic_bar(16, 4, 4, 30).matrix, jump](int e) {
+      const test::Matrix K = matrix(e);
+      return test::Matrix(e % 2 && K.rows() >= 12 ? jump * K : K);
+    };
+    EXPECT_LT(light.solve(1), 1e-9) << jump;
+    EXPECT_EQ(light.solver->name(), "light (CHOLMOD)") << jump;
+  }
+}
+
 TEST(Light, IllConditionedBarIsSolvedInDoublePrecision) {
   Problem p = elastic_bar(3000, 1, 1, 1e9);  // bends 1e12 times softer than a cell
   p.n_dense = 0, p.common.clear(), p.X.resize(3 * static_cast<size_t>(p.n_flexible));
