@@ -34,9 +34,9 @@ def solve(ranks, case, kind, tolerance, subdomains=None):
     command = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
     command += ["linear-bench", *map(str, case), kind, str(tolerance)] + ([str(subdomains)] if subdomains else [])
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=900)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300)
     except subprocess.TimeoutExpired:
-        return {"kind": kind, "failed": "more than 900 s"}
+        return {"kind": kind, "failed": "more than 300 s"}
     lines = [line for line in done.stdout.splitlines() if line.startswith(kind + ",")]
     if not lines:
         return {"kind": kind, "failed": (done.stderr.strip().splitlines() or ["no answer"])[-1][:100]}
@@ -80,14 +80,14 @@ substructured = ["bddc", "petsc-bddc", "petsc-bddc-deluxe", "petsc-bddc-adaptive
 
 if "serial" in wanted:
     mesh = vehicle(1, "tags.toml", 1)
-    for step in (2.5e-5, 1e-4, 1e-3):
+    for step in (2.5e-5, 1e-4):
         table(f"Vehicle M, steps of {1e6 * step:g} us", 1, ["scene", scene, mesh, step, 0.0125], whole + unsymmetric + factors, 1e-4)
 if "block" in wanted:
     for cfl, jump in ((5, 1), (50, 1), (50, 1e4)):
         table(f"Block of 40^3 cubes, CFL {cfl}, jumps of {jump:g}", 1, ["block", 40, cfl, jump, 64], whole + unsymmetric, 1e-4)
 if "ranks" in wanted:
     mesh = vehicle(1, "tags.toml", 2)
-    table("Vehicle M, steps of 100 us", 2, ["scene", scene, mesh, 1e-4, 0.0125], substructured + ["cg", "petsc-gamg"], 1e-6)
+    table("Vehicle M, steps of 100 us", 2, ["scene", scene, mesh, 1e-4, 0.0125], [k for k in substructured if k != "petsc-fetidp"], 1e-6)
     for jump in (1, 1e4):
         table(f"Block of 24^3 cubes, CFL 50, jumps of {jump:g}", 2, ["block", 24, 50, jump, 16], substructured, 1e-6)
 if "large" in wanted:
