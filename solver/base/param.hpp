@@ -1,5 +1,6 @@
 // One entry of an option or parameter table: key, unit, meaning and range.
 #pragma once
+#include <array>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -31,6 +32,7 @@ struct Param {
   std::string_view fallback;
   std::string_view meaning;
   Range range = any_number;
+  std::array<unsigned char, 2> counts{};  // how many numbers a list may hold, {3} or {1, 3}; {}: any number
 };
 
 /// Factor that takes a number in `unit` of the system `system` ("m-kg-s", "mm-t-s", "mm-kg-ms", "in-lbf-s", "ft-lbf-s") to SI.  Throws

@@ -5,6 +5,33 @@
 #include <algorithm>
 
 namespace hilo {
+namespace {
+
+std::unique_ptr<KktSolver> light(const std::string& kind, const Entry&) { return make_light_solver(kind); }
+std::unique_ptr<KktSolver> petsc(const std::string& kind, const Entry& e) {
+  return make_petsc_solver(kind, e.number("linear_tolerance"), static_cast<int>(e.number("subdomains")));
+}
+
+}  // namespace
+
+Registry<SolverKind>& solver_kinds() {
+  static Registry<SolverKind> kinds{"solver",
+                                    {{"light", true, light},
+                                     {"klu", true, light},
+                                     {"cholesky", true, light},
+                                     {"umfpack", true, light},
+                                     {"direct", false, petsc},
+                                     {"cg", false, petsc},
+                                     {"iterative", false, petsc},
+                                     {"bddc", false, petsc},
+                                     {"feti-dp", false, petsc}}};
+  return kinds;
+}
+
+void add_solver(const SolverKind& kind) {
+  words_of("solver", "kind")->add({kind.name});
+  solver_kinds().add(kind);
+}
 
 std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& system, bool talk) {
   const Entry& e = scene.table("solver");
@@ -19,11 +46,10 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
     if (ranks >= 2 && flexible > 3000 && flexible / ranks <= 100000 && unknowns - flexible <= 3000 && 2 * held < flexible) kind = "bddc";
     why = fmt::format("{} unknowns on {} rank{}", unknowns, system.comm->size, system.comm->size == 1 ? "" : "s");
   }
-  const bool is_light = kind == "light" || kind == "klu" || kind == "cholesky" || kind == "umfpack";
-  if (is_light && system.comm->size > 1)
+  const SolverKind& chosen = solver_kinds().at(kind, e.where("kind"));
+  if (chosen.serial && system.comm->size > 1)
     throw Error(e.where("kind"), "the light solvers are serial", "use bddc, direct, cg or iterative under mpirun");
-  auto solver =
-      is_light ? make_light_solver(kind) : make_petsc_solver(kind, e.number("linear_tolerance"), static_cast<int>(e.number("subdomains")));
+  auto solver = chosen.make(kind, e);
   solver->structure(system.cliques, system.map);
   if (talk) fmt::print(stderr, "solver {}: {}\n", solver->name(), why);
   return solver;

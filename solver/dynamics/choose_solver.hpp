@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "base/registry.hpp"
 #include "linear/kkt.hpp"
 #include "model/scene.hpp"
 #include "system/system.hpp"
@@ -11,5 +12,15 @@ namespace hilo {
 /// The linear solver for the scene, its pattern set: the light one while a factor fits, CG with incomplete factors for what no factor
 /// holds; on several ranks that share few nodes BDDC, in a third of the time of MUMPS and two thirds of its memory (docs/solvers.md).
 std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& system, bool talk);
+
+/// A word of solver.kind that is a solver; `auto` chooses among them.
+struct SolverKind {
+  std::string_view name;
+  bool serial;
+  std::unique_ptr<KktSolver> (*make)(const std::string& kind, const Entry& solver);
+};
+Registry<SolverKind>& solver_kinds();
+/// One more, from outside the tree: in the table, and a word of the scene.
+void add_solver(const SolverKind& kind);
 
 }  // namespace hilo

@@ -1,14 +1,12 @@
 #include "dynamics/minimum_norm.hpp"
 
-#include "dynamics/joint_gradient.hpp"
-
 namespace hilo {
 
 MinimumNorm::MinimumNorm(const System& system) : system_(system) {
   std::vector<int> number(system.n_blocks(), -1);
   int n = 0;
-  for (const Joint& joint : system.joints) {
-    auto blocks = joint_blocks(system, joint);
+  for (const auto& c : system.constraints()) {
+    auto blocks = c->blocks();
     for (int& block : blocks) {
       if (number[block] < 0) number[block] = n++;
       block = number[block];
@@ -20,14 +18,15 @@ MinimumNorm::MinimumNorm(const System& system) : system_(system) {
 }
 
 std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const double> lambda) {
-  const auto n_joints = static_cast<int>(system_.joints.size());
+  const auto all = system_.constraints();
+  const auto n = static_cast<int>(all.size());
   A_.zero();
-  std::vector<DenseRows> G(n_joints);
+  std::vector<DenseRows> G(n);
   Eigen::VectorXd f = Eigen::VectorXd::Zero(A_.n());
   double largest = 0;
-  for (int j = 0; j < n_joints; ++j) {
-    const Joint& joint = system_.joints[j];
-    G[j] = joint_rows(system_, joint, stage);
+  for (int j = 0; j < n; ++j) {
+    const Constraint& c = *all[j];
+    G[j] = c.gradient(stage);
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, max_directions, max_directions> K =
         decltype(K)::Zero(G[j].cols(), G[j].cols());
     for (Eigen::Index r = 0; r < G[j].rows(); ++r)
@@ -35,12 +34,11 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
         if (G[j](r, i) != 0) K.row(i) += G[j](r, i) * G[j].row(r);
     largest = std::max(largest, K.diagonal().maxCoeff());
     A_.add(j, K.data());
-    for (int r = 0; r < joint.n_rows(); ++r) {
-      if (!joint.active[r]) continue;
+    for (int r = 0; r < c.n_rows(); ++r) {
+      if (!c.active()[r]) continue;
       const auto blocks = cliques_[j];
       for (size_t k = 0; k < blocks.size(); ++k)
-        f.segment<3>(3 * blocks[k]) +=
-            lambda[system_.joints.row(j) + r] * G[j].row(r).segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
+        f.segment<3>(3 * blocks[k]) += lambda[c.row() + r] * G[j].row(r).segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
     }
   }
   const double shift = 1e-10 * largest;
@@ -56,10 +54,10 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   }
   std::vector<double> out(lambda.size(), 0.0);
   Eigen::Matrix<double, max_directions, 1> own;
-  for (int j = 0; j < n_joints; ++j) {
+  for (int j = 0; j < n; ++j) {
     const auto blocks = cliques_[j];
     for (size_t k = 0; k < blocks.size(); ++k) own.segment<3>(3 * static_cast<Eigen::Index>(k)) = y.segment<3>(3 * blocks[k]);
-    Eigen::Map<Eigen::VectorXd>(&out[system_.joints.row(j)], G[j].rows()) = G[j] * own.head(G[j].cols());
+    Eigen::Map<Eigen::VectorXd>(&out[all[j]->row()], G[j].rows()) = G[j] * own.head(G[j].cols());
   }
   return out;
 }

@@ -4,40 +4,41 @@
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 
 #include "dynamics/independence.hpp"
-#include "dynamics/joint_gradient.hpp"
 
 namespace hilo {
 namespace {
 
-/// Unit rows of all joints at q as columns over the unknowns, rotations in units of the scene's length.
+/// Unit rows of all constraints at q as columns over the unknowns, rotations in units of the scene's length.
 struct UnitRows {
-  std::vector<std::pair<int, int>> rows;  // joint, row
+  std::vector<std::pair<int, int>> rows;  // constraint, row
   std::vector<double> norm;
   Eigen::SparseMatrix<double> A;  // (3 blocks x rows)
 };
 
-bool is_drive(const System& system, std::pair<int, int> row) { return system.joints[row.first].drive.row == row.second; }
+bool is_drive(const System& system, std::pair<int, int> row) { return system.constraints()[row.first]->is_driven(row.second); }
 
 enum class Rows { all, active, plain };  // plain: all but those of drives
 
 UnitRows unit_rows(const System& system, const Config& q, Rows which) {
   UnitRows out;
   std::vector<Eigen::Triplet<double>> entries;
-  for (size_t j = 0; j < system.joints.size(); ++j) {
-    const Joint& joint = system.joints[j];
-    const DenseRows G = joint_rows(system, joint, stage_at(q, 0));
-    const auto blocks = joint_blocks(system, joint);
-    for (int r = 0; r < joint.n_rows(); ++r) {
-      if (which == Rows::active && !joint.active[r]) continue;
-      if (which == Rows::plain && is_drive(system, {static_cast<int>(j), r})) continue;
+  const auto constraints = system.constraints();
+  for (size_t j = 0; j < constraints.size(); ++j) {
+    const Constraint& c = *constraints[j];
+    const DenseRows G = c.gradient(stage_at(q, 0));
+    const auto blocks = c.blocks();
+    for (int r = 0; r < c.n_rows(); ++r) {
+      if (which == Rows::active && !c.active()[r]) continue;
+      if (which == Rows::plain && c.is_driven(r)) continue;
       const double norm = G.row(r).norm();
-      for (Eigen::Index c = 0; c < G.cols(); ++c)
-        if (const double x = norm > 0 ? G(r, c) / norm : 0; std::abs(x) > 1e-14)
-          entries.emplace_back(3 * blocks[c / 3] + static_cast<int>(c % 3), static_cast<int>(out.rows.size()), x);
+      for (Eigen::Index i = 0; i < G.cols(); ++i)
+        if (const double x = norm > 0 ? G(r, i) / norm : 0; std::abs(x) > 1e-14)
+          entries.emplace_back(3 * blocks[i / 3] + static_cast<int>(i % 3), static_cast<int>(out.rows.size()), x);
       out.rows.emplace_back(static_cast<int>(j), r), out.norm.push_back(norm);
     }
   }
@@ -49,7 +50,8 @@ UnitRows unit_rows(const System& system, const Config& q, Rows which) {
 /// Rows that depend on others at q, up to `dependent` of a unit row, are switched off.
 Redundancy choose_rows(System& system, const Config& q, double dependent) {
   Redundancy report;
-  for (Joint& joint : system.joints) joint.active.fill(true);
+  const auto constraints = system.constraints();
+  for (const auto& c : constraints) c->set_active(all_active);
   const UnitRows all = unit_rows(system, q, Rows::all);
   report.rows = static_cast<int>(all.rows.size());
   if (report.rows == 0) return report;
@@ -62,21 +64,25 @@ Redundancy choose_rows(System& system, const Config& q, double dependent) {
     report.rank += static_cast<int>(found.rank);
     for (Eigen::Index k = found.rank; k < own.cols(); ++k) {
       const auto row = all.rows[group[found.order[k]]];
-      const auto [joint, measure] = row;
-      system.joints[joint].active[measure] = false;
+      const auto [one, r] = row;
+      Constraint& c = *constraints[one];
+      Active active = c.active();
+      active[r] = false;
+      c.set_active(active);
       const Eigen::VectorXd depends = found.depends(k - found.rank);
       std::set<std::string> others;
       bool on_drives = false;
       for (Eigen::Index i = 0; i < found.rank; ++i) {
         if (std::abs(depends[i]) <= 1e-6) continue;
         const auto other = all.rows[group[found.order[i]]];
-        if (other.first != joint) others.insert(system.joints[other.first].name);
+        if (other.first != one) others.insert(constraints[other.first]->name());
         on_drives = on_drives || is_drive(system, other);
       }
       const std::string names = fmt::format("{}", fmt::join(others, ", "));
-      if (is_drive(system, row) && !on_drives) report.held.push_back({joint, names});
-      report.dropped.push_back(fmt::format("joint \"{}\" row {}{}", system.joints[joint].name, measure + 1,
-                                           others.empty() ? " (depends on the joint's own rows)" : fmt::format(" (depends on {})", names)));
+      if (is_drive(system, row) && !on_drives) report.held.push_back({one, names});
+      report.dropped.push_back(fmt::format(
+          "{} row {}{}", c.label(), r + 1,
+          others.empty() ? fmt::format(" (depends on the {}'s own rows)", c.section()) : fmt::format(" (depends on {})", names)));
     }
   }
   return report;
@@ -88,10 +94,7 @@ Eigen::VectorXd gaps(const System& system, const UnitRows& unit, const Config& q
   double g[max_rows];
   for (size_t k = 0; k < unit.rows.size(); ++k) {
     const auto [j, r] = unit.rows[k];
-    const Joint& joint = system.joints[j];
-    if (k == 0 || unit.rows[k - 1].first != j) {
-      hilo::gaps(joint, q, t, 1, g);
-    }
+    if (k == 0 || unit.rows[k - 1].first != j) system.constraints()[j]->gaps(q, t, 1, g);
     out[static_cast<Eigen::Index>(k)] = unit.norm[k] > 0 ? g[r] / unit.norm[k] : 0;
   }
   return out;
@@ -159,13 +162,8 @@ std::optional<Config> beside(const System& system, const Config& q, const Eigen:
   return {};
 }
 
-/// Largest move of a body's centre, and turn times the scene's length, between two poses.
-double way(const System& system, const Config& a, const Config& b) {
-  double out = 0;
-  for (size_t i = 0; i < a.x.size(); ++i) out = std::max(out, (b.x[i] - a.x[i]).norm());
-  for (size_t i = 0; i < a.c.size(); ++i) out = std::max({out, (b.c[i] - a.c[i]).norm(), system.length * (b.R[i] - a.R[i]).norm()});
-  return system.comm->max(out);
-}
+/// Largest move of a node or centre, and turn times the scene's length, between two poses.
+double way(const System& system, const Config& a, const Config& b) { return system.largest_difference(a, b, std::sqrt(2) * system.length); }
 
 /// A pose beside q that all rows but those of drives allow; nothing where they lead back.
 std::optional<Config> branch(const System& system, const Config& q, const Eigen::VectorXd& direction, double t, double far) {
@@ -174,12 +172,12 @@ std::optional<Config> branch(const System& system, const Config& q, const Eigen:
   return out;
 }
 
-/// Some direction of all that joints hold, the same on all ranks.
+/// Some direction of all that constraints hold, the same on all ranks.
 Eigen::VectorXd some_direction(const System& system, unsigned seed) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(system.n_blocks()));
   std::minstd_rand random(seed);
-  for (const Joint& joint : system.joints)
-    for (const int block : joint_blocks(system, joint))
+  for (const auto& c : system.constraints())
+    for (const int block : c->blocks())
       for (int i = 0; i < 3; ++i) {
         const double x = static_cast<double>(random()) / std::minstd_rand::max() - 0.5;
         if (out[3 * block + i] == 0) out[3 * block + i] = x;
@@ -191,12 +189,12 @@ Eigen::VectorXd some_direction(const System& system, unsigned seed) {
 
 std::vector<Active> active_rows(const System& system) {
   std::vector<Active> out;
-  for (const Joint& j : system.joints) out.push_back(j.active);
+  for (const auto& c : system.constraints()) out.push_back(c->active());
   return out;
 }
 
 void set_rows(System& system, const std::vector<Active>& rows) {
-  for (size_t j = 0; j < rows.size(); ++j) system.joints[j].active = rows[j];
+  for (size_t j = 0; j < rows.size(); ++j) system.constraints()[j]->set_active(rows[j]);
 }
 
 Redundancy drop_redundant_rows(System& system, const Config& q, double t) {
@@ -217,7 +215,7 @@ Redundancy drop_redundant_rows(System& system, const Config& q, double t) {
     if (there.rank > here.rank) {
       there.at_pose = at_pose, there.rank_at_pose = here.rank;
       for (size_t j = 0; j < at_pose.size(); ++j)
-        if (at_pose[j] != system.joints[j].active) there.singular_joints.push_back(system.joints[j].name);
+        if (const Constraint& c = *system.constraints()[j]; at_pose[j] != c.active()) there.singular_joints.push_back(c.name());
       return there;
     }
     set_rows(system, at_pose);

@@ -1,6 +1,5 @@
 // Redundant joint rows: found by rank, and switched off.
 #pragma once
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,15 +8,13 @@
 
 namespace hilo {
 
-using Active = std::array<bool, max_rows>;
-
 /// What the rank check found.
 struct Redundancy {
   int rows = 0, rank = 0;
   std::vector<std::string> dropped;  // "joint \"b\" row 3 (depends on joints a, c)"
   struct Held {
-    int joint;
-    std::string by;  // joints that leave its drive nothing to drive
+    int constraint;
+    std::string by;  // those that leave its drive nothing to drive
   };
   std::vector<Held> held;
   // A singular position (a mechanism drawn flat, a dead point) has fewer independent rows than the poses beside it:

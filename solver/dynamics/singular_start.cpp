@@ -12,9 +12,11 @@ namespace {
 Vec3 axial(const Mat3& S) { return Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)) / 2; }
 
 /// Velocities at `from`, taken to `to`: the spins stay.
-Config carried(const Config& v, const Config& from, const Config& to) {
+Config carried(const System& system, const Config& v, const Config& from, const Config& to) {
   Config out = v;
-  for (size_t b = 0; b < v.R.size(); ++b) out.R[b] = skew(axial(v.R[b] * from.R[b].transpose())) * to.R[b];
+  for (const UnknownField& f : system.unknowns)
+    for (size_t k = 0; k < f.size() && f.turns(); ++k)
+      out.R[f.item[k]] = skew(axial(v.R[f.item[k]] * from.R[f.item[k]].transpose())) * to.R[f.item[k]];
   return out;
 }
 
@@ -42,19 +44,15 @@ double follow_branch(System& system, KktSolver& solver, State& s, Redundancy& re
         return 0;
       }
     }
-    tangent[k] = carried(s.v, s.q, *ahead);
+    tangent[k] = carried(system, s.v, s.q, *ahead);
     project_velocities(system, solver, *ahead, tangent[k], s.t);
-    tangent[k] = carried(tangent[k], *ahead, s.q);
+    tangent[k] = carried(system, tangent[k], *ahead, s.q);
   }
   combine(s.v, {{1. / 3, &tangent[0]}, {-2, &tangent[1]}, {8. / 3, &tangent[2]}});
   set_rows(system, redundancy.at_pose);
   project_velocities(system, solver, s.q, s.v, s.t);
   set_rows(system, chosen);
-  double change = 0;
-  for (size_t i = 0; i < before.x.size(); ++i) change = std::max(change, (s.v.x[i] - before.x[i]).norm());
-  for (size_t b = 0; b < before.c.size(); ++b)
-    change = std::max({change, (s.v.c[b] - before.c[b]).norm(), (s.v.R[b] - before.R[b]).norm() / std::sqrt(2) * system.bodies[b].size});
-  return system.comm->max(change);
+  return system.largest_difference(s.v, before);
 }
 
 }  // namespace hilo

@@ -17,9 +17,9 @@ class StageBlock final : public KktSolver {
   StageBlock(SerialKktSolver& whole, const System& system, int row, int column, double share, const double& scale)
       : whole_(whole), system_(system), row_(row), column_(column), share_(share), scale_(scale) {
     if (row == column) return;
-    for (const Joint& c : system.joints)
-      for (int r = 0; r < 3 * ((c.n_rows() + 2) / 3); ++r)
-        holds_velocity_.push_back(r >= c.n_position_rows() && r < c.n_rows() && c.active[r]);
+    holds_velocity_.assign(3 * static_cast<size_t>(system.n_joint_blocks()), 0);
+    for (const auto& c : system.constraints())
+      for (int r = c->n_position_rows(); r < c->n_rows(); ++r) holds_velocity_[c->row() + r] = c->active()[r];
   }
   void structure(const Cliques&, const BlockMap&) override {}
   void zero() override {}

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "dynamics/free_part.hpp"
-#include "physics/rolling.hpp"
 
 namespace hilo {
 namespace {
@@ -71,19 +70,15 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
   if (!done) {
     double worst = 0, g[max_rows];
     std::string open;
-    for (const Joint& j : system.joints) {
-      gaps(j, q, 0, 1, g);
-      for (int r = 0; r < j.n_rows(); ++r)
-        if (!(std::abs(g[r]) <= worst)) worst = std::abs(g[r]), open = j.name;
+    for (const auto& c : system.constraints()) {
+      c->gaps(q, 0, 1, g);
+      for (int r = 0; r < c->n_rows(); ++r)
+        if (!(std::abs(g[r]) <= worst)) worst = std::abs(g[r]), open = c->label();
     }
-    throw Error("", fmt::format("the joints cannot be put together at the start: joint \"{}\" stays apart by {:.3g}", open, worst),
+    throw Error("", fmt::format("the joints cannot be put together at the start: {} stays apart by {:.3g}", open, worst),
                 "check where the joints and bodies are placed, and what drives them at t = 0");
   }
-  double change = 0;
-  for (size_t i = 0; i < q.x.size(); ++i) change = std::max(change, (q.x[i] - placed.x[i]).norm());
-  for (size_t i = 0; i < q.c.size(); ++i)
-    change = std::max({change, (q.c[i] - placed.c[i]).norm(), (q.R[i] - placed.R[i]).norm() / std::sqrt(2) * system.bodies[i].size});
-  return system.comm->max(change);
+  return system.largest_difference(q, placed);
 }
 
 double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t) {
@@ -112,12 +107,9 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
   if (system.comm->max(std::all_of(rate.begin(), rate.end(), is_zero) && std::all_of(b.begin(), b.end(), is_zero) ? 0 : 1) == 0) return 0;
   system.evaluate(mass_stage(q, zero, 0), lambda, r, &solver);
   const int first = 3 * system.first_joint_block();
-  for (size_t j = 0; j < system.joints.size(); ++j)
-    for (int m = 0; m < system.joints[j].n_rows(); ++m)
-      if (system.joints[j].active[m]) {
-        const int k = system.joints.row(j) + m;
-        b[first + k] = -r.sigma * rate[k];
-      }
+  for (const auto& c : system.constraints())
+    for (int m = 0; m < c->n_rows(); ++m)
+      if (const int k = c->row() + m; c->active()[m]) b[first + k] = -r.sigma * rate[k];
   const SolveReport solved = solver.solve(b, z);
   if (!solved.ok)
     throw Error("",
@@ -128,24 +120,16 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
 
 namespace {
 
-/// Largest vector over all points.
-double size_of(const System& system, const Config& d) {
-  double top = 0;
-  for (const Vec3& x : d.x) top = std::max(top, x.norm());
-  for (size_t b = 0; b < d.c.size(); ++b) top = std::max({top, d.c[b].norm(), system.bodies[b].size * d.R[b].colwise().norm().maxCoeff()});
-  return system.comm->max(top);
-}
-
 /// Accelerations and multipliers that satisfy equations and constraints at (q, v) at time t.
 void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda) {
   // guess: bodies that keep their spin, everything else unaccelerated; the solve adds the rest
-  a = s.v;
-  for (Vec3& x : a.x) x.setZero();
-  for (size_t b = 0; b < a.c.size(); ++b) {
-    const Mat3 S = s.v.R[b] * s.q.R[b].transpose(), W = (S - S.transpose()) / 2;
-    a.c[b].setZero();
-    a.R[b] = W * W * s.q.R[b];
-  }
+  combine(a, {{0, &s.v}});
+  for (const UnknownField& f : system.unknowns)
+    for (size_t k = 0; k < f.size() && f.turns(); ++k) {
+      const int b = f.item[k];
+      const Mat3 S = s.v.R[b] * s.q.R[b].transpose(), W = (S - S.transpose()) / 2;
+      a.R[b] = W * W * s.q.R[b];
+    }
   system.follow(a);
   system.prescribe_rates(s.t, Side::right, nullptr, &a);
   lambda.assign(3 * system.n_joint_blocks(), 0.0);
@@ -167,11 +151,10 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
     system.row_rates(s.q, s.v, &a, s.t, rate, &acceleration);  // rows: d2g/dt2 = 0
     b.resize(r.r.size()), z.assign(r.r.size(), 0.0);
     for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
-    for (size_t j = 0; j < system.joints.size(); ++j)
-      for (int k = 0; k < 3 * ((system.joints[j].n_rows() + 2) / 3); ++k) {
-        const int i = system.joints.row(j) + k;
-        const bool active = k < system.joints[j].n_rows() && system.joints[j].active[k];
-        b[first + i] = active ? -r.sigma * acceleration[i] : 0;
+    for (const auto& c : system.constraints())
+      for (int k = 0; k < c->n_padded(); ++k) {
+        const int i = c->row() + k;
+        b[first + i] = k < c->n_rows() && c->active()[k] ? -r.sigma * acceleration[i] : 0;
       }
     const SolveReport solved = solver.solve(b, z);
     if (!solved.ok)
@@ -210,7 +193,7 @@ void consistent_acceleration(const System& system, KktSolver& solver, State& s, 
   // a curve rather than a line: the jerk is zero (from rest), or the motion is too fast for h, and no jerk is better than a wrong one
   Config change;
   combine(change, {{1, &ahead[1].a}, {-1, &s.a}});
-  if (h * h * size_of(system, s.snap) > 0.25 * size_of(system, change)) combine(s.jerk, {{0, &s.jerk}});
+  if (h * h * system.largest_rate(s.snap) > 0.25 * system.largest_rate(change)) combine(s.jerk, {{0, &s.jerk}});
 }
 
 NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vector<double>& lambda, double t, double ramp, bool mechanism,

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
+#include "base/registry.hpp"
 #include "base/stopwatch.hpp"
 #include "linear/factors.hpp"
 #include "linear/gmres.hpp"
@@ -209,6 +209,10 @@ class LightSolver final : public SerialKktSolver {
 
 }  // namespace
 
-std::unique_ptr<SerialKktSolver> make_light_solver(const std::string& kind) { return std::make_unique<LightSolver>(kind); }
+std::unique_ptr<SerialKktSolver> make_light_solver(const std::string& kind) {
+  const std::vector<std::string> kinds{"light", "klu", "cholesky", "umfpack"};
+  if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) registry::refuse("light solver", kind, kinds, "solver.kind");
+  return std::make_unique<LightSolver>(kind);
+}
 
 }  // namespace hilo

@@ -1,8 +1,14 @@
 // The table of cell shapes, and volume and quality of a cell from its facets and corners.
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <cmath>
+#include <deque>
+#include <initializer_list>
 
+#include "base/error.hpp"
 #include "model/mesh.hpp"
+#include "model/partition.hpp"
 
 namespace hilo {
 namespace {
@@ -13,47 +19,56 @@ struct Kind {
   ShapeInfo info;
   Lists corners;                               // per corner the three neighbours that make a right-handed system
   std::array<std::array<int, 20>, 20> middle;  // mid-side node between two corners, -1 where there is none
+  int work;
 };
 
-Kind make(std::string_view name, int corners, int dimension, int vtk, int xdmf, const Lists& facets, Lists neighbours,
-          const Lists& edges = {}) {
-  Kind k{{name, corners + static_cast<int>(edges.size()), corners, dimension, vtk, xdmf, facets,
-          neighbours.empty() ? std::vector<int>{1} : neighbours[0]},
-         std::move(neighbours),
-         {}};
-  for (auto& row : k.middle) row.fill(-1);
-  for (size_t e = 0; e < edges.size(); ++e)
-    k.middle[edges[e][0]][edges[e][1]] = k.middle[edges[e][1]][edges[e][0]] = corners + static_cast<int>(e);
-  if (!edges.empty())
+Kind make(const ShapeRow& row) {
+  const int n = row.corners + static_cast<int>(row.edges.size());
+  Kind k{{row.name, n, row.corners, row.dimension, row.vtk, row.xdmf, row.facets,
+          row.neighbours.empty() ? std::vector<int>{1} : row.neighbours[0]},
+         row.neighbours,
+         {},
+         row.work};
+  for (auto& list : k.middle) list.fill(-1);
+  for (size_t e = 0; e < row.edges.size(); ++e) {
+    const int from = row.edges[e][0], to = row.edges[e][1];
+    k.middle[from][to] = k.middle[to][from] = row.corners + static_cast<int>(e);
+  }
+  if (!row.edges.empty())
     for (auto& facet : k.info.facets) {
-      const size_t n = facet.size();
-      for (size_t a = 0; a < n; ++a) facet.push_back(k.middle[facet[a]][facet[(a + 1) % n]]);
+      const size_t m = facet.size();
+      for (size_t a = 0; a < m; ++a) facet.push_back(k.middle[facet[a]][facet[(a + 1) % m]]);
     }
   return k;
 }
 
-const Kind& kind(Shape shape) {
-  static const std::vector<Kind> table = [] {
+/// By number, in the order of Shape.
+std::deque<Kind>& kinds() {
+  static std::deque<Kind> table = [] {
     const Lists tet{{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}}, tet_corners{{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {2, 1, 0}};
     const Lists wedge{{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
     const Lists wedge_corners{{1, 2, 3}, {2, 0, 4}, {0, 1, 5}, {5, 4, 0}, {3, 5, 1}, {4, 3, 2}};
     const Lists hex{{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
     const Lists hex_corners{{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
-    std::vector<Kind> t;
-    t.push_back(make("bar2", 2, 1, 3, 2, {{0}, {1}}, {}));
-    t.push_back(make("tet4", 4, 3, 10, 6, tet, tet_corners));
-    t.push_back(make("tet10", 4, 3, 24, 38, tet, tet_corners, {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}));
-    t.push_back(make("wedge6", 6, 3, 13, 8, wedge, wedge_corners));
-    t.push_back(
-        make("wedge15", 6, 3, 26, 40, wedge, wedge_corners, {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}));
-    t.push_back(make("hex8", 8, 3, 12, 9, hex, hex_corners));
-    for (const char* name : {"hex20", "hex20r"})
-      t.push_back(make(name, 8, 3, 25, 48, hex, hex_corners,
-                       {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}));
+    const Lists tet_edges{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+    const Lists wedge_edges{{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
+    const Lists hex_edges{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+    std::deque<Kind> t;
+    for (const ShapeRow& row : std::initializer_list<ShapeRow>{{"bar2", 2, 1, 3, 2, 4, {{0}, {1}}, {}, {}},
+                                                               {"tet4", 4, 3, 10, 6, 13, tet, tet_corners, {}},
+                                                               {"tet10", 4, 3, 24, 38, 134, tet, tet_corners, tet_edges},
+                                                               {"wedge6", 6, 3, 13, 8, 47, wedge, wedge_corners, {}},
+                                                               {"wedge15", 6, 3, 26, 40, 370, wedge, wedge_corners, wedge_edges},
+                                                               {"hex8", 8, 3, 12, 9, 100, hex, hex_corners, {}},
+                                                               {"hex20", 8, 3, 25, 48, 540, hex, hex_corners, hex_edges},
+                                                               {"hex20r", 8, 3, 25, 48, 460, hex, hex_corners, hex_edges}})
+      t.push_back(make(row));
     return t;
   }();
-  return table[static_cast<size_t>(shape)];
+  return table;
 }
+
+const Kind& kind(Shape shape) { return kinds()[static_cast<size_t>(shape)]; }
 
 /// Shape functions of a facet and their derivatives at (r, s): 3, 4, 6 or 8 nodes.
 struct FacetPoint {
@@ -115,6 +130,17 @@ const std::vector<FacetPoint>& rule_of(size_t n) {
 }  // namespace
 
 const ShapeInfo& info(Shape shape) { return kind(shape).info; }
+
+int shapes_known() { return static_cast<int>(kinds().size()); }
+
+int work_of_cell(Shape shape) { return kind(shape).work; }
+
+Shape add_shape(const ShapeRow& row) {
+  for (const Kind& k : kinds())
+    if (k.info.name == row.name) throw Error("", fmt::format("shape \"{}\" stands in its list already", row.name), "", Exit::fault);
+  kinds().push_back(make(row));
+  return static_cast<Shape>(kinds().size() - 1);
+}
 
 Vec3 facet_area(const Mesh& mesh, const Facet& f) {
   const auto cell = mesh.cell(f.cell);

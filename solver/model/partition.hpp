@@ -9,10 +9,10 @@
 
 namespace hilo {
 
-/// Work of a flexible cell in a Newton iteration by shape, hundredths of a linear hexahedron's: tangent, force, insertion and its share of
-/// a factorisation and a solve, as `costs-bench` (tests/bench/costs.cpp) measures them.  The law of the material changes it by less than
-/// that bench can tell: unknowns are what costs.
-inline constexpr int work_of_cell[n_shapes] = {4, 13, 134, 47, 370, 100, 540, 460};
+/// Work of a flexible cell in a Newton iteration by shape (a column of mesh_shape.cpp), hundredths of a linear hexahedron's: tangent,
+/// force, insertion and its share of a factorisation and a solve, as `costs-bench` (tests/bench/costs.cpp) measures them.  The law of the
+/// material changes it by less than that bench can tell: unknowns are what costs.
+int work_of_cell(Shape shape);
 
 /// Points to divide: this rank's share of them.
 struct Cloud {

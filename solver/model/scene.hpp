@@ -7,10 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "base/error.hpp"
-#include "base/history.hpp"
-#include "base/math.hpp"
+#include "base/entry_values.hpp"
 #include "base/param.hpp"
+#include "base/registry.hpp"
 
 namespace hilo {
 
@@ -32,22 +31,24 @@ struct Value {
 };
 
 /// A table of the scene: [material.steel] has section "material" and name "steel"; [[joint]] has its kind and name as keys.
-struct Entry {
+struct Entry final : EntryValues {
+  Entry() = default;
+  Entry(std::string_view section, std::string name, Place place) : section(section), name(std::move(name)), place(std::move(place)) {}
   std::string section, kind, name;
   Place place;
   std::map<std::string, Value, std::less<>> values;  // checked and completed with defaults by the schema
 
-  bool has(std::string_view key) const;    // present, given or by default
-  bool given(std::string_view key) const;  // written in the scene
-  double number(std::string_view key) const;
-  Vec3 vector3(std::string_view key) const;
-  const std::vector<double>& numbers(std::string_view key) const;
-  const std::string& text(std::string_view key) const;
-  const std::vector<std::string>& texts(std::string_view key) const;
-  bool boolean(std::string_view key) const;
-  const History& history(std::string_view key) const;  // constant 1 where absent
-  std::string where(std::string_view key) const;       // "scene.toml:14:7" of the key, or of the entry
-  std::string label() const;                           // joint "trunnion"
+  bool has(std::string_view key) const override;
+  bool given(std::string_view key) const override;
+  double number(std::string_view key) const override;
+  Vec3 vector3(std::string_view key) const override;
+  const std::vector<double>& numbers(std::string_view key) const override;
+  const std::string& text(std::string_view key) const override;
+  const std::vector<std::string>& texts(std::string_view key) const override;
+  bool boolean(std::string_view key) const override;
+  const History& history(std::string_view key) const override;
+  std::string where(std::string_view key) const override;
+  std::string label() const override;
 };
 
 /// The whole scene, every key known and every value in range.
@@ -85,10 +86,15 @@ struct KindSchema {
   std::vector<Param> params;
 };
 const std::vector<KindSchema>& scene_schema();
-/// Words a text key may be; empty where any text will do (a `kind` is checked against the schema's kinds).
+/// A word that a key of the scene may be.
+struct Word {
+  std::string_view name, meaning = {};
+};
+/// The words of a text key; null where any text will do (a `kind` is checked against the schema's kinds).  What the floors above know by
+/// words (solver.kind, output.fields) is theirs; a program outside the tree adds its own words here.
+Registry<Word>* words_of(std::string_view section, std::string_view key);
+/// These words as a list; empty where any text will do.
 std::vector<std::string> choices(std::string_view section, std::string_view key);
-/// How many numbers a list may hold; empty where any number will do.
-std::vector<size_t> lengths(std::string_view section, std::string_view key);
 /// The default of a key that has one; defaults are in SI units.
 Value default_value(const Param& param);
 /// Sections written as [[section]] (lists of tables with a key `name`); the others are [section.NAME] or a single [section].

@@ -109,7 +109,7 @@ std::vector<std::string> section_names() {
 
 Entry read_entry(std::string_view section, const toml::table& table, const std::string& name, const Place& place,
                  const Surroundings& around, const std::string& owner) {
-  Entry entry{std::string(section), "", name, place, {}};
+  Entry entry(section, name, place);
   const std::string label = owner.empty() ? entry.label() : owner;
   const KindSchema& schema = kind_of(section, table, label, place);
   entry.kind = schema.kind;
@@ -153,7 +153,7 @@ Entries read_sections(const toml::table& root, Surroundings& around) {
     const auto& units = *std::find_if(scene.begin(), scene.end(), [](const Param& p) { return p.key == "units"; });
     if (item.key == "units") around.units = read_value("scene", units, item, "", around).texts.front();
   }
-  Entry scene{"scene", "", "", {around.file, 0, 0}, {}};
+  Entry scene("scene", "", {around.file, 0, 0});
   for (const auto& p : kinds_of("scene").front()->params) {
     const auto item = std::find_if(items.begin(), items.end(), [&](const Item& i) { return i.key == p.key; });
     if (item != items.end())

@@ -52,7 +52,15 @@ double number(const Reading& r, const toml::node& node) {
   return si;
 }
 
-std::vector<double> list_of_numbers(const Reading& r, std::vector<size_t> lengths) {
+/// How many numbers a list may hold; empty where any number will do.
+std::vector<size_t> lengths_of(const Param& p) {
+  std::vector<size_t> out;
+  for (const unsigned char n : p.counts)
+    if (n > 0) out.push_back(n);
+  return out;
+}
+
+std::vector<double> list_of_numbers(const Reading& r, const std::vector<size_t>& lengths) {
   const auto* list = r.item.node->as_array();
   if (!list) r.wrong_type(*r.item.node, lengths == std::vector<size_t>{3} ? "a list of 3 numbers" : "a list of numbers");
   if (!lengths.empty() && std::find(lengths.begin(), lengths.end(), list->size()) == lengths.end())
@@ -114,7 +122,7 @@ Value read_value(std::string_view section, const Param& param, const Item& item,
       v.numbers = list_of_numbers(r, {3});
       break;
     case Type::numbers:
-      if (const auto n = lengths(section, param.key); item.node->is_number() && std::find(n.begin(), n.end(), 1u) != n.end())
+      if (const auto n = lengths_of(param); item.node->is_number() && std::find(n.begin(), n.end(), 1u) != n.end())
         v.numbers = {number(r, *item.node)};
       else
         v.numbers = list_of_numbers(r, n);

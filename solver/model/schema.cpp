@@ -8,8 +8,10 @@
 
 namespace hilo {
 
-const std::vector<ArraySchema>& file_schema() {
-  static const std::vector<ArraySchema> table = {
+namespace {
+
+std::vector<ArraySchema>& arrays() {
+  static std::vector<ArraySchema> table = {
       {"mesh.h5", "/", "", "", "", "attributes: format = \"hilo mesh|tags|parts|run\", version, complete (0|1)"},
       {"mesh.h5", "/provenance", "string", "(n)", "", "command lines that led to this file, oldest first"},
       {"mesh.h5", "/mesh/nodes/X", "f8", "(n_nodes, 3)", "m", "reference positions"},
@@ -96,8 +98,6 @@ const std::vector<ArraySchema>& file_schema() {
   return table;
 }
 
-namespace {
-
 /// Part by part; <name> is any name, <step> six digits.
 bool is_path(std::string_view pattern, std::string_view path) {
   const auto cut = [](std::string_view& rest) {
@@ -115,6 +115,14 @@ bool is_path(std::string_view pattern, std::string_view path) {
 }
 
 }  // namespace
+
+const std::vector<ArraySchema>& file_schema() { return arrays(); }
+
+void add_array(const ArraySchema& array) {
+  if (find_array(array.file, array.path))
+    throw Error("", "the schema has an array " + std::string(array.path) + " already", "", Exit::fault);
+  arrays().push_back(array);
+}
 
 const ArraySchema* find_array(std::string_view file, std::string_view path) {
   const auto& table = file_schema();

@@ -18,6 +18,8 @@ struct ArraySchema {
   std::string_view meaning;
 };
 const std::vector<ArraySchema>& file_schema();
+/// One more, from outside the tree, of a program that writes it.  Error where the path is taken.
+void add_array(const ArraySchema& array);
 /// The row of the table that an array of a file is written by, or null: "/history/joint/pin" is "/history/joint/<name>".
 const ArraySchema* find_array(std::string_view file, std::string_view path);
 /// The same of run.h5; a path that the table does not have is an Error (our own fault).

@@ -3,6 +3,7 @@
 // With the discrete gradient d of a coordinate, d.(e1 - e0) = x1 - x0, a force f along it acts as s = f d and does the work f (x1 - x0)
 // of the step exactly.  So a law written for x keeps its energy statement: a potential stays conserved, friction stays dissipative.
 #pragma once
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -40,18 +41,29 @@ class Length final : public RowLaw {
 /// Independent linear springs and dampers: W = k/2 (x - free)^2, f = c dx/dt.
 std::unique_ptr<SpringLaw> make_linear(std::vector<double> k, std::vector<double> c, std::vector<double> free = {});
 
-/// Stop of one coordinate at `lower` and `upper`: W = k/2 <x - upper>^2 + k/2 <lower - x>^2 and, while it is touched, the damper of Hunt
-/// and Crossley that leaves the fraction `restitution` of the speed of approach [hunt-crossley-1975].  Speeds of approach below
-/// `slow` are damped as that one, so that a part at rest comes to rest.
-std::unique_ptr<SpringLaw> make_stop(double lower, double upper, double k, double restitution, double slow);
+/// Stop of one coordinate: W = k/2 <x - upper>^2 + k/2 <lower - x>^2 and, while it is touched, the damper of Hunt and Crossley that leaves
+/// the fraction `restitution` of the speed of approach [hunt-crossley-1975].
+struct StopLaw {
+  double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
+  double stiffness = 0, restitution = 1;
+  double rest_speed = 1e-3;  // speeds of approach below it are damped as this one, so that a part at rest comes to rest
+};
+std::unique_ptr<SpringLaw> make_stop(const StopLaw& stop);
 /// y = alpha v of the damper f = k d (1 + alpha dd/dt) for which a mass that hits at speed v leaves at restitution * v.
 double hunt_crossley(double restitution);
 
 /// Motor: force over rate, piecewise linear, continued by its end segments; times the step's factor.
-std::unique_ptr<SpringLaw> make_motor(std::vector<double> rate, std::vector<double> force);
+struct MotorLaw {
+  std::vector<double> rate, force;
+};
+std::unique_ptr<SpringLaw> make_motor(MotorLaw motor);
 
 /// Coulomb friction, regularised: the slip velocity has components lever_i dx_i/dt and magnitude u, the friction force is
 /// coefficient * (preload + the step's load) * tanh(u/slip_velocity) against it, and acts on coordinate i through lever_i.
-std::unique_ptr<SpringLaw> make_friction(double coefficient, double preload, double slip_velocity, std::vector<double> lever);
+struct FrictionLaw {
+  double coefficient = 0, preload = 0, slip_velocity = 1e-3;
+  std::vector<double> lever;
+};
+std::unique_ptr<SpringLaw> make_friction(const FrictionLaw& friction);
 
 }  // namespace hilo

@@ -57,6 +57,9 @@ Spring along_joint(const Connector& joint, const Config& q, Freedom freedom, std
 Spring friction_in(const Connector& joint, const JointKind& kind, const Config& q, const FrictionIn& f) {
   Spring c = beside(joint);
   c.pressing.rows = kind.pressing;
+  const auto law = [&](std::vector<double> lever) {
+    return FrictionLaw{.coefficient = f.coefficient, .preload = f.preload, .slip_velocity = f.slip_velocity, .lever = std::move(lever)};
+  };
   const bool slides = kind.frees(Freedom::slide), turns = kind.frees(Freedom::angle);
   if (!slides && !turns) {  // a ball
     // the nine products of directions are the entries of the relative rotation; the sum of the squares of their rates is twice that of
@@ -68,13 +71,13 @@ Spring friction_in(const Connector& joint, const JointKind& kind, const Config& 
     }
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) c.add_measure({{Term::dot, u[i], v[j]}});
-    c.law = make_friction(f.coefficient, f.preload, f.slip_velocity, std::vector<double>(9, f.radius / std::sqrt(2.0)));
+    c.law = make_friction(law(std::vector<double>(9, f.radius / std::sqrt(2.0))));
     return c;
   }
   std::vector<double> lever;
   if (slides) add_slide(c, q), lever.push_back(1);
   if (turns) add_angle(c, q), lever.push_back(f.radius);
-  c.law = std::make_unique<OnCoordinates>(plain_and_angle(slides, turns), make_friction(f.coefficient, f.preload, f.slip_velocity, lever));
+  c.law = std::make_unique<OnCoordinates>(plain_and_angle(slides, turns), make_friction(law(std::move(lever))));
   return c;
 }
 

@@ -16,8 +16,8 @@ struct Friction final : SpringLaw {
   double coefficient, preload, slow;
   Values lever{};
   size_t n;
-  Friction(double c, double p, double v, const std::vector<double>& l) : coefficient(c), preload(p), slow(v), n(l.size()) {
-    std::copy(l.begin(), l.end(), lever.begin());
+  explicit Friction(const FrictionLaw& f) : coefficient(f.coefficient), preload(f.preload), slow(f.slip_velocity), n(f.lever.size()) {
+    std::copy(f.lever.begin(), f.lever.end(), lever.begin());
   }
   void elastic(const Values&, const Values&, Response&) const override {}
   void viscous(const Values& x0, const Values& x1, const Interval& step, Response& out) const override {
@@ -45,8 +45,6 @@ struct Friction final : SpringLaw {
 
 }  // namespace
 
-std::unique_ptr<SpringLaw> make_friction(double coefficient, double preload, double slip_velocity, std::vector<double> lever) {
-  return std::make_unique<Friction>(coefficient, preload, slip_velocity, lever);
-}
+std::unique_ptr<SpringLaw> make_friction(const FrictionLaw& friction) { return std::make_unique<Friction>(friction); }
 
 }  // namespace hilo

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/error.hpp"
 #include "physics/rolling.hpp"
 
 namespace hilo {
@@ -25,17 +24,8 @@ void Joint::row_values(const std::array<double, max_measures>& e, double* g) con
 
 bool JointKind::frees(Freedom f) const { return std::find(freedoms.begin(), freedoms.end(), f) != freedoms.end(); }
 
-const JointKind& joint_kind(std::string_view name) {
-  std::vector<std::string> names;
-  for (const JointKind& k : joint_kinds()) {
-    if (k.name == name) return k;
-    names.emplace_back(k.name);
-  }
-  throw Error("", "no joint of kind \"" + std::string(name) + "\"", suggest(name, names));
-}
-
 Joint make_joint(const JointPlace& place, const Config& q) {
-  const JointKind& kind = joint_kind(place.kind);
+  const JointKind& kind = joint_kinds().at(place.kind);
   Joint joint = kind.make(place, q);
   joint.kind = &kind;
   return joint;

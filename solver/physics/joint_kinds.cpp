@@ -1,94 +1,38 @@
-// The kinds of joints as lists of quadratic measures and rows: every kind has its minimal number of independent rows.
+// The kinds of joints as lists of quadratic measures and rows: every kind has its minimal number of independent rows.  Another one is a
+// function that makes it, and a row of the table below.
 #include <cmath>
+#include <numbers>
 
+#include "base/keys.hpp"
+#include "physics/axes.hpp"
 #include "physics/coordinates.hpp"
-#include "physics/joint_rows.hpp"
+#include "physics/joint_maker.hpp"
 #include "physics/rolling.hpp"
 
 namespace hilo {
 namespace {
 
-using Sum = std::vector<SumRows::Part>;
-
-/// A joint under construction.
-class Maker {
- public:
-  Maker(const JointPlace& place, const Config& q)
-      : j(place), q(q), axis(place.frame.col(2)), axis_b(place.axis_b.isZero() ? axis : place.axis_b) {
-    c.join(j.a, j.b, q, j.at_b, j.frame);
-  }
-  const JointPlace& j;
-  const Config& q;
-  const Vec3 axis, axis_b;
-  Joint c;
-
-  int zero(std::vector<Term> terms) { return c.add_zero_measure(std::move(terms), q); }
-  void dot(int i, int k) { zero({{Term::dot, i, k}}); }
-  /// Sine and cosine of the angle that x, carried by `turning`, has turned from where it is now about `axis`, carried by `base`.
-  /// Returns the measure of the sine.
-  int angle(int base, int turning, const Vec3& about, const Vec3& x) {
-    const int u_ = c.add_direction(base, q, x), v_ = c.add_direction(base, q, about.cross(x)), w = c.add_direction(turning, q, x);
-    const int sine = c.add_measure({{Term::dot, v_, w}});
-    c.add_measure({{Term::dot, u_, w}});
-    return sine;
-  }
-  int pa() { return pa_ < 0 ? points(), pa_ : pa_; }
-  int pb() { return pb_ < 0 ? points(), pb_ : pb_; }
-  /// Columns of the frame carried by a and by b.
-  int u(int i) { return ua_[i] < 0 ? ua_[i] = c.add_direction(0, q, j.frame.col(i)) : ua_[i]; }
-  int v(int i) {
-    const Mat3 frame_b = Eigen::Quaterniond::FromTwoVectors(axis, axis_b).toRotationMatrix() * j.frame;
-    return vb_[i] < 0 ? vb_[i] = c.add_direction(1, q, frame_b.col(i)) : vb_[i];
-  }
-  void same_point() {
-    for (int i = 0; i < 3; ++i) zero({{Term::coordinate, pa(), pb(), 0, 1, Vec3::Unit(i)}});
-  }
-  int slide(int i) {
-    points();
-    return zero({{Term::slide, u(i), pa_, pb_}});
-  }
-  void parallel() { dot(u(0), v(2)), dot(u(1), v(2)); }
-  int slid() { return along_ < 0 ? along_ = slide(2) : along_; }
-  int turned() { return turned_ < 0 ? turned_ = angle(0, 1, axis, j.frame.col(0)) : turned_; }
-
-  /// The measures so far are rows, then these sums, then what drives the joint.
-  Joint with(std::vector<Sum> sums = {}, int n_plain = -1) {
-    if (n_plain < 0) n_plain = static_cast<int>(c.measures.size());
-    if (j.driven == JointPlace::Driven::slide) sums.push_back({{1, slid()}});
-    if (j.driven == JointPlace::Driven::angle) sums.push_back({{1, turned(), true}});
-    if (!sums.empty()) c.rows = std::make_unique<SumRows>(n_plain, std::move(sums));
-    if (j.driven != JointPlace::Driven::none) c.drive.row = c.n_rows() - 1;
-    return std::move(c);
-  }
-
- private:
-  void points() {
-    if (pa_ < 0) pa_ = c.add_point(0, q, j.at), pb_ = c.add_point(1, q, j.at_b);
-  }
-  int pa_ = -1, pb_ = -1, along_ = -1, turned_ = -1, ua_[3] = {-1, -1, -1}, vb_[3] = {-1, -1, -1};
-};
-
 Joint spherical(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   m.same_point();
   return m.with();
 }
 
 Joint fixed(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   m.same_point();
   m.dot(m.u(0), m.v(1)), m.dot(m.u(1), m.v(2)), m.dot(m.u(2), m.v(0));
   return m.with();
 }
 
 Joint revolute(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   m.same_point(), m.parallel();
   return m.with();
 }
 
 Joint universal(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   m.same_point();
   m.dot(m.u(2), m.v(0));
   return m.with();
@@ -96,7 +40,7 @@ Joint universal(const JointPlace& j, const Config& q) {
 
 /// u.v' - v.u' = 4 q0 q3 of the rotation between the frames: no twist about the shafts, so the joint's plane halves their angle.
 Joint constant_velocity(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   m.same_point();
   const int u0 = m.u(0), v1 = m.v(1), u1 = m.u(1), v0 = m.v(0);
   m.zero({{Term::dot, u0, v1}, {Term::dot, u1, v0, 0, -1}});
@@ -104,52 +48,52 @@ Joint constant_velocity(const JointPlace& j, const Config& q) {
 }
 
 Joint planar(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   m.slide(2), m.parallel();
   return m.with();
 }
 
 Joint in_plane(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   m.slide(2);
   return m.with();
 }
 
 Joint in_line(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   m.slide(0), m.slide(1);
   return m.with();
 }
 
 Joint point_on_curve(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   m.slide(0), m.slide(1), m.slide(2);
   m.c.rows = std::make_unique<CurveRows>(*j.curve);
   return m.with();
 }
 
 Joint cylindrical(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   m.slide(0), m.slide(1), m.parallel();
   return m.with();
 }
 
 Joint prismatic(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   m.slide(0), m.slide(1), m.parallel();
   m.dot(m.u(0), m.v(1));
   return m.with();
 }
 
 Joint screw(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   m.slide(0), m.slide(1), m.parallel();
   const int plain = static_cast<int>(m.c.measures.size()), slid = m.slid(), turned = m.turned();
   return m.with({{{1, slid}, {-j.ratio, turned, true}}}, plain);
 }
 
 Joint distance(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   const int pa = m.pa(), pb = m.pb();
   m.zero({{Term::distance2, pa, pb}});
   if (j.length > 0) m.c.measures.back().offset = j.length * j.length;
@@ -157,14 +101,14 @@ Joint distance(const JointPlace& j, const Config& q) {
 }
 
 Joint gear(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   m.c.n_ends = 3, m.c.end[2] = j.carrier;
   const int turn_a = m.angle(2, 0, m.axis, j.frame.col(0)), turn_b = m.angle(2, 1, m.axis_b, frame_of_axis(m.axis_b).col(0));
   return m.with({{{1, turn_b, true}, {-j.ratio, turn_a, true}}}, 0);
 }
 
 Joint rack(const JointPlace& j, const Config& q) {
-  Maker m(j, q);
+  JointMaker m(j, q);
   m.c.n_ends = 3, m.c.end[2] = j.carrier;
   const int turn_a = m.angle(2, 0, m.axis, j.frame.col(0));
   const int along = m.c.add_direction(2, q, m.axis_b), from = m.c.add_point(2, q, j.at), to = m.c.add_point(1, q, j.at);
@@ -173,7 +117,9 @@ Joint rack(const JointPlace& j, const Config& q) {
 }
 
 /// The row is twice the twist.
-void soften_twist(Joint& joint, std::vector<double>&) { joint.rows = std::make_unique<SumRows>(3, std::vector<Sum>{{{0.5, 3}}}); }
+void soften_twist(Joint& joint, std::vector<double>&) {
+  joint.rows = std::make_unique<SumRows>(3, std::vector<JointMaker::Sum>{{{0.5, 3}}});
+}
 
 void soften_distance(Joint& joint, std::vector<double>& free) {
   free = {std::sqrt(joint.measures[0].offset)};
@@ -181,29 +127,205 @@ void soften_distance(Joint& joint, std::vector<double>& free) {
   joint.rows = std::make_unique<Length>();
 }
 
+// What kinds read from their entries besides.
+
+void read_axis_b(const EntryValues& e, JointPlace& j) {
+  if (e.has("axis_b")) j.axis_b = direction(e, "axis_b");
+}
+
+void read_pitch(const EntryValues& e, JointPlace& j) { j.ratio = e.number("pitch") / (2 * std::numbers::pi); }
+
+void read_gear(const EntryValues& e, JointPlace& j) { read_axis_b(e, j), j.ratio = e.number("ratio"); }
+
+void read_rack(const EntryValues& e, JointPlace& j) { j.axis_b = direction(e, "direction"), j.ratio = e.number("radius"); }
+
+void read_distance(const EntryValues& e, JointPlace& j) {
+  j.at = e.vector3("at_a"), j.at_b = e.vector3("at_b");
+  if (!((j.at - j.at_b).norm() > 0)) e.refuse("at_b", "the two points coincide", "a spherical joint holds them together");
+  if (e.has("length")) j.length = e.number("length");
+}
+
+using enum Type;
+
+constexpr Param angle_key{"angle", number, "rad", "", "drives the joint: angle of b about the axis at history 1"},
+    spin{"spin", number, "rad/s", "", "drives the joint: rate of the angle at history 1, integrated from t = 0"},
+    displacement{"displacement", number, "m", "", "drives the joint: slide of b along the axis at history 1"},
+    velocity{"velocity", number, "m/s", "", "drives the joint: rate of the slide at history 1, integrated from t = 0"},
+    drive_history{"history", Type::history, "1", "1", "course of what drives the joint, best with interpolation = \"smooth\""},
+    third_end{"carrier", text, "", "ground", "what carries both axes: a rigid region, a body, a set, or ground"};
+
+constexpr Param stiffness{
+    "stiffness", numbers, "N/m", "", "makes the joint give way: along x, y and axis of its frame, or one number for all",
+    at_least(0), {1, 3}},
+    damping{"damping", numbers, "N s/m", "", "dampers beside these springs", at_least(0), {1, 3}};
+
 }  // namespace
 
-const std::vector<JointKind>& joint_kinds() {
-  constexpr auto angle = Freedom::angle, slide = Freedom::slide;
-  static const std::vector<JointKind> kinds{
-      {"fixed", fixed, "xyzCAB", {}, {}},
-      {"spherical", spherical, "xyz", {}, {0, 1, 2}},
-      {"revolute", revolute, "xyzBA", {angle}, {0, 1, 2}},
-      {"universal", universal, "xyzB", {}, {}},
-      {"constant-velocity", constant_velocity, "xyzC", {}, {}, soften_twist},
-      {"planar", planar, "zBA", {angle}, {}},
-      {"in-plane", in_plane, "z", {}, {}},
-      {"in-line", in_line, "xy", {slide}, {}},
-      {"cylindrical", cylindrical, "xyBA", {angle, slide}, {0, 1}},
-      {"prismatic", prismatic, "xyBAC", {slide}, {0, 1}},
-      {"screw", screw, "xyBAz", {angle, slide}, {0, 1, 4}},
-      {"gear", gear, "C", {}, {}},
-      {"rack", rack, "z", {}, {}},
-      {"distance", distance, "z", {}, {}, soften_distance},
-      {"point-on-curve", point_on_curve, "xx", {}, {}},
-      {"rolling", make_rolling, "", {}, {}},
-      {"knife-edge", make_knife_edge, "", {}, {}},
-  };
+std::vector<Param> joint_keys(bool with_axis, std::initializer_list<Param> own) {
+  std::vector<Param> out{keys::at};
+  if (with_axis) out.push_back(keys::axis), out.push_back(keys::x_axis);
+  out.insert(out.end(), own);
+  return out;
+}
+
+std::vector<Param> giving_way(std::vector<Param> keys) {
+  keys.insert(keys.end(), {stiffness,
+                           {"angular_stiffness",
+                            numbers,
+                            "N m/rad",
+                            "",
+                            "likewise about x, y and axis; the measure is the sine of the angle",
+                            at_least(0),
+                            {1, 3}},
+                           damping,
+                           {"angular_damping", numbers, "N m s/rad", "", "dampers beside these springs", at_least(0), {1, 3}}});
+  return keys;
+}
+
+std::vector<Param> giving_way_along(std::vector<Param> keys) {
+  keys.insert(keys.end(), {stiffness, damping});
+  return keys;
+}
+
+Registry<JointKind>& joint_kinds() {
+  static constexpr auto angle = Freedom::angle, slide = Freedom::slide;
+  static Registry<JointKind> kinds = [] {
+    using enum JointKind::Turns;
+    Registry<JointKind> all{
+        "joint",
+        {
+            {"fixed", "no relative motion (6 rows)", giving_way(joint_keys(false)), fixed, "xyzCAB", {}, {}},
+            {"spherical", "common point (3 rows)", giving_way(joint_keys(false)), spherical, "xyz", {}, {0, 1, 2}, none},
+            {"revolute",
+             "common point and axis: one rotation (5 rows)",
+             giving_way(joint_keys(true, {angle_key, spin, drive_history})),
+             revolute,
+             "xyzBA",
+             {angle},
+             {0, 1, 2}},
+            {"cylindrical",
+             "common axis: one rotation, one slide (4 rows)",
+             giving_way(joint_keys(true, {angle_key, spin, displacement, velocity, drive_history})),
+             cylindrical,
+             "xyBA",
+             {angle, slide},
+             {0, 1}},
+            {"prismatic",
+             "slide along the axis (5 rows)",
+             giving_way(joint_keys(true, {displacement, velocity, drive_history})),
+             prismatic,
+             "xyBAC",
+             {slide},
+             {0, 1}},
+            {"universal",
+             "common point, the axis of a stays normal to `x` of b (4 rows)",
+             giving_way(joint_keys(true)),
+             universal,
+             "xyzB",
+             {},
+             {}},
+            {"constant-velocity",
+             "common point, shafts of a and b turn by the same angle at any bend (4 rows)",
+             giving_way(joint_keys(true, {{"axis_b", vector3, "1", "", "shaft of b where it is bent at the start"}})),
+             constant_velocity,
+             "xyzC",
+             {},
+             {},
+             both,
+             read_axis_b,
+             soften_twist},
+            {"screw",
+             "common axis, b slides by the pitch per turn (5 rows)",
+             giving_way(
+                 joint_keys(true, {{"pitch", number, "m", "!", "slide of b along the axis per turn of b about it; negative: left-handed"},
+                                   angle_key,
+                                   spin,
+                                   displacement,
+                                   velocity,
+                                   drive_history})),
+             screw,
+             "xyBAz",
+             {angle, slide},
+             {0, 1, 4},
+             both,
+             read_pitch},
+            {"planar",
+             "b moves in a plane of a and turns about its normal, the axis (3 rows)",
+             giving_way(joint_keys(true)),
+             planar,
+             "zBA",
+             {angle},
+             {}},
+            {"in-plane",
+             "a point of b stays in a plane of a with the normal `axis` (1 row)",
+             giving_way(joint_keys(true)),
+             in_plane,
+             "z",
+             {},
+             {},
+             first},
+            {"in-line",
+             "a point of b stays on a line of a along `axis` (2 rows)",
+             giving_way(joint_keys(true)),
+             in_line,
+             "xy",
+             {slide},
+             {},
+             first},
+            {"gear",
+             "angles of a and b about axes of a carrier stay in a ratio; bearings are joints of their own (1 row, a moment on b)",
+             giving_way(
+                 joint_keys(true, {{"axis_b", vector3, "1", "", "axis of b where it differs from that of a"},
+                                   {"ratio", number, "1", "!", "turns of b per turn of a; negative when they turn against each other"},
+                                   third_end})),
+             gear,
+             "C",
+             {},
+             {},
+             both,
+             read_gear},
+            {"rack",
+             "slide of b goes with the angle of a, the pinion; bearings and guides are joints of their own (1 row)",
+             giving_way(joint_keys(true, {{"direction", vector3, "1", "!",
+                                           "direction in the carrier along which b moves when a turns positively about `axis`"},
+                                          {"radius", number, "m", "!", "pitch radius: slide per angle", above(0)},
+                                          third_end})),
+             rack,
+             "z",
+             {},
+             {},
+             both,
+             read_rack},
+            {"point-on-curve",
+             "a point of b stays on a smooth curve carried by a, a cubic spline through points (2 rows)",
+             giving_way(
+                 joint_keys(false, {{"points", numbers, "m", "", "points of the curve, [[x, y, z], ...], reference coordinates"},
+                                    {"file", text, "", "", "CSV file of the points instead: a header line and three columns x, y, z"},
+                                    {"closed", boolean, "", "false",
+                                     "the curve returns from its last point to the first; off the end of an open one the run stops"}})),
+             point_on_curve,
+             "xx",
+             {},
+             {},
+             first,
+             nullptr,
+             nullptr,
+             true},
+            {"distance",
+             "constant distance of two points (1 row)",
+             giving_way_along(
+                 {keys::at_a, keys::at_b, {"length", number, "m", "", "distance held; that of the two points when absent", above(0)}}),
+             distance,
+             "z",
+             {},
+             {},
+             none,
+             read_distance,
+             soften_distance},
+        }};
+    for (const JointKind& kind : rolling_kinds()) all.add(kind);
+    return all;
+  }();
   return kinds;
 }
 

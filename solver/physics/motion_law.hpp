@@ -29,4 +29,11 @@ class MotionLaw {
   History history_{{0}, {1}};
 };
 
+/// A row that is held to a law: g = law(t).
+struct Drive {
+  int row = -1;
+  MotionLaw law;
+  const char* unit = "";  // of its rate
+};
+
 }  // namespace hilo

@@ -9,7 +9,7 @@ namespace {
 
 struct Motor final : SpringLaw {
   std::vector<double> rate, force;
-  Motor(std::vector<double> r, std::vector<double> f) : rate(std::move(r)), force(std::move(f)) {}
+  explicit Motor(MotorLaw m) : rate(std::move(m.rate)), force(std::move(m.force)) {}
   /// Force and slope at a rate; beyond the table its first or last segment goes on.
   std::pair<double, double> at(double r) const {
     if (rate.size() == 1) return {force[0], 0};
@@ -29,8 +29,6 @@ struct Motor final : SpringLaw {
 
 }  // namespace
 
-std::unique_ptr<SpringLaw> make_motor(std::vector<double> rate, std::vector<double> force) {
-  return std::make_unique<Motor>(std::move(rate), std::move(force));
-}
+std::unique_ptr<SpringLaw> make_motor(MotorLaw motor) { return std::make_unique<Motor>(std::move(motor)); }
 
 }  // namespace hilo

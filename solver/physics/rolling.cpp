@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "base/keys.hpp"
+#include "physics/axes.hpp"
+
 namespace hilo {
 
 /// Angular velocity from the directors d_i and their rates: sum d_i x d_i' = sum d_i x (w x d_i) = (tr(D) I - D) w, D = sum d_i d_i^T;
@@ -150,6 +153,56 @@ Joint make_knife_edge(const JointPlace& j, const Config& q) {
   edge->across = q.R[j.b.body].transpose() * j.frame.col(2).cross(j.axis_b).normalized();
   c.velocity_rows = std::move(edge);
   return c;
+}
+
+namespace {
+
+void not_along_axis(const EntryValues& e, const char* key, const JointPlace& j, const char* hint) {
+  if (std::abs(j.axis_b.dot(j.frame.col(2))) > 1 - 1e-9) e.refuse(key, std::string(key) + " is parallel to the axis", hint);
+}
+
+void read_rolling(const EntryValues& e, JointPlace& j) {
+  j.ratio = e.number("radius");
+  if (!e.has("axle")) return;
+  j.axis_b = direction(e, "axle");
+  not_along_axis(e, "axle", j, "a disc that lies flat does not roll");
+}
+
+void read_knife_edge(const EntryValues& e, JointPlace& j) {
+  j.axis_b = direction(e, "edge");
+  not_along_axis(e, "edge", j, "the edge lies in the plane");
+}
+
+}  // namespace
+
+std::vector<JointKind> rolling_kinds() {
+  using enum Type;
+  return {
+      {"rolling",
+       "a disc, wheel or ball b rolls without slip on a plane carried by a (3 rows, two of them of velocities); the contact also pulls",
+       {{"at", vector3, "m", "!", "centre of the disc or ball"},
+        {"axis", vector3, "1", "!", "normal of the plane, from the contact to the centre of an upright disc"},
+        keys::x_axis,
+        {"radius", number, "m", "!", "from the centre to the contact", above(0)},
+        {"axle", vector3, "1", "", "axis of the disc or wheel, carried by b; absent: a ball"}},
+       make_rolling,
+       "",
+       {},
+       {},
+       JointKind::Turns::both,
+       read_rolling},
+      {"knife-edge",
+       "a point of b moves along an edge of b and not across it (1 row of velocities); joints of their own keep it on its plane",
+       {{"at", vector3, "m", "!", "contact point of the edge, carried by b"},
+        {"axis", vector3, "1", "!", "normal of the plane, carried by b for the direction across: axis x edge"},
+        {"edge", vector3, "1", "!", "direction in which b may move"}},
+       make_knife_edge,
+       "",
+       {},
+       {},
+       JointKind::Turns::both,
+       read_knife_edge},
+  };
 }
 
 }  // namespace hilo

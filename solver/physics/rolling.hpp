@@ -65,4 +65,7 @@ Joint make_rolling(const JointPlace& place, const Config& q);
 /// A point of b that moves along its edge `axis_b` and not across it, in a plane with the normal `axis`: one row.
 Joint make_knife_edge(const JointPlace& place, const Config& q);
 
+/// Their rows of joint_kinds().
+std::vector<JointKind> rolling_kinds();
+
 }  // namespace hilo

@@ -4,9 +4,8 @@
 #include <cstdlib>
 
 #include "physics/bar.hpp"
-#include "physics/shape/hex20r.hpp"
-#include "physics/shape/tet10.hpp"
-#include "physics/shape/wedge15.hpp"
+#include "physics/cell_kind.hpp"
+#include "physics/shape/shapes.hpp"
 #include "physics/solid.hpp"
 
 namespace hilo {
@@ -31,25 +30,8 @@ int lanes() {
 namespace {
 
 int flowing_points(Shape shape) {
-  switch (shape) {
-    case Shape::tet4:
-      return Tet4::n_points;
-    case Shape::tet10:
-      return Tet10::n_points;
-    case Shape::wedge6:
-      return Wedge6::n_points;
-    case Shape::wedge15:
-      return Wedge15::n_points;
-    case Shape::hex8:
-      return Hex8Full::n_points;
-    case Shape::hex20:
-      return Hex20::n_points;
-    case Shape::hex20r:
-      return Hex20R::n_points;
-    case Shape::bar2:
-      break;
-  }
-  return 0;
+  if (const CellKind* cell = cell_from_outside(shape)) return cell->n_points;
+  return of_shape(shape, 0, []<class S>() { return Integrated<S, true>::n_points; });
 }
 
 template <class M>
@@ -68,6 +50,7 @@ int state_of_cell(Shape shape, size_t law, const std::variant<M...>*) {
 SolidKernel solid_kernel(Shape shape, size_t law) {
   const int n_state = state_of_cell(shape, law, static_cast<const Material*>(nullptr));
   if (shape == Shape::bar2) return {bar_kernel(law), 1, n_state};
+  if (const CellKind* cell = cell_from_outside(shape)) return {cell->kernel(law), cell->width, n_state};
   const int w = lanes();
   return {w == 8 ? kernel_lanes8(shape, law) : w == 4 ? kernel_lanes4(shape, law) : kernel_lanes2(shape, law), w, n_state};
 }

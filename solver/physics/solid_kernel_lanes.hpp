@@ -1,8 +1,7 @@
 // Body of the translation units solid_lanes{2,4,8}.cpp: every kernel for W lanes.  Each unit is compiled for its own instruction set, so
 // nothing here may be shared with other units: all functions are templates on the lane type or have internal linkage.
 #pragma once
-#include "physics/shape/tet10.hpp"
-#include "physics/shape/wedge15.hpp"
+#include "physics/shape/shapes.hpp"
 #include "physics/solid_cell.hpp"
 #include "physics/solid_kernel.hpp"
 
@@ -45,25 +44,8 @@ static void run_kernel(const KernelCall& k) {
 
 template <class M, class T>
 static KernelFunction kernel_of_shape(Shape shape) {
-  switch (shape) {
-    case Shape::tet4:
-      return run_kernel<Tet4, M, T>;
-    case Shape::tet10:
-      return run_kernel<Tet10, M, T>;
-    case Shape::wedge6:
-      return run_kernel<Wedge6, M, T>;
-    case Shape::wedge15:
-      return run_kernel<Wedge15, M, T>;
-    case Shape::hex8:
-      return run_kernel<std::conditional_t<Remembers<M>, Hex8Full, Hex8>, M, T>;
-    case Shape::hex20:
-      return run_kernel<Hex20, M, T>;
-    case Shape::hex20r:
-      return run_kernel<Hex20R, M, T>;
-    case Shape::bar2:
-      break;
-  }
-  return nullptr;
+  return of_shape<KernelFunction>(shape, nullptr,
+                                  []<class S>() -> KernelFunction { return run_kernel<Integrated<S, Remembers<M>>, M, T>; });
 }
 
 template <class T, class... M>

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "physics/coordinates.hpp"
 #include "physics/joint_rows.hpp"
 
 namespace hilo {
@@ -21,7 +19,7 @@ struct Contact final : SpringLaw {
   std::unique_ptr<SpringLaw> gap, plane;
   explicit Contact(const Support& s)
       : c(s.damping),
-        gap(make_stop(0, std::numeric_limits<double>::infinity(), s.stiffness, s.restitution, s.rest_speed)),
+        gap(make_stop({.lower = 0, .stiffness = s.stiffness, .restitution = s.restitution, .rest_speed = s.rest_speed})),
         plane(make_linear({0, s.tangential_stiffness[0], s.tangential_stiffness[1]},
                           {0, s.tangential_damping[0], s.tangential_damping[1]})) {}
   void elastic(const Values& e0, const Values& e1, Response& out) const override { gap->elastic(e0, e1, out), plane->elastic(e0, e1, out); }
@@ -49,12 +47,19 @@ std::vector<double> listed(const Vec3& v) { return {v.begin(), v.end()}; }
 
 }  // namespace
 
-Spring make_axial_spring(const AxialSpring& s, const Config& q) {
+Spring along_distance(const Carrier& a, const Carrier& b, const Vec3& at_a, const Vec3& at_b, const Config& q,
+                      std::unique_ptr<SpringLaw> law) {
   Spring c;
-  c.join(s.a, s.b, q, s.at_b, Mat3::Identity());
-  const int pa = c.add_point(0, q, s.at_a), pb = c.add_point(1, q, s.at_b);
+  c.join(a, b, q, at_b, Mat3::Identity());
+  const int pa = c.add_point(0, q, at_a), pb = c.add_point(1, q, at_b);
   c.add_measure({{Term::distance2, pa, pb}});
-  c.law = std::make_unique<OnCoordinates>(std::make_unique<Length>(), make_linear({s.stiffness}, {s.damping}, {s.length}));
+  c.law = std::make_unique<OnCoordinates>(std::make_unique<Length>(), std::move(law));
+  return c;
+}
+
+Spring make_axial_spring(const AxialSpring& s, const Config& q) {
+  Spring c = along_distance(s.a, s.b, s.at_a, s.at_b, q, make_linear({s.stiffness}, {s.damping}, {s.length}));
+  c.stiffness = s.stiffness;
   return c;
 }
 
@@ -87,15 +92,13 @@ Spring make_bushing(const Bushing& s, const Config& q) {
     }
   }
   c.law = make_linear(stiffness, damping);
+  c.stiffness = s.stiffness.along.maxCoeff();
   return c;
 }
 
-Spring make_distance_stop(const DistanceLaw& s, const Config& q, std::unique_ptr<SpringLaw> law) {
-  Spring c;
-  c.join(s.a, s.b, q, s.at_b, Mat3::Identity());
-  const int pa = c.add_point(0, q, s.at_a), pb = c.add_point(1, q, s.at_b);
-  c.add_measure({{Term::distance2, pa, pb}});
-  c.law = std::make_unique<OnCoordinates>(std::make_unique<Length>(), std::move(law));
+Spring make_distance_stop(const DistanceStop& s, const Config& q) {
+  Spring c = along_distance(s.a, s.b, s.at_a, s.at_b, q, make_stop(s.stop));
+  c.stiffness = s.stop.stiffness;
   return c;
 }
 
@@ -106,6 +109,7 @@ Spring make_support(const Support& s, const Config& q) {
   for (const int i : {2, 0, 1}) c.add_measure({{Term::slide, c.add_direction(0, q, s.frame.col(i)), pa, pb}});
   c.measures[0].offset = -s.clearance;
   c.law = std::make_unique<Contact>(s);
+  c.stiffness = s.stiffness;
   return c;
 }
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "base/history.hpp"
-#include "physics/force_law.hpp"
+#include "physics/coordinates.hpp"
 #include "physics/joint.hpp"
 
 namespace hilo {
@@ -11,6 +11,7 @@ namespace hilo {
 struct Spring : Connector {
   std::unique_ptr<SpringLaw> law;
   std::string group = "spring";                                  // of the results: the section of the scene
+  double stiffness = 0;                                          // a typical one, for scaling without inertia [N/m]
   enum class Axes { inertial, of_joint } axes = Axes::inertial;  // of the force that the results show
   const JointKind* gives_way = nullptr;                          // the kind of joint that it stands for; null: none
   std::optional<History> history;                                // Interval::factor, its mean over a step; 1 without
@@ -52,12 +53,16 @@ struct Bushing {
 };
 Spring make_bushing(const Bushing& s, const Config& q);
 
-/// A law along the distance of two points.
-struct DistanceLaw {
+/// A stop of the distance of two points.
+struct DistanceStop {
   Carrier a, b;
   Vec3 at_a, at_b;
+  StopLaw stop;
 };
-Spring make_distance_stop(const DistanceLaw& s, const Config& q, std::unique_ptr<SpringLaw> law);
+Spring make_distance_stop(const DistanceStop& s, const Config& q);
+/// Any law along the distance of two points.
+Spring along_distance(const Carrier& a, const Carrier& b, const Vec3& at_a, const Vec3& at_b, const Config& q,
+                      std::unique_ptr<SpringLaw> law);
 
 /// Unilateral: with a damper, or with a restitution below 1.  The gap opens along the third column of the frame.
 struct Support {

@@ -27,7 +27,7 @@ namespace {
 struct Stop final : SpringLaw {
   double lower, upper, k, y, slow;
   double towards_lower = 0, towards_upper = 0;  // speed at the last accepted state before contact
-  Stop(double l, double u, double k_, double e, double slow_) : lower(l), upper(u), k(k_), y(hunt_crossley(e)), slow(slow_) {}
+  explicit Stop(const StopLaw& s) : lower(s.lower), upper(s.upper), k(s.stiffness), y(hunt_crossley(s.restitution)), slow(s.rest_speed) {}
 
   /// Signed depth: positive beyond the upper, negative beyond the lower limit.
   double depth(double x) const { return x > upper ? x - upper : x < lower ? x - lower : 0; }
@@ -65,8 +65,6 @@ struct Stop final : SpringLaw {
 
 }  // namespace
 
-std::unique_ptr<SpringLaw> make_stop(double lower, double upper, double k, double restitution, double slow) {
-  return std::make_unique<Stop>(lower, upper, k, restitution, slow);
-}
+std::unique_ptr<SpringLaw> make_stop(const StopLaw& stop) { return std::make_unique<Stop>(stop); }
 
 }  // namespace hilo

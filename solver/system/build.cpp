@@ -4,6 +4,7 @@
 
 #include "system/bodies.hpp"
 #include "system/builder.hpp"
+#include "system/joints.hpp"
 #include "system/loads.hpp"
 #include "system/motions.hpp"
 #include "system/point_masses.hpp"
@@ -21,8 +22,7 @@ void Builder::add_contributions() {
   s.add<Solids>(s);
   s.add<Bodies>(s);
   s.add<PointMasses>(s);
-  s.place_joints();
-  const Joints& joints = s.joints;
+  const Joints& joints = s.add<Joints>(s);
   s.add<Springs>(s, joints);
   s.add<Loads>(s);
   s.add<Motions>(s);
@@ -61,7 +61,7 @@ std::unique_ptr<System> Builder::build() {
   if (!mesh_) {  // size of a scene of bodies: what its points span
     Eigen::AlignedBox3d box;
     for (size_t b = 1; b < out_->bodies.size(); ++b) box.extend(out_->bodies[b].Xc);
-    for (const Joint& j : out_->joints)
+    for (const Joint& j : out_->part<Joints>())
       for (const Entity& e : j.entities)
         if (e.point && j.end[e.end].body >= 0) box.extend(Vec3(out_->bodies[j.end[e.end].body].Xc + e.r));
     out_->length = box.isEmpty() ? 1 : std::max(box.diagonal().norm(), 1e-9);

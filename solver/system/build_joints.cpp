@@ -2,11 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <numbers>
 
 #include "system/builder.hpp"
+#include "system/joints.hpp"
 #include "system/springs.hpp"
 
 namespace hilo {
@@ -77,74 +76,46 @@ Spring compliant(const Entry& e, Joint joint) {
 
 }  // namespace
 
-Vec3 direction(const Entry& e, std::string_view key) {
-  const Vec3 v = e.vector3(key);
-  if (!(v.norm() > 0))
-    throw Error(e.where(key), e.label() + ": the axis has zero length", fmt::format("give {} a direction, such as [0, 0, 1]", key));
-  return v.normalized();
-}
-
-Mat3 joint_frame(const Entry& e) {
-  if (!e.has("axis")) return Mat3::Identity();
-  const Vec3 axis = direction(e, "axis"), x = e.has("x") ? direction(e, "x") : Vec3::Zero();
-  if (!x.isZero() && std::abs(x.dot(axis)) > 1 - 1e-9) throw Error(e.where("x"), e.label() + ": x is parallel to the axis");
-  return frame_of_axis(axis, x);
-}
-
 void Builder::add_joints() {
   for (const Entry& e : scene_.entries("joint")) {
-    const std::string& kind = e.kind;
-    const bool points_only = kind == "spherical" || kind == "distance",
-               point_of_b = points_only || kind == "in-plane" || kind == "in-line" || kind == "point-on-curve";
+    const JointKind& kind = joint_kinds().at(e.kind, e.place.text());
     JointPlace j;
-    j.kind = kind;
-    j.a = carrier(e, "a", !points_only), j.b = carrier(e, "b", !point_of_b);
+    j.kind = e.kind;
+    j.a = carrier(e, "a", kind.turns != JointKind::Turns::none), j.b = carrier(e, "b", kind.turns == JointKind::Turns::both);
     if (e.has("carrier")) j.carrier = carrier(e, "carrier", true);
     const auto different = [&](const Carrier& one, const Carrier& other, const char* key, const char* other_key) {
       if (one.body != other.body || one.node != other.node) return;
-      throw Error(e.where(key), fmt::format("{}: {} and {} are the same body", e.label(), other_key, key),
-                  one.body > 0
-                      ? fmt::format("\"{}\" and \"{}\" are one rigid body, {}", e.text(other_key), e.text(key), out_->bodies[one.body].name)
-                      : "");
+      e.refuse(key, fmt::format("{} and {} are the same body", other_key, key),
+               one.body > 0
+                   ? fmt::format("\"{}\" and \"{}\" are one rigid body, {}", e.text(other_key), e.text(key), out_->bodies[one.body].name)
+                   : "");
     };
     different(j.b, j.a, "b", "a");
     if (e.has("carrier")) different(j.carrier, j.a, "carrier", "a"), different(j.carrier, j.b, "carrier", "b");
-    j.at = kind == "distance" ? e.vector3("at_a") : e.vector3("at"), j.at_b = kind == "distance" ? e.vector3("at_b") : j.at;
-    if (kind == "distance" && !((j.at - j.at_b).norm() > 0))
-      throw Error(e.where("at_b"), e.label() + ": the two points coincide", "a spherical joint holds them together");
+    if (e.has("at")) j.at = j.at_b = e.vector3("at");
+    j.frame = joint_frame(e);
+    if (kind.read) kind.read(e, j);
     for (const Carrier* end : {&j.a, &j.b})
       if (end->node >= 0 && (out_->X[end->node] - (end == &j.a ? j.at : j.at_b)).norm() > 1e-6 * out_->length)
-        throw Error(e.where(end == &j.a ? "a" : "b"), fmt::format("{}: the node is not at the joint point", e.label()));
-    j.frame = joint_frame(e);
-    for (const char* key : {"axis_b", "direction", "axle", "edge"})
-      if (e.has(key)) j.axis_b = direction(e, key);
-    if (e.has("ratio")) j.ratio = e.number("ratio");
-    if (e.has("radius")) j.ratio = e.number("radius");
-    if (e.has("pitch")) j.ratio = e.number("pitch") / (2 * std::numbers::pi);
-    if (kind == "point-on-curve") j.curve = curve(e, scene_, j.at);
-    if (e.has("length")) j.length = e.number("length");
+        e.refuse(end == &j.a ? "a" : "b", "the node is not at the joint point");
+    if (kind.follows_curve) j.curve = curve(e, scene_, j.at);
     const std::string driven = driving_key(e);
     if (e.has("stiffness") || e.has("angular_stiffness")) {
-      if (!driven.empty())
-        throw Error(e.where(driven), e.label() + ": a joint that gives way cannot be driven", "put a motor or a rigid joint");
+      if (!driven.empty()) e.refuse(driven, "a joint that gives way cannot be driven", "put a motor or a rigid joint");
       out_->part<Springs>().list.push_back(compliant(e, make_joint(j, out_->start)));
       continue;
     }
     for (const char* key : {"damping", "angular_damping"})
-      if (e.has(key)) throw Error(e.where(key), fmt::format("{}: {} without a stiffness", e.label(), key), "rigid rows do not move");
+      if (e.has(key)) e.refuse(key, fmt::format("{} without a stiffness", key), "rigid rows do not move");
     const bool is_rate = driven == "spin" || driven == "velocity";
     if (!driven.empty()) j.driven = driven == "angle" || driven == "spin" ? JointPlace::Driven::angle : JointPlace::Driven::slide;
-    for (const char* key : {"axle", "edge"})
-      if (e.has(key) && std::abs(j.axis_b.dot(j.frame.col(2))) > 1 - 1e-9)
-        throw Error(e.where(key), fmt::format("{}: {} is parallel to the axis", e.label(), key),
-                    kind == "rolling" ? "a disc that lies flat does not roll" : "the edge lies in the plane");
     Joint c = make_joint(j, out_->start);
     c.name = e.name;
     if (!driven.empty()) {
       c.drive.law = MotionLaw(e.number(driven), is_rate, use_history(e, is_rate ? Acts::as_rate : Acts::as_position), !e.given("history"));
       c.drive.unit = j.driven == JointPlace::Driven::angle ? "rad/s" : "m/s";
     }
-    out_->joints.list.push_back(std::move(c));
+    out_->part<Joints>().list.push_back(std::move(c));
   }
 }
 

@@ -1,6 +1,8 @@
 // [[load]] entries.
 #include <fmt/format.h>
 
+#include <functional>
+
 #include "system/builder.hpp"
 #include "system/facet.hpp"
 #include "system/loads.hpp"
@@ -39,7 +41,7 @@ void Builder::add_loads() {
       for (size_t i = 0; i < weight.size(); ++i)
         if (weight[i] != 0) load.nodes.push_back(static_cast<int>(i)), load.weight.push_back(weight[i]);
     };
-    if (e.kind == "force") {
+    const auto force = [&] {
       load.value = e.vector3("force");
       if (found.body >= 0 && (found.n_global == 0 || e.has("at") || found.is_region)) {
         load.kind = Load::Kind::body_force;
@@ -58,21 +60,31 @@ void Builder::add_loads() {
               load.nodes.push_back(i), load.weight.push_back(e.boolean("per_node") ? 1.0 : 1.0 / static_cast<double>(found.n_global));
         }
       }
-    } else if (e.kind == "traction") {
+    };
+    const auto traction = [&] {
       load.kind = Load::Kind::nodal;
       load.value = e.vector3("traction");
       double area = 0;
       share_by_area(area);
-    } else if (e.kind == "pressure") {
+    };
+    const auto pressure = [&] {
       load.kind = Load::Kind::pressure;
       load.pressure = e.number("pressure");
       load.facets = facets();
-    } else {
+    };
+    const auto torque = [&] {
       load.kind = Load::Kind::body_torque;
       load.value = e.vector3("torque");
       load.follower = e.boolean("follower");
       load.body = body_of(on, found, where);
-    }
+    };
+    struct Kind {
+      std::string_view name;
+      std::function<void()> read;
+    };
+    Registry<Kind>("load", {{"force", force}, {"traction", traction}, {"pressure", pressure}, {"torque", torque}})
+        .at(e.kind, e.place.text())
+        .read();
     out_->part<Loads>().list.push_back(std::move(load));
   }
 }

@@ -40,10 +40,11 @@ void Builder::add_motions() {
     const std::string where = e.where("on");
     const Found found = find(e.text("on"), where);
     if (found.body == 0) throw Error(where, e.label() + ": the ground does not move");
-    if (e.kind != "rotation") m.component = components(e);
-    if (e.kind == "translation") m.displacement = e.vector3("displacement");
-    if (e.kind == "rotation") m.at = e.vector3("at"), m.axis = direction(e, "axis"), m.angle = e.number("angle");
-    m.moving = e.kind != "fixed";
+    const bool turns = e.has("angle");  // the kinds differ by what they are given; a fixed one by nothing
+    if (!turns) m.component = components(e);
+    if (e.has("displacement")) m.displacement = e.vector3("displacement");
+    if (turns) m.at = e.vector3("at"), m.axis = direction(e, "axis"), m.angle = e.number("angle");
+    m.moving = turns || e.has("displacement");
     if (m.moving) m.law = MotionLaw(1, false, use_history(e, Acts::as_position), !e.given("history"));
     const bool whole = m.component[0] && m.component[1] && m.component[2];
     if (found.body >= 0 && !whole)
@@ -61,7 +62,7 @@ void Builder::add_motions() {
       Body& body = out_->bodies[m.body];
       if (body.held) throw Error(where, fmt::format("{}: motion \"{}\" moves this body already", e.label(), body.motion));
       body.held = true, body.moving = m.moving, body.motion = m.name;
-      if (e.kind != "rotation") m.at = body.Xc;
+      if (!turns) m.at = body.Xc;
     } else {
       comm_.together([&] {  // a rank alone may have the node
         for (int i : found.nodes)

@@ -4,15 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "physics/axes.hpp"
 #include "physics/solid_kernel.hpp"
+#include "physics/spring_kinds.hpp"
 #include "system/system.hpp"
 
 namespace hilo {
-
-/// A key that names a direction, of unit length.
-Vec3 direction(const Entry& e, std::string_view key);
-/// Frame of `axis` and `x`, third column the axis; the inertial axes where there is none.
-Mat3 joint_frame(const Entry& e);
 
 class Builder {
  public:
@@ -78,13 +75,8 @@ class Builder {
   // build_springs.cpp
   void add_springs();
   void add_joint_forces();
-  /// A joint that an entry names: its geometry and kind, and its number, or -1 where it gives way.
-  struct Host {
-    const Connector& geometry;
-    const JointKind& kind;
-    int joint;
-  };
-  Host joint_of(const Entry& entry) const;
+  /// The joint that an entry names.
+  JointHost joint_of(const Entry& entry) const;
   std::vector<std::string> all_names() const;
   // build_joints.cpp
   void add_joints();

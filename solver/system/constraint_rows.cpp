@@ -40,14 +40,10 @@ void Joints::add_cliques(Cliques& cliques) {
   }
 }
 
-const Joint& Joints::at_block(int k) const {
-  const auto after = std::upper_bound(block_.begin(), block_.end(), points_.first_joint_block() + k);
-  return list[static_cast<size_t>(after - block_.begin()) - 1];
-}
-
 std::string Joints::owner(int block) const {
-  const int k = block - points_.first_joint_block();
-  return k >= 0 && !block_.empty() && block < block_.back() + n_blocks(list.back()) ? fmt::format("joint \"{}\"", at_block(k).name) : "";
+  if (block_.empty() || block < block_.front() || block >= block_.back() + n_blocks(list.back())) return "";
+  const auto after = std::upper_bound(block_.begin(), block_.end(), block);
+  return fmt::format("joint \"{}\"", list[static_cast<size_t>(after - block_.begin()) - 1].name);
 }
 
 void Joints::look_at_rows(const Config& q, double t, double factor, Violation& out) const {

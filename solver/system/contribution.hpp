@@ -6,11 +6,13 @@
 #pragma once
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/archive.hpp"
+#include "system/constraint.hpp"
 #include "system/pass.hpp"
 
 namespace hilo {
@@ -134,6 +136,8 @@ class Contribution {
   /// Multiplier blocks from `next` on, which moves past them.  The blocks of nodes and bodies are known.
   virtual void take_blocks(int& /*next*/) {}
   virtual void add_cliques(Cliques& /*cliques*/) {}
+  /// Its constraint rows, by the thing that has them; blocks are numbered.
+  virtual void add_constraints(std::vector<std::unique_ptr<Constraint>>& /*out*/) {}
   /// What the unknowns of a local block belong to (`region "r", at node 7`), or "".
   virtual std::string owner(int /*block*/) const { return {}; }
   /// Free nodes that move about as one body, for the first guess of a step.

@@ -1,7 +1,7 @@
 // Joints: constraint rows with multipliers.
 #pragma once
-#include "physics/joint.hpp"
 #include "system/connector_clique.hpp"
+#include "system/constraint.hpp"
 
 namespace hilo {
 
@@ -9,7 +9,6 @@ class Joints final : public Contribution {
  public:
   explicit Joints(const Points& points) : points_(points) {}
   std::vector<Joint> list;
-  // as a list of its own: whoever treats rows goes through the joints
   auto begin() { return list.begin(); }
   auto end() { return list.end(); }
   auto begin() const { return list.begin(); }
@@ -21,13 +20,12 @@ class Joints final : public Contribution {
   /// First block of the multipliers of a joint, and where these begin in lambda.
   int block(size_t j) const { return block_[j]; }
   int row(size_t j) const { return 3 * (block_[j] - points_.first_joint_block()); }
-  /// The joint whose multipliers are in a block, counted from the first of them.
-  const Joint& at_block(int k) const;
 
   Traits traits() const override;
   std::string count() const override;
   void take_blocks(int& next) override;
   void add_cliques(Cliques& cliques) override;
+  void add_constraints(std::vector<std::unique_ptr<Constraint>>& out) override;
   std::string owner(int block) const override;
   void evaluate(Pass& p) const override;
   void add_work(const Moment& m, Work& sum) const override;

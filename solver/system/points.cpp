@@ -1,6 +1,7 @@
 #include "system/points.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hilo {
 
@@ -29,6 +30,21 @@ double Points::add_rates(Config& v, const Config& q, std::span<const double> z) 
     }
   follow(v);
   return change;
+}
+
+double Points::largest_difference(const Config& a, const Config& b, double arm) const {
+  double out = 0;
+  for (size_t i = 0; i < a.x.size(); ++i) out = std::max(out, (a.x[i] - b.x[i]).norm());
+  for (size_t i = 0; i < a.c.size(); ++i)
+    out = std::max({out, (a.c[i] - b.c[i]).norm(), (a.R[i] - b.R[i]).norm() / std::sqrt(2) * (arm > 0 ? arm : bodies[i].size)});
+  return comm->max(out);
+}
+
+double Points::largest_rate(const Config& v) const {
+  double top = 0;
+  for (const Vec3& x : v.x) top = std::max(top, x.norm());
+  for (size_t b = 0; b < v.c.size(); ++b) top = std::max({top, v.c[b].norm(), bodies[b].size * v.R[b].colwise().norm().maxCoeff()});
+  return comm->max(top);
 }
 
 void Points::follow(Config& q) const {

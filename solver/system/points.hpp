@@ -69,6 +69,10 @@ class Points {
   void move(Config& q, std::span<const double> z) const;
   /// Velocities or accelerations v, at q, by the increments z; the largest change [m/s or m/s^2].
   double add_rates(Config& v, const Config& q, std::span<const double> z) const;
+  /// Largest difference of a point of two poses, or of two velocities; a turn counts at the size of its body, or at `arm` where given.
+  double largest_difference(const Config& a, const Config& b, double arm = 0) const;
+  /// Largest velocity or acceleration of a point or of a director at the size of its body.
+  double largest_rate(const Config& v) const;
   /// Whether a local block belongs to this rank: each to one.
   bool owns(int block) const { return map.global[block] >= map.first && map.global[block] < map.first + map.n_owned; }
   /// Followers from their bodies; the map is linear, so it holds for positions, velocities and accelerations alike.

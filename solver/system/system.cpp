@@ -7,23 +7,26 @@
 
 namespace hilo {
 
-System::System() : own_joints_(std::make_unique<Joints>(*this)), joints(*own_joints_) {}
-
-void System::place_joints() { parts_.push_back(std::move(own_joints_)); }
-
 void System::number() {
   const int n_node_blocks = number_points();
   int next = first_joint_block();
   for (const auto& part : parts_) part->take_blocks(next);
   number_globally(n_node_blocks, next);
-  region_nodes.clear();
+  region_nodes.clear(), constraints_.clear();
   traits_ = {}, moves_ = false;
   for (const auto& part : parts_) {
     part->add_cliques(cliques);
+    part->add_constraints(constraints_);
     part->add_groups(region_nodes);
     traits_ |= part->traits();
     moves_ = moves_ || part->moves();
   }
+}
+
+const Constraint& System::constraint_of(int multiplier_block) const {
+  for (const auto& c : constraints_)
+    if (const int k = 3 * multiplier_block - c->row(); k >= 0 && k < c->n_padded()) return *c;
+  throw Error("", "multipliers belong to no constraint", "", Exit::fault);
 }
 
 void System::evaluate(const Stage& stage, std::span<const double> lambda, Residual& out, KktSolver* K) const {

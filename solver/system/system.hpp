@@ -6,7 +6,7 @@
 
 #include "base/history.hpp"
 #include "model/scene.hpp"
-#include "system/joints.hpp"
+#include "system/contribution.hpp"
 
 namespace hilo {
 
@@ -21,7 +21,6 @@ struct UsedHistory {
 
 class System : public Points {
  public:
-  System();
   std::vector<UsedHistory> histories;          // all of them
   std::vector<std::vector<int>> region_nodes;  // free nodes that move about together, for the predictor
 
@@ -45,15 +44,10 @@ class System : public Points {
   const T& part() const {
     return const_cast<System*>(this)->part<T>();
   }
-
- private:
-  std::vector<std::unique_ptr<Contribution>> parts_;
-  std::unique_ptr<Joints> own_joints_;  // until they have their place among the others
-
- public:
-  Joints& joints;  // whose rows are chosen, driven and watched one by one
-
-  void place_joints();
+  /// All constraint rows, by the things that have them; there from number() on.
+  std::span<const std::unique_ptr<Constraint>> constraints() const { return constraints_; }
+  /// The one that multipliers in a block belong to, counted from the first block of multipliers.
+  const Constraint& constraint_of(int multiplier_block) const;
 
   /// Number the unknowns and list the cliques; call once after everything is filled in.
   void number();
@@ -117,6 +111,8 @@ class System : public Points {
                std::vector<Vec6>& body, bool loads) const;
   double constraint_scale(const Stage& s) const;
   void reduce(Pass& p) const;
+  std::vector<std::unique_ptr<Contribution>> parts_;
+  std::vector<std::unique_ptr<Constraint>> constraints_;
   Traits traits_;
   bool moves_ = false;
 };

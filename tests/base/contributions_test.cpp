@@ -57,4 +57,22 @@ TEST(Contributions, NobodyAboveTheSystemAsksWhichOneItHas) {
     EXPECT_EQ(code.find("dynamic_cast"), code.npos) << fs::relative(file, HILO_SOURCE);
 }
 
+// What brings constraint rows is seen as System::constraints alone, and unknowns as Points::unknowns: a contact, or amplitudes of modes,
+// then need no change here.  Cells are named where their stress and their memory go into the results.
+TEST(Contributions, RowsAndUnknownsHaveNoNamesAboveTheSystem) {
+  const std::regex rows(R"(\b(Joints?|JointKind|Springs?|Connector|Carrier)\b|system/joints\.hpp|\bjoints\s*[.\[])");
+  const std::regex blocks(R"(\b(node_block|body_block|body_clique)\b)"), parts(R"(\bpart<(\w+)>)");
+  const std::set<std::string> of_nodes{"choose_solver.cpp"}, of_bodies{"clock.cpp"};  // how many nodes ranks share; mechanisms of bodies
+  for (const auto& [file, code] : sources(fs::path(HILO_SOURCE) / "solver" / "dynamics")) {
+    const std::string name = file.filename().string();
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(code, found, rows)) << name << " names " << found.str();
+    if (!of_nodes.contains(name) && !of_bodies.contains(name)) {
+      EXPECT_FALSE(std::regex_search(code, found, blocks)) << name << " names " << found.str();
+    }
+    for (auto at = std::sregex_iterator(code.begin(), code.end(), parts); at != std::sregex_iterator(); ++at)
+      EXPECT_EQ((*at)[1], "Solids") << name;
+  }
+}
+
 }  // namespace

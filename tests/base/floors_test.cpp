@@ -1,5 +1,5 @@
-// Floors (docs/design.md): base 0; model, physics 1; system, linear 2; dynamics 3; tools, post and main.cpp 4.  No include points upward or
-// to a neighbour on the same floor, and the arrows are those that are drawn.
+// Floors (docs/design.md): base 0; physics, model 1; system, linear 2; dynamics 3; tools, post and main.cpp 4.  No include points upward or
+// to a neighbour on the same floor, but for the lists of kinds of physics that the scene's schema is made of.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 
 const std::map<std::string, std::set<std::string>> may_include{
     {"base", {"base"}},
-    {"model",
-     {"base", "model", "physics/material/materials.hpp", "dynamics/integrators.hpp"}},  // each law and method brings its rows of the schema
+    // each law, joint, spring and method brings its rows of the scene's schema
+    {"model", {"base", "model", "physics/material/materials.hpp", "physics/spring_kinds.hpp", "dynamics/integrators.hpp"}},
     {"physics", {"base", "physics"}},
     {"linear", {"base", "linear"}},
     {"system", {"base", "model", "physics", "linear", "system"}},
@@ -82,6 +82,17 @@ TEST(Floors, WhatSchemaReadsOfIntegratorsIsWords) {
     ++seen;
   }
   EXPECT_GT(seen, 10);
+}
+
+TEST(Floors, NoFileOfTheSolverIsLong) {
+  constexpr int most = 350;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(HILO_SOURCE) / "solver")) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream file(entry.path());
+    int lines = 0;
+    for (std::string text; std::getline(file, text);) ++lines;
+    EXPECT_LT(lines, most) << fs::relative(entry.path(), HILO_SOURCE);
+  }
 }
 
 // The rooms of post/: no circle among them, and a new one must be drawn here.

@@ -5,6 +5,9 @@
 
 int main(int argc, char** argv) {
   outside::add_integrator();
+  outside::add_joint();
+  outside::add_force_law();
+  outside::add_output_field();
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }

@@ -5,8 +5,11 @@
 
 namespace outside {
 
-// `void add_NAME();` of each, in the file of its name; main() calls them all before the first scene is read
+// each in the file of its name; main() calls them all before the first scene is read
 void add_integrator();
+void add_joint();
+void add_force_law();
+void add_output_field();
 
 /// The results of a scene, of a mesh file where one is named.
 inline hilo::test::Results run_scene(const hilo::test::Workplace& place, const std::string& text, const std::string& mesh = "") {

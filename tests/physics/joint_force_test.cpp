@@ -33,7 +33,7 @@ TEST(Stop, LeavesTheFractionOfTheSpeedThatIsAsked) {
     for (const double v : {0.2, 3.0})
       for (const double m : {0.5, 20.0}) {
         const double k = 4000, contact = M_PI * std::sqrt(m / k), h = contact / 2000;
-        auto law = make_stop(-1e9, 0.01, k, e, 1e-6);
+        auto law = make_stop({.lower = -1e9, .upper = 0.01, .stiffness = k, .restitution = e, .rest_speed = 1e-6});
         Particle p{m, 0.01 - 0.3 * h * v, v};
         law->commit({p.x}, {v});
         double peak = 0;
@@ -46,7 +46,7 @@ TEST(Stop, LeavesTheFractionOfTheSpeedThatIsAsked) {
 // Truth: with e = 1 the discrete gradient gives the kinetic energy back exactly, however coarse the step.
 TEST(Stop, GivesAllEnergyBackAtAnyStep) {
   for (const double h : {1e-3, 1e-2, 0.05}) {
-    auto law = make_stop(-0.7, 0.4, 5e3, 1, 1e-3);
+    auto law = make_stop({.lower = -0.7, .upper = 0.4, .stiffness = 5e3});
     Particle p{2, 0, 1.5};
     for (int i = 0; i < 2000; ++i) p.step(*law, h);
     Response r;
@@ -69,7 +69,7 @@ TEST(Stop, DamperSolvesTheRestitutionEquation) {
 
 // Truth: a stop pushes back whatever the rate, never pulls.
 TEST(Stop, NeverPulls) {
-  auto law = make_stop(-0.5, 0.5, 900, 0.2, 1e-3);
+  auto law = make_stop({.lower = -0.5, .upper = 0.5, .stiffness = 900, .restitution = 0.2});
   law->commit({0}, {0.3});
   law->commit({0}, {-0.3});
   for (int i = -10; i <= 10; ++i)
@@ -91,7 +91,7 @@ TEST(Motor, RunsUpAlongTheExponentialOfItsLine) {
   double error[2];
   for (int level = 0; level < 2; ++level) {
     const double h = 0.02 / (1 << level), m = 3, F0 = 12, v0 = 5, T = 1;
-    auto law = make_motor({0, v0}, {F0, 0});
+    auto law = make_motor({.rate = {0, v0}, .force = {F0, 0}});
     Particle p{m, 0, 0};
     for (int i = 0; i < std::lround(T / h); ++i) p.step(*law, h);
     error[level] = std::abs(p.v - v0 * (1 - std::exp(-F0 * T / (m * v0))));
@@ -102,7 +102,7 @@ TEST(Motor, RunsUpAlongTheExponentialOfItsLine) {
 
 // Truth: the table is linear between its points and goes on with its first and last segments; its power is what it supplies.
 TEST(Motor, FollowsItsTable) {
-  auto law = make_motor({-1, 0, 2, 3}, {5, 4, 1, 1});
+  auto law = make_motor({.rate = {-1, 0, 2, 3}, .force = {5, 4, 1, 1}});
   const auto force = [&](double rate) {
     Response r;
     law->viscous({0}, {rate * 0.1}, {0.1, 2}, r);
@@ -119,7 +119,7 @@ TEST(Motor, FollowsItsTable) {
 // Truth: a force p times the limit creeps at slip_velocity artanh(p).
 TEST(Friction, SticksAsACreepOfTheStatedVelocity) {
   const double mu = 0.4, load = 50, slow = 1e-3, p = 0.6;
-  auto law = make_friction(mu, 0, slow, {1});
+  auto law = make_friction({.coefficient = mu, .slip_velocity = slow, .lever = {1}});
   Particle mass{2, 0, 0};
   for (int i = 0; i < 400; ++i) mass.step(*law, 0.01, p * mu * load, load);
   EXPECT_NEAR(mass.v, slow * std::atanh(p), 1e-9);
@@ -127,7 +127,7 @@ TEST(Friction, SticksAsACreepOfTheStatedVelocity) {
 
 // Truth: ds/d(load) is the derivative of the force.
 TEST(Friction, KnowsHowItDependsOnTheLoad) {
-  auto law = make_friction(0.4, 3, 0.2, {1, 0.5});
+  auto law = make_friction({.coefficient = 0.4, .preload = 3, .slip_velocity = 0.2, .lever = {1, 0.5}});
   Response at, up;
   law->viscous({0.1, 0.2}, {0.12, 0.17}, {0.1, 1, 5}, at), law->viscous({0.1, 0.2}, {0.12, 0.17}, {0.1, 1, 6}, up);
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(at.by_load[i], up.s[i] - at.s[i], 1e-13);

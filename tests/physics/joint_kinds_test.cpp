@@ -30,7 +30,7 @@ TEST(JointKinds, AWordThatIsNoneIsAnErrorAndNotTheLastOfTheList) {
 TEST(JointKinds, HoldAsManyDirectionsAsTheyHaveRows) {
   const Config q = somewhere(3);
   for (const std::string& name : joint_kinds()) {
-    const JointKind& kind = joint_kind(name);
+    const JointKind& kind = hilo::joint_kinds().at(name);
     EXPECT_EQ(joint(name, q).n_rows(), static_cast<int>(kind.holds.size())) << name;
     if (kind.frees(Freedom::slide)) {
       EXPECT_EQ(kind.holds.find('z'), kind.holds.npos) << name;

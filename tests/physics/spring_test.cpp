@@ -69,13 +69,26 @@ std::vector<Kind> kinds() {
            any},
           {"rope",
            [=](const Config& q) {
-             return make_distance_stop({.a = a, .b = b, .at_a = joint_point, .at_b = other_point}, q, make_stop(0.8, 1.1, 300, 0.6, 1));
+             return make_distance_stop({.a = a,
+                                        .b = b,
+                                        .at_a = joint_point,
+                                        .at_b = other_point,
+                                        .stop = {.lower = 0.8, .upper = 1.1, .stiffness = 300, .restitution = 0.6, .rest_speed = 1}},
+                                       q);
            },
            [](int seed) { return Values{std::pow(1 + 0.6 * scatter(seed), 2)}; }},
           {"angle_stop",
-           [=](const Config& q) { return along_joint(joint("revolute", q), q, Freedom::angle, make_stop(-0.4, 0.5, 80, 0.3, 2)); }, turned},
+           [=](const Config& q) {
+             return along_joint(joint("revolute", q), q, Freedom::angle,
+                                make_stop({.lower = -0.4, .upper = 0.5, .stiffness = 80, .restitution = 0.3, .rest_speed = 2}));
+           },
+           turned},
           {"slide_stop",
-           [=](const Config& q) { return along_joint(joint("cylindrical", q), q, Freedom::slide, make_stop(-0.2, 0.1, 80, 0, 2)); }, any},
+           [=](const Config& q) {
+             return along_joint(joint("cylindrical", q), q, Freedom::slide,
+                                make_stop({.lower = -0.2, .upper = 0.1, .stiffness = 80, .restitution = 0, .rest_speed = 2}));
+           },
+           any},
           {"compliant_fixed", [=](const Config& q) { return give_way("fixed", q); }, any},
           {"compliant_spherical", [=](const Config& q) { return give_way("spherical", q); }, any},
           {"compliant_constant_velocity", [=](const Config& q) { return give_way("constant-velocity", q); }, any},
@@ -236,7 +249,7 @@ TEST(CompliantJoint, IsASpringAlongWhatItHolds) {
       {"in-plane", {{0, 0, 1}, {0, 0, 0}}},  {"in-line", {{1, 1, 0}, {0, 0, 0}}},           {"cylindrical", {{1, 1, 0}, {1, 1, 0}}},
       {"prismatic", {{1, 1, 0}, {1, 1, 1}}}};
   for (const auto& [kind, axes] : held) {
-    ASSERT_FALSE(joint_kind(kind).holds.empty());
+    ASSERT_FALSE(hilo::joint_kinds().at(kind).holds.empty());
     const hilo::Spring c = make_compliant(joint(kind, q), {.along = k, .about = ka});
     Config p = q;
     const Mat3 B = turn(frame * w);
@@ -250,9 +263,9 @@ TEST(CompliantJoint, IsASpringAlongWhatItHolds) {
     EXPECT_LT((frame.transpose() * f.head<3>() + k.cwiseProduct(axes.first).cwiseProduct(u)).norm(), 1e-9) << kind;
     EXPECT_LT((frame.transpose() * f.tail<3>() + ka.cwiseProduct(axes.second).cwiseProduct(w)).norm(), 1e-9) << kind;
   }
-  EXPECT_EQ(missing_stiffness(joint_kind("revolute"), {.along = k, .about = Vec3(1, 1, 0)}), "");
-  EXPECT_EQ(missing_stiffness(joint_kind("revolute"), {.along = k, .about = Vec3(1, 0, 1)}), "angular_stiffness");
-  EXPECT_EQ(missing_stiffness(joint_kind("in-plane"), {.along = Vec3(1, 1, 0), .about = ka}), "stiffness");
+  EXPECT_EQ(missing_stiffness(hilo::joint_kinds().at("revolute"), {.along = k, .about = Vec3(1, 1, 0)}), "");
+  EXPECT_EQ(missing_stiffness(hilo::joint_kinds().at("revolute"), {.along = k, .about = Vec3(1, 0, 1)}), "angular_stiffness");
+  EXPECT_EQ(missing_stiffness(hilo::joint_kinds().at("in-plane"), {.along = Vec3(1, 1, 0), .about = ka}), "stiffness");
 }
 
 // Truth: a unilateral contact pushes when closed, never pulls, whatever its damper.

@@ -8,6 +8,7 @@
 #include "dynamics/integrator_kinds.hpp"
 #include "model/local_mesh.hpp"
 #include "system/dense_kkt.hpp"
+#include "system/somewhere_off.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -251,38 +252,6 @@ class Laws : public testing::TestWithParam<std::string> {
   }
 };
 
-/// A start somewhere off, with velocities, so that nothing vanishes by symmetry.
-State state_of(const System& system) {
-  const int n = 3 * system.n_blocks();
-  State s;
-  s.t = 0.3;
-  s.q = system.start, s.v = system.start_velocity;
-  std::vector<double> kick(n);
-  for (int i = 0; i < n; ++i) kick[i] = 0.03 * scatter(i);
-  system.move(s.q, kick);
-  s.v.resize(s.q.x.size(), s.q.c.size());
-  for (size_t i = 0; i < s.v.x.size(); ++i) s.v.x[i] = Vec3(scatter(i), scatter(3 * i + 1), scatter(7 * i + 2));
-  for (size_t b = 1; b < s.v.c.size(); ++b)
-    if (system.bodies[b].free()) s.v.c[b] = Vec3(scatter(b), 1, -1), s.v.R[b] = skew(Vec3(1, scatter(b + 5), -2)) * s.q.R[b];
-  system.follow(s.v);
-  system.prescribe(s.q, s.t);
-  s.a = s.jerk = s.v;
-  s.lambda.assign(3 * system.n_joint_blocks(), 0.0);
-  for (size_t i = 0; i < s.lambda.size(); ++i) s.lambda[i] = 20 * scatter(900 + static_cast<int>(i));
-  return s;
-}
-
-/// Numbers of unknowns that stand for something: not prescribed, not padding of joint rows, not dropped.
-std::vector<char> in_use(const System& system) {
-  std::vector<char> used(3 * system.n_blocks(), 1);
-  for (size_t i = 0; i < system.X.size(); ++i)
-    for (int k = 0; k < 3; ++k)
-      if (system.node_block[i] >= 0 && system.fixed[i][k]) used[3 * system.node_block[i] + k] = 0;
-  for (size_t j = 0; j < system.joints.size(); ++j)
-    for (int r = system.joints[j].n_rows(); r < 3 * ((system.joints[j].n_rows() + 2) / 3); ++r) used[3 * system.joints.block(j) + r] = 0;
-  return used;
-}
-
 void expect_equal(const Comparison& c, const std::vector<char>& used, const std::string& what) {
   const size_t n = used.size();
   for (Eigen::Index i = 0; i < c.product.size(); ++i) {
@@ -383,12 +352,7 @@ std::vector<std::string> integrators() {
   return list;
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, Laws, testing::ValuesIn(integrators()), [](const auto& p) {
-  std::string name = p.param;
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Integrators, Laws, testing::ValuesIn(integrators()), [](const auto& p) { return as_name(p.param); });
 
 }  // namespace
 }  // namespace hilo::test

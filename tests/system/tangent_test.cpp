@@ -6,6 +6,7 @@
 #include "dynamics/start.hpp"
 #include "model/local_mesh.hpp"
 #include "system/dense_kkt.hpp"
+#include "system/somewhere_off.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -309,22 +310,8 @@ class Tangent : public testing::TestWithParam<const char*> {
 TEST_P(Tangent, OfTheWholeSystemIsTheDerivativeOfItsResidual) {
   const auto integrator = made(GetParam());
   const int n = 3 * system->n_blocks(), first = 3 * system->first_joint_block();
-  // a start somewhere off, with velocities, so that nothing vanishes by symmetry
-  State s;
-  s.t = 0.3;
-  s.q = system->start, s.v = system->start_velocity;
+  const State s = state_of(*system);
   std::vector<double> kick(n);
-  for (int i = 0; i < n; ++i) kick[i] = 0.03 * scatter(i);
-  system->move(s.q, kick);
-  s.v.resize(s.q.x.size(), s.q.c.size());
-  for (size_t i = 0; i < s.v.x.size(); ++i) s.v.x[i] = Vec3(scatter(i), scatter(3 * i + 1), scatter(7 * i + 2));
-  for (size_t b = 1; b < s.v.c.size(); ++b)
-    if (system->bodies[b].free()) s.v.c[b] = Vec3(scatter(b), 1, -1), s.v.R[b] = skew(Vec3(1, scatter(b + 5), -2)) * s.q.R[b];
-  system->follow(s.v);
-  system->prescribe(s.q, s.t);
-  s.a = s.jerk = s.v;
-  s.lambda.assign(3 * system->n_joint_blocks(), 0.0);
-  for (size_t i = 0; i < s.lambda.size(); ++i) s.lambda[i] = 20 * scatter(900 + static_cast<int>(i));
   integrator->begin(*system, s, 0.02);
   Config q1 = s.q;
   for (int i = 0; i < n; ++i) kick[i] = 0.02 * scatter(5000 + i);
@@ -387,12 +374,7 @@ TEST_P(Tangent, OfTheWholeSystemIsTheDerivativeOfItsResidual) {
 INSTANTIATE_TEST_SUITE_P(Integrators, Tangent,
                          testing::Values("energy-momentum", "mid-point", "generalized-alpha", "U0", "averaged U0", "V0", "averaged V0",
                                          "bathe", "bdf2"),
-                         [](const auto& p) {
-                           std::string name = p.param;
-                           std::replace_if(
-                               name.begin(), name.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
-                           return name;
-                         });
+                         [](const auto& p) { return as_name(p.param); });
 
 }  // namespace
 }  // namespace hilo::test

@@ -100,7 +100,7 @@ CellGraph cell_graph(const Mesh& mesh, const std::vector<Fidelity>& fidelity, co
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c) {
     const bool flexible = fidelity[mesh.region[c]] != Fidelity::rigid;
     g.is_flexible.push_back(flexible);
-    g.flexible.push_back(flexible ? work_of_cell[mesh.shape[c]] : 0);
+    g.flexible.push_back(flexible ? work_of_cell(static_cast<Shape>(mesh.shape[c])) : 0);
     g.rigid.push_back(flexible ? 0 : 1);
   }
   build_dual(mesh, g);

@@ -114,8 +114,8 @@ std::string_view type_word(Type type) {
 
 std::string allowed(const KindSchema& kind, const Param& p) {
   if (const auto words = choices(kind.section, p.key); !words.empty()) return fmt::format("{}", fmt::join(words, ", "));
-  if (const auto n = lengths(kind.section, p.key); p.type == Type::numbers && !n.empty())
-    return fmt::format("{} of them", fmt::join(n, " or "));
+  if (p.counts[0] > 0)
+    return p.counts[1] > 0 ? fmt::format("{} or {} of them", p.counts[0], p.counts[1]) : fmt::format("{} of them", p.counts[0]);
   return p.type == Type::number && p.range.text() != "any number" ? p.range.text() : "";
 }
 

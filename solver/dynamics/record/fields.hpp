@@ -1,9 +1,11 @@
-// Fields: what nodes and cells have at an instant.  Sources of fields, one file each, are looped over; a further one is a file, a line in
-// field_sources() and its rows in model/schema.cpp.
+// Fields: what nodes and cells have at an instant.  Sources of fields, one file each, are looped over; a further one is a file, a row of
+// field_kinds(), its words of output.fields (model/words.cpp) and its arrays (model/schema.cpp).
 #pragma once
 #include <algorithm>
 
+#include "base/registry.hpp"
 #include "dynamics/record/run_file.hpp"
+#include "model/schema.hpp"
 #include "system/system.hpp"
 
 namespace hilo {
@@ -53,10 +55,18 @@ class FieldSource {
   virtual void write(const Snapshot& at, FieldWriter& to) = 0;
 };
 
+/// What makes a source; node_row: row of each local node, -1 for those not written.
+struct FieldKind {
+  std::string_view name;
+  std::unique_ptr<FieldSource> (*make)(const System& system, const std::vector<std::int64_t>& node_row);
+};
+Registry<FieldKind>& field_kinds();
+/// One more, from outside the tree: in the list, its words of output.fields, and the arrays /field/<step>/NAME that it writes.
+void add_field(const FieldKind& kind, const std::vector<std::string_view>& words, const std::vector<ArraySchema>& arrays);
+
 /// Displacement, velocity and acceleration of nodes.
-std::unique_ptr<FieldSource> motion_fields(const System& system);
-/// Recovered stress of nodes and stress of cells; node_row: row of each local node, -1 for those not written.
+std::unique_ptr<FieldSource> motion_fields(const System& system, const std::vector<std::int64_t>& node_row);
+/// Recovered stress of nodes and stress of cells.
 std::unique_ptr<FieldSource> stress_fields(const System& system, const std::vector<std::int64_t>& node_row);
-std::vector<std::unique_ptr<FieldSource>> field_sources(const System& system, const std::vector<std::int64_t>& node_row);
 
 }  // namespace hilo

@@ -44,7 +44,7 @@ void MeshPart::declare() {
   nodes_.emplace(comm, std::move(mine), n);
   cells_.emplace(comm, m.cell_global, m.n_cells_global);
 
-  sources_ = field_sources(s, node_row_);
+  for (const FieldKind& kind : field_kinds()) sources_.push_back(kind.make(s, node_row_));
   write_followers();
   if (skin_) file_.on_store([&](Store& f) { write_array(f, "/skin/node", skin, {n}); });
   if (comm.size > 1) write_parts();

@@ -34,13 +34,8 @@ class MotionFields final : public FieldSource {
 
 }  // namespace
 
-std::unique_ptr<FieldSource> motion_fields(const System& system) { return std::make_unique<MotionFields>(system); }
-
-std::vector<std::unique_ptr<FieldSource>> field_sources(const System& system, const std::vector<std::int64_t>& node_row) {
-  std::vector<std::unique_ptr<FieldSource>> out;
-  out.push_back(motion_fields(system));
-  out.push_back(stress_fields(system, node_row));
-  return out;
+std::unique_ptr<FieldSource> motion_fields(const System& system, const std::vector<std::int64_t>&) {
+  return std::make_unique<MotionFields>(system);
 }
 
 }  // namespace hilo

@@ -5,6 +5,7 @@
 namespace hilo {
 
 struct Hex20 {
+  static constexpr Shape shape = Shape::hex20;
   static constexpr int n = 20, n_points = 27;
   /// Mid-side nodes 8..19 sit between these corners.
   static constexpr int edge[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};

@@ -6,6 +6,7 @@
 namespace hilo {
 
 struct Hex20R : Hex20 {
+  static constexpr Shape shape = Shape::hex20r;
   static constexpr int n_points = 8;
   static constexpr Quadrature<8> rule() { return hex_rule<2>(); }
 };

@@ -8,6 +8,7 @@ inline constexpr double hex_corner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1
                                             {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
 
 struct Hex8 {
+  static constexpr Shape shape = Shape::hex8;
   static constexpr int n = 8, n_points = 1;
   static constexpr void values(const double* xi, double* N) {
     for (int a = 0; a < 8; ++a) N[a] = (1 + hex_corner[a][0] * xi[0]) * (1 + hex_corner[a][1] * xi[1]) * (1 + hex_corner[a][2] * xi[2]) / 8;

@@ -1,6 +1,7 @@
 // What a shape offers: its nodes, shape functions and integration rule, all usable at compile time.
 //
-//   struct S { static constexpr int n, n_points;
+//   struct S { static constexpr Shape shape;                                            its number in mesh files
+//              static constexpr int n, n_points;
 //              static constexpr void values(const double* xi, double* N);          N_a(xi)            (n)
 //              static constexpr void gradients(const double* xi, double (*dN)[3]); dN_a/dxi_i         (n x 3)
 //              static constexpr Quadrature<n_points> rule();                       stiffness
@@ -8,6 +9,7 @@
 //
 // Node order is VTK's.  The rules are those under which the element has no zero-energy mode but the rigid ones.
 #pragma once
+#include "base/shape.hpp"
 
 namespace hilo {
 

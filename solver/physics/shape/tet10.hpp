@@ -5,6 +5,7 @@
 namespace hilo {
 
 struct Tet10 {
+  static constexpr Shape shape = Shape::tet10;
   static constexpr int n = 10, n_points = 4;
   static constexpr int edge[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
 

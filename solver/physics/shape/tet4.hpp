@@ -11,6 +11,7 @@ constexpr Quadrature<4> tet_rule4() {
 }
 
 struct Tet4 {
+  static constexpr Shape shape = Shape::tet4;
   static constexpr int n = 4, n_points = 1;
   static constexpr void values(const double* xi, double* N) { N[0] = 1 - xi[0] - xi[1] - xi[2], N[1] = xi[0], N[2] = xi[1], N[3] = xi[2]; }
   static constexpr void gradients(const double*, double (*dN)[3]) {

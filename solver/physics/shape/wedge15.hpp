@@ -5,6 +5,7 @@
 namespace hilo {
 
 struct Wedge15 {
+  static constexpr Shape shape = Shape::wedge15;
   static constexpr int n = 15, n_points = 9;
 
   static constexpr void values(const double* xi, double* N) {

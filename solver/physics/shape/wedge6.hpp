@@ -19,6 +19,7 @@ constexpr Quadrature<3 * Q> wedge_rule() {
 }
 
 struct Wedge6 {
+  static constexpr Shape shape = Shape::wedge6;
   static constexpr int n = 6, n_points = 6;
   static constexpr void values(const double* xi, double* N) {
     const double L[3] = {1 - xi[0] - xi[1], xi[0], xi[1]};

@@ -1,21 +1,9 @@
 // Balances that hold for any scene, over one that has everything: energy, E - E0 - W + D = 0, and impulse, the change of momentum is the
 // time integral of weight, loads and what the ground exerts through joints, springs and motions.
-#include "verify/verify.hpp"
+#include "verify/everything/half_rigid.hpp"
 
 namespace hilo::test {
 namespace {
-
-Mesh half_rigid() {
-  BlockOptions o;
-  o.n[2] = 3;
-  o.high = Vec3(0.4, 0.3, 1.2);
-  o.regions = {"heavy", "soft"};
-  o.region_of = [](const Vec3& x) { return x[2] < 0.4 ? 0 : 1; };
-  Mesh m = block_mesh(o);
-  add_node_set(m, "corner", [](const Vec3& x) { return std::abs(x[2] - 0.8) < 1e-9 && x[0] < 0.2 && x[1] < 0.1; });
-  add_node_set(m, "line", [](const Vec3& x) { return std::abs(x[2] - 0.8) < 1e-9 && x[0] > 0.2; });
-  return m;
-}
 
 TEST(Everything, EnergyIsInBalance) {
   Case c("everything");

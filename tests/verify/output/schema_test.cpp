@@ -6,7 +6,7 @@
 #include <fstream>
 #include <set>
 
-#include "verify/verify.hpp"
+#include "verify/everything/half_rigid.hpp"
 
 namespace hilo::test {
 namespace {
@@ -41,18 +41,6 @@ void hold_against_schema(const Store& file, std::set<std::string>& met) {
     const auto shape = file.shape(path), rest = row_shape(*row);
     EXPECT_EQ(std::vector(shape.begin() + 1, shape.end()), rest) << path;
   }
-}
-
-Mesh half_rigid() {
-  BlockOptions o;
-  o.n[2] = 3;
-  o.high = Vec3(0.4, 0.3, 1.2);
-  o.regions = {"heavy", "soft"};
-  o.region_of = [](const Vec3& x) { return x[2] < 0.4 ? 0 : 1; };
-  Mesh m = block_mesh(o);
-  add_node_set(m, "corner", [](const Vec3& x) { return std::abs(x[2] - 0.8) < 1e-9 && x[0] < 0.2 && x[1] < 0.1; });
-  add_node_set(m, "line", [](const Vec3& x) { return std::abs(x[2] - 0.8) < 1e-9 && x[0] > 0.2; });
-  return m;
 }
 
 TEST(ResultsSchema, HoldsEveryArrayAndEveryArrayIsWritten) {
