@@ -11,7 +11,7 @@
 int main(int argc, char** argv) {
   using namespace hilo;
   return guarded("hilo-tag", [&] {
-    const auto app = make_app({"hilo-tag", "Say for every region of a mesh whether it is rigid or nonlinear, and what that saves.",
+    const auto app = make_app({"hilo-tag", "Say for every region of a mesh whether it is rigid, linear or nonlinear, and what that saves.",
                                "hilo-tag mesh.h5 --rigid 'wheel_*' hull --rest nonlinear -o tags.h5"});
     std::string mesh_path, rules_path, output = "tags.h5", rest;
     std::vector<std::string> words[3];
@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
     };
     add(Fidelity::rigid, "rigid regions: name, glob, box:x,y,z,x,y,z (wholly inside) or set:NAME");
     add(Fidelity::nonlinear, "regions of finite strain, likewise");
-    add(Fidelity::linear, "regions of small strain and large motion (not built yet)");
+    add(Fidelity::linear, "regions of small strain on any motion, by modes");
     app->add_option("--rest", rest, "fidelity of all other regions: \"--nonlinear barrel --rest rigid\" makes all but the barrel rigid")
         ->type_name("WORD");
     app->add_flag("--json", json, "the table as JSON");

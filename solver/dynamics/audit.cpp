@@ -103,7 +103,10 @@ std::string Audit::verdict() const {
 double Audit::balance() const { return moving_ > rounding_ ? largest_ / moving_ : std::nan(""); }
 
 std::string Audit::json(const std::string& failure) const {
-  const auto joint = [&](int block) { return block >= 0 ? json_text(system_.constraint_of(block).name()) : "null"; };
+  const auto joint = [&](int block) {  // the name of a joint; of other rows what they belong to
+    const std::string who = system_.row_owner(block), prefix = "joint \"";
+    return who.empty() ? "null" : json_text(who.starts_with(prefix) ? who.substr(prefix.size(), who.size() - prefix.size() - 1) : who);
+  };
   std::string out = fmt::format("{{\n    \"passed\": {},\n", failure.empty());
   if (!failure.empty()) out += fmt::format("    \"failed\": {},\n", json_text(failure));
   out += energy_unchecked_.empty()

@@ -4,13 +4,13 @@ namespace hilo {
 
 void restore_rotations(const System& system, Config& q) {
   for (Mat3& R : q.R) R = R * (1.5 * Mat3::Identity() - 0.5 * R.transpose() * R);
-  system.follow(q);
+  system.place(q);
 }
 
 void GivenRates::at(const System& system, double t, const Config& like) {
   system_ = system.moves() ? &system : nullptr;
   if (!system_) return;
-  v_.resize(like.x.size(), like.c.size()), a_.resize(like.x.size(), like.c.size());
+  v_.resize_like(like), a_.resize_like(like);
   system.prescribe_rates(t, Side::left, &v_, &a_);
 }
 
@@ -82,16 +82,15 @@ void StageIntegrator::accept(State& s) {
 
 void combine(Config& out, std::initializer_list<std::pair<double, const Config*>> terms) {
   const Config& first = *terms.begin()->second;
-  out.x.resize(first.x.size()), out.c.resize(first.c.size()), out.R.resize(first.R.size());
-  const auto run = [&](auto member) {
+  Config::each_array([&](auto member) {
     auto& to = out.*member;
+    to.resize((first.*member).size());
     for (size_t i = 0; i < to.size(); ++i) {
       auto sum = (terms.begin()->first * (terms.begin()->second->*member)[i]).eval();
       for (auto t = terms.begin() + 1; t != terms.end(); ++t) sum += t->first * (t->second->*member)[i];
       to[i] = sum;
     }
-  };
-  run(&Config::x), run(&Config::c), run(&Config::R);
+  });
 }
 
 }  // namespace hilo

@@ -18,7 +18,7 @@ double relative_residual(const System& s, const Residual& r) {
     }
   };
   for (const UnknownField& f : s.unknowns)
-    for (size_t k = 0; k < f.size(); ++k) visit(f.block(k), f.turns() ? force * std::max(f.scale(k), 1e-3 * s.length) : force);
+    for (size_t k = 0; k < f.size(); ++k) visit(f.block(k), force * (f.turns() ? std::max(f.scale(k), 1e-3 * s.length) : f.scale(k)));
   for (int j = s.first_joint_block(); j < s.n_blocks(); ++j) visit(j, r.sigma * s.length);
   return worst;
 }

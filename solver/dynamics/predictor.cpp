@@ -69,7 +69,7 @@ void predict(const System& s, const State& state, double h, Predictor kind, cons
       const Mat3 turn = cayley(h * spin.omega) - Mat3::Identity() - h * skew(spin.omega);  // what q + h v misses
       for (int n : nodes) q.x[n] += turn * (state.q.x[n] - spin.centre);
     }
-  s.follow(q);
+  s.place(q);
 }
 
 }  // namespace hilo

@@ -107,9 +107,9 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
   if (system.comm->max(std::all_of(rate.begin(), rate.end(), is_zero) && std::all_of(b.begin(), b.end(), is_zero) ? 0 : 1) == 0) return 0;
   system.evaluate(mass_stage(q, zero, 0), lambda, r, &solver);
   const int first = 3 * system.first_joint_block();
-  for (const auto& c : system.constraints())
-    for (int m = 0; m < c->n_rows(); ++m)
-      if (const int k = c->row() + m; c->active()[m]) b[first + k] = -r.sigma * rate[k];
+  const std::vector<char> on = system.rows_on();
+  for (size_t k = 0; k < on.size(); ++k)
+    if (on[k]) b[first + k] = -r.sigma * rate[k];
   const SolveReport solved = solver.solve(b, z);
   if (!solved.ok)
     throw Error("",
@@ -130,6 +130,15 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
       const Mat3 S = s.v.R[b] * s.q.R[b].transpose(), W = (S - S.transpose()) / 2;
       a.R[b] = W * W * s.q.R[b];
     }
+  for (const Modes& m : system.modes) {  // Y = eta R, eta unaccelerated
+    const Mat3& R = s.q.R[m.body];
+    const Mat3 S = s.v.R[m.body] * R.transpose(), W = (S - S.transpose()) / 2;
+    for (int j = 3 * m.first; j < 3 * (m.first + m.n_blocks); ++j) {
+      const double rate = (R.transpose() * (s.v.Y[j] - W * s.q.Y[j])).trace() / 3;
+      a.Y[j] = W * W * s.q.Y[j] + 2 * rate * W * R;
+      a.eta[j / 3][j % 3] = 0;
+    }
+  }
   system.follow(a);
   system.prescribe_rates(s.t, Side::right, nullptr, &a);
   lambda.assign(3 * system.n_joint_blocks(), 0.0);
@@ -151,11 +160,8 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
     system.row_rates(s.q, s.v, &a, s.t, rate, &acceleration);  // rows: d2g/dt2 = 0
     b.resize(r.r.size()), z.assign(r.r.size(), 0.0);
     for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
-    for (const auto& c : system.constraints())
-      for (int k = 0; k < c->n_padded(); ++k) {
-        const int i = c->row() + k;
-        b[first + i] = k < c->n_rows() && c->active()[k] ? -r.sigma * acceleration[i] : 0;
-      }
+    const std::vector<char> on = system.rows_on();
+    for (size_t i = 0; i < on.size(); ++i) b[first + i] = on[i] ? -r.sigma * acceleration[i] : 0;
     const SolveReport solved = solver.solve(b, z);
     if (!solved.ok)
       throw Error("", fmt::format("the joints and masses do not determine the accelerations: {}{}", solved.message,

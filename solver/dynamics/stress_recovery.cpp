@@ -6,20 +6,13 @@
 #include <unordered_map>
 
 #include "model/mesh.hpp"
+#include "system/linear_regions.hpp"
 
 namespace hilo {
 namespace {
 
 bool quadratic(Shape s) { return info(s).n_nodes > info(s).n_corners; }
 bool is_bar(Shape s) { return info(s).dimension < 3; }
-
-struct Positions {
-  std::vector<Vec3> X, x;
-  void gather(const System& s, const std::vector<Vec3>& now, const int* nodes, int n) {
-    X.resize(n), x.resize(n);
-    for (int i = 0; i < n; ++i) X[i] = s.X[nodes[i]], x[i] = now[nodes[i]];
-  }
-};
 
 /// Mean stress of a linear cell, where it is, and the slope of its assumed strains: least squares over its points.
 struct CellMean {
@@ -43,31 +36,73 @@ struct CellMean {
 
 /// What a cell remembers; null where nothing is.
 const double* of_cell(const SolidBatch& b, const StressRecovery::Memory& memory, size_t batch, size_t cell) {
-  return b.kernel.n_state > 0 ? memory[batch].data() + cell * static_cast<size_t>(b.kernel.n_state) : nullptr;
+  return b.kernel.n_state > 0 && batch < memory.size() ? memory[batch].data() + cell * static_cast<size_t>(b.kernel.n_state) : nullptr;
 }
 
 }  // namespace
 
-/// Visit the cells of the patches: batch and its number, number of the cell in it, patches of its corners, positions of its nodes.
+struct StressRecovery::Cell {
+  const SolidBatch* batch;
+  std::vector<Vec3> X, x;  // of a linear region: as displaced from the mean axes
+  bool linear = false;
+  Mat3 R;  // of these
+
+  void points(StressPoints which, std::vector<StressPoint>& out, const double* state = nullptr) const {
+    if (!linear) return stress_points(batch->shape, batch->material, X, x, which, out, state);
+    constexpr double part = 1e-3;  // of the displacements: small, and far above round-off
+    std::vector<Vec3> moved(X.size());
+    std::vector<StressPoint> back;
+    const auto at = [&](double share, std::vector<StressPoint>& to) {
+      for (size_t a = 0; a < X.size(); ++a) moved[a] = X[a] + share * (x[a] - X[a]);
+      stress_points(batch->shape, batch->material, X, moved, which, to);
+    };
+    at(-part, back), at(part, out);
+    for (size_t k = 0; k < out.size(); ++k) out[k].S = (out[k].S - back[k].S) / (2 * part), out[k].F = R;
+  }
+  void gradients(std::span<Mat3> F) const {
+    if (!linear) return nodal_gradients(batch->shape, X, x, F);
+    for (Mat3& f : F) f = R;
+  }
+};
+
+/// q: null for the reference configuration.
+void StressRecovery::look_at(Cell& cell, size_t batch, size_t number, const Config* q) const {
+  cell.batch = batches_[batch];
+  const int body = body_[batch], n = info(cell.batch->shape).n_nodes;
+  const int* nodes = cell.batch->nodes.data() + number * n;
+  cell.linear = q && body >= 0;
+  if (cell.linear) cell.R = q->R[body];
+  cell.X.resize(n), cell.x.resize(n);
+  for (int i = 0; i < n; ++i) {
+    cell.X[i] = cell.x[i] = system_.X[nodes[i]];
+    if (q)
+      cell.x[i] =
+          cell.linear ? Vec3(system_.bodies[body].Xc + cell.R.transpose() * (system_.at(*q, nodes[i]) - q->c[body])) : q->x[nodes[i]];
+  }
+}
+
+/// Visit the cells of the patches: batch and its number, number of the cell in it, patches of its corners, the cell.
 template <class Visit>
-void StressRecovery::each_cell(const Patches& p, const std::vector<Vec3>& x, Visit&& visit) const {
-  Positions at;
-  for (size_t b = 0; b < solids_.batches.size(); ++b) {
-    const SolidBatch& batch = solids_.batches[b];
-    const int n = info(batch.shape).n_nodes, corners = info(batch.shape).n_corners;
+void StressRecovery::each_cell(const Patches& p, const Config* q, Visit&& visit) const {
+  Cell at;
+  for (size_t b = 0; b < batches_.size(); ++b) {
+    const int corners = info(batches_[b]->shape).n_corners;
     if (p.corner[b].empty()) continue;
-    for (size_t e = 0; e < batch.cells.size(); ++e) {
-      at.gather(system_, x, batch.nodes.data() + e * n, n);
+    for (size_t e = 0; e < batches_[b]->cells.size(); ++e) {
+      look_at(at, b, e, q);
       visit(b, e, std::span(p.corner[b].data() + e * corners, corners), at);
     }
   }
 }
 
-StressRecovery::StressRecovery(const System& s) : system_(s), solids_(s.part<Solids>()) {
+StressRecovery::StressRecovery(const System& s) : system_(s) {
+  for (const SolidBatch& b : s.part<Solids>().batches) batches_.push_back(&b), body_.push_back(-1);
+  const auto& linear = s.part<LinearRegions>();
+  for (size_t k = 0; k < linear.cells.size(); ++k) batches_.push_back(&linear.cells[k]), body_.push_back(linear.body_of_cells[k]);
   find_sites();
   std::vector<double> second(s.mesh->mesh.region_name.size(), 0.0);  // regions with quadratic cells
-  for (const SolidBatch& b : solids_.batches)
-    if (quadratic(b.shape)) second[b.region] = 1;
+  for (const SolidBatch* b : batches_)
+    if (quadratic(b->shape)) second[b->region] = 1;
   s.comm->sum(second);
   for (const int order : {1, 2}) patches_.push_back(made_patches(order, second));
 }
@@ -76,7 +111,8 @@ void StressRecovery::find_sites() {
   const System& s = system_;
   std::vector<std::int64_t> key;
   std::unordered_map<std::int64_t, int> index;
-  for (const SolidBatch& b : solids_.batches) {
+  for (const SolidBatch* batch : batches_) {
+    const SolidBatch& b = *batch;
     auto& of = site_of_.emplace_back();
     const int region = 2 * b.region + is_bar(b.shape);
     for (const int node : b.nodes) {
@@ -92,11 +128,11 @@ void StressRecovery::find_sites() {
 StressRecovery::Patches StressRecovery::made_patches(int order, const std::vector<double>& second) const {
   const System& s = system_;
   std::vector<int> nodes;
-  std::vector<std::vector<int>> corners_of(solids_.batches.size());
+  std::vector<std::vector<int>> corners_of(batches_.size());
   std::vector<std::int64_t> key;
   std::unordered_map<std::int64_t, int> index;
-  for (size_t b = 0; b < solids_.batches.size(); ++b) {
-    const SolidBatch& batch = solids_.batches[b];
+  for (size_t b = 0; b < batches_.size(); ++b) {
+    const SolidBatch& batch = *batches_[b];
     if (is_bar(batch.shape) || (second[batch.region] > 0) != (order == 2)) continue;
     const int n = info(batch.shape).n_nodes, corners = info(batch.shape).n_corners;
     for (size_t e = 0; e < batch.cells.size(); ++e)
@@ -113,18 +149,17 @@ StressRecovery::Patches StressRecovery::made_patches(int order, const std::vecto
   std::vector<double> shape(n * PatchFit::n_shape, 0.0);
   std::vector<StressPoint> points;
   std::vector<Vec3> samples;
-  const auto sample = [&](const SolidBatch& b, const Positions& at) {
-    stress_points(b.shape, b.material, at.X, at.x, StressPoints::samples, points);
+  const auto sample = [&](const Cell& at) {
+    at.points(StressPoints::samples, points);
     samples.clear();
-    if (order == 2 && quadratic(b.shape))
+    if (order == 2 && quadratic(at.batch->shape))
       for (const StressPoint& q : points) samples.push_back(q.X);
     else
       samples.push_back(CellMean(points).X);
   };
-  each_cell(p, s.X, [&](size_t b, size_t, std::span<const int> corner, const Positions& at) {
-    const SolidBatch& batch = solids_.batches[b];
-    sample(batch, at);
-    stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::everywhere, points);
+  each_cell(p, nullptr, [&](size_t, size_t, std::span<const int> corner, const Cell& at) {
+    sample(at);
+    at.points(StressPoints::everywhere, points);
     for (const int v : corner) {
       double* to = shape.data() + static_cast<size_t>(v) * PatchFit::n_shape;
       for (const Vec3& X : samples) PatchFit::add_sample(X - s.X[p.node[v]], to);
@@ -136,8 +171,8 @@ StressRecovery::Patches StressRecovery::made_patches(int order, const std::vecto
   for (size_t v = 0; v < n; ++v) p.fit.emplace_back(order, shape.data() + v * PatchFit::n_shape);
   const int width = PatchFit::n_moments(order);
   std::vector<double> moments(n * width, 0.0);
-  each_cell(p, s.X, [&](size_t b, size_t, std::span<const int> corner, const Positions& at) {
-    sample(solids_.batches[b], at);
+  each_cell(p, nullptr, [&](size_t, size_t, std::span<const int> corner, const Cell& at) {
+    sample(at);
     for (const int v : corner)
       for (const Vec3& X : samples) p.fit[v].add_moments(X - s.X[p.node[v]], moments.data() + static_cast<size_t>(v) * width);
   });
@@ -147,13 +182,13 @@ StressRecovery::Patches StressRecovery::made_patches(int order, const std::vecto
 }
 
 /// Polynomials of all patches about their corners (n x rows x 6).
-std::vector<double> StressRecovery::polynomials(const Patches& p, const std::vector<Vec3>& x, const Memory& memory) const {
+std::vector<double> StressRecovery::polynomials(const Patches& p, const Config& q, const Memory& memory) const {
   const size_t n = p.node.size(), width = PatchFit::n_sums(p.order), size = static_cast<size_t>(PatchFit::n_rows(p.order)) * 6;
   std::vector<double> sums(n * width, 0.0), polynomial(n * size);
   std::vector<StressPoint> points;
-  each_cell(p, x, [&](size_t b, size_t e, std::span<const int> corner, const Positions& at) {
-    const SolidBatch& batch = solids_.batches[b];
-    stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::samples, points, of_cell(batch, memory, b, e));
+  each_cell(p, &q, [&](size_t b, size_t e, std::span<const int> corner, const Cell& at) {
+    const SolidBatch& batch = *batches_[b];
+    at.points(StressPoints::samples, points, of_cell(batch, memory, b, e));
     if (p.order == 2 && quadratic(batch.shape)) {
       for (const int v : corner)
         for (const StressPoint& q : points) p.fit[v].add_stress(q.X - system_.X[p.node[v]], q.S, sums.data() + v * width);
@@ -212,12 +247,12 @@ constexpr int n_values = 17;  // of a site: cells, S, F, plastic strain
 }  // namespace
 
 /// Bars have their own stress alone: the sums of its components and of their von Mises stresses.
-void StressRecovery::add_bars(const std::vector<Vec3>& x, std::vector<double>& at, std::vector<double>& cell) const {
-  Positions ends;
-  for (size_t b = 0; b < solids_.batches.size(); ++b) {
-    const SolidBatch& batch = solids_.batches[b];
+void StressRecovery::add_bars(const Config& q, std::vector<double>& at, std::vector<double>& cell) const {
+  Cell ends;
+  for (size_t b = 0; b < batches_.size(); ++b) {
+    const SolidBatch& batch = *batches_[b];
     for (size_t e = 0; is_bar(batch.shape) && e < batch.cells.size(); ++e) {
-      ends.gather(system_, x, batch.nodes.data() + 2 * e, 2);
+      look_at(ends, b, e, &q);
       const Vec6 stress = bar_stress(batch.material, ends.X, ends.x);
       cell[batch.cells[e]] = von_mises(stress);
       for (const int end : {0, 1}) {
@@ -229,7 +264,7 @@ void StressRecovery::add_bars(const std::vector<Vec3>& x, std::vector<double>& a
   }
 }
 
-StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x, const Memory& memory) const {
+StressRecovery::Result StressRecovery::recover(const Config& q, const Memory& memory) const {
   const System& s = system_;
   Result out;
   out.cell.assign(s.mesh->mesh.n_cells(), 0.0), out.cell_plastic = out.cell;
@@ -237,11 +272,11 @@ StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x, const
   std::vector<StressPoint> points;
   std::vector<Mat3> F;
   for (const Patches& p : patches_) {
-    const auto polynomial = polynomials(p, x, memory);
-    each_cell(p, x, [&](size_t b, size_t e, std::span<const int> corner, const Positions& at) {
-      const SolidBatch& batch = solids_.batches[b];
+    const auto polynomial = polynomials(p, q, memory);
+    each_cell(p, &q, [&](size_t b, size_t e, std::span<const int> corner, const Cell& at) {
+      const SolidBatch& batch = *batches_[b];
       const CellPolynomial P(s, p.node, p.fit, polynomial.data(), PatchFit::n_rows(p.order), corner);
-      stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::samples, points, of_cell(batch, memory, b, e));
+      at.points(StressPoints::samples, points, of_cell(batch, memory, b, e));
       Eigen::Matrix<double, 6, Eigen::Dynamic> rest(6, points.size());
       for (size_t q = 0; q < points.size(); ++q) rest.col(q) = points[q].S - P(points[q].X);
       const Eigen::Matrix<double, 6, Eigen::Dynamic> extrapolated = rest * to_nodes(batch.shape).transpose();
@@ -249,7 +284,7 @@ StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x, const
       for (size_t q = 0; q < points.size(); ++q) plastic[q] = points[q].plastic;
       const Eigen::VectorXd plastic_at_nodes = to_nodes(batch.shape) * plastic;
       F.resize(at.X.size());
-      nodal_gradients(batch.shape, at.X, at.x, F);
+      at.gradients(F);
       for (size_t a = 0; a < at.X.size(); ++a) {
         double* to = at_site.data() + static_cast<size_t>(site_of_[b][e * at.X.size() + a]) * n_values;
         const Vec6 S = P(at.X[a]) + extrapolated.col(a);
@@ -260,23 +295,23 @@ StressRecovery::Result StressRecovery::recover(const std::vector<Vec3>& x, const
       }
     });
   }
-  add_bars(x, at_site, out.cell);
+  add_bars(q, at_site, out.cell);
   sites_->combine(at_site, n_values);
   for (size_t i = 0; i < site_.size(); ++i)
     for (int c = 1; c < n_values; ++c) at_site[i * n_values + c] /= at_site[i * n_values];
 
   std::vector<double> error(2 * site_.size(), 0.0);  // sum over the cells of V e^2 and of V
   for (const Patches& p : patches_)
-    each_cell(p, x, [&](size_t b, size_t e, std::span<const int>, const Positions& at) {
-      const SolidBatch& batch = solids_.batches[b];
+    each_cell(p, &q, [&](size_t b, size_t e, std::span<const int>, const Cell& at) {
+      const SolidBatch& batch = *batches_[b];
       const int* site = site_of_[b].data() + e * at.X.size();
-      stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::integration, points, of_cell(batch, memory, b, e));
+      at.points(StressPoints::integration, points, of_cell(batch, memory, b, e));
       double& mean = out.cell[batch.cells[e]];
       for (const StressPoint& q : points) {
         mean += von_mises(cauchy(q.F, q.S)) / static_cast<double>(points.size());
         out.cell_plastic[batch.cells[e]] += q.plastic / static_cast<double>(points.size());
       }
-      stress_points(batch.shape, batch.material, at.X, at.x, StressPoints::everywhere, points, of_cell(batch, memory, b, e));
+      at.points(StressPoints::everywhere, points, of_cell(batch, memory, b, e));
       double square = 0, volume = 0;
       for (const StressPoint& q : points) {
         Vec6 off = -q.S;

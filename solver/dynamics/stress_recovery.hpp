@@ -14,6 +14,9 @@
 //
 // The error at a node is the root of the mean square of the von Mises norm of (sum_a N_a S*_a - S) over the cells at it: raw stress at all
 // points of a cell against the recovered one.
+//
+// Cells of a linear region have the linear stress of their displacements from the mean axes, turned with these: half the difference of the
+// law's stress at small displacements forward and back, which is exact to the third order.
 #pragma once
 #include <optional>
 #include <vector>
@@ -46,9 +49,8 @@ class StressRecovery {
   };
   const std::vector<Site>& sites() const { return site_; }
   using Memory = std::vector<std::vector<double>>;
-  /// At positions x of the nodes, the cells of each batch remembering what `memory` says.  Collective; the same on all ranks that hold a
-  /// site.
-  Result recover(const std::vector<Vec3>& x, const Memory& memory = {}) const;
+  /// At the pose q, the cells of each batch remembering what `memory` says.  Collective; the same on all ranks that hold a site.
+  Result recover(const Config& q, const Memory& memory = {}) const;
 
  private:
   struct Patches {  // corners of the cells of one order: a patch each
@@ -61,12 +63,15 @@ class StressRecovery {
   void find_sites();
   Patches made_patches(int order, const std::vector<double>& second) const;
   template <class Visit>
-  void each_cell(const Patches& p, const std::vector<Vec3>& x, Visit&& visit) const;
-  std::vector<double> polynomials(const Patches& p, const std::vector<Vec3>& x, const Memory& memory) const;
-  void add_bars(const std::vector<Vec3>& x, std::vector<double>& at, std::vector<double>& cell) const;
+  void each_cell(const Patches& p, const Config* q, Visit&& visit) const;
+  struct Cell;  // a cell at a pose
+  void look_at(Cell& cell, size_t batch, size_t number, const Config* q) const;
+  std::vector<double> polynomials(const Patches& p, const Config& q, const Memory& memory) const;
+  void add_bars(const Config& q, std::vector<double>& at, std::vector<double>& cell) const;
 
   const System& system_;
-  const Solids& solids_;
+  std::vector<const SolidBatch*> batches_;  // of nonlinear regions, then of linear ones,
+  std::vector<int> body_;                   // whose mean axes these are; -1
   std::vector<Site> site_;
   std::vector<std::vector<int>> site_of_;  // per batch: site of each node of each cell (n_cells x n)
   std::optional<Sharing> sites_;

@@ -13,7 +13,20 @@ void Unknown::start(const System& system, const Config& from, const Config& gues
       const int b = f.item[k];
       turn[b] = rotation_increment(q0.R[b], q.R[b]), turn_body(b);
     }
+  multiply(system);
   system.follow(q), system.follow(dq);
+}
+
+/// Products of amplitudes and directors, and their increments: eta1 R1 - eta0 R0 = (eta1 - eta0)(R0 + R1)/2 + (eta0 + eta1)/2 (R1 - R0).
+void Unknown::multiply(const System& system) {
+  for (const Modes& m : system.modes) {
+    const Mat3 mean = (q0.R[m.body] + q.R[m.body]) / 2;
+    for (int j = 3 * m.first; j < 3 * (m.first + m.n_blocks); ++j) {
+      const double before = q0.eta[j / 3][j % 3], after = q.eta[j / 3][j % 3], step = dq.eta[j / 3][j % 3];
+      q.Y[j] = after * q.R[m.body];
+      dq.Y[j] = step * mean + (before + after) / 2 * dq.R[m.body];
+    }
+  }
 }
 
 /// R = cay(w) R0 = R0 + (w x R0 + w x (w x R0)/2)/(1 + w^2/4),  R - R0 = w x (R + R0)/2.  Towards half a turn the latter loses its digits:
@@ -42,6 +55,7 @@ void Unknown::add(const System& system, std::span<const double> z, Turned turned
         (q.*f.array)[i] = (q0.*f.array)[i] + d;
       }
     }
+  multiply(system);
   system.follow(q), system.follow(dq);
 }
 

@@ -26,6 +26,7 @@ struct Unknown {
 
  private:
   void turn_body(size_t b);
+  void multiply(const System& system);
   template <class Turned>
   void add(const System& system, std::span<const double> z, Turned turned);
 };

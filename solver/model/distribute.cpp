@@ -123,7 +123,7 @@ std::vector<int> Distribution::choose_ranks() const {
       const auto at = std::lower_bound(rows.begin(), rows.end(), cell_nodes_[i - offset_[0]]) - rows.begin();
       centre += Vec3(X[3 * at], X[3 * at + 1], X[3 * at + 2]);
     }
-    const bool rigid = out_.fidelity[region_[c]] == Fidelity::rigid;
+    const bool rigid = out_.fidelity[region_[c]] != Fidelity::nonlinear;
     cloud.x.push_back(centre / static_cast<double>(offset_[c + 1] - offset_[c]));
     cloud.work.push_back(rigid ? info(shape_[c]).n_nodes : work_of_cell(static_cast<Shape>(shape_[c])));  // of a rigid cell: what is stored
     cloud.kind.push_back(rigid);
@@ -158,6 +158,26 @@ LocalMesh whole_mesh(const std::string& path) {
 
 LocalMesh read_local_mesh(const std::string& path, const Comm& comm) {
   return comm.size == 1 ? whole_mesh(path) : division::Distribution(path, comm).run();
+}
+
+std::int64_t LocalMesh::put_first(const std::vector<char>& marked) {
+  std::vector<std::int64_t> to(marked.size()), from;
+  for (const bool wanted : {true, false})
+    for (size_t i = 0; i < marked.size(); ++i)
+      if ((marked[i] != 0) == wanted) to[i] = static_cast<std::int64_t>(from.size()), from.push_back(static_cast<std::int64_t>(i));
+  const auto permute = [&](auto& values) {
+    auto old = values;
+    for (size_t i = 0; i < from.size(); ++i) values[i] = old[from[i]];
+  };
+  permute(mesh.X), permute(mesh.node_id), permute(node_global), permute(node_owned);
+  for (auto& node : mesh.nodes) node = to[node];
+  const auto renumber = [&](std::vector<std::int64_t>& list) {
+    for (auto& node : list) node = to[node];
+    std::sort(list.begin(), list.end());
+  };
+  for (auto& [name, list] : mesh.node_sets) renumber(list);
+  for (auto& [name, list] : elsewhere) renumber(list);
+  return std::count_if(marked.begin(), marked.end(), [](char m) { return m != 0; });
 }
 
 std::vector<std::int64_t> LocalMesh::nodes_of(const std::string& name, const std::string& where) const {

@@ -26,6 +26,8 @@ struct LocalMesh {
 
   /// All local nodes of a name, also those that only a cell of another rank puts there: what Mesh::nodes_of gives on one rank.
   std::vector<std::int64_t> nodes_of(const std::string& name, const std::string& where) const;
+  /// Renumber the nodes: those marked come first, both kinds in the order they had; how many are marked.
+  std::int64_t put_first(const std::vector<char>& marked);
 };
 
 /// Read a mesh, tags or parts file.  On several ranks each reads its slice of the rows and cells travel to the rank that the parts file

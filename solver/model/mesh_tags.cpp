@@ -16,10 +16,6 @@ namespace {
 
 const std::vector<std::string> keys{"rigid", "linear", "nonlinear", "rest"};
 
-void refuse_unbuilt(Fidelity f, const std::string& where) {
-  if (f == Fidelity::linear) throw Error(where, "fidelity linear is not built yet", "rigid or nonlinear");
-}
-
 std::string place(const toml::node& node) { return place_of(node).text(); }
 
 Vec3 read_point(const toml::node& node) {
@@ -135,9 +131,8 @@ TagRules read_tag_rules(const std::string& path) {
     }
     if (item.key == "rest") {
       const auto text = item.node->value<std::string>();
-      if (!text) throw Error(place(*item.node), fmt::format("wanted rigid or nonlinear, not {}", type_word(*item.node)));
+      if (!text) throw Error(place(*item.node), fmt::format("wanted rigid, linear or nonlinear, not {}", type_word(*item.node)));
       rules.rest = fidelity_of(*text, place(*item.node));
-      refuse_unbuilt(*rules.rest, place(*item.node));
       continue;
     }
     const auto* list = item.node->as_array();
@@ -172,7 +167,6 @@ std::vector<std::optional<Fidelity>> apply_tag_rules(const Mesh& mesh, const Tag
   std::vector<std::optional<Fidelity>> fidelity(n);
   std::vector<const TagRule*> by(n, nullptr);
   for (const auto& rule : rules.rules) {
-    refuse_unbuilt(rule.fidelity, rule.where);
     const auto regions = matched(mesh, rule);
     if (regions.empty()) {
       std::string hint = suggest(rule.pattern, mesh.region_name);

@@ -78,6 +78,8 @@ std::vector<ArraySchema>& arrays() {
       {"run.h5", "/history/constraint", "f8", "(n_t)", "m", "largest violation of a joint row"},
       {"run.h5", "/history/newton", "i4", "(n_t)", "", "Newton iterations of the step"},
       {"run.h5", "/history/body/<name>", "f8", "(n_t, 12)", "m", "positions of the four points of a body"},
+      {"run.h5", "/history/modes/<name>", "f8", "(n_t, n_modes)", "m kg^0.5",
+       "amplitudes of the modes of a linear region, orthonormal in mass"},
       {"run.h5", "/history/joint/<name>", "f8", "(n_t, 6)", "N, N m",
        "force and moment on b at the joint point, joint frame carried by a; of redundant joints the minimum-norm share"},
       {"run.h5", "/history/spring/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the point, inertial axes"},

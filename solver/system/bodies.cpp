@@ -10,7 +10,7 @@ using RowMatrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
 std::string Bodies::count() const {
   int patches = 0, free = 0;
-  for (const Body& b : points_.bodies) patches += b.patch, free += b.free() && !b.patch;
+  for (const Body& b : points_.bodies) patches += b.patch, free += b.free() && !b.patch && !b.linear;
   return fmt::format("{} rigid bodies, {} patches", free, patches);
 }
 
@@ -28,7 +28,7 @@ void Bodies::evaluate(Pass& p) const {
   const Vec3& gravity = points_.gravity;
   for (size_t b = 0; b < points_.bodies.size(); ++b) {
     const Body& body = points_.bodies[b];
-    if (body.mass == 0 && body.J.isZero(0)) continue;
+    if (body.linear || (body.mass == 0 && body.J.isZero(0))) continue;
     if (!points_.counts(static_cast<int>(b))) continue;
     const Vec3 force = body.mass * (s.a->c[b] - gravity * s.load_factor);
     const Mat3 AJ = s.a->R[b] * body.J;
@@ -56,7 +56,7 @@ void Bodies::evaluate(Pass& p) const {
 void Bodies::add_energy(const Config& q, const Config& v, Energy& sum) const {
   for (size_t b = 0; b < points_.bodies.size(); ++b) {
     const Body& body = points_.bodies[b];
-    if (!points_.counts(static_cast<int>(b)) || body.mass == 0) continue;
+    if (!points_.counts(static_cast<int>(b)) || body.linear || body.mass == 0) continue;
     sum.kinetic += body.inertia(v.c[b], v.R[b], v.c[b], v.R[b]) / 2;
     sum.momentum += body.mass * v.c[b];
     sum.angular += body.mass * q.c[b].cross(v.c[b]);

@@ -5,12 +5,14 @@
 #include "system/bodies.hpp"
 #include "system/builder.hpp"
 #include "system/joints.hpp"
+#include "system/linear_regions.hpp"
 #include "system/loads.hpp"
 #include "system/motions.hpp"
 #include "system/point_masses.hpp"
 #include "system/solids.hpp"
 #include "system/springs.hpp"
 #include "system/stations.hpp"
+#include "system/welds.hpp"
 
 namespace hilo {
 
@@ -21,7 +23,9 @@ void Builder::add_contributions() {
   System& s = *out_;
   s.add<Solids>(s);
   s.add<Bodies>(s);
+  s.add<LinearRegions>(s);
   s.add<PointMasses>(s);
+  s.add<Welds>(s);
   const Joints& joints = s.add<Joints>(s);
   s.add<Springs>(s, joints);
   s.add<Loads>(s);
@@ -36,11 +40,12 @@ std::unique_ptr<System> Builder::build() {
   out_->mesh = mesh_;
   out_->gravity = scene_.table("scene").vector3("gravity");
   if (mesh_) {
+    n_active_ = put_active_nodes_first();
     out_->X = mesh_->mesh.X;
     out_->node_owned = mesh_->node_owned;
     out_->length = mesh_->length;
   }
-  out_->start.x = out_->X;
+  out_->start.x.assign(out_->X.begin(), out_->X.begin() + n_active_);
   out_->follower.assign(out_->X.size(), -1);
   out_->fixed.assign(out_->X.size(), {false, false, false});
   held_by_.resize(out_->X.size());
@@ -49,8 +54,10 @@ std::unique_ptr<System> Builder::build() {
   read_regions();
   integrate_regions();
   make_rigid_bodies();
+  make_linear_bodies();
   add_free_bodies();
   comm_.together([&] { make_batches(); });  // a region that lacks something may have its cells on one rank
+  weld_neighbours();
   add_point_masses();
   add_motions();
   add_joints();
@@ -70,6 +77,7 @@ std::unique_ptr<System> Builder::build() {
   const bool is_static = scene_.table("time").text("analysis") == "static";
   if (!(out_->mass > 0) && !is_static)
     throw Error(scene_.path, "the scene has no mass: nothing can move", "give a mesh or [[body]] entries, and densities");
+  reduce_linear_regions();
   out_->stiffness = comm_.max(out_->stiffness);  // cells are on their ranks
   out_->number();
   if (comm_.sum(static_cast<double>(out_->n_blocks())) == 0)

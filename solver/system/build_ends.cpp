@@ -31,6 +31,17 @@ double Builder::count_owned(const std::vector<int>& nodes) const {
   return comm_.sum(n);
 }
 
+/// The mean axes that some of the nodes follow, the same on all ranks.
+std::vector<int> Builder::linear_bodies_at(const std::vector<int>& nodes) const {
+  std::vector<int> out;
+  for (size_t b = 0; b < out_->bodies.size(); ++b) {
+    if (!out_->bodies[b].linear) continue;
+    const bool here = std::any_of(nodes.begin(), nodes.end(), [&](int i) { return out_->follower[i] == static_cast<int>(b); });
+    if (comm_.max(here ? 1 : 0) > 0) out.push_back(static_cast<int>(b));
+  }
+  return out;
+}
+
 Vec3 Builder::mean_of(const std::vector<int>& nodes) const {
   double all[4] = {};
   for (int i : nodes)
@@ -52,6 +63,23 @@ int Builder::nearest_owned(const std::vector<int>& nodes, const Vec3& at) const 
   const bool candidate = least <= -comm_.max(-least) && nearest >= 0;
   const double row = candidate ? static_cast<double>(mesh_->node_global[nearest]) : 1e300, first = -comm_.max(-row);
   return candidate && row == first ? nearest : -1;
+}
+
+/// Radius of gyration of nodes about their mean, 0 where they lie on a line [m].  Collective.
+double Builder::spread_of(const std::vector<int>& nodes) const {
+  const Vec3 mean = mean_of(nodes);
+  double spread[6] = {};
+  for (int i : nodes)
+    if (out_->node_owned[i]) {
+      const Vec3 d = out_->X[i] - mean;
+      spread[0] += d[0] * d[0], spread[1] += d[1] * d[1], spread[2] += d[2] * d[2];
+      spread[3] += d[0] * d[1], spread[4] += d[0] * d[2], spread[5] += d[1] * d[2];
+    }
+  comm_.sum(spread);
+  Mat3 S;
+  S << spread[0], spread[3], spread[4], spread[3], spread[1], spread[5], spread[4], spread[5], spread[2];
+  const Vec3 values = Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvalues();
+  return values[1] <= 1e-12 * values[2] ? 0 : std::sqrt(S.trace() / std::max(1.0, count_owned(nodes)));
 }
 
 Builder::Found Builder::find(const std::string& name, const std::string& where) const {
@@ -79,7 +107,8 @@ Builder::Found Builder::find(const std::string& name, const std::string& where) 
   double low = 1e300, high = -1e300;
   for (int i : found.nodes) low = std::min<double>(low, out_->follower[i]), high = std::max<double>(high, out_->follower[i]);
   low = -comm_.max(-low), high = comm_.max(high);
-  if (low == high && low >= 0) found.body = static_cast<int>(low);
+  found.linear = !linear_bodies_at(found.nodes).empty();
+  if (low == high && low >= 0 && !found.linear) found.body = static_cast<int>(low);
   return found;
 }
 
@@ -105,29 +134,29 @@ void Builder::follow_all(const std::vector<int>& nodes, int body, const std::str
 int Builder::patch_of(const std::string& name, const Found& found, const std::string& where) {
   if (const auto it = patch_by_name_.find(name); it != patch_by_name_.end()) return it->second;
   double other = -1;
-  for (int i : found.nodes) other = std::max<double>(other, out_->follower[i]);
+  for (int i : found.nodes)
+    if (const int b = out_->follower[i]; b >= 0 && !out_->bodies[b].linear) other = std::max<double>(other, b);
   int body = static_cast<int>(comm_.max(other));
   const bool joins = body >= 0;
   if (!joins) {
     body = new_body(name, mean_of(found.nodes));
     out_->bodies[body].patch = true;
-    double spread[6] = {};
-    for (int i : found.nodes)
-      if (out_->node_owned[i]) {
-        const Vec3 d = out_->X[i] - out_->bodies[body].Xc;
-        spread[0] += d[0] * d[0], spread[1] += d[1] * d[1], spread[2] += d[2] * d[2];
-        spread[3] += d[0] * d[1], spread[4] += d[0] * d[2], spread[5] += d[1] * d[2];
-      }
-    comm_.sum(spread);
-    Mat3 S;
-    S << spread[0], spread[3], spread[4], spread[3], spread[1], spread[5], spread[4], spread[5], spread[2];
-    const Vec3 values = Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvalues();
-    if (values[1] <= 1e-12 * values[2])
+    out_->bodies[body].size = spread_of(found.nodes);
+    if (out_->bodies[body].size == 0)
       throw Error(where, fmt::format("the {} nodes of \"{}\" lie on a line and cannot carry a joint", found.n_global, name),
                   "name a set of nodes on a face");
-    out_->bodies[body].size = std::sqrt(S.trace() / static_cast<double>(found.n_global));
   }
-  follow_all(found.nodes, body, where);
+  const std::vector<int> linear = linear_bodies_at(found.nodes);
+  std::vector<int> others;
+  for (const int i : found.nodes)
+    if (out_->follower[i] < 0 || !out_->bodies[out_->follower[i]].linear) others.push_back(i);
+  follow_all(others, body, where);
+  for (const int of : linear) {
+    std::vector<int> its;
+    for (const int i : found.nodes)
+      if (out_->follower[i] == of) its.push_back(i);
+    weld(of, body, name, its);
+  }
   patch_by_name_[name] = body;
   return body;
 }
@@ -144,6 +173,8 @@ Carrier Builder::carrier(const Entry& entry, std::string_view key, bool needs_or
   const std::string& name = entry.text(key);
   const std::string where = entry.where(key);
   const Found found = find(name, where);
+  if (found.body < 0 && found.n_global == 1 && found.linear)
+    throw Error(where, fmt::format("{}: \"{}\" is a single node of a linear region", entry.label(), name), "name a set of nodes on a face");
   if (found.body < 0 && found.n_global == 1) {
     if (needs_orientation)
       throw Error(where, fmt::format("{}: \"{}\" is a single node, which has no orientation", entry.label(), name),

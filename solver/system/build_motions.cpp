@@ -7,6 +7,7 @@
 
 #include "system/builder.hpp"
 #include "system/motions.hpp"
+#include "system/welds.hpp"
 
 namespace hilo {
 namespace {
@@ -50,8 +51,11 @@ void Builder::add_motions() {
     if (found.body >= 0 && !whole)
       throw Error(where, fmt::format("{}: \"{}\" is rigid and can only be held whole", e.label(), e.text("on")),
                   "use a joint to the ground");
+    if (found.linear && !whole)
+      throw Error(where, fmt::format("{}: \"{}\" belongs to a linear region and can only be held whole", e.label(), e.text("on")),
+                  "use a joint to the ground, or tag the region nonlinear");
     if (whole || found.body >= 0) {
-      m.body = found.body;
+      m.body = found.linear ? body_of(e.text("on"), found, where) : found.body;
       if (m.body < 0) {
         double other = -1;  // nodes of a rigid body among them: it is held too
         for (int i : found.nodes) other = std::max<double>(other, out_->follower[i]);
@@ -85,7 +89,7 @@ void Builder::add_motions() {
 
 void Builder::set_initial_velocities() {
   Config& v = out_->start_velocity;
-  v.resize(out_->X.size(), out_->bodies.size());
+  v.resize_like(out_->start);
   for (const Entry& e : scene_.entries("initial")) {
     std::vector<bool> region(regions_.size(), false), body(out_->bodies.size(), false);
     std::vector<char> node(out_->X.size(), 0);
@@ -117,13 +121,18 @@ void Builder::set_initial_velocities() {
     const Vec3 velocity = e.vector3("velocity"), spin = e.vector3("spin");
     const Vec3 about = e.has("about") ? e.vector3("about") : mass > 0 ? Vec3(moment / mass) : Vec3::Zero();
     for (size_t i = 0; i < node.size(); ++i)
-      if (node[i]) {
+      if (node[i] && i < v.x.size()) {
         v.x[i] = velocity + spin.cross(out_->X[i] - about);
         if (const int b = out_->follower[i]; b > 0 && (out_->bodies[b].patch || (out_->bodies[b].held && out_->bodies[b].mass == 0)))
           body[b] = true;  // made of nodes for a joint or a motion
       }
     for (size_t b = 1; b < body.size(); ++b)
       if (body[b]) v.c[b] = velocity + spin.cross(out_->bodies[b].Xc - about), v.R[b] = skew(spin);
+    for (const Weld& w : out_->part<Welds>().list) {  // what is welded to nodes that move
+      const bool stays = std::any_of(w.nodes.begin(), w.nodes.end(), [&](int i) { return node[i] == 0; });
+      if (comm_.max(stays ? 1 : 0) > 0 || !out_->bodies[w.body].patch || body[w.body]) continue;
+      v.c[w.body] = velocity + spin.cross(out_->bodies[w.body].Xc - about), v.R[w.body] = skew(spin);
+    }
   }
   // a patch made on another rank's nodes must know its velocity too
   if (comm_.size > 1) {
@@ -148,10 +157,7 @@ void Builder::set_initial_velocities() {
     for (int i : m.nodes)
       for (int k = 0; k < 3; ++k)
         if (m.body < 0 && m.component[k] && !m.moving) v.x[i][k] = 0;
-  Config full = v;
-  out_->follow(full);
-  for (size_t i = 0; i < out_->X.size(); ++i)
-    if (out_->follower[i] >= 0) v.x[i] = full.x[i];
+  out_->follow(v);
 }
 
 }  // namespace hilo

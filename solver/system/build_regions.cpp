@@ -17,6 +17,30 @@ const char* const give_material = "give it with [region.NAME] material = \"...\"
 
 }  // namespace
 
+/// Nodes that a step asks for come first: those of nonlinear cells, and of every set (or linear region) whose name stands in the scene.
+/// The others follow their bodies where results want them.
+std::int64_t Builder::put_active_nodes_first() {
+  const Mesh& mesh = mesh_->mesh;
+  std::vector<char> active(mesh.X.size(), 0), in_cell(mesh.X.size(), 0);
+  for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
+    for (const std::int64_t i : mesh.cell(e)) {
+      in_cell[i] = 1;
+      if (mesh_->fidelity[mesh.region[e]] == Fidelity::nonlinear) active[i] = 1;
+    }
+  for (size_t i = 0; i < active.size(); ++i)
+    if (!in_cell[i]) active[i] = 1;
+  const auto is_named = [&](const std::string& name) {
+    const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) { return c > 31 && c < 127 && c != '"' && c != '\\'; });
+    return !plain || scene_.text.find('"' + name + '"') != std::string::npos || scene_.text.find("'" + name + "'") != std::string::npos;
+  };
+  for (const std::string& name : mesh.all_names()) {
+    const int region = mesh.find_region(name);
+    if (!is_named(name) || (region >= 0 && mesh_->fidelity[region] != Fidelity::linear)) continue;
+    for (const std::int64_t i : mesh_->nodes_of(name, "")) active[i] = 1;
+  }
+  return mesh_->put_first(active);
+}
+
 void Builder::read_regions() {
   if (!mesh_) return;
   for (size_t r = 0; r < mesh_->mesh.region_name.size(); ++r) {
@@ -33,6 +57,9 @@ void Builder::read_regions() {
       if (e.given("area")) region.area = e.number("area");
       if (e.given("damping")) region.beta = e.number("damping");
       if (e.given("mass_damping")) region.alpha = e.number("mass_damping");
+      if (e.given("modal_damping")) region.modal_damping = e.number("modal_damping");
+      if (e.given("modes")) region.n_vibrations = static_cast<int>(e.number("modes"));
+      if (e.given("up_to")) region.up_to = e.number("up_to");
     }
     if (!material.empty()) {
       const Entry* found = nullptr;
@@ -216,36 +243,17 @@ void Builder::make_batches() {
   std::map<std::pair<int, int>, SolidBatch> by_kind;
   for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
     const Region& r = regions_[mesh.region[e]];
-    if (r.fidelity == Fidelity::rigid) continue;
+    if (r.fidelity != Fidelity::nonlinear) continue;
     SolidBatch& b = by_kind[{mesh.region[e], mesh.shape[e]}];
     b.cells.push_back(static_cast<int>(e));
     for (std::int64_t node : mesh.cell(e)) b.nodes.push_back(static_cast<int>(node));
   }
   std::vector<double> reduced(regions_.size(), 0.0);
   for (auto& [key, b] : by_kind) {
-    const Region& r = regions_[key.first];
-    b.region = key.first;
-    b.shape = static_cast<Shape>(key.second);
-    b.material = material_of(r);
-    const bool is_static = scene_.table("time").text("analysis") == "static";
-    if (std::isnan(r.density) && !is_static) throw Error(r.where, fmt::format("region \"{}\" has no density", r.name), give_material);
-    if (b.shape == Shape::bar2 && r.area <= 0)
-      throw Error(r.where, fmt::format("region \"{}\" is made of bars and has no area", r.name), "give [region.NAME] area");
-    b.density = std::isnan(r.density) ? 0 : r.density;
-    b.beta = r.beta, b.alpha = r.alpha, b.area = r.area;
-    b.kernel = solid_kernel(b.shape, b.material.index());
-    if (b.kernel.n_state > 0 && b.shape == Shape::hex20) {  // 27 points are more conditions on the volume of flow than 20 nodes can meet
-      b.shape = Shape::hex20r, b.kernel = solid_kernel(b.shape, b.material.index());
-      reduced[b.region] = 1;
-    }
-    if (!b.kernel.call) {
-      std::string with_bars;
-      for (size_t k = 0; k < material_kinds().size(); ++k)
-        if (solid_kernel(Shape::bar2, k).call) with_bars += (with_bars.empty() ? "" : ", ") + std::string(material_kinds()[k].kind);
-      throw Error(r.where,
-                  fmt::format("region \"{}\" is made of bars: kind = \"{}\" has none", r.name, material_kinds()[b.material.index()].kind),
-                  "kinds that have: " + with_bars);
-    }
+    SolidBatch made = batch_of(key.first, static_cast<Shape>(key.second));
+    made.cells = std::move(b.cells), made.nodes = std::move(b.nodes);
+    b = std::move(made);
+    if (b.shape != static_cast<Shape>(key.second)) reduced[b.region] = 1;
     b.h0.assign(b.cells.size() * static_cast<size_t>(b.kernel.n_state), 0.0), b.h1 = b.h0;
     out_->stiffness =
         std::max(out_->stiffness, young_of(linear_moduli(b.material)) * (b.area > 0 ? b.area / mesh_->length : mesh_->length / 100));
@@ -253,6 +261,34 @@ void Builder::make_batches() {
   }
   reduced_.swap(reduced);
   warn_of_limits();
+}
+
+/// A batch of a region, without cells.
+SolidBatch Builder::batch_of(int region, Shape shape) const {
+  const Region& r = regions_[region];
+  SolidBatch b;
+  b.region = region;
+  b.shape = shape;
+  b.material = material_of(r);
+  const bool is_static = scene_.table("time").text("analysis") == "static";
+  if (std::isnan(r.density) && !is_static) throw Error(r.where, fmt::format("region \"{}\" has no density", r.name), give_material);
+  if (b.shape == Shape::bar2 && r.area <= 0)
+    throw Error(r.where, fmt::format("region \"{}\" is made of bars and has no area", r.name), "give [region.NAME] area");
+  b.density = std::isnan(r.density) ? 0 : r.density;
+  b.beta = r.beta, b.alpha = r.alpha, b.area = r.area;
+  b.kernel = solid_kernel(b.shape, b.material.index());
+  if (b.kernel.n_state > 0 && b.shape == Shape::hex20) {  // 27 points are more conditions on the volume of flow than 20 nodes can meet
+    b.shape = Shape::hex20r, b.kernel = solid_kernel(b.shape, b.material.index());
+  }
+  if (!b.kernel.call) {
+    std::string with_bars;
+    for (size_t k = 0; k < material_kinds().size(); ++k)
+      if (solid_kernel(Shape::bar2, k).call) with_bars += (with_bars.empty() ? "" : ", ") + std::string(material_kinds()[k].kind);
+    throw Error(r.where,
+                fmt::format("region \"{}\" is made of bars: kind = \"{}\" has none", r.name, material_kinds()[b.material.index()].kind),
+                "kinds that have: " + with_bars);
+  }
+  return b;
 }
 
 void Builder::add_free_bodies() {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "physics/axes.hpp"
-#include "physics/solid_kernel.hpp"
 #include "physics/spring_kinds.hpp"
+#include "system/solids.hpp"
 #include "system/system.hpp"
 
 namespace hilo {
@@ -23,9 +23,11 @@ class Builder {
     const Entry* material = nullptr;  // null: what the deck carries, and the first kind
     double E = std::nan(""), nu = std::nan(""), density = std::nan("");
     double mass_wanted = 0, area = 0, beta = 0, alpha = 0;
+    double modal_damping = 0, up_to = 0;  // of a linear one: ratio, Hz
+    int n_vibrations = 40;
     std::string where;  // of its material, for errors
     Fidelity fidelity = Fidelity::nonlinear;
-    int body = -1;               // rigid: its body
+    int body = -1;               // rigid: its body; linear: its mean axes
     double mass = 0;             // integrals over its cells, all ranks
     Vec3 moment = Vec3::Zero();  // int rho (X - origin)
     Mat3 second = Mat3::Zero();  // int rho (X - origin)(X - origin)^T
@@ -33,12 +35,19 @@ class Builder {
   };
 
   // build_regions.cpp
+  std::int64_t put_active_nodes_first();
   void read_regions();
   void integrate_regions();
   void make_rigid_bodies();
   Material material_of(const Region& r) const;
   void make_batches();
+  SolidBatch batch_of(int region, Shape shape) const;
   void add_free_bodies();
+  // build_linear.cpp
+  void make_linear_bodies();
+  void weld(int linear_body, int body, const std::string& name, const std::vector<int>& nodes);
+  void weld_neighbours();
+  void reduce_linear_regions();
   // element_limits.cpp
   void warn_of_limits() const;
   // build_ends.cpp
@@ -47,6 +56,7 @@ class Builder {
     std::vector<int> nodes;  // local nodes of a set or flexible region
     std::int64_t n_global = 0;
     bool is_region = false;
+    bool linear = false;  // some of them follow a linear region
     int region = -1;
   };
   Found find(const std::string& name, const std::string& where) const;
@@ -57,8 +67,10 @@ class Builder {
   int new_body(const std::string& name, const Vec3& Xc);
   void set_follower(int node, int body, const std::string& where);
   void follow_all(const std::vector<int>& nodes, int body, const std::string& where);
+  std::vector<int> linear_bodies_at(const std::vector<int>& nodes) const;
   double count_owned(const std::vector<int>& nodes) const;
   Vec3 mean_of(const std::vector<int>& nodes) const;
+  double spread_of(const std::vector<int>& nodes) const;
   int nearest_owned(const std::vector<int>& nodes, const Vec3& at) const;
   // build.cpp
   void add_contributions();
@@ -84,6 +96,7 @@ class Builder {
   const Scene& scene_;
   LocalMesh* mesh_;
   const Comm& comm_;
+  std::int64_t n_active_ = 0;  // nodes that a configuration holds
   std::unique_ptr<System> out_;
   std::vector<Region> regions_;
   std::vector<double> reduced_;              // by region: hex20 taken as hex20r on this rank

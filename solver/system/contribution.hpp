@@ -151,6 +151,8 @@ class Contribution {
   virtual void look_at_rows(const Config& /*q*/, double /*t*/, double /*factor*/, Violation& /*worst*/) const {}
   /// First and, where given, second derivatives by time of its rows less their courses, laid out like lambda.
   virtual void add_row_rates(const Rates& /*at*/, std::vector<double>& /*rate*/, std::vector<double>* /*acceleration*/) const {}
+  /// Marks the rows that are kept, laid out like lambda.
+  virtual void mark_rows(std::vector<char>& /*on*/) const {}
   virtual void look_at_turn(const Config& /*q0*/, const Config& /*q1*/, int /*part*/, Turned& /*most*/) const {}
   virtual std::string name(int /*item*/) const { return {}; }
 

@@ -9,6 +9,19 @@ namespace hilo {
 
 std::string Loads::count() const { return fmt::format("{} loads", list.size()); }
 
+std::vector<std::pair<int, Vec3>> Load::on_reference(std::span<const Vec3> X) const {
+  std::vector<std::pair<int, Vec3>> out;
+  for (size_t i = 0; i < nodes.size(); ++i) out.emplace_back(nodes[i], weight[i] * value);
+  std::vector<Vec3> at, f;
+  for (const auto& facet : facets) {
+    at.clear(), f.assign(facet.size(), Vec3::Zero());
+    for (const int i : facet) at.push_back(X[i]);
+    pressure_force(pressure, at, at, f, nullptr);
+    for (size_t a = 0; a < facet.size(); ++a) out.emplace_back(facet[a], f[a]);
+  }
+  return out;
+}
+
 void Loads::add_cliques(Cliques& cliques) {
   for (Load& l : list) {
     l.cliques.clear();

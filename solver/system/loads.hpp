@@ -20,6 +20,8 @@ struct Load {
   Vec3 arm = Vec3::Zero();  // body axes
   History history;
   bool ramped = false;  // without a history: follows the load factor of a static analysis
+  /// Forces on nodes at their reference positions X; the shares of each node where the direction is not the region's own.
+  std::vector<std::pair<int, Vec3>> on_reference(std::span<const Vec3> X) const;
   double factor(double t0, double t1, double ramp) const { return (ramped ? ramp : 1) * (t1 > t0 ? history.mean(t0, t1) : history(t0)); }
 };
 

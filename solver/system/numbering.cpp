@@ -9,7 +9,7 @@ namespace hilo {
 int Points::number_points() {
   const int n = static_cast<int>(X.size());
   node_block.assign(n, -1), body_block.assign(bodies.size(), -1), body_clique.assign(bodies.size(), -1);
-  UnknownField nodes, centres, turns;
+  UnknownField nodes, centres, turns, amplitudes;
   nodes.array = &Config::x, nodes.held = &fixed;
   centres.array = &Config::c, centres.stride = 2;
   turns.update = UnknownField::Update::turn, turns.stride = 2;
@@ -26,7 +26,18 @@ int Points::number_points() {
     body_clique[b] = cliques.add(blocks);
     centres.item.push_back(static_cast<int>(b)), turns.item.push_back(static_cast<int>(b)), turns.lever.push_back(bodies[b].size);
   }
-  unknowns = {std::move(nodes), std::move(centres), std::move(turns)};
+  amplitudes.array = &Config::eta, amplitudes.first = next;
+  for (Modes& m : modes) {
+    m.block = next;
+    const int body = body_block[m.body];
+    std::vector<int> blocks{body, body < 0 ? -1 : body + 1};
+    for (int k = 0; k < m.n_blocks; ++k) {
+      blocks.push_back(next++);
+      amplitudes.item.push_back(m.first + k), amplitudes.lever.push_back(m.lever[k]);
+    }
+    m.clique = cliques.add(blocks);
+  }
+  unknowns = {std::move(nodes), std::move(centres), std::move(turns), std::move(amplitudes)};
   first_joint_block_ = next;
   return n_node_blocks;
 }

@@ -13,6 +13,14 @@ void PointMasses::evaluate(Pass& p) const {
       const auto& fixed = points_.fixed[n];
       const double f = m * s.mass_slope, d[3] = {fixed[0] ? 0 : f, fixed[1] ? 0 : f, fixed[2] ? 0 : f};
       p.K->add_diagonal(points_.node_block[n], d);
+    } else if (!points_.shapes_at(n).empty()) {
+      const Modes& modes = points_.modes[points_.modes_of[points_.follower[n]]];
+      const auto blocks = points_.cliques[modes.clique];
+      const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> M = m * s.mass_slope * Mat3::Identity();
+      std::vector<NodeMap> maps;
+      std::vector<std::array<bool, 3>> masks;
+      points_.make_maps({&n, 1}, blocks, s, maps, masks);
+      add_reduced(*p.K, modes.clique, 1, M.data(), maps.data(), static_cast<int>(blocks.size()), masks.data());
     } else if (const int b = points_.follower[n]; points_.body_block[b] >= 0) {
       const double f = m * s.mass_slope * (s.tempo ? s.tempo[b] * s.tempo[b] : 1);
       const Mat3 left = skew(s.left->x[n] - s.left->c[b]), right = skew(s.end->x[n] - s.end->c[b]);

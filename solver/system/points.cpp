@@ -1,5 +1,6 @@
 #include "system/points.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +15,7 @@ void Points::move(Config& q, std::span<const double> z) const {
       else
         (q.*f.array)[f.item[k]] += by;
     }
-  follow(q);
+  place(q);
 }
 
 double Points::add_rates(Config& v, const Config& q, std::span<const double> z) const {
@@ -28,6 +29,14 @@ double Points::add_rates(Config& v, const Config& q, std::span<const double> z) 
       else
         (v.*f.array)[f.item[k]] += by;
     }
+  for (const Modes& m : modes) {
+    const int turn = body_block[m.body] + 1;
+    const Mat3 W = turn > 0 ? skew(Eigen::Map<const Vec3>(z.data() + 3 * turn)) : Mat3::Zero();
+    for (int j = 0; j < 3 * m.n_blocks; ++j) {
+      const int i = 3 * m.first + j;
+      v.Y[i] += W * q.Y[i] + z[3 * m.block + j] * q.R[m.body];
+    }
+  }
   follow(v);
   return change;
 }
@@ -47,9 +56,29 @@ double Points::largest_rate(const Config& v) const {
   return comm->max(top);
 }
 
+Vec3 Points::followed(const Config& q, size_t node) const {
+  const int b = follower[node];
+  Vec3 x = q.c[b] + q.R[b] * (X[node] - bodies[b].Xc);
+  const auto shapes = shapes_at(static_cast<int>(node));
+  for (size_t j = 0; j < shapes.size(); ++j) x += q.Y[3 * modes[modes_of[b]].first + j] * shapes[j];
+  return x;
+}
+
 void Points::follow(Config& q) const {
-  for (size_t i = 0; i < X.size(); ++i)
-    if (const int b = follower[i]; b >= 0) q.x[i] = q.c[b] + q.R[b] * (X[i] - bodies[b].Xc);
+  for (size_t i = 0; i < q.x.size(); ++i)
+    if (follower[i] >= 0) q.x[i] = followed(q, i);
+}
+
+std::vector<Vec3> Points::all_nodes(const Config& q) const {
+  std::vector<Vec3> out = q.x;
+  for (size_t i = q.x.size(); i < X.size(); ++i) out.push_back(followed(q, i));
+  return out;
+}
+
+void Points::place(Config& q) const {
+  for (const Modes& m : modes)
+    for (int j = 3 * m.first; j < 3 * (m.first + m.n_blocks); ++j) q.Y[j] = q.eta[j / 3][j % 3] * q.R[m.body];
+  follow(q);
 }
 
 void Points::mask_fixed(std::span<double> r) const {
@@ -67,6 +96,12 @@ std::vector<int> Points::blocks_of(std::span<const int> nodes) const {
     if (b >= 0 && body_block[b] >= 0 && std::find(list.begin(), list.end(), body_block[b]) == list.end())
       list.push_back(body_block[b]), list.push_back(body_block[b] + 1);
   }
+  for (int node : nodes) {
+    if (shapes_at(node).empty()) continue;
+    const Modes& m = modes[modes_of[follower[node]]];
+    if (std::find(list.begin(), list.end(), m.block) == list.end())
+      for (int k = 0; k < m.n_blocks; ++k) list.push_back(m.block + k);
+  }
   return list;
 }
 
@@ -76,16 +111,51 @@ void Points::make_maps(std::span<const int> nodes, std::span<const int> blocks, 
   masks.resize(nodes.size());
   for (size_t k = 0; k < nodes.size(); ++k) {
     const int node = nodes[k], body = follower[node], block = body < 0 ? node_block[node] : body_block[body];
-    maps[k].slot = -1;
-    for (size_t i = 0; i < blocks.size() && block >= 0; ++i)
-      if (blocks[i] == block) maps[k].slot = static_cast<int>(i);
+    const auto slot_of = [&](int wanted) {
+      const auto at = std::find(blocks.begin(), blocks.end(), wanted);
+      return wanted < 0 || at == blocks.end() ? -1 : static_cast<int>(at - blocks.begin());
+    };
+    maps[k].slot = slot_of(block);
     maps[k].follower = body >= 0;
+    maps[k].shapes = shapes_at(node), maps[k].mode_slot = -1;
+    if (!maps[k].shapes.empty()) {
+      maps[k].mode_slot = slot_of(modes[modes_of[body]].block);
+      maps[k].left_turn = s.left->R[body].inverse().transpose(), maps[k].right_turn = s.end->R[body];
+    }
     if (body >= 0) maps[k].left = s.left->x[node] - s.left->c[body], maps[k].right = s.end->x[node] - s.end->c[body];
     masks[k] = fixed[node];
   }
 }
 
+namespace {
+
+/// The same where nodes follow modes: by products of whole matrices, L^T K R with the maps of all nodes in L and R (3n x 3m).
+void add_with_modes(KktSolver& solver, int clique, int n, const double* K, const NodeMap* maps, int m, const std::array<bool, 3>* fixed) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  thread_local RowMajor L, R, reduced;
+  L.setZero(3 * n, 3 * m), R.setZero(3 * n, 3 * m);
+  for (int a = 0; a < n; ++a) {
+    const NodeMap& map = maps[a];
+    for (int i = 0; i < 3 && map.slot >= 0; ++i)
+      if (map.follower || !fixed[a][i]) L(3 * a + i, 3 * map.slot + i) = R(3 * a + i, 3 * map.slot + i) = 1;
+    if (map.follower && map.slot >= 0) {
+      L.block<3, 3>(3 * a, 3 * map.slot + 3) = -skew(map.left);
+      R.block<3, 3>(3 * a, 3 * map.slot + 3) = -skew(map.right);
+    }
+    for (size_t j = 0; j < map.shapes.size(); ++j) {
+      L.block<3, 1>(3 * a, 3 * map.mode_slot + static_cast<int>(j)) = map.left_turn * map.shapes[j];
+      R.block<3, 1>(3 * a, 3 * map.mode_slot + static_cast<int>(j)) = map.right_turn * map.shapes[j];
+    }
+  }
+  reduced.noalias() = L.transpose() * (Eigen::Map<const RowMajor>(K, 3 * n, 3 * n) * R);
+  solver.add(clique, reduced.data());
+}
+
+}  // namespace
+
 void add_reduced(KktSolver& solver, int clique, int n, const double* K, const NodeMap* maps, int m, const std::array<bool, 3>* fixed) {
+  if (std::any_of(maps, maps + n, [](const NodeMap& map) { return !map.shapes.empty(); }))
+    return add_with_modes(solver, clique, n, K, maps, m, fixed);
   thread_local std::vector<double> reduced;
   const int n3 = 3 * n, m3 = 3 * m;
   reduced.assign(static_cast<size_t>(m3) * m3, 0.0);

@@ -1,8 +1,13 @@
-// What moves: nodes and rigid bodies, which node follows which body, and the blocks of unknowns of both.
+// What moves: nodes, bodies and the modes of linear regions, which node follows which body, and the blocks of unknowns of all of them.
 //
 // Unknowns are 3 x 3 blocks: one per free node, two per free body (translation, rotation vector), and the multipliers of constraint rows
 // behind them.  A body's twelve coordinates are condensed to six by the null space of its length constraints, P = [I, -skew(x - c)], taken
 // at the left configuration for the equations and at q1 for the increments [betsch-leyendecker-2006]; lengths then hold by construction.
+// A linear region is a body, its mean axes, whose nodes follow modes besides: in the coordinates Q = (c, R e_k, Y_j e_k), Y_j = eta_j R,
+// its mass is constant and every node is linear, as a rigid body's are.  The null space of its products has besides the rows of a body
+//   mode j:  dY_j = R^ d eta_j,   R^ = (R_left)^-T, the directors themselves where they are orthonormal,
+// and with the mean of Q in the rotations Q1 - Q0 = P_mid (u, theta, eta1 - eta0) exactly and P holds the rigid motions of Q_mid: energy
+// and both momenta are kept (docs/design.md).
 #pragma once
 #include <array>
 #include <span>
@@ -15,11 +20,24 @@
 
 namespace hilo {
 
-/// Left and right maps of a node: identity for a free node, lever arms for a follower.
+/// Left and right maps of a node: identity for a free node, lever arms for a follower, and what modes move it by where there are some.
 struct NodeMap {
   int slot;  // first row block within the clique's unknowns, -1 when driven
   bool follower;
-  Vec3 left, right;  // arms from the body's centre
+  Vec3 left, right;              // arms from the body's centre
+  int mode_slot = -1;            // first row block of the modes
+  std::span<const Vec3> shapes;  // of its modes at the node, body axes
+  Mat3 left_turn, right_turn;    // R^ and R
+};
+
+/// Modes of a linear region.
+struct Modes {
+  int body = -1;                // its mean axes
+  int first = 0, n_blocks = 0;  // amplitudes in Config::eta, three to a block; those beyond n_modes stay zero
+  int n_modes = 0;              //
+  int block = -1;               // of the amplitudes
+  int clique = -1;              // of body and amplitudes, whose body has blocks -1 where it is driven
+  std::vector<double> lever;    // metres that a unit of the amplitudes of a block is
 };
 
 /// A kind of unknowns: things with a block of three each.  What solves and steps loops over these fields and names no node and no body.
@@ -40,9 +58,13 @@ struct UnknownField {
 
 class Points {
  public:
-  std::vector<Body> bodies;   // body 0 is the ground
-  std::vector<int> follower;  // body each node follows, or -1  (n_nodes)
-  std::vector<Vec3> X;        // reference positions            (n_nodes)  [m]
+  std::vector<Body> bodies;             // body 0 is the ground
+  std::vector<int> follower;            // body each node follows, or -1  (n_nodes)
+  std::vector<Modes> modes;             // of linear regions
+  std::vector<int> modes_of;            // of a body, or -1       (n_bodies)
+  std::vector<Vec3> shapes;             // of modes at nodes, body axes  [m]
+  std::vector<std::int64_t> shape_row;  // where those of a node begin, -1: none  (n_nodes)
+  std::vector<Vec3> X;                  // reference positions            (n_nodes)  [m]
   std::vector<char> node_owned;
   std::vector<std::array<bool, 3>> fixed;  // prescribed components of nodes
   Vec3 gravity = Vec3::Zero();
@@ -65,6 +87,11 @@ class Points {
   int first_joint_block() const { return first_joint_block_; }  // multipliers begin here
   int n_joint_blocks() const { return n_blocks() - first_joint_block_; }
 
+  /// Shapes of the modes at a node; none where it follows no linear region.
+  std::span<const Vec3> shapes_at(int node) const {
+    if (shape_row.empty() || shape_row[node] < 0) return {};
+    return {shapes.data() + shape_row[node], static_cast<size_t>(3 * modes[modes_of[follower[node]]].n_blocks)};
+  }
   /// q <- q moved by the increments z (3 x n_blocks); bodies turn by the Cayley rotation of theirs.
   void move(Config& q, std::span<const double> z) const;
   /// Velocities or accelerations v, at q, by the increments z; the largest change [m/s or m/s^2].
@@ -75,8 +102,14 @@ class Points {
   double largest_rate(const Config& v) const;
   /// Whether a local block belongs to this rank: each to one.
   bool owns(int block) const { return map.global[block] >= map.first && map.global[block] < map.first + map.n_owned; }
-  /// Followers from their bodies; the map is linear, so it holds for positions, velocities and accelerations alike.
+  /// Followers from their bodies and modes; the map is linear, so it holds for positions, velocities and accelerations alike.
   void follow(Config& q) const;
+  /// Positions, velocities or accelerations of all nodes (n_nodes): a configuration holds the first of them, which something acts on or is
+  /// asked for at every step.
+  std::vector<Vec3> all_nodes(const Config& q) const;
+  Vec3 at(const Config& q, int node) const { return static_cast<size_t>(node) < q.x.size() ? q.x[node] : followed(q, node); }
+  /// The products of a pose, and then the followers.
+  void place(Config& q) const;
   /// Zeros in the rows of prescribed components.
   void mask_fixed(std::span<double> r) const;
   /// A time on the given side of t, by which the laws are asked.
@@ -90,6 +123,9 @@ class Points {
                  std::vector<std::array<bool, 3>>& masks) const;
   /// Lowest value of each node over the ranks that share it.
   void lowest_over_ranks(std::vector<std::int64_t>& value) const;
+
+ private:
+  Vec3 followed(const Config& q, size_t node) const;
 
  protected:
   /// Local blocks of nodes and bodies, and the cliques of bodies; returns the number of node blocks.

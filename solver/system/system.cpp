@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "system/mode_forces.hpp"
+
 namespace hilo {
 
 void System::number() {
@@ -48,7 +50,7 @@ void System::evaluate(const Stage& stage, std::span<const double> lambda, Residu
 
 void System::add_all(const Stage& stage, std::span<const double> lambda, Residual& out, KktSolver* K, std::vector<Vec3>& node,
                      std::vector<Vec6>& body, bool loads) const {
-  node.assign(X.size(), Vec3::Zero());
+  node.assign(stage.end->x.size(), Vec3::Zero());
   body.assign(bodies.size(), Vec6::Zero());
   out.r.assign(3 * n_blocks(), 0.0);
   Pass p{stage, lambda, out, K, node, body, out.sigma, loads};
@@ -64,7 +66,10 @@ double System::constraint_scale(const Stage& s) const {
 void System::reduce(Pass& p) const {
   std::vector<Mat3> geometric;  // of followers: slope (dtheta x arm1) x r
   if (p.K) geometric.assign(bodies.size(), Mat3::Zero());
-  for (size_t i = 0; i < X.size(); ++i) {
+  std::vector<ModeForces> of_modes;
+  of_modes.reserve(modes.size());
+  for (const Modes& m : modes) of_modes.emplace_back(m, p);
+  for (size_t i = 0; i < p.node.size(); ++i) {
     const int b = follower[i];
     if (b < 0) {
       for (int k = 0; k < 3; ++k) p.out.r[3 * node_block[i] + k] += p.node[i][k];
@@ -75,7 +80,9 @@ void System::reduce(Pass& p) const {
     p.body[b].head<3>() += r;
     p.body[b].tail<3>() += (p.s.left->x[i] - p.s.left->c[b]).cross(r);
     if (p.K && body_block[b] >= 0) geometric[b] += p.s.slope * skew(r) * skew(p.s.end->x[i] - p.s.end->c[b]);
+    if (const auto shapes = shapes_at(static_cast<int>(i)); !shapes.empty()) of_modes[modes_of[b]].add(shapes, r);
   }
+  for (ModeForces& m : of_modes) m.finish();
   for (size_t b = 0; b < bodies.size(); ++b) {
     if (body_block[b] < 0) continue;
     for (int k = 0; k < 6; ++k) p.out.r[3 * body_block[b] + k] += p.body[b][k];
@@ -147,6 +154,12 @@ Violation System::violation(const Config& q, double t, double factor) const {
   return out;
 }
 
+std::vector<char> System::rows_on() const {
+  std::vector<char> on(3 * static_cast<size_t>(n_joint_blocks()), 0);
+  for (const auto& part : parts_) part->mark_rows(on);
+  return on;
+}
+
 std::string System::owner(int block) const {
   for (const auto& part : parts_)
     if (std::string who = part->owner(block); !who.empty()) return who;
@@ -157,8 +170,9 @@ void System::row_rates(const Config& q, const Config& v, const Config* a, double
                        std::vector<double>* acceleration) const {
   const auto combined = [&](double f, const Config& d) {
     Config out = q;
-    for (size_t i = 0; i < q.x.size(); ++i) out.x[i] += f * d.x[i];
-    for (size_t i = 0; i < q.c.size(); ++i) out.c[i] += f * d.c[i], out.R[i] += f * d.R[i];
+    Config::each_array([&](auto array) {
+      for (size_t i = 0; i < (q.*array).size(); ++i) (out.*array)[i] += f * (d.*array)[i];
+    });
     return out;
   };
   // steps over which the differences are as large as the values themselves
@@ -212,7 +226,7 @@ void System::archive(Archive& a) {
 
 void System::prescribe(Config& q, double t, double ramp) const {
   for (const auto& part : parts_) part->prescribe(q, t, ramp);
-  follow(q);
+  place(q);
 }
 
 void System::prescribe_rates(double t, Side side, Config* v, Config* a) const {

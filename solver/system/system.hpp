@@ -64,6 +64,8 @@ class System : public Points {
   /// Work from s.from() to s.end.
   Work work(const Stage& stage, std::span<const double> lambda) const;
   Violation violation(const Config& q, double t, double factor = 1) const;
+  /// Which rows are kept, laid out like lambda.
+  std::vector<char> rows_on() const;
   /// What the unknowns of a local block belong to, or "".
   std::string owner(int block) const;
   /// The same of a multiplier block, counted from the first.

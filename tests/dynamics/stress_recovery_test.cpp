@@ -31,7 +31,9 @@ struct Model {
     const StressRecovery recovery(*system);
     X.clear(), region.clear();
     for (const auto& site : recovery.sites()) X.push_back(system->X[site.node]), region.push_back(site.region / 2);
-    return recovery.recover(moved(to));
+    Config q = system->start;
+    q.x = moved(to);
+    return recovery.recover(q);
   }
   std::vector<Vec3> X;  // of the sites
   std::vector<int> region;

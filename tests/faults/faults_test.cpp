@@ -100,7 +100,6 @@ TEST_F(Faults, TagsThatFitNoRegionOrContradictAreRefused) {
   refused("hilo-tag two.h5 --rigid hull --nonlinear hull -o tags.h5", input,
           "--nonlinear hull: region \"hull\" is tagged twice: nonlinear here, rigid at --rigid hull");
   refused("hilo-tag two.h5 --rest soft -o tags.h5", input, "--rest: unknown fidelity \"soft\" (rigid, linear or nonlinear)");
-  refused("hilo-tag two.h5 --linear hull mast -o tags.h5", input, "--linear hull: fidelity linear is not built yet...");
   put("tags.toml", "rigid = [\"hull\"]\nnonlinear = [\"mast\", \"h*\"]\n");
   refused("hilo-tag two.h5 tags.toml -o tags.h5", input,
           "tags.toml:2:22: region \"hull\" is tagged twice: nonlinear here, rigid at tags.toml:1:10");

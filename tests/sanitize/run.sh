@@ -39,8 +39,8 @@ tail -n 40 "$folder/ctest.log"
 
 # The scenes run in a copy of data/: what they made with the ordinary build stays.
 if [ "$tests" = . ]; then
-  rm -rf "$folder/data"
-  tar -C "$repo" --exclude=out -cf - data | tar -C "$folder" -xf -
+  rm -rf "$folder/data" "$folder/docs"
+  tar -C "$repo" --exclude=out -cf - data docs | tar -C "$folder" -xf -
   for scene in tour crank firing suspension turret; do
     if make -C "$folder/data/$scene" BUILT=1 BUILD="$folder" ROOT="$repo" SIZE=S > "$folder/$scene.log" 2>&1; then
       echo "data/$scene: done"

@@ -92,8 +92,6 @@ TEST_F(Tag, WrongRulesAreNamedWithTheirPlace) {
   expect_refused("hilo-tag mesh.h5 a.toml", 2, "a.toml:2:14: region \"hull\" is tagged twice: nonlinear here, rigid at a.toml:1:10");
   place.write("a.toml", "rigd = [\"hull\"]\n");
   expect_refused("hilo-tag mesh.h5 a.toml", 2, "a.toml:1:1: unknown key \"rigd\" (did you mean \"rigid\"?)");
-  place.write("a.toml", "linear = [\"hull\"]\n");
-  expect_refused("hilo-tag mesh.h5 a.toml", 2, "a.toml:1:11: fidelity linear is not built yet (rigid or nonlinear)");
   place.write("a.toml", "rest = \"stiff\"\n");
   expect_refused("hilo-tag mesh.h5 a.toml", 2, "a.toml:1:8: unknown fidelity \"stiff\" (rigid, linear or nonlinear)");
   place.write("a.toml", "rigid = [{box = [[0, 0], [1, 1, 1]]}]\n");
@@ -102,7 +100,6 @@ TEST_F(Tag, WrongRulesAreNamedWithTheirPlace) {
   expect_refused("hilo-tag mesh.h5 a.toml", 2, "a.toml:1:10: wanted a name, {box = ...} or {set = ...}, not a number");
   expect_refused("hilo-tag mesh.h5 --rigid hull hull", 2,
                  "--rigid hull: region \"hull\" is tagged twice: rigid here, rigid at --rigid hull");
-  expect_refused("hilo-tag mesh.h5 --linear barrel", 2, "--linear barrel: fidelity linear is not built yet (rigid or nonlinear)");
   expect_refused("hilo-tag mesh.h5 --rigid set:hul", 2, "--rigid set:hul: no region or set \"hul\" in the mesh (did you mean \"hull\"?)");
   expect_refused("hilo-tag mesh.h5 --rigid box:0,0,0,.5,1,1", 2,
                  "--rigid box:0,0,0,.5,1,1: no region lies wholly inside the box [0, 0, 0] to [0.5, 1, 1]");

@@ -31,7 +31,7 @@ Savings savings(const Mesh& mesh, const std::vector<Fidelity>& fidelity) {
   const auto body = body_of_region(mesh, fidelity);
   std::vector<std::int64_t> cells(n, 0), nodes(n, 0), before(n, 0), after(n, 0);
   std::vector<int> first(mesh.X.size(), -1), first_flexible(mesh.X.size(), -1), seen(mesh.X.size(), -1);
-  std::vector<char> rigid(mesh.X.size(), 0);
+  std::vector<char> follows(mesh.X.size(), 0);  // a rigid or linear region
   std::vector<std::vector<std::int64_t>> cells_of(n);
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c) cells_of[mesh.region[c]].push_back(c);
   for (size_t r = 0; r < n; ++r) {
@@ -41,20 +41,21 @@ Savings savings(const Mesh& mesh, const std::vector<Fidelity>& fidelity) {
       for (const auto a : mesh.cell(c)) {
         if (seen[a] != region) seen[a] = region, ++nodes[r];
         if (first[a] < 0) first[a] = region;
-        if (fidelity[r] == Fidelity::rigid)
-          rigid[a] = 1;
+        if (fidelity[r] != Fidelity::nonlinear)
+          follows[a] = 1;
         else if (first_flexible[a] < 0)
           first_flexible[a] = region;
       }
   }
   for (size_t a = 0; a < mesh.X.size(); ++a) {
     if (first[a] >= 0) before[first[a]] += 3;
-    if (first_flexible[a] >= 0 && !rigid[a]) after[first_flexible[a]] += 3;
+    if (first_flexible[a] >= 0 && !follows[a]) after[first_flexible[a]] += 3;
   }
   Savings s{{{"region", "cells", "nodes", "fidelity", "body", "before", "after"}, {}}};
   std::vector<char> counted(n, 0);
   for (size_t r = 0; r < n; ++r) {
     if (body[r] >= 0 && cells[r] > 0 && !counted[body[r]]) after[r] = 6, counted[body[r]] = 1, ++s.bodies;
+    if (fidelity[r] == Fidelity::linear && cells[r] > 0) after[r] = 6, ++s.linear;
     s.before += before[r], s.after += after[r];
     s.regions.rows.push_back({mesh.region_name[r], fmt::format("{}", cells[r]), fmt::format("{}", nodes[r]), std::string(word(fidelity[r])),
                               body[r] < 0 ? "-" : fmt::format("{}", body[r] + 1), fmt::format("{}", before[r]),
@@ -64,9 +65,11 @@ Savings savings(const Mesh& mesh, const std::vector<Fidelity>& fidelity) {
 }
 
 std::string savings_text(const Savings& s) {
-  return fmt::format("{}\nunknowns: {} if all were nonlinear, {} as tagged ({:.1f} %); {} rigid bod{}\n", s.regions.text(), s.before,
+  const std::string linear =
+      s.linear ? fmt::format("; {} linear region{}, whose modes come on top", s.linear, s.linear == 1 ? "" : "s") : "";
+  return fmt::format("{}\nunknowns: {} if all were nonlinear, {} as tagged ({:.1f} %); {} rigid bod{}{}\n", s.regions.text(), s.before,
                      s.after, s.before ? 100. * static_cast<double>(s.after) / static_cast<double>(s.before) : 100., s.bodies,
-                     s.bodies == 1 ? "y" : "ies");
+                     s.bodies == 1 ? "y" : "ies", linear);
 }
 
 std::string savings_json(const Savings& s, const std::string& output) {

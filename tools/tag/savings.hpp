@@ -8,11 +8,12 @@
 
 namespace hilo {
 
-/// 3 unknowns for each free node, 6 for each rigid body.  A node counts in the first region that has it.
+/// 3 unknowns for each free node, 6 for each rigid body and linear region, whose modes are found by the run.  A node counts in the first
+/// region that has it.
 struct Savings {
   Table regions;  // region, cells, nodes, fidelity, body, before, after
   std::int64_t before = 0, after = 0;
-  int bodies = 0;
+  int bodies = 0, linear = 0;
 };
 Savings savings(const Mesh& mesh, const std::vector<Fidelity>& fidelity);
 std::string savings_text(const Savings& s);

@@ -211,7 +211,7 @@ class RadauIntegrator final : public Integrator {
 
   /// Velocities, accelerations and stages of u_.
   void place() {
-    differentiate(&Config::x), differentiate(&Config::c), differentiate(&Config::R);
+    Config::each_array([&](auto array) { differentiate(array); });
     for (int i = 0; i < 3; ++i) {
       given_[i].put(&v_[i], &a_[i]);
       Stage& s = stages_[i] = from_left(stage_at(u_[i].q, t_ + c_[i] * h_), h_);

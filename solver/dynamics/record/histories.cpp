@@ -41,7 +41,7 @@ std::vector<double> Histories::mid_values(const Moment& moment) const {
 void Histories::declare(Store& f) {
   start_array<double>(f, times);
   start_array<std::int32_t>(f, iterations, times);
-  for (const std::string& array : arrays_) start_array<double>(f, array, times);
+  for (size_t k = 0; k < arrays_.size(); ++k) start_array<double>(f, arrays_[k], times, outputs_[k].n_end + outputs_[k].n_mid);
 }
 
 void Histories::append(Store& f, double t, int newton, const std::vector<double>& end, const std::vector<double>& mid) const {

@@ -58,7 +58,8 @@ void MeshPart::write_followers() {
   const auto n_nodes = static_cast<std::int64_t>(s.X.size());
   std::vector<std::vector<std::int64_t>> followers(comm.size);  // node, body
   for (std::int64_t i = 0; i < n_nodes; ++i)
-    if (s.node_owned[i] && s.follower[i] > 0) followers[0].push_back(m.node_global[i]), followers[0].push_back(s.follower[i] - 1);
+    if (s.node_owned[i] && s.follower[i] > 0 && !s.bodies[s.follower[i]].linear)
+      followers[0].push_back(m.node_global[i]), followers[0].push_back(s.follower[i] - 1);
   const auto received = comm.exchange(followers);
   file_.on_store([&](Store& f) {
     std::vector<std::pair<std::int64_t, std::int32_t>> pairs;

@@ -5,31 +5,29 @@ namespace {
 
 class MotionFields final : public FieldSource {
  public:
-  explicit MotionFields(const System& system) : X_(system.X) {}
+  explicit MotionFields(const System& system) : system_(system) {}
   std::vector<Field> fields() const override {
     return {{.name = "displacement", .label = "displacement"},
             {.name = "velocity", .label = "velocity"},
             {.name = "acceleration", .label = "acceleration"}};
   }
   void write(const Snapshot& at, FieldWriter& to) override {
-    put(to, "displacement", [&](size_t i) { return Vec3(at.q.x[i] - X_[i]); });
-    put(to, "velocity", [&](size_t i) { return at.v.x[i]; });
-    put(to, "acceleration", [&](size_t i) { return at.a.x[i]; });
+    put(to, "displacement", at.q, true);
+    put(to, "velocity", at.v, false);
+    put(to, "acceleration", at.a, false);
   }
 
  private:
-  template <class Value>
-  void put(FieldWriter& to, const char* name, Value value) const {
+  void put(FieldWriter& to, const char* name, const Config& of, bool from_reference) const {
     if (!to.wants(name)) return;
+    std::vector<Vec3> values = system_.all_nodes(of);
+    for (size_t i = 0; i < values.size() && from_reference; ++i) values[i] -= system_.X[i];
     std::vector<double> local;
-    local.reserve(3 * X_.size());
-    for (size_t i = 0; i < X_.size(); ++i) {
-      const Vec3 v = value(i);
-      local.insert(local.end(), v.data(), v.data() + 3);
-    }
+    local.reserve(3 * values.size());
+    for (const Vec3& v : values) local.insert(local.end(), v.data(), v.data() + 3);
     to.nodes(name, local, 3);
   }
-  const std::vector<Vec3>& X_;
+  const System& system_;
 };
 
 }  // namespace

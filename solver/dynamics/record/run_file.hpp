@@ -22,11 +22,13 @@ void write_array(Store& f, const std::string& path, const std::vector<T>& values
   const ArraySchema& of = run_array(path);
   f.write<T>(path, values, std::move(shape), std::string(of.unit), std::string(of.meaning));
 }
-/// One that grows by rows; `time`: the array that has their times.
+/// One that grows by rows; `time`: the array that has their times; `width`: of a row where the schema has a word for it.
 template <class T>
-void start_array(Store& f, const std::string& path, const std::string& time = "") {
+void start_array(Store& f, const std::string& path, const std::string& time = "", int width = 0) {
   const ArraySchema& of = run_array(path);
-  f.start_rows<T>(path, row_shape(of), std::string(of.unit), std::string(of.meaning), time);
+  auto shape = row_shape(of);
+  if (shape.size() == 1 && shape[0] == 0) shape[0] = width;
+  f.start_rows<T>(path, std::move(shape), std::string(of.unit), std::string(of.meaning), time);
 }
 
 class RunFile {

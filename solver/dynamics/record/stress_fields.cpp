@@ -24,7 +24,7 @@ class StressFields final : public FieldSource {
   void write(const Snapshot& instant, FieldWriter& to) override {
     constexpr int n_sent = 11;  // row, region, stress, von Mises, error, plastic strain
     if (!recovery_) recovery_.emplace(system_);
-    const auto at = recovery_->recover(instant.q.x, instant.memory);
+    const auto at = recovery_->recover(instant.q, instant.memory);
     const Slabs& rows = to.node_rows();
     std::vector<std::vector<double>> send(system_.comm->size);
     for (size_t i = 0; i < recovery_->sites().size(); ++i) {

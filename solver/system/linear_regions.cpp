@@ -1,0 +1,203 @@
+#include "system/linear_regions.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "system/mode_forces.hpp"
+
+namespace hilo {
+namespace {
+
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // of Q, or of what is like it
+
+/// The coordinates of a region: centre, directors, products of its modes.
+Rows rows_of(const Modes& m, const Config& q) {
+  Rows out(4 + 3 * m.n_modes, 3);
+  out.row(0) = q.c[m.body].transpose();
+  out.middleRows(1, 3) = q.R[m.body].transpose();
+  for (int j = 0; j < m.n_modes; ++j) out.middleRows(4 + 3 * j, 3) = q.Y[3 * m.first + j].transpose();
+  return out;
+}
+
+double amplitude(const Modes& m, const Config& q, int j) { return q.eta[m.first + j / 3][j % 3]; }
+
+Vec3 row(const Rows& rows, Eigen::Index i) { return rows.row(i).transpose(); }
+
+/// What the forces F add to the tangent, dF/dQ1 = A.
+void add_inertia_tangent(const Eigen::MatrixXd& A, const Modes& m, const Stage& s, const Rows& F, ModeForces::Matrix& K) {
+  const Mat3 &R = s.end->R[m.body], left = left_turn(s, m.body);
+  const Rows Ql = rows_of(m, *s.left);
+  Rows Q1 = rows_of(m, *s.end);
+  Q1.row(0).setZero();  // turns leave the centre
+  const Rows W = A * Q1;
+  const auto n = static_cast<Eigen::Index>(F.rows());
+  K.topLeftCorner<3, 3>().diagonal().array() += A(0, 0);
+  K.block<3, 3>(0, 3) -= skew(row(W, 0));
+  Vec3 arm = Vec3::Zero();
+  for (Eigen::Index i = 1; i < n; ++i) {
+    arm += A(i, 0) * row(Ql, i);
+    K.block<3, 3>(3, 3) += s.slope * skew(row(F, i)) * skew(row(Q1, i)) - skew(row(Ql, i)) * skew(row(W, i));
+  }
+  K.block<3, 3>(3, 0) += skew(arm);
+  // A seen through directors: B_rj = sum_l A_r,(j l) R e_l, a vector for every row and mode
+  const Rows AQl = A.transpose() * Ql;
+  for (int j = 0; j < m.n_modes; ++j) {
+    const Eigen::Index at = 6 + j;
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Index jk = 4 + 3 * j + k;
+      const Vec3 Rk = R.col(k), lk = left.col(k), Fk = row(F, jk);
+      K.block<3, 1>(0, at) += A(0, jk) * Rk;
+      K.block<1, 3>(at, 0) += A(jk, 0) * lk.transpose();
+      // moment: sum_r Q_r x A_r,jk R e_k, less what turns with the centre alone; and the turn of the left rows
+      K.block<3, 1>(3, at) += (row(AQl, jk) - A(0, jk) * row(Ql, 0)).cross(Rk) + s.slope * Rk.cross(Fk);
+      K.block<1, 3>(at, 3) += (row(W, jk).cross(lk) + s.slope * lk.cross(R * (left.transpose() * Fk))).transpose();
+    }
+  }
+  const Mat3 D = left.transpose() * R;
+  for (int j = 0; j < m.n_modes; ++j)
+    for (int i = 0; i < m.n_modes; ++i) K(6 + j, 6 + i) += D.cwiseProduct(A.block<3, 3>(4 + 3 * j, 4 + 3 * i)).sum();
+}
+
+/// Times h: of the rate terms on the amplitudes.
+Eigen::VectorXd viscous_force(const LinearRegion& r, const Modes& m, const Stage& s) {
+  if (r.viscous.size() == 0 || !(s.h > 0)) return Eigen::VectorXd::Zero(m.n_modes);
+  Eigen::VectorXd way(m.n_modes);
+  for (int j = 0; j < m.n_modes; ++j) way[j] = amplitude(m, *s.w1, j) - amplitude(m, *s.w0, j);
+  return r.viscous * way;
+}
+
+}  // namespace
+
+Traits LinearRegions::traits() const { return {.deforms = !regions.empty(), .has_rates = !regions.empty()}; }
+
+std::string LinearRegions::count() const {
+  int modes = 0;
+  for (const Modes& m : points_.modes) modes += m.n_modes;
+  return regions.empty() ? "" : fmt::format("{} linear regions with {} modes", regions.size(), modes);
+}
+
+std::string LinearRegions::owner(int block) const {
+  for (const Modes& m : points_.modes)
+    if (block >= m.block && block < m.block + m.n_blocks)
+      return fmt::format("mode {} of region \"{}\"", 3 * (block - m.block) + 1, points_.bodies[m.body].name);
+  return "";
+}
+
+void LinearRegions::evaluate(Pass& p) const {
+  const Stage& s = p.s;
+  for (const LinearRegion& r : regions) {
+    const Modes& m = points_.modes[r.modes];
+    if (!points_.counts(m.body)) continue;
+    Rows a = rows_of(m, *s.a);
+    a.row(0) -= (points_.gravity * s.load_factor).transpose();
+    Rows F = r.A * a;
+    const Rows Ql = rows_of(m, *s.left);
+    const bool brakes = r.A_damped.size() > 0 && s.v;
+    if (brakes) F += r.A_damped * rows_of(m, *s.v);
+    const Mat3 left = left_turn(s, m.body);
+    p.body[m.body].head<3>() += row(F, 0);
+    for (Eigen::Index i = 1; i < F.rows(); ++i) p.body[m.body].tail<3>() += row(Ql, i).cross(row(F, i));
+    p.scale(std::max(row(F, 0).norm(), r.A(0, 0) * points_.gravity.norm()));
+    const double rate = s.h > 0 ? 1 / s.h : 0;
+    const Eigen::VectorXd viscous = rate * viscous_force(r, m, s);
+    for (int j = 0; j < m.n_modes; ++j) {
+      double f = 0;
+      for (int k = 0; k < 3; ++k) f += left.col(k).dot(row(F, 4 + 3 * j + k));
+      const double e0 = amplitude(m, *s.e0, j), e1 = amplitude(m, *s.e1, j), k = r.stiffness[j];
+      const double elastic = s.rates_alone ? 0 : k * ((1 - s.weight) * e0 + s.weight * e1 + s.chi / 2 * (e1 - e0));
+      f += elastic + viscous[j];
+      p.out.r[3 * m.block + j] += f;
+      p.scale(std::abs(elastic) / m.lever[j / 3]);
+    }
+    for (int j = m.n_modes; j < 3 * m.n_blocks && !s.rates_alone; ++j)  // of blocks that are not full
+      p.out.r[3 * m.block + j] += p.sigma * amplitude(m, *s.end, j);
+    if (!p.K) continue;
+    ModeForces tangent(m, p);
+    auto& K = tangent.tangent();
+    Eigen::MatrixXd slope = s.mass_slope * r.A;
+    if (brakes) slope += s.alpha_slope * r.A_damped;
+    add_inertia_tangent(slope, m, s, F, K);
+    if (!s.rates_alone) K.diagonal().segment(6, m.n_modes) += (s.weight + s.chi / 2) * s.chain * r.stiffness;
+    if (r.viscous.size() > 0) K.block(6, 6, m.n_modes, m.n_modes) += rate * (s.slope1() - s.slope0()) * r.viscous;
+    for (Eigen::Index j = 6 + m.n_modes; j < K.rows() && !s.rates_alone; ++j) K(j, j) = p.sigma;
+    tangent.finish();
+  }
+}
+
+void LinearRegions::add_energy(const Config& q, const Config& v, Energy& sum) const {
+  for (const LinearRegion& r : regions) {
+    const Modes& m = points_.modes[r.modes];
+    if (!points_.counts(m.body)) continue;
+    const Rows Q = rows_of(m, q), V = rows_of(m, v), P = r.A * V;
+    sum.kinetic += V.cwiseProduct(P).sum() / 2;
+    sum.momentum += row(P, 0);
+    for (Eigen::Index i = 0; i < P.rows(); ++i) sum.angular += row(Q, i).cross(row(P, i));
+    sum.gravity -= points_.gravity.dot(row(Rows(r.A.row(0) * Q), 0));
+    for (int j = 0; j < m.n_modes; ++j) sum.elastic += r.stiffness[j] * amplitude(m, q, j) * amplitude(m, q, j) / 2;
+  }
+}
+
+void LinearRegions::add_work(const Moment& moment, Work& sum) const {
+  const Stage& s = moment.s;
+  for (const LinearRegion& r : regions) {
+    const Modes& m = points_.modes[r.modes];
+    if (!points_.counts(m.body)) continue;
+    for (int j = 0; j < m.n_modes; ++j) {
+      const double step = amplitude(m, *s.e1, j) - amplitude(m, *s.e0, j);
+      sum.dissipated += s.chi / 2 * r.stiffness[j] * step * step;
+    }
+    const Eigen::VectorXd viscous = viscous_force(r, m, s);
+    for (int j = 0; j < m.n_modes && s.h > 0; ++j) sum.dissipated += viscous[j] * (amplitude(m, *s.w1, j) - amplitude(m, *s.w0, j)) / s.h;
+    if (r.A_damped.size() > 0 && s.v)
+      sum.dissipated += (r.A_damped * rows_of(m, *s.v)).cwiseProduct(rows_of(m, *s.end) - rows_of(m, s.from())).sum();
+  }
+}
+
+/// Modes know no stiffening by axial force: beyond the first frequency a region that spins would run away.
+void LinearRegions::commit(const Config& q, const Config* v) {
+  told_.resize(regions.size(), 0);
+  for (size_t k = 0; k < regions.size() && v; ++k) {
+    const Modes& m = points_.modes[regions[k].modes];
+    if (m.n_modes == 0) continue;
+    const Mat3 S = v->R[m.body] * q.R[m.body].transpose();
+    const double spin = Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)).norm() / 2,
+                 first = std::sqrt(regions[k].stiffness[0]);
+    const std::string& name = points_.bodies[m.body].name;
+    if (spin >= first)
+      too_fast_ = fmt::format("linear region \"{}\" spins with {:.3g} rad/s, its first frequency is {:.3g} rad/s: tag it nonlinear", name,
+                              spin, first);
+    if (spin < 0.3 * first || told_[k]) continue;
+    told_[k] = 1;
+    if (points_.comm->rank == 0)
+      warn(name,
+           fmt::format("spins with {:.3g} rad/s, a share of {:.2g} of its first frequency: linear modes do not stiffen (tag it nonlinear)",
+                       spin, spin / first));
+  }
+}
+
+std::string LinearRegions::fault(const Config&) const { return too_fast_; }
+
+void LinearRegions::tie(Ties& ties) const {
+  for (const LinearRegion& r : regions)
+    if (const int body = points_.modes[r.modes].body; points_.body_block[body] >= 0) ties.exclude(body);
+}
+
+std::vector<Output> LinearRegions::outputs() const {
+  std::vector<Output> out;
+  for (const LinearRegion& r : regions) {
+    const Modes& m = points_.modes[r.modes];
+    out.push_back({.group = "modes", .name = points_.bodies[m.body].name, .n_end = m.n_modes});
+  }
+  return out;
+}
+
+void LinearRegions::add_end_values(const Config& q, const Config&, std::vector<double>& out) const {
+  for (const LinearRegion& r : regions) {
+    const Modes& m = points_.modes[r.modes];
+    for (int j = 0; j < m.n_modes; ++j) out.push_back(amplitude(m, q, j));
+  }
+}
+
+}  // namespace hilo

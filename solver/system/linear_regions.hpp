@@ -1,0 +1,48 @@
+// Linear regions: small strain on any rigid motion, by modes about mean axes.
+//
+//   x_a = c + R (r_a + sum_j phi_aj eta_j),   Q = (c, R e_k, Y_j e_k),   b_a = (1, r_a, phi_aj),   A = int rho b b^T constant
+//   P_left^T [A a_Q - A e_0 g] + (0, 0, k eta) = 0
+// A rigid body is the case without modes [shabana-2013, betsch-leyendecker-2006].  Amplitudes are of modes orthonormal in mass, so k is a
+// list of squared circular frequencies.
+#pragma once
+#include <Eigen/Dense>
+
+#include "system/solids.hpp"
+
+namespace hilo {
+
+struct LinearRegion {
+  int modes = -1;             // of Points::modes
+  Eigen::MatrixXd A;          // rows: centre, directors, then three of each mode   (4 + 3m x 4 + 3m)
+  Eigen::VectorXd stiffness;  // (m) [1/s^2]
+  Eigen::MatrixXd viscous;    // of the modes, by stiffness and by ratios   (m x m), or empty   [1/s]
+  Eigen::MatrixXd A_damped;   // int alpha rho b b^T, mass-proportional damping   (as A), or empty
+};
+
+class LinearRegions final : public Contribution {
+ public:
+  explicit LinearRegions(const Points& points) : points_(points) {}
+  std::vector<LinearRegion> regions;  // on all ranks the same
+  std::vector<SolidBatch> cells;      // of this rank: what stress is recovered from
+  std::vector<int> body_of_cells;     // whose mean axes each batch of them follows
+
+  Traits traits() const override;
+  std::string count() const override;
+  std::string owner(int block) const override;
+  void evaluate(Pass& p) const override;
+  void add_energy(const Config& q, const Config& v, Energy& sum) const override;
+  void add_work(const Moment& m, Work& sum) const override;
+  void tie(Ties& ties) const override;
+  std::string fault(const Config& q) const override;
+  void commit(const Config& q, const Config* v) override;
+  void archive(Archive& a) override { a("linear regions", told_, too_fast_); }
+  std::vector<Output> outputs() const override;
+  void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
+
+ private:
+  const Points& points_;
+  std::vector<char> told_;  // by region: that it spins near its first frequency
+  std::string too_fast_;    // why a region cannot go on
+};
+
+}  // namespace hilo

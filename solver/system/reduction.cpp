@@ -1,0 +1,351 @@
+#include "system/reduction.hpp"
+
+#include <Spectra/SymGEigsShiftSolver.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "linear/kkt.hpp"
+
+namespace hilo {
+namespace {
+
+using Eigen::Index;
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+/// Stiffness and mass of the cells about the reference configuration, computed whenever they are asked for.
+class Cells {
+ public:
+  /// Damping: beta times the stiffness, alpha times the mass.
+  enum Kind { stiffness, mass, damping_by_stiffness, damping_by_mass };
+  explicit Cells(const ReductionInput& in) : in_(in) {}
+
+  /// Visit nodes and matrix (3n x 3n, row major) of each cell.
+  template <class Visit>
+  void each(Kind kind, Visit&& visit) const {
+    const bool mass = kind == Kind::mass || kind == damping_by_mass;
+    struct alignas(64) Line {  // as the widest kernels load them
+      double value[8] = {};
+    };
+    std::vector<Line> scratch;
+    std::vector<double> Ke;
+    for (const SolidBatch& b : in_.cells) {
+      const StVenantKirchhoff no_matter{{1, 1}};
+      const SolidKernel kernel = mass ? solid_kernel(b.shape, place_of<StVenantKirchhoff>) : b.kernel;
+      const int n = info(b.shape).n_nodes, W = kernel.width, n3 = 3 * n, count = static_cast<int>(b.nodes.size()) / n;
+      const double factor = kind == damping_by_stiffness ? b.beta : kind == damping_by_mass ? b.alpha : 1;
+      const auto lines = [](size_t doubles) { return (doubles + 7) / 8; };
+      const size_t vector = lines(static_cast<size_t>(n3) * W), matrix = lines(static_cast<size_t>(n3) * n3 * W);
+      scratch.assign(3 * vector + matrix + lines(static_cast<size_t>(kernel.n_state) * W), {});
+      double *X = scratch[0].value, *zero = X + 8 * vector, *f = zero + 8 * vector, *K = f + 8 * vector;
+      Ke.resize(static_cast<size_t>(n3) * n3);
+      KernelCall call{X,
+                      X,
+                      X,
+                      mass ? 0.0 : 1.0,
+                      0,
+                      mass ? &no_matter : parameters(b.material),
+                      f,
+                      K,
+                      nullptr,
+                      nullptr,
+                      nullptr,
+                      b.density,
+                      mass ? zero : nullptr,
+                      mass ? 1.0 : 0.0,
+                      b.area,
+                      1};
+      call.h0 = K + 8 * matrix;
+      for (int first = 0; first < count; first += W) {
+        for (int l = 0; l < W; ++l)
+          for (int i = 0; i < n3; ++i)
+            X[static_cast<size_t>(i) * W + l] = in_.X[b.nodes[static_cast<size_t>(std::min(first + l, count - 1)) * n + i / 3]][i % 3];
+        kernel.call(call);
+        for (int l = 0; l < W && first + l < count; ++l) {
+          for (size_t i = 0; i < Ke.size(); ++i) Ke[i] = factor * K[i * W + l];
+          visit(std::span<const int>(b.nodes.data() + static_cast<size_t>(first + l) * n, static_cast<size_t>(n)), Ke.data());
+        }
+      }
+    }
+  }
+
+  /// K V or M V of vectors over all nodes (3n x k).
+  Matrix times(Kind kind, const Matrix& V) const {
+    Matrix out = Matrix::Zero(V.rows(), V.cols()), local, product;
+    each(kind, [&](std::span<const int> nodes, const double* Ke) {
+      const auto n3 = static_cast<Index>(3 * nodes.size());
+      local.resize(n3, V.cols());
+      for (size_t a = 0; a < nodes.size(); ++a) local.middleRows(3 * static_cast<Index>(a), 3) = V.middleRows(3 * nodes[a], 3);
+      product.noalias() = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(Ke, n3, n3) * local;
+      for (size_t a = 0; a < nodes.size(); ++a) out.middleRows(3 * nodes[a], 3) += product.middleRows(3 * static_cast<Index>(a), 3);
+    });
+    return out;
+  }
+
+ private:
+  const ReductionInput& in_;
+};
+
+/// K^-1 of what is not held, on vectors over all nodes.  A region that nothing holds gets soft springs at three nodes, which self-balanced
+/// loads do not feel, and its rigid motions are taken out of loads and answers.
+class Flexibility {
+ public:
+  Flexibility(const ReductionInput& in, const Cells& cells, const Matrix& rigid, const Matrix& M_rigid, bool free)
+      : solver_(make_light_solver()), rigid_(rigid), M_rigid_(M_rigid), free_(free) {
+    const int n = static_cast<int>(in.X.size());
+    block_.assign(n, 0);
+    for (const auto& set : in.rigid)
+      for (const int i : set) block_[i] = -1;
+    for (const int i : in.free) block_[i] = -1;
+    for (int& b : block_)
+      if (b == 0) b = n_blocks_++;
+    BlockMap map;
+    map.n_owned = map.n_global = map.first_dense = n_blocks_;
+    for (int i = 0; i < n_blocks_; ++i) map.global.push_back(i);
+    map.X.resize(3 * static_cast<size_t>(n_blocks_));
+    for (int i = 0; i < n; ++i)
+      for (int k = 0; k < 3 && block_[i] >= 0; ++k) map.X[3 * static_cast<size_t>(block_[i]) + k] = in.X[i][k];
+    Cliques cliques;
+    std::vector<int> list;
+    for (const SolidBatch& b : in.cells)
+      for (size_t at = 0; at < b.nodes.size(); at += static_cast<size_t>(info(b.shape).n_nodes)) {
+        list.clear();
+        for (int a = 0; a < info(b.shape).n_nodes; ++a) list.push_back(block_[b.nodes[at + a]]);
+        cliques.add(list);
+      }
+    if (n_blocks_ == 0) return;
+    solver_->structure(cliques, map);
+    solver_->zero();
+    int clique = 0;
+    double stiff = 0;
+    cells.each(Cells::stiffness, [&](std::span<const int> nodes, const double* Ke) {
+      solver_->add(clique++, Ke);
+      for (size_t i = 0; i < 3 * nodes.size(); ++i) stiff = std::max(stiff, Ke[i * (3 * nodes.size() + 1)]);
+    });
+    if (free)
+      for (const int i : spread_nodes(in.X)) {
+        const double spring[3] = {stiff, stiff, stiff};
+        solver_->add_diagonal(block_[i], spring);
+      }
+    b_.resize(3 * static_cast<size_t>(n_blocks_)), z_.resize(b_.size());
+  }
+
+  Vector solve(Vector f) const {
+    if (free_) f -= M_rigid_ * (rigid_.transpose() * f);
+    Vector out = Vector::Zero(f.size());
+    if (n_blocks_ == 0) return out;
+    for (size_t i = 0; i < block_.size(); ++i)
+      for (int k = 0; k < 3 && block_[i] >= 0; ++k) b_[3 * static_cast<size_t>(block_[i]) + k] = f[3 * static_cast<Index>(i) + k];
+    const SolveReport report = solver_->solve(b_, z_);
+    if (!report.ok)
+      throw Error("", "the cells of the region do not hold together: " + report.message, "one piece, with no hinges of single nodes");
+    for (size_t i = 0; i < block_.size(); ++i)
+      for (int k = 0; k < 3 && block_[i] >= 0; ++k) out[3 * static_cast<Index>(i) + k] = z_[3 * static_cast<size_t>(block_[i]) + k];
+    if (free_) out -= rigid_ * (M_rigid_.transpose() * out);
+    return out;
+  }
+  bool holds(int node) const { return block_[node] < 0; }
+  int n_unknowns() const { return 3 * n_blocks_; }
+
+ private:
+  /// Three nodes far from one line.
+  static std::array<int, 3> spread_nodes(const std::vector<Vec3>& X) {
+    std::array<int, 3> out{};
+    const auto far = [&](auto&& distance) {
+      int best = 0;
+      for (size_t i = 0; i < X.size(); ++i)
+        if (distance(X[i]) > distance(X[best])) best = static_cast<int>(i);
+      return best;
+    };
+    out[1] = far([&](const Vec3& x) { return (x - X[0]).norm(); });
+    out[0] = far([&](const Vec3& x) { return (x - X[out[1]]).norm(); });
+    const Vec3 along = (X[out[1]] - X[out[0]]).normalized();
+    out[2] = far([&](const Vec3& x) { return (x - X[out[0]]).cross(along).norm(); });
+    return out;
+  }
+
+  std::unique_ptr<SerialKktSolver> solver_;
+  const Matrix &rigid_, &M_rigid_;
+  bool free_;
+  std::vector<int> block_;
+  int n_blocks_ = 0;
+  mutable std::vector<double> b_, z_;
+};
+
+Matrix rigid_motions(const std::vector<Vec3>& X, const Vec3& about) {
+  Matrix out = Matrix::Zero(3 * static_cast<Index>(X.size()), 6);
+  for (size_t i = 0; i < X.size(); ++i) {
+    const auto at = 3 * static_cast<Index>(i);
+    out.block<3, 3>(at, 0).setIdentity();
+    out.block<3, 3>(at, 3) = -skew(Vec3(X[i] - about));
+  }
+  return out;
+}
+
+/// Motions of the interfaces, zero elsewhere.
+Matrix interface_motions(const ReductionInput& in) {
+  const auto rows = 3 * static_cast<Index>(in.X.size());
+  std::vector<Vector> columns;
+  for (const auto& set : in.rigid) {
+    Vec3 mean = Vec3::Zero();
+    for (const int i : set) mean += in.X[i] / static_cast<double>(set.size());
+    for (int k = 0; k < 6; ++k) {
+      Vector v = Vector::Zero(rows);
+      for (const int i : set) v.segment<3>(3 * i) = k < 3 ? Vec3(Vec3::Unit(k)) : Vec3(Vec3::Unit(k - 3)).cross(Vec3(in.X[i] - mean));
+      columns.push_back(std::move(v));
+    }
+  }
+  for (const int i : in.free)
+    for (int k = 0; k < 3; ++k) {
+      Vector v = Vector::Zero(rows);
+      v[3 * i + k] = 1;
+      columns.push_back(std::move(v));
+    }
+  Matrix out(rows, static_cast<Index>(columns.size()));
+  for (size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Index>(k)) = columns[k];
+  return out;
+}
+
+/// K^-1 and M as Spectra takes them, over the unknowns that are not held.
+struct InverseStiffness {
+  using Scalar = double;
+  const Flexibility& flexibility;
+  Index n;
+  Index rows() const { return n; }
+  Index cols() const { return n; }
+  void set_shift(double) const {}
+  void perform_op(const double* x, double* y) const { Eigen::Map<Vector>(y, n) = flexibility.solve(Eigen::Map<const Vector>(x, n)); }
+};
+struct MassProduct {
+  using Scalar = double;
+  const Cells& cells;
+  Index n;
+  Index rows() const { return n; }
+  Index cols() const { return n; }
+  void perform_op(const double* x, double* y) const { Eigen::Map<Vector>(y, n) = cells.times(Cells::mass, Eigen::Map<const Vector>(x, n)); }
+};
+
+/// The lowest vibration modes, orthonormal in mass, and one frequency more.
+Matrix vibrations(const ReductionInput& in, const Cells& cells, const Flexibility& flexibility, double& next) {
+  const auto rows = 3 * static_cast<Index>(in.X.size());
+  const Index most = flexibility.n_unknowns() - 7;
+  if (in.n_vibrations <= 0 || most < 2) return Matrix(rows, 0);
+  Index wanted = std::min<Index>(in.up_to > 0 ? std::min(in.n_vibrations, 8) : in.n_vibrations, most);
+  for (;;) {
+    InverseStiffness op{flexibility, rows};
+    MassProduct B{cells, rows};
+    const Index found = std::min(wanted + 1, most);
+    Spectra::SymGEigsShiftSolver<InverseStiffness, MassProduct, Spectra::GEigsMode::ShiftInvert> solver(
+        op, B, found, std::min<Index>(std::max<Index>(2 * found + 1, 20), flexibility.n_unknowns()), 0);
+    solver.init();
+    solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-10, Spectra::SortRule::SmallestAlge);
+    if (solver.info() != Spectra::CompInfo::Successful)
+      throw Error("", "the vibration modes of the region were not found", "ask for fewer: [region.NAME] modes");
+    const Vector lambda = solver.eigenvalues();
+    Index keep = 0;
+    const double limit = std::pow(2 * std::numbers::pi * in.up_to, 2);
+    while (keep < std::min(wanted, lambda.size()) && (in.up_to == 0 || keep < 4 || lambda[keep] <= limit)) ++keep;
+    if (keep == wanted && wanted < std::min<Index>(in.n_vibrations, most)) {
+      wanted = std::min<Index>(2 * wanted, std::min<Index>(in.n_vibrations, most));
+      continue;
+    }
+    next = keep < lambda.size() ? std::sqrt(lambda[keep]) / (2 * std::numbers::pi) : 0;
+    return solver.eigenvectors().leftCols(keep);
+  }
+}
+
+}  // namespace
+
+Reduction reduced(const ReductionInput& in) {
+  const auto tell = [&](const std::string& what) {
+    if (in.progress) in.progress(what);
+  };
+  const Cells cells(in);
+  Matrix rigid = rigid_motions(in.X, in.centre);
+  {  // orthonormal in mass
+    const Matrix G = rigid.transpose() * cells.times(Cells::mass, rigid);
+    rigid = rigid * Matrix(Matrix(G.llt().matrixL()).inverse().transpose());
+  }
+  const Matrix M_rigid = cells.times(Cells::mass, rigid), at_interfaces = interface_motions(in);
+  const bool free = at_interfaces.cols() == 0;
+  tell("factor");
+  const Flexibility flexibility(in, cells, rigid, M_rigid, free);
+  std::vector<Matrix> parts;
+  tell("static modes");
+  Matrix static_modes = at_interfaces;
+  const Matrix pulls = cells.times(Cells::stiffness, at_interfaces);
+  for (Index k = 0; k < static_modes.cols(); ++k) static_modes.col(k) -= flexibility.solve(pulls.col(k));
+  parts.push_back(std::move(static_modes));
+  Matrix fields = Matrix::Zero(rigid.rows(), 12);
+  for (size_t i = 0; i < in.X.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      fields(3 * static_cast<Index>(i) + k, k) = 1;
+      for (int j = 0; j < 3; ++j) fields(3 * static_cast<Index>(i) + k, 3 + 3 * j + k) = in.X[i][j] - in.centre[j];
+    }
+  Matrix inertia = cells.times(Cells::mass, fields);
+  for (Index k = 0; k < inertia.cols(); ++k) inertia.col(k) = flexibility.solve(inertia.col(k));
+  parts.push_back(std::move(inertia));
+  Matrix loads = Matrix::Zero(rigid.rows(), static_cast<Index>(in.loads.size()));
+  for (size_t k = 0; k < in.loads.size(); ++k) {
+    Vector f = Vector::Zero(rigid.rows());
+    for (const auto& [node, force] : in.loads[k]) f.segment<3>(3 * node) += force;
+    loads.col(static_cast<Index>(k)) = flexibility.solve(f);
+  }
+  parts.push_back(std::move(loads));
+  tell("vibration modes");
+  Reduction out;
+  parts.push_back(vibrations(in, cells, flexibility, out.held_frequency));
+
+  // one basis, without rigid motions, of unit mass
+  Index columns = 0;
+  for (const Matrix& p : parts) columns += p.cols();
+  Matrix V(rigid.rows(), columns);
+  columns = 0;
+  for (const Matrix& p : parts) V.middleCols(columns, p.cols()) = p, columns += p.cols();
+  tell("basis");
+  const auto mass_norms = [&](const Matrix& of) {
+    return Vector(of.cwiseProduct(cells.times(Cells::mass, of)).colwise().sum().cwiseMax(0).cwiseSqrt());
+  };
+  const Vector before = mass_norms(V);
+  V -= rigid * (M_rigid.transpose() * V);
+  const Vector after = mass_norms(V);
+  Index kept = 0;
+  for (Index k = 0; k < V.cols(); ++k)
+    if (after[k] > 1e-8 * before[k] && after[k] > 0) V.col(kept++) = (V.col(k) / after[k]).eval();
+  V.conservativeResize(Eigen::NoChange, kept);
+  const Matrix G = V.transpose() * cells.times(Cells::mass, V);
+  const Eigen::SelfAdjointEigenSolver<Matrix> gram(G);
+  Index skip = 0;
+  while (skip < kept && gram.eigenvalues()[skip] < 1e-9 * gram.eigenvalues()[kept - 1]) ++skip;
+  const Index m = kept - skip;
+  V = (V * gram.eigenvectors().rightCols(m) * gram.eigenvalues().tail(m).cwiseSqrt().cwiseInverse().asDiagonal()).eval();
+  V -= rigid * (M_rigid.transpose() * V);
+  const Matrix Kr = V.transpose() * cells.times(Cells::stiffness, V), Mr = V.transpose() * cells.times(Cells::mass, V);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes((Kr + Kr.transpose()) / 2, (Mr + Mr.transpose()) / 2);
+  out.omega2 = modes.eigenvalues();
+  if (m > 0 && !(out.omega2[0] > 1e-12 * out.omega2[m - 1]))
+    throw Error("", "the cells of the region do not hold together", "one piece, with no hinges of single nodes");
+  out.shapes = V * modes.eigenvectors();
+  // int rho b b^T: b by components is a vector field of one direction
+  const auto n = static_cast<Index>(in.X.size());
+  Matrix B = Matrix::Zero(3 * n, 4 + 3 * m);
+  for (Index i = 0; i < n; ++i) {
+    B(3 * i, 0) = 1;
+    for (int k = 0; k < 3; ++k) B(3 * i, 1 + k) = in.X[i][k] - in.centre[k];
+    for (Index j = 0; j < m; ++j)
+      for (int k = 0; k < 3; ++k) B(3 * i, 4 + 3 * j + k) = out.shapes(3 * i + k, j);
+  }
+  const auto symmetric = [](const Matrix& M) { return Matrix((M + M.transpose()) / 2); };
+  out.A = symmetric(B.transpose() * cells.times(Cells::mass, B));
+  const auto any = [&](double SolidBatch::*factor) {
+    return std::any_of(in.cells.begin(), in.cells.end(), [&](const SolidBatch& b) { return b.*factor > 0; });
+  };
+  if (any(&SolidBatch::alpha)) out.A_damped = symmetric(B.transpose() * cells.times(Cells::damping_by_mass, B));
+  if (any(&SolidBatch::beta)) out.viscous = symmetric(out.shapes.transpose() * cells.times(Cells::damping_by_stiffness, out.shapes));
+  return out;
+}
+
+}  // namespace hilo

@@ -1,0 +1,43 @@
+// The modes of a linear region: what its cells can do in small strain, reduced to what its interfaces, the forces of inertia and the lowest
+// frequencies ask for.
+//
+//   constraint modes   a rigid motion of one interface, or a motion of its nodes, the others held   [craig-bampton-1968]
+//   static modes       the answer to the loads rho e_i and rho (X - Xc)_j e_i, interfaces held: gravity, any rigid acceleration and
+//                      centrifugal force are exact with these twelve
+//   load modes         the answer to each load of the scene on its nodes, in every direction that it may take as the region turns
+//   vibration modes    the lowest of the region with its interfaces held, or free where it has none
+//
+// The span of all of them, without rigid motions (mean axes: orthogonal in mass to the six), is turned into modes orthonormal in mass.
+#pragma once
+#include <Eigen/Dense>
+#include <functional>
+
+#include "system/solids.hpp"
+
+namespace hilo {
+
+struct ReductionInput {
+  std::vector<Vec3> X;                                   // nodes of the region
+  std::vector<SolidBatch> cells;                         // over these nodes
+  std::vector<std::vector<int>> rigid;                   // interfaces that move as rigid bodies
+  std::vector<int> free;                                 // nodes of an interface that move freely
+  Vec3 centre = Vec3::Zero();                            // of mass
+  std::vector<std::vector<std::pair<int, Vec3>>> loads;  // on nodes
+  int n_vibrations = 0;                                  // vibration modes, at most
+  double up_to = 0;                                      // and up to this frequency, but at least four; 0: all of n_vibrations  [Hz]
+  std::function<void(const std::string&)> progress;
+};
+
+struct Reduction {
+  Eigen::MatrixXd shapes;     // (3 n_nodes x m) [m per unit of amplitude]
+  Eigen::VectorXd omega2;     // of the modes, squared circular frequencies (m) [1/s^2]
+  Eigen::MatrixXd A;          // int rho b b^T, b = (1, X - Xc, shapes by component)   (4 + 3m x 4 + 3m)
+  Eigen::MatrixXd A_damped;   // the same of mass-proportional damping alpha rho, or empty
+  Eigen::MatrixXd viscous;    // of stiffness-proportional damping beta C on the modes (m x m), or empty [1/s]
+  double held_frequency = 0;  // of the first vibration mode left out, or 0 where all that were found are in  [Hz]
+};
+
+/// Errors: a region that is not held together, or cells turned inside out.
+Reduction reduced(const ReductionInput& in);
+
+}  // namespace hilo

@@ -1,0 +1,201 @@
+#include "system/welds.hpp"
+
+#include <fmt/format.h>
+
+#include "system/mode_forces.hpp"
+
+namespace hilo {
+namespace {
+
+constexpr int pair_a[3] = {0, 1, 2}, pair_b[3] = {1, 2, 0};
+using Map = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+using Matrix = ModeForces::Matrix;
+
+std::vector<Vec3> shapes_of_direction(const Weld& w, int i) {
+  std::vector<Vec3> out;
+  for (const Vec3& psi : w.turn) out.push_back(psi.cross(Vec3(Vec3::Unit(i))));
+  return out;
+}
+
+/// What the unknowns of a region move a vector by: columns of translation, rotation, amplitudes.
+Map region_map(bool point, const Vec3& arm, const Mat3& turn, const std::vector<Vec3>& shapes) {
+  Map out = Map::Zero(3, 6 + static_cast<Eigen::Index>(shapes.size()));
+  if (point) out.leftCols<3>().setIdentity();
+  out.middleCols<3>(3) = -skew(arm);
+  for (size_t j = 0; j < shapes.size(); ++j) out.col(6 + static_cast<Eigen::Index>(j)) = turn * shapes[j];
+  return out;
+}
+
+}  // namespace
+
+void Welds::take_blocks(int& next) {
+  block_.clear();
+  for (size_t k = 0; k < list.size(); ++k) block_.push_back(next), next += 2;
+}
+
+void Welds::add_cliques(Cliques& cliques) {
+  clique_.clear();
+  for (size_t k = 0; k < list.size(); ++k) {
+    const Modes& m = points_.modes[list[k].modes];
+    std::vector<int> blocks;
+    const auto add_body = [&](int body) {
+      const int first = points_.body_block[body];
+      blocks.push_back(first), blocks.push_back(first < 0 ? -1 : first + 1);
+    };
+    add_body(m.body);
+    for (int b = 0; b < m.n_blocks; ++b) blocks.push_back(m.block + b);
+    add_body(list[k].body);
+    blocks.push_back(block_[k]), blocks.push_back(block_[k] + 1);
+    clique_.push_back(cliques.add(blocks));
+  }
+}
+
+std::string Welds::owner(int block) const {
+  for (size_t k = 0; k < list.size(); ++k)
+    if (block == block_[k] || block == block_[k] + 1)
+      return fmt::format("the bond of \"{}\" and \"{}\"", points_.bodies[points_.modes[list[k].modes].body].name, list[k].name);
+  return "";
+}
+
+Welds::Place Welds::place(const Weld& w, const Config& q) const {
+  const Modes& m = points_.modes[w.modes];
+  const Mat3 &R = q.R[m.body], &B = q.R[w.body];
+  Place p;
+  p.y = q.c[m.body] + R * (w.at - points_.bodies[m.body].Xc);
+  for (int i = 0; i < 3; ++i) p.d[i] = R.col(i), p.t[i] = B.col(i);
+  for (size_t j = 0; j < w.mean.size(); ++j) {
+    const Mat3& Y = q.Y[3 * m.first + j];
+    p.y += Y * w.mean[j];
+    for (int i = 0; i < 3; ++i) p.d[i] += Y * w.turn[j].cross(Vec3(Vec3::Unit(i)));
+  }
+  p.y_body = q.c[w.body] + B * (w.at - points_.bodies[w.body].Xc);
+  return p;
+}
+
+std::array<double, 6> Welds::values(const Weld& w, const Config& q) const {
+  const Place p = place(w, q);
+  std::array<double, 6> g{};
+  for (int i = 0; i < 3; ++i) {
+    g[i] = p.y[i] - p.y_body[i];
+    g[3 + i] = (p.t[pair_a[i]].dot(p.d[pair_b[i]]) - p.t[pair_b[i]].dot(p.d[pair_a[i]])) / 2;
+  }
+  return g;
+}
+
+void Welds::evaluate(Pass& p) const {
+  const Stage& s = p.s;
+  if (s.rates_alone) return;
+  for (size_t k = 0; k < list.size(); ++k) {
+    const Weld& w = list[k];
+    if (!points_.counts(static_cast<int>(k))) continue;
+    const Modes& m = points_.modes[w.modes];
+    const Place left = place(w, *s.left), end = place(w, *s.end);
+    const auto g = values(w, *s.end);
+    for (int i = 0; i < 6; ++i) p.out.r[3 * block_[k] + i] = p.sigma * g[i];
+    const double* lambda = p.lambda.data() + 3 * (block_[k] - points_.first_joint_block());
+
+    // forces on the vectors of both sides
+    const Vec3 f(lambda[0], lambda[1], lambda[2]);
+    Vec3 h[3], t[3];
+    for (int i = 0; i < 3; ++i) h[i].setZero(), t[i].setZero();
+    for (int i = 0; i < 3; ++i) {
+      const int a = pair_a[i], b = pair_b[i];
+      const double half = lambda[3 + i] / 2;
+      h[b] += half * left.t[a], h[a] -= half * left.t[b];
+      t[a] += half * left.d[b], t[b] -= half * left.d[a];
+    }
+    const Vec3 arm = left.y - s.left->c[m.body], arm_end = end.y - s.end->c[m.body];
+    const Vec3 arm_body = left.y_body - s.left->c[w.body], arm_body_end = end.y_body - s.end->c[w.body];
+    Vec6 &on_region = p.body[m.body], &on_body = p.body[w.body];
+    on_region.head<3>() += f, on_region.tail<3>() += arm.cross(f);
+    on_body.head<3>() -= f, on_body.tail<3>() -= arm_body.cross(f);
+    for (int i = 0; i < 3; ++i) on_region.tail<3>() += left.d[i].cross(h[i]), on_body.tail<3>() += left.t[i].cross(t[i]);
+    p.scale(f.norm());
+    ModeForces of_modes(m, p);
+    of_modes.add(w.mean, f);
+    std::vector<Vec3> shapes[3];
+    for (int i = 0; i < 3; ++i) of_modes.add(shapes[i] = shapes_of_direction(w, i), h[i]);
+    if (p.K) {
+      auto turns = of_modes.tangent().block<3, 3>(3, 3);
+      turns += s.slope * skew(f) * skew(arm_end);
+      for (int i = 0; i < 3; ++i) turns += s.slope * skew(h[i]) * skew(end.d[i]);
+    }
+    of_modes.finish();
+    if (!p.K) continue;
+
+    const Mat3 hat = left_turn(s, m.body), &R = s.end->R[m.body];
+    const Eigen::Index n = 6 + 3 * m.n_blocks, at_body = n, at_rows = n + 6, all = n + 12;
+    Matrix K = Matrix::Zero(all, all), G_left = Matrix::Zero(6, all), G_right = G_left;
+    Map L[3], Z[3];  // of the directions
+    for (int i = 0; i < 3; ++i) L[i] = region_map(false, left.d[i], hat, shapes[i]), Z[i] = region_map(false, end.d[i], R, shapes[i]);
+    G_left.topLeftCorner(3, n) = region_map(true, arm, hat, w.mean), G_right.topLeftCorner(3, n) = region_map(true, arm_end, R, w.mean);
+    for (int i = 0; i < 3; ++i) G_left(i, at_body + i) = G_right(i, at_body + i) = -1;
+    G_left.block<3, 3>(0, at_body + 3) = skew(arm_body), G_right.block<3, 3>(0, at_body + 3) = skew(arm_body_end);
+    K.block<3, 3>(at_body + 3, at_body + 3) -= s.slope * skew(f) * skew(arm_body_end);
+    for (int i = 0; i < 3; ++i) {
+      const int a = pair_a[i], b = pair_b[i];
+      const auto turn_row = [&](const Place& x, const Map(&of)[3], Matrix& G) {
+        G.row(3 + i).head(n) = (x.t[a].transpose() * of[b] - x.t[b].transpose() * of[a]) / 2;
+        G.row(3 + i).segment<3>(at_body + 3) = (x.t[a].cross(x.d[b]) - x.t[b].cross(x.d[a])).transpose() / 2;
+      };
+      turn_row(left, L, G_left), turn_row(end, Z, G_right);
+      K.block<3, 3>(at_body + 3, at_body + 3) += s.slope * skew(t[i]) * skew(end.t[i]);
+      const double half = s.slope * lambda[3 + i] / 2;
+      K.block(0, at_body + 3, n, 3) += half * (L[a].transpose() * skew(end.t[b]) - L[b].transpose() * skew(end.t[a]));
+      K.block(at_body + 3, 0, 3, n) += half * (skew(left.t[a]) * Z[b] - skew(left.t[b]) * Z[a]);
+    }
+    K.block(0, at_rows, n + 6, 6) = p.sigma * G_left.leftCols(n + 6).transpose();
+    K.block(at_rows, 0, 6, n + 6) = p.sigma * G_right.leftCols(n + 6);
+    p.K->add(clique_[k], K.data());
+  }
+}
+
+void Welds::look_at_rows(const Config& q, double, double, Violation& worst) const {
+  for (size_t k = 0; k < list.size(); ++k)
+    for (const double g : values(list[k], q))
+      if (!(std::abs(g) <= worst.kept))
+        worst.kept = std::isnan(g) ? 1e300 : std::abs(g), worst.kept_block = block_[k] - points_.first_joint_block();
+}
+
+/// Of degree two: differences are exact.
+void Welds::add_row_rates(const Rates& at, std::vector<double>& rate, std::vector<double>* acceleration) const {
+  for (size_t k = 0; k < list.size(); ++k) {
+    if (!points_.counts(static_cast<int>(k))) continue;
+    const int base = 3 * (block_[k] - points_.first_joint_block());
+    const auto forward = values(list[k], at.forward), backward = values(list[k], at.backward);
+    for (int i = 0; i < 6; ++i) rate[base + i] = (forward[i] - backward[i]) / (2 * at.tau);
+    if (!acceleration) continue;
+    const auto here = values(list[k], at.q), up = values(list[k], at.up), down = values(list[k], at.down);
+    for (int i = 0; i < 6; ++i)
+      (*acceleration)[base + i] = (forward[i] + backward[i] - 2 * here[i]) / (at.tau * at.tau) + (up[i] - down[i]) / (2 * at.sigma);
+  }
+}
+
+void Welds::mark_rows(std::vector<char>& on) const {
+  for (const int block : block_) std::fill_n(on.begin() + 3 * (block - points_.first_joint_block()), 6, 1);
+}
+
+/// The directions of a turned face are orthonormal to the second order of its turn alone.
+void Welds::commit(const Config& q, const Config*) {
+  constexpr double far = 0.05;  // [rad], docs/fidelity.md
+  told_.resize(list.size(), 0);
+  for (size_t k = 0; k < list.size(); ++k) {
+    const Modes& m = points_.modes[list[k].modes];
+    Vec3 turn = Vec3::Zero();
+    for (size_t j = 0; j < list[k].turn.size(); ++j)
+      turn += q.eta[m.first + static_cast<int>(j) / 3][static_cast<int>(j) % 3] * list[k].turn[j];
+    if (!(turn.norm() > far) || told_[k]) continue;
+    told_[k] = 1;
+    if (points_.comm->rank == 0)
+      warn(points_.bodies[m.body].name,
+           fmt::format("turns by {:.2g} rad at \"{}\": beyond {:g} linear modes are off by more than a few per cent (tag it nonlinear)",
+                       turn.norm(), list[k].name, far));
+  }
+}
+
+void Welds::tie(Ties& ties) const {
+  for (const Weld& w : list)
+    if (w.body > 0 && points_.body_block[w.body] >= 0) ties.exclude(w.body);
+}
+
+}  // namespace hilo

@@ -1,0 +1,51 @@
+// Six rows between a linear region and a body: the mean motion of some of its nodes is that of the body, which may be a patch that joints
+// hold, a rigid neighbour, or what another linear region shares with it.
+//
+// The nodes' mean is a point y = c + R r + sum_j Y_j u_j of the region, their mean turn three directions d_i = R e_i + sum_j Y_j (psi_j x
+// e_i), which are orthonormal to the order of linear theory.  With the directors t_i of the body the rows are
+//   y - y_B = 0,      (t_a.d_b - t_b.d_a)/2 = 0 for (a, b) = (1, 2), (2, 3), (3, 1)
+// of degree two in all coordinates: gradients at the mid-point are difference quotients, and the rows neither work nor turn.
+#pragma once
+#include "system/contribution.hpp"
+
+namespace hilo {
+
+struct Weld {
+  std::string name;              // of the set, or of the body
+  int modes = -1;                // of Points::modes
+  int body = -1;                 // it is welded to
+  Vec3 at = Vec3::Zero();        // the mean of the nodes, reference position [m]
+  std::vector<int> nodes;        // local ones
+  std::vector<Vec3> mean, turn;  // u_j, psi_j   (3 n_blocks) [m], [1]
+};
+
+class Welds final : public Contribution {
+ public:
+  explicit Welds(const Points& points) : points_(points) {}
+  std::vector<Weld> list;  // on all ranks the same
+
+  Traits traits() const override { return {.constrains = !list.empty()}; }
+  void take_blocks(int& next) override;
+  void add_cliques(Cliques& cliques) override;
+  std::string owner(int block) const override;
+  void evaluate(Pass& p) const override;
+  void look_at_rows(const Config& q, double t, double factor, Violation& worst) const override;
+  void add_row_rates(const Rates& at, std::vector<double>& rate, std::vector<double>* acceleration) const override;
+  void mark_rows(std::vector<char>& on) const override;
+  void commit(const Config& q, const Config* v) override;
+  void archive(Archive& a) override { a("welds", told_); }
+  void tie(Ties& ties) const override;
+
+ private:
+  /// Vectors that a weld speaks of, at a configuration: y and d_i of the region, y and t_i of the body, with their arms.
+  struct Place {
+    Vec3 y, d[3], y_body, t[3];
+  };
+  Place place(const Weld& w, const Config& q) const;
+  std::array<double, 6> values(const Weld& w, const Config& q) const;
+  const Points& points_;
+  std::vector<int> block_, clique_;
+  std::vector<char> told_;  // by weld: that it turns too far for linear theory
+};
+
+}  // namespace hilo

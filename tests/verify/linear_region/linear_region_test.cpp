@@ -1,0 +1,107 @@
+// Linear regions: modes about mean axes keep what rigid and nonlinear ones keep, and agree with both where they should.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+Mesh bar(double from, double to, int n, Shape shape = Shape::hex8) {
+  BlockOptions o;
+  o.shape = shape;
+  o.n[0] = n;
+  o.low = Vec3(from, 0, 0), o.high = Vec3(to, 0.1, 0.1);
+  return block_mesh(o);
+}
+
+/// Two meshes as one, regions and sets under a prefix.
+Mesh both(const Mesh& a, const Mesh& b) {
+  Mesh out;
+  for (const auto& [m, prefix] : {std::pair{&a, "left_"}, std::pair{&b, "right_"}}) {
+    const std::int64_t nodes = out.n_nodes(), cells = out.n_cells();
+    const auto region = static_cast<std::int32_t>(out.region_name.size());
+    for (size_t r = 0; r < m->region_name.size(); ++r)
+      out.region_name.push_back(prefix + m->region_name[r]), out.region_data.push_back(m->region_data[r]);
+    for (std::int64_t i = 0; i < m->n_nodes(); ++i) out.X.push_back(m->X[i]), out.node_id.push_back(nodes + i);
+    for (std::int64_t e = 0; e < m->n_cells(); ++e) {
+      std::vector<std::int64_t> list;
+      for (const std::int64_t i : m->cell(e)) list.push_back(nodes + i);
+      out.add_cell(static_cast<Shape>(m->shape[e]), list, region + m->region[e], cells + e);
+    }
+    for (const auto& [name, set] : m->facet_sets)
+      for (const Facet& f : set) out.facet_sets[prefix + name].push_back({cells + f.cell, f.facet});
+  }
+  return out;
+}
+
+/// Energy and momenta of a run in free flight stay, over what they are.
+void expect_kept(const Results& r, double energy_at_most, double momentum_at_most) {
+  const auto e = r.history("energy"), p = r.history("momentum");
+  const Eigen::VectorXd total = e.col(0) + e.col(1) + e.col(2);
+  EXPECT_LT((total.array() - total[0]).abs().maxCoeff(), energy_at_most * e.col(0).maxCoeff()) << "energy";
+  for (const int first : {0, 3}) {
+    double worst = 0;
+    for (Eigen::Index i = 0; i < p.rows(); ++i) worst = std::max(worst, (p.row(i).segment<3>(first) - p.row(0).segment<3>(first)).norm());
+    EXPECT_LT(worst, momentum_at_most * p.row(0).segment<3>(first).norm()) << (first ? "angular momentum" : "momentum");
+  }
+  EXPECT_GT(e.col(1).maxCoeff(), 1e-4 * e.col(0).maxCoeff()) << "it really bends";
+}
+
+TEST(LinearRegion, TumblingFreelyKeepsEnergyAndMomenta) {
+  Case c("linear_region");
+  c.use(bar(0, 1, 6), {Fidelity::linear});
+  expect_kept(c.solved("", "run.h5", "free"), 1e-12, 1e-12);
+}
+
+TEST(LinearRegion, OnAHingeWithAnotherKeepsEnergyAndMomenta) {
+  Case c("linear_region");
+  c.use(both(bar(0, 1, 4), bar(1, 2, 4)), {Fidelity::linear, Fidelity::linear});
+  const Results r = c.solved("", "run.h5", "pair");
+  expect_kept(r, 1e-11, 1e-12);
+  EXPECT_LT(r.history("constraint").maxCoeff(), 1e-12);
+}
+
+class Beside : public testing::TestWithParam<std::pair<const char*, Fidelity>> {};
+TEST_P(Beside, AnotherRegionItKeepsEnergyAndMomenta) {
+  Case c("linear_region");
+  BlockOptions o;
+  o.n[0] = 6;
+  o.high = Vec3(1, 0.1, 0.1);
+  o.regions = {"near", "far"};
+  o.region_of = [](const Vec3& x) { return x[0] < 0.5 ? 0 : 1; };
+  c.use(block_mesh(o), {Fidelity::linear, GetParam().second});
+  expect_kept(c.solved("", "run.h5", "free"), 1e-10, 1e-12);
+}
+INSTANTIATE_TEST_SUITE_P(LinearRegion, Beside,
+                         testing::Values(std::pair{"Rigid", Fidelity::rigid}, std::pair{"Linear", Fidelity::linear},
+                                         std::pair{"Nonlinear", Fidelity::nonlinear}),
+                         [](const auto& info) { return info.param.first; });
+
+// With as many modes as its cells have freedoms a linear region is the whole finite-element model, for small motions.
+TEST(LinearRegion, WithAllModesVibratesAsTheCellsDo) {
+  Case c("linear_region");
+  Eigen::MatrixXd tip[2];
+  for (const Fidelity f : {Fidelity::nonlinear, Fidelity::linear}) {
+    c.use(bar(0, 1, 5), {f});
+    tip[f == Fidelity::linear] = c.solved("", "run.h5", "cantilever").history("probe/tip");
+  }
+  const Eigen::MatrixXd u[2] = {tip[0].leftCols(3).rowwise() - tip[0].row(0).head(3), tip[1].leftCols(3).rowwise() - tip[1].row(0).head(3)};
+  EXPECT_LT((u[1] - u[0]).cwiseAbs().maxCoeff(), 1e-6 * u[0].cwiseAbs().maxCoeff());
+}
+
+TEST(LinearRegion, TendsToTheRigidBodyWithTheInverseOfItsStiffness) {
+  Case c("linear_region");
+  const auto ends = [&](Fidelity f, const std::string& E) {
+    c.use(bar(0, 1, 4), {f});
+    return c.solved("--set time.end=0.316 --set material.soft.E=" + E, "run.h5", "free").field("displacement");
+  };
+  const auto rigid = ends(Fidelity::rigid, "1e7");
+  double off[2];
+  for (int k = 0; k < 2; ++k) {
+    const auto u = ends(Fidelity::linear, k ? "1e10" : "1e9");
+    off[k] = 0;
+    for (size_t i = 0; i < u.size(); ++i) off[k] = std::max(off[k], (u[i] - rigid[i]).norm());
+  }
+  EXPECT_NEAR(std::log10(off[0] / off[1]), 1, 0.1);
+}
+
+}  // namespace
+}  // namespace hilo::test
