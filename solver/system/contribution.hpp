@@ -95,6 +95,8 @@ struct Jump {
   const char* unit = "";
 };
 
+using NodalForces = std::vector<std::pair<int, Vec3>>;  // node, force [N]
+
 /// An array of the results that a contribution fills: /history/GROUP/NAME, of which unit and meaning are in model/schema.cpp.  Its numbers
 /// are `n_end` that belong to the end of a step and `n_mid` that belong to its inside, which the recorder takes to the end.
 struct Output {
@@ -153,6 +155,8 @@ class Contribution {
   virtual void add_row_rates(const Rates& /*at*/, std::vector<double>& /*rate*/, std::vector<double>* /*acceleration*/) const {}
   /// Marks the rows that are kept, laid out like lambda.
   virtual void mark_rows(std::vector<char>& /*on*/) const {}
+  /// Forces on nodes at their reference positions, one list for each direction that they may take as a region turns below them.
+  virtual void add_reference_forces(std::vector<NodalForces>& /*list*/) const {}
   virtual void look_at_turn(const Config& /*q0*/, const Config& /*q1*/, int /*part*/, Turned& /*most*/) const {}
   virtual std::string name(int /*item*/) const { return {}; }
 

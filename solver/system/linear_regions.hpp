@@ -2,7 +2,7 @@
 //
 //   x_a = c + R (r_a + sum_j phi_aj eta_j),   Q = (c, R e_k, Y_j e_k),   b_a = (1, r_a, phi_aj),   A = int rho b b^T constant
 //   P_left^T [A a_Q - A e_0 g] + (0, 0, k eta) = 0
-// A rigid body is the case without modes [shabana-2013, betsch-leyendecker-2006].  Amplitudes are of modes orthonormal in mass, so k is a
+// A rigid body is the case without modes [betsch-leyendecker-2006].  Amplitudes are of modes orthonormal in mass, so k is a
 // list of squared circular frequencies.
 #pragma once
 #include <Eigen/Dense>

@@ -9,17 +9,23 @@ namespace hilo {
 
 std::string Loads::count() const { return fmt::format("{} loads", list.size()); }
 
-std::vector<std::pair<int, Vec3>> Load::on_reference(std::span<const Vec3> X) const {
-  std::vector<std::pair<int, Vec3>> out;
-  for (size_t i = 0; i < nodes.size(); ++i) out.emplace_back(nodes[i], weight[i] * value);
-  std::vector<Vec3> at, f;
-  for (const auto& facet : facets) {
-    at.clear(), f.assign(facet.size(), Vec3::Zero());
-    for (const int i : facet) at.push_back(X[i]);
-    pressure_force(pressure, at, at, f, nullptr);
-    for (size_t a = 0; a < facet.size(); ++a) out.emplace_back(facet[a], f[a]);
+/// A load whose direction is inertial may take any beside a region that turns.
+void Loads::add_reference_forces(std::vector<NodalForces>& out) const {
+  for (const Load& load : list) {
+    for (int k = 0; k < 3 && load.kind == Load::Kind::nodal; ++k) {
+      NodalForces& forces = out.emplace_back();
+      for (size_t i = 0; i < load.nodes.size(); ++i) forces.emplace_back(load.nodes[i], load.weight[i] * load.value.norm() * Vec3::Unit(k));
+    }
+    if (load.kind != Load::Kind::pressure) continue;
+    NodalForces& forces = out.emplace_back();
+    std::vector<Vec3> at, f;
+    for (const auto& facet : load.facets) {
+      at.clear(), f.assign(facet.size(), Vec3::Zero());
+      for (const int i : facet) at.push_back(points_.X[i]);
+      pressure_force(load.pressure, at, at, f, nullptr);
+      for (size_t a = 0; a < facet.size(); ++a) forces.emplace_back(facet[a], f[a]);
+    }
   }
-  return out;
 }
 
 void Loads::add_cliques(Cliques& cliques) {

@@ -20,8 +20,6 @@ struct Load {
   Vec3 arm = Vec3::Zero();  // body axes
   History history;
   bool ramped = false;  // without a history: follows the load factor of a static analysis
-  /// Forces on nodes at their reference positions X; the shares of each node where the direction is not the region's own.
-  std::vector<std::pair<int, Vec3>> on_reference(std::span<const Vec3> X) const;
   double factor(double t0, double t1, double ramp) const { return (ramped ? ramp : 1) * (t1 > t0 ? history.mean(t0, t1) : history(t0)); }
 };
 
@@ -34,6 +32,7 @@ class Loads final : public Contribution {
   void add_cliques(Cliques& cliques) override;
   void evaluate(Pass& p) const override;
   void add_work(const Moment& m, Work& sum) const override;
+  void add_reference_forces(std::vector<NodalForces>& list) const override;
   void tie(Ties&) const override {}
   void add_timed(std::span<const int> group, double t, double T, std::span<double> sum) const override;
 

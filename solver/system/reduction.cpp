@@ -147,7 +147,6 @@ class Flexibility {
     if (free_) out -= rigid_ * (M_rigid_.transpose() * out);
     return out;
   }
-  bool holds(int node) const { return block_[node] < 0; }
   int n_unknowns() const { return 3 * n_blocks_; }
 
  private:
@@ -215,7 +214,7 @@ struct InverseStiffness {
   const Flexibility& flexibility;
   Index n;
   Index rows() const { return n; }
-  Index cols() const { return n; }
+  Index cols() const { return rows(); }
   void set_shift(double) const {}
   void perform_op(const double* x, double* y) const { Eigen::Map<Vector>(y, n) = flexibility.solve(Eigen::Map<const Vector>(x, n)); }
 };
@@ -224,7 +223,7 @@ struct MassProduct {
   const Cells& cells;
   Index n;
   Index rows() const { return n; }
-  Index cols() const { return n; }
+  Index cols() const { return rows(); }
   void perform_op(const double* x, double* y) const { Eigen::Map<Vector>(y, n) = cells.times(Cells::mass, Eigen::Map<const Vector>(x, n)); }
 };
 
@@ -237,9 +236,8 @@ Matrix vibrations(const ReductionInput& in, const Cells& cells, const Flexibilit
   for (;;) {
     InverseStiffness op{flexibility, rows};
     MassProduct B{cells, rows};
-    const Index found = std::min(wanted + 1, most);
     Spectra::SymGEigsShiftSolver<InverseStiffness, MassProduct, Spectra::GEigsMode::ShiftInvert> solver(
-        op, B, found, std::min<Index>(std::max<Index>(2 * found + 1, 20), flexibility.n_unknowns()), 0);
+        op, B, std::min(wanted + 1, most), std::min<Index>(std::max<Index>(2 * wanted + 3, 20), flexibility.n_unknowns()), 0);
     solver.init();
     solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-10, Spectra::SortRule::SmallestAlge);
     if (solver.info() != Spectra::CompInfo::Successful)

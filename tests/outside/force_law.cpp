@@ -77,7 +77,7 @@ end = {}
 step = {}
 )",
                                                   m, 1 + A, 1 + A, k, quarter, quarter / (fine ? 200 : 100)));
-      const auto bob = r.history("probe/bob").bottomRows(1);
+      const Eigen::MatrixXd bob = r.history("probe/bob").bottomRows(1);
       error[fine] = std::abs(bob(0, 0) - 1) / A + std::abs(bob(0, 3) + A * A * std::sqrt(k / (2 * m))) / (A * A * std::sqrt(k / (2 * m)));
       EXPECT_LT(r.history("energy").col(5).cwiseAbs().maxCoeff(), 1e-13);
       EXPECT_NEAR(r.history("energy")(0, 1), k / 4 * A * A * A * A, 1e-12);

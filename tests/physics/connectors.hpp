@@ -19,7 +19,7 @@ inline Mat3 turn(const Vec3& rotation_vector) {
 /// Ground, two bodies and a node somewhere.
 inline Config somewhere(int seed) {
   Config q;
-  q.resize(1, 3);
+  q.x.resize(1), q.c.resize(3, Vec3::Zero()), q.R.resize(3, Mat3::Zero());
   for (int b = 1; b < 3; ++b) q.c[b] = 2 * scattered(seed + 10 * b), q.R[b] = turn(2.5 * scattered(seed + 10 * b + 5));
   q.R[0] = Mat3::Identity();
   q.x[0] = scattered(seed + 77);

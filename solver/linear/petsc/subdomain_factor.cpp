@@ -162,12 +162,14 @@ void SubdomainFactor::in_single(int from, int to, double* x, int columns, const 
 }
 
 void SubdomainFactor::forward(int from, int to, double* x, int columns) const {
+  if (from >= to) return;  // a rank without unknowns has no factor
   if (single_.exist())
     in_single(from, n(), x, columns, [&](float* y) { supernodal::forward(L_, single_, from, to, y, below_single_, columns); });
   else
     supernodal::forward(L_, supernodal::DoubleValues(L_), from, to, x, below_, columns);
 }
 void SubdomainFactor::backward(int from, int to, double* x, int columns) const {
+  if (from >= to) return;
   if (single_.exist())
     in_single(from, to, x, columns, [&](float* y) { supernodal::backward(L_, single_, from, to, y, below_single_, columns); });
   else

@@ -5,45 +5,6 @@
 namespace hilo::test {
 namespace {
 
-/// A cart of 1 kg moved at 1 m/s from t = 0, a bob of 1 kg on a spring of 100 N/m before it.
-std::string cart(const std::string& history) {
-  return R"([[body]]
-name = "cart"
-mass = 1
-com = [0, 0, 0]
-inertia = [1, 1, 1]
-[[body]]
-name = "bob"
-mass = 1
-com = [1, 0, 0]
-inertia = [1, 1, 1]
-[[spring]]
-kind = "axial"
-name = "k"
-a = "cart"
-b = "bob"
-at_a = [0, 0, 0]
-at_b = [1, 0, 0]
-stiffness = 100
-[[motion]]
-kind = "translation"
-name = "drive"
-on = "cart"
-displacement = [1, 0, 0]
-history = )" +
-         history + R"(
-[[probe]]
-name = "cart"
-on = "cart"
-[[probe]]
-name = "bob"
-on = "bob"
-[time]
-end = 0.15
-step = 0.01
-)";
-}
-
 // Exact: the cart has 1 m/s and the energy of it throughout; the bob follows as x = 1 + t - sin(10 t)/10, and the hand that moves the cart
 // feels 10 sin(10 t) N.
 TEST_F(Motions, OfABodyHaveItsSpeedFromTheFirstStepWithEveryIntegrator) {
@@ -104,45 +65,6 @@ TEST_F(Motions, DoNotAskWhenTheyStart) {
     EXPECT_LT((now.at("probe/bob", t).tail(6) - later.at("probe/bob", t + 0.05).tail(6)).norm(), 1e-10) << t;
     EXPECT_LT((now.at("motion/drive", t) - later.at("motion/drive", t + 0.05)).norm(), 1e-10) << t;
   }
-}
-
-/// A crank of 1 kg, its centre 0.5 m from the axis, turned by a motion; a bob of 1 kg pinned to it at 1 m, with the right velocity.
-std::string crank(const std::string& history) {
-  return R"([[body]]
-name = "crank"
-mass = 1
-com = [0.5, 0, 0]
-inertia = [0.1, 0.1, 0.1]
-[[body]]
-name = "bob"
-mass = 1
-com = [1, 0, 0]
-inertia = [0.1, 0.1, 0.1]
-[[motion]]
-kind = "rotation"
-name = "drive"
-on = "crank"
-at = [0, 0, 0]
-axis = [0, 0, 1]
-angle = 1
-history = )" +
-         history + R"(
-[[joint]]
-kind = "spherical"
-name = "pin"
-a = "crank"
-b = "bob"
-at = [1, 0, 0]
-[[probe]]
-name = "bob"
-on = "bob"
-[[probe]]
-name = "crank"
-on = "crank"
-[time]
-end = 0.1
-step = 0.01
-)";
 }
 
 // Exact: nothing to change at the start, the pin pulls with m w^2 r = 1 N along the crank, the hand holds 1 + 0.5 N.
