@@ -29,7 +29,8 @@ NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5
            "preload": "1", "area": "1", "mass_damping": "1", "clearance": "0.1", "tangential_stiffness": "[1, 1]",
            "tangential_damping": "[1, 1]", "axes": "[1, 0, 0, 0, 1, 0, 0, 0, 1]", "restitution": "0.5", "rest_speed": "1e-3",
            "slip_velocity": "1e-3", "yield": "1e6", "saturation": "2e6", "saturation_rate": "10",
-           "hardening_strain": "[0, 0.1]", "hardening_stress": "[1e6, 2e6]"}
+           "E1": "2e9", "E2": "2e9", "E3": "2e9", "nu12": "0.3", "nu13": "0.3", "nu23": "0.3", "G12": "8e8", "G13": "8e8", "G23": "8e8",
+           "axis_1": "[1, 0, 0]", "axis_2": "[0, 1, 0]", "hardening_strain": "[0, 0.1]", "hardening_stress": "[1e6, 2e6]"}
 BODIES = """[[body]]
 name = "arm"
 mass = 1

@@ -10,21 +10,26 @@ using namespace hilo;
 
 class Liveliness final : public FieldSource {
  public:
+  explicit Liveliness(const System& system) : system_(system) {}
   std::vector<Field> fields() const override { return {{.name = "liveliness", .label = "kinetic energy of a unit of mass [J/kg]"}}; }
   void write(const Snapshot& at, FieldWriter& to) override {
     std::vector<double> local;
-    for (const Vec3& v : at.v.x) local.push_back(v.squaredNorm() / 2);
+    for (const Vec3& v : system_.all_nodes(at.v)) local.push_back(v.squaredNorm() / 2);
     to.nodes("liveliness", local, 1);
   }
+
+ private:
+  const System& system_;
 };
 
 }  // namespace
 
 void add_output_field() {
-  add_field(
-      {"liveliness",
-       [](const System&, const std::vector<std::int64_t>&) -> std::unique_ptr<FieldSource> { return std::make_unique<Liveliness>(); }},
-      {"liveliness"}, {{"run.h5", "/field/<step>/liveliness", "f8", "(n_nodes)", "J/kg", "half the square of the velocity"}});
+  add_field({"liveliness",
+             [](const System& system, const std::vector<std::int64_t>&) -> std::unique_ptr<FieldSource> {
+               return std::make_unique<Liveliness>(system);
+             }},
+            {"liveliness"}, {{"run.h5", "/field/<step>/liveliness", "f8", "(n_nodes)", "J/kg", "half the square of the velocity"}});
 }
 
 namespace {

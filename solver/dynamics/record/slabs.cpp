@@ -15,6 +15,8 @@ Slabs::Slabs(const Comm& comm, std::vector<std::int64_t> row, std::int64_t n_row
 }
 
 std::vector<double> Slabs::collect(const std::vector<double>& local, int width) const {
+  if (local.size() != row_.size() * static_cast<size_t>(width))
+    throw Error("", "values of a field are not as many as nodes or cells", "all_nodes(q) has those of all nodes", Exit::fault);
   std::vector<double> piece(count_ * width, 0.0);
   const auto put = [&](std::int64_t row, const double* from) { std::copy_n(from, width, piece.data() + (row - first_) * width); };
   std::vector<std::vector<double>> send(comm_->size);
