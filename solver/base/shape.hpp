@@ -5,6 +5,6 @@
 namespace hilo {
 
 enum class Shape : std::uint8_t { bar2 = 0, tet4 = 1, tet10 = 2, wedge6 = 3, wedge15 = 4, hex8 = 5, hex20 = 6, hex20r = 7 };
-inline constexpr int n_shapes = 8;  // of the tree; a program outside it may have further ones (add_shape)
+inline constexpr int n_shapes = 8;
 
 }  // namespace hilo

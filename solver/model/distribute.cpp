@@ -91,7 +91,7 @@ void Distribution::read_cells() {
   offset_ = s.read_rows<std::int64_t>("/mesh/cells/offset", first, n + 1);
   if (s.shape("/mesh/cells/offset").at(0) != cells_.n + 1 || s.shape("/mesh/cells/region").at(0) != cells_.n) throw damaged("/mesh/cells");
   for (std::int64_t c = 0; c < n; ++c) {
-    if (shape_[c] >= shapes_known()) throw damaged(fmt::format("/mesh/cells/shape of cell {} is {}", first + c, shape_[c]));
+    if (shape_[c] >= n_shapes) throw damaged(fmt::format("/mesh/cells/shape of cell {} is {}", first + c, shape_[c]));
     if (offset_[c + 1] - offset_[c] != info(shape_[c]).n_nodes)
       throw damaged(
           fmt::format("/mesh/cells/offset of cell {} is {}, not {}", first + c + 1, offset_[c + 1], offset_[c] + info(shape_[c]).n_nodes));

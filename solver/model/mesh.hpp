@@ -25,19 +25,6 @@ struct ShapeInfo {
 const ShapeInfo& info(Shape shape);
 inline const ShapeInfo& info(std::uint8_t shape) { return info(static_cast<Shape>(shape)); }
 
-/// How many shapes there are: their numbers are below.
-int shapes_known();
-
-/// A shape by its corners: the local nodes of its facets, outward; per corner the three neighbours that make a right-handed system; the
-/// edges that have a node in the middle, in the order of these nodes; what it costs (partition.hpp).
-struct ShapeRow {
-  std::string_view name;
-  int corners, dimension, vtk, xdmf, work;
-  std::vector<std::vector<int>> facets, neighbours, edges;
-};
-/// One more, from outside the tree, before the first mesh is read; its number.
-Shape add_shape(const ShapeRow& row);
-
 /// What the deck said of a region's material; NaN where it said nothing.  SI units.
 struct RegionData {
   double density = std::numeric_limits<double>::quiet_NaN();  // [kg/m^3]

@@ -56,7 +56,7 @@ void check_cells(const Store& store, const Mesh& m) {
   check_size(store, "/mesh/cells/id", m.cell_id.size(), n);
   std::int64_t at = 0;
   for (size_t c = 0; c < n; ++c) {
-    if (m.shape[c] >= shapes_known()) throw Error(store.path(), fmt::format("damaged: /mesh/cells/shape of cell {} is {}", c, m.shape[c]));
+    if (m.shape[c] >= n_shapes) throw Error(store.path(), fmt::format("damaged: /mesh/cells/shape of cell {} is {}", c, m.shape[c]));
     if (m.offset[c] != at)
       throw Error(store.path(), fmt::format("damaged: /mesh/cells/offset of cell {} is {}, not {}", c, m.offset[c], at));
     if (m.region[c] < 0 || m.region[c] >= static_cast<std::int32_t>(m.region_name.size()))

@@ -1,12 +1,8 @@
 // The table of cell shapes, and volume and quality of a cell from its facets and corners.
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <cmath>
-#include <deque>
 #include <initializer_list>
 
-#include "base/error.hpp"
 #include "model/mesh.hpp"
 #include "model/partition.hpp"
 
@@ -14,6 +10,14 @@ namespace hilo {
 namespace {
 
 using Lists = std::vector<std::vector<int>>;
+
+/// A shape by its corners: the local nodes of its facets, outward; per corner the three neighbours that make a right-handed system; the
+/// edges that have a node in the middle, in the order of these nodes; what it costs (partition.hpp).
+struct ShapeRow {
+  std::string_view name;
+  int corners, dimension, vtk, xdmf, work;
+  Lists facets, neighbours, edges;
+};
 
 struct Kind {
   ShapeInfo info;
@@ -43,8 +47,8 @@ Kind make(const ShapeRow& row) {
 }
 
 /// By number, in the order of Shape.
-std::deque<Kind>& kinds() {
-  static std::deque<Kind> table = [] {
+const std::vector<Kind>& kinds() {
+  static const std::vector<Kind> table = [] {
     const Lists tet{{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}}, tet_corners{{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {2, 1, 0}};
     const Lists wedge{{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
     const Lists wedge_corners{{1, 2, 3}, {2, 0, 4}, {0, 1, 5}, {5, 4, 0}, {3, 5, 1}, {4, 3, 2}};
@@ -53,7 +57,7 @@ std::deque<Kind>& kinds() {
     const Lists tet_edges{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
     const Lists wedge_edges{{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
     const Lists hex_edges{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
-    std::deque<Kind> t;
+    std::vector<Kind> t;
     for (const ShapeRow& row : std::initializer_list<ShapeRow>{{"bar2", 2, 1, 3, 2, 4, {{0}, {1}}, {}, {}},
                                                                {"tet4", 4, 3, 10, 6, 13, tet, tet_corners, {}},
                                                                {"tet10", 4, 3, 24, 38, 134, tet, tet_corners, tet_edges},
@@ -131,16 +135,7 @@ const std::vector<FacetPoint>& rule_of(size_t n) {
 
 const ShapeInfo& info(Shape shape) { return kind(shape).info; }
 
-int shapes_known() { return static_cast<int>(kinds().size()); }
-
 int work_of_cell(Shape shape) { return kind(shape).work; }
-
-Shape add_shape(const ShapeRow& row) {
-  for (const Kind& k : kinds())
-    if (k.info.name == row.name) throw Error("", fmt::format("shape \"{}\" stands in its list already", row.name), "", Exit::fault);
-  kinds().push_back(make(row));
-  return static_cast<Shape>(kinds().size() - 1);
-}
 
 Vec3 facet_area(const Mesh& mesh, const Facet& f) {
   const auto cell = mesh.cell(f.cell);

@@ -4,7 +4,6 @@
 #include <cstdlib>
 
 #include "physics/bar.hpp"
-#include "physics/cell_kind.hpp"
 #include "physics/shape/shapes.hpp"
 #include "physics/solid.hpp"
 
@@ -30,7 +29,6 @@ int lanes() {
 namespace {
 
 int flowing_points(Shape shape) {
-  if (const CellKind* cell = cell_from_outside(shape)) return cell->n_points;
   return of_shape(shape, 0, []<class S>() { return Integrated<S, true>::n_points; });
 }
 
@@ -50,7 +48,6 @@ int state_of_cell(Shape shape, size_t law, const std::variant<M...>*) {
 SolidKernel solid_kernel(Shape shape, size_t law) {
   const int n_state = state_of_cell(shape, law, static_cast<const Material*>(nullptr));
   if (shape == Shape::bar2) return {bar_kernel(law), 1, n_state};
-  if (const CellKind* cell = cell_from_outside(shape)) return {cell->kernel(law), cell->width, n_state};
   const int w = lanes();
   return {w == 8 ? kernel_lanes8(shape, law) : w == 4 ? kernel_lanes4(shape, law) : kernel_lanes2(shape, law), w, n_state};
 }

@@ -17,7 +17,7 @@ using SolidShapes = ShapeList<Tet4, Tet10, Wedge6, Wedge15, Hex8, Hex20, Hex20R>
 template <class S, bool remembers>
 using Integrated = std::conditional_t<remembers && std::is_same_v<S, Hex8>, Hex8Full, S>;
 
-/// f<S>() of the S that a shape is; `otherwise` where it is none of the list: a bar, or one from outside the tree (cell_kind.hpp).
+/// f<S>() of the S that a shape is; `otherwise` where it is none of the list: a bar.
 template <class R, class F, class... S>
 R of_shape(Shape shape, R otherwise, const F& f, ShapeList<S...>) {
   ((S::shape == shape ? void(otherwise = f.template operator()<S>()) : void()), ...);
