@@ -1,6 +1,6 @@
 // What makes an integrator of the word of a scene, and what is known of a method before it is made.
 #pragma once
-#include "dynamics/integrators.hpp"
+#include "model/integrators.hpp"
 #include "model/scene.hpp"
 
 namespace hilo {
@@ -17,7 +17,7 @@ IntegratorKind integrator_kind_of() {
 }
 
 Registry<IntegratorKind>& integrator_kinds();
-/// One more, from outside the tree, before the first scene is read: what M offers says dynamics/integrator/method.
+/// One more, from outside the tree, before the first scene is read: what M offers says model/integrator/method.
 template <class M>
 void add_integrator() {
   integrator_words().add(integrator_words_of<M>());
@@ -26,6 +26,8 @@ void add_integrator() {
 
 /// The one that [time] asks for.
 const IntegratorKind& integrator_kind(const Entry& time);
+/// Keys of [time] that are given and belong to other methods.
+void warn_of_idle_keys(const Entry& time);
 std::unique_ptr<Integrator> make_integrator(const Entry& time);
 
 }  // namespace hilo

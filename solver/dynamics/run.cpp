@@ -80,6 +80,7 @@ class Run {
       if (!time.has("step") && !time.has("tolerance"))
         throw Error(time.place.text(), "[time] has no step", "give a step, or a tolerance that chooses it");
     }
+    if (system.comm->rank == 0) warn_of_idle_keys(time);
     const IntegratorKind& method = integrator_kind(time);
     run_.integrator = method.make(time),
     run_.energy_unchecked = run_.is_static        ? "a static analysis takes the work of a step with the loads at its end"

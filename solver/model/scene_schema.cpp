@@ -28,10 +28,10 @@ std::vector<KindSchema> make() {
                 {"mesh", text, "", "", "mesh.h5, tags.h5 or parts-N.h5; the command line overrides it"},
                 {"gravity", vector3, "m/s^2", "[0, 0, 0]", "acceleration of free fall"}}});
   std::vector<std::string> laws;
-  for (const MaterialKind& m : material_kinds()) laws.emplace_back(m.kind);
+  for (const MaterialKind& m : material_kinds()) laws.emplace_back(m.name);
   static const std::string material_words = any_of(laws);
   for (const MaterialKind& m : material_kinds()) {
-    KindSchema rows{"material", m.kind, m.meaning, {{"kind", text, "", s.back().section == "material" ? "!" : m.kind, material_words}}};
+    KindSchema rows{"material", m.name, m.meaning, {{"kind", text, "", s.back().section == "material" ? "!" : m.name, material_words}}};
     rows.params.insert(rows.params.end(), m.keys.begin(), m.keys.end());
     rows.params.push_back({"density", number, "kg/m^3", "", "reference density", above(0)});
     s.push_back(std::move(rows));

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <deque>
 
-#include "dynamics/integrators.hpp"
+#include "model/integrators.hpp"
 
 namespace hilo {
 namespace {

@@ -1,7 +1,7 @@
 // The words of the scene's text keys.
 #include <map>
 
-#include "dynamics/integrators.hpp"
+#include "model/integrators.hpp"
 #include "model/scene.hpp"
 
 namespace hilo {

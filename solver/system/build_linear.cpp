@@ -4,19 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "system/builder.hpp"
 #include "system/welds.hpp"
 
 namespace hilo {
+
 /// Linear regions joined by shared nodes are one, with common mean axes and modes.  Their nodes follow it, but those that a rigid neighbour
 /// has.
 void Builder::make_linear_bodies() {
   if (!mesh_) return;
   const auto n = static_cast<int>(regions_.size());
-  std::vector<int> first(out_->X.size(), -1), root(n);
-  std::iota(root.begin(), root.end(), 0);
+  std::vector<int> first(out_->X.size(), -1);
   std::vector<double> shared(static_cast<size_t>(n) * n, 0.0);  // regions that meet at a node
   for (int r = 0; r < n; ++r) {
     if (regions_[r].fidelity != Fidelity::linear) continue;
@@ -26,42 +25,18 @@ void Builder::make_linear_bodies() {
       if (first[i] != r) shared[static_cast<size_t>(first[i]) * n + r] = 1;
     }
   }
-  comm_.sum(shared);
-  const auto find_root = [&](int r) {
-    while (root[r] != r) r = root[r] = root[root[r]];
-    return r;
-  };
-  for (int a = 0; a < n; ++a)
-    for (int b = 0; b < n; ++b)
-      if (shared[static_cast<size_t>(a) * n + b] > 0) root[std::max(find_root(a), find_root(b))] = std::min(find_root(a), find_root(b));
-  for (int r = 0; r < n; ++r) {
-    if (regions_[r].fidelity != Fidelity::linear || find_root(r) != r) continue;
-    std::string name;
-    double mass = 0;
-    Vec3 moment = Vec3::Zero();
-    Mat3 second = Mat3::Zero();
-    std::vector<int> members;
-    for (int k = r; k < n; ++k)
-      if (regions_[k].fidelity == Fidelity::linear && find_root(k) == r) {
-        const Region& region = regions_[k];
-        if (!(region.mass > 0))
-          throw Error(region.where, fmt::format("linear region \"{}\" has no density", region.name), "give its material a density");
-        if (region.modal_damping != regions_[r].modal_damping)
-          throw Error(region.where,
-                      fmt::format("linear regions \"{}\" and \"{}\" share nodes, so their modes are the same: give them one modal_damping",
-                                  regions_[r].name, region.name));
-        name += (name.empty() ? "" : "+") + region.name;
-        mass += region.mass, moment += region.moment, second += region.second;
-        members.push_back(k);
-      }
-    const Vec3 com = moment / mass;
-    const int b = new_body(name, origin_ + com);
-    Body& body = out_->bodies[b];
-    body.linear = true;
-    body.mass = mass;
-    body.J = second - mass * com * com.transpose();
-    body.size = std::sqrt(std::max(body.J.trace() / mass, 1e-300));
-    for (const int k : members) regions_[k].body = b;
+  for (const auto& members : joined_regions(Fidelity::linear, shared)) {
+    const Region& one = regions_[members.front()];
+    for (const int r : members) {
+      const Region& region = regions_[r];
+      if (!(region.mass > 0))
+        throw Error(region.where, fmt::format("linear region \"{}\" has no density", region.name), "give its material a density");
+      if (region.modal_damping != one.modal_damping)
+        throw Error(region.where,
+                    fmt::format("linear regions \"{}\" and \"{}\" share nodes, so their modes are the same: give them one modal_damping",
+                                one.name, region.name));
+    }
+    out_->bodies[new_body_of(members)].linear = true;
   }
   for (size_t i = 0; i < first.size(); ++i)
     if (first[i] >= 0) out_->follower[i] = regions_[first[i]].body;

@@ -137,6 +137,46 @@ void Builder::integrate_regions() {
   }
 }
 
+std::vector<std::vector<int>> Builder::joined_regions(Fidelity fidelity, std::vector<double>& shared) const {
+  comm_.sum(shared);
+  const int n = static_cast<int>(regions_.size());
+  std::vector<int> root(n);
+  std::iota(root.begin(), root.end(), 0);
+  const auto find_root = [&](int r) {
+    while (root[r] != r) r = root[r] = root[root[r]];
+    return r;
+  };
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < n; ++b)
+      if (shared[static_cast<size_t>(a) * n + b] > 0) root[std::max(find_root(a), find_root(b))] = std::min(find_root(a), find_root(b));
+  std::map<int, std::vector<int>> groups;
+  for (int r = 0; r < n; ++r)
+    if (regions_[r].fidelity == fidelity) groups[find_root(r)].push_back(r);
+  std::vector<std::vector<int>> out;
+  for (auto& [r, members] : groups) out.push_back(std::move(members));
+  return out;
+}
+
+int Builder::new_body_of(const std::vector<int>& members) {
+  std::string name;
+  double mass = 0;
+  Vec3 moment = Vec3::Zero();
+  Mat3 second = Mat3::Zero();
+  for (const int r : members) {
+    const Region& region = regions_[r];
+    name += (name.empty() ? "" : "+") + region.name;
+    mass += region.mass, moment += region.moment, second += region.second;
+  }
+  const Vec3 com = moment / mass;
+  const int b = new_body(name, origin_ + com);
+  Body& body = out_->bodies[b];
+  body.mass = mass;
+  body.J = second - mass * com * com.transpose();
+  body.size = std::sqrt(std::max(body.J.trace() / mass, 1e-300));
+  for (const int r : members) regions_[r].body = b;
+  return b;
+}
+
 void Builder::make_rigid_bodies() {
   if (!mesh_) return;
   const Mesh& mesh = mesh_->mesh;
@@ -157,7 +197,6 @@ void Builder::make_rigid_bodies() {
       const auto [it, fresh] = region_of_row.try_emplace(list[k], static_cast<int>(list[k + 1]));
       if (!fresh) shared[static_cast<size_t>(it->second) * n_regions + list[k + 1]] = 1;
     }
-  comm_.sum(shared);
   auto questions = comm_.exchange(ask);
   for (auto& list : questions)
     for (auto& row : list) {
@@ -166,37 +205,12 @@ void Builder::make_rigid_bodies() {
     }
   const auto answers = comm_.exchange(questions);
 
-  // regions joined by shared nodes are one body
-  std::vector<int> root(n_regions);
-  std::iota(root.begin(), root.end(), 0);
-  const auto find_root = [&](int r) {
-    while (root[r] != r) r = root[r] = root[root[r]];
-    return r;
-  };
-  for (int a = 0; a < n_regions; ++a)
-    for (int b = 0; b < n_regions; ++b)
-      if (shared[static_cast<size_t>(a) * n_regions + b] > 0)
-        root[std::max(find_root(a), find_root(b))] = std::min(find_root(a), find_root(b));
-  for (int r = 0; r < n_regions; ++r) {
-    if (regions_[r].fidelity != Fidelity::rigid || find_root(r) != r) continue;
-    std::string name;
-    double mass = 0;
-    Vec3 moment = Vec3::Zero();
-    Mat3 second = Mat3::Zero();
-    for (int s = r; s < n_regions; ++s)
-      if (regions_[s].fidelity == Fidelity::rigid && find_root(s) == r) {
-        name += (name.empty() ? "" : "+") + regions_[s].name;
-        mass += regions_[s].mass, moment += regions_[s].moment, second += regions_[s].second;
-      }
-    if (!(mass > 0))
-      throw Error(regions_[r].where, fmt::format("rigid region \"{}\" has no density", regions_[r].name), "give its material a density");
-    const Vec3 com = moment / mass;
-    const int b = new_body(name, origin_ + com);
-    out_->bodies[b].mass = mass;
-    out_->bodies[b].J = second - mass * com * com.transpose();
-    out_->bodies[b].size = std::sqrt(std::max(out_->bodies[b].J.trace() / mass, 1e-300));
-    for (int s = r; s < n_regions; ++s)
-      if (regions_[s].fidelity == Fidelity::rigid && find_root(s) == r) regions_[s].body = b;
+  for (const auto& members : joined_regions(Fidelity::rigid, shared)) {
+    const Region& first = regions_[members.front()];
+    const auto mass = [&](double sum, int r) { return sum + regions_[r].mass; };
+    if (!(std::accumulate(members.begin(), members.end(), 0.0, mass) > 0))
+      throw Error(first.where, fmt::format("rigid region \"{}\" has no density", first.name), "give its material a density");
+    new_body_of(members);
   }
   std::vector<size_t> cursor(comm_.size, 0);
   for (int i = 0; i < n; ++i) {
@@ -212,10 +226,10 @@ Material Builder::material_of(const Region& r) const {
   const MaterialKind* kind = &kinds.front();
   std::vector<std::string> names;
   for (const MaterialKind& k : kinds) {
-    names.emplace_back(k.kind);
-    if (r.material && r.material->kind == k.kind) kind = &k;
+    names.emplace_back(k.name);
+    if (r.material && r.material->kind == k.name) kind = &k;
   }
-  if (r.material && r.material->kind != kind->kind)
+  if (r.material && r.material->kind != kind->name)
     throw Error(r.where, fmt::format("no law \"{}\"", r.material->kind), suggest(r.material->kind, names));
   const auto number = [&](std::string_view key) {
     const Param& p = *std::find_if(kind->keys.begin(), kind->keys.end(), [&](const Param& k) { return k.key == key; });
@@ -283,9 +297,9 @@ SolidBatch Builder::batch_of(int region, Shape shape) const {
   if (!b.kernel.call) {
     std::string with_bars;
     for (size_t k = 0; k < material_kinds().size(); ++k)
-      if (solid_kernel(Shape::bar2, k).call) with_bars += (with_bars.empty() ? "" : ", ") + std::string(material_kinds()[k].kind);
+      if (solid_kernel(Shape::bar2, k).call) with_bars += (with_bars.empty() ? "" : ", ") + std::string(material_kinds()[k].name);
     throw Error(r.where,
-                fmt::format("region \"{}\" is made of bars: kind = \"{}\" has none", r.name, material_kinds()[b.material.index()].kind),
+                fmt::format("region \"{}\" is made of bars: kind = \"{}\" has none", r.name, material_kinds()[b.material.index()].name),
                 "kinds that have: " + with_bars);
   }
   return b;

@@ -38,6 +38,11 @@ class Builder {
   std::int64_t put_active_nodes_first();
   void read_regions();
   void integrate_regions();
+  /// The regions of a fidelity, in groups that hang together by nodes they share; `shared` (n_regions x n_regions): above zero where a rank
+  /// has seen a node of both; summed here.  Collective.
+  std::vector<std::vector<int>> joined_regions(Fidelity fidelity, std::vector<double>& shared) const;
+  /// One body with the mass of these regions, which it becomes the body of.
+  int new_body_of(const std::vector<int>& members);
   void make_rigid_bodies();
   Material material_of(const Region& r) const;
   void make_batches();

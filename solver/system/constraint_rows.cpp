@@ -59,11 +59,6 @@ void Joints::look_at_rows(const Config& q, double t, double factor, Violation& o
   }
 }
 
-void Joints::mark_rows(std::vector<char>& on) const {
-  for (size_t j = 0; j < list.size(); ++j)
-    for (int r = 0; r < list[j].n_rows(); ++r) on[row(j) + r] = list[j].active[r];
-}
-
 /// The measures are of degree two, so differences along q + tau v and q + tau a are exact; rows that are functions of them follow by the
 /// chain rule.
 void Joints::add_row_rates(const Rates& at, std::vector<double>& rate, std::vector<double>* acceleration) const {

@@ -153,7 +153,7 @@ class Contribution {
   virtual void look_at_rows(const Config& /*q*/, double /*t*/, double /*factor*/, Violation& /*worst*/) const {}
   /// First and, where given, second derivatives by time of its rows less their courses, laid out like lambda.
   virtual void add_row_rates(const Rates& /*at*/, std::vector<double>& /*rate*/, std::vector<double>* /*acceleration*/) const {}
-  /// Marks the rows that are kept, laid out like lambda.
+  /// Marks those of its rows that are always kept and are no Constraint, laid out like lambda.
   virtual void mark_rows(std::vector<char>& /*on*/) const {}
   /// Forces on nodes at their reference positions, one list for each direction that they may take as a region turns below them.
   virtual void add_reference_forces(std::vector<NodalForces>& /*list*/) const {}

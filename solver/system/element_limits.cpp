@@ -74,7 +74,7 @@ constexpr double nearly_incompressible = 0.45;
 bool flows(std::string_view kind) {
   const auto& kinds = material_kinds();
   for (size_t k = 0; k < kinds.size(); ++k)
-    if (kinds[k].kind == kind) return solid_kernel(Shape::hex8, k).n_state > 0;
+    if (kinds[k].name == kind) return solid_kernel(Shape::hex8, k).n_state > 0;
   return false;
 }
 

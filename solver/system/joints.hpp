@@ -29,7 +29,6 @@ class Joints final : public Contribution {
   std::string owner(int block) const override;
   void evaluate(Pass& p) const override;
   void add_work(const Moment& m, Work& sum) const override;
-  void mark_rows(std::vector<char>& on) const override;
   void look_at_rows(const Config& q, double t, double factor, Violation& worst) const override;
   void add_row_rates(const Rates& at, std::vector<double>& rate, std::vector<double>* acceleration) const override;
   void add_jumps(double t, const Config& before, const Config& after, std::span<const double> slack,

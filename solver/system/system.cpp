@@ -157,6 +157,8 @@ Violation System::violation(const Config& q, double t, double factor) const {
 std::vector<char> System::rows_on() const {
   std::vector<char> on(3 * static_cast<size_t>(n_joint_blocks()), 0);
   for (const auto& part : parts_) part->mark_rows(on);
+  for (const auto& c : constraints())
+    for (int r = 0; r < c->n_rows(); ++r) on[c->row() + r] = c->active()[r];
   return on;
 }
 

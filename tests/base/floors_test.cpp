@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 
 const std::map<std::string, std::set<std::string>> may_include{
     {"base", {"base"}},
-    // each law, joint, spring and method brings its rows of the scene's schema
-    {"model", {"base", "model", "physics/material/materials.hpp", "physics/spring_kinds.hpp", "dynamics/integrators.hpp"}},
+    // each law, joint and spring brings its rows of the scene's schema
+    {"model", {"base", "model", "physics/material/materials.hpp", "physics/spring_kinds.hpp"}},
     {"physics", {"base", "physics"}},
     {"linear", {"base", "linear"}},
     {"system", {"base", "model", "physics", "linear", "system"}},
@@ -68,20 +68,6 @@ TEST(Floors, EveryFolderOfTheSolverIsOne) {
     if (entry.is_directory()) {
       EXPECT_TRUE(floors.contains(entry.path().filename().string())) << entry.path();
     }
-}
-
-// The list of integrators is read by the floor of files: it and its headers say words and keys, and include base alone.
-TEST(Floors, WhatSchemaReadsOfIntegratorsIsWords) {
-  const fs::path root = fs::path(HILO_SOURCE) / "solver" / "dynamics";
-  int seen = 0;
-  for (const auto& [file, included] : includes(root)) {
-    const fs::path inside = fs::relative(file, root);
-    const bool is_words = inside == "integrators.hpp" || (*inside.begin() == "integrator" && inside.extension() == ".hpp");
-    if (!is_words || included.find('/') == std::string::npos) continue;
-    EXPECT_TRUE(included.starts_with("base/") || included.starts_with("dynamics/integrator/")) << inside << " includes " << included;
-    ++seen;
-  }
-  EXPECT_GT(seen, 10);
 }
 
 TEST(Floors, NoFileOfTheSolverIsLong) {

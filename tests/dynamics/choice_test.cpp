@@ -1,6 +1,5 @@
 // What the choice of an integrator says and needs.
-#include "dynamics/integrator.hpp"
-#include "dynamics/integrators.hpp"
+#include "dynamics/integrator/make.hpp"
 #include "dynamics/scenes.hpp"
 #include "dynamics/start.hpp"
 

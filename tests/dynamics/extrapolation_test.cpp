@@ -1,6 +1,5 @@
 // What a guess missed is continued only where the same guess, step and loads go on.
-#include "dynamics/integrator.hpp"
-#include "dynamics/integrators.hpp"
+#include "dynamics/integrator/make.hpp"
 #include "dynamics/scenes.hpp"
 #include "system/system.hpp"
 

@@ -49,7 +49,7 @@ std::string machine() {
 }
 
 /// A bar, partly rigid, of a material with damping, on a hinge with a body: written as mesh.h5 and tags.h5.
-std::string bar(const std::filesystem::path& folder, const std::string& law) {
+std::string bar(const std::filesystem::path& folder, const std::string& law, Fidelity block = Fidelity::nonlinear) {
   BlockOptions o;
   o.n[0] = 6, o.n[1] = 1, o.n[2] = 1;
   o.high = Vec3(1.2, 0.2, 0.2);
@@ -59,7 +59,7 @@ std::string bar(const std::filesystem::path& folder, const std::string& law) {
     Mesh mesh = block_mesh(o);
     add_node_set(mesh, "edge", [](const Vec3& x) { return x[0] > 1.19 && x[2] < 0.01; });
     write_mesh((folder / "mesh.h5").string(), mesh, {"test"});
-    write_tags((folder / "tags.h5").string(), (folder / "mesh.h5").string(), {Fidelity::rigid, Fidelity::nonlinear}, {"test"});
+    write_tags((folder / "tags.h5").string(), (folder / "mesh.h5").string(), {Fidelity::rigid, block}, {"test"});
   }
   Comm::world().barrier();
   return "gravity = [0, 0, -9.81]\n[material.m]\n" + law + "E = 1e7\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n" +
@@ -92,6 +92,11 @@ TEST_P(KeptRuns, GoOnBitByBitWithFlexibleParts) {
   const Scene scene = Scene::parse("[time]\nend = 1\nstep = 1\n", "scene.toml", std::vector{method(GetParam())});
   const bool remembers = integrator_kind(scene.table("time")).carries_state;
   expect_goes_on(folder.path(), bar(folder.path(), remembers ? metal : ""), "tags.h5", {1, 4, 13}, {method(GetParam())});
+}
+
+TEST_P(KeptRuns, GoOnBitByBitWithLinearRegions) {
+  const Folder folder;
+  expect_goes_on(folder.path(), bar(folder.path(), "", Fidelity::linear), "tags.h5", {1, 4, 13}, {method(GetParam())});
 }
 
 TEST_P(KeptRuns, GoOnBitByBitWithStepsByTolerance) {

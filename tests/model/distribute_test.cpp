@@ -45,9 +45,17 @@ class DISABLED_Spread : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     const int n = Comm::world().size;
-    file = GetParam() == "parts" ? "parts-" + std::to_string(n) + ".h5" : GetParam() + ".h5";
+    const bool reordered = GetParam() == "reordered";
+    file = GetParam() == "parts" ? "parts-" + std::to_string(n) + ".h5" : (reordered ? "tags" : GetParam()) + ".h5";
     whole = read_mesh_file(file);
     local = read_local_mesh(file, Comm::world());
+    if (reordered) {
+      std::vector<char> marked;
+      for (const auto row : local.node_global) marked.push_back(row * row % 7 == 2);
+      const auto n_marked = local.put_first(marked);
+      for (size_t i = 0; i < marked.size(); ++i)
+        EXPECT_EQ(local.node_global[i] * local.node_global[i] % 7 == 2, static_cast<std::int64_t>(i) < n_marked);
+    }
   }
   std::vector<std::int64_t> rows(const std::vector<std::int64_t>& nodes) const {
     std::vector<std::int64_t> out;
@@ -59,7 +67,8 @@ class DISABLED_Spread : public testing::TestWithParam<std::string> {
   MeshFile whole;
   LocalMesh local;
 };
-INSTANTIATE_TEST_SUITE_P(DISABLED_Spread, DISABLED_Spread, testing::Values("mesh", "tags", "parts"), [](const auto& p) { return p.param; });
+INSTANTIATE_TEST_SUITE_P(DISABLED_Spread, DISABLED_Spread, testing::Values("mesh", "tags", "parts", "reordered"),
+                         [](const auto& p) { return p.param; });
 
 TEST_P(DISABLED_Spread, EveryCellIsOnOneRankAndIsTheCellOfTheFile) {
   std::vector<std::int64_t> all(whole.mesh.shape.size());

@@ -24,7 +24,7 @@ class Solid : public testing::Test {
 struct PairName {
   template <class P>
   static std::string GetName(int) {
-    std::string law(P::M::kind);
+    std::string law(P::M::name);
     std::replace(law.begin(), law.end(), '-', '_');
     return std::string(info(ShapeOf<typename P::S>::shape).name) + "_" + law;
   }

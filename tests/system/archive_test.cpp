@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dynamics/integrator.hpp"
-#include "dynamics/integrators.hpp"
+#include "dynamics/integrator/make.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "dynamics/integrator.hpp"
+#include "dynamics/integrator/make.hpp"
 #include "dynamics/integrator_kinds.hpp"
 #include "model/local_mesh.hpp"
 #include "system/dense_kkt.hpp"

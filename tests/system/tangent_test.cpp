@@ -1,8 +1,7 @@
 // The assembled tangent is the derivative of the assembled residual, for a scene with everything in it and both integrators' stages.
 #include <gtest/gtest.h>
 
-#include "dynamics/integrator.hpp"
-#include "dynamics/integrators.hpp"
+#include "dynamics/integrator/make.hpp"
 #include "dynamics/start.hpp"
 #include "model/local_mesh.hpp"
 #include "system/dense_kkt.hpp"

@@ -2,9 +2,9 @@
 // at changing steps, r = h/h_-1:  c1 = (1 + 2 r)/((1 + r) h),  c0 = -(1 + r)/h,  cm = r^2/((1 + r) h).
 // Before the first step stands one that was not taken, q_-1 = q0 - h v0 + h^2/2 a0 - h^3/6 j0, and the velocities of both have the error
 // -h^2/3 j that those of the formula have, so that accelerations and forces are right from the first step on.
-#include "dynamics/integrator/bdf2.hpp"
+#include "model/integrator/bdf2.hpp"
 
-#include "dynamics/integrator.hpp"
+#include "dynamics/integrator/make.hpp"
 
 namespace hilo {
 namespace {

@@ -1,10 +1,10 @@
 // M (v1 - v0)/h + f(q0, q1) + G(q_mid)^T lambda = F_mean,   (q1 - q0)/h = (v0 + v1)/2,   g(q1) = 0
-#include "dynamics/integrator/energy_momentum.hpp"
+#include "model/integrator/energy_momentum.hpp"
 
 #include <optional>
 
 #include "dynamics/clock.hpp"
-#include "dynamics/integrator.hpp"
+#include "dynamics/integrator/make.hpp"
 
 namespace hilo {
 namespace {

@@ -3,11 +3,11 @@
 //   q1 = q0 + h v0 + h^2 ((1/2 - beta) b0 + beta b1),   v1 = v0 + h ((1 - gamma) b0 + gamma b1)
 //
 // b_n stands for the acceleration at t_n + (alpha_m - alpha_f) h: it starts there, and moves when h changes, or the order is lost.
-#include "dynamics/integrator/generalized_alpha.hpp"
+#include "model/integrator/generalized_alpha.hpp"
 
 #include <fmt/format.h>
 
-#include "dynamics/integrator.hpp"
+#include "dynamics/integrator/make.hpp"
 
 namespace hilo {
 namespace {

@@ -1,7 +1,7 @@
 // M (v1 - v0)/h + f(q_mid) + G(q_mid)^T lambda = F(t_mid),   (q1 - q0)/h = (v0 + v1)/2,   g(q1) = 0
-#include "dynamics/integrator/mid_point.hpp"
+#include "model/integrator/mid_point.hpp"
 
-#include "dynamics/integrator.hpp"
+#include "dynamics/integrator/make.hpp"
 
 namespace hilo {
 namespace {

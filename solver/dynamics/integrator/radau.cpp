@@ -4,13 +4,13 @@
 // rates.
 //
 // Simplified Newton [hairer-wanner-1996, IV.8]: matrix and factors stay, over steps too, while corrections with them fall fast.
-#include "dynamics/integrator/radau.hpp"
+#include "model/integrator/radau.hpp"
 
 #include <Eigen/Dense>
 #include <cmath>
 
 #include "base/error.hpp"
-#include "dynamics/integrator.hpp"
+#include "dynamics/integrator/make.hpp"
 #include "dynamics/profile.hpp"
 #include "dynamics/stage_block.hpp"
 

@@ -3,13 +3,13 @@
 //   q1 = q0 + h v0 + h^2/2 a0 + l3 h^2 D,         v1 = v0 + h a0 + l5 h D
 // a_n stands for the acceleration at t_n + (W1 - A) h: it starts there, and moves when h changes.
 // Averaged: f = B(q_w)^T S((1 - W1) E0 + W1 E1) and G at q_w = (1 - W1) q0 + W1 q1, which for U0 is q~ itself.
-#include "dynamics/integrator/zhou_tamma.hpp"
+#include "model/integrator/zhou_tamma.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "dynamics/integrator.hpp"
+#include "dynamics/integrator/make.hpp"
 
 namespace hilo {
 namespace {

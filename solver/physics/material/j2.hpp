@@ -27,7 +27,7 @@
 namespace hilo {
 
 struct J2 {
-  static constexpr std::string_view kind = "j2";
+  static constexpr std::string_view name = "j2";
   static constexpr std::string_view meaning = "metal: von Mises plasticity at finite strain, isotropic and kinematic hardening, rates";
   static std::vector<Param> keys() {
     return {young,

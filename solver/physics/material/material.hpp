@@ -2,7 +2,7 @@
 // scene's schema and its checks take everything else from it:
 //
 //   struct M {
-//     static constexpr std::string_view kind, meaning;        the word of [material.NAME] kind, and a line for the page of the format
+//     static constexpr std::string_view name, meaning;        the word of [material.NAME] kind, and a line for the page of the format
 //     static std::vector<Param> keys();                       its keys in the scene, without kind and density
 //     static M make(const MaterialValues&);                   from checked values in SI units
 //     using Bulk = ...;                                       form of the part that a nearly incompressible cell takes by its mean
@@ -22,8 +22,7 @@
 //
 //     static constexpr int n_state, plastic_strain;           numbers a point remembers, 0 as new; which of them is the plastic strain
 //     void respond(PointStep& step) const;                    all of the above for one point and step (point_step.hpp); in a file of its
-//     own,
-//                                                             since kernels are compiled for several processors
+//                                                             own, since kernels are compiled for several processors
 //
 // energy and stress are written once for any number type T: a double, a vector of cells, a number with its derivative.
 #pragma once

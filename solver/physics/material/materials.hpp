@@ -16,7 +16,7 @@ using Material = std::variant<StVenantKirchhoff, NeoHookean, J2, MooneyRivlin, O
 
 /// What is known of a law before it has parameters.
 struct MaterialKind {
-  std::string_view kind, meaning;
+  std::string_view name, meaning;
   std::vector<Param> keys;
   Material (*make)(const MaterialValues&);
   double soft_below;
@@ -27,7 +27,7 @@ namespace material {
 template <class... M>
 std::vector<MaterialKind> kinds_in(const std::variant<M...>*) {
   return {
-      {M::kind, M::meaning, M::keys(), [](const MaterialValues& v) -> Material { return M::make(v); }, M::soft_below, M::soft_because}...};
+      {M::name, M::meaning, M::keys(), [](const MaterialValues& v) -> Material { return M::make(v); }, M::soft_below, M::soft_because}...};
 }
 template <class M, class... All>
 constexpr int place_in(const std::variant<All...>*) {

@@ -18,7 +18,7 @@
 namespace hilo {
 
 struct MooneyRivlin {
-  static constexpr std::string_view kind = "mooney-rivlin",
+  static constexpr std::string_view name = "mooney-rivlin",
                                     meaning = "rubber: Mooney and Rivlin, compressible; c01 = 0: neo-Hooke of decks";
   static std::vector<Param> keys() {
     return {{"c10", Type::number, "Pa", "!", "factor of the first invariant; shear modulus 2 (c10 + c01)"},

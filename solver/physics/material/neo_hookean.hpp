@@ -7,7 +7,7 @@
 namespace hilo {
 
 struct NeoHookean {
-  static constexpr std::string_view kind = "neo-hookean", meaning = "compressible neo-Hookean solid";
+  static constexpr std::string_view name = "neo-hookean", meaning = "compressible neo-Hookean solid";
   static std::vector<Param> keys() { return {young, poisson}; }
   static NeoHookean make(const MaterialValues& v) { return {lame(v.number("E"), v.number("nu"))}; }
   using Bulk = LogOfDet;

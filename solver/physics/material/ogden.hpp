@@ -22,7 +22,7 @@
 namespace hilo {
 
 struct Ogden {
-  static constexpr std::string_view kind = "ogden", meaning = "rubber: Ogden, compressible, any number of terms";
+  static constexpr std::string_view name = "ogden", meaning = "rubber: Ogden, compressible, any number of terms";
   static std::vector<Param> keys() {
     return {{"mu", Type::numbers, "Pa", "!", "mu of each term; the shear modulus is their sum"},
             {"alpha", Type::numbers, "1", "!", "exponent of each term, not 0"},

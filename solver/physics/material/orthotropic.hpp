@@ -13,7 +13,7 @@
 namespace hilo {
 
 struct Orthotropic {
-  static constexpr std::string_view kind = "orthotropic",
+  static constexpr std::string_view name = "orthotropic",
                                     meaning = "orthotropic: wood, laminates; small or moderate strain, large rotation";
   static std::vector<Param> keys();
   static Orthotropic make(const MaterialValues& v);

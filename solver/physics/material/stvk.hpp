@@ -6,7 +6,7 @@
 namespace hilo {
 
 struct StVenantKirchhoff {
-  static constexpr std::string_view kind = "stvk", meaning = "St. Venant-Kirchhoff: small or moderate strain, large rotation";
+  static constexpr std::string_view name = "stvk", meaning = "St. Venant-Kirchhoff: small or moderate strain, large rotation";
   static std::vector<Param> keys() { return {young, poisson}; }
   static StVenantKirchhoff make(const MaterialValues& v) { return {lame(v.number("E"), v.number("nu"))}; }
   using Bulk = SquareOfTrace;

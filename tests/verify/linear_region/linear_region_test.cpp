@@ -75,6 +75,41 @@ INSTANTIATE_TEST_SUITE_P(LinearRegion, Beside,
                                          std::pair{"Nonlinear", Fidelity::nonlinear}),
                          [](const auto& info) { return info.param.first; });
 
+// Energy and momenta of a run on two ranks are those of a serial one, and so is where its nodes are.
+TEST(LinearRegion, IsTheSameOnTwoRanks) {
+  Case c("linear_region");
+  c.use(both(bar(0, 1, 4), bar(1, 2, 4)), {Fidelity::linear, Fidelity::linear});
+  const std::string end = "--set time.end=0.316";
+  const auto serial = c.solved(end, "run.h5", "pair").field("displacement");
+  const Ran ran = mpirun(2, "hilo-solve --quiet '" + c.source("pair.toml") + "' tags.h5 " + end + " -o ranks.h5", c.path());
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const auto ranks = c.results("ranks.h5").field("displacement");
+  ASSERT_EQ(ranks.size(), serial.size());
+  for (size_t i = 0; i < serial.size(); ++i) EXPECT_LT((ranks[i] - serial[i]).norm(), 1e-11) << i;
+}
+
+// Modes do not stiffen: a free bar turns at 18.3 rad/s, its first frequency is 64.6 sqrt(E/1e7) rad/s.
+TEST(LinearRegion, ThatSpinsNearItsFirstFrequencyIsWarnedOfAndBeyondItRefused) {
+  Case c("linear_region");
+  c.use(bar(0, 1, 6), {Fidelity::linear});
+  const std::string end = "--set time.end=0.0316 --set material.soft.E=";
+  EXPECT_EQ(c.solve(end + "1e8", "run.h5", 0, "free").err.find("spins"), std::string::npos);
+  const Ran near = c.solve(end + "3e6", "run.h5", 0, "free");
+  EXPECT_NE(near.err.find("spins with 18"), std::string::npos) << near.err;
+  EXPECT_NE(near.err.find("tag it nonlinear"), std::string::npos) << near.err;
+  const Ran beyond = c.solve(end + "3e5", "run.h5", 3, "free");
+  EXPECT_NE(beyond.err.find("linear region \"block\" spins with 18"), std::string::npos) << beyond.err;
+}
+
+TEST(LinearRegion, WhoseFaceTurnsFarIsWarnedOf) {
+  Case c("linear_region");
+  c.use(both(bar(0, 1, 4), bar(1, 2, 4)), {Fidelity::linear, Fidelity::linear});
+  const std::string end = "--set time.end=0.316 --set material.soft.E=";
+  const Ran far = c.solve(end + "3e6", "run.h5", 0, "pair");
+  EXPECT_NE(far.err.find("rad at \""), std::string::npos) << far.err;
+  EXPECT_EQ(c.solve(end + "1e9", "run.h5", 0, "pair").err.find("rad at"), std::string::npos);
+}
+
 // With as many modes as its cells have freedoms a linear region is the whole finite-element model, for small motions.
 TEST(LinearRegion, WithAllModesVibratesAsTheCellsDo) {
   Case c("linear_region");

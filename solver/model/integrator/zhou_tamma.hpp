@@ -1,7 +1,7 @@
 // Generalized single-step single-solve family of Zhou and Tamma, U0 (zero-order overshoot in displacement) or V0 (in velocity)
 // [zhou-tamma-2004]; averaged: stress at the averaged strain, B((1-w) q0 + w q1)^T C [(1-w) E0 + w E1].
 #pragma once
-#include "dynamics/integrator/method.hpp"
+#include "model/integrator/method.hpp"
 
 namespace hilo {
 
@@ -22,7 +22,5 @@ struct V0 : U0 {
   static std::unique_ptr<Integrator> make(const Entry& time);
   static std::string weakness(const Entry& time, const System& system);
 };
-
-std::unique_ptr<StageIntegrator> make_zhou_tamma(bool velocity_family, const double rho[3], bool averaged);
 
 }  // namespace hilo

@@ -1,6 +1,6 @@
 // Two-step backward difference formula at changing steps, started by one step of backward Euler.
 #pragma once
-#include "dynamics/integrator/method.hpp"
+#include "model/integrator/method.hpp"
 
 namespace hilo {
 
@@ -9,7 +9,5 @@ struct Bdf2 : Method {
   static constexpr bool carries_state = true;
   static std::unique_ptr<Integrator> make(const Entry& time);
 };
-
-std::unique_ptr<StageIntegrator> make_bdf2();
 
 }  // namespace hilo

@@ -1,6 +1,6 @@
 // Energy-momentum: mid-point inertia and constraint gradients, discrete-gradient stress [simo-tarnow-1992, betsch-steinmann-2001].
 #pragma once
-#include "dynamics/integrator/method.hpp"
+#include "model/integrator/method.hpp"
 
 namespace hilo {
 
@@ -12,8 +12,5 @@ struct EnergyMomentum : Method {
   static constexpr bool keeps_energy = true, carries_state = true;
   static std::unique_ptr<Integrator> make(const Entry& time);
 };
-
-/// chi adds dissipation chi/2 C (E1 - E0) to the stress of flexible parts.
-std::unique_ptr<StageIntegrator> make_energy_momentum(double chi);
 
 }  // namespace hilo

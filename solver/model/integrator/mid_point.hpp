@@ -1,6 +1,6 @@
 // Mid-point rule: everything at (q0 + q1)/2, stress included.
 #pragma once
-#include "dynamics/integrator/method.hpp"
+#include "model/integrator/method.hpp"
 
 namespace hilo {
 
@@ -9,7 +9,5 @@ struct MidPoint : Method {
   static std::unique_ptr<Integrator> make(const Entry& time);
   static std::string weakness(const Entry& time, const System& system);
 };
-
-std::unique_ptr<StageIntegrator> make_mid_point();
 
 }  // namespace hilo

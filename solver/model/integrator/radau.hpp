@@ -1,10 +1,8 @@
 // Three-stage Radau IIA for index 3, all stages solved together; for references, serial [hairer-wanner-1996].
 #pragma once
-#include "dynamics/integrator/method.hpp"
+#include "model/integrator/method.hpp"
 
 namespace hilo {
-
-class SerialKktSolver;
 
 struct Radau : Method {
   static constexpr std::string_view name = "radau",
@@ -12,8 +10,5 @@ struct Radau : Method {
   static std::unique_ptr<Integrator> make(const Entry& time);
   static std::string weakness(const Entry& time, const System& system);
 };
-
-/// `solver`: of the matrix of all three stages.
-std::unique_ptr<Integrator> make_radau(std::unique_ptr<SerialKktSolver> solver);
 
 }  // namespace hilo

@@ -1,6 +1,6 @@
 // Composite of trapezoidal rule and three-point backward difference [bathe-2007].
 #pragma once
-#include "dynamics/integrator/method.hpp"
+#include "model/integrator/method.hpp"
 
 namespace hilo {
 
@@ -9,7 +9,5 @@ struct Bathe : Method {
                                     meaning = "trapezoidal rule, then backward difference: two solves a step, damps strongly";
   static std::unique_ptr<Integrator> make(const Entry& time);
 };
-
-std::unique_ptr<StageIntegrator> make_bathe();
 
 }  // namespace hilo

@@ -2,13 +2,13 @@
 // add_integrator<M>() (dynamics/integrator_kinds).
 #pragma once
 #include "base/registry.hpp"
-#include "dynamics/integrator/bathe.hpp"
-#include "dynamics/integrator/bdf2.hpp"
-#include "dynamics/integrator/energy_momentum.hpp"
-#include "dynamics/integrator/generalized_alpha.hpp"
-#include "dynamics/integrator/mid_point.hpp"
-#include "dynamics/integrator/radau.hpp"
-#include "dynamics/integrator/zhou_tamma.hpp"
+#include "model/integrator/bathe.hpp"
+#include "model/integrator/bdf2.hpp"
+#include "model/integrator/energy_momentum.hpp"
+#include "model/integrator/generalized_alpha.hpp"
+#include "model/integrator/mid_point.hpp"
+#include "model/integrator/radau.hpp"
+#include "model/integrator/zhou_tamma.hpp"
 
 namespace hilo {
 

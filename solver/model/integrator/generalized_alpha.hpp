@@ -1,6 +1,6 @@
 // Generalized-alpha for index 3 in the form of Arnold and Bruls [arnold-bruls-2007]; Newmark, HHT and WBZ are members of it.
 #pragma once
-#include "dynamics/integrator/method.hpp"
+#include "model/integrator/method.hpp"
 
 namespace hilo {
 
@@ -28,13 +28,5 @@ struct Wbz : GeneralizedAlpha {
   static constexpr std::string_view name = "wbz", meaning = "generalized-alpha with alpha_f = 0";
   static std::unique_ptr<Integrator> make(const Entry& time);
 };
-
-struct AlphaParameters {
-  double alpha_m, alpha_f, beta, gamma;
-};
-AlphaParameters generalized_alpha(double rho);
-AlphaParameters hht(double rho);  // rho at infinite frequency, 1/2 to 1
-AlphaParameters wbz(double rho);
-std::unique_ptr<StageIntegrator> make_generalized_alpha(const AlphaParameters& p, std::string_view name = GeneralizedAlpha::name);
 
 }  // namespace hilo
