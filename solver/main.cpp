@@ -94,7 +94,8 @@ int solve(int argc, char** argv, Comm& comm) {
   if (!report.complete)
     throw Error(scene.path, fmt::format("stopped at t = {:.6g} s: {}", report.t, report.reason),
                 fmt::format("the last good state is in {}", o.output), Exit::not_converged);
-  if (talk)
+  if (talk) fmt::print("{}", report.table);
+  if (talk && report.table.empty())
     fmt::print(stderr, "{}: {} steps, {} Newton iterations{}\n", o.output, report.steps, report.iterations,
                report.cuts ? fmt::format(", {} step cuts", report.cuts) : "");
   return 0;

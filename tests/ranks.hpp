@@ -23,7 +23,9 @@ inline void expect_passes_on(int ranks, const std::string& suite, const std::str
   const Ran ran = run(clean + (ranks == 1 ? "timeout 300 " : launcher) + "'" + self +
                           "' --gtest_also_run_disabled_tests --gtest_filter='*DISABLED_" + suite + ".*'",
                       folder);
-  EXPECT_EQ(ran.exit, 0) << suite << " on " << ranks << " ranks:\n" << ran.out << ran.err;
+  std::string said = ran.out + ran.err;  // ctest would take a failure that shows this word for a test left out
+  for (size_t at = 0; (at = said.find("SKIPPED", at)) != said.npos;) said.replace(at, 7, "left out");
+  EXPECT_EQ(ran.exit, 0) << suite << " on " << ranks << " ranks:\n" << said;
   EXPECT_NE(ran.out.find("[  PASSED  ]"), std::string::npos) << ran.err;
   EXPECT_EQ(ran.out.find("Running 0 tests"), std::string::npos) << "no suite " << suite;
 }

@@ -77,7 +77,8 @@ void run(Options o) {
   if (!(all.second > all.first)) throw Error(o.run, "has a single output: nothing moves", "see output.interval of the scene");
   const auto [from, to] = parse_times(o.times, all);
   std::vector<double> times, outputs, seen;
-  const double slack = 1e-9 * (to - from);
+  const double slack = 1e-9 * (to - from), swing = 0.4;  // modes in a second
+  const bool modes = !frames.run().frequencies.empty();
   for (const Step& s : frames.run().steps)
     if (s.t >= from - slack && s.t <= to + slack) outputs.push_back(s.t);
   if (!frames.run().has_mesh())  // a row for each step is more than the frame of the picture needs
@@ -87,12 +88,14 @@ void run(Options o) {
   if (o.outputs) {
     times = outputs;
   } else {
-    if (o.speed == 0) o.speed = handy_speed(to - from);
+    if (o.speed == 0) o.speed = modes ? swing : handy_speed(to - from);
     const auto n = static_cast<size_t>(std::floor((to - from) * o.fps / o.speed + 1e-6)) + 1;
     if (n > 100000) throw Error("--speed", fmt::format("{} frames", n), "a higher --speed or a shorter --times", Exit::usage);
     for (size_t k = 0; k < n; ++k) times.push_back(std::min(to, from + static_cast<double>(k) * o.speed / o.fps));
-    remark = ", " + speed_text(o.speed);
+    if (!modes) remark = ", " + speed_text(o.speed);
   }
+  for (size_t k = 0, n = outputs.size(); modes && k < n; ++k)  // the other turning points
+    if (outputs[k] + 0.5 <= to) outputs.push_back(outputs[k] + 0.5);
   if (times.empty()) throw Error("--times", "holds no output of the run", "without --outputs frames between them are made", Exit::input);
   if (!seen.empty()) outputs = seen;
   if (outputs.empty() || outputs.front() > from + slack) outputs.insert(outputs.begin(), from);
@@ -116,8 +119,9 @@ void run(Options o) {
   });
   write_out(o.output, movie.finish());
   if (o.output != "-" && !is_quiet())
-    fmt::print("{}: {} frames, {:.1f} s, {:g} to {:g} s of the run{}\n", o.output, times.size(), static_cast<double>(times.size()) / o.fps,
-               times.front(), times.back(), remark);
+    fmt::print("{}: {} frames, {:.1f} s, {}\n", o.output, times.size(), static_cast<double>(times.size()) / o.fps,
+               modes ? fmt::format("modes {} to {}", static_cast<int>(times.front()), static_cast<int>(times.back()))
+                     : fmt::format("{:g} to {:g} s of the run{}", times.front(), times.back(), remark));
 }
 
 }  // namespace
@@ -127,7 +131,7 @@ Command movie_command(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   add_frame_options(*sub, *o);
   sub->add_option("-o,--output", o->output, "movie.mp4; - for standard output")->required();
-  sub->add_option("--times", o->times, "FROM:TO in s; the whole run by default");
+  sub->add_option("--times", o->times, "FROM:TO in s; the whole run by default. Of an analysis of modes 3:4 is mode 3, which swings once");
   sub->add_option("--speed", o->speed,
                   "seconds of the run in a second of the movie: 0.01 is slowed 100 times; by default the movie lasts about 10 s. Between "
                   "outputs positions follow the cubic of positions and velocities, fields are interpolated")

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/error.hpp"
 
@@ -31,7 +32,7 @@ const RunFile::Field& Playback::stored(size_t step, const std::string& array) {
   for (const Kept& k : kept_)
     if (k.step == step && k.array == array) return k.field;
   // An output farther than one from this is not needed any more; a movie goes forward.
-  std::erase_if(kept_, [&](const Kept& k) { return k.step + 1 < step || k.step > step + 1; });
+  std::erase_if(kept_, [&](const Kept& k) { return (k.step + 1 < step || k.step > step + 1) && !(k.step == 0 && has_modes()); });
   RunFile::Field field = run_.field(run_.steps[step], array);
   const auto cells = array.starts_with("cell_");
   const auto rows = static_cast<size_t>(cells ? mesh_.n_cells() : mesh_.n_nodes());
@@ -52,7 +53,26 @@ RunFile::Field Playback::linear(const Between& at, const std::string& array) {
   return f;
 }
 
+/// The state of rest and a share of what the shape adds to it; quantities without a sign keep theirs.
+RunFile::Field Playback::of_mode(double t, const std::string& array, double larger) {
+  const auto k = static_cast<size_t>(std::clamp(t + 1e-6, 0.0, static_cast<double>(run_.steps.size() - 1) + 0.5));
+  const double swing = std::cos(2 * std::numbers::pi * (t - static_cast<double>(k)));
+  RunFile::Field f = stored(0, array);
+  const auto& shape = stored(k, array);
+  const double share = larger * (f.columns == 1 ? std::abs(swing) : swing);
+  for (size_t i = 0; i < f.value.size(); ++i) f.value[i] += share * (shape.value[i] - f.value[i]);
+  return f;
+}
+
+std::string Playback::caption(double t) const {
+  const auto k = static_cast<size_t>(t + 1e-6);
+  if (has_modes() && k < run_.frequencies.size())
+    return k == 0 ? "state of rest" : fmt::format("mode {}, {:.5g} Hz, shape \u00d7 {:g}", k, run_.frequencies[k], drawn_larger);
+  return last() < 1 ? fmt::format("t = {:.3f} ms", 1e3 * t) : fmt::format("t = {:.4f} s", t);
+}
+
 RunFile::Field Playback::field(double t, const std::string& array) {
+  if (has_modes()) return of_mode(t, array, 1);
   const Between at = between(t);
   if (array != "displacement" || at.a == at.b || !run_.has_field(run_.steps[at.a], "velocity")) return linear(at, array);
   const double w = at.w, h = run_.steps[at.b].t - run_.steps[at.a].t;
@@ -67,11 +87,10 @@ RunFile::Field Playback::field(double t, const std::string& array) {
 
 const std::vector<Vec3>& Playback::positions(double t) {
   if (t == x_time_) return x_;
-  const Between at = between(t);
   x_ = mesh_.X;
   x_time_ = t;
-  if (!run_.has_field(run_.steps[at.a], "displacement")) return x_;
-  const auto u = field(t, "displacement").value;
+  if (!run_.has_field(run_.steps[has_modes() ? 0 : between(t).a], "displacement")) return x_;
+  const auto u = (has_modes() ? of_mode(t, "displacement", drawn_larger) : field(t, "displacement")).value;
   for (size_t n = 0; n < x_.size(); ++n) x_[n] += Vec3(u[3 * n], u[3 * n + 1], u[3 * n + 2]);
   return x_;
 }

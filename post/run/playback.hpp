@@ -1,5 +1,8 @@
 // A run at any time: its outputs as stored, and between two of them positions by the cubic through positions and velocities (linear where
 // a run holds no velocities), fields linearly.
+//
+// An analysis of modes has no time: from t = k on, for one unit, mode k swings once about the state of rest, from its turning point at t =
+// k. Shapes, a thousandth of the scene in the file, are drawn `drawn_larger` times larger.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,8 +19,12 @@ class Playback {
   explicit Playback(RunFile& run);
 
   RunFile& run() const { return run_; }
-  double first() const { return run_.steps.front().t; }  // [s]
-  double last() const { return run_.steps.back().t; }
+  static constexpr double drawn_larger = 60;
+  bool has_modes() const { return !run_.frequencies.empty(); }
+  double first() const { return run_.steps[has_modes() && run_.steps.size() > 1 ? 1 : 0].t; }  // [s]
+  double last() const { return run_.steps.back().t + (has_modes() ? 1 - 1e-6 : 0); }
+  /// "t = 3.200 ms", or "mode 3, 51.2 Hz".
+  std::string caption(double t) const;
   /// Current positions of all nodes at a time within the run  (n_nodes)  [m].
   const std::vector<Vec3>& positions(double t);
   /// A field at that time, row by row, and its number of columns; displacements are those of positions().
@@ -32,6 +39,7 @@ class Playback {
   Between between(double t) const;
   const RunFile::Field& stored(size_t step, const std::string& array);
   RunFile::Field linear(const Between& at, const std::string& array);
+  RunFile::Field of_mode(double t, const std::string& array, double larger);
 
   struct Kept {
     size_t step;

@@ -89,7 +89,6 @@ void Frames::survey(const std::vector<double>& times) {
   for (const auto& v : views_)
     for (const double t : times) range.add(v->survey(t, axes, extremes_));
   for (const auto& v : views_) {
-    end_ = std::max(end_, v->playback().last());
     if (v->annotations()) largest_force_ = std::max(largest_force_, v->annotations()->largest_force(times));
   }
   if (!by_names()) choose_colours(range);
@@ -191,7 +190,7 @@ void Frames::surround(Painter& p, double t) const {
   line[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(line[0])));
   if (first.field().label.starts_with("von")) line[0] = 'v';
   if (!o_.minus.empty()) line += fmt::format(": {}", difference_);
-  line += end_ < 1 ? fmt::format(", t = {:.3f} ms", 1e3 * t) : fmt::format(", t = {:.4f} s", t);
+  line += ", " + first.playback().caption(t);
   if (o_.scale != 1) line += fmt::format(", displacements \u00d7 {:g}", o_.scale);
   if (o_.deformed != 1) line += fmt::format(", deformation \u00d7 {:g}", o_.deformed);
   if (!iso_.empty()) line += fmt::format(", surfaces of {} {}", fmt::join(iso_, ", "), bar_.unit);

@@ -49,7 +49,7 @@ class Frames {
   std::vector<Extent> seen_;  // of each run in this frame, in the shown unit
   std::vector<double> iso_;   // levels, in the shown unit
   double largest_force_ = 0;  // [N]
-  double factor_ = 1, end_ = 0;
+  double factor_ = 1;
   std::string remark_;
 };
 

@@ -33,6 +33,7 @@ class RunView {
 
   RunFile& run() { return run_; }
   Playback& playback() { return *playback_; }
+  const Playback& playback() const { return *playback_; }
   const MeshFile& file() const { return file_; }
   const std::vector<bool>& shown() const { return shown_; }
   const ShownField& field() const { return field_; }

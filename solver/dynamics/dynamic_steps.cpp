@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "dynamics/contradiction.hpp"
-#include "dynamics/held.hpp"
 #include "dynamics/predictor.hpp"
 #include "dynamics/run_parts.hpp"
 #include "dynamics/singular_start.hpp"
@@ -61,7 +60,7 @@ class DynamicSteps final : public Steps {
     const Redundancy& redundancy = run_.redundancy;
     const std::vector<Active> rows = active_rows(system);
     set_rows(system, redundancy.at_pose);
-    if (time_.text("start") == "equilibrium" && !settle_down()) return false;
+    if (time_.text("start") == "equilibrium" && !settle_down(run_)) return false;
     run_.figures.projected = run_.impulses.strike(system, *run_.solver, state, run_.talk).change;
     if (const std::string name = contradicted_joint(system, state.q, state.v, 0); !name.empty())
       throw Error(run_.scene.path, fmt::format("joint \"{}\" cannot move as the driven joints would have it", name),
@@ -82,24 +81,6 @@ class DynamicSteps final : public Steps {
                  clocks ? fmt::format(", {} mechanism{} of one degree of freedom on a clock of {} own", clocks, clocks > 1 ? "s" : "",
                                       clocks > 1 ? "their" : "its")
                         : "");
-    return true;
-  }
-
-  /// Static equilibrium under the loads at the start.
-  bool settle_down() {
-    System& system = run_.system;
-    State& state = run_.state;
-    require_rest(system, state.q, time_.where("start"));
-    const NewtonReport r = equilibrium(system, *run_.solver, state.q, state.lambda, 0, 1, true, run_.newton);
-    if (!r.converged) {
-      run_.audit->start(state);
-      run_.recorder->first(state, run_.audit->ledger());
-      run_.stop("no static equilibrium at the start: " + r.reason + unheld(system, system.start));
-      return false;
-    }
-    Stage rest = stage_at(state.q, 0);
-    rest.elapsed = slow, system.advance(rest), system.settle(true);
-    if (run_.talk) fmt::print(stderr, "equilibrium after {} iterations\n", r.iterations);
     return true;
   }
 

@@ -30,7 +30,7 @@ void warn_of_idle_keys(const Entry& time) {
   std::map<std::string_view, std::vector<std::string_view>> idle;  // by key: the methods that it is for
   for (const IntegratorWords& other : integrator_words())
     for (const Param& p : other.keys)
-      if (time.has(p.key) && !has(method, p.key)) idle[p.key].push_back(other.name);
+      if (time.given(p.key) && !has(method, p.key)) idle[p.key].push_back(other.name);
   for (const auto& [key, who] : idle)
     warn(time.where(key), fmt::format("{} says nothing to {}, it is for {}", key, method.name, fmt::join(who, ", ")));
 }

@@ -21,6 +21,11 @@ double peak_memory() {
   return static_cast<double>(usage.ru_maxrss) * 1024;
 }
 
+Analysis analysis_of(const Scene& scene) {
+  const std::string& word = scene.table("time").text("analysis");
+  return word == "static" ? Analysis::statics : word == "modes" ? Analysis::modes : Analysis::dynamic;
+}
+
 class Run {
  public:
   Run(const Scene& scene, System& system, const RunOptions& options)
@@ -30,7 +35,7 @@ class Run {
         run_{.scene = scene,
              .system = system,
              .options = options,
-             .is_static = scene.table("time").text("analysis") == "static",
+             .analysis = analysis_of(scene),
              .talk = !options.quiet && system.comm->rank == 0} {
     phases() = {};
   }
@@ -40,7 +45,9 @@ class Run {
     const auto pause = [this] {
       if (options_.between_steps) options_.between_steps(run_.report.steps, [this] { return keep(); });
     };
-    steps_ = run_.is_static ? static_steps(run_, pause) : dynamic_steps(run_, pause);
+    steps_ = run_.analysis == Analysis::statics ? static_steps(run_, pause)
+             : run_.analysis == Analysis::modes ? mode_steps(run_, pause)
+                                                : dynamic_steps(run_, pause);
     Archive from(options_.from);
     if (options_.from.empty())
       prepare();
@@ -75,7 +82,8 @@ class Run {
     run_.newton.tolerance = newton.number("tolerance");
     run_.newton.max_iterations = static_cast<int>(newton.number("iterations"));
     run_.max_cuts = static_cast<int>(newton.number("cuts"));
-    if (!run_.is_static) {
+    const bool is_dynamic = run_.analysis == Analysis::dynamic, is_static = run_.analysis == Analysis::statics;
+    if (is_dynamic) {
       if (!time.has("end")) throw Error(time.place.text(), "[time] has no end", "a dynamic run needs end, and step or tolerance");
       if (!time.has("step") && !time.has("tolerance"))
         throw Error(time.place.text(), "[time] has no step", "give a step, or a tolerance that chooses it");
@@ -83,10 +91,11 @@ class Run {
     if (system.comm->rank == 0) warn_of_idle_keys(time);
     const IntegratorKind& method = integrator_kind(time);
     run_.integrator = method.make(time),
-    run_.energy_unchecked = run_.is_static        ? "a static analysis takes the work of a step with the loads at its end"
+    run_.energy_unchecked = is_static             ? "a static analysis takes the work of a step with the loads at its end"
+                            : !is_dynamic         ? "an analysis of modes takes no steps"
                             : method.keeps_energy ? ""
                                                   : "the method does not keep it";
-    if (!run_.is_static) {
+    if (is_dynamic) {
       if (const std::string why = method.weakness(time, system); !why.empty() && system.comm->rank == 0)
         warn(time.where("integrator"), run_.integrator->name() + ": " + why);
       if (system.traits().remembers && !method.carries_state) {
@@ -102,7 +111,7 @@ class Run {
     }
     run_.state.q = system.start;
     run_.state.v = system.start_velocity;
-    system.prescribe(run_.state.q, 0, run_.is_static && !time.has("end") ? 0 : 1);
+    system.prescribe(run_.state.q, 0, is_static && !time.has("end") ? 0 : 1);
     run_.solver = choose_solver(run_.scene, system, run_.talk);
   }
 
@@ -110,12 +119,12 @@ class Run {
   void prepare() {
     System& system = run_.system;
     State& state = run_.state;
-    if (!run_.is_static && system.violation(state.q, 0).worst() > 1e-11 * std::max(1.0, system.length)) {
+    if (run_.analysis != Analysis::statics && system.violation(state.q, 0).worst() > 1e-11 * std::max(1.0, system.length)) {
       run_.figures.assembled = assemble_positions(system, *run_.solver, state.q);
       if (run_.talk) fmt::print(stderr, "start positions changed by up to {:.3g} m to put the joints together\n", run_.figures.assembled);
     }
     const Redundancy& redundancy = run_.redundancy = drop_redundant_rows(system, state.q, 0);
-    if (!run_.is_static) refuse_contradictions(run_.scene, system, redundancy, run_.scene.table("time").number("end"));
+    if (run_.analysis == Analysis::dynamic) refuse_contradictions(run_.scene, system, redundancy, run_.scene.table("time").number("end"));
     if (run_.talk && !redundancy.dropped.empty()) {
       fmt::print(stderr, "{} of {} joint rows are redundant; reactions are the minimum-norm share:\n", redundancy.rows - redundancy.rank,
                  redundancy.rows);
@@ -130,8 +139,9 @@ class Run {
   void open_recorder() {
     const Entry &time = run_.scene.table("time"), &output = run_.scene.table("output");
     Recorder::Setup setup;
+    const bool in_time = run_.analysis == Analysis::dynamic;
     setup.path = options_.output;
-    setup.interval = output.given("interval") ? output.number("interval") : run_.is_static ? 0 : time.number("end") / 50;
+    setup.interval = output.given("interval") ? output.number("interval") : in_time ? time.number("end") / 50 : 0;
     setup.fields = output.texts("fields");
     setup.single_precision = output.text("precision") == "single";
     setup.skin = output.text("nodes") == "skin";
@@ -139,9 +149,9 @@ class Run {
       if (e.jump) setup.jumps.push_back(e.t);
     setup.provenance = options_.provenance;
     setup.redundant = run_.redundancy.rank < run_.redundancy.rows;
-    setup.own_time = run_.is_static ? 1 : run_.integrator->own_time();
-    setup.alternates = !run_.is_static && run_.integrator->alternates();
-    setup.is_static = run_.is_static;
+    setup.own_time = in_time ? run_.integrator->own_time() : 1;
+    setup.alternates = in_time && run_.integrator->alternates();
+    setup.is_static = !in_time;
     run_.recorder = std::make_unique<Recorder>(run_.system, run_.scene, std::move(setup));
   }
 

@@ -33,6 +33,7 @@ struct RunReport {
   std::string reason;  // why it stopped early
   long steps = 0, iterations = 0, cuts = 0;
   std::string profile;  // table of seconds by phase
+  std::string table;    // of the modes of an analysis of these
 };
 
 /// Run the scene; writes run.h5, run.xdmf and, last, run.json.  A run stopped by physics is a report, not an exception.

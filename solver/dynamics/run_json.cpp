@@ -30,7 +30,9 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   add("redundant_rows", fmt::format("{}", run.redundancy.rows - run.redundancy.rank));
   add("ranks", fmt::format("{}", system.comm->size));
   add("solver", json_text(run.solver->name()));
-  add("integrator", json_text(run.is_static ? "static" : run.integrator->name()));
+  add("integrator", json_text(run.analysis == Analysis::statics ? "static"
+                              : run.analysis == Analysis::modes ? "modes"
+                                                                : run.integrator->name()));
   std::string clocks;
   for (const auto& mechanism : run.integrator->timed()) clocks += (clocks.empty() ? "" : ", ") + json_text(mechanism);
   add("clocks", "[" + clocks + "]");
@@ -38,6 +40,7 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
     add("estimated_position_error", fmt::format("{:.6g}", figures.estimated));
     add("rejected_steps", fmt::format("{}", figures.rejected));
   }
+  if (!figures.modes.empty()) add("modes", figures.modes);
   const double balance = run.audit->balance(), det = run.audit->least_det();
   add("energy_balance", std::isnan(balance) ? "null" : fmt::format("{:.6g}", balance));
   add("constraint_violation", fmt::format("{:.6g}", run.audit->violation()));

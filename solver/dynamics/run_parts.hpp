@@ -19,14 +19,18 @@ namespace hilo {
 struct RunFigures {
   double assembled = 0, projected = 0;  // changes of positions at the start [m], of velocities [m/s]
   double estimated = -1;                // sum of position errors [m], where the tolerance chooses the steps
+  std::string modes;                    // of an analysis of modes, JSON
   long rejected = 0;                    // steps
 };
+
+enum class Analysis { dynamic, statics, modes };
 
 struct RunParts {
   const Scene& scene;
   System& system;
   const RunOptions& options;
-  bool is_static, talk;
+  Analysis analysis;
+  bool talk;
   std::string energy_unchecked = {};  // why the audit does not check the balance of energy, or ""
   NewtonOptions newton = {};
   int max_cuts = 8;
@@ -61,6 +65,10 @@ class Steps {
   std::function<void()> pause_;
 };
 
+/// Static equilibrium under the loads at the start; false, and the run stopped, where there is none.
+bool settle_down(RunParts& run);
+
+std::unique_ptr<Steps> mode_steps(RunParts& run, std::function<void()> pause);
 std::unique_ptr<Steps> static_steps(RunParts& run, std::function<void()> pause);
 std::unique_ptr<Steps> dynamic_steps(RunParts& run, std::function<void()> pause);
 

@@ -49,7 +49,7 @@ void check_bodies(std::span<const Entry> bodies, std::span<const Entry> regions)
 /// A run that would not end.
 void check_time(const Entry& time) {
   constexpr double most_steps = 1e9;
-  if (time.text("analysis") == "static" || !time.has("end") || !time.has("step")) return;
+  if (time.text("analysis") != "dynamic" || !time.has("end") || !time.has("step")) return;
   if (const double n = time.number("end") / time.number("step"); n > most_steps)
     fail(time, "step", fmt::format("{:.3g} steps to the end, at most {:g} are taken", n, most_steps), "a longer step, or an earlier end");
 }

@@ -63,7 +63,7 @@ void check_time(const Entries& entries, const Entry& time, Warnings& w) {
   const Entry& output = entries.find("output")->second.front();
   if (output.has("interval") && output.number("interval") < step)
     w.add(output, "interval", "shorter than the time step: fields are written every step");
-  if (time.text("analysis") == "static") return;
+  if (time.text("analysis") != "dynamic") return;
   std::set<std::string> said;
   for (const char* section : {"load", "motion"}) {
     const auto list = entries.find(section);

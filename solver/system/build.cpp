@@ -8,6 +8,7 @@
 #include "system/linear_regions.hpp"
 #include "system/loads.hpp"
 #include "system/motions.hpp"
+#include "system/natural_modes.hpp"
 #include "system/point_masses.hpp"
 #include "system/solids.hpp"
 #include "system/springs.hpp"
@@ -31,6 +32,7 @@ void Builder::add_contributions() {
   s.add<Loads>(s);
   s.add<Motions>(s);
   s.add<Stations>(s);
+  if (scene_.table("time").text("analysis") == "modes") s.add<NaturalModes>();
 }
 
 std::unique_ptr<System> Builder::build() {

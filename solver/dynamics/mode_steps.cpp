@@ -1,0 +1,124 @@
+// An analysis of modes: the state of rest, and then a row of the results for every mode, its shape added to that state.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/table.hpp"
+#include "dynamics/natural_modes.hpp"
+#include "dynamics/run_parts.hpp"
+#include "dynamics/start.hpp"
+
+namespace hilo {
+namespace {
+
+/// What the modes say in run.json, and on the screen.
+std::string as_json(const std::vector<FoundMode>& modes) {
+  std::string out;
+  for (const FoundMode& m : modes) {
+    const NaturalMode& f = m.figures;
+    out += fmt::format(
+        "{}\n    {{\"frequency\": {:.12g}, \"damping\": {:.6g}, \"mass\": [{:.6g}, {:.6g}, {:.6g}], \"inertia\": [{:.6g}, {:.6g}, {:.6g}], "
+        "\"error\": {:.3g}}}",
+        out.empty() ? "" : ",", f.frequency(), f.damping, f.mass[0], f.mass[1], f.mass[2], f.mass[3], f.mass[4], f.mass[5], f.error);
+  }
+  return "[" + out + "\n  ]";
+}
+std::string as_table(const std::vector<FoundMode>& modes, double mass) {
+  std::string out = fmt::format("mode  frequency [Hz]  damping  effective mass along x, y, z, of {:.4g} kg [%]\n", mass);
+  Vec3 sum = Vec3::Zero();
+  for (size_t k = 0; k < modes.size(); ++k) {
+    const NaturalMode& f = modes[k].figures;
+    const Vec3 share = 100 / mass * f.mass.head<3>();
+    sum += share;
+    out += fmt::format("{:4}  {:14.6g}  {:7.4f}  {:7.2f} {:7.2f} {:7.2f}\n", k + 1, f.frequency(), f.damping, share[0], share[1], share[2]);
+  }
+  return out + fmt::format("{:31}{:7.2f} {:7.2f} {:7.2f}\n", "all of them", sum[0], sum[1], sum[2]);
+}
+
+class ModeSteps final : public Steps {
+ public:
+  ModeSteps(RunParts& run, std::function<void()> pause) : Steps(run, std::move(pause)), time_(run.scene.table("time")) {
+    if (run.system.comm->size > 1) throw Error(time_.where("analysis"), "modes are found on one rank", "run it without mpirun");
+  }
+  void archive(Archive&) override {}  // one step, so nothing is kept within it
+
+  void take() override {
+    System& system = run_.system;
+    State& rest = run_.state;
+    set_rows(system, run_.redundancy.at_pose);
+    if (time_.text("start") == "equilibrium" && !settle_down(run_)) return;
+    if (system.largest_rate(rest.v) > 0)
+      throw Error(time_.where("analysis"), "modes are those of a state of rest, and the scene has initial velocities",
+                  "take [[initial]] away");
+    consistent_acceleration(system, *run_.solver, rest, 1e-3);
+    system.commit(rest.q);
+    run_.audit->start(rest);
+    run_.recorder->first(rest, run_.audit->ledger());
+    Progress progress(run_.options.quiet, 0, time_.number("modes"));
+    const std::vector<FoundMode> modes =
+        natural_modes(system, *run_.solver, rest, static_cast<int>(time_.number("modes")), [&](int found) { progress.show(found, 0, 0); });
+    progress.done();
+    if (modes.empty()) throw Error(time_.where("analysis"), "nothing that has mass can move: there are no modes");
+    check_rest(modes);
+    for (const FoundMode& m : modes) record(m);
+    run_.figures.modes = as_json(modes);
+    run_.report.table = as_table(modes, system.mass);
+    run_.report.t = static_cast<double>(modes.size());
+    for (const FoundMode& m : modes)
+      if (!(m.figures.error < 1e-4))
+        return run_.stop(
+            fmt::format("the mode of {:.6g} Hz leaves {:.2g} of the equations of motion", m.figures.frequency(), m.figures.error));
+    run_.report.complete = true;
+  }
+
+ private:
+  /// What is not at rest would move, before it swings, by about a/omega^2.
+  void check_rest(const std::vector<FoundMode>& modes) const {
+    const System& system = run_.system;
+    const double a = system.largest_rate(run_.state.a);
+    double slowest = 1e300;
+    for (const FoundMode& m : modes)
+      if (m.figures.omega2 > 1e-9 * modes.back().figures.omega2) slowest = std::min(slowest, m.figures.omega2);
+    const double away = a / slowest;
+    if (away > 1e-2 * system.length)
+      warn(time_.where("analysis"),
+           fmt::format("the state is not at rest: it accelerates by up to {:.3g} m/s^2, and rests about {:.2g} m away ({})", a, away,
+                       "start = \"equilibrium\" goes there"));
+  }
+
+  /// The shape, of a thousandth of the scene at most, on the state of rest; forces as they are at its turning point.
+  void record(const FoundMode& m) {
+    System& system = run_.system;
+    const State& rest = run_.state;
+    State at = rest;
+    at.t = static_cast<double>(run_.report.steps + 1);
+    Config zero, shape, a;
+    combine(zero, {{0, &rest.q}});
+    shape = a = zero;
+    std::vector<double> z = m.x;
+    system.add_rates(shape, rest.q, z);
+    const double amplitude = 1e-3 * system.length / std::max(1e-300, system.largest_rate(shape));
+    for (double& value : z) value *= amplitude;
+    system.move(at.q, z);
+    for (size_t i = 0; i < m.mu.size(); ++i) at.lambda[i] += amplitude * m.mu[i];
+    for (double& value : z) value *= -m.figures.omega2;
+    system.add_rates(a, rest.q, z);
+    Taken taken{stage_at(at.q, rest.t), at.lambda};
+    taken.stage.a = &a;
+    system.part<NaturalModes>().now = m.figures;
+    Ledger ledger = run_.audit->ledger();
+    ledger.energy = system.energy(at.q, at.v);
+    ledger.rows = system.violation(at.q, rest.t);
+    run_.recorder->step(at, ledger, taken, a, 0);
+    ++run_.report.steps;
+  }
+
+  const Entry& time_;
+};
+
+}  // namespace
+
+std::unique_ptr<Steps> mode_steps(RunParts& run, std::function<void()> pause) { return std::make_unique<ModeSteps>(run, std::move(pause)); }
+
+}  // namespace hilo

@@ -1,0 +1,232 @@
+#include "dynamics/natural_modes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "base/error.hpp"
+#include "dynamics/start.hpp"
+#include "linear/block_krylov.hpp"
+
+namespace hilo {
+namespace {
+
+using Vector = Eigen::VectorXd;
+
+/// Products with K and M about a state, and with the inverse of K + s M on the motions that joints and supports allow.
+class Linearized {
+ public:
+  Linearized(const System& system, KktSolver& solver, const State& rest)
+      : system_(system), solver_(solver), rest_(rest), n_(3 * system.first_joint_block()), none_(rest.lambda.size(), 0.0) {
+    combine(zero_, {{0, &rest.q}});
+    base_mass_ = mass_residual(zero_);
+  }
+  Eigen::Index n() const { return n_; }
+
+  Vector mass_of(const Config& acceleration) const { return mass_residual(acceleration) - base_mass_; }
+  Vector mass(const Vector& x) const { return mass_of(rates(x)); }
+
+  /// About K x, by differences of the residual between a little motion to either side.
+  Vector stiffness(const Vector& x) const {
+    const double step = 1e-5 * system_.length / std::max(1e-300, system_.largest_rate(rates(x)));
+    Vector out[2];
+    for (const int side : {0, 1}) {
+      const double by = side == 0 ? -step : step;
+      Config q = rest_.q;
+      const std::vector<double> z = padded(x * by);
+      system_.move(q, z);
+      Residual r;
+      system_.evaluate(stage(q), rest_.lambda, r, nullptr);
+      out[side] = free_part(r);
+    }
+    return (out[1] - out[0]) / (2 * step);
+  }
+
+  /// C x, by rates too small for friction to slip.
+  Vector damping(const Vector& x) const {
+    const double speed = 1e-6 * system_.length / std::max(1e-300, system_.largest_rate(rates(x))), h = 1e-3;
+    Vector out[2];
+    for (const int moving : {0, 1}) {
+      const Config v = rates(x * (moving ? speed : 0));
+      Config before, after;
+      combine(before, {{1, &rest_.q}, {-h / 2, &v}});
+      combine(after, {{1, &rest_.q}, {h / 2, &v}});
+      Stage s = stage(rest_.q);
+      s.w0 = &before, s.w1 = &after, s.h = h, s.v = &v;
+      Residual r;
+      system_.evaluate(s, rest_.lambda, r, nullptr);
+      out[moving] = free_part(r);
+    }
+    return (out[1] - out[0]) / speed;
+  }
+
+  /// K + s M becomes the matrix of the solver.
+  void factor(double shift) {
+    Stage s = stage(rest_.q);
+    s.mass_slope = shift;
+    Residual r;
+    system_.evaluate(s, rest_.lambda, r, &solver_);
+    sigma_ = r.sigma;
+  }
+  /// Motion and multipliers under the forces b; what is left of the equations, over |b|.
+  double solve(const Vector& b, Vector& x, std::vector<double>* mu = nullptr) const {
+    std::vector<double> rhs = padded(b), z(rhs.size(), 0.0);
+    const SolveReport report = solver_.solve(rhs, z);
+    if (!report.ok) throw Error("", "no modes: " + report.message, "a part may have neither mass nor support");
+    x = Eigen::Map<const Vector>(z.data(), n_);
+    if (mu) mu->assign(z.begin() + n_, z.end());
+    for (size_t i = 0; mu && i < mu->size(); ++i) (*mu)[i] *= sigma_;
+    return report.residual;
+  }
+
+  Config rates(const Vector& x) const {
+    Config v = zero_;
+    system_.add_rates(v, rest_.q, padded(x));
+    return v;
+  }
+  std::vector<double> padded(const Vector& x) const {
+    std::vector<double> z(3 * static_cast<size_t>(system_.n_blocks()), 0.0);
+    std::copy(x.begin(), x.end(), z.begin());
+    return z;
+  }
+
+ private:
+  Stage stage(const Config& q) const {
+    Stage s = stage_at(q, rest_.t);
+    s.a = &zero_;
+    return s;
+  }
+  Vector mass_residual(const Config& acceleration) const {
+    Stage s = stage_at(system_.start, rest_.t);
+    s.left = s.end = &rest_.q;
+    s.slope = 0, s.chain = 1e-30;  // without stiffness
+    s.a = &acceleration, s.mass_slope = 1;
+    s.rates_alone = true, s.load_factor = 0;
+    Residual r;
+    system_.evaluate(s, none_, r, nullptr);
+    return free_part(r);
+  }
+  Vector free_part(Residual& r) const {
+    solver_.sum_shared(r.r);
+    system_.mask_fixed(r.r);
+    return Eigen::Map<const Vector>(r.r.data(), n_);
+  }
+
+  const System& system_;
+  KktSolver& solver_;
+  const State& rest_;
+  Eigen::Index n_;
+  std::vector<double> none_;
+  Config zero_;
+  Vector base_mass_;
+  double sigma_ = 1;
+};
+
+/// Motions of the whole scene as one rigid body, along x, y, z and about axes through the origin: what the unknowns do (n x 6), and the
+/// forces of inertia of everything that moves along.
+struct RigidMotions {
+  Eigen::MatrixXd x, force;
+  RigidMotions(const System& system, const Linearized& at, const Config& q) : x(at.n(), 6), force(at.n(), 6) {
+    x.setZero();
+    Config v;
+    for (int k = 0; k < 6; ++k) {
+      const Vec3 e = Vec3::Unit(k % 3);
+      const auto moved = [&](const Vec3& p) { return k < 3 ? e : Vec3(e.cross(p)); };
+      const Mat3 spin = k < 3 ? Mat3(Mat3::Zero()) : skew(e);
+      combine(v, {{0, &q}});
+      for (size_t i = 0; i < q.x.size(); ++i) v.x[i] = moved(q.x[i]);
+      for (size_t b = 0; b < q.c.size(); ++b) v.c[b] = moved(q.c[b]), v.R[b] = spin * q.R[b];
+      for (size_t j = 0; j < q.Y.size(); ++j) v.Y[j] = spin * q.Y[j];
+      force.col(k) = at.mass_of(v);
+      for (const UnknownField& f : system.unknowns)
+        for (size_t i = 0; i < f.size(); ++i) {
+          if (f.turns() && k >= 3) x.col(k).segment<3>(3 * f.block(i)) = e;
+          if (!f.turns() && f.array != &Config::eta) x.col(k).segment<3>(3 * f.block(i)) = moved((q.*f.array)[f.item[i]]);
+        }
+    }
+  }
+  /// Effective masses of a mode of unit mass, about axes through the centre of mass.
+  Vec6 mass_of(const Vector& mode) const {
+    Vec3 centre = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {  // sum of m x, over m, by a turn about z and a push along y
+      const int along = (k + 1) % 3, about = 3 + (k + 2) % 3;
+      const double m = x.col(along).dot(force.col(along));
+      if (m > 0) centre[k] = x.col(about).dot(force.col(along)) / m;
+    }
+    Vec6 p = force.transpose() * mode;
+    for (int k = 0; k < 3; ++k) p[3 + k] -= Vec3(Vec3::Unit(k)).cross(centre).dot(p.head<3>());
+    return p.cwiseAbs2();
+  }
+};
+
+/// The mean of the squared frequencies, most of them of single cells.
+double mean_omega2(const Linearized& at) {
+  std::mt19937_64 random{7};
+  std::normal_distribution<double> normal;
+  Vector x(at.n());
+  for (double& value : x) value = normal(random);
+  const double mean = std::abs(x.dot(at.stiffness(x))) / x.dot(at.mass(x));
+  return std::isfinite(mean) && mean > 0 ? mean : 1;
+}
+
+/// Half of the lowest squared frequency that is no rigid motion: there both are told apart, and the factors are exact.  A first look is
+/// taken far below the frequencies of single cells, and far above what rounding makes of motions that nothing holds.
+double good_shift(const Linearized& at, Pencil pencil, int wanted, const std::function<void(double)>& factor) {
+  const double first = 1e-7 * mean_omega2(at);
+  pencil.shift = first;
+  for (int pass = 0; pass < 4; ++pass) {
+    factor(pencil.shift);
+    double lowest = 1e300;
+    for (const double x : lowest_modes(pencil, std::min(wanted, 14), 1e-3, false).omega2)
+      if (std::abs(x) > 1e-3 * pencil.shift) lowest = std::min(lowest, std::abs(x));
+    if (lowest == 1e300) {  // they lie lower still, or nothing but rigid motions was asked for
+      if (pencil.shift < first) return first;
+      pencil.shift = 1e-3 * first;
+    } else if (lowest / 2 > pencil.shift / 4 && lowest / 2 < 4 * pencil.shift) {
+      break;
+    } else {
+      pencil.shift = lowest / 2;
+    }
+  }
+  return pencil.shift;
+}
+
+}  // namespace
+
+std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, const State& rest, int wanted,
+                                     const std::function<void(int)>& tell) {
+  Linearized at(system, solver, rest);
+  Pencil pencil{at.n(), [&](const Vector& x, Vector& y) { y = at.mass(x); }, [&](const Vector& b, Vector& x) { at.solve(b, x); }, 0};
+  pencil.shift = good_shift(at, pencil, wanted, [&](double shift) { at.factor(shift); });
+  at.factor(pencil.shift);
+  const Eigenmodes modes = lowest_modes(pencil, wanted, 1e-8, true, tell);
+  if (modes.asymmetry > 1e-4)
+    throw Error("", "the forces of small motions are no gradient: a pressure that follows, a moment that turns along, friction under load",
+                "modes need forces that have a potential");
+  if (!modes.converged) throw Error("", fmt::format("{} modes were not found", wanted), "ask for fewer: time.modes", Exit::not_converged);
+  const RigidMotions rigid(system, at, rest.q);
+  std::vector<FoundMode> out;
+  for (Eigen::Index j = 0; j < modes.omega2.size(); ++j) {
+    FoundMode m;
+    Vector x;
+    const double residual = at.solve(at.mass(modes.shapes.col(j)), x, &m.mu);  // free of what has no mass and follows at once
+    Eigen::Index at_most = 0;
+    x.cwiseAbs().maxCoeff(&at_most);
+    const double norm = std::copysign(std::sqrt(x.dot(at.mass(x))), x[at_most]);
+    x /= norm;
+    for (double& value : m.mu) value /= norm;
+    const Vector change = x - std::copysign(1.0, norm * (modes.omega2[j] + pencil.shift)) * modes.shapes.col(j);
+    m.figures.omega2 = modes.omega2[j];
+    m.figures.mass = rigid.mass_of(x);
+    if (system.traits().has_rates && m.figures.omega2 > 1e-9 * pencil.shift)
+      m.figures.damping = x.dot(at.damping(x)) / (2 * std::sqrt(m.figures.omega2));
+    m.figures.error = std::sqrt(std::max(0.0, change.dot(at.mass(change)))) + residual;
+    m.x.assign(x.begin(), x.end());
+    out.push_back(std::move(m));
+  }
+  return out;
+}
+
+}  // namespace hilo

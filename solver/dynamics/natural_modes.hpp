@@ -1,0 +1,23 @@
+// Small vibrations about a state of rest:
+//
+//   (K - omega^2 M) x + G^T mu = 0,   G x = 0,   x_i^T M x_j = delta_ij
+//
+// with K, M and G the derivatives of the very equations that a run integrates: springs, joints, loads that follow, the stress of a preload.
+#pragma once
+#include "dynamics/state.hpp"
+#include "system/natural_modes.hpp"
+
+namespace hilo {
+
+struct FoundMode {
+  NaturalMode figures;
+  std::vector<double> x;   // increments of the unknowns, of unit mass (3 x n_blocks before the multipliers)
+  std::vector<double> mu;  // multipliers, laid out like State::lambda
+};
+
+/// The `wanted` lowest modes about `rest`, whose multipliers hold it there, or all there are.  Error where the forces of a small motion are
+/// no gradient, as those of follower pressure.
+std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, const State& rest, int wanted,
+                                     const std::function<void(int)>& tell);
+
+}  // namespace hilo

@@ -1,0 +1,160 @@
+#include "linear/block_krylov.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <vector>
+
+namespace hilo {
+namespace {
+
+using Eigen::Index;
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+/// Ritz pairs by falling |nu|, and how far each is from an eigenpair.
+struct Ritz {
+  Vector nu, residual;
+  Matrix y;
+};
+
+class Krylov {
+ public:
+  explicit Krylov(const Pencil& pencil) : pencil_(pencil) {}
+
+  /// Vectors of which nothing is known but that they are in the subspace.
+  Matrix fresh() {
+    constexpr Index width = 6;  // free rigid motions come by six
+    std::normal_distribution<double> normal;
+    Matrix W(pencil_.n, width);
+    Vector x(pencil_.n), y(pencil_.n);
+    for (Index j = 0; j < width; ++j) {
+      for (double& value : x) value = normal(random_);
+      pencil_.mass(x, y), pencil_.solve(y, x);
+      W.col(j) = x;
+    }
+    return W;
+  }
+
+  /// What of W is beside the basis joins it; W^T M W of that part.
+  Matrix extend(Matrix W) {
+    Matrix MW(W.rows(), W.cols());
+    Vector y(pencil_.n);
+    for (Index j = 0; j < W.cols(); ++j) pencil_.mass(W.col(j), y), MW.col(j) = y;
+    const auto product = [&] { return Matrix((W.transpose() * MW + MW.transpose() * W) / 2); };
+    const Vector before = product().diagonal();
+    take_basis_from(W, MW, V_.cols());
+    const Matrix G = product();
+    // by unit columns, so that small ones count; directions that are rounding of what was taken away do not
+    Vector unit(W.cols());
+    for (Index j = 0; j < W.cols(); ++j) unit[j] = G(j, j) > 1e-14 * before[j] && before[j] > 0 ? 1 / std::sqrt(G(j, j)) : 0;
+    const Eigen::SelfAdjointEigenSolver<Matrix> gram(unit.asDiagonal() * G * unit.asDiagonal());
+    const Vector& g = gram.eigenvalues();
+    Index skip = 0;
+    while (skip < g.size() && !(g[skip] > 1e-10)) ++skip;
+    const Index kept = g.size() - skip, k = V_.cols();
+    const Matrix turn = unit.asDiagonal() * gram.eigenvectors().rightCols(kept) * g.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
+    W = (W * turn).eval(), MW = (MW * turn).eval();
+    take_basis_from(W, MW, k);  // what is kept of a small rest has lost digits
+    V_.conservativeResize(pencil_.n, k + kept), MV_.conservativeResize(pencil_.n, k + kept);
+    V_.rightCols(kept) = W, MV_.rightCols(kept) = MW;
+    return G;
+  }
+
+  /// The inverse on the columns of the basis that it has not seen.
+  Matrix apply() {
+    const Index first = T_.cols(), k = V_.cols();
+    Matrix W(pencil_.n, k - first);
+    Vector x(pencil_.n);
+    for (Index j = 0; j < W.cols(); ++j) pencil_.solve(MV_.col(first + j), x), W.col(j) = x;
+    const Matrix H = MV_.transpose() * W, corner = H.bottomRows(W.cols());
+    asymmetry_ = std::max(asymmetry_, (corner - corner.transpose()).norm());
+    T_.conservativeResize(k, k);
+    T_.rightCols(W.cols()) = H;
+    T_.bottomLeftCorner(W.cols(), first) = H.topRows(first).transpose();
+    T_.bottomRightCorner(W.cols(), W.cols()) = (corner + corner.transpose()) / 2;
+    return W;
+  }
+
+  /// The best `wanted` pairs of the columns that the inverse has seen.  Images of all but the last of them lie in the basis; `rest`: W^T M
+  /// W of what the images of these have beside it.
+  Ritz ritz(Index wanted, const Matrix& rest) const {
+    const Eigen::SelfAdjointEigenSolver<Matrix> all(T_);
+    std::vector<Index> order(static_cast<size_t>(T_.cols()));
+    std::iota(order.begin(), order.end(), 0);
+    const auto size = [&](Index i) { return std::abs(all.eigenvalues()[i]); };
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return size(a) > size(b); });
+    const Index count = std::min(wanted, T_.cols());
+    Ritz out{Vector(count), Vector(count), Matrix(T_.cols(), count)};
+    for (Index j = 0; j < count; ++j) {
+      const Index i = order[static_cast<size_t>(j)];
+      out.nu[j] = all.eigenvalues()[i], out.y.col(j) = all.eigenvectors().col(i);
+      const auto last = out.y.col(j).tail(rest.cols());
+      out.residual[j] = std::sqrt(std::max(0.0, last.dot(rest * last)));
+    }
+    return out;
+  }
+
+  Index size() const { return V_.cols(); }
+  Matrix shapes(const Matrix& y) const { return V_.leftCols(y.rows()) * y; }
+  double asymmetry() const { return asymmetry_; }
+
+ private:
+  void take_basis_from(Matrix& W, Matrix& MW, Index k) const {
+    for (int twice = 0; twice < 2 && k > 0; ++twice) {
+      const Matrix C = MV_.leftCols(k).transpose() * W;
+      W -= V_.leftCols(k) * C, MW -= MV_.leftCols(k) * C;
+    }
+  }
+
+  const Pencil& pencil_;
+  Matrix V_, MV_, T_;  // the basis, M of it, and V^T M (K + s M)^-1 M V
+  double asymmetry_ = 0;
+  std::mt19937_64 random_{20041};  // the same modes in every run
+};
+
+}  // namespace
+
+Eigenmodes lowest_modes(const Pencil& pencil, int wanted, double tolerance, bool doubt, const std::function<void(int)>& tell) {
+  constexpr int further = 2;  // blocks that a doubt takes
+  const Index most = 300 + 4 * static_cast<Index>(wanted);
+  Krylov krylov(pencil);
+  krylov.extend(krylov.fresh());
+  Ritz ritz;
+  Vector doubted;
+  bool sure = krylov.size() == 0;  // nothing has mass
+  for (int left = 0; !sure && krylov.size() <= most;) {
+    const Index k = krylov.size();
+    const Matrix rest = krylov.extend(krylov.apply());
+    ritz = krylov.ritz(wanted, rest);
+    const bool exhausted = krylov.size() == k;
+    const auto good = exhausted ? ritz.nu.size() : ((ritz.residual.array() <= tolerance * ritz.nu.array().abs()).count());
+    if (tell) tell(static_cast<int>(good));
+    if (exhausted) left = 0;
+    if (left > 0) --left;
+    if (left > 0 || good < ritz.nu.size() || (!exhausted && good < wanted)) continue;
+    if (!doubt && !exhausted) break;
+    const bool same = doubted.size() == ritz.nu.size() && ((doubted - ritz.nu).array().abs() <= 1e-8 * ritz.nu.array().abs()).all();
+    const Index before = krylov.size();
+    if (!same) krylov.extend(krylov.fresh());
+    sure = same || krylov.size() == before;
+    if (exhausted && krylov.size() == k) sure = true;
+    doubted = ritz.nu, left = further;
+  }
+  Eigenmodes out;
+  out.converged = sure;
+  out.asymmetry = ritz.nu.size() > 0 ? krylov.asymmetry() / ritz.nu.cwiseAbs().maxCoeff() : 0;
+  std::vector<Index> order(static_cast<size_t>(ritz.nu.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return 1 / ritz.nu[a] < 1 / ritz.nu[b]; });
+  out.omega2.resize(ritz.nu.size());
+  Matrix y(ritz.y.rows(), ritz.y.cols());
+  for (size_t j = 0; j < order.size(); ++j) {
+    const auto at = static_cast<Index>(j);
+    out.omega2[at] = 1 / ritz.nu[order[j]] - pencil.shift, y.col(at) = ritz.y.col(order[j]);
+  }
+  out.shapes = krylov.shapes(y);
+  return out;
+}
+
+}  // namespace hilo

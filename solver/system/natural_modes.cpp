@@ -1,0 +1,17 @@
+#include "system/natural_modes.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace hilo {
+
+double NaturalMode::frequency() const { return std::copysign(std::sqrt(std::abs(omega2)), omega2) / (2 * std::numbers::pi); }
+
+void NaturalModes::add_end_values(const Config&, const Config&, std::vector<double>& out) const {
+  out.push_back(now.frequency());
+  out.push_back(now.damping);
+  out.insert(out.end(), now.mass.data(), now.mass.data() + 6);
+  out.push_back(now.error);
+}
+
+}  // namespace hilo

@@ -1,0 +1,26 @@
+// What an analysis of modes puts out beside displacements and forces: a row for every mode.
+#pragma once
+#include "system/contribution.hpp"
+
+namespace hilo {
+
+struct NaturalMode {
+  double omega2 = 0;         // squared circular frequency, below zero where the state is not stable  [1/s^2]
+  double damping = 0;        // ratio to the critical one
+  Vec6 mass = Vec6::Zero();  // effective: along x, y, z [kg], about axes through the centre of mass [kg m^2]
+  double error = 0;          // of the shape: what the equations of motion leave of it
+  /// [Hz]; of an unstable mode minus its rate of growth over 2 pi.
+  double frequency() const;
+};
+
+/// Takes part in no equation: it holds the row that is written next.
+class NaturalModes final : public Contribution {
+ public:
+  NaturalMode now;
+  void evaluate(Pass&) const override {}
+  void tie(Ties&) const override {}
+  std::vector<Output> outputs() const override { return {{.group = "", .name = "mode", .n_end = 9}}; }
+  void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
+};
+
+}  // namespace hilo

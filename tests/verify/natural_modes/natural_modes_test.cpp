@@ -1,0 +1,223 @@
+// Natural frequencies against closed forms: `analysis = "modes"` of bodies, cells, linear regions, preloads and what nothing holds.
+#include <numbers>
+
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+const std::string steel = "[material.m]\nE = 2e11\nnu = 0\ndensity = 8000\n[region.\"*\"]\nmaterial = \"m\"\n";
+
+class NaturalModes : public testing::Test {
+ protected:
+  /// Rows of /history/mode, the state of rest left out.
+  Eigen::MatrixXd modes(const std::string& scene, int wanted, const std::string& options = "") {
+    work.write("scene.toml", scene + "[time]\nanalysis = \"modes\"\nmodes = " + std::to_string(wanted) + "\n");
+    ran = work.run("hilo-solve scene.toml " + mesh + " -o run.h5 " + options);
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    if (ran.exit != 0) return Eigen::MatrixXd::Zero(wanted, 9);
+    const Eigen::MatrixXd all = Results(work / "run.h5").history("mode");
+    EXPECT_LT(all.col(8).maxCoeff(), 1e-5) << "shapes satisfy the equations";
+    return all.bottomRows(all.rows() - 1);
+  }
+  Eigen::VectorXd frequencies(const std::string& scene, int wanted) { return modes(scene, wanted).col(0); }
+  void use(const Mesh& m, const std::vector<Fidelity>& fidelity = {}) {
+    write_mesh(work / "mesh.h5", m, {"test"});
+    mesh = "mesh.h5";
+    if (fidelity.empty()) return;
+    write_tags(work / "tags.h5", work / "mesh.h5", fidelity, {"test"});
+    mesh = "tags.h5";
+  }
+  Workplace work;
+  std::string mesh;
+  Ran ran;
+};
+
+std::string body(const std::string& name, double mass, const Vec3& com, const Vec3& inertia) {
+  return "[[body]]\nname = \"" + name + "\"\nmass = " + std::to_string(mass) + "\ncom = [" + std::to_string(com[0]) + ", " +
+         std::to_string(com[1]) + ", " + std::to_string(com[2]) + "]\ninertia = [" + std::to_string(inertia[0]) + ", " +
+         std::to_string(inertia[1]) + ", " + std::to_string(inertia[2]) + "]\n";
+}
+
+Mesh beam(const Vec3& size, int n) {
+  BlockOptions o;
+  o.shape = Shape::hex20r;
+  o.n[0] = n;
+  o.high = size;
+  return block_mesh(o);
+}
+
+/// Timoshenko's beam by its two bending branches would be more than a slender one needs: corrections of order (r/L)^2 are below 2e-4 here.
+const double r_z = 0.01 / std::sqrt(12), r_y = 0.015 / std::sqrt(12), wave = std::sqrt(2e11 / 8000);  // radii of gyration [m], bar speed
+double bending(double beta_l, double r) { return beta_l * beta_l * r * wave / (2 * pi); }             // of a beam 1 m long  [Hz]
+
+TEST_F(NaturalModes, OfACantileverAreThoseOfItsBeam) {
+  use(beam({1, 0.015, 0.01}, 30));
+  const auto f = frequencies(steel + "[[motion]]\nkind = \"fixed\"\nname = \"wall\"\non = \"xmin\"\n", 4);
+  EXPECT_NEAR(f[0] / bending(1.87510407, r_z), 1, 1e-3);
+  EXPECT_NEAR(f[1] / bending(1.87510407, r_y), 1, 1e-3);
+  EXPECT_NEAR(f[2] / bending(4.69409113, r_z), 1, 2e-3);
+  EXPECT_NEAR(f[3] / bending(4.69409113, r_y), 1, 3e-3);
+}
+
+TEST_F(NaturalModes, OfAFreeBeamAreSixRigidMotionsAndThoseOfItsBeam) {
+  use(beam({1, 0.015, 0.01}, 30));
+  const auto m = modes(steel, 9);
+  for (int k = 0; k < 6; ++k) EXPECT_LT(std::pow(m(k, 0) / m(6, 0), 2), 1e-8) << k << ", of omega^2: what rounding makes of K";
+  EXPECT_NEAR(m(6, 0) / bending(4.73004074, r_z), 1, 2e-3);
+  EXPECT_NEAR(m(7, 0) / bending(4.73004074, r_y), 1, 2e-3);
+  for (int k = 2; k < 5; ++k)
+    EXPECT_NEAR(m.col(k).head(6).sum(), 8000 * 0.015 * 0.01, 1e-9 * 1.2) << "rigid modes carry all of the mass along an axis";
+  EXPECT_LT(m.col(2).tail(3).cwiseAbs().maxCoeff(), 1e-12) << "and vibrations none";
+}
+
+// All nodes of a face move along its normal alone: Navier's plate, with Mindlin's shear and rotary inertia.
+TEST_F(NaturalModes, OfASupportedPlateAreNavierAndMindlins) {
+  BlockOptions o;
+  o.shape = Shape::hex20r;
+  o.n[0] = o.n[1] = 8;
+  o.high = Vec3(1, 1, 0.02);
+  use(block_mesh(o));
+  std::string held;
+  for (const char* face : {"xmin", "xmax", "ymin", "ymax"})
+    held += std::string("[[motion]]\nkind = \"fixed\"\nname = \"") + face + "\"\non = \"" + face + "\"\ncomponents = [\"" +
+            (face[0] == 'x' ? 'y' : 'x') + "\", \"z\"]\n";
+  const auto f = frequencies(steel + held, 3);
+  const auto mindlin = [](int m, int n) {
+    const double E = 2e11, nu = 0, rho = 8000, h = 0.02, k2 = pi * pi * (m * m + n * n), D = E * h * h * h / (12 * (1 - nu * nu)),
+                 S = 5. / 6 * E / (2 * (1 + nu)) * h, I = rho * h * h * h / 12;
+    // (D k^4 - w^2 (rho h + k^2 (I + rho h D/S)) + w^4 I rho h/S = 0
+    const double a = I * rho * h / S, b = rho * h + k2 * (I + rho * h * D / S), c = D * k2 * k2;
+    return std::sqrt((b - std::sqrt(b * b - 4 * a * c)) / (2 * a)) / (2 * pi);
+  };
+  EXPECT_NEAR(f[0] / mindlin(1, 1), 1, 1e-3);
+  EXPECT_NEAR(f[1] / mindlin(1, 2), 1, 3e-3);
+  EXPECT_NEAR(f[2] / f[1], 1, 1e-6) << "twice, by symmetry";
+}
+
+TEST_F(NaturalModes, OfARingAreHoppes) {
+  const double R = 1, h = 0.02;
+  const int n = 48;
+  BlockOptions o;
+  o.shape = Shape::hex20r;
+  o.n[0] = n;
+  o.low = Vec3(0, R - h / 2, 0), o.high = Vec3(2 * pi, R + h / 2, 2 * h);  // out of its plane it is stiffer
+  Mesh m = block_mesh(o);
+  for (Vec3& x : m.X) x = Vec3(x[1] * std::cos(x[0]), -x[1] * std::sin(x[0]), x[2]);
+  // the last face is the first
+  std::vector<std::int64_t> same(m.X.size());
+  for (size_t i = 0; i < m.X.size(); ++i) {
+    same[i] = static_cast<std::int64_t>(i);
+    for (size_t j = 0; j < i; ++j)
+      if ((m.X[i] - m.X[j]).norm() < 1e-9) same[i] = static_cast<std::int64_t>(j);
+  }
+  std::vector<std::int64_t> row(m.X.size(), -1);
+  std::vector<Vec3> X;
+  for (size_t i = 0; i < m.X.size(); ++i)
+    if (same[i] == static_cast<std::int64_t>(i)) row[i] = static_cast<std::int64_t>(X.size()), X.push_back(m.X[i]);
+  for (auto& node : m.nodes) node = row[same[node]];
+  m.X = X, m.node_id.resize(X.size());
+  m.facet_sets.clear();
+  use(m);
+  const auto f = frequencies(steel, 10);
+  const auto hoppe = [&](int k) {  // bending in the plane
+    return k * (k * k - 1) / std::sqrt(k * k + 1.) * wave * h / std::sqrt(12) / (R * R) / (2 * pi);
+  };
+  int seen = 0;
+  for (int j = 6; j < 10; ++j) seen += std::abs(f[j] / hoppe(2) - 1) < 2e-3;
+  EXPECT_EQ(seen, 2) << "two of a kind\n" << f;
+}
+
+TEST_F(NaturalModes, OfPendulumsAreSmallSwings) {
+  const std::string hung = "gravity = [0, 0, -9.81]\n" + body("arm", 2, {0, 0, -0.5}, {0.1, 0.2, 0.15}) +
+                           "[[joint]]\nkind = \"revolute\"\nname = \"pin\"\nb = \"arm\"\nat = [0, 0, 0]\naxis = [0, 1, 0]\n";
+  auto m = modes(hung, 10);
+  ASSERT_EQ(m.rows(), 1) << "one freedom, one mode";
+  EXPECT_NEAR(m(0, 0), std::sqrt(2 * 9.81 * 0.5 / (0.2 + 2 * 0.25)) / (2 * pi), 1e-10);
+  // upside down it falls
+  m = modes("gravity = [0, 0, 9.81]\n" + hung.substr(hung.find('\n') + 1), 10);
+  EXPECT_NEAR(m(0, 0), -std::sqrt(2 * 9.81 * 0.5 / (0.2 + 2 * 0.25)) / (2 * pi), 1e-10);
+  // two equal points on equal threads: omega^2 = (2 -+ sqrt 2) g/l
+  m = modes("gravity = [0, 0, -9.81]\n" + body("a", 1, {0, 0, -1}, {1e-6, 1e-6, 1e-6}) + body("b", 1, {0, 0, -2}, {1e-6, 1e-6, 1e-6}) +
+                "[[joint]]\nkind = \"revolute\"\nname = \"pin\"\nb = \"a\"\nat = [0, 0, 0]\naxis = [0, 1, 0]\n"
+                "[[joint]]\nkind = \"revolute\"\nname = \"link\"\na = \"a\"\nb = \"b\"\nat = [0, 0, -1]\naxis = [0, 1, 0]\n",
+            10);
+  ASSERT_EQ(m.rows(), 2);
+  for (int k = 0; k < 2; ++k) EXPECT_NEAR(m(k, 0), std::sqrt((2 + (k ? 1 : -1) * std::sqrt(2)) * 9.81) / (2 * pi), 1e-5);
+}
+
+TEST_F(NaturalModes, OfAStringOfBeadsAreLagranges) {
+  // beads on springs that pull with T: transverse omega = 2 sqrt(T/(m a)) sin(k pi/(2 (n + 1))), each in two planes
+  const int n = 5;
+  const double T = 100, a = 0.2, m = 0.1, stiffness = 1e5;
+  std::string scene;
+  for (int i = 1; i <= n; ++i) scene += body("b" + std::to_string(i), m, {i * a, 0, 0}, {1e-6, 1e-6, 1e-6});
+  for (int i = 0; i <= n; ++i) {
+    scene += "[[spring]]\nkind = \"axial\"\nname = \"s" + std::to_string(i) + "\"\n";
+    scene += i == 0 ? "a = \"ground\"\n" : "a = \"b" + std::to_string(i) + "\"\n";
+    scene += i == n ? "b = \"ground\"\n" : "b = \"b" + std::to_string(i + 1) + "\"\n";
+    scene += "at_a = [" + std::to_string(i * a) + ", 0, 0]\nat_b = [" + std::to_string((i + 1) * a) +
+             ", 0, 0]\nstiffness = " + std::to_string(stiffness) + "\nlength = " + std::to_string(a - T / stiffness) + "\n";
+  }
+  const auto f = frequencies(scene, 3 * n + 2 * n + n);  // turns of the beads too: all there are
+  std::vector<double> bent;
+  for (const double x : f)
+    if (x > 0.1) bent.push_back(x);
+  for (int k = 1; k <= n; ++k) {
+    const double exact = 2 * std::sqrt(T / (m * a)) * std::sin(k * pi / (2 * (n + 1))) / (2 * pi);
+    const auto near = std::count_if(bent.begin(), bent.end(), [&](double x) { return std::abs(x / exact - 1) < 1e-9; });
+    EXPECT_EQ(near, 2) << exact;
+  }
+}
+
+TEST_F(NaturalModes, OfAVehicleOnSpringsAreBounceAndPitch) {
+  const double m = 1000, J = 1500, kf = 3e4, kr = 4e4, a = 1.2, b = 1.6;
+  const auto corner = [](const std::string& name, double x, double k, double c) {
+    return "[[spring]]\nkind = \"bushing\"\nname = \"" + name + "\"\nb = \"car\"\nat = [" + std::to_string(x) +
+           ", 0, 0]\nstiffness = [0, 0, " + std::to_string(k) + "]\ndamping = [0, 0, " + std::to_string(c) + "]\n";
+  };
+  const std::string plane = "[[joint]]\nkind = \"planar\"\nname = \"road\"\nb = \"car\"\nat = [0, 0, 0]\naxis = [0, 1, 0]\n";
+  const auto all = modes(body("car", m, {0, 0, 0}, {J, J, J}) + corner("front", a, kf, 300) + corner("rear", -b, kr, 400) + plane, 3);
+  const double A = (kf + kr) / m, B = (kf * a * a + kr * b * b) / J, C = (kf * a - kr * b) / std::sqrt(m * J);
+  EXPECT_NEAR(all(0, 0), 0, 1e-6) << "it rolls along";
+  for (int k = 0; k < 2; ++k) {
+    const double omega = std::sqrt((A + B) / 2 + (k ? 1 : -1) * std::sqrt((A - B) * (A - B) / 4 + C * C));
+    EXPECT_NEAR(all(1 + k, 0), omega / (2 * pi), 1e-9);
+    EXPECT_NEAR(all(1 + k, 1), 0.01 * omega / 2, 1e-6) << "damping is .01 s times stiffness";
+  }
+}
+
+// Fifteen equal oscillators: each copy of a frequency is found.
+TEST_F(NaturalModes, CountEveryCopy) {
+  std::string scene;
+  for (int i = 0; i < 15; ++i) {
+    const std::string name = "b" + std::to_string(i), at = "[" + std::to_string(i) + ", 0, 0]";
+    scene += body(name, 1, {double(i), 0, 0}, {1, 1, 1}) + "[[joint]]\nkind = \"prismatic\"\nname = \"j" + name + "\"\nb = \"" + name +
+             "\"\nat = " + at + "\naxis = [0, 0, 1]\n[[spring]]\nkind = \"bushing\"\nname = \"s" + name + "\"\nb = \"" + name +
+             "\"\nat = " + at + "\nstiffness = [0, 0, " + (i < 12 ? "100" : "400") + "]\n";
+  }
+  const auto f = frequencies(scene, 20);
+  ASSERT_EQ(f.size(), 15);
+  for (int i = 0; i < 15; ++i) EXPECT_NEAR(f[i], (i < 12 ? 10 : 20) / (2 * pi), 1e-9);
+}
+
+TEST_F(NaturalModes, OfLinearRegionsAreThoseOfTheirCells) {
+  const std::string scene = steel + "modes = 20\nup_to = 1e5\n[[motion]]\nkind = \"fixed\"\nname = \"wall\"\non = \"xmin\"\n";
+  use(beam({1, 0.2, 0.1}, 10), {Fidelity::nonlinear});
+  const auto cells = frequencies(scene, 5);
+  use(beam({1, 0.2, 0.1}, 10), {Fidelity::linear});
+  const auto linear = frequencies(scene, 5);
+  EXPECT_LT(((linear - cells).array() / cells.array()).abs().maxCoeff(), 1e-2) << linear << "\n\n" << cells;
+}
+
+TEST_F(NaturalModes, AreRefusedWhereTheyHaveNoMeaning) {
+  const std::string arm = body("arm", 2, {0, 0, -0.5}, {0.1, 0.2, 0.15});
+  work.write("scene.toml", arm + "[[initial]]\non = [\"arm\"]\nvelocity = [1, 0, 0]\n[time]\nanalysis = \"modes\"\n");
+  const Ran moving = work.run("hilo-solve scene.toml -o run.h5");
+  EXPECT_EQ(moving.exit, 2);
+  EXPECT_NE(moving.err.find("initial velocities"), std::string::npos) << moving.err;
+}
+
+}  // namespace
+}  // namespace hilo::test
