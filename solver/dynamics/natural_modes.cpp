@@ -25,8 +25,28 @@ class Linearized {
   }
   Eigen::Index n() const { return n_; }
 
-  Vector mass_of(const Config& acceleration) const { return mass_residual(acceleration) - base_mass_; }
+  /// Forces of inertia.  Accelerations are taken so large that the rounding of stiff cells, which is in the residual too, is small beside.
+  Vector mass_of(const Config& acceleration) const {
+    const double factor = typical_acceleration_ / std::max(1e-300, system_.largest_rate(acceleration));
+    Config a;
+    combine(a, {{factor, &acceleration}});
+    return (mass_residual(a) - base_mass_) / factor;
+  }
   Vector mass(const Vector& x) const { return mass_of(rates(x)); }
+  /// The mean of the squared frequencies, most of them of single cells.
+  double mean_omega2() {
+    std::mt19937_64 random{7};
+    std::normal_distribution<double> normal;
+    Vector x(n_);
+    double mean = 0;
+    for (double& value : x) value = normal(random);
+    for (int twice = 0; twice < 2; ++twice) {
+      mean = std::abs(x.dot(stiffness(x)) / x.dot(mass(x)));
+      if (!std::isfinite(mean) || mean == 0) mean = 1;
+      typical_acceleration_ = std::max(mean, 1.0) * system_.length;
+    }
+    return mean;
+  }
 
   /// About K x, by differences of the residual between a little motion to either side.
   Vector stiffness(const Vector& x) const {
@@ -121,7 +141,7 @@ class Linearized {
   std::vector<double> none_;
   Config zero_;
   Vector base_mass_;
-  double sigma_ = 1;
+  double sigma_ = 1, typical_acceleration_ = 1;
 };
 
 /// Motions of the whole scene as one rigid body, along x, y, z and about axes through the origin: what the unknowns do (n x 6), and the
@@ -161,20 +181,10 @@ struct RigidMotions {
   }
 };
 
-/// The mean of the squared frequencies, most of them of single cells.
-double mean_omega2(const Linearized& at) {
-  std::mt19937_64 random{7};
-  std::normal_distribution<double> normal;
-  Vector x(at.n());
-  for (double& value : x) value = normal(random);
-  const double mean = std::abs(x.dot(at.stiffness(x))) / x.dot(at.mass(x));
-  return std::isfinite(mean) && mean > 0 ? mean : 1;
-}
-
 /// Half of the lowest squared frequency that is no rigid motion: there both are told apart, and the factors are exact.  A first look is
 /// taken far below the frequencies of single cells, and far above what rounding makes of motions that nothing holds.
-double good_shift(const Linearized& at, Pencil pencil, int wanted, const std::function<void(double)>& factor) {
-  const double first = 1e-7 * mean_omega2(at);
+double good_shift(Linearized& at, Pencil pencil, int wanted, const std::function<void(double)>& factor) {
+  const double first = 1e-7 * at.mean_omega2();
   pencil.shift = first;
   for (int pass = 0; pass < 4; ++pass) {
     factor(pencil.shift);
@@ -201,7 +211,7 @@ std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, co
   Pencil pencil{at.n(), [&](const Vector& x, Vector& y) { y = at.mass(x); }, [&](const Vector& b, Vector& x) { at.solve(b, x); }, 0};
   pencil.shift = good_shift(at, pencil, wanted, [&](double shift) { at.factor(shift); });
   at.factor(pencil.shift);
-  const Eigenmodes modes = lowest_modes(pencil, wanted, 1e-8, true, tell);
+  const Eigenmodes modes = lowest_modes(pencil, wanted, 1e-6, true, tell);
   if (modes.asymmetry > 1e-4)
     throw Error("", "the forces of small motions are no gradient: a pressure that follows, a moment that turns along, friction under load",
                 "modes need forces that have a potential");

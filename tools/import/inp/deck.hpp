@@ -108,6 +108,7 @@ struct InpDeck {
   std::vector<std::string> transformed;  // node sets (upper case) or numbers with axes of their own
   std::string title, procedure;          // "*STATIC"
   double step_increment = 0, step_end = 0;
+  int n_modes = 0;  // of *FREQUENCY
 };
 
 /// The shape of an element type, or an Error at the card that says why there is none.

@@ -224,6 +224,9 @@ class Writer {
     } else if (d_.procedure == "*DYNAMIC") {
       tables_ += fmt::format("\n[time]\nend = {}\n", num(end));
       if (d_.step_increment > 0) tables_ += fmt::format("step = {}\n", num(d_.step_increment * si("s")));
+    } else if (d_.procedure == "*FREQUENCY") {
+      tables_ += "\n[time]\nanalysis = \"modes\"\n";
+      if (d_.n_modes > 0) tables_ += fmt::format("modes = {}\n", d_.n_modes);
     }
   }
 

@@ -1,6 +1,8 @@
 // The cards of an .inp deck that divide it: heading, parts, steps and what a step computes.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
 
@@ -33,12 +35,18 @@ void read_step(InpReading& r) {
   if (++r.step == 2) r.in.notes.push_back(fmt::format("{}: only the first step becomes scene lines", r.card.place()));
 }
 
-/// *STATIC and *DYNAMIC become scene lines.
+/// *STATIC, *DYNAMIC and *FREQUENCY become scene lines.
 void read_procedure(InpReading& r) {
   r.deck.procedure = r.card.name;
   DataLine l;
   if (r.lines.next_data(l)) r.deck.step_increment = l.number(0), r.deck.step_end = l.number(1);
   for (const auto& [key, p] : r.card.params) r.skip(fmt::format("{}, {}", r.card.name, key));
+}
+/// How many modes; a band of frequencies is not asked for.
+void read_frequency(InpReading& r) {
+  r.deck.procedure = r.card.name;
+  DataLine l;
+  if (r.lines.next_data(l)) r.deck.n_modes = static_cast<int>(std::clamp(l.number(0), 0.0, 1000.0));
 }
 void other_procedure(InpReading& r) {
   r.deck.procedure = r.card.name;
@@ -61,7 +69,7 @@ std::span<const InpCard> inp_step_cards() {
       {"ENDSTEP", nothing},
       {"STATIC", read_procedure, true},
       {"DYNAMIC", read_procedure, true},
-      {"FREQUENCY", other_procedure, true},
+      {"FREQUENCY", read_frequency, true},
       {"COMPLEXFREQUENCY", other_procedure, true},
       {"BUCKLE", other_procedure, true},
       {"HEATTRANSFER", other_procedure, true},
