@@ -72,8 +72,8 @@ void talk(const Imported& in) {
   if (is_quiet()) return;
   for (const auto& n : in.notes) fmt::print(stderr, "hilo-import: {}\n", n);
   for (const auto& n : in.not_read)
-    fmt::print(stderr, "hilo-import: not read: {} ({}{}{}){}\n", n.what, n.count, n.place.empty() ? "" : ", ", n.place,
-               n.output ? ", a request for output" : "");
+    fmt::print(stderr, "hilo-import: not read: {} ({}{}{}){}{}{}\n", n.what, n.count, n.place.empty() ? "" : ", ", n.place,
+               n.output ? ", a request for output" : "", n.hint.empty() ? "" : "; ", n.hint);
 }
 
 }  // namespace

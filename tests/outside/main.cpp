@@ -4,6 +4,7 @@
 #include "outside.hpp"
 
 int main(int argc, char** argv) {
+  outside::add_deck_card();
   outside::add_integrator();
   outside::add_joint();
   outside::add_force_law();

@@ -6,6 +6,7 @@
 namespace outside {
 
 // each in the file of its name; main() calls them all before the first scene is read
+void add_deck_card();
 void add_integrator();
 void add_joint();
 void add_force_law();

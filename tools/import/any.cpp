@@ -50,15 +50,29 @@ void note_files_of_script(const std::string& path) {
 
 }  // namespace
 
-std::vector<MeshFormat> mesh_formats() {
-  return {{".inp", read_inp},         {".bdf", read_bdf},        {".nas", read_bdf},         {".dat", read_bdf},
-          {".fem", read_bdf},         {".unv", read_unv},        {".vtk", read_vtk},         {".vtu", read_vtk},
-          {".msh", read_gmsh},        {".mesh", read_gmsh},      {".stl", read_gmsh},        {".geo", read_gmsh, true},
-          {".step", read_gmsh, true}, {".stp", read_gmsh, true}, {".brep", read_gmsh, true}, {".iges", read_gmsh, true},
-          {".igs", read_gmsh, true}};
+Registry<MeshFormat>& mesh_formats() {
+  static Registry<MeshFormat> all{"mesh format",
+                                  {{".inp", read_inp},
+                                   {".bdf", read_bdf},
+                                   {".nas", read_bdf},
+                                   {".dat", read_bdf},
+                                   {".fem", read_bdf},
+                                   {".unv", read_unv},
+                                   {".vtk", read_vtk},
+                                   {".vtu", read_vtk},
+                                   {".msh", read_gmsh},
+                                   {".mesh", read_gmsh},
+                                   {".stl", read_gmsh},
+                                   {".geo", read_gmsh, true},
+                                   {".step", read_gmsh, true},
+                                   {".stp", read_gmsh, true},
+                                   {".brep", read_gmsh, true},
+                                   {".iges", read_gmsh, true},
+                                   {".igs", read_gmsh, true}}};
+  return all;
 }
 
-Imported read_any(const std::string& path, const ImportOptions& options, const std::vector<MeshFormat>& formats) {
+Imported read_any(const std::string& path, const ImportOptions& options, const Registry<MeshFormat>& formats) {
   namespace fs = std::filesystem;
   if (!fs::exists(path)) throw Error(path, "no such file");
   if (fs::is_directory(path)) throw Error(path, "a folder, not a file");
@@ -71,14 +85,14 @@ Imported read_any(const std::string& path, const ImportOptions& options, const s
   if (ending == ".inp.gz") ending = ".inp";
   std::string known;
   for (const auto& f : formats) {
-    if (ending == f.ending) {
+    if (ending == f.name) {
       if (options.size && !f.geometry) throw Error("", fmt::format("--size is for a geometry, {} is a mesh", path), "", Exit::usage);
       if (!options.define.empty() && ending != ".geo") throw Error("", "--define is for .geo scripts", "", Exit::usage);
       if (!options.define.empty()) check_defines(path, options);
       if (ending == ".geo") note_files_of_script(path);
       return f.read(path, options);
     }
-    known += std::string(known.empty() ? "" : " ") + f.ending;
+    known += std::string(known.empty() ? "" : " ") + std::string(f.name);
   }
   throw Error(path, fmt::format("no reader for \"{}\" files", ending), "there is one for " + known + " .inp.gz");
 }

@@ -5,9 +5,11 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "base/registry.hpp"
 #include "model/mesh.hpp"
 
 namespace hilo {
@@ -29,7 +31,8 @@ struct NotRead {
   std::string what;   // "*TIE"
   std::string place;  // file:line of the first
   std::int64_t count = 0;
-  bool output = false;  // a request for output: nothing is lost
+  bool output = false;    // a request for output: nothing is lost
+  std::string hint = {};  // what it may be a slip of
 };
 
 struct Imported {
@@ -39,7 +42,7 @@ struct Imported {
   bool curved = false;              // quadratic cells made here follow curved surfaces, which may turn some inside out
   std::set<std::string> as_listed;  // node sets that order 2 must not complete: the deck's force acts on each of their nodes
 
-  void skip(const std::string& what, const std::string& place, std::int64_t count = 1, bool output = false);
+  void skip(const std::string& what, const std::string& place, std::int64_t count = 1, bool output = false, const std::string& hint = "");
 };
 
 /// A named group of cells; `tag` is its number in the file.
@@ -92,14 +95,14 @@ Imported read_gmsh(const std::string& path, const ImportOptions& options);
 
 /// A kind of file by the ending of its name.
 struct MeshFormat {
-  const char* ending;  // ".inp"
+  std::string_view name;  // its ending, ".inp"
   Imported (*read)(const std::string&, const ImportOptions&);
   bool geometry = false;  // is meshed: --size has a meaning
 };
-/// Those there are; another reader is one file and a row here.
-std::vector<MeshFormat> mesh_formats();
+/// Those there are; another reader is one file and a row here, from outside the tree `mesh_formats().add({".cube", read_cube})`.
+Registry<MeshFormat>& mesh_formats();
 /// The reader for the file's ending; Error with the endings known when there is none, or when the file cannot be opened.
-Imported read_any(const std::string& path, const ImportOptions& options, const std::vector<MeshFormat>& formats = mesh_formats());
+Imported read_any(const std::string& path, const ImportOptions& options, const Registry<MeshFormat>& formats = mesh_formats());
 
 /// What follows every reader: nodes merged, unused nodes dropped, order raised, lengths brought to SI; then the checks (inverted,
 /// degenerate).

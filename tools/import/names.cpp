@@ -25,13 +25,13 @@ std::string some(const std::vector<std::string>& names, size_t most = 8) {
 
 }  // namespace
 
-void Imported::skip(const std::string& what, const std::string& place, std::int64_t count, bool output) {
+void Imported::skip(const std::string& what, const std::string& place, std::int64_t count, bool output, const std::string& hint) {
   for (auto& n : not_read)
     if (n.what == what) {
       n.count += count;
       return;
     }
-  not_read.push_back({what, place, count, output});
+  not_read.push_back({what, place, count, output, hint});
 }
 
 std::string clean_name(const std::string& name) {

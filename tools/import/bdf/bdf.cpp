@@ -98,8 +98,7 @@ void build(BdfDeck& deck, const std::map<std::int64_t, std::string>& names_of, c
 
 void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards& cards) {
   std::map<std::string_view, const BdfCard*> by_name;
-  for (const auto& c : cards)
-    if (!by_name.try_emplace(c.name, &c).second) throw std::logic_error(fmt::format("two readers of {}", c.name));
+  for (const auto& c : cards) by_name[c.name] = &c;
   BdfEntry e;
   while (entries.next(e))
     if (const auto known = by_name.find(e.name); known != by_name.end())

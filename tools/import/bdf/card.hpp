@@ -1,12 +1,15 @@
-// The entries of a Nastran file that are known: a name and what reads it.  Another entry is one more row of the table in cards.cpp.
+// The entries of a Nastran file that are known: a name and what reads it.  Another entry is one more row of the table in cards.cpp,
+// or from outside the tree `bdf_cards().add({"MATLAME", read_lame})` before the first file is read.
 #pragma once
 #include <map>
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
+#include "base/registry.hpp"
 #include "import/bdf/entries.hpp"
 #include "import/deck_material.hpp"
 #include "import/imported.hpp"
@@ -36,12 +39,14 @@ struct BdfDeck {
 };
 
 struct BdfCard {
-  const char* name;  // "CHEXA"
+  std::string_view name;  // "CHEXA"
   void (*read)(const BdfEntry&, BdfDeck&, Imported&);
 };
-using BdfCards = std::vector<BdfCard>;
-BdfCards bdf_cards();
+using BdfCards = Registry<BdfCard>;
+BdfCards& bdf_cards();
 std::span<const BdfCard> bdf_material_cards();
+/// The material of the number in the first field of an entry, new where none has it yet.
+DeckMaterial& material_of(const BdfEntry& e, BdfDeck& deck);
 /// MATS1 and the tables it names, into the materials.
 void resolve_metals(BdfDeck& deck, Imported& in);
 

@@ -118,8 +118,8 @@ void rigid_element(const BdfEntry& e, BdfDeck&, Imported&) {
 
 }  // namespace
 
-BdfCards bdf_cards() {
-  BdfCards all{
+BdfCards& bdf_cards() {
+  static constexpr BdfCard cards[] = {
       {"GRID", read_grid},
       {"CTETRA", read_solid},
       {"CPENTA", read_solid},
@@ -147,8 +147,12 @@ BdfCards bdf_cards() {
       {"RBE2", rigid_element},
       {"RBE3", rigid_element},
   };
-  const auto materials = bdf_material_cards();
-  all.insert(all.end(), materials.begin(), materials.end());
+  static BdfCards all = [] {
+    BdfCards list("entry of .bdf decks", {});
+    for (const auto& family : {std::span<const BdfCard>(cards), bdf_material_cards()})
+      for (const BdfCard& card : family) list.add(card);
+    return list;
+  }();
   return all;
 }
 

@@ -7,14 +7,16 @@
 #include "import/bdf/card.hpp"
 
 namespace hilo {
-namespace {
 
-DeckMaterial& material(const BdfEntry& e, BdfDeck& deck) {
+DeckMaterial& material_of(const BdfEntry& e, BdfDeck& deck) {
   const auto id = e.data.integer(0);
   auto& m = deck.materials[id];
   m.name = fmt::format("mat_{}", id);
   return m;
 }
+
+namespace {
+
 void no_law(DeckMaterial& m, Imported& in, const std::string& what, const std::string& place) {
   in.skip(what, place);
   if (m.no_law.empty()) m.no_law = fmt::format("{}, {}", what, place);
@@ -33,7 +35,7 @@ void read_mat1(const BdfEntry& e, BdfDeck& deck, Imported&) {
   if (m.nu <= -1 || m.nu >= 0.5)
     throw Error(d.place(3), fmt::format("MAT1 {}: Poisson's ratio {:g} is not in (-1, 0.5)", d.integer(0), m.nu));
   if (m.density <= 0) throw Error(d.place(4), fmt::format("MAT1 {}: density {:g} is not positive", d.integer(0), m.density));
-  material(e, deck).data = m;
+  material_of(e, deck).data = m;
 }
 
 void read_mats1(const BdfEntry& e, BdfDeck& deck, Imported&) { deck.metals.push_back(e.data); }
@@ -54,7 +56,7 @@ void read_tables1(const BdfEntry& e, BdfDeck& deck, Imported&) {
 /// W = A10 (I1 - 3) + A01 (I2 - 3) + D1 (J - 1)^2 of the isochoric invariants; higher orders have no law here.
 void read_mathp(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
-  DeckMaterial& m = material(e, deck);
+  DeckMaterial& m = material_of(e, deck);
   const double c10 = d.number(1), c01 = d.number(2), D1 = d.number(3, 1000 * (c10 + c01));
   if (!(c10 + c01 > 0)) throw Error(d.place(1), fmt::format("MATHP {}: A10 + A01 is not positive", d.integer(0)));
   if (!(D1 > 0)) throw Error(d.place(3), fmt::format("MATHP {}: D1 is not positive", d.integer(0)));
@@ -69,7 +71,7 @@ void read_mathp(const BdfEntry& e, BdfDeck& deck, Imported& in) {
 }
 
 /// Kinds without a law here.
-void read_other(const BdfEntry& e, BdfDeck& deck, Imported& in) { no_law(material(e, deck), in, e.name, e.data.place()); }
+void read_other(const BdfEntry& e, BdfDeck& deck, Imported& in) { no_law(material_of(e, deck), in, e.name, e.data.place()); }
 
 }  // namespace
 

@@ -1,10 +1,12 @@
-// The cards of an .inp deck that are known: a keyword and what reads it.  Another card is one more row in the table of its family.
+// The cards of an .inp deck that are known: a keyword and what reads it.  Another card is one more row in the table of its family, or from
+// outside the tree `inp_cards().add({"LAME", read_lame})` before the first deck is read.
 #pragma once
 #include <initializer_list>
 #include <span>
 #include <string>
-#include <vector>
+#include <string_view>
 
+#include "base/registry.hpp"
 #include "import/inp/deck.hpp"
 
 namespace hilo {
@@ -21,11 +23,11 @@ struct InpReading {
 };
 
 struct InpCard {
-  const char* key;  // "SOLIDSECTION": upper case, blanks removed
+  std::string_view name;  // "SOLIDSECTION": upper case, blanks removed
   void (*read)(InpReading&);
   bool first_step_only = false;  // what it says of a second step does not become scene lines
 };
-using InpCards = std::vector<InpCard>;
+using InpCards = Registry<InpCard>;
 
 /// The families, one file each.
 std::span<const InpCard> inp_mesh_cards();      // *NODE, *ELEMENT, sets, surfaces
@@ -34,10 +36,15 @@ std::span<const InpCard> inp_load_cards();      // supports, loads, histories
 std::span<const InpCard> inp_step_cards();      // heading, parts, steps, procedures
 std::span<const InpCard> inp_unread_cards();    // requests for output, and cards without which the mesh would be another
 /// All of them.
-InpCards inp_cards();
+InpCards& inp_cards();
 
-/// Reads the cards.  One that is not among `cards` is counted in `in.not_read`.
+/// Reads the cards.  One that is not among `cards` is counted in `in.not_read`, with the card it may be a slip of.
 void parse_inp(const std::string& path, InpDeck& deck, Imported& in, const InpCards& cards);
+
+/// The material that a card speaks of; Error where it stands before any *MATERIAL.
+DeckMaterial& material_of(InpReading& r);
+/// And the card's first data line; Error with what is expected there where it has none.
+DeckMaterial& material_of(InpReading& r, DataLine& l, const char* expected);
 
 /// The first parameter of a card that is not among those known, as "*CLOAD, SECTOR"; "" when all are.
 std::string unknown_param(const Card& card, std::initializer_list<const char*> known);

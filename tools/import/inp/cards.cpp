@@ -7,10 +7,13 @@
 
 namespace hilo {
 
-InpCards inp_cards() {
-  InpCards all;
-  for (const auto& family : {inp_mesh_cards(), inp_material_cards(), inp_load_cards(), inp_step_cards(), inp_unread_cards()})
-    all.insert(all.end(), family.begin(), family.end());
+InpCards& inp_cards() {
+  static InpCards all = [] {
+    InpCards list("card of .inp decks", {});
+    for (const auto& family : {inp_mesh_cards(), inp_material_cards(), inp_load_cards(), inp_step_cards(), inp_unread_cards()})
+      for (const InpCard& card : family) list.add(card);
+    return list;
+  }();
   return all;
 }
 

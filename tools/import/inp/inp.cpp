@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
-#include <stdexcept>
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
@@ -118,12 +117,24 @@ void region_materials(const InpDeck& d, Imported& in, const std::string& file) {
     }
 }
 
+/// `did you mean *ELASTIC?` where one letter is wrong, missing, too many, or two are swapped.  No farther: most unknown cards are cards
+/// that other programs have.
+std::string slip_of(std::string_view word, const InpCards& cards) {
+  for (const auto& card : cards) {
+    std::string_view a = word, b = card.name;
+    while (!a.empty() && !b.empty() && a.front() == b.front()) a.remove_prefix(1), b.remove_prefix(1);
+    while (!a.empty() && !b.empty() && a.back() == b.back()) a.remove_suffix(1), b.remove_suffix(1);
+    const bool swapped = a.size() == 2 && b.size() == 2 && a[0] == b[1] && a[1] == b[0];
+    if (swapped || std::max(a.size(), b.size()) < 2) return fmt::format("did you mean *{}?", card.name);
+  }
+  return "";
+}
+
 }  // namespace
 
 void parse_inp(const std::string& path, InpDeck& d, Imported& in, const InpCards& cards) {
   std::map<std::string_view, const InpCard*> by_key;
-  for (const auto& c : cards)
-    if (!by_key.try_emplace(c.key, &c).second) throw std::logic_error(fmt::format("two readers of *{}", c.key));
+  for (const auto& c : cards) by_key[c.name] = &c;
   InpReading r{InpLines(path), d, in};
   bool any = false;
   while (r.lines.next_card(r.card)) {
@@ -132,7 +143,7 @@ void parse_inp(const std::string& path, InpDeck& d, Imported& in, const InpCards
     if (r.step > 1 && (known == by_key.end() || known->second->first_step_only))
       r.skip(r.card.name + " in step 2 and later");
     else if (known == by_key.end())
-      r.skip(r.card.name);
+      in.skip(r.card.name, r.card.place(), 1, false, slip_of(r.card.key, cards));
     else
       known->second->read(r);
   }

@@ -7,23 +7,22 @@
 #include "import/inp/card.hpp"
 
 namespace hilo {
+
+DeckMaterial& material_of(InpReading& r) {
+  if (r.deck.material.empty()) throw Error(r.card.place() + ":1", fmt::format("{} stands before any *MATERIAL", r.card.name));
+  return r.deck.materials[r.deck.material];
+}
+DeckMaterial& material_of(InpReading& r, DataLine& l, const char* expected) {
+  if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", fmt::format("{} lacks its data line", r.card.name), expected);
+  return material_of(r);
+}
+
 namespace {
 
 void read_material(InpReading& r) {
   const std::string name = r.card.need("NAME");
   r.deck.material = upper(name);
   r.deck.materials[r.deck.material].name = name;
-}
-
-/// The material that a card speaks of.
-DeckMaterial& material_of(InpReading& r) {
-  if (r.deck.material.empty()) throw Error(r.card.place() + ":1", fmt::format("{} stands before any *MATERIAL", r.card.name));
-  return r.deck.materials[r.deck.material];
-}
-/// And the card's first data line.
-DeckMaterial& material_of(InpReading& r, DataLine& l, const char* expected) {
-  if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", fmt::format("{} lacks its data line", r.card.name), expected);
-  return material_of(r);
 }
 
 /// The material is of a law that hilo has not: its regions get none, and that is said.
