@@ -8,6 +8,7 @@
 #include "dynamics/natural_modes.hpp"
 #include "dynamics/run_parts.hpp"
 #include "dynamics/start.hpp"
+#include "dynamics/whirl.hpp"
 
 namespace hilo {
 namespace {
@@ -48,19 +49,23 @@ class ModeSteps final : public Steps {
     State& rest = run_.state;
     set_rows(system, run_.redundancy.at_pose);
     if (time_.text("start") == "equilibrium" && !settle_down(run_)) return;
-    if (system.largest_rate(rest.v) > 0)
-      throw Error(time_.where("analysis"), "modes are those of a state of rest, and the scene has initial velocities",
-                  "take [[initial]] away");
+    run_.figures.projected = run_.impulses.strike(system, *run_.solver, rest, run_.talk).change;
+    const bool spins = system.largest_rate(rest.v) > 0;
     consistent_acceleration(system, *run_.solver, rest, 1e-3);
+    if (const std::string why = spins ? not_steady(system, rest) : ""; !why.empty())
+      throw Error(time_.where("analysis"), "modes are those of a state at rest, or of bodies that turn steadily in their places: " + why,
+                  "see what [[initial]] gives");
     system.commit(rest.q);
     run_.audit->start(rest);
     run_.recorder->first(rest, run_.audit->ledger());
     Progress progress(run_.options.quiet, 0, time_.number("modes"));
-    const std::vector<FoundMode> modes =
-        natural_modes(system, *run_.solver, rest, static_cast<int>(time_.number("modes")), [&](int found) { progress.show(found, 0, 0); });
+    const int wanted = static_cast<int>(time_.number("modes"));
+    std::vector<FoundMode> modes = natural_modes(system, *run_.solver, rest, spins ? std::max(40, 3 * wanted) : wanted,
+                                                 [&](int found) { progress.show(found, 0, 0); });
     progress.done();
+    if (spins) modes = whirling_modes(system, *run_.solver, rest, modes, wanted);
     if (modes.empty()) throw Error(time_.where("analysis"), "nothing that has mass can move: there are no modes");
-    check_rest(modes);
+    if (!spins) check_rest(modes);
     for (const FoundMode& m : modes) record(m);
     run_.figures.modes = as_json(modes);
     run_.report.table = as_table(modes, system.mass);

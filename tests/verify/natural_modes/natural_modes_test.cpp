@@ -211,12 +211,34 @@ TEST_F(NaturalModes, OfLinearRegionsAreThoseOfTheirCells) {
   EXPECT_LT(((linear - cells).array() / cells.array()).abs().maxCoeff(), 1e-2) << linear << "\n\n" << cells;
 }
 
+// A disc on two bearings whirls: J w^2 -+ Omega Jp w - 2 k L^2 = 0 backward and forward, and sqrt(2 k/m) along.
+TEST_F(NaturalModes, OfARotorAreItsWhirls) {
+  const double m = 10, J = 0.4, Jp = 0.6, k = 1e5, L = 0.3, spin = 200;
+  std::string scene = body("disc", m, {0, 0, 0}, {J, J, Jp});
+  for (const double at : {-L, L})
+    scene += "[[spring]]\nkind = \"bushing\"\nname = \"" + std::string(at < 0 ? "low" : "high") + "\"\nb = \"disc\"\nat = [0, 0, " +
+             std::to_string(at) + "]\nstiffness = [" + std::to_string(k) + ", " + std::to_string(k) + ", " + std::to_string(k) + "]\n";
+  const std::string turning = "[[initial]]\non = [\"disc\"]\nspin = [0, 0, " + std::to_string(spin) + "]\n";
+  const double half = spin * Jp / (2 * J), root = std::sqrt(half * half + 2 * k * L * L / J), along = std::sqrt(2 * k / m);
+  std::vector<double> exact{root - half, along, along, along, root + half};
+  std::sort(exact.begin(), exact.end());
+  const auto f = modes(scene + turning, 10);
+  ASSERT_EQ(f.rows(), 5) << f;
+  for (int j = 0; j < 5; ++j) EXPECT_NEAR(f(j, 0) * 2 * pi / exact[static_cast<size_t>(j)], 1, 1e-6) << f;
+  // a disc that is not round has no constant coefficients
+  work.write("scene.toml", body("disc", m, {0, 0, 0}, {J, 0.5, Jp}) + scene.substr(scene.find("[[spring]]")) + turning +
+                               "[time]\nanalysis = \"modes\"\n");
+  const Ran uneven = work.run("hilo-solve scene.toml -o run.h5");
+  EXPECT_EQ(uneven.exit, 2);
+  EXPECT_NE(uneven.err.find("the same all around"), std::string::npos) << uneven.err;
+}
+
 TEST_F(NaturalModes, AreRefusedWhereTheyHaveNoMeaning) {
   const std::string arm = body("arm", 2, {0, 0, -0.5}, {0.1, 0.2, 0.15});
   work.write("scene.toml", arm + "[[initial]]\non = [\"arm\"]\nvelocity = [1, 0, 0]\n[time]\nanalysis = \"modes\"\n");
   const Ran moving = work.run("hilo-solve scene.toml -o run.h5");
   EXPECT_EQ(moving.exit, 2);
-  EXPECT_NE(moving.err.find("initial velocities"), std::string::npos) << moving.err;
+  EXPECT_NE(moving.err.find("something moves along"), std::string::npos) << moving.err;
 }
 
 }  // namespace

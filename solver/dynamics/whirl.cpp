@@ -1,0 +1,165 @@
+#include "dynamics/whirl.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "system/system.hpp"
+
+namespace hilo {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+/// What the spin adds to the equations, in coordinates of the basis.
+class Spin {
+ public:
+  Spin(const System& system, KktSolver& solver, const State& state, const std::vector<FoundMode>& basis)
+      : system_(system), solver_(solver), state_(state), n_(3 * system.first_joint_block()) {
+    combine(zero_, {{0, &state.q}});
+    basis_.resize(n_, static_cast<Eigen::Index>(basis.size()));
+    for (size_t j = 0; j < basis.size(); ++j) basis_.col(static_cast<Eigen::Index>(j)) = Eigen::Map<const Vector>(basis[j].x.data(), n_);
+  }
+  const Matrix& basis() const { return basis_; }
+
+  struct Terms {
+    Matrix C, K;
+  };
+  /// At the pose that the bodies have after a turn by `angle` more.
+  Terms at(double angle) const {
+    Config q = state_.q, v = state_.v, a = state_.a;
+    for (size_t b = 0; b < q.R.size(); ++b) {
+      const Mat3 S = state_.v.R[b] * state_.q.R[b].transpose();
+      const Vec3 w = axial(S);
+      if (w.norm() == 0) continue;
+      const Mat3 turn = Eigen::AngleAxisd(angle, w.normalized()).toRotationMatrix();
+      for (auto* of : {&q, &v, &a}) of->R[b] = turn * of->R[b];
+    }
+    Terms out{Matrix(basis_.cols(), basis_.cols()), Matrix(basis_.cols(), basis_.cols())};
+    for (Eigen::Index j = 0; j < basis_.cols(); ++j) {
+      const Vector x = basis_.col(j) * (step / std::max(1e-300, system_.largest_rate(rates(q, basis_.col(j))) / system_.length));
+      const double by = x.norm() / basis_.col(j).norm();
+      const Vector K = residual(q, v, a, x, Vector::Zero(n_)) - residual(q, v, a, -x, Vector::Zero(n_));
+      const Vector C = residual(q, v, a, Vector::Zero(n_), x) - residual(q, v, a, Vector::Zero(n_), -x);
+      out.K.col(j) = basis_.transpose() * K / (2 * by), out.C.col(j) = basis_.transpose() * C / (2 * by);
+    }
+    return out;
+  }
+
+ private:
+  static constexpr double step = 1e-4;
+  static Vec3 axial(const Mat3& S) { return Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)) / 2; }
+  Config rates(const Config& q, const Vector& x) const {
+    Config out = zero_;
+    system_.add_rates(out, q, padded(x));
+    return out;
+  }
+  std::vector<double> padded(const Vector& x) const {
+    std::vector<double> z(3 * static_cast<size_t>(system_.n_blocks()), 0.0);
+    std::copy(x.begin(), x.end(), z.begin());
+    return z;
+  }
+  /// What moving and accelerating add to the residual at increments z that change with z'.
+  Vector residual(const Config& q0, const Config& v0, const Config& a0, const Vector& z, const Vector& rate) const {
+    Config q = q0, v = v0, a = a0;
+    const std::vector<double> by = padded(z), at = padded(rate);
+    system_.move(q, by);
+    for (const UnknownField& f : system_.unknowns)
+      for (size_t k = 0; k < f.size() && f.turns(); ++k) {
+        const int b = f.item[k];
+        const Mat3 turn = cayley(Eigen::Map<const Vec3>(by.data() + 3 * f.block(k)));
+        const Mat3 w = skew(Eigen::Map<const Vec3>(at.data() + 3 * f.block(k)));
+        v.R[b] = turn * v0.R[b], a.R[b] = turn * a0.R[b] + 2 * w * v.R[b];
+      }
+    system_.add_rates(v, q, at);
+    system_.follow(a);
+    Config before, after;
+    const double h = 1e-3;  // measures are quadratic, so any h gives the exact rate
+    combine(before, {{1, &q}, {-h / 2, &v}});
+    combine(after, {{1, &q}, {h / 2, &v}});
+    Stage s = stage_at(q, state_.t);
+    s.a = &zero_;
+    Residual still, moving;
+    system_.evaluate(s, state_.lambda, still, nullptr);
+    s.a = &a, s.w0 = &before, s.w1 = &after, s.h = h, s.v = &v;
+    system_.evaluate(s, state_.lambda, moving, nullptr);
+    for (size_t i = 0; i < moving.r.size(); ++i) moving.r[i] -= still.r[i];
+    solver_.sum_shared(moving.r);
+    system_.mask_fixed(moving.r);
+    return Eigen::Map<const Vector>(moving.r.data(), n_);
+  }
+
+  const System& system_;
+  KktSolver& solver_;
+  const State& state_;
+  Eigen::Index n_;
+  Config zero_;
+  Matrix basis_;
+};
+
+}  // namespace
+
+std::string not_steady(const System& system, const State& state) {
+  for (const UnknownField& f : system.unknowns)
+    for (size_t k = 0; k < f.size(); ++k)
+      if (!f.turns() && (state.v.*f.array)[f.item[k]].norm() > 1e-9 * system.largest_rate(state.v)) return "something moves along";
+  for (const Modes& m : system.modes)
+    if (state.v.R[m.body].norm() > 0) return fmt::format("linear region \"{}\" turns", system.bodies[m.body].name);
+  for (size_t b = 0; b < state.q.R.size(); ++b) {
+    const Mat3 W = state.v.R[b] * state.q.R[b].transpose(), A = state.a.R[b] * state.q.R[b].transpose();
+    if ((A - W * W).norm() > 1e-6 * W.squaredNorm())
+      return fmt::format("body \"{}\" does not turn at a constant rate", system.bodies[b].name);
+  }
+  return {};
+}
+
+std::vector<FoundMode> whirling_modes(const System& system, KktSolver& solver, const State& state, const std::vector<FoundMode>& basis,
+                                      int wanted) {
+  const Spin spin(system, solver, state, basis);
+  const Spin::Terms here = spin.at(0), further = spin.at(1);
+  double stiffness = here.C.squaredNorm();
+  for (const FoundMode& mode : basis) stiffness = std::max(stiffness, std::abs(mode.figures.omega2));
+  if ((further.K - here.K).norm() > 1e-6 * stiffness || (further.C - here.C).norm() > 1e-6 * here.C.norm())
+    throw Error("", "what turns is not the same all around: its frequencies change as it turns",
+                "give bodies that spin two equal moments of inertia, and springs that hold them at points of their axes");
+  const auto m = static_cast<Eigen::Index>(basis.size());
+  Matrix A = Matrix::Zero(2 * m, 2 * m);
+  A.topRightCorner(m, m).setIdentity();
+  A.bottomLeftCorner(m, m) = -here.K;
+  for (Eigen::Index j = 0; j < m; ++j) A(m + j, j) -= basis[static_cast<size_t>(j)].figures.omega2;
+  A.bottomRightCorner(m, m) = -here.C;
+  const Eigen::EigenSolver<Matrix> pairs(A);
+  std::vector<Eigen::Index> order;  // one of each pair; real ones are kept where they grow
+  const auto mu = [&](Eigen::Index i) { return pairs.eigenvalues()[i]; };
+  const double largest = pairs.eigenvalues().cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < 2 * m; ++i)
+    if (mu(i).imag() > 1e-7 * largest || (std::abs(mu(i).imag()) <= 1e-7 * largest && mu(i).real() > 1e-7 * largest)) order.push_back(i);
+  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return std::abs(mu(a)) < std::abs(mu(b)); });
+  if (static_cast<int>(order.size()) > wanted) order.resize(static_cast<size_t>(wanted));
+  std::vector<FoundMode> out;
+  for (const Eigen::Index i : order) {
+    Eigen::VectorXcd y = pairs.eigenvectors().col(i).head(m);
+    Eigen::Index most = 0;
+    y.cwiseAbs().maxCoeff(&most);
+    y *= std::conj(y[most]) / std::abs(y[most]) / y.norm();  // its largest share at its turning point
+    FoundMode f;
+    const Vector x = spin.basis() * y.real();
+    f.x.assign(x.begin(), x.end());
+    f.mu.assign(state.lambda.size(), 0.0);
+    for (size_t j = 0; j < basis.size(); ++j) {
+      for (size_t k = 0; k < f.mu.size(); ++k) f.mu[k] += basis[j].mu[k] * y[static_cast<Eigen::Index>(j)].real();
+      f.figures.error = std::max(f.figures.error, basis[j].figures.error);
+    }
+    const bool swings = mu(i).imag() > 1e-7 * largest;
+    f.figures.omega2 = swings ? mu(i).imag() * mu(i).imag() : -mu(i).real() * mu(i).real();
+    f.figures.damping = swings ? -mu(i).real() / std::abs(mu(i)) : 0;
+    out.push_back(std::move(f));
+  }
+  return out;
+}
+
+}  // namespace hilo
