@@ -41,8 +41,9 @@ void print_plan(const System& s, bool talk) {
 int solve(int argc, char** argv, Comm& comm) {
   Options o;
   auto app = make_app({"hilo-solve", "Solve a scene of rigid and flexible parts in time.",
-                       "hilo-solve scene.toml tags.h5 -o run.h5\n  mpirun -n 2 hilo-solve scene.toml parts-2.h5\n  hilo-solve --set "
-                       "time.step=1e-4 --explain scene.toml"});
+                       "hilo-solve scene.toml tags.h5 -o run.h5\n  mpirun -n 2 hilo-solve scene.toml parts-2.h5\n  hilo-solve "
+                       "scene.toml tags.h5 --set 'time.analysis=\"modes\"' -o modes.h5\n  hilo-solve --set time.step=1e-4 --explain "
+                       "scene.toml"});
   app->add_option("scene", o.scene, "scene file (TOML), - for standard input")->required();
   app->add_option("mesh", o.mesh, "mesh.h5, tags.h5 or parts-N.h5; overrides the scene's `mesh`");
   app->add_option("-o,--output", o.output, "results file; .xdmf and .json are written beside it")->capture_default_str();

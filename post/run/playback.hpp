@@ -2,7 +2,7 @@
 // a run holds no velocities), fields linearly.
 //
 // An analysis of modes has no time: from t = k on, for one unit, mode k swings once about the state of rest, from its turning point at t =
-// k. Shapes, a thousandth of the scene in the file, are drawn `drawn_larger` times larger.
+// k. Shapes, a hundred thousandth of the scene in the file, are drawn `drawn_larger` times larger.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,7 +19,7 @@ class Playback {
   explicit Playback(RunFile& run);
 
   RunFile& run() const { return run_; }
-  static constexpr double drawn_larger = 60;
+  static constexpr double drawn_larger = 6000;
   bool has_modes() const { return !run_.frequencies.empty(); }
   double first() const { return run_.steps[has_modes() && run_.steps.size() > 1 ? 1 : 0].t; }  // [s]
   double last() const { return run_.steps.back().t + (has_modes() ? 1 - 1e-6 : 0); }

@@ -32,8 +32,8 @@ const std::vector<Layout>& layouts() {
        {"x0", "y0", "z0", "x1", "y1", "z1", "x2", "y2", "z2", "x3", "y3", "z3"},
        {"m", "m", "m", "m", "m", "m", "m", "m", "m", "m", "m", "m"}},
       {"mode",
-       {"frequency", "damping", "mass_x", "mass_y", "mass_z", "inertia_x", "inertia_y", "inertia_z", "error"},
-       {"Hz", "1", "kg", "kg", "kg", "kg m^2", "kg m^2", "kg m^2", "1"}},
+       {"frequency", "damping", "mass_x", "mass_y", "mass_z", "inertia_x", "inertia_y", "inertia_z", "error", "amplitude"},
+       {"Hz", "1", "kg", "kg", "kg", "kg m^2", "kg m^2", "kg m^2", "1", "m kg^0.5"}},
       {"constraint", {"violation"}, {"m"}},
       {"newton", {"iterations"}, {"1"}},
   };

@@ -92,7 +92,7 @@ class ModeSteps final : public Steps {
                        "start = \"equilibrium\" goes there"));
   }
 
-  /// The shape, of a thousandth of the scene at most, on the state of rest; forces as they are at its turning point.
+  /// The shape, of a hundred thousandth of the scene at most, on the state of rest; forces as they are at its turning point.
   void record(const FoundMode& m) {
     System& system = run_.system;
     const State& rest = run_.state;
@@ -103,7 +103,7 @@ class ModeSteps final : public Steps {
     shape = a = zero;
     std::vector<double> z = m.x;
     system.add_rates(shape, rest.q, z);
-    const double amplitude = 1e-3 * system.length / std::max(1e-300, system.largest_rate(shape));
+    const double amplitude = 1e-5 * system.length / std::max(1e-300, system.largest_rate(shape));
     for (double& value : z) value *= amplitude;
     system.move(at.q, z);
     for (size_t i = 0; i < m.mu.size(); ++i) at.lambda[i] += amplitude * m.mu[i];
@@ -111,7 +111,9 @@ class ModeSteps final : public Steps {
     system.add_rates(a, rest.q, z);
     Taken taken{stage_at(at.q, rest.t), at.lambda};
     taken.stage.a = &a;
-    system.part<NaturalModes>().now = m.figures;
+    NaturalMode& now = system.part<NaturalModes>().now;
+    now = m.figures;
+    now.amplitude = m.is_real ? amplitude : 0;
     Ledger ledger = run_.audit->ledger();
     ledger.energy = system.energy(at.q, at.v);
     ledger.rows = system.violation(at.q, rest.t);

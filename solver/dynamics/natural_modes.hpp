@@ -12,6 +12,7 @@ namespace hilo {
 struct FoundMode {
   NaturalMode figures;
   std::vector<double> x;   // increments of the unknowns, of unit mass (3 x n_blocks before the multipliers)
+  bool is_real = true;     // all of it swings in phase
   std::vector<double> mu;  // multipliers, laid out like State::lambda
 };
 

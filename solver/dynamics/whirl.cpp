@@ -147,6 +147,7 @@ std::vector<FoundMode> whirling_modes(const System& system, KktSolver& solver, c
     y.cwiseAbs().maxCoeff(&most);
     y *= std::conj(y[most]) / std::abs(y[most]) / y.norm();  // its largest share at its turning point
     FoundMode f;
+    f.is_real = false;
     const Vector x = spin.basis() * y.real();
     f.x.assign(x.begin(), x.end());
     f.mu.assign(state.lambda.size(), 0.0);

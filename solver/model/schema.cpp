@@ -76,12 +76,13 @@ std::vector<ArraySchema>& arrays() {
        "columns: kinetic, elastic, gravity potential, external work, dissipated, balance E - E0 - W + D"},
       {"run.h5", "/history/momentum", "f8", "(n_t, 6)", "kg m/s, kg m^2/s", "linear, and angular about the origin"},
       {"run.h5", "/history/constraint", "f8", "(n_t)", "m", "largest violation of a joint row"},
-      {"run.h5", "/history/mode", "f8", "(n_t, 9)", "Hz, 1, kg, kg m^2, 1",
+      {"run.h5", "/history/mode", "f8", "(n_t, 10)", "Hz, 1, kg, kg m^2, 1, m kg^0.5",
        "of an analysis of modes, in which t is the number of the mode and the first row the state of rest: frequency (below zero: the "
        "state "
        "is not stable, and this the rate of growth over 2 pi), damping ratio, effective mass along x, y, z and about axes through the "
        "centre "
-       "of mass, error of the shape; all other arrays are of that state with the shape added, a thousandth of the scene at most"},
+       "of mass, error of the shape, amplitude of the mode of unit mass in the other arrays (0: a whirl); all other arrays are of that "
+       "state with the shape added, a hundred thousandth of the scene at most"},
       {"run.h5", "/history/newton", "i4", "(n_t)", "", "Newton iterations of the step"},
       {"run.h5", "/history/body/<name>", "f8", "(n_t, 12)", "m", "positions of the four points of a body"},
       {"run.h5", "/history/modes/<name>", "f8", "(n_t, n_modes)", "m kg^0.5",

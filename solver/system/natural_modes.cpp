@@ -12,6 +12,7 @@ void NaturalModes::add_end_values(const Config&, const Config&, std::vector<doub
   out.push_back(now.damping);
   out.insert(out.end(), now.mass.data(), now.mass.data() + 6);
   out.push_back(now.error);
+  out.push_back(now.amplitude);
 }
 
 }  // namespace hilo

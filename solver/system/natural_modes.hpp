@@ -9,6 +9,7 @@ struct NaturalMode {
   double damping = 0;        // ratio to the critical one
   Vec6 mass = Vec6::Zero();  // effective: along x, y, z [kg], about axes through the centre of mass [kg m^2]
   double error = 0;          // of the shape: what the equations of motion leave of it
+  double amplitude = 0;      // with which a mode of unit mass is put out [m kg^0.5]
   /// [Hz]; of an unstable mode minus its rate of growth over 2 pi.
   double frequency() const;
 };
@@ -19,7 +20,7 @@ class NaturalModes final : public Contribution {
   NaturalMode now;
   void evaluate(Pass&) const override {}
   void tie(Ties&) const override {}
-  std::vector<Output> outputs() const override { return {{.group = "", .name = "mode", .n_end = 9}}; }
+  std::vector<Output> outputs() const override { return {{.group = "", .name = "mode", .n_end = 10}}; }
   void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
 };
 

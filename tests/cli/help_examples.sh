@@ -79,6 +79,10 @@ axis = [0, 1, 0]
 name = "seat"
 on = "wheel_2"
 
+[[probe]]
+name = "tip"
+on = "wheel_2"
+
 [time]
 end = 0.1
 step = 1e-3

@@ -1,5 +1,8 @@
 // Natural frequencies against closed forms: `analysis = "modes"` of bodies, cells, linear regions, preloads and what nothing holds.
+#include <complex>
 #include <numbers>
+#include <sstream>
+#include <tuple>
 
 #include "verify/verify.hpp"
 
@@ -16,7 +19,7 @@ class NaturalModes : public testing::Test {
     work.write("scene.toml", scene + "[time]\nanalysis = \"modes\"\nmodes = " + std::to_string(wanted) + "\n");
     ran = work.run("hilo-solve scene.toml " + mesh + " -o run.h5 " + options);
     EXPECT_EQ(ran.exit, 0) << ran.err;
-    if (ran.exit != 0) return Eigen::MatrixXd::Zero(wanted, 9);
+    if (ran.exit != 0) return Eigen::MatrixXd::Zero(wanted, 10);
     const Eigen::MatrixXd all = Results(work / "run.h5").history("mode");
     EXPECT_LT(all.col(8).maxCoeff(), 1e-5) << "shapes satisfy the equations";
     return all.bottomRows(all.rows() - 1);
@@ -209,6 +212,42 @@ TEST_F(NaturalModes, OfLinearRegionsAreThoseOfTheirCells) {
   use(beam({1, 0.2, 0.1}, 10), {Fidelity::linear});
   const auto linear = frequencies(scene, 5);
   EXPECT_LT(((linear - cells).array() / cells.array()).abs().maxCoeff(), 1e-2) << linear << "\n\n" << cells;
+}
+
+// A force at the front shakes a vehicle of two freedoms; its damping is .01 s times its stiffness.
+TEST_F(NaturalModes, GiveTheResponseToAHarmonicForce) {
+  const double m = 1000, J = 1500, kf = 3e4, kr = 4e4, a = 1.2, b = 1.6;
+  const auto corner = [](const std::string& name, double x, double k) {
+    return "[[spring]]\nkind = \"bushing\"\nname = \"" + name + "\"\nb = \"car\"\nat = [" + std::to_string(x) +
+           ", 0, 0]\nstiffness = [0, 0, " + std::to_string(k) + "]\ndamping = [0, 0, " + std::to_string(0.01 * k) + "]\n" +
+           "[[probe]]\nname = \"at_" + name + "\"\non = \"car\"\nat = [" + std::to_string(x) + ", 0, 0]\n";
+  };
+  modes(body("car", m, {0, 0, 0}, {J, J, J}) + corner("front", a, kf) + corner("rear", -b, kr) +
+            "[[joint]]\nkind = \"planar\"\nname = \"road\"\nb = \"car\"\nat = [0, 0, 0]\naxis = [0, 1, 0]\n",
+        3);
+  const Ran response =
+      work.run("hilo-post response run.h5 --force at_front.z --at at_front.z --at at_rear.z --from 0.2 --to 5 --points 50");
+  ASSERT_EQ(response.exit, 0) << response.err;
+  std::istringstream rows(response.out);
+  std::string line;
+  std::getline(rows, line);
+  EXPECT_NE(line.find("at_rear.z [m/N]"), line.npos) << line;
+  int n = 0;
+  for (; std::getline(rows, line); ++n) {
+    double f = 0, front = 0, front_phase = 0, rear = 0, rear_phase = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", &f, &front, &front_phase, &rear, &rear_phase), 5) << line;
+    using C = std::complex<double>;
+    const double w = 2 * pi * f;
+    const C visco(1, 0.01 * w), zz = (kf + kr) * visco - m * w * w, zp = -(kf * a - kr * b) * visco,
+                                pp = (kf * a * a + kr * b * b) * visco - J * w * w, det = zz * pp - zp * zp;
+    // under 1 N at x = a: heave u and pitch p, with z at x of u - x p
+    const C u = (pp + zp * a) / det, p = (-zp - zz * a) / det;
+    for (const auto& [at, size, phase] : {std::tuple{u - a * p, front, front_phase}, std::tuple{u + b * p, rear, rear_phase}}) {
+      EXPECT_NEAR(size / std::abs(at), 1, 1e-4) << f;
+      EXPECT_LT(std::abs(at / std::abs(at) - std::polar(1.0, phase * pi / 180)), 1e-4) << f;
+    }
+  }
+  EXPECT_EQ(n, 50);
 }
 
 // A disc on two bearings whirls: J w^2 -+ Omega Jp w - 2 k L^2 = 0 backward and forward, and sqrt(2 k/m) along.
