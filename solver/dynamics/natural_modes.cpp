@@ -217,25 +217,45 @@ std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, co
                 "modes need forces that have a potential");
   if (!modes.converged) throw Error("", fmt::format("{} modes were not found", wanted), "ask for fewer: time.modes", Exit::not_converged);
   const RigidMotions rigid(system, at, rest.q);
-  std::vector<FoundMode> out;
-  for (Eigen::Index j = 0; j < modes.omega2.size(); ++j) {
-    FoundMode m;
-    Vector x;
-    const double residual = at.solve(at.mass(modes.shapes.col(j)), x, &m.mu);  // free of what has no mass and follows at once
-    Eigen::Index at_most = 0;
-    x.cwiseAbs().maxCoeff(&at_most);
-    const double norm = std::copysign(std::sqrt(x.dot(at.mass(x))), x[at_most]);
-    x /= norm;
-    for (double& value : m.mu) value /= norm;
-    const Vector change = x - std::copysign(1.0, norm * (modes.omega2[j] + pencil.shift)) * modes.shapes.col(j);
-    m.figures.omega2 = modes.omega2[j];
-    m.figures.mass = rigid.mass_of(x);
-    if (system.traits().has_rates && m.figures.omega2 > 1e-9 * pencil.shift)
-      m.figures.damping = x.dot(at.damping(x)) / (2 * std::sqrt(m.figures.omega2));
-    m.figures.error = std::sqrt(std::max(0.0, change.dot(at.mass(change)))) + residual;
-    m.x.assign(x.begin(), x.end());
-    out.push_back(std::move(m));
+  // Once more through the inverse, for the multipliers and to see what changes; what rounding brings of other modes goes.
+  const Eigen::Index m = modes.omega2.size();
+  Eigen::MatrixXd M(at.n(), m), x(at.n(), m);
+  std::vector<FoundMode> out(static_cast<size_t>(m));
+  std::vector<std::vector<double>> clean;  // multipliers
+  Vector one;
+  for (Eigen::Index j = 0; j < m; ++j) {
+    const double nu = 1 / (modes.omega2[j] + pencil.shift);
+    FoundMode& f = out[static_cast<size_t>(j)];
+    M.col(j) = at.mass(modes.shapes.col(j));
+    f.figures.error = at.solve(M.col(j), one, &f.mu);
+    x.col(j) = one / nu;
+    for (double& value : f.mu) value /= nu;
   }
+  const Eigen::MatrixXd share = M.transpose() * x;
+  for (Eigen::Index j = 0; j < m; ++j) {
+    FoundMode& f = out[static_cast<size_t>(j)];
+    Vector shape = x.col(j);
+    std::vector<double> mu = f.mu;
+    for (Eigen::Index k = 0; k < m; ++k) {
+      if (k == j) continue;
+      shape -= share(k, j) * modes.shapes.col(k);
+      for (size_t i = 0; i < mu.size(); ++i) mu[i] -= share(k, j) * out[static_cast<size_t>(k)].mu[i];
+    }
+    const Vector change = shape - modes.shapes.col(j);
+    Eigen::Index most = 0;
+    shape.cwiseAbs().maxCoeff(&most);
+    const double norm = std::copysign(std::sqrt(shape.dot(at.mass(shape))), shape[most]);
+    shape /= norm;
+    f.figures.omega2 = modes.omega2[j];
+    f.figures.error += std::sqrt(std::max(0.0, change.dot(at.mass(change))));
+    f.figures.mass = rigid.mass_of(shape);
+    if (system.traits().has_rates && f.figures.omega2 > 1e-9 * pencil.shift)
+      f.figures.damping = shape.dot(at.damping(shape)) / (2 * std::sqrt(f.figures.omega2));
+    f.x.assign(shape.begin(), shape.end());
+    for (double& value : mu) value /= norm;
+    clean.push_back(std::move(mu));
+  }
+  for (size_t j = 0; j < out.size(); ++j) out[j].mu = std::move(clean[j]);
   return out;
 }
 

@@ -144,16 +144,33 @@ Eigenmodes lowest_modes(const Pencil& pencil, int wanted, double tolerance, bool
   Eigenmodes out;
   out.converged = sure;
   out.asymmetry = ritz.nu.size() > 0 ? krylov.asymmetry() / ritz.nu.cwiseAbs().maxCoeff() : 0;
-  std::vector<Index> order(static_cast<size_t>(ritz.nu.size()));
+  if (ritz.nu.size() == 0) return out;
+  // A step of inverse iteration with all of them: what rounding has left outside of the subspace, where joints are open, goes.
+  const auto inverse = [&](const Matrix& MX) {
+    Matrix out(MX.rows(), MX.cols());
+    Vector x(MX.rows());
+    for (Index j = 0; j < MX.cols(); ++j) pencil.solve(MX.col(j), x), out.col(j) = x;
+    return out;
+  };
+  const auto mass = [&](const Matrix& X) {
+    Matrix out(X.rows(), X.cols());
+    Vector y(X.rows());
+    for (Index j = 0; j < X.cols(); ++j) pencil.mass(X.col(j), y), out.col(j) = y;
+    return out;
+  };
+  const Matrix X = inverse(mass(krylov.shapes(ritz.y) * ritz.nu.cwiseInverse().asDiagonal())), MX = mass(X), Y = inverse(MX);
+  const Matrix G = X.transpose() * MX, H = MX.transpose() * Y;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> pairs((H + H.transpose()) / 2, (G + G.transpose()) / 2);
+  const Vector& nu = pairs.eigenvalues();
+  std::vector<Index> order(static_cast<size_t>(nu.size()));
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return 1 / ritz.nu[a] < 1 / ritz.nu[b]; });
-  out.omega2.resize(ritz.nu.size());
-  Matrix y(ritz.y.rows(), ritz.y.cols());
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return 1 / nu[a] < 1 / nu[b]; });
+  out.omega2.resize(nu.size()), out.shapes.resize(pencil.n, nu.size());
   for (size_t j = 0; j < order.size(); ++j) {
     const auto at = static_cast<Index>(j);
-    out.omega2[at] = 1 / ritz.nu[order[j]] - pencil.shift, y.col(at) = ritz.y.col(order[j]);
+    out.omega2[at] = 1 / nu[order[j]] - pencil.shift;
+    out.shapes.col(at) = X * pairs.eigenvectors().col(order[j]);
   }
-  out.shapes = krylov.shapes(y);
   return out;
 }
 
