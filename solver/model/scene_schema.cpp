@@ -36,6 +36,7 @@ std::vector<KindSchema> make() {
     rows.params.push_back({"density", number, "kg/m^3", "", "reference density", above(0)});
     s.push_back(std::move(rows));
   }
+  material_kinds().close();
   s.push_back({"region",
                "",
                "material of a region; the name may be a glob (quoted), the last match wins",

@@ -5,7 +5,6 @@
 
 #include "physics/bar.hpp"
 #include "physics/shape/shapes.hpp"
-#include "physics/solid.hpp"
 
 namespace hilo {
 
@@ -32,22 +31,13 @@ int flowing_points(Shape shape) {
   return of_shape(shape, 0, []<class S>() { return Integrated<S, true>::n_points; });
 }
 
-template <class M>
-constexpr int state_of_point() {
-  if constexpr (Remembers<M>) return M::n_state;
-  return 0;
-}
-template <class... M>
-int state_of_cell(Shape shape, size_t law, const std::variant<M...>*) {
-  constexpr int of_law[] = {state_of_point<M>()...};
-  return of_law[law] * flowing_points(shape);
-}
-
 }  // namespace
 
 SolidKernel solid_kernel(Shape shape, size_t law) {
-  const int n_state = state_of_cell(shape, law, static_cast<const Material*>(nullptr));
+  const MaterialKind& kind = material_kinds()[law];
+  const int n_state = kind.n_state * flowing_points(shape);
   if (shape == Shape::bar2) return {bar_kernel(law), 1, n_state};
+  if (kind.functions) return {kind.functions->kernel(shape), kind.functions->width, n_state};
   const int w = lanes();
   return {w == 8 ? kernel_lanes8(shape, law) : w == 4 ? kernel_lanes4(shape, law) : kernel_lanes2(shape, law), w, n_state};
 }

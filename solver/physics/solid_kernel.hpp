@@ -21,9 +21,7 @@ struct KernelCall {
   double elapsed = 0;
 };
 
-using KernelFunction = void (*)(const KernelCall&);
-
-/// Kernel of a shape and a law (Material::index()) and the number of cells it takes at once; no function where the law has no such cells.
+/// Kernel of a shape and a law (law_index(material)) and the number of cells it takes at once; no function where the law has no such cells.
 struct SolidKernel {
   KernelFunction call;
   int width;

@@ -49,13 +49,14 @@ static KernelFunction kernel_of_shape(Shape shape) {
 }
 
 template <class T, class... M>
-static KernelFunction kernel_in(Shape shape, size_t law, const std::variant<M...>*) {
+static KernelFunction kernel_in(Shape shape, size_t law, LawList<M...>) {
   KernelFunction (*const of_law[])(Shape) = {kernel_of_shape<M, T>...};
   return of_law[law](shape);
 }
+/// Of a law of the tree.
 template <class T>
 static KernelFunction kernel_of(Shape shape, size_t law) {
-  return kernel_in<T>(shape, law, static_cast<const Material*>(nullptr));
+  return kernel_in<T>(shape, law, Laws{});
 }
 
 }  // namespace hilo

@@ -223,16 +223,9 @@ void Builder::make_rigid_bodies() {
 /// The law of a region: its kind in the list of materials, its values from the scene, or from the deck.
 Material Builder::material_of(const Region& r) const {
   const auto& kinds = material_kinds();
-  const MaterialKind* kind = &kinds.front();
-  std::vector<std::string> names;
-  for (const MaterialKind& k : kinds) {
-    names.emplace_back(k.name);
-    if (r.material && r.material->kind == k.name) kind = &k;
-  }
-  if (r.material && r.material->kind != kind->name)
-    throw Error(r.where, fmt::format("no law \"{}\"", r.material->kind), suggest(r.material->kind, names));
+  const MaterialKind& kind = r.material ? kinds.at(r.material->kind, r.where) : kinds[0];
   const auto number = [&](std::string_view key) {
-    const Param& p = *std::find_if(kind->keys.begin(), kind->keys.end(), [&](const Param& k) { return k.key == key; });
+    const Param& p = *std::find_if(kind.keys.begin(), kind.keys.end(), [&](const Param& k) { return k.key == key; });
     const double value = key == "E"                           ? r.E
                          : key == "nu"                        ? r.nu
                          : r.material && r.material->has(key) ? r.material->number(key)
@@ -248,7 +241,7 @@ Material Builder::material_of(const Region& r) const {
   const auto refuse = [&](std::string_view key, const std::string& why) {
     throw Error(r.material ? r.material->where(key) : r.where, fmt::format("region \"{}\": {}", r.name, why));
   };
-  return kind->make({has, number, numbers, refuse});
+  return kind.make({has, number, numbers, refuse});
 }
 
 void Builder::make_batches() {
@@ -290,16 +283,15 @@ SolidBatch Builder::batch_of(int region, Shape shape) const {
     throw Error(r.where, fmt::format("region \"{}\" is made of bars and has no area", r.name), "give [region.NAME] area");
   b.density = std::isnan(r.density) ? 0 : r.density;
   b.beta = r.beta, b.alpha = r.alpha, b.area = r.area;
-  b.kernel = solid_kernel(b.shape, b.material.index());
+  b.kernel = solid_kernel(b.shape, law_index(b.material));
   if (b.kernel.n_state > 0 && b.shape == Shape::hex20) {  // 27 points are more conditions on the volume of flow than 20 nodes can meet
-    b.shape = Shape::hex20r, b.kernel = solid_kernel(b.shape, b.material.index());
+    b.shape = Shape::hex20r, b.kernel = solid_kernel(b.shape, law_index(b.material));
   }
   if (!b.kernel.call) {
     std::string with_bars;
     for (size_t k = 0; k < material_kinds().size(); ++k)
       if (solid_kernel(Shape::bar2, k).call) with_bars += (with_bars.empty() ? "" : ", ") + std::string(material_kinds()[k].name);
-    throw Error(r.where,
-                fmt::format("region \"{}\" is made of bars: kind = \"{}\" has none", r.name, material_kinds()[b.material.index()].name),
+    throw Error(r.where, fmt::format("region \"{}\" is made of bars: kind = \"{}\" has none", r.name, kind_of(b.material).name),
                 "kinds that have: " + with_bars);
   }
   return b;

@@ -70,14 +70,6 @@ constexpr double stiffness_of_skew = 24;
 constexpr double few = 0.05;
 constexpr double nearly_incompressible = 0.45;
 
-/// Whether cells of a law of this name remember plastic strain.
-bool flows(std::string_view kind) {
-  const auto& kinds = material_kinds();
-  for (size_t k = 0; k < kinds.size(); ++k)
-    if (kinds[k].name == kind) return solid_kernel(Shape::hex8, k).n_state > 0;
-  return false;
-}
-
 }  // namespace
 
 void Builder::warn_of_limits() const {
@@ -99,7 +91,7 @@ void Builder::warn_of_limits() const {
       warn(regions_[r].name, "its material flows: hex20 are taken with 2 x 2 x 2 points (hex20r); with 3 x 3 x 3 they lock");
     const double* row = sums.data() + r * columns;
     const Region& region = regions_[r];
-    const bool metal = region.material && flows(region.material->kind);
+    const bool metal = region.material && material_kinds().at(region.material->kind).n_state > 0;  // flows
     double all = 0;
     for (int s = 0; s < n_shapes; ++s) all += row[s];
     for (int s = 0; s < n_shapes; ++s) {

@@ -15,8 +15,9 @@ namespace {
 constexpr double folded = 0.55;
 
 bool sees_less(Shape s) { return s == Shape::hex8 || s == Shape::hex20r; }
-const MaterialKind& kind(const SolidBatch& b) { return material_kinds()[b.material.index()]; }
-double limit(const SolidBatch& b) { return kind(b).soft_below > 0 ? kind(b).soft_below : sees_less(b.shape) ? folded : 0; }
+double limit(const SolidBatch& b) {
+  return kind_of(b.material).soft_below > 0 ? kind_of(b.material).soft_below : sees_less(b.shape) ? folded : 0;
+}
 
 }  // namespace
 
@@ -30,8 +31,8 @@ void Solids::watch_strain(const Config& q) {
     if (floor == 0 || strain_told_[b.region]) continue;
     const auto n = static_cast<size_t>(info(b.shape).n_nodes);
     from.resize(n), to.resize(n);
-    double& worst = beyond[3 * b.region + (kind(b).soft_below > 0 ? 0 : 1)];
-    beyond[3 * b.region + 2] = static_cast<double>(b.material.index());
+    double& worst = beyond[3 * b.region + (kind_of(b.material).soft_below > 0 ? 0 : 1)];
+    beyond[3 * b.region + 2] = static_cast<double>(law_index(b.material));
     for (size_t e = 0; e < b.cells.size(); ++e) {
       for (size_t a = 0; a < n; ++a) from[a] = points_.X[b.nodes[e * n + a]], to[a] = q.x[b.nodes[e * n + a]];
       worst = std::max(worst, floor - least_stretch(b.shape, from, to, floor));

@@ -55,7 +55,7 @@ void measure(Shape shape, const Material& law, int n, double& hex8) {
   const Cost c = cost(block.system);
   const auto cells = static_cast<double>(block.system.part<Solids>().batches[0].cells.size());
   if (shape == Shape::hex8 && law.index() == place_of<StVenantKirchhoff>) hex8 = (c.tangent + c.solve) / cells;
-  print(info(shape).name, material_kinds()[law.index()].kind, cells, block.system, c, hex8);
+  print(info(shape).name, kind_of(law).name, cells, block.system, c, hex8);
 }
 
 }  // namespace

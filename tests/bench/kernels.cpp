@@ -126,8 +126,8 @@ void measure(Shape shape, const Material& law, int n, const Machine& machine) {
   // read and written: blocks of the matrix; read: their places, four vectors of each node and its number; twice: nodal forces
   const double nodes = info(shape).n_nodes, bytes = nodes * nodes * (2 * 72 + 4) + nodes * (4 * 24 + 4 + 2 * 24);
   fmt::print("{:8} {:12} {:7.2f} {:7.2f} {:8.1f} {:8.1f} {:5.0f}%  {:8.2f} {:8.2f} {:7.1f} {:7.1f} {:5.0f}%\n", info(shape).name,
-             material_kinds()[law.index()].kind, force, both, flops / 1e3, flops / both / 1e3, 100 * flops / both / machine.peak, residual,
-             assembled, bytes / 1e3, bytes / assembled / 1e3, 100 * bytes / assembled / machine.triad);
+             kind_of(law).name, force, both, flops / 1e3, flops / both / 1e3, 100 * flops / both / machine.peak, residual, assembled,
+             bytes / 1e3, bytes / assembled / 1e3, 100 * bytes / assembled / machine.triad);
 }
 
 }  // namespace

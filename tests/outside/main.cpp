@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
   outside::add_deck_card();
   outside::add_integrator();
   outside::add_joint();
+  outside::add_materials();
   outside::add_force_law();
   outside::add_output_field();
   testing::InitGoogleTest(&argc, argv);

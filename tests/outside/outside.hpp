@@ -9,6 +9,7 @@ namespace outside {
 void add_deck_card();
 void add_integrator();
 void add_joint();
+void add_materials();
 void add_force_law();
 void add_output_field();
 
