@@ -110,6 +110,10 @@ void Builder::set_initial_velocities() {
         }
       if (!used) {
         const Found found = find(pattern, e.where("on"));
+        if (comm_.max(found.linear || (found.body > 0 && out_->bodies[found.body].linear) ? 1 : 0) > 0)
+          throw Error(e.where("on"),
+                      fmt::format("{}: \"{}\" is a part of a linear region, which has no velocity of its own", e.label(), pattern),
+                      "name the region, or tag it nonlinear");
         for (int i : found.nodes) node[i] = 1;
         if (found.body > 0) body[found.body] = true;  // a set of a rigid body is that body
         if (!e.has("about") && e.vector3("spin").norm() > 0) throw Error(e.place.text(), e.label() + ": a spin of a set needs `about`");

@@ -40,9 +40,10 @@ void expect_kept(const Results& r, double energy_at_most, double momentum_at_mos
   for (const int first : {0, 3}) {
     double worst = 0;
     for (Eigen::Index i = 0; i < p.rows(); ++i) worst = std::max(worst, (p.row(i).segment<3>(first) - p.row(0).segment<3>(first)).norm());
-    EXPECT_LT(worst, momentum_at_most * p.row(0).segment<3>(first).norm()) << (first ? "angular momentum" : "momentum");
+    const double rest = first ? 0 : std::sqrt(2 * 10 * e.col(0).maxCoeff());  // of parts that move against each other [kg m/s]
+    EXPECT_LT(worst, momentum_at_most * std::max(rest, p.row(0).segment<3>(first).norm())) << (first ? "angular momentum" : "momentum");
   }
-  EXPECT_GT(e.col(1).maxCoeff(), 1e-4 * e.col(0).maxCoeff()) << "it really bends";
+  EXPECT_GT(e.col(1).maxCoeff(), 1e-5 * e.col(0).maxCoeff()) << "it really bends";
 }
 
 TEST(LinearRegion, TumblingFreelyKeepsEnergyAndMomenta) {
@@ -59,6 +60,23 @@ TEST(LinearRegion, OnAHingeWithAnotherKeepsEnergyAndMomenta) {
   EXPECT_LT(r.history("constraint").maxCoeff(), 1e-12);
 }
 
+// Ten to thirty seconds each: `verify-tests --gtest_also_run_disabled_tests --gtest_filter='*LongLinear*'`.
+std::string long_run() {
+  return "--set time.end=1580 --set output.interval=158 --set initial.1.velocity=[0,0,0]";  // 1e5 steps; L about a point that stays near
+}
+TEST(DISABLED_LongLinearRegion, TumblingFreelyKeepsEnergyAndMomenta) {
+  Case c("linear_region");
+  c.use(bar(0, 1, 6), {Fidelity::linear});
+  expect_kept(c.solved(long_run(), "run.h5", "free"), 1e-12, 1e-12);
+}
+TEST(DISABLED_LongLinearRegion, OnAHingeWithAnotherKeepsEnergyMomentaAndTheHinge) {
+  Case c("linear_region");
+  c.use(both(bar(0, 1, 4), bar(1, 2, 4)), {Fidelity::linear, Fidelity::linear});
+  const Results r = c.solved(long_run() + " --set material.soft.E=1e8", "run.h5", "pair");
+  expect_kept(r, 1e-12, 1e-12);
+  EXPECT_LT(r.history("constraint").maxCoeff(), 50 * 2.2e-16 * 2);
+}
+
 class Beside : public testing::TestWithParam<std::pair<const char*, Fidelity>> {};
 TEST_P(Beside, AnotherRegionItKeepsEnergyAndMomenta) {
   Case c("linear_region");
@@ -70,6 +88,20 @@ TEST_P(Beside, AnotherRegionItKeepsEnergyAndMomenta) {
   c.use(block_mesh(o), {Fidelity::linear, GetParam().second});
   expect_kept(c.solved("", "run.h5", "free"), 1e-10, 1e-12);
 }
+class DISABLED_LongBeside : public Beside {};
+TEST_P(DISABLED_LongBeside, AnotherLinearRegionKeepsEnergyAndMomenta) {
+  Case c("linear_region");
+  BlockOptions o;
+  o.n[0] = 6;
+  o.high = Vec3(1, 0.1, 0.1);
+  o.regions = {"near", "far"};
+  o.region_of = [](const Vec3& x) { return x[0] < 0.5 ? 0 : 1; };
+  c.use(block_mesh(o), {Fidelity::linear, GetParam().second});
+  expect_kept(c.solved(long_run(), "run.h5", "free"), 1e-12, 1e-12);
+}
+INSTANTIATE_TEST_SUITE_P(DISABLED_LongLinearRegion, DISABLED_LongBeside,
+                         testing::Values(std::pair{"Rigid", Fidelity::rigid}, std::pair{"Nonlinear", Fidelity::nonlinear}),
+                         [](const auto& info) { return info.param.first; });
 INSTANTIATE_TEST_SUITE_P(LinearRegion, Beside,
                          testing::Values(std::pair{"Rigid", Fidelity::rigid}, std::pair{"Linear", Fidelity::linear},
                                          std::pair{"Nonlinear", Fidelity::nonlinear}),
@@ -99,6 +131,14 @@ TEST(LinearRegion, ThatSpinsNearItsFirstFrequencyIsWarnedOfAndBeyondItRefused) {
   EXPECT_NE(near.err.find("tag it nonlinear"), std::string::npos) << near.err;
   const Ran beyond = c.solve(end + "3e5", "run.h5", 3, "free");
   EXPECT_NE(beyond.err.find("linear region \"block\" spins with 18"), std::string::npos) << beyond.err;
+}
+
+// The set's velocity would become that of the whole region.
+TEST(LinearRegion, WhoseSetsAreGivenVelocitiesIsRefused) {
+  Case c("linear_region");
+  c.use(bar(0, 1, 6), {Fidelity::linear});
+  const Ran ran = c.solve("--set 'initial.1.on=[\"xmax\"]' --set initial.1.about=[0,0,0]", "run.h5", 2, "free");
+  EXPECT_NE(ran.err.find("\"xmax\" is a part of a linear region"), std::string::npos) << ran.err;
 }
 
 TEST(LinearRegion, WhoseFaceTurnsFarIsWarnedOf) {
