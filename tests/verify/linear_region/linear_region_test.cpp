@@ -60,7 +60,7 @@ TEST(LinearRegion, OnAHingeWithAnotherKeepsEnergyAndMomenta) {
   EXPECT_LT(r.history("constraint").maxCoeff(), 1e-12);
 }
 
-// Ten to thirty seconds each: `verify-tests --gtest_also_run_disabled_tests --gtest_filter='*LongLinear*'`.
+// Seven to fifty seconds each: make -C tests long.
 std::string long_run() {
   return "--set time.end=1580 --set output.interval=158 --set initial.1.velocity=[0,0,0]";  // 1e5 steps; L about a point that stays near
 }
