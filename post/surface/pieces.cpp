@@ -1,5 +1,6 @@
 #include "post/surface/pieces.hpp"
 
+#include <fmt/format.h>
 #include <vtkCell.h>
 #include <vtkGenericCell.h>
 #include <vtkSmartPointer.h>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/error.hpp"
 #include "model/mesh.hpp"
 
 namespace hilo {
@@ -127,6 +129,8 @@ class Maker {
 }  // namespace
 
 const Pieces& pieces(Shape shape) {
+  if (static_cast<int>(shape) >= n_shapes)
+    throw Error("", fmt::format("{} is a shape from outside the tree: its cells are not cut", info(shape).name));
   static std::array<Pieces, n_shapes> made;
   Pieces& p = made[static_cast<size_t>(shape)];
   if (p.tet.empty() && info(shape).dimension == 3) p = Maker(shape).make();

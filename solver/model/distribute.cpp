@@ -90,8 +90,8 @@ void Distribution::read_cells() {
   cell_id_ = s.read_rows<std::int64_t>("/mesh/cells/id", first, n);
   offset_ = s.read_rows<std::int64_t>("/mesh/cells/offset", first, n + 1);
   if (s.shape("/mesh/cells/offset").at(0) != cells_.n + 1 || s.shape("/mesh/cells/region").at(0) != cells_.n) throw damaged("/mesh/cells");
+  check_shapes(s, shape_, first);
   for (std::int64_t c = 0; c < n; ++c) {
-    if (shape_[c] >= n_shapes) throw damaged(fmt::format("/mesh/cells/shape of cell {} is {}", first + c, shape_[c]));
     if (offset_[c + 1] - offset_[c] != info(shape_[c]).n_nodes)
       throw damaged(
           fmt::format("/mesh/cells/offset of cell {} is {}, not {}", first + c + 1, offset_[c + 1], offset_[c] + info(shape_[c]).n_nodes));

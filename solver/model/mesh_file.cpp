@@ -2,12 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <set>
+#include <utility>
 
 #include "base/error.hpp"
 #include "model/mesh.hpp"
 #include "model/mesh_source.hpp"
 #include "model/schema.hpp"
+#include "model/shape_row.hpp"
 #include "model/store.hpp"
 
 namespace hilo {
@@ -48,15 +52,18 @@ void check_size(const Store& store, const std::string& array, size_t size, size_
   if (size != wanted) throw Error(store.path(), fmt::format("damaged: {} has {} entries, not {}", array, size, wanted));
 }
 
+/// The attribute that names a shape from outside the tree.
+std::string name_of_shape(std::uint8_t shape) { return fmt::format("shape_{}", shape); }
+
 void check_cells(const Store& store, const Mesh& m) {
   const size_t n = m.shape.size();
   check_size(store, "/mesh/nodes/id", m.node_id.size(), m.X.size());
   check_size(store, "/mesh/cells/offset", m.offset.size(), n + 1);
   check_size(store, "/mesh/cells/region", m.region.size(), n);
   check_size(store, "/mesh/cells/id", m.cell_id.size(), n);
+  check_shapes(store, m.shape);
   std::int64_t at = 0;
   for (size_t c = 0; c < n; ++c) {
-    if (m.shape[c] >= n_shapes) throw Error(store.path(), fmt::format("damaged: /mesh/cells/shape of cell {} is {}", c, m.shape[c]));
     if (m.offset[c] != at)
       throw Error(store.path(), fmt::format("damaged: /mesh/cells/offset of cell {} is {}, not {}", c, m.offset[c], at));
     if (m.region[c] < 0 || m.region[c] >= static_cast<std::int32_t>(m.region_name.size()))
@@ -114,6 +121,20 @@ Mesh read_mesh(const Store& store) {
 }
 
 }  // namespace
+
+void check_shapes(const Store& mesh, std::span<const std::uint8_t> shapes, std::int64_t first) {
+  std::array<bool, most_shapes> seen{};
+  for (size_t c = 0; c < shapes.size(); ++c) {
+    const std::uint8_t shape = shapes[c];
+    if (std::exchange(seen[shape], true)) continue;
+    const auto name = shape < first_outside ? std::nullopt : mesh.text_attribute("/mesh/cells/shape", name_of_shape(shape));
+    if (name && (!is_shape(shape) || info(shape).name != *name))
+      throw Error(mesh.path(), fmt::format("cells of shape {}, \"{}\", which this program does not have", shape, *name),
+                  "it is of a program that adds shapes of its own");
+    if (!is_shape(shape) || (shape >= first_outside && !name))
+      throw Error(mesh.path(), fmt::format("damaged: /mesh/cells/shape of cell {} is {}", first + static_cast<std::int64_t>(c), shape));
+  }
+}
 
 std::string holder(const Store& store, const std::string& what) {
   const auto link = store.linked("/" + what);
@@ -189,6 +210,8 @@ Store unpublished_mesh(const std::string& path, const Mesh& m, const std::vector
   put<double>(store, "/mesh/nodes/X", {n ? m.X[0].data() : nullptr, m.X.size() * 3}, {n, 3});
   put(store, "/mesh/nodes/id", m.node_id);
   put(store, "/mesh/cells/shape", m.shape);
+  for (const std::uint8_t shape : std::set<std::uint8_t>(m.shape.begin(), m.shape.end()))
+    if (shape >= first_outside) store.set("/mesh/cells/shape", name_of_shape(shape), std::string(info(shape).name));
   put(store, "/mesh/cells/offset", m.offset);
   put(store, "/mesh/cells/nodes", m.nodes);
   put(store, "/mesh/cells/region", m.region);

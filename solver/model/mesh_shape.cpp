@@ -1,23 +1,20 @@
 // The table of cell shapes, and volume and quality of a cell from its facets and corners.
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <cmath>
 #include <initializer_list>
+#include <memory>
 
+#include "base/error.hpp"
 #include "model/mesh.hpp"
 #include "model/partition.hpp"
+#include "model/shape_row.hpp"
 
 namespace hilo {
 namespace {
 
 using Lists = std::vector<std::vector<int>>;
-
-/// A shape by its corners: the local nodes of its facets, outward; per corner the three neighbours that make a right-handed system; the
-/// edges that have a node in the middle, in the order of these nodes; what it costs (partition.hpp).
-struct ShapeRow {
-  std::string_view name;
-  int corners, dimension, vtk, xdmf, work;
-  Lists facets, neighbours, edges;
-};
 
 struct Kind {
   ShapeInfo info;
@@ -47,8 +44,8 @@ Kind make(const ShapeRow& row) {
 }
 
 /// By number, in the order of Shape.
-const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> table = [] {
+std::array<std::unique_ptr<const Kind>, most_shapes>& kinds() {
+  static auto table = [] {
     const Lists tet{{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}}, tet_corners{{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {2, 1, 0}};
     const Lists wedge{{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
     const Lists wedge_corners{{1, 2, 3}, {2, 0, 4}, {0, 1, 5}, {5, 4, 0}, {3, 5, 1}, {4, 3, 2}};
@@ -57,7 +54,8 @@ const std::vector<Kind>& kinds() {
     const Lists tet_edges{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
     const Lists wedge_edges{{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
     const Lists hex_edges{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
-    std::vector<Kind> t;
+    std::array<std::unique_ptr<const Kind>, most_shapes> t;
+    size_t number = 0;
     for (const ShapeRow& row : std::initializer_list<ShapeRow>{{"bar2", 2, 1, 3, 2, 4, {{0}, {1}}, {}, {}},
                                                                {"tet4", 4, 3, 10, 6, 13, tet, tet_corners, {}},
                                                                {"tet10", 4, 3, 24, 38, 134, tet, tet_corners, tet_edges},
@@ -66,13 +64,13 @@ const std::vector<Kind>& kinds() {
                                                                {"hex8", 8, 3, 12, 9, 100, hex, hex_corners, {}},
                                                                {"hex20", 8, 3, 25, 48, 540, hex, hex_corners, hex_edges},
                                                                {"hex20r", 8, 3, 25, 48, 460, hex, hex_corners, hex_edges}})
-      t.push_back(make(row));
+      t[number++] = std::make_unique<const Kind>(make(row));
     return t;
   }();
   return table;
 }
 
-const Kind& kind(Shape shape) { return kinds()[static_cast<size_t>(shape)]; }
+const Kind& kind(Shape shape) { return *kinds()[static_cast<size_t>(shape)]; }
 
 /// Shape functions of a facet and their derivatives at (r, s): 3, 4, 6 or 8 nodes.
 struct FacetPoint {
@@ -134,6 +132,18 @@ const std::vector<FacetPoint>& rule_of(size_t n) {
 }  // namespace
 
 const ShapeInfo& info(Shape shape) { return kind(shape).info; }
+
+bool is_shape(std::uint8_t shape) { return kinds()[shape] != nullptr; }
+
+void add_shape_row(Shape shape, const ShapeRow& row) {
+  const int number = static_cast<int>(shape);
+  if (number < first_outside)
+    throw Error("", fmt::format("shape \"{}\" has number {}", row.name, number), fmt::format("{} or more", first_outside), Exit::fault);
+  for (const auto& k : kinds())
+    if (k && (k->info.name == row.name || &k == &kinds()[number]))
+      throw Error("", fmt::format("shape \"{}\", number {}: there is one", row.name, number), "", Exit::fault);
+  kinds()[number] = std::make_unique<const Kind>(make(row));
+}
 
 int work_of_cell(Shape shape) { return kind(shape).work; }
 

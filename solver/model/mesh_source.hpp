@@ -1,5 +1,7 @@
 // How mesh, tags and parts files point to one another; shared by the reader of whole files and that of slices.
 #pragma once
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "model/mesh.hpp"
@@ -13,6 +15,10 @@ std::string checked_format(const Store& store);
 std::string holder(const Store& store, const std::string& what);
 /// Warn where `target` is not the file it was when `store` was made from it.
 void warn_if_changed(const Store& store, const std::string& what, const std::string& target);
+
+/// Numbers of shapes in a mesh file: Error where this program has none of the number, or another shape than the program that wrote the
+/// file. `first`: of the first cell of these.
+void check_shapes(const Store& mesh, std::span<const std::uint8_t> shapes, std::int64_t first = 0);
 
 /// What write_mesh() publishes, whole on disk under its temporary name.
 Store unpublished_mesh(const std::string& path, const Mesh& mesh, const std::vector<std::string>& provenance);

@@ -31,4 +31,15 @@ void add_material() {
   material_kinds().add(std::move(kind));
 }
 
+/// Its place in the list of laws.
+template <class M>
+size_t place_of_law() {
+  static const size_t place = [] {
+    for (size_t k = 0; k < material_kinds().size(); ++k)
+      if (material_kinds()[k].name == M::name) return k;
+    return material_kinds().size();
+  }();
+  return place;
+}
+
 }  // namespace hilo

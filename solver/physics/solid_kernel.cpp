@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "physics/bar.hpp"
+#include "physics/shape/from_outside.hpp"
 #include "physics/shape/shapes.hpp"
 
 namespace hilo {
@@ -28,6 +29,7 @@ int lanes() {
 namespace {
 
 int flowing_points(Shape shape) {
+  if (const ShapeFunctions* other = shape_from_outside(shape)) return other->n_points;
   return of_shape(shape, 0, []<class S>() { return Integrated<S, true>::n_points; });
 }
 
@@ -37,6 +39,7 @@ SolidKernel solid_kernel(Shape shape, size_t law) {
   const MaterialKind& kind = material_kinds()[law];
   const int n_state = kind.n_state * flowing_points(shape);
   if (shape == Shape::bar2) return {bar_kernel(law), 1, n_state};
+  if (const ShapeFunctions* other = shape_from_outside(shape)) return {other->kernel(law), other->width, n_state};
   if (kind.functions) return {kind.functions->kernel(shape), kind.functions->width, n_state};
   const int w = lanes();
   return {w == 8 ? kernel_lanes8(shape, law) : w == 4 ? kernel_lanes4(shape, law) : kernel_lanes2(shape, law), w, n_state};

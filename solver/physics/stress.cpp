@@ -1,5 +1,7 @@
 #include "physics/stress.hpp"
 
+#include "base/error.hpp"
+#include "physics/shape/from_outside.hpp"
 #include "physics/stress_of_law.hpp"
 
 namespace hilo {
@@ -40,6 +42,11 @@ Vec6 bar_stress(const Material& material, std::span<const Vec3> X, std::span<con
 
 void stress_points(Shape shape, const Material& material, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
                    std::vector<StressPoint>& out, const double* state) {
+  if (const ShapeFunctions* other = shape_from_outside(shape)) {
+    if (!other->stress_points(material, X, x, state, which, out))
+      throw Error("", "a shape from outside the tree lacks a law", "add_shape<S, M>()", Exit::fault);
+    return;
+  }
   std::visit(
       [&]<class M>(const M& law) {
         if constexpr (std::is_same_v<M, LawFromOutside>)
@@ -51,6 +58,7 @@ void stress_points(Shape shape, const Material& material, std::span<const Vec3> 
 }
 
 const Eigen::MatrixXd& to_nodes(Shape shape) {
+  if (const ShapeFunctions* other = shape_from_outside(shape)) return other->to_nodes();
   static const Eigen::MatrixXd none;
   return *of_shape(shape, &none, []<class S>() {
     static const Eigen::MatrixXd table = stress::samples_to_nodes<S>();
@@ -59,6 +67,7 @@ const Eigen::MatrixXd& to_nodes(Shape shape) {
 }
 
 void nodal_gradients(Shape shape, std::span<const Vec3> X, std::span<const Vec3> x, std::span<Mat3> F) {
+  if (const ShapeFunctions* other = shape_from_outside(shape)) return other->nodal_gradients(X, x, F);
   of_shape(shape, false, [&]<class S>() {
     stress::gradients_at_nodes<S>(X, x, F);
     return true;

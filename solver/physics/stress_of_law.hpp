@@ -18,9 +18,8 @@ Vec6 second_piola(const M& law, const double e[6]) {
   return s;
 }
 
-/// Local coordinates of the nodes of a shape: where N_a = 1.
 template <class S>
-constexpr Quadrature<S::n> node_points() {
+constexpr Quadrature<S::n> nodes_in_the_tree() {
   Quadrature<S::n> r;
   auto& xi = r.xi;
   const auto middle = [&](int a, int from, int to) {
@@ -42,6 +41,15 @@ constexpr Quadrature<S::n> node_points() {
       for (int e = 0; e < 9; ++e) middle(6 + e, e < 6 ? (e % 3) + (e < 3 ? 0 : 3) : e - 6, e < 6 ? (e + 1) % 3 + (e < 3 ? 0 : 3) : e - 3);
   }
   return r;
+}
+
+/// Local coordinates of the nodes of a shape: where N_a = 1.
+template <class S>
+constexpr Quadrature<S::n> node_points() {
+  if constexpr (requires { S::nodes(); })
+    return S::nodes();
+  else
+    return nodes_in_the_tree<S>();
 }
 
 /// Least squares from the points of a rule to the nodes.
@@ -129,7 +137,7 @@ void solid_points(const M& whole, std::span<const Vec3> X, std::span<const Vec3>
   const CellMean mean = mean_of<S, typename M::Bulk>(c, X, x);
   const M law = without_mean(whole, mean.lambda);
   if (which == StressPoints::everywhere) return points_of(mass_table<S>, law, mean, X, x, out);
-  if constexpr (S::n == 20)
+  if constexpr (std::is_base_of_v<Hex20, S>)
     if (which == StressPoints::samples) return points_of(barlow_table, law, mean, X, x, out);
   points_of(stiffness_table<S>, law, mean, X, x, out);
 }
@@ -230,7 +238,7 @@ void points_of_law(Shape shape, const M& law, std::span<const Vec3> X, std::span
 /// Values at the nodes from those at the samples.
 template <class S>
 Eigen::MatrixXd samples_to_nodes() {
-  if constexpr (S::n == 8 || S::n == 20)
+  if constexpr (std::is_same_v<S, Hex8> || std::is_base_of_v<Hex20, S>)
     return fitted<S>(hex_rule<2>());
   else
     return fitted<S>(S::rule());

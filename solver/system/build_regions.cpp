@@ -98,13 +98,18 @@ void Builder::integrate_regions() {
   for (int i = 0; i < 3; ++i) origin_[i] = (comm_.max(hi[i]) - comm_.max(-lo[i])) / 2;
   const int W = lanes();
   const StVenantKirchhoff no_matter{{1, 1}};  // the mass alone is asked for
-  alignas(64) double X[60 * 8], a[60 * 8], f[60 * 8];
+  struct alignas(64) Line {                   // as the widest kernels load them
+    double value[8];
+  };
+  std::vector<Line> scratch;
   for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
     Region& r = regions_[mesh.region[e]];
     const double density = std::isnan(r.density) ? 0 : r.density;
     const auto nodes = mesh.cell(e);
     const SolidKernel kernel = solid_kernel(static_cast<Shape>(mesh.shape[e]), place_of<StVenantKirchhoff>);
     const int n3 = 3 * static_cast<int>(nodes.size()), w = std::min(W, kernel.width);
+    scratch.resize(9 * nodes.size());
+    double *X = scratch[0].value, *a = scratch[n3].value, *f = scratch[2 * static_cast<size_t>(n3)].value;
     const auto integrate = [&](auto&& value) {
       for (int i = 0; i < n3; ++i)
         for (int l = 0; l < w; ++l) X[i * w + l] = mesh.X[nodes[i / 3]][i % 3] - origin_[i % 3], a[i * w + l] = value(i);
@@ -288,11 +293,13 @@ SolidBatch Builder::batch_of(int region, Shape shape) const {
     b.shape = Shape::hex20r, b.kernel = solid_kernel(b.shape, law_index(b.material));
   }
   if (!b.kernel.call) {
-    std::string with_bars;
+    std::string have;
     for (size_t k = 0; k < material_kinds().size(); ++k)
-      if (solid_kernel(Shape::bar2, k).call) with_bars += (with_bars.empty() ? "" : ", ") + std::string(material_kinds()[k].name);
-    throw Error(r.where, fmt::format("region \"{}\" is made of bars: kind = \"{}\" has none", r.name, kind_of(b.material).name),
-                "kinds that have: " + with_bars);
+      if (solid_kernel(b.shape, k).call) have += (have.empty() ? "" : ", ") + std::string(material_kinds()[k].name);
+    throw Error(r.where,
+                fmt::format("region \"{}\" is made of {}: kind = \"{}\" has none", r.name,
+                            b.shape == Shape::bar2 ? "bars" : info(b.shape).name, kind_of(b.material).name),
+                "kinds that have: " + have);
   }
   return b;
 }

@@ -78,7 +78,7 @@ void Builder::warn_of_limits() const {
   constexpr int columns = 2 * n_shapes;  // by shape: cells, and squares of their measure
   std::vector<double> sums(regions_.size() * columns, 0.0);
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c) {
-    if (regions_[mesh.region[c]].fidelity == Fidelity::rigid) continue;
+    if (regions_[mesh.region[c]].fidelity == Fidelity::rigid || mesh.shape[c] >= n_shapes) continue;
     double* row = sums.data() + static_cast<size_t>(mesh.region[c]) * columns;
     row[mesh.shape[c]] += 1, row[n_shapes + mesh.shape[c]] += std::pow(measure(mesh, c), 2);
   }

@@ -248,7 +248,9 @@ double Solids::mass_damping(const Stage& s) const {
   for (const SolidBatch& b : batches) {
     if (b.alpha == 0 || !s.v) continue;
     const int n = info(b.shape).n_nodes, W = b.kernel.width;
-    alignas(64) double X_[60 * 8], v[60 * 8], f[60 * 8];
+    Lanes lanes;
+    const size_t size = 3 * static_cast<size_t>(n) * W;
+    double *X_ = lanes.X.get(size), *v = lanes.x0.get(size), *f = lanes.f.get(size);
     for (size_t e = 0; e < b.cells.size(); ++e) {
       const int* nodes = b.nodes.data() + e * n;
       for (int k = 0; k < n; ++k)

@@ -12,6 +12,7 @@ void add_joint();
 void add_materials();
 void add_force_law();
 void add_output_field();
+void add_pyramid();
 
 /// The results of a scene, of a mesh file where one is named.
 inline hilo::test::Results run_scene(const hilo::test::Workplace& place, const std::string& text, const std::string& mesh = "") {

@@ -5,6 +5,7 @@
 #include <array>
 #include <unordered_map>
 
+#include "base/error.hpp"
 #include "import/imported.hpp"
 
 namespace hilo {
@@ -64,6 +65,8 @@ void raise_order(Imported& in) {
     const auto s = static_cast<Shape>(m.shape[c]);
     const auto old = m.cell(c);
     nodes.insert(nodes.end(), old.begin(), old.end());
+    if (quadratic(s) == s && info(s).dimension == 3 && info(s).n_nodes == info(s).n_corners)
+      throw Error("", fmt::format("--order 2: {} has no quadratic form here", info(s).name), "", Exit::usage);
     if (quadratic(s) != s) {
       for (const auto& [i, j] : edges_of(s)) {
         const auto [it, fresh] = middle.try_emplace(ends(old[i], old[j]), m.n_nodes());

@@ -38,7 +38,7 @@ double scaled_jacobian(const Mesh& m, std::int64_t c) {
     case 8:
       return least(m, m.cell(c), hex, 1);
     default:
-      return 1;
+      return info(m.shape[c]).dimension < 3 ? 1 : quality(m, c).scaled_jacobian;
   }
 }
 

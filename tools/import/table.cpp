@@ -7,6 +7,7 @@
 #include <array>
 #include <limits>
 
+#include "base/outside_shapes.hpp"
 #include "import/imported.hpp"
 
 namespace hilo {
@@ -14,7 +15,7 @@ namespace {
 
 struct RegionRow {
   std::int64_t cells = 0;
-  std::array<std::int64_t, n_shapes> by_shape{};
+  std::array<std::int64_t, most_shapes> by_shape{};
   double volume = 0, length = 0, worst = std::numeric_limits<double>::infinity(), sum = 0;
   std::int64_t judged = 0;  // cells with a Jacobian: not the bars
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -42,7 +43,7 @@ std::vector<RegionRow> rows_of(const Mesh& m) {
 
 std::string shapes(const RegionRow& r) {
   std::string s;
-  for (int i = 0; i < n_shapes; ++i)
+  for (int i = 0; i < most_shapes; ++i)
     if (r.by_shape[i]) s += fmt::format("{}{} {}", s.empty() ? "" : ", ", r.by_shape[i], info(static_cast<Shape>(i)).name);
   return s;
 }
@@ -99,7 +100,7 @@ std::string import_json(const Imported& in, const std::string& file, const std::
   for (size_t i = 0; i < rows.size(); ++i) {
     const auto& r = rows[i];
     std::string by;
-    for (int k = 0; k < n_shapes; ++k)
+    for (int k = 0; k < most_shapes; ++k)
       if (r.by_shape[k]) by += fmt::format("{}\"{}\": {}", by.empty() ? "" : ", ", info(static_cast<Shape>(k)).name, r.by_shape[k]);
     s += fmt::format(
         "{}\n    {{\"name\": {}, \"cells\": {}, \"shapes\": {{{}}}, \"volume\": {}, \"length\": {}, \"box\": [{}, {}], \"quality_min\": "

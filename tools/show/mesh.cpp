@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/outside_shapes.hpp"
 #include "show/summary.hpp"
 
 namespace hilo {
@@ -81,13 +82,13 @@ Table parts(const MeshFile& f) {
 
 void add_mesh(Summary& s, const MeshFile& f) {
   const Mesh& m = f.mesh;
-  std::vector<std::int64_t> of_shape(n_shapes, 0);
+  std::vector<std::int64_t> of_shape(most_shapes, 0);
   for (const auto shape : m.shape) ++of_shape[shape];
   Box box;
   for (const auto& x : m.X) box.add(x);
   s.count("nodes", m.n_nodes());
   s.count("cells", m.n_cells());
-  for (int k = 0; k < n_shapes; ++k)
+  for (int k = 0; k < most_shapes; ++k)
     if (of_shape[k]) s.count(fmt::format("  {}", info(static_cast<Shape>(k)).name), of_shape[k]);
   s.say("box [m]", box.text());
   if (!f.rank.empty()) s.count("parts", f.n_parts);
