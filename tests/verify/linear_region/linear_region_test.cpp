@@ -1,4 +1,6 @@
 // Linear regions: modes about mean axes keep what rigid and nonlinear ones keep, and agree with both where they should.
+#include <numbers>
+
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -12,10 +14,10 @@ Mesh bar(double from, double to, int n, Shape shape = Shape::hex8) {
   return block_mesh(o);
 }
 
-/// Two meshes as one, regions and sets under a prefix.
-Mesh both(const Mesh& a, const Mesh& b) {
+/// Meshes as one, regions and sets under a prefix.
+Mesh together(const std::vector<std::pair<const Mesh*, std::string>>& parts) {
   Mesh out;
-  for (const auto& [m, prefix] : {std::pair{&a, "left_"}, std::pair{&b, "right_"}}) {
+  for (const auto& [m, prefix] : parts) {
     const std::int64_t nodes = out.n_nodes(), cells = out.n_cells();
     const auto region = static_cast<std::int32_t>(out.region_name.size());
     for (size_t r = 0; r < m->region_name.size(); ++r)
@@ -31,6 +33,7 @@ Mesh both(const Mesh& a, const Mesh& b) {
   }
   return out;
 }
+Mesh both(const Mesh& a, const Mesh& b) { return together({{&a, "left_"}, {&b, "right_"}}); }
 
 /// Energy and momenta of a run in free flight stay, over what they are.
 void expect_kept(const Results& r, double energy_at_most, double momentum_at_most) {
@@ -148,6 +151,41 @@ TEST(LinearRegion, WhoseFaceTurnsFarIsWarnedOf) {
   const Ran far = c.solve(end + "3e6", "run.h5", 0, "pair");
   EXPECT_NE(far.err.find("rad at \""), std::string::npos) << far.err;
   EXPECT_EQ(c.solve(end + "1e9", "run.h5", 0, "pair").err.find("rad at"), std::string::npos);
+}
+
+// The bend of 45 degrees that a force out of its plane turns far, of eight parts that each bend little: the tip is at (47.23, 15.79, 53.37)
+// [simo-vu-quoc-1986].
+TEST(LinearRegion, EightTurnFarTogether) {
+  constexpr int n = 8;
+  constexpr double R = 100, step = std::numbers::pi / 4 / n;
+  const auto at = [](double angle, double r) { return Vec3(r * std::sin(angle), R - r * std::cos(angle), 0); };
+  std::vector<Mesh> pieces(n);
+  std::vector<std::pair<const Mesh*, std::string>> parts;
+  std::string scene = "[material.m]\nE = 1e7\nnu = 0\ndensity = 1\n[region.\"*\"]\nmaterial = \"m\"\n";
+  const auto point = [](const Vec3& x) { return "[" + std::to_string(x[0]) + ", " + std::to_string(x[1]) + ", 0]"; };
+  for (int k = 0; k < n; ++k) {
+    BlockOptions o;
+    o.shape = Shape::hex20r;
+    o.n[0] = 6;
+    o.low = Vec3(k * step, -0.5, -0.5), o.high = Vec3((k + 1) * step, 0.5, 0.5);
+    pieces[k] = block_mesh(o);
+    for (Vec3& x : pieces[k].X) x = at(x[0], R - x[1]) + Vec3(0, 0, x[2]);
+    const std::string name = "p" + std::to_string(k) + "_", before = k ? "p" + std::to_string(k - 1) + "_xmax" : "ground";
+    parts.emplace_back(&pieces[k], name);
+    scene += "[[joint]]\nkind = \"fixed\"\nname = \"j" + std::to_string(k) + "\"\na = \"" + before + "\"\nb = \"" + name +
+             "xmin\"\nat = " + point(at(k * step, R)) + "\n";
+  }
+  scene +=
+      "[[load]]\nkind = \"force\"\nname = \"push\"\non = \"p7_xmax\"\nforce = [0, 0, 600]\n[[probe]]\nname = \"tip\"\non = \"p7_xmax\"\n"
+      "[time]\nanalysis = \"static\"\nsteps = 10\n";
+  Case c("linear_region");
+  c.use(together(parts), std::vector<Fidelity>(n, Fidelity::linear));
+  c.write("bend.toml", scene);
+  const Ran ran = c.run("hilo-solve --quiet bend.toml tags.h5 -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const auto tip = c.results().history("probe/tip");
+  const Vec3 end = tip.row(tip.rows() - 1).head<3>();
+  EXPECT_LT((end - Vec3(47.23, 15.79, 53.37)).norm(), 0.03 * 53.37) << end.transpose();
 }
 
 // With as many modes as its cells have freedoms a linear region is the whole finite-element model, for small motions.
