@@ -205,13 +205,25 @@ TEST_F(NaturalModes, CountEveryCopy) {
   for (int i = 0; i < 15; ++i) EXPECT_NEAR(f[i], (i < 12 ? 10 : 20) / (2 * pi), 1e-9);
 }
 
+// Held, on a hinge with a spring, with a body on a joint, with a mass on its end, under a load: linear regions are what their cells are.
 TEST_F(NaturalModes, OfLinearRegionsAreThoseOfTheirCells) {
-  const std::string scene = steel + "modes = 20\nup_to = 1e5\n[[motion]]\nkind = \"fixed\"\nname = \"wall\"\non = \"xmin\"\n";
-  use(beam({1, 0.2, 0.1}, 10), {Fidelity::nonlinear});
-  const auto cells = frequencies(scene, 5);
-  use(beam({1, 0.2, 0.1}, 10), {Fidelity::linear});
-  const auto linear = frequencies(scene, 5);
-  EXPECT_LT(((linear - cells).array() / cells.array()).abs().maxCoeff(), 1e-2) << linear << "\n\n" << cells;
+  const std::string base = steel + "modes = 20\nup_to = 1e5\n", end = "at = [1, 0.1, 0.05]\n";
+  const std::string wall = "[[motion]]\nkind = \"fixed\"\nname = \"wall\"\non = \"xmin\"\n";
+  const std::string spring = "[[spring]]\nkind = \"bushing\"\nname = \"s\"\nb = \"xmax\"\n" + end + "stiffness = [1e7, 2e7, 3e7]\n";
+  const std::string hinge = "[[joint]]\nkind = \"revolute\"\nname = \"h\"\nb = \"xmin\"\nat = [0, 0.1, 0.05]\naxis = [0, 1, 0]\n";
+  const std::string bob = body("bob", 50, {1.3, 0.1, 0.05}, {1, 1, 1}) +
+                          "[[joint]]\nkind = \"spherical\"\nname = \"ball\"\na = \"xmax\"\nb = \"bob\"\n" + end +
+                          "[[spring]]\nkind = \"bushing\"\nname = \"s\"\na = \"xmax\"\nb = \"bob\"\n" + end +
+                          "stiffness = [0, 0, 0]\nangular_stiffness = [1e5, 1e5, 1e5]\n";
+  const std::string mass = "[[point_mass]]\nname = \"m\"\non = \"xmax\"\nmass = 50\n";
+  const std::string load = "[[load]]\nkind = \"traction\"\nname = \"l\"\non = \"zmax\"\ntraction = [1e6, 2e5, 1e5]\n";
+  for (const std::string& more : {wall, hinge + spring, wall + spring, wall + bob, wall + mass, wall + load}) {
+    use(beam({1, 0.2, 0.1}, 10), {Fidelity::nonlinear});
+    const auto cells = frequencies(base + more, 5);
+    use(beam({1, 0.2, 0.1}, 10), {Fidelity::linear});
+    const auto linear = frequencies(base + more, 5);
+    EXPECT_LT(((linear - cells).array() / cells.array()).abs().maxCoeff(), 1e-2) << more << linear << "\n\n" << cells;
+  }
 }
 
 // A force at the front shakes a vehicle of two freedoms; its damping is .01 s times its stiffness.
