@@ -6,6 +6,7 @@
 #include <map>
 
 #include "system/builder.hpp"
+#include "system/linear_regions.hpp"
 #include "system/welds.hpp"
 
 namespace hilo {
@@ -78,6 +79,50 @@ void Builder::weld_neighbours() {
       nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
       if (comm_.max(nodes.empty() ? 0 : 1) > 0) weld(linear, b, out_->bodies[b].name, nodes);
     }
+  }
+}
+
+/// Mean axes and modes are orthogonal in mass: each takes its own share of M v.
+void Builder::set_modal_velocity(int body, const std::vector<Vec3>& nodal, Config& v) const {
+  const Body& axes = out_->bodies[body];
+  const Modes& modes = out_->modes[out_->modes_of[body]];
+  const LinearRegions& linear = out_->part<LinearRegions>();
+  const StVenantKirchhoff no_matter{{1, 1}};
+  struct alignas(64) Line {  // as the widest kernels load them
+    double value[8];
+  };
+  std::vector<Line> scratch;
+  std::vector<double> sum(6 + 3 * static_cast<size_t>(modes.n_blocks), 0.0);  // momentum, angular momentum about the centre, of modes
+  for (size_t k = 0; k < linear.cells.size(); ++k) {
+    if (linear.body_of_cells[k] != body) continue;
+    const SolidBatch& cells = linear.cells[k];
+    const SolidKernel kernel = solid_kernel(cells.shape, place_of<StVenantKirchhoff>);
+    const size_t n = static_cast<size_t>(info(cells.shape).n_nodes), w = static_cast<size_t>(kernel.width);
+    scratch.resize(9 * n);
+    double *X = scratch[0].value, *a = scratch[3 * n].value, *f = scratch[6 * n].value;
+    for (size_t first = 0; first < cells.nodes.size(); first += n) {
+      for (size_t i = 0; i < 3 * n; ++i)
+        for (size_t l = 0; l < w; ++l) {
+          const int node = cells.nodes[first + i / 3];
+          X[i * w + l] = out_->X[node][i % 3], a[i * w + l] = nodal[node][i % 3];
+        }
+      kernel.call({X, X, X, 0, 0, &no_matter, f, nullptr, nullptr, nullptr, nullptr, cells.density, a, 0, cells.area});
+      for (size_t i = 0; i < n; ++i) {
+        const int node = cells.nodes[first + i];
+        const Vec3 p(f[3 * i * w], f[(3 * i + 1) * w], f[(3 * i + 2) * w]), L = (out_->X[node] - axes.Xc).cross(p);
+        for (int c = 0; c < 3; ++c) sum[c] += p[c], sum[3 + c] += L[c];
+        const auto shapes = out_->shapes_at(node);
+        for (size_t j = 0; j < shapes.size(); ++j) sum[6 + j] += shapes[j].dot(p);
+      }
+    }
+  }
+  comm_.sum(sum);
+  const Mat3 inertia = axes.J.trace() * Mat3::Identity() - axes.J;
+  v.c[body] = Vec3(sum[0], sum[1], sum[2]) / axes.mass;
+  v.R[body] = skew(inertia.ldlt().solve(Vec3(sum[3], sum[4], sum[5])));
+  for (int j = 0; j < 3 * modes.n_blocks; ++j) {
+    v.eta[modes.first + j / 3][j % 3] = sum[6 + j];
+    v.Y[3 * modes.first + j] = sum[6 + j] * Mat3::Identity();
   }
 }
 

@@ -90,6 +90,8 @@ void Builder::add_motions() {
 void Builder::set_initial_velocities() {
   Config& v = out_->start_velocity;
   v.resize_like(out_->start);
+  std::vector<Vec3> nodal(out_->X.size(), Vec3::Zero());  // of nodes of linear regions
+  std::vector<double> by_nodes(out_->bodies.size(), 0);   // linear regions of which an entry names a set
   for (const Entry& e : scene_.entries("initial")) {
     std::vector<bool> region(regions_.size(), false), body(out_->bodies.size(), false);
     std::vector<char> node(out_->X.size(), 0);
@@ -110,12 +112,10 @@ void Builder::set_initial_velocities() {
         }
       if (!used) {
         const Found found = find(pattern, e.where("on"));
-        if (comm_.max(found.linear || (found.body > 0 && out_->bodies[found.body].linear) ? 1 : 0) > 0)
-          throw Error(e.where("on"),
-                      fmt::format("{}: \"{}\" is a part of a linear region, which has no velocity of its own", e.label(), pattern),
-                      "name the region, or tag it nonlinear");
+        for (int i : found.nodes)
+          if (const int b = out_->follower[i]; b >= 0 && out_->bodies[b].linear) by_nodes[b] = 1;
         for (int i : found.nodes) node[i] = 1;
-        if (found.body > 0) body[found.body] = true;  // a set of a rigid body is that body
+        if (found.body > 0 && !out_->bodies[found.body].linear) body[found.body] = true;  // a set of a rigid body is that body
         if (!e.has("about") && e.vector3("spin").norm() > 0) throw Error(e.place.text(), e.label() + ": a spin of a set needs `about`");
       }
     }
@@ -125,8 +125,10 @@ void Builder::set_initial_velocities() {
     const Vec3 velocity = e.vector3("velocity"), spin = e.vector3("spin");
     const Vec3 about = e.has("about") ? e.vector3("about") : mass > 0 ? Vec3(moment / mass) : Vec3::Zero();
     for (size_t i = 0; i < node.size(); ++i)
+      if (node[i]) nodal[i] = velocity + spin.cross(out_->X[i] - about);
+    for (size_t i = 0; i < node.size(); ++i)
       if (node[i] && i < v.x.size()) {
-        v.x[i] = velocity + spin.cross(out_->X[i] - about);
+        v.x[i] = nodal[i];
         if (const int b = out_->follower[i]; b > 0 && (out_->bodies[b].patch || (out_->bodies[b].held && out_->bodies[b].mass == 0)))
           body[b] = true;  // made of nodes for a joint or a motion
       }
@@ -153,6 +155,9 @@ void Builder::set_initial_velocities() {
       for (int k = 0; k < 9; ++k) v.R[b](k / 3, k % 3) = all[12 * b + 3 + k];
     }
   }
+  comm_.sum(by_nodes);
+  for (size_t b = 1; b < by_nodes.size(); ++b)
+    if (by_nodes[b] > 0) set_modal_velocity(static_cast<int>(b), nodal, v);
   // what is held has none; what moves by a law takes that of its law from the one given here, by an impulse where they differ
   const auto rests = [&](const Body& b) { return b.ground || (b.held && !b.moving); };
   for (size_t b = 0; b < out_->bodies.size(); ++b)

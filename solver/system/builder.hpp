@@ -53,6 +53,8 @@ class Builder {
   void weld(int linear_body, int body, const std::string& name, const std::vector<int>& nodes);
   void weld_neighbours();
   void reduce_linear_regions();
+  /// Velocities of a linear region that has the momenta, also those of its modes, of its nodes moving with `nodal` (n_nodes).  Collective.
+  void set_modal_velocity(int body, const std::vector<Vec3>& nodal, Config& v) const;
   // element_limits.cpp
   void warn_of_limits() const;
   // build_ends.cpp
