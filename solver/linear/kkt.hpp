@@ -13,11 +13,14 @@
 
 namespace hilo {
 
-/// Which blocks couple: clique i covers blocks[offset[i] .. offset[i+1]), local numbers (-1: none), dense in that order.
+/// Which blocks couple: clique i covers blocks[offset[i] .. offset[i+1]), local numbers (-1: none), dense in that order.  One of a cell is
+/// its rank's own; one of a joint may stand on several ranks, of which one adds to it.
 struct Cliques {
   std::vector<int> offset{0};
   std::vector<int> blocks;
-  int add(std::span<const int> list) {
+  std::vector<char> own;
+  int add(std::span<const int> list, bool is_own = false) {
+    own.push_back(is_own);
     blocks.insert(blocks.end(), list.begin(), list.end());
     offset.push_back(static_cast<int>(blocks.size()));
     return static_cast<int>(offset.size()) - 2;

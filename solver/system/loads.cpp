@@ -31,7 +31,7 @@ void Loads::add_reference_forces(std::vector<NodalForces>& out) const {
 void Loads::add_cliques(Cliques& cliques) {
   for (Load& l : list) {
     l.cliques.clear();
-    for (const auto& facet : l.facets) l.cliques.push_back(cliques.add(points_.blocks_of(facet)));
+    for (const auto& facet : l.facets) l.cliques.push_back(cliques.add(points_.blocks_of(facet), true));
   }
 }
 

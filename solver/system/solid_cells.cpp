@@ -47,7 +47,7 @@ void Solids::add_cliques(Cliques& cliques) {
   for (SolidBatch& b : batches) {
     const auto n = static_cast<size_t>(info(b.shape).n_nodes);
     b.first_clique = cliques.size();
-    for (size_t e = 0; e < b.cells.size(); ++e) cliques.add(points_.blocks_of({b.nodes.data() + e * n, n}));
+    for (size_t e = 0; e < b.cells.size(); ++e) cliques.add(points_.blocks_of({b.nodes.data() + e * n, n}), true);
   }
 }
 

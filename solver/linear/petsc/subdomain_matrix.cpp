@@ -18,6 +18,7 @@ std::vector<char> find_common(const Cliques& cliques, const BlockMap& map, const
   std::vector<std::vector<int>> asked(size());
   std::vector<std::int64_t> key;
   for (int e = 0; e < cliques.size(); ++e) {
+    if (cliques.own[e]) continue;  // cells beside a patch may have the same blocks as others on another rank
     key.clear();
     bool alone = false, flexible = false;
     for (const int i : cliques[e]) {
