@@ -7,6 +7,7 @@
 #include <random>
 
 #include "base/error.hpp"
+#include "dynamics/about_state.hpp"
 #include "dynamics/start.hpp"
 #include "linear/block_krylov.hpp"
 
@@ -16,13 +17,10 @@ namespace {
 using Vector = Eigen::VectorXd;
 
 /// Products with K and M about a state, and with the inverse of K + s M on the motions that joints and supports allow.
-class Linearized {
+class Linearized : AboutState {
  public:
   Linearized(const System& system, KktSolver& solver, const State& rest)
-      : system_(system), solver_(solver), rest_(rest), n_(3 * system.first_joint_block()), none_(rest.lambda.size(), 0.0) {
-    combine(zero_, {{0, &rest.q}});
-    base_mass_ = mass_residual(zero_);
-  }
+      : AboutState(system, solver, rest), none_(rest.lambda.size(), 0.0), base_mass_(mass_residual(zero_)) {}
   Eigen::Index n() const { return n_; }
 
   /// Forces of inertia.  Accelerations are taken so large that the rounding of stiff cells, which is in the residual too, is small beside.
@@ -32,7 +30,7 @@ class Linearized {
     combine(a, {{factor, &acceleration}});
     return (mass_residual(a) - base_mass_) / factor;
   }
-  Vector mass(const Vector& x) const { return mass_of(rates(x)); }
+  Vector mass(const Vector& x) const { return mass_of(rates(state_.q, x)); }
   /// The mean of the squared frequencies, most of them of single cells.
   double mean_omega2() {
     std::mt19937_64 random{7};
@@ -50,44 +48,44 @@ class Linearized {
 
   /// About K x, by differences of the residual between a little motion to either side.
   Vector stiffness(const Vector& x) const {
-    const double step = 1e-5 * system_.length / std::max(1e-300, system_.largest_rate(rates(x)));
+    const double step = 1e-5 * system_.length / std::max(1e-300, system_.largest_rate(rates(state_.q, x)));
     Vector out[2];
     for (const int side : {0, 1}) {
       const double by = side == 0 ? -step : step;
-      Config q = rest_.q;
+      Config q = state_.q;
       const std::vector<double> z = padded(x * by);
       system_.move(q, z);
       Residual r;
-      system_.evaluate(stage(q), rest_.lambda, r, nullptr);
-      out[side] = free_part(r);
+      system_.evaluate(stage(q), state_.lambda, r, nullptr);
+      out[side] = free_part(r.r);
     }
     return (out[1] - out[0]) / (2 * step);
   }
 
   /// C x, by rates too small for friction to slip.
   Vector damping(const Vector& x) const {
-    const double speed = 1e-6 * system_.length / std::max(1e-300, system_.largest_rate(rates(x))), h = 1e-3;
+    const double speed = 1e-6 * system_.length / std::max(1e-300, system_.largest_rate(rates(state_.q, x))), h = 1e-3;
     Vector out[2];
     for (const int moving : {0, 1}) {
-      const Config v = rates(x * (moving ? speed : 0));
+      const Config v = rates(state_.q, x * (moving ? speed : 0));
       Config before, after;
-      combine(before, {{1, &rest_.q}, {-h / 2, &v}});
-      combine(after, {{1, &rest_.q}, {h / 2, &v}});
-      Stage s = stage(rest_.q);
+      combine(before, {{1, &state_.q}, {-h / 2, &v}});
+      combine(after, {{1, &state_.q}, {h / 2, &v}});
+      Stage s = stage(state_.q);
       s.w0 = &before, s.w1 = &after, s.h = h, s.v = &v;
       Residual r;
-      system_.evaluate(s, rest_.lambda, r, nullptr);
-      out[moving] = free_part(r);
+      system_.evaluate(s, state_.lambda, r, nullptr);
+      out[moving] = free_part(r.r);
     }
     return (out[1] - out[0]) / speed;
   }
 
   /// K + s M becomes the matrix of the solver.
   void factor(double shift) {
-    Stage s = stage(rest_.q);
+    Stage s = stage(state_.q);
     s.mass_slope = shift;
     Residual r;
-    system_.evaluate(s, rest_.lambda, r, &solver_);
+    system_.evaluate(s, state_.lambda, r, &solver_);
     sigma_ = r.sigma;
   }
   /// Motion and multipliers under the forces b; what is left of the equations, over |b|.
@@ -101,45 +99,23 @@ class Linearized {
     return report.residual;
   }
 
-  Config rates(const Vector& x) const {
-    Config v = zero_;
-    system_.add_rates(v, rest_.q, padded(x));
-    return v;
-  }
-  std::vector<double> padded(const Vector& x) const {
-    std::vector<double> z(3 * static_cast<size_t>(system_.n_blocks()), 0.0);
-    std::copy(x.begin(), x.end(), z.begin());
-    return z;
-  }
-
  private:
   Stage stage(const Config& q) const {
-    Stage s = stage_at(q, rest_.t);
+    Stage s = stage_at(q, state_.t);
     s.a = &zero_;
     return s;
   }
   Vector mass_residual(const Config& acceleration) const {
-    Stage s = stage_at(system_.start, rest_.t);
-    s.left = s.end = &rest_.q;
+    Stage s = stage_at(system_.start, state_.t);
+    s.left = s.end = &state_.q;
     s.slope = 0, s.chain = 1e-30;  // without stiffness
     s.a = &acceleration, s.mass_slope = 1;
     s.rates_alone = true, s.load_factor = 0;
     Residual r;
     system_.evaluate(s, none_, r, nullptr);
-    return free_part(r);
+    return free_part(r.r);
   }
-  Vector free_part(Residual& r) const {
-    solver_.sum_shared(r.r);
-    system_.mask_fixed(r.r);
-    return Eigen::Map<const Vector>(r.r.data(), n_);
-  }
-
-  const System& system_;
-  KktSolver& solver_;
-  const State& rest_;
-  Eigen::Index n_;
   std::vector<double> none_;
-  Config zero_;
   Vector base_mass_;
   double sigma_ = 1, typical_acceleration_ = 1;
 };

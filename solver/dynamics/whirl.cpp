@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "system/system.hpp"
+#include "dynamics/about_state.hpp"
 
 namespace hilo {
 namespace {
@@ -16,11 +16,10 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 /// What the spin adds to the equations, in coordinates of the basis.
-class Spin {
+class Spin : AboutState {
  public:
   Spin(const System& system, KktSolver& solver, const State& state, const std::vector<FoundMode>& basis)
-      : system_(system), solver_(solver), state_(state), n_(3 * system.first_joint_block()) {
-    combine(zero_, {{0, &state.q}});
+      : AboutState(system, solver, state) {
     basis_.resize(n_, static_cast<Eigen::Index>(basis.size()));
     for (size_t j = 0; j < basis.size(); ++j) basis_.col(static_cast<Eigen::Index>(j)) = Eigen::Map<const Vector>(basis[j].x.data(), n_);
   }
@@ -53,16 +52,6 @@ class Spin {
  private:
   static constexpr double step = 1e-4;
   static Vec3 axial(const Mat3& S) { return Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)) / 2; }
-  Config rates(const Config& q, const Vector& x) const {
-    Config out = zero_;
-    system_.add_rates(out, q, padded(x));
-    return out;
-  }
-  std::vector<double> padded(const Vector& x) const {
-    std::vector<double> z(3 * static_cast<size_t>(system_.n_blocks()), 0.0);
-    std::copy(x.begin(), x.end(), z.begin());
-    return z;
-  }
   /// What moving and accelerating add to the residual at increments z that change with z'.
   Vector residual(const Config& q0, const Config& v0, const Config& a0, const Vector& z, const Vector& rate) const {
     Config q = q0, v = v0, a = a0;
@@ -88,16 +77,9 @@ class Spin {
     s.a = &a, s.w0 = &before, s.w1 = &after, s.h = h, s.v = &v;
     system_.evaluate(s, state_.lambda, moving, nullptr);
     for (size_t i = 0; i < moving.r.size(); ++i) moving.r[i] -= still.r[i];
-    solver_.sum_shared(moving.r);
-    system_.mask_fixed(moving.r);
-    return Eigen::Map<const Vector>(moving.r.data(), n_);
+    return free_part(moving.r);
   }
 
-  const System& system_;
-  KktSolver& solver_;
-  const State& state_;
-  Eigen::Index n_;
-  Config zero_;
   Matrix basis_;
 };
 

@@ -61,7 +61,8 @@ std::string shapes() {
   out +=
       "\nhex20 and hex20r have the same nodes; hex20 integrates with 3 x 3 x 3 points, hex20r with 2 x 2 x 2 ([elements](elements.md)).\n"
       "A deck's C3D20 becomes hex20, its C3D20R hex20r; files that do not say, and `hilo-import --order 2`, give hex20r.\n"
-      "Numbers from 128 on are shapes of programs outside the tree; the attribute `shape_NUMBER` of `/mesh/cells/shape` has their name, and a\n"
+      "Numbers from 128 on are shapes of programs outside the tree; the attribute `shape_NUMBER` of `/mesh/cells/shape` has their name, "
+      "and a\n"
       "program that has no such shape refuses the file.\n";
   return out;
 }

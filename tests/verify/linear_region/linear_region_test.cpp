@@ -80,26 +80,24 @@ TEST(DISABLED_LongLinearRegion, OnAHingeWithAnotherKeepsEnergyMomentaAndTheHinge
   EXPECT_LT(r.history("constraint").maxCoeff(), 50 * 2.2e-16 * 2);
 }
 
-class Beside : public testing::TestWithParam<std::pair<const char*, Fidelity>> {};
-TEST_P(Beside, AnotherRegionItKeepsEnergyAndMomenta) {
-  Case c("linear_region");
+Mesh bar_of_two_regions() {
   BlockOptions o;
   o.n[0] = 6;
   o.high = Vec3(1, 0.1, 0.1);
   o.regions = {"near", "far"};
   o.region_of = [](const Vec3& x) { return x[0] < 0.5 ? 0 : 1; };
-  c.use(block_mesh(o), {Fidelity::linear, GetParam().second});
+  return block_mesh(o);
+}
+class Beside : public testing::TestWithParam<std::pair<const char*, Fidelity>> {};
+TEST_P(Beside, AnotherRegionItKeepsEnergyAndMomenta) {
+  Case c("linear_region");
+  c.use(bar_of_two_regions(), {Fidelity::linear, GetParam().second});
   expect_kept(c.solved("", "run.h5", "free"), 1e-10, 1e-12);
 }
 class DISABLED_LongBeside : public Beside {};
 TEST_P(DISABLED_LongBeside, AnotherLinearRegionKeepsEnergyAndMomenta) {
   Case c("linear_region");
-  BlockOptions o;
-  o.n[0] = 6;
-  o.high = Vec3(1, 0.1, 0.1);
-  o.regions = {"near", "far"};
-  o.region_of = [](const Vec3& x) { return x[0] < 0.5 ? 0 : 1; };
-  c.use(block_mesh(o), {Fidelity::linear, GetParam().second});
+  c.use(bar_of_two_regions(), {Fidelity::linear, GetParam().second});
   expect_kept(c.solved(long_run(), "run.h5", "free"), 1e-12, 1e-12);
 }
 INSTANTIATE_TEST_SUITE_P(DISABLED_LongLinearRegion, DISABLED_LongBeside,
