@@ -67,7 +67,11 @@ void predict(const System& s, const State& state, double h, Predictor kind, cons
       const Spin spin = spin_of(s, state, nodes);
       if ((h * spin.omega).norm() < 1e-4) continue;
       const Mat3 turn = cayley(h * spin.omega) - Mat3::Identity() - h * skew(spin.omega);  // what q + h v misses
-      for (int n : nodes) q.x[n] += turn * (state.q.x[n] - spin.centre);
+      for (int n : nodes) {
+        const Vec3 missed = turn * (state.q.x[n] - spin.centre);
+        for (int i = 0; i < 3; ++i)
+          if (!s.fixed[n][i]) q.x[n][i] += missed[i];
+      }
     }
   s.place(q);
 }

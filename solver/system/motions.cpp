@@ -1,6 +1,8 @@
 // What moves by a law: positions and their derivatives, reactions and work.
 #include "system/motions.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -66,6 +68,19 @@ std::string Motions::too_far(double t0, double t1) const {
     if (m.moving && !(std::abs(m.angle * (m.law.at(t1).value - m.law.at(t0).value)) <= std::numbers::pi / 2))
       return "motion \"" + m.name + "\" turns by more than a quarter of a turn in a step";
   return "";
+}
+
+std::string Motions::fault(const Config& q) const {
+  double found = -1;
+  for (size_t k = 0; k < list.size(); ++k) {
+    const Motion& m = list[k];
+    if (m.moving || m.body >= 0) continue;
+    for (const int n : m.nodes)
+      for (int i = 0; i < 3; ++i)
+        if (m.component[i] && !(std::abs(q.x[n][i] - points_.X[n][i]) <= 1e-12 * points_.length)) found = static_cast<double>(k);
+  }
+  found = points_.comm->max(found);
+  return found < 0 ? "" : fmt::format("nodes that motion \"{}\" holds have left their places", list[static_cast<size_t>(found)].name);
 }
 
 void Motions::copy_prescribed(const Config& from, Config& to) const {

@@ -32,6 +32,8 @@ class Motions final : public Contribution {
   void prescribe_rates(double t, Side side, Config* v, Config* a) const override;
   void copy_prescribed(const Config& from, Config& to) const override;
   std::string too_far(double t0, double t1) const override;
+  /// What is fixed and is not where it was.
+  std::string fault(const Config& q) const override;
   void add_jumps(double t, const Config& before, const Config& after, std::span<const double> slack,
                  std::vector<Jump>& jumps) const override;
   std::vector<Output> outputs() const override;
