@@ -162,26 +162,41 @@ class DynamicSteps final : public Steps {
       fmt::print(stderr, "t = {:.6g} s: another choice of independent joint rows\n", run_.state.t);
   }
 
-  /// One step of length h from the state, trying predictors in turn; the state is left alone.
+  /// First guesses in the order in which they are tried: what led to a step where the first one did not comes first for a while.
+  std::vector<Predictor> guesses() const {
+    std::vector<Predictor> out;
+    if (run_.redundancy.singular() && run_.report.steps == 0) out.push_back(Predictor::accelerated);
+    if (at_.stay > 0) out.push_back(at_.guess);
+    for (const Predictor p : {Predictor::rigid_rotation, Predictor::velocity, Predictor::hold})
+      if (at_.stay == 0 || p != at_.guess) out.push_back(p);
+    return out;
+  }
+
+  /// One step of length h from the state, trying first guesses in turn, the last one with patience; the state is left alone.
   bool try_step(double h) {
     StepTools tools{run_.system, *run_.solver, run_.newton};
     const State& state = run_.state;
-    const bool leaving = run_.redundancy.singular() && run_.report.steps == 0;
-    for (const Predictor p : {Predictor::accelerated, Predictor::rigid_rotation, Predictor::velocity, Predictor::hold}) {
-      if (p == Predictor::accelerated && !leaving) continue;
+    const std::vector<Predictor> order = guesses();
+    for (const Predictor p : order) {
       tools.newton.reach = p == Predictor::rigid_rotation ? 1 : run_.newton.reach;
+      tools.newton.least_share = p == order.back() ? run_.newton.least_share : 0.1;
       const NewtonReport r = run_.integrator->solve(tools, state, h, p);
       run_.report.iterations += r.iterations;
       iterations_ = r.iterations;
       if (!r.converged) {
-        failure_ = r.reason;
+        if (!r.reason.empty()) failure_ = r.reason;
         continue;
       }
       run_.integrator->end(reached_), reached_.t = state.t + h;
       run_.system.advance(run_.integrator->taken().back().stage);
       failure_ = run_.system.fault(reached_.q);
       if (failure_.empty()) failure_ = run_.audit->look(state.q, reached_, run_.integrator->taken(), r);
-      if (failure_.empty()) return true;
+      if (!failure_.empty()) continue;
+      if (at_.stay > 0)
+        --at_.stay;
+      else if (p == Predictor::velocity || p == Predictor::hold)
+        at_.guess = p, at_.stay = 8;
+      return true;
     }
     return false;
   }
@@ -203,10 +218,12 @@ class DynamicSteps final : public Steps {
   double end_, step_;                   // of the run, of a step at most [s]
   std::optional<StepControl> control_;  // where the tolerance chooses the steps
   struct Place {
-    size_t event = 0;         // the one that steps go to
-    bool begun = false;       // from the one before
-    long step = 0, done = 0;  // equal steps since then; parts of this one, of 2^max_cuts
-    int level = 0, good = 0;  // how often steps are halved; steps since the last cut
+    size_t event = 0;                   // the one that steps go to
+    bool begun = false;                 // from the one before
+    long step = 0, done = 0;            // equal steps since then; parts of this one, of 2^max_cuts
+    int level = 0, good = 0;            // how often steps are halved; steps since the last cut
+    Predictor guess = Predictor::hold;  // of the next steps first,
+    int stay = 0;                       // this many
   } at_;
   State reached_;        // of the step tried last,
   std::string failure_;  // and why it cannot be accepted

@@ -45,6 +45,10 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
       if (const auto z = past_[k].increments(system, h); !z.empty()) solved_[k].shift(system, z);
       lambda_ = past_[k].multipliers(lambda_);
     }
+    if (k == 0 && is_tried(system, h)) {
+      all.converged = false;
+      return all;
+    }
     const NewtonReport r = newton(
         system, tools.solver, [&](const Unknown& u) { return from_left(stage(k, u), h); }, solved_[k], lambda_, tools.newton);
     all.iterations += r.iterations, all.linear_iterations += r.linear_iterations;
@@ -64,6 +68,15 @@ NewtonReport StageIntegrator::solve(const StepTools& tools, const State& s, doub
   return all;
 }
 
+/// Whether a step of this length was tried from this guess, within a thousandth, since one was accepted.
+bool StageIntegrator::is_tried(const System& system, double h) {
+  std::vector<double> guess = solved_[0].increments(system), other = guess;
+  const bool comparable = h == tried_h_ && tried_.size() == guess.size();
+  for (size_t i = 0; comparable && i < other.size(); ++i) other[i] -= tried_[i];
+  tried_ = std::move(guess), tried_h_ = h;
+  return comparable && size_of(system, other) <= 1e-3 * size_of(system, tried_);
+}
+
 void StageIntegrator::end(State& s) {
   end_velocity(s.v);
   s.q = solved_.back().q, s.lambda = lambda_;
@@ -77,7 +90,7 @@ void StageIntegrator::accept(State& s) {
       past_[k].accept(*system_, h_, std::move(missed_[k]), taken_[k].lambda);
     else  // what another guess missed says nothing of this one
       past_[k].clear();
-  s.t += h_;
+  s.t += h_, tried_h_ = 0;
 }
 
 void combine(Config& out, std::initializer_list<std::pair<double, const Config*>> terms) {

@@ -52,7 +52,8 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
   virtual std::string name() const = 0;
-  /// Solve a step of length h from s, first guess by `predictor`; s is left alone.
+  /// Solve a step of length h from s, first guess by `predictor`; s is left alone.  No convergence and no reason: the guess is the one that
+  /// was tried last.
   virtual NewtonReport solve(const StepTools& tools, const State& s, double h, Predictor predictor) = 0;
   /// Positions, velocities and multipliers at the end of the step solved last; nothing is remembered yet.
   virtual void end(State& s) = 0;
@@ -108,12 +109,16 @@ class StageIntegrator : public Integrator {
   virtual void archive_history(Archive& a, const System& system) = 0;
 
  private:
+  bool is_tried(const System& system, double h);
+
   double h_ = 0;
   Predictor predictor_ = Predictor::hold;  // of the step solved last
   const System* system_ = nullptr;
   std::vector<Unknown> solved_;              // per stage
   std::vector<Extrapolation> past_;          // per stage
   std::vector<std::vector<double>> missed_;  // what the first guess of each stage missed
+  std::vector<double> tried_;                // the first guess of the step tried last, as increments,
+  double tried_h_ = 0;                       // and its length; 0: the step was accepted
   std::vector<Taken> taken_;
   std::vector<double> lambda_;
 };

@@ -36,6 +36,17 @@ double relative_correction(const System& s, std::span<const double> z) {
   return worst;
 }
 
+double size_of(const System& s, std::span<const double> z) {
+  double sum = 0;
+  for (const UnknownField& f : s.unknowns)
+    for (size_t k = 0; k < f.size(); ++k)
+      for (int i = 0; i < 3; ++i) {
+        const double x = z[3 * f.block(k) + i] * f.scale(k);
+        sum += x * x;
+      }
+  return std::sqrt(s.comm->sum(sum));
+}
+
 NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Unknown&)>& stage, Unknown& u,
                     std::vector<double>& lambda, const NewtonOptions& options) {
   NewtonReport report;
@@ -77,6 +88,34 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     u.move(system, z);
     const int first = 3 * system.first_joint_block();
     for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += r.sigma * z[first + i];
+  };
+  std::vector<double> direction;
+  const auto move_along = [&](double by) {
+    z.resize(direction.size());
+    for (size_t i = 0; i < z.size(); ++i) z[i] = by * direction[i];
+    move();
+  };
+  const auto is_sound = [&] { return report.least_det.det > 0 && std::isfinite(report.residual); };
+  // Damped Newton: a share s of the correction z = -K^-1 r, such that the next one by the same matrix, -K^-1 r(u + s z), is smaller by at
+  // least s/4 [deuflhard-2004, the natural monotonicity test].  K weighs forces, moments and constraints against each other.
+  double share = 1;
+  bool damped = false;
+  const auto damped_move = [&] {
+    direction = z;
+    const double size = size_of(system, direction);
+    for (share = std::min(1.0, 4 * share); share > options.least_share; share /= 2) {
+      move_along(share);
+      evaluate(false);
+      if (is_sound() && solve(true).ok) {
+        const double ratio = size_of(system, z) / size;
+        if (ratio <= 1 - share / 4) {
+          damped = share < 1 || ratio > 0.1;
+          return true;
+        }
+      }
+      move_along(-share);
+    }
+    return false;
   };
   // where the last factors serve once more for little, one more correction takes constraints and forces to round-off (or, where the
   // tolerance asked for is a loose one, to five digits beyond)
@@ -130,6 +169,11 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       return report;
     }
     evaluate(true);
+    if (it > 0 && !damped && !is_sound()) {  // the last correction went too far: back along it to where cells are whole
+      direction = z, damped = true;
+      for (share = 1; !is_sound() && share > options.least_share;) move_along(-(share /= 2)), evaluate(false);
+      evaluate(true);
+    }
     if (!std::isfinite(report.residual)) {
       report.reason = "the residual is not finite";
       return report;
@@ -151,14 +195,16 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       report.reason = "the correction is not finite or leaves the scene";
       return report;
     }
-    move();
-    if (report.correction <= options.tolerance * 1e-2) {  // far below what the next one could change
-      report.converged = true;
-      stage(u);
+    if (!options.patient && it > 2 && report.correction > 0.5 * previous && report.correction > 1e-6) damped = true;
+    if (!damped) {
+      move();
+    } else if (!damped_move()) {
+      report.reason = "no share of a correction makes the next one smaller";
       return report;
     }
-    if (!options.patient && it > 12 && report.correction > 0.5 * previous && report.correction > 1e-6) {
-      report.reason = "the iterations do not contract";
+    if (!damped && report.correction <= options.tolerance * 1e-2) {  // far below what the next one could change
+      report.converged = true;
+      stage(u);
       return report;
     }
     near = report.correction < 1e-3;

@@ -12,8 +12,9 @@ namespace hilo {
 struct NewtonOptions {
   double tolerance = 1e-10;  // residual over the largest force it sums; correction over the scene's length
   int max_iterations = 25;
-  bool patient = false;  // do not give up on slow contraction
-  double reach = 1e3;    // largest correction, in lengths of the scene; a guess farther off may lead to another root
+  bool patient = false;       // do not give up on slow contraction
+  double reach = 1e3;         // largest correction, in lengths of the scene; a guess farther off may lead to another root
+  double least_share = 1e-3;  // of a damped correction; below it the guess is given up
 };
 
 struct NewtonReport {
@@ -32,6 +33,8 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
 
 /// Residual over its scales: forces by the largest force, moments by force times the body's size, constraints by the scene's length.
 double relative_residual(const System& system, const Residual& r);
+/// The increments z as lengths [m], without multipliers: root of the sum of squares.
+double size_of(const System& system, std::span<const double> z);
 /// Largest move of a point by the increments z, over the scene's length.
 double relative_correction(const System& system, std::span<const double> z);
 

@@ -50,6 +50,7 @@ class KktSolver {
  public:
   virtual ~KktSolver() = default;
   virtual void structure(const Cliques& cliques, const BlockMap& map) = 0;
+  /// An empty matrix; what was added and never solved with is given up.
   virtual void zero() = 0;
   /// Add the dense matrix (3n x 3n, row major) of a clique.
   virtual void add(int clique, const double* K) = 0;

@@ -12,11 +12,11 @@ namespace hilo {
 namespace {
 
 /// Of a cell whose edges at one corner go from D0 to D1: det((D0 + D1)/2)/sqrt(det D0 det D1) is cos^2(angle/2) of a rotation, and larger
-/// where the cell is stretched besides.  Of a bar, by its direction.
+/// where the cell is stretched besides; a corner that is folded over stays so while it turns.  Of a bar, by its direction.
 double half_cosine2(const Mat3& D0, const Mat3& D1, int dimension) {
   if (dimension == 1) return (1 + D0.col(0).dot(D1.col(0)) / std::sqrt(D0.col(0).squaredNorm() * D1.col(0).squaredNorm())) / 2;
-  const double both = D0.determinant() * D1.determinant();
-  return both > 0 ? ((D0 + D1) / 2).determinant() / std::sqrt(both) : 1;
+  const double before = D0.determinant(), both = before * D1.determinant();
+  return both > 0 ? ((D0 + D1) / 2).determinant() / std::copysign(std::sqrt(both), before) : 1;
 }
 
 }  // namespace

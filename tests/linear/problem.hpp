@@ -61,7 +61,7 @@ struct Share {
       if (!is_here(e)) continue;
       list.clear();
       for (const int i : p.cliques[e]) list.push_back(i < 0 ? -1 : local[i]);
-      cliques.add(list);
+      cliques.add(list, !p.everywhere[e]);
       problem_clique.push_back(static_cast<int>(e));
     }
   }

@@ -24,6 +24,7 @@ Solved solve(KktSolver& solver, const Problem& p, int times = 1) {
   solver.structure(share.cliques, share.map);
   Solved out;
   std::vector<double> x(3 * share.map.global.size());
+  share.fill(p, solver, comm.rank, comm.size, 7);  // given up before a solve: nothing of it may stay
   for (int k = 0; k < times; ++k) {
     share.fill(p, solver, comm.rank, comm.size, 1 + 0.1 * k);
     out.report = solver.solve(share.of((1 + 0.1 * k) * random_vector(p.size(), 3)), x);
@@ -130,6 +131,23 @@ TEST(DISABLED_Substructured, JumpsWithinSubdomainsAreMetByFurtherConstraints) {
     EXPECT_GT(iterations(first.report), 20) << kind;  // or the case is none
     EXPECT_LE(iterations(again.report), 20) << kind;
     EXPECT_EQ(again.name.find("adaptive"), 0u) << again.name;
+  }
+}
+
+TEST(DISABLED_Substructured, CellsOfTwoRanksMayCoupleTheSameBlocks) {  // as two cells beside one patch do
+  Problem p = elastic_bar(14, 5, 4, 5);
+  test::slabs(p, Comm::world().size);
+  int cell = 0;
+  while (cell < 14 * 5 * 4 - 1 && p.rank[cell + 1] == p.rank[cell]) ++cell;  // the last cell of the first rank
+  const int twin = static_cast<int>(p.cliques.size());
+  const auto matrix = p.matrix;
+  p.cliques.push_back(p.cliques[cell]), p.rank.push_back(p.rank[cell] + 1), p.everywhere.push_back(false);
+  p.matrix = [=](int i) { return i == cell || i == twin ? test::Matrix(0.5 * matrix(cell)) : matrix(i); };
+  for (const char* kind : {"bddc", "feti-dp"}) {
+    const auto s = solve(*make_petsc_solver(kind, 1e-9), p);
+    ASSERT_TRUE(s.report.ok) << kind << s.report.message;
+    EXPECT_LT(residual(p, s.x), 1.01e-9) << kind;
+    EXPECT_EQ(s.name.find("direct"), std::string::npos);
   }
 }
 

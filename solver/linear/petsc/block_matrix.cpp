@@ -81,7 +81,11 @@ BlockMatrix::BlockMatrix(const Cliques& cliques, const BlockMap& map, const Shar
 
 BlockMatrix::~BlockMatrix() { MatDestroy(&A_); }
 
-void BlockMatrix::zero() { check(MatZeroEntries(A_)); }
+void BlockMatrix::zero() {
+  if (open_) assemble();  // what was added and never solved with
+  check(MatZeroEntries(A_));
+  open_ = true;
+}
 
 void BlockMatrix::add(int, std::span<const int> blocks, const double* K) {
   index_.resize(blocks.size());
@@ -102,6 +106,7 @@ void BlockMatrix::add_row(PetscInt row, std::span<const PetscInt> columns, const
 void BlockMatrix::assemble() {
   check(MatAssemblyBegin(A_, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(A_, MAT_FINAL_ASSEMBLY));
+  open_ = false;
 }
 
 double BlockMatrix::bytes() const {

@@ -28,6 +28,7 @@ class BlockMatrix final : public FlexibleMatrix {
 
  private:
   Mat A_ = nullptr;
+  bool open_ = false;  // between zero() and assemble()
   PetscInt n_owned_ = 0;
   std::vector<PetscInt> global_;  // of local blocks; -1 for those not in the matrix
   std::vector<PetscInt> index_;   // of the clique at hand

@@ -205,6 +205,8 @@ void SubdomainMatrix::find_pattern(const Cliques& cliques) {
 }
 
 void SubdomainMatrix::zero() {
+  if (open_) assemble();  // what was added and never solved with
+  open_ = true;
   check(MatZeroEntries(local_));
   std::fill(diagonal_.begin(), diagonal_.end(), 0.0), std::fill(waits_.begin(), waits_.end(), 0);
 }
@@ -261,6 +263,7 @@ void SubdomainMatrix::assemble() {
     }
   check(MatAssemblyBegin(local_, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(local_, MAT_FINAL_ASSEMBLY));
+  open_ = false;
 }
 
 void SubdomainMatrix::for_each_symmetric_block(const std::function<void(PetscInt, PetscInt, const double*)>& visit) const {

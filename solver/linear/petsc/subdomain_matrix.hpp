@@ -62,6 +62,7 @@ class SubdomainMatrix final : public FlexibleMatrix {
   std::vector<double> diagonal_;           // waiting to be shared out, 3 per owned block
   std::vector<char> waits_;
   Mat A_ = nullptr, local_ = nullptr;
+  bool open_ = false;         // between zero() and assemble()
   VecScatter all_ = nullptr;  // to the subdomains' blocks
   Vec in_ = nullptr, out_ = nullptr;
 };
