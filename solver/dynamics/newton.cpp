@@ -195,7 +195,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       report.reason = "the correction is not finite or leaves the scene";
       return report;
     }
-    if (!options.patient && it > 2 && report.correction > 0.5 * previous && report.correction > 1e-6) damped = true;
+    if (!options.patient && it > 0 && report.correction > 0.5 * previous && report.correction > 1e-6) damped = true;
     if (!damped) {
       move();
     } else if (!damped_move()) {

@@ -202,23 +202,54 @@ void consistent_acceleration(const System& system, KktSolver& solver, State& s, 
   if (h * h * system.largest_rate(s.snap) > 0.25 * system.largest_rate(change)) combine(s.jerk, {{0, &s.jerk}});
 }
 
+namespace {
+
+/// What moves by a law takes the rest along: q (whose prescribed part is in its new place already) and the multipliers move by the tangent
+/// at `before`, where nothing is strained by the first guess yet.  `stage` makes the stage of a configuration.
+void take_along(System& system, KktSolver& solver, const std::function<Stage(const Config&)>& stage, const Config& before, Config& q,
+                std::vector<double>& lambda) {
+  constexpr double little = 1e-3;  // of the way: the difference quotient is the tangent's columns of what is prescribed
+  Config nudged;
+  combine(nudged, {{1 - little, &before}, {little, &q}});
+  system.place(nudged);
+  Residual at, ahead;
+  system.evaluate(stage(before), lambda, at, &solver);
+  system.evaluate(stage(nudged), lambda, ahead, nullptr);
+  std::vector<double> b(at.r.size()), z(at.r.size());
+  for (size_t i = 0; i < b.size(); ++i) b[i] = -at.r[i] - (ahead.r[i] - at.r[i]) / little;
+  solver.sum_shared(b);
+  system.mask_fixed(b);
+  if (!solver.solve(b, z, 1e-3).ok) return;
+  Unknown u(system, before, q);
+  u.move(system, z);
+  q = u.q;
+  for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += at.sigma * z[3 * system.first_joint_block() + i];
+}
+
+}  // namespace
+
 NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vector<double>& lambda, double t, double ramp, bool mechanism,
                          const NewtonOptions& options) {
+  const Config before = q;
   system.prescribe(q, t, ramp);
   Config zero = q;
   combine(zero, {{0, &q}});
-  Stage s{};
   double tau = 0.05;  // of the pseudo mass M/tau^2, grows from iteration to iteration
+  const auto stage = [&](const Config& at) {
+    Stage s = stage_at(at, t);
+    s.a = &zero;
+    s.load_factor = ramp, s.elapsed = slow;
+    s.mass_slope = mechanism ? 1 / (tau * tau) : 0;
+    return s;
+  };
   NewtonOptions o = options;
   if (mechanism) o.max_iterations = std::max(o.max_iterations, 200), o.patient = true;
+  if (system.moves() && !mechanism) take_along(system, solver, stage, before, q, lambda);
   Unknown u(system, q, q);
   NewtonReport report = newton(
       system, solver,
       [&](const Unknown& at) {
-        s = stage_at(at.q, t);
-        s.a = &zero;
-        s.load_factor = ramp, s.elapsed = slow;
-        s.mass_slope = mechanism ? 1 / (tau * tau) : 0;
+        const Stage s = stage(at.q);
         if (mechanism) tau = std::min(tau * 1.3, 20.0);
         return s;
       },
