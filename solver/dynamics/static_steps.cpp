@@ -32,7 +32,6 @@ class StaticSteps final : public Steps {
     }
     Progress progress(run_.options.quiet || system.comm->rank != 0, 0, 1);
     combine(no_acceleration_, {{0, &state.q}});
-    int cuts = 0;
     State reached = state;
     std::string why;  // of the first failure since the last good state, or that a cell would be inside out
     while (at_.done < 1 - 1e-12) {
@@ -41,7 +40,7 @@ class StaticSteps final : public Steps {
       if (const std::string failure = try_step(next, reached, r); !failure.empty()) {
         system.commit(state.q), system.settle(false);
         if (why.empty() || r.least_det.det <= 0) why = failure;
-        if (++cuts > run_.max_cuts) {
+        if (at_.step <= std::ldexp(1.0 / n_, -run_.max_cuts)) {
           if (at_.least.det < 0.01 && r.least_det.det > 0) why += "; " + system.inside_out(at_.least);
           return run_.stop(why + unheld(system, system.start));
         }
@@ -50,7 +49,7 @@ class StaticSteps final : public Steps {
         while (step_end() >= next);
         continue;
       }
-      cuts = 0, why.clear(), at_.least.take(r.least_det);
+      why.clear(), at_.least.take(r.least_det);
       run_.audit->accept(reached.t);
       run_.recorder->step(reached, run_.audit->ledger(), taken_, no_acceleration_, r.iterations);
       system.settle(true);
@@ -87,7 +86,9 @@ class StaticSteps final : public Steps {
     taken_.stage.elapsed = slow;
     if (r.converged) system.advance(taken_.stage);
     taken_.stage.a = &no_acceleration_, taken_.stage.load_factor = next, taken_.stage.work_from = &state.q;
-    return r.converged ? run_.audit->look(state.q, reached, {&taken_, 1}, r, next) : r.reason;
+    if (!r.converged) return r.reason;
+    const std::string fault = system.fault(reached.q);
+    return fault.empty() ? run_.audit->look(state.q, reached, {&taken_, 1}, r, next) : fault;
   }
 
   int n_ = 1;                   // load steps asked for

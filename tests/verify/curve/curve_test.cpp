@@ -46,6 +46,24 @@ TEST(PointOnCurve, StopsTheRunWhereTheCurveEnds) {
   EXPECT_LT((last - Vec3(1.5502, 0, 0.9045)).norm(), 0.05) << "the run is kept up to the end of the curve";
 }
 
+TEST(PointOnCurve, StopsAStaticRunWhereTheCurveEnds) {
+  const Case c("curve");
+  c.write("cycloid.csv", text_of(c.source("cycloid.csv")));
+  const std::string at = "[1.0660195429836131, 0, 0.3188211227616633]\n";
+  c.write("scene.toml", "[[body]]\nname = \"bead\"\nmass = 1\ninertia = [1, 1, 1]\ncom = " + at +
+                            "[[joint]]\nkind = \"point-on-curve\"\nname = \"wire\"\nb = \"bead\"\nfile = \"cycloid.csv\"\nat = " + at +
+                            "[[spring]]\nkind = \"bushing\"\nname = \"hold\"\nb = \"bead\"\nstiffness = [100, 100, 100]\nangular_stiffness "
+                            "= [10, 10, 10]\nat = " +
+                            at +
+                            "[[load]]\nkind = \"force\"\nname = \"pull\"\non = \"bead\"\nforce = [200, 0, 200]\n"
+                            "[[probe]]\nname = \"bead\"\non = \"bead\"\n[time]\nanalysis = \"static\"\nsteps = 10\n");
+  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
+  EXPECT_EQ(ran.exit, 3);
+  EXPECT_NE(ran.err.find("joint \"wire\" ran off the end of its curve"), std::string::npos) << ran.err;
+  const Vec3 last = c.results().history("probe/bead").bottomRows(1).leftCols(3).transpose();
+  EXPECT_LT((last - Vec3(1.5505, 0, 0.9045)).norm(), 0.01) << "the run is kept up to the end of the curve";
+}
+
 TEST(PointOnCurve, SaysWhatIsWrongWithItsPoints) {
   const Case c("curve");
   const std::string scene = text_of(c.source("scene.toml"));
