@@ -3,7 +3,7 @@
 //   energy      |dE - dW + dD|, where the method keeps it    <= bound x largest kinetic energy so far + rounding
 //   joint rows  |g|, of the rows kept and of those dropped   <= bound x length of the scene
 //   turn        of every body and cell over the step         <= 2 rad: at half a turn (R0 + R1)/2 loses rank, and with it equations vanish
-//   everything finite; det F of every cell above zero (Newton's report)
+//   everything finite; det F of every cell above zero (Newton's report; between its points System::fault)
 //
 // with bound = max(1e-8, 10 solver.tolerance) of energy and max(1e-9, 20 solver.tolerance) of rows: Newton leaves up to ten of the latter.
 #pragma once

@@ -11,7 +11,7 @@
 #include "model/shape_row.hpp"
 #include "physics/add_material.hpp"
 #include "physics/shape/from_outside.hpp"
-#include "physics/stretch_of_shape.hpp"
+#include "physics/cell_strain_of_shape.hpp"
 
 namespace hilo {
 
@@ -32,6 +32,7 @@ void add_shape(LawList<M...>) {
         return found;
       },
       .least_stretch = least_stretch_of<S>,
+      .least_det = least_det_of<S>,
       .stress_points =
           [](const Material& material, std::span<const Vec3> X, std::span<const Vec3> x, const double* state, StressPoints which,
              std::vector<StressPoint>& out) {

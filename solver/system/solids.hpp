@@ -43,6 +43,7 @@ class Solids final : public Contribution {
   void settle(bool accepted) override;
   /// The state at the end of the step tried last, by batch.
   std::vector<std::vector<double>> memory() const;
+  std::string fault(const Config& q) const override;
   void commit(const Config& q, const Config* v) override;
   void archive(Archive& a) override;
   void tie(Ties& ties) const override;

@@ -1,4 +1,5 @@
-// Compressions beyond which a law or a cell is no longer what it stands for, told once for a region, at the state that reaches them.
+// Cells that are folded where the points of the stress do not see it: no state to go on from.  Compressions beyond which a law or a cell
+// is no longer what it stands for: told once for a region, at the state that reaches them.
 //
 // Laws: what physics/material says of each.  Cells of one or eight points: modes that they do not see turn up from stretches of .55 to .5
 // on (docs/elements.md).
@@ -6,7 +7,7 @@
 
 #include <algorithm>
 
-#include "physics/stretch.hpp"
+#include "physics/cell_strain.hpp"
 #include "system/solids.hpp"
 
 namespace hilo {
@@ -20,6 +21,26 @@ double limit(const SolidBatch& b) {
 }
 
 }  // namespace
+
+std::string Solids::fault(const Config& q) const {
+  if (!some_) return "";
+  std::vector<Vec3> from, to;
+  LeastDet least;
+  for (const SolidBatch& b : batches) {
+    if (b.shape == Shape::bar2 || b.shape == Shape::tet4) continue;  // F is constant
+    const auto n = static_cast<size_t>(info(b.shape).n_nodes);
+    from.resize(n), to.resize(n);
+    for (size_t e = 0; e < b.cells.size(); ++e) {
+      for (size_t a = 0; a < n; ++a) from[a] = points_.X[b.nodes[e * n + a]], to[a] = q.x[b.nodes[e * n + a]];
+      least.take({least_det(b.shape, from, to), b.region});
+    }
+  }
+  const double worst = -points_.comm->max(-least.det);
+  if (worst > 0) return "";
+  const int region = static_cast<int>(points_.comm->max(least.det == worst ? least.region : -1));
+  return fmt::format("a cell of region \"{}\" is folded between its points (det F = {:.2g}): more cells, C3D20 or tet10 hold longer",
+                     points_.mesh->mesh.region_name[region], worst);
+}
 
 void Solids::watch_strain(const Config& q) {
   const auto& names = points_.mesh->mesh.region_name;

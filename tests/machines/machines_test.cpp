@@ -49,6 +49,16 @@ INSTANTIATE_TEST_SUITE_P(Families, RandomMachines, testing::Combine(testing::Val
                            return name;
                          });
 
+/// A metal block of one hex20r cell between two bodies: at its eight points det F stays above .97 while the cell folds at its centre.
+TEST(OneMachine, ACellThatFoldsBetweenItsPointsStopsTheRun) {
+  const Folder folder;
+  const Machine m = random_machine("metal-block", 7009);
+  const double h = sensible_step(m, folder.path().string());
+  const Outcome o = run_machine(m, {h, steps * h, ""}, folder.path().string());
+  EXPECT_EQ(o.exit, 3);
+  EXPECT_NE(o.reason.find("folded between its points"), std::string::npos) << o.reason;
+}
+
 /// A run judged by data that are not its own: what the judge would say of a solver that is wrong by as much.
 class Judge : public testing::Test {
  protected:

@@ -1,4 +1,5 @@
 // Shape functions: interpolation, completeness and the degree to which the rules integrate, against exact values.
+#include "physics/cell_strain.hpp"
 #include "physics/cells.hpp"
 
 namespace hilo::test {
@@ -126,6 +127,19 @@ TYPED_TEST(ShapeFunctions, StiffnessRuleFillsTheCell) {
   using S = TypeParam;
   EXPECT_NEAR(integrate(S::rule(), 0, 0, 0), monomial<S>(0, 0, 0), 1e-14);
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(integrate(S::rule(), i == 0, i == 1, i == 2), monomial<S>(i == 0, i == 1, i == 2), 1e-14);
+}
+
+/// Truth: x = xi (1 + c (eta^2 - 1/3)) has det F = 1 at the eight points of the stress, 1 - c/3 at the centre, 1 - 2 c/15 or more
+/// elsewhere.
+TEST(LeastDet, OfHex20rSeesAFoldBetweenThePointsOfTheStress) {
+  const auto nodes = local_nodes<Hex20R>();
+  std::vector<Vec3> X, x;
+  for (const double c : {0.0, 2.9, 3.3}) {
+    X.clear(), x.clear();
+    for (const Vec3& at : nodes) X.push_back(2 * at), x.emplace_back(2 * at[0] * (1 + c * (at[1] * at[1] - 1. / 3)), 2 * at[1], 2 * at[2]);
+    EXPECT_GT(least_stretch(Shape::hex20r, X, x, 0), 0.1) << "the points of the stress see no fold";
+    EXPECT_NEAR(least_det(Shape::hex20r, X, x), c > 3 ? 1 - c / 3 : 1, 1e-14);
+  }
 }
 
 }  // namespace

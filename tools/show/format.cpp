@@ -89,7 +89,7 @@ and refuses what fails (the step is cut; a run that cannot pass ends with exit 3
 | `joint_rows` | largest value of a joint's row, which joint, when | max(1e-9, 20 `solver.tolerance`), times the scene's length |
 | `dropped_rows` | the same of rows that are redundant and not solved for | the same |
 | `turn` | largest angle by which a body or a cell turned in a step, which, when | 2 rad |
-| `det_F` | least det F of a cell, its region, when; null without cells | above 0 |
+| `det_F` | least det F at the points of the stress, its region, when; null without cells | above 0, at the points of the mass too |
 | `finite` | positions, velocities and energies | true |
 
 `energy_balance` is the largest |E - E0 - W + D| over the largest kinetic energy, null where nothing moved but by rounding; `constraint_violation` the largest row of a joint.

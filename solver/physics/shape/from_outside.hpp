@@ -13,6 +13,7 @@ struct ShapeFunctions {
   /// Null for a law that the shape has none of: one from outside that it was not added with.
   KernelFunction (*kernel)(size_t law);
   double (*least_stretch)(std::span<const Vec3> X, std::span<const Vec3> x, double floor);
+  double (*least_det)(std::span<const Vec3> X, std::span<const Vec3> x);
   /// False for such a law.
   bool (*stress_points)(const Material&, std::span<const Vec3> X, std::span<const Vec3> x, const double* state, StressPoints which,
                         std::vector<StressPoint>& out);

@@ -1,4 +1,4 @@
-// Least stretch at the points of a solid cell.
+// Least stretch and det F at the points of a solid cell.
 #pragma once
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -28,6 +28,22 @@ double least_stretch_of(std::span<const Vec3> X, std::span<const Vec3> x, double
     least = std::min(least, std::max(0.0, Eigen::SelfAdjointEigenSolver<Mat3>(C, Eigen::EigenvaluesOnly).eigenvalues()[0]));
   }
   return std::sqrt(least);
+}
+
+/// Smallest det F over the points of the mass rule; 1 where it is above zero everywhere: det dx/dxi tells that alone.
+template <class S>
+double least_det_of(std::span<const Vec3> X, std::span<const Vec3> x) {
+  constexpr const auto& table = mass_table<S>;
+  const auto det = [](std::span<const Vec3> at, const double(*dN)[3]) {
+    Mat3 J = Mat3::Zero();
+    for (int a = 0; a < S::n; ++a)
+      for (int j = 0; j < 3; ++j) J.col(j) += dN[a][j] * at[a];
+    return J.determinant();
+  };
+  double least = 1;
+  for (int p = 0; p < S::n_mass_points; ++p)
+    if (const double now = det(x, table.dN[p]); !(now > 0)) least = std::min(least, now / det(X, table.dN[p]));
+  return least;
 }
 
 }  // namespace hilo
