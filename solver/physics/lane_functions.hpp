@@ -23,6 +23,22 @@ inline V log_of(const V& v) {
   return r;
 }
 
+[[gnu::always_inline]] inline double log_of_1_and(double x) { return std::log1p(x); }
+template <class V>
+inline V log_of_1_and(const V& v) {
+  V r;
+  for (unsigned i = 0; i < sizeof(V) / sizeof(double); ++i) r[i] = __builtin_log1p(v[i]);
+  return r;
+}
+
+[[gnu::always_inline]] inline double exp_less_1(double x) { return std::expm1(x); }
+template <class V>
+inline V exp_less_1(const V& v) {
+  V r;
+  for (unsigned i = 0; i < sizeof(V) / sizeof(double); ++i) r[i] = __builtin_expm1(v[i]);
+  return r;
+}
+
 [[gnu::always_inline]] inline double root(double x) { return std::sqrt(x); }
 template <class V>
 inline V root(const V& v) {

@@ -20,6 +20,8 @@ struct Dual {
 };
 
 inline Dual log_of(const Dual& x) { return {std::log(x.v), x.d / x.v}; }
+inline Dual log_of_1_and(const Dual& x) { return {std::log1p(x.v), x.d / (1 + x.v)}; }
+inline Dual exp_less_1(const Dual& x) { return {std::expm1(x.v), x.d * std::exp(x.v)}; }
 inline Dual root(const Dual& x) { return {std::sqrt(x.v), x.d / (2 * std::sqrt(x.v))}; }
 inline Dual cube_root(const Dual& x) { return {std::cbrt(x.v), x.d / (3 * std::cbrt(x.v) * std::cbrt(x.v))}; }
 /// ln(1 + r)/r and its derivative: its power series where that converges fast, else its definition in more digits than the kernel has.

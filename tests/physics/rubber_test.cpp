@@ -6,6 +6,7 @@
 
 #include "base/math.hpp"
 #include "physics/material/mooney_rivlin.hpp"
+#include "physics/material/neo_hookean.hpp"
 #include "physics/material/ogden.hpp"
 #include "verify/block_mesh.hpp"
 
@@ -171,6 +172,24 @@ TEST(Rubber, ModuliAtSmallStrainAreThoseItSays) {
     add_linear_tangent(c, 0.5, exact);
     EXPECT_LT((D - Eigen::Map<const Mat6>(exact[0])).norm(), 1e-12 * D.norm());
   }
+}
+
+/// Truth: the energy of the linear moduli, that of the law but for a share of the strain.  At strains of 1e-9 mu is 1e18 times the energy:
+/// a difference of terms of the size of mu would leave no digit.
+template <class M>
+void keeps_digits(const M& law) {
+  const Lame c = law.linear();
+  for (int seed = 0; seed < 20; ++seed)
+    for (const double size : {1e-9, 1e-7, 1e-5}) {
+      const Vec6 e = some_strain(size, seed);
+      const double trace = e.head<3>().sum(),
+                   exact = c.lambda / 2 * trace * trace + c.mu * (e.head<3>().squaredNorm() + e.tail<3>().squaredNorm() / 2);
+      EXPECT_NEAR(law.template energy<double>(e.data()) / exact, 1, 1e-6 + 30 * size) << seed << " " << size;
+    }
+}
+TEST(Rubber, EnergyAtSmallStrainHasItsDigits) {
+  for (const Law& law : laws) std::visit([](const auto& m) { keeps_digits(m); }, law);
+  keeps_digits(NeoHookean{{4e9, 3e9}});
 }
 
 }  // namespace

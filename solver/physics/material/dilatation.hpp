@@ -66,6 +66,15 @@ inline T determinant(const T m[6], const T cof[6]) {
   return m[0] * cof[0] + m[5] * cof[5] + m[4] * cof[4];
 }
 
+/// det C - 1, with all its digits where the strain is small.
+template <class T>
+inline T swelling(const T e[6]) {
+  T m[6], cof[6];
+  for (int i = 0; i < 3; ++i) m[i] = 2 * e[i], m[i + 3] = e[i + 3];
+  cofactor(m, cof);
+  return m[0] + m[1] + m[2] + (cof[0] + cof[1] + cof[2]) + determinant(m, cof);
+}
+
 /// D at both ends of a step, A, and the cofactor at its end; M = mean/2 + step/12 is what dA/dC1 is made of.
 template <class T>
 inline void over_step(const T e0[6], const T e1[6], T M[6], T A[6], T cof1[6], T& D0, T& D1) {

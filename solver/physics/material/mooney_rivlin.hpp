@@ -41,11 +41,12 @@ struct MooneyRivlin {
 
   template <class T>
   T energy(const T e[6]) const {
-    T C[6], cof[6];
-    volume::right_cauchy_green(e, C);
-    volume::cofactor(C, cof);
-    const T D = volume::determinant(C, cof), a = cube_root(D);
-    return c10 * (trace(C) / a - 3) + c01 * (second(C) / (a * a) - 3) + K * SquareOfDet::energy(D);
+    // I1 = 3 + i1, I2 = 3 + i2, a = D^(1/3) = 1 + b: what is left of the threes has all its digits
+    T m[6];
+    for (int i = 0; i < 3; ++i) m[i] = 2 * e[i], m[i + 3] = e[i + 3];
+    const T log_D = log_of_1_and(volume::swelling(e)), i1 = trace(m), i2 = 2 * i1 + second(m);
+    const T b = exp_less_1(T(log_D / 3)), a = 1 + b, J_less_1 = exp_less_1(T(log_D / 2));
+    return c10 * (i1 - 3 * b) / a + c01 * (i2 - 3 * b * (2 + b)) / (a * a) + K / 2 * J_less_1 * J_less_1;
   }
 
   template <class T>

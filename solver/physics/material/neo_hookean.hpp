@@ -20,11 +20,8 @@ struct NeoHookean {
 
   template <class T>
   T energy(const T e[6]) const {
-    T C[6], A[6];
-    volume::right_cauchy_green(e, C);
-    volume::cofactor(C, A);
-    const T log_J = log_of(T(volume::determinant(C, A))) / 2;
-    return c.mu * (e[0] + e[1] + e[2]) - c.mu * log_J + c.lambda / 2 * log_J * log_J;
+    const T log_J = log_of_1_and(volume::swelling(e)) / 2;  // tr E - ln J is small beside both
+    return c.mu * (e[0] + e[1] + e[2] - log_J) + c.lambda / 2 * log_J * log_J;
   }
 
   /// Discrete gradient in partitioned form: det C1 - det C0 = A : (C1 - C0) with A = cof(C_mean) + cof(C1 - C0)/12, so

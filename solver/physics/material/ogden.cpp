@@ -46,12 +46,12 @@ Vec6 six(const Mat3& m) {
 /// Principal axes and values of C.
 struct Principal {
   Mat3 axes;
-  Vec3 c;
+  Vec3 c, log_c;
   double log_D = 0;
   explicit Principal(const double e[6]) {
     Vec3 values;
     principal_axes(tensor(e, 0.5), axes, values);
-    for (int i = 0; i < 3; ++i) c[i] = 1 + 2 * values[i], log_D += std::log1p(2 * values[i]);
+    for (int i = 0; i < 3; ++i) c[i] = 1 + 2 * values[i], log_c[i] = std::log1p(2 * values[i]), log_D += log_c[i];
   }
 };
 
@@ -59,10 +59,11 @@ struct Principal {
 
 double Ogden::energy_at(const double e[6]) const {
   const Principal at(e);
-  double W = K * SquareOfDet::energy(std::exp(at.log_D));
+  const double J_less_1 = std::expm1(at.log_D / 2);
+  double W = K / 2 * J_less_1 * J_less_1;
   for (const Term& t : terms) {
     double sum = 0;
-    for (int i = 0; i < 3; ++i) sum += std::expm1(t.alpha / 2 * (std::log(at.c[i]) - at.log_D / 3));
+    for (int i = 0; i < 3; ++i) sum += std::expm1(t.alpha / 2 * (at.log_c[i] - at.log_D / 3));
     W += 2 * t.mu / (t.alpha * t.alpha) * sum;
   }
   return W;
