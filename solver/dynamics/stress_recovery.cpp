@@ -44,11 +44,16 @@ const double* of_cell(const SolidBatch& b, const StressRecovery::Memory& memory,
 struct StressRecovery::Cell {
   const SolidBatch* batch;
   std::vector<Vec3> X, x;  // of a linear region: as displaced from the mean axes
-  bool linear = false;
+  bool linear = false, stiffens = false;
   Mat3 R;  // of these
 
   void points(StressPoints which, std::vector<StressPoint>& out, const double* state = nullptr) const {
-    if (!linear) return stress_points(batch->shape, batch->material, X, x, which, out, state);
+    if (!linear || stiffens) {
+      stress_points(batch->shape, batch->material, X, x, which, out, state);
+      for (StressPoint& p : out)
+        if (stiffens) p.F = R * p.F;
+      return;
+    }
     constexpr double part = 1e-3;  // of the displacements: small, and far above round-off
     std::vector<Vec3> moved(X.size());
     std::vector<StressPoint> back;
@@ -60,8 +65,9 @@ struct StressRecovery::Cell {
     for (size_t k = 0; k < out.size(); ++k) out[k].S = (out[k].S - back[k].S) / (2 * part), out[k].F = R;
   }
   void gradients(std::span<Mat3> F) const {
-    if (!linear) return nodal_gradients(batch->shape, X, x, F);
-    for (Mat3& f : F) f = R;
+    if (!linear || stiffens) nodal_gradients(batch->shape, X, x, F);
+    for (Mat3& f : F)
+      if (linear) f = stiffens ? Mat3(R * f) : R;
   }
 };
 
@@ -71,6 +77,7 @@ void StressRecovery::look_at(Cell& cell, size_t batch, size_t number, const Conf
   const int body = body_[batch], n = info(cell.batch->shape).n_nodes;
   const int* nodes = cell.batch->nodes.data() + number * n;
   cell.linear = q && body >= 0;
+  cell.stiffens = cell.linear && stiffens_[batch];
   if (cell.linear) cell.R = q->R[body];
   cell.X.resize(n), cell.x.resize(n);
   for (int i = 0; i < n; ++i) {
@@ -96,9 +103,12 @@ void StressRecovery::each_cell(const Patches& p, const Config* q, Visit&& visit)
 }
 
 StressRecovery::StressRecovery(const System& s) : system_(s) {
-  for (const SolidBatch& b : s.part<Solids>().batches) batches_.push_back(&b), body_.push_back(-1);
+  for (const SolidBatch& b : s.part<Solids>().batches) batches_.push_back(&b), body_.push_back(-1), stiffens_.push_back(0);
   const auto& linear = s.part<LinearRegions>();
-  for (size_t k = 0; k < linear.cells.size(); ++k) batches_.push_back(&linear.cells[k]), body_.push_back(linear.body_of_cells[k]);
+  for (size_t k = 0; k < linear.cells.size(); ++k) {
+    batches_.push_back(&linear.cells[k]), body_.push_back(linear.body_of_cells[k]);
+    stiffens_.push_back(s.modes[s.modes_of[body_.back()]].stiffens);
+  }
   find_sites();
   std::vector<double> second(s.mesh->mesh.region_name.size(), 0.0);  // regions with quadratic cells
   for (const SolidBatch* b : batches_)

@@ -72,6 +72,7 @@ class StressRecovery {
   const System& system_;
   std::vector<const SolidBatch*> batches_;  // of nonlinear regions, then of linear ones,
   std::vector<int> body_;                   // whose mean axes these are; -1
+  std::vector<char> stiffens_;              // with strains of the second degree
   std::vector<Site> site_;
   std::vector<std::vector<int>> site_of_;  // per batch: site of each node of each cell (n_cells x n)
   std::optional<Sharing> sites_;

@@ -37,17 +37,19 @@ std::vector<KindSchema> make() {
     s.push_back(std::move(rows));
   }
   material_kinds().close();
-  s.push_back({"region",
-               "",
-               "material of a region; the name may be a glob (quoted), the last match wins",
-               {{"material", text, "", "", "a name of [material.NAME]; absent: what the deck carries"},
-                {"mass", number, "kg", "", "scales the density so that the region has this mass", above(0)},
-                {"area", number, "m^2", "", "cross-section of bar cells", above(0)},
-                {"damping", number, "s", "0", "stiffness-proportional damping beta: S += beta C dE/dt", at_least(0)},
-                {"mass_damping", number, "1/s", "0", "mass-proportional damping alpha (brakes rigid motion too)", at_least(0)},
-                {"modes", number, "", "40", "vibration modes of a linear region, at most; static ones are there besides", at_least(0)},
-                {"up_to", number, "Hz", "", "vibration modes up to this frequency, but at least four; absent: 0.1 over the step", above(0)},
-                {"modal_damping", number, "1", "0", "damping of the modes of a linear region over the critical one", at_least(0)}}});
+  s.push_back(
+      {"region",
+       "",
+       "material of a region; the name may be a glob (quoted), the last match wins",
+       {{"material", text, "", "", "a name of [material.NAME]; absent: what the deck carries"},
+        {"mass", number, "kg", "", "scales the density so that the region has this mass", above(0)},
+        {"area", number, "m^2", "", "cross-section of bar cells", above(0)},
+        {"damping", number, "s", "0", "stiffness-proportional damping beta: S += beta C dE/dt", at_least(0)},
+        {"mass_damping", number, "1/s", "0", "mass-proportional damping alpha (brakes rigid motion too)", at_least(0)},
+        {"modes", number, "", "40", "vibration modes of a linear region, at most; static ones are there besides", at_least(0)},
+        {"up_to", number, "Hz", "", "vibration modes up to this frequency, but at least four; absent: 0.1 over the step", above(0)},
+        {"stiffening", boolean, "", "false", "strains of the second degree in the modes: spins and bending that stiffen or shorten"},
+        {"modal_damping", number, "1", "0", "damping of the modes of a linear region over the critical one", at_least(0)}}});
   s.push_back({"body",
                "",
                "a rigid body without a mesh",

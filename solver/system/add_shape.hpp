@@ -10,8 +10,8 @@
 #pragma once
 #include "model/shape_row.hpp"
 #include "physics/add_material.hpp"
-#include "physics/shape/from_outside.hpp"
 #include "physics/cell_strain_of_shape.hpp"
+#include "physics/shape/from_outside.hpp"
 
 namespace hilo {
 

@@ -32,6 +32,9 @@ void Builder::make_linear_bodies() {
       const Region& region = regions_[r];
       if (!(region.mass > 0))
         throw Error(region.where, fmt::format("linear region \"{}\" has no density", region.name), "give its material a density");
+      if (region.stiffening != one.stiffening)
+        throw Error(region.where,
+                    fmt::format("linear regions \"{}\" and \"{}\" share nodes, so they stiffen both or neither", one.name, region.name));
       if (region.modal_damping != one.modal_damping)
         throw Error(region.where,
                     fmt::format("linear regions \"{}\" and \"{}\" share nodes, so their modes are the same: give them one modal_damping",

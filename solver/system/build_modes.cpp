@@ -34,11 +34,13 @@ void Builder::reduce_linear_regions() {
     };
     double modal_damping = 0, up_to = 0;
     int n_vibrations = 0;
+    bool stiffening = false;
     std::string where;
     for (const Region& region : regions_)
       if (region.fidelity == Fidelity::linear && region.body == modes.body) {
         modal_damping = region.modal_damping, up_to = std::max(up_to, region.up_to);
         n_vibrations = std::max(n_vibrations, region.n_vibrations);
+        stiffening = stiffening || region.stiffening;
         where = region.where;
       }
 
@@ -93,7 +95,7 @@ void Builder::reduce_linear_regions() {
     for (const auto& list : interfaces) all_interfaces.push_back(to_first(list));
 
     Reduction found;
-    std::vector<double> head;           // modes, then omega2, A, levers, then mean and turn of each weld
+    std::vector<double> head;           // modes, then omega2, A, levers, then axes, shares, means and stretches of each weld
     std::map<std::int64_t, int> local;  // of rows, in the order of their numbers
     if (comm_.rank == 0) {
       ReductionInput in;
@@ -159,6 +161,7 @@ void Builder::reduce_linear_regions() {
       in.centre = axes.Xc;
       in.n_vibrations = n_vibrations;
       in.up_to = up_to > 0 ? up_to : step > 0 ? 0.1 / step : 0;
+      in.stiffening = stiffening, in.length = axes.size;
       try {
         found = reduced(in);
       } catch (const Error& e) {
@@ -167,7 +170,8 @@ void Builder::reduce_linear_regions() {
       const auto m = found.omega2.size();
       head.push_back(static_cast<double>(m));
       head.insert(head.end(), found.omega2.begin(), found.omega2.end());
-      for (const Eigen::MatrixXd* M : {&found.A, &found.A_damped, &found.viscous}) {
+      for (const Eigen::MatrixXd* M :
+           std::initializer_list<const Eigen::MatrixXd*>{&found.A, &found.A_damped, &found.viscous, &found.strain.matrix(), &found.sites}) {
         head.push_back(static_cast<double>(M->rows()));
         head.insert(head.end(), M->data(), M->data() + M->size());
       }
@@ -179,20 +183,26 @@ void Builder::reduce_linear_regions() {
       for (size_t k = 1; k < all_interfaces.size(); ++k) {  // least squares of a rigid motion
         const auto nodes = nodes_of(all_interfaces[k]);
         const Vec3 at = welds[k - 1]->at;
-        Mat3 inertia = Mat3::Zero();
-        for (const int i : nodes) {
-          const Vec3 d = in.X[i] - at;
-          inertia += d.squaredNorm() * Mat3::Identity() - d * d.transpose();
-        }
+        Mat3 spread = Mat3::Zero();
+        for (const int i : nodes) spread += (in.X[i] - at) * (in.X[i] - at).transpose();
+        const Eigen::SelfAdjointEigenSolver<Mat3> principal(spread);
+        const Mat3 axes = principal.eigenvectors();
+        const Vec3 share = principal.eigenvalues() / spread.trace();
+        if (!(share[0] + share[1] > 1e-9))
+          throw Error(where,
+                      fmt::format("linear region \"{}\" shares nodes on a line alone with \"{}\": they are hinged there",
+                                  out_->bodies[modes.body].name, welds[k - 1]->name),
+                      "let them share a face, or join them by a joint");
+        head.insert(head.end(), axes.data(), axes.data() + 9), head.insert(head.end(), share.data(), share.data() + 3);
         for (Eigen::Index j = 0; j < m; ++j) {
-          Vec3 mean = Vec3::Zero(), moment = Vec3::Zero();
+          Vec3 mean = Vec3::Zero();
+          Mat3 stretch = Mat3::Zero();
           for (const int i : nodes) {
             const Vec3 u = found.shapes.block<3, 1>(3 * i, j);
             mean += u / static_cast<double>(nodes.size());
-            moment += (in.X[i] - at).cross(u);
+            stretch += u * (in.X[i] - at).transpose() * axes / spread.trace();
           }
-          const Vec3 turn = inertia.inverse() * moment;
-          head.insert(head.end(), mean.data(), mean.data() + 3), head.insert(head.end(), turn.data(), turn.data() + 3);
+          head.insert(head.end(), mean.data(), mean.data() + 3), head.insert(head.end(), stretch.data(), stretch.data() + 9);
         }
       }
     }
@@ -215,11 +225,14 @@ void Builder::reduce_linear_regions() {
     made.modes = static_cast<int>(number);
     made.stiffness.resize(m);
     for (int j = 0; j < m; ++j) made.stiffness[j] = next();
-    for (Eigen::MatrixXd* M : {&made.A, &made.A_damped, &made.viscous}) {
+    Eigen::MatrixXd strain;
+    for (Eigen::MatrixXd* M : {&made.A, &made.A_damped, &made.viscous, &strain, &made.sites}) {
       const auto rows = static_cast<Eigen::Index>(next());
-      M->resize(rows, rows);
+      M->resize(rows, M == &made.sites ? m : rows);
       for (Eigen::Index k = 0; k < M->size(); ++k) M->data()[k] = next();
     }
+    modes.stiffens = strain.size() > 0;
+    if (modes.stiffens) made.strain = QuadraticStrain(std::move(strain));
     if (modal_damping > 0) {
       if (made.viscous.size() == 0) made.viscous.setZero(m, m);
       made.viscous.diagonal() += 2 * modal_damping * made.stiffness.cwiseSqrt();
@@ -227,8 +240,14 @@ void Builder::reduce_linear_regions() {
     modes.lever.assign(modes.n_blocks, 0.0);
     for (int j = 0; j < m; ++j) modes.lever[j / 3] = std::max(modes.lever[j / 3], next());
     for (Weld* w : welds) {
-      w->mean.assign(3 * modes.n_blocks, Vec3::Zero()), w->turn = w->mean;
-      for (int j = 0; j < m; ++j) w->mean[j] = next_vector(), w->turn[j] = next_vector();
+      const auto next_matrix = [&] {
+        Mat3 out;
+        for (int i = 0; i < 3; ++i) out.col(i) = next_vector();
+        return out;
+      };
+      w->axes = next_matrix(), w->share = next_vector();
+      w->mean.assign(3 * modes.n_blocks, Vec3::Zero()), w->stretch.assign(3 * modes.n_blocks, Mat3::Zero());
+      for (int j = 0; j < m; ++j) w->mean[j] = next_vector(), w->stretch[j] = next_matrix();
     }
     out_->part<LinearRegions>().regions.push_back(std::move(made));
     std::map<std::pair<int, Shape>, SolidBatch> own;

@@ -60,6 +60,7 @@ void Builder::read_regions() {
       if (e.given("modal_damping")) region.modal_damping = e.number("modal_damping");
       if (e.given("modes")) region.n_vibrations = static_cast<int>(e.number("modes"));
       if (e.given("up_to")) region.up_to = e.number("up_to");
+      if (e.given("stiffening")) region.stiffening = e.boolean("stiffening");
     }
     if (!material.empty()) {
       const Entry* found = nullptr;
@@ -282,6 +283,8 @@ SolidBatch Builder::batch_of(int region, Shape shape) const {
   b.region = region;
   b.shape = shape;
   b.material = material_of(r);
+  if (r.fidelity == Fidelity::linear && r.stiffening && !std::holds_alternative<Orthotropic>(b.material))
+    b.material = StVenantKirchhoff{linear_moduli(b.material)};  // strains of the second degree, stress linear in them
   const bool is_static = scene_.table("time").text("analysis") == "static";
   if (std::isnan(r.density) && !is_static) throw Error(r.where, fmt::format("region \"{}\" has no density", r.name), give_material);
   if (b.shape == Shape::bar2 && r.area <= 0)

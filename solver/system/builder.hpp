@@ -25,6 +25,7 @@ class Builder {
     double mass_wanted = 0, area = 0, beta = 0, alpha = 0;
     double modal_damping = 0, up_to = 0;  // of a linear one: ratio, Hz
     int n_vibrations = 40;
+    bool stiffening = false;
     std::string where;  // of its material, for errors
     Fidelity fidelity = Fidelity::nonlinear;
     int body = -1;               // rigid: its body; linear: its mean axes

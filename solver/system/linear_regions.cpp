@@ -22,6 +22,11 @@ Rows rows_of(const Modes& m, const Config& q) {
 }
 
 double amplitude(const Modes& m, const Config& q, int j) { return q.eta[m.first + j / 3][j % 3]; }
+Eigen::VectorXd amplitudes(const Modes& m, const Config& q) {
+  Eigen::VectorXd out(m.n_modes);
+  for (int j = 0; j < m.n_modes; ++j) out[j] = amplitude(m, q, j);
+  return out;
+}
 
 Vec3 row(const Rows& rows, Eigen::Index i) { return rows.row(i).transpose(); }
 
@@ -101,15 +106,25 @@ void LinearRegions::evaluate(Pass& p) const {
     for (Eigen::Index i = 1; i < F.rows(); ++i) p.body[m.body].tail<3>() += row(Ql, i).cross(row(F, i));
     p.scale(std::max(row(F, 0).norm(), r.A(0, 0) * points_.gravity.norm()));
     const double rate = s.h > 0 ? 1 / s.h : 0;
-    const Eigen::VectorXd viscous = rate * viscous_force(r, m, s);
+    const Eigen::VectorXd viscous = rate * viscous_force(r, m, s), eta0 = amplitudes(m, *s.e0), eta1 = amplitudes(m, *s.e1);
+    Eigen::VectorXd elastic = Eigen::VectorXd::Zero(m.n_modes);
+    Eigen::MatrixXd slope_of_elastic;
+    if (!s.rates_alone) {
+      if (p.K) slope_of_elastic.setZero(m.n_modes, m.n_modes);
+      if (r.strain.used()) {
+        elastic = r.strain.force(eta0, eta1, s.weight, p.K ? &slope_of_elastic : nullptr);
+      } else {
+        elastic = r.stiffness.cwiseProduct((1 - s.weight) * eta0 + s.weight * eta1);
+        if (p.K) slope_of_elastic.diagonal() = s.weight * r.stiffness;
+      }
+      elastic += s.chi / 2 * r.stiffness.cwiseProduct(eta1 - eta0);
+      if (p.K) slope_of_elastic.diagonal() += s.chi / 2 * r.stiffness;
+    }
     for (int j = 0; j < m.n_modes; ++j) {
       double f = 0;
       for (int k = 0; k < 3; ++k) f += left.col(k).dot(row(F, 4 + 3 * j + k));
-      const double e0 = amplitude(m, *s.e0, j), e1 = amplitude(m, *s.e1, j), k = r.stiffness[j];
-      const double elastic = s.rates_alone ? 0 : k * ((1 - s.weight) * e0 + s.weight * e1 + s.chi / 2 * (e1 - e0));
-      f += elastic + viscous[j];
-      p.out.r[3 * m.block + j] += f;
-      p.scale(std::abs(elastic) / m.lever[j / 3]);
+      p.out.r[3 * m.block + j] += f + elastic[j] + viscous[j];
+      p.scale(std::abs(elastic[j]) / m.lever[j / 3]);
     }
     for (int j = m.n_modes; j < 3 * m.n_blocks && !s.rates_alone; ++j)  // of blocks that are not full
       p.out.r[3 * m.block + j] += p.sigma * amplitude(m, *s.end, j);
@@ -119,7 +134,7 @@ void LinearRegions::evaluate(Pass& p) const {
     Eigen::MatrixXd slope = s.mass_slope * r.A;
     if (brakes) slope += s.alpha_slope * r.A_damped;
     add_inertia_tangent(slope, m, s, F, K);
-    if (!s.rates_alone) K.diagonal().segment(6, m.n_modes) += (s.weight + s.chi / 2) * s.chain * r.stiffness;
+    if (!s.rates_alone) K.block(6, 6, m.n_modes, m.n_modes) += s.chain * slope_of_elastic;
     if (r.viscous.size() > 0) K.block(6, 6, m.n_modes, m.n_modes) += rate * (s.slope1() - s.slope0()) * r.viscous;
     for (Eigen::Index j = 6 + m.n_modes; j < K.rows() && !s.rates_alone; ++j) K(j, j) = p.sigma;
     tangent.finish();
@@ -135,7 +150,8 @@ void LinearRegions::add_energy(const Config& q, const Config& v, Energy& sum) co
     sum.momentum += row(P, 0);
     for (Eigen::Index i = 0; i < P.rows(); ++i) sum.angular += row(Q, i).cross(row(P, i));
     sum.gravity -= points_.gravity.dot(row(Rows(r.A.row(0) * Q), 0));
-    for (int j = 0; j < m.n_modes; ++j) sum.elastic += r.stiffness[j] * amplitude(m, q, j) * amplitude(m, q, j) / 2;
+    const Eigen::VectorXd eta = amplitudes(m, q);
+    sum.elastic += r.strain.used() ? r.strain.energy(eta) : r.stiffness.dot(eta.cwiseAbs2()) / 2;
   }
 }
 
@@ -155,25 +171,41 @@ void LinearRegions::add_work(const Moment& moment, Work& sum) const {
   }
 }
 
-/// Modes know no stiffening by axial force: beyond the first frequency a region that spins would run away.
+/// Linear strains know no stiffening by axial force: beyond the first frequency a region that spins would run away.  What turns sections is
+/// exact to the first power of the turn without stiffening, to the third with it.
 void LinearRegions::commit(const Config& q, const Config* v) {
+  constexpr double bent = 0.0125, bent_where_it_stiffens = 0.05;  // displacement over length, docs/fidelity.md
   told_.resize(regions.size(), 0);
-  for (size_t k = 0; k < regions.size() && v; ++k) {
-    const Modes& m = points_.modes[regions[k].modes];
+  for (size_t k = 0; k < regions.size(); ++k) {
+    const LinearRegion& r = regions[k];
+    const Modes& m = points_.modes[r.modes];
     if (m.n_modes == 0) continue;
-    const Mat3 S = v->R[m.body] * q.R[m.body].transpose();
-    const double spin = Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)).norm() / 2,
-                 first = std::sqrt(regions[k].stiffness[0]);
     const std::string& name = points_.bodies[m.body].name;
+    const auto tell = [&](int what, const std::string& text) {
+      if (!(told_[k] & what) && points_.comm->rank == 0) warn(name, text);
+      told_[k] = static_cast<char>(told_[k] | what);
+    };
+    const Eigen::VectorXd u = r.sites * amplitudes(m, q);
+    double most = 0;
+    for (Eigen::Index i = 0; i < u.size(); i += 3) most = std::max(most, u.segment<3>(i).norm());
+    if (most > (m.stiffens ? bent_where_it_stiffens : bent))
+      tell(2, fmt::format("bends by {:.2g} of its length: {}", most,
+                          m.stiffens
+                              ? "beyond 0.05 modes with stiffening are off by more than a few per cent (tag it nonlinear)"
+                              : "beyond 0.0125 linear modes are off by more than a few per cent (stiffening = true is good for four times "
+                                "as much, or tag it nonlinear)"));
+    if (m.stiffens || !v) continue;
+    const Mat3 S = v->R[m.body] * q.R[m.body].transpose();
+    const double spin = Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)).norm() / 2, first = std::sqrt(r.stiffness[0]);
     if (spin >= first)
-      too_fast_ = fmt::format("linear region \"{}\" spins with {:.3g} rad/s, its first frequency is {:.3g} rad/s: tag it nonlinear", name,
-                              spin, first);
-    if (spin < 0.3 * first || told_[k]) continue;
-    told_[k] = 1;
-    if (points_.comm->rank == 0)
-      warn(name,
-           fmt::format("spins with {:.3g} rad/s, a share of {:.2g} of its first frequency: linear modes do not stiffen (tag it nonlinear)",
-                       spin, spin / first));
+      too_fast_ = fmt::format(
+          "linear region \"{}\" spins with {:.3g} rad/s, its first frequency is {:.3g} rad/s: give it stiffening = true or tag it "
+          "nonlinear",
+          name, spin, first);
+    if (spin >= 0.3 * first)
+      tell(1, fmt::format("spins with {:.3g} rad/s, a share of {:.2g} of its first frequency: linear strains do not stiffen (stiffening = "
+                          "true does, or tag it nonlinear)",
+                          spin, spin / first));
   }
 }
 

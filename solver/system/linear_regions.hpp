@@ -1,12 +1,13 @@
 // Linear regions: small strain on any rigid motion, by modes about mean axes.
 //
 //   x_a = c + R (r_a + sum_j phi_aj eta_j),   Q = (c, R e_k, Y_j e_k),   b_a = (1, r_a, phi_aj),   A = int rho b b^T constant
-//   P_left^T [A a_Q - A e_0 g] + (0, 0, k eta) = 0
+//   P_left^T [A a_Q - A e_0 g] + (0, 0, k eta) = 0             k eta, or the force of quadratic strains (system/quadratic_strain.hpp)
 // A rigid body is the case without modes [betsch-leyendecker-2006].  Amplitudes are of modes orthonormal in mass, so k is a
 // list of squared circular frequencies.
 #pragma once
 #include <Eigen/Dense>
 
+#include "system/quadratic_strain.hpp"
 #include "system/solids.hpp"
 
 namespace hilo {
@@ -17,6 +18,8 @@ struct LinearRegion {
   Eigen::VectorXd stiffness;  // (m) [1/s^2]
   Eigen::MatrixXd viscous;    // of the modes, by stiffness and by ratios   (m x m), or empty   [1/s]
   Eigen::MatrixXd A_damped;   // int alpha rho b b^T, mass-proportional damping   (as A), or empty
+  QuadraticStrain strain;     // where it stiffens
+  Eigen::MatrixXd sites;      // as Reduction has them
 };
 
 class LinearRegions final : public Contribution {

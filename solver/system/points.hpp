@@ -35,6 +35,7 @@ struct Modes {
   int body = -1;                // its mean axes
   int first = 0, n_blocks = 0;  // amplitudes in Config::eta, three to a block; those beyond n_modes stay zero
   int n_modes = 0;              //
+  bool stiffens = false;        // with strains of the second degree (system/quadratic_strain.hpp)
   int block = -1;               // of the amplitudes
   int clique = -1;              // of body and amplitudes, whose body has blocks -1 where it is driven
   std::vector<double> lever;    // metres that a unit of the amplitudes of a block is

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "linear/kkt.hpp"
+#include "system/stiffening.hpp"
 
 namespace hilo {
 namespace {
@@ -16,90 +17,21 @@ using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-/// Stiffness and mass of the cells about the reference configuration, computed whenever they are asked for.
-class Cells {
- public:
-  /// Damping: beta times the stiffness, alpha times the mass.
-  enum Kind { stiffness, mass, damping_by_stiffness, damping_by_mass };
-  explicit Cells(const ReductionInput& in) : in_(in) {}
+constexpr Index n_bending = 6;        // soft modes, lowest first, that derivatives are made of,
+constexpr Index n_held = 4;           // and the vibrations between interfaces that they come from
+constexpr Index most_stiffened = 60;  // modes of a region whose products are kept
 
-  /// Visit nodes and matrix (3n x 3n, row major) of each cell.
-  template <class Visit>
-  void each(Kind kind, Visit&& visit) const {
-    const bool mass = kind == Kind::mass || kind == damping_by_mass;
-    struct alignas(64) Line {  // as the widest kernels load them
-      double value[8] = {};
-    };
-    std::vector<Line> scratch;
-    std::vector<double> Ke;
-    for (const SolidBatch& b : in_.cells) {
-      const StVenantKirchhoff no_matter{{1, 1}};
-      const SolidKernel kernel = mass ? solid_kernel(b.shape, place_of<StVenantKirchhoff>) : b.kernel;
-      const int n = info(b.shape).n_nodes, W = kernel.width, n3 = 3 * n, count = static_cast<int>(b.nodes.size()) / n;
-      const double factor = kind == damping_by_stiffness ? b.beta : kind == damping_by_mass ? b.alpha : 1;
-      const auto lines = [](size_t doubles) { return (doubles + 7) / 8; };
-      const size_t vector = lines(static_cast<size_t>(n3) * W), matrix = lines(static_cast<size_t>(n3) * n3 * W);
-      scratch.assign(3 * vector + matrix + lines(static_cast<size_t>(kernel.n_state) * W), {});
-      double *X = scratch[0].value, *zero = X + 8 * vector, *f = zero + 8 * vector, *K = f + 8 * vector;
-      Ke.resize(static_cast<size_t>(n3) * n3);
-      KernelCall call{X,
-                      X,
-                      X,
-                      mass ? 0.0 : 1.0,
-                      0,
-                      mass ? &no_matter : parameters(b.material),
-                      f,
-                      K,
-                      nullptr,
-                      nullptr,
-                      nullptr,
-                      b.density,
-                      mass ? zero : nullptr,
-                      mass ? 1.0 : 0.0,
-                      b.area,
-                      1};
-      call.h0 = K + 8 * matrix;
-      for (int first = 0; first < count; first += W) {
-        for (int l = 0; l < W; ++l)
-          for (int i = 0; i < n3; ++i)
-            X[static_cast<size_t>(i) * W + l] = in_.X[b.nodes[static_cast<size_t>(std::min(first + l, count - 1)) * n + i / 3]][i % 3];
-        kernel.call(call);
-        for (int l = 0; l < W && first + l < count; ++l) {
-          for (size_t i = 0; i < Ke.size(); ++i) Ke[i] = factor * K[i * W + l];
-          visit(std::span<const int>(b.nodes.data() + static_cast<size_t>(first + l) * n, static_cast<size_t>(n)), Ke.data());
-        }
-      }
-    }
-  }
-
-  /// K V or M V of vectors over all nodes (3n x k).
-  Matrix times(Kind kind, const Matrix& V) const {
-    Matrix out = Matrix::Zero(V.rows(), V.cols()), local, product;
-    each(kind, [&](std::span<const int> nodes, const double* Ke) {
-      const auto n3 = static_cast<Index>(3 * nodes.size());
-      local.resize(n3, V.cols());
-      for (size_t a = 0; a < nodes.size(); ++a) local.middleRows(3 * static_cast<Index>(a), 3) = V.middleRows(3 * nodes[a], 3);
-      product.noalias() = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(Ke, n3, n3) * local;
-      for (size_t a = 0; a < nodes.size(); ++a) out.middleRows(3 * nodes[a], 3) += product.middleRows(3 * static_cast<Index>(a), 3);
-    });
-    return out;
-  }
-
- private:
-  const ReductionInput& in_;
-};
-
-/// K^-1 of what is not held, on vectors over all nodes.  A region that nothing holds gets soft springs at three nodes, which self-balanced
-/// loads do not feel, and its rigid motions are taken out of loads and answers.
+/// K^-1 of what is not held, on vectors over all nodes.  A region that nothing holds gets springs along six directions of three nodes,
+/// statically determinate, so that self-balanced loads do not feel them; its rigid motions are taken out of loads and answers.
 class Flexibility {
  public:
-  Flexibility(const ReductionInput& in, const Cells& cells, const Matrix& rigid, const Matrix& M_rigid, bool free)
-      : solver_(make_light_solver()), rigid_(rigid), M_rigid_(M_rigid), free_(free) {
+  Flexibility(const ReductionInput& in, const RegionCells& cells, const Matrix& rigid, const Matrix& M_rigid, bool hold)
+      : solver_(make_light_solver()), rigid_(rigid), M_rigid_(M_rigid), free_(!hold || (in.rigid.empty() && in.free.empty())) {
     const int n = static_cast<int>(in.X.size());
     block_.assign(n, 0);
     for (const auto& set : in.rigid)
-      for (const int i : set) block_[i] = -1;
-    for (const int i : in.free) block_[i] = -1;
+      for (const int i : set) block_[i] = hold ? -1 : 0;
+    for (const int i : in.free) block_[i] = hold ? -1 : 0;
     for (int& b : block_)
       if (b == 0) b = n_blocks_++;
     BlockMap map;
@@ -121,14 +53,15 @@ class Flexibility {
     solver_->zero();
     int clique = 0;
     double stiff = 0;
-    cells.each(Cells::stiffness, [&](std::span<const int> nodes, const double* Ke) {
+    cells.each(RegionCells::stiffness, [&](std::span<const int> nodes, const double* Ke) {
       solver_->add(clique++, Ke);
       for (size_t i = 0; i < 3 * nodes.size(); ++i) stiff = std::max(stiff, Ke[i * (3 * nodes.size() + 1)]);
     });
-    if (free)
-      for (const int i : spread_nodes(in.X)) {
-        const double spring[3] = {stiff, stiff, stiff};
-        solver_->add_diagonal(block_[i], spring);
+    if (free_)
+      for (const int dof : determinate_support(in.X)) {
+        double spring[3] = {};
+        spring[dof % 3] = stiff;
+        solver_->add_diagonal(block_[dof / 3], spring);
       }
     b_.resize(3 * static_cast<size_t>(n_blocks_)), z_.resize(b_.size());
   }
@@ -163,6 +96,20 @@ class Flexibility {
     out[0] = far([&](const Vec3& x) { return (x - X[out[1]]).norm(); });
     const Vec3 along = (X[out[1]] - X[out[0]]).normalized();
     out[2] = far([&](const Vec3& x) { return (x - X[out[0]]).cross(along).norm(); });
+    return out;
+  }
+
+  /// Six unknowns of three nodes that hold the region and no more.
+  std::array<int, 6> determinate_support(const std::vector<Vec3>& X) const {
+    const auto nodes = spread_nodes(X);
+    Eigen::Matrix<double, 6, 9> motions;
+    for (int k = 0; k < 9; ++k) motions.col(k) = rigid_.row(3 * nodes[k / 3] + k % 3).transpose();
+    const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 6, 9>> qr(motions);
+    std::array<int, 6> out{};
+    for (int k = 0; k < 6; ++k) {
+      const int which = qr.colsPermutation().indices()[k];
+      out[k] = 3 * nodes[which / 3] + which % 3;
+    }
     return out;
   }
 
@@ -208,6 +155,25 @@ Matrix interface_motions(const ReductionInput& in) {
   return out;
 }
 
+/// What the nodes that lie farthest out along the axes and diagonals of space are displaced by, over the distance between them.
+Matrix at_sites(const std::vector<Vec3>& X, const Vec3& centre, const Matrix& shapes) {
+  std::vector<size_t> sites;
+  for (int k = 0; k < 27; ++k) {
+    const Vec3 way(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    size_t far = 0;
+    for (size_t i = 0; i < X.size(); ++i)
+      if ((X[i] - centre).dot(way) > (X[far] - centre).dot(way)) far = i;
+    if (way != Vec3::Zero()) sites.push_back(far);
+  }
+  double length = 0;
+  for (const size_t a : sites)
+    for (const size_t b : sites) length = std::max(length, (X[a] - X[b]).norm());
+  Matrix out(3 * static_cast<Index>(sites.size()), shapes.cols());
+  for (size_t k = 0; k < sites.size(); ++k)
+    out.middleRows(3 * static_cast<Index>(k), 3) = shapes.middleRows(3 * static_cast<Index>(sites[k]), 3) / length;
+  return out;
+}
+
 /// K^-1 and M as Spectra takes them, over the unknowns that are not held.
 struct InverseStiffness {
   using Scalar = double;
@@ -220,15 +186,17 @@ struct InverseStiffness {
 };
 struct MassProduct {
   using Scalar = double;
-  const Cells& cells;
+  const RegionCells& cells;
   Index n;
   Index rows() const { return n; }
   Index cols() const { return rows(); }
-  void perform_op(const double* x, double* y) const { Eigen::Map<Vector>(y, n) = cells.times(Cells::mass, Eigen::Map<const Vector>(x, n)); }
+  void perform_op(const double* x, double* y) const {
+    Eigen::Map<Vector>(y, n) = cells.times(RegionCells::mass, Eigen::Map<const Vector>(x, n));
+  }
 };
 
 /// The lowest vibration modes, orthonormal in mass, and one frequency more.
-Matrix vibrations(const ReductionInput& in, const Cells& cells, const Flexibility& flexibility, double& next) {
+Matrix vibrations(const ReductionInput& in, const RegionCells& cells, const Flexibility& flexibility, double& next) {
   const auto rows = 3 * static_cast<Index>(in.X.size());
   const Index most = flexibility.n_unknowns() - 7;
   if (in.n_vibrations <= 0 || most < 2) return Matrix(rows, 0);
@@ -255,26 +223,63 @@ Matrix vibrations(const ReductionInput& in, const Cells& cells, const Flexibilit
   }
 }
 
+/// Modes orthonormal in mass that span what is given, but for rigid motions, with their frequencies.
+struct ModeBasis {
+  const RegionCells& cells;
+  const Matrix &rigid, &M_rigid;
+  ModeBasis(const RegionCells& c, const Matrix& r, const Matrix& Mr) : cells(c), rigid(r), M_rigid(Mr) {}
+
+  Matrix times_mass(const Matrix& V) const { return cells.times(RegionCells::mass, V); }
+  Vector mass_norms(const Matrix& of) const { return of.cwiseProduct(times_mass(of)).colwise().sum().cwiseMax(0).cwiseSqrt(); }
+
+  void find(const std::vector<Matrix>& parts, Reduction& out) const {
+    Index columns = 0;
+    for (const Matrix& p : parts) columns += p.cols();
+    Matrix V(rigid.rows(), columns);
+    columns = 0;
+    for (const Matrix& p : parts) V.middleCols(columns, p.cols()) = p, columns += p.cols();
+    const Vector before = mass_norms(V);
+    V -= rigid * (M_rigid.transpose() * V);
+    const Vector after = mass_norms(V);
+    Index kept = 0;
+    for (Index k = 0; k < V.cols(); ++k)
+      if (after[k] > 1e-8 * before[k] && after[k] > 0) V.col(kept++) = (V.col(k) / after[k]).eval();
+    V.conservativeResize(Eigen::NoChange, kept);
+    const Matrix G = V.transpose() * times_mass(V);
+    const Eigen::SelfAdjointEigenSolver<Matrix> gram(G);
+    Index skip = 0;
+    while (skip < kept && gram.eigenvalues()[skip] < 1e-9 * gram.eigenvalues()[kept - 1]) ++skip;
+    const Index m = kept - skip;
+    V = (V * gram.eigenvectors().rightCols(m) * gram.eigenvalues().tail(m).cwiseSqrt().cwiseInverse().asDiagonal()).eval();
+    V -= rigid * (M_rigid.transpose() * V);
+    const Matrix Kr = V.transpose() * cells.times(RegionCells::stiffness, V), Mr = V.transpose() * times_mass(V);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes((Kr + Kr.transpose()) / 2, (Mr + Mr.transpose()) / 2);
+    out.omega2 = modes.eigenvalues();
+    if (m > 0 && !(out.omega2[0] > 1e-12 * out.omega2[m - 1]))
+      throw Error("", "the cells of the region do not hold together", "one piece, with no hinges of single nodes");
+    out.shapes = V * modes.eigenvectors();
+  }
+};
+
 }  // namespace
 
 Reduction reduced(const ReductionInput& in) {
   const auto tell = [&](const std::string& what) {
     if (in.progress) in.progress(what);
   };
-  const Cells cells(in);
+  const RegionCells cells(in.X, in.cells);
   Matrix rigid = rigid_motions(in.X, in.centre);
   {  // orthonormal in mass
-    const Matrix G = rigid.transpose() * cells.times(Cells::mass, rigid);
+    const Matrix G = rigid.transpose() * cells.times(RegionCells::mass, rigid);
     rigid = rigid * Matrix(Matrix(G.llt().matrixL()).inverse().transpose());
   }
-  const Matrix M_rigid = cells.times(Cells::mass, rigid), at_interfaces = interface_motions(in);
-  const bool free = at_interfaces.cols() == 0;
+  const Matrix M_rigid = cells.times(RegionCells::mass, rigid), at_interfaces = interface_motions(in);
   tell("factor");
-  const Flexibility flexibility(in, cells, rigid, M_rigid, free);
+  const Flexibility flexibility(in, cells, rigid, M_rigid, true);
   std::vector<Matrix> parts;
   tell("static modes");
   Matrix static_modes = at_interfaces;
-  const Matrix pulls = cells.times(Cells::stiffness, at_interfaces);
+  const Matrix pulls = cells.times(RegionCells::stiffness, at_interfaces);
   for (Index k = 0; k < static_modes.cols(); ++k) static_modes.col(k) -= flexibility.solve(pulls.col(k));
   parts.push_back(std::move(static_modes));
   Matrix fields = Matrix::Zero(rigid.rows(), 12);
@@ -283,7 +288,7 @@ Reduction reduced(const ReductionInput& in) {
       fields(3 * static_cast<Index>(i) + k, k) = 1;
       for (int j = 0; j < 3; ++j) fields(3 * static_cast<Index>(i) + k, 3 + 3 * j + k) = in.X[i][j] - in.centre[j];
     }
-  Matrix inertia = cells.times(Cells::mass, fields);
+  Matrix inertia = cells.times(RegionCells::mass, fields);
   for (Index k = 0; k < inertia.cols(); ++k) inertia.col(k) = flexibility.solve(inertia.col(k));
   parts.push_back(std::move(inertia));
   Matrix loads = Matrix::Zero(rigid.rows(), static_cast<Index>(in.loads.size()));
@@ -297,38 +302,27 @@ Reduction reduced(const ReductionInput& in) {
   Reduction out;
   parts.push_back(vibrations(in, cells, flexibility, out.held_frequency));
 
-  // one basis, without rigid motions, of unit mass
-  Index columns = 0;
-  for (const Matrix& p : parts) columns += p.cols();
-  Matrix V(rigid.rows(), columns);
-  columns = 0;
-  for (const Matrix& p : parts) V.middleCols(columns, p.cols()) = p, columns += p.cols();
   tell("basis");
-  const auto mass_norms = [&](const Matrix& of) {
-    return Vector(of.cwiseProduct(cells.times(Cells::mass, of)).colwise().sum().cwiseMax(0).cwiseSqrt());
-  };
-  const Vector before = mass_norms(V);
-  V -= rigid * (M_rigid.transpose() * V);
-  const Vector after = mass_norms(V);
-  Index kept = 0;
-  for (Index k = 0; k < V.cols(); ++k)
-    if (after[k] > 1e-8 * before[k] && after[k] > 0) V.col(kept++) = (V.col(k) / after[k]).eval();
-  V.conservativeResize(Eigen::NoChange, kept);
-  const Matrix G = V.transpose() * cells.times(Cells::mass, V);
-  const Eigen::SelfAdjointEigenSolver<Matrix> gram(G);
-  Index skip = 0;
-  while (skip < kept && gram.eigenvalues()[skip] < 1e-9 * gram.eigenvalues()[kept - 1]) ++skip;
-  const Index m = kept - skip;
-  V = (V * gram.eigenvectors().rightCols(m) * gram.eigenvalues().tail(m).cwiseSqrt().cwiseInverse().asDiagonal()).eval();
-  V -= rigid * (M_rigid.transpose() * V);
-  const Matrix Kr = V.transpose() * cells.times(Cells::stiffness, V), Mr = V.transpose() * cells.times(Cells::mass, V);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes((Kr + Kr.transpose()) / 2, (Mr + Mr.transpose()) / 2);
-  out.omega2 = modes.eigenvalues();
-  if (m > 0 && !(out.omega2[0] > 1e-12 * out.omega2[m - 1]))
-    throw Error("", "the cells of the region do not hold together", "one piece, with no hinges of single nodes");
-  out.shapes = V * modes.eigenvectors();
+  const ModeBasis basis(cells, rigid, M_rigid);
+  basis.find(parts, out);
+  if (in.stiffening) {
+    tell("modal derivatives");
+    const Flexibility unheld(in, cells, rigid, M_rigid, false);
+    Reduction bending;  // what the region does where it is soft: its vibrations between interfaces, and what those do
+    const Matrix& found = parts.back();
+    basis.find({parts.front(), found.leftCols(std::min<Index>(n_held, found.cols()))}, bending);
+    const Index n = std::min<Index>(n_bending, bending.omega2.size());
+    parts.push_back(modal_derivatives(cells, bending.shapes.leftCols(n), bending.omega2.head(n), in.length,
+                                      [&](const Vector& f) { return unheld.solve(f); }));
+    basis.find(parts, out);
+    if (out.omega2.size() > most_stiffened)
+      throw Error("", fmt::format("{} modes, the most that can stiffen is {}", out.omega2.size(), most_stiffened),
+                  "fewer vibration modes: [region.NAME] modes or up_to");
+    out.strain = quadratic_strain(cells, out.shapes, out.omega2, in.length, tell);
+  }
+  out.sites = at_sites(in.X, in.centre, out.shapes);
   // int rho b b^T: b by components is a vector field of one direction
-  const auto n = static_cast<Index>(in.X.size());
+  const auto n = static_cast<Index>(in.X.size()), m = out.omega2.size();
   Matrix B = Matrix::Zero(3 * n, 4 + 3 * m);
   for (Index i = 0; i < n; ++i) {
     B(3 * i, 0) = 1;
@@ -337,12 +331,12 @@ Reduction reduced(const ReductionInput& in) {
       for (int k = 0; k < 3; ++k) B(3 * i, 4 + 3 * j + k) = out.shapes(3 * i + k, j);
   }
   const auto symmetric = [](const Matrix& M) { return Matrix((M + M.transpose()) / 2); };
-  out.A = symmetric(B.transpose() * cells.times(Cells::mass, B));
+  out.A = symmetric(B.transpose() * cells.times(RegionCells::mass, B));
   const auto any = [&](double SolidBatch::*factor) {
     return std::any_of(in.cells.begin(), in.cells.end(), [&](const SolidBatch& b) { return b.*factor > 0; });
   };
-  if (any(&SolidBatch::alpha)) out.A_damped = symmetric(B.transpose() * cells.times(Cells::damping_by_mass, B));
-  if (any(&SolidBatch::beta)) out.viscous = symmetric(out.shapes.transpose() * cells.times(Cells::damping_by_stiffness, out.shapes));
+  if (any(&SolidBatch::alpha)) out.A_damped = symmetric(B.transpose() * cells.times(RegionCells::damping_by_mass, B));
+  if (any(&SolidBatch::beta)) out.viscous = symmetric(out.shapes.transpose() * cells.times(RegionCells::damping_by_stiffness, out.shapes));
   return out;
 }
 

@@ -6,12 +6,14 @@
 //                      centrifugal force are exact with these twelve
 //   load modes         the answer to each load of the scene on its nodes, in every direction that it may take as the region turns
 //   vibration modes    the lowest of the region with its interfaces held, or free where it has none
+//   derivatives        of the lowest modes, where the region stiffens (system/stiffening.hpp)
 //
 // The span of all of them, without rigid motions (mean axes: orthogonal in mass to the six), is turned into modes orthonormal in mass.
 #pragma once
 #include <Eigen/Dense>
 #include <functional>
 
+#include "system/quadratic_strain.hpp"
 #include "system/solids.hpp"
 
 namespace hilo {
@@ -25,6 +27,8 @@ struct ReductionInput {
   std::vector<std::vector<std::pair<int, Vec3>>> loads;  // on nodes
   int n_vibrations = 0;                                  // vibration modes, at most
   double up_to = 0;                                      // and up to this frequency, but at least four; 0: all of n_vibrations  [Hz]
+  bool stiffening = false;                               // strains of the second degree in the amplitudes
+  double length = 1;                                     // of the region [m]
   std::function<void(const std::string&)> progress;
 };
 
@@ -34,6 +38,8 @@ struct Reduction {
   Eigen::MatrixXd A;          // int rho b b^T, b = (1, X - Xc, shapes by component)   (4 + 3m x 4 + 3m)
   Eigen::MatrixXd A_damped;   // the same of mass-proportional damping alpha rho, or empty
   Eigen::MatrixXd viscous;    // of stiffness-proportional damping beta C on the modes (m x m), or empty [1/s]
+  QuadraticStrain strain;     // where it stiffens
+  Eigen::MatrixXd sites;      // displacements of nodes far out, over the distance between them   (3 n_sites x m) [1 per unit of amplitude]
   double held_frequency = 0;  // of the first vibration mode left out, or 0 where all that were found are in  [Hz]
 };
 

@@ -13,9 +13,12 @@ using Matrix = ModeForces::Matrix;
 
 std::vector<Vec3> shapes_of_direction(const Weld& w, int i) {
   std::vector<Vec3> out;
-  for (const Vec3& psi : w.turn) out.push_back(psi.cross(Vec3(Vec3::Unit(i))));
+  for (const Mat3& g : w.stretch) out.emplace_back(g.col(i));
   return out;
 }
+
+/// Of the row of a pair of axes.
+double factor(const Weld& w, int i) { return 1 / (w.share[pair_a[i]] + w.share[pair_b[i]]); }
 
 /// What the unknowns of a region move a vector by: columns of translation, rotation, amplitudes.
 Map region_map(bool point, const Vec3& arm, const Mat3& turn, const std::vector<Vec3>& shapes) {
@@ -62,11 +65,11 @@ Welds::Place Welds::place(const Weld& w, const Config& q) const {
   const Mat3 &R = q.R[m.body], &B = q.R[w.body];
   Place p;
   p.y = q.c[m.body] + R * (w.at - points_.bodies[m.body].Xc);
-  for (int i = 0; i < 3; ++i) p.d[i] = R.col(i), p.t[i] = B.col(i);
+  for (int i = 0; i < 3; ++i) p.d[i] = w.share[i] * (R * w.axes.col(i)), p.t[i] = B * w.axes.col(i);
   for (size_t j = 0; j < w.mean.size(); ++j) {
     const Mat3& Y = q.Y[3 * m.first + j];
     p.y += Y * w.mean[j];
-    for (int i = 0; i < 3; ++i) p.d[i] += Y * w.turn[j].cross(Vec3(Vec3::Unit(i)));
+    for (int i = 0; i < 3; ++i) p.d[i] += Y * w.stretch[j].col(i);
   }
   p.y_body = q.c[w.body] + B * (w.at - points_.bodies[w.body].Xc);
   return p;
@@ -77,7 +80,7 @@ std::array<double, 6> Welds::values(const Weld& w, const Config& q) const {
   std::array<double, 6> g{};
   for (int i = 0; i < 3; ++i) {
     g[i] = p.y[i] - p.y_body[i];
-    g[3 + i] = (p.t[pair_a[i]].dot(p.d[pair_b[i]]) - p.t[pair_b[i]].dot(p.d[pair_a[i]])) / 2;
+    g[3 + i] = factor(w, i) * (p.t[pair_a[i]].dot(p.d[pair_b[i]]) - p.t[pair_b[i]].dot(p.d[pair_a[i]]));
   }
   return g;
 }
@@ -100,9 +103,9 @@ void Welds::evaluate(Pass& p) const {
     for (int i = 0; i < 3; ++i) h[i].setZero(), t[i].setZero();
     for (int i = 0; i < 3; ++i) {
       const int a = pair_a[i], b = pair_b[i];
-      const double half = lambda[3 + i] / 2;
-      h[b] += half * left.t[a], h[a] -= half * left.t[b];
-      t[a] += half * left.d[b], t[b] -= half * left.d[a];
+      const double push = factor(w, i) * lambda[3 + i];
+      h[b] += push * left.t[a], h[a] -= push * left.t[b];
+      t[a] += push * left.d[b], t[b] -= push * left.d[a];
     }
     const Vec3 arm = left.y - s.left->c[m.body], arm_end = end.y - s.end->c[m.body];
     const Vec3 arm_body = left.y_body - s.left->c[w.body], arm_body_end = end.y_body - s.end->c[w.body];
@@ -135,14 +138,14 @@ void Welds::evaluate(Pass& p) const {
     for (int i = 0; i < 3; ++i) {
       const int a = pair_a[i], b = pair_b[i];
       const auto turn_row = [&](const Place& x, const Map(&of)[3], Matrix& G) {
-        G.row(3 + i).head(n) = (x.t[a].transpose() * of[b] - x.t[b].transpose() * of[a]) / 2;
-        G.row(3 + i).segment<3>(at_body + 3) = (x.t[a].cross(x.d[b]) - x.t[b].cross(x.d[a])).transpose() / 2;
+        G.row(3 + i).head(n) = factor(w, i) * (x.t[a].transpose() * of[b] - x.t[b].transpose() * of[a]);
+        G.row(3 + i).segment<3>(at_body + 3) = factor(w, i) * (x.t[a].cross(x.d[b]) - x.t[b].cross(x.d[a])).transpose();
       };
       turn_row(left, L, G_left), turn_row(end, Z, G_right);
       K.block<3, 3>(at_body + 3, at_body + 3) += s.slope * skew(t[i]) * skew(end.t[i]);
-      const double half = s.slope * lambda[3 + i] / 2;
-      K.block(0, at_body + 3, n, 3) += half * (L[a].transpose() * skew(end.t[b]) - L[b].transpose() * skew(end.t[a]));
-      K.block(at_body + 3, 0, 3, n) += half * (skew(left.t[a]) * Z[b] - skew(left.t[b]) * Z[a]);
+      const double push = s.slope * factor(w, i) * lambda[3 + i];
+      K.block(0, at_body + 3, n, 3) += push * (L[a].transpose() * skew(end.t[b]) - L[b].transpose() * skew(end.t[a]));
+      K.block(at_body + 3, 0, 3, n) += push * (skew(left.t[a]) * Z[b] - skew(left.t[b]) * Z[a]);
     }
     K.block(0, at_rows, n + 6, 6) = p.sigma * G_left.leftCols(n + 6).transpose();
     K.block(at_rows, 0, 6, n + 6) = p.sigma * G_right.leftCols(n + 6);
@@ -175,21 +178,32 @@ void Welds::mark_rows(std::vector<char>& on) const {
   for (const int block : block_) std::fill_n(on.begin() + 3 * (block - points_.first_joint_block()), 6, 1);
 }
 
-/// The directions of a turned face are orthonormal to the second order of its turn alone.
+Vec3 Weld::turn(const Modes& m, const Config& q) const {
+  Vec3 out = Vec3::Zero();
+  for (size_t j = 0; j < stretch.size(); ++j) {
+    const double eta = q.eta[m.first + static_cast<int>(j) / 3][static_cast<int>(j) % 3];
+    for (int i = 0; i < 3; ++i) {
+      const int a = pair_a[i], b = pair_b[i];
+      out += eta * factor(*this, i) * (axes.col(b).dot(stretch[j].col(a)) - axes.col(a).dot(stretch[j].col(b))) * axes.col(3 - a - b);
+    }
+  }
+  return out;
+}
+
+/// A face that is turned by linear modes is stretched by the square of its turn, and so is the region beside it.
 void Welds::commit(const Config& q, const Config*) {
-  constexpr double far = 0.05;  // [rad], docs/fidelity.md
+  constexpr double far = 0.05, far_where_it_stiffens = 0.25;  // [rad], docs/fidelity.md
   told_.resize(list.size(), 0);
   for (size_t k = 0; k < list.size(); ++k) {
     const Modes& m = points_.modes[list[k].modes];
-    Vec3 turn = Vec3::Zero();
-    for (size_t j = 0; j < list[k].turn.size(); ++j)
-      turn += q.eta[m.first + static_cast<int>(j) / 3][static_cast<int>(j) % 3] * list[k].turn[j];
-    if (!(turn.norm() > far) || told_[k]) continue;
+    const double turn = list[k].turn(m, q).norm(), limit = m.stiffens ? far_where_it_stiffens : far;
+    if (!(turn > limit) || told_[k]) continue;
     told_[k] = 1;
     if (points_.comm->rank == 0)
       warn(points_.bodies[m.body].name,
-           fmt::format("turns by {:.2g} rad at \"{}\": beyond {:g} linear modes are off by more than a few per cent (tag it nonlinear)",
-                       turn.norm(), list[k].name, far));
+           fmt::format("turns by {:.2g} rad at \"{}\": beyond {:g} {} are off by more than a few per cent ({})", turn, list[k].name, limit,
+                       m.stiffens ? "modes with stiffening" : "linear modes",
+                       m.stiffens ? "tag it nonlinear" : "give it stiffening = true or tag it nonlinear"));
   }
 }
 

@@ -1,9 +1,10 @@
 // Six rows between a linear region and a body: the mean motion of some of its nodes is that of the body, which may be a patch that joints
 // hold, a rigid neighbour, or what another linear region shares with it.
 //
-// The nodes' mean is a point y = c + R r + sum_j Y_j u_j of the region, their mean turn three directions d_i = R e_i + sum_j Y_j (psi_j x
-// e_i), which are orthonormal to the order of linear theory.  With the directors t_i of the body the rows are
-//   y - y_B = 0,      (t_a.d_b - t_b.d_a)/2 = 0 for (a, b) = (1, 2), (2, 3), (3, 1)
+// The nodes' mean is a point y = c + R r + sum_j Y_j u_j of the region.  Their mean turn T is that of least squares, min sum |x_i - y - T
+// r_i|^2, where T^T sum x_i r_i^T is symmetric.  Along the principal axes e_i of the nodes, with d_i = sum_k x_k (r_k.e_i) over sum |r|^2,
+//   d_i = s_i R e_i + sum_j Y_j g_ji,     t_i = T e_i,     s_i the shares of the axes in sum |r|^2,   the rows are
+//   y - y_B = 0,      (t_a.d_b - t_b.d_a)/(s_a + s_b) = 0 for (a, b) = (1, 2), (2, 3), (3, 1)
 // of degree two in all coordinates: gradients at the mid-point are difference quotients, and the rows neither work nor turn.
 #pragma once
 #include "system/contribution.hpp"
@@ -11,12 +12,18 @@
 namespace hilo {
 
 struct Weld {
-  std::string name;              // of the set, or of the body
-  int modes = -1;                // of Points::modes
-  int body = -1;                 // it is welded to
-  Vec3 at = Vec3::Zero();        // the mean of the nodes, reference position [m]
-  std::vector<int> nodes;        // local ones
-  std::vector<Vec3> mean, turn;  // u_j, psi_j   (3 n_blocks) [m], [1]
+  std::string name;                  // of the set, or of the body
+  int modes = -1;                    // of Points::modes
+  int body = -1;                     // it is welded to
+  Vec3 at = Vec3::Zero();            // the mean of the nodes, reference position [m]
+  std::vector<int> nodes;            // local ones
+  Mat3 axes = Mat3::Identity();      // e_i, columns
+  Vec3 share = Vec3::Constant(0.5);  // s_i
+  std::vector<Vec3> mean;            // u_j    (3 n_blocks)       [m]
+  std::vector<Mat3> stretch;         // g_ji, columns (3 n_blocks) [1]
+
+  /// Turn of the nodes in linear theory [rad].
+  Vec3 turn(const Modes& m, const Config& q) const;
 };
 
 class Welds final : public Contribution {
@@ -45,7 +52,7 @@ class Welds final : public Contribution {
   std::array<double, 6> values(const Weld& w, const Config& q) const;
   const Points& points_;
   std::vector<int> block_, clique_;
-  std::vector<char> told_;  // by weld: that it turns too far for linear theory
+  std::vector<char> told_;  // by weld: that it turns too far for what its strains are
 };
 
 }  // namespace hilo

@@ -279,8 +279,8 @@ std::unique_ptr<StageIntegrator> made(const std::string& name) {
   return make_zhou_tamma(name.ends_with("V0"), rho, name.starts_with("averaged"));
 }
 
-/// Integrator, and what the uppermost region is.
-class Tangent : public testing::TestWithParam<std::tuple<const char*, Fidelity>> {
+/// Integrator, and what the uppermost region is: "stiffening" is linear with strains of the second degree.
+class Tangent : public testing::TestWithParam<std::tuple<const char*, const char*>> {
  protected:
   Tangent() {
     BlockOptions o;
@@ -296,9 +296,13 @@ class Tangent : public testing::TestWithParam<std::tuple<const char*, Fidelity>>
     add_node_set(m, "corner", [](const Vec3& x) { return std::abs(x[2] - 0.8) < 1e-9 && x[0] < 0.2 && x[1] < 0.1; });
     add_node_set(m, "line", [](const Vec3& x) { return std::abs(x[2] - 0.8) < 1e-9 && x[0] > 0.2; });
     write_mesh(place / "mesh.h5", m, {"test"});
-    write_tags(place / "tags.h5", place / "mesh.h5", {Fidelity::rigid, Fidelity::nonlinear, std::get<1>(GetParam())}, {"test"});
+    const std::string upper = std::get<1>(GetParam());
+    write_tags(place / "tags.h5", place / "mesh.h5",
+               {Fidelity::rigid, Fidelity::nonlinear, upper == "nonlinear" ? Fidelity::nonlinear : Fidelity::linear}, {"test"});
     local = read_local_mesh(place / "tags.h5", Comm::world());
-    scene = Scene::parse(everything, "scene.toml");
+    scene = Scene::parse(
+        everything + std::string(upper == "stiffening" ? "[region.upper]\nmaterial = \"soft\"\nmodes = 4\nstiffening = true\n" : ""),
+        "scene.toml");
     system = build_system(scene, &local, Comm::world());
   }
   Workplace place;
@@ -374,10 +378,8 @@ TEST_P(Tangent, OfTheWholeSystemIsTheDerivativeOfItsResidual) {
 INSTANTIATE_TEST_SUITE_P(Integrators, Tangent,
                          testing::Combine(testing::Values("energy-momentum", "mid-point", "generalized-alpha", "U0", "averaged U0", "V0",
                                                           "averaged V0", "bathe", "bdf2"),
-                                          testing::Values(Fidelity::nonlinear, Fidelity::linear)),
-                         [](const auto& p) {
-                           return as_name(std::string(std::get<0>(p.param)) + "_" + std::string(word(std::get<1>(p.param))));
-                         });
+                                          testing::Values("nonlinear", "linear", "stiffening")),
+                         [](const auto& p) { return as_name(std::string(std::get<0>(p.param)) + "_" + std::get<1>(p.param)); });
 
 }  // namespace
 }  // namespace hilo::test

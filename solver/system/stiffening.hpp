@@ -1,0 +1,23 @@
+// What the modes of a linear region need to stiffen: strains of the second degree, and shapes that let a bent part shorten.
+//
+// Bending turns sections, and a linear map stretches what it turns: without shapes that take these stretches back, the quadratic strain
+// would lock.  They are the static modal derivatives u_ij = -K^-1 (d K/d eta_i) phi_j, with nothing held but the mean axes; an interface
+// that were held would lock too [idelsohn-cardona-1985].
+#pragma once
+#include <functional>
+
+#include "system/quadratic_strain.hpp"
+#include "system/region_cells.hpp"
+
+namespace hilo {
+
+/// The derivatives of modes (3 n_nodes x n) of these squared frequencies, as many as matter where each mode has the same energy.
+/// `solve`: answer of the free region to a load.
+Eigen::MatrixXd modal_derivatives(const RegionCells& cells, const Eigen::MatrixXd& modes, const Eigen::VectorXd& omega2, double length,
+                                  const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& solve);
+
+/// Of all modes; `length` of the region [m].
+QuadraticStrain quadratic_strain(const RegionCells& cells, const Eigen::MatrixXd& modes, const Eigen::VectorXd& omega2, double length,
+                                 const std::function<void(const std::string&)>& tell);
+
+}  // namespace hilo

@@ -1,0 +1,107 @@
+// Strains of the second degree in the modes of a linear region: the energy is that of its cells, the force its discrete gradient.
+#include "system/quadratic_strain.hpp"
+
+#include <gtest/gtest.h>
+
+#include "system/reduction.hpp"
+#include "verify/block_mesh.hpp"
+
+namespace hilo::test {
+namespace {
+
+using Vector = Eigen::VectorXd;
+using Matrix = Eigen::MatrixXd;
+
+/// A bar of cells that are bent a little, with one face an interface.
+class StiffeningBar : public testing::TestWithParam<Shape> {
+ protected:
+  StiffeningBar() {
+    BlockOptions o;
+    o.shape = GetParam();
+    o.n[0] = 3;
+    o.high = Vec3(1, 0.2, 0.3);
+    o.map = [](const Vec3& x) { return Vec3(x + 0.02 * Vec3(0, std::sin(3 * x[0]), 0)); };
+    const Mesh mesh = block_mesh(o);
+    in.X = mesh.X;
+    SolidBatch b;
+    b.shape = GetParam(), b.material = StVenantKirchhoff{{1.2e7, 0.7e7}}, b.density = 1000, b.region = 0;
+    b.kernel = solid_kernel(b.shape, law_index(b.material));
+    for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
+      for (const std::int64_t node : mesh.cell(e)) b.nodes.push_back(static_cast<int>(node));
+    in.cells = {b};
+    in.rigid.emplace_back();
+    for (size_t i = 0; i < in.X.size(); ++i)
+      if (in.X[i][0] < 1e-9) in.rigid[0].push_back(static_cast<int>(i));
+    in.centre = Vec3(0.5, 0.1, 0.15), in.n_vibrations = 3, in.stiffening = true;
+    found = reduced(in);
+    eta[0] = Vector::Zero(found.omega2.size()), eta[1] = eta[0];
+    for (Eigen::Index j = 0; j < eta[0].size(); ++j)
+      for (int k = 0; k < 2; ++k) eta[k][j] = 0.3 * scatter(7 * static_cast<int>(j) + k) / found.shapes.col(j).cwiseAbs().maxCoeff();
+  }
+
+  /// Truth: what the kernels of the cells say, displaced by the modes.
+  double energy_of_cells(const Vector& amplitudes) const {
+    const Vector u = found.shapes * amplitudes;
+    const SolidBatch& b = in.cells[0];
+    const auto n = static_cast<size_t>(info(b.shape).n_nodes), w = static_cast<size_t>(b.kernel.width);
+    struct alignas(64) Line {
+      double value[8];
+    };
+    std::vector<Line> X(3 * n), x(3 * n), energy(1);
+    double sum = 0;
+    for (size_t first = 0; first < b.nodes.size(); first += n) {
+      for (size_t i = 0; i < 3 * n; ++i)
+        for (size_t l = 0; l < w; ++l) {
+          const int node = b.nodes[first + i / 3];
+          X[0].value[i * w + l] = in.X[node][i % 3], x[0].value[i * w + l] = in.X[node][i % 3] + u[3 * node + i % 3];
+        }
+      b.kernel.call(
+          {X[0].value, x[0].value, x[0].value, 1, 0, parameters(b.material), nullptr, nullptr, energy[0].value, nullptr, nullptr});
+      sum += energy[0].value[0];
+    }
+    return sum;
+  }
+
+  ReductionInput in;
+  Reduction found;
+  Vector eta[2];
+};
+
+TEST_P(StiffeningBar, HasTheEnergyOfItsCells) {
+  for (const double share : {1e-3, 0.1, 1.0}) {
+    const Vector at = share * eta[0];
+    const double cells = energy_of_cells(at);
+    EXPECT_NEAR(found.strain.energy(at), cells, 1e-9 * cells) << share;
+  }
+  const double linear = found.omega2.dot(eta[0].cwiseAbs2()) / 2;
+  EXPECT_GT(std::abs(found.strain.energy(eta[0]) / linear - 1), 0.1) << "beyond small strain";
+}
+
+TEST_P(StiffeningBar, WorkOfItsForceIsTheChangeOfEnergy) {
+  const double work = found.strain.force(eta[0], eta[1], 0.5, nullptr).dot(eta[1] - eta[0]);
+  EXPECT_NEAR(work, found.strain.energy(eta[1]) - found.strain.energy(eta[0]), 1e-13 * found.strain.energy(eta[1]));
+}
+
+TEST_P(StiffeningBar, SlopeIsTheDerivativeOfItsForce) {
+  const Eigen::Index m = eta[0].size();
+  for (const double w : {0.5, 0.7, 1.0}) {
+    Matrix slope(m, m), difference(m, m);
+    found.strain.force(eta[0], eta[1], w, &slope);
+    for (Eigen::Index j = 0; j < m; ++j) {  // of the third degree: two widths give it exactly
+      const auto of = [&](double h) {
+        Vector up = eta[1], down = eta[1];
+        up[j] += h, down[j] -= h;
+        return Vector((found.strain.force(eta[0], up, w, nullptr) - found.strain.force(eta[0], down, w, nullptr)) / (2 * h));
+      };
+      const double h = std::abs(eta[1][j]) + 1e-3;
+      difference.col(j) = (4 * of(h) - of(2 * h)) / 3;
+    }
+    EXPECT_LT((slope - difference).norm(), 1e-11 * slope.norm()) << w;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, StiffeningBar, testing::Values(Shape::hex8, Shape::hex20r, Shape::tet10),
+                         [](const auto& p) { return std::string(hilo::info(p.param).name); });
+
+}  // namespace
+}  // namespace hilo::test
