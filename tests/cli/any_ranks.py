@@ -232,9 +232,10 @@ def chosen():
     return [w for w in everything() if w[0] == sys.argv[3] and (len(sys.argv) < 5 or w[1] == int(sys.argv[4]))]
 
 
-with tempfile.TemporaryDirectory() as folder:
-    os.chdir(folder)
-    prepare()
-    wrong = [what for what in chosen() if not agrees(*what)]
-    print(f"{len(wrong)} wrong: {wrong}" if wrong else "all agree")
-sys.exit(1 if wrong else 0)
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        prepare()
+        wrong = [what for what in chosen() if not agrees(*what)]
+        print(f"{len(wrong)} wrong: {wrong}" if wrong else "all agree")
+    sys.exit(1 if wrong else 0)
