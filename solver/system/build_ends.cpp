@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "system/builder.hpp"
+#include "system/welds.hpp"
 
 namespace hilo {
 
@@ -130,12 +131,20 @@ void Builder::follow_all(const std::vector<int>& nodes, int body, const std::str
   });
 }
 
+/// The body that a node follows without modes, or that a weld has it follow; or -1.
+int Builder::held_to(int node) const {
+  const int body = out_->follower[node];
+  if (body < 0 || !out_->bodies[body].linear) return body;
+  for (const Weld& w : out_->part<Welds>().list)
+    if (out_->modes[w.modes].body == body && std::find(w.nodes.begin(), w.nodes.end(), node) != w.nodes.end()) return w.body;
+  return -1;
+}
+
 /// The nodes of a set become followers of one massless body; where some of them belong to a rigid body already, they all join it.
 int Builder::patch_of(const std::string& name, const Found& found, const std::string& where) {
   if (const auto it = patch_by_name_.find(name); it != patch_by_name_.end()) return it->second;
   double other = -1;
-  for (int i : found.nodes)
-    if (const int b = out_->follower[i]; b >= 0 && !out_->bodies[b].linear) other = std::max<double>(other, b);
+  for (int i : found.nodes) other = std::max<double>(other, held_to(i));
   int body = static_cast<int>(comm_.max(other));
   const bool joins = body >= 0;
   if (!joins) {
@@ -151,6 +160,12 @@ int Builder::patch_of(const std::string& name, const Found& found, const std::st
   for (const int i : found.nodes)
     if (out_->follower[i] < 0 || !out_->bodies[out_->follower[i]].linear) others.push_back(i);
   follow_all(others, body, where);
+  comm_.together([&] {
+    for (const int i : found.nodes)
+      if (const int held = held_to(i); held >= 0 && held != body)
+        throw Error(where, fmt::format("node {} is held by \"{}\" already", mesh_->mesh.node_id[i], out_->bodies[held].name),
+                    "the sets of two entries overlap");
+  });
   for (const int of : linear) {
     std::vector<int> its;
     for (const int i : found.nodes)

@@ -70,6 +70,7 @@ class Builder {
   Found find(const std::string& name, const std::string& where) const;
   /// The carrier of a joint's or spring's end; makes a patch of a set on a flexible region.
   Carrier carrier(const Entry& entry, std::string_view key, bool needs_orientation);
+  int held_to(int node) const;
   int patch_of(const std::string& name, const Found& found, const std::string& where);
   int body_of(const std::string& name, const Found& found, const std::string& where);
   int new_body(const std::string& name, const Vec3& Xc);

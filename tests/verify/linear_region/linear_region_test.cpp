@@ -246,6 +246,30 @@ TEST(LinearRegion, EightTurnFarTogether) {
   EXPECT_LT((end - Vec3(47.23, 15.79, 53.37)).norm(), 0.03 * 53.37) << end.transpose();
 }
 
+// A set that shares nodes with another that is held joins it, at every level: the bar sags from the shelf on, not from the root.
+TEST(LinearRegion, SetsThatOverlapAreOne) {
+  Case c("linear_region");
+  Mesh m = bar(0, 1, 10);
+  add_node_set(m, "root", [](const Vec3& X) { return X[0] < 1e-9; });
+  add_node_set(m, "shelf", [](const Vec3& X) { return X[0] < 0.4 && X[2] < 1e-9; });
+  c.write("overlap.toml",
+          "gravity = [0, 0, -1]\n[material.soft]\nE = 1e7\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"soft\"\n"
+          "[[body]]\nname = \"weight\"\nmass = 1\ncom = [0.2, 0, -0.1]\ninertia = [1, 1, 1]\n"
+          "[[joint]]\nkind = \"fixed\"\nname = \"wall\"\nb = \"root\"\nat = [0, 0.05, 0.05]\n"
+          "[[joint]]\nkind = \"fixed\"\nname = \"hung\"\na = \"shelf\"\nb = \"weight\"\nat = [0.2, 0.05, 0]\n"
+          "[[probe]]\nname = \"tip\"\non = \"xmax\"\n[time]\nanalysis = \"static\"\n");
+  double sag[2];
+  for (const Fidelity f : {Fidelity::nonlinear, Fidelity::linear}) {
+    c.use(m, {f});
+    const Ran ran = c.run("hilo-solve --quiet overlap.toml tags.h5 -o run.h5");
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const auto tip = c.results().history("probe/tip");
+    sag[f == Fidelity::linear] = tip(tip.rows() - 1, 2) - tip(0, 2);
+  }
+  EXPECT_LT(sag[0], -1e-5);
+  EXPECT_NEAR(sag[1], sag[0], 0.01 * std::abs(sag[0]));
+}
+
 // With as many modes as its cells have freedoms a linear region is the whole finite-element model, for small motions.
 TEST(LinearRegion, WithAllModesVibratesAsTheCellsDo) {
   Case c("linear_region");
