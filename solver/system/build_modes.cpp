@@ -6,6 +6,7 @@
 #include <map>
 
 #include "system/builder.hpp"
+#include "system/face.hpp"
 #include "system/linear_regions.hpp"
 #include "system/reduction.hpp"
 #include "system/welds.hpp"
@@ -183,24 +184,25 @@ void Builder::reduce_linear_regions() {
       for (size_t k = 1; k < all_interfaces.size(); ++k) {  // least squares of a rigid motion
         const auto nodes = nodes_of(all_interfaces[k]);
         const Vec3 at = welds[k - 1]->at;
-        Mat3 spread = Mat3::Zero();
-        for (const int i : nodes) spread += (in.X[i] - at) * (in.X[i] - at).transpose();
-        const Eigen::SelfAdjointEigenSolver<Mat3> principal(spread);
-        const Mat3 axes = principal.eigenvectors();
-        const Vec3 share = principal.eigenvalues() / spread.trace();
-        if (!(share[0] + share[1] > 1e-9))
+        std::vector<Vec3> places_of;
+        for (const int i : nodes) places_of.push_back(in.X[i]);
+        const Face face(places_of, at);
+        if (!(face.share[0] + face.share[1] > 1e-9))
           throw Error(where,
                       fmt::format("linear region \"{}\" shares nodes on a line alone with \"{}\": they are hinged there",
                                   out_->bodies[modes.body].name, welds[k - 1]->name),
                       "let them share a face, or join them by a joint");
-        head.insert(head.end(), axes.data(), axes.data() + 9), head.insert(head.end(), share.data(), share.data() + 3);
+        head.insert(head.end(), face.axes.data(), face.axes.data() + 9), head.insert(head.end(), face.share.data(), face.share.data() + 3);
+        head.push_back(stiffening ? static_cast<double>(face.stretches.size()) : 0);
+        for (size_t p = 0; p < face.stretches.size() && stiffening; ++p)
+          head.push_back(face.stretches[p].first), head.push_back(face.stretches[p].second);
         for (Eigen::Index j = 0; j < m; ++j) {
           Vec3 mean = Vec3::Zero();
           Mat3 stretch = Mat3::Zero();
           for (const int i : nodes) {
             const Vec3 u = found.shapes.block<3, 1>(3 * i, j);
             mean += u / static_cast<double>(nodes.size());
-            stretch += u * (in.X[i] - at).transpose() * axes / spread.trace();
+            stretch += u * (in.X[i] - at).transpose() * face.axes / face.second;
           }
           head.insert(head.end(), mean.data(), mean.data() + 3), head.insert(head.end(), stretch.data(), stretch.data() + 9);
         }
@@ -246,6 +248,11 @@ void Builder::reduce_linear_regions() {
         return out;
       };
       w->axes = next_matrix(), w->share = next_vector();
+      const auto n_stretches = static_cast<int>(next());
+      for (int p = 0; p < n_stretches; ++p) {
+        const int a = static_cast<int>(next());
+        w->stretches.emplace_back(a, static_cast<int>(next()));
+      }
       w->mean.assign(3 * modes.n_blocks, Vec3::Zero()), w->stretch.assign(3 * modes.n_blocks, Mat3::Zero());
       for (int j = 0; j < m; ++j) w->mean[j] = next_vector(), w->stretch[j] = next_matrix();
     }

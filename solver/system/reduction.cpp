@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "linear/kkt.hpp"
+#include "system/face.hpp"
 #include "system/stiffening.hpp"
 
 namespace hilo {
@@ -25,13 +26,13 @@ constexpr Index most_stiffened = 60;  // modes of a region whose products are ke
 /// statically determinate, so that self-balanced loads do not feel them; its rigid motions are taken out of loads and answers.
 class Flexibility {
  public:
-  Flexibility(const ReductionInput& in, const RegionCells& cells, const Matrix& rigid, const Matrix& M_rigid, bool hold)
-      : solver_(make_light_solver()), rigid_(rigid), M_rigid_(M_rigid), free_(!hold || (in.rigid.empty() && in.free.empty())) {
+  Flexibility(const ReductionInput& in, const RegionCells& cells, const Matrix& rigid, const Matrix& M_rigid)
+      : solver_(make_light_solver()), rigid_(rigid), M_rigid_(M_rigid), free_(in.rigid.empty() && in.free.empty()) {
     const int n = static_cast<int>(in.X.size());
     block_.assign(n, 0);
     for (const auto& set : in.rigid)
-      for (const int i : set) block_[i] = hold ? -1 : 0;
-    for (const int i : in.free) block_[i] = hold ? -1 : 0;
+      for (const int i : set) block_[i] = -1;
+    for (const int i : in.free) block_[i] = -1;
     for (int& b : block_)
       if (b == 0) b = n_blocks_++;
     BlockMap map;
@@ -131,7 +132,8 @@ Matrix rigid_motions(const std::vector<Vec3>& X, const Vec3& about) {
   return out;
 }
 
-/// Motions of the interfaces, zero elsewhere.
+/// Motions of the interfaces, zero elsewhere; where the region stiffens, rigid ones can be stretched too, as a linear map that turns them
+/// does (system/welds.hpp).
 Matrix interface_motions(const ReductionInput& in) {
   const auto rows = 3 * static_cast<Index>(in.X.size());
   std::vector<Vector> columns;
@@ -141,6 +143,16 @@ Matrix interface_motions(const ReductionInput& in) {
     for (int k = 0; k < 6; ++k) {
       Vector v = Vector::Zero(rows);
       for (const int i : set) v.segment<3>(3 * i) = k < 3 ? Vec3(Vec3::Unit(k)) : Vec3(Vec3::Unit(k - 3)).cross(Vec3(in.X[i] - mean));
+      columns.push_back(std::move(v));
+    }
+    if (!in.stiffening) continue;
+    std::vector<Vec3> at;
+    for (const int i : set) at.push_back(in.X[i]);
+    const Face face(at, mean);
+    for (const auto& [a, b] : face.stretches) {
+      const Mat3 E = face.axes.col(a) * face.axes.col(b).transpose();
+      Vector v = Vector::Zero(rows);
+      for (const int i : set) v.segment<3>(3 * i) = (E + E.transpose()) * (in.X[i] - mean);
       columns.push_back(std::move(v));
     }
   }
@@ -275,7 +287,7 @@ Reduction reduced(const ReductionInput& in) {
   }
   const Matrix M_rigid = cells.times(RegionCells::mass, rigid), at_interfaces = interface_motions(in);
   tell("factor");
-  const Flexibility flexibility(in, cells, rigid, M_rigid, true);
+  const Flexibility flexibility(in, cells, rigid, M_rigid);
   std::vector<Matrix> parts;
   tell("static modes");
   Matrix static_modes = at_interfaces;
@@ -307,13 +319,12 @@ Reduction reduced(const ReductionInput& in) {
   basis.find(parts, out);
   if (in.stiffening) {
     tell("modal derivatives");
-    const Flexibility unheld(in, cells, rigid, M_rigid, false);
     Reduction bending;  // what the region does where it is soft: its vibrations between interfaces, and what those do
     const Matrix& found = parts.back();
     basis.find({parts.front(), found.leftCols(std::min<Index>(n_held, found.cols()))}, bending);
     const Index n = std::min<Index>(n_bending, bending.omega2.size());
     parts.push_back(modal_derivatives(cells, bending.shapes.leftCols(n), bending.omega2.head(n), in.length,
-                                      [&](const Vector& f) { return unheld.solve(f); }));
+                                      [&](const Vector& f) { return flexibility.solve(f); }));
     basis.find(parts, out);
     if (out.omega2.size() > most_stiffened)
       throw Error("", fmt::format("{} modes, the most that can stiffen is {}", out.omega2.size(), most_stiffened),

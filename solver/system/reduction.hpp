@@ -1,7 +1,8 @@
 // The modes of a linear region: what its cells can do in small strain, reduced to what its interfaces, the forces of inertia and the lowest
 // frequencies ask for.
 //
-//   constraint modes   a rigid motion of one interface, or a motion of its nodes, the others held   [craig-bampton-1968]
+//   constraint modes   a rigid motion of one interface, or a motion of its nodes, the others held   [craig-bampton-1968]; where the
+//                      region stiffens, stretches of a rigid interface too
 //   static modes       the answer to the loads rho e_i and rho (X - Xc)_j e_i, interfaces held: gravity, any rigid acceleration and
 //                      centrifugal force are exact with these twelve
 //   load modes         the answer to each load of the scene on its nodes, in every direction that it may take as the region turns

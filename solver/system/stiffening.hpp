@@ -1,8 +1,8 @@
 // What the modes of a linear region need to stiffen: strains of the second degree, and shapes that let a bent part shorten.
 //
 // Bending turns sections, and a linear map stretches what it turns: without shapes that take these stretches back, the quadratic strain
-// would lock.  They are the static modal derivatives u_ij = -K^-1 (d K/d eta_i) phi_j, with nothing held but the mean axes; an interface
-// that were held would lock too [idelsohn-cardona-1985].
+// would lock.  They are the static modal derivatives u_ij = -K^-1 (d K/d eta_i) phi_j, interfaces held [idelsohn-cardona-1985]; what the
+// interfaces themselves are stretched by are modes of their own, which the welds hold to what their turn demands (system/welds.hpp).
 #pragma once
 #include <functional>
 
@@ -12,7 +12,7 @@
 namespace hilo {
 
 /// The derivatives of modes (3 n_nodes x n) of these squared frequencies, as many as matter where each mode has the same energy.
-/// `solve`: answer of the free region to a load.
+/// `solve`: answer of the region to a load, its interfaces held.
 Eigen::MatrixXd modal_derivatives(const RegionCells& cells, const Eigen::MatrixXd& modes, const Eigen::VectorXd& omega2, double length,
                                   const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& solve);
 

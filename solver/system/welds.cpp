@@ -20,6 +20,9 @@ std::vector<Vec3> shapes_of_direction(const Weld& w, int i) {
 /// Of the row of a pair of axes.
 double factor(const Weld& w, int i) { return 1 / (w.share[pair_a[i]] + w.share[pair_b[i]]); }
 
+/// Of the row of a stretch.
+double stretch_factor(const Weld& w, size_t i) { return 0.5 / (w.share[w.stretches[i].first] * w.share[w.stretches[i].second]); }
+
 /// What the unknowns of a region move a vector by: columns of translation, rotation, amplitudes.
 Map region_map(bool point, const Vec3& arm, const Mat3& turn, const std::vector<Vec3>& shapes) {
   Map out = Map::Zero(3, 6 + static_cast<Eigen::Index>(shapes.size()));
@@ -33,7 +36,7 @@ Map region_map(bool point, const Vec3& arm, const Mat3& turn, const std::vector<
 
 void Welds::take_blocks(int& next) {
   block_.clear();
-  for (size_t k = 0; k < list.size(); ++k) block_.push_back(next), next += 2;
+  for (size_t k = 0; k < list.size(); ++k) block_.push_back(next), next += list[k].n_blocks();
 }
 
 void Welds::add_cliques(Cliques& cliques) {
@@ -48,14 +51,14 @@ void Welds::add_cliques(Cliques& cliques) {
     add_body(m.body);
     for (int b = 0; b < m.n_blocks; ++b) blocks.push_back(m.block + b);
     add_body(list[k].body);
-    blocks.push_back(block_[k]), blocks.push_back(block_[k] + 1);
+    for (int b = 0; b < list[k].n_blocks(); ++b) blocks.push_back(block_[k] + b);
     clique_.push_back(cliques.add(blocks));
   }
 }
 
 std::string Welds::owner(int block) const {
   for (size_t k = 0; k < list.size(); ++k)
-    if (block == block_[k] || block == block_[k] + 1)
+    if (block >= block_[k] && block < block_[k] + list[k].n_blocks())
       return fmt::format("the bond of \"{}\" and \"{}\"", points_.bodies[points_.modes[list[k].modes].body].name, list[k].name);
   return "";
 }
@@ -75,12 +78,16 @@ Welds::Place Welds::place(const Weld& w, const Config& q) const {
   return p;
 }
 
-std::array<double, 6> Welds::values(const Weld& w, const Config& q) const {
+std::vector<double> Welds::values(const Weld& w, const Config& q) const {
   const Place p = place(w, q);
-  std::array<double, 6> g{};
+  std::vector<double> g(w.n_rows());
   for (int i = 0; i < 3; ++i) {
     g[i] = p.y[i] - p.y_body[i];
     g[3 + i] = factor(w, i) * (p.t[pair_a[i]].dot(p.d[pair_b[i]]) - p.t[pair_b[i]].dot(p.d[pair_a[i]]));
+  }
+  for (size_t i = 0; i < w.stretches.size(); ++i) {
+    const auto& [a, b] = w.stretches[i];
+    g[6 + i] = stretch_factor(w, i) * p.d[a].dot(p.d[b]) - (a == b ? 0.5 : 0);
   }
   return g;
 }
@@ -94,7 +101,7 @@ void Welds::evaluate(Pass& p) const {
     const Modes& m = points_.modes[w.modes];
     const Place left = place(w, *s.left), end = place(w, *s.end);
     const auto g = values(w, *s.end);
-    for (int i = 0; i < 6; ++i) p.out.r[3 * block_[k] + i] = p.sigma * g[i];
+    for (size_t i = 0; i < g.size(); ++i) p.out.r[3 * block_[k] + i] = p.sigma * g[i];
     const double* lambda = p.lambda.data() + 3 * (block_[k] - points_.first_joint_block());
 
     // forces on the vectors of both sides
@@ -106,6 +113,11 @@ void Welds::evaluate(Pass& p) const {
       const double push = factor(w, i) * lambda[3 + i];
       h[b] += push * left.t[a], h[a] -= push * left.t[b];
       t[a] += push * left.d[b], t[b] -= push * left.d[a];
+    }
+    for (size_t i = 0; i < w.stretches.size(); ++i) {
+      const auto& [a, b] = w.stretches[i];
+      const double push = stretch_factor(w, i) * lambda[6 + i];
+      h[a] += push * left.d[b], h[b] += push * left.d[a];
     }
     const Vec3 arm = left.y - s.left->c[m.body], arm_end = end.y - s.end->c[m.body];
     const Vec3 arm_body = left.y_body - s.left->c[w.body], arm_body_end = end.y_body - s.end->c[w.body];
@@ -127,8 +139,8 @@ void Welds::evaluate(Pass& p) const {
     if (!p.K) continue;
 
     const Mat3 hat = left_turn(s, m.body), &R = s.end->R[m.body];
-    const Eigen::Index n = 6 + 3 * m.n_blocks, at_body = n, at_rows = n + 6, all = n + 12;
-    Matrix K = Matrix::Zero(all, all), G_left = Matrix::Zero(6, all), G_right = G_left;
+    const Eigen::Index n = 6 + 3 * m.n_blocks, at_body = n, at_rows = n + 6, rows = 3 * w.n_blocks(), all = at_rows + rows;
+    Matrix K = Matrix::Zero(all, all), G_left = Matrix::Zero(rows, all), G_right = G_left;
     Map L[3], Z[3];  // of the directions
     for (int i = 0; i < 3; ++i) L[i] = region_map(false, left.d[i], hat, shapes[i]), Z[i] = region_map(false, end.d[i], R, shapes[i]);
     G_left.topLeftCorner(3, n) = region_map(true, arm, hat, w.mean), G_right.topLeftCorner(3, n) = region_map(true, arm_end, R, w.mean);
@@ -147,8 +159,16 @@ void Welds::evaluate(Pass& p) const {
       K.block(0, at_body + 3, n, 3) += push * (L[a].transpose() * skew(end.t[b]) - L[b].transpose() * skew(end.t[a]));
       K.block(at_body + 3, 0, 3, n) += push * (skew(left.t[a]) * Z[b] - skew(left.t[b]) * Z[a]);
     }
-    K.block(0, at_rows, n + 6, 6) = p.sigma * G_left.leftCols(n + 6).transpose();
-    K.block(at_rows, 0, 6, n + 6) = p.sigma * G_right.leftCols(n + 6);
+    for (size_t i = 0; i < w.stretches.size(); ++i) {
+      const auto& [a, b] = w.stretches[i];
+      const double by = stretch_factor(w, i), push = s.slope * by * lambda[6 + i];
+      const auto row = 6 + static_cast<Eigen::Index>(i);
+      G_left.row(row).head(n) = by * (left.d[a].transpose() * L[b] + left.d[b].transpose() * L[a]);
+      G_right.row(row).head(n) = by * (end.d[a].transpose() * Z[b] + end.d[b].transpose() * Z[a]);
+      K.topLeftCorner(n, n) += push * (L[a].transpose() * Z[b] + L[b].transpose() * Z[a]);
+    }
+    K.block(0, at_rows, n + 6, rows) = p.sigma * G_left.leftCols(n + 6).transpose();
+    K.block(at_rows, 0, rows, n + 6) = p.sigma * G_right.leftCols(n + 6);
     p.K->add(clique_[k], K.data());
   }
 }
@@ -166,16 +186,16 @@ void Welds::add_row_rates(const Rates& at, std::vector<double>& rate, std::vecto
     if (!points_.counts(static_cast<int>(k))) continue;
     const int base = 3 * (block_[k] - points_.first_joint_block());
     const auto forward = values(list[k], at.forward), backward = values(list[k], at.backward);
-    for (int i = 0; i < 6; ++i) rate[base + i] = (forward[i] - backward[i]) / (2 * at.tau);
+    for (size_t i = 0; i < forward.size(); ++i) rate[base + i] = (forward[i] - backward[i]) / (2 * at.tau);
     if (!acceleration) continue;
     const auto here = values(list[k], at.q), up = values(list[k], at.up), down = values(list[k], at.down);
-    for (int i = 0; i < 6; ++i)
+    for (size_t i = 0; i < forward.size(); ++i)
       (*acceleration)[base + i] = (forward[i] + backward[i] - 2 * here[i]) / (at.tau * at.tau) + (up[i] - down[i]) / (2 * at.sigma);
   }
 }
 
 void Welds::mark_rows(std::vector<char>& on) const {
-  for (const int block : block_) std::fill_n(on.begin() + 3 * (block - points_.first_joint_block()), 6, 1);
+  for (size_t k = 0; k < list.size(); ++k) std::fill_n(on.begin() + 3 * (block_[k] - points_.first_joint_block()), list[k].n_rows(), 1);
 }
 
 Vec3 Weld::turn(const Modes& m, const Config& q) const {

@@ -1,10 +1,12 @@
-// Six rows between a linear region and a body: the mean motion of some of its nodes is that of the body, which may be a patch that joints
-// hold, a rigid neighbour, or what another linear region shares with it.
+// Six rows, or up to twelve, between a linear region and a body: the mean motion of some of its nodes is that of the body, which may be a
+// patch that joints hold, a rigid neighbour, or what another linear region shares with it.
 //
 // The nodes' mean is a point y = c + R r + sum_j Y_j u_j of the region.  Their mean turn T is that of least squares, min sum |x_i - y - T
 // r_i|^2, where T^T sum x_i r_i^T is symmetric.  Along the principal axes e_i of the nodes, with d_i = sum_k x_k (r_k.e_i) over sum |r|^2,
 //   d_i = s_i R e_i + sum_j Y_j g_ji,     t_i = T e_i,     s_i the shares of the axes in sum |r|^2,   the rows are
 //   y - y_B = 0,      (t_a.d_b - t_b.d_a)/(s_a + s_b) = 0 for (a, b) = (1, 2), (2, 3), (3, 1)
+// and where the region stiffens, so that a face that turns far stays as it is,
+//   (d_a.d_b/(s_a s_b) - delta_ab)/2 = 0 for the axes that the nodes have an extent along,
 // of degree two in all coordinates: gradients at the mid-point are difference quotients, and the rows neither work nor turn.
 #pragma once
 #include "system/contribution.hpp"
@@ -12,16 +14,19 @@
 namespace hilo {
 
 struct Weld {
-  std::string name;                  // of the set, or of the body
-  int modes = -1;                    // of Points::modes
-  int body = -1;                     // it is welded to
-  Vec3 at = Vec3::Zero();            // the mean of the nodes, reference position [m]
-  std::vector<int> nodes;            // local ones
-  Mat3 axes = Mat3::Identity();      // e_i, columns
-  Vec3 share = Vec3::Constant(0.5);  // s_i
-  std::vector<Vec3> mean;            // u_j    (3 n_blocks)       [m]
-  std::vector<Mat3> stretch;         // g_ji, columns (3 n_blocks) [1]
+  std::string name;                            // of the set, or of the body
+  int modes = -1;                              // of Points::modes
+  int body = -1;                               // it is welded to
+  Vec3 at = Vec3::Zero();                      // the mean of the nodes, reference position [m]
+  std::vector<int> nodes;                      // local ones
+  Mat3 axes = Mat3::Identity();                // e_i, columns
+  Vec3 share = Vec3::Constant(0.5);            // s_i
+  std::vector<std::pair<int, int>> stretches;  // (a, b) of the rows that keep lengths and angles
+  std::vector<Vec3> mean;                      // u_j    (3 n_blocks)       [m]
+  std::vector<Mat3> stretch;                   // g_ji, columns (3 n_blocks) [1]
 
+  int n_rows() const { return 6 + static_cast<int>(stretches.size()); }
+  int n_blocks() const { return (n_rows() + 2) / 3; }
   /// Turn of the nodes in linear theory [rad].
   Vec3 turn(const Modes& m, const Config& q) const;
 };
@@ -49,7 +54,7 @@ class Welds final : public Contribution {
     Vec3 y, d[3], y_body, t[3];
   };
   Place place(const Weld& w, const Config& q) const;
-  std::array<double, 6> values(const Weld& w, const Config& q) const;
+  std::vector<double> values(const Weld& w, const Config& q) const;
   const Points& points_;
   std::vector<int> block_, clique_;
   std::vector<char> told_;  // by weld: that it turns too far for what its strains are

@@ -6,7 +6,7 @@ namespace {
 
 double psi(double t) { return t < 15 ? 0.4 * (t * t / 2 + std::pow(7.5 / M_PI, 2) * (std::cos(2 * M_PI * t / 15) - 1)) : 6 * t - 45; }
 
-/// By every cell, and by 22 modes with strains of the second degree: the spin is half again the first frequency.
+/// By every cell, and by 25 modes with strains of the second degree: the spin is half again the first frequency.
 class SpinUp : public testing::TestWithParam<Fidelity> {};
 TEST_P(SpinUp, TipBendsBackAndIsStretchedAsTheBeamSolution) {
   Case c("spin_up");

@@ -1,0 +1,20 @@
+// The nodes of an interface of a linear region about their mean: principal axes, and how they can be stretched.
+#pragma once
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/math.hpp"
+
+namespace hilo {
+
+struct Face {
+  Mat3 axes = Mat3::Identity();                // e_i, columns, by rising share
+  Vec3 share = Vec3::Constant(1. / 3);         // of the axes in sum |r|^2; 0 across a plane
+  double second = 0;                           // sum |r|^2 [m^2]
+  std::vector<std::pair<int, int>> stretches;  // pairs of axes that the nodes have an extent along, a <= b
+  Face() = default;
+  Face(std::span<const Vec3> nodes, const Vec3& mean);
+};
+
+}  // namespace hilo
