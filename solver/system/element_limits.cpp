@@ -92,6 +92,8 @@ void Builder::warn_of_limits() const {
     const double* row = sums.data() + r * columns;
     const Region& region = regions_[r];
     const bool metal = region.material && material_kinds().at(region.material->kind).n_state > 0;  // flows
+    if (metal && region.fidelity == Fidelity::linear)
+      warn(region.name, "of linear fidelity it does not flow: stresses above its yield stress are elastic ones (tag it nonlinear)");
     double all = 0;
     for (int s = 0; s < n_shapes; ++s) all += row[s];
     for (int s = 0; s < n_shapes; ++s) {

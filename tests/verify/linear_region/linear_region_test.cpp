@@ -213,6 +213,14 @@ TEST(LinearRegion, StartsAsItsSectionsDo) {
   }
 }
 
+TEST(LinearRegion, OfMetalDoesNotFlowAndSaysSo) {
+  Case c("linear_region");
+  c.use(bar(0, 1, 4), {Fidelity::linear});
+  const std::string end = "--set time.end=0.0316 ", metal = "--set 'material.soft.kind=\"j2\"' --set material.soft.yield=1e9";
+  EXPECT_NE(c.solve(end + metal, "run.h5", 0, "free").err.find("does not flow"), std::string::npos);
+  EXPECT_EQ(c.solve(end, "run.h5", 0, "free").err.find("does not flow"), std::string::npos);
+}
+
 TEST(LinearRegion, WhoseFaceTurnsFarIsWarnedOf) {
   Case c("linear_region");
   c.use(both(bar(0, 1, 4), bar(1, 2, 4)), {Fidelity::linear, Fidelity::linear});
