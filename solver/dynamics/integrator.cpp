@@ -1,5 +1,9 @@
 #include "dynamics/integrator.hpp"
 
+#include <array>
+#include <cassert>
+#include <type_traits>
+
 namespace hilo {
 
 void restore_rotations(const System& system, Config& q) {
@@ -94,15 +98,27 @@ void StageIntegrator::accept(State& s) {
 }
 
 void combine(Config& out, std::initializer_list<std::pair<double, const Config*>> terms) {
-  const Config& first = *terms.begin()->second;
+  constexpr size_t most = 8;
+  assert(terms.size() <= most);
+  const auto* t = terms.begin();
   Config::each_array([&](auto member) {
-    auto& to = out.*member;
-    to.resize((first.*member).size());
-    for (size_t i = 0; i < to.size(); ++i) {
-      auto sum = (terms.begin()->first * (terms.begin()->second->*member)[i]).eval();
-      for (auto t = terms.begin() + 1; t != terms.end(); ++t) sum += t->first * (t->second->*member)[i];
-      to[i] = sum;
-    }
+    const auto& first = t->second->*member;
+    const size_t n = first.size() * std::remove_cvref_t<decltype(first)>::value_type::SizeAtCompileTime;
+    (out.*member).resize(first.size());
+    if (n == 0) return;
+    double* to = (out.*member)[0].data();
+    std::array<const double*, most> from;
+    for (size_t k = 0; k < terms.size(); ++k) from[k] = (t[k].second->*member)[0].data();
+    const auto sum = [&](auto n_terms) {  // number by number: `out` may be one of the terms
+      for (size_t i = 0; i < n; ++i) {
+        double value = t[0].first * from[0][i];
+        for (size_t k = 1; k < n_terms; ++k) value += t[k].first * from[k][i];
+        to[i] = value;
+      }
+    };
+    terms.size() == 1   ? sum(std::integral_constant<size_t, 1>())
+    : terms.size() == 2 ? sum(std::integral_constant<size_t, 2>())
+                        : sum(terms.size());
   });
 }
 

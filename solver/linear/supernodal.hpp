@@ -26,20 +26,27 @@ class DoubleValues {
 /// and in single precision.
 class SingleValues {
  public:
-  /// Those of L, which keeps its pattern alone until it is factored again.  Piece by piece, from the end, CHOLMOD's memory is given back
-  /// and serves the next piece, so that values in both precisions are never there whole.
+  /// Those of L.  A large L keeps its pattern alone until it is factored again: piece by piece, from the end, CHOLMOD's memory is given
+  /// back and serves the next piece, so that values in both precisions are never there whole.  A small one keeps its memory, and so do
+  /// its single values: given back and had again at every factor, its pages would cost a tenth of a step.
   void take_from(cholmod_factor* L, cholmod_common& common) {
     const auto* first = static_cast<const int*>(L->px);
+    start_.resize(L->nsuper);
+    is_large_ = L->xsize > size_t{1} << 23;  // 64 MB
+    if (!is_large_) {
+      pieces_.resize(1);
+      copy(static_cast<const double*>(L->x), L->xsize, pieces_[0]);
+      for (size_t s = 0; s < L->nsuper; ++s) start_[s] = pieces_[0].data() + first[s];
+      return;
+    }
+    pieces_.clear();
     const size_t piece = L->xsize / 32 + 1;
     size_t held = L->xsize;
-    start_.resize(L->nsuper);
     for (auto to = static_cast<int>(L->nsuper); to > 0;) {
       int from = to - 1;
       while (from > 0 && held - first[from] < piece) --from;
-      const auto* values = static_cast<const double*>(L->x);
-      auto& copy = pieces_.emplace_back(held - first[from]);
-      std::transform(values + first[from], values + held, copy.begin(), [](double v) { return static_cast<float>(v); });
-      for (int s = from; s < to; ++s) start_[s] = copy.data() + (first[s] - first[from]);
+      copy(static_cast<const double*>(L->x) + first[from], held - first[from], pieces_.emplace_back());
+      for (int s = from; s < to; ++s) start_[s] = pieces_.back().data() + (first[s] - first[from]);
       L->x = cholmod_realloc(std::max(first[from], 1), sizeof(double), L->x, &held, &common);
       to = from;
     }
@@ -47,7 +54,10 @@ class SingleValues {
     cholmod_change_factor(CHOLMOD_PATTERN, 1, 1, 1, 1, L, &common);
     L->xsize = size;
   }
-  void clear() { pieces_.clear(), start_.clear(); }
+  void clear() {
+    start_.clear();
+    if (is_large_) pieces_.clear();
+  }
   bool exist() const { return !start_.empty(); }
   const float* operator[](int supernode) const { return start_[supernode]; }
   double bytes() const {
@@ -57,6 +67,12 @@ class SingleValues {
   }
 
  private:
+  static void copy(const double* from, size_t n, std::vector<float>& to) {
+    to.resize(n);
+    std::transform(from, from + n, to.begin(), [](double v) { return static_cast<float>(v); });
+  }
+
+  bool is_large_ = false;
   std::vector<std::vector<float>> pieces_;
   std::vector<const float*> start_;  // of each supernode
 };
