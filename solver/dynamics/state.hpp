@@ -15,7 +15,7 @@ struct State {
   std::vector<double> lambda;  // multipliers of the last step, (3 x joint blocks)
 };
 
-/// out = sum of factor * config over the list; all of one size.  `out` may be one of them only where it is the first.
+/// out = sum of factor * config over the list, at most eight, all of one size; `out` may be one of them.
 void combine(Config& out, std::initializer_list<std::pair<double, const Config*>> terms);
 
 }  // namespace hilo

@@ -18,11 +18,11 @@ sys.path.insert(0, os.path.join(repo, "tests/cli"))
 from any_ranks import SCENES, mesh_of, prepare, run  # noqa: E402
 
 # name in SCENES, ranks, overrides
-RUNS = [("firing-rigid", 1, ["time.end=0.1"]), ("firing", 1, ["time.end=0.02"]), ("firing", 2, ["time.end=0.01"]),
-        ("crank", 1, ["time.end=0.004"]), ("crank-rigid", 1, ["time.end=0.01"]), ("suspension", 1, ["time.end=0.05"]),
-        ("turret", 1, ["time.end=0.1"]), ("scaling-bar", 1, ["time.end=0.1"]), ("scaling-bar", 2, ["time.end=0.1"]),
-        ("scaling-tube", 1, ["time.end=3e-4"]), ("scaling-turning", 1, ["time.end=0.1"]), ("stability-bricard", 1, ["time.end=20"]),
-        ("stability-slider_crank", 1, ["time.end=20"])]
+RUNS = [("firing-rigid", 1, ["time.end=0.2"]), ("firing", 1, ["time.end=0.02"]), ("firing", 2, ["time.end=0.01"]),
+        ("crank", 1, ["time.end=0.004"]), ("crank-rigid", 1, ["time.end=0.04"]), ("suspension", 1, ["time.end=0.1"]),
+        ("turret", 1, ["time.end=0.3"]), ("scaling-bar", 1, ["time.end=0.6"]), ("scaling-bar", 2, ["time.end=0.1"]),
+        ("scaling-tube", 1, ["time.end=3e-3"]), ("scaling-turning", 1, ["time.end=0.6"]), ("stability-bricard", 1, ["time.end=150"]),
+        ("stability-slider_crank", 1, ["time.end=200"])]
 
 
 def seconds(solver, name, ranks, sets):
