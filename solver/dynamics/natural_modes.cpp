@@ -184,7 +184,18 @@ double good_shift(Linearized& at, Pencil pencil, int wanted, const std::function
 std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, const State& rest, int wanted,
                                      const std::function<void(int)>& tell) {
   Linearized at(system, solver, rest);
-  Pencil pencil{at.n(), [&](const Vector& x, Vector& y) { y = at.mass(x); }, [&](const Vector& b, Vector& x) { at.solve(b, x); }, 0};
+  const auto by_columns = [](const Eigen::MatrixXd& X, auto&& product) {
+    Eigen::MatrixXd out(X.rows(), X.cols());
+    for (Eigen::Index j = 0; j < X.cols(); ++j) out.col(j) = product(Vector(X.col(j)));
+    return out;
+  };
+  const auto inverse = [&](const Vector& b) {
+    Vector x;
+    at.solve(b, x);
+    return x;
+  };
+  Pencil pencil{at.n(), [&](const Eigen::MatrixXd& X) { return by_columns(X, [&](const Vector& x) { return at.mass(x); }); },
+                [&](const Eigen::MatrixXd& X) { return by_columns(X, inverse); }, 0};
   pencil.shift = good_shift(at, pencil, wanted, [&](double shift) { at.factor(shift); });
   at.factor(pencil.shift);
   const Eigenmodes modes = lowest_modes(pencil, wanted, 1e-6, true, tell);

@@ -1,10 +1,10 @@
 #include "dynamics/stress_recovery.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
+#include "dynamics/cell_mean.hpp"
 #include "model/mesh.hpp"
 #include "system/linear_regions.hpp"
 
@@ -13,26 +13,6 @@ namespace {
 
 bool quadratic(Shape s) { return info(s).n_nodes > info(s).n_corners; }
 bool is_bar(Shape s) { return info(s).dimension < 3; }
-
-/// Mean stress of a linear cell, where it is, and the slope of its assumed strains: least squares over its points.
-struct CellMean {
-  Vec3 X = Vec3::Zero();
-  Vec6 S = Vec6::Zero();
-  Eigen::Matrix<double, 6, 3> slope = Eigen::Matrix<double, 6, 3>::Zero();
-  explicit CellMean(const std::vector<StressPoint>& points) {
-    double w = 0;
-    for (const StressPoint& p : points) X += p.w * p.X, S += p.w * p.S, w += p.w;
-    X /= w, S /= w;
-    if (points.size() < 4) return;
-    Mat3 spread = Mat3::Zero();
-    Eigen::Matrix<double, 6, 3> with = Eigen::Matrix<double, 6, 3>::Zero();
-    for (const StressPoint& p : points) {
-      spread += p.w * (p.X - X) * (p.X - X).transpose();
-      with += p.w * (p.S - S) * (p.X - X).transpose();
-    }
-    slope = with * spread.inverse();
-  }
-};
 
 /// What a cell remembers; null where nothing is.
 const double* of_cell(const SolidBatch& b, const StressRecovery::Memory& memory, size_t batch, size_t cell) {
@@ -82,9 +62,7 @@ void StressRecovery::look_at(Cell& cell, size_t batch, size_t number, const Conf
   cell.X.resize(n), cell.x.resize(n);
   for (int i = 0; i < n; ++i) {
     cell.X[i] = cell.x[i] = system_.X[nodes[i]];
-    if (q)
-      cell.x[i] =
-          cell.linear ? Vec3(system_.bodies[body].Xc + cell.R.transpose() * (system_.at(*q, nodes[i]) - q->c[body])) : q->x[nodes[i]];
+    if (q) cell.x[i] = cell.linear ? Vec3(system_.bodies[body].Xc + cell.R.transpose() * (placed_[nodes[i]] - q->c[body])) : q->x[nodes[i]];
   }
 }
 
@@ -108,7 +86,11 @@ StressRecovery::StressRecovery(const System& s) : system_(s) {
   for (size_t k = 0; k < linear.cells.size(); ++k) {
     batches_.push_back(&linear.cells[k]), body_.push_back(linear.body_of_cells[k]);
     stiffens_.push_back(s.modes[s.modes_of[body_.back()]].stiffens);
+    carried_.insert(carried_.end(), linear.cells[k].nodes.begin(), linear.cells[k].nodes.end());
   }
+  std::sort(carried_.begin(), carried_.end());
+  carried_.erase(std::unique(carried_.begin(), carried_.end()), carried_.end());
+  if (!carried_.empty()) placed_.resize(s.X.size());
   find_sites();
   std::vector<double> second(s.mesh->mesh.region_name.size(), 0.0);  // regions with quadratic cells
   for (const SolidBatch* b : batches_)
@@ -276,6 +258,7 @@ void StressRecovery::add_bars(const Config& q, std::vector<double>& at, std::vec
 
 StressRecovery::Result StressRecovery::recover(const Config& q, const Memory& memory) const {
   const System& s = system_;
+  for (const int node : carried_) placed_[node] = s.at(q, node);
   Result out;
   out.cell.assign(s.mesh->mesh.n_cells(), 0.0), out.cell_plastic = out.cell;
   std::vector<double> at_site(site_.size() * n_values, 0.0);
@@ -321,7 +304,8 @@ StressRecovery::Result StressRecovery::recover(const Config& q, const Memory& me
         mean += von_mises(cauchy(q.F, q.S)) / static_cast<double>(points.size());
         out.cell_plastic[batch.cells[e]] += q.plastic / static_cast<double>(points.size());
       }
-      at.points(StressPoints::everywhere, points, of_cell(batch, memory, b, e));
+      const bool one_set = batch.shape == Shape::hex8 || batch.kernel.n_state > 0;  // of points [physics/stress_of_law.hpp]
+      if (!one_set) at.points(StressPoints::everywhere, points);
       double square = 0, volume = 0;
       for (const StressPoint& q : points) {
         Vec6 off = -q.S;

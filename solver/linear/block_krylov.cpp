@@ -5,6 +5,8 @@
 #include <random>
 #include <vector>
 
+#include "linear/lapack.hpp"
+
 namespace hilo {
 namespace {
 
@@ -18,6 +20,20 @@ struct Ritz {
   Matrix y;
 };
 
+/// A^T X of the first k columns of A; by BLAS, as products with Eigen are compiled for the oldest processor.
+Matrix transposed_times(const Matrix& A, Index k, const Matrix& X) {
+  Matrix out(k, X.cols());
+  const auto n = static_cast<int>(A.rows()), m = static_cast<int>(k);
+  lapack::multiply('T', n, m, 1., A.data(), n, X.data(), n, 0., out.data(), m, static_cast<int>(X.cols()));
+  return out;
+}
+
+/// Y -= A C, A as many columns of it as C has rows.
+void subtract(Matrix& Y, const Matrix& A, const Matrix& C) {
+  const auto n = static_cast<int>(A.rows()), k = static_cast<int>(C.rows());
+  lapack::multiply('N', n, k, -1., A.data(), n, C.data(), k, 1., Y.data(), n, static_cast<int>(Y.cols()));
+}
+
 class Krylov {
  public:
   explicit Krylov(const Pencil& pencil) : pencil_(pencil) {}
@@ -27,20 +43,13 @@ class Krylov {
     constexpr Index width = 6;  // free rigid motions come by six
     std::normal_distribution<double> normal;
     Matrix W(pencil_.n, width);
-    Vector x(pencil_.n), y(pencil_.n);
-    for (Index j = 0; j < width; ++j) {
-      for (double& value : x) value = normal(random_);
-      pencil_.mass(x, y), pencil_.solve(y, x);
-      W.col(j) = x;
-    }
-    return W;
+    for (double& value : W.reshaped()) value = normal(random_);
+    return pencil_.solve(pencil_.mass(W));
   }
 
   /// What of W is beside the basis joins it; W^T M W of that part.
   Matrix extend(Matrix W) {
-    Matrix MW(W.rows(), W.cols());
-    Vector y(pencil_.n);
-    for (Index j = 0; j < W.cols(); ++j) pencil_.mass(W.col(j), y), MW.col(j) = y;
+    Matrix MW = pencil_.mass(W);
     const auto product = [&] { return Matrix((W.transpose() * MW + MW.transpose() * W) / 2); };
     const Vector before = product().diagonal();
     take_basis_from(W, MW, V_.cols());
@@ -64,10 +73,8 @@ class Krylov {
   /// The inverse on the columns of the basis that it has not seen.
   Matrix apply() {
     const Index first = T_.cols(), k = V_.cols();
-    Matrix W(pencil_.n, k - first);
-    Vector x(pencil_.n);
-    for (Index j = 0; j < W.cols(); ++j) pencil_.solve(MV_.col(first + j), x), W.col(j) = x;
-    const Matrix H = MV_.transpose() * W, corner = H.bottomRows(W.cols());
+    const Matrix W = pencil_.solve(MV_.rightCols(k - first));
+    const Matrix H = transposed_times(MV_, k, W), corner = H.bottomRows(W.cols());
     asymmetry_ = std::max(asymmetry_, (corner - corner.transpose()).norm());
     T_.conservativeResize(k, k);
     T_.rightCols(W.cols()) = H;
@@ -102,8 +109,8 @@ class Krylov {
  private:
   void take_basis_from(Matrix& W, Matrix& MW, Index k) const {
     for (int twice = 0; twice < 2 && k > 0; ++twice) {
-      const Matrix C = MV_.leftCols(k).transpose() * W;
-      W -= V_.leftCols(k) * C, MW -= MV_.leftCols(k) * C;
+      const Matrix C = transposed_times(MV_, k, W);
+      subtract(W, V_, C), subtract(MW, MV_, C);
     }
   }
 
@@ -133,7 +140,10 @@ Eigenmodes lowest_modes(const Pencil& pencil, int wanted, double tolerance, bool
     if (exhausted) left = 0;
     if (left > 0) --left;
     if (left > 0 || good < ritz.nu.size() || (!exhausted && good < wanted)) continue;
-    if (!doubt && !exhausted) break;
+    if (!doubt && !exhausted) {
+      sure = true;
+      break;
+    }
     const bool same = doubted.size() == ritz.nu.size() && ((doubted - ritz.nu).array().abs() <= 1e-8 * ritz.nu.array().abs()).all();
     const Index before = krylov.size();
     if (!same) krylov.extend(krylov.fresh());
@@ -146,19 +156,8 @@ Eigenmodes lowest_modes(const Pencil& pencil, int wanted, double tolerance, bool
   out.asymmetry = ritz.nu.size() > 0 ? krylov.asymmetry() / ritz.nu.cwiseAbs().maxCoeff() : 0;
   if (ritz.nu.size() == 0) return out;
   // A step of inverse iteration with all of them: what rounding has left outside of the subspace, where joints are open, goes.
-  const auto inverse = [&](const Matrix& MX) {
-    Matrix out(MX.rows(), MX.cols());
-    Vector x(MX.rows());
-    for (Index j = 0; j < MX.cols(); ++j) pencil.solve(MX.col(j), x), out.col(j) = x;
-    return out;
-  };
-  const auto mass = [&](const Matrix& X) {
-    Matrix out(X.rows(), X.cols());
-    Vector y(X.rows());
-    for (Index j = 0; j < X.cols(); ++j) pencil.mass(X.col(j), y), out.col(j) = y;
-    return out;
-  };
-  const Matrix X = inverse(mass(krylov.shapes(ritz.y) * ritz.nu.cwiseInverse().asDiagonal())), MX = mass(X), Y = inverse(MX);
+  const Matrix X = pencil.solve(pencil.mass(krylov.shapes(ritz.y) * ritz.nu.cwiseInverse().asDiagonal())), MX = pencil.mass(X),
+               Y = pencil.solve(MX);
   const Matrix G = X.transpose() * MX, H = MX.transpose() * Y;
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> pairs((H + H.transpose()) / 2, (G + G.transpose()) / 2);
   const Vector& nu = pairs.eigenvalues();

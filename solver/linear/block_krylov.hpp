@@ -9,10 +9,9 @@
 namespace hilo {
 
 struct Pencil {
-  Eigen::Index n;                                                           // unknowns
-  std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& y)> mass;   // y = M x
-  std::function<void(const Eigen::VectorXd& b, Eigen::VectorXd& x)> solve;  // x = (K + s M)^-1 b, in the subspace
-  double shift;                                                             // s [1/s^2]
+  Eigen::Index n;                                                       // unknowns
+  std::function<Eigen::MatrixXd(const Eigen::MatrixXd&X)> mass, solve;  // M X, and (K + s M)^-1 X in the subspace   (n x columns)
+  double shift;                                                         // s [1/s^2]
 };
 
 struct Eigenmodes {

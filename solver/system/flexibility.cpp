@@ -27,20 +27,14 @@ std::array<int, 3> spread_nodes(const std::vector<Vec3>& X) {
 }  // namespace
 
 Flexibility::Flexibility(const ReductionInput& in, const RegionCells& cells, const Matrix& rigid, const Matrix& M_rigid)
-    : solver_(make_light_solver()), rigid_(rigid), M_rigid_(M_rigid), free_(in.rigid.empty() && in.free.empty()) {
-  const int n = static_cast<int>(in.X.size());
-  block_.assign(n, 0);
+    : rigid_(rigid), M_rigid_(M_rigid), free_(in.rigid.empty() && in.free.empty()) {
+  block_.assign(in.X.size(), 0);
   for (const auto& set : in.rigid)
     for (const int i : set) block_[i] = -1;
   for (const int i : in.free) block_[i] = -1;
   for (int& b : block_)
     if (b == 0) b = n_blocks_++;
-  BlockMap map;
-  map.n_owned = map.n_global = map.first_dense = n_blocks_;
-  for (int i = 0; i < n_blocks_; ++i) map.global.push_back(i);
-  map.X.resize(3 * static_cast<size_t>(n_blocks_));
-  for (int i = 0; i < n; ++i)
-    for (int k = 0; k < 3 && block_[i] >= 0; ++k) map.X[3 * static_cast<size_t>(block_[i]) + k] = in.X[i][k];
+  if (n_blocks_ == 0) return;
   Cliques cliques;
   std::vector<int> list;
   for (const SolidBatch& b : in.cells)
@@ -49,37 +43,36 @@ Flexibility::Flexibility(const ReductionInput& in, const RegionCells& cells, con
       for (int a = 0; a < info(b.shape).n_nodes; ++a) list.push_back(block_[b.nodes[at + a]]);
       cliques.add(list);
     }
-  if (n_blocks_ == 0) return;
-  solver_->structure(cliques, map);
-  solver_->zero();
+  BlockCsr K;
+  K.structure(cliques, n_blocks_);
   int clique = 0;
   double stiff = 0;
   cells.each(RegionCells::stiffness, [&](std::span<const int> nodes, const double* Ke) {
-    solver_->add(clique++, Ke);
+    K.add(clique++, Ke);
     for (size_t i = 0; i < 3 * nodes.size(); ++i) stiff = std::max(stiff, Ke[i * (3 * nodes.size() + 1)]);
   });
   if (free_)
     for (const int dof : determinate_support(in.X)) {
       double spring[3] = {};
       spring[dof % 3] = stiff;
-      solver_->add_diagonal(block_[dof / 3], spring);
+      K.add_diagonal(block_[dof / 3], spring);
     }
-  b_.resize(3 * static_cast<size_t>(n_blocks_)), z_.resize(b_.size());
+  factors_ = make_cholesky(std::vector<char>(static_cast<size_t>(n_blocks_), 0));
+  factors_->sharpen();
+  if (!factors_->factor(K)) throw Error("", "the cells of the region do not hold together", "one piece, with no hinges of single nodes");
 }
 
-Eigen::VectorXd Flexibility::solve(Vector f) const {
-  if (free_) f -= M_rigid_ * (rigid_.transpose() * f);
-  Vector out = Vector::Zero(f.size());
-  if (n_blocks_ == 0) return out;
+Flexibility::Matrix Flexibility::solve(Matrix F) const {
+  if (free_) F -= M_rigid_ * (rigid_.transpose() * F);
+  Matrix z(n_unknowns(), F.cols());
   for (size_t i = 0; i < block_.size(); ++i)
-    for (int k = 0; k < 3 && block_[i] >= 0; ++k) b_[3 * static_cast<size_t>(block_[i]) + k] = f[3 * static_cast<Index>(i) + k];
-  const SolveReport report = solver_->solve(b_, z_);
-  if (!report.ok)
-    throw Error("", "the cells of the region do not hold together: " + report.message, "one piece, with no hinges of single nodes");
+    if (block_[i] >= 0) z.middleRows<3>(3 * block_[i]) = F.middleRows<3>(3 * static_cast<Index>(i));
+  if (n_blocks_ > 0) factors_->solve_columns(z.data(), n_unknowns(), static_cast<int>(z.cols()));
+  F.setZero();
   for (size_t i = 0; i < block_.size(); ++i)
-    for (int k = 0; k < 3 && block_[i] >= 0; ++k) out[3 * static_cast<Index>(i) + k] = z_[3 * static_cast<size_t>(block_[i]) + k];
-  if (free_) out -= rigid_ * (M_rigid_.transpose() * out);
-  return out;
+    if (block_[i] >= 0) F.middleRows<3>(3 * static_cast<Index>(i)) = z.middleRows<3>(3 * block_[i]);
+  if (free_) F -= rigid_ * (M_rigid_.transpose() * F);
+  return F;
 }
 
 /// Six unknowns of three nodes that hold the region and no more.

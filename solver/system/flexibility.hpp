@@ -3,7 +3,7 @@
 #include <array>
 #include <memory>
 
-#include "linear/kkt.hpp"
+#include "linear/factors.hpp"
 #include "system/reduction.hpp"
 #include "system/region_cells.hpp"
 
@@ -16,19 +16,19 @@ class Flexibility {
   using Matrix = Eigen::MatrixXd;
   using Vector = Eigen::VectorXd;
   /// `rigid`: rigid motions, orthonormal in mass, and M_rigid their products with it   (3 n_nodes x 6).  All are kept by reference.
-  Flexibility(const ReductionInput& in, const RegionCells& cells, const Matrix& rigid, const Matrix& M_rigid);
   /// Errors: cells that do not hold together.
-  Vector solve(Vector f) const;
+  Flexibility(const ReductionInput& in, const RegionCells& cells, const Matrix& rigid, const Matrix& M_rigid);
+  /// K^-1 F   (3 n_nodes x k)
+  Matrix solve(Matrix F) const;
   int n_unknowns() const { return 3 * n_blocks_; }
 
  private:
   std::array<int, 6> determinate_support(const std::vector<Vec3>& X) const;
-  std::unique_ptr<SerialKktSolver> solver_;
+  std::unique_ptr<Factors> factors_;
   const Matrix &rigid_, &M_rigid_;
   bool free_;
   std::vector<int> block_;
   int n_blocks_ = 0;
-  mutable std::vector<double> b_, z_;
 };
 
 }  // namespace hilo

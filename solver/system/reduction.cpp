@@ -1,12 +1,12 @@
 #include "system/reduction.hpp"
 
-#include <Spectra/SymGEigsShiftSolver.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "linear/block_krylov.hpp"
 #include "system/face.hpp"
 #include "system/flexibility.hpp"
 #include "system/stiffening.hpp"
@@ -86,52 +86,26 @@ Matrix at_sites(const std::vector<Vec3>& X, const Vec3& centre, const Matrix& sh
   return out;
 }
 
-/// K^-1 and M as Spectra takes them, over the unknowns that are not held.
-struct InverseStiffness {
-  using Scalar = double;
-  const Flexibility& flexibility;
-  Index n;
-  Index rows() const { return n; }
-  Index cols() const { return rows(); }
-  void set_shift(double) const {}
-  void perform_op(const double* x, double* y) const { Eigen::Map<Vector>(y, n) = flexibility.solve(Eigen::Map<const Vector>(x, n)); }
-};
-struct MassProduct {
-  using Scalar = double;
-  const RegionCells& cells;
-  Index n;
-  Index rows() const { return n; }
-  Index cols() const { return rows(); }
-  void perform_op(const double* x, double* y) const {
-    Eigen::Map<Vector>(y, n) = cells.times(RegionCells::mass, Eigen::Map<const Vector>(x, n));
-  }
-};
-
 /// The lowest vibration modes, orthonormal in mass, and one frequency more.
 Matrix vibrations(const ReductionInput& in, const RegionCells& cells, const Flexibility& flexibility, double& next) {
   const auto rows = 3 * static_cast<Index>(in.X.size());
-  const Index most = flexibility.n_unknowns() - 7;
+  const int most = flexibility.n_unknowns() - 7;
   if (in.n_vibrations <= 0 || most < 2) return Matrix(rows, 0);
-  Index wanted = std::min<Index>(in.up_to > 0 ? std::min(in.n_vibrations, 8) : in.n_vibrations, most);
+  const Pencil pencil{rows, [&](const Matrix& V) { return cells.times_mass(V); }, [&](const Matrix& F) { return flexibility.solve(F); }, 0};
+  int wanted = std::min(in.up_to > 0 ? std::min(in.n_vibrations, 8) : in.n_vibrations, most);
   for (;;) {
-    InverseStiffness op{flexibility, rows};
-    MassProduct B{cells, rows};
-    Spectra::SymGEigsShiftSolver<InverseStiffness, MassProduct, Spectra::GEigsMode::ShiftInvert> solver(
-        op, B, std::min(wanted + 1, most), std::min<Index>(std::max<Index>(2 * wanted + 3, 20), flexibility.n_unknowns()), 0);
-    solver.init();
-    solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-10, Spectra::SortRule::SmallestAlge);
-    if (solver.info() != Spectra::CompInfo::Successful)
-      throw Error("", "the vibration modes of the region were not found", "ask for fewer: [region.NAME] modes");
-    const Vector lambda = solver.eigenvalues();
+    const Eigenmodes found = lowest_modes(pencil, std::min(wanted + 1, most), 1e-4, false);
+    if (!found.converged) throw Error("", "the vibration modes of the region were not found", "ask for fewer: [region.NAME] modes");
+    const Vector& lambda = found.omega2;
     Index keep = 0;
     const double limit = std::pow(2 * std::numbers::pi * in.up_to, 2);
-    while (keep < std::min(wanted, lambda.size()) && (in.up_to == 0 || keep < 4 || lambda[keep] <= limit)) ++keep;
-    if (keep == wanted && wanted < std::min<Index>(in.n_vibrations, most)) {
-      wanted = std::min<Index>(2 * wanted, std::min<Index>(in.n_vibrations, most));
+    while (keep < std::min<Index>(wanted, lambda.size()) && (in.up_to == 0 || keep < 4 || lambda[keep] <= limit)) ++keep;
+    if (keep == wanted && wanted < std::min(in.n_vibrations, most)) {
+      wanted = std::min(2 * wanted, std::min(in.n_vibrations, most));
       continue;
     }
     next = keep < lambda.size() ? std::sqrt(lambda[keep]) / (2 * std::numbers::pi) : 0;
-    return solver.eigenvectors().leftCols(keep);
+    return found.shapes.leftCols(keep);
   }
 }
 
@@ -141,8 +115,7 @@ struct ModeBasis {
   const Matrix &rigid, &M_rigid;
   ModeBasis(const RegionCells& c, const Matrix& r, const Matrix& Mr) : cells(c), rigid(r), M_rigid(Mr) {}
 
-  Matrix times_mass(const Matrix& V) const { return cells.times(RegionCells::mass, V); }
-  Vector mass_norms(const Matrix& of) const { return of.cwiseProduct(times_mass(of)).colwise().sum().cwiseMax(0).cwiseSqrt(); }
+  Vector mass_norms(const Matrix& of) const { return of.cwiseProduct(cells.times_mass(of)).colwise().sum().cwiseMax(0).cwiseSqrt(); }
 
   void find(const std::vector<Matrix>& parts, Reduction& out) const {
     Index columns = 0;
@@ -157,14 +130,14 @@ struct ModeBasis {
     for (Index k = 0; k < V.cols(); ++k)
       if (after[k] > 1e-8 * before[k] && after[k] > 0) V.col(kept++) = (V.col(k) / after[k]).eval();
     V.conservativeResize(Eigen::NoChange, kept);
-    const Matrix G = V.transpose() * times_mass(V);
+    const Matrix G = V.transpose() * cells.times_mass(V);
     const Eigen::SelfAdjointEigenSolver<Matrix> gram(G);
     Index skip = 0;
     while (skip < kept && gram.eigenvalues()[skip] < 1e-9 * gram.eigenvalues()[kept - 1]) ++skip;
     const Index m = kept - skip;
     V = (V * gram.eigenvectors().rightCols(m) * gram.eigenvalues().tail(m).cwiseSqrt().cwiseInverse().asDiagonal()).eval();
     V -= rigid * (M_rigid.transpose() * V);
-    const Matrix Kr = V.transpose() * cells.times(RegionCells::stiffness, V), Mr = V.transpose() * times_mass(V);
+    const Matrix Kr = V.transpose() * cells.times(RegionCells::stiffness, V), Mr = V.transpose() * cells.times_mass(V);
     const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes((Kr + Kr.transpose()) / 2, (Mr + Mr.transpose()) / 2);
     out.omega2 = modes.eigenvalues();
     if (m > 0 && !(out.omega2[0] > 1e-12 * out.omega2[m - 1]))
@@ -182,34 +155,26 @@ Reduction reduced(const ReductionInput& in) {
   const RegionCells cells(in.X, in.cells);
   Matrix rigid = rigid_motions(in.X, in.centre);
   {  // orthonormal in mass
-    const Matrix G = rigid.transpose() * cells.times(RegionCells::mass, rigid);
+    const Matrix G = rigid.transpose() * cells.times_mass(rigid);
     rigid = rigid * Matrix(Matrix(G.llt().matrixL()).inverse().transpose());
   }
-  const Matrix M_rigid = cells.times(RegionCells::mass, rigid), at_interfaces = interface_motions(in);
+  const Matrix M_rigid = cells.times_mass(rigid), at_interfaces = interface_motions(in);
   tell("factor");
   const Flexibility flexibility(in, cells, rigid, M_rigid);
   std::vector<Matrix> parts;
   tell("static modes");
-  Matrix static_modes = at_interfaces;
-  const Matrix pulls = cells.times(RegionCells::stiffness, at_interfaces);
-  for (Index k = 0; k < static_modes.cols(); ++k) static_modes.col(k) -= flexibility.solve(pulls.col(k));
-  parts.push_back(std::move(static_modes));
+  parts.push_back(at_interfaces - flexibility.solve(cells.times(RegionCells::stiffness, at_interfaces)));
   Matrix fields = Matrix::Zero(rigid.rows(), 12);
   for (size_t i = 0; i < in.X.size(); ++i)
     for (int k = 0; k < 3; ++k) {
       fields(3 * static_cast<Index>(i) + k, k) = 1;
       for (int j = 0; j < 3; ++j) fields(3 * static_cast<Index>(i) + k, 3 + 3 * j + k) = in.X[i][j] - in.centre[j];
     }
-  Matrix inertia = cells.times(RegionCells::mass, fields);
-  for (Index k = 0; k < inertia.cols(); ++k) inertia.col(k) = flexibility.solve(inertia.col(k));
-  parts.push_back(std::move(inertia));
+  parts.push_back(flexibility.solve(cells.times_mass(fields)));
   Matrix loads = Matrix::Zero(rigid.rows(), static_cast<Index>(in.loads.size()));
-  for (size_t k = 0; k < in.loads.size(); ++k) {
-    Vector f = Vector::Zero(rigid.rows());
-    for (const auto& [node, force] : in.loads[k]) f.segment<3>(3 * node) += force;
-    loads.col(static_cast<Index>(k)) = flexibility.solve(f);
-  }
-  parts.push_back(std::move(loads));
+  for (size_t k = 0; k < in.loads.size(); ++k)
+    for (const auto& [node, force] : in.loads[k]) loads.col(static_cast<Index>(k)).segment<3>(3 * node) += force;
+  parts.push_back(flexibility.solve(loads));
   tell("vibration modes");
   Reduction out;
   parts.push_back(vibrations(in, cells, flexibility, out.held_frequency));
@@ -224,7 +189,7 @@ Reduction reduced(const ReductionInput& in) {
     basis.find({parts.front(), found.leftCols(std::min<Index>(n_held, found.cols()))}, bending);
     const Index n = std::min<Index>(n_bending, bending.omega2.size());
     parts.push_back(modal_derivatives(cells, bending.shapes.leftCols(n), bending.omega2.head(n), in.length,
-                                      [&](const Vector& f) { return flexibility.solve(f); }));
+                                      [&](const Matrix& F) { return flexibility.solve(F); }));
     basis.find(parts, out);
     if (out.omega2.size() > most_stiffened)
       throw Error("", fmt::format("{} modes, the most that can stiffen is {}", out.omega2.size(), most_stiffened),
@@ -232,21 +197,20 @@ Reduction reduced(const ReductionInput& in) {
     out.strain = quadratic_strain(cells, out.shapes, out.omega2, in.length, tell);
   }
   out.sites = at_sites(in.X, in.centre, out.shapes);
-  // int rho b b^T: b by components is a vector field of one direction
   const auto n = static_cast<Index>(in.X.size()), m = out.omega2.size();
-  Matrix B = Matrix::Zero(3 * n, 4 + 3 * m);
+  Matrix B(n, 4 + 3 * m);
   for (Index i = 0; i < n; ++i) {
-    B(3 * i, 0) = 1;
-    for (int k = 0; k < 3; ++k) B(3 * i, 1 + k) = in.X[i][k] - in.centre[k];
+    B(i, 0) = 1;
+    for (int k = 0; k < 3; ++k) B(i, 1 + k) = in.X[i][k] - in.centre[k];
     for (Index j = 0; j < m; ++j)
-      for (int k = 0; k < 3; ++k) B(3 * i, 4 + 3 * j + k) = out.shapes(3 * i + k, j);
+      for (int k = 0; k < 3; ++k) B(i, 4 + 3 * j + k) = out.shapes(3 * i + k, j);
   }
   const auto symmetric = [](const Matrix& M) { return Matrix((M + M.transpose()) / 2); };
-  out.A = symmetric(B.transpose() * cells.times(RegionCells::mass, B));
+  out.A = symmetric(B.transpose() * (cells.scalar_mass() * B));
   const auto any = [&](double SolidBatch::*factor) {
     return std::any_of(in.cells.begin(), in.cells.end(), [&](const SolidBatch& b) { return b.*factor > 0; });
   };
-  if (any(&SolidBatch::alpha)) out.A_damped = symmetric(B.transpose() * cells.times(RegionCells::damping_by_mass, B));
+  if (any(&SolidBatch::alpha)) out.A_damped = symmetric(B.transpose() * (cells.scalar(RegionCells::damping_by_mass) * B));
   if (any(&SolidBatch::beta)) out.viscous = symmetric(out.shapes.transpose() * cells.times(RegionCells::damping_by_stiffness, out.shapes));
   return out;
 }

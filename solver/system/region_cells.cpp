@@ -13,6 +13,27 @@ void gather(const MatrixXd& V, std::span<const int> nodes, MatrixXd& local) {
 
 }  // namespace
 
+RegionCells::Scalar RegionCells::scalar(Kind kind) const {
+  const auto n = static_cast<Index>(X_.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  each(kind, [&](std::span<const int> nodes, const double* Me) {
+    const size_t n3 = 3 * nodes.size();
+    for (size_t a = 0; a < nodes.size(); ++a)
+      for (size_t b = 0; b < nodes.size(); ++b) entries.emplace_back(nodes[a], nodes[b], Me[3 * a * n3 + 3 * b]);
+  });
+  Scalar out(n, n);
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
+MatrixXd RegionCells::times_mass(const MatrixXd& V) const {
+  using Nodal = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  MatrixXd out(V.rows(), V.cols());
+  for (Index k = 0; k < V.cols(); ++k)
+    Eigen::Map<Nodal>(out.col(k).data(), mass_.rows(), 3).noalias() = mass_ * Eigen::Map<const Nodal>(V.col(k).data(), mass_.rows(), 3);
+  return out;
+}
+
 MatrixXd RegionCells::times(Kind kind, const MatrixXd& V, const VectorXd* u) const {
   MatrixXd out = MatrixXd::Zero(V.rows(), V.cols()), local, product;
   each(

@@ -1,6 +1,7 @@
-// Stiffness and mass of the cells of a linear region, computed whenever they are asked for.
+// Stiffness and mass of the cells of a linear region.  The mass is kept; the stiffness is computed whenever it is asked for.
 #pragma once
 #include <Eigen/Dense>
+#include <Eigen/SparseCore>
 
 #include "system/solids.hpp"
 
@@ -11,7 +12,7 @@ class RegionCells {
   /// Damping: beta times the stiffness, alpha times the mass.
   enum Kind { stiffness, mass, damping_by_stiffness, damping_by_mass };
   /// Cells over these nodes; both are kept by reference.
-  RegionCells(const std::vector<Vec3>& X, const std::vector<SolidBatch>& cells) : X_(X), cells_(cells) {}
+  RegionCells(const std::vector<Vec3>& X, const std::vector<SolidBatch>& cells) : X_(X), cells_(cells), mass_(scalar(mass)) {}
 
   /// Visit nodes and matrix (3n x 3n, row major) of each cell; the stiffness is the slope of the force at the displacements u (3 n_nodes),
   /// or at rest.
@@ -52,6 +53,12 @@ class RegionCells {
       }
     }
   }
+  /// A mass matrix, the same in every direction (n_nodes x n_nodes).
+  using Scalar = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  Scalar scalar(Kind kind) const;
+  const Scalar& scalar_mass() const { return mass_; }
+  /// Mass times vectors over all nodes (3 n_nodes x k).
+  Eigen::MatrixXd times_mass(const Eigen::MatrixXd& V) const;
   /// Matrix times vectors over all nodes (3 n_nodes x k).
   Eigen::MatrixXd times(Kind kind, const Eigen::MatrixXd& V, const Eigen::VectorXd* u = nullptr) const;
   /// V^T K(u) V (k x k).
@@ -60,6 +67,7 @@ class RegionCells {
  private:
   const std::vector<Vec3>& X_;
   const std::vector<SolidBatch>& cells_;
+  Scalar mass_;
 };
 
 }  // namespace hilo

@@ -22,7 +22,7 @@ double wide(const Matrix& modes, Index j, double length) {
 }  // namespace
 
 Matrix modal_derivatives(const RegionCells& cells, const Matrix& modes, const Vector& omega2, double length,
-                         const std::function<Vector(const Vector&)>& solve) {
+                         const std::function<Matrix(const Matrix&)>& solve) {
   const Index n = modes.cols();
   Matrix all(modes.rows(), n * (n + 1) / 2);
   for (Index j = 0; j < n; ++j) {
@@ -31,7 +31,8 @@ Matrix modal_derivatives(const RegionCells& cells, const Matrix& modes, const Ve
     const Matrix slope = (cells.times(RegionCells::stiffness, modes.leftCols(j + 1), &u) -
                           cells.times(RegionCells::stiffness, modes.leftCols(j + 1), &back)) /
                          (2 * h);
-    for (Index i = 0; i <= j; ++i) all.col(QuadraticStrain::pair(i, j)) = -solve(slope.col(i)) / std::sqrt(omega2[i] * omega2[j]);
+    const Matrix answers = solve(slope);
+    for (Index i = 0; i <= j; ++i) all.col(QuadraticStrain::pair(i, j)) = -answers.col(i) / std::sqrt(omega2[i] * omega2[j]);
   }
   const Matrix G = all.transpose() * cells.times(RegionCells::stiffness, all);
   const Eigen::SelfAdjointEigenSolver<Matrix> energy((G + G.transpose()) / 2);

@@ -12,9 +12,9 @@
 namespace hilo {
 
 /// The derivatives of modes (3 n_nodes x n) of these squared frequencies, as many as matter where each mode has the same energy.
-/// `solve`: answer of the region to a load, its interfaces held.
+/// `solve`: answers of the region to loads, its interfaces held.
 Eigen::MatrixXd modal_derivatives(const RegionCells& cells, const Eigen::MatrixXd& modes, const Eigen::VectorXd& omega2, double length,
-                                  const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& solve);
+                                  const std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>& solve);
 
 /// Of all modes; `length` of the region [m].
 QuadraticStrain quadratic_strain(const RegionCells& cells, const Eigen::MatrixXd& modes, const Eigen::VectorXd& omega2, double length,
