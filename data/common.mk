@@ -2,7 +2,7 @@
 ROOT := $(patsubst %/data/common.mk,%,$(realpath $(lastword $(MAKEFILE_LIST))))
 BUILD ?= $(ROOT)/build
 BIN := $(BUILD)/bin
-TOOLS := hilo-import hilo-tag hilo-part hilo-solve hilo-post hilo-show
+TOOLS := hilo-import hilo-tag hilo-part hilo-reduce hilo-solve hilo-post hilo-show
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DELETE_ON_ERROR:

@@ -14,22 +14,10 @@ namespace hilo {
 namespace {
 
 struct Options {
-  std::string scene, mesh, output = "run.h5";
+  std::string scene, mesh, modes, output = "run.h5";
   std::vector<std::string> overrides;
   bool dry_run = false, explain = false, profile = false;
 };
-
-/// The mesh file: the command line's, else the scene's (relative to the scene), else none.
-std::string mesh_path(const Options& o, const Scene& scene) {
-  if (!o.mesh.empty()) return o.mesh;
-  const Entry& top = scene.table("scene");
-  if (!top.given("mesh")) return "";
-  const std::filesystem::path p(top.text("mesh"));
-  const std::string path = p.is_absolute() ? p.string() : (std::filesystem::path(scene.folder) / p).string();
-  if (!std::filesystem::exists(path))
-    throw Error(top.where("mesh"), fmt::format("no file {}", path), "make it with hilo-import, hilo-tag or hilo-part");
-  return path;
-}
 
 void print_plan(const System& s, bool talk) {
   std::string plan;
@@ -46,6 +34,7 @@ int solve(int argc, char** argv, Comm& comm) {
                        "scene.toml"});
   app->add_option("scene", o.scene, "scene file (TOML), - for standard input")->required();
   app->add_option("mesh", o.mesh, "mesh.h5, tags.h5 or parts-N.h5; overrides the scene's `mesh`");
+  app->add_option("--modes", o.modes, "reduced.h5 of hilo-reduce: modes of linear regions, which else are found anew");
   app->add_option("-o,--output", o.output, "results file; .xdmf and .json are written beside it")->capture_default_str();
   app->add_option("--set", o.overrides, "override a key of the scene, such as joint.trunnion.at=[0,0,1] (repeatable)")
       ->allow_extra_args(false)
@@ -67,7 +56,7 @@ int solve(int argc, char** argv, Comm& comm) {
   RunOptions options;
   options.output = o.output;
   options.quiet = is_quiet();
-  options.mesh = mesh_path(o, scene);
+  options.mesh = o.mesh.empty() ? scene.mesh_path() : o.mesh;
   std::unique_ptr<LocalMesh> mesh;
   if (!options.mesh.empty()) {
     mesh = std::make_unique<LocalMesh>(read_local_mesh(options.mesh, comm));
@@ -75,7 +64,7 @@ int solve(int argc, char** argv, Comm& comm) {
     if (talk && !mesh->tagged) fmt::print(stderr, "{} is not tagged: all regions are nonlinear\n", options.mesh);
   }
   options.provenance.push_back(command_line(argc, argv));
-  const auto system = build_system(scene, mesh.get(), comm);
+  const auto system = build_system(scene, mesh.get(), comm, {.from = o.modes, .to = "", .provenance = {}});
   print_plan(*system, talk);
   if (o.dry_run) return 0;
   if (!o.output.ends_with(".h5")) throw Error(o.output, "the results file must end in .h5", "-o run.h5", Exit::usage);

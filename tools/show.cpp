@@ -29,11 +29,11 @@ void check(const std::vector<std::string>& paths) {
 int main(int argc, char** argv) {
   using namespace hilo;
   return guarded("hilo-show", [&] {
-    const auto app = make_app(
-        {"hilo-show", "Show what a mesh, tags, parts or results file or a scene holds.", "hilo-show mesh.h5\nhilo-show --check mesh.h5"});
+    const auto app = make_app({"hilo-show", "Show what a mesh, tags, parts, modes or results file or a scene holds.",
+                               "hilo-show mesh.h5\nhilo-show --check mesh.h5"});
     std::vector<std::string> paths;
     bool json = false, only_check = false, schema = false;
-    app->add_option("files", paths, "mesh.h5, tags.h5, parts-N.h5, run.h5, scene.toml or - (a scene on stdin)");
+    app->add_option("files", paths, "mesh.h5, tags.h5, parts-N.h5, reduced.h5, run.h5, scene.toml or - (a scene on stdin)");
     app->add_flag("--check", only_check,
                   "read everything; exit 2 when a file is truncated, incomplete or does not fit the files it links to");
     app->add_flag("--json", json, "as JSON");

@@ -26,6 +26,8 @@ void note_input(const std::string& path) {
   if (!ignored) inputs().try_emplace(full.string(), path);
 }
 
+void release_input(const std::string& path) { inputs().erase(fs::absolute(path).string()); }
+
 void check_output(const std::string& path) {
   refuse_special(path);
   std::error_code ignored;

@@ -104,4 +104,14 @@ std::span<const Entry> Scene::entries(std::string_view section) const {
 
 const Entry& Scene::table(std::string_view section) const { return entries_.find(section)->second.front(); }
 
+std::string Scene::mesh_path() const {
+  const Entry& top = table("scene");
+  if (!top.given("mesh")) return "";
+  const std::filesystem::path p(top.text("mesh"));
+  const std::string path = p.is_absolute() ? p.string() : (std::filesystem::path(folder) / p).string();
+  if (!std::filesystem::exists(path))
+    throw Error(top.where("mesh"), fmt::format("no file {}", path), "make it with hilo-import, hilo-tag or hilo-part");
+  return path;
+}
+
 }  // namespace hilo

@@ -49,6 +49,8 @@ struct Entry final : EntryValues {
   const History& history(std::string_view key) const override;
   std::string where(std::string_view key) const override;
   std::string label() const override;
+  /// Every value in force in one line, to tell entries apart.
+  std::string all_values() const;
 };
 
 /// The whole scene, every key known and every value in range.
@@ -63,6 +65,8 @@ class Scene {
   std::span<const Entry> entries(std::string_view section) const;
   /// The one table of a section (time, solver, output, scene); defaults where it is absent.
   const Entry& table(std::string_view section) const;
+  /// The mesh file that the scene names (relative to the scene), or "".  Error where it is not there.
+  std::string mesh_path() const;
   std::string path;    // as given
   std::string folder;  // relative paths in the scene start here
   std::string text;    // the TOML text after overrides, for provenance

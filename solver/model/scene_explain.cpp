@@ -46,6 +46,15 @@ std::string path_of(const Entry& e, size_t number) {
 
 }  // namespace
 
+std::string Entry::all_values() const {
+  std::string out = section + " " + kind;
+  for (const auto& [key, v] : values) {
+    out += fmt::format(" {} = {} {} {}", key, v.numbers, v.texts, v.boolean.value_or(false));
+    if (v.history) out += fmt::format(" {} {}", v.history->t, v.history->value);
+  }
+  return out;
+}
+
 std::string Scene::explain() const {
   std::vector<std::array<std::string, 3>> rows;
   std::vector<std::string_view> done;

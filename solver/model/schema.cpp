@@ -12,7 +12,7 @@ namespace {
 
 std::vector<ArraySchema>& arrays() {
   static std::vector<ArraySchema> table = {
-      {"mesh.h5", "/", "", "", "", "attributes: format = \"hilo mesh|tags|parts|run\", version, complete (0|1)"},
+      {"mesh.h5", "/", "", "", "", "attributes: format = \"hilo mesh|tags|parts|reduced|run\", version, complete (0|1)"},
       {"mesh.h5", "/provenance", "string", "(n)", "", "command lines that led to this file, oldest first"},
       {"mesh.h5", "/mesh/nodes/X", "f8", "(n_nodes, 3)", "m", "reference positions"},
       {"mesh.h5", "/mesh/nodes/id", "i8", "(n_nodes)", "", "number of the node in the deck"},
@@ -35,6 +35,24 @@ std::vector<ArraySchema>& arrays() {
       {"parts.h5", "/tags", "link", "", "",
        "external link to tags.h5:/tags (absent for an untagged mesh); attributes of /: tags_file, tags_digest"},
       {"parts.h5", "/parts/rank", "i4", "(n_cells)", "", "part of each cell; attribute n_parts"},
+      {"reduced.h5", "/provenance", "string", "(n)", "", "command lines that led to this file, oldest first"},
+      {"reduced.h5", "/reduced/<name>/omega2", "f8", "(n_modes)", "1/s^2",
+       "squared circular frequencies of the free region's modes; attributes of the group: digests of mesh, material, loads and basis, "
+       "held_frequency [Hz] of the first vibration left out"},
+      {"reduced.h5", "/reduced/<name>/shapes", "f8", "(3 n_nodes, n_modes)", "kg^-0.5",
+       "the modes, orthonormal in mass, at the region's nodes in the order of the mesh"},
+      {"reduced.h5", "/reduced/<name>/held", "f8", "(n, 4)", "Hz, 1",
+       "vibrations with the interfaces held: frequency, share of the region's mass along x, y, z"},
+      {"reduced.h5", "/reduced/<name>/A", "f8", "(4 + 3 n_modes, 4 + 3 n_modes)", "kg, kg m, kg m^2",
+       "int rho b b^T of b = (1, X - Xc, shapes by component)"},
+      {"reduced.h5", "/reduced/<name>/A_damped", "f8", "(4 + 3 n_modes, 4 + 3 n_modes)", "kg/s", "the same of mass-proportional damping"},
+      {"reduced.h5", "/reduced/<name>/viscous", "f8", "(n_modes, n_modes)", "1/s", "stiffness-proportional damping on the modes"},
+      {"reduced.h5", "/reduced/<name>/strain", "f8", "(n, n)", "J",
+       "of a region that stiffens: energy e^T KK e/2 of e = (eta_i, eta_i eta_j)"},
+      {"reduced.h5", "/reduced/<name>/sites", "f8", "(n, n_modes)", "m^-1 kg^-0.5",
+       "displacements of nodes far out over the distance between them"},
+      {"reduced.h5", "/reduced/<name>/interfaces", "string", "(n)", "", "what the region is held or moved by"},
+      {"reduced.h5", "/reduced/<name>/interface_digests", "string", "(n)", "", "digests of their nodes"},
       {"run.h5", "/provenance", "string", "(n)", "", "command lines that led to this file, oldest first"},
       {"run.h5", "/mesh", "link", "", "", "external link to mesh.h5:/mesh (absent for a scene of bodies alone)"},
       {"run.h5", "/tags/fidelity", "string", "(n_regions)", "", "the fidelity each region was run at"},

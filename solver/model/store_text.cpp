@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "model/inputs.hpp"
 #include "model/store.hpp"
@@ -75,11 +76,10 @@ std::string resolved_from(const std::string& from, const std::string& relative) 
 
 std::string digest(const std::string& path) {
   const Reader reader(path, "");
-  std::uint64_t hash = 14695981039346656037u;
-  std::vector<unsigned char> block(1 << 18);
-  while (const size_t n = std::fread(block.data(), 1, block.size(), reader.file))
-    for (size_t i = 0; i < n; ++i) hash = (hash ^ block[i]) * 1099511628211u;
-  return fmt::format("fnv1a64:{:016x}", hash);
+  Digest whole;
+  std::vector<std::byte> block(1 << 18);
+  while (const size_t n = std::fread(block.data(), 1, block.size(), reader.file)) whole.add(std::span(block.data(), n));
+  return whole.text();
 }
 
 void refuse_special(const std::string& path) {

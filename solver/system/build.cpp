@@ -17,7 +17,8 @@
 
 namespace hilo {
 
-Builder::Builder(const Scene& scene, LocalMesh* mesh, const Comm& comm) : scene_(scene), mesh_(mesh), comm_(comm) {}
+Builder::Builder(const Scene& scene, LocalMesh* mesh, const Comm& comm, const ReducedFiles& files)
+    : scene_(scene), mesh_(mesh), comm_(comm), files_(files) {}
 
 /// All that takes part in the equations; evaluations, results and the line that tells them go in this order.
 void Builder::add_contributions() {
@@ -88,6 +89,8 @@ std::unique_ptr<System> Builder::build() {
   return std::move(out_);
 }
 
-std::unique_ptr<System> build_system(const Scene& scene, LocalMesh* mesh, const Comm& comm) { return Builder(scene, mesh, comm).build(); }
+std::unique_ptr<System> build_system(const Scene& scene, LocalMesh* mesh, const Comm& comm, const ReducedFiles& files) {
+  return Builder(scene, mesh, comm, files).build();
+}
 
 }  // namespace hilo

@@ -2,172 +2,38 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "system/builder.hpp"
 #include "system/face.hpp"
 #include "system/linear_regions.hpp"
-#include "system/reduction.hpp"
+#include "system/region_parcel.hpp"
 #include "system/welds.hpp"
 
 namespace hilo {
-namespace {
-
-constexpr size_t most_free = 66;  // nodes of an interface whose every motion is a mode [docs/fidelity.md]
-
-}  // namespace
 
 /// Modes of every linear region, found on one rank from all its cells, and what the other ranks need of them.
 void Builder::reduce_linear_regions() {
   out_->modes_of.resize(out_->bodies.size(), -1);
+  if (out_->modes.empty() && !files_.from.empty()) warn(files_.from, "no region is linear: the file is not read");
   if (out_->modes.empty()) return;
   const Mesh& mesh = mesh_->mesh;
-  const double step = scene_.table("time").has("step") ? scene_.table("time").number("step") : 0;
   out_->shape_row.assign(out_->X.size(), -1);
   int n_blocks = 0;
   for (size_t number = 0; number < out_->modes.size(); ++number) {
     Modes& modes = out_->modes[number];
     const Body& axes = out_->bodies[modes.body];
-    const auto is_its = [&](std::int64_t e) {
-      const Region& region = regions_[mesh.region[e]];
-      return region.fidelity == Fidelity::linear && region.body == modes.body;
-    };
-    double modal_damping = 0, up_to = 0;
-    int n_vibrations = 0;
-    bool stiffening = false;
-    std::string where;
-    for (const Region& region : regions_)
-      if (region.fidelity == Fidelity::linear && region.body == modes.body) {
-        modal_damping = region.modal_damping, up_to = std::max(up_to, region.up_to);
-        n_vibrations = std::max(n_vibrations, region.n_vibrations);
-        stiffening = stiffening || region.stiffening;
-        where = region.where;
-      }
-
-    // everything to rank 0: cells by rows of nodes, coordinates, what is an interface
-    std::vector<std::int64_t> words;
-    std::vector<double> places;
-    for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
-      if (is_its(e)) {
-        words.push_back(mesh.region[e]), words.push_back(mesh.shape[e]);
-        for (const std::int64_t node : mesh.cell(e)) {
-          words.push_back(mesh_->node_global[node]);
-          places.insert(places.end(), out_->X[node].data(), out_->X[node].data() + 3);
-        }
-      }
-    std::vector<char> free(out_->X.size(), 0);
-    for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
-      if (regions_[mesh.region[e]].fidelity == Fidelity::nonlinear)
-        for (const std::int64_t node : mesh.cell(e)) free[node] = out_->follower[node] == modes.body;
-    std::vector<std::vector<std::int64_t>> interfaces(1);  // free nodes, then those of the welds
-    for (size_t i = 0; i < free.size(); ++i)
-      if (free[i]) interfaces[0].push_back(mesh_->node_global[i]);
-    std::vector<Weld*> welds;
-    for (Weld& w : out_->part<Welds>().list)
-      if (w.modes == static_cast<int>(number)) {
-        welds.push_back(&w);
-        auto& rows = interfaces.emplace_back();
-        for (const int i : w.nodes) rows.push_back(mesh_->node_global[i]);
-      }
-    std::vector<NodalForces> forces;
-    for (const auto& part : out_->parts()) part->add_reference_forces(forces);
-    std::vector<std::int64_t> load_sizes;  // how many forces of each load are on the region, the same loads on all ranks
-    std::vector<double> loads;             // rows and forces
-    for (const NodalForces& list : forces) {
-      load_sizes.push_back(0);
-      for (const auto& [node, force] : list) {
-        if (out_->follower[node] != modes.body) continue;
-        ++load_sizes.back();
-        loads.push_back(static_cast<double>(mesh_->node_global[node]));
-        loads.insert(loads.end(), force.data(), force.data() + 3);
-      }
-    }
-    const auto to_first = [&](const auto& list) {
-      std::vector<std::decay_t<decltype(list)>> to(comm_.size);
-      to[0] = list;
-      return comm_.exchange(to);
-    };
-    const auto all_words = to_first(words);
-    const auto all_places = to_first(places);
-    const auto all_loads = to_first(loads);
-    const auto all_load_sizes = to_first(load_sizes);
-    std::vector<std::vector<std::vector<std::int64_t>>> all_interfaces;
-    for (const auto& list : interfaces) all_interfaces.push_back(to_first(list));
-
+    RegionParcel parcel = parcel_of(static_cast<int>(number));
+    const bool stiffening = parcel.stiffening;
+    const double modal_damping = parcel.modal_damping;
+    const auto& welds = parcel.welds;
+    const auto& local = parcel.local;
     Reduction found;
-    std::vector<double> head;           // modes, then omega2, A, levers, then axes, shares, means and stretches of each weld
-    std::map<std::int64_t, int> local;  // of rows, in the order of their numbers
+    std::vector<double> head;  // modes, then omega2, A, levers, then axes, shares, means and stretches of each weld
     if (comm_.rank == 0) {
-      ReductionInput in;
-      for (int k = 0; k < comm_.size; ++k) {
-        size_t place = 0;
-        for (size_t at = 0; at < all_words[k].size();) {
-          ++at;  // region
-          const auto shape = static_cast<Shape>(all_words[k][at++]);
-          for (int a = 0; a < info(shape).n_nodes; ++a, ++place) local.try_emplace(all_words[k][at++], 0);
-        }
-      }
-      int n = 0;
-      for (auto& [row, number] : local) number = n++;
-      in.X.resize(n);
-      std::map<std::pair<int, Shape>, SolidBatch> by_kind;
-      for (int k = 0; k < comm_.size; ++k) {
-        size_t place = 0;
-        for (size_t at = 0; at < all_words[k].size();) {
-          const auto region = static_cast<int>(all_words[k][at++]);
-          const auto shape = static_cast<Shape>(all_words[k][at++]);
-          auto it = by_kind.find({region, shape});
-          if (it == by_kind.end()) it = by_kind.emplace(std::pair(region, shape), batch_of(region, shape)).first;
-          for (int a = 0; a < info(shape).n_nodes; ++a, ++place) {
-            const int i = local.at(all_words[k][at++]);
-            in.X[i] = Vec3(all_places[k][3 * place], all_places[k][3 * place + 1], all_places[k][3 * place + 2]);
-            it->second.nodes.push_back(i);
-          }
-        }
-      }
-      for (auto& [kind, batch] : by_kind) in.cells.push_back(std::move(batch));
-      const auto nodes_of = [&](const std::vector<std::vector<std::int64_t>>& lists) {
-        std::vector<int> out;
-        for (const auto& list : lists)
-          for (const std::int64_t row : list) out.push_back(local.at(row));
-        std::sort(out.begin(), out.end());
-        out.erase(std::unique(out.begin(), out.end()), out.end());
-        return out;
-      };
-      std::vector<char> taken(n, 0);
-      for (size_t k = 1; k < all_interfaces.size(); ++k) {
-        auto set = nodes_of(all_interfaces[k]);
-        std::erase_if(set, [&](int i) { return taken[i] != 0; });
-        for (const int i : set) taken[i] = 1;
-        if (!set.empty()) in.rigid.push_back(set);
-      }
-      in.free = nodes_of(all_interfaces[0]);
-      std::erase_if(in.free, [&](int i) { return taken[i] != 0; });
-      if (in.free.size() > most_free)
-        throw Error(
-            where,
-            fmt::format("linear region \"{}\" shares {} nodes with nonlinear ones, the most is {}", axes.name, in.free.size(), most_free),
-            "tag one of them otherwise, or join them by a rigid set");
-      for (size_t load = 0; load < load_sizes.size(); ++load) in.loads.emplace_back();
-      for (int k = 0; k < comm_.size; ++k) {
-        size_t at = 0;
-        for (size_t load = 0; load < load_sizes.size(); ++load)
-          for (std::int64_t i = 0; i < all_load_sizes[k][load]; ++i, at += 4) {
-            const double* v = all_loads[k].data() + at;
-            in.loads[load].emplace_back(local.at(static_cast<std::int64_t>(v[0])), Vec3(v[1], v[2], v[3]));
-          }
-      }
-      std::erase_if(in.loads, [](const auto& load) { return load.empty(); });
-      in.centre = axes.Xc;
-      in.n_vibrations = n_vibrations;
-      in.up_to = up_to > 0 ? up_to : step > 0 ? 0.1 / step : 0;
-      in.stiffening = stiffening, in.length = axes.size;
-      try {
-        found = reduced(in);
-      } catch (const Error& e) {
-        throw Error(where, fmt::format("linear region \"{}\": {}", axes.name, e.what()));
-      }
+      const ReductionInput in = reduction_input(parcel, axes);
+      const auto n = static_cast<int>(in.X.size());
+      found = reduction_of(in, axes, parcel.where);
       const auto m = found.omega2.size();
       head.push_back(static_cast<double>(m));
       head.insert(head.end(), found.omega2.begin(), found.omega2.end());
@@ -181,14 +47,14 @@ void Builder::reduce_linear_regions() {
         for (int i = 0; i < n; ++i) most = std::max(most, found.shapes.block<3, 1>(3 * i, j).norm());
         head.push_back(most);
       }
-      for (size_t k = 1; k < all_interfaces.size(); ++k) {  // least squares of a rigid motion
-        const auto nodes = nodes_of(all_interfaces[k]);
+      for (size_t k = 1; k < parcel.interfaces.size(); ++k) {  // least squares of a rigid motion
+        const auto nodes = parcel.nodes_of(k);
         const Vec3 at = welds[k - 1]->at;
         std::vector<Vec3> places_of;
         for (const int i : nodes) places_of.push_back(in.X[i]);
         const Face face(places_of, at);
         if (!(face.share[0] + face.share[1] > 1e-9))
-          throw Error(where,
+          throw Error(parcel.where,
                       fmt::format("linear region \"{}\" shares nodes on a line alone with \"{}\": they are hinged there",
                                   out_->bodies[modes.body].name, welds[k - 1]->name),
                       "let them share a face, or join them by a joint");
@@ -259,7 +125,7 @@ void Builder::reduce_linear_regions() {
     out_->part<LinearRegions>().regions.push_back(std::move(made));
     std::map<std::pair<int, Shape>, SolidBatch> own;
     for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
-      if (!is_its(e)) continue;
+      if (!is_of(e, modes.body)) continue;
       const int region = mesh.region[e];
       const auto shape = static_cast<Shape>(mesh.shape[e]);
       auto it = own.find({region, shape});
@@ -289,6 +155,7 @@ void Builder::reduce_linear_regions() {
                                      : Vec3::Zero());
     }
   }
+  if (comm_.rank == 0 && !files_.to.empty()) write_reduced(files_.to, reductions_, files_.provenance);
   out_->start.eta.assign(n_blocks, Vec3::Zero());
   out_->start.Y.assign(3 * static_cast<size_t>(n_blocks), Mat3::Zero());
 }

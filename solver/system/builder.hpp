@@ -6,14 +6,17 @@
 
 #include "physics/axes.hpp"
 #include "physics/spring_kinds.hpp"
+#include "system/reduced_file.hpp"
 #include "system/solids.hpp"
 #include "system/system.hpp"
 
 namespace hilo {
 
+struct RegionParcel;
+
 class Builder {
  public:
-  Builder(const Scene& scene, LocalMesh* mesh, const Comm& comm);
+  Builder(const Scene& scene, LocalMesh* mesh, const Comm& comm, const ReducedFiles& files);
   std::unique_ptr<System> build();
 
  private:
@@ -53,9 +56,15 @@ class Builder {
   void make_linear_bodies();
   void weld(int linear_body, int body, const std::string& name, const std::vector<int>& nodes);
   void weld_neighbours();
-  void reduce_linear_regions();
   /// Velocities of a linear region that has the momenta, also those of its modes, of its nodes moving with `nodal` (n_nodes).  Collective.
   void set_modal_velocity(int body, const std::vector<Vec3>& nodal, Config& v) const;
+  // build_reduction.cpp
+  bool is_of(std::int64_t cell, int linear_body) const;
+  RegionParcel parcel_of(int number);
+  ReductionInput reduction_input(const RegionParcel& parcel, const Body& axes) const;
+  Reduction reduction_of(const ReductionInput& in, const Body& axes, const std::string& where);
+  // build_modes.cpp
+  void reduce_linear_regions();
   // element_limits.cpp
   void warn_of_limits() const;
   // build_ends.cpp
@@ -105,7 +114,9 @@ class Builder {
   const Scene& scene_;
   LocalMesh* mesh_;
   const Comm& comm_;
-  std::int64_t n_active_ = 0;  // nodes that a configuration holds
+  const ReducedFiles& files_;
+  std::vector<KeptReduction> reductions_;  // that go to a file
+  std::int64_t n_active_ = 0;              // nodes that a configuration holds
   std::unique_ptr<System> out_;
   std::vector<Region> regions_;
   std::vector<double> reduced_;              // by region: hex20 taken as hex20r on this rank

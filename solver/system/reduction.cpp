@@ -87,7 +87,7 @@ Matrix at_sites(const std::vector<Vec3>& X, const Vec3& centre, const Matrix& sh
 }
 
 /// The lowest vibration modes, orthonormal in mass, and one frequency more.
-Matrix vibrations(const ReductionInput& in, const RegionCells& cells, const Flexibility& flexibility, double& next) {
+Matrix vibrations(const ReductionInput& in, const RegionCells& cells, const Flexibility& flexibility, Reduction& out) {
   const auto rows = 3 * static_cast<Index>(in.X.size());
   const int most = flexibility.n_unknowns() - 7;
   if (in.n_vibrations <= 0 || most < 2) return Matrix(rows, 0);
@@ -104,8 +104,15 @@ Matrix vibrations(const ReductionInput& in, const RegionCells& cells, const Flex
       wanted = std::min(2 * wanted, std::min(in.n_vibrations, most));
       continue;
     }
-    next = keep < lambda.size() ? std::sqrt(lambda[keep]) / (2 * std::numbers::pi) : 0;
-    return found.shapes.leftCols(keep);
+    const auto hertz = [&](Index k) { return std::sqrt(std::max(0.0, lambda[k])) / (2 * std::numbers::pi); };
+    out.held_frequency = keep < lambda.size() ? hertz(keep) : 0;
+    Matrix shapes = found.shapes.leftCols(keep), along = Matrix::Zero(rows, 3);
+    for (Index i = 0; i < rows; ++i) along(i, i % 3) = 1;
+    const Matrix M_along = cells.times_mass(along);
+    out.held.resize(keep, 4);
+    for (Index k = 0; k < keep; ++k) out.held(k, 0) = hertz(k);
+    out.held.rightCols(3) = (shapes.transpose() * M_along).cwiseAbs2() / M_along.col(0).dot(along.col(0));
+    return shapes;
   }
 }
 
@@ -177,7 +184,7 @@ Reduction reduced(const ReductionInput& in) {
   parts.push_back(flexibility.solve(loads));
   tell("vibration modes");
   Reduction out;
-  parts.push_back(vibrations(in, cells, flexibility, out.held_frequency));
+  parts.push_back(vibrations(in, cells, flexibility, out));
 
   tell("basis");
   const ModeBasis basis(cells, rigid, M_rigid);

@@ -22,7 +22,9 @@ namespace hilo {
 struct ReductionInput {
   std::vector<Vec3> X;                                   // nodes of the region
   std::vector<SolidBatch> cells;                         // over these nodes
-  std::vector<std::vector<int>> rigid;                   // interfaces that move as rigid bodies
+  std::vector<std::string> made_of;                      // what each of them is made of, in words
+  std::vector<std::vector<int>> rigid;                   // interfaces that move as rigid bodies,
+  std::vector<std::string> rigid_names;                  // and their names
   std::vector<int> free;                                 // nodes of an interface that move freely
   Vec3 centre = Vec3::Zero();                            // of mass
   std::vector<std::vector<std::pair<int, Vec3>>> loads;  // on nodes
@@ -41,6 +43,7 @@ struct Reduction {
   Eigen::MatrixXd viscous;    // of stiffness-proportional damping beta C on the modes (m x m), or empty [1/s]
   QuadraticStrain strain;     // where it stiffens
   Eigen::MatrixXd sites;      // displacements of nodes far out, over the distance between them   (3 n_sites x m) [1 per unit of amplitude]
+  Eigen::MatrixXd held;       // vibrations with the interfaces held: frequency [Hz], shares of the mass along x, y, z   (n x 4)
   double held_frequency = 0;  // of the first vibration mode left out, or 0 where all that were found are in  [Hz]
 };
 

@@ -119,7 +119,13 @@ class System : public Points {
   bool moves_ = false;
 };
 
+/// Where the modes of linear regions are kept: `from` is taken instead of finding them, and must fit; where there is a `to`, what fits of
+/// `from` is taken, the rest found, and all of it written.
+struct ReducedFiles {
+  std::string from, to;
+  std::vector<std::string> provenance;
+};
 /// Build the system of a scene.  Errors carry the scene's places.
-std::unique_ptr<System> build_system(const Scene& scene, LocalMesh* mesh, const Comm& comm);
+std::unique_ptr<System> build_system(const Scene& scene, LocalMesh* mesh, const Comm& comm, const ReducedFiles& files = {});
 
 }  // namespace hilo

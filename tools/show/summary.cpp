@@ -51,6 +51,7 @@ Summary summary_of_file(const std::string& path) {
       warn(path, fmt::format("the mesh is in {}, which is missing", resolved_from(path, store.linked("/mesh")->first)));
   }
   if (*format == "hilo run") add_run(s, store);
+  if (*format == "hilo reduced") add_reduced(s, store);
   Table commands{{"provenance"}, {}};
   if (store.has("/provenance"))
     for (const auto& line : store.read_strings("/provenance")) commands.rows.push_back({line});

@@ -36,6 +36,8 @@ Summary summary_of_scene(const std::string& path);
 void add_mesh(Summary& s, const MeshFile& file);
 /// Bodies, fields and histories of a results file.
 void add_run(Summary& s, const Store& store);
+/// Linear regions, their modes, and the mass that vibrations of held regions carry.
+void add_reduced(Summary& s, const Store& store);
 
 /// Open every array of a file and of those it links to: complete, whole and of consistent sizes, or an Error.  Returns the number of
 /// arrays.

@@ -1,0 +1,177 @@
+// From the cells, interfaces and loads of a linear region, on all ranks, to its modes on the first.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <map>
+#include <optional>
+
+#include "base/args.hpp"
+#include "system/builder.hpp"
+#include "system/linear_regions.hpp"
+#include "system/region_parcel.hpp"
+
+namespace hilo {
+namespace {
+
+constexpr size_t most_free = 66;      // nodes of an interface whose every motion is a mode [docs/fidelity.md]
+constexpr size_t told_from = 100000;  // unknowns of a region from which its reduction tells how far it is
+
+}  // namespace
+
+bool Builder::is_of(std::int64_t cell, int linear_body) const {
+  const Region& region = regions_[mesh_->mesh.region[cell]];
+  return region.fidelity == Fidelity::linear && region.body == linear_body;
+}
+
+/// Collective.
+RegionParcel Builder::parcel_of(int number) {
+  const Mesh& mesh = mesh_->mesh;
+  const int body = out_->modes[number].body;
+  RegionParcel out;
+  for (const Region& region : regions_)
+    if (region.fidelity == Fidelity::linear && region.body == body) {
+      out.modal_damping = region.modal_damping, out.up_to = std::max(out.up_to, region.up_to);
+      out.n_vibrations = std::max(out.n_vibrations, region.n_vibrations);
+      out.stiffening = out.stiffening || region.stiffening;
+      out.where = region.where;
+    }
+  const auto to_first = [&](const auto& list) {
+    std::vector<std::decay_t<decltype(list)>> to(comm_.size);
+    to[0] = list;
+    return comm_.exchange(to);
+  };
+  std::vector<std::int64_t> words;
+  std::vector<double> places;
+  for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
+    if (is_of(e, body)) {
+      words.push_back(mesh.region[e]), words.push_back(mesh.shape[e]);
+      for (const std::int64_t node : mesh.cell(e)) {
+        words.push_back(mesh_->node_global[node]);
+        places.insert(places.end(), out_->X[node].data(), out_->X[node].data() + 3);
+      }
+    }
+  out.words = to_first(words), out.places = to_first(places);
+  std::vector<char> free(out_->X.size(), 0);
+  for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
+    if (regions_[mesh.region[e]].fidelity == Fidelity::nonlinear)
+      for (const std::int64_t node : mesh.cell(e)) free[node] = out_->follower[node] == body;
+  std::vector<std::int64_t> rows;
+  for (size_t i = 0; i < free.size(); ++i)
+    if (free[i]) rows.push_back(mesh_->node_global[i]);
+  out.interfaces.push_back(to_first(rows));
+  for (Weld& w : out_->part<Welds>().list)
+    if (w.modes == number) {
+      out.welds.push_back(&w);
+      rows.clear();
+      for (const int i : w.nodes) rows.push_back(mesh_->node_global[i]);
+      out.interfaces.push_back(to_first(rows));
+    }
+  std::vector<NodalForces> forces;
+  for (const auto& part : out_->parts()) part->add_reference_forces(forces);
+  std::vector<std::int64_t> load_sizes;
+  std::vector<double> loads;
+  for (const NodalForces& list : forces) {
+    load_sizes.push_back(0);
+    for (const auto& [node, force] : list) {
+      if (out_->follower[node] != body) continue;
+      ++load_sizes.back();
+      loads.push_back(static_cast<double>(mesh_->node_global[node]));
+      loads.insert(loads.end(), force.data(), force.data() + 3);
+    }
+  }
+  out.load_sizes = to_first(load_sizes), out.loads = to_first(loads);
+  if (comm_.rank == 0) {
+    out.each_cell([&](int, Shape, std::span<const std::int64_t> nodes, const double*) {
+      for (const std::int64_t row : nodes) out.local.try_emplace(row, 0);
+    });
+    int n = 0;
+    for (auto& [row, place] : out.local) place = n++;
+  }
+  return out;
+}
+
+/// On rank 0.
+ReductionInput Builder::reduction_input(const RegionParcel& parcel, const Body& axes) const {
+  ReductionInput in;
+  in.X.resize(parcel.local.size());
+  std::map<std::pair<int, Shape>, SolidBatch> by_kind;
+  parcel.each_cell([&](int region, Shape shape, std::span<const std::int64_t> nodes, const double* X) {
+    auto it = by_kind.find({region, shape});
+    if (it == by_kind.end()) it = by_kind.emplace(std::pair(region, shape), batch_of(region, shape)).first;
+    for (size_t a = 0; a < nodes.size(); ++a) {
+      const int i = parcel.local.at(nodes[a]);
+      in.X[i] = Vec3(X[3 * a], X[3 * a + 1], X[3 * a + 2]);
+      it->second.nodes.push_back(i);
+    }
+  });
+  for (auto& [kind, batch] : by_kind) {
+    const Region& r = regions_[kind.first];
+    in.made_of.push_back(r.material ? r.material->all_values() : fmt::format("E {} nu {}", r.E, r.nu));
+    in.cells.push_back(std::move(batch));
+  }
+  std::vector<char> taken(in.X.size(), 0);
+  for (size_t k = 0; k < parcel.welds.size(); ++k) {
+    auto set = parcel.nodes_of(k + 1);
+    std::erase_if(set, [&](int i) { return taken[i] != 0; });
+    for (const int i : set) taken[i] = 1;
+    if (!set.empty()) in.rigid.push_back(std::move(set)), in.rigid_names.push_back(parcel.welds[k]->name);
+  }
+  in.free = parcel.nodes_of(0);
+  std::erase_if(in.free, [&](int i) { return taken[i] != 0; });
+  if (in.free.size() > most_free)
+    throw Error(
+        parcel.where,
+        fmt::format("linear region \"{}\" shares {} nodes with nonlinear ones, the most is {}", axes.name, in.free.size(), most_free),
+        "tag one of them otherwise, or join them by a rigid set");
+  in.loads.resize(parcel.load_sizes[0].size());
+  for (size_t k = 0; k < parcel.loads.size(); ++k) {
+    const double* v = parcel.loads[k].data();
+    for (size_t load = 0; load < in.loads.size(); ++load)
+      for (std::int64_t i = 0; i < parcel.load_sizes[k][load]; ++i, v += 4)
+        in.loads[load].emplace_back(parcel.local.at(static_cast<std::int64_t>(v[0])), Vec3(v[1], v[2], v[3]));
+  }
+  std::erase_if(in.loads, [](const auto& load) { return load.empty(); });
+  const double step = scene_.table("time").has("step") ? scene_.table("time").number("step") : 0;
+  in.centre = axes.Xc;
+  in.n_vibrations = parcel.n_vibrations;
+  in.up_to = parcel.up_to > 0 ? parcel.up_to : step > 0 ? 0.1 / step : 0;
+  in.stiffening = parcel.stiffening, in.length = axes.size;
+  if (!is_quiet() && 3 * in.X.size() > told_from)
+    in.progress = [name = axes.name](const std::string& what) { fmt::print(stderr, "linear region \"{}\": {}\n", name, what); };
+  return in;
+}
+
+/// As it is on file, where that fits, or found now.  On rank 0.
+Reduction Builder::reduction_of(const ReductionInput& in, const Body& axes, const std::string& where) {
+  const auto named = [&](const std::string& what, const std::string& hint) {
+    return Error(where, fmt::format("linear region \"{}\": {}", axes.name, what), hint);
+  };
+  const ReductionKey key = key_of(in);
+  std::optional<Reduction> out;
+  if (!files_.from.empty()) {
+    const ReducedFile file(files_.from);
+    const std::string unfit = file.unfit(axes.name, key);
+    if (unfit.empty())
+      out = file.read(axes.name, in.X.size());
+    else if (files_.to.empty())
+      throw named(fmt::format("{} does not serve: {}", files_.from, unfit),
+                  fmt::format("hilo-reduce with this scene and mesh, -o {}", files_.from));
+  }
+  const bool kept = out.has_value();
+  const std::clock_t began = std::clock();
+  if (!kept) try {
+      out = reduced(in);
+    } catch (const Error& e) {
+      throw named(e.message, e.hint);
+    }
+  if (!files_.to.empty()) {
+    if (!is_quiet())
+      fmt::print("{}: {} nodes, {} interfaces, {} modes{}\n", axes.name, in.X.size(), key.interfaces.size(), out->omega2.size(),
+                 kept ? ", as before" : fmt::format(", found in {:.1f} s", static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC));
+    reductions_.push_back({axes.name, key, *out});
+  }
+  return std::move(*out);
+}
+
+}  // namespace hilo

@@ -1,0 +1,125 @@
+// hilo-reduce: modes on file serve as if they were found anew, or are refused by name.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+Mesh bars(int n) {
+  BlockOptions o;
+  o.n[0] = n;
+  o.low = Vec3(0, 0, 0), o.high = Vec3(1, 0.1, 0.1);
+  Mesh left = block_mesh(o);
+  left.region_name = {"left"};
+  Mesh out = left;
+  out.facet_sets.clear();
+  for (const auto& [name, set] : left.facet_sets) out.facet_sets["left_" + name] = set;
+  const std::int64_t nodes = left.n_nodes(), cells = left.n_cells();
+  out.region_name.push_back("right"), out.region_data.push_back(left.region_data[0]);
+  for (std::int64_t i = 0; i < nodes; ++i) out.X.push_back(left.X[i] + Vec3(1, 0, 0)), out.node_id.push_back(nodes + i);
+  for (std::int64_t e = 0; e < cells; ++e) {
+    std::vector<std::int64_t> list;
+    for (const std::int64_t i : left.cell(e)) list.push_back(nodes + i);
+    out.add_cell(static_cast<Shape>(left.shape[e]), list, 1, cells + e);
+  }
+  for (const auto& [name, set] : left.facet_sets)
+    for (const Facet& f : set) out.facet_sets["right_" + name].push_back({cells + f.cell, f.facet});
+  return out;
+}
+
+class ReducedFile : public testing::Test {
+ protected:
+  ReducedFile() {
+    c.use(bars(5), {Fidelity::linear, Fidelity::linear});
+    const Ran ran = reduce();
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+  }
+  Ran reduce(const std::string& options = "") const { return c.run("hilo-reduce " + c.source("scene.toml") + " tags.h5 " + options); }
+  /// The run is refused for this reason, and leaves nothing.
+  void expect_refused(const std::string& reason, const std::string& options, const std::string& scene = "scene") const {
+    const Ran ran = c.solve("--modes reduced.h5 " + options, "refused.h5", 2, scene);
+    EXPECT_NE(ran.err.find("reduced.h5 does not serve: " + reason), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("scene.toml:"), std::string::npos) << ran.err;
+    EXPECT_FALSE(std::filesystem::exists(c / "refused.h5"));
+  }
+  Case c{"reduced_file"};
+};
+
+TEST_F(ReducedFile, GivesTheRunThatFindsThemBitByBit) {
+  const auto found = c.solved("", "found.h5"), taken = c.solved("--modes reduced.h5", "taken.h5");
+  for (const std::string name : {"energy", "momentum", "joint/hinge", "modes/left", "modes/right"})
+    EXPECT_EQ(found.history(name), taken.history(name)) << name;
+  EXPECT_EQ(found.field("displacement"), taken.field("displacement"));
+  EXPECT_GT(taken.history("energy").col(1).maxCoeff(), 0);
+}
+
+TEST_F(ReducedFile, ServesOnRanks) {
+  ASSERT_EQ(c.run("hilo-part --quiet tags.h5 " + c.source("scene.toml") + " -n 3 -o parts.h5").exit, 0);
+  const Ran ran = mpirun(3, "hilo-solve --quiet " + c.source("scene.toml") + " parts.h5 --modes reduced.h5 -o ranks.h5", c.path());
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const auto ranks = c.results("ranks.h5"), serial = c.solved("--modes reduced.h5", "serial.h5");
+  EXPECT_LT((ranks.history("modes/left") - serial.history("modes/left")).cwiseAbs().maxCoeff(),
+            1e-7 * serial.history("modes/left").cwiseAbs().maxCoeff());
+}
+
+TEST_F(ReducedFile, IsKeptWhereNothingThatItDependsOnChanged) {
+  const std::string before = text_of(c / "reduced.h5");
+  EXPECT_NE(reduce("--set time.end=7 --set 'gravity=[0,0,-9]'").out.find("modes, as before\nright"), std::string::npos);
+  const Ran other = reduce("--set material.soft.E=2e7");
+  EXPECT_EQ(other.exit, 0);
+  EXPECT_EQ(other.out.find("as before"), std::string::npos) << other.out;
+  EXPECT_EQ(c.solve("--quiet --modes reduced.h5 --set material.soft.E=2e7").exit, 0);
+}
+
+TEST_F(ReducedFile, OfAnotherMaterialIsRefused) { expect_refused("it is of another material", "--set material.soft.E=2e7"); }
+TEST_F(ReducedFile, OfAnotherDensityIsRefused) { expect_refused("it is of another material", "--set material.soft.density=999"); }
+TEST_F(ReducedFile, OfOtherModesIsRefused) { expect_refused("it was made for other modes", "--set 'region.*.modes=3'"); }
+TEST_F(ReducedFile, OfAnotherStepIsRefusedAsItsModesGoUpToAnotherFrequency) {
+  expect_refused("it was made for other modes", "--set time.step=0.002");
+}
+TEST_F(ReducedFile, OfOtherLoadsIsRefused) { expect_refused("it is of other loads", "--set load.push.on=right_ymax"); }
+TEST_F(ReducedFile, ThatLacksTheInterfaceOfAJointIsRefused) {
+  expect_refused("it lacks the interface \"left_ymax\"", "--set joint.hinge.a=left_ymax");
+}
+TEST_F(ReducedFile, OfAnotherMeshIsRefused) {
+  c.use(bars(6), {Fidelity::linear, Fidelity::linear});
+  expect_refused("it is of another mesh", "");
+}
+TEST_F(ReducedFile, OfOneRegionIsRefusedForTwo) {
+  c.use(bars(5), {Fidelity::rigid, Fidelity::linear});
+  ASSERT_EQ(reduce().exit, 0);
+  c.use(bars(5), {Fidelity::linear, Fidelity::linear});
+  expect_refused("it lacks the region", "");
+}
+TEST_F(ReducedFile, WhoseInterfaceIsHeldIsRefusedWhereItsModesAreFree) {
+  c.write("scene.toml",
+          "[material.soft]\nE = 1e7\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"soft\"\n[time]\nend = 0.1\nstep = 0.004\n");
+  const Ran ran = c.run("hilo-solve scene.toml tags.h5 --modes reduced.h5 -o refused.h5");
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_NE(ran.err.find("its modes were found with the interface \"left_xmax\" held, and nothing holds it here"), std::string::npos)
+      << ran.err;
+}
+
+TEST_F(ReducedFile, ThatIsNoneOrDamagedIsRefused) {
+  EXPECT_NE(c.solve("--modes tags.h5", "refused.h5", 2).err.find("not a file of reduced regions"), std::string::npos);
+  EXPECT_NE(c.solve("--modes nowhere.h5", "refused.h5", 2).err.find("no such file"), std::string::npos);
+  const std::string whole = text_of(c / "reduced.h5");
+  c.write("reduced.h5", whole.substr(0, whole.size() / 2));
+  EXPECT_EQ(c.solve("--modes reduced.h5", "refused.h5", 2).exit, 2);
+  EXPECT_EQ(reduce().exit, 2) << "nor is it written over";
+}
+
+/// Its held bar is a cantilever at both ends of its vibrations: what they carry of the mass is known.
+TEST_F(ReducedFile, TellsTheMassThatVibrationsCarry) {
+  const Ran ran = c.run("hilo-show --json reduced.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_NE(ran.out.find("\"interfaces\": \"left_xmax\""), std::string::npos) << ran.out;
+  const Store store = Store::open(c / "reduced.h5");
+  const auto held = store.read<double>("/reduced/left/held");
+  // first two bending modes of a clamped bar carry .613 of its mass [blevins-1979]; the first frequency, .1615 sqrt(E/rho) h/L^2
+  EXPECT_NEAR(held[2] + held[3], 0.613, 0.01) << held[0];
+  EXPECT_NEAR(held[6] + held[7], 0.613, 0.01);
+  EXPECT_NEAR(held[0], 0.1615 * 100 * 0.1, 0.03 * 1.6);
+}
+
+}  // namespace
+}  // namespace hilo::test
