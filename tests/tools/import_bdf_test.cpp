@@ -50,7 +50,7 @@ TEST_F(ImportBdf, SmallLargeAndFreeFieldsAreRead) {
   EXPECT_NEAR(m.region_data[1].nu, 7 / 5.2 - 1, 1e-14);  // from E and G
   EXPECT_EQ(m.node_sets.at("SPC_1").size(), 4u);
   EXPECT_LT((vector_area(m, m.facet_sets.at("pid_9")) - Vec3(0, 0, -1)).norm(), 1e-14);
-  EXPECT_NE(err.find("not read: FORCE (1, a.bdf:28"), std::string::npos) << err;
+  EXPECT_EQ(err.find("not read"), std::string::npos) << err;
 }
 
 TEST_F(ImportBdf, WhatGmshWritesKeepsShapesVolumesAndProperties) {
@@ -83,7 +83,6 @@ TEST_F(ImportBdf, WrongEntriesAreNamedByLine) {
       {grids + "CTETRA,2,1,1,2,3,9\n", "a.bdf:6:8: element 2 names node 9, which does not exist"},
       {grids + "CTETRA,2,1,1,2,3,4,1\n", "a.bdf:6: CTETRA 2 has mid-side nodes on some edges only (give all of them or none)"},
       {grids + "CBAR,2,1,1,2\n", "a.bdf:6:1: CBAR: beams are not read (supported: CTETRA, CPENTA, CHEXA, CROD, CONROD)"},
-      {grids + "GRID,5,3,0.,0.,2.\n", "a.bdf:6:8: GRID 5 is in coordinate system 3 (write the grids in the basic system)"},
       {grids + "MAT1,1,-1.,,0.3\n", "a.bdf:6:8: MAT1 1: Young's modulus -1 is not positive"},
       {grids + "GRID,5,,0.,zero,2.\n", "a.bdf:6:12: expected a number, found \"zero\""},
       {"GRID,1,,0.,0.,0.\n", "a.bdf: no solid elements and no rods (supported: CTETRA, CPENTA, CHEXA, CROD, CONROD)"},

@@ -31,7 +31,7 @@ double DataLine::number(size_t field, double fallback) const {
   if (s.front() == '+') s.remove_prefix(1);
   double x;
   auto [end, bad] = std::from_chars(s.data(), s.data() + s.size(), x);
-  if (bad == std::errc() && end == s.data() + s.size()) return x;
+  if (bad == std::errc() && end == s.data() + s.size() && std::isfinite(x)) return x;
   // Fortran: 1.d-3, 1.5-3
   std::string f(s);
   for (size_t i = 0; i < f.size(); ++i)
@@ -40,7 +40,7 @@ double DataLine::number(size_t field, double fallback) const {
     if ((f[i] == '+' || f[i] == '-') && (std::isdigit(static_cast<unsigned char>(f[i - 1])) || f[i - 1] == '.')) f.insert(i++, 1, 'e');
   if (const auto plus = f.find("e+"); plus != std::string::npos) f.erase(plus + 1, 1);
   auto [end2, bad2] = std::from_chars(f.data(), f.data() + f.size(), x);
-  if (bad2 != std::errc() || end2 != f.data() + f.size())
+  if (bad2 != std::errc() || end2 != f.data() + f.size() || !std::isfinite(x))
     throw Error(place(field), fmt::format("expected a number, found \"{}\"", text(field)));
   return x;
 }

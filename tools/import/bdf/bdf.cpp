@@ -3,8 +3,6 @@
 // facet sets.
 #include <fmt/format.h>
 
-#include <stdexcept>
-
 #include "base/error.hpp"
 #include "import/bdf/card.hpp"
 
@@ -21,41 +19,27 @@ std::vector<std::int64_t> rows(const BdfDeck& deck, const BdfDeck::Cell& r) {
   return nodes;
 }
 
-/// The lines of a scene for the regions whose material is more than elastic: the mesh carries no moduli of these.
-void write_scene(const BdfDeck& deck, const std::map<std::int64_t, CellGroup>& by_property, const ImportOptions& options, Imported& in) {
-  Mesh& m = in.mesh;
-  std::map<std::int64_t, std::string> used;
-  std::map<std::string, std::string> lines;  // by region
-  for (const auto& [pid, g] : by_property) {
-    const auto mid = deck.material_of.find(pid);
-    const auto mat = mid == deck.material_of.end() ? deck.materials.end() : deck.materials.find(mid->second);
-    if (mat == deck.materials.end() || mat->second.elastic() || g.cells.empty()) continue;
-    const std::string& region = m.region_name[m.region[g.cells.front()]];
-    if (!mat->second.no_law.empty()) {
-      lines[region] =
-          fmt::format("\n# region {}: material {} has no law here ({}), give it one\n", toml_text(region), mat->first, mat->second.no_law);
-      continue;
-    }
-    used[mat->first] = mat->second.name;
-    lines[region] = fmt::format("\n[region.{}]\nmaterial = {}\n", toml_text(region), toml_text(mat->second.name));
-    in.notes.push_back(fmt::format("region \"{}\": its material \"{}\" ({}) stands in the scene lines alone (--scene-out)", region,
-                                   mat->second.name, mat->second.kind));
-  }
-  if (lines.empty()) return;
-  m.deck_scene = "units = \"m-kg-s\"\n";
-  for (const auto& [id, name] : used) m.deck_scene += deck.materials.at(id).table(name, options.units);
-  for (const auto& [region, text] : lines) m.deck_scene += text;
+/// Materials without a density are told once; PARAM WTMASS turns weights into masses.
+void settle_densities(BdfDeck& deck, Imported& in) {
+  for (auto& [id, m] : deck.materials) m.data.density *= deck.mass_factor;
+  for (auto& m : deck.masses) m.mass *= deck.mass_factor, m.inertia *= deck.mass_factor;
+  if (deck.without_density.empty()) return;
+  std::string ids;
+  int n = 0;
+  for (const auto& [id, place] : deck.without_density)
+    if (++n <= 5) ids += fmt::format("{}{}", n > 1 ? ", " : "", id);
+  in.notes.push_back(fmt::format("{}: RHO is 0 or blank in {} of {} materials ({}{}): no density", deck.without_density.begin()->second, n,
+                                 deck.materials.size(), ids, n > 5 ? ", ..." : ""));
 }
 
 /// Cells by property, shells as sets of facets, supports as sets of nodes.
-void build(BdfDeck& deck, const std::map<std::int64_t, std::string>& names_of, const std::string& path, const ImportOptions& options,
-           Imported& in) {
+void build(BdfDeck& deck, const std::string& path, const ImportOptions& options, Imported& in) {
   Mesh& m = in.mesh;
-  m.X = std::move(deck.X);
-  m.node_id = std::move(deck.node_id);
+  m.X = deck.X;
+  m.node_id = deck.node_id;
   const auto property_name = [&](std::int64_t property) {
-    const auto n = names_of.find(property);
-    return n == names_of.end() ? fmt::format("pid_{}", property) : n->second;
+    const auto n = deck.property_name.find(property);
+    return n == deck.property_name.end() ? fmt::format("pid_{}", property) : n->second;
   };
   std::map<std::int64_t, CellGroup> by_property;
   for (const auto& r : deck.cells) {
@@ -73,7 +57,6 @@ void build(BdfDeck& deck, const std::map<std::int64_t, std::string>& names_of, c
     for (const auto c : g.cells)
       if (mat != deck.materials.end()) m.region_data[m.region[c]] = mat->second.carried();
   }
-  write_scene(deck, by_property, options, in);
   SetNames names(in);
   std::vector<std::vector<std::int64_t>> faces;
   for (const auto& s : deck.shells) faces.push_back(rows(deck, s));
@@ -86,12 +69,14 @@ void build(BdfDeck& deck, const std::map<std::int64_t, std::string>& names_of, c
     facets[deck.shells[i].property].push_back(found[i]);
   }
   for (auto& [pid, f] : facets) names.facets(property_name(pid), std::move(f));
-  for (auto& [name, ids] : deck.sets) {
+  for (const auto& [sid, lines] : deck.supports) {
     std::vector<std::int64_t> nodes;
-    for (const auto id : ids)
-      if (const auto a = deck.row.find(id); a != deck.row.end()) nodes.push_back(a->second);
-    names.nodes(name, std::move(nodes));
+    for (const auto& l : lines)
+      for (const auto id : l.grids)
+        if (const auto a = deck.row.find(id); a != deck.row.end()) nodes.push_back(a->second);
+    names.nodes(fmt::format("SPC_{}", sid), std::move(nodes));
   }
+  write_bdf_scene(deck, in, names, options);
 }
 
 }  // namespace
@@ -114,8 +99,14 @@ Imported read_bdf(const std::string& path, const ImportOptions& options) {
   parse_bdf(entries, deck, in, bdf_cards());
   if (deck.X.empty()) throw Error(path, "no GRID", "a Nastran file has GRID entries");
   if (deck.cells.empty()) throw Error(path, "no solid elements and no rods", bdf_supported);
+  std::set<std::string> taken;
+  for (const auto& [id, name] : entries.property_names())  // one name for two properties would make one region of two materials
+    deck.property_name[id] = taken.insert(name).second ? name : fmt::format("{}_{}", name, id);
+  resolve_axes(deck);
   resolve_metals(deck, in);
-  build(deck, entries.property_names(), path, options, in);
+  settle_densities(deck, in);
+  read_case(entries.case_lines(), deck, in);
+  build(deck, path, options, in);
   return in;
 }
 

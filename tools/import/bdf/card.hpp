@@ -1,42 +1,16 @@
-// The entries of a Nastran file that are known: a name and what reads it.  Another entry is one more row of the table in cards.cpp,
-// or from outside the tree `bdf_cards().add({"MATLAME", read_lame})` before the first file is read.
+// The entries of a Nastran file that are known: a name and what reads it.  Another entry is one more row of the table of its family, or
+// from outside the tree `bdf_cards().add({"MATLAME", read_lame})` before the first file is read.
 #pragma once
-#include <map>
-#include <set>
 #include <span>
-#include <string>
 #include <string_view>
-#include <unordered_map>
-#include <vector>
 
 #include "base/registry.hpp"
+#include "import/bdf/deck.hpp"
 #include "import/bdf/entries.hpp"
-#include "import/deck_material.hpp"
-#include "import/imported.hpp"
 
 namespace hilo {
 
 inline constexpr const char* bdf_supported = "supported: CTETRA, CPENTA, CHEXA, CROD, CONROD";
-
-/// What a Nastran file says, in its own numbers, before it becomes a mesh.
-struct BdfDeck {
-  struct Cell {
-    Shape shape;
-    std::int64_t id, property;
-    std::vector<std::int64_t> nodes;
-    std::string place;
-  };
-  std::vector<Vec3> X;
-  std::vector<std::int64_t> node_id;
-  std::unordered_map<std::int64_t, std::int64_t> row;  // number of a grid -> row of X
-  std::vector<Cell> cells, shells;
-  std::set<std::int64_t> cell_ids;
-  std::map<std::int64_t, std::int64_t> material_of;                       // property -> material
-  std::map<std::int64_t, DeckMaterial> materials;                         // by MID
-  std::vector<DataLine> metals;                                           // MATS1
-  std::map<std::int64_t, std::vector<std::pair<double, double>>> tables;  // TABLES1: x, y
-  std::map<std::string, std::vector<std::int64_t>> sets;
-};
 
 struct BdfCard {
   std::string_view name;  // "CHEXA"
@@ -44,13 +18,26 @@ struct BdfCard {
 };
 using BdfCards = Registry<BdfCard>;
 BdfCards& bdf_cards();
-std::span<const BdfCard> bdf_material_cards();
+/// The families, one file each.
+std::span<const BdfCard> bdf_mesh_cards();      // GRID, CORD, solids, rods, shells, properties
+std::span<const BdfCard> bdf_material_cards();  // MAT1 and what goes with it
+std::span<const BdfCard> bdf_load_cards();      // supports, loads, methods
+std::span<const BdfCard> bdf_link_cards();      // rigid elements, masses, springs
+
 /// The material of the number in the first field of an entry, new where none has it yet.
 DeckMaterial& material_of(const BdfEntry& e, BdfDeck& deck);
 /// MATS1 and the tables it names, into the materials.
 void resolve_metals(BdfDeck& deck, Imported& in);
+/// Components of a grid, "123456" in any order, as bits 0 to 5; an Error where it is none.
+unsigned components(const DataLine& d, size_t field);
+/// Numbers of a list from a field on, "THRU" and "BY" understood; ends at a word or a real number, whose field is returned.
+size_t grid_list(const DataLine& d, size_t field, std::vector<std::int64_t>& out);
 
 /// Reads the entries.  One that is not among `cards` is counted in `in.not_read`.
 void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards& cards);
+/// Executive and case control: title, solution, which supports and loads the first subcase takes.
+void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& in);
+/// The lines of a scene (mesh.deck_scene) and the sets they name.
+void write_bdf_scene(const BdfDeck& deck, Imported& in, SetNames& names, const ImportOptions& options);
 
 }  // namespace hilo

@@ -22,19 +22,32 @@ void no_law(DeckMaterial& m, Imported& in, const std::string& what, const std::s
   if (m.no_law.empty()) m.no_law = fmt::format("{}, {}", what, place);
 }
 
-void read_mat1(const BdfEntry& e, BdfDeck& deck, Imported&) {
+/// MID E G NU RHO A TREF GE; a density that is 0 or blank is none.
+void read_mat1(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
+  if (const auto old = deck.materials.find(d.integer(0));
+      old != deck.materials.end() && !std::isnan(old->second.data.nu + old->second.data.E))
+    throw Error(d.place(0), fmt::format("MAT1 {} is given twice", d.integer(0)), "number each material once");
   RegionData m;
-  if (!d.empty(1)) m.E = d.number(1);
-  if (!d.empty(3))
-    m.nu = d.number(3);
-  else if (!d.empty(1) && !d.empty(2))
-    m.nu = d.number(1) / (2 * d.number(2)) - 1;
-  if (!d.empty(4)) m.density = d.number(4);
+  const bool E = !d.empty(1), G = !d.empty(2), nu = !d.empty(3);
+  if (E) m.E = d.number(1);
+  if (nu) m.nu = d.number(3);
+  if (G && !(d.number(2) > 0))
+    throw Error(d.place(2), fmt::format("MAT1 {}: shear modulus {:g} is not positive", d.integer(0), d.number(2)));
+  if (E && G && !nu) m.nu = m.E / (2 * d.number(2)) - 1;
+  if (!E && G && nu) m.E = 2 * d.number(2) * (1 + m.nu);
+  if (!d.empty(4) && d.number(4) != 0)
+    m.density = d.number(4);
+  else
+    deck.without_density[d.integer(0)] = d.place();
   if (m.E <= 0) throw Error(d.place(1), fmt::format("MAT1 {}: Young's modulus {:g} is not positive", d.integer(0), m.E));
   if (m.nu <= -1 || m.nu >= 0.5)
     throw Error(d.place(3), fmt::format("MAT1 {}: Poisson's ratio {:g} is not in (-1, 0.5)", d.integer(0), m.nu));
   if (m.density <= 0) throw Error(d.place(4), fmt::format("MAT1 {}: density {:g} is not positive", d.integer(0), m.density));
+  if (E && G && nu && std::abs(d.number(2) - m.E / (2 * (1 + m.nu))) > 0.01 * d.number(2))
+    in.skip("MAT1: a shear modulus that is not that of E and NU", d.place(2));
+  if (d.number(5) != 0) in.skip("MAT1: thermal expansion", d.place(5));
+  if (d.number(7) != 0) in.skip("MAT1: structural damping GE", d.place(7));
   material_of(e, deck).data = m;
 }
 

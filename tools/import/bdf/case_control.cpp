@@ -1,0 +1,85 @@
+// Executive and case control of a Nastran file: what stands before BEGIN BULK.  The first subcase becomes scene lines; what stands above
+// the subcases holds for each of them.
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "base/error.hpp"
+#include "import/bdf/card.hpp"
+
+namespace hilo {
+namespace {
+
+/// "SPC(1) = 3" as "SPC" and "3".
+std::pair<std::string, std::string> parts(const std::string& line) {
+  const auto end = line.find_first_of(" =(,");
+  const std::string word = upper(line.substr(0, end));
+  const auto eq = line.find('=');
+  std::string value = eq != std::string::npos ? line.substr(eq + 1) : end == std::string::npos ? "" : line.substr(end);
+  value.erase(0, value.find_first_not_of(" ,="));
+  return {word, value};
+}
+
+/// Requests for output, names, and controls of printing: nothing is lost.
+bool is_request(const std::string& word) {
+  static const std::set<std::string> requests{
+      "DISPLACEMENT", "DISPLACEMENTS", "DISP",          "PRESSURE", "VECTOR",  "VELOCITY",      "VELO",     "SVELOCITY",
+      "ACCELERATION", "ACCE",          "SACCELERATION", "STRESS",   "STRE",    "STRAIN",        "STRA",     "ELSTRESS",
+      "ELSTRAIN",     "FORCE",         "FORC",          "ELFORCE",  "ELFO",    "SPCFORCES",     "SPCFORCE", "SPCF",
+      "MPCFORCES",    "MPCFORCE",      "MPCF",          "OLOAD",    "OLOA",    "GPFORCE",       "GPFO",     "GPSTRESS",
+      "GPSTRAIN",     "ESE",           "EKE",           "EDE",      "ECHO",    "SUBTITLE",      "LABEL",    "LINE",
+      "MAXLINES",     "SET",           "PAGE",          "OUTPUT",   "SVECTOR", "SDISPLACEMENT", "THERMAL",  "FLUX",
+      "MEFFMASS",     "WEIGHTCHECK",   "GROUNDCHECK",   "TFL",      "SURFACE", "VOLUME",        "STRFIELD", "ID",
+      "TIME",         "CEND",          "DIAG",          "NASTRAN",  "APP",     "SKIP",          "RESULTS",  "BCRESULTS",
+      "ELSDCON",      "GPSDCON",       "VUGRID",        "MODALKE",  "MODALSE", "NLSTRESS",      "ANALYSIS", "ASSIGN",
+      "INIT",         "FORMAT",        "XYPLOT",        "XYPRINT",  "PLOT",    "OTIME",         "OMODES",   "CONTACTRESULTS"};
+  return requests.contains(word) || word.find_first_not_of("0123456789") == std::string::npos;
+}
+
+std::int64_t number_in(const std::string& value, const BdfCaseLine& line) {
+  std::int64_t n = 0;
+  const auto [end, bad] = std::from_chars(value.data(), value.data() + value.size(), n);
+  if (bad != std::errc() || n < 0) throw Error(line.place, fmt::format("expected the number of a set, found \"{}\"", line.text));
+  return n;
+}
+
+}  // namespace
+
+void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& in) {
+  BdfCase& c = deck.chosen;
+  bool others = false, goes_on = false;
+  c.any = !lines.empty();
+  for (const BdfCaseLine& line : lines) {
+    const bool rest = goes_on;  // of a request that goes on behind a comma
+    goes_on = line.text.back() == ',';
+    if (rest) continue;
+    const auto [word, value] = parts(line.text);
+    if (word == "SUBCASE" || word == "SUBCOM" || word == "SYM" || word == "REPCASE") {
+      others = word != "SUBCASE" || c.number >= 0;
+      if (others) in.skip(word + (word == "SUBCASE" ? " after the first" : ""), line.place);
+      if (!others) c.number = value.empty() ? 1 : number_in(value, line);
+      continue;
+    }
+    if (others) continue;
+    if (word == "SOL")
+      c.solution = upper(value.substr(0, value.find_first_of(" ,")));
+    else if (word == "TITLE")
+      c.title = value;
+    else if (word == "SPC")
+      c.spc = number_in(value, line);
+    else if (word == "LOAD")
+      c.load = number_in(value, line);
+    else if (word == "METHOD")
+      c.method = number_in(value, line);
+    else if (word == "TSTEP" || word == "TSTEPNL")
+      c.step = number_in(value, line);
+    else if (word == "PARAM") {
+      if (upper(line.text).find("WTMASS") != std::string::npos)
+        throw Error(line.place, "PARAM WTMASS in case control is not read", "write it into the bulk data");
+      in.skip("PARAM in case control", line.place);
+    } else if (!is_request(word))
+      in.skip("case control " + word.substr(0, 40), line.place);
+  }
+}
+
+}  // namespace hilo

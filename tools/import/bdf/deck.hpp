@@ -1,0 +1,124 @@
+// What a Nastran file says, in its own numbers and units, before it becomes a mesh and a scene.
+#pragma once
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "import/bdf/axes.hpp"
+#include "import/data_line.hpp"
+#include "import/deck_material.hpp"
+#include "import/imported.hpp"
+
+namespace hilo {
+
+/// A line of SPC or SPC1: grids held in components (bits 0 to 5), at a value in SPC.
+struct BdfSupport {
+  std::vector<std::int64_t> grids;
+  unsigned components;
+  double value;
+  std::string place;
+};
+/// FORCE, MOMENT and their like: a vector at a grid; GRAV: an acceleration; pressures on faces.
+struct BdfLoad {
+  enum class Kind { force, moment, gravity, pressure } kind;
+  std::int64_t grid = 0, system = 0;
+  double size = 0;                         // N, N m, m/s^2, Pa in units of the deck
+  Vec3 direction = Vec3::Zero();           // in `system`; of a pressure: zero for one along the normal
+  std::array<std::int64_t, 2> towards{};   // FORCE1, MOMENT1: along the line of two grids
+  std::vector<std::int64_t> elements = {};      // of a pressure
+  std::array<std::int64_t, 2> face{};      // PLOAD4 on solids: G1, and G3 or G4
+  std::vector<std::int64_t> corners = {};  // PLOAD: a face by its grids
+  std::string place = {};
+};
+/// LOAD: sets of loads with factors.
+struct BdfSum {
+  double factor = 1;
+  std::vector<std::pair<double, std::int64_t>> parts;
+  std::string place;
+};
+/// RBE2, RBAR: grids that follow one.
+struct BdfRigid {
+  std::string name, place;  // "RBE2"
+  std::int64_t id, hub;
+  unsigned components;
+  std::vector<std::int64_t> grids;
+};
+/// RBE3: a grid that follows the weighted mean of others.
+struct BdfMean {
+  std::int64_t id, grid;
+  unsigned components;
+  std::vector<std::pair<std::int64_t, double>> of;  // grid, weight
+  std::string not_read, place;
+};
+/// CONM2: offset from the grid and inertia about the centre of mass, in `system`; -1: the offset is the point itself.
+struct BdfMass {
+  std::int64_t id, grid, system;
+  double mass;
+  Vec3 offset;
+  Mat3 inertia;
+  std::string place;
+};
+/// CELAS, CDAMP: one component of each of two grids, 0 is the ground.  CBUSH: six of them in axes of its own.
+struct BdfSpring {
+  std::string name, place;
+  std::int64_t id = 0, property = 0;
+  std::array<std::int64_t, 2> grids{};
+  std::array<int, 2> component{};  // 1 to 6; 0: all of a CBUSH, -1: along the line (CBUSH1D)
+  std::array<double, 6> k{}, c{};
+  std::optional<std::int64_t> system = {}, towards = {};  // of a CBUSH: CID, G0
+  Vec3 plane = Vec3::Zero();                              // of a CBUSH: X1 to X3
+  double share = 0.5;                                     // of a CBUSH: where between its grids it stands
+};
+struct BdfSpringData {
+  std::array<double, 6> k{}, c{};
+};
+/// What the first subcase takes; -1: none named.
+struct BdfCase {
+  std::string title, solution;  // "101"
+  std::int64_t spc = -1, load = -1, method = -1, step = -1, number = -1;
+  bool any = false;  // case control is there
+};
+
+struct BdfDeck {
+  struct Cell {
+    Shape shape;
+    std::int64_t id, property;
+    std::vector<std::int64_t> nodes;
+    std::string place;
+  };
+  std::vector<Vec3> X;
+  std::vector<std::int64_t> node_id;
+  std::vector<BdfGrid> grids;                          // beside X
+  BdfGrid grid_default;                                // GRDSET
+  std::map<std::int64_t, BdfSystem> systems;           // by CID
+  std::unordered_map<std::int64_t, std::int64_t> row;  // number of a grid -> row of X
+  std::vector<Cell> cells, shells;
+  std::set<std::int64_t> cell_ids;
+  std::unordered_map<std::int64_t, std::int64_t> cell_row;  // number of a cell -> row of cells
+  std::map<std::int64_t, std::int64_t> material_of;         // property -> material
+  std::map<std::int64_t, double> area_of;                   // property of rods -> cross-section
+  std::map<std::int64_t, std::string> property_name;
+  std::map<std::int64_t, DeckMaterial> materials;                         // by MID
+  std::map<std::int64_t, std::string> without_density;                    // MID -> place
+  std::vector<DataLine> metals;                                           // MATS1
+  std::map<std::int64_t, std::vector<std::pair<double, double>>> tables;  // TABLES1: x, y
+  double mass_factor = 1;                                                 // PARAM, WTMASS
+  BdfCase chosen;
+  std::map<std::int64_t, std::vector<BdfSupport>> supports;        // by SID
+  std::map<std::int64_t, std::vector<std::int64_t>> support_sums;  // SPCADD
+  std::map<std::int64_t, std::vector<BdfLoad>> loads;              // by SID
+  std::map<std::int64_t, BdfSum> load_sums;                        // LOAD
+  std::map<std::int64_t, int> modes;                               // EIGRL, EIGR: how many, 0 not said
+  std::map<std::int64_t, std::pair<double, double>> steps;         // TSTEP: end, step
+  std::vector<BdfRigid> rigid;
+  std::vector<BdfMean> means;
+  std::vector<BdfMass> masses;
+  std::vector<BdfSpring> springs;
+  std::map<std::int64_t, BdfSpringData> spring_data;  // PELAS, PDAMP, PBUSH
+};
+
+}  // namespace hilo

@@ -1,0 +1,127 @@
+// The entries of a Nastran file that say supports and loads, and the sets of them that case control names.
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "import/bdf/card.hpp"
+
+namespace hilo {
+namespace {
+
+void read_spc1(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  BdfSupport s{{}, components(d, 1), 0, d.place()};
+  if (const size_t end = grid_list(d, 2, s.grids); end < d.fields.size())
+    throw Error(d.place(end), fmt::format("SPC1: expected a grid, found \"{}\"", d.text(end)));
+  deck.supports[d.integer(0)].push_back(std::move(s));
+}
+void read_spc(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  for (size_t i = 1; i < 7; i += 3)
+    if (!d.empty(i)) deck.supports[d.integer(0)].push_back({{d.integer(i)}, components(d, i + 1), d.number(i + 2), d.place()});
+}
+void read_spcadd(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  auto& sum = deck.support_sums[e.data.integer(0)];
+  if (!sum.empty()) throw Error(e.data.place(0), fmt::format("SPCADD {} is given twice", e.data.integer(0)));
+  grid_list(e.data, 1, sum);
+}
+
+Vec3 vector_at(const DataLine& d, size_t field) { return {d.number(field), d.number(field + 1), d.number(field + 2)}; }
+
+void read_force(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  BdfLoad l{e.name.front() == 'F' ? BdfLoad::Kind::force : BdfLoad::Kind::moment};
+  l.grid = d.integer(1), l.place = d.place();
+  if (e.name.back() == '1') {
+    l.size = d.number(2), l.towards = {d.integer(3), d.integer(4)};
+  } else {
+    l.system = d.empty(2) ? 0 : d.integer(2);
+    l.size = d.number(3), l.direction = vector_at(d, 4);
+  }
+  deck.loads[d.integer(0)].push_back(l);
+}
+void read_gravity(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  BdfLoad l{BdfLoad::Kind::gravity};
+  l.system = d.empty(1) ? 0 : d.integer(1), l.place = d.place();
+  l.size = d.number(2), l.direction = vector_at(d, 3);
+  deck.loads[d.integer(0)].push_back(l);
+}
+
+/// Pressure on a face of a solid, or on a shell: SID EID P1 P2 P3 P4 G1 G3|G4, or SID EID P1 - - - THRU EID2; then CID N1 N2 N3 SORL LDIR.
+void read_pload4(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+  const auto& d = e.data;
+  BdfLoad l{BdfLoad::Kind::pressure};
+  l.place = d.place(), l.size = d.number(2), l.elements = {d.integer(1)};
+  for (size_t i = 3; i < 6; ++i)
+    if (!d.empty(i) && d.number(i) != l.size) return in.skip("PLOAD4 that varies over the face", d.place(i));
+  if (upper(d.text(6)) == "THRU") {
+    const auto last = d.integer(7);
+    if (last < l.elements[0] || last - l.elements[0] > 100'000'000)
+      throw Error(d.place(7), fmt::format("PLOAD4: {} THRU {} names no usable range", l.elements[0], last));
+    for (auto i = l.elements[0] + 1; i <= last; ++i) l.elements.push_back(i);
+  } else {
+    l.face = {d.empty(6) ? 0 : d.integer(6), d.empty(7) ? 0 : d.integer(7)};
+  }
+  l.system = d.empty(8) ? 0 : d.integer(8);
+  l.direction = vector_at(d, 9);
+  for (size_t i = 12; i < 14; ++i)
+    if (!d.empty(i) && upper(d.text(i)) != (i == 12 ? "SURF" : "NORM"))
+      return in.skip(fmt::format("PLOAD4, {}", upper(d.text(i)).substr(0, 8)), d.place(i));
+  deck.loads[d.integer(0)].push_back(std::move(l));
+}
+/// SID P and three or four grids, positive along the normal that they turn about.
+void read_pload(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  BdfLoad l{BdfLoad::Kind::pressure};
+  l.place = d.place(), l.size = d.number(1);
+  for (size_t i = 2; i < 6; ++i)
+    if (!d.empty(i)) l.corners.push_back(d.integer(i));
+  if (l.corners.size() < 3) throw Error(d.place(), "PLOAD names three or four grids");
+  deck.loads[d.integer(0)].push_back(std::move(l));
+}
+/// SID P and shells.
+void read_pload2(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  BdfLoad l{BdfLoad::Kind::pressure};
+  l.place = d.place(), l.size = d.number(1);
+  grid_list(d, 2, l.elements);
+  deck.loads[d.integer(0)].push_back(std::move(l));
+}
+
+void read_load(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  BdfSum sum{d.number(1, 1), {}, d.place()};
+  for (size_t i = 2; i < d.fields.size(); i += 2)
+    if (!d.empty(i + 1)) sum.parts.emplace_back(d.number(i, 1), d.integer(i + 1));
+  if (!deck.load_sums.try_emplace(d.integer(0), sum).second) throw Error(d.place(0), fmt::format("LOAD {} is given twice", d.integer(0)));
+}
+
+/// EIGRL: SID V1 V2 ND; EIGR: SID METHOD F1 F2 NE ND.  A band of frequencies is not asked for.
+void read_modes(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+  const auto& d = e.data;
+  const size_t field = e.name == "EIGRL" ? 3 : 5, band = e.name == "EIGRL" ? 2 : 3;
+  const auto n = d.empty(field) ? 0 : d.integer(field);
+  if (n == 0 && !d.empty(band)) in.skip(e.name + " up to a frequency", d.place(band));
+  deck.modes[d.integer(0)] = static_cast<int>(std::min<std::int64_t>(std::max<std::int64_t>(n, 0), 1000));
+}
+/// SID N1 DT1 NO1, and on further lines other steps.
+void read_tstep(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+  const auto& d = e.data;
+  double end = 0;
+  for (size_t i = 1; i < d.fields.size(); i += 8) end += d.number(i) * d.number(i + 1);
+  if (d.fields.size() > 8) in.skip("TSTEP whose steps change", d.place());
+  deck.steps[d.integer(0)] = {end, d.number(2)};
+}
+
+}  // namespace
+
+std::span<const BdfCard> bdf_load_cards() {
+  static constexpr BdfCard cards[] = {
+      {"SPC1", read_spc1},     {"SPC", read_spc},       {"SPCADD", read_spcadd}, {"FORCE", read_force},   {"FORCE1", read_force},
+      {"MOMENT", read_force},  {"MOMENT1", read_force}, {"GRAV", read_gravity},  {"PLOAD4", read_pload4}, {"PLOAD", read_pload},
+      {"PLOAD2", read_pload2}, {"LOAD", read_load},     {"EIGRL", read_modes},   {"EIGR", read_modes},    {"TSTEP", read_tstep},
+  };
+  return cards;
+}
+
+}  // namespace hilo

@@ -1,0 +1,200 @@
+// The entries of a Nastran file that make the mesh: grids and their coordinate systems, solids, rods, shells on solids, properties.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "import/bdf/card.hpp"
+
+namespace hilo {
+namespace {
+
+std::optional<std::int64_t> system_in(const DataLine& d, size_t field) {
+  return d.empty(field) ? std::nullopt : std::optional(d.integer(field));
+}
+
+/// "123": a support that goes with the grid, nothing where the field is blank or 0.
+std::string held_in(const DataLine& d, size_t field) {
+  if (!d.empty(field)) components(d, field);
+  const std::string held(d.text(field));
+  return held == "0" ? "" : held;
+}
+
+void read_grid(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  const auto id = d.integer(0);
+  if (id < 1) throw Error(d.place(0), fmt::format("GRID {} is not positive", id));
+  if (!deck.row.try_emplace(id, static_cast<std::int64_t>(deck.X.size())).second)
+    throw Error(d.place(0), fmt::format("node {} is given twice", id), "number each node once");
+  deck.X.emplace_back(d.number(2), d.number(3), d.number(4));
+  deck.node_id.push_back(id);
+  deck.grids.push_back({system_in(d, 1), system_in(d, 5), held_in(d, 6), d.place(0)});
+}
+
+void read_grid_default(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  if (!deck.grid_default.place.empty()) throw Error(d.place(), "GRDSET is given twice", "give it once");
+  deck.grid_default = {system_in(d, 1), system_in(d, 5), held_in(d, 6), d.place()};
+}
+
+BdfSystem::Kind kind_of(const BdfEntry& e) {
+  const char last = e.name.back();
+  return last == 'R' ? BdfSystem::Kind::rectangular : last == 'C' ? BdfSystem::Kind::cylindrical : BdfSystem::Kind::spherical;
+}
+void add_system(BdfDeck& deck, std::int64_t id, const BdfSystem& s) {
+  if (id < 1) throw Error(s.place, fmt::format("coordinate system {} is not positive", id));
+  if (!deck.systems.try_emplace(id, s).second)
+    throw Error(s.place, fmt::format("coordinate system {} is given twice", id), "number each system once");
+}
+/// Three grids; two systems on a line.
+void read_cord1(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  for (size_t from = 0; from < std::max<size_t>(d.fields.size(), 1); from += 4) {
+    if (from > 0 && d.empty(from)) continue;
+    BdfSystem s{kind_of(e), d.place(from)};
+    for (size_t i = 0; i < 3; ++i)
+      if (s.grids[i] = d.integer(from + 1 + i); s.grids[i] < 1)
+        throw Error(d.place(from + 1 + i), fmt::format("GRID {} is not positive", s.grids[i]));
+    add_system(deck, d.integer(from), s);
+  }
+}
+/// Three points in another system.
+void read_cord2(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  BdfSystem s{kind_of(e), d.place(0)};
+  s.reference = d.empty(1) ? 0 : d.integer(1);
+  for (size_t i = 0; i < 9; ++i) s.points[i / 3][static_cast<Eigen::Index>(i % 3)] = d.number(2 + i);
+  add_system(deck, d.integer(0), s);
+}
+
+void add(BdfDeck& deck, BdfDeck::Cell c) {
+  if (!deck.cell_ids.insert(c.id).second) throw Error(c.place, fmt::format("element {} is given twice", c.id), "number each element once");
+  deck.cell_row[c.id] = static_cast<std::int64_t>(deck.cells.size());
+  deck.cells.push_back(std::move(c));
+}
+/// A property that is left blank has the number of the element.
+std::int64_t property_in(const DataLine& d, size_t field) { return d.empty(field) ? d.integer(0) : d.integer(field); }
+
+struct SolidKind {
+  const char* name;
+  size_t corners, nodes;
+  Shape linear, quadratic;
+  std::vector<int> p;  // quadratic: ours[i] = Nastran's[p[i]]
+};
+const std::vector<SolidKind> solids = {
+    {"CTETRA", 4, 10, Shape::tet4, Shape::tet10, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}},
+    {"CPENTA", 6, 15, Shape::wedge6, Shape::wedge15, {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11}},
+    {"CHEXA", 8, 20, Shape::hex8, Shape::hex20r, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15}},
+};
+
+void read_solid(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const SolidKind& k = *std::find_if(solids.begin(), solids.end(), [&](const SolidKind& s) { return e.name == s.name; });
+  const auto& d = e.data;
+  const size_t given = d.fields.size() < 2 ? 0 : d.fields.size() - 2;
+  BdfDeck::Cell r{k.linear, d.integer(0), property_in(d, 1), {}, d.place(0)};
+  size_t filled = 0;
+  std::vector<std::int64_t> n;
+  for (size_t i = 0; i < k.nodes; ++i) {
+    n.push_back(i < given && !d.empty(2 + i) ? d.integer(2 + i) : 0);
+    if (n.back()) ++filled;
+  }
+  const bool corners = std::all_of(n.begin(), n.begin() + static_cast<std::ptrdiff_t>(k.corners), [](std::int64_t i) { return i != 0; });
+  if (!corners || given > k.nodes)
+    throw Error(d.place(), fmt::format("{} {} has {} nodes, {} or {} are due", k.name, r.id, given, k.corners, k.nodes));
+  if (filled == k.corners)
+    r.nodes.assign(n.begin(), n.begin() + static_cast<std::ptrdiff_t>(k.corners));
+  else if (filled == k.nodes) {
+    r.shape = k.quadratic;
+    for (const int i : k.p) r.nodes.push_back(n[static_cast<size_t>(i)]);
+  } else
+    throw Error(d.place(), fmt::format("{} {} has mid-side nodes on some edges only", k.name, r.id), "give all of them or none");
+  add(deck, std::move(r));
+}
+
+void read_rod(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  add(deck, {Shape::bar2, d.integer(0), property_in(d, 1), {d.integer(2), d.integer(3)}, d.place(0)});
+}
+/// Carries its material and its area itself: each pair of them is a property with a number below zero.
+void read_conrod(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  const auto material = d.integer(3);
+  const double area = d.number(4);
+  std::int64_t property = -1;
+  int same = 1;
+  while (deck.material_of.count(property) && (deck.material_of[property] != material || deck.area_of[property] != area))
+    same += deck.material_of[property--] == material;
+  if (deck.material_of.try_emplace(property, material).second)
+    deck.property_name[property] = fmt::format("conrod_{}{}", material, same > 1 ? fmt::format("_{}", same) : "");
+  deck.area_of[property] = area;
+  add(deck, {Shape::bar2, d.integer(0), property, {d.integer(1), d.integer(2)}, d.place(0)});
+}
+
+/// Shells are kept where they lie on solids: a set of facets for each property.
+template <size_t corners>
+void read_shell(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  BdfDeck::Cell r{Shape::tet4, d.integer(0), property_in(d, 1), {}, d.place(0)};
+  for (size_t i = 0; i < corners; ++i) r.nodes.push_back(d.integer(2 + i));
+  deck.shells.push_back(std::move(r));
+}
+
+void read_property(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  if (!deck.material_of.try_emplace(d.integer(0), d.integer(1)).second)
+    throw Error(d.place(0), fmt::format("property {} is given twice", d.integer(0)), "number each property once");
+}
+void read_rod_property(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+  read_property(e, deck, in);
+  if (!e.data.empty(2)) deck.area_of[e.data.integer(0)] = e.data.number(2);
+}
+
+void read_param(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+  const auto& d = e.data;
+  if (upper(d.text(0)) != "WTMASS") return in.skip("PARAM " + upper(d.text(0)).substr(0, 40), d.place());
+  deck.mass_factor = d.number(1);
+  if (!(deck.mass_factor > 0)) throw Error(d.place(1), fmt::format("PARAM WTMASS: {:g} is not positive", deck.mass_factor));
+  in.notes.push_back(fmt::format("{}: PARAM WTMASS: densities and masses times {:g}", d.place(), deck.mass_factor));
+}
+
+[[noreturn]] void refuse(const BdfEntry& e, const char* why) {
+  throw Error(e.data.place() + ":1", fmt::format("{}: {}", e.name, why), bdf_supported);
+}
+void pyramid(const BdfEntry& e, BdfDeck&, Imported&) { refuse(e, "pyramids are not read"); }
+void beam(const BdfEntry& e, BdfDeck&, Imported&) { refuse(e, "beams are not read"); }
+void axisymmetric(const BdfEntry& e, BdfDeck&, Imported&) { refuse(e, "axisymmetric elements are not three-dimensional"); }
+
+}  // namespace
+
+std::span<const BdfCard> bdf_mesh_cards() {
+  static constexpr BdfCard cards[] = {
+      {"GRID", read_grid},
+      {"GRDSET", read_grid_default},
+      {"CORD1R", read_cord1},
+      {"CORD1C", read_cord1},
+      {"CORD1S", read_cord1},
+      {"CORD2R", read_cord2},
+      {"CORD2C", read_cord2},
+      {"CORD2S", read_cord2},
+      {"CTETRA", read_solid},
+      {"CPENTA", read_solid},
+      {"CHEXA", read_solid},
+      {"CROD", read_rod},
+      {"CONROD", read_conrod},
+      {"CTRIA3", read_shell<3>},
+      {"CTRIA6", read_shell<3>},
+      {"CQUAD4", read_shell<4>},
+      {"CQUAD8", read_shell<4>},
+      {"PSOLID", read_property},
+      {"PROD", read_rod_property},
+      {"PARAM", read_param},
+      {"CPYRAM", pyramid},
+      {"CBEAM", beam},
+      {"CBAR", beam},
+      {"CTRAX3", axisymmetric},
+      {"CTRAX6", axisymmetric},
+  };
+  return cards;
+}
+
+}  // namespace hilo

@@ -1,0 +1,293 @@
+// Materials, supports and the analysis of a Nastran file as scene lines.
+#include "import/bdf/scene.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace hilo {
+
+BdfScene::BdfScene(const BdfDeck& deck, Imported& in, SetNames& names, const ImportOptions& options)
+    : deck_(deck), in_(in), names_(names), options_(options), used_(deck.X.size(), 0) {
+  for (const auto a : in.mesh.nodes) used_[static_cast<size_t>(a)] = 1;
+  Vec3 low = X(in.mesh.nodes[0]), high = low;
+  for (const auto a : in.mesh.nodes) low = low.cwiseMin(X(a)), high = high.cwiseMax(X(a));
+  size_ = (high - low).norm();
+}
+
+std::string BdfScene::text() {
+  find_bodies();
+  choose_loads();
+  gravity();
+  materials();
+  bodies();
+  rigid();
+  springs();
+  supports();
+  nodal_loads();
+  pressures();
+  time();
+  if (tables_.empty() && head_.empty()) return "";
+  std::string s = "units = \"m-kg-s\"\n";
+  if (!deck_.chosen.title.empty()) s = fmt::format("title = {}\n", toml_text(deck_.chosen.title)) + s;
+  s += head_ + tables_;
+  for (const auto& n : in_.not_read)
+    if (!n.output) s += fmt::format("# not read: {} ({}, {})\n", n.what, n.count, n.place);
+  return s;
+}
+
+std::string BdfScene::unique(const std::string& section, const std::string& wish) {
+  const int n = ++made_[section + "/" + wish];
+  return n == 1 ? wish : fmt::format("{}_{}", wish, n);
+}
+
+std::string BdfScene::set_of(Rows nodes, const std::string& wish, bool listed) {
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  const bool apart = listed && options_.order == 2;
+  if (set_by_rows_.empty())
+    for (const auto& [name, set] : in_.mesh.node_sets) {
+      Rows of_cells;
+      for (const auto a : set)
+        if (used_[static_cast<size_t>(a)]) of_cells.push_back(a);
+      if (!of_cells.empty()) set_by_rows_.try_emplace(of_cells, name);
+    }
+  if (const auto known = set_by_rows_.find(nodes); known != set_by_rows_.end() && !apart) return known->second;
+  const std::string name = names_.nodes(unique("set", wish), nodes);
+  if (apart)
+    in_.as_listed.insert(name);
+  else
+    set_by_rows_[nodes] = name;
+  return name;
+}
+
+std::int64_t BdfScene::row(std::int64_t grid, const std::string& place, const std::string& who) const {
+  const auto a = deck_.row.find(grid);
+  if (a == deck_.row.end()) throw Error(place, fmt::format("{}: no GRID {}", who, grid));
+  return a->second;
+}
+
+BdfScene::End BdfScene::end(std::int64_t row) const {
+  if (row < 0) return End::ground;
+  if (body_.contains(row)) return End::body;
+  if (mean_.contains(row)) return End::mean;
+  return used_[static_cast<size_t>(row)] ? End::node : End::nothing;
+}
+
+bool BdfScene::joint(unsigned c, const Mat3& axes, const std::string& name, const std::string& a, const std::string& b, const Vec3& at,
+                     const std::string& place) {
+  const unsigned slides = c & 7, turns = c >> 3;
+  const auto count = [](unsigned bits) { return std::popcount(bits); };
+  const auto which = [](unsigned bits) { return static_cast<Eigen::Index>(std::countr_zero(bits)); };  // the first of them
+  const char* kind = nullptr;
+  Eigen::Index axis = -1;
+  if (c == 63)
+    kind = "fixed";
+  else if (slides == 7 && turns == 0)
+    kind = "spherical";
+  else if (slides == 7 && count(turns) == 2)
+    kind = "revolute", axis = which(7 & ~turns);
+  else if (count(slides) == 2 && turns == 7)
+    kind = "prismatic", axis = which(7 & ~slides);
+  else if (count(slides) == 2 && turns == slides)
+    kind = "cylindrical", axis = which(7 & ~slides);
+  else if (count(slides) == 1 && count(turns) == 2 && (turns & slides) == 0)
+    kind = "planar", axis = which(slides);
+  else if (count(slides) == 1 && turns == 0)
+    kind = "in-plane", axis = which(slides);
+  else if (count(slides) == 2 && turns == 0)
+    kind = "in-line", axis = which(7 & ~slides);
+  if (!kind) return false;
+  tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"{}\"\nname = {}\na = {}\nb = {}\nat = {}\n", place, kind,
+                         toml_text(unique("joint", name)), toml_text(a), toml_text(b), point(at));
+  if (axis >= 0) tables_ += fmt::format("axis = {}\n", direction(axes.col(axis)));
+  return true;
+}
+
+void BdfScene::materials() {
+  const Mesh& m = in_.mesh;
+  std::map<std::int64_t, std::int64_t> property_of;  // region -> its first property
+  for (size_t c = 0; c < deck_.cells.size(); ++c) property_of.try_emplace(m.region[c], deck_.cells[c].property);
+  std::set<std::int64_t> used;
+  std::string lines;
+  for (const auto& [r, property] : property_of) {
+    const std::string region = toml_text(m.region_name[static_cast<size_t>(r)]);
+    const auto mid = deck_.material_of.find(property);
+    const auto mat = mid == deck_.material_of.end() ? deck_.materials.end() : deck_.materials.find(mid->second);
+    if (mat == deck_.materials.end()) {
+      in_.notes.push_back(mid == deck_.material_of.end() ? fmt::format("region {}: no property {}, so no material", region, property)
+                                                         : fmt::format("region {}: no material {}", region, mid->second));
+      continue;
+    }
+    const auto area = deck_.area_of.find(property);
+    std::string keys = area != deck_.area_of.end() && area->second > 0 ? fmt::format("area = {}\n", number(area->second, "m^2")) : "";
+    if (!mat->second.no_law.empty()) {
+      lines += fmt::format("\n# region {}: material {} has no law here ({}), give it one\n", region, mat->first, mat->second.no_law);
+    } else if (!mat->second.elastic()) {
+      used.insert(mat->first);
+      keys = fmt::format("material = {}\n", toml_text(mat->second.name)) + keys;
+      in_.notes.push_back(fmt::format("region {}: its material \"{}\" ({}) stands in the scene lines alone (--scene-out)", region,
+                                      mat->second.name, mat->second.kind));
+    }
+    if (!keys.empty()) lines += fmt::format("\n[region.{}]\n", region) + keys;
+  }
+  for (const auto id : used) tables_ += deck_.materials.at(id).table(deck_.materials.at(id).name, options_.units);
+  tables_ += lines;
+}
+
+namespace {
+
+/// Components that a node is held in, and at which values.
+struct Held {
+  unsigned bits = 0;
+  std::array<double, 6> value{};
+  std::string place;
+};
+
+}  // namespace
+
+void BdfScene::supports() {
+  std::vector<std::int64_t> sets;
+  const BdfCase& chosen = deck_.chosen;
+  const auto is_there = [&](std::int64_t id) { return deck_.supports.contains(id) || deck_.support_sums.contains(id); };
+  if (chosen.spc >= 0 && !is_there(chosen.spc)) in_.skip(fmt::format("SPC = {}, of which there is none", chosen.spc), "case control");
+  std::int64_t take = chosen.spc;
+  if (take < 0 && chosen.load < 0) {  // nothing is chosen at all: one set is meant
+    if (deck_.support_sums.size() == 1)
+      take = deck_.support_sums.begin()->first;
+    else if (deck_.supports.size() == 1)
+      take = deck_.supports.begin()->first;
+  }
+  if (const auto sum = deck_.support_sums.find(take); sum != deck_.support_sums.end())
+    sets = sum->second;
+  else if (take >= 0)
+    sets = {take};
+  for (const auto& [id, lines] : deck_.supports)
+    if (std::find(sets.begin(), sets.end(), id) == sets.end())
+      in_.skip("SPC of a set that the first subcase does not take", lines.front().place, static_cast<std::int64_t>(lines.size()));
+
+  std::map<std::int64_t, Held> held;
+  for (size_t a = 0; a < deck_.grids.size(); ++a)
+    if (const std::string& always = deck_.grids[a].held; !always.empty()) {
+      Held& h = held[static_cast<std::int64_t>(a)];
+      h.place = deck_.grids[a].place;
+      for (const char c : always)
+        if (c != '0') h.bits |= 1u << (c - '1');
+    }
+  for (const auto id : sets) {
+    const auto lines = deck_.supports.find(id);
+    if (lines == deck_.supports.end()) continue;
+    for (const BdfSupport& s : lines->second)
+      for (const auto grid : s.grids) {
+        const auto a = deck_.row.find(grid);
+        if (a == deck_.row.end()) {
+          in_.skip("SPC on a grid that is not there", s.place);
+          continue;
+        }
+        Held& h = held[a->second];
+        if (h.place.empty()) h.place = s.place;
+        h.bits |= s.components;
+        for (size_t k = 0; k < 6; ++k)
+          if (s.components >> k & 1) h.value[k] = s.value;
+      }
+  }
+
+  struct Group {
+    Rows rows;
+    std::string place;
+  };
+  std::map<unsigned, Group> fixed;
+  std::map<std::pair<unsigned, std::array<double, 3>>, Group> moved;
+  for (const auto& [a, h] : held) {
+    const End what = end(a);
+    if (what == End::body) {
+      for (size_t k = 0; k < 6; ++k)
+        if ((h.bits >> k & 1) && h.value[k] != 0) in_.skip("SPC with a displacement on a grid of no cell", h.place);
+      body_held_[a] |= h.bits;
+      continue;
+    }
+    if (what != End::node) {
+      in_.skip(what == End::mean ? "SPC on the grid of an RBE3" : "SPC on a grid of no element", h.place);
+      continue;
+    }
+    const Mat3 own = axes(a);
+    unsigned still = 0, moves = 0;
+    std::array<double, 3> by{};
+    const bool whole = (h.bits & 7) == 7 && h.value[0] == 0 && h.value[1] == 0 && h.value[2] == 0;
+    for (Eigen::Index k = 0; k < 3 && !whole; ++k) {
+      if (!(h.bits >> k & 1)) continue;
+      Eigen::Index along;
+      own.col(k).cwiseAbs().maxCoeff(&along);
+      if (std::abs(own(along, k)) < 1 - 1e-12) {
+        in_.skip("SPC along axes that are not those of the basic system", h.place);
+        continue;
+      }
+      const double value = h.value[static_cast<size_t>(k)];
+      (value == 0 ? still : moves) |= 1u << along;
+      by[static_cast<size_t>(along)] = value * (own(along, k) < 0 ? -1 : 1);
+    }
+    if (whole) still = 7;
+    const auto add = [&](Group& g) {
+      if (g.rows.empty()) g.place = h.place;
+      g.rows.push_back(a);
+    };
+    if (still) add(fixed[still]);
+    if (moves) add(moved[{moves, by}]);
+  }
+  const auto parts = [](unsigned bits) {
+    std::string s;
+    for (unsigned k = 0; k < 3; ++k)
+      if (bits >> k & 1) s += fmt::format("{}\"{}\"", s.empty() ? "" : ", ", "xyz"[k]);
+    return s;
+  };
+  for (const auto& [bits, g] : fixed) {
+    const std::string set = set_of(g.rows, "support");
+    tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"fixed\"\nname = {}\non = {}\ncomponents = [{}]\n", g.place,
+                           toml_text(unique("motion", set)), toml_text(set), parts(bits));
+  }
+  for (const auto& [key, g] : moved) {
+    const std::string set = set_of(g.rows, "moved");
+    tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"translation\"\nname = {}\non = {}\ncomponents = [{}]\ndisplacement = {}\n",
+                           g.place, toml_text(unique("motion", set)), toml_text(set), parts(key.first),
+                           list(Vec3(key.second[0], key.second[1], key.second[2]), "m"));
+  }
+  supports_of_bodies();
+}
+
+/// A body is held by a joint to the ground, or whole.
+void BdfScene::supports_of_bodies() {
+  for (const auto& [a, bits] : body_held_) {
+    const std::string name = end_name(a), place = deck_.grids[static_cast<size_t>(a)].place;
+    if (bits == 63)
+      tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"fixed\"\nname = {}\non = {}\n", place, toml_text(unique("motion", name)),
+                             toml_text(name));
+    else if (bits && !joint(bits, axes(a), name + "_support", "ground", name, X(a), place))
+      in_.skip("SPC of components of a grid of no cell that no joint holds", place);
+  }
+}
+
+void BdfScene::time() {
+  const BdfCase& c = deck_.chosen;
+  const auto is = [&](std::initializer_list<const char*> words) {
+    return std::any_of(words.begin(), words.end(), [&](const char* w) { return c.solution == w; });
+  };
+  if (is({"101", "1", "SESTATIC", "SESTATICS", "STATICS", "106", "NLSTATIC", "NLSTATICS"})) {
+    tables_ += "\n[time]\nanalysis = \"static\"\n";
+  } else if (is({"103", "3", "SEMODES", "MODES", "NORMAL"})) {
+    tables_ += "\n[time]\nanalysis = \"modes\"\n";
+    const auto n = deck_.modes.find(c.method);
+    if (n != deck_.modes.end() && n->second > 0) tables_ += fmt::format("modes = {}\n", n->second);
+  } else if (is({"109", "9", "SEDTRAN", "129", "NLTRAN"}) && deck_.steps.contains(c.step)) {
+    const auto& [end, step] = deck_.steps.at(c.step);
+    if (end > 0 && step > 0) tables_ += fmt::format("\n[time]\nend = {}\nstep = {}\n", number(end, "s"), number(step, "s"));
+  } else if (!c.solution.empty())
+    in_.skip("SOL " + c.solution.substr(0, 20), "executive control");
+}
+
+void write_bdf_scene(const BdfDeck& deck, Imported& in, SetNames& names, const ImportOptions& options) {
+  in.mesh.deck_scene = BdfScene(deck, in, names, options).text();
+}
+
+}  // namespace hilo

@@ -1,0 +1,92 @@
+// The scene lines of a Nastran file, in the making: what its parts (supports, loads, links) share.
+#pragma once
+#include <fmt/format.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/param.hpp"
+#include "import/bdf/card.hpp"
+
+namespace hilo {
+
+/// A grid is a node of cells, or it becomes a body of its own when something is tied to it, or the mean of others (RBE3), or nothing.
+class BdfScene {
+ public:
+  BdfScene(const BdfDeck& deck, Imported& in, SetNames& names, const ImportOptions& options);
+  std::string text();
+
+ private:
+  enum class End { nothing, node, body, mean, ground };
+  using Rows = std::vector<std::int64_t>;
+
+  // scene.cpp
+  void materials();
+  void supports();
+  void supports_of_bodies();
+  void time();
+  // scene_links.cpp
+  void find_bodies();
+  void bodies();
+  void rigid();
+  void rigid(const BdfRigid& r);
+  // scene_springs.cpp
+  void springs();
+  void scalar_spring(const BdfSpring& s, double k, double c);
+  void line_spring(const BdfSpring& s, double k, double c);
+  void bush(const BdfSpring& s, const BdfSpringData& p);
+  // scene_loads.cpp
+  void choose_loads();
+  void gravity();
+  void nodal_loads();
+  void distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const std::string& place);
+  void pressures();
+  bool face_of(const BdfLoad& l, std::int64_t element, Facet& f, double& sign);
+
+  double si(const char* unit) const { return to_si(unit, options_.units); }
+  std::string number(double x, const char* unit) const { return toml_number(x * si(unit)); }
+  std::string list(const Vec3& v, const char* unit) const { return toml_list({v.x() * si(unit), v.y() * si(unit), v.z() * si(unit)}); }
+  std::string direction(const Vec3& v) const { return toml_list({v.x(), v.y(), v.z()}); }
+  /// A point of the geometry, which --scale scales too.
+  std::string point(const Vec3& x) const { return list(Vec3(x * options_.scale), "m"); }
+  std::string unique(const std::string& section, const std::string& wish);
+  /// The set of just these nodes: one that is there, or a new one.  `listed`: --order 2 must not complete it.
+  std::string set_of(Rows nodes, const std::string& wish, bool listed = false);
+  std::string node_set(std::int64_t row) { return set_of({row}, fmt::format("node_{}", deck_.node_id[static_cast<size_t>(row)]), true); }
+  /// Row of a grid; an Error where it is not there.
+  std::int64_t row(std::int64_t grid, const std::string& place, const std::string& who) const;
+  End end(std::int64_t row) const;
+  static std::string body_name(std::int64_t grid) { return fmt::format("grid_{}", grid); }
+  std::string end_name(std::int64_t row) {
+    return row < 0 ? "ground" : end(row) == End::body ? body_name(deck_.node_id[static_cast<size_t>(row)]) : node_set(row);
+  }
+  const Vec3& X(std::int64_t row) const { return deck_.X[static_cast<size_t>(row)]; }
+  /// The axes in which a grid has its components.
+  Mat3 axes(std::int64_t row) const {
+    const BdfGrid& g = deck_.grids[static_cast<size_t>(row)];
+    return axes_at(deck_, g.output.value_or(0), X(row), g.place);
+  }
+  /// A joint that holds components (bits 0 to 5) along these axes; false where hilo has none.
+  bool joint(unsigned components, const Mat3& axes, const std::string& name, const std::string& a, const std::string& b, const Vec3& at,
+             const std::string& place);
+  void spring_along(const Vec3& axis, const std::string& name, const std::string& a, const std::string& b, const Vec3& at, double k,
+                    double c, const std::string& place);
+
+  const BdfDeck& deck_;
+  Imported& in_;
+  SetNames& names_;
+  const ImportOptions& options_;
+  double size_ = 1;                              // of the model, in units of the deck
+  std::vector<char> used_;                       // by cells (n grids)
+  std::map<std::int64_t, std::string> body_;     // row -> what makes a body of it
+  std::map<std::int64_t, const BdfMean*> mean_;  // row -> the mean that it follows
+  std::map<std::int64_t, unsigned> body_held_;   // row -> components
+  std::vector<std::pair<double, const BdfLoad*>> loads_;
+  std::map<std::int64_t, std::pair<Vec3, std::string>> force_, moment_;  // row -> sum and first place
+  std::map<std::string, int> made_;
+  std::map<Rows, std::string> set_by_rows_;
+  std::string head_, tables_;
+};
+
+}  // namespace hilo

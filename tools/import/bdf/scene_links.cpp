@@ -1,0 +1,159 @@
+// What ties grids together, as scene lines: a grid of no cell that something is tied to becomes a [[body]], a rigid element a joint between
+// it and a set, a spring a [[spring]] or a joint that gives way.
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "import/bdf/scene.hpp"
+
+namespace hilo {
+namespace {
+
+/// Whether points lie on a line, or at one place.
+bool on_a_line(const std::vector<Vec3>& points) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& x : points) mean += x / static_cast<double>(points.size());
+  Mat3 S = Mat3::Zero();
+  for (const Vec3& x : points) S += (x - mean) * (x - mean).transpose();
+  const Vec3 v = Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvalues();
+  return !(v[1] > 1e-10 * v[2]);
+}
+
+}  // namespace
+
+void BdfScene::find_bodies() {
+  const auto free = [&](std::int64_t a) { return !used_[static_cast<size_t>(a)]; };
+  const auto make = [&](std::int64_t grid, const std::string& place, const std::string& who, bool cell_too = false) {
+    if (const auto a = row(grid, place, who); cell_too || free(a)) body_.try_emplace(a, place);
+  };
+  for (const BdfRigid& r : deck_.rigid) {
+    const auto hub = row(r.hub, r.place, r.name);
+    std::int64_t nodes = !free(hub);
+    for (const auto g : r.grids) nodes += !free(row(g, r.place, r.name));
+    // the hub of three nodes or more turns with them, be it a node itself; two nodes keep their distance
+    make(r.hub, r.place, r.name, r.components != 0 && (nodes > 2 || nodes <= static_cast<std::int64_t>(r.grids.size())));
+    for (const auto g : r.grids) make(g, r.place, r.name);
+  }
+  for (const BdfSpring& s : deck_.springs)
+    for (const auto g : s.grids)
+      if (g != 0) make(g, s.place, s.name);
+  for (const BdfMean& m : deck_.means) {
+    const auto a = row(m.grid, m.place, "RBE3");
+    std::string why = m.not_read;
+    if (why.empty() && !free(a)) why = "RBE3 whose grid is a node of a cell";
+    if (why.empty() && body_.contains(a)) why = "RBE3 whose grid carries springs or rigid elements";
+    if (why.empty() && (m.components & 7) != 7) why = "RBE3 that leaves its grid a component";
+    if (why.empty() && !mean_.try_emplace(a, &m).second) why = "RBE3 of a grid that has one already";
+    if (!why.empty()) in_.skip(why, m.place);
+  }
+  for (const BdfMass& m : deck_.masses)
+    if (const auto a = row(m.grid, m.place, "CONM2"); !mean_.contains(a)) make(m.grid, m.place, "CONM2");
+}
+
+/// Bodies with the masses at their grids; masses on nodes and means.
+void BdfScene::bodies() {
+  struct Sum {
+    double mass = 0;
+    Vec3 first = Vec3::Zero();
+    Mat3 inertia = Mat3::Zero();  // about the basic origin
+  };
+  std::map<std::int64_t, Sum> sums;
+  std::map<double, std::pair<Rows, std::string>> on_nodes;
+  std::map<std::int64_t, double> on_node;
+  std::map<std::int64_t, std::string> places;
+  const auto about = [](const Vec3& x) -> Mat3 { return x.squaredNorm() * Mat3::Identity() - x * x.transpose(); };
+  for (const BdfMass& m : deck_.masses) {
+    const auto a = row(m.grid, m.place, "CONM2");
+    const Mat3 own = axes_at(deck_, std::max<std::int64_t>(m.system, 0), X(a), m.place);
+    const Vec3 at = m.system < 0 ? m.offset : Vec3(X(a) + own * m.offset);
+    const Mat3 inertia = own * m.inertia * own.transpose();
+    places.try_emplace(a, m.place);
+    if (end(a) == End::body) {
+      Sum& s = sums[a];
+      const Vec3 arm = at - X(a);
+      s.mass += m.mass, s.first += m.mass * arm, s.inertia += inertia + m.mass * about(arm);
+      continue;
+    }
+    if ((at - X(a)).norm() > 1e-9 * size_) in_.skip("CONM2: offset from a node of solids, which does not turn", m.place);
+    if (inertia.norm() > 0) in_.skip("CONM2: inertia at a node of solids, which does not turn", m.place);
+    if (const auto mean = mean_.find(a); mean != mean_.end()) {
+      double most = 0, least = 1e300;
+      for (const auto& [grid, w] : mean->second->of) most = std::max(most, w), least = std::min(least, w);
+      Rows rows;
+      for (const auto& [grid, w] : mean->second->of)
+        if (const auto b = row(grid, m.place, "RBE3"); end(b) == End::node) rows.push_back(b);
+      if (most != least || rows.size() != mean->second->of.size()) {
+        in_.skip("CONM2 on an RBE3 of several weights", m.place);
+        continue;
+      }
+      in_.notes.push_back(fmt::format("{}: CONM2 {}: its mass is shared by the {} grids of the RBE3", m.place, m.id, rows.size()));
+      for (const auto b : rows) on_node[b] += m.mass / static_cast<double>(rows.size()), places.try_emplace(b, m.place);
+    } else
+      on_node[a] += m.mass;
+  }
+  for (const auto& [a, mass] : on_node)
+    if (mass > 0) {
+      auto& [rows, place] = on_nodes[mass];
+      if (rows.empty()) place = places.at(a);
+      rows.push_back(a);
+    }
+  for (const auto& [a, place] : body_) {
+    const auto it = sums.find(a);
+    const Sum s = it == sums.end() ? Sum{} : it->second;
+    const Vec3 arm = s.mass > 0 ? Vec3(s.first / s.mass) : Vec3(Vec3::Zero());
+    const Mat3 J = s.inertia - s.mass * about(arm);
+    const double i = si("kg m^2");
+    tables_ += fmt::format("\n[[body]]   # {}\nname = {}\nmass = {}\ncom = {}\n", place, toml_text(end_name(a)), number(s.mass, "kg"),
+                           point(X(a) + arm));
+    if (J.norm() > 0)
+      tables_ += fmt::format("inertia = {}\n", toml_list({J(0, 0) * i, J(1, 1) * i, J(2, 2) * i, J(0, 1) * i, J(0, 2) * i, J(1, 2) * i}));
+  }
+  for (const auto& [mass, group] : on_nodes) {
+    const std::string set = set_of(group.first, "mass", true);
+    tables_ += fmt::format("\n[[point_mass]]   # {}\nname = {}\non = {}\nmass = {}\n", group.second, toml_text(unique("point_mass", set)),
+                           toml_text(set), number(mass * static_cast<double>(group.first.size()), "kg"));
+  }
+}
+
+void BdfScene::rigid() {
+  for (const BdfRigid& r : deck_.rigid) rigid(r);
+}
+
+void BdfScene::rigid(const BdfRigid& r) {
+  const auto hub = row(r.hub, r.place, r.name);
+  const std::string name = fmt::format("{}_{}", r.name, r.id);
+  if (end(hub) != End::body || r.components == 0) {  // two nodes of solids, which do not turn, or a rod: they keep their distance
+    for (const auto g : r.grids) {
+      const auto a = row(g, r.place, r.name);
+      if (r.components != 0 && (r.components & 7) != 7) return in_.skip(fmt::format("{} of some components", r.name), r.place);
+      if ((X(a) - X(hub)).norm() < 1e-9 * size_) return in_.skip(r.name + " of two nodes at one place", r.place);
+      tables_ +=
+          fmt::format("\n[[joint]]   # {}\nkind = \"distance\"\nname = {}\na = {}\nb = {}\nat_a = {}\nat_b = {}\n", r.place,
+                      toml_text(unique("joint", name)), toml_text(end_name(hub)), toml_text(end_name(a)), point(X(hub)), point(X(a)));
+    }
+    return;
+  }
+  Rows nodes;
+  std::vector<Vec3> points;
+  const auto add = [&](std::int64_t a) { nodes.push_back(a), points.push_back(X(a)); };
+  if (used_[static_cast<size_t>(hub)]) add(hub);
+  for (const auto g : r.grids) {
+    const auto a = row(g, r.place, r.name);
+    if (end(a) == End::body && a != hub) {
+      if (!joint(r.components, axes(a), name, end_name(hub), end_name(a), X(a), r.place))
+        in_.skip(fmt::format("{} of components that no joint holds", r.name), r.place);
+    }
+    if (used_[static_cast<size_t>(a)] && end(a) != End::body) add(a);
+  }
+  if (nodes.empty()) return;
+  if ((r.components & 7) != 7) return in_.skip(fmt::format("{} of some components of nodes of solids", r.name), r.place);
+  if (on_a_line(points)) {
+    for (const auto a : nodes) joint(7, Mat3::Identity(), name, end_name(hub), node_set(a), X(a), r.place);
+    return;
+  }
+  joint(63, Mat3::Identity(), name, end_name(hub), set_of(nodes, name), X(hub), r.place);
+}
+
+}  // namespace hilo

@@ -1,0 +1,251 @@
+// Loads of a Nastran file as scene lines: forces by node, moments on bodies, pressures and tractions on facets, gravity.
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "import/bdf/scene.hpp"
+
+namespace hilo {
+namespace {
+
+struct Vec3Order {
+  bool operator()(const Vec3& a, const Vec3& b) const { return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end()); }
+};
+
+const char* name_of(BdfLoad::Kind kind) {
+  switch (kind) {
+    case BdfLoad::Kind::force:
+      return "FORCE";
+    case BdfLoad::Kind::moment:
+      return "MOMENT";
+    case BdfLoad::Kind::gravity:
+      return "GRAV";
+    case BdfLoad::Kind::pressure:
+      return "PLOAD";
+  }
+  return "";
+}
+
+}  // namespace
+
+void BdfScene::choose_loads() {
+  const BdfCase& chosen = deck_.chosen;
+  std::int64_t take = chosen.load;
+  if (take >= 0 && !deck_.loads.contains(take) && !deck_.load_sums.contains(take))
+    in_.skip(fmt::format("LOAD = {}, of which there is none", take), "case control");
+  if (take < 0 && chosen.spc < 0) {  // nothing is chosen at all: one set is meant
+    if (deck_.load_sums.size() == 1)
+      take = deck_.load_sums.begin()->first;
+    else if (deck_.loads.size() == 1)
+      take = deck_.loads.begin()->first;
+  }
+  std::set<std::int64_t> taken;
+  const auto add = [&](double factor, std::int64_t id) {
+    const auto set = deck_.loads.find(id);
+    if (set == deck_.loads.end()) return false;
+    taken.insert(id);
+    for (const BdfLoad& l : set->second) loads_.emplace_back(factor, &l);
+    return true;
+  };
+  add(1, take);
+  if (const auto sum = deck_.load_sums.find(take); sum != deck_.load_sums.end())
+    for (const auto& [factor, id] : sum->second.parts)
+      if (!add(sum->second.factor * factor, id)) in_.skip(fmt::format("LOAD of set {}, of which there is none", id), sum->second.place);
+  for (const auto& [id, lines] : deck_.loads)
+    if (!taken.contains(id))
+      for (const BdfLoad& l : lines) in_.skip(fmt::format("{} of a set that the first subcase does not take", name_of(l.kind)), l.place);
+}
+
+void BdfScene::gravity() {
+  Vec3 g = Vec3::Zero();
+  for (const auto& [factor, l] : loads_)
+    if (l->kind == BdfLoad::Kind::gravity) g += factor * l->size * (axes_at(deck_, l->system, Vec3::Zero(), l->place) * l->direction);
+  if (g.norm() > 0) head_ += fmt::format("gravity = {}\n", list(g, "m/s^2"));
+}
+
+/// What an RBE3 makes of a force and a moment at its grid: f = w (F/W + (T^-1 (M + (x - c) x F)) x r), with r from the weighted mean c,
+/// W = sum w and T = sum w (r.r I - r r^T).
+void BdfScene::distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const std::string& place) {
+  const Vec3& at = X(row(m.grid, m.place, "RBE3"));
+  double W = 0;
+  Vec3 c = Vec3::Zero();
+  for (const auto& [grid, w] : m.of) W += w, c += w * X(row(grid, m.place, "RBE3"));
+  if (!(W > 0)) return in_.skip("load on an RBE3 without weights", place);
+  c /= W;
+  Mat3 T = Mat3::Zero();
+  for (const auto& [grid, w] : m.of) {
+    const Vec3 r = X(row(grid, m.place, "RBE3")) - c;
+    T += w * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+  }
+  const Vec3 moment = M + (at - c).cross(F);
+  Vec3 turn = Vec3::Zero();
+  if (moment.norm() > 1e-12 * (M.norm() + size_ * F.norm())) {
+    turn = T.completeOrthogonalDecomposition().solve(moment);
+    if (!((T * turn - moment).norm() < 1e-9 * moment.norm())) return in_.skip("moment on an RBE3 whose grids lie on a line", place);
+  }
+  for (const auto& [grid, w] : m.of) {
+    const auto a = row(grid, m.place, "RBE3");
+    const Vec3 f = w * (F / W + turn.cross(X(a) - c));
+    const auto [it, fresh] = force_.try_emplace(a, Vec3::Zero(), place);
+    it->second.first += f;
+  }
+}
+
+void BdfScene::nodal_loads() {
+  struct Pair {
+    Vec3 F = Vec3::Zero(), M = Vec3::Zero();
+    std::string place;
+  };
+  std::map<std::int64_t, Pair> on_mean;
+  for (const auto& [factor, l] : loads_) {
+    const bool force = l->kind == BdfLoad::Kind::force;
+    if (!force && l->kind != BdfLoad::Kind::moment) continue;
+    const std::string what = force ? "FORCE" : "MOMENT";
+    const auto a = row(l->grid, l->place, what);
+    Vec3 v = factor * l->size * (axes_at(deck_, l->system, X(a), l->place) * l->direction);
+    if (l->towards[0] != 0) {
+      const Vec3 d = X(row(l->towards[1], l->place, what)) - X(row(l->towards[0], l->place, what));
+      if (!(d.norm() > 0)) throw Error(l->place, what + "1: its two grids are at one place");
+      v = factor * l->size * d.normalized();
+    }
+    switch (end(a)) {
+      case End::mean: {
+        Pair& p = on_mean[a];
+        (force ? p.F : p.M) += v;
+        if (p.place.empty()) p.place = l->place;
+        break;
+      }
+      case End::node:
+        if (!force) {
+          in_.skip("MOMENT on a node of solids, which does not turn", l->place);
+          break;
+        }
+        [[fallthrough]];
+      case End::body: {
+        const auto [it, fresh] = (force ? force_ : moment_).try_emplace(a, Vec3::Zero(), l->place);
+        it->second.first += v;
+        break;
+      }
+      default:
+        in_.skip(what + " on a grid of no element", l->place);
+    }
+  }
+  for (const auto& [a, p] : on_mean) distribute(*mean_.at(a), p.F, p.M, p.place);
+
+  std::map<Vec3, std::pair<Rows, std::string>, Vec3Order> equal;
+  for (const auto& [a, f] : force_) {
+    const auto& [v, place] = f;
+    if (v.norm() == 0) continue;
+    const End what = end(a);
+    if (what == End::body) {
+      tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nat = {}\n", place,
+                             toml_text(unique("load", end_name(a))), toml_text(end_name(a)), list(v, "N"), point(X(a)));
+    } else if (what == End::node) {
+      auto& [rows, first] = equal[v];
+      if (rows.empty()) first = place;
+      rows.push_back(a);
+    } else
+      in_.skip("RBE3 of a grid that is no node of a cell", place);
+  }
+  for (const auto& [v, group] : equal) {
+    const std::string set = set_of(group.first, "force", true);
+    tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", group.second,
+                           toml_text(unique("load", set)), toml_text(set), list(v, "N"));
+  }
+  for (const auto& [a, m] : moment_)
+    if (m.first.norm() > 0)
+      tables_ += fmt::format("\n[[load]]   # {}\nkind = \"torque\"\nname = {}\non = {}\ntorque = {}\n", m.second,
+                             toml_text(unique("load", end_name(a) + "_torque")), toml_text(end_name(a)), list(m.first, "N m"));
+}
+
+/// The facet that a pressure speaks of, and 1 where its positive pressure pushes inwards.
+bool BdfScene::face_of(const BdfLoad& l, std::int64_t element, Facet& f, double& sign) {
+  std::vector<std::int64_t> corners;  // rows, of a shell or of a face by its grids
+  sign = 1;
+  if (const auto cell = deck_.cell_row.find(element); l.corners.empty() && cell != deck_.cell_row.end()) {
+    const auto c = cell->second;
+    const ShapeInfo& s = info(in_.mesh.shape[static_cast<size_t>(c)]);
+    const auto nodes = in_.mesh.cell(c);
+    const auto local = [&](std::int64_t grid) {  // which corner of the cell
+      const auto a = grid ? row(grid, l.place, "PLOAD4") : -1;
+      for (int i = 0; i < s.n_corners; ++i)
+        if (nodes[static_cast<size_t>(i)] == a) return i;
+      return -1;
+    };
+    const int one = local(l.face[0]), other = local(l.face[1]);
+    if (s.dimension != 3 || one < 0 || (l.face[1] && other < 0))
+      throw Error(l.place, fmt::format("PLOAD4: element {} has no face of grids {} and {}", element, l.face[0], l.face[1]));
+    for (size_t i = 0; i < s.facets.size(); ++i) {
+      std::vector<int> of;
+      for (const int a : s.facets[i])
+        if (a < s.n_corners) of.push_back(a);
+      const auto has = [&](int a) { return std::find(of.begin(), of.end(), a) - of.begin(); };
+      const auto n = static_cast<std::ptrdiff_t>(of.size());
+      if (has(one) == n) continue;
+      const bool it = s.n_corners == 4 ? other >= 0 && has(other) == n                    // G4 is off the face
+                      : n == 3         ? other < 0                                        // a triangle of a wedge: G1 alone
+                                       : has(other) < n && (has(other) - has(one) + n) % n == 2;  // G1 and G3 across
+      if (!it) continue;
+      f = {c, static_cast<std::int64_t>(i)};
+      return true;
+    }
+    throw Error(l.place, fmt::format("PLOAD4: element {} has no face of grids {} and {}", element, l.face[0], l.face[1]));
+  }
+  for (const auto grid : l.corners) corners.push_back(row(grid, l.place, "PLOAD"));
+  if (corners.empty()) {
+    const auto shell = std::find_if(deck_.shells.begin(), deck_.shells.end(), [&](const BdfDeck::Cell& s) { return s.id == element; });
+    if (shell == deck_.shells.end()) return false;
+    for (const auto grid : shell->nodes) corners.push_back(row(grid, l.place, "PLOAD"));
+  }
+  f = match_facets(in_.mesh, {corners})[0];
+  if (f.cell < 0) return false;
+  const Vec3 normal = corners.size() == 3 ? (X(corners[1]) - X(corners[0])).cross(X(corners[2]) - X(corners[0]))
+                                          : (X(corners[2]) - X(corners[0])).cross(X(corners[3]) - X(corners[1]));
+  sign = normal.dot(facet_area(in_.mesh, f)) > 0 ? -1 : 1;
+  return true;
+}
+
+void BdfScene::pressures() {
+  using Key = std::pair<std::int64_t, std::int64_t>;
+  std::map<Key, std::pair<double, std::string>> pressure;
+  std::map<Key, std::pair<Vec3, std::string>> traction;
+  for (const auto& [factor, l] : loads_) {
+    if (l->kind != BdfLoad::Kind::pressure) continue;
+    Rows elements = l->elements;
+    if (!l->corners.empty()) elements = {0};
+    for (const auto element : elements) {
+      Facet f{-1, -1};
+      double sign = 1;
+      if (!face_of(*l, element, f, sign)) {
+        if (elements.size() == 1) in_.skip("PLOAD on a face of no solid", l->place);
+        continue;
+      }
+      const Key key{f.cell, f.facet};
+      if (l->direction.norm() > 0) {
+        const auto [it, fresh] = traction.try_emplace(key, Vec3::Zero(), l->place);
+        const Vec3 at = X(in_.mesh.facet_nodes(f)[0]);
+        it->second.first += factor * l->size * (axes_at(deck_, l->system, at, l->place) * l->direction).normalized();
+      } else {
+        const auto [it, fresh] = pressure.try_emplace(key, 0, l->place);
+        it->second.first += factor * l->size * sign;
+      }
+    }
+  }
+  std::map<double, std::pair<std::vector<Facet>, std::string>> by_pressure;
+  for (const auto& [key, p] : pressure)
+    if (p.first != 0) by_pressure[p.first].first.push_back({key.first, key.second}), by_pressure[p.first].second = p.second;
+  std::map<Vec3, std::pair<std::vector<Facet>, std::string>, Vec3Order> by_traction;
+  for (const auto& [key, p] : traction)
+    if (p.first.norm() > 0) by_traction[p.first].first.push_back({key.first, key.second}), by_traction[p.first].second = p.second;
+  const auto write = [&](const std::vector<Facet>& facets, const std::string& place, const char* kind, const std::string& value) {
+    const std::string set = names_.facets(unique("facets", kind), facets);
+    tables_ += fmt::format("\n[[load]]   # {}\nkind = \"{}\"\nname = {}\non = {}\n{} = {}\n", place, kind, toml_text(unique("load", set)),
+                           toml_text(set), kind, value);
+  };
+  for (const auto& [p, g] : by_pressure) write(g.first, g.second, "pressure", number(p, "Pa"));
+  for (const auto& [v, g] : by_traction) write(g.first, g.second, "traction", list(v, "Pa"));
+}
+
+}  // namespace hilo
