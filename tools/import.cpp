@@ -104,7 +104,7 @@ int main(int argc, char** argv) {
         ->delimiter(',')
         ->type_name("SET,...")
         ->allow_extra_args(false);
-    app->add_option("--rest", o.rest, "region of the cells that are in none")->type_name("NAME");
+    app->add_option("--rest", o.rest, "name of the region of the cells that are in none; \"rest\" when absent")->type_name("NAME");
     app->add_option("--scene-out", r.scene_out, "write the deck's materials, supports and loads as a scene too")->type_name("scene.toml");
     app->add_flag("--json", r.json, "the table as JSON");
     if (!parse(*app, argc, argv)) return;

@@ -170,6 +170,8 @@ TEST_F(ImportBdfScene, MassesOnSpringsHaveTheFrequencyOfTheClosedForm) {
   EXPECT_NEAR(first(), 20 / (2 * std::numbers::pi), 1e-8);
   run(modes + "GRID,100,,9.,0.,0.,,23456\nCONM2,1,100,,2.\nCELAS2,2,800.,,,100,1\n");  // held by the grid itself
   EXPECT_NEAR(first(), 20 / (2 * std::numbers::pi), 1e-8);
+  run(modes + "GRID,100,,9.,0.,0.,,23456\nCONM2,1,100,,2.\nCELAS2,2,800.,100,1\nCDAMP2,3,8.,100,1\n");
+  EXPECT_NEAR(Store::open(place / "run.h5").read<double>("/history/mode").at(11), 8 / (2 * std::sqrt(800. * 2)), 1e-6);
   // J about (1, 1, 0)/sqrt 2 is (I11 + I22 - 2 I21)/2 = (5 + 5 - 2)/2 = 4
   run(modes + "CORD2R,7,,0.,0.,0.,0.,0.,1.\n,1.,1.,0.\nGRID,100,,9.,0.,0.,7,12356\nCONM2,1,100,,2.\n,5.,1.,5.,,,6.\nCELAS2,2,400.,100,4\n");
   EXPECT_NEAR(first(), 10 / (2 * std::numbers::pi), 1e-8);

@@ -198,6 +198,24 @@ TEST_F(ImportGmsh, ACurveApartFromTheSolidsIsARegionOfBars) {
   EXPECT_NEAR(volume(bars), 3, 1e-12) << "the length";
 }
 
+// The edges of a square came in as trusses.
+TEST_F(ImportGmsh, AFlatMeshIsRefusedByEveryFormat) {
+  place.write("a.geo",
+              "SetFactory(\"OpenCASCADE\");\nRectangle(1) = {0, 0, 0, 2, 1};\nTransfinite Curve{:} = 3;\nTransfinite Surface{:};\n"
+              "Recombine Surface{:};\nPhysical Surface(\"plate\") = {1};\nPhysical Curve(\"edges\") = {1:4};\nMesh 2;\n"
+              "Save \"a.msh\";\nSave \"a.unv\";\nSave \"a.vtk\";\nSave \"a.mesh\";\nSave \"a.bdf\";\n");
+  place.run("hilo-import a.geo -o geo.h5");
+  for (const char* file : {"a.msh", "a.unv", "a.vtk", "a.mesh"}) {
+    ASSERT_TRUE(std::filesystem::exists(place / file)) << file;
+    refused(std::string(file) + " -o a.h5", 2,
+            std::string(file) +
+                ": 4 flat cells (triangles, quadrangles) and no volume (a surface alone, as in an STL, has no volume: mesh "
+                "its inside; lines beside flat cells are their edges, not bars)");
+  }
+  EXPECT_EQ(place.run("hilo-import a.bdf -o a.h5").exit, 2);
+  EXPECT_EQ(place.run("hilo-import a.geo -o a.h5").exit, 2);
+}
+
 TEST_F(ImportGmsh, WrongFilesAreNamedAndLeaveNothing) {
   refused("absent.msh -o a.h5", 2, "absent.msh: no such file");
   place.write("a.xyz", "x");
@@ -206,7 +224,9 @@ TEST_F(ImportGmsh, WrongFilesAreNamedAndLeaveNothing) {
           ".brep .iges .igs .inp.gz)");
   place.write("a.stl",
               "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n");
-  refused("a.stl -o a.h5", 2, "a.stl: no volume cells and no bars (a surface alone, as in an STL, has no volume: mesh its inside first)");
+  refused("a.stl -o a.h5", 2,
+          "a.stl: 1 flat cells (triangles, quadrangles) and no volume (a surface alone, as in an STL, has no volume: mesh its inside; "
+          "lines beside flat cells are their edges, not bars)");
   place.write("a.geo", "Point(1) = {0,0,0};\n");
   refused("a.geo -o a.h5", 2, "a.geo: no volume to mesh (the geometry holds points, curves or surfaces only)");
   mesh(boxes("hex") + "Physical Volume(\"rest\") = {};\n", "whole.msh");
@@ -223,13 +243,16 @@ TEST_F(ImportGmsh, WrongFilesAreNamedAndLeaveNothing) {
   EXPECT_NE(syntax.err.find("b.geo"), std::string::npos) << syntax.err;
 }
 
-TEST_F(ImportGmsh, CellsInNoGroupAreRefusedUnlessNamed) {
+TEST_F(ImportGmsh, CellsInNoGroupAreARegionAndThatIsSaid) {
   mesh(boxes("hex"), "a.msh", 1, 2.2);
   // physical tag 7 of the second box becomes 0: its cells are in no group
   std::string text = test::text_of(place / "a.msh");
   for (size_t at = 0; (at = text.find(" 5 2 7 ", at)) != std::string::npos;) text.replace(at, 7, " 5 2 0 ");
   place.write("a.msh", text);
-  refused("a.msh -o b.h5", 2, "a.msh: 8 of 16 cells are in no region, the first is cell 20 (give them one with --rest NAME)");
+  EXPECT_EQ(test::cells_of(imported("a.msh"), "rest"), 8);
+  EXPECT_NE(err.find("8 of 16 cells are in no region, the first is cell 20: they are region \"rest\"; --rest gives it another name\n"),
+            std::string::npos)
+      << err;
   const Mesh m = imported("a.msh", "--rest hub");
   EXPECT_EQ(cells_of(m, "hub"), 8);
 }

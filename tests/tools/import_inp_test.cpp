@@ -1,6 +1,8 @@
 // Abaqus and CalculiX decks: cells, sets, surfaces, materials, supports and loads survive; what is wrong is named by line.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "import_case.hpp"
 #include "model/block.hpp"
 #include "model/scene.hpp"
@@ -189,15 +191,22 @@ TEST_F(ImportInp, OrderTwoSharesNodesCompletesSetsAndLeavesNodalForcesAlone) {
   EXPECT_LT((force - Vec3(400, 0, 8 - 14)).norm(), 1e-12);
 }
 
-TEST_F(ImportInp, CellsWithoutSectionNeedRegionsOrRest) {
+TEST_F(ImportInp, CellsWithoutSectionAreARegionAndThatIsSaid) {
   place.write("a.inp", two_cubes);
-  refused("a.inp -o a.h5", 2,
-          "a.inp: 2 of 2 cells are in no region, the first is cell 1 (give them one with --rest NAME, or name element sets with --regions: "
-          "low, high)");
+  EXPECT_EQ(imported("a.inp").region_name, std::vector<std::string>{"rest"});
+  EXPECT_NE(
+      err.find("2 of 2 cells are in no region, the first is cell 1: they are region \"rest\"; --rest gives it another name, --regions "
+               "makes regions of element sets: low, high\n"),
+      std::string::npos)
+      << err;
   refused("a.inp -o a.h5 --regions lov", 2, "a.inp: --regions: no element set \"lov\" (did you mean \"low\"?)");
-  refused("a.inp -o a.h5 --regions low", 2,
-          "a.inp: 1 of 2 cells are in no region, the first is cell 2 (give them one with --rest NAME, or name element sets with --regions: "
-          "low, high)");
+  EXPECT_EQ(imported("a.inp", "--regions low").region_name, (std::vector<std::string>{"low", "rest"}));
+  // a region of that name is another one
+  place.write("b.inp", two_cubes + "*ELSET, ELSET=rest\n1\n*MATERIAL, NAME=m\n*ELASTIC\n1., 0.\n*SOLID SECTION, ELSET=rest, MATERIAL=m\n");
+  const Mesh two = imported("b.inp");
+  EXPECT_EQ(two.region_name, (std::vector<std::string>{"rest", "rest_cells"}));
+  EXPECT_TRUE(std::isnan(two.region_data[1].E));
+  place.write("a.inp", two_cubes);
   EXPECT_EQ(imported("a.inp", "--regions low,high").region_name, (std::vector<std::string>{"low", "high"}));
   const Mesh m = imported("a.inp", "--regions low --rest others");
   EXPECT_EQ(m.region_name, (std::vector<std::string>{"low", "others"}));
@@ -226,6 +235,63 @@ TEST_F(ImportInp, OneNameForTwoKindsOfSetIsToldApart) {
   EXPECT_EQ(m.node_sets.at("high_nodes").size(), 2u);
   EXPECT_EQ(m.facet_sets.at("low_facets").size(), 1u);
   EXPECT_EQ(m.node_sets.size(), 1u) << "the node set low is the nodes of region low";
+}
+
+TEST_F(ImportInp, ASectionWithoutAMaterialIsARegionWithoutOne) {
+  place.write("a.inp",
+              two_cubes + "*MATERIAL, NAME=m\n*ELASTIC\n1., 0.\n*SOLID SECTION, ELSET=low\n*SOLID SECTION, ELSET=high, MATERIAL=m\n");
+  const Mesh m = imported("a.inp");
+  EXPECT_EQ(m.region_name, (std::vector<std::string>{"low", "high"}));
+  EXPECT_TRUE(std::isnan(m.region_data[0].E));
+  EXPECT_EQ(m.region_data[1].E, 1);
+  EXPECT_NE(err.find("not read: *SOLID SECTION without MATERIAL (1, a.inp:21)"), std::string::npos) << err;
+}
+
+TEST_F(ImportInp, ExpansionAndTemperaturesAreToldAsLeftOut) {
+  place.write("a.inp", two_cubes +
+                           "*MATERIAL, NAME=m\n*ELASTIC\n1., 0.\n*EXPANSION\n1.2e-5\n*ELSET, ELSET=all\nlow, high\n"
+                           "*SOLID SECTION, ELSET=all, MATERIAL=m\n*INITIAL CONDITIONS, TYPE=TEMPERATURE\n1, 20.\n*STEP\n*STATIC\n"
+                           "*TEMPERATURE\n1, 30.\n*END STEP\n");
+  imported("a.inp");
+  for (const char* what : {"*EXPANSION (1, ", "*INITIAL CONDITIONS, TYPE=TEMPERATURE (1, ", "*TEMPERATURE (1, "})
+    EXPECT_NE(err.find(std::string("not read: ") + what), std::string::npos) << what << err;
+}
+
+// What CAE writes: a part with sets of its own, and an assembly whose sets have the same names and whose nodes the same numbers.
+TEST_F(ImportInp, SetsOfPartAndAssemblyAreToldApartByTheirQualifiedNames) {
+  const std::string part = "*PART, NAME=block\n" + two_cubes + "*NSET, NSET=s\n1, 2\n*ELSET, ELSET=e\n1, 2\n*SURFACE, NAME=f\ne, S1\n" +
+                           "*SOLID SECTION, ELSET=e, MATERIAL=m\n*END PART\n";
+  const std::string assembly =
+      "*ASSEMBLY, NAME=a\n*INSTANCE, NAME=Block-1, PART=block\n*END INSTANCE\n*NODE\n1, 9., 9., 9.\n"
+      "*NSET, NSET=s, INSTANCE=Block-1\n9, 10, 11, 12\n*NSET, NSET=point\n1,\n*ELSET, ELSET=e, INSTANCE=Block-1\n2\n"
+      "*NSET, NSET=both\nBlock-1.s, s\n*NSET, NSET=one\nBlock-1.3\n*SURFACE, NAME=f\ne, S2\n*END ASSEMBLY\n";
+  const std::string step =
+      "*MATERIAL, NAME=m\n*ELASTIC\n1., 0.\n*STEP\n*STATIC\n*BOUNDARY\nBlock-1.s, 1, 3\na.s, 1\nBlock-1.3, 2\n*CLOAD\n"
+      "s, 3, 1.\npoint, 3, 1.\n*DSLOAD\nf, P, 2.\nBlock-1.f, P, 3.\n*END STEP\n";
+  place.write("a.inp", part + assembly + step);
+  const Mesh m = imported("a.inp", "--scene-out s.toml");
+  const auto ids = [&](const std::string& set) {
+    std::vector<std::int64_t> v;
+    for (const auto a : m.nodes_of(set, set)) v.push_back(m.node_id[a]);
+    return v;
+  };
+  EXPECT_EQ(ids("s"), (std::vector<std::int64_t>{9, 10, 11, 12}));
+  EXPECT_EQ(ids("Block-1.s"), (std::vector<std::int64_t>{1, 2}));
+  EXPECT_EQ(ids("both"), (std::vector<std::int64_t>{1, 2, 9, 10, 11, 12}));
+  EXPECT_EQ(ids("one"), std::vector<std::int64_t>{3});
+  EXPECT_EQ(m.region_name, std::vector<std::string>{"Block-1.e"});
+  EXPECT_LT((vector_area(m, m.facet_sets.at("f")) - Vec3(0, 0, 1)).norm(), 1e-14);
+  EXPECT_LT((vector_area(m, m.facet_sets.at("Block-1.f")) - Vec3(0, 0, -2)).norm(), 1e-14);
+  const Scene s = Scene::load(place / "s.toml");
+  std::map<std::string, std::string> held;
+  for (const auto& e : s.entries("motion"))
+    for (const auto& c : e.texts("components")) held[e.text("on")] += c;
+  EXPECT_EQ(held["Block-1.s"], "xyz");
+  EXPECT_EQ(held["s"], "x");
+  EXPECT_EQ(held["one"] + held["support_1"], "y");
+  ASSERT_EQ(s.entries("load").size(), 3u);
+  EXPECT_EQ(s.entries("load")[0].text("on"), "s");
+  EXPECT_NE(err.find("not read: *CLOAD on a node of no cell (1, a.inp:"), std::string::npos) << err;
 }
 
 TEST_F(ImportInp, TrussesAreBars) {

@@ -67,7 +67,7 @@ TEST_F(ImportRegistry, ACardOfAnInpDeckFromOutsideIsOneRow) {
 }
 
 TEST_F(ImportRegistry, ASlipInACardIsToldWithTheCardMeant) {
-  place.write("deck.inp", "*DENSITI\n*ELASITC\n*ELEMNT\n*NNODE\n*SPRING\n*TIE\n");
+  place.write("deck.inp", "*DENSITI\n*ELASITC\n*ELEMNT\n*NNODE\n*GASKET\n*TIE\n");
   Imported in;
   InpDeck deck;
   parse_inp(place / "deck.inp", deck, in, inp_cards());

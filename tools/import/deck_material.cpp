@@ -45,7 +45,8 @@ RegionData DeckMaterial::carried() const {
 
 std::string DeckMaterial::table(const std::string& as, const std::string& units) const {
   std::string s = fmt::format("\n[material.{}]\nkind = \"{}\"\n", toml_text(clean_name(as)), kind);
-  if (!std::isnan(data.E)) s += fmt::format("E = {}\nnu = {}\n", toml_number(data.E * to_si("Pa", units)), toml_number(data.nu));
+  if (!std::isnan(data.E)) s += fmt::format("E = {}\n", toml_number(data.E * to_si("Pa", units)));
+  if (!std::isnan(data.nu)) s += fmt::format("nu = {}\n", toml_number(data.nu));
   for (const DeckKey& k : keys) {
     std::vector<double> v = k.values;
     for (double& x : v) x *= to_si(k.unit, units);

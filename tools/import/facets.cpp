@@ -1,8 +1,11 @@
 // Faces given by nodes, found among the facets of the cells.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <unordered_map>
 
+#include "base/error.hpp"
 #include "import/imported.hpp"
 
 namespace hilo {
@@ -76,6 +79,12 @@ std::vector<Facet> free_facets(const Mesh& mesh, const std::vector<std::int64_t>
       if (const size_t n = corners(mesh, c, f, nodes); n >= 3 && count[key_of(nodes, n)] == 1)
         free.push_back({c, static_cast<std::int64_t>(f)});
   return free;
+}
+
+void refuse_flat(const std::string& file, std::int64_t flat, std::int64_t solids) {
+  if (flat > 0 && solids == 0)
+    throw Error(file, fmt::format("{} flat cells (triangles, quadrangles) and no volume", flat),
+                "a surface alone, as in an STL, has no volume: mesh its inside; lines beside flat cells are their edges, not bars");
 }
 
 LineEnds lines_on_solids(const Mesh& m, const std::vector<std::pair<std::int64_t, std::int64_t>>& lines) {

@@ -60,9 +60,9 @@ class GmshReader {
     open();
     read_nodes();
     read_solids();
+    refuse_flat_mesh();
     read_curves();
-    if (in_.mesh.n_cells() == 0)
-      throw Error(path_, "no volume cells and no bars", "a surface alone, as in an STL, has no volume: mesh its inside first");
+    if (in_.mesh.n_cells() == 0) throw Error(path_, "no volume cells and no bars");
     for (const auto& w : reduced_) in_.notes.push_back(fmt::format("{} read without the nodes inside faces and cells", w));
     assign_regions(in_, path_, regions_, false, {}, o_);
     surface_groups();
@@ -84,10 +84,12 @@ class GmshReader {
     gmsh::open(path_);
     if (const auto e = GmshSession::last_error(); !e.empty()) throw Error(path_, e);
     if (!is_geometry(ext)) return;
-    gmsh::vectorpair volumes, bars;
+    gmsh::vectorpair volumes, surfaces, bars;
     gmsh::model::getEntities(volumes, 3);
+    gmsh::model::getEntities(surfaces, 2);
     gmsh::model::getPhysicalGroups(bars, 1);
-    if (volumes.empty() && bars.empty()) throw Error(path_, "no volume to mesh", "the geometry holds points, curves or surfaces only");
+    if (volumes.empty() && (bars.empty() || !surfaces.empty()))
+      throw Error(path_, "no volume to mesh", "the geometry holds points, curves or surfaces only");
     if (o_.size) {
       if (ext != ".geo") {  // a script may say its own sizes, which the option only bounds
         gmsh::vectorpair points;
@@ -193,6 +195,15 @@ class GmshReader {
       }
       in_.notes.push_back(fmt::format("no volume groups: each of {} volumes is a region", regions_.size()));
     }
+  }
+
+  void refuse_flat_mesh() const {
+    std::vector<int> types;
+    std::vector<std::vector<std::size_t>> tags, nodes;
+    gmsh::model::mesh::getElements(types, tags, nodes, 2);
+    std::int64_t flat = 0;
+    for (const auto& t : tags) flat += static_cast<std::int64_t>(t.size());
+    refuse_flat(path_, flat, in_.mesh.n_cells());
   }
 
   /// Curve groups: bars where none of the lines is an edge of a solid cell.

@@ -22,7 +22,7 @@ struct ImportOptions {
   std::optional<double> merge;                         // distance below which nodes are one        [unit of the file]
   std::optional<double> size;                          // largest edge when a geometry is meshed    [unit of the file]
   std::vector<std::string> regions;                    // element sets that become regions, before what the deck says
-  std::string rest;                                    // name of the region of cells in no region ("" refuses them)
+  std::string rest;                                    // name of the region of cells in no region ("": "rest")
   std::vector<std::pair<std::string, double>> define;  // parameters of a .geo script
 };
 
@@ -52,7 +52,7 @@ struct CellGroup {
 };
 
 /// Give every cell its region: the groups of --regions first, then `regions` (the later or the earlier group wins where two overlap), then
-/// --rest.  A group that lost cells to another becomes a cell set too.  Cells left over are an Error that says how to name them; `groups`
+/// --rest.  A group that lost cells to another becomes a cell set too.  Cells left over are a region of their own, and that is said; `groups`
 /// are the other element sets, offered there and to --regions.
 void assign_regions(Imported& in, const std::string& file, const std::vector<CellGroup>& regions, bool later_wins,
                     const std::vector<CellGroup>& groups, const ImportOptions& options);
@@ -85,6 +85,9 @@ std::vector<Facet> free_facets(const Mesh& mesh, const std::vector<std::int64_t>
 /// Of `lines`, given by their ends, those that have both ends in one solid cell: edges of a solid, not bars.
 using LineEnds = std::set<std::pair<std::int64_t, std::int64_t>>;
 LineEnds lines_on_solids(const Mesh& mesh, const std::vector<std::pair<std::int64_t, std::int64_t>>& lines);
+
+/// A file of `flat` triangles and quadrangles without a solid: the lines in it are their edges, and no bars.  Throws Error where it is one.
+void refuse_flat(const std::string& file, std::int64_t flat, std::int64_t solids);
 
 /// The readers.  Each throws Error with file:line where the file has lines.
 Imported read_inp(const std::string& path, const ImportOptions& options);

@@ -84,18 +84,19 @@ void assign_regions(Imported& in, const std::string& file, const std::vector<Cel
   std::vector<std::int64_t> lost;
   for (std::int64_t c = 0; c < m.n_cells(); ++c)
     if (m.region[c] < 0) lost.push_back(c);
-  if (!lost.empty() && options.rest.empty()) {
-    const std::string hint = offered.empty() || !regions.empty()
-                                 ? "give them one with --rest NAME"
-                                 : "give them one with --rest NAME, or name element sets with --regions: " + some(offered);
-    throw Error(file,
-                fmt::format("{} of {} cells are in no region, the first is cell {}", lost.size(), m.n_cells(), m.cell_id[lost.front()]),
-                hint);
-  }
   if (!lost.empty()) {
-    const int r = find_or_add(clean_name(options.rest));
+    const bool named = !options.rest.empty();
+    std::string name = named ? clean_name(options.rest) : "rest";
+    while (!named && m.find_region(name) >= 0) name += "_cells";  // a region of its own, whatever others are called
+    const int r = find_or_add(name);
     for (const auto c : lost) m.region[c] = r;
-    in.notes.push_back(fmt::format("{} cells in no region became region \"{}\"", lost.size(), m.region_name[r]));
+    std::string note = fmt::format("{} of {} cells are in no region{}: they are region \"{}\"", lost.size(), m.n_cells(),
+                                   named ? "" : fmt::format(", the first is cell {}", m.cell_id[lost.front()]), name);
+    if (!named)
+      note += offered.empty() || !regions.empty()
+                  ? "; --rest gives it another name"
+                  : "; --rest gives it another name, --regions makes regions of element sets: " + some(offered);
+    in.notes.push_back(note);
   }
 
   // Regions that lost all their cells go.

@@ -202,6 +202,9 @@ class UnvReader {
   }
 
   void build() {
+    std::int64_t flat = 0, solids = 0;
+    for (const auto& e : elements_) flat += e.kind->dimension == 2, solids += e.kind->dimension == 3;
+    refuse_flat(path_, flat, solids);
     std::vector<CellGroup> regions;
     for (auto& e : elements_)
       if (e.kind->dimension == 3) add(e);

@@ -75,6 +75,7 @@ Imported read_vtk(const std::string& path, const ImportOptions& options) {
     m.node_id.push_back(static_cast<std::int64_t>(a));
   }
   const bool solids = std::any_of(g.types.begin(), g.types.end(), [](int t) { return kind_of(t) && kind_of(t)->shape != Shape::bar2; });
+  refuse_flat(path, std::ranges::count_if(g.types, is_flat), solids);
   std::vector<std::int64_t> cell_of;  // number in the file
   std::vector<std::int64_t> nodes;
   for (size_t c = 0; c < g.types.size(); ++c) {

@@ -101,6 +101,7 @@ const BdfSystem& known(const BdfDeck& d, std::int64_t id, const std::string& pla
 }  // namespace
 
 void resolve_axes(BdfDeck& deck) {
+  deck.grids.resize(deck.X.size());  // nodes of other entries are as they are
   Resolver r(deck);
   for (size_t a = 0; a < deck.grids.size(); ++a) r.grid(a);
   for (const auto& [id, s] : deck.systems) r.system(id, s.place, "");

@@ -28,7 +28,8 @@ void read_grid(const BdfEntry& e, BdfDeck& deck, Imported&) {
     throw Error(d.place(0), fmt::format("node {} is given twice", id), "number each node once");
   deck.X.emplace_back(d.number(2), d.number(3), d.number(4));
   deck.node_id.push_back(id);
-  deck.grids.push_back({system_in(d, 1), system_in(d, 5), held_in(d, 6), d.place(0)});
+  deck.grids.resize(deck.X.size());
+  deck.grids.back() = {system_in(d, 1), system_in(d, 5), held_in(d, 6), d.place(0)};
 }
 
 void read_grid_default(const BdfEntry& e, BdfDeck& deck, Imported&) {
@@ -139,8 +140,11 @@ void read_shell(const BdfEntry& e, BdfDeck& deck, Imported&) {
   deck.shells.push_back(std::move(r));
 }
 
-void read_property(const BdfEntry& e, BdfDeck& deck, Imported&) {
+void read_property(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
+  if (e.name == "PSOLID" && !d.empty(6) && upper(d.text(6)) != "SMECH")
+    throw Error(d.place(6), fmt::format("PSOLID {}: cells of {} are no solids", d.integer(0), d.text(6)), "take them out");
+  if (e.name == "PROD" && d.number(5) != 0) in.skip("PROD: mass per length NSM", d.place(5));
   if (!deck.material_of.try_emplace(d.integer(0), d.integer(1)).second)
     throw Error(d.place(0), fmt::format("property {} is given twice", d.integer(0)), "number each property once");
 }

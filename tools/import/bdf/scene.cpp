@@ -2,10 +2,10 @@
 #include "import/bdf/scene.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "base/error.hpp"
+#include "import/links.hpp"
 
 namespace hilo {
 
@@ -39,8 +39,9 @@ std::string BdfScene::text() {
 }
 
 std::string BdfScene::unique(const std::string& section, const std::string& wish) {
-  const int n = ++made_[section + "/" + wish];
-  return n == 1 ? wish : fmt::format("{}_{}", wish, n);
+  std::string name = wish;
+  for (int i = 2; !made_.insert(section + "/" + name).second; ++i) name = fmt::format("{}_{}", wish, i);
+  return name;
 }
 
 std::string BdfScene::set_of(Rows nodes, const std::string& wish, bool listed) {
@@ -76,33 +77,13 @@ BdfScene::End BdfScene::end(std::int64_t row) const {
   return used_[static_cast<size_t>(row)] ? End::node : End::nothing;
 }
 
-bool BdfScene::joint(unsigned c, const Mat3& axes, const std::string& name, const std::string& a, const std::string& b, const Vec3& at,
-                     const std::string& place) {
-  const unsigned slides = c & 7, turns = c >> 3;
-  const auto count = [](unsigned bits) { return std::popcount(bits); };
-  const auto which = [](unsigned bits) { return static_cast<Eigen::Index>(std::countr_zero(bits)); };  // the first of them
-  const char* kind = nullptr;
-  Eigen::Index axis = -1;
-  if (c == 63)
-    kind = "fixed";
-  else if (slides == 7 && turns == 0)
-    kind = "spherical";
-  else if (slides == 7 && count(turns) == 2)
-    kind = "revolute", axis = which(7 & ~turns);
-  else if (count(slides) == 2 && turns == 7)
-    kind = "prismatic", axis = which(7 & ~slides);
-  else if (count(slides) == 2 && turns == slides)
-    kind = "cylindrical", axis = which(7 & ~slides);
-  else if (count(slides) == 1 && count(turns) == 2 && (turns & slides) == 0)
-    kind = "planar", axis = which(slides);
-  else if (count(slides) == 1 && turns == 0)
-    kind = "in-plane", axis = which(slides);
-  else if (count(slides) == 2 && turns == 0)
-    kind = "in-line", axis = which(7 & ~slides);
-  if (!kind) return false;
-  tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"{}\"\nname = {}\na = {}\nb = {}\nat = {}\n", place, kind,
+bool BdfScene::joint(unsigned components, const Mat3& axes, const std::string& name, const std::string& a, const std::string& b,
+                     const Vec3& at, const std::string& place) {
+  const auto j = joint_that_holds(components);
+  if (!j) return false;
+  tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"{}\"\nname = {}\na = {}\nb = {}\nat = {}\n", place, j->kind,
                          toml_text(unique("joint", name)), toml_text(a), toml_text(b), point(at));
-  if (axis >= 0) tables_ += fmt::format("axis = {}\n", direction(axes.col(axis)));
+  if (j->axis >= 0) tables_ += fmt::format("axis = {}\n", direction(axes.col(j->axis)));
   return true;
 }
 

@@ -42,7 +42,7 @@ class BdfScene {
   void nodal_loads();
   void distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const std::string& place);
   void pressures();
-  bool face_of(const BdfLoad& l, std::int64_t element, Facet& f, double& sign);
+  Facet face_of_solid(const BdfLoad& l, std::int64_t element) const;
 
   double si(const char* unit) const { return to_si(unit, options_.units); }
   std::string number(double x, const char* unit) const { return toml_number(x * si(unit)); }
@@ -70,8 +70,8 @@ class BdfScene {
   /// A joint that holds components (bits 0 to 5) along these axes; false where hilo has none.
   bool joint(unsigned components, const Mat3& axes, const std::string& name, const std::string& a, const std::string& b, const Vec3& at,
              const std::string& place);
-  void spring_along(const Vec3& axis, const std::string& name, const std::string& a, const std::string& b, const Vec3& at, double k,
-                    double c, const std::string& place);
+  void spring_along(const Vec3& axis, const std::string& name, const std::string& a, std::int64_t b, double k, double c,
+                    const std::string& place);
 
   const BdfDeck& deck_;
   Imported& in_;
@@ -84,7 +84,7 @@ class BdfScene {
   std::map<std::int64_t, unsigned> body_held_;   // row -> components
   std::vector<std::pair<double, const BdfLoad*>> loads_;
   std::map<std::int64_t, std::pair<Vec3, std::string>> force_, moment_;  // row -> sum and first place
-  std::map<std::string, int> made_;
+  std::set<std::string> made_;                                           // names given, by section
   std::map<Rows, std::string> set_by_rows_;
   std::string head_, tables_;
 };

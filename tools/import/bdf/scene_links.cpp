@@ -1,28 +1,14 @@
 // What ties grids together, as scene lines: a grid of no cell that something is tied to becomes a [[body]], a rigid element a joint between
 // it and a set, a spring a [[spring]] or a joint that gives way.
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
 #include "import/bdf/scene.hpp"
+#include "import/links.hpp"
 
 namespace hilo {
-namespace {
-
-/// Whether points lie on a line, or at one place.
-bool on_a_line(const std::vector<Vec3>& points) {
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& x : points) mean += x / static_cast<double>(points.size());
-  Mat3 S = Mat3::Zero();
-  for (const Vec3& x : points) S += (x - mean) * (x - mean).transpose();
-  const Vec3 v = Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvalues();
-  return !(v[1] > 1e-10 * v[2]);
-}
-
-}  // namespace
-
 void BdfScene::find_bodies() {
   const auto free = [&](std::int64_t a) { return !used_[static_cast<size_t>(a)]; };
   const auto make = [&](std::int64_t grid, const std::string& place, const std::string& who, bool cell_too = false) {

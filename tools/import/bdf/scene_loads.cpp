@@ -1,11 +1,10 @@
 // Loads of a Nastran file as scene lines: forces by node, moments on bodies, pressures and tractions on facets, gravity.
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 
 #include "base/error.hpp"
 #include "import/bdf/scene.hpp"
+#include "import/links.hpp"
 
 namespace hilo {
 namespace {
@@ -65,32 +64,14 @@ void BdfScene::gravity() {
   if (g.norm() > 0) head_ += fmt::format("gravity = {}\n", list(g, "m/s^2"));
 }
 
-/// What an RBE3 makes of a force and a moment at its grid: f = w (F/W + (T^-1 (M + (x - c) x F)) x r), with r from the weighted mean c,
-/// W = sum w and T = sum w (r.r I - r r^T).
 void BdfScene::distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const std::string& place) {
-  const Vec3& at = X(row(m.grid, m.place, "RBE3"));
-  double W = 0;
-  Vec3 c = Vec3::Zero();
-  for (const auto& [grid, w] : m.of) W += w, c += w * X(row(grid, m.place, "RBE3"));
-  if (!(W > 0)) return in_.skip("load on an RBE3 without weights", place);
-  c /= W;
-  Mat3 T = Mat3::Zero();
-  for (const auto& [grid, w] : m.of) {
-    const Vec3 r = X(row(grid, m.place, "RBE3")) - c;
-    T += w * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
-  }
-  const Vec3 moment = M + (at - c).cross(F);
-  Vec3 turn = Vec3::Zero();
-  if (moment.norm() > 1e-12 * (M.norm() + size_ * F.norm())) {
-    turn = T.completeOrthogonalDecomposition().solve(moment);
-    if (!((T * turn - moment).norm() < 1e-9 * moment.norm())) return in_.skip("moment on an RBE3 whose grids lie on a line", place);
-  }
-  for (const auto& [grid, w] : m.of) {
-    const auto a = row(grid, m.place, "RBE3");
-    const Vec3 f = w * (F / W + turn.cross(X(a) - c));
-    const auto [it, fresh] = force_.try_emplace(a, Vec3::Zero(), place);
-    it->second.first += f;
-  }
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+  for (const auto& [grid, w] : m.of) points.push_back(X(row(grid, m.place, "RBE3"))), weights.push_back(w);
+  const auto shares = shares_of_mean(points, weights, X(row(m.grid, m.place, "RBE3")), F, M);
+  if (!shares) return in_.skip("load on an RBE3 that its grids cannot carry", place);
+  for (size_t i = 0; i < points.size(); ++i)
+    force_.try_emplace(row(m.of[i].first, m.place, "RBE3"), Vec3::Zero(), place).first->second.first += (*shares)[i];
 }
 
 void BdfScene::nodal_loads() {
@@ -160,77 +141,85 @@ void BdfScene::nodal_loads() {
                              toml_text(unique("load", end_name(a) + "_torque")), toml_text(end_name(a)), list(m.first, "N m"));
 }
 
-/// The facet that a pressure speaks of, and 1 where its positive pressure pushes inwards.
-bool BdfScene::face_of(const BdfLoad& l, std::int64_t element, Facet& f, double& sign) {
-  std::vector<std::int64_t> corners;  // rows, of a shell or of a face by its grids
-  sign = 1;
-  if (const auto cell = deck_.cell_row.find(element); l.corners.empty() && cell != deck_.cell_row.end()) {
-    const auto c = cell->second;
-    const ShapeInfo& s = info(in_.mesh.shape[static_cast<size_t>(c)]);
-    const auto nodes = in_.mesh.cell(c);
-    const auto local = [&](std::int64_t grid) {  // which corner of the cell
-      const auto a = grid ? row(grid, l.place, "PLOAD4") : -1;
-      for (int i = 0; i < s.n_corners; ++i)
-        if (nodes[static_cast<size_t>(i)] == a) return i;
-      return -1;
-    };
-    const int one = local(l.face[0]), other = local(l.face[1]);
-    if (s.dimension != 3 || one < 0 || (l.face[1] && other < 0))
-      throw Error(l.place, fmt::format("PLOAD4: element {} has no face of grids {} and {}", element, l.face[0], l.face[1]));
-    for (size_t i = 0; i < s.facets.size(); ++i) {
-      std::vector<int> of;
-      for (const int a : s.facets[i])
-        if (a < s.n_corners) of.push_back(a);
-      const auto has = [&](int a) { return std::find(of.begin(), of.end(), a) - of.begin(); };
-      const auto n = static_cast<std::ptrdiff_t>(of.size());
-      if (has(one) == n) continue;
-      const bool it = s.n_corners == 4 ? other >= 0 && has(other) == n                    // G4 is off the face
-                      : n == 3         ? other < 0                                        // a triangle of a wedge: G1 alone
-                                       : has(other) < n && (has(other) - has(one) + n) % n == 2;  // G1 and G3 across
-      if (!it) continue;
-      f = {c, static_cast<std::int64_t>(i)};
-      return true;
-    }
-    throw Error(l.place, fmt::format("PLOAD4: element {} has no face of grids {} and {}", element, l.face[0], l.face[1]));
+/// The facet of a solid that PLOAD4 names by one or two of its corners.
+Facet BdfScene::face_of_solid(const BdfLoad& l, std::int64_t element) const {
+  const auto c = deck_.cell_row.at(element);
+  const ShapeInfo& s = info(in_.mesh.shape[static_cast<size_t>(c)]);
+  const auto nodes = in_.mesh.cell(c);
+  const auto local = [&](std::int64_t grid) {  // which corner of the cell
+    const auto a = grid ? row(grid, l.place, "PLOAD4") : -1;
+    for (int i = 0; i < s.n_corners; ++i)
+      if (nodes[static_cast<size_t>(i)] == a) return i;
+    return -1;
+  };
+  const int one = local(l.face[0]), other = local(l.face[1]);
+  for (size_t i = 0; i < s.facets.size() && s.dimension == 3 && one >= 0 && (other >= 0 || !l.face[1]); ++i) {
+    std::vector<int> of;
+    for (const int a : s.facets[i])
+      if (a < s.n_corners) of.push_back(a);
+    const auto has = [&](int a) { return std::find(of.begin(), of.end(), a) - of.begin(); };
+    const auto n = static_cast<std::ptrdiff_t>(of.size());
+    if (has(one) == n) continue;
+    const bool it = s.n_corners == 4 ? other >= 0 && has(other) == n                    // G4 is off the face
+                    : n == 3         ? other < 0                                        // a triangle of a wedge: G1 alone
+                                     : has(other) < n && (has(other) - has(one) + n) % n == 2;  // G1 and G3 across
+    if (it) return {c, static_cast<std::int64_t>(i)};
   }
-  for (const auto grid : l.corners) corners.push_back(row(grid, l.place, "PLOAD"));
-  if (corners.empty()) {
-    const auto shell = std::find_if(deck_.shells.begin(), deck_.shells.end(), [&](const BdfDeck::Cell& s) { return s.id == element; });
-    if (shell == deck_.shells.end()) return false;
-    for (const auto grid : shell->nodes) corners.push_back(row(grid, l.place, "PLOAD"));
-  }
-  f = match_facets(in_.mesh, {corners})[0];
-  if (f.cell < 0) return false;
-  const Vec3 normal = corners.size() == 3 ? (X(corners[1]) - X(corners[0])).cross(X(corners[2]) - X(corners[0]))
-                                          : (X(corners[2]) - X(corners[0])).cross(X(corners[3]) - X(corners[1]));
-  sign = normal.dot(facet_area(in_.mesh, f)) > 0 ? -1 : 1;
-  return true;
+  throw Error(l.place, fmt::format("PLOAD4: element {} has no face of grids {} and {}", element, l.face[0], l.face[1]));
 }
 
 void BdfScene::pressures() {
+  struct Pushed {
+    double factor;
+    const BdfLoad* l;
+    Facet f;
+    double sign;  // 1 where a positive pressure pushes inwards
+  };
+  std::vector<Pushed> pushed;
+  std::vector<std::vector<std::int64_t>> corners;  // of shells and faces by their grids
+  std::vector<size_t> open;                        // their places in `pushed`
+  std::unordered_map<std::int64_t, const BdfDeck::Cell*> shell;
+  for (const auto& s : deck_.shells) shell.try_emplace(s.id, &s);
+  for (const auto& [factor, l] : loads_) {
+    if (l->kind != BdfLoad::Kind::pressure) continue;
+    const size_t before = pushed.size();
+    const auto by_grids = [&, factor = factor, l = l](const std::vector<std::int64_t>& grids) {
+      corners.emplace_back();
+      for (const auto grid : grids) corners.back().push_back(row(grid, l->place, "PLOAD"));
+      open.push_back(pushed.size());
+      pushed.push_back({factor, l, {-1, -1}, 1});
+    };
+    if (!l->corners.empty()) by_grids(l->corners);
+    for (const auto element : l->elements)
+      if (deck_.cell_row.contains(element))
+        pushed.push_back({factor, l, face_of_solid(*l, element), 1});
+      else if (const auto s = shell.find(element); s != shell.end())
+        by_grids(s->second->nodes);
+    if (pushed.size() == before) in_.skip("PLOAD on elements that are not there", l->place);
+  }
+  const auto found = match_facets(in_.mesh, corners);
+  for (size_t i = 0; i < open.size(); ++i) {
+    Pushed& p = pushed[open[i]];
+    const auto& c = corners[i];
+    p.f = found[i];
+    if (p.f.cell < 0) continue;
+    const Vec3 normal = c.size() == 3 ? (X(c[1]) - X(c[0])).cross(X(c[2]) - X(c[0])) : (X(c[2]) - X(c[0])).cross(X(c[3]) - X(c[1]));
+    p.sign = normal.dot(facet_area(in_.mesh, p.f)) > 0 ? -1 : 1;
+  }
+
   using Key = std::pair<std::int64_t, std::int64_t>;
   std::map<Key, std::pair<double, std::string>> pressure;
   std::map<Key, std::pair<Vec3, std::string>> traction;
-  for (const auto& [factor, l] : loads_) {
-    if (l->kind != BdfLoad::Kind::pressure) continue;
-    Rows elements = l->elements;
-    if (!l->corners.empty()) elements = {0};
-    for (const auto element : elements) {
-      Facet f{-1, -1};
-      double sign = 1;
-      if (!face_of(*l, element, f, sign)) {
-        if (elements.size() == 1) in_.skip("PLOAD on a face of no solid", l->place);
-        continue;
-      }
-      const Key key{f.cell, f.facet};
-      if (l->direction.norm() > 0) {
-        const auto [it, fresh] = traction.try_emplace(key, Vec3::Zero(), l->place);
-        const Vec3 at = X(in_.mesh.facet_nodes(f)[0]);
-        it->second.first += factor * l->size * (axes_at(deck_, l->system, at, l->place) * l->direction).normalized();
-      } else {
-        const auto [it, fresh] = pressure.try_emplace(key, 0, l->place);
-        it->second.first += factor * l->size * sign;
-      }
+  for (const auto& [factor, l, f, sign] : pushed) {
+    const Key key{f.cell, f.facet};
+    if (f.cell < 0) {
+      in_.skip("PLOAD on a face of no solid", l->place);
+    } else if (l->direction.norm() > 0) {
+      const Vec3 at = X(in_.mesh.facet_nodes(f)[0]);
+      traction.try_emplace(key, Vec3::Zero(), l->place).first->second.first +=
+          factor * l->size * (axes_at(deck_, l->system, at, l->place) * l->direction).normalized();
+    } else {
+      pressure.try_emplace(key, 0, l->place).first->second.first += factor * l->size * sign;
     }
   }
   std::map<double, std::pair<std::vector<Facet>, std::string>> by_pressure;

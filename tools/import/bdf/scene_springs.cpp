@@ -35,11 +35,20 @@ void BdfScene::springs() {
   }
 }
 
-/// A plane of a that gives way to a point of b along its normal.
-void BdfScene::spring_along(const Vec3& axis, const std::string& name, const std::string& a, const std::string& b, const Vec3& at, double k,
-                            double c, const std::string& place) {
-  tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\nname = {}\na = {}\nb = {}\nat = {}\naxis = {}\nstiffness = {}\n", place,
-                         toml_text(unique("joint", name)), toml_text(a), toml_text(b), point(at), direction(axis), number(k, "N/m"));
+/// A plane of a that gives way to a point of b along its normal; a damper alone is a bushing, which bodies have.
+void BdfScene::spring_along(const Vec3& axis, const std::string& name, const std::string& a, std::int64_t b, double k, double c,
+                            const std::string& place) {
+  const Vec3& at = X(b);
+  if (k == 0 && end(b) == End::body) {
+    tables_ += fmt::format("\n[[spring]]   # {}\nkind = \"bushing\"\nname = {}\na = {}\nb = {}\nat = {}\naxis = {}\ndamping = {}\n", place,
+                           toml_text(unique("spring", name)), toml_text(a), toml_text(end_name(b)), point(at), direction(axis),
+                           toml_list({0, 0, c * si("N s/m")}));
+    return;
+  }
+  if (k == 0) return in_.skip(name.substr(0, name.find('_')) + ": damping without stiffness at a node of solids", place);
+  tables_ +=
+      fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\nname = {}\na = {}\nb = {}\nat = {}\naxis = {}\nstiffness = {}\n", place,
+                  toml_text(unique("joint", name)), toml_text(a), toml_text(end_name(b)), point(at), direction(axis), number(k, "N/m"));
   if (c > 0) tables_ += fmt::format("damping = {}\n", number(c, "N s/m"));
 }
 
@@ -77,7 +86,7 @@ void BdfScene::scalar_spring(const BdfSpring& s, double k, double c) {
   if (apart && gap.cross(axis).norm() < 1e-9 * gap.norm()) return line_spring(s, k, c);
   if (apart) return in_.skip(s.name + " across the line of its grids", s.place);
   if (a >= 0 && end(a) != End::body) return in_.skip(s.name + " between two nodes of solids at one place", s.place);
-  spring_along(axis, name, end_name(a), end_name(b), X(b), k, c, s.place);
+  spring_along(axis, name, end_name(a), b, k, c, s.place);
 }
 
 void BdfScene::bush(const BdfSpring& s, const BdfSpringData& p) {
@@ -117,7 +126,7 @@ void BdfScene::bush(const BdfSpring& s, const BdfSpringData& p) {
   if (!turns(a)) return in_.skip(s.name + " between two nodes of solids at one place", s.place);
   for (Eigen::Index i = 0; i < 3; ++i)
     if (const double k = p.k[static_cast<size_t>(i)], c = p.c[static_cast<size_t>(i)]; k > 0 || c > 0)
-      spring_along(own.col(i), name, end_name(a), node_set(b), X(b), k, c, s.place);
+      spring_along(own.col(i), name, end_name(a), b, k, c, s.place);
   for (size_t i = 3; i < 6; ++i)
     if (p.k[i] > 0 || p.c[i] > 0) return in_.skip(s.name + " on the rotation of a node of solids, which does not turn", s.place);
 }

@@ -33,6 +33,7 @@ using InpCards = Registry<InpCard>;
 std::span<const InpCard> inp_mesh_cards();      // *NODE, *ELEMENT, sets, surfaces
 std::span<const InpCard> inp_material_cards();  // *MATERIAL and what follows it, sections
 std::span<const InpCard> inp_load_cards();      // supports, loads, histories
+std::span<const InpCard> inp_tie_cards();       // couplings, rigid bodies, masses, springs
 std::span<const InpCard> inp_step_cards();      // heading, parts, steps, procedures
 std::span<const InpCard> inp_unread_cards();    // requests for output, and cards without which the mesh would be another
 /// All of them.
@@ -45,6 +46,9 @@ void parse_inp(const std::string& path, InpDeck& deck, Imported& in, const InpCa
 DeckMaterial& material_of(InpReading& r);
 /// And the card's first data line; Error with what is expected there where it has none.
 DeckMaterial& material_of(InpReading& r, DataLine& l, const char* expected);
+
+/// *ELEMENT of a type of points (MASS, SPRINGA, ...); false where it is of cells.
+bool read_points(InpReading& r, const std::string& type);
 
 /// The first parameter of a card that is not among those known, as "*CLOAD, SECTOR"; "" when all are.
 std::string unknown_param(const Card& card, std::initializer_list<const char*> known);

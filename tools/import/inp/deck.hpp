@@ -72,6 +72,47 @@ struct InpAmplitude {
   std::vector<double> t, value;
 };
 
+/// A node by number or by a set that holds it alone.
+struct InpTarget {
+  std::string name;  // upper case, "" for a number
+  std::int64_t id = 0;
+  std::string place = {};
+};
+/// *COUPLING or *RIGID BODY: what follows a reference node, or what it is the mean of.
+struct InpTie {
+  enum class Of { nodes, cells, surface } kind = Of::nodes;
+  std::string name, of, place;  // card, upper-case name of the set or surface
+  InpTarget reference, turns;   // turns: the ROT NODE, whose displacements are the reference node's rotations
+  bool mean = false, undecided = false;
+  unsigned components = 0;  // bits 0 to 5
+};
+/// *ELEMENT of one or two points: MASS, SPRINGA, SPRING1, DASHPOTA; and the values of *MASS, *SPRING, *DASHPOT.
+struct InpPoint {
+  std::string type;
+  std::int64_t id;
+  std::vector<std::int64_t> nodes;
+  std::string place;
+};
+struct InpPointValue {
+  std::string elset, name, place;
+  std::vector<double> numbers;
+};
+/// A reference node that became a body, with the nodes it carries; or the mean of nodes with weights.
+struct InpCarried {
+  std::string name, place;
+  std::vector<std::int64_t> rows;
+};
+struct InpBody {
+  Vec3 X;
+  std::string place;
+  std::vector<InpCarried> carries;
+};
+struct InpMean {
+  Vec3 X;
+  std::map<std::int64_t, double> of;  // row -> weight
+  std::string place;
+};
+
 /// `did you mean "low"?` for a name of which the case does not count.
 template <class Named>
 std::string suggest_name(const std::string& name, const std::map<std::string, Named>& known) {
@@ -102,15 +143,35 @@ struct InpDeck {
   std::map<std::string, DeckMaterial> laws;  // those that sections use, turned by their orientation
   std::string material;                      // the one that *ELASTIC and *DENSITY speak of
   std::vector<InpSection> sections;
-  std::vector<InpNodal> supports, forces, velocities;
+  std::vector<InpTie> ties;
+  std::map<std::int64_t, InpPoint> points;  // by number of the element
+  std::vector<InpPointValue> point_values;
+  std::unordered_map<std::int64_t, Vec3> loose;  // nodes of no cell
+  std::map<std::int64_t, InpBody> bodies;        // by node, as found
+  std::map<std::int64_t, InpMean> means;
+  std::map<std::int64_t, std::int64_t> turns_of;       // ROT NODE -> reference node
+  std::vector<InpNodal> supports, forces, velocities;  // degrees of freedom up to 6, which only reference nodes have
   std::vector<InpDistributed> distributed;
   std::map<std::string, InpAmplitude> amplitudes;
-  std::vector<std::string> transformed;  // node sets (upper case) or numbers with axes of their own
-  std::string title, procedure;          // "*STATIC"
+  // *ASSEMBLY: its nodes have numbers of their own, and its sets stand beside those of the part that have the same name ("INSTANCE.NAME")
+  bool in_assembly = false;
+  std::string instance;                           // as written
+  std::set<std::string> part_nsets, part_elsets;  // upper case
+  std::vector<std::string> transformed;           // node sets (upper case) or numbers with axes of their own
+  std::string title, procedure;                   // "*STATIC"
   double step_increment = 0, step_end = 0;
   int n_modes = 0;  // of *FREQUENCY
 };
 
+/// Added to the numbers of nodes of an assembly.
+inline constexpr std::int64_t assembly_numbers = 1'000'000'000'000;
+/// A qualified name, "ASSEMBLY.TOP" or "PART-1-1.TOP", as the deck's own where that is what it has.
+std::string unqualified(const std::string& name);
+/// Supports, loads, surfaces and sections name sets as the deck has them; numbers behind a dot become numbers.
+void unqualify(InpDeck& deck);
+
+/// The element set of this name, new where there is none; one of the part makes room in an assembly.
+InpSet& set_of_cells(const std::string& name, InpDeck& deck);
 /// The shape of an element type, or an Error at the card that says why there is none.
 Shape inp_shape(const Card& card);
 

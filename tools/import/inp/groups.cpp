@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "base/error.hpp"
+#include "import/inp/ties.hpp"
 
 namespace hilo {
 namespace {
@@ -27,6 +28,14 @@ void merge_components(std::vector<Held>& groups) {
     }
 }
 
+/// How many nodes a line speaks of that no cell uses.
+std::int64_t of_no_cell(const InpDeck& d, const InpNodal& l, bool tied_too = false) {
+  const auto lost = [&](std::int64_t id) { return d.unused.contains(id) && (tied_too || !is_tied(d, id)); };
+  if (l.target.empty()) return lost(l.id);
+  const auto set = d.nset.find(l.target);
+  return set == d.nset.end() ? 0 : std::ranges::count_if(set->second.members, lost);
+}
+
 }  // namespace
 
 std::vector<char> turned_nodes(const InpDeck& d, const Mesh& mesh) {
@@ -42,9 +51,9 @@ std::vector<Held> held_groups(const InpDeck& d, const std::vector<char>& turned,
   std::unordered_map<std::int64_t, size_t> claim;
   for (size_t i = 0; i < d.supports.size(); ++i) {
     const auto& b = d.supports[i];
-    if (b.target.empty() && d.unused.count(b.id)) in.skip("*BOUNDARY on a node of no cell", b.place);
+    if (const auto n = of_no_cell(d, b)) in.skip("*BOUNDARY on a node of no cell", b.place, n);
     for (const auto a : inp_nodes(d, b.target, b.id, b.place))
-      for (int k = b.first - 1; k < b.last; ++k) claim[3 * a + k] = i;
+      for (int k = b.first - 1; k < std::min(b.last, 3); ++k) claim[3 * a + k] = i;  // nodes of solids do not turn
   }
   const auto fixed = [&](std::int64_t a, int k) {
     const auto c = claim.find(3 * a + k);
@@ -62,7 +71,7 @@ std::vector<Held> held_groups(const InpDeck& d, const std::vector<char>& turned,
   for (size_t i = 0; i < d.supports.size(); ++i) {
     const auto& b = d.supports[i];
     const std::string amplitude = b.value == 0 ? "" : b.amplitude;
-    for (int k = b.first - 1; k < b.last; ++k)
+    for (int k = b.first - 1; k < std::min(b.last, 3); ++k)
       for (const auto a : inp_nodes(d, b.target, b.id, b.place)) {
         const auto c = claim.find(3 * a + k);
         if (c == claim.end() || c->second != i) continue;
@@ -109,7 +118,7 @@ std::vector<Nodal> nodal_groups(const InpDeck& d, const std::vector<InpNodal>& l
   std::map<std::pair<std::string, std::string>, size_t> of_set;
   std::map<std::pair<std::int64_t, std::string>, Nodal> of_node;
   for (const auto& f : lines) {
-    if (f.target.empty() && d.unused.count(f.id)) in.skip(fmt::format("{} on a node of no cell", what), f.place);
+    if (const auto n = of_no_cell(d, f, !add)) in.skip(fmt::format("{} on a node of no cell", what), f.place, n);
     Rows nodes = inp_nodes(d, f.target, f.id, f.place);
     const auto away = std::count_if(nodes.begin(), nodes.end(), [&](std::int64_t a) { return turned[a]; });
     if (away) {
@@ -117,6 +126,10 @@ std::vector<Nodal> nodal_groups(const InpDeck& d, const std::vector<InpNodal>& l
       continue;
     }
     if (nodes.empty()) continue;
+    if (f.first > 3) {
+      in.skip(fmt::format("{} on degree of freedom {}", what, f.first), f.place);
+      continue;
+    }
     Nodal* n;
     if (f.target.empty())
       n = &of_node[{nodes[0], f.amplitude}];
@@ -139,6 +152,33 @@ std::vector<Nodal> nodal_groups(const InpDeck& d, const std::vector<InpNodal>& l
       same->nodes.push_back(key.first);
   }
   return groups;
+}
+
+std::string unqualified(const std::string& name) { return name.substr(name.rfind('.') + 1); }
+
+void unqualify(InpDeck& d) {
+  const auto own = [](std::string& target, std::int64_t& id, const auto& known) {
+    if (target.find('.') == std::string::npos || known(target)) return;
+    target = unqualified(target);
+    if (target.empty() || target.size() > 18 || target.find_first_not_of("0123456789") != std::string::npos) return;
+    id = std::stoll(target);
+    target.clear();
+  };
+  const auto nset = [&](const std::string& key) { return d.nset.contains(key); };
+  const auto elset = [&](const std::string& key) { return d.elset.contains(key); };
+  const auto surface = [&](const std::string& key) {
+    return std::ranges::any_of(d.surfaces, [&](const InpSurface& s) { return upper(s.name) == key; });
+  };
+  for (auto* lines : {&d.supports, &d.forces, &d.velocities})
+    for (InpNodal& l : *lines) own(l.target, l.id, nset);
+  for (InpDistributed& l : d.distributed) l.face == 0 ? own(l.target, l.id, surface) : own(l.target, l.id, elset);
+  for (InpSurface& s : d.surfaces)
+    for (auto& l : s.lines) s.of_nodes ? own(l.target, l.id, nset) : own(l.target, l.id, elset);
+  std::int64_t none;
+  for (InpTie& t : d.ties)
+    t.kind == InpTie::Of::nodes ? own(t.of, none, nset) : t.kind == InpTie::Of::cells ? own(t.of, none, elset) : own(t.of, none, surface);
+  for (InpSection& s : d.sections) own(s.elset, none, elset);
+  for (std::string& t : d.transformed) own(t, none, nset);
 }
 
 std::vector<std::int64_t> inp_nodes(const InpDeck& d, const std::string& target, std::int64_t id, const std::string& place) {

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
+#include "import/inp/ties.hpp"
 
 namespace hilo {
 namespace {
@@ -15,7 +16,7 @@ void check_names(const InpDeck& d) {
   for (const auto& s : d.sections) {
     if (!d.elset.count(s.elset))
       throw Error(s.place, fmt::format("*SOLID SECTION: no element set \"{}\"", s.elset_name), suggest_name(s.elset, d.elset));
-    if (!d.materials.count(s.material))
+    if (!s.material.empty() && !d.materials.count(s.material))
       throw Error(s.material_place, fmt::format("*SOLID SECTION: no material \"{}\"", s.material_name),
                   suggest_name(s.material, d.materials));
     if (!s.orientation.empty() && !d.orientations.count(s.orientation))
@@ -27,7 +28,11 @@ void check_names(const InpDeck& d) {
 /// The law of each section: its material, where it differs with direction turned by the section's orientation.
 void turn_materials(InpDeck& d, Imported& in) {
   for (auto& s : d.sections) {
-    DeckMaterial law = d.materials.at(s.material);
+    DeckMaterial law;  // of a section without a material: none
+    if (s.material.empty())
+      law.no_law = "*SOLID SECTION without MATERIAL, " + s.place;
+    else
+      law = d.materials.at(s.material);
     s.law = s.material;
     if (law.kind == "orthotropic" && law.no_law.empty() && !s.orientation.empty()) {
       const InpOrientation& o = d.orientations.at(s.orientation);
@@ -64,6 +69,7 @@ void resolve_cells(InpDeck& d, Imported& in) {
       m.X.push_back(d.X[a]);
       m.node_id.push_back(d.node_id[a]);
     } else {
+      d.loose[d.node_id[a]] = d.X[a];
       d.node.erase(d.node_id[a]);
       d.unused.insert(d.node_id[a]);
     }
@@ -86,7 +92,7 @@ std::vector<std::int64_t> rows(const InpSet& s, const std::unordered_map<std::in
   for (const auto id : s.members)
     if (const auto it = of.find(id); it != of.end())
       r.push_back(it->second);
-    else if (!unused || !unused->count(id))
+    else if (!unused->count(id))
       ++missing;
   if (missing) in.notes.push_back(fmt::format("set \"{}\": {} of its numbers are no {}: left out", s.name, missing, what));
   return r;
@@ -156,18 +162,21 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   parse_inp(path, d, in, inp_cards());
   if (d.X.empty()) throw Error(path, "no nodes", "a deck has *NODE");
   if (d.shape.empty()) throw Error(path, "no elements", "a deck has *ELEMENT");
+  unqualify(d);
   check_names(d);
   turn_materials(d, in);
   resolve_cells(d, in);
 
+  std::unordered_set<std::int64_t> points;  // elements that are no cells
+  for (const auto& [id, p] : d.points) points.insert(id);
   std::vector<CellGroup> regions, groups;
   std::set<std::string> in_section;
   for (const auto& s : d.sections) {
     const auto& set = d.elset.at(s.elset);
-    if (in_section.insert(s.elset).second) regions.push_back({set.name, rows(set, d.cell, nullptr, "element", in)});
+    if (in_section.insert(s.elset).second) regions.push_back({set.name, rows(set, d.cell, &points, "element", in)});
   }
   for (const auto& key : d.elset_order)
-    if (!in_section.count(key)) groups.push_back({d.elset.at(key).name, rows(d.elset.at(key), d.cell, nullptr, "element", in)});
+    if (!in_section.count(key)) groups.push_back({d.elset.at(key).name, rows(d.elset.at(key), d.cell, &points, "element", in)});
   assign_regions(in, path, regions, true, groups, options);
   region_materials(d, in, path);
 
@@ -201,7 +210,11 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     }
     names.nodes(s.name, std::move(nodes));
   }
-  for (const auto& g : groups) names.cells(g.name, g.cells);
+  for (const auto& g : groups)
+    if (const auto& ids = d.elset.at(upper(g.name)).members;
+        !g.cells.empty() || ids.empty() || !std::ranges::all_of(ids, [&](std::int64_t id) { return points.contains(id); }))
+      names.cells(g.name, g.cells);
+  find_ties(d, in, surface);
   write_inp_scene(d, in, names, node_set, surface, options);
   return in;
 }

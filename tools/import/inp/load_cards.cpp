@@ -23,15 +23,16 @@ void target_of(const DataLine& l, std::string& target, std::int64_t& id) {
   if (target.empty()) throw Error(l.place(0), "expected a number or the name of a set");
 }
 
-/// Abaqus names for supports of solids: the held translations as first, last pairs.
+/// Abaqus names for supports: the held components as first, last pairs.
 std::vector<std::pair<int, int>> named_support(const std::string& word) {
-  if (word == "ENCASTRE" || word == "PINNED") return {{1, 3}};
-  if (word == "XSYMM") return {{1, 1}};
-  if (word == "YSYMM") return {{2, 2}};
-  if (word == "ZSYMM") return {{3, 3}};
-  if (word == "XASYMM") return {{2, 3}};
-  if (word == "YASYMM") return {{1, 1}, {3, 3}};
-  if (word == "ZASYMM") return {{1, 2}};
+  if (word == "ENCASTRE") return {{1, 6}};
+  if (word == "PINNED") return {{1, 3}};
+  if (word == "XSYMM") return {{1, 1}, {5, 6}};
+  if (word == "YSYMM") return {{2, 2}, {4, 4}, {6, 6}};
+  if (word == "ZSYMM") return {{3, 5}};
+  if (word == "XASYMM") return {{2, 4}};
+  if (word == "YASYMM") return {{1, 1}, {3, 3}, {5, 5}};
+  if (word == "ZASYMM") return {{1, 2}, {6, 6}};
   return {};
 }
 
@@ -70,15 +71,11 @@ void read_supports(InpReading& r) {
     b.first = static_cast<int>(l.integer(1));
     b.last = l.empty(2) ? b.first : static_cast<int>(l.integer(2));
     b.value = l.number(3);
-    if (b.first > 3) {
-      if (b.first > 6) in.skip(fmt::format("*BOUNDARY on degree of freedom {}", b.first), b.place);
-      continue;  // rotations: the nodes of solids have none
-    }
-    if (b.first < 1) {
+    if (b.first < 1 || b.first > 6) {
       in.skip(fmt::format("*BOUNDARY on degree of freedom {}", b.first), b.place);
       continue;
     }
-    b.last = std::min(b.last, 3);
+    b.last = std::min(b.last, 6);
     d.supports.push_back(b);
   }
 }
@@ -94,7 +91,7 @@ void read_nodal(InpReading& r, std::vector<InpNodal>& into) {
     target_of(l, f.target, f.id);
     f.first = f.last = static_cast<int>(l.integer(1));
     f.value = l.number(2);
-    if (f.first < 1 || f.first > 3)
+    if (f.first < 1 || f.first > 6)
       r.in.skip(fmt::format("{} on degree of freedom {}", card.name, f.first), f.place);
     else
       into.push_back(f);

@@ -188,8 +188,9 @@ void read_orientation(InpReading& r) {
 
 void read_section(InpReading& r) {
   const Card& card = r.card;
-  InpSection s{upper(card.need("ELSET")), upper(card.need("MATERIAL")), card.need("ELSET"),
-               card.need("MATERIAL"),     card.place("ELSET"),          card.place("MATERIAL")};
+  InpSection s{upper(card.need("ELSET")), upper(card.value("MATERIAL")), card.need("ELSET"),
+               card.value("MATERIAL"),    card.place("ELSET"),           card.place("MATERIAL")};
+  if (s.material.empty()) r.skip("*SOLID SECTION without MATERIAL");
   if (card.has("ORIENTATION"))
     s.orientation_name = card.need("ORIENTATION"), s.orientation = upper(s.orientation_name),
     s.orientation_place = card.place("ORIENTATION");

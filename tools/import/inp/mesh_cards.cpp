@@ -21,14 +21,36 @@ InpSet& set_named(const std::string& name, std::map<std::string, InpSet>& sets, 
   return it->second;
 }
 
+/// A set that the assembly is about to make: one of the part that has this name makes room, "INSTANCE.NAME".
+void make_room(const std::string& name, bool of_nodes, InpDeck& d) {
+  const std::string key = upper(name);
+  auto& part = of_nodes ? d.part_nsets : d.part_elsets;
+  if (!d.in_assembly || !part.erase(key)) return;
+  auto& sets = of_nodes ? d.nset : d.elset;
+  auto& order = of_nodes ? d.nset_order : d.elset_order;
+  const std::string other = upper(d.instance) + "." + key;
+  auto set = sets.extract(key);
+  set.key() = other;
+  set.mapped().name = d.instance + "." + set.mapped().name;
+  sets.insert(std::move(set));
+  std::replace(order.begin(), order.end(), key, other);
+  for (InpSurface& s : d.surfaces)
+    for (auto& l : s.lines)
+      if (s.of_nodes == of_nodes && l.target == key) l.target = other;
+  for (InpSection& s : d.sections)
+    if (!of_nodes && s.elset == key) s.elset = other;
+}
+
 void read_nodes(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
   if (card.has("SYSTEM") && card.word("SYSTEM") != "R")
     throw Error(card.place("SYSTEM"), "*NODE in cylindrical or spherical axes is not read", "write the nodes in rectangular axes");
+  if (card.has("NSET")) make_room(card.need("NSET"), true, d);
   InpSet* set = card.has("NSET") ? &set_named(card.need("NSET"), d.nset, d.nset_order) : nullptr;
   DataLine l;
   while (lines.next_data(l)) {
-    const auto id = l.integer(0);
-    if (id < 1) throw Error(l.place(0), fmt::format("node number {} is not positive", id));
+    auto id = l.integer(0);
+    if (id < 1 || id >= assembly_numbers) throw Error(l.place(0), fmt::format("node number {} is not one", id));
+    if (d.in_assembly) id += assembly_numbers;
     const Vec3 x(l.number(1), l.number(2), l.number(3));
     const auto [it, fresh] = d.node.try_emplace(id, static_cast<std::int64_t>(d.X.size()));
     if (fresh) {
@@ -42,10 +64,15 @@ void read_nodes(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
   }
 }
 
-void read_elements(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
+void read_elements(InpReading& r) {
+  if (read_points(r, upper(r.card.need("TYPE")))) return;
+  const Card& card = r.card;
+  InpLines& lines = r.lines;
+  InpDeck& d = r.deck;
+  Imported& in = r.in;
   const Shape shape = inp_shape(card);
   const size_t n = static_cast<size_t>(info(shape).n_nodes);
-  InpSet* set = card.has("ELSET") ? &set_named(card.need("ELSET"), d.elset, d.elset_order) : nullptr;
+  InpSet* set = card.has("ELSET") ? &set_of_cells(card.need("ELSET"), d) : nullptr;
   DataLine l;
   std::vector<std::int64_t> row;
   while (lines.next_data(l)) {
@@ -63,7 +90,7 @@ void read_elements(const Card& card, InpLines& lines, InpDeck& d, Imported& in) 
       in.skip(fmt::format("*ELEMENT, TYPE={}: numbers behind its {} nodes", upper(card.value("TYPE")), n), l.place());
       row.resize(n + 1);
     }
-    if (!d.cell.try_emplace(row[0], static_cast<std::int64_t>(d.shape.size())).second)
+    if (d.points.contains(row[0]) || !d.cell.try_emplace(row[0], static_cast<std::int64_t>(d.shape.size())).second)
       throw Error(place, fmt::format("element {} is given twice", row[0]), "number each element once");
     d.shape.push_back(static_cast<std::uint8_t>(shape));
     d.cell_id.push_back(row[0]);
@@ -79,7 +106,13 @@ void read_elements(const Card& card, InpLines& lines, InpDeck& d, Imported& in) 
 void read_set(const Card& card, const std::string& key, InpLines& lines, std::map<std::string, InpSet>& sets,
               std::vector<std::string>& order, InpDeck& d) {
   const std::string name = card.need(key);
+  make_room(name, key == "NSET", d);
   set_named(name, sets, order);
+  const std::int64_t shift = d.in_assembly && key == "NSET" && !card.has("INSTANCE") ? assembly_numbers : 0;
+  const auto find = [&](std::string_view text) {  // a set so far, by its name or its qualified one
+    const auto exact = sets.find(upper(text));
+    return exact != sets.end() ? exact : sets.find(unqualified(upper(text)));
+  };
   std::vector<std::int64_t> add;
   if (key == "NSET" && card.has("ELSET")) {  // the nodes of an element set
     const auto it = d.elset.find(card.word("ELSET"));
@@ -92,7 +125,7 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
   while (lines.next_data(l)) {
     if (card.has("GENERATE")) {
       if (!l.is_integer(0)) {  // CalculiX: a set name stands for itself here too
-        const auto it = sets.find(upper(l.text(0)));
+        const auto it = find(l.text(0));
         if (it == sets.end()) throw Error(l.place(0), fmt::format("GENERATE: expected first, last, increment, found \"{}\"", l.text(0)));
         add.insert(add.end(), it->second.members.begin(), it->second.members.end());
         continue;
@@ -100,18 +133,23 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
       const auto first = l.integer(0), last = l.empty(1) ? first : l.integer(1), by = l.empty(2) ? 1 : l.integer(2);
       if (by < 1 || last < first || (last - first) / by > 1'000'000'000)
         throw Error(l.place(0), fmt::format("GENERATE: {}, {}, {} names no usable range", first, last, by));
-      for (auto i = first; i <= last; i += by) add.push_back(i);
+      for (auto i = first; i <= last; i += by) add.push_back(i + shift);
       continue;
     }
     for (size_t i = 0; i < l.fields.size(); ++i) {
       if (l.empty(i)) continue;
       if (l.is_integer(i)) {
-        add.push_back(l.integer(i));
+        add.push_back(l.integer(i) + shift);
         continue;
       }
       std::string_view text = l.text(i);
       if (text.size() > 1 && text.front() == '"') text = text.substr(1, text.size() - 2);
-      const auto it = sets.find(upper(text));
+      if (const DataLine own{l.file, l.line, {{text.substr(text.rfind('.') + 1), l.fields[i].column}}};
+          text.find('.') != text.npos && own.is_integer(0)) {  // "PART-1-1.17"
+        add.push_back(own.integer(0));
+        continue;
+      }
+      const auto it = find(text);
       if (it == sets.end()) throw Error(l.place(i), fmt::format("no set \"{}\" so far", text), suggest_name(std::string(text), sets));
       add.insert(add.end(), it->second.members.begin(), it->second.members.end());
     }
@@ -123,6 +161,9 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
 void read_surface(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
   InpSurface s;
   s.name = card.need("NAME");
+  if (d.in_assembly)
+    for (InpSurface& other : d.surfaces)
+      if (upper(other.name) == upper(s.name) && other.name.find('.') == std::string::npos) other.name = d.instance + "." + other.name;
   const std::string type = card.has("TYPE") ? card.word("TYPE") : "ELEMENT";
   s.of_nodes = type == "NODE";
   if (!s.of_nodes && type != "ELEMENT") {
@@ -154,6 +195,11 @@ void read_surface(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
 
 }  // namespace
 
+InpSet& set_of_cells(const std::string& name, InpDeck& d) {
+  make_room(name, false, d);
+  return set_named(name, d.elset, d.elset_order);
+}
+
 Shape inp_shape(const Card& card) {
   const std::string type = upper(card.need("TYPE"));
   const std::string place = card.place("TYPE");
@@ -179,10 +225,9 @@ Shape inp_shape(const Card& card) {
   // Prefixes from the longest to the shortest, each with its reason.
   static const std::pair<const char*, const char*> reasons[] = {
       {"DCOUP", "a coupling element is not a solid; a set serves as a patch in the scene"},
-      {"SPRING", "springs are not read; say [[spring]] in the scene"},
-      {"DASHPOT", "dampers are not read; say [[spring]] in the scene"},
+      {"SPRING", "springs between two components are not read; say [[spring]] in the scene"},
+      {"DASHPOT", "dampers between components are not read; say [[spring]] in the scene"},
       {"CONN3D", "connectors are not read; say [[joint]] in the scene"},
-      {"MASS", "point masses are not read; say [[point_mass]] in the scene"},
       {"ROTARYI", "rotary inertia is not read; say [[body]] in the scene"},
       {"GAP", "gap elements are not read"},
       {"COH", "cohesive elements are not read"},
@@ -232,7 +277,7 @@ int inp_facet(Shape shape, int face) {
 std::span<const InpCard> inp_mesh_cards() {
   static constexpr InpCard cards[] = {
       {"NODE", [](InpReading& r) { read_nodes(r.card, r.lines, r.deck, r.in); }},
-      {"ELEMENT", [](InpReading& r) { read_elements(r.card, r.lines, r.deck, r.in); }},
+      {"ELEMENT", read_elements},
       {"NSET", [](InpReading& r) { read_set(r.card, "NSET", r.lines, r.deck.nset, r.deck.nset_order, r.deck); }},
       {"ELSET", [](InpReading& r) { read_set(r.card, "ELSET", r.lines, r.deck.elset, r.deck.elset_order, r.deck); }},
       {"SURFACE", [](InpReading& r) { read_surface(r.card, r.lines, r.deck, r.in); }},

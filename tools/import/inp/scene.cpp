@@ -7,6 +7,8 @@
 #include "base/error.hpp"
 #include "base/param.hpp"
 #include "import/inp/groups.hpp"
+#include "import/inp/ties.hpp"
+#include "import/links.hpp"
 
 namespace hilo {
 namespace {
@@ -23,13 +25,19 @@ class Writer {
  public:
   Writer(const InpDeck& d, Imported& in, SetNames& names, const std::map<std::string, std::string>& node_set,
          const std::map<std::string, std::string>& surface, const ImportOptions& o)
-      : d_(d), in_(in), names_(names), node_set_(node_set), surface_(surface), o_(o), turned_(turned_nodes(d, in.mesh)) {}
+      : d_(d), in_(in), names_(names), node_set_(node_set), surface_(surface), o_(o), turned_(turned_nodes(d, in.mesh)) {
+    for (const auto& key : d.transformed)
+      if (const auto set = d.nset.find(key); set != d.nset.end()) own_axes_.insert(set->second.members.begin(), set->second.members.end());
+  }
 
   std::string text() {
     gravity();
     materials();
+    tables_ += write_ties(d_, in_, names_, o_);
     supports();
+    supports_of_ties();
     forces();
+    forces_of_ties();
     pressures();
     velocities();
     histories();
@@ -114,8 +122,9 @@ class Writer {
         if (c == d_.cell.end() || seen[m.region[c->second]]++) continue;
         const auto r = m.region[c->second];
         if (!mat.no_law.empty() || (mat.kind == "stvk" && std::isnan(mat.data.E))) {
-          lines[r] = fmt::format("# region {}: material {} has no law here{}, give it one\n", quoted(m.region_name[r]), quoted(mat.name),
-                                 mat.no_law.empty() ? "" : " (" + mat.no_law + ")");
+          lines[r] =
+              fmt::format("# region {}: {} has no law here{}, give it one\n", quoted(m.region_name[r]),
+                          mat.name.empty() ? "it" : "material " + quoted(mat.name), mat.no_law.empty() ? "" : " (" + mat.no_law + ")");
           continue;
         }
         used.insert(s.law);
@@ -152,6 +161,85 @@ class Writer {
       tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", g.place,
                              quoted(unique("load", set)), quoted(set), list(Vec3(g.value * si("N")))) +
                  past;
+    }
+  }
+
+  /// Reference nodes are held by joints to the ground, or whole.
+  void supports_of_ties() {
+    std::map<std::int64_t, std::pair<unsigned, std::string>> held;
+    for (const auto& b : d_.supports)
+      tied_lines(d_, b, [&](std::int64_t id, int first, int last) {
+        if (b.value != 0) return in_.skip("*BOUNDARY with a displacement on a reference node", b.place);
+        if (!d_.bodies.contains(id)) return in_.skip("*BOUNDARY on the node of a distributing coupling", b.place);
+        if (own_axes_.contains(id)) return in_.skip("*BOUNDARY in axes of *TRANSFORM", b.place);
+        auto& [bits, place] = held[id];
+        for (int k = first; k <= last; ++k) bits |= 1u << (k - 1);
+        if (place.empty()) place = b.place;
+      });
+    for (const auto& [id, h] : held) {
+      const std::string name = quoted(body_name(id));
+      const auto j = joint_that_holds(h.first);
+      if (h.first == 63) {
+        tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"fixed\"\nname = {}\non = {}\n", h.second,
+                               quoted(unique("motion", body_name(id))), name);
+      } else if (!j) {
+        in_.skip("*BOUNDARY on components of a reference node that no joint holds", h.second);
+      } else {
+        const Vec3 X = d_.bodies.at(id).X * si("m") * o_.scale;
+        tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"{}\"\nname = {}\nb = {}\nat = {}\n", h.second, j->kind,
+                               quoted(unique("joint", body_name(id) + "_support")), name, list(X));
+        if (j->axis >= 0) tables_ += fmt::format("axis = {}\n", list(Vec3(Vec3::Unit(j->axis))));
+      }
+    }
+  }
+
+  /// Forces and moments at reference nodes: on the body, or shared by the nodes of a distributing coupling.
+  void forces_of_ties() {
+    struct Sum {
+      Vec3 F = Vec3::Zero(), M = Vec3::Zero();
+      std::string place;
+    };
+    std::map<std::pair<std::int64_t, std::string>, Sum> sums;  // of node and amplitude
+    for (const auto& f : d_.forces)
+      tied_lines(d_, f, [&](std::int64_t id, int first, int) {
+        if (own_axes_.contains(id)) return in_.skip("*CLOAD in axes of *TRANSFORM", f.place);
+        Sum& s = sums[{id, f.amplitude}];
+        (first > 3 ? s.M : s.F)[(first - 1) % 3] += f.value;
+        if (s.place.empty()) s.place = f.place;
+      });
+    for (const auto& [key, s] : sums) {
+      std::string past;
+      if (!history(key.second, "*CLOAD", s.place, past)) continue;
+      if (d_.bodies.contains(key.first)) {
+        const std::string name = body_name(key.first);
+        if (s.F.norm() > 0)
+          tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nat = {}\n", s.place,
+                                 quoted(unique("load", name)), quoted(name), list(Vec3(s.F * si("N"))),
+                                 list(Vec3(d_.bodies.at(key.first).X * si("m") * o_.scale))) +
+                     past;
+        if (s.M.norm() > 0)
+          tables_ += fmt::format("\n[[load]]   # {}\nkind = \"torque\"\nname = {}\non = {}\ntorque = {}\n", s.place,
+                                 quoted(unique("load", name + "_torque")), quoted(name), list(Vec3(s.M * si("N m")))) +
+                     past;
+        continue;
+      }
+      const InpMean& mean = d_.means.at(key.first);
+      std::vector<Vec3> points;
+      std::vector<double> weights;
+      Rows rows;
+      for (const auto& [a, w] : mean.of) rows.push_back(a), points.push_back(in_.mesh.X[a]), weights.push_back(w);
+      const auto shares = shares_of_mean(points, weights, mean.X, s.F, s.M);
+      if (!shares) {
+        in_.skip("*CLOAD that the nodes of a distributing coupling cannot carry", s.place);
+        continue;
+      }
+      for (size_t i = 0; i < rows.size(); ++i)
+        if ((*shares)[i].norm() > 0) {
+          const std::string set = set_of("", {rows[i]}, "share", true);
+          tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", s.place,
+                                 quoted(unique("load", set)), quoted(set), list(Vec3((*shares)[i] * si("N")))) +
+                     past;
+        }
     }
   }
 
@@ -235,6 +323,7 @@ class Writer {
   SetNames& names_;
   const std::map<std::string, std::string>&node_set_, &surface_;
   const ImportOptions& o_;
+  std::set<std::int64_t> own_axes_;      // the same by number, nodes of no cell too
   std::vector<char> turned_;             // nodes with axes of their own (n_nodes)
   std::set<std::string> used_, wanted_;  // names given; amplitudes that a line scales by
   std::map<std::string, int> made_;      // sets made of single nodes or elements

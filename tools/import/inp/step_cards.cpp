@@ -25,6 +25,8 @@ void read_part(InpReading& r) {
 }
 void read_instance(InpReading& r) {
   if (++r.instances > 1) refuse(r, "more than one *INSTANCE");
+  r.deck.instance = r.card.value("NAME");
+  r.deck.in_assembly = false;  // what stands between it and its end is the part's
   DataLine l;
   if (!r.lines.next_data(l)) return;
   if (l.fields.size() > 3) refuse(r, "a turned *INSTANCE");
@@ -52,6 +54,13 @@ void other_procedure(InpReading& r) {
   r.deck.procedure = r.card.name;
   r.skip(r.card.name);
 }
+/// What follows is of the assembly.
+void read_assembly(InpReading& r) {
+  r.deck.in_assembly = true;
+  for (const auto& [key, set] : r.deck.nset) r.deck.part_nsets.insert(key);
+  for (const auto& [key, set] : r.deck.elset) r.deck.part_elsets.insert(key);
+}
+void end_assembly(InpReading& r) { r.deck.in_assembly = false; }
 void nothing(InpReading&) {}
 
 }  // namespace
@@ -61,10 +70,10 @@ std::span<const InpCard> inp_step_cards() {
       {"HEADING", read_heading},
       {"PART", read_part},
       {"ENDPART", nothing},
-      {"ASSEMBLY", nothing},
-      {"ENDASSEMBLY", nothing},
+      {"ASSEMBLY", read_assembly},
+      {"ENDASSEMBLY", end_assembly},
       {"INSTANCE", read_instance},
-      {"ENDINSTANCE", nothing},
+      {"ENDINSTANCE", read_assembly},
       {"STEP", read_step},
       {"ENDSTEP", nothing},
       {"STATIC", read_procedure, true},

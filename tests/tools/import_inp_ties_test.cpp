@@ -1,0 +1,117 @@
+// Couplings, rigid bodies, masses, springs and dampers of .inp decks: the scene lines that they become are run, and the answer is that of
+// statics.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "import_case.hpp"
+#include "model/scene.hpp"
+#include "model/store.hpp"
+
+namespace hilo {
+namespace {
+
+/// A bar of four cubes of 1 m along x, E = 1 GPa, nu = 0: nodes 1 to 4 at its foot, 17 to 20 at its head; 100 beside the head.
+const std::string bar = [] {
+  std::string s = "*NODE\n";
+  const int y[] = {0, 1, 1, 0}, z[] = {0, 0, 1, 1};
+  for (int i = 0; i < 20; ++i) s += fmt::format("{}, {}, {}, {}\n", i + 1, i / 4, y[i % 4], z[i % 4]);
+  s += "100, 5., 2., .5\n101, 5., .5, .5\n102, 6., .5, .5\n*ELEMENT, TYPE=C3D8, ELSET=bar\n";
+  for (int c = 0; c < 4; ++c) {
+    s += fmt::format("{}", c + 1);
+    for (int a = 1; a <= 8; ++a) s += fmt::format(", {}", 4 * c + a);
+    s += "\n";
+  }
+  return s +
+         "*NSET, NSET=foot, GENERATE\n1, 4\n*NSET, NSET=head, GENERATE\n17, 20\n*NSET, NSET=ref\n100\n*SURFACE, NAME=end\n4, S2\n"
+         "*MATERIAL, NAME=m\n*ELASTIC\n1e9, 0.\n*DENSITY\n1000.\n*SOLID SECTION, ELSET=bar, MATERIAL=m\n";
+}();
+const std::string held = "*BOUNDARY\nfoot, 1, 3\n", statics = "*STEP\n*STATIC\n";
+
+class ImportInpTies : public test::Import {
+ protected:
+  void run(const std::string& text) {
+    place.write("a.inp", text);
+    imported("a.inp", "--scene-out s.toml");
+    EXPECT_EQ(err.find("not read"), std::string::npos) << err;
+    const auto ran = place.run("hilo-solve --quiet s.toml -o run.h5");
+    ASSERT_EQ(ran.exit, 0) << ran.err << test::text_of(place / "s.toml");
+  }
+  std::vector<double> foot() const {
+    const auto all = Store::open(place / "run.h5").read<double>("/history/motion/foot");
+    return {all.end() - 6, all.end()};
+  }
+};
+
+// 10 N along z, and 1 2 3 N m, at (5, 2, .5): the foot answers with the opposite about its centre (0, .5, .5), whatever carries them.
+TEST_F(ImportInpTies, WhatHangsOnAReferenceNodeIsInBalanceAtTheFoot) {
+  const std::string load = statics + "*CLOAD\nref, 3, 10.\nref, 4, 1.\nref, 5, 2.\nref, 6, 3.\n*END STEP\n";
+  const std::pair<const char*, std::string> cases[] = {
+      {"*COUPLING, kinematic", "*COUPLING, REF NODE=100, SURFACE=end, CONSTRAINT NAME=c\n*KINEMATIC\n1, 6\n"},
+      {"*COUPLING, kinematic, of displacements", "*COUPLING, REF NODE=ref, SURFACE=end, CONSTRAINT NAME=c\n*KINEMATIC\n1, 3\n"},
+      {"*COUPLING, distributing", "*COUPLING, REF NODE=ref, SURFACE=end, CONSTRAINT NAME=c\n*DISTRIBUTING\n1, 6\n"},
+      {"*RIGID BODY of nodes", "*RIGID BODY, NSET=head, REF NODE=100\n"},
+  };
+  for (const auto& [name, text] : cases) {
+    SCOPED_TRACE(name);
+    run(bar + text + held + load);
+    if (HasFatalFailure()) return;
+    const auto r = foot();
+    EXPECT_LT((Vec3(r[0], r[1], r[2]) + Vec3(0, 0, 10)).norm(), 1e-5);
+    EXPECT_LT((Vec3(r[3], r[4], r[5]) + Vec3(15 + 1, -50 + 2, 3)).norm(), 1e-3) << r[3] << ' ' << r[4] << ' ' << r[5];
+  }
+  // CalculiX: moments are forces on the node of rotations
+  run(bar + "*RIGID BODY, NSET=head, REF NODE=100, ROT NODE=102\n" + held + statics +
+      "*CLOAD\n100, 3, 10.\n102, 1, 1.\n102, 2, 2.\n102, 3, 3.\n*END STEP\n");
+  const auto r = foot();
+  EXPECT_LT((Vec3(r[3], r[4], r[5]) + Vec3(15 + 1, -50 + 2, 3)).norm(), 1e-3) << r[3] << ' ' << r[4] << ' ' << r[5];
+}
+
+// 400 N on a spring of 1 kN/mm in a row with the bar: F/k + F l/(E A).
+TEST_F(ImportInpTies, SpringsGiveWayByForceOverStiffness) {
+  const std::string coupling = "*COUPLING, REF NODE=101, SURFACE=end, CONSTRAINT NAME=c\n*KINEMATIC\n1, 6\n";
+  run(bar + coupling + "*ELEMENT, TYPE=SPRINGA, ELSET=s\n50, 101, 102\n*SPRING, ELSET=s\n\n1e6\n" + held + "*BOUNDARY\n102, 2, 6\n" +
+      statics + "*CLOAD\n102, 1, 400.\n*END STEP\n");
+  const auto u = Store::open(place / "run.h5").read<double>("/history/body/node_102");
+  EXPECT_NEAR(u[u.size() - 12] - u[0], 400 / 1e6 + 1.6e-6, 1e-9);
+  run(bar + coupling +
+      "*ELEMENT, TYPE=SPRING1, ELSET=s\n50, 101\n*SPRING, ELSET=s\n1\n1e6\n*NSET, NSET=mid, GENERATE\n1, 12\n*BOUNDARY\nmid, 2, 3\n" +
+      statics + "*CLOAD\n101, 1, 400.\n*END STEP\n");
+  const auto x = Store::open(place / "run.h5").read<double>("/history/body/node_101");
+  EXPECT_NEAR(x[x.size() - 12] - x[0], 400 / 1e6, 1e-9);
+}
+
+TEST_F(ImportInpTies, AMassOnASpringHasTheFrequencyOfTheClosedForm) {
+  run(bar +
+      "*NSET, NSET=all, GENERATE\n1, 20\n*ELEMENT, TYPE=MASS, ELSET=p\n50, 101\n*MASS, ELSET=p\n2.\n*ELEMENT, TYPE=SPRING1, ELSET=s\n51, "
+      "101\n"
+      "*SPRING, ELSET=s\n3\n800.\n*BOUNDARY\nall, 1, 3\n101, 1, 2\n101, 4, 6\n*STEP\n*FREQUENCY\n1\n*END STEP\n");
+  EXPECT_NEAR(Store::open(place / "run.h5").read<double>("/history/mode").at(10), 20 / (2 * std::numbers::pi), 1e-8);
+}
+
+// Masses on nodes of cells and dampers are lines of the scene; what no line says is told.
+TEST_F(ImportInpTies, WhatIsLeftOutIsToldByName) {
+  place.write(
+      "a.inp",
+      bar +
+          "*ELEMENT, TYPE=MASS, ELSET=p\n50, 17\n51, 18\n*MASS, ELSET=p\n2.\n*ELEMENT, TYPE=DASHPOTA, ELSET=d\n52, 17, 101\n"
+          "*DASHPOT, ELSET=d\n\n7.\n*ELEMENT, TYPE=SPRINGA, ELSET=q\n53, 17, 1\n*SPRING, ELSET=q, NONLINEAR\n0., 0.\n"
+          "*COUPLING, REF NODE=100, SURFACE=end, CONSTRAINT NAME=c\n*KINEMATIC\n1, 2\n"
+          "*COUPLING, REF NODE=17, SURFACE=end, CONSTRAINT NAME=e\n*KINEMATIC\n1, 6\n*BOUNDARY\n101, 1, 1, .5\n101, 4, 4\n100, 1\n");
+  imported("a.inp", "--scene-out s.toml");
+  for (const char* what :
+       {"*SPRING, NONLINEAR (1,", "*ELEMENT, TYPE=SPRINGA without a value (1,", "*COUPLING of some components (1,",
+        "*COUPLING whose reference node is a node of a cell (1,", "*BOUNDARY with a displacement on a reference node (1,",
+        "*BOUNDARY on components of a reference node that no joint holds (1,", "*BOUNDARY on a node of no cell (1,"})
+    EXPECT_NE(err.find(std::string("not read: ") + what), std::string::npos) << what << '\n' << err;
+  const Scene s = Scene::load(place / "s.toml");
+  double mass = 0;
+  for (const auto& e : s.entries("point_mass")) mass += e.number("mass");
+  EXPECT_EQ(mass, 4);
+  ASSERT_EQ(s.entries("spring").size(), 1u);
+  EXPECT_EQ(s.entries("spring")[0].number("damping"), 7);
+}
+
+}  // namespace
+}  // namespace hilo

@@ -1,0 +1,107 @@
+// The cards of an .inp deck that tie nodes together: *COUPLING, *RIGID BODY, and the values of elements of points: *MASS, *SPRING,
+// *DASHPOT.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "import/inp/card.hpp"
+
+namespace hilo {
+namespace {
+
+/// A node by its number or by the name of a set, which must hold one.
+InpTarget target_in(const InpReading& r, const std::string& key) {
+  const Card& card = r.card;
+  const std::string value = card.need(key);
+  InpTarget t{upper(value), 0, card.place(key)};
+  if (!t.name.empty() && t.name.size() < 18 && t.name.find_first_not_of("0123456789") == std::string::npos)
+    t.id = std::stoll(t.name) + (r.deck.in_assembly ? assembly_numbers : 0), t.name.clear();
+  return t;
+}
+
+/// Kinematic or distributing, as the card behind it says.
+void read_coupling(InpReading& r) {
+  InpTie t;
+  t.name = r.card.name, t.place = r.card.place();
+  t.of = upper(r.card.need("SURFACE")), t.kind = InpTie::Of::surface;
+  t.reference = target_in(r, "REFNODE");
+  t.undecided = true;
+  if (const auto odd = unknown_param(r.card, {"CONSTRAINTNAME", "REFNODE", "SURFACE"}); !odd.empty()) return r.skip(odd);
+  r.deck.ties.push_back(t);
+}
+void read_coupling_kind(InpReading& r) {
+  if (r.deck.ties.empty() || !r.deck.ties.back().undecided)
+    throw Error(r.card.place() + ":1", fmt::format("{} follows no *COUPLING", r.card.name));
+  InpTie& t = r.deck.ties.back();
+  t.undecided = false, t.mean = r.card.key == "DISTRIBUTING";
+  DataLine l;
+  bool any = false;
+  while (r.lines.next_data(l)) {
+    const auto first = l.integer(0), last = l.empty(1) ? first : l.integer(1);
+    if (first < 1 || last < first || last > 6)
+      throw Error(l.place(0), fmt::format("{}: no degrees of freedom {} to {}", r.card.name, first, last));
+    for (auto k = first; k <= last; ++k) t.components |= 1u << (k - 1);
+    any = true;
+  }
+  if (!any) t.components = 63;
+}
+
+void read_rigid_body(InpReading& r) {
+  InpTie t;
+  t.name = r.card.name, t.place = r.card.place(), t.components = 63;
+  for (const auto& [key, kind] : {std::pair{"NSET", InpTie::Of::nodes}, {"TIENSET", InpTie::Of::nodes}, {"ELSET", InpTie::Of::cells}})
+    if (r.card.has(key)) {
+      if (!t.of.empty()) return r.skip("*RIGID BODY of several sets");
+      t.of = upper(r.card.need(key)), t.kind = kind;
+    }
+  if (const auto odd = unknown_param(r.card, {"NSET", "TIENSET", "ELSET", "REFNODE", "ROTNODE"}); !odd.empty() || t.of.empty())
+    return r.skip(odd.empty() ? "*RIGID BODY without a set" : odd);
+  t.reference = target_in(r, "REFNODE");
+  if (r.card.has("ROTNODE")) t.turns = target_in(r, "ROTNODE");
+  r.deck.ties.push_back(t);
+}
+
+/// One number; in front of it, for springs and dampers, the degrees of freedom of SPRING1 and SPRING2.
+void read_value(InpReading& r) {
+  if (const auto odd = unknown_param(r.card, {"ELSET"}); !odd.empty()) return r.skip(odd);
+  InpPointValue v{upper(r.card.need("ELSET")), r.card.name, r.card.place(), {}};
+  DataLine l;
+  while (r.lines.next_data(l))
+    for (size_t i = 0; i < l.fields.size(); ++i)
+      if (!l.empty(i)) v.numbers.push_back(l.number(i));
+  r.deck.point_values.push_back(std::move(v));
+}
+
+}  // namespace
+
+bool read_points(InpReading& r, const std::string& type) {
+  static const std::map<std::string, size_t> kinds{{"MASS", 1}, {"SPRINGA", 2}, {"SPRING1", 1}, {"DASHPOTA", 2}, {"DASHPOT1", 1}};
+  const auto kind = kinds.find(type);
+  if (kind == kinds.end()) return false;
+  InpSet* set = r.card.has("ELSET") ? &set_of_cells(r.card.need("ELSET"), r.deck) : nullptr;
+  DataLine l;
+  while (r.lines.next_data(l)) {
+    InpPoint p{type, l.integer(0), {}, l.place()};
+    for (size_t i = 0; i < kind->second; ++i) p.nodes.push_back(l.integer(1 + i) + (r.deck.in_assembly ? assembly_numbers : 0));
+    if (r.deck.cell.contains(p.id) || !r.deck.points.try_emplace(p.id, p).second)
+      throw Error(l.place(0), fmt::format("element {} is given twice", p.id), "number each element once");
+    if (set) set->members.push_back(p.id);
+  }
+  return true;
+}
+
+std::span<const InpCard> inp_tie_cards() {
+  static constexpr InpCard cards[] = {
+      {"COUPLING", read_coupling},
+      {"KINEMATIC", read_coupling_kind},
+      {"DISTRIBUTING", read_coupling_kind},
+      {"RIGIDBODY", read_rigid_body},
+      {"MASS", read_value},
+      {"SPRING", read_value},
+      {"DASHPOT", read_value},
+  };
+  return cards;
+}
+
+}  // namespace hilo

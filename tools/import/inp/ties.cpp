@@ -1,0 +1,209 @@
+// Nodes of no cell that something is tied to become bodies of the scene, or the mean of the nodes they pull.
+#include "import/inp/ties.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "base/param.hpp"
+#include "import/inp/groups.hpp"
+#include "import/links.hpp"
+
+namespace hilo {
+namespace {
+
+/// The node that a target names.
+std::int64_t node_of(const InpDeck& d, const InpTarget& t) {
+  if (t.name.empty()) return t.id;
+  auto set = d.nset.find(t.name);
+  if (set == d.nset.end()) set = d.nset.find(unqualified(t.name));
+  if (set == d.nset.end()) throw Error(t.place, fmt::format("no node set \"{}\"", t.name), suggest_name(t.name, d.nset));
+  std::set<std::int64_t> ids(set->second.members.begin(), set->second.members.end());
+  if (ids.size() != 1) throw Error(t.place, fmt::format("node set \"{}\" holds {} nodes, one is due", t.name, ids.size()));
+  return *ids.begin();
+}
+
+Vec3 place_of(const InpDeck& d, std::int64_t id, const std::string& place) {
+  const auto x = d.loose.find(id);
+  if (x == d.loose.end()) throw Error(place, fmt::format("no node {}", id));
+  return x->second;
+}
+
+/// Nodes of a surface with the area that each stands for; of sets 1 each.
+std::map<std::int64_t, double> members(const InpDeck& d, const InpTie& t, const Mesh& m,
+                                       const std::map<std::string, std::string>& surface) {
+  std::map<std::int64_t, double> w;
+  const auto add = [&](const std::vector<std::int64_t>& nodes) {
+    for (const auto a : nodes) w[a] = 1;
+  };
+  if (t.kind == InpTie::Of::nodes) {
+    add(inp_nodes(d, t.of, 0, t.place));
+  } else if (t.kind == InpTie::Of::cells) {
+    for (const auto c : inp_cells(d, t.of, 0, t.place)) add({m.cell(c).begin(), m.cell(c).end()});
+  } else if (const auto s = surface.find(t.of); s != surface.end() && m.facet_sets.contains(s->second)) {
+    for (const Facet& f : m.facet_sets.at(s->second)) {
+      const auto nodes = m.facet_nodes(f);
+      const double area = facet_area(m, f).norm();
+      const size_t n = nodes.size(), corners = n == 6 ? 3 : n == 8 ? 4 : n;
+      for (size_t i = 0; i < n; ++i)  // consistent with a pressure: quadratic facets push at the middle of their edges
+        w[nodes[i]] += area * (n == corners ? 1. / static_cast<double>(n) : i >= corners ? 1. / 3 : n == 6 ? 0. : -1. / 12);
+    }
+  } else {
+    for (const InpSurface& s2 : d.surfaces)
+      if (s2.of_nodes && upper(s2.name) == t.of)
+        for (const auto& l : s2.lines) add(inp_nodes(d, l.target, l.id, l.place));
+    if (w.empty()) throw Error(t.place, fmt::format("{}: no surface \"{}\"", t.name, t.of));
+  }
+  return w;
+}
+
+}  // namespace
+
+void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string>& surface) {
+  for (const auto& [id, p] : d.points)
+    for (const auto n : p.nodes)
+      if (!d.node.contains(n)) d.bodies.try_emplace(n, InpBody{place_of(d, n, p.place), p.place, {}});
+  for (const InpTie& t : d.ties) {
+    const auto ref = node_of(d, t.reference);
+    if (t.undecided) {
+      in.skip(t.name + " without *KINEMATIC or *DISTRIBUTING", t.place);
+      continue;
+    }
+    if (d.node.contains(ref)) {
+      in.skip(t.name + " whose reference node is a node of a cell", t.place);
+      continue;
+    }
+    const auto w = members(d, t, in.mesh, surface);
+    if (t.mean) {
+      if (d.bodies.contains(ref))
+        in.skip(t.name + ", distributing, whose node carries springs, masses or rigid bodies", t.place);
+      else if (!d.means.try_emplace(ref, InpMean{place_of(d, ref, t.place), w, t.place}).second)
+        in.skip(t.name + " of a node that has one already", t.place);
+      continue;
+    }
+    if ((t.components & 7) != 7) {
+      in.skip(t.name + " of some components", t.place);
+      continue;
+    }
+    d.means.erase(ref);
+    auto& body = d.bodies.try_emplace(ref, InpBody{place_of(d, ref, t.place), t.place, {}}).first->second;
+    std::vector<std::int64_t> rows;
+    for (const auto& [a, weight] : w) rows.push_back(a);
+    body.carries.push_back({t.name, t.place, rows});
+    if (!t.turns.name.empty() || t.turns.id) d.turns_of[node_of(d, t.turns)] = ref;
+  }
+}
+
+bool is_tied(const InpDeck& d, std::int64_t id) { return d.bodies.contains(id) || d.means.contains(id) || d.turns_of.contains(id); }
+
+void tied_lines(const InpDeck& d, const InpNodal& l, const std::function<void(std::int64_t, int, int)>& use) {
+  std::vector<std::int64_t> ids{l.id};
+  if (!l.target.empty()) {
+    const auto set = d.nset.find(l.target);
+    if (set == d.nset.end()) return;
+    ids = set->second.members;
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  }
+  for (const auto id : ids) {
+    if (const auto turns = d.turns_of.find(id); turns != d.turns_of.end())
+      use(turns->second, l.first + 3, std::min(l.last, 3) + 3);  // 1 to 3 of a ROT NODE are turns
+    else if (is_tied(d, id))
+      use(id, l.first, l.last);
+  }
+}
+
+std::string body_name(std::int64_t id) { return fmt::format("node_{}", id >= assembly_numbers ? id - assembly_numbers : id); }
+
+std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const ImportOptions& o) {
+  const auto si = [&](const char* unit) { return to_si(unit, o.units); };
+  const auto point = [&](const Vec3& x) {
+    const double s = si("m") * o.scale;
+    return toml_list({x.x() * s, x.y() * s, x.z() * s});
+  };
+  const auto X = [&](std::int64_t id) {
+    const auto a = d.node.find(id);
+    return a != d.node.end() ? in.mesh.X[a->second] : d.loose.at(id);
+  };
+  std::map<std::int64_t, std::string> of_node;
+  const auto end_name = [&](std::int64_t id) {
+    if (d.bodies.contains(id)) return body_name(id);
+    auto& name = of_node[id];
+    if (name.empty()) name = names.nodes(fmt::format("node_{}", id), {d.node.at(id)}), in.as_listed.insert(name);
+    return name;
+  };
+  std::map<std::int64_t, double> mass;
+  std::string springs;
+  std::set<std::int64_t> valued;
+  std::map<std::string, int> used;
+  for (const InpPointValue& v : d.point_values) {
+    auto set = d.elset.find(v.elset);
+    if (set == d.elset.end()) set = d.elset.find(unqualified(v.elset));
+    if (set == d.elset.end())
+      throw Error(v.place, fmt::format("{}: no element set \"{}\"", v.name, v.elset), suggest_name(v.elset, d.elset));
+    for (const auto id : set->second.members) {
+      const auto p = d.points.find(id);
+      if (p == d.points.end() || v.numbers.empty()) continue;
+      const std::string& type = p->second.type;
+      const double value = v.numbers.back();
+      if ((type == "MASS") != (v.name == "*MASS") || (type[0] == 'S') != (v.name == "*SPRING")) continue;
+      valued.insert(id);
+      if (value < 0) {
+        in.skip(v.name + " below zero", v.place);
+      } else if (type == "MASS") {
+        mass[p->second.nodes[0]] += value;
+      } else if (type.back() == 'A') {
+        const auto a = p->second.nodes[0], b = p->second.nodes[1];
+        if (!((X(b) - X(a)).norm() > 0)) throw Error(p->second.place, fmt::format("{} {} has no length", type, id));
+        springs += fmt::format("\n[[spring]]   # {}\nkind = \"axial\"\nname = \"{}_{}\"\na = {}\nb = {}\nat_a = {}\nat_b = {}\n{} = {}\n",
+                               p->second.place, type, id, toml_text(end_name(a)), toml_text(end_name(b)), point(X(a)), point(X(b)),
+                               type[0] == 'S' ? "stiffness" : "damping", toml_number(value * si(type[0] == 'S' ? "N/m" : "N s/m")));
+      } else {
+        const auto b = p->second.nodes[0];
+        const int dof = static_cast<int>(v.numbers.front());
+        if (v.numbers.size() != 2 || dof < 1 || dof > 3 || type[0] != 'S') {
+          in.skip(fmt::format("{} of {}, but along a component with a value", v.name, type), v.place);
+          continue;
+        }
+        const Vec3 axis = Vec3::Unit(dof - 1);
+        springs += fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\nname = \"{}_{}\"\nb = {}\nat = {}\naxis = {}\nstiffness = {}\n",
+                               p->second.place, type, id, toml_text(end_name(b)), point(X(b)), toml_list({axis.x(), axis.y(), axis.z()}),
+                               toml_number(value * si("N/m")));
+      }
+    }
+  }
+  for (const auto& [id, p] : d.points)
+    if (!valued.contains(id)) in.skip("*ELEMENT, TYPE=" + p.type + " without a value", p.place);
+
+  std::string text;
+  for (const auto& [id, b] : d.bodies) {
+    text += fmt::format("\n[[body]]   # {}\nname = \"{}\"\nmass = {}\ncom = {}\n", b.place, body_name(id), toml_number(mass[id] * si("kg")),
+                        point(b.X));
+    mass.erase(id);
+  }
+  for (const auto& [id, m] : mass)
+    if (m > 0)
+      text += fmt::format("\n[[point_mass]]\nname = {0}\non = {0}\nmass = {1}\n", toml_text(end_name(id)), toml_number(m * si("kg")));
+  for (const auto& [id, b] : d.bodies)
+    for (const InpCarried& c : b.carries) {
+      std::vector<Vec3> points;
+      for (const auto a : c.rows) points.push_back(in.mesh.X[a]);
+      const auto name = [&] {
+        const int n = ++used[body_name(id)];
+        return n == 1 ? body_name(id) : fmt::format("{}_{}", body_name(id), n);
+      };
+      if (on_a_line(points)) {
+        for (const auto a : c.rows)
+          text += fmt::format("\n[[joint]]   # {}\nkind = \"spherical\"\nname = \"{}\"\na = \"{}\"\nb = {}\nat = {}\n", c.place, name(),
+                              body_name(id), toml_text(end_name(in.mesh.node_id[a])), point(in.mesh.X[a]));
+        continue;
+      }
+      const std::string as = name();
+      text += fmt::format("\n[[joint]]   # {}\nkind = \"fixed\"\nname = \"{}\"\na = \"{}\"\nb = {}\nat = {}\n", c.place, as, body_name(id),
+                          toml_text(names.nodes(as + "_tied", c.rows)), point(b.X));
+    }
+  return text + springs;
+}
+
+}  // namespace hilo

@@ -1,0 +1,57 @@
+#include "import/links.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <bit>
+
+namespace hilo {
+
+std::optional<HoldingJoint> joint_that_holds(unsigned components) {
+  const unsigned slides = components & 7, turns = components >> 3 & 7;
+  const auto free = [](unsigned bits) { return std::countr_zero(7 & ~bits); };  // the axis that is not held
+  const int n_slides = std::popcount(slides), n_turns = std::popcount(turns);
+  if (slides == 7 && turns == 7) return HoldingJoint{"fixed", -1};
+  if (slides == 7 && turns == 0) return HoldingJoint{"spherical", -1};
+  if (slides == 7 && n_turns == 2) return HoldingJoint{"revolute", free(turns)};
+  if (n_slides == 2 && turns == 7) return HoldingJoint{"prismatic", free(slides)};
+  if (n_slides == 2 && turns == slides) return HoldingJoint{"cylindrical", free(slides)};
+  if (n_slides == 1 && n_turns == 2 && (turns & slides) == 0) return HoldingJoint{"planar", std::countr_zero(slides)};
+  if (n_slides == 1 && turns == 0) return HoldingJoint{"in-plane", std::countr_zero(slides)};
+  if (n_slides == 2 && turns == 0) return HoldingJoint{"in-line", free(slides)};
+  return std::nullopt;
+}
+
+std::optional<std::vector<Vec3>> shares_of_mean(const std::vector<Vec3>& X, const std::vector<double>& w, const Vec3& at, const Vec3& F,
+                                                const Vec3& M) {
+  double W = 0;
+  Vec3 c = Vec3::Zero();
+  for (size_t a = 0; a < X.size(); ++a) W += w[a], c += w[a] * X[a];
+  if (!(W > 0)) return std::nullopt;
+  c /= W;
+  Mat3 T = Mat3::Zero();
+  for (size_t a = 0; a < X.size(); ++a) {
+    const Vec3 r = X[a] - c;
+    T += w[a] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+  }
+  const Vec3 moment = M + (at - c).cross(F);
+  Vec3 turn = Vec3::Zero();
+  if (moment.norm() > 1e-12 * (M.norm() + (at - c).norm() * F.norm())) {
+    turn = T.completeOrthogonalDecomposition().solve(moment);
+    if (!((T * turn - moment).norm() < 1e-9 * moment.norm())) return std::nullopt;
+  }
+  std::vector<Vec3> f;
+  for (size_t a = 0; a < X.size(); ++a) f.push_back(w[a] * (F / W + turn.cross(X[a] - c)));
+  return f;
+}
+
+bool on_a_line(const std::vector<Vec3>& points) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& x : points) mean += x / static_cast<double>(points.size());
+  Mat3 S = Mat3::Zero();
+  for (const Vec3& x : points) S += (x - mean) * (x - mean).transpose();
+  const Vec3 v = Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvalues();
+  return !(v[1] > 1e-10 * v[2]);
+}
+
+}  // namespace hilo
