@@ -248,14 +248,14 @@ b-1.e, GRAV, 9.81, 0., 0., -1.
 
 TEST(ImportAttack, DamagedNastranFilesAreReadOrRefused) {
   const test::Workplace place;
-  const Counts n = attack("a.bdf", nastran, 25000, place);
+  const Counts n = attack("a.bdf", nastran, 2000, place);
   EXPECT_GT(n.read, 1000);
   EXPECT_GT(n.refused, 1000);
 }
 
 TEST(ImportAttack, DamagedDecksOfPartsAreReadOrRefused) {
   const test::Workplace place;
-  const Counts n = attack("a.inp", abaqus, 25000, place);
+  const Counts n = attack("a.inp", abaqus, 2000, place);
   EXPECT_GT(n.read, 500);
   EXPECT_GT(n.refused, 1000);
 }
@@ -263,7 +263,7 @@ TEST(ImportAttack, DamagedDecksOfPartsAreReadOrRefused) {
 TEST(ImportAttack, DamagedInpDecksAreReadOrRefused) {
   const test::Workplace place;
   place.write("loads_mesh.inp", test::text_of(std::string(HILO_SOURCE) + "/tests/tools/decks/loads_mesh.inp"));
-  const Counts n = attack("a.inp", test::text_of(std::string(HILO_SOURCE) + "/tests/tools/decks/loads.inp"), 25000, place);
+  const Counts n = attack("a.inp", test::text_of(std::string(HILO_SOURCE) + "/tests/tools/decks/loads.inp"), 2000, place);
   EXPECT_GT(n.read, 1000);
   EXPECT_GT(n.refused, 1000);
 }

@@ -156,6 +156,10 @@ TEST_F(ImportBdfFields, WhatCannotBeMeantIsRefusedByLine) {
        "a.bdf:7: continuation \"+B\" follows a line that goes on at \"+A\" (sort the continuations behind their entries)"},
       {"MAT1,1,2.+11,,0.3\nMAT1,1,2.+11,,0.3\n", "a.bdf:7:6: MAT1 1 is given twice (number each material once)"},
       {"MAT1,1,nan,,0.3\n", "a.bdf:6:8: expected a number, found \"nan\""},
+      {"GRID*   5                               0.0             0.0\n        2.\n",
+       "a.bdf:7: a line of large fields goes on in small ones (begin the line with *)"},
+      {"FORCE,1,2,,1.\n", "a.bdf:6:1: FORCE: the direction has no length"},
+      {"CONM2,7,2,,1.\n,-1.\n", "a.bdf:6:2: CONM2 7: a moment of inertia of -1"},
       {"BEGIN SUPER=2\n", "a.bdf:6: BEGIN SUPER=2: superelements are not read (write one model without superelements)"},
   };
   for (const auto& c : cases) {

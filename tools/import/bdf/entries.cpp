@@ -222,7 +222,8 @@ bool BdfEntries::next(BdfEntry& e) {
   e.name = upper(ends.first);
   if (e.name.empty() || e.name.front() == '+' || e.name.front() == '*')
     throw Error(l.place(), "a continuation that follows no entry", "sort the continuations behind their entries");
-  if (e.name.back() == '*') e.name.pop_back();
+  bool large = e.name.back() == '*', half = large;
+  if (large) e.name.pop_back();
   while (bulk_line(l)) {
     const auto mark = e.data.fields.size();
     const Ends more = cut(l, e.data.fields);
@@ -234,6 +235,10 @@ bool BdfEntries::next(BdfEntry& e) {
     if (!same_label(ends.label, more.first))
       throw Error(l.place(), fmt::format("continuation \"{}\" follows a line that goes on at \"{}\"", more.first, ends.label),
                   "sort the continuations behind their entries");
+    // a large line is half of a small one: what follows the first half is the second
+    large = !more.first.empty() && more.first.front() == '*';
+    if (half && !large) throw Error(l.place(), "a line of large fields goes on in small ones", "begin the line with *");
+    half = large && !half;
     ends = more;
   }
   while (!e.data.fields.empty() && e.data.fields.back().text.empty()) e.data.fields.pop_back();

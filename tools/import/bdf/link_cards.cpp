@@ -77,6 +77,8 @@ void read_conm2(const BdfEntry& e, BdfDeck& deck, Imported&) {
   m.offset = Vec3(d.number(4), d.number(5), d.number(6));
   const double I[6] = {d.number(8), d.number(9), d.number(10), d.number(11), d.number(12), d.number(13)};
   m.inertia << I[0], -I[1], -I[3], -I[1], I[2], -I[4], -I[3], -I[4], I[5];
+  for (const size_t i : {8, 10, 13})
+    if (d.number(i) < 0) throw Error(d.place(i), fmt::format("CONM2 {}: a moment of inertia of {:g}", m.id, d.number(i)));
   if (m.mass < 0) throw Error(d.place(3), fmt::format("CONM2 {}: a mass of {:g}", m.id, m.mass));
   deck.masses.push_back(m);
 }

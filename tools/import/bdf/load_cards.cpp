@@ -26,6 +26,12 @@ void read_spcadd(const BdfEntry& e, BdfDeck& deck, Imported&) {
 }
 
 Vec3 vector_at(const DataLine& d, size_t field) { return {d.number(field), d.number(field + 1), d.number(field + 2)}; }
+/// The same where a load has no direction without it.
+Vec3 direction_at(const BdfEntry& e, size_t field) {
+  const Vec3 v = vector_at(e.data, field);
+  if (!(v.norm() > 0)) throw Error(e.data.place(field), e.name + ": the direction has no length");
+  return v;
+}
 
 void read_force(const BdfEntry& e, BdfDeck& deck, Imported&) {
   const auto& d = e.data;
@@ -35,7 +41,7 @@ void read_force(const BdfEntry& e, BdfDeck& deck, Imported&) {
     l.size = d.number(2), l.towards = {d.integer(3), d.integer(4)};
   } else {
     l.system = d.empty(2) ? 0 : d.integer(2);
-    l.size = d.number(3), l.direction = vector_at(d, 4);
+    l.size = d.number(3), l.direction = direction_at(e, 4);
   }
   deck.loads[d.integer(0)].push_back(l);
 }
@@ -43,7 +49,7 @@ void read_gravity(const BdfEntry& e, BdfDeck& deck, Imported&) {
   const auto& d = e.data;
   BdfLoad l{BdfLoad::Kind::gravity};
   l.system = d.empty(1) ? 0 : d.integer(1), l.place = d.place();
-  l.size = d.number(2), l.direction = vector_at(d, 3);
+  l.size = d.number(2), l.direction = direction_at(e, 3);
   deck.loads[d.integer(0)].push_back(l);
 }
 

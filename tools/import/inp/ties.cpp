@@ -148,7 +148,8 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
       const std::string& type = p->second.type;
       const double value = v.numbers.back();
       if ((type == "MASS") != (v.name == "*MASS") || (type[0] == 'S') != (v.name == "*SPRING")) continue;
-      valued.insert(id);
+      if (!valued.insert(id).second)
+        throw Error(v.place, fmt::format("{} of element {} is given twice", v.name, id), "give each element one value");
       if (value < 0) {
         in.skip(v.name + " below zero", v.place);
       } else if (type == "MASS") {

@@ -1,0 +1,91 @@
+#!/usr/bin/python3
+"""Reference nodes against CalculiX, run here on the same cells: the beam of calculix-ccx-test's beamprb with C3D20 cells, its end carried by a
+rigid body, a kinematic and a distributing coupling, and held by a spring.  Loads are a thousandth, so that the answer is linear.
+
+  ccx_ties.py REPO BIN"""
+import gzip
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+tools = os.path.abspath(sys.argv[2])
+LIMIT = 2e-5  # of the largest displacement: printed digits, and what a thousandth of the load leaves of nonlinear terms
+FOLDER = "/usr/share/doc/calculix-ccx-test/examples/test/beamprb.inp"
+SMALL = 1e-3
+FACES = [(0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 4, 5), (1, 2, 5, 6), (2, 3, 6, 7), (0, 3, 4, 7)]  # S1.. of a hexahedron
+COUPLING = "*SURFACE, NAME=END, TYPE=NODE\nN1,\n*COUPLING, REF NODE=262, SURFACE=END, CONSTRAINT NAME=C1\n*{}\n"
+TIES = {
+    "rigid body": ("*RIGID BODY,NSET=N1,REF NODE=262,ROT NODE=263\n", "263,2,1.\n262,1,.2\n263,3,.7\n"),
+    "kinematic": (COUPLING.format("KINEMATIC\n1,3"), "262,1,.2\n262,5,1.\n262,6,.7\n"),
+    "distributing": ("*SURFACE, NAME=END\nFACES" + COUPLING[COUPLING.index("*COUPLING"):].format("DISTRIBUTING\n1,6"), "262,1,.2\n262,2,.1\n262,3,.7\n"),
+    "spring": ("*ELEMENT, TYPE=SPRINGA, ELSET=ES\n900,5,1\n*SPRING, ELSET=ES\n\n300.\n", "5,1,.2\n6,3,.3\n"),
+}
+
+
+def source():
+    if os.path.exists(FOLDER):
+        return open(FOLDER).read()
+    return gzip.open(FOLDER + ".gz", "rt").read()
+
+
+def end_faces(text):
+    """Lines "element, face" of the cells' faces at z = 8."""
+    z = {int(n): float(v) for n, v in re.findall(r"^ *(\d+), *[^,\n]+, *[^,\n]+, *([-+.\deE]+) *$", text.split("*ELEMENT")[0], flags=re.M)}
+    numbers = [int(x) for x in re.findall(r"\d+", text.split("*ELEMENT")[1].split("\n", 1)[1].split("*")[0])]
+    lines = ""
+    for e in range(0, len(numbers), 21):
+        for face, corners in enumerate(FACES):
+            if all(abs(z[numbers[e + 1 + c]] - 8) < 1e-6 for c in corners):
+                lines += f"{numbers[e]}, S{face + 1}\n"
+    return lines
+
+
+def run(*command):
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+
+def displacements(path):
+    u = {}
+    for line in open(path):
+        f = line.split()
+        if len(f) == 4 and f[0].isdigit():
+            u[int(f[0])] = [float(x) for x in f[1:]]
+    return u
+
+
+def compare(name, tie, loads):
+    text = source().replace("C3D20R", "C3D20")
+    text = re.sub(r"\*RIGID BODY.*\n", lambda _: tie.replace("FACES", end_faces(text)), text)
+    text = re.sub(r"\*CLOAD\n.*\n", lambda _: "*CLOAD\n" + loads, text)
+    text = re.sub(r"\*NODE FILE\nU\n", lambda _: "*NODE PRINT, NSET=Nall\nU\n", text)
+    open("deck.inp", "w").write(text)
+    run("ccx", "deck")
+    truth = displacements("deck.dat")
+    run(f"{tools}/hilo-import", "deck.inp", "-o", "mesh.h5", "--scene-out", "scene.toml")
+    scene = open("scene.toml").read()
+    scene = re.sub(r"^((?:force|torque) = )\[(.*)\]$",
+                   lambda m: m[1] + str([SMALL * float(x) for x in m[2].split(",")]), scene, flags=re.M)
+    open("scene.toml", "w").write(scene)
+    run(f"{tools}/hilo-solve", "--quiet", "scene.toml", "-o", "run.h5")
+    with h5py.File("mesh.h5") as m, h5py.File("run.h5") as r:
+        ids = m["mesh/nodes/id"][:]
+        u = r["field"][sorted(r["field"])[-1]]["displacement"][:] / SMALL
+    expected = np.array([truth[i] for i in ids])
+    largest = abs(expected).max()
+    difference = abs(u - expected).max() / largest
+    print(f"{name:<16}{len(ids):>7}{largest:>14.4g}{difference:>12.1e}{LIMIT:>9.0e}  {'agrees' if difference < LIMIT else 'DIFFERS'}")
+    return difference < LIMIT
+
+
+if not os.path.exists(FOLDER) and not os.path.exists(FOLDER + ".gz"):
+    print("ccx_ties: calculix-ccx-test is not installed", file=sys.stderr)
+    sys.exit(4)
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    print(f"{'tie':<16}{'nodes':>7}{'largest u':>14}{'difference':>12}{'limit':>9}")
+    sys.exit(0 if all([compare(name, *case) for name, case in TIES.items()]) else 1)
