@@ -249,23 +249,23 @@ b-1.e, GRAV, 9.81, 0., 0., -1.
 TEST(ImportAttack, DamagedNastranFilesAreReadOrRefused) {
   const test::Workplace place;
   const Counts n = attack("a.bdf", nastran, 2000, place);
-  EXPECT_GT(n.read, 1000);
-  EXPECT_GT(n.refused, 1000);
+  EXPECT_GT(n.read, 300);
+  EXPECT_GT(n.refused, 300);
 }
 
 TEST(ImportAttack, DamagedDecksOfPartsAreReadOrRefused) {
   const test::Workplace place;
   const Counts n = attack("a.inp", abaqus, 2000, place);
-  EXPECT_GT(n.read, 500);
-  EXPECT_GT(n.refused, 1000);
+  EXPECT_GT(n.read, 300);
+  EXPECT_GT(n.refused, 300);
 }
 
 TEST(ImportAttack, DamagedInpDecksAreReadOrRefused) {
   const test::Workplace place;
   place.write("loads_mesh.inp", test::text_of(std::string(HILO_SOURCE) + "/tests/tools/decks/loads_mesh.inp"));
   const Counts n = attack("a.inp", test::text_of(std::string(HILO_SOURCE) + "/tests/tools/decks/loads.inp"), 2000, place);
-  EXPECT_GT(n.read, 1000);
-  EXPECT_GT(n.refused, 1000);
+  EXPECT_GT(n.read, 300);
+  EXPECT_GT(n.refused, 300);
 }
 
 }  // namespace
