@@ -16,9 +16,10 @@ struct InpReading {
   InpLines lines;
   InpDeck& deck;
   Imported& in;
-  Card card = {};                // the card at hand
-  int step = 0;                  // 0 before the first *STEP
-  int parts = 0, instances = 0;  // *PART, *INSTANCE so far
+  Card card = {};                   // the card at hand
+  int step = 0;                     // 0 before the first *STEP
+  size_t supports_before_step = 0;  // that OP=NEW forgets
+  int parts = 0, instances = 0;     // *PART, *INSTANCE so far
   void skip(const std::string& what) { in.skip(what, card.place()); }
 };
 

@@ -95,7 +95,8 @@ struct InpPoint {
 };
 struct InpPointValue {
   std::string elset, name, place;
-  std::vector<double> numbers;
+  std::vector<double> first;  // numbers of its lines
+  bool more = false;          // further numbers on one
 };
 /// A reference node that became a body, with the nodes it carries; or the mean of nodes with weights.
 struct InpCarried {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
@@ -51,7 +52,8 @@ void read_supports(InpReading& r) {
   if (const auto odd = unknown_param(card, {"OP", "AMPLITUDE", "TYPE", "FIXED", "LOADCASE"}); !odd.empty()) return r.skip(odd);
   if (card.has("TYPE") && card.word("TYPE") != "DISPLACEMENT") return r.skip("*BOUNDARY, TYPE=" + card.word("TYPE"));
   if (other_case(r)) return;
-  if (r.step > 0 && card.word("OP") == "NEW") d.supports.clear();  // forgets what was said before the step
+  if (r.step > 0 && card.word("OP") == "NEW")
+    d.supports.erase(d.supports.begin(), d.supports.begin() + static_cast<std::ptrdiff_t>(std::exchange(r.supports_before_step, 0)));
   const std::string amplitude = card.word("AMPLITUDE");
   DataLine l;
   while (r.lines.next_data(l)) {
@@ -147,12 +149,14 @@ void read_amplitude(InpReading& r) {
     r.skip(odd.empty() ? "*AMPLITUDE, DEFINITION=" + card.word("DEFINITION") : odd);
     return;
   }
+  if (card.has("VALUE") && card.word("VALUE") != "RELATIVE") return r.skip("*AMPLITUDE, VALUE=" + card.word("VALUE"));
   const std::string name = card.need("NAME");
   auto& a = r.deck.amplitudes[upper(name)];
+  if (!a.name.empty()) throw Error(card.place(), fmt::format("*AMPLITUDE {} is given twice", name), "give each a name of its own");
   a.name = name;
   DataLine l;
   while (r.lines.next_data(l))
-    for (size_t i = 0; i + 1 < l.fields.size(); i += 2) {
+    for (size_t i = 0; i < l.fields.size(); i += 2) {  // a last value that is not there is 0
       if (l.empty(i)) continue;
       const double t = l.number(i);
       if (!a.t.empty() && t < a.t.back())

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/error.hpp"
 #include "base/param.hpp"
@@ -28,6 +29,8 @@ class Writer {
       : d_(d), in_(in), names_(names), node_set_(node_set), surface_(surface), o_(o), turned_(turned_nodes(d, in.mesh)) {
     for (const auto& key : d.transformed)
       if (const auto set = d.nset.find(key); set != d.nset.end()) own_axes_.insert(set->second.members.begin(), set->second.members.end());
+    for (const auto& [turns, reference] : d.turns_of)
+      if (own_axes_.contains(turns)) own_axes_.insert(reference);
   }
 
   std::string text() {
@@ -91,6 +94,7 @@ class Writer {
 
   void gravity() {
     std::vector<Vec3> g;
+    std::map<std::int64_t, Vec3> of_mass;
     bool odd = false;
     std::string place;
     for (const auto& p : d_.distributed) {
@@ -102,8 +106,16 @@ class Writer {
       }
       g.resize(in_.mesh.shape.size(), Vec3::Zero());
       for (const auto c : inp_cells(d_, p.target, p.id, p.place)) g[c] += p.value * p.direction;
+      for (const auto& [id, point] : d_.points) {  // what has mass without being a cell
+        if (point.type != "MASS") continue;
+        Vec3& of = of_mass.try_emplace(id, Vec3::Zero()).first->second;
+        const auto set = d_.elset.find(p.target);
+        if (p.target.empty() ? p.id == id : set != d_.elset.end() && std::ranges::count(set->second.members, id) > 0)
+          of += p.value * p.direction;
+      }
     }
     for (const auto& x : g) odd = odd || x != g[0];
+    for (const auto& [id, x] : of_mass) odd = odd || x != g[0];
     if (odd)
       in_.skip("*DLOAD GRAV on a part of the model", place);
     else if (!g.empty())
@@ -115,23 +127,23 @@ class Writer {
     const Mesh& m = in_.mesh;
     std::vector<std::string> lines(m.region_name.size());
     std::vector<int> seen(m.region_name.size(), 0);
-    for (const auto& s : d_.sections) {
+    std::vector<const InpSection*> of_cell(m.shape.size(), nullptr);  // the last section that has it, as in region_materials()
+    for (const auto& s : d_.sections)
+      for (const auto id : d_.elset.at(s.elset).members)
+        if (const auto c = d_.cell.find(id); c != d_.cell.end()) of_cell[c->second] = &s;
+    for (std::int64_t c = 0; c < m.n_cells(); ++c) {
+      const auto r = m.region[c];
+      if (!of_cell[c] || seen[r]++) continue;
+      const auto& s = *of_cell[c];
       const auto& mat = d_.laws.at(s.law);
-      for (const auto id : d_.elset.at(s.elset).members) {
-        const auto c = d_.cell.find(id);
-        if (c == d_.cell.end() || seen[m.region[c->second]]++) continue;
-        const auto r = m.region[c->second];
-        if (!mat.no_law.empty() || (mat.kind == "stvk" && std::isnan(mat.data.E))) {
-          lines[r] =
-              fmt::format("# region {}: {} has no law here{}, give it one\n", quoted(m.region_name[r]),
-                          mat.name.empty() ? "it" : "material " + quoted(mat.name), mat.no_law.empty() ? "" : " (" + mat.no_law + ")");
-          continue;
-        }
-        used.insert(s.law);
-        lines[r] = fmt::format("[region.{}]\nmaterial = {}\n", quoted(m.region_name[r]), quoted(clean_name(mat.name)));
-        if (static_cast<Shape>(m.shape[c->second]) == Shape::bar2 && s.area > 0)
-          lines[r] += fmt::format("area = {}\n", num(s.area * si("m^2")));
+      if (!mat.no_law.empty() || (mat.kind == "stvk" && std::isnan(mat.data.E))) {
+        lines[r] = fmt::format("# region {}: {} has no law here{}, give it one\n", quoted(m.region_name[r]),
+                               mat.name.empty() ? "it" : "material " + quoted(mat.name), mat.no_law.empty() ? "" : " (" + mat.no_law + ")");
+        continue;
       }
+      used.insert(s.law);
+      lines[r] = fmt::format("[region.{}]\nmaterial = {}\n", quoted(m.region_name[r]), quoted(clean_name(mat.name)));
+      if (static_cast<Shape>(m.shape[c]) == Shape::bar2 && s.area > 0) lines[r] += fmt::format("area = {}\n", num(s.area * si("m^2")));
     }
     for (const auto& key : used) tables_ += d_.laws.at(key).table(d_.laws.at(key).name, o_.units);
     for (const auto& l : lines)
@@ -177,17 +189,17 @@ class Writer {
         if (place.empty()) place = b.place;
       });
     for (const auto& [id, h] : held) {
-      const std::string name = quoted(body_name(id));
+      const std::string name = quoted(body_name(d_, id));
       const auto j = joint_that_holds(h.first);
       if (h.first == 63) {
         tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"fixed\"\nname = {}\non = {}\n", h.second,
-                               quoted(unique("motion", body_name(id))), name);
+                               quoted(unique("motion", body_name(d_, id))), name);
       } else if (!j) {
         in_.skip("*BOUNDARY on components of a reference node that no joint holds", h.second);
       } else {
         const Vec3 X = d_.bodies.at(id).X * si("m") * o_.scale;
         tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"{}\"\nname = {}\nb = {}\nat = {}\n", h.second, j->kind,
-                               quoted(unique("joint", body_name(id) + "_support")), name, list(X));
+                               quoted(unique("joint", body_name(d_, id) + "_support")), name, list(X));
         if (j->axis >= 0) tables_ += fmt::format("axis = {}\n", list(Vec3(Vec3::Unit(j->axis))));
       }
     }
@@ -211,7 +223,7 @@ class Writer {
       std::string past;
       if (!history(key.second, "*CLOAD", s.place, past)) continue;
       if (d_.bodies.contains(key.first)) {
-        const std::string name = body_name(key.first);
+        const std::string name = body_name(d_, key.first);
         if (s.F.norm() > 0)
           tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nat = {}\n", s.place,
                                  quoted(unique("load", name)), quoted(name), list(Vec3(s.F * si("N"))),
@@ -228,7 +240,7 @@ class Writer {
       std::vector<double> weights;
       Rows rows;
       for (const auto& [a, w] : mean.of) rows.push_back(a), points.push_back(in_.mesh.X[a]), weights.push_back(w);
-      const auto shares = shares_of_mean(points, weights, mean.X, s.F, s.M);
+      const auto shares = shares_of_mean(points, weights, mean.X, s.F, s.M / o_.scale);  // the moment stays, lengths are scaled
       if (!shares) {
         in_.skip("*CLOAD that the nodes of a distributing coupling cannot carry", s.place);
         continue;
@@ -248,33 +260,37 @@ class Writer {
       std::string wish, name, amplitude, place;
       double value;
       std::vector<Facet> facets;
+      std::set<std::pair<std::int64_t, int>> has = {};
     };
-    std::vector<Group> groups;
-    const auto group = [&](const Group& g) -> Group& {
+    std::vector<Group> groups;  // what is said twice counts twice
+    const auto add = [&](const Group& g, const Facet& f) {
+      Group* to = nullptr;
       for (auto& old : groups)
-        if (old.wish == g.wish && old.name == g.name && old.amplitude == g.amplitude && old.value == g.value) return old;
-      groups.push_back(g);
-      return groups.back();
+        if (old.name.empty() && old.wish == g.wish && old.amplitude == g.amplitude && old.value == g.value &&
+            !old.has.contains({f.cell, f.facet}))
+          to = &old;
+      if (!to) to = &groups.emplace_back(g);
+      to->facets.push_back(f), to->has.insert({f.cell, f.facet});
     };
     for (const auto& p : d_.distributed) {
       if (p.face < 0) continue;
       if (p.face == 0) {
         const auto s = surface_.find(p.target);
         if (s == surface_.end()) throw Error(p.place, fmt::format("*DSLOAD: no element surface \"{}\"", p.target));
-        if (!s->second.empty()) group({"", s->second, p.amplitude, p.place, p.value, {}});
+        if (!s->second.empty()) groups.push_back({"", s->second, p.amplitude, p.place, p.value, {}});
         continue;
       }
       const auto cells = inp_cells(d_, p.target, p.id, p.place);
-      auto& g = group({p.target.empty() ? std::string() : fmt::format("{}_P{}", d_.elset.at(p.target).name, p.face),
-                       "",
-                       p.amplitude,
-                       p.place,
-                       p.value,
-                       {}});
+      const Group g{p.target.empty() ? std::string() : fmt::format("{}_P{}", d_.elset.at(p.target).name, p.face),
+                    "",
+                    p.amplitude,
+                    p.place,
+                    p.value,
+                    {}};
       for (const auto c : cells) {
         const int f = inp_facet(static_cast<Shape>(in_.mesh.shape[c]), p.face);
         if (f < 0) throw Error(p.place, fmt::format("*DLOAD: element {} has no face P{}", in_.mesh.cell_id[c], p.face));
-        g.facets.push_back({c, f});
+        add(g, {c, f});
       }
     }
     for (auto& g : groups) {

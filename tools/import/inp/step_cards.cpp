@@ -29,11 +29,12 @@ void read_instance(InpReading& r) {
   r.deck.in_assembly = false;  // what stands between it and its end is the part's
   DataLine l;
   if (!r.lines.next_data(l)) return;
-  if (l.fields.size() > 3) refuse(r, "a turned *INSTANCE");
   if (Vec3(l.number(0), l.number(1), l.number(2)).norm() > 0) refuse(r, "a moved *INSTANCE");
+  if (l.fields.size() > 3 || r.lines.next_data(l)) refuse(r, "a turned *INSTANCE");
 }
 
 void read_step(InpReading& r) {
+  r.supports_before_step = r.deck.supports.size();
   if (++r.step == 2) r.in.notes.push_back(fmt::format("{}: only the first step becomes scene lines", r.card.place()));
 }
 

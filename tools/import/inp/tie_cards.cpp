@@ -62,14 +62,16 @@ void read_rigid_body(InpReading& r) {
   r.deck.ties.push_back(t);
 }
 
-/// One number; in front of it, for springs and dampers, the degrees of freedom of SPRING1 and SPRING2.
+/// The first number of a line; in front of it, for springs and dampers, a line with the degree of freedom of SPRING1.
 void read_value(InpReading& r) {
   if (const auto odd = unknown_param(r.card, {"ELSET"}); !odd.empty()) return r.skip(odd);
   InpPointValue v{upper(r.card.need("ELSET")), r.card.name, r.card.place(), {}};
   DataLine l;
-  while (r.lines.next_data(l))
-    for (size_t i = 0; i < l.fields.size(); ++i)
-      if (!l.empty(i)) v.numbers.push_back(l.number(i));
+  while (r.lines.next_data(l)) {
+    if (l.fields.empty()) continue;
+    v.first.push_back(l.number(0));
+    for (size_t i = 1; i < l.fields.size(); ++i) v.more = v.more || !l.empty(i);
+  }
   r.deck.point_values.push_back(std::move(v));
 }
 

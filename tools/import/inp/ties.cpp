@@ -86,7 +86,7 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
       in.skip(t.name + " of some components", t.place);
       continue;
     }
-    d.means.erase(ref);
+    if (d.means.erase(ref) > 0) in.skip("*DISTRIBUTING of a node that is *KINEMATIC too", t.place);
     auto& body = d.bodies.try_emplace(ref, InpBody{place_of(d, ref, t.place), t.place, {}}).first->second;
     std::vector<std::int64_t> rows;
     for (const auto& [a, weight] : w) rows.push_back(a);
@@ -114,7 +114,19 @@ void tied_lines(const InpDeck& d, const InpNodal& l, const std::function<void(st
   }
 }
 
-std::string body_name(std::int64_t id) { return fmt::format("node_{}", id >= assembly_numbers ? id - assembly_numbers : id); }
+/// No name of a set: what names one would mean the other.
+std::string body_name(const InpDeck& d, std::int64_t id) {
+  const bool assembly = id >= assembly_numbers;
+  std::string name = fmt::format("node_{}", assembly ? id - assembly_numbers : id);
+  const auto taken = [&] {
+    const std::string key = upper(name);
+    return d.nset.contains(key) || d.elset.contains(key) ||
+           std::any_of(d.surfaces.begin(), d.surfaces.end(), [&](const InpSurface& s) { return upper(s.name) == key; });
+  };
+  if (assembly && d.node.contains(id - assembly_numbers)) name = "assembly_" + name;
+  while (taken()) name += "_body";
+  return name;
+}
 
 std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const ImportOptions& o) {
   const auto si = [&](const char* unit) { return to_si(unit, o.units); };
@@ -128,7 +140,7 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
   };
   std::map<std::int64_t, std::string> of_node;
   const auto end_name = [&](std::int64_t id) {
-    if (d.bodies.contains(id)) return body_name(id);
+    if (d.bodies.contains(id)) return body_name(d, id);
     auto& name = of_node[id];
     if (name.empty()) name = names.nodes(fmt::format("node_{}", id), {d.node.at(id)}), in.as_listed.insert(name);
     return name;
@@ -144,12 +156,18 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
       throw Error(v.place, fmt::format("{}: no element set \"{}\"", v.name, v.elset), suggest_name(v.elset, d.elset));
     for (const auto id : set->second.members) {
       const auto p = d.points.find(id);
-      if (p == d.points.end() || v.numbers.empty()) continue;
+      if (p == d.points.end() || v.first.empty()) continue;
       const std::string& type = p->second.type;
-      const double value = v.numbers.back();
+      const double value = v.first.back();
+      const size_t n_lines = type == "SPRING1" || type == "DASHPOT1" ? 2 : 1;
       if ((type == "MASS") != (v.name == "*MASS") || (type[0] == 'S') != (v.name == "*SPRING")) continue;
       if (!valued.insert(id).second)
         throw Error(v.place, fmt::format("{} of element {} is given twice", v.name, id), "give each element one value");
+      if (v.first.size() > n_lines) {
+        in.skip(v.name + " of several values", v.place);
+        continue;
+      }
+      if (v.more) in.skip(v.name + ": numbers behind the first, of temperatures or frequencies", v.place);
       if (value < 0) {
         in.skip(v.name + " below zero", v.place);
       } else if (type == "MASS") {
@@ -162,8 +180,8 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
                                type[0] == 'S' ? "stiffness" : "damping", toml_number(value * si(type[0] == 'S' ? "N/m" : "N s/m")));
       } else {
         const auto b = p->second.nodes[0];
-        const int dof = static_cast<int>(v.numbers.front());
-        if (v.numbers.size() != 2 || dof < 1 || dof > 3 || type[0] != 'S') {
+        const int dof = static_cast<int>(v.first.front());
+        if (v.first.size() != 2 || dof < 1 || dof > 3 || type[0] != 'S') {
           in.skip(fmt::format("{} of {}, but along a component with a value", v.name, type), v.place);
           continue;
         }
@@ -179,8 +197,8 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
 
   std::string text;
   for (const auto& [id, b] : d.bodies) {
-    text += fmt::format("\n[[body]]   # {}\nname = \"{}\"\nmass = {}\ncom = {}\n", b.place, body_name(id), toml_number(mass[id] * si("kg")),
-                        point(b.X));
+    text += fmt::format("\n[[body]]   # {}\nname = \"{}\"\nmass = {}\ncom = {}\n", b.place, body_name(d, id),
+                        toml_number(mass[id] * si("kg")), point(b.X));
     mass.erase(id);
   }
   for (const auto& [id, m] : mass)
@@ -191,18 +209,18 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
       std::vector<Vec3> points;
       for (const auto a : c.rows) points.push_back(in.mesh.X[a]);
       const auto name = [&] {
-        const int n = ++used[body_name(id)];
-        return n == 1 ? body_name(id) : fmt::format("{}_{}", body_name(id), n);
+        const int n = ++used[body_name(d, id)];
+        return n == 1 ? body_name(d, id) : fmt::format("{}_{}", body_name(d, id), n);
       };
       if (on_a_line(points)) {
         for (const auto a : c.rows)
           text += fmt::format("\n[[joint]]   # {}\nkind = \"spherical\"\nname = \"{}\"\na = \"{}\"\nb = {}\nat = {}\n", c.place, name(),
-                              body_name(id), toml_text(end_name(in.mesh.node_id[a])), point(in.mesh.X[a]));
+                              body_name(d, id), toml_text(end_name(in.mesh.node_id[a])), point(in.mesh.X[a]));
         continue;
       }
       const std::string as = name();
-      text += fmt::format("\n[[joint]]   # {}\nkind = \"fixed\"\nname = \"{}\"\na = \"{}\"\nb = {}\nat = {}\n", c.place, as, body_name(id),
-                          toml_text(names.nodes(as + "_tied", c.rows)), point(b.X));
+      text += fmt::format("\n[[joint]]   # {}\nkind = \"fixed\"\nname = \"{}\"\na = \"{}\"\nb = {}\nat = {}\n", c.place, as,
+                          body_name(d, id), toml_text(names.nodes(as + "_tied", c.rows)), point(b.X));
     }
   return text + springs;
 }

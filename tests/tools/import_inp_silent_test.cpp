@@ -1,0 +1,109 @@
+// What .inp decks say twice, beside or behind what one expects: it counts, or it is told.
+#include "import_case.hpp"
+#include "model/scene.hpp"
+#include "model/store.hpp"
+
+namespace hilo {
+namespace {
+
+/// A bar of two cubes of 1 m along x, held at its foot; node 100 beside its head.
+const std::string bar =
+    "*NODE\n1, 0, 0, 0\n2, 0, 1, 0\n3, 0, 1, 1\n4, 0, 0, 1\n5, 1, 0, 0\n6, 1, 1, 0\n7, 1, 1, 1\n8, 1, 0, 1\n9, 2, 0, 0\n10, 2, 1, 0\n"
+    "11, 2, 1, 1\n12, 2, 0, 1\n100, 3, 0, 0\n*ELEMENT, TYPE=C3D8, ELSET=bar\n1, 1, 2, 3, 4, 5, 6, 7, 8\n2, 5, 6, 7, 8, 9, 10, 11, 12\n"
+    "*NSET, NSET=foot, GENERATE\n1, 4\n*NSET, NSET=head, GENERATE\n9, 12\n*ELSET, ELSET=last\n2\n*SURFACE, NAME=end\n2, S2\n"
+    "*MATERIAL, NAME=m\n*ELASTIC\n1e9, 0.\n*DENSITY\n1000.\n*MATERIAL, NAME=soft\n*ELASTIC\n1e6, 0.\n*DENSITY\n1000.\n"
+    "*SOLID SECTION, ELSET=bar, MATERIAL=m\n";
+const std::string held = "*BOUNDARY\nfoot, 1, 3\n", statics = "*STEP\n*STATIC\n", end = "*END STEP\n";
+
+class ImportInpSilent : public test::Import {
+ protected:
+  std::string scene(const std::string& text) {
+    place.write("a.inp", text);
+    imported("a.inp", "--scene-out s.toml");
+    return test::text_of(place / "s.toml");
+  }
+  std::vector<double> foot(const std::string& text) {
+    scene(text);
+    const auto ran = place.run("hilo-solve --quiet s.toml -o run.h5");
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    const auto all = Store::open(place / "run.h5").read<double>("/history/motion/foot");
+    return {all.end() - 6, all.end()};
+  }
+  void expect_told(const std::string& what, const std::string& text) {
+    scene(text);
+    EXPECT_NE(err.find(what), std::string::npos) << err;
+  }
+};
+
+TEST_F(ImportInpSilent, APressureSaidTwiceCountsTwice) {
+  const std::string two[] = {"*DLOAD\nlast, P2, 5.\n*DLOAD\nlast, P2, 5.\n", "*DSLOAD\nend, P, 5.\n*DSLOAD\nend, P, 5.\n"};
+  for (const auto& loads : two) EXPECT_NEAR(foot(bar + held + statics + loads + end)[0], 10, 1e-6) << loads;
+}
+
+TEST_F(ImportInpSilent, OpNewForgetsTheSupportsBeforeTheStepAlone) {
+  const std::string text =
+      scene(bar + "*BOUNDARY\nhead, 2, 2\n" + statics + "*BOUNDARY, OP=NEW\nfoot, 1, 3\n*BOUNDARY, OP=NEW\n12, 3, 3\n" + end);
+  EXPECT_NE(text.find("on = \"foot\""), std::string::npos) << text;
+  EXPECT_NE(text.find("components = [\"z\"]"), std::string::npos) << text;
+  EXPECT_EQ(text.find("on = \"head\""), std::string::npos) << text;
+}
+
+TEST_F(ImportInpSilent, ALastValueOfAnAmplitudeThatIsNotThereIsZero) {
+  EXPECT_NE(scene(bar + held + "*AMPLITUDE, NAME=a\n0., 1., .5, 1., 1.,\n" + statics + "*CLOAD, AMPLITUDE=a\nhead, 1, 1.\n" + end)
+                .find("value = [1.0, 1.0, 0.0]"),
+            std::string::npos);
+}
+
+TEST_F(ImportInpSilent, ASpringAMassOrADamperIsTheFirstNumberOfItsLine) {
+  const std::string spring =
+      bar + "*ELEMENT, TYPE=SPRINGA, ELSET=s\n900, 9, 100\n*SPRING, ELSET=s\n\n1.E4, , 293.\n" + held + statics + end;
+  EXPECT_NE(scene(spring).find("stiffness = 10000.0"), std::string::npos);
+  EXPECT_NE(err.find("*SPRING: numbers behind the first"), std::string::npos) << err;
+  EXPECT_NE(scene(bar + "*ELEMENT, TYPE=MASS, ELSET=s\n900, 100\n*MASS, ELSET=s\n5., , 20.\n" + held + statics + end).find("mass = 5.0"),
+            std::string::npos);
+  expect_told(
+      "*SPRING of several values",
+      bar + "*ELEMENT, TYPE=SPRINGA, ELSET=s\n900, 9, 100\n*SPRING, ELSET=s\n\n1.E4, , 293.\n2.E4, , 400.\n" + held + statics + end);
+}
+
+TEST_F(ImportInpSilent, GravityOfCellsThatMassesDoNotFeelIsTold) {
+  const std::string mass = bar + "*ELEMENT, TYPE=MASS, ELSET=s\n900, 12\n*MASS, ELSET=s\n500.\n" + held + statics;
+  expect_told("*DLOAD GRAV on a part of the model", mass + "*DLOAD\nbar, GRAV, 10., 0., 0., -1.\n" + end);
+  expect_told("*DLOAD GRAV on a part of the model", mass + "*DLOAD\ns, GRAV, 10., 0., 0., -1.\n" + end);
+  EXPECT_NEAR(foot(mass + "*DLOAD\nbar, GRAV, 10., 0., 0., -1.\ns, GRAV, 10., 0., 0., -1.\n" + end)[2], 10 * 2500, 1e-3);
+}
+
+TEST_F(ImportInpSilent, TheLastSectionOfACellIsItsOwn) {
+  const std::string text = scene(bar + "*SOLID SECTION, ELSET=last, MATERIAL=soft\n" + held + statics + end);
+  EXPECT_NE(text.find("material = \"soft\""), std::string::npos) << text;
+  EXPECT_NE(text.find("material = \"m\""), std::string::npos) << text;
+}
+
+TEST_F(ImportInpSilent, ABodyHasNoNameOfASet) {
+  const std::string text = scene(bar + "*NSET, NSET=node_100, GENERATE\n5, 8\n*RIGID BODY, NSET=head, REF NODE=100\n" + held + statics +
+                                 "*CLOAD\nnode_100, 1, 1.\n100, 1, 7.\n" + end);
+  EXPECT_NE(text.find("on = \"node_100\""), std::string::npos) << text;
+  EXPECT_NE(text.find("on = \"node_100_body\""), std::string::npos) << text;
+}
+
+TEST_F(ImportInpSilent, WhatHasNoPlaceIsTold) {
+  expect_told("*AMPLITUDE, VALUE=ABSOLUTE", bar + held + "*AMPLITUDE, NAME=a, VALUE=ABSOLUTE\n0., 0., 1., 1.\n" + statics + end);
+  expect_told(
+      "*DISTRIBUTING of a node that is *KINEMATIC too",
+      bar +
+          "*COUPLING, REF NODE=100, SURFACE=end, CONSTRAINT NAME=c\n*DISTRIBUTING\n1, 6\n*COUPLING, REF NODE=100, SURFACE=end, CONSTRAINT "
+          "NAME=d\n*KINEMATIC\n1, 6\n" +
+          held + statics + end);
+}
+
+TEST_F(ImportInpSilent, ATurnOnTheSecondLineOfAnInstanceIsRefused) {
+  place.write("a.inp", "*PART, NAME=p\n" + bar +
+                           "*END PART\n*ASSEMBLY, NAME=a\n*INSTANCE, NAME=p-1, PART=p\n0., 0., 0.\n0., 0., 0., 0., 1., 0., 90.\n"
+                           "*END INSTANCE\n*END ASSEMBLY\n");
+  const auto ran = place.run("hilo-import a.inp -o mesh.h5");
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_NE(ran.err.find("a turned *INSTANCE"), std::string::npos) << ran.err;
+}
+
+}  // namespace
+}  // namespace hilo
