@@ -79,6 +79,11 @@ TEST_F(ImportBdfScene, EveryCardThatPullsTheHeadStretchesTheBarByTheClosedForm) 
       {"RBE2 THRU with an expansion of nothing", hub + "RBE2,60,100,123456,17,THRU,20,0.\nFORCE,2,100,,400.,1.,0.,0.\n"},
       {"RBE2 whose hub is a node",
        "RBE2,60,17,123,18,19,20\nFORCE,2,17,,400.,1.,0.,0.\nMOMENT,2,17,,200.,0.,1.,0.\nMOMENT,2,17,,-200.,0.,0.,1.\n"},
+      {"RBARs from one node",
+       "RBAR,60,17,18,123456\nRBAR,61,17,19,123456\nRBAR,62,17,20,123456\nFORCE,2,17,,400.,1.,0.,0.\nMOMENT,2,17,,200.,0.,1.,0.\n"
+       "MOMENT,2,17,,-200.,0.,0.,1.\n"},
+      {"RBARs in a chain, of which the last carries a grid of no cell",
+       hub + "RBAR,60,17,18,123456\nRBAR,61,18,19,123456\nRBE2,62,20,123456,19,100\nFORCE,2,100,,400.,1.,0.,0.\n"},
       {"RBE3", hub + "RBE3,60,,100,123456,1.,123,17,18\n,19,20\nFORCE,2,100,,400.,1.,0.,0.\n"},
       {"RBE3 of two weights, its force beside the mean",  // the mean of weights 1, 1, 3, 3 is at z = .75
        hub + "RBE3,60,,100,123,1.,123,17,18\n,3.,123,19,20\nFORCE,2,100,,400.,1.,0.,0.\n"},

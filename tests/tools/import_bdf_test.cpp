@@ -13,6 +13,8 @@ const std::string small = R"($ a cube and a prism on it
 SOL 101
 CEND
 TITLE = not bulk
+SPC = 1
+LOAD = 1
 BEGIN BULK
 $HMNAME PROP                   5"lower hull"
 GRID           1              0.      0.      0.

@@ -46,6 +46,7 @@ class Resolver {
     if (!g.system) g.system = d_.grid_default.system.value_or(0);
     if (!g.output) g.output = d_.grid_default.output.value_or(0);
     if (g.held.empty()) g.held = d_.grid_default.held;
+    if (g.held.find_first_not_of('0') == std::string::npos) g.held.clear();
     if (*g.system != 0) {
       const BdfSystem& s = system(*g.system, g.place, fmt::format("GRID {}", d_.node_id[a]));
       d_.X[a] = s.origin + s.axes * rectangular(s.kind, d_.X[a]);

@@ -36,6 +36,12 @@ bool is_request(const std::string& word) {
   return requests.contains(word) || word.find_first_not_of("0123456789") == std::string::npos;
 }
 
+/// Text and controls, which end with their line; SET and the other requests go on behind a comma.
+bool goes_on_by_comma(const std::string& word) {
+  static const std::set<std::string> ends_there{"SUBTITLE", "LABEL", "ECHO", "LINE", "MAXLINES", "PAGE", "ID", "TIME", "CEND", "APP"};
+  return is_request(word) && !ends_there.contains(word);
+}
+
 std::int64_t number_in(const std::string& value, const BdfCaseLine& line) {
   std::int64_t n = 0;
   const auto [end, bad] = std::from_chars(value.data(), value.data() + value.size(), n);
@@ -48,12 +54,12 @@ std::int64_t number_in(const std::string& value, const BdfCaseLine& line) {
 void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& in) {
   BdfCase& c = deck.chosen;
   bool others = false, goes_on = false;
-  c.any = !lines.empty();
   for (const BdfCaseLine& line : lines) {
-    const bool rest = goes_on;  // of a request that goes on behind a comma
-    goes_on = line.text.back() == ',';
-    if (rest) continue;
+    const bool rest = goes_on, comma = line.text.back() == ',';  // of a request that goes on behind a comma
     const auto [word, value] = parts(line.text);
+    goes_on = comma && (rest || goes_on_by_comma(word));
+    if (rest) continue;
+    if (word == "CEND") c.any = true;
     if (word == "SUBCASE" || word == "SUBCOM" || word == "SYM" || word == "REPCASE") {
       others = word != "SUBCASE" || c.number >= 0;
       if (others) in.skip(word + (word == "SUBCASE" ? " after the first" : ""), line.place);

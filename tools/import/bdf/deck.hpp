@@ -26,18 +26,23 @@ struct BdfSupport {
 struct BdfLoad {
   enum class Kind { force, moment, gravity, pressure } kind;
   std::int64_t grid = 0, system = 0;
-  double size = 0;                         // N, N m, m/s^2, Pa in units of the deck
-  Vec3 direction = Vec3::Zero();           // in `system`; of a pressure: zero for one along the normal
-  std::array<std::int64_t, 2> towards{};   // FORCE1, MOMENT1: along the line of two grids
-  std::vector<std::int64_t> elements = {};      // of a pressure
-  std::array<std::int64_t, 2> face{};      // PLOAD4 on solids: G1, and G3 or G4
-  std::vector<std::int64_t> corners = {};  // PLOAD: a face by its grids
+  double size = 0;                          // N, N m, m/s^2, Pa in units of the deck
+  Vec3 direction = Vec3::Zero();            // in `system`; of a pressure: zero for one along the normal
+  std::array<std::int64_t, 2> towards{};    // FORCE1, MOMENT1: along the line of two grids
+  std::vector<std::int64_t> elements = {};  // of a pressure
+  std::array<std::int64_t, 2> face{};       // PLOAD4 on solids: G1, and G3 or G4
+  std::vector<std::int64_t> corners = {};   // PLOAD: a face by its grids
   std::string place = {};
 };
 /// LOAD: sets of loads with factors.
 struct BdfSum {
   double factor = 1;
   std::vector<std::pair<double, std::int64_t>> parts;
+  std::string place;
+};
+/// SPCADD: sets of supports.
+struct BdfSupportSum {
+  std::vector<std::int64_t> sets;
   std::string place;
 };
 /// RBE2, RBAR: grids that follow one.
@@ -80,7 +85,7 @@ struct BdfSpringData {
 struct BdfCase {
   std::string title, solution;  // "101"
   std::int64_t spc = -1, load = -1, method = -1, step = -1, number = -1;
-  bool any = false;  // case control is there
+  bool any = false;  // case control is there: CEND is said
 };
 
 struct BdfDeck {
@@ -108,17 +113,17 @@ struct BdfDeck {
   std::map<std::int64_t, std::vector<std::pair<double, double>>> tables;  // TABLES1: x, y
   double mass_factor = 1;                                                 // PARAM, WTMASS
   BdfCase chosen;
-  std::map<std::int64_t, std::vector<BdfSupport>> supports;        // by SID
-  std::map<std::int64_t, std::vector<std::int64_t>> support_sums;  // SPCADD
-  std::map<std::int64_t, std::vector<BdfLoad>> loads;              // by SID
-  std::map<std::int64_t, BdfSum> load_sums;                        // LOAD
-  std::map<std::int64_t, int> modes;                               // EIGRL, EIGR: how many, 0 not said
-  std::map<std::int64_t, std::pair<double, double>> steps;         // TSTEP: end, step
+  std::map<std::int64_t, std::vector<BdfSupport>> supports;  // by SID
+  std::map<std::int64_t, BdfSupportSum> support_sums;        // SPCADD
+  std::map<std::int64_t, std::vector<BdfLoad>> loads;        // by SID
+  std::map<std::int64_t, BdfSum> load_sums;                  // LOAD
+  std::map<std::int64_t, int> modes;                         // EIGRL, EIGR: how many, 0 not said
+  std::map<std::int64_t, std::pair<double, double>> steps;   // TSTEP: end, step
   std::vector<BdfRigid> rigid;
   std::vector<BdfMean> means;
   std::vector<BdfMass> masses;
   std::vector<BdfSpring> springs;
-  std::map<std::int64_t, BdfSpringData> spring_data;  // PELAS, PDAMP, PBUSH
+  std::map<std::pair<std::string, std::int64_t>, BdfSpringData> spring_data;  // by "PELAS", PDAMP, PBUSH, PBUSH1D and number
 };
 
 }  // namespace hilo

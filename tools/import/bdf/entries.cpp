@@ -211,10 +211,26 @@ bool BdfEntries::bulk_line(Line& l) {
   return false;
 }
 
+/// Nothing is read behind it; in an included file that would lose what the file that includes it goes on with.
+void BdfEntries::end_data(const Line& l) {
+  if (stack_.size() > 1) {
+    stack_.pop_back();
+    for (Line more; physical(more);) {
+      const auto text = strip(more.text.substr(0, more.text.find('$')));
+      if (text.empty()) continue;
+      if (starts(text, "ENDDATA")) break;
+      throw Error(l.place(), fmt::format("ENDDATA ends an included file, but entries follow at {}", more.place()),
+                  "take it out of the included file");
+    }
+  }
+  stack_.clear();
+}
+
 bool BdfEntries::next(BdfEntry& e) {
   Line l;
-  if (!bulk_line(l) || starts(l.text, "ENDDATA")) {
-    stack_.clear();
+  if (!bulk_line(l)) return false;
+  if (starts(l.text, "ENDDATA")) {
+    end_data(l);
     return false;
   }
   e.data = {&l.source->path, l.number, {}};

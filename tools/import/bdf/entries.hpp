@@ -51,6 +51,7 @@ class BdfEntries {
   bool line(Line& l);
   bool bulk_line(Line& l);
   void include(const Line& l);
+  void end_data(const Line& l);
   void comment(std::string_view l);
   Ends cut(const Line& l, std::vector<Field>& fields) const;
 

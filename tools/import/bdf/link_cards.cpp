@@ -93,7 +93,7 @@ void ends(const DataLine& d, size_t field, BdfSpring& s) {
   }
 }
 /// By a property: EID PID G1 C1 G2 C2, and by a value: EID K G1 C1 G2 C2.
-void read_scalar(const BdfEntry& e, BdfDeck& deck, Imported&) {
+void read_scalar(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
   BdfSpring s{e.name, d.place(), d.integer(0)};
   if (e.name.back() == '1')
@@ -101,6 +101,7 @@ void read_scalar(const BdfEntry& e, BdfDeck& deck, Imported&) {
   else
     (e.name == "CELAS2" ? s.k : s.c)[0] = d.number(1);
   ends(d, 2, s);
+  if (e.name == "CELAS2" && d.number(6) != 0) in.skip("CELAS2: structural damping GE", d.place(6));
   deck.springs.push_back(s);
 }
 /// EID PID GA GB GO|X1 X2 X3 CID S OCID S1 S2 S3
@@ -123,16 +124,27 @@ void read_bush(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   deck.springs.push_back(s);
 }
 
-void read_pelas(const BdfEntry& e, BdfDeck& deck, Imported&) {
+/// The property of the number in a field, each card with numbers of its own.
+BdfSpringData& new_property(const BdfEntry& e, size_t field, BdfDeck& deck) {
+  const auto id = e.data.integer(field);
+  const auto [at, fresh] = deck.spring_data.try_emplace({e.name, id});
+  if (!fresh) throw Error(e.data.place(field), fmt::format("{} {} is given twice", e.name, id), "number each property once");
+  return at->second;
+}
+void read_pelas(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
-  const size_t by = e.name == "PELAS" ? 4 : 2;
-  for (size_t i = 0; i < 8; i += by)
-    if (!d.empty(i)) (e.name == "PELAS" ? deck.spring_data[d.integer(i)].k : deck.spring_data[d.integer(i)].c)[0] = d.number(i + 1);
+  const bool spring = e.name == "PELAS";
+  for (size_t i = 0; i < 8; i += spring ? 4 : 2) {
+    if (d.empty(i)) continue;
+    BdfSpringData& p = new_property(e, i, deck);
+    (spring ? p.k : p.c)[0] = d.number(i + 1);
+    if (spring && d.number(i + 2) != 0) in.skip("PELAS: structural damping GE", d.place(i + 2));
+  }
 }
 /// PID, and on each line a word and six values: K stiffness, B damping.
 void read_pbush(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
-  auto& p = deck.spring_data[d.integer(0)];
+  auto& p = new_property(e, 0, deck);
   for (size_t i = 1; i < d.fields.size(); i += 8) {
     const std::string word = upper(d.text(i));
     if (word == "K" || word == "B")
@@ -144,7 +156,7 @@ void read_pbush(const BdfEntry& e, BdfDeck& deck, Imported& in) {
 /// PID K C M
 void read_pbush1d(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
-  auto& p = deck.spring_data[d.integer(0)];
+  auto& p = new_property(e, 0, deck);
   p.k[0] = d.number(1), p.c[0] = d.number(2);
   if (d.number(3) != 0) in.skip("PBUSH1D: its mass", d.place(3));
   for (size_t i = 4; i < d.fields.size(); ++i)

@@ -21,8 +21,9 @@ void read_spc(const BdfEntry& e, BdfDeck& deck, Imported&) {
 }
 void read_spcadd(const BdfEntry& e, BdfDeck& deck, Imported&) {
   auto& sum = deck.support_sums[e.data.integer(0)];
-  if (!sum.empty()) throw Error(e.data.place(0), fmt::format("SPCADD {} is given twice", e.data.integer(0)));
-  grid_list(e.data, 1, sum);
+  if (!sum.place.empty()) throw Error(e.data.place(0), fmt::format("SPCADD {} is given twice", e.data.integer(0)));
+  sum.place = e.data.place();
+  grid_list(e.data, 1, sum.sets);
 }
 
 Vec3 vector_at(const DataLine& d, size_t field) { return {d.number(field), d.number(field + 1), d.number(field + 2)}; }

@@ -13,11 +13,10 @@ std::optional<std::int64_t> system_in(const DataLine& d, size_t field) {
   return d.empty(field) ? std::nullopt : std::optional(d.integer(field));
 }
 
-/// "123": a support that goes with the grid, nothing where the field is blank or 0.
+/// "123": a support that goes with the grid; "0" is none, blank what GRDSET says.
 std::string held_in(const DataLine& d, size_t field) {
   if (!d.empty(field)) components(d, field);
-  const std::string held(d.text(field));
-  return held == "0" ? "" : held;
+  return std::string(d.text(field));
 }
 
 void read_grid(const BdfEntry& e, BdfDeck& deck, Imported&) {
@@ -112,13 +111,20 @@ void read_solid(const BdfEntry& e, BdfDeck& deck, Imported&) {
   add(deck, std::move(r));
 }
 
+/// What a rod carries besides its area: a constant of torsion and a mass per length.
+void rod_extras(const BdfEntry& e, size_t J, size_t nsm, Imported& in) {
+  if (e.data.number(J) != 0) in.skip(e.name + ": torsional constant J", e.data.place(J));
+  if (e.data.number(nsm) != 0) in.skip(e.name + ": mass per length NSM", e.data.place(nsm));
+}
+
 void read_rod(const BdfEntry& e, BdfDeck& deck, Imported&) {
   const auto& d = e.data;
   add(deck, {Shape::bar2, d.integer(0), property_in(d, 1), {d.integer(2), d.integer(3)}, d.place(0)});
 }
 /// Carries its material and its area itself: each pair of them is a property with a number below zero.
-void read_conrod(const BdfEntry& e, BdfDeck& deck, Imported&) {
+void read_conrod(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
+  rod_extras(e, 5, 7, in);
   const auto material = d.integer(3);
   const double area = d.number(4);
   std::int64_t property = -1;
@@ -140,16 +146,16 @@ void read_shell(const BdfEntry& e, BdfDeck& deck, Imported&) {
   deck.shells.push_back(std::move(r));
 }
 
-void read_property(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+void read_property(const BdfEntry& e, BdfDeck& deck, Imported&) {
   const auto& d = e.data;
   if (e.name == "PSOLID" && !d.empty(6) && upper(d.text(6)) != "SMECH")
     throw Error(d.place(6), fmt::format("PSOLID {}: cells of {} are no solids", d.integer(0), d.text(6)), "take them out");
-  if (e.name == "PROD" && d.number(5) != 0) in.skip("PROD: mass per length NSM", d.place(5));
   if (!deck.material_of.try_emplace(d.integer(0), d.integer(1)).second)
     throw Error(d.place(0), fmt::format("property {} is given twice", d.integer(0)), "number each property once");
 }
 void read_rod_property(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   read_property(e, deck, in);
+  rod_extras(e, 3, 5, in);
   if (!e.data.empty(2)) deck.area_of[e.data.integer(0)] = e.data.number(2);
 }
 

@@ -135,14 +135,14 @@ void BdfScene::supports() {
   const auto is_there = [&](std::int64_t id) { return deck_.supports.contains(id) || deck_.support_sums.contains(id); };
   if (chosen.spc >= 0 && !is_there(chosen.spc)) in_.skip(fmt::format("SPC = {}, of which there is none", chosen.spc), "case control");
   std::int64_t take = chosen.spc;
-  if (take < 0 && chosen.load < 0) {  // nothing is chosen at all: one set is meant
+  if (take < 0 && chosen.load < 0 && !chosen.any) {  // no case control: one set is meant
     if (deck_.support_sums.size() == 1)
       take = deck_.support_sums.begin()->first;
     else if (deck_.supports.size() == 1)
       take = deck_.supports.begin()->first;
   }
   if (const auto sum = deck_.support_sums.find(take); sum != deck_.support_sums.end())
-    sets = sum->second;
+    sets = sum->second.sets;
   else if (take >= 0)
     sets = {take};
   for (const auto& [id, lines] : deck_.supports)
@@ -159,7 +159,11 @@ void BdfScene::supports() {
     }
   for (const auto id : sets) {
     const auto lines = deck_.supports.find(id);
-    if (lines == deck_.supports.end()) continue;
+    if (lines == deck_.supports.end()) {
+      if (const auto sum = deck_.support_sums.find(take); sum != deck_.support_sums.end())
+        in_.skip(fmt::format("SPCADD of set {}, of which there is none", id), sum->second.place);
+      continue;
+    }
     for (const BdfSupport& s : lines->second)
       for (const auto grid : s.grids) {
         const auto a = deck_.row.find(grid);

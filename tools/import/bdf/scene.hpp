@@ -28,6 +28,7 @@ class BdfScene {
   void time();
   // scene_links.cpp
   void find_bodies();
+  void join_rigid();
   void bodies();
   void rigid();
   void rigid(const BdfRigid& r);
@@ -79,6 +80,7 @@ class BdfScene {
   const ImportOptions& options_;
   double size_ = 1;                              // of the model, in units of the deck
   std::vector<char> used_;                       // by cells (n grids)
+  std::vector<BdfRigid> rigid_;                  // those that share a turning node as one
   std::map<std::int64_t, std::string> body_;     // row -> what makes a body of it
   std::map<std::int64_t, const BdfMean*> mean_;  // row -> the mean that it follows
   std::map<std::int64_t, unsigned> body_held_;   // row -> components

@@ -9,12 +9,63 @@
 #include "import/links.hpp"
 
 namespace hilo {
+
+/// Elements that share a node of solids share its turn too, where both give it one: they are one rigid body.  Grids of no cell are bodies
+/// of their own, which joints tie.
+void BdfScene::join_rigid() {
+  std::vector<size_t> first(deck_.rigid.size());  // an earlier element of the same body, or itself
+  const auto root = [&](size_t i) {
+    while (first[i] != i) i = first[i] = first[first[i]];
+    return i;
+  };
+  std::map<std::int64_t, size_t> turned_by;  // node of solids -> element
+  for (size_t i = 0; i < deck_.rigid.size(); ++i) {
+    const BdfRigid& r = deck_.rigid[i];
+    first[i] = i;
+    if ((r.components & 7) != 7) continue;
+    const auto turns = [&](std::int64_t grid) {
+      const auto a = row(grid, r.place, r.name);
+      if (!used_[static_cast<size_t>(a)]) return;
+      const auto [at, fresh] = turned_by.try_emplace(a, i);
+      const size_t one = root(i), other = root(at->second);
+      if (!fresh) first[std::max(one, other)] = std::min(one, other);
+    };
+    turns(r.hub);
+    if (r.components == 63) std::for_each(r.grids.begin(), r.grids.end(), turns);
+  }
+  std::map<size_t, std::vector<const BdfRigid*>> groups;
+  for (size_t i = 0; i < deck_.rigid.size(); ++i) groups[root(i)].push_back(&deck_.rigid[i]);
+  for (const auto& [i, group] : groups) {
+    if (group.size() == 1) {
+      rigid_.push_back(*group[0]);
+      continue;
+    }
+    const auto of_solids = [&](std::int64_t grid) { return used_[static_cast<size_t>(row(grid, group[0]->place, group[0]->name))] != 0; };
+    BdfRigid whole{group[0]->name, group[0]->place, group[0]->id, group[0]->hub, 63, {}};
+    for (const BdfRigid* r : group)
+      if (of_solids(whole.hub) && !of_solids(r->hub)) whole.hub = r->hub;
+    std::vector<BdfRigid> others;  // grids of no cell that do not turn with it
+    std::set<std::int64_t> has{whole.hub};
+    for (const BdfRigid* r : group) {
+      if (has.insert(r->hub).second) whole.grids.push_back(r->hub);
+      for (const auto g : r->grids)
+        if (r->components != 63 && !of_solids(g))
+          others.push_back({r->name, r->place, r->id, whole.hub, r->components, {g}});
+        else if (has.insert(g).second)
+          whole.grids.push_back(g);
+    }
+    rigid_.push_back(std::move(whole));
+    rigid_.insert(rigid_.end(), others.begin(), others.end());
+  }
+}
+
 void BdfScene::find_bodies() {
+  join_rigid();
   const auto free = [&](std::int64_t a) { return !used_[static_cast<size_t>(a)]; };
   const auto make = [&](std::int64_t grid, const std::string& place, const std::string& who, bool cell_too = false) {
     if (const auto a = row(grid, place, who); cell_too || free(a)) body_.try_emplace(a, place);
   };
-  for (const BdfRigid& r : deck_.rigid) {
+  for (const BdfRigid& r : rigid_) {
     const auto hub = row(r.hub, r.place, r.name);
     std::int64_t nodes = !free(hub);
     for (const auto g : r.grids) nodes += !free(row(g, r.place, r.name));
@@ -74,6 +125,12 @@ void BdfScene::bodies() {
         in_.skip("CONM2 on an RBE3 of several weights", m.place);
         continue;
       }
+      Vec3 centre = Vec3::Zero();
+      for (const auto b : rows) centre += X(b) / static_cast<double>(rows.size());
+      if ((X(a) - centre).norm() > 1e-6 * size_) {
+        in_.skip("CONM2 on an RBE3 away from the mean of its grids", m.place);
+        continue;
+      }
       in_.notes.push_back(fmt::format("{}: CONM2 {}: its mass is shared by the {} grids of the RBE3", m.place, m.id, rows.size()));
       for (const auto b : rows) on_node[b] += m.mass / static_cast<double>(rows.size()), places.try_emplace(b, m.place);
     } else
@@ -104,7 +161,7 @@ void BdfScene::bodies() {
 }
 
 void BdfScene::rigid() {
-  for (const BdfRigid& r : deck_.rigid) rigid(r);
+  for (const BdfRigid& r : rigid_) rigid(r);
 }
 
 void BdfScene::rigid(const BdfRigid& r) {

@@ -34,7 +34,7 @@ void BdfScene::choose_loads() {
   std::int64_t take = chosen.load;
   if (take >= 0 && !deck_.loads.contains(take) && !deck_.load_sums.contains(take))
     in_.skip(fmt::format("LOAD = {}, of which there is none", take), "case control");
-  if (take < 0 && chosen.spc < 0) {  // nothing is chosen at all: one set is meant
+  if (take < 0 && chosen.spc < 0 && !chosen.any) {  // no case control: one set is meant
     if (deck_.load_sums.size() == 1)
       take = deck_.load_sums.begin()->first;
     else if (deck_.loads.size() == 1)
@@ -68,7 +68,7 @@ void BdfScene::distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const 
   std::vector<Vec3> points;
   std::vector<double> weights;
   for (const auto& [grid, w] : m.of) points.push_back(X(row(grid, m.place, "RBE3"))), weights.push_back(w);
-  const auto shares = shares_of_mean(points, weights, X(row(m.grid, m.place, "RBE3")), F, M);
+  const auto shares = shares_of_mean(points, weights, X(row(m.grid, m.place, "RBE3")), F, M / options_.scale);
   if (!shares) return in_.skip("load on an RBE3 that its grids cannot carry", place);
   for (size_t i = 0; i < points.size(); ++i)
     force_.try_emplace(row(m.of[i].first, m.place, "RBE3"), Vec3::Zero(), place).first->second.first += (*shares)[i];
@@ -182,7 +182,7 @@ void BdfScene::pressures() {
   for (const auto& s : deck_.shells) shell.try_emplace(s.id, &s);
   for (const auto& [factor, l] : loads_) {
     if (l->kind != BdfLoad::Kind::pressure) continue;
-    const size_t before = pushed.size();
+    std::int64_t missing = 0;
     const auto by_grids = [&, factor = factor, l = l](const std::vector<std::int64_t>& grids) {
       corners.emplace_back();
       for (const auto grid : grids) corners.back().push_back(row(grid, l->place, "PLOAD"));
@@ -195,7 +195,9 @@ void BdfScene::pressures() {
         pushed.push_back({factor, l, face_of_solid(*l, element), 1});
       else if (const auto s = shell.find(element); s != shell.end())
         by_grids(s->second->nodes);
-    if (pushed.size() == before) in_.skip("PLOAD on elements that are not there", l->place);
+      else
+        ++missing;
+    if (missing > 0) in_.skip("PLOAD on elements that are not there", l->place, missing);
   }
   const auto found = match_facets(in_.mesh, corners);
   for (size_t i = 0; i < open.size(); ++i) {
@@ -210,12 +212,19 @@ void BdfScene::pressures() {
   using Key = std::pair<std::int64_t, std::int64_t>;
   std::map<Key, std::pair<double, std::string>> pressure;
   std::map<Key, std::pair<Vec3, std::string>> traction;
+  std::set<const BdfLoad*> curved;  // said to be so
   for (const auto& [factor, l, f, sign] : pushed) {
     const Key key{f.cell, f.facet};
     if (f.cell < 0) {
       in_.skip("PLOAD on a face of no solid", l->place);
     } else if (l->direction.norm() > 0) {
-      const Vec3 at = X(in_.mesh.facet_nodes(f)[0]);
+      const auto nodes = in_.mesh.facet_nodes(f);
+      Vec3 at = Vec3::Zero();
+      for (const auto a : nodes) at += X(a) / static_cast<double>(nodes.size());
+      if (l->system != 0 && deck_.systems.contains(l->system) && deck_.systems.at(l->system).kind != BdfSystem::Kind::rectangular &&
+          curved.insert(l).second)
+        in_.notes.push_back(
+            fmt::format("{}: PLOAD4 in a curved system: its direction on each facet is that at the facet's centre", l->place));
       traction.try_emplace(key, Vec3::Zero(), l->place).first->second.first +=
           factor * l->size * (axes_at(deck_, l->system, at, l->place) * l->direction).normalized();
     } else {

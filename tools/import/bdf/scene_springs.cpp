@@ -6,13 +6,24 @@
 #include "import/bdf/scene.hpp"
 
 namespace hilo {
+namespace {
+
+/// "CELAS1": the card of its properties, "PELAS".
+std::string property_card(std::string name) {
+  if (name == "CELAS1" || name == "CDAMP1") name.pop_back();
+  name.front() = 'P';
+  return name;
+}
+
+}  // namespace
 
 void BdfScene::springs() {
   for (const BdfSpring& s : deck_.springs) {
     BdfSpringData p{s.k, s.c};
     if (s.property != 0) {
-      const auto at = deck_.spring_data.find(s.property);
-      if (at == deck_.spring_data.end()) throw Error(s.place, fmt::format("{} {}: no property {}", s.name, s.id, s.property));
+      const auto at = deck_.spring_data.find({property_card(s.name), s.property});
+      if (at == deck_.spring_data.end())
+        throw Error(s.place, fmt::format("{} {}: no {} {}", s.name, s.id, property_card(s.name), s.property));
       p = at->second;
     }
     bool nothing = true, negative = false;

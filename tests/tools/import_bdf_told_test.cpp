@@ -1,0 +1,122 @@
+// What a Nastran file chooses in its case control, and what of its cards has no place in a scene: it is told, or the file is refused.
+#include <fmt/format.h>
+
+#include "import_case.hpp"
+#include "model/scene.hpp"
+
+namespace hilo {
+namespace {
+
+const std::string cube =
+    "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,0.,0.,1.\nGRID,6,,1.,0.,1.\nGRID,7,,1.,1.,1.\n"
+    "GRID,8,,0.,1.,1.\nCHEXA,1,1,1,2,3,4,5,6\n,7,8\nPSOLID,1,1\nMAT1,1,1.+9,,0.\n";
+const std::string foot = "SPC1,1,123,1,THRU,4\n", force = "FORCE,2,7,,100.,1.,0.,0.\n";
+const std::string head = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\n";
+
+class ImportBdfTold : public test::Import {
+ protected:
+  Scene scene(const std::string& text, const std::string& options = "") {
+    place.write("a.bdf", text);
+    imported("a.bdf", "--scene-out s.toml " + options);
+    return Scene::load(place / "s.toml");
+  }
+  void told(const std::string& text, const std::string& what) {
+    scene(text);
+    EXPECT_NE(err.find("not read: " + what), std::string::npos) << what << '\n' << err;
+    EXPECT_NE(test::text_of(place / "s.toml").find("# not read: " + what), std::string::npos) << what;
+  }
+};
+
+TEST_F(ImportBdfTold, TextInCaseControlEndsWithItsLine) {
+  for (const char* word : {"TITLE", "SUBTITLE", "LABEL", "ECHO"}) {
+    const Scene s =
+        scene(fmt::format("{} = a,\nSOL 101\nCEND\n{} = a,\nSPC = 1\nSET 1 = 1,2,\n3,4\nDISP = 1\nSUBCASE 1\nLOAD = 2\n{} = a,\n"
+                          "SUBCASE 2\nLOAD = 3\nBEGIN BULK\n",
+                          word, word, word) +
+              cube + foot + force + "FORCE,3,8,,1.,1.,0.,0.\n");
+    EXPECT_EQ(s.table("time").text("analysis"), "static") << word;
+    EXPECT_EQ(s.entries("motion").size(), 1u) << word;
+    ASSERT_EQ(s.entries("load").size(), 1u) << word;
+    EXPECT_EQ(s.entries("load")[0].vector3("force"), Vec3(100, 0, 0)) << word;
+    EXPECT_EQ(err.find("case control"), std::string::npos) << err;
+  }
+}
+
+TEST_F(ImportBdfTold, CaseControlThatNamesNoSetTakesNone) {
+  const Scene taken = scene("SOL 101\nTITLE = a\nBEGIN BULK\n" + cube + foot + force);  // without CEND: the only set there is
+  EXPECT_EQ(taken.entries("motion").size() + taken.entries("load").size(), 2u);
+  for (const char* control : {"METHOD = 4\n", "DISP = ALL\n", "SUBCASE 1\nLABEL = x\nSUBCASE 2\nLOAD = 2\nSPC = 1\n"}) {
+    const Scene s = scene(fmt::format("SOL 103\nCEND\n{}BEGIN BULK\n", control) + cube + foot + force + "EIGRL,4,,,10\n");
+    EXPECT_TRUE(s.entries("motion").empty() && s.entries("load").empty()) << control;
+    for (const char* card : {"SPC", "FORCE"})
+      EXPECT_NE(err.find(fmt::format("not read: {} of a set that the first subcase does not take (1,", card)), std::string::npos) << err;
+  }
+}
+
+TEST_F(ImportBdfTold, EntriesBehindAnIncludedEndAreNotLost) {
+  place.write("end.bdf", cube + "ENDDATA\n");
+  place.write("b.bdf", head + "INCLUDE 'end.bdf'\n$ nothing\n" + "\nENDDATA\n");
+  imported("b.bdf");
+  place.write("c.bdf", head + "INCLUDE 'end.bdf'\n$ nothing\n" + foot);
+  refused("c.bdf -o no.h5", 2,
+          "end.bdf:13: ENDDATA ends an included file, but entries follow at c.bdf:8 (take it out of the included file)");
+}
+
+TEST_F(ImportBdfTold, WhatHasNoPlaceInASceneIsNamed) {
+  const std::string hub = "GRID,100,,1.,.5,.5\nRBE2,60,100,123456,2,3,6,7\n", all = head + cube + foot + force + hub;
+  told("SOL 101\nCEND\nSPC = 9\nBEGIN BULK\n" + cube + foot + "SPCADD,9,1,8\n", "SPCADD of set 8, of which there is none (1, a.bdf:");
+  told(all + "CONROD,50,1,7,1,.1,,,5.\nCONROD,51,1,8,1,.1,2.\n", "CONROD: mass per length NSM (1,");
+  EXPECT_NE(err.find("CONROD: torsional constant J (1,"), std::string::npos) << err;
+  told(all + "CROD,50,2,1,7\nPROD,2,1,.1,3.,,4.\n", "PROD: mass per length NSM (1,");
+  EXPECT_NE(err.find("PROD: torsional constant J (1,"), std::string::npos) << err;
+  told(all + "CELAS1,70,8,,,7,1\nPELAS,8,5.,.01\n", "PELAS: structural damping GE (1,");
+  told(all + "CELAS2,70,5.,,,7,1,.01\n", "CELAS2: structural damping GE (1,");
+  told(all + "PLOAD2,2,1.,90,91\nCQUAD4,50,9,2,3,7,6\nPLOAD2,2,1.,50,92\n", "PLOAD on elements that are not there (3,");
+}
+
+TEST_F(ImportBdfTold, AZeroOfAGridOverridesItsDefault) {
+  std::string own = cube;
+  own.insert(own.find('\n', own.find("GRID,7,")), ",,0");
+  const Scene s = scene(head + own + force + "GRDSET,,,,,,,3\n");
+  EXPECT_EQ(read_mesh_file(place / "out.h5").mesh.node_sets.at(s.entries("motion")[0].text("on")).size(), 7u);
+  scene(head + cube + force + "GRDSET,,,,,,,0\nGRID,50,,5.,0.,0.\n");
+  EXPECT_EQ(err.find("SPC on a grid"), std::string::npos) << err;
+}
+
+TEST_F(ImportBdfTold, AMassOnAMeanIsSharedWhereItStandsInTheMean) {
+  const std::string mean = "RBE3,60,,100,123456,1.,123,2,3\n,6,7\nCONM2,70,100,,4.\n";
+  EXPECT_EQ(scene(head + cube + foot + "GRID,100,,1.,.5,.5\n" + mean).entries("point_mass").size(), 1u);
+  told(head + cube + foot + "GRID,100,,2.,.5,.5\n" + mean, "CONM2 on an RBE3 away from the mean of its grids (1,");
+  EXPECT_TRUE(Scene::load(place / "s.toml").entries("point_mass").empty());
+}
+
+TEST_F(ImportBdfTold, PropertiesOfSpringsHaveNumbersByCard) {
+  const std::string two = head + cube + foot + "CELAS1,70,8,,,7,1\nPELAS,8,5.\n";
+  EXPECT_DOUBLE_EQ(scene(two + "PBUSH,8,K,1.,2.,3.\nPDAMP,8,9.\n").entries("joint")[0].number("stiffness"), 5);
+  place.write("b.bdf", two + "PELAS,8,6.\n");
+  refused("b.bdf -o no.h5", 2, "b.bdf:21:7: PELAS 8 is given twice (number each property once)");
+  place.write("b.bdf", head + cube + "CBUSH,70,8,7,,,,,0\nPELAS,8,6.\n");
+  refused("b.bdf -o no.h5", 2, "b.bdf:18: CBUSH 70: no PBUSH 8");
+}
+
+TEST_F(ImportBdfTold, APressureAlongACurvedSystemPointsAsAtTheCentreOfItsFacet) {
+  const Scene s = scene(head + cube + foot + "CORD2C,9,,0.,.5,0.,0.,.5,1.\n,1.,.5,0.\nPLOAD4,2,1,400.,,,,2,7\n,9,1.,0.,0.\n");
+  EXPECT_LT((s.entries("load")[0].vector3("traction") - Vec3(400, 0, 0)).norm(), 1e-9);
+  EXPECT_NE(err.find("a.bdf:21: PLOAD4 in a curved system"), std::string::npos) << err;
+}
+
+// The moment is that of the deck, on a geometry of another size: the forces that make it are larger.
+TEST_F(ImportBdfTold, AMomentOnAMeanKeepsItsSizeUnderScale) {
+  const std::string text = head + cube + foot + "GRID,100,,1.,.5,.5\nRBE3,60,,100,123456,1.,123,2,3\n,6,7\nMOMENT,2,100,,8.,1.,0.,0.\n";
+  for (const double scale : {1., 1e-3}) {
+    const Scene s = scene(text, fmt::format("--scale {}", scale));
+    const Mesh m = read_mesh_file(place / "out.h5").mesh;
+    Vec3 sum = Vec3::Zero();
+    for (const auto& l : s.entries("load"))
+      for (const auto a : m.node_sets.at(l.text("on"))) sum += m.X[static_cast<size_t>(a)].cross(l.vector3("force"));
+    EXPECT_LT((sum - Vec3(8, 0, 0)).norm(), 1e-9) << scale;
+  }
+}
+
+}  // namespace
+}  // namespace hilo
