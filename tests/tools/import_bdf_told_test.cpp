@@ -118,5 +118,16 @@ TEST_F(ImportBdfTold, AMomentOnAMeanKeepsItsSizeUnderScale) {
   }
 }
 
+// m a^2 of two masses that stand apart; their own inertia is that of the deck.
+TEST_F(ImportBdfTold, MassesApartOnAGridHaveTheInertiaOfTheScaledGeometry) {
+  const std::string text = head + cube + foot + "GRID,100,,1.,.5,.5\nRBE2,60,100,123456,2,3,6,7\nCONM2,70,100,,3.,0.,2.,0.\n" +
+                           "CONM2,71,100,,3.,0.,-2.,0.\n,.5,,.5,,,.5\n";
+  for (const double scale : {1., 0.1}) {
+    const auto inertia = scene(text, fmt::format("--scale {}", scale)).entries("body")[0].numbers("inertia");
+    EXPECT_NEAR(inertia[0], .5 + 24 * scale * scale, 1e-12) << scale;
+    EXPECT_NEAR(inertia[1], .5, 1e-12) << scale;
+  }
+}
+
 }  // namespace
 }  // namespace hilo

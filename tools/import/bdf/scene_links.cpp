@@ -94,13 +94,16 @@ void BdfScene::bodies() {
   struct Sum {
     double mass = 0;
     Vec3 first = Vec3::Zero();
-    Mat3 inertia = Mat3::Zero();  // about the basic origin
+    Mat3 inertia = Mat3::Zero();  // about the grid
   };
   std::map<std::int64_t, Sum> sums;
   std::map<double, std::pair<Rows, std::string>> on_nodes;
   std::map<std::int64_t, double> on_node;
   std::map<std::int64_t, std::string> places;
-  const auto about = [](const Vec3& x) -> Mat3 { return x.squaredNorm() * Mat3::Identity() - x * x.transpose(); };
+  const auto about = [this](const Vec3& arm) -> Mat3 {
+    const Vec3 x = arm * options_.scale;
+    return x.squaredNorm() * Mat3::Identity() - x * x.transpose();
+  };
   for (const BdfMass& m : deck_.masses) {
     const auto a = row(m.grid, m.place, "CONM2");
     const Mat3 own = axes_at(deck_, std::max<std::int64_t>(m.system, 0), X(a), m.place);
