@@ -103,6 +103,19 @@ TEST_F(ImportBdfScene, EveryCardThatPullsTheHeadStretchesTheBarByTheClosedForm) 
   }
 }
 
+// Forces that only warp the head move nothing where it is rigid.
+TEST_F(ImportBdfScene, RigidElementsThatShareANodeKeepItsTurn) {
+  const std::string warp = "FORCE,2,17,,100.,1.,0.,0.\nFORCE,2,18,,-100.,1.,0.,0.\nFORCE,2,19,,100.,1.,0.,0.\nFORCE,2,20,,-100.,1.,0.,0.\n";
+  for (const char* rigid : {"RBAR,60,17,18,123456\nRBAR,61,17,19,123456\nRBAR,62,17,20,123456\n",
+                            "RBAR,60,17,18,123456\nRBAR,61,18,19,123456\nRBAR,62,19,20,123456\n",
+                            "RBE2,60,17,123,18\nRBE2,61,17,123456,19\nRBE2,62,17,123,20\n"}) {
+    SCOPED_TRACE(rigid);
+    run(statics + bar() + foot + warp + rigid);
+    if (HasFatalFailure()) return;
+    for (const double u : Store::open(place / "run.h5").read<double>("/field/000001/displacement")) EXPECT_NEAR(u, 0, 1e-15);
+  }
+}
+
 // A hub outside the head's axis: the foot answers with the moment of statics, for a force, a moment, a mass under gravity.
 TEST_F(ImportBdfScene, WhatHangsOnAHubIsInBalanceAtTheFoot) {
   const std::string hub = "GRID,100,,5.,2.,.5\n";
