@@ -52,8 +52,8 @@ struct CellGroup {
 };
 
 /// Give every cell its region: the groups of --regions first, then `regions` (the later or the earlier group wins where two overlap), then
-/// --rest.  A group that lost cells to another becomes a cell set too.  Cells left over are a region of their own, and that is said; `groups`
-/// are the other element sets, offered there and to --regions.
+/// --rest.  A group that lost cells to another becomes a cell set too.  Cells left over are a region of their own, and that is said;
+/// `groups` are the other element sets, offered there and to --regions.
 void assign_regions(Imported& in, const std::string& file, const std::vector<CellGroup>& regions, bool later_wins,
                     const std::vector<CellGroup>& groups, const ImportOptions& options);
 
