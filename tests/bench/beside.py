@@ -39,21 +39,21 @@ def seconds(solver, name, ranks, sets):
     if done.returncode:
         raise RuntimeError(" ".join(command) + "\n" + done.stdout[-500:])
     told = json.load(open("beside.json"))
-    return told["processor_seconds"], told["newton_iterations"]
+    return told["processor_seconds"], told["newton_iterations"], told["counts"]["solves"]
 
 
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     prepare()
-    print(f"{'scene':24} {'ranks':>5} {'before s':>9} {'after s':>9} {'ratio':>7} {'least':>7} {'iterations':>12}")
+    print(f"{'scene':24} {'ranks':>5} {'before s':>9} {'after s':>9} {'ratio':>7} {'least':>7} {'iterations':>12} {'solves':>12}")
     for name, ranks, sets in RUNS:
         try:
             took = {before: [], after: []}
             for k in range(rounds + 1):
                 for solver in (before, after) if k % 2 else (after, before):
                     took[solver].append(seconds(solver, name, ranks, sets))
-            b, a = ([t for t, _ in took[s][1:]] for s in (before, after))
+            b, a = ([t for t, *_ in took[s][1:]] for s in (before, after))
             print(f"{name:24} {ranks:5} {statistics.median(b):9.3f} {statistics.median(a):9.3f} {statistics.median(a) / statistics.median(b):7.3f} "
-                  f"{min(a) / min(b):7.3f} {took[before][0][1]:>5} {took[after][0][1]:>5}", flush=True)
+                  f"{min(a) / min(b):7.3f} {took[before][0][1]:>6} {took[after][0][1]:>5} {took[before][0][2]:>6} {took[after][0][2]:>5}", flush=True)
         except RuntimeError as e:
             print(f"{name:24} {ranks:5} {e}", flush=True)
