@@ -12,6 +12,7 @@ namespace hilo::petsc {
 void DirectSolver::structure(const Cliques& cliques, const BlockMap& map) {
   check(MatDestroy(&factor_));
   factored_ = false;
+  is_mostly_dense_ = 4 * map.first_dense < 3 * map.n_global;
   cliques_ = &cliques;
   shared_.emplace(map);
   matrix_.reset();

@@ -15,7 +15,7 @@ class DirectSolver final : public KktSolver {
   void add_diagonal(int block, const double d[3]) override { matrix_->add_diagonal(block, d); }
   void sum_shared(std::span<double> local) override { shared_->sum(local); }
   SolveReport solve(std::span<const double> b, std::span<double> x, double) override;
-  bool repeats_cheaply() const override { return true; }
+  bool repeats_cheaply() const override { return is_mostly_dense_; }
   double bytes() const override { return matrix_->bytes() + factor_bytes_; }
   double set_up_seconds() const override { return set_up_; }
   std::string name() const override;
@@ -30,7 +30,8 @@ class DirectSolver final : public KktSolver {
   PetscInt infog(PetscInt i) const;
 
   double tolerance_, factor_bytes_ = 0, set_up_ = 0;
-  bool factored_ = false;  // the factors are those of the matrix
+  bool factored_ = false;         // the factors are those of the matrix
+  bool is_mostly_dense_ = false;  // bodies and multipliers, whose positions shall be exact; a solve more costs messages
   const Cliques* cliques_ = nullptr;
   std::optional<SharedBlocks> shared_;
   std::optional<BlockMatrix> matrix_;
