@@ -6,6 +6,7 @@
 #include "base/args.hpp"
 #include "base/error.hpp"
 #include "model/inputs.hpp"
+#include "model/scene_sets.hpp"
 #include "model/store.hpp"
 #include "part/partition.hpp"
 #include "part/table.hpp"
@@ -32,9 +33,9 @@ int main(int argc, char** argv) {
     if (n_parts == 0 && !table) throw Error("", "--parts is required", "see hilo-part --help", Exit::usage);
     if (output.empty() && !table) output = fmt::format("parts-{}.h5", n_parts);
 
-    const MeshFile file = read_mesh_file(mesh_path);
+    MeshFile file = read_mesh_file(mesh_path);
     std::optional<Scene> scene;
-    if (!scene_path.empty()) scene = Scene::load(scene_path);
+    if (!scene_path.empty()) scene = Scene::load(scene_path), add_scene_sets(*scene, file.mesh);
     if (!output.empty()) check_output(output);
     if (!file.tagged && !is_quiet()) fmt::print(stderr, "hilo-part: {} has no tags, so every region is nonlinear\n", mesh_path);
     const CellGraph graph = cell_graph(file.mesh, file.fidelity, scene ? &*scene : nullptr);

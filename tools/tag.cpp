@@ -6,6 +6,7 @@
 #include "model/inputs.hpp"
 #include "model/mesh_tags.hpp"
 #include "model/store.hpp"
+#include "tag/pieces.hpp"
 #include "tag/savings.hpp"
 
 int main(int argc, char** argv) {
@@ -39,6 +40,7 @@ int main(int argc, char** argv) {
     const MeshFile file = read_mesh_file(mesh_path);
     if (!dry) check_output(output);
     const auto fidelity = all_tagged(file.mesh, apply_tag_rules(file.mesh, rules));
+    for (const std::string& line : loose_pieces(file.mesh, fidelity)) warn("", line);
     if (!dry) {
       auto provenance = file.provenance;
       provenance.push_back(command_line(argc, argv));

@@ -62,9 +62,11 @@ Cylinder(v) = {x_gun - 0.30, 0, z_gun, 0.70, 0, 0, 0.110};                      
 Cylinder(v + 1) = {x_gun - 0.31, 0, z_gun, 0.72, 0, 0, 0.085};
 cradle[] = BooleanDifference { Volume{v}; Delete; }{ Volume{v + 1}; Delete; };
 v = newv;
-Cylinder(v) = {x_gun, 0.115, z_gun, 0, inner - 0.115 + 0.012, 0, r_bore - 0.004};
-Cylinder(v + 1) = {x_gun, -0.115, z_gun, 0, -(inner - 0.115 + 0.012), 0, r_bore - 0.004};
-Physical Volume("cradle") = {cradle[], v, v + 1};
+Cylinder(v) = {x_gun, 0.095, z_gun, 0, inner - 0.095 + 0.012, 0, r_bore - 0.004};
+Cylinder(v + 1) = {x_gun, -0.095, z_gun, 0, -(inner - 0.095 + 0.012), 0, r_bore - 0.004};
+whole[] = BooleanUnion { Volume{cradle[]}; Delete; }{ Volume{v, v + 1}; Delete; };
+cradle[] = whole[];
+Physical Volume("cradle") = {cradle[]};
 
 v = newv;
 Cylinder(v) = {x_gun - 0.45, 0, z_gun, 2.00, 0, 0, 0.060};                            // barrel and breech

@@ -10,6 +10,7 @@
 
 #include "base/args.hpp"
 #include "base/error.hpp"
+#include "model/scene_sets.hpp"
 #include "post/commands/commands.hpp"
 #include "post/scene/ellipsoid_surface.hpp"
 #include "post/scene/glyphs.hpp"
@@ -154,7 +155,7 @@ void run(const Options& o) {
   for (const auto& w : scene.warnings) fmt::print(stderr, "hilo-post: warning: {}\n", w);
   const std::string path = mesh_path(o, scene);
   std::unique_ptr<MeshFile> file;
-  if (!path.empty()) file = std::make_unique<MeshFile>(read_mesh_file(path));
+  if (!path.empty()) file = std::make_unique<MeshFile>(read_mesh_file(path)), add_scene_sets(scene, file->mesh);
   const SceneItems items = scene_items(scene, file.get());
   if (!file && items.bodies.empty()) throw Error(o.scene, "has neither a mesh nor bodies to draw", "give the mesh as second argument");
 

@@ -38,7 +38,9 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
   std::string kind = e.text("kind");
   const auto unknowns = 3 * system.map.n_global;
   std::string why = "asked for";
-  if (kind == "auto") {
+  if (unknowns == 0) {
+    kind = "klu", why = "nothing is free to move";
+  } else if (kind == "auto") {
     kind = system.comm->size > 1 ? "direct" : "light";
     if (unknowns > 300000) kind = "cg";
     const std::int64_t ranks = system.comm->size, flexible = 3 * system.map.first_dense;
@@ -47,7 +49,7 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
     why = fmt::format("{} unknowns on {} rank{}", unknowns, system.comm->size, system.comm->size == 1 ? "" : "s");
   }
   const SolverKind& chosen = solver_kinds().at(kind, e.where("kind"));
-  if (chosen.serial && system.comm->size > 1)
+  if (chosen.serial && system.comm->size > 1 && unknowns > 0)
     throw Error(e.where("kind"), "the light solvers are serial", "use bddc, direct, cg or iterative under mpirun");
   auto solver = chosen.make(kind, e);
   solver->structure(system.cliques, system.map);

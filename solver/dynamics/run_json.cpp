@@ -46,6 +46,9 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   add("constraint_violation", fmt::format("{:.6g}", run.audit->violation()));
   add("least_det_F", det < 1e299 ? fmt::format("{:.6g}", det) : "null");
   add("audit", run.audit->json(report.complete ? "" : report.reason));
+  std::vector<std::pair<std::string, std::string>> said;
+  for (const auto& part : system.parts()) part->add_to_report(said);
+  for (const auto& [key, value] : said) add(key.c_str(), value);
   add("position_change", fmt::format("{:.6g}", figures.assembled));
   add("velocity_change", fmt::format("{:.6g}", figures.projected));
   add("impulses", run.impulses.json());

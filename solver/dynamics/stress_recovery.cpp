@@ -34,15 +34,8 @@ struct StressRecovery::Cell {
         if (stiffens) p.F = R * p.F;
       return;
     }
-    constexpr double part = 1e-3;  // of the displacements: small, and far above round-off
-    std::vector<Vec3> moved(X.size());
-    std::vector<StressPoint> back;
-    const auto at = [&](double share, std::vector<StressPoint>& to) {
-      for (size_t a = 0; a < X.size(); ++a) moved[a] = X[a] + share * (x[a] - X[a]);
-      stress_points(batch->shape, batch->material, X, moved, which, to);
-    };
-    at(-part, back), at(part, out);
-    for (size_t k = 0; k < out.size(); ++k) out[k].S = (out[k].S - back[k].S) / (2 * part), out[k].F = R;
+    small_strain_points(batch->shape, batch->material, X, x, which, out);
+    for (StressPoint& p : out) p.F = R;
   }
   void gradients(std::span<Mat3> F) const {
     if (!linear || stiffens) nodal_gradients(batch->shape, X, x, F);
@@ -304,8 +297,7 @@ StressRecovery::Result StressRecovery::recover(const Config& q, const Memory& me
         mean += von_mises(cauchy(q.F, q.S)) / static_cast<double>(points.size());
         out.cell_plastic[batch.cells[e]] += q.plastic / static_cast<double>(points.size());
       }
-      const bool one_set = batch.shape == Shape::hex8 || batch.kernel.n_state > 0;  // of points [physics/stress_of_law.hpp]
-      if (!one_set) at.points(StressPoints::everywhere, points);
+      if (!has_one_set_of_points(batch.shape, batch.kernel.n_state > 0)) at.points(StressPoints::everywhere, points);
       double square = 0, volume = 0;
       for (const StressPoint& q : points) {
         Vec6 off = -q.S;

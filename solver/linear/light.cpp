@@ -49,6 +49,7 @@ class LightSolver final : public SerialKktSolver {
   void sum_shared(std::span<double>) override {}
 
   SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) override {
+    if (A_.n() == 0) return {};  // nothing is free to move
     return is_klu_ ? solve_refined(b, x) : solve_iterated(b, x, tolerance);
   }
   bool repeats_cheaply() const override { return is_klu_; }

@@ -14,9 +14,9 @@ struct Key {
   std::int64_t place;              // among the facets looked at
 };
 
-Key key_of(const LocalMesh& local, const Facet& f, std::int64_t place) {
+Key key_of(const LocalMesh& local, const Facet& f, std::int64_t place, bool by_region) {
   const auto corner = facet_key(local.mesh, f, [&](std::int64_t n) { return local.node_global[n]; });
-  return {{corner[0], corner[1], corner[2], local.mesh.region[f.cell]}, place};
+  return {{corner[0], corner[1], corner[2], by_region ? local.mesh.region[f.cell] : 0}, place};
 }
 
 /// Leaves those that are there once.
@@ -30,16 +30,14 @@ void keep_single(std::vector<Key>& keys) {
   keys = std::move(single);
 }
 
-}  // namespace
-
-std::vector<Facet> region_surface(const LocalMesh& local, const Comm& comm) {
+std::vector<Facet> unshared_facets(const LocalMesh& local, const Comm& comm, bool by_region) {
   const Mesh& m = local.mesh;
   std::vector<Facet> facets;
   for (std::int64_t c = 0; c < m.n_cells(); ++c)
     if (info(m.shape[c]).dimension == 3)
       for (std::int64_t f = 0; f < static_cast<std::int64_t>(info(m.shape[c]).facets.size()); ++f) facets.push_back({c, f});
   std::vector<Key> keys;
-  for (size_t i = 0; i < facets.size(); ++i) keys.push_back(key_of(local, facets[i], static_cast<std::int64_t>(i)));
+  for (size_t i = 0; i < facets.size(); ++i) keys.push_back(key_of(local, facets[i], static_cast<std::int64_t>(i), by_region));
   keep_single(keys);
   if (comm.size > 1) {  // the rank of the smallest corner decides, and says so to those that asked
     std::vector<std::vector<std::int64_t>> ask(comm.size);
@@ -69,5 +67,10 @@ std::vector<Facet> region_surface(const LocalMesh& local, const Comm& comm) {
   for (const std::int64_t i : places) out.push_back(facets[i]);
   return out;
 }
+
+}  // namespace
+
+std::vector<Facet> region_surface(const LocalMesh& local, const Comm& comm) { return unshared_facets(local, comm, true); }
+std::vector<Facet> outer_surface(const LocalMesh& local, const Comm& comm) { return unshared_facets(local, comm, false); }
 
 }  // namespace hilo

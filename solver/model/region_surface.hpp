@@ -6,5 +6,7 @@ namespace hilo {
 
 /// Facets of the local cells that no other cell of their region shares, on this rank or elsewhere.  Collective.
 std::vector<Facet> region_surface(const LocalMesh& local, const Comm& comm);
+/// Those that no other cell at all shares.  Collective.
+std::vector<Facet> outer_surface(const LocalMesh& local, const Comm& comm);
 
 }  // namespace hilo

@@ -1,5 +1,6 @@
 // The scene: one TOML file, kept as entries with their places.  What the keys mean is in scene_schema; nothing is interpreted here.
 #pragma once
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -61,7 +62,7 @@ class Scene {
   static Scene load(const std::string& path, std::span<const std::string> overrides = {});
   /// The same for a text that is already there (from another rank, or of a results file); `path` says where it came from.
   static Scene parse(const std::string& text, const std::string& path, std::span<const std::string> overrides = {});
-  /// Entries of a section in file order: material, region, body, point_mass, joint, spring, load, motion, initial, sensor, probe, history.
+  /// Entries of a section in file order: material, region, set, body, point_mass, joint, spring, load, motion, initial, sensor, probe, history.
   std::span<const Entry> entries(std::string_view section) const;
   /// The one table of a section (time, solver, output, scene); defaults where it is absent.
   const Entry& table(std::string_view section) const;
@@ -79,6 +80,13 @@ class Scene {
   std::map<std::string, std::vector<Entry>, std::less<>> entries_;
 };
 
+/// How many columns a table of numbers has, in words and by rule, and what its header line may be.
+struct RowRule {
+  std::string expected, header;
+  std::function<bool(size_t)> fits;
+};
+/// Rows of a CSV file with a header line, all of as many columns, in the numbers of the file.  Errors with the place in the file.
+std::vector<std::vector<double>> read_rows_csv(const std::string& path, const std::string& where, const RowRule& rule);
 /// Points of a CSV file with a header line and three columns, in the numbers of the file.
 std::vector<Vec3> read_points_csv(const std::string& path, const std::string& where);
 

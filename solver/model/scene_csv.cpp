@@ -88,12 +88,12 @@ History read_history_csv(const std::string& path, const std::string& where) {
   return h;
 }
 
-std::vector<Vec3> read_points_csv(const std::string& path, const std::string& where) {
+std::vector<std::vector<double>> read_rows_csv(const std::string& path, const std::string& where, const RowRule& rule) {
   if (!std::filesystem::exists(path))
     throw Error(where, fmt::format("no file {}", path), "paths in a scene are relative to the scene's folder");
   const std::string text = read_text_file(path, where);
-  std::vector<Vec3> points;
-  bool header = false;
+  std::vector<std::vector<double>> rows;
+  size_t columns = 0;
   int line_number = 0;
   for (size_t begin = 0; begin < text.size();) {
     const size_t end = std::min(text.find('\n', begin), text.size());
@@ -103,18 +103,26 @@ std::vector<Vec3> read_points_csv(const std::string& path, const std::string& wh
     if (trim(line).empty() || trim(line).starts_with('#')) continue;
     const auto fields = fields_of(line);
     const auto at = [&](size_t i) { return fmt::format("{}:{}:{}", path, line_number, fields[i].column); };
-    if (fields.size() != 3)
-      throw Error(at(0), fmt::format("{} column{} where three are expected: x, y and z", fields.size(), fields.size() == 1 ? "" : "s"));
-    double x[3];
-    if (!header) {
-      if (to_number(fields[0].text, x[0])) throw Error(at(0), "no header line", "write \"x,y,z\" above the first numbers");
-      header = true;
+    const bool fits = columns == 0 ? rule.fits(fields.size()) : fields.size() == columns;
+    if (!fits)
+      throw Error(at(0), fmt::format("{} column{} where {} are expected", fields.size(), fields.size() == 1 ? "" : "s", rule.expected));
+    std::vector<double> x(fields.size());
+    if (columns == 0) {
+      if (to_number(fields[0].text, x[0]))
+        throw Error(at(0), "no header line", fmt::format("write \"{}\" above the first numbers", rule.header));
+      columns = fields.size();
       continue;
     }
-    for (int k = 0; k < 3; ++k)
+    for (size_t k = 0; k < columns; ++k)
       if (!to_number(fields[k].text, x[k])) throw Error(at(k), fmt::format("\"{}\" is not a number", fields[k].text));
-    points.emplace_back(x[0], x[1], x[2]);
+    rows.push_back(std::move(x));
   }
+  return rows;
+}
+
+std::vector<Vec3> read_points_csv(const std::string& path, const std::string& where) {
+  std::vector<Vec3> points;
+  for (const auto& row : read_rows_csv(path, where, {"three", "x,y,z", [](size_t n) { return n == 3; }})) points.emplace_back(row.data());
   return points;
 }
 

@@ -48,8 +48,39 @@ std::vector<KindSchema> make() {
         {"mass_damping", number, "1/s", "0", "mass-proportional damping alpha (brakes rigid motion too)", at_least(0)},
         {"modes", number, "", "40", "vibration modes of a linear region, at most; static ones are there besides", at_least(0)},
         {"up_to", number, "Hz", "", "vibration modes up to this frequency, but at least four; absent: 0.1 over the step", above(0)},
+        {"shapes", text, "", "",
+         "CSV of the modes of a linear region, in place of those that hilo finds: node, then x, y, z of each shape [length]"},
         {"stiffening", boolean, "", "false", "strains of the second degree in the modes: spins and bending that stiffen or shorten"},
         {"modal_damping", number, "1", "0", "damping of the modes of a linear region over the critical one", at_least(0)}}});
+  const Param set_kind{"kind", text, "", "!", "the kind of place"};
+  const Param of{"of", texts, "", "[\"*\"]", "regions whose nodes it takes, names or globs"};
+  s.push_back({"set",
+               "ball",
+               "nodes within a distance of a point, and the outer facets between them",
+               {set_kind, of, {"at", vector3, "m", "!", "the point"}, {"radius", number, "m", "!", "the distance", above(0)}}});
+  s.push_back({"set",
+               "cylinder",
+               "nodes on a cylinder, as of a bore or a pin, and the outer facets between them",
+               {set_kind,
+                of,
+                {"at", vector3, "m", "!", "a point of its axis, the middle where it has a length"},
+                {"axis", vector3, "", "!", "direction of its axis"},
+                {"radius", number, "m", "!", "its radius", above(0)},
+                {"length", number, "m", "", "along the axis, half of it to both sides; absent: as far as there are nodes", above(0)},
+                {"tolerance", number, "m", "", "off the radius; absent: a fiftieth of it", above(0)}}});
+  s.push_back({"set",
+               "plane",
+               "nodes on a plane, and the outer facets between them",
+               {set_kind,
+                of,
+                {"at", vector3, "m", "!", "a point of it"},
+                {"axis", vector3, "", "!", "its normal"},
+                {"radius", number, "m", "", "how far from the point; absent: all of the plane", above(0)},
+                {"tolerance", number, "m", "", "off the plane; absent: 1e-6 of the scene's diagonal", above(0)}}});
+  s.push_back({"set",
+               "box",
+               "nodes in a box along the axes, and the outer facets between them",
+               {set_kind, of, {"low", vector3, "m", "!", "a corner"}, {"high", vector3, "m", "!", "the opposite corner"}}});
   s.push_back({"body",
                "",
                "a rigid body without a mesh",
@@ -198,7 +229,9 @@ const std::vector<KindSchema>& scene_schema() {
   return schema;
 }
 
-bool is_list_section(std::string_view s) { return !is_single_section(s) && s != "material" && s != "region" && s != "history"; }
+bool is_list_section(std::string_view s) {
+  return !is_single_section(s) && s != "material" && s != "region" && s != "set" && s != "history";
+}
 bool is_single_section(std::string_view s) { return s == "scene" || s == "time" || s == "solver" || s == "output"; }
 
 }  // namespace hilo

@@ -8,6 +8,7 @@
 // Moduli that differ with direction stand in for E, nu and mu in the planes of the cell (physics/bending_moduli.hpp).
 #pragma once
 #include <cmath>
+#include <type_traits>
 
 #include "physics/bending_moduli.hpp"
 #include "physics/lane_functions.hpp"
@@ -102,8 +103,14 @@ struct Hourglass {
           cof[i][j] = R[i1][j1] * R[i2][j2] - R[i1][j2] * R[i2][j1];
         }
       const T det = R[0][0] * cof[0][0] + R[0][1] * cof[0][1] + R[0][2] * cof[0][2];
+      T change = 0 * det;
       for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) R[i][j] = (R[i][j] + cof[i][j] / det) / 2;
+        for (int j = 0; j < 3; ++j) {
+          const T by = (cof[i][j] / det - R[i][j]) / 2;
+          R[i][j] += by, change += by * by;
+        }
+      if constexpr (std::is_same_v<T, double>)
+        if (change < 1e-24) return;  // it converges quadratically
     }
   }
 };

@@ -57,6 +57,30 @@ void stress_points(Shape shape, const Material& material, std::span<const Vec3> 
       material);
 }
 
+void small_strain_points(Shape shape, const Material& material, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
+                         std::vector<StressPoint>& out) {
+  const bool done = shape == Shape::hex8 && std::visit(
+                                                [&]<class M>(const M& law) {
+                                                  if constexpr (std::is_same_v<M, LawFromOutside> || Remembers<M>)
+                                                    return false;
+                                                  else
+                                                    return stress::hex8_points<true>(law, X, x, out), true;
+                                                },
+                                                material);
+  if (done) return;
+  constexpr double part = 1e-3;  // of the displacements: small, and far above round-off
+  std::vector<Vec3> moved(X.size());
+  std::vector<StressPoint> back;
+  const auto at = [&](double share, std::vector<StressPoint>& to) {
+    for (size_t a = 0; a < X.size(); ++a) moved[a] = X[a] + share * (x[a] - X[a]);
+    stress_points(shape, material, X, moved, which, to);
+  };
+  at(-part, back), at(part, out);
+  for (size_t k = 0; k < out.size(); ++k) out[k].S = (out[k].S - back[k].S) / (2 * part);
+}
+
+bool has_one_set_of_points(Shape shape, bool remembers) { return shape == Shape::hex8 || remembers; }
+
 const Eigen::MatrixXd& to_nodes(Shape shape) {
   if (const ShapeFunctions* other = shape_from_outside(shape)) return other->to_nodes();
   static const Eigen::MatrixXd none;

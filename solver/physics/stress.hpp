@@ -29,6 +29,13 @@ struct StressPoint {
 void stress_points(Shape shape, const Material& material, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
                    std::vector<StressPoint>& out, const double* state = nullptr);
 
+/// The same to first order in the displacements x - X, of a cell as new; F is that of x or near the identity.
+void small_strain_points(Shape shape, const Material& material, std::span<const Vec3> X, std::span<const Vec3> x, StressPoints which,
+                         std::vector<StressPoint>& out);
+
+/// Whether integration, samples and everywhere are the same points.
+bool has_one_set_of_points(Shape shape, bool remembers);
+
 /// Deformation gradient at each node of a solid cell; where the cell has no volume at a node (collapsed corners), its mean.
 void nodal_gradients(Shape shape, std::span<const Vec3> X, std::span<const Vec3> x, std::span<Mat3> F);
 

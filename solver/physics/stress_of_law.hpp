@@ -148,34 +148,55 @@ inline Mat3 tensor_of_strain(const double e[6]) {
   return m;
 }
 
-/// Strain of the centroid, plus the bending strains that the hourglass measures stand for (physics/hourglass.hpp), linear in the cell.
+/// Second Piola-Kirchhoff stress to first order in the strain, where nothing is remembered.
 template <class M>
+Vec6 linear_stress(const M& law, const double e[6]) {
+  constexpr double part = 1e-3;  // of the strain: small, and far above round-off
+  double there[6], back[6];
+  for (int i = 0; i < 6; ++i) there[i] = part * e[i], back[i] = -part * e[i];
+  return (second_piola(law, there) - second_piola(law, back)) / (2 * part);
+}
+
+/// Strain of the centroid, plus the bending strains that the hourglass measures stand for (physics/hourglass.hpp), linear in the cell.
+/// `small`: to first order in the displacements x - X; then u_A = (x - X) n_A, and b_rA = axis_A . h_r, since X gamma_r = 0.
+template <bool small, class M>
 void hex8_points(const M& law, std::span<const Vec3> X, std::span<const Vec3> x, std::vector<StressPoint>& out) {
   const Hourglass<double, decltype(moduli_of(law))> h(X[0].data(), moduli_of(law));
-  double g[8][3], F[3][3], e[6], u[3][3], modes[4][3], b[4][3];
-  solid::point_gradients<Hex8>(0, X[0].data(), g);
-  solid::gradient<8>(x[0].data(), g, F);
-  solid::green_lagrange(F, e);
-  h.measure(x[0].data(), u, modes, b);
+  double y[24], F[3][3], e[6], u[3][3], modes[4][3], b[4][3];
+  for (int a = 0; a < 8; ++a)
+    for (int i = 0; i < 3; ++i) y[3 * a + i] = small ? x[a][i] - X[a][i] : x[a][i];
+  h.measure(y, u, modes, b);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      F[i][j] = u[0][i] * h.axes[j][0] + u[1][i] * h.axes[j][1] + u[2][i] * h.axes[j][2];
+      if (small) F[i][j] += i == j;
+    }
+  if constexpr (small) {
+    for (int i = 0; i < 3; ++i) e[i] = F[i][i] - 1, e[3 + i] = F[(i + 1) % 3][(i + 2) % 3] + F[(i + 2) % 3][(i + 1) % 3];
+    for (int r = 0; r < 4; ++r)
+      for (int A = 0; A < 3; ++A) b[r][A] = h.axes[0][A] * modes[r][0] + h.axes[1][A] * modes[r][1] + h.axes[2][A] * modes[r][2];
+  } else {
+    solid::green_lagrange(F, e);
+  }
   Mat3 axes;
   for (int i = 0; i < 3; ++i)
     for (int A = 0; A < 3; ++A) axes(i, A) = h.axes[i][A];
+  Mat3 bent[3];  // strain by each coordinate of the cell
+  for (int r = 0; r < 3; ++r) {
+    const int p = (r + 1) % 3, q = (r + 2) % 3;
+    const double measures[3] = {b[q][p] / h.half[p], b[p][q] / h.half[q], b[q][q] / h.half[p] + b[p][p] / h.half[q]};
+    double all[6];
+    h.moduli.across(r, measures, all);
+    bent[r] = axes * tensor_of_strain(all) * axes.transpose();
+  }
   constexpr auto rule = hex_rule<2>();
   out.resize(8);
   for (int k = 0; k < 8; ++k) {
     StressPoint& at = out[k];
-    Mat3 local = Mat3::Zero();  // additional strain in the cell's axes
-    for (int r = 0; r < 3; ++r) {
-      const int p = (r + 1) % 3, q = (r + 2) % 3;
-      const double bent[3] = {b[q][p] / h.half[p], b[p][q] / h.half[q], b[q][q] / h.half[p] + b[p][p] / h.half[q]};
-      double all[6];
-      h.moduli.across(r, bent, all);
-      local += rule.xi[k][r] * tensor_of_strain(all);
-    }
-    const Mat3 extra = axes * local * axes.transpose();
+    const Mat3 extra = rule.xi[k][0] * bent[0] + rule.xi[k][1] * bent[1] + rule.xi[k][2] * bent[2];
     const double total[6] = {e[0] + extra(0, 0),     e[1] + extra(1, 1),     e[2] + extra(2, 2),
                              e[3] + 2 * extra(1, 2), e[4] + 2 * extra(0, 2), e[5] + 2 * extra(0, 1)};
-    at.S = second_piola(law, total);
+    at.S = small ? linear_stress(law, total) : second_piola(law, total);
     at.w = h.volume / 8;
     at.X.setZero();
     at.N = hex8_table.N[k];
@@ -219,7 +240,7 @@ void points_of_cell(const M& law, std::span<const Vec3> X, std::span<const Vec3>
   if constexpr (Remembers<M>)
     remembered_points<Integrated<S, true>>(law, X, x, state, out);
   else if constexpr (std::is_same_v<S, Hex8>)
-    hex8_points(law, X, x, out);
+    hex8_points<false>(law, X, x, out);
   else
     solid_points<S>(law, X, x, which, out);
 }

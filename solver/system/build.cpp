@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "model/scene_sets.hpp"
 #include "system/bodies.hpp"
 #include "system/builder.hpp"
 #include "system/joints.hpp"
@@ -43,6 +44,7 @@ std::unique_ptr<System> Builder::build() {
   out_->mesh = mesh_;
   out_->gravity = scene_.table("scene").vector3("gravity");
   if (mesh_) {
+    add_scene_sets(scene_, *mesh_, comm_);
     n_active_ = put_active_nodes_first();
     out_->X = mesh_->mesh.X;
     out_->node_owned = mesh_->node_owned;
@@ -84,7 +86,7 @@ std::unique_ptr<System> Builder::build() {
   out_->stiffness = comm_.max(out_->stiffness);  // cells are on their ranks
   out_->number();
   if (comm_.sum(static_cast<double>(out_->n_blocks())) == 0)
-    throw Error(scene_.path, "nothing is free to move", "every region and body is held");
+    warn(scene_.path, "nothing is free to move: every region and body is held");
   set_initial_velocities();
   return std::move(out_);
 }

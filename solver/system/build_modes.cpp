@@ -38,7 +38,7 @@ void Builder::reduce_linear_regions() {
       head.push_back(static_cast<double>(m));
       head.insert(head.end(), found.omega2.begin(), found.omega2.end());
       for (const Eigen::MatrixXd* M :
-           std::initializer_list<const Eigen::MatrixXd*>{&found.A, &found.A_damped, &found.viscous, &found.strain.matrix(), &found.sites}) {
+           std::initializer_list<const Eigen::MatrixXd*>{&found.A, &found.A_damped, &found.viscous, &found.strain.matrix(), &found.left_out, &found.sites}) {
         head.push_back(static_cast<double>(M->rows()));
         head.insert(head.end(), M->data(), M->data() + M->size());
       }
@@ -94,7 +94,7 @@ void Builder::reduce_linear_regions() {
     made.stiffness.resize(m);
     for (int j = 0; j < m; ++j) made.stiffness[j] = next();
     Eigen::MatrixXd strain;
-    for (Eigen::MatrixXd* M : {&made.A, &made.A_damped, &made.viscous, &strain, &made.sites}) {
+    for (Eigen::MatrixXd* M : {&made.A, &made.A_damped, &made.viscous, &strain, &made.left_out, &made.sites}) {
       const auto rows = static_cast<Eigen::Index>(next());
       M->resize(rows, M == &made.sites ? m : rows);
       for (Eigen::Index k = 0; k < M->size(); ++k) M->data()[k] = next();

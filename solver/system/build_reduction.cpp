@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
+#include <filesystem>
 #include <map>
 #include <optional>
 
@@ -14,7 +16,6 @@
 namespace hilo {
 namespace {
 
-constexpr size_t most_free = 66;      // nodes of an interface whose every motion is a mode [docs/fidelity.md]
 constexpr size_t told_from = 100000;  // unknowns of a region from which its reduction tells how far it is
 
 }  // namespace
@@ -35,6 +36,7 @@ RegionParcel Builder::parcel_of(int number) {
       out.n_vibrations = std::max(out.n_vibrations, region.n_vibrations);
       out.stiffening = out.stiffening || region.stiffening;
       out.where = region.where;
+      if (!region.shapes.empty()) out.shapes = region.shapes, out.shapes_where = region.shapes_where;
     }
   const auto to_first = [&](const auto& list) {
     std::vector<std::decay_t<decltype(list)>> to(comm_.size);
@@ -80,6 +82,13 @@ RegionParcel Builder::parcel_of(int number) {
       loads.insert(loads.end(), force.data(), force.data() + 3);
     }
   }
+  if (!out.shapes.empty()) {
+    rows.clear();
+    for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
+      if (is_of(e, body))
+        for (const std::int64_t i : mesh.cell(e)) rows.push_back(mesh_->node_global[i]), rows.push_back(mesh.node_id[i]);
+    out.numbers = to_first(rows);
+  }
   out.load_sizes = to_first(load_sizes), out.loads = to_first(loads);
   if (comm_.rank == 0) {
     out.each_cell([&](int, Shape, std::span<const std::int64_t> nodes, const double*) {
@@ -120,10 +129,8 @@ ReductionInput Builder::reduction_input(const RegionParcel& parcel, const Body& 
   in.free = parcel.nodes_of(0);
   std::erase_if(in.free, [&](int i) { return taken[i] != 0; });
   if (in.free.size() > most_free)
-    throw Error(
-        parcel.where,
-        fmt::format("linear region \"{}\" shares {} nodes with nonlinear ones, the most is {}", axes.name, in.free.size(), most_free),
-        "tag one of them otherwise, or join them by a rigid set");
+    warn(axes.name, fmt::format("linear, it shares {} nodes with nonlinear cells: they move together by polynomials of the fifth degree",
+                                in.free.size()));
   in.loads.resize(parcel.load_sizes[0].size());
   for (size_t k = 0; k < parcel.loads.size(); ++k) {
     const double* v = parcel.loads[k].data();
@@ -137,9 +144,33 @@ ReductionInput Builder::reduction_input(const RegionParcel& parcel, const Body& 
   in.n_vibrations = parcel.n_vibrations;
   in.up_to = parcel.up_to > 0 ? parcel.up_to : step > 0 ? 0.1 / step : 0;
   in.stiffening = parcel.stiffening, in.length = axes.size;
+  if (!parcel.shapes.empty()) in.given = given_shapes(parcel);
   if (!is_quiet() && 3 * in.X.size() > told_from)
     in.progress = [name = axes.name](const std::string& what) { fmt::print(stderr, "linear region \"{}\": {}\n", name, what); };
   return in;
+}
+
+/// The modes that a region is given, at its nodes.  On rank 0.
+Eigen::MatrixXd Builder::given_shapes(const RegionParcel& parcel) const {
+  const std::filesystem::path file = parcel.shapes;
+  const std::string path = (scene_.folder == "." ? file : scene_.folder / file).string();
+  const auto rows = read_rows_csv(path, parcel.shapes_where,
+                                  {"a node and three of each shape", "node,x,y,z", [](size_t n) { return n > 1 && n % 3 == 1; }});
+  std::map<std::int64_t, const std::vector<double>*> by_number;
+  for (const auto& row : rows) by_number[std::llround(row[0])] = &row;
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(parcel.local.size()),
+                                              rows.empty() ? 0 : static_cast<Eigen::Index>(rows.front().size() / 3));
+  const double length = to_si("m", scene_.units);
+  for (const auto& list : parcel.numbers)
+    for (size_t k = 0; k < list.size(); k += 2) {
+      const auto it = by_number.find(list[k + 1]);
+      if (it == by_number.end())
+        throw Error(parcel.shapes_where, fmt::format("{} has no line for node {} of the region", path, list[k + 1]),
+                    "a line for every node, by its number in the deck");
+      for (Eigen::Index j = 0; j < out.cols(); ++j)
+        out.block<3, 1>(3 * parcel.local.at(list[k]), j) = length * Vec3(it->second->data() + 1 + 3 * j);
+    }
+  return out;
 }
 
 /// As it is on file, where that fits, or found now.  On rank 0.

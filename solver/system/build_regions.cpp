@@ -46,6 +46,10 @@ void Builder::read_regions() {
   for (size_t r = 0; r < mesh_->mesh.region_name.size(); ++r) {
     Region region;
     region.name = mesh_->mesh.region_name[r];
+    for (const Entry& e : scene_.entries("motion"))
+      if (e.text("on") == region.name && mesh_->fidelity[r] == Fidelity::linear &&
+          (!e.has("components") || e.texts("components").size() == 3))
+        mesh_->fidelity[r] = Fidelity::rigid;  // moved as a whole: nothing of it can bend
     region.fidelity = mesh_->fidelity[r];
     const RegionData& deck = mesh_->mesh.region_data[r];
     region.E = deck.E, region.nu = deck.nu, region.density = deck.density;
@@ -59,6 +63,7 @@ void Builder::read_regions() {
       if (e.given("mass_damping")) region.alpha = e.number("mass_damping");
       if (e.given("modal_damping")) region.modal_damping = e.number("modal_damping");
       if (e.given("modes")) region.n_vibrations = static_cast<int>(e.number("modes"));
+      if (e.given("shapes")) region.shapes = e.text("shapes"), region.shapes_where = e.where("shapes");
       if (e.given("up_to")) region.up_to = e.number("up_to");
       if (e.given("stiffening")) region.stiffening = e.boolean("stiffening");
     }
@@ -140,89 +145,6 @@ void Builder::integrate_regions() {
       r.density *= s, r.mass *= s, r.moment *= s, r.second *= s;
     }
     out_->mass += r.mass;
-  }
-}
-
-std::vector<std::vector<int>> Builder::joined_regions(Fidelity fidelity, std::vector<double>& shared) const {
-  comm_.sum(shared);
-  const int n = static_cast<int>(regions_.size());
-  std::vector<int> root(n);
-  std::iota(root.begin(), root.end(), 0);
-  const auto find_root = [&](int r) {
-    while (root[r] != r) r = root[r] = root[root[r]];
-    return r;
-  };
-  for (int a = 0; a < n; ++a)
-    for (int b = 0; b < n; ++b)
-      if (shared[static_cast<size_t>(a) * n + b] > 0) root[std::max(find_root(a), find_root(b))] = std::min(find_root(a), find_root(b));
-  std::map<int, std::vector<int>> groups;
-  for (int r = 0; r < n; ++r)
-    if (regions_[r].fidelity == fidelity) groups[find_root(r)].push_back(r);
-  std::vector<std::vector<int>> out;
-  for (auto& [r, members] : groups) out.push_back(std::move(members));
-  return out;
-}
-
-int Builder::new_body_of(const std::vector<int>& members) {
-  std::string name;
-  double mass = 0;
-  Vec3 moment = Vec3::Zero();
-  Mat3 second = Mat3::Zero();
-  for (const int r : members) {
-    const Region& region = regions_[r];
-    name += (name.empty() ? "" : "+") + region.name;
-    mass += region.mass, moment += region.moment, second += region.second;
-  }
-  const Vec3 com = moment / mass;
-  const int b = new_body(name, origin_ + com);
-  Body& body = out_->bodies[b];
-  body.mass = mass;
-  body.J = second - mass * com * com.transpose();
-  body.size = std::sqrt(std::max(body.J.trace() / mass, 1e-300));
-  for (const int r : members) regions_[r].body = b;
-  return b;
-}
-
-void Builder::make_rigid_bodies() {
-  if (!mesh_) return;
-  const Mesh& mesh = mesh_->mesh;
-  const int n_regions = static_cast<int>(regions_.size()), n = static_cast<int>(mesh.n_nodes());
-  // rigid region of every local node, also where the rigid cell lives on another rank: rows are kept at rank (row mod ranks)
-  std::vector<std::vector<std::int64_t>> tell(comm_.size), ask(comm_.size);
-  for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
-    if (regions_[mesh.region[e]].fidelity == Fidelity::rigid)
-      for (std::int64_t node : mesh.cell(e)) {
-        const std::int64_t row = mesh_->node_global[node];
-        tell[row % comm_.size].push_back(row), tell[row % comm_.size].push_back(mesh.region[e]);
-      }
-  for (int i = 0; i < n; ++i) ask[mesh_->node_global[i] % comm_.size].push_back(mesh_->node_global[i]);
-  std::map<std::int64_t, int> region_of_row;
-  std::vector<double> shared(static_cast<size_t>(n_regions) * n_regions, 0.0);  // regions that meet at a node
-  for (const auto& list : comm_.exchange(tell))
-    for (size_t k = 0; k + 1 < list.size(); k += 2) {
-      const auto [it, fresh] = region_of_row.try_emplace(list[k], static_cast<int>(list[k + 1]));
-      if (!fresh) shared[static_cast<size_t>(it->second) * n_regions + list[k + 1]] = 1;
-    }
-  auto questions = comm_.exchange(ask);
-  for (auto& list : questions)
-    for (auto& row : list) {
-      const auto it = region_of_row.find(row);
-      row = it == region_of_row.end() ? -1 : it->second;
-    }
-  const auto answers = comm_.exchange(questions);
-
-  for (const auto& members : joined_regions(Fidelity::rigid, shared)) {
-    const Region& first = regions_[members.front()];
-    const auto mass = [&](double sum, int r) { return sum + regions_[r].mass; };
-    if (!(std::accumulate(members.begin(), members.end(), 0.0, mass) > 0))
-      throw Error(first.where, fmt::format("rigid region \"{}\" has no density", first.name), "give its material a density");
-    new_body_of(members);
-  }
-  std::vector<size_t> cursor(comm_.size, 0);
-  for (int i = 0; i < n; ++i) {
-    const int keeper = static_cast<int>(mesh_->node_global[i] % comm_.size);
-    const auto region = answers[keeper][cursor[keeper]++];
-    if (region >= 0) out_->follower[i] = regions_[region].body;
   }
 }
 

@@ -27,6 +27,7 @@ class Builder {
     double E = std::nan(""), nu = std::nan(""), density = std::nan("");
     double mass_wanted = 0, area = 0, beta = 0, alpha = 0;
     double modal_damping = 0, up_to = 0;  // of a linear one: ratio, Hz
+    std::string shapes, shapes_where;     // file of its modes, where they are given
     int n_vibrations = 40;
     bool stiffening = false;
     std::string where;  // of its material, for errors
@@ -47,6 +48,7 @@ class Builder {
   std::vector<std::vector<int>> joined_regions(Fidelity fidelity, std::vector<double>& shared) const;
   /// One body with the mass of these regions, which it becomes the body of.
   int new_body_of(const std::vector<int>& members);
+  void join_by_sets(const std::vector<int>& rigid, std::vector<double>& shared) const;
   void make_rigid_bodies();
   Material material_of(const Region& r) const;
   void make_batches();
@@ -62,6 +64,7 @@ class Builder {
   bool is_of(std::int64_t cell, int linear_body) const;
   RegionParcel parcel_of(int number);
   ReductionInput reduction_input(const RegionParcel& parcel, const Body& axes) const;
+  Eigen::MatrixXd given_shapes(const RegionParcel& parcel) const;
   Reduction reduction_of(const ReductionInput& in, const Body& axes, const std::string& where);
   // build_modes.cpp
   void reduce_linear_regions();

@@ -187,6 +187,8 @@ class Contribution {
   /// Numbers of all outputs in their order, put behind `out`.  Collective.
   virtual void add_end_values(const Config& /*q*/, const Config& /*v*/, std::vector<double>& /*out*/) const {}
   virtual void add_mid_values(const Moment& /*m*/, std::vector<double>& /*out*/) const {}
+  /// What it has to say of the whole run, for run.json: keys and values; warnings besides.  On rank 0.
+  virtual void add_to_report(std::vector<std::pair<std::string, std::string>>& /*report*/) const {}
 
   // clocks
   /// How it connects, holds or moves bodies.  There is no default: what is forgotten here would make clocks wrong without a word.

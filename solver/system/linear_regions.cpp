@@ -221,6 +221,7 @@ std::vector<Output> LinearRegions::outputs() const {
   for (const LinearRegion& r : regions) {
     const Modes& m = points_.modes[r.modes];
     out.push_back({.group = "modes", .name = points_.bodies[m.body].name, .n_end = m.n_modes});
+    out.push_back({.group = "left_out", .name = points_.bodies[m.body].name, .n_mid = 2});
   }
   return out;
 }
@@ -230,6 +231,37 @@ void LinearRegions::add_end_values(const Config& q, const Config&, std::vector<d
     const Modes& m = points_.modes[r.modes];
     for (int j = 0; j < m.n_modes; ++j) out.push_back(amplitude(m, q, j));
   }
+}
+
+void LinearRegions::add_mid_values(const Moment& moment, std::vector<double>& out) const {
+  energy_.resize(regions.size(), 0), left_out_.resize(regions.size(), 0);
+  for (size_t k = 0; k < regions.size(); ++k) {
+    const LinearRegion& r = regions[k];
+    const Modes& m = points_.modes[r.modes];
+    const Eigen::VectorXd eta = amplitudes(m, *moment.s.end);
+    const Eigen::VectorXd a = moment.a ? amplitudes(m, *moment.a) : Eigen::VectorXd(Eigen::VectorXd::Zero(m.n_modes));
+    const double energy = r.strain.used() ? r.strain.energy(eta) : r.stiffness.dot(eta.cwiseAbs2()) / 2;
+    const double left_out = std::max(0.0, a.dot(r.left_out * a) / 2);
+    energy_[k] = std::max(energy_[k], energy), left_out_[k] = std::max(left_out_[k], left_out);
+    out.push_back(energy), out.push_back(left_out);
+  }
+}
+
+/// The error of the reduction, as the share of the largest strain that modes left out would have, in the norm of strain energy.
+void LinearRegions::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
+  constexpr double too_much = 0.05;
+  std::string list;
+  for (size_t k = 0; k < energy_.size(); ++k) {
+    const std::string& name = points_.bodies[points_.modes[regions[k].modes].body].name;
+    const double share = energy_[k] > 0 ? std::sqrt(left_out_[k] / energy_[k]) : 0;
+    list += fmt::format("{}\"{}\": {:.3g}", list.empty() ? "" : ", ", name, share);
+    if (share > too_much)
+      warn(name,
+           fmt::format("its modes lack {:.2g} of its largest strain (norm of energy): more modes, up_to a higher frequency, or tag it "
+                       "nonlinear",
+                       share));
+  }
+  if (!list.empty()) report.emplace_back("modes_left_out", "{" + list + "}");
 }
 
 }  // namespace hilo

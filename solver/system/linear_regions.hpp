@@ -19,6 +19,7 @@ struct LinearRegion {
   Eigen::MatrixXd viscous;    // of the modes, by stiffness and by ratios   (m x m), or empty   [1/s]
   Eigen::MatrixXd A_damped;   // int alpha rho b b^T, mass-proportional damping   (as A), or empty
   QuadraticStrain strain;     // where it stiffens
+  Eigen::MatrixXd left_out;   // of modes (m x m), as Reduction has it [s^2]
   Eigen::MatrixXd sites;      // as Reduction has them
 };
 
@@ -38,14 +39,17 @@ class LinearRegions final : public Contribution {
   void tie(Ties& ties) const override;
   std::string fault(const Config& q) const override;
   void commit(const Config& q, const Config* v) override;
-  void archive(Archive& a) override { a("linear regions", told_, too_fast_); }
+  void archive(Archive& a) override { a("linear regions", told_, too_fast_, energy_, left_out_); }
   std::vector<Output> outputs() const override;
   void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
+  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
+  void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override;
 
  private:
   const Points& points_;
-  std::vector<char> told_;  // by region: that it spins near its first frequency
-  std::string too_fast_;    // why a region cannot go on
+  std::vector<char> told_;                         // by region: that it spins near its first frequency
+  std::string too_fast_;                           // why a region cannot go on
+  mutable std::vector<double> energy_, left_out_;  // the largest so far, by region: of strain, and what modes left out would hold [J]
 };
 
 }  // namespace hilo

@@ -22,8 +22,9 @@ struct Part {
   const char* name;
   Matrix Reduction::*matrix;
 };
-constexpr Part parts[] = {{"A", &Reduction::A},         {"A_damped", &Reduction::A_damped}, {"viscous", &Reduction::viscous},
-                          {"sites", &Reduction::sites}, {"held", &Reduction::held},         {"shapes", &Reduction::shapes}};
+constexpr Part parts[] = {
+    {"A", &Reduction::A},       {"A_damped", &Reduction::A_damped}, {"viscous", &Reduction::viscous},  {"sites", &Reduction::sites},
+    {"held", &Reduction::held}, {"shapes", &Reduction::shapes},     {"left_out", &Reduction::left_out}};
 
 void write(Store& store, const std::string& array, const Matrix& m) {
   const auto& row = *find_array("reduced.h5", "/reduced/any/" + array.substr(array.rfind('/') + 1));
@@ -72,8 +73,11 @@ ReductionKey key_of(const ReductionInput& in) {
     loads += Digest().add(sum).value();
   }
   key.loads = Digest().add(loads).text();
-  constexpr int how = 1;  // one more when regions are reduced in another way: what was found before then serves no longer
-  key.basis = Digest().add(how).add(in.n_vibrations).add(in.up_to).add(in.stiffening).text();
+  constexpr int how = 2;  // one more when regions are reduced in another way: what was found before then serves no longer
+  Digest basis;
+  basis.add(how).add(in.n_vibrations).add(in.up_to).add(in.stiffening);
+  for (const double x : in.given.reshaped()) basis.add(x);
+  key.basis = basis.text();
   for (size_t k = 0; k < in.rigid.size(); ++k)
     key.interfaces.push_back(in.rigid_names[k]), key.digests.push_back(Digest().add(of_nodes(in.rigid[k])).text());
   if (!in.free.empty())
@@ -123,7 +127,7 @@ Reduction ReducedFile::read(const std::string& region, size_t n_nodes) const {
   const Index m = out.omega2.size(), blocks = 4 + 3 * m;
   const auto square = [](const Matrix& M, Index n) { return M.size() == 0 || (M.rows() == n && M.cols() == n); };
   if (out.shapes.cols() != m || (m > 0 && out.shapes.rows() != 3 * static_cast<Index>(n_nodes)) || out.sites.cols() != m ||
-      out.A.size() == 0 || !square(out.A, blocks) || !square(out.A_damped, blocks) || !square(out.viscous, m) ||
+      out.A.size() == 0 || !square(out.A, blocks) || !square(out.A_damped, blocks) || !square(out.viscous, m) || !square(out.left_out, m) ||
       !square(out.strain.matrix(), m + m * (m + 1) / 2))
     throw Error(store_.path(), "damaged: the arrays of " + group + " do not fit each other");
   return out;

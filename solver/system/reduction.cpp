@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -32,6 +34,30 @@ Matrix rigid_motions(const std::vector<Vec3>& X, const Vec3& about) {
   return out;
 }
 
+/// Smooth functions of many points: orthonormal combinations of the polynomials of degree up to five   (n x k, k <= 56).
+Matrix smooth_functions(const std::vector<Vec3>& at) {
+  constexpr int degree = 5;
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : at) box.extend(x);
+  const auto n = static_cast<Index>(at.size());
+  Matrix P(n, 56);
+  for (Index i = 0; i < n; ++i) {
+    Index column = 0;
+    double T[3][degree + 1];  // Chebyshev polynomials over the box
+    for (int k = 0; k < 3; ++k) {
+      const double x = box.sizes()[k] > 0 ? 2 * (at[static_cast<size_t>(i)][k] - box.center()[k]) / box.sizes()[k] : 0;
+      T[k][0] = 1, T[k][1] = x;
+      for (int d = 2; d <= degree; ++d) T[k][d] = 2 * x * T[k][d - 1] - T[k][d - 2];
+    }
+    for (int a = 0; a <= degree; ++a)
+      for (int b = 0; a + b <= degree; ++b)
+        for (int c = 0; a + b + c <= degree; ++c) P(i, column++) = T[0][a] * T[1][b] * T[2][c];
+  }
+  Eigen::ColPivHouseholderQR<Matrix> qr(P);
+  qr.setThreshold(1e-6);
+  return qr.householderQ() * Matrix::Identity(n, qr.rank());
+}
+
 /// Motions of the interfaces, zero elsewhere; where the region stiffens, rigid ones can be stretched too, as a linear map that turns them
 /// does (system/welds.hpp).
 Matrix interface_motions(const ReductionInput& in) {
@@ -56,10 +82,14 @@ Matrix interface_motions(const ReductionInput& in) {
       columns.push_back(std::move(v));
     }
   }
-  for (const int i : in.free)
+  std::vector<Vec3> free;
+  for (const int i : in.free) free.push_back(in.X[i]);
+  const auto n_free = static_cast<Index>(free.size());
+  const Matrix functions = in.free.size() > most_free ? smooth_functions(free) : Matrix::Identity(n_free, n_free);
+  for (Index j = 0; j < functions.cols(); ++j)
     for (int k = 0; k < 3; ++k) {
       Vector v = Vector::Zero(rows);
-      v[3 * i + k] = 1;
+      for (Index i = 0; i < n_free; ++i) v[3 * in.free[i] + k] = functions(i, j);
       columns.push_back(std::move(v));
     }
   Matrix out(rows, static_cast<Index>(columns.size()));
@@ -153,6 +183,39 @@ struct ModeBasis {
   }
 };
 
+/// Constraint, static, load and vibration modes.
+std::vector<Matrix> found_modes(const ReductionInput& in, const RegionCells& cells, const Flexibility& flexibility, Reduction& out) {
+  const auto tell = [&](const std::string& what) {
+    if (in.progress) in.progress(what);
+  };
+  const auto rows = 3 * static_cast<Index>(in.X.size());
+  const Matrix at_interfaces = interface_motions(in);
+  std::vector<Matrix> parts;
+  tell("static modes");
+  parts.push_back(at_interfaces - flexibility.solve(cells.times(RegionCells::stiffness, at_interfaces)));
+  Matrix fields = Matrix::Zero(rows, 12);
+  for (size_t i = 0; i < in.X.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      fields(3 * static_cast<Index>(i) + k, k) = 1;
+      for (int j = 0; j < 3; ++j) fields(3 * static_cast<Index>(i) + k, 3 + 3 * j + k) = in.X[i][j] - in.centre[j];
+    }
+  parts.push_back(flexibility.solve(cells.times_mass(fields)));
+  Matrix loads = Matrix::Zero(rows, static_cast<Index>(in.loads.size()));
+  for (size_t k = 0; k < in.loads.size(); ++k)
+    for (const auto& [node, force] : in.loads[k]) loads.col(static_cast<Index>(k)).segment<3>(3 * node) += force;
+  parts.push_back(flexibility.solve(loads));
+  tell("vibration modes");
+  parts.push_back(vibrations(in, cells, flexibility, out));
+  return parts;
+}
+
+/// What the modes lack of the static answer u to the forces of their own inertia: its strain energy less that of its share in the modes.
+Matrix energy_left_out(const RegionCells& cells, const Flexibility& flexibility, const Reduction& found) {
+  const Matrix F = cells.times_mass(found.shapes), u = flexibility.solve(F);
+  const Matrix share = found.shapes.transpose() * cells.times(RegionCells::stiffness, u), L = u.transpose() * F;
+  return (L + L.transpose()) / 2 - share.transpose() * found.omega2.cwiseInverse().asDiagonal() * share;
+}
+
 }  // namespace
 
 Reduction reduced(const ReductionInput& in) {
@@ -165,31 +228,16 @@ Reduction reduced(const ReductionInput& in) {
     const Matrix G = rigid.transpose() * cells.times_mass(rigid);
     rigid = rigid * Matrix(Matrix(G.llt().matrixL()).inverse().transpose());
   }
-  const Matrix M_rigid = cells.times_mass(rigid), at_interfaces = interface_motions(in);
+  const Matrix M_rigid = cells.times_mass(rigid);
   tell("factor");
   const Flexibility flexibility(in, cells, rigid, M_rigid);
-  std::vector<Matrix> parts;
-  tell("static modes");
-  parts.push_back(at_interfaces - flexibility.solve(cells.times(RegionCells::stiffness, at_interfaces)));
-  Matrix fields = Matrix::Zero(rigid.rows(), 12);
-  for (size_t i = 0; i < in.X.size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      fields(3 * static_cast<Index>(i) + k, k) = 1;
-      for (int j = 0; j < 3; ++j) fields(3 * static_cast<Index>(i) + k, 3 + 3 * j + k) = in.X[i][j] - in.centre[j];
-    }
-  parts.push_back(flexibility.solve(cells.times_mass(fields)));
-  Matrix loads = Matrix::Zero(rigid.rows(), static_cast<Index>(in.loads.size()));
-  for (size_t k = 0; k < in.loads.size(); ++k)
-    for (const auto& [node, force] : in.loads[k]) loads.col(static_cast<Index>(k)).segment<3>(3 * node) += force;
-  parts.push_back(flexibility.solve(loads));
-  tell("vibration modes");
   Reduction out;
-  parts.push_back(vibrations(in, cells, flexibility, out));
+  std::vector<Matrix> parts = in.given.cols() > 0 ? std::vector<Matrix>{in.given} : found_modes(in, cells, flexibility, out);
 
   tell("basis");
   const ModeBasis basis(cells, rigid, M_rigid);
   basis.find(parts, out);
-  if (in.stiffening) {
+  if (in.stiffening && in.given.cols() == 0) {
     tell("modal derivatives");
     Reduction bending;  // what the region does where it is soft: its vibrations between interfaces, and what those do
     const Matrix& found = parts.back();
@@ -204,6 +252,8 @@ Reduction reduced(const ReductionInput& in) {
     out.strain = quadratic_strain(cells, out.shapes, out.omega2, in.length, tell);
   }
   out.sites = at_sites(in.X, in.centre, out.shapes);
+  tell("error");
+  out.left_out = energy_left_out(cells, flexibility, out);
   const auto n = static_cast<Index>(in.X.size()), m = out.omega2.size();
   Matrix B(n, 4 + 3 * m);
   for (Index i = 0; i < n; ++i) {

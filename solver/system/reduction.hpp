@@ -1,8 +1,8 @@
 // The modes of a linear region: what its cells can do in small strain, reduced to what its interfaces, the forces of inertia and the lowest
 // frequencies ask for.
 //
-//   constraint modes   a rigid motion of one interface, or a motion of its nodes, the others held   [craig-bampton-1968]; where the
-//                      region stiffens, stretches of a rigid interface too
+//   constraint modes   a rigid motion of one interface, or a motion of its nodes (where they are many, by smooth functions of place),
+//                      the others held   [craig-bampton-1968]; where the region stiffens, stretches of a rigid interface too
 //   static modes       the answer to the loads rho e_i and rho (X - Xc)_j e_i, interfaces held: gravity, any rigid acceleration and
 //                      centrifugal force are exact with these twelve
 //   load modes         the answer to each load of the scene on its nodes, in every direction that it may take as the region turns
@@ -19,6 +19,9 @@
 
 namespace hilo {
 
+/// Nodes of an interface whose every motion is a mode, at most; more move by polynomials of the fifth degree [docs/fidelity.md].
+inline constexpr size_t most_free = 66;
+
 struct ReductionInput {
   std::vector<Vec3> X;                                   // nodes of the region
   std::vector<SolidBatch> cells;                         // over these nodes
@@ -30,20 +33,22 @@ struct ReductionInput {
   std::vector<std::vector<std::pair<int, Vec3>>> loads;  // on nodes
   int n_vibrations = 0;                                  // vibration modes, at most
   double up_to = 0;                                      // and up to this frequency, but at least four; 0: all of n_vibrations  [Hz]
+  Eigen::MatrixXd given;                                 // modes that take the place of all others (3 n_nodes x k), or empty [m]
   bool stiffening = false;                               // strains of the second degree in the amplitudes
   double length = 1;                                     // of the region [m]
   std::function<void(const std::string&)> progress;
 };
 
 struct Reduction {
-  Eigen::MatrixXd shapes;     // (3 n_nodes x m) [m per unit of amplitude]
-  Eigen::VectorXd omega2;     // of the modes, squared circular frequencies (m) [1/s^2]
-  Eigen::MatrixXd A;          // int rho b b^T, b = (1, X - Xc, shapes by component)   (4 + 3m x 4 + 3m)
-  Eigen::MatrixXd A_damped;   // the same of mass-proportional damping alpha rho, or empty
-  Eigen::MatrixXd viscous;    // of stiffness-proportional damping beta C on the modes (m x m), or empty [1/s]
-  QuadraticStrain strain;     // where it stiffens
-  Eigen::MatrixXd sites;      // displacements of nodes far out, over the distance between them   (3 n_sites x m) [1 per unit of amplitude]
-  Eigen::MatrixXd held;       // vibrations with the interfaces held: frequency [Hz], shares of the mass along x, y, z   (n x 4)
+  Eigen::MatrixXd shapes;    // (3 n_nodes x m) [m per unit of amplitude]
+  Eigen::VectorXd omega2;    // of the modes, squared circular frequencies (m) [1/s^2]
+  Eigen::MatrixXd A;         // int rho b b^T, b = (1, X - Xc, shapes by component)   (4 + 3m x 4 + 3m)
+  Eigen::MatrixXd A_damped;  // the same of mass-proportional damping alpha rho, or empty
+  Eigen::MatrixXd viscous;   // of stiffness-proportional damping beta C on the modes (m x m), or empty [1/s]
+  QuadraticStrain strain;    // where it stiffens
+  Eigen::MatrixXd sites;     // displacements of nodes far out, over the distance between them   (3 n_sites x m) [1 per unit of amplitude]
+  Eigen::MatrixXd held;      // vibrations with the interfaces held: frequency [Hz], shares of the mass along x, y, z   (n x 4)
+  Eigen::MatrixXd left_out;  // L: modes left out would hold the strain energy a.L a/2, where the modes are accelerated by a   (m x m) [s^2]
   double held_frequency = 0;  // of the first vibration mode left out, or 0 where all that were found are in  [Hz]
 };
 

@@ -17,12 +17,14 @@ struct RegionParcel {
   double modal_damping = 0, up_to = 0;
   int n_vibrations = 0;
   bool stiffening = false;
+  std::string shapes, shapes_where;  // file of modes that are given, or ""
   std::vector<Weld*> welds;
   std::vector<std::vector<std::int64_t>> words;                    // cells: region, shape, rows of nodes
   std::vector<std::vector<double>> places;                         // of these nodes
   std::vector<std::vector<std::vector<std::int64_t>>> interfaces;  // rows: of nonlinear neighbours, then of each weld
   std::vector<std::vector<std::int64_t>> load_sizes;               // how many forces of each load, the same loads on all ranks
   std::vector<std::vector<double>> loads;                          // rows and forces
+  std::vector<std::vector<std::int64_t>> numbers;                  // rows and numbers in the deck, where shapes are given
   std::map<std::int64_t, int> local;                               // of rows, in the order of their numbers
 
   /// Numbers of the nodes in the region, rising.

@@ -142,7 +142,7 @@ def entry(section, kind, keys, tried, value):
         if key == tried:
             lines.append(f"{key} = {value}")
         elif key != "kind" and (default == "must" or key in beside or (key in ("a", "b", "on") and section in ("joint", "spring"))):
-            word = good(key, type_)
+            word = "1" if section == "set" and key == "radius" else good(key, type_)
             if key == "name" and section == "body":
                 word = '"arm"'
             if section == "load" and kind in ("traction", "pressure") and key == "on":
@@ -156,7 +156,7 @@ def entry(section, kind, keys, tried, value):
 def scene(section, kind, keys, tried, value):
     """A small scene in which the key matters, and whether it has the mesh."""
     lines = entry(section, kind, keys, tried, value)
-    with_mesh = section in ("material", "region") or kind in ("traction", "pressure")
+    with_mesh = section in ("material", "region", "set") or kind in ("traction", "pressure")
     times, rest = "[time]\nend = 0.05\nstep = 0.01\n", ""
     joint_of = {"stop": {"slide": "prismatic"}, "motor": {"linear": "prismatic"}}.get(section, {}).get(kind, "revolute")
     if section == "scene":
@@ -178,6 +178,8 @@ def scene(section, kind, keys, tried, value):
         rest = BODIES % joint_of + '[[load]]\nkind = "force"\nname = "pull"\non = "arm"\nforce = [0, 0, 1]\nhistory = "tried"\n' + table
     elif section == "material":
         rest = "[material.tried]\n" + "\n".join(lines) + '\n[region."*"]\nmaterial = "tried"\n'
+    elif section == "set":
+        rest = "[set.tried]\n" + "\n".join(lines) + '\n[[probe]]\nname = "there"\non = "tried"\n'
     elif section == "region":
         rest = '[region."*"]\nmaterial = "plain"\n' + "\n".join(lines) + "\n"
     else:
@@ -246,7 +248,7 @@ with tempfile.TemporaryDirectory() as folder:
             continue
         numeric = [k for k in keys if k[1] in ("number", "3 numbers", "numbers", "history")]
         for key, type_, default in numeric:
-            usual = good(key, type_)
+            usual = "1" if section == "set" and key == "radius" else good(key, type_)
             if kind == "bushing" and usual.count(",") == 0 and type_ == "numbers":
                 usual = "[" + ", ".join(3 * [usual.strip("[]")]) + "]"
             tries = [(v, b) for v in ("good",) + VALUES for b in ([usual] if v == "good" else bad(key, type_, v, usual))]

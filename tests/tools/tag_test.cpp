@@ -70,6 +70,21 @@ TEST_F(Tag, UntaggedRegionsAreNonlinearAndThatIsSaid) {
   EXPECT_EQ(place.run("hilo-tag mesh.h5 --rigid hull --quiet").err, "");
 }
 
+// Two cubes apart that a third region may join.
+TEST_F(Tag, AFlexibleRegionInPiecesThatNothingHoldsTogetherIsTold) {
+  write_mesh(place / "apart.h5", block(3, 1, 1, {"pads", "bridge"}, [](int i) { return i % 2; }), {"test"});
+  const std::string told = "hilo-tag: warning: region \"pads\" is nonlinear and in 2 pieces that share no node: each moves by itself";
+  EXPECT_EQ(place.run("hilo-tag apart.h5 --rigid bridge --nonlinear pads").err, "") << "the bridge joins them";
+  Mesh without = block(3, 1, 1, {"pads", "bridge"}, [](int i) { return i % 2; });
+  Mesh pads;
+  pads.X = without.X, pads.node_id = without.node_id, pads.region_name = {"pads"}, pads.region_data.resize(1);
+  for (const int c : {0, 2}) pads.add_cell(Shape::hex8, without.cell(c), 0, c);
+  write_mesh(place / "apart.h5", pads, {"test"});
+  EXPECT_NE(place.run("hilo-tag apart.h5 --nonlinear pads").err.find(told), std::string::npos);
+  EXPECT_EQ(place.run("hilo-tag apart.h5 --nonlinear pads --quiet").err, "");
+  EXPECT_EQ(place.run("hilo-tag apart.h5 --rigid pads").err, "") << "rigid, they are one body";
+}
+
 TEST_F(Tag, SameTagsGiveSameBytes) {
   place.run("hilo-tag mesh.h5 --rigid hull && mv tags.h5 first.h5");
   EXPECT_EQ(place.run("hilo-tag mesh.h5 --rigid hull && cmp tags.h5 first.h5").exit, 0);

@@ -1,0 +1,136 @@
+// Rigid regions to bodies: those that share nodes, or that a set which a joint or spring holds has nodes of, are one.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "system/builder.hpp"
+
+namespace hilo {
+
+std::vector<std::vector<int>> Builder::joined_regions(Fidelity fidelity, std::vector<double>& shared) const {
+  comm_.sum(shared);
+  const int n = static_cast<int>(regions_.size());
+  std::vector<int> root(n);
+  std::iota(root.begin(), root.end(), 0);
+  const auto find_root = [&](int r) {
+    while (root[r] != r) r = root[r] = root[root[r]];
+    return r;
+  };
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < n; ++b)
+      if (shared[static_cast<size_t>(a) * n + b] > 0) root[std::max(find_root(a), find_root(b))] = std::min(find_root(a), find_root(b));
+  std::map<int, std::vector<int>> groups;
+  for (int r = 0; r < n; ++r)
+    if (regions_[r].fidelity == fidelity) groups[find_root(r)].push_back(r);
+  std::vector<std::vector<int>> out;
+  for (auto& [r, members] : groups) out.push_back(std::move(members));
+  return out;
+}
+
+int Builder::new_body_of(const std::vector<int>& members) {
+  std::string name;
+  double mass = 0;
+  Vec3 moment = Vec3::Zero();
+  Mat3 second = Mat3::Zero();
+  for (const int r : members) {
+    const Region& region = regions_[r];
+    name += (name.empty() ? "" : "+") + region.name;
+    mass += region.mass, moment += region.moment, second += region.second;
+  }
+  const Vec3 com = moment / mass;
+  const int b = new_body(name, origin_ + com);
+  Body& body = out_->bodies[b];
+  body.mass = mass;
+  body.J = second - mass * com * com.transpose();
+  body.size = std::sqrt(std::max(body.J.trace() / mass, 1e-300));
+  for (const int r : members) regions_[r].body = b;
+  return b;
+}
+
+/// A set that a joint or spring holds moves as one body, and so do the rigid regions that have nodes of it. `rigid`: region of each local
+/// node, or -1.  Collective.
+void Builder::join_by_sets(const std::vector<int>& rigid, std::vector<double>& shared) const {
+  const size_t n = regions_.size();
+  std::vector<size_t> first(n);  // of the regions that are one body already
+  auto by_nodes = shared;
+  for (const auto& members : joined_regions(Fidelity::rigid, by_nodes))
+    for (const int r : members) first[r] = static_cast<size_t>(members.front());
+  for (const char* section : {"joint", "spring"})
+    for (const Entry& e : scene_.entries(section)) {
+      std::vector<double> in(2 * n, 0.0);  // bodies, by their first region, that the sets of both ends have nodes of
+      for (const bool second : {false, true}) {
+        const std::string& name = e.text(second ? "b" : "a");
+        const auto names = mesh_->mesh.all_names();
+        if (mesh_->mesh.find_region(name) >= 0 || std::find(names.begin(), names.end(), name) == names.end()) continue;
+        for (const std::int64_t i : mesh_->nodes_of(name, e.where(second ? "b" : "a")))
+          if (rigid[i] >= 0) in[second * n + first[rigid[i]]] = 1;
+      }
+      comm_.sum(in);
+      for (const bool second : {false, true}) {
+        std::vector<size_t> its;
+        for (size_t r = 0; r < n; ++r)
+          if (in[second * n + r] > 0) its.push_back(r);
+        for (size_t k = 1; k < its.size(); ++k) {
+          double& joined = shared[its[0] * n + its[k]];
+          const std::string what = fmt::format("\"{}\" has nodes of the rigid regions \"{}\" and \"{}\"", e.text(second ? "b" : "a"),
+                                               regions_[its[0]].name, regions_[its[k]].name);
+          if (in[!second * n + its[0]] > 0 || in[!second * n + its[k]] > 0)
+            throw Error(e.where(second ? "b" : "a"), what + ", and so has the other end: it would be locked",
+                        "a set of one part: [set.NAME] of");
+          if (joined == 0 && comm_.rank == 0) warn(e.where(second ? "b" : "a"), what + ", which move as one body");
+          joined = 1;
+        }
+      }
+    }
+}
+
+void Builder::make_rigid_bodies() {
+  if (!mesh_) return;
+  const Mesh& mesh = mesh_->mesh;
+  const int n_regions = static_cast<int>(regions_.size()), n = static_cast<int>(mesh.n_nodes());
+  // rigid region of every local node, also where the rigid cell lives on another rank: rows are kept at rank (row mod ranks)
+  std::vector<std::vector<std::int64_t>> tell(comm_.size), ask(comm_.size);
+  for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
+    if (regions_[mesh.region[e]].fidelity == Fidelity::rigid)
+      for (std::int64_t node : mesh.cell(e)) {
+        const std::int64_t row = mesh_->node_global[node];
+        tell[row % comm_.size].push_back(row), tell[row % comm_.size].push_back(mesh.region[e]);
+      }
+  for (int i = 0; i < n; ++i) ask[mesh_->node_global[i] % comm_.size].push_back(mesh_->node_global[i]);
+  std::map<std::int64_t, int> region_of_row;
+  std::vector<double> shared(static_cast<size_t>(n_regions) * n_regions, 0.0);  // regions that meet at a node
+  for (const auto& list : comm_.exchange(tell))
+    for (size_t k = 0; k + 1 < list.size(); k += 2) {
+      const auto [it, fresh] = region_of_row.try_emplace(list[k], static_cast<int>(list[k + 1]));
+      if (!fresh) shared[static_cast<size_t>(it->second) * n_regions + list[k + 1]] = 1;
+    }
+  auto questions = comm_.exchange(ask);
+  for (auto& list : questions)
+    for (auto& row : list) {
+      const auto it = region_of_row.find(row);
+      row = it == region_of_row.end() ? -1 : it->second;
+    }
+  const auto answers = comm_.exchange(questions);
+  std::vector<size_t> cursor(comm_.size, 0);
+  std::vector<int> rigid(n);  // region of each local node, or -1
+  for (int i = 0; i < n; ++i) {
+    const int keeper = static_cast<int>(mesh_->node_global[i] % comm_.size);
+    rigid[i] = static_cast<int>(answers[keeper][cursor[keeper]++]);
+  }
+  join_by_sets(rigid, shared);
+
+  for (const auto& members : joined_regions(Fidelity::rigid, shared)) {
+    const Region& first = regions_[members.front()];
+    const auto mass = [&](double sum, int r) { return sum + regions_[r].mass; };
+    if (!(std::accumulate(members.begin(), members.end(), 0.0, mass) > 0))
+      throw Error(first.where, fmt::format("rigid region \"{}\" has no density", first.name), "give its material a density");
+    new_body_of(members);
+  }
+  for (int i = 0; i < n; ++i)
+    if (rigid[i] >= 0) out_->follower[i] = regions_[rigid[i]].body;
+}
+
+}  // namespace hilo
