@@ -389,6 +389,7 @@ fields = ["displacement"]
       const Eigen::MatrixXd in_all = solver.solve(few.shapes), off = all.amplitudes - few.amplitudes * in_all.transpose();
       const double most = (all.amplitudes.cwiseAbs2() * all.omega2).maxCoeff(),
                    truth = std::sqrt((off.cwiseAbs2() * all.omega2).maxCoeff() / most);
+      std::cout << hertz << " Hz, " << modes << " modes: " << truth << " left out, told " << few.told / truth << " of it\n";
       EXPECT_GT(few.told, 0.7 * truth) << hertz << " Hz, " << modes << " modes";
       EXPECT_LT(few.told, 1.2 * truth) << hertz << " Hz, " << modes << " modes";
       EXPECT_NEAR(few.told, std::sqrt(few.energies.col(1).maxCoeff() / few.energies.col(0).maxCoeff()), 5e-3 * few.told);

@@ -61,6 +61,29 @@ TEST_F(ReducedFile, ServesOnRanks) {
             1e-7 * serial.history("modes/left").cwiseAbs().maxCoeff());
 }
 
+// A run.h5 of the modes, to be drawn: each is the region displaced by its shape on file.
+TEST_F(ReducedFile, DrawsItsModes) {
+  const Ran ran = reduce("-o again.h5 --shapes shapes.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_NE(ran.out.find("left, mode 1: "), std::string::npos) << ran.out;
+  const Results shown = c.results("shapes.h5");
+  const Store file = Store::open(c / "again.h5");
+  const auto omega2 = file.read<double>("/reduced/left/omega2"), shapes = file.read<double>("/reduced/left/shapes");
+  const auto m = static_cast<Eigen::Index>(omega2.size());
+  const Eigen::MatrixXd on_file = Eigen::Map<const Eigen::MatrixXd>(shapes.data(), m, static_cast<Eigen::Index>(shapes.size()) / m);
+  const auto steps = shown.steps();
+  ASSERT_GT(static_cast<Eigen::Index>(steps.size()), m);
+  for (Eigen::Index j = 0; j < m; ++j) {
+    const auto u = shown.field("displacement", steps[static_cast<size_t>(j) + 1]);
+    Eigen::VectorXd of_left(on_file.cols());
+    for (Eigen::Index i = 0; i < on_file.cols() / 3; ++i) of_left.segment<3>(3 * i) = u[static_cast<size_t>(i)];
+    const Eigen::VectorXd mode = on_file.row(j).transpose();
+    EXPECT_GT(of_left.norm(), 0) << j;
+    EXPECT_NEAR(of_left.dot(mode) / of_left.norm() / mode.norm(), 1, 1e-9) << "mode " << j + 1;
+  }
+  EXPECT_EQ(c.run("hilo-post render shapes.h5 --field von_mises --steps 1 --size 320x240 -o mode.png").exit, 0);
+}
+
 TEST_F(ReducedFile, IsKeptWhereNothingThatItDependsOnChanged) {
   const std::string before = text_of(c / "reduced.h5");
   EXPECT_NE(reduce("--set time.end=7 --set 'gravity=[0,0,-9]'").out.find("modes, as before\nright"), std::string::npos);
