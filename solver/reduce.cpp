@@ -1,5 +1,6 @@
 // hilo-reduce: the modes of the linear regions of a scene, once for all runs that have them.
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <filesystem>
 
@@ -11,6 +12,7 @@
 
 int main(int argc, char** argv) {
   using namespace hilo;
+  mallopt(M_MMAP_THRESHOLD, 1 << 30), mallopt(M_TRIM_THRESHOLD, 1 << 30);  // matrices of many columns come and go: keep their memory
   return guarded("hilo-reduce", [&] {
     const auto app = make_app(
         {"hilo-reduce", "Find the modes of the linear regions of a scene, for all runs with this mesh, material, interfaces and loads.",

@@ -55,7 +55,13 @@ void StressRecovery::look_at(Cell& cell, size_t batch, size_t number, const Conf
   cell.X.resize(n), cell.x.resize(n);
   for (int i = 0; i < n; ++i) {
     cell.X[i] = cell.x[i] = system_.X[nodes[i]];
-    if (q) cell.x[i] = cell.linear ? Vec3(system_.bodies[body].Xc + cell.R.transpose() * (placed_[nodes[i]] - q->c[body])) : q->x[nodes[i]];
+    if (!q) continue;
+    if (!cell.linear)
+      cell.x[i] = q->x[nodes[i]];
+    else if (system_.follower[nodes[i]] == body)
+      cell.x[i] = placed_[nodes[i]];
+    else  // another body's too
+      cell.x[i] = system_.bodies[body].Xc + cell.R.transpose() * (placed_[nodes[i]] - q->c[body]);
   }
 }
 
@@ -251,7 +257,17 @@ void StressRecovery::add_bars(const Config& q, std::vector<double>& at, std::vec
 
 StressRecovery::Result StressRecovery::recover(const Config& q, const Memory& memory) const {
   const System& s = system_;
-  for (const int node : carried_) placed_[node] = s.at(q, node);
+  for (const int node : carried_) {
+    const int body = s.follower[node];
+    if (body < 0 || !s.bodies[body].linear) {
+      placed_[node] = s.at(q, node);
+      continue;
+    }
+    placed_[node] = s.X[node];
+    const auto shapes = s.shapes_at(node);
+    const int first = s.modes[s.modes_of[body]].first;
+    for (size_t j = 0; j < shapes.size(); ++j) placed_[node] += q.eta[first + j / 3][j % 3] * shapes[j];
+  }
   Result out;
   out.cell.assign(s.mesh->mesh.n_cells(), 0.0), out.cell_plastic = out.cell;
   std::vector<double> at_site(site_.size() * n_values, 0.0);

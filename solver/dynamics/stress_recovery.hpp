@@ -74,7 +74,7 @@ class StressRecovery {
   std::vector<int> body_;                   // whose mean axes these are; -1
   std::vector<char> stiffens_;              // with strains of the second degree
   std::vector<int> carried_;                // nodes of linear regions,
-  mutable std::vector<Vec3> placed_;        // and where they are (n_nodes)
+  mutable std::vector<Vec3> placed_;        // and where they are: of their own region, displaced from X; others in space (n_nodes)
   std::vector<Site> site_;
   std::vector<std::vector<int>> site_of_;  // per batch: site of each node of each cell (n_cells x n)
   std::optional<Sharing> sites_;

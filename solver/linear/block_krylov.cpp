@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "linear/lapack.hpp"
+#include "linear/products.hpp"
 
 namespace hilo {
 namespace {
@@ -19,20 +19,6 @@ struct Ritz {
   Vector nu, residual;
   Matrix y;
 };
-
-/// A^T X of the first k columns of A; by BLAS, as products with Eigen are compiled for the oldest processor.
-Matrix transposed_times(const Matrix& A, Index k, const Matrix& X) {
-  Matrix out(k, X.cols());
-  const auto n = static_cast<int>(A.rows()), m = static_cast<int>(k);
-  lapack::multiply('T', n, m, 1., A.data(), n, X.data(), n, 0., out.data(), m, static_cast<int>(X.cols()));
-  return out;
-}
-
-/// Y -= A C, A as many columns of it as C has rows.
-void subtract(Matrix& Y, const Matrix& A, const Matrix& C) {
-  const auto n = static_cast<int>(A.rows()), k = static_cast<int>(C.rows());
-  lapack::multiply('N', n, k, -1., A.data(), n, C.data(), k, 1., Y.data(), n, static_cast<int>(Y.cols()));
-}
 
 class Krylov {
  public:
@@ -110,7 +96,7 @@ class Krylov {
   void take_basis_from(Matrix& W, Matrix& MW, Index k) const {
     for (int twice = 0; twice < 2 && k > 0; ++twice) {
       const Matrix C = transposed_times(MV_, k, W);
-      subtract(W, V_, C), subtract(MW, MV_, C);
+      add_product(-1, V_, C, W), add_product(-1, MV_, C, MW);
     }
   }
 
@@ -155,6 +141,18 @@ Eigenmodes lowest_modes(const Pencil& pencil, int wanted, double tolerance, bool
   out.converged = sure;
   out.asymmetry = ritz.nu.size() > 0 ? krylov.asymmetry() / ritz.nu.cwiseAbs().maxCoeff() : 0;
   if (ritz.nu.size() == 0) return out;
+  if (!doubt) {  // as good as asked for
+    const Matrix X = krylov.shapes(ritz.y);
+    std::vector<Index> order(static_cast<size_t>(ritz.nu.size()));
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return 1 / ritz.nu[a] < 1 / ritz.nu[b]; });
+    out.omega2.resize(ritz.nu.size()), out.shapes.resize(pencil.n, ritz.nu.size());
+    for (size_t j = 0; j < order.size(); ++j) {
+      out.omega2[static_cast<Index>(j)] = 1 / ritz.nu[order[j]] - pencil.shift;
+      out.shapes.col(static_cast<Index>(j)) = X.col(order[j]);
+    }
+    return out;
+  }
   // A step of inverse iteration with all of them: what rounding has left outside of the subspace, where joints are open, goes.
   const Matrix X = pencil.solve(pencil.mass(krylov.shapes(ritz.y) * ritz.nu.cwiseInverse().asDiagonal())), MX = pencil.mass(X),
                Y = pencil.solve(MX);

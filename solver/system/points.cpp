@@ -60,8 +60,14 @@ Vec3 Points::followed(const Config& q, size_t node) const {
   const int b = follower[node];
   Vec3 x = q.c[b] + q.R[b] * (X[node] - bodies[b].Xc);
   const auto shapes = shapes_at(static_cast<int>(node));
-  for (size_t j = 0; j < shapes.size(); ++j) x += q.Y[3 * modes[modes_of[b]].first + j] * shapes[j];
-  return x;
+  if (shapes.empty()) return x;
+  const Mat3* Y = q.Y.data() + 3 * modes[modes_of[b]].first;
+  double sum[3] = {x[0], x[1], x[2]};
+  for (size_t j = 0; j < shapes.size(); ++j) {
+    const double *y = Y[j].data(), *u = shapes[j].data();
+    for (int i = 0; i < 3; ++i) sum[i] += y[i] * u[0] + y[3 + i] * u[1] + y[6 + i] * u[2];
+  }
+  return Vec3(sum);
 }
 
 void Points::follow(Config& q) const {

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "linear/block_krylov.hpp"
+#include "linear/products.hpp"
 #include "system/face.hpp"
 #include "system/flexibility.hpp"
 #include "system/stiffening.hpp"
@@ -152,34 +153,36 @@ struct ModeBasis {
   const Matrix &rigid, &M_rigid;
   ModeBasis(const RegionCells& c, const Matrix& r, const Matrix& Mr) : cells(c), rigid(r), M_rigid(Mr) {}
 
-  Vector mass_norms(const Matrix& of) const { return of.cwiseProduct(cells.times_mass(of)).colwise().sum().cwiseMax(0).cwiseSqrt(); }
-
   void find(const std::vector<Matrix>& parts, Reduction& out) const {
     Index columns = 0;
     for (const Matrix& p : parts) columns += p.cols();
     Matrix V(rigid.rows(), columns);
     columns = 0;
     for (const Matrix& p : parts) V.middleCols(columns, p.cols()) = p, columns += p.cols();
-    const Vector before = mass_norms(V);
-    V -= rigid * (M_rigid.transpose() * V);
-    const Vector after = mass_norms(V);
+    Matrix MV = cells.times_mass(V);
+    const auto norms = [&] { return Vector(V.cwiseProduct(MV).colwise().sum().cwiseMax(0).cwiseSqrt().transpose()); };
+    const Vector before = norms();
+    const Matrix turns = transposed_times(M_rigid, V);
+    add_product(-1, rigid, turns, V), add_product(-1, M_rigid, turns, MV);
+    const Vector after = norms();
     Index kept = 0;
     for (Index k = 0; k < V.cols(); ++k)
-      if (after[k] > 1e-8 * before[k] && after[k] > 0) V.col(kept++) = (V.col(k) / after[k]).eval();
-    V.conservativeResize(Eigen::NoChange, kept);
-    const Matrix G = V.transpose() * cells.times_mass(V);
+      if (after[k] > 1e-8 * before[k] && after[k] > 0)
+        V.col(kept) = (V.col(k) / after[k]).eval(), MV.col(kept) = (MV.col(k) / after[k]).eval(), ++kept;
+    V.conservativeResize(Eigen::NoChange, kept), MV.conservativeResize(Eigen::NoChange, kept);
+    const Matrix G = transposed_times(V, MV);
     const Eigen::SelfAdjointEigenSolver<Matrix> gram(G);
     Index skip = 0;
     while (skip < kept && gram.eigenvalues()[skip] < 1e-9 * gram.eigenvalues()[kept - 1]) ++skip;
     const Index m = kept - skip;
-    V = (V * gram.eigenvectors().rightCols(m) * gram.eigenvalues().tail(m).cwiseSqrt().cwiseInverse().asDiagonal()).eval();
-    V -= rigid * (M_rigid.transpose() * V);
-    const Matrix Kr = V.transpose() * cells.times(RegionCells::stiffness, V), Mr = V.transpose() * cells.times_mass(V);
+    V = product(V, gram.eigenvectors().rightCols(m) * gram.eigenvalues().tail(m).cwiseSqrt().cwiseInverse().asDiagonal());
+    add_product(-1, rigid, transposed_times(M_rigid, V), V);
+    const Matrix Kr = transposed_times(V, cells.times(RegionCells::stiffness, V)), Mr = transposed_times(V, cells.times_mass(V));
     const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes((Kr + Kr.transpose()) / 2, (Mr + Mr.transpose()) / 2);
     out.omega2 = modes.eigenvalues();
     if (m > 0 && !(out.omega2[0] > 1e-12 * out.omega2[m - 1]))
       throw Error("", "the cells of the region do not hold together", "one piece, with no hinges of single nodes");
-    out.shapes = V * modes.eigenvectors();
+    out.shapes = product(V, modes.eigenvectors());
   }
 };
 
@@ -192,18 +195,21 @@ std::vector<Matrix> found_modes(const ReductionInput& in, const RegionCells& cel
   const Matrix at_interfaces = interface_motions(in);
   std::vector<Matrix> parts;
   tell("static modes");
-  parts.push_back(at_interfaces - flexibility.solve(cells.times(RegionCells::stiffness, at_interfaces)));
   Matrix fields = Matrix::Zero(rows, 12);
   for (size_t i = 0; i < in.X.size(); ++i)
     for (int k = 0; k < 3; ++k) {
       fields(3 * static_cast<Index>(i) + k, k) = 1;
       for (int j = 0; j < 3; ++j) fields(3 * static_cast<Index>(i) + k, 3 + 3 * j + k) = in.X[i][j] - in.centre[j];
     }
-  parts.push_back(flexibility.solve(cells.times_mass(fields)));
-  Matrix loads = Matrix::Zero(rows, static_cast<Index>(in.loads.size()));
-  for (size_t k = 0; k < in.loads.size(); ++k)
-    for (const auto& [node, force] : in.loads[k]) loads.col(static_cast<Index>(k)).segment<3>(3 * node) += force;
-  parts.push_back(flexibility.solve(loads));
+  const Index n_loads = static_cast<Index>(in.loads.size()), n_interface = at_interfaces.cols();
+  Matrix forces = Matrix::Zero(rows, n_interface + 12 + n_loads);  // all of them at once: a pass over the factor is what costs
+  forces.leftCols(n_interface) = -cells.times(RegionCells::stiffness, at_interfaces);
+  forces.middleCols(n_interface, 12) = cells.times_mass(fields);
+  for (Index k = 0; k < n_loads; ++k)
+    for (const auto& [node, force] : in.loads[static_cast<size_t>(k)]) forces.col(n_interface + 12 + k).segment<3>(3 * node) += force;
+  const Matrix answers = flexibility.solve(std::move(forces));
+  parts.emplace_back(at_interfaces + answers.leftCols(n_interface));
+  parts.emplace_back(answers.rightCols(12 + n_loads));
   tell("vibration modes");
   parts.push_back(vibrations(in, cells, flexibility, out));
   return parts;
@@ -212,7 +218,7 @@ std::vector<Matrix> found_modes(const ReductionInput& in, const RegionCells& cel
 /// What the modes lack of the static answer u to the forces of their own inertia: its strain energy less that of its share in the modes.
 Matrix energy_left_out(const RegionCells& cells, const Flexibility& flexibility, const Reduction& found) {
   const Matrix F = cells.times_mass(found.shapes), u = flexibility.solve(F);
-  const Matrix share = found.shapes.transpose() * cells.times(RegionCells::stiffness, u), L = u.transpose() * F;
+  const Matrix share = transposed_times(found.shapes, cells.times(RegionCells::stiffness, u)), L = transposed_times(u, F);
   return (L + L.transpose()) / 2 - share.transpose() * found.omega2.cwiseInverse().asDiagonal() * share;
 }
 
@@ -263,7 +269,7 @@ Reduction reduced(const ReductionInput& in) {
       for (int k = 0; k < 3; ++k) B(i, 4 + 3 * j + k) = out.shapes(3 * i + k, j);
   }
   const auto symmetric = [](const Matrix& M) { return Matrix((M + M.transpose()) / 2); };
-  out.A = symmetric(B.transpose() * (cells.scalar_mass() * B));
+  out.A = symmetric(transposed_times(B, cells.scalar_mass() * B));
   const auto any = [&](double SolidBatch::*factor) {
     return std::any_of(in.cells.begin(), in.cells.end(), [&](const SolidBatch& b) { return b.*factor > 0; });
   };
