@@ -3,7 +3,9 @@
 that a suite can wait for, rigid and flexible, serial and on two ranks.  Prints the median of processor seconds of the steps
 (`processor_seconds` of run.json) and their ratio; the first run of each is not counted.
 
-  beside.py REPO BIN BEFORE [ROUNDS]     folders with hilo-solve after and before, 7 rounds; nothing else should run on the machine"""
+  beside.py REPO BIN BEFORE [ROUNDS]     folders with hilo-solve after and before, 7 rounds; nothing else should run on the machine
+
+REPO: a working tree whose scenes both builds can read, that of the older one, say."""
 import json
 import os
 import statistics
