@@ -141,24 +141,14 @@ Eigenmodes lowest_modes(const Pencil& pencil, int wanted, double tolerance, bool
   out.converged = sure;
   out.asymmetry = ritz.nu.size() > 0 ? krylov.asymmetry() / ritz.nu.cwiseAbs().maxCoeff() : 0;
   if (ritz.nu.size() == 0) return out;
-  if (!doubt) {  // as good as asked for
-    const Matrix X = krylov.shapes(ritz.y);
-    std::vector<Index> order(static_cast<size_t>(ritz.nu.size()));
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return 1 / ritz.nu[a] < 1 / ritz.nu[b]; });
-    out.omega2.resize(ritz.nu.size()), out.shapes.resize(pencil.n, ritz.nu.size());
-    for (size_t j = 0; j < order.size(); ++j) {
-      out.omega2[static_cast<Index>(j)] = 1 / ritz.nu[order[j]] - pencil.shift;
-      out.shapes.col(static_cast<Index>(j)) = X.col(order[j]);
-    }
-    return out;
+  Matrix shapes = krylov.shapes(ritz.y);
+  Vector nu = ritz.nu;
+  if (doubt) {  // a step of inverse iteration with all of them: what rounding has left outside of the subspace, where joints are open, goes
+    const Matrix X = pencil.solve(pencil.mass(shapes * nu.cwiseInverse().asDiagonal())), MX = pencil.mass(X), Y = pencil.solve(MX);
+    const Matrix G = X.transpose() * MX, H = MX.transpose() * Y;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> pairs((H + H.transpose()) / 2, (G + G.transpose()) / 2);
+    nu = pairs.eigenvalues(), shapes = X * pairs.eigenvectors();
   }
-  // A step of inverse iteration with all of them: what rounding has left outside of the subspace, where joints are open, goes.
-  const Matrix X = pencil.solve(pencil.mass(krylov.shapes(ritz.y) * ritz.nu.cwiseInverse().asDiagonal())), MX = pencil.mass(X),
-               Y = pencil.solve(MX);
-  const Matrix G = X.transpose() * MX, H = MX.transpose() * Y;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> pairs((H + H.transpose()) / 2, (G + G.transpose()) / 2);
-  const Vector& nu = pairs.eigenvalues();
   std::vector<Index> order(static_cast<size_t>(nu.size()));
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return 1 / nu[a] < 1 / nu[b]; });
@@ -166,7 +156,7 @@ Eigenmodes lowest_modes(const Pencil& pencil, int wanted, double tolerance, bool
   for (size_t j = 0; j < order.size(); ++j) {
     const auto at = static_cast<Index>(j);
     out.omega2[at] = 1 / nu[order[j]] - pencil.shift;
-    out.shapes.col(at) = X * pairs.eigenvectors().col(order[j]);
+    out.shapes.col(at) = shapes.col(order[j]);
   }
   return out;
 }

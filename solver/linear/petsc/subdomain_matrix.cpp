@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "linear/petsc/session.hpp"
 #include "linear/petsc/split.hpp"
@@ -29,8 +30,9 @@ std::vector<char> find_common(const Cliques& cliques, const BlockMap& map, const
     }
     if (alone || !flexible) continue;
     std::sort(key.begin(), key.end());
-    std::uint64_t hash = 1469598103934665603u;  // FNV-1a over the numbers
-    for (const auto g : key) hash = (hash ^ static_cast<std::uint64_t>(g)) * 1099511628211u;
+    Digest digest;
+    for (const auto g : key) digest.add(g);
+    const std::uint64_t hash = digest.value();
     const int r = static_cast<int>((hash >> 33) % static_cast<unsigned>(size()));
     ask[r].push_back(static_cast<PetscInt>(hash & 0x7fffffff)), ask[r].push_back(static_cast<PetscInt>((hash >> 31) & 0x7fffffff));
     asked[r].push_back(e);
