@@ -50,41 +50,62 @@ int Builder::new_body_of(const std::vector<int>& members) {
   return b;
 }
 
-/// A set that a joint or spring holds moves as one body, and so do the rigid regions that have nodes of it. `rigid`: region of each local
-/// node, or -1.  Collective.
+/// A set that a joint or spring holds moves as one body, and so do the rigid regions that have nodes of it; not both ends of one, which it
+/// would lock. `rigid`: region of each local node, or -1.  Collective.
 void Builder::join_by_sets(const std::vector<int>& rigid, std::vector<double>& shared) const {
-  const size_t n = regions_.size();
-  std::vector<size_t> first(n);  // of the regions that are one body already
-  auto by_nodes = shared;
-  for (const auto& members : joined_regions(Fidelity::rigid, by_nodes))
-    for (const int r : members) first[r] = static_cast<size_t>(members.front());
+  const auto n = static_cast<int>(regions_.size());
+  const auto first_of_body = [&] {  // by region
+    std::vector<int> first(n, -1);
+    auto joined = shared;
+    for (const auto& members : joined_regions(Fidelity::rigid, joined))
+      for (const int r : members) first[r] = members.front();
+    return first;
+  };
+  const std::vector<int> apart = first_of_body();
+  const auto names = mesh_->mesh.all_names();
+  struct End {
+    const Entry* entry;
+    const char* key;
+    std::vector<int> bodies;  // that it has nodes of, by their first regions
+  };
+  std::vector<End> ends;
   for (const char* section : {"joint", "spring"})
-    for (const Entry& e : scene_.entries(section)) {
-      std::vector<double> in(2 * n, 0.0);  // bodies, by their first region, that the sets of both ends have nodes of
-      for (const bool second : {false, true}) {
-        const std::string& name = e.text(second ? "b" : "a");
-        const auto names = mesh_->mesh.all_names();
-        if (mesh_->mesh.find_region(name) >= 0 || std::find(names.begin(), names.end(), name) == names.end()) continue;
-        for (const std::int64_t i : mesh_->nodes_of(name, e.where(second ? "b" : "a")))
-          if (rigid[i] >= 0) in[second * n + first[rigid[i]]] = 1;
-      }
-      comm_.sum(in);
-      for (const bool second : {false, true}) {
-        std::vector<size_t> its;
-        for (size_t r = 0; r < n; ++r)
-          if (in[second * n + r] > 0) its.push_back(r);
-        for (size_t k = 1; k < its.size(); ++k) {
-          double& joined = shared[its[0] * n + its[k]];
-          const std::string what = fmt::format("\"{}\" has nodes of the rigid regions \"{}\" and \"{}\"", e.text(second ? "b" : "a"),
-                                               regions_[its[0]].name, regions_[its[k]].name);
-          if (in[!second * n + its[0]] > 0 || in[!second * n + its[k]] > 0)
-            throw Error(e.where(second ? "b" : "a"), what + ", and so has the other end: it would be locked",
-                        "a set of one part: [set.NAME] of");
-          if (joined == 0 && comm_.rank == 0) warn(e.where(second ? "b" : "a"), what + ", which move as one body");
-          joined = 1;
+    for (const Entry& e : scene_.entries(section))
+      for (const char* key : {"a", "b"}) {
+        const std::string& name = e.text(key);
+        std::vector<double> in(n, 0.0);
+        if (const int region = mesh_->mesh.find_region(name); region >= 0) {
+          if (apart[region] >= 0) in[apart[region]] = 1;
+        } else if (std::find(names.begin(), names.end(), name) != names.end()) {
+          for (const std::int64_t i : mesh_->nodes_of(name, e.where(key)))
+            if (rigid[i] >= 0) in[apart[rigid[i]]] = 1;
         }
+        comm_.sum(in);
+        End& end = ends.emplace_back(End{&e, key, {}});
+        for (int r = 0; r < n; ++r)
+          if (in[r] > 0) end.bodies.push_back(r);
       }
+  std::vector<std::string> told;
+  for (const End& end : ends)
+    for (size_t k = 1; k < end.bodies.size(); ++k) {
+      const int one = end.bodies[0], other = end.bodies[k];
+      shared[static_cast<size_t>(one) * n + other] = 1;
+      const std::string what = fmt::format("\"{}\" has nodes of the rigid regions \"{}\" and \"{}\", which move as one body",
+                                           end.entry->text(end.key), regions_[one].name, regions_[other].name);
+      if (comm_.rank == 0 && std::find(told.begin(), told.end(), what) == told.end())
+        told.push_back(what), warn(end.entry->where(end.key), what);
     }
+  const std::vector<int> joined = first_of_body();
+  for (size_t k = 0; k < ends.size(); k += 2)
+    for (const int a : ends[k].bodies)
+      for (const int b : ends[k + 1].bodies)
+        if (joined[a] == joined[b] && (ends[k].bodies.size() > 1 || ends[k + 1].bodies.size() > 1 || a != b))
+          throw Error(
+              ends[k + 1].entry->where("b"),
+              fmt::format("{}: the rigid regions \"{}\" and \"{}\" at its ends move as one body, by a set that has nodes of both: it "
+                          "would be locked",
+                          ends[k].entry->label(), regions_[a].name, regions_[b].name),
+              "sets of one part: [set.NAME] of");
 }
 
 void Builder::make_rigid_bodies() {

@@ -74,6 +74,7 @@ TEST(PlacedSets, GiveTheRunOfSetsOfTheMeshBitByBitAndOnRanks) {
       for (const std::string key : {"b", "on"})
         if (const auto at = text.find(key + " = \"" + name + "\""); at != std::string::npos)
           text.replace(at, key.size() + 5 + std::string(name).size(), key + " = \"" + of_mesh + "\"");
+    for (const char* end : {"b = \"root\"", "b = \"tip\"", "on = \"tip\"", "on = \"top\""}) ASSERT_EQ(text.find(end), text.npos) << end;
     std::ofstream(c / "mesh.toml") << text;
     ASSERT_EQ(c.run("hilo-solve --quiet mesh.toml tags.h5 -o mesh_sets.h5").exit, 0);
     const Results named = c.results("mesh_sets.h5");
@@ -151,13 +152,21 @@ TEST(PlacedSets, ThatAJointHoldsMakeRigidRegionsOneBodyAndSaySo) {
         << ran.err;
     EXPECT_EQ(c.reported("bodies"), 1);
   }
-  // both ends of a joint on what would become one body
-  Case c("placed_sets");
-  const Ran ran =
-      row_run(c, "[[joint]]\nkind = \"revolute\"\nname = \"hinge\"\na = \"crown\"\nb = \"ends\"\nat = [0, 0.1, 0]\naxis = [0, 1, 0]\n",
-              {Fidelity::rigid, Fidelity::nonlinear, Fidelity::rigid});
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("and so has the other end: it would be locked"), std::string::npos) << ran.err;
+}
+
+// Both ends of a joint on what would become one body: by a set, by a region's name, and by what another joint holds.
+TEST(PlacedSets, ThatWouldLockAJointAreRefused) {
+  const auto joint = [](const std::string& name, const std::string& a, const std::string& b) {
+    return "[[joint]]\nkind = \"revolute\"\nname = \"" + name + "\"\na = \"" + a + "\"\nb = \"" + b +
+           "\"\nat = [0, 0.1, 0]\naxis = [0, 1, 0]\n";
+  };
+  for (const std::string& joints : {joint("pin", "crown", "ends"), joint("pin", "left", "ends"), hinge + joint("pin", "left", "right")}) {
+    Case c("placed_sets");
+    const Ran ran = row_run(c, joints, {Fidelity::rigid, Fidelity::nonlinear, Fidelity::rigid});
+    EXPECT_EQ(ran.exit, 2) << joints;
+    EXPECT_NE(ran.err.find("joint \"pin\": the rigid regions"), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("it would be locked"), std::string::npos) << ran.err;
+  }
 }
 
 // A linear region that moves as a whole is a rigid one.
