@@ -62,7 +62,8 @@ class Scene {
   static Scene load(const std::string& path, std::span<const std::string> overrides = {});
   /// The same for a text that is already there (from another rank, or of a results file); `path` says where it came from.
   static Scene parse(const std::string& text, const std::string& path, std::span<const std::string> overrides = {});
-  /// Entries of a section in file order: material, region, set, body, point_mass, joint, spring, load, motion, initial, sensor, probe, history.
+  /// Entries of a section in file order: material, region, set, body, point_mass, joint, spring, load, motion, initial, sensor, probe,
+  /// history.
   std::span<const Entry> entries(std::string_view section) const;
   /// The one table of a section (time, solver, output, scene); defaults where it is absent.
   const Entry& table(std::string_view section) const;

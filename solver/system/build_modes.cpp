@@ -37,8 +37,8 @@ void Builder::reduce_linear_regions() {
       const auto m = found.omega2.size();
       head.push_back(static_cast<double>(m));
       head.insert(head.end(), found.omega2.begin(), found.omega2.end());
-      for (const Eigen::MatrixXd* M :
-           std::initializer_list<const Eigen::MatrixXd*>{&found.A, &found.A_damped, &found.viscous, &found.strain.matrix(), &found.left_out, &found.sites}) {
+      for (const Eigen::MatrixXd* M : std::initializer_list<const Eigen::MatrixXd*>{
+               &found.A, &found.A_damped, &found.viscous, &found.strain.matrix(), &found.left_out, &found.sites}) {
         head.push_back(static_cast<double>(M->rows()));
         head.insert(head.end(), M->data(), M->data() + M->size());
       }
