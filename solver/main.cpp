@@ -4,9 +4,13 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <limits>
+#include <optional>
 
 #include "base/args.hpp"
-#include "dynamics/run.hpp"
+#include "base/interrupt.hpp"
+#include "dynamics/checkpoint.hpp"
+#include "dynamics/profile.hpp"
 #include "model/inputs.hpp"
 #include "model/store.hpp"
 
@@ -14,9 +18,9 @@ namespace hilo {
 namespace {
 
 struct Options {
-  std::string scene, mesh, modes, output = "run.h5";
+  std::string scene, mesh, modes, output = "run.h5", restart, checkpoint, time_limit;
   std::vector<std::string> overrides;
-  bool dry_run = false, explain = false, profile = false;
+  bool dry_run = false, explain = false, profile = false, accept = false;
 };
 
 void print_plan(const System& s, bool talk) {
@@ -26,20 +30,47 @@ void print_plan(const System& s, bool talk) {
   if (talk) fmt::print(stderr, "{}{} unknowns\n", plan, 3 * s.map.n_global);
 }
 
+CheckpointPolicy policy_of(const Options& o) {
+  CheckpointPolicy p;
+  if (!o.time_limit.empty()) p.time_limit = parse_duration(o.time_limit, "--time-limit");
+  if (o.checkpoint.empty()) return p;
+  p.seconds = std::numeric_limits<double>::infinity();
+  if (o.checkpoint == "none") return p;
+  p.at_end = true;
+  char* end = nullptr;
+  if (const long steps = std::strtol(o.checkpoint.c_str(), &end, 10); std::string_view(end) == "steps" && steps > 0)
+    p.steps = steps;
+  else
+    p.seconds = parse_duration(o.checkpoint, "--checkpoint");
+  return p;
+}
+
 int solve(int argc, char** argv, Comm& comm) {
+  const double began = wall_clock();
   Options o;
   auto app = make_app({"hilo-solve", "Solve a scene of rigid and flexible parts in time.",
                        "hilo-solve scene.toml tags.h5 -o run.h5\n  mpirun -n 2 hilo-solve scene.toml parts-2.h5\n  hilo-solve "
                        "scene.toml tags.h5 --set 'time.analysis=\"modes\"' -o modes.h5\n  hilo-solve --set time.step=1e-4 --explain "
                        "scene.toml"});
-  app->add_option("scene", o.scene, "scene file (TOML), - for standard input")->required();
+  app->add_option("scene", o.scene, "scene file (TOML), - for standard input");
   app->add_option("mesh", o.mesh, "mesh.h5, tags.h5 or parts-N.h5; overrides the scene's `mesh`");
   app->add_option("--modes", o.modes, "reduced.h5 of hilo-reduce: modes of linear regions, which else are found anew");
-  app->add_option("-o,--output", o.output, "results file; .xdmf and .json are written beside it")->capture_default_str();
+  const auto* output =
+      app->add_option("-o,--output", o.output, "results file; .xdmf and .json are written beside it")->capture_default_str();
   app->add_option("--set", o.overrides, "override a key of the scene, such as joint.trunnion.at=[0,0,1] (repeatable)")
       ->allow_extra_args(false)
       ->expected(1)
       ->take_all();
+  app->add_option("--restart", o.restart,
+                  "go on with these results from their last checkpoint; scene, mesh and overrides are those of that run unless given");
+  app->add_flag("--accept", o.accept, "go on from there also with a scene that differs");
+  app->add_option(
+      "--checkpoint", o.checkpoint,
+      "time between checkpoints (10m), their number of steps (500steps), or none; one stays at the end (default: 15m, until the "
+      "run is complete)");
+  app->add_option(
+      "--time-limit", o.time_limit,
+      "stop in time with a checkpoint, such as 3h50m; so do SIGTERM, SIGINT, SIGHUP, SIGUSR1 and a file STOP beside the results");
   app->add_flag("--dry-run", o.dry_run, "read and check everything, then stop");
   app->add_flag("--explain", o.explain, "print every value in force, defaults included, then stop");
   app->add_flag("--profile", o.profile, "print seconds, counts and messages by phase at the end");
@@ -47,7 +78,26 @@ int solve(int argc, char** argv, Comm& comm) {
   const bool talk = !is_quiet() && comm.rank == 0;
   if (comm.rank != 0) quiet_warnings(true);
 
-  const Scene scene = Scene::load(o.scene, o.overrides);
+  std::optional<Checkpoint> from;
+  if (!o.restart.empty()) {
+    if (output->count() > 0 && o.output != o.restart)
+      throw Error("", "--restart goes on in the results it names, so there is no -o",
+                  fmt::format("copy {} and its checkpoints first", o.restart), Exit::usage);
+    from = read_checkpoint(o.restart, comm);
+    o.output = o.restart;
+    if (o.scene.empty()) {
+      o.scene = from->command.scene;
+      if (o.modes.empty()) o.modes = from->command.modes;
+      o.overrides.insert(o.overrides.begin(), from->command.overrides.begin(), from->command.overrides.end());
+    }
+    if (o.mesh.empty()) o.mesh = from->command.mesh;
+  } else if (o.scene.empty()) {
+    throw Error("", "scene is required", "see hilo-solve --help", Exit::usage);
+  }
+  CheckpointPolicy policy = policy_of(o);
+  policy.began = began;
+
+  const Scene scene = from && o.scene == "-" ? Scene::parse(from->scene, "-", o.overrides) : Scene::load(o.scene, o.overrides);
   for (const auto& w : scene.warnings) warn("", w);
   if (o.explain) {
     if (comm.rank == 0) fmt::print("{}", scene.explain());
@@ -63,9 +113,11 @@ int solve(int argc, char** argv, Comm& comm) {
     options.provenance = mesh->provenance;
     if (talk && !mesh->tagged) fmt::print(stderr, "{} is not tagged: all regions are nonlinear\n", options.mesh);
   }
+  if (from) options.provenance = from->command.provenance;
   options.provenance.push_back(command_line(argc, argv));
   const auto system = build_system(scene, mesh.get(), comm, {.from = o.modes, .to = "", .provenance = {}});
   print_plan(*system, talk);
+  if (from) require_same(*from, scene, options.mesh, o.accept), options.from = std::move(from->kept);
   if (o.dry_run) return 0;
   if (!o.output.ends_with(".h5")) throw Error(o.output, "the results file must end in .h5", "-o run.h5", Exit::usage);
   const auto folder = std::filesystem::path(o.output).parent_path();
@@ -73,6 +125,10 @@ int solve(int argc, char** argv, Comm& comm) {
     throw Error(o.output, "no such folder", fmt::format("mkdir -p {}", folder.string()), Exit::resources);
 
   for (const char* ending : {".h5", ".xdmf", ".json"}) check_output(o.output.substr(0, o.output.size() - 3) + ending);
+  Checkpoints checkpoints(comm, scene, {o.scene, options.mesh, o.modes, o.overrides, options.provenance}, o.output, policy,
+                          from ? from->path : "");
+  options.between_steps = [&](const StepsSoFar& so_far, const auto& keep) { return checkpoints.between_steps(so_far, keep); };
+  note_signals();
   const RunReport report = [&] {
     try {
       return run(scene, *system, options);
@@ -81,9 +137,13 @@ int solve(int argc, char** argv, Comm& comm) {
     }
   }();
   if (o.profile && comm.rank == 0) fmt::print("{}", report.profile);
+  if (!report.complete && report.stopped)
+    throw Error(scene.path, fmt::format("{} at t = {:.6g} s", report.reason, report.t),
+                fmt::format("go on with: hilo-solve --restart {}", o.output), Exit::stopped);
   if (!report.complete)
     throw Error(scene.path, fmt::format("stopped at t = {:.6g} s: {}", report.t, report.reason),
                 fmt::format("the last good state is in {}", o.output), Exit::not_converged);
+  checkpoints.finish();
   if (talk) fmt::print("{}", report.table);
   if (talk && report.table.empty())
     fmt::print(stderr, "{}: {} steps, {} Newton iterations{}\n", o.output, report.steps, report.iterations,

@@ -16,7 +16,7 @@ void check(const std::vector<std::string>& paths) {
       if (is_scene(path))
         hilo::summary_of_scene(path), fmt::print("{}: ok\n", path);
       else
-        fmt::print("{}: ok, {} arrays\n", path, hilo::check_file(path));
+        fmt::print("{}: {}\n", path, hilo::check_file(path));
     } catch (const hilo::Error& e) {
       wrong.push_back(e);
     }
@@ -35,7 +35,8 @@ int main(int argc, char** argv) {
     bool json = false, only_check = false, schema = false;
     app->add_option("files", paths, "mesh.h5, tags.h5, parts-N.h5, reduced.h5, run.h5, scene.toml or - (a scene on stdin)");
     app->add_flag("--check", only_check,
-                  "read everything; exit 2 when a file is truncated, incomplete or does not fit the files it links to");
+                  "read everything; exit 2 when a file is truncated, damaged or does not fit the files it links to; of a run on its way "
+                  "how far it is");
     app->add_flag("--json", json, "as JSON");
     app->add_flag("--schema", schema, "print docs/format.md: every array, every key of a scene, exit codes");
     if (!parse(*app, argc, argv)) return;

@@ -10,7 +10,7 @@
 namespace hilo {
 
 /// Exit codes of every command (documented in docs/format.md and in each --help).
-enum class Exit : int { done = 0, usage = 1, input = 2, not_converged = 3, resources = 4, fault = 5 };
+enum class Exit : int { done = 0, usage = 1, input = 2, not_converged = 3, resources = 4, fault = 5, stopped = 6 };
 
 /// Wrong input, a missing resource or a run that cannot go on.  Printed as "tool: where: what (hint)".
 struct Error : std::runtime_error {

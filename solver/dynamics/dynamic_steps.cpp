@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "dynamics/contradiction.hpp"
 #include "dynamics/predictor.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 class DynamicSteps final : public Steps {
  public:
-  DynamicSteps(RunParts& run, std::function<void()> pause)
+  DynamicSteps(RunParts& run, Pause pause)
       : Steps(run, std::move(pause)),
         time_(run.scene.table("time")),
         end_(time_.number("end")),
@@ -25,21 +26,24 @@ class DynamicSteps final : public Steps {
   }
 
   void archive(Archive& a) override {
-    a("dynamic steps", at_);
+    std::vector<Event> events = run_.events;
+    a("dynamic steps", at_, events);
     if (control_) control_->archive(a);
+    const auto same = [](const Event& x, const Event& y) { return x.t == y.t && x.jump == y.jump; };
+    if (a.restores() && !std::ranges::equal(events, run_.events, same)) find_place();
   }
 
   void take() override {
     if (run_.report.steps == 0 && !start()) return;
     for (const std::vector<Event>& events = run_.events; at_.event < events.size(); ++at_.event, at_.begun = false) {
       const size_t i = at_.event;
-      const double from = i == 0 ? 0 : events[i - 1].t, to = events[i].t;
+      const double to = events[i].t;
       if (!at_.begun) {
         if (i == 0 || events[i - 1].jump || run_.integrator->needs_acceleration()) restart();
         if (i == 0) run_.audit->start(run_.state), run_.recorder->first(run_.state, run_.audit->ledger());
-        at_.begun = true, at_.step = at_.done = 0;
+        at_.begun = true, at_.step = at_.done = 0, at_.from = i == 0 ? 0 : events[i - 1].t;
       }
-      if (!(control_ ? controlled_steps(to) : equal_steps(from, to))) {
+      if (!(control_ ? controlled_steps(to) : equal_steps(at_.from, to))) {
         progress_.done();
         return run_.stop(failure_);
       }
@@ -84,6 +88,15 @@ class DynamicSteps final : public Steps {
     return true;
   }
 
+  /// The run goes on with other events, such as another end: which comes next.
+  void find_place() {
+    const double t = run_.state.t, same = run_.system.same_time;
+    at_.event = 0;
+    while (at_.event < run_.events.size() && run_.events[at_.event].t <= t + same) ++at_.event;
+    at_.begun = at_.event == 0 || run_.events[at_.event - 1].t < t - same;
+    at_.from = t, at_.step = at_.done = 0;
+  }
+
   /// At a singular position mechanisms branch: the accelerations there tell which way, and velocities follow the joints a little ahead.
   void leave_singular_position(const std::vector<Active>& rows) {
     consistent_acceleration(run_.system, *run_.solver, run_.state, 0.05 * step_);
@@ -121,7 +134,7 @@ class DynamicSteps final : public Steps {
         accept(b);
         if (++at_.good >= 8 && at_.level > 0 && at_.done % (2 * piece) == 0) --at_.level, at_.good = 0;
         if (at_.done == whole) ++at_.step, at_.done = 0;
-        pause_();
+        if (is_stopped()) return false;
       } else if (at_.level < run_.max_cuts) {
         ++at_.level, cut();
       } else {
@@ -148,9 +161,17 @@ class DynamicSteps final : public Steps {
       } else {
         failures = 0;
         accept(pieces == 1 ? to : t + h);
-        pause_();
+        if (is_stopped()) return false;
       }
     }
+    return true;
+  }
+
+  /// Between two steps: whether something from outside ends the run here.
+  bool is_stopped() {
+    const std::string why = pause_();
+    if (why.empty() || run_.state.t >= run_.events.back().t) return false;
+    failure_ = why;
     return true;
   }
 
@@ -219,7 +240,8 @@ class DynamicSteps final : public Steps {
   std::optional<StepControl> control_;  // where the tolerance chooses the steps
   struct Place {
     size_t event = 0;                   // the one that steps go to
-    bool begun = false;                 // from the one before
+    bool begun = false;                 // from the one before,
+    double from = 0;                    // at this time [s]
     long step = 0, done = 0;            // equal steps since then; parts of this one, of 2^max_cuts
     int level = 0, good = 0;            // how often steps are halved; steps since the last cut
     Predictor guess = Predictor::hold;  // of the next steps first,
@@ -233,8 +255,6 @@ class DynamicSteps final : public Steps {
 
 }  // namespace
 
-std::unique_ptr<Steps> dynamic_steps(RunParts& run, std::function<void()> pause) {
-  return std::make_unique<DynamicSteps>(run, std::move(pause));
-}
+std::unique_ptr<Steps> dynamic_steps(RunParts& run, Pause pause) { return std::make_unique<DynamicSteps>(run, std::move(pause)); }
 
 }  // namespace hilo

@@ -28,6 +28,10 @@ class Extrapolation {
   static constexpr int n_rules = 9, most = 6;  // rules, and the steps they take
   struct Step {
     std::vector<double> missed, lambda;
+    void archive(Archive& a) {
+      a.increments(missed);
+      a("step", lambda);
+    }
   };
   std::deque<Step> past_;  // the last one first, of equal steps
   double h_ = 0;

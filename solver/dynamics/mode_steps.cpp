@@ -39,7 +39,7 @@ std::string as_table(const std::vector<FoundMode>& modes, double mass) {
 
 class ModeSteps final : public Steps {
  public:
-  ModeSteps(RunParts& run, std::function<void()> pause) : Steps(run, std::move(pause)), time_(run.scene.table("time")) {
+  ModeSteps(RunParts& run, Pause pause) : Steps(run, std::move(pause)), time_(run.scene.table("time")) {
     if (run.system.comm->size > 1) throw Error(time_.where("analysis"), "modes are found on one rank", "run it without mpirun");
   }
   void archive(Archive&) override {}  // one step, so nothing is kept within it
@@ -126,6 +126,6 @@ class ModeSteps final : public Steps {
 
 }  // namespace
 
-std::unique_ptr<Steps> mode_steps(RunParts& run, std::function<void()> pause) { return std::make_unique<ModeSteps>(run, std::move(pause)); }
+std::unique_ptr<Steps> mode_steps(RunParts& run, Pause pause) { return std::make_unique<ModeSteps>(run, std::move(pause)); }
 
 }  // namespace hilo

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "dynamics/choose_solver.hpp"
 #include "dynamics/contradiction.hpp"
@@ -42,13 +43,17 @@ class Run {
 
   RunReport go() {
     read();
-    const auto pause = [this] {
-      if (options_.between_steps) options_.between_steps(run_.report.steps, [this] { return keep(); });
+    const Pause pause = [this] {
+      if (!options_.between_steps) return std::string();
+      const std::string why = options_.between_steps({run_.report.steps, run_.state.t}, [this] { return keep(); });
+      run_.report.stopped = !why.empty();
+      return why;
     };
+    shares_.emplace(run_.system.shares());
     steps_ = run_.analysis == Analysis::statics ? static_steps(run_, pause)
              : run_.analysis == Analysis::modes ? mode_steps(run_, pause)
                                                 : dynamic_steps(run_, pause);
-    Archive from(options_.from);
+    Archive from(options_.from, &*shares_);
     if (options_.from.empty())
       prepare();
     else
@@ -67,8 +72,8 @@ class Run {
       run_.report.profile = profile.text();
       const double peak = comm.max(peak_memory());
       comm.together([&] { write_run_json(run_, profile, peak); });
-    } catch (...) {  // nothing half-written stays
-      run_.recorder->discard();
+    } catch (...) {
+      run_.recorder->give_up();
       throw;
     }
     return run_.report;
@@ -157,21 +162,22 @@ class Run {
 
   /// The walk through all that the run remembers, in two parts: what the recorder is made from, and the rest.
   void archive_start(Archive& a) {
-    std::string scene = run_.scene.text;
-    int ranks = run_.system.comm->size;
-    a("run", scene, ranks);
-    if (scene != run_.scene.text || ranks != run_.system.comm->size)
-      throw Error(run_.scene.path, "what was kept belongs to another scene or number of ranks",
-                  "go on with the scene of that run, on as many ranks");
     a("start", run_.redundancy, run_.state, run_.report, run_.figures, run_.impulses);
     run_.system.archive(a);
+    double sum = 0;  // NaN: of a node that no rank had
+    for (const Config* c : {&run_.state.q, &run_.state.v})
+      for (const Vec3& x : c->x) sum += x.sum();
+    if (a.restores() && !std::isfinite(run_.system.comm->max(std::abs(sum))))
+      throw Error(run_.scene.path, "what was kept lacks nodes that these ranks need", "go on with as many ranks as before",
+                  Exit::resources);
   }
   void archive_rest(Archive& a) {
     a("audit", *run_.audit);
     run_.integrator->archive(a, run_.system);
     steps_->archive(a);
-    a("phases", phases());
     run_.recorder->archive(a);
+    if (!a.restores()) a.agrees(*run_.system.comm);
+    a("phases", phases());  // of rank 0 for all
   }
 
   Kept keep() {
@@ -183,11 +189,11 @@ class Run {
     earlier.wall += wall_clock() - began_, earlier.processor += processor_clock() - processor_began_;
     const Traffic& sent = traffic();
     earlier.sent = {here.sent.messages + sent.messages, here.sent.collectives + sent.collectives, here.sent.bytes + sent.bytes};
-    Archive a;
+    Archive a(&*shares_);
     archive_start(a);
     archive_rest(a);
     earlier = here;
-    return a.bytes();
+    return a.kept();
   }
 
   void go_on(Archive& a) {
@@ -200,6 +206,7 @@ class Run {
   double began_, processor_began_;
   RunParts run_;
   std::unique_ptr<Steps> steps_;
+  std::optional<Shares> shares_;
 };
 
 }  // namespace

@@ -49,11 +49,14 @@ struct RunParts {
   void stop(const std::string& reason);
 };
 
+/// What happens between two steps: why the run is to end there, or "".
+using Pause = std::function<std::string()>;
+
 /// From the start of a run to its end, or to where it stops.
 class Steps {
  public:
   /// `pause` is called between two of them.
-  Steps(RunParts& run, std::function<void()> pause) : run_(run), pause_(std::move(pause)) {}
+  Steps(RunParts& run, Pause pause) : run_(run), pause_(std::move(pause)) {}
   virtual ~Steps() = default;
   /// From the start, or on from where archive() has restored them to.
   virtual void take() = 0;
@@ -62,15 +65,15 @@ class Steps {
 
  protected:
   RunParts& run_;
-  std::function<void()> pause_;
+  Pause pause_;
 };
 
 /// Static equilibrium under the loads at the start; false, and the run stopped, where there is none.
 bool settle_down(RunParts& run);
 
-std::unique_ptr<Steps> mode_steps(RunParts& run, std::function<void()> pause);
-std::unique_ptr<Steps> static_steps(RunParts& run, std::function<void()> pause);
-std::unique_ptr<Steps> dynamic_steps(RunParts& run, std::function<void()> pause);
+std::unique_ptr<Steps> mode_steps(RunParts& run, Pause pause);
+std::unique_ptr<Steps> static_steps(RunParts& run, Pause pause);
+std::unique_ptr<Steps> dynamic_steps(RunParts& run, Pause pause);
 
 class Profile;
 /// run.json, beside the results.

@@ -11,7 +11,7 @@ namespace {
 
 class StaticSteps final : public Steps {
  public:
-  StaticSteps(RunParts& run, std::function<void()> pause) : Steps(run, std::move(pause)) {
+  StaticSteps(RunParts& run, Pause pause) : Steps(run, std::move(pause)) {
     const Entry& time = run_.scene.table("time");
     n_ = static_cast<int>(time.number("steps"));
     end_ = time.has("end") ? time.number("end") : 1;
@@ -57,7 +57,10 @@ class StaticSteps final : public Steps {
       ++run_.report.steps;
       at_.done = next, at_.step = std::min(1.0 / n_, 2 * at_.step);
       progress.show(at_.done, run_.report.steps, r.iterations);
-      pause_();
+      if (const std::string stop = pause_(); !stop.empty() && at_.done < 1 - 1e-12) {
+        progress.done();
+        return run_.stop(stop);
+      }
     }
     progress.done();
     run_.report.t = state.t;
@@ -104,8 +107,6 @@ class StaticSteps final : public Steps {
 
 }  // namespace
 
-std::unique_ptr<Steps> static_steps(RunParts& run, std::function<void()> pause) {
-  return std::make_unique<StaticSteps>(run, std::move(pause));
-}
+std::unique_ptr<Steps> static_steps(RunParts& run, Pause pause) { return std::make_unique<StaticSteps>(run, std::move(pause)); }
 
 }  // namespace hilo

@@ -75,6 +75,8 @@ class Scene {
   std::string units;
   /// Every value in force as lines "section.name.key = value [unit]  # default|given", for --explain.
   std::string explain() const;
+  /// The same as "section.name.key = value", values in full, of tables and files that they name their digests.
+  std::vector<std::string> values() const;
   std::vector<std::string> warnings;  // implausible values, one line each, with place
 
  private:

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 
+#include "base/digest.hpp"
 #include "model/scene.hpp"
+#include "model/store.hpp"
 
 namespace hilo {
 namespace {
@@ -55,26 +58,54 @@ std::string Entry::all_values() const {
   return out;
 }
 
-std::string Scene::explain() const {
-  std::vector<std::array<std::string, 3>> rows;
+namespace {
+
+/// visit(path of the key, its parameter, its value) of every value in force.
+template <class Visit>
+void each_value(const Scene& scene, const Visit& visit) {
   std::vector<std::string_view> done;
   for (const auto& schema : scene_schema()) {
     if (std::find(done.begin(), done.end(), schema.section) != done.end()) continue;
     done.push_back(schema.section);
     size_t number = 0;
-    for (const auto& e : entries(schema.section)) {
+    for (const auto& e : scene.entries(schema.section)) {
       ++number;
       const auto kind = std::find_if(scene_schema().begin(), scene_schema().end(),
                                      [&](const KindSchema& k) { return k.section == e.section && k.kind == e.kind; });
       for (const auto& p : kind->params) {
         const auto v = e.values.find(p.key);
-        if (v == e.values.end()) continue;
-        const std::string unit = p.unit.empty() || p.unit == "1" ? "" : fmt::format(" [{}]", p.unit);
-        rows.push_back({fmt::format("{}{}", path_of(e, number), p.key), text_of(v->second, p.type) + unit,
-                        v->second.given ? "given, " + v->second.place.text() : "default"});
+        if (v != e.values.end()) visit(fmt::format("{}{}", path_of(e, number), p.key), p, v->second);
       }
     }
   }
+}
+
+}  // namespace
+
+std::vector<std::string> Scene::values() const {
+  std::vector<std::string> out;
+  each_value(*this, [&](const std::string& key, const Param& p, const Value& v) {
+    std::string text = text_of(v, p.type);
+    if (v.history) {
+      Digest digest;
+      for (const double t : v.history->t) digest.add(t);
+      for (const double value : v.history->value) digest.add(value);
+      text += fmt::format(" {}", digest.text());
+    }
+    for (const std::string& word : v.texts)
+      if (const auto file = std::filesystem::path(folder) / word; word.ends_with(".csv") && std::filesystem::is_regular_file(file))
+        text += fmt::format(" {}", digest(file.string()));
+    out.push_back(fmt::format("{} = {}", key, text));
+  });
+  return out;
+}
+
+std::string Scene::explain() const {
+  std::vector<std::array<std::string, 3>> rows;
+  each_value(*this, [&](const std::string& key, const Param& p, const Value& v) {
+    const std::string unit = p.unit.empty() || p.unit == "1" ? "" : fmt::format(" [{}]", p.unit);
+    rows.push_back({key, text_of(v, p.type) + unit, v.given ? "given, " + v.place.text() : "default"});
+  });
   size_t key = 0, value = 0;
   for (const auto& r : rows) key = std::max(key, r[0].size()), value = std::max(value, std::min<size_t>(r[1].size(), 40));
   std::string out;

@@ -12,7 +12,7 @@ namespace {
 
 std::vector<ArraySchema>& arrays() {
   static std::vector<ArraySchema> table = {
-      {"mesh.h5", "/", "", "", "", "attributes: format = \"hilo mesh|tags|parts|reduced|run\", version, complete (0|1)"},
+      {"mesh.h5", "/", "", "", "", "attributes: format = \"hilo mesh|tags|parts|reduced|run|checkpoint\", version, complete (0|1)"},
       {"mesh.h5", "/provenance", "string", "(n)", "", "command lines that led to this file, oldest first"},
       {"mesh.h5", "/mesh/nodes/X", "f8", "(n_nodes, 3)", "m", "reference positions"},
       {"mesh.h5", "/mesh/nodes/id", "i8", "(n_nodes)", "", "number of the node in the deck"},
@@ -55,6 +55,18 @@ std::vector<ArraySchema>& arrays() {
        "displacements of nodes far out over the distance between them"},
       {"reduced.h5", "/reduced/<name>/interfaces", "string", "(n)", "", "what the region is held or moved by"},
       {"reduced.h5", "/reduced/<name>/interface_digests", "string", "(n)", "", "digests of their nodes"},
+      {"checkpoint.h5", "/", "", "", "", "attributes: format = \"hilo checkpoint\", version, t [s] and steps of the run when it was kept"},
+      {"checkpoint.h5", "/kept/alike", "u1", "(n)", "", "what the run remembers and all ranks hold alike, as bits"},
+      {"checkpoint.h5", "/kept/spread/<k>", "f8", "(n)", "", "values of nodes or cells by their number: the k-th list that ranks have parts of"},
+      {"checkpoint.h5", "/kept/digest", "string", "()", "", "of the two"},
+      {"checkpoint.h5", "/scene", "string", "()", "", "the scene as run, overrides applied"},
+      {"checkpoint.h5", "/values", "string", "(n)", "", "every value in force, key = value, of tables and files their digests"},
+      {"checkpoint.h5", "/digests", "string", "(n)", "", "of mesh.h5 and tags.h5"},
+      {"checkpoint.h5", "/command/scene", "string", "()", "", "paths of the scene"},
+      {"checkpoint.h5", "/command/mesh", "string", "()", "", "of the mesh, tags or parts"},
+      {"checkpoint.h5", "/command/modes", "string", "()", "", "and of the reduced file"},
+      {"checkpoint.h5", "/command/overrides", "string", "(n)", "", "what --set was given"},
+      {"checkpoint.h5", "/provenance", "string", "(n)", "", "command lines that led to the run"},
       {"run.h5", "/provenance", "string", "(n)", "", "command lines that led to this file, oldest first"},
       {"run.h5", "/mesh", "link", "", "", "external link to mesh.h5:/mesh (absent for a scene of bodies alone)"},
       {"run.h5", "/tags/fidelity", "string", "(n_regions)", "", "the fidelity each region was run at"},

@@ -1,6 +1,7 @@
 // HDF5 through its C interface.  The library is the Open MPI build, used here with the POSIX driver alone: MPI is never initialised.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -41,23 +42,20 @@ Cause last_cause() {
 }
 
 Store::Impl::~Impl() {
-  if (!file.ok()) return;
-  if (writable && !temporary) {
-    try {
-      drain();
-    } catch (const Error&) {
-    }
-  }
-  close();
+  if (growing) growing->give_up();
+  if (file.ok()) close();
   if (temporary) ::unlink(on_disk.c_str());
+  if (lock >= 0) ::close(lock);
 }
 
 bool Store::Impl::close() {
   rows.clear();
+  growing = nullptr;
   return H5Fclose(file.release()) >= 0;
 }
 
 void Store::Impl::abandon() {
+  if (growing) return growing->give_up();
   void* handle = nullptr;
   if (H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0 || !handle) return;
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
@@ -67,7 +65,8 @@ void Store::Impl::abandon() {
 }
 
 void Store::Impl::fail_write(const std::string& what) {
-  const Cause cause = last_cause();
+  Cause cause = last_cause();
+  if (growing && growing->error()) cause.error = growing->error();
   if (!cause.error) throw Error(path, fmt::format("{}: {}", what, cause.text), "", Exit::fault);
   abandon();
   if (temporary) ::unlink(on_disk.c_str());
@@ -109,6 +108,7 @@ Store Store::open(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);  // opened by hand first: the library hides why it could not
   if (descriptor < 0) throw Error(path, fmt::format("cannot read: {}", std::strerror(errno)), "", Exit::resources);
   ::close(descriptor);
+  JournalledFile::recover(path);
   if (status.st_size == 0) throw Error(path, "empty file");
   if (H5Fis_hdf5(path.c_str()) <= 0) throw Error(path, "not an HDF5 file");
   auto impl = std::make_unique<Impl>();
@@ -154,13 +154,14 @@ void Store::Impl::follow_links(Store& store, std::vector<std::string>& chain) {
 
 namespace {
 
-Id create_file(const std::string& path, const std::string& on_disk) {
+Id create_file(const std::string& path, const std::string& on_disk, bool grows) {
   start_library();
   const int descriptor = ::open(on_disk.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor < 0) throw Error(path, fmt::format("cannot write: {}", std::strerror(errno)), "", Exit::resources);
   ::close(descriptor);
   const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_alignment(access, 4 * slab_rows, 4 * slab_rows);  // a page
+  if (grows) JournalledFile::choose(access);
   Id file(H5Fcreate(on_disk.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
   if (!file.ok()) {
     const Cause cause = last_cause();
@@ -186,29 +187,101 @@ Store Store::create(const std::string& path) {
   check_output(path);
   impl->path = path;
   impl->on_disk = fmt::format("{}.tmp-{}", path, ::getpid());
-  impl->file = create_file(path, impl->on_disk);
+  impl->file = create_file(path, impl->on_disk, false);
   impl->writable = impl->temporary = true;
   return Store(std::move(impl));
 }
 
+std::string unpublished(const std::string& path) { return path + ".new"; }
+
 Store Store::create_growing(const std::string& path) {
   auto impl = std::make_unique<Impl>();
   check_output(path);
-  if (::unlink(path.c_str()) != 0 && errno != ENOENT)  // whoever still reads the old file keeps it
-    throw Error(path, fmt::format("cannot write: {}", std::strerror(errno)), "", Exit::resources);
-  impl->path = impl->on_disk = path;
-  impl->file = create_file(path, path);
+  impl->path = path, impl->on_disk = unpublished(path);
+  impl->lock_output();
+  impl->temporary = true;
+  impl->file = create_file(path, impl->on_disk, true);
+  impl->growing = &JournalledFile::behind(impl->file);
   impl->writable = true;
   return Store(std::move(impl));
 }
 
-void Store::flush() {
+Store Store::open_growing(const std::string& path) {
+  Store::open(path);  // says what is wrong with it
+  auto impl = std::make_unique<Impl>();
+  impl->path = impl->on_disk = path;
+  impl->lock_output();
+  const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_alignment(access, 4 * slab_rows, 4 * slab_rows);
+  JournalledFile::choose(access);
+  impl->file = Id(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), H5Fclose);
+  if (!impl->file.ok()) impl->fail_write("cannot open");
+  impl->growing = &JournalledFile::behind(impl->file);
+  impl->writable = impl->grows_on = true;
+  release_input(path);
+  return Store(std::move(impl));
+}
+
+namespace {
+
+/// A descriptor of `path`, locked; -1 where there is no such file; another process has it: Error.
+int locked(const std::string& path, const std::string& name, int how) {
+  const int file = ::open(path.c_str(), how | O_CLOEXEC, 0666);
+  if (file < 0 && errno == ENOENT) return -1;
+  if (file < 0) throw Error(name, fmt::format("cannot write: {}", std::strerror(errno)), "", Exit::resources);
+  if (::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    ::close(file);
+    throw Error(name, "another run is writing it", "wait until it ends, or give another -o", Exit::resources);
+  }
+  return file;  // also where the file system knows no locks
+}
+
+bool is_file(int descriptor, const std::string& path) {
+  struct stat a {
+  }, b{};
+  return ::fstat(descriptor, &a) == 0 && ::stat(path.c_str(), &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+}  // namespace
+
+void Store::Impl::lock_output() {
+  if (on_disk == path) {
+    lock = locked(path, path, O_RDONLY);
+    return;
+  }
+  do {  // whoever had the new file when we opened it may have given it its name since
+    if (lock >= 0) ::close(lock);
+    lock = locked(on_disk, path, O_RDWR | O_CREAT);
+  } while (!is_file(lock, on_disk));
+  try {
+    if (const int former = locked(path, path, O_RDONLY); former >= 0) ::close(former);
+  } catch (...) {
+    ::unlink(on_disk.c_str());
+    throw;
+  }
+}
+
+void Store::Impl::commit(bool safe, const std::function<void()>& before) {
+  if (!growing->commit(safe)) fail_write("cannot commit");
+  if (!temporary) return;
+  if (before) before();
+  if (!growing->rename(path)) fail_write("cannot rename");
+  temporary = false, on_disk = path;
+}
+
+void Store::flush(bool safe, const std::function<void()>& before) {
   impl_->drain();
   impl_->need(H5Fflush(impl_->file, H5F_SCOPE_GLOBAL) >= 0, "cannot flush");
+  if (impl_->growing) impl_->commit(safe, before);
 }
 
 void Store::publish() {
   flush();
+  if (impl_->growing) {
+    impl_->growing->give_up();  // nothing is left to be written
+    impl_->close();
+    return;
+  }
   if (!impl_->close()) throw Error(impl_->path, "cannot close the file", "", Exit::resources);
   const bool rename = std::exchange(impl_->temporary, false);
   try {
@@ -223,9 +296,9 @@ void Store::publish() {
 
 void Store::discard() {
   if (!impl_->file.ok()) return;
+  impl_->abandon();
   impl_->close();
-  impl_->temporary = false;
-  ::unlink(impl_->on_disk.c_str());
+  if (std::exchange(impl_->temporary, false)) ::unlink(impl_->on_disk.c_str());
 }
 
 }  // namespace hilo

@@ -1,6 +1,7 @@
 // HDF5 files: arrays with units, strings, histories that grow, links, and publication as a whole or not at all.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,8 +18,11 @@ class Store {
   static Store open(const std::string& path);
   /// A new file, written as `path`.tmp until publish() renames it; left unpublished it is removed on destruction.
   static Store create(const std::string& path);
-  /// A new file under its final name that readers may open while it grows (results); flush() after every step.
+  /// A new file that readers may open while it grows (results).  Until the first flush() it is `path`.new, then it replaces what was at
+  /// `path`; whatever happens after a flush, it stays as that left it.  Locked: Error (exit 4) where another process writes to `path`.
   static Store create_growing(const std::string& path);
+  /// Such a file, to grow on: arrays that are started are those it has.
+  static Store open_growing(const std::string& path);
   Store(Store&&) noexcept;
   Store& operator=(Store&&) noexcept;
   ~Store();
@@ -54,6 +58,10 @@ class Store {
                   const std::string& meaning = "", const std::string& time = "");
   template <class T>
   void append(const std::string& array, std::span<const T> row);
+  /// A growing array keeps its first rows alone.
+  void keep_rows(const std::string& array, std::int64_t count);
+  /// Without this array or group.
+  void remove(const std::string& object);
 
   void set(const std::string& object, const std::string& attribute, const std::string& value);
   void set(const std::string& object, const std::string& attribute, double value);
@@ -66,9 +74,10 @@ class Store {
   /// File and object a link points to, or nothing when `name` is no external link.
   std::optional<std::pair<std::string, std::string>> linked(const std::string& name) const;
 
-  void flush();    // to disk: what was written survives a killed run
-  void publish();  // flush, fsync, rename to the final name
-  void discard();  // close and remove
+  /// What was written survives a killed run, and where `safe` a power cut; a growing file has its name, which it takes after `before`.
+  void flush(bool safe = true, const std::function<void()>& before = {});
+  void publish();  // flush, fsync, rename to the final name, close
+  void discard();  // close and remove; of a growing file that has its name: close, as the last flush left it
   const std::string& path() const;
 
   struct Impl;
@@ -78,6 +87,8 @@ class Store {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Name of a growing file until its first flush.
+std::string unpublished(const std::string& path);
 /// Bytes at their place in a file that another process holds open as a Store; Error (exit 4) where the disk is full.
 void write_at(const std::string& path, std::int64_t place, std::span<const std::byte> bytes);
 /// Rows whose bytes are whole pages of the file, whatever the type: pieces of a reserved array that begin at multiples share no page.

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "model/journalled_file.hpp"
 #include "model/store.hpp"
 
 namespace hilo {
@@ -110,6 +111,9 @@ struct Store::Impl {
   std::string on_disk;  // name while it is open
   Id file;
   bool writable = false, temporary = false;
+  JournalledFile* growing = nullptr;  // where the file is written through one
+  bool grows_on = false;              // it was there before: what is written again replaces what was
+  int lock = -1;                      // descriptor that tells others of it
   std::unordered_map<std::string, Rows> rows;
 
   ~Impl();
@@ -118,6 +122,11 @@ struct Store::Impl {
 
   /// After a failed write: what the library still wants to write goes nowhere.
   void abandon();
+
+  /// Lock the output `path` for this process, by the file that is to become it.
+  void lock_output();
+  /// Commit, and take the name the user gave after `before`.
+  void commit(bool safe, const std::function<void()>& before);
 
   static void follow_links(Store& store, std::vector<std::string>& chain);
 

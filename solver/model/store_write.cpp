@@ -13,7 +13,10 @@
 namespace hilo {
 
 Id Store::Impl::make_array(const std::string& array, hid_t type, hid_t space, hid_t creation) {
-  if (exists(array)) throw Error(path, fmt::format("array {} written twice", array), "", Exit::fault);
+  if (exists(array)) {
+    if (!grows_on) throw Error(path, fmt::format("array {} written twice", array), "", Exit::fault);
+    need(H5Ldelete(file, array.c_str(), H5P_DEFAULT) >= 0, "cannot replace " + array);
+  }
   const Id link(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(link, 1);
   H5Pset_char_encoding(link, H5T_CSET_UTF8);
@@ -127,6 +130,16 @@ void Store::start_rows(const std::string& array, std::vector<std::int64_t> row_s
     now.push_back(static_cast<hsize_t>(n)), most.push_back(static_cast<hsize_t>(n));
     chunk.push_back(std::max<hsize_t>(1, static_cast<hsize_t>(n)));
   }
+  if (impl_->grows_on && impl_->exists(array)) {
+    const auto had = shape(array);
+    Id set = impl_->open_array(array);
+    const Id type(H5Dget_type(set), H5Tclose);
+    if (had.size() != now.size() || !std::equal(had.begin() + 1, had.end(), row_shape.begin()) || H5Tequal(type, file_type<T>()) <= 0)
+      throw Error(impl_->path, fmt::format("{} has other rows than the run that goes on", array));
+    now[0] = static_cast<hsize_t>(had[0]);
+    impl_->rows.emplace(array, Rows{std::move(set), memory_type<T>(), row_bytes, std::move(now), {}});
+    return;
+  }
   const Id space(H5Screate_simple(static_cast<int>(now.size()), now.data(), most.data()), H5Sclose);
   const Id creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data());
@@ -148,6 +161,19 @@ void Store::append(const std::string& array, std::span<const T> row) {
   if (r.pending.size() >= row_buffer) impl_->drain(r, array);
 }
 
+void Store::keep_rows(const std::string& array, std::int64_t count) {
+  auto& r = impl_->rows.at(array);
+  if (static_cast<hsize_t>(count) > r.shape[0])
+    throw Error(impl_->path, fmt::format("{} has {} rows, wanted {} to go on from", array, r.shape[0], count));
+  r.shape[0] = static_cast<hsize_t>(count);
+  impl_->need(H5Dset_extent(r.set, r.shape.data()) >= 0, "cannot shorten " + array);
+}
+
+void Store::remove(const std::string& object) {
+  if (H5Lexists(impl_->file, object.c_str(), H5P_DEFAULT) > 0)
+    impl_->need(H5Ldelete(impl_->file, object.c_str(), H5P_DEFAULT) >= 0, "cannot remove " + object);
+}
+
 void Store::set(const std::string& object, const std::string& attribute, const std::string& value) {
   const Id o = impl_->owner(object);
   impl_->text_attribute(o, attribute, value);
@@ -165,6 +191,7 @@ void Store::link(const std::string& name, const std::string& target, const std::
   const std::string relative = relative_to(impl_->path, target);
   const Id creation(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(creation, 1);
+  if (impl_->grows_on) remove(name);
   impl_->need(H5Lcreate_external(relative.c_str(), object.c_str(), impl_->file, name.c_str(), creation, H5P_DEFAULT) >= 0,
               "cannot link " + name);
 }

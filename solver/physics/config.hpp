@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "base/math.hpp"
 
 namespace hilo {
@@ -23,6 +24,10 @@ struct Config {
   template <class Visit>
   static void each_array(Visit&& visit) {
     visit(&Config::x), visit(&Config::c), visit(&Config::R), visit(&Config::eta), visit(&Config::Y);
+  }
+  void archive(Archive& a) {
+    a.nodes(x);
+    a("configuration", c, R, eta, Y);
   }
   /// As many of everything as another has, what is new zero.
   void resize_like(const Config& other) {

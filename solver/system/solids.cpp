@@ -206,15 +206,17 @@ void Solids::settle(bool accepted) {
   for (SolidBatch& b : batches) (accepted ? b.h0 : b.h1) = accepted ? b.h1 : b.h0;
 }
 
-std::vector<std::vector<double>> Solids::memory() const {
-  std::vector<std::vector<double>> out;
-  for (const SolidBatch& b : batches) out.push_back(b.h1);
+CellMemory Solids::memory() const {
+  CellMemory out;
+  for (const SolidBatch& b : batches) out.batch.push_back(b.h1);
   return out;
 }
 
 void Solids::archive(Archive& a) {
-  a("solids", strain_told_);
-  for (SolidBatch& b : batches) a("cells", b.h0), b.h1 = b.h0;
+  CellMemory accepted;
+  for (const SolidBatch& b : batches) accepted.batch.push_back(b.h0);
+  a("solids", strain_told_, accepted);
+  for (size_t k = 0; k < batches.size(); ++k) batches[k].h1 = batches[k].h0 = accepted.batch[k];
 }
 
 /// Dissipation by flow, and work of the rate terms and of the stress dissipation of the cells over a step, this rank's share.

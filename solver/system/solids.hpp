@@ -23,6 +23,12 @@ struct SolidBatch {
   double dissipated = 0;       // by flow in that step [J]
 };
 
+/// What cells remember, by batch.
+struct CellMemory {
+  std::vector<std::vector<double>> batch;  // (n_cells x kernel.n_state)
+  void archive(Archive& a) { a.cells(batch); }
+};
+
 class Solids final : public Contribution {
  public:
   explicit Solids(const Points& points) : points_(points) {}
@@ -42,7 +48,7 @@ class Solids final : public Contribution {
   void advance(const Stage& stage) override;
   void settle(bool accepted) override;
   /// The state at the end of the step tried last, by batch.
-  std::vector<std::vector<double>> memory() const;
+  CellMemory memory() const;
   std::string fault(const Config& q) const override;
   void commit(const Config& q, const Config* v) override;
   void archive(Archive& a) override;

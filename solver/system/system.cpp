@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "system/mode_forces.hpp"
+#include "system/solids.hpp"
 
 namespace hilo {
 
@@ -224,6 +225,27 @@ void System::commit(const Config& q, const Config* v) {
 
 void System::archive(Archive& a) {
   for (const auto& part : parts_) part->archive(a);
+}
+
+Shares System::shares() const {
+  std::vector<std::int64_t> nodes, blocks, cells;
+  Shares out{{*comm, {}}, {*comm, {}}, {*comm, {}}, {}, {}};
+  if (mesh) {
+    nodes.assign(mesh->node_global.begin(), mesh->node_global.begin() + static_cast<std::ptrdiff_t>(start.x.size()));
+    for (size_t i = 0; i < node_block.size(); ++i) {
+      if (node_block[i] < 0) continue;
+      blocks.resize(std::max<size_t>(blocks.size(), node_block[i] + 1));
+      blocks[node_block[i]] = mesh->node_global[i];
+    }
+    for (const SolidBatch& b : part<Solids>().batches) {
+      for (const int e : b.cells) cells.push_back(mesh->cell_global[e]);
+      out.batch.push_back(b.cells.size()), out.remembered.push_back(b.kernel.n_state);
+      out.most_remembered = std::max(out.most_remembered, b.kernel.n_state);
+    }
+  }
+  out.nodes = {*comm, std::move(nodes)}, out.blocks = {*comm, std::move(blocks)}, out.cells = {*comm, std::move(cells)};
+  out.most_remembered = static_cast<int>(comm->max(out.most_remembered));
+  return out;
 }
 
 void System::prescribe(Config& q, double t, double ramp) const {

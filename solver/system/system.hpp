@@ -100,6 +100,8 @@ class System : public Points {
   void commit(const Config& q, const Config* v = nullptr);
   /// What the contributions remember.
   void archive(Archive& a);
+  /// How configurations and cells lie on this rank.  Collective.
+  Shares shares() const;
 
   /// Motions of parts as rigid bodies that neither stiffness nor joints nor prescribed motions resist at a static stage.
   struct Loose {

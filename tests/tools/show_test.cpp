@@ -132,7 +132,9 @@ TEST_F(Show, CheckFindsEveryTruncation) {
 
 TEST_F(Show, CheckFindsFilesThatAreIncompleteOrDoNotFit) {
   write_run(false);
-  expect_refused("hilo-show --check run.h5", 2, "run.h5: incomplete: the run has not come to its end");
+  const auto on_its_way = place.run("hilo-show --check run.h5");
+  EXPECT_EQ(on_its_way.exit, 0);
+  EXPECT_TRUE(on_its_way.out.starts_with("run.h5: incomplete, sound up to t = ")) << on_its_way.out;
   EXPECT_EQ(place.run("hilo-show run.h5").exit, 0);  // it can be looked at all the same
   place.run("cp tags.h5 keep.h5; head -c 3000 tags.h5 > cut.h5; mv cut.h5 tags.h5");
   expect_refused("hilo-show --check parts.h5", 2, "tags.h5: truncated file");

@@ -54,13 +54,13 @@ void check_histories(const Store& store) {
 
 }  // namespace
 
-int check_file(const std::string& path) {
+std::string check_file(const std::string& path) {
   const Store store = Store::open(path);
   const auto format = store.text_attribute("/", "format").value_or("");
   if (!format.starts_with("hilo ")) throw Error(path, "not a hilo file: it has no attribute format = \"hilo ...\"");
   const bool run = format == "hilo run";
-  if (store.number_attribute("/", "complete").value_or(0) != 1)
-    throw Error(path, run ? "incomplete: the run has not come to its end" : "incomplete file");
+  const bool complete = store.number_attribute("/", "complete").value_or(0) == 1;
+  if (!complete && !run) throw Error(path, "incomplete file");
   int arrays = walk(store, "/");
   for (const std::string what : {"mesh", "tags"}) {
     const auto link = store.linked(fmt::format("/{}", what));
@@ -73,7 +73,10 @@ int check_file(const std::string& path) {
   }
   if (run) check_histories(store);
   if (store.has("/mesh")) read_mesh_file(path);
-  return arrays;
+  if (complete) return fmt::format("ok, {} arrays", arrays);
+  const auto t = store.read<double>("/history/t");
+  return t.empty() ? fmt::format("incomplete, sound, no rows yet, {} arrays", arrays)
+                   : fmt::format("incomplete, sound up to t = {:.6g} s, {} arrays", t.back(), arrays);
 }
 
 }  // namespace hilo

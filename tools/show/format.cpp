@@ -21,7 +21,7 @@ Format version {}.
 - Numbers are little-endian: `f8` double, `i8` and `i4` signed integers, `u1` unsigned byte. Text is variable-length UTF-8. Rows come first.
 - Node order within a cell is VTK's. Counting starts at 0. Facets are counted as in the table below, corners first, seen from outside anticlockwise.
 - `<name>` in a path stands for any name, with `/` written `%2F` and `%` written `%25`; `<step>` for a six-digit field number.
-- A file is written under another name and renamed when it is whole. A results file grows under its own name, with `complete` = 0 until the run has come to its end.
+- A file is written under another name and renamed when it is whole. A results file grows as `run.h5.new` until its first rows are safe, then it replaces the former `run.h5` and grows under that name, with `complete` = 0 until the run has come to its end; whatever ends the process, it is whole as of its last commit ([trust](trust.md)).
 - A file links to the one it was made from: an HDF5 external link with a relative path, and the digest of that file (`fnv1a64`) as an attribute. A changed file is warned of.
 - The same input gives the same bytes.
 
@@ -35,6 +35,7 @@ Format version {}.
 | 3 | did not converge; results up to there are kept |
 | 4 | resources: memory, disk, permission, packages |
 | 5 | a fault of our own |
+| 6 | stopped from outside (signal, file STOP, --time-limit): a checkpoint to go on from is kept |
 
 An error is one line on stderr: `tool: where: what (hint)`; `where` is `file:line:column` where there is one.
 )";

@@ -39,9 +39,9 @@ void add_run(Summary& s, const Store& store);
 /// Linear regions, their modes, and the mass that vibrations of held regions carry.
 void add_reduced(Summary& s, const Store& store);
 
-/// Open every array of a file and of those it links to: complete, whole and of consistent sizes, or an Error.  Returns the number of
-/// arrays.
-int check_file(const std::string& path);
+/// Open every array of a file and of those it links to: whole and of consistent sizes, or an Error.  Returns what it is: "ok, 16
+/// arrays", or of a run on its way how far it is sound.
+std::string check_file(const std::string& path);
 
 /// docs/format.md, from the schemas.
 std::string format_page();

@@ -44,6 +44,11 @@ void Histories::declare(Store& f) {
   for (size_t k = 0; k < arrays_.size(); ++k) start_array<double>(f, arrays_[k], times, outputs_[k].n_end + outputs_[k].n_mid);
 }
 
+void Histories::shorten(Store& f, std::int64_t n_rows) const {
+  f.keep_rows(times, n_rows), f.keep_rows(iterations, n_rows);
+  for (const std::string& array : arrays_) f.keep_rows(array, n_rows);
+}
+
 void Histories::append(Store& f, double t, int newton, const std::vector<double>& end, const std::vector<double>& mid) const {
   f.append<double>(times, {&t, 1});
   const std::int32_t n = newton;

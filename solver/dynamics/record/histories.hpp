@@ -16,6 +16,8 @@ class Histories {
   size_t n_mid() const { return n_mid_; }
   /// The arrays, without rows.
   void declare(Store& f);
+  /// The arrays, with their first rows alone.
+  void shorten(Store& f, std::int64_t n_rows) const;
   /// A row; `mid` as interpolated to its instant.
   void append(Store& f, double t, int newton, const std::vector<double>& end, const std::vector<double>& mid) const;
 

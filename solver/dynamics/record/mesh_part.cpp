@@ -47,7 +47,10 @@ void MeshPart::declare() {
   for (const FieldKind& kind : field_kinds()) sources_.push_back(kind.make(s, node_row_));
   write_followers();
   if (skin_) file_.on_store([&](Store& f) { write_array(f, "/skin/node", skin, {n}); });
-  if (comm.size > 1) write_parts();
+  if (comm.size > 1)
+    write_parts();
+  else
+    file_.on_store([](Store& f) { f.remove("/parts"); });  // of a run on ranks that this one goes on from
   if (skin_) write_skin(facets);
 }
 
@@ -99,10 +102,19 @@ void MeshPart::write(double t, const Snapshot& at) {
     if (std::any_of(fields.begin(), fields.end(), [&](const Field& field) { return to.wants(field.key); })) source->write(at, to);
   }
   times_.push_back(t);
-  file_.on_store([&](Store& f) {
-    f.set(to.group, "t", t);
-    if (wall_clock() - last_xdmf_ > 1) f.flush(), write_xdmf(f), last_xdmf_ = wall_clock();
-  });
+  file_.on_store([&](Store& f) { f.set(to.group, "t", t); });
+}
+
+void MeshPart::shorten(Store& f) const {
+  for (const std::string& step : f.list("/field"))
+    if (step >= fmt::format("{:06}", times_.size())) f.remove("/field/" + step);
+  f.remove("/xdmf");
+}
+
+void MeshPart::show() {
+  if (wall_clock() - last_xdmf_ < 1) return;
+  finish();
+  last_xdmf_ = wall_clock();
 }
 
 void MeshPart::finish() {

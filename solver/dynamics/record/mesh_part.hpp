@@ -15,8 +15,11 @@ class MeshPart {
   /// Rows of the fields, followers and, in parallel, parts.  Collective, like all of these.
   void declare();
   void write(double t, const Snapshot& at);
-  /// Points ParaView at the arrays of the results file, where it has fields.
+  /// A file that grows on, without what declare() and later steps write anew.
+  void shorten(Store& f) const;
+  /// Points ParaView at the arrays of the results file, where it has fields: at the end, and now and then on the way.
   void finish();
+  void show();
   void archive(Archive& a) { a("fields", times_); }
 
  private:

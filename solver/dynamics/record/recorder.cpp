@@ -27,21 +27,34 @@ void Recorder::first(const State& s, const Ledger& ledger) {
   next_field_ = setup_.interval;
   rows_.push_back(std::move(row));
   last_t_ = s.t;
-  open();
+  open(false);
 }
 
-void Recorder::open() {
-  file_.create();
-  file_.on_store([&](Store& f) { declare_run(f), declare_bodies(f), histories_.declare(f); });
+void Recorder::open(bool again) {
+  if (again)
+    file_.open([&](Store& f) {
+      histories_.declare(f), histories_.shorten(f, n_written_);
+      if (mesh_) mesh_->shorten(f);
+    });
+  else
+    file_.create();
+  file_.on_store([&](Store& f) {
+    declare_run(f), declare_bodies(f);
+    if (!again) histories_.declare(f);
+  });
   if (mesh_) mesh_->declare();
   file_.share_failure();
 }
 
 void Recorder::archive(Archive& a) {
-  a("recorder", rows_, intervals_, past_, first_written_, last_t_, next_field_);
+  if (!a.restores() && n_written_ > 0) commit(RunFile::When::now_safe);
+  double interval = setup_.interval;
+  a("recorder", rows_, intervals_, past_, n_written_, last_t_, next_field_, interval);
+  if (interval != setup_.interval && setup_.interval > 0)
+    next_field_ = setup_.interval * (std::floor(last_t_ * (1 + 1e-9) / setup_.interval) + 1);
   if (mesh_) mesh_->archive(a);
   if (share_) share_.emplace(system_);  // its factors are made anew on either side
-  if (a.restores()) open();
+  if (a.restores()) open(n_written_ > 0);
 }
 
 void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, const Config& a, int iterations) {
@@ -69,8 +82,15 @@ void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, co
   }
   rows_.push_back(std::move(row));
   advance(false);
-  if (wall_clock() - last_flush_ > 0.5) file_.on_store([](Store& f) { f.flush(); }), last_flush_ = wall_clock();
+  commit(RunFile::When::now_and_then);
+}
+
+/// What was written becomes safe: the first rows at once, others after a while, or now.
+void Recorder::commit(RunFile::When when) {
   file_.share_failure();
+  if (n_written_ == 0) return;
+  if (file_.commit(when) && mesh_) mesh_->show();
+  if (when != RunFile::When::now_and_then) file_.share_failure();
 }
 
 /// Write every row whose neighbouring steps are known.  Mid values belong to their own time in the step and are interpolated to its ends.
@@ -80,13 +100,13 @@ void Recorder::advance(bool last) {
   const auto ready = [&] {                              // row 0 of the deque
     if (rows_.empty()) return false;
     if (last || setup_.is_static) return true;
-    if (!first_written_) return intervals_.size() >= from_right;
+    if (n_written_ == 0) return intervals_.size() >= from_right;
     return intervals_.size() >= (rows_[0].jump ? 1 + from_right : own == 1 ? 1 : 2);
   };
   while (ready()) {
     // in the deque, intervals_[0] ends at rows_[0] once the first row is out, else it starts there
-    const size_t after = first_written_ ? 1 : 0;
-    const bool has_before = first_written_ && !intervals_.empty(), has_after = intervals_.size() > after;
+    const size_t after = n_written_ > 0;
+    const bool has_before = n_written_ > 0 && !intervals_.empty(), has_after = intervals_.size() > after;
     if (has_before && (own == 1 || has_after) && (!rows_[0].jump || setup_.is_static)) {
       const double before = (1 - own) * intervals_[0].h, behind = own == 1 ? 1 : own * intervals_[1].h;
       write_row({{behind / (before + behind), &intervals_[0]}, {before / (before + behind), &intervals_[own == 1 ? 0 : 1]}});
@@ -103,11 +123,11 @@ void Recorder::advance(bool last) {
       write_row({});
     }
     rows_.pop_front();
-    if (first_written_) {
+    if (n_written_ > 0) {
       past_.push_back(std::move(intervals_.front())), intervals_.pop_front();
       if (past_.size() > 2) past_.pop_front();
     }
-    first_written_ = true;
+    ++n_written_;
     if (rows_.empty()) return;
   }
 }
@@ -136,19 +156,23 @@ void Recorder::write_row(const std::vector<std::pair<double, const Interval*>>& 
     Config a, sum;
     combine(a, {{0, &row.q}});
     for (const auto& [w, interval] : weights) combine(sum, {{1, &a}, {w, &interval->a}}), std::swap(a, sum);
-    mesh_->write(row.t, {row.q, row.v, a, row.memory});
+    mesh_->write(row.t, {row.q, row.v, a, row.memory.batch});
   }
   file_.on_store([&](Store& f) { histories_.append(f, row.t, row.newton, row.point, mid); });
 }
 
 void Recorder::finish(bool complete) {
   advance(true);
-  file_.on_store([&](Store& f) {
-    f.set("/", "complete", static_cast<std::int64_t>(complete));
-    f.flush();
-  });
+  file_.on_store([&](Store& f) { f.set("/", "complete", static_cast<std::int64_t>(complete)); });
+  commit(RunFile::When::now);
   if (mesh_) mesh_->finish();
   file_.share_failure();
+  file_.close();
+}
+
+void Recorder::give_up() {
+  if (n_written_ > 0 && system_.comm->size == 1) file_.on_store([](Store& f) { f.flush(); });
+  if (n_written_ > 0 && mesh_) mesh_->finish();
   file_.close();
 }
 

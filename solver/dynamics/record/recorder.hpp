@@ -9,6 +9,7 @@
 #include "dynamics/minimum_norm.hpp"
 #include "dynamics/record/histories.hpp"
 #include "dynamics/record/mesh_part.hpp"
+#include "system/solids.hpp"
 
 namespace hilo {
 
@@ -30,15 +31,15 @@ class Recorder {
   Recorder(const System& system, const Scene& scene, Setup setup);
   /// The state before the first step.
   void first(const State& s, const Ledger& ledger);
-  /// Rows not written yet, and how far the files are, between two steps.  Restored: the files begin with the row that would have come next,
-  /// fields are numbered on.
+  /// Rows not written yet, and how far the file is, between two steps; kept: all of them are safe in the file.  Restored: the file that is
+  /// there grows on from these rows, without what it has behind them.
   void archive(Archive& a);
   /// A finished step: the new state and its account, the last stage for reactions, accelerations and Newton iterations.
   void step(const State& s, const Ledger& ledger, const Taken& taken, const Config& a, int iterations);
   /// Last values; publishes the files.  `complete` is false for a run stopped by physics.
   void finish(bool complete);
-  /// Remove what was written (input error after the file was opened).
-  void discard() { file_.discard(); }
+  /// The run fails: what was written stays, unless that is nothing.
+  void give_up();
 
  private:
   struct Row {  // an instant t_n
@@ -46,7 +47,7 @@ class Recorder {
     std::vector<double> point;  // values that belong to t_n
     bool jump = false, field = false;
     Config q, v;  // kept where a field is due, and what the cells remember, by batch
-    std::vector<std::vector<double>> memory;
+    CellMemory memory;
     int newton = 0;
   };
   struct Interval {  // what belongs to the inside of a step
@@ -55,7 +56,8 @@ class Recorder {
     Config a;
     bool starts_at_jump = false;
   };
-  void open();
+  void open(bool again);
+  void commit(RunFile::When when);
   void declare_run(Store& f) const;
   void declare_bodies(Store& f) const;
   void advance(bool last);
@@ -72,9 +74,8 @@ class Recorder {
   std::deque<Row> rows_;
   std::deque<Interval> intervals_;  // interval k starts at row k of rows_
   std::deque<Interval> past_;       // the two intervals before intervals_[0], for the last row
-  bool first_written_ = false;
+  std::int64_t n_written_ = 0;      // rows in the file
   double last_t_ = 0, next_field_ = 0;
-  double last_flush_ = wall_clock();
 };
 
 }  // namespace hilo

@@ -2,6 +2,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <utility>
+
+#include "dynamics/profile.hpp"
+
 namespace hilo {
 
 std::string stem(const std::string& path) { return path.ends_with(".h5") ? path.substr(0, path.size() - 3) : path; }
@@ -10,8 +15,31 @@ void RunFile::create() {
   comm_.together([&] {
     if (comm_.rank != 0) return;
     store_ = std::make_unique<Store>(Store::create_growing(path_));
-    for (const char* of_former : {".xdmf", ".json"}) ::unlink((stem(path_) + of_former).c_str());  // they told of the file replaced
   });
+}
+
+void RunFile::open(const std::function<void(Store&)>& shorten) {
+  comm_.together([&] {
+    if (comm_.rank != 0) return;
+    store_ = std::make_unique<Store>(Store::open_growing(path_));
+    shorten(*store_);
+    store_->flush();  // before ranks write where removed arrays were
+  });
+  has_name_ = true;
+}
+
+bool RunFile::commit(When when) {
+  const bool first = !std::exchange(has_name_, true);
+  const double began = wall_clock();
+  if (!store_ || failure_ || (when == When::now_and_then && !first && began < next_commit_)) return false;
+  const bool safe = when == When::now_safe || began - opened_ > 2;  // what takes seconds can be done again
+  const auto replace = [this] {                                     // they told of the former file
+    for (const char* ending : {".xdmf", ".json", ".checkpoint.h5", ".checkpoint-1.h5"}) ::unlink((stem(path_) + ending).c_str());
+  };
+  on_store([&](Store& f) { f.flush(safe, replace); });
+  const double ended = wall_clock();
+  next_commit_ = ended + std::max(0.5, 30 * (ended - began));
+  return true;
 }
 
 void RunFile::on_store(const std::function<void(Store&)>& write) {
@@ -33,23 +61,16 @@ void RunFile::write_piece(const Slabs& rows, const std::string& array, const std
   const ArraySchema& of = run_array(array);
   const auto row = row_shape(of);
   const int width = row.empty() ? 1 : static_cast<int>(row[0]);
-  const std::string unit(of.unit), meaning(of.meaning);
+  const std::string unit(of.unit), meaning(of.meaning), name = has_name_ ? path_ : unpublished(path_);
   try {
     Store* f = failure_ ? nullptr : store_.get();
     if (single_precision_ && !exact)
-      rows.write<float>(f, path_, array, piece, width, unit, meaning);
+      rows.write<float>(f, name, array, piece, width, unit, meaning);
     else
-      rows.write<double>(f, path_, array, piece, width, unit, meaning);
+      rows.write<double>(f, name, array, piece, width, unit, meaning);
   } catch (const Error& e) {
-    if (!failure_) failure_ = e;
+    if (!failure_) failure_.emplace(path_, e.message, e.hint, e.exit);  // not the name it has for now
   }
-}
-
-void RunFile::discard() {
-  if (!store_) return;
-  store_->discard();
-  store_.reset();
-  ::unlink((stem(path_) + ".xdmf").c_str());
 }
 
 }  // namespace hilo

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "dynamics/profile.hpp"
 #include "dynamics/record/slabs.hpp"
 #include "model/schema.hpp"
 #include "model/store.hpp"
@@ -31,6 +32,8 @@ void start_array(Store& f, const std::string& path, const std::string& time = ""
   f.start_rows<T>(path, std::move(shape), std::string(of.unit), std::string(of.meaning), time);
 }
 
+/// Written in place, whole at every instant: until its first commit under another name, so that the former results stay while there is
+/// nothing to replace them (model/journalled_file).
 class RunFile {
  public:
   RunFile(const Comm& comm, std::string path, bool single_precision)
@@ -38,23 +41,30 @@ class RunFile {
   const std::string& path() const { return path_; }
   /// How fields are stored: "F4" or "F8".
   const char* number() const { return single_precision_ ? "F4" : "F8"; }
-  /// Collective.
+  /// A new file, or the one that is there without what `shorten` takes from it.  Collective.
   void create();
+  void open(const std::function<void(Store&)>& shorten);
   /// What a rank alone does and may fail at (a full disk) is noted here and told to all ranks by share_failure.
   void on_store(const std::function<void(Store&)>& write);
   void share_failure() const;
   /// An array of which every rank has its piece, in the precision of fields unless `exact`.  Collective.
   void write_piece(const Slabs& rows, const std::string& array, const std::vector<double>& piece, bool exact = false);
-  /// No more is written; without a file where it is discarded.
+  /// Now and then, the first time at once, or now: what was written outlives the process (and a power cut, where the run is not a
+  /// short one), and the file has its name; whether this was done on this rank.
+  /// Every rank calls it at the same place, behind share_failure().
+  enum class When { now_and_then, now, now_safe };
+  bool commit(When when);
+  /// Nothing more is written.
   void close() { store_.reset(); }
-  void discard();
 
  private:
   const Comm& comm_;
   std::string path_;
   bool single_precision_;
-  std::unique_ptr<Store> store_;  // rank 0
-  std::optional<Error> failure_;  // of a write of this rank
+  std::unique_ptr<Store> store_;                    // rank 0
+  bool has_name_ = false;                           // its own, not that of an unpublished one
+  double opened_ = wall_clock(), next_commit_ = 0;  // [s]
+  std::optional<Error> failure_;                    // of a write of this rank
 };
 
 }  // namespace hilo

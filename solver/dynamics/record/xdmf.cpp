@@ -93,7 +93,6 @@ void MeshPart::write_xdmf(Store& f) {
   };
   for (size_t k = 0; k < times_.size(); ++k) {
     const std::string group = fmt::format("/field/{:06}", k);
-    if (!f.has(group)) continue;  // in the file of the run that this one goes on from
     t += fmt::format(
         "<Grid Name=\"t{}\"><Time Value=\"{:.9g}\"/>\n<Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\"><DataItem Format=\"HDF\" "
         "NumberType=\"Int\" "

@@ -1,0 +1,15 @@
+// What ends a run from outside: signals (batch systems send them), a file STOP for those who cannot signal, a limit of time.
+#pragma once
+#include <string>
+
+namespace hilo {
+
+/// From now on SIGINT, SIGTERM, SIGHUP and SIGUSR1 are noted, not obeyed; a second one ends the process at once.
+void note_signals();
+/// Name of the signal that came ("SIGTERM"), or "".
+std::string noted_signal();
+
+/// Seconds of "3h50m", "90s", "1d", "2:30:00" or a number of seconds.  Error (exit 1) for anything else; `option` is what it was given to.
+double parse_duration(const std::string& text, const std::string& option);
+
+}  // namespace hilo

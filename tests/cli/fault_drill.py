@@ -1,0 +1,279 @@
+#!/usr/bin/python3
+"""Nothing that was written is lost: runs are killed, and find the disk full, at many instants; then they go on.
+
+  fault_drill.py REPO BIN LIB            a part of it, two minutes: in the suite
+  fault_drill.py REPO BIN LIB all        200 instants of kill -9 on 1, 2 and 3 ranks, every write of every scene: make -C tests faults
+LIB: the preloaded library tests/faults/preload/failing_writes.cpp.
+
+What must hold after every fault: the former results are there as they were, or the new ones are sound up to what was written last
+(hilo-show --check); a failing disk is exit 4 with one line; with --restart the run goes on to the same numbers bit by bit on as many ranks,
+to the solver's tolerance on others."""
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import h5py
+import numpy
+
+repo, tools, library = (os.path.abspath(a) for a in sys.argv[1:4])
+everything = len(sys.argv) > 4
+os.environ.update(PATH=tools + ":" + os.environ["PATH"], OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                  OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1", OMPI_MCA_hwloc_base_binding_policy="none",
+                  OPENBLAS_NUM_THREADS="1")
+random.seed(2026)
+
+
+def joint(kind, name, a, b, at, more=""):
+    return f'[[joint]]\nkind = "{kind}"\nname = "{name}"\na = "{a}"\nb = "{b}"\nat = {at}\n{more}\n'
+
+
+def body(name, com, more=""):
+    return f'[[body]]\nname = "{name}"\nmass = 2\ncom = {com}\ninertia = [0.05, 0.05, 0.05]\n{more}\n'
+
+
+Z, GRAVITY = "axis = [0, 0, 1]", "gravity = [0, -9.81, 0]\n"
+PENDULUM = GRAVITY + body("arm", [0.3, 0, 0]) + joint("revolute", "pin", "ground", "arm", [0, 0, 0], Z)
+MESH = """gravity = [0, 0, -9.81]
+[material.m]
+{law}E = 1e8
+nu = 0.3
+density = 1000
+[region."*"]
+material = "m"
+damping = 1e-4
+[[motion]]
+kind = "fixed"
+name = "root"
+on = "root"
+[[load]]
+kind = "force"
+name = "shake"
+on = "tip"
+force = [0, 0, {pull}]
+history = {{t = [0, 0.01, 0.03, 1], value = [0, 1, -1, 0]}}
+"""
+END = "[time]\nend = {end}\nstep = {step}\n[output]\ninterval = {interval}\n[solver]\ntolerance = 1e-10\n"
+
+
+def short(step=5e-3, steps=60):
+    return END.format(end=step * steps, step=step, interval=step * steps / 9)
+
+
+# name: scene, whether with the bar's mesh, numbers of ranks
+SCENES = {
+    "rigid": (PENDULUM + body("bob", [0.6, -0.3, 0]) + joint("spherical", "link", "arm", "bob", [0.6, 0, 0]) + short(), False, [1]),
+    "friction and stops": (
+        PENDULUM + '[[stop]]\nkind = "angle"\nname = "limit"\njoint = "pin"\nlower = -0.4\nupper = 0.4\nstiffness = 2e3\nrestitution = 0.6\n'
+        '[[friction]]\nname = "rub"\njoint = "pin"\ncoefficient = 0.2\nradius = 0.05\nslip_velocity = 1e-2\n' + short(), False, [1]),
+    "driven": (
+        GRAVITY + body("arm", [0.3, 0, 0]) + body("bob", [0.6, -0.3, 0]) + joint("spherical", "link", "arm", "bob", [0.6, 0, 0]) +
+        joint("revolute", "pin", "ground", "arm", [0, 0, 0],
+              Z + '\nangle = 2\nhistory = {t = [0, 0.1, 0.2, 1], value = [0, 0.2, 1, 1], interpolation = "smooth"}') + short(), False, [1, 2]),
+    "redundant": (
+        GRAVITY + body("crank", [0, 0.5, 0]) + body("rocker", [1, 0.5, 0]) + body("coupler", [0.5, 1, 0]) +
+        joint("revolute", "A0", "ground", "crank", [0, 0, 0], Z) + joint("revolute", "B0", "crank", "coupler", [0, 1, 0], Z) +
+        joint("revolute", "A1", "ground", "rocker", [1, 0, 0], Z) + joint("revolute", "B1", "rocker", "coupler", [1, 1, 0], Z) +
+        '[[initial]]\non = ["crank"]\nspin = [0, 0, -3]\n' + short(), False, [1]),
+    "flexible": (MESH.format(law="", pull=-200) + short(1e-3), True, [1, 2]),
+    "plastic": (MESH.format(law='kind = "j2"\nyield = 2e4\nhardening = 1e6\n', pull=-400) + short(1e-3), True, [1]),
+    "parallel": (
+        MESH.format(law="", pull=-200) + body("bob", [1, 0.05, -0.3]) +
+        joint("spherical", "hang", "tip", "bob", [1, 0.05, 0.05]) + short(1e-3), True, [3, 2]),
+}
+CHECKPOINT = ["--checkpoint", "7steps"]
+counts = {"kills": 0, "full disks": 0, "restarts": 0, "rows kept": 0}
+failures = []
+
+
+def wrong(text):
+    failures.append(text)
+    print("WRONG", text, flush=True)
+
+
+def command(name, ranks, *more):
+    scene, mesh, _ = SCENES[name]
+    launcher = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
+    return launcher + ["hilo-solve", *more]
+
+
+def scene_files(name):
+    scene, mesh, _ = SCENES[name]
+    with open("scene.toml", "w") as f:
+        f.write(scene)
+    return ["scene.toml"] + (["bar.h5"] if mesh else [])
+
+
+def run(line, **more):
+    return subprocess.run(line, capture_output=True, text=True, timeout=300, **more)
+
+
+def numbers(path):
+    """All arrays of numbers of a results file."""
+    out = {}
+    with h5py.File(path, "r") as f:
+
+        def visit(name, thing):
+            if isinstance(thing, h5py.Dataset) and thing.dtype.kind in "fiu":
+                out[name] = thing[()]
+
+        f.visititems(visit)
+    return out
+
+
+def same(a, b, tolerance=0.0):
+    """Names of arrays that differ."""
+    own = {"parts/rank", "history/newton", "history/constraint"} if tolerance else set()  # of the ranks, or round-off alone
+    bad = sorted((set(a) ^ set(b)) - own)
+    for name in sorted((set(a) & set(b)) - own):
+        x, y = a[name], b[name]
+        if x.shape != y.shape:
+            bad.append(name)
+        elif tolerance == 0 and x.tobytes() != y.tobytes():
+            bad.append(name)
+        elif tolerance and x.size and x.dtype.kind == "f":
+            scale = abs(y[..., :]).max() if y.ndim else abs(y)
+            if name in ("history/energy", "history/momentum"):
+                scale = max(scale, 1.0)
+            if abs(x - y).max() > tolerance * max(scale, 1e-12):
+                bad.append(name)
+    return bad
+
+
+def reference(name, ranks):
+    files = scene_files(name)
+    done = run(command(name, ranks, *files, "-o", "whole.h5", "--quiet", *CHECKPOINT))
+    if done.returncode:
+        sys.exit(f"{name}: {done.stderr}")
+    return numbers("whole.h5")
+
+
+def clean():
+    for name in os.listdir("."):
+        if name.startswith("run"):
+            os.remove(name)
+
+
+def sound(name, what, former):
+    """After a fault: the rows of run.h5 if it is the new one, 0 if it is the former or not there."""
+    if not os.path.exists("run.h5"):
+        if former is not None:
+            wrong(f"{name}, {what}: the former results are gone")
+        return 0
+    with open("run.h5", "rb") as f:
+        if former is not None and f.read() == former:
+            return 0
+    checked = run(["hilo-show", "--check", "run.h5"])
+    if checked.returncode or "sound up to" not in checked.stdout and ": ok" not in checked.stdout:
+        wrong(f"{name}, {what}: {checked.stdout}{checked.stderr}")
+        return 0
+    with h5py.File("run.h5", "r") as f:
+        return len(f["history/t"])
+
+
+def go_on(name, ranks, whole, what, others=()):
+    """From what a fault left to the end, and the numbers are those of the run that was never left."""
+    if not os.path.exists("run.checkpoint.h5") and not os.path.exists("run.checkpoint-1.h5"):
+        return
+    counts["restarts"] += 1
+    done = run(command(name, ranks, "--restart", "run.h5", "--quiet", *CHECKPOINT))
+    if done.returncode:
+        return wrong(f"{name}, {what}, restart: exit {done.returncode} {done.stderr}")
+    if bad := same(numbers("run.h5"), whole):
+        wrong(f"{name}, {what}, restart: {bad} differ")
+
+
+def every_write(name, stride):
+    """Killed in, and refused from, the n-th write on."""
+    whole = reference(name, 1)
+    line = command(name, 1, *scene_files(name), "-o", "run.h5", "--quiet", *CHECKPOINT)
+    clean()
+    run(line, env=dict(os.environ, LD_PRELOAD=library, FAIL_COUNT="count"))
+    n = int(open("count").read())
+    rows_before = 0
+    for how in ("kill", "28", "5"):
+        for at in range(1 + random.randrange(stride), n + 1, stride):
+            clean()
+            former = None
+            if at % 2:
+                shutil.copy("whole.h5", "run.h5")
+                former = open("run.h5", "rb").read()
+            done = run(line, env=dict(os.environ, LD_PRELOAD=library, FAIL_AT=str(at), FAIL_HOW=how))
+            what = f"{how} at write {at} of {n}"
+            counts["kills" if how == "kill" else "full disks"] += 1
+            if how == "kill":
+                if done.returncode != -signal.SIGKILL:
+                    wrong(f"{name}, {what}: exit {done.returncode}, not killed")
+            elif done.returncode != 4 or len(done.stderr.strip().splitlines()) != 1:
+                if done.returncode or "rename" not in done.stderr:
+                    wrong(f"{name}, {what}: exit {done.returncode}: {done.stderr}")
+            counts["rows kept"] += sound(name, what, former)
+            go_on(name, 1, whole, what)
+    print(f"{name:20} each {stride}th of {n} writes: killed, no space, input/output error", flush=True)
+
+
+def any_instant(name, ranks, kills):
+    """kill -9 of a rank by the clock."""
+    whole = reference(name, ranks)
+    line = command(name, ranks, *scene_files(name), "-o", "run.h5", "--quiet", *CHECKPOINT)
+    clean()
+    began = time.time()
+    run(line)
+    seconds = time.time() - began
+    for k in range(kills):
+        clean()
+        process = subprocess.Popen(line, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True)
+        time.sleep(random.random() * seconds)
+        ours = subprocess.run(["pgrep", "-s", str(process.pid), "-f", "^hilo-solve"], capture_output=True, text=True).stdout.split()
+        if ranks == 1:
+            ours = [str(process.pid)]
+        if ours:
+            subprocess.run(["kill", "-9", random.choice(ours)], stderr=subprocess.DEVNULL)
+        try:
+            process.communicate(timeout=60)
+        except subprocess.TimeoutExpired:
+            wrong(f"{name} on {ranks} ranks: hangs behind kill {k}")
+            os.killpg(process.pid, signal.SIGKILL)
+        counts["kills"] += 1
+        counts["rows kept"] += sound(name, f"kill {k} on {ranks} ranks", None)
+        if process.returncode != 0:
+            go_on(name, ranks, whole, f"kill {k} on {ranks} ranks")
+    print(f"{name:20} {kills} kills by the clock on {ranks} rank(s)", flush=True)
+
+
+def other_ranks(name, ranks, others):
+    """Kept on some ranks, gone on with on others."""
+    whole = reference(name, ranks)
+    for other in others:
+        clean()
+        done = run(command(name, ranks, *scene_files(name), "-o", "run.h5", "--quiet", "--checkpoint", "28steps"))
+        if done.returncode:
+            return wrong(f"{name}: {done.stderr}")
+        done = run(command(name, other, "--restart", "run.h5", "--quiet"))
+        if done.returncode:
+            wrong(f"{name} kept on {ranks} ranks, on {other}: exit {done.returncode} {done.stderr}")
+        elif bad := same(numbers("run.h5"), whole, 1e-6):
+            wrong(f"{name} kept on {ranks} ranks, on {other}: {bad} differ")
+        counts["restarts"] += 1
+    print(f"{name:20} kept on {ranks} rank(s), gone on with on {', '.join(map(str, others))}", flush=True)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    made = run(["hilo-import", os.path.join(repo, "tests/cases/bar.inp"), "-o", "bar.h5"])
+    if made.returncode:
+        sys.exit(made.stderr)
+    for name, (_, _, all_ranks) in SCENES.items():
+        if all_ranks[0] == 1:
+            every_write(name, 1 if everything else 97)
+        for ranks in all_ranks:
+            any_instant(name, ranks, 25 if everything else 2)
+    for name in ("flexible", "plastic", "parallel"):
+        other_ranks(name, 1, [2, 3])
+        other_ranks(name, 3, [1, 2])
+    print(", ".join(f"{n} {what}" for what, n in counts.items()))
+sys.exit(f"{len(failures)} wrong" if failures else 0)

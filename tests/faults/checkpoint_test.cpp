@@ -1,0 +1,150 @@
+// Runs that are stopped from outside say how to go on, and go on to the same numbers; what does not belong together is refused.
+#include "faults.hpp"
+#include "model/store.hpp"
+
+using namespace hilo::test;
+
+namespace {
+
+constexpr int usage = 1, input = 2, resources = 4, stopped = 6;
+
+/// A pendulum that takes a while.
+const char* const pendulum = R"(gravity = [0, 0, -9.81]
+[[body]]
+name = "arm"
+mass = 2
+com = [0.3, 0, 0]
+inertia = [0.01, 0.05, 0.05]
+[[joint]]
+kind = "revolute"
+name = "pin"
+a = "ground"
+b = "arm"
+at = [0, 0, 0]
+axis = [0, 1, 0]
+[time]
+end = 1000
+step = 1e-3
+[output]
+interval = 1
+)";
+
+class Stopped : public testing::Test {
+ protected:
+  Workplace work;
+  void SetUp() override { work.write("scene.toml", pendulum); }
+  /// One line that says how to go on; the results are sound.
+  void expect_stopped(const Ran& o, const std::string& by, const std::string& file = "run.h5") const {
+    EXPECT_EQ(o.exit, stopped) << o.err;
+    EXPECT_NE(o.err.find("stopped by " + by + " at t = "), o.err.npos) << o.err;
+    EXPECT_NE(o.err.find("(go on with: hilo-solve --restart " + file + ")"), o.err.npos) << o.err;
+    const auto checked = work.run("hilo-show --check " + file);
+    EXPECT_EQ(checked.exit, 0) << checked.err;
+    EXPECT_NE(checked.out.find("incomplete, sound up to"), checked.out.npos) << checked.out;
+  }
+  void refused(const std::string& command, int exit, const std::string& message) const {
+    const auto o = work.run(command);
+    EXPECT_EQ(o.exit, exit) << command;
+    EXPECT_EQ(o.err, "hilo-solve: " + message + "\n") << command;
+  }
+};
+
+const std::string in_background =
+    "hilo-solve scene.toml --quiet & p=$!; for k in $(seq 100); do [ -e run.h5 ] && break; sleep 0.05; done; ";
+
+}  // namespace
+
+TEST_F(Stopped, BySignals) {
+  for (const char* signal : {"TERM", "INT", "HUP", "USR1"}) {
+    SCOPED_TRACE(signal);
+    // a shell starts what runs in the background with SIGINT ignored, as nohup does with SIGHUP
+    const auto o = work.run(
+        "/usr/bin/python3 -c 'import signal, os, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); os.execvp(sys.argv[1], "
+        "sys.argv[1:])' hilo-solve scene.toml --quiet & p=$!; rm -f run.h5; for k in $(seq 100); do [ -e run.h5 ] && break; "
+        "sleep 0.05; done; sleep 0.1; kill -" +
+        std::string(signal) + " $p; wait $p");
+    expect_stopped(o, "SIG" + std::string(signal));
+  }
+}
+
+TEST_F(Stopped, ByAFileBesideTheResults) {
+  const auto o = work.run(in_background + "touch STOP; wait $p");
+  expect_stopped(o, "the file STOP");
+  EXPECT_FALSE(std::filesystem::exists(work.path() / "STOP")) << "it would end the next run";
+  work.write("STOP", "");
+  refused("hilo-solve scene.toml --quiet", usage, "STOP: this file ends a run, and it is there before the run begins (remove it)");
+}
+
+TEST_F(Stopped, InTime) {
+  expect_stopped(work.run("timeout 60 hilo-solve scene.toml --quiet --time-limit 2s"), "--time-limit");
+  refused("hilo-solve scene.toml --time-limit soon", usage, "--time-limit soon is no time (write 90s, 20m, 3h50m, 1d or 2:30:00)");
+  refused("hilo-solve scene.toml --checkpoint -3", usage, "--checkpoint -3 is no time (write 90s, 20m, 3h50m, 1d or 2:30:00)");
+}
+
+TEST_F(Stopped, OnTwoRanksBySigusr1) {
+  const auto o = mpirun(2,
+                        "hilo-solve scene.toml --quiet & p=$!; for k in $(seq 200); do [ -e run.h5 ] && break; sleep 0.05; done; sleep "
+                        "0.1; kill -USR1 $p; wait $p",
+                        work.path());
+  expect_stopped(o, "SIGUSR1");
+  const auto later = work.run("hilo-solve --restart run.h5 --quiet --set time.end=2000 --time-limit 2s");
+  expect_stopped(later, "--time-limit");
+}
+
+TEST_F(Stopped, GoesOnToTheSameNumbersAndToALaterEnd) {
+  const std::string run = "hilo-solve scene.toml --quiet --set time.end=0.5 --set output.interval=0.1 ";
+  ASSERT_EQ(work.run(run + "-o whole.h5 --checkpoint 100steps").exit, 0);
+  ASSERT_EQ(work.run(run + "--checkpoint 100steps").exit, 0);  // kept at the end
+  const auto rows = [&](const std::string& file) { return hilo::Store::open(work / file).read<double>("/history/joint/pin"); };
+  const std::vector<double> whole = rows("whole.h5");
+  ASSERT_EQ(whole.size(), 6 * 501u);
+  // from the last checkpoint but one, as if the rest had been lost
+  ASSERT_EQ(work.run("mv run.checkpoint-1.h5 run.checkpoint.h5; hilo-solve --restart run.h5 --quiet --checkpoint 100steps").exit, 0);
+  EXPECT_EQ(rows("run.h5"), whole);
+  // a later end
+  ASSERT_EQ(work.run("hilo-solve --restart run.h5 --quiet --set time.end=1 --checkpoint 100steps").exit, 0);
+  ASSERT_EQ(work.run("hilo-solve scene.toml --quiet --set time.end=1 --set output.interval=0.1 -o long.h5 --checkpoint 100steps").exit, 0);
+  const std::vector<double> one = rows("run.h5"), other = rows("long.h5");
+  ASSERT_EQ(one.size(), other.size());
+  for (size_t i = 0; i < one.size(); ++i) ASSERT_NEAR(one[i], other[i], 1e-9) << "value " << i << ": the old end was a step like any other";
+  EXPECT_NE(work.run("hilo-show run.h5").out.find("--set time.end=1"), std::string::npos) << "provenance of all of it";
+  EXPECT_NE(work.run("hilo-show run.h5").out.find("--set time.end=0.5"), std::string::npos);
+}
+
+TEST_F(Stopped, WhatDiffersIsRefusedByTheKey) {
+  ASSERT_EQ(work.run("hilo-solve scene.toml --quiet --set time.end=0.5 --checkpoint 100steps").exit, 0);
+  const std::string go_on = "hilo-solve --restart run.h5 --quiet ";
+  const std::string accept = " (--accept goes on all the same)";
+  const std::string where = (std::filesystem::canonical(work.path()) / "scene.toml").string() + ": ";
+  refused(go_on + "--set body.arm.mass=3", input, where + "body.arm.mass is 3, and was 2 when the run was kept" + accept);
+  refused(go_on + "--set time.end=0.3", input, where + "time.end is 0.3, before the checkpoint at t = 0.5 s" + accept);
+  refused(go_on + "--set solver.tolerance=1e-14", input, where + "solver.tolerance is 1e-14, and was 1e-10 when the run was kept" + accept);
+  refused(go_on + "--set time.step=2e-3", input, where + "time.step is 0.002, and was 0.001 when the run was kept" + accept);
+  refused(go_on + "-o other.h5", usage,
+          "--restart goes on in the results it names, so there is no -o (copy run.h5 and its checkpoints first)");
+  refused("hilo-solve --restart absent.h5", input,
+          "absent.h5: no checkpoint lies beside it (absent.checkpoint.h5 is not there; see --checkpoint)");
+  EXPECT_EQ(work.run(go_on + "--set time.step=2e-3 --accept --set time.end=0.6 --checkpoint 100steps").exit, 0);
+  work.write("scene.toml", std::string(pendulum) + "[[sensor]]\nname = \"s\"\non = \"arm\"\n");
+  const auto o = work.run(go_on);
+  EXPECT_EQ(o.exit, input);
+  EXPECT_NE(o.err.find("sensor."), o.err.npos) << o.err;
+}
+
+TEST_F(Stopped, ADamagedCheckpointIsPassedOverForTheOneBefore) {
+  ASSERT_EQ(work.run("hilo-solve scene.toml --quiet --set time.end=0.5 --checkpoint 100steps").exit, 0);
+  const std::string whole = text_of(work.path() / "run.checkpoint.h5");
+  for (const size_t cut : {whole.size() / 2, whole.size() - 1000}) {
+    work.write("run.checkpoint.h5", whole.substr(0, cut));
+    const auto o = work.run("hilo-solve --restart run.h5 --checkpoint 100steps");
+    EXPECT_EQ(o.exit, 0) << o.err;
+    EXPECT_NE(o.err.find("the one before it is taken"), o.err.npos) << o.err;
+    EXPECT_NE(o.err.find("goes on from t = 0.4 s"), o.err.npos) << o.err;
+  }
+}
+
+TEST_F(Stopped, TwoRunsDoNotWriteOneFile) {
+  const auto o = work.run(in_background + "hilo-solve scene.toml --quiet --set time.end=1; code=$?; kill -TERM $p; wait $p; exit $code");
+  EXPECT_EQ(o.exit, resources) << o.err;
+  EXPECT_NE(o.err.find("run.h5: another run is writing it (wait until it ends, or give another -o)"), o.err.npos) << o.err;
+}
