@@ -99,6 +99,7 @@ int main(int argc, char** argv) {
     app->add_option("--size", o.size, "cell edge when CAD is meshed, at most this when a .geo script is; in the unit of the file")
         ->type_name("H");
     app->add_option("--define", r.defines, "parameter of a .geo script, may be repeated")->type_name("NAME=VALUE")->allow_extra_args(false);
+    app->add_flag("--trust", o.trust, "a .geo script may run commands, write files, read the environment and files of other folders");
     app->add_option("--merge-nodes", o.merge, "nodes nearer than this become one, in the unit of the file")->type_name("TOL");
     app->add_option("--regions", o.regions, "element sets that become regions, before what the file says")
         ->delimiter(',')

@@ -48,7 +48,7 @@ class ImportGmsh : public test::Import {
                                  ";\nMesh.MshFileVersion = " + std::to_string(version) +
                                  ";\nMesh.Binary = " + std::to_string(binary ? 1 : 0) + ";\n";
     place.write("made.geo", script + settings + "Mesh 3;\nSetOrder " + std::to_string(order) + ";\nSave \"" + file + "\";\n");
-    const auto ran = place.run("hilo-import made.geo -o made.h5 && rm made.geo made.h5");
+    const auto ran = place.run("hilo-import made.geo --trust -o made.h5 && rm made.geo made.h5");
     EXPECT_EQ(ran.exit, 0) << ran.err;
   }
   /// Mid-side nodes of a facet stand behind its corners, each in the middle of its edge (gmsh places nodes to 1e-12).
@@ -158,7 +158,7 @@ TEST_F(ImportGmsh, AGeometryWithoutGroupsHasARegionPerVolume) {
 
 TEST_F(ImportGmsh, CadFilesAreMeshedAndNothingButTheTableIsOnStdout) {
   place.write("box.geo", "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 10, 20, 30};\nSave \"a.step\";\nSave \"a.brep\";\n");
-  ASSERT_EQ(place.run("hilo-import box.geo -o box.h5").exit, 0);
+  ASSERT_EQ(place.run("hilo-import box.geo --trust -o box.h5").exit, 0);
   for (const char* file : {"a.step", "a.brep"}) {
     const Mesh m = imported(file, "--size 10 --scale 1e-3");
     EXPECT_NEAR(volume(m), 6e-6, 1e-15) << file;
@@ -204,7 +204,7 @@ TEST_F(ImportGmsh, AFlatMeshIsRefusedByEveryFormat) {
               "SetFactory(\"OpenCASCADE\");\nRectangle(1) = {0, 0, 0, 2, 1};\nTransfinite Curve{:} = 3;\nTransfinite Surface{:};\n"
               "Recombine Surface{:};\nPhysical Surface(\"plate\") = {1};\nPhysical Curve(\"edges\") = {1:4};\nMesh 2;\n"
               "Save \"a.msh\";\nSave \"a.unv\";\nSave \"a.vtk\";\nSave \"a.mesh\";\nSave \"a.bdf\";\n");
-  place.run("hilo-import a.geo -o geo.h5");
+  place.run("hilo-import a.geo --trust -o geo.h5");
   for (const char* file : {"a.msh", "a.unv", "a.vtk", "a.mesh"}) {
     ASSERT_TRUE(std::filesystem::exists(place / file)) << file;
     refused(std::string(file) + " -o a.h5", 2,
@@ -213,7 +213,7 @@ TEST_F(ImportGmsh, AFlatMeshIsRefusedByEveryFormat) {
                 "its inside; lines beside flat cells are their edges, not bars)");
   }
   EXPECT_EQ(place.run("hilo-import a.bdf -o a.h5").exit, 2);
-  EXPECT_EQ(place.run("hilo-import a.geo -o a.h5").exit, 2);
+  EXPECT_EQ(place.run("hilo-import a.geo --trust -o a.h5").exit, 2);
 }
 
 TEST_F(ImportGmsh, WrongFilesAreNamedAndLeaveNothing) {

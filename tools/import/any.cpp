@@ -15,7 +15,7 @@
 namespace hilo {
 namespace {
 
-/// A name given to --define that the script never mentions does nothing: it is an error.  Scripts that include others are trusted.
+/// A name given to --define that the script never mentions does nothing: it is an error.  Scripts that include others are not looked into.
 void check_defines(const std::string& path, const ImportOptions& options) {
   std::ifstream in(path);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
@@ -60,15 +60,15 @@ Registry<MeshFormat>& mesh_formats() {
                                    {".unv", read_unv},
                                    {".vtk", read_vtk},
                                    {".vtu", read_vtk},
-                                   {".msh", read_gmsh},
-                                   {".mesh", read_gmsh},
-                                   {".stl", read_gmsh},
-                                   {".geo", read_gmsh, true},
-                                   {".step", read_gmsh, true},
-                                   {".stp", read_gmsh, true},
-                                   {".brep", read_gmsh, true},
-                                   {".iges", read_gmsh, true},
-                                   {".igs", read_gmsh, true}}};
+                                   {".msh", read_msh},
+                                   {".mesh", read_medit},
+                                   {".stl", read_stl},
+                                   {".geo", read_geo, true},
+                                   {".step", read_step, true},
+                                   {".stp", read_step, true},
+                                   {".brep", read_brep, true},
+                                   {".iges", read_iges, true},
+                                   {".igs", read_iges, true}}};
   return all;
 }
 
@@ -88,6 +88,7 @@ Imported read_any(const std::string& path, const ImportOptions& options, const R
     if (ending == f.name) {
       if (options.size && !f.geometry) throw Error("", fmt::format("--size is for a geometry, {} is a mesh", path), "", Exit::usage);
       if (!options.define.empty() && ending != ".geo") throw Error("", "--define is for .geo scripts", "", Exit::usage);
+      if (options.trust && ending != ".geo") throw Error("", "--trust is for .geo scripts: no other file runs anything", "", Exit::usage);
       if (!options.define.empty()) check_defines(path, options);
       if (ending == ".geo") note_files_of_script(path);
       return f.read(path, options);

@@ -24,6 +24,7 @@ struct ImportOptions {
   std::vector<std::string> regions;                    // element sets that become regions, before what the deck says
   std::string rest;                                    // name of the region of cells in no region ("": "rest")
   std::vector<std::pair<std::string, double>> define;  // parameters of a .geo script
+  bool trust = false;                                  // a .geo script may run commands and write files
 };
 
 /// A keyword or item of the deck that has no place in the mesh or the scene lines.
@@ -94,7 +95,13 @@ Imported read_inp(const std::string& path, const ImportOptions& options);
 Imported read_bdf(const std::string& path, const ImportOptions& options);
 Imported read_unv(const std::string& path, const ImportOptions& options);
 Imported read_vtk(const std::string& path, const ImportOptions& options);
-Imported read_gmsh(const std::string& path, const ImportOptions& options);
+Imported read_msh(const std::string& path, const ImportOptions& options);
+Imported read_medit(const std::string& path, const ImportOptions& options);
+Imported read_stl(const std::string& path, const ImportOptions& options);
+Imported read_geo(const std::string& path, const ImportOptions& options);
+Imported read_step(const std::string& path, const ImportOptions& options);
+Imported read_brep(const std::string& path, const ImportOptions& options);
+Imported read_iges(const std::string& path, const ImportOptions& options);
 
 /// A kind of file by the ending of its name.
 struct MeshFormat {

@@ -13,7 +13,7 @@ namespace {
 class Turret : public Workplace {
  public:
   Turret() {
-    const Ran ran = run("hilo-import --quiet " + folder_ + "/turret.geo -o mesh.h5 && hilo-tag --quiet mesh.h5 " + folder_ +
+    const Ran ran = run("hilo-import --quiet " + folder_ + "/turret.geo --trust -o mesh.h5 && hilo-tag --quiet mesh.h5 " + folder_ +
                         "/tags-rigid.toml -o rigid.h5 && hilo-tag --quiet mesh.h5 " + folder_ + "/tags-flexible.toml -o flexible.h5");
     EXPECT_EQ(ran.exit, 0) << ran.err;
   }

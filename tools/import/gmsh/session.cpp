@@ -1,22 +1,32 @@
-#include "import/gmsh_session.hpp"
+#include "import/gmsh/session.hpp"
 
 #include <fmt/format.h>
 #include <gmsh.h>
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 
 #include "base/error.hpp"
 
 namespace hilo {
 namespace {
 
+bool reading = false;
+std::string end_line;    // what is said where a script ends the program
 std::string crash_line;  // what the handler of a crash writes: made beforehand, since it may not allocate
 
 }  // namespace
 
 CrashGuard::CrashGuard(const std::string& path) {
   crash_line = fmt::format("{}: {}: gmsh crashed on it (is the file damaged?)\n", tool_name(), path);
+  end_line = fmt::format("{}: {}: the script ends the program before there is a mesh (Exit)\n", tool_name(), path);
+  static const bool once = std::atexit([] {
+                             if (!reading) return;
+                             if (write(2, end_line.data(), end_line.size()) < 0) _exit(static_cast<int>(Exit::fault));
+                             _exit(static_cast<int>(Exit::input));
+                           }) == 0;
+  reading = once;
   struct sigaction act {};
   act.sa_handler = [](int) {
     if (write(2, crash_line.data(), crash_line.size()) < 0) _exit(static_cast<int>(Exit::fault));
@@ -28,6 +38,7 @@ CrashGuard::CrashGuard(const std::string& path) {
 }
 
 CrashGuard::~CrashGuard() {
+  reading = false;
   std::set_terminate(terminate_);
   for (size_t i = 0; i < signals_.size(); ++i) sigaction(signals_[i], &before_[i], nullptr);
 }

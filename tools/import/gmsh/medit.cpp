@@ -1,0 +1,138 @@
+// Medit's .mesh files in text (INRIA): Vertices, Edges, Triangles, ... each followed by a count and lines of nodes and a reference.  A
+// reference is what gmsh calls an entity; there are no names.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "import/data_line.hpp"
+#include "import/gmsh/mesh.hpp"
+
+namespace hilo {
+namespace {
+
+class MeditReader {
+ public:
+  explicit MeditReader(const std::string& path) : path_(path), text_(read_gz(path, "")) {}
+
+  GmshMesh read() {
+    if (word() != "MeshVersionFormatted") fail("no mesh of Medit: it does not begin with MeshVersionFormatted");
+    number<int>();
+    for (auto key = word(); !key.empty() && key != "End"; key = word()) {
+      if (key == "Dimension") {
+        if (number<int>() != 3) fail("the mesh is not of dimension 3");
+        continue;
+      }
+      const auto n = number<std::int64_t>();
+      if (n < 0 || static_cast<size_t>(n) > text_.size() / 2) fail(fmt::format("a count of {}, more than the file can hold", n));
+      if (key == "Vertices")
+        vertices(n);
+      else if (const Kind* k = kind_of(key))
+        elements(*k, n);
+      else  // corners, ridges, normals: numbers only
+        while (at_ < text_.size() && !std::isalpha(static_cast<unsigned char>(peek()))) word();
+    }
+    order_nodes();
+    return std::move(mesh_);
+  }
+
+ private:
+  struct Kind {
+    std::string_view key;
+    int type;
+    std::vector<int> p;  // gmsh[i] = theirs[p[i]]
+  };
+  static const Kind* kind_of(std::string_view key) {
+    static const std::vector<Kind> kinds = {
+        {"Edges", 1, {0, 1}},
+        {"EdgesP2", 8, {0, 1, 2}},
+        {"Triangles", 2, {0, 1, 2}},
+        {"TrianglesP2", 9, {0, 1, 2, 3, 4, 5}},
+        {"Quadrilaterals", 3, {0, 1, 2, 3}},
+        {"Tetrahedra", 4, {0, 1, 2, 3}},
+        {"TetrahedraP2", 11, {0, 1, 2, 3, 4, 5, 6, 7, 9, 8}},
+        {"Hexahedra", 5, {0, 1, 2, 3, 4, 5, 6, 7}},
+        {"Prisms", 6, {0, 1, 2, 3, 4, 5}},
+    };
+    for (const auto& k : kinds)
+      if (k.key == key) return &k;
+    return nullptr;
+  }
+
+  void blanks() {
+    while (at_ < text_.size() && (std::isspace(static_cast<unsigned char>(text_[at_])) || text_[at_] == '#'))
+      if (text_[at_] == '#')
+        at_ = std::min(text_.find('\n', at_), text_.size());
+      else
+        ++at_;
+  }
+  char peek() {
+    blanks();
+    return at_ < text_.size() ? text_[at_] : 'x';
+  }
+  std::string_view word() {
+    blanks();
+    const size_t from = at_;
+    while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
+    return std::string_view(text_).substr(from, at_ - from);
+  }
+  template <class T>
+  T number() {
+    const auto w = word();
+    T value{};
+    const auto [end, error] = std::from_chars(w.data(), w.data() + w.size(), value);
+    if (error != std::errc() || end != w.data() + w.size() || !std::isfinite(static_cast<double>(value)))
+      fail(w.empty() ? "the file ends here" : fmt::format("\"{}\" is not a number", w.substr(0, 40)));
+    return value;
+  }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(fmt::format("{}:{}", path_, 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n')), what);
+  }
+
+  void vertices(std::int64_t n) {
+    if (!mesh_.X.empty()) fail("Vertices a second time");
+    for (std::int64_t i = 1; i <= n; ++i) {
+      const double x = number<double>(), y = number<double>(), z = number<double>();
+      number<int>();
+      mesh_.X.emplace_back(x, y, z);
+      mesh_.node_tag.push_back(i);
+    }
+  }
+
+  /// As gmsh has them: by entity.
+  void order_nodes() {
+    const auto on = entity_of_nodes(mesh_);
+    std::vector<std::int64_t> order = mesh_.node_tag;
+    std::ranges::stable_sort(order, [&](auto a, auto b) { return on[static_cast<size_t>(a - 1)] < on[static_cast<size_t>(b - 1)]; });
+    std::vector<Vec3> X;
+    for (const auto tag : order) X.push_back(mesh_.X[static_cast<size_t>(tag - 1)]);
+    mesh_.node_tag = std::move(order), mesh_.X = std::move(X);
+  }
+
+  void elements(const Kind& k, std::int64_t n) {
+    const GmshType& t = *gmsh_type(k.type);
+    std::vector<std::int64_t> nodes(k.p.size());
+    for (std::int64_t e = 0; e < n; ++e) {
+      for (auto& a : nodes) a = number<std::int64_t>();
+      auto& b = mesh_.entities[{t.dimension, number<int>(), 0}].of(k.type);
+      b.tags.push_back(++elements_);
+      for (const int i : k.p) b.nodes.push_back(nodes[static_cast<size_t>(i)]);
+    }
+  }
+
+  std::string path_, text_;
+  size_t at_ = 0;
+  GmshMesh mesh_;
+  std::int64_t elements_ = 0;
+};
+
+}  // namespace
+
+Imported read_medit(const std::string& path, const ImportOptions& options) {
+  return imported_from(path, MeditReader(path).read(), options);
+}
+
+}  // namespace hilo

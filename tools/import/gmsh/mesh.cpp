@@ -1,0 +1,331 @@
+#include "import/gmsh/mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "base/error.hpp"
+
+namespace hilo {
+namespace {
+
+/// A gmsh element type, ours and the order of its nodes: ours[i] = gmsh[p[i]].
+struct Kind {
+  int type;
+  Shape shape;
+  std::vector<int> p;
+  const char* reduced = nullptr;  // what it was before nodes were left out
+};
+const Kind* kind_of(int type) {
+  static const std::vector<int> hex20{0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15};
+  static const std::vector<int> wedge15{0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11};
+  static const std::vector<Kind> kinds = {
+      {1, Shape::bar2, {0, 1}},
+      {8, Shape::bar2, {0, 1}, "line3"},
+      {4, Shape::tet4, {0, 1, 2, 3}},
+      {5, Shape::hex8, {0, 1, 2, 3, 4, 5, 6, 7}},
+      {6, Shape::wedge6, {0, 1, 2, 3, 4, 5}},
+      {11, Shape::tet10, {0, 1, 2, 3, 4, 5, 6, 7, 9, 8}},
+      {17, Shape::hex20r, hex20},
+      {12, Shape::hex20r, hex20, "hex27"},
+      {18, Shape::wedge15, wedge15},
+      {13, Shape::wedge15, wedge15, "wedge18"},
+  };
+  for (const auto& k : kinds)
+    if (k.type == type) return &k;
+  return nullptr;
+}
+
+/// Corners of a 2-D element type, 0 where it is none.
+size_t face_corners(int type) { return type == 2 || type == 9 ? 3 : type == 3 || type == 16 || type == 10 ? 4 : 0; }
+
+/// gmsh lists the elements of an entity by their family.
+int family(int type) {
+  const GmshType* t = gmsh_type(type);
+  const std::string name = t ? t->name : "";
+  return name.starts_with("Tetra") ? 0 : name.starts_with("Hexa") ? 1 : name.starts_with("Prism") ? 2 : 3;
+}
+
+class GmshReading {
+ public:
+  GmshReading(const std::string& path, const GmshMesh& mesh, const ImportOptions& o, bool curved) : path_(path), from_(mesh), o_(o) {
+    in_.curved = curved;
+    for (const auto& [key, entity] : from_.entities)
+      for (const int g : entity.groups) groups_[std::get<0>(key)][g].push_back(key);
+  }
+
+  Imported read() {
+    read_nodes();
+    read_solids();
+    std::int64_t flat = 0;
+    for (const auto& [key, entity] : from_.entities)
+      for (const auto& b : entity.blocks)
+        if (std::get<0>(key) == 2) flat += static_cast<std::int64_t>(b.tags.size());
+    refuse_flat(path_, flat, in_.mesh.n_cells());
+    read_curves();
+    if (in_.mesh.n_cells() == 0) throw Error(path_, "no volume cells and no bars");
+    for (const auto& w : reduced_) in_.notes.push_back(fmt::format("{} read without the nodes inside faces and cells", w));
+    assign_regions(in_, path_, regions_, false, {}, o_);
+    surface_groups();
+    node_groups();
+    return std::move(in_);
+  }
+
+ private:
+  using Key = GmshMesh::Key;
+
+  std::string group_name(int dim, int tag) const {
+    static const char* words[] = {"point", "curve", "surface", "volume"};
+    const auto name = from_.group_name.find({dim, tag});
+    return name == from_.group_name.end() || name->second.empty() ? fmt::format("{}_{}", words[dim], tag) : name->second;
+  }
+
+  void read_nodes() {
+    Mesh& m = in_.mesh;
+    std::int64_t most = 0;
+    for (const auto tag : from_.node_tag) most = std::max(most, tag);
+    if (most > static_cast<std::int64_t>(50 * from_.node_tag.size() + 1000000))
+      throw Error(path_, fmt::format("node numbers up to {} for {} nodes", most, from_.node_tag.size()), "renumber the mesh");
+    row_.assign(static_cast<size_t>(most) + 1, -1);
+    for (size_t i = 0; i < from_.node_tag.size(); ++i) {
+      const std::int64_t tag = from_.node_tag[i];
+      if (row_[tag] >= 0) continue;  // a node on two entities is listed once each
+      row_[tag] = m.n_nodes();
+      m.X.push_back(from_.X[i]);
+      m.node_id.push_back(tag);
+    }
+  }
+
+  std::int64_t row(std::int64_t tag, std::int64_t element) const {
+    if (tag < 0 || tag >= static_cast<std::int64_t>(row_.size()) || row_[tag] < 0)
+      throw Error(path_, fmt::format("element {} names node {}, which does not exist", element, tag));
+    return row_[tag];
+  }
+
+  void add_cells(const Key& key, std::vector<std::int64_t>& cells) {
+    const int dim = std::get<0>(key);
+    std::vector<const GmshMesh::Block*> blocks;
+    for (const auto& b : from_.entities.at(key).blocks) blocks.push_back(&b);
+    std::stable_sort(blocks.begin(), blocks.end(), [](const auto* a, const auto* b) { return family(a->type) < family(b->type); });
+    std::vector<std::int64_t> n;
+    for (const auto* b : blocks) {
+      const Kind* k = kind_of(b->type);
+      if (!k)
+        throw Error(path_,
+                    fmt::format("{} cells of type \"{}\" in {} {} are not read", b->tags.size(),
+                                gmsh_type(b->type) ? gmsh_type(b->type)->name : fmt::format("{}", b->type), dim == 3 ? "volume" : "curve",
+                                std::get<1>(key)),
+                    "supported: tetrahedra, hexahedra and prisms of order 1 and 2, lines");
+      if (k->reduced) reduced_.insert(k->reduced);
+      const size_t per = b->nodes.size() / std::max<size_t>(1, b->tags.size());
+      for (size_t e = 0; e < b->tags.size(); ++e) {
+        n.clear();
+        for (const int i : k->p) n.push_back(row(b->nodes[e * per + static_cast<size_t>(i)], b->tags[e]));
+        cells.push_back(in_.mesh.n_cells());
+        in_.mesh.add_cell(k->shape, n, -1, b->tags[e]);
+        if (!ids_.insert(b->tags[e]).second)
+          throw Error(path_, fmt::format("element {} is given twice", b->tags[e]), "number each element once");
+      }
+    }
+  }
+
+  void read_solids() {
+    size_t volumes = 0;
+    for (const auto& [key, entity] : from_.entities)
+      if (std::get<0>(key) == 3) add_cells(key, of_volume_[key]), ++volumes;
+    for (const auto& [tag, keys] : groups_[3]) {
+      CellGroup g{group_name(3, tag), {}};
+      for (const auto& k : keys) g.cells.insert(g.cells.end(), of_volume_[k].begin(), of_volume_[k].end());
+      if (g.cells.empty())
+        in_.notes.push_back(fmt::format("group \"{}\" holds no cells: left out", g.name));
+      else
+        regions_.push_back(std::move(g));
+    }
+    if (!regions_.empty() || !o_.rest.empty() || in_.mesh.n_cells() == 0) return;
+    // a geometry or mesh without groups: its volumes are its regions
+    for (const auto& [key, cells] : of_volume_) {
+      const int tag = std::get<1>(key);
+      std::string name = from_.entities.at(key).name;
+      if (const auto slash = name.rfind('/'); slash != std::string::npos) name = name.substr(slash + 1);
+      if (name.empty()) name = fmt::format("volume_{}", tag);
+      for (const auto& r : regions_)
+        if (r.name == name) {  // two volumes under one label
+          name = fmt::format("{}_{}", name, tag);
+          break;
+        }
+      if (!cells.empty()) regions_.push_back({name, cells});
+    }
+    in_.notes.push_back(fmt::format("no volume groups: each of {} volumes is a region", regions_.size()));
+  }
+
+  /// Curve groups: bars where none of the lines is an edge of a solid cell.
+  void read_curves() {
+    using Lines = std::vector<std::pair<std::int64_t, std::int64_t>>;
+    std::map<int, Lines> of_group;
+    Lines lines;
+    for (const auto& [tag, keys] : groups_[1]) {
+      Lines& one = of_group[tag];
+      for (const auto& key : keys)
+        for (const auto& b : from_.entities.at(key).blocks)
+          for (size_t e = 0; e < b.tags.size(); ++e) {
+            const size_t at = e * (b.nodes.size() / b.tags.size());
+            one.emplace_back(row(b.nodes[at], b.tags[e]), row(b.nodes[at + 1], b.tags[e]));
+          }
+      lines.insert(lines.end(), one.begin(), one.end());
+    }
+    if (lines.empty()) return;
+    const auto on_solids = lines_on_solids(in_.mesh, lines);
+    std::set<Key> used;
+    for (const auto& [tag, one] : of_group) {
+      if (one.empty() || std::any_of(one.begin(), one.end(), [&](const auto& l) { return on_solids.count(l); })) continue;
+      CellGroup g{group_name(1, tag), {}};
+      for (const auto& key : groups_[1][tag])
+        if (used.insert(key).second) add_cells(key, g.cells);
+      bar_groups_.insert(tag);
+      if (!g.cells.empty()) regions_.push_back(std::move(g));
+    }
+  }
+
+  std::vector<std::int64_t> group_nodes(const std::vector<Key>& keys) const {
+    std::vector<std::int64_t> nodes;
+    for (const auto& key : keys) {
+      const auto& entity = from_.entities.at(key);
+      for (const auto tag : entity.points) nodes.push_back(row(tag, 0));
+      for (const auto& b : entity.blocks)
+        for (const auto tag : b.nodes) nodes.push_back(row(tag, 0));
+    }
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    return nodes;
+  }
+
+  void surface_groups() {
+    SetNames names(in_);
+    std::vector<std::vector<std::int64_t>> faces;
+    std::vector<size_t> first{0};
+    for (const auto& [tag, keys] : groups_[2]) {
+      for (const auto& key : keys)
+        for (const auto& b : from_.entities.at(key).blocks) {
+          const size_t corners = face_corners(b.type), per = b.tags.empty() ? 0 : b.nodes.size() / b.tags.size();
+          for (size_t e = 0; corners && e < b.tags.size(); ++e) {
+            faces.emplace_back();
+            for (size_t i = 0; i < corners; ++i) faces.back().push_back(row(b.nodes[e * per + i], b.tags[e]));
+          }
+        }
+      first.push_back(faces.size());
+    }
+    const auto found = match_facets(in_.mesh, faces);
+    size_t g = 0;
+    for (const auto& [tag, keys] : groups_[2]) {
+      const std::string name = group_name(2, tag);
+      std::vector<Facet> facets;
+      for (size_t i = first[g]; i < first[g + 1]; ++i)
+        if (found[i].cell >= 0) facets.push_back(found[i]);
+      const size_t missing = first[g + 1] - first[g] - facets.size();
+      ++g;
+      if (facets.empty()) {
+        names.nodes(name, group_nodes(keys));
+        in_.notes.push_back(fmt::format("surface group \"{}\" lies on no cell: a node set", name));
+        continue;
+      }
+      if (missing)
+        in_.notes.push_back(
+            fmt::format("surface group \"{}\": {} of its {} faces lie on no cell: left out", name, missing, missing + facets.size()));
+      names.facets(name, std::move(facets));
+    }
+  }
+
+  void node_groups() {
+    SetNames names(in_);
+    for (const int dim : {1, 0})
+      for (const auto& [tag, keys] : groups_[dim])
+        if (dim != 1 || !bar_groups_.count(tag)) names.nodes(group_name(dim, tag), group_nodes(keys));
+  }
+
+  std::string path_;
+  const GmshMesh& from_;
+  const ImportOptions& o_;
+  Imported in_;
+  std::map<int, std::map<int, std::vector<Key>>> groups_;  // by dimension and tag
+  std::vector<std::int64_t> row_;                          // node number of gmsh -> row of X, or -1
+  std::unordered_set<std::int64_t> ids_;
+  std::map<Key, std::vector<std::int64_t>> of_volume_;
+  std::vector<CellGroup> regions_;
+  std::unordered_set<int> bar_groups_;
+  std::set<std::string> reduced_;
+};
+
+}  // namespace
+
+GmshMesh::Block& GmshMesh::Entity::of(int type) {
+  if (blocks.empty() || blocks.back().type != type) {
+    for (auto& b : blocks)
+      if (b.type == type) return b;
+    blocks.push_back({type, {}, {}});
+  }
+  return blocks.back();
+}
+
+const GmshType* gmsh_type(int type) {
+  static const GmshType types[] = {
+      {1, 1, 2, "Line 2"},
+      {2, 2, 3, "Triangle 3"},
+      {3, 2, 4, "Quadrilateral 4"},
+      {4, 3, 4, "Tetrahedron 4"},
+      {5, 3, 8, "Hexahedron 8"},
+      {6, 3, 6, "Prism 6"},
+      {7, 3, 5, "Pyramid 5"},
+      {8, 1, 3, "Line 3"},
+      {9, 2, 6, "Triangle 6"},
+      {10, 2, 9, "Quadrilateral 9"},
+      {11, 3, 10, "Tetrahedron 10"},
+      {12, 3, 27, "Hexahedron 27"},
+      {13, 3, 18, "Prism 18"},
+      {14, 3, 14, "Pyramid 14"},
+      {15, 0, 1, "Point"},
+      {16, 2, 8, "Quadrilateral 8"},
+      {17, 3, 20, "Hexahedron 20"},
+      {18, 3, 15, "Prism 15"},
+      {19, 3, 13, "Pyramid 13"},
+      {20, 2, 9, "Triangle 9"},
+      {21, 2, 10, "Triangle 10"},
+      {22, 2, 12, "Triangle 12"},
+      {23, 2, 15, "Triangle 15"},
+      {24, 2, 15, "Triangle 15I"},
+      {25, 2, 21, "Triangle 21"},
+      {26, 1, 4, "Line 4"},
+      {27, 1, 5, "Line 5"},
+      {28, 1, 6, "Line 6"},
+      {29, 3, 20, "Tetrahedron 20"},
+      {30, 3, 35, "Tetrahedron 35"},
+      {31, 3, 56, "Tetrahedron 56"},
+      {36, 2, 16, "Quadrilateral 16"},
+      {37, 2, 25, "Quadrilateral 25"},
+      {92, 3, 64, "Hexahedron 64"},
+      {93, 3, 125, "Hexahedron 125"},
+  };
+  for (const auto& t : types)
+    if (t.type == type) return &t;
+  return nullptr;
+}
+
+std::vector<GmshMesh::Key> entity_of_nodes(const GmshMesh& mesh) {
+  std::unordered_map<std::int64_t, GmshMesh::Key> on;
+  for (const auto& [key, entity] : mesh.entities)
+    for (const auto& b : entity.blocks)
+      for (const auto tag : b.nodes) on.try_emplace(tag, key);
+  std::vector<GmshMesh::Key> keys;
+  for (const auto tag : mesh.node_tag) {
+    const auto found = on.find(tag);
+    keys.push_back(found == on.end() ? GmshMesh::Key{4, 0, 0} : found->second);
+  }
+  return keys;
+}
+
+Imported imported_from(const std::string& path, const GmshMesh& mesh, const ImportOptions& options, bool curved) {
+  return GmshReading(path, mesh, options, curved).read();
+}
+
+}  // namespace hilo

@@ -1,0 +1,314 @@
+// Files of gmsh's mesh format, msh 2.0 to 2.2, 4.0 and 4.1, text and binary.
+// The library would take whatever does not begin as a mesh for a script and run it, so the reader is ours: it runs nothing.  Nothing is
+// allocated by a count that the rest of the file could not fill.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.hpp"
+#include "import/data_line.hpp"
+#include "import/gmsh/mesh.hpp"
+
+namespace hilo {
+namespace {
+
+/// Numbers one after the other, as text or as bytes; an error says the line, in a binary file the byte.
+class MshInput {
+ public:
+  explicit MshInput(const std::string& path) : path_(path), text_(read_gz(path, "")) {}
+
+  bool binary = false, swap = false;
+
+  std::string place() const {
+    if (binary) return fmt::format("{}: byte {}", path_, at_);
+    return fmt::format("{}:{}", path_,
+                       1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, text_.size())), '\n'));
+  }
+  [[noreturn]] void fail(const std::string& what, const std::string& hint = "") const { throw Error(place(), what, hint); }
+
+  /// The next word that is text in every file; "" at the end.
+  std::string_view word() {
+    while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
+    const size_t from = at_;
+    while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
+    return std::string_view(text_).substr(from, at_ - from);
+  }
+  std::string quoted() {
+    const size_t from = text_.find_first_not_of(" \t", at_), line = text_.find('\n', at_);
+    const size_t to = from < line && text_[from] == '"' ? text_.find('"', from + 1) : text_.npos;
+    if (to >= line) fail("a name in quotes is missing");
+    at_ = to + 1;
+    return text_.substr(from + 1, to - from - 1);
+  }
+  void skip_line() { at_ = std::min(text_.find('\n', at_), text_.size() - 1) + 1; }
+  /// Behind the line `word`, wherever it is.
+  void skip_behind(const std::string& word) {
+    const size_t found = text_.find("\n" + word, at_ ? at_ - 1 : 0);
+    if (found == text_.npos) fail(fmt::format("no {}", word), "cut off?");
+    at_ = found + 1 + word.size();
+    if (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_]))) fail(fmt::format("{} runs on", word));
+  }
+  std::string_view bytes(size_t n) {
+    if (text_.size() - at_ < n) fail("the file ends here");
+    at_ += n;
+    return std::string_view(text_).substr(at_ - n, n);
+  }
+
+  /// A number that is text in binary files too.
+  template <class T>
+  T number_in_text() {
+    const size_t start = at_;
+    const auto w = word();
+    T value{};
+    const auto [end, error] = std::from_chars(w.data(), w.data() + w.size(), value);
+    if (error == std::errc() && end == w.data() + w.size()) {
+      if constexpr (std::is_floating_point_v<T>)
+        if (!std::isfinite(value)) fail(fmt::format("\"{}\" is no number that can be computed with", w));
+      return value;
+    }
+    at_ = std::min(text_.find_first_not_of(" \t\r\n", start), text_.size());
+    if (w.empty()) fail("the file ends here");
+    fail(fmt::format("\"{}\" is not {}", w.substr(0, 40), std::is_integral_v<T> ? "a whole number" : "a number"));
+  }
+  /// The next number; a T in a binary file.
+  template <class T>
+  T next() {
+    if (!binary) return number_in_text<T>();
+    T value;
+    std::array<char, sizeof(T)> raw;
+    std::memcpy(raw.data(), bytes(sizeof(T)).data(), sizeof(T));
+    if (swap) std::reverse(raw.begin(), raw.end());
+    std::memcpy(&value, raw.data(), sizeof(T));
+    if constexpr (std::is_floating_point_v<T>)
+      if (!std::isfinite(value)) fail("a coordinate is not finite");
+    return value;
+  }
+  /// How many things follow, of `numbers` numbers each: no more than the file has room for.
+  template <class T>
+  size_t count(size_t numbers, bool in_text = false) {
+    const auto n = in_text ? number_in_text<std::int64_t>() : static_cast<std::int64_t>(next<T>());
+    const size_t least = binary ? 4 : 2;  // bytes of a number
+    if (n < 0 || static_cast<size_t>(n) > (text_.size() - at_) / (least * std::max<size_t>(1, numbers)) + 1)
+      fail(fmt::format("a count of {}, more than the rest of the file can hold", n));
+    return static_cast<size_t>(n);
+  }
+
+ private:
+  std::string path_, text_;
+  size_t at_ = 0;
+};
+
+class MshReader {
+ public:
+  explicit MshReader(const std::string& path) : path_(path), in_(path) {}
+
+  GmshMesh read() {
+    bool nodes = false, elements = false;
+    header();
+    for (auto name = in_.word(); !name.empty(); name = in_.word()) {
+      if (name.size() < 2 || name[0] != '$') in_.fail(fmt::format("\"{}\" stands outside of a section", name.substr(0, 40)));
+      const std::string section(name);
+      if (section == "$PhysicalNames")
+        physical_names();
+      else if (section == "$Entities" && version_ >= 4)
+        in_.skip_line(), entities();
+      else if (section == "$PartitionedEntities")
+        in_.fail("the mesh is in partitions", "save it whole: hilo-part makes its own");
+      else if (section == "$Nodes" && !nodes)
+        in_.skip_line(), nodes = true, version_ < 4 ? nodes2() : nodes4();
+      else if (section == "$Elements" && nodes && !elements)
+        in_.skip_line(), elements = true, version_ < 4 ? elements2() : elements4();
+      else if (section == "$Nodes" || section == "$Elements")
+        in_.fail(fmt::format("{} {}", section, nodes ? "a second time" : "before $Nodes"));
+      else {  // data on nodes, periodic surfaces, comments: not for us
+        in_.skip_behind("$End" + section.substr(1));
+        continue;
+      }
+      if (const auto end = in_.word(); end != "$End" + section.substr(1))
+        in_.fail(fmt::format("$End{} is missing", section.substr(1)), "cut off, or its counts are damaged?");
+    }
+    if (!nodes || !elements) throw Error(path_, fmt::format("no ${}", nodes ? "Elements" : "Nodes"), "cut off?");
+    order_nodes();
+    return std::move(mesh_);
+  }
+
+ private:
+  void header() {
+    std::string_view first = in_.word();
+    while (first == "$Comments") in_.skip_behind("$EndComments"), first = in_.word();
+    if (first == "$NOD" || first == "$PTS" || first == "$NOE") in_.fail("msh 1 is not read", "save it as msh 4.1 or 2.2");
+    if (first != "$MeshFormat") in_.fail("no mesh of gmsh: it does not begin with $MeshFormat", "a script is read from a file named .geo");
+    const auto version = in_.number_in_text<double>();
+    const auto binary = in_.number_in_text<int>(), size = in_.number_in_text<int>();
+    if (version != 2 && version != 2.1 && version != 2.2 && version != 4 && version != 4.1)
+      in_.fail(fmt::format("msh {} is not read", version), "save it as msh 4.1 or 2.2");
+    if ((binary != 0 && binary != 1) || size != 8) in_.fail("a line of $MeshFormat is: version, 0 or 1, 8");
+    version_ = version;
+    if (binary) {
+      in_.skip_line();
+      in_.binary = true;
+      const auto one = in_.next<std::int32_t>();
+      if (one != 1 && one != 0x01000000) in_.fail("the 1 that tells the order of bytes is missing");
+      in_.swap = one != 1;
+    }
+    if (in_.word() != "$EndMeshFormat") in_.fail("$EndMeshFormat is missing");
+  }
+
+  void physical_names() {
+    for (size_t n = in_.count<int>(2, true); n > 0; --n) {
+      const int dim = in_.number_in_text<int>(), tag = in_.number_in_text<int>();
+      mesh_.group_name[{dim, tag}] = in_.quoted();
+    }
+  }
+
+  /// An integer of the kind that counts are: 4.0 and 4.1 have 8 bytes.
+  std::int64_t big() { return in_.next<std::int64_t>(); }
+
+  void entities() {
+    std::array<size_t, 4> n{};
+    for (auto& one : n) one = in_.count<std::int64_t>(1);
+    for (int dim = 0; dim < 4; ++dim)
+      for (size_t i = 0; i < n[static_cast<size_t>(dim)]; ++i) {
+        const int tag = in_.next<std::int32_t>();
+        auto& entity = mesh_.entities[{dim, tag, 0}];
+        for (int x = dim == 0 && version_ > 4 ? 3 : 6; x > 0; --x) in_.next<double>();
+        for (size_t groups = in_.count<std::int64_t>(1); groups > 0; --groups) entity.groups.push_back(std::abs(in_.next<std::int32_t>()));
+        if (dim > 0)
+          for (size_t bounds = in_.count<std::int64_t>(1); bounds > 0; --bounds) in_.next<std::int32_t>();
+      }
+  }
+
+  void node(std::int64_t tag, const GmshMesh::Key& on) {
+    if (tag <= 0) in_.fail(fmt::format("node number {}", tag));
+    mesh_.node_tag.push_back(tag);
+    on_.push_back(on);
+  }
+  void position() {
+    const double x = in_.next<double>(), y = in_.next<double>(), z = in_.next<double>();
+    mesh_.X.emplace_back(x, y, z);
+  }
+
+  void nodes2() {
+    const size_t n = in_.count<int>(4, true);
+    if (in_.binary) in_.skip_line();
+    for (size_t i = 0; i < n; ++i) node(in_.next<std::int32_t>(), {4, 0, 0}), position();
+  }
+
+  /// Dimension and tag of the entity of a block.
+  GmshMesh::Key block() {
+    const int first = in_.next<std::int32_t>(), second = in_.next<std::int32_t>();
+    const int dim = version_ > 4 ? first : second, tag = version_ > 4 ? second : first;
+    if (dim < 0 || dim > 3) in_.fail(fmt::format("a block of dimension {}", dim));
+    return {dim, tag, 0};
+  }
+
+  void nodes4() {
+    const size_t blocks = in_.count<std::int64_t>(3);
+    in_.count<std::int64_t>(4);
+    if (version_ > 4) big(), big();
+    for (size_t b = 0; b < blocks; ++b) {
+      const auto on = block();
+      const int parametric = in_.next<std::int32_t>();
+      const size_t n = in_.count<std::int64_t>(4);
+      const size_t extra = parametric ? static_cast<size_t>(std::get<0>(on)) : 0;
+      auto& entity = mesh_.entities[on];
+      const size_t first = mesh_.node_tag.size();
+      if (version_ > 4)
+        for (size_t i = 0; i < n; ++i) node(big(), on);
+      for (size_t i = 0; i < n; ++i) {
+        if (version_ <= 4) node(in_.next<std::int32_t>(), on);
+        position();
+        for (size_t u = 0; u < extra; ++u) in_.next<double>();
+      }
+      if (std::get<0>(on) == 0)
+        entity.points.insert(entity.points.end(), mesh_.node_tag.begin() + static_cast<std::ptrdiff_t>(first), mesh_.node_tag.end());
+    }
+  }
+
+  const GmshType& type(int number) const {
+    const GmshType* t = gmsh_type(number);
+    if (!t)
+      in_.fail(fmt::format("elements of type {} are not read", number),
+               "supported: tetrahedra, hexahedra and prisms of order 1 and 2, lines");
+    return *t;
+  }
+
+  void elements2() {
+    const size_t n = in_.count<int>(3, true);
+    if (in_.binary) in_.skip_line();
+    for (size_t done = 0; done < n;) {
+      std::int64_t id = 0;
+      if (!in_.binary) id = in_.next<std::int32_t>();
+      const GmshType& t = type(in_.next<std::int32_t>());
+      const size_t run = in_.binary ? in_.count<std::int32_t>(1) : 1, tags = in_.count<std::int32_t>(run);
+      if (run == 0 || run > n - done) in_.fail(fmt::format("a run of {} elements, {} are left", run, n - done));
+      for (size_t e = 0; e < run; ++e, ++done) {
+        if (in_.binary) id = in_.next<std::int32_t>();
+        int group = 0, tag = 0;
+        for (size_t i = 0; i < tags; ++i) {
+          const int value = in_.next<std::int32_t>();
+          if (i == 0) group = std::abs(value);
+          if (i == 1) tag = value;
+        }
+        auto& entity = mesh_.entities[{t.dimension, tag, group}];
+        if (group > 0 && entity.groups.empty()) entity.groups = {group};
+        element(entity, t, id);
+      }
+    }
+  }
+
+  void elements4() {
+    const size_t blocks = in_.count<std::int64_t>(3);
+    in_.count<std::int64_t>(2);
+    if (version_ > 4) big(), big();
+    for (size_t b = 0; b < blocks; ++b) {
+      const auto on = block();
+      const GmshType& t = type(in_.next<std::int32_t>());
+      if (t.dimension != std::get<0>(on)) in_.fail(fmt::format("\"{}\" in an entity of dimension {}", t.name, std::get<0>(on)));
+      const size_t n = in_.count<std::int64_t>(1);
+      auto& entity = mesh_.entities[on];
+      for (size_t e = 0; e < n; ++e) element(entity, t, version_ > 4 ? big() : in_.next<std::int32_t>());
+    }
+  }
+
+  void element(GmshMesh::Entity& entity, const GmshType& t, std::int64_t id) {
+    auto& b = entity.of(t.type);
+    b.tags.push_back(id);
+    for (int i = 0; i < t.n_nodes; ++i) b.nodes.push_back(version_ > 4 ? big() : in_.next<std::int32_t>());
+  }
+
+  /// As gmsh has them: by entity.
+  void order_nodes() {
+    if (version_ < 4) on_ = entity_of_nodes(mesh_);
+    std::vector<size_t> order(mesh_.node_tag.size());
+    for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+      const auto place = [&](size_t i) {
+        return std::tuple(std::get<0>(on_[i]), std::get<1>(on_[i]), version_ < 4 ? mesh_.node_tag[i] : 0);
+      };
+      return place(a) < place(b);
+    });
+    std::vector<std::int64_t> tags;
+    std::vector<Vec3> X;
+    for (const size_t i : order) tags.push_back(mesh_.node_tag[i]), X.push_back(mesh_.X[i]);
+    for (size_t i = 1; i < tags.size(); ++i)
+      if (tags[i] == tags[i - 1] && X[i] != X[i - 1]) throw Error(path_, fmt::format("node {} is given twice, at two places", tags[i]));
+    mesh_.node_tag = std::move(tags), mesh_.X = std::move(X);
+  }
+
+  std::string path_;
+  MshInput in_;
+  double version_ = 0;
+  GmshMesh mesh_;
+  std::vector<GmshMesh::Key> on_;  // entity of each node
+};
+
+}  // namespace
+
+Imported read_msh(const std::string& path, const ImportOptions& options) { return imported_from(path, MshReader(path).read(), options); }
+
+}  // namespace hilo

@@ -1,0 +1,12 @@
+// What a stranger's .geo script may not do.
+#pragma once
+#include <string>
+
+namespace hilo {
+
+/// Error with file:line where the script, or one that it includes, runs a command, writes a file, reads the environment, ends the program,
+/// or reads a file that is not in its folder.  gmsh sees the same words: the lexer is gmsh's, and where texts could make the two disagree
+/// the script is refused.
+void refuse_commands(const std::string& path);
+
+}  // namespace hilo
