@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "model/mesh_source.hpp"
 #include "model/scene_sets.hpp"
 
 namespace hilo {
@@ -62,6 +63,7 @@ const MeshFile& RunFile::mesh_file() {
   const std::string target = link ? resolved_from(path, link->first) : path;
   if (!fs::exists(target))
     throw Error(path, fmt::format("the mesh it was run on, {}, is missing", target), "keep it where it was, or move both together");
+  refuse_if_changed(*store_, "mesh", target);
   mesh_ = read_mesh_file(target);
   if (store_->has("/scene")) add_scene_sets(scene_of(*this), mesh_->mesh);
   if (store_->has("/tags/fidelity")) {  // as run, which may differ from the tags there are now

@@ -27,7 +27,7 @@ void Distribution::open() {
   if (const auto target = holder(file_, "mesh"); target != file_.path()) {
     other_ = Store::open(target);
     checked_format(*other_);
-    if (comm_.rank == 0) warn_if_changed(file_, "mesh", target);
+    refuse_changed("mesh", target);
   }
   const Store& s = mesh_file();
   Mesh& m = out_.mesh;
@@ -64,6 +64,13 @@ void Distribution::open() {
     if (row < 0 || row >= nodes_.n) throw damaged(fmt::format("a set of one node holds {}, allowed is 0 to {}", row, nodes_.n - 1));
 }
 
+/// One rank reads the whole file for its digest; all are refused alike.
+void Distribution::refuse_changed(const std::string& what, const std::string& target) const {
+  comm_.together([&] {
+    if (comm_.rank == 0) refuse_if_changed(file_, what, target);
+  });
+}
+
 void Distribution::read_tags() {
   out_.fidelity.assign(out_.mesh.region_name.size(), Fidelity::nonlinear);
   if (!file_.linked("/tags") && !file_.has("/tags")) return;
@@ -73,13 +80,9 @@ void Distribution::read_tags() {
   if (target != file_.path()) {
     tags = Store::open(target);
     checked_format(*tags);
-    if (comm_.rank == 0) warn_if_changed(file_, "tags", target);
+    refuse_changed("tags", target);
   }
-  const auto words = (tags ? *tags : file_).read_strings("/tags/fidelity");
-  if (words.size() != out_.fidelity.size())
-    throw Error(file_.path(), fmt::format("{} tags for the {} regions of the mesh", words.size(), out_.fidelity.size()),
-                "the mesh has changed: tag it again");
-  for (size_t r = 0; r < words.size(); ++r) out_.fidelity[r] = fidelity_of(words[r], target);
+  out_.fidelity = fidelity_by_name(tags ? *tags : file_, out_.mesh.region_name, file_.path());
 }
 
 void Distribution::read_cells() {

@@ -44,6 +44,7 @@ class Distribution {
   // distribute.cpp
   /// Everything that is small and the same on all ranks; its errors are the same too.
   void open();
+  void refuse_changed(const std::string& what, const std::string& target) const;
   void read_tags();
   /// This rank's slices of the cells and of the node coordinates.
   void read_cells();

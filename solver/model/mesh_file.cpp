@@ -36,13 +36,6 @@ void head(Store& store, const std::string& format, const std::vector<std::string
   store.write_strings("/provenance", provenance);
 }
 
-/// Link `/what` of the new file to that of `target`, with the digest of the file as it is now.
-void link_to(Store& store, const std::string& what, const std::string& target) {
-  store.link("/" + what, target, "/" + what);
-  store.set("/", what + "_file", relative_to(store.path(), target));
-  store.set("/", what + "_digest", digest(target));
-}
-
 void check_range(const Store& store, const std::string& array, std::span<const std::int64_t> list, std::int64_t n) {
   for (const auto i : list)
     if (i < 0 || i >= n) throw Error(store.path(), fmt::format("damaged: {} holds {}, allowed is 0 to {}", array, i, n - 1));
@@ -146,9 +139,40 @@ std::string holder(const Store& store, const std::string& what) {
   return target;
 }
 
-void warn_if_changed(const Store& store, const std::string& what, const std::string& target) {
+void refuse_if_changed(const Store& store, const std::string& what, const std::string& target) {
   const auto then = store.text_attribute("/", what + "_digest");
-  if (then && *then != digest(target)) warn(store.path(), fmt::format("{} has changed since this file was made; make it again", target));
+  if (!then || *then == digest(target)) return;
+  std::string command;
+  if (store.has("/provenance"))
+    if (const auto lines = store.read_strings("/provenance"); !lines.empty()) command = ": " + lines.back();
+  throw Error(store.path(), fmt::format("{} has changed since this file was made", target), "make it again" + command);
+}
+
+void link_to(Store& store, const std::string& what, const std::string& target) {
+  store.link("/" + what, target, "/" + what);
+  store.set("/", what + "_file", relative_to(store.path(), target));
+  store.set("/", what + "_digest", digest(target));
+}
+
+std::vector<Fidelity> fidelity_by_name(const Store& tags, const std::vector<std::string>& regions, const std::string& source) {
+  const auto words = tags.read_strings("/tags/fidelity");
+  std::vector<Fidelity> levels(regions.size());
+  if (!tags.has("/tags/region")) {  // made before tags had names
+    if (words.size() != regions.size())
+      throw Error(source, fmt::format("{} tags for the {} regions of the mesh", words.size(), regions.size()),
+                  "the mesh has changed: tag it again");
+    for (size_t r = 0; r < words.size(); ++r) levels[r] = fidelity_of(words[r], tags.path());
+    return levels;
+  }
+  const auto names = tags.read_strings("/tags/region");
+  check_size(tags, "/tags/fidelity", words.size(), names.size());
+  for (size_t r = 0; r < regions.size(); ++r) {
+    const auto at = std::ranges::find(names, regions[r]);
+    if (at == names.end())
+      throw Error(source, fmt::format("no tag for the region \"{}\" of the mesh", regions[r]), "the mesh has changed: tag it again");
+    levels[r] = fidelity_of(words[static_cast<size_t>(at - names.begin())], tags.path());
+  }
+  return levels;
 }
 
 std::string checked_format(const Store& store) {
@@ -172,20 +196,14 @@ MeshFile read_mesh_file(const std::string& path) {
     if (target == path) return body(store);
     const Store other = Store::open(target);
     checked_format(other);
-    warn_if_changed(store, what, target);
+    refuse_if_changed(store, what, target);
     body(other);
   };
   read_from("mesh", [&](const Store& s) { f.mesh = read_mesh(s); });
   f.fidelity.assign(f.mesh.region_name.size(), Fidelity::nonlinear);
   if (store.linked("/tags") || store.has("/tags")) {
     f.tagged = true;
-    read_from("tags", [&](const Store& s) {
-      const auto tags = s.read_strings("/tags/fidelity");
-      if (tags.size() != f.fidelity.size())
-        throw Error(path, fmt::format("{} tags for the {} regions of the mesh", tags.size(), f.fidelity.size()),
-                    "the mesh has changed: tag it again");
-      for (size_t r = 0; r < tags.size(); ++r) f.fidelity[r] = fidelity_of(tags[r], s.path());
-    });
+    read_from("tags", [&](const Store& s) { f.fidelity = fidelity_by_name(s, f.mesh.region_name, path); });
   }
   if (store.has("/parts/rank")) {
     f.rank = store.read<std::int32_t>("/parts/rank");
@@ -244,6 +262,8 @@ void write_tags(const std::string& path, const std::string& from, const std::vec
   link_to(store, "mesh", mesh);
   std::vector<std::string> tags;
   for (const auto f : fidelity) tags.emplace_back(word(f));
+  const Store source = Store::open(mesh);
+  store.write_strings("/tags/region", source.read_strings("/mesh/regions/name"));
   store.write_strings("/tags/fidelity", tags);
   store.publish();
 }

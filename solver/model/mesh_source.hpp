@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "model/mesh.hpp"
 #include "model/store.hpp"
@@ -13,8 +14,12 @@ namespace hilo {
 std::string checked_format(const Store& store);
 /// The file that really holds `/what`: the store's own, or the one it links to.
 std::string holder(const Store& store, const std::string& what);
-/// Warn where `target` is not the file it was when `store` was made from it.
-void warn_if_changed(const Store& store, const std::string& what, const std::string& target);
+/// Error where `target` is not the file it was when `store` was made from it, with the command that made the store.
+void refuse_if_changed(const Store& store, const std::string& what, const std::string& target);
+/// Link `/what` of a new file to that of `target`, with the digest of the file as it is now.
+void link_to(Store& store, const std::string& what, const std::string& target);
+/// The fidelity of each region by its name, from a tags file (`source`: the file that was given).
+std::vector<Fidelity> fidelity_by_name(const Store& tags, const std::vector<std::string>& regions, const std::string& source);
 
 /// Numbers of shapes in a mesh file: Error where this program has none of the number, or another shape than the program that wrote the
 /// file. `first`: of the first cell of these.

@@ -22,7 +22,7 @@ Format version {}.
 - Node order within a cell is VTK's. Counting starts at 0. Facets are counted as in the table below, corners first, seen from outside anticlockwise.
 - `<name>` in a path stands for any name, with `/` written `%2F` and `%` written `%25`; `<step>` for a six-digit field number.
 - A file is written under another name and renamed when it is whole. A results file grows as `run.h5.new` until its first rows are safe, then it replaces the former `run.h5` and grows under that name, with `complete` = 0 until the run has come to its end; whatever ends the process, it is whole as of its last commit ([trust](trust.md)).
-- A file links to the one it was made from: an HDF5 external link with a relative path, and the digest of that file (`fnv1a64`) as an attribute. A changed file is warned of.
+- A file links to the one it was made from: an HDF5 external link with a relative path, and the digest of that file (`fnv1a64`) as an attribute. A changed file is refused, with the command to run. Arrays written at once carry a digest of their bytes (attribute `fnv1a64`), histories a checksum of every chunk (fletcher32).
 - The same input gives the same bytes.
 
 ## Exit codes

@@ -2,6 +2,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "dynamics/record/recorder.hpp"
+#include "model/mesh_source.hpp"
 #include "system/bodies.hpp"
 
 namespace hilo {
@@ -15,7 +16,7 @@ void Recorder::declare_run(Store& f) const {
   f.set("/", "title", scene_.table("scene").has("title") ? scene_.table("scene").text("title") : std::string());
   if (system_.mesh) {
     const LocalMesh& m = *system_.mesh;
-    f.link("/mesh", m.file, "/mesh");
+    link_to(f, "mesh", holder(Store::open(m.file), "mesh"));
     std::vector<std::string> words;
     for (Fidelity level : m.fidelity) words.emplace_back(word(level));
     f.write_strings("/tags/fidelity", words);
