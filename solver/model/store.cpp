@@ -111,6 +111,7 @@ Store Store::open(const std::string& path) {
   JournalledFile::recover(path);
   if (status.st_size == 0) throw Error(path, "empty file");
   if (H5Fis_hdf5(path.c_str()) <= 0) throw Error(path, "not an HDF5 file");
+  walk_in_child(path);
   auto impl = std::make_unique<Impl>();
   impl->path = impl->on_disk = path;
   const Id access = reading();
@@ -141,6 +142,7 @@ void Store::Impl::follow_links(Store& store, std::vector<std::string>& chain) {
       if (fs::equivalent(before, target, ignored))
         throw Error(path, fmt::format("its link {} leads in a circle, to {}", name, target),
                     "a file it was made from was replaced: make them again");
+    walk_in_child(target);
     auto behind = std::make_unique<Impl>();
     behind->path = behind->on_disk = target;
     const Id access = reading();
@@ -154,15 +156,22 @@ void Store::Impl::follow_links(Store& store, std::vector<std::string>& chain) {
 
 namespace {
 
-Id create_file(const std::string& path, const std::string& on_disk, bool grows) {
+/// `sealed`: nobody reads it before it is whole, so it may be of the format whose every block of metadata has a checksum; a file of that
+/// format cannot be opened while it is written, nor after a writer that was killed.  Others are written through a journal.
+Id create_file(const std::string& path, const std::string& on_disk, bool sealed) {
   start_library();
   const int descriptor = ::open(on_disk.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor < 0) throw Error(path, fmt::format("cannot write: {}", std::strerror(errno)), "", Exit::resources);
   ::close(descriptor);
   const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_alignment(access, 4 * slab_rows, 4 * slab_rows);  // a page
-  if (grows) JournalledFile::choose(access);
-  Id file(H5Fcreate(on_disk.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
+  if (sealed)
+    H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
+  else
+    JournalledFile::choose(access);
+  const Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation, false);
+  Id file(H5Fcreate(on_disk.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
   if (!file.ok()) {
     const Cause cause = last_cause();
     ::unlink(on_disk.c_str());
@@ -187,7 +196,7 @@ Store Store::create(const std::string& path) {
   check_output(path);
   impl->path = path;
   impl->on_disk = fmt::format("{}.tmp-{}", path, ::getpid());
-  impl->file = create_file(path, impl->on_disk, false);
+  impl->file = create_file(path, impl->on_disk, true);
   impl->writable = impl->temporary = true;
   return Store(std::move(impl));
 }
@@ -200,7 +209,7 @@ Store Store::create_growing(const std::string& path) {
   impl->path = path, impl->on_disk = unpublished(path);
   impl->lock_output();
   impl->temporary = true;
-  impl->file = create_file(path, impl->on_disk, true);
+  impl->file = create_file(path, impl->on_disk, false);
   impl->growing = &JournalledFile::behind(impl->file);
   impl->writable = true;
   return Store(std::move(impl));

@@ -46,6 +46,15 @@ struct Cause {
 };
 Cause last_cause();
 
+/// Error where the library does not survive a walk through the file.
+void walk_in_child(const std::string& path);
+
+/// Digest of texts: lengths and letters, one after the other.
+std::uint64_t digest_of(std::span<const std::string> texts);
+
+/// Digest of an array's bytes as they lie in the file: its attribute of this name.
+inline constexpr const char* digest_name = "fnv1a64";
+
 /// Type of T in memory and, little-endian, in the file.
 template <class T>
 hid_t memory_type() {
@@ -137,15 +146,24 @@ struct Store::Impl {
   }
 
   Id open_array(const std::string& array) const;
+  /// Error where an array says that it is larger than its file.
+  void check_room(hid_t array, const std::string& name, std::int64_t elements, size_t bytes) const;
+  /// Error where an array has a digest, and not that of `bytes`.
+  void check_digest(hid_t array, const std::string& name, std::uint64_t digest) const;
 
   bool exists(const std::string& object) const;
 
+  /// The groups above an object, made where there are none.
+  void make_groups(const std::string& object);
+  Id make_group(const std::string& group);
   Id make_array(const std::string& array, hid_t type, hid_t space, hid_t creation);
 
   void attribute(hid_t object, const std::string& name, hid_t type, hid_t memory, const void* value);
   void text_attribute(hid_t object, const std::string& name, const std::string& value);
   /// The object an attribute belongs to; a group of that name is made where there is nothing.
   Id owner(const std::string& object);
+
+  void write_digest(hid_t array, std::uint64_t digest) { attribute(array, digest_name, H5T_STD_U64LE, H5T_NATIVE_UINT64, &digest); }
 
   void drain(Rows& r, const std::string& array);
   void drain() {

@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "model/store_impl.hpp"
 
@@ -69,6 +70,43 @@ std::string Store::type(const std::string& array) const {
   }
 }
 
+void Store::Impl::check_room(hid_t array, const std::string& name, std::int64_t elements, size_t bytes) const {
+  if (writable) return;  // rows may still be in memory
+  hsize_t size = 0;
+  const Id holder(H5Iget_file_id(array), H5Fclose);  // not this file where a link led to the array
+  if (H5Fget_filesize(holder, &size) < 0) fail_read(name);
+  if (elements < 0 || static_cast<hsize_t>(elements) > size / std::max<size_t>(1, bytes))
+    throw Error(path, fmt::format("damaged: {} says that it is larger than the file", name));
+}
+
+void Store::Impl::check_digest(hid_t array, const std::string& name, std::uint64_t digest) const {
+  if (H5Aexists(array, digest_name) <= 0) return;
+  std::uint64_t written = 0;
+  const Id a(H5Aopen(array, digest_name, H5P_DEFAULT), H5Aclose);
+  if (!a.ok() || H5Aread(a, H5T_NATIVE_UINT64, &written) < 0) fail_read(name);
+  if (written != digest)
+    throw Error(path, fmt::format("damaged: {} is not what was written", name), "make it again, or take it from where it was copied");
+}
+
+namespace {
+
+/// One of the types that hilo writes: others would be converted by rules that a damaged file can make up.
+bool is_ours(hid_t type) {
+  for (const hid_t ours : {H5T_IEEE_F64LE, H5T_IEEE_F32LE, H5T_STD_I32LE, H5T_STD_I64LE, H5T_STD_U8LE})
+    if (H5Tequal(type, ours) > 0) return true;
+  return false;
+}
+
+/// Number of elements, -1 where it does not fit 64 bits.
+std::int64_t checked_product(std::span<const std::int64_t> shape) {
+  std::int64_t n = 1;
+  for (const std::int64_t k : shape)
+    if (k < 0 || __builtin_mul_overflow(n, k, &n)) return -1;
+  return n;
+}
+
+}  // namespace
+
 template <class T>
 std::vector<T> Store::read(const std::string& array) const {
   const auto n = shape(array);
@@ -82,12 +120,14 @@ std::vector<T> Store::read_rows(const std::string& array, std::int64_t first, st
   const Id type(H5Dget_type(set), H5Tclose);
   if (const auto c = H5Tget_class(type); c != H5T_INTEGER && c != H5T_FLOAT)
     throw Error(impl_->path, fmt::format("{} does not hold numbers", array));
+  if (!is_ours(type)) throw Error(impl_->path, fmt::format("{} holds numbers of a foreign type", array), "damaged?");
   const Id space(H5Dget_space(set), H5Sclose);
   auto n = extent(space);
   const std::int64_t rows = n.empty() ? 1 : n[0];
   if (first < 0 || count < 0 || first + count > rows)
     throw Error(impl_->path, fmt::format("{} has {} rows, wanted {} to {}", array, rows, first, first + count));
   if (n.empty()) n.push_back(1);
+  impl_->check_room(set, array, checked_product(n), H5Tget_size(type));
   n[0] = count;
   std::vector<T> values(static_cast<size_t>(product(n)));
   if (values.empty()) return values;
@@ -99,6 +139,8 @@ std::vector<T> Store::read_rows(const std::string& array, std::int64_t first, st
     if (H5Dread(set, memory_type<T>(), room, space, H5P_DEFAULT, values.data()) < 0) impl_->fail_read(array);
   } else if (H5Dread(set, memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
     impl_->fail_read(array);
+  } else if (H5Tequal(type, file_type<T>()) > 0) {
+    impl_->check_digest(set, array, Digest().add(std::as_bytes(std::span(values))).value());
   }
   return values;
 }
@@ -108,7 +150,7 @@ namespace {
 /// Strings of an open array or attribute, variable or fixed length.  `get(type, buffer)` reads.
 template <class Read>
 std::optional<std::vector<std::string>> strings_of(hid_t file_type, hid_t space, const Read& get) {
-  const auto n = static_cast<size_t>(product(extent(space)));
+  const auto n = static_cast<size_t>(std::max<std::int64_t>(0, checked_product(extent(space))));
   std::vector<std::string> texts(n);
   if (n == 0) return texts;
   if (H5Tis_variable_str(file_type) > 0) {
@@ -132,8 +174,10 @@ std::vector<std::string> Store::read_strings(const std::string& array) const {
   const Id set = impl_->open_array(array);
   const Id type(H5Dget_type(set), H5Tclose), space(H5Dget_space(set), H5Sclose);
   if (H5Tget_class(type) != H5T_STRING) throw Error(impl_->path, fmt::format("{} does not hold text", array));
+  impl_->check_room(set, array, checked_product(extent(space)), H5Tget_size(type));
   auto texts = strings_of(type, space, [&](hid_t t, void* to) { return H5Dread(set, t, H5S_ALL, H5S_ALL, text_transfer(), to); });
   if (!texts) impl_->fail_read(array);
+  impl_->check_digest(set, array, digest_of(*texts));
   return *texts;
 }
 

@@ -7,18 +7,38 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "model/store_impl.hpp"
 
 namespace hilo {
+
+void Store::Impl::make_groups(const std::string& object) {
+  for (size_t at = object.find('/', 1); at != object.npos; at = object.find('/', at + 1))
+    if (const std::string part = object.substr(0, at); H5Lexists(file, part.c_str(), H5P_DEFAULT) <= 0) make_group(part);
+}
+
+Id Store::Impl::make_group(const std::string& name) {
+  const Id creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation, false);  // the same content gives the same bytes
+  Id group(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose);
+  need(group.ok(), "cannot create group " + name);
+  return group;
+}
+
+std::uint64_t digest_of(std::span<const std::string> texts) {
+  Digest all;
+  for (const auto& t : texts) all.add(std::string_view(t));
+  return all.value();
+}
 
 Id Store::Impl::make_array(const std::string& array, hid_t type, hid_t space, hid_t creation) {
   if (exists(array)) {
     if (!grows_on) throw Error(path, fmt::format("array {} written twice", array), "", Exit::fault);
     need(H5Ldelete(file, array.c_str(), H5P_DEFAULT) >= 0, "cannot replace " + array);
   }
+  make_groups(array);
   const Id link(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(link, 1);
   H5Pset_char_encoding(link, H5T_CSET_UTF8);
   H5Pset_obj_track_times(creation, false);  // the same content gives the same bytes
   Id set(H5Dcreate2(file, array.c_str(), type, space, link, creation, H5P_DEFAULT), H5Dclose);
@@ -41,11 +61,8 @@ void Store::Impl::text_attribute(hid_t object, const std::string& name, const st
 
 Id Store::Impl::owner(const std::string& object) {
   if (exists(object)) return {H5Oopen(file, object.c_str(), H5P_DEFAULT), H5Oclose};
-  const Id link(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(link, 1);
-  Id group(H5Gcreate2(file, object.c_str(), link, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
-  need(group.ok(), "cannot create group " + object);
-  return group;
+  make_groups(object);
+  return make_group(object);
 }
 
 void Store::Impl::drain(Rows& r, const std::string& array) {
@@ -74,6 +91,7 @@ void Store::write(const std::string& array, std::span<const T> values, std::vect
     impl_->need(H5Dwrite(set, memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0, "cannot write " + array);
   if (!unit.empty()) impl_->text_attribute(set, "unit", unit);
   if (!meaning.empty()) impl_->text_attribute(set, "meaning", meaning);
+  impl_->write_digest(set, Digest().add(std::as_bytes(values)).value());
 }
 
 template <class T>
@@ -112,6 +130,7 @@ void Store::write_strings(const std::string& array, std::span<const std::string>
   std::vector<const char*> raw;
   for (const auto& v : values) raw.push_back(v.c_str());
   if (!raw.empty()) impl_->need(H5Dwrite(set, type, H5S_ALL, H5S_ALL, text_transfer(), raw.data()) >= 0, "cannot write " + array);
+  impl_->write_digest(set, digest_of(values));
 }
 
 void Store::write_text(const std::string& array, const std::string& text) {
@@ -119,6 +138,7 @@ void Store::write_text(const std::string& array, const std::string& text) {
   const Id set = impl_->make_array(array, type, space, creation);
   const char* raw = text.c_str();
   impl_->need(H5Dwrite(set, type, H5S_ALL, H5S_ALL, text_transfer(), &raw) >= 0, "cannot write " + array);
+  impl_->write_digest(set, digest_of(std::span(&text, 1)));
 }
 
 template <class T>
@@ -143,6 +163,7 @@ void Store::start_rows(const std::string& array, std::vector<std::int64_t> row_s
   const Id space(H5Screate_simple(static_cast<int>(now.size()), now.data(), most.data()), H5Sclose);
   const Id creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data());
+  H5Pset_fletcher32(creation);
   Id set = impl_->make_array(array, file_type<T>(), space, creation);
   if (!unit.empty()) impl_->text_attribute(set, "unit", unit);
   if (!meaning.empty()) impl_->text_attribute(set, "meaning", meaning);
@@ -189,10 +210,9 @@ void Store::set(const std::string& object, const std::string& attribute, std::in
 
 void Store::link(const std::string& name, const std::string& target, const std::string& object) {
   const std::string relative = relative_to(impl_->path, target);
-  const Id creation(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(creation, 1);
+  impl_->make_groups(name);
   if (impl_->grows_on) remove(name);
-  impl_->need(H5Lcreate_external(relative.c_str(), object.c_str(), impl_->file, name.c_str(), creation, H5P_DEFAULT) >= 0,
+  impl_->need(H5Lcreate_external(relative.c_str(), object.c_str(), impl_->file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT) >= 0,
               "cannot link " + name);
 }
 

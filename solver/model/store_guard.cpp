@@ -1,0 +1,97 @@
+// Store: a file is walked through by a child first.  The HDF5 library trusts what a file says of itself; a damaged one makes it crash, go
+// round in circles or ask for memory without end.  There that happens to a process that nobody needs.
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <set>
+#include <tuple>
+
+#include "base/error.hpp"
+#include "model/store_impl.hpp"
+
+namespace hilo {
+namespace {
+
+constexpr unsigned most_seconds = 20;      // of the walk; a sound file takes milliseconds
+constexpr rlim_t most_memory = 2ul << 30;  // that the walk may take beyond what the process has [bytes]
+
+/// Texts are read, since their places in the file are only found by reading; so are attributes.  Numbers are not.
+herr_t look_at_attribute(hid_t object, const char* name, const H5A_info_t*, void*) {
+  const Id a(H5Aopen(object, name, H5P_DEFAULT), H5Aclose), type(H5Aget_type(a), H5Tclose), space(H5Aget_space(a), H5Sclose);
+  const auto n = H5Sget_simple_extent_npoints(space);
+  const size_t size = H5Tget_size(type);
+  if (!a.ok() || n < 0 || n > 1000 || size > 1 << 20) return 0;
+  std::vector<char> value(static_cast<size_t>(n) * std::max<size_t>(size, 8));
+  if (H5Aread(a, type, value.data()) >= 0 && H5Tis_variable_str(type) > 0) H5Dvlen_reclaim(type, space, H5P_DEFAULT, value.data());
+  return 0;
+}
+
+void look_at_array(hid_t array, hsize_t file_size) {
+  const Id type(H5Dget_type(array), H5Tclose), space(H5Dget_space(array), H5Sclose), how(H5Dget_create_plist(array), H5Pclose);
+  H5Dget_storage_size(array);
+  hsize_t chunks = 0;
+  if (H5Pget_layout(how) == H5D_CHUNKED) H5Dget_num_chunks(array, space, &chunks);
+  const auto n = H5Sget_simple_extent_npoints(space);
+  if (H5Tis_variable_str(type) <= 0 || n <= 0 || static_cast<hsize_t>(n) > file_size) return;
+  std::vector<char*> texts(static_cast<size_t>(n), nullptr);
+  if (H5Dread(array, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()) >= 0) H5Dvlen_reclaim(type, space, H5P_DEFAULT, texts.data());
+}
+
+herr_t look_at_object(hid_t root, const char* name, const H5O_info_t* what, void* file_size) {
+  const Id object(H5Oopen(root, name, H5P_DEFAULT), H5Oclose);
+  if (!object.ok()) return 0;
+  hsize_t at = 0;
+  H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, &at, look_at_attribute, nullptr);
+  if (what->type == H5O_TYPE_DATASET) look_at_array(object, *static_cast<hsize_t*>(file_size));
+  return 0;
+}
+
+[[noreturn]] void walk(const std::string& path, hsize_t file_size) {
+  for (const int s : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGALRM, SIGXCPU}) std::signal(s, SIG_DFL);
+  const rlimit no_core{0, 0}, cpu{most_seconds, most_seconds};
+  setrlimit(RLIMIT_CORE, &no_core);
+  setrlimit(RLIMIT_CPU, &cpu);
+  rlimit room;
+  if (std::FILE* f = std::fopen("/proc/self/statm", "r")) {
+    unsigned long pages = 0;
+    if (std::fscanf(f, "%lu", &pages) == 1 && getrlimit(RLIMIT_AS, &room) == 0) {
+      room.rlim_cur = std::min<rlim_t>(room.rlim_max, pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + most_memory);
+      setrlimit(RLIMIT_AS, &room);
+    }
+    std::fclose(f);
+  }
+  alarm(3 * most_seconds);
+  try {
+    const Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (file.ok()) H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, look_at_object, &file_size);
+  } catch (...) {  // no memory
+  }
+  _exit(0);  // what is merely wrong is found again, and told, by who reads it
+}
+
+}  // namespace
+
+void walk_in_child(const std::string& path) {
+  struct stat s;
+  if (::stat(path.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return;  // told by who opens it
+  using Seen = std::tuple<dev_t, ino_t, off_t, time_t, long>;
+  static std::set<Seen> seen;
+  if (!seen.insert({s.st_dev, s.st_ino, s.st_size, s.st_mtim.tv_sec, s.st_mtim.tv_nsec}).second) return;
+  const pid_t child = ::fork();
+  if (child < 0) return;  // no room for another process: as well without
+  if (child == 0) walk(path, static_cast<hsize_t>(s.st_size));
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!WIFSIGNALED(status)) return;
+  const bool endless = WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL;
+  throw Error(path, fmt::format("damaged: the HDF5 library {} it", endless ? "comes to no end with" : "crashes on"),
+              "make it again, or take it from where it was copied");
+}
+
+}  // namespace hilo
