@@ -1,14 +1,21 @@
-// hilo-post response: what a harmonic force at a probe does to probes, by the modes of an analysis of modes,
+// hilo-post response: what a harmonic force at a probe, or a base that swings, does to probes, by the modes of an analysis of modes,
 //
-//   H(omega) = sum_j phi_j(out) phi_j(in) / (omega_j^2 - omega^2 + 2 i zeta_j omega_j omega),   phi of unit mass.
+//   H(omega) = sum_j phi_j(out) p_j / D_j,     D_j = omega_j^2 - omega^2 + 2 i zeta_j omega_j omega,   phi of unit mass.
+//
+// Of a force p_j = phi_j(in).  A base that moves with the acceleration e exp(i omega t) pushes each mode with p_j = -phi_j.M s, s what it
+// moves slowly; where all that stands still moves, s = e, and phi_j.M s = -F_j/omega_j^2, F_j the force on a held set, where it alone does.
+// To what moves against the base s(out) comes, -s/omega^2 as displacement.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <complex>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "base/args.hpp"
 #include "base/error.hpp"
+#include "base/math.hpp"
 #include "post/charts/figure.hpp"
 #include "post/commands/commands.hpp"
 #include "post/files/csv.hpp"
@@ -21,7 +28,8 @@ namespace {
 
 struct Options {
   std::string run, force, of = "displacement", csv, png, title, size = "1280x720";
-  std::vector<std::string> at;
+  std::vector<std::string> at, base;
+  bool relative = false;
   double from = 0, to = 0, damping = 0;
   int points = 1000;
 };
@@ -30,17 +38,67 @@ struct Modes {
   std::vector<double> omega2, damping, amplitude;
 };
 
-/// "tip.z": how much each mode of unit mass moves a probe along an axis.
-std::vector<double> shape_at(const RunFile& run, const std::string& name, const Modes& modes) {
-  const auto dot = name.rfind('.');
-  const std::string axes = "xyz", axis = dot == name.npos ? "" : name.substr(dot + 1);
+/// "tip.z": a name and the number of an axis; of "z" the name is empty.
+std::pair<std::string, size_t> name_and_axis(const std::string& text, const char* what, const char* hint) {
+  const auto dot = text.rfind('.');
+  const std::string axes = "xyz", axis = dot == text.npos ? text : text.substr(dot + 1);
   if (axis.size() != 1 || axes.find(axis) == axes.npos)
-    throw Error("response", fmt::format("\"{}\" is no direction of a probe", name), "write the probe and its axis: tip.z", Exit::usage);
-  const Series probe = run.series("probe." + name.substr(0, dot));
+    throw Error("response", fmt::format("\"{}\" is no direction of a {}", text, what), hint, Exit::usage);
+  return {dot == text.npos ? "" : text.substr(0, dot), axes.find(axis)};
+}
+
+/// How much each mode of unit mass changes a column of a history.
+std::vector<double> change_of(const Series& history, size_t column, const Modes& modes) {
   std::vector<double> out;
-  for (size_t k = 1; k < probe.rows(); ++k)
-    out.push_back((probe.at(k, axes.find(axis)) - probe.at(0, axes.find(axis))) / modes.amplitude[k - 1]);
+  for (size_t k = 1; k < history.rows(); ++k) out.push_back((history.at(k, column) - history.at(0, column)) / modes.amplitude[k - 1]);
   return out;
+}
+
+/// "tip.z": how much each mode of unit mass moves a probe along an axis.
+struct Place {
+  std::vector<double> shape;
+  size_t axis;
+};
+Place place_of(const RunFile& run, const std::string& text, const Modes& modes) {
+  const auto [name, axis] = name_and_axis(text, "probe", "write the probe and its axis: tip.z");
+  if (name.empty()) throw Error("response", fmt::format("\"{}\" names no probe", text), "write the probe and its axis: tip.z", Exit::usage);
+  return {change_of(run.series("probe." + name), axis, modes), axis};
+}
+
+/// phi_j.M s of each mode, and s as a whole: along these axes where everything that stands still moves, or else unknown.
+struct Base {
+  std::vector<double> part;
+  std::optional<Vec3> slow;
+  Base(const RunFile& run, const std::vector<std::string>& bases, const Modes& modes);
+  /// What the base moves a place by slowly; where it is one support of several, by all modes that there are.
+  double slow_at(const Place& at) const {
+    if (slow) return (*slow)[static_cast<Eigen::Index>(at.axis)];
+    double sum = 0;
+    for (size_t j = 0; j < part.size(); ++j) sum += at.shape[j] * part[j];
+    return sum;
+  }
+};
+Base::Base(const RunFile& run, const std::vector<std::string>& bases, const Modes& modes) : part(modes.omega2.size(), 0.0) {
+  const Series whole = run.series("participation");
+  Vec3 along = Vec3::Zero();
+  std::vector<double> of_all(part.size(), 0.0);
+  bool is_all = false, is_some = false;
+  for (const std::string& text : bases) {
+    const auto [name, axis] = name_and_axis(text, "base", "write an axis, z, or the name of a motion and an axis: wall.z");
+    along[static_cast<Eigen::Index>(axis)] += 1;
+    for (size_t j = 0; j < part.size(); ++j) of_all[j] += whole.at(j + 1, axis);
+    (name.empty() ? is_all : is_some) = true;
+    if (name.empty()) continue;
+    const std::vector<double> force = change_of(run.series("motion." + name), axis, modes);
+    const double highest = *std::max_element(modes.omega2.begin(), modes.omega2.end());
+    for (size_t j = 0; j < part.size(); ++j)  // of a motion without strain no support feels anything
+      if (modes.omega2[j] > 1e-9 * highest) part[j] -= force[j] / modes.omega2[j];
+  }
+  if (is_all && is_some) throw Error("--base", "axes alone, which move everything that stands still, or names with axes", "", Exit::usage);
+  double off = 0, size = 0;
+  for (size_t j = 0; j < part.size() && is_some; ++j)
+    off = std::max(off, std::abs(part[j] - of_all[j])), size = std::max(size, std::abs(of_all[j]));
+  if (is_all || off < 1e-6 * size) part = of_all, slow = along;  // or there is no other support
 }
 
 void run(const Options& o) {
@@ -58,19 +116,37 @@ void run(const Options& o) {
   }
   const double from = o.from > 0 ? o.from : highest / 1000, to = o.to > 0 ? o.to : highest;
   if (!(to > from)) throw Error("--to", fmt::format("{:g} Hz is not above {:g} Hz", to, from), "", Exit::usage);
-  const std::vector<double> push = shape_at(file, o.force, modes);
-  const std::string unit = o.of == "displacement" ? "m/N" : o.of == "velocity" ? "m/s/N" : "m/s^2/N";
+  if (o.force.empty() == o.base.empty()) throw Error("response", "either --force or --base says what swings", "", Exit::usage);
+  if (o.relative && o.base.empty()) throw Error("--relative", "is of a --base", "", Exit::usage);
+  if (o.at.empty() && o.force.empty()) throw Error("--at", "which probe answers?", "--at tip.z", Exit::usage);
+  std::optional<Base> base;
+  std::vector<double> push;
+  if (o.force.empty()) {
+    base.emplace(file, o.base, modes);
+    for (const double part : base->part) push.push_back(-part);
+  } else {
+    push = place_of(file, o.force, modes).shape;
+  }
+  const std::string unit = base ? (o.of == "displacement" ? "s^2"
+                                   : o.of == "velocity"   ? "s"
+                                                          : "1")
+                                : (o.of == "displacement" ? "m/N"
+                                   : o.of == "velocity"   ? "m/s/N"
+                                                          : "m/s^2/N");
   const int rates = o.of == "displacement" ? 0 : o.of == "velocity" ? 1 : 2;
   std::vector<std::string> header{"frequency [Hz]"};
   std::vector<std::vector<double>> columns(1);
   for (int i = 0; i < o.points; ++i) columns[0].push_back(from * std::pow(to / from, static_cast<double>(i) / std::max(1, o.points - 1)));
   Figure figure;
   std::tie(figure.width, figure.height) = parse_size(o.size);
-  figure.title = o.title.empty() ? fmt::format("{}: {} over a force along {}", file.title, o.of, o.force) : o.title;
+  figure.title = o.title.empty() ? fmt::format("{}: {}{} over {}", file.title, o.of, o.relative ? " against the base" : "",
+                                               base ? "the acceleration of the base" : "a force along " + o.force)
+                                 : o.title;
   figure.panels = {{"", {"frequency [Hz]", true}, {fmt::format("{} [{}]", o.of, unit), true}, {}},
                    {"", {"frequency [Hz]", true}, {"phase [degrees]"}, {}}};
   for (const std::string& at : o.at.empty() ? std::vector{o.force} : o.at) {
-    const std::vector<double> shape = shape_at(file, at, modes);
+    const Place place = place_of(file, at, modes);
+    const std::vector<double>& shape = place.shape;
     std::vector<double> size, phase;
     for (const double f : columns[0]) {
       const double omega = 2 * std::numbers::pi * f;
@@ -78,6 +154,7 @@ void run(const Options& o) {
       for (size_t j = 0; j < shape.size(); ++j)
         sum += shape[j] * push[j] /
                std::complex<double>(modes.omega2[j] - omega * omega, 2 * modes.damping[j] * std::sqrt(std::abs(modes.omega2[j])) * omega);
+      if (base && !o.relative) sum -= base->slow_at(place) / (omega * omega);
       sum *= std::pow(std::complex<double>(0, omega), rates);
       size.push_back(std::abs(sum)), phase.push_back(std::arg(sum) * 180 / std::numbers::pi);
     }
@@ -94,10 +171,16 @@ void run(const Options& o) {
 }  // namespace
 
 Command response_command(CLI::App& app) {
-  auto* sub = app.add_subcommand("response", "amplitude and phase of probes under a harmonic force at one of them, by modes");
+  auto* sub = app.add_subcommand("response",
+                                 "amplitude and phase of probes under a harmonic force at one of them, or on a base that swings, by modes");
   const auto o = std::make_shared<Options>();
   sub->add_option("run", o->run, "run.h5 of a scene with time.analysis = \"modes\" and probes")->required();
-  sub->add_option("--force", o->force, "probe and axis that a force of 1 N swings along: tip.z")->required();
+  sub->add_option("--force", o->force, "probe and axis that a force of 1 N swings along: tip.z");
+  sub->add_option("--base", o->base,
+                  "axis along which all that stands still swings with 1 m/s^2: z; or a motion of the scene and an axis, whose set swings "
+                  "alone: wall.z; --base once for each, they swing together")
+      ->allow_extra_args(false);
+  sub->add_flag("--relative", o->relative, "of a base: how probes move against it");
   sub->add_option("--at", o->at, "probe and axis that answers, --at once for each; that of the force by default")->allow_extra_args(false);
   sub->add_option("--of", o->of, "displacement, velocity or acceleration")
       ->check(CLI::IsMember({"displacement", "velocity", "acceleration"}))
@@ -112,7 +195,9 @@ Command response_command(CLI::App& app) {
   sub->add_option("--png", o->png, "chart of amplitude and phase");
   sub->add_option("--title", o->title, "title of the chart");
   sub->add_option("--size", o->size, "size of the chart, WIDTHxHEIGHT")->capture_default_str();
-  example(*sub, "  hilo-post response modes.h5 --force tip.z --damping 0.01 -o response.csv --png response.png");
+  example(*sub,
+          "  hilo-post response modes.h5 --force tip.z --damping 0.01 -o response.csv --png response.png\n"
+          "  hilo-post response modes.h5 --base z --at tip.z --of acceleration --damping 0.01 -o transmissibility.csv");
   return {sub, [o] { run(*o); }};
 }
 

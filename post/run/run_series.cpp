@@ -34,6 +34,11 @@ const std::vector<Layout>& layouts() {
       {"mode",
        {"frequency", "damping", "mass_x", "mass_y", "mass_z", "inertia_x", "inertia_y", "inertia_z", "error", "amplitude"},
        {"Hz", "1", "kg", "kg", "kg", "kg m^2", "kg m^2", "kg m^2", "1", "m kg^0.5"}},
+      {"participation",
+       {"x", "y", "z", "about_x", "about_y", "about_z"},
+       {"kg^0.5", "kg^0.5", "kg^0.5", "kg^0.5 m", "kg^0.5 m", "kg^0.5 m"}},
+      {"left_out", {"strain", "left_out"}, {"J", "J"}},
+      {"second_order", {"quadratic", "buckling"}, {"J", "1"}},
       {"constraint", {"violation"}, {"m"}},
       {"newton", {"iterations"}, {"1"}},
   };

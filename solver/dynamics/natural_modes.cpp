@@ -143,8 +143,8 @@ struct RigidMotions {
         }
     }
   }
-  /// Effective masses of a mode of unit mass, about axes through the centre of mass.
-  Vec6 mass_of(const Vector& mode) const {
+  /// Share of a mode of unit mass in these motions, those about axes through the centre of mass.
+  Vec6 part_of(const Vector& mode) const {
     Vec3 centre = Vec3::Zero();
     for (int k = 0; k < 3; ++k) {  // sum of m x, over m, by a turn about z and a push along y
       const int along = (k + 1) % 3, about = 3 + (k + 2) % 3;
@@ -153,7 +153,7 @@ struct RigidMotions {
     }
     Vec6 p = force.transpose() * mode;
     for (int k = 0; k < 3; ++k) p[3 + k] -= Vec3(Vec3::Unit(k)).cross(centre).dot(p.head<3>());
-    return p.cwiseAbs2();
+    return p;
   }
 };
 
@@ -235,7 +235,7 @@ std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, co
     shape /= norm;
     f.figures.omega2 = modes.omega2[j];
     f.figures.error += std::sqrt(std::max(0.0, change.dot(at.mass(change))));
-    f.figures.mass = rigid.mass_of(shape);
+    f.figures.part = rigid.part_of(shape), f.figures.mass = f.figures.part.cwiseAbs2();
     if (system.traits().has_rates && f.figures.omega2 > 1e-9 * pencil.shift)
       f.figures.damping = shape.dot(at.damping(shape)) / (2 * std::sqrt(f.figures.omega2));
     f.x.assign(shape.begin(), shape.end());

@@ -122,6 +122,9 @@ std::vector<FoundMode> whirling_modes(const System& system, KktSolver& solver, c
     if (mu(i).imag() > 1e-7 * largest || (std::abs(mu(i).imag()) <= 1e-7 * largest && mu(i).real() > 1e-7 * largest)) order.push_back(i);
   std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return std::abs(mu(a)) < std::abs(mu(b)); });
   if (static_cast<int>(order.size()) > wanted) order.resize(static_cast<size_t>(wanted));
+  Eigen::Matrix<double, Eigen::Dynamic, 6> parts(m, 6);
+  for (Eigen::Index j = 0; j < m; ++j) parts.row(j) = basis[static_cast<size_t>(j)].figures.part.transpose();
+  const Eigen::MatrixXcd left = pairs.eigenvectors().fullPivLu().inverse().rightCols(m) * parts;
   std::vector<FoundMode> out;
   for (const Eigen::Index i : order) {
     Eigen::VectorXcd y = pairs.eigenvectors().col(i).head(m);
@@ -140,6 +143,10 @@ std::vector<FoundMode> whirling_modes(const System& system, KktSolver& solver, c
     const bool swings = mu(i).imag() > 1e-7 * largest;
     f.figures.omega2 = swings ? mu(i).imag() * mu(i).imag() : -mu(i).real() * mu(i).real();
     f.figures.damping = swings ? -mu(i).real() / std::abs(mu(i)) : 0;
+    // with p the parts of the basis, p.(s^2 + s C + K)^-1 p = sum of r/(s - mu) over all poles, and the sum of r mu is p.p
+    for (int k = 0; k < 6; ++k)
+      f.figures.mass[k] =
+          (swings ? 2 : 1) * (mu(i) * (pairs.eigenvectors().col(i).head(m).transpose() * parts.col(k)).value() * left(i, k)).real();
     out.push_back(std::move(f));
   }
   return out;

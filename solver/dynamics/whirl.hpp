@@ -14,8 +14,9 @@ namespace hilo {
 std::string not_steady(const System& system, const State& state);
 
 /// The `wanted` slowest pairs of complex modes in the span of `basis`, real modes about the pose of `state` at rest; accelerations and
-/// multipliers are those of the spin.  Their frequency is that of a swing, x its shape when it begins.  Error where coefficients change as
-/// the bodies turn.
+/// multipliers are those of the spin.  Their frequency is that of a swing, x its shape when it begins; effective masses are such that all
+/// of them add up to those of the basis, and the same as those of the basis without spin.  Error where coefficients change as the bodies
+/// turn.
 std::vector<FoundMode> whirling_modes(const System& system, KktSolver& solver, const State& state, const std::vector<FoundMode>& basis,
                                       int wanted);
 

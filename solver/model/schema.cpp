@@ -52,6 +52,12 @@ std::vector<ArraySchema>& arrays() {
        "of a region that stiffens: energy e^T KK e/2 of e = (eta_i, eta_i eta_j)"},
       {"reduced.h5", "/reduced/<name>/left_out", "f8", "(n_modes, n_modes)", "s^2",
        "L: modes left out would hold the strain energy a.L a/2, where the modes are accelerated by a"},
+      {"reduced.h5", "/reduced/<name>/soft", "f8", "(n_modes, n_soft)", "1",
+       "the softest shapes, orthonormal in mass, as sums of the modes"},
+      {"reduced.h5", "/reduced/<name>/second_order", "f8", "(n_modes + 1, (3 + n_soft)(4 + n_soft)/2)", "J m^-1 kg^-0.5",
+       "work of the stress of each mode on products of displacement gradients of pairs (i, j), i <= j, at j (j + 1)/2 + i: three turns, "
+       "then "
+       "the softest shapes; last row: of the unit tensor over the volume"},
       {"reduced.h5", "/reduced/<name>/sites", "f8", "(n, n_modes)", "m^-1 kg^-0.5",
        "displacements of nodes far out over the distance between them"},
       {"reduced.h5", "/reduced/<name>/interfaces", "string", "(n)", "", "what the region is held or moved by"},
@@ -117,12 +123,20 @@ std::vector<ArraySchema>& arrays() {
        "centre "
        "of mass, error of the shape, amplitude of the mode of unit mass in the other arrays (0: a whirl); all other arrays are of that "
        "state with the shape added, a hundred thousandth of the scene at most"},
+      {"run.h5", "/history/participation", "f8", "(n_t, 6)", "kg^0.5, kg^0.5 m",
+       "of an analysis of modes: share of each mode of unit mass in a motion of the whole scene along x, y, z and about axes through the "
+       "centre "
+       "of mass; its square is the effective mass (0: a whirl)"},
       {"run.h5", "/history/newton", "i4", "(n_t)", "", "Newton iterations of the step"},
       {"run.h5", "/history/body/<name>", "f8", "(n_t, 12)", "m", "positions of the four points of a body"},
       {"run.h5", "/history/modes/<name>", "f8", "(n_t, n_modes)", "m kg^0.5",
        "amplitudes of the modes of a linear region, orthonormal in mass"},
       {"run.h5", "/history/left_out/<name>", "f8", "(n_t, 2)", "J",
        "of a linear region: strain energy at the inside of the step, and what modes left out would hold of the answer to its vibration"},
+      {"run.h5", "/history/second_order/<name>", "f8", "(n_t, 2)", "J, 1",
+       "of a linear region: strain energy of strains of the second degree that its supports let nothing take back; its load over that at "
+       "which "
+       "it would buckle"},
       {"run.h5", "/history/joint/<name>", "f8", "(n_t, 6)", "N, N m",
        "force and moment on b at the joint point, joint frame carried by a; of redundant joints the minimum-norm share"},
       {"run.h5", "/history/spring/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the point, inertial axes"},

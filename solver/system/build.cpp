@@ -11,6 +11,7 @@
 #include "system/motions.hpp"
 #include "system/natural_modes.hpp"
 #include "system/point_masses.hpp"
+#include "system/region_measures.hpp"
 #include "system/solids.hpp"
 #include "system/springs.hpp"
 #include "system/stations.hpp"
@@ -34,6 +35,7 @@ void Builder::add_contributions() {
   s.add<Loads>(s);
   s.add<Motions>(s);
   s.add<Stations>(s);
+  s.add<RegionMeasures>(s);
   if (scene_.table("time").text("analysis") == "modes") s.add<NaturalModes>();
 }
 

@@ -29,17 +29,19 @@ void Builder::reduce_linear_regions() {
     const auto& welds = parcel.welds;
     const auto& local = parcel.local;
     Reduction found;
-    std::vector<double> head;  // modes, then omega2, A, levers, then axes, shares, means and stretches of each weld
+    std::vector<double> head;  // modes, first frequency left out, omega2, A, levers, then axes, shares, means and stretches of each weld
     if (comm_.rank == 0) {
       const ReductionInput in = reduction_input(parcel, axes);
       const auto n = static_cast<int>(in.X.size());
       found = reduction_of(in, axes, parcel.where);
       const auto m = found.omega2.size();
       head.push_back(static_cast<double>(m));
+      head.push_back(found.held_frequency);
       head.insert(head.end(), found.omega2.begin(), found.omega2.end());
-      for (const Eigen::MatrixXd* M : std::initializer_list<const Eigen::MatrixXd*>{
-               &found.A, &found.A_damped, &found.viscous, &found.strain.matrix(), &found.left_out, &found.sites}) {
-        head.push_back(static_cast<double>(M->rows()));
+      for (const Eigen::MatrixXd* M :
+           std::initializer_list<const Eigen::MatrixXd*>{&found.A, &found.A_damped, &found.viscous, &found.strain.matrix(), &found.left_out,
+                                                         &found.sites, &found.soft, &found.second_order}) {
+        head.push_back(static_cast<double>(M->rows())), head.push_back(static_cast<double>(M->cols()));
         head.insert(head.end(), M->data(), M->data() + M->size());
       }
       for (Eigen::Index j = 0; j < m; ++j) {
@@ -91,12 +93,14 @@ void Builder::reduce_linear_regions() {
     n_blocks += modes.n_blocks;
     LinearRegion made;
     made.modes = static_cast<int>(number);
+    made.held_frequency = next();
     made.stiffness.resize(m);
     for (int j = 0; j < m; ++j) made.stiffness[j] = next();
     Eigen::MatrixXd strain;
-    for (Eigen::MatrixXd* M : {&made.A, &made.A_damped, &made.viscous, &strain, &made.left_out, &made.sites}) {
+    for (Eigen::MatrixXd* M :
+         {&made.A, &made.A_damped, &made.viscous, &strain, &made.left_out, &made.sites, &made.soft, &made.second_order}) {
       const auto rows = static_cast<Eigen::Index>(next());
-      M->resize(rows, M == &made.sites ? m : rows);
+      M->resize(rows, static_cast<Eigen::Index>(next()));
       for (Eigen::Index k = 0; k < M->size(); ++k) M->data()[k] = next();
     }
     modes.stiffens = strain.size() > 0;

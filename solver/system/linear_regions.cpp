@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <numbers>
 
 #include "system/mode_forces.hpp"
 
@@ -234,7 +235,7 @@ void LinearRegions::add_end_values(const Config& q, const Config&, std::vector<d
 }
 
 void LinearRegions::add_mid_values(const Moment& moment, std::vector<double>& out) const {
-  energy_.resize(regions.size(), 0), left_out_.resize(regions.size(), 0);
+  of_run_.resize(regions.size());
   for (size_t k = 0; k < regions.size(); ++k) {
     const LinearRegion& r = regions[k];
     const Modes& m = points_.modes[r.modes];
@@ -242,26 +243,24 @@ void LinearRegions::add_mid_values(const Moment& moment, std::vector<double>& ou
     const Eigen::VectorXd a = moment.a ? amplitudes(m, *moment.a) : Eigen::VectorXd(Eigen::VectorXd::Zero(m.n_modes));
     const double energy = r.strain.used() ? r.strain.energy(eta) : r.stiffness.dot(eta.cwiseAbs2()) / 2;
     const double left_out = std::max(0.0, a.dot(r.left_out * a) / 2);
-    energy_[k] = std::max(energy_[k], energy), left_out_[k] = std::max(left_out_[k], left_out);
+    OfRun& run = of_run_[k];
+    run.energy = std::max(run.energy, energy), run.left_out = std::max(run.left_out, left_out);
+    if (const double h = moment.s.t_end - run.t; h > 0 && run.a.size() == static_cast<size_t>(a.size())) {
+      const Eigen::VectorXd change = a - Eigen::Map<const Eigen::VectorXd>(run.a.data(), a.size());
+      run.loads += h * left_out, run.rates += std::max(0.0, change.dot(r.left_out * change) / 2) / h;
+    }
+    run.a.assign(a.begin(), a.end()), run.t = moment.s.t_end;
     out.push_back(energy), out.push_back(left_out);
   }
 }
 
-/// The error of the reduction, as the share of the largest strain that modes left out would have, in the norm of strain energy.
-void LinearRegions::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
-  constexpr double too_much = 0.05;
-  std::string list;
-  for (size_t k = 0; k < energy_.size(); ++k) {
-    const std::string& name = points_.bodies[points_.modes[regions[k].modes].body].name;
-    const double share = energy_[k] > 0 ? std::sqrt(left_out_[k] / energy_[k]) : 0;
-    list += fmt::format("{}\"{}\": {:.3g}", list.empty() ? "" : ", ", name, share);
-    if (share > too_much)
-      warn(name,
-           fmt::format("its modes lack {:.2g} of its largest strain (norm of energy): more modes, up_to a higher frequency, or tag it "
-                       "nonlinear",
-                       share));
-  }
-  if (!list.empty()) report.emplace_back("modes_left_out", "{" + list + "}");
+double LinearRegions::lacking(size_t k) const {
+  return k < of_run_.size() && of_run_[k].energy > 0 ? std::sqrt(of_run_[k].left_out / of_run_[k].energy) : 0;
+}
+
+double LinearRegions::load_band(size_t k) const {
+  if (k >= of_run_.size() || !(of_run_[k].loads > 0) || !(regions[k].held_frequency > 0)) return 0;
+  return std::sqrt(of_run_[k].rates / of_run_[k].loads) / (2 * std::numbers::pi * regions[k].held_frequency);
 }
 
 }  // namespace hilo

@@ -20,7 +20,9 @@ struct LinearRegion {
   Eigen::MatrixXd A_damped;   // int alpha rho b b^T, mass-proportional damping   (as A), or empty
   QuadraticStrain strain;     // where it stiffens
   Eigen::MatrixXd left_out;   // of modes (m x m), as Reduction has it [s^2]
-  Eigen::MatrixXd sites;      // as Reduction has them
+  Eigen::MatrixXd sites;      // as Reduction has them,
+  Eigen::MatrixXd soft, second_order;
+  double held_frequency = 0;
 };
 
 class LinearRegions final : public Contribution {
@@ -39,17 +41,28 @@ class LinearRegions final : public Contribution {
   void tie(Ties& ties) const override;
   std::string fault(const Config& q) const override;
   void commit(const Config& q, const Config* v) override;
-  void archive(Archive& a) override { a("linear regions", told_, too_fast_, energy_, left_out_); }
+  void archive(Archive& a) override { a("linear regions", told_, too_fast_, of_run_); }
   std::vector<Output> outputs() const override;
   void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
   void add_mid_values(const Moment& m, std::vector<double>& out) const override;
-  void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override;
+
+  /// The error of the reduction of region k, as the share of the largest strain that modes left out would have, in the norm of strain
+  /// energy.
+  double lacking(size_t k) const;
+  /// Frequency of what the modes left out answer to, root mean square over the run, over that of the first of them; 0 where there is none.
+  double load_band(size_t k) const;
 
  private:
   const Points& points_;
-  std::vector<char> told_;                         // by region: that it spins near its first frequency
-  std::string too_fast_;                           // why a region cannot go on
-  mutable std::vector<double> energy_, left_out_;  // the largest so far, by region: of strain, and what modes left out would hold [J]
+  std::vector<char> told_;  // by region: that it spins near its first frequency
+  std::string too_fast_;    // why a region cannot go on
+  struct OfRun {
+    double energy = 0, left_out = 0;  // the largest so far: of strain, and what modes left out would hold [J]
+    double loads = 0, rates = 0;      // of the latter: sum over time [J s], and of what changes of accelerations would bring [J/s]
+    std::vector<double> a;            // accelerations of the modes in the last step, which ended at
+    double t = 0;
+  };
+  mutable std::vector<OfRun> of_run_;  // by region
 };
 
 }  // namespace hilo

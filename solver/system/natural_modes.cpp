@@ -13,6 +13,7 @@ void NaturalModes::add_end_values(const Config&, const Config&, std::vector<doub
   out.insert(out.end(), now.mass.data(), now.mass.data() + 6);
   out.push_back(now.error);
   out.push_back(now.amplitude);
+  out.insert(out.end(), now.part.data(), now.part.data() + 6);
 }
 
 }  // namespace hilo

@@ -22,9 +22,15 @@ struct Part {
   const char* name;
   Matrix Reduction::*matrix;
 };
-constexpr Part parts[] = {
-    {"A", &Reduction::A},       {"A_damped", &Reduction::A_damped}, {"viscous", &Reduction::viscous},  {"sites", &Reduction::sites},
-    {"held", &Reduction::held}, {"shapes", &Reduction::shapes},     {"left_out", &Reduction::left_out}};
+constexpr Part parts[] = {{"A", &Reduction::A},
+                          {"A_damped", &Reduction::A_damped},
+                          {"viscous", &Reduction::viscous},
+                          {"sites", &Reduction::sites},
+                          {"held", &Reduction::held},
+                          {"shapes", &Reduction::shapes},
+                          {"left_out", &Reduction::left_out},
+                          {"soft", &Reduction::soft},
+                          {"second_order", &Reduction::second_order}};
 
 void write(Store& store, const std::string& array, const Matrix& m) {
   const auto& row = *find_array("reduced.h5", "/reduced/any/" + array.substr(array.rfind('/') + 1));
@@ -73,7 +79,7 @@ ReductionKey key_of(const ReductionInput& in) {
     loads += Digest().add(sum).value();
   }
   key.loads = Digest().add(loads).text();
-  constexpr int how = 2;  // one more when regions are reduced in another way: what was found before then serves no longer
+  constexpr int how = 3;  // one more when regions are reduced in another way: what was found before then serves no longer
   Digest basis;
   basis.add(how).add(in.n_vibrations).add(in.up_to).add(in.stiffening);
   for (const double x : in.given.reshaped()) basis.add(x);
@@ -127,7 +133,9 @@ Reduction ReducedFile::read(const std::string& region, size_t n_nodes) const {
   const Index m = out.omega2.size(), blocks = 4 + 3 * m;
   const auto square = [](const Matrix& M, Index n) { return M.size() == 0 || (M.rows() == n && M.cols() == n); };
   if (out.shapes.cols() != m || (m > 0 && out.shapes.rows() != 3 * static_cast<Index>(n_nodes)) || out.sites.cols() != m ||
-      out.A.size() == 0 || !square(out.A, blocks) || !square(out.A_damped, blocks) || !square(out.viscous, m) || !square(out.left_out, m) ||
+      out.soft.rows() != m || out.second_order.rows() != m + 1 ||
+      2 * out.second_order.cols() != (out.soft.cols() + 3) * (out.soft.cols() + 4) || out.A.size() == 0 || !square(out.A, blocks) ||
+      !square(out.A_damped, blocks) || !square(out.viscous, m) || !square(out.left_out, m) ||
       !square(out.strain.matrix(), m + m * (m + 1) / 2))
     throw Error(store_.path(), "damaged: the arrays of " + group + " do not fit each other");
   return out;

@@ -12,6 +12,7 @@
 #include "linear/products.hpp"
 #include "system/face.hpp"
 #include "system/flexibility.hpp"
+#include "system/second_order.hpp"
 #include "system/stiffening.hpp"
 
 namespace hilo {
@@ -260,6 +261,9 @@ Reduction reduced(const ReductionInput& in) {
   out.sites = at_sites(in.X, in.centre, out.shapes);
   tell("error");
   out.left_out = energy_left_out(cells, flexibility, out);
+  const Index n_interface = in.given.cols() > 0 ? 0 : 6 * static_cast<Index>(in.rigid.size());  // rigid ones come first
+  SecondOrder second = second_order(in, out.shapes, out.omega2, cells.times_mass(parts.front().leftCols(n_interface)));
+  out.soft = std::move(second.soft), out.second_order = std::move(second.forces);
   const auto n = static_cast<Index>(in.X.size()), m = out.omega2.size();
   Matrix B(n, 4 + 3 * m);
   for (Index i = 0; i < n; ++i) {

@@ -49,7 +49,8 @@ struct Reduction {
   Eigen::MatrixXd sites;     // displacements of nodes far out, over the distance between them   (3 n_sites x m) [1 per unit of amplitude]
   Eigen::MatrixXd held;      // vibrations with the interfaces held: frequency [Hz], shares of the mass along x, y, z   (n x 4)
   Eigen::MatrixXd left_out;  // L: modes left out would hold the strain energy a.L a/2, where the modes are accelerated by a   (m x m) [s^2]
-  double held_frequency = 0;  // of the first vibration mode left out, or 0 where all that were found are in  [Hz]
+  Eigen::MatrixXd soft, second_order;  // as SecondOrder has them (system/second_order.hpp): soft, forces
+  double held_frequency = 0;           // of the first vibration mode left out, or 0 where all that were found are in  [Hz]
 };
 
 /// Errors: a region that is not held together, or cells turned inside out.

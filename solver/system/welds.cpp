@@ -32,6 +32,27 @@ Map region_map(bool point, const Vec3& arm, const Mat3& turn, const std::vector<
   return out;
 }
 
+/// Rows over the unknowns of the region and the body (3 n_blocks x 6 + 3 n_mode_blocks + 6) where the region is turned by `turn` and moves
+/// its directions by `of`; arms from the centres of both.
+template <class Place>
+Matrix gradient_at(const Weld& w, const Place& x, const Vec3& arm, const Vec3& arm_body, const Mat3& turn, const Map (&of)[3]) {
+  const Eigen::Index n = of[0].cols();
+  Matrix G = Matrix::Zero(3 * w.n_blocks(), n + 6);
+  G.topLeftCorner(3, n) = region_map(true, arm, turn, w.mean);
+  for (int i = 0; i < 3; ++i) G(i, n + i) = -1;
+  G.block<3, 3>(0, n + 3) = skew(arm_body);
+  for (int i = 0; i < 3; ++i) {
+    const int a = pair_a[i], b = pair_b[i];
+    G.row(3 + i).head(n) = factor(w, i) * (x.t[a].transpose() * of[b] - x.t[b].transpose() * of[a]);
+    G.row(3 + i).segment<3>(n + 3) = factor(w, i) * (x.t[a].cross(x.d[b]) - x.t[b].cross(x.d[a])).transpose();
+  }
+  for (size_t i = 0; i < w.stretches.size(); ++i) {
+    const auto& [a, b] = w.stretches[i];
+    G.row(6 + static_cast<Eigen::Index>(i)).head(n) = stretch_factor(w, i) * (x.d[a].transpose() * of[b] + x.d[b].transpose() * of[a]);
+  }
+  return G;
+}
+
 }  // namespace
 
 void Welds::take_blocks(int& next) {
@@ -140,20 +161,13 @@ void Welds::evaluate(Pass& p) const {
 
     const Mat3 hat = left_turn(s, m.body), &R = s.end->R[m.body];
     const Eigen::Index n = 6 + 3 * m.n_blocks, at_body = n, at_rows = n + 6, rows = 3 * w.n_blocks(), all = at_rows + rows;
-    Matrix K = Matrix::Zero(all, all), G_left = Matrix::Zero(rows, all), G_right = G_left;
+    Matrix K = Matrix::Zero(all, all);
     Map L[3], Z[3];  // of the directions
     for (int i = 0; i < 3; ++i) L[i] = region_map(false, left.d[i], hat, shapes[i]), Z[i] = region_map(false, end.d[i], R, shapes[i]);
-    G_left.topLeftCorner(3, n) = region_map(true, arm, hat, w.mean), G_right.topLeftCorner(3, n) = region_map(true, arm_end, R, w.mean);
-    for (int i = 0; i < 3; ++i) G_left(i, at_body + i) = G_right(i, at_body + i) = -1;
-    G_left.block<3, 3>(0, at_body + 3) = skew(arm_body), G_right.block<3, 3>(0, at_body + 3) = skew(arm_body_end);
+    const Matrix G_left = gradient_at(w, left, arm, arm_body, hat, L), G_right = gradient_at(w, end, arm_end, arm_body_end, R, Z);
     K.block<3, 3>(at_body + 3, at_body + 3) -= s.slope * skew(f) * skew(arm_body_end);
     for (int i = 0; i < 3; ++i) {
       const int a = pair_a[i], b = pair_b[i];
-      const auto turn_row = [&](const Place& x, const Map(&of)[3], Matrix& G) {
-        G.row(3 + i).head(n) = factor(w, i) * (x.t[a].transpose() * of[b] - x.t[b].transpose() * of[a]);
-        G.row(3 + i).segment<3>(at_body + 3) = factor(w, i) * (x.t[a].cross(x.d[b]) - x.t[b].cross(x.d[a])).transpose();
-      };
-      turn_row(left, L, G_left), turn_row(end, Z, G_right);
       K.block<3, 3>(at_body + 3, at_body + 3) += s.slope * skew(t[i]) * skew(end.t[i]);
       const double push = s.slope * factor(w, i) * lambda[3 + i];
       K.block(0, at_body + 3, n, 3) += push * (L[a].transpose() * skew(end.t[b]) - L[b].transpose() * skew(end.t[a]));
@@ -162,15 +176,20 @@ void Welds::evaluate(Pass& p) const {
     for (size_t i = 0; i < w.stretches.size(); ++i) {
       const auto& [a, b] = w.stretches[i];
       const double by = stretch_factor(w, i), push = s.slope * by * lambda[6 + i];
-      const auto row = 6 + static_cast<Eigen::Index>(i);
-      G_left.row(row).head(n) = by * (left.d[a].transpose() * L[b] + left.d[b].transpose() * L[a]);
-      G_right.row(row).head(n) = by * (end.d[a].transpose() * Z[b] + end.d[b].transpose() * Z[a]);
       K.topLeftCorner(n, n) += push * (L[a].transpose() * Z[b] + L[b].transpose() * Z[a]);
     }
-    K.block(0, at_rows, n + 6, rows) = p.sigma * G_left.leftCols(n + 6).transpose();
-    K.block(at_rows, 0, rows, n + 6) = p.sigma * G_right.leftCols(n + 6);
+    K.block(0, at_rows, n + 6, rows) = p.sigma * G_left.transpose();
+    K.block(at_rows, 0, rows, n + 6) = p.sigma * G_right;
     p.K->add(clique_[k], K.data());
   }
+}
+
+Eigen::MatrixXd Welds::gradient(const Weld& w, const Config& q) const {
+  const int region = points_.modes[w.modes].body;
+  const Place at = place(w, q);
+  Map of[3];
+  for (int i = 0; i < 3; ++i) of[i] = region_map(false, at.d[i], q.R[region], shapes_of_direction(w, i));
+  return gradient_at(w, at, at.y - q.c[region], at.y_body - q.c[w.body], q.R[region], of).topRows(w.n_rows());
 }
 
 void Welds::look_at_rows(const Config& q, double, double, Violation& worst) const {

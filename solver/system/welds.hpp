@@ -47,6 +47,8 @@ class Welds final : public Contribution {
   void commit(const Config& q, const Config* v) override;
   void archive(Archive& a) override { a("welds", told_); }
   void tie(Ties& ties) const override;
+  /// The rows of a weld over the unknowns of its region (translation, turn, amplitudes) and of its body (translation, turn).
+  Eigen::MatrixXd gradient(const Weld& w, const Config& q) const;
 
  private:
   /// Vectors that a weld speaks of, at a configuration: y and d_i of the region, y and t_i of the body, with their arms.

@@ -262,6 +262,79 @@ TEST_F(NaturalModes, GiveTheResponseToAHarmonicForce) {
   EXPECT_EQ(n, 50);
 }
 
+// Rows of a response: frequency, amplitude and phase.
+struct Answer {
+  double f, size, phase;
+};
+std::vector<Answer> answers(const Ran& ran) {
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  std::istringstream rows(ran.out);
+  std::string line;
+  std::getline(rows, line);
+  std::vector<Answer> out;
+  for (Answer a{}; std::getline(rows, line); out.push_back(a))
+    EXPECT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &a.f, &a.size, &a.phase), 3) << line;
+  return out;
+}
+
+TEST_F(NaturalModes, GiveTheTransmissibilityOfAMassOnASpring) {
+  const double m = 3, k = 1200, c = 20, w0 = std::sqrt(k / m), zeta = c / (2 * std::sqrt(k * m));
+  modes(body("mass", m, {0, 0, 0}, {1, 1, 1}) +
+            "[[joint]]\nkind = \"prismatic\"\nname = \"guide\"\nb = \"mass\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n" +
+            "[[spring]]\nkind = \"bushing\"\nname = \"s\"\nb = \"mass\"\nat = [0, 0, 0]\nstiffness = [0, 0, 1200]\ndamping = [0, 0, 20]\n"
+            "[[probe]]\nname = \"top\"\non = \"mass\"\nat = [0, 0, 0]\n",
+        3);
+  const std::string command = "hilo-post response run.h5 --base z --at top.z --from 0.3 --to 30 --points 40 ";
+  for (const bool relative : {false, true})
+    for (const Answer& a : answers(work.run(command + (relative ? "--relative" : "--of acceleration")))) {
+      const double r = 2 * pi * a.f / w0;
+      const std::complex<double> bottom(1 - r * r, 2 * zeta * r),
+          exact = relative ? -1 / (w0 * w0 * bottom) : std::complex<double>(1, 2 * zeta * r) / bottom;
+      EXPECT_LT(std::abs(std::polar(a.size, a.phase * pi / 180) / exact - 1.0), 1e-5) << a.f;
+    }
+  EXPECT_EQ(work.run("hilo-post response run.h5 --at top.z").exit, 1) << "nothing swings";
+  EXPECT_EQ(work.run("hilo-post response run.h5 --base z --force top.z").exit, 1) << "two things swing";
+  EXPECT_EQ(work.run("hilo-post response run.h5 --base z").exit, 1) << "no probe";
+  EXPECT_NE(work.run("hilo-post response run.h5 --base wall.z --at top.z").exit, 0) << "no such motion";
+}
+
+// The tip of a cantilever whose wall swings: (cos bL + cosh bL)/(1 + cos bL cosh bL), by all that stands still and by the motion's name.
+TEST_F(NaturalModes, GiveTheSwingOfACantileverOnItsWall) {
+  use(beam({1, 0.015, 0.01}, 30));
+  modes(steel + "[[motion]]\nkind = \"fixed\"\nname = \"wall\"\non = \"xmin\"\n[[probe]]\nname = \"tip\"\non = \"xmax\"\n", 20);
+  for (const std::string base : {"z", "wall.z"}) {
+    int n = 0;
+    for (const Answer& a :
+         answers(work.run("hilo-post response run.h5 --of acceleration --at tip.z --from 0.5 --to 80 --points 60 --base " + base))) {
+      const double bl = std::sqrt(2 * pi * a.f / (r_z * wave)), top = std::cos(bl) + std::cosh(bl),
+                   bottom = 1 + std::cos(bl) * std::cosh(bl);
+      if (std::abs(bottom) < 0.2 * std::abs(top)) continue;  // near a resonance
+      EXPECT_NEAR(a.size * (std::abs(a.phase) > 90 ? -1 : 1), top / bottom, 0.02 * std::abs(top / bottom)) << base << " " << a.f;
+      ++n;
+    }
+    EXPECT_GT(n, 30);
+  }
+}
+
+// A rod between two ends of which one swings along it: the middle by 1/(2 cos(k L/2)); of both it is 1/cos(k L/2).
+TEST_F(NaturalModes, GiveTheSwingOfARodOnOneOfItsEnds) {
+  BlockOptions o;
+  o.n[0] = 10;
+  o.high = Vec3(1, 0.05, 0.05);
+  use(block_mesh(o));
+  modes(
+      steel +
+          "[[motion]]\nkind = \"fixed\"\nname = \"left\"\non = \"xmin\"\n[[motion]]\nkind = \"fixed\"\nname = \"right\"\non = \"xmax\"\n" +
+          "[[probe]]\nname = \"middle\"\non = \"block\"\nat = [0.5, 0, 0]\n",
+      108);
+  const std::string command = "hilo-post response run.h5 --of acceleration --at middle.x --from 10 --to 1500 --points 20 ";
+  for (const auto& [base, ends] : {std::pair{"--base left.x", 1}, std::pair{"--base left.x --base right.x", 2}, std::pair{"--base x", 2}})
+    for (const Answer& a : answers(work.run(command + base))) {
+      const double kl = 2 * pi * a.f / wave;
+      EXPECT_NEAR(a.size, ends / (2 * std::cos(kl / 2)), 5e-3 * a.size) << base << " " << a.f;
+    }
+}
+
 // A disc on two bearings whirls: J w^2 -+ Omega Jp w - 2 k L^2 = 0 backward and forward, and sqrt(2 k/m) along.
 TEST_F(NaturalModes, OfARotorAreItsWhirls) {
   const double m = 10, J = 0.4, Jp = 0.6, k = 1e5, L = 0.3, spin = 200;
@@ -276,6 +349,14 @@ TEST_F(NaturalModes, OfARotorAreItsWhirls) {
   const auto f = modes(scene + turning, 10);
   ASSERT_EQ(f.rows(), 5) << f;
   for (int j = 0; j < 5; ++j) EXPECT_NEAR(f(j, 0) * 2 * pi / exact[static_cast<size_t>(j)], 1, 1e-6) << f;
+  // All that moves is carried by the modes.  Pushed about x, the disc answers with (s^2 + w0^2)/((s^2 + w0^2)^2 + s^2 (spin Jp/J)^2), whose
+  // shares of 1/(s^2 + w^2) are those of the two whirls.
+  const double w0 = 2 * k * L * L / J, low = std::pow(root - half, 2), high = std::pow(root + half, 2);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(f.col(2 + axis).sum(), m, 1e-6 * m) << f;
+  for (int axis = 0; axis < 2; ++axis) {
+    EXPECT_NEAR(f(0, 5 + axis), J * (w0 - low) / (high - low), 1e-6 * J) << f;
+    EXPECT_NEAR(f(4, 5 + axis), J * (high - w0) / (high - low), 1e-6 * J) << f;
+  }
   // a disc that is not round has no constant coefficients
   work.write("scene.toml", body("disc", m, {0, 0, 0}, {J, 0.5, Jp}) + scene.substr(scene.find("[[spring]]")) + turning +
                                "[time]\nanalysis = \"modes\"\n");

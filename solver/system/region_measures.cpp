@@ -1,0 +1,184 @@
+#include "system/region_measures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/args.hpp"
+#include "base/table.hpp"
+#include "system/welds.hpp"
+
+namespace hilo {
+namespace {
+
+using Eigen::Index;
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+constexpr Index most_motions = 8;  // that are looked at for buckling, softest first
+constexpr double same_pose = 0.1;  // in which supports are taken as they were [rad, 1]
+
+Vector amplitudes(const Modes& m, const Config& q) {
+  Vector out(m.n_modes);
+  for (int j = 0; j < m.n_modes; ++j) out[j] = q.eta[m.first + j / 3][j % 3];
+  return out;
+}
+
+/// Where the other bodies are, as a region sees them.
+std::vector<double> pose_of(const System& system, int body, const Config& q) {
+  std::vector<double> out;
+  for (size_t b = 1; b < system.bodies.size(); ++b) {
+    const Mat3 R = q.R[body].transpose() * q.R[b];
+    const Vec3 c = q.R[body].transpose() * (q.c[b] - q.c[body]) / system.length;
+    out.insert(out.end(), R.data(), R.data() + 9), out.insert(out.end(), c.data(), c.data() + 3);
+  }
+  return out;
+}
+
+/// The symmetric matrix whose entries i <= j are those of a row of pairs.
+Matrix square(const Eigen::Ref<const Vector>& pairs, Index n) {
+  Matrix out(n, n);
+  for (Index j = 0; j < n; ++j)
+    for (Index i = 0; i <= j; ++i) out(i, j) = out(j, i) = pairs[QuadraticStrain::pair(i, j)];
+  return out;
+}
+
+}  // namespace
+
+RegionMeasures::Region& RegionMeasures::region(size_t k, const Config& q) const {
+  const auto& list = system_.part<LinearRegions>().regions;
+  regions_.resize(list.size());
+  Region& out = regions_[k];
+  const LinearRegion& r = list[k];
+  const Modes& m = system_.modes[r.modes];
+  std::vector<double> pose = pose_of(system_, m.body, q);
+  const auto moved = [&] {
+    if (pose.size() != out.pose.size()) return true;
+    for (size_t i = 0; i < pose.size(); ++i)
+      if (!(std::abs(pose[i] - out.pose[i]) < same_pose)) return true;
+    return false;
+  };
+  if (out.second_order.size() > 0 && !moved()) return out;
+  out.pose = std::move(pose);
+  const RegionSupport support = support_of(system_, r, q);
+  const Index S = r.soft.cols(), n = 3 + S, modes = m.n_modes;
+  out.held = Matrix(r.soft.transpose() * r.stiffness.asDiagonal() * r.soft).inverse() - support.compliance;
+  if (out.second_order.size() == 0) {
+    const Matrix forces = r.soft.transpose() * r.second_order.topRows(modes);
+    out.second_order.resize(S, S * (S + 1) / 2);
+    for (Index j = 0; j < S; ++j)
+      for (Index i = 0; i <= j; ++i)
+        out.second_order.col(QuadraticStrain::pair(i, j)) = (i == j ? 0.5 : 1) * forces.col(QuadraticStrain::pair(3 + i, 3 + j));
+  }
+  // the motions that a stress alike in all directions would soften most
+  const Matrix unit = support.free.transpose() * square(r.second_order.row(modes).transpose(), n) * support.free;
+  const Eigen::SelfAdjointEigenSolver<Matrix> softness(unit);
+  const Index motions = std::min(most_motions, unit.cols());
+  const Matrix softest = support.free * softness.eigenvectors().rightCols(motions);
+  out.stress.resize(motions * motions, modes);
+  for (Index j = 0; j < modes; ++j) {
+    const Matrix K = softest.transpose() * square(r.second_order.row(j).transpose(), n) * softest;
+    out.stress.col(j) = K.reshaped();
+  }
+  return out;
+}
+
+void RegionMeasures::archive(Archive& a) {
+  a("region measures", t_);
+  std::vector<double> kept;
+  for (const Region& r : regions_)
+    for (const Peak& p : {r.energy, r.quadratic, r.share}) kept.push_back(p.value), kept.push_back(p.t);
+  a("peaks", kept);
+  for (Region& r : regions_) r.pose.clear();  // supports are found anew on either side
+  if (!a.restores()) return;
+  regions_.assign(kept.size() / 6, {});
+  for (size_t k = 0; k < regions_.size(); ++k) {
+    const double* at = kept.data() + 6 * k;
+    regions_[k].energy = {at[0], at[1]}, regions_[k].quadratic = {at[2], at[3]}, regions_[k].share = {at[4], at[5]};
+  }
+}
+
+std::vector<Output> RegionMeasures::outputs() const {
+  std::vector<Output> out;
+  for (const LinearRegion& r : system_.part<LinearRegions>().regions)
+    out.push_back({.group = "second_order", .name = system_.bodies[system_.modes[r.modes].body].name, .n_end = 2});
+  return out;
+}
+
+void RegionMeasures::add_mid_values(const Moment& m, std::vector<double>&) const { t_ = m.s.t_end; }
+
+void RegionMeasures::add_end_values(const Config& q, const Config&, std::vector<double>& out) const {
+  const auto& list = system_.part<LinearRegions>().regions;
+  for (size_t k = 0; k < list.size(); ++k) {
+    const LinearRegion& r = list[k];
+    const Modes& m = system_.modes[r.modes];
+    if (m.n_modes == 0 || system_.body_block[m.body] < 0) {
+      out.insert(out.end(), 2, 0.0);
+      continue;
+    }
+    Region& at = region(k, q);
+    const Vector eta = amplitudes(m, q), s = r.soft.transpose() * eta;
+    Vector pairs(at.second_order.cols());
+    for (Index j = 0; j < s.size(); ++j) pairs.segment(QuadraticStrain::pair(0, j), j + 1) = s[j] * s.head(j + 1);
+    const Vector f = at.second_order * pairs;
+    const double quadratic = std::max(0.0, f.dot(at.held * f) / 2), energy = r.stiffness.dot(eta.cwiseAbs2()) / 2;
+    double share = 0;
+    if (const Index n = std::lround(std::sqrt(static_cast<double>(at.stress.rows()))); n > 0) {
+      const Vector entries = -at.stress * eta;
+      const Matrix K = entries.reshaped(n, n);
+      share = std::max(0.0, Eigen::SelfAdjointEigenSolver<Matrix>((K + K.transpose()) / 2, Eigen::EigenvaluesOnly).eigenvalues()[n - 1]);
+    }
+    at.energy.look(energy, t_), at.quadratic.look(quadratic, t_), at.share.look(share, t_);
+    out.push_back(quadratic), out.push_back(share);
+  }
+}
+
+/// What is told at the end, with what to do; a region that stiffens has strains of the second degree.
+void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
+  constexpr double much_lacking = 0.05, wide_band = 0.5, much_with_band = 0.01, much_quadratic = 0.1, much_load = 0.1;
+  const auto& linear = system_.part<LinearRegions>();
+  Table table;
+  table.header = {"linear region", "modes lack", "load band", "quadratic strain", "buckling"};
+  std::string lists[4];
+  for (size_t k = 0; k < regions_.size(); ++k) {
+    const Modes& m = system_.modes[linear.regions[k].modes];
+    const std::string& name = system_.bodies[m.body].name;
+    const Region& r = regions_[k];
+    const double lacking = linear.lacking(k), band = linear.load_band(k),
+                 quadratic = r.energy.value > 0 ? std::sqrt(r.quadratic.value / r.energy.value) : 0, share = r.share.value;
+    auto& row = table.rows.emplace_back(std::vector{name});
+    int column = 0;
+    for (const double x : {lacking, band, quadratic, share}) {
+      lists[column] += fmt::format("{}{}: {:.3g}", lists[column].empty() ? "" : ", ", json_text(name), x), ++column;
+      row.push_back(fmt::format("{:.2g}", x));
+    }
+    if (lacking > much_lacking)
+      warn(name,
+           fmt::format("its modes lack {:.2g} of its largest strain (norm of energy): more modes, up_to a higher frequency, or tag it "
+                       "nonlinear",
+                       lacking));
+    if (band > wide_band && lacking > much_with_band)
+      warn(name,
+           fmt::format("what its modes lack is driven at {:.2g} of the first frequency left out, {:.4g} Hz, where it swings along: more "
+                       "modes, or up_to a higher frequency",
+                       band, linear.regions[k].held_frequency));
+    if (quadratic > much_quadratic && !m.stiffens)
+      warn(name,
+           fmt::format("its supports stretch it as it bends: strains of the second degree are {:.2g} of its strain (norm of energy) at t = "
+                       "{:.4g} s, and linear ones leave them out (stiffening = true, or tag it nonlinear)",
+                       quadratic, r.quadratic.t));
+    if (share > much_load && !m.stiffens)
+      warn(name, fmt::format("bears {:.2g} of its buckling load at t = {:.4g} s: linear strains leave out that it gives way {} "
+                             "(stiffening = true, or tag it nonlinear)",
+                             share, r.share.t, share < 1 ? fmt::format("{:.3g} times as far", 1 / (1 - share)) : "without end"));
+  }
+  if (regions_.empty()) return;
+  report.emplace_back("modes_left_out", "{" + lists[0] + "}");
+  report.emplace_back("load_band", "{" + lists[1] + "}");
+  report.emplace_back("quadratic_strain", "{" + lists[2] + "}");
+  report.emplace_back("buckling", "{" + lists[3] + "}");
+  if (!is_quiet()) fmt::print(stderr, "{}", table.text());
+}
+
+}  // namespace hilo

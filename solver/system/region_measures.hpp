@@ -1,0 +1,53 @@
+// How far linear regions are from what their strains are good for, during a run:
+//
+//   quadratic strain   strains of the second degree that nothing can take back: with f their force on the softest shapes, K the stiffness
+//                      of these, C what supports let them give way by, the strain energy f.(K^-1 - C) f/2.  A beam that bends between ends
+//                      that cannot come nearer is stretched by it; one whose ends can, shortens without strain
+//   buckling           the largest u at which K u + K_sigma is singular on what the supports leave free, K_sigma of the stress of that
+//                      instant: the load over that at which the region buckles.  Deflections are 1/(1 - u) times what linear strains give
+//   load band          the frequency of what the modes left out answer to, over that of the first of them: beyond one half what
+//                      /history/left_out tells is too little
+//
+// They take part in no equation.
+#pragma once
+#include "system/linear_regions.hpp"
+#include "system/region_support.hpp"
+
+namespace hilo {
+
+class RegionMeasures final : public Contribution {
+ public:
+  explicit RegionMeasures(const System& system) : system_(system) {}
+
+  void evaluate(Pass&) const override {}
+  void tie(Ties&) const override {}
+  void archive(Archive& a) override;
+  std::vector<Output> outputs() const override;
+  void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
+  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
+  void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override;
+
+  /// The largest so far, and when.
+  struct Peak {
+    double value = 0, t = 0;
+    void look(double x, double at) {
+      if (x > value) value = x, t = at;
+    }
+  };
+
+ private:
+  struct Region {
+    // of the supports of `pose`
+    std::vector<double> pose;       // of the bodies, in the axes of the region
+    Eigen::MatrixXd stress;         // K_sigma of each mode on the softest motions (n n x m)
+    Eigen::MatrixXd held;           // K^-1 - C   (S x S)
+    Eigen::MatrixXd second_order;   // of the softest shapes alone (S x pairs)
+    Peak energy, quadratic, share;  // of strain, of quadratic strain [J]; load over buckling load
+  };
+  Region& region(size_t k, const Config& q) const;
+  const System& system_;
+  mutable std::vector<Region> regions_;
+  mutable double t_ = 0;
+};
+
+}  // namespace hilo

@@ -1,0 +1,111 @@
+// What a linear region tells of its own strains: its share of the buckling load, strains of the second degree that its supports hold, and
+// the band of what its modes leave out; each against a closed form and against what cells of finite strain do.
+#include <fmt/format.h>
+
+#include <fstream>
+#include <numbers>
+
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+constexpr double pi = std::numbers::pi, E = 1e9, h = 0.05, L = 1, I = h * h * h * h / 12, A = h * h;
+
+class LinearMeasures : public testing::Test {
+ protected:
+  LinearMeasures() : c("linear_region") {
+    BlockOptions o;
+    o.n[0] = 24, o.n[1] = o.n[2] = 2;
+    o.low = Vec3(0, -h / 2, -h / 2), o.high = Vec3(L, h / 2, h / 2);
+    mesh = block_mesh(o);
+  }
+  /// Statics of the bar, linear or nonlinear.
+  struct Answer {
+    double sag, energy = 0, quadratic = 0, buckling = 0;
+    std::string said;
+  };
+  Answer rest(const std::string& supports, Fidelity fidelity, const std::string& options = "") {
+    c.use(mesh, {fidelity});
+    std::ofstream(c / "scene.toml") << fmt::format("{}\n[material.m]\nE = {}\nnu = 0\ndensity = 1000\n[region.block]\nmaterial = \"m\"\n",
+                                                   sag_by, E)
+                                    << supports << "[time]\nanalysis = \"static\"\n[output]\nfields = [\"displacement\"]\n";
+    const Ran ran = c.run("hilo-solve scene.toml tags.h5 -o run.h5 " + options);
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    const Results r = c.results();
+    Answer out{0, 0, 0, 0, ran.err};
+    for (const Vec3& u : r.field("displacement")) out.sag = std::max(out.sag, -u[2]);
+    if (fidelity != Fidelity::linear) return out;
+    const auto second = r.history("second_order/block");
+    out.energy = r.history("left_out/block").bottomRows(1)(0, 0), out.quadratic = second.bottomRows(1)(0, 0),
+    out.buckling = second.bottomRows(1)(0, 1);
+    EXPECT_NEAR(c.reported("block"), 0, 0.01) << "the first list is that of modes left out";
+    return out;
+  }
+  Case c;
+  Mesh mesh;
+  std::string sag_by = "gravity = [0, 0, -1e-3]";
+};
+
+const std::string clamp = "[[motion]]\nkind = \"fixed\"\nname = \"clamp\"\non = \"xmin\"\n";
+std::string joint(const std::string& kind, const std::string& on, double x) {
+  return fmt::format("[[joint]]\nkind = \"{0}\"\nname = \"{1} {0}\"\nb = \"{1}\"\nat = [{2}, 0, 0]\n{3}", kind, on, x,
+                     kind == "spherical" ? "" : "axis = [1, 0, 0]\n");
+}
+const std::string universal =  // free to turn about y and z
+    "[[joint]]\nkind = \"universal\"\nname = \"left\"\nb = \"xmin\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\nx = [0, 1, 0]\n";
+const std::string pins = universal + joint("in-line", "xmax", 1);
+const std::string pins_that_stay = universal + joint("spherical", "xmax", 1);
+std::string push(double force) {
+  return fmt::format("[[load]]\nkind = \"force\"\nname = \"push\"\non = \"xmax\"\nforce = [{}, 0, 0]\n", -force);
+}
+
+// Euler's columns, with Engesser's correction for shear; and cells of finite strain give way 1/(1 - u) times as far.
+TEST_F(LinearMeasures, AColumnTellsItsShareOfEulersLoad) {
+  const double shear = 5. / 6 * E / 2 * A;
+  struct Column {
+    std::string supports;
+    double length;
+  };
+  for (const auto& [supports, length] : {Column{clamp, 2 * L}, Column{pins, L}, Column{clamp + joint("prismatic", "xmax", 1), L / 2}}) {
+    const double euler = pi * pi * E * I / (length * length), load = euler / (1 + euler / shear);
+    for (const double share : {0.05, 0.3, 0.6, -0.5}) {
+      const Answer linear = rest(supports + push(share * load), Fidelity::linear);
+      EXPECT_NEAR(linear.buckling, std::max(0.0, share), 0.03 * std::abs(share)) << length;
+      EXPECT_EQ(linear.said.find("buckling load") != std::string::npos, share > 0.1) << linear.said;
+      if (share < 0.2) continue;
+      const Answer cells = rest(supports + push(share * load), Fidelity::nonlinear);
+      EXPECT_NEAR(cells.sag / linear.sag * (1 - share), 1, 0.04) << length << " " << share;
+      std::cout << length << " m: " << share << " told " << linear.buckling << ", cells sag " << cells.sag / linear.sag
+                << " times as far\n";
+    }
+  }
+}
+
+// A beam that sags between ends that cannot come nearer is stretched by w'^2/2; where one end can, and on a cantilever, nothing is.
+TEST_F(LinearMeasures, StrainsOfTheSecondDegreeAreThoseThatSupportsHold) {
+  const double weight = 1000 * A;  // per acceleration [N/m over m/s^2]
+  for (const double sag : {0.05 * h, 0.2 * h}) {
+    const double q = sag * 384 * E * I / 5, g = q / weight;
+    sag_by = fmt::format("gravity = [0, 0, {}]", -g);
+    const double bending = q * q / (240 * E * I), slopes = std::pow(q / (24 * E * I), 2) * 17 / 35,
+                 stretching = E * A / 2 * std::pow(slopes / 2, 2);
+    const Answer held = rest(pins_that_stay, Fidelity::linear);
+    EXPECT_NEAR(held.sag / sag, 1, 0.02);
+    EXPECT_NEAR(held.energy / bending, 1, 0.03);
+    EXPECT_NEAR(std::sqrt(held.quadratic / held.energy), std::sqrt(stretching / bending), 0.05 * std::sqrt(stretching / bending));
+    EXPECT_EQ(held.said.find("stretch it as it bends") != std::string::npos, stretching > 0.01 * bending) << held.said;
+    const Answer cells = rest(pins_that_stay, Fidelity::nonlinear);
+    std::cout << sag / h << " of the height: quadratic strain " << std::sqrt(held.quadratic / held.energy) << ", "
+              << std::sqrt(stretching / bending) << " by the closed form; linear sags " << held.sag / cells.sag
+              << " times as far as cells\n";
+    const Answer roller = rest(pins, Fidelity::linear), bracket = rest(clamp, Fidelity::linear);
+    std::cout << "  roller " << std::sqrt(roller.quadratic / roller.energy) << ", cantilever "
+              << std::sqrt(bracket.quadratic / bracket.energy) << "\n";
+    EXPECT_LT(std::sqrt(roller.quadratic / roller.energy), 0.01);
+    EXPECT_LT(std::sqrt(bracket.quadratic / bracket.energy), 0.01);
+  }
+}
+
+}  // namespace
+}  // namespace hilo::test
