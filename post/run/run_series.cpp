@@ -38,7 +38,7 @@ const std::vector<Layout>& layouts() {
        {"x", "y", "z", "about_x", "about_y", "about_z"},
        {"kg^0.5", "kg^0.5", "kg^0.5", "kg^0.5 m", "kg^0.5 m", "kg^0.5 m"}},
       {"left_out", {"strain", "left_out"}, {"J", "J"}},
-      {"second_order", {"quadratic", "buckling"}, {"J", "1"}},
+      {"second_order", {"quadratic", "buckling", "growth"}, {"J", "1", "1"}},
       {"constraint", {"violation"}, {"m"}},
       {"newton", {"iterations"}, {"1"}},
   };

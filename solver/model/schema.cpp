@@ -133,10 +133,9 @@ std::vector<ArraySchema>& arrays() {
        "amplitudes of the modes of a linear region, orthonormal in mass"},
       {"run.h5", "/history/left_out/<name>", "f8", "(n_t, 2)", "J",
        "of a linear region: strain energy at the inside of the step, and what modes left out would hold of the answer to its vibration"},
-      {"run.h5", "/history/second_order/<name>", "f8", "(n_t, 2)", "J, 1",
+      {"run.h5", "/history/second_order/<name>", "f8", "(n_t, 3)", "J, 1, 1",
        "of a linear region: strain energy of strains of the second degree that its supports let nothing take back; its load over that at "
-       "which "
-       "it would buckle"},
+       "which it would buckle; how many times as far it would give way under that load (1000: without end)"},
       {"run.h5", "/history/joint/<name>", "f8", "(n_t, 6)", "N, N m",
        "force and moment on b at the joint point, joint frame carried by a; of redundant joints the minimum-norm share"},
       {"run.h5", "/history/spring/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the point, inertial axes"},

@@ -16,8 +16,9 @@ using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-constexpr Index most_motions = 8;  // that are looked at for buckling, softest first
-constexpr double same_pose = 0.1;  // in which supports are taken as they were [rad, 1]
+constexpr Index most_motions = 8;                        // that are looked at for buckling, softest first
+constexpr double least_share = 0.02, without_end = 1e3;  // below and at a buckling load
+constexpr double same_pose = 0.1;                        // in which supports are taken as they were [rad, 1]
 
 Vector amplitudes(const Modes& m, const Config& q) {
   Vector out(m.n_modes);
@@ -34,6 +35,15 @@ std::vector<double> pose_of(const System& system, int body, const Config& q) {
     out.insert(out.end(), R.data(), R.data() + 9), out.insert(out.end(), c.data(), c.data() + 3);
   }
   return out;
+}
+
+/// Largest u at which the unit matrix and K_sigma u are singular together   (n n x m)
+double largest_share(const Matrix& stress, const Vector& eta) {
+  const auto n = static_cast<Index>(std::lround(std::sqrt(static_cast<double>(stress.rows()))));
+  if (n == 0) return 0;
+  const Vector entries = -stress * eta;
+  const Matrix K = entries.reshaped(n, n);
+  return std::max(0.0, Eigen::SelfAdjointEigenSolver<Matrix>((K + K.transpose()) / 2, Eigen::EigenvaluesOnly).eigenvalues()[n - 1]);
 }
 
 /// The symmetric matrix whose entries i <= j are those of a row of pairs.
@@ -76,10 +86,13 @@ RegionMeasures::Region& RegionMeasures::region(size_t k, const Config& q) const 
   const Eigen::SelfAdjointEigenSolver<Matrix> softness(unit);
   const Index motions = std::min(most_motions, unit.cols());
   const Matrix softest = support.free * softness.eigenvectors().rightCols(motions);
-  out.stress.resize(motions * motions, modes);
+  out.stress.resize(motions * motions, modes), out.axes = out.stress;
   for (Index j = 0; j < modes; ++j) {
-    const Matrix K = softest.transpose() * square(r.second_order.row(j).transpose(), n) * softest;
-    out.stress.col(j) = K.reshaped();
+    Matrix K = square(r.second_order.row(j).transpose(), n);
+    const Matrix all = softest.transpose() * K * softest;
+    K.bottomRightCorner(S, S).setZero();
+    const Matrix axes = softest.transpose() * K * softest;
+    out.stress.col(j) = all.reshaped(), out.axes.col(j) = axes.reshaped();
   }
   return out;
 }
@@ -88,21 +101,22 @@ void RegionMeasures::archive(Archive& a) {
   a("region measures", t_);
   std::vector<double> kept;
   for (const Region& r : regions_)
-    for (const Peak& p : {r.energy, r.quadratic, r.share}) kept.push_back(p.value), kept.push_back(p.t);
+    for (const Peak& p : {r.energy, r.quadratic, r.share, r.growth}) kept.push_back(p.value), kept.push_back(p.t);
   a("peaks", kept);
   for (Region& r : regions_) r.pose.clear();  // supports are found anew on either side
   if (!a.restores()) return;
-  regions_.assign(kept.size() / 6, {});
+  regions_.assign(kept.size() / 8, {});
   for (size_t k = 0; k < regions_.size(); ++k) {
-    const double* at = kept.data() + 6 * k;
+    const double* at = kept.data() + 8 * k;
     regions_[k].energy = {at[0], at[1]}, regions_[k].quadratic = {at[2], at[3]}, regions_[k].share = {at[4], at[5]};
+    regions_[k].growth = {at[6], at[7]};
   }
 }
 
 std::vector<Output> RegionMeasures::outputs() const {
   std::vector<Output> out;
   for (const LinearRegion& r : system_.part<LinearRegions>().regions)
-    out.push_back({.group = "second_order", .name = system_.bodies[system_.modes[r.modes].body].name, .n_end = 2});
+    out.push_back({.group = "second_order", .name = system_.bodies[system_.modes[r.modes].body].name, .n_end = 3});
   return out;
 }
 
@@ -114,7 +128,7 @@ void RegionMeasures::add_end_values(const Config& q, const Config&, std::vector<
     const LinearRegion& r = list[k];
     const Modes& m = system_.modes[r.modes];
     if (m.n_modes == 0 || system_.body_block[m.body] < 0) {
-      out.insert(out.end(), 2, 0.0);
+      out.insert(out.end(), {0.0, 0.0, 1.0});
       continue;
     }
     Region& at = region(k, q);
@@ -123,20 +137,19 @@ void RegionMeasures::add_end_values(const Config& q, const Config&, std::vector<
     for (Index j = 0; j < s.size(); ++j) pairs.segment(QuadraticStrain::pair(0, j), j + 1) = s[j] * s.head(j + 1);
     const Vector f = at.second_order * pairs;
     const double quadratic = std::max(0.0, f.dot(at.held * f) / 2), energy = r.stiffness.dot(eta.cwiseAbs2()) / 2;
-    double share = 0;
-    if (const Index n = std::lround(std::sqrt(static_cast<double>(at.stress.rows()))); n > 0) {
-      const Vector entries = -at.stress * eta;
-      const Matrix K = entries.reshaped(n, n);
-      share = std::max(0.0, Eigen::SelfAdjointEigenSolver<Matrix>((K + K.transpose()) / 2, Eigen::EigenvaluesOnly).eigenvalues()[n - 1]);
-    }
+    const double share = largest_share(at.stress, eta);
+    const double growth = share < least_share ? 1
+                          : share < 1         ? (1 - std::min(share, largest_share(at.axes, eta))) / (1 - share)
+                                              : without_end;
     at.energy.look(energy, t_), at.quadratic.look(quadratic, t_), at.share.look(share, t_);
-    out.push_back(quadratic), out.push_back(share);
+    at.growth.look(growth, t_);
+    out.push_back(quadratic), out.push_back(share), out.push_back(growth);
   }
 }
 
 /// What is told at the end, with what to do; a region that stiffens has strains of the second degree.
 void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
-  constexpr double much_lacking = 0.05, wide_band = 0.5, much_with_band = 0.01, much_quadratic = 0.1, much_load = 0.1;
+  constexpr double much_lacking = 0.05, wide_band = 0.5, much_with_band = 0.02, much_quadratic = 0.1, much_growth = 1.1;
   const auto& linear = system_.part<LinearRegions>();
   Table table;
   table.header = {"linear region", "modes lack", "load band", "quadratic strain", "buckling"};
@@ -168,10 +181,11 @@ void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::strin
            fmt::format("its supports stretch it as it bends: strains of the second degree are {:.2g} of its strain (norm of energy) at t = "
                        "{:.4g} s, and linear ones leave them out (stiffening = true, or tag it nonlinear)",
                        quadratic, r.quadratic.t));
-    if (share > much_load && !m.stiffens)
-      warn(name, fmt::format("bears {:.2g} of its buckling load at t = {:.4g} s: linear strains leave out that it gives way {} "
-                             "(stiffening = true, or tag it nonlinear)",
-                             share, r.share.t, share < 1 ? fmt::format("{:.3g} times as far", 1 / (1 - share)) : "without end"));
+    if (r.growth.value > much_growth && !m.stiffens)
+      warn(name,
+           fmt::format("bears {:.2g} of its buckling load at t = {:.4g} s: linear strains leave out that it gives way {} (stiffening = "
+                       "true, or tag it nonlinear)",
+                       share, r.share.t, share < 1 ? fmt::format("{:.3g} times as far", r.growth.value) : "without end"));
   }
   if (regions_.empty()) return;
   report.emplace_back("modes_left_out", "{" + lists[0] + "}");

@@ -4,7 +4,8 @@
 //                      of these, C what supports let them give way by, the strain energy f.(K^-1 - C) f/2.  A beam that bends between ends
 //                      that cannot come nearer is stretched by it; one whose ends can, shortens without strain
 //   buckling           the largest u at which K u + K_sigma is singular on what the supports leave free, K_sigma of the stress of that
-//                      instant: the load over that at which the region buckles.  Deflections are 1/(1 - u) times what linear strains give
+//                      instant: the load over that at which the region buckles.  Deflections grow by 1/(1 - u); by 1/(1 - u_axes) they do
+//                      in the run too, whose mean axes turn under their loads: u_axes is u without K_sigma among the shapes
 //   load band          the frequency of what the modes left out answer to, over that of the first of them: beyond one half what
 //                      /history/left_out tells is too little
 //
@@ -38,11 +39,11 @@ class RegionMeasures final : public Contribution {
  private:
   struct Region {
     // of the supports of `pose`
-    std::vector<double> pose;       // of the bodies, in the axes of the region
-    Eigen::MatrixXd stress;         // K_sigma of each mode on the softest motions (n n x m)
-    Eigen::MatrixXd held;           // K^-1 - C   (S x S)
-    Eigen::MatrixXd second_order;   // of the softest shapes alone (S x pairs)
-    Peak energy, quadratic, share;  // of strain, of quadratic strain [J]; load over buckling load
+    std::vector<double> pose;               // of the bodies, in the axes of the region
+    Eigen::MatrixXd stress, axes;           // K_sigma of each mode on the softest motions, and without what is among the shapes (n n x m)
+    Eigen::MatrixXd held;                   // K^-1 - C   (S x S)
+    Eigen::MatrixXd second_order;           // of the softest shapes alone (S x pairs)
+    Peak energy, quadratic, share, growth;  // of strain, of quadratic strain [J]; load over buckling load; (1 - u_axes)/(1 - u)
   };
   Region& region(size_t k, const Config& q) const;
   const System& system_;

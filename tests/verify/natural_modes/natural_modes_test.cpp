@@ -289,7 +289,7 @@ TEST_F(NaturalModes, GiveTheTransmissibilityOfAMassOnASpring) {
     for (const Answer& a : answers(work.run(command + (relative ? "--relative" : "--of acceleration")))) {
       const double r = 2 * pi * a.f / w0;
       const std::complex<double> bottom(1 - r * r, 2 * zeta * r),
-          exact = relative ? -1 / (w0 * w0 * bottom) : std::complex<double>(1, 2 * zeta * r) / bottom;
+          exact = relative ? -1.0 / (w0 * w0 * bottom) : std::complex<double>(1, 2 * zeta * r) / bottom;
       EXPECT_LT(std::abs(std::polar(a.size, a.phase * pi / 180) / exact - 1.0), 1e-5) << a.f;
     }
   EXPECT_EQ(work.run("hilo-post response run.h5 --at top.z").exit, 1) << "nothing swings";
