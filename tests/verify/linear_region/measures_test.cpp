@@ -77,7 +77,7 @@ TEST_F(LinearMeasures, AColumnTellsItsShareOfEulersLoad) {
       if (length <= L) EXPECT_NEAR(linear.growth, 1 / (1 - std::max(0.0, share)), 0.03) << "supports keep the mean axes from turning";
       if (share < 0.2) continue;
       const Answer cells = rest(supports + push(share * load), Fidelity::nonlinear);
-      EXPECT_NEAR(cells.sag / linear.sag / linear.growth, 1, 0.02) << length << " " << share;
+      EXPECT_NEAR(cells.sag / linear.sag / linear.growth, 1, 0.03) << length << " " << share;
       std::cout << length << " m: " << share << " told " << linear.buckling << ", cells sag " << cells.sag / linear.sag
                 << " times as far, told " << linear.growth << "\n";
     }
