@@ -234,7 +234,7 @@ std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, co
     const double norm = std::copysign(std::sqrt(shape.dot(at.mass(shape))), shape[most]);
     shape /= norm;
     f.figures.omega2 = modes.omega2[j];
-    f.figures.error += std::sqrt(std::max(0.0, change.dot(at.mass(change))));
+    f.figures.error += std::sqrt(std::abs(change.dot(at.mass(change))));  // not a number remains one
     f.figures.part = rigid.part_of(shape), f.figures.mass = f.figures.part.cwiseAbs2();
     if (system.traits().has_rates && f.figures.omega2 > 1e-9 * pencil.shift)
       f.figures.damping = shape.dot(at.damping(shape)) / (2 * std::sqrt(f.figures.omega2));

@@ -148,6 +148,10 @@ Eigenmodes lowest_modes(const Pencil& pencil, int wanted, double tolerance, bool
     const Matrix G = X.transpose() * MX, H = MX.transpose() * Y;
     const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> pairs((H + H.transpose()) / 2, (G + G.transpose()) / 2);
     nu = pairs.eigenvalues(), shapes = X * pairs.eigenvectors();
+    if (!nu.allFinite() || !shapes.allFinite()) {  // so many were wanted that rounding is among them
+      out.converged = false;
+      return out;
+    }
   }
   std::vector<Index> order(static_cast<size_t>(nu.size()));
   std::iota(order.begin(), order.end(), 0);

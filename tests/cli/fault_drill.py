@@ -2,7 +2,7 @@
 """Nothing that was written is lost: runs are killed, and find the disk full, at many instants; then they go on.
 
   fault_drill.py REPO BIN LIB            a part of it, two minutes: in the suite
-  fault_drill.py REPO BIN LIB all        200 instants of kill -9 on 1, 2 and 3 ranks, every write of every scene: make -C tests faults
+  fault_drill.py REPO BIN LIB STRIDE     each STRIDE-th write, and 200 instants of kill -9 on 1, 2 and 3 ranks: make -C tests faults (1)
 LIB: the preloaded library tests/faults/preload/failing_writes.cpp.
 
 What must hold after every fault: the former results are there as they were, or the new ones are sound up to what was written last
@@ -21,7 +21,8 @@ import h5py
 import numpy
 
 repo, tools, library = (os.path.abspath(a) for a in sys.argv[1:4])
-everything = len(sys.argv) > 4
+stride = int(sys.argv[4]) if len(sys.argv) > 4 else 97
+kills = 20 if len(sys.argv) > 4 else 2
 os.environ.update(PATH=tools + ":" + os.environ["PATH"], OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                   OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1", OMPI_MCA_hwloc_base_binding_policy="none",
                   OPENBLAS_NUM_THREADS="1")
@@ -269,9 +270,9 @@ with tempfile.TemporaryDirectory() as folder:
         sys.exit(made.stderr)
     for name, (_, _, all_ranks) in SCENES.items():
         if all_ranks[0] == 1:
-            every_write(name, 1 if everything else 97)
+            every_write(name, stride)
         for ranks in all_ranks:
-            any_instant(name, ranks, 25 if everything else 2)
+            any_instant(name, ranks, kills)
     for name in ("flexible", "plastic", "parallel"):
         other_ranks(name, 1, [2, 3])
         other_ranks(name, 3, [1, 2])
