@@ -93,7 +93,8 @@ GmshMesh meshed(const std::string& path, const std::string& format, const Import
     open(path, format, options);
     return mesh_of_library();
   } catch (const std::string& e) {
-    throw Error(path, "gmsh: " + e);
+    const bool memory = e.find("ut of memory") != e.npos;
+    throw Error(path, "gmsh: " + e, "", memory ? Exit::resources : Exit::input);
   } catch (const std::bad_alloc&) {
     throw Error(path, "not enough memory to read it, or its counts are damaged", "", Exit::resources);
   } catch (const std::length_error&) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <gmsh.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -13,13 +14,20 @@ namespace hilo {
 namespace {
 
 bool reading = false;
+int crash_exit = static_cast<int>(Exit::input);
 std::string end_line;    // what is said where a script ends the program
 std::string crash_line;  // what the handler of a crash writes: made beforehand, since it may not allocate
 
 }  // namespace
 
 CrashGuard::CrashGuard(const std::string& path) {
-  crash_line = fmt::format("{}: {}: gmsh crashed on it (is the file damaged?)\n", tool_name(), path);
+  rlimit room{};
+  const bool limited = getrlimit(RLIMIT_AS, &room) == 0 && room.rlim_cur != RLIM_INFINITY;
+  crash_exit = static_cast<int>(limited ? Exit::resources : Exit::input);
+  crash_line = limited
+                   ? fmt::format("{}: {}: gmsh crashed on it with a limit of {} MB of memory (is that too little, or the file damaged?)\n",
+                                 tool_name(), path, room.rlim_cur >> 20)
+                   : fmt::format("{}: {}: gmsh crashed on it (is the file damaged?)\n", tool_name(), path);
   end_line = fmt::format("{}: {}: the script ends the program before there is a mesh (Exit)\n", tool_name(), path);
   static const bool once = std::atexit([] {
                              if (!reading) return;
@@ -30,7 +38,7 @@ CrashGuard::CrashGuard(const std::string& path) {
   struct sigaction act {};
   act.sa_handler = [](int) {
     if (write(2, crash_line.data(), crash_line.size()) < 0) _exit(static_cast<int>(Exit::fault));
-    _exit(static_cast<int>(Exit::input));
+    _exit(crash_exit);
   };
   for (size_t i = 0; i < signals_.size(); ++i) sigaction(signals_[i], &act, &before_[i]);
   // the default handler would say more than our one line
