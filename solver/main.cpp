@@ -1,7 +1,6 @@
 // hilo-solve: a scene, and the mesh it names, become motion.
 #include <fmt/format.h>
 #include <omp.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <limits>
@@ -9,6 +8,7 @@
 
 #include "base/args.hpp"
 #include "base/interrupt.hpp"
+#include "base/on_ranks.hpp"
 #include "dynamics/checkpoint.hpp"
 #include "dynamics/profile.hpp"
 #include "model/inputs.hpp"
@@ -45,7 +45,7 @@ CheckpointPolicy policy_of(const Options& o) {
   return p;
 }
 
-int solve(int argc, char** argv, Comm& comm) {
+void solve(int argc, char** argv, Comm& comm) {
   const double began = wall_clock();
   Options o;
   auto app = make_app({"hilo-solve", "Solve a scene of rigid and flexible parts in time.",
@@ -74,7 +74,7 @@ int solve(int argc, char** argv, Comm& comm) {
   app->add_flag("--dry-run", o.dry_run, "read and check everything, then stop");
   app->add_flag("--explain", o.explain, "print every value in force, defaults included, then stop");
   app->add_flag("--profile", o.profile, "print seconds, counts and messages by phase at the end");
-  if (!parse(*app, argc, argv)) return 0;
+  if (!parse(*app, argc, argv)) return;
   const bool talk = !is_quiet() && comm.rank == 0;
   if (comm.rank != 0) quiet_warnings(true);
 
@@ -101,7 +101,7 @@ int solve(int argc, char** argv, Comm& comm) {
   for (const auto& w : scene.warnings) warn("", w);
   if (o.explain) {
     if (comm.rank == 0) fmt::print("{}", scene.explain());
-    return 0;
+    return;
   }
   RunOptions options;
   options.output = o.output;
@@ -118,7 +118,7 @@ int solve(int argc, char** argv, Comm& comm) {
   const auto system = build_system(scene, mesh.get(), comm, {.from = o.modes, .to = "", .provenance = {}});
   print_plan(*system, talk);
   if (from) require_same(*from, scene, options.mesh, o.accept), options.from = std::move(from->kept);
-  if (o.dry_run) return 0;
+  if (o.dry_run) return;
   if (!o.output.ends_with(".h5")) throw Error(o.output, "the results file must end in .h5", "-o run.h5", Exit::usage);
   const auto folder = std::filesystem::path(o.output).parent_path();
   if (!folder.empty() && !std::filesystem::is_directory(folder))
@@ -148,7 +148,6 @@ int solve(int argc, char** argv, Comm& comm) {
   if (talk && report.table.empty())
     fmt::print(stderr, "{}: {} steps, {} Newton iterations{}\n", o.output, report.steps, report.iterations,
                report.cuts ? fmt::format(", {} step cuts", report.cuts) : "");
-  return 0;
 }
 
 }  // namespace
@@ -156,23 +155,5 @@ int solve(int argc, char** argv, Comm& comm) {
 
 int main(int argc, char** argv) {
   omp_set_max_active_levels(0);  // a rank is a thread: those of CHOLMOD and others would fight for its core
-  hilo::Comm* comm = nullptr;
-  const int code = hilo::guarded("hilo-solve", [&] {
-    comm = &hilo::Comm::world();
-    if (comm->size == 1) {
-      hilo::solve(argc, argv, *comm);
-      return;
-    }
-    try {
-      hilo::solve(argc, argv, *comm);
-    } catch (...) {
-      if (comm->rank != 0) sleep(2);  // an error all ranks share is told once, by rank 0, which ends the job
-      throw;
-    }
-  });
-  if (comm && comm->size > 1) {
-    if (code != 0) comm->abort(code);
-    comm->finish();
-  }
-  return code;
+  return hilo::on_ranks("hilo-solve", [&](hilo::Comm& comm) { hilo::solve(argc, argv, comm); });
 }

@@ -78,16 +78,6 @@ class Cholesky final : public Factors {
     for (size_t k = 0; k < dense_.size(); ++k) std::copy_n(g_.data() + 3 * k, 3, x + 3 * dense_[k]);
   }
 
-  void solve_columns(double* X, int n, int columns) override {
-    if (!dense_.empty() || single_values_.exist()) return Factors::solve_columns(X, n, columns);
-    constexpr int at_once = 32;  // a pass over the factor serves them all; what they need of memory is four times their own
-    for (int k = 0; k < columns; k += at_once) {
-      const int m = std::min(at_once, columns - k);
-      double* some = X + static_cast<size_t>(k) * n;
-      std::copy_n(solve_flexible(some, m), static_cast<size_t>(m) * n, some);
-    }
-  }
-
   bool sharpen() override { return std::exchange(single_, false); }
   double cost() const override {
     return factor_cost(common_.fl, 2 * common_.lnz) + 0.2 * static_cast<double>(touching_.size());  // columns together cost a fifth of one

@@ -1,6 +1,5 @@
 // Serial factors of a saddle-point matrix.
 #pragma once
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,12 +17,6 @@ class Factors {
   virtual bool refactor(const BlockCsr&) { return false; }
   /// x := P^-1 b, P the matrix factored last or near it; b and x are different arrays.
   virtual void solve(const double* b, double* x) = 0;
-  /// X := P^-1 X, (n x columns): faster than one after the other where a kind can.
-  virtual void solve_columns(double* X, int n, int columns) {
-    std::vector<double> x(n);
-    for (double* column = X; column < X + static_cast<size_t>(n) * columns; column += n)
-      solve(column, x.data()), std::copy(x.begin(), x.end(), column);
-  }
   /// Whether there is a more accurate form, which the next factorisation takes.
   virtual bool sharpen() { return false; }
   /// What a factorisation costs, in solves.

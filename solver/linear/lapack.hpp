@@ -64,10 +64,22 @@ inline void gram(int n, int m, const double* M, double* G) {
 }
 
 /// A := its Cholesky factor, (n x n).  False when it is not positive definite.
-inline bool factor(int n, double* A) {
+inline bool factor(int n, double* A, int stride) {
   int info = 0;
-  dpotrf_("L", &n, A, &n, &info);
+  dpotrf_("L", &n, A, &stride, &info);
   return info == 0;
+}
+
+/// X := X L^-T, (n x m); L: (m x m).
+inline void solve_triangle_right(int n, int m, const double* L, int stride, double* X, int next) {
+  const double unit = 1;
+  dtrsm_("R", "L", "T", "N", &n, &m, &unit, L, &stride, X, &next);
+}
+
+/// G -= M M^T, lower triangle; M: (n x m), G: (n x n).
+inline void subtract_gram(int n, int m, const double* M, int stride, double* G) {
+  const double minus = -1, one = 1;
+  dsyrk_("L", "N", &n, &m, &minus, M, &stride, &one, G, &n);
 }
 
 /// X := (L L^T)^-1 X, (n x columns).

@@ -19,8 +19,8 @@
 
 namespace hilo {
 
-Builder::Builder(const Scene& scene, LocalMesh* mesh, const Comm& comm, const ReducedFiles& files)
-    : scene_(scene), mesh_(mesh), comm_(comm), files_(files) {}
+Builder::Builder(const Scene& scene, LocalMesh* mesh, const Comm& comm, const ReducedFiles& files, const FactorRoom& room)
+    : scene_(scene), mesh_(mesh), comm_(comm), files_(files), room_(room) {}
 
 /// All that takes part in the equations; evaluations, results and the line that tells them go in this order.
 void Builder::add_contributions() {
@@ -93,7 +93,11 @@ std::unique_ptr<System> Builder::build() {
 }
 
 std::unique_ptr<System> build_system(const Scene& scene, LocalMesh* mesh, const Comm& comm, const ReducedFiles& files) {
-  return Builder(scene, mesh, comm, files).build();
+  return build_system(scene, mesh, comm, files, {});
+}
+std::unique_ptr<System> build_system(const Scene& scene, LocalMesh* mesh, const Comm& comm, const ReducedFiles& files,
+                                     const FactorRoom& room) {
+  return Builder(scene, mesh, comm, files, room).build();
 }
 
 }  // namespace hilo

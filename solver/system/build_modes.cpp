@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "linear/shared_cholesky.hpp"
 #include "system/builder.hpp"
 #include "system/face.hpp"
 #include "system/linear_regions.hpp"
@@ -12,7 +13,8 @@
 
 namespace hilo {
 
-/// Modes of every linear region, found on one rank from all its cells, and what the other ranks need of them.
+/// Modes of every linear region, found by rank 0 from all its cells, the factor by all of one machine, and what the other ranks need of
+/// them.
 void Builder::reduce_linear_regions() {
   out_->modes_of.resize(out_->bodies.size(), -1);
   if (out_->modes.empty() && !files_.from.empty()) warn(files_.from, "no region is linear: the file is not read");
@@ -29,6 +31,7 @@ void Builder::reduce_linear_regions() {
     const auto& welds = parcel.welds;
     const auto& local = parcel.local;
     Reduction found;
+    if (comm_.rank != 0) SharedCholesky(comm_).serve();
     std::vector<double> head;  // modes, first frequency left out, omega2, A, levers, then axes, shares, means and stretches of each weld
     if (comm_.rank == 0) {
       const ReductionInput in = reduction_input(parcel, axes);
@@ -140,24 +143,32 @@ void Builder::reduce_linear_regions() {
     for (auto& [kind, batch] : own)
       out_->part<LinearRegions>().cells.push_back(std::move(batch)), out_->part<LinearRegions>().body_of_cells.push_back(modes.body);
 
-    // shapes at the local nodes that follow
-    std::vector<std::vector<std::int64_t>> ask(comm_.size);
+    // shapes at the local nodes that follow, so many nodes at a time
     std::vector<int> mine;
     for (size_t i = 0; i < out_->X.size(); ++i)
-      if (out_->follower[i] == modes.body) mine.push_back(static_cast<int>(i)), ask[0].push_back(mesh_->node_global[i]);
-    const auto asked = comm_.exchange(ask);
-    std::vector<std::vector<double>> answer(comm_.size);
-    for (int k = 0; k < comm_.size && comm_.rank == 0; ++k)
-      for (const std::int64_t row : asked[k])
-        for (int j = 0; j < m; ++j)
-          for (int c = 0; c < 3; ++c) answer[k].push_back(found.shapes(3 * local.at(row) + c, j));
-    const auto shapes = comm_.exchange(answer)[0];
-    for (size_t k = 0; k < mine.size(); ++k) {
-      out_->shape_row[mine[k]] = static_cast<std::int64_t>(out_->shapes.size());
-      for (int j = 0; j < 3 * modes.n_blocks; ++j)
-        out_->shapes.push_back(j < m ? Vec3(shapes[3 * (k * m + j)], shapes[3 * (k * m + j) + 1], shapes[3 * (k * m + j) + 2])
-                                     : Vec3::Zero());
+      if (out_->follower[i] == modes.body) mine.push_back(static_cast<int>(i));
+    const size_t at_once = 100000, most = static_cast<size_t>(comm_.max(static_cast<double>(mine.size())));
+    out_->shapes.reserve(out_->shapes.size() + mine.size() * 3 * static_cast<size_t>(modes.n_blocks));
+    for (size_t from = 0; from < most; from += at_once) {
+      const std::span some =
+          std::span(mine).subspan(std::min(from, mine.size()), std::min(at_once, mine.size() - std::min(from, mine.size())));
+      std::vector<std::vector<std::int64_t>> ask(comm_.size);
+      for (const int i : some) ask[0].push_back(mesh_->node_global[i]);
+      const auto asked = comm_.exchange(ask);
+      std::vector<std::vector<double>> answer(comm_.size);
+      for (int k = 0; k < comm_.size && comm_.rank == 0; ++k)
+        for (const std::int64_t row : asked[k])
+          for (int j = 0; j < m; ++j)
+            for (int c = 0; c < 3; ++c) answer[k].push_back(found.shapes(3 * local.at(row) + c, j));
+      const auto shapes = comm_.exchange(answer)[0];
+      for (size_t k = 0; k < some.size(); ++k) {
+        out_->shape_row[some[k]] = static_cast<std::int64_t>(out_->shapes.size());
+        for (int j = 0; j < 3 * modes.n_blocks; ++j)
+          out_->shapes.push_back(j < m ? Vec3(shapes[3 * (k * m + j)], shapes[3 * (k * m + j) + 1], shapes[3 * (k * m + j) + 2])
+                                       : Vec3::Zero());
+      }
     }
+    if (comm_.rank == 0 && !files_.to.empty()) reductions_.back().found = std::move(found);
   }
   if (comm_.rank == 0 && !files_.to.empty()) write_reduced(files_.to, reductions_, files_.provenance);
   out_->start.eta.assign(n_blocks, Vec3::Zero());

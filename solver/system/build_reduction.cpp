@@ -2,13 +2,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <optional>
 
 #include "base/args.hpp"
+#include "linear/shared_cholesky.hpp"
 #include "system/builder.hpp"
 #include "system/linear_regions.hpp"
 #include "system/region_parcel.hpp"
@@ -100,6 +102,23 @@ RegionParcel Builder::parcel_of(int number) {
   return out;
 }
 
+namespace {
+
+/// Cells by their nodes: in the same order whatever ranks they came from, so that sums over them are the same bit by bit.
+void sort_cells(SolidBatch& batch) {
+  const auto n = static_cast<size_t>(info(batch.shape).n_nodes);
+  const auto cell = [&](size_t e) { return std::span(batch.nodes).subspan(n * e, n); };
+  std::vector<size_t> order(batch.nodes.size() / n);
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return std::ranges::lexicographical_compare(cell(a), cell(b)); });
+  std::vector<int> nodes;
+  nodes.reserve(batch.nodes.size());
+  for (const size_t e : order) nodes.insert(nodes.end(), cell(e).begin(), cell(e).end());
+  batch.nodes = std::move(nodes);
+}
+
+}  // namespace
+
 /// On rank 0.
 ReductionInput Builder::reduction_input(const RegionParcel& parcel, const Body& axes) const {
   ReductionInput in;
@@ -115,6 +134,7 @@ ReductionInput Builder::reduction_input(const RegionParcel& parcel, const Body& 
     }
   });
   for (auto& [kind, batch] : by_kind) {
+    sort_cells(batch);
     const Region& r = regions_[kind.first];
     in.made_of.push_back(r.material ? r.material->all_values() : fmt::format("E {} nu {}", r.E, r.nu));
     in.cells.push_back(std::move(batch));
@@ -139,11 +159,13 @@ ReductionInput Builder::reduction_input(const RegionParcel& parcel, const Body& 
         in.loads[load].emplace_back(parcel.local.at(static_cast<std::int64_t>(v[0])), Vec3(v[1], v[2], v[3]));
   }
   std::erase_if(in.loads, [](const auto& load) { return load.empty(); });
+  for (auto& load : in.loads) std::stable_sort(load.begin(), load.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   const double step = scene_.table("time").has("step") ? scene_.table("time").number("step") : 0;
   in.centre = axes.Xc;
   in.n_vibrations = parcel.n_vibrations;
   in.up_to = parcel.up_to > 0 ? parcel.up_to : step > 0 ? 0.1 / step : 0;
   in.stiffening = parcel.stiffening, in.length = axes.size;
+  in.memory = room_.memory, in.scratch = room_.scratch;
   if (!parcel.shapes.empty()) in.given = given_shapes(parcel);
   if (!is_quiet() && 3 * in.X.size() > told_from)
     in.progress = [name = axes.name](const std::string& what) { fmt::print(stderr, "linear region \"{}\": {}\n", name, what); };
@@ -173,10 +195,11 @@ Eigen::MatrixXd Builder::given_shapes(const RegionParcel& parcel) const {
   return out;
 }
 
-/// As it is on file, where that fits, or found now.  On rank 0.
+/// As it is on file, where that fits, or found now.  On rank 0, with the others in the factor's serve().
 Reduction Builder::reduction_of(const ReductionInput& in, const Body& axes, const std::string& where) {
-  const auto named = [&](const std::string& what, const std::string& hint) {
-    return Error(where, fmt::format("linear region \"{}\": {}", axes.name, what), hint);
+  SharedCholesky factor(comm_);
+  const auto named = [&](const std::string& what, const std::string& hint, Exit exit = Exit::input) {
+    return Error(where, fmt::format("linear region \"{}\": {}", axes.name, what), hint, exit);
   };
   const ReductionKey key = key_of(in);
   std::optional<Reduction> out;
@@ -190,17 +213,18 @@ Reduction Builder::reduction_of(const ReductionInput& in, const Body& axes, cons
                   fmt::format("hilo-reduce with this scene and mesh, -o {}", files_.from));
   }
   const bool kept = out.has_value();
-  const std::clock_t began = std::clock();
+  using Clock = std::chrono::steady_clock;
+  const auto began = Clock::now();
   if (!kept) try {
-      out = reduced(in);
+      out = reduced(in, factor);
     } catch (const Error& e) {
-      throw named(e.message, e.hint);
+      throw named(e.message, e.hint, e.exit);
     }
   if (!files_.to.empty()) {
     if (!is_quiet())
       fmt::print("{}: {} nodes, {} interfaces, {} modes{}\n", axes.name, in.X.size(), key.interfaces.size(), out->omega2.size(),
-                 kept ? ", as before" : fmt::format(", found in {:.1f} s", static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC));
-    reductions_.push_back({axes.name, key, *out});
+                 kept ? ", as before" : fmt::format(", found in {:.1f} s", std::chrono::duration<double>(Clock::now() - began).count()));
+    reductions_.push_back({axes.name, key, {}});  // with what is returned, once it has served
   }
   return std::move(*out);
 }

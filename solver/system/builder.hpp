@@ -6,6 +6,7 @@
 
 #include "physics/axes.hpp"
 #include "physics/spring_kinds.hpp"
+#include "system/factor_room.hpp"
 #include "system/reduced_file.hpp"
 #include "system/solids.hpp"
 #include "system/system.hpp"
@@ -16,7 +17,7 @@ struct RegionParcel;
 
 class Builder {
  public:
-  Builder(const Scene& scene, LocalMesh* mesh, const Comm& comm, const ReducedFiles& files);
+  Builder(const Scene& scene, LocalMesh* mesh, const Comm& comm, const ReducedFiles& files, const FactorRoom& room);
   std::unique_ptr<System> build();
 
  private:
@@ -118,6 +119,7 @@ class Builder {
   LocalMesh* mesh_;
   const Comm& comm_;
   const ReducedFiles& files_;
+  const FactorRoom& room_;
   std::vector<KeptReduction> reductions_;  // that go to a file
   std::int64_t n_active_ = 0;              // nodes that a configuration holds
   std::unique_ptr<System> out_;

@@ -1,9 +1,8 @@
 // The answers of the cells of a linear region to loads.
 #pragma once
 #include <array>
-#include <memory>
 
-#include "linear/factors.hpp"
+#include "linear/shared_cholesky.hpp"
 #include "system/reduction.hpp"
 #include "system/region_cells.hpp"
 
@@ -16,17 +15,25 @@ class Flexibility {
   using Matrix = Eigen::MatrixXd;
   using Vector = Eigen::VectorXd;
   /// `rigid`: rigid motions, orthonormal in mass, and M_rigid their products with it   (3 n_nodes x 6).  All are kept by reference.
-  /// Errors: cells that do not hold together.
-  Flexibility(const ReductionInput& in, const RegionCells& cells, const Matrix& rigid, const Matrix& M_rigid);
+  /// Errors: cells that do not hold together; a factor for which there is no memory.
+  Flexibility(const ReductionInput& in, const RegionCells& cells, const Matrix& rigid, const Matrix& M_rigid, SharedCholesky& factor);
   /// K^-1 F   (3 n_nodes x k)
   Matrix solve(Matrix F) const;
   int n_unknowns() const { return 3 * n_blocks_; }
 
  private:
   std::array<int, 6> determinate_support(const std::vector<Vec3>& X) const;
-  std::unique_ptr<Factors> factors_;
+  void find_room();
+  void mend(Eigen::Ref<Matrix> b) const;
+  Matrix times(const Matrix& x) const;
+  const ReductionInput& in_;
+  const RegionCells& cells_;
+  SharedCholesky& factor_;
   const Matrix &rigid_, &M_rigid_;
   bool free_;
+  bool single_ = false;                          // the factor is in single precision,
+  std::string folder_;                           // and in a file
+  std::vector<std::pair<int, double>> springs_;  // unknowns and stiffness
   std::vector<int> block_;
   int n_blocks_ = 0;
 };

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "linear/block_krylov.hpp"
 #include "linear/products.hpp"
+#include "linear/shared_cholesky.hpp"
 #include "system/face.hpp"
 #include "system/flexibility.hpp"
 #include "system/second_order.hpp"
@@ -124,9 +126,11 @@ Matrix vibrations(const ReductionInput& in, const RegionCells& cells, const Flex
   const int most = flexibility.n_unknowns() - 7;
   if (in.n_vibrations <= 0 || most < 2) return Matrix(rows, 0);
   const Pencil pencil{rows, [&](const Matrix& V) { return cells.times_mass(V); }, [&](const Matrix& F) { return flexibility.solve(F); }, 0};
-  int wanted = std::min(in.up_to > 0 ? std::min(in.n_vibrations, 8) : in.n_vibrations, most);
+  int told = 0, wanted = std::min(in.up_to > 0 ? std::min(in.n_vibrations, 8) : in.n_vibrations, most);
   for (;;) {
-    const Eigenmodes found = lowest_modes(pencil, std::min(wanted + 1, most), 1e-4, false);
+    const Eigenmodes found = lowest_modes(pencil, std::min(wanted + 1, most), 1e-5, false, [&](int n) {
+      if (in.progress && std::exchange(told, n) != n) in.progress(fmt::format("vibration modes, {} of {}", n, std::min(wanted + 1, most)));
+    });
     if (!found.converged) throw Error("", "the vibration modes of the region were not found", "ask for fewer: [region.NAME] modes");
     const Vector& lambda = found.omega2;
     Index keep = 0;
@@ -184,6 +188,22 @@ struct ModeBasis {
     if (m > 0 && !(out.omega2[0] > 1e-12 * out.omega2[m - 1]))
       throw Error("", "the cells of the region do not hold together", "one piece, with no hinges of single nodes");
     out.shapes = product(V, modes.eigenvectors());
+    check(out);
+  }
+
+  /// Modes are orthogonal in mass and stiffness, or the answers that they come from were wrong.
+  void check(const Reduction& out) const {
+    const Vector scale = out.omega2.cwiseSqrt().cwiseInverse();
+    const auto off = [](Matrix G) {
+      G.diagonal().array() -= 1;
+      return G.size() > 0 ? G.cwiseAbs().maxCoeff() : 0.0;
+    };
+    const double of_mass = off(transposed_times(out.shapes, cells.times_mass(out.shapes)));
+    const double of_stiffness =
+        off(scale.asDiagonal() * transposed_times(out.shapes, cells.times(RegionCells::stiffness, out.shapes)) * scale.asDiagonal());
+    if (!(of_mass < 1e-8 && of_stiffness < 1e-6))
+      throw Error("", fmt::format("its modes are not orthogonal: {:.1e} in mass, {:.1e} in stiffness", of_mass, of_stiffness),
+                  "cells of less different sizes and stiffness", Exit::not_converged);
   }
 };
 
@@ -223,9 +243,35 @@ Matrix energy_left_out(const RegionCells& cells, const Flexibility& flexibility,
   return (L + L.transpose()) / 2 - share.transpose() * found.omega2.cwiseInverse().asDiagonal() * share;
 }
 
+/// B^T M B of the columns b, a few of them at a time.
+Matrix moments(const ReductionInput& in, const Matrix& shapes, const RegionCells::Scalar& M) {
+  constexpr Index at_once = 48;
+  const auto n = static_cast<Index>(in.X.size()), count = 4 + 3 * shapes.cols();
+  const auto columns = [&](Index from) {
+    Matrix B(n, std::min(at_once, count - from));
+    for (Index c = 0; c < B.cols(); ++c)
+      for (Index i = 0; i < n; ++i) {
+        const Index k = from + c;
+        B(i, c) = k == 0 ? 1 : k < 4 ? in.X[i][k - 1] - in.centre[k - 1] : shapes(3 * i + (k - 4) % 3, (k - 4) / 3);
+      }
+    return B;
+  };
+  Matrix out(count, count);
+  for (Index j = 0; j < count; j += at_once) {
+    Matrix MB = columns(j);
+    MB = (M * MB).eval();
+    for (Index i = 0; i <= j; i += at_once) {
+      const Matrix part = transposed_times(columns(i), MB);
+      out.block(i, j, part.rows(), part.cols()) = part;
+      if (i < j) out.block(j, i, part.cols(), part.rows()) = part.transpose();
+    }
+  }
+  return (out + out.transpose()) / 2;
+}
+
 }  // namespace
 
-Reduction reduced(const ReductionInput& in) {
+Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
   const auto tell = [&](const std::string& what) {
     if (in.progress) in.progress(what);
   };
@@ -237,7 +283,7 @@ Reduction reduced(const ReductionInput& in) {
   }
   const Matrix M_rigid = cells.times_mass(rigid);
   tell("factor");
-  const Flexibility flexibility(in, cells, rigid, M_rigid);
+  const Flexibility flexibility(in, cells, rigid, M_rigid, factor);
   Reduction out;
   std::vector<Matrix> parts = in.given.cols() > 0 ? std::vector<Matrix>{in.given} : found_modes(in, cells, flexibility, out);
 
@@ -264,21 +310,16 @@ Reduction reduced(const ReductionInput& in) {
   const Index n_interface = in.given.cols() > 0 ? 0 : 6 * static_cast<Index>(in.rigid.size());  // rigid ones come first
   SecondOrder second = second_order(in, out.shapes, out.omega2, cells.times_mass(parts.front().leftCols(n_interface)));
   out.soft = std::move(second.soft), out.second_order = std::move(second.forces);
-  const auto n = static_cast<Index>(in.X.size()), m = out.omega2.size();
-  Matrix B(n, 4 + 3 * m);
-  for (Index i = 0; i < n; ++i) {
-    B(i, 0) = 1;
-    for (int k = 0; k < 3; ++k) B(i, 1 + k) = in.X[i][k] - in.centre[k];
-    for (Index j = 0; j < m; ++j)
-      for (int k = 0; k < 3; ++k) B(i, 4 + 3 * j + k) = out.shapes(3 * i + k, j);
-  }
-  const auto symmetric = [](const Matrix& M) { return Matrix((M + M.transpose()) / 2); };
-  out.A = symmetric(transposed_times(B, cells.scalar_mass() * B));
+  factor.end();
+  out.A = moments(in, out.shapes, cells.scalar_mass());
   const auto any = [&](double SolidBatch::*factor) {
     return std::any_of(in.cells.begin(), in.cells.end(), [&](const SolidBatch& b) { return b.*factor > 0; });
   };
-  if (any(&SolidBatch::alpha)) out.A_damped = symmetric(B.transpose() * (cells.scalar(RegionCells::damping_by_mass) * B));
-  if (any(&SolidBatch::beta)) out.viscous = symmetric(out.shapes.transpose() * cells.times(RegionCells::damping_by_stiffness, out.shapes));
+  if (any(&SolidBatch::alpha)) out.A_damped = moments(in, out.shapes, cells.scalar(RegionCells::damping_by_mass));
+  if (any(&SolidBatch::beta)) {
+    const Matrix C = transposed_times(out.shapes, cells.times(RegionCells::damping_by_stiffness, out.shapes));
+    out.viscous = (C + C.transpose()) / 2;
+  }
   return out;
 }
 

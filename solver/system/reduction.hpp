@@ -36,6 +36,8 @@ struct ReductionInput {
   Eigen::MatrixXd given;                                 // modes that take the place of all others (3 n_nodes x k), or empty [m]
   bool stiffening = false;                               // strains of the second degree in the amplitudes
   double length = 1;                                     // of the region [m]
+  double memory = -1;                                    // that the factor may take; negative: what is free   [byte]
+  std::string scratch;                                   // folder of a file for a factor that does not fit
   std::function<void(const std::string&)> progress;
 };
 
@@ -53,7 +55,9 @@ struct Reduction {
   double held_frequency = 0;           // of the first vibration mode left out, or 0 where all that were found are in  [Hz]
 };
 
-/// Errors: a region that is not held together, or cells turned inside out.
-Reduction reduced(const ReductionInput& in);
+class SharedCholesky;
+/// On rank 0, with the others in the factor's serve().
+/// Errors: a region that is not held together, or cells turned inside out; no memory.
+Reduction reduced(const ReductionInput& in, SharedCholesky& factor);
 
 }  // namespace hilo

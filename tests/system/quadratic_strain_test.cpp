@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "linear/shared_cholesky.hpp"
 #include "system/reduction.hpp"
 #include "verify/block_mesh.hpp"
 
@@ -33,7 +34,8 @@ class StiffeningBar : public testing::TestWithParam<Shape> {
     for (size_t i = 0; i < in.X.size(); ++i)
       if (in.X[i][0] < 1e-9) in.rigid[0].push_back(static_cast<int>(i));
     in.centre = Vec3(0.5, 0.1, 0.15), in.n_vibrations = 3, in.stiffening = true;
-    found = reduced(in);
+    SharedCholesky factor(Comm::world());
+    found = reduced(in, factor);
     eta[0] = Vector::Zero(found.omega2.size()), eta[1] = eta[0];
     for (Eigen::Index j = 0; j < eta[0].size(); ++j)
       for (int k = 0; k < 2; ++k) eta[k][j] = 0.3 * scatter(7 * static_cast<int>(j) + k) / found.shapes.col(j).cwiseAbs().maxCoeff();

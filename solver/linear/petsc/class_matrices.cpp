@@ -73,7 +73,8 @@ MatrixXd gram(const MatrixXd& M) {
 /// A symmetric positive definite matrix, factored.
 class Positive {
  public:
-  explicit Positive(MatrixXd A) : L_(std::move(A)), good_(lapack::factor(static_cast<int>(L_.rows()), L_.data())) {}
+  explicit Positive(MatrixXd A)
+      : L_(std::move(A)), good_(lapack::factor(static_cast<int>(L_.rows()), L_.data(), static_cast<int>(L_.rows()))) {}
   bool good() const { return good_; }
   /// A^-1 X
   MatrixXd solve(MatrixXd X) const {

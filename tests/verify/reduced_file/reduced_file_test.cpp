@@ -1,4 +1,6 @@
 // hilo-reduce: modes on file serve as if they were found anew, or are refused by name.
+#include <fmt/format.h>
+
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -40,6 +42,25 @@ class ReducedFile : public testing::Test {
     EXPECT_NE(ran.err.find("reduced.h5 does not serve: " + reason), std::string::npos) << ran.err;
     EXPECT_NE(ran.err.find("scene.toml:"), std::string::npos) << ran.err;
     EXPECT_FALSE(std::filesystem::exists(c / "refused.h5"));
+  }
+  /// Frequencies to 1e-8, and modes that span the same.
+  void expect_same_modes(const std::string& other) const {
+    const Store truth = Store::open(c / "reduced.h5"), file = Store::open(c / other);
+    for (const std::string region : {"/reduced/left/", "/reduced/right/"}) {
+      const auto a = truth.read<double>(region + "omega2"), b = file.read<double>(region + "omega2");
+      ASSERT_EQ(a.size(), b.size());
+      for (size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(b[k] / a[k], 1, 2e-8) << other << ", " << region << k;
+      const auto m = static_cast<Eigen::Index>(a.size());
+      const auto shapes = [&](const Store& store, std::vector<double>& values) {
+        values = store.read<double>(region + "shapes");
+        return Eigen::MatrixXd(
+            Eigen::Map<const Eigen::MatrixXd>(values.data(), m, static_cast<Eigen::Index>(values.size()) / m).transpose());
+      };
+      std::vector<double> kept[2];
+      const Eigen::MatrixXd A = shapes(truth, kept[0]), B = shapes(file, kept[1]);
+      const Eigen::MatrixXd left = B - A * A.colPivHouseholderQr().solve(B);
+      EXPECT_LT(left.norm(), 1e-6 * B.norm()) << other;
+    }
   }
   Case c{"reduced_file"};
 };
@@ -91,6 +112,37 @@ TEST_F(ReducedFile, IsKeptWhereNothingThatItDependsOnChanged) {
   EXPECT_EQ(other.exit, 0);
   EXPECT_EQ(other.out.find("as before"), std::string::npos) << other.out;
   EXPECT_EQ(c.solve("--quiet --modes reduced.h5 --set material.soft.E=2e7").exit, 0);
+}
+
+/// Where the factor of a region finds no memory, its size is told before anything is done; with half of it, or a file, the modes are the
+/// same.
+TEST_F(ReducedFile, NeedsRoomForAFactorOrSaysHowMuch) {
+  const Ran none = reduce("-o none.h5 --memory 0");
+  EXPECT_EQ(none.exit, 4);
+  EXPECT_NE(none.err.find("linear region \"left\": its stiffness has a factor of "), std::string::npos) << none.err;
+  EXPECT_NE(none.err.find("--scratch"), std::string::npos) << none.err;
+  EXPECT_FALSE(std::filesystem::exists(c / "none.h5"));
+  const double size = std::stod(none.err.substr(none.err.find("factor of ") + 10));
+  EXPECT_GT(size, 1e-6);
+  std::filesystem::create_directory(c / "scratch");
+  ASSERT_EQ(reduce("-o single.h5 --memory " + fmt::format("{:e}", 0.7 * size)).exit, 0);
+  ASSERT_EQ(reduce("-o file.h5 --memory 0 --scratch scratch").exit, 0);
+  EXPECT_TRUE(std::filesystem::is_empty(c / "scratch"));
+  for (const char* other : {"single.h5", "file.h5"}) expect_same_modes(other);
+}
+
+TEST_F(ReducedFile, IsTheSameFromRanks) {
+  for (const int ranks : {2, 3}) {
+    const Ran ran = mpirun(ranks, "hilo-reduce " + c.source("scene.toml") + " tags.h5 -o ranks.h5 --shapes shapes.h5", c.path());
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    expect_same_modes("ranks.h5");
+    EXPECT_EQ(c.solve("--quiet --modes ranks.h5").exit, 0);
+    std::filesystem::remove(c / "ranks.h5");
+  }
+  const Ran none = mpirun(2, "hilo-reduce " + c.source("scene.toml") + " tags.h5 -o none.h5 --memory 0", c.path());
+  EXPECT_EQ(none.exit, 4);
+  EXPECT_NE(none.err.find("its stiffness has a factor of "), std::string::npos) << none.err;
+  EXPECT_FALSE(std::filesystem::exists(c / "none.h5"));
 }
 
 TEST_F(ReducedFile, OfAnotherMaterialIsRefused) { expect_refused("it is of another material", "--set material.soft.E=2e7"); }
