@@ -55,8 +55,11 @@ Redundancy choose_rows(System& system, const Config& q, double dependent) {
   const UnitRows all = unit_rows(system, q, Rows::all);
   report.rows = static_cast<int>(all.rows.size());
   if (report.rows == 0) return report;
-  std::vector<int> number(all.A.rows());
-  for (auto& group : connected_columns(all.A)) {
+  std::vector<int> number(all.A.rows()), owner;
+  for (const auto& [constraint, r] : all.rows) owner.push_back(constraint);
+  const std::vector<int> looped = columns_in_loops(all.A, owner);
+  report.rank = report.rows - static_cast<int>(looped.size());
+  for (auto& group : connected_columns(all.A, looped)) {
     std::stable_partition(group.begin(), group.end(), [&](int k) { return !is_drive(system, all.rows[k]); });
     const Eigen::Index n_plain = std::count_if(group.begin(), group.end(), [&](int k) { return !is_drive(system, all.rows[k]); });
     const Eigen::SparseMatrix<double> own = part_of(all.A, group, number);
@@ -69,11 +72,10 @@ Redundancy choose_rows(System& system, const Config& q, double dependent) {
       Active active = c.active();
       active[r] = false;
       c.set_active(active);
-      const Eigen::VectorXd depends = found.depends(k - found.rank);
       std::set<std::string> others;
       bool on_drives = false;
-      for (Eigen::Index i = 0; i < found.rank; ++i) {
-        if (std::abs(depends[i]) <= 1e-6) continue;
+      for (const auto& [i, factor] : found.depends[k - found.rank]) {
+        if (std::abs(factor) <= 1e-6) continue;
         const auto other = all.rows[group[found.order[i]]];
         if (other.first != one) others.insert(constraints[other.first]->name());
         on_drives = on_drives || is_drive(system, other);
@@ -108,12 +110,42 @@ void displace(const System& system, Config& q, const Eigen::VectorXd& y) {
   system.move(q, z);
 }
 
-using Normal = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+/// Nearest increments that unit rows A see as b.  Dependent rows may be among them: A A^T + mu finds the increments of what is independent.
+/// Its entries couple what a row acts on, so that a body with many joints costs no more than they would apart.
+class Nearest {
+ public:
+  static constexpr double mu = 1e-10;  // far below the square of `aside`, which rows that are independent beside q alone have
+  bool factor(const Eigen::SparseMatrix<double>& A, const Eigen::VectorXd& plane) {
+    A_ = &A, plane_ = plane;
+    Eigen::SparseMatrix<double> K = A * Eigen::SparseMatrix<double>(A.transpose()), I(K.rows(), K.cols());
+    I.setIdentity();
+    K += mu * I;
+    const auto as_before = [](std::vector<int>& before, const int* now, Eigen::Index n) {
+      if (std::equal(before.begin(), before.end(), now, now + n)) return true;
+      before.assign(now, now + n);
+      return false;
+    };
+    const bool is_analysed = as_before(start_, K.outerIndexPtr(), K.cols() + 1) & as_before(row_, K.innerIndexPtr(), K.nonZeros());
+    if (!is_analysed) factors_.analyzePattern(K);
+    factors_.factorize(K);
+    if (factors_.info() != Eigen::Success) return false;
+    if (plane_.size() > 0) through_ = factors_.solve(plane_);
+    return true;
+  }
+  /// The part of y that the rows leave.
+  Eigen::VectorXd left_of(const Eigen::VectorXd& y) const { return mu * factors_.solve(y); }
+  /// A (A^T A)^-1 b, without what leaves the plane.
+  Eigen::VectorXd operator()(const Eigen::VectorXd& b) const {
+    const Eigen::VectorXd y = factors_.solve(*A_ * b);
+    return y - plane_.dot(y) / (1 + plane_.dot(through_)) * through_;
+  }
 
-/// Nearest increment that the columns of A see as b: A (A^T A)^-1 b.
-Eigen::VectorXd least(const Eigen::SparseMatrix<double>& A, const Normal& normal, const Eigen::VectorXd& b) {
-  return A * normal.solve(b).eval();
-}
+ private:
+  const Eigen::SparseMatrix<double>* A_ = nullptr;
+  Eigen::VectorXd plane_, through_;  // its normal, and that through the factors
+  std::vector<int> start_, row_;     // the pattern
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors_;
+};
 
 constexpr double round_off = 1e-9;  // what others leave of a unit row that depends on them
 constexpr double aside = 1e-3;      // how far to look, over the scene's length
@@ -121,41 +153,24 @@ const double independent_beside =
     std::pow(aside, 1.5);  // what others leave there of a unit row that depends on them at q alone is about `aside`
 
 /// A pose beside q that these rows allow, along the part of `direction` that they leave; nothing where they leave none or do not close.
-/// Dependent rows may be among them: A^T A + mu finds the increments of what is independent.  They stay in the plane `far` ahead, or
-/// branches would draw them back to q, where all of them meet.
+/// The increments that close them stay in the plane `far` ahead, or branches would draw them back to q, where all of them meet.
 std::optional<Config> beside(const System& system, const Config& q, const Eigen::VectorXd& direction, double t, double far, Rows rows) {
-  constexpr double mu = 1e-10;  // far below the square of `far`, which rows that are independent beside q alone have
   constexpr int iterations = 40;
   UnitRows unit = unit_rows(system, q, rows);
-  Eigen::VectorXd plane;
-  Normal normal;
-  const auto factor = [&] {
-    if (plane.size() > 0) {
-      unit.A.conservativeResize(unit.A.rows(), unit.A.cols() + 1);
-      for (Eigen::Index i = 0; i < plane.size(); ++i)
-        if (plane[i] != 0) unit.A.insert(i, unit.A.cols() - 1) = plane[i];
-    }
-    Eigen::SparseMatrix<double> N = unit.A.transpose() * unit.A, I(N.rows(), N.cols());
-    I.setIdentity();
-    N += mu * I;
-    normal.compute(N);
-    return normal.info() == Eigen::Success;
-  };
-  if (!factor()) return {};
-  Eigen::VectorXd y = direction - least(unit.A, normal, unit.A.transpose() * direction);
+  Nearest nearest;
+  if (!nearest.factor(unit.A, {})) return {};
+  Eigen::VectorXd y = nearest.left_of(direction);
   if (!(y.norm() > 1e-6 * direction.norm())) return {};
   y *= far * system.length / y.cwiseAbs().maxCoeff();
-  plane = y.normalized();
+  const Eigen::VectorXd plane = y.normalized();
   Config out = q;
   displace(system, out, y);
   for (int k = 0; k < iterations; ++k) {
     unit = unit_rows(system, out, rows);
-    Eigen::VectorXd g = gaps(system, unit, out, t);
+    const Eigen::VectorXd g = gaps(system, unit, out, t);
     if (g.size() == 0 || g.cwiseAbs().maxCoeff() < 1e-14 * system.length) return out;
-    if (!factor()) return {};
-    g.conservativeResize(unit.A.cols());
-    g[g.size() - 1] = 0;
-    displace(system, out, -least(unit.A, normal, g));
+    if (!nearest.factor(unit.A, plane)) return {};
+    displace(system, out, -nearest(g));
   }
   const Eigen::VectorXd g = gaps(system, unit_rows(system, out, rows), out, t);
   if (g.cwiseAbs().maxCoeff() < 1e-12 * system.length) return out;
