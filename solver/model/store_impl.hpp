@@ -103,12 +103,15 @@ inline std::vector<std::int64_t> extent(hid_t space) {
   return {dims.begin(), dims.end()};
 }
 
-/// Room that rows are gathered in before they are written [bytes].
-inline constexpr size_t row_buffer = 1 << 16;
+/// Room that rows of an array are gathered in before they are written, and those of all arrays [bytes].
+inline constexpr size_t row_buffer = 1 << 16, all_row_buffers = 1 << 26;
+
+/// Arrays of rows that stay open: each holds 15 kB, and twice the time that opening it again takes.
+inline constexpr size_t most_open = 1000;
 
 /// An array that grows, with the rows not written yet.
 struct Rows {
-  Id set;
+  Id set;  // where it stays open
   hid_t type;
   size_t row_bytes;
   std::vector<hsize_t> shape;  // first entry: rows in the file
@@ -124,6 +127,7 @@ struct Store::Impl {
   bool grows_on = false;              // it was there before: what is written again replaces what was
   int lock = -1;                      // descriptor that tells others of it
   std::unordered_map<std::string, Rows> rows;
+  size_t pending_bytes = 0;  // of all rows
 
   ~Impl();
 
@@ -156,7 +160,7 @@ struct Store::Impl {
   /// The groups above an object, made where there are none.
   void make_groups(const std::string& object);
   Id make_group(const std::string& group);
-  Id make_array(const std::string& array, hid_t type, hid_t space, hid_t creation);
+  Id make_array(const std::string& array, hid_t type, hid_t space, hid_t creation, hid_t access = H5P_DEFAULT);
 
   void attribute(hid_t object, const std::string& name, hid_t type, hid_t memory, const void* value);
   void text_attribute(hid_t object, const std::string& name, const std::string& value);
@@ -165,6 +169,8 @@ struct Store::Impl {
 
   void write_digest(hid_t array, std::uint64_t digest) { attribute(array, digest_name, H5T_STD_U64LE, H5T_NATIVE_UINT64, &digest); }
 
+  /// An array of rows that is open, or opened now.
+  hid_t opened_rows(const Rows& r, const std::string& array, Id& opened);
   void drain(Rows& r, const std::string& array);
   void drain() {
     for (auto& [array, r] : rows) drain(r, array);

@@ -32,16 +32,14 @@ std::uint64_t digest_of(std::span<const std::string> texts) {
   return all.value();
 }
 
-Id Store::Impl::make_array(const std::string& array, hid_t type, hid_t space, hid_t creation) {
-  if (exists(array)) {
-    if (!grows_on) throw Error(path, fmt::format("array {} written twice", array), "", Exit::fault);
-    need(H5Ldelete(file, array.c_str(), H5P_DEFAULT) >= 0, "cannot replace " + array);
-  }
+Id Store::Impl::make_array(const std::string& array, hid_t type, hid_t space, hid_t creation, hid_t access) {
+  if (grows_on && exists(array)) need(H5Ldelete(file, array.c_str(), H5P_DEFAULT) >= 0, "cannot replace " + array);
   make_groups(array);
   const Id link(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_char_encoding(link, H5T_CSET_UTF8);
   H5Pset_obj_track_times(creation, false);  // the same content gives the same bytes
-  Id set(H5Dcreate2(file, array.c_str(), type, space, link, creation, H5P_DEFAULT), H5Dclose);
+  Id set(H5Dcreate2(file, array.c_str(), type, space, link, creation, access), H5Dclose);
+  if (!set.ok() && exists(array)) throw Error(path, fmt::format("array {} written twice", array), "", Exit::fault);
   need(set.ok(), "cannot create " + array);
   return set;
 }
@@ -65,17 +63,38 @@ Id Store::Impl::owner(const std::string& object) {
   return make_group(object);
 }
 
+namespace {
+
+/// Of an array of rows: no chunks are kept, since rows are gathered here already.
+Id rows_access() {
+  Id access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+  H5Pset_chunk_cache(access, 1, 0, 1);
+  return access;
+}
+
+}  // namespace
+
+hid_t Store::Impl::opened_rows(const Rows& r, const std::string& array, Id& opened) {
+  if (!r.set.ok()) opened = Id(H5Dopen2(file, array.c_str(), rows_access()), H5Dclose);
+  const hid_t set = r.set.ok() ? r.set : opened;
+  need(set >= 0, "cannot open " + array);
+  return set;
+}
+
 void Store::Impl::drain(Rows& r, const std::string& array) {
   if (r.pending.empty()) return;
+  Id opened;
+  const hid_t set = opened_rows(r, array, opened);
   const hsize_t more = r.pending.size() / r.row_bytes;
   std::vector<hsize_t> start(r.shape.size(), 0), count = r.shape;
   start[0] = r.shape[0], count[0] = more;
   r.shape[0] += more;
-  need(H5Dset_extent(r.set, r.shape.data()) >= 0, "cannot extend " + array);
-  const Id space(H5Dget_space(r.set), H5Sclose);
+  need(H5Dset_extent(set, r.shape.data()) >= 0, "cannot extend " + array);
+  const Id space(H5Dget_space(set), H5Sclose);
   const Id memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose);
   H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
-  need(H5Dwrite(r.set, r.type, memory, space, H5P_DEFAULT, r.pending.data()) >= 0, "cannot write " + array);
+  need(H5Dwrite(set, r.type, memory, space, H5P_DEFAULT, r.pending.data()) >= 0, "cannot write " + array);
+  pending_bytes -= r.pending.size();
   r.pending.clear();
 }
 
@@ -145,7 +164,8 @@ template <class T>
 void Store::start_rows(const std::string& array, std::vector<std::int64_t> row_shape, const std::string& unit, const std::string& meaning,
                        const std::string& time) {
   const size_t row_bytes = static_cast<size_t>(product(row_shape)) * sizeof(T);
-  std::vector<hsize_t> now{0}, most{H5S_UNLIMITED}, chunk{std::clamp<hsize_t>(row_buffer / 4 / std::max<size_t>(1, row_bytes), 1, 1024)};
+  const size_t room = std::min(row_buffer, all_row_buffers / (impl_->rows.size() + 1)) / 4;  // many arrays take less each
+  std::vector<hsize_t> now{0}, most{H5S_UNLIMITED}, chunk{std::clamp<hsize_t>(room / std::max<size_t>(1, row_bytes), 1, 1024)};
   for (const auto n : row_shape) {
     now.push_back(static_cast<hsize_t>(n)), most.push_back(static_cast<hsize_t>(n));
     chunk.push_back(std::max<hsize_t>(1, static_cast<hsize_t>(n)));
@@ -157,6 +177,7 @@ void Store::start_rows(const std::string& array, std::vector<std::int64_t> row_s
     if (had.size() != now.size() || !std::equal(had.begin() + 1, had.end(), row_shape.begin()) || H5Tequal(type, file_type<T>()) <= 0)
       throw Error(impl_->path, fmt::format("{} has other rows than the run that goes on", array));
     now[0] = static_cast<hsize_t>(had[0]);
+    if (impl_->rows.size() >= most_open) set = Id();
     impl_->rows.emplace(array, Rows{std::move(set), memory_type<T>(), row_bytes, std::move(now), {}});
     return;
   }
@@ -164,10 +185,11 @@ void Store::start_rows(const std::string& array, std::vector<std::int64_t> row_s
   const Id creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data());
   H5Pset_fletcher32(creation);
-  Id set = impl_->make_array(array, file_type<T>(), space, creation);
+  Id set = impl_->make_array(array, file_type<T>(), space, creation, rows_access());
   if (!unit.empty()) impl_->text_attribute(set, "unit", unit);
   if (!meaning.empty()) impl_->text_attribute(set, "meaning", meaning);
   if (!time.empty()) impl_->text_attribute(set, "time", time);
+  if (impl_->rows.size() >= most_open) set = Id();
   impl_->rows.emplace(array, Rows{std::move(set), memory_type<T>(), row_bytes, std::move(now), {}});
 }
 
@@ -179,7 +201,11 @@ void Store::append(const std::string& array, std::span<const T> row) {
   auto& r = found->second;
   const auto bytes = std::as_bytes(row);
   r.pending.insert(r.pending.end(), bytes.begin(), bytes.end());
-  if (r.pending.size() >= row_buffer) impl_->drain(r, array);
+  impl_->pending_bytes += bytes.size();
+  if (r.pending.size() >= row_buffer)
+    impl_->drain(r, array);
+  else if (impl_->pending_bytes >= all_row_buffers)
+    impl_->drain();
 }
 
 void Store::keep_rows(const std::string& array, std::int64_t count) {
@@ -187,7 +213,8 @@ void Store::keep_rows(const std::string& array, std::int64_t count) {
   if (static_cast<hsize_t>(count) > r.shape[0])
     throw Error(impl_->path, fmt::format("{} has {} rows, wanted {} to go on from", array, r.shape[0], count));
   r.shape[0] = static_cast<hsize_t>(count);
-  impl_->need(H5Dset_extent(r.set, r.shape.data()) >= 0, "cannot shorten " + array);
+  Id opened;
+  impl_->need(H5Dset_extent(impl_->opened_rows(r, array, opened), r.shape.data()) >= 0, "cannot shorten " + array);
 }
 
 void Store::remove(const std::string& object) {
