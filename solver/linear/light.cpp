@@ -1,5 +1,6 @@
 // The light solve: serial, for scenes that need not start PETSc.  Factors of one matrix serve the next ones while that is cheaper.
 #include <fmt/format.h>
+#include <suitesparse/amd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,9 +15,25 @@ namespace {
 
 constexpr int klu_below = 900;  // unknowns; where a quarter of them are of bodies and multipliers, a little more
 constexpr int mixed_klu_below = 1500;
-constexpr int rigid_klu_below = 30000;  // where all of them are
+constexpr int rigid_klu_below = 30000;  // where all of them are; beyond, while factors stay thin
+constexpr double thin = 60;             // multiplications a factor's entry
 constexpr int dense_at_most = 1200;     // unknowns of bodies and multipliers beside a Cholesky factor
 constexpr int least_iterations = 10;    // that lagged factors are given
+
+/// What a factorisation by columns takes for each of its entries, by the pattern: some tens for chains, trees and rows of loops, hundreds
+/// for nets, which a multifrontal one does faster.
+double work_per_entry(const BlockCsr& A) {
+  std::vector<int> start{0}, column;
+  for (int i = 0; i < A.n_blocks(); ++i) {
+    const auto list = A.neighbours(i);
+    column.insert(column.end(), list.begin(), list.end());
+    start.push_back(static_cast<int>(column.size()));
+  }
+  std::vector<int> order(A.n_blocks());
+  double info[AMD_INFO];
+  if (amd_order(A.n_blocks(), start.data(), column.data(), order.data(), nullptr, info) < 0) return 0;
+  return 3 * info[AMD_NMULTSUBS_LU] / (2 * info[AMD_LNZ] + A.n_blocks());
+}
 
 class LightSolver final : public SerialKktSolver {
  public:
@@ -28,6 +45,7 @@ class LightSolver final : public SerialKktSolver {
     for (size_t i = 0; i < map.global.size(); ++i) is_dense_[i] = map.global[i] >= map.first_dense;
     const auto n_dense = 3 * std::count(is_dense_.begin(), is_dense_.end(), 1);
     std::string kind = kind_;
+    if (kind == "light" && n_dense == A_.n() && A_.n() >= rigid_klu_below && work_per_entry(A_) < thin) kind = "klu";
     if (kind == "light")
       kind = A_.n() < (n_dense == A_.n()      ? rigid_klu_below
                        : 4 * n_dense > A_.n() ? mixed_klu_below

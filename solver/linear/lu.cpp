@@ -1,7 +1,9 @@
+#include <suitesparse/colamd.h>
 #include <suitesparse/klu.h>
 #include <suitesparse/umfpack.h>
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 
 #include "linear/factors.hpp"
@@ -19,7 +21,6 @@ class Klu final : public Factors {
     klu_defaults(&common_);
     common_.btf = 0;  // the saddle point is one block
     common_.scale = 2;
-    common_.ordering = 1;  // COLAMD: multipliers have no diagonal, so that pivots move
   }
   ~Klu() override { forget(); }
   bool factor(const BlockCsr& A) override {
@@ -27,7 +28,9 @@ class Klu final : public Factors {
       forget();
       if (++n_patterns_ == most_patterns) kept_.assign(A.values().size(), 1);
       find_pattern(A), gather(A);
-      symbolic_ = klu_analyze(n_, start_.data(), column_.data(), &common_);
+      std::vector<int> order = least_fill();
+      if (order.empty()) return false;
+      symbolic_ = klu_analyze_given(n_, start_.data(), column_.data(), order.data(), order.data(), &common_);
       if (!symbolic_) return false;
     }
     if (numeric_) klu_free_numeric(&numeric_, &common_);
@@ -61,6 +64,20 @@ class Klu final : public Factors {
       start_.push_back(static_cast<int>(column_.size()));
     }
     value_.resize(column_.size());
+  }
+  /// By COLAMD: multipliers have no diagonal, so that pivots move.  Rows of what has many neighbours, the body in the middle of a star, say
+  /// nothing of the order and would fill all of it: they go to the end.  Empty where memory fails.
+  std::vector<int> least_fill() const {
+    double knobs[COLAMD_KNOBS];
+    colamd_set_defaults(knobs);
+    knobs[COLAMD_DENSE_ROW] = knobs[COLAMD_DENSE_COL] = std::max(1.5, 64 / std::sqrt(static_cast<double>(n_)));
+    const auto entries = static_cast<int>(column_.size());
+    std::vector<int> work(colamd_recommended(entries, n_, n_)), order(start_);
+    int stats[COLAMD_STATS];
+    std::copy(column_.begin(), column_.end(), work.begin());
+    if (!colamd(n_, n_, static_cast<int>(work.size()), work.data(), order.data(), knobs, stats)) return {};
+    order.resize(n_);
+    return order;
   }
   /// The entries of the pattern; false where another one differs from zero.
   bool gather(const BlockCsr& A) {
