@@ -74,7 +74,9 @@ TEST_F(LinearMeasures, AColumnTellsItsShareOfEulersLoad) {
       const Answer linear = rest(supports + push(share * load), Fidelity::linear);
       EXPECT_NEAR(linear.buckling, std::max(0.0, share), 0.03 * std::abs(share)) << length;
       EXPECT_EQ(linear.said.find("buckling load") != std::string::npos, linear.growth > 1.1) << linear.said;
-      if (length <= L) EXPECT_NEAR(linear.growth, 1 / (1 - std::max(0.0, share)), 0.03) << "supports keep the mean axes from turning";
+      if (length <= L) {
+        EXPECT_NEAR(linear.growth, 1 / (1 - std::max(0.0, share)), 0.03) << "supports keep the mean axes from turning";
+      }
       if (share < 0.2) continue;
       const Answer cells = rest(supports + push(share * load), Fidelity::nonlinear);
       EXPECT_NEAR(cells.sag / linear.sag / linear.growth, 1, 0.03) << length << " " << share;
