@@ -36,6 +36,13 @@ void note_signals() {
   }
 }
 
+void obey_signals() {
+  for (const Noted& s : all) {
+    struct sigaction now {};
+    if (::sigaction(s.number, nullptr, &now) == 0 && now.sa_handler == note) std::signal(s.number, SIG_DFL);
+  }
+}
+
 std::string noted_signal() {
   for (const Noted& s : all)
     if (came == s.number) return s.name;

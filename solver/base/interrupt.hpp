@@ -6,6 +6,8 @@ namespace hilo {
 
 /// From now on SIGINT, SIGTERM, SIGHUP and SIGUSR1 are noted, not obeyed; a second one ends the process at once.
 void note_signals();
+/// They end the process again, as where nothing was noted: it has nothing more to save.
+void obey_signals();
 /// Name of the signal that came ("SIGTERM"), or "".
 std::string noted_signal();
 

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "base/error.hpp"
+#include "base/interrupt.hpp"
 
 namespace hilo {
 
@@ -14,6 +15,7 @@ int on_ranks(std::string_view tool, const std::function<void(Comm&)>& body) {
     try {
       body(*comm);
     } catch (...) {
+      obey_signals();                 // rank 0 takes the job down by one
       if (comm->rank != 0) sleep(2);  // an error all ranks share is told once, by rank 0, which ends the job
       throw;
     }

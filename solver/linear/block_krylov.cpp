@@ -47,10 +47,20 @@ class Krylov {
     const Vector& g = gram.eigenvalues();
     Index skip = 0;
     while (skip < g.size() && !(g[skip] > 1e-10)) ++skip;
-    const Index kept = g.size() - skip, k = V_.cols();
-    const Matrix turn = unit.asDiagonal() * gram.eigenvectors().rightCols(kept) * g.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
-    W = (W * turn).eval(), MW = (MW * turn).eval();
-    take_basis_from(W, MW, k);  // what is kept of a small rest has lost digits
+    const Index k = V_.cols();
+    const auto take = [&](const Eigen::SelfAdjointEigenSolver<Matrix>& of, const Vector& scale, Index n) {
+      const Matrix turn =
+          scale.asDiagonal() * of.eigenvectors().rightCols(n) * of.eigenvalues().tail(n).cwiseSqrt().cwiseInverse().asDiagonal();
+      W = (W * turn).eval(), MW = pencil_.mass(W);
+      take_basis_from(W, MW, k);  // what is kept of a small rest has lost digits
+    };
+    if (skip == g.size()) return G;
+    take(gram, unit, g.size() - skip);
+    // what then lies in the basis again was rounding: of a space that is all but exhausted nothing else is left
+    const Eigen::SelfAdjointEigenSolver<Matrix> again(product());
+    const Index kept = (again.eigenvalues().array() > 0.5).count();
+    if (kept == 0) return G;
+    take(again, Vector::Ones(W.cols()), kept);
     V_.conservativeResize(pencil_.n, k + kept), MV_.conservativeResize(pencil_.n, k + kept);
     V_.rightCols(kept) = W, MV_.rightCols(kept) = MW;
     return G;

@@ -65,7 +65,7 @@ TEST_F(Inputs, OfSolveAreNotReplacedNorWhatTheyLinkTo) {
 }
 
 TEST_F(Inputs, OfPostAreNotReplacedNorWhatTheyLinkTo) {
-  spares("hilo-post series run.h5 energy -o OUT", {"run.h5", "parts.h5", "tags.h5", "two.h5"});
+  spares("hilo-post series run.h5 energy -o OUT", {"run.h5", "two.h5"});
   spares("hilo-post series run.h5 energy --png OUT", {"run.h5"});
   spares("hilo-post export run.h5 -o OUT", {"run.h5", "two.h5"});
   ASSERT_EQ(work.run("hilo-post series run.h5 energy -o energy.csv").exit, 0);

@@ -117,7 +117,7 @@ TEST_F(Show, SceneShowsItsEntriesWithTheirPlaces) {
 TEST_F(Show, CheckPassesWholeFiles) {
   const auto ran = place.run("hilo-show --check mesh.h5 tags.h5 parts.h5");
   EXPECT_EQ(ran.exit, 0) << ran.err;
-  EXPECT_EQ(ran.out, "mesh.h5: ok, 16 arrays\ntags.h5: ok, 2 arrays\nparts.h5: ok, 2 arrays\n");
+  EXPECT_EQ(ran.out, "mesh.h5: ok, 16 arrays\ntags.h5: ok, 3 arrays\nparts.h5: ok, 2 arrays\n");
 }
 
 TEST_F(Show, CheckFindsEveryTruncation) {
