@@ -82,6 +82,10 @@ RegionMeasures::Region& RegionMeasures::region(size_t k, const Config& q) const 
         out.second_order.col(QuadraticStrain::pair(i, j)) = (i == j ? 0.5 : 1) * forces.col(QuadraticStrain::pair(3 + i, 3 + j));
   }
   // the motions that a stress alike in all directions would soften most
+  if (support.free.cols() == 0) {  // nothing of it can give way
+    out.stress.setZero(0, modes), out.axes.setZero(0, modes);
+    return out;
+  }
   const Matrix unit = support.free.transpose() * square(r.second_order.row(modes).transpose(), n) * support.free;
   const Eigen::SelfAdjointEigenSolver<Matrix> softness(unit);
   const Index motions = std::min(most_motions, unit.cols());

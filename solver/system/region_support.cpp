@@ -102,6 +102,11 @@ RegionSupport support_of(const System& system, const LinearRegion& region, const
     qr.setThreshold(1e-8);
     free = Matrix(qr.householderQ()).rightCols(n - qr.rank());
   }
+  RegionSupport out;
+  if (free.cols() == 0 || S == 0) {  // held from all sides, or nothing of it is soft
+    out.free.setZero(3 + S, 0), out.compliance.setZero(S, S);
+    return out;
+  }
   const Matrix stiffness = region.soft.transpose() * region.stiffness.asDiagonal() * region.soft, s = amplitude * free.bottomRows(S);
   const Eigen::SelfAdjointEigenSolver<Matrix> strained(s.transpose() * stiffness * s);
   Index still = 0;  // motions without strain
@@ -112,7 +117,6 @@ RegionSupport support_of(const System& system, const LinearRegion& region, const
       free * strained.eigenvectors().rightCols(strains) * strained.eigenvalues().tail(strains).cwiseSqrt().cwiseInverse().asDiagonal();
   if (still > 0 && strains > 0)
     X -= rigid * (rigid.transpose() * M * rigid).completeOrthogonalDecomposition().solve(rigid.transpose() * (M * X));
-  RegionSupport out;
   out.free.resize(3 + S, strains);
   out.free.topRows(3) = q.R[modes.body].transpose() * X.middleRows(3, 3) / length;
   out.free.bottomRows(S) = amplitude * X.bottomRows(S);

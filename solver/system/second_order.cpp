@@ -22,6 +22,7 @@ Matrix softest(const Matrix& modes, const Vector& omega2, const Matrix& interfac
   V.rightCols(lowest).topRows(lowest).setIdentity();
   for (Index k = 0; k < V.cols(); ++k)
     if (const double norm = V.col(k).norm(); norm > 0) V.col(k) /= norm;
+  if (V.cols() == 0) return V;
   const Matrix G = V.transpose() * V;
   const Eigen::SelfAdjointEigenSolver<Matrix> gram(G);
   Index skip = 0;
