@@ -66,7 +66,6 @@ std::vector<ArraySchema>& arrays() {
       {"checkpoint.h5", "/kept/alike", "u1", "(n)", "", "what the run remembers and all ranks hold alike, as bits"},
       {"checkpoint.h5", "/kept/spread/<k>", "f8", "(n)", "",
        "values of nodes or cells by their number: the k-th list that ranks have parts of"},
-      {"checkpoint.h5", "/kept/digest", "string", "()", "", "of the two"},
       {"checkpoint.h5", "/scene", "string", "()", "", "the scene as run, overrides applied"},
       {"checkpoint.h5", "/values", "string", "(n)", "", "every value in force, key = value, of tables and files their digests"},
       {"checkpoint.h5", "/digests", "string", "(n)", "", "of mesh.h5 and tags.h5"},
