@@ -103,6 +103,13 @@ void solve(int argc, char** argv, Comm& comm) {
     if (comm.rank == 0) fmt::print("{}", scene.explain());
     return;
   }
+  if (!o.output.ends_with(".h5")) throw Error(o.output, "the results file must end in .h5", "-o run.h5", Exit::usage);
+  const auto folder = std::filesystem::path(o.output).parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder))
+    throw Error(o.output, "no such folder", fmt::format("mkdir -p {}", folder.string()), Exit::resources);
+
+  for (const char* ending : {".h5", ".xdmf", ".json"}) check_output(o.output.substr(0, o.output.size() - 3) + ending);
+
   RunOptions options;
   options.output = o.output;
   options.quiet = is_quiet();
@@ -119,12 +126,6 @@ void solve(int argc, char** argv, Comm& comm) {
   print_plan(*system, talk);
   if (from) require_same(*from, scene, options.mesh, o.accept), options.from = std::move(from->kept);
   if (o.dry_run) return;
-  if (!o.output.ends_with(".h5")) throw Error(o.output, "the results file must end in .h5", "-o run.h5", Exit::usage);
-  const auto folder = std::filesystem::path(o.output).parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder))
-    throw Error(o.output, "no such folder", fmt::format("mkdir -p {}", folder.string()), Exit::resources);
-
-  for (const char* ending : {".h5", ".xdmf", ".json"}) check_output(o.output.substr(0, o.output.size() - 3) + ending);
   Checkpoints checkpoints(comm, scene, {o.scene, options.mesh, o.modes, o.overrides, options.provenance}, o.output, policy,
                           from ? from->path : "");
   options.between_steps = [&](const StepsSoFar& so_far, const auto& keep) { return checkpoints.between_steps(so_far, keep); };

@@ -61,7 +61,9 @@ std::string Checkpoints::reason_to_stop() {
   if (comm_.rank != 0) return "";
   const double now = wall_clock();
   longest_step_ = std::max(longest_step_, now - step_began_), step_began_ = now;
-  if (policy_.time_limit > 0 && now - policy_.began + longest_step_ + 2 * took_ + 1 > policy_.time_limit) return "stopped by --time-limit";
+  const double reserve = std::min(1.0, policy_.time_limit / 10);  // to close the results [s]
+  if (policy_.time_limit > 0 && now - policy_.began + longest_step_ + 2 * took_ + reserve > policy_.time_limit)
+    return "stopped by --time-limit";
   if (now - looked_ < 1) return "";
   looked_ = now;
   return ::access(stop_file_.c_str(), F_OK) == 0 ? "stopped by the file STOP" : "";

@@ -94,8 +94,11 @@ Builder::Found Builder::find(const std::string& name, const std::string& where) 
     return found;
   }
   const auto names = all_names();
-  if (!mesh_ || std::find(names.begin(), names.end(), name) == names.end())
-    throw Error(where, fmt::format("no region, set or body \"{}\"", name), suggest(name, names));
+  if (!mesh_ || std::find(names.begin(), names.end(), name) == names.end()) {
+    const std::string near = suggest(name, names);
+    throw Error(where, fmt::format("no region, set or body \"{}\"", name),
+                mesh_ || !near.empty() ? near : "no mesh is given: hilo-solve scene.toml tags.h5");
+  }
   found.region = mesh_->mesh.find_region(name);
   found.is_region = found.region >= 0;
   for (std::int64_t i : mesh_->nodes_of(name, where)) found.nodes.push_back(static_cast<int>(i));

@@ -35,7 +35,7 @@ def bricks(i, j, k, node):
 
 
 def main():
-    bin, folder, kind, *rest = sys.argv[1:]
+    bin, folder, kind, *rest = os.path.abspath(sys.argv[1]), *sys.argv[2:]
     options = rest[rest.index("--") + 1:] if "--" in rest else []
     rest = rest[:rest.index("--")] if "--" in rest else rest
     hz = float(rest[3]) if len(rest) > 3 else h

@@ -25,19 +25,7 @@ Format version {}.
 - A file links to the one it was made from: an HDF5 external link with a relative path, and the digest of that file (`fnv1a64`) as an attribute. A changed file is refused, with the command to run. Arrays written at once carry a digest of their bytes (attribute `fnv1a64`), histories a checksum of every chunk (fletcher32).
 - The same input gives the same bytes.
 
-## Exit codes
-
-| code | meaning |
-|---|---|
-| 0 | done |
-| 1 | usage: the command line is wrong |
-| 2 | bad input: a file is missing, damaged or says something impossible |
-| 3 | did not converge; results up to there are kept |
-| 4 | resources: memory, disk, permission, packages |
-| 5 | a fault of our own |
-| 6 | stopped from outside (signal, file STOP, --time-limit): a checkpoint to go on from is kept |
-
-An error is one line on stderr: `tool: where: what (hint)`; `where` is `file:line:column` where there is one.
+Exit codes and errors: [errors](errors.md).
 )";
 
 std::string cell(std::string_view text) {
