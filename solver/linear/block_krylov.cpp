@@ -38,7 +38,7 @@ class Krylov {
     Matrix MW = pencil_.mass(W);
     const auto product = [&] { return Matrix((W.transpose() * MW + MW.transpose() * W) / 2); };
     const Vector before = product().diagonal();
-    take_basis_from(W, MW, V_.cols());
+    take_basis_from(W, MW);
     const Matrix G = product();
     // by unit columns, so that small ones count; directions that are rounding of what was taken away do not
     Vector unit(W.cols());
@@ -52,7 +52,7 @@ class Krylov {
       const Matrix turn =
           scale.asDiagonal() * of.eigenvectors().rightCols(n) * of.eigenvalues().tail(n).cwiseSqrt().cwiseInverse().asDiagonal();
       W = (W * turn).eval(), MW = pencil_.mass(W);
-      take_basis_from(W, MW, k);  // what is kept of a small rest has lost digits
+      take_basis_from(W, MW);  // what is kept of a small rest has lost digits
     };
     if (skip == g.size()) return G;
     take(gram, unit, g.size() - skip);
@@ -61,16 +61,16 @@ class Krylov {
     const Index kept = (again.eigenvalues().array() > 0.5).count();
     if (kept == 0) return G;
     take(again, Vector::Ones(W.cols()), kept);
-    V_.conservativeResize(pencil_.n, k + kept), MV_.conservativeResize(pencil_.n, k + kept);
-    V_.rightCols(kept) = W, MV_.rightCols(kept) = MW;
+    V_.conservativeResize(pencil_.n, k + kept);
+    V_.rightCols(kept) = W;
     return G;
   }
 
   /// The inverse on the columns of the basis that it has not seen.
   Matrix apply() {
     const Index first = T_.cols(), k = V_.cols();
-    const Matrix W = pencil_.solve(MV_.rightCols(k - first));
-    const Matrix H = transposed_times(MV_, k, W), corner = H.bottomRows(W.cols());
+    const Matrix W = pencil_.solve(pencil_.mass(V_.rightCols(k - first)));
+    const Matrix H = transposed_times(V_, k, pencil_.mass(W)), corner = H.bottomRows(W.cols());
     asymmetry_ = std::max(asymmetry_, (corner - corner.transpose()).norm());
     T_.conservativeResize(k, k);
     T_.rightCols(W.cols()) = H;
@@ -103,15 +103,15 @@ class Krylov {
   double asymmetry() const { return asymmetry_; }
 
  private:
-  void take_basis_from(Matrix& W, Matrix& MW, Index k) const {
-    for (int twice = 0; twice < 2 && k > 0; ++twice) {
-      const Matrix C = transposed_times(MV_, k, W);
-      add_product(-1, V_, C, W), add_product(-1, MV_, C, MW);
+  void take_basis_from(Matrix& W, Matrix& MW) const {
+    for (int twice = 0; twice < 2 && V_.cols() > 0; ++twice) {
+      add_product(-1, V_, transposed_times(V_, V_.cols(), MW), W);
+      MW = pencil_.mass(W);  // M of the basis is not kept: it is as large as the basis
     }
   }
 
   const Pencil& pencil_;
-  Matrix V_, MV_, T_;  // the basis, M of it, and V^T M (K + s M)^-1 M V
+  Matrix V_, T_;  // the basis, and V^T M (K + s M)^-1 M V
   double asymmetry_ = 0;
   std::mt19937_64 random_{20041};  // the same modes in every run
 };

@@ -84,7 +84,8 @@ void Flexibility::find_room() {
   const double GB = 1e9, whole = 8 * factor_.entries(), half = 4 * factor_.entries();
   // the modes, and what is computed with them, in turn
   const double vectors = static_cast<double>(6 * in_.rigid.size() + 3 * std::min(in_.free.size(), most_free) + 12 + in_.loads.size());
-  const double beside = 24 * static_cast<double>(in_.X.size()) * (3 * vectors + 4 * std::min(in_.n_vibrations, 40));
+  const double beside =
+      24 * static_cast<double>(in_.X.size()) * std::max(3 * vectors + 4.0 * in_.n_vibrations, vectors + 60 + 3.0 * in_.n_vibrations);
   const double room = in_.memory >= 0 ? in_.memory : 0.9 * free_memory() - beside;
   single_ = whole > room;
   if (in_.progress)

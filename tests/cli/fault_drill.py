@@ -2,7 +2,8 @@
 """Nothing that was written is lost: runs are killed, and find the disk full, at many instants; then they go on.
 
   fault_drill.py REPO BIN LIB            a part of it, two minutes: in the suite
-  fault_drill.py REPO BIN LIB STRIDE     each STRIDE-th write, and 200 instants of kill -9 on 1, 2 and 3 ranks: make -C tests faults (1)
+  fault_drill.py REPO BIN LIB STRIDE     each STRIDE-th write, and 200 instants of kill -9 on 1, 2 and 3 ranks: make -C tests faults (1);
+                                         files cut off after each STRIDE-th 4096 bytes; a clock that jumps
 LIB: the preloaded library tests/faults/preload/failing_writes.cpp.
 
 What must hold after every fault: the former results are there as they were, or the new ones are sound up to what was written last
@@ -87,7 +88,7 @@ SCENES = {
         joint("spherical", "hang", "tip", "bob", [1, 0.05, 0.05]) + short(1e-3), True, [3, 2]),
 }
 CHECKPOINT = ["--checkpoint", "7steps"]
-counts = {"kills": 0, "full disks": 0, "restarts": 0, "rows kept": 0}
+counts = {"kills": 0, "full disks": 0, "cut files": 0, "restarts": 0, "rows kept": 0}
 failures = []
 
 
@@ -262,6 +263,53 @@ def other_ranks(name, ranks, others):
     print(f"{name:20} kept on {ranks} rank(s), gone on with on {', '.join(map(str, others))}", flush=True)
 
 
+def cut_off(name, stride):
+    """Results and checkpoints that end too early are told, and the checkpoint before serves."""
+    whole = reference(name, 1)
+    clean()
+    line = command(name, 1, *scene_files(name), "-o", "run.h5", "--quiet", *CHECKPOINT)
+    run(line, env=dict(os.environ, LD_PRELOAD=library, FAIL_COUNT="count"))
+    n = int(open("count").read())
+    clean()
+    run(line, env=dict(os.environ, LD_PRELOAD=library, FAIL_AT=str(n * 3 // 4), FAIL_HOW="kill"))
+    left = {f: open(f, "rb").read() for f in os.listdir(".") if f.startswith("run")}
+    if not {"run.h5", "run.checkpoint.h5", "run.checkpoint-1.h5"} <= left.keys():
+        return wrong(f"{name}: a killed run left {sorted(left)} alone")
+    for victim in ("run.h5", "run.checkpoint.h5"):
+        for size in range(random.randrange(stride) * 4096, len(left[victim]), 4096 * stride):
+            clean()
+            for f, content in left.items():
+                open(f, "wb").write(content)
+            os.truncate(victim, size)
+            what = f"{victim} cut off at {size} of {len(left[victim])}"
+            counts["cut files"] += 1
+            checked = run(["hilo-show", "--check", victim])
+            if checked.returncode != 2 or len(checked.stderr.strip().splitlines()) != 1:
+                wrong(f"{name}, {what}: exit {checked.returncode} {checked.stdout}{checked.stderr}")
+            done = run(command(name, 1, "--restart", "run.h5", "--quiet", *CHECKPOINT))
+            if victim == "run.h5":
+                if done.returncode != 2 or len(done.stderr.strip().splitlines()) != 1:
+                    wrong(f"{name}, {what}, restart: exit {done.returncode} {done.stderr}")
+            elif done.returncode:
+                wrong(f"{name}, {what}, restart: exit {done.returncode} {done.stderr}")
+            elif bad := same(numbers("run.h5"), whole):
+                wrong(f"{name}, {what}, restart: {bad} differ")
+    print(f"{name:20} results and checkpoint cut off after each {stride}th 4096 bytes", flush=True)
+
+
+def jumping_clock(name, ranks):
+    """The time of day goes to and fro by hours: nothing of a run rests on it."""
+    whole = reference(name, ranks)
+    clean()
+    done = run(command(name, ranks, *scene_files(name), "-o", "run.h5", "--quiet", *CHECKPOINT, "--time-limit", "1h"),
+               env=dict(os.environ, LD_PRELOAD=library, FAIL_CLOCK="7200"))
+    if done.returncode:
+        wrong(f"{name}, a clock that jumps: exit {done.returncode} {done.stderr}")
+    elif bad := same(numbers("run.h5"), whole):
+        wrong(f"{name}, a clock that jumps: {bad} differ")
+    print(f"{name:20} a clock that jumps, {ranks} rank(s)", flush=True)
+
+
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     made = run(["hilo-import", os.path.join(repo, "tests/cases/bar.inp"), "-o", "bar.h5"])
@@ -272,6 +320,9 @@ with tempfile.TemporaryDirectory() as folder:
             every_write(name, stride)
         for ranks in all_ranks:
             any_instant(name, ranks, kills)
+    for name in ("friction and stops", "plastic"):
+        cut_off(name, max(1, stride // 24))
+    jumping_clock("driven", 1), jumping_clock("flexible", 2)
     for name in ("flexible", "plastic", "parallel"):
         other_ranks(name, 1, [2, 3])
         other_ranks(name, 3, [1, 2])

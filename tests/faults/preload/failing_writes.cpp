@@ -1,10 +1,14 @@
 // A library to preload: the n-th change of an .h5 file or of one beside it (.new, .journal, .tmp-...) does not succeed.
 //   FAIL_AT=n    which one, counted over the process
 //   FAIL_HOW     kill: half of it is written, then the process is killed; an errno (28 no space, 5 input/output): this one fails and all
-//   that follow FAIL_COUNT   file that gets the number of changes when the process ends
+//                that follow
+//   FAIL_COUNT   file that gets the number of changes when the process ends
+//   FAIL_CLOCK   the time of day is off by up to so many seconds, otherwise at each question
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <sys/time.h>
 #include <sys/types.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -59,6 +63,14 @@ struct Count {
   }
 } count;
 
+/// What the time of day is off by [s].
+long jump() {
+  static const long most = std::atol(variable("FAIL_CLOCK"));
+  static thread_local unsigned state = 1;
+  state = state * 1664525 + 1013904223;
+  return most > 0 ? static_cast<long>(state >> 8) % (2 * most + 1) - most : 0;
+}
+
 ssize_t write_some(int file, const void* from, size_t n, off_t at) {
   static const auto real = next<ssize_t (*)(int, const void*, size_t, off_t)>("pwrite");
   bool kill = false;
@@ -100,6 +112,25 @@ int unlink(const char* path) {
   bool kill = false;
   if (is_ours(path) && std::strcmp(variable("FAIL_HOW"), "kill") == 0 && fails(kill)) std::raise(SIGKILL);
   return real(path);
+}
+
+int clock_gettime(clockid_t clock, timespec* now) noexcept {
+  static const auto real = next<int (*)(clockid_t, timespec*)>("clock_gettime");
+  const int result = real(clock, now);
+  if (clock == CLOCK_REALTIME) now->tv_sec += jump();
+  return result;
+}
+int gettimeofday(timeval* now, void* zone) noexcept {
+  static const auto real = next<int (*)(timeval*, void*)>("gettimeofday");
+  const int result = real(now, zone);
+  now->tv_sec += jump();
+  return result;
+}
+time_t time(time_t* now) noexcept {
+  timespec exact{};
+  clock_gettime(CLOCK_REALTIME, &exact);
+  if (now) *now = exact.tv_sec;
+  return exact.tv_sec;
 }
 
 }  // extern "C"
