@@ -11,6 +11,7 @@
 #include "base/on_ranks.hpp"
 #include "dynamics/checkpoint.hpp"
 #include "dynamics/profile.hpp"
+#include "linear/blas_kernels.hpp"
 #include "model/inputs.hpp"
 #include "model/store.hpp"
 
@@ -155,6 +156,7 @@ void solve(int argc, char** argv, Comm& comm) {
 }  // namespace hilo
 
 int main(int argc, char** argv) {
+  hilo::use_kernels_of_this_processor(argv);
   omp_set_max_active_levels(0);  // a rank is a thread: those of CHOLMOD and others would fight for its core
   return hilo::on_ranks("hilo-solve", [&](hilo::Comm& comm) { hilo::solve(argc, argv, comm); });
 }

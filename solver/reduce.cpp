@@ -7,6 +7,7 @@
 #include "base/args.hpp"
 #include "base/on_ranks.hpp"
 #include "dynamics/region_shapes.hpp"
+#include "linear/blas_kernels.hpp"
 #include "model/inputs.hpp"
 #include "model/store.hpp"
 #include "system/factor_room.hpp"
@@ -61,6 +62,7 @@ void reduce(int argc, char** argv, const Comm& comm) {
 }  // namespace hilo
 
 int main(int argc, char** argv) {
+  hilo::use_kernels_of_this_processor(argv);
   mallopt(M_MMAP_THRESHOLD, 1 << 30), mallopt(M_TRIM_THRESHOLD, 1 << 30);  // matrices of many columns come and go: keep their memory
   return hilo::on_ranks("hilo-reduce", [&](hilo::Comm& comm) { hilo::reduce(argc, argv, comm); });
 }

@@ -34,8 +34,8 @@ class Krylov {
   }
 
   /// What of W is beside the basis joins it; W^T M W of that part.
-  Matrix extend(Matrix W) {
-    Matrix MW = pencil_.mass(W);
+  Matrix extend(Matrix W) { return extend(W, pencil_.mass(W)); }
+  Matrix extend(Matrix W, Matrix MW) {
     const auto product = [&] { return Matrix((W.transpose() * MW + MW.transpose() * W) / 2); };
     const Vector before = product().diagonal();
     take_basis_from(W, MW);
@@ -51,7 +51,7 @@ class Krylov {
     const auto take = [&](const Eigen::SelfAdjointEigenSolver<Matrix>& of, const Vector& scale, Index n) {
       const Matrix turn =
           scale.asDiagonal() * of.eigenvectors().rightCols(n) * of.eigenvalues().tail(n).cwiseSqrt().cwiseInverse().asDiagonal();
-      W = (W * turn).eval(), MW = pencil_.mass(W);
+      W = (W * turn).eval(), MW = (MW * turn).eval();
       take_basis_from(W, MW);  // what is kept of a small rest has lost digits
     };
     if (skip == g.size()) return G;
@@ -61,22 +61,24 @@ class Krylov {
     const Index kept = (again.eigenvalues().array() > 0.5).count();
     if (kept == 0) return G;
     take(again, Vector::Ones(W.cols()), kept);
-    V_.conservativeResize(pencil_.n, k + kept);
-    V_.rightCols(kept) = W;
+    const Index unseen = M_unseen_.cols();
+    V_.conservativeResize(pencil_.n, k + kept), M_unseen_.conservativeResize(pencil_.n, unseen + kept);
+    V_.rightCols(kept) = W, M_unseen_.rightCols(kept) = MW;
     return G;
   }
 
-  /// The inverse on the columns of the basis that it has not seen.
+  /// The inverse on the columns of the basis that it has not seen, which then joins it; as `extend`.
   Matrix apply() {
     const Index first = T_.cols(), k = V_.cols();
-    const Matrix W = pencil_.solve(pencil_.mass(V_.rightCols(k - first)));
-    const Matrix H = transposed_times(V_, k, pencil_.mass(W)), corner = H.bottomRows(W.cols());
+    Matrix W = pencil_.solve(M_unseen_), MW = pencil_.mass(W);
+    M_unseen_.resize(pencil_.n, 0);
+    const Matrix H = transposed_times(V_, MW), corner = H.bottomRows(W.cols());
     asymmetry_ = std::max(asymmetry_, (corner - corner.transpose()).norm());
     T_.conservativeResize(k, k);
     T_.rightCols(W.cols()) = H;
     T_.bottomLeftCorner(W.cols(), first) = H.topRows(first).transpose();
     T_.bottomRightCorner(W.cols(), W.cols()) = (corner + corner.transpose()) / 2;
-    return W;
+    return extend(std::move(W), std::move(MW));
   }
 
   /// The best `wanted` pairs of the columns that the inverse has seen.  Images of all but the last of them lie in the basis; `rest`: W^T M
@@ -103,15 +105,15 @@ class Krylov {
   double asymmetry() const { return asymmetry_; }
 
  private:
+  /// Of M V the columns that the inverse has not seen alone are kept: all would be as large as the basis.
   void take_basis_from(Matrix& W, Matrix& MW) const {
-    for (int twice = 0; twice < 2 && V_.cols() > 0; ++twice) {
-      add_product(-1, V_, transposed_times(V_, V_.cols(), MW), W);
-      MW = pencil_.mass(W);  // M of the basis is not kept: it is as large as the basis
-    }
+    if (V_.cols() == 0) return;
+    add_product(-1, V_, transposed_times(V_, MW), W);
+    MW = pencil_.mass(W);
   }
 
   const Pencil& pencil_;
-  Matrix V_, T_;  // the basis, and V^T M (K + s M)^-1 M V
+  Matrix V_, M_unseen_, T_;  // the basis, M of its last columns, and V^T M (K + s M)^-1 M V
   double asymmetry_ = 0;
   std::mt19937_64 random_{20041};  // the same modes in every run
 };
@@ -128,7 +130,7 @@ Eigenmodes lowest_modes(const Pencil& pencil, int wanted, double tolerance, bool
   bool sure = krylov.size() == 0;  // nothing has mass
   for (int left = 0; !sure && krylov.size() <= most;) {
     const Index k = krylov.size();
-    const Matrix rest = krylov.extend(krylov.apply());
+    const Matrix rest = krylov.apply();
     ritz = krylov.ritz(wanted, rest);
     const bool exhausted = krylov.size() == k;
     const auto good = exhausted ? ritz.nu.size() : ((ritz.residual.array() <= tolerance * ritz.nu.array().abs()).count());

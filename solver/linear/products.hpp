@@ -7,13 +7,12 @@
 namespace hilo {
 
 /// A^T X of the first k columns of A.
-inline Eigen::MatrixXd transposed_times(const Eigen::MatrixXd& A, Eigen::Index k, const Eigen::MatrixXd& X) {
-  Eigen::MatrixXd out(k, X.cols());
-  const auto n = static_cast<int>(A.rows()), m = static_cast<int>(k);
+inline Eigen::MatrixXd transposed_times(const Eigen::MatrixXd& A, const Eigen::MatrixXd& X) {
+  Eigen::MatrixXd out(A.cols(), X.cols());
+  const auto n = static_cast<int>(A.rows()), m = static_cast<int>(A.cols());
   if (out.size() > 0) lapack::multiply('T', n, m, 1., A.data(), n, X.data(), n, 0., out.data(), m, static_cast<int>(X.cols()));
   return out;
 }
-inline Eigen::MatrixXd transposed_times(const Eigen::MatrixXd& A, const Eigen::MatrixXd& X) { return transposed_times(A, A.cols(), X); }
 
 /// Y += f A C, of as many columns of A as C has rows.
 inline void add_product(double f, const Eigen::MatrixXd& A, const Eigen::MatrixXd& C, Eigen::MatrixXd& Y) {
