@@ -75,7 +75,7 @@ fields = ["displacement"]
     EXPECT_LT(all.told, 0.02);
     EXPECT_EQ(all.said.find("its modes lack"), std::string::npos);
     const auto solver = all.shapes.colPivHouseholderQr();
-    for (const int modes : {0, 1}) {
+    for (const int modes : {0, 2}) {  // the first two are a pair
       const Run few = run(modes);
       const Eigen::MatrixXd in_all = solver.solve(few.shapes), off = all.amplitudes - few.amplitudes * in_all.transpose();
       const double most = (all.amplitudes.cwiseAbs2() * all.omega2).maxCoeff(),
@@ -84,7 +84,7 @@ fields = ["displacement"]
       EXPECT_GT(few.told, 0.7 * truth) << hertz << " Hz, " << modes << " modes";
       EXPECT_LT(few.told, 1.2 * truth) << hertz << " Hz, " << modes << " modes";
       EXPECT_NEAR(few.told, std::sqrt(few.energies.col(1).maxCoeff() / few.energies.col(0).maxCoeff()), 5e-3 * few.told);
-      EXPECT_EQ(few.said.find("its modes lack") != std::string::npos, few.told > 0.05) << few.said;
+      EXPECT_EQ(few.said.find("block: its modes lack") != std::string::npos, few.told > 0.05) << few.said;
     }
   }
 }
