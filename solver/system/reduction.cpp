@@ -156,14 +156,18 @@ Matrix vibrations(const ReductionInput& in, const RegionCells& cells, const Flex
 struct ModeBasis {
   const RegionCells& cells;
   const Matrix &rigid, &M_rigid;
-  ModeBasis(const RegionCells& c, const Matrix& r, const Matrix& Mr) : cells(c), rigid(r), M_rigid(Mr) {}
+  Index spanned;  // first columns of the first part that rigid motions and the others span: to take both away would leave rounding
+  ModeBasis(const RegionCells& c, const Matrix& r, const Matrix& Mr, Index n) : cells(c), rigid(r), M_rigid(Mr), spanned(n) {}
 
   void find(const std::vector<Matrix>& parts, Reduction& out) const {
-    Index columns = 0;
+    Index columns = -spanned;
     for (const Matrix& p : parts) columns += p.cols();
     Matrix V(rigid.rows(), columns);
     columns = 0;
-    for (const Matrix& p : parts) V.middleCols(columns, p.cols()) = p, columns += p.cols();
+    for (const Matrix& p : parts) {
+      const Index n = p.cols() - (&p == &parts.front() ? spanned : 0);
+      V.middleCols(columns, n) = p.rightCols(n), columns += n;
+    }
     Matrix MV = cells.times_mass(V);
     const auto norms = [&] { return Vector(V.cwiseProduct(MV).colwise().sum().cwiseMax(0).cwiseSqrt().transpose()); };
     const Vector before = norms();
@@ -288,7 +292,8 @@ Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
   std::vector<Matrix> parts = in.given.cols() > 0 ? std::vector<Matrix>{in.given} : found_modes(in, cells, flexibility, out);
 
   tell("basis");
-  const ModeBasis basis(cells, rigid, M_rigid);
+  const bool has_rigid = in.given.cols() == 0 && !in.rigid.empty();  // moved alike, all interfaces make a rigid motion
+  const ModeBasis basis(cells, rigid, M_rigid, has_rigid ? 6 : 0);
   basis.find(parts, out);
   if (in.stiffening && in.given.cols() == 0) {
     tell("modal derivatives");
