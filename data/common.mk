@@ -2,6 +2,11 @@
 ROOT := $(patsubst %/data/common.mk,%,$(realpath $(lastword $(MAKEFILE_LIST))))
 BUILD ?= $(ROOT)/build
 BIN := $(BUILD)/bin
+# Beside installed tools (hilo_VERSION_amd64.deb: cp -r /usr/share/hilo ~/hilo && make -C ~/hilo/data/firing) there is nothing to build.
+ifeq ($(wildcard $(ROOT)/CMakeLists.txt),)
+BIN := $(patsubst %/,%,$(dir $(shell command -v hilo-solve)))
+BUILT := 1
+endif
 TOOLS := hilo-import hilo-tag hilo-part hilo-reduce hilo-solve hilo-post hilo-show
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
@@ -17,6 +22,9 @@ export PYTHONDONTWRITEBYTECODE := 1
 
 .DEFAULT_GOAL := all
 .PHONY: all build setup
+ifeq ($(wildcard $(ROOT)/CMakeLists.txt),)
+setup build:
+else
 setup:
 	@$(ROOT)/.setup
 
@@ -24,6 +32,7 @@ setup:
 build: setup
 	@[ -f $(BUILD)/build.ninja ] || cmake -S $(ROOT) -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release > $(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
 	@cmake --build $(BUILD) --target $(TOOLS) hilo-petsc
+endif
 
 # A tool that was rebuilt redoes what it made.  `make -n` takes the tools as they are; so does who says BUILT=1, having built them.
 ifeq ($(findstring n,$(firstword -$(MAKEFLAGS)))$(BUILT),)

@@ -1,6 +1,9 @@
 // hilo-post: pictures, tables and charts of results.
+#include <vtkVersionMacros.h>
+
 #include <cstdlib>
 
+#include "about.hpp"
 #include "base/args.hpp"
 #include "base/error.hpp"
 #include "post/commands/commands.hpp"
@@ -13,7 +16,8 @@ int main(int argc, char** argv) {
                         "  hilo-post render run.h5 --field von_mises --steps last -o stress.png\n"
                         "  hilo-post movie run.h5 --field displacement -o run.mp4\n"
                         "  hilo-post gload run.h5 --cfc 60 -o gload.csv --png gload.png\n"
-                        "  hilo-post series run.h5 --list"});
+                        "  hilo-post series run.h5 --list",
+                        hilo::about({"VTK " VTK_VERSION})});
     app->require_subcommand(1);
     const hilo::Command commands[] = {hilo::render_command(*app), hilo::movie_command(*app),   hilo::model_command(*app),
                                       hilo::mesh_command(*app),   hilo::gload_command(*app),   hilo::injury_command(*app),

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "about.hpp"
 #include "base/args.hpp"
 #include "base/interrupt.hpp"
 #include "base/on_ranks.hpp"
@@ -52,7 +53,8 @@ void solve(int argc, char** argv, Comm& comm) {
   auto app = make_app({"hilo-solve", "Solve a scene of rigid and flexible parts in time.",
                        "hilo-solve scene.toml tags.h5 -o run.h5\n  mpirun -n 2 hilo-solve scene.toml parts-2.h5\n  hilo-solve "
                        "scene.toml tags.h5 --set 'time.analysis=\"modes\"' -o modes.h5\n  hilo-solve --set time.step=1e-4 --explain "
-                       "scene.toml"});
+                       "scene.toml",
+                       about({"PETSc " HILO_PETSC_VERSION, metis()})});
   app->add_option("scene", o.scene, "scene file (TOML), - for standard input");
   app->add_option("mesh", o.mesh, "mesh.h5, tags.h5 or parts-N.h5; overrides the scene's `mesh`");
   app->add_option("--modes", o.modes, "reduced.h5 of hilo-reduce: modes of linear regions, which else are found anew");

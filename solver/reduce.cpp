@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "about.hpp"
 #include "base/args.hpp"
 #include "base/on_ranks.hpp"
 #include "dynamics/region_shapes.hpp"
@@ -19,7 +20,8 @@ void reduce(int argc, char** argv, const Comm& comm) {
   const auto app = make_app(
       {"hilo-reduce", "Find the modes of the linear regions of a scene, for all runs with this mesh, material, interfaces and loads.",
        "hilo-tag mesh.h5 --linear arm --rest rigid -o linear.h5\nhilo-reduce scene.toml linear.h5 -o reduced.h5\n"
-       "hilo-solve scene.toml linear.h5 --modes reduced.h5"});
+       "hilo-solve scene.toml linear.h5 --modes reduced.h5",
+       about({"PETSc " HILO_PETSC_VERSION, metis()})});
   std::string scene_path, mesh_path, output = "reduced.h5", shapes, scratch;
   std::vector<std::string> overrides;
   double memory = -1;

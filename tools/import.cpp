@@ -1,9 +1,11 @@
 // hilo-import: a mesh or a geometry becomes mesh.h5.
 #include <fmt/format.h>
+#include <gmsh.h>
 
 #include <cstdlib>
 #include <filesystem>
 
+#include "about.hpp"
 #include "base/args.hpp"
 #include "base/error.hpp"
 #include "base/param.hpp"
@@ -85,7 +87,8 @@ int main(int argc, char** argv) {
          "Reads a mesh, or a geometry that it meshes, and writes mesh.h5: regions, sets, and what the deck says of materials and loads.",
          "hilo-import bracket.inp -o bracket.h5 --units mm-t-s\n"
          "hilo-import vehicle.geo -o vehicle.h5 --define SIZE=0\n"
-         "hilo-import part.step -o part.h5 --size 3 --order 2 --scale 1e-3"});
+         "hilo-import part.step -o part.h5 --size 3 --order 2 --scale 1e-3",
+         about({"gmsh " GMSH_API_VERSION})});
     Request r;
     auto& o = r.options;
     app->add_option("input", r.input, "inp (plain or .gz), bdf, msh, unv, vtk, vtu, mesh; geo, step, brep, iges are meshed")

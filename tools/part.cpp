@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "about.hpp"
 #include "base/args.hpp"
 #include "base/error.hpp"
 #include "model/inputs.hpp"
@@ -15,7 +16,7 @@ int main(int argc, char** argv) {
   using namespace hilo;
   return guarded("hilo-part", [&] {
     const auto app = make_app({"hilo-part", "Divide a tagged mesh among ranks, with the flexible and the rigid work balanced separately.",
-                               "hilo-part tags.h5 -n 2 -o parts-2.h5"});
+                               "hilo-part tags.h5 -n 2 -o parts-2.h5", about({metis()})});
     std::string mesh_path, scene_path, output, weights = "weighted";
     int n_parts = 0;
     bool json = false, table = false;

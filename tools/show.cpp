@@ -1,6 +1,7 @@
 // hilo-show: what is in a file.
 #include <fmt/format.h>
 
+#include "about.hpp"
 #include "base/args.hpp"
 #include "base/error.hpp"
 #include "show/summary.hpp"
@@ -30,7 +31,7 @@ int main(int argc, char** argv) {
   using namespace hilo;
   return guarded("hilo-show", [&] {
     const auto app = make_app({"hilo-show", "Show what a mesh, tags, parts, modes or results file or a scene holds.",
-                               "hilo-show mesh.h5\nhilo-show --check mesh.h5"});
+                               "hilo-show mesh.h5\nhilo-show --check mesh.h5", about()});
     std::vector<std::string> paths;
     bool json = false, only_check = false, schema = false;
     app->add_option("files", paths, "mesh.h5, tags.h5, parts-N.h5, reduced.h5, run.h5, scene.toml or - (a scene on stdin)");

@@ -1,6 +1,7 @@
 // hilo-tag: which region is rigid and which is flexible.
 #include <fmt/format.h>
 
+#include "about.hpp"
 #include "base/args.hpp"
 #include "base/error.hpp"
 #include "model/inputs.hpp"
@@ -13,7 +14,7 @@ int main(int argc, char** argv) {
   using namespace hilo;
   return guarded("hilo-tag", [&] {
     const auto app = make_app({"hilo-tag", "Say for every region of a mesh whether it is rigid, linear or nonlinear, and what that saves.",
-                               "hilo-tag mesh.h5 --rigid 'wheel_*' hull --rest nonlinear -o tags.h5"});
+                               "hilo-tag mesh.h5 --rigid 'wheel_*' hull --rest nonlinear -o tags.h5", about()});
     std::string mesh_path, rules_path, output = "tags.h5", rest;
     std::vector<std::string> words[3];
     bool json = false, dry = false;

@@ -127,7 +127,8 @@ bool is_quiet() { return quiet; }
 std::unique_ptr<CLI::App> make_app(const ToolInfo& info) {
   auto app = std::make_unique<CLI::App>(info.summary, info.name);
   app->set_help_flag("-h,--help", "this text");
-  app->set_version_flag("--version", fmt::format("{} {}", info.name, version()), "the version");
+  app->set_version_flag("--version", fmt::format("{} {}{}{}", info.name, version(), info.about.empty() ? "" : "\n", info.about),
+                        "version, commit, and versions of libraries");
   app->add_flag_callback(
       "--quiet", [] { quiet_warnings(quiet = true); }, "neither warnings nor progress, nor tables beside a file that was asked for");
   app->fallthrough();  // --quiet is understood behind a subcommand too

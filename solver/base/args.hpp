@@ -7,9 +7,10 @@
 
 namespace hilo {
 
-/// What a tool says of itself.  `name` is the command ("hilo-tag"), `summary` one sentence, `example` command lines that run as printed.
+/// What a tool says of itself.  `name` is the command ("hilo-tag"), `summary` one sentence, `example` command lines that run as printed,
+/// `about` further lines of --version.
 struct ToolInfo {
-  std::string name, summary, example;
+  std::string name, summary, example, about = {};
 };
 
 /// An app with --version, --quiet, --completion and --man.  Its help ends with the exit codes and the example.
