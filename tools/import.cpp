@@ -87,22 +87,29 @@ int main(int argc, char** argv) {
          "Reads a mesh, or a geometry that it meshes, and writes mesh.h5: regions, sets, and what the deck says of materials and loads.",
          "hilo-import bracket.inp -o bracket.h5 --units mm-t-s\n"
          "hilo-import vehicle.geo -o vehicle.h5 --define SIZE=0\n"
-         "hilo-import part.step -o part.h5 --size 3 --order 2 --scale 1e-3",
-         about({"gmsh " GMSH_API_VERSION})});
+          "hilo-import part.step -o part.h5 --size 3 --order 2 --set 'bore=near:0,8,15'",
+          about({"gmsh " GMSH_API_VERSION})});
     Request r;
     auto& o = r.options;
     app->add_option("input", r.input, "inp (plain or .gz), bdf, msh, unv, vtk, vtu, mesh; geo, step, brep, iges are meshed")
         ->required()
         ->type_name("FILE");
     app->add_option("-o,--output", r.output, "mesh file to write")->required()->type_name("mesh.h5");
-    app->add_option("--units", o.units, "system of the file's numbers, all converted to SI: m-kg-s, mm-t-s, mm-kg-ms, in-lbf-s, ft-lbf-s")
-        ->type_name("SYSTEM");
-    app->add_option("--scale", o.scale, "factor on the geometry alone")->type_name("S");
+    const auto* units = app->add_option("--units", o.units,
+                                        "system of the file's numbers, all converted to SI: m-kg-s, mm-t-s, mm-kg-ms, in-lbf-s, ft-lbf-s")
+                            ->type_name("SYSTEM");
+    app->add_option("--scale", o.scale, "factor on the geometry alone; STEP and IGES say their unit of length")->type_name("S");
     app->add_option("--order", o.order, "2: quadratic cells (linear ones get nodes in the middle of their edges)")->type_name("N");
     app->add_option("--size", o.size, "cell edge when CAD is meshed, at most this when a .geo script is; in the unit of the file")
         ->type_name("H");
     app->add_option("--define", r.defines, "parameter of a .geo script, may be repeated")->type_name("NAME=VALUE")->allow_extra_args(false);
     app->add_flag("--trust", o.trust, "a .geo script may run commands, write files, read the environment and files of other folders");
+    app->add_flag("--keep-apart", o.keep_apart, "solids of a CAD file that touch share no nodes");
+    app->add_option("--set", o.sets,
+                    "a set by place, with the words of [set.NAME] in a scene, in the unit of the file; may be repeated: "
+                    "bore=cylinder:at=[0,0,0],axis=[0,0,1],radius=8, foot=plane:..., pin=near:1,2,3, rim=box:...")
+        ->type_name("NAME=KIND:KEY=VALUE,...")
+        ->allow_extra_args(false);
     app->add_option("--merge-nodes", o.merge, "nodes nearer than this become one, in the unit of the file")->type_name("TOL");
     app->add_option("--regions", o.regions, "element sets that become regions, before what the file says")
         ->delimiter(',')
@@ -112,6 +119,7 @@ int main(int argc, char** argv) {
     app->add_option("--scene-out", r.scene_out, "write the deck's materials, supports and loads as a scene too")->type_name("scene.toml");
     app->add_flag("--json", r.json, "the table as JSON");
     if (!parse(*app, argc, argv)) return;
+    o.units_given = units->count() > 0;
     check(r);
     Imported in = read_any(r.input, o);
     finish(in, r.input, o);

@@ -7,7 +7,11 @@
 
 #include "base/args.hpp"
 #include "base/error.hpp"
+#include "model/scaled_jacobian.hpp"
 #include "post/commands/commands.hpp"
+#include "post/files/output.hpp"
+#include "post/scene/glyphs.hpp"
+#include "post/scene/numbered_faces.hpp"
 #include "post/scene/overlay.hpp"
 #include "post/scene/shown_field.hpp"
 #include "post/scene/stage.hpp"
@@ -19,7 +23,27 @@ namespace {
 struct Options {
   std::string mesh, output, field = "region", camera = "iso", size = "1280x720", edges = "feature", title;
   std::vector<std::string> show, hide;
+  double angle = 0.7;  // [rad]
+  bool faces = false, slivers = false, json = false;
 };
+
+/// Slivers of what is shown, in red within the pale whole.
+std::int64_t draw_slivers(vtkRenderer* stage, const Mesh& mesh, const std::vector<bool>& shown) {
+  std::vector<Facet> facets;
+  std::int64_t count = 0;
+  for (std::int64_t c = 0; c < mesh.n_cells(); ++c) {
+    const auto& shape = info(mesh.shape[static_cast<size_t>(c)]);
+    if (!shown[static_cast<size_t>(mesh.region[static_cast<size_t>(c)])] || shape.dimension < 3) continue;
+    if (!(scaled_jacobian(mesh, c) < sliver_limit)) continue;
+    ++count;
+    for (std::int64_t f = 0; f < static_cast<std::int64_t>(shape.facets.size()); ++f) facets.push_back({c, f});
+  }
+  if (count == 0) return 0;
+  Look look;
+  look.colour = {0.85, 0.05, 0.05};
+  add_skin(stage, Skin(mesh, facets), look);
+  return count;
+}
 
 void run(const Options& o) {
   const MeshFile file = read_mesh_file(o.mesh);
@@ -43,24 +67,46 @@ void run(const Options& o) {
     for (const auto n : mesh.cell(c)) fit.add(mesh.X[static_cast<size_t>(n)]);
   }
   fit.aim(stage->GetActiveCamera());
-  Skin skin(mesh, boundary_facets(mesh, shown), bars);
+  const auto outside = boundary_facets(mesh, shown);
+  Skin skin(mesh, outside, bars);
   skin.set_cell_colours(colour);
   Look look;
   look.by = Look::By::cells;
   look.bar_width = 5 * pixel;
+  look.opacity = o.slivers ? 0.15 : 1;
+  const std::int64_t n_slivers = o.slivers ? draw_slivers(stage, mesh, shown) : 0;
   add_skin(stage, skin, look);
   if (o.edges == "all") add_grid(stage, skin, pixel, 0.35, pixels_per_metre(stage, frame.model.h));
   if (o.edges != "none") add_lines(stage, skin.feature_edges(), {0.1, 0.1, 0.12}, 1.3 * pixel, 0.8);
   stage->ResetCameraClippingRange();
+  const auto faces = o.faces ? numbered_faces(mesh, outside, o.angle) : std::vector<NumberedFace>{};
+  const auto places = places_of_numbers(faces, stage->GetActiveCamera());
+  std::string unseen;
+  for (size_t i = 0; i < places.size(); ++i)
+    if (!places[i]) unseen += fmt::format("{}{}", unseen.empty() ? "" : ", ", i + 1);
   picture.paint([&](Painter& p) {
-    draw_title(p, o.title.empty() ? o.mesh : o.title, fmt::format("{} cells, {} nodes", mesh.n_cells(), mesh.n_nodes()));
+    const Projection project(stage, frame.model);
+    for (size_t i = 0; i < places.size(); ++i)
+      if (places[i]) {
+        const Vec2 at = project(*places[i]);
+        p.disc(at, 11 * p.scale, white);
+        p.text(at, fmt::format("{}", i + 1), 13, Across::centre, Up::middle, ink, true);
+      }
+    std::string line = fmt::format("{} cells, {} nodes", mesh.n_cells(), mesh.n_nodes());
+    if (o.slivers) line += fmt::format(", {} slivers (scaled Jacobian below {})", n_slivers, sliver_limit);
+    draw_title(p, o.title.empty() ? o.mesh : o.title, line);
     draw_axes_cross(p, fit.right(), fit.up(), fit.back());
     std::vector<LegendEntry> entries;
     for (size_t i = 0; i < named.names.size(); ++i) entries.push_back({named.names[i], named.colours[i], nullptr});
     draw_legend(p, frame.side, named.title, entries);
   });
   picture.write(o.output);
-  if (!is_quiet()) fmt::print("{}\n", o.output);
+  if (o.faces) {
+    const Table table = table_of_faces(mesh, faces);
+    if (o.json || !is_quiet()) write_out("-", o.json ? table.json("") + "\n" : table.text());
+    if (!unseen.empty() && !is_quiet()) fmt::print(stderr, "not seen from here: {}; --camera looks from elsewhere\n", unseen);
+  } else if (!is_quiet())
+    fmt::print("{}\n", o.output);
 }
 
 }  // namespace
@@ -78,9 +124,15 @@ Command mesh_command(CLI::App& app) {
   sub->add_option("--show", o->show, "regions to draw, by name or glob; all by default")->allow_extra_args(false);
   sub->add_option("--hide", o->hide, "regions not to draw")->allow_extra_args(false);
   sub->add_option("--edges", o->edges, "none, feature or all")->check(CLI::IsMember({"none", "feature", "all"}))->capture_default_str();
+  sub->add_flag("--faces", o->faces, "number the smooth faces, and list what [set.NAME] kind = \"near\" and a joint need of them");
+  sub->add_option("--angle", o->angle, "facets that turn by more than this meet at an edge between faces [rad]")
+      ->check(CLI::Range(0.0, 3.2))
+      ->capture_default_str();
+  sub->add_flag("--slivers", o->slivers, "show the cells whose scaled Jacobian is below 0.05");
+  sub->add_flag("--json", o->json, "the list of --faces as JSON");
   sub->add_option("--size", o->size, "size of the picture, WIDTHxHEIGHT")->capture_default_str();
   sub->add_option("--title", o->title, "title instead of the file's name");
-  example(*sub, "  hilo-post mesh tags.h5 --field fidelity -o fidelity.png");
+  example(*sub, "  hilo-post mesh tags.h5 --field fidelity -o fidelity.png\n  hilo-post mesh tags.h5 --faces -o faces.png");
   return {sub, [o] { run(*o); }};
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/units.hpp"
 #include "model/scene_read.hpp"
 #include "model/store.hpp"
 
@@ -50,12 +51,12 @@ constexpr const char* order_rule = "times must rise; two equal ones make a jump"
 
 }  // namespace
 
-History read_history_csv(const std::string& path, const std::string& where) {
+HistoryTable read_history_csv(const std::string& path, const std::string& where) {
   if (!std::filesystem::exists(path))
     throw Error(where, fmt::format("no file {}", path), "paths in a scene are relative to the scene's folder");
   std::string text = read_text_file(path, where);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-  History h;
+  HistoryTable h;
   bool header = false;
   int line_number = 0;
   for (size_t begin = 0; begin < text.size();) {
@@ -74,6 +75,7 @@ History read_history_csv(const std::string& path, const std::string& where) {
     if (!header) {
       if (numeric) throw Error(at(0), "no header line", "write \"t,value\" above the first numbers");
       header = true;
+      for (size_t i = 0; i < 2; ++i) h.unit[i] = unit_in_heading(fields[i].text), h.place[i] = at(i);
       continue;
     }
     if (!numeric) throw Error(at(0), fmt::format("\"{}\" is not a number", fields[0].text));
@@ -126,6 +128,32 @@ std::vector<Vec3> read_points_csv(const std::string& path, const std::string& wh
   return points;
 }
 
+namespace {
+
+/// What the unit of the first heading is in seconds; the time of the scene's system where it has none.
+double second_of(const HistoryTable& table, const std::string& system) {
+  if (table.unit[0].empty()) return to_si("s", system);
+  const auto unit = named_unit(table.unit[0]);
+  if (!unit || unit->unit != "s")
+    throw Error(table.place[0], fmt::format("\"{}\" is no unit of time", table.unit[0]), "s, ms, us, min or h");
+  return unit->si;
+}
+
+/// A history is a factor on a value in the units of the scene: its own unit must be that, or `scale` must say what it is.
+void check_value_unit(const HistoryTable& table, const Entry& e, const std::string& system) {
+  if (table.unit[1].empty() || e.given("scale")) return;
+  const auto unit = named_unit(table.unit[1]);
+  if (!unit)
+    throw Error(table.place[1], fmt::format("the unit \"{}\" is not known", table.unit[1]),
+                "take it out of the heading, or give `scale`, what one of it is in the units of the scene");
+  const double factor = unit->si / to_si(unit->unit, system);
+  if (std::abs(factor - 1) > 1e-12)
+    throw Error(table.place[1], fmt::format("values in {}, not in {} of {}", unit->name, unit->unit, system),
+                fmt::format("scale = {:g} beside `file` converts them", factor));
+}
+
+}  // namespace
+
 History history_of(const Entry& e, const std::string& label, const Surroundings& around) {
   const auto fail = [&](std::string_view key, const std::string& what, const std::string& hint) -> History {
     throw Error(e.where(key), label + ": " + what, hint);
@@ -134,8 +162,12 @@ History history_of(const Entry& e, const std::string& label, const Surroundings&
   if (e.has("file")) {
     if (e.has("t") || e.has("value")) return fail("file", "both a file and a table", "give either file or t and value");
     const std::filesystem::path file = e.text("file");
-    h = read_history_csv((around.folder == "." ? file : std::filesystem::path(around.folder) / file).string(), e.where("file"));
-    for (double& t : h.t) t *= to_si("s", around.units);
+    const auto table =
+        read_history_csv((around.folder == "." ? file : std::filesystem::path(around.folder) / file).string(), e.where("file"));
+    const double second = second_of(table, around.units);
+    check_value_unit(table, e, around.units);
+    h.t = table.t, h.value = table.value;
+    for (double& t : h.t) t *= second;
   } else if (e.has("t") && e.has("value")) {
     h.t = e.numbers("t");
     h.value = e.numbers("value");

@@ -1,5 +1,6 @@
 // Steps of Scene::load between the TOML tree and the checked entries.
 #pragma once
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -27,8 +28,12 @@ Entries read_sections(const toml::table& root, Surroundings& around);
 
 /// The history a [history.NAME] or inline table describes: its points, or those of its CSV file.
 History history_of(const Entry& entry, const std::string& label, const Surroundings& around);
-/// Two columns of a CSV file: times (as written) and values.
-History read_history_csv(const std::string& path, const std::string& where);
+/// Two columns of a CSV file: times and values, as written, and the units in their headings ("" without one) with their places.
+struct HistoryTable {
+  std::vector<double> t, value;
+  std::array<std::string, 2> unit, place;
+};
+HistoryTable read_history_csv(const std::string& path, const std::string& where);
 
 /// Mistakes that need more than one key to see: Error.
 void check_entries(const Entries& entries);

@@ -77,6 +77,15 @@ std::vector<KindSchema> make() {
                 {"axis", vector3, "", "!", "its normal"},
                 {"radius", number, "m", "", "how far from the point; absent: all of the plane", above(0)},
                 {"tolerance", number, "m", "", "off the plane; absent: 1e-6 of the scene's diagonal", above(0)}}});
+  s.push_back(
+      {"set",
+       "near",
+       "the smooth face that a point lies on: its facets, up to where they meet at an edge, and their nodes",
+       {set_kind,
+        of,
+        {"at", vector3, "m", "!", "a point of it, amid rather than on its border (hilo-post mesh --faces lists one of each)"},
+        {"angle", number, "rad", "0.7", "facets that turn by more than this meet at an edge", between(0, 3.2)},
+        {"tolerance", number, "m", "", "how far off the face the point may be; absent: a hundredth of the scene's diagonal", above(0)}}});
   s.push_back({"set",
                "box",
                "nodes in a box along the axes, and the outer facets between them",
@@ -194,7 +203,10 @@ std::vector<KindSchema> make() {
        "a named factor over time",
        {{"t", numbers, "s", "", "rising times; two equal ones make a jump"},
         {"value", numbers, "", "", "values, in the unit of what the history scales (1 for a factor)"},
-        {"file", text, "", "", "CSV file with a header line and two columns: t, value"},
+        {"file", text, "", "",
+         "CSV file with a header line and two columns: t, value.  A unit of time in the header (t [ms]) is converted; one of values must "
+         "be that "
+         "of the scene, or stand beside `scale`"},
         {"scale", number, "1", "1", "factor on the values"},
         {"interpolation", text, "", "linear", "linear, smooth (cosine ramps) or smoother (ramps with three continuous derivatives)"}}});
   s.push_back(time_schema());

@@ -55,6 +55,28 @@ double shortest_rise(const History& h) {
   return shortest;
 }
 
+/// A history of a file that ends before the run, at a value that is not zero: that it is held may not be meant.
+void check_ends(const Entries& entries, const Entry& time, Warnings& w) {
+  if (!time.has("end") || time.text("analysis") != "dynamic") return;
+  const auto named = entries.find("history");
+  if (named == entries.end()) return;
+  for (const Entry& h : named->second) {
+    if (!h.has("file")) continue;
+    for (const auto& [section, list] : entries)
+      for (const Entry& e : list)
+        for (const auto& [key, v] : e.values) {
+          if (!v.history || v.texts.empty() || v.texts[0] != h.name) continue;
+          const History& table = *v.history;
+          if (table.value.back() == 0 || table.t.back() >= time.number("end") * (1 - 1e-9)) continue;
+          w.add(h, "file",
+                fmt::format("the table ends at {:.4g} s, before the run does at {:.4g} s: its last value, {:.4g}, holds from there on",
+                            table.t.back(), time.number("end"), table.value.back()));
+          goto next;
+        }
+  next:;
+  }
+}
+
 void check_time(const Entries& entries, const Entry& time, Warnings& w) {
   if (!time.has("step")) return;
   const double step = time.number("step");
@@ -108,6 +130,7 @@ std::vector<std::string> find_implausible(const Entries& entries) {
       if (section == "body") check_body(e, w);
       if (section == "region" && e.number("mass_damping") > 0) w.add(e, "mass_damping", "brakes rigid motion too; `damping` does not");
     }
+  check_ends(entries, entries.find("time")->second.front(), w);
   check_time(entries, entries.find("time")->second.front(), w);
   check_unused(entries, w);
   return std::move(w.lines);

@@ -61,7 +61,7 @@ hilo-tag t16.h5 --rest nonlinear -o t16-tags.h5 > t16-tags.txt
 scene t16
 solve_and_look t16 displacement
 
-hilo-import t20_data.step -o t20.h5 --size 15 --scale 1e-3 > t20.txt
+hilo-import t20_data.step -o t20.h5 --size 15 > t20.txt
 hilo-tag t20.h5 --rest nonlinear -o t20-tags.h5 > t20-tags.txt
 scene t20
 solve_and_look t20 displacement

@@ -7,7 +7,7 @@ bin=$(realpath "$2")
 export PATH=$bin:$PATH
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-cp "$repo/data/tour/arm.step" "$folder"
+cp "$repo/data/tour/arm.step" "$repo/data/tour/slider.geo" "$folder"
 cd "$folder"
 fail() { echo "tour: $*" >&2; exit 1; }
 awk '/^```sh$/ {on = 1; next} /^```$/ {on = 0} on' "$repo/docs/tour.md" > blocks.sh
@@ -25,3 +25,6 @@ done
 peak=$(awk '/von_mises .MPa/ {getline; print $2}' said.txt)
 beam=$(awk -F, '/by beam theory .MPa/ {getline; print $2}' said.txt)
 awk -v p="$peak" -v b="$beam" 'BEGIN {exit !(p > 0.85 * b && p < b)}' || fail "peak $peak MPa, by beam theory $beam MPa"
+# a rod of 120 mm on a crank of 40 mm
+awk -F, 'NR == 2 {least = most = $2} NR > 1 {if ($2 < least) least = $2; if ($2 > most) most = $2}
+  END {exit !(least > .07999 && least < .0801 && most > .1599 && most < .16001)}' slider.csv || fail "the slider does not go from 80 to 160 mm"

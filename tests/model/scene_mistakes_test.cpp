@@ -159,6 +159,11 @@ TEST_F(Mistake, InACsvFileIsReportedInThatFile) {
   EXPECT_EQ(csv("0,0\n1,1\n"), "load.csv:1:1: no header line (write \"t,value\" above the first numbers)");
   EXPECT_EQ(csv("t,F\n"), "load.csv:1:1: no times and values (a header line, then lines \"t,value\")");
   EXPECT_EQ(csv(""), "load.csv:1:1: no times and values (a header line, then lines \"t,value\")");
+  EXPECT_EQ(csv("t [steps],F\n0,0\n1,1\n"), "load.csv:1:1: \"steps\" is no unit of time (s, ms, us, min or h)");
+  EXPECT_EQ(csv("t [ms], F [kN]\n0,0\n1,1\n"), "load.csv:1:9: values in kN, not in N of m-kg-s (scale = 1000 beside `file` converts them)");
+  EXPECT_EQ(csv("t (s), F (stone)\n0,0\n1,1\n"),
+            "load.csv:1:8: the unit \"stone\" is not known (take it out of the heading, or give `scale`, what one of it is in the units of "
+            "the scene)");
   EXPECT_EQ(refusal("[history.h]\nfile = \"lod.csv\"\n"),
             "scene.toml:2:1: no file lod.csv (paths in a scene are relative to the scene's folder)");
 }

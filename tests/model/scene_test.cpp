@@ -94,6 +94,26 @@ TEST_F(SceneText, IsConvertedToSIFromInchPoundSecond) {
   EXPECT_NEAR(s.entries("material")[0].number("density"), 7849.4, 0.5);  // 1 lbf s^2/in^4 = 1.068690e7 kg/m^3
 }
 
+// 500 "ms" were taken for 500 s.
+TEST_F(SceneText, UnitsInTheHeaderOfALoadAreConvertedAndATableThatEndsEarlyIsTold) {
+  const auto of = [&](const std::string& csv, const std::string& keys, const std::string& head = "") {
+    put("load.csv", csv);
+    return load(head + "[history.shot]\nfile = \"load.csv\"\n" + keys + "[time]\nend = 0.5\nstep = 1e-3\n" + pull + "history = \"shot\"\n");
+  };
+  const auto history = [](const Scene& s) { return s.entries("load")[0].history("history"); };
+  EXPECT_DOUBLE_EQ(history(of("t [ms],f [N]\n0,0\n500,2\n", "")).t.back(), 0.5);
+  EXPECT_DOUBLE_EQ(history(of("t,f\n0,0\n500,2\n", "", "units = \"mm-kg-ms\"\n")).t.back(), 0.5) << "the time of the system";
+  EXPECT_DOUBLE_EQ(history(of("t [s],f [kN]\n0,0\n.5,2\n", "", "units = \"mm-kg-ms\"\n")).t.back(), 0.5) << "kg mm/ms^2 is kN";
+  EXPECT_DOUBLE_EQ(history(of("t [s];f [kN]\n0;0\n.5;2\n", "scale = 1000\n")).value.back(), 2000);
+  const auto ends = [&](const std::string& csv) {
+    const Scene s = of(csv, "");
+    return std::count_if(s.warnings.begin(), s.warnings.end(), [](const std::string& w) { return w.find("the table ends at") != w.npos; });
+  };
+  EXPECT_EQ(ends("t [ms],f\n0,0\n200,2\n"), 1);
+  EXPECT_EQ(ends("t [ms],f\n0,0\n500,2\n"), 0);
+  EXPECT_EQ(ends("t [ms],f\n0,0\n100,2\n200,0\n"), 0) << "no load is left";
+}
+
 TEST_F(SceneText, TakesHistoriesByNameAsTableAsNumberAndFromCsv) {
   put("load.csv", "# measured\nt,F\n0,0\n\n10,2\r\n");
   const Scene s = load("units = \"mm-kg-ms\"\n[history.shot]\nfile = \"load.csv\"\nscale = 3\n" + pull + "history = \"shot\"\n" + R"(

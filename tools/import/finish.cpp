@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/param.hpp"
 #include "import/imported.hpp"
+#include "model/scaled_jacobian.hpp"
 
 namespace hilo {
 namespace {
@@ -128,8 +129,47 @@ void check_cells(const Mesh& m, const std::string& file) {
                                                                   : "repair or remesh them");
 }
 
+namespace {
+
+/// Cells that pass and are nearly flat all the same: each region's, with the place of the worst.
+void tell_slivers(Imported& in) {
+  const Mesh& m = in.mesh;
+  struct Worst {
+    std::int64_t count = 0, cell = -1;
+    double value = sliver_limit;
+  };
+  std::vector<Worst> of(m.region_name.size());
+  for (std::int64_t c = 0; c < m.n_cells(); ++c) {
+    if (info(m.shape[c]).dimension != 3) continue;
+    const double j = scaled_jacobian(m, c);
+    if (!(j < sliver_limit)) continue;
+    Worst& w = of[m.region[c]];
+    ++w.count;
+    if (j < w.value) w.value = j, w.cell = c;
+  }
+  for (size_t r = 0; r < of.size(); ++r) {
+    if (of[r].count == 0) continue;
+    Vec3 at = Vec3::Zero();
+    for (const auto a : m.cell(of[r].cell)) at += m.X[a] / static_cast<double>(m.cell(of[r].cell).size());
+    in.notes.push_back(fmt::format(
+        "warning: region \"{}\" has {} slivers (scaled Jacobian below {}); the flattest, {:.2g}, is cell {} at ({:.4g}, {:.4g}, "
+        "{:.4g}) m; hilo-post mesh --slivers shows them",
+        m.region_name[r], of[r].count, sliver_limit, of[r].value, m.cell_id[of[r].cell], at.x(), at.y(), at.z()));
+  }
+}
+
+}  // namespace
+
 void finish(Imported& in, const std::string& file, const ImportOptions& options) {
   Mesh& m = in.mesh;
+  if (in.metre && *in.metre != 1 && std::abs(options.scale - *in.metre) < 1e-9 * options.scale)
+    throw Error("",
+                fmt::format("--scale {:g}: {} says that {:g} m is its unit of length, and becomes metres by itself", options.scale, file,
+                            *in.metre),
+                "leave --scale away", Exit::usage);
+  if (in.metre && options.units_given && std::abs(to_si("m", options.units) - *in.metre) > 1e-9 * *in.metre)
+    throw Error("", fmt::format("--units {}: {} says that {:g} m is its unit of length", options.units, file, *in.metre),
+                "leave --units away", Exit::usage);
   for (std::int64_t a = 0; a < m.n_nodes(); ++a)
     if (!m.X[a].allFinite()) throw Error(file, fmt::format("node {} has a coordinate that is not a number", m.node_id[a]));
   if (options.merge) {
@@ -138,13 +178,15 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
   }
   if (const auto gone = drop_unused(in)) in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped", gone));
   if (options.order == 2) raise_order(in);
-  const double factor = options.scale * to_si("m", options.units);
+  add_placed_sets(in, options.sets);
+  const double factor = options.scale * in.metre.value_or(to_si("m", options.units));
   if (factor != 1)
     for (auto& x : m.X) x *= factor;
   if (in.curved)
     if (const auto n = straighten(m))
       in.notes.push_back(fmt::format("{} cells that a curved surface turned inside out have straight edges", n));
   check_cells(m, file);
+  tell_slivers(in);
   for (size_t r = 0; r < m.region_name.size(); ++r) {
     auto& data = m.region_data[r];
     data.density *= to_si("kg/m^3", options.units);

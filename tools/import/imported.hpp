@@ -17,6 +17,7 @@ namespace hilo {
 /// The options of hilo-import, as the readers see them.
 struct ImportOptions {
   std::string units = "m-kg-s";                        // system of the numbers in the deck
+  bool units_given = false;                            // by --units
   double scale = 1;                                    // factor on the geometry alone
   int order = 1;                                       // 2: quadratic cells
   std::optional<double> merge;                         // distance below which nodes are one        [unit of the file]
@@ -25,6 +26,8 @@ struct ImportOptions {
   std::string rest;                                    // name of the region of cells in no region ("": "rest")
   std::vector<std::pair<std::string, double>> define;  // parameters of a .geo script
   bool trust = false;                                  // a .geo script may run commands and write files
+  bool keep_apart = false;                             // solids of a CAD file that touch share no nodes
+  std::vector<std::string> sets;                       // NAME=KIND:KEY=VALUE,..., as [set.NAME] of a scene    [unit of the file]
 };
 
 /// A keyword or item of the deck that has no place in the mesh or the scene lines.
@@ -40,6 +43,7 @@ struct Imported {
   Mesh mesh;                       // numbers of the deck; region -1 until assign_regions
   std::vector<std::string> notes;  // said on stderr, one line each
   std::vector<NotRead> not_read;
+  std::optional<double> metre;      // length unit that the file states  [m]
   bool curved = false;              // quadratic cells made here follow curved surfaces, which may turn some inside out
   std::set<std::string> as_listed;  // node sets that order 2 must not complete: the deck's force acts on each of their nodes
 
@@ -114,8 +118,8 @@ Registry<MeshFormat>& mesh_formats();
 /// The reader for the file's ending; Error with the endings known when there is none, or when the file cannot be opened.
 Imported read_any(const std::string& path, const ImportOptions& options, const Registry<MeshFormat>& formats = mesh_formats());
 
-/// What follows every reader: nodes merged, unused nodes dropped, order raised, lengths brought to SI; then the checks (inverted,
-/// degenerate).
+/// What follows every reader: nodes merged, unused nodes dropped, order raised, sets by place, lengths brought to SI; then the checks
+/// (inverted, degenerate; slivers are told).
 void finish(Imported& in, const std::string& file, const ImportOptions& options);
 /// tet4, wedge6, hex8 to tet10, wedge15, hex20r with straight edges.
 void raise_order(Imported& in);
@@ -125,8 +129,8 @@ std::int64_t straighten(Mesh& mesh);
 std::int64_t merge_nodes(Mesh& mesh, double distance);
 /// Nodes of no cell are dropped, from the sets too; returns how many.
 std::int64_t drop_unused(Imported& in);
-/// Least over the corners of the determinant of the edges over the product of their lengths: 1 for a regular cell, <= 0 inverted.
-double scaled_jacobian(const Mesh& mesh, std::int64_t cell);
+/// Adds the sets of --set, by the words and the code of [set.NAME] of scenes; lengths are still in the unit of the file.
+void add_placed_sets(Imported& in, const std::vector<std::string>& sets);
 /// Throws Error naming the cells when any is inverted or has no volume.
 void check_cells(const Mesh& mesh, const std::string& file);
 

@@ -9,6 +9,7 @@
 
 #include "base/outside_shapes.hpp"
 #include "import/imported.hpp"
+#include "model/scaled_jacobian.hpp"
 
 namespace hilo {
 namespace {

@@ -9,22 +9,48 @@
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "import/gmsh/cad.hpp"
 #include "import/gmsh/confined.hpp"
 #include "import/gmsh/mesh.hpp"
 #include "import/gmsh/script.hpp"
 #include "import/gmsh/session.hpp"
+#include "model/store.hpp"
 
 namespace hilo {
 namespace {
 
+constexpr const char* wrong_syntax = "OpenCASCADE finds wrong syntax in it";
+
+bool is_script(const std::string& format) { return format == "geo"; }
+
+/// Lengths of CAD files come in mm, whatever the file's unit is (OpenCASCADE); those of a .brep and of a script are numbers.
+bool comes_in_mm(const std::string& format) { return format == "step" || format == "iges"; }
+
+/// The unit of a CAD file, and what --size is to be multiplied with.
+double read_unit(const std::string& path, const std::string& format, GmshMesh& mesh) {
+  if (!comes_in_mm(format)) return 1;
+  const std::string text = read_text_file(path);
+  const auto unit = format == "step" ? step_unit(text) : iges_unit(text);
+  mesh.metre = unit && !unit->name.empty() ? unit->metre : 1e-3;
+  if (!unit)
+    mesh.notes.push_back("the file states no unit of length: mm");
+  else
+    mesh.notes.push_back(unit->name.empty() ? "parts of the file are in different units: lengths are in mm"
+                                            : fmt::format("lengths are in {}, as the file says", unit->name));
+  return *mesh.metre / 1e-3;
+}
+
 /// The reader is named, so that the library does not guess by what the file begins with: it would run what it takes for a script.
-void open(const std::string& path, const std::string& format, const ImportOptions& o) {
-  if (format == "geo") {
+void open(const std::string& path, const std::string& format, const ImportOptions& o, GmshMesh& mesh) {
+  if (is_script(format)) {
     gmsh::merge(path);
   } else {
     gmsh::vectorpair made;
+    gmsh::option::setString("Geometry.OCCTargetUnit", "MM");
     gmsh::model::occ::importShapes(path, made, false, format);
     gmsh::model::occ::synchronize();
+    mesh.of_solids = true;
+    join_touching(o.keep_apart, mesh.coloured, mesh.notes);
   }
   if (const auto e = GmshSession::last_error(); !e.empty()) throw Error(path, e);
   gmsh::vectorpair volumes, surfaces, bars;
@@ -33,30 +59,43 @@ void open(const std::string& path, const std::string& format, const ImportOption
   gmsh::model::getPhysicalGroups(bars, 1);
   if (volumes.empty() && (bars.empty() || !surfaces.empty()))
     throw Error(path, "no volume to mesh", "the geometry holds points, curves or surfaces only");
-  if (o.size) {
-    if (format != "geo") {  // a script may say its own sizes, which the option only bounds
-      gmsh::vectorpair points;
-      gmsh::model::getEntities(points, 0);
-      gmsh::model::mesh::setSize(points, *o.size);
-    }
-    gmsh::option::setNumber("Mesh.MeshSizeMax", *o.size);
-    double low;
-    gmsh::option::getNumber("Mesh.MeshSizeMin", low);
-    if (low > *o.size) gmsh::option::setNumber("Mesh.MeshSizeMin", *o.size);
+}
+
+void set_size(const std::string& format, double size) {
+  if (!is_script(format)) {  // a script may say its own sizes, which the option only bounds
+    gmsh::vectorpair points;
+    gmsh::model::getEntities(points, 0);
+    gmsh::model::mesh::setSize(points, size);
   }
-  gmsh::model::mesh::generate(volumes.empty() ? 1 : 3);
-  if (const auto e = GmshSession::last_error(); !e.empty()) throw Error(path, "gmsh cannot mesh it: " + e, "try another --size");
-  if (o.order == 2 && !volumes.empty()) gmsh::model::mesh::setOrder(2);
+  gmsh::option::setNumber("Mesh.MeshSizeMax", size);
+  double low;
+  gmsh::option::getNumber("Mesh.MeshSizeMin", low);
+  if (low > size) gmsh::option::setNumber("Mesh.MeshSizeMin", size);
+}
+
+/// Meshes what is open; why that failed, or "".
+std::string try_to_mesh(const ImportOptions& o) {
+  gmsh::vectorpair volumes;
+  gmsh::model::getEntities(volumes, 3);
+  try {
+    gmsh::model::mesh::generate(volumes.empty() ? 1 : 3);
+    if (const auto e = GmshSession::last_error(); !e.empty()) return e;
+    if (o.order == 2 && !volumes.empty()) gmsh::model::mesh::setOrder(2);
+  } catch (const std::string& e) {
+    return e;
+  } catch (int) {
+    return GmshSession::last_error();
+  }
   for (const auto& [dim, tag] : volumes) {
     std::vector<int> types;
     std::vector<std::vector<std::size_t>> tags, nodes;
     gmsh::model::mesh::getElements(types, tags, nodes, 3, tag);
-    if (types.empty()) throw Error(path, fmt::format("gmsh made no cells in volume {}", tag), "try another --size");
+    if (types.empty()) return fmt::format("no cells in volume {}", tag);
   }
+  return "";
 }
 
-GmshMesh mesh_of_library() {
-  GmshMesh mesh;
+void take_from_library(GmshMesh& mesh) {
   std::vector<std::size_t> tags;
   std::vector<double> x, u;
   gmsh::model::mesh::getNodes(tags, x, u);
@@ -84,15 +123,26 @@ GmshMesh mesh_of_library() {
   gmsh::vectorpair groups;
   gmsh::model::getPhysicalGroups(groups);
   for (const auto& [dim, tag] : groups) gmsh::model::getPhysicalName(dim, tag, mesh.group_name[{dim, tag}]);
-  return mesh;
 }
 
-GmshMesh meshed(const std::string& path, const std::string& format, const ImportOptions& options) {
-  const GmshSession session(options);
+/// The mesh at `factor` of the sizes asked for, or why gmsh cannot make it.
+GmshMesh meshed_at(double factor, std::string& failed, const std::string& path, const std::string& format, const ImportOptions& options) {
+  GmshSession session(options);
   try {
-    open(path, format, options);
-    return mesh_of_library();
+    GmshMesh mesh;
+    const double unit = read_unit(path, format, mesh);
+    open(path, format, options, mesh);
+    if (session.printed().find("ERR StepFile") != std::string::npos) throw Error(path, wrong_syntax);
+    if (options.size) set_size(format, *options.size * unit);
+    if (factor != 1) gmsh::option::setNumber("Mesh.MeshSizeFactor", factor);
+    failed = try_to_mesh(options);
+    if (!failed.empty()) return mesh;
+    take_from_library(mesh);
+    if (mesh.metre)
+      for (Vec3& x : mesh.X) x /= unit;
+    return mesh;
   } catch (const std::string& e) {
+    if (session.printed().find("ERR StepFile") != std::string::npos) throw Error(path, wrong_syntax);
     const bool memory = e.find("ut of memory") != e.npos;
     throw Error(path, "gmsh: " + e, "", memory ? Exit::resources : Exit::input);
   } catch (const std::bad_alloc&) {
@@ -102,6 +152,24 @@ GmshMesh meshed(const std::string& path, const std::string& format, const Import
   } catch (int) {
     throw Error(path, "gmsh: " + GmshSession::last_error());
   }
+}
+
+/// The mesh at the sizes asked for; of a CAD file at others where gmsh fails at those, which is told.  Each try begins anew: gmsh refuses
+/// to work after a failure.
+GmshMesh meshed(const std::string& path, const std::string& format, const ImportOptions& options) {
+  std::string failed, again;
+  GmshMesh mesh = meshed_at(1, failed, path, format, options);
+  if (failed.empty()) return mesh;
+  if (!is_script(format))
+    for (const double factor : {0.7, 0.5, 1.4, 0.35, 0.25}) {
+      mesh = meshed_at(factor, again, path, format, options);
+      if (!again.empty()) continue;
+      mesh.notes.push_back(fmt::format("gmsh cannot mesh it at {} ({}): meshed at {} of that",
+                                       options.size ? fmt::format("--size {:g}", *options.size) : "its default size", failed, factor));
+      return mesh;
+    }
+  throw Error(path, fmt::format("gmsh cannot mesh it: {}{}", failed, is_script(format) ? "" : ", at this and five other sizes"),
+              "try another --size, or repair the geometry");
 }
 
 Imported read_geometry(const std::string& path, const std::string& format, const ImportOptions& options) {

@@ -52,6 +52,8 @@ class GmshReading {
  public:
   GmshReading(const std::string& path, const GmshMesh& mesh, const ImportOptions& o, bool curved) : path_(path), from_(mesh), o_(o) {
     in_.curved = curved;
+    in_.notes = from_.notes;
+    in_.metre = from_.metre;
     for (const auto& [key, entity] : from_.entities)
       for (const int g : entity.groups) groups_[std::get<0>(key)][g].push_back(key);
   }
@@ -68,6 +70,13 @@ class GmshReading {
     if (in_.mesh.n_cells() == 0) throw Error(path_, "no volume cells and no bars");
     for (const auto& w : reduced_) in_.notes.push_back(fmt::format("{} read without the nodes inside faces and cells", w));
     assign_regions(in_, path_, regions_, false, {}, o_);
+    for (const auto& [colour, volumes] : from_.coloured) {
+      std::vector<std::int64_t> cells;
+      for (const int tag : volumes)
+        if (const auto of = of_volume_.find({3, tag, 0}); of != of_volume_.end())
+          cells.insert(cells.end(), of->second.begin(), of->second.end());
+      SetNames(in_).cells(colour, std::move(cells));
+    }
     surface_groups();
     node_groups();
     return std::move(in_);
@@ -150,11 +159,12 @@ class GmshReading {
       std::string name = from_.entities.at(key).name;
       if (const auto slash = name.rfind('/'); slash != std::string::npos) name = name.substr(slash + 1);
       if (name.empty()) name = fmt::format("volume_{}", tag);
-      for (const auto& r : regions_)
-        if (r.name == name) {  // two volumes under one label
-          name = fmt::format("{}_{}", name, tag);
-          break;
-        }
+      const auto same = std::find_if(regions_.begin(), regions_.end(), [&](const CellGroup& r) { return r.name == name; });
+      if (same != regions_.end() && from_.of_solids) {
+        same->cells.insert(same->cells.end(), cells.begin(), cells.end());
+        continue;
+      }
+      if (same != regions_.end()) name = fmt::format("{}_{}", name, tag);  // two volumes under one label
       if (!cells.empty()) regions_.push_back({name, cells});
     }
     in_.notes.push_back(fmt::format("no volume groups: each of {} volumes is a region", regions_.size()));

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -30,6 +31,11 @@ struct GmshMesh {
   std::vector<Vec3> X;  // [unit of the file]
   std::map<Key, Entity> entities;
   std::map<std::pair<int, int>, std::string> group_name;  // by dimension and tag
+  // of a CAD file, where each name of a volume is that of one solid, in one or several pieces
+  bool of_solids = false;
+  std::map<std::string, std::vector<int>> coloured;  // volumes by colour
+  std::optional<double> metre;                       // the file's unit of length  [m]
+  std::vector<std::string> notes;
 };
 
 /// A type of element by its number in gmsh; null for one that is not known here.

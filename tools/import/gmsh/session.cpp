@@ -1,5 +1,6 @@
 #include "import/gmsh/session.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmsh.h>
 #include <sys/resource.h>
@@ -7,6 +8,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <iostream>
 
 #include "base/error.hpp"
 
@@ -54,10 +56,7 @@ CrashGuard::~CrashGuard() {
 GmshSession::GmshSession(const ImportOptions& o) {
   std::fflush(stdout);
   stdout_ = dup(1);
-  if (FILE* null = std::fopen("/dev/null", "w")) {
-    dup2(fileno(null), 1);
-    std::fclose(null);
-  }
+  if (pipe2(said_.data(), O_NONBLOCK | O_CLOEXEC) == 0) dup2(said_[1], 1);  // files cannot be opened here; what does not fit is dropped
   std::vector<std::string> words{"hilo-import"};
   for (const auto& [name, value] : o.define) words.insert(words.end(), {"-setnumber", name, fmt::format("{}", value)});
   std::vector<char*> argv;
@@ -71,12 +70,23 @@ GmshSession::GmshSession(const ImportOptions& o) {
 
 GmshSession::~GmshSession() {
   try {
+    gmsh::logger::stop();  // or the next session would find this one's errors
     gmsh::finalize();
   } catch (...) {  // it is closed either way
   }
+  std::cout.flush();
   std::fflush(stdout);
   dup2(stdout_, 1);
   close(stdout_);
+  for (const int end : said_) close(end);
+}
+
+std::string GmshSession::printed() {
+  std::cout.flush();
+  std::fflush(stdout);
+  char part[4096];
+  for (ssize_t n = 0; (n = read(said_[0], part, sizeof part)) > 0;) printed_.append(part, static_cast<size_t>(n));
+  return printed_;
 }
 
 std::string GmshSession::last_error() {

@@ -23,7 +23,7 @@ class CrashGuard {
   std::terminate_handler terminate_;
 };
 
-/// gmsh as long as this lives.  OpenCASCADE writes to stdout, which is data: what it says there is dropped.
+/// gmsh as long as this lives.  OpenCASCADE writes to stdout, which is data: what it says there is kept apart.
 class GmshSession {
  public:
   explicit GmshSession(const ImportOptions& options);
@@ -32,9 +32,13 @@ class GmshSession {
   GmshSession& operator=(const GmshSession&) = delete;
   /// The last line that gmsh marked as an error, "" without one.
   static std::string last_error();
+  /// What was written to stdout so far.
+  std::string printed();
 
  private:
   int stdout_;
+  std::array<int, 2> said_{-1, -1};  // a pipe
+  std::string printed_;
 };
 
 }  // namespace hilo

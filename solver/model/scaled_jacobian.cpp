@@ -1,11 +1,10 @@
-// Scaled Jacobian of a cell: at each corner the determinant of the three edges that meet there over the product of their lengths, least
-// over the corners, as 1 for the regular tetrahedron, the right prism on a regular triangle and the box.
+#include "model/scaled_jacobian.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-
-#include "import/imported.hpp"
+#include <span>
 
 namespace hilo {
 namespace {

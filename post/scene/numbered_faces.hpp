@@ -1,0 +1,28 @@
+// Smooth faces of a mesh under numbers: a list to look up what a set or a joint needs of them, and where the numbers stand in a picture.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "base/table.hpp"
+#include "model/smooth_faces.hpp"
+
+class vtkCamera;
+
+namespace hilo {
+
+struct NumberedFace {
+  std::int32_t region;
+  std::vector<SurfaceFacet> facets;
+  FaceShape shape;
+};
+
+/// Faces of the facets `outside`, region by region; those turn by less than `angle` [rad] from facet to facet.
+std::vector<NumberedFace> numbered_faces(const Mesh& mesh, const std::vector<Facet>& outside, double angle);
+
+/// Number, region, shape, area, a point for [set.NAME] kind = "near"; middle, axis, radius and length for a joint there.
+Table table_of_faces(const Mesh& mesh, const std::vector<NumberedFace>& faces);
+
+/// Where the number of each face stands: the middle of a facet that the camera sees; nothing where it sees none.
+std::vector<std::optional<Vec3>> places_of_numbers(const std::vector<NumberedFace>& faces, vtkCamera* camera);
+
+}  // namespace hilo

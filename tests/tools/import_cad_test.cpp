@@ -1,0 +1,190 @@
+// STEP and IGES: units, solids that touch, colours, sets by place, sizes that gmsh cannot mesh.
+#include "import/gmsh/cad.hpp"
+#include "import_case.hpp"
+#include "model/scaled_jacobian.hpp"
+
+namespace hilo {
+namespace {
+
+using test::cells_of;
+using test::vector_area;
+using test::volume;
+
+class ImportCad : public test::Import {
+ protected:
+  /// gmsh writes a script's OpenCASCADE shapes as `file`.
+  std::string made(const std::string& script, const std::string& file) {
+    place.write("made.geo", "SetFactory(\"OpenCASCADE\");\n" + script + "Save \"" + file + "\";\n");
+    const auto ran = place.run("hilo-import made.geo --trust -o made.h5 --size 1000 && rm made.geo made.h5");
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    return test::text_of(place / file);
+  }
+  bool said(const std::string& text) const { return err.find(text) != std::string::npos; }
+};
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size()) text.replace(at, what.size(), by);
+  return text;
+}
+
+constexpr const char* two_boxes = "Box(1) = {0, 0, 0, 10, 20, 30};\nBox(2) = {10, 5, 5, 10, 5, 5};\n";
+
+TEST_F(ImportCad, TheUnitOfAStepFileMakesMetres) {
+  const std::string mm = made("Box(1) = {0, 0, 0, 10, 20, 30};\n", "mm.step");
+  EXPECT_NEAR(volume(imported("mm.step")), 6e-6, 1e-15);
+  EXPECT_TRUE(said("lengths are in mm, as the file says")) << err;
+  const std::string unit = "( LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI.,.METRE.) )";
+  ASSERT_NE(mm.find(unit), std::string::npos) << mm;
+  place.write("m.step", replaced(mm, unit, "( LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT($,.METRE.) )"));
+  EXPECT_NEAR(volume(imported("m.step", "--size 5")), 6000, 1e-6) << "--size in metres too, or it would never end";
+  place.write("inch.step", replaced(mm, unit, "( CONVERSION_BASED_UNIT('INCH',#90001) LENGTH_UNIT() NAMED_UNIT(#90003) )"));
+  std::string inch = test::text_of(place / "inch.step");
+  inch.insert(
+      inch.rfind("ENDSEC;"),
+      "#90001 = LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(25.4),#90002);\n"
+      "#90002 = ( LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI.,.METRE.) );\n#90003 = DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.);\n");
+  place.write("inch.step", inch);
+  EXPECT_NEAR(volume(imported("inch.step", "--set 'foot=plane:at=[10,0,0],axis=[1,0,0]'")), 6000 * std::pow(0.0254, 3), 1e-9);
+  EXPECT_TRUE(said("lengths are in inch, as the file says") && said("set \"foot\"")) << err;
+}
+
+TEST_F(ImportCad, AScaleOrUnitsBesideTheFilesOwnAreRefused) {
+  made("Box(1) = {0, 0, 0, 10, 20, 30};\n", "a.step");
+  refused("a.step -o a.h5 --scale 1e-3", 1,
+          "--scale 0.001: a.step says that 0.001 m is its unit of length, and becomes metres by itself (leave --scale away)");
+  refused("a.step -o a.h5 --units m-kg-s", 1, "--units m-kg-s: a.step says that 0.001 m is its unit of length (leave --units away)");
+  EXPECT_NEAR(volume(imported("a.step", "--units mm-t-s --scale 2")), 48e-6, 1e-14);
+}
+
+TEST(CadUnits, AreReadFromTheText) {
+  const auto step = [](const std::string& unit) {
+    return step_unit("DATA;\n#5=( LENGTH_UNIT() NAMED_UNIT(*)\n SI_UNIT(" + unit +
+                     ") );\n#1=PRODUCT('SI_UNIT(.KILO.,.METRE.); #5',$);\n"
+                     "#4=(GLOBAL_UNIT_ASSIGNED_CONTEXT((#5,#6))REPRESENTATION_CONTEXT('',''));\nENDSEC;");
+  };
+  EXPECT_EQ(step(".CENTI.,.METRE.")->name, "cm");
+  EXPECT_EQ(step("$,.METRE.")->metre, 1);
+  EXPECT_EQ(step(".MICRO.,.METRE.")->metre, 1e-6);
+  EXPECT_FALSE(step("$,.RADIAN.")) << "no length";
+  const auto iges = [](const std::string& flag_and_name) {
+    const std::string g =
+        "1H,,1H;,4HSLOT,37H$1$DUA2:[IGESLIB.BDRAFT.B2I]SLOT.IGS;,3HXXX,3HYYY,32,38,6,38,15,3HABC,1.," + flag_and_name + ",1,0.1;";
+    std::string text;
+    for (size_t at = 0; at < g.size(); at += 72) {
+      std::string line = g.substr(at, 72);
+      line.resize(72, ' ');
+      text += line + "G      1\n";
+    }
+    return iges_unit(text);
+  };
+  EXPECT_NEAR(iges("1,2HIN")->metre, 0.0254, 1e-12);
+  EXPECT_EQ(iges("2,2HMM")->name, "mm");
+  EXPECT_EQ(iges("3,2HCM")->name, "cm");
+  EXPECT_FALSE(iges("3,4HELLE"));
+}
+
+TEST_F(ImportCad, SolidsThatTouchShareNodesUnlessKeptApart) {
+  made(two_boxes, "a.step");
+  const auto nodes_in_common = [](const Mesh& m) {
+    const auto a = m.nodes_of(m.region_name[0], ""), b = m.nodes_of(m.region_name[1], "");
+    std::vector<std::int64_t> both;
+    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+    return both.size();
+  };
+  const Mesh glued = imported("a.step");
+  ASSERT_EQ(glued.region_name.size(), 2u);
+  EXPECT_NEAR(volume(glued), 6.25e-6, 1e-15);
+  EXPECT_GE(nodes_in_common(glued), 4u) << "the corners of the face in common";
+  EXPECT_TRUE(said("1 faces of solids that touch have their nodes in common, as if glued")) << err;
+  const Mesh apart = imported("a.step", "--keep-apart");
+  EXPECT_NEAR(volume(apart), 6.25e-6, 1e-15);
+  EXPECT_EQ(nodes_in_common(apart), 0u);
+  EXPECT_FALSE(said("glued")) << err;
+}
+
+TEST_F(ImportCad, SolidsThatOverlapAreToldAndTheCommonPartIsThereOnce) {
+  made("Box(1) = {0, 0, 0, 10, 10, 10};\nBox(2) = {8, 0, 0, 10, 10, 10};\n", "a.step");
+  const Mesh m = imported("a.step");
+  EXPECT_TRUE(said("overlap: the common part is of")) << err;
+  EXPECT_EQ(m.region_name.size(), 2u);
+  EXPECT_NEAR(volume(m), 1.8e-6, 1e-15) << "2e-6 would be twice the common part";
+}
+
+/// A style for an item of a STEP file.
+std::string style(const std::string& n, const std::string& item, const std::string& rgb, const std::string& context) {
+  std::string s =
+      "#@1=COLOUR_RGB('',<rgb>);\n#@2=FILL_AREA_STYLE_COLOUR('',#@1);\n#@3=FILL_AREA_STYLE('',(#@2));\n#@4=SURFACE_STYLE_FILL_AREA(#@3);\n"
+      "#@5=SURFACE_SIDE_STYLE('',(#@4));\n#@6=SURFACE_STYLE_USAGE(.BOTH.,#@5);\n#@7=PRESENTATION_STYLE_ASSIGNMENT((#@6));\n"
+      "#@8=STYLED_ITEM('',(#@7),<item>);\n#@9=MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',(#@8),<context>);\n";
+  return replaced(replaced(replaced(replaced(s, "@", n), "<rgb>", rgb), "<item>", item), "<context>", context);
+}
+
+TEST_F(ImportCad, ADamagedStepFileIsRefused) {
+  std::string text = made(two_boxes, "a.step");
+  text.insert(text.rfind("ENDSEC;"), "#9001=COLOUR_RGB('',(;\n");
+  place.write("a.step", text);
+  refused("a.step -o a.h5", 2, "a.step: OpenCASCADE finds wrong syntax in it");
+}
+
+TEST_F(ImportCad, ColoursOfFacesAndSolidsAreSets) {
+  std::string text = made(two_boxes, "a.step");
+  const auto id_before = [&](const std::string& word) {  // "#41 = MANIFOLD_SOLID_BREP"
+    const size_t at = text.find(word), hash = text.rfind('#', at);
+    return text.substr(hash, text.find(' ', hash) - hash);
+  };
+  const size_t brep = text.find("ADVANCED_BREP_SHAPE_REPRESENTATION("), end = text.find(");", brep), context = text.rfind('#', end);
+  const std::string of = text.substr(context, end - context);
+  text.insert(text.rfind("ENDSEC;"), style("9000", id_before("MANIFOLD_SOLID_BREP("), "1.,0.,0.", of) +
+                                         style("9001", id_before("ADVANCED_FACE("), "0.,1.,0.", of));
+  place.write("a.step", text);
+  const Mesh m = imported("a.step");
+  ASSERT_TRUE(m.facet_sets.contains("colour_00ff00") && m.cell_sets.contains("colour_ff0000")) << out << err;
+  EXPECT_NEAR(vector_area(m, m.facet_sets.at("colour_00ff00")).norm(), 600e-6, 1e-12) << "a face of 20 x 30 mm";
+  EXPECT_EQ(static_cast<std::int64_t>(m.cell_sets.at("colour_ff0000").size()), cells_of(m, m.region_name[0]));
+}
+
+TEST_F(ImportCad, SetsByPlaceNameFacesWithoutNames) {
+  made(
+      "Box(1) = {0, 0, 0, 40, 20, 10};\nCylinder(2) = {10, 10, 0, 0, 0, 10, 4};\nBooleanDifference{ Volume{1}; Delete; }{ Volume{2}; "
+      "Delete; }\n",
+      "a.step");
+  const Mesh m =
+      imported("a.step",
+               "--size 3 --order 2 --set 'bore=cylinder:at=[10,10,0],axis=[0,0,1],radius=4' --set foot=plane:at=[40,0,0],axis=[1,0,0]"
+               " --set near=near:14,10,5 --set top=near:30,10,10 --set rim=box:low=[-1,-1,-1],high=[1,21,11]");
+  const double facets = m.facet_sets.at("bore").size();
+  EXPECT_GT(facets, 8);
+  EXPECT_EQ(m.facet_sets.at("near").size(), facets) << "the smooth face through (14, 10, 5) is the bore";
+  EXPECT_EQ(m.node_sets.at("near"), m.node_sets.at("bore"));
+  EXPECT_LT((vector_area(m, m.facet_sets.at("foot")) - Vec3(200e-6, 0, 0)).norm(), 1e-12);
+  EXPECT_NEAR(vector_area(m, m.facet_sets.at("top")).z(), (800 - M_PI * 16) * 1e-6, 8e-6) << "a chord for each arc";
+  for (const auto i : m.node_sets.at("rim")) EXPECT_LE(m.X[i].x(), 1.000001e-3);
+  refused("a.step -o a.h5 --set x=near:0,0,0", 1,
+          "--set x=near:0,0,0: set \"x\": two faces are as near to the point as each other (a point amid the face, not on its border: "
+          "hilo-post mesh --faces)");
+  refused("a.step -o a.h5 --set x=near:60,0,0", 1,
+          "--set x=near:60,0,0: set \"x\": the nearest face is 20 m off (look at the places: hilo-post mesh --faces)");
+  refused("a.step -o a.h5 --set x", 1,
+          "--set x: expected NAME=KIND:KEY=VALUE,... (as in 'bore=cylinder:at=[0,0,0],axis=[0,0,1],radius=8')");
+}
+
+// Coarse facets of the two spheres cut each other.
+TEST_F(ImportCad, ASizeThatGmshCannotMeshIsReplacedAndThatIsTold) {
+  made("Sphere(1) = {0, 0, 0, 10};\nSphere(2) = {0, 0, 0, 8};\nBooleanDifference{ Volume{1}; Delete; }{ Volume{2}; Delete; }\n", "a.step");
+  const Mesh m = imported("a.step", "--size 9");
+  EXPECT_TRUE(said("gmsh cannot mesh it at --size 9 (") && said("): meshed at 0.")) << err;
+  const double exact = 4. / 3 * M_PI * (1000 - 512) * 1e-9;
+  EXPECT_NEAR(volume(m), exact, 0.15 * exact);
+}
+
+TEST_F(ImportCad, SliversAreToldWithTheirPlace) {
+  place.write("a.geo", "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 0.01};\nMesh.MeshSizeMin = 1;\nMesh.MeshSizeMax = 2;\n");
+  const Mesh m = imported("a.geo");
+  double worst = 1;
+  for (std::int64_t c = 0; c < m.n_cells(); ++c) worst = std::min(worst, scaled_jacobian(m, c));
+  ASSERT_LT(worst, sliver_limit);
+  EXPECT_TRUE(said("slivers (scaled Jacobian below 0.05); the flattest, ")) << err;
+}
+
+}  // namespace
+}  // namespace hilo
