@@ -8,9 +8,12 @@
 
 #include <cerrno>
 #include <csignal>
+#include <optional>
 #include <set>
+#include <string_view>
 #include <tuple>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "model/store_impl.hpp"
 
@@ -20,14 +23,25 @@ namespace {
 constexpr unsigned most_seconds = 20;      // of the walk; a sound file takes milliseconds
 constexpr rlim_t most_memory = 2ul << 30;  // that the walk may take beyond what the process has [bytes]
 
+constexpr int other_attributes = 3;  // exit status of the child
+
 /// Texts are read, since their places in the file are only found by reading; so are attributes.  Numbers are not.
-herr_t look_at_attribute(hid_t object, const char* name, const H5A_info_t*, void*) {
+herr_t look_at_attribute(hid_t object, const char* name, const H5A_info_t*, void* digest) {
+  if (std::string_view(name) == digest_name) return 0;
   const Id a(H5Aopen(object, name, H5P_DEFAULT), H5Aclose), type(H5Aget_type(a), H5Tclose), space(H5Aget_space(a), H5Sclose);
   const auto n = H5Sget_simple_extent_npoints(space);
   const size_t size = H5Tget_size(type);
   if (!a.ok() || n < 0 || n > 1000 || size > 1 << 20) return 0;
   std::vector<char> value(static_cast<size_t>(n) * std::max<size_t>(size, 8));
-  if (H5Aread(a, type, value.data()) >= 0 && H5Tis_variable_str(type) > 0) H5Dvlen_reclaim(type, space, H5P_DEFAULT, value.data());
+  const bool is_text = H5Tis_variable_str(type) > 0;
+  if (H5Aread(a, type, value.data()) < 0) return 0;
+  Digest& sum = static_cast<Digest*>(digest)->add(std::string_view(name)).add(n).add(size);
+  if (!is_text) return sum.add(std::string_view(value.data(), static_cast<size_t>(n) * size)), 0;
+  for (hssize_t k = 0; k < n; ++k) {
+    const char* text = reinterpret_cast<const char* const*>(value.data())[k];
+    sum.add(std::string_view(text ? text : ""));
+  }
+  H5Dvlen_reclaim(type, space, H5P_DEFAULT, value.data());
   return 0;
 }
 
@@ -42,13 +56,29 @@ void look_at_array(hid_t array, hsize_t file_size) {
   if (H5Dread(array, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()) >= 0) H5Dvlen_reclaim(type, space, H5P_DEFAULT, texts.data());
 }
 
-herr_t look_at_object(hid_t root, const char* name, const H5O_info_t* what, void* file_size) {
+struct Look {
+  hsize_t file_size = 0;  // 0: at attributes alone
+  Digest attributes{};
+};
+
+herr_t look_at_object(hid_t root, const char* name, const H5O_info_t* what, void* data) {
+  Look& look = *static_cast<Look*>(data);
   const Id object(H5Oopen(root, name, H5P_DEFAULT), H5Oclose);
   if (!object.ok()) return 0;
+  look.attributes.add(std::string_view(name));
   hsize_t at = 0;
-  H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, &at, look_at_attribute, nullptr);
-  if (what->type == H5O_TYPE_DATASET) look_at_array(object, *static_cast<hsize_t*>(file_size));
+  H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, &at, look_at_attribute, &look.attributes);
+  if (what->type == H5O_TYPE_DATASET && look.file_size > 0) look_at_array(object, look.file_size);
   return 0;
+}
+
+/// The digest that a file says its attributes have, where it says one.
+std::optional<std::uint64_t> written_digest(hid_t file) {
+  std::uint64_t value = 0;
+  if (H5Aexists(file, digest_name) <= 0) return {};
+  const Id a(H5Aopen(file, digest_name, H5P_DEFAULT), H5Aclose);
+  if (!a.ok() || H5Aread(a, H5T_NATIVE_UINT64, &value) < 0) return 0;
+  return value;
 }
 
 [[noreturn]] void walk(const std::string& path, hsize_t file_size) {
@@ -68,13 +98,23 @@ herr_t look_at_object(hid_t root, const char* name, const H5O_info_t* what, void
   alarm(3 * most_seconds);
   try {
     const Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    if (file.ok()) H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, look_at_object, &file_size);
+    if (file.ok()) {
+      Look look{file_size};
+      H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, look_at_object, &look);
+      if (const auto written = written_digest(file); written && *written != look.attributes.value()) _exit(other_attributes);
+    }
   } catch (...) {  // no memory
   }
   _exit(0);  // what is merely wrong is found again, and told, by who reads it
 }
 
 }  // namespace
+
+std::uint64_t digest_of_attributes(hid_t file) {
+  Look look;
+  H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, look_at_object, &look);
+  return look.attributes.value();
+}
 
 void walk_in_child(const std::string& path) {
   struct stat s;
@@ -88,6 +128,8 @@ void walk_in_child(const std::string& path) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == other_attributes)
+    throw Error(path, "damaged: its attributes are not what was written", "make it again, or take it from where it was copied");
   if (!WIFSIGNALED(status)) return;
   const bool endless = WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL;
   throw Error(path, fmt::format("damaged: the HDF5 library {} it", endless ? "comes to no end with" : "crashes on"),

@@ -48,6 +48,8 @@ Cause last_cause();
 
 /// Error where the library does not survive a walk through the file.
 void walk_in_child(const std::string& path);
+/// Of names and attributes of all objects: a sealed file has it as attribute `digest_name` of its root.
+std::uint64_t digest_of_attributes(hid_t file);
 
 /// Digest of texts: lengths and letters, one after the other.
 std::uint64_t digest_of(std::span<const std::string> texts);

@@ -74,7 +74,7 @@ readers = {
     "reduced.h5": ["hilo-show reduced.h5", "hilo-solve --quiet --dry-run scene.toml tags.h5 --modes reduced.h5"],
     "run.h5": ["hilo-show run.h5", "hilo-post series run.h5 --list", "hilo-post series run.h5 energy.kinetic"],
 }
-bad = []
+bad, missed = [], []
 for name, commands in readers.items():
     with open(name, "rb") as f:
         whole = f.read()
@@ -98,10 +98,14 @@ for name, commands in readers.items():
                     tally["found"] += 1
                 elif said_by(name) == truth:  # nothing was there
                     tally["idle"] += 1
+                else:
+                    missed.append(f"{name}, byte {at} ^ {bit}, behind {whole[max(0, at - 40):at]}")
     shutil.copy("kept", name)
     print(f"{name}: {len(whole)} bytes, {flips} flips, {tally['found']} found by --check, {tally['idle']} without effect, "
           f"{flips - tally['found'] - tally['idle']} missed, {tally['crash']} crashes, {tally['hang']} hangs, "
           f"{tally['fault']} internal faults")
+for line in missed:
+    print("missed:", line)
 for line in bad:
     print("flipped_bytes:", line, file=sys.stderr)
 sys.exit(1 if bad else 0)
