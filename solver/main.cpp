@@ -130,7 +130,7 @@ void solve(int argc, char** argv, Comm& comm) {
   print_plan(*system, talk);
   if (from) require_same(*from, scene, options.mesh, o.accept), options.from = std::move(from->kept);
   if (o.dry_run) {
-    const std::string plan = comm.rank == 0 ? text(wanted(scene, *system)) : "";
+    const std::string plan = is_quiet() ? "" : text(wanted(scene, *system));  // on all ranks: sources of fields are collective
     if (talk) fmt::print(stderr, "{}\n", plan);
     return;
   }
