@@ -12,6 +12,7 @@
 #include "base/on_ranks.hpp"
 #include "dynamics/checkpoint.hpp"
 #include "dynamics/profile.hpp"
+#include "dynamics/wanted.hpp"
 #include "linear/blas_kernels.hpp"
 #include "model/inputs.hpp"
 #include "model/store.hpp"
@@ -74,7 +75,7 @@ void solve(int argc, char** argv, Comm& comm) {
   app->add_option(
       "--time-limit", o.time_limit,
       "stop in time with a checkpoint, such as 3h50m; so do SIGTERM, SIGINT, SIGHUP, SIGUSR1 and a file STOP beside the results");
-  app->add_flag("--dry-run", o.dry_run, "read and check everything, then stop");
+  app->add_flag("--dry-run", o.dry_run, "read and check everything, tell the memory and disk that the run will want, then stop");
   app->add_flag("--explain", o.explain, "print every value in force, defaults included, then stop");
   app->add_flag("--profile", o.profile, "print seconds, counts and messages by phase at the end");
   if (!parse(*app, argc, argv)) return;
@@ -128,7 +129,11 @@ void solve(int argc, char** argv, Comm& comm) {
   const auto system = build_system(scene, mesh.get(), comm, {.from = o.modes, .to = "", .provenance = {}});
   print_plan(*system, talk);
   if (from) require_same(*from, scene, options.mesh, o.accept), options.from = std::move(from->kept);
-  if (o.dry_run) return;
+  if (o.dry_run) {
+    const std::string plan = is_quiet() ? "" : text(wanted(scene, *system));  // on all ranks: sources of fields are collective
+    if (talk) fmt::print(stderr, "{}\n", plan);
+    return;
+  }
   Checkpoints checkpoints(comm, scene, {o.scene, options.mesh, o.modes, o.overrides, options.provenance}, o.output, policy,
                           from ? from->path : "");
   options.between_steps = [&](const StepsSoFar& so_far, const auto& keep) { return checkpoints.between_steps(so_far, keep); };

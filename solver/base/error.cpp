@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <new>
+#include <system_error>
 
 namespace hilo {
 namespace {
@@ -69,6 +70,10 @@ int guarded(std::string_view tool, const std::function<void()>& body) {
     return fail(e.exit, e.what());
   } catch (const std::bad_alloc&) {
     return fail(Exit::resources, "out of memory");
+  } catch (const std::system_error& e) {  // a thread that could not be started
+    if (e.code() == std::errc::resource_unavailable_try_again || e.code() == std::errc::not_enough_memory)
+      return fail(Exit::resources, "out of memory, or of processes (ulimit -v, ulimit -u)");
+    return fail(Exit::fault, fmt::format("internal fault: {}", e.what()));
   } catch (const std::exception& e) {
     return fail(Exit::fault, fmt::format("internal fault: {}", e.what()));
   }

@@ -9,6 +9,7 @@
 #include <new>
 #include <utility>
 
+#include "linear/blas_room.hpp"
 #include "linear/factors.hpp"
 #include "linear/supernodal.hpp"
 
@@ -18,6 +19,7 @@ namespace {
 class Cholesky final : public Factors {
  public:
   explicit Cholesky(const std::vector<char>& is_dense) : number_(is_dense.size()) {
+    make_room_for_blas();
     cholmod_start(&common_);
     common_.print = 0;
     common_.supernodal = CHOLMOD_SUPERNODAL;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <new>
 
+#include "linear/blas_room.hpp"
 #include "linear/factors.hpp"
 
 namespace hilo {
@@ -101,6 +102,7 @@ class Klu final : public Factors {
 class Umfpack final : public Factors {
  public:
   Umfpack() {
+    make_room_for_blas();
     umfpack_di_defaults(control_);
     control_[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
     control_[UMFPACK_IRSTEP] = 0;

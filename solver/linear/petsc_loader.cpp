@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "linear/blas_room.hpp"
 #include "linear/kkt.hpp"
 #include "linear/petsc/module.hpp"
 
@@ -34,7 +35,11 @@ Make load() {
 }  // namespace
 
 std::unique_ptr<KktSolver> make_petsc_solver(const std::string& kind, double tolerance, int subdomains) {
-  static const Make make = load();
+  static const Make make = [] {
+    make_room_for_blas();
+    require_address_space(160, "PETSc and MPI take at their start");
+    return load();
+  }();
   return std::unique_ptr<KktSolver>(make(kind.c_str(), tolerance, subdomains, tool_name().c_str()));
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "linear/blas_room.hpp"
 #include "linear/lapack.hpp"
 
 namespace hilo {
@@ -55,7 +56,7 @@ struct SharedCholesky::Work {
   std::vector<std::vector<int>> children;
 };
 
-SharedCholesky::SharedCholesky(const Comm& comm) : comm_(comm) {}
+SharedCholesky::SharedCholesky(const Comm& comm) : comm_(comm) { make_room_for_blas(); }
 
 SharedCholesky::~SharedCholesky() {
   if (!std::uncaught_exceptions()) end();

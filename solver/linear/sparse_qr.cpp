@@ -5,9 +5,12 @@
 #include <suitesparse/SuiteSparseQR.hpp>
 #include <vector>
 
+#include "linear/blas_room.hpp"
+
 namespace hilo {
 
 SparseQr sparse_qr(const Eigen::SparseMatrix<double>& A, double dependent, ColumnOrder order) {
+  make_room_for_blas();
   cholmod_common common;
   cholmod_l_start(&common);
   common.print = 0;

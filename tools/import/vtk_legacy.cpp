@@ -42,6 +42,7 @@ class Stream {
   }
   template <class T>
   std::vector<T> numbers(std::int64_t n, const std::string& type) {
+    if (n < 0 || static_cast<size_t>(n) > s_.size()) fail(fmt::format("an array of {} numbers in a file of {} bytes", n, s_.size()));
     std::vector<T> v;
     v.reserve(static_cast<size_t>(n));
     if (!binary) {
@@ -166,6 +167,7 @@ VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
       char name[256] = "", type[64] = "";
       int components = 1;
       if (std::sscanf(rest.c_str(), "%255s %63s %d", name, type, &components) < 2) s.fail("SCALARS: expected name and type");
+      if (components < 1 || components > 9) s.fail(fmt::format("SCALARS of {} components", components));
       const size_t here = s.mark();
       if (upper(s.word()) == "LOOKUP_TABLE")
         s.word();

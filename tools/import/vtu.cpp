@@ -139,7 +139,7 @@ class Vtu {
       at = behind_base64(at, n);
       return b;
     }
-    if (at + n > s_.size()) fail("the file ends in the middle of an array");
+    if (at > s_.size() || n > s_.size() - at) fail("the file ends in the middle of an array");
     at += n;
     return s_.substr(at - n, n);
   }
@@ -172,7 +172,9 @@ class Vtu {
     std::string out;
     size_t from = 0;
     for (size_t i = 0; i < blocks; ++i) {
-      std::string part(i + 1 == blocks && last ? last : size, '\0');
+      const std::uint64_t whole = i + 1 == blocks && last ? last : size;
+      if (whole > 1100 * header(head, 3 + i) + 64) fail("a compressed array is damaged");  // deflate packs by 1032 at most
+      std::string part(whole, '\0');
       uLongf n = part.size();
       if (uncompress(reinterpret_cast<Bytef*>(part.data()), &n, reinterpret_cast<const Bytef*>(data.data() + from), header(head, 3 + i)) !=
               Z_OK ||

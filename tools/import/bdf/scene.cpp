@@ -214,7 +214,7 @@ void BdfScene::supports() {
       by[static_cast<size_t>(along)] = value * (own(along, k) < 0 ? -1 : 1);
     }
     if (whole) still = 7;
-    const auto add = [&](Group& g) {
+    const auto add = [&, a = a, &h = h](Group& g) {
       if (g.rows.empty()) g.place = h.place;
       g.rows.push_back(a);
     };

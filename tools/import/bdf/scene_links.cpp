@@ -40,7 +40,9 @@ void BdfScene::join_rigid() {
       rigid_.push_back(*group[0]);
       continue;
     }
-    const auto of_solids = [&](std::int64_t grid) { return used_[static_cast<size_t>(row(grid, group[0]->place, group[0]->name))] != 0; };
+    const auto of_solids = [&, first = group[0]](std::int64_t grid) {
+      return used_[static_cast<size_t>(row(grid, first->place, first->name))] != 0;
+    };
     BdfRigid whole{group[0]->name, group[0]->place, group[0]->id, group[0]->hub, 63, {}};
     for (const BdfRigid* r : group)
       if (of_solids(whole.hub) && !of_solids(r->hub)) whole.hub = r->hub;

@@ -2,9 +2,11 @@
 // gmsh is confined while it reads.
 #include <fmt/format.h>
 #include <gmsh.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <new>
 #include <stdexcept>
 
@@ -125,6 +127,19 @@ void take_from_library(GmshMesh& mesh) {
   for (const auto& [dim, tag] : groups) gmsh::model::getPhysicalName(dim, tag, mesh.group_name[{dim, tag}]);
 }
 
+/// What gmsh says of a file is worth nothing where it got no memory: it says that a file cannot be read, or nothing.
+void refuse_at_limit(const std::string& path) {
+  rlimit most{};
+  if (getrlimit(RLIMIT_AS, &most) != 0 || most.rlim_cur == RLIM_INFINITY) return;
+  std::ifstream status("/proc/self/status");
+  rlim_t peak = 0;  // of addresses [kB]
+  for (std::string word; status >> word && peak == 0;)
+    if (word == "VmPeak:") status >> peak;
+  if (const rlim_t near = 64 << 20; (peak << 10) + near > most.rlim_cur)
+    throw Error(path, fmt::format("not enough memory to read it: the limit is {} MB", most.rlim_cur >> 20), "raise it, ulimit -v",
+                Exit::resources);
+}
+
 /// The mesh at `factor` of the sizes asked for, or why gmsh cannot make it.
 GmshMesh meshed_at(double factor, std::string& failed, const std::string& path, const std::string& format, const ImportOptions& options) {
   GmshSession session(options);
@@ -132,24 +147,32 @@ GmshMesh meshed_at(double factor, std::string& failed, const std::string& path, 
     GmshMesh mesh;
     const double unit = read_unit(path, format, mesh);
     open(path, format, options, mesh);
-    if (session.printed().find("ERR StepFile") != std::string::npos) throw Error(path, wrong_syntax);
+    if (session.printed().find("ERR StepFile") != std::string::npos) {
+      refuse_at_limit(path);
+      throw Error(path, wrong_syntax);
+    }
     if (options.size) set_size(format, *options.size * unit);
     if (factor != 1) gmsh::option::setNumber("Mesh.MeshSizeFactor", factor);
     failed = try_to_mesh(options);
-    if (!failed.empty()) return mesh;
+    if (!failed.empty()) {
+      refuse_at_limit(path);
+      return mesh;
+    }
     take_from_library(mesh);
     if (mesh.metre)
       for (Vec3& x : mesh.X) x /= unit;
     return mesh;
   } catch (const std::string& e) {
+    refuse_at_limit(path);
     if (session.printed().find("ERR StepFile") != std::string::npos) throw Error(path, wrong_syntax);
-    const bool memory = e.find("ut of memory") != e.npos;
+    const bool memory = e.find("ut of memory") != e.npos || e.find("malloc failed") != e.npos;
     throw Error(path, "gmsh: " + e, "", memory ? Exit::resources : Exit::input);
   } catch (const std::bad_alloc&) {
     throw Error(path, "not enough memory to read it, or its counts are damaged", "", Exit::resources);
   } catch (const std::length_error&) {
     throw Error(path, "its counts are damaged");
   } catch (int) {
+    refuse_at_limit(path);
     throw Error(path, "gmsh: " + GmshSession::last_error());
   }
 }

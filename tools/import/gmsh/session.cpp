@@ -26,10 +26,11 @@ CrashGuard::CrashGuard(const std::string& path) {
   rlimit room{};
   const bool limited = getrlimit(RLIMIT_AS, &room) == 0 && room.rlim_cur != RLIM_INFINITY;
   crash_exit = static_cast<int>(limited ? Exit::resources : Exit::input);
-  crash_line = limited
-                   ? fmt::format("{}: {}: gmsh crashed on it with a limit of {} MB of memory (is that too little, or the file damaged?)\n",
-                                 tool_name(), path, room.rlim_cur >> 20)
-                   : fmt::format("{}: {}: gmsh crashed on it (is the file damaged?)\n", tool_name(), path);
+  crash_line = limited ? fmt::format(
+                             "{}: {}: gmsh did not survive the limit of {} MB of memory (raise it, ulimit -v; what the file is worth "
+                             "cannot be told before)\n",
+                             tool_name(), path, room.rlim_cur >> 20)
+                       : fmt::format("{}: {}: gmsh crashed on it (is the file damaged?)\n", tool_name(), path);
   end_line = fmt::format("{}: {}: the script ends the program before there is a mesh (Exit)\n", tool_name(), path);
   static const bool once = std::atexit([] {
                              if (!reading) return;

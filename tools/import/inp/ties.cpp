@@ -208,7 +208,7 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
     for (const InpCarried& c : b.carries) {
       std::vector<Vec3> points;
       for (const auto a : c.rows) points.push_back(in.mesh.X[a]);
-      const auto name = [&] {
+      const auto name = [&, id = id] {
         const int n = ++used[body_name(d, id)];
         return n == 1 ? body_name(d, id) : fmt::format("{}_{}", body_name(d, id), n);
       };
