@@ -127,9 +127,12 @@ TEST(Chart, each_unit_has_a_panel_of_its_own) {
     return n;
   };
   const auto two = halves("two.png"), one = halves("one.png");
-  EXPECT_GT(two[0], 1000), EXPECT_EQ(two[1], 0);
-  EXPECT_GT(two[3], 1000), EXPECT_EQ(two[2], 0);
-  EXPECT_GT(one[1], 500), EXPECT_GT(one[2], 500);
+  EXPECT_GT(two[0], 1000);
+  EXPECT_EQ(two[1], 0);
+  EXPECT_GT(two[3], 1000);
+  EXPECT_EQ(two[2], 0);
+  EXPECT_GT(one[1], 500);
+  EXPECT_GT(one[2], 500);
 }
 
 // The ordinate shown is 0.5 .. 1.5: the half of the curve at 0 is below it, the half at 1 in the middle.
