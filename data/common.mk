@@ -28,10 +28,10 @@ else
 setup:
 	@$(ROOT)/.setup
 
-# Ninja itself finds out that there is nothing to do.
+# Ninja itself finds out that there is nothing to do; it takes as many jobs as make -jN says, or one for each core.
 build: setup
 	@[ -f $(BUILD)/build.ninja ] || cmake -S $(ROOT) -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release > $(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
-	@cmake --build $(BUILD) --target $(TOOLS) hilo-petsc
+	@cmake --build $(BUILD) $(filter -j%,$(MAKEFLAGS)) --target $(TOOLS) hilo-petsc
 endif
 
 # A tool that was rebuilt redoes what it made.  `make -n` takes the tools as they are; so does who says BUILT=1, having built them.

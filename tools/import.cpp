@@ -104,6 +104,7 @@ int main(int argc, char** argv) {
         ->type_name("H");
     app->add_option("--define", r.defines, "parameter of a .geo script, may be repeated")->type_name("NAME=VALUE")->allow_extra_args(false);
     app->add_flag("--trust", o.trust, "a .geo script may run commands, write files, read the environment and files of other folders");
+    app->add_flag("--flip", o.flip, "turn cells whose nodes are numbered as in a mirror (negative volume)");
     app->add_flag("--keep-apart", o.keep_apart, "solids of a CAD file that touch share no nodes");
     app->add_option("--set", o.sets,
                     "a set by place, with the words of [set.NAME] in a scene, in the unit of the file; may be repeated: "
@@ -124,6 +125,7 @@ int main(int argc, char** argv) {
     Imported in = read_any(r.input, o);
     finish(in, r.input, o);
     Store mesh = unpublished_mesh(r.output, in.mesh, {command_line(argc, argv)});
+    if (!in.thin_regions.empty()) write_thin_regions(mesh, in.thin_regions);
     if (!r.scene_out.empty()) write_text_file(r.scene_out, scene_text(r, in));  // both files or none
     mesh.publish();
     talk(in);

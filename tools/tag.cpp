@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
     if (!rest.empty()) rules.rest = fidelity_of(rest, "--rest");
     const MeshFile file = read_mesh_file(mesh_path);
     if (!dry) check_output(output);
-    const auto fidelity = all_tagged(file.mesh, apply_tag_rules(file.mesh, rules));
+    const auto fidelity = all_tagged(file.mesh, read_thin_regions(mesh_path), apply_tag_rules(file.mesh, rules));
     for (const std::string& line : loose_pieces(file.mesh, fidelity)) warn("", line);
     if (!dry) {
       auto provenance = file.provenance;

@@ -7,6 +7,7 @@
 
 #include "base/args.hpp"
 #include "base/error.hpp"
+#include "base/units.hpp"
 #include "post/charts/figure.hpp"
 #include "post/commands/commands.hpp"
 #include "post/files/csv.hpp"
@@ -42,7 +43,8 @@ void run(const Options& o) {
   Figure figure;
   figure.title = o.title;
   std::tie(figure.width, figure.height) = parse_size(o.size);
-  Panel panel;
+  Panel common;  // what all panels have
+  auto& panel = common;
   panel.x.log = o.log.find('x') != std::string::npos;
   panel.y.log = o.log.find('y') != std::string::npos;
   const auto show = [](Axis& axis, const std::vector<double>& range, const char* option) {
@@ -55,7 +57,22 @@ void run(const Options& o) {
   if (!o.slopes.empty() && o.log != "xy")
     throw Error("--slope", "a slope is a guide between logarithmic axes", "add --log xy", Exit::usage);
   for (const double slope : o.slopes) panel.guides.push_back({fmt::format("slope {:g}", std::abs(slope)), slope});
-  bool one_y = true;
+  // a panel for each unit: 250 MPa and 250 kN are not as high as each other
+  std::vector<std::string> units;
+  std::vector<size_t> columns_of;
+  int n_curves = 0;
+  const auto panel_of = [&](const std::string& header) -> Panel& {  // all in one where --ylabel says what it shows
+    const std::string unit = !o.y_label.empty() || header.find('[') == header.npos ? "" : unit_in_heading(header);
+    const auto at = std::find(units.begin(), units.end(), unit);
+    const auto k = static_cast<size_t>(at - units.begin());
+    if (at == units.end()) {
+      units.push_back(unit), columns_of.push_back(0);
+      figure.panels.push_back(common);
+      figure.panels.back().y.label = header;
+    }
+    ++columns_of[k];
+    return figure.panels[k];
+  };
   for (const std::string& file : o.files) {
     const CsvTable table = read_csv(file);
     const size_t x = o.x.empty() ? 0 : table.find(o.x);
@@ -64,17 +81,17 @@ void run(const Options& o) {
     for (size_t c = 0; o.y.empty() && c < table.header.size(); ++c)
       if (c != x && (o.by.empty() || c != table.find(o.by))) columns.push_back(c);
     if (columns.empty()) throw Error(file, "has no column to draw", "two at least: x and y");
-    if (panel.x.label.empty()) panel.x.label = table.header[x], panel.y.label = table.header[columns.front()];
-    one_y = one_y && columns.size() == 1;
+    if (common.x.label.empty()) common.x.label = table.header[x];
     const auto xs = table.numbers(x);
     for (const size_t c : columns) {
       const auto ys = table.numbers(c);
+      Panel& panel = panel_of(table.header[c]);
       for (const auto& [name, rows] : groups(table, o.by)) {
         Curve curve;
         curve.label = join(o.files.size() > 1 ? std::filesystem::path(file).stem().string() : "", name);
         if (columns.size() > 1 || curve.label.empty()) curve.label = join(curve.label, plain(table.header[c]));
         for (const size_t row : rows) curve.x.push_back(xs[row]), curve.y.push_back(ys[row]);
-        const int n = static_cast<int>(panel.curves.size());
+        const int n = n_curves++;
         curve.marker = o.markers ? n : -1;
         curve.colour = curve_colour(n);
         curve.dashed = n % 2 != 0 && !o.by.empty();
@@ -82,14 +99,13 @@ void run(const Options& o) {
       }
     }
   }
-  if (!one_y) {  // several columns: their common unit, if any, is all that can be said
-    const auto unit = panel.y.label.find('[');
-    panel.y.label = unit == std::string::npos ? "" : panel.y.label.substr(unit);
+  for (size_t k = 0; k < figure.panels.size(); ++k) {
+    Panel& p = figure.panels[k];
+    if (columns_of[k] > o.files.size()) p.y.label = units[k].empty() ? "" : "[" + units[k] + "]";  // their unit is all they have in common
+    if (!o.x_label.empty()) p.x.label = o.x_label;
+    if (!o.y_label.empty()) p.y.label = o.y_label;
+    if (n_curves == 1) p.curves.front().label.clear();
   }
-  if (!o.x_label.empty()) panel.x.label = o.x_label;
-  if (!o.y_label.empty()) panel.y.label = o.y_label;
-  if (panel.curves.size() == 1) panel.curves.front().label.clear();
-  figure.panels.push_back(std::move(panel));
   write_chart(figure, o.png);
 }
 
@@ -109,7 +125,7 @@ Command chart_command(CLI::App& app) {
   sub->add_option("--slope", o->slopes, "guide y ~ x^SLOPE, --slope once for each; needs --log xy")->allow_extra_args(false);
   sub->add_option("--title", o->title, "title");
   sub->add_option("--xlabel", o->x_label, "label of the abscissa, with its unit in brackets");
-  sub->add_option("--ylabel", o->y_label, "label of the ordinate, with its unit in brackets");
+  sub->add_option("--ylabel", o->y_label, "label of the ordinate, with its unit in brackets; without it each unit has a panel of its own");
   sub->add_option("--size", o->size, "size of the chart, WIDTHxHEIGHT")->capture_default_str();
   sub->add_option("-o,--output", o->png, "PNG file")->required();
   example(*sub, "  hilo-post chart energy.csv -y energy.balance --title \"Energy balance\" -o balance.png");

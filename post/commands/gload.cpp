@@ -16,7 +16,6 @@
 #include "post/files/output.hpp"
 #include "post/injury/cfc.hpp"
 #include "post/picture/picture.hpp"
-#include "post/run/run_file.hpp"
 
 namespace hilo {
 namespace {
@@ -42,7 +41,8 @@ void write_csv(const Options& o, const std::vector<SensorRecord>& sensors) {
   write_out(o.csv, csv_text(header, columns));
 }
 
-void write_png(const Options& o, const RunFile& run, const std::vector<SensorRecord>& sensors) {
+void write_png(const Options& o, const Sensors& run) {
+  const auto& sensors = run.records;
   Figure figure;
   figure.title = fmt::format("{}: proper acceleration", run.title);
   std::tie(figure.width, figure.height) =
@@ -82,11 +82,10 @@ std::string table_of(const Options& o, const std::vector<SensorRecord>& sensors)
 }
 
 void run(const Options& o) {
-  const RunFile file(o.run);
-  std::vector<SensorRecord> sensors;
-  for (const std::string& name : sensor_names(file, o.sensors)) sensors.push_back(read_sensor(file, name, o.cfc));
+  const Sensors file = read_sensors(o.run, o.sensors, o.cfc);
+  const auto& sensors = file.records;
   if (!o.csv.empty()) write_csv(o, sensors);
-  if (!o.png.empty()) write_png(o, file, sensors);
+  if (!o.png.empty()) write_png(o, file);
   const bool in_files = !o.csv.empty() || !o.png.empty();
   if (o.csv != "-" && (o.json || !in_files || !is_quiet())) write_out("-", table_of(o, sensors));
   if (!is_quiet() && !o.json)
@@ -102,7 +101,7 @@ void run(const Options& o) {
 Command gload_command(CLI::App& app) {
   auto* sub = app.add_subcommand("gload", "G-loads of the sensors: peaks, 3 ms clip, raw and CFC-filtered curves");
   const auto o = std::make_shared<Options>();
-  sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
+  sub->add_option("run", o->run, "run.h5 of hilo-solve, or a CSV: t [s], x [g], y [g], z [g] (seat.x ... for several)")->required();
   sub->add_option("--sensor", o->sensors, "sensors by name or glob")->allow_extra_args(false)->default_str("*");
   sub->add_option("--cfc", o->cfc, "channel frequency class of the filter: 60, 180, 600 or 1000 (SAE J211-1)")
       ->check(CLI::IsMember({60.0, 180.0, 600.0, 1000.0}))

@@ -12,7 +12,6 @@
 #include "post/injury/eiband.hpp"
 #include "post/injury/measures.hpp"
 #include "post/injury/report.hpp"
-#include "post/run/run_file.hpp"
 
 namespace hilo {
 namespace {
@@ -69,9 +68,9 @@ std::string csv_of(const Table& table) {
 }
 
 void run(const Options& o) {
-  const RunFile file(o.run);
+  const Sensors file = read_sensors(o.run, o.sensors, o.cfc);
   std::vector<Crew> crew;
-  for (const std::string& name : sensor_names(file, o.sensors)) crew.push_back(crew_of(file, name, o.cfc));
+  for (const SensorRecord& record : file.records) crew.push_back(crew_of(record, o.cfc));
   const Corridor corridor = o.corridor.empty() ? Corridor{} : read_corridor(o.corridor);
   add_corridor(crew, corridor);
   if (!o.csv.empty()) write_out(o.csv, csv_of(table_of(crew, true)));
@@ -94,7 +93,7 @@ Command injury_command(CLI::App& app) {
   auto* sub =
       app.add_subcommand("injury", "what the sensors' loads do to people: DRI, HIC, 3 ms clip, Brinkley, ISO 2631; a page to print");
   const auto o = std::make_shared<Options>();
-  sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
+  sub->add_option("run", o->run, "run.h5 of hilo-solve, or a CSV: t [s], x [g], y [g], z [g] (seat.x ... for several)")->required();
   sub->add_option("--sensor", o->sensors, "sensors by name or glob")->allow_extra_args(false)->default_str("*");
   sub->add_option("--cfc", o->cfc, "channel frequency class of the pulses: 60, 180, 600 or 1000 (SAE J211-1)")
       ->check(CLI::IsMember({60.0, 180.0, 600.0, 1000.0}))

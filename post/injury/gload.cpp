@@ -1,10 +1,18 @@
 #include "post/injury/gload.hpp"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <map>
 
+#include "base/error.hpp"
+#include "base/units.hpp"
+#include "post/files/csv.hpp"
 #include "post/injury/cfc.hpp"
+#include "post/run/run_file.hpp"
 
 namespace hilo {
 
@@ -14,19 +22,88 @@ std::vector<double> resultant(const std::array<std::vector<double>, 4>& a) {
   return r;
 }
 
-SensorRecord read_sensor(const RunFile& run, const std::string& name, double cfc) {
-  const Series series = run.series("sensor." + name);
-  SensorRecord s{name, series.t, {}, {}, {}};
-  const std::string where = fmt::format("{}: sensor \"{}\"", run.path, name);
+namespace {
+
+void filter(SensorRecord& s, double cfc) {
   for (size_t axis = 0; axis < 3; ++axis) {
-    for (size_t row = 0; row < series.rows(); ++row) s.raw[axis].push_back(series.at(row, axis));
-    Filtered f = cfc_filtered(s.t, s.raw[axis], cfc, where);
+    Filtered f = cfc_filtered(s.t, s.raw[axis], cfc, s.where);
     s.uniform = std::move(f.t);
     s.filtered[axis] = std::move(f.x);
   }
   s.raw[3] = resultant(s.raw);
   s.filtered[3] = resultant(s.filtered);
-  return s;
+}
+
+double factor_of(const CsvTable& table, size_t column, const std::string& wanted, const std::string& fallback, const std::string& hint) {
+  const std::string word = unit_in_heading(table.header[column]);
+  const auto unit = named_unit(word.empty() ? fallback : word);
+  if (!unit || unit->unit != wanted)
+    throw Error(table.path,
+                fmt::format("column \"{}\" has {}", table.header[column], word.empty() ? "no unit" : "a unit that is none of " + wanted),
+                hint);
+  return unit->si;
+}
+
+Sensors from_csv(const std::string& path, const std::vector<std::string>& globs) {
+  const CsvTable table = read_csv(path);
+  Sensors out{path, std::filesystem::path(path).stem().string(), true, {}};
+  std::vector<double> t = table.numbers(0);
+  const double second = factor_of(table, 0, "s", "s", "s or ms");
+  for (double& x : t) x *= second;
+  for (size_t i = 1; i < t.size(); ++i)
+    if (!(t[i] > t[i - 1])) throw Error(path, fmt::format("time does not rise in row {}", i + 1), "the first column is the time");
+  std::vector<std::string> all;
+  std::map<std::string, std::array<std::vector<double>, 4>> found;
+  for (size_t c = 1; c < table.header.size(); ++c) {
+    const std::string name = table.header[c].substr(0, table.header[c].find_first_of("[("));
+    const std::string plain = name.substr(0, name.find_last_not_of(' ') + 1);
+    const size_t dot = plain.rfind('.');
+    const std::string axis = dot == plain.npos ? plain : plain.substr(dot + 1);
+    std::string of = dot == plain.npos ? out.title : plain.substr(0, dot);
+    if (of.starts_with("sensor.")) of.erase(0, 7);  // as hilo-post series writes it
+    if (axis != "x" && axis != "y" && axis != "z")
+      throw Error(path, fmt::format("column \"{}\" is no axis of a sensor", table.header[c]),
+                  "x [g], y [g], z [g], or seat.x [g] and so on");
+    if (std::find(all.begin(), all.end(), of) == all.end()) all.push_back(of);
+    auto& values = found[of][static_cast<size_t>(axis[0] - 'x')];
+    if (!values.empty()) throw Error(path, fmt::format("\"{}\" is there twice", plain), "name the sensors: seat.x, head.x");
+    values = table.numbers(c);
+    const double factor = factor_of(table, c, "m/s^2", "", "[g] or [m/s^2]") / 9.80665;
+    for (double& x : values) {
+      if (!std::isfinite(x))
+        throw Error(path, fmt::format("column \"{}\" has empty cells", table.header[c]), "fill them, or cut the record");
+      x *= factor;
+    }
+  }
+  for (const std::string& name : all) {
+    if (std::ranges::none_of(globs, [&](const std::string& g) { return fnmatch(g.c_str(), name.c_str(), 0) == 0; })) continue;
+    SensorRecord s{name, t, {}, found[name], {}, fmt::format("{}: sensor \"{}\"", path, name)};
+    for (size_t axis = 0; axis < 3; ++axis) s.raw[axis].resize(t.size(), 0);
+    out.records.push_back(std::move(s));
+  }
+  if (out.records.empty()) throw Error(path, fmt::format("no sensor \"{}\"", globs.front()), suggest(globs.front(), all));
+  return out;
+}
+
+}  // namespace
+
+Sensors read_sensors(const std::string& path, const std::vector<std::string>& globs, double cfc) {
+  Sensors out;
+  if (path.ends_with(".csv")) {
+    out = from_csv(path, globs);
+  } else {
+    const RunFile run(path);
+    out = {run.path, run.title, run.complete, {}};
+    for (const std::string& name : sensor_names(run, globs)) {
+      const Series series = run.series("sensor." + name);
+      SensorRecord s{name, series.t, {}, {}, {}, fmt::format("{}: sensor \"{}\"", run.path, name)};
+      for (size_t axis = 0; axis < 3; ++axis)
+        for (size_t row = 0; row < series.rows(); ++row) s.raw[axis].push_back(series.at(row, axis));
+      out.records.push_back(std::move(s));
+    }
+  }
+  for (SensorRecord& s : out.records) filter(s, cfc);
+  return out;
 }
 
 size_t peak_index(const std::vector<double>& x) {

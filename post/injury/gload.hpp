@@ -1,10 +1,8 @@
-// What a sensor of a run felt: proper acceleration in its axes (x forward, y left, z up), raw and filtered.
+// What a sensor felt, of a run or measured: proper acceleration in its axes (x forward, y left, z up), raw and filtered.
 #pragma once
 #include <array>
 #include <string>
 #include <vector>
-
-#include "post/run/run_file.hpp"
 
 namespace hilo {
 
@@ -13,8 +11,17 @@ struct SensorRecord {
   std::string name;
   std::vector<double> t, uniform;                    // [s]
   std::array<std::vector<double>, 4> raw, filtered;  // x y z resultant [g]
+  std::string where;                                 // for errors
 };
-SensorRecord read_sensor(const RunFile& run, const std::string& name, double cfc);
+
+/// The sensors that match one of `globs`, of a run, or of a CSV file: a column of time, then columns "x [g]" or "seat.x [m/s^2]", y and z;
+/// an axis without a column felt nothing.  Error where a column has another name or unit.
+struct Sensors {
+  std::string path, title;
+  bool complete = true;
+  std::vector<SensorRecord> records;
+};
+Sensors read_sensors(const std::string& path, const std::vector<std::string>& globs, double cfc);
 
 /// Lengths of (x, y, z).
 std::vector<double> resultant(const std::array<std::vector<double>, 4>& a);

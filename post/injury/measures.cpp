@@ -83,9 +83,9 @@ void add_vibration(Crew& c, const std::array<std::vector<double>, 3>& change) {
 
 }  // namespace
 
-Crew crew_of(const RunFile& run, const std::string& sensor, double cfc) {
+Crew crew_of(SensorRecord record, double cfc) {
   Crew c;
-  c.record = read_sensor(run, sensor, cfc);
+  c.record = std::move(record);
   // The models start at rest under what was felt at the start (1 g upward), so that is taken out.
   std::array<std::vector<double>, 3> change;
   for (size_t a = 0; a < 3; ++a) {
@@ -94,7 +94,7 @@ Crew crew_of(const RunFile& run, const std::string& sensor, double cfc) {
     for (const double x : c.record.filtered[a]) c.change[a].push_back(x - start);
   }
   add_pulses(c, cfc);
-  add_impact(c, change, fmt::format("{}: sensor \"{}\"", run.path, sensor));
+  add_impact(c, change, c.record.where);
   add_vibration(c, change);
   return c;
 }

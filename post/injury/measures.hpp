@@ -23,6 +23,6 @@ struct Crew {
   std::vector<Measure> measures;
   double head_class = 0, chest_class = 0;  // CFC of HIC and severity, of the 3 ms clip: the wanted class or the highest the record holds
 };
-Crew crew_of(const RunFile& run, const std::string& sensor, double cfc);
+Crew crew_of(SensorRecord record, double cfc);
 
 }  // namespace hilo

@@ -49,6 +49,9 @@ std::vector<Facet> boundary_facets(const Mesh& mesh, const std::vector<bool>& sh
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c)
     for (std::int64_t f = 0; once[static_cast<size_t>(c)] >> f; ++f)
       if (once[static_cast<size_t>(c)] >> f & 1) outside.push_back({c, f});
+  for (std::int64_t c = 0; c < mesh.n_cells(); ++c)  // shells have no inside
+    if (info(mesh.shape[static_cast<size_t>(c)]).dimension == 2 && shown[static_cast<size_t>(mesh.region[static_cast<size_t>(c)])])
+      outside.push_back({c, 0});
   return outside;
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "base/error.hpp"
+#include "model/facet_rule.hpp"
 #include "model/mesh.hpp"
 #include "model/partition.hpp"
 #include "model/shape_row.hpp"
@@ -54,6 +55,7 @@ std::array<std::unique_ptr<const Kind>, most_shapes>& kinds() {
     const Lists tet_edges{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
     const Lists wedge_edges{{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
     const Lists hex_edges{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+    const Lists tri_edges{{0, 1}, {1, 2}, {2, 0}}, quad_edges{{0, 1}, {1, 2}, {2, 3}, {3, 0}};
     std::array<std::unique_ptr<const Kind>, most_shapes> t;
     size_t number = 0;
     for (const ShapeRow& row : std::initializer_list<ShapeRow>{{"bar2", 2, 1, 3, 2, 4, {{0}, {1}}, {}, {}},
@@ -63,7 +65,11 @@ std::array<std::unique_ptr<const Kind>, most_shapes>& kinds() {
                                                                {"wedge15", 6, 3, 26, 40, 370, wedge, wedge_corners, wedge_edges},
                                                                {"hex8", 8, 3, 12, 9, 100, hex, hex_corners, {}},
                                                                {"hex20", 8, 3, 25, 48, 540, hex, hex_corners, hex_edges},
-                                                               {"hex20r", 8, 3, 25, 48, 460, hex, hex_corners, hex_edges}})
+                                                               {"hex20r", 8, 3, 25, 48, 460, hex, hex_corners, hex_edges},
+                                                               {"tri3", 3, 2, 5, 4, 1, {{0, 1, 2}}, {}, {}},
+                                                               {"tri6", 3, 2, 22, 36, 1, {{0, 1, 2}}, {}, tri_edges},
+                                                               {"quad4", 4, 2, 9, 5, 1, {{0, 1, 2, 3}}, {}, {}},
+                                                               {"quad8", 4, 2, 23, 37, 1, {{0, 1, 2, 3}}, {}, quad_edges}})
       t[number++] = std::make_unique<const Kind>(make(row));
     return t;
   }();
@@ -160,6 +166,19 @@ Vec3 facet_area(const Mesh& mesh, const Facet& f) {
   return area;
 }
 
+void over_facet(const Mesh& mesh, const Facet& f, const std::function<void(const Vec3&, const Vec3&)>& visit) {
+  const auto cell = mesh.cell(f.cell);
+  const auto& local = info(mesh.shape[f.cell]).facets[f.facet];
+  for (const auto& p : rule_of(local.size())) {
+    Vec3 x = Vec3::Zero(), xr = x, xs = x;
+    for (size_t a = 0; a < local.size(); ++a) {
+      const Vec3& X = mesh.X[cell[local[a]]];
+      x += p.N[a] * X, xr += p.Nr[a] * X, xs += p.Ns[a] * X;
+    }
+    visit(x, p.weight * xr.cross(xs));
+  }
+}
+
 CellQuality quality(const Mesh& mesh, std::int64_t c) {
   const Kind& k = kind(static_cast<Shape>(mesh.shape[c]));
   const auto cell = mesh.cell(c);
@@ -167,6 +186,15 @@ CellQuality quality(const Mesh& mesh, std::int64_t c) {
   if (k.info.dimension == 1) {
     const double length = (mesh.X[cell[1]] - origin).norm();
     return {length, length > 0 ? 1. : 0.};
+  }
+  if (k.info.dimension == 2) {
+    double area = 0;
+    for (const auto& p : rule_of(cell.size())) {
+      Vec3 xr = Vec3::Zero(), xs = Vec3::Zero();
+      for (size_t a = 0; a < cell.size(); ++a) xr += p.Nr[a] * mesh.X[cell[a]], xs += p.Ns[a] * mesh.X[cell[a]];
+      area += p.weight * xr.cross(xs).norm();
+    }
+    return {area, area > 0 ? 1. : 0.};
   }
   // Volume by the divergence theorem, 3 V = sum over the facets of the integral of x . n dA: one rule for all shapes, curved ones too.
   double volume = 0;

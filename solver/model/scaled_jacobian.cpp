@@ -29,6 +29,7 @@ double least(const Mesh& m, std::span<const std::int64_t> nodes, const std::arra
 }  // namespace
 
 double scaled_jacobian(const Mesh& m, std::int64_t c) {
+  if (info(m.shape[c]).dimension < 3) return 1;
   switch (info(m.shape[c]).n_corners) {
     case 4:
       return least(m, m.cell(c), tet, std::sqrt(0.5));
@@ -37,7 +38,7 @@ double scaled_jacobian(const Mesh& m, std::int64_t c) {
     case 8:
       return least(m, m.cell(c), hex, 1);
     default:
-      return info(m.shape[c]).dimension < 3 ? 1 : quality(m, c).scaled_jacobian;
+      return quality(m, c).scaled_jacobian;
   }
 }
 

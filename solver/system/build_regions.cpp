@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "model/thin_regions.hpp"
 #include "system/builder.hpp"
 #include "system/solids.hpp"
 
@@ -43,6 +44,7 @@ std::int64_t Builder::put_active_nodes_first() {
 
 void Builder::read_regions() {
   if (!mesh_) return;
+  const auto thin = mesh_->file.empty() ? std::vector<ThinRegion>{} : read_thin_regions(mesh_->file);
   for (size_t r = 0; r < mesh_->mesh.region_name.size(); ++r) {
     Region region;
     region.name = mesh_->mesh.region_name[r];
@@ -53,6 +55,11 @@ void Builder::read_regions() {
     region.fidelity = mesh_->fidelity[r];
     const RegionData& deck = mesh_->mesh.region_data[r];
     region.E = deck.E, region.nu = deck.nu, region.density = deck.density;
+    if (!thin.empty() && thin[r].any() && region.fidelity != Fidelity::rigid)
+      throw Error(mesh_->file,
+                  fmt::format("region \"{}\" is {}, and has shells or beams: there is no element of them, it can be rigid alone",
+                              region.name, word(region.fidelity)),
+                  fmt::format("hilo-tag --rigid '{}'", region.name));
     std::string material;
     for (const Entry& e : scene_.entries("region")) {
       if (fnmatch(e.name.c_str(), region.name.c_str(), 0) != 0) continue;
@@ -98,6 +105,7 @@ void Builder::read_regions() {
 void Builder::integrate_regions() {
   if (!mesh_) return;
   const Mesh& mesh = mesh_->mesh;
+  const auto thin = mesh_->file.empty() ? std::vector<ThinRegion>{} : read_thin_regions(mesh_->file);
   double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300};
   for (const Vec3& x : mesh.X)
     for (int i = 0; i < 3; ++i) lo[i] = std::min(lo[i], x[i]), hi[i] = std::max(hi[i], x[i]);
@@ -110,6 +118,9 @@ void Builder::integrate_regions() {
   std::vector<Line> scratch;
   for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
     Region& r = regions_[mesh.region[e]];
+    if (const int dimension = info(mesh.shape[e]).dimension;
+        dimension == 2 || (dimension == 1 && !thin.empty() && thin[mesh.region[e]].any()))
+      continue;  // a shell or beam, which the region's moments have
     const double density = std::isnan(r.density) ? 0 : r.density;
     const auto nodes = mesh.cell(e);
     const SolidKernel kernel = solid_kernel(static_cast<Shape>(mesh.shape[e]), place_of<StVenantKirchhoff>);
@@ -138,6 +149,13 @@ void Builder::integrate_regions() {
     r.mass = all[0];
     for (int i = 0; i < 3; ++i) r.moment[i] = all[1 + i];
     for (int i = 0; i < 9; ++i) r.second(i / 3, i % 3) = all[4 + i];
+    if (const auto i = static_cast<size_t>(&r - regions_.data()); !thin.empty() && thin[i].any() && !std::isnan(r.density)) {
+      const double V = thin[i].volume();
+      const Vec3 first = thin[i].first();
+      r.mass += r.density * V, r.moment += r.density * (first - V * origin_);  // moments about `origin_` from those about the origin
+      r.second +=
+          r.density * (thin[i].second() - first * origin_.transpose() - origin_ * first.transpose() + V * origin_ * origin_.transpose());
+    }
     if (r.mass_wanted > 0) {
       if (!(r.mass > 0))
         throw Error(r.where, fmt::format("region \"{}\" has a mass but no density to scale", r.name), "give its material a density");

@@ -110,6 +110,31 @@ TEST(Chart, one_curve_for_each_name_of_a_column) {
   EXPECT_GT(red, 500);
 }
 
+// 250 MPa and 250 kN stood at one height: each unit has a panel, and there the curve that falls and the one that rises.
+TEST(Chart, each_unit_has_a_panel_of_its_own) {
+  const Workplace place;
+  place.write("two.csv", "t [s],stress [MPa],force [kN]\n0,0,250\n1,250,0\n");
+  ASSERT_EQ(place.run("unset DISPLAY\nhilo-post chart two.csv -o two.png\nhilo-post chart two.csv --ylabel both -o one.png").exit, 0);
+  const auto halves = [&](const std::string& file) {  // pixels of the first and of the second curve in the upper and the lower half
+    const PictureFile picture(place / file);
+    std::array<int, 4> n{};
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 120; x < 1000; ++x) {  // beside the legend
+        const auto c = picture.at(x, y);
+        const size_t lower = y > picture.height / 2;
+        n[lower] += c[2] > c[0] + 100, n[2 + lower] += c[0] > c[2] + 100;
+      }
+    return n;
+  };
+  const auto two = halves("two.png"), one = halves("one.png");
+  EXPECT_GT(two[0], 1000);
+  EXPECT_EQ(two[1], 0);
+  EXPECT_GT(two[3], 1000);
+  EXPECT_EQ(two[2], 0);
+  EXPECT_GT(one[1], 500);
+  EXPECT_GT(one[2], 500);
+}
+
 // The ordinate shown is 0.5 .. 1.5: the half of the curve at 0 is below it, the half at 1 in the middle.
 TEST(Chart, shows_the_range_that_was_asked_for) {
   const Workplace place;

@@ -33,6 +33,42 @@ TEST(InjuryReport, csv_and_json_hold_the_closed_forms_of_a_half_sine) {
   EXPECT_NE(ran.out.find("\"sensor\": \"seat\""), std::string::npos) << ran.out;
 }
 
+// A record of a sled: the same numbers as the run that it was written from, in g and seconds or in m/s^2 and ms.
+TEST(InjuryReport, a_measured_signal_is_judged_as_that_of_a_run_is) {
+  const auto& place = sample_place();
+  ASSERT_EQ(place.run("hilo-post --quiet series run.h5 sensor.seat.x sensor.seat.y sensor.seat.z -o seat.csv").exit, 0);
+  const CsvTable g = read_csv(place / "seat.csv");
+  std::vector<std::vector<double>> columns;
+  for (size_t c = 0; c < 4; ++c) {
+    columns.push_back(g.numbers(c));
+    for (double& x : columns.back()) x *= c == 0 ? 1e3 : 9.80665;
+  }
+  place.write("metric.csv", csv_text({"t [ms]", "x (m/s^2)", "y (m/s^2)", "z (m/s^2)"}, columns));
+  const auto table = [&](const std::string& command) {
+    const Ran ran = place.run("hilo-post --quiet " + command + " -o out.csv");
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    return read_csv(place / "out.csv");
+  };
+  for (const std::string command : {"injury", "gload"}) {
+    const CsvTable run = table(command + " run.h5"), same = table(command + " seat.csv"), metric = table(command + " metric.csv");
+    EXPECT_EQ(same.column, run.column) << command;
+    ASSERT_EQ(metric.column.size(), run.column.size()) << command;
+    for (size_t c = 1; c < run.column.size(); ++c) {
+      const auto a = metric.numbers(c), b = run.numbers(c);
+      for (size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-3 * std::max(1.0, std::abs(b[i]))) << run.header[c];
+    }
+  }
+  const auto refused = [&](const std::string& csv) {
+    place.write("odd.csv", csv);
+    const Ran ran = place.run("hilo-post injury odd.csv");
+    EXPECT_EQ(ran.exit, 2);
+    return ran.err;
+  };
+  EXPECT_NE(refused("t [s],x\n0,1\n1,2\n").find("column \"x\" has no unit ([g] or [m/s^2])"), std::string::npos);
+  EXPECT_NE(refused("t [s],head [g]\n0,1\n1,2\n").find("column \"head [g]\" is no axis of a sensor"), std::string::npos);
+  EXPECT_NE(refused("t [s],x [g]\n1,1\n0,2\n").find("time does not rise in row 2"), std::string::npos);
+}
+
 TEST(InjuryReport, tells_how_far_a_pulse_leaves_its_corridor) {
   const auto& place = sample_place();
   place.write("corridor.csv", "t [s],x_low [g],x_high [g]\n0,-1,1\n0.0199,-1,80\n0.0201,-1,80\n");  // over by the time of the peak

@@ -84,10 +84,11 @@ TEST_F(ImportBdf, WrongEntriesAreNamedByLine) {
       {grids + "CTETRA,1,1,1,2,3,4\n", "a.bdf:6:8: element 1 is given twice (number each element once)"},
       {grids + "CTETRA,2,1,1,2,3,9\n", "a.bdf:6:8: element 2 names node 9, which does not exist"},
       {grids + "CTETRA,2,1,1,2,3,4,1\n", "a.bdf:6: CTETRA 2 has mid-side nodes on some edges only (give all of them or none)"},
-      {grids + "CBAR,2,1,1,2\n", "a.bdf:6:1: CBAR: beams are not read (supported: CTETRA, CPENTA, CHEXA, CROD, CONROD)"},
+      {grids + "CBAR,2,1,1,2\n", "a.bdf:6:6: beam 2: no property 1 (PBAR, PBARL, PBEAM, PBEAML)"},
       {grids + "MAT1,1,-1.,,0.3\n", "a.bdf:6:8: MAT1 1: Young's modulus -1 is not positive"},
       {grids + "GRID,5,,0.,zero,2.\n", "a.bdf:6:12: expected a number, found \"zero\""},
-      {"GRID,1,,0.,0.,0.\n", "a.bdf: no solid elements and no rods (supported: CTETRA, CPENTA, CHEXA, CROD, CONROD)"},
+      {"GRID,1,,0.,0.,0.\n",
+       "a.bdf: no elements (supported: CTETRA, CPENTA, CHEXA, CROD, CONROD; as rigid regions CTRIA3, CTRIA6, CQUAD4, CQUAD8, CBAR, CBEAM)"},
   };
   for (const auto& c : cases) {
     place.write("a.bdf", c.text);

@@ -1,4 +1,8 @@
 // Meshes and geometries that go through gmsh, written here by gmsh itself: named groups, shapes, orders and formats survive.
+#include <fmt/format.h>
+
+#include <sstream>
+
 #include "import_case.hpp"
 
 namespace hilo {
@@ -126,6 +130,54 @@ TEST_F(ImportGmsh, UnvKeepsGroupsShapesAndMiddles) {
       expect_middles(m, where);
       EXPECT_NE(err.find("group \"corner\": 1 of its numbers are no element"), std::string::npos) << "gmsh names points it does not write\n"
                                                                                                   << err;
+    }
+}
+
+TEST_F(ImportGmsh, UnitsOfAUniversalFileAreTakenAndEmptyGroupsAreTold) {
+  mesh(boxes("hex"), "a.unv");
+  const std::string text = test::text_of(place / "a.unv");
+  const auto units = [](const std::string& factor) {
+    return "    -1\n   164\n         5mm (milli-newton)            2\n  " + factor +
+           "  1.0000000000000000D+03  1.0000000000000000D+00\n  2.7314999999999998D+02\n    -1\n";
+  };
+  place.write("mm.unv", units("1.0000000000000000D+03") + text);
+  EXPECT_NEAR(volume(imported("mm.unv")), 2e-9, 1e-20);
+  EXPECT_NEAR(volume(imported("mm.unv", "--units m-kg-s")), 2, 1e-12);
+  EXPECT_NE(err.find("the file says that its unit of length is 0.001 m (dataset 164); taken as m-kg-s, as --units says"), std::string::npos)
+      << err;
+  place.write("empty.unv",
+              text + "    -1\n  2467\n        99         0         0         0         0         0         0         0\nnothing\n    -1\n");
+  EXPECT_NEAR(volume(imported("empty.unv")), 2, 1e-12);
+  EXPECT_NE(err.find("group \"nothing\" is empty: left out"), std::string::npos) << err;
+}
+
+TEST_F(ImportGmsh, MirroredCellsAreTurnedWithTheirFacets) {
+  for (const char* what : {"tet", "hex", "prism"})
+    for (const int order : {1, 2}) {
+      const std::string where = what + std::to_string(order);
+      mesh(boxes(what), "a.msh", order);
+      std::string text = test::text_of(place / "a.msh"), mirrored;
+      // every node at -z: the cells are inside out
+      bool nodes = false;
+      for (size_t at = 0; at < text.size();) {
+        const size_t end = text.find('\n', at);
+        std::string line = text.substr(at, end - at);
+        at = end + 1;
+        if (line == "$Nodes") nodes = true;
+        if (line == "$EndNodes") nodes = false;
+        std::istringstream in(line);
+        double x = 0, y = 0, z = 0;
+        std::string rest;
+        const bool three = static_cast<bool>(in >> x >> y >> z) && !(in >> rest);
+        mirrored += nodes && three ? fmt::format("{:.17g} {:.17g} {:.17g}\n", x, y, -z) : line + "\n";
+      }
+      place.write("b.msh", mirrored);
+      EXPECT_EQ(place.run("hilo-import b.msh -o b.h5").exit, 2) << where;
+      const Mesh m = imported("b.msh", "--flip");
+      EXPECT_NEAR(volume(m), 2, 1e-12) << where;
+      EXPECT_LT((vector_area(m, m.facet_sets.at("inlet")) - Vec3(-1, 0, 0)).norm(), 1e-12) << where;
+      expect_middles(m, where);
+      for (std::int64_t c = 0; c < m.n_cells(); ++c) EXPECT_GT(quality(m, c).scaled_jacobian, 0) << where;
     }
 }
 

@@ -82,6 +82,21 @@ TEST_F(ImportInpTies, SpringsGiveWayByForceOverStiffness) {
   EXPECT_NEAR(x[x.size() - 12] - x[0], 400 / 1e6, 1e-9);
 }
 
+// SPRING2 along x between nodes on a line along it, and between nodes at one place: the same answer.
+TEST_F(ImportInpTies, SpringsBetweenOneComponentOfTwoNodesToo) {
+  const std::string coupling = "*COUPLING, REF NODE=101, SURFACE=end, CONSTRAINT NAME=c\n*KINEMATIC\n1, 6\n*NODE\n103, 5., .5, .5\n";
+  for (const std::string node : {"102", "103"}) {
+    run(bar + coupling + "*ELEMENT, TYPE=SPRING2, ELSET=s\n50, 101, " + node + "\n*SPRING, ELSET=s\n1, 1\n1e6\n" + held + "*BOUNDARY\n" +
+        node + ", 2, 6\n" + statics + "*CLOAD\n" + node + ", 1, 400.\n*END STEP\n");
+    const auto u = Store::open(place / "run.h5").read<double>("/history/body/node_" + node);
+    EXPECT_NEAR(u[u.size() - 12] - u[0], 400 / 1e6 + 1.6e-6, 1e-9) << node;
+  }
+  place.write("a.inp", bar + coupling + "*ELEMENT, TYPE=SPRING2, ELSET=s\n50, 101, 102\n*SPRING, ELSET=s\n2, 2\n1e6\n");
+  imported("a.inp", "--scene-out s.toml");
+  EXPECT_NE(err.find("not read: *SPRING of SPRING2, but along one component of both nodes, in the line between them"), std::string::npos)
+      << err;
+}
+
 TEST_F(ImportInpTies, AMassOnASpringHasTheFrequencyOfTheClosedForm) {
   run(bar +
       "*NSET, NSET=all, GENERATE\n1, 20\n*ELEMENT, TYPE=MASS, ELSET=p\n50, 101\n*MASS, ELSET=p\n2.\n*ELEMENT, TYPE=SPRING1, ELSET=s\n51, "

@@ -112,7 +112,7 @@ void check_cells(const Mesh& m, const std::string& file) {
     for (const auto a : nodes) low = low.cwiseMin(m.X[a]), high = high.cwiseMax(m.X[a]);
     const int dimension = info(m.shape[c]).dimension;
     const auto q = quality(m, c);
-    const double least = dimension == 1 ? 0 : 1e-12 * std::pow((high - low).norm(), 3);
+    const double least = dimension == 1 ? 0 : 1e-12 * std::pow((high - low).norm(), dimension);
     if (repeated || std::abs(q.volume) <= least || std::isnan(q.volume))
       flat.push_back(m.cell_id[c]);
     else if (dimension == 3 && !(q.volume > 0 && q.scaled_jacobian > 0 && scaled_jacobian(m, c) > 0))
@@ -125,7 +125,7 @@ void check_cells(const Mesh& m, const std::string& file) {
     throw Error(
         file,
         fmt::format("{} of {} cells are inverted (scaled Jacobian <= 0 at a corner): {}", inverted.size(), m.n_cells(), first_of(inverted)),
-        static_cast<std::int64_t>(inverted.size()) == m.n_cells() ? "all of them: is the numbering of their nodes mirrored?"
+        static_cast<std::int64_t>(inverted.size()) == m.n_cells() ? "all of them: --flip turns cells that are numbered as in a mirror"
                                                                   : "repair or remesh them");
 }
 
@@ -177,6 +177,7 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
     in.notes.push_back(fmt::format("{} nodes merged with one nearer than {:g}", gone, *options.merge));
   }
   if (const auto gone = drop_unused(in)) in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped", gone));
+  if (options.flip) in.notes.push_back(fmt::format("{} of {} cells were numbered as in a mirror: turned", flip(m), m.n_cells()));
   if (options.order == 2) raise_order(in);
   add_placed_sets(in, options.sets);
   const double factor = options.scale * in.metre.value_or(to_si("m", options.units));
@@ -186,6 +187,11 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
     if (const auto n = straighten(m))
       in.notes.push_back(fmt::format("{} cells that a curved surface turned inside out have straight edges", n));
   check_cells(m, file);
+  add_thin_moments(in, factor);
+  for (size_t r = 0; r < in.thin_regions.size(); ++r)
+    if (in.thin_regions[r].any())
+      in.notes.push_back(
+          fmt::format("region \"{}\" has shells or beams, of which there is no element: it can be rigid alone", m.region_name[r]));
   tell_slivers(in);
   for (size_t r = 0; r < m.region_name.size(); ++r) {
     auto& data = m.region_data[r];

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "base/registry.hpp"
+#include "import/thin.hpp"
 #include "model/mesh.hpp"
+#include "model/thin_regions.hpp"
 
 namespace hilo {
 
@@ -26,6 +28,7 @@ struct ImportOptions {
   std::string rest;                                    // name of the region of cells in no region ("": "rest")
   std::vector<std::pair<std::string, double>> define;  // parameters of a .geo script
   bool trust = false;                                  // a .geo script may run commands and write files
+  bool flip = false;                                   // cells numbered as in a mirror are turned
   bool keep_apart = false;                             // solids of a CAD file that touch share no nodes
   std::vector<std::string> sets;                       // NAME=KIND:KEY=VALUE,..., as [set.NAME] of a scene    [unit of the file]
 };
@@ -43,9 +46,11 @@ struct Imported {
   Mesh mesh;                       // numbers of the deck; region -1 until assign_regions
   std::vector<std::string> notes;  // said on stderr, one line each
   std::vector<NotRead> not_read;
-  std::optional<double> metre;      // length unit that the file states  [m]
-  bool curved = false;              // quadratic cells made here follow curved surfaces, which may turn some inside out
-  std::set<std::string> as_listed;  // node sets that order 2 must not complete: the deck's force acts on each of their nodes
+  std::vector<ThinRegion> thin_regions;      // by region, empty without shells and beams
+  std::map<std::int64_t, ThinSection> thin;  // of the cells that are shells or beams
+  std::optional<double> metre;               // length unit that the file states  [m]
+  bool curved = false;                       // quadratic cells made here follow curved surfaces, which may turn some inside out
+  std::set<std::string> as_listed;           // node sets that order 2 must not complete: the deck's force acts on each of their nodes
 
   void skip(const std::string& what, const std::string& place, std::int64_t count = 1, bool output = false, const std::string& hint = "");
 };
@@ -131,6 +136,8 @@ std::int64_t merge_nodes(Mesh& mesh, double distance);
 std::int64_t drop_unused(Imported& in);
 /// Adds the sets of --set, by the words and the code of [set.NAME] of scenes; lengths are still in the unit of the file.
 void add_placed_sets(Imported& in, const std::vector<std::string>& sets);
+/// Cells of negative volume are numbered the other way round, in sets of facets too; returns how many.
+std::int64_t flip(Mesh& mesh);
 /// Throws Error naming the cells when any is inverted or has no volume.
 void check_cells(const Mesh& mesh, const std::string& file);
 

@@ -17,7 +17,7 @@ namespace {
 struct RegionRow {
   std::int64_t cells = 0;
   std::array<std::int64_t, most_shapes> by_shape{};
-  double volume = 0, length = 0, worst = std::numeric_limits<double>::infinity(), sum = 0;
+  double volume = 0, length = 0, area = 0, worst = std::numeric_limits<double>::infinity(), sum = 0;
   std::int64_t judged = 0;  // cells with a Jacobian: not the bars
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
 };
@@ -35,7 +35,9 @@ std::vector<RegionRow> rows_of(const Mesh& m) {
       r.worst = std::min(r.worst, j);
       r.sum += j;
       ++r.judged;
-    } else
+    } else if (info(m.shape[c]).dimension == 2)
+      r.area += q.volume;
+    else
       r.length += q.volume;
     for (const auto a : m.cell(c)) r.low = r.low.cwiseMin(m.X[a]), r.high = r.high.cwiseMax(m.X[a]);
   }
@@ -73,11 +75,12 @@ std::string import_table(const Imported& in) {
   const auto g = [](double x) { return fmt::format("{:.5g}", x == 0 ? 0.0 : x); };
   for (size_t i = 0; i < rows.size(); ++i) {
     const auto& r = rows[i];
-    volume += r.volume;
+    const double thin = in.thin_regions.empty() ? 0 : in.thin_regions[i].volume();
+    volume += r.volume + thin;
     const bool bars = r.judged == 0;
-    lines.rows.push_back({m.region_name[i], fmt::format("{}", r.cells), bars ? fmt::format("{} m", g(r.length)) : g(r.volume), g(r.low.x()),
-                          g(r.high.x()), g(r.low.y()), g(r.high.y()), g(r.low.z()), g(r.high.z()),
-                          bars ? "-" : fmt::format("{:.3f}", r.worst),
+    lines.rows.push_back({m.region_name[i], fmt::format("{}", r.cells),
+                          thin > 0 || !bars ? g(r.volume + thin) : fmt::format("{} m", g(r.length)), g(r.low.x()), g(r.high.x()),
+                          g(r.low.y()), g(r.high.y()), g(r.low.z()), g(r.high.z()), bars ? "-" : fmt::format("{:.3f}", r.worst),
                           bars ? "-" : fmt::format("{:.3f}", r.sum / static_cast<double>(r.judged)), shapes(r)});
   }
   std::string text = lines.text();

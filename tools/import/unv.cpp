@@ -1,13 +1,15 @@
-// I-DEAS universal files: datasets 2411 (nodes), 2412 (elements) and the groups 2429 to 2477.
+// I-DEAS universal files: datasets 164 (units), 2411 (nodes), 2412 (elements) and the groups 2429 to 2477.
 // (gmsh 4.8 crashes on groups that name an element it does not know, so the reader is ours.)  Groups of solids are regions, of faces facet
 // sets, of lines bars or node sets as in a gmsh file; without groups of solids a region is a physical property.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <unordered_map>
 
 #include "base/error.hpp"
+#include "base/param.hpp"
 #include "import/data_line.hpp"
 #include "import/imported.hpp"
 
@@ -79,10 +81,17 @@ class UnvReader {
     static const auto nodes = [](R& r) { r.nodes(); };
     static const auto fours = [](R& r) { r.groups(4); };  // four numbers for each member
     static const auto twos = [](R& r) { r.groups(2); };
-    static const std::map<std::string, void (*)(R&)> table{{"2411", nodes}, {"781", nodes},  {"2412", [](R& r) { r.elements(); }},
-                                                           {"2467", fours}, {"2477", fours}, {"2452", fours},
-                                                           {"2435", fours}, {"2429", twos},  {"2430", twos},
-                                                           {"2432", twos}};
+    static const std::map<std::string, void (*)(R&)> table{{"2411", nodes},
+                                                           {"781", nodes},
+                                                           {"2412", [](R& r) { r.elements(); }},
+                                                           {"2467", fours},
+                                                           {"2477", fours},
+                                                           {"2452", fours},
+                                                           {"2435", fours},
+                                                           {"2429", twos},
+                                                           {"2430", twos},
+                                                           {"2432", twos},
+                                                           {"164", [](R& r) { r.units(); }}};
     return table;
   }
   struct Element {
@@ -120,6 +129,21 @@ class UnvReader {
   }
   void must() {
     if (!more()) throw Error(l_.place(), "the dataset ends inside a record");
+  }
+
+  /// Code and name of the units, then the factors that SI is divided by: the first is that of lengths.
+  void units() {
+    must();
+    must();
+    const double factor = l_.number(0);
+    while (more()) {
+    }
+    if (!(factor > 0)) return;
+    if (!o_.units_given)
+      in_.metre = 1 / factor;
+    else if (std::abs(to_si("m", o_.units) * factor - 1) > 1e-9)
+      in_.notes.push_back(
+          fmt::format("the file says that its unit of length is {:g} m (dataset 164); taken as {}, as --units says", 1 / factor, o_.units));
   }
 
   void nodes() {
@@ -270,6 +294,7 @@ class UnvReader {
       for (const auto id : g.nodes)
         if (const auto a = row_.find(id); a != row_.end()) rows.push_back(a->second);
       if (!rows.empty()) names.nodes(g.name, std::move(rows));
+      if (g.nodes.empty() && g.elements.empty()) in_.notes.push_back(fmt::format("group \"{}\" is empty: left out", g.name));
       const auto unknown = std::count_if(g.elements.begin(), g.elements.end(), [&](std::int64_t id) { return !of_id_.count(id); });
       if (unknown) in_.notes.push_back(fmt::format("group \"{}\": {} of its numbers are no element: left out", g.name, unknown));
     }

@@ -3,8 +3,10 @@
 #include <fmt/ranges.h>
 
 #include "base/args.hpp"
+#include "base/outside_shapes.hpp"
 #include "model/scene.hpp"
 #include "model/schema.hpp"
+#include "model/shape_row.hpp"
 #include "show/summary.hpp"
 
 namespace hilo {
@@ -38,7 +40,7 @@ std::string code(std::string_view text) { return text.empty() ? "" : fmt::format
 std::string shapes() {
   std::string out =
       "\n## Cell shapes\n\n| number | shape | nodes | VTK type | XDMF type | corners of the facets |\n|---|---|---|---|---|---|\n";
-  for (int k = 0; k < n_shapes; ++k) {
+  for (int k = 0; k < first_outside && is_shape(static_cast<std::uint8_t>(k)); ++k) {
     const auto& s = info(static_cast<Shape>(k));
     std::vector<std::string> facets;
     for (const auto& f : s.facets) {
@@ -48,7 +50,8 @@ std::string shapes() {
     out += fmt::format("| {} | {} | {} | {} | {} | {} |\n", k, s.name, s.n_nodes, s.vtk_type, s.xdmf_type, fmt::join(facets, ", "));
   }
   out +=
-      "\nhex20 and hex20r have the same nodes; hex20 integrates with 3 x 3 x 3 points, hex20r with 2 x 2 x 2 ([elements](elements.md)).\n"
+      "\ntri3, tri6, quad4 and quad8 are shells: regions that have them are rigid, their mass is that of `/mesh/regions/thin`.\n"
+      "hex20 and hex20r have the same nodes; hex20 integrates with 3 x 3 x 3 points, hex20r with 2 x 2 x 2 ([elements](elements.md)).\n"
       "A deck's C3D20 becomes hex20, its C3D20R hex20r; files that do not say, and `hilo-import --order 2`, give hex20r.\n"
       "Numbers from 128 on are shapes of programs outside the tree; the attribute `shape_NUMBER` of `/mesh/cells/shape` has their name, "
       "and a\n"

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/outside_shapes.hpp"
+#include "model/thin_regions.hpp"
 #include "show/summary.hpp"
 
 namespace hilo {
@@ -21,8 +22,9 @@ struct Box {
 
 std::string number(double x) { return std::isfinite(x) ? fmt::format("{}", x) : "-"; }
 
-Table regions(const MeshFile& f) {
+Table regions(const MeshFile& f, const std::string& path) {
   const Mesh& m = f.mesh;
+  const auto thin = read_thin_regions(path);
   const size_t n = m.region_name.size();
   std::vector<std::int64_t> cells(n, 0);
   std::vector<double> volume(n, 0);
@@ -37,6 +39,7 @@ Table regions(const MeshFile& f) {
   if (f.tagged) t.header.insert(t.header.begin() + 1, "fidelity"), t.n_text = 2;
   for (size_t r = 0; r < n; ++r) {
     const RegionData& d = m.region_data[r];
+    if (!thin.empty()) volume[r] += thin[r].volume();
     t.rows.push_back(
         {m.region_name[r], fmt::format("{}", cells[r]), number(volume[r]), number(d.density), number(d.E), number(d.nu), box[r].text()});
     if (f.tagged) t.rows.back().insert(t.rows.back().begin() + 1, std::string(word(f.fidelity[r])));
@@ -80,7 +83,7 @@ Table parts(const MeshFile& f) {
 
 }  // namespace
 
-void add_mesh(Summary& s, const MeshFile& f) {
+void add_mesh(Summary& s, const MeshFile& f, const std::string& path) {
   const Mesh& m = f.mesh;
   std::vector<std::int64_t> of_shape(most_shapes, 0);
   for (const auto shape : m.shape) ++of_shape[shape];
@@ -93,7 +96,7 @@ void add_mesh(Summary& s, const MeshFile& f) {
   s.say("box [m]", box.text());
   if (!f.rank.empty()) s.count("parts", f.n_parts);
   if (!m.deck_scene.empty()) s.count("scene lines of the deck", std::ranges::count(m.deck_scene, '\n'));
-  s.list("regions", regions(f));
+  s.list("regions", regions(f, path));
   s.list("sets", sets(m));
   if (!f.rank.empty()) s.list("parts", parts(f));
 }

@@ -46,7 +46,7 @@ Summary summary_of_file(const std::string& path) {
     if (const auto link = store.linked(fmt::format("/{}", what))) s.say(fmt::format("{} from", what), link->first);
   if (store.has("/mesh") || store.linked("/mesh")) {
     if (*format != "hilo run" || store.has("/mesh"))
-      add_mesh(s, read_mesh_file(path));
+      add_mesh(s, read_mesh_file(path), path);
     else
       warn(path, fmt::format("the mesh is in {}, which is missing", resolved_from(path, store.linked("/mesh")->first)));
   }

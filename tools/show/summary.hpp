@@ -33,7 +33,7 @@ Summary summary_of_file(const std::string& path);
 Summary summary_of_scene(const std::string& path);
 
 /// Sets, regions, tags and parts; whatever the file has of them.
-void add_mesh(Summary& s, const MeshFile& file);
+void add_mesh(Summary& s, const MeshFile& file, const std::string& path);
 /// Bodies, fields and histories of a results file.
 void add_run(Summary& s, const Store& store);
 /// Linear regions, their modes, and the mass that vibrations of held regions carry.

@@ -10,12 +10,22 @@
 
 namespace hilo {
 
-std::vector<Fidelity> all_tagged(const Mesh& mesh, const std::vector<std::optional<Fidelity>>& tags) {
+std::vector<Fidelity> all_tagged(const Mesh& mesh, const std::vector<ThinRegion>& thin_regions,
+                                 const std::vector<std::optional<Fidelity>>& tags) {
   std::vector<Fidelity> fidelity;
   std::vector<std::string> untagged;
   for (size_t r = 0; r < tags.size(); ++r) {
-    fidelity.push_back(tags[r].value_or(Fidelity::nonlinear));
-    if (!tags[r]) untagged.push_back(mesh.region_name[r]);
+    const bool thin = !thin_regions.empty() && thin_regions[r].any();
+    if (thin && tags[r] && *tags[r] != Fidelity::rigid)
+      throw Error("",
+                  fmt::format("region \"{}\" has shells or beams: there is no element of them, it can be rigid alone, not {}",
+                              mesh.region_name[r], word(*tags[r])),
+                  fmt::format("--rigid '{}'", mesh.region_name[r]));
+    fidelity.push_back(tags[r].value_or(thin ? Fidelity::rigid : Fidelity::nonlinear));
+    if (!tags[r] && thin && !is_quiet())
+      fmt::print(stderr, "{}: region \"{}\" has shells or beams, so it is rigid\n", tool_name(), mesh.region_name[r]);
+    else if (!tags[r])
+      untagged.push_back(mesh.region_name[r]);
   }
   if (!untagged.empty() && !is_quiet()) {
     const size_t shown = std::min<size_t>(untagged.size(), 8);

@@ -5,6 +5,7 @@
 
 #include "base/table.hpp"
 #include "model/mesh.hpp"
+#include "model/thin_regions.hpp"
 
 namespace hilo {
 
@@ -19,7 +20,8 @@ Savings savings(const Mesh& mesh, const std::vector<Fidelity>& fidelity);
 std::string savings_text(const Savings& s);
 std::string savings_json(const Savings& s, const std::string& output);
 
-/// Untagged regions are nonlinear, and that is said on stderr.
-std::vector<Fidelity> all_tagged(const Mesh& mesh, const std::vector<std::optional<Fidelity>>& tags);
+/// Untagged regions are nonlinear, and that is said on stderr; those of shells and beams are rigid, and anything else of them is an Error.
+std::vector<Fidelity> all_tagged(const Mesh& mesh, const std::vector<ThinRegion>& thin_regions,
+                                 const std::vector<std::optional<Fidelity>>& tags);
 
 }  // namespace hilo

@@ -23,7 +23,10 @@ void MeshPart::write_skin(const std::vector<Facet>& facets) {
     put(f.cell, f.facet, {n == 3 ? 4 : n == 4 ? 5 : n == 6 ? 36 : 37}, nodes);  // triangle, quadrilateral, their quadratic likes
   }
   for (std::int64_t c = 0; c < m.mesh.n_cells(); ++c)
-    if (info(m.mesh.shape[c]).dimension < 3) put(c, 0, {info(m.mesh.shape[c]).xdmf_type, 2}, m.mesh.cell(c));
+    if (const auto& shape = info(m.mesh.shape[c]); shape.dimension == 1)
+      put(c, 0, {shape.xdmf_type, 2}, m.mesh.cell(c));
+    else if (shape.dimension == 2)
+      put(c, 0, {shape.xdmf_type}, m.mesh.cell(c));
   const auto received = system_.comm->exchange(send);
   std::vector<const std::int64_t*> items;
   for (const auto& list : received)

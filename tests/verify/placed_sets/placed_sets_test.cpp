@@ -32,6 +32,17 @@ Mesh pipe() {
   return block_mesh(o);
 }
 
+TEST(PlacedSets, NearIsTheSmoothFaceThatAPointLiesOn) {
+  const Mesh m = pipe();
+  const Mesh bore = with_set(m, "kind = \"near\"\nat = [0.79, 0.6, 1.4]");
+  EXPECT_EQ(bore.node_sets.at("here"), m.nodes_of("xmin", "")) << "node for node";
+  EXPECT_EQ(bore.facet_sets.at("here").size(), m.facet_sets.at("xmin").size());
+  const Mesh one = with_set(m, "kind = \"near\"\nat = [0.79, 0.6, 1.4]\nangle = 0.1");
+  EXPECT_EQ(one.facet_sets.at("here").size(), 3u) << "facets turn by 0.19 rad: a row of three along the axis";
+  EXPECT_THROW(with_set(m, "kind = \"near\"\nat = [1, 0, 1.5]"), Error) << "on the edge between two faces";
+  EXPECT_THROW(with_set(m, "kind = \"near\"\nat = [0, 0, 1.5]"), Error) << "far from all of them";
+}
+
 TEST(PlacedSets, AreWhereTheirShapesAre) {
   const Mesh m = pipe();
   const Mesh bore = with_set(m, "kind = \"cylinder\"\nat = [0, 0, 7]\naxis = [0, 0, -3]\nradius = 1");

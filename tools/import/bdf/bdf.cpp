@@ -1,7 +1,9 @@
 // Nastran bulk data: GRID, solids, rods and their properties and materials, in small, large and free fields.
-// (gmsh loses names and the mid-side nodes of long fields, so the reader is ours.)  Shell elements are read where they lie on solids, as
-// facet sets.
+// (gmsh loses names and the mid-side nodes of long fields, so the reader is ours.)  Shell elements that lie on solids are
+// facet sets; others, and beams, are cells of regions that can be rigid alone.
 #include <fmt/format.h>
+
+#include <unordered_set>
 
 #include "base/error.hpp"
 #include "import/bdf/card.hpp"
@@ -9,9 +11,9 @@
 namespace hilo {
 namespace {
 
-std::vector<std::int64_t> rows(const BdfDeck& deck, const BdfDeck::Cell& r) {
+std::vector<std::int64_t> rows(const BdfDeck& deck, const std::vector<std::int64_t>& ids, const BdfDeck::Cell& r) {
   std::vector<std::int64_t> nodes;
-  for (const auto id : r.nodes) {
+  for (const auto id : ids) {
     const auto a = deck.row.find(id);
     if (a == deck.row.end()) throw Error(r.place, fmt::format("element {} names node {}, which does not exist", r.id, id));
     nodes.push_back(a->second);
@@ -42,12 +44,51 @@ void build(BdfDeck& deck, const std::string& path, const ImportOptions& options,
     return n == deck.property_name.end() ? fmt::format("pid_{}", property) : n->second;
   };
   std::map<std::int64_t, CellGroup> by_property;
+  const auto group_of = [&](std::int64_t property) -> CellGroup& {
+    auto& g = by_property[property];
+    g.name = property_name(property);
+    return g;
+  };
   for (const auto& r : deck.cells) {
-    auto& g = by_property[r.property];
-    g.name = property_name(r.property);
-    g.cells.push_back(m.n_cells());
-    m.add_cell(r.shape, rows(deck, r), -1, r.id);
+    group_of(r.property).cells.push_back(m.n_cells());
+    m.add_cell(r.shape, rows(deck, r.nodes, r), -1, r.id);
   }
+  // shells whose property has them on solids alone are sets of facets, the others cells of a rigid region, as beams are
+  std::vector<std::vector<std::int64_t>> faces;
+  for (const auto& s : deck.shells) faces.push_back(rows(deck, s.nodes, s));
+  const auto found = match_facets(m, faces);
+  std::set<std::int64_t> apart;
+  for (size_t i = 0; i < deck.shells.size(); ++i)
+    if (found[i].cell < 0) apart.insert(deck.shells[i].property);
+  std::map<std::int64_t, std::vector<Facet>> facets;
+  for (size_t i = 0; i < deck.shells.size(); ++i) {
+    const auto& s = deck.shells[i];
+    if (!apart.contains(s.property)) {
+      facets[s.property].push_back(found[i]);
+      continue;
+    }
+    auto nodes = faces[i];
+    for (const auto a : rows(deck, s.middles, s)) nodes.push_back(a);
+    group_of(s.property).cells.push_back(m.n_cells());
+    add_thin_cell(deck, s, nodes, in);
+  }
+  for (const auto& b : deck.beams) {
+    group_of(b.property).cells.push_back(m.n_cells());
+    add_thin_cell(deck, b, rows(deck, b.nodes, b), in);
+  }
+  std::unordered_set<std::int64_t> of_thin;
+  for (const auto& [c, t] : in.thin) of_thin.insert(m.cell(c).begin(), m.cell(c).end());
+  const auto tell_turn = [&](std::int64_t grid, const std::string& place) {
+    if (const auto a = deck.row.find(grid); a != deck.row.end() && of_thin.contains(a->second))
+      in.skip("turns and moments of grids of shells and beams", place);
+  };
+  for (const auto& [sid, lines] : deck.supports)
+    for (const auto& l : lines)
+      if (l.components & ~7u)
+        for (const auto id : l.grids) tell_turn(id, l.place);
+  for (const auto& [sid, loads] : deck.loads)
+    for (const auto& l : loads)
+      if (l.kind == BdfLoad::Kind::moment) tell_turn(l.grid, l.place);
   std::vector<CellGroup> regions;
   for (auto& [pid, g] : by_property) regions.push_back(g);
   assign_regions(in, path, regions, false, {}, options);
@@ -58,16 +99,6 @@ void build(BdfDeck& deck, const std::string& path, const ImportOptions& options,
       if (mat != deck.materials.end()) m.region_data[m.region[c]] = mat->second.carried();
   }
   SetNames names(in);
-  std::vector<std::vector<std::int64_t>> faces;
-  for (const auto& s : deck.shells) faces.push_back(rows(deck, s));
-  const auto found = match_facets(m, faces);
-  std::map<std::int64_t, std::vector<Facet>> facets;
-  for (size_t i = 0; i < deck.shells.size(); ++i) {
-    if (found[i].cell < 0)
-      throw Error(deck.shells[i].place, fmt::format("shell element {} lies on no solid: shells are not read", deck.shells[i].id),
-                  bdf_supported);
-    facets[deck.shells[i].property].push_back(found[i]);
-  }
   for (auto& [pid, f] : facets) names.facets(property_name(pid), std::move(f));
   for (const auto& [sid, lines] : deck.supports) {
     std::vector<std::int64_t> nodes;
@@ -98,7 +129,7 @@ Imported read_bdf(const std::string& path, const ImportOptions& options) {
   BdfEntries entries(path);
   parse_bdf(entries, deck, in, bdf_cards());
   if (deck.X.empty()) throw Error(path, "no GRID", "a Nastran file has GRID entries");
-  if (deck.cells.empty()) throw Error(path, "no solid elements and no rods", bdf_supported);
+  if (deck.cells.empty() && deck.shells.empty() && deck.beams.empty()) throw Error(path, "no elements", bdf_supported);
   std::set<std::string> taken;
   for (const auto& [id, name] : entries.property_names())  // one name for two properties would make one region of two materials
     deck.property_name[id] = taken.insert(name).second ? name : fmt::format("{}_{}", name, id);

@@ -10,7 +10,8 @@
 
 namespace hilo {
 
-inline constexpr const char* bdf_supported = "supported: CTETRA, CPENTA, CHEXA, CROD, CONROD";
+inline constexpr const char* bdf_supported =
+    "supported: CTETRA, CPENTA, CHEXA, CROD, CONROD; as rigid regions CTRIA3, CTRIA6, CQUAD4, CQUAD8, CBAR, CBEAM";
 
 struct BdfCard {
   std::string_view name;  // "CHEXA"
@@ -20,12 +21,15 @@ using BdfCards = Registry<BdfCard>;
 BdfCards& bdf_cards();
 /// The families, one file each.
 std::span<const BdfCard> bdf_mesh_cards();      // GRID, CORD, solids, rods, shells, properties
+std::span<const BdfCard> bdf_thin_cards();      // shells and beams, with their properties
 std::span<const BdfCard> bdf_material_cards();  // MAT1 and what goes with it
 std::span<const BdfCard> bdf_load_cards();      // supports, loads, methods
 std::span<const BdfCard> bdf_link_cards();      // rigid elements, masses, springs
 
 /// The material of the number in the first field of an entry, new where none has it yet.
 DeckMaterial& material_of(const BdfEntry& e, BdfDeck& deck);
+/// A shell or beam becomes a cell with its section; Error where its property says none.
+void add_thin_cell(const BdfDeck& deck, const BdfDeck::Thin& cell, std::span<const std::int64_t> rows, Imported& in);
 /// MATS1 and the tables it names, into the materials.
 void resolve_metals(BdfDeck& deck, Imported& in);
 /// Components of a grid, "123456" in any order, as bits 0 to 5; an Error where it is none.

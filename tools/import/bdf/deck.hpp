@@ -88,6 +88,12 @@ struct BdfCase {
   bool any = false;  // case control is there: CEND is said
 };
 
+/// PSHELL, PCOMP: thickness, offset of the mid-surface.  PBAR, PBEAM and their like: area and second moments.
+struct BdfThin {
+  double thickness = 0, offset = 0, area = 0, I1 = 0, I2 = 0, I12 = 0;
+  std::string place = {};
+};
+
 struct BdfDeck {
   struct Cell {
     Shape shape;
@@ -95,13 +101,23 @@ struct BdfDeck {
     std::vector<std::int64_t> nodes;
     std::string place;
   };
+  /// A shell (`nodes`: its corners) or a beam.
+  struct Thin : Cell {
+    std::vector<std::int64_t> middles = {};
+    double offset = 0;                       // of a shell, along its normal
+    std::int64_t towards = 0;                // of a beam: G0
+    Vec3 v = Vec3::Zero();                   // of a beam: in its plane 1
+    Vec3 start = Vec3::Zero(), end = start;  // of a beam: offsets of its ends
+  };
   std::vector<Vec3> X;
   std::vector<std::int64_t> node_id;
   std::vector<BdfGrid> grids;                          // beside X
   BdfGrid grid_default;                                // GRDSET
   std::map<std::int64_t, BdfSystem> systems;           // by CID
   std::unordered_map<std::int64_t, std::int64_t> row;  // number of a grid -> row of X
-  std::vector<Cell> cells, shells;
+  std::vector<Cell> cells;
+  std::vector<Thin> shells, beams;
+  std::map<std::int64_t, BdfThin> thin;  // by property
   std::set<std::int64_t> cell_ids;
   std::unordered_map<std::int64_t, std::int64_t> cell_row;  // number of a cell -> row of cells
   std::map<std::int64_t, std::int64_t> material_of;         // property -> material

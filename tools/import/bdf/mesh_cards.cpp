@@ -137,15 +137,6 @@ void read_conrod(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   add(deck, {Shape::bar2, d.integer(0), property, {d.integer(1), d.integer(2)}, d.place(0)});
 }
 
-/// Shells are kept where they lie on solids: a set of facets for each property.
-template <size_t corners>
-void read_shell(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  const auto& d = e.data;
-  BdfDeck::Cell r{Shape::tet4, d.integer(0), property_in(d, 1), {}, d.place(0)};
-  for (size_t i = 0; i < corners; ++i) r.nodes.push_back(d.integer(2 + i));
-  deck.shells.push_back(std::move(r));
-}
-
 void read_property(const BdfEntry& e, BdfDeck& deck, Imported&) {
   const auto& d = e.data;
   if (e.name == "PSOLID" && !d.empty(6) && upper(d.text(6)) != "SMECH")
@@ -171,38 +162,17 @@ void read_param(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   throw Error(e.data.place() + ":1", fmt::format("{}: {}", e.name, why), bdf_supported);
 }
 void pyramid(const BdfEntry& e, BdfDeck&, Imported&) { refuse(e, "pyramids are not read"); }
-void beam(const BdfEntry& e, BdfDeck&, Imported&) { refuse(e, "beams are not read"); }
 void axisymmetric(const BdfEntry& e, BdfDeck&, Imported&) { refuse(e, "axisymmetric elements are not three-dimensional"); }
 
 }  // namespace
 
 std::span<const BdfCard> bdf_mesh_cards() {
   static constexpr BdfCard cards[] = {
-      {"GRID", read_grid},
-      {"GRDSET", read_grid_default},
-      {"CORD1R", read_cord1},
-      {"CORD1C", read_cord1},
-      {"CORD1S", read_cord1},
-      {"CORD2R", read_cord2},
-      {"CORD2C", read_cord2},
-      {"CORD2S", read_cord2},
-      {"CTETRA", read_solid},
-      {"CPENTA", read_solid},
-      {"CHEXA", read_solid},
-      {"CROD", read_rod},
-      {"CONROD", read_conrod},
-      {"CTRIA3", read_shell<3>},
-      {"CTRIA6", read_shell<3>},
-      {"CQUAD4", read_shell<4>},
-      {"CQUAD8", read_shell<4>},
-      {"PSOLID", read_property},
-      {"PROD", read_rod_property},
-      {"PARAM", read_param},
-      {"CPYRAM", pyramid},
-      {"CBEAM", beam},
-      {"CBAR", beam},
-      {"CTRAX3", axisymmetric},
-      {"CTRAX6", axisymmetric},
+      {"GRID", read_grid},     {"GRDSET", read_grid_default}, {"CORD1R", read_cord1},      {"CORD1C", read_cord1},
+      {"CORD1S", read_cord1},  {"CORD2R", read_cord2},        {"CORD2C", read_cord2},      {"CORD2S", read_cord2},
+      {"CTETRA", read_solid},  {"CPENTA", read_solid},        {"CHEXA", read_solid},       {"CROD", read_rod},
+      {"CONROD", read_conrod}, {"PSOLID", read_property},     {"PROD", read_rod_property}, {"PARAM", read_param},
+      {"CPYRAM", pyramid},     {"CTRAX3", axisymmetric},      {"CTRAX6", axisymmetric},
   };
   return cards;
 }

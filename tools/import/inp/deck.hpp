@@ -47,6 +47,10 @@ struct InpSection {
   double area = 0;  // of bars
   std::string orientation = {}, orientation_name = {}, orientation_place = {};
   std::string law = {};  // key of InpDeck::laws
+  std::string card = "*SOLID SECTION";
+  double thickness = 0, offset = 0;  // of shells: the mid-surface off the nodes, along the normal
+  double I1 = 0, I2 = 0;             // of beams: int y^2 dA along n1 and n2
+  Vec3 n1 = Vec3(0, 0, -1);          // of beams
 };
 /// One line of *BOUNDARY, *CLOAD or *INITIAL CONDITIONS, TYPE=VELOCITY: a value on degrees of freedom first..last of a node or node set.
 struct InpNodal {
@@ -95,8 +99,8 @@ struct InpPoint {
 };
 struct InpPointValue {
   std::string elset, name, place;
-  std::vector<double> first;  // numbers of its lines
-  bool more = false;          // further numbers on one
+  std::vector<double> first, second = {};  // numbers of its lines
+  bool more = false;                       // further numbers on the last
 };
 /// A reference node that became a body, with the nodes it carries; or the mean of nodes with weights.
 struct InpCarried {
@@ -145,6 +149,7 @@ struct InpDeck {
   std::string material;                      // the one that *ELASTIC and *DENSITY speak of
   std::vector<InpSection> sections;
   std::vector<InpTie> ties;
+  std::unordered_set<std::int64_t> beams;   // elements that are no bars
   std::map<std::int64_t, InpPoint> points;  // by number of the element
   std::vector<InpPointValue> point_values;
   std::unordered_map<std::int64_t, Vec3> loose;  // nodes of no cell

@@ -15,12 +15,11 @@ namespace {
 void check_names(const InpDeck& d) {
   for (const auto& s : d.sections) {
     if (!d.elset.count(s.elset))
-      throw Error(s.place, fmt::format("*SOLID SECTION: no element set \"{}\"", s.elset_name), suggest_name(s.elset, d.elset));
+      throw Error(s.place, fmt::format("{}: no element set \"{}\"", s.card, s.elset_name), suggest_name(s.elset, d.elset));
     if (!s.material.empty() && !d.materials.count(s.material))
-      throw Error(s.material_place, fmt::format("*SOLID SECTION: no material \"{}\"", s.material_name),
-                  suggest_name(s.material, d.materials));
+      throw Error(s.material_place, fmt::format("{}: no material \"{}\"", s.card, s.material_name), suggest_name(s.material, d.materials));
     if (!s.orientation.empty() && !d.orientations.count(s.orientation))
-      throw Error(s.orientation_place, fmt::format("*SOLID SECTION: no orientation \"{}\"", s.orientation_name),
+      throw Error(s.orientation_place, fmt::format("{}: no orientation \"{}\"", s.card, s.orientation_name),
                   suggest_name(s.orientation, d.orientations));
   }
 }
@@ -30,7 +29,7 @@ void turn_materials(InpDeck& d, Imported& in) {
   for (auto& s : d.sections) {
     DeckMaterial law;  // of a section without a material: none
     if (s.material.empty())
-      law.no_law = "*SOLID SECTION without MATERIAL, " + s.place;
+      law.no_law = s.card + " without MATERIAL, " + s.place;
     else
       law = d.materials.at(s.material);
     s.law = s.material;
@@ -81,6 +80,43 @@ void resolve_cells(InpDeck& d, Imported& in) {
   m.cell_id = d.cell_id;
   m.offset = d.offset;
   m.region.assign(d.shape.size(), -1);
+}
+
+/// Sections of shells and beams; a cell of these without one is an Error.
+void thin_sections(const InpDeck& d, Imported& in) {
+  const Mesh& m = in.mesh;
+  for (const auto& s : d.sections)
+    for (const auto id : d.elset.at(s.elset).members) {
+      const auto found = d.cell.find(id);
+      if (found == d.cell.end()) continue;
+      const auto c = found->second;
+      const bool shell = info(m.shape[c]).dimension == 2, beam = d.beams.contains(id);
+      const char* due = shell ? "*SHELL SECTION" : beam ? "*BEAM SECTION" : "*SOLID SECTION";
+      if (s.card != due) throw Error(s.place, fmt::format("{} on element {}", s.card, id), fmt::format("it needs {}", due));
+      if (!shell && !beam) continue;
+      ThinSection t;
+      t.thickness = s.thickness, t.offset = s.offset, t.area = s.area;
+      if (beam) {
+        const Vec3 along = m.X[m.cell(c)[1]] - m.X[m.cell(c)[0]];
+        if (!(along.cross(s.n1).norm() > 1e-6 * along.norm() * s.n1.norm()))
+          throw Error(s.place, fmt::format("{}: element {} lies along the direction 1 of its section", s.card, id));
+        // n1 may be askew: its part across the beam counts
+        t.second = second_of_section(along, s.n1, s.I1, s.I2, 0);
+      }
+      in.thin[c] = t;
+    }
+  std::unordered_set<std::int64_t> nodes;
+  for (const auto& [c, t] : in.thin) nodes.insert(m.cell(c).begin(), m.cell(c).end());
+  for (const auto* lines : {&d.supports, &d.forces})
+    for (const auto& l : *lines) {
+      const auto rows = l.last > 3 && !nodes.empty() ? inp_nodes(d, l.target, l.id, l.place) : std::vector<std::int64_t>{};
+      if (const auto n = std::ranges::count_if(rows, [&](std::int64_t a) { return nodes.contains(a); }))
+        in.skip("turns and moments of nodes of shells and beams", l.place, n);
+    }
+  for (std::int64_t c = 0; c < m.n_cells(); ++c)
+    if ((info(m.shape[c]).dimension == 2 || d.beams.contains(m.cell_id[c])) && !in.thin.contains(c))
+      throw Error(fmt::format("{}:{}", *d.cell_file[c], d.cell_line[c]), fmt::format("element {} has no section", m.cell_id[c]),
+                  "shells need *SHELL SECTION, beams *BEAM SECTION");
 }
 
 /// Members of a set that exist; the others are counted and said.
@@ -166,6 +202,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   check_names(d);
   turn_materials(d, in);
   resolve_cells(d, in);
+  thin_sections(d, in);
 
   std::unordered_set<std::int64_t> points;  // elements that are no cells
   for (const auto& [id, p] : d.points) points.insert(id);

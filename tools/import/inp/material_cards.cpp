@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
@@ -199,6 +202,58 @@ void read_section(InpReading& r) {
   r.deck.sections.push_back(s);
 }
 
+InpSection section_of(InpReading& r) {
+  const Card& card = r.card;
+  InpSection s{upper(card.need("ELSET")), upper(card.value("MATERIAL")), card.need("ELSET"),
+               card.value("MATERIAL"),    card.place("ELSET"),           card.place("MATERIAL")};
+  s.card = card.name;
+  if (s.material.empty()) r.skip(card.name + " without MATERIAL");
+  return s;
+}
+
+/// Thickness; OFFSET: where the nodes lie, in thicknesses above the mid-surface.
+void read_shell_section(InpReading& r) {
+  if (const auto odd = unknown_param(r.card, {"ELSET", "MATERIAL", "OFFSET", "ORIENTATION", "SECTIONINTEGRATION", "DENSITY"});
+      !odd.empty() || r.card.has("DENSITY"))
+    throw Error(r.card.place() + ":1", (odd.empty() ? r.card.name + ", DENSITY" : odd) + " is not read", "give a material and a thickness");
+  InpSection s = section_of(r);
+  DataLine l;
+  if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", r.card.name + " lacks its data line", "the thickness");
+  s.thickness = l.number(0);
+  if (!(s.thickness > 0)) throw Error(l.place(0), fmt::format("{}: a thickness of {:g}", r.card.name, s.thickness));
+  if (r.card.has("OFFSET")) {
+    const std::string word = r.card.word("OFFSET");
+    char* end = nullptr;
+    const double above = word == "SPOS" ? 0.5 : word == "SNEG" ? -0.5 : std::strtod(word.c_str(), &end);
+    if (end && (*end || end == word.c_str())) throw Error(r.card.place("OFFSET"), fmt::format("OFFSET={} is no number", word));
+    s.offset = -above * s.thickness;
+  }
+  r.deck.sections.push_back(s);
+}
+
+/// Sizes of the section, then its direction 1.
+void read_beam_section(InpReading& r) {
+  if (const auto odd = unknown_param(r.card, {"ELSET", "MATERIAL", "SECTION", "ORIENTATION"}); !odd.empty())
+    throw Error(r.card.place() + ":1", odd + " is not read", "a section without it");
+  InpSection s = section_of(r);
+  DataLine l;
+  if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", r.card.name + " lacks its data line", "the sizes of the section");
+  const std::string type = r.card.need("SECTION") == "" ? "" : r.card.word("SECTION");
+  constexpr double pi = std::numbers::pi;
+  const double a = l.number(0), b = l.number(1);
+  if (type == "RECT")
+    s.area = a * b, s.I1 = b * a * a * a / 12, s.I2 = a * b * b * b / 12;
+  else if (type == "CIRC")
+    s.area = pi * a * a, s.I1 = s.I2 = pi * std::pow(a, 4) / 4;
+  else if (type == "PIPE")
+    s.area = pi * (a * a - (a - b) * (a - b)), s.I1 = s.I2 = pi * (std::pow(a, 4) - std::pow(a - b, 4)) / 4;
+  else
+    throw Error(r.card.place("SECTION"), fmt::format("{}, SECTION={} is not read", r.card.name, type), "RECT, CIRC and PIPE are");
+  if (!(s.area > 0)) throw Error(l.place(0), fmt::format("{}: an area of {:g}", r.card.name, s.area));
+  if (r.lines.next_data(l)) s.n1 = Vec3(l.number(0), l.number(1), l.number(2));
+  r.deck.sections.push_back(s);
+}
+
 }  // namespace
 
 std::span<const InpCard> inp_material_cards() {
@@ -207,6 +262,8 @@ std::span<const InpCard> inp_material_cards() {
       {"ELASTIC", read_elastic},
       {"DENSITY", read_density},
       {"SOLIDSECTION", read_section},
+      {"SHELLSECTION", read_shell_section},
+      {"BEAMSECTION", read_beam_section},
       {"PLASTIC", read_plastic},
       {"RATEDEPENDENT", read_rates},
       {"HYPERELASTIC", read_rubber},

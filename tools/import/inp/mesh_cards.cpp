@@ -9,7 +9,8 @@
 namespace hilo {
 namespace {
 
-constexpr const char* supported = "C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 and their I, R, H, M, T variants, T3D2";
+constexpr const char* supported =
+    "C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 and their I, R, H, M, T variants, T3D2; as rigid regions S3, S4, S6, S8, B31";
 
 InpSet& set_named(const std::string& name, std::map<std::string, InpSet>& sets, std::vector<std::string>& order) {
   const std::string key = upper(name);
@@ -64,6 +65,9 @@ void read_nodes(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
   }
 }
 
+/// Beams of two nodes, which become cells of bars with a section of their own.
+bool is_beam(const std::string& type) { return type == "B31" || type == "B31R" || type == "B31H" || type == "B33"; }
+
 void read_elements(InpReading& r) {
   if (read_points(r, upper(r.card.need("TYPE")))) return;
   const Card& card = r.card;
@@ -72,6 +76,7 @@ void read_elements(InpReading& r) {
   Imported& in = r.in;
   const Shape shape = inp_shape(card);
   const size_t n = static_cast<size_t>(info(shape).n_nodes);
+  const bool beams = is_beam(upper(card.need("TYPE")));
   InpSet* set = card.has("ELSET") ? &set_of_cells(card.need("ELSET"), d) : nullptr;
   DataLine l;
   std::vector<std::int64_t> row;
@@ -99,6 +104,7 @@ void read_elements(InpReading& r) {
     d.cell_line.push_back(line);
     d.cell_file.push_back(file);
     if (set) set->members.push_back(row[0]);
+    if (beams) d.beams.insert(row[0]);
   }
 }
 
@@ -206,7 +212,10 @@ Shape inp_shape(const Card& card) {
   const auto refuse = [&](const std::string& why) {
     return Error(place, fmt::format("element type \"{}\": {}", type, why), fmt::format("supported: {}", supported));
   };
-  if (type == "T3D2") return Shape::bar2;
+  if (type == "T3D2" || is_beam(type)) return Shape::bar2;
+  static const std::map<std::string, Shape> shells{{"S3", tri3},  {"S3R", tri3},  {"S6", tri6},  {"STRI3", tri3}, {"STRI65", tri6},
+                                                   {"S4", quad4}, {"S4R", quad4}, {"S8", quad8}, {"S8R", quad8}};
+  if (const auto shell = shells.find(type); shell != shells.end()) return shell->second;
   if (type.substr(0, 3) == "C3D") {
     size_t i = 3;
     while (i < type.size() && std::isdigit(static_cast<unsigned char>(type[i]))) ++i;
@@ -242,9 +251,9 @@ Shape inp_shape(const Card& card) {
       {"T2D", "plane trusses are not read"},
       {"T3D", "trusses of three nodes are not read"},
       {"R3D", "rigid elements are not read; make the region rigid with hilo-tag"},
-      {"B2", "beams are not read"},
-      {"B3", "beams are not read"},
-      {"S", "shells are not read"},
+      {"B2", "plane beams are not read"},
+      {"B3", "beams of three nodes are not read"},
+      {"S", "this shell is not read"},
       {"D", "network elements are not read"},
       {"U", "user elements are not read"},
   };

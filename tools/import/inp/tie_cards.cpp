@@ -62,14 +62,15 @@ void read_rigid_body(InpReading& r) {
   r.deck.ties.push_back(t);
 }
 
-/// The first number of a line; in front of it, for springs and dampers, a line with the degree of freedom of SPRING1.
+/// The first number of a line; in front of it, for springs and dampers, a line with the degrees of freedom of SPRING1 and SPRING2.
 void read_value(InpReading& r) {
   if (const auto odd = unknown_param(r.card, {"ELSET"}); !odd.empty()) return r.skip(odd);
   InpPointValue v{upper(r.card.need("ELSET")), r.card.name, r.card.place(), {}};
   DataLine l;
   while (r.lines.next_data(l)) {
     if (l.fields.empty()) continue;
-    v.first.push_back(l.number(0));
+    v.first.push_back(l.number(0)), v.second.push_back(l.number(1));
+    v.more = false;  // of the last line
     for (size_t i = 1; i < l.fields.size(); ++i) v.more = v.more || !l.empty(i);
   }
   r.deck.point_values.push_back(std::move(v));
@@ -78,7 +79,8 @@ void read_value(InpReading& r) {
 }  // namespace
 
 bool read_points(InpReading& r, const std::string& type) {
-  static const std::map<std::string, size_t> kinds{{"MASS", 1}, {"SPRINGA", 2}, {"SPRING1", 1}, {"DASHPOTA", 2}, {"DASHPOT1", 1}};
+  static const std::map<std::string, size_t> kinds{{"MASS", 1},    {"SPRINGA", 2},  {"SPRING1", 1},
+                                                   {"SPRING2", 2}, {"DASHPOTA", 2}, {"DASHPOT1", 1}};
   const auto kind = kinds.find(type);
   if (kind == kinds.end()) return false;
   InpSet* set = r.card.has("ELSET") ? &set_of_cells(r.card.need("ELSET"), r.deck) : nullptr;

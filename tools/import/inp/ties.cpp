@@ -159,7 +159,7 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
       if (p == d.points.end() || v.first.empty()) continue;
       const std::string& type = p->second.type;
       const double value = v.first.back();
-      const size_t n_lines = type == "SPRING1" || type == "DASHPOT1" ? 2 : 1;
+      const size_t n_lines = type == "SPRING1" || type == "SPRING2" || type == "DASHPOT1" ? 2 : 1;
       if ((type == "MASS") != (v.name == "*MASS") || (type[0] == 'S') != (v.name == "*SPRING")) continue;
       if (!valued.insert(id).second)
         throw Error(v.place, fmt::format("{} of element {} is given twice", v.name, id), "give each element one value");
@@ -178,6 +178,22 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
         springs += fmt::format("\n[[spring]]   # {}\nkind = \"axial\"\nname = \"{}_{}\"\na = {}\nb = {}\nat_a = {}\nat_b = {}\n{} = {}\n",
                                p->second.place, type, id, toml_text(end_name(a)), toml_text(end_name(b)), point(X(a)), point(X(b)),
                                type[0] == 'S' ? "stiffness" : "damping", toml_number(value * si(type[0] == 'S' ? "N/m" : "N s/m")));
+      } else if (type == "SPRING2") {  // along one component of both nodes: exact where they are at one place, or on a line along it
+        const auto a = p->second.nodes[0], b = p->second.nodes[1];
+        const int dof = static_cast<int>(v.first.front());
+        const Vec3 d = X(b) - X(a), axis = dof >= 1 && dof <= 3 ? Vec3(Vec3::Unit(dof - 1)) : Vec3(Vec3::Zero());
+        const bool together = d.norm() < 1e-9 * (X(a).norm() + X(b).norm()) || d.norm() == 0;
+        if (v.first.size() != 2 || axis.norm() == 0 || v.second.front() != dof || (!together && d.cross(axis).norm() > 1e-9 * d.norm())) {
+          in.skip("*SPRING of SPRING2, but along one component of both nodes, in the line between them", v.place);
+          continue;
+        }
+        const std::string ends =
+            fmt::format("name = \"{}_{}\"\na = {}\nb = {}\n", type, id, toml_text(end_name(a)), toml_text(end_name(b)));
+        const std::string stiffness = toml_number(value * si("N/m"));
+        springs += together ? fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\n{}at = {}\naxis = {}\nstiffness = {}\n",
+                                          p->second.place, ends, point(X(a)), toml_list({axis.x(), axis.y(), axis.z()}), stiffness)
+                            : fmt::format("\n[[spring]]   # {}\nkind = \"axial\"\n{}at_a = {}\nat_b = {}\nstiffness = {}\n",
+                                          p->second.place, ends, point(X(a)), point(X(b)), stiffness);
       } else {
         const auto b = p->second.nodes[0];
         const int dof = static_cast<int>(v.first.front());
