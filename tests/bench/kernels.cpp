@@ -27,6 +27,8 @@ struct Counted {
   friend bool operator<(Counted a, Counted b) { return a.v < b.v; }
 };
 inline Counted log_of(Counted x) { return Counted::of(std::log(x.v)); }
+inline Counted log_of_1_and(Counted x) { return Counted::of(std::log1p(x.v)); }
+inline Counted exp_less_1(Counted x) { return Counted::of(std::expm1(x.v)); }
 inline Counted root(Counted x) { return Counted::of(std::sqrt(x.v)); }
 inline Counted cube_root(Counted x) { return Counted::of(std::cbrt(x.v)); }
 inline void log_ratio(Counted r, Counted& L, Counted& dL) {
