@@ -48,13 +48,27 @@ double size_of(const System& s, std::span<const double> z) {
 }
 
 NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Unknown&)>& stage, Unknown& u,
-                    std::vector<double>& lambda, const NewtonOptions& options) {
+                    std::vector<double>& lambda, const NewtonOptions& options, std::optional<Correction> last) {
   NewtonReport report;
   Residual r;
   std::vector<double> b, z;
+  // The last correction, to first order: a tangent takes the stresses of cells from it (physics/solid, `foresee`).
+  bool foresees = system.traits().deforms && options.foresees;
+  if (!foresees) last.reset();
+  bool foreseen = false;   // in the last tangent
+  std::vector<double> by;  // the last correction, where `last->along` is not known yet
   const auto evaluate = [&](bool tangent) {
     const Timed timed(phases().assembly);
-    system.evaluate(stage(u), lambda, r, tangent ? &solver : nullptr);
+    Stage s = stage(u);
+    if (tangent) foreseen = last && s.e1 == s.end && s.chain == 1;
+    if (tangent && foreseen) {
+      if (!by.empty()) {
+        combine(last->along, {{0, &last->before}});
+        system.add_rates(last->along, last->before, by);
+      }
+      s.before = &last->before, s.along = &last->along;
+    }
+    system.evaluate(s, lambda, r, tangent ? &solver : nullptr);
     solver.sum_shared(r.r);
     system.mask_fixed(r.r);
     r.force_scale = system.comm->max(r.force_scale);
@@ -85,15 +99,26 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     return solved;
   };
   const auto move = [&] {
+    if (foresees) {
+      if (!last) last.emplace();
+      last->before = u.q, by = z;
+    }
     u.move(system, z);
     const int first = 3 * system.first_joint_block();
     for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += r.sigma * z[first + i];
   };
   std::vector<double> direction;
-  const auto move_along = [&](double by) {
+  const auto move_along = [&](double share) {
     z.resize(direction.size());
-    for (size_t i = 0; i < z.size(); ++i) z[i] = by * direction[i];
+    for (size_t i = 0; i < z.size(); ++i) z[i] = share * direction[i];
     move();
+  };
+  /// Back along the direction, of which `left` remains.
+  const auto move_back = [&](double share, double left) {
+    const std::optional<Correction> from = last;
+    move_along(-share);
+    last = from;
+    for (size_t i = 0; i < by.size(); ++i) by[i] = left * direction[i];
   };
   const auto is_sound = [&] { return report.least_det.det > 0 && std::isfinite(report.residual); };
   // Damped Newton: a share s of the correction z = -K^-1 r, such that the next one by the same matrix, -K^-1 r(u + s z), is smaller by at
@@ -135,8 +160,9 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     return report.correction <= 1e-2 * options.tolerance && report.correction * report.residual <= 1e-13 * last_residual &&
            report.residual <= 10 * options.tolerance;
   };
-  double previous = 1e300;
-  bool near = false;  // the next residual is likely to be small enough: look at it before building a tangent
+  double previous = last ? system.largest_difference(u.q, last->before) / system.length : 1e300;
+  bool near = false;   // the next residual is likely to be small enough: look at it before building a tangent
+  bool moved = false;  // by the last iteration
   for (int it = 0;; ++it) {
     if (near) {
       evaluate(false);
@@ -169,9 +195,9 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       return report;
     }
     evaluate(true);
-    if (it > 0 && !damped && !is_sound()) {  // the last correction went too far: back along it to where cells are whole
+    if (moved && !damped && !is_sound()) {  // the last correction went too far: back along it to where cells are whole
       direction = z, damped = true;
-      for (share = 1; !is_sound() && share > options.least_share;) move_along(-(share /= 2)), evaluate(false);
+      for (share = 1; !is_sound() && share > options.least_share;) share /= 2, move_back(share, share), evaluate(false);
       evaluate(true);
     }
     if (!std::isfinite(report.residual)) {
@@ -191,6 +217,12 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       return report;
     }
     report.correction = system.comm->max(relative_correction(system, z));
+    if (foreseen && !(report.correction <= std::max(0.5 * previous, 1e-6))) {  // the stresses foreseen are too large: without them
+      foresees = near = false, last.reset();
+      if (!moved) previous = 1e300;
+      moved = false;
+      continue;
+    }
     if (!(report.correction <= options.reach)) {
       report.reason = "the correction is not finite or leaves the scene";
       return report;
@@ -207,7 +239,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       stage(u);
       return report;
     }
-    near = report.correction < 1e-3;
+    near = report.correction < 1e-3, moved = true;
     previous = report.correction;
   }
 }

@@ -1,6 +1,7 @@
 // Full Newton on the equations of a step, with tolerances that mean forces and lengths.
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "dynamics/unknown.hpp"
@@ -14,6 +15,7 @@ struct NewtonOptions {
   int max_iterations = 25;
   bool patient = false;       // do not give up on slow contraction
   double reach = 1e3;         // largest correction, in lengths of the scene; a guess farther off may lead to another root
+  bool foresees = false;      // tangents have the stresses that the last correction foresaw, while corrections halve
   double least_share = 1e-3;  // of a damped correction; below it the guess is given up
 };
 
@@ -27,9 +29,15 @@ struct NewtonReport {
   std::string reason;  // why it failed
 };
 
-/// Solve for the unknown and lambda from the guesses given.  `stage` makes the stage of an unknown.
+/// How the unknown came to be what it is, for the stresses that a tangent foresees (physics/solid, `foresee`).
+struct Correction {
+  Config before, along;  // where it began, and the way from there to first order
+};
+
+/// Solve for the unknown and lambda from the guesses given.  `stage` makes the stage of an unknown; `guess`: where the first guess is a
+/// linear answer, how it was found.
 NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Unknown&)>& stage, Unknown& u,
-                    std::vector<double>& lambda, const NewtonOptions& options);
+                    std::vector<double>& lambda, const NewtonOptions& options, std::optional<Correction> guess = {});
 
 /// Residual over its scales: forces by the largest force, moments by force times the body's size, constraints by the scene's length.
 double relative_residual(const System& system, const Residual& r);

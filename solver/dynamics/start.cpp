@@ -206,8 +206,9 @@ namespace {
 
 /// What moves by a law takes the rest along: q (whose prescribed part is in its new place already) and the multipliers move by the tangent
 /// at `before`, where nothing is strained by the first guess yet.  `stage` makes the stage of a configuration.
-void take_along(System& system, KktSolver& solver, const std::function<Stage(const Config&)>& stage, const Config& before, Config& q,
-                std::vector<double>& lambda) {
+/// Returns how.
+std::optional<Correction> take_along(System& system, KktSolver& solver, const std::function<Stage(const Config&)>& stage,
+                                     const Config& before, Config& q, std::vector<double>& lambda) {
   constexpr double little = 1e-3;  // of the way: the difference quotient is the tangent's columns of what is prescribed
   Config nudged;
   combine(nudged, {{1 - little, &before}, {little, &q}});
@@ -219,11 +220,15 @@ void take_along(System& system, KktSolver& solver, const std::function<Stage(con
   for (size_t i = 0; i < b.size(); ++i) b[i] = -at.r[i] - (ahead.r[i] - at.r[i]) / little;
   solver.sum_shared(b);
   system.mask_fixed(b);
-  if (!solver.solve(b, z, 1e-3).ok) return;
+  if (!solver.solve(b, z, 1e-3).ok) return {};
+  Correction out{before, {}};
+  combine(out.along, {{1, &q}, {-1, &before}});
+  system.add_rates(out.along, before, z);
   Unknown u(system, before, q);
   u.move(system, z);
   q = u.q;
   for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += at.sigma * z[3 * system.first_joint_block() + i];
+  return out;
 }
 
 }  // namespace
@@ -243,8 +248,10 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
     return s;
   };
   NewtonOptions o = options;
+  o.foresees = !mechanism;
   if (mechanism) o.max_iterations = std::max(o.max_iterations, 200), o.patient = true;
-  if (system.moves() && !mechanism) take_along(system, solver, stage, before, q, lambda);
+  std::optional<Correction> taken;
+  if (system.moves() && !mechanism) taken = take_along(system, solver, stage, before, q, lambda);
   Unknown u(system, q, q);
   NewtonReport report = newton(
       system, solver,
@@ -253,7 +260,7 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
         if (mechanism) tau = std::min(tau * 1.3, 20.0);
         return s;
       },
-      u, lambda, o);
+      u, lambda, o, std::move(taken));
   q = u.q;
   if (report.least_det.det <= 0) report.converged = false, report.reason = system.inside_out(report.least_det);
   if (report.converged) system.commit(q);

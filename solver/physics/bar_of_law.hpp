@@ -26,6 +26,17 @@ void run_bar(const KernelCall& k) {
   }
   const double rate = k.viscous * young_of(law.linear()), S = k.area * (k.elastic * step.S + rate * (e1 - e0)),
                D = k.area * (k.elastic * step.slope + rate);
+  double S_K = S;  // of the strain that the last correction foresaw (solid::foresee)
+  if (k.before && k.K) {
+    double e = -L2;
+    for (int i = 0; i < 3; ++i) {
+      const double d = k.before[3 + i] - k.before[i];
+      e += d * (d + 2 * (k.along[3 + i] - k.along[i]));
+    }
+    e /= 2 * L2;
+    S_K = k.area * rate * (e - e0);
+    if (k.elastic != 0) S_K += k.area * k.elastic * (w == 0.5 ? law.bar_step(e0, e).S : law.bar((1 - w) * e0 + w * e).S);
+  }
   if (k.energy) *k.energy = k.area * L * law.bar(e1).W;
   if (k.dissipated) *k.dissipated = k.area * L * rate * (e1 - e0) * (e1 - e0);
   if (k.least_det) *k.least_det = 1;
@@ -35,7 +46,7 @@ void run_bar(const KernelCall& k) {
       if (k.f) k.f[3 * a + i] = (a ? 1 : -1) * S * dm[i] / L + (k.a ? m * (k.a[i] + k.a[3 + i] + k.a[3 * a + i]) : 0);
       for (int b = 0; b < 2 && k.K; ++b)
         for (int j = 0; j < 3; ++j)
-          k.K[(3 * a + i) * 6 + 3 * b + j] = (a == b ? 1 : -1) * (D * dm[i] * d1[j] / (L * L2) + (i == j ? w * S / L : 0)) +
+          k.K[(3 * a + i) * 6 + 3 * b + j] = (a == b ? 1 : -1) * (D * dm[i] * d1[j] / (L * L2) + (i == j ? w * S_K / L : 0)) +
                                              (k.a && i == j ? k.mass_slope * m * (a == b ? 2 : 1) : 0);
     }
 }

@@ -158,6 +158,17 @@ inline void add_hourglass(const Moduli& moduli, const SolidCall<T>& call) {
       for (int r = 0; r < 4; ++r)
         for (int A = 0; A < 3; ++A) DB[3 * r + A][3 * b + j] = dt[r][A];
     }
+  if (call.before) {  // the stress that the last correction foresaw (solid::foresee)
+    T u[3][3], h[4][3], du[3][3], dh[4][3], b[4][3];
+    hg.measure(call.before, u, h, b);
+    hg.measure(call.along, du, dh, unused);
+    for (int r = 0; r < 4; ++r)
+      for (int A = 0; A < 3; ++A) {
+        for (int i = 0; i < 3; ++i) b[r][A] += u[A][i] * dh[r][i] + du[A][i] * h[r][i];
+        s[r][A] = call.elastic * ((1 - call.weight) * b0[r][A] + call.weight * b[r][A]) + call.viscous * (b[r][A] - b0[r][A]);
+      }
+    hg.conjugate(s, t);
+  }
   for (int a = 0; a < 8; ++a) {
     T along[4], across[3];  // geometric: w t_rA (n_A gamma_r^T + gamma_r n_A^T) I
     for (int r = 0; r < 4; ++r) along[r] = (t[r][0] * hg.n[0][a] + t[r][1] * hg.n[1][a] + t[r][2] * hg.n[2][a]) * call.weight;

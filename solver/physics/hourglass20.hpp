@@ -125,6 +125,8 @@ inline void add_hourglass20(const Lame& moduli, const SolidCall<T>& call) {
   T xm[60];
   for (int i = 0; i < 60; ++i) xm[i] = (1 - call.weight) * call.x0[i] + call.weight * call.x1[i];
   const auto s0 = hg.measure(call.x0), s1 = hg.measure(call.x1), sm = hg.measure(xm);
+  typename H::State before;
+  if (call.before) before = hg.measure(call.before);
   const double slope = call.elastic * call.weight + call.viscous;
   T side[3][20];  // [A]: sum of the stresses times the vectors that t_A is multiplied with
   for (int A = 0; A < 3; ++A)
@@ -146,7 +148,14 @@ inline void add_hourglass20(const Lame& moduli, const SolidCall<T>& call) {
         for (int j = 0; j < 60; ++j) call.K[60 * i + j] += row * B1[j];
       }
       const int x = (z + 1) % 3, y = (z + 2) % 3;
-      const T half = call.weight / 2 * stress, *u = hg.one(z, w), *v = hg.two(z, w);
+      T c_ahead = c1;
+      if (call.before) {  // what the last correction foresaw (solid::foresee)
+        hg.gradient(before, z, w, B1);
+        c_ahead = before.c[z][w];
+        for (int i = 0; i < 60; ++i) c_ahead += B1[i] * call.along[i];
+      }
+      const T foreseen = k * (call.elastic * ((1 - call.weight) * c0 + call.weight * c_ahead) + call.viscous * (c_ahead - c0));
+      const T half = call.weight / 2 * foreseen, *u = hg.one(z, w), *v = hg.two(z, w);
       for (int a = 0; a < 20; ++a) side[x][a] += half * u[a], side[y][a] -= half * v[a];
     }
   if (!call.K) return;

@@ -124,10 +124,43 @@ inline void add_mean_dilatation(double lambda, const SolidCall<T>& c) {
   SolidCall<T> stress_only = c;
   stress_only.elastic = 1, stress_only.viscous = 0;
   stress_only.energy = stress_only.dissipated = stress_only.least_det = nullptr;
+  MeanStress<T> foreseen = mean;  // by the last correction to first order, for K (solid::foresee)
+  if (c.before && c.K) {
+    T theta = zero, by_theta = zero, from = zero, to = zero, by = zero;
+    for (int p = 0; p < S::n_points; ++p) {
+      T g[n][3], F0[3][3], e0[6], e1[6], step[6];
+      const T weight = solid::point_gradients<S>(p, c.X, g);
+      solid::strain_along<n>(c, g, e1, step);
+      theta += weight * (e1[0] + e1[1] + e1[2]), by_theta += weight * (step[0] + step[1] + step[2]);
+      if constexpr (!by_trace) {
+        T M[6], A[6], cof1[6], d0, d1;
+        solid::gradient<n>(c.x0, g, F0);
+        solid::green_lagrange(F0, e0);
+        if (w != 0.5)
+          for (int i = 0; i < 6; ++i) e0[i] = e1[i] = (1 - w) * e0[i] + w * e1[i];
+        volume::over_step(e0, e1, M, A, cof1, d0, d1);
+        from += weight * d0, to += weight * d1;
+        for (int i = 0; i < 6; ++i) by += 2 * weight * cof1[i] * step[i];
+      }
+    }
+    const T theta_ahead = (theta + by_theta) / size;
+    foreseen.theta = lambda * c.viscous * (theta_ahead - theta0);
+    if constexpr (by_trace) {
+      foreseen.theta += lambda * c.elastic * ((1 - w) * theta0 + w * theta_ahead);
+    } else if (c.elastic != 0) {
+      T q = zero, q_1 = zero;
+      Bulk::quotient(T(from / size), T(to / size), q, q_1);
+      foreseen.D = lambda * c.elastic * (q + (w == 0.5 ? 1 : 2 * w) * q_1 * by / size);
+    }
+  }
+  const bool apart = c.before && c.f && c.K;
   for (int p = 0; p < S::n_points && (c.f || c.K); ++p) {
     T g[n][3];
     const T weight = solid::point_gradients<S>(p, c.X, g);
-    solid::add_point<n>(mean, stress_only, g, weight);
+    stress_only.f = c.f, stress_only.K = apart ? nullptr : c.K;
+    solid::add_point<n>(apart ? mean : foreseen, stress_only, g, weight);
+    stress_only.f = nullptr, stress_only.K = c.K;
+    if (apart) solid::add_point<n>(foreseen, stress_only, g, weight);
   }
   if (!c.K) return;
   for (int i = 0; i < n3; ++i) {

@@ -19,6 +19,7 @@ struct KernelCall {
   const double* h0 = nullptr;  // of laws that remember: see SolidCall
   double* h1 = nullptr;
   double elapsed = 0;
+  const double *before = nullptr, *along = nullptr;
 };
 
 /// Kernel of a shape and a law (law_index(material)) and the number of cells it takes at once; no function where the law has no such cells.

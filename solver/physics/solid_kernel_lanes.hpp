@@ -37,7 +37,10 @@ static void run_kernel(const KernelCall& k) {
                           k.weight,
                           lanes_of(k.h0),
                           reinterpret_cast<T*>(k.h1),
-                          k.elapsed};
+                          k.elapsed,
+                          0,
+                          lanes_of(k.before),
+                          lanes_of(k.along)};
   if (k.elastic != 0 || k.viscous != 0 || k.energy) evaluate_strain<S>(law, call);
   if (k.a) add_mass<S>(call);
 }

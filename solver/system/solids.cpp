@@ -22,7 +22,7 @@ class Scratch {
 
 /// Arrays of one call, (entry x lanes).
 struct Lanes {
-  Scratch X, x0, x1, a, f, K, f2, K2, h0, h1, scalar[3];
+  Scratch X, x0, x1, a, f, K, f2, K2, h0, h1, before, along, scalar[3];
 };
 
 void gather(const SolidBatch& b, int first, int W, const std::vector<Vec3>& from, double* to) {
@@ -83,11 +83,14 @@ void Solids::evaluate(Pass& p) const {
                     s.weight};
     double* h0 = lanes.h0.get(static_cast<size_t>(b.kernel.n_state) * W);
     call.h0 = h0, call.elapsed = s.elapsed;
+    double *before = lanes.before.get(n3 * W), *along = lanes.along.get(n3 * W);
+    if (K && s.before) call.before = before, call.along = along;
     for (int first = 0; first < count; first += W) {
       gather(b, first, W, X, X_);
       gather(b, first, W, s.e0->x, x0);
       gather(b, first, W, s.e1->x, x1);
       gather(b, first, W, s.a->x, a);
+      if (call.before) gather(b, first, W, s.before->x, before), gather(b, first, W, s.along->x, along);
       if (b.kernel.n_state > 0) gather_state(b, first, W, b.h0, h0);
       for (int k = 0; k < n; ++k)
         for (int i = 0; i < 3; ++i)

@@ -30,7 +30,8 @@ struct Stage {
   const Config* v0 = nullptr;         // start velocities, where v1 = v0 + h a: there inertia works through h (v0 + v1)/2
   bool rates_alone = false;           // how accelerations, rates and rows of velocities act on the equations of another stage
   double elapsed = 0;                 // of materials since their accepted state [s]; 0: nothing flows, infinite: too slow for rates
-  double load_factor = 1;             // of gravity and of loads without a history, for static load steps
+  const Config *before = nullptr, *along = nullptr;  // e1 before Newton's last correction, and that to first order; null: none
+  double load_factor = 1;                            // of gravity and of loads without a history, for static load steps
   /// Derivatives of w0 and w1 by `end`.
   double slope0() const {
     const double x = slope - h * alpha_slope / 2;
