@@ -10,7 +10,7 @@
 namespace hilo {
 namespace {
 
-/// Nearest point of a triangle to x [ericson-2004, 5.1.5].
+/// Nearest point of a triangle to x.
 Vec3 nearest(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
   const Vec3 ab = b - a, ac = c - a, ax = x - a, bx = x - b, cx = x - c;
   const double d1 = ab.dot(ax), d2 = ac.dot(ax), d3 = ab.dot(bx), d4 = ac.dot(bx), d5 = ab.dot(cx), d6 = ac.dot(cx);
