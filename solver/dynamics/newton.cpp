@@ -211,17 +211,17 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     const SolveReport solved = solve(false);
     last_residual = report.residual;
     ++report.iterations;
-    if (!solved.ok) {
-      report.reason = solver.name() + ": " + solved.message;
-      if (solved.message.find("singular") != std::string::npos) report.reason += free_part(system, solver, r.sigma);
-      return report;
-    }
-    report.correction = system.comm->max(relative_correction(system, z));
+    report.correction = solved.ok ? system.comm->max(relative_correction(system, z)) : 1e300;
     if (foreseen && !(report.correction <= std::max(0.5 * previous, 1e-6))) {  // the stresses foreseen are too large: without them
       foresees = near = false, last.reset();
       if (!moved) previous = 1e300;
       moved = false;
       continue;
+    }
+    if (!solved.ok) {
+      report.reason = solver.name() + ": " + solved.message;
+      if (solved.message.find("singular") != std::string::npos) report.reason += free_part(system, solver, r.sigma);
+      return report;
     }
     if (!(report.correction <= options.reach)) {
       report.reason = "the correction is not finite or leaves the scene";

@@ -35,7 +35,8 @@ herr_t look_at_attribute(hid_t object, const char* name, const H5A_info_t*, void
   std::vector<char> value(static_cast<size_t>(n) * std::max<size_t>(size, 8));
   const bool is_text = H5Tis_variable_str(type) > 0;
   if (H5Aread(a, type, value.data()) < 0) return 0;
-  Digest& sum = static_cast<Digest*>(digest)->add(std::string_view(name)).add(n).add(size);
+  Digest& sum =
+      static_cast<Digest*>(digest)->add(std::string_view(name)).add(n).add(size).add(static_cast<int>(is_text ? H5Tget_cset(type) : -1));
   if (!is_text) return sum.add(std::string_view(value.data(), static_cast<size_t>(n) * size)), 0;
   for (hssize_t k = 0; k < n; ++k) {
     const char* text = reinterpret_cast<const char* const*>(value.data())[k];

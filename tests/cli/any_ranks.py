@@ -134,7 +134,8 @@ def divide(name, mesh, ranks, how):
     if how in ("random", "lopsided"):
         with h5py.File(parts, "r+") as f:
             cells = f["parts/rank"]
-            cells.attrs.pop("fnv1a64", None)  # of what hilo-part wrote
+            for what in (f, cells):
+                what.attrs.pop("fnv1a64", None)  # of what hilo-part wrote
             if how == "random":
                 cells[:] = numpy.random.default_rng(ranks).integers(0, ranks, len(cells))
             else:

@@ -96,6 +96,11 @@ def good(key, kind):
     return value
 
 
+def of_set(kind, key):
+    """A value for which a set of the mesh below has nodes."""
+    return "1" if key == "radius" else "[0.3, 0.4, 0]" if (kind, key) == ("near", "at") else ""
+
+
 def bad(key, kind, value, default):
     if kind == "number":
         return [value]
@@ -142,7 +147,7 @@ def entry(section, kind, keys, tried, value):
         if key == tried:
             lines.append(f"{key} = {value}")
         elif key != "kind" and (default == "must" or key in beside or (key in ("a", "b", "on") and section in ("joint", "spring"))):
-            word = "1" if section == "set" and key == "radius" else good(key, type_)
+            word = of_set(kind, key) if section == "set" and of_set(kind, key) else good(key, type_)
             if key == "name" and section == "body":
                 word = '"arm"'
             if section == "load" and kind in ("traction", "pressure") and key == "on":
@@ -248,7 +253,7 @@ with tempfile.TemporaryDirectory() as folder:
             continue
         numeric = [k for k in keys if k[1] in ("number", "3 numbers", "numbers", "history")]
         for key, type_, default in numeric:
-            usual = "1" if section == "set" and key == "radius" else good(key, type_)
+            usual = of_set(kind, key) if section == "set" and of_set(kind, key) else good(key, type_)
             if kind == "bushing" and usual.count(",") == 0 and type_ == "numbers":
                 usual = "[" + ", ".join(3 * [usual.strip("[]")]) + "]"
             tries = [(v, b) for v in ("good",) + VALUES for b in ([usual] if v == "good" else bad(key, type_, v, usual))]

@@ -12,8 +12,7 @@ cd "$folder"
 fail() { echo "help_examples: $*" >&2; exit 1; }
 
 cp "$repo/data/firing/vehicle.geo" .
-step=/usr/share/doc/gmsh-doc/doc/gmsh/tutorial/t20_data.step
-if [ -e "$step" ]; then cp "$step" part.step; else gunzip -c "$step.gz" > part.step; fi
+cp "$repo/data/tour/arm.step" .
 
 cat > bracket.inp << 'END'
 *NODE, NSET=ALL

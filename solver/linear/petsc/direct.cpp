@@ -54,6 +54,9 @@ std::string DirectSolver::name() const { return size() > 1 ? fmt::format("direct
 /// "" or what went wrong.  The analysis is kept: the pattern does not change.
 std::string DirectSolver::factor() {
   const Stopwatch watch(set_up_);
+  PetscReal norm = 0;  // MUMPS asks for memory without end where numbers are not finite
+  check(MatNorm(matrix_->mat(), NORM_FROBENIUS, &norm));
+  if (!std::isfinite(norm)) return "the matrix is not finite";
   MatFactorInfo info;
   check(MatFactorInfoInitialize(&info));
   if (!factor_) {
