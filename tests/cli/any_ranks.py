@@ -11,6 +11,7 @@ probes to 1e-6, because partition and order of summation change round-off only.
   any_ranks.py REPO BIN NAME N  one scene on N ranks"""
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -41,7 +42,7 @@ SCENES = {
     "turret-rigid": ("turret/scene.toml", ["turret/turret.geo", "--trust", "--define", "SIZE=0"], ["turret/tags-rigid.toml"], ["time.end=0.025"]),
     "design-loop": ("design-loop/scene.toml", ["design-loop/gun.geo", "--define", "thickness=8e-3"],
                     ["--nonlinear", "cheeks", "--rest", "rigid"], ["time.end=2.5e-3"]),
-    "tour": ("tour.toml", ["tour.geo", "--size", "0.02", "--order", "2"], ["--nonlinear", "arm", "--rigid", "block"], ["time.end=0.01"]),
+    "tour": ("tour.toml", ["tour/arm.step"], ["--nonlinear", "arm", "--rigid", "block"], ["time.end=0.01"]),
     "scaling-bar": ("scaling/bar.toml", ["bar.inp", "--regions", "bar"], ["--rest", "nonlinear"], ["time.end=0.004"]),
     "scaling-tube": ("scaling/tube.toml", ["tube.inp", "--regions", "tube"], ["--rest", "nonlinear"], ["time.end=3e-5"]),
     "scaling-turning": ("scaling/turning.toml", ["turning.inp", "--regions", "bar"], ["--rest", "nonlinear"], ["time.end=0.004"]),
@@ -79,13 +80,10 @@ def prepare():
     os.makedirs("crank/out")
     run("bash", "-c", "crank/truth.py gas > crank/out/gas.csv")
     run("bash", "-c", "scaling/bar.sh 20 2 2 > bar.inp; scaling/bar.sh 20 2 2 > turning.inp; scaling/tube.sh 12 2 10 > tube.inp")
-    blocks = open(os.path.join(repo, "docs/tour.md")).read().split("```sh\n")[1:]
-    for block in blocks:
-        text = block.split("```")[0]
-        for name in ("arm.geo", "scene.toml"):
-            if f"cat > {name} <<'END'\n" in text:
-                body = text.split(f"cat > {name} <<'END'\n")[1].split("END\n")[0].replace('"arm.step"', '"tour/arm.step"')
-                open("tour.geo" if name == "arm.geo" else "tour.toml", "w").write(body)
+    tour = open(os.path.join(repo, "docs/tour.md")).read()
+    open("tour.toml", "w").write(tour.split("cat > scene.toml <<'END'\n")[1].split("END\n")[0])
+    words = next(shlex.split(line) for line in tour.splitlines() if line.startswith("hilo-import arm.step") and "-o mesh.h5" in line)
+    SCENES["tour"][1].extend(word for word in words[2:] if word not in ("-o", "mesh.h5"))
 
 
 def step_of(scene):
