@@ -56,6 +56,11 @@ TEST_F(ImportVtk, CellsWithoutARegionArrayAreARegionAndThatIsSaid) {
               "# vtk DataFile Version 3.0\nbad node\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1 0 0 1 1 0\nCELLS 1 5\n4 0 1 "
               "2 3\nCELL_TYPES 1\n10\n");
   refused("c.vtk -o a.h5", 2, "c.vtk: cell 0 names node 3, which does not exist");
+  place.write(
+      "d.vtk",
+      "# vtk DataFile Version 3.0\nnode 2.7\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 "
+      "1 2.7 3\nCELL_TYPES 1\n10\n");
+  refused("d.vtk -o a.h5", 2, "d.vtk:8: expected a whole number, found 2.7");
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstring>
+#include <type_traits>
 
 #include "base/error.hpp"
 #include "import/data_line.hpp"
@@ -40,6 +42,13 @@ class Stream {
       fail(fmt::format("{}: expected a count, found \"{}\"", what, w));
     return n;
   }
+  /// A number of the file as T: of whole ones none is rounded.
+  template <class T, class U>
+  T as(U x) {
+    if constexpr (std::is_integral_v<T> && std::is_floating_point_v<U>)
+      if (!(std::abs(x) <= 9e15 && x == std::floor(x))) fail(fmt::format("expected a whole number, found {}", x));
+    return static_cast<T>(x);
+  }
   template <class T>
   std::vector<T> numbers(std::int64_t n, const std::string& type) {
     if (n < 0 || static_cast<size_t>(n) > s_.size()) fail(fmt::format("an array of {} numbers in a file of {} bytes", n, s_.size()));
@@ -53,7 +62,7 @@ class Stream {
         const auto [end, bad] = std::from_chars(first, w.data() + w.size(), x);
         if (w.empty()) fail("the file ends in the middle of an array");
         if (bad != std::errc() || end != w.data() + w.size()) fail(fmt::format("expected a number, found \"{}\"", w));
-        v.push_back(static_cast<T>(x));
+        v.push_back(as<T>(x));
       }
       return v;
     }
@@ -67,7 +76,7 @@ class Stream {
           b[std::endian::native == std::endian::little ? sizeof(U) - 1 - k : k] = static_cast<unsigned char>(s_[at_ + k]);
         U x;
         std::memcpy(&x, b, sizeof(U));
-        v.push_back(static_cast<T>(x));
+        v.push_back(as<T>(x));
         at_ += sizeof(U);
       }
     };
