@@ -23,7 +23,7 @@ namespace {
 constexpr unsigned most_seconds = 20;      // of the walk; a sound file takes milliseconds
 constexpr rlim_t most_memory = 2ul << 30;  // that the walk may take beyond what the process has [bytes]
 
-constexpr int other_attributes = 3;  // exit status of the child
+constexpr int other_attributes = 3, no_way_through = 4;  // exit statuses of the child
 
 /// Texts are read, since their places in the file are only found by reading; so are attributes.  Numbers are not.
 herr_t look_at_attribute(hid_t object, const char* name, const H5A_info_t*, void* digest) {
@@ -68,7 +68,7 @@ herr_t look_at_object(hid_t root, const char* name, const H5O_info_t* what, void
   if (!object.ok()) return 0;
   look.attributes.add(std::string_view(name));
   hsize_t at = 0;
-  H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, &at, look_at_attribute, &look.attributes);
+  if (H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, &at, look_at_attribute, &look.attributes) < 0) return -1;
   if (what->type == H5O_TYPE_DATASET && look.file_size > 0) look_at_array(object, look.file_size);
   return 0;
 }
@@ -101,7 +101,7 @@ std::optional<std::uint64_t> written_digest(hid_t file) {
     const Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (file.ok()) {
       Look look{file_size};
-      H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, look_at_object, &look);
+      if (H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, look_at_object, &look) < 0) _exit(no_way_through);  // who reads on may find no end
       if (const auto written = written_digest(file); written && *written != look.attributes.value()) _exit(other_attributes);
     }
   } catch (...) {  // no memory
@@ -131,6 +131,8 @@ void walk_in_child(const std::string& path) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == other_attributes)
     throw Error(path, "damaged: its attributes are not what was written", "make it again, or take it from where it was copied");
+  if (WIFEXITED(status) && WEXITSTATUS(status) == no_way_through)
+    throw Error(path, "damaged: its objects and attributes cannot be listed", "make it again, or take it from where it was copied");
   if (!WIFSIGNALED(status)) return;
   const bool endless = WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL;
   throw Error(path, fmt::format("damaged: the HDF5 library {} it", endless ? "comes to no end with" : "crashes on"),
