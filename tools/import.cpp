@@ -87,8 +87,8 @@ int main(int argc, char** argv) {
          "Reads a mesh, or a geometry that it meshes, and writes mesh.h5: regions, sets, and what the deck says of materials and loads.",
          "hilo-import bracket.inp -o bracket.h5 --units mm-t-s\n"
          "hilo-import vehicle.geo -o vehicle.h5 --define SIZE=0\n"
-          "hilo-import arm.step -o arm.h5 --size 20 --order 2 --set 'bore=cylinder:at=[0,0,15],axis=[0,0,1],radius=10'",
-          about({"gmsh " GMSH_API_VERSION})});
+         "hilo-import arm.step -o arm.h5 --size 20 --order 2 --set 'bore=cylinder:at=[0,0,15],axis=[0,0,1],radius=10'",
+         about({"gmsh " GMSH_API_VERSION})});
     Request r;
     auto& o = r.options;
     app->add_option("input", r.input, "inp (plain or .gz), bdf, msh, unv, vtk, vtu, mesh; geo, step, brep, iges are meshed")

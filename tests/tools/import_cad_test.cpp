@@ -68,7 +68,7 @@ TEST(CadUnits, AreReadFromTheText) {
   EXPECT_FALSE(step("$,.RADIAN.")) << "no length";
   const auto iges = [](const std::string& flag_and_name) {
     const std::string g =
-        "1H,,1H;,4HSLOT,37H$1$DUA2:[IGESLIB.BDRAFT.B2I]SLOT.IGS;,3HXXX,3HYYY,32,38,6,38,15,3HABC,1.," + flag_and_name + ",1,0.1;";
+        "1H,,1H;,4HSLOT,37H$1$DUA2:[IGESLIB.BDRAFT.B2I]SLOT.IGS;,3HONE,3HTWO,32,38,6,38,15,3HABC,1.," + flag_and_name + ",1,0.1;";
     std::string text;
     for (size_t at = 0; at < g.size(); at += 72) {
       std::string line = g.substr(at, 72);

@@ -364,9 +364,9 @@ TEST_F(ImportInp, InvertedCellsAreNamed) {
   refused("a.inp -o a.h5 --rest all", 2, "a.inp: 1 of 2 cells are inverted (scaled Jacobian <= 0 at a corner): 1 (repair or remesh them)");
   mirrored.replace(mirrored.find("2, 5, 6, 7, 8, 9, 10, 11, 12"), 28, "2, 9, 10, 11, 12, 5, 6, 7, 8");
   place.write("a.inp", mirrored);
-  refused(
-      "a.inp -o a.h5 --rest all", 2,
-      "a.inp: 2 of 2 cells are inverted (scaled Jacobian <= 0 at a corner): 1, 2 (all of them: --flip turns cells that are numbered as in a mirror)");
+  refused("a.inp -o a.h5 --rest all", 2,
+          "a.inp: 2 of 2 cells are inverted (scaled Jacobian <= 0 at a corner): 1, 2 (all of them: --flip turns cells that are numbered as "
+          "in a mirror)");
 }
 
 TEST_F(ImportInp, ADensityThatFitsNoMaterialIsSaidAloud) {
