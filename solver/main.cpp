@@ -8,6 +8,7 @@
 
 #include "about.hpp"
 #include "base/args.hpp"
+#include "base/error.hpp"
 #include "base/interrupt.hpp"
 #include "base/on_ranks.hpp"
 #include "dynamics/checkpoint.hpp"

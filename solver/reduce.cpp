@@ -6,6 +6,7 @@
 
 #include "about.hpp"
 #include "base/args.hpp"
+#include "base/error.hpp"
 #include "base/on_ranks.hpp"
 #include "dynamics/region_shapes.hpp"
 #include "linear/blas_kernels.hpp"

@@ -1,7 +1,10 @@
 // The subcommands of hilo-post: each adds its options to the app and is run after the command line was read.
 #pragma once
-#include <CLI/CLI.hpp>
 #include <functional>
+
+namespace CLI {
+class App;
+}
 
 namespace hilo {
 

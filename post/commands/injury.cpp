@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "base/args.hpp"
+#include "base/error.hpp"
 #include "base/table.hpp"
 #include "post/commands/commands.hpp"
 #include "post/files/csv.hpp"

@@ -1,9 +1,12 @@
 // What a frame of a run shows and how: the options that render and movie share.
 #pragma once
-#include <CLI/CLI.hpp>
 #include <string>
 #include <utility>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace hilo {
 

@@ -13,7 +13,6 @@ namespace {
 constexpr auto exit_codes =
     "Exit codes: 0 done, 1 usage, 2 bad input, 3 did not converge, 4 resources (memory, disk, packages), 5 own fault, "
     "6 stopped from outside";
-bool quiet = false;
 
 /// Long options of an app and its subcommands' names: what a completion offers and a mistyped word is compared with.
 std::vector<std::string> long_options(const CLI::App& app) {
@@ -122,15 +121,13 @@ std::string example_of(const CLI::App& app) {
 }  // namespace
 
 std::string version() { return HILO_VERSION; }
-bool is_quiet() { return quiet; }
 
 std::unique_ptr<CLI::App> make_app(const ToolInfo& info) {
   auto app = std::make_unique<CLI::App>(info.summary, info.name);
   app->set_help_flag("-h,--help", "this text");
   app->set_version_flag("--version", fmt::format("{} {}{}{}", info.name, version(), info.about.empty() ? "" : "\n", info.about),
                         "version, commit, and versions of libraries");
-  app->add_flag_callback(
-      "--quiet", [] { quiet_warnings(quiet = true); }, "neither warnings nor progress, nor tables beside a file that was asked for");
+  app->add_flag_callback("--quiet", be_quiet, "neither warnings nor progress, nor tables beside a file that was asked for");
   app->fallthrough();  // --quiet is understood behind a subcommand too
   app->get_formatter()->column_width(34);
   example(*app, info.example);

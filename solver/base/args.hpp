@@ -23,8 +23,6 @@ void example(CLI::App& subcommand, const std::string& lines);
 /// A wrong command line is an Error with Exit::usage and, for a mistyped option or subcommand, the nearest one.
 bool parse(CLI::App& app, int argc, const char* const* argv);
 
-/// --quiet was given (warnings are off then too); progress and remarks on stderr ask this.
-bool is_quiet();
 /// Version of hilo, "0.1.0".
 std::string version();
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <new>
 #include <system_error>
@@ -27,7 +28,7 @@ size_t edit_distance(std::string_view a, std::string_view b) {
   return d[a.size()][b.size()];
 }
 
-bool quiet = false;
+bool quiet = false, silent = false;
 std::string current_tool = "hilo";
 
 }  // namespace
@@ -51,11 +52,14 @@ void warn(const std::string& where, const std::string& what) {
   if (!quiet) fmt::print(stderr, "{}: warning: {}{}{}\n", current_tool, where, where.empty() ? "" : ": ", what);
 }
 void quiet_warnings(bool q) { quiet = q; }
+void be_quiet() { silent = quiet = true; }
+bool is_quiet() { return silent; }
 void set_tool_name(std::string_view tool) { current_tool = tool; }
 const std::string& tool_name() { return current_tool; }
 
 int guarded(std::string_view tool, const std::function<void()>& body) {
   set_tool_name(tool);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit (ulimit -f) is a write that fails
   const auto fail = [&](Exit exit, const std::string& text) {
     std::fflush(stdout);
     const std::string line = fmt::format("{}: {}\n", tool, text);

@@ -29,6 +29,9 @@ int guarded(std::string_view tool, const std::function<void()>& body);
 /// A one-line warning on stderr: "tool: warning: where: what".  Silent after `quiet_warnings(true)`.
 void warn(const std::string& where, const std::string& what);
 void quiet_warnings(bool quiet);
+/// --quiet was given: no warnings, and progress and remarks on stderr ask is_quiet().  The same on all ranks.
+void be_quiet();
+bool is_quiet();
 void set_tool_name(std::string_view tool);
 const std::string& tool_name();
 

@@ -24,7 +24,7 @@ double peak_memory() {
 
 Analysis analysis_of(const Scene& scene) {
   const std::string& word = scene.table("time").text("analysis");
-  return word == "static" ? Analysis::statics : word == "modes" ? Analysis::modes : Analysis::dynamic;
+  return word == "static" ? Analysis::statics : word == "path" ? Analysis::path : word == "modes" ? Analysis::modes : Analysis::dynamic;
 }
 
 class Run {
@@ -51,6 +51,7 @@ class Run {
     };
     shares_.emplace(run_.system.shares());
     steps_ = run_.analysis == Analysis::statics ? static_steps(run_, pause)
+             : run_.analysis == Analysis::path  ? path_steps(run_, pause)
              : run_.analysis == Analysis::modes ? mode_steps(run_, pause)
                                                 : dynamic_steps(run_, pause);
     Archive from(options_.from, &*shares_);
@@ -80,6 +81,8 @@ class Run {
   }
 
  private:
+  bool is_static() const { return run_.analysis == Analysis::statics || run_.analysis == Analysis::path; }
+
   /// What the scene asks for.
   void read() {
     System& system = run_.system;
@@ -87,7 +90,7 @@ class Run {
     run_.newton.tolerance = newton.number("tolerance");
     run_.newton.max_iterations = static_cast<int>(newton.number("iterations"));
     run_.max_cuts = static_cast<int>(newton.number("cuts"));
-    const bool is_dynamic = run_.analysis == Analysis::dynamic, is_static = run_.analysis == Analysis::statics;
+    const bool is_dynamic = run_.analysis == Analysis::dynamic, is_static = this->is_static();
     if (is_dynamic) {
       if (!time.has("end")) throw Error(time.place.text(), "[time] has no end", "a dynamic run needs end, and step or tolerance");
       if (!time.has("step") && !time.has("tolerance"))
@@ -124,7 +127,7 @@ class Run {
   void prepare() {
     System& system = run_.system;
     State& state = run_.state;
-    if (run_.analysis != Analysis::statics && system.violation(state.q, 0).worst() > 1e-11 * std::max(1.0, system.length)) {
+    if (!is_static() && system.violation(state.q, 0).worst() > 1e-11 * std::max(1.0, system.length)) {
       run_.figures.assembled = assemble_positions(system, *run_.solver, state.q);
       if (run_.talk) fmt::print(stderr, "start positions changed by up to {:.3g} m to put the joints together\n", run_.figures.assembled);
     }

@@ -38,7 +38,7 @@ struct RunReport {
   bool stopped = false;  // because something outside of it wanted that
   long steps = 0, iterations = 0, cuts = 0;
   std::string profile;  // table of seconds by phase
-  std::string table;    // of the modes of an analysis of these
+  std::string table;    // of the modes of an analysis of these, or of the turns of a path
 };
 
 /// Run the scene; writes run.h5, run.xdmf and, last, run.json.  A run stopped by physics is a report, not an exception.

@@ -30,9 +30,7 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   add("redundant_rows", fmt::format("{}", run.redundancy.rows - run.redundancy.rank));
   add("ranks", fmt::format("{}", system.comm->size));
   add("solver", json_text(run.solver->name()));
-  add("integrator", json_text(run.analysis == Analysis::statics ? "static"
-                              : run.analysis == Analysis::modes ? "modes"
-                                                                : run.integrator->name()));
+  add("integrator", json_text(run.analysis == Analysis::dynamic ? run.integrator->name() : run.scene.table("time").text("analysis")));
   std::string clocks;
   for (const auto& mechanism : run.integrator->timed()) clocks += (clocks.empty() ? "" : ", ") + json_text(mechanism);
   add("clocks", "[" + clocks + "]");
@@ -41,6 +39,7 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
     add("rejected_steps", fmt::format("{}", figures.rejected));
   }
   if (!figures.modes.empty()) add("modes", figures.modes);
+  if (!figures.path.empty()) add("turns", figures.path);
   const double balance = run.audit->balance(), det = run.audit->least_det();
   add("energy_balance", std::isnan(balance) ? "null" : fmt::format("{:.6g}", balance));
   add("constraint_violation", fmt::format("{:.6g}", run.audit->violation()));

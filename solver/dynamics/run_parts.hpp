@@ -20,10 +20,11 @@ struct RunFigures {
   double assembled = 0, projected = 0;  // changes of positions at the start [m], of velocities [m/s]
   double estimated = -1;                // sum of position errors [m], where the tolerance chooses the steps
   std::string modes;                    // of an analysis of modes, JSON
+  std::string path;                     // of one of a path: where it turns, JSON
   long rejected = 0;                    // steps
 };
 
-enum class Analysis { dynamic, statics, modes };
+enum class Analysis { dynamic, statics, path, modes };
 
 struct RunParts {
   const Scene& scene;
@@ -73,6 +74,7 @@ bool settle_down(RunParts& run);
 
 std::unique_ptr<Steps> mode_steps(RunParts& run, Pause pause);
 std::unique_ptr<Steps> static_steps(RunParts& run, Pause pause);
+std::unique_ptr<Steps> path_steps(RunParts& run, Pause pause);
 std::unique_ptr<Steps> dynamic_steps(RunParts& run, Pause pause);
 
 class Profile;

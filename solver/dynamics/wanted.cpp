@@ -7,9 +7,9 @@
 #include <cmath>
 #include <fstream>
 
+#include "base/free_memory.hpp"
 #include "dynamics/record/fields.hpp"
 #include "linear/front_order.hpp"
-#include "linear/shared_array.hpp"
 #include "model/schema.hpp"
 
 namespace hilo {

@@ -7,6 +7,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -63,6 +64,9 @@ class KktSolver {
   virtual SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance = 0) = 0;
   /// Whether a further solve with the same matrix costs little beside the first.
   virtual bool repeats_cheaply() const { return false; }
+  /// Eigenvalues below zero of K, assembled last, on the motions that the rows from block `first_row` on allow (linear/inertia); nothing
+  /// where that is not known.
+  virtual std::optional<int> eigenvalues_below_zero(int /*first_row*/) const { return {}; }
   virtual std::string name() const = 0;
   /// Seconds so far that went into factors and preconditioners.
   virtual double set_up_seconds() const { return 0; }

@@ -9,6 +9,7 @@
 #include "base/stopwatch.hpp"
 #include "linear/factors.hpp"
 #include "linear/gmres.hpp"
+#include "linear/inertia.hpp"
 
 namespace hilo {
 namespace {
@@ -71,6 +72,7 @@ class LightSolver final : public SerialKktSolver {
     return is_klu_ ? solve_refined(b, x) : solve_iterated(b, x, tolerance);
   }
   bool repeats_cheaply() const override { return is_klu_; }
+  std::optional<int> eigenvalues_below_zero(int first_row) const override { return hilo::eigenvalues_below_zero(A_, first_row); }
   std::string name() const override { return fmt::format("light ({})", factors_->name()); }
   double bytes() const override { return A_.bytes() + factors_->bytes(); }
   double set_up_seconds() const override { return set_up_; }

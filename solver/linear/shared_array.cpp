@@ -3,36 +3,14 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <limits>
 
 #include "base/error.hpp"
 
 namespace hilo {
-namespace {
-
-/// The number after `key` of a file of keys and numbers, or the first of all; infinite where there is none.
-double number_in(const std::string& path, const std::string& key = "") {
-  std::ifstream file(path);
-  std::string word;
-  while (file >> word)
-    if (key.empty() || (word == key && file >> word)) {
-      char* end = nullptr;
-      const double value = std::strtod(word.c_str(), &end);
-      if (end != word.c_str()) return value;
-      break;
-    }
-  return std::numeric_limits<double>::infinity();
-}
-
-}  // namespace
 
 SharedMemory::SharedMemory(const Comm& comm, size_t bytes, const std::string& folder) {
   const auto no_room = [&](const std::string& why) {
@@ -65,24 +43,6 @@ SharedMemory::SharedMemory(const Comm& comm, size_t bytes, const std::string& fo
 SharedMemory::~SharedMemory() {
   if (data_) munmap(data_, std::max<size_t>(bytes_, 1));
   if (file_ >= 0) close(file_);
-}
-
-double free_memory() {
-  double out = 1024 * number_in("/proc/meminfo", "MemAvailable:");
-  const std::string group = "/sys/fs/cgroup/memory";
-  const auto within = [&](double most, double used, double reclaimable) {
-    if (std::isfinite(most) && std::isfinite(used))
-      out = std::min(out, std::max(0.0, most - used + (std::isfinite(reclaimable) ? reclaimable : 0)));
-  };
-  within(number_in(group + ".max"), number_in(group + ".current"), number_in(group + ".stat", "inactive_file"));
-  within(number_in(group + "/memory.limit_in_bytes"), number_in(group + "/memory.usage_in_bytes"),
-         number_in(group + "/memory.stat", "total_inactive_file"));
-  rlimit own{};
-  if (!getrlimit(RLIMIT_AS, &own) && own.rlim_cur != RLIM_INFINITY) {
-    const double used = number_in("/proc/self/statm") * static_cast<double>(sysconf(_SC_PAGESIZE));
-    if (std::isfinite(used)) out = std::min(out, std::max(0.0, static_cast<double>(own.rlim_cur) - used));
-  }
-  return out;
 }
 
 }  // namespace hilo

@@ -47,7 +47,4 @@ class SharedArray {
   SharedMemory memory_;
 };
 
-/// Bytes that this process may still take: of the machine and of what is set for its group and itself.
-double free_memory();
-
 }  // namespace hilo

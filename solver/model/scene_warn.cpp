@@ -78,6 +78,7 @@ void check_ends(const Entries& entries, const Entry& time, Warnings& w) {
 }
 
 void check_time(const Entries& entries, const Entry& time, Warnings& w) {
+  if (time.has("reach") && time.text("analysis") != "path") w.add(time, "reach", "says nothing but to analysis = \"path\"");
   if (!time.has("step")) return;
   const double step = time.number("step");
   if (time.has("end") && step > time.number("end"))

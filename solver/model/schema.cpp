@@ -132,6 +132,10 @@ std::vector<ArraySchema>& arrays() {
        "of an analysis of modes: share of each mode of unit mass in a motion of the whole scene along x, y, z and about axes through the "
        "centre "
        "of mass; its square is the effective mass (0: a whirl)"},
+      {"run.h5", "/history/path", "f8", "(n_t, 3)", "1",
+       "of an analysis of a path, in which t is the number of the state: share of the loads; its rise along the path, 1 where all of a "
+       "step is "
+       "load, 0 at limits of the load, below zero where it falls; eigenvalues of the tangent below zero (0: stable; NaN: not counted)"},
       {"run.h5", "/history/newton", "i4", "(n_t)", "", "Newton iterations of the step"},
       {"run.h5", "/history/body/<name>", "f8", "(n_t, 12)", "m", "positions of the four points of a body"},
       {"run.h5", "/history/modes/<name>", "f8", "(n_t, n_modes)", "m kg^0.5",

@@ -292,7 +292,7 @@ void Store::publish() {
     impl_->close();
     return;
   }
-  impl_->write_digest(impl_->owner("/"), digest_of_attributes(impl_->file));
+  impl_->write_digest(impl_->owner("/"), digest_of_attributes(impl_->file), attributes_digest_name);
   if (!impl_->close()) throw Error(impl_->path, "cannot close the file", "", Exit::resources);
   const bool rename = std::exchange(impl_->temporary, false);
   try {

@@ -6,8 +6,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -25,9 +27,16 @@ constexpr rlim_t most_memory = 2ul << 30;  // that the walk may take beyond what
 
 constexpr int other_attributes = 3, no_way_through = 4;  // exit statuses of the child
 
+/// Which of the types that attributes are written in; -1: none.
+int kind_of_number(hid_t type) {
+  const hid_t kinds[] = {H5T_IEEE_F64LE, H5T_STD_I64LE, H5T_STD_U64LE};
+  const auto found = std::find_if(std::begin(kinds), std::end(kinds), [&](hid_t kind) { return H5Tequal(type, kind) > 0; });
+  return found == std::end(kinds) ? -1 : static_cast<int>(found - std::begin(kinds));
+}
+
 /// Texts are read, since their places in the file are only found by reading; so are attributes.  Numbers are not.
 herr_t look_at_attribute(hid_t object, const char* name, const H5A_info_t*, void* digest) {
-  if (std::string_view(name) == digest_name) return 0;
+  if (std::string_view(name) == attributes_digest_name) return 0;
   const Id a(H5Aopen(object, name, H5P_DEFAULT), H5Aclose), type(H5Aget_type(a), H5Tclose), space(H5Aget_space(a), H5Sclose);
   const auto n = H5Sget_simple_extent_npoints(space);
   const size_t size = H5Tget_size(type);
@@ -35,8 +44,8 @@ herr_t look_at_attribute(hid_t object, const char* name, const H5A_info_t*, void
   std::vector<char> value(static_cast<size_t>(n) * std::max<size_t>(size, 8));
   const bool is_text = H5Tis_variable_str(type) > 0;
   if (H5Aread(a, type, value.data()) < 0) return 0;
-  Digest& sum =
-      static_cast<Digest*>(digest)->add(std::string_view(name)).add(n).add(size).add(static_cast<int>(is_text ? H5Tget_cset(type) : -1));
+  Digest& sum = static_cast<Digest*>(digest)->add(std::string_view(name)).add(n).add(size);
+  sum.add(is_text ? static_cast<int>(H5Tget_cset(type)) : kind_of_number(type));
   if (!is_text) return sum.add(std::string_view(value.data(), static_cast<size_t>(n) * size)), 0;
   for (hssize_t k = 0; k < n; ++k) {
     const char* text = reinterpret_cast<const char* const*>(value.data())[k];
@@ -76,8 +85,8 @@ herr_t look_at_object(hid_t root, const char* name, const H5O_info_t* what, void
 /// The digest that a file says its attributes have, where it says one.
 std::optional<std::uint64_t> written_digest(hid_t file) {
   std::uint64_t value = 0;
-  if (H5Aexists(file, digest_name) <= 0) return {};
-  const Id a(H5Aopen(file, digest_name, H5P_DEFAULT), H5Aclose);
+  if (H5Aexists(file, attributes_digest_name) <= 0) return {};
+  const Id a(H5Aopen(file, attributes_digest_name, H5P_DEFAULT), H5Aclose);
   if (!a.ok() || H5Aread(a, H5T_NATIVE_UINT64, &value) < 0) return 0;
   return value;
 }

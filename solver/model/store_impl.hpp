@@ -48,14 +48,14 @@ Cause last_cause();
 
 /// Error where the library does not survive a walk through the file.
 void walk_in_child(const std::string& path);
-/// Of names and attributes of all objects: a sealed file has it as attribute `digest_name` of its root.
+/// Of names and attributes of all objects: a sealed file has it as attribute `attributes_digest_name` of its root.
 std::uint64_t digest_of_attributes(hid_t file);
 
 /// Digest of texts: lengths and letters, one after the other.
 std::uint64_t digest_of(std::span<const std::string> texts);
 
 /// Digest of an array's bytes as they lie in the file: its attribute of this name.
-inline constexpr const char* digest_name = "fnv1a64";
+inline constexpr const char *digest_name = "fnv1a64", *attributes_digest_name = "attributes_fnv1a64";
 
 /// Type of T in memory and, little-endian, in the file.
 template <class T>
@@ -169,7 +169,9 @@ struct Store::Impl {
   /// The object an attribute belongs to; a group of that name is made where there is nothing.
   Id owner(const std::string& object);
 
-  void write_digest(hid_t array, std::uint64_t digest) { attribute(array, digest_name, H5T_STD_U64LE, H5T_NATIVE_UINT64, &digest); }
+  void write_digest(hid_t object, std::uint64_t digest, const char* name = digest_name) {
+    attribute(object, name, H5T_STD_U64LE, H5T_NATIVE_UINT64, &digest);
+  }
 
   /// An array of rows that is open, or opened now.
   hid_t opened_rows(const Rows& r, const std::string& array, Id& opened);

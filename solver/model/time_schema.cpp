@@ -51,11 +51,13 @@ KindSchema time_schema() {
        from_to(1e-13, 1)},
       {"integrator", text, "", integrator_words()[0].name, methods()}};
   for (const Param& p : keys_of_methods()) keys.push_back(p);
-  keys.push_back({"steps", number, "1", "1", "load steps of a static analysis", from_to(1, 1e6)});
+  keys.push_back({"steps", number, "1", "1", "load steps of a static analysis; of a path, about what the whole load would take at first",
+                  from_to(1, 1e6)});
+  keys.push_back({"reach", number, "m", "", "displacement at which a path ends; without, it ends where it has the whole load", above(0)});
   keys.push_back({"modes", number, "1", "10", "how many modes an analysis of modes looks for, the lowest", from_to(1, 1000)});
-  keys.push_back(
-      {"analysis", text, "", "dynamic",
-       "dynamic; static (histories then run from 0 to `end`, 1 when absent); modes: natural frequencies about the state at the start"});
+  keys.push_back({"analysis", text, "", "dynamic",
+                  "dynamic; static (histories then run from 0 to `end`, 1 when absent); path: static, loads grow and shrink as the path of "
+                  "equilibrium has it; modes: natural frequencies about the state at the start"});
   integrator_words().close();
   return {"time", "", "the time axis", std::move(keys)};
 }

@@ -11,7 +11,7 @@ Registry<Word>* words_of(std::string_view section, std::string_view key) {
       {{"motion", "components"}, {"component", {{"x"}, {"y"}, {"z"}}}},
       {{"history", "interpolation"}, {"interpolation", {{"linear"}, {"smooth"}, {"smoother"}}}},
       {{"time", "start"}, {"start", {{"as given"}, {"equilibrium"}}}},
-      {{"time", "analysis"}, {"analysis", {{"dynamic"}, {"static"}, {"modes"}}}},
+      {{"time", "analysis"}, {"analysis", {{"dynamic"}, {"static"}, {"path"}, {"modes"}}}},
       {{"solver", "kind"},
        {"solver", {{"auto"}, {"light"}, {"klu"}, {"cholesky"}, {"umfpack"}, {"direct"}, {"cg"}, {"iterative"}, {"bddc"}, {"feti-dp"}}}},
       {{"output", "fields"},

@@ -7,6 +7,7 @@
 #include "system/builder.hpp"
 #include "system/joints.hpp"
 #include "system/linear_regions.hpp"
+#include "system/load_path.hpp"
 #include "system/loads.hpp"
 #include "system/motions.hpp"
 #include "system/natural_modes.hpp"
@@ -36,7 +37,14 @@ void Builder::add_contributions() {
   s.add<Motions>(s);
   s.add<Stations>(s);
   s.add<RegionMeasures>(s);
-  if (scene_.table("time").text("analysis") == "modes") s.add<NaturalModes>();
+  const std::string& analysis = scene_.table("time").text("analysis");
+  if (analysis == "modes") s.add<NaturalModes>();
+  if (analysis == "path") s.add<LoadPath>();
+}
+
+bool Builder::is_static() const {
+  const std::string& analysis = scene_.table("time").text("analysis");
+  return analysis == "static" || analysis == "path";
 }
 
 std::unique_ptr<System> Builder::build() {
@@ -81,7 +89,7 @@ std::unique_ptr<System> Builder::build() {
     out_->length = box.isEmpty() ? 1 : std::max(box.diagonal().norm(), 1e-9);
     if (out_->length < 1e-8) out_->length = out_->bodies.size() > 1 ? out_->bodies[1].size : 1;
   }
-  const bool is_static = scene_.table("time").text("analysis") == "static";
+  const bool is_static = this->is_static();
   if (!(out_->mass > 0) && !is_static)
     throw Error(scene_.path, "the scene has no mass: nothing can move", "give a mesh or [[body]] entries, and densities");
   reduce_linear_regions();

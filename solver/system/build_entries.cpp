@@ -11,7 +11,7 @@
 namespace hilo {
 const History& Builder::use_history(const Entry& e, Acts acts) {
   const History& h = e.history("history");
-  const bool is_static = scene_.table("time").text("analysis") == "static";
+  const bool is_static = this->is_static();
   for (const History::Break& b : h.breaks())
     if (b.order == 0 && acts == Acts::as_position && !is_static)
       throw Error(e.where("history"), fmt::format("{}: the history jumps at t = {:.6g}, so what it moves would have to", e.label(), b.t),

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <optional>
 
-#include "base/args.hpp"
+#include "base/error.hpp"
 #include "linear/shared_cholesky.hpp"
 #include "system/builder.hpp"
 #include "system/linear_regions.hpp"

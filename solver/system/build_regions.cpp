@@ -225,7 +225,7 @@ SolidBatch Builder::batch_of(int region, Shape shape) const {
   b.material = material_of(r);
   if (r.fidelity == Fidelity::linear && r.stiffening && !std::holds_alternative<Orthotropic>(b.material))
     b.material = StVenantKirchhoff{linear_moduli(b.material)};  // strains of the second degree, stress linear in them
-  const bool is_static = scene_.table("time").text("analysis") == "static";
+  const bool is_static = this->is_static();
   if (std::isnan(r.density) && !is_static) throw Error(r.where, fmt::format("region \"{}\" has no density", r.name), give_material);
   if (b.shape == Shape::bar2 && r.area <= 0)
     throw Error(r.where, fmt::format("region \"{}\" is made of bars and has no area", r.name), "give [region.NAME] area");

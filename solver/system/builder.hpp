@@ -104,6 +104,8 @@ class Builder {
   // build_entries.cpp
   /// The history of an entry; every one that acts on the system is taken through here, so that its jumps and kinks are known.
   const History& use_history(const Entry& entry, Acts acts);
+  /// Nothing has inertia, nothing needs mass.
+  bool is_static() const;
   void add_stations();
   void add_point_masses();
   // build_springs.cpp

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/free_memory.hpp"
+
 namespace hilo {
 namespace {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/args.hpp"
+#include "base/error.hpp"
 #include "base/table.hpp"
 #include "system/welds.hpp"
 

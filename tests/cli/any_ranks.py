@@ -133,7 +133,7 @@ def divide(name, mesh, ranks, how):
         with h5py.File(parts, "r+") as f:
             cells = f["parts/rank"]
             for what in (f, cells):
-                what.attrs.pop("fnv1a64", None)  # of what hilo-part wrote
+                what.attrs.pop("fnv1a64", None), what.attrs.pop("attributes_fnv1a64", None)  # of what hilo-part wrote
             if how == "random":
                 cells[:] = numpy.random.default_rng(ranks).integers(0, ranks, len(cells))
             else:

@@ -138,6 +138,18 @@ TEST(KeptRun, GoesOnInAStaticAnalysis) {
   EXPECT_NE(told(folder / "later.h5").find("not checked: a static analysis"), std::string::npos) << "why its energy is not checked";
 }
 
+TEST(KeptRun, GoesOnOnAPath) {
+  const Folder folder;
+  BlockOptions o;
+  o.n[0] = 4, o.high = Vec3(4, 1, 1);
+  write_mesh(folder / "mesh.h5", block_mesh(o), {"test"});
+  const std::string scene =
+      "[material.m]\n" + metal + "E = 1e6\nnu = 0.3\ndensity = 1\n[region.\"*\"]\nmaterial = \"m\"\n" +
+      "[[motion]]\nkind = \"fixed\"\nname = \"wall\"\non = \"xmin\"\n" +
+      "[[load]]\nkind = \"force\"\nname = \"push\"\non = \"xmax\"\nforce = [0, 0, -3e3]\n[time]\nanalysis = \"path\"\nsteps = 12\n";
+  expect_goes_on(folder.path(), scene, "mesh.h5", {1, 2, 5, 9}, {});
+}
+
 // What is kept gives up factors of matrices, so the steps behind it differ from those of a run that is not kept: by round-off.
 TEST(KeptRun, IsTheRunThatWasNotKeptButForRoundOff) {
   const Folder folder;

@@ -95,3 +95,19 @@ TEST(Resources, ADryRunTellsWhatTheRunTakes) {
     EXPECT_LT(std::abs(std::log2(disk / file)), 1) << disk << " MB told, " << file << " MB taken";
   }
 }
+
+// As of a full disk: the system would end the program by a signal without a word.
+TEST(Resources, ALimitOfTheLengthOfFilesIsExit4) {
+  int refused = 0;
+  for (const int kilobytes : {1, 20, 60, 100})
+    for (const char* command : {"hilo-solve scene.toml tags.h5 --quiet -o long.h5", "hilo-reduce scene.toml linear.h5 --quiet -o long.h5",
+                                "hilo-import bar.geo --size 0.03 --quiet -o long.h5"}) {
+      const Ran ran = bar().run("rm -f long.*; ulimit -f " + std::to_string(kilobytes) + "; exec timeout -s KILL 60 " + command);
+      if (ran.exit == 0) continue;  // short enough
+      EXPECT_EQ(ran.exit, 4) << command << " with " << kilobytes << " kB: " << ran.err;
+      EXPECT_NE(ran.err.find("File too large"), std::string::npos) << ran.err;
+      EXPECT_EQ(ran.err.find('\n'), ran.err.size() - 1) << ran.err;
+      ++refused;
+    }
+  EXPECT_GT(refused, 7);
+}

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "base/args.hpp"
+#include "base/error.hpp"
 #include "base/outside_shapes.hpp"
 #include "model/scene.hpp"
 #include "model/schema.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "base/args.hpp"
 #include "base/error.hpp"
 #include "model/mesh_tags.hpp"
 

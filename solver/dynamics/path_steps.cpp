@@ -1,0 +1,322 @@
+// The path of equilibrium under loads that grow and shrink: displacements z and the share p of the loads are found together, so that limits
+// of loads and of displacements are passed [crisfield-1981, leon-2011].
+//
+//     R(q, lambda, p) = 0      t_z.z/u^2 + t_p p = 0   of every correction (z, p): at right angles to the way t ahead
+//
+// u is the size of the displacements that the whole load would make of the first tangent, so the length of a step counts shares of loads
+// and of these alike.  A correction is z = z_R + p z_p, with K z_R = -R and K z_p = -dR/dp by one factorization.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/held.hpp"
+#include "dynamics/profile.hpp"
+#include "dynamics/run_parts.hpp"
+#include "dynamics/start.hpp"
+#include "system/load_path.hpp"
+
+namespace hilo {
+namespace {
+
+using Vector = std::vector<double>;
+
+/// Where the loads, or the displacements, turn back on the path; or where its stability changes between two states without that.
+struct Turn {
+  double share = 0;
+  int step = 0;
+  std::string kind;
+};
+
+std::string as_json(const std::vector<Turn>& turns) {
+  std::string out;
+  for (const Turn& t : turns)
+    out += fmt::format("{}\n    {{\"kind\": \"{}\", \"load\": {:.12g}, \"step\": {}}}", out.empty() ? "" : ",", t.kind, t.share, t.step);
+  return out.empty() ? "[]" : "[" + out + "\n  ]";
+}
+
+class PathSteps final : public Steps {
+ public:
+  PathSteps(RunParts& run, Pause pause) : Steps(run, std::move(pause)), time_(run.scene.table("time")) {
+    n_ = time_.number("steps");
+    end_ = time_.has("end") ? time_.number("end") : 1;
+    reach_ = time_.has("reach") ? time_.number("reach") : 0;
+    at_.radius = std::sqrt(2.0) / n_;
+  }
+
+  void archive(Archive& a) override { a("path", at_); }
+
+  void take() override {
+    System& system = run_.system;
+    State& state = run_.state;
+    combine(none_, {{0, &state.q}});
+    if (run_.report.steps == 0) {
+      require_held(system, state.q, end_ / n_, 1 / n_, time_.where("analysis"));
+      run_.audit->start(state);
+      put_out({0, 1, 0}, [&] { run_.recorder->first(state, run_.audit->ledger()); });
+      at_.before = state.q;
+    }
+    Progress progress(run_.options.quiet || system.comm->rank != 0, 0, reach_ > 0 ? reach_ : 1);
+    while (!at_.done) {
+      std::string why;
+      if (Point to; (why = step(to)).empty()) {
+        accept(to);
+      } else {
+        give_up();
+        if (at_.radius <= std::ldexp(std::sqrt(2.0) / n_, -run_.max_cuts - 4)) return run_.stop(why + unheld(system, system.start));
+        at_.radius /= 4, ++run_.report.cuts;
+        continue;
+      }
+      progress.show(reach_ > 0 ? moved(state.q) : at_.share, run_.report.steps, iterations_);
+      if (!at_.done && run_.report.steps >= most_steps())
+        why = fmt::format("{} states of equilibrium have not come to the whole load (they are at {:.4g} of it)", run_.report.steps,
+                          at_.share);
+      if (!at_.done && std::abs(at_.share) > 10)
+        why = fmt::format("the path has ten times the whole load at a displacement of {:.4g} m, short of reach", moved(state.q));
+      if (why.empty() && !at_.done) why = pause_();
+      if (!why.empty()) {
+        progress.done();
+        return run_.stop(why);
+      }
+    }
+    progress.done();
+    run_.report.t = run_.report.steps;
+    run_.report.table = table();
+    run_.figures.path = as_json(at_.turns);
+    run_.report.complete = true;
+  }
+
+ private:
+  /// A direction of the path: increments, their multipliers behind them, and the share of the loads.
+  struct Way {
+    Vector z;
+    double p = 0;
+  };
+  /// A state reached: the share of the loads, the rise of the path there, eigenvalues of the tangent below zero.
+  struct Point {
+    State state;
+    PathPoint on;
+  };
+
+  double most_steps() const { return 1000 + 200 * n_; }
+  double moved(const Config& q) const { return run_.system.largest_difference(q, run_.system.start); }
+
+  /// Increments as lengths, z.y.
+  double dot(const Vector& z, const Vector& y) const {
+    const System& s = run_.system;
+    double sum = 0;
+    for (const UnknownField& f : s.unknowns)
+      for (size_t k = 0; k < f.size(); ++k)
+        for (int i = 3 * f.block(k); i < 3 * f.block(k) + 3; ++i) sum += z[i] * y[i] * f.scale(k) * f.scale(k);
+    return s.comm->sum(sum);
+  }
+  double length(const Way& w) const { return std::sqrt(dot(w.z, w.z) / (at_.unit * at_.unit) + w.p * w.p); }
+
+  Stage stage(const Config& q, double p) const {
+    Stage s = stage_at(q, p * end_);
+    s.a = &none_, s.load_factor = p, s.elapsed = slow;
+    return s;
+  }
+  /// The residual at q, with what a law moves where it is under the share p; with a tangent the solver has it.
+  void evaluate(const Config& q, const Vector& lambda, double p, Residual& r, bool tangent) {
+    const Timed timed(phases().assembly);
+    ++phases().evaluations, phases().tangents += tangent;
+    run_.system.evaluate(stage(q, p), lambda, r, tangent ? &*run_.solver : nullptr);
+    run_.solver->sum_shared(r.r);
+    run_.system.mask_fixed(r.r);
+    r.force_scale = run_.system.comm->max(r.force_scale);
+  }
+  /// dR/dp, where the residual is r.
+  Vector by_load(const Config& q, const Vector& lambda, double p, const Residual& r) {
+    constexpr double little = 1e-6;
+    Config nudged = q;
+    run_.system.prescribe(nudged, (p + little) * end_, p + little), run_.system.place(nudged);
+    Residual ahead;
+    evaluate(nudged, lambda, p + little, ahead, false);
+    for (size_t i = 0; i < r.r.size(); ++i) ahead.r[i] = (ahead.r[i] - r.r[i]) / little;
+    return ahead.r;
+  }
+  /// K z = -r with the tangent evaluated last; false, and `why_`, where that fails.
+  bool solve(const Vector& r, Vector& z) {
+    Vector b(r.size());
+    z.assign(r.size(), 0.0);
+    for (size_t i = 0; i < b.size(); ++i) b[i] = -r[i];
+    const Timed timed(phases().solve);
+    const SolveReport solved = run_.solver->solve(b, z);
+    ++phases().solves, phases().linear_iterations += solved.iterations;
+    if (!solved.ok) why_ = run_.solver->name() + ": " + solved.message;
+    return solved.ok;
+  }
+
+  /// The way ahead of unit length: on from the state before, or by the first tangent.
+  bool way_ahead(Way& way) {
+    const State& state = run_.state;
+    if (run_.report.steps > 0) {
+      way = {Unknown(run_.system, at_.before, state.q).increments(run_.system), at_.share - at_.share_before};
+      way.z.resize(3 * run_.system.n_blocks(), 0.0);
+    } else {
+      Residual r;
+      evaluate(state.q, state.lambda, 0, r, true);
+      if (!solve(by_load(state.q, state.lambda, 0, r), way.z)) return false;
+      at_.unit = std::sqrt(dot(way.z, way.z)), way.p = 1;
+      if (!(at_.unit > 0)) return why_ = "nothing loads or moves the scene", false;
+      std::fill(way.z.begin() + 3 * run_.system.first_joint_block(), way.z.end(), 0.0);
+    }
+    const double size = length(way);
+    if (!(size > 0)) return why_ = "the path has come to a stop", false;
+    for (double& z : way.z) z /= size;
+    way.p /= size;
+    return true;
+  }
+
+  /// From the state along `way`, so far; corrections at right angles to `across`.  False, and `why_`.
+  bool find(const Way& way, double so_far, const Way& across, Point& to) {
+    System& system = run_.system;
+    const State& from = run_.state;
+    const NewtonOptions& options = run_.newton;
+    double p = at_.share + so_far * way.p;
+    Config guess = from.q;
+    system.prescribe(guess, p * end_, p), system.place(guess);
+    Unknown u(system, from.q, guess);
+    Vector lambda = from.lambda, z = way.z, by_share;
+    for (double& x : z) x *= so_far;
+    u.move(system, z);
+    const double unit2 = at_.unit * at_.unit;
+    const size_t first = 3 * static_cast<size_t>(system.first_joint_block());
+    double last = 1e300;
+    for (iterations_ = 0;; ++iterations_, ++run_.report.iterations) {
+      Residual r;
+      evaluate(u.q, lambda, p, r, true);
+      report_.least_det = r.least_det;
+      if (r.least_det.det <= 0) return why_ = system.inside_out(r.least_det), false;
+      report_.residual = system.comm->max(relative_residual(system, r));
+      if (!std::isfinite(report_.residual)) return why_ = "the residual is not finite", false;
+      if (iterations_ > 0 && (report_.residual <= options.tolerance || last <= 1e-2 * options.tolerance)) break;
+      if (iterations_ == most_iterations) return why_ = "no convergence within the iterations allowed", false;
+      Vector z_p;
+      if (!solve(r.r, z) || !solve(by_load(u.q, lambda, p, r), z_p)) return false;
+      const double slant = dot(across.z, z_p) + unit2 * across.p, dp = -dot(across.z, z) / slant;
+      for (size_t i = 0; i < z.size(); ++i) z[i] += dp * z_p[i];
+      to.on.rise = std::copysign(1 / std::sqrt(dot(z_p, z_p) / unit2 + 1), dot(way.z, z_p) + unit2 * way.p);
+      const double correction = std::max(system.comm->max(relative_correction(system, z)), std::abs(dp));
+      if (!(correction <= 2 * last && correction <= options.reach)) return why_ = "the corrections grow", false;
+      last = correction;
+      p += dp;
+      Config moved = u.q;
+      system.prescribe(moved, p * end_, p), system.place(moved);
+      u.start(system, from.q, moved), u.move(system, z);
+      for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += r.sigma * z[first + i];
+    }
+    const std::optional<int> below = run_.solver->eigenvalues_below_zero(system.first_joint_block());
+    to.on.share = p, to.on.below = below ? *below : std::nan("");
+    to.state = from;
+    to.state.q = u.q, to.state.lambda = lambda, to.state.t = p * end_;
+    system.commit(to.state.q);
+    taken_ = {stage(to.state.q, p), to.state.lambda};
+    system.advance(taken_.stage);
+    taken_.stage.work_from = &from.q;
+    why_ = system.fault(to.state.q);
+    if (why_.empty()) why_ = run_.audit->look(from.q, to.state, {&taken_, 1}, report_, p);
+    return why_.empty();
+  }
+  void give_up() { run_.system.commit(run_.state.q), run_.system.settle(false); }
+
+  /// The next state: at the radius, at the whole load where that is passed, or at a limit of the loads where one is.  Why not, or "".
+  std::string step(Point& to) {
+    Way way;
+    if (!way_ahead(way) || !find(way, at_.radius, way, to)) return why_;
+    at_.turn.clear();
+    if (reach_ == 0 && at_.share < 1 && to.on.share >= 1) {  // the share is given
+      give_up();
+      const double ahead = (1 - at_.share) / (to.on.share - at_.share) * at_.radius;
+      Way across{Vector(way.z.size(), 0.0), 1};
+      way.p = (1 - at_.share) / ahead;
+      return find(way, ahead, across, to) ? "" : why_;
+    }
+    if (at_.rise * to.on.rise < 0 && !at_.from_limit) return limit(way, to);
+    at_.from_limit = false;
+    return "";
+  }
+
+  /// The state where the share of the loads is largest or least, between here and one too far: where the rise is zero, by secants that keep
+  /// it between two states.
+  std::string limit(const Way& way, Point& to) {
+    double near = 0, far = at_.radius, rise_near = at_.rise, rise_far = to.on.rise;
+    for (int k = 0; k < 12; ++k) {
+      const double share = std::clamp(rise_near / (rise_near - rise_far), 0.05, 0.95);
+      const double so_far = near + share * (far - near);
+      give_up();
+      if (!find(way, so_far, way, to)) return why_;
+      if (std::abs(to.on.rise) < 1e-4 || far - near < 1e-6 * at_.radius) break;
+      if (to.on.rise * at_.rise > 0)
+        near = so_far, rise_near = to.on.rise;
+      else
+        far = so_far, rise_far = to.on.rise;
+    }
+    at_.turn = at_.rise > 0 ? "maximum" : "minimum";
+    at_.from_limit = true;
+    return "";
+  }
+
+  void accept(Point& to) {
+    System& system = run_.system;
+    run_.audit->accept(run_.report.steps + 1);
+    State label = to.state;
+    label.t = run_.report.steps + 1;
+    put_out(to.on, [&] { run_.recorder->step(label, run_.audit->ledger(), taken_, none_, iterations_); });
+    system.settle(true);
+    ++run_.report.steps;
+    if (at_.turn.empty() && to.on.below != at_.below && std::isfinite(to.on.below) && !at_.after_turn)
+      at_.turn = to.on.below > at_.below ? "branch" : "branch back";
+    at_.after_turn = at_.turn == "maximum" || at_.turn == "minimum";
+    if (!at_.turn.empty()) at_.turns.push_back({to.on.share, static_cast<int>(run_.report.steps), at_.turn});
+    at_.before = run_.state.q, at_.share_before = at_.share;
+    at_.share = to.on.share, at_.below = to.on.below;
+    at_.rise = at_.from_limit ? -std::copysign(1e-300, at_.rise) : to.on.rise;
+    std::swap(run_.state, to.state);
+    const double most = std::sqrt(2.0) / n_;
+    at_.radius = std::min(most, at_.radius * std::clamp(std::sqrt(4.0 / std::max(1, iterations_)), 0.5, 2.0));
+    at_.done = reach_ > 0 ? moved(run_.state.q) >= reach_ : at_.share >= 1 - 1e-12;
+  }
+
+  void put_out(const PathPoint& on, const std::function<void()>& record) {
+    run_.system.part<LoadPath>().now = on;
+    record();
+  }
+
+  std::string table() const {
+    std::string out;
+    for (const Turn& t : at_.turns)
+      out += fmt::format("step {:4}: {} at {:.6g} of the loads\n", t.step,
+                         t.kind == "maximum"   ? "largest load"
+                         : t.kind == "minimum" ? "least load"
+                         : t.kind == "branch"  ? "stability is lost"
+                                               : "stability comes back",
+                         t.share);
+    return out;
+  }
+
+  static constexpr int most_iterations = 12;
+  const Entry& time_;
+  double n_ = 1;                // states that the whole load would take along the first tangent
+  double end_ = 1, reach_ = 0;  // time of the whole load [s]; displacement at which the path ends [m], 0: where it has the whole load
+  struct Place {
+    double share = 0, share_before = 0, rise = 1, radius = 1, unit = 1;
+    double below = 0;  // eigenvalues
+    bool done = false, from_limit = false, after_turn = false;
+    Config before;  // of the state
+    std::string turn;
+    std::vector<Turn> turns;
+  } at_;
+  int iterations_ = 0;
+  std::string why_;
+  NewtonReport report_;
+  Taken taken_;
+  Config none_;  // no accelerations
+};
+
+}  // namespace
+
+std::unique_ptr<Steps> path_steps(RunParts& run, Pause pause) { return std::make_unique<PathSteps>(run, std::move(pause)); }
+
+}  // namespace hilo

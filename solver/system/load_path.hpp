@@ -1,0 +1,25 @@
+// What an analysis of a path puts out beside displacements and forces: a row for every state of equilibrium.
+#pragma once
+#include "system/contribution.hpp"
+
+namespace hilo {
+
+struct PathPoint {
+  double share = 0;  // of the loads
+  double rise = 1;   // of that share along the path, whose length is measured in shares and in first displacements
+  double below = 0;  // eigenvalues of the tangent below zero, 0: stable; NaN: not known
+};
+
+/// Takes part in no equation: it holds the row that is written next.
+class LoadPath final : public Contribution {
+ public:
+  PathPoint now;
+  void evaluate(Pass&) const override {}
+  void tie(Ties&) const override {}
+  std::vector<Output> outputs() const override { return {{.group = "", .name = "path", .n_end = 3}}; }
+  void add_end_values(const Config&, const Config&, std::vector<double>& out) const override {
+    out.insert(out.end(), {now.share, now.rise, now.below});
+  }
+};
+
+}  // namespace hilo

@@ -1,0 +1,112 @@
+"""Scenes that the drills stop in the middle (fault_drill.py, power_cuts.py), and what their results have in common."""
+import subprocess
+
+import h5py
+
+
+def joint(kind, name, a, b, at, more=""):
+    return f'[[joint]]\nkind = "{kind}"\nname = "{name}"\na = "{a}"\nb = "{b}"\nat = {at}\n{more}\n'
+
+
+def body(name, com, more=""):
+    return f'[[body]]\nname = "{name}"\nmass = 2\ncom = {com}\ninertia = [0.05, 0.05, 0.05]\n{more}\n'
+
+
+Z, GRAVITY = "axis = [0, 0, 1]", "gravity = [0, -9.81, 0]\n"
+PENDULUM = GRAVITY + body("arm", [0.3, 0, 0]) + joint("revolute", "pin", "ground", "arm", [0, 0, 0], Z)
+MESH = """gravity = [0, 0, -9.81]
+[material.m]
+{law}E = 1e8
+nu = 0.3
+density = 1000
+[region."*"]
+material = "m"
+damping = 1e-4
+[[motion]]
+kind = "fixed"
+name = "root"
+on = "root"
+[[load]]
+kind = "force"
+name = "shake"
+on = "tip"
+force = [0, 0, {pull}]
+history = {{t = [0, 0.01, 0.03, 1], value = [0, 1, -1, 0]}}
+"""
+END = "[time]\nend = {end}\nstep = {step}\n[output]\ninterval = {interval}\n[solver]\ntolerance = 1e-10\n"
+
+
+def short(step=5e-3, steps=60):
+    return END.format(end=step * steps, step=step, interval=step * steps / 9)
+
+
+# name: scene, whether with the bar's mesh, numbers of ranks
+SCENES = {
+    "rigid": (PENDULUM + body("bob", [0.6, -0.3, 0]) + joint("spherical", "link", "arm", "bob", [0.6, 0, 0]) + short(), False, [1]),
+    "friction and stops": (
+        PENDULUM + '[[stop]]\nkind = "angle"\nname = "limit"\njoint = "pin"\nlower = -0.4\nupper = 0.4\nstiffness = 2e3\nrestitution = 0.6\n'
+        '[[friction]]\nname = "rub"\njoint = "pin"\ncoefficient = 0.2\nradius = 0.05\nslip_velocity = 1e-2\n' + short(), False, [1]),
+    "driven": (
+        GRAVITY + body("arm", [0.3, 0, 0]) + body("bob", [0.6, -0.3, 0]) + joint("spherical", "link", "arm", "bob", [0.6, 0, 0]) +
+        joint("revolute", "pin", "ground", "arm", [0, 0, 0],
+              Z + '\nangle = 2\nhistory = {t = [0, 0.1, 0.2, 1], value = [0, 0.2, 1, 1], interpolation = "smooth"}') + short(), False, [1, 2]),
+    "redundant": (
+        GRAVITY + body("crank", [0, 0.5, 0]) + body("rocker", [1, 0.5, 0]) + body("coupler", [0.5, 1, 0]) +
+        joint("revolute", "A0", "ground", "crank", [0, 0, 0], Z) + joint("revolute", "B0", "crank", "coupler", [0, 1, 0], Z) +
+        joint("revolute", "A1", "ground", "rocker", [1, 0, 0], Z) + joint("revolute", "B1", "rocker", "coupler", [1, 1, 0], Z) +
+        '[[initial]]\non = ["crank"]\nspin = [0, 0, -3]\n' + short(), False, [1]),
+    "flexible": (MESH.format(law="", pull=-200) + short(1e-3), True, [1, 2]),
+    "plastic": (MESH.format(law='kind = "j2"\nyield = 2e4\nhardening = 1e6\n', pull=-400) + short(1e-3), True, [1]),
+    "parallel": (
+        MESH.format(law="", pull=-200) + body("bob", [1, 0.05, -0.3]) +
+        joint("spherical", "hang", "tip", "bob", [1, 0.05, 0.05]) + short(1e-3), True, [3, 2]),
+}
+
+
+def command(name, ranks, *more):
+    scene, mesh, _ = SCENES[name]
+    launcher = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
+    return launcher + ["hilo-solve", *more]
+
+
+def scene_files(name):
+    scene, mesh, _ = SCENES[name]
+    with open("scene.toml", "w") as f:
+        f.write(scene)
+    return ["scene.toml"] + (["bar.h5"] if mesh else [])
+
+
+def run(line, **more):
+    return subprocess.run(line, capture_output=True, text=True, timeout=300, **more)
+
+
+def numbers(path):
+    """All arrays of numbers of a results file."""
+    out = {}
+    with h5py.File(path, "r") as f:
+
+        def visit(name, thing):
+            if isinstance(thing, h5py.Dataset) and thing.dtype.kind in "fiu":
+                out[name] = thing[()]
+
+        f.visititems(visit)
+    return out
+
+
+def same(a, b, tolerance=0.0):
+    """Names of arrays that differ."""
+    own = {"parts/rank", "history/newton", "history/constraint"} if tolerance else set()  # of the ranks, or round-off alone
+    bad = sorted((set(a) ^ set(b)) - own)
+    for name in sorted((set(a) & set(b)) - own):
+        x, y = a[name], b[name]
+        if x.shape != y.shape:
+            bad.append(name)
+        elif tolerance == 0 and x.tobytes() != y.tobytes():
+            bad.append(name)
+        elif tolerance and x.size and x.dtype.kind == "f":
+            scale = abs(y[..., :]).max() if y.ndim else abs(y)
+            if name in ("history/energy", "history/momentum"):
+                scale = max(scale, 1.0)
+            if abs(x - y).max() > tolerance * max(scale, 1e-12):
+                bad.append(name)
+    return bad

@@ -1,0 +1,58 @@
+// Lee's frame of hexahedra, one through the section: two legs of 1.2 m and a section of 20 x 30 mm, hinged at both feet; node set `load`
+// beside its corner.
+#pragma once
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+
+inline Mesh lee_frame() {
+  constexpr double leg = 1.2, half = 0.01;
+  BlockOptions o;
+  o.n[0] = 80, o.low = Vec3(0, -half, 0), o.high = Vec3(2 * leg, half, 0.03);
+  o.map = [](const Vec3& at) {  // a straight bar of 2.4 m folded to a frame, with a mitre at the corner
+    const double s = at[0], n = at[1], along = leg - n;
+    return s <= leg ? Vec3(n, s / leg * along, at[2]) : Vec3(n + (s - leg) / leg * along, along, at[2]);
+  };
+  Mesh mesh = block_mesh(o);
+  add_node_set(mesh, "load", [](const Vec3& x) { return std::abs(x[0] - 0.232) < 0.01 && x[1] > leg + half / 2; });
+  EXPECT_EQ(mesh.node_sets.at("load").size(), 2u);
+  return mesh;
+}
+
+/// With what pushes it, and [time].
+inline std::string lee_frame_scene(const std::string& rest) {
+  return R"(
+[material.frame]
+E = 70.608e9
+nu = 0.3
+density = 2700
+[region."*"]
+material = "frame"
+[[joint]]
+kind = "revolute"
+name = "foot"
+a = "ground"
+b = "xmin"
+at = [0, 0, 0.015]
+axis = [0, 0, 1]
+[[joint]]
+kind = "revolute"
+name = "far"
+a = "ground"
+b = "xmax"
+at = [1.2, 1.2, 0.015]
+axis = [0, 0, 1]
+)" + rest;
+}
+
+/// Moved down by 0.45 m while t goes to 1.
+inline const std::string pushed_by_a_law = R"([[motion]]
+kind = "translation"
+name = "push"
+on = "load"
+components = ["y"]
+displacement = [0, -0.45, 0]
+history = {t = [0, 1], value = [0, 1]}
+)";
+
+}  // namespace hilo::test
