@@ -40,7 +40,7 @@ TEST(Advise, ratio_grows_with_the_claim_and_doubles_with_a_jump) {
 
 TEST(Advise, an_elastic_frequency_is_one_that_rigid_parts_do_not_have) {
   EXPECT_EQ(elastic_frequency({0, 0, 5, 30}, {0, 0, 4.95, 12, 29.9}), 12);  // springs stay where they are
-  EXPECT_EQ(elastic_frequency({0, 5}, {0, 4.9, 5.1}), 5.1);                // one for one
+  EXPECT_EQ(elastic_frequency({0, 5}, {0, 4.9, 5.1}), 5.1);                 // one for one
   EXPECT_EQ(elastic_frequency({0, 5}, {0, 5}), 0);
 }
 
