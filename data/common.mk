@@ -7,7 +7,7 @@ ifeq ($(wildcard $(ROOT)/CMakeLists.txt),)
 BIN := $(patsubst %/,%,$(dir $(shell command -v hilo-solve)))
 BUILT := 1
 endif
-TOOLS := hilo-import hilo-tag hilo-part hilo-reduce hilo-solve hilo-post hilo-show
+TOOLS := hilo-import hilo-tag hilo-part hilo-reduce hilo-solve hilo-advise hilo-post hilo-show
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DELETE_ON_ERROR:

@@ -16,7 +16,9 @@
 #include "dynamics/wanted.hpp"
 #include "linear/blas_kernels.hpp"
 #include "model/inputs.hpp"
+#include "model/quantity_schema.hpp"
 #include "model/store.hpp"
+#include "post/quantity/quantity.hpp"
 
 namespace hilo {
 namespace {
@@ -125,6 +127,7 @@ void solve(int argc, char** argv, Comm& comm) {
     options.provenance = mesh->provenance;
     if (talk && !mesh->tagged) fmt::print(stderr, "{} is not tagged: all regions are nonlinear\n", options.mesh);
   }
+  if (mesh) check_quantity_regions(scene, mesh->mesh.region_name);
   if (from) options.provenance = from->command.provenance;
   options.provenance.push_back(command_line(argc, argv));
   const auto system = build_system(scene, mesh.get(), comm, {.from = o.modes, .to = "", .provenance = {}});
@@ -139,6 +142,13 @@ void solve(int argc, char** argv, Comm& comm) {
                           from ? from->path : "");
   options.between_steps = [&](const StepsSoFar& so_far, const auto& keep) { return checkpoints.between_steps(so_far, keep); };
   note_signals();
+  std::vector<QuantityValue> asked;
+  options.more = [&]() -> std::vector<std::pair<std::string, std::string>> {
+    if (scene.entries("quantity").empty()) return {};
+    RunFile file(o.output);
+    asked = quantities(scene, file);
+    return {{"quantities", quantity_table(asked).json()}};
+  };
   const RunReport report = [&] {
     try {
       return run(scene, *system, options);
@@ -155,6 +165,9 @@ void solve(int argc, char** argv, Comm& comm) {
                 fmt::format("the last good state is in {}", o.output), Exit::not_converged);
   checkpoints.finish();
   if (talk) fmt::print("{}", report.table);
+  for (const QuantityValue& v : asked)
+    if (!v.why.empty()) warn("", v.why);
+  if (talk && !asked.empty()) fmt::print("{}", quantity_table(asked).text());
   if (talk && report.table.empty())
     fmt::print(stderr, "{}: {} steps, {} Newton iterations{}\n", o.output, report.steps, report.iterations,
                report.cuts ? fmt::format(", {} step cuts", report.cuts) : "");

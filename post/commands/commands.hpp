@@ -20,6 +20,7 @@ Command mesh_command(CLI::App& app);
 Command gload_command(CLI::App& app);
 Command injury_command(CLI::App& app);
 Command peak_command(CLI::App& app);
+Command quantity_command(CLI::App& app);
 Command response_command(CLI::App& app);
 Command series_command(CLI::App& app);
 Command compare_command(CLI::App& app);

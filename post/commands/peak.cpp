@@ -10,7 +10,7 @@
 #include "post/charts/ticks.hpp"
 #include "post/commands/commands.hpp"
 #include "post/files/output.hpp"
-#include "post/run/run_file.hpp"
+#include "post/run/field_peak.hpp"
 #include "post/scene/shown_field.hpp"
 
 namespace hilo {
@@ -20,11 +20,6 @@ struct Options {
   std::string run, field = "von_mises", steps = "all", times, unit;
   std::vector<std::string> show, hide;
   bool json = false;
-};
-
-struct Peak {
-  double value = 0, t = 0;  // [unit of the file], [s]
-  std::int64_t node = -1;
 };
 
 void run(const Options& o) {
@@ -37,25 +32,10 @@ void run(const Options& o) {
   std::vector<bool> shown = shown_regions(mesh, o.show, o.hide);
   for (size_t r = 0; r < shown.size(); ++r)
     if (field.flexible_only && file.fidelity[r] == Fidelity::rigid) shown[r] = false;
-  std::vector<std::vector<std::int64_t>> nodes(shown.size());
-  for (size_t r = 0; r < shown.size(); ++r)
-    if (shown[r]) nodes[r] = mesh.nodes_of(mesh.region_name[r], run.path);
-  std::vector<Peak> peaks(shown.size());
+  const auto peaks =
+      field_peaks(run, steps, shown, [&](const Step& step) { return reduced(run.field(step, field.array), field, run.path); });
   double largest = 0;
-  for (const Step& step : steps) {
-    const auto value = reduced(run.field(step, field.array), field, run.path);
-    if (static_cast<std::int64_t>(value.size()) != mesh.n_nodes())
-      throw Error(run.path, fmt::format("step {} holds {} numbers for {} nodes", step.key, value.size(), mesh.n_nodes()),
-                  "the mesh was changed after the run");
-    for (size_t r = 0; r < shown.size(); ++r)
-      for (const std::int64_t n : nodes[r]) {
-        if (!run.holds(n)) continue;
-        const double x = value[static_cast<size_t>(n)];
-        if (peaks[r].node >= 0 && std::abs(x) <= std::abs(peaks[r].value)) continue;
-        peaks[r] = {x, step.t, n};
-        largest = std::max(largest, std::abs(x));
-      }
-  }
+  for (const FieldPeak& p : peaks) largest = std::max(largest, std::abs(p.value));
   const ShownUnit unit = o.unit.empty() ? handy_unit(field.unit, largest) : wanted_unit(field.unit, o.unit);
   Table table{{"region", fmt::format("{} [{}]", o.field, unit.name), "t [s]", "node", "X [m]", "Y [m]", "Z [m]"}, {}, 1};
   for (size_t r = 0; r < shown.size(); ++r) {

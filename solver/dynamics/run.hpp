@@ -28,6 +28,8 @@ struct RunOptions {
   std::function<std::string(const StepsSoFar& so_far, const std::function<Kept()>& keep)> between_steps = {};
   /// What was kept of a run: this one goes on from there, on any number of ranks, and its file with it.
   Kept from = {};
+  /// What else run.json is to tell of the finished results, key and JSON; called on rank 0.
+  std::function<std::vector<std::pair<std::string, std::string>>()> more = {};
 };
 
 /// What run.json tells.

@@ -48,6 +48,8 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   std::vector<std::pair<std::string, std::string>> said;
   for (const auto& part : system.parts()) part->add_to_report(said);
   for (const auto& [key, value] : said) add(key.c_str(), value);
+  if (report.complete && run.options.more)
+    for (const auto& [key, value] : run.options.more()) add(key.c_str(), value);
   add("position_change", fmt::format("{:.6g}", figures.assembled));
   add("velocity_change", fmt::format("{:.6g}", figures.projected));
   add("impulses", run.impulses.json());

@@ -67,6 +67,7 @@ void check_entries(const Entries& entries) {
     for (const auto& e : of(section)) check_ends(e);
   check_bodies(of("body"), of("region"));
   for (const auto& e : of("time")) check_time(e);
+  check_quantities(entries);
   std::vector<std::string> materials;
   for (const auto& m : of("material")) materials.push_back(m.name);
   for (const auto& r : of("region")) {

@@ -37,6 +37,8 @@ HistoryTable read_history_csv(const std::string& path, const std::string& where)
 
 /// Mistakes that need more than one key to see: Error.
 void check_entries(const Entries& entries);
+/// Quantities: one source each, names that the scene has, tolerances that can be.
+void check_quantities(const Entries& entries);
 /// Values that are possible but not plausible, one line each.
 std::vector<std::string> find_implausible(const Entries& entries);
 

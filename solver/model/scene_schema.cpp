@@ -1,5 +1,6 @@
 // What a scene may say: the table behind the checks, --explain and docs/format.md.
 #include "base/keys.hpp"
+#include "model/quantity_schema.hpp"
 #include "model/scene.hpp"
 #include "model/time_schema.hpp"
 #include "physics/material/materials.hpp"
@@ -197,6 +198,7 @@ std::vector<KindSchema> make() {
                "",
                "position, velocity and acceleration of a point",
                {name, on, {"at", vector3, "m", "", "point on a body, or nearest node of the set; mean of the nodes when absent"}}});
+  for (KindSchema& quantity : quantity_schema()) s.push_back(std::move(quantity));
   s.push_back(
       {"history",
        "",

@@ -83,14 +83,16 @@ TEST(Floors, NoFileOfTheSolverIsLong) {
 
 // The rooms of post/: no circle among them, and a new one must be drawn here.
 TEST(Floors, RoomsOfPostUseOnlyThoseBelow) {
-  const std::map<std::string, std::set<std::string>> below{{"files", {}},
-                                                           {"run", {}},
-                                                           {"surface", {}},
-                                                           {"picture", {"files"}},
-                                                           {"charts", {"picture"}},
-                                                           {"scene", {"run", "surface", "picture", "charts"}},
-                                                           {"injury", {"files", "run", "picture", "charts"}},
-                                                           {"commands", {"files", "run", "picture", "charts", "scene", "injury"}}};
+  const std::map<std::string, std::set<std::string>> below{
+      {"files", {}},
+      {"run", {}},
+      {"surface", {}},
+      {"picture", {"files"}},
+      {"charts", {"picture"}},
+      {"scene", {"run", "surface", "picture", "charts"}},
+      {"injury", {"files", "run", "picture", "charts"}},
+      {"quantity", {"files", "run", "injury"}},
+      {"commands", {"files", "run", "picture", "charts", "scene", "injury", "quantity"}}};
   const fs::path root = fs::path(HILO_SOURCE) / "post";
   for (const auto& [file, included] : includes(root)) {
     const fs::path inside = fs::relative(file, root);

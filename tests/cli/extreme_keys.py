@@ -19,7 +19,7 @@ MEMORY, SECONDS = 3 << 30, 30
 
 # What a key is where it is not the one that is tried; others take the schema's default or are left out.
 WORDS = {"a": '"ground"', "b": '"arm"', "on": '"arm"', "joint": '"hinge"', "name": '"tried"', "at": "[0, 0, 0]", "axis": "[0, 1, 0]",
-         "x": "[1, 0, 0]", "at_a": "[0, 0, 1]", "at_b": "[0.5, 0, 0]"}
+         "x": "[1, 0, 0]", "at_a": "[0, 0, 1]", "at_b": "[0.5, 0, 0]", "sensor": '"felt"', "measure": '"DRI"'}
 NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5, 0, 0]", "inertia": "[0.01, 0.1, 0.1]", "pitch": "0.1",
            "ratio": "2", "radius": "0.1", "stiffness": "100", "angular_stiffness": "100", "damping": "1", "angular_damping": "1",
            "lower": "-1", "upper": "1", "rate": "[0, 1]", "torque": "[1, 0]", "force": "[1, 0]", "coefficient": "0.1", "length": "1",
@@ -143,6 +143,8 @@ def entry(section, kind, keys, tried, value):
             beside |= {"hardening_strain", "hardening_stress"}
     if section == "body":
         beside.add("inertia")
+    if section == "quantity":
+        beside.add("sensor")
     for key, type_, default in keys:
         if key == tried:
             lines.append(f"{key} = {value}")
@@ -193,6 +195,8 @@ def scene(section, kind, keys, tried, value):
         if alone and section != "body":
             rest = rest[:rest.index("[[joint]]")]
         rest += f"[[{section}]]\n" + "\n".join(lines) + "\n"
+        if section == "quantity":
+            rest += '[[sensor]]\nname = "felt"\non = "arm"\n'
     if with_mesh:
         held = '[[motion]]\nkind = "fixed"\nname = "held"\non = "base"\n'
         plain = '[material.plain]\nE = 2e9\nnu = 0.3\ndensity = 1000\n' + ("" if "[region" in rest else '[region."*"]\nmaterial = "plain"\n')

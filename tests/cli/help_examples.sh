@@ -82,6 +82,12 @@ on = "wheel_2"
 name = "tip"
 on = "wheel_2"
 
+[[quantity]]
+name = "hinge"
+kind = "peak"
+joint = "hinge"
+tolerance = "50%"
+
 [time]
 end = 0.1
 step = 1e-3

@@ -1,0 +1,17 @@
+// The value largest in size that a field has in every region over steps of a run.
+#pragma once
+#include <functional>
+
+#include "post/run/run_file.hpp"
+
+namespace hilo {
+
+struct FieldPeak {
+  double value = 0, t = 0;  // [unit of the file], [s]
+  std::int64_t node = -1;   // -1: none
+};
+/// One for each region of the mesh; those that are not `wanted` have none.  `values` gives a number for each node at a step.
+std::vector<FieldPeak> field_peaks(RunFile& run, const std::vector<Step>& steps, const std::vector<bool>& wanted,
+                                   const std::function<std::vector<double>(const Step&)>& values);
+
+}  // namespace hilo

@@ -1,0 +1,105 @@
+#!/usr/bin/python3
+"""hilo-advise on three bars: what it chooses is within its tolerance of the run with all cells at half the step, it keeps rigid what may be
+and refuses what it cannot say.  Usage: advise.py BIN"""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+BIN = os.path.abspath(sys.argv[1])
+N, SIDE = 6, 0.05
+
+
+def deck():
+    """Bars a, b, c of 1 m along x, one behind the other, six hexahedra of 20 nodes each, with the sets of their ends: a0, a1, ..."""
+    nodes, text, sets, number = [], "", "", 0
+    for k, name in enumerate("abc"):
+        ids = {}
+
+        def node(place):
+            if place not in ids:
+                i, y, z = place
+                nodes.append((k + i / (2 * N), (y / 2 - 0.5) * SIDE, (z / 2 - 0.5) * SIDE))
+                ids[place] = len(nodes)
+            return ids[place]
+
+        text += f"*ELEMENT, TYPE=C3D20, ELSET={name}\n"
+        for i in range(0, 2 * N, 2):
+            corner = [(i, 0, 0), (i + 2, 0, 0), (i + 2, 2, 0), (i, 2, 0), (i, 0, 2), (i + 2, 0, 2), (i + 2, 2, 2), (i, 2, 2)]
+            edges = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+            middle = [tuple((p + q) // 2 for p, q in zip(corner[a], corner[b])) for a, b in edges]
+            number += 1
+            row = [number] + [node(p) for p in corner + middle]
+            text += ", ".join(map(str, row[:16])) + ",\n" + ", ".join(map(str, row[16:])) + "\n"
+        for end in (0, 1):
+            sets += f"*NSET, NSET={name}{end}\n" + ", ".join(str(v) for p, v in ids.items() if p[0] == end * 2 * N) + "\n"
+        sets += f"*MATERIAL, NAME=m{name}\n*ELASTIC\n2e11, .3\n*DENSITY\n7850\n*SOLID SECTION, ELSET={name}, MATERIAL=m{name}\n"
+    return "*NODE\n" + "".join(f"{i + 1}, {x:.9g}, {y:.9g}, {z:.9g}\n" for i, (x, y, z) in enumerate(nodes)) + text + sets
+
+
+def scene(more=""):
+    """The first joint turns by 1 rad within .4 s."""
+    text = "gravity = [0, 0, -9.81]\n"
+    for k, (a, b) in enumerate((("ground", "a0"), ("a1", "b0"), ("b1", "c0"))):
+        text += f'[[joint]]\nkind = "revolute"\nname = "j{k}"\na = "{a}"\nb = "{b}"\nat = [{k}, 0, 0]\naxis = [0, 1, 0]\n'
+        text += 'angle = 1\nhistory = {t = [0, 0.2, 0.4], value = [0, 0.5, 1], interpolation = "smoother"}\n' if k == 0 else ""
+        text += f'[[quantity]]\nname = "R{k}"\nkind = "peak"\njoint = "j{k}"\n'
+    return text + '[time]\nend = 0.4\nstep = 1e-3\n[region."*"]\ndamping = 1.2e-5\n' + more
+
+
+def run(*command):
+    return subprocess.run([os.path.join(BIN, command[0]), "--quiet", *command[1:]], capture_output=True, text=True, timeout=200)
+
+
+def values(tags, *more):
+    done = run("hilo-solve", "scene.toml", tags, "-o", "run.h5", *more)
+    assert done.returncode == 0, done.stderr
+    return {q["quantity"]: q["value"] for q in json.load(open("run.json"))["quantities"]}
+
+
+def tagged(*rules):
+    done = run("hilo-tag", "mesh.h5", *rules, "-o", "tags.h5")
+    assert done.returncode == 0, done.stderr
+    return "tags.h5"
+
+
+def refused(what, *options):
+    done = run("hilo-advise", "scene.toml", "mesh.h5", *options)
+    assert done.returncode in (1, 2) and what in done.stderr, (what, done.returncode, done.stderr)
+    assert len(done.stderr.splitlines()) == 1, done.stderr
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    open("deck.inp", "w").write(deck())
+    assert run("hilo-import", "deck.inp", "-o", "mesh.h5").returncode == 0
+    open("scene.toml", "w").write(scene())
+    done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json", "--apply", "choice.toml")
+    assert done.returncode == 0, done.stderr
+    advice = json.loads(done.stdout)
+    level = {r["region"]: r["level"] for r in advice["regions"]}
+    assert level == {"a": "linear", "b": "rigid", "c": "rigid"}, level
+    errors = {m["flexible"]: m["error over allowed"] for m in advice["models"] if m["level"] != "nonlinear"}
+    assert errors["all rigid"] > 1 and errors["a"] <= 0.5 and len(errors) == 8, errors
+
+    truth = values(tagged("--rest", "nonlinear"), "--set", "time.step=5e-4")
+    chosen, rigid = values(tagged("choice.toml")), values(tagged("--rest", "rigid"))
+    off = {q: abs(chosen[q] / truth[q] - 1) for q in truth}
+    assert max(off.values()) < 0.02, off
+    assert max(abs(rigid[q] / truth[q] - 1) for q in truth) > 0.1  # that there was something to choose
+    print(f"chosen: bar a; off by {100 * max(off.values()):.2f} %, all rigid by {100 * max(abs(rigid[q] / truth[q] - 1) for q in truth):.0f} %")
+
+    before = {f: os.stat("advise.work/" + f).st_mtime_ns for f in os.listdir("advise.work")}
+    assert run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json").stdout == done.stdout
+    assert before == {f: os.stat("advise.work/" + f).st_mtime_ns for f in os.listdir("advise.work")}  # nothing ran again
+
+    refused("the step alone makes", "--tol", "0.001%")
+    refused("no positive number", "--tol", "-1%")
+    refused("has no unit", "--tol", "2")
+    refused("only runs in time", "--set", 'time.analysis="static"')
+    open("scene.toml", "w").write(scene('[[quantity]]\nname = "s"\nkind = "peak"\nstress = "d"\n'))
+    refused('no region "d"')
+    open("scene.toml", "w").write(scene().replace('name = "R1"\nkind = "peak"\njoint = "j1"', 'name = "R1"\nkind = "peak"\njoint = "jay"'))
+    refused('no joint "jay"')
+print("advise: well")
