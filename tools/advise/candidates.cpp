@@ -10,7 +10,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "base/args.hpp"
+#include "about.hpp"
 #include "base/digest.hpp"
 #include "base/error.hpp"
 #include "model/store.hpp"
@@ -62,6 +62,7 @@ std::string Candidates::label(const Assignment& fidelity) const {
 
 std::string Candidates::solve(const Assignment& fidelity, const std::vector<std::string>& more) {
   Digest key;
+  key.add(about());  // another hilo may compute otherwise
   for (const std::string& value : scene_.values()) key.add(value);
   key.add(text_of_file(mesh_path_));
   for (const Fidelity f : fidelity) key.add(word(f));
