@@ -49,7 +49,7 @@ class PathSteps final : public Steps {
   void take() override {
     System& system = run_.system;
     State& state = run_.state;
-    combine(none_, {{0, &state.q}});
+    combine(none_, {{0, &system.start}});
     if (run_.report.steps == 0) {
       require_held(system, state.q, end_ / n_, 1 / n_, time_.where("analysis"));
       run_.audit->start(state);

