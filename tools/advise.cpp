@@ -52,7 +52,12 @@ struct Gates {
 };
 
 void run(const Options& o) {
-  const Tolerance tol = parse_tolerance(o.tolerance, "", "--tol");
+  QuantityTolerance tol;
+  try {
+    tol = parse_tolerance(o.tolerance, "", "--tol");
+  } catch (const Error& e) {
+    throw Error(e.where, e.message, e.hint, Exit::usage);
+  }
   if (!tol.relative) throw Error("--tol", "is relative", "\"2%\"; a quantity may have its own, with a unit", Exit::usage);
   const Fidelity level = fidelity_of(o.level, "--level");
   if (level == Fidelity::rigid) throw Error("--level", "rigid is what it begins with", "linear or nonlinear", Exit::usage);
@@ -69,7 +74,8 @@ void run(const Options& o) {
   for (const Entry& q : scene.entries("quantity")) {
     if (q.kind == "frequency") continue;
     ++asked;
-    const Tolerance own = q.has("tolerance") ? parse_tolerance(q.text("tolerance"), unit_of(q).value_or(""), q.where("tolerance")) : tol;
+    const QuantityTolerance own =
+        q.has("tolerance") ? parse_tolerance(q.text("tolerance"), unit_of(q).value_or(""), q.where("tolerance")) : tol;
     if (own.relative) tightest = std::min(tightest, own.value);
   }
   if (asked == 0) throw Error(scene.path, "the scene asks for no quantity", "write [[quantity]]: what may not change");

@@ -31,7 +31,7 @@ Scale scale_of(const Panel& panel, bool y_axis, int n_ticks) {
   s.log = y_axis ? panel.y.log : panel.x.log;
   double low = std::numeric_limits<double>::infinity(), high = -low;
   bool marked = false;
-  for (const Curve& c : panel.curves) {
+  for (const ChartCurve& c : panel.curves) {
     marked = marked || c.marker >= 0;
     for (size_t i = 0; i < c.x.size(); ++i) {
       const double v = y_axis ? c.y[i] : c.x[i];
@@ -133,7 +133,7 @@ void draw_guides(Painter& p, const Panel& panel, const Scale& sx, const Scale& s
   }
 }
 
-void draw_curve(Painter& p, const Curve& c, const Scale& sx, const Scale& sy, const Box& box) {
+void draw_curve(Painter& p, const ChartCurve& c, const Scale& sx, const Scale& sy, const Box& box) {
   std::vector<Vec2> stretch;
   const auto flush = [&] {
     p.line(stretch, c.colour, c.width, c.opacity, c.dashed);
@@ -208,7 +208,7 @@ void draw_band(Painter& p, const Band& b, const Scale& sx, const Scale& sy, cons
 
 double legend_width(Painter& p, const Panel& panel) {
   double w = 0;
-  for (const Curve& c : panel.curves)
+  for (const ChartCurve& c : panel.curves)
     if (!c.label.empty()) w = std::max(w, p.extent(c.label, legend_size).x());
   for (const Band& b : panel.bands)
     if (!b.label.empty()) w = std::max(w, p.extent(b.label, legend_size).x());
@@ -218,7 +218,7 @@ double legend_width(Painter& p, const Panel& panel) {
 void draw_legend(Painter& p, const Panel& panel, const Box& box) {
   const double row = 22 * p.scale, x = box.x + box.w + 14 * p.scale;
   double y = box.y + box.h - row / 2;
-  for (const Curve& c : panel.curves) {
+  for (const ChartCurve& c : panel.curves) {
     if (c.label.empty()) continue;
     p.line(std::array{Vec2(x, y), Vec2(x + 30 * p.scale, y)}, c.colour, c.width, c.opacity, c.dashed);
     if (c.marker >= 0) draw_marker(p, c.marker, {x + 15 * p.scale, y}, c.colour);

@@ -11,7 +11,7 @@ namespace hilo {
 class Painter;
 struct Box;
 
-struct Curve {
+struct ChartCurve {
   std::string label;
   std::vector<double> x, y;
   Rgb colour;
@@ -43,7 +43,7 @@ struct Band {
 struct Panel {
   std::string title;
   Axis x, y;
-  std::vector<Curve> curves;
+  std::vector<ChartCurve> curves;
   std::vector<Guide> guides = {};
   std::vector<Band> bands = {};
 };

@@ -87,7 +87,7 @@ void run(const Options& o) {
       const auto ys = table.numbers(c);
       Panel& panel = panel_of(table.header[c]);
       for (const auto& [name, rows] : groups(table, o.by)) {
-        Curve curve;
+        ChartCurve curve;
         curve.label = join(o.files.size() > 1 ? std::filesystem::path(file).stem().string() : "", name);
         if (columns.size() > 1 || curve.label.empty()) curve.label = join(curve.label, plain(table.header[c]));
         for (const size_t row : rows) curve.x.push_back(xs[row]), curve.y.push_back(ys[row]);

@@ -24,7 +24,7 @@ struct Options {
   bool json = false;
 };
 
-std::string cell(const Measure& m) { return std::isfinite(m.value) ? fmt::format("{:.{}f}", m.value, m.digits) : "-"; }
+std::string cell(const InjuryMeasure& m) { return std::isfinite(m.value) ? fmt::format("{:.{}f}", m.value, m.digits) : "-"; }
 
 /// A row for each measure: for people.
 std::string text_of(const std::vector<Crew>& crew) {
@@ -34,7 +34,7 @@ std::string text_of(const std::vector<Crew>& crew) {
   table.header.insert(table.header.end(), {"reference", "what"});
   table.n_text = 2;
   for (size_t k = 0; k < crew[0].measures.size(); ++k) {
-    const Measure& m = crew[0].measures[k];
+    const InjuryMeasure& m = crew[0].measures[k];
     std::vector<std::string> row{m.key, m.unit};
     for (const Crew& c : crew) row.push_back(cell(c.measures[k]));
     row.push_back(std::isfinite(m.reference) ? fmt::format("{:g}", m.reference) : "");
@@ -48,10 +48,10 @@ std::string text_of(const std::vector<Crew>& crew) {
 Table table_of(const std::vector<Crew>& crew, bool units) {
   Table table;
   table.header = {"sensor"};
-  for (const Measure& m : crew[0].measures) table.header.push_back(units ? fmt::format("{} [{}]", m.key, m.unit) : m.key);
+  for (const InjuryMeasure& m : crew[0].measures) table.header.push_back(units ? fmt::format("{} [{}]", m.key, m.unit) : m.key);
   for (const Crew& c : crew) {
     std::vector<std::string> row{c.record.name};
-    for (const Measure& m : c.measures) row.push_back(cell(m));
+    for (const InjuryMeasure& m : c.measures) row.push_back(cell(m));
     table.rows.push_back(row);
   }
   return table;

@@ -19,10 +19,10 @@ const std::vector<Tolerance>& eiband_tolerances() {
   return all;
 }
 
-Held levels_of(const Crew& crew, size_t axis, int sign) {
+HeldLevel levels_of(const Crew& crew, size_t axis, int sign) {
   std::vector<double> x;
   for (const double v : crew.change[axis]) x.push_back(sign * v);
-  Held held;
+  HeldLevel held;
   if (x.size() < 2) return held;
   const double T = (crew.record.uniform.back() - crew.record.uniform.front()) / static_cast<double>(x.size() - 1);
   const double steps = 24, start = std::max(1.0, std::ceil(1e-3 / T - 1e-9));  // a decade in so many steps, from a millisecond
@@ -46,7 +46,7 @@ void write_eiband(const std::vector<Crew>& crew, double cfc, const std::string& 
     panel.curves.push_back({"Eiband 1959, approximate", t.duration, t.level, ink, 2.4});
     panel.curves.back().dashed = true;
     for (size_t i = 0; i < crew.size(); ++i) {
-      const Held h = levels_of(crew[i], t.axis, t.sign);
+      const HeldLevel h = levels_of(crew[i], t.axis, t.sign);
       panel.curves.push_back(
           {crew[i].record.name, h.duration, h.level, curve_colour(static_cast<int>(i)), 1.8 + 1.8 * static_cast<double>(i)});
     }

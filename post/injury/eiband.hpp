@@ -17,10 +17,10 @@ struct Tolerance {
 const std::vector<Tolerance>& eiband_tolerances();
 
 /// Durations [s] and the highest level [g] that the change of acceleration along sign * axis holds for each without a break.
-struct Held {
+struct HeldLevel {
   std::vector<double> duration, level;
 };
-Held levels_of(const Crew& crew, size_t axis, int sign);
+HeldLevel levels_of(const Crew& crew, size_t axis, int sign);
 
 /// Four panels on logarithmic axes, one for each direction: the tolerance, and what each sensor felt.
 void write_eiband(const std::vector<Crew>& crew, double cfc, const std::string& title, const std::string& path);

@@ -9,7 +9,7 @@
 
 namespace hilo {
 
-struct Measure {
+struct InjuryMeasure {
   std::string key, unit, what;  // "DRI", "1", what it is in words
   double value = std::numeric_limits<double>::quiet_NaN();
   int digits = 3;
@@ -20,7 +20,7 @@ struct Measure {
 struct Crew {
   SensorRecord record;
   std::array<std::vector<double>, 3> change;  // filtered less what was felt at the start, at record.uniform  [g]
-  std::vector<Measure> measures;
+  std::vector<InjuryMeasure> measures;
   double head_class = 0, chest_class = 0;  // CFC of HIC and severity, of the 3 ms clip: the wanted class or the highest the record holds
 };
 Crew crew_of(SensorRecord record, double cfc);

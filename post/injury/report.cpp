@@ -61,8 +61,8 @@ class Page {
 
 std::string number(double x, int digits) { return std::isfinite(x) ? fmt::format("{:.{}f}", x, digits) : "-"; }
 
-const Measure& measure(const Crew& c, const std::string& key) {
-  return *std::find_if(c.measures.begin(), c.measures.end(), [&](const Measure& m) { return m.key == key; });
+const InjuryMeasure& measure(const Crew& c, const std::string& key) {
+  return *std::find_if(c.measures.begin(), c.measures.end(), [&](const InjuryMeasure& m) { return m.key == key; });
 }
 
 Figure pulses(const std::vector<Crew>& crew, double cfc, const Corridor& corridor) {
@@ -97,7 +97,7 @@ void pulse_table(Page& page, const std::vector<Crew>& crew) {
     std::vector<std::string> text{page.fitted(c.record.name, 0.15)};
     for (const char* axis : {"x", "y", "z"})
       for (const char* what : {"peak_", "t_", "width_"}) {
-        const Measure& m = measure(c, std::string(what) + axis);
+        const InjuryMeasure& m = measure(c, std::string(what) + axis);
         text.push_back(number(m.value, m.digits));
       }
     page.cells(text, at, across);
@@ -119,7 +119,7 @@ void measure_table(Page& page, const std::vector<Crew>& crew) {
   page.cells(head, at, across, true);
   page.rule(grey, 1.2);
   for (size_t k = 9; k < crew[0].measures.size(); ++k) {
-    const Measure& m = crew[0].measures[k];
+    const InjuryMeasure& m = crew[0].measures[k];
     if (m.key == "aw_x" || m.key == "DR_x") page.rule(faint, 1);
     std::vector<std::string> text{
         m.key, m.unit == "1" ? m.what : fmt::format("{} [{}]", m.what, m.unit == "m/s^1.75" ? "m/s\u00b9\u00b7\u2077\u2075" : m.unit)};

@@ -103,7 +103,7 @@ void evaluate(const Entry& q, RunFile& run, QuantityValue& v) {
     v.of = fmt::format("sensor {}: {}", q.text("sensor"), q.text("measure"));
     const Crew crew = crew_of(read_sensors(run.path, {q.text("sensor")}, q.number("cfc")).records.front(), q.number("cfc"));
     std::vector<std::string> keys;
-    for (const Measure& m : crew.measures) {
+    for (const InjuryMeasure& m : crew.measures) {
       keys.push_back(m.key);
       if (m.key == q.text("measure")) v.value = m.value, v.unit = m.unit;
     }

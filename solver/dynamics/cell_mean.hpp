@@ -8,11 +8,11 @@
 namespace hilo {
 
 /// Mean stress of a linear cell, where it is, and the slope of its assumed strains: least squares over its points.
-struct CellMean {
+struct LinearCellMean {
   Vec3 X = Vec3::Zero();
   Vec6 S = Vec6::Zero();
   Eigen::Matrix<double, 6, 3> slope = Eigen::Matrix<double, 6, 3>::Zero();
-  explicit CellMean(const std::vector<StressPoint>& points) {
+  explicit LinearCellMean(const std::vector<StressPoint>& points) {
     double w = 0;
     for (const StressPoint& p : points) X += p.w * p.X, S += p.w * p.S, w += p.w;
     X /= w, S /= w;

@@ -12,7 +12,7 @@
 
 #include "base/interrupt.hpp"
 #include "dynamics/profile.hpp"
-#include "dynamics/record/run_file.hpp"
+#include "dynamics/record/run_output.hpp"
 #include "model/inputs.hpp"
 
 namespace hilo {
@@ -39,7 +39,7 @@ std::string absolute(const std::string& path) { return path.empty() || path == "
 
 }  // namespace
 
-Checkpoints::Checkpoints(const Comm& comm, const Scene& scene, Command command, std::string output, CheckpointPolicy policy,
+Checkpoints::Checkpoints(const Comm& comm, const Scene& scene, RunCommand command, std::string output, CheckpointPolicy policy,
                          const std::string& from)
     : comm_(comm),
       scene_(scene),

@@ -20,7 +20,7 @@ struct CheckpointPolicy {
 };
 
 /// The command that a run was made by.
-struct Command {
+struct RunCommand {
   std::string scene, mesh, modes;  // absolute paths, "-" or ""
   std::vector<std::string> overrides;
   std::vector<std::string> provenance = {};  // command lines that led to the results
@@ -30,7 +30,8 @@ struct Command {
 class Checkpoints {
  public:
   /// `from`: the checkpoint that the run goes on from, or "".
-  Checkpoints(const Comm& comm, const Scene& scene, Command command, std::string output, CheckpointPolicy policy, const std::string& from);
+  Checkpoints(const Comm& comm, const Scene& scene, RunCommand command, std::string output, CheckpointPolicy policy,
+              const std::string& from);
   /// As RunOptions::between_steps.
   std::string between_steps(const StepsSoFar& so_far, const std::function<Kept()>& keep);
   /// The run is complete: they are not wanted any more, unless asked for.
@@ -41,7 +42,7 @@ class Checkpoints {
   void write(const StepsSoFar& so_far, const std::function<Kept()>& keep);
   const Comm& comm_;
   const Scene& scene_;
-  Command command_;
+  RunCommand command_;
   std::string output_, stop_file_;
   CheckpointPolicy policy_;
   std::vector<std::string> digests_;  // of mesh and tags, found once
@@ -57,7 +58,7 @@ struct Checkpoint {
   double t = 0;
   std::string scene;  // its text
   std::vector<std::string> values, digests;
-  Command command;
+  RunCommand command;
   Kept kept;  // arrays on rank 0
 };
 /// Error (exit 2) where there is none.  The same on all ranks.

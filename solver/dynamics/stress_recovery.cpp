@@ -146,7 +146,7 @@ StressRecovery::Patches StressRecovery::made_patches(int order, const std::vecto
     if (order == 2 && quadratic(at.batch->shape))
       for (const StressPoint& q : points) samples.push_back(q.X);
     else
-      samples.push_back(CellMean(points).X);
+      samples.push_back(LinearCellMean(points).X);
   };
   each_cell(p, nullptr, [&](size_t, size_t, std::span<const int> corner, const Cell& at) {
     sample(at);
@@ -184,7 +184,7 @@ std::vector<double> StressRecovery::polynomials(const Patches& p, const Config& 
       for (const int v : corner)
         for (const StressPoint& q : points) p.fit[v].add_stress(q.X - system_.X[p.node[v]], q.S, sums.data() + v * width);
     } else {
-      const CellMean cell(points);
+      const LinearCellMean cell(points);
       for (const int v : corner) {
         p.fit[v].add_stress(cell.X - system_.X[p.node[v]], cell.S, sums.data() + v * width);
         if (p.order == 1) PatchFit::add_slope(cell.slope, sums.data() + v * width);

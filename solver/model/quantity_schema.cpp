@@ -77,7 +77,7 @@ std::vector<KindSchema> quantity_schema() {
                {{"mode", number, "", "!", "its number, from 1 on", from_to(1, 1e6)}})};
 }
 
-Tolerance parse_tolerance(const std::string& text, const std::string& unit, const std::string& where) {
+QuantityTolerance parse_tolerance(const std::string& text, const std::string& unit, const std::string& where) {
   const auto wrong = [&](const std::string& what) {
     return Error(where, fmt::format("tolerance \"{}\" {}", text, what),
                  unit.empty() ? "\"2%\"" : fmt::format("\"2%\", or with a unit of {}, as \"0.5 {}\"", unit, unit));

@@ -10,14 +10,14 @@ namespace hilo {
 std::vector<KindSchema> quantity_schema();
 
 /// How far a quantity may be off: "2%" of it, or "50 N", "1.5 MPa" in any unit of its kind.
-struct Tolerance {
+struct QuantityTolerance {
   double value = 0;  // a fraction where relative, else in the unit of the quantity
   bool relative = false;
   /// In the unit of a quantity of this value.
   double allowed(double x) const { return relative ? value * std::abs(x) : value; }
 };
 /// Error (at `where`) for what is no positive number with % or a unit of the kind of `unit`.  Accelerations in g are of the kind m/s^2.
-Tolerance parse_tolerance(const std::string& text, const std::string& unit, const std::string& where);
+QuantityTolerance parse_tolerance(const std::string& text, const std::string& unit, const std::string& where);
 
 /// The unit of a quantity, from its keys alone: "N", "Pa", "g"; of an injury measure nothing.
 std::optional<std::string> unit_of(const Entry& quantity);

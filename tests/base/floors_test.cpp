@@ -121,4 +121,19 @@ TEST(Floors, LibrariesAreIncludedOnlyWhereTheyBelong) {
         }
 }
 
+// All is one namespace, and what is linked together by name alone (destructors, members of std::vector) would be one of two by chance.
+TEST(Floors, NoTwoClassesShareAName) {
+  std::map<std::string, std::vector<fs::path>> where;
+  const std::regex line(R"(^(?:struct|class) (\w+)(?: final)?(?: :.*)? \{)");
+  for (const char* folder : {"solver", "tools", "post"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(HILO_SOURCE) / folder)) {
+      if (entry.path().extension() != ".hpp") continue;
+      std::ifstream file(entry.path());
+      for (std::string text; std::getline(file, text);)
+        if (std::smatch m; std::regex_search(text, m, line)) where[m[1]].push_back(fs::relative(entry.path(), HILO_SOURCE));
+    }
+  EXPECT_GT(where.size(), 300u);
+  for (const auto& [name, files] : where) EXPECT_EQ(files.size(), 1u) << name << " in " << files.front() << " and " << files.back();
+}
+
 }  // namespace

@@ -8,7 +8,7 @@
 namespace hilo {
 
 /// A field of a data line, blanks stripped, and where it stands.
-struct Field {
+struct DataField {
   std::string_view text;
   int column = 1;
 };
@@ -17,7 +17,7 @@ struct Field {
 struct DataLine {
   const std::string* file = nullptr;
   int line = 0;
-  std::vector<Field> fields;
+  std::vector<DataField> fields;
 
   std::string place() const;              // file:line
   std::string place(size_t field) const;  // file:line:column

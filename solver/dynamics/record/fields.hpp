@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/registry.hpp"
-#include "dynamics/record/run_file.hpp"
+#include "dynamics/record/run_output.hpp"
 #include "model/schema.hpp"
 #include "system/system.hpp"
 
@@ -27,7 +27,7 @@ struct Snapshot {
 /// Where the fields of one instant go.
 class FieldWriter {
  public:
-  FieldWriter(RunFile& file, const std::vector<std::string>& wanted, const Slabs& nodes, const Slabs& cells, bool all_cells)
+  FieldWriter(RunOutput& file, const std::vector<std::string>& wanted, const Slabs& nodes, const Slabs& cells, bool all_cells)
       : file_(file), wanted_(wanted), nodes_(nodes), cells_(cells), all_cells_(all_cells) {}
   bool wants(const std::string& key) const { return std::find(wanted_.begin(), wanted_.end(), key) != wanted_.end(); }
   /// Values of the local nodes (n x width), or of this rank's piece of the rows.  Collective, like all of these.
@@ -41,7 +41,7 @@ class FieldWriter {
   std::string group;  // /field/<step>
 
  private:
-  RunFile& file_;
+  RunOutput& file_;
   const std::vector<std::string>& wanted_;
   const Slabs &nodes_, &cells_;
   bool all_cells_;

@@ -1,6 +1,6 @@
 #include "dynamics/record/histories.hpp"
 
-#include "dynamics/record/run_file.hpp"
+#include "dynamics/record/run_output.hpp"
 
 namespace hilo {
 namespace {

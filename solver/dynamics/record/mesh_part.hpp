@@ -10,7 +10,7 @@ namespace hilo {
 class MeshPart {
  public:
   /// `skin`: fields of the nodes on the surfaces of regions alone.
-  MeshPart(const System& system, RunFile& file, std::vector<std::string> fields, bool skin)
+  MeshPart(const System& system, RunOutput& file, std::vector<std::string> fields, bool skin)
       : system_(system), file_(file), wanted_(std::move(fields)), skin_(skin) {}
   /// Rows of the fields, followers and, in parallel, parts.  Collective, like all of these.
   void declare();
@@ -29,7 +29,7 @@ class MeshPart {
   void write_topology(Store& f);
   void write_xdmf(Store& f);
   const System& system_;
-  RunFile& file_;
+  RunOutput& file_;
   std::vector<std::string> wanted_;
   bool skin_;
   std::optional<Slabs> nodes_, cells_;  // rows of the fields

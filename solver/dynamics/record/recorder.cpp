@@ -47,7 +47,7 @@ void Recorder::open(bool again) {
 }
 
 void Recorder::archive(Archive& a) {
-  if (!a.restores() && n_written_ > 0) commit(RunFile::When::now_safe);
+  if (!a.restores() && n_written_ > 0) commit(RunOutput::When::now_safe);
   double interval = setup_.interval;
   a("recorder", rows_, intervals_, past_, n_written_, last_t_, next_field_, interval);
   if (interval != setup_.interval && setup_.interval > 0)
@@ -82,15 +82,15 @@ void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, co
   }
   rows_.push_back(std::move(row));
   advance(false);
-  commit(RunFile::When::now_and_then);
+  commit(RunOutput::When::now_and_then);
 }
 
 /// What was written becomes safe: the first rows at once, others after a while, or now.
-void Recorder::commit(RunFile::When when) {
+void Recorder::commit(RunOutput::When when) {
   file_.share_failure();
   if (n_written_ == 0) return;
   if (file_.commit(when) && mesh_) mesh_->show();
-  if (when != RunFile::When::now_and_then) file_.share_failure();
+  if (when != RunOutput::When::now_and_then) file_.share_failure();
 }
 
 /// Write every row whose neighbouring steps are known.  Mid values belong to their own time in the step and are interpolated to its ends.
@@ -164,7 +164,7 @@ void Recorder::write_row(const std::vector<std::pair<double, const Interval*>>& 
 void Recorder::finish(bool complete) {
   advance(true);
   file_.on_store([&](Store& f) { f.set("/", "complete", static_cast<std::int64_t>(complete)); });
-  commit(RunFile::When::now);
+  commit(RunOutput::When::now);
   if (mesh_) mesh_->finish();
   file_.share_failure();
   file_.close();

@@ -57,7 +57,7 @@ class Recorder {
     bool starts_at_jump = false;
   };
   void open(bool again);
-  void commit(RunFile::When when);
+  void commit(RunOutput::When when);
   void declare_run(Store& f) const;
   void declare_bodies(Store& f) const;
   void advance(bool last);
@@ -68,7 +68,7 @@ class Recorder {
   const Scene& scene_;
   Setup setup_;
   std::optional<MinimumNorm> share_;  // of redundant joints
-  RunFile file_;
+  RunOutput file_;
   Histories histories_;
   std::optional<MeshPart> mesh_;  // where the scene has a mesh
   std::deque<Row> rows_;

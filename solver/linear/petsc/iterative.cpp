@@ -21,8 +21,7 @@ constexpr double too_unsymmetric = 0.01;
 
 class IterativeSolver final : public KktSolver {
  public:
-  IterativeSolver(const SolverKind& kind, double tolerance, int subdomains)
-      : kind_(&kind), tolerance_(tolerance), subdomains_(subdomains) {}
+  IterativeSolver(const PetscKind& kind, double tolerance, int subdomains) : kind_(&kind), tolerance_(tolerance), subdomains_(subdomains) {}
 
   void structure(const Cliques& cliques, const BlockMap& map) override {
     cliques_ = &cliques, map_ = &map;
@@ -180,7 +179,7 @@ class IterativeSolver final : public KktSolver {
     return report;
   }
 
-  const SolverKind* kind_;
+  const PetscKind* kind_;
   double tolerance_, wanted_ = 0;  // the tightest; that of the solve at hand
   int subdomains_ = 1;             // of this rank
   double set_up_seconds_ = 0;
@@ -199,7 +198,7 @@ class IterativeSolver final : public KktSolver {
 
 }  // namespace
 
-std::unique_ptr<KktSolver> make_iterative(const SolverKind& kind, double tolerance, int subdomains) {
+std::unique_ptr<KktSolver> make_iterative(const PetscKind& kind, double tolerance, int subdomains) {
   return std::make_unique<IterativeSolver>(kind, tolerance, subdomains);
 }
 

@@ -31,8 +31,8 @@ Flexible subdomains(const FlexibleInput& in, std::unique_ptr<FlexibleInverse> (*
 
 }  // namespace
 
-Registry<SolverKind>& solver_kinds() {
-  static Registry<SolverKind> kinds{
+Registry<PetscKind>& solver_kinds() {
+  static Registry<PetscKind> kinds{
       "PETSc solver",
       {
           {.name = "cg", .title = "iterative", .make = symmetric_part, .is_symmetric = true},

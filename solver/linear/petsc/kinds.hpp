@@ -18,7 +18,7 @@ struct FlexibleInput {
   int subdomains;                 // of this rank, where the kind divides
 };
 
-struct SolverKind {
+struct PetscKind {
   std::string name;   // of the scene
   std::string title;  // before it has a system
   std::function<Flexible(const FlexibleInput&)> make;
@@ -27,8 +27,8 @@ struct SolverKind {
 };
 
 /// All of them.
-Registry<SolverKind>& solver_kinds();
+Registry<PetscKind>& solver_kinds();
 
-std::unique_ptr<KktSolver> make_iterative(const SolverKind& kind, double tolerance, int subdomains);
+std::unique_ptr<KktSolver> make_iterative(const PetscKind& kind, double tolerance, int subdomains);
 
 }  // namespace hilo::petsc

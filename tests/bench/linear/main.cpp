@@ -77,7 +77,7 @@ class Whole final : public KktSolver {
 std::unique_ptr<KktSolver> make(const std::string& kind, double tolerance, int subdomains) {
   if (kind == "light" || kind == "cholesky") return make_light_solver(kind);
   if (kind == "direct") return petsc::make_direct(tolerance);
-  const petsc::SolverKind* found = petsc::solver_kinds().find(kind);
+  const petsc::PetscKind* found = petsc::solver_kinds().find(kind);
   if (!found) found = find_peer(kind);
   if (!found) throw Error(kind, "no such kind", "", Exit::usage);
   return petsc::make_iterative(*found, tolerance, subdomains);

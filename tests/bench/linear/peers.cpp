@@ -268,8 +268,8 @@ Flexible on_subdomains(const FlexibleInput& in, const char* name, const Options&
 
 }  // namespace
 
-const SolverKind* find_peer(const std::string& word) {
-  static const std::vector<SolverKind> peers{
+const PetscKind* find_peer(const std::string& word) {
+  static const std::vector<PetscKind> peers{
       {.name = "petsc-icc",
        .title = "PETSc",
        .make = [](const auto& in) { return on_upper(in, "PETSc ICC", incomplete_cholesky); },
@@ -291,7 +291,7 @@ const SolverKind* find_peer(const std::string& word) {
        .make = [](const auto& in) { return on_subdomains(in, "PCBDDC adaptive", adaptive); }},
       {.name = "petsc-fetidp", .title = "PETSc", .make = [](const auto& in) { return on_subdomains(in, "KSPFETIDP", bddc, true); }},
   };
-  const auto found = std::find_if(peers.begin(), peers.end(), [&](const SolverKind& k) { return k.name == word; });
+  const auto found = std::find_if(peers.begin(), peers.end(), [&](const PetscKind& k) { return k.name == word; });
   return found == peers.end() ? nullptr : &*found;
 }
 

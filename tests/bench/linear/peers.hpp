@@ -7,6 +7,6 @@ namespace hilo::bench {
 
 /// petsc-icc, petsc-ilu, petsc-gamg, petsc-hypre, petsc-cholmod; petsc-bddc, petsc-bddc-deluxe, petsc-bddc-adaptive, petsc-fetidp (one
 /// subdomain a rank); or null.
-const petsc::SolverKind* find_peer(const std::string& word);
+const petsc::PetscKind* find_peer(const std::string& word);
 
 }  // namespace hilo::bench

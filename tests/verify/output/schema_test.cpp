@@ -97,6 +97,7 @@ on = "zmax"
   linear.use(block_mesh({}), {Fidelity::linear});
   hold_against_schema(linear.solved("--set time.end=0.0158 --set material.soft.E=1e9", "run.h5", "free").file(), met);
   hold_against_schema(linear.solved("--set 'time.analysis=\"modes\"'", "run.h5", "cantilever").file(), met);
+  hold_against_schema(linear.solved("--set 'time.analysis=\"path\"'", "run.h5", "cantilever").file(), met);
   const std::set<std::string> elsewhere{"/parts/rank", "/checkpoint", "/cell/state"};  // of runs on several ranks; reserved
   for (const ArraySchema& row : file_schema()) {
     if (row.file == "run.h5" && !elsewhere.contains(std::string(row.path))) {

@@ -150,7 +150,7 @@ void BdfEntries::comment(std::string_view l) {  // names that pre-processors lea
     names_[id] = clean_name(name);
 }
 
-BdfEntries::Ends BdfEntries::cut(const Line& line, std::vector<Field>& fields) const {
+BdfEntries::Ends BdfEntries::cut(const Line& line, std::vector<DataField>& fields) const {
   const std::string_view l = line.text.substr(0, line.text.find('$'));
   Ends ends;
   if (l.find(',') != std::string_view::npos) {

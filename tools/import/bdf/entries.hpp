@@ -53,7 +53,7 @@ class BdfEntries {
   void include(const Line& l);
   void end_data(const Line& l);
   void comment(std::string_view l);
-  Ends cut(const Line& l, std::vector<Field>& fields) const;
+  Ends cut(const Line& l, std::vector<DataField>& fields) const;
 
   std::vector<std::unique_ptr<Source>> kept_;  // texts that fields point into
   std::vector<Source*> stack_;

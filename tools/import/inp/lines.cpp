@@ -17,7 +17,7 @@ std::string_view strip(std::string_view s) {
 }
 
 /// Cut at commas outside double quotes.
-void cut(std::string_view line, std::vector<Field>& fields) {
+void cut(std::string_view line, std::vector<DataField>& fields) {
   fields.clear();
   size_t from = 0;
   bool quoted = false;
@@ -68,7 +68,7 @@ void InpLines::open(const std::string& path, const std::string& place) {
 
 void InpLines::include(std::string_view line, const std::string& place) {
   namespace fs = std::filesystem;
-  std::vector<Field> fields;
+  std::vector<DataField> fields;
   cut(line, fields);
   std::string name;
   for (const auto& f : fields)
@@ -131,7 +131,7 @@ bool InpLines::next_card(Card& card) {
   card.file = stack_.back().path.get();
   card.line = stack_.back().line;
   card.params.clear();
-  std::vector<Field> fields;
+  std::vector<DataField> fields;
   for (bool first = true, more = true; more; first = false) {
     cut(line, fields);
     more = strip(line).back() == ',';

@@ -34,9 +34,9 @@ void start_array(Store& f, const std::string& path, const std::string& time = ""
 
 /// Written in place, whole at every instant: until its first commit under another name, so that the former results stay while there is
 /// nothing to replace them (model/journalled_file).
-class RunFile {
+class RunOutput {
  public:
-  RunFile(const Comm& comm, std::string path, bool single_precision)
+  RunOutput(const Comm& comm, std::string path, bool single_precision)
       : comm_(comm), path_(std::move(path)), single_precision_(single_precision) {}
   const std::string& path() const { return path_; }
   /// How fields are stored: "F4" or "F8".

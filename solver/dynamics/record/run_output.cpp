@@ -1,4 +1,4 @@
-#include "dynamics/record/run_file.hpp"
+#include "dynamics/record/run_output.hpp"
 
 #include <unistd.h>
 
@@ -11,14 +11,14 @@ namespace hilo {
 
 std::string stem(const std::string& path) { return path.ends_with(".h5") ? path.substr(0, path.size() - 3) : path; }
 
-void RunFile::create() {
+void RunOutput::create() {
   comm_.together([&] {
     if (comm_.rank != 0) return;
     store_ = std::make_unique<Store>(Store::create_growing(path_));
   });
 }
 
-void RunFile::open(const std::function<void(Store&)>& shorten) {
+void RunOutput::open(const std::function<void(Store&)>& shorten) {
   comm_.together([&] {
     if (comm_.rank != 0) return;
     store_ = std::make_unique<Store>(Store::open_growing(path_));
@@ -28,7 +28,7 @@ void RunFile::open(const std::function<void(Store&)>& shorten) {
   has_name_ = true;
 }
 
-bool RunFile::commit(When when) {
+bool RunOutput::commit(When when) {
   const bool first = !std::exchange(has_name_, true);
   const double began = wall_clock();
   if (!store_ || failure_ || (when == When::now_and_then && !first && began < next_commit_)) return false;
@@ -42,7 +42,7 @@ bool RunFile::commit(When when) {
   return true;
 }
 
-void RunFile::on_store(const std::function<void(Store&)>& write) {
+void RunOutput::on_store(const std::function<void(Store&)>& write) {
   if (!store_ || failure_) return;
   try {
     write(*store_);
@@ -51,13 +51,13 @@ void RunFile::on_store(const std::function<void(Store&)>& write) {
   }
 }
 
-void RunFile::share_failure() const {
+void RunOutput::share_failure() const {
   comm_.together([&] {
     if (failure_) throw *failure_;
   });
 }
 
-void RunFile::write_piece(const Slabs& rows, const std::string& array, const std::vector<double>& piece, bool exact) {
+void RunOutput::write_piece(const Slabs& rows, const std::string& array, const std::vector<double>& piece, bool exact) {
   const ArraySchema& of = run_array(array);
   const auto row = row_shape(of);
   const int width = row.empty() ? 1 : static_cast<int>(row[0]);
