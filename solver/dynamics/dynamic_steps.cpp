@@ -156,7 +156,7 @@ class DynamicSteps final : public Steps {
       if (!try_step(h)) {
         if (++failures > run_.max_cuts) return false;
         control.cut(h), cut();
-      } else if (!control.accept(*run_.integrator->taken().back().stage.end, h)) {
+      } else if (!control.accept(reached_.q, h)) {
         ++run_.figures.rejected, run_.system.settle(false);
       } else {
         failures = 0;
@@ -229,7 +229,8 @@ class DynamicSteps final : public Steps {
     state.t = t;
     run_.system.commit(state.q, &state.v);
     run_.audit->accept(t);
-    run_.recorder->step(state, run_.audit->ledger(), run_.integrator->taken().back(), run_.integrator->acceleration(), iterations_);
+    run_.recorder->step(state, run_.audit->ledger(), run_.integrator->taken().back(), run_.integrator->acceleration(), iterations_,
+                        run_.integrator->velocity());
     run_.system.settle(true);
     ++run_.report.steps;
     progress_.show(t, run_.report.steps, iterations_);

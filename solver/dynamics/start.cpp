@@ -118,9 +118,6 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
   return system.comm->max(system.add_rates(v, q, z));
 }
 
-namespace {
-
-/// Accelerations and multipliers that satisfy equations and constraints at (q, v) at time t.
 void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda) {
   // guess: bodies that keep their spin, everything else unaccelerated; the solve adds the rest
   combine(a, {{0, &s.v}});
@@ -175,8 +172,6 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
     if (change <= 1e-12 * size) break;
   }
 }
-
-}  // namespace
 
 void consistent_acceleration(const System& system, KktSolver& solver, State& s, double h) {
   solve_acceleration(system, solver, s, s.a, s.lambda);

@@ -5,6 +5,7 @@
 #include "model/integrator/bathe.hpp"
 #include "model/integrator/bdf2.hpp"
 #include "model/integrator/energy_momentum.hpp"
+#include "model/integrator/gauss.hpp"
 #include "model/integrator/generalized_alpha.hpp"
 #include "model/integrator/mid_point.hpp"
 #include "model/integrator/radau.hpp"
@@ -14,7 +15,7 @@ namespace hilo {
 
 template <class... M>
 struct Methods {};
-using Integrators = Methods<EnergyMomentum, MidPoint, GeneralizedAlpha, Newmark, Hht, Wbz, U0, V0, Bathe, Bdf2, Radau>;
+using Integrators = Methods<EnergyMomentum, MidPoint, GeneralizedAlpha, Newmark, Hht, Wbz, U0, V0, Bathe, Bdf2, Radau, Gauss>;
 
 /// What a scene may say of an integrator.
 struct IntegratorWords {

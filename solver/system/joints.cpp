@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "physics/rolling.hpp"
+#include "system/collocation.hpp"
 
 namespace hilo {
 namespace {
@@ -42,10 +44,48 @@ void add_velocity_rows(const Joint& c, const Stage& s, const Slip& slip, const d
   for (int i = 0; i < width; ++i) {
     const Slip::Change d = slip.change(move_of(c, s, 0, i), move_of(c, s, 1, i));
     for (int r = 0; r < slip.n; ++r) {
-      if (s.alpha_slope != 0) right(first + r, i) = d.value[r] / s.alpha_slope;
+      if (s.step || s.alpha_slope != 0) right(first + r, i) = d.value[r] * (s.step ? s.h : 1 / s.alpha_slope);
       K.col(i) += lambda[first + r] * d.A.row(r).transpose();
     }
   }
+}
+
+/// Position rows of a stage that shares its step with others: their increments over it, of which the sum over the stages is
+/// g(q1) - law(t1).
+void increments_of_rows(const Joint& c, const Stage& s, const MeasurePath& path, const RowLaw::Gradient* d, double* g) {
+  const Collocation& step = *s.step;
+  const MeasurePath::Values& way = path.way[s.member];
+  double open[max_rows];
+  gaps(c, *step.start, step.t, s.load_factor, open);
+  for (int r = 0; r < c.n_position_rows(); ++r) {
+    double sum = way[r];
+    if (d) sum = std::inner_product(way.begin(), way.end(), d->d[r].begin(), 0.0);
+    g[r] = open[r] + sum;
+  }
+  if (const int r = c.drive.row; r >= 0) {
+    const MotionLaw& law = c.drive.law;
+    const double mid = step.t + step.h / 2, t1 = step.t + step.h;
+    double missing = law.at(t1, mid, s.load_factor).value - law.at(step.t, mid, s.load_factor).value;
+    const auto rate = [&](int j) { return step.h * law.at(step.t + step.c[j] * step.h, mid, s.load_factor).rate; };
+    for (int j = 0; j < Collocation::n; ++j) missing -= step.b[j] * rate(j);
+    g[r] -= rate(s.member) + missing;
+  }
+}
+
+/// Their gradients by the increments of `end`.
+void gradients_of_increments(const Joint& c, const Stage& s, const MeasurePath& path, const RowLaw::Gradient* d, const DirectionRows& left,
+                             DirectionRows& out) {
+  ConnectorGradient before, after;
+  gradient(c, *s.w0, *s.end, before), gradient(c, *s.w1, *s.end, after);
+  DirectionRows ways = s.slope1() * after.G - s.slope0() * before.G;
+  out = ways;
+  if (!d) return;
+  rows_over_directions(c, *d, ways, out);
+  const auto& way = path.way[s.member];
+  for (int r = 0; r < c.n_position_rows(); ++r)
+    for (size_t m = 0; m < c.measures.size(); ++m)
+      for (size_t k = 0; k < c.measures.size(); ++k)
+        if (const double x = 2 * s.slope * d->D[r][m][k] * way[m]; x != 0) out.row(r) += x * left.row(k);
 }
 
 /// Work of a joint's drive over the step of a stage, for the multiplier of its row.
@@ -63,7 +103,9 @@ double drive_work(const Joint& c, const Stage& s, double lambda) {
 }  // namespace
 
 void row_gradient(const Joint& c, const Stage& s, const ConnectorGradient& left, RowLaw::Gradient& out) {
-  if (s.conserving())
+  if (s.step)
+    gradient_along(*c.rows, MeasurePath(c, *s.step), *s.step, s.member, out);
+  else if (s.conserving())
     c.rows->gradient(c.values(*s.e0), c.values(*s.e1), out);
   else
     c.rows->gradient(left.e, left.e, out);
@@ -90,7 +132,7 @@ void Joints::evaluate(Pass& p) const {
   for (size_t j = 0; j < list.size(); ++j) {
     if (!owned_[j]) continue;
     const Joint& c = list[j];
-    if (s.rates_alone && !c.velocity_rows) continue;
+    if (s.rates_alone && !c.velocity_rows && !s.step) continue;
     gradient(c, *s.left, left);
     if (p.K)
       gradient(c, *s.end, right);
@@ -100,9 +142,16 @@ void Joints::evaluate(Pass& p) const {
     c.row_values(right.e, g);
     if (c.drive.row >= 0) g[c.drive.row] -= c.drive.law.at(s.t_end, s.t_end, s.load_factor).value;
     const int base = row(j), n = c.n_rows(), n_position = c.n_position_rows();
+    std::optional<MeasurePath> path;  // of a stage that shares its step
+    if (s.step) {
+      path.emplace(c, *s.step);
+      if (c.rows) gradient_along(*c.rows, *path, *s.step, s.member, at_stage);
+      increments_of_rows(c, s, *path, c.rows ? &at_stage : nullptr, g);
+    }
     std::optional<Slip> slip;
     if (c.velocity_rows) slip.emplace(c, *s.left, s.v);
-    for (int r = n_position; r < n && s.alpha_slope != 0; ++r) g[r] = slip->value[r - n_position] / s.alpha_slope;
+    for (int r = n_position; r < n && (s.step || s.alpha_slope != 0); ++r)
+      g[r] = slip->value[r - n_position] * (s.step ? s.h : 1 / s.alpha_slope);
     for (int r = 0; r < n; ++r) {
       lambda[r] = c.active[r] ? p.lambda[base + r] : 0;
       if (c.active[r]) p.out.r[3 * block_[j] + r] = p.sigma * g[r];
@@ -117,17 +166,18 @@ void Joints::evaluate(Pass& p) const {
     if (!p.K) continue;
     ConnectorMatrix K = ConnectorMatrix::Zero(c.n_directions(), c.n_directions());
     add_geometric(c, left, right, force, s.slope, K);
-    if (!c.rows && !slip) {
+    if (!c.rows && !slip && !path) {
       add_clique(p, points_, c, clique_[j], K, {(n + 2) / 3, &left.G, &right.G, c.active.data(), n});
       continue;
     }
     if (!c.rows) {
       left_rows = left.G, right_rows = right.G;
-      add_velocity_rows(c, s, *slip, lambda, left_rows, right_rows, K);
+      if (path) gradients_of_increments(c, s, *path, nullptr, left.G, right_rows);
+      if (slip) add_velocity_rows(c, s, *slip, lambda, left_rows, right_rows, K);
       add_clique(p, points_, c, clique_[j], K, {(n + 2) / 3, &left_rows, &right_rows, c.active.data(), n});
       continue;
     }
-    row_gradient(c, s, left, at_stage);
+    if (!path) row_gradient(c, s, left, at_stage);
     c.rows->gradient(right.e, right.e, at_end);
     const bool pair = s.conserving();  // the rows' gradient depends on e1, else on the left configuration
     gradient(c, pair ? *s.e1 : *s.left, *s.end, mixed);
@@ -139,7 +189,10 @@ void Joints::evaluate(Pass& p) const {
         if (D != 0) K += (pair ? s.chain : 2 * s.slope) * D * left.G.row(m).head(width).transpose() * mixed.G.row(k).head(width);
       }
     rows_over_directions(c, at_stage, left.G, left_rows);
-    rows_over_directions(c, at_end, right.G, right_rows);
+    if (path)
+      gradients_of_increments(c, s, *path, &at_stage, mixed.G, right_rows);
+    else
+      rows_over_directions(c, at_end, right.G, right_rows);
     if (slip) add_velocity_rows(c, s, *slip, lambda, left_rows, right_rows, K);
     add_clique(p, points_, c, clique_[j], K, {(n + 2) / 3, &left_rows, &right_rows, c.active.data(), n});
   }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "system/collocation.hpp"
+
 namespace hilo {
 namespace {
 
@@ -21,6 +23,7 @@ void spring_viscous(const Spring& c, const Stage& s, const Interval& step, Respo
 }  // namespace
 
 void spring_elastic(const Spring& c, const Stage& s, Response& out) {
+  if (s.step) return elastic_along(*c.law, MeasurePath(c, *s.step), *s.step, s.member, out);
   SpringLaw::Values e0 = c.values(*s.e0), e1 = c.values(*s.e1);
   if (s.conserving()) return c.law->elastic(e0, e1, out);
   for (size_t m = 0; m < c.measures.size(); ++m) e0[m] = e1[m] = (1 - s.weight) * e0[m] + s.weight * e1[m];
@@ -54,7 +57,7 @@ void Springs::evaluate(Pass& p) const {
     gradient(c, *s.left, left);
     Response elastic, viscous, before;  // `before`: by the measures at w0
     double slope[max_rows] = {};
-    spring_elastic(c, s, elastic);
+    if (!s.rates_alone) spring_elastic(c, s, elastic);
     double force[max_measures];
     for (int m = 0; m < n; ++m) force[m] = elastic.s[m];
     if (s.h > 0) {

@@ -7,6 +7,8 @@ namespace hilo {
 /// From which side an instant is reached: the end of a step from the left, its start from the right.
 enum class Side { left = -1, right = 1 };
 
+struct Collocation;
+
 /// Everything an evaluation needs besides the unknowns.
 struct Stage {
   const Config* end;                  // q1, the unknown: increments and constraint rows live here
@@ -32,6 +34,8 @@ struct Stage {
   double elapsed = 0;                 // of materials since their accepted state [s]; 0: nothing flows, infinite: too slow for rates
   const Config *before = nullptr, *along = nullptr;  // e1 before Newton's last correction, and that to first order; null: none
   double load_factor = 1;                            // of gravity and of loads without a history, for static load steps
+  const Collocation* step = nullptr;  // of a stage that shares its step with others: rows hold increments, forces keep energy
+  int member = 0;                     // which of them this is
   /// Derivatives of w0 and w1 by `end`.
   double slope0() const {
     const double x = slope - h * alpha_slope / 2;

@@ -60,8 +60,8 @@ void System::add_all(const Stage& stage, std::span<const double> lambda, Residua
 }
 
 double System::constraint_scale(const Stage& s) const {
-  const double inertia = s.mass_slope * mass / std::max<double>(1, static_cast<double>(map.n_global));
-  return std::max(inertia, s.mass_slope > 0 ? 1e-300 : stiffness);
+  const double inertia = std::abs(s.mass_slope) * mass / std::max<double>(1, static_cast<double>(map.n_global));
+  return std::max(inertia, s.mass_slope != 0 ? 1e-300 : stiffness);
 }
 
 void System::reduce(Pass& p) const {

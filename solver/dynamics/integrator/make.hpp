@@ -20,5 +20,6 @@ std::unique_ptr<StageIntegrator> make_bathe();
 std::unique_ptr<StageIntegrator> make_bdf2();
 /// Serial; `solver`: of the matrix of all three stages.
 std::unique_ptr<Integrator> make_radau(std::unique_ptr<SerialKktSolver> solver);
+std::unique_ptr<Integrator> make_gauss(std::unique_ptr<SerialKktSolver> solver);
 
 }  // namespace hilo

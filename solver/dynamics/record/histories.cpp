@@ -21,14 +21,14 @@ Histories::Histories(const System& system) : system_(system) {
   }
 }
 
-std::vector<double> Histories::end_values(const State& s, const Ledger& ledger) const {
+std::vector<double> Histories::end_values(const Config& q, const Config& v, const Ledger& ledger) const {
   const Energy& e = ledger.energy;
-  std::vector<double> v{e.kinetic, e.elastic, e.gravity, ledger.work, ledger.dissipated, ledger.balance};
-  v.insert(v.end(), e.momentum.data(), e.momentum.data() + 3);
-  v.insert(v.end(), e.angular.data(), e.angular.data() + 3);
-  v.push_back(ledger.rows.worst());
-  for (const auto& part : system_.parts()) part->add_end_values(s.q, s.v, v);
-  return v;
+  std::vector<double> out{e.kinetic, e.elastic, e.gravity, ledger.work, ledger.dissipated, ledger.balance};
+  out.insert(out.end(), e.momentum.data(), e.momentum.data() + 3);
+  out.insert(out.end(), e.angular.data(), e.angular.data() + 3);
+  out.push_back(ledger.rows.worst());
+  for (const auto& part : system_.parts()) part->add_end_values(q, v, out);
+  return out;
 }
 
 std::vector<double> Histories::mid_values(const Moment& moment) const {

@@ -11,7 +11,7 @@ class Histories {
  public:
   explicit Histories(const System& system);
   /// Numbers of a row that belong to an instant, and those that belong inside the step before it.  Collective.
-  std::vector<double> end_values(const State& s, const Ledger& ledger) const;
+  std::vector<double> end_values(const Config& q, const Config& v, const Ledger& ledger) const;
   std::vector<double> mid_values(const Moment& moment) const;
   size_t n_mid() const { return n_mid_; }
   /// The arrays, without rows.

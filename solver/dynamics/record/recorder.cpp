@@ -21,7 +21,7 @@ Recorder::Recorder(const System& system, const Scene& scene, Setup setup)
 void Recorder::first(const State& s, const Ledger& ledger) {
   Row row;
   row.t = s.t;
-  row.point = histories_.end_values(s, ledger);
+  row.point = histories_.end_values(s.q, s.v, ledger);
   row.field = true;
   row.q = s.q, row.v = s.v, row.memory = system_.part<Solids>().memory();
   next_field_ = setup_.interval;
@@ -57,8 +57,9 @@ void Recorder::archive(Archive& a) {
   if (a.restores()) open(n_written_ > 0);
 }
 
-void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, const Config& a, int iterations) {
+void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, const Config& a, int iterations, const Config* shown) {
   const Timed timed(phases().output);
+  const Config& v = shown ? *shown : s.v;
   ++phases().records;
   Interval interval;
   interval.h = s.t - last_t_;
@@ -72,12 +73,12 @@ void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, co
   Row row;
   row.t = s.t;
   row.newton = iterations, last_t_ = s.t;
-  row.point = histories_.end_values(s, ledger);
+  row.point = histories_.end_values(s.q, v, ledger);
   row.jump =
       std::any_of(setup_.jumps.begin(), setup_.jumps.end(), [&](double t) { return std::abs(t - s.t) <= 1.001 * system_.same_time; });
   row.field = setup_.is_static || s.t >= next_field_ * (1 - 1e-9);
   if (row.field) {
-    row.q = s.q, row.v = s.v, row.memory = system_.part<Solids>().memory();
+    row.q = s.q, row.v = v, row.memory = system_.part<Solids>().memory();
     if (setup_.interval > 0) next_field_ = setup_.interval * (std::floor(s.t * (1 + 1e-9) / setup_.interval) + 1);
   }
   rows_.push_back(std::move(row));

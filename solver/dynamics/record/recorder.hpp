@@ -34,8 +34,9 @@ class Recorder {
   /// Rows not written yet, and how far the file is, between two steps; kept: all of them are safe in the file.  Restored: the file that is
   /// there grows on from these rows, without what it has behind them.
   void archive(Archive& a);
-  /// A finished step: the new state and its account, the last stage for reactions, accelerations and Newton iterations.
-  void step(const State& s, const Ledger& ledger, const Taken& taken, const Config& a, int iterations);
+  /// A finished step: the new state and its account, the last stage for reactions, accelerations and Newton iterations; `v`: velocities to
+  /// show where they are not those of the state.
+  void step(const State& s, const Ledger& ledger, const Taken& taken, const Config& a, int iterations, const Config* v = nullptr);
   /// Last values; publishes the files.  `complete` is false for a run stopped by physics.
   void finish(bool complete);
   /// The run fails: what was written stays, unless that is nothing.

@@ -1,0 +1,370 @@
+// Gauss collocation of three stages, order 6, with rates in the rows:
+//   Q_i = q0 + h sum_j a_ij V_j,   V_i = v0 + h sum_j a_ij A_j,   q1 = q0 + h sum_i b_i V_i,   v1 = v0 + h sum_i b_i A_i
+//   M A_i + B(Q_i)^T S_i + G(Q_i)^T lambda_i = F(t_i),   G(Q_i) V_i = 0
+// with S_i at the strains E_i = e(q0) + h sum_j a_ij G_e(Q_j) V_j (system/collocation).  Gauss keeps what is of degree two in (q, v, e):
+// energy, both momenta and g(q) = 0; one stage is the energy-momentum method.
+//
+// Directors: R_i' = w_i x R_i, so that R_i = R0 + sum_j a_ij skew(h w_j) R_j, which is linear in R, and R1 is orthonormal to round-off; the
+// R_i are not.  An increment turns R_i by the block's vector to first order: the angular velocities move as sum_j W_ij dR_j - skew dR_i.
+#include "model/integrator/gauss.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "dynamics/integrator/coupled_stages.hpp"
+#include "dynamics/integrator/director_columns.hpp"
+#include "dynamics/integrator/make.hpp"
+#include "dynamics/profile.hpp"
+#include "dynamics/start.hpp"
+#include "system/collocation.hpp"
+
+namespace hilo {
+namespace {
+
+Eigen::Matrix3d gauss_tableau() {
+  const double s = std::sqrt(15.0);
+  Eigen::Matrix3d A;
+  A << 5. / 36, 2. / 9 - s / 15, 5. / 36 - s / 30, 5. / 36 + s / 24, 2. / 9, 5. / 36 - s / 24, 5. / 36 + s / 30, 2. / 9 + s / 15, 5. / 36;
+  return A;
+}
+using Mat9 = Eigen::Matrix<double, 9, 9>;
+using Vec9 = Eigen::Matrix<double, 9, 1>;
+constexpr double weight[3] = {5. / 18, 4. / 9, 5. / 18};
+
+/// The vector of the skew part of M.
+Vec3 axial(const Mat3& M) { return Vec3(M(2, 1) - M(1, 2), M(0, 2) - M(2, 0), M(1, 0) - M(0, 1)) / 2; }
+
+class GaussIntegrator final : public CoupledStages {
+ public:
+  explicit GaussIntegrator(std::unique_ptr<SerialKktSolver> solver) : CoupledStages(std::move(solver), gauss_tableau()) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) step_.a[i][j] = A_(i, j);
+      step_.b[i] = weight[i], step_.c[i] = c_[i];
+    }
+  }
+  std::string name() const override { return std::string(Gauss::name); }
+  std::span<const Taken> taken() const override { return taken_; }
+  const Config& acceleration() const override { return a_end_; }
+  const Config* velocity() const override { return &v_end_; }
+  double own_time() const override { return 1; }
+
+  NewtonReport solve(const StepTools& tools, const State& s, double h, Predictor predictor) override {
+    const System& system = *(system_ = &tools.system);
+    solver_ = &tools.solver;
+    if (NewtonReport refused; !(refused.reason = system.too_far(s.t, s.t + h)).empty()) return refused;
+    begin(system, s.t, h);
+    q0_ = s.q, v0_ = s.v;
+    step_.t = s.t, step_.h = h, step_.start = &q0_;
+    predictor_ = predictor;
+    guess(system, s);
+    const NewtonReport report = iterate(system, tools.newton);
+    if (!report.converged) return drop_matrix(), report;
+    place(system);
+    combine(q1_, {{1, &q0_}, {weight[0], &way_[0]}, {weight[1], &way_[1]}, {weight[2], &way_[2]}});
+    restore_rotations(system, q1_);
+    combine(v1_, {{1, &v0_}, {h * weight[0], &a_[0]}, {h * weight[1], &a_[1]}, {h * weight[2], &a_[2]}});
+    take();
+    return report;
+  }
+
+  void end(State& s) override { s.q = q1_, s.v = v1_, s.lambda = taken_.back().lambda; }
+
+  /// Accelerations and multipliers at the end, at velocities that the joints allow: those of the stages are of lower order.
+  void accept(State& s) override {
+    State at{.t = t_ + (1 - 1e-9) * h_, .q = q1_, .v = tangent(), .a = {}, .jerk = {}, .snap = {}, .lambda = {}};
+    project_velocities(*system_, *solver_, at.q, at.v, at.t);
+    solve_acceleration(*system_, *solver_, at, a_end_, taken_.back().lambda);
+    v_end_ = std::move(at.v), around(q1_, v_end_, before_end_, after_end_);
+    end(s), accepted();
+    s.t = t_ + h_;
+    for (int i = 0; i < 3; ++i) {
+      past_a_[i] = a_[i], past_lambda_[i] = lambda_[i];
+      increments(*system_, i, reached_);
+      for (size_t k = 0; k < reached_.size(); ++k) missed_[i][k] = reached_[k] - missed_[i][k];
+      if (predictor_ == Predictor::rigid_rotation && past_h_ > 0)
+        missed_before_[i].accept(*system_, h_, std::move(missed_[i]), lambda_[i]);
+      else  // what another guess missed says nothing of this one
+        missed_before_[i].clear();
+    }
+    past_h_ = h_;
+  }
+
+  void restart() override {
+    for (Extrapolation& e : missed_before_) e.clear();
+    drop_matrix(), past_h_ = 0;
+  }
+
+  void archive(Archive& a, const System&) override {
+    a(name(), past_h_, past_a_, past_lambda_, missed_before_);
+    forget_structure();
+  }
+
+ private:
+  void check(const System& system) const override {
+    const auto refuse = [](const std::string& what, const std::string& hint) { throw Error("", "gauss does not know " + what, hint); };
+    const std::string others = "take energy-momentum, or radau for references";
+    if (system.traits().deforms || !system.modes.empty()) refuse("flexible regions yet", others);
+    if (system.moves()) refuse("[[motion]] of what moves by a law yet", "drive a joint, or " + others);
+  }
+
+  /// The polynomials of the step before go on; without one, constant velocities, or none.
+  void guess(const System& system, const State& s) {
+    const bool goes_on = past_h_ > 0 && predictor_ == Predictor::rigid_rotation;
+    double x[3][3];  // values at the stages of the step before, continued to those of this one
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        x[i][j] = 1;
+        for (int k = 0; k < 3 && goes_on; ++k)
+          if (k != j) x[i][j] *= (1 + c_[i] * h_ / past_h_ - c_[k]) / (c_[j] - c_[k]);
+      }
+    const auto sum = [&](const double* f, auto& out, const auto& in) {
+      for (size_t k = 0; k < out.size(); ++k) out[k] = f[0] * in[0][k] + f[1] * in[1][k] + f[2] * in[2][k];
+    };
+    for (int i = 0; i < 3; ++i) {
+      lambda_[i] = s.lambda;
+      if (goes_on) sum(x[i], lambda_[i], past_lambda_);
+      if (goes_on) combine(a_[i], {{x[i][0], &past_a_[0]}, {x[i][1], &past_a_[1]}, {x[i][2], &past_a_[2]}});
+    }
+    for (int i = 0; i < 3; ++i) {
+      combine(way_[i], {{predictor_ == Predictor::hold ? 0 : h_, &v0_}});
+      const double f = h_ * h_;
+      if (goes_on) combine(way_[i], {{1, &way_[i]}, {f * A_(i, 0), &a_[0]}, {f * A_(i, 1), &a_[1]}, {f * A_(i, 2), &a_[2]}});
+    }
+    for (int i = 0; i < 3; ++i) {
+      combine(dq_[i], {{A_(i, 0), &way_[0]}, {A_(i, 1), &way_[1]}, {A_(i, 2), &way_[2]}});
+      turn_[i].resize(q0_.R.size());
+      for (size_t b = 0; b < q0_.R.size(); ++b)
+        turn_[i][b] = axial(way_[i].R[b] * (goes_on ? Mat3(q0_.R[b] + dq_[i].R[b]) : q0_.R[b]).inverse());
+    }
+    for (int i = 0; i < 3; ++i) {
+      increments(system, i, missed_[i]);
+      if (const auto z = missed_before_[i].increments(system, h_); goes_on && !z.empty()) shift(system, i, z);
+    }
+    place_directors(system);
+  }
+
+  /// The unknowns of stage i (3 x blocks of nodes and bodies): increments from the start, and h w of bodies.
+  void increments(const System& system, int i, std::vector<double>& out) const {
+    out.assign(3 * static_cast<size_t>(system.first_joint_block()), 0.0);
+    for (const UnknownField& f : system.unknowns)
+      for (size_t k = 0; k < f.size(); ++k)
+        Eigen::Map<Vec3>(out.data() + 3 * f.block(k)) = f.turns() ? turn_[i][f.item[k]] : (dq_[i].*f.array)[f.item[k]];
+  }
+  void shift(const System& system, int i, std::span<const double> z) {
+    for (const UnknownField& f : system.unknowns)
+      for (size_t k = 0; k < f.size(); ++k)
+        (f.turns() ? turn_[i][f.item[k]] : (dq_[i].*f.array)[f.item[k]]) += Eigen::Map<const Vec3>(z.data() + 3 * f.block(k));
+  }
+
+  void move(const System& system, std::span<const double> z) override {
+    const size_t n = z.size() / 3;
+    const auto of = [&](int i, int block) { return Eigen::Map<const Vec3>(z.data() + i * n + 3 * block); };
+    for (const UnknownField& f : system.unknowns)
+      for (size_t k = 0; k < f.size(); ++k) {
+        const int item = f.item[k];
+        if (!f.turns()) {
+          for (int i = 0; i < 3; ++i) (dq_[i].*f.array)[item] += of(i, f.block(k));
+          continue;
+        }
+        Vec9 turned;
+        for (int i = 0; i < 3; ++i) turned.segment<3>(3 * i) = of(i, f.block(k));
+        const Vec9 change = turns_of(item).turns.partialPivLu().solve(turned);
+        for (int i = 0; i < 3; ++i) turn_[i][item] += change.segment<3>(3 * i);
+      }
+    place_directors(system);
+  }
+
+  Mat9 director_matrix(int b) const {
+    Mat9 K = Mat9::Identity();
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) K.block<3, 3>(3 * i, 3 * j) -= A_(i, j) * skew(turn_[j][b]);
+    return K;
+  }
+
+  /// How the directors of a body move by its angular velocities: dR_i - sum_j a_ij skew_j dR_j = sum_j a_ij skew(d w_j) R_j.
+  struct Turns {
+    Mat3 dR[3][9];  // of stage i, by the nine components
+    Mat9 turns;     // their skew parts, dR_i R_i^-1
+  };
+  Turns turns_of(int b) const {
+    const Eigen::PartialPivLU<Mat9> K(director_matrix(b));
+    Turns out;
+    Mat3 inverse[3];
+    for (int i = 0; i < 3; ++i) inverse[i] = q_[i].R[b].inverse();
+    for (int j = 0; j < 3; ++j)
+      for (int c = 0; c < 3; ++c) {
+        Eigen::Matrix<double, 9, 3> rhs;
+        for (int i = 0; i < 3; ++i) rhs.middleRows<3>(3 * i) = A_(i, j) * skew(Vec3::Unit(c)) * q_[j].R[b];
+        const Eigen::Matrix<double, 9, 3> dR = K.solve(rhs);
+        for (int i = 0; i < 3; ++i) {
+          out.dR[i][3 * j + c] = dR.middleRows<3>(3 * i);
+          out.turns.block<3, 1>(3 * i, 3 * j + c) = axial(out.dR[i][3 * j + c] * inverse[i]);
+        }
+      }
+    return out;
+  }
+
+  void evaluate(const System& system, SerialKktSolver* whole) override {
+    for (int i = 0; i < 3; ++i) system.evaluate(stages_[i], lambda_[i], r_[i], nullptr);
+    phases().evaluations += 3;
+    if (!whole) return;
+    find_changes(system);
+    // by positions, by velocities, by accelerations
+    const Eigen::Matrix3d by[3] = {Eigen::Matrix3d::Identity(), W_, W_ * W_ / (h_ * h_)};
+    for (int i = 0; i < 3; ++i)
+      for (int kind = 0; kind < 3; ++kind)
+        for (int base = 0; base < 3; ++base) {
+          Stage s = stages_[i];
+          s.end = &bases_[base];
+          s.slope = s.chain = kind == 0, s.alpha_slope = kind == 1 ? 1 / h_ : 0, s.mass_slope = kind == 2;
+          s.rates_alone = kind > 0;
+          if (kind == 2) s.h = 0, s.step = nullptr, s.v = nullptr;
+          DirectorColumns::Change change;
+          for (int j = 0; j < 3; ++j) change.factor[j] = by[kind](i, j), change.directors[j] = &changes_[kind][i][j];
+          DirectorColumns columns(*whole, system, body_of_, i, change, base, kind == 0 && base == 0, r_[i].sigma, unused_.sigma);
+          system.evaluate(s, lambda_[i], unused_, &columns);
+        }
+    phases().evaluations += 27, phases().tangents += 27;
+  }
+
+  /// Changes of directors, of their ways and second derivatives at stage i by turns of stage j.
+  void find_changes(const System& system) {
+    for (auto& kind : changes_)
+      for (auto& row : kind)
+        for (auto& part : row) part.resize(q0_.R.size());
+    body_of_.assign(system.first_joint_block(), -1);
+    combine(bases_[0], {{0, &q0_}});
+    for (int a = 0; a < 3; ++a) {
+      bases_[a] = bases_[0];
+      for (Mat3& R : bases_[a].R) R = director_bases[a];
+      system.follow(bases_[a]);
+    }
+    for (const UnknownField& f : system.unknowns)
+      for (size_t k = 0; k < f.size() && f.turns(); ++k) {
+        const int b = body_of_[f.block(k)] = f.item[k];
+        const Turns t = turns_of(b);
+        const Mat9 inverse = t.turns.inverse();
+        Mat3 N[3][9];  // dR_i by the nine components of the turns
+        for (int i = 0; i < 3; ++i)
+          for (int c = 0; c < 9; ++c) {
+            N[i][c].setZero();
+            for (int d = 0; d < 9; ++d) N[i][c] += inverse(d, c) * t.dR[i][d];
+          }
+        const auto put = [&](int kind, const Eigen::Matrix3d& by) {
+          for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) {
+              std::array<Mat3, 3> change;
+              for (int c = 0; c < 3; ++c) change[c] = by(i, 0) * N[0][3 * j + c] + by(i, 1) * N[1][3 * j + c] + by(i, 2) * N[2][3 * j + c];
+              changes_[kind][i][j][b] = director_sums(change);
+            }
+        };
+        put(0, Eigen::Matrix3d::Identity()), put(1, W_), put(2, W_ * W_ / (h_ * h_));
+      }
+  }
+
+  /// Directors of the stages from the angular velocities: dR_i - sum_j a_ij skew_j dR_j = sum_j a_ij skew_j R0.
+  void place_directors(const System& system) {
+    for (const UnknownField& f : system.unknowns)
+      for (size_t k = 0; k < f.size() && f.turns(); ++k) {
+        const int b = f.item[k];
+        Eigen::Matrix<double, 9, 3> rhs = Eigen::Matrix<double, 9, 3>::Zero();
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) rhs.middleRows<3>(3 * i) += A_(i, j) * skew(turn_[j][b]) * q0_.R[b];
+        const Eigen::Matrix<double, 9, 3> dR = director_matrix(b).partialPivLu().solve(rhs);
+        for (int i = 0; i < 3; ++i) dq_[i].R[b] = dR.middleRows<3>(3 * i);
+      }
+    for (int i = 0; i < 3; ++i) {
+      system.follow(dq_[i]);
+      combine(q_[i], {{1, &q0_}, {1, &dq_[i]}});
+    }
+  }
+
+  void place(const System& system) override {
+    for (int i = 0; i < 3; ++i) {
+      combine(way_[i], {{W_(i, 0), &dq_[0]}, {W_(i, 1), &dq_[1]}, {W_(i, 2), &dq_[2]}});
+      for (size_t b = 0; b < turn_[i].size(); ++b) way_[i].R[b] = skew(turn_[i][b]) * q_[i].R[b];
+      system.follow(way_[i]);
+      combine(v_[i], {{1 / h_, &way_[i]}});
+      combine(before_[i], {{1, &q_[i]}, {-0.5, &way_[i]}}), combine(after_[i], {{1, &q_[i]}, {0.5, &way_[i]}});
+      step_.before[i] = &before_[i], step_.after[i] = &after_[i];
+    }
+    for (int i = 0; i < 3; ++i) {
+      const double f = 1 / (h_ * h_);
+      combine(a_[i], {{f * W_(i, 0), &way_[0]}, {f * W_(i, 1), &way_[1]}, {f * W_(i, 2), &way_[2]}, {-W_.row(i).sum() / h_, &v0_}});
+      stages_[i] = stage(q_[i], v_[i], a_[i], before_[i], after_[i], t_ + c_[i] * h_);
+      stages_[i].mass_slope = f * (W_ * W_)(i, i), stages_[i].alpha_slope = W_(i, i) / h_;
+      stages_[i].step = &step_, stages_[i].member = i;
+    }
+  }
+
+  Stage stage(const Config& q, const Config& v, const Config& a, const Config& before, const Config& after, double t) const {
+    Stage s = stage_at(q, t);
+    s.w0 = &before, s.w1 = &after, s.h = h_;
+    s.a = &a, s.v = &v;
+    return s;
+  }
+
+  void around(const Config& q, const Config& v, Config& before, Config& after) const {
+    combine(before, {{1, &q}, {-h_ / 2, &v}}), combine(after, {{1, &q}, {h_ / 2, &v}});
+  }
+
+  /// The stages with what they stand for in the work of the step, and its end, which stands for nothing, for reactions.
+  void take() {
+    taken_.resize(4);
+    for (int i = 0; i < 3; ++i) {
+      combine(from_[i], {{1, &q_[i]}, {-weight[i], &way_[i]}});
+      taken_[i] = {stages_[i], lambda_[i]};
+      taken_[i].stage.work_from = &from_[i], taken_[i].stage.span = h_ * weight[i];
+    }
+    a_end_ = a_[2], v_end_ = v1_, around(q1_, v_end_, before_end_, after_end_);
+    taken_[3] = {from_left(stage(q1_, v_end_, a_end_, before_end_, after_end_, t_ + h_), h_), lambda_[2]};
+    taken_[3].stage.work_from = &q1_, taken_[3].stage.span = 1e-200;
+  }
+
+  /// v1 without the rates of the directors' lengths and angles, in the mass norm: I w = sum R_i x (V J)_i.
+  Config tangent() const {
+    Config v = v1_;
+    for (size_t b = 0; b < v.R.size(); ++b) {
+      const Mat3& R = q1_.R[b];
+      const double some = system_->bodies[b].J.trace() + 1e-300;
+      const Mat3 J = system_->bodies[b].J / some, D = R * J * R.transpose();  // a spin that has no inertia stays as it is
+      const Mat3 I = (D.trace() + 1e-12) * Mat3::Identity() - D;
+      v.R[b] = skew(I.inverse() * (2 * axial(v1_.R[b] * J * R.transpose()) + 1e-12 * axial(v1_.R[b] * R.transpose()))) * R;
+    }
+    system_->follow(v);
+    return v;
+  }
+
+  const System* system_ = nullptr;
+  KktSolver* solver_ = nullptr;
+  Collocation step_;
+  Config q0_, v0_, q1_, v1_, a_end_, v_end_, before_end_, after_end_;
+  std::array<Config, 3> dq_, q_, way_, v_, a_, before_, after_, from_, past_a_;  // way: h V
+  std::array<std::vector<double>, 3> past_lambda_;
+  std::array<std::vector<Vec3>, 3> turn_;                                           // h w of each body
+  std::array<Config, 3> bases_;                                                     // directors that turns are sums of
+  std::vector<int> body_of_;                                                        // of the block of a turn, or -1
+  std::array<std::array<std::array<std::vector<DirectorSums>, 3>, 3>, 3> changes_;  // by kind, row, column and body
+  Residual unused_;
+  Predictor predictor_ = Predictor::hold;  // of the step solved last
+  std::array<Extrapolation, 3> missed_before_;
+  std::array<std::vector<double>, 3> missed_;  // by the first guess
+  std::vector<double> reached_;
+  double past_h_ = 0;  // 0: no step before
+  std::vector<Taken> taken_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> Gauss::make(const Entry&) { return make_gauss(make_light_solver()); }
+
+std::string Gauss::weakness(const Entry&, const System& system) {
+  return system.map.n_global > 5000 ? "all three stages are solved at once: 27 times the entries of the other methods" : "";
+}
+
+std::unique_ptr<Integrator> make_gauss(std::unique_ptr<SerialKktSolver> solver) {
+  return std::make_unique<GaussIntegrator>(std::move(solver));
+}
+
+}  // namespace hilo
