@@ -38,7 +38,7 @@ def write(path, text):
 
 
 def methods_of(scene):
-    return [m for m in methods if "mesh" in scene or not m.get("meshes_only")]
+    return [m for m in methods if not m.get("rigid_only" if "mesh" in scene else "meshes_only")]
 
 
 def rules():

@@ -14,16 +14,15 @@ CoupledStages::CoupledStages(std::unique_ptr<SerialKktSolver> solver, Eigen::Mat
 }
 
 void CoupledStages::begin(const System& system, double t, double h) {
-  if (map_.global.empty()) couple(system);
-  if (tried_) kept_ = false;  // the step before was refused: joint rows may have been chosen anew
+  if (system.comm->size > 1) throw Error("", name() + " is serial", "run it without mpirun, or choose another time.integrator");
+  if (system.traits().lumps_masses) throw Error("", name() + " knows no point masses on flexible parts", "use [[body]] entries");
+  check(system);
+  if (tried_) drop_matrix();  // the step before was refused: joint rows may have been chosen anew
   tried_ = true, t_ = t, h_ = h;
 }
 
 /// One system of three times the unknowns, each clique covering its blocks of all stages.
 void CoupledStages::couple(const System& system) {
-  if (system.comm->size > 1) throw Error("", name() + " is serial", "run it without mpirun, or choose another time.integrator");
-  if (system.traits().lumps_masses) throw Error("", name() + " knows no point masses on flexible parts", "use [[body]] entries");
-  check(system);
   const int n = system.n_blocks();
   std::vector<int> list;
   for (int e = 0; e < system.cliques.size(); ++e) {
@@ -40,6 +39,7 @@ void CoupledStages::couple(const System& system) {
 
 NewtonReport CoupledStages::iterate(const System& system, const NewtonOptions& options) {
   NewtonReport report;
+  if (map_.global.empty()) couple(system);
   const int n = 3 * system.n_blocks(), first = 3 * system.first_joint_block();
   if (h_ > 2 * kept_h_ || kept_h_ > 2 * h_) kept_ = false;
   const bool lagged = kept_;
@@ -52,7 +52,12 @@ NewtonReport CoupledStages::iterate(const System& system, const NewtonOptions& o
   };
   for (;;) {
     const bool fresh = !kept_;
-    look_at(system, report);
+    place(system);
+    if (!kept_) whole_->zero();
+    evaluate(system, kept_ ? nullptr : whole_.get());
+    judge(system, report);
+    if (!kept_)
+      for (int i = 0; i < n_stages; ++i) kept_sigma_[i] = r_[i].sigma;
     if (!std::isfinite(report.residual)) return report.reason = "the residual is not finite", report;
     if (fresh && ++built > options.max_iterations) {
       if (report.residual <= options.tolerance) break;
@@ -100,18 +105,14 @@ NewtonReport CoupledStages::iterate(const System& system, const NewtonOptions& o
   return report;
 }
 
-/// Residuals of the stages, and the matrix where none is at hand; the largest relative residual.
-void CoupledStages::look_at(const System& system, NewtonReport& report) {
-  place(system);
-  if (!kept_) whole_->zero();
-  evaluate(system, kept_ ? nullptr : whole_.get());
+/// The largest relative residual.
+void CoupledStages::judge(const System& system, NewtonReport& report) {
   report.residual = 0;
-  for (int i = 0; i < n_stages; ++i) {
-    system.mask_fixed(r_[i].r);
-    const double x = relative_residual(system, r_[i]);
+  for (Residual& r : r_) {
+    system.mask_fixed(r.r);
+    const double x = relative_residual(system, r);
     if (!(x <= report.residual)) report.residual = x;  // keeps a NaN
-    report.least_det.take(r_[i].least_det);
-    if (!kept_) kept_sigma_[i] = r_[i].sigma;
+    report.least_det.take(r.least_det);
   }
 }
 

@@ -25,12 +25,15 @@ class CoupledStages : public Integrator {
 
   /// Before the first guess of a step of length h.  Error where a scene is not for it.
   void begin(const System& system, double t, double h);
-  /// From the first guesses of unknowns and multipliers to the solution.
+  /// From the first guesses of unknowns and multipliers to the solution, with the matrix of all stages.
   NewtonReport iterate(const System& system, const NewtonOptions& options);
-  /// The step is accepted; nothing of the matrix is to be kept; the run begins anew.
+  /// The same with a matrix of the size of a stage, in `solver`, where `triangular` stands for A: lower triangular, of one diagonal
+  /// (triangular_stages.cpp).
+  NewtonReport iterate_triangular(const System& system, KktSolver& solver, const Eigen::Matrix3d& triangular, const NewtonOptions& options);
+  /// The step is accepted; nothing of the matrices is to be kept; the run begins anew.
   void accepted() { tried_ = false; }
-  void drop_matrix() { kept_ = false; }
-  void forget_structure() { kept_ = tried_ = false, map_ = {}, cliques_ = {}; }
+  void drop_matrix() { kept_ = one_.kept = false; }
+  void forget_structure() { drop_matrix(), tried_ = false, map_ = {}, cliques_ = {}; }
 
   Eigen::Matrix3d A_, W_;  // W = A^-1
   double c_[n_stages], t_ = 0, h_ = 0;
@@ -40,7 +43,9 @@ class CoupledStages : public Integrator {
 
  private:
   void couple(const System& system);
-  void look_at(const System& system, NewtonReport& report);
+  void judge(const System& system, NewtonReport& report);
+  void build_triangular(const System& system, KktSolver& solver);
+  SolveReport solve_triangular(const System& system, KktSolver& solver, const Eigen::Matrix3d& T);
   double largest_correction(const System& system) const;
   std::pair<double, double> scales(const System& system) const;
   double sufficient(const System& system, double tolerance) const;
@@ -54,6 +59,18 @@ class CoupledStages : public Integrator {
   double kept_h_ = 0, kept_sigma_[n_stages]{}, rate_ = 1;  // built for this step length and these scales; how it contracted last
   int excess_ = 0;                                         // iterations that its age has cost
   std::vector<double> b_, z_;
+  struct OneMatrix {  // of the size of a stage
+    bool kept = false;
+    double h = 0, d = 0;  // of the step it was built for; diagonal of T
+    Stage stage;          // that it is the tangent of, at the middle one,
+    Config q, v, a, before, after;
+    Residual r, still;                   // its residual, and without accelerations and multipliers
+    std::vector<double> none, b;         // multipliers; right-hand side
+    Config zero, trial_a;                // accelerations
+    std::vector<double> trial;           // multipliers
+    Residual by_trial;                   //
+    std::vector<double> pull[n_stages];  // K z of a stage
+  } one_;
 };
 
 }  // namespace hilo
