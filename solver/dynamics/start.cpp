@@ -118,6 +118,31 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
   return system.comm->max(system.add_rates(v, q, z));
 }
 
+void nearest_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t) {
+  Config none;
+  combine(none, {{0, &v}});
+  system.prescribe_rates(t, Side::left, &none, nullptr);
+  std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), b, z(3 * system.n_blocks(), 0.0), rate;
+  Residual r;
+  Stage inertia = mass_stage(system.start, v, t);  // without strain
+  inertia.left = inertia.end = &q;
+  inertia.rates_alone = true, inertia.load_factor = 0;
+  system.evaluate(inertia, lambda, r, nullptr);  // P^T M v
+  b = r.r;
+  system.mask_fixed(b);
+  Config still;
+  combine(still, {{0, &v}});
+  system.evaluate(mass_stage(q, still, t), lambda, r, &solver);
+  system.row_rates(q, none, nullptr, t, rate, nullptr);
+  const int first = 3 * system.first_joint_block();
+  const std::vector<char> on = system.rows_on();
+  for (size_t k = 0; k < on.size(); ++k) b[first + k] = on[k] ? -r.sigma * rate[k] : 0;
+  const SolveReport solved = solver.solve(b, z);
+  if (!solved.ok) throw Error("", "the joints and masses do not determine the velocities: " + solved.message);
+  v = none;
+  system.add_rates(v, q, z);
+}
+
 void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda) {
   // guess: bodies that keep their spin, everything else unaccelerated; the solve adds the rest
   combine(a, {{0, &s.v}});

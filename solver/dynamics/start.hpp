@@ -16,6 +16,8 @@ double assemble_positions(System& system, KktSolver& solver, Config& q);
 double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t);
 /// Accelerations and multipliers that satisfy equations and constraints at (s.q, s.v) at time s.t.
 void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda);
+/// v becomes the nearest velocities, in the mass norm, that directors, products of modes and joints allow at time t.
+void nearest_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t);
 /// s.a and s.lambda that satisfy equations and constraints at (q, v) at time t, and s.jerk by forward differences over h.
 void consistent_acceleration(const System& system, KktSolver& solver, State& s, double h);
 

@@ -7,19 +7,11 @@ namespace {
 
 using Values = MeasurePath::Values;
 
-/// Adds to `d`, the slopes at stage i, what makes their sum along the ways that of the mean slopes over the step, sum b_j mean.way_j;
-/// `slopes`: of the stages, `norm`: weights of the measures.
-void complete(const Values& mean, const std::array<Values, Collocation::n>& slopes, const Values& norm, const MeasurePath& path,
-              const Collocation& step, int i, Values& d) {
-  double missing = 0, size = 0;
-  for (int j = 0; j < Collocation::n; ++j)
-    for (size_t m = 0; m < norm.size(); ++m) {
-      const double way = path.way[j][m];
-      missing += step.b[j] * (mean[m] - slopes[j][m]) * way, size += step.b[j] * norm[m] * way * way;
-    }
-  if (size < 1e-280) return;  // the measures rest
-  for (size_t m = 0; m < norm.size(); ++m) d[m] += missing / size * norm[m] * path.way[i][m];
-}
+using Vector = Eigen::Matrix<double, max_measures, 1>;
+using Vectors = std::array<Vector, Collocation::n>;
+
+Vector vector_of(const Values& x) { return Eigen::Map<const Vector>(x.data()); }
+Vectors ways_of(const MeasurePath& path) { return {vector_of(path.way[0]), vector_of(path.way[1]), vector_of(path.way[2])}; }
 
 }  // namespace
 
@@ -38,19 +30,20 @@ MeasurePath::MeasurePath(const Connector& c, const Collocation& step) : e0(c.val
 }
 
 void elastic_along(const SpringLaw& law, const MeasurePath& path, const Collocation& step, int i, Response& out) {
-  std::array<Values, Collocation::n> slopes;
+  Vectors slopes;
   Response r;
   for (int j = 0; j < Collocation::n; ++j) {
     law.elastic(path.at[j], path.at[j], r = {});
-    slopes[j] = r.s;
+    slopes[j] = vector_of(r.s);
     if (j == i) out = r;
   }
   for (auto& row : out.D)  // so far the derivative by the second argument alone
     for (double& d : row) d *= 2;
   law.elastic(path.e0, path.e1, r = {});
-  Values stiffness;
-  for (size_t m = 0; m < stiffness.size(); ++m) stiffness[m] = std::abs(r.D[m][m]);
-  complete(r.s, slopes, stiffness, path, step, i, out.s);
+  Vector stiffness, force = slopes[i];
+  for (int m = 0; m < max_measures; ++m) stiffness[m] = std::abs(r.D[m][m]);
+  complete(vector_of(r.s), slopes, ways_of(path), stiffness, step, i, force);
+  Eigen::Map<Vector>(out.s.data()) = force;
 }
 
 void gradient_along(const RowLaw& rows, const MeasurePath& path, const Collocation& step, int i, RowLaw::Gradient& out) {
@@ -58,10 +51,12 @@ void gradient_along(const RowLaw& rows, const MeasurePath& path, const Collocati
   for (int j = 0; j < Collocation::n; ++j) rows.gradient(path.at[j], path.at[j], at[j] = {});
   rows.gradient(path.e0, path.e1, whole = {});
   out = at[i];
+  const Vectors ways = ways_of(path);
   for (int r = 0; r < rows.n_rows(); ++r) {
-    Values norm;
-    for (size_t m = 0; m < norm.size(); ++m) norm[m] = whole.d[r][m] * whole.d[r][m];
-    complete(whole.d[r], {at[0].d[r], at[1].d[r], at[2].d[r]}, norm, path, step, i, out.d[r]);
+    const Vector mean = vector_of(whole.d[r]);
+    Vector d = vector_of(at[i].d[r]);
+    complete(mean, {vector_of(at[0].d[r]), vector_of(at[1].d[r]), vector_of(at[2].d[r])}, ways, Vector(mean.cwiseAbs2()), step, i, d);
+    Eigen::Map<Vector>(out.d[r].data()) = d;
   }
 }
 

@@ -26,6 +26,19 @@ struct MeasurePath {
   Values at[Collocation::n];   // E_j
 };
 
+/// Adds to `d`, slopes of a function at stage i, what makes their sum along the ways that of its mean slopes over the step,
+/// sum b_j mean.way_j, in proportion to weights (positive, of the measures); `slopes`: at the stages.
+template <class Vector>
+void complete(const Vector& mean, const std::array<Vector, Collocation::n>& slopes, const std::array<Vector, Collocation::n>& ways,
+              const Vector& weights, const Collocation& step, int i, Vector& d) {
+  double missing = 0, size = 0;
+  for (int j = 0; j < Collocation::n; ++j) {
+    missing += step.b[j] * (mean - slopes[j]).dot(ways[j]);
+    size += step.b[j] * weights.dot(ways[j].cwiseAbs2());
+  }
+  if (size > 1e-280) d += missing / size * weights.cwiseProduct(ways[i]);  // else the measures rest
+}
+
 /// Forces of a potential W at stage i:  dW(E_i) + (W1 - W0 - sum b_j dW(E_j).way_j) C way_i / (sum b_j way_j.C way_j)  with a stiffness C
 /// of the step, so that sum b_i s_i.way_i = W1 - W0; the bracket is of order h^7.  D is that of dW(E_i).
 void elastic_along(const SpringLaw& law, const MeasurePath& path, const Collocation& step, int i, Response& out);

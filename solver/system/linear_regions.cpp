@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "system/collocation.hpp"
 #include "system/mode_forces.hpp"
 
 namespace hilo {
@@ -66,6 +67,22 @@ void add_inertia_tangent(const Eigen::MatrixXd& A, const Modes& m, const Stage& 
     for (int i = 0; i < m.n_modes; ++i) K(6 + j, 6 + i) += D.cwiseProduct(A.block<3, 3>(4 + 3 * j, 4 + 3 * i)).sum();
 }
 
+/// Elastic force of a region that stiffens at a stage that shares its step with others (system/collocation).
+Eigen::VectorXd force_along(const LinearRegion& r, const Modes& m, const Stage& s, Eigen::MatrixXd* slope) {
+  const Collocation& step = *s.step;
+  std::array<Eigen::VectorXd, Collocation::n> slopes, ways;
+  Eigen::VectorXd eta0 = amplitudes(m, *step.start), eta1 = eta0, out = eta0;
+  for (int j = 0; j < Collocation::n; ++j) {
+    const Eigen::VectorXd before = amplitudes(m, *step.before[j]), after = amplitudes(m, *step.after[j]), at = (before + after) / 2;
+    slopes[j] = r.strain.force(at, at, 1, j == s.member ? slope : nullptr);
+    ways[j] = after - before;
+    eta1 += step.b[j] * ways[j];
+  }
+  out = slopes[s.member];
+  complete(r.strain.force(eta0, eta1, 0.5, nullptr), slopes, ways, r.stiffness, step, s.member, out);
+  return out;
+}
+
 /// Times h: of the rate terms on the amplitudes.
 Eigen::VectorXd viscous_force(const LinearRegion& r, const Modes& m, const Stage& s) {
   if (r.viscous.size() == 0 || !(s.h > 0)) return Eigen::VectorXd::Zero(m.n_modes);
@@ -112,7 +129,9 @@ void LinearRegions::evaluate(Pass& p) const {
     Eigen::MatrixXd slope_of_elastic;
     if (!s.rates_alone) {
       if (p.K) slope_of_elastic.setZero(m.n_modes, m.n_modes);
-      if (r.strain.used()) {
+      if (r.strain.used() && s.step) {
+        elastic = force_along(r, m, s, p.K ? &slope_of_elastic : nullptr);
+      } else if (r.strain.used()) {
         elastic = r.strain.force(eta0, eta1, s.weight, p.K ? &slope_of_elastic : nullptr);
       } else {
         elastic = r.stiffness.cwiseProduct((1 - s.weight) * eta0 + s.weight * eta1);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "system/collocation.hpp"
 #include "system/mode_forces.hpp"
 
 namespace hilo {
@@ -121,7 +122,12 @@ void Welds::evaluate(Pass& p) const {
     if (!points_.counts(static_cast<int>(k))) continue;
     const Modes& m = points_.modes[w.modes];
     const Place left = place(w, *s.left), end = place(w, *s.end);
-    const auto g = values(w, *s.end);
+    auto g = values(w, *s.end);
+    if (s.step) {  // increments, of which the sum over the stages is g(q1)
+      const auto open = values(w, *s.step->start), before = values(w, *s.w0);
+      g = values(w, *s.w1);
+      for (size_t i = 0; i < g.size(); ++i) g[i] += open[i] - before[i];
+    }
     for (size_t i = 0; i < g.size(); ++i) p.out.r[3 * block_[k] + i] = p.sigma * g[i];
     const double* lambda = p.lambda.data() + 3 * (block_[k] - points_.first_joint_block());
 

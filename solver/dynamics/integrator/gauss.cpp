@@ -18,6 +18,7 @@
 #include "dynamics/profile.hpp"
 #include "dynamics/start.hpp"
 #include "system/collocation.hpp"
+#include "system/solids.hpp"
 
 namespace hilo {
 namespace {
@@ -67,13 +68,13 @@ class GaussIntegrator final : public CoupledStages {
     predictor_ = predictor;
     NewtonReport report;
     if (coupled_steps_ == 0) {
-      guess(system, s);
+      is_coupled_ = false, guess(system, s);
       report = iterate_triangular(system, tools.solver, triangular(), tools.newton);
     }
-    if (!report.converged) {  // for some steps, since what made it hard seldom passes at once
+    if (!report.converged && system.modes.empty()) {  // for some steps, since what made it hard seldom passes at once
       coupled_steps_ = coupled_steps_ == 0 ? 8 : coupled_steps_ - 1;
       const int before = report.iterations;
-      guess(system, s);
+      is_coupled_ = true, guess(system, s);
       report = iterate(system, tools.newton);
       report.iterations += before;
     }
@@ -90,9 +91,9 @@ class GaussIntegrator final : public CoupledStages {
 
   /// Accelerations and multipliers at the end, at velocities that the joints allow: those of the stages are of lower order.
   void accept(State& s) override {
-    State at{.t = t_ + (1 - 1e-9) * h_, .q = q1_, .v = tangent(), .a = {}, .jerk = {}, .snap = {}, .lambda = {}};
+    State at{.t = t_ + (1 - 1e-9) * h_, .q = q1_, .v = v1_, .a = {}, .jerk = {}, .snap = {}, .lambda = {}};
     if (!end_solver_) end_solver_ = make_light_solver(), end_solver_->structure(system_->cliques, system_->map);
-    project_velocities(*system_, *end_solver_, at.q, at.v, at.t);
+    nearest_velocities(*system_, *end_solver_, at.q, at.v, at.t);
     solve_acceleration(*system_, *end_solver_, at, a_end_, taken_.back().lambda);
     v_end_ = std::move(at.v), around(q1_, v_end_, before_end_, after_end_);
     end(s), accepted();
@@ -123,7 +124,7 @@ class GaussIntegrator final : public CoupledStages {
   void check(const System& system) const override {
     const auto refuse = [](const std::string& what, const std::string& hint) { throw Error("", "gauss does not know " + what, hint); };
     const std::string others = "take energy-momentum, or radau for references";
-    if (system.traits().deforms || !system.modes.empty()) refuse("flexible regions yet", others);
+    if (!system.part<Solids>().batches.empty()) refuse("nonlinear regions yet", "make them linear or rigid, or " + others);
     if (system.moves()) refuse("[[motion]] of what moves by a law yet", "drive a joint, or " + others);
   }
 
@@ -188,7 +189,7 @@ class GaussIntegrator final : public CoupledStages {
         }
         Vec9 turned;
         for (int i = 0; i < 3; ++i) turned.segment<3>(3 * i) = of(i, f.block(k));
-        const Vec9 change = turns_of(item).turns.partialPivLu().solve(turned);
+        const Vec9 change = is_coupled_ ? turns_of(item).turns.partialPivLu().solve(turned) : nearly_turned(item, turned);
         for (int i = 0; i < 3; ++i) turn_[i][item] += change.segment<3>(3 * i);
       }
     place_directors(system);
@@ -199,6 +200,17 @@ class GaussIntegrator final : public CoupledStages {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) K.block<3, 3>(3 * i, 3 * j) -= A_(i, j) * skew(turn_[j][b]);
     return K;
+  }
+
+  /// What the angular velocities of a body change by when its directors turn, skew(t_i) R_i, were these orthonormal.
+  Vec9 nearly_turned(int b, const Vec9& t) const {
+    Mat3 dR[3];
+    Vec9 out;
+    for (int i = 0; i < 3; ++i) dR[i] = skew(t.segment<3>(3 * i)) * q_[i].R[b];
+    for (int i = 0; i < 3; ++i)
+      out.segment<3>(3 * i) = axial((W_(i, 0) * dR[0] + W_(i, 1) * dR[1] + W_(i, 2) * dR[2]) * q_[i].R[b].transpose() -
+                                    skew(turn_[i][b]) * skew(t.segment<3>(3 * i)));
+    return out;
   }
 
   /// How the directors of a body move by its angular velocities: dR_i - sum_j a_ij skew_j dR_j = sum_j a_ij skew(d w_j) R_j.
@@ -282,27 +294,52 @@ class GaussIntegrator final : public CoupledStages {
       }
   }
 
-  /// Directors of the stages from the angular velocities: dR_i - sum_j a_ij skew_j dR_j = sum_j a_ij skew_j R0.
+  /// Directors of the stages from the angular velocities, dR_i - sum_j a_ij skew_j dR_j = sum_j a_ij skew_j R0, and likewise the products
+  /// of amplitudes and directors, Y' = w x Y + eta' R^-T, for which R^T Y = eta I is kept.
   void place_directors(const System& system) {
+    Eigen::Matrix<double, 9, 3> rhs, dR;
     for (const UnknownField& f : system.unknowns)
       for (size_t k = 0; k < f.size() && f.turns(); ++k) {
         const int b = f.item[k];
-        Eigen::Matrix<double, 9, 3> rhs = Eigen::Matrix<double, 9, 3>::Zero();
-        for (int i = 0; i < 3; ++i)
-          for (int j = 0; j < 3; ++j) rhs.middleRows<3>(3 * i) += A_(i, j) * skew(turn_[j][b]) * q0_.R[b];
-        const Eigen::Matrix<double, 9, 3> dR = director_matrix(b).partialPivLu().solve(rhs);
+        const Eigen::PartialPivLU<Mat9> directors(director_matrix(b));
+        const auto solve = [&](const Mat3& start, const Mat3* besides) {
+          rhs.setZero();
+          for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+              rhs.middleRows<3>(3 * i) += A_(i, j) * (skew(turn_[j][b]) * start + (besides ? besides[j] : Mat3(Mat3::Zero())));
+          dR = directors.solve(rhs);
+        };
+        solve(q0_.R[b], nullptr);
         for (int i = 0; i < 3; ++i) dq_[i].R[b] = dR.middleRows<3>(3 * i);
+        if (system.modes_of.empty() || system.modes_of[b] < 0) continue;
+        const Modes& m = system.modes[system.modes_of[b]];
+        for (int y = 3 * m.first; y < 3 * (m.first + m.n_blocks); ++y) {
+          Mat3 grown[3];
+          for (int i = 0; i < 3; ++i) grown[i] = way_of_amplitude(i, y) * upright(i, b);
+          solve(q0_.Y[y], grown);
+          for (int i = 0; i < 3; ++i) dq_[i].Y[y] = dR.middleRows<3>(3 * i);
+        }
       }
     for (int i = 0; i < 3; ++i) {
       system.follow(dq_[i]);
       combine(q_[i], {{1, &q0_}, {1, &dq_[i]}});
     }
   }
+  double way_of_amplitude(int i, int y) const {
+    double sum = 0;
+    for (int j = 0; j < 3; ++j) sum += W_(i, j) * dq_[j].eta[y / 3][y % 3];
+    return sum;
+  }
+  /// R^-T.
+  Mat3 upright(int i, int b) const { return (q0_.R[b] + dq_[i].R[b]).inverse().transpose(); }
 
   void place(const System& system) override {
     for (int i = 0; i < 3; ++i) {
       combine(way_[i], {{W_(i, 0), &dq_[0]}, {W_(i, 1), &dq_[1]}, {W_(i, 2), &dq_[2]}});
       for (size_t b = 0; b < turn_[i].size(); ++b) way_[i].R[b] = skew(turn_[i][b]) * q_[i].R[b];
+      for (const Modes& m : system.modes)
+        for (int y = 3 * m.first; y < 3 * (m.first + m.n_blocks); ++y)
+          way_[i].Y[y] = skew(turn_[i][m.body]) * q_[i].Y[y] + way_of_amplitude(i, y) * upright(i, m.body);
       system.follow(way_[i]);
       combine(v_[i], {{1 / h_, &way_[i]}});
       combine(before_[i], {{1, &q_[i]}, {-0.5, &way_[i]}}), combine(after_[i], {{1, &q_[i]}, {0.5, &way_[i]}});
@@ -341,22 +378,9 @@ class GaussIntegrator final : public CoupledStages {
     taken_[3].stage.work_from = &q1_, taken_[3].stage.span = 1e-200;
   }
 
-  /// v1 without the rates of the directors' lengths and angles, in the mass norm: I w = sum R_i x (V J)_i.
-  Config tangent() const {
-    Config v = v1_;
-    for (size_t b = 0; b < v.R.size(); ++b) {
-      const Mat3& R = q1_.R[b];
-      const double some = system_->bodies[b].J.trace() + 1e-300;
-      const Mat3 J = system_->bodies[b].J / some, D = R * J * R.transpose();  // a spin that has no inertia stays as it is
-      const Mat3 I = (D.trace() + 1e-12) * Mat3::Identity() - D;
-      v.R[b] = skew(I.inverse() * (2 * axial(v1_.R[b] * J * R.transpose()) + 1e-12 * axial(v1_.R[b] * R.transpose()))) * R;
-    }
-    system_->follow(v);
-    return v;
-  }
-
   const System* system_ = nullptr;
   std::unique_ptr<KktSolver> end_solver_;  // of accelerations at the end: the other one keeps its matrix
+  bool is_coupled_ = false;                // the matrix of all stages is at work
   int coupled_steps_ = 0;                  // so many more with the matrix of all stages
   Collocation step_;
   Config q0_, v0_, q1_, v1_, a_end_, v_end_, before_end_, after_end_;
