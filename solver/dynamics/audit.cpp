@@ -41,11 +41,12 @@ void Audit::start(const State& s) {
   worst_.rows = now_.rows, worst_.kept_t = worst_.dropped_t = s.t;
 }
 
-std::string Audit::look(const Config& q0, const State& end, std::span<const Taken> taken, const NewtonReport& newton, double load_factor) {
+std::string Audit::look(const Config& q0, const State& end, std::span<const Taken> taken, const NewtonReport& newton, double load_factor,
+                        double taken_away) {
   opens_dropped_row_ = false;
   next_ = {};
   next_.energy = energy_of(system_, end, Side::left);
-  next_.work = sums_.work, next_.dissipated = sums_.dissipated;
+  next_.work = sums_.work, next_.dissipated = sums_.dissipated + taken_away;
   for (const Taken& part : taken) {
     const Work w = system_.work(part.stage, part.lambda);
     next_.work += w.external, next_.dissipated += w.dissipated;

@@ -27,8 +27,10 @@ class Audit {
   Audit(const System& system, std::string energy_unchecked, double tolerance);
   /// The state before the first step.
   void start(const State& s);
-  /// The step from q0 to `end`: why it cannot be accepted, or "".  `load_factor` is that of a static analysis.
-  std::string look(const Config& q0, const State& end, std::span<const Taken> taken, const NewtonReport& newton, double load_factor = 1);
+  /// The step from q0 to `end`: why it cannot be accepted, or "".  `load_factor` is that of a static analysis;
+  /// `taken_away`: energy that the method took besides [J].
+  std::string look(const Config& q0, const State& end, std::span<const Taken> taken, const NewtonReport& newton, double load_factor = 1,
+                   double taken_away = 0);
   /// The step looked at last is accepted.
   void accept(double t);
   /// Work of an impulse between two steps [J].
