@@ -46,7 +46,7 @@ std::string Audit::look(const Config& q0, const State& end, std::span<const Take
   opens_dropped_row_ = false;
   next_ = {};
   next_.energy = energy_of(system_, end, Side::left);
-  next_.work = sums_.work, next_.dissipated = sums_.dissipated + taken_away;
+  next_.work = sums_.work + std::max(0.0, -taken_away), next_.dissipated = sums_.dissipated + std::max(0.0, taken_away);
   for (const Taken& part : taken) {
     const Work w = system_.work(part.stage, part.lambda);
     next_.work += w.external, next_.dissipated += w.dissipated;

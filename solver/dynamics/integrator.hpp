@@ -64,7 +64,7 @@ class Integrator {
   /// Accelerations of the step solved last, and where in the step they and the multipliers belong: 1/2 the middle, 1 the end.
   virtual const Config& acceleration() const = 0;
   virtual double own_time() const = 0;
-  /// Energy that the step solved last takes away besides what its stages do [J].
+  /// Energy that the step solved last takes away besides what its stages do [J]; negative: what drives give.
   virtual double taken_away() const { return 0; }
   /// Velocities at the end of the step accepted last, as results show them; null: those of its state.
   virtual const Config* velocity() const { return nullptr; }

@@ -379,11 +379,13 @@ class GaussIntegrator final : public CoupledStages {
     if (!end_solver_) end_solver_ = make_light_solver(), end_solver_->structure(system_->cliques, system_->map);
     v_end_ = v1_;
     nearest_velocities(*system_, *end_solver_, q1_, v_end_, end_time());
-    const double kinetic = system_->energy(q1_, v1_).kinetic, besides = kinetic - system_->energy(q1_, v_end_).kinetic;
-    lost_ = besides > small_besides * kinetic ? besides : 0;
-    if (lost_ > 0) v1_ = v_end_;
-    kinetic_ = std::max(kinetic, most_kinetic_);
-    return lost_ <= large_besides * kinetic_;
+    Config w;
+    combine(w, {{1, &v1_}, {-1, &v_end_}});
+    const double kinetic = system_->energy(q1_, v1_).kinetic, besides = system_->energy(q1_, w).kinetic;
+    kinetic_ = std::max({kinetic, system_->energy(q_[1], v_[1]).kinetic, most_kinetic_});
+    lost_ = 0;
+    if (besides > small_besides * kinetic) lost_ = kinetic - system_->energy(q1_, v_end_).kinetic, v1_ = v_end_;
+    return besides <= large_besides * kinetic_;
   }
 
   /// The stages with what they stand for in the work of the step, and its end, which stands for nothing, for reactions.
