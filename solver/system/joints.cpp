@@ -132,7 +132,7 @@ void Joints::evaluate(Pass& p) const {
   for (size_t j = 0; j < list.size(); ++j) {
     if (!owned_[j]) continue;
     const Joint& c = list[j];
-    if (s.rates_alone && !c.velocity_rows && !s.step) continue;
+    if (s.rates_alone && (s.alpha_slope == 0 || !(c.velocity_rows || s.step))) continue;
     gradient(c, *s.left, left);
     if (p.K)
       gradient(c, *s.end, right);

@@ -185,7 +185,7 @@ void LinearRegions::add_work(const Moment& moment, Work& sum) const {
       sum.dissipated += s.chi / 2 * r.stiffness[j] * step * step;
     }
     const Eigen::VectorXd viscous = viscous_force(r, m, s);
-    for (int j = 0; j < m.n_modes && s.h > 0; ++j) sum.dissipated += viscous[j] * (amplitude(m, *s.w1, j) - amplitude(m, *s.w0, j)) / s.h;
+    for (int j = 0; j < m.n_modes && s.h > 0; ++j) sum.dissipated += s.share() * viscous[j] * (amplitude(m, *s.w1, j) - amplitude(m, *s.w0, j)) / s.h;
     if (r.A_damped.size() > 0 && s.v)
       sum.dissipated += (r.A_damped * rows_of(m, *s.v)).cwiseProduct(rows_of(m, *s.end) - rows_of(m, s.from())).sum();
   }

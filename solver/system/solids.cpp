@@ -242,7 +242,7 @@ double Solids::dissipation(const Stage& s) const {
   for (const SolidBatch& b : batches) {
     if (s.elapsed > 0) total += b.dissipated;
     add(b, *s.e0, *s.e1, s.chi / 2);
-    if (s.h > 0) add(b, *s.w0, *s.w1, b.beta / s.h);
+    if (s.h > 0) add(b, *s.w0, *s.w1, b.beta / s.h * s.share());
   }
   return total;
 }

@@ -52,12 +52,11 @@ void Springs::add_energy(const Config& q, const Config&, Energy& sum) const {
 }
 
 void Springs::add_work(const Moment& m, Work& sum) const {
-  const double share = m.s.span > 0 ? m.s.span / m.s.h : 1;
   for (size_t i = 0; i < list.size(); ++i) {
     if (!owned_[i] || m.s.h <= 0) continue;
     Response r;
     viscous(list[i], m.s, m.lambda, r);
-    sum.dissipated += share * r.dissipated, sum.external += share * r.supplied;
+    sum.dissipated += m.s.share() * r.dissipated, sum.external += m.s.share() * r.supplied;
   }
 }
 

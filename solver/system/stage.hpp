@@ -42,6 +42,8 @@ struct Stage {
     return x > 1e-12 || x < -1e-12 ? x : 0;  // w0 is the start of the step
   }
   double slope1() const { return slope + h * alpha_slope / 2; }
+  /// Of the rate terms' work over h, what belongs to the stage.
+  double share() const { return span > 0 ? span / h : 1; }
   bool conserving() const { return weight == 0.5 && e0 != e1; }
   const Config& from() const { return work_from ? *work_from : *e0; }
 };

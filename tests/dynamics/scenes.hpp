@@ -18,6 +18,29 @@ struct OrderCase {
   bool by_norm = false;  // force: the joint's frame is not the inertial one
 };
 
+struct Errors {
+  double x, v, a, force;
+};
+
+/// Root of the sum of squares over the instants: a single one may be where an error changes sign.
+inline Errors errors(const Workplace& w, const OrderCase& c, const std::string& options, double h) {
+  const Ran ran = w.run("hilo-solve --quiet " + c.scene + " -o run.h5 --set time.step=" + std::to_string(h) +
+                        " --set time.end=" + std::to_string(c.t[2] + 10 * h) + " --set solver.tolerance=1e-12 " + options);
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  if (ran.exit != 0) return {};
+  const Results r(w / "run.h5");
+  Errors e{};
+  for (int i = 0; i < 3; ++i) {
+    const auto p = r.at("probe/" + c.probe, c.t[i]);
+    const Vec3 force = r.at("joint/" + c.joint, c.t[i]).head<3>();
+    const Truth& truth = c.truth[i];
+    e.x += (p.head<3>() - truth.x).squaredNorm(), e.v += (p.segment<3>(3) - truth.v).squaredNorm();
+    e.a += (p.tail<3>() - truth.a).squaredNorm();
+    e.force += c.by_norm ? std::pow(force.norm() - truth.force.norm(), 2) : (force - truth.force).squaredNorm();
+  }
+  return {std::sqrt(e.x), std::sqrt(e.v), std::sqrt(e.a), std::sqrt(e.force)};
+}
+
 /// A number of a run's JSON file.
 inline double number_of(const Workplace& w, const std::string& file, const std::string& key) {
   const std::string text = text_of(w / file);

@@ -1,0 +1,204 @@
+// Gauss collocation (docs/gauss.md): orders against RK4 without joints or multipliers, what it keeps, its matrix of all stages against
+// differences, and what it refuses.
+#include <Eigen/Dense>
+
+#include "base/registry.hpp"
+#include "dynamics/integrator/make.hpp"
+#include "dynamics/scenes.hpp"
+#include "dynamics/start.hpp"
+#include "verify/block_mesh.hpp"
+
+namespace hilo::test {
+namespace {
+
+TEST(Gauss, IsOfOrderSixInPositionVelocityAccelerationAndReaction) {
+  const Workplace w;
+  for (OrderCase c : {pend3d(w), top(w), slider(w)}) {
+    const double h = c.scene == "top.toml" ? 4e-3 : c.scene == "slider.toml" ? 0.04 : 0.1;
+    const Errors coarse = errors(w, c, integrator("gauss"), h), fine = errors(w, c, integrator("gauss"), h / 2);
+    const auto order = [&](double Errors::*e) { return std::log2(coarse.*e / fine.*e); };
+    EXPECT_GT(order(&Errors::x), 5.5) << c.scene << " " << coarse.x << " " << fine.x;
+    EXPECT_GT(order(&Errors::v), 5.5) << c.scene << " " << coarse.v << " " << fine.v;
+    EXPECT_GT(order(&Errors::a), 5.5) << c.scene << " " << coarse.a << " " << fine.a;
+    EXPECT_GT(order(&Errors::force), 5.5) << c.scene << " " << coarse.force << " " << fine.force;
+  }
+}
+
+/// Two bodies that fly, joined by a revolute and by a spring whose force is not linear in what it measures.
+std::string fliers() {
+  return body("a", 2, {0.5, 0, 0}, {0.01, 0.17, 0.17}, "") + body("b", 1, {1, 0.4, 0}, {0.06, 0.01, 0.06}) +
+         joint("revolute", "mid", "a", "b", {1, 0, 0}, "axis = [0, 0, 1]\n") +
+         "[[spring]]\nkind = \"axial\"\nname = \"spring\"\na = \"a\"\nb = \"b\"\nat_a = [0, 0, 0.1]\nat_b = [1, 0.8, 0]\nstiffness = 500\n"
+         "length = 1.1\n"
+         "[[initial]]\non = [\"a\"]\nvelocity = [0.3, 1, -0.5]\nspin = [3, 1, 2]\nabout = [0, 0, 0]\n"
+         "[[initial]]\non = [\"b\"]\nspin = [-1, 2, 4]\nabout = [1, 0, 0]\n"
+         "[[probe]]\nname = \"tip\"\non = \"b\"\nat = [1, 0.8, 0]\n[time]\nend = 4\nstep = 0.01\nintegrator = \"gauss\"\n";
+}
+
+TEST(Gauss, KeepsEnergyMomentaAndJoints) {
+  const Workplace w;
+  w.write("scene.toml", fliers());
+  ASSERT_EQ(w.run("hilo-solve --quiet scene.toml -o run.h5").exit, 0);
+  const Results r(w / "run.h5");
+  const auto energy = r.history("energy"), momentum = r.history("momentum");
+  const Eigen::Index last = energy.rows() - 1;
+  double total = 0, scale = 0;
+  for (Eigen::Index i = 0; i <= last; ++i) {
+    total = std::max(total, std::abs(energy.row(i).head(3).sum() - energy.row(0).head(3).sum()));
+    scale = std::max(scale, energy(i, 0));
+  }
+  EXPECT_LT(total, 1e-11 * scale);
+  EXPECT_EQ(energy(last, 4), 0) << "nothing is taken away at this step";
+  for (int k = 0; k < 6; ++k) EXPECT_LT((momentum.col(k).array() - momentum(0, k)).abs().maxCoeff(), 1e-11 * momentum.row(0).norm()) << k;
+  EXPECT_LT(r.history("constraint").maxCoeff(), 1e-13);
+}
+
+// Energy that joints do not allow is taken where the step is too long for it to be small, and told: the account closes all the same.
+TEST(Gauss, TellsTheEnergyThatALongStepLoses) {
+  const Workplace w;
+  w.write("scene.toml", fliers());
+  ASSERT_EQ(w.run("hilo-solve --quiet scene.toml -o run.h5 --set time.step=0.16").exit, 0);
+  const auto energy = Results(w / "run.h5").history("energy");
+  const Eigen::Index last = energy.rows() - 1;
+  EXPECT_GT(energy(last, 4), 1e-8 * energy(0, 0));
+  EXPECT_LT(energy.col(5).cwiseAbs().maxCoeff(), 1e-11 * energy(0, 0));
+}
+
+// Truth: hilo's Radau at a hundredth of the step.  A driven angle, a rack, a universal and a constant-velocity joint have rows that are
+// functions of their measures; a wheel has rows of velocities.
+TEST(Gauss, IsOfOrderSixWithEveryKindOfRow) {
+  const Workplace w;
+  const std::string shaft = "gravity = [0, 9.81, 2]\n" + body("motor", 2, {0, 0, 0}, {0.02, 0.03, 0.04}) +
+                            body("shaft", 1, {0, 0, 1}, {0.05, 0.06, 0.02}) + body("end", 1, {0, 0.2, 2}, {0.05, 0.06, 0.02}) +
+                            joint("revolute", "drive", "ground", "motor", {0, 0, 0},
+                                  "axis = [0, 0, 1]\nangle = 2\nhistory = {t = [0, 1], value = [0, 1], interpolation = \"smoother\"}\n") +
+                            joint("universal", "cross", "motor", "shaft", {0, 0, 0.5}, "axis = [1, 0, 0]\nx = [0, 1, 0]\n") +
+                            joint("constant-velocity", "cv", "shaft", "end", {0, 0, 1.5}, "axis = [0, 0, 1]\n") +
+                            "[[probe]]\nname = \"tip\"\non = \"end\"\nat = [0.3, 0.2, 2]\n[time]\nend = 0.4\nstep = 1\n";
+  const std::string disc =
+      "gravity = [0, 0, -9.81]\n" + body("disc", 2, {0, 0, 0.3}, {0.05, 0.09, 0.05}) +
+      "[[joint]]\nkind = \"rolling\"\nname = \"road\"\na = \"ground\"\nb = \"disc\"\nat = [0, 0, 0.3]\naxis = [0, 0, 1]\n"
+      "radius = 0.3\naxle = [0, 1, 0]\n[[initial]]\non = [\"disc\"]\nspin = [0.4, 6, 0.5]\nabout = [0, 0, 0]\n"
+      "[[probe]]\nname = \"tip\"\non = \"disc\"\nat = [0.1, 0.1, 0.3]\n[time]\nend = 0.4\nstep = 1\n";
+  for (const auto& [name, text] : {std::pair<std::string, std::string>{"shaft", shaft}, {"disc", disc}}) {
+    w.write(name + ".toml", text);
+    const auto end = [&](const std::string& method, const std::string& h) {
+      const Ran ran = w.run("hilo-solve --quiet " + name + ".toml -o run.h5 --set solver.tolerance=1e-12 --set time.step=" + h + " " +
+                            integrator(method));
+      EXPECT_EQ(ran.exit, 0) << ran.err;
+      return Vec3(Results(w / "run.h5").at("probe/tip", 0.4).head<3>());
+    };
+    const Vec3 truth = end("radau", "0.0004");
+    const double coarse = (end("gauss", "0.04") - truth).norm(), fine = (end("gauss", "0.02") - truth).norm();
+    EXPECT_GT(std::log2(coarse / fine), 5.3) << name << " " << coarse << " " << fine;
+  }
+}
+
+TEST(Gauss, HoldsAtThreeRadiansAStep) {
+  const Workplace w;
+  top(w);
+  const Ran ran = w.run("hilo-solve --quiet top.toml -o run.h5 --set time.step=0.012 --set solver.cuts=0 " + integrator("gauss"));
+  EXPECT_EQ(ran.exit, 0) << ran.err << "1.8 rad a step: the audit refuses more than 2";
+}
+
+TEST(Gauss, RefusesWhatItDoesNotKnow) {
+  const Workplace w;
+  BlockOptions o;
+  write_mesh(w / "mesh.h5", block_mesh(o), {"test"});
+  w.write("cells.toml",
+          "mesh = \"mesh.h5\"\n[material.m]\nE = 1e6\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n[time]\nend = 1\nstep = "
+          "0.1\n");
+  Ran ran = w.run("hilo-solve cells.toml -o run.h5 " + integrator("gauss"));
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_NE(ran.err.find("gauss does not know nonlinear regions yet"), std::string::npos) << ran.err;
+  w.write("moved.toml", body("b", 1, Vec3::Zero(), Vec3::Ones()) +
+                            "[[motion]]\nkind = \"translation\"\nname = \"m\"\non = \"b\"\ndisplacement = [1, 0, 0]\n"
+                            "history = {t = [0, 1], value = [0, 1]}\n[time]\nend = 1\nstep = 0.1\n");
+  ran = w.run("hilo-solve moved.toml -o run.h5 " + integrator("gauss"));
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_NE(ran.err.find("[[motion]]"), std::string::npos) << ran.err;
+}
+
+/// Keeps the first matrix of all stages and answers with steps along a direction, 1, then 1/10.
+class Along final : public SerialKktSolver {
+ public:
+  Eigen::MatrixXd A;
+  Eigen::VectorXd d;
+  std::vector<Eigen::VectorXd> b;
+  static constexpr double step = 1e-7;
+  void structure(const Cliques& cliques, const BlockMap& map) override {
+    cliques_ = cliques;
+    const auto n = 3 * static_cast<Eigen::Index>(map.global.size());
+    A = Eigen::MatrixXd::Zero(n, n), d.resize(n);
+    for (Eigen::Index i = 0; i < n; ++i) d[i] = i % 30 == 26 ? 0 : std::sin(1.7 * static_cast<double>(i * i + 3));
+  }
+  void zero() override {
+    if (b.empty()) A.setZero();
+  }
+  void add(int, const double*) override {}
+  void add_part(int clique, int row, int column, int n, const double* K) override {
+    const auto blocks = cliques_[clique];
+    for (int i = 0; i < 3 * n && b.empty(); ++i)
+      for (int j = 0; j < 3 * n; ++j)
+        if (const int r = blocks[row + i / 3], c = blocks[column + j / 3]; r >= 0 && c >= 0)
+          A(3 * r + i % 3, 3 * c + j % 3) += K[3 * n * i + j];
+  }
+  void add_diagonal(int, const double*) override {}
+  void sum_shared(std::span<double>) override {}
+  SolveReport solve(std::span<const double> rhs, std::span<double> x, double) override {
+    b.emplace_back(Eigen::Map<const Eigen::VectorXd>(rhs.data(), static_cast<Eigen::Index>(rhs.size())));
+    const double along = b.size() == 1 ? step : -0.9 * step;
+    for (size_t i = 0; i < x.size(); ++i) x[i] = along * d[static_cast<Eigen::Index>(i)];
+    return {b.size() < 3, 0, 0, "enough"};
+  }
+  std::string name() const override { return "along"; }
+
+ private:
+  Cliques cliques_;
+};
+
+/// Refuses every solve, so that the matrix of all stages is tried.
+class Unwilling final : public KktSolver {
+ public:
+  void structure(const Cliques&, const BlockMap&) override {}
+  void zero() override {}
+  void add(int, const double*) override {}
+  void add_diagonal(int, const double*) override {}
+  void sum_shared(std::span<double>) override {}
+  SolveReport solve(std::span<const double>, std::span<double>, double) override { return {false, 0, 0, "unwilling"}; }
+  std::string name() const override { return "unwilling"; }
+};
+
+// Truth: differences of the residuals of all three stages.  Bodies turn by a third of a radian in the step; joints whose rows are their
+// measures, and rows of velocities, which are exact.
+TEST(Gauss, ItsMatrixIsTheDerivativeOfItsEquations) {
+  const std::string text =
+      body("a", 2, {0.5, 0, 0}, {0.01, 0.17, 0.16}) + body("b", 1, {1, 0.4, 0}, {0.06, 0.01, 0.05}) +
+      body("disc", 2, {3, 0, 0.3}, {0.05, 0.09, 0.05}) + joint("spherical", "top", "ground", "a", {0, 0, 0}) +
+      joint("revolute", "mid", "a", "b", {1, 0, 0}, "axis = [0, 0, 1]\n") +
+      "[[joint]]\nkind = \"rolling\"\nname = \"road\"\na = \"ground\"\nb = \"disc\"\nat = [3, 0, 0.3]\naxis = [0, 0, 1]\nradius = 0.3\n"
+      "[[load]]\nkind = \"force\"\nname = \"push\"\non = \"b\"\nforce = [3, 1, 2]\nat = [1, 0.5, 0.1]\n"
+      "[[initial]]\non = [\"a\", \"b\"]\nspin = [1, 2, 3]\nabout = [0, 0, 0]\n[[initial]]\non = [\"disc\"]\nspin = [3, 1, -2]\nabout = [3, "
+      "0, 0]\n"
+      "[time]\nend = 1\nstep = 0.1\nintegrator = \"gauss\"\n";
+  const Scene scene = Scene::parse(text, "scene.toml");
+  const auto system = build_system(scene, nullptr, Comm::world());
+  State s;
+  s.q = system->start, s.v = system->start_velocity;
+  s.lambda.assign(3 * system->n_joint_blocks(), 5.0);
+  system->commit(s.q, &s.v);
+  auto solver = std::make_unique<Along>();
+  Along& along = *solver;
+  Unwilling none;
+  const StepTools tools{*system, none, {1e-300, 25, false, 1e3}};
+  const auto gauss = make_gauss(std::move(solver));
+  gauss->solve(tools, s, 0.1, Predictor::velocity);
+  ASSERT_EQ(along.b.size(), 3u);
+  ASSERT_EQ(along.A.rows(), 90) << "ten blocks a stage: three bodies, and joints of 3, 5 (the sixth, 26, is no row) and 3 rows";
+  const Eigen::VectorXd product = along.A * along.d, difference = (along.b[1] - 100 * along.b[2] + 99 * along.b[0]) / (9 * Along::step);
+  const double scale = (along.A.cwiseAbs() * along.d.cwiseAbs()).maxCoeff();
+  for (Eigen::Index i = 0; i < product.size(); ++i) EXPECT_NEAR(product[i], difference[i], 2e-6 * scale) << "row " << i;
+}
+
+}  // namespace
+}  // namespace hilo::test
