@@ -55,15 +55,6 @@ Matrix square(const Eigen::Ref<const Vector>& pairs, Index n) {
   return out;
 }
 
-/// Work of the stress of amplitudes eta on strains of the second degree of the softest shapes, s.K_sigma s/2 [J]
-double third_degree(const LinearRegion& r, const Vector& eta, const Vector& s) {
-  double out = 0;
-  for (Index j = 0; j < s.size(); ++j)
-    for (Index i = 0; i <= j; ++i)
-      out += (i == j ? 0.5 : 1) * s[i] * s[j] * r.second_order.col(QuadraticStrain::pair(3 + i, 3 + j)).head(eta.size()).dot(eta);
-  return out;
-}
-
 }  // namespace
 
 RegionMeasures::Region& RegionMeasures::region(size_t k, const Config& q) const {
@@ -182,7 +173,6 @@ void RegionMeasures::add_end_values(const Config& q, const Config& v, std::vecto
     at.growth.look(growth, t_);
     const double pull = largest_share(at.stress, -eta);
     at.tension.look(pull < least_share ? 1 : (1 + pull) / (1 + std::min(pull, largest_share(at.axes, -eta))), t_);
-    at.third.look(std::abs(third_degree(r, eta, s)), t_);
     at.shortening.look(2 * std::numbers::sqrt3 * shortening(at, t_, s, r.soft.transpose() * amplitudes(m, v)) / std::sqrt(r.A(0, 0)), t_);
     out.push_back(quadratic), out.push_back(share), out.push_back(growth);
   }
@@ -190,7 +180,7 @@ void RegionMeasures::add_end_values(const Config& q, const Config& v, std::vecto
 
 /// What is told at the end, with what to do; a region that stiffens has strains of the second degree.
 void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
-  constexpr double much_lacking = 0.05, wide_band = 0.5, much_with_band = 0.02, much_quadratic = 0.1, much_growth = 1.1, much_third = 0.05,
+  constexpr double much_lacking = 0.05, wide_band = 0.5, much_with_band = 0.02, much_quadratic = 0.1, much_growth = 1.1,
                    much_shortening = 0.02;
   const auto& linear = system_.part<LinearRegions>();
   Table table;
@@ -202,7 +192,6 @@ void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::strin
     const Region& r = regions_[k];
     const double lacking = linear.lacking(k), band = linear.load_band(k),
                  quadratic = r.energy.value > 0 ? std::sqrt(r.quadratic.value / r.energy.value) : 0, share = r.share.value,
-                 third = r.energy.value > 0 ? r.third.value / r.energy.value : 0,
                  shortening = r.inertia.value > 0 ? r.shortening.value / r.inertia.value : 0;
     auto& row = table.rows.emplace_back(std::vector{name});
     int column = 0;
@@ -237,9 +226,9 @@ void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::strin
              fmt::format("bears {:.2g} of its buckling load at t = {:.4g} s: linear strains leave out that it gives way {} (stiffening = "
                          "true, or tag it nonlinear)",
                          share, r.share.t, share < 1 ? fmt::format("{:.3g} times as far", r.growth.value) : "without end"));
-    if (r.tension.value > much_growth && third > much_third)
+    if (r.tension.value > much_growth)
       leaves("tension", r.tension.value, much_growth, r.tension.t,
-             fmt::format("is pulled while it bends: linear strains leave out that this stiffens it, and bend it {:.3g} times as far at t = "
+             fmt::format("is pulled: linear strains leave out that this stiffens it, so that it bends {:.3g} times as far, at t = "
                          "{:.4g} s (stiffening = true, or tag it nonlinear)",
                          r.tension.value, r.tension.t));
     if (shortening > much_shortening)
