@@ -181,7 +181,7 @@ void RegionMeasures::add_end_values(const Config& q, const Config& v, std::vecto
 /// What is told at the end, with what to do; a region that stiffens has strains of the second degree.
 void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
   constexpr double much_lacking = 0.05, wide_band = 0.5, much_with_band = 0.02, much_quadratic = 0.1, much_growth = 1.1,
-                   much_shortening = 0.02;
+                   much_shortening = 0.012;
   const auto& linear = system_.part<LinearRegions>();
   Table table;
   table.header = {"linear region", "modes lack", "load band", "quadratic strain", "buckling", "tension", "shortening"};
