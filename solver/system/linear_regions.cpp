@@ -277,6 +277,14 @@ double LinearRegions::lacking(size_t k) const {
   return k < of_run_.size() && of_run_[k].energy > 0 ? std::sqrt(of_run_[k].left_out / of_run_[k].energy) : 0;
 }
 
+double LinearRegions::inertia(size_t k, const Moment& moment) const {
+  const LinearRegion& r = regions[k];
+  Rows a = Rows::Zero(r.A.rows(), 3);
+  if (moment.a) a = rows_of(points_.modes[r.modes], *moment.a);
+  a.row(0) -= (points_.gravity * moment.s.load_factor).transpose();
+  return std::sqrt(a.cwiseProduct(r.A * a).sum() / r.A(0, 0));
+}
+
 double LinearRegions::load_band(size_t k) const {
   if (k >= of_run_.size() || !(of_run_[k].loads > 0) || !(regions[k].held_frequency > 0)) return 0;
   return std::sqrt(of_run_[k].rates / of_run_[k].loads) / (2 * std::numbers::pi * regions[k].held_frequency);

@@ -51,6 +51,8 @@ class LinearRegions final : public Contribution {
   double lacking(size_t k) const;
   /// Frequency of what the modes left out answer to, root mean square over the run, over that of the first of them; 0 where there is none.
   double load_band(size_t k) const;
+  /// Acceleration of region k less gravity, root mean square over its mass [m/s^2].
+  double inertia(size_t k, const Moment& moment) const;
 
  private:
   const Points& points_;

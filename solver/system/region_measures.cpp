@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "base/table.hpp"
@@ -74,6 +75,7 @@ RegionMeasures::Region& RegionMeasures::region(size_t k, const Config& q) const 
   const RegionSupport support = support_of(system_, r, q);
   const Index S = r.soft.cols(), n = 3 + S, modes = m.n_modes;
   out.held = Matrix(r.soft.transpose() * r.stiffness.asDiagonal() * r.soft).inverse() - support.compliance;
+  out.compliance = support.compliance;
   if (out.second_order.size() == 0) {
     const Matrix forces = r.soft.transpose() * r.second_order.topRows(modes);
     out.second_order.resize(S, S * (S + 1) / 2);
@@ -103,18 +105,35 @@ RegionMeasures::Region& RegionMeasures::region(size_t k, const Config& q) const 
 
 void RegionMeasures::archive(Archive& a) {
   a("region measures", t_);
-  std::vector<double> kept;
-  for (const Region& r : regions_)
-    for (const Peak& p : {r.energy, r.quadratic, r.share, r.growth}) kept.push_back(p.value), kept.push_back(p.t);
-  a("peaks", kept);
-  for (Region& r : regions_) r.pose.clear();  // supports are found anew on either side
-  if (!a.restores()) return;
-  regions_.assign(kept.size() / 8, {});
+  std::vector<std::vector<double>> kept(regions_.size());
   for (size_t k = 0; k < regions_.size(); ++k) {
-    const double* at = kept.data() + 8 * k;
-    regions_[k].energy = {at[0], at[1]}, regions_[k].quadratic = {at[2], at[3]}, regions_[k].share = {at[4], at[5]};
-    regions_[k].growth = {at[6], at[7]};
+    Region& r = regions_[k];
+    for (const Peak* p : r.peaks()) kept[k].push_back(p->value), kept[k].push_back(p->t);
+    kept[k].push_back(r.t);
+    kept[k].insert(kept[k].end(), r.rate.begin(), r.rate.end());
+    r.pose.clear();  // supports are found anew on either side
   }
+  a("peaks", kept);
+  if (!a.restores()) return;
+  regions_.assign(kept.size(), {});
+  for (size_t k = 0; k < regions_.size(); ++k) {
+    const double* at = kept[k].data();
+    for (Peak* p : regions_[k].peaks()) p->value = *at++, p->t = *at++;
+    regions_[k].t = *at++;
+    regions_[k].rate.assign(at, static_cast<const double*>(kept[k].data() + kept[k].size()));
+  }
+}
+
+/// The acceleration of C f, in the norm of mass [m kg^0.5/s^2], by the change of df/dt over the step; 0 where there is no step before.
+double RegionMeasures::shortening(Region& at, double t, const Vector& s, const Vector& speed) {
+  Vector pairs(at.second_order.cols());
+  for (Index j = 0; j < s.size(); ++j)
+    for (Index i = 0; i <= j; ++i) pairs[QuadraticStrain::pair(i, j)] = s[i] * speed[j] + s[j] * speed[i];
+  const Vector rate = at.second_order * pairs;
+  const bool goes_on = t > at.t && at.rate.size() == static_cast<size_t>(rate.size());
+  const double out = goes_on ? (at.compliance * (rate - Eigen::Map<const Vector>(at.rate.data(), rate.size()))).norm() / (t - at.t) : 0;
+  at.rate.assign(rate.begin(), rate.end()), at.t = t;
+  return out;
 }
 
 std::vector<Output> RegionMeasures::outputs() const {
@@ -124,9 +143,14 @@ std::vector<Output> RegionMeasures::outputs() const {
   return out;
 }
 
-void RegionMeasures::add_mid_values(const Moment& m, std::vector<double>&) const { t_ = m.s.t_end; }
+void RegionMeasures::add_mid_values(const Moment& m, std::vector<double>&) const {
+  t_ = m.s.t_end;
+  const auto& linear = system_.part<LinearRegions>();
+  regions_.resize(linear.regions.size());
+  for (size_t k = 0; k < regions_.size(); ++k) regions_[k].inertia.look(linear.inertia(k, m), t_);
+}
 
-void RegionMeasures::add_end_values(const Config& q, const Config&, std::vector<double>& out) const {
+void RegionMeasures::add_end_values(const Config& q, const Config& v, std::vector<double>& out) const {
   const auto& list = system_.part<LinearRegions>().regions;
   for (size_t k = 0; k < list.size(); ++k) {
     const LinearRegion& r = list[k];
@@ -147,55 +171,77 @@ void RegionMeasures::add_end_values(const Config& q, const Config&, std::vector<
                                               : without_end;
     at.energy.look(energy, t_), at.quadratic.look(quadratic, t_), at.share.look(share, t_);
     at.growth.look(growth, t_);
+    const double pull = largest_share(at.stress, -eta);
+    at.tension.look(pull < least_share ? 1 : (1 + pull) / (1 + std::min(pull, largest_share(at.axes, -eta))), t_);
+    at.shortening.look(2 * std::numbers::sqrt3 * shortening(at, t_, s, r.soft.transpose() * amplitudes(m, v)) / std::sqrt(r.A(0, 0)), t_);
     out.push_back(quadratic), out.push_back(share), out.push_back(growth);
   }
 }
 
 /// What is told at the end, with what to do; a region that stiffens has strains of the second degree.
 void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
-  constexpr double much_lacking = 0.05, wide_band = 0.5, much_with_band = 0.02, much_quadratic = 0.1, much_growth = 1.1;
+  constexpr double much_lacking = 0.05, wide_band = 0.5, much_with_band = 0.02, much_quadratic = 0.1, much_growth = 1.1,
+                   much_shortening = 0.012;
   const auto& linear = system_.part<LinearRegions>();
   Table table;
-  table.header = {"linear region", "modes lack", "load band", "quadratic strain", "buckling"};
-  std::string lists[4];
+  table.header = {"linear region", "modes lack", "load band", "quadratic strain", "buckling", "tension", "shortening"};
+  std::string lists[6], beyond;
   for (size_t k = 0; k < regions_.size(); ++k) {
     const Modes& m = system_.modes[linear.regions[k].modes];
     const std::string& name = system_.bodies[m.body].name;
     const Region& r = regions_[k];
     const double lacking = linear.lacking(k), band = linear.load_band(k),
-                 quadratic = r.energy.value > 0 ? std::sqrt(r.quadratic.value / r.energy.value) : 0, share = r.share.value;
+                 quadratic = r.energy.value > 0 ? std::sqrt(r.quadratic.value / r.energy.value) : 0, share = r.share.value,
+                 shortening = r.inertia.value > 0 ? r.shortening.value / r.inertia.value : 0;
     auto& row = table.rows.emplace_back(std::vector{name});
     int column = 0;
-    for (const double x : {lacking, band, quadratic, share}) {
+    for (const double x : {lacking, band, quadratic, share, std::max(1.0, r.tension.value), shortening}) {
       lists[column] += fmt::format("{}{}: {:.3g}", lists[column].empty() ? "" : ", ", json_text(name), x), ++column;
       row.push_back(fmt::format("{:.2g}", x));
     }
+    const auto leaves = [&](const char* measure, double value, double limit, double t, const std::string& text) {
+      warn(name, text);
+      beyond += fmt::format("{}{{\"region\": {}, \"measure\": \"{}\", \"value\": {:.3g}, \"limit\": {:.3g}, \"t\": {}, \"said\": {}}}",
+                            beyond.empty() ? "" : ", ", json_text(name), measure, value, limit, t < 0 ? "null" : fmt::format("{:.6g}", t),
+                            json_text(text));
+    };
     if (lacking > much_lacking)
-      warn(name,
-           fmt::format("its modes lack {:.2g} of its largest strain (norm of energy): more modes, up_to a higher frequency, or tag it "
-                       "nonlinear",
-                       lacking));
+      leaves("modes_left_out", lacking, much_lacking, -1,
+             fmt::format("its modes lack {:.2g} of its largest strain (norm of energy): more modes, up_to a higher frequency, or tag it "
+                         "nonlinear",
+                         lacking));
     if (band > wide_band && lacking > much_with_band)
-      warn(name,
-           fmt::format("what its modes lack is driven at {:.2g} of the first frequency left out, {:.4g} Hz, where it swings along: more "
-                       "modes, or up_to a higher frequency",
-                       band, linear.regions[k].held_frequency));
-    if (quadratic > much_quadratic && !m.stiffens)
-      warn(name,
-           fmt::format("its supports stretch it as it bends: strains of the second degree are {:.2g} of its strain (norm of energy) at t = "
-                       "{:.4g} s, and linear ones leave them out (stiffening = true, or tag it nonlinear)",
-                       quadratic, r.quadratic.t));
-    if (r.growth.value > much_growth && !m.stiffens)
-      warn(name,
-           fmt::format("bears {:.2g} of its buckling load at t = {:.4g} s: linear strains leave out that it gives way {} (stiffening = "
-                       "true, or tag it nonlinear)",
-                       share, r.share.t, share < 1 ? fmt::format("{:.3g} times as far", r.growth.value) : "without end"));
+      leaves("load_band", band, wide_band, -1,
+             fmt::format("what its modes lack is driven at {:.2g} of the first frequency left out, {:.4g} Hz, where it swings along: more "
+                         "modes, or up_to a higher frequency",
+                         band, linear.regions[k].held_frequency));
+    if (m.stiffens) continue;
+    if (quadratic > much_quadratic)
+      leaves("quadratic_strain", quadratic, much_quadratic, r.quadratic.t,
+             fmt::format("its supports stretch it as it bends: strains of the second degree are {:.2g} of its strain (norm of energy) at t "
+                         "= {:.4g} s, and linear ones leave them out (stiffening = true, or tag it nonlinear)",
+                         quadratic, r.quadratic.t));
+    if (r.growth.value > much_growth)
+      leaves("buckling", r.growth.value, much_growth, r.share.t,
+             fmt::format("bears {:.2g} of its buckling load at t = {:.4g} s: linear strains leave out that it gives way {} (stiffening = "
+                         "true, or tag it nonlinear)",
+                         share, r.share.t, share < 1 ? fmt::format("{:.3g} times as far", r.growth.value) : "without end"));
+    if (r.tension.value > much_growth)
+      leaves("tension", r.tension.value, much_growth, r.tension.t,
+             fmt::format("is pulled: linear strains leave out that this stiffens it, so that it bends {:.3g} times as far, at t = "
+                         "{:.4g} s (stiffening = true, or tag it nonlinear)",
+                         r.tension.value, r.tension.t));
+    if (shortening > much_shortening)
+      leaves("shortening", shortening, much_shortening, r.shortening.t,
+             fmt::format("bends so fast that its ends come nearer with {:.3g} m/s^2 at t = {:.4g} s, {:.2g} of its largest acceleration: "
+                         "linear strains leave this out, and the forces along it that this asks for (stiffening = true, or tag it "
+                         "nonlinear)",
+                         r.shortening.value, r.shortening.t, shortening));
   }
   if (regions_.empty()) return;
-  report.emplace_back("modes_left_out", "{" + lists[0] + "}");
-  report.emplace_back("load_band", "{" + lists[1] + "}");
-  report.emplace_back("quadratic_strain", "{" + lists[2] + "}");
-  report.emplace_back("buckling", "{" + lists[3] + "}");
+  const char* names[] = {"modes_left_out", "load_band", "quadratic_strain", "buckling", "tension", "shortening"};
+  for (int i = 0; i < 6; ++i) report.emplace_back(names[i], "{" + lists[i] + "}");
+  report.emplace_back("beyond_linear", "[" + beyond + "]");
   if (!is_quiet()) fmt::print(stderr, "{}", table.text());
 }
 

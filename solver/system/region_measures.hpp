@@ -9,8 +9,16 @@
 //   load band          the frequency of what the modes left out answer to, over that of the first of them: beyond one half what
 //                      /history/left_out tells is too little
 //
+//   tension            how many times as far linear strains bend: (1 + p)/(1 + p_axes), p as u of the opposite stress
+//   shortening         what bends comes shorter by C f, quadratic in s, and what hangs on it is pulled along: the acceleration of that,
+//                      2 sqrt(3) times its root mean square over the region (of one that shortens evenly, that of end to end), over the
+//                      largest acceleration less gravity of the region.  After an impact small bends do this, by the square of their
+//                      frequency
+//
 // They take part in no equation.
 #pragma once
+#include <array>
+
 #include "system/linear_regions.hpp"
 #include "system/region_support.hpp"
 
@@ -43,9 +51,16 @@ class RegionMeasures final : public Contribution {
     Eigen::MatrixXd stress, axes;           // K_sigma of each mode on the softest motions, and without what is among the shapes (n n x m)
     Eigen::MatrixXd held;                   // K^-1 - C   (S x S)
     Eigen::MatrixXd second_order;           // of the softest shapes alone (S x pairs)
+    Eigen::MatrixXd compliance;             // C   (S x S)
+    std::vector<double> rate;               // df/dt at the end of the last step (S) [J s^-1 m^-1 kg^-0.5], which ended at
+    double t = 0;                           // [s]
     Peak energy, quadratic, share, growth;  // of strain, of quadratic strain [J]; load over buckling load; (1 - u_axes)/(1 - u)
+    Peak tension;                           // (1 + p)/(1 + p_axes)
+    Peak shortening, inertia;               // accelerations [m/s^2]
+    auto peaks() { return std::array{&energy, &quadratic, &share, &growth, &tension, &shortening, &inertia}; }
   };
   Region& region(size_t k, const Config& q) const;
+  static double shortening(Region& at, double t, const Eigen::VectorXd& s, const Eigen::VectorXd& speed);
   const System& system_;
   mutable std::vector<Region> regions_;
   mutable double t_ = 0;

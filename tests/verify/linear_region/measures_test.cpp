@@ -111,5 +111,52 @@ TEST_F(LinearMeasures, StrainsOfTheSecondDegreeAreThoseThatSupportsHold) {
   }
 }
 
+// A beam between pins, one of which can come nearer, is let go under gravity: a sine that swings by 1 - cos w t about delta = 4 g/(pi w^2)
+// and shortens by pi^2 (delta (1 - cos w t))^2/(4 L), whose largest acceleration is 16 g^2/(w^2 L).  Cells push the pin by m/2 times it,
+// the linear region does not push at all.  Products of the first and the third vibration, near the first one along the beam, add some.
+TEST_F(LinearMeasures, ABeamThatBendsFastTellsWhatItsShorteningPulls) {
+  const double w = pi * pi * std::sqrt(E * I / (1000 * A));
+  for (const double g : {20., 80.}) {
+    const double comes_nearer = 16 * g * g / (w * w * L);
+    double along[2] = {0, 0};
+    std::string said, json;
+    for (const Fidelity fidelity : {Fidelity::linear, Fidelity::nonlinear}) {
+      c.use(mesh, {fidelity});
+      std::ofstream(c / "scene.toml") << fmt::format(
+          "gravity = [0, 0, {}]\n[material.m]\nE = {}\nnu = 0\ndensity = 1000\n[region.block]\nmaterial = \"m\"\n{}[time]\nend = {}\nstep "
+          "= "
+          "{}\n[output]\ninterval = 1\nfields = [\"displacement\"]\n",
+          -g, E, pins, 2 * pi / w, 2 * pi / w / 100);
+      const Ran ran = c.run("hilo-solve scene.toml tags.h5 -o run.h5");
+      ASSERT_EQ(ran.exit, 0) << ran.err;
+      const auto force = c.results().history("joint/left");
+      along[fidelity == Fidelity::nonlinear] = force.col(1).cwiseAbs().maxCoeff();
+      if (fidelity == Fidelity::linear) said = ran.err, json = text_of(c / "run.json");
+    }
+    std::cout << g << " m/s^2: pushed by " << along[1] << " N with cells, " << along[0] << " N linear, " << 2.5 / 2 * comes_nearer
+              << " N by the closed form\n";
+    EXPECT_LT(along[0], 0.05 * along[1]);
+    EXPECT_NEAR(along[1] / (2.5 / 2 * comes_nearer), 1, 0.2);
+    const std::string before = "its ends come nearer with ";
+    const size_t at = said.find(before);
+    ASSERT_EQ(at != std::string::npos, g > 50) << said;
+    if (at == std::string::npos) continue;
+    EXPECT_NEAR(std::stod(said.substr(at + before.size())) / comes_nearer, 1, 0.25) << said;
+    EXPECT_NE(json.find("\"beyond_linear\": [{\"region\": \"block\", \"measure\": \"shortening\""), std::string::npos) << json;
+  }
+}
+
+// A beam that is pulled by the share p of Euler's load sags 1/(1 + p) times as far; linear strains leave this out and tell it.
+TEST_F(LinearMeasures, WhatIsPulledWhileItBendsTellsThatItStiffens) {
+  const double euler = pi * pi * E * I / (L * L);
+  sag_by = "gravity = [0, 0, -1]";
+  for (const double share : {0.02, 0.5}) {
+    const Answer linear = rest(pins + push(-share * euler), Fidelity::linear),
+                 cells = rest(pins + push(-share * euler), Fidelity::nonlinear);
+    EXPECT_NEAR(linear.sag / cells.sag / (1 + share), 1, 0.03);
+    EXPECT_EQ(linear.said.find("bends 1.5 times as far") != std::string::npos, share > 0.1) << linear.said;
+  }
+}
+
 }  // namespace
 }  // namespace hilo::test
