@@ -181,7 +181,7 @@ def summary():
             own = [r for r in rows if r["method"] == m]
             n, t = reached(own, "steps", 1e-4), reached(own, "processor time [s]", 1e-4)
             first = next((r for r in own if r["error"] and float(r["error"]) < 1e-4), None)
-            if n is None and first is own[0]:  # the coarsest step is good enough
+            if n is None and own and first is own[0]:  # the coarsest step is good enough
                 cells.append(f"< {first['steps']} / < {milliseconds(float(first['processor time [s]'] or 2e-3))}")
                 continue
             cells.append("" if n is None else f"{float(f'{n:.2g}'):.0f} / {'< 2' if t is None else milliseconds(t)}")

@@ -124,10 +124,12 @@ void nearest_velocities(const System& system, KktSolver& solver, const Config& q
   system.prescribe_rates(t, Side::left, &none, nullptr);
   std::vector<double> lambda(3 * system.n_joint_blocks(), 0.0), b, z(3 * system.n_blocks(), 0.0), rate;
   Residual r;
-  Stage inertia = mass_stage(system.start, v, t);  // without strain
+  Config free;
+  combine(free, {{1, &v}, {-1, &none}});
+  Stage inertia = mass_stage(system.start, free, t);  // without strain
   inertia.left = inertia.end = &q;
   inertia.rates_alone = true, inertia.load_factor = 0;
-  system.evaluate(inertia, lambda, r, nullptr);  // P^T M v
+  system.evaluate(inertia, lambda, r, nullptr);  // P^T M v of what is free
   b = r.r;
   system.mask_fixed(b);
   Config still;

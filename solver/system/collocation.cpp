@@ -1,6 +1,10 @@
 #include "system/collocation.hpp"
 
+#include <Eigen/LU>
 #include <cmath>
+
+#include "system/facet.hpp"
+#include "system/stage.hpp"
 
 namespace hilo {
 namespace {
@@ -14,6 +18,12 @@ Vector vector_of(const Values& x) { return Eigen::Map<const Vector>(x.data()); }
 Vectors ways_of(const MeasurePath& path) { return {vector_of(path.way[0]), vector_of(path.way[1]), vector_of(path.way[2])}; }
 
 }  // namespace
+
+Vec3 turned(const Stage& s, int body) {
+  const Mat3 &R = s.end->R[body], &R0 = s.from().R[body];
+  if (!s.step) return rotation_increment(R0, R);
+  return axial((R - R0) * R.inverse());  // b_i h w_i, directors are not orthonormal
+}
 
 MeasurePath::MeasurePath(const Connector& c, const Collocation& step) : e0(c.values(*step.start)), e1(e0) {
   for (int j = 0; j < Collocation::n; ++j) {

@@ -9,6 +9,8 @@
 
 namespace hilo {
 
+struct Stage;
+
 struct Collocation {
   static constexpr int n = 3;
   double a[n][n], b[n], c[n];              // the tableau
@@ -16,6 +18,11 @@ struct Collocation {
   const Config* start = nullptr;           // q0
   const Config *before[n]{}, *after[n]{};  // Q_j - h V_j/2, Q_j + h V_j/2
 };
+
+/// The vector of the skew part of M.
+inline Vec3 axial(const Mat3& M) { return Vec3(M(2, 1) - M(1, 2), M(0, 2) - M(2, 0), M(1, 0) - M(0, 1)) / 2; }
+/// By how much a body turns in what `s` stands for in the work of its step.
+Vec3 turned(const Stage& s, int body);
 
 /// The measures of a connector over the step.
 struct MeasurePath {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "system/collocation.hpp"
 #include "system/facet.hpp"
 
 namespace hilo {
@@ -116,10 +117,13 @@ void Loads::add_work(const Moment& m, Work& sum) const {
         sum.external += factor * load.weight[i] * load.value.dot(s.end->x[load.nodes[i]] - s.from().x[load.nodes[i]]);
     } else if (load.kind == Load::Kind::pressure) {
       for (const auto& nodes : load.facets) {
-        std::vector<Vec3> x0(nodes.size()), x1(nodes.size()), f(nodes.size());
-        for (size_t a = 0; a < nodes.size(); ++a) x0[a] = s.from().x[nodes[a]], x1[a] = s.end->x[nodes[a]];
+        std::vector<Vec3> x0(nodes.size()), x1(nodes.size()), f(nodes.size()), way(nodes.size());
+        for (size_t a = 0; a < nodes.size(); ++a) {
+          x0[a] = s.from().x[nodes[a]], x1[a] = s.end->x[nodes[a]], way[a] = x1[a] - x0[a];
+          if (s.step) x0[a] = x1[a];  // there it acts
+        }
         pressure_force(factor * load.pressure, x0, x1, f, nullptr);
-        for (size_t a = 0; a < nodes.size(); ++a) sum.external += f[a].dot(x1[a] - x0[a]);
+        for (size_t a = 0; a < nodes.size(); ++a) sum.external += f[a].dot(way[a]);
       }
     } else if (points_.counts(load.body)) {
       const int b = load.body;
@@ -127,7 +131,7 @@ void Loads::add_work(const Moment& m, Work& sum) const {
       if (load.kind == Load::Kind::body_force) {
         sum.external += f.dot(s.end->c[b] - s.from().c[b] + (s.end->R[b] - s.from().R[b]) * load.arm);
       } else {  // R1 - R0 = skew(w) (R0 + R1)/2 defines the rotation increment w
-        sum.external += f.dot(rotation_increment(s.from().R[b], s.end->R[b]));
+        sum.external += f.dot(turned(s, b));
       }
     }
   }

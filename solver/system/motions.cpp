@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "system/facet.hpp"
+#include "system/collocation.hpp"
 
 namespace hilo {
 
@@ -129,8 +129,7 @@ void Motions::add_work(const Moment& moment, Work& sum) const {
     if (!m.moving) continue;
     if (m.body >= 0) {
       if (points_.comm->rank == 0)
-        work += f.body[m.body].head<3>().dot(s.end->c[m.body] - from.c[m.body]) +
-                f.body[m.body].tail<3>().dot(rotation_increment(from.R[m.body], s.end->R[m.body]));
+        work += f.body[m.body].head<3>().dot(s.end->c[m.body] - from.c[m.body]) + f.body[m.body].tail<3>().dot(turned(s, m.body));
     } else {
       for (int n : m.nodes)
         for (int i = 0; i < 3; ++i)

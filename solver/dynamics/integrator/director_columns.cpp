@@ -1,12 +1,11 @@
 #include "dynamics/integrator/director_columns.hpp"
 
-#include <Eigen/LU>
+#include "dynamics/integrator/stage_directors.hpp"
+#include "dynamics/profile.hpp"
+#include "dynamics/state.hpp"
 
 namespace hilo {
 namespace {
-
-using Mat9 = Eigen::Matrix<double, 9, 9>;
-using Vec9 = Eigen::Matrix<double, 9, 1>;
 
 std::array<Mat3, 3> make_bases() {
   Mat3 signs = Mat3::Zero(), cycle = Mat3::Zero();
@@ -61,6 +60,53 @@ void DirectorColumns::add(int clique, const double* K) {
     }
     whole_.add_part(clique, n * row_, n * j, n, part_.data());
   }
+}
+
+void CoupledTangent::add(const System& system, SerialKktSolver& whole, const Stage (&stages)[3], const std::vector<double> (&lambda)[3],
+                         const Residual (&r)[3], const Eigen::Matrix3d& W, const std::function<Moves(int)>& moves) {
+  const double h = stages[0].h;
+  const std::array<Eigen::Matrix3d, 3> by{Eigen::Matrix3d::Identity(), W, W * W / (h * h)};  // positions, velocities, accelerations
+  for (int a = 0; a < 3; ++a) {
+    combine(bases_[a], {{0, stages[0].a}});
+    for (Mat3& R : bases_[a].R) R = director_bases[a];
+    system.follow(bases_[a]);
+  }
+  find_changes(system, by, moves);
+  for (int i = 0; i < 3; ++i)
+    for (int kind = 0; kind < 3; ++kind)
+      for (int base = 0; base < 3; ++base) {
+        Stage s = stages[i];
+        s.end = &bases_[base];
+        s.slope = s.chain = kind == 0, s.alpha_slope = kind == 1 ? 1 / h : 0, s.mass_slope = kind == 2;
+        s.rates_alone = kind > 0;
+        if (kind == 2) s.h = 0, s.step = nullptr, s.v = nullptr;
+        DirectorColumns::Change change;
+        for (int j = 0; j < 3; ++j) change.factor[j] = by[kind](i, j), change.directors[j] = &changes_[kind][i][j];
+        DirectorColumns columns(whole, system, body_of_, i, change, base, kind == 0 && base == 0, r[i].sigma, unused_.sigma);
+        system.evaluate(s, lambda[i], unused_, &columns);
+      }
+  phases().evaluations += 27, phases().tangents += 27;
+}
+
+/// Changes of directors, of their ways and second derivatives at stage i by turns of stage j.
+void CoupledTangent::find_changes(const System& system, const std::array<Eigen::Matrix3d, 3>& by, const std::function<Moves(int)>& moves) {
+  for (auto& kind : changes_)
+    for (auto& row : kind)
+      for (auto& part : row) part.resize(system.bodies.size());
+  body_of_.assign(system.first_joint_block(), -1);
+  for (const UnknownField& f : system.unknowns)
+    for (size_t k = 0; k < f.size() && f.turns(); ++k) {
+      const int b = body_of_[f.block(k)] = f.item[k];
+      const Moves N = moves(b);
+      for (int kind = 0; kind < 3; ++kind)
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) {
+            std::array<Mat3, 3> change;
+            for (int c = 0; c < 3; ++c)
+              change[c] = by[kind](i, 0) * N[0][3 * j + c] + by[kind](i, 1) * N[1][3 * j + c] + by[kind](i, 2) * N[2][3 * j + c];
+            changes_[kind][i][j][b] = director_sums(change);
+          }
+    }
 }
 
 }  // namespace hilo

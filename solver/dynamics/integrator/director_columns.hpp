@@ -5,6 +5,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "linear/kkt.hpp"
@@ -61,6 +62,24 @@ class DirectorColumns final : public KktSolver {
   double sigma_;
   const double& sigma_here_;
   std::vector<double> part_;
+};
+
+/// The matrix of three coupled stages.
+class CoupledTangent {
+ public:
+  /// Changes of the directors of stage i by the nine components of the turns of all stages.
+  using Moves = std::array<std::array<Mat3, 9>, 3>;
+  /// Adds it to `whole`, for stages of length h = Stage::h with W = A^-1, from three evaluations of each by positions, velocities and
+  /// accelerations; `moves`: of a body.
+  void add(const System& system, SerialKktSolver& whole, const Stage (&stages)[3], const std::vector<double> (&lambda)[3],
+           const Residual (&r)[3], const Eigen::Matrix3d& W, const std::function<Moves(int)>& moves);
+
+ private:
+  void find_changes(const System& system, const std::array<Eigen::Matrix3d, 3>& by, const std::function<Moves(int)>& moves);
+  std::array<Config, 3> bases_;                                                     // directors that turns are sums of
+  std::vector<int> body_of_;                                                        // of the block of a turn, or -1
+  std::array<std::array<std::array<std::vector<DirectorSums>, 3>, 3>, 3> changes_;  // by kind, row, column and body
+  Residual unused_;
 };
 
 }  // namespace hilo

@@ -14,7 +14,9 @@
 #include "base/error.hpp"
 #include "dynamics/integrator/coupled_stages.hpp"
 #include "dynamics/integrator/director_columns.hpp"
+#include "dynamics/integrator/given_stages.hpp"
 #include "dynamics/integrator/make.hpp"
+#include "dynamics/integrator/stage_directors.hpp"
 #include "dynamics/profile.hpp"
 #include "dynamics/start.hpp"
 #include "system/collocation.hpp"
@@ -29,8 +31,6 @@ Eigen::Matrix3d gauss_tableau() {
   A << 5. / 36, 2. / 9 - s / 15, 5. / 36 - s / 30, 5. / 36 + s / 24, 2. / 9, 5. / 36 - s / 24, 5. / 36 + s / 30, 2. / 9 + s / 15, 5. / 36;
   return A;
 }
-using Mat9 = Eigen::Matrix<double, 9, 9>;
-using Vec9 = Eigen::Matrix<double, 9, 1>;
 constexpr double weight[3] = {5. / 18, 4. / 9, 5. / 18};
 
 /// Takes the place of the tableau where one matrix serves all stages: an iteration shrinks the error of an oscillation to .253 or less at
@@ -41,9 +41,6 @@ Eigen::Matrix3d triangular() {
   T << d, 0, 0, 0.3192, d, 0, 0.0086, 0.3425, d;
   return T;
 }
-
-/// The vector of the skew part of M.
-Vec3 axial(const Mat3& M) { return Vec3(M(2, 1) - M(1, 2), M(0, 2) - M(2, 0), M(1, 0) - M(0, 1)) / 2; }
 
 class GaussIntegrator final : public CoupledStages {
  public:
@@ -69,6 +66,7 @@ class GaussIntegrator final : public CoupledStages {
     step_.t = s.t, step_.h = h, step_.start = &q0_;
     predictor_ = predictor;
     NewtonReport report;
+    if (!given_.find(system, step_, A_, q0_, v0_)) return report.reason = "a motion turns too far in a step", report;
     if (coupled_steps_ == 0) {
       is_coupled_ = false, guess(system, s);
       report = iterate_triangular(system, tools.solver, triangular(), tools.newton);
@@ -83,6 +81,7 @@ class GaussIntegrator final : public CoupledStages {
     if (!report.converged) return drop_matrix(), report;
     place(system);
     combine(q1_, {{1, &q0_}, {weight[0], &way_[0]}, {weight[1], &way_[1]}, {weight[2], &way_[2]}});
+    given_.put_end(q1_);
     restore_rotations(system, q1_);
     combine(v1_, {{1, &v0_}, {h * weight[0], &a_[0]}, {h * weight[1], &a_[1]}, {h * weight[2], &a_[2]}});
     if (!settle_velocities()) {
@@ -100,6 +99,7 @@ class GaussIntegrator final : public CoupledStages {
   void accept(State& s) override {
     State at{.t = end_time(), .q = q1_, .v = v_end_, .a = {}, .jerk = {}, .snap = {}, .lambda = {}};
     solve_acceleration(*system_, *end_solver_, at, a_end_, taken_.back().lambda);
+    if (given_.any()) system_->prescribe_rates(t_ + h_, Side::left, nullptr, &a_end_), system_->follow(a_end_);
     end(s), accepted();
     most_kinetic_ = kinetic_;
     s.t = t_ + h_;
@@ -130,7 +130,6 @@ class GaussIntegrator final : public CoupledStages {
     const auto refuse = [](const std::string& what, const std::string& hint) { throw Error("", "gauss does not know " + what, hint); };
     const std::string others = "take energy-momentum, or radau for references";
     if (!system.part<Solids>().batches.empty()) refuse("nonlinear regions yet", "make them linear or rigid, or " + others);
-    if (system.moves()) refuse("[[motion]] of what moves by a law yet", "drive a joint, or " + others);
   }
 
   /// The polynomials of the step before go on; without one, constant velocities, or none.
@@ -163,6 +162,7 @@ class GaussIntegrator final : public CoupledStages {
         turn_[i][b] = axial(way_[i].R[b] * (goes_on ? Mat3(q0_.R[b] + dq_[i].R[b]) : q0_.R[b]).inverse());
     }
     for (int i = 0; i < 3; ++i) {
+      given_.put(i, dq_[i], turn_[i]);
       increments(system, i, missed_[i]);
       if (const auto z = missed_before_[i].increments(system, h_); goes_on && !z.empty()) shift(system, i, z);
     }
@@ -194,136 +194,39 @@ class GaussIntegrator final : public CoupledStages {
         }
         Vec9 turned;
         for (int i = 0; i < 3; ++i) turned.segment<3>(3 * i) = of(i, f.block(k));
-        const Vec9 change = is_coupled_ ? turns_of(item).turns.partialPivLu().solve(turned) : nearly_turned(item, turned);
+        const StageDirectors directors = directors_of(item);
+        const std::array<Mat3, 3> R = {q_[0].R[item], q_[1].R[item], q_[2].R[item]};
+        const Vec9 change = is_coupled_ ? directors.spins(R, turned) : directors.nearly_spins(R, turned);
         for (int i = 0; i < 3; ++i) turn_[i][item] += change.segment<3>(3 * i);
       }
     place_directors(system);
-  }
-
-  Mat9 director_matrix(int b) const {
-    Mat9 K = Mat9::Identity();
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) K.block<3, 3>(3 * i, 3 * j) -= A_(i, j) * skew(turn_[j][b]);
-    return K;
-  }
-
-  /// What the angular velocities of a body change by when its directors turn, skew(t_i) R_i, were these orthonormal.
-  Vec9 nearly_turned(int b, const Vec9& t) const {
-    Mat3 dR[3];
-    Vec9 out;
-    for (int i = 0; i < 3; ++i) dR[i] = skew(t.segment<3>(3 * i)) * q_[i].R[b];
-    for (int i = 0; i < 3; ++i)
-      out.segment<3>(3 * i) = axial((W_(i, 0) * dR[0] + W_(i, 1) * dR[1] + W_(i, 2) * dR[2]) * q_[i].R[b].transpose() -
-                                    skew(turn_[i][b]) * skew(t.segment<3>(3 * i)));
-    return out;
-  }
-
-  /// How the directors of a body move by its angular velocities: dR_i - sum_j a_ij skew_j dR_j = sum_j a_ij skew(d w_j) R_j.
-  struct Turns {
-    Mat3 dR[3][9];  // of stage i, by the nine components
-    Mat9 turns;     // their skew parts, dR_i R_i^-1
-  };
-  Turns turns_of(int b) const {
-    const Eigen::PartialPivLU<Mat9> K(director_matrix(b));
-    Turns out;
-    Mat3 inverse[3];
-    for (int i = 0; i < 3; ++i) inverse[i] = q_[i].R[b].inverse();
-    for (int j = 0; j < 3; ++j)
-      for (int c = 0; c < 3; ++c) {
-        Eigen::Matrix<double, 9, 3> rhs;
-        for (int i = 0; i < 3; ++i) rhs.middleRows<3>(3 * i) = A_(i, j) * skew(Vec3::Unit(c)) * q_[j].R[b];
-        const Eigen::Matrix<double, 9, 3> dR = K.solve(rhs);
-        for (int i = 0; i < 3; ++i) {
-          out.dR[i][3 * j + c] = dR.middleRows<3>(3 * i);
-          out.turns.block<3, 1>(3 * i, 3 * j + c) = axial(out.dR[i][3 * j + c] * inverse[i]);
-        }
-      }
-    return out;
   }
 
   void evaluate(const System& system, SerialKktSolver* whole) override {
     for (int i = 0; i < 3; ++i) system.evaluate(stages_[i], lambda_[i], r_[i], nullptr);
     phases().evaluations += 3;
     if (!whole) return;
-    find_changes(system);
-    // by positions, by velocities, by accelerations
-    const Eigen::Matrix3d by[3] = {Eigen::Matrix3d::Identity(), W_, W_ * W_ / (h_ * h_)};
-    for (int i = 0; i < 3; ++i)
-      for (int kind = 0; kind < 3; ++kind)
-        for (int base = 0; base < 3; ++base) {
-          Stage s = stages_[i];
-          s.end = &bases_[base];
-          s.slope = s.chain = kind == 0, s.alpha_slope = kind == 1 ? 1 / h_ : 0, s.mass_slope = kind == 2;
-          s.rates_alone = kind > 0;
-          if (kind == 2) s.h = 0, s.step = nullptr, s.v = nullptr;
-          DirectorColumns::Change change;
-          for (int j = 0; j < 3; ++j) change.factor[j] = by[kind](i, j), change.directors[j] = &changes_[kind][i][j];
-          DirectorColumns columns(*whole, system, body_of_, i, change, base, kind == 0 && base == 0, r_[i].sigma, unused_.sigma);
-          system.evaluate(s, lambda_[i], unused_, &columns);
-        }
-    phases().evaluations += 27, phases().tangents += 27;
+    const auto moves = [&](int b) { return directors_of(b).moves_by_turns({q_[0].R[b], q_[1].R[b], q_[2].R[b]}); };
+    tangent_.add(system, *whole, stages_, lambda_, r_, W_, moves);
   }
 
-  /// Changes of directors, of their ways and second derivatives at stage i by turns of stage j.
-  void find_changes(const System& system) {
-    for (auto& kind : changes_)
-      for (auto& row : kind)
-        for (auto& part : row) part.resize(q0_.R.size());
-    body_of_.assign(system.first_joint_block(), -1);
-    combine(bases_[0], {{0, &q0_}});
-    for (int a = 0; a < 3; ++a) {
-      bases_[a] = bases_[0];
-      for (Mat3& R : bases_[a].R) R = director_bases[a];
-      system.follow(bases_[a]);
-    }
-    for (const UnknownField& f : system.unknowns)
-      for (size_t k = 0; k < f.size() && f.turns(); ++k) {
-        const int b = body_of_[f.block(k)] = f.item[k];
-        const Turns t = turns_of(b);
-        const Mat9 inverse = t.turns.inverse();
-        Mat3 N[3][9];  // dR_i by the nine components of the turns
-        for (int i = 0; i < 3; ++i)
-          for (int c = 0; c < 9; ++c) {
-            N[i][c].setZero();
-            for (int d = 0; d < 9; ++d) N[i][c] += inverse(d, c) * t.dR[i][d];
-          }
-        const auto put = [&](int kind, const Eigen::Matrix3d& by) {
-          for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) {
-              std::array<Mat3, 3> change;
-              for (int c = 0; c < 3; ++c) change[c] = by(i, 0) * N[0][3 * j + c] + by(i, 1) * N[1][3 * j + c] + by(i, 2) * N[2][3 * j + c];
-              changes_[kind][i][j][b] = director_sums(change);
-            }
-        };
-        put(0, Eigen::Matrix3d::Identity()), put(1, W_), put(2, W_ * W_ / (h_ * h_));
-      }
-  }
+  StageDirectors directors_of(int b) const { return {A_, {turn_[0][b], turn_[1][b], turn_[2][b]}}; }
 
-  /// Directors of the stages from the angular velocities, dR_i - sum_j a_ij skew_j dR_j = sum_j a_ij skew_j R0, and likewise the products
-  /// of amplitudes and directors, Y' = w x Y + eta' R^-T, for which R^T Y = eta I is kept.
+  /// Directors of the stages from the angular velocities, and the products of amplitudes and directors, Y' = w x Y + eta' R^-T, for which
+  /// R^T Y = eta I is kept.
   void place_directors(const System& system) {
-    Eigen::Matrix<double, 9, 3> rhs, dR;
     for (const UnknownField& f : system.unknowns)
       for (size_t k = 0; k < f.size() && f.turns(); ++k) {
         const int b = f.item[k];
-        const Eigen::PartialPivLU<Mat9> directors(director_matrix(b));
-        const auto solve = [&](const Mat3& start, const Mat3* besides) {
-          rhs.setZero();
-          for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j)
-              rhs.middleRows<3>(3 * i) += A_(i, j) * (skew(turn_[j][b]) * start + (besides ? besides[j] : Mat3(Mat3::Zero())));
-          dR = directors.solve(rhs);
-        };
-        solve(q0_.R[b], nullptr);
-        for (int i = 0; i < 3; ++i) dq_[i].R[b] = dR.middleRows<3>(3 * i);
-        if (system.modes_of.empty() || system.modes_of[b] < 0) continue;
-        const Modes& m = system.modes[system.modes_of[b]];
-        for (int y = 3 * m.first; y < 3 * (m.first + m.n_blocks); ++y) {
-          Mat3 grown[3];
-          for (int i = 0; i < 3; ++i) grown[i] = way_of_amplitude(i, y) * upright(i, b);
-          solve(q0_.Y[y], grown);
-          for (int i = 0; i < 3; ++i) dq_[i].Y[y] = dR.middleRows<3>(3 * i);
-        }
+        const auto dR = directors_of(b).grow(q0_.R[b]);
+        for (int i = 0; i < 3; ++i) dq_[i].R[b] = dR[i];
+      }
+    for (const Modes& m : system.modes)
+      for (int y = 3 * m.first; y < 3 * (m.first + m.n_blocks); ++y) {
+        std::array<Mat3, 3> more;
+        for (int i = 0; i < 3; ++i) more[i] = way_of_amplitude(i, y) * upright(i, m.body);
+        const auto dY = directors_of(m.body).grow(q0_.Y[y], &more);
+        for (int i = 0; i < 3; ++i) dq_[i].Y[y] = dY[i];
       }
     for (int i = 0; i < 3; ++i) {
       system.follow(dq_[i]);
@@ -370,21 +273,24 @@ class GaussIntegrator final : public CoupledStages {
     combine(before, {{1, &q}, {-h_ / 2, &v}}), combine(after, {{1, &q}, {h_ / 2, &v}});
   }
 
-  double end_time() const { return t_ + (1 - 1e-9) * h_; }
+  double end_time() const { return t_ + h_ - 3 * system_->same_time; }  // before what jumps there
 
   /// The joints allow v_end; v1 has a part w besides, orthogonal in the mass norm, which is of order h^4, alternates from step to step and
   /// has its energy from the motion.  Where it is no longer small, it goes, and its energy with it [ascher-petzold-1991]; false where it is
   /// large.
   bool settle_velocities() {
     if (!end_solver_) end_solver_ = make_light_solver(), end_solver_->structure(system_->cliques, system_->map);
+    lost_ = given_.any() ? system_->energy(q1_, v1_).kinetic : 0;
+    given_.put_rates(v1_);
+    if (given_.any()) lost_ -= system_->energy(q1_, v1_).kinetic;
     v_end_ = v1_;
     nearest_velocities(*system_, *end_solver_, q1_, v_end_, end_time());
+    given_.put_rates(v_end_);
     Config w;
     combine(w, {{1, &v1_}, {-1, &v_end_}});
     const double kinetic = system_->energy(q1_, v1_).kinetic, besides = system_->energy(q1_, w).kinetic;
     kinetic_ = std::max({kinetic, system_->energy(q_[1], v_[1]).kinetic, most_kinetic_});
-    lost_ = 0;
-    if (besides > small_besides * kinetic) lost_ = kinetic - system_->energy(q1_, v_end_).kinetic, v1_ = v_end_;
+    if (besides > small_besides * kinetic) lost_ += kinetic - system_->energy(q1_, v_end_).kinetic, v1_ = v_end_;
     return besides <= large_besides * kinetic_;
   }
 
@@ -413,11 +319,9 @@ class GaussIntegrator final : public CoupledStages {
   Config q0_, v0_, q1_, v1_, a_end_, v_end_, before_end_, after_end_;
   std::array<Config, 3> dq_, q_, way_, v_, a_, before_, after_, from_, past_a_;  // way: h V
   std::array<std::vector<double>, 3> past_lambda_;
-  std::array<std::vector<Vec3>, 3> turn_;                                           // h w of each body
-  std::array<Config, 3> bases_;                                                     // directors that turns are sums of
-  std::vector<int> body_of_;                                                        // of the block of a turn, or -1
-  std::array<std::array<std::array<std::vector<DirectorSums>, 3>, 3>, 3> changes_;  // by kind, row, column and body
-  Residual unused_;
+  std::array<std::vector<Vec3>, 3> turn_;  // h w of each body
+  CoupledTangent tangent_;
+  GivenStages given_;
   Predictor predictor_ = Predictor::hold;  // of the step solved last
   std::array<Extrapolation, 3> missed_before_;
   std::array<std::vector<double>, 3> missed_;  // by the first guess

@@ -91,6 +91,7 @@ TEST_F(Motions, OfASetOfABarThatMovesAlongLeaveItWithoutStress) {
   const std::string along = "[[initial]]\non = [\"bar\"]\nvelocity = [1, 0, 0]\n";
   for (const std::string components : {"", "components = [\"x\"]\n"})
     for (const std::string& kind : integrators()) {
+      if (kind == "gauss") continue;  // no nonlinear regions
       SCOPED_TRACE(kind + components);
       write("scene.toml", steel + moved_root + components + along);
       for (const int ranks : {1, 2}) {
@@ -143,6 +144,7 @@ step = 0.01
 )";
   write("scene.toml", swing);
   for (const std::string& kind : integrators()) {
+    if (kind == "gauss") continue;  // no nonlinear regions
     SCOPED_TRACE(kind);
     const Results r = solved(with(kind), "mesh.h5");
     EXPECT_LT(r.history("probe/tip").col(2).minCoeff(), -0.1);
