@@ -68,14 +68,17 @@ std::string table_of(const Options& o, const std::vector<SensorRecord>& sensors)
   constexpr const char* part[] = {"x", "y", "z", "res"};
   for (const char* a : part) table.header.push_back(fmt::format("raw_{}", a));
   for (const char* a : part) table.header.push_back(fmt::format("cfc{:g}_{}", o.cfc, a));
-  table.header.insert(table.header.end(), {"t_res", "clip_3ms"});
+  table.header.insert(table.header.end(), {"t_res", "clip_3ms", "band", "above"});
   for (const SensorRecord& s : sensors) {
     std::vector<std::string> row{s.name};
-    for (const auto& x : s.raw) row.push_back(fmt::format("{:.3f}", x[peak_index(x)]));
+    for (size_t a = 0; a < 4; ++a)
+      row.push_back(fmt::format("{:.3f}{}", s.raw[a][peak_index(s.raw[a])], !o.json && is_above(s.peak, a) ? "*" : ""));
     for (const auto& x : s.filtered) row.push_back(fmt::format("{:.3f}", x[peak_index(x)]));
     row.push_back(fmt::format("{:.5f}", s.uniform[peak_index(s.filtered[3])]));
     const double clip = clip_level(s.uniform, s.filtered[3]);
     row.push_back(std::isfinite(clip) ? fmt::format("{:.3f}", clip) : "-");
+    row.push_back(s.peak[3].band > 0 ? fmt::format("{:.4g}", s.peak[3].band) : "-");
+    row.push_back(s.peak[3].band > 0 ? fmt::format("{:.2f}", s.peak[3].above) : "-");
     table.rows.push_back(row);
   }
   return o.json ? table.json("") + "\n" : table.text();
@@ -88,11 +91,13 @@ void run(const Options& o) {
   if (!o.png.empty()) write_png(o, file);
   const bool in_files = !o.csv.empty() || !o.png.empty();
   if (o.csv != "-" && (o.json || !in_files || !is_quiet())) write_out("-", table_of(o, sensors));
+  warn_of_band(sensors, o.cfc);
   if (!is_quiet() && !o.json)
     fmt::print(
         stderr,
         "Peaks in g with their sign (t_res in s); proper acceleration, +1 upward at rest.  CFC {:g}: SAE J211-1, forwards and backwards,\n"
-        "ends continued by point reflection.  clip_3ms: cumulative, of the filtered resultant.{}\n",
+        "ends continued by point reflection.  clip_3ms: cumulative, of the filtered resultant.  band: the most that step and mesh resolve\n"
+        "to 1 % where the raw resultant is largest [Hz]; above: the share of that peak above it.{}\n",
         o.cfc, file.complete ? "" : "  The run is not complete.");
 }
 

@@ -79,6 +79,7 @@ void run(const Options& o) {
   if (!o.eiband.empty()) write_eiband(crew, o.cfc, file.title, o.eiband);
   const bool in_files = !o.csv.empty() || !o.page.empty() || !o.eiband.empty();
   if (o.csv != "-" && (o.json || !in_files || !is_quiet())) write_out("-", o.json ? table_of(crew, false).json("") + "\n" : text_of(crew));
+  warn_of_band(file.records, o.cfc);
   if (!is_quiet() && !o.json)
     fmt::print(stderr,
                "Proper acceleration in the sensors' axes (x forward, y left, z up), less what was felt at the start (1 g upward at rest);\n"

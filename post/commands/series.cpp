@@ -12,6 +12,7 @@
 #include "post/commands/commands.hpp"
 #include "post/files/csv.hpp"
 #include "post/files/output.hpp"
+#include "post/injury/resolved_band.hpp"
 #include "post/picture/picture.hpp"
 #include "post/run/columns.hpp"
 #include "post/run/expression.hpp"
@@ -111,12 +112,39 @@ void list(const Options& o, const RunFile& run) {
   write_out("-", o.json ? table.json("") + "\n" : table.text());
 }
 
+/// Of peaks of forces and accelerations that say more of step and mesh than of the scene, beside what their history has in the same unit.
+void warn_of_band(const RunFile& run, const std::vector<Column>& columns) {
+  const ResolvedBand band = resolved_band(run);
+  constexpr std::string_view kinds[] = {"N", "N m", "m/s^2", "g"};
+  size_t count = 0;
+  double worst = 0;
+  std::string what;
+  for (const Column& c : columns) {
+    if (std::ranges::find(kinds, c.unit) == std::end(kinds)) continue;
+    const RawPeak peak = raw_peak(band, c.t, c.value);
+    if (peak.above <= much_above) continue;
+    double size = std::abs(peak.value);
+    const std::string history = c.label.substr(0, c.label.rfind('.'));
+    if (const auto all = run.series_names(); std::ranges::find(all, history) != all.end()) {
+      const Series s = run.series(history);
+      for (size_t k = 0; k < s.value.size(); ++k)
+        if (s.unit[k % s.unit.size()] == c.unit) size = std::max(size, std::abs(s.value[k]));
+    }
+    const double share = peak.above * std::abs(peak.value) / size;
+    if (share <= much_above) continue;
+    if (++count; share > worst)
+      worst = share, what = fmt::format("{}, peak of {:.4g} {} at {:.4g} s: {}", c.label, peak.value, c.unit, peak.t, told(peak));
+  }
+  if (count > 0) warn(run.path, count == 1 ? what : fmt::format("{}; so have {} columns more", what, count - 1));
+}
+
 void run(const Options& o) {
   const RunFile file(o.run);
   if (o.list) return list(o, file);
   if (o.names.empty())
     throw Error("series", "which histories?", "give names or globs, such as energy or \"joint.*\", or --list", Exit::usage);
   const Picked picked = pick(o, file);
+  warn_of_band(file, picked.y);
   if (!o.png.empty()) write_png(o, file, picked);
   if (!o.csv.empty() || o.png.empty()) write_csv(o.csv.empty() ? "-" : o.csv, picked);
 }

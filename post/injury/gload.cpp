@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "base/error.hpp"
 #include "base/units.hpp"
@@ -89,11 +90,13 @@ Sensors from_csv(const std::string& path, const std::vector<std::string>& globs)
 
 Sensors read_sensors(const std::string& path, const std::vector<std::string>& globs, double cfc) {
   Sensors out;
+  std::optional<ResolvedBand> band;
   if (path.ends_with(".csv")) {
     out = from_csv(path, globs);
   } else {
     const RunFile run(path);
     out = {run.path, run.title, run.complete, {}};
+    band = resolved_band(run);
     for (const std::string& name : sensor_names(run, globs)) {
       const Series series = run.series("sensor." + name);
       SensorRecord s{name, series.t, {}, {}, {}, fmt::format("{}: sensor \"{}\"", run.path, name)};
@@ -102,8 +105,33 @@ Sensors read_sensors(const std::string& path, const std::vector<std::string>& gl
       out.records.push_back(std::move(s));
     }
   }
-  for (SensorRecord& s : out.records) filter(s, cfc);
+  for (SensorRecord& s : out.records) {
+    filter(s, cfc);
+    for (size_t axis = 0; axis < 4 && band; ++axis) {
+      RawPeak& raw = s.peak[axis] = raw_peak(*band, s.t, s.raw[axis]);
+      s.filtered_peak[axis] = raw_peak(*band, s.uniform, s.filtered[axis], raw.h);
+    }
+  }
   return out;
+}
+
+bool is_above(const std::array<RawPeak, 4>& peaks, size_t axis) {
+  return peaks[axis].above * std::abs(peaks[axis].value) > much_above * peaks[3].value;
+}
+
+void warn_of_band(const std::vector<SensorRecord>& sensors, double cfc) {
+  for (const SensorRecord& s : sensors) {
+    const auto warns = [&](const std::string& which, const std::array<RawPeak, 4>& peaks, const char* advice) {
+      constexpr const char* axis[] = {"x", "y", "z", "resultant"};
+      for (const size_t a : {3, 2, 1, 0})
+        if (is_above(peaks, a))
+          return warn(s.where, fmt::format("{} peak of {}, {:.3g} g: {}: {}", which, axis[a], peaks[a].value, told(peaks[a]), advice)),
+                 true;
+      return false;
+    };
+    if (!warns(fmt::format("CFC {:g}", cfc), s.filtered_peak, "take a lower class, or another step or mesh"))
+      warns("raw", s.peak, "quote the filtered one");
+  }
 }
 
 size_t peak_index(const std::vector<double>& x) {

@@ -88,6 +88,8 @@ std::vector<ArraySchema>& arrays() {
       {"run.h5", "/body/name", "string", "(n_bodies)", "", "rigid bodies and patches: regions joined by +"},
       {"run.h5", "/body/points", "f8", "(n_bodies, 4, 3)", "m",
        "reference positions of the points of each body: centre of mass and three along the principal axes"},
+      {"run.h5", "/resolved", "f8", "(n_regions)", "Hz",
+       "highest frequency whose shear waves the cells of a region run to 1 % and its modes hold; infinite for a rigid one"},
       {"run.h5", "/body/mass", "f8", "(n_bodies)", "kg", "mass (0 for a patch)"},
       {"run.h5", "/body/inertia", "f8", "(n_bodies, 3)", "kg m^2", "principal moments, rising, about the axes of its points"},
       {"run.h5", "/body/follower_node", "i8", "(n_followers)", "", "dependent nodes: their positions follow from a body"},

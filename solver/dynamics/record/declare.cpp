@@ -7,7 +7,7 @@
 
 namespace hilo {
 
-void Recorder::declare_run(Store& f) const {
+void Recorder::declare_run(Store& f, const std::vector<double>& resolved) const {
   f.set("/", "format", std::string("hilo run"));
   f.set("/", "version", std::int64_t{1});
   f.set("/", "complete", std::int64_t{0});
@@ -20,6 +20,9 @@ void Recorder::declare_run(Store& f) const {
     std::vector<std::string> words;
     for (Fidelity level : m.fidelity) words.emplace_back(word(level));
     f.write_strings("/tags/fidelity", words);
+    write_array(f, "/resolved", resolved, {static_cast<std::int64_t>(resolved.size())});
+    const auto lowest = std::min_element(resolved.begin(), resolved.end());
+    f.set("/resolved", "region", m.mesh.region_name[lowest - resolved.begin()]);
   }
 }
 

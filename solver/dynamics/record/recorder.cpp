@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "dynamics/profile.hpp"
+#include "system/resolved.hpp"
 #include "system/solids.hpp"
 
 namespace hilo {
@@ -38,8 +39,9 @@ void Recorder::open(bool again) {
     });
   else
     file_.create();
+  const std::vector<double> resolved = resolved_frequencies(system_);
   file_.on_store([&](Store& f) {
-    declare_run(f), declare_bodies(f);
+    declare_run(f, resolved), declare_bodies(f);
     if (!again) histories_.declare(f);
   });
   if (mesh_) mesh_->declare();

@@ -59,7 +59,7 @@ class Recorder {
   };
   void open(bool again);
   void commit(RunOutput::When when);
-  void declare_run(Store& f) const;
+  void declare_run(Store& f, const std::vector<double>& resolved) const;
   void declare_bodies(Store& f) const;
   void advance(bool last);
   std::vector<std::pair<double, const Interval*>> extrapolated(const std::vector<const Interval*>& m, bool from_right) const;
