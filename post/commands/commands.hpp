@@ -13,6 +13,7 @@ struct Command {
   std::function<void()> run;
 };
 
+Command at_command(CLI::App& app);
 Command render_command(CLI::App& app);
 Command movie_command(CLI::App& app);
 Command model_command(CLI::App& app);

@@ -23,7 +23,8 @@ const std::map<std::string, std::set<std::string>> may_include{
     {"dynamics", {"base", "model", "physics", "linear", "system", "dynamics"}},
     {"main", {"base", "model", "physics", "linear", "system", "dynamics"}},
     {"tools", {"base", "model"}},
-    {"post", {"base", "model"}},
+    // values at points: the shape functions, which know base alone
+    {"post", {"base", "model", "physics/shape/shapes.hpp"}},
 };
 const std::set<std::string> floors{"base", "model", "physics", "linear", "system", "dynamics"};
 
