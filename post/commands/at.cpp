@@ -112,6 +112,9 @@ struct Shown {
   }
 };
 
+/// Of all steps at once.
+bool is_envelope(const std::string& name) { return name.find("_envelope") != name.npos; }
+
 Shown shown(const std::string& name, const std::vector<std::string>& known) {
   if (is_named_field(name)) throw Error("FIELD", fmt::format("{} is a name, not a number", name), "", Exit::usage);
   if (name == "stress") {
@@ -121,7 +124,7 @@ Shown shown(const std::string& name, const std::vector<std::string>& known) {
     return s;
   }
   Shown s{shown_field(name, known), {name}};
-  if (s.field.component < 0 && (s.field.unit.starts_with("m")))  // a vector
+  if (s.field.component < 0 && s.field.unit.starts_with("m") && !is_envelope(name))  // a vector
     s.columns = {name + ".x", name + ".y", name + ".z", name};
   return s;
 }
@@ -131,7 +134,7 @@ void run(const Options& o) {
     throw Error("at", "where?", "give one of --node N, --point x,y,z and --line x,y,z x,y,z", Exit::usage);
   RunFile run(o.run);
   const MeshFile& file = run.mesh_file();
-  const auto steps = run.select_steps(o.steps, o.times);
+  const auto steps = run.select_steps(is_envelope(o.field) ? "last" : o.steps, is_envelope(o.field) ? "" : o.times);
   const Shown shown = hilo::shown(o.field, run.fields(steps.front()));
   std::vector<bool> wanted = shown_regions(file.mesh, o.show, o.hide);
   for (size_t r = 0; r < wanted.size(); ++r)
@@ -182,7 +185,7 @@ Command at_command(CLI::App& app) {
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("field", o->field,
                   "von_mises, stress_error, plastic_strain, stress, acceleration, displacement, velocity, or a component: stress.xx, "
-                  "velocity.z")
+                  "velocity.z; von_mises_envelope of a run with output.envelope")
       ->required();
   sub->add_option("--node", o->node, "number of a node, as peak tells it (from 0)")->check(CLI::NonNegativeNumber);
   sub->add_option("--point", o->point, "x,y,z in m of a material point: where it is in the mesh, before it moves");

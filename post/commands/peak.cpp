@@ -32,8 +32,17 @@ void run(const Options& o) {
   std::vector<bool> shown = shown_regions(mesh, o.show, o.hide);
   for (size_t r = 0; r < shown.size(); ++r)
     if (field.flexible_only && file.fidelity[r] == Fidelity::rigid) shown[r] = false;
-  const auto peaks =
-      field_peaks(run, steps, shown, [&](const Step& step) { return reduced(run.field(step, field.array), field, run.path); });
+  // over all steps of the run, where it has that and nothing less was asked for
+  const std::string envelope = o.field + "_envelope";
+  const bool of_all = o.steps == "all" && o.times.empty() && run.has_field(steps.back(), envelope);
+  auto peaks =
+      of_all ? field_peaks(run, {steps.back()}, shown, [&](const Step& step) { return run.field(step, envelope).value; })
+             : field_peaks(run, steps, shown, [&](const Step& step) { return reduced(run.field(step, field.array), field, run.path); });
+  if (of_all) {
+    const auto t = run.field(steps.back(), envelope + "_time").value;
+    for (FieldPeak& p : peaks)
+      if (p.node >= 0) p.t = t.at(static_cast<size_t>(p.node));
+  }
   double largest = 0;
   for (const FieldPeak& p : peaks) largest = std::max(largest, std::abs(p.value));
   const ShownUnit unit = o.unit.empty() ? handy_unit(field.unit, largest) : wanted_unit(field.unit, o.unit);
@@ -53,7 +62,10 @@ void run(const Options& o) {
 }  // namespace
 
 Command peak_command(CLI::App& app) {
-  auto* sub = app.add_subcommand("peak", "largest value of a field in every region over the steps written, with place and time");
+  auto* sub = app.add_subcommand(
+      "peak",
+      "largest value of a field in every region over the steps written, with place and time; over all steps where the run has "
+      "output.envelope");
   const auto o = std::make_shared<Options>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("--field", o->field,

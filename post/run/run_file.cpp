@@ -114,17 +114,32 @@ void RunFile::read_skin() {
 void RunFile::close() { store_.reset(); }
 void RunFile::open() { store_ = Store::open(path); }
 
+namespace {
+
+/// von_mises_envelope is /envelope/von_mises at every step, von_mises_envelope_time is /envelope/von_mises_time.
+std::string array_of(const Step& step, const std::string& name) {
+  constexpr std::string_view word = "_envelope";
+  const auto at = name.find(word);
+  if (at == name.npos) return fmt::format("/field/{}/{}", step.key, name);
+  return "/envelope/" + name.substr(0, at) + name.substr(at + word.size());
+}
+
+}  // namespace
+
 std::vector<std::string> RunFile::fields(const Step& step) const {
   if (!bodies_.empty()) return {"displacement"};
-  return store_->list("/field/" + step.key);
+  std::vector<std::string> names = store_->list("/field/" + step.key);
+  for (const std::string& of : store_->list("/envelope"))
+    names.push_back(of.ends_with("_time") ? of.substr(0, of.size() - 5) + "_envelope_time" : of + "_envelope");
+  return names;
 }
 
 bool RunFile::has_field(const Step& step, const std::string& name) const {
-  return bodies_.empty() ? store_->has("/field/" + step.key + "/" + name) : name == "displacement";
+  return bodies_.empty() ? store_->has(array_of(step, name)) : name == "displacement";
 }
 
 RunFile::Field RunFile::field(const Step& step, const std::string& name) const {
-  const std::string array = fmt::format("/field/{}/{}", step.key, name);
+  const std::string array = array_of(step, name);
   const auto names = fields(step);
   if (!has_field(step, name)) {
     std::string hint = suggest(name, names);

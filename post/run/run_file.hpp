@@ -47,7 +47,8 @@ class RunFile {
   void stand_in_bodies();
   bool has_mesh() const { return store_->linked("/mesh") || store_->has("/mesh"); }
 
-  /// A nodal or cell field of a step and its number of columns; Error with the names there are.
+  /// A nodal or cell field of a step and its number of columns; Error with the names there are.  Of a run with output.envelope each step
+  /// has von_mises_envelope, acceleration_envelope and displacement_envelope, the largest over all steps, and von_mises_envelope_time ...
   struct Field {
     std::vector<double> value;
     int columns;

@@ -17,17 +17,25 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
     std::vector<std::string> components;
   };
   const std::vector<std::string> xyz{"x", "y", "z"};
-  const std::vector<Known> table = {
-      {"von_mises", "von Mises stress", "Pa", {}},   {"stress_error", "error of stress", "Pa", {}},
-      {"plastic_strain", "plastic strain", "1", {}}, {"stress", "stress", "Pa", {"xx", "yy", "zz", "yz", "xz", "xy"}},
-      {"displacement", "displacement", "m", xyz},    {"velocity", "velocity", "m/s", xyz},
-      {"acceleration", "acceleration", "m/s^2", xyz}};
+  const std::vector<Known> table = {{"von_mises", "von Mises stress", "Pa", {}},
+                                    {"stress_error", "error of stress", "Pa", {}},
+                                    {"plastic_strain", "plastic strain", "1", {}},
+                                    {"stress", "stress", "Pa", {"xx", "yy", "zz", "yz", "xz", "xy"}},
+                                    {"displacement", "displacement", "m", xyz},
+                                    {"velocity", "velocity", "m/s", xyz},
+                                    {"acceleration", "acceleration", "m/s^2", xyz},
+                                    {"von_mises_envelope", "largest von Mises stress", "Pa", {}},
+                                    {"displacement_envelope", "largest displacement", "m", {}},
+                                    {"acceleration_envelope", "largest acceleration", "m/s^2", {}},
+                                    {"von_mises_envelope_time", "time of largest von Mises stress", "s", {}},
+                                    {"displacement_envelope_time", "time of largest displacement", "s", {}},
+                                    {"acceleration_envelope_time", "time of largest acceleration", "s", {}}};
   const auto dot = name.find('.');
   const std::string array = name.substr(0, dot);
   for (const Known& k : table) {
     if (array != k.array) continue;
     ShownField f{array, -1, k.label, k.unit};
-    f.flexible_only = f.unit == "Pa" || f.unit == "1";
+    f.flexible_only = f.unit == "Pa" || f.unit == "1" || array.starts_with("von_mises");
     const std::string component = dot == std::string::npos ? "" : name.substr(dot + 1);
     const auto at = std::find(k.components.begin(), k.components.end(), component);
     if ((component.empty() && array != "stress")) return f;

@@ -128,6 +128,12 @@ class Archive {
     for (size_t b = 0; b < batches.size(); ++b) batches[b].resize(shares_->batch[b] * shares_->remembered[b]);
     if (restores_) each([](double& value, std::vector<double>& list, size_t i) { list[i] = value; });
   }
+  /// Values (n x width) of things that lie on the ranks as `of` tells.
+  void spread(const Spread& of, std::vector<double>& x, int width) {
+    if (!shares_) return walk(x);
+    x.resize(of.size() * static_cast<size_t>(width));
+    part(of, x.data(), width);
+  }
 
  private:
   void part(const Spread& spread, double* local, int width) {

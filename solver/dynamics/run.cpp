@@ -153,6 +153,11 @@ class Run {
     setup.fields = output.texts("fields");
     setup.single_precision = output.text("precision") == "single";
     setup.skin = output.text("nodes") == "skin";
+    setup.envelope = output.boolean("envelope");
+    if (setup.envelope && !run_.system.mesh)
+      throw Error(output.where("envelope"), "a scene of bodies alone has no nodes to take the largest values of");
+    if (setup.envelope && run_.analysis == Analysis::modes)
+      throw Error(output.where("envelope"), "an analysis of modes takes no steps", "leave output.envelope out");
     for (const Event& e : run_.events)
       if (e.jump) setup.jumps.push_back(e.t);
     setup.provenance = options_.provenance;

@@ -85,6 +85,7 @@ Wanted wanted(const Scene& scene, const System& system) {
   double outputs = interval > 0 ? std::floor(end / interval + 1e-9) : w.steps;
   if (w.steps > 0) outputs = std::min(outputs, w.steps);  // at steps
   w.fields = field_bytes(scene, system) * (1 + outputs) + topology_bytes(system);
+  if (output.boolean("envelope") && system.mesh) w.fields += 6 * 8 * static_cast<double>(system.mesh->n_nodes_global);
   return w;
 }
 

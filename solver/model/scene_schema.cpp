@@ -231,6 +231,9 @@ std::vector<KindSchema> make() {
          "[\"displacement\", \"velocity\", \"acceleration\", \"stress\", \"von_mises\", \"stress_error\", \"plastic_strain\"]",
          "nodal fields"},
         {"nodes", text, "", "all", "whose fields: all, or skin: those on the surface of a region, which pictures without cuts show"},
+        {"envelope", boolean, "", "false",
+         "the largest von Mises stress, acceleration and displacement of each node over all steps, with their times, at the end of the "
+         "run"},
         {"precision", text, "", "double", "double or single"}}});
   for (const auto& [section, key] : {std::pair{"solver", "kind"}, {"output", "fields"}}) words_of(section, key)->close();
   return s;

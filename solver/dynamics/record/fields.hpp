@@ -29,10 +29,11 @@ class FieldWriter {
  public:
   FieldWriter(RunOutput& file, const std::vector<std::string>& wanted, const Slabs& nodes, const Slabs& cells, bool all_cells)
       : file_(file), wanted_(wanted), nodes_(nodes), cells_(cells), all_cells_(all_cells) {}
+  virtual ~FieldWriter() = default;
   bool wants(const std::string& key) const { return std::find(wanted_.begin(), wanted_.end(), key) != wanted_.end(); }
   /// Values of the local nodes (n x width), or of this rank's piece of the rows.  Collective, like all of these.
   void nodes(const std::string& name, const std::vector<double>& local, int width) { piece(name, nodes_.collect(local, width)); }
-  void piece(const std::string& name, const std::vector<double>& rows) { file_.write_piece(nodes_, group + "/" + name, rows); }
+  virtual void piece(const std::string& name, const std::vector<double>& rows) { file_.write_piece(nodes_, group + "/" + name, rows); }
   /// Values of the local cells; left out where the file has no rows for all cells.
   void cells(const std::string& name, const std::vector<double>& local, int width) {
     if (all_cells_) file_.write_piece(cells_, group + "/" + name, cells_.collect(local, width));

@@ -3,20 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "model/region_surface.hpp"
 
 namespace hilo {
 
-void MeshPart::declare() {
+void MeshPart::find_rows() {
   const System& s = system_;
   const LocalMesh& m = *s.mesh;
   const Comm& comm = *s.comm;
   const auto n_nodes = static_cast<std::int64_t>(s.X.size());
   std::int64_t n = m.n_nodes_global;
   node_row_ = m.node_global;
-  std::vector<Facet> facets;
-  std::vector<std::int64_t> skin;
+  std::vector<Facet>& facets = facets_;
+  std::vector<std::int64_t>& skin = skin_node_;
   if (skin_) {
     facets = region_surface(m, comm);
     for (const Facet& f : facets)
@@ -43,15 +44,19 @@ void MeshPart::declare() {
     if (!s.node_owned[i]) mine[i] = everyones[i] = -1;
   nodes_.emplace(comm, std::move(mine), n);
   cells_.emplace(comm, m.cell_global, m.n_cells_global);
+}
 
-  for (const FieldKind& kind : field_kinds()) sources_.push_back(kind.make(s, node_row_));
+void MeshPart::declare() {
+  const Comm& comm = *system_.comm;
+  if (!nodes_) find_rows();
+  for (const FieldKind& kind : field_kinds()) sources_.push_back(kind.make(system_, node_row_));
   write_followers();
-  if (skin_) file_.on_store([&](Store& f) { write_array(f, "/skin/node", skin, {n}); });
+  if (skin_) file_.on_store([&](Store& f) { write_array(f, "/skin/node", skin_node_, {nodes_->n_rows()}); });
   if (comm.size > 1)
     write_parts();
   else
     file_.on_store([](Store& f) { f.remove("/parts"); });  // of a run on ranks that this one goes on from
-  if (skin_) write_skin(facets);
+  if (skin_) write_skin(facets_);
 }
 
 void MeshPart::write_followers() {
@@ -94,21 +99,51 @@ void MeshPart::write_parts() {
   });
 }
 
-void MeshPart::write(double t, const Snapshot& at) {
-  FieldWriter to(file_, wanted_, *nodes_, *cells_, !skin_);
-  to.group = fmt::format("/field/{:06}", times_.size());
+void MeshPart::write_from_sources(FieldWriter& to, const Snapshot& at) const {
   for (const auto& source : sources_) {
     const auto fields = source->fields();
     if (std::any_of(fields.begin(), fields.end(), [&](const Field& field) { return to.wants(field.key); })) source->write(at, to);
   }
+}
+
+void MeshPart::write(double t, const Snapshot& at) {
+  FieldWriter to(file_, wanted_, *nodes_, *cells_, !skin_);
+  to.group = fmt::format("/field/{:06}", times_.size());
+  write_from_sources(to, at);
   times_.push_back(t);
   file_.on_store([&](Store& f) { f.set(to.group, "t", t); });
+}
+
+void MeshPart::envelop(double t, const Snapshot& at) {
+  EnvelopeWriter to(file_, *envelope_, t, *nodes_, *cells_);
+  write_from_sources(to, at);
+}
+
+void MeshPart::write_envelope() {
+  if (!envelope_) return;
+  for (const Envelope::Of& of : envelope_->fields()) {
+    file_.write_piece(*nodes_, "/envelope/" + of.name, of.most, true);
+    file_.write_piece(*nodes_, "/envelope/" + of.name + "_time", of.t, true);
+  }
+}
+
+void MeshPart::archive(Archive& a) {
+  a("fields", times_);
+  bool has = envelope_.has_value();
+  a("envelope", has);  // of the run that is kept: one that goes on may ask for one, or for none
+  if (!has) return;
+  if (!nodes_) find_rows();
+  std::vector<std::int64_t> row(static_cast<size_t>(nodes_->count()));
+  std::iota(row.begin(), row.end(), nodes_->first());
+  Envelope unwanted;
+  (envelope_ ? *envelope_ : unwanted).archive(a, Spread(*system_.comm, std::move(row)));
 }
 
 void MeshPart::shorten(Store& f) const {
   for (const std::string& step : f.list("/field"))
     if (step >= fmt::format("{:06}", times_.size())) f.remove("/field/" + step);
   f.remove("/xdmf");
+  f.remove("/envelope");
 }
 
 void MeshPart::show() {

@@ -16,7 +16,7 @@ Recorder::Recorder(const System& system, const Scene& scene, Setup setup)
       file_(*system.comm, setup_.path, setup_.single_precision),
       histories_(system) {
   if (setup_.redundant) share_.emplace(system);
-  if (system.mesh) mesh_.emplace(system, file_, setup_.fields, setup_.skin);
+  if (system.mesh) mesh_.emplace(system, file_, setup_.fields, setup_.skin, setup_.envelope);
 }
 
 void Recorder::first(const State& s, const Ledger& ledger) {
@@ -79,8 +79,8 @@ void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, co
   row.jump =
       std::any_of(setup_.jumps.begin(), setup_.jumps.end(), [&](double t) { return std::abs(t - s.t) <= 1.001 * system_.same_time; });
   row.field = setup_.is_static || s.t >= next_field_ * (1 - 1e-9);
+  if (row.field || setup_.envelope) row.q = s.q, row.v = v, row.memory = system_.part<Solids>().memory();
   if (row.field) {
-    row.q = s.q, row.v = v, row.memory = system_.part<Solids>().memory();
     if (setup_.interval > 0) next_field_ = setup_.interval * (std::floor(s.t * (1 + 1e-9) / setup_.interval) + 1);
   }
   rows_.push_back(std::move(row));
@@ -155,11 +155,13 @@ void Recorder::write_row(const std::vector<std::pair<double, const Interval*>>& 
   std::vector<double> mid(histories_.n_mid(), 0.0);
   for (const auto& [w, interval] : weights)
     for (size_t i = 0; i < mid.size(); ++i) mid[i] += w * interval->mid[i];
-  if (row.field && mesh_) {
+  if ((row.field || setup_.envelope) && mesh_) {
     Config a, sum;
     combine(a, {{0, &row.q}});
     for (const auto& [w, interval] : weights) combine(sum, {{1, &a}, {w, &interval->a}}), std::swap(a, sum);
-    mesh_->write(row.t, {row.q, row.v, a, row.memory.batch});
+    const Snapshot at{row.q, row.v, a, row.memory.batch};
+    if (setup_.envelope) mesh_->envelop(row.t, at);
+    if (row.field) mesh_->write(row.t, at);
   }
   file_.on_store([&](Store& f) { histories_.append(f, row.t, row.newton, row.point, mid); });
 }
@@ -167,6 +169,7 @@ void Recorder::write_row(const std::vector<std::pair<double, const Interval*>>& 
 void Recorder::finish(bool complete) {
   advance(true);
   file_.on_store([&](Store& f) { f.set("/", "complete", static_cast<std::int64_t>(complete)); });
+  if (mesh_) mesh_->write_envelope();
   commit(RunOutput::When::now);
   if (mesh_) mesh_->finish();
   file_.share_failure();

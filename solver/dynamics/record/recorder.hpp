@@ -21,6 +21,7 @@ class Recorder {
     std::vector<std::string> fields;
     bool single_precision = false;
     bool skin = false;          // fields of the nodes on the surfaces of regions alone
+    bool envelope = false;      // the largest values over all steps
     std::vector<double> jumps;  // times at which forces or velocities jump
     std::vector<std::string> provenance;
     bool redundant = false;  // reactions by minimum norm
@@ -47,7 +48,7 @@ class Recorder {
     double t = 0;
     std::vector<double> point;  // values that belong to t_n
     bool jump = false, field = false;
-    Config q, v;  // kept where a field is due, and what the cells remember, by batch
+    Config q, v;  // kept where a field is due or an envelope looks on, and what the cells remember, by batch
     CellMemory memory;
     int newton = 0;
   };

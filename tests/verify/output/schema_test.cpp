@@ -87,7 +87,7 @@ name = "tip"
 on = "zmax"
 )";
   std::set<std::string> met;
-  for (const char* options : {"", "--set output.precision=single", "--set output.nodes=skin",
+  for (const char* options : {"", "--set output.precision=single", "--set output.nodes=skin", "--set output.envelope=true",
                               "--set 'material.soft.kind=\"j2\"' --set material.soft.yield=1e3"}) {
     const Ran ran = c.run(std::string("hilo-solve --quiet more.toml tags.h5 --set time.end=0.003 --set output.interval=0.001 ") + options);
     ASSERT_EQ(ran.exit, 0) << ran.err;
