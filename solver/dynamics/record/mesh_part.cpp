@@ -130,7 +130,9 @@ void MeshPart::write_envelope() {
 void MeshPart::archive(Archive& a) {
   a("fields", times_);
   bool has = envelope_.has_value();
-  a("envelope", has);  // of the run that is kept: one that goes on may ask for one, or for none
+  a("envelope", has);  // of the run that is kept: one that goes on may do without
+  if (!has && envelope_)
+    throw Error("output.envelope", "the run that was kept had none: what was largest before is not known", "leave it out");
   if (!has) return;
   if (!nodes_) find_rows();
   std::vector<std::int64_t> row(static_cast<size_t>(nodes_->count()));

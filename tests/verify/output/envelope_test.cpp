@@ -85,6 +85,14 @@ TEST(Envelope, GoesOnFromACheckpointBitByBit) {
   }
 }
 
+TEST(Envelope, CannotBeAskedForLater) {
+  const Everything c;
+  ASSERT_EQ(c.run("hilo-solve --quiet '" + c.source("scene.toml") + "' tags.h5 --set time.end=0.01 --checkpoint 5steps").exit, 0);
+  const Ran ran = c.run("hilo-solve --quiet --restart run.h5 --accept --set output.envelope=true --set time.end=0.02");
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_NE(ran.err.find("the run that was kept had none"), std::string::npos) << ran.err;
+}
+
 // A rigid block turns about z at w: a point at r from the axis comes 2 r away after half a turn, under the acceleration r w^2.
 TEST(Envelope, OfASpinningBlockIsTheDiameter) {
   Case c("everything");
