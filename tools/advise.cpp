@@ -80,8 +80,19 @@ void run(const Options& o) {
   }
   if (asked == 0) throw Error(scene.path, "the scene asks for no quantity", "write [[quantity]]: what may not change");
 
+  // Linear regions that leave their range judge nothing: in the base they are nonlinear, and it runs again.
+  const Assignment rigid(n, Fidelity::rigid), full(n, level);
+  Assignment cells(n, base_level);
+  for (bool more = true; more;) {
+    more = false;
+    for (const auto& [r, said] : all.of(cells).beyond)
+      if (cells[r] == Fidelity::linear) {
+        cells[r] = Fidelity::nonlinear, more = true;
+        warn(mesh.region_name[r], said + "; nonlinear in what models are judged by");
+      }
+  }
+
   // The base at h and h/2: what a step this long cannot tell no model will.
-  const Assignment rigid(n, Fidelity::rigid), full(n, level), cells(n, base_level);
   const Candidate& base = all.of(cells);
   for (const QuantityValue& v : base.values)
     if (!v.why.empty()) throw Error("", v.why);
@@ -162,17 +173,17 @@ void run(const Options& o) {
             [](const Candidate* a, const Candidate* b) { return std::pair(a->unknowns, a->seconds) < std::pair(b->unknowns, b->seconds); });
   const Candidate* chosen = *std::find_if(tried.begin(), tried.end(), [&](const Candidate* c) { return all.difference(*c, base) <= 0.5; });
 
-  Table regions{{"region", "level", "f [Hz]", "f over load", "rigid alone: error over allowed"}, {}, 2, 4};
+  Table regions{{"region", "level", "base", "f [Hz]", "f over load", "rigid alone: error over allowed"}, {}, 3, 4};
   for (size_t r = 0; r < n; ++r) {
     Assignment less = full;
     less[r] = Fidelity::rigid;
     const auto found = std::find_if(tried.begin(), tried.end(), [&](const Candidate* c) { return c->fidelity == less; });
     const bool known = r < gate.f.size() && gate.f[r] > 0;
-    regions.rows.push_back({mesh.region_name[r], std::string(word(chosen->fidelity[r])), known ? fmt::format("{:.6g}", gate.f[r]) : "-",
-                            known && gate.f_load > 0 ? fmt::format("{:.6g}", gate.f[r] / gate.f_load) : "-",
-                            found == tried.end() || !std::isfinite(all.difference(**found, base))
-                                ? "-"
-                                : fmt::format("{:.6g}", all.difference(**found, base))});
+    regions.rows.push_back(
+        {mesh.region_name[r], std::string(word(chosen->fidelity[r])), std::string(word(cells[r])),
+         known ? fmt::format("{:.6g}", gate.f[r]) : "-", known && gate.f_load > 0 ? fmt::format("{:.6g}", gate.f[r] / gate.f_load) : "-",
+         found == tried.end() || !std::isfinite(all.difference(**found, base)) ? "-"
+                                                                               : fmt::format("{:.6g}", all.difference(**found, base))});
   }
   Table models{{"flexible", "level", "choice", "error over allowed", "largest in", "s"}, {}, 3, 4};
   for (const Candidate* c : tried) {
@@ -193,8 +204,8 @@ void run(const Options& o) {
         json_number(gate.f_load), json_number(gate.jump), json_number(gate.theta), json_number(step_part), regions.json("    "),
         models.json("    "));
   else
-    fmt::print("{}\nload {:.4g} Hz, jump {:.3g}, gate {:g}; step (h, h/2): {:.3g} of what is allowed; errors are against all {}\n{}",
-               regions.text(), gate.f_load, gate.jump, gate.theta, step_part, word(base_level), models.text());
+    fmt::print("{}\nload {:.4g} Hz, jump {:.3g}, gate {:g}; step (h, h/2): {:.3g} of what is allowed; errors are against the base\n{}",
+               regions.text(), gate.f_load, gate.jump, gate.theta, step_part, models.text());
   if (!o.apply.empty()) {
     std::string text = fmt::format("# hilo-advise --tol {}\n", o.tolerance);
     for (const Fidelity f : {Fidelity::rigid, Fidelity::linear, Fidelity::nonlinear}) {

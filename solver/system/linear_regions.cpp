@@ -185,7 +185,8 @@ void LinearRegions::add_work(const Moment& moment, Work& sum) const {
       sum.dissipated += s.chi / 2 * r.stiffness[j] * step * step;
     }
     const Eigen::VectorXd viscous = viscous_force(r, m, s);
-    for (int j = 0; j < m.n_modes && s.h > 0; ++j) sum.dissipated += s.share() * viscous[j] * (amplitude(m, *s.w1, j) - amplitude(m, *s.w0, j)) / s.h;
+    for (int j = 0; j < m.n_modes && s.h > 0; ++j)
+      sum.dissipated += s.share() * viscous[j] * (amplitude(m, *s.w1, j) - amplitude(m, *s.w0, j)) / s.h;
     if (r.A_damped.size() > 0 && s.v)
       sum.dissipated += (r.A_damped * rows_of(m, *s.v)).cwiseProduct(rows_of(m, *s.end) - rows_of(m, s.from())).sum();
   }
@@ -194,8 +195,8 @@ void LinearRegions::add_work(const Moment& moment, Work& sum) const {
 /// Linear strains know no stiffening by axial force: beyond the first frequency a region that spins would run away.  What turns sections is
 /// exact to the first power of the turn without stiffening, to the third with it.
 void LinearRegions::commit(const Config& q, const Config* v) {
-  constexpr double bent = 0.0125, bent_where_it_stiffens = 0.05;  // displacement over length, docs/fidelity.md
   told_.resize(regions.size(), 0);
+  of_run_.resize(regions.size());
   for (size_t k = 0; k < regions.size(); ++k) {
     const LinearRegion& r = regions[k];
     const Modes& m = points_.modes[r.modes];
@@ -208,7 +209,8 @@ void LinearRegions::commit(const Config& q, const Config* v) {
     const Eigen::VectorXd u = r.sites * amplitudes(m, q);
     double most = 0;
     for (Eigen::Index i = 0; i < u.size(); i += 3) most = std::max(most, u.segment<3>(i).norm());
-    if (most > (m.stiffens ? bent_where_it_stiffens : bent))
+    of_run_[k].bend = std::max(of_run_[k].bend, most);
+    if (most > bend_limit(k))
       tell(2, fmt::format("bends by {:.2g} of its length: {}", most,
                           m.stiffens
                               ? "beyond 0.05 modes with stiffening are off by more than a few per cent (tag it nonlinear)"
@@ -217,12 +219,13 @@ void LinearRegions::commit(const Config& q, const Config* v) {
     if (m.stiffens || !v) continue;
     const Mat3 S = v->R[m.body] * q.R[m.body].transpose();
     const double spin = Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)).norm() / 2, first = std::sqrt(r.stiffness[0]);
+    of_run_[k].spin = std::max(of_run_[k].spin, spin / first);
     if (spin >= first)
       too_fast_ = fmt::format(
           "linear region \"{}\" spins with {:.3g} rad/s, its first frequency is {:.3g} rad/s: give it stiffening = true or tag it "
           "nonlinear",
           name, spin, first);
-    if (spin >= 0.3 * first)
+    if (spin >= spin_limit * first)
       tell(1, fmt::format("spins with {:.3g} rad/s, a share of {:.2g} of its first frequency: linear strains do not stiffen (stiffening = "
                           "true does, or tag it nonlinear)",
                           spin, spin / first));

@@ -53,6 +53,12 @@ class LinearRegions final : public Contribution {
   double load_band(size_t k) const;
   /// Acceleration of region k less gravity, root mean square over its mass [m/s^2].
   double inertia(size_t k, const Moment& moment) const;
+  /// The largest displacement of region k from its mean axes over its length, and the largest spin over its first frequency, so far.
+  double bend(size_t k) const { return of_run_[k].bend; }
+  double spin(size_t k) const { return of_run_[k].spin; }
+  /// The largest bend that modes are good for.
+  double bend_limit(size_t k) const { return points_.modes[regions[k].modes].stiffens ? 0.05 : 0.0125; }
+  static constexpr double spin_limit = 0.3;
 
  private:
   const Points& points_;
@@ -63,6 +69,7 @@ class LinearRegions final : public Contribution {
     double loads = 0, rates = 0;      // of the latter: sum over time [J s], and of what changes of accelerations would bring [J/s]
     std::vector<double> a;            // accelerations of the modes in the last step, which ended at
     double t = 0;
+    double bend = 0, spin = 0;  // as told by the functions above
   };
   mutable std::vector<OfRun> of_run_;  // by region
 };

@@ -184,8 +184,8 @@ void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::strin
                    much_shortening = 0.012;
   const auto& linear = system_.part<LinearRegions>();
   Table table;
-  table.header = {"linear region", "modes lack", "load band", "quadratic strain", "buckling", "tension", "shortening"};
-  std::string lists[6], beyond;
+  table.header = {"linear region", "modes lack", "load band", "quadratic strain", "buckling", "tension", "shortening", "bend", "spin"};
+  std::string lists[8], beyond;
   for (size_t k = 0; k < regions_.size(); ++k) {
     const Modes& m = system_.modes[linear.regions[k].modes];
     const std::string& name = system_.bodies[m.body].name;
@@ -195,12 +195,12 @@ void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::strin
                  shortening = r.inertia.value > 0 ? r.shortening.value / r.inertia.value : 0;
     auto& row = table.rows.emplace_back(std::vector{name});
     int column = 0;
-    for (const double x : {lacking, band, quadratic, share, std::max(1.0, r.tension.value), shortening}) {
+    for (const double x : {lacking, band, quadratic, share, std::max(1.0, r.tension.value), shortening, linear.bend(k), linear.spin(k)}) {
       lists[column] += fmt::format("{}{}: {:.3g}", lists[column].empty() ? "" : ", ", json_text(name), x), ++column;
       row.push_back(fmt::format("{:.2g}", x));
     }
     const auto leaves = [&](const char* measure, double value, double limit, double t, const std::string& text) {
-      warn(name, text);
+      if (!text.starts_with("bends by") && !text.starts_with("spins")) warn(name, text);  // told when they happened
       beyond += fmt::format("{}{{\"region\": {}, \"measure\": \"{}\", \"value\": {:.3g}, \"limit\": {:.3g}, \"t\": {}, \"said\": {}}}",
                             beyond.empty() ? "" : ", ", json_text(name), measure, value, limit, t < 0 ? "null" : fmt::format("{:.6g}", t),
                             json_text(text));
@@ -215,7 +215,13 @@ void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::strin
              fmt::format("what its modes lack is driven at {:.2g} of the first frequency left out, {:.4g} Hz, where it swings along: more "
                          "modes, or up_to a higher frequency",
                          band, linear.regions[k].held_frequency));
+    if (linear.bend(k) > linear.bend_limit(k))
+      leaves("bend", linear.bend(k), linear.bend_limit(k), -1,
+             fmt::format("bends by {:.2g} of its length: more than its modes are good for", linear.bend(k)));
     if (m.stiffens) continue;
+    if (linear.spin(k) >= LinearRegions::spin_limit)
+      leaves("spin", linear.spin(k), LinearRegions::spin_limit, -1,
+             fmt::format("spins with a share of {:.2g} of its first frequency: linear strains do not stiffen", linear.spin(k)));
     if (quadratic > much_quadratic)
       leaves("quadratic_strain", quadratic, much_quadratic, r.quadratic.t,
              fmt::format("its supports stretch it as it bends: strains of the second degree are {:.2g} of its strain (norm of energy) at t "
@@ -239,8 +245,8 @@ void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::strin
                          r.shortening.value, r.shortening.t, shortening));
   }
   if (regions_.empty()) return;
-  const char* names[] = {"modes_left_out", "load_band", "quadratic_strain", "buckling", "tension", "shortening"};
-  for (int i = 0; i < 6; ++i) report.emplace_back(names[i], "{" + lists[i] + "}");
+  const char* names[] = {"modes_left_out", "load_band", "quadratic_strain", "buckling", "tension", "shortening", "bend", "spin"};
+  for (int i = 0; i < 8; ++i) report.emplace_back(names[i], "{" + lists[i] + "}");
   report.emplace_back("beyond_linear", "[" + beyond + "]");
   if (!is_quiet()) fmt::print(stderr, "{}", table.text());
 }

@@ -94,6 +94,19 @@ with tempfile.TemporaryDirectory() as folder:
     assert run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json").stdout == done.stdout
     assert before == {f: os.stat("advise.work/" + f).st_mtime_ns for f in os.listdir("advise.work")}  # nothing ran again
 
+    # judged by linear regions: the one that bends too far for that is nonlinear in the base, and what is chosen serves
+    open("scene.toml", "w").write(scene('[region.b]\nmaterial = "soft"\n[material.soft]\nE = 2e9\nnu = 0.3\ndensity = 7850\n'))
+    done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json", "--base", "linear", "--apply", "choice.toml")
+    assert done.returncode == 0, done.stderr
+    advice = json.loads(done.stdout)
+    assert {r["region"]: r["base"] for r in advice["regions"]} == {"a": "linear", "b": "nonlinear", "c": "linear"}, advice["regions"]
+    truth = values(tagged("--rest", "nonlinear"), "--set", "time.step=5e-4")
+    chosen, linear = values(tagged("choice.toml")), values(tagged("--rest", "linear"))
+    off = [max(abs(v[q] / truth[q] - 1) for q in truth) for v in (chosen, linear)]
+    print(f"bar b soft, base linear but for it: off by {100 * off[0]:.2f} %, all linear by {100 * off[1]:.1f} %")
+    assert off[0] < 0.02, off
+    open("scene.toml", "w").write(scene())
+
     refused("the step alone makes", "--tol", "0.001%")
     refused("no positive number", "--tol", "-1%")
     refused("has no unit", "--tol", "2")

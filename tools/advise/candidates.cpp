@@ -39,6 +39,33 @@ std::string solver() {
   return !error && std::filesystem::exists(beside) ? beside.string() : "hilo-solve";
 }
 
+/// The text of a run.json between `key` and the next quote that is none of it, from `at` on, which moves behind it; "" where there is none.
+std::string text_behind(const std::string& json, const std::string& key, size_t& at) {
+  const size_t begin = json.find(key, at);
+  if (begin == json.npos) return at = json.npos, "";
+  std::string text;
+  for (at = begin + key.size(); at < json.size() && json[at] != '"'; ++at) {
+    if (json[at] == '\\') ++at;
+    text += json[at];
+  }
+  return text;
+}
+
+/// What run.json says of linear regions that left their range; bodies of several regions are named by all of them, with + between.
+std::map<size_t, std::string> beyond_linear(const std::string& json, const Mesh& mesh) {
+  std::map<size_t, std::string> out;
+  const size_t begin = json.find("\"beyond_linear\": [");
+  const std::string line = begin == json.npos ? "" : json.substr(begin, json.find('\n', begin) - begin);
+  for (size_t at = 0; at != line.npos;) {
+    const std::string body = "+" + text_behind(line, "{\"region\": \"", at) + "+";
+    if (at == line.npos) break;
+    const std::string said = text_behind(line, "\"said\": \"", at);
+    for (size_t r = 0; r < mesh.region_name.size(); ++r)
+      if (body.find("+" + mesh.region_name[r] + "+") != body.npos) out.emplace(r, said);
+  }
+  return out;
+}
+
 }  // namespace
 
 Candidates::Candidates(std::string scene, std::string mesh, std::vector<std::string> overrides, std::string folder, double tolerance)
@@ -103,6 +130,7 @@ const Candidate& Candidates::of(const Assignment& fidelity, double step) {
   const std::string json = text_of_file(name + ".json");
   for (const auto& [word, value] : {std::pair{"\"processor_seconds\": ", &c.seconds}, {"\"unknowns\": ", &c.unknowns}})
     if (const auto at = json.find(word); at != json.npos) *value = std::strtod(json.c_str() + at + std::string(word).size(), nullptr);
+  c.beyond = beyond_linear(json, mesh_.mesh);
   return c;
 }
 

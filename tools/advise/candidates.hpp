@@ -12,9 +12,10 @@ using Assignment = std::vector<Fidelity>;  // (n_regions)
 
 struct Candidate {
   Assignment fidelity;
-  std::string run;                    // run.h5
-  std::vector<QuantityValue> values;  // of the quantities with a tolerance
-  double seconds = 0, unknowns = 0;   // of one processor
+  std::string run;                       // run.h5
+  std::vector<QuantityValue> values;     // of the quantities with a tolerance
+  double seconds = 0, unknowns = 0;      // of one processor
+  std::map<size_t, std::string> beyond;  // linear regions that left their range, and what the run said of it
 };
 
 class Candidates {
