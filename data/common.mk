@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What every scene's Makefile needs: the tools, built once into build/, and the environment they run in.
 ROOT := $(patsubst %/data/common.mk,%,$(realpath $(lastword $(MAKEFILE_LIST))))
 BUILD ?= $(ROOT)/build

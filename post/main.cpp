@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post: pictures, tables and charts of results.
 #include <vtkVersionMacros.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The one unit that a new commit compiles (solver/commit.cmake writes commit.hpp); the tools alone are linked to it.
 #include "about.hpp"
 

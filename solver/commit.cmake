@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Writes the header TO, the commit of the tree SOURCE, where it says another one so far.  Of an export without git it is that of HILO_COMMIT.
 set(commit "$ENV{HILO_COMMIT}")
 if(NOT commit)

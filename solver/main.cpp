@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-solve: a scene, and the mesh it names, become motion.
 #include <fmt/format.h>
 #include <omp.h>

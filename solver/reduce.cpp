@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-reduce: the modes of the linear regions of a scene, once for all runs that have them.
 #include <fmt/format.h>
 #include <malloc.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs commands as a user would, with hilo's binaries first in the path.
 #pragma once
 #include <sys/wait.h>

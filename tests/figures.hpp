@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Makes gtest print what it compares, passed or not: compile the tests with `-include tests/figures.hpp` to get the figures of
 // docs/verification.md.
 #pragma once

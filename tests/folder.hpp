@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A fresh temporary folder that removes itself, and whole files.
 #pragma once
 #include <stdlib.h>

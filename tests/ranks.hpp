@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tests that run on several ranks: a test starts its own executable under mpirun, with a filter for the suite that holds there.
 // Such suites are called DISABLED_..., so that they do not run by themselves.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-advise: the cheapest model, rigid and linear regions, that answers to a tolerance.
 #include <fmt/format.h>
 
@@ -185,7 +186,7 @@ void run(const Options& o) {
          found == tried.end() || !std::isfinite(all.difference(**found, base)) ? "-"
                                                                                : fmt::format("{:.6g}", all.difference(**found, base))});
   }
-  Table models{{"flexible", "level", "choice", "error over allowed", "largest in", "s"}, {}, 3, 4};
+  Table models{{"flexible", "level", "choice", "error over allowed", "largest in", "s", "run"}, {}, 3, 4};
   for (const Candidate* c : tried) {
     std::string in = "-";
     const double d = all.difference(*c, base, &in);
@@ -195,7 +196,7 @@ void run(const Options& o) {
                            : c == &base             ? "base"
                            : c->fidelity == climbed ? "climb"
                                                     : "-",
-                           std::isfinite(d) ? fmt::format("{:.6g}", d) : "-", c == &base ? "-" : in, fmt::format("{:.4g}", c->seconds)});
+                           std::isfinite(d) ? fmt::format("{:.6g}", d) : "-", c == &base ? "-" : in, fmt::format("{:.4g}", c->seconds), c->run});
   }
   if (o.json)
     fmt::print(

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-import: a mesh or a geometry becomes mesh.h5.
 #include <fmt/format.h>
 #include <gmsh.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-part: which rank works on which cell.
 #include <fmt/format.h>
 

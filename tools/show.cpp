@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-show: what is in a file.
 #include <fmt/format.h>
 

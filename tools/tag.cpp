@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-tag: which region is rigid and which is flexible.
 #include <fmt/format.h>
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Work-precision: error of a probe's position at the end, against steps and against processor time, for every method and scene.
 
 charts.py rules                  writes out/rules.mk, and out/SCENE/*.args where they changed

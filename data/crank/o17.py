@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The flexible slider-crank of the IVP test set [simeon-1996]: how it starts, and where one sine mode of its rod is.
 
 o17.py start N                   scene lines: the published velocities at the start, section by section of N cells along the rod

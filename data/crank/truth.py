@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the crank drive of scene.toml must do, from the kinematics and the equations of motion alone.
 
 truth.py gas                            gauge pressure in the cylinder over time, one row per degree of crank

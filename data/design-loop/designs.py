@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The books of the design loop: names of designs, a line for each, the table and the points of the chart.
 
 designs.py cases SWEEP.txt                     names of the designs: t8_k100_c6 is 8 mm, 100 kN/m, 6 kN s/m

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The lightest mounting whose cheeks stay below a stress and whose driver below a DRI, by NLopt's COBYLA (linear models of objective and
 // constraints, no derivatives).  A design is rounded to what a workshop can make and evaluated by `make out/DESIGN/row.csv`: known
 // designs cost nothing, and a second run repeats the first from its files.

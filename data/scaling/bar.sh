@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Scene A: a cantilever 4 x 0.2 x 0.2 m, 200 kN across its tip, ramped over 0.02 s.  bar.sh NX NY NZ [LENGTH] [ELEMENT] [ccx]: a deck of
 # hexahedra in Abaqus' format on stdout, C3D8I unless another element with 8 or 20 nodes is named; with CalculiX's step where asked.
 awk -v nx="$1" -v ny="$2" -v nz="$3" -v L="${4:-4}" -v type="${5:-C3D8I}" -v ccx="${6:-}" '

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Iterations by number of subdomains, all in one process: BDDC to a relative residual of 1e-8, FETI-DP to 1e-8 of the dual residual, the
 # most of any solve with the flexible part.  A block of 20 x 20 x 20 cubes between two bodies, one of them on a joint, a third joint at a
 # node; jumps of 1e4 in as many scattered regions as there are subdomains, with which their borders have nothing in common.

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Efficiency E(P) = T(1) / (P T(P)) from runs.csv:  model.py RUNS.csv > MODEL.csv.  T(1): the run of one subdomain.
 
 "modelled: vehicle M":   T(P) = imbalance (W(P) - undivided(P))/P + undivided(P) + exchange(P)

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Beside CalculiX, one thread, in turn: scene A on the same meshes of linear hexahedra (C3D8I, hex8), the finest once, the others best of
 # two; the least work of either that gives the tip to 0.1 % (C3D20R 20x1x1; accuracy.toml).  hilo alone: 240x12x12, and scene B, a tube.
 # Processor seconds in all, start included; per Newton iteration, hilo's without the start.

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Vehicle M, five steps from the drawn position by BDDC: on 1, 2 and 4 ranks, and on one rank with up to 128 subdomains.  Best of three,
 # taken in turn.  Seconds by phase, iterations, and of the rank with most: messages, sums over all ranks, bytes; from run.json.
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The tables of out/ as one page of Markdown.
 set -eu
 cd "$1"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Scene B: a tube of 2 m, radii 20 and 50 mm, of NC x NR x NZ linear hexahedra around, across and along it:  tube.sh [NC NR NZ], Abaqus' format.
 awk -v nc="${1:-24}" -v nr="${2:-6}" -v nz="${3:-178}" 'function node(i, j, k) { return 1 + i % nc + nc * (j + (nr + 1) * k) }
 BEGIN {

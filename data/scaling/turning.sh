@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A free bar of 80 x 4 x 4 hexahedra, turning: Newton's and linear iterations with the whole tangent (GMRES, "iterative") and with its
 # symmetric part ("cg"), which hands over to the former where parts turn far in a step.
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Weak scaling: scene A with 40 x 8 x 8 hexahedra for each rank, the bar as much longer; BDDC, five steps.  Best of three, in turn.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd); cd "$1"

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The stability catalogue: rules of its runs for make, and its table from what the runs left.
 
 catalogue.py rules          writes out/rules.mk, and out/SCENE/METHOD.args where they changed

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # One run of the catalogue:  run.sh SCENE MESH|- OUT HISTORIES OPTIONS...   leaves OUT.h5, OUT.csv and OUT.exit.
 # A run that stops by itself (exit 3) is what the catalogue looks for; any other fault ends make.
 set -u

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the ring of the turret must carry, by the laws of momentum, over the times of a run:
 
 truth.py BODIES.json MOTION.csv > HAND.csv

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Writes the page of every tool from its own table of options.  Usage: docs/tools/write.sh [BIN [FOLDER]]
 set -euo pipefail
 here=$(dirname "$(realpath "$0")")

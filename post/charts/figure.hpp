@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Charts: panels of curves stacked in one picture, with axes in units and a legend beside the data.
 #pragma once
 #include <limits>

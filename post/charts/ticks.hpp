@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Round numbers for axes and colour bars, and how numbers are written in pictures.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post at: a field at a node, at a material point or along a line.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

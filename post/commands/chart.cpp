@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post chart: a chart of any CSV files.
 #include <fmt/format.h>
 

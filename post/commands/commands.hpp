@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The subcommands of hilo-post: each adds its options to the app and is run after the command line was read.
 #pragma once
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post compare: how far tables or runs are from the first of them, column by column.
 #include <fmt/format.h>
 

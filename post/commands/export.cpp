@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post export: one step as a VTU file for other programs.
 #include <fmt/format.h>
 #include <vtkCellArray.h>

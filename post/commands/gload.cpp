@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post gload: what the sensors felt, raw and filtered, as a table of peaks, CSV and a chart.
 #include "post/injury/gload.hpp"
 

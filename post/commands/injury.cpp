@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post injury: what the loads at the sensors do to people, as text, JSON, CSV, a page to print and Eiband's chart.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post mesh: a mesh, its tags or its parts, coloured by region, fidelity or part.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

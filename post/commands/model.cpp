@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post model: the scene before any run, with its joints, springs, loads, supports and sensors.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

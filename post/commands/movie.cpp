@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post movie: a run as an MP4.
 #include <fmt/format.h>
 #include <unistd.h>

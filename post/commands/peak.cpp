@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post peak: the largest value of a field in every region over all steps of a run, with its place and time.
 #include <fmt/format.h>
 

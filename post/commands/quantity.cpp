@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post quantity: the quantities that the scene of a run asks for.
 #include "post/quantity/quantity.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post render: frames of a run, coloured by a field or by names.
 #include <fmt/format.h>
 

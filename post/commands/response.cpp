@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post response: what a harmonic force at a probe, or a base that swings, does to probes, by the modes of an analysis of modes,
 //
 //   H(omega) = sum_j phi_j(out) p_j / D_j,     D_j = omega_j^2 - omega^2 + 2 i zeta_j omega_j omega,   phi of unit mass.

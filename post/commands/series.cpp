@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post series: any history of a run as CSV or as a chart.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tables of numbers and text with named columns: CSV in and out.
 #pragma once
 #include <string>

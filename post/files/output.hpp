@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where results go: a file, whole or not at all, or stdout.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Filters and measures of accelerations, as in crash tests.
 //
 // Channel frequency class (SAE J211-1): a 2-pole Butterworth filter run forwards and backwards (4 poles, no phase),

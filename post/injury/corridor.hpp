@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A corridor that pulses shall stay in, as a test's specification gives it: lowest and highest change of acceleration over time, per axis.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tolerance to a plateau of acceleration against its duration, as Eiband collected it [eiband-1959].  The corner points are approximate
 // readings: an overlay to see where a run lies, never a limit.
 #pragma once

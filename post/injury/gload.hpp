@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a sensor felt, of a run or measured: proper acceleration in its axes (x forward, y left, z up), raw and filtered.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Measures of what accelerations do to people, from signals taken as straight between samples.
 #pragma once
 #include <array>

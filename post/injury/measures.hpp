@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // All measures of one sensor: what tables, JSON, CSV and the report page show.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One page to print (the ratio of A4): the pulses of all sensors with their corridor, what they do to people, signs, sources.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "post/injury/resolved_band.hpp"
 
 #include <fmt/format.h>

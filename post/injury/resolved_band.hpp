@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Up to which frequency the histories of a run mean something, and what of a peak lies above it.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Frequency weighting of whole-body vibration [iso-2631, iso-8041]: a chain of second-order filters in s = 2 pi i f, parameters f1 .. f6,
 // Q4 .. Q6 in Hz and 1,
 //   high pass         s^2/(s^2 + s w1/Q1 + w1^2),                                  Q1 = 1/sqrt2

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Colours: perceptually uniform maps for values, well separated colours for names.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "post/picture/egl_window.hpp"
 
 // GLEW must come before any other header of OpenGL.

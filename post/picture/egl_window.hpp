@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An off-screen render window that needs no display: a Mesa EGL surfaceless context (docs/notes: Debian's VTK is built for X only).
 #pragma once
 #include <vtkRenderWindow.h>

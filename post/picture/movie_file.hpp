@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An H.264 movie in MP4 (4:2:0, BT.709, even sizes: what every player shows), made in memory so that no half of it is ever on disk.
 #pragma once
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One picture: 3-D layers below, painting in pixels above, written as PNG.
 #pragma once
 #include <vtkRenderer.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Work divided over processes: each starts by itself (a window, open files), all give their results to the first in order.
 #pragma once
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The quantities that a scene asks for, [[quantity]], of a run.
 #pragma once
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A scene of bodies alone: ellipsoids of their inertia stand for a mesh.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Columns of the histories of a run, by name, by glob, or by formula over other columns.
 #pragma once
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A body without a mesh is drawn as the ellipsoid that has its mass and inertia.
 #pragma once
 #include <string>

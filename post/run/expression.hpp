@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Formulas over columns of numbers: "hypot(joint.pin.Fx, joint.pin.Fy)/1e3", "d(momentum.Lz)".  A value is a whole column, so that a
 // formula can speak of its rate and of its start; the usual parsers of formulas know one row at a time, which is why this one is ours.
 #pragma once

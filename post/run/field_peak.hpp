@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The value largest in size that a field has in every region over steps of a run.
 #pragma once
 #include <functional>

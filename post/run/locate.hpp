@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where a material point lies in a mesh, and the shape functions of its cell there.
 #pragma once
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A marker: where something named of a run is and how it is turned. It is a region, a set, a probe, a sensor, a body, or a point.
 #pragma once
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A run at any time: its outputs as stored, and between two of them positions by the cubic through positions and velocities (linear where
 // a run holds no velocities), fields linearly.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A results file as pictures and tables see it: mesh, tags, field steps and histories, read a step at a time.  A run in progress can be
 // read.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Histories of a run: which there are, what their columns are called, and their values.
 #include <fmt/format.h>
 

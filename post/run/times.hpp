@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A span of time on the command line.
 #pragma once
 #include <string>

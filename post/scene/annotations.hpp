@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is drawn above a run: arrows of the forces of its joints and springs, and the ways of points.
 #pragma once
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The surface of an ellipsoid: how a body without a mesh is drawn.
 #pragma once
 #include <vtkPolyData.h>

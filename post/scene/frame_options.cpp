@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "post/scene/frame_options.hpp"
 
 #include <fmt/format.h>

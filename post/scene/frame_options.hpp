@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a frame of a run shows and how: the options that render and movie share.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Frames of one run, or of several side by side at the same instants, camera and colours.
 #pragma once
 #include <memory>

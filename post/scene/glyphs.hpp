@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Symbols of mechanisms, and names beside them that do not overlap.
 #pragma once
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Regions that belong together by name: wheel_1, wheel_2, ... share a colour and a line of the legend when there are many.
 #pragma once
 #include <string>

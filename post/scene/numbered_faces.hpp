@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Smooth faces of a mesh under numbers: a list to look up what a set or a joint needs of them, and where the numbers stand in a picture.
 #pragma once
 #include <optional>

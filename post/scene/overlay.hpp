@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What stands around a 3-D picture: title, colour bar, legend, axes.
 #pragma once
 #include <functional>

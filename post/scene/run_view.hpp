@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One run as it is drawn: what is shown of it, its skins on a stage, moved from instant to instant.
 #pragma once
 #include <vtkRenderer.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What of a scene can be drawn: joints, springs, loads, supports, sensors and bodies, each at its place in the model.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a picture shows: a field of the run as nodal numbers with a unit, or names of cells (region, fidelity, rank).
 #pragma once
 #include <string>

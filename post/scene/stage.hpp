@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Surfaces and lines on a lit stage.
 #pragma once
 #include <vtkActor.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where the camera stands: presets in vehicle axes (x forward, y left, z up), and the exact distance at which given points fill the
 // picture.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The outside of what is shown of a mesh.
 #include <array>
 

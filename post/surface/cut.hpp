@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A plane that takes away what is before it.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "post/surface/iso_surface.hpp"
 
 #include <vtkCellArray.h>

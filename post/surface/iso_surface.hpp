@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Surfaces on which a nodal field has given values, found anew at each instant.
 #pragma once
 #include <vtkPolyData.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cells in tetrahedra, in which a level of a linear function is a triangle or a quadrangle: the ground of sections and iso-surfaces.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The outside of a mesh as VTK draws it: built once, then only its points, normals and values move.
 #pragma once
 #include <vtkPolyData.h>

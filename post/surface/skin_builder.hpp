@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Topology of a Skin: drawn points as combinations of nodes, polygons, smooth patches and edges.
 #pragma once
 #include <array>

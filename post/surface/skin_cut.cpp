@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The part of a Skin behind a plane, closed by the section of its cells.
 #include <algorithm>
 #include <bit>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Values kept and restored in the same order, by one function for both ways:
 //
 //   void archive(Archive& a) { a("spring", angle_, past_); }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Command lines: CLI11 with the habits that all tools share (--help with an example, --version, --quiet, hidden --completion, --man,
 // --markdown).
 #pragma once

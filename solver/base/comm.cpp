@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/comm.hpp"
 
 #define OMPI_SKIP_MPICXX 1

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The ranks of a run.  One rank never starts MPI.
 #pragma once
 #include <cstdint>

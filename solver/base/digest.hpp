@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // FNV-1a of 64 bits: tells contents apart that nobody forges.
 #pragma once
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The values of an entry of the scene, checked and in SI units, as those see them who make something of them and know no files.
 #pragma once
 #include <string>

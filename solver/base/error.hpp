@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Errors of hilo: one line that says where, what and what to do, and the exit code that goes with it.
 #pragma once
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Histories: factors over time as piecewise linear or smooth functions, with exact means and one-sided derivatives.
 #pragma once
 #include <vector>

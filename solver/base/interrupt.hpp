@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What ends a run from outside: signals (batch systems send them), a file STOP for those who cannot signal, a limit of time.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Keys that entries of several kinds have.
 #pragma once
 #include "base/param.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Points and small matrices.
 #pragma once
 #include <Eigen/Core>

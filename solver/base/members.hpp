@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The members of a plain struct (an aggregate without arrays of C), so that what walks through them cannot forget one.
 #pragma once
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The main of a command that runs on ranks.
 #pragma once
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers of the shapes of cells that programs outside the tree bring (system/add_shape.hpp).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One entry of an option or parameter table: key, unit, meaning and range.
 #pragma once
 #include <array>

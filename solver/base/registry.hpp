@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A list of what the program knows by a word: joints, springs, materials, shapes, integrators, fields, cards of decks.
 //
 // Each list is one table, in the file where its rows are made; the scene's schema, its checks and docs/format.md are made from it.  A

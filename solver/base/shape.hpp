@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cell shapes, numbered as stored in /mesh/cells/shape.  Node order within a cell is VTK's.
 #pragma once
 #include <cstdint>

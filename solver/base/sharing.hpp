@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Things that several ranks hold (a node, a patch of cells about it), known by a number of their own, and sums over their holders.
 #pragma once
 #include "base/comm.hpp"

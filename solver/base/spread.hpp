@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Values of things that ranks have parts of (nodes, cells), in an order that no rank makes: by the number of each thing in its file.
 #pragma once
 #include "base/comm.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Seconds of a scope, added to a sum.
 #pragma once
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A table on stdout, aligned for people or as JSON for programs.
 #pragma once
 #include <string>

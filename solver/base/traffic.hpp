@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What this rank sends to others, PETSc's and HDF5's messages included: the calls of MPI that carry data are counted on their way.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Units as engineers write them: kN, MPa, ms.
 #pragma once
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // HILO_WIDE before a function: compiled once for each generation of vectors; which copy is called is settled when the program starts.
 #pragma once
 #if defined(__x86_64__)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Vectors of unknowns and residuals about a state, without multipliers.
 #pragma once
 #include <Eigen/Dense>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The audit of a run: what is known exactly is checked at every step, before the step is accepted.
 //
 //   energy      |dE - dW + dD|, where the method keeps it    <= bound x largest kinetic energy so far + rounding

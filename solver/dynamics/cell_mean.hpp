@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the points of a linear cell say of its stress.
 #pragma once
 #include <Eigen/LU>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Checkpoints: what a run remembers, on file beside its results, so that `hilo-solve --restart run.h5` goes on from there.
 //
 // Two are kept, run.checkpoint.h5 and the one before it, run.checkpoint-1.h5; each is written whole, made safe and renamed.  The rows of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Clocks of mechanisms of one degree of freedom.
 //
 // Such a mechanism runs along a fixed curve, and a method that keeps its energy has the right speed at every place of it: what is left of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Drives and motions that joints do not allow.
 #pragma once
 #include <string>

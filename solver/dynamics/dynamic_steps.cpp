@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Steps in time, from event to event: equal ones, halved where one fails, or those that the tolerance chooses.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the first guess missed at the last steps, continued to the next one.
 //
 // The guess of dynamics/predictor is of low order; what it misses over equal steps is smooth, but for what alternates from step to step

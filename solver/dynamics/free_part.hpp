@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a singular matrix leaves free, by name.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a static solve needs first: parts that cannot move as rigid bodies, or that nothing pushes where they can.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Impulses: instants at which laws of motion ask for a jump of velocities, as at every point of a history that is interpolated linearly.
 #pragma once
 #include <string>

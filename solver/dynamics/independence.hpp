@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which columns of a sparse matrix are independent of each other.
 #pragma once
 #include <Eigen/SparseCore>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Time integrators of the rigid-flexible system.  Each turns the unknown end of a step into stages of the system's residual.
 #pragma once
 #include <memory>

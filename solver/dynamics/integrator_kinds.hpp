@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What makes an integrator of the word of a scene, and what is known of a method before it is made.
 #pragma once
 #include "model/integrators.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Reactions where joint rows are redundant.
 #pragma once
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An analysis of modes: the state of rest, and then a row of the results for every mode, its shape added to that state.
 #include <fmt/format.h>
 

@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/natural_modes.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "base/error.hpp"
@@ -158,7 +160,8 @@ struct RigidMotions {
 };
 
 /// Half of the lowest squared frequency that is no rigid motion: there both are told apart, and the factors are exact.  A first look is
-/// taken far below the frequencies of single cells, and far above what rounding makes of motions that nothing holds.
+/// taken far below the frequencies of single cells, and far above what rounding makes of motions that nothing holds.  Not a number where
+/// nothing moves: all that the factor of the first look answers is rounding.
 double good_shift(Linearized& at, Pencil pencil, int wanted, const std::function<void(double)>& factor) {
   const double first = 1e-7 * at.mean_omega2();
   pencil.shift = first;
@@ -167,6 +170,7 @@ double good_shift(Linearized& at, Pencil pencil, int wanted, const std::function
     double lowest = 1e300;
     for (const double x : lowest_modes(pencil, std::min(wanted, 14), 1e-3, false).omega2)
       if (std::abs(x) > 1e-3 * pencil.shift) lowest = std::min(lowest, std::abs(x));
+    if (pass == 0 && lowest < 1e300 && lowest > 1e10 * first) return std::numeric_limits<double>::quiet_NaN();
     if (lowest == 1e300) {  // they lie lower still, or nothing but rigid motions was asked for
       if (pencil.shift < first) return first;
       pencil.shift = 1e-3 * first;
@@ -197,6 +201,7 @@ std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, co
   Pencil pencil{at.n(), [&](const Eigen::MatrixXd& X) { return by_columns(X, [&](const Vector& x) { return at.mass(x); }); },
                 [&](const Eigen::MatrixXd& X) { return by_columns(X, inverse); }, 0};
   pencil.shift = good_shift(at, pencil, wanted, [&](double shift) { at.factor(shift); });
+  if (std::isnan(pencil.shift)) return {};
   at.factor(pencil.shift);
   const Eigenmodes modes = lowest_modes(pencil, wanted, 1e-6, true, tell);
   if (modes.asymmetry > 1e-4)

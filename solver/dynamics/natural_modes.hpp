@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Small vibrations about a state of rest:
 //
 //   (K - omega^2 M) x + G^T mu = 0,   G x = 0,   x_i^T M x_j = delta_ij

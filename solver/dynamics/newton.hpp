@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Full Newton on the equations of a step, with tolerances that mean forces and lengths.
 #pragma once
 #include <functional>

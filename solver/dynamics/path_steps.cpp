@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The path of equilibrium under loads that grow and shrink: displacements z and the share p of the loads are found together, so that limits
 // of loads and of displacements are passed [crisfield-1981, leon-2011].
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // First guesses of a step's end configuration.
 #pragma once
 #include "dynamics/state.hpp"

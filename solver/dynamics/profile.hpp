@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where the time of a run goes: seconds, counts and messages by phase, on every rank.
 #pragma once
 #include <array>

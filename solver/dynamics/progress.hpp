@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Progress on stderr: one line that rewrites itself on a terminal, key=value lines otherwise.
 #pragma once
 #include <string>

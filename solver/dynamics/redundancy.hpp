@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Redundant joint rows: found by rank, and switched off.
 #pragma once
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The modes of linear regions as results, to be drawn.
 #pragma once
 #include <string>

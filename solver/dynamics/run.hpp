@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A whole run: start, steps with cutting, results, report.
 #pragma once
 #include <functional>

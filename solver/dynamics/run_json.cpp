@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // run.json: what a run says of itself.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A run on its way: what it is made of, and the steps that take it from its start to its end.
 #pragma once
 #include <memory>

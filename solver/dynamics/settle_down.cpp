@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The start from equilibrium.
 #include <fmt/format.h>
 

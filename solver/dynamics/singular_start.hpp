@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Leaving a singular position.
 //
 // A mechanism drawn flat, or at a dead point, can leave it along several branches, and velocities that its rows allow there are those of

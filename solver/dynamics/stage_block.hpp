@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where the tangent of one stage by the unknowns of one stage goes in the matrix of coupled stages.
 #pragma once
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Before the first step: positions and velocities that satisfy the constraints, consistent accelerations, static equilibrium.
 #pragma once
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // State of the system at an instant, and sums of configurations.
 #pragma once
 #include <initializer_list>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Load steps of a static analysis: equal ones, halved where one fails, that end where a history breaks.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Times the steps must hit, and the length of the next step from an estimate of the position error.
 #pragma once
 #include <deque>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stress at the nodes, recovered from where the cells have it best [zienkiewicz-zhu-1992], region by region: never across a material.
 //
 // Each corner v of a region's cells gets a polynomial p_v, fitted to the second Piola-Kirchhoff stress at the sample points of the cells

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The unknown end of a step, q = q0 + dq.  The increment is known to its own precision, not to that of q: velocities (dq/h) lose no digits
 // to a small step, and momentum does not drift with the round-off of positions.
 #pragma once

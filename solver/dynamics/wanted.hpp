@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a run will want of memory and disk, before it runs.
 #pragma once
 #include <string>

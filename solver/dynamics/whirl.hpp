@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Vibrations about bodies that turn steadily, each about an axis through its centre that does not move: with turns z of the unknowns in
 // inertial axes, directors (1 + z^) R0(t) and their derivatives by time, the equations linear in z have constant coefficients where what
 // turns is the same all around,

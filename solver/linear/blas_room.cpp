@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "linear/blas_room.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Room for the work of BLAS, found before it is needed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A serial matrix of 3 x 3 blocks, by scalar rows: what sparse factors read and what a residual is multiplied with.
 #pragma once
 #include <span>

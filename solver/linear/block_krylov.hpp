@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The lowest modes of K x = omega^2 M x on a subspace, by block Krylov sequences of the inverse (K + s M)^-1 M, all vectors kept
 // orthonormal in M [parlett-1998, 13.10].  M may be singular (massless unknowns) and K too (free parts, by the shift s); the subspace may
 // be as small as one direction.  A sequence that holds the wanted modes is doubted: it goes on from further random vectors, until these

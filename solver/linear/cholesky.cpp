@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // sym(A) = [ F   B ]   by  F = L L^T,  Z = F^-1 B,  S = D - B^T Z.
 //          [ B^T D ]
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Serial factors of a saddle-point matrix.
 #pragma once
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "linear/front_order.hpp"
 
 #include <suitesparse/cholmod.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // In which order the blocks of a symmetric matrix are eliminated, and what its Cholesky factor then looks like: columns with the same rows
 // below them are one front [liu-1992].
 #pragma once

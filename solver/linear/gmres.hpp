@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // GMRES preconditioned from the right, that keeps the preconditioned directions [saad-1993]: the residual it watches is that of the system
 // itself, and the solution costs no further application.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How many eigenvalues of a matrix lie below zero, without finding any: the signs of the pivots (Sylvester's law of inertia).
 #pragma once
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The linear solve of a Newton step: one sparse unsymmetric saddle-point system in 3 x 3 blocks,
 //
 //     [ K    G_left^T ] [ dq      ]     [ r ]

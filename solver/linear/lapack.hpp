@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // BLAS and LAPACK: the one place where their Fortran symbols are declared.  Matrices by columns, `stride` apart; triangles are lower ones.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The light solve: serial, for scenes that need not start PETSc.  Factors of one matrix serve the next ones while that is cheaper.
 #include <fmt/format.h>
 #include <suitesparse/amd.h>

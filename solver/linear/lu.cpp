@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <suitesparse/colamd.h>
 #include <suitesparse/klu.h>
 #include <suitesparse/umfpack.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Triangular solves with one supernode of a factor and one right-hand side: each column is read once, with what lies below it, in the order
 // of memory and at its speed, which a triangular solve and a product by the BLAS do not reach for columns as short as these.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loads the PETSc solvers on first use: PETSc's start costs more than a small run, so hilo-solve is not linked to it.
 #include <dlfcn.h>
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Products of tall matrices by BLAS: those of Eigen are compiled for the oldest processor.
 #pragma once
 #include <Eigen/Dense>

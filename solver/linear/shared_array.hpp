@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Arrays that all ranks of one machine see alike: rank 0 makes them, the others find them by its process.  They lie in memory, or in a file
 // without a name that goes with the process.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The Cholesky factor of a symmetric positive definite matrix, front by front [liu-1992], by all ranks of one machine: each takes branches
 // of the elimination tree and, of a solve, some of the columns.  Its values are in memory that all of them see, so that they are there
 // once.

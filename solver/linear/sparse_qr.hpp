@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rank and dependent columns of large sparse matrices.
 #pragma once
 #include <Eigen/SparseCore>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Triangular solves with a supernodal factor in CHOLMOD's layout: rows in part, with its values or a copy of them in single precision. They
 // read the values once, at memory speed; in single precision they take half the time.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cells to the ranks that compute them, and the nodes that they need.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sets and names to the ranks that have their nodes and cells.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How a mesh is divided: every rank reads a slice of the rows; cells travel to the rank that computes them, and nodes, sets and names
 // follow.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What tells a facet of a mesh from all others: its three smallest corners.
 #pragma once
 #include <algorithm>

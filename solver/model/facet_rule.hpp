@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Integrals over facets of cells, and over shells.
 #pragma once
 #include <functional>

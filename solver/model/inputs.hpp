@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What this process was given to read, so that nothing it writes takes its place.
 #pragma once
 #include <cstddef>

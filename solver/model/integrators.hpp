@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The time integrators that the program knows: one file each, one name here.  A program outside the tree adds its own by
 // add_integrator<M>() (dynamics/integrator_kinds).
 #pragma once

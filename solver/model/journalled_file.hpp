@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A file that HDF5 writes through and that is whole at every instant: a process that is killed, a disk that is full, a power cut leave it
 // as it was at the last commit().
 //

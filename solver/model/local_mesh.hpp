@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The part of a mesh that one rank holds: its cells, and their nodes whether owned or shared.
 #pragma once
 #include <map>

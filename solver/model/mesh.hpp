@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A finite-element mesh: nodes, cells of several shapes, the regions that partition the cells, and named sets that may overlap.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // mesh.h5, tags.h5 and parts-N.h5: writing them, and reading any of them through its links.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The table of cell shapes, and volume and quality of a cell from its facets and corners.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How mesh, tags and parts files point to one another; shared by the reader of whole files and that of slices.
 #pragma once
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which region is modelled how: rules from a tags.toml or from options, applied to the regions of a mesh.
 #pragma once
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What cells cost, and a partition made on the spot: recursive coordinate bisection, on cells spread over the ranks.
 #pragma once
 #include <span>

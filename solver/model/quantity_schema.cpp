@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/quantity_schema.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // [[quantity]]: what a run is asked for, and how exactly.
 #pragma once
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The surfaces of the regions of a mesh that is spread over ranks: what a picture of any choice of regions can show.
 #pragma once
 #include "model/local_mesh.hpp"

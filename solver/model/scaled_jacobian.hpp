@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scaled Jacobian of a cell: at each corner the determinant of the three edges that meet there over the product of their lengths, least
 // over the corners, as 1 for the regular tetrahedron, the right prism on a regular triangle and the box.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The scene: one TOML file, kept as entries with their places.  What the keys mean is in scene_schema; nothing is interpreted here.
 #pragma once
 #include <functional>

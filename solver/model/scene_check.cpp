@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Mistakes of a scene that need more than one key to see.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

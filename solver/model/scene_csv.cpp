@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Load histories of a scene: from the keys t and value, or from a CSV file.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every value in force, for --explain.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

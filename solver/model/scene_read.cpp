@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The sections of a scene: every key known, given once, in range, or completed with its default.
 #include "model/scene_read.hpp"
 

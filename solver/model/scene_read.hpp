@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Steps of Scene::load between the TOML tree and the checked entries.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a scene may say: the table behind the checks, --explain and docs/format.md.
 #include "base/keys.hpp"
 #include "model/quantity_schema.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sets that a scene makes of a mesh by place: [set.NAME].
 #pragma once
 #include "model/local_mesh.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // TOML with places: parsing, overrides and text of a scene before the schema looks at it.
 #pragma once
 #include <toml++/toml.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One value of the scene: type, range, length and unit.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Values of a scene that are possible but not plausible: mostly units gone wrong, and steps too long for the load.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every array of every hilo file: path, type, shape, unit, meaning, writer.  docs/format.md is generated from this table.
 #pragma once
 #include <cstdint>

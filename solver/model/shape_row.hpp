@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The list of cell shapes (model/mesh_shape.cpp), and another row of it.
 #pragma once
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Smooth faces of a mesh's surface: facets that meet without an edge, as a CAD program sees a bore or a foot.
 #pragma once
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // HDF5 through its C interface.  The library is the Open MPI build, used here with the POSIX driver alone: MPI is never initialised.
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // HDF5 files: arrays with units, strings, histories that grow, links, and publication as a whole or not at all.
 #pragma once
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Store: a file is walked through by a child first.  The HDF5 library trusts what a file says of itself; a damaged one makes it crash, go
 // round in circles or ask for memory without end.  There that happens to a process that nobody needs.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Inside of Store: handles of the HDF5 library that close themselves, and what an open file remembers.
 #pragma once
 #include <hdf5.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What goes with files besides their arrays: digests, text written as a whole, relative paths, names, command lines.
 #include <fcntl.h>
 #include <fmt/format.h>

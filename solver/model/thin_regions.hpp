@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shells and beams of a mesh: cells that there is no element of, in regions that can be rigid alone.  What a rigid region needs of them is
 // their mass, which the mesh file has as moments of each region.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The keys of [time], those of the integrators among them.
 #pragma once
 #include "model/scene.hpp"

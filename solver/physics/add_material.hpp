@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A law from outside the tree.  A program that has one writes its struct M as material/material.hpp says, and calls add_material<M>()
 // before it reads its first scene; keys, checks and suggestions of [material.NAME], every shape of the tree, stress, bars where M has them,
 // and memory where it has that are then as for a law of the tree.  Its kernels take two cells at once, whatever the processor can do.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Moduli that differ with direction, and how they turn: strains and stresses are six numbers (material/voigt.hpp).
 #pragma once
 #include <Eigen/LU>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Directions and frames that entries of the scene name.
 #pragma once
 #include "base/entry_values.hpp"

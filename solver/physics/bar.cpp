@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/bar.hpp"
 
 #include "physics/bar_of_law.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Two-node bar of constant section area, consistent mass; one cell at a time.  Its law is that of its material under uniaxial stress.
 #pragma once
 #include "physics/solid_kernel.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The kernel of bars of one law (physics/bar.hpp).
 #pragma once
 #include <cmath>

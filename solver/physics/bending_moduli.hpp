@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Moduli of what bends along the axes of a cell (physics/hourglass.hpp): in the plane p, q of two axes, with no stress across it,
 // s = Q (e_pp, e_qq, 2 e_pq), and Young's modulus along one axis.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/cell_gradients.hpp"
 
 #include "physics/shape/from_outside.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Gradients of the shape functions of one solid cell.
 #pragma once
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stress that a nearly incompressible cell has from its mean dilatation (physics/mean_dilatation.hpp).
 #pragma once
 #include <span>

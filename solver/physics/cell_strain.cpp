@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/cell_strain.hpp"
 
 #include "physics/cell_strain_of_shape.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How far a cell is compressed, and whether it is folded.
 #pragma once
 #include <span>

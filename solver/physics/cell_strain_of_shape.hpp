@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Least stretch and det F at the points of a solid cell.
 #pragma once
 #include <Eigen/Eigenvalues>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Joints that give way: the rows of any joint on springs and dampers instead of multipliers.
 #include <utility>
 

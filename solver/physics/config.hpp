@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What every unknown is made of: positions of nodes, of bodies as a centre and three directors, and of linear regions their amplitudes
 // beside these.
 #pragma once

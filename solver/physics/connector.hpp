@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Geometry of joints and springs: quadratic measures of points and directions carried by two ends, or three where a joint needs a carrier.
 //
 // Every measure e(q) is of degree two in the points, so G(q_mid)(q1 - q0) = e(q1) - e(q0) exactly.  A joint holds its measures, or

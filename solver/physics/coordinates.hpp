@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Forces along coordinates x(e) of a connector rather than along its measures e: an angle, a distance, the row of a joint.
 //
 // With the discrete gradient d of a coordinate, d.(e1 - e0) = x1 - x0, a force f along it acts as s = f d and does the work f (x1 - x0)

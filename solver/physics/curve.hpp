@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A smooth curve through points: C2 cubic spline over the chord lengths, closed, or open with not-a-knot ends [de-boor-1978].
 #pragma once
 #include <span>

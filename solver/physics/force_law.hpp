@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Laws of forces along the measures of a connector.
 #pragma once
 #include <array>

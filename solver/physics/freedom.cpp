@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What acts along the free directions of joints: stops, motors, friction.
 #include <algorithm>
 #include <cmath>

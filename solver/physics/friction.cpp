@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Coulomb friction, regularised: tanh(u/slip_velocity) instead of the jump at rest, so that sticking is a creep of at most about the slip
 // velocity: a force of the fraction p of the limit creeps at slip_velocity artanh(p).
 //

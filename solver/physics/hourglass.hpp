@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Physical stabilisation of the one-point hexahedron: the strains its centroid does not see, held by the true moduli of bending,
 // after Belytschko & Bindeman [belytschko-bindeman-1993], written in twelve quadratic strain measures so that energy-momentum is exact:
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Physical stabilisation of the hexahedron of 20 nodes with 2 x 2 x 2 points: the six modes that its points do not see,
 //
 //   u = t_x x (y^2 - 1/3)/|t_x|^2 - t_y y (x^2 - 1/3)/|t_y|^2   and the same times z,   for the three pairs (x, y) of the cell's axes,

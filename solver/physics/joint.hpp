@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Joints: rows that hold the measures of a connector, or functions of them, or velocities.
 #pragma once
 #include <array>

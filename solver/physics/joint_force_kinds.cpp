@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Kinds of forces along the free directions of a joint: stops, motors, friction.
 #include <fmt/format.h>
 

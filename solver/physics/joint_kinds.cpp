@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The kinds of joints as lists of quadratic measures and rows: every kind has its minimal number of independent rows.  Another one is a
 // function that makes it, and a row of the table below.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What kinds of joints are made with: measures between points and directions carried by the ends, taken as rows.
 #pragma once
 #include "physics/joint.hpp"

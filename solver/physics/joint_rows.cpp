@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/joint_rows.hpp"
 
 #include <algorithm>

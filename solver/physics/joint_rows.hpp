@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rows of joints beyond plain measures: sums of measures and angles.
 #pragma once
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Functions of a number that is a double, or a vector of doubles taken lane by lane.  Templates and inlined functions alone: kernels are
 // compiled for several processors and share no code with other units.
 #pragma once

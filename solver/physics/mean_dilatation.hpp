@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Nearly incompressible cells: what Poisson's ratio has above a bound acts on the mean dilatation of the cell, not at every point of it.
 // Pressures that differ from point to point are more conditions than the nodes can meet, and the cell locks.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The law of a prescribed motion: one coordinate as a function of time, the same for [[motion]] and for what drives a joint.
 #pragma once
 #include "base/history.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Motors: a force (torque) that depends on the rate of a coordinate, pushing it along; b is driven, a takes the reaction.
 #include <algorithm>
 #include <utility>

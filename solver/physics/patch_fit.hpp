@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A polynomial through the stresses at the points of a patch of cells, by least squares [zienkiewicz-zhu-1992].
 //
 //   p(X) = c + l.eta + k q.(Q(eta) - Q_mean),   eta = G (X - X_mean),   Q = (e1^2, e2^2, e3^2, sqrt2 e2 e3, sqrt2 e1 e3, sqrt2 e1 e2)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rows that are linear in the velocities, A(q) v = 0, and come from no position: rolling without slip, knife edges.
 //
 // Each row says that the material point of b at the contact does not move against that of a along a direction t:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Functions of the measures of a connector: rows of joints, and coordinates that forces act along.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Total Lagrangian solid: residual, tangent and energy of one cell (or of as many as T has lanes) over a step.
 //
 //   E = (F^T F - I)/2,   f_a = int F_w S grad N_a dV,   F_w = (1 - w) F0 + w F1

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // All that a solid cell's strain does: its points, what they do not see (hourglass modes), and its mean dilatation.
 #pragma once
 #include "physics/hourglass.hpp"

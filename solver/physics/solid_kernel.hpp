@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The solid kernels by shape and material, in the widest vectors this machine has.
 #pragma once
 #include "base/shape.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Body of the translation units solid_lanes{2,4,8}.cpp: every kernel for W lanes.  Each unit is compiled for its own instruction set, so
 // nothing here may be shared with other units: all functions are templates on the lane type or have internal linkage.
 #pragma once

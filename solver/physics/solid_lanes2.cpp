@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/solid_kernel_lanes.hpp"
 
 namespace hilo {

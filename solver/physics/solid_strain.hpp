@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A call of a solid cell's functions, and the strain at its points (physics/solid.hpp has the equations).
 #pragma once
 #include <type_traits>

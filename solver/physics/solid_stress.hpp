@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stress at a point of a solid cell: that of its strains, and that which Newton's last correction foresaw.
 #pragma once
 #include "physics/material/dilatation.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Springs and dampers: discrete gradients of potentials in quadratic measures, so that the elastic work of a step is exact and a
 // damper never feeds energy in.
 #include "physics/spring.hpp"

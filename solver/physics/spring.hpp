@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Force elements: a law along the measures of a connector.
 #pragma once
 #include <optional>

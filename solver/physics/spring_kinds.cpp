@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Kinds of springs between two ends.
 #include "physics/spring_kinds.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The kinds of forces that entries of the scene can name: between two ends ([[spring]]), and along a joint ([[stop]], [[motor]],
 // [[friction]]).  Another one is a row of its table; a law of forces of its own is a SpringLaw (force_law.hpp) and what makes a Spring of
 // it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stops: an elastic limit that gives its energy back exactly, and a damper that keeps what the restitution asks.
 //
 // A mass m that hits f = k d (1 + alpha dd/dt) at speed v obeys u du/dd = -(k/m) d (1 + alpha u).  The penetration d is 0 at the start and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stress of one cell at points of it, as its kernel sees it: what recovery (dynamics/stress_recovery) is made from.
 #pragma once
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stress at the points of one cell, of each shape and law (physics/stress.hpp).
 #pragma once
 #include <Eigen/LU>

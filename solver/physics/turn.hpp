@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An angle from its sine and cosine, two measures of degree two: unwrapped over any number of turns, with an exact discrete gradient.
 //
 // With x = (theta1 - theta0)/2, the vector d = x/sin(x) (cos(theta_mid), -sin(theta_mid))/rho over (sin, cos) has d.(e1 - e0) =

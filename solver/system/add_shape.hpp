@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A solid shape from outside the tree.  A program that has one writes its struct S as physics/shape/shape.hpp says, and besides
 //
 //   static constexpr Shape shape{128};             a number from 128 on

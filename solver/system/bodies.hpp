@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rigid bodies: inertia and weight in natural coordinates, and the positions of their points.
 #pragma once
 #include "system/contribution.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The system of a scene, step by step.
 #include <Eigen/Geometry>
 #include <algorithm>

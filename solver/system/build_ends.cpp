@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Names to carriers: a body, a node, or a patch made on the spot.
 #include <fmt/format.h>
 

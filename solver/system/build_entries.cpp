@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Entries of the scene to point masses and stations.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // [[joint]] entries to connectors with multiplier rows.
 #include <fmt/format.h>
 

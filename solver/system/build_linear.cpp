@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Linear regions: their mean axes, and what they are welded to.
 #include <fmt/format.h>
 

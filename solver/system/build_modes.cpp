@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The modes of linear regions, found on one rank from all their cells.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // [[motion]] and [[initial]] entries: what is held or moves by a law, and velocities at the start.
 #include <fmt/format.h>
 #include <fnmatch.h>

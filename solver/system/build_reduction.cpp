@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From the cells, interfaces and loads of a linear region, on all ranks, to its modes on the first.
 #include <fmt/format.h>
 

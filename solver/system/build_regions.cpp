@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Regions: material, mass integrals, rigid super-elements, batches of flexible cells.
 #include <fmt/format.h>
 #include <fnmatch.h>

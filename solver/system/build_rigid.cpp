@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rigid regions to bodies: those that share nodes, or that a set which a joint or spring holds has nodes of, are one.
 #include <fmt/format.h>
 

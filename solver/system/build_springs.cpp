@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Entries of the scene to springs, stops, motors and friction.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scene and mesh become a System: regions to batches and bodies, names to carriers, entries to connectors, loads and motions.
 #pragma once
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Clusters of cells that can only move together.
 #include <algorithm>
 #include <limits>

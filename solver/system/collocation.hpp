@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stages of one step that are solved together and share its way: what quadratic measures, and functions of them, do along it.
 //
 // A measure e(q) of degree two changes over the step by  e(q1) - e(q0) = sum b_j h G(Q_j) V_j  exactly when the weights b and nodes c are

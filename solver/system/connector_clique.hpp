@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A connector among the unknowns: what joints and springs share within an evaluation.
 #pragma once
 #include "physics/connector.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Constraint rows one by one: what chooses, drives, shares out and watches them sees a list of these (System::constraints), whatever brings
 // the rows: a joint, or a later contact.
 #pragma once

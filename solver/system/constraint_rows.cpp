@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Constraint rows of joints: their blocks, values, rates and reactions.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What takes part in the equations of motion: flexible cells, rigid bodies, joints, springs, loads, motions, each in one file behind this
 // interface.  The system and the recorder loop over contributions and know none by name; a new kind is one file, and a line in
 // Builder::build.  A contribution holds many things of its kind (all cells, all joints), so that a call costs nothing beside its work.

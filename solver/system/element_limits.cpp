@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the cells of a flexible region cannot do, told when a scene has them (docs/elements.md has the figures).
 #include <fmt/format.h>
 

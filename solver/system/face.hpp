@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The nodes of an interface of a linear region about their mean: principal axes, and how they can be stretched.
 #pragma once
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Surface integrals over facets of three, four, six or eight nodes.
 #pragma once
 #include <span>

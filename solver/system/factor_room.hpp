@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Room for the factors of linear regions while their modes are found.
 #pragma once
 #include <memory>

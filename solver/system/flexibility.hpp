@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The answers of the cells of a linear region to loads.
 #pragma once
 #include <array>

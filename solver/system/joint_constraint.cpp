@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The rows of a joint, seen one by one.
 #include "physics/rolling.hpp"
 #include "system/joints.hpp"

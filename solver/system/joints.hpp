@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Joints: constraint rows with multipliers.
 #pragma once
 #include "system/connector_clique.hpp"

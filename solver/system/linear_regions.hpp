@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Linear regions: small strain on any rigid motion, by modes about mean axes.
 //
 //   x_a = c + R (r_a + sum_j phi_aj eta_j),   Q = (c, R e_k, Y_j e_k),   b_a = (1, r_a, phi_aj),   A = int rho b b^T constant

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What an analysis of a path puts out beside displacements and forces: a row for every state of equilibrium.
 #pragma once
 #include "system/contribution.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loads within an evaluation: mean of the history over the step, at the step's left configuration.
 #include "system/loads.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loads: forces of nodes and bodies, torques, pressures, each times a history.
 #pragma once
 #include "base/history.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Motions that nothing resists: what would leave a static analysis without an answer, told by name before it is asked for one.
 //
 // Every part moves as a rigid body, x -> v + w x (x - c): a cluster of cells joined by faces, a body, a node of bars alone.  Over these

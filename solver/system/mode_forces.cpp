@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "system/mode_forces.hpp"
 
 #include <Eigen/LU>

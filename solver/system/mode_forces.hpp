@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Forces on what a linear region carries, as forces of its amplitudes, and what they add to the tangent where the region moves.
 //
 // What is carried, a node, a point or a direction y = R r + sum_j Y_j phi_j (and the centre where it is a point), takes a force f to

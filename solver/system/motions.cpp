@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What moves by a law: positions and their derivatives, reactions and work.
 #include "system/motions.hpp"
 

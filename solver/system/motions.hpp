@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is held or moves by a law: bodies, and single components of nodes.
 #pragma once
 #include "physics/motion_law.hpp"

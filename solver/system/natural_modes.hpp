@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What an analysis of modes puts out beside displacements and forces: a row for every mode.
 #pragma once
 #include "system/contribution.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers of the unknowns, here and over all ranks.
 #include <algorithm>
 #include <map>

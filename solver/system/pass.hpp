@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One evaluation in flight, and what it gives.
 #pragma once
 #include "system/points.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Masses at nodes.
 #pragma once
 #include "system/contribution.hpp"

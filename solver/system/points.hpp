@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What moves: nodes, bodies and the modes of linear regions, which node follows which body, and the blocks of unknowns of all of them.
 //
 // Unknowns are 3 x 3 blocks: one per free node, two per free body (translation, rotation vector), and the multipliers of constraint rows

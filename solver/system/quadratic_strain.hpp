@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Strain energy of a linear region that stiffens: St. Venant-Kirchhoff on x = X + sum_j phi_j eta_j has Green-Lagrange strains of degree
 // two in the amplitudes, and so an energy of degree four,
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // reduced.h5: what linear regions were reduced to, each with digests of what it was found from.  Where nothing of that has changed it
 // serves again; where something has, it is refused by name.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The modes of a linear region: what its cells can do in small strain, reduced to what its interfaces, the forces of inertia and the lowest
 // frequencies ask for.
 //

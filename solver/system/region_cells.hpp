@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stiffness and mass of the cells of a linear region.  The mass is kept; the stiffness is computed whenever it is asked for.
 #pragma once
 #include <Eigen/Dense>

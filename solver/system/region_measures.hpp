@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How far linear regions are from what their strains are good for, during a run:
 //
 //   quadratic strain   strains of the second degree that nothing can take back: with f their force on the softest shapes, K the stiffness

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What all ranks have of a linear region, brought to rank 0, where its modes are found.
 #pragma once
 #include <algorithm>

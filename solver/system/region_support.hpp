@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a linear region is free to do between its supports: joints, welds, neighbours and the ground.
 //
 // Unknowns are translations and turns of the region and of the bodies that hang together with it, and the amplitudes s of its softest

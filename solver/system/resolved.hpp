@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The frequencies that cells and modes resolve.
 #pragma once
 #include <vector>

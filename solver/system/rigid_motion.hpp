@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Parts that move as rigid bodies, x -> v + w x (x - c), and how such motions are told to a reader.
 #pragma once
 #include <Eigen/Dense>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "system/second_order.hpp"
 
 #include "linear/products.hpp"

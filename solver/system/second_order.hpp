@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a linear region leaves out: the work of stresses on strains of the second degree, u_k,i u_k,j /2, of displacements from its mean
 // axes.  With gradients H_i of three turns and of the softest shapes,
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Flexible cells among the unknowns: blocks, cliques, names, turns, ties.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Flexible cells: gather, kernel on as many cells as there are lanes, scatter.
 #include "system/solids.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Flexible cells: batches of one shape and law, each a run of calls of one kernel.
 #pragma once
 #include "physics/solid_kernel.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What springs remember, take, give and show.
 #include <fmt/format.h>
 

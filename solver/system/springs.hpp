@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Springs, dampers, stops, motors, friction and joints that give way: forces of connectors, without rows.
 #pragma once
 #include "physics/spring.hpp"

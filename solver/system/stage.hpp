@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where in a step an integrator takes which term.
 #pragma once
 #include "physics/config.hpp"

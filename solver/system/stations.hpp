@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sensors and probes: places that are measured.
 #pragma once
 #include "system/contribution.hpp"

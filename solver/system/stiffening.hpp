@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the modes of a linear region need to stiffen: strains of the second degree, and shapes that let a bent part shorten.
 //
 // Bending turns sections, and a linear map stretches what it turns: without shapes that take these stretches back, the quadratic strain

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cells that are folded where the points of the stress do not see it: no state to go on from.  Compressions beyond which a law or a cell
 // is no longer what it stands for: told once for a region, at the state that reaches them.
 //

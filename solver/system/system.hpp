@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The whole model as one residual and tangent: contributions to the equations of motion of nodes and bodies.
 //
 //   r(q0, q1, lambda) = M a - M g + f_int(q0, q1) + G_left^T lambda - F,      g(q1) = 0

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Six rows, or up to twelve, between a linear region and a body: the mean motion of some of its nodes is that of the body, which may be a
 // patch that joints hold, a rigid neighbour, or what another linear region shares with it.
 //

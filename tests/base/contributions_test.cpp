@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What takes part in the equations of motion is listed once (Builder::add_contributions), and nobody else knows more than a few by name: a
 // list that stands twice is one that forgets.
 #include <gtest/gtest.h>

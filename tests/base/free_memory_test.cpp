@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/free_memory.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Lists by words: what is not in them is an error with a suggestion, what stands in them cannot be added twice, nor too late.
 #include "base/registry.hpp"
 

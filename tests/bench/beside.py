@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Speed of two builds of hilo-solve, in turn in one run, so that what else the machine does falls on both: scenes of data/ of every size
 that a suite can wait for, rigid and flexible, serial and on two ranks.  Prints the median of processor seconds of the steps
 (`processor_seconds` of run.json) and their ratio; the first run of each is not counted.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the benches of cells share: a clock, and a block of cells of one shape as a system.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a flexible cell costs by shape and material, microseconds on one core, best of five: residual and tangent into the matrix, the
 // residual alone, and its share of a factorisation and a solve, in blocks of about 6600 unknowns.  hilo-part's weights come from here:
 //   cmake --build build --target costs-bench && build/bin/costs-bench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the cell shapes do where shapes differ: compliance (mean displacement under a load) over that of a fine mesh, small strains.
 // The matrices are those of the solver's kernels.  elements-bench prints the table of docs/elements.md.
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What a run costs against the number of its bodies, for five families of scenes: processor seconds (user and system) before the first
 step and of a step, memory of a body, and the slopes of log cost over log N, fitted to the larger half of the sizes.
 

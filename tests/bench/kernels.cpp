@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The solid kernels and their assembly against what one core can do.  By shape and material, microseconds per cell: force alone, tangent
 // and force, the same with its insertion into the light solver's matrix; flops of the tangent and force, counted by running the kernel on
 // numbers that count; fractions of the peak of fused multiply-adds in the same vectors and of the memory bandwidth, both measured here.

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Peak memory of every rank on the vehicle, size M, two steps from equilibrium, default solver:  tests/bench/memory.sh BIN [RANKS] [--set ...]
 set -eu
 bin=$(realpath "$1"); ranks=${2:-4}; shift; shift || true

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the reduction of one region costs: a tube or a block of hex8 cells, held at one end, pushed at the other.
 
 reduction.py BIN FOLDER tube NR NT NZ [HZ] | block NX NY NZ [HZ]  [-- options of hilo-reduce]

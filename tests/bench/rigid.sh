@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Small scenes, one thread: microseconds per step, and seconds to start; where simbody-bench is built, rigid ones beside Simbody.
 # Usage: rigid.sh BIN
 set -euo pipefail

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Simbody beside hilo on the rigid scenes of rigid.sh, one thread: processor time of a step, error in position at ten times, drift of the
 // energy.  Trees of pins closed by constraints, as Simbody's users build them; rates start as the scenes' do.
 //   simbody-bench SCENE reference       t, x, y, z of the probe at ten times, from equations that know no joint (Bricard: Simbody at 1e-11)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Iterations of BDDC and FETI-DP on a bar between two bodies, in irregular parts, several subdomains per rank:
 //   mpirun -n 2 substructuring-bench NX NY NZ CFL KIND SUBDOMAINS [JUMP]
 // SUBDOMAINS: of all ranks.  JUMP: in every other of as many regions, scattered without regard to the subdomains, the bar is so much

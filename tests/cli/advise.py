@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """hilo-advise on three bars: what it chooses is within its tolerance of the run with all cells at half the step, it keeps rigid what may be
 and refuses what it cannot say.  Usage: advise.py BIN"""
 import json

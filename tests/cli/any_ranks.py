@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """An answer belongs to the scene: not to the number of ranks, and not to which rank has which cell.
 
 Every scene of data/ with its mesh of size S, cut off after a few steps: serial, and on several ranks with the cells divided by hilo-part (by

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Scenes that once got a wrong answer without a word (tests/cases): each is right, or stops with the exit code it should, serial and on ranks.
 
   cases.py REPO BIN       serial, and the first steps on 2 ranks: in the suite

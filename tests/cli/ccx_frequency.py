@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Natural frequencies of decks of calculix-ccx-test, as hilo-import and hilo-solve find them, against the results the package brings along.
 
   tests/cli/ccx_frequency.py REPO BIN

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Laws of materials that decks carry against CalculiX, run here on the same cells (quadratic tetrahedra, four points in both): a bar with a
 notch all around is pulled and let go (metal: yield table, isotropic or kinematic), or pulled (rubber, wood).
 

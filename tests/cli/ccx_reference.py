@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Decks of calculix-ccx-test through hilo-import and hilo-solve, against the reference results the package brings along.
 
   tests/cli/ccx_reference.py REPO BIN [DECK...]

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Stress at the surface of a connecting rod (rod.geo, quadratic tetrahedra) against CalculiX, run here on the same cells: a peak at a fillet
 must not come out low because nodal stress is the mean of what the cells have inside.
 

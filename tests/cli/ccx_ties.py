@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Reference nodes against CalculiX, run here on the same cells: the beam of calculix-ccx-test's beamprb with C3D20 cells, its end carried by a
 rigid body, a kinematic and a distributing coupling, and held by a spring.  Loads are a thousandth, so that the answer is linear.
 

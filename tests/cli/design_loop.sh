@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The design loop in a folder of its own, cut to 5 ms: designs that cannot be are reported with exit code and message and do not stop the
 # sweep; a changed number redoes its own design alone; a changed scene redoes no mesh.  Usage: design_loop.sh REPO BIN
 set -euo pipefail

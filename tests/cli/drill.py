@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Scenes that the drills stop in the middle (fault_drill.py, power_cuts.py), and what their results have in common."""
 import subprocess
 

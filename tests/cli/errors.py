@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Each row of docs/errors.md is run: `command` | exit code | message.  errors.py REPO BIN [--print] [WORD]
 
 The page's own code blocks make the folder: those that begin with `# FILE` are files, the block behind "runs before" is a script.  Every

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Every number that a scene may hold, one after the other at values nobody means - 1e-300, 1e300, -1, 0, nan, inf, 3e9 - and the run ends in
 seconds: complete with finite results (exit 0), refused with the place of the number (2), or stopped with a reason (3).  The keys come from
 the schema (hilo-show --schema), so that a new one is tested too.  Usage: extreme_keys.py BIN [SECTION]"""

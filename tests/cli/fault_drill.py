@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Nothing that was written is lost: runs are killed, and find the disk full, at many instants; then they go on.
 
   fault_drill.py REPO BIN LIB            a part of it, two minutes: in the suite (with five instants of every scene)

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Geometry of gmsh's own tutorial from file to picture: t5.geo (a cube hung on one of its five spheres, now rigid bodies), t16.geo (nearly
 # the same solid by Boolean operations) and t20_data.step (a part in millimetres), both in free fall.  Usage: gmsh_doc.sh REPO BIN
 set -euo pipefail

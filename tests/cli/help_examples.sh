@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Runs the example lines at the end of every --help, of each tool and each subcommand, as printed, in a folder that holds the files they
 # name.  What an example writes serves the next ones.  Usage: help_examples.sh REPO BIN
 set -euo pipefail

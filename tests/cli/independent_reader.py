@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes that gmsh writes, read by meshio and by hilo-import: the same nodes, volumes by region, mid-side nodes, groups of faces.
 Usage: independent_reader.py REPO BIN"""
 import os

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Fidelity is a word: every region of every scene of data/ with a mesh, size S, runs at each of the three levels, the rest as its own tags
 say, through a few steps; and where all materials are a hundred times as stiff the levels agree within 1 %, or what is left falls to 3/100
 where they are a hundred times stiffer still.

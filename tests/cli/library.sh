@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The libraries as hilo-dev installs them: a program outside the tree finds, compiles and runs them.  Usage: library.sh REPO BUILD
 set -euo pipefail
 repo=$(realpath "$1") build=$(realpath "$2")

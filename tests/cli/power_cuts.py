@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Power cuts: what a disk may have kept of a run, at every instant.
 
   power_cuts.py REPO BIN LIB [STRIDE [TRIES]]     each STRIDE-th change or sync of a file, TRIES disks each

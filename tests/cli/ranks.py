@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The firing scene on 1, 2, 3 and 4 ranks (MUMPS, and BDDC on 3; conjugate gradients on 1 and 2 and FETI-DP on 2, in dynamics; Newton at
 1e-12): displacements agree to 1e-8 of the history's peak and reactions to 1e-6 of theirs, because partition, summation order and solver
 change round-off only.  Usage: ranks.py REPO BIN"""

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Files from strangers: scripts that would leave a file behind, under every ending that hilo-import takes, leave none and are refused with
 their line; what hilo reads of .msh and .mesh is what gmsh reads, array by array.  Usage: strangers.py REPO BIN"""
 import os, subprocess, sys, tempfile

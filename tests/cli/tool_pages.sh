@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The pages of docs/tools are what the tools say of themselves today, and there is one for each.  Usage: tool_pages.sh REPO BIN
 set -euo pipefail
 folder=$(mktemp -d)

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Runs every sh block of docs/tour.md in one folder that holds the tour's STEP file, and the Python block where h5py is there.
 # Usage: tour.sh REPO BIN
 set -euo pipefail

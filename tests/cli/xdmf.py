@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """run.xdmf says what is in run.h5: every array it points to is there with the type and shape it states, and its mixed topology, decoded by XDMF's
 codes, is the mesh.  Usage: xdmf.py RUN.xdmf"""
 import os

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the choice of an integrator says and needs.
 #include <sstream>
 

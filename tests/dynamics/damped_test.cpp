@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Damping: what the matrix of Newton forgets costs iterations, and what the balance forgets looks like energy from nowhere.
 #include "dynamics/scenes.hpp"
 #include "model/scene.hpp"

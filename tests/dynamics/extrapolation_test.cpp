@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a guess missed is continued only where the same guess, step and loads go on.
 #include "dynamics/integrator/make.hpp"
 #include "dynamics/scenes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Gauss collocation (docs/gauss.md): orders against RK4 without joints or multipliers, what it keeps, its matrix of all stages against
 // differences, and what it refuses.
 #include <Eigen/Dense>

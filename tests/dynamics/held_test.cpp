@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Statics and the start from equilibrium: what turns inside out is refused, and what nothing holds is told by name.
 #include "dynamics/scenes.hpp"
 

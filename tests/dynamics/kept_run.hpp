@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs that are kept in the middle, and others that go on from there.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a run remembers can be kept between two steps: another run that goes on from there takes the same steps, bit by bit, with every
 // integrator, whatever the scene remembers; results, counts and verdict of the audit are those of the run that was never left.
 #include "dynamics/kept_run.hpp"

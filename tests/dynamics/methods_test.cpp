@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Orders of every integrator in position, velocity, acceleration and reaction on the scenes of stability.md: PEND3D, TOP and SLIDER
 // against RK4 on one or three coordinates in the test itself, DPSMOOTH (flexible) against Radau IIA5 at a small step.
 #include "dynamics/scenes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Orders of position, velocity, acceleration and reaction of a brick hung at its corner (stability.md, PEND3D), against RK4 on Euler's
 // equations in the test itself, which has neither joints nor multipliers.
 #include "dynamics/scenes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Redundant rows of mechanisms too large for one dense matrix.
 #include "dynamics/scenes.hpp"
 

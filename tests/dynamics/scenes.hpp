@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes of stability.md with their truth, written as a user would write them.
 #pragma once
 #include <sstream>

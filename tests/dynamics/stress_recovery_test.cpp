@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Recovered stress of deformations that are known everywhere, on bent meshes of every shape: no equation is solved here.
 #include "dynamics/stress_recovery.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // time.tolerance bounds the error of positions accumulated over the run, as a fraction of the scene's length; variable steps keep the
 // order.
 #include <fstream>

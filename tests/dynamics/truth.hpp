@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rigid bodies turning about a fixed point, and the slider-crank, integrated in the test itself without joints or multipliers.
 #pragma once
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs that are stopped from outside say how to go on, and go on to the same numbers; what does not belong together is refused.
 #include "faults.hpp"
 #include "model/store.hpp"

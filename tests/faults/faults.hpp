@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A small model in a folder of its own, and what must hold when a command refuses: exit code, one line on stderr, nothing on stdout,
 // and the folder as it was.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bad files and command lines: every tool says in one line what is wrong, ends with the documented code, and leaves nothing behind.
 #include "faults.hpp"
 

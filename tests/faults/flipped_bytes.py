@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Flipped bytes: a random bit of every kind of hilo's files is turned, and each tool that reads it is run.  None may crash, hang or end with
 an internal fault (exit 5); prints how many flips hilo-show --check finds.  Usage: flipped_bytes.py REPO BIN FLIPS [SEED]"""
 import os, random, shutil, subprocess, sys, tempfile

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is said: the right file, the right place, the part of the model that is meant, and nothing where quiet was asked for.
 #include "faults.hpp"
 

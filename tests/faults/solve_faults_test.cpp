@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bad scenes: hilo-solve says in one line what is wrong and where, on any number of ranks, and leaves nothing behind.
 #include "faults.hpp"
 

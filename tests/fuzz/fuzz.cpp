@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // libFuzzer's entry: bytes become a file in memory, which the reader named by HILO_FUZZ reads.  make -C tests fuzz
 #include <fmt/format.h>
 #include <unistd.h>

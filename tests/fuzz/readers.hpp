@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every reader of files from outside, as one list: what the fuzzer feeds, and what the suite feeds with the fuzzer's findings.
 #pragma once
 #include <span>

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Builds the readers with clang's libFuzzer, address and undefined-behaviour sanitizers, and feeds each for SECONDS, one after the other,
 # beginning with the repository's own files and what was found before.  A finding lies in FOLDER/found/NAME-..., smaller ones are looked for.
 # BIN has tools as they are for use: they make meshes to begin with.

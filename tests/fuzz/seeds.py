@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Seeds of the fuzzer, a folder for each reader: decks that stand in the tests' sources, small meshes in every format that gmsh writes, and
 files of hilo.  Usage: seeds.py REPO BIN FOLDER"""
 import glob, os, re, shutil, subprocess, sys, tempfile

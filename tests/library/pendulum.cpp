@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo as a library: a scene, its run, a number from its results.  A bob swings down from the horizontal; its pin carries at most
 // m g (1 + 2 m L^2/(J + m L^2)), which the program asks for.
 #include <cmath>

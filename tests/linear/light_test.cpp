@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The serial solver's factors: what they are chosen for, and what happens where they do not suit.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Linear systems for the solvers' tests: whole on every rank as a recipe, added by parts as a model would.
 #pragma once
 #include <Eigen/Dense>

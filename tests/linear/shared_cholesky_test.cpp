@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The factor that all ranks of one machine hold once: a block of elastic cubes, held at one face, against a dense factor.
 #include "linear/shared_cholesky.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What every solver promises, on random saddle points against Eigen's dense LU.
 #include <gtest/gtest.h>
 

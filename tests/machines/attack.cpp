@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs random machines by hand: `machines --family loop --seeds 1-100`, `machines --family loop --seed 7 --write /tmp/x`.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/block_energy.hpp"
 
 #include <Eigen/LU>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Energy and momentum of a block's cells from the positions and velocities of its nodes, by the definition of each element
 // (docs/references.md): quadrature of 1/2 rho v.v and of the strain energy; the one-point hexahedron has its bending strains besides,
 // nearly incompressible cells a part of lambda on their mean dilatation.

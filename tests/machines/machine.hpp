@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A machine as data: what the generator makes, the scene writer prints and the judge reads.  Nothing here knows the solver.
 #pragma once
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The steps from which families are drawn: bodies, joints between them, springs.
 #pragma once
 #include <string>

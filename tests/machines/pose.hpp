@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where a rigid thing is, and how far a joint is open, from the definition of each kind and from nothing else.
 #pragma once
 #include <vector>

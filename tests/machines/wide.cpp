@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Attacks beyond the suite: what supplies power or takes it in jumps, and machines drawn where their joints' rows depend on each other.
 #include <fmt/format.h>
 

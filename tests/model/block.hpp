@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Meshes made by hand for tests: reference cells, and blocks of hexahedra.
 #pragma once
 #include <functional>

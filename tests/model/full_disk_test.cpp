@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A disk that runs full, imitated by the largest size a process may give a file.
 #include <gtest/gtest.h>
 #include <sys/resource.h>

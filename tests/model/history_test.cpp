@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Histories against exact values and integrals.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A file written through a journal: what is read is what was written, what is on disk is what was committed, whatever happens in between.
 #include "model/journalled_file.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Units, ranges, and a schema that can be read.
 #include "base/param.hpp"
 

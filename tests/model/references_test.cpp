@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every key cited in a comment is in docs/references.md.
 #include <gtest/gtest.h>
 

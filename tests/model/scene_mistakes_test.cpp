@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A scene is refused with file:line:column, what is wrong, and what to write instead; what is implausible is told.
 #include "scene_text.hpp"
 

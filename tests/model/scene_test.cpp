@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A scene is read whole, in SI units, with its defaults and what overrides say.
 #include <iostream>
 #include <sstream>

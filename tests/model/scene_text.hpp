@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes written into a folder of their own and read from there.
 #pragma once
 #include <gtest/gtest.h>

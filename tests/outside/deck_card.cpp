@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cards of decks: a material said by Lame's moduli, lambda and mu.  What reads the card, and a row of inp_cards(); an entry of .bdf files
 // likewise.
 #include "import/bdf/card.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A law of forces: a spring without a linear part, f = k d^3 of its extension d.  A SpringLaw, what makes a Spring of it, and a row of
 // spring_kinds().
 #include "base/keys.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A time integrator with a key of its own: the one-leg theta family, backward Euler (1) to the trapezoidal rule (1/2),
 //   q1 = q0 + h ((1 - theta) v0 + theta v1),   v1 = v0 + h ((1 - theta) a0 + theta a1),   equations of motion and g = 0 at the end.
 // A StageIntegrator, what a scene may say of it, and one call that adds both.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A kind of joint: b keeps its attitude to a and is free to move (3 rows).  A function that makes it, and a row of joint_kinds().
 #include "outside.hpp"
 #include "physics/joint_maker.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The list of all that this program adds.
 #include <gtest/gtest.h>
 

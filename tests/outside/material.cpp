@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A material: soft tissue after Fung, whose stiffness grows with strain without end.  A struct as solver/physics/material/material.hpp
 // says, and one call.
 #include "outside.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A field of results: the kinetic energy of a unit of mass at each node.  A FieldSource, and one call that adds it with its word of
 // output.fields and its array.
 #include "dynamics/record/fields.hpp"

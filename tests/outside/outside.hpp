@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What this program adds to hilo's lists, and a run of a scene in it.
 #pragma once
 #include "dynamics/run.hpp"

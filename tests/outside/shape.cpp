@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A solid shape: the pyramid of five nodes, what lies between hexahedra and tetrahedra.  A struct as solver/physics/shape/shape.hpp says,
 // and one call.
 #include <fmt/format.h>

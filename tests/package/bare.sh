@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The packages of BUILD on a bare Debian 12: apt installs them, an ordinary user runs the whole tour without the source tree, and a program
 # is built on the libraries.  Prints what the packages bring along, beside what the build needs.
 # The bare system is made once in FOLDER, by debootstrap, and stays bare: what a test does lies in a layer above it.

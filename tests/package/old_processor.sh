@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Every tool on an emulated processor without AVX (and so without AVX-512): none may meet an instruction that it does not have, and results
 # are those of this machine's processor but for rounding.  Usage: old_processor.sh BIN
 set -euo pipefail

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shapes, laws and bent cells to run the solid kernels on.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Two bodies in space and connectors between them, for tests of joints and springs.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The spline of point-on-curve: exact for what a cubic holds, of fourth order for what it does not, smooth at its points.
 #include "physics/curve.hpp"
 

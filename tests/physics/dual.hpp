@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A number with one directional derivative: the kernels run through it unchanged, so a derivative of theirs is exact.
 #pragma once
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The stress that Newton's last correction foresaw: it changes the geometric part of a tangent, and nothing where there was no correction.
 #include "physics/cells.hpp"
 #include "physics/solid_kernel.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // J2 plasticity at a point: closed forms, tangent, energy, what it remembers.
 #include "physics/material/j2.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stops, motors and friction as laws of one coordinate.
 #include <cmath>
 

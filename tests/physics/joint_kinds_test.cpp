@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The table of joints and the schema of scenes know the same kinds; a word that neither knows is an error.
 #include <set>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rows that are functions of measures: exact geometry over many turns, exact discrete gradients, exact derivatives.
 #include "physics/joint_rows.hpp"
 

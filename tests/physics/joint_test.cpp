@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Joints: every measure is of degree two, so its mid-point gradient is an exact discrete gradient, and every kind has its own number of
 // rows.
 #include <Eigen/QR>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cells in vectors of 2, 4 and 8 give what one cell at a time gives.
 #include "physics/cells.hpp"
 #include "physics/solid_kernel.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Orthotropic elasticity: moduli in any direction, and one that is isotropic after all.
 #include <cmath>
 

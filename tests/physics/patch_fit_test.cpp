@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Polynomials through points, whatever the points determine.
 #include "physics/patch_fit.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A homogeneous deformation of a bent patch of cells: the stress is constant, so nothing is left at the inner nodes.
 #include "physics/cells.hpp"
 #include "physics/solid_kernel.hpp"

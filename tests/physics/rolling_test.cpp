@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Velocity rows: what slips, what does not, and that their forces do no work.
 #include "physics/rolling.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Mooney-Rivlin and Ogden at a point: closed forms, derivatives, work of a step.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shape functions: interpolation, completeness and the degree to which the rules integrate, against exact values.
 #include "physics/cell_strain.hpp"
 #include "physics/cells.hpp"

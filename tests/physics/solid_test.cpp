@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The cell kernels of every shape and law: work, derivative, objectivity, balance, mass, rate terms.
 #include <Eigen/Eigenvalues>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Springs and dampers: discrete gradients of their potentials, never a source of energy.
 #include "physics/spring.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stresses at points of cells against the closed forms of the laws, and the two-node bar.
 #include "physics/stress.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post at: fields that the shape functions hold exactly, at points of all kinds of cells; what is refused.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The filter against the published figures of benchmarks.md O16.
 #include "post/injury/cfc.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Formulas over histories, and tables set beside each other, through the command line and by themselves.
 #include "post/run/expression.hpp"
 

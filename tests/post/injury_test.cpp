@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Measures of injury against the closed forms of benchmarks.md O16.
 #include "post/injury/injury.hpp"
 

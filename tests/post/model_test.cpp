@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The picture of a scene before it runs.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Reads back what hilo-post movie wrote: the header by the boxes of [iso-14496-12], the pictures by libavcodec.
 #pragma once
 #include <array>

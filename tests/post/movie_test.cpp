@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Movies: what their header says, what their pictures show, and that a failure leaves nothing.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A run made of formulas: two blocks, "arm" moving as told and "base" at rest, with a joint, a spring and a probe.
 #pragma once
 #include <functional>

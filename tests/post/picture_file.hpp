@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // PNG files read back: pixels, and how much of a box is ink.
 #pragma once
 #include <vtkImageData.h>

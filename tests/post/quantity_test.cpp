@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // [[quantity]]: values that closed forms know, through hilo-solve and hilo-post; and what a scene may not ask.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures through the command line, with DISPLAY unset, read back pixel by pixel.
 #include <gtest/gtest.h>
 

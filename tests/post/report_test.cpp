@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post injury as a user runs it: one truth in text, CSV and JSON, and pages that nothing runs out of.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A small machine and its run, made up from formulas: what the pictures and tables of hilo-post are tested with.
 #pragma once
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sections and iso-surfaces: areas and values that are known.
 #include <gtest/gtest.h>
 #include <vtkCellArray.h>

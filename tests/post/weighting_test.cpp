@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Frequency weighting against the standard's table of factors at third-octave bands [iso-2631, table 3], and what it does to a signal in
 // time against what it does at a frequency.
 #include "post/injury/weighting.hpp"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Builds hilo a second time, with address and undefined-behaviour sanitizers or as a release with assertions, and runs the whole suite and
 # the scenes of data/ at size S on it.  Clean: every test passes, every scene runs, and no sanitizer has written a report.
 # Usage: run.sh REPO FOLDER sanitizers|assertions [-j JOBS] [-R TESTS]      make -C tests sanitize

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What springs and joints remember can be kept and restored: a run that goes on from restored values goes on bit by bit.
 #include "base/archive.hpp"
 

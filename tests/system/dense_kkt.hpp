@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A linear solver that only collects the matrix it is given.
 #pragma once
 #include <Eigen/Dense>

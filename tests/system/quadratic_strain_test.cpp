@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Strains of the second degree in the modes of a linear region: the energy is that of its cells, the force its discrete gradient.
 #include "system/quadratic_strain.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A state of a system in which nothing vanishes by symmetry, for tests of tangents.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The gate of hilo-advise: rates, jumps and frequencies whose values are known.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Solves decks of calculix-ccx-test with CalculiX (ccx) and with hilo and compares the displacements of all nodes after the first step.
 
   tests/tools/ccx_compare.py build/bin achtelp beam20p beamp

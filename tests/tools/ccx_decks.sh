@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Imports every deck of the Debian package calculix-ccx-test and writes the table docs/ccx-decks.md.
 #   tests/tools/ccx_decks.sh [folder of hilo-import] [file to write]
 set -eu

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the fuzzer found once (make -C tests fuzz), and what the readers make of it now: each refuses or reads it, in one line, and soon.
 #include <gtest/gtest.h>
 #include <sys/resource.h>

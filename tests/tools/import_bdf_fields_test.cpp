@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Nastran files as they are written: tabs, included files, continuations, and grids in systems of their own.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Supports, loads, rigid elements, masses and springs of Nastran files: the scene lines that they become are run, and the answer is that of
 // statics, whatever card says it.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Nastran bulk data in its three field formats.
 #include "import_case.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a Nastran file chooses in its case control, and what of its cards has no place in a scene: it is told, or the file is refused.
 #include <fmt/format.h>
 

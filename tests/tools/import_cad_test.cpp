@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // STEP and IGES: units, solids that touch, colours, sets by place, sizes that gmsh cannot mesh.
 #include "import/gmsh/cad.hpp"
 #include "import_case.hpp"

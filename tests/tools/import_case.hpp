@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What tests of hilo-import share: a folder, runs, and areas and volumes of what was read.
 #pragma once
 #include <gtest/gtest.h>

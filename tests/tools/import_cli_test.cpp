@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The command itself: options, tables, exit codes, and a damaged CAD file.
 #include "import_case.hpp"
 #include "model/scene.hpp"

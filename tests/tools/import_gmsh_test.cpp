@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Meshes and geometries that go through gmsh, written here by gmsh itself: named groups, shapes, orders and formats survive.
 #include <fmt/format.h>
 

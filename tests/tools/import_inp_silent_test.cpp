@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What .inp decks say twice, beside or behind what one expects: it counts, or it is told.
 #include "import_case.hpp"
 #include "model/scene.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Abaqus and CalculiX decks: cells, sets, surfaces, materials, supports and loads survive; what is wrong is named by line.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Couplings, rigid bodies, masses, springs and dampers of .inp decks: the scene lines that they become are run, and the answer is that of
 // statics.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Materials of decks: what is plastic, rubber or orthotropic reaches the scene lines, and what has no law here is never taken for elastic.
 #include "import_case.hpp"
 #include "model/scene.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Readers, cards of .inp decks and entries of .bdf decks are rows of tables: a row made here works like those inside, and what is no row is
 // told.
 #include "base/error.hpp"

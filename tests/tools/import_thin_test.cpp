@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shells and beams of decks: rigid regions with their mass, centre and inertia, and no word but rigid.
 #include <numbers>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // VTK files of every encoding, as written by VTK 9.1 (tests/tools/decks).
 #include "import_case.hpp"
 

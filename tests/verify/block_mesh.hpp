@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Blocks of cells of any shape, made by the test itself: regions along x, faces as facet sets, straight edges.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Lee's frame of hexahedra, one through the section: two legs of 1.2 m and a section of 20 x 30 mm, hinged at both feet; node set `load`
 // beside its corner.
 #pragma once

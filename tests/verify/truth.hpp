@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What must be true of a scene of data/, from the Python file beside it: the tables of data/ and the tests share one closed form.
 #pragma once
 #include <sstream>

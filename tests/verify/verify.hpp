@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs a scene of tests/verify as a user would, and reads what it wrote with a reader that shares nothing with the integrator.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Models of a scene that differ in the fidelity of its regions, each run by hilo-solve and kept by content.
 #pragma once
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What decides without an error estimate whether a region must deform: its frequency over that of its loads.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which reader reads which file.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Text decks: a line cut into fields that know where they stand, and the numbers in them.
 #pragma once
 #include <cstdint>

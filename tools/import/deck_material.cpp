@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/deck_material.hpp"
 
 #include <fmt/format.h>

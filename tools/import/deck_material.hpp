@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A material as a deck says it: a law of hilo with the values of its keys, or why it has none.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Faces given by nodes, found among the facets of the cells.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What follows every reader: nodes merged and dropped, lengths in SI, cells checked.
 #include <fmt/format.h>
 

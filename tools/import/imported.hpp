@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a reader of hilo-import hands back: a mesh whose regions and sets are named, and what it has to say aloud.
 #pragma once
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What decks tie together, as the scene says it: shared by the readers of .bdf and .inp.
 #pragma once
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Names of regions and sets, one meaning each.
 #include <fmt/format.h>
 

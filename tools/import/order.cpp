@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Linear cells become quadratic: a node in the middle of every edge.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // --set bore=cylinder:at=[0,0,15],axis=[0,0,1],radius=8: the sets that [set.NAME] makes in a scene, made while importing.
 #include <fmt/format.h>
 

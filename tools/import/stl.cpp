@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Surfaces of triangles (.stl, text and binary): refused by what they are, since nothing says what is inside.
 #include <cstring>
 

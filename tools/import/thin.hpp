@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shells and beams of decks: hilo has no element of them, but a rigid region needs none, only their mass.
 #pragma once
 #include <cstdint>

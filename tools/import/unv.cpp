@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // I-DEAS universal files: datasets 164 (units), 2411 (nodes), 2412 (elements) and the groups 2429 to 2477.
 // (gmsh 4.8 crashes on groups that name an element it does not know, so the reader is ours.)  Groups of solids are regions, of faces facet
 // sets, of lines bars or node sets as in a gmsh file; without groups of solids a region is a physical property.

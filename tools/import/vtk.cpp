@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // VTK unstructured grids: solid cells, their regions by an integer array of the cells.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An unstructured grid as a VTK file holds it.
 #pragma once
 #include <cstdint>

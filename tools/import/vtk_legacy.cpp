@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Legacy VTK files: keyword, numbers, keyword, numbers.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // VTK's XML unstructured grids: tags looked up by name, arrays as text, base64 or raw bytes, plain or zlib.
 #include <fmt/format.h>
 #include <zlib.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # find_package(hilo), then target_link_libraries(program PRIVATE hilo::dynamics): scenes, and runs of them (docs/library.md).
 include(CMakeFindDependencyMacro)
 foreach(package Eigen3 fmt CLI11 tomlplusplus)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The graph that is cut: cells, joined where they share a facet or a joint holds them together, and the work of each.
 #pragma once
 #include <cstdint>

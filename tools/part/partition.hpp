@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cells to parts, by METIS, with what METIS does not promise checked: no part empty, the work balanced.
 #pragma once
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // --check: is a file whole?
 #include <fmt/format.h>
 

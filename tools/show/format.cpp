@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // docs/format.md, written from the schemas so that it cannot disagree with the program.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

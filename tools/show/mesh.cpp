@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Mesh, tags and parts in a summary.
 #include <fmt/format.h>
 

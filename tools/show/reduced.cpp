@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Reduced regions in a summary.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

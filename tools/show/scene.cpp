@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A scene in a summary.
 #include "model/scene.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What hilo-show says of a file: facts, then tables; for people or as JSON.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Flexible regions that do not hold together.
 #pragma once
 #include <string>

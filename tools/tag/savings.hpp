@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Unknowns of a model before and after its regions are tagged.
 #pragma once
 #include <optional>

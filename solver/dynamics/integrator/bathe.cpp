@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Trapezoidal rule to t0 + g h, then the three-point backward difference to t0 + h; g = 2 - sqrt 2 gives both the same matrix:
 //   q_g = q0 + g h/2 (v0 + v_g),  v_g = v0 + g h/2 (a0 + a_g)
 //   v1 = c0 q0 + cg q_g + c1 q1,  a1 = c0 v0 + cg v_g + c1 v1,   c0 = (1-g)/(g h), cg = -1/((1-g) g h), c1 = (2-g)/((1-g) h)

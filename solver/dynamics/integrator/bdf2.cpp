@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // v1 = c1 q1 + c0 q0 + cm q_-1,  a1 = c1 v1 + c0 v0 + cm v_-1,  M a1 + f(q1) + G(q1)^T lambda = F(t1),  g(q1) = 0
 // at changing steps, r = h/h_-1:  c1 = (1 + 2 r)/((1 + r) h),  c0 = -(1 + r)/h,  cm = r^2/((1 + r) h).
 // Before the first step stands one that was not taken, q_-1 = q0 - h v0 + h^2/2 a0 - h^3/6 j0, and the velocities of both have the error

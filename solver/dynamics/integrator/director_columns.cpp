@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/integrator/director_columns.hpp"
 
 #include "dynamics/integrator/stage_directors.hpp"

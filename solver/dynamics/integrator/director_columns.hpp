@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Columns of the matrix of coupled stages whose directors are not orthonormal.
 //
 // Where a stage turns, what an evaluation gives by a body's turn, d f[skew(e_k) M] with M = Stage::end's directors, is linear in M: three

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Gauss collocation of three stages, order 6, with rates in the rows:
 //   Q_i = q0 + h sum_j a_ij V_j,   V_i = v0 + h sum_j a_ij A_j,   q1 = q0 + h sum_i b_i V_i,   v1 = v0 + h sum_i b_i A_i
 //   M A_i + B(Q_i)^T S_i + G(Q_i)^T lambda_i = F(t_i),   G(Q_i) V_i = 0

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What moves by a law at three coupled stages: it obeys q'' = law''(t) by their collocation, as all else obeys its forces, and comes out of
 // the step where and as fast as the law does.
 #pragma once

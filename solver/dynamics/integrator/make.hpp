@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Integrators made by their parameters, for those who have no entry of a scene.
 #pragma once
 #include "dynamics/integrator.hpp"

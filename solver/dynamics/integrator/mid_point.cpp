@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // M (v1 - v0)/h + f(q_mid) + G(q_mid)^T lambda = F(t_mid),   (q1 - q0)/h = (v0 + v1)/2,   g(q1) = 0
 #include "model/integrator/mid_point.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Directors of one body at three coupled stages whose velocities, not positions, follow the law of rigid bodies:
 //   R_i' = w_i x R_i,   R_i = R0 + sum_j a_ij skew(h w_j) R_j,   linear in the R_i, which are not orthonormal.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Newton for coupled stages with one matrix of the size of a stage.
 //
 // With matrices K of positions, C of velocities and M of accelerations that are those of one configuration for all stages, an iteration is

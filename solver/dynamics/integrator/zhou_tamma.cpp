@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // M a~ + f + G(q~)^T lambda = F(t~),  g(q1) = 0,  all at t~ = t0 + W1 h, with D = a1 - a0:
 //   a~ = a0 + A D,   v~ = v0 + W1 h a0 + V h D,   q~ = q0 + W1 h v0 + Q h^2 a0 + B h^2 D
 //   q1 = q0 + h v0 + h^2/2 a0 + l3 h^2 D,         v1 = v0 + h a0 + l5 h D

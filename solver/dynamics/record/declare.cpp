@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a results file says of itself before the first row.
 #include <Eigen/Eigenvalues>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The largest sizes of nodal fields over all instants of a run, and when they were.
 #pragma once
 #include "dynamics/record/fields.hpp"

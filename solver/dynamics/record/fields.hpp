@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Fields: what nodes and cells have at an instant.  Sources of fields, one file each, are looped over; a further one is a file, a row of
 // field_kinds(), its words of output.fields (model/words.cpp) and its arrays (model/schema.cpp).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/record/histories.hpp"
 
 #include "dynamics/record/run_output.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Histories: a row at every step of all that the run and the contributions put out.
 #pragma once
 #include "dynamics/audit.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the results file has of nodes and cells: which of them have rows, the fields of those rows, and the sidecar that shows them.
 #pragma once
 #include <optional>

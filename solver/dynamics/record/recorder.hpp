@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Results: histories at every step, fields at intervals, each at its own time and second order.
 //
 // Mid-step values (accelerations, reactions of energy-momentum) become values at t_n by linear interpolation between the two mid-points

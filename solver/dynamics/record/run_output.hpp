@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The results file: open on one rank, written by all, each array as the schema has it (model/schema: unit and meaning).
 #pragma once
 #include <functional>

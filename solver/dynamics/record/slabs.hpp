@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rows of an output array shared out over the ranks in runs of consecutive rows: each rank writes one piece of the file, none holds it all.
 #pragma once
 #include "base/comm.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stress of nodes and cells in the result: recovered by the ranks, brought together where the rows are written.
 #include <algorithm>
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What ParaView reads: the cells as XDMF's mixed list, and the sidecar.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Algebraic preconditioners of the assembled flexible block.
 //
 // Incomplete Cholesky factors, of each rank's own part, are best while a wave crosses few hundred elements in a step;

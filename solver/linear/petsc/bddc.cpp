@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // BDDC [dohrmann-2003]: exact static condensation with the inverse of the assembled Schur complement replaced by  E_D S~^-1 E_D^T
 // (dual_primal.hpp). With the interface last in its factor, an application reads the factor once forwards and once backwards; PETSc's
 // PCBDDC solves three times with two factors.

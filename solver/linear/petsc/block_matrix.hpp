@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A sparse matrix of 3 x 3 blocks, filled from dense cliques.
 #pragma once
 #define OMPI_SKIP_MPICXX 1

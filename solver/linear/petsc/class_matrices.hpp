@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is known of each class of interface nodes as a dense matrix: its weights ("deluxe" [dohrmann-widlund-2016]), and where those with
 // the rigid motions as constraints are not enough, further constraints from an eigenvalue problem [pechstein-dohrmann-2017].
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The coarse problem of BDDC and FETI-DP: the stiffness K_c of the primal unknowns of all subdomains, which every rank factors whole.
 #pragma once
 #include <suitesparse/cholmod.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The part of a system that is not flexible - bodies and multipliers, "dense" - and what couples it to the flexible part:
 //
 //     [ F  B ]      F large (FlexibleMatrix), B and C few columns and rows, D small and sparse: all of it on every rank

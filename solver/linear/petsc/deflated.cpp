@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An approximate inverse made exact on the rigid motions of each connected flexible part [nabben-vuik-2008]:
 //
 //     M' = Q + (1 - Q F) M (1 - F Q),    Q = R (R^T F R)^-1 R^T,    so that  M' F R = R  and  R^T F M' = R^T.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One unsymmetric saddle-point matrix, factored by MUMPS [amestoy-2001].
 #pragma once
 #include "linear/petsc/solver.hpp"

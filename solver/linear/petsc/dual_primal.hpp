@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What BDDC and FETI-DP share [mandel-dohrmann-tezaur-2005]: functions on the interface of a rank's subdomains, and the Schur complement
 // of the symmetric part of the flexible block on them.
 //

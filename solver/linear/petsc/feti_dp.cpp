@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // FETI-DP [farhat-2001] on the symmetric part of the flexible block: conjugate gradients on the forces lambda between subdomains,
 //
 //     F lambda = B S~^-1 g,    F = B S~^-1 B^T,    preconditioned by  B_D S B_D^T  (Dirichlet),    B_D^T B = P_D = 1 - E_D,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The flexible block F of a system, and an approximate inverse of it: a fixed linear operator, or nearly so, so that the Schur complement
 // of bodies and multipliers can be formed with it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // 3 x 3 blocks in single precision, packed column after column, and what four lanes make of them.
 #pragma once
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From a solver that gives up to MUMPS, which does the rest of the run.
 #pragma once
 #include "linear/petsc/coupling.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Incomplete Cholesky factors without fill of a rank's own part of the flexible block [meijerink-vandervorst-1977], in 3 x 3 blocks:
 //
 //     sym(F) ~ L D L^T,  L_ik = (F_ik - sum_j L_ij D_j L_kj^T) D_k^-1  on the pattern of F,  D_i = F_ii - sum_k L_ik D_k L_ik^T

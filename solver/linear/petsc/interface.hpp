@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What subdomains share: their common blocks in classes - faces, edges, single nodes - and the primal constraints of each class.
 #pragma once
 #include <Eigen/Core>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A Krylov method on the whole system - GMRES, or CG on its symmetric part - with the preconditioner of saddle.hpp: when that is made anew,
 // what is tried where it does not do, and when another solver goes on.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The kinds of iterative solvers: how each takes the flexible block of a system.
 #pragma once
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // PETSc's conjugate gradients or GMRES on a matrix and a preconditioner that are given as functions.
 #pragma once
 #define OMPI_SKIP_MPICXX 1

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "linear/petsc/lower_pattern.hpp"
 
 #include <algorithm>

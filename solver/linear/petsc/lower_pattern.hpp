@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The lower half of a symmetric pattern in an order in which factors without fill are good and neighbours are near.
 #pragma once
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What libhilo-petsc.so offers to its loader.
 #pragma once
 #include "linear/kkt.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The whole system in four blocks, and a preconditioner of it in which only F is approximated:
 //
 //     P = [ F~  B ]     with  S = D - C F~^-1 B  sparse and exact for F~:  p = S^-1 (g - C F~^-1 f),   u = F~^-1 f - Z p,   Z = F~^-1 B.

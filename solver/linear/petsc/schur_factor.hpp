@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sparse LU of the small system that is left of bodies and multipliers: S = D + what the flexible part gives to the unknowns it touches.
 // Rows and columns of bodies and of constraints differ by many orders: they are scaled before KLU [davis-2010] factors.
 #pragma once

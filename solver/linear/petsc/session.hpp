@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // PETSc's start and end, and its errors.
 #pragma once
 #define OMPI_SKIP_MPICXX 1

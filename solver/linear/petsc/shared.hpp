@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Blocks that several ranks hold: who owns them, and sums and copies between the holders.
 #pragma once
 #include <span>

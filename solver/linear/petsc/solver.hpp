@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the PETSc solvers share.
 #pragma once
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The cliques of a rank in several subdomains, by METIS: small factors where one large one would fill in.
 #pragma once
 #include <vector>

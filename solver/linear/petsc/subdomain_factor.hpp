@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The Cholesky factor of a rank's subdomains with their interfaces last [davis-2006]:
 //
 //     [ A_II  A_IG ]   [ L_II      ] [ L_II^T  L_GI^T ]

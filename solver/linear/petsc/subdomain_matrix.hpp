@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The flexible block as a sum of subdomains' matrices, one or several per rank, never assembled: what BDDC and FETI-DP start from.
 // The subdomains of a rank follow each other in one block-diagonal matrix, in which a shared block has a place in each of them.
 #pragma once

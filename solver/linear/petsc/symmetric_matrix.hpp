@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The symmetric part of the flexible block in single precision, the lower half of it, as a matrix of differences:
 //
 //     y_i = R_i x_i + sum_j A_ij (x_j - x_i),   R_i = sum_j A_ij

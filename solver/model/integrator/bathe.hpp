@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Composite of trapezoidal rule and three-point backward difference [bathe-2007].
 #pragma once
 #include "model/integrator/method.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Two-step backward difference formula at changing steps, started by one step of backward Euler.
 #pragma once
 #include "model/integrator/method.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Three-stage Gauss collocation with rates in the rows and the strain as a variable, serial (docs/gauss.md).
 #pragma once
 #include "model/integrator/method.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a time integrator offers.  A method is a header with a struct like this, its equations in the source beside it, and a name in the
 // list of model/integrators.hpp; the scene's words and keys, its checks and the page of the format, and what a run asks of the method
 // come from there:

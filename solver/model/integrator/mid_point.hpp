@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Mid-point rule: everything at (q0 + q1)/2, stress included.
 #pragma once
 #include "model/integrator/method.hpp"

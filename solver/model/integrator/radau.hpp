@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Three-stage Radau IIA for index 3, all stages solved together; for references, serial [hairer-wanner-1996].
 #pragma once
 #include "model/integrator/method.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A bar's law: the law of its material under uniaxial stress, in the axial Green-Lagrange strain e = (l^2/L^2 - 1)/2.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Change of volume over a step, D = det C = J^2 of C = I + 2E:  D1 - D0 = A:(C1 - C0),  A = cof(C_mean) + cof(C1 - C0)/12, exactly.
 //
 // A law says by `Bulk` which form the volumetric part of its energy has; nearly incompressible cells take that part by their mean

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A law that a program outside the tree brings: its parameters, and what is done with them.  add_material (physics/add_material.hpp) makes
 // the functions from a struct like those of this folder.
 #pragma once

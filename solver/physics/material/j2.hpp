@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Metal: J2 plasticity at finite strain, F = Fe Fp, Hencky's elasticity [weber-anand-1990, eterovic-bathe-1990].
 //
 //   h = ln(Fe^T Fe)/2,   W = lambda/2 (tr h)^2 + mu h:h + (H_k/3) a:a,   T = dW/dh,   X = (2/3) H_k a

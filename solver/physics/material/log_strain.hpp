@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Logarithmic strain h = ln(I + 2E)/2 of a Green-Lagrange strain E, with its derivatives, in the principal axes of E [miehe-apel-2002]:
 //
 //   h = sum_i phi(e_i) v_i v_i^T,   phi(e) = ln(1 + 2e)/2

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a material offers.  A law is one file of this folder and a name in the list of materials.hpp; kernels, bars, stress output, the
 // scene's schema and its checks take everything else from it:
 //

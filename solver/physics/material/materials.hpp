@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The materials that the program knows: one file each, one name here.  A program outside the tree has further ones
 // (physics/add_material.hpp).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Mooney-Rivlin rubber [mooney-1940, rivlin-1948], compressible:
 //
 //   W = c10 (I1/J^(2/3) - 3) + c01 (I2/J^(4/3) - 3) + K/2 (J - 1)^2,    C = I + 2E, J^2 = D = det C,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Compressible neo-Hookean solid.   W = mu/2 (tr C - 3) - mu ln J + lambda/2 (ln J)^2,   C = I + 2E, J^2 = det C
 #pragma once
 #include "physics/lane_functions.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ogden's rubber [ogden-1972], compressible, of any number of terms:
 //
 //   W = sum_p 2 mu_p/alpha_p^2 (J^(-alpha_p/3) (l1^alpha_p + l2^alpha_p + l3^alpha_p) - 3) + K/2 (J - 1)^2,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Orthotropic elasticity in the axes of the material, which turn with the body: W = E:C:E/2, S = C:E of the Green-Lagrange strain.
 //
 //   compliance in its axes:  E11 = S11/E1 - nu12/E1 S22 - nu13/E1 S33, ...,   2 E23 = S23/G23, 2 E13 = S13/G13, 2 E12 = S12/G12

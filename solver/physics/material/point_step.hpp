@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A step of a material with memory at one point: strains are those of its ends, state is what the point remembers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Eigenvectors and eigenvalues of a symmetric 3 x 3 matrix.
 #pragma once
 #include "base/math.hpp"

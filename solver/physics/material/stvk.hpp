@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // St. Venant-Kirchhoff solid.   W = lambda/2 (tr E)^2 + mu E:E,   S = lambda tr(E) I + 2 mu E
 #pragma once
 #include "physics/material/dilatation.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Symmetric tensors as six numbers: 11 22 33 23 13 12; strains carry 2 E_ij off the diagonal, stresses do not.
 #pragma once
 

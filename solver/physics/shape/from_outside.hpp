@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A solid shape that a program outside the tree brings: what is done with its cells.  add_shape (system/add_shape.hpp) makes the functions
 // from a struct like those of this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Serendipity hexahedron of 20 nodes, 27 points: no zero-energy modes even one element wide.
 #pragma once
 #include "physics/shape/hex8.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Serendipity hexahedron of 20 nodes, 8 points: does not lock in thin or curved walls.  The six modes that the points do not see are held
 // by physics/hourglass20.
 #pragma once

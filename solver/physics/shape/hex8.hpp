@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Trilinear hexahedron.  Integrated with its mean gradients; what one point does not see is held by physics/hourglass.
 #pragma once
 #include "physics/shape/shape.hpp"

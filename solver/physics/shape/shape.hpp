@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a shape offers: its nodes, shape functions and integration rule, all usable at compile time.
 //
 //   struct S { static constexpr Shape shape;                                            its number in mesh files

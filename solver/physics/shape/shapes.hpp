@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The solid shapes that the program knows: one file each, one name here, and a row of model/mesh_shape.cpp (facets, numbers of file
 // formats).
 #pragma once

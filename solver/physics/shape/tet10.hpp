@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Quadratic tetrahedron, four points.
 #pragma once
 #include "physics/shape/tet4.hpp"

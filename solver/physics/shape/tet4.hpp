@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Linear tetrahedron, one point: constant strain, locks in bending and near incompressibility.
 #pragma once
 #include "physics/shape/shape.hpp"

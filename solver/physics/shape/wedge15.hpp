@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Quadratic (serendipity) wedge of 15 nodes, nine points.
 #pragma once
 #include "physics/shape/wedge6.hpp"

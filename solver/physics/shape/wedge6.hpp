@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Linear wedge, six points.
 #pragma once
 #include "physics/shape/shape.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Linear systems of Newton steps, by hilo's own assembly.
 #pragma once
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One solver on one matrix, of hilo or of PETSc (peers.hpp):
 //   mpirun -n N linear-bench scene SCENE MESH STEP LOAD_TIME KIND TOLERANCE [SUBDOMAINS]
 //   mpirun -n N linear-bench block EDGE CFL JUMP REGIONS KIND TOLERANCE [SUBDOMAINS]

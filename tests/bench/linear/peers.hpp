@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What PETSc has, as kinds of hilo's iterative solver: only the flexible block and its approximate inverse are the library's, so that all
 // share the Krylov method and the treatment of bodies and multipliers.
 #pragma once

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """hilo's linear solvers beside PETSc's on the same matrices, by hilo's assembly, to the same tolerance, in one run: tables as Markdown.
 Usage: run.py REPO BIN OUT [TABLE ...]; tables: serial, block, large, ranks, subdomains (all but large, which takes ten minutes, by default).
 Every row is the best of two, taken in turn.  Meshes are made in OUT."""

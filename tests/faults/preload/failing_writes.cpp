@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A library to preload: the n-th change of an .h5 file or of one beside it (.new, .journal, .tmp-...) does not succeed.
 //   FAIL_AT=n    which one, counted over the process
 //   FAIL_HOW     kill: half of it is written, then the process is killed; an errno (28 no space, 5 input/output): this one fails and all

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Start positions that the scene draws apart are put together, velocities follow the drive, and what cannot be put together is named.
 #include "verify/verify.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes that once ended with exit 0 and a wrong answer: bodies that turned by half a turn in one accepted step, where (R0 + R1)/2 loses
 // rank and equations vanish, and joints that opened because their rows had been dropped as redundant at the one pose where they are.
 // Truth: energy is kept, the fixed points of the joints stay together (recomputed here from the four points of each body), and what

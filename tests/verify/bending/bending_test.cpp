@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Locking: slender, nearly incompressible, skewed and twisted cells in bending against beam theory and published values (benchmarks.md O9,
 // O12). Loads are small, so that the answer is the linear one.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Lee's frame pushed down by what moves by a law, to more than a third of its height.
 #include "verify/lee_frame.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A stop gives the energy back that it took, or the part that its restitution asks for.
 #include "verify/verify.hpp"
 

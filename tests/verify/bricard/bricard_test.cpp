@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bricard's mechanism: six revolutes whose thirty rows have rank 29 in every position, so that a Grübler count gives no freedom where
 // there is one.  Truth: energy, the rows that were dropped, and the same motion by Radau IIA5.
 #include "verify/verify.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Pressure on a closed surface has the potential p V: E + p V stays, and so does the linear momentum.  V is the volume of the moved cells.
 // The force is the mean over the path of the step, which keeps p V exactly and the angular momentum to second order.
 #include "verify/verify.hpp"

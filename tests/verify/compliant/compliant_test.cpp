@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Joints that give way: springs along the rows of the joint.
 #include "verify/verify.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The rigid run of data/crank against the closed form of a slider-crank: kinematics differentiated by hand, then the equations of motion of
 // piston and rod give every bearing force (data/crank/truth.py).  Masses, centres and moments are those of the run; the area of the crown
 // is that of the mesh.

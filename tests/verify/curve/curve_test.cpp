@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A point on a curve: the tautochrone, momentum and energy of a bead on a moving track, and what happens at the end of a curve.
 #include "verify/verify.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A step that is too large is cut and the run goes on; one that cannot be cut further ends the run with exit 3 and the last good state on
 // disk.
 #include "verify/verify.hpp"

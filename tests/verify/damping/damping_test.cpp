@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stiffness-proportional damping acts as a stress eta C (E1 - E0)/h: energy falls in every step, and neither momentum nor a steady rotation
 // is touched.
 #include "verify/verify.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Balances that hold for any scene, over one that has everything: energy, E - E0 - W + D = 0, and impulse, the change of momentum is the
 // time integral of weight, loads and what the ground exerts through joints, springs and motions.
 #include "verify/everything/half_rigid.hpp"

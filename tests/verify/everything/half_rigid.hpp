@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The block of the scene "everything": its lowest cell rigid, the others soft.
 #pragma once
 #include "verify/verify.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A free body falls by v t + g t^2/2, exactly under the mid-point rule (constant acceleration), rigid or flexible.  FEBio dy01/dy05 is the
 // same with unit acceleration and 1 s: 0.5.
 #include "verify/verify.hpp"

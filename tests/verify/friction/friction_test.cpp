@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Friction in joints: the decelerations, decrements and creeps of Coulomb's law.
 #include "verify/verify.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Closed forms of single joints: planar, in-plane, in-line, screw, gear, rack.
 #include <numbers>
 

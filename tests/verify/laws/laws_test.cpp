@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rubber and wood through the whole program: what a free bar keeps, and what a beam does.
 #include "verify/verify.hpp"
 

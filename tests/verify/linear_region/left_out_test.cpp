@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the modes of a linear region leave out, as the run tells it, against what they truly do.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a linear region tells of its own strains: its share of the buckling load, strains of the second degree that its supports hold, and
 // the band of what its modes leave out; each against a closed form and against what cells of finite strain do.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A million steps: what must be kept is kept to round-off, judged from the results file alone.
 #include "verify/verify.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes and runs of what moves by a law.
 #pragma once
 #include "model/scene.hpp"

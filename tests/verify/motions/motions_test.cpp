@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What moves by a law: a body, a set of a flexible part or single components of its nodes have the position, velocity and acceleration of
 // the law from the first step on, at kinks and behind them, with every integrator; what moves them is measured and its work accounted for.
 #include "verify/motions/motions.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What moves by a law, of flexible parts: sets that move whole or by components, through large turns, and what is refused.
 #include "verify/motions/motions.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // M = M0 (1 - w/w0) on an inertia J: w = w0 (1 - exp(-M0 t/(J w0))).
 #include "verify/verify.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // output.envelope: the largest values over all steps, whatever is put out, on any number of ranks, through a restart, and against a closed
 // form.
 #include <gtest/gtest.h>

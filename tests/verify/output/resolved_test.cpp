@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What cells, modes and steps resolve: the told frequency against errors of frequencies known in closed form, and the marks on raw peaks.
 #include <numbers>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every array of a results file is one of the schema's, with its type, row, unit and meaning; and every array of the schema is written by
 // some run.  docs/format.md is printed from the same table.
 #include "model/schema.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A patch of bent cells under a homogeneous state: every cell must have exactly that state, whatever its shape (Irons' patch test).
 #include "physics/stress.hpp"
 #include "verify/verify.hpp"

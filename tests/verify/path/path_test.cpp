@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Paths of equilibrium past limits of load and of displacement: bars whose path is known in closed form, and Lee's frame.
 #include "verify/lee_frame.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Metal that flows: closed forms through the whole program, the balance of energy of a bar that yields as it tumbles, published values.
 #include "verify/verify.hpp"
 

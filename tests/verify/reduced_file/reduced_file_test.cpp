@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-reduce: modes on file serve as if they were found anew, or are refused by name.
 #include <fmt/format.h>
 

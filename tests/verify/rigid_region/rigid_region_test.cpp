@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The mass of a rigid region is collapsed from its cells, M_r = sum N^T M_e N: mass, centre and inertia against closed forms to 1e-12.
 #include <Eigen/Eigenvalues>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rolling and knife edges against closed forms, and against the equations of motion of a disc.
 #include "verify/verify.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A stiff elastic region is a rigid one with a compliance of 1/E: its tip's distance from the rigid answer falls as 1/E, slope -1 in log E.
 #include "verify/verify.hpp"
 

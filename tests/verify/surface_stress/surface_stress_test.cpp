@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stress where it matters, on the surface: NAFEMS LE10 on coarse meshes, and the rate on a thick tube (Lame) for every shape.
 #include <numbers>
 #include <set>

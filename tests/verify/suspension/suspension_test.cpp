@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The rigid run of data/suspension against its kinematics, made here from the table of joints: the velocities that all joints allow are the
 // null space of their rows, two of them, named by the vertical velocities of frame and wheel.
 //   at rest    the work of strut, tyre and weights along both is zero: the strut carries the corner load divided by its motion ratio

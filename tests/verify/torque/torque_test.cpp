@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Torque on a free body: about a principal axis J omega = M t, the energy is M^2 t^2/(2 J); about any axis the work is the gain of kinetic
 // energy.
 #include "verify/verify.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A free elastic bar keeps its momenta to 1e-12 and its energy to 1e-10.  Everything is summed here from the positions and velocities of
 // the nodes: mass by 3 x 3 x 3 Gauss points of this file, elastic energy by the law over the cell.
 #include "physics/cells.hpp"

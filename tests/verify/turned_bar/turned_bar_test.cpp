@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A bar without loads follows the rotation of its end as a rigid body: x = at + R (X - at), and Green's strain of a rotation is zero.
 #include "verify/verify.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Coordinate systems of a Nastran file: rectangular, cylindrical (r, theta, z) and spherical (r, theta from z, phi), by points (CORD2x) or
 // by grids (CORD1x), chained as far as the file likes.  Angles are in degrees.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Nastran bulk data: GRID, solids, rods and their properties and materials, in small, large and free fields.
 // (gmsh loses names and the mid-side nodes of long fields, so the reader is ours.)  Shell elements that lie on solids are
 // facet sets; others, and beams, are cells of regions that can be rigid alone.

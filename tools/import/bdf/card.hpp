@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The entries of a Nastran file that are known: a name and what reads it.  Another entry is one more row of the table of its family, or
 // from outside the tree `bdf_cards().add({"MATLAME", read_lame})` before the first file is read.
 #pragma once

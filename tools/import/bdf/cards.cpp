@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The table of contents of the Nastran reader, and lists that its families share.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Executive and case control of a Nastran file: what stands before BEGIN BULK.  The first subcase becomes scene lines; what stands above
 // the subcases holds for each of them.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/bdf/entries.hpp"
 
 #include <fmt/format.h>

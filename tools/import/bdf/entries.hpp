@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The entries of a Nastran file: small, large and free fields, continuations joined, INCLUDE followed in place.
 #pragma once
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The entries of a Nastran file that tie grids to each other: rigid elements, means, masses, springs and dampers.
 #include <fmt/format.h>
 

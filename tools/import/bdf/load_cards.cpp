@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The entries of a Nastran file that say supports and loads, and the sets of them that case control names.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Materials of a Nastran file: MAT1, plasticity by MATS1 and TABLES1, rubber by MATHP.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The entries of a Nastran file that make the mesh: grids and their coordinate systems, solids, rods, shells on solids, properties.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Materials, supports and the analysis of a Nastran file as scene lines.
 #include "import/bdf/scene.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The scene lines of a Nastran file, in the making: what its parts (supports, loads, links) share.
 #pragma once
 #include <fmt/format.h>

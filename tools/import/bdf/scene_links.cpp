@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What ties grids together, as scene lines: a grid of no cell that something is tied to becomes a [[body]], a rigid element a joint between
 // it and a set, a spring a [[spring]] or a joint that gives way.
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loads of a Nastran file as scene lines: forces by node, moments on bodies, pressures and tractions on facets, gravity.
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The entries of a Nastran file that make shells and beams, and their properties.
 #include <fmt/format.h>
 

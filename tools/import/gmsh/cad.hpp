@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a CAD file says beside its shapes: the unit of its lengths, colours, and which solids touch.
 #pragma once
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A library that reads a stranger's file, held by the kernel.
 #pragma once
 #include <functional>

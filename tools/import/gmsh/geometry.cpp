@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Geometries that the gmsh library meshes: scripts (.geo), step, brep, iges.  A script that is not trusted is looked through first, and
 // gmsh is confined while it reads.
 #include <fmt/format.h>

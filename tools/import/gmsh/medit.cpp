@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Medit's .mesh files in text (INRIA): Vertices, Edges, Triangles, ... each followed by a count and lines of nodes and a reference.  A
 // reference is what gmsh calls an entity; there are no names.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A mesh as gmsh sees one: nodes, and elements by entity (volume, surface, curve, point); physical groups of entities.  Filled by the
 // readers of .msh and .mesh, and from the library where it has meshed a geometry.
 #pragma once

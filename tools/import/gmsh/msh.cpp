@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Files of gmsh's mesh format, msh 2.0 to 2.2, 4.0 and 4.1, text and binary.
 // The library would take whatever does not begin as a mesh for a script and run it, so the reader is ours: it runs nothing.  Nothing is
 // allocated by a count that the rest of the file could not fill.

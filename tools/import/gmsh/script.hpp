@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a stranger's .geo script may not do.
 #pragma once
 #include <string>

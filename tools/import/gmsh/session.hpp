@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The gmsh library, kept quiet, and its crashes turned into errors.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The cards of an .inp deck that are known: a keyword and what reads it.  Another card is one more row in the table of its family, or from
 // outside the tree `inp_cards().add({"LAME", read_lame})` before the first deck is read.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The table of contents of the .inp reader.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What an Abaqus or CalculiX deck says, in its own numbers and units, before it becomes a mesh and a scene.
 #pragma once
 #include <array>

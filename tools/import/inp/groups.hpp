@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Nodes that a deck holds or pushes, in groups that each become one entry of the scene.
 #pragma once
 #include "import/inp/deck.hpp"

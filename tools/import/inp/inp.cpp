@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Abaqus and CalculiX decks: the cards in turn, then the mesh they make.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The lines of an Abaqus or CalculiX deck: keyword cards with parameters, and data lines cut at commas.
 #pragma once
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The cards of an .inp deck that say supports, loads, initial velocities and histories.
 #include <fmt/format.h>
 

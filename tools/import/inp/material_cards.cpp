@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The cards of an .inp deck that say materials and which cells are of them.
 #include <fmt/format.h>
 

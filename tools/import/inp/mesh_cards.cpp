@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The cards of an .inp deck that make the mesh: *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE.
 #include <fmt/format.h>
 

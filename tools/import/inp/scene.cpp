@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The scene lines that a deck's materials, supports and loads become, and the sets that those lines name.
 #include <fmt/format.h>
 

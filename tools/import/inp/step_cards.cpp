@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The cards of an .inp deck that divide it: heading, parts, steps and what a step computes.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The cards of an .inp deck that tie nodes together: *COUPLING, *RIGID BODY, and the values of elements of points: *MASS, *SPRING,
 // *DASHPOT.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Nodes of no cell that something is tied to become bodies of the scene, or the mean of the nodes they pull.
 #include "import/inp/ties.hpp"
 

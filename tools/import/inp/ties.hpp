@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Reference nodes, springs and masses of an .inp deck: what they become in a scene.
 #pragma once
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The cards of an .inp deck that are known and not read: requests for output, of which nothing is lost, and cards that make nodes or cells,
 // without which the mesh would be another.
 #include "base/error.hpp"

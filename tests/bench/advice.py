@@ -1,0 +1,302 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Does hilo-advise choose well?  It advises on scenes of beams, those of a published study by name (c1 .. e6) and others drawn at random
+(numbers), and every model it ran is judged by a truth outside it: all regions nonlinear at half the step.
+Usage: advice.py BIN FOLDER SCENE... [--tol 2%] [-- options of hilo-advise]      SCENE: c1, f2, all26, 7, 100-160
+Columns: true error of the chosen model over the tolerance, largest of all quantities; that of all rigid and all linear; processor seconds of
+the chosen one over those of the cheapest model that meets the tolerance in truth, and over those of all nonlinear."""
+import argparse
+import json
+import math
+import os
+import random
+import subprocess
+import sys
+
+RHO, NU = 7850, 0.3
+
+
+def unit(v):
+    size = math.sqrt(sum(c * c for c in v))
+    return [c / size for c in v]
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+class Deck:
+    """Beams of hexahedra of 20 nodes; those whose faces are at one place share its nodes where `bonded`."""
+
+    def __init__(self, bonded=False):
+        self.bonded, self.nodes, self.place, self.elements, self.sets, self.cells = bonded, [], {}, "", "", 0
+
+    def beam(self, name, start, end, side, E, n, across=(0, 1, 0)):
+        """Sets NAME0 and NAME1 at its ends, NAMEm in its middle."""
+        along = [e - s for s, e in zip(start, end)]
+        x = unit(along)
+        z = unit(cross(x, across))
+        y = cross(z, x)
+        ids = {}
+
+        def node(i, j, k):
+            if (i, j, k) not in ids:
+                p = [s + d * i / (2 * n) + side * ((j / 2 - 0.5) * b + (k / 2 - 0.5) * c) for s, d, b, c in zip(start, along, y, z)]
+                key = (tuple(round(v, 9) for v in p), "" if self.bonded else name)
+                if key not in self.place:
+                    self.nodes.append(p)
+                    self.place[key] = len(self.nodes)
+                ids[i, j, k] = self.place[key]
+            return ids[i, j, k]
+
+        self.elements += f"*ELEMENT, TYPE=C3D20, ELSET={name}\n"
+        for i in range(0, 2 * n, 2):
+            corner = [(i, 0, 0), (i + 2, 0, 0), (i + 2, 2, 0), (i, 2, 0), (i, 0, 2), (i + 2, 0, 2), (i + 2, 2, 2), (i, 2, 2)]
+            edges = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+            middle = [tuple((p + q) // 2 for p, q in zip(corner[a], corner[b])) for a, b in edges]
+            self.cells += 1
+            row = [self.cells] + [node(*p) for p in corner + middle]
+            self.elements += ", ".join(map(str, row[:16])) + ",\n" + ", ".join(map(str, row[16:])) + "\n"
+        for at, tag in ((0, "0"), (n, "m"), (2 * n, "1")):
+            self.sets += f"*NSET, NSET={name}{tag}\n" + ",\n".join(str(v) for p, v in ids.items() if p[0] == at) + "\n"
+        self.sets += f"*MATERIAL, NAME=m{name}\n*ELASTIC\n{E:.6g}, {NU}\n*DENSITY\n{RHO}\n*SOLID SECTION, ELSET={name}, MATERIAL=m{name}\n"
+
+    def text(self):
+        rows = "".join(f"{i + 1}, {p[0]:.9g}, {p[1]:.9g}, {p[2]:.9g}\n" for i, p in enumerate(self.nodes))
+        return "*NODE\n" + rows + self.elements + self.sets
+
+
+def damping(E, length, side):
+    """beta of 1 % at the first frequency of the beam between pins  [s]"""
+    f = math.pi / 2 * math.sqrt(E * side**2 / 12 / RHO) / length**2
+    return 0.01 / (math.pi * f)
+
+
+def table(section, name, **keys):
+    text = f'[[{section}]]\nname = "{name}"\n'
+    for key, value in keys.items():
+        text += f"{key} = {value if str(value).startswith('{') else json.dumps(value)}\n"
+    return text
+
+
+def course(t, value, interpolation="linear"):
+    return "{t = %s, value = %s, interpolation = \"%s\"}" % ([round(v, 12) for v in t], [round(v, 12) for v in value], interpolation)
+
+
+def half_sine(T):
+    n = 64
+    return course([T * i / n for i in range(n + 1)] + [2 * T], [math.sin(math.pi * i / n) for i in range(n + 1)] + [0])
+
+
+class Scene:
+    def __init__(self, name, deck, end, step, equilibrium=False):
+        self.name, self.deck, self.end, self.step, self.equilibrium, self.text, self.regions = name, deck, end, step, equilibrium, "", []
+
+    def beam(self, name, start, stop, side, E, n=6):
+        self.deck.beam(name, start, stop, side, E, n)
+        self.text += f'[region.{name}]\ndamping = {damping(E, math.dist(start, stop), side):.6g}\n'
+        self.regions.append(name)
+
+    def joint(self, kind, name, a, b, at, **more):
+        self.text += table("joint", name, kind=kind, a=a, b=b, at=at, **more) + table("quantity", f"R {name}", kind="peak", joint=name)
+
+    def sensor(self, on):
+        self.text += table("sensor", "A", on=on) + table("quantity", "A", kind="peak", sensor="A", cfc=60)
+
+    def write(self):
+        start = 'start = "equilibrium"\n' if self.equilibrium else ""
+        open("deck.inp", "w").write(self.deck.text())
+        open("scene.toml", "w").write(f"gravity = [0, 0, -9.81]\n[time]\nend = {self.end:.9g}\nstep = {self.step:.9g}\n{start}" + self.text)
+
+
+def chain(name, Es, F, Tp, end, step, equilibrium=False, axes=None, force=(1, 0, 0), length=1, side=0.05):
+    """Hangs from the ground and is struck at its tip for Tp."""
+    s = Scene(name, Deck(), end, step, equilibrium)
+    for k, E in enumerate(Es):
+        r, z = "abcdefgh"[k], -k * length
+        s.beam(r, [0, 0, z], [0, 0, z - length], side, E)
+        s.joint("revolute", f"j{k}", "ground" if k == 0 else "abcdefgh"[k - 1] + "1", r + "0", [0, 0, z], axis=axes[k] if axes else [0, 1, 0])
+    s.text += table("load", "strike", kind="force", on=r + "1", force=[F * c for c in force], history=half_sine(Tp))
+    s.sensor(r + "m")
+    return s
+
+
+def spun(name, Es, spin, end=0.4, step=5e-4, ramp=0.2, axes=None, length=1, side=0.05):
+    """Along x; the first joint is brought to its spin."""
+    s = Scene(name, Deck(), end, step)
+    for k, E in enumerate(Es):
+        r, x = "abcdefgh"[k], k * length
+        s.beam(r, [x, 0, 0], [x + length, 0, 0], side, E)
+        drive = dict(spin=spin, history=course([0, ramp], [0, 1], "smoother")) if k == 0 else {}
+        s.joint("revolute", f"j{k}", "ground" if k == 0 else "abcdefgh"[k - 1] + "1", r + "0", [x, 0, 0],
+                axis=axes[k] if axes else [0, 1, 0], **drive)
+    s.sensor(r + "m")
+    return s
+
+
+def four_bar(name, Es, spin, ramp, end, step, side=0.02, crank=0.3, coupler=1.0, rocker=0.7, base=0.9):
+    s = Scene(name, Deck(), end, step)
+    d = math.hypot(base, crank)
+    along = (coupler**2 - rocker**2 + d**2) / (2 * d)
+    high = math.sqrt(coupler**2 - along**2)
+    ex, ez = base / d, -crank / d
+    P, Q, R = [0, 0, crank], [along * ex - high * ez, 0, crank + along * ez + high * ex], [base, 0, 0]
+    s.beam("a", [0, 0, 0], P, side, Es[0])
+    s.beam("b", P, Q, side, Es[1])
+    s.beam("c", Q, R, side, Es[2])
+    y = [0, 1, 0]
+    s.joint("revolute", "crank", "ground", "a0", [0, 0, 0], axis=y, spin=spin, history=course([0, ramp], [0, 1], "smoother"))
+    s.joint("revolute", "pin", "a1", "b0", P, axis=y)
+    s.joint("spherical", "ball", "b1", "c0", Q)
+    s.joint("cylindrical", "rocker", "ground", "c1", R, axis=y)
+    s.sensor("bm")
+    return s
+
+
+def bonded(name, Es, spin, ramp, tip, end, step, side=0.05, length=0.6):
+    """Segments that share nodes on a hub that turns, stays and stops; a mass at the tip."""
+    s = Scene(name, Deck(bonded=True), end, step)
+    for k, E in enumerate(Es):
+        s.beam("abcdefgh"[k], [k * length, 0, 0], [(k + 1) * length, 0, 0], side, E, 4)
+    last, x = s.regions[-1], len(Es) * length
+    s.joint("revolute", "hub", "ground", "a0", [0, 0, 0], axis=[0, 1, 0], spin=spin,
+            history=course([0, ramp, 2 * ramp, 3 * ramp], [0, 1, 1, 0], "smoother"))
+    s.text += table("body", "tip", mass=tip, com=[x, 0, 0], inertia=[tip * 0.01] * 3)
+    s.joint("fixed", "weld", last + "1", "tip", [x, 0, 0])
+    s.sensor(last + "m")
+    return s
+
+
+PUBLISHED = {
+    "c1": lambda n: chain(n, [2e11] * 3, 2000, 0.1, 0.3, 5e-4),
+    "c2": lambda n: chain(n, [2e10] * 3, 1000, 0.1, 0.3, 5e-4),
+    "c3": lambda n: chain(n, [2e9] * 3, 300, 0.1, 0.4, 1e-3),
+    "c4": lambda n: chain(n, [2e8] * 3, 40, 0.1, 0.5, 1e-3),
+    "c5": lambda n: chain(n, [2e11] * 3, 10000, 0.004, 0.1, 1e-4),
+    "c6": lambda n: chain(n, [2e10] * 3, 5000, 0.004, 0.15, 2e-4),
+    "c7": lambda n: chain(n, [2e9] * 3, 1000, 0.004, 0.2, 2.5e-4),
+    "c8": lambda n: chain(n, [2e11, 2e9, 2e10], 300, 0.1, 0.3, 5e-4),
+    "c9": lambda n: chain(n, [2e9, 2e11, 2e10], 2000, 0.01, 0.2, 2.5e-4),
+    "s1": lambda n: spun(n, [2e11] * 3, 10),
+    "s2": lambda n: spun(n, [2e9] * 3, 6),
+    "s3": lambda n: spun(n, [2e10, 2e9, 2e11], 15),
+    "f1": lambda n: four_bar(n, [2e11] * 3, 40, 0.1, 0.4, 5e-4),
+    "f2": lambda n: four_bar(n, [2e11, 2e10, 2e11], 30, 0.1, 0.4, 5e-4),
+    "f3": lambda n: four_bar(n, [2e11, 2e9, 2e11], 12, 0.2, 0.6, 1e-3),
+    "f4": lambda n: four_bar(n, [2e11, 2e11, 2e10], 80, 0.1, 0.3, 2.5e-4),
+    "f5": lambda n: four_bar(n, [2e9] * 3, 10, 0.2, 0.6, 1e-3),
+    "w1": lambda n: bonded(n, [2e11] * 3, 4, 0.1, 20, 0.5, 1e-3),
+    "w2": lambda n: bonded(n, [2e11, 2e10, 2e10], 4, 0.1, 20, 0.5, 1e-3),
+    "w3": lambda n: bonded(n, [2e10] * 3, 3, 0.02, 5, 0.3, 5e-4),
+    "e1": lambda n: chain(n, [2e10] * 3, 1000, 0.1, 0.3, 5e-4, True),
+    "e2": lambda n: chain(n, [2e9] * 3, 300, 0.1, 0.4, 1e-3, True),
+    "e3": lambda n: chain(n, [2e8] * 3, 40, 0.1, 0.5, 1e-3, True),
+    "e4": lambda n: chain(n, [2e10] * 3, 5000, 0.004, 0.12, 2e-4, True),
+    "e5": lambda n: chain(n, [2e9] * 3, 1000, 0.004, 0.15, 2.5e-4, True),
+    "e6": lambda n: chain(n, [2e11, 2e9, 2e10], 300, 0.1, 0.3, 5e-4, True),
+}
+
+
+def drawn(seed):
+    """A scene at random: three to six beams, in a plane or in space, stiff to soft, loads slow and fast."""
+    r = random.Random(seed)
+    kind = r.choice(["chain", "chain", "spun", "four_bar", "bonded"])
+    n = 3 if kind == "four_bar" else r.choice([3, 3, 4, 5, 6] if kind == "chain" else [2, 3, 4])
+    Es = [10 ** r.uniform(9.5, 11.3) if r.random() < 0.5 else 2e11 for _ in range(n)]
+    axes = None
+    if r.random() < 0.5 and kind in ("chain", "spun"):
+        axes = [[0, 1, 0]] + [r.choice([[0, 1, 0], [1, 0, 0] if kind == "chain" else [0, 0, 1]]) for _ in range(n - 1)]
+    if kind == "chain":
+        Tp = 10 ** r.uniform(-2, -0.5)
+        soft = min(Es)
+        F = 2000 * math.sqrt(soft / 2e11) * r.uniform(0.3, 1)
+        force = [1, 0, 0] if axes is None else [0.8, 0.6, 0]
+        return chain(f"r{seed}", Es, F, Tp, max(0.1, 2 * Tp), min(5e-4, Tp / 60), r.random() < 0.5, axes, force, r.uniform(0.4, 1), 0.05)
+    if kind == "spun":
+        return spun(f"r{seed}", Es, r.uniform(2, 12), 0.4, 5e-4, r.uniform(0.1, 0.3), axes, r.uniform(0.4, 1))
+    if kind == "four_bar":
+        return four_bar(f"r{seed}", Es, r.uniform(5, 30), r.uniform(0.1, 0.3), 0.4, 5e-4, r.uniform(0.02, 0.05))
+    return bonded(f"r{seed}", Es, r.uniform(1, 4), r.uniform(0.03, 0.12), r.uniform(1, 20), 0.4, 5e-4)
+
+
+class Judge:
+    def __init__(self, tools):
+        self.tools = os.path.abspath(tools)
+
+    def call(self, tool, *more, limit=3000):
+        return subprocess.run([os.path.join(self.tools, tool), "--quiet", *more], capture_output=True, text=True, timeout=limit)
+
+    def truth(self):
+        if not os.path.exists("truth.json"):
+            done = self.call("hilo-tag", "mesh.h5", "--rest", "nonlinear", "-o", "truth-tags.h5")
+            assert done.returncode == 0, done.stderr
+            step = next(line for line in open("scene.toml") if line.startswith("step")).split("=")[1]
+            done = self.call("hilo-solve", "scene.toml", "truth-tags.h5", "--set", f"time.step={float(step) / 2:.9g}", "-o", "truth.h5")
+            if done.returncode != 0:
+                return None
+        return json.load(open("truth.json"))
+
+    def judged(self, s, tol, options):
+        s.write()
+        if not os.path.exists("mesh.h5"):
+            done = self.call("hilo-import", "deck.inp", "-o", "mesh.h5")
+            assert done.returncode == 0, done.stderr
+        done = self.call("hilo-advise", "scene.toml", "mesh.h5", "--tol", tol, "--json", *options)
+        if done.returncode != 0:
+            return f"{s.name:5} {len(s.regions)}  refused: {done.stderr.strip().splitlines()[-1][:170]}", None
+        advice = json.loads(done.stdout)
+        truth = self.truth()
+        if truth is None:
+            return f"{s.name:5} no truth: all nonlinear at half the step does not run", None
+        want = {q["quantity"]: q["value"] for q in truth["quantities"]}
+        part = float(tol.strip("%")) / 100
+
+        def error(model):
+            got = {q["quantity"]: q["value"] for q in json.load(open(model["run"].replace(".h5", ".json")))["quantities"]}
+            return max(abs(got[q] / want[q] - 1) for q in want) / part
+
+        models = [(error(m), m) for m in advice["models"] if m["s"] is not None]
+        chosen = next((e, m) for e, m in models if "chosen" in m["choice"])
+        best = min((m["s"] for e, m in models if e <= 1), default=math.nan)
+        rigid = next((e for e, m in models if m["flexible"] == "all rigid"), math.nan)
+        linear = next((e for e, m in models if m["level"] == "linear" and m["flexible"].count(",") == len(s.regions) - 1), math.nan)
+        row = (f"{s.name:5} {len(s.regions)}  {chosen[0]:7.2f} {rigid:8.2f} {linear:7.2f}   {chosen[1]['s'] / best:5.2f} "
+               f"{chosen[1]['s'] / truth['processor_seconds'] * 2:6.3f}   {chosen[1]['level']}: {chosen[1]['flexible']}")
+        return row, chosen[0]
+
+
+def names(words):
+    for w in words:
+        if w == "all26":
+            yield from PUBLISHED
+        elif w in PUBLISHED:
+            yield w
+        else:
+            low, _, high = w.partition("-")
+            yield from range(int(low), int(high or low) + 1)
+
+
+def main():
+    mine, _, theirs = (sys.argv[1:], 0, []) if "--" not in sys.argv else (sys.argv[1 : sys.argv.index("--")], 0, sys.argv[sys.argv.index("--") + 1 :])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("bin")
+    parser.add_argument("folder")
+    parser.add_argument("scenes", nargs="+")
+    parser.add_argument("--tol", default="2%")
+    o = parser.parse_args(mine)
+    judge = Judge(o.bin)
+    top = os.path.abspath(o.folder)
+    print("scene n   chosen    rigid  linear   /best    /all   choice", flush=True)
+    met, wrong, refused = 0, 0, 0
+    for name in names(o.scenes):
+        s = PUBLISHED[name](name) if name in PUBLISHED else drawn(name)
+        os.makedirs(os.path.join(top, s.name), exist_ok=True)
+        os.chdir(os.path.join(top, s.name))
+        row, error = judge.judged(s, o.tol, theirs)
+        print(row, flush=True)
+        met, wrong, refused = met + (error is not None and error <= 1), wrong + (error is not None and error > 1), refused + (error is None)
+    print(f"{met} within the tolerance, {wrong} not, {refused} refused")
+
+
+if __name__ == "__main__":
+    main()
