@@ -178,6 +178,7 @@ std::string toml_text(const toml::table& root) {
     for (const auto& item : in_file_order(*group)) {
       toml::table one, outer;
       one.insert(item.key, *item.node);
+      if (auto* keys = one.begin()->second.as_table()) keys->is_inline(false);  // else each would open the table [region] again
       outer.insert("region", one);
       regions << "\n\n" << outer;
     }

@@ -9,4 +9,4 @@ cmake --install "$build" --prefix "$folder/usr" --component dev > "$folder/log" 
 ! grep -rlF -e "$repo/" -e "$build/" "$folder"/usr/lib/cmake || { echo "library: the targets name the source tree"; exit 1; }
 cmake -S "$repo/tests/library" -B "$folder/build" -DCMAKE_PREFIX_PATH="$folder/usr" > "$folder/log" || { cat "$folder/log"; exit 1; }
 cmake --build "$folder/build" > "$folder/log" || { cat "$folder/log"; exit 1; }
-cd "$folder" && build/pendulum
+cd "$folder" && build/pendulum && build/own_material

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs every sh block of docs/tour.md in one folder that holds the tour's STEP file, and the Python block where h5py is there.
+# Runs every sh block of docs/tour.md and docs/tour-assembly.md in one folder that holds the tour's STEP file, and the Python block where h5py is there.
 # Usage: tour.sh REPO BIN
 set -euo pipefail
 repo=$(realpath "$1")
@@ -11,7 +11,7 @@ trap 'rm -rf "$folder"' EXIT
 cp "$repo/data/tour/arm.step" "$repo/data/tour/slider.geo" "$folder"
 cd "$folder"
 fail() { echo "tour: $*" >&2; exit 1; }
-awk '/^```sh$/ {on = 1; next} /^```$/ {on = 0} on' "$repo/docs/tour.md" > blocks.sh
+awk '/^```sh$/ {on = 1; next} /^```$/ {on = 0} on' "$repo/docs/tour.md" "$repo/docs/tour-assembly.md" > blocks.sh
 awk '/^```python$/ {on = 1; next} /^```$/ {on = 0} on' "$repo/docs/tour.md" > read.py
 bash -euo pipefail blocks.sh | tee said.txt
 if /usr/bin/python3 -c 'import h5py' 2> /dev/null; then

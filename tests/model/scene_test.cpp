@@ -192,6 +192,17 @@ TEST_F(Override, LeavesATextThatGivesTheSameScene) {
   EXPECT_EQ(load(text).text, text) << "without overrides the text is the file";
 }
 
+TEST_F(Override, LeavesATextThatReadsAgainHoweverTablesAreWritten) {
+  const Scene s = load("region.arm = {damping = 1e-3}\nregion.block = {damping = 2e-3}\nmaterial.steel = {E = 2e11, nu = 0.3}\n",
+                       {"gravity=[0, 0, -9]"});
+  const Scene again = load(s.text);
+  ASSERT_EQ(again.entries("region").size(), 2u);
+  EXPECT_EQ(again.entries("region")[1].name, "block");
+  EXPECT_EQ(again.entries("region")[1].number("damping"), 2e-3);
+  EXPECT_EQ(again.entries("material")[0].number("E"), 2e11);
+  EXPECT_EQ(again.table("scene").vector3("gravity"), Vec3(0, 0, -9));
+}
+
 TEST_F(Override, OfSomethingThatIsNotThereNamesWhatIs) {
   EXPECT_EQ(refusal(hinge, {"joint.trunion.at=[0, 0, 0]"}),
             "--set joint.trunion.at=[0, 0, 0]: no joint \"trunion\" (did you mean \"trunnion\"?)");

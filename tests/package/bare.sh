@@ -58,4 +58,4 @@ as_guest 'hilo-show --check hilo/data/tour/out/run.h5'
 as_guest 'hilo-solve --quiet hilo/data/tour/out/scene.toml hilo/data/tour/out/tags.h5 --set "solver.kind=\"direct\"" --set time.end=0.01 -o direct.h5'
 echo "the tour: done"
 install g++ cmake /packages/hilo-dev.deb >> "$folder/apt.log" 2>&1 || { tail -n 30 "$folder/apt.log"; exit 1; }
-as_guest 'cp -r /packages/library . && { cmake -S library -B made && cmake --build made; } > library.log && made/pendulum' || { tail -n 30 "$root/home/guest/library.log"; exit 1; }
+as_guest 'cp -r /packages/library . && { cmake -S library -B made && cmake --build made; } > library.log && made/pendulum && made/own_material' || { tail -n 30 "$root/home/guest/library.log"; exit 1; }

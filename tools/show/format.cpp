@@ -24,7 +24,7 @@ Format version {}.
 - Numbers are little-endian: `f8` double, `i8` and `i4` signed integers, `u1` unsigned byte. Text is variable-length UTF-8. Rows come first.
 - Node order within a cell is VTK's. Counting starts at 0. Facets are counted as in the table below, corners first, seen from outside anticlockwise.
 - `<name>` in a path stands for any name, with `/` written `%2F` and `%` written `%25`; `<step>` for a six-digit field number.
-- A file is written under another name and renamed when it is whole. A results file grows as `run.h5.new` until its first rows are safe, then it replaces the former `run.h5` and grows under that name, with `complete` = 0 until the run has come to its end; whatever ends the process, it is whole as of its last commit ([trust](trust.md)).
+- A file is written under another name and renamed when it is whole. A results file grows as `run.h5.new` until its first rows are safe. Then it replaces the former `run.h5` and grows under that name, with `complete` = 0 until the run has come to its end. Whatever ends the process, the file is whole as of its last commit ([trust](trust.md)).
 - A file links to the one it was made from: an HDF5 external link with a relative path, and the digest of that file (`fnv1a64`) as an attribute. A changed file is refused, with the command to run. Arrays written at once carry a digest of their bytes (attribute `fnv1a64`), histories a checksum of every chunk (fletcher32).
 - The same input gives the same bytes.
 
@@ -52,7 +52,7 @@ std::string shapes() {
   }
   out +=
       "\ntri3, tri6, quad4 and quad8 are shells: regions that have them are rigid, their mass is that of `/mesh/regions/thin`.\n"
-      "hex20 and hex20r have the same nodes; hex20 integrates with 3 x 3 x 3 points, hex20r with 2 x 2 x 2 ([elements](elements.md)).\n"
+      "Hexahedra hex20 and hex20r have the same nodes. The first integrates with 3 x 3 x 3 points, hex20r with 2 x 2 x 2 ([elements](elements.md)).\n"
       "A deck's C3D20 becomes hex20, its C3D20R hex20r; files that do not say, and `hilo-import --order 2`, give hex20r.\n"
       "Numbers from 128 on are shapes of programs outside the tree; the attribute `shape_NUMBER` of `/mesh/cells/shape` has their name, "
       "and a\n"
@@ -72,8 +72,8 @@ std::string files() {
 
 constexpr auto run_json = R"(
 ## run.json
-Written last, in one piece: what make depends on. `complete` and, where it is false, `reason`; counts, seconds and memory; and the verdict of the audit, which looks at every step before it is accepted
-and refuses what fails (the step is cut; a run that cannot pass ends with exit 3). In `audit`:
+Written last, in one piece: what make depends on. It has `complete` and, where that is false, `reason`; counts, seconds and memory; and the verdict of the audit.
+The audit looks at every step before it is accepted and refuses what fails: the step is cut, and a run that cannot pass ends with exit 3. In `audit`:
 
 | key | what is looked at | bound |
 |---|---|---|
