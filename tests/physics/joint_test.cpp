@@ -21,11 +21,6 @@ INSTANTIATE_TEST_SUITE_P(EveryKind, Joint, testing::ValuesIn(joint_kinds()), [](
   return name;
 });
 
-// Truth: the reference configuration satisfies every joint by construction of its offsets.
-TEST_P(Joint, HoldsWhereItWasMade) {
-  for (int m = 0; m < c.n_rows(); ++m) EXPECT_NEAR(c.value(m, made_at), 0, 1e-15);
-}
-
 // Truth: e(q + tau z) is of degree two in tau, so the central difference is exact at any tau.
 TEST_P(Joint, GradientIsTheDerivativeOfItsMeasures) {
   const Config q = somewhere(20);

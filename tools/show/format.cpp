@@ -52,7 +52,8 @@ std::string shapes() {
   }
   out +=
       "\ntri3, tri6, quad4 and quad8 are shells: regions that have them are rigid, their mass is that of `/mesh/regions/thin`.\n"
-      "Hexahedra hex20 and hex20r have the same nodes. The first integrates with 3 x 3 x 3 points, hex20r with 2 x 2 x 2 ([elements](elements.md)).\n"
+      "Hexahedra hex20 and hex20r have the same nodes. The first integrates with 3 x 3 x 3 points, hex20r with 2 x 2 x 2 "
+      "([elements](elements.md)).\n"
       "A deck's C3D20 becomes hex20, its C3D20R hex20r; files that do not say, and `hilo-import --order 2`, give hex20r.\n"
       "Numbers from 128 on are shapes of programs outside the tree; the attribute `shape_NUMBER` of `/mesh/cells/shape` has their name, "
       "and a\n"
