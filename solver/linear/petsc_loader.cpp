@@ -19,14 +19,15 @@ using Make = decltype(&hilo_make_petsc_solver);
 
 Make load() {
   std::error_code ignored;
-  const auto folder = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
-  const std::string beside = (folder.parent_path() / "lib" / library).string();
+  const auto beside = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path().parent_path() / "lib";
+  // in a build folder; where the package has it, for its tools and for programs that link the libraries; or where the loader looks
+  std::string path = library;
+  for (const auto& place : {beside / library, beside / "hilo" / library, std::filesystem::path("/usr/lib/hilo") / library})
+    if (path == library && std::filesystem::exists(place, ignored)) path = place.string();
   // PETSc and Open MPI load parts of their own, which look for their symbols among the global ones
-  constexpr int flags = RTLD_NOW | RTLD_GLOBAL;
-  const bool is_beside = std::filesystem::exists(beside, ignored);
-  void* handle = dlopen(is_beside ? beside.c_str() : library, flags);
+  void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_GLOBAL);
   if (!handle)
-    throw Error(is_beside ? beside : library, fmt::format("cannot load the PETSc solvers: {}", dlerror()),
+    throw Error(path, fmt::format("cannot load the PETSc solvers: {}", dlerror()),
                 "solver.kind = \"light\" does without; apt-get install libpetsc-real3.18 for the others", Exit::resources);
   const auto make = reinterpret_cast<Make>(dlsym(handle, "hilo_make_petsc_solver"));
   if (!make) throw Error(library, "is not of this version of hilo", "", Exit::resources);

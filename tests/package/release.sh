@@ -23,6 +23,6 @@ rm -f "$build"/hilo*.deb
 cmake "$build" > "$build/release.log" && cmake --build "$build" --target hilo-import hilo-tag hilo-part hilo-reduce hilo-solve hilo-advise hilo-post hilo-show hilo-petsc hilo-dynamics \
   >> "$build/release.log" && (cd "$build" && cpack >> release.log) && code=0 || code=1
 item "packages build ($(cd "$build" && echo hilo*.deb))" $code
-lintian --no-tag-display-limit --fail-on error "$build"/hilo*_"$version"_amd64.deb > "$build/lintian.log" 2>&1 && code=0 || code=1
+lintian --fail-on error "$build"/hilo*_"$version"_amd64.deb > "$build/lintian.log" 2>&1 && code=0 || code=1
 item "lintian finds no error ($build/lintian.log)" $code
 exit $failed
