@@ -103,7 +103,10 @@ class Points {
   /// Largest velocity or acceleration of a point or of a director at the size of its body.
   double largest_rate(const Config& v) const;
   /// Whether a local block belongs to this rank: each to one.
-  bool owns(int block) const { return layout.map.global[block] >= layout.map.first && layout.map.global[block] < layout.map.first + layout.map.n_owned; }
+  bool owns(int block) const {
+    const std::int64_t k = layout.map.global[block] - layout.map.first;
+    return k >= 0 && k < layout.map.n_owned;
+  }
   /// Followers from their bodies and modes; the map is linear, so it holds for positions, velocities and accelerations alike.
   void follow(Config& q) const;
   /// Positions, velocities or accelerations of all nodes (n_nodes): a configuration holds the first of them, which something acts on or is
