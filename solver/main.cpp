@@ -34,7 +34,7 @@ void print_plan(const System& s, bool talk) {
   std::string plan;
   for (const auto& part : s.parts())
     if (const std::string count = part->count(); !count.empty()) plan += count + ", ";
-  if (talk) fmt::print(stderr, "{}{} unknowns\n", plan, 3 * s.map.n_global);
+  if (talk) fmt::print(stderr, "{}{} unknowns\n", plan, 3 * s.layout.map.n_global);
 }
 
 CheckpointPolicy policy_of(const Options& o) {

@@ -37,14 +37,14 @@ void add_solver(const SolverKind& kind) {
 std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& system, bool talk) {
   const Entry& e = scene.table("solver");
   std::string kind = e.text("kind");
-  const auto unknowns = 3 * system.map.n_global;
+  const auto unknowns = 3 * system.layout.map.n_global;
   std::string why = "asked for";
   if (unknowns == 0) {
     kind = "klu", why = "nothing is free to move";
   } else if (kind == "auto") {
     kind = system.comm->size > 1 ? "direct" : "light";
     if (unknowns > 300000) kind = "cg";
-    const std::int64_t ranks = system.comm->size, flexible = 3 * system.map.first_dense;
+    const std::int64_t ranks = system.comm->size, flexible = 3 * system.layout.map.first_dense;
     const auto held = system.comm->sum(std::count_if(system.node_block.begin(), system.node_block.end(), [](int k) { return k >= 0; }));
     if (ranks >= 2 && flexible > 3000 && flexible / ranks <= 100000 && unknowns - flexible <= 3000 && 2 * held < flexible) kind = "bddc";
     why = fmt::format("{} unknowns on {} rank{}", unknowns, system.comm->size, system.comm->size == 1 ? "" : "s");
@@ -53,7 +53,7 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
   if (chosen.serial && system.comm->size > 1 && unknowns > 0)
     throw Error(e.where("kind"), "the light solvers are serial", "use bddc, direct, cg or iterative under mpirun");
   auto solver = chosen.make(kind, e);
-  solver->structure(system.cliques, system.map);
+  solver->structure(system.layout.cliques, system.layout.map);
   if (talk) fmt::print(stderr, "solver {}: {}\n", solver->name(), why);
   return solver;
 }

@@ -196,6 +196,7 @@ class DynamicSteps final : public Steps {
 
   /// One step of length h from the state, trying first guesses in turn, the last one with patience; the state is left alone.
   bool try_step(double h) {
+    search(h);
     StepTools tools{run_.system, *run_.solver, run_.newton};
     const State& state = run_.state;
     const std::vector<Predictor> order = guesses();

@@ -22,6 +22,10 @@ class Extrapolation {
   std::vector<double> multipliers(const std::vector<double>& last) const;
   /// A step of length h is accepted: what its guess missed, and its multipliers.
   void accept(const System& system, double h, std::vector<double> missed, std::vector<double> lambda);
+  /// The multipliers are laid out anew.
+  void carry(const Carry& carry) {
+    for (Step& s : past_) s.lambda = carry(s.lambda);
+  }
   void clear() { past_.clear(), rule_ = lambda_rule_ = 0; }
   void archive(Archive& a) { a("extrapolation", past_, h_, rule_, lambda_rule_); }
 

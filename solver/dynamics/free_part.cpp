@@ -33,7 +33,7 @@ std::string free_part(const System& s, KktSolver& solver, double sigma) {
     if (s.owns(k)) shift(k, 1);
   std::vector<double> b(3 * n), x(3 * n, 0.0);
   for (int k = 0; k < n; ++k)  // any vector with something of everything
-    for (int c = 0; c < 3; ++c) b[3 * k + c] = std::cos(static_cast<double>(3 * s.map.global[k] + c));
+    for (int c = 0; c < 3; ++c) b[3 * k + c] = std::cos(static_cast<double>(3 * s.layout.map.global[k] + c));
   int block = -1;
   double mine = 0, most = 0;
   for (int pass = 0; pass < 4; ++pass) {

@@ -77,6 +77,8 @@ class Integrator {
   virtual std::vector<std::string> timed() const { return {}; }
   /// Forget history kept from earlier steps: the loads have jumped.
   virtual void restart() {}
+  /// Between two steps: the structure of the system is another one; multipliers kept from earlier steps are laid out anew.
+  virtual void carry(const Carry& carry) = 0;
   /// All that it remembers between two steps.  A matrix and its factors are given up, kept or restored: they are made anew on either side.
   virtual void archive(Archive& a, const System& system) = 0;
   /// Whether accelerations and multipliers alternate about the true ones from step to step, so that neighbours must be averaged.
@@ -91,6 +93,10 @@ class StageIntegrator : public Integrator {
   void accept(State& s) final;
   std::span<const Taken> taken() const final { return taken_; }
   void restart() final { past_.clear(), forget(); }
+  void carry(const Carry& carry) final {
+    for (Extrapolation& p : past_) p.carry(carry);
+    tried_h_ = 0;
+  }
   void archive(Archive& a, const System& system) final {
     a(name(), past_);
     archive_history(a, system);

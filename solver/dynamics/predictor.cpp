@@ -46,7 +46,7 @@ void predict(const System& s, const State& state, double h, Predictor kind, cons
   q = state.q;
   const bool accelerated = kind == Predictor::accelerated;
   const Config& a = accelerated ? state.a : of_step;
-  const bool rigid = s.map.first_dense == 0;  // no flexible nodes, which would be left behind and strained
+  const bool rigid = s.layout.map.first_dense == 0;  // no flexible nodes, which would be left behind and strained
   const bool bent = a.c.size() == q.c.size() && (accelerated || (rigid && kind == Predictor::rigid_rotation));
   if (kind == Predictor::hold) return;
   for (const UnknownField& f : s.unknowns)

@@ -128,6 +128,7 @@ class Run {
   void prepare() {
     System& system = run_.system;
     State& state = run_.state;
+    if (const auto carry = system.search(state.q, is_static() ? nullptr : &state.v, 0)) run_.follow(*carry);
     if (!is_static() && system.violation(state.q, 0).worst() > 1e-11 * std::max(1.0, system.length)) {
       run_.figures.assembled = assemble_positions(system, *run_.solver, state.q);
       if (run_.talk) fmt::print(stderr, "start positions changed by up to {:.3g} m to put the joints together\n", run_.figures.assembled);
@@ -173,6 +174,7 @@ class Run {
   void archive_start(Archive& a) {
     a("start", run_.redundancy, run_.state, run_.report, run_.figures, run_.impulses);
     run_.system.archive(a);
+    if (a.restores() && run_.system.traits().searches) run_.follow(run_.system.number());
     double sum = 0;  // NaN: of a node that no rank had
     for (const Config* c : {&run_.state.q, &run_.state.v})
       for (const Vec3& x : c->x) sum += x.sum();
@@ -219,6 +221,17 @@ class Run {
 };
 
 }  // namespace
+
+void RunParts::follow(const Carry& carry) {
+  solver->structure(system.layout.cliques, system.layout.map);
+  state.lambda = carry(state.lambda);
+  integrator->carry(carry);
+}
+
+void Steps::search(double h) {
+  const bool moves = run_.analysis == Analysis::dynamic;
+  if (const auto carry = run_.system.search(run_.state.q, moves ? &run_.state.v : nullptr, h)) run_.follow(*carry);
+}
 
 void RunParts::stop(const std::string& reason) {
   report.reason = reason.empty() ? "no convergence" : reason;

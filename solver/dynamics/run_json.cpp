@@ -25,7 +25,7 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   add("newton_iterations", fmt::format("{}", report.iterations));
   add("cuts", fmt::format("{}", report.cuts));
   add("length", fmt::format("{:.12g}", system.length));
-  add("unknowns", fmt::format("{}", 3 * system.map.n_global));
+  add("unknowns", fmt::format("{}", 3 * system.layout.map.n_global));
   add("bodies", fmt::format("{}", system.bodies.size() - 1));
   add("joint_rows", fmt::format("{}", run.redundancy.rows));
   add("redundant_rows", fmt::format("{}", run.redundancy.rows - run.redundancy.rank));

@@ -47,6 +47,8 @@ struct RunParts {
   RunFigures figures = {};
   Impulses impulses = {};
 
+  /// The system has another structure: the solver, the state and the integrator follow.
+  void follow(const Carry& carry);
   /// The run ends here for this reason.
   void stop(const std::string& reason);
 };
@@ -66,6 +68,8 @@ class Steps {
   virtual void archive(Archive& a) = 0;
 
  protected:
+  /// What can meet in a step of length h from the state is looked for, and all that is laid out like the unknowns follows.
+  void search(double h);
   RunParts& run_;
   Pause pause_;
 };

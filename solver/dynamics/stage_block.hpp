@@ -25,7 +25,7 @@ class StageBlock final : public KktSolver {
   void structure(const Cliques&, const BlockMap&) override {}
   void zero() override {}
   void add(int clique, const double* K) override {
-    const auto blocks = system_.cliques[clique];
+    const auto blocks = system_.layout.cliques[clique];
     const int n = static_cast<int>(blocks.size()), width = 3 * n, first_joint = system_.first_joint_block();
     const auto is_joint = [&](int i) { return blocks[i / 3] >= first_joint; };
     if (row_ != column_ && is_joint(width - 1)) {

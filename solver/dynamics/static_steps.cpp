@@ -79,6 +79,7 @@ class StaticSteps final : public Steps {
 
   /// A step to the share `next` of the loads: why it cannot be accepted, or "".
   std::string try_step(double next, State& reached, NewtonReport& r) {
+    search(0);
     System& system = run_.system;
     const State& state = run_.state;
     reached.q = state.q, reached.lambda = state.lambda, reached.t = next * end_;

@@ -24,18 +24,18 @@ double resident() {
 
 /// Of the matrix in blocks of 3 x 3 with its places, a symmetric copy by scalars, and the factor in double and in single precision.
 double solver_bytes(const System& system) {
-  const BlockMap& map = system.map;
+  const BlockMap& map = system.layout.map;
   Cliques flexible;
   std::vector<int> list;
-  for (int i = 0; i < system.cliques.size(); ++i) {
+  for (int i = 0; i < system.layout.cliques.size(); ++i) {
     list.clear();
-    for (const int b : system.cliques[i])
+    for (const int b : system.layout.cliques[i])
       if (b >= 0 && map.global[static_cast<size_t>(b)] < map.first_dense) list.push_back(b);
     flexible.add(list, true);
   }
   const auto n = static_cast<int>(map.global.size());
   if (n == 0) return 0;
-  const double blocks = 2 * static_cast<double>(LowerBlocks(system.cliques, n).rows.size());
+  const double blocks = 2 * static_cast<double>(LowerBlocks(system.layout.cliques, n).rows.size());
   return blocks * (9 * 8 + 2 * 4) + blocks / 2 * 9 * (8 + 4) + (8 + 4) * FrontOrder(flexible, n).entries;
 }
 
@@ -73,7 +73,7 @@ Wanted wanted(const Scene& scene, const System& system) {
   Wanted w;
   const Entry &time = scene.table("time"), &output = scene.table("output");
   const std::string& solver = scene.table("solver").text("kind");
-  const std::int64_t unknowns = 3 * system.map.n_global;
+  const std::int64_t unknowns = 3 * system.layout.map.n_global;
   const bool factored =
       solver == "light" || solver == "klu" || solver == "cholesky" || solver == "umfpack" || (solver == "auto" && unknowns <= 300000);
   if (system.comm->size == 1 && factored) w.memory = resident() + solver_bytes(system);

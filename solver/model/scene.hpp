@@ -102,6 +102,12 @@ struct KindSchema {
   std::vector<Param> params;
 };
 const std::vector<KindSchema>& scene_schema();
+/// Sections of their own that a program outside this tree brings: entries [[name]] with these keys.
+struct OwnSection {
+  std::string_view name, meaning;
+  std::vector<Param> keys;
+};
+Registry<OwnSection>& own_sections();
 /// A word that a key of the scene may be.
 struct Word {
   std::string_view name, meaning = {};

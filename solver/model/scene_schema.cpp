@@ -236,11 +236,18 @@ std::vector<KindSchema> make() {
          "the largest von Mises stress, acceleration and displacement of each node over all steps, with their times, at the end of the "
          "run"},
         {"precision", text, "", "double", "double or single"}}});
+  for (const OwnSection& own : own_sections()) s.push_back({own.name, "", own.meaning, own.keys});
+  own_sections().close();
   for (const auto& [section, key] : {std::pair{"solver", "kind"}, {"output", "fields"}}) words_of(section, key)->close();
   return s;
 }
 
 }  // namespace
+
+Registry<OwnSection>& own_sections() {
+  static Registry<OwnSection> sections{"section", {}};
+  return sections;
+}
 
 const std::vector<KindSchema>& scene_schema() {
   static const std::vector<KindSchema> schema = make();

@@ -21,6 +21,24 @@
 
 namespace hilo {
 
+namespace {
+
+struct OutsideKind {
+  std::string_view name;
+  std::function<void(const Scene&, System&)> make;
+};
+Registry<OutsideKind>& outside_kinds() {
+  static Registry<OutsideKind> kinds{"contribution", {}};
+  return kinds;
+}
+
+}  // namespace
+
+void add_contribution(const OwnSection& words, std::function<void(const Scene&, System&)> make) {
+  own_sections().add(words);
+  outside_kinds().add({words.name, std::move(make)});
+}
+
 Builder::Builder(const Scene& scene, LocalMesh* mesh, const Comm& comm, const ReducedFiles& files, const FactorRoom& room)
     : scene_(scene), mesh_(mesh), comm_(comm), files_(files), room_(room) {}
 
@@ -81,6 +99,7 @@ std::unique_ptr<System> Builder::build() {
   add_joint_forces();
   add_loads();
   add_stations();
+  for (const OutsideKind& kind : outside_kinds()) kind.make(scene_, *out_);
   if (!mesh_) {  // size of a scene of bodies: what its points span
     Eigen::AlignedBox3d box;
     for (size_t b = 1; b < out_->bodies.size(); ++b) box.extend(out_->bodies[b].Xc);
@@ -95,7 +114,7 @@ std::unique_ptr<System> Builder::build() {
     throw Error(scene_.path, "the scene has no mass: nothing can move", "give a mesh or [[body]] entries, and densities");
   reduce_linear_regions();
   out_->stiffness = comm_.max(out_->stiffness);  // cells are on their ranks
-  out_->number();
+  out_->prepare();
   if (comm_.sum(static_cast<double>(out_->n_blocks())) == 0) warn(scene_.path, "nothing is free to move: every region and body is held");
   set_initial_velocities();
   return std::move(out_);

@@ -26,17 +26,13 @@ Traits Joints::traits() const {
 
 std::string Joints::count() const { return fmt::format("{} joints", list.size()); }
 
-void Joints::take_blocks(int& next) {
-  block_.clear();
-  for (const Joint& j : list) block_.push_back(next), next += n_blocks(j);
-}
-
-void Joints::add_cliques(Cliques& cliques) {
-  clique_.clear(), owned_.clear();
+void Joints::number(Layout& layout) {
+  block_.clear(), clique_.clear(), owned_.clear();
   for (size_t j = 0; j < list.size(); ++j) {
+    block_.push_back(layout.add_rows(static_cast<int>(j), n_blocks(list[j])));
     std::vector<int> blocks = blocks_of_ends(points_, list[j]);
     for (int k = 0; k < n_blocks(list[j]); ++k) blocks.push_back(block_[j] + k);
-    clique_.push_back(cliques.add(blocks));
+    clique_.push_back(layout.cliques.add(blocks));
     owned_.push_back(is_owned(points_, list[j], j));
   }
 }

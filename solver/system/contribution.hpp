@@ -26,6 +26,7 @@ struct Traits {
   bool is_pressed = false;    // forces that depend on multipliers beyond their rows
   bool is_driven = false;     // moves by a law
   bool remembers = false;     // state that a step moves on: plastic strain
+  bool searches = false;      // its rows or cliques change from step to step
   bool lumps_masses = false;  // masses on the diagonal, outside of cliques
   Traits& operator|=(const Traits& other);
 };
@@ -136,9 +137,13 @@ class Contribution {
   virtual std::string count() const { return {}; }
 
   // unknowns
-  /// Multiplier blocks from `next` on, which moves past them.  The blocks of nodes and bodies are known.
-  virtual void take_blocks(int& /*next*/) {}
-  virtual void add_cliques(Cliques& /*cliques*/) {}
+  /// Once, before it is numbered; may be collective.
+  virtual void prepare() {}
+  /// Its blocks of multipliers and its cliques, again whenever the structure changes: what it is called with is all that it depends on.
+  virtual void number(Layout& /*layout*/) {}
+  /// What can meet in the step of length h [s] that begins at q with velocities v (null in statics); true where its rows or cliques become
+  /// others.  Between steps, and at the start.  May be collective; the answer need not be the same on all ranks, rows must be.
+  virtual bool search(const Config& /*q*/, const Config* /*v*/, double /*h*/) { return false; }
   /// Its constraint rows, by the thing that has them; blocks are numbered.
   virtual void add_constraints(std::vector<std::unique_ptr<Constraint>>& /*out*/) {}
   /// What the unknowns of a local block belong to (`region "r", at node 7`), or "".

@@ -24,8 +24,7 @@ class Joints final : public Contribution {
 
   Traits traits() const override;
   std::string count() const override;
-  void take_blocks(int& next) override;
-  void add_cliques(Cliques& cliques) override;
+  void number(Layout& layout) override;
   void add_constraints(std::vector<std::unique_ptr<Constraint>>& out) override;
   std::string owner(int block) const override;
   void evaluate(Pass& p) const override;

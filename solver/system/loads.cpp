@@ -30,10 +30,10 @@ void Loads::add_reference_forces(std::vector<NodalForces>& out) const {
   }
 }
 
-void Loads::add_cliques(Cliques& cliques) {
+void Loads::number(Layout& layout) {
   for (Load& l : list) {
     l.cliques.clear();
-    for (const auto& facet : l.facets) l.cliques.push_back(cliques.add(points_.blocks_of(facet), true));
+    for (const auto& facet : l.facets) l.cliques.push_back(layout.cliques.add(points_.blocks_of(facet), true));
   }
 }
 
@@ -84,7 +84,7 @@ void Loads::on_facets(const Load& load, double factor, Pass& p) const {
     for (int a = 0; a < n; ++a) p.node[nodes[a]] -= f[a], p.scale(f[a].norm());
     if (!p.K) continue;
     for (double& k : K) k *= -s.chain * (s.conserving() ? 1 : 2 * s.weight);
-    const auto blocks = points_.cliques[load.cliques[e]];
+    const auto blocks = points_.layout.cliques[load.cliques[e]];
     points_.make_maps(nodes, blocks, s, maps, masks);
     add_reduced(*p.K, load.cliques[e], n, K.data(), maps.data(), static_cast<int>(blocks.size()), masks.data());
   }

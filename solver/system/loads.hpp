@@ -30,7 +30,7 @@ class Loads final : public Contribution {
   std::vector<Load> list;
 
   std::string count() const override;
-  void add_cliques(Cliques& cliques) override;
+  void number(Layout& layout) override;
   void evaluate(Pass& p) const override;
   void add_work(const Moment& m, Work& sum) const override;
   void add_reference_forces(std::vector<NodalForces>& list) const override;

@@ -36,7 +36,7 @@ class Resistance final : public KktSolver {
   void structure(const Cliques&, const BlockMap&) override {}
   void zero() override { entries.clear(); }
   void add(int clique, const double* dense) override {
-    const auto list = system_.cliques[clique];
+    const auto list = system_.layout.cliques[clique];
     const int n = static_cast<int>(list.size());
     std::vector<int> parts;
     bool inside = true;  // cells of one part that nothing stops: no resistance

@@ -19,7 +19,7 @@ bool Motions::moves() const {
 }
 
 /// Followers of the bodies that are driven.
-void Motions::take_blocks(int&) {
+void Motions::prepare() {
   for (Motion& m : list)
     for (int i = 0; i < static_cast<int>(points_.start.x.size()) && m.body >= 0; ++i)
       if (points_.follower[i] == m.body) m.nodes.push_back(i);

@@ -25,7 +25,7 @@ class Motions final : public Contribution {
   std::vector<Motion> list;
 
   Traits traits() const override;
-  void take_blocks(int& next) override;
+  void prepare() override;
   void evaluate(Pass&) const override {}  // what is held has no equations
   void add_work(const Moment& m, Work& sum) const override;
   bool moves() const override;

@@ -7,7 +7,16 @@
 
 namespace hilo {
 
-int Points::number_points() {
+Layout Points::layout_of_points() {
+  Layout out;
+  const auto [n_node_blocks, n_local] = number_points(out.cliques);
+  out.first_row = n_local;
+  out.map = number_globally(n_node_blocks, n_local);
+  return out;
+}
+
+/// Local blocks; the number of those of nodes, and of all.
+std::pair<int, int> Points::number_points(Cliques& cliques) {
   const int n = static_cast<int>(X.size());
   node_block.assign(n, -1), body_block.assign(bodies.size(), -1), body_clique.assign(bodies.size(), -1);
   UnknownField nodes, centres, turns, amplitudes;
@@ -19,7 +28,6 @@ int Points::number_points() {
     if (follower[i] < 0) node_block[i] = next++, nodes.item.push_back(i);
   const int n_node_blocks = next;
   centres.first = next, turns.first = next + 1;
-  cliques = Cliques{};
   for (size_t b = 0; b < bodies.size(); ++b) {
     if (!bodies[b].free()) continue;
     const int blocks[2] = {next, next + 1};
@@ -39,8 +47,7 @@ int Points::number_points() {
     m.clique = cliques.add(blocks);
   }
   unknowns = {std::move(nodes), std::move(centres), std::move(turns), std::move(amplitudes)};
-  first_joint_block_ = next;
-  return n_node_blocks;
+  return {n_node_blocks, next};
 }
 
 void Points::lowest_over_ranks(std::vector<std::int64_t>& value) const {
@@ -68,8 +75,9 @@ void Points::lowest_over_ranks(std::vector<std::int64_t>& value) const {
   }
 }
 
-void Points::number_globally(int n_node_blocks, int n_local) {
-  map = BlockMap{};
+/// Local blocks, `n_node_blocks` of them of nodes, over all ranks.
+BlockMap Points::number_globally(int n_node_blocks, int n_local) const {
+  BlockMap map;
   map.X.assign(3 * static_cast<size_t>(n_local), 0.0);
   for (size_t i = 0; i < X.size(); ++i)
     if (node_block[i] >= 0)
@@ -79,7 +87,7 @@ void Points::number_globally(int n_node_blocks, int n_local) {
     for (int i = 0; i < n_local; ++i) map.global[i] = i;
     map.n_owned = map.n_global = n_local;
     map.first_dense = n_node_blocks;
-    return;
+    return map;
   }
   // owned nodes are numbered rank after rank; bodies and multipliers come last and belong to the last rank
   std::int64_t owned = 0;
@@ -126,6 +134,7 @@ void Points::number_globally(int n_node_blocks, int n_local) {
   map.first_dense = total;
   map.n_global = total + (n_local - n_node_blocks);
   if (comm->rank == comm->size - 1) map.n_owned += n_local - n_node_blocks;
+  return map;
 }
 
 }  // namespace hilo

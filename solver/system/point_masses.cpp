@@ -16,7 +16,7 @@ void PointMasses::evaluate(Pass& p) const {
       p.K->add_diagonal(points_.node_block[n], d);
     } else if (!points_.shapes_at(n).empty()) {
       const Modes& modes = points_.modes[points_.modes_of[points_.follower[n]]];
-      const auto blocks = points_.cliques[modes.clique];
+      const auto blocks = points_.layout.cliques[modes.clique];
       const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> M = m * s.mass_slope * Mat3::Identity();
       std::vector<NodeMap> maps;
       std::vector<std::array<bool, 3>> masks;

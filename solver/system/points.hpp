@@ -13,10 +13,11 @@
 #include <array>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "linear/kkt.hpp"
 #include "model/local_mesh.hpp"
+#include "system/layout.hpp"
 #include "system/stage.hpp"
 
 namespace hilo {
@@ -83,11 +84,10 @@ class Points {
   std::vector<int> body_block;         // first of two blocks, -1 for driven bodies
   std::vector<int> body_clique;        // of these two, -1 for driven bodies
   std::vector<UnknownField> unknowns;  // all of these
-  BlockMap map;
-  Cliques cliques;
-  int n_blocks() const { return static_cast<int>(map.global.size()); }
-  int first_joint_block() const { return first_joint_block_; }  // multipliers begin here
-  int n_joint_blocks() const { return n_blocks() - first_joint_block_; }
+  Layout layout;
+  int n_blocks() const { return layout.n_blocks(); }
+  int first_joint_block() const { return layout.first_row; }  // multipliers begin here
+  int n_joint_blocks() const { return static_cast<int>(layout.rows.size()); }
 
   /// Shapes of the modes at a node; none where it follows no linear region.
   std::span<const Vec3> shapes_at(int node) const {
@@ -103,7 +103,10 @@ class Points {
   /// Largest velocity or acceleration of a point or of a director at the size of its body.
   double largest_rate(const Config& v) const;
   /// Whether a local block belongs to this rank: each to one.
-  bool owns(int block) const { return map.global[block] >= map.first && map.global[block] < map.first + map.n_owned; }
+  bool owns(int block) const {
+    const std::int64_t k = layout.map.global[block] - layout.map.first;
+    return k >= 0 && k < layout.map.n_owned;
+  }
   /// Followers from their bodies and modes; the map is linear, so it holds for positions, velocities and accelerations alike.
   void follow(Config& q) const;
   /// Positions, velocities or accelerations of all nodes (n_nodes): a configuration holds the first of them, which something acts on or is
@@ -130,11 +133,13 @@ class Points {
   Vec3 followed(const Config& q, size_t node) const;
 
  protected:
-  /// Local blocks of nodes and bodies, and the cliques of bodies; returns the number of node blocks.
-  int number_points();
-  /// Local blocks, `n_node_blocks` of them of nodes, over all ranks.
-  void number_globally(int n_node_blocks, int n_local);
-  int first_joint_block_ = 0;
+  /// The layout of what moves alone: local blocks of nodes, bodies and modes, the cliques of bodies, and the numbers over all ranks.
+  /// Collective.
+  Layout layout_of_points();
+
+ private:
+  std::pair<int, int> number_points(Cliques& cliques);
+  BlockMap number_globally(int n_node_blocks, int n_local) const;
 };
 
 /// K (3n x 3n over nodes, row major) reduced to the unknowns of the clique's blocks (m blocks) and added to the solver.

@@ -30,7 +30,7 @@ std::string Solids::count() const {
   return fmt::format("{} flexible cells", points_.comm->sum(cells));
 }
 
-void Solids::take_blocks(int&) {
+void Solids::prepare() {
   some_ = points_.comm->max(batches.empty() ? 0 : 1) > 0;  // cells are on their ranks
   const auto remembers = [](const SolidBatch& b) { return b.kernel.n_state > 0; };
   remembers_ = points_.comm->max(std::any_of(batches.begin(), batches.end(), remembers) ? 1 : 0) > 0;
@@ -44,11 +44,11 @@ void Solids::take_blocks(int&) {
     if (points_.follower[i] < 0 && region[i] < static_cast<std::int64_t>(nodes_.size())) nodes_[region[i]].push_back(static_cast<int>(i));
 }
 
-void Solids::add_cliques(Cliques& cliques) {
+void Solids::number(Layout& layout) {
   for (SolidBatch& b : batches) {
     const auto n = static_cast<size_t>(info(b.shape).n_nodes);
-    b.first_clique = cliques.size();
-    for (size_t e = 0; e < b.cells.size(); ++e) cliques.add(points_.blocks_of({b.nodes.data() + e * n, n}), true);
+    b.first_clique = layout.cliques.size();
+    for (size_t e = 0; e < b.cells.size(); ++e) layout.cliques.add(points_.blocks_of({b.nodes.data() + e * n, n}), true);
   }
 }
 

@@ -133,7 +133,7 @@ void Solids::evaluate(Pass& p) const {
         if (plain) {
           p.K->add(b.first_clique + e, Ke.data());
         } else {
-          const auto blocks = points_.cliques[b.first_clique + e];
+          const auto blocks = points_.layout.cliques[b.first_clique + e];
           points_.make_maps({nodes, static_cast<size_t>(n)}, blocks, s, maps, masks);
           add_reduced(*p.K, b.first_clique + e, n, Ke.data(), maps.data(), static_cast<int>(blocks.size()), masks.data());
         }

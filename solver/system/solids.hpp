@@ -37,8 +37,8 @@ class Solids final : public Contribution {
 
   Traits traits() const override;
   std::string count() const override;
-  void take_blocks(int& next) override;
-  void add_cliques(Cliques& cliques) override;
+  void prepare() override;
+  void number(Layout& layout) override;
   std::string owner(int block) const override;
   void add_groups(std::vector<std::vector<int>>& groups) const override { groups.insert(groups.end(), nodes_.begin(), nodes_.end()); }
   void evaluate(Pass& p) const override;

@@ -27,13 +27,13 @@ Traits Springs::traits() const {
 
 std::string Springs::count() const { return fmt::format("{} springs", list.size()); }
 
-void Springs::add_cliques(Cliques& cliques) {
+void Springs::number(Layout& layout) {
   clique_.clear(), owned_.clear();
   for (size_t i = 0; i < list.size(); ++i) {
     std::vector<int> blocks = blocks_of_ends(points_, list[i]);
     if (const int j = list[i].pressing.joint; j >= 0)
       for (int k = 0; k < (joints_[j].n_rows() + 2) / 3; ++k) blocks.push_back(joints_.block(j) + k);
-    clique_.push_back(cliques.add(blocks));
+    clique_.push_back(layout.cliques.add(blocks));
     owned_.push_back(is_owned(points_, list[i], i));
   }
 }

@@ -13,7 +13,7 @@ class Springs final : public Contribution {
 
   Traits traits() const override;
   std::string count() const override;
-  void add_cliques(Cliques& cliques) override;
+  void number(Layout& layout) override;
   void evaluate(Pass& p) const override;
   void add_energy(const Config& q, const Config& v, Energy& sum) const override;
   void add_work(const Moment& m, Work& sum) const override;

@@ -5,26 +5,45 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "system/mode_forces.hpp"
 #include "system/solids.hpp"
 
 namespace hilo {
 
-void System::number() {
-  const int n_node_blocks = number_points();
-  int next = first_joint_block();
-  for (const auto& part : parts_) part->take_blocks(next);
-  number_globally(n_node_blocks, next);
+void System::prepare() {
+  points_ = layout_of_points();
+  for (const auto& part : parts_) part->prepare();
+  number();
   region_nodes.clear(), constraints_.clear();
   traits_ = {}, moves_ = false;
   for (const auto& part : parts_) {
-    part->add_cliques(cliques);
     part->add_constraints(constraints_);
     part->add_groups(region_nodes);
     traits_ |= part->traits();
     moves_ = moves_ || part->moves();
   }
+}
+
+Carry System::number() {
+  const Layout before = std::exchange(layout, points_);
+  for (const auto& part : parts_) part->number(layout), ++layout.part;
+  const auto n = static_cast<std::int64_t>(layout.rows.size());
+  BlockMap& map = layout.map;
+  for (std::int64_t k = 0; k < n; ++k) map.global.push_back(map.n_global + k);
+  map.X.resize(3 * map.global.size(), 0.0);
+  map.n_global += n;
+  if (comm->rank == comm->size - 1) map.n_owned += n;
+  return {before, layout};
+}
+
+std::optional<Carry> System::search(const Config& q, const Config* v, double h) {
+  if (!traits_.searches) return {};
+  bool changes = false;
+  for (const auto& part : parts_) changes |= part->search(q, v, h);
+  if (comm->max(changes ? 1 : 0) == 0) return {};
+  return number();
 }
 
 const Constraint& System::constraint_of(int multiplier_block) const {
@@ -61,7 +80,7 @@ void System::add_all(const Stage& stage, std::span<const double> lambda, Residua
 }
 
 double System::constraint_scale(const Stage& s) const {
-  const double inertia = std::abs(s.mass_slope) * mass / std::max<double>(1, static_cast<double>(map.n_global));
+  const double inertia = std::abs(s.mass_slope) * mass / std::max<double>(1, static_cast<double>(layout.map.n_global));
   return std::max(inertia, s.mass_slope != 0 ? 1e-300 : stiffness);
 }
 

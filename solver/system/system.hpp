@@ -3,6 +3,7 @@
 //
 //   r(q0, q1, lambda) = M a - M g + f_int(q0, q1) + G_left^T lambda - F,      g(q1) = 0
 #pragma once
+#include <functional>
 #include <memory>
 
 #include "base/history.hpp"
@@ -25,7 +26,7 @@ class System : public Points {
   std::vector<UsedHistory> histories;          // all of them
   std::vector<std::vector<int>> region_nodes;  // free nodes that move about together, for the predictor
 
-  /// A further contribution; all of them are there before number().
+  /// A further contribution; all of them are there before prepare().
   template <class T, class... Args>
   T& add(Args&&... args) {
     auto part = std::make_unique<T>(std::forward<Args>(args)...);
@@ -45,13 +46,18 @@ class System : public Points {
   const T& part() const {
     return const_cast<System*>(this)->part<T>();
   }
-  /// All constraint rows, by the things that have them; there from number() on.
+  /// All constraint rows, by the things that have them; there from prepare() on.
   std::span<const std::unique_ptr<Constraint>> constraints() const { return constraints_; }
   /// The one that multipliers in a block belong to, counted from the first block of multipliers.
   const Constraint& constraint_of(int multiplier_block) const;
 
-  /// Number the unknowns and list the cliques; call once after everything is filled in.
-  void number();
+  /// Number the unknowns and list the cliques; call once after everything is filled in.  Collective.
+  void prepare();
+  /// Look for what can meet in a step of length h from q; where the structure becomes another one, `layout` is replaced by it and what was
+  /// laid out like the old multipliers has to be carried over.  Collective.
+  std::optional<Carry> search(const Config& q, const Config* v, double h);
+  /// The layout of what the contributions hold, as after their state was restored.
+  Carry number();
   const Traits& traits() const { return traits_; }
   /// Residual, and tangent into `K` when given.  lambda: (3 x joint blocks), indexed by block - first joint block.
   void evaluate(const Stage& stage, std::span<const double> lambda, Residual& out, KktSolver* K) const;
@@ -120,6 +126,7 @@ class System : public Points {
   std::vector<std::unique_ptr<Constraint>> constraints_;
   Traits traits_;
   bool moves_ = false;
+  Layout points_;  // the layout without contributions
 };
 
 /// Where the modes of linear regions are kept: `from` is taken instead of finding them, and must fit; where there is a `to`, what fits of
@@ -130,5 +137,9 @@ struct ReducedFiles {
 };
 /// Build the system of a scene.  Errors carry the scene's places.
 std::unique_ptr<System> build_system(const Scene& scene, LocalMesh* mesh, const Comm& comm, const ReducedFiles& files = {});
+
+/// From outside this tree, before the first scene is read: entries [[words.name]] of a scene, and what adds a contribution made of them to
+/// the system, of which bodies, nodes, joints and loads are there.
+void add_contribution(const OwnSection& words, std::function<void(const Scene&, System&)> make);
 
 }  // namespace hilo

@@ -57,15 +57,11 @@ Matrix gradient_at(const Weld& w, const Place& x, const Vec3& arm, const Vec3& a
 
 }  // namespace
 
-void Welds::take_blocks(int& next) {
-  block_.clear();
-  for (size_t k = 0; k < list.size(); ++k) block_.push_back(next), next += list[k].n_blocks();
-}
-
-void Welds::add_cliques(Cliques& cliques) {
-  clique_.clear();
+void Welds::number(Layout& layout) {
+  block_.clear(), clique_.clear();
   for (size_t k = 0; k < list.size(); ++k) {
     const Modes& m = points_.modes[list[k].modes];
+    block_.push_back(layout.add_rows(static_cast<int>(k), list[k].n_blocks()));
     std::vector<int> blocks;
     const auto add_body = [&](int body) {
       const int first = points_.body_block[body];
@@ -75,7 +71,7 @@ void Welds::add_cliques(Cliques& cliques) {
     for (int b = 0; b < m.n_blocks; ++b) blocks.push_back(m.block + b);
     add_body(list[k].body);
     for (int b = 0; b < list[k].n_blocks(); ++b) blocks.push_back(block_[k] + b);
-    clique_.push_back(cliques.add(blocks));
+    clique_.push_back(layout.cliques.add(blocks));
   }
 }
 

@@ -38,8 +38,7 @@ class Welds final : public Contribution {
   std::vector<Weld> list;  // on all ranks the same
 
   Traits traits() const override { return {.constrains = !list.empty()}; }
-  void take_blocks(int& next) override;
-  void add_cliques(Cliques& cliques) override;
+  void number(Layout& layout) override;
   std::string owner(int block) const override;
   void evaluate(Pass& p) const override;
   void look_at_rows(const Config& q, double t, double factor, Violation& worst) const override;

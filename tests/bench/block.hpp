@@ -80,7 +80,7 @@ struct Block {
     system.bodies.push_back(ground);
     system.start.x = system.X, system.start.c = {Vec3::Zero()}, system.start.R = {Mat3::Identity()};
     system.add<Solids>(system).batches.push_back(std::move(b));
-    system.number();
+    system.prepare();
   }
 };
 

@@ -20,12 +20,12 @@ Cost cost(const System& system) {
   std::vector<double> b(3 * static_cast<size_t>(system.n_blocks()), 1.0), x(b.size());
   Cost out{0, 0, 1e300};
   const auto solver = make_light_solver();
-  solver->structure(system.cliques, system.map);
+  solver->structure(system.layout.cliques, system.layout.map);
   out.force = microseconds(1, [&] { system.evaluate(r.stage, r.lambda, r.residual, nullptr); });
   out.tangent = microseconds(1, [&] { system.evaluate(r.stage, r.lambda, r.residual, solver.get()); });
   for (int k = 0; k < 3; ++k) {  // a solver anew each time: one that has factors may go on with them
     const auto fresh = make_light_solver();
-    fresh->structure(system.cliques, system.map);
+    fresh->structure(system.layout.cliques, system.layout.map);
     system.evaluate(r.stage, r.lambda, r.residual, fresh.get());
     const double start = seconds();
     if (!fresh->solve(b, x).ok) fmt::print(stderr, "the solve failed\n");

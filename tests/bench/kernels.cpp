@@ -122,7 +122,7 @@ void measure(Shape shape, const Material& law, int n, const Machine& machine) {
   const Block block(shape, law, n);
   const auto cells = static_cast<double>(block.system.part<Solids>().batches[0].cells.size());
   const auto solver = make_light_solver();
-  solver->structure(block.system.cliques, block.system.map);
+  solver->structure(block.system.layout.cliques, block.system.layout.map);
   AtRest r(block.system);
   const double assembled = microseconds(3, [&] { block.system.evaluate(r.stage, r.lambda, r.residual, solver.get()); }) / cells;
   const double residual = microseconds(1, [&] { block.system.evaluate(r.stage, r.lambda, r.residual, nullptr); }) / cells;

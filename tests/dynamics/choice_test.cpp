@@ -16,7 +16,7 @@ TEST(Multipliers, WrongAtTheStartDoNotChangeAStepOfTheDefault) {
   const Scene scene = Scene::load(w / "pend3d.toml");
   const auto system = build_system(scene, nullptr, Comm::world());
   const auto solver = make_light_solver();
-  solver->structure(system->cliques, system->map);
+  solver->structure(system->layout.cliques, system->layout.map);
   NewtonOptions options;
   options.tolerance = 1e-12;
   State state;

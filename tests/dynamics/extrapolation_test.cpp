@@ -16,7 +16,7 @@ class Pendulum {
                                  joint("spherical", "pin", "ground", "bob", Vec3::Zero()) +
                                  "[[initial]]\non = [\"bob\"]\nspin = [0, 3, 0]\nabout = [0, 0, 0]\n[time]\nend = 1\nstep = 0.01\n");
     system = build_system(Scene::load(w / "pendulum.toml", {}), nullptr, Comm::world());
-    solver->structure(system->cliques, system->map);
+    solver->structure(system->layout.cliques, system->layout.map);
     state.q = system->start, state.v = system->start_velocity;
     state.lambda.assign(3 * static_cast<size_t>(system->n_joint_blocks()), 0.0);
   }

@@ -78,7 +78,7 @@ step = 0.005
 State go_on(System& system, State s, int n) {
   const auto method = make_mid_point();
   const auto solver = make_light_solver();
-  solver->structure(system.cliques, system.map);
+  solver->structure(system.layout.cliques, system.layout.map);
   const StepTools tools{system, *solver, {}};
   for (int k = 0; k < n; ++k) {
     EXPECT_TRUE(method->solve(tools, s, 0.005, Predictor::rigid_rotation).converged);

@@ -316,7 +316,7 @@ TEST_P(Laws, EveryMatrixOfNewtonIsTheDerivativeOfItsEquations) {
       system->prescribe(q1, s.t + h);
       for (int stage = 0; stage < (how == "bathe" ? 2 : 1); ++stage) {
         DenseKkt K;
-        K.structure(system->cliques, system->map);
+        K.structure(system->layout.cliques, system->layout.map);
         Residual at;
         system->evaluate(integrator.stage(stage, Unknown(*system, s.q, q1)), s.lambda, at, &K);
         const int first = 3 * system->first_joint_block();

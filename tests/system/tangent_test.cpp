@@ -325,7 +325,7 @@ TEST_P(Tangent, OfTheWholeSystemIsTheDerivativeOfItsResidual) {
   system->commit(s.q);
 
   DenseKkt K;
-  K.structure(system->cliques, system->map);
+  K.structure(system->layout.cliques, system->layout.map);
   Residual at;
   system->evaluate(integrator->stage(0, Unknown(*system, s.q, q1)), s.lambda, at, &K);
   const double scale = K.A.topLeftCorner(first, first).cwiseAbs().maxCoeff();

@@ -26,10 +26,10 @@ void CoupledStages::begin(const System& system, double t, double h) {
 void CoupledStages::couple(const System& system) {
   const int n = system.n_blocks();
   std::vector<int> list;
-  for (int e = 0; e < system.cliques.size(); ++e) {
+  for (int e = 0; e < system.layout.cliques.size(); ++e) {
     list.clear();
     for (int i = 0; i < n_stages; ++i)
-      for (int block : system.cliques[e]) list.push_back(block < 0 ? -1 : block + i * n);
+      for (int block : system.layout.cliques[e]) list.push_back(block < 0 ? -1 : block + i * n);
     cliques_.add(list);
   }
   for (int i = 0; i < n_stages * n; ++i) map_.global.push_back(i);
@@ -129,7 +129,7 @@ double CoupledStages::largest_correction(const System& system) const {
 std::pair<double, double> CoupledStages::scales(const System& system) const {
   double force = 0, inertia = 0;
   for (const Residual& r : r_)
-    force = std::max(force, r.force_scale), inertia = std::max(inertia, r.sigma * static_cast<double>(system.map.n_global));
+    force = std::max(force, r.force_scale), inertia = std::max(inertia, r.sigma * static_cast<double>(system.layout.map.n_global));
   return {force, inertia};
 }
 

@@ -39,7 +39,7 @@ DirectorSums director_sums(const std::array<Mat3, 3>& N) {
 
 void DirectorColumns::add(int clique, const double* K) {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const auto blocks = system_.cliques[clique];
+  const auto blocks = system_.layout.cliques[clique];
   const int n = static_cast<int>(blocks.size()), width = 3 * n, first_joint = system_.first_joint_block();
   const Eigen::Map<const Rows> from(K, width, width);
   const double scale = sigma_ / sigma_here_;

@@ -121,6 +121,11 @@ class GaussIntegrator final : public CoupledStages {
     drop_matrix(), past_h_ = 0;
   }
 
+  void carry(const Carry& carry) override {
+    for (int i = 0; i < 3; ++i) past_lambda_[i] = carry(past_lambda_[i]), missed_before_[i].carry(carry);
+    forget_structure(), end_solver_.reset();
+  }
+
   void archive(Archive& a, const System&) override {
     a(name(), past_h_, past_a_, past_lambda_, missed_before_, coupled_steps_, most_kinetic_);
     forget_structure();
@@ -280,7 +285,7 @@ class GaussIntegrator final : public CoupledStages {
   /// has its energy from the motion.  Where it is no longer small, it goes, and its energy with it [ascher-petzold-1991]; false where it is
   /// large.
   bool settle_velocities() {
-    if (!end_solver_) end_solver_ = make_light_solver(), end_solver_->structure(system_->cliques, system_->map);
+    if (!end_solver_) end_solver_ = make_light_solver(), end_solver_->structure(system_->layout.cliques, system_->layout.map);
     lost_ = given_.any() ? system_->energy(q1_, v1_).kinetic : 0;
     given_.put_rates(v1_);
     if (given_.any()) lost_ -= system_->energy(q1_, v1_).kinetic;
@@ -336,7 +341,7 @@ class GaussIntegrator final : public CoupledStages {
 std::unique_ptr<Integrator> Gauss::make(const Entry&) { return make_gauss(make_light_solver()); }
 
 std::string Gauss::weakness(const Entry&, const System& system) {
-  return system.map.n_global > 5000 ? "all three stages are solved at once: 27 times the entries of the other methods" : "";
+  return system.layout.map.n_global > 5000 ? "all three stages are solved at once: 27 times the entries of the other methods" : "";
 }
 
 std::unique_ptr<Integrator> make_gauss(std::unique_ptr<SerialKktSolver> solver) {

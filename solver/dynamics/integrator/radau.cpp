@@ -73,6 +73,11 @@ class RadauIntegrator final : public CoupledStages {
     drop_matrix(), a_end_ = {};
   }
 
+  void carry(const Carry& carry) override {
+    for (Extrapolation& p : past_) p.carry(carry);
+    forget_structure();
+  }
+
   void archive(Archive& a, const System&) override {
     a(name(), a_end_, past_);
     forget_structure();
@@ -181,7 +186,7 @@ class RadauIntegrator final : public CoupledStages {
 std::unique_ptr<Integrator> Radau::make(const Entry&) { return make_radau(make_light_solver()); }
 
 std::string Radau::weakness(const Entry&, const System& system) {
-  return system.map.n_global > 5000 ? "all three stages are solved at once: 27 times the entries of the other methods" : "";
+  return system.layout.map.n_global > 5000 ? "all three stages are solved at once: 27 times the entries of the other methods" : "";
 }
 
 std::unique_ptr<Integrator> make_radau(std::unique_ptr<SerialKktSolver> solver) {

@@ -42,7 +42,7 @@ struct SharedProblem {
 Case scene_case(const std::string& scene, const std::string& mesh, double h, double t, const Comm& comm) {
   const auto data = std::make_shared<SceneAtRest>(scene, mesh, h, t, comm);
   Case out;
-  out.cliques = &data->system->cliques, out.map = &data->system->map;
+  out.cliques = &data->system->layout.cliques, out.map = &data->system->layout.map;
   out.fill = [data](KktSolver& K) { data->system->evaluate(data->stage, data->lambda, data->residual, &K); };
   data->system->evaluate(data->stage, data->lambda, data->residual, nullptr);
   out.b = data->residual.r;
