@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // hilo-post response: what a harmonic force at a probe, or a base that swings, does to probes, by the modes of an analysis of modes,
 //
-//   H(omega) = sum_j phi_j(out) p_j / D_j,     D_j = omega_j^2 - omega^2 + 2 i zeta_j omega_j omega,   phi of unit mass.
+//   H(omega) = sum_j phi_j(out) y_j,     (omega_j^2 - omega^2) y_j + i omega sum_k C_jk y_k = p_j,     phi of unit mass,
 //
+// modes phi without damping, and C what dampers and regions make of them, which couples them.
 // Of a force p_j = phi_j(in).  A base that moves with the acceleration e exp(i omega t) pushes each mode with p_j = -phi_j.M s, s what it
 // moves slowly; where all that stands still moves, s = e, and phi_j.M s = -F_j/omega_j^2, F_j the force on a held set, where it alone does.
-// To what moves against the base s(out) comes, -s/omega^2 as displacement.
+// What brakes s, mass-proportional damping, pushes too: -phi_j.C s/(i omega).  To what moves against the base s(out) comes, -s/omega^2 as
+// displacement.
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <complex>
 #include <memory>
@@ -36,8 +39,43 @@ struct Options {
 };
 
 struct Modes {
-  std::vector<double> omega2, damping, amplitude;
+  std::vector<double> omega2, amplitude;
+  Eigen::MatrixXd C;  // [1/s]
+  bool is_damped = false, is_diagonal = true;
+  /// Amplitudes under the forces p.
+  Eigen::VectorXcd answer(double omega, const Eigen::VectorXcd& p) const {
+    const std::complex<double> i_omega(0, omega);
+    const auto n = static_cast<Eigen::Index>(omega2.size());
+    Eigen::MatrixXcd A;
+    if (!is_diagonal) A = i_omega * C;
+    Eigen::VectorXcd out(n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const double spring = omega2[static_cast<size_t>(j)] - omega * omega;
+      if (is_diagonal)
+        out[j] = p[j] / (spring + i_omega * C(j, j));
+      else
+        A(j, j) += spring;
+    }
+    return is_diagonal ? out : Eigen::VectorXcd(A.partialPivLu().solve(p));
+  }
 };
+Modes modes_of(const RunFile& file, double more_damping) {
+  const Series table = file.series("mode"), stiffness = file.series("mode_stiffness"), damping = file.series("mode_damping");
+  Modes out;
+  const auto n = static_cast<Eigen::Index>(table.rows()) - 1;
+  out.C = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const auto row = static_cast<size_t>(j) + 1;
+    out.omega2.push_back(stiffness.at(row, 0)), out.amplitude.push_back(table.at(row, 9));
+    if (out.amplitude.back() == 0) throw Error(file.path, "its modes turn with the spin of bodies: they have no response of this kind");
+    for (Eigen::Index k = 0; k < n; ++k) out.C(j, k) = damping.at(row, static_cast<size_t>(k));
+    out.C(j, j) += 2 * more_damping * std::sqrt(std::abs(out.omega2.back()));
+  }
+  const Eigen::MatrixXd off = out.C - Eigen::MatrixXd(out.C.diagonal().asDiagonal());
+  const double largest = n > 0 ? out.C.cwiseAbs().maxCoeff() : 0;
+  out.is_damped = largest > 0, out.is_diagonal = n < 2 || off.cwiseAbs().maxCoeff() <= 1e-12 * largest;
+  return out;
+}
 
 /// "tip.z": a name and the number of an axis; of "z" the name is empty.
 std::pair<std::string, size_t> name_and_axis(const std::string& text, const char* what, const char* hint) {
@@ -66,9 +104,9 @@ Place place_of(const RunFile& run, const std::string& text, const Modes& modes) 
   return {change_of(run.series("probe." + name), axis, modes), axis};
 }
 
-/// phi_j.M s of each mode, and s as a whole: along these axes where everything that stands still moves, or else unknown.
+/// phi_j.M s and phi_j.C s of each mode, and s as a whole: along these axes where everything that stands still moves, or else unknown.
 struct Base {
-  std::vector<double> part;
+  std::vector<double> part, drag;
   std::optional<Vec3> slow;
   Base(const RunFile& run, const std::vector<std::string>& bases, const Modes& modes);
   /// What the base moves a place by slowly; where it is one support of several, by all modes that there are.
@@ -79,15 +117,17 @@ struct Base {
     return sum;
   }
 };
-Base::Base(const RunFile& run, const std::vector<std::string>& bases, const Modes& modes) : part(modes.omega2.size(), 0.0) {
-  const Series whole = run.series("participation");
+Base::Base(const RunFile& run, const std::vector<std::string>& bases, const Modes& modes)
+    : part(modes.omega2.size(), 0.0), drag(part.size(), 0.0) {
+  const Series whole = run.series("participation"), brakes = run.series("mode_drag");
   Vec3 along = Vec3::Zero();
   std::vector<double> of_all(part.size(), 0.0);
   bool is_all = false, is_some = false;
   for (const std::string& text : bases) {
     const auto [name, axis] = name_and_axis(text, "base", "write an axis, z, or the name of a motion and an axis: wall.z");
     along[static_cast<Eigen::Index>(axis)] += 1;
-    for (size_t j = 0; j < part.size(); ++j) of_all[j] += whole.at(j + 1, axis);
+    for (size_t j = 0; j < part.size(); ++j)  // of one motion what is damped to the ground is braked by it
+      of_all[j] += whole.at(j + 1, axis), drag[j] += brakes.at(j + 1, name.empty() ? axis : 3 + axis);
     (name.empty() ? is_all : is_some) = true;
     if (name.empty()) continue;
     const std::vector<double> force = change_of(run.series("motion." + name), axis, modes);
@@ -99,22 +139,20 @@ Base::Base(const RunFile& run, const std::vector<std::string>& bases, const Mode
   double off = 0, size = 0;
   for (size_t j = 0; j < part.size() && is_some; ++j)
     off = std::max(off, std::abs(part[j] - of_all[j])), size = std::max(size, std::abs(of_all[j]));
-  if (is_all || off < 1e-6 * size) part = of_all, slow = along;  // or there is no other support
+  if (is_all || off < 1e-4 * size) {  // or there is no other support; forces on it are of strains that are not quite small
+    part = of_all, slow = along;
+  } else {
+    std::fill(drag.begin(), drag.end(), 0.0);
+    if (modes.is_damped)
+      warn("--base", "one support of several: what dampers take of the slow motion between them is left out, some twice the damping ratio");
+  }
 }
 
 void run(const Options& o) {
   const RunFile file(o.run);
   if (file.frequencies.size() < 2) throw Error(o.run, "holds no modes", "run the scene with time.analysis = \"modes\"");
-  const Series table = file.series("mode");
-  Modes modes;
-  double highest = 0;
-  for (size_t k = 1; k < table.rows(); ++k) {
-    const double f = table.at(k, 0), omega = 2 * std::numbers::pi * f;
-    modes.omega2.push_back(omega * std::abs(omega)), modes.damping.push_back(table.at(k, 1) + o.damping);
-    modes.amplitude.push_back(table.at(k, 9));
-    highest = std::max(highest, f);
-    if (table.at(k, 9) == 0) throw Error(o.run, "its modes turn with the spin of bodies: they have no response of this kind");
-  }
+  const Modes modes = modes_of(file, o.damping);
+  const double highest = std::sqrt(std::max(0.0, *std::max_element(modes.omega2.begin(), modes.omega2.end()))) / (2 * std::numbers::pi);
   const double from = o.from > 0 ? o.from : highest / 1000, to = o.to > 0 ? o.to : highest;
   if (!(to > from)) throw Error("--to", fmt::format("{:g} Hz is not above {:g} Hz", to, from), "", Exit::usage);
   if (o.force.empty() == o.base.empty()) throw Error("response", "either --force or --base says what swings", "", Exit::usage);
@@ -122,12 +160,10 @@ void run(const Options& o) {
   if (o.at.empty() && o.force.empty()) throw Error("--at", "which probe answers?", "--at tip.z", Exit::usage);
   std::optional<Base> base;
   std::vector<double> push;
-  if (o.force.empty()) {
+  if (o.force.empty())
     base.emplace(file, o.base, modes);
-    for (const double part : base->part) push.push_back(-part);
-  } else {
+  else
     push = place_of(file, o.force, modes).shape;
-  }
   const std::string unit = base ? (o.of == "displacement" ? "s^2"
                                    : o.of == "velocity"   ? "s"
                                                           : "1")
@@ -138,6 +174,14 @@ void run(const Options& o) {
   std::vector<std::string> header{"frequency [Hz]"};
   std::vector<std::vector<double>> columns(1);
   for (int i = 0; i < o.points; ++i) columns[0].push_back(from * std::pow(to / from, static_cast<double>(i) / std::max(1, o.points - 1)));
+  std::vector<Eigen::VectorXcd> answers;
+  for (const double f : columns[0]) {
+    const std::complex<double> i_omega(0, 2 * std::numbers::pi * f);
+    Eigen::VectorXcd p(static_cast<Eigen::Index>(modes.omega2.size()));
+    for (size_t j = 0; j < modes.omega2.size(); ++j)
+      p[static_cast<Eigen::Index>(j)] = base ? -base->part[j] - base->drag[j] / i_omega : std::complex<double>(push[j]);
+    answers.push_back(modes.answer(i_omega.imag(), p));
+  }
   Figure figure;
   std::tie(figure.width, figure.height) = parse_size(o.size);
   figure.title = o.title.empty() ? fmt::format("{}: {}{} over {}", file.title, o.of, o.relative ? " against the base" : "",
@@ -149,12 +193,9 @@ void run(const Options& o) {
     const Place place = place_of(file, at, modes);
     const std::vector<double>& shape = place.shape;
     std::vector<double> size, phase;
-    for (const double f : columns[0]) {
-      const double omega = 2 * std::numbers::pi * f;
-      std::complex<double> sum = 0;
-      for (size_t j = 0; j < shape.size(); ++j)
-        sum += shape[j] * push[j] /
-               std::complex<double>(modes.omega2[j] - omega * omega, 2 * modes.damping[j] * std::sqrt(std::abs(modes.omega2[j])) * omega);
+    for (size_t i = 0; i < answers.size(); ++i) {
+      const double omega = 2 * std::numbers::pi * columns[0][i];
+      std::complex<double> sum = (Eigen::Map<const Eigen::VectorXd>(shape.data(), answers[i].size()).transpose() * answers[i]).value();
       if (base && !o.relative) sum -= base->slow_at(place) / (omega * omega);
       sum *= std::pow(std::complex<double>(0, omega), rates);
       size.push_back(std::abs(sum)), phase.push_back(std::arg(sum) * 180 / std::numbers::pi);

@@ -61,7 +61,7 @@ class ModeSteps final : public Steps {
     run_.recorder->first(rest, run_.audit->ledger());
     Progress progress(run_.options.quiet, 0, time_.number("modes"));
     const int wanted = static_cast<int>(time_.number("modes"));
-    std::vector<FoundMode> modes = natural_modes(system, *run_.solver, rest, spins ? std::max(40, 3 * wanted) : wanted,
+    std::vector<FoundMode> modes = natural_modes(system, *run_.solver, rest, spins ? std::max(40, 3 * wanted) : wanted, !spins,
                                                  [&](int found) { progress.show(found, 0, 0); });
     progress.done();
     if (spins) modes = whirling_modes(system, *run_.solver, rest, modes, wanted);

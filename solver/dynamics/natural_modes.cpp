@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "base/error.hpp"
-#include "dynamics/about_state.hpp"
-#include "dynamics/start.hpp"
+#include "dynamics/damped_modes.hpp"
 #include "linear/block_krylov.hpp"
 
 namespace hilo {
@@ -18,116 +16,13 @@ namespace {
 
 using Vector = Eigen::VectorXd;
 
-/// Products with K and M about a state, and with the inverse of K + s M on the motions that joints and supports allow.
-class Linearized : AboutState {
- public:
-  Linearized(const System& system, KktSolver& solver, const State& rest)
-      : AboutState(system, solver, rest), none_(rest.lambda.size(), 0.0), base_mass_(mass_residual(zero_)) {}
-  Eigen::Index n() const { return n_; }
-
-  /// Forces of inertia.  Accelerations are taken so large that the rounding of stiff cells, which is in the residual too, is small beside.
-  Vector mass_of(const Config& acceleration) const {
-    const double factor = typical_acceleration_ / std::max(1e-300, system_.largest_rate(acceleration));
-    Config a;
-    combine(a, {{factor, &acceleration}});
-    return (mass_residual(a) - base_mass_) / factor;
-  }
-  Vector mass(const Vector& x) const { return mass_of(rates(state_.q, x)); }
-  /// The mean of the squared frequencies, most of them of single cells.
-  double mean_omega2() {
-    std::mt19937_64 random{7};
-    std::normal_distribution<double> normal;
-    Vector x(n_);
-    double mean = 0;
-    for (double& value : x) value = normal(random);
-    for (int twice = 0; twice < 2; ++twice) {
-      mean = std::abs(x.dot(stiffness(x)) / x.dot(mass(x)));
-      if (!std::isfinite(mean) || mean == 0) mean = 1;
-      typical_acceleration_ = std::max(mean, 1.0) * system_.length;
-    }
-    return mean;
-  }
-
-  /// About K x, by differences of the residual between a little motion to either side.
-  Vector stiffness(const Vector& x) const {
-    const double step = 1e-5 * system_.length / std::max(1e-300, system_.largest_rate(rates(state_.q, x)));
-    Vector out[2];
-    for (const int side : {0, 1}) {
-      const double by = side == 0 ? -step : step;
-      Config q = state_.q;
-      const std::vector<double> z = padded(x * by);
-      system_.move(q, z);
-      Residual r;
-      system_.evaluate(stage(q), state_.lambda, r, nullptr);
-      out[side] = free_part(r.r);
-    }
-    return (out[1] - out[0]) / (2 * step);
-  }
-
-  /// C x, by rates too small for friction to slip.
-  Vector damping(const Vector& x) const {
-    const double speed = 1e-6 * system_.length / std::max(1e-300, system_.largest_rate(rates(state_.q, x))), h = 1e-3;
-    Vector out[2];
-    for (const int moving : {0, 1}) {
-      const Config v = rates(state_.q, x * (moving ? speed : 0));
-      Config before, after;
-      combine(before, {{1, &state_.q}, {-h / 2, &v}});
-      combine(after, {{1, &state_.q}, {h / 2, &v}});
-      Stage s = stage(state_.q);
-      s.w0 = &before, s.w1 = &after, s.h = h, s.v = &v;
-      Residual r;
-      system_.evaluate(s, state_.lambda, r, nullptr);
-      out[moving] = free_part(r.r);
-    }
-    return (out[1] - out[0]) / speed;
-  }
-
-  /// K + s M becomes the matrix of the solver.
-  void factor(double shift) {
-    Stage s = stage(state_.q);
-    s.mass_slope = shift;
-    Residual r;
-    system_.evaluate(s, state_.lambda, r, &solver_);
-    sigma_ = r.sigma;
-  }
-  /// Motion and multipliers under the forces b; what is left of the equations, over |b|.
-  double solve(const Vector& b, Vector& x, std::vector<double>* mu = nullptr) const {
-    std::vector<double> rhs = padded(b), z(rhs.size(), 0.0);
-    const SolveReport report = solver_.solve(rhs, z);
-    if (!report.ok) throw Error("", "no modes: " + report.message, "a part may have neither mass nor support");
-    x = Eigen::Map<const Vector>(z.data(), n_);
-    if (mu) mu->assign(z.begin() + n_, z.end());
-    for (size_t i = 0; mu && i < mu->size(); ++i) (*mu)[i] *= sigma_;
-    return report.residual;
-  }
-
- private:
-  Stage stage(const Config& q) const {
-    Stage s = stage_at(q, state_.t);
-    s.a = &zero_;
-    return s;
-  }
-  Vector mass_residual(const Config& acceleration) const {
-    Stage s = stage_at(system_.start, state_.t);
-    s.left = s.end = &state_.q;
-    s.slope = 0, s.chain = 1e-30;  // without stiffness
-    s.a = &acceleration, s.mass_slope = 1;
-    s.rates_alone = true, s.load_factor = 0;
-    Residual r;
-    system_.evaluate(s, none_, r, nullptr);
-    return free_part(r.r);
-  }
-  std::vector<double> none_;
-  Vector base_mass_;
-  double sigma_ = 1, typical_acceleration_ = 1;
-};
-
 /// Motions of the whole scene as one rigid body, along x, y, z and about axes through the origin: what the unknowns do (n x 6), and the
 /// forces of inertia of everything that moves along.
 struct RigidMotions {
   Eigen::MatrixXd x, force;
-  RigidMotions(const System& system, const Linearized& at, const Config& q) : x(at.n(), 6), force(at.n(), 6) {
-    x.setZero();
+  Eigen::Matrix<double, Eigen::Dynamic, 6> drag;  // of dampers along x, y, z where what stands still swings along, and where it does not
+  RigidMotions(const System& system, const Linearized& at, const Config& q) : x(at.n(), 6), force(at.n(), 6), drag(at.n(), 6) {
+    x.setZero(), drag.setZero();
     Config v;
     for (int k = 0; k < 6; ++k) {
       const Vec3 e = Vec3::Unit(k % 3);
@@ -138,6 +33,11 @@ struct RigidMotions {
       for (size_t b = 0; b < q.c.size(); ++b) v.c[b] = moved(q.c[b]), v.R[b] = spin * q.R[b];
       for (size_t j = 0; j < q.Y.size(); ++j) v.Y[j] = spin * q.Y[j];
       force.col(k) = at.mass_of(v);
+      if (k < 3 && system.traits().has_rates) {
+        drag.col(k) = at.damping_of(v, false);
+        v.c[0].setZero();
+        drag.col(3 + k) = at.damping_of(v);
+      }
       for (const UnknownField& f : system.unknowns)
         for (size_t i = 0; i < f.size(); ++i) {
           if (f.turns() && k >= 3) x.col(k).segment<3>(3 * f.block(i)) = e;
@@ -185,7 +85,7 @@ double good_shift(Linearized& at, Pencil pencil, int wanted, const std::function
 
 }  // namespace
 
-std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, const State& rest, int wanted,
+std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, const State& rest, int wanted, bool at_rest,
                                      const std::function<void(int)>& tell) {
   Linearized at(system, solver, rest);
   const auto by_columns = [](const Eigen::MatrixXd& X, auto&& product) {
@@ -238,16 +138,16 @@ std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, co
     shape.cwiseAbs().maxCoeff(&most);
     const double norm = std::copysign(std::sqrt(shape.dot(at.mass(shape))), shape[most]);
     shape /= norm;
-    f.figures.omega2 = modes.omega2[j];
+    f.figures.omega2 = f.figures.pole2 = modes.omega2[j];
     f.figures.error += std::sqrt(std::abs(change.dot(at.mass(change))));  // not a number remains one
     f.figures.part = rigid.part_of(shape), f.figures.mass = f.figures.part.cwiseAbs2();
-    if (system.traits().has_rates && f.figures.omega2 > 1e-9 * pencil.shift)
-      f.figures.damping = shape.dot(at.damping(shape)) / (2 * std::sqrt(f.figures.omega2));
+    f.figures.drag = rigid.drag.transpose() * shape;
     f.x.assign(shape.begin(), shape.end());
     for (double& value : mu) value /= norm;
     clean.push_back(std::move(mu));
   }
   for (size_t j = 0; j < out.size(); ++j) out[j].mu = std::move(clean[j]);
+  if (at_rest && system.traits().has_rates) add_damping(out, at, pencil.shift);
   return out;
 }
 

@@ -17,9 +17,9 @@ struct FoundMode {
   std::vector<double> mu;  // multipliers, laid out like State::lambda
 };
 
-/// The `wanted` lowest modes about `rest`, whose multipliers hold it there, or all there are.  Error where the forces of a small motion are
-/// no gradient, as those of follower pressure.
-std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, const State& rest, int wanted,
+/// The `wanted` lowest modes about `rest`, whose multipliers hold it there, or all there are; `at_rest`: with their damping.  Error where
+/// the forces of a small motion are no gradient, as those of follower pressure.
+std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, const State& rest, int wanted, bool at_rest,
                                      const std::function<void(int)>& tell);
 
 }  // namespace hilo

@@ -13,6 +13,7 @@
 #include "dynamics/profile.hpp"
 #include "dynamics/run_parts.hpp"
 #include "dynamics/start.hpp"
+#include "system/modal_damping.hpp"
 
 namespace hilo {
 namespace {
@@ -144,6 +145,7 @@ class Run {
       fmt::print(stderr, "a singular position: {} more joint rows depend on others at the start alone\n",
                  redundancy.rank - redundancy.rank_at_pose);
     state.lambda.assign(3 * system.n_joint_blocks(), 0.0);
+    if (!is_static()) system.part<ModalDamping>().find(state.q);
   }
 
   void open_recorder() {

@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "dynamics/about_state.hpp"
+#include "system/springs.hpp"
 
 namespace hilo {
 namespace {
@@ -25,9 +26,13 @@ class Spin : AboutState {
     for (size_t j = 0; j < basis.size(); ++j) basis_.col(static_cast<Eigen::Index>(j)) = Eigen::Map<const Vector>(basis[j].x.data(), n_);
   }
   const Matrix& basis() const { return basis_; }
+  /// Way of a point by a unit of a mode.
+  double largest_of(Eigen::Index j) const { return system_.largest_rate(rates(state_.q, basis_.col(j))); }
 
   struct Terms {
-    Matrix C, K;
+    Matrix C, K;      // what moving adds
+    Matrix standing;  // K of the pose itself
+    Vector force;     // that nothing balances
   };
   /// At the pose that the bodies have after a turn by `angle` more.
   Terms at(double angle) const {
@@ -39,22 +44,28 @@ class Spin : AboutState {
       const Mat3 turn = Eigen::AngleAxisd(angle, w.normalized()).toRotationMatrix();
       for (auto* of : {&q, &v, &a}) of->R[b] = turn * of->R[b];
     }
-    Terms out{Matrix(basis_.cols(), basis_.cols()), Matrix(basis_.cols(), basis_.cols())};
-    for (Eigen::Index j = 0; j < basis_.cols(); ++j) {
+    const Eigen::Index m = basis_.cols();
+    Terms out{Matrix(m, m), Matrix(m, m), Matrix(m, m), Vector(m)};
+    const Vector none = Vector::Zero(n_);
+    for (Eigen::Index j = 0; j < m; ++j) {
       const Vector x = basis_.col(j) * (step / std::max(1e-300, system_.largest_rate(rates(q, basis_.col(j))) / system_.length));
       const double by = x.norm() / basis_.col(j).norm();
-      const Vector K = residual(q, v, a, x, Vector::Zero(n_)) - residual(q, v, a, -x, Vector::Zero(n_));
-      const Vector C = residual(q, v, a, Vector::Zero(n_), x) - residual(q, v, a, Vector::Zero(n_), -x);
-      out.K.col(j) = basis_.transpose() * K / (2 * by), out.C.col(j) = basis_.transpose() * C / (2 * by);
+      const auto [still, moving] = residual(q, v, a, x, none);
+      const auto [still_back, moving_back] = residual(q, v, a, -x, none);
+      const Vector C = residual(q, v, a, none, x).second - residual(q, v, a, none, -x).second;
+      out.K.col(j) = basis_.transpose() * (moving - moving_back) / (2 * by), out.C.col(j) = basis_.transpose() * C / (2 * by);
+      out.standing.col(j) = basis_.transpose() * (still - still_back) / (2 * by);
     }
+    const auto [still, moving] = residual(q, v, a, none, none);
+    out.force = basis_.transpose() * (still + moving);
     return out;
   }
 
  private:
   static constexpr double step = 1e-4;
   static Vec3 axial(const Mat3& S) { return Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)) / 2; }
-  /// What moving and accelerating add to the residual at increments z that change with z'.
-  Vector residual(const Config& q0, const Config& v0, const Config& a0, const Vector& z, const Vector& rate) const {
+  /// The residual at increments z, and what moving and accelerating add to it where they change with z'.
+  std::pair<Vector, Vector> residual(const Config& q0, const Config& v0, const Config& a0, const Vector& z, const Vector& rate) const {
     Config q = q0, v = v0, a = a0;
     const std::vector<double> by = padded(z), at = padded(rate);
     system_.move(q, by);
@@ -78,11 +89,63 @@ class Spin : AboutState {
     s.a = &a, s.w0 = &before, s.w1 = &after, s.h = h, s.v = &v;
     system_.evaluate(s, state_.lambda, moving, nullptr);
     for (size_t i = 0; i < moving.r.size(); ++i) moving.r[i] -= still.r[i];
-    return free_part(moving.r);
+    return {free_part(still.r), free_part(moving.r)};
   }
 
   Matrix basis_;
 };
+
+/// What may make the coefficients change as bodies turn: those with unequal moments about their axes, or else springs that they carry.
+std::string who_is_uneven(const System& system, const State& state) {
+  const auto axis = [&](int b) {
+    const Mat3 S = state.v.R[b] * state.q.R[b].transpose();
+    return Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1));
+  };
+  for (size_t b = 1; b < system.bodies.size(); ++b) {
+    const Vec3 w = axis(static_cast<int>(b));
+    if (w.norm() == 0) continue;
+    const Mat3 J = state.q.R[b] * system.bodies[b].J * state.q.R[b].transpose(),
+               turn = Eigen::AngleAxisd(1, w.normalized()).toRotationMatrix();
+    if ((turn * J * turn.transpose() - J).norm() > 1e-9 * J.norm())
+      return fmt::format("body \"{}\" has unequal moments of inertia about its axis of spin", system.bodies[b].name);
+  }
+  std::string names;
+  for (const Spring& c : system.part<Springs>().list)
+    for (const Carrier& end : c.ends())
+      if (end.body >= 0 && axis(end.body).norm() > 0) {
+        names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", c.name);
+        break;
+      }
+  return names.empty() ? "" : "springs that what spins carries: " + names;
+}
+
+/// Error where stiffness, damping or forces at another angle of the spin are others.
+void refuse_uneven(const System& system, const State& state, const Spin& spin, const std::vector<FoundMode>& basis) {
+  const Spin::Terms here = spin.at(0), further = spin.at(1);
+  double largest = here.C.squaredNorm(), slowest = 1e300;
+  for (const FoundMode& mode : basis) largest = std::max(largest, std::abs(mode.figures.omega2));
+  for (const FoundMode& mode : basis)
+    if (const double x = std::abs(mode.figures.omega2); x > 1e-9 * largest) slowest = std::min(slowest, x);
+  const Eigen::Index m = here.C.rows();
+  Vector omega(m);  // by which entries are judged: a slow mode is not to hide behind fast ones
+  for (Eigen::Index j = 0; j < m; ++j)
+    omega[j] = std::sqrt(
+        std::max({std::abs(basis[static_cast<size_t>(j)].figures.omega2), here.C.row(j).squaredNorm(), std::min(slowest, largest)}));
+  const Matrix K = further.K + further.standing - here.K - here.standing, C = further.C - here.C;
+  const Vector unit = omega.cwiseInverse();
+  bool is_uneven = (unit.asDiagonal() * K * unit.asDiagonal()).cwiseAbs().maxCoeff() > 1e-5 ||
+                   (unit.cwiseSqrt().asDiagonal() * C * unit.cwiseSqrt().asDiagonal()).cwiseAbs().maxCoeff() > 1e-5;
+  for (Eigen::Index j = 0; j < m; ++j) {
+    const double away = std::abs(further.force[j] - here.force[j]) * unit[j] * unit[j] * spin.largest_of(j);
+    is_uneven = is_uneven || away > 1e-4 * system.length;
+  }
+  if (!is_uneven) return;
+  const std::string who = who_is_uneven(system, state);
+  throw Error(
+      "", "what turns is not the same all around: its frequencies change as it turns" + (who.empty() ? "" : "; " + who),
+      "give bodies that spin two equal moments of inertia, and springs that hold them at points of their axes, unlike stiffnesses to "
+      "what stands (a = \"ground\")");
+}
 
 }  // namespace
 
@@ -103,12 +166,8 @@ std::string not_steady(const System& system, const State& state) {
 std::vector<FoundMode> whirling_modes(const System& system, KktSolver& solver, const State& state, const std::vector<FoundMode>& basis,
                                       int wanted) {
   const Spin spin(system, solver, state, basis);
-  const Spin::Terms here = spin.at(0), further = spin.at(1);
-  double stiffness = here.C.squaredNorm();
-  for (const FoundMode& mode : basis) stiffness = std::max(stiffness, std::abs(mode.figures.omega2));
-  if ((further.K - here.K).norm() > 1e-6 * stiffness || (further.C - here.C).norm() > 1e-6 * here.C.norm())
-    throw Error("", "what turns is not the same all around: its frequencies change as it turns",
-                "give bodies that spin two equal moments of inertia, and springs that hold them at points of their axes");
+  const Spin::Terms here = spin.at(0);
+  refuse_uneven(system, state, spin, basis);
   const auto m = static_cast<Eigen::Index>(basis.size());
   Matrix A = Matrix::Zero(2 * m, 2 * m);
   A.topRightCorner(m, m).setIdentity();
@@ -143,6 +202,7 @@ std::vector<FoundMode> whirling_modes(const System& system, KktSolver& solver, c
     }
     const bool swings = mu(i).imag() > 1e-7 * largest;
     f.figures.omega2 = swings ? mu(i).imag() * mu(i).imag() : -mu(i).real() * mu(i).real();
+    f.figures.pole2 = swings ? std::norm(mu(i)) : f.figures.omega2;
     f.figures.damping = swings ? -mu(i).real() / std::abs(mu(i)) : 0;
     // with p the parts of the basis, p.(s^2 + s C + K)^-1 p = sum of r/(s - mu) over all poles, and the sum of r mu is p.p
     for (int k = 0; k < 6; ++k)

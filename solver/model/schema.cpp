@@ -142,6 +142,13 @@ std::vector<ArraySchema>& arrays() {
        "of an analysis of modes: share of each mode of unit mass in a motion of the whole scene along x, y, z and about axes through the "
        "centre "
        "of mass; its square is the effective mass (0: a whirl)"},
+      {"run.h5", "/history/mode_stiffness", "f8", "(n_t, 1)", "1/s^2",
+       "of an analysis of modes: squared circular frequency of each mode without damping, of which the shapes are (0: a whirl)"},
+      {"run.h5", "/history/mode_damping", "f8", "(n_t, n_modes)", "1/s",
+       "of an analysis of modes: damping matrix on the modes of unit mass, a row for each"},
+      {"run.h5", "/history/mode_drag", "f8", "(n_t, 6)", "kg^0.5/s",
+       "of an analysis of modes: forces of damping on each mode where everything moves along x, y, z, what stands still too (of "
+       "mass-proportional damping alone), and where that stands still"},
       {"run.h5", "/history/path", "f8", "(n_t, 3)", "1",
        "of an analysis of a path, in which t is the number of the state: share of the loads; its rise along the path, 1 where all of a "
        "step is "

@@ -37,6 +37,7 @@ void Bodies::evaluate(Pass& p) const {
     for (int i = 0; i < 3; ++i) moment += s.left->R[b].col(i).cross(AJ.col(i));
     p.body[b].head<3>() += force;
     p.body[b].tail<3>() += moment;
+    if (s.v && brakes(b)) add_drag(p, b);
     p.scale(std::max({body.mass * s.a->c[b].norm(), body.mass * gravity.norm(), AJ.norm() / body.size}));
     if (!p.K || points_.body_block[b] < 0) continue;
     const double mass_slope = s.mass_slope * (s.tempo ? s.tempo[b] * s.tempo[b] : 1);
@@ -52,6 +53,65 @@ void Bodies::evaluate(Pass& p) const {
     K.bottomRightCorner<3, 3>() = Kr;
     p.K->add(points_.body_clique[b], K.data());
   }
+}
+
+namespace {
+
+using Rows = Eigen::Matrix<double, 4, 3>;
+
+/// Centre and directors.
+Rows rows_of(const Config& q, int b) {
+  Rows out;
+  out << q.c[b].transpose(), q.R[b].transpose();
+  return out;
+}
+
+/// What mass-proportional damping D takes from centre and directors over the step, by the body's own clock.
+double drag_work(const Eigen::Matrix4d& D, const Stage& s, int b) {
+  return (s.tempo ? s.tempo[b] : 1) * (D * rows_of(*s.v, b)).cwiseProduct(rows_of(*s.end, b) - rows_of(s.from(), b)).sum();
+}
+
+}  // namespace
+
+/// F = D V on centre and directors, as inertia acts by A a.
+void Bodies::add_drag(Pass& p, size_t number) const {
+  const auto b = static_cast<int>(number);
+  const Stage& s = p.s;
+  const Eigen::Matrix4d D = (s.tempo ? s.tempo[b] : 1) * drag[number];
+  const Rows F = D * rows_of(*s.v, b), left = rows_of(*s.left, b);
+  const auto row = [](const Rows& rows, int i) { return Vec3(rows.row(i).transpose()); };
+  p.body[b].head<3>() += row(F, 0);
+  for (int i = 1; i < 4; ++i) p.body[b].tail<3>() += row(left, i).cross(row(F, i));
+  if (!p.K || points_.body_block[b] < 0) return;
+  Rows end = rows_of(*s.end, b);
+  end.row(0).setZero();  // turns leave the centre
+  const Rows W = s.alpha_slope * D * end;
+  RowMatrix6 K = RowMatrix6::Zero();
+  K.topLeftCorner<3, 3>().diagonal().setConstant(s.alpha_slope * D(0, 0));
+  K.topRightCorner<3, 3>() = -skew(row(W, 0));
+  Vec3 arm = Vec3::Zero();
+  for (int i = 1; i < 4; ++i) {
+    arm += s.alpha_slope * D(i, 0) * row(left, i);
+    K.bottomRightCorner<3, 3>() += s.slope * skew(row(F, i)) * skew(row(end, i)) - skew(row(left, i)) * skew(row(W, i));
+  }
+  K.bottomLeftCorner<3, 3>() = skew(arm);
+  p.K->add(points_.body_clique[b], K.data());
+}
+
+Traits Bodies::traits() const {
+  Traits out;
+  for (size_t b = 0; b < drag.size(); ++b) out.has_rates = out.has_rates || brakes(b);
+  return out;
+}
+
+void Bodies::add_work(const Moment& m, Work& sum) const {
+  for (size_t b = 0; b < drag.size() && m.s.v; ++b)
+    if (brakes(b) && points_.counts(static_cast<int>(b))) sum.dissipated += drag_work(drag[b], m.s, static_cast<int>(b));
+}
+
+void Bodies::add_taken(std::span<const int> group, const Stage& s, std::span<const double>, std::span<double> sum) const {
+  for (size_t b = 0; b < drag.size() && s.v; ++b)
+    if (group[b] >= 0 && brakes(b)) sum[group[b]] += std::abs(drag_work(drag[b], s, static_cast<int>(b)));
 }
 
 void Bodies::add_energy(const Config& q, const Config& v, Energy& sum) const {

@@ -8,18 +8,26 @@ namespace hilo {
 class Bodies final : public Contribution {
  public:
   explicit Bodies(const Points& points) : points_(points) {}
+  /// Mass-proportional damping of a body: int alpha rho b b^T, b = (1, X - Xc); none of those beyond the list [kg/s, kg m/s, kg m^2/s].
+  std::vector<Eigen::Matrix4d> drag;
+
+  Traits traits() const override;
   std::string count() const override;
   std::string owner(int block) const override;
   void evaluate(Pass& p) const override;
   void add_energy(const Config& q, const Config& v, Energy& sum) const override;
+  void add_work(const Moment& m, Work& sum) const override;
   void look_at_turn(const Config& q0, const Config& q1, int part, Turned& most) const override;
   std::string name(int item) const override { return "body \"" + points_.bodies[item].name + "\""; }
   std::vector<Output> outputs() const override;
   void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
   void tie(Ties&) const override {}  // each is alone
   void add_inertia(std::span<const int> group, const Config& v, const Config& w, std::span<double> sum) const override;
+  void add_taken(std::span<const int> group, const Stage& s, std::span<const double> lambda, std::span<double> sum) const override;
 
  private:
+  bool brakes(size_t b) const { return b < drag.size() && !drag[b].isZero(0) && !points_.bodies[b].linear; }
+  void add_drag(Pass& p, size_t b) const;
   const Points& points_;
   mutable std::vector<std::array<Vec3, 4>> arms_;  // to the four points of each body, when first asked for
 };

@@ -10,6 +10,7 @@
 #include "system/linear_regions.hpp"
 #include "system/load_path.hpp"
 #include "system/loads.hpp"
+#include "system/modal_damping.hpp"
 #include "system/motions.hpp"
 #include "system/natural_modes.hpp"
 #include "system/point_masses.hpp"
@@ -56,8 +57,9 @@ void Builder::add_contributions() {
   s.add<Motions>(s);
   s.add<Stations>(s);
   s.add<RegionMeasures>(s);
+  s.add<ModalDamping>(s);
   const std::string& analysis = scene_.table("time").text("analysis");
-  if (analysis == "modes") s.add<NaturalModes>();
+  if (analysis == "modes") s.add<NaturalModes>(static_cast<int>(scene_.table("time").number("modes")));
   if (analysis == "path") s.add<LoadPath>();
 }
 

@@ -9,6 +9,7 @@
 #include "system/builder.hpp"
 #include "system/face.hpp"
 #include "system/linear_regions.hpp"
+#include "system/modal_damping.hpp"
 #include "system/region_parcel.hpp"
 #include "system/welds.hpp"
 
@@ -109,10 +110,7 @@ void Builder::reduce_linear_regions() {
     }
     modes.stiffens = strain.size() > 0;
     if (modes.stiffens) made.strain = QuadraticStrain(std::move(strain));
-    if (modal_damping > 0) {
-      if (made.viscous.size() == 0) made.viscous.setZero(m, m);
-      made.viscous.diagonal() += 2 * modal_damping * made.stiffness.cwiseSqrt();
-    }
+    out_->part<ModalDamping>().ratio.push_back(modal_damping);
     modes.lever.assign(modes.n_blocks, 0.0);
     for (int j = 0; j < m; ++j) modes.lever[j / 3] = std::max(modes.lever[j / 3], next());
     for (Weld* w : welds) {

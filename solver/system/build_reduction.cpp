@@ -37,6 +37,7 @@ RegionParcel Builder::parcel_of(int number) {
     if (region.fidelity == Fidelity::linear && region.body == body) {
       out.modal_damping = region.modal_damping, out.up_to = std::max(out.up_to, region.up_to);
       out.n_vibrations = std::max(out.n_vibrations, region.n_vibrations);
+      out.modes_given = out.modes_given || region.modes_given;
       out.stiffening = out.stiffening || region.stiffening;
       out.where = region.where;
       if (!region.shapes.empty()) out.shapes = region.shapes, out.shapes_where = region.shapes_where;
@@ -163,7 +164,7 @@ ReductionInput Builder::reduction_input(const RegionParcel& parcel, const Body& 
   for (auto& load : in.loads) std::stable_sort(load.begin(), load.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   const double step = scene_.table("time").has("step") ? scene_.table("time").number("step") : 0;
   in.centre = axes.Xc;
-  in.n_vibrations = parcel.n_vibrations;
+  in.n_vibrations = parcel.n_vibrations, in.may_be_fewer = !parcel.modes_given;
   in.up_to = parcel.up_to > 0 ? parcel.up_to : step > 0 ? 0.1 / step : 0;
   in.stiffening = parcel.stiffening, in.length = axes.size;
   in.memory = room_.memory, in.scratch = room_.scratch;

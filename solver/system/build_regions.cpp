@@ -71,7 +71,7 @@ void Builder::read_regions() {
       if (e.given("damping")) region.beta = e.number("damping");
       if (e.given("mass_damping")) region.alpha = e.number("mass_damping");
       if (e.given("modal_damping")) region.modal_damping = e.number("modal_damping");
-      if (e.given("modes")) region.n_vibrations = static_cast<int>(e.number("modes"));
+      if (e.given("modes")) region.n_vibrations = static_cast<int>(e.number("modes")), region.modes_given = true;
       if (e.given("shapes")) region.shapes = e.text("shapes"), region.shapes_where = e.where("shapes");
       if (e.given("up_to")) region.up_to = e.number("up_to");
       if (e.given("stiffening")) region.stiffening = e.boolean("stiffening");
@@ -99,7 +99,27 @@ void Builder::read_regions() {
     std::vector<std::string> names;
     for (const Region& r : regions_) names.push_back(r.name);
     if (!used) throw Error(e.place.text(), fmt::format("no region matches \"{}\"", e.name), suggest(e.name, names));
+    warn_of_idle_damping(e);
   }
+}
+
+/// Keys of damping that nothing of what they are given to can feel.
+void Builder::warn_of_idle_damping(const Entry& e) const {
+  const auto tell = [&](const char* key, auto&& feels, const char* why) {
+    if (comm_.rank != 0 || !e.given(key) || e.number(key) == 0) return;
+    std::string names;
+    for (const Region& r : regions_) {
+      if (fnmatch(e.name.c_str(), r.name.c_str(), 0) != 0) continue;
+      if (feels(r.fidelity)) return;
+      names += (names.empty() ? "\"" : ", \"") + r.name + "\" (" + std::string(word(r.fidelity)) + ")";
+    }
+    warn(e.where(key), fmt::format("says nothing to {}: {}", names, why));
+  };
+  tell(
+      "damping", [](Fidelity f) { return f != Fidelity::rigid; }, "nothing rigid strains; mass_damping brakes it");
+  tell(
+      "modal_damping", [](Fidelity f) { return f == Fidelity::linear; },
+      "only linear regions have modes; damping and mass_damping are of all");
 }
 
 /// int rho, int rho X, int rho X X^T of every region by the mass rule of its cells: the collapsed mass of a rigid region is exactly

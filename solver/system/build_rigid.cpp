@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "system/bodies.hpp"
 #include "system/builder.hpp"
 
 namespace hilo {
@@ -36,10 +37,14 @@ int Builder::new_body_of(const std::vector<int>& members) {
   double mass = 0;
   Vec3 moment = Vec3::Zero();
   Mat3 second = Mat3::Zero();
+  Eigen::Matrix4d drag = Eigen::Matrix4d::Zero();  // about the origin of the integrals
   for (const int r : members) {
     const Region& region = regions_[r];
     name += (name.empty() ? "" : "+") + region.name;
     mass += region.mass, moment += region.moment, second += region.second;
+    Eigen::Matrix4d of_region;
+    of_region << region.mass, region.moment.transpose(), region.moment, region.second;
+    drag += region.alpha * of_region;
   }
   const Vec3 com = moment / mass;
   const int b = new_body(name, origin_ + com);
@@ -47,6 +52,11 @@ int Builder::new_body_of(const std::vector<int>& members) {
   body.mass = mass;
   body.J = second - mass * com * com.transpose();
   body.size = std::sqrt(std::max(body.J.trace() / mass, 1e-300));
+  Eigen::Matrix4d to_com = Eigen::Matrix4d::Identity();
+  to_com.block<3, 1>(1, 0) = -com;
+  auto& of_bodies = out_->part<Bodies>().drag;
+  of_bodies.resize(out_->bodies.size(), Eigen::Matrix4d::Zero());
+  of_bodies[b] = to_com * drag * to_com.transpose();
   for (const int r : members) regions_[r].body = b;
   return b;
 }

@@ -31,7 +31,7 @@ class Builder {
     double modal_damping = 0, up_to = 0;  // of a linear one: ratio, Hz
     std::string shapes, shapes_where;     // file of its modes, where they are given
     int n_vibrations = 40;
-    bool stiffening = false;
+    bool modes_given = false, stiffening = false;
     std::string where;  // of its material, for errors
     Fidelity fidelity = Fidelity::nonlinear;
     int body = -1;               // rigid: its body; linear: its mean axes
@@ -44,6 +44,7 @@ class Builder {
   // build_regions.cpp
   std::int64_t put_active_nodes_first();
   void read_regions();
+  void warn_of_idle_damping(const Entry& e) const;
   void integrate_regions();
   /// The regions of a fidelity, in groups that hang together by nodes they share; `shared` (n_regions x n_regions): above zero where a rank
   /// has seen a node of both; summed here.  Collective.

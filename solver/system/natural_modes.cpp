@@ -6,7 +6,7 @@
 
 namespace hilo {
 
-double NaturalMode::frequency() const { return std::copysign(std::sqrt(std::abs(omega2)), omega2) / (2 * std::numbers::pi); }
+double NaturalMode::frequency() const { return std::copysign(std::sqrt(std::abs(pole2)), pole2) / (2 * std::numbers::pi); }
 
 void NaturalModes::add_end_values(const Config&, const Config&, std::vector<double>& out) const {
   out.push_back(now.frequency());
@@ -15,6 +15,9 @@ void NaturalModes::add_end_values(const Config&, const Config&, std::vector<doub
   out.push_back(now.error);
   out.push_back(now.amplitude);
   out.insert(out.end(), now.part.data(), now.part.data() + 6);
+  out.push_back(now.omega2);
+  for (size_t k = 0; k < static_cast<size_t>(most_); ++k) out.push_back(k < now.coupling.size() ? now.coupling[k] : 0);
+  out.insert(out.end(), now.drag.data(), now.drag.data() + 6);
 }
 
 }  // namespace hilo

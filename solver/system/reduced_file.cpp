@@ -82,7 +82,7 @@ ReductionKey key_of(const ReductionInput& in) {
   key.loads = Digest().add(loads).text();
   constexpr int how = 3;  // one more when regions are reduced in another way: what was found before then serves no longer
   Digest basis;
-  basis.add(how).add(in.n_vibrations).add(in.up_to).add(in.stiffening);
+  basis.add(how).add(in.n_vibrations).add(in.up_to).add(in.stiffening).add(in.stiffening && in.may_be_fewer);
   for (const double x : in.given.reshaped()) basis.add(x);
   key.basis = basis.text();
   for (size_t k = 0; k < in.rigid.size(); ++k)

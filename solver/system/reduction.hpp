@@ -33,6 +33,7 @@ struct ReductionInput {
   Vec3 centre = Vec3::Zero();                            // of mass
   std::vector<std::vector<std::pair<int, Vec3>>> loads;  // on nodes
   int n_vibrations = 0;                                  // vibration modes, at most
+  bool may_be_fewer = false;                             // of them, where no more modes can stiffen
   double up_to = 0;                                      // and up to this frequency, but at least four; 0: all of n_vibrations  [Hz]
   Eigen::MatrixXd given;                                 // modes that take the place of all others (3 n_nodes x k), or empty [m]
   bool stiffening = false;                               // strains of the second degree in the amplitudes

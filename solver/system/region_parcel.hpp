@@ -15,6 +15,7 @@ namespace hilo {
 /// Lists by ranks.
 struct RegionParcel {
   std::string where;
+  bool modes_given = false;
   double modal_damping = 0, up_to = 0;
   int n_vibrations = 0;
   bool stiffening = false;

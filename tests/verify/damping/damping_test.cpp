@@ -57,5 +57,25 @@ TEST(Damping, ProportionalToMassBrakesRigidMotionAsADrag) {
   EXPECT_LT(r.history("energy").col(5).cwiseAbs().maxCoeff(), 1e-10 * r.history("energy").col(0).maxCoeff());
 }
 
+// Truth: moving and spinning about a principal axis, everything of a free part falls as exp(-alpha t), its energy as exp(-2 alpha t), at
+// any fidelity and with any integrator.
+TEST(Damping, ProportionalToMassTakesTheSameOfRigidLinearAndNonlinear) {
+  Case c("damping");
+  const double left = std::exp(-2 * 0.7 * 1);
+  for (const Fidelity fidelity : {Fidelity::rigid, Fidelity::linear, Fidelity::nonlinear}) {
+    c.use(bar(), {fidelity});
+    for (const std::string method : {"energy-momentum", "generalized-alpha", "radau", "bdf2", "gauss"}) {
+      if (fidelity == Fidelity::nonlinear && method == "gauss") continue;
+      const Results r = c.solved(
+          "--set region.block.damping=0 --set region.block.mass_damping=0.7 --set initial.1.spin=[0,0,2] --set initial.1.velocity=[1,0,0] "
+          "--set material.soft.E=1e9 --set time.end=1 --set time.step=0.005 --set time.integrator=" +
+          method);
+      const auto e = r.history("energy");
+      EXPECT_NEAR(e(e.rows() - 1, 0) / e(0, 0), left, 2e-3 * left) << word(fidelity) << " " << method;
+      EXPECT_NEAR(e(e.rows() - 1, 4), e(0, 0) * (1 - left), 1e-2 * e(0, 0)) << word(fidelity) << " " << method;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hilo::test
