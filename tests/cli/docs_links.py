@@ -123,6 +123,8 @@ def sources(page, text):
 for page in pages:
     text = page.read_text()
     links(page)
+    if "shared/" in text:
+        fault(page, "names shared/, which no reader has")
     if page.name.startswith("changes"):
         continue  # what was named then may have another name now
     named_tests(page, text)

@@ -39,6 +39,8 @@ def check(row, start):
     wrong = []
     if done.returncode != code:
         wrong.append(f"exit code {done.returncode}, not {code}")
+    if len(message.replace(".", "").strip()) < 8:
+        wrong.append("a message so short that any other has it")
     at = 0
     for part in filter(None, (p.strip() for p in message.split("..."))):
         found = done.stderr.find(part, at)

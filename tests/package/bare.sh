@@ -47,6 +47,7 @@ inside useradd --create-home guest
 as_guest() { inside su - guest -c "$1"; }
 [ ! -e "$root$repo" ] || { echo "bare: the source tree is there" >&2; exit 1; }
 as_guest 'hilo-solve --version'
+for package in hilo hilo-post; do as_guest "grep -q '^License: GPL-3+' /usr/share/doc/$package/copyright"; done
 for tool in import tag part reduce solve show post; do
   as_guest "zcat /usr/share/man/man1/hilo-$tool.1.gz | grep -q '^.SH EXIT STATUS' && bash -n /usr/share/bash-completion/completions/hilo-$tool"
 done
