@@ -62,7 +62,8 @@ void solve(int argc, char** argv, Comm& comm) {
                        about({"PETSc " HILO_PETSC_VERSION, metis()})});
   app->add_option("scene", o.scene, "scene file (TOML), - for standard input");
   app->add_option("mesh", o.mesh, "mesh.h5, tags.h5 or parts-N.h5; overrides the scene's `mesh`");
-  app->add_option("--modes", o.modes, "reduced.h5 of hilo-reduce: modes of linear regions, which else are found anew");
+  app->add_option("--modes", o.modes,
+                  "reduced.h5 of hilo-reduce: modes of linear regions, which else are found anew; a folder keeps those of all runs");
   const auto* output =
       app->add_option("-o,--output", o.output, "results file; .xdmf and .json are written beside it")->capture_default_str();
   app->add_option("--set", o.overrides, "override a key of the scene, such as joint.trunnion.at=[0,0,1] (repeatable)")

@@ -167,9 +167,9 @@ void Builder::reduce_linear_regions() {
                                        : Vec3::Zero());
       }
     }
-    if (comm_.rank == 0 && !files_.to.empty()) reductions_.back().found = std::move(found);
+    if (!reductions_.empty() && reductions_.back().found.A.size() == 0) reductions_.back().found = std::move(found);
   }
-  if (comm_.rank == 0 && !files_.to.empty()) write_reduced(files_.to, reductions_, files_.provenance);
+  if (!reductions_.empty()) keep_reductions();
   out_->start.eta.assign(n_blocks, Vec3::Zero());
   out_->start.Y.assign(3 * static_cast<size_t>(n_blocks), Mat3::Zero());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From the cells, interfaces and loads of a linear region, on all ranks, to its modes on the first.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -10,6 +11,7 @@
 #include <numeric>
 #include <optional>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "linear/shared_cholesky.hpp"
 #include "system/builder.hpp"
@@ -205,12 +207,14 @@ Reduction Builder::reduction_of(const ReductionInput& in, const Body& axes, cons
   };
   const ReductionKey key = key_of(in);
   std::optional<Reduction> out;
-  if (!files_.from.empty()) {
-    const ReducedFile file(files_.from);
+  const bool grows = std::filesystem::is_directory(files_.from);
+  const std::string from = grows ? kept_place(axes.name, key) : files_.from;
+  if (!from.empty() && (!grows || std::filesystem::exists(from))) {
+    const ReducedFile file(from);
     const std::string unfit = file.unfit(axes.name, key);
     if (unfit.empty())
       out = file.read(axes.name, in.X.size());
-    else if (files_.to.empty())
+    else if (files_.to.empty() && !grows)
       throw named(fmt::format("{} does not serve: {}", files_.from, unfit),
                   fmt::format("hilo-reduce with this scene and mesh, -o {}", files_.from));
   }
@@ -226,9 +230,27 @@ Reduction Builder::reduction_of(const ReductionInput& in, const Body& axes, cons
     if (!is_quiet())
       fmt::print("{}: {} nodes, {} interfaces, {} modes{}\n", axes.name, in.X.size(), key.interfaces.size(), out->omega2.size(),
                  kept ? ", as before" : fmt::format(", found in {:.1f} s", std::chrono::duration<double>(Clock::now() - began).count()));
-    reductions_.push_back({axes.name, key, {}});  // with what is returned, once it has served
   }
+  if (!files_.to.empty() || (grows && !kept)) reductions_.push_back({axes.name, key, {}});  // with what is returned, once it has served
   return std::move(*out);
+}
+
+std::string Builder::kept_place(const std::string& region, const ReductionKey& key) const {
+  Digest all;
+  for (const std::string* part : {&region, &key.mesh, &key.material, &key.loads, &key.basis}) all.add(*part);
+  for (const auto* list : {&key.interfaces, &key.digests})
+    for (const std::string& part : *list) all.add(part);
+  return fmt::format("{}/{:016x}.h5", files_.from, all.value());
+}
+
+/// On rank 0, to the file that is made, or each to its own in the folder that grows, where other runs may write the same.
+void Builder::keep_reductions() const {
+  if (!files_.to.empty()) return write_reduced(files_.to, reductions_, files_.provenance);
+  for (const KeptReduction& r : reductions_) {
+    const std::string place = kept_place(r.region, r.key), own = fmt::format("{}.{}", place, getpid());
+    write_reduced(own, {r}, files_.provenance);
+    std::filesystem::rename(own, place);
+  }
 }
 
 }  // namespace hilo

@@ -69,6 +69,8 @@ class Builder {
   ReductionInput reduction_input(const RegionParcel& parcel, const Body& axes) const;
   Eigen::MatrixXd given_shapes(const RegionParcel& parcel) const;
   Reduction reduction_of(const ReductionInput& in, const Body& axes, const std::string& where);
+  std::string kept_place(const std::string& region, const ReductionKey& key) const;
+  void keep_reductions() const;
   // build_modes.cpp
   void reduce_linear_regions();
   // element_limits.cpp
@@ -124,7 +126,7 @@ class Builder {
   const Comm& comm_;
   const ReducedFiles& files_;
   const FactorRoom& room_;
-  std::vector<KeptReduction> reductions_;  // that go to a file
+  std::vector<KeptReduction> reductions_;  // on rank 0, that go to a file
   std::int64_t n_active_ = 0;              // nodes that a configuration holds
   std::unique_ptr<System> out_;
   std::vector<Region> regions_;

@@ -130,7 +130,7 @@ class System : public Points {
 };
 
 /// Where the modes of linear regions are kept: `from` is taken instead of finding them, and must fit; where there is a `to`, what fits of
-/// `from` is taken, the rest found, and all of it written.
+/// `from` is taken, the rest found, and all of it written.  A folder `from` serves as far as it has them, and gets those it lacks.
 struct ReducedFiles {
   std::string from, to;
   std::vector<std::string> provenance;

@@ -4,12 +4,15 @@
 (numbers), and every model it ran is judged by a truth outside it: all regions nonlinear at half the step.
 Usage: advice.py BIN FOLDER SCENE... [--tol 2%] [-- options of hilo-advise]      SCENE: c1, f2, all26, 7, 100-160
 Columns: true error of the chosen model over the tolerance, largest of all quantities; that of all rigid and all linear; processor seconds of
-the chosen one over those of the cheapest model that meets the tolerance in truth, and over those of all nonlinear."""
+the chosen one over those of the cheapest model that meets the tolerance in truth of those that
+ran, and over those of all nonlinear; of the advice, in runs of all nonlinear; whether that checked it."""
 import argparse
 import json
 import math
 import os
 import random
+import resource
+import statistics
 import subprocess
 import sys
 
@@ -241,28 +244,32 @@ class Judge:
         if not os.path.exists("mesh.h5"):
             done = self.call("hilo-import", "deck.inp", "-o", "mesh.h5")
             assert done.returncode == 0, done.stderr
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = self.call("hilo-advise", "scene.toml", "mesh.h5", "--tol", tol, "--json", *options)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
         if done.returncode != 0:
-            return f"{s.name:5} {len(s.regions)}  refused: {done.stderr.strip().splitlines()[-1][:170]}", None
+            return f"{s.name:5} {len(s.regions)}  refused: {done.stderr.strip().splitlines()[-1][:170]}", None, None
         advice = json.loads(done.stdout)
         truth = self.truth()
         if truth is None:
-            return f"{s.name:5} no truth: all nonlinear at half the step does not run", None
+            return f"{s.name:5} no truth: all nonlinear at half the step does not run", None, None
         want = {q["quantity"]: q["value"] for q in truth["quantities"]}
         part = float(tol.strip("%")) / 100
+        full = truth["processor_seconds"] / 2
 
-        def error(model):
-            got = {q["quantity"]: q["value"] for q in json.load(open(model["run"].replace(".h5", ".json")))["quantities"]}
+        def error(path):
+            got = {q["quantity"]: q["value"] for q in json.load(open(path.replace(".h5", ".json")))["quantities"]}
             return max(abs(got[q] / want[q] - 1) for q in want) / part
 
-        models = [(error(m), m) for m in advice["models"] if m["s"] is not None]
-        chosen = next((e, m) for e, m in models if "chosen" in m["choice"])
-        best = min((m["s"] for e, m in models if e <= 1), default=math.nan)
-        rigid = next((e for e, m in models if m["flexible"] == "all rigid"), math.nan)
-        linear = next((e for e, m in models if m["level"] == "linear" and m["flexible"].count(",") == len(s.regions) - 1), math.nan)
-        row = (f"{s.name:5} {len(s.regions)}  {chosen[0]:7.2f} {rigid:8.2f} {linear:7.2f}   {chosen[1]['s'] / best:5.2f} "
-               f"{chosen[1]['s'] / truth['processor_seconds'] * 2:6.3f}   {chosen[1]['level']}: {chosen[1]['flexible']}")
-        return row, chosen[0]
+        models = [(m["s"], error(m["run"]), m) for m in advice["models"] if m["s"] is not None]
+        chosen = next(row for row in models if "chosen" in row[2]["choice"])
+        best = min((c for c, e, m in models if e <= 1), default=math.nan)
+        rigid = next((e for c, e, m in models if m["model"] == "all rigid"), math.nan)
+        linear = next((e for c, e, m in models if m["model"] == "linear " + ", ".join(s.regions)), math.nan)
+        spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        row = (f"{s.name:5} {len(s.regions)}  {chosen[1]:7.2f} {rigid:8.2f} {linear:7.2f}   {chosen[0] / best:5.2f} {chosen[0] / full:6.3f}"
+               f" {spent / full:6.2f} {'checked' if advice['checked'] else '       '}  {chosen[2]['model']}")
+        return row, chosen[1], spent / full
 
 
 def names(words):
@@ -286,16 +293,18 @@ def main():
     o = parser.parse_args(mine)
     judge = Judge(o.bin)
     top = os.path.abspath(o.folder)
-    print("scene n   chosen    rigid  linear   /best    /all   choice", flush=True)
-    met, wrong, refused = 0, 0, 0
+    print("scene n   chosen    rigid  linear   /best   /all advice           choice", flush=True)
+    met, wrong, refused, costs = 0, 0, 0, []
     for name in names(o.scenes):
         s = PUBLISHED[name](name) if name in PUBLISHED else drawn(name)
         os.makedirs(os.path.join(top, s.name), exist_ok=True)
         os.chdir(os.path.join(top, s.name))
-        row, error = judge.judged(s, o.tol, theirs)
+        row, error, cost = judge.judged(s, o.tol, theirs)
         print(row, flush=True)
+        costs += [] if cost is None else [cost]
         met, wrong, refused = met + (error is not None and error <= 1), wrong + (error is not None and error > 1), refused + (error is None)
-    print(f"{met} within the tolerance, {wrong} not, {refused} refused")
+    print(f"{met} within the tolerance, {wrong} not, {refused} refused; advice in runs of all cells: "
+          f"median {statistics.median(costs or [0]):.2f}, mean {statistics.mean(costs or [0]):.2f}, most {max(costs or [0]):.2f}")
 
 
 if __name__ == "__main__":

@@ -76,13 +76,24 @@ with tempfile.TemporaryDirectory() as folder:
     open("deck.inp", "w").write(deck())
     assert run("hilo-import", "deck.inp", "-o", "mesh.h5").returncode == 0
     open("scene.toml", "w").write(scene())
+
+    # modes of a folder are those found: the same values, and nothing in it is written again
+    os.mkdir("modes")
+    alone = values(tagged("--rest", "linear"))
+    for kept in (0, 3, 3):
+        assert len(os.listdir("modes")) == kept
+        before = {f: os.stat("modes/" + f).st_mtime_ns for f in os.listdir("modes")}
+        assert values("tags.h5", "--modes", "modes") == alone
+        assert all(os.stat("modes/" + f).st_mtime_ns == t for f, t in before.items())
+
     done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json", "--apply", "choice.toml")
     assert done.returncode == 0, done.stderr
     advice = json.loads(done.stdout)
     level = {r["region"]: r["level"] for r in advice["regions"]}
     assert level == {"a": "linear", "b": "rigid", "c": "rigid"}, level
-    errors = {m["flexible"]: m["error over allowed"] for m in advice["models"] if m["level"] != "nonlinear"}
-    assert errors["all rigid"] > 1 and errors["a"] <= 0.5 and len(errors) == 8, errors
+    errors = {m["model"]: m["error over allowed"] for m in advice["models"]}
+    assert errors["all rigid"] > 1 and errors["linear a"] < 1 and len(errors) < 8, errors
+    assert advice["checked"] and "nonlinear a; linear b, c" in " ".join(errors), errors  # it bends enough for doubt of linear strains
 
     truth = values(tagged("--rest", "nonlinear"), "--set", "time.step=5e-4")
     chosen, rigid = values(tagged("choice.toml")), values(tagged("--rest", "rigid"))
@@ -95,20 +106,37 @@ with tempfile.TemporaryDirectory() as folder:
     assert run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json").stdout == done.stdout
     assert before == {f: os.stat("advise.work/" + f).st_mtime_ns for f in os.listdir("advise.work")}  # nothing ran again
 
-    # judged by linear regions: the one that bends too far for that is nonlinear in the base, and what is chosen serves
+    # a title and other quantities change no run
+    open("scene.toml", "w").write('title = "another"\n' + scene('[[quantity]]\nname = "r.m.s."\nkind = "rms"\njoint = "j0"\n'))
+    assert run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%").returncode == 0
+    assert before == {f: os.stat("advise.work/" + f).st_mtime_ns for f in before}
+
+    # the bar that bends too far for linear strains: all cells check it, and what is chosen serves
     open("scene.toml", "w").write(scene('[region.b]\nmaterial = "soft"\n[material.soft]\nE = 2e9\nnu = 0.3\ndensity = 7850\n'))
-    done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json", "--base", "linear", "--apply", "choice.toml")
+    done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json", "-j", "2", "--apply", "choice.toml", "--csv", "models.csv")
     assert done.returncode == 0, done.stderr
     advice = json.loads(done.stdout)
-    assert {r["region"]: r["base"] for r in advice["regions"]} == {"a": "linear", "b": "nonlinear", "c": "linear"}, advice["regions"]
+    assert advice["checked"] and {r["region"]: r["reference"] for r in advice["regions"]}["b"] == "nonlinear", advice["regions"]
     truth = values(tagged("--rest", "nonlinear"), "--set", "time.step=5e-4")
     chosen, linear = values(tagged("choice.toml")), values(tagged("--rest", "linear"))
     off = [max(abs(v[q] / truth[q] - 1) for q in truth) for v in (chosen, linear)]
-    print(f"bar b soft, base linear but for it: off by {100 * off[0]:.2f} %, all linear by {100 * off[1]:.1f} %")
+    print(f"bar b soft, checked by all cells: off by {100 * off[0]:.2f} %, all linear by {100 * off[1]:.1f} %")
     assert off[0] < 0.02, off
+    assert open("models.csv").read().count("\n") >= len([m for m in advice["models"] if m["choice"] not in ("check",)]), advice["models"]
+
+    # a joint that names a region as a whole: that one stays rigid, and it is told; regions that are not to be tried
+    open("scene.toml", "w").write(scene().replace('b = "b0"', 'b = "b"'))
+    done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json", "--keep", "a=linear", "--keep-rigid", "c")
+    assert done.returncode == 0, done.stderr
+    told = {r["region"]: (r["level"], r["why"]) for r in json.loads(done.stdout)["regions"]}
+    assert told["a"][0] == "linear" and told["c"][0] == "rigid" and told["b"] == ("rigid", "a joint or spring names it as a whole"), told
     open("scene.toml", "w").write(scene())
 
     refused("the step alone makes", "--tol", "0.001%")
+    refused("no region", "--keep-rigid", "d")
+    refused("no level", "--keep", "a=soft")
+    refused("has no level", "--keep", "a")
+    refused("contradicts", "--full", "--no-full")
     refused("no positive number", "--tol", "-1%")
     refused("has no unit", "--tol", "2")
     refused("only runs in time", "--set", 'time.analysis="static"')

@@ -1,50 +1,79 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models of a scene that differ in the fidelity of its regions, each run by hilo-solve and kept by content.
+// Models of a scene that differ in the levels of its regions, each run by hilo-solve and kept by content.
 #pragma once
 #include <map>
 
-#include "advise/gate.hpp"
-#include "model/mesh.hpp"
+#include "advise/levels.hpp"
 #include "post/quantity/quantity.hpp"
 
 namespace hilo {
 
-using Assignment = std::vector<Fidelity>;  // (n_regions)
+/// What is to be run: `step` scales the time step, `end` is where the run ends, 0: where the scene says  [s].
+struct Request {
+  Assignment levels;
+  double step = 1, end = 0;
+};
 
 struct Candidate {
-  Assignment fidelity;
+  Assignment levels;
+  double step = 1, end = 0;
   std::string run;                       // run.h5
-  std::vector<QuantityValue> values;     // of the quantities with a tolerance
-  double seconds = 0, unknowns = 0;      // of one processor
+  std::string failure;                   // why there is none
+  std::vector<QuantityValue> values;     // of the quantities of a run in time
+  double seconds = 0, unknowns = 0;      // seconds of processors
+  double cost = 0;                       // seconds of a whole run
   std::map<size_t, std::string> beyond;  // linear regions that left their range, and what the run said of it
+  std::map<size_t, double> doubt;        // of linear regions: what strains of the second degree may change, a share of the answer
+  std::map<size_t, double> energy;       // of linear regions: the largest strain energy  [J]
 };
 
 class Candidates {
  public:
-  Candidates(std::string scene, std::string mesh, std::vector<std::string> overrides, std::string folder, double tolerance);
+  struct Options {
+    std::string scene, mesh, folder;
+    std::vector<std::string> overrides;
+    double tolerance;  // of quantities that say none, relative
+    int at_once = 1;
+  };
+  explicit Candidates(Options options);
 
   const Scene& scene() const { return scene_; }
-  const MeshFile& mesh() const { return mesh_; }
-  /// A run, or the one that is there already of the same scene, mesh and fidelity.  `step` scales the time step.  Error with the line of
-  /// hilo-solve where it fails.
-  const Candidate& of(const Assignment& fidelity, double step = 1);
-  /// Natural frequencies at the start without gravity, lowest first; empty where there are none.
-  std::vector<double> frequencies(const Assignment& fidelity);
-  /// Forces of all joints of a run.
-  std::vector<LoadHistory> loads(const Candidate& c) const;
-  /// Largest |difference| of the quantities over what is allowed of `base`; a quantity that either lacks counts where `base` has it.
-  double difference(const Candidate& c, const Candidate& base, std::string* worst = nullptr) const;
-  std::string label(const Assignment& fidelity) const;
-  int runs = 0;
+  const Mesh& mesh() const { return mesh_.mesh; }
+  const std::vector<std::string>& names() const { return mesh_.mesh.region_name; }
+  /// Regions that share nodes with region r.
+  const std::vector<size_t>& neighbours(size_t r) const { return neighbours_[r]; }
+  /// Where one of the linear regions that share nodes has stiffening, all of these have.
+  Assignment consistent(Assignment levels) const;
+
+  /// Is stiffening cheaper than cells?  It takes about as long as a thousand unknowns of these.
+  bool is_large(size_t r) const { return 3 * nodes_[r] > 2000; }
+
+  /// Runs what is not there yet, several at once.
+  void run(const std::vector<Request>& list);
+  /// A run, or the one that is there of the same scene, mesh and levels.
+  const Candidate& of(const Request& request);
+  /// Seconds that such a run will take, by the unknowns and steps, as far as runs of this scene tell how fast it goes.
+  double price(const Request& request) const;
+  /// What all runs have cost, also those of earlier calls.
+  double spent() const;
+  int runs = 0, known = 0;  // in this call, and of those before
 
  private:
-  std::string solve(const Assignment& fidelity, const std::vector<std::string>& more);
-  const std::string scene_path_, mesh_path_;
-  const std::vector<std::string> overrides_;
-  const std::string folder_;
-  const double tolerance_;  // of quantities that say none
+  struct Job {
+    std::string name;  // of its files, without ending
+    std::vector<std::string> command;
+    bool done;
+  };
+  Job job(const Request& request) const;
+  void read(Candidate& c, const std::string& name) const;
+  double unknowns(const Assignment& levels) const;
+  double work(const Request& request) const;
+  const Options o_;
   const Scene scene_;
   const MeshFile mesh_;
+  std::string mesh_digest_;
+  std::vector<std::vector<size_t>> neighbours_;
+  std::vector<double> nodes_;  // by region
   std::map<std::string, Candidate> done_;
 };
 

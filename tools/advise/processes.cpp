@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "advise/processes.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstring>
+#include <map>
+
+#include "base/error.hpp"
+#include "base/interrupt.hpp"
+
+namespace hilo {
+namespace {
+
+pid_t start(const Process& p) {
+  std::vector<char*> words;
+  for (const std::string& word : p.command) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, p.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
+  pid_t id = -1;
+  const int fault = posix_spawnp(&id, words[0], &files, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  if (fault != 0) throw Error(p.command[0], fmt::format("does not start: {}", std::strerror(fault)), "", Exit::resources);
+  return id;
+}
+
+}  // namespace
+
+void run_processes(std::vector<Process>& list, int at_once) {
+  std::map<pid_t, Process*> running;
+  size_t next = 0;
+  bool told = false;
+  while (next < list.size() || !running.empty()) {
+    const std::string signal = noted_signal();
+    if (!signal.empty() && !told) {
+      for (const auto& [id, p] : running) kill(id, SIGTERM);
+      told = true, next = list.size();
+    }
+    while (next < list.size() && static_cast<int>(running.size()) < at_once) {
+      Process& p = list[next++];
+      running[start(p)] = &p;
+    }
+    if (running.empty()) break;
+    int status = 0;
+    rusage use{};
+    const pid_t ended = wait4(-1, &status, WNOHANG, &use);
+    const auto found = running.find(ended);
+    if (found == running.end()) {
+      usleep(2000);
+      continue;
+    }
+    const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+    found->second->status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    found->second->seconds = seconds(use.ru_utime) + seconds(use.ru_stime);
+    running.erase(found);
+  }
+  if (told) throw Error("", fmt::format("{}: its runs have ended", noted_signal()), "those that are whole are kept", Exit::stopped);
+}
+
+}  // namespace hilo

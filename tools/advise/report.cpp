@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "advise/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hilo {
+namespace {
+
+std::string number(double x, int digits = 6) { return std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "-"; }
+
+std::string choice(const Candidate* c, const Advice& a) {
+  return c == a.chosen ? "chosen" : c == a.reference ? "reference" : c == a.base ? "base" : "-";
+}
+
+const Candidate* all_rigid(const Advice& a) {
+  const auto found = std::find_if(a.tried.begin(), a.tried.end(), [](const Candidate* c) {
+    return c->failure.empty() && std::all_of(c->levels.begin(), c->levels.end(), [](Level l) { return l == Level::rigid; });
+  });
+  return found == a.tried.end() ? nullptr : *found;
+}
+
+/// Of each quantity: its value by the chosen model, what is allowed, and the parts of the error: what the levels change (to the base,
+/// and from there to the reference), and the time step.
+Table budget(const Advice& a) {
+  Table t{{"quantity", "unit", "value", "allowed", "levels", "linear strains", "step", "sum over allowed", "all rigid"}, {}, 2, 4};
+  const Candidate* rigid = all_rigid(a);
+  for (size_t k = 0; k < a.base->values.size(); ++k) {
+    const QuantityValue &mine = a.chosen->values[k], &base = a.base->values[k], &its = a.reference->values[k];
+    const double levels = mine.value - base.value, strains = base.value - its.value, step = -a.step_signed[k];
+    const double sum = std::abs(mine.value - its.value) + std::abs(step);
+    t.rows.push_back({mine.name, mine.unit, number(mine.value), number(its.allowed), number(levels),
+                      a.reference == a.base ? "-" : number(strains), number(step), number(sum / its.allowed),
+                      rigid ? number(rigid->values[k].value - its.value) : "-"});
+  }
+  return t;
+}
+
+Table regions(const Candidates& all, const Advice& a) {
+  Table t{{"region", "level", "reference", "strain energy [J]", "rigid instead: error over allowed", "why"}, {}, 3, 4};
+  for (size_t r = 0; r < all.names().size(); ++r) {
+    const auto energy = a.base->energy.find(r);
+    const auto without = a.without.find(r);
+    const auto kept = a.kept_rigid.find(r);
+    const double error = without == a.without.end() ? HUGE_VAL : difference(*without->second, *a.reference);
+    t.rows.push_back({all.names()[r], std::string(word(a.chosen->levels[r])), std::string(word(a.reference->levels[r])),
+                      energy == a.base->energy.end() ? "-" : number(energy->second), number(error),
+                      kept != a.kept_rigid.end()                                        ? kept->second
+                      : without != a.without.end() && !without->second->failure.empty() ? "does not run rigid: " + without->second->failure
+                                                                                        : "-"});
+  }
+  return t;
+}
+
+std::vector<const Candidate*> by_cost(const Advice& a) {
+  auto out = a.tried;
+  std::stable_sort(out.begin(), out.end(), [](const Candidate* x, const Candidate* y) {
+    return std::tuple(x->unknowns, x->levels, x->end) < std::tuple(y->unknowns, y->levels, y->end);
+  });
+  return out;
+}
+
+Table models(const Candidates& all, const Advice& a) {
+  Table t{{"model", "choice", "largest in", "run", "error over allowed", "unknowns", "s"}, {}, 4, 4};
+  for (const Candidate* c : by_cost(a)) {
+    std::string in = "-";
+    const double d = difference(*c, *a.reference, &in);
+    if (!c->failure.empty()) in = "does not run: " + c->failure;
+    t.rows.push_back({label(c->levels, all.names()) + (c->end > 0 ? fmt::format(", to {:.4g} s", c->end) : ""), choice(c, a),
+                      c == a.reference ? "-" : in, c->failure.empty() ? c->run : "-", number(d), number(c->unknowns),
+                      c->failure.empty() ? number(c->cost, 4) : "-"});
+  }
+  return t;
+}
+
+std::string what_is_known(const Candidates& all, const Advice& a) {
+  return fmt::format("judged by {}; what linear strains leave out of it may be {:.2g} of the tightest tolerance, by their own measures{}",
+                     label(a.reference->levels, all.names()), a.doubt, a.doubt > 0.5 ? ": more than half, and nothing checked it" : "");
+}
+
+}  // namespace
+
+std::string report_text(const Candidates& all, const Advice& a) {
+  Table shown = models(all, a);
+  for (auto& row : shown.rows) row.erase(row.begin() + 3);
+  shown.header.erase(shown.header.begin() + 3), shown.n_text = 3;
+  return fmt::format(
+      "{}\n{}\n{}\nchosen: {}; {:.3g} s, a run of all cells takes about {:.3g} s: {:.3g} times cheaper\n{}; runs so far {:.3g} s\n",
+      budget(a).text(), regions(all, a).text(), shown.text(), label(a.chosen->levels, all.names()), a.chosen->cost, a.all_cells,
+      a.all_cells / a.chosen->cost, what_is_known(all, a), all.spent());
+}
+
+std::string report_json(const Candidates& all, const Advice& a) {
+  const double step = a.step.empty() ? 0 : *std::max_element(a.step.begin(), a.step.end());
+  return fmt::format(
+      "{{\n  \"step_over_allowed\": {},\n  \"doubt_over_allowed\": {},\n  \"checked\": {},\n  \"all_cells_seconds\": {},\n  "
+      "\"spent_seconds\": "
+      "{},\n  \"quantities\": {},\n  \"regions\": {},\n  \"models\": {}\n}}\n",
+      json_number(step), json_number(a.doubt), a.reference != a.base ? "true" : "false", json_number(a.all_cells), json_number(all.spent()),
+      budget(a).json("    "), regions(all, a).json("    "), models(all, a).json("    "));
+}
+
+std::string models_csv(const Candidates& all, const Advice& a) {
+  std::string out = "processor time [s],error over allowed,choice,model\n";
+  for (const Candidate* c : by_cost(a)) {
+    const double d = difference(*c, *a.reference);
+    if (c != a.reference && std::isfinite(d))
+      out += fmt::format("{:.4g},{:.4g},{},\"{}\"\n", c->cost, d, c == a.chosen ? "chosen" : "other models", label(c->levels, all.names()));
+  }
+  return out;
+}
+
+std::string rules(const Candidates& all, const Advice& a, const std::string& command) {
+  std::string text = fmt::format("# {}\n", command);
+  for (const Fidelity f : {Fidelity::rigid, Fidelity::linear, Fidelity::nonlinear}) {
+    std::string list;
+    for (size_t r = 0; r < all.names().size(); ++r)
+      if (fidelity(a.chosen->levels[r]) == f) list += (list.empty() ? "" : ", ") + json_text(all.names()[r]);
+    if (!list.empty()) text += fmt::format("{} = [{}]\n", word(f), list);
+  }
+  for (size_t r = 0; r < all.names().size(); ++r)
+    if (a.chosen->levels[r] == Level::stiffening)
+      text += fmt::format("# in the scene: [region.\"{}\"] stiffening = true\n", all.names()[r]);
+  return text;
+}
+
+}  // namespace hilo

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "advise/search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace hilo {
+namespace {
+
+constexpr double most_step = 0.8;  // of a tolerance: what a step may take of it before no model can be judged
+
+double over(double difference, double allowed) { return std::abs(difference) / std::max(allowed, 1e-300); }
+
+class Search {
+ public:
+  Search(Candidates& all, const SearchOptions& o) : all_(all), o_(o), n_(all.names().size()) {}
+
+  Advice found() {
+    find_base();
+    find_step();
+    find_reference();
+    a_.all_cells = all_.price({cells()});
+    tell_plan();
+    if (serves(*a_.base))
+      climb(rigid(), *a_.base, by_energy());
+    else
+      climb(a_.base->levels, *a_.reference, sorted([&](size_t r) { return doubt_[r]; }));
+    demote();
+    choose();
+    return std::move(a_);
+  }
+
+ private:
+  Assignment with(Level level) const {
+    Assignment out(n_, level);
+    for (const auto& [r, kept] : o_.kept) out[r] = kept;
+    for (const auto& [r, why] : a_.kept_rigid) out[r] = Level::rigid;
+    return all_.consistent(out);
+  }
+  Assignment rigid() const { return with(Level::rigid); }
+  Assignment cells() const { return with(Level::nonlinear); }
+  bool is_kept(size_t r) const { return o_.kept.contains(r) || a_.kept_rigid.contains(r); }
+
+  const Candidate& of(const Request& request) {
+    const Candidate& c = all_.of(request);
+    if (request.step == 1 && std::find(a_.tried.begin(), a_.tried.end(), &c) == a_.tried.end()) a_.tried.push_back(&c);
+    return c;
+  }
+
+  /// Error of a model by the reference, the step and what is in doubt of the reference, over what is allowed; 1 is all of it.
+  double error(const Candidate& c) const {
+    if (!c.failure.empty()) return HUGE_VAL;
+    double largest = 0;
+    for (size_t k = 0; k < c.values.size(); ++k) {
+      const QuantityValue &mine = c.values[k], &its = a_.reference->values[k];
+      if (!its.why.empty()) continue;
+      if (!mine.why.empty()) return HUGE_VAL;
+      largest = std::max(largest, over(mine.value - its.value, its.allowed) + a_.step[k]);
+    }
+    return largest + std::min(a_.doubt, 0.5);
+  }
+  bool serves(const Candidate& c) const { return &c == a_.reference || error(c) <= 1; }
+  bool too_dear(const Request& next) const { return a_.all_cells > 0 && all_.spent() + all_.price(next) > o_.at_most * a_.all_cells; }
+
+  /// The region that a failed run names, and what to do about it: rigid where it has to be one body, else one level more.
+  bool mend(const Candidate& c, Assignment& levels) {
+    bool mended = false;
+    for (size_t r = 0; r < n_; ++r) {
+      const std::string& name = all_.names()[r];
+      if (c.failure.find("region \"" + name + "\" is flexible") != std::string::npos) {
+        a_.kept_rigid[r] = "a joint or spring names it as a whole";
+        if (o_.kept.contains(r) && o_.kept.at(r) != Level::rigid)
+          throw Error("--keep", fmt::format("\"{}\" cannot be {}: {}", name, word(o_.kept.at(r)), a_.kept_rigid[r]),
+                      "let the joint name a set of its nodes", Exit::usage);
+        warn(name, "a joint or spring names it as a whole, so it stays rigid (a set of its nodes would let it deform)");
+        levels[r] = Level::rigid, mended = true;
+      }
+    }
+    if (mended) return true;
+    for (size_t r = 0; r < n_; ++r) {
+      if (is_kept(r) || levels[r] == Level::rigid || levels[r] == Level::nonlinear) continue;
+      const size_t begin = c.failure.find("linear region \"");
+      if (begin == std::string::npos) continue;
+      const size_t from = begin + 15;
+      const std::string body = "+" + c.failure.substr(from, c.failure.find('"', from) - from) + "+";
+      if (body.find("+" + all_.names()[r] + "+") == std::string::npos) continue;
+      levels[r] = levels[r] == Level::linear && all_.is_large(r) ? Level::stiffening : Level::nonlinear, mended = true;
+    }
+    return mended;
+  }
+
+  /// All regions linear, where a model like that runs.
+  void find_base() {
+    Assignment levels = with(Level::linear);
+    while (true) {
+      levels = all_.consistent(levels);
+      const Candidate& c = of({levels});
+      a_.base = a_.reference = &c;
+      if (c.failure.empty()) break;
+      const Assignment before = levels;
+      if (mend(c, levels)) continue;
+      levels = cells();
+      if (levels == before) throw Error("", "no model runs: " + c.failure, "", Exit::not_converged);
+      warn("", fmt::format("{} does not run, and nothing says why: {}", label(before, all_.names()), c.failure));
+    }
+    for (const QuantityValue& v : a_.base->values)
+      if (!v.why.empty()) throw Error("", v.why, v.of.starts_with("von Mises") ? "output.interval says when fields are there" : "");
+    double last = 0;  // instant that a quantity has its value at, and what a filter sees behind it
+    for (const Entry& q : all_.scene().entries("quantity")) {
+      if (q.kind == "frequency") continue;
+      const double t = a_.base->values[n_asked_++].t;
+      last = std::max(last, std::isfinite(t) ? 1.1 * t + (q.kind != "injury" && q.has("cfc") ? 1.2 / q.number("cfc") : 0) : HUGE_VAL);
+    }
+    const double step = all_.scene().table("time").number("step");
+    if (last < all_.scene().table("time").number("end")) window_ = std::max(10.0, std::ceil(last / step)) * step;
+  }
+
+  /// The base with all regions nonlinear whose linear strains are in doubt, or that left their range, as far as quantities have their
+  /// values; of what is then linear the doubt remains.
+  void find_reference() {
+    Assignment levels = a_.base->levels;
+    const auto look = [&](const Candidate& c) {
+      const Assignment before = levels;
+      a_.doubt = 0;
+      for (size_t r = 0; r < n_; ++r) {
+        const auto at = c.doubt.find(r);
+        const double doubt = (c.beyond.contains(r) ? 1 : 0) + (at == c.doubt.end() ? 0 : at->second / o_.tightest);
+        doubt_[r] = std::max(doubt_[r], doubt);
+        const bool wanted = o_.check == Check::always || (o_.check == Check::where_in_doubt && doubt > 0.5);
+        if (wanted && !is_kept(r))
+          levels[r] = Level::nonlinear;
+        else
+          a_.doubt = std::max(a_.doubt, doubt);
+      }
+      levels = all_.consistent(levels);
+      return levels != before;
+    };
+    while (look(*a_.reference)) {
+      const Request next{levels, 1, window_};
+      if (!is_quiet())
+        fmt::print(stderr, "linear strains of some regions are in doubt: a run to judge by, to {:.4g} s, takes about {:.2g} s\n",
+                   window_ > 0 ? window_ : all_.scene().table("time").number("end"), all_.price(next));
+      const Candidate& c = of(next);
+      if (c.failure.empty()) {
+        a_.reference = &c;
+        continue;
+      }
+      warn("", fmt::format("{} does not run, so nothing checks linear strains: {}", label(levels, all_.names()), c.failure));
+      a_.doubt = 1;
+      break;
+    }
+  }
+
+  /// What a step this long cannot tell no model will: (h, h/2) of the base, by the order of the method.
+  void find_step() {
+    const Candidate& fine = all_.of({a_.base->levels, 0.5, window_});
+    if (!fine.failure.empty()) throw Error("", "half the step does not run: " + fine.failure, "", Exit::not_converged);
+    for (size_t k = 0; k < n_asked_; ++k) {
+      const QuantityValue& v = a_.base->values[k];
+      const double change = 4. / 3 * (fine.values[k].value - a_.base->values[k].value);
+      a_.step_signed.push_back(change), a_.step.push_back(over(change, v.allowed));
+      if (!(a_.step.back() > most_step)) continue;
+      const Entry& time = all_.scene().table("time");
+      const bool raw = v.of.find(", raw") != std::string::npos;
+      throw Error(
+          time.where("step"),
+          fmt::format("the step alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(change), v.unit, v.name, v.allowed,
+                      v.unit),
+          raw ? "a raw acceleration holds all frequencies: give it a cfc"
+              : fmt::format("time.step = {:.2g}, or a larger tolerance", time.number("step") * std::sqrt(most_step / 2 / a_.step.back())));
+    }
+  }
+
+  void tell_plan() const {
+    if (is_quiet()) return;
+    const double n = static_cast<double>(n_), runs = std::log2(n + 1) + n;
+    fmt::print(stderr, "judged by: {}\nup to {:.0f} runs more, about {:.2g} s each; a run of all cells takes about {:.2g} s\n",
+               label(a_.reference->levels, all_.names()), runs, all_.price({(serves(*a_.base) ? a_.base : a_.reference)->levels}),
+               a_.all_cells);
+  }
+
+  /// Regions by their strain energy in the base, largest first; before them what stress is asked of, and what is nonlinear there.
+  std::vector<size_t> by_energy() const {
+    std::vector<double> of(n_, 0);
+    for (size_t r = 0; r < n_; ++r) {
+      if (const auto at = a_.base->energy.find(r); at != a_.base->energy.end()) of[r] = at->second;
+      if (a_.base->levels[r] == Level::nonlinear) of[r] += 1e150;
+      if (wants_stress(r)) of[r] += 1e200;
+    }
+    return sorted([&](size_t r) { return of[r]; });
+  }
+  template <class Key>
+  std::vector<size_t> sorted(Key&& key) const {
+    std::vector<size_t> out;
+    for (size_t r = 0; r < n_; ++r)
+      if (!is_kept(r)) out.push_back(r);
+    std::stable_sort(out.begin(), out.end(), [&](size_t a, size_t b) { return key(a) > key(b); });
+    return out;
+  }
+
+  /// The shortest head of `order` that, at the levels of `high` and the rest at those of `low`, serves; all of it is `top`, which does.
+  void climb(const Assignment& low, const Candidate& top, const std::vector<size_t>& order) {
+    const Assignment& high = top.levels;
+    const auto head = [&](size_t k) {
+      Assignment levels = low;
+      for (size_t i = 0; i < k; ++i) levels[order[i]] = high[order[i]];
+      return all_.consistent(levels);
+    };
+    size_t least = 0, most = order.size();
+    while (least < most && low[order[least]] == Level::rigid && wants_stress(order[least])) ++least;
+    a_.chosen = &top;
+    for (size_t k = least; least < most; k = (least + most) / 2) {
+      const Request next{head(k)};
+      if (k > least && too_dear(next)) break;
+      const Candidate& c = of(next);
+      if (serves(c))
+        most = k, a_.chosen = &c;
+      else
+        least = k + 1;
+    }
+  }
+
+  /// Single regions of the chosen model lower, then together as far as that serves.
+  void demote() {
+    lower([](Level l) { return l > Level::rigid ? Level::rigid : l; });
+    lower([](Level l) { return l == Level::nonlinear ? Level::linear : l; });
+    lower([](Level l) { return l == Level::nonlinear ? Level::stiffening : l; }, true);
+  }
+  template <class To>
+  void lower(To&& to, bool large_alone = false) {
+    const Assignment from = a_.chosen->levels;
+    std::vector<Request> singles;
+    std::vector<size_t> which;
+    for (const size_t r : by_energy()) {
+      if (to(from[r]) == from[r] || (to(from[r]) == Level::rigid && wants_stress(r)) || (large_alone && !all_.is_large(r))) continue;
+      Request single{from};
+      single.levels[r] = to(from[r]), single.levels = all_.consistent(single.levels);
+      if (too_dear(single)) continue;
+      singles.push_back(single), which.push_back(r);
+    }
+    all_.run(singles);
+    std::vector<std::pair<double, size_t>> good;  // error, and region
+    for (size_t i = 0; i < singles.size(); ++i) {
+      const Candidate& c = of(singles[i]);
+      if (singles[i].levels[which[i]] == Level::rigid) a_.without[which[i]] = &c;
+      if (serves(c)) good.emplace_back(error(c), i);
+    }
+    std::sort(good.begin(), good.end());
+    Assignment now = from;
+    const auto take = [&](size_t first, size_t last) {
+      Request next{now};
+      for (size_t i = first; i < last; ++i) next.levels[which[good[i].second]] = singles[good[i].second].levels[which[good[i].second]];
+      next.levels = all_.consistent(next.levels);
+      if (next.levels == now || too_dear(next)) return false;
+      const Candidate& c = of(next);
+      if (!serves(c)) return false;
+      now = next.levels;
+      if (c.cost < 1.1 * a_.chosen->cost) a_.chosen = &c;
+      return true;
+    };
+    if (good.size() > 1 && take(0, good.size())) return;
+    for (size_t i = 0; i < good.size(); ++i) take(i, i + 1);
+  }
+  bool wants_stress(size_t r) const {
+    for (const Entry& q : all_.scene().entries("quantity"))
+      if (q.has("stress") && q.text("stress") == all_.names()[r]) return true;
+    return false;
+  }
+
+  /// The cheapest that serves; where the seconds of two are about the same, the one with fewer unknowns.
+  void choose() {
+    for (const Candidate* c : a_.tried)
+      if (serves(*c) && (c->cost < 0.85 * a_.chosen->cost || (c->cost < 1.15 * a_.chosen->cost && c->unknowns < a_.chosen->unknowns)))
+        a_.chosen = c;
+  }
+
+  Candidates& all_;
+  const SearchOptions& o_;
+  const size_t n_;
+  Advice a_;
+  size_t n_asked_ = 0;
+  double window_ = 0;               // in which all quantities have their values, 0: the whole run  [s]
+  std::map<size_t, double> doubt_;  // by region, the largest so far, over the tightest tolerance
+};
+
+}  // namespace
+
+Advice advise(Candidates& all, const SearchOptions& options) { return Search(all, options).found(); }
+
+double difference(const Candidate& c, const Candidate& reference, std::string* worst) {
+  if (!c.failure.empty()) return HUGE_VAL;
+  double largest = -1;
+  for (size_t k = 0; k < reference.values.size(); ++k) {
+    const QuantityValue &a = c.values[k], &b = reference.values[k];
+    if (!b.why.empty()) continue;
+    const double d = a.why.empty() ? over(a.value - b.value, b.allowed) : HUGE_VAL;
+    if (d <= largest) continue;
+    largest = d;
+    if (worst) *worst = b.name;
+  }
+  return std::max(largest, 0.0);
+}
+
+}  // namespace hilo

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The search for the cheapest model that answers as a base does.
+#pragma once
+#include "advise/candidates.hpp"
+
+namespace hilo {
+
+enum class Check { where_in_doubt, always, never };  // of linear strains, by cells
+
+struct SearchOptions {
+  double tightest = 0.02;        // of all tolerances, relative
+  std::map<size_t, Level> kept;  // regions whose level is not tried
+  Check check = Check::where_in_doubt;
+  double at_most = 3;  // what all of it may cost, in runs of all cells
+};
+
+/// What decided, and what of it is known.
+struct Advice {
+  const Candidate *base = nullptr, *reference = nullptr, *chosen = nullptr;  // reference: the base, or it with some regions nonlinear
+  std::vector<double> step;                                                  // error of the time step over what is allowed, by quantity
+  std::vector<double> step_signed;                                           // the same, in the unit of each quantity: to a step of none
+  double doubt = 0;                            // what strains of the second degree may change of the reference, over the tightest tolerance
+  std::map<size_t, const Candidate*> without;  // the chosen model with this region rigid
+  std::vector<const Candidate*> tried;
+  std::map<size_t, std::string> kept_rigid;  // regions that cannot deform, and why
+  double all_cells = 0;                      // what a run of all cells costs  [s]
+};
+
+/// Errors: no model runs; no output of fields where stress is asked for; a step that no model can be judged with.
+Advice advise(Candidates& all, const SearchOptions& options);
+
+/// Largest |difference| of the quantities over what is allowed of the reference, infinite where the candidate lacks one or did not run.
+double difference(const Candidate& c, const Candidate& reference, std::string* worst = nullptr);
+
+}  // namespace hilo
