@@ -145,7 +145,7 @@ class Run {
       fmt::print(stderr, "a singular position: {} more joint rows depend on others at the start alone\n",
                  redundancy.rank - redundancy.rank_at_pose);
     state.lambda.assign(3 * system.n_joint_blocks(), 0.0);
-    if (!is_static()) system.part<ModalDamping>().find(state.q);
+    if (!is_static()) find_modal_damping(system, state.q);
   }
 
   void open_recorder() {

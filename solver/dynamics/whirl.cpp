@@ -9,7 +9,7 @@
 
 #include "base/error.hpp"
 #include "dynamics/about_state.hpp"
-#include "system/springs.hpp"
+#include "system/uneven.hpp"
 
 namespace hilo {
 namespace {
@@ -95,30 +95,6 @@ class Spin : AboutState {
   Matrix basis_;
 };
 
-/// What may make the coefficients change as bodies turn: those with unequal moments about their axes, or else springs that they carry.
-std::string who_is_uneven(const System& system, const State& state) {
-  const auto axis = [&](int b) {
-    const Mat3 S = state.v.R[b] * state.q.R[b].transpose();
-    return Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1));
-  };
-  for (size_t b = 1; b < system.bodies.size(); ++b) {
-    const Vec3 w = axis(static_cast<int>(b));
-    if (w.norm() == 0) continue;
-    const Mat3 J = state.q.R[b] * system.bodies[b].J * state.q.R[b].transpose(),
-               turn = Eigen::AngleAxisd(1, w.normalized()).toRotationMatrix();
-    if ((turn * J * turn.transpose() - J).norm() > 1e-9 * J.norm())
-      return fmt::format("body \"{}\" has unequal moments of inertia about its axis of spin", system.bodies[b].name);
-  }
-  std::string names;
-  for (const Spring& c : system.part<Springs>().list)
-    for (const Carrier& end : c.ends())
-      if (end.body >= 0 && axis(end.body).norm() > 0) {
-        names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", c.name);
-        break;
-      }
-  return names.empty() ? "" : "springs that what spins carries: " + names;
-}
-
 /// Error where stiffness, damping or forces at another angle of the spin are others.
 void refuse_uneven(const System& system, const State& state, const Spin& spin, const std::vector<FoundMode>& basis) {
   const Spin::Terms here = spin.at(0), further = spin.at(1);
@@ -140,7 +116,7 @@ void refuse_uneven(const System& system, const State& state, const Spin& spin, c
     is_uneven = is_uneven || away > 1e-4 * system.length;
   }
   if (!is_uneven) return;
-  const std::string who = who_is_uneven(system, state);
+  const std::string who = who_is_uneven(system, state.q, state.v);
   throw Error(
       "", "what turns is not the same all around: its frequencies change as it turns" + (who.empty() ? "" : "; " + who),
       "give bodies that spin two equal moments of inertia, and springs that hold them at points of their axes, unlike stiffnesses to "

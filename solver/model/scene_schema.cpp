@@ -46,14 +46,18 @@ std::vector<KindSchema> make() {
        {{"material", text, "", "", "a name of [material.NAME]; absent: what the deck carries"},
         {"mass", number, "kg", "", "scales the density so that the region has this mass", above(0)},
         {"area", number, "m^2", "", "cross-section of bar cells", above(0)},
-        {"damping", number, "s", "0", "stiffness-proportional damping beta: S += beta C dE/dt", at_least(0)},
-        {"mass_damping", number, "1/s", "0", "mass-proportional damping alpha (brakes rigid motion too)", at_least(0)},
-        {"modes", number, "", "40", "vibration modes of a linear region, at most; static ones are there besides", at_least(0)},
+        {"damping", number, "s", "0", "stiffness-proportional damping beta: S += beta C dE/dt; nothing where a region is rigid",
+         at_least(0)},
+        {"mass_damping", number, "1/s", "0", "mass-proportional damping alpha, of every fidelity (brakes rigid motion too)", at_least(0)},
+        {"modes", number, "", "40",
+         "vibration modes of a linear region, at most; static ones are there besides. By default fewer where all could not stiffen",
+         at_least(0)},
         {"up_to", number, "Hz", "", "vibration modes up to this frequency, but at least four; absent: 0.1 over the step", above(0)},
         {"shapes", text, "", "",
          "CSV of the modes of a linear region, in place of those that hilo finds: node, then x, y, z of each shape [length]"},
         {"stiffening", boolean, "", "false", "strains of the second degree in the modes: spins and bending that stiffen or shorten"},
-        {"modal_damping", number, "1", "0", "damping of the modes of a linear region over the critical one", at_least(0)}}});
+        {"modal_damping", number, "1", "0",
+         "ratio to the critical damping of the modes of linear regions, as these are held at the start of the run", at_least(0)}}});
   const Param set_kind{"kind", text, "", "!", "the kind of place"};
   const Param of{"of", texts, "", "[\"*\"]", "regions whose nodes it takes, names or globs"};
   s.push_back({"set",

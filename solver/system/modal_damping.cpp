@@ -240,4 +240,6 @@ void ModalDamping::archive(Archive& a) {
   }
 }
 
+void find_modal_damping(System& system, const Config& q) { system.part<ModalDamping>().find(q); }
+
 }  // namespace hilo

@@ -44,4 +44,7 @@ class ModalDamping final : public Contribution {
   std::vector<Group> groups_;
 };
 
+/// Of a system, at the pose q that its run starts from.  Collective.
+void find_modal_damping(System& system, const Config& q);
+
 }  // namespace hilo

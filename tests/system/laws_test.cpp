@@ -9,6 +9,7 @@
 #include "dynamics/integrator_kinds.hpp"
 #include "model/local_mesh.hpp"
 #include "system/dense_kkt.hpp"
+#include "system/modal_damping.hpp"
 #include "system/somewhere_off.hpp"
 #include "verify/verify.hpp"
 
@@ -123,6 +124,7 @@ std::string value_of(const KindSchema& kind, const Param& p) {
 
 struct Variant {
   std::string name, scene;
+  Fidelity fidelity = Fidelity::nonlinear;  // of the region
 };
 
 /// The kind with what it must be given, and once more with each of the other keys.
@@ -165,7 +167,10 @@ void add_variants(const KindSchema& kind, std::vector<Variant>& out) {
       put("JOINT", helper);
       put("AXIS", std::string(helper == "spherical" ? "" : "axis = [0.2, 1, 0.3]\n") + (helper == "screw" ? "pitch = 0.3\n" : ""));
       if (kind.section != "region") text += entry;
-      out.push_back({std::string(kind.section) + " " + std::string(kind.kind) + " " + key + " on " + helper, text});
+      const std::string name = std::string(kind.section) + " " + std::string(kind.kind) + " " + key + " on " + helper;
+      out.push_back({name, text});
+      for (const Fidelity fidelity : {Fidelity::rigid, Fidelity::linear})
+        if (kind.section == "region") out.push_back({name + ", " + std::string(word(fidelity)), text, fidelity});
     }
   }
 }
@@ -269,6 +274,7 @@ TEST_P(Laws, EveryMatrixOfNewtonIsTheDerivativeOfItsEquations) {
   std::set<std::string> refused, sections;
   for (const Variant& v : variants) {
     LocalMesh local = mesh();
+    local.fidelity.assign(1, v.fidelity);
     std::string how = GetParam();
     const bool averaged = how.starts_with("averaged ");
     if (averaged) how = how.substr(9);
@@ -279,6 +285,7 @@ TEST_P(Laws, EveryMatrixOfNewtonIsTheDerivativeOfItsEquations) {
     try {
       scene = std::make_unique<Scene>(Scene::parse(v.scene, "scene.toml", set));
       system = build_system(*scene, &local, Comm::world());
+      system->part<ModalDamping>().find(system->start);
     } catch (const Error& e) {
       refused.insert(v.name.substr(0, v.name.find(" on ")) + ": " + e.what());
       continue;
