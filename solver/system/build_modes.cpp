@@ -171,7 +171,7 @@ void Builder::reduce_linear_regions() {
     }
     if (comm_.rank == 0 && !files_.to.empty()) reductions_.back().found = std::move(found);
   }
-  if (comm_.rank == 0 && !files_.to.empty()) write_reduced(files_.to, reductions_, files_.provenance);
+  if (!files_.to.empty()) comm_.on_first([&] { write_reduced(files_.to, reductions_, files_.provenance); });
   out_->start.eta.assign(n_blocks, Vec3::Zero());
   out_->start.Y.assign(3 * static_cast<size_t>(n_blocks), Mat3::Zero());
 }
