@@ -70,8 +70,9 @@ void solve(int argc, char** argv, Comm& comm) {
       ->allow_extra_args(false)
       ->expected(1)
       ->take_all();
-  app->add_option("--restart", o.restart,
-                  "go on with these results from their last checkpoint; scene, mesh and overrides are those of that run unless given");
+  app->add_option(
+      "--restart", o.restart,
+      "go on with these results from their last checkpoint; scene, mesh, overrides and --checkpoint are those of that run unless given");
   app->add_flag("--accept", o.accept, "go on from there also with a scene that differs");
   app->add_option(
       "--checkpoint", o.checkpoint,
@@ -100,13 +101,14 @@ void solve(int argc, char** argv, Comm& comm) {
       o.overrides.insert(o.overrides.begin(), from->command.overrides.begin(), from->command.overrides.end());
     }
     if (o.mesh.empty()) o.mesh = from->command.mesh;
+    if (o.checkpoint.empty()) o.checkpoint = from->command.checkpoint;
   } else if (o.scene.empty()) {
     throw Error("", "scene is required", "see hilo-solve --help", Exit::usage);
   }
   CheckpointPolicy policy = policy_of(o);
   policy.began = began;
 
-  const Scene scene = from && o.scene == "-" ? Scene::parse(from->scene, "-", o.overrides) : Scene::load(o.scene, o.overrides);
+  const Scene scene = from && o.scene == "-" ? Scene::parse(from->scene, "-", o.overrides) : Scene::load(o.scene, o.overrides, comm);
   for (const auto& w : scene.warnings) warn("", w);
   if (o.explain) {
     if (comm.rank == 0) fmt::print("{}", scene.explain());
@@ -140,7 +142,7 @@ void solve(int argc, char** argv, Comm& comm) {
     if (talk) fmt::print(stderr, "{}\n", plan);
     return;
   }
-  Checkpoints checkpoints(comm, scene, {o.scene, options.mesh, o.modes, o.overrides, options.provenance}, o.output, policy,
+  Checkpoints checkpoints(comm, scene, {o.scene, options.mesh, o.modes, o.overrides, o.checkpoint, options.provenance}, o.output, policy,
                           from ? from->path : "");
   options.between_steps = [&](const StepsSoFar& so_far, const auto& keep) { return checkpoints.between_steps(so_far, keep); };
   note_signals();

@@ -44,7 +44,7 @@ void reduce(int argc, char** argv, const Comm& comm) {
   if (!parse(*app, argc, argv)) return;
   const bool talk = !is_quiet() && comm.rank == 0;
   if (comm.rank != 0) quiet_warnings(true);
-  const Scene scene = Scene::load(scene_path, overrides);
+  const Scene scene = Scene::load(scene_path, overrides, comm);
   if (mesh_path.empty()) mesh_path = scene.mesh_path();
   if (mesh_path.empty()) throw Error("", "a mesh is required", "hilo-reduce scene.toml tags.h5", Exit::usage);
   LocalMesh mesh = read_local_mesh(mesh_path, comm);

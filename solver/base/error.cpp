@@ -9,6 +9,8 @@
 #include <new>
 #include <system_error>
 
+#include "base/printable.hpp"
+
 namespace hilo {
 namespace {
 
@@ -50,7 +52,7 @@ std::string suggest(std::string_view name, std::span<const std::string> candidat
 }
 
 void warn(const std::string& where, const std::string& what) {
-  if (!quiet) fmt::print(stderr, "{}: warning: {}{}{}\n", current_tool, where, where.empty() ? "" : ": ", what);
+  if (!quiet) fmt::print(stderr, "{}: warning: {}\n", current_tool, printable(where + (where.empty() ? "" : ": ") + what));
 }
 void quiet_warnings(bool q) { quiet = q; }
 void be_quiet() { silent = quiet = true; }
@@ -63,7 +65,7 @@ int guarded(std::string_view tool, const std::function<void()>& body) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit (ulimit -f) is a write that fails
   const auto fail = [&](Exit exit, const std::string& text) {
     std::fflush(stdout);
-    const std::string line = fmt::format("{}: {}\n", tool, text);
+    const std::string line = fmt::format("{}: {}\n", tool, printable(text));
     std::fputs(line.c_str(), stderr);  // does not throw when stderr is gone
     return static_cast<int>(exit);
   };

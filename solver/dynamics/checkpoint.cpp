@@ -89,8 +89,7 @@ std::string Checkpoints::between_steps(const StepsSoFar& so_far, const std::func
 void Checkpoints::write(const StepsSoFar& so_far, const std::function<Kept()>& keep) {
   const double began = wall_clock();
   const Kept kept = keep();
-  comm_.together([&] {
-    if (comm_.rank != 0) return;
+  comm_.on_first([&] {
     if (digests_.empty()) digests_ = digests_behind(command_.mesh);
     const std::string path = newest(output_);
     Store f = Store::create(path);
@@ -106,6 +105,7 @@ void Checkpoints::write(const StepsSoFar& so_far, const std::function<Kept()>& k
     f.write_text("/command/mesh", command_.mesh);
     f.write_text("/command/modes", command_.modes);
     f.write_strings("/command/overrides", command_.overrides);
+    f.write_text("/command/checkpoint", command_.checkpoint);
     f.write_strings("/provenance", command_.provenance);
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(kept.bytes.data());
     f.write<std::uint8_t>("/kept/alike", std::span(bytes, kept.bytes.size()), {static_cast<std::int64_t>(kept.bytes.size())});
@@ -136,8 +136,12 @@ Checkpoint read_one(const std::string& path, const Comm& comm) {
   c.steps = static_cast<long>(f.number_attribute("/", "steps").value_or(0));
   c.scene = f.read_text("/scene");
   c.values = f.read_strings("/values"), c.digests = f.read_strings("/digests");
-  c.command = {f.read_text("/command/scene"), f.read_text("/command/mesh"), f.read_text("/command/modes"),
-               f.read_strings("/command/overrides"), f.read_strings("/provenance")};
+  c.command = {f.read_text("/command/scene"),
+               f.read_text("/command/mesh"),
+               f.read_text("/command/modes"),
+               f.read_strings("/command/overrides"),
+               f.has("/command/checkpoint") ? f.read_text("/command/checkpoint") : "",
+               f.read_strings("/provenance")};
   const auto bytes = f.read<std::uint8_t>("/kept/alike");
   const auto* begin = reinterpret_cast<const std::byte*>(bytes.data());
   c.kept.bytes.assign(begin, begin + bytes.size());

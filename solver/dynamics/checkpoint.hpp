@@ -24,6 +24,7 @@ struct CheckpointPolicy {
 struct RunCommand {
   std::string scene, mesh, modes;  // absolute paths, "-" or ""
   std::vector<std::string> overrides;
+  std::string checkpoint = {};               // --checkpoint as given, or ""
   std::vector<std::string> provenance = {};  // command lines that led to the results
 };
 

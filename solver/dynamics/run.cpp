@@ -74,7 +74,7 @@ class Run {
       const Profile profile(comm, *run_.solver, began_, processor_began_, options_.output);
       run_.report.profile = profile.text();
       const double peak = comm.max(peak_memory());
-      comm.together([&] { write_run_json(run_, profile, peak); });
+      comm.on_first([&] { write_run_json(run_, profile, peak); });
     } catch (...) {
       run_.recorder->give_up();
       throw;

@@ -14,7 +14,6 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   const System& system = run.system;
   const RunReport& report = run.report;
   const RunFigures& figures = run.figures;
-  if (system.comm->rank != 0) return;
   const Phases& p = phases();
   std::string j = "{\n";
   const auto add = [&](const char* key, const std::string& value) { j += fmt::format("  \"{}\": {},\n", key, value); };

@@ -67,9 +67,7 @@ void Distribution::open() {
 
 /// One rank reads the whole file for its digest; all are refused alike.
 void Distribution::refuse_changed(const std::string& what, const std::string& target) const {
-  comm_.together([&] {
-    if (comm_.rank == 0) refuse_if_changed(file_, what, target);
-  });
+  comm_.on_first([&] { refuse_if_changed(file_, what, target); });
 }
 
 void Distribution::read_tags() {

@@ -134,7 +134,7 @@ std::string holder(const Store& store, const std::string& what) {
   const auto link = store.linked("/" + what);
   if (!link) return store.path();
   const std::string target = resolved_from(store.path(), link->first);
-  if (!std::filesystem::exists(target))
+  if (std::error_code ignored; !std::filesystem::exists(target, ignored))
     throw Error(store.path(), fmt::format("{} is in {}, which is missing", what, target),
                 "files that belong together stay in the same places");
   return target;
@@ -143,9 +143,10 @@ std::string holder(const Store& store, const std::string& what) {
 void refuse_if_changed(const Store& store, const std::string& what, const std::string& target) {
   const auto then = store.text_attribute("/", what + "_digest");
   if (!then || *then == digest(target)) return;
-  std::string command;
+  std::string command;  // the last that began anew
   if (store.has("/provenance"))
-    if (const auto lines = store.read_strings("/provenance"); !lines.empty()) command = ": " + lines.back();
+    for (const std::string& line : store.read_strings("/provenance"))
+      if (line.find(" --restart") == line.npos) command = ": " + line;
   throw Error(store.path(), fmt::format("{} has changed since this file was made", target), "make it again" + command);
 }
 

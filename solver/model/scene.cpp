@@ -23,12 +23,11 @@ const Value& value_of(const Entry& e, std::string_view key) {
 }
 
 /// Standard input on every rank; mpirun gives it to the first alone.
-std::string standard_input() {
-  const Comm& comm = Comm::world();
+std::string standard_input(const Comm& comm) {
   std::vector<char> text;
-  comm.together([&] {
+  comm.on_first([&] {
     char block[4096];
-    while (comm.rank == 0 && (std::cin.read(block, sizeof block), std::cin.gcount() > 0)) {
+    while ((std::cin.read(block, sizeof block), std::cin.gcount() > 0)) {
       text.insert(text.end(), block, block + std::cin.gcount());
       if (text.size() > most_text) throw Error("<stdin>", fmt::format("more than {} MB of text", most_text >> 20));
     }
@@ -70,8 +69,10 @@ std::string Entry::where(std::string_view key) const {
 }
 std::string Entry::label() const { return name.empty() ? section : fmt::format("{} \"{}\"", section, name); }
 
-Scene Scene::load(const std::string& path, std::span<const std::string> overrides) {
-  const std::string text = path == "-" ? standard_input() : read_text_file(path);
+Scene Scene::load(const std::string& path, std::span<const std::string> overrides) { return load(path, overrides, Comm::alone()); }
+
+Scene Scene::load(const std::string& path, std::span<const std::string> overrides, const Comm& comm) {
+  const std::string text = path == "-" ? standard_input(comm) : read_text_file(path);
   return parse(text, path, overrides);
 }
 
@@ -110,7 +111,7 @@ std::string Scene::mesh_path() const {
   if (!top.given("mesh")) return "";
   const std::filesystem::path p(top.text("mesh"));
   const std::string path = p.is_absolute() ? p.string() : (std::filesystem::path(folder) / p).string();
-  if (!std::filesystem::exists(path))
+  if (std::error_code error; !std::filesystem::exists(path, error) && !error)
     throw Error(top.where("mesh"), fmt::format("no file {}", path), "make it with hilo-import, hilo-tag or hilo-part");
   return path;
 }

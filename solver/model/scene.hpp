@@ -15,6 +15,8 @@
 
 namespace hilo {
 
+class Comm;
+
 /// file:line:column
 struct Place {
   std::string file;
@@ -61,6 +63,8 @@ class Scene {
   /// Read `path` ("-": standard input), apply overrides "joint.trunnion.stiffness=2e6", check against the schema.
   /// Unknown sections, keys and kinds, wrong types, values out of range, duplicate names: Error with file:line:column and a suggestion.
   static Scene load(const std::string& path, std::span<const std::string> overrides = {});
+  /// The same on all ranks, of which the first alone has standard input ("-").
+  static Scene load(const std::string& path, std::span<const std::string> overrides, const Comm& comm);
   /// The same for a text that is already there (from another rank, or of a results file); `path` says where it came from.
   static Scene parse(const std::string& text, const std::string& path, std::span<const std::string> overrides = {});
   /// Entries of a section in file order: material, region, set, body, point_mass, joint, spring, load, motion, initial, sensor, probe,

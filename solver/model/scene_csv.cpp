@@ -48,13 +48,18 @@ std::string disorder(const std::vector<double>& t, size_t i) {
   if (i >= 2 && t[i] == t[i - 1] && t[i] == t[i - 2]) return fmt::format("time {} stands three times", t[i]);
   return "";
 }
+/// Not so what leads nowhere for another reason, such as a link in a circle: reading it tells.
+bool is_missing(const std::string& path) {
+  std::error_code error;
+  return !std::filesystem::exists(path, error) && !error;
+}
+
 constexpr const char* order_rule = "times must rise; two equal ones make a jump";
 
 }  // namespace
 
 HistoryTable read_history_csv(const std::string& path, const std::string& where) {
-  if (!std::filesystem::exists(path))
-    throw Error(where, fmt::format("no file {}", path), "paths in a scene are relative to the scene's folder");
+  if (is_missing(path)) throw Error(where, fmt::format("no file {}", path), "paths in a scene are relative to the scene's folder");
   std::string text = read_text_file(path, where);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   HistoryTable h;
@@ -92,8 +97,7 @@ HistoryTable read_history_csv(const std::string& path, const std::string& where)
 }
 
 std::vector<std::vector<double>> read_rows_csv(const std::string& path, const std::string& where, const RowRule& rule) {
-  if (!std::filesystem::exists(path))
-    throw Error(where, fmt::format("no file {}", path), "paths in a scene are relative to the scene's folder");
+  if (is_missing(path)) throw Error(where, fmt::format("no file {}", path), "paths in a scene are relative to the scene's folder");
   const std::string text = read_text_file(path, where);
   std::vector<std::vector<double>> rows;
   size_t columns = 0;

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+#include "base/printable.hpp"
+
 namespace hilo {
 namespace {
 
@@ -48,9 +50,10 @@ const KindSchema& kind_of(std::string_view section, const toml::table& table, co
 void check_name(std::string_view section, const std::string& name, const Place& place) {
   if (name.empty()) throw Error(place.text(), fmt::format("{}: empty name", section));
   if (section == "region") return;  // may be a glob or whatever the mesh calls it
-  const bool control = std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 32; });
-  if (name.find('/') != name.npos || name == "." || name == ".." || control)
+  if (name.find('/') != name.npos || name == "." || name == "..")
     throw Error(place.text(), fmt::format("{} \"{}\": a name may not hold \"/\" nor be a dot", section, name));
+  if (const std::string shown = printable(name); shown != name || name.find_first_of("\n\t") != name.npos)
+    throw Error(place.text(), fmt::format("{} \"{}\": a name may not hold characters that cannot be seen", section, shown));
 }
 
 void check_new(std::map<std::string, Place>& seen, std::string_view section, const std::string& name, const Place& place) {

@@ -171,7 +171,7 @@ void add_scene_sets(const Scene& scene, Mesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const Vec3& x : local.mesh.X) box.extend(x);
   if (!box.isEmpty()) local.length = box.diagonal().norm();
-  add_scene_sets(scene, local, Comm::world());
+  add_scene_sets(scene, local, Comm::alone());
   mesh = std::move(local.mesh);
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <sstream>
 
@@ -125,7 +126,47 @@ toml::table& single_entry(toml::table& root, const std::string& section, const s
 
 }  // namespace
 
+namespace {
+
+/// A key of dotted parts is as many tables within each other, which the parser makes and takes apart one within the other: more than a
+/// stack holds are refused before.
+void refuse_deep_keys(std::string_view text, const std::string& file) {
+  constexpr int most = 16;  // a scene has four
+  int line = 1, levels = 1;
+  size_t line_begin = 0;
+  const auto new_line = [&](size_t i) { ++line, line_begin = i + 1; };
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') {
+      new_line(i), levels = 1;
+    } else if (c == '#') {
+      while (i + 1 < text.size() && text[i + 1] != '\n') ++i;
+    } else if (c == '"' || c == '\'') {  // a text, or a part of a key
+      const bool block = text.substr(i, 3) == std::string(3, c);
+      const std::string end(block ? 3 : 1, c);
+      for (i += end.size(); i < text.size() && text.substr(i, end.size()) != end; ++i) {
+        if (text[i] == '\\' && c == '"') ++i;
+        if (i >= text.size() || text[i] != '\n') continue;
+        if (!block) break;  // not closed: the parser says so
+        new_line(i);
+      }
+      if (i < text.size() && text[i] == '\n')
+        --i;
+      else
+        i += end.size() - 1;
+    } else if (c == '.') {
+      if (++levels > most)
+        throw Error(Place{file, line, static_cast<int>(i - line_begin) + 1}.text(), fmt::format("a key of more than {} levels", most));
+    } else if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-' && c != ' ' && c != '\t') {
+      levels = 1;
+    }
+  }
+}
+
+}  // namespace
+
 toml::table parse_toml(std::string_view text, const std::string& file) {
+  refuse_deep_keys(text, file);
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& e) {

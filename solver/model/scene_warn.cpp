@@ -42,6 +42,17 @@ void check_body(const Entry& b, Warnings& w) {
     w.add(b, "inertia", fmt::format("no body has these moments: {:.4g} is more than the other two together", largest));
 }
 
+/// Coordinates are doubles, of 16 digits: far from the origin little is left of them.
+void check_places(const Entry& e, Warnings& w) {
+  constexpr double digit = std::numeric_limits<double>::epsilon() / 2, seen = 1e-9;  // [m]
+  for (const char* key : {"at", "at_a", "at_b", "com"}) {
+    if (!e.given(key) || e.section == "set" || e.values.find(key)->second.numbers.size() != 3) continue;
+    const double far = e.vector3(key).norm();
+    if (far * digit > seen)
+      w.add(e, key, fmt::format("a place {:.3g} m from the origin, where positions are known to {:.1g} m{}", far, far * digit, units_hint));
+  }
+}
+
 /// Shortest time in which the history goes one way by a tenth of its range or more; infinite without such a piece.
 double shortest_rise(const History& h) {
   const auto [low, high] = std::minmax_element(h.value.begin(), h.value.end());
@@ -130,6 +141,7 @@ std::vector<std::string> find_implausible(const Entries& entries) {
     for (const auto& e : list) {
       if (section == "material") check_material(e, w);
       if (section == "body") check_body(e, w);
+      check_places(e, w);
       if (section == "region" && e.number("mass_damping") > 0) w.add(e, "mass_damping", "brakes rigid motion too; `damping` does not");
     }
   check_ends(entries, entries.find("time")->second.front(), w);

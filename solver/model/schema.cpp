@@ -78,6 +78,7 @@ std::vector<ArraySchema>& arrays() {
       {"checkpoint.h5", "/command/scene", "string", "()", "", "paths of the scene"},
       {"checkpoint.h5", "/command/mesh", "string", "()", "", "of the mesh, tags or parts"},
       {"checkpoint.h5", "/command/modes", "string", "()", "", "and of the reduced file"},
+      {"checkpoint.h5", "/command/checkpoint", "string", "()", "", "--checkpoint as given, or nothing"},
       {"checkpoint.h5", "/command/overrides", "string", "(n)", "", "what --set was given"},
       {"checkpoint.h5", "/provenance", "string", "(n)", "", "command lines that led to the run"},
       {"run.h5", "/provenance", "string", "(n)", "", "command lines that led to this file, oldest first"},

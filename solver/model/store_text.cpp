@@ -21,24 +21,44 @@ namespace {
 
 /// A file that closes itself; exit 4 when it may not be read, 2 when it is not there.
 struct Reader {
-  explicit Reader(const std::string& path, const std::string& where) : file(std::fopen(path.c_str(), "rb")) {
-    const int error = errno;
-    const std::string prefix = where.empty() ? "" : path + ": ";
+  explicit Reader(const std::string& path, const std::string& where) {
+    const std::string prefix = where.empty() ? "" : path + ": ", at = where.empty() ? path : where;
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe that nobody writes to would wait for ever
+    file = descriptor < 0 ? nullptr : ::fdopen(descriptor, "rb");
     if (!file) {
-      if (error == ENOENT) throw Error(where.empty() ? path : where, prefix + "no such file");
-      throw Error(where.empty() ? path : where, fmt::format("{}cannot read: {}", prefix, std::strerror(error)), "", Exit::resources);
+      const int error = errno;
+      if (error == ENOENT) throw Error(at, prefix + "no such file");
+      throw Error(at, fmt::format("{}cannot read: {}", prefix, std::strerror(error)), "", error == ELOOP ? Exit::input : Exit::resources);
     }
     struct stat status;
     const bool known = ::fstat(fileno(file), &status) == 0, folder = known && S_ISDIR(status.st_mode);
     if (folder || (known && (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)))) {  // a pipe is welcome: <(command)
       std::fclose(file);
-      throw Error(where.empty() ? path : where, fmt::format("{}is a {}, not a file", prefix, folder ? "folder" : "device"));
+      throw Error(at, fmt::format("{}is a {}, not a file", prefix, folder ? "folder" : "device"));
     }
+    if (known && S_ISFIFO(status.st_mode) && !somebody_writes()) {
+      std::fclose(file);
+      throw Error(at, prefix + "is a pipe, and nobody writes to it");
+    }
+    ::fcntl(descriptor, F_SETFL, O_RDONLY);  // from now on reads wait
     note_input(path);
   }
   ~Reader() { std::fclose(file); }
   Reader(const Reader&) = delete;
   std::FILE* file;
+
+ private:
+  /// Whether a pipe has a writer, or something in it, within two seconds: without a writer it is at its end.
+  bool somebody_writes() const {
+    for (int k = 0; k < 40; ++k) {
+      char c = 0;
+      const auto n = ::read(fileno(file), &c, 1);
+      if (n == 1) std::ungetc(c, file);
+      if (n != 0) return true;
+      ::usleep(50000);
+    }
+    return false;
+  }
 };
 
 fs::path folder_of(const std::string& file) {

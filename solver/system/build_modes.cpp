@@ -169,7 +169,9 @@ void Builder::reduce_linear_regions() {
     }
     if (!reductions_.empty() && reductions_.back().found.A.size() == 0) reductions_.back().found = std::move(found);
   }
-  if (!reductions_.empty()) keep_reductions();
+  comm_.on_first([&] {
+    if (!reductions_.empty()) keep_reductions();
+  });
   out_->start.eta.assign(n_blocks, Vec3::Zero());
   out_->start.Y.assign(3 * static_cast<size_t>(n_blocks), Mat3::Zero());
 }

@@ -13,15 +13,11 @@ namespace hilo {
 std::string stem(const std::string& path) { return path.ends_with(".h5") ? path.substr(0, path.size() - 3) : path; }
 
 void RunOutput::create() {
-  comm_.together([&] {
-    if (comm_.rank != 0) return;
-    store_ = std::make_unique<Store>(Store::create_growing(path_));
-  });
+  comm_.on_first([&] { store_ = std::make_unique<Store>(Store::create_growing(path_)); });
 }
 
 void RunOutput::open(const std::function<void(Store&)>& shorten) {
-  comm_.together([&] {
-    if (comm_.rank != 0) return;
+  comm_.on_first([&] {
     store_ = std::make_unique<Store>(Store::open_growing(path_));
     shorten(*store_);
     store_->flush();  // before ranks write where removed arrays were
@@ -45,6 +41,7 @@ bool RunOutput::commit(When when) {
 
 void RunOutput::on_store(const std::function<void(Store&)>& write) {
   if (!store_ || failure_) return;
+  const Comm::Alone now(comm_);
   try {
     write(*store_);
   } catch (const Error& e) {
