@@ -4,8 +4,9 @@
 //
 //     R(q, lambda, p) = 0      t_z.z/u^2 + t_p p = 0   of every correction (z, p): at right angles to the way t ahead
 //
-// u is the size of the displacements that the whole load would make of the first tangent, so the length of a step counts shares of loads
-// and of these alike.  A correction is z = z_R + p z_p, with K z_R = -R and K z_p = -dR/dp by one factorization.
+// u is the size of the displacements that the whole load would make of the first tangent, or three times that of those so far, so the
+// length of a step counts shares of loads and of these alike.  A correction is z = z_R + p z_p, with K z_R = -R and K z_p = -dR/dp by one
+// factorization.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -99,6 +100,7 @@ class PathSteps final : public Steps {
   struct Point {
     State state;
     PathPoint on;
+    double so_far = 0;  // along the way
   };
 
   double most_steps() const { return 1000 + 200 * n_; }
@@ -121,10 +123,12 @@ class PathSteps final : public Steps {
     return s;
   }
   /// The residual at q, with what a law moves where it is under the share p; with a tangent the solver has it.
-  void evaluate(const Config& q, const Vector& lambda, double p, Residual& r, bool tangent) {
+  void evaluate(const Config& q, const Vector& lambda, double p, Residual& r, bool tangent, const Correction* last = nullptr) {
     const Timed timed(phases().assembly);
     ++phases().evaluations, phases().tangents += tangent;
-    run_.system.evaluate(stage(q, p), lambda, r, tangent ? &*run_.solver : nullptr);
+    Stage s = stage(q, p);
+    if (last) s.before = &last->before, s.along = &last->along;
+    run_.system.evaluate(s, lambda, r, tangent ? &*run_.solver : nullptr);
     run_.solver->sum_shared(r.r);
     run_.system.mask_fixed(r.r);
     r.force_scale = run_.system.comm->max(r.force_scale);
@@ -165,6 +169,11 @@ class PathSteps final : public Steps {
       if (!(at_.unit > 0)) return why_ = "nothing loads or moves the scene", false;
       std::fill(way.z.begin() + 3 * run_.system.first_joint_block(), way.z.end(), 0.0);
     }
+    if (run_.report.steps > 0) {
+      Vector far = Unknown(run_.system, run_.system.start, state.q).increments(run_.system);
+      far.resize(way.z.size(), 0.0);
+      at_.unit = std::max(at_.unit, 3 * std::sqrt(dot(far, far)));
+    }
     const double size = length(way);
     if (!(size > 0)) return why_ = "the path has come to a stop", false;
     for (double& z : way.z) z /= size;
@@ -183,13 +192,24 @@ class PathSteps final : public Steps {
     Unknown u(system, from.q, guess);
     Vector lambda = from.lambda, z = way.z, by_share;
     for (double& x : z) x *= so_far;
-    u.move(system, z);
+    std::optional<Correction> foreseen;  // the last correction, to first order (physics/solid,
+                                         // `foresee`), while corrections halve
+    bool foresees = system.traits().deforms;
+    const auto move = [&](const Vector& by) {
+      if (foresees) {
+        foreseen.emplace(Correction{u.q, none_});
+        system.add_rates(foreseen->along, u.q, by);
+      }
+      u.move(system, by);
+    };
+    move(z);
     const double unit2 = at_.unit * at_.unit;
     const size_t first = 3 * static_cast<size_t>(system.first_joint_block());
     double last = 1e300;
     for (iterations_ = 0;; ++iterations_, ++run_.report.iterations) {
       Residual r;
-      evaluate(u.q, lambda, p, r, true);
+      if (!foresees) foreseen.reset();
+      evaluate(u.q, lambda, p, r, true, foreseen ? &*foreseen : nullptr);
       report_.least_det = r.least_det;
       if (r.least_det.det <= 0) return why_ = system.inside_out(r.least_det), false;
       report_.residual = system.comm->max(relative_residual(system, r));
@@ -202,15 +222,21 @@ class PathSteps final : public Steps {
       for (size_t i = 0; i < z.size(); ++i) z[i] += dp * z_p[i];
       to.on.rise = std::copysign(1 / std::sqrt(dot(z_p, z_p) / unit2 + 1), dot(way.z, z_p) + unit2 * way.p);
       const double correction = std::max(system.comm->max(relative_correction(system, z)), std::abs(dp));
+      if (foreseen && !(correction <= 0.5 * last)) {
+        foresees = false;
+        continue;
+      }
+      if (last < 1e-8 && correction > 0.2 * last && report_.residual < 1e-6) break;  // round-off of positions amplified by stiffness
       if (!(correction <= 2 * last && correction <= options.reach)) return why_ = "the corrections grow", false;
       last = correction;
       p += dp;
       Config moved = u.q;
       system.prescribe(moved, p * end_, p), system.place(moved);
-      u.start(system, from.q, moved), u.move(system, z);
+      u.start(system, from.q, moved), move(z);
       for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += r.sigma * z[first + i];
     }
     const std::optional<int> below = run_.solver->eigenvalues_below_zero(system.first_joint_block());
+    to.so_far = so_far;
     to.on.share = p, to.on.below = below ? *below : std::nan("");
     to.state = from;
     to.state.q = u.q, to.state.lambda = lambda, to.state.t = p * end_;
@@ -238,7 +264,25 @@ class PathSteps final : public Steps {
     }
     if (at_.rise * to.on.rise < 0 && !at_.from_limit) return limit(way, to);
     at_.from_limit = false;
+    if (std::abs(to.on.below - at_.below) > 0 && !at_.after_turn && run_.report.steps > 0) approach(way, to);
     return "";
+  }
+
+  /// Where stability changes without a limit, the state behind that is moved up to it, as far as states are found there.
+  void approach(const Way& way, Point& to) {
+    double near = 0, far = to.so_far;
+    for (int k = 0; k < 8; ++k) {
+      const double so_far = (near + far) / 2;
+      Point between;
+      give_up();
+      if (!find(way, so_far, way, between) || between.on.rise * at_.rise < 0) break;
+      (between.on.below == at_.below ? near : far) = so_far;
+    }
+    give_up();
+    Point closer;
+    if (find(way, far, way, closer) && closer.on.below != at_.below) return std::swap(to, closer);
+    give_up();
+    find(way, to.so_far, way, to);
   }
 
   /// The state where the share of the loads is largest or least, between here and one too far: where the rise is zero, by secants that keep
@@ -277,8 +321,7 @@ class PathSteps final : public Steps {
     at_.share = to.on.share, at_.below = to.on.below;
     at_.rise = at_.from_limit ? -std::copysign(1e-300, at_.rise) : to.on.rise;
     std::swap(run_.state, to.state);
-    const double most = std::sqrt(2.0) / n_;
-    at_.radius = std::min(most, at_.radius * std::clamp(std::sqrt(4.0 / std::max(1, iterations_)), 0.5, 2.0));
+    at_.radius = std::min(std::sqrt(2.0) / n_, at_.radius * std::clamp(6.0 / std::max(1, iterations_), 0.5, 2.0));
     at_.done = reach_ > 0 ? moved(run_.state.q) >= reach_ : at_.share >= 1 - 1e-12;
   }
 

@@ -40,6 +40,7 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   }
   if (!figures.modes.empty()) add("modes", figures.modes);
   if (!figures.path.empty()) add("turns", figures.path);
+  if (figures.unstable >= 0) add("unstable_states", fmt::format("{}", figures.unstable));
   const double balance = run.audit->balance(), det = run.audit->least_det();
   add("energy_balance", std::isnan(balance) ? "null" : fmt::format("{:.6g}", balance));
   add("constraint_violation", fmt::format("{:.6g}", run.audit->violation()));

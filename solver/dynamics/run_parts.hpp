@@ -23,6 +23,7 @@ struct RunFigures {
   std::string modes;                    // of an analysis of modes, JSON
   std::string path;                     // of one of a path: where it turns, JSON
   long rejected = 0;                    // steps
+  long unstable = -1;                   // states of a static run that were kept though not stable
 };
 
 enum class Analysis { dynamic, statics, path, modes };

@@ -4,6 +4,7 @@
 
 #include "dynamics/held.hpp"
 #include "dynamics/run_parts.hpp"
+#include "dynamics/stability.hpp"
 #include "dynamics/start.hpp"
 
 namespace hilo {
@@ -18,6 +19,16 @@ bool settle_down(RunParts& run) {
     run.recorder->first(state, run.audit->ledger());
     run.stop("no static equilibrium at the start: " + r.reason + unheld(system, system.start));
     return false;
+  }
+  Stability stability(system, *run.solver, 0, 1);
+  if (const auto unstable = stability.look(state.q, state.lambda)) {
+    const Config before = state.q;
+    const std::string where = run.scene.table("time").where("start"),
+                      found = "the equilibrium at the start is not stable: " + unstable->text;
+    if (stability.leave(*unstable, state.q, state.lambda, true, run.newton))
+      warn(where, fmt::format("{}. The run starts from a stable one, {:.3g} m away", found, system.largest_difference(before, state.q)));
+    else
+      warn(where, found + ". No stable one was found: the run starts there");
   }
   Stage rest = stage_at(state.q, 0);
   rest.elapsed = slow, system.advance(rest), system.settle(true);

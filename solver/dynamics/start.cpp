@@ -203,6 +203,10 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
 
 void consistent_acceleration(const System& system, KktSolver& solver, State& s, double h) {
   solve_acceleration(system, solver, s, s.a, s.lambda);
+  // no farther than differences mean anything: a step yet to be chosen may be far longer than the motion is smooth
+  const double fast = system.largest_rate(s.a), speed = system.largest_rate(s.v);
+  if (fast > 0) h = std::min(h, std::sqrt(2e-3 * system.length / fast));
+  if (speed > 0) h = std::min(h, 0.1 * system.length / speed);
   // jerk by forward differences along q + tau v + tau^2/2 a, whose joints close to third order; forward, since a load may jump here
   State ahead[2];
   std::vector<double> unused;

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Load steps of a static analysis: equal ones, halved where one fails, that end where a history breaks.
+//
+// A step that ends where equilibrium is not stable has jumped over the branch that bends away, or stands behind a point where branches
+// part: it is halved too, then left along the motion that grows.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "dynamics/held.hpp"
 #include "dynamics/run_parts.hpp"
+#include "dynamics/stability.hpp"
 #include "dynamics/start.hpp"
 
 namespace hilo {
@@ -36,9 +42,21 @@ class StaticSteps final : public Steps {
     State reached = state;
     std::string why;  // of the first failure since the last good state, or that a cell would be inside out
     while (at_.done < 1 - 1e-12) {
-      const double next = step_end();
+      double next = step_end();
       NewtonReport r;
-      if (const std::string failure = try_step(next, reached, r); !failure.empty()) {
+      std::string failure = try_step(next, reached, r);
+      const bool shorter = at_.step > std::ldexp(1.0 / n_, -std::min(5, run_.max_cuts));
+      if (failure.empty() && unstable_ && !at_.unstable && shorter) {
+        behind_ = {reached, next, *unstable_, r};
+        failure = "the equilibrium is not stable: " + unstable_->text;
+      } else if (!failure.empty() && behind_ && !system.traits().remembers) {  // too near to where branches part
+        reached = behind_->state, next = behind_->next, unstable_ = behind_->unstable, r = behind_->r;
+        take(reached, next);
+        failure = leave(next, reached);
+      } else if (failure.empty()) {
+        failure = leave(next, reached);
+      }
+      if (!failure.empty()) {
         system.commit(state.q), system.settle(false);
         if (why.empty() || r.least_det.det <= 0) why = failure;
         if (at_.step <= std::ldexp(1.0 / n_, -run_.max_cuts)) {
@@ -55,6 +73,8 @@ class StaticSteps final : public Steps {
       run_.recorder->step(reached, run_.audit->ledger(), taken_, no_acceleration_, r.iterations);
       system.settle(true);
       std::swap(state, reached);
+      if (behind_ && (next >= behind_->next || system.traits().remembers)) behind_.reset();
+      at_.unstable_states += at_.unstable;
       ++run_.report.steps;
       at_.done = next, at_.step = std::min(1.0 / n_, 2 * at_.step);
       progress.show(at_.done, run_.report.steps, r.iterations);
@@ -65,6 +85,7 @@ class StaticSteps final : public Steps {
     }
     progress.done();
     run_.report.t = state.t;
+    run_.figures.unstable = at_.unstable_states;
     run_.report.complete = true;
   }
 
@@ -87,14 +108,59 @@ class StaticSteps final : public Steps {
     options.least_share = 0.03;  // a smaller step costs less
     r = equilibrium(system, *run_.solver, reached.q, reached.lambda, reached.t, next, false, options);
     run_.report.iterations += r.iterations;
-    taken_ = {stage_at(reached.q, reached.t), reached.lambda};
-    taken_.stage.elapsed = slow;
-    if (r.converged) system.advance(taken_.stage);
-    taken_.stage.a = &no_acceleration_, taken_.stage.load_factor = next, taken_.stage.work_from = &state.q;
+    if (!r.converged && r.least_det.det > 0 && at_.step <= std::ldexp(1.0 / n_,
+                                                                      -4)) {  // a sharp bend: held back by a mass that fades
+      reached.q = state.q, reached.lambda = state.lambda;
+      system.commit(state.q);
+      r = equilibrium(system, *run_.solver, reached.q, reached.lambda, reached.t, next, true, options);
+      run_.report.iterations += r.iterations;
+    }
+    unstable_.reset();
+    if (r.converged && system.n_blocks() <= most_blocks)
+      unstable_ = Stability(system, *run_.solver, reached.t, next).look(reached.q, reached.lambda);
     if (!r.converged) return r.reason;
+    take(reached, next);
     const std::string fault = system.fault(reached.q);
     return fault.empty() ? run_.audit->look(state.q, reached, {&taken_, 1}, r, next) : fault;
   }
+
+  /// What memory makes of a state, and its stage for what looks at it.
+  void take(const State& reached, double next) {
+    taken_ = {stage_at(reached.q, reached.t), reached.lambda};
+    taken_.stage.elapsed = slow;
+    run_.system.advance(taken_.stage);
+    taken_.stage.a = &no_acceleration_, taken_.stage.load_factor = next, taken_.stage.work_from = &run_.state.q;
+  }
+
+  /// From a state that is not stable to one that is, and what has changed in words: why the step cannot be accepted, or "".
+  std::string leave(double next, State& reached) {
+    if (!unstable_) {
+      if (at_.unstable) warn(place(), fmt::format("stable again at {:.4g} of the loads", next));
+      return at_.unstable = false, "";
+    }
+    if (at_.unstable) return "";
+    System& system = run_.system;
+    const State unstable = reached;
+    const std::string found = fmt::format("at {:.4g} of the loads the equilibrium is not stable: {}", next, unstable_->text);
+    system.settle(false);
+    if (Stability(system, *run_.solver, reached.t, next).leave(*unstable_, reached.q, reached.lambda, false, run_.newton)) {
+      take(reached, next);
+      if (system.fault(reached.q).empty() && run_.audit->look(run_.state.q, reached, {&taken_, 1}, {}, next).empty()) {
+        warn(place(),
+             fmt::format("{}. The run goes on from a stable one, {:.3g} m away", found, system.largest_difference(unstable.q, reached.q)));
+        return "";
+      }
+      system.settle(false);
+      reached = unstable;
+    }
+    warn(place(), found +
+                      ". The run goes on along states that are not stable "
+                      "(analysis = \"path\" shows where branches part)");
+    system.commit(reached.q), take(reached, next);
+    at_.unstable = true;
+    return run_.audit->look(run_.state.q, reached, {&taken_, 1}, {}, next);
+  }
+  std::string place() const { return run_.scene.table("time").where("analysis"); }
 
   int n_ = 1;                   // load steps asked for
   double end_ = 1;              // time of the full load [s]
@@ -102,8 +168,19 @@ class StaticSteps final : public Steps {
   struct Place {
     double done = 0, step = 1;  // shares of the loads
     LeastDet least;             // of the steps taken
+    bool unstable = false;      // the last one
+    long unstable_states = 0;
   } at_;
-  Taken taken_;  // of the step tried last
+  static constexpr int most_blocks = 30000;  // beyond, the count would cost more than the step
+  std::optional<Unstable> unstable_;         // the step tried last
+  struct Behind {
+    State state;
+    double next;
+    Unstable unstable;
+    NewtonReport r;
+  };
+  std::optional<Behind> behind_;  // the nearest state ahead that is not stable
+  Taken taken_;                   // of the step tried last
   Config no_acceleration_;
 };
 

@@ -6,20 +6,6 @@
 #include "physics/spring.hpp"
 
 namespace hilo {
-namespace {
-
-/// The three rows of a common point along the frame carried by a instead of the inertial axes.
-void turn_with_a(Connector& c) {
-  if (c.end[0].body < 0) return;
-  for (int i = 0; i < 3; ++i) {
-    c.entities.push_back({0, c.frame_a.col(i), false});
-    const Term& t = c.measures[i].terms[0];
-    c.measures[i] = {{{Term::slide, static_cast<int>(c.entities.size()) - 1, t.i, t.j}}, 0};
-  }
-}
-
-}  // namespace
-
 std::string missing_stiffness(const JointKind& kind, const Stiffness& s) {
   for (const char r : kind.holds) {
     if (r >= 'x' && !(s.along[r - 'x'] > 0)) return "stiffness";
@@ -28,14 +14,15 @@ std::string missing_stiffness(const JointKind& kind, const Stiffness& s) {
   return {};
 }
 
-Spring make_compliant(Joint joint, const Stiffness& s) {
+Spring make_compliant(JointPlace place, const Stiffness& s, const Config& q) {
+  place.gives_way = true;
+  Joint joint = make_joint(place, q);
   const JointKind& kind = *joint.kind;
   std::vector<double> stiffness, viscosity, free;
   for (const char r : kind.holds) {
     stiffness.push_back(r >= 'x' ? s.along[r - 'x'] : s.about[r - 'A']);
     viscosity.push_back(r >= 'x' ? s.damping[r - 'x'] : s.angular_damping[r - 'A']);
   }
-  if (kind.holds.starts_with("xyz")) turn_with_a(joint);
   if (kind.soften) kind.soften(joint, free);
   Spring c;
   static_cast<Connector&>(c) = std::move(static_cast<Connector&>(joint));

@@ -120,6 +120,13 @@ int Connector::add_zero_measure(std::vector<Term> terms, const Config& q) {
   return m;
 }
 
+int Connector::add_rotation(const std::array<int, 3>& u, const std::array<int, 3>& v) {
+  const int first = static_cast<int>(measures.size());
+  for (const int column : v)
+    for (const int row : u) add_measure({{Term::dot, row, column}});
+  return first;
+}
+
 void Connector::join(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at_b, const Mat3& frame) {
   end[0] = a, end[1] = b;
   if (a.body >= 0) frame_a = q.R[a.body].transpose() * frame;

@@ -40,7 +40,7 @@ struct Measure {
   double offset = 0;  // subtracted, so that the reference configuration gives the value wanted
 };
 
-inline constexpr int max_measures = 9, max_rows = 6, max_ends = 3, max_entities = 12;
+inline constexpr int max_measures = 12, max_rows = 6, max_ends = 3, max_entities = 12;
 inline constexpr int max_directions = 6 * max_ends;  // generalised directions: translation and rotation of each end
 
 struct Connector {
@@ -64,6 +64,8 @@ struct Connector {
   /// A measure; with its value in q taken off.
   int add_measure(std::vector<Term> terms);
   int add_zero_measure(std::vector<Term> terms, const Config& q);
+  /// The nine products of three directions u of a and v of b, by columns: u_i.v_j is entry (i, j) of the rotation from a to b.
+  int add_rotation(const std::array<int, 3>& u, const std::array<int, 3>& v);
   /// Ends, joint point on b and joint frame on a.
   void join(const Carrier& a, const Carrier& b, const Config& q, const Vec3& at_b, const Mat3& frame);
 };

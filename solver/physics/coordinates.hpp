@@ -24,6 +24,7 @@ class OnCoordinates final : public SpringLaw {
   bool needs_rate() const override { return law_->needs_rate(); }
   void archive(Archive& a) override { coordinates_->archive(a), law_->archive(a); }
   bool conserves() const override { return law_->conserves(); }
+  std::string beyond(const Values& e) const override { return coordinates_->beyond(e); }
 
  private:
   void spread(const Values& e0, const Values& e1, const Response& along, Response& out) const;

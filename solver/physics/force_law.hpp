@@ -38,6 +38,8 @@ class SpringLaw {
   virtual void archive(Archive&) {}
   /// Whether it is a potential and nothing else.
   virtual bool conserves() const { return false; }
+  /// What e has passed, beyond which the law is not meant, or nothing: "half a turn".
+  virtual std::string beyond(const Values& /*e*/) const { return {}; }
 };
 
 }  // namespace hilo

@@ -41,7 +41,7 @@ void add_angle(Connector& c, const Config& q) {
 
 std::unique_ptr<RowLaw> plain_and_angle(int n_plain, bool angle) {
   std::vector<std::vector<SumRows::Part>> sums;
-  if (angle) sums.push_back({{1, n_plain, true}});
+  if (angle) sums.push_back({{1, n_plain, SumRows::angle}});
   return std::make_unique<SumRows>(n_plain, std::move(sums));
 }
 

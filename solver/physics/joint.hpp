@@ -50,6 +50,7 @@ struct JointPlace {
   std::shared_ptr<const Curve> curve{};  // of point-on-curve: points in inertial axes from `at`
   enum class Driven { none, angle, slide } driven = Driven::none;  // a row held to a course: angle or slide of b along the axis
   std::vector<double> own{};                                       // what else a kind reads from its entry
+  bool gives_way = false;                                          // on springs: rows are lengths and angles, however large
 };
 /// The joint with its ends at rest in `q`; Error for a kind that there is none of.
 Joint make_joint(const JointPlace& place, const Config& q);

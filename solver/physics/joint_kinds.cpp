@@ -22,7 +22,7 @@ Joint spherical(const JointPlace& j, const Config& q) {
 Joint fixed(const JointPlace& j, const Config& q) {
   JointMaker m(j, q);
   m.same_point();
-  m.dot(m.u(0), m.v(1)), m.dot(m.u(1), m.v(2)), m.dot(m.u(2), m.v(0));
+  m.aligned();
   return m.with();
 }
 
@@ -44,7 +44,11 @@ Joint constant_velocity(const JointPlace& j, const Config& q) {
   JointMaker m(j, q);
   m.same_point();
   const int u0 = m.u(0), v1 = m.v(1), u1 = m.u(1), v0 = m.v(0);
-  m.zero({{Term::dot, u0, v1}, {Term::dot, u1, v0, 0, -1}});
+  const int twist = m.zero({{Term::dot, u0, v1}, {Term::dot, u1, v0, 0, -1}});
+  if (j.gives_way) {  // tan(twist) is their difference over u.u' + v.v'
+    m.c.add_measure({{Term::dot, u0, v0}, {Term::dot, u1, v1}});
+    m.soften(twist, {{{1, twist, SumRows::angle}}});
+  }
   return m.with();
 }
 
@@ -81,8 +85,8 @@ Joint cylindrical(const JointPlace& j, const Config& q) {
 
 Joint prismatic(const JointPlace& j, const Config& q) {
   JointMaker m(j, q);
-  m.slide(0), m.slide(1), m.parallel();
-  m.dot(m.u(0), m.v(1));
+  m.slide(0), m.slide(1);
+  m.aligned();
   return m.with();
 }
 
@@ -90,7 +94,7 @@ Joint screw(const JointPlace& j, const Config& q) {
   JointMaker m(j, q);
   m.slide(0), m.slide(1), m.parallel();
   const int plain = static_cast<int>(m.c.measures.size()), slid = m.slid(), turned = m.turned();
-  return m.with({{{1, slid}, {-j.ratio, turned, true}}}, plain);
+  return m.with({{{1, slid}, {-j.ratio, turned, SumRows::angle}}}, plain);
 }
 
 Joint distance(const JointPlace& j, const Config& q) {
@@ -105,7 +109,7 @@ Joint gear(const JointPlace& j, const Config& q) {
   JointMaker m(j, q);
   m.c.n_ends = 3, m.c.end[2] = j.carrier;
   const int turn_a = m.angle(2, 0, m.axis, j.frame.col(0)), turn_b = m.angle(2, 1, m.axis_b, frame_of_axis(m.axis_b).col(0));
-  return m.with({{{1, turn_b, true}, {-j.ratio, turn_a, true}}}, 0);
+  return m.with({{{1, turn_b, SumRows::angle}, {-j.ratio, turn_a, SumRows::angle}}}, 0);
 }
 
 Joint rack(const JointPlace& j, const Config& q) {
@@ -114,12 +118,7 @@ Joint rack(const JointPlace& j, const Config& q) {
   const int turn_a = m.angle(2, 0, m.axis, j.frame.col(0));
   const int along = m.c.add_direction(2, q, m.axis_b), from = m.c.add_point(2, q, j.at), to = m.c.add_point(1, q, j.at);
   const int slide = m.zero({{Term::slide, along, from, to}});
-  return m.with({{{1, slide}, {-j.ratio, turn_a, true}}}, 0);
-}
-
-/// The row is twice the twist.
-void soften_twist(Joint& joint, std::vector<double>&) {
-  joint.rows = std::make_unique<SumRows>(3, std::vector<JointMaker::Sum>{{{0.5, 3}}});
+  return m.with({{{1, slide}, {-j.ratio, turn_a, SumRows::angle}}}, 0);
 }
 
 void soften_distance(Joint& joint, std::vector<double>& free) {
@@ -170,16 +169,17 @@ std::vector<Param> joint_keys(bool with_axis, std::initializer_list<Param> own) 
 }
 
 std::vector<Param> giving_way(std::vector<Param> keys) {
-  keys.insert(keys.end(), {stiffness,
-                           {"angular_stiffness",
-                            numbers,
-                            "N m/rad",
-                            "",
-                            "likewise about x, y and axis; the measure is the sine of the angle",
-                            at_least(0),
-                            {1, 3}},
-                           damping,
-                           {"angular_damping", numbers, "N m s/rad", "", "dampers beside these springs", at_least(0), {1, 3}}});
+  keys.insert(keys.end(),
+              {stiffness,
+               {"angular_stiffness",
+                numbers,
+                "N m/rad",
+                "",
+                "likewise about x, y and axis: moment per angle; of three the rotation vector, to half a turn, of two the tilt of the axis",
+                at_least(0),
+                {1, 3}},
+               damping,
+               {"angular_damping", numbers, "N m s/rad", "", "dampers beside these springs", at_least(0), {1, 3}}});
   return keys;
 }
 
@@ -195,7 +195,7 @@ Registry<JointKind>& joint_kinds() {
     Registry<JointKind> all{
         "joint",
         {
-            {"fixed", "no relative motion (6 rows)", giving_way(joint_keys(false)), fixed, "xyzCAB", {}, {}},
+            {"fixed", "no relative motion (6 rows)", giving_way(joint_keys(false)), fixed, "xyzABC", {}, {}},
             {"spherical", "common point (3 rows)", giving_way(joint_keys(false)), spherical, "xyz", {}, {0, 1, 2}, none},
             {"revolute",
              "common point and axis: one rotation (5 rows)",
@@ -215,7 +215,7 @@ Registry<JointKind>& joint_kinds() {
              "slide along the axis (5 rows)",
              giving_way(joint_keys(true, {displacement, velocity, drive_history})),
              prismatic,
-             "xyBAC",
+             "xyABC",
              {slide},
              {0, 1}},
             {"universal",
@@ -233,8 +233,7 @@ Registry<JointKind>& joint_kinds() {
              {},
              {},
              both,
-             read_axis_b,
-             soften_twist},
+             read_axis_b},
             {"screw",
              "common axis, b slides by the pitch per turn (5 rows)",
              giving_way(

@@ -3,18 +3,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace hilo {
 
 SumRows::SumRows(int n_plain, std::vector<std::vector<Part>> sums) : n_plain_(n_plain), sums_(std::move(sums)) {}
 
+double SumRows::value(const Part& p, const Values& e) const {
+  const double* m = &e[p.measure];
+  switch (p.of) {
+    case itself:
+      return *m;
+    case angle:
+      return turn_[p.measure].unwrap(m[0], m[1]);
+    case arcsine:
+      return std::asin(std::clamp(*m, -1.0, 1.0));
+    case tilt:
+      return arc(tilted(m), p.axis).value;
+    case rotation:
+      return 2 * arc(attitude_.quaternion(m), p.axis).value;
+  }
+  return 0;
+}
+
 void SumRows::values(const Values& e, double* g) const {
   for (int r = 0; r < n_plain_; ++r) g[r] = e[r];
   for (size_t k = 0; k < sums_.size(); ++k) {
     double& sum = g[n_plain_ + k];
     sum = 0;
-    for (const Part& p : sums_[k]) sum += p.weight * (p.angle ? turn_[p.measure].unwrap(e[p.measure], e[p.measure + 1]) : e[p.measure]);
+    for (const Part& p : sums_[k]) sum += p.weight * value(p, e);
   }
 }
 
@@ -25,14 +43,46 @@ void SumRows::gradient(const Values& e0, const Values& e1, Gradient& out) const 
     auto& d = out.d[n_plain_ + k];
     auto& D = out.D[n_plain_ + k];
     for (const Part& p : sums_[k]) {
-      if (!p.angle) {
-        d[p.measure] += p.weight;
-        continue;
-      }
-      const Turn::Gradient g = turn_[p.measure].gradient(&e0[p.measure], &e1[p.measure]);
-      for (int i = 0; i < 2; ++i) {
-        d[p.measure + i] += p.weight * g.d[i];
-        for (int j = 0; j < 2; ++j) D[p.measure + i][p.measure + j] += p.weight * g.D[i][j];
+      const int at = p.measure;
+      const double *m0 = &e0[at], *m1 = &e1[at];
+      switch (p.of) {
+        case itself:
+          d[at] += p.weight;
+          break;
+        case angle: {
+          const Turn::Gradient g = turn_[at].gradient(m0, m1);
+          for (int i = 0; i < 2; ++i) {
+            d[at + i] += p.weight * g.d[i];
+            for (int j = 0; j < 2; ++j) D[at + i][at + j] += p.weight * g.D[i][j];
+          }
+          break;
+        }
+        case arcsine: {
+          const auto [slope, curvature] = arcsine_gradient(*m0, *m1);
+          d[at] += p.weight * slope, D[at][at] += p.weight * curvature;
+          break;
+        }
+        case tilt: {
+          const ArcGradient g = arc_gradient(tilted(m0), tilted(m1), p.axis);
+          const Eigen::Vector3d along = tilted_slopes().transpose() * g.d;
+          const Eigen::Matrix3d by = tilted_slopes().transpose() * g.D * tilted_slopes();
+          for (int i = 0; i < 3; ++i) {
+            d[at + i] += p.weight * along[i];
+            for (int j = 0; j < 3; ++j) D[at + i][at + j] += p.weight * by(i, j);
+          }
+          break;
+        }
+        case rotation: {
+          const ArcGradient g = arc_gradient(attitude_.quaternion(m0), attitude_.quaternion(m1), p.axis);
+          const Attitude::Slopes slopes = attitude_.slopes();
+          const Eigen::Matrix<double, 9, 1> along = 2 * slopes.transpose() * g.d;
+          const Eigen::Matrix<double, 9, 9> by = 2 * slopes.transpose() * g.D * slopes;
+          for (int i = 0; i < 9; ++i) {
+            d[at + i] += p.weight * along[i];
+            for (int j = 0; j < 9; ++j) D[at + i][at + j] += p.weight * by(i, j);
+          }
+          break;
+        }
       }
     }
   }
@@ -40,8 +90,23 @@ void SumRows::gradient(const Values& e0, const Values& e1, Gradient& out) const 
 
 void SumRows::commit(const Values& e) {
   for (const auto& sum : sums_)
-    for (const Part& p : sum)
-      if (p.angle) turn_[p.measure].committed = turn_[p.measure].unwrap(e[p.measure], e[p.measure + 1]);
+    for (const Part& p : sum) {
+      if (p.of == angle) turn_[p.measure].committed = turn_[p.measure].unwrap(e[p.measure], e[p.measure + 1]);
+      if (p.of == rotation && p.axis == 0) attitude_.accept(&e[p.measure]);
+    }
+}
+
+/// Where an angle, or the axis about which it turns, is about to lose its meaning.
+std::string SumRows::beyond(const Values& e) const {
+  for (const auto& sum : sums_)
+    for (const Part& p : sum) {
+      const double* m = &e[p.measure];
+      if (p.of == angle && std::hypot(m[0], m[1]) < 0.5) return "a tilt of 60 degrees of its axis";
+      if (p.of == arcsine && std::abs(*m) > std::sin(80 * std::numbers::pi / 180)) return "80 degrees";
+      if (p.of == tilt && m[2] < std::cos(170 * std::numbers::pi / 180)) return "a tilt of 170 degrees";
+      if (p.of == rotation && attitude_.quaternion(m)[3] < -1e-9) return "half a turn";
+    }
+  return {};
 }
 
 namespace {

@@ -1,34 +1,46 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of joints beyond plain measures: sums of measures and angles.
+// Rows of joints beyond plain measures: sums of measures and of angles.
 #pragma once
 #include <vector>
 
+#include "physics/attitude.hpp"
 #include "physics/curve.hpp"
 #include "physics/row_law.hpp"
 #include "physics/turn.hpp"
 
 namespace hilo {
 
-/// The first `n_plain` rows are the first measures themselves; each further row is a weighted sum of measures and of angles, an angle
-/// being given by two measures that follow each other, its sine and its cosine.
+/// The first `n_plain` rows are the first measures themselves; each further row is a weighted sum of measures and of angles, which measures
+/// that follow each other give.
 class SumRows final : public RowLaw {
  public:
+  enum Of {
+    itself,
+    angle,     // of a sine and a cosine, unwrapped
+    arcsine,   // of a sine
+    tilt,      // about x and y (`axis` 0, 1), of an axis with these three components, from z [rad]
+    rotation,  // component `axis` of the rotation vector of R, its nine entries by columns, unwrapped below a whole turn [rad]
+  };
   struct Part {
     double weight;
-    int measure;  // or of the sine
-    bool angle = false;
+    int measure;  // the first of those it is made of
+    Of of = itself;
+    int axis = 0;
   };
   SumRows(int n_plain, std::vector<std::vector<Part>> sums);
   int n_rows() const override { return n_plain_ + static_cast<int>(sums_.size()); }
   void values(const Values& e, double* g) const override;
   void gradient(const Values& e0, const Values& e1, Gradient& out) const override;
   void commit(const Values& e) override;
-  void archive(Archive& a) override { a("angles", turn_); }
+  void archive(Archive& a) override { a("angles", turn_, attitude_); }
+  std::string beyond(const Values& e) const override;
 
  private:
+  double value(const Part& p, const Values& e) const;
   int n_plain_;
   std::vector<std::vector<Part>> sums_;
   std::array<Turn, max_measures> turn_;  // of the angle whose sine is measure i
+  Attitude attitude_;                    // of the rotation: there is one
 };
 
 /// Two rows that hold a point, three measures e in the frame of the curve, on the curve.  With the tangent t and two normals b_r of the

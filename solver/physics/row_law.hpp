@@ -28,6 +28,8 @@ class RowLaw {
   virtual void archive(Archive&) {}
   /// Why the joint cannot be at e, or nothing.
   virtual std::string fault(const Values&) const { return {}; }
+  /// What e has passed, beyond which the rows are no measure of what they stand for, or nothing.
+  virtual std::string beyond(const Values&) const { return {}; }
 };
 
 }  // namespace hilo

@@ -42,7 +42,9 @@ struct Contact final : SpringLaw {
 };
 
 /// The angle whose sine and cosine are measures 0 and 1.
-std::unique_ptr<RowLaw> angle_row() { return std::make_unique<SumRows>(0, std::vector<std::vector<SumRows::Part>>{{{1, 0, true}}}); }
+std::unique_ptr<RowLaw> angle_row() {
+  return std::make_unique<SumRows>(0, std::vector<std::vector<SumRows::Part>>{{{1, 0, SumRows::angle}}});
+}
 
 std::vector<double> listed(const Vec3& v) { return {v.begin(), v.end()}; }
 
@@ -79,20 +81,41 @@ Spring make_bushing(const Bushing& s, const Config& q) {
   Spring c;
   c.join(s.a, s.b, q, s.at, s.frame);
   const int pa = c.add_point(0, q, s.at), pb = c.add_point(1, q, s.at);
-  int u[3];
+  std::array<int, 3> u;
   for (int i = 0; i < 3; ++i) u[i] = c.add_direction(0, q, s.frame.col(i));
   for (int i = 0; i < 3; ++i) c.add_measure({{Term::slide, u[i], pa, pb}});
   std::vector<double> stiffness = listed(s.stiffness.along), damping = listed(s.stiffness.damping);
-  if (s.stiffness.about.norm() + s.stiffness.angular_damping.norm() > 0) {
-    int v[3];  // sin(angle) n_i = (d_j . e_k - d_k . e_j)/2 with d on a, e on b
+  const Vec3 &k = s.stiffness.about, &d = s.stiffness.angular_damping;
+  std::vector<std::vector<SumRows::Part>> angles;
+  if (k.norm() + d.norm() > 0) {
+    std::array<int, 3> v;
     for (int i = 0; i < 3; ++i) v[i] = c.add_direction(1, q, s.frame.col(i));
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3, l = (i + 2) % 3;
-      c.add_measure({{Term::dot, u[l], v[j], 0, 0.5}, {Term::dot, u[j], v[l], 0, -0.5}});
-      stiffness.push_back(s.stiffness.about[i]), damping.push_back(s.stiffness.angular_damping[i]);
+    const auto resists = [&](const Vec3& by, std::initializer_list<int> axes) {
+      for (const int i : axes) stiffness.push_back(k[i]), damping.push_back(by[i]);
+    };
+    const auto stiff = (k.array() > 0).count();
+    if (stiff == 0) {  // the squares of the rates of row i of the rotation sum
+                       // up to those of the two other angular velocities
+      c.add_rotation(u, v);
+      for (int column = 0; column < 3; ++column) resists(Vec3::Constant(d.sum() / 2) - d, {0, 1, 2});
+    } else if (stiff == 3) {
+      const int m = c.add_rotation(u, v);
+      for (int i = 0; i < 3; ++i) angles.push_back({{1, m, SumRows::rotation, i}});
+      resists(d, {0, 1, 2});
+    } else {  // of the axis that differs from the two others
+      int z = 0;
+      while ((k[z] > 0) != (stiff == 1)) ++z;
+      const int x = (z + 1) % 3, y = (z + 2) % 3;
+      const int tilt = c.add_measure({{Term::dot, u[x], v[z]}});
+      c.add_measure({{Term::dot, u[y], v[z]}}), c.add_measure({{Term::dot, u[z], v[z]}});
+      const int twist = c.add_measure({{Term::dot, u[y], v[x]}, {Term::dot, u[x], v[y], 0, -1}});
+      c.add_measure({{Term::dot, u[x], v[x]}, {Term::dot, u[y], v[y]}});
+      angles = {{{1, tilt, SumRows::tilt, 0}}, {{1, tilt, SumRows::tilt, 1}}, {{1, twist, SumRows::angle}}};
+      resists(d, {x, y, z});
     }
   }
   c.law = make_linear(stiffness, damping);
+  if (!angles.empty()) c.law = std::make_unique<OnCoordinates>(std::make_unique<SumRows>(3, std::move(angles)), std::move(c.law));
   c.stiffness = s.stiffness.along.maxCoeff();
   return c;
 }

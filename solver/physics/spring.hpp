@@ -45,7 +45,8 @@ struct Stiffness {
   Vec3 along = Vec3::Zero(), damping = Vec3::Zero();          // [N/m, N s/m]
   Vec3 about = Vec3::Zero(), angular_damping = Vec3::Zero();  // [N m/rad, N m s/rad]
 };
-/// The columns of its frame are the axes.
+/// The columns of its frame are the axes.  Stiff about three of them it measures the rotation vector; about one or two, the tilt of one
+/// axis and the twist about it, over any number of turns; where it only damps, the angular velocity.
 struct Bushing {
   Carrier a, b;
   Vec3 at;
@@ -75,9 +76,10 @@ struct Support {
 };
 Spring make_support(const Support& s, const Config& q);
 
-/// A joint whose rows give way along and about the columns of its frame.  Turns are measured by their sine.  It keeps its kind, ends, point
-/// and frame, so forces have the axes and the sign of the joint's reactions.
-Spring make_compliant(Joint joint, const Stiffness& stiffness);
+/// A joint whose rows give way along and about the columns of its frame, by angles: what it holds of all three is the rotation vector, of
+/// two the tilt of its axis, of one an angle.  It keeps its kind, ends, point and frame, so forces have the axes and the sign of the
+/// joint's reactions.
+Spring make_compliant(JointPlace place, const Stiffness& stiffness, const Config& q);
 /// The key that leaves a row of the joint without a spring, or nothing.
 std::string missing_stiffness(const JointKind& kind, const Stiffness& stiffness);
 

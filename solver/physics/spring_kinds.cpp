@@ -137,7 +137,7 @@ Registry<SpringKind>& spring_kinds() {
              numbers,
              "N m/rad",
              "[0, 0, 0]",
-             "three rotational stiffnesses; the measure is sin(angle) n, good to about 60 degrees",
+             "moments per angle: of three the rotation vector, to half a turn; of one or two, tilt of an axis and twist about it",
              at_least(0),
              {3}},
             {"angular_damping", numbers, "N m s/rad", "[0, 0, 0]", "three rotational dampings", at_least(0), {3}}},

@@ -61,16 +61,16 @@ Vec3 triple(const Entry& e, std::string_view key) {
   return v.size() == 1 ? Vec3::Constant(v[0]) : Vec3(v[0], v[1], v[2]);
 }
 
-Spring compliant(const Entry& e, Joint joint) {
+Spring compliant(const Entry& e, const JointPlace& j, const Config& q) {
   const Stiffness s{.along = triple(e, "stiffness"),
                     .damping = triple(e, "damping"),
                     .about = triple(e, "angular_stiffness"),
                     .angular_damping = triple(e, "angular_damping")};
-  if (const std::string key = missing_stiffness(*joint.kind, s); !key.empty())
+  if (const std::string key = missing_stiffness(joint_kinds().at(j.kind), s); !key.empty())
     throw Error(e.has(key) ? e.where(key) : e.place.text(),
                 fmt::format("{}: {} leaves a row of the joint without a spring", e.label(), key),
                 fmt::format("give {} along every row, or leave all stiffnesses out", key));
-  Spring c = make_compliant(std::move(joint), s);
+  Spring c = make_compliant(j, s, q);
   c.name = e.name;
   return c;
 }
@@ -103,7 +103,7 @@ void Builder::add_joints() {
     const std::string driven = driving_key(e);
     if (e.has("stiffness") || e.has("angular_stiffness")) {
       if (!driven.empty()) e.refuse(driven, "a joint that gives way cannot be driven", "put a motor or a rigid joint");
-      out_->part<Springs>().list.push_back(compliant(e, make_joint(j, out_->start)));
+      out_->part<Springs>().list.push_back(compliant(e, j, out_->start));
       continue;
     }
     for (const char* key : {"damping", "angular_damping"})

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "base/error.hpp"
 #include "system/linear_regions.hpp"
@@ -30,7 +31,7 @@ class Entries final : public KktSolver {
   void structure(const Cliques&, const BlockMap&) override {}
   void zero() override {}
   void add(int clique, const double* K) override {
-    const auto blocks = system_.cliques[clique];
+    const auto blocks = system_.layout.cliques[clique];
     const size_t n = blocks.size();
     const int first_row = system_.first_joint_block();
     for (size_t j = 0; j < n; ++j) {
@@ -62,8 +63,18 @@ class Entries final : public KktSolver {
 
 }  // namespace
 
-void ModalDamping::add_cliques(Cliques& cliques) {
-  groups_.clear();
+void ModalDamping::number(Layout& layout) {
+  if (!std::exchange(found_, true)) find_groups(layout.cliques);
+  for (Group& group : groups_) {
+    std::vector<int> blocks;
+    for (const int k : group.regions)
+      for (int i = 0; i < system_.modes[static_cast<size_t>(k)].n_blocks; ++i)
+        blocks.push_back(system_.modes[static_cast<size_t>(k)].block + i);
+    group.clique = layout.cliques.add(blocks);
+  }
+}
+
+void ModalDamping::find_groups(const Cliques& cliques) {
   if (std::none_of(ratio.begin(), ratio.end(), [](double zeta) { return zeta > 0; })) return;
   const size_t n = system_.bodies.size();
   std::vector<int> of_block(static_cast<size_t>(system_.first_joint_block()), -1);
@@ -95,15 +106,12 @@ void ModalDamping::add_cliques(Cliques& cliques) {
     bool damps = false;
     for (int k = 0; k < static_cast<int>(n); ++k)
       if (find_root(k) == b) group.bodies.push_back(k);
-    std::vector<int> blocks;
     for (size_t k = 0; k < system_.modes.size(); ++k) {
       const Modes& m = system_.modes[k];
       if (find_root(m.body) != b) continue;
       group.regions.push_back(static_cast<int>(k)), damps = damps || (ratio[k] > 0 && m.n_modes > 0);
-      for (int i = 0; i < m.n_blocks; ++i) blocks.push_back(m.block + i);
     }
     if (!damps) continue;
-    group.clique = cliques.add(blocks);
     groups_.push_back(std::move(group));
   }
 }

@@ -25,7 +25,7 @@ class ModalDamping final : public Contribution {
   void find(const Config& q);
 
   Traits traits() const override { return {.has_rates = !groups_.empty()}; }
-  void add_cliques(Cliques& cliques) override;
+  void number(Layout& layout) override;
   void evaluate(Pass& p) const override;
   void add_work(const Moment& m, Work& sum) const override;
   void archive(Archive& a) override;
@@ -38,9 +38,11 @@ class ModalDamping final : public Contribution {
     int clique = -1;           // of the amplitudes of the regions
     Eigen::MatrixXd C;         // over these, padding included; empty before find()
   };
+  void find_groups(const Cliques& cliques);
   Eigen::VectorXd way(const Group& group, const Stage& s) const;
   Eigen::MatrixXd damping_of(const Group& group, const Config& q) const;
   const System& system_;
+  bool found_ = false;  // groups_, by what the other contributions connect at the start
   std::vector<Group> groups_;
 };
 

@@ -61,6 +61,25 @@ void Springs::add_work(const Moment& m, Work& sum) const {
   }
 }
 
+/// Laws of angles have bodies at both ends, which all ranks know.
+void Springs::advance(const Stage& stage) {
+  passed_.clear(), told_.resize(list.size(), 0);
+  for (size_t i = 0; i < list.size(); ++i) {
+    if (told_[i] || list[i].end[0].body < 0 || list[i].end[1].body < 0) continue;
+    if (const std::string what = list[i].law->beyond(list[i].values(*stage.end)); !what.empty())
+      passed_.emplace_back(static_cast<int>(i), fmt::format("passes {} at t = {:.4g} s: its law does not hold beyond", what, stage.t_end));
+  }
+}
+
+void Springs::settle(bool accepted) {
+  for (const auto& [i, text] : passed_)
+    if (accepted) {
+      told_[i] = 1;
+      if (points_.comm->rank == 0) warn(fmt::format("{} \"{}\"", list[i].group, list[i].name), text);
+    }
+  passed_.clear();
+}
+
 void Springs::commit(const Config& q, const Config* v) {
   Config ahead, behind;
   const double tau = 1e-3;  // [s]; measures are of degree two, any tau gives the exact rate
@@ -87,6 +106,7 @@ void Springs::archive(Archive& a) {
     a("spring " + c.name);
     c.law->archive(a);
   }
+  a("passed", told_);
 }
 
 std::vector<Output> Springs::outputs() const {

@@ -17,6 +17,8 @@ class Springs final : public Contribution {
   void evaluate(Pass& p) const override;
   void add_energy(const Config& q, const Config& v, Energy& sum) const override;
   void add_work(const Moment& m, Work& sum) const override;
+  void advance(const Stage& stage) override;
+  void settle(bool accepted) override;
   void commit(const Config& q, const Config* v) override;
   void archive(Archive& a) override;
   std::vector<Output> outputs() const override;
@@ -34,6 +36,8 @@ class Springs final : public Contribution {
   const Joints& joints_;
   std::vector<int> clique_;
   std::vector<char> owned_;
+  std::vector<char> told_;                           // of what a law has passed
+  std::vector<std::pair<int, std::string>> passed_;  // by the step that is tried: springs, and what to tell
 };
 
 /// Elastic response of a spring at a stage, D by its measures at e1.

@@ -64,14 +64,14 @@ inline const std::vector<std::string>& joint_kinds() {
 inline Mat3 some_frame() { return frame_of_axis(Vec3(1, 2, -0.5), Vec3(0, 1, 0)); }
 inline const Vec3 joint_point(0.4, -0.2, 0.9), other_point(-1, 0.3, 0.2);
 
-inline hilo::Joint joint(const std::string& kind, const Config& q) {
-  return make_joint({.kind = kind,
-                     .a = {1, -1},
-                     .b = {2, -1},
-                     .at = joint_point,
-                     .at_b = kind == "distance" ? other_point : joint_point,
-                     .frame = some_frame()},
-                    q);
+inline JointPlace place(const std::string& kind) {
+  return {.kind = kind,
+          .a = {1, -1},
+          .b = {2, -1},
+          .at = joint_point,
+          .at_b = kind == "distance" ? other_point : joint_point,
+          .frame = some_frame()};
 }
+inline hilo::Joint joint(const std::string& kind, const Config& q) { return make_joint(place(kind), q); }
 
 }  // namespace hilo::test

@@ -109,15 +109,32 @@ struct Case {
 };
 std::vector<Case> laws() {
   std::vector<Case> out;
-  out.push_back(
-      {"angle_and_slide",
-       std::make_shared<SumRows>(1, std::vector<std::vector<SumRows::Part>>{{{1, 1}, {-0.3, 2, true}}, {{2, 2, true}, {-1, 4, true}}}), 6,
-       [](double t) { return Values{0.1 * t, t * t, std::sin(1.1 * t), std::cos(1.1 * t), std::sin(2 - t), std::cos(2 - t)}; }});
+  out.push_back({"angle_and_slide",
+                 std::make_shared<SumRows>(1, std::vector<std::vector<SumRows::Part>>{{{1, 1}, {-0.3, 2, SumRows::angle}},
+                                                                                      {{2, 2, SumRows::angle}, {-1, 4, SumRows::angle}}}),
+                 6,
+                 [](double t) { return Values{0.1 * t, t * t, std::sin(1.1 * t), std::cos(1.1 * t), std::sin(2 - t), std::cos(2 - t)}; }});
   std::vector<Vec3> x;
   for (int i = 0; i < 9; ++i) x.emplace_back(std::cos(0.7 * i) - 1, std::sin(0.7 * i), 0.2 * i);
   out.push_back({"curve", std::make_shared<CurveRows>(Curve(x, false)), 3, [](double t) {
                    return Values{std::cos(t) - 1 + 0.02 * t, std::sin(t) - 0.01 * t, 0.28 * t};
                  }});
+  const auto attitude = [](double t) { return turn(Vec3(2 * t, 0.3 - t, t * t)); };
+  using Sums = std::vector<std::vector<SumRows::Part>>;
+  out.push_back({"tilt", std::make_shared<SumRows>(1, Sums{{{1, 1, SumRows::tilt, 0}}, {{2, 1, SumRows::tilt, 1}}}), 4, [=](double t) {
+                   const Vec3 n = attitude(t).col(2);
+                   return Values{t, n[0], n[1], n[2]};
+                 }});
+  out.push_back({"rotation",
+                 std::make_shared<SumRows>(
+                     1, Sums{{{1, 1, SumRows::rotation, 0}}, {{1, 1, SumRows::rotation, 1}}, {{3, 1, SumRows::rotation, 2}, {1, 0}}}),
+                 10, [=](double t) {
+                   Values e{t};
+                   Mat3::Map(&e[1]) = attitude(t);
+                   return e;
+                 }});
+  out.push_back(
+      {"arcsine", std::make_shared<SumRows>(0, Sums{{{1, 0, SumRows::arcsine}}}), 1, [](double t) { return Values{0.6 * t * t - 0.5}; }});
   return out;
 }
 
@@ -125,7 +142,7 @@ class Law : public testing::TestWithParam<int> {
  protected:
   const Case c = laws()[GetParam()];
 };
-INSTANTIATE_TEST_SUITE_P(EveryKind, Law, testing::Values(0, 1), [](const auto& p) { return laws()[p.param].name; });
+INSTANTIATE_TEST_SUITE_P(EveryKind, Law, testing::Values(0, 1, 2, 3, 4), [](const auto& p) { return laws()[p.param].name; });
 
 // Truth: the discrete gradient's defining property, over steps long and short.
 TEST_P(Law, DiscreteGradientTimesTheStepIsTheChangeOfTheRows) {

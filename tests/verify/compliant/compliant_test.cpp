@@ -38,6 +38,117 @@ TEST(CompliantJoint, TendsToTheRigidJoint) {
   EXPECT_LT(apart[1], 0.2 * apart[0]);
 }
 
+const std::string disc = R"([[body]]
+name = "d"
+mass = 1
+com = [0, 0, 0]
+inertia = [0.1, 0.1, 0.1]
+[[load]]
+kind = "torque"
+name = "T"
+on = "d"
+torque = [0, 0, TORQUE]
+[[probe]]
+name = "p"
+on = "d"
+at = [1, 0, 0]
+)";
+const std::string on_bushing = R"([[spring]]
+kind = "bushing"
+name = "b"
+b = "d"
+at = [0, 0, 0]
+stiffness = [1e5, 1e5, 1e5]
+angular_stiffness = [100, 100, 100]
+)";
+
+// Truth: Hooke: the angle is the moment over the stiffness, at any angle below half a turn; beyond, a bushing that is stiff about three
+// axes says so.
+TEST(CompliantJoint, TurnsByTheMomentOverTheStiffness) {
+  const Case c("compliant");
+  const std::string fixed = R"([[joint]]
+kind = "fixed"
+name = "b"
+b = "d"
+at = [0, 0, 0]
+stiffness = 1e5
+angular_stiffness = 100
+)";
+  const std::string single = std::string(on_bushing).replace(on_bushing.find("[100, 100, 100]"), 15, "[0, 0, 100]");
+  for (const double torque : {50.0, 95.0, 300.0, 400.0}) {
+    for (const std::string& holder : {on_bushing, fixed, single}) {
+      if (torque == 400 && holder != on_bushing) continue;
+      c.write("turn.toml", std::string(disc).replace(disc.find("TORQUE"), 6, std::to_string(torque)) + holder +
+                               (holder == single ? "[[joint]]\nkind = \"revolute\"\nname = \"r\"\nb = "
+                                                   "\"d\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n"
+                                                 : "") +
+                               "[time]\nanalysis = \"static\"\nsteps = 10\n");
+      const Ran ran = c.run("hilo-solve turn.toml -o turn.h5");
+      ASSERT_EQ(ran.exit, 0) << ran.err;
+      const auto p = c.results("turn.h5").history("probe/p");
+      if (torque < 100 * M_PI) {
+        EXPECT_NEAR(p(10, 0), std::cos(torque / 100), 1e-9) << torque;
+        EXPECT_NEAR(p(10, 1), std::sin(torque / 100), 1e-9) << torque;
+      }
+      EXPECT_EQ(ran.err.find("passes half a turn at t = ") != std::string::npos, torque == 400) << ran.err;
+    }
+  }
+}
+
+// Truth: energy and both momenta of two bodies in space that a bushing or a compliant joint holds stay, at long steps and by every method
+// that keeps them.
+TEST(CompliantJoint, KeepsEnergyAndMomentaAtLargeAngles) {
+  const Case c("compliant");
+  const std::string bodies = R"([[body]]
+name = "one"
+mass = 2
+com = [0, 0, 0]
+inertia = [0.2, 0.3, 0.4]
+[[body]]
+name = "two"
+mass = 1
+com = [0.5, 0.1, 0]
+inertia = [0.1, 0.15, 0.2]
+[[initial]]
+on = "two"
+spin = [3, -2, 5]
+[[initial]]
+on = "one"
+spin = [-1, 1, -3]
+[time]
+end = 3
+step = 0.01
+)";
+  const char* holders[] = {
+      "[[spring]]\nkind = \"bushing\"\nname = \"h\"\na = \"one\"\nb = "
+      "\"two\"\nat = [0.3, 0, 0.1]\nstiffness = [200, 300, 250]\n"
+      "angular_stiffness = [3, 2, 4]\n",
+      "[[spring]]\nkind = \"bushing\"\nname = \"h\"\na = \"one\"\nb = "
+      "\"two\"\nat = [0.3, 0, 0.1]\nstiffness = [200, 300, 250]\n"
+      "angular_stiffness = [6, 0, 4]\n",
+      "[[joint]]\nkind = \"revolute\"\nname = \"h\"\naxis = [1, 0, 2]\na = "
+      "\"one\"\nb = \"two\"\nat = [0.3, 0, 0.1]\nstiffness = "
+      "200\nangular_stiffness = 8\n",
+      "[[joint]]\nkind = \"fixed\"\nname = \"h\"\na = \"one\"\nb = \"two\"\nat "
+      "= [0.3, 0, 0.1]\nstiffness = 200\nangular_stiffness = 3\n",
+      "[[joint]]\nkind = \"constant-velocity\"\nname = \"h\"\naxis = [1, 0, "
+      "2]\na = \"one\"\nb = \"two\"\nat = [0.3, 0, 0.1]\nstiffness = 200\n"
+      "angular_stiffness = 3\n"};
+  for (const char* method : {"energy-momentum", "gauss"})
+    for (const char* holder : holders) {
+      c.write("pair.toml", std::string(holder) + bodies);
+      const Ran ran = c.run(std::string("hilo-solve --quiet pair.toml -o "
+                                        "pair.h5 --set time.integrator=") +
+                            method);
+      ASSERT_EQ(ran.exit, 0) << ran.err << holder;
+      const auto e = c.results("pair.h5").history("energy"), m = c.results("pair.h5").history("momentum");
+      // directors of gauss are orthonormal to some 1e-9 alone, on which the rotation vector depends
+      EXPECT_LT(e.col(5).cwiseAbs().maxCoeff(), method[0] == 'g' ? 1e-8 : 1e-11) << method << holder;
+      EXPECT_LT((m.rowwise() - m.row(0)).cwiseAbs().maxCoeff(), 1e-11) << method << holder;
+      EXPECT_GT(e.col(1).maxCoeff() - e.col(1).minCoeff(), 0.5) << "it is wound up";
+    }
+}
+
 TEST(CompliantJoint, MistakesAreNamed) {
   const Case c("compliant");
   const auto says = [&](const std::string& option, const std::string& text) {

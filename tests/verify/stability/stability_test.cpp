@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What statics, starts from equilibrium and paths say of stability: a bar on a torsion spring under a load that buckles it, and columns.
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+namespace {
+
+/// A bar of 1 m on a torsion spring of 100 N m/rad, upright: it buckles at 100 N.
+std::string bar(double side, const std::string& time) {
+  return R"([[body]]
+name = "bar"
+mass = 1.0
+com = [0, 0, 0.5]
+inertia = [0.1, 0.1, 0.1]
+[[joint]]
+kind = "revolute"
+name = "pin"
+b = "bar"
+at = [0, 0, 0]
+axis = [0, 1, 0]
+[[spring]]
+kind = "torsion"
+name = "k"
+b = "bar"
+axis = [0, 1, 0]
+stiffness = 100.0
+[[load]]
+kind = "force"
+name = "P"
+on = "bar"
+at = [0, 0, 1]
+force = [)" +
+         std::to_string(side) + R"(, 0, -150.0]
+[[probe]]
+name = "tip"
+on = "bar"
+at = [0, 0, 1]
+[time]
+)" + time;
+}
+
+/// 100 angle = 150 sin(angle) + side cos(angle) on the side that the side load pushes to, by halving.
+double leaning(double side) {
+  double low = 0.5, high = 3;
+  while (high - low > 1e-14) {
+    const double mid = (low + high) / 2;
+    (100 * mid < 150 * std::sin(mid) + side * std::cos(mid) ? low : high) = mid;
+  }
+  return low;
+}
+
+struct Bar : Case {
+  Bar() : Case("stability") {}
+  double tip(const std::string& text, std::string& said) {
+    write("bar.toml", text);
+    const Ran ran = run("hilo-solve bar.toml -o run.h5");
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    said = ran.err;
+    const auto x = results().history("probe/tip");
+    return x(x.rows() - 1, 0);
+  }
+};
+
+}  // namespace
+
+// Truth: with a side load of .15 N the bar leans as it pushes, and no state on the way is unstable.  (Where steps are so long that both
+// branches are stable at their end, as with 4, the other one may be met.)
+TEST(StaticStability, TheBranchOfTheSideLoadIsFollowed) {
+  Bar c;
+  std::string said;
+  for (const char* steps : {"10", "20", "40", "100"})
+    for (const double side : {0.15, -0.15}) {
+      const double x = c.tip(bar(side, std::string("analysis = \"static\"\nsteps = ") + steps + "\n"), said);
+      EXPECT_NEAR(x, std::copysign(std::sin(leaning(std::abs(side))), side), 1e-8) << steps << " steps\n" << said;
+      EXPECT_NE(text_of(c / "run.json").find("\"unstable_states\": 0"), std::string::npos);
+    }
+}
+
+// Truth: without one the upright bar is lost at 2/3 of the load; either side is right, and it is told.
+TEST(StaticStability, APerfectBarIsToldAndLeft) {
+  Bar c;
+  std::string said;
+  const double x = c.tip(bar(0, "analysis = \"static\"\nsteps = 10\n"), said);
+  EXPECT_NEAR(std::abs(x), std::sin(leaning(0)), 1e-8);
+  EXPECT_NE(said.find("the equilibrium is not stable: an eigenvalue of the "
+                      "tangent is below zero"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("body \"bar\""), std::string::npos) << said;
+}
+
+// Truth: the start takes the deeper of the stable states, and says how far it is from the one drawn.
+TEST(StaticStability, AStartFromEquilibriumTakesAStableOne) {
+  Bar c;
+  std::string said;
+  const double x = c.tip(bar(0.15, "start = \"equilibrium\"\nend = 0.1\nstep = 0.01\n"), said);
+  EXPECT_NEAR(x, std::sin(leaning(0.15)), 1e-7) << said;
+  const double hanging = c.tip(R"([[body]]
+name = "bob"
+mass = 2
+com = [0, 0, 1]
+inertia = [0.1, 0.1, 0.1]
+[[joint]]
+kind = "revolute"
+name = "pin"
+b = "bob"
+at = [0, 0, 0]
+axis = [0, 1, 0]
+[[probe]]
+name = "tip"
+on = "bob"
+at = [0.2, 0, 1]
+[time]
+start = "equilibrium"
+end = 0.1
+step = 0.01
+)",
+                               said);
+  EXPECT_NEAR(hanging, 0.2, 1e-9) << "no weight: any attitude will do";
+  EXPECT_EQ(said.find("not stable"), std::string::npos) << said;
+}
+
+// Truth: the same by path, in tens of states.
+TEST(LoadPath, OfABarWithASmallSideLoadArrives) {
+  Bar c;
+  std::string said;
+  for (const char* steps : {"5", "20", "50"}) {
+    EXPECT_NEAR(c.tip(bar(0.15, std::string("analysis = \"path\"\nsteps = ") + steps + "\n"), said), std::sin(leaning(0.15)), 1e-8);
+    EXPECT_LT(c.results().t().size(), 200) << steps;
+  }
+}
+
+namespace {
+
+/// A steel column of 1 m x 20 mm x 20 mm, ten hexahedra of 20 nodes on end, clamped at one end.
+std::string column(const std::string& force, const std::string& analysis, int steps) {
+  return R"([material.steel]
+kind = "stvk"
+E = 2e11
+nu = 0.3
+density = 7800
+[region.bar]
+material = "steel"
+[[motion]]
+kind = "fixed"
+name = "foot"
+on = "left"
+[[load]]
+kind = "force"
+name = "P"
+on = "right"
+force = )" +
+         force + "\n[[probe]]\nname = \"tip\"\non = \"right\"\n[time]\nanalysis = \"" + analysis + "\"\nsteps = " + std::to_string(steps) +
+         "\n";
+}
+const double euler = std::pow(M_PI / 2, 2) * 2e11 * std::pow(0.02, 4) / 12;
+
+struct Column : Case {
+  Column() : Case("stability") {
+    write("column.geo",
+          R"(N = 10; h = 0.01; Point(1) = {0, -h, -h}; Point(2) = {0, h, -h}; Point(3) = {0, h, h}; Point(4) = {0, -h, h};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Transfinite Curve {1:4} = 2; Curve Loop(1) = {1:4}; Plane Surface(1) = {1}; Transfinite Surface {1}; Recombine Surface {1};
+b[] = Extrude {1, 0, 0} {Surface{1}; Layers{N}; Recombine;};
+Physical Volume("bar") = {b[1]}; Physical Surface("left") = {1}; Physical Surface("right") = {b[0]};
+)");
+    EXPECT_EQ(run("hilo-import --quiet column.geo --order 2 -o mesh.h5").exit, 0);
+  }
+  Ran solve_column(const std::string& text) {
+    write("column.toml", text);
+    return run("hilo-solve column.toml mesh.h5 -o run.h5");
+  }
+};
+
+}  // namespace
+
+// Truth: a perfect column loses its stability at Euler's load, told on the way of a path that goes on upright.
+TEST(LoadPath, OfAPerfectColumnTellsEulersLoad) {
+  Column c;
+  const Ran ran = c.solve_column(column("[-10000, 0, 0]", "path", 20));
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const std::string all = ran.out + ran.err;
+  const size_t at = all.find("stability is lost at ");
+  ASSERT_NE(at, std::string::npos) << all;
+  EXPECT_NEAR(std::stod(all.substr(at + 21)), euler / 10000, 0.01 * euler / 10000) << all;
+}
+
+// Truth: the elastica of a cantilever column: P/P_E = (2 K(k)/pi)^2 with k = sin(alpha/2) of the slope alpha of the tip, whose way aside is
+// 2 k L/K(k) [timoshenko-gere-1961]; with a small side load it arrives there in tens of states.
+TEST(LoadPath, OfAColumnWithASmallSideLoadArrivesInTensOfStates) {
+  Column c;
+  for (const char* side : {"1", "10"}) {
+    const Ran ran = c.solve_column(column(std::string("[-10000, ") + side + ", 0]", "path", 20));
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const auto tip = c.results().history("probe/tip");
+    EXPECT_LT(tip.rows(), 100);
+    double low = 0.01, high = 0.999;  // of k
+    while (high - low > 1e-12) {
+      const double k = (low + high) / 2;
+      (std::pow(2 * std::comp_ellint_1(k) / M_PI, 2) < 10000 / euler ? low : high) = k;
+    }
+    EXPECT_NEAR(tip(tip.rows() - 1, 1), 2 * low / std::comp_ellint_1(low), 0.03) << "side load " << side;
+  }
+}
+
+// Truth: the same elastica, by load steps: the perfect column is told and left, that with a side load follows it.
+TEST(StaticStability, AColumnEndsOnTheElastica) {
+  Column c;
+  double low = 0.01, high = 0.999;
+  while (high - low > 1e-12) {
+    const double k = (low + high) / 2;
+    (std::pow(2 * std::comp_ellint_1(k) / M_PI, 2) < 10000 / euler ? low : high) = k;
+  }
+  for (const char* side : {"0", "1", "10"}) {
+    const Ran ran = c.solve_column(column(std::string("[-10000, ") + side + ", 0]", "static", 10));
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const auto tip = c.results().history("probe/tip");
+    EXPECT_NEAR(std::hypot(tip(tip.rows() - 1, 1), tip(tip.rows() - 1, 2)), 2 * low / std::comp_ellint_1(low), 0.03)
+        << "side load " << side;
+    if (side != std::string("1")) {  // such a mesh bends a little more easily across a
+                                     // corner of its section than that holds it
+      EXPECT_EQ(ran.err.find("not stable") != std::string::npos, side[0] == '0') << ran.err;
+    }
+  }
+}
+
+// Truth: a bar of perfect plasticity bears the yield stress times its section, a little less as it grows thinner, and then no more.
+TEST(LoadPath, OfAPlasticBarTellsItsLimit) {
+  Case c("stability");
+  c.write("bar.geo",
+          R"(h = 0.005; Point(1) = {0, -h, -h}; Point(2) = {0, h, -h}; Point(3) = {0, h, h}; Point(4) = {0, -h, h};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Transfinite Curve {1:4} = 2; Curve Loop(1) = {1:4}; Plane Surface(1) = {1}; Transfinite Surface {1}; Recombine Surface {1};
+b[] = Extrude {1, 0, 0} {Surface{1}; Layers{10}; Recombine;};
+Physical Volume("bar") = {b[1]}; Physical Surface("left") = {1}; Physical Surface("right") = {b[0]};
+)");
+  c.write("bar.toml", R"([material.steel]
+kind = "j2"
+yield = 250e6
+E = 2e11
+nu = 0.0
+density = 1.0
+[region.bar]
+material = "steel"
+[[motion]]
+kind = "fixed"
+name = "foot"
+on = "left"
+[[body]]
+name = "mass"
+mass = 100
+com = [1, 0, 0]
+inertia = [1, 1, 1]
+[[joint]]
+kind = "fixed"
+name = "head"
+a = "right"
+b = "mass"
+at = [1, 0, 0]
+[[joint]]
+kind = "prismatic"
+name = "guide"
+b = "mass"
+at = [1, 0, 0]
+axis = [1, 0, 0]
+[[load]]
+kind = "force"
+name = "force"
+on = "mass"
+force = [50000, 0, 0]
+[[probe]]
+name = "mass"
+on = "mass"
+[time]
+analysis = "path"
+steps = 20
+reach = 0.02
+)");
+  ASSERT_EQ(c.run("hilo-import --quiet bar.geo -o mesh.h5").exit, 0);
+  const Ran ran = c.run("hilo-solve bar.toml mesh.h5 -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const auto path = c.results().history("path"), mass = c.results().history("probe/mass");
+  const double yields = 250e6 / 2e11, largest = 0.5 * std::exp(-yields);
+  EXPECT_NEAR(path.col(0).maxCoeff(), largest, 1e-3 * largest);
+  for (Eigen::Index k = 0; k < path.rows(); ++k)
+    if (mass(k, 0) > 1 + 2 * yields) {
+      EXPECT_NEAR(path(k, 0), 0.5, 0.05 * 0.5) << "flat: the section alone falls, by the stretch of the cells that "
+                                                  "flow";
+    }
+  EXPECT_NE((ran.out + ran.err).find("largest load"), std::string::npos);
+}
+
+}  // namespace hilo::test
