@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The audit of a run: what is known exactly is checked at every step, before the step is accepted.
 //
-//   energy      |dE - dW + dD|, where the method keeps it    <= bound x largest kinetic energy so far + rounding
+//   energy      |dE - dW + dD - N|, where the method keeps it  <= bound x largest kinetic energy so far + rounding
+//               N, what Newton left: the work of its residual, and of multipliers as rows open: the tolerance, and told
+//               |N|                                          <= max(1e-4, bound) x all energies that came or went
 //   joint rows  |g|, of the rows kept and of those dropped   <= bound x length of the scene
 //   turn        of every body and cell over the step         <= 2 rad: at half a turn (R0 + R1)/2 loses rank, and with it equations vanish
 //   everything finite; det F of every cell above zero (Newton's report; between its points System::fault)
@@ -19,6 +21,7 @@ namespace hilo {
 struct Ledger {
   Energy energy;
   double work = 0, dissipated = 0, balance = 0;  // balance: E - E0 - W + D
+  double left = 0;                               // of it, what Newton left
   Violation rows;
 };
 
@@ -48,11 +51,17 @@ class Audit {
   double least_det() const { return worst_.det.det; }
   /// The verdict as a JSON object; `failure`: why the run stopped, or "".
   std::string json(const std::string& failure) const;
-  void archive(Archive& a) { a("audit", t_, E0_, rounding_, moving_, n_steps_, largest_, now_, sums_, worst_, opens_dropped_row_); }
+  void archive(Archive& a) {
+    a("audit", t_, E0_, start_, rounding_, moving_, n_steps_, largest_, unexplained_, gaps_, now_, sums_, worst_, opens_dropped_row_);
+  }
 
  private:
+  double opened(const std::vector<double>& gaps, std::span<const Taken> taken);
   struct Worst {                                      // of the accepted steps, each with its time
     double step = 0, step_t = 0, sum = 0, sum_t = 0;  // energy, over what it is judged by
+    struct Left {
+      double part = 0, t = 0;
+    } left;
     Violation rows;
     double kept_t = 0, dropped_t = 0;
     System::Turn turn;
@@ -61,14 +70,17 @@ class Audit {
   };
   const System& system_;
   std::string energy_unchecked_;
-  double energy_bound_, row_bound_;
+  double energy_bound_, left_bound_, row_bound_;
   bool opens_dropped_row_ = false;
   double t_ = 0, E0_ = 0, rounding_ = 0, moving_ = 0, n_steps_ = 0, largest_ = 0;  // largest kinetic energy; largest |E - E0 - W + D| [J]
+  double unexplained_ = 0;                                                         // largest without what Newton left [J]
+  Energy start_;
+  std::vector<double> gaps_, gaps_next_;  // of the rows, laid out like lambda; those of velocities begin each step at 0
   Ledger now_, next_;
   struct Sums {
-    double work = 0, dissipated = 0;
+    double work = 0, dissipated = 0, left = 0;
   } sums_;
-  double step_ = 0, sum_ = 0, moving_next_ = 0, rounding_next_ = 0;  // of the step looked at last
+  double step_ = 0, sum_ = 0, left_ = 0, moving_next_ = 0, rounding_next_ = 0;  // of the step looked at last
   System::Turn turn_;
   LeastDet det_;
   Worst worst_;

@@ -51,6 +51,8 @@ class ModeSteps final : public Steps {
     set_rows(system, run_.redundancy.at_pose);
     if (time_.text("start") == "equilibrium" && !settle_down(run_)) return;
     run_.figures.projected = run_.impulses.strike(system, *run_.solver, rest, run_.talk).change;
+    if (!is_free(system))
+      throw Error(time_.where("analysis"), "nothing is free to move: joints, drives and motions hold it all", "there are no modes");
     const bool spins = system.largest_rate(rest.v) > 0;
     consistent_acceleration(system, *run_.solver, rest, 1e-3);
     if (const std::string why = spins ? not_steady(system, rest) : ""; !why.empty())
@@ -79,6 +81,15 @@ class ModeSteps final : public Steps {
   }
 
  private:
+  /// Whether there are more unknowns than rows that hold them, which are independent.
+  static bool is_free(const System& system) {
+    size_t n = 0, held = 0;
+    for (const UnknownField& f : system.unknowns) n += 3 * f.size();
+    for (size_t i = 0; i < system.X.size(); ++i)
+      for (int k = 0; k < 3; ++k) held += system.node_block[i] >= 0 && system.fixed[i][k];
+    for (const char on : system.rows_on()) held += on != 0;
+    return n > held;
+  }
   /// What is not at rest would move, before it swings, by about a/omega^2.
   void check_rest(const std::vector<FoundMode>& modes) const {
     const System& system = run_.system;

@@ -48,6 +48,24 @@ double size_of(const System& s, std::span<const double> z) {
   return std::sqrt(s.comm->sum(sum));
 }
 
+namespace {
+
+/// What the residual left works over the step, and how far it leaves the rows open.
+void tell_what_is_left(const System& s, const Residual& r, const Unknown& u, NewtonReport& report) {
+  const std::vector<double> step = u.increments(s);
+  double work = 0;
+  for (size_t k = 0; k < step.size() / 3; ++k) {
+    const std::int64_t owned = s.map.global[k] - s.map.first;  // of the ranks that hold the block one counts it
+    if (owned < 0 || owned >= s.map.n_owned) continue;
+    for (size_t i = 3 * k; i < 3 * k + 3; ++i) work += r.r[i] * step[i];
+  }
+  report.left = s.comm->sum(work);
+  report.gaps.assign(r.r.begin() + 3 * static_cast<std::ptrdiff_t>(s.first_joint_block()), r.r.end());
+  for (double& g : report.gaps) g /= r.sigma;
+}
+
+}  // namespace
+
 NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Unknown&)>& stage, Unknown& u,
                     std::vector<double>& lambda, const NewtonOptions& options, std::optional<Correction> last) {
   NewtonReport report;
@@ -72,7 +90,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     system.evaluate(s, lambda, r, tangent ? &solver : nullptr);
     solver.sum_shared(r.r);
     system.mask_fixed(r.r);
-    r.force_scale = system.comm->max(r.force_scale);
+    r.force_scale = report.force = system.comm->max(r.force_scale);
     report.least_det = r.least_det;
     if (system.comm->size > 1) {
       report.least_det.det = -system.comm->max(-r.least_det.det);
@@ -143,6 +161,10 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
     }
     return false;
   };
+  const auto accept = [&] {  // the unknown evaluated last
+    tell_what_is_left(system, r, u, report);
+    report.converged = true;
+  };
   // where the last factors serve once more for little, one more correction takes constraints and forces to round-off (or, where the
   // tolerance asked for is a loose one, to five digits beyond)
   const auto polish = [&] {
@@ -150,10 +172,13 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       const double correction = system.comm->max(relative_correction(system, z));
       if (!(correction < 1e-6)) break;
       move();
-      if (correction < 1e-12) break;  // what the old factors leave of it is round-off
+      if (correction < 1e-12) {  // what the old factors leave of it is round-off
+        report.converged = true;
+        return;
+      }
       evaluate(false);
     }
-    report.converged = true;
+    accept();
   };
   // A correction far below the tolerance, one to come that is nothing to the scene, and a residual within ten of the tolerance: what is
   // left is the round-off of positions amplified by stiffness; another solve would only draw other digits of it.
@@ -206,7 +231,7 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       return report;
     }
     if (report.residual <= options.tolerance && it > 0) {
-      report.converged = true;
+      accept();
       return report;
     }
     const SolveReport solved = solve(false);
@@ -236,8 +261,8 @@ NewtonReport newton(const System& system, KktSolver& solver, const std::function
       return report;
     }
     if (!damped && report.correction <= options.tolerance * 1e-2) {  // far below what the next one could change
-      report.converged = true;
-      stage(u);
+      evaluate(false);
+      accept();
       return report;
     }
     near = report.correction < 1e-3, moved = true;

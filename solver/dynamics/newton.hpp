@@ -25,9 +25,12 @@ struct NewtonReport {
   int iterations = 0;     // linear solves
   double correction = 0;  // last one, over the scene's length
   double residual = 0;    // last one, over the force scale
+  double force = 0;       // largest force summed into it [N]
   LeastDet least_det;
   int linear_iterations = 0;
-  std::string reason;  // why it failed
+  double left = 0;           // work of the residual over the increments of the unknown from where it began [J]
+  std::vector<double> gaps;  // of the constraint rows, laid out like lambda; none: closed to rounding
+  std::string reason;        // why it failed
 };
 
 /// How the unknown came to be what it is, for the stresses that a tangent foresees (physics/solid, `foresee`).

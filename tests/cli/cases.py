@@ -77,6 +77,19 @@ def jump(run, told):
             "behind": (abs(a[t > 0.0153 + 1e-9] - 1).max(), 1e-3)}
 
 
+def unstable(run, told):
+    """Upright beyond its stable load: a disturbance of rounding grows by exp(12 t), to 1e-11 at 1 s, and energy stays."""
+    x = run["history/probe/tip"][:, :3]
+    return {"leaves by [m]": (abs(x - x[0]).max(), 1e-9), "energy [J]": (abs(run["history/energy"][:, 5]).max(), 1e-13)}
+
+
+def asked(run, told):
+    """A quantity beside a set of the scene: what /history and /field say of it, on ranks too."""
+    q = told["quantities"][0]
+    peaks = [run["field"][k]["von_mises"][:].max() for k in run["field"]]
+    return {"peak over the largest of the field, less 1": (abs(q["value"] / max(peaks) - 1), 1e-6)}
+
+
 # scene: exit code, truth, mesh, end of the run on 2 ranks in the suite [s]
 CASES = {
     "half_turn_chain": (0, chain, "", 0.3), "half_turn_rods": (0, chain, "", 0.2), "half_turn_two": (0, two, "", 0.5),
@@ -85,15 +98,18 @@ CASES = {
     "moved_set": (0, still, "bar", 0.001), "driven_set": (0, still, "bar", 0.001),
     "motor_jump": (0, jump, "", 0), "load_jump": (0, jump, "", 0), "static_inverted": (3, None, "block", 0)}
 
+CASES |= {"unstable_start": (0, unstable, "", 0), "ranks_deadlock": (0, asked, "ranks_deadlock", 0.01)}
+TAGS = {"ranks_deadlock": ["--nonlinear", "arm", "--rigid", "block"]}  # else all of it is nonlinear
+
 
 def mesh_of(name, ranks):
     if not name:
         return []
     path = f"{name}-{ranks}.h5"
     if not os.path.exists(path):
-        source = [scenes + "/bar.inp", "--regions", "bar"] if name == "bar" else [scenes + "/block.geo"]
+        source = [scenes + "/bar.inp", "--regions", "bar"] if name == "bar" else [f"{scenes}/{name}.geo"]
         subprocess.run(["hilo-import", "--quiet", *source, "-o", "mesh.h5"], check=True)
-        subprocess.run(["hilo-tag", "--quiet", "mesh.h5", "--rest", "nonlinear", "-o", f"{name}-1.h5"], check=True)
+        subprocess.run(["hilo-tag", "--quiet", "mesh.h5", *TAGS.get(name, ["--rest", "nonlinear"]), "-o", f"{name}-1.h5"], check=True)
         if ranks > 1:
             subprocess.run(["hilo-part", "--quiet", f"{name}-1.h5", "-n", str(ranks), "-o", path], check=True)
     return [path]

@@ -247,23 +247,28 @@ def judge(text, with_mesh):
     return f"exit {code}: {last}", code
 
 
-with tempfile.TemporaryDirectory() as folder:
-    os.chdir(folder)
+def make_mesh():
     with open("block.inp", "w") as f:
         f.write(MESH)
     subprocess.run([tools + "/hilo-import", "--quiet", "block.inp", "--regions", "block", "-o", "mesh.h5"], check=True, stdout=subprocess.DEVNULL)
+
+
+def usual(section, kind, key, type_):
+    """A value of the key that runs."""
+    value = of_set(kind, key) if section == "set" and of_set(kind, key) else good(key, type_)
+    if kind == "bushing" and value.count(",") == 0 and type_ == "numbers":
+        value = "[" + ", ".join(3 * [value.strip("[]")]) + "]"
+    return "{t = [0, 0.02], value = [0, 1]}" if type_ == "history" else value
+
+
+def main():
     failed, codes = 0, {}
     for (section, kind), keys in keys_of_schema().items():
         if len(sys.argv) > 2 and section != sys.argv[2]:
             continue
-        numeric = [k for k in keys if k[1] in ("number", "3 numbers", "numbers", "history")]
-        for key, type_, default in numeric:
-            usual = of_set(kind, key) if section == "set" and of_set(kind, key) else good(key, type_)
-            if kind == "bushing" and usual.count(",") == 0 and type_ == "numbers":
-                usual = "[" + ", ".join(3 * [usual.strip("[]")]) + "]"
-            tries = [(v, b) for v in ("good",) + VALUES for b in ([usual] if v == "good" else bad(key, type_, v, usual))]
-            if type_ == "history":
-                tries[0] = ("good", "{t = [0, 0.02], value = [0, 1]}")
+        for key, type_, default in [k for k in keys if k[1] in ("number", "3 numbers", "numbers", "history")]:
+            value = usual(section, kind, key, type_)
+            tries = [("good", value)] + [(v, b) for v in VALUES for b in bad(key, type_, v, good(key, type_) if type_ == "history" else value)]
             for name, value in tries:
                 if name == "good" and (section in ("time", "solver", "output") or key in ("about",)):
                     continue
@@ -275,5 +280,12 @@ with tempfile.TemporaryDirectory() as folder:
                 if wrong:
                     failed += 1
                     print(f"{section} {kind} {key} = {value}: {wrong}", flush=True)
-print(f"{sum(codes.values())} scenes, exit codes {dict(sorted(codes.items()))}, {failed} wrong")
-sys.exit(1 if failed else 0)
+    print(f"{sum(codes.values())} scenes, exit codes {dict(sorted(codes.items()))}, {failed} wrong")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        make_mesh()
+        sys.exit(main())

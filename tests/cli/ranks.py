@@ -23,7 +23,7 @@ as_drawn = ["--set", "time.start=as given", "--set", "time.step=1e-4", "--set", 
 
 
 def run(*command):
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, timeout=300)
 
 
 def difference(a, b):
