@@ -4,6 +4,9 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <hdf5.h>
+#if H5_VERSION_GE(1, 13, 0)
+#include <H5FDdevelop.h>
+#endif
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -135,6 +138,9 @@ herr_t truncate_driven(H5FD_t* f, hid_t, hbool_t) { return of(f).end_at(of(f).al
 hid_t driver() {
   static const hid_t id = [] {
     static H5FD_class_t c{};
+#if H5_VERSION_GE(1, 13, 0)
+    c.version = H5FD_CLASS_VERSION, c.value = H5FD_class_value_t{H5_VFD_RESERVED + 44};  // of those that nobody registered, up to 511
+#endif
     c.name = "hilo_journal", c.maxaddr = (haddr_t{1} << 62), c.fc_degree = H5F_CLOSE_WEAK;
     c.open = open_driven, c.close = close_driven, c.cmp = compare_driven, c.query = query_driven;
     c.get_eoa = allocated_of, c.set_eoa = allocate_to, c.get_eof = end_of, c.get_handle = handle_of;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Inside of Store: handles of the HDF5 library that close themselves, and what an open file remembers.
 #pragma once
+#define H5_USE_110_API  // what all libraries from 1.10 on share, such as H5Ovisit of five arguments
 #include <hdf5.h>
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 #define OMPI_SKIP_MPICXX 1
 #include <petscksp.h>
 
+#include <cstdint>
 #include <functional>
 
 namespace hilo::petsc {
