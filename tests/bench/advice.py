@@ -265,7 +265,7 @@ class Judge:
         chosen = next(row for row in models if "chosen" in row[2]["choice"])
         best = min((c for c, e, m in models if e <= 1), default=math.nan)
         rigid = next((e for c, e, m in models if m["model"] == "all rigid"), math.nan)
-        linear = next((e for c, e, m in models if m["model"] == "linear " + ", ".join(s.regions)), math.nan)
+        linear = next((e for c, e, m in models if m["model"] in ("linear all", "linear " + ", ".join(s.regions))), math.nan)
         spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         row = (f"{s.name:5} {len(s.regions)}  {chosen[1]:7.2f} {rigid:8.2f} {linear:7.2f}   {chosen[0] / best:5.2f} {chosen[0] / full:6.3f}"
                f" {spent / full:6.2f} {'checked' if advice['checked'] else '       '}  {chosen[2]['model']}")

@@ -17,7 +17,7 @@ Level level_of(std::string_view word, const std::string& where);
 inline Fidelity fidelity(Level l) {
   return l == Level::rigid ? Fidelity::rigid : l == Level::nonlinear ? Fidelity::nonlinear : Fidelity::linear;
 }
-/// "a linear, c nonlinear"; "all rigid" where nothing deforms.
+/// "nonlinear c; linear a", "linear all but frame"; what is not named is rigid.
 std::string label(const Assignment& levels, const std::vector<std::string>& regions);
 
 }  // namespace hilo

@@ -54,7 +54,8 @@ Table regions(const Candidates& all, const Advice& a) {
   return t;
 }
 
-std::vector<const Candidate*> by_cost(const Advice& a) {
+/// The smallest first, in the same order in every call.
+std::vector<const Candidate*> by_unknowns(const Advice& a) {
   auto out = a.tried;
   std::stable_sort(out.begin(), out.end(), [](const Candidate* x, const Candidate* y) {
     return std::tuple(x->unknowns, x->levels, x->end) < std::tuple(y->unknowns, y->levels, y->end);
@@ -64,7 +65,7 @@ std::vector<const Candidate*> by_cost(const Advice& a) {
 
 Table models(const Candidates& all, const Advice& a) {
   Table t{{"model", "choice", "largest in", "run", "error over allowed", "unknowns", "s"}, {}, 4, 4};
-  for (const Candidate* c : by_cost(a)) {
+  for (const Candidate* c : by_unknowns(a)) {
     std::string in = "-";
     const double d = difference(*c, *a.reference, &in);
     if (!c->failure.empty()) in = "does not run: " + c->failure;
@@ -103,12 +104,15 @@ std::string report_json(const Candidates& all, const Advice& a) {
 }
 
 std::string models_csv(const Candidates& all, const Advice& a) {
-  std::string out = "processor time [s],error over allowed,choice,model\n";
-  for (const Candidate* c : by_cost(a)) {
+  std::map<double, std::string> rows;  // by cost
+  for (const Candidate* c : a.tried) {
     const double d = difference(*c, *a.reference);
     if (c != a.reference && std::isfinite(d))
-      out += fmt::format("{:.4g},{:.4g},{},\"{}\"\n", c->cost, d, c == a.chosen ? "chosen" : "other models", label(c->levels, all.names()));
+      rows[c->cost] =
+          fmt::format("{:.4g},{:.4g},{},\"{}\"\n", c->cost, d, c == a.chosen ? "chosen" : "other models", label(c->levels, all.names()));
   }
+  std::string out = "processor time [s],error over allowed,choice,model\n";
+  for (const auto& [cost, row] : rows) out += row;
   return out;
 }
 

@@ -21,8 +21,8 @@ class Search {
 
   Advice found() {
     find_base();
-    find_step();
     find_reference();
+    find_step();
     a_.all_cells = all_.price({cells()});
     tell_plan();
     if (serves(*a_.base))
@@ -31,6 +31,7 @@ class Search {
       climb(a_.base->levels, *a_.reference, sorted([&](size_t r) { return doubt_[r]; }));
     demote();
     choose();
+    check_step();
     return std::move(a_);
   }
 
@@ -45,6 +46,11 @@ class Search {
   Assignment cells() const { return with(Level::nonlinear); }
   bool is_kept(size_t r) const { return o_.kept.contains(r) || a_.kept_rigid.contains(r); }
 
+  /// A run of cells ends where all quantities have their values.
+  Request request(const Assignment& levels) const {
+    const bool cells = std::any_of(levels.begin(), levels.end(), [](Level l) { return l == Level::nonlinear; });
+    return {all_.consistent(levels), 1, cells ? window_ : 0};
+  }
   const Candidate& of(const Request& request) {
     const Candidate& c = all_.of(request);
     if (request.step == 1 && std::find(a_.tried.begin(), a_.tried.end(), &c) == a_.tried.end()) a_.tried.push_back(&c);
@@ -64,7 +70,10 @@ class Search {
     return largest + std::min(a_.doubt, 0.5);
   }
   bool serves(const Candidate& c) const { return &c == a_.reference || error(c) <= 1; }
-  bool too_dear(const Request& next) const { return a_.all_cells > 0 && all_.spent() + all_.price(next) > o_.at_most * a_.all_cells; }
+  bool too_dear(const Request& next, double planned = 0) const {
+    const double step = serves(*a_.base) ? 0 : all_.price({a_.reference->levels, 0.5, window_});  // check_step may want it
+    return all_.spent() + planned + all_.price(next) + step > o_.at_most * a_.all_cells;
+  }
 
   /// The region that a failed run names, and what to do about it: rigid where it has to be one body, else one level more.
   bool mend(const Candidate& c, Assignment& levels) {
@@ -109,14 +118,21 @@ class Search {
     }
     for (const QuantityValue& v : a_.base->values)
       if (!v.why.empty()) throw Error("", v.why, v.of.starts_with("von Mises") ? "output.interval says when fields are there" : "");
-    double last = 0;  // instant that a quantity has its value at, and what a filter sees behind it
+    window_ = window_of(*a_.base);
+  }
+
+  /// Until when a run has to go for the values of a model: the last instant of these, and what a filter sees behind it; 0: to its end.
+  double window_of(const Candidate& c) const {
+    double last = 0;
+    size_t k = 0;
     for (const Entry& q : all_.scene().entries("quantity")) {
       if (q.kind == "frequency") continue;
-      const double t = a_.base->values[n_asked_++].t;
+      const double t = c.values[k++].t;
       last = std::max(last, std::isfinite(t) ? 1.1 * t + (q.kind != "injury" && q.has("cfc") ? 1.2 / q.number("cfc") : 0) : HUGE_VAL);
     }
-    const double step = all_.scene().table("time").number("step");
-    if (last < all_.scene().table("time").number("end")) window_ = std::max(10.0, std::ceil(last / step)) * step;
+    const Entry& time = all_.scene().table("time");
+    const double step = time.number("step");
+    return last < time.number("end") ? std::max(10.0, std::ceil(last / step)) * step : 0;
   }
 
   /// The base with all regions nonlinear whose linear strains are in doubt, or that left their range, as far as quantities have their
@@ -139,40 +155,60 @@ class Search {
       levels = all_.consistent(levels);
       return levels != before;
     };
-    while (look(*a_.reference)) {
-      const Request next{levels, 1, window_};
+    bool early = window_ > 0;
+    for (bool more = look(*a_.base); more;) {
+      const Request next = request(levels);
       if (!is_quiet())
         fmt::print(stderr, "linear strains of some regions are in doubt: a run to judge by, to {:.4g} s, takes about {:.2g} s\n",
                    window_ > 0 ? window_ : all_.scene().table("time").number("end"), all_.price(next));
       const Candidate& c = of(next);
-      if (c.failure.empty()) {
-        a_.reference = &c;
+      if (!c.failure.empty()) {
+        warn("", fmt::format("{} does not run, so nothing checks linear strains: {}", label(levels, all_.names()), c.failure));
+        a_.doubt = 1;
+        break;
+      }
+      a_.reference = &c;
+      if (early && difference(*a_.base, c) > 0.5) {  // nor are the instants those of the base
+        early = false, window_ = 0, more = true;
         continue;
       }
-      warn("", fmt::format("{} does not run, so nothing checks linear strains: {}", label(levels, all_.names()), c.failure));
-      a_.doubt = 1;
-      break;
+      if (!early && c.end == 0) window_ = window_of(c);
+      more = look(c);
     }
   }
 
-  /// What a step this long cannot tell no model will: (h, h/2) of the base, by the order of the method.
-  void find_step() {
-    const Candidate& fine = all_.of({a_.base->levels, 0.5, window_});
+  /// Error of the step by (h, h/2) of a model and the order of the method; the largest, over what is allowed.
+  double step_of(const Candidate& c) {
+    const Candidate& fine = all_.of({c.levels, 0.5, window_});
     if (!fine.failure.empty()) throw Error("", "half the step does not run: " + fine.failure, "", Exit::not_converged);
-    for (size_t k = 0; k < n_asked_; ++k) {
-      const QuantityValue& v = a_.base->values[k];
-      const double change = 4. / 3 * (fine.values[k].value - a_.base->values[k].value);
-      a_.step_signed.push_back(change), a_.step.push_back(over(change, v.allowed));
-      if (!(a_.step.back() > most_step)) continue;
-      const Entry& time = all_.scene().table("time");
-      const bool raw = v.of.find(", raw") != std::string::npos;
-      throw Error(
-          time.where("step"),
-          fmt::format("the step alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(change), v.unit, v.name, v.allowed,
-                      v.unit),
-          raw ? "a raw acceleration holds all frequencies: give it a cfc"
-              : fmt::format("time.step = {:.2g}, or a larger tolerance", time.number("step") * std::sqrt(most_step / 2 / a_.step.back())));
+    a_.step.clear(), a_.step_signed.clear();
+    for (size_t k = 0; k < c.values.size(); ++k) {
+      a_.step_signed.push_back(4. / 3 * (fine.values[k].value - c.values[k].value));
+      a_.step.push_back(over(a_.step_signed[k], c.values[k].allowed));
     }
+    return *std::max_element(a_.step.begin(), a_.step.end());
+  }
+  /// What a step this long cannot tell no model will.  Far beyond its range the base may need shorter steps than the reference.
+  void find_step() {
+    if (step_of(*a_.base) > most_step && (a_.reference == a_.base || step_of(*a_.reference) > most_step)) refuse_step();
+  }
+  /// Where the base does not answer as the reference, its steps are no measure of those of cells.
+  void check_step() {
+    if (serves(*a_.base) || a_.chosen == a_.base) return;
+    if (step_of(*a_.chosen) > most_step) refuse_step();
+    if (!serves(*a_.chosen)) a_.chosen = a_.reference;
+    choose();
+  }
+  [[noreturn]] void refuse_step() const {
+    const auto k = static_cast<size_t>(std::max_element(a_.step.begin(), a_.step.end()) - a_.step.begin());
+    const QuantityValue& v = a_.reference->values[k];
+    const Entry& time = all_.scene().table("time");
+    throw Error(time.where("step"),
+                fmt::format("the step alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(a_.step_signed[k]), v.unit, v.name,
+                            v.allowed, v.unit),
+                v.of.find(", raw") != std::string::npos ? "a raw acceleration holds all frequencies: give it a cfc"
+                                                        : fmt::format("time.step = {:.2g}, or a larger tolerance",
+                                                                      time.number("step") * std::sqrt(most_step / 2 / a_.step[k])));
   }
 
   void tell_plan() const {
@@ -208,19 +244,22 @@ class Search {
     const auto head = [&](size_t k) {
       Assignment levels = low;
       for (size_t i = 0; i < k; ++i) levels[order[i]] = high[order[i]];
-      return all_.consistent(levels);
+      return levels;
     };
     size_t least = 0, most = order.size();
     while (least < most && low[order[least]] == Level::rigid && wants_stress(order[least])) ++least;
     a_.chosen = &top;
-    for (size_t k = least; least < most; k = (least + most) / 2) {
-      const Request next{head(k)};
-      if (k > least && too_dear(next)) break;
+    size_t stride = 1;  // small models are cheap: from the start on by 1, 2, 4, ..., then halving
+    for (size_t k = least; least < most;) {
+      const Request next = request(head(k));
+      if (k > 0 && too_dear(next)) break;
       const Candidate& c = of(next);
       if (serves(c))
-        most = k, a_.chosen = &c;
+        most = k, stride = 0, a_.chosen = &c;
       else
         least = k + 1;
+      k = stride > 0 && least + stride - 1 < most ? least + stride - 1 : (least + most) / 2;
+      stride *= 2;
     }
   }
 
@@ -235,11 +274,14 @@ class Search {
     const Assignment from = a_.chosen->levels;
     std::vector<Request> singles;
     std::vector<size_t> which;
+    double planned = 0;  // seconds
     for (const size_t r : by_energy()) {
       if (to(from[r]) == from[r] || (to(from[r]) == Level::rigid && wants_stress(r)) || (large_alone && !all_.is_large(r))) continue;
-      Request single{from};
-      single.levels[r] = to(from[r]), single.levels = all_.consistent(single.levels);
-      if (too_dear(single)) continue;
+      Assignment levels = from;
+      levels[r] = to(from[r]);
+      const Request single = request(levels);
+      if (too_dear(single, planned)) continue;
+      planned += all_.price(single);
       singles.push_back(single), which.push_back(r);
     }
     all_.run(singles);
@@ -252,9 +294,9 @@ class Search {
     std::sort(good.begin(), good.end());
     Assignment now = from;
     const auto take = [&](size_t first, size_t last) {
-      Request next{now};
-      for (size_t i = first; i < last; ++i) next.levels[which[good[i].second]] = singles[good[i].second].levels[which[good[i].second]];
-      next.levels = all_.consistent(next.levels);
+      Assignment levels = now;
+      for (size_t i = first; i < last; ++i) levels[which[good[i].second]] = singles[good[i].second].levels[which[good[i].second]];
+      const Request next = request(levels);
       if (next.levels == now || too_dear(next)) return false;
       const Candidate& c = of(next);
       if (!serves(c)) return false;
@@ -282,7 +324,6 @@ class Search {
   const SearchOptions& o_;
   const size_t n_;
   Advice a_;
-  size_t n_asked_ = 0;
   double window_ = 0;               // in which all quantities have their values, 0: the whole run  [s]
   std::map<size_t, double> doubt_;  // by region, the largest so far, over the tightest tolerance
 };
