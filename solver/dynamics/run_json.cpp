@@ -30,7 +30,7 @@ std::string error_json(const RunParts& run) {
     add("why_not", json_text(e.why().empty() ? "no step was taken" : e.why()));
   }
   if (run.plan.asked > 0) {
-    add("asked", number(run.plan.asked)), add("met", run.plan.unmet.empty() && e.is_there() ? "true" : "false");
+    add("asked", number(run.plan.asked)), add("met", run.report.complete && run.plan.unmet.empty() && e.is_there() ? "true" : "false");
     std::string passes;
     for (const StepPlan::Pass& p : run.plan.passes)
       passes += fmt::format("{}{{\"integrator\": {}, \"steps\": {}, \"end\": {}}}", passes.empty() ? "" : ", ", json_text(p.method),
