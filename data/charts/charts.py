@@ -109,15 +109,15 @@ def measure(name, method):
     floor = max(1e-10 * scene["unit"], 5 * doubt)
     out = f"out/{name}/{slug(method)}"
     end, h = f"time.end={scene['end']}", scene["end"] / scene["steps"]
-    start = min(run(scene, out, m["set"] + [f"time.end={h!r}", f"time.step={h!r}"])[1] for _ in range(3))
+    start = min(run(scene, out, m["set"] + [f"time.end={h!r}", f"time.step={h!r}", 'time.error_estimate="never"'])[1] for _ in range(3))
     rows, last, n, tolerances = [], math.inf, scene["steps"], list(m.get("tolerances", []))
     while True:
         if "tolerances" in m:
             if not tolerances:
                 break
-            sets = m["set"] + [end, f"time.step={h!r}", f"time.tolerance={tolerances.pop(0)}"]
+            sets = m["set"] + [end, f"time.step={h!r}", f"time.tolerance={tolerances.pop(0)}", 'time.error_estimate="never"']
         else:
-            sets = m["set"] + [end, f"time.step={scene['end'] / n!r}", "solver.cuts=0"]
+            sets = m["set"] + [end, f"time.step={scene['end'] / n!r}", "solver.cuts=0", 'time.error_estimate="never"']
         code, seconds, report = run(scene, out, sets)
         if code == 0:
             at = position(scene, out)

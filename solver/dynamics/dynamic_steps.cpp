@@ -6,7 +6,10 @@
 #include <cmath>
 #include <ranges>
 
+#include "dynamics/choose_solver.hpp"
+#include "dynamics/companion.hpp"
 #include "dynamics/contradiction.hpp"
+#include "dynamics/integrator_kinds.hpp"
 #include "dynamics/predictor.hpp"
 #include "dynamics/run_parts.hpp"
 #include "dynamics/singular_start.hpp"
@@ -14,6 +17,9 @@
 
 namespace hilo {
 namespace {
+
+/// Blocks of unknowns of a scene whose error is estimated without being asked.
+constexpr std::int64_t largest_estimated = 300;
 
 class DynamicSteps final : public Steps {
  public:
@@ -23,13 +29,24 @@ class DynamicSteps final : public Steps {
         end_(time_.number("end")),
         step_(time_.has("step") ? time_.number("step") : end_ / 20),
         progress_(run.options.quiet || run.system.comm->rank != 0, 0, end_) {
-    if (time_.has("tolerance")) control_.emplace(run_.system, time_.number("tolerance") * run_.system.length, end_, step_);
+    const StepPlan& plan = run_.plan;
+    if (plan.asked > 0) control_.emplace(run_.system, run_.integrator->order(), plan.now().demand, end_, step_);
+    const std::string& word = time_.text("error_estimate");
+    if (word == "never" || (word == "auto" && !control_ && run_.system.map.n_global > largest_estimated)) {
+      run_.estimate.give_up(word == "never" ? "time.error_estimate has none"
+                                            : "the scene is large, and time.error_estimate does not ask for one");
+      return;
+    }
+    companion_.emplace(
+        run_.system, integrator_kinds().at(plan.now().method, time_.where("integrator")).make(time_),
+        [this] { return choose_solver(run_.scene, run_.system, false); }, run_.newton);
   }
 
   void archive(Archive& a) override {
     std::vector<Event> events = run_.events;
     a("dynamic steps", at_, events);
     if (control_) control_->archive(a);
+    if (companion_) companion_->archive(a);
     const auto same = [](const Event& x, const Event& y) { return x.t == y.t && x.jump == y.jump; };
     if (a.restores() && !std::ranges::equal(events, run_.events, same)) find_place();
   }
@@ -42,14 +59,16 @@ class DynamicSteps final : public Steps {
       if (!at_.begun) {
         if (i == 0 || events[i - 1].jump || run_.integrator->needs_acceleration()) restart();
         if (i == 0) run_.audit->start(run_.state), run_.recorder->first(run_.state, run_.audit->ledger());
+        if (companion_ && !companion_->has_begun() && !run_.redundancy.singular()) companion_->begin(run_.state);
         at_.begun = true, at_.step = at_.done = 0, at_.from = i == 0 ? 0 : events[i - 1].t;
       }
       if (!(control_ ? controlled_steps(to) : equal_steps(at_.from, to))) {
         progress_.done();
         return run_.stop(failure_);
       }
+      if (companion_) companion_->catch_up(run_.state, added(), run_.estimate);
     }
-    run_.figures.estimated = control_ ? control_->sum() : -1;
+    run_.figures.local = control_ && run_.integrator->order() == 2 ? control_->sum() : -1;
     progress_.show(end_, run_.report.steps, iterations_, true);
     progress_.done();
     if (failure_ = run_.audit->verdict(); !failure_.empty()) return run_.stop(failure_);
@@ -78,6 +97,7 @@ class DynamicSteps final : public Steps {
       const std::vector<Active> now = active_rows(system);
       set_rows(system, rows);  // the freedoms of mechanisms are those beside a singular pose
       run_.integrator->keep_time(system);
+      if (companion_) companion_->integrator().keep_time(system);
       set_rows(system, now);
     }
     const size_t clocks = run_.integrator->timed().size();
@@ -115,6 +135,7 @@ class DynamicSteps final : public Steps {
     set_rows(system, rows);
     run_.integrator->restart();
     if (control_) control_->restart(state);
+    if (companion_ && companion_->has_begun()) companion_->restart(state, system.traits().is_driven, 0.05 * step_);
   }
 
   /// Steps of equal length from `from` to `to`, up to a thousandth of one longer than asked for: the times of a table are rounded, and one
@@ -224,6 +245,9 @@ class DynamicSteps final : public Steps {
     return false;
   }
 
+  /// To the error, by steps so far: equal ones add as much as any other.
+  double added() const { return control_ ? control_->added() : run_.state.t; }
+
   /// The step tried last becomes the state, at time t.
   void accept(double t) {
     State& state = run_.state;
@@ -235,12 +259,17 @@ class DynamicSteps final : public Steps {
                         run_.integrator->velocity());
     run_.system.settle(true);
     ++run_.report.steps;
+    if (companion_ && companion_->has_begun())
+      companion_->follow(state, added(), run_.estimate);
+    else if (companion_)  // two steps at once may leave a singular position by another branch
+      companion_->begin(state);
     progress_.show(t, run_.report.steps, iterations_);
   }
 
   const Entry& time_;
   double end_, step_;                   // of the run, of a step at most [s]
   std::optional<StepControl> control_;  // where the tolerance chooses the steps
+  std::optional<Companion> companion_;  // where the error is estimated
   struct Place {
     size_t event = 0;                   // the one that steps go to
     bool begun = false;                 // from the one before,

@@ -53,6 +53,8 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
   virtual std::string name() const = 0;
+  /// Of the error of positions, where steps resolve the motion.
+  virtual int order() const { return 2; }
   /// Solve a step of length h from s, first guess by `predictor`; s is left alone.  No convergence and no reason: the guess is the one that
   /// was tried last.
   virtual NewtonReport solve(const StepTools& tools, const State& s, double h, Predictor predictor) = 0;

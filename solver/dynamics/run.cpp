@@ -52,20 +52,51 @@ class Run {
       return why;
     };
     shares_.emplace(run_.system.shares());
-    steps_ = run_.analysis == Analysis::statics ? static_steps(run_, pause)
-             : run_.analysis == Analysis::path  ? path_steps(run_, pause)
-             : run_.analysis == Analysis::modes ? mode_steps(run_, pause)
-                                                : dynamic_steps(run_, pause);
+    Archive fresh;
+    run_.system.archive(fresh);
+    const std::vector<Active> rows = active_rows(run_.system);
     Archive from(options_.from, &*shares_);
-    if (options_.from.empty())
-      prepare();
-    else
-      archive_start(from);
-    run_.audit.emplace(run_.system, run_.energy_unchecked, run_.newton.tolerance);
-    open_recorder();
+    if (!options_.from.empty()) archive_start(from);
+    for (bool goes_on = !options_.from.empty();; goes_on = false) {
+      take_method();
+      steps_ = run_.analysis == Analysis::statics ? static_steps(run_, pause)
+               : run_.analysis == Analysis::path  ? path_steps(run_, pause)
+               : run_.analysis == Analysis::modes ? mode_steps(run_, pause)
+                                                  : dynamic_steps(run_, pause);
+      if (!goes_on) prepare();
+      run_.audit.emplace(run_.system, run_.energy_unchecked, run_.newton.tolerance);
+      open_recorder();
+      if (pass(goes_on ? &from : nullptr)) break;
+      Archive again(fresh.kept());
+      run_.system.archive(again);
+      set_rows(run_.system, rows);
+      run_.report = {}, run_.figures = {}, run_.impulses = {}, run_.estimate = {}, run_.redundancy = {}, run_.state = {};
+      start_state();
+      run_.talk = false;  // the rest was told
+    }
+    return run_.report;
+  }
+
+ private:
+  /// From the start, or on from where it was kept, to the end of a pass; false where another one follows.
+  bool pass(Archive* from) {
     try {
-      if (!options_.from.empty()) go_on(from);
+      if (from) go_on(*from);
       steps_->take();
+      if (run_.analysis == Analysis::dynamic && plan_another(run_.plan, run_.report, run_.state.q, run_.estimate, run_.integrator->order(),
+                                                             run_.system, run_.scene.table("time").number("end"))) {
+        const auto& passes = run_.plan.passes;
+        const StepPlan::Pass &was = passes[passes.size() - 2], &next = passes.back();
+        if (!options_.quiet && run_.system.comm->rank == 0)
+          fmt::print(stderr, "{} steps{}: once more{}\n", was.steps,
+                     run_.report.complete
+                         ? fmt::format(" end with an error of about {:.2g} m, where {:.2g} m are asked", was.error, run_.plan.asked)
+                         : " and no further: " + run_.report.reason,
+                     was.method == next.method ? "" : ", by " + next.method);
+        run_.recorder->give_up();
+        return false;
+      }
+      tell_error();
       {
         const Timed timed(phases().output);
         run_.recorder->finish(run_.report.complete);
@@ -79,10 +110,28 @@ class Run {
       run_.recorder->give_up();
       throw;
     }
-    return run_.report;
+    return true;
   }
 
- private:
+  /// What positions are worth, where that is little, or less than was asked.
+  void tell_error() const {
+    const ErrorEstimate& e = run_.estimate;
+    if (run_.system.comm->rank != 0 || run_.analysis != Analysis::dynamic || run_.report.steps == 0) return;
+    const auto tell = [&](const std::string& what) { warn(run_.scene.path, what); };
+    if (run_.plan.asked > 0 && !e.why().empty() && run_.scene.table("time").text("error_estimate") != "never")
+      return tell("the error at the end is not known, only what steps add to it: " + e.why());
+    if (!e.is_there()) return;
+    if (!run_.plan.unmet.empty()) tell("time.tolerance is not met: " + run_.plan.unmet);
+    if (const double t = e.meaningless_from(); t < run_.report.t && e.is_chaotic())
+      tell(fmt::format(
+          "the motion is chaotic: errors of positions grow exponentially, and from t = {:.3g} s on they are as large as the motion", t));
+    else if (run_.plan.asked == 0 && e.share(e.largest()) > 0.05)
+      tell(fmt::format(
+          "positions are off by about {:.2g} % of the motion at t = {:.3g} s, as a second solution at twice the step tells: take a "
+          "shorter time.step, or time.tolerance",
+          100 * e.share(e.largest()), e.largest_t()));
+  }
+
   bool is_static() const { return run_.analysis == Analysis::statics || run_.analysis == Analysis::path; }
 
   /// What the scene asks for.
@@ -92,20 +141,16 @@ class Run {
     run_.newton.tolerance = newton.number("tolerance");
     run_.newton.max_iterations = static_cast<int>(newton.number("iterations"));
     run_.max_cuts = static_cast<int>(newton.number("cuts"));
-    const bool is_dynamic = run_.analysis == Analysis::dynamic, is_static = this->is_static();
+    const bool is_dynamic = run_.analysis == Analysis::dynamic;
     if (is_dynamic) {
       if (!time.has("end")) throw Error(time.place.text(), "[time] has no end", "a dynamic run needs end, and step or tolerance");
       if (!time.has("step") && !time.has("tolerance"))
         throw Error(time.place.text(), "[time] has no step", "give a step, or a tolerance that chooses it");
     }
     if (system.comm->rank == 0) warn_of_idle_keys(time);
-    const IntegratorKind& method = integrator_kind(time);
-    run_.integrator = method.make(time),
-    run_.energy_unchecked = is_static             ? "a static analysis takes the work of a step with the loads at its end"
-                            : !is_dynamic         ? "an analysis of modes takes no steps"
-                            : method.keeps_energy ? ""
-                                                  : "the method does not keep it";
+    run_.plan = first_plan(run_.scene, system);
     if (is_dynamic) {
+      const IntegratorKind& method = take_method();
       if (const std::string why = method.weakness(time, system); !why.empty() && system.comm->rank == 0)
         warn(time.where("integrator"), run_.integrator->name() + ": " + why);
       if (system.traits().remembers && !method.carries_state) {
@@ -119,10 +164,26 @@ class Run {
       run_.events = events(system, end, step), system.same_time = 1e-9 * step;
       run_.events.push_back({end, false});
     }
-    run_.state.q = system.start;
-    run_.state.v = system.start_velocity;
-    system.prescribe(run_.state.q, 0, is_static && !time.has("end") ? 0 : 1);
+    start_state();
     run_.solver = choose_solver(run_.scene, system, run_.talk);
+  }
+
+  void start_state() {
+    run_.state.q = run_.system.start;
+    run_.state.v = run_.system.start_velocity;
+    run_.system.prescribe(run_.state.q, 0, is_static() && !run_.scene.table("time").has("end") ? 0 : 1);
+  }
+
+  /// The integrator of the pass at work.
+  const IntegratorKind& take_method() {
+    const Entry& time = run_.scene.table("time");
+    const IntegratorKind& method = integrator_kinds().at(run_.plan.now().method, time.where("integrator"));
+    run_.integrator = method.make(time);
+    run_.energy_unchecked = is_static()                          ? "a static analysis takes the work of a step with the loads at its end"
+                            : run_.analysis != Analysis::dynamic ? "an analysis of modes takes no steps"
+                            : method.keeps_energy                ? ""
+                                                                 : "the method does not keep it";
+    return method;
   }
 
   /// Positions that close the joints, and rows that are independent there.
@@ -174,7 +235,7 @@ class Run {
 
   /// The walk through all that the run remembers, in two parts: what the recorder is made from, and the rest.
   void archive_start(Archive& a) {
-    a("start", run_.redundancy, run_.state, run_.report, run_.figures, run_.impulses);
+    a("start", run_.redundancy, run_.state, run_.report, run_.figures, run_.impulses, run_.plan, run_.estimate);
     run_.system.archive(a);
     if (a.restores() && run_.system.traits().searches) run_.follow(run_.system.number());
     double sum = 0;  // NaN: of a node that no rank had

@@ -10,6 +10,38 @@
 
 namespace hilo {
 
+namespace {
+
+/// Of positions, in metres and as a share of the motion.
+std::string error_json(const RunParts& run) {
+  const ErrorEstimate& e = run.estimate;
+  std::string out = "{";
+  const auto add = [&](const char* key, const std::string& value) {
+    out += fmt::format("{}\n    \"{}\": {}", out == "{" ? "" : ",", key, value);
+  };
+  const auto number = [](double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : "null"; };
+  if (e.is_there()) {
+    add("end", number(e.end())), add("end_share", number(e.share(e.end())));
+    add("largest", number(e.largest())), add("largest_t", number(e.largest_t())), add("largest_share", number(e.share(e.largest())));
+    add("motion", number(e.motion()));
+    if (run.figures.local > 0) add("amplification", number(e.end() / run.figures.local));
+    add("chaotic", e.is_chaotic() ? "true" : "false"), add("meaningless_from", number(e.meaningless_from()));
+  } else {
+    add("why_not", json_text(e.why().empty() ? "no step was taken" : e.why()));
+  }
+  if (run.plan.asked > 0) {
+    add("asked", number(run.plan.asked)), add("met", run.report.complete && run.plan.unmet.empty() && e.is_there() ? "true" : "false");
+    std::string passes;
+    for (const StepPlan::Pass& p : run.plan.passes)
+      passes += fmt::format("{}{{\"integrator\": {}, \"steps\": {}, \"end\": {}}}", passes.empty() ? "" : ", ", json_text(p.method),
+                            p.steps, number(p.error));
+    add("passes", "[" + passes + "]");
+  }
+  return out + "\n  }";
+}
+
+}  // namespace
+
 void write_run_json(const RunParts& run, const Profile& profile, double peak_memory) {
   const System& system = run.system;
   const RunReport& report = run.report;
@@ -34,10 +66,8 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   std::string clocks;
   for (const auto& mechanism : run.integrator->timed()) clocks += (clocks.empty() ? "" : ", ") + json_text(mechanism);
   add("clocks", "[" + clocks + "]");
-  if (figures.estimated >= 0) {
-    add("estimated_position_error", fmt::format("{:.6g}", figures.estimated));
-    add("rejected_steps", fmt::format("{}", figures.rejected));
-  }
+  if (run.analysis == Analysis::dynamic) add("error_estimate", error_json(run));
+  if (run.plan.asked > 0) add("rejected_steps", fmt::format("{}", figures.rejected));
   if (!figures.modes.empty()) add("modes", figures.modes);
   if (!figures.path.empty()) add("turns", figures.path);
   if (figures.unstable >= 0) add("unstable_states", fmt::format("{}", figures.unstable));

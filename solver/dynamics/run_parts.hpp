@@ -13,13 +13,14 @@
 #include "dynamics/redundancy.hpp"
 #include "dynamics/run.hpp"
 #include "dynamics/step_control.hpp"
+#include "dynamics/step_plan.hpp"
 
 namespace hilo {
 
 /// What run.json tells beside the report, the audit and the profile.
 struct RunFigures {
   double assembled = 0, projected = 0;  // changes of positions at the start [m], of velocities [m/s]
-  double estimated = -1;                // sum of position errors [m], where the tolerance chooses the steps
+  double local = -1;                    // sum of local position errors [m], where the tolerance chooses steps of a method of second order
   std::string modes;                    // of an analysis of modes, JSON
   std::string path;                     // of one of a path: where it turns, JSON
   long rejected = 0;                    // steps
@@ -47,6 +48,8 @@ struct RunParts {
   RunReport report = {};
   RunFigures figures = {};
   Impulses impulses = {};
+  StepPlan plan = {};
+  ErrorEstimate estimate = {};
 
   /// The system has another structure: the solver, the state and the integrator follow.
   void follow(const Carry& carry);

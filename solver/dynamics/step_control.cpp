@@ -37,8 +37,8 @@ std::vector<Event> events(const System& system, double end, double step) {
   return merged;
 }
 
-StepControl::StepControl(const System& system, double tolerance, double end, double largest_step)
-    : system_(system), rate_wanted_(tolerance / end), end_(end), largest_(largest_step) {}
+StepControl::StepControl(const System& system, int order, double demand, double end, double largest_step)
+    : system_(system), order_(order), demand_(demand), end_(end), largest_(largest_step) {}
 
 void StepControl::restart(const State& s) {
   t_ = started_ = s.t;
@@ -63,7 +63,8 @@ void StepControl::restart(const State& s) {
     }
   first_third_ = system_.comm->max(top[0]);
   fade_ = first_third_ > 0 ? 1 / -system_.comm->max(top[0] == first_third_ ? -top[1] : -1e300) : 0;
-  const double worst = std::max(system_.comm->max(third), first_third_), wish = worst > 0 ? std::sqrt(12 * rate_wanted_ / worst) : 1e300;
+  const double worst = std::max(system_.comm->max(third), first_third_);
+  const double wish = worst > 0 ? std::pow(12 * demand_ / worst, order_ == 2 ? 1. / 2 : 1. / 3) : 1e300;
   step_ = std::min({wish / 2, largest_, end_ / 200});  // half: forces may grow at once
   for (double back : {2 * step_, step_, 0.0}) {
     Past p{s.t - back, {}};
@@ -101,20 +102,20 @@ double StepControl::error(const Config& q1, double h) const {
 }
 
 bool StepControl::accept(const Config& q1, double h) {
-  const double e = error(q1, h), rate = e / h;
-  const double ratio = rate > 0 ? rate_wanted_ / rate : 1e300;
+  const double e = error(q1, h), seen = order_ == 2 ? e / h : e;
+  const double ratio = seen > 0 ? demand_ / seen : 1e300, power = order_ == 2 ? 1. / 2 : 1. / 3;
   if (ratio < 0.2) {
-    step_ = h * std::max(0.3, 0.9 * std::sqrt(ratio));
+    step_ = h * std::max(0.3, 0.9 * std::pow(ratio, power));
     calm_ = 0;
     return false;
   }
-  sum_ += e;
+  sum_ += e, added_ += std::pow(e / demand_, (order_ + 1) / 3.0);
   t_ += h;
   past_.pop_front();
   past_.push_back({t_, q1});
-  // a smooth sequence of steps keeps the order: exponent 1/3 for 1/2, and a bound on growth, tighter after a cut
+  // a smooth sequence of steps keeps the order: two thirds of the exponent, and a bound on growth, tighter after a cut
   const double most = ++calm_ < 4 ? 1.0 : 1.2;
-  step_ = std::min(largest_, h * std::clamp(0.97 * std::pow(ratio, 1. / 3), 0.6, calm_ < 2 && ratio > 4 ? 1.2 : most));
+  step_ = std::min(largest_, h * std::clamp(0.97 * std::pow(ratio, power * 2 / 3), 0.6, calm_ < 2 && ratio > 4 ? 1.2 : most));
   return true;
 }
 

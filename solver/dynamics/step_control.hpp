@@ -19,13 +19,15 @@ struct Event {
 /// mean over a step is exact anyway.
 std::vector<Event> events(const System& system, double end, double step);
 
-/// Keeps the sum of local position errors e = h^3/2 |q[n+1, n, n-1, n-2]| (third divided difference, largest over all points) at the
-/// tolerance by sharing it out evenly over the run.  Where the third derivative starts at zero, as from rest, it is no measure of the
-/// error in velocity: sqrt(|q''| |q''''|), its like in harmonic motion, stands in for it during the first 1/omega = sqrt(|q''|/|q''''|).
+/// Second order: keeps the sum of local position errors e = h^3/2 |q[n+1, n, n-1, n-2]| (third divided difference, largest over all points)
+/// at the demand by sharing it out evenly over the run.  Higher orders: keeps e itself at the demand, as a measure of how far a step goes
+/// along the motion, so that steps are a smooth function of the motion and errors have leading terms.  Where the third derivative starts at
+/// zero, as from rest, it is no measure of the error in velocity: sqrt(|q''| |q''''|), its like in harmonic motion, stands in for it during
+/// the first 1/omega = sqrt(|q''|/|q''''|).
 class StepControl {
  public:
-  /// tolerance: error of positions allowed over the run [m]; end: length of the run [s].
-  StepControl(const System& system, double tolerance, double end, double largest_step);
+  /// demand: largest e/h [m/s], or of a method of higher order e [m]; end: length of the run [s].
+  StepControl(const System& system, int order, double demand, double end, double largest_step);
   /// Start, or go on after a jump: earlier positions are taken from the state's own derivatives.  Sets the first length.
   void restart(const State& s);
   double step() const { return step_; }
@@ -33,13 +35,15 @@ class StepControl {
   bool accept(const Config& q1, double h);
   /// The step failed.
   void cut(double h);
-  double sum() const { return sum_; }  // of the errors of accepted steps [m]
-  void archive(Archive& a) { a("step control", step_, sum_, calm_, t_, started_, first_third_, fade_, past_); }
+  double sum() const { return sum_; }      // of e of accepted steps [m]
+  double added() const { return added_; }  // in proportion to the sum of their local errors
+  void archive(Archive& a) { a("step control", demand_, step_, sum_, added_, calm_, t_, started_, first_third_, fade_, past_); }
 
  private:
   double error(const Config& q1, double h) const;  // largest over all points [m]
   const System& system_;
-  double rate_wanted_, end_, largest_, step_ = 0, sum_ = 0;
+  int order_;
+  double demand_, end_, largest_, step_ = 0, sum_ = 0, added_ = 0;
   int calm_ = 0;                                             // accepted steps since the last cut
   double t_ = 0, started_ = 0, first_third_ = 0, fade_ = 0;  // stand-in for |q'''| at the start [m/s^3], its time constant [s]
   struct Past {

@@ -12,6 +12,7 @@ Registry<Word>* words_of(std::string_view section, std::string_view key) {
       {{"motion", "components"}, {"component", {{"x"}, {"y"}, {"z"}}}},
       {{"history", "interpolation"}, {"interpolation", {{"linear"}, {"smooth"}, {"smoother"}}}},
       {{"time", "start"}, {"start", {{"as given"}, {"equilibrium"}}}},
+      {{"time", "error_estimate"}, {"word for the error estimate", {{"auto"}, {"always"}, {"never"}}}},
       {{"time", "analysis"}, {"analysis", {{"dynamic"}, {"static"}, {"path"}, {"modes"}}}},
       {{"solver", "kind"},
        {"solver", {{"auto"}, {"light"}, {"klu"}, {"cholesky"}, {"umfpack"}, {"direct"}, {"cg"}, {"iterative"}, {"bddc"}, {"feti-dp"}}}},

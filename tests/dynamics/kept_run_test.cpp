@@ -105,7 +105,7 @@ TEST_P(KeptRuns, GoOnBitByBitWithLinearRegions) {
 
 TEST_P(KeptRuns, GoOnBitByBitWithStepsByTolerance) {
   const Folder folder;
-  expect_goes_on(folder.path(), machine(GetParam() != "gauss"), "", {1, 3, 40, 90},
+  expect_goes_on(folder.path(), machine(GetParam() != "gauss"), "", {1, 3, 20, 45},
                  {method(GetParam()), "time.tolerance=1e-5", "time.end=0.12"});
 }
 

@@ -87,6 +87,17 @@ The audit looks at every step before it is accepted and refuses what fails: the 
 | `finite` | positions, velocities and energies | true |
 
 `energy_balance` is the largest |E - E0 - W + D| over the largest kinetic energy, null where nothing moved but by rounding; `constraint_violation` the largest row of a joint.
+
+`error_estimate`, of runs in time, is what a second solution at twice the step tells of the error of positions: points of bodies and nodes.
+
+| key | meaning |
+|---|---|
+| `end`, `largest`, `largest_t` | error at the end, the largest and when [m, s] |
+| `end_share`, `largest_share`, `motion` | the same over the longest way of a point from its start, and that way [m] |
+| `amplification` | error at the end over the sum of what steps added, where `time.tolerance` chooses steps of energy-momentum: what the motion made of early errors |
+| `chaotic`, `meaningless_from` | whether distances, small beside the motion, grew exponentially; from when on the error is a fifth of the motion and more, or null [s] |
+| `asked`, `met`, `passes` | what `time.tolerance` asks [m], whether it is so by this estimate, and method, steps and error of every pass |
+| `why_not` | why there is no estimate; then the keys above, but for the last row, are absent |
 )";
 
 std::string_view type_word(Type type) {

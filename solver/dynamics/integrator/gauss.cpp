@@ -52,6 +52,7 @@ class GaussIntegrator final : public CoupledStages {
     }
   }
   std::string name() const override { return std::string(Gauss::name); }
+  int order() const override { return 6; }
   std::span<const Taken> taken() const override { return taken_; }
   const Config& acceleration() const override { return a_end_; }
   const Config* velocity() const override { return &v_end_; }

@@ -27,6 +27,7 @@ class RadauIntegrator final : public CoupledStages {
  public:
   explicit RadauIntegrator(std::unique_ptr<SerialKktSolver> solver) : CoupledStages(std::move(solver), radau_tableau()) {}
   std::string name() const override { return std::string(Radau::name); }
+  int order() const override { return 5; }
   std::span<const Taken> taken() const override { return taken_; }
   const Config& acceleration() const override { return a_[2]; }
   double own_time() const override { return 1; }

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run knows of the error of its positions.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace hilo {
+
+struct Config;
+class System;
+
+/// The largest distance of a node, or of a point of a body as far from its centre as its size says, in two configurations [m].  Collective.
+double apart(const System& system, const Config& a, const Config& b);
+
+/// From the distance between two solutions, one of them at twice the step of the other.
+///
+/// Where the leading terms rule, of order p, the distance is 2^p - 1 times the error of the finer one, whatever the motion has made of
+/// early errors on their way [hairner-norsett-wanner, II.4].  A distance that is no small part of the motion is taken for the error itself.
+/// Where it grew exponentially until then the motion is called chaotic, and the error of the finer one goes on growing at that rate.
+class ErrorEstimate {
+ public:
+  /// At time t the solutions are `apart` [m], and the finer one has moved by `moved` since the start [m]; its method is of this order.
+  /// `added`: a measure of what its steps have added to the error until then, without what the motion made of it.
+  void look(double t, double apart, double moved, int order, double added);
+  /// The coarser one could not take its step and took those of the finer one: there the distance says nothing.
+  void split() { ++splits_; }
+  int splits() const { return splits_; }
+  /// There is none from here on, for this reason.
+  void give_up(const std::string& why) { why_ = why; }
+  const std::string& why() const { return why_; }
+  bool is_there() const { return why_.empty() && t_ > 0; }
+
+  double end() const { return error(apart_, t_); }  // at the time looked at last [m]
+  double largest() const { return error(most_, most_t_); }
+  double largest_t() const { return most_t_; }
+  double motion() const { return motion_; }  // the longest way of a point from its start [m]
+  /// Of the motion, where anything moves.
+  double share(double error) const { return motion_ > 0 ? error / motion_ : 0; }
+  /// Whether the motion made distances, small beside it, grow exponentially.
+  bool is_chaotic() const { return growth() > 0; }
+  /// Time after which positions mean nothing, the error being a fifth of the motion; infinite where there is none.
+  double meaningless_from() const;
+  void archive(class Archive& a);
+
+ private:
+  struct Sample {
+    double t, most, added;  // largest distance until then
+  };
+  double error(double apart, double t) const;
+  double growth() const;   // e-foldings a second, or 0
+  double trusted() const;  // until then distances are small beside the motion [s]
+  double grown(double t) const;
+  int order_ = 99, splits_ = 0;
+  double t_ = 0, apart_ = 0, most_ = 0, most_t_ = 0, motion_ = 0, spacing_ = 0;
+  std::vector<Sample> samples_;
+  std::string why_ = "";
+};
+
+}  // namespace hilo

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/step_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/run.hpp"
+#include "model/integrators.hpp"
+#include "system/springs.hpp"
+
+namespace hilo {
+namespace {
+
+constexpr double aim = 0.5, most = 1.4;  // of what is asked: error that a pass aims at, and that is good enough
+constexpr double most_before = 3;       // the same before the end
+constexpr size_t most_passes = 8;
+constexpr double steep = 64,
+                 steepest = 1000;     // by which a demand falls at most, where an error is no small part of the motion, and where it is
+constexpr double loose = 1e-4;        // of the length: where a method may be chosen, a first pass asks no less
+constexpr double many_steps = 5000;   // of second order: gauss is tried first
+constexpr double most_steps = 100;    // of a pass, over those of the first by the same method
+constexpr double least_share = 1e-7;  // of the length: demands of methods above second order below it ask for round-off
+
+/// Gauss is for rigid bodies here, serial.  Forces with kinks spoil any order above the second, and so do its dampers, which see the mean
+/// rate of a step.
+bool gauss_serves(const System& system) {
+  if (system.comm->size > 1 || system.traits().deforms || system.map.n_global > 1000) return false;
+  return std::ranges::all_of(system.part<Springs>().list, [](const Spring& c) { return c.law->conserves(); });
+}
+
+/// A demand to begin with.  Second order: the sum of local errors is what is asked.  Higher orders: a coarse one, since what the next pass
+/// takes is many times dearer; a hundred-thousandth of the length in steps of .7 rad.
+double first_demand(double asked, int order, double length, double end) {
+  if (order == 2) return asked / end;
+  return 0.02 * length * std::min(1.0, std::pow(asked / length / 1e-5, 3.0 / order));
+}
+
+}  // namespace
+
+StepPlan first_plan(const Scene& scene, const System& system) {
+  const Entry& time = scene.table("time");
+  StepPlan plan;
+  const std::string& method = time.text("integrator");
+  if (time.text("analysis") == "dynamic" && time.has("tolerance")) {
+    plan.asked = time.number("tolerance") * system.length;
+    plan.chooses_method =
+        !time.given("integrator") && !time.given("dissipation") && time.text("error_estimate") != "never" && gauss_serves(system);
+    const int order = method == Gauss::name ? 6 : method == Radau::name ? 5 : 2;
+    const double first = plan.chooses_method ? std::max(plan.asked, loose * system.length) : plan.asked;
+    plan.passes.push_back({method, first_demand(first, order, system.length, time.number("end"))});
+  } else {
+    plan.passes.push_back({method});
+  }
+  return plan;
+}
+
+bool plan_another(StepPlan& plan, const RunReport& report, const Config& q, const ErrorEstimate& estimate, int order, const System& system,
+                  double end) {
+  StepPlan::Pass& now = plan.passes.back();
+  now.error = estimate.end(), now.steps = report.steps;
+  if (plan.asked == 0 || report.stopped) return false;
+  const double power = order == 2 ? 1 : order / 3.0;  // of the demand, to which the error falls
+  const StepPlan::Pass *first = &now, *before = nullptr, *second_order = nullptr;
+  int by_method = 1;
+  for (const StepPlan::Pass& p : plan.passes) {
+    if (&p == &now) break;
+    if (p.method == now.method) before = &p, first = by_method++ == 1 ? &p : first;
+    if (p.method == EnergyMomentum::name) second_order = &p;
+  }
+  const double changed = before ? apart(system, q, plan.end) : 0;
+  plan.end = q;
+  const auto says = [&](const std::string& why) { return plan.unmet = why, false; };
+  const auto again = [&](const std::string& method, double demand) {
+    plan.passes.push_back({method, demand});
+    return true;
+  };
+  /// By energy-momentum, where another method was chosen that does not serve.
+  const auto fall_back = [&](const std::string& why) {
+    if (!plan.chooses_method || order == 2) return says(why);
+    plan.chooses_method = false;
+    const double known = second_order ? second_order->demand * aim * plan.asked / second_order->error : 0;
+    return again(std::string(EnergyMomentum::name), known > 0 ? known : first_demand(plan.asked, 2, system.length, end));
+  };
+  if (!report.complete) return order > 2 && fall_back("");
+  if (plan.passes.size() >= most_passes) return says(fmt::format("it is not met in {} passes", plan.passes.size()));
+
+  // The leading term of a high order rules late: two passes tell whether their estimates hold.
+  const bool holds = order == 2 ? estimate.is_there()
+                                : estimate.is_there() && estimate.splits() == 0 && before && changed <= 2 * (before->error + now.error);
+  const bool is_met = now.error <= most * plan.asked && estimate.largest() <= most_before * plan.asked;
+  if (!holds) {
+    if (by_method > 3)
+      return fall_back("the error is not known: " + (estimate.is_there() ? "passes do not agree with it" : estimate.why()));
+    return again(now.method, now.demand * (is_met && estimate.is_there() && estimate.splits() == 0 && !before ? 0.35 : 0.1));
+  }
+  if (is_met) return false;
+  double seen = power;
+  if (before && before->error > 0)
+    seen = std::clamp(std::log(before->error / now.error) / std::log(before->demand / now.demand), power / 2, power);
+  double less = std::pow(aim * plan.asked / std::max(now.error, estimate.largest() / most_before), 1 / seen);
+  less = std::max(less, 1 / (estimate.share(now.error) > 0.05 ? steep : steepest));
+  const double demand = less * now.demand, steps = static_cast<double>(now.steps) * std::pow(less, order == 2 ? -1. / 2 : -1. / 3);
+  const std::string lack = fmt::format("{:.3g} m at the end where {:.3g} m are asked", now.error, plan.asked);
+  if (order > 2 && demand < least_share * system.length) return fall_back(lack + ": steps as short as that are lost in round-off");
+  const bool knows_gauss = std::ranges::any_of(plan.passes, [](const StepPlan::Pass& p) { return p.method == Gauss::name; });
+  if (order == 2 && plan.chooses_method && !knows_gauss && steps > many_steps)
+    return again(std::string(Gauss::name), first_demand(plan.asked, 6, system.length, end));
+  if (steps > most_steps * static_cast<double>(first->steps))
+    return says(fmt::format("{}: that would take about {:.2g} steps instead of {}", lack, steps, now.steps));
+  return again(now.method, demand);
+}
+
+}  // namespace hilo
