@@ -236,6 +236,13 @@ std::vector<KindSchema> make() {
          "the largest von Mises stress, acceleration and displacement of each node over all steps, with their times, at the end of the "
          "run"},
         {"precision", text, "", "double", "double or single"}}});
+  s.push_back({"left_out",
+               "",
+               "what hilo-import did not carry over from a deck: told before a run, which is refused where it would be of another model",
+               {{"card", text, "", "!", "what the deck says"},
+                {"loss", text, "", "other", "what the model lacks by it: load, support, tie, material or other"},
+                {"count", number, "", "1", "how often", at_least(1)},
+                {"place", text, "", "", "file and line of the first"}}});
   for (const auto& [section, key] : {std::pair{"solver", "kind"}, {"output", "fields"}}) words_of(section, key)->close();
   return s;
 }

@@ -86,6 +86,7 @@ and refuses what fails (the step is cut; a run that cannot pass ends with exit 3
 | `finite` | positions, velocities and energies | true |
 
 `energy_balance` is the largest |E - E0 - W + D| over the largest kinetic energy, null where nothing moved but by rounding; `constraint_violation` the largest row of a joint.
+`left_out` lists what import did not carry over from a deck, as the scene's `[[left_out]]` say it.
 )";
 
 std::string_view type_word(Type type) {
