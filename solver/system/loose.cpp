@@ -14,7 +14,6 @@
 #include <bit>
 #include <cmath>
 
-#include "system/loads.hpp"
 #include "system/rigid_motion.hpp"
 #include "system/solids.hpp"
 #include "system/system.hpp"
@@ -47,7 +46,7 @@ class Resistance final : public KktSolver {
       if (b < system_.first_joint_block() && std::find(parts.begin(), parts.end(), blocks_[b].part) == parts.end())
         parts.push_back(blocks_[b].part);
     }
-    if (parts.empty() || (within && inside && parts.size() == 1)) return;
+    if (parts.empty() || (inside && parts.size() == 1 && n > 1)) return;  // a point alone is held from outside
     const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> K(dense, 3 * n, 3 * n);
     Eigen::MatrixXd V = Eigen::MatrixXd::Zero(3 * n, 6 * static_cast<Eigen::Index>(parts.size()));
     for (int i = 0; i < n; ++i)
@@ -77,8 +76,7 @@ class Resistance final : public KktSolver {
   void sum_shared(std::span<double>) override {}
   SolveReport solve(std::span<const double>, std::span<double>, double) override { return {}; }
   std::string name() const override { return "resistance"; }
-  int n_clusters = 0;   // parts of nodes; bodies follow
-  bool within = false;  // what is evaluated acts between points of a part: cells, pressures
+  int n_clusters = 0;  // parts of nodes; bodies follow
 
  private:
   const System& system_;
@@ -176,10 +174,7 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
   Residual unused;
   unused.r.assign(3 * n_blocks(), 0.0);
   Pass p{stage, lambda, unused, &resistance, node, body, 1, with_loads};
-  for (const auto& contribution : parts_) {
-    resistance.within = contribution.get() == &solids || contribution.get() == &part<Loads>();
-    contribution->evaluate(p);
-  }
+  for (const auto& contribution : parts_) contribution->evaluate(p);
 
   std::vector<std::vector<std::int64_t>> tell(comm->size);
   for (auto& list : tell)

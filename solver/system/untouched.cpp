@@ -10,17 +10,13 @@
 #include <numeric>
 #include <set>
 
-#include "system/bodies.hpp"
-#include "system/linear_regions.hpp"
 #include "system/loads.hpp"
-#include "system/point_masses.hpp"
 #include "system/solids.hpp"
-#include "system/welds.hpp"
 
 namespace hilo {
 namespace {
 
-/// Clusters of cells, then the bodies; those that cells or welds join are one piece.
+/// Clusters of cells, then the bodies; those that cells join are one piece.
 class Pieces {
  public:
   explicit Pieces(const System& system) : system_(system) {
@@ -73,21 +69,15 @@ class Pieces {
 class Marks final : public KktSolver {
  public:
   Marks(const System& system, const std::vector<int>& piece_of_block, Pieces& pieces)
-      : system_(system), piece_of_block_(piece_of_block), pieces_(pieces) {}
-  bool joins = false;  // the blocks are of one piece, rather than reached from outside
+      : system_(system), piece_of_block_(piece_of_block), pieces_(pieces), own_(system.body_clique.begin(), system.body_clique.end()) {
+    for (const Modes& m : system.modes) own_.insert(m.clique);
+  }
   void structure(const Cliques&, const BlockMap&) override {}
   void zero() override {}
   void add(int clique, const double*) override {
-    int first = -1;
-    for (const int b : system_.cliques[clique]) {
-      if (b < 0 || b >= system_.first_joint_block() || piece_of_block_[b] < 0) continue;
-      if (!joins)
-        pieces_.reach(piece_of_block_[b]);
-      else if (first < 0)
-        first = piece_of_block_[b];
-      else
-        pieces_.join(first, piece_of_block_[b]);
-    }
+    if (own_.contains(clique)) return;
+    for (const int b : system_.cliques[clique])
+      if (b >= 0 && b < system_.first_joint_block() && piece_of_block_[b] >= 0) pieces_.reach(piece_of_block_[b]);
   }
   void add_diagonal(int, const double*) override {}
   void sum_shared(std::span<double>) override {}
@@ -98,6 +88,7 @@ class Marks final : public KktSolver {
   const System& system_;
   const std::vector<int>& piece_of_block_;
   Pieces& pieces_;
+  std::set<int> own_;  // of a body alone: its inertia, the stiffness of its modes
 };
 
 /// What is prescribed, pushed, or flies at the start.
@@ -151,10 +142,7 @@ std::vector<std::string> untouched(const System& system) {
   unused.r.assign(3 * system.n_blocks(), 0.0);
   Pass p{stage, lambda, unused, &marks, node, body, 1, true};
   for (const auto& part : system.parts()) {
-    const auto* is = part.get();
-    if (is == &system.part<Solids>()) continue;
-    marks.joins = is == &system.part<Bodies>() || is == &system.part<LinearRegions>() || is == &system.part<PointMasses>() ||
-                  is == &system.part<Welds>();
+    if (part.get() == &system.part<Solids>()) continue;
     part->evaluate(p);
   }
   pieces.agree();
