@@ -17,9 +17,11 @@
 #include "dynamics/wanted.hpp"
 #include "linear/blas_kernels.hpp"
 #include "model/inputs.hpp"
+#include "model/left_out.hpp"
 #include "model/quantity_schema.hpp"
 #include "model/store.hpp"
 #include "post/quantity/quantity.hpp"
+#include "system/untouched.hpp"
 
 namespace hilo {
 namespace {
@@ -27,7 +29,7 @@ namespace {
 struct Options {
   std::string scene, mesh, modes, output = "run.h5", restart, checkpoint, time_limit;
   std::vector<std::string> overrides;
-  bool dry_run = false, explain = false, profile = false, accept = false;
+  bool dry_run = false, explain = false, profile = false, accept = false, accept_left_out = false;
 };
 
 void print_plan(const System& s, bool talk) {
@@ -74,6 +76,7 @@ void solve(int argc, char** argv, Comm& comm) {
       "--restart", o.restart,
       "go on with these results from their last checkpoint; scene, mesh, overrides and --checkpoint are those of that run unless given");
   app->add_flag("--accept", o.accept, "go on from there also with a scene that differs");
+  app->add_flag("--accept-left-out", o.accept_left_out, "run also where import left out a tie, or all loads of a static analysis");
   app->add_option(
       "--checkpoint", o.checkpoint,
       "time between checkpoints (10m), their number of steps (500steps), or none; one stays at the end (default: 15m, until the "
@@ -110,10 +113,12 @@ void solve(int argc, char** argv, Comm& comm) {
 
   const Scene scene = from && o.scene == "-" ? Scene::parse(from->scene, "-", o.overrides) : Scene::load(o.scene, o.overrides, comm);
   for (const auto& w : scene.warnings) warn("", w);
+  if (comm.rank == 0) tell_left_out(scene);
   if (o.explain) {
     if (comm.rank == 0) fmt::print("{}", scene.explain());
     return;
   }
+  if (!from && !o.accept_left_out) refuse_left_out(scene);
   if (!o.output.ends_with(".h5")) throw Error(o.output, "the results file must end in .h5", "-o run.h5", Exit::usage);
   const auto folder = std::filesystem::path(o.output).parent_path();
   if (!folder.empty() && !std::filesystem::is_directory(folder))
@@ -136,6 +141,8 @@ void solve(int argc, char** argv, Comm& comm) {
   options.provenance.push_back(command_line(argc, argv));
   const auto system = build_system(scene, mesh.get(), comm, {.from = o.modes, .to = "", .provenance = {}});
   print_plan(*system, talk);
+  if (scene.table("time").text("analysis") == "dynamic")  // the others say themselves what is free
+    for (const std::string& part : untouched(*system)) warn("", part + ": nothing holds, moves, loads or touches it");
   if (from) require_same(*from, scene, options.mesh, o.accept), options.from = std::move(from->kept);
   if (o.dry_run) {
     const std::string plan = is_quiet() ? "" : text(wanted(scene, *system));  // on all ranks: sources of fields are collective

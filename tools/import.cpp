@@ -47,6 +47,7 @@ void check(Request& r) {
   if (o.order != 1 && o.order != 2) usage("--order is 1 or 2");
   if (o.merge && *o.merge <= 0) usage("--merge-nodes must be positive");
   if (o.size && *o.size <= 0) usage("--size must be positive");
+  if (o.per_turn && !(*o.per_turn >= 0 && *o.per_turn <= 1000)) usage("--per-turn is from 0 to 1000");
   try {
     to_si("m", o.units);
   } catch (const Error& e) {
@@ -68,15 +69,17 @@ std::string scene_text(const Request& r, const Imported& in) {
   if (!in.mesh.deck_scene.empty()) return text + in.mesh.deck_scene;
   text += "# the file carries no materials, supports or loads.  It names:\n";
   for (const auto& name : in.mesh.all_names()) text += fmt::format("#   {}\n", name);
-  return text;
+  return text + left_out_tables(in);
 }
 
 void talk(const Imported& in) {
-  if (is_quiet()) return;
-  for (const auto& n : in.notes) fmt::print(stderr, "hilo-import: {}\n", n);
-  for (const auto& n : in.not_read)
+  if (!is_quiet())
+    for (const auto& n : in.notes) fmt::print(stderr, "hilo-import: {}\n", n);
+  for (const auto& n : in.not_read) {
+    if (is_quiet() && loss_of(n).empty()) continue;
     fmt::print(stderr, "hilo-import: not read: {} ({}{}{}){}{}{}\n", n.what, n.count, n.place.empty() ? "" : ", ", n.place,
                n.output ? ", a request for output" : "", n.hint.empty() ? "" : "; ", n.hint);
+  }
 }
 
 }  // namespace
@@ -103,6 +106,11 @@ int main(int argc, char** argv) {
     app->add_option("--order", o.order, "2: quadratic cells (linear ones get nodes in the middle of their edges)")->type_name("N");
     app->add_option("--size", o.size, "cell edge when CAD is meshed, at most this when a .geo script is; in the unit of the file")
         ->type_name("H");
+    app->add_option(
+           "--per-turn", o.per_turn,
+           "cells around a full turn of a curved face when CAD is meshed, none finer than an eighth of the size at 12; 0: no finer than "
+           "elsewhere (default: 12, and without --size more where the volume would be off by 1 %)")
+        ->type_name("N");
     app->add_option("--define", r.defines, "parameter of a .geo script, may be repeated")->type_name("NAME=VALUE")->allow_extra_args(false);
     app->add_flag("--trust", o.trust, "a .geo script may run commands, write files, read the environment and files of other folders");
     app->add_flag("--flip", o.flip, "turn cells whose nodes are numbered as in a mirror (negative volume)");

@@ -7,6 +7,7 @@
 #include "base/table.hpp"
 #include "dynamics/profile.hpp"
 #include "dynamics/run_parts.hpp"
+#include "model/left_out.hpp"
 
 namespace hilo {
 
@@ -90,6 +91,7 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
                             p.tangents, p.solves, p.linear_iterations));
   j += profile.json();
   add("peak_memory_bytes", fmt::format("{:.0f}", peak_memory));
+  add("left_out", left_out_json(run.scene));
   add("mesh", json_text(run.options.mesh));
   add("scene", json_text(run.scene.path));
   std::string list;

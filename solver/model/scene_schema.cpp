@@ -242,6 +242,13 @@ std::vector<KindSchema> make() {
         {"precision", text, "", "double", "double or single"}}});
   for (const OwnSection& own : own_sections()) s.push_back({own.name, "", own.meaning, own.keys});
   own_sections().close();
+  s.push_back({"left_out",
+               "",
+               "what hilo-import did not carry over from a deck: told before a run, which is refused where it would be of another model",
+               {{"card", text, "", "!", "what the deck says"},
+                {"loss", text, "", "other", "what the model lacks by it: load, support, tie, material or other"},
+                {"count", number, "", "1", "how often", at_least(1)},
+                {"place", text, "", "", "file and line of the first"}}});
   for (const auto& [section, key] : {std::pair{"solver", "kind"}, {"output", "fields"}}) words_of(section, key)->close();
   return s;
 }

@@ -46,7 +46,7 @@ class Resistance final : public KktSolver {
       if (b < system_.first_joint_block() && std::find(parts.begin(), parts.end(), blocks_[b].part) == parts.end())
         parts.push_back(blocks_[b].part);
     }
-    if (parts.empty() || (inside && parts.size() == 1)) return;
+    if (parts.empty() || (inside && parts.size() == 1 && n > 1)) return;  // a point alone is held from outside
     const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> K(dense, 3 * n, 3 * n);
     Eigen::MatrixXd V = Eigen::MatrixXd::Zero(3 * n, 6 * static_cast<Eigen::Index>(parts.size()));
     for (int i = 0; i < n; ++i)

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // STEP and IGES: units, solids that touch, colours, sets by place, sizes that gmsh cannot mesh.
+#include <numbers>
+
 #include "import/gmsh/cad.hpp"
 #include "import_case.hpp"
 #include "model/scaled_jacobian.hpp"
@@ -172,7 +174,7 @@ TEST_F(ImportCad, SetsByPlaceNameFacesWithoutNames) {
 // Coarse facets of the two spheres cut each other.
 TEST_F(ImportCad, ASizeThatGmshCannotMeshIsReplacedAndThatIsTold) {
   made("Sphere(1) = {0, 0, 0, 10};\nSphere(2) = {0, 0, 0, 8};\nBooleanDifference{ Volume{1}; Delete; }{ Volume{2}; Delete; }\n", "a.step");
-  const Mesh m = imported("a.step", "--size 9");
+  const Mesh m = imported("a.step", "--size 9 --per-turn 0");
   EXPECT_TRUE(said("gmsh cannot mesh it at --size 9 (") && said("): meshed at 0.")) << err;
   const double exact = 4. / 3 * M_PI * (1000 - 512) * 1e-9;
   EXPECT_NEAR(volume(m), exact, 0.15 * exact);
@@ -185,6 +187,26 @@ TEST_F(ImportCad, SliversAreToldWithTheirPlace) {
   for (std::int64_t c = 0; c < m.n_cells(); ++c) worst = std::min(worst, scaled_jacobian(m, c));
   ASSERT_LT(worst, sliver_limit);
   EXPECT_TRUE(said("slivers (scaled Jacobian below 0.05); the flattest, ")) << err;
+}
+
+// 12 cells around leave out more than 1 % of a rod, the default goes on until they do not.
+TEST_F(ImportCad, TheVolumeIsThatOfTheKernelToOnePercentAndTold) {
+  made("Cylinder(1) = {0, 0, 0, 20, 0, 0, 2};\n", "rod.step");
+  const double truth = 20 * std::numbers::pi * 4 * 1e-9;
+  EXPECT_NEAR(volume(imported("rod.step")) / truth, 1, 0.01);
+  EXPECT_TRUE(said("beside the solids of the CAD kernel the mesh has") && said("less volume and") && !said("warning: beside")) << err;
+  EXPECT_LT(volume(imported("rod.step", "--per-turn 0")) / truth, 0.98) << "the fault that was: a polygon of few sides";
+  EXPECT_TRUE(said("warning: beside the solids") && said("would do")) << err;
+  EXPECT_NEAR(volume(imported("rod.step", "--order 2")) / truth, 1, 0.002);
+  made(
+      "Cylinder(1) = {0, 0, 0, 20, 0, 0, 2};\nCylinder(2) = {0, 0, 0, 20, 0, 0, 1};\nBooleanDifference{ Volume{1}; Delete; }{ Volume{2}; "
+      "Delete; }\n",
+      "tube.step");
+  const std::string bore = "--set 'bore=cylinder:at=[0,0,0],axis=[1,0,0],radius=1'";
+  const Mesh m = imported("tube.step", bore + " --per-turn 12 --size 30");
+  std::int64_t ring = 0;
+  for (const auto a : m.nodes_of("bore", "")) ring += std::abs(m.X[a].x()) < 1e-9;
+  EXPECT_GE(ring, 12) << "no hexagon";
 }
 
 }  // namespace

@@ -97,13 +97,36 @@ TEST_F(ImportInpSilent, WhatHasNoPlaceIsTold) {
           held + statics + end);
 }
 
-TEST_F(ImportInpSilent, ATurnOnTheSecondLineOfAnInstanceIsRefused) {
+TEST_F(ImportInpSilent, AnInstanceIsMovedThenTurnedAboutItsAxis) {
   place.write("a.inp", "*PART, NAME=p\n" + bar +
-                           "*END PART\n*ASSEMBLY, NAME=a\n*INSTANCE, NAME=p-1, PART=p\n0., 0., 0.\n0., 0., 0., 0., 1., 0., 90.\n"
+                           "*END PART\n*ASSEMBLY, NAME=a\n*INSTANCE, NAME=p-1, PART=p\n1., 0., 0.\n0., 0., 0., 0., 0., 2., 90.\n"
                            "*END INSTANCE\n*END ASSEMBLY\n");
-  const auto ran = place.run("hilo-import a.inp -o mesh.h5");
-  EXPECT_EQ(ran.exit, 2);
-  EXPECT_NE(ran.err.find("a turned *INSTANCE"), std::string::npos) << ran.err;
+  const Mesh m = imported("a.inp");
+  for (std::int64_t a = 0; a < m.n_nodes(); ++a) {
+    const Vec3 before = m.node_id[a] == 9 ? Vec3(2, 0, 0) : m.node_id[a] == 11 ? Vec3(2, 1, 1) : m.X[a];
+    if (before == m.X[a]) continue;
+    EXPECT_LT((m.X[a] - Vec3(-before.y(), before.x() + 1, before.z())).norm(), 1e-12);  // by 1 along x, about z by a right angle
+  }
+}
+
+TEST_F(ImportInpSilent, ANastranDeckOfThatNameIsReadAsOne) {
+  place.write("a.inp",
+              "SOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\nGRID,4,,0.,0.,1.\nCTETRA,1,1,1,2,3,4\n"
+              "PSOLID,1,1\nMAT1,1,1.+9,,0.3,1000.\nENDDATA\n");
+  EXPECT_NEAR(test::volume(imported("a.inp")), 1. / 6, 1e-12);
+  EXPECT_NE(err.find("is a Nastran deck"), std::string::npos) << err;
+}
+
+TEST_F(ImportInpSilent, TheFirstCauseIsNamed) {
+  const std::string coupling = "*ORIENTATION, NAME=o\n0., 1., 0., -1., 0., 0.\n*COUPLING, REF NODE=100, SURFACE=end, CONSTRAINT NAME=c, ";
+  EXPECT_NE(scene(bar + coupling + "ORIENTATION=o\n*KINEMATIC\n1, 6\n" + held + statics + "*CLOAD\n100, 1, 7.\n" + end)
+                .find("kind = \"fixed\"\nname = \"node_100\""),
+            std::string::npos)
+      << "axes say nothing where all components are tied";
+  expect_told("*COUPLING, INFLUENCERADIUS=2.", bar + coupling + "INFLUENCE RADIUS=2.\n*DISTRIBUTING\n1, 6\n" + held + statics + end);
+  std::string metal = bar + held + statics + end;
+  metal.insert(metal.find("*DENSITY"), "*PLASTIC, HARDENING=JOHNSON COOK\n175., 380., .32, .55, 1220., 298.\n");
+  expect_told("*PLASTIC, HARDENING=JOHNSONCOOK", metal);
 }
 
 }  // namespace

@@ -126,11 +126,21 @@ void check_cells(const Mesh& m, const std::string& file) {
     throw Error(
         file,
         fmt::format("{} of {} cells are inverted (scaled Jacobian <= 0 at a corner): {}", inverted.size(), m.n_cells(), first_of(inverted)),
-        static_cast<std::int64_t>(inverted.size()) == m.n_cells() ? "all of them: --flip turns cells that are numbered as in a mirror"
-                                                                  : "repair or remesh them");
+        "repair or remesh them; --flip turns cells that are numbered as in a mirror");
 }
 
 namespace {
+
+/// Every solid cell is numbered as in a mirror: the deck's way, not cells gone bad.
+bool is_mirrored(const Mesh& m) {
+  bool any = false;
+  for (std::int64_t c = 0; c < m.n_cells(); ++c)
+    if (info(m.shape[c]).dimension == 3) {
+      if (!(quality(m, c).volume < 0)) return false;
+      any = true;
+    }
+  return any;
+}
 
 /// Cells that pass and are nearly flat all the same: each region's, with the place of the worst.
 void tell_slivers(Imported& in) {
@@ -178,7 +188,8 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
     in.notes.push_back(fmt::format("{} nodes merged with one nearer than {:g}", gone, *options.merge));
   }
   if (const auto gone = drop_unused(in)) in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped", gone));
-  if (options.flip) in.notes.push_back(fmt::format("{} of {} cells were numbered as in a mirror: turned", flip(m), m.n_cells()));
+  if (options.flip || is_mirrored(m))
+    in.notes.push_back(fmt::format("{} of {} cells were numbered as in a mirror: turned", flip(m), m.n_cells()));
   if (options.order == 2) raise_order(in);
   add_placed_sets(in, options.sets);
   const double factor = options.scale * in.metre.value_or(to_si("m", options.units));
@@ -194,6 +205,8 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
       in.notes.push_back(
           fmt::format("region \"{}\" has shells or beams, of which there is no element: it can be rigid alone", m.region_name[r]));
   tell_slivers(in);
+  tell_untouched(in);
+  if (!m.deck_scene.empty()) m.deck_scene += left_out_tables(in);
   for (size_t r = 0; r < m.region_name.size(); ++r) {
     auto& data = m.region_data[r];
     data.density *= to_si("kg/m^3", options.units);

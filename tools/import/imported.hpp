@@ -25,6 +25,7 @@ struct ImportOptions {
   int order = 1;                                       // 2: quadratic cells
   std::optional<double> merge;                         // distance below which nodes are one        [unit of the file]
   std::optional<double> size;                          // largest edge when a geometry is meshed    [unit of the file]
+  std::optional<double> per_turn;                      // cells around a full turn of a curved face when CAD is meshed
   std::vector<std::string> regions;                    // element sets that become regions, before what the deck says
   std::string rest;                                    // name of the region of cells in no region ("": "rest")
   std::vector<std::pair<std::string, double>> define;  // parameters of a .geo script
@@ -55,6 +56,13 @@ struct Imported {
 
   void skip(const std::string& what, const std::string& place, std::int64_t count = 1, bool output = false, const std::string& hint = "");
 };
+
+/// What the model lacks by it: "load", "support", "tie", "material", "other", or "" where nothing is lost.
+std::string_view loss_of(const NotRead& n);
+/// Notes the solids that share no node with another and that no line of the deck's scene acts on.
+void tell_untouched(Imported& in);
+/// The [[left_out]] of a scene.
+std::string left_out_tables(const Imported& in);
 
 /// A named group of cells; `tag` is its number in the file.
 struct CellGroup {

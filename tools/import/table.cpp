@@ -122,8 +122,9 @@ std::string import_json(const Imported& in, const std::string& file, const std::
   for (size_t i = 0; i < in.notes.size(); ++i) s += fmt::format("{}\n    {}", i ? "," : "", json_text(in.notes[i]));
   s += "\n  ],\n  \"not_read\": [";
   for (size_t i = 0; i < in.not_read.size(); ++i)
-    s += fmt::format("{}\n    {{\"what\": {}, \"count\": {}, \"place\": {}, \"output\": {}}}", i ? "," : "", json_text(in.not_read[i].what),
-                     in.not_read[i].count, json_text(in.not_read[i].place), in.not_read[i].output);
+    s += fmt::format("{}\n    {{\"what\": {}, \"count\": {}, \"place\": {}, \"output\": {}, \"loss\": {}}}", i ? "," : "",
+                     json_text(in.not_read[i].what), in.not_read[i].count, json_text(in.not_read[i].place), in.not_read[i].output,
+                     json_text(loss_of(in.not_read[i])));
   return s + "\n  ]\n}\n";
 }
 

@@ -30,7 +30,7 @@ const Kind* kind_of(int id) {
   static const std::vector<Kind> kinds = {
       {11, 1, Shape::bar2, line, 2},
       {21, 1, Shape::bar2, line, 2},
-      {22, 1, Shape::bar2, line, 2},
+      {22, 1, Shape::bar2, line3, 3},
       {24, 1, Shape::bar2, line3, 3},
       {41, 2, Shape::bar2, tri, 3},
       {91, 2, Shape::bar2, tri, 3},

@@ -98,6 +98,7 @@ The audit looks at every step before it is accepted and refuses what fails: the 
 | `chaotic`, `meaningless_from` | whether distances, small beside the motion, grew exponentially; from when on the error is a fifth of the motion and more, or null [s] |
 | `asked`, `met`, `passes` | what `time.tolerance` asks [m], whether it is so by this estimate, and method, steps and error of every pass |
 | `why_not` | why there is no estimate; then the keys above, but for the last row, are absent |
+`left_out` lists what import did not carry over from a deck, as the scene's `[[left_out]]` say it.
 )";
 
 std::string_view type_word(Type type) {

@@ -10,6 +10,7 @@ namespace hilo {
 unsigned components(const DataLine& d, size_t field) {
   unsigned bits = 0;
   for (const char c : d.text(field)) {
+    if (c == ' ') continue;
     if (c < '0' || c > '6') throw Error(d.place(field), fmt::format("expected components such as 123, found \"{}\"", d.text(field)));
     if (c != '0') bits |= 1u << (c - '1');
   }

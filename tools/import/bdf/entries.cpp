@@ -59,10 +59,10 @@ std::string_view bare(std::string_view label) {
   if (!label.empty() && (label.front() == '+' || label.front() == '*')) label.remove_prefix(1);
   return label;
 }
-/// Columns 2 to 8 of a continuation are columns 74 to 80 of the line it belongs to, whatever stands before them.
+/// Columns 2 to 8 of a continuation are columns 74 to 80 of the line it belongs to, whatever stands in column 73; the case does not count.
 bool same_label(std::string_view parent, std::string_view child) {
-  const auto p = bare(parent), c = bare(child);
-  return p.empty() || c.empty() || p == c || p.substr(1) == c;
+  const std::string p = upper(bare(parent)), c = upper(bare(child));
+  return p.empty() || c.empty() || p == c || p.substr(1) == c || upper(parent) == c;
 }
 
 }  // namespace

@@ -42,6 +42,11 @@ void read_mat1(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   else
     deck.without_density[d.integer(0)] = d.place();
   if (m.E <= 0) throw Error(d.place(1), fmt::format("MAT1 {}: Young's modulus {:g} is not positive", d.integer(0), m.E));
+  if (!nu && (m.nu <= -1 || m.nu >= 0.5)) {  // of bars, whose torsion has a modulus of its own
+    in.notes.push_back(
+        fmt::format("{}: E/(2 G) - 1 = {:.3g} of MAT1 {} is no Poisson's ratio: it has none", d.place(2), m.nu, d.integer(0)));
+    m.nu = RegionData{}.nu;
+  }
   if (m.nu <= -1 || m.nu >= 0.5)
     throw Error(d.place(3), fmt::format("MAT1 {}: Poisson's ratio {:g} is not in (-1, 0.5)", d.integer(0), m.nu));
   if (m.density <= 0) throw Error(d.place(4), fmt::format("MAT1 {}: density {:g} is not positive", d.integer(0), m.density));

@@ -33,10 +33,7 @@ std::string BdfScene::text() {
   if (tables_.empty() && head_.empty()) return "";
   std::string s = "units = \"m-kg-s\"\n";
   if (!deck_.chosen.title.empty()) s = fmt::format("title = {}\n", toml_text(deck_.chosen.title)) + s;
-  s += head_ + tables_;
-  for (const auto& n : in_.not_read)
-    if (!n.output) s += fmt::format("# not read: {} ({}, {})\n", n.what, n.count, n.place);
-  return s;
+  return s + head_ + tables_;
 }
 
 std::string BdfScene::unique(const std::string& section, const std::string& wish) {

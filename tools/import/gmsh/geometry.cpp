@@ -6,6 +6,8 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <new>
@@ -21,6 +23,8 @@
 
 namespace hilo {
 namespace {
+
+constexpr double usual_per_turn = 12, most_off = 0.01;
 
 constexpr const char* wrong_syntax = "OpenCASCADE finds wrong syntax in it";
 
@@ -49,13 +53,15 @@ void open(const std::string& path, const std::string& format, const ImportOption
     gmsh::merge(path);
   } else {
     gmsh::vectorpair made;
-    gmsh::option::setString("Geometry.OCCTargetUnit", "MM");
+    if (format == "step") gmsh::option::setString("Geometry.OCCTargetUnit", "MM");  // of IGES it is refused, which comes in mm too
+    if (format == "iges")                                                           // faces side by side, of which a solid is to be made
+      gmsh::option::setNumber("Geometry.OCCSewFaces", 1), gmsh::option::setNumber("Geometry.OCCMakeSolids", 1);
     gmsh::model::occ::importShapes(path, made, false, format);
     gmsh::model::occ::synchronize();
     mesh.of_solids = true;
     join_touching(o.keep_apart, mesh.coloured, mesh.notes);
   }
-  if (const auto e = GmshSession::last_error(); !e.empty()) throw Error(path, e);
+  if (const auto e = GmshSession::errors(); !e.empty()) throw Error(path, e);
   gmsh::vectorpair volumes, surfaces, bars;
   gmsh::model::getEntities(volumes, 3);
   gmsh::model::getEntities(surfaces, 2);
@@ -76,18 +82,67 @@ void set_size(const std::string& format, double size) {
   if (low > size) gmsh::option::setNumber("Mesh.MeshSizeMin", size);
 }
 
+/// Curved faces finer, by cells around a full turn; but no cell below an eighth of the size at 12 of them, or the smallest fillet would set
+/// the size of all.
+void set_per_turn(double per_turn, const ImportOptions& o, double unit) {
+  if (per_turn == 0) return;
+  std::array<double, 6> b{};
+  gmsh::model::getBoundingBox(-1, -1, b[0], b[1], b[2], b[3], b[4], b[5]);
+  const double by_default = Vec3(b[3] - b[0], b[4] - b[1], b[5] - b[2]).norm() / 10;  // as gmsh takes it
+  const double size = o.size ? std::min(*o.size * unit, by_default) : by_default;
+  gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", per_turn);
+  gmsh::option::setNumber("Mesh.MeshSizeMin", size / 8 * std::min(1.0, usual_per_turn / per_turn));
+}
+
+/// Volume and area of the solids in lengths of `unit`; none of what is not of the CAD kernel.
+std::optional<std::array<double, 2>> size_of_solids(double unit) {
+  std::array<double, 2> sum{};
+  try {
+    gmsh::vectorpair volumes, faces;
+    gmsh::model::getEntities(volumes, 3);
+    gmsh::model::getEntities(faces, 2);
+    for (const auto& [dim, tag] : volumes) {
+      double volume = 0;
+      gmsh::model::occ::getMass(3, tag, volume);
+      if (!(volume > 0)) return std::nullopt;
+      sum[0] += volume;
+    }
+    for (const auto& [dim, tag] : faces) {
+      std::vector<int> up, down;
+      gmsh::model::getAdjacencies(2, tag, up, down);
+      double area = 0;
+      if (up.size() == 1) gmsh::model::occ::getMass(2, tag, area);
+      sum[1] += area;
+    }
+  } catch (...) {  // a script of gmsh's own kernel
+    return std::nullopt;
+  }
+  if (sum[0] == 0) return std::nullopt;
+  return std::array{sum[0] / (unit * unit * unit), sum[1] / (unit * unit)};
+}
+
+/// By how much of the CAD kernel's the volume and area of a mesh are off.
+std::array<double, 2> off(const Imported& in, const std::array<double, 2>& solids) {
+  double volume = 0, area = 0;
+  std::vector<std::int64_t> cells;
+  for (std::int64_t c = 0; c < in.mesh.n_cells(); ++c)
+    if (info(in.mesh.shape[c]).dimension == 3) volume += quality(in.mesh, c).volume, cells.push_back(c);
+  for (const Facet& f : free_facets(in.mesh, cells)) area += facet_area(in.mesh, f).norm();
+  return {volume / solids[0] - 1, area / solids[1] - 1};
+}
+
 /// Meshes what is open; why that failed, or "".
 std::string try_to_mesh(const ImportOptions& o) {
   gmsh::vectorpair volumes;
   gmsh::model::getEntities(volumes, 3);
   try {
     gmsh::model::mesh::generate(volumes.empty() ? 1 : 3);
-    if (const auto e = GmshSession::last_error(); !e.empty()) return e;
+    if (const auto e = GmshSession::errors(); !e.empty()) return e;
     if (o.order == 2 && !volumes.empty()) gmsh::model::mesh::setOrder(2);
   } catch (const std::string& e) {
     return e;
   } catch (int) {
-    return GmshSession::last_error();
+    return GmshSession::errors();
   }
   for (const auto& [dim, tag] : volumes) {
     std::vector<int> types;
@@ -128,6 +183,20 @@ void take_from_library(GmshMesh& mesh) {
   for (const auto& [dim, tag] : groups) gmsh::model::getPhysicalName(dim, tag, mesh.group_name[{dim, tag}]);
 }
 
+/// Of a physical group that has nothing gmsh keeps the name alone.
+void tell_empty_groups(GmshMesh& mesh) {
+  constexpr std::array<const char*, 4> words{"point", "curve", "surface", "volume"};
+  for (int dim = 0; dim < 4; ++dim) {
+    const int behind = std::min(gmsh::model::addPhysicalGroup(dim, {}), 1'000'000);
+    for (int tag = 1; tag < behind; ++tag) {
+      std::string name;
+      if (!mesh.group_name.contains({dim, tag})) gmsh::model::getPhysicalName(dim, tag, name);
+      if (!name.empty())
+        mesh.notes.push_back(fmt::format("warning: {} group \"{}\" is empty: left out", words[static_cast<size_t>(dim)], name));
+    }
+  }
+}
+
 /// What gmsh says of a file is worth nothing where it got no memory: it says that a file cannot be read, or nothing.
 void refuse_at_limit(const std::string& path) {
   rlimit most{};
@@ -142,7 +211,8 @@ void refuse_at_limit(const std::string& path) {
 }
 
 /// The mesh at `factor` of the sizes asked for, or why gmsh cannot make it.
-GmshMesh meshed_at(double factor, std::string& failed, const std::string& path, const std::string& format, const ImportOptions& options) {
+GmshMesh meshed_at(double factor, double per_turn, std::string& failed, const std::string& path, const std::string& format,
+                   const ImportOptions& options) {
   GmshSession session(options);
   try {
     GmshMesh mesh;
@@ -153,6 +223,7 @@ GmshMesh meshed_at(double factor, std::string& failed, const std::string& path, 
       throw Error(path, wrong_syntax);
     }
     if (options.size) set_size(format, *options.size * unit);
+    if (!is_script(format)) set_per_turn(per_turn, options, unit);
     if (factor != 1) gmsh::option::setNumber("Mesh.MeshSizeFactor", factor);
     failed = try_to_mesh(options);
     if (!failed.empty()) {
@@ -160,6 +231,8 @@ GmshMesh meshed_at(double factor, std::string& failed, const std::string& path, 
       return mesh;
     }
     take_from_library(mesh);
+    mesh.solids = size_of_solids(unit);
+    if (is_script(format)) tell_empty_groups(mesh);
     if (mesh.metre)
       for (Vec3& x : mesh.X) x /= unit;
     return mesh;
@@ -174,19 +247,19 @@ GmshMesh meshed_at(double factor, std::string& failed, const std::string& path, 
     throw Error(path, "its counts are damaged");
   } catch (int) {
     refuse_at_limit(path);
-    throw Error(path, "gmsh: " + GmshSession::last_error());
+    throw Error(path, "gmsh: " + GmshSession::errors());
   }
 }
 
 /// The mesh at the sizes asked for; of a CAD file at others where gmsh fails at those, which is told.  Each try begins anew: gmsh refuses
 /// to work after a failure.
-GmshMesh meshed(const std::string& path, const std::string& format, const ImportOptions& options) {
+GmshMesh meshed(const std::string& path, const std::string& format, const ImportOptions& options, double per_turn) {
   std::string failed, again;
-  GmshMesh mesh = meshed_at(1, failed, path, format, options);
+  GmshMesh mesh = meshed_at(1, per_turn, failed, path, format, options);
   if (failed.empty()) return mesh;
   if (!is_script(format))
     for (const double factor : {0.7, 0.5, 1.4, 0.35, 0.25}) {
-      mesh = meshed_at(factor, again, path, format, options);
+      mesh = meshed_at(factor, per_turn, again, path, format, options);
       if (!again.empty()) continue;
       mesh.notes.push_back(fmt::format("gmsh cannot mesh it at {} ({}): meshed at {} of that",
                                        options.size ? fmt::format("--size {:g}", *options.size) : "its default size", failed, factor));
@@ -196,20 +269,55 @@ GmshMesh meshed(const std::string& path, const std::string& format, const Import
               "try another --size, or repair the geometry");
 }
 
-Imported read_geometry(const std::string& path, const std::string& format, const ImportOptions& options) {
-  GmshMesh mesh;
-  std::string note;
-  {
-    const CrashGuard guard(path);
-    if (options.trust) {
-      mesh = meshed(path, format, options);
-    } else {
-      if (format == "geo") refuse_commands(path);
-      note = confined([&] { mesh = meshed(path, format, options); });
-    }
+/// What of a mesh is told beside its solids, and what would bring it nearer where it is far.
+void tell_off(Imported& in, const std::array<double, 2>& of, const ImportOptions& o, double per_turn, bool script) {
+  const auto by = [](double x) {
+    return std::abs(x) < 5e-7 ? std::string("as much") : fmt::format("{:.2g} % {}", 100 * std::abs(x), x < 0 ? "less" : "more");
+  };
+  const bool far = std::abs(of[0]) > most_off;
+  std::string would_do;
+  if (far) {
+    const double finer = 0.9 * std::sqrt(most_off / std::abs(of[0]));  // chords leave out what goes with the square of their length
+    if (o.size) would_do = fmt::format("--size {:.2g}", *o.size * finer);
+    if (!script) would_do += fmt::format("{}--per-turn {:.0f}", would_do.empty() ? "" : " or ", std::ceil(std::max(per_turn, 6.0) / finer));
+    if (o.order == 1) would_do += would_do.empty() ? "--order 2" : " or --order 2";
+    if (!would_do.empty()) would_do = "; " + would_do + " would do";
   }
-  Imported in = imported_from(path, mesh, options, options.order == 2);
-  if (!note.empty()) in.notes.push_back(note);
+  in.notes.push_back(fmt::format("{}beside the solids of the CAD kernel the mesh has {} volume and {} area{}", far ? "warning: " : "",
+                                 by(of[0]), by(of[1]), would_do));
+}
+
+Imported read_geometry(const std::string& path, const std::string& format, const ImportOptions& options) {
+  if (format == "geo" && !options.trust) refuse_commands(path);
+  const auto meshed_with = [&](double per_turn, std::optional<std::array<double, 2>>& of) {
+    GmshMesh mesh;
+    std::string note;
+    {
+      const CrashGuard guard(path);
+      const auto mesh_it = [&] { mesh = meshed(path, format, options, per_turn); };
+      if (options.trust)
+        mesh_it();
+      else
+        note = confined(mesh_it);
+    }
+    Imported in = imported_from(path, mesh, options, options.order == 2);
+    if (!note.empty()) in.notes.push_back(note);
+    of.reset();
+    if (mesh.solids) of = off(in, *mesh.solids);
+    return in;
+  };
+  std::optional<std::array<double, 2>> of, finer_of;
+  double per_turn = options.per_turn.value_or(usual_per_turn);
+  Imported in = meshed_with(per_turn, of);
+  const bool free = !is_script(format) && !options.size && !options.per_turn;
+  for (int i = 0; i < 3 && free && of && std::abs((*of)[0]) > most_off; ++i) {
+    const double next = std::min(60.0, std::ceil(per_turn * std::sqrt(std::abs((*of)[0]) / (0.8 * most_off))));
+    if (next <= per_turn) break;
+    Imported finer = meshed_with(next, finer_of);
+    if (!finer_of || std::abs((*finer_of)[0]) > 0.9 * std::abs((*of)[0])) break;  // it is not the curves
+    in = std::move(finer), of = finer_of, per_turn = next;
+  }
+  if (of) tell_off(in, *of, options, per_turn, is_script(format));
   return in;
 }
 

@@ -2,6 +2,7 @@
 // A mesh as gmsh sees one: nodes, and elements by entity (volume, surface, curve, point); physical groups of entities.  Filled by the
 // readers of .msh and .mesh, and from the library where it has meshed a geometry.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -36,6 +37,7 @@ struct GmshMesh {
   bool of_solids = false;
   std::map<std::string, std::vector<int>> coloured;  // volumes by colour
   std::optional<double> metre;                       // the file's unit of length  [m]
+  std::optional<std::array<double, 2>> solids;       // volume and area of the solids, as the CAD kernel has them  [unit of the file]
   std::vector<std::string> notes;
 };
 

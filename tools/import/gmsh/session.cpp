@@ -3,10 +3,12 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmsh.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -91,13 +93,12 @@ std::string GmshSession::printed() {
   return printed_;
 }
 
-std::string GmshSession::last_error() {
-  std::vector<std::string> log;
-  std::string last;
+std::string GmshSession::errors() {
+  std::vector<std::string> log, found;
   gmsh::logger::get(log);
   for (const auto& l : log)
-    if (l.rfind("Error: ", 0) == 0) last = l.substr(7);
-  return last;
+    if (l.starts_with("Error: ") && found.size() < 3 && std::ranges::find(found, l.substr(7)) == found.end()) found.push_back(l.substr(7));
+  return fmt::format("{}", fmt::join(found, "; "));
 }
 
 }  // namespace hilo

@@ -31,8 +31,8 @@ class GmshSession {
   ~GmshSession();
   GmshSession(const GmshSession&) = delete;
   GmshSession& operator=(const GmshSession&) = delete;
-  /// The last line that gmsh marked as an error, "" without one.
-  static std::string last_error();
+  /// The first three lines that gmsh marked as errors, once each; "" without one.
+  static std::string errors();
   /// What was written to stdout so far.
   std::string printed();
 

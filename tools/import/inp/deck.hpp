@@ -89,6 +89,8 @@ struct InpTie {
   std::string name, of, place;  // card, upper-case name of the set or surface
   InpTarget reference, turns;   // turns: the ROT NODE, whose displacements are the reference node's rotations
   bool mean = false, undecided = false;
+  bool own_axes = false;    // of an ORIENTATION, which say something where only some components are tied
+  bool left_out = false;    // told already
   unsigned components = 0;  // bits 0 to 5
 };
 /// *ELEMENT of one or two points: MASS, SPRINGA, SPRING1, DASHPOTA; and the values of *MASS, *SPRING, *DASHPOT.
@@ -162,12 +164,17 @@ struct InpDeck {
   std::map<std::string, InpAmplitude> amplitudes;
   // *ASSEMBLY: its nodes have numbers of their own, and its sets stand beside those of the part that have the same name ("INSTANCE.NAME")
   bool in_assembly = false;
-  std::string instance;                           // as written
+  std::string instance;  // as written
+  struct Placed {
+    Vec3 by = Vec3::Zero(), at = Vec3::Zero();
+    Mat3 turn = Mat3::Identity();
+  } placed;                                       // of the instance
   std::set<std::string> part_nsets, part_elsets;  // upper case
   std::vector<std::string> transformed;           // node sets (upper case) or numbers with axes of their own
   std::string title, procedure;                   // "*STATIC"
   double step_increment = 0, step_end = 0;
-  int n_modes = 0;  // of *FREQUENCY
+  bool direct = false;  // steps of just that increment
+  int n_modes = 0;      // of *FREQUENCY
 };
 
 /// Added to the numbers of nodes of an assembly.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <set>
 
@@ -93,7 +94,7 @@ void thin_sections(const InpDeck& d, Imported& in) {
       const auto c = found->second;
       const bool shell = info(m.shape[c]).dimension == 2, beam = d.beams.contains(id);
       const char* due = shell ? "*SHELL SECTION" : beam ? "*BEAM SECTION" : "*SOLID SECTION";
-      if (s.card != due) throw Error(s.place, fmt::format("{} on element {}", s.card, id), fmt::format("it needs {}", due));
+      if (upper(s.card) != upper(due)) throw Error(s.place, fmt::format("{} on element {}", s.card, id), fmt::format("it needs {}", due));
       if (!shell && !beam) continue;
       ThinSection t;
       t.thickness = s.thickness, t.offset = s.offset, t.area = s.area;
@@ -160,6 +161,21 @@ void region_materials(const InpDeck& d, Imported& in, const std::string& file) {
     }
 }
 
+/// A Nastran deck under the name of an .inp: bulk data, and no keyword with a star before it.
+bool is_nastran(const std::string& path) {
+  const std::string text = read_gz(path, "");
+  bool bulk = false;
+  for (size_t from = 0; from < text.size();) {
+    const size_t end = std::min(text.find('\n', from), text.size());
+    const std::string line = upper(std::string_view(text).substr(from, std::min<size_t>(end - from, 16)));
+    if (line.starts_with("*") && line.size() > 1 && std::isalpha(static_cast<unsigned char>(line[1]))) return false;
+    bulk = bulk || line.starts_with("BEGINBULK") || line.starts_with("GRID,") || line.starts_with("GRID*") ||
+           (line.starts_with("GRID") && line.size() > 4 && std::isdigit(static_cast<unsigned char>(line[4])));
+    from = end + 1;
+  }
+  return bulk;
+}
+
 /// `did you mean *ELASTIC?` where one letter is wrong, missing, too many, or two are swapped.  No farther: most unknown cards are cards
 /// that other programs have.
 std::string slip_of(std::string_view word, const InpCards& cards) {
@@ -194,6 +210,11 @@ void parse_inp(const std::string& path, InpDeck& d, Imported& in, const InpCards
 }
 
 Imported read_inp(const std::string& path, const ImportOptions& options) {
+  if (is_nastran(path)) {
+    Imported in = read_bdf(path, options);
+    in.notes.push_back(path + " is a Nastran deck, and read as one");
+    return in;
+  }
   Imported in;
   InpDeck d;
   parse_inp(path, d, in, inp_cards());

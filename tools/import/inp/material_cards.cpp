@@ -90,6 +90,8 @@ void read_elastic(InpReading& r) {
 
 /// Yield stress by equivalent plastic strain, of the first temperature.
 void read_plastic(InpReading& r) {
+  const std::string hardening = r.card.has("HARDENING") ? r.card.word("HARDENING") : "ISOTROPIC";
+  if (hardening != "ISOTROPIC" && hardening != "KINEMATIC") return no_law(r, material_of(r), "*PLASTIC, HARDENING=" + hardening);
   DataLine l;
   auto& m = material_of(r, l, "yield stress, plastic strain");
   std::vector<double> strain, stress;
@@ -107,9 +109,7 @@ void read_plastic(InpReading& r) {
     if (strain.size() > 1 && !(strain.back() > strain[strain.size() - 2]))
       throw Error(l.place(1), fmt::format("material {}: plastic strain does not rise", m.name));
   } while (r.lines.next_data(l));
-  const std::string hardening = r.card.has("HARDENING") ? r.card.word("HARDENING") : "ISOTROPIC";
   if (const auto odd = unknown_param(r.card, {"HARDENING", "EXTRAPOLATION"}); !odd.empty()) return no_law(r, m, odd);
-  if (hardening != "ISOTROPIC" && hardening != "KINEMATIC") return no_law(r, m, "*PLASTIC, HARDENING=" + hardening);
   if (r.card.has("EXTRAPOLATION") && r.card.word("EXTRAPOLATION") != "CONSTANT") return no_law(r, m, "*PLASTIC, EXTRAPOLATION");
   if (const auto why = set_hardening(m, strain, stress, hardening == "KINEMATIC" ? 1 : 0); !why.empty()) no_law(r, m, "*PLASTIC " + why);
 }

@@ -49,10 +49,7 @@ class Writer {
     if (tables_.empty() && head_.empty()) return "";
     std::string s = "units = \"m-kg-s\"\n";
     if (!d_.title.empty()) s = fmt::format("title = {}\n", quoted(d_.title)) + s;
-    s += head_ + tables_;
-    for (const auto& n : in_.not_read)
-      if (!n.output) s += fmt::format("# not read: {} ({}, {})\n", n.what, n.count, n.place);
-    return s;
+    return s + head_ + tables_;
   }
 
  private:
@@ -138,8 +135,11 @@ class Writer {
       const auto& s = *of_cell[c];
       const auto& mat = d_.laws.at(s.law);
       if (!mat.no_law.empty() || (mat.kind == "stvk" && std::isnan(mat.data.E))) {
-        lines[r] = fmt::format("# region {}: {} has no law here{}, give it one\n", quoted(m.region_name[r]),
-                               mat.name.empty() ? "it" : "material " + quoted(mat.name), mat.no_law.empty() ? "" : " (" + mat.no_law + ")");
+        const std::string why = mat.no_law.empty() ? "no *ELASTIC" : mat.no_law;
+        lines[r] = fmt::format("# region {}: {} has no law here ({}), give it one\n", quoted(m.region_name[r]),
+                               mat.name.empty() ? "it" : "material " + quoted(mat.name), why);
+        in_.skip(fmt::format("*MATERIAL of region {}: no law of hilo ({})", quoted(m.region_name[r]), why), s.place, 1, false,
+                 "give it one in the scene");
         continue;
       }
       used.insert(s.law);
@@ -278,10 +278,14 @@ class Writer {
       if (p.face == 0) {
         const auto s = surface_.find(p.target);
         if (s == surface_.end()) throw Error(p.place, fmt::format("*DSLOAD: no element surface \"{}\"", p.target));
-        if (!s->second.empty()) groups.push_back({"", s->second, p.amplitude, p.place, p.value, {}});
+        if (s->second.empty())
+          in_.skip("*DSLOAD on a surface of no face", p.place);
+        else
+          groups.push_back({"", s->second, p.amplitude, p.place, p.value, {}});
         continue;
       }
       const auto cells = inp_cells(d_, p.target, p.id, p.place);
+      if (cells.empty()) in_.skip("*DLOAD on elements that are no cells", p.place);
       const Group g{p.target.empty() ? std::string() : fmt::format("{}_P{}", d_.elset.at(p.target).name, p.face),
                     "",
                     p.amplitude,
@@ -321,6 +325,24 @@ class Writer {
     }
   }
 
+  /// The step of a dynamic deck.  Where it leaves the step to the program, as without DIRECT, its increment is but the first: a fifth of
+  /// the time in which a wave runs along the model makes 20 steps of its longest wave, and bending is slower.  1000 steps are enough.
+  double dynamic_step(double end) {
+    const double given = d_.step_increment > 0 ? d_.step_increment : end;
+    if (d_.direct) return given;
+    Vec3 low = in_.mesh.X.front(), high = low;
+    for (const Vec3& x : in_.mesh.X) low = low.cwiseMin(x), high = high.cwiseMax(x);
+    double fastest = 0;
+    for (const RegionData& r : in_.mesh.region_data)
+      if (r.E > 0 && r.density > 0) fastest = std::max(fastest, std::sqrt(r.E / r.density));
+    const double wave = fastest > 0 ? (high - low).norm() / fastest / 5 : end / 100;
+    const double step = std::min({given, std::max(wave, end / 1000), end / 20});
+    in_.notes.push_back(fmt::format(
+        "*DYNAMIC without DIRECT: a step of {:g}{}", step * si("s"),
+        wave < step ? " s, in which waves run on: a shorter one, or a tolerance, resolves them" : " s, which resolves the longest wave"));
+    return step;
+  }
+
   void time() {
     const double end = (d_.step_end > 0 ? d_.step_end : 1) * si("s");
     if (d_.procedure == "*STATIC") {
@@ -328,7 +350,7 @@ class Writer {
       if (!wanted_.empty()) tables_ += fmt::format("end = {}\n", num(end));
     } else if (d_.procedure == "*DYNAMIC") {
       tables_ += fmt::format("\n[time]\nend = {}\n", num(end));
-      if (d_.step_increment > 0) tables_ += fmt::format("step = {}\n", num(d_.step_increment * si("s")));
+      tables_ += fmt::format("step = {}\n", num(dynamic_step(d_.step_end > 0 ? d_.step_end : 1) * si("s")));
     } else if (d_.procedure == "*FREQUENCY") {
       tables_ += "\n[time]\nanalysis = \"modes\"\n";
       if (d_.n_modes > 0) tables_ += fmt::format("modes = {}\n", d_.n_modes);

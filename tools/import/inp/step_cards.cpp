@@ -2,7 +2,9 @@
 // The cards of an .inp deck that divide it: heading, parts, steps and what a step computes.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
@@ -30,8 +32,35 @@ void read_instance(InpReading& r) {
   r.deck.in_assembly = false;  // what stands between it and its end is the part's
   DataLine l;
   if (!r.lines.next_data(l)) return;
-  if (Vec3(l.number(0), l.number(1), l.number(2)).norm() > 0) refuse(r, "a moved *INSTANCE");
-  if (l.fields.size() > 3 || r.lines.next_data(l)) refuse(r, "a turned *INSTANCE");
+  InpDeck::Placed& p = r.deck.placed;
+  p.by = Vec3(l.number(0), l.number(1), l.number(2));
+  if (l.fields.size() > 3 || !r.lines.next_data(l)) {
+    if (l.fields.size() > 3) throw Error(l.place(3), "*INSTANCE: three numbers move it, the next line turns it");
+    return;
+  }
+  p.at = Vec3(l.number(0), l.number(1), l.number(2));
+  const Vec3 axis = Vec3(l.number(3), l.number(4), l.number(5)) - p.at;
+  const double angle = l.number(6) * std::numbers::pi / 180;
+  if (!(axis.norm() > 0)) throw Error(l.place(3), "*INSTANCE: the two points of its axis are one");
+  p.turn = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+}
+
+/// What follows is of the assembly.
+void read_assembly(InpReading& r) {
+  r.deck.in_assembly = true;
+  for (const auto& [key, set] : r.deck.nset) r.deck.part_nsets.insert(key);
+  for (const auto& [key, set] : r.deck.elset) r.deck.part_elsets.insert(key);
+}
+
+/// The part as it stands in the assembly: moved, then turned; its directions with it.
+void end_instance(InpReading& r) {
+  InpDeck& d = r.deck;
+  const InpDeck::Placed& p = d.placed;
+  for (size_t a = 0; a < d.X.size(); ++a)
+    if (d.node_id[a] < assembly_numbers) d.X[a] = p.at + p.turn * (d.X[a] + p.by - p.at);
+  for (auto& [name, o] : d.orientations) o.a = p.turn * o.a, o.b = p.turn * o.b;
+  for (InpSection& s : d.sections) s.n1 = p.turn * s.n1;
+  read_assembly(r);
 }
 
 void read_step(InpReading& r) {
@@ -44,7 +73,9 @@ void read_procedure(InpReading& r) {
   r.deck.procedure = r.card.name;
   DataLine l;
   if (r.lines.next_data(l)) r.deck.step_increment = l.number(0), r.deck.step_end = l.number(1);
-  for (const auto& [key, p] : r.card.params) r.skip(fmt::format("{}, {}", r.card.name, key));
+  r.deck.direct = r.card.has("DIRECT") || r.card.has("EXPLICIT");
+  for (const auto& [key, p] : r.card.params)
+    if (key != "DIRECT" && key != "EXPLICIT" && key != "SOLVER") r.skip(fmt::format("{}, {}", r.card.name, key));
 }
 /// How many modes; a band of frequencies is not asked for.
 void read_frequency(InpReading& r) {
@@ -55,12 +86,6 @@ void read_frequency(InpReading& r) {
 void other_procedure(InpReading& r) {
   r.deck.procedure = r.card.name;
   r.skip(r.card.name);
-}
-/// What follows is of the assembly.
-void read_assembly(InpReading& r) {
-  r.deck.in_assembly = true;
-  for (const auto& [key, set] : r.deck.nset) r.deck.part_nsets.insert(key);
-  for (const auto& [key, set] : r.deck.elset) r.deck.part_elsets.insert(key);
 }
 void end_assembly(InpReading& r) { r.deck.in_assembly = false; }
 void nothing(InpReading&) {}
@@ -75,7 +100,7 @@ std::span<const InpCard> inp_step_cards() {
       {"ASSEMBLY", read_assembly},
       {"ENDASSEMBLY", end_assembly},
       {"INSTANCE", read_instance},
-      {"ENDINSTANCE", read_assembly},
+      {"ENDINSTANCE", end_instance},
       {"STEP", read_step},
       {"ENDSTEP", nothing},
       {"STATIC", read_procedure, true},

@@ -28,7 +28,9 @@ void read_coupling(InpReading& r) {
   t.of = upper(r.card.need("SURFACE")), t.kind = InpTie::Of::surface;
   t.reference = target_in(r, "REFNODE");
   t.undecided = true;
-  if (const auto odd = unknown_param(r.card, {"CONSTRAINTNAME", "REFNODE", "SURFACE"}); !odd.empty()) return r.skip(odd);
+  if (const auto odd = unknown_param(r.card, {"CONSTRAINTNAME", "REFNODE", "SURFACE", "ORIENTATION"}); !odd.empty())
+    r.skip(odd), t.left_out = true;
+  t.own_axes = r.card.has("ORIENTATION");
   r.deck.ties.push_back(t);
 }
 void read_coupling_kind(InpReading& r) {

@@ -66,6 +66,7 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
     for (const auto n : p.nodes)
       if (!d.node.contains(n)) d.bodies.try_emplace(n, InpBody{place_of(d, n, p.place), p.place, {}});
   for (const InpTie& t : d.ties) {
+    if (t.left_out) continue;
     const auto ref = node_of(d, t.reference);
     if (t.undecided) {
       in.skip(t.name + " without *KINEMATIC or *DISTRIBUTING", t.place);
@@ -77,7 +78,9 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
     }
     const auto w = members(d, t, in.mesh, surface);
     if (t.mean) {
-      if (d.bodies.contains(ref))
+      if (t.own_axes && (t.components & 7) != 7)
+        in.skip(t.name + ", distributing, of some components in axes of its own", t.place);
+      else if (d.bodies.contains(ref))
         in.skip(t.name + ", distributing, whose node carries springs, masses or rigid bodies", t.place);
       else if (!d.means.try_emplace(ref, InpMean{place_of(d, ref, t.place), w, t.place}).second)
         in.skip(t.name + " of a node that has one already", t.place);

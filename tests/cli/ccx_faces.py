@@ -1,0 +1,81 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Face numbers of solids against CalculiX, run here: one deck for each kind of cell and each of its faces P1 to P6, a cell of irregular shape
+whose nodes stand on springs to the ground, so that the displacements are the forces of the nodes.
+
+  ccx_faces.py REPO BIN
+
+Total force and moment about the origin are compared, in relation to the area of the face; 1e-4 is what the digits printed leave.  CalculiX
+takes pressure on the quadrangles of C3D6 and C3D8R at one point, so that their moments are those of equal forces at the corners: of these kinds
+the force alone says which face it is."""
+import os
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+tools = os.path.abspath(sys.argv[2])
+STIFF, PRESSURE, LIMIT = 1e6, 1.0, 1e-4
+TET = [(0, 0, 0), (1.1, .1, 0), (.2, 1.3, .1), (.1, .2, .9)]
+WEDGE = [(0, 0, 0), (1.1, .1, 0), (.2, 1.3, .1), (.1, 0, 1.2), (1.2, .1, 1.3), (.3, 1.2, 1.1)]
+HEX = [(0, 0, 0), (1.1, .1, 0), (1.2, 1.3, .1), (.1, 1, .05), (.1, 0, 1.2), (1.2, .1, 1.3), (1.3, 1.25, 1.1), (.15, 1.1, 1)]
+EDGES = {4: [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
+         6: [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)],
+         8: [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]}
+KINDS = {"C3D4": (TET, 4), "C3D6": (WEDGE, 5), "C3D8": (HEX, 6), "C3D8R": (HEX, 6), "C3D8I": (HEX, 6), "C3D10": (TET, 4), "C3D15": (WEDGE, 5),
+         "C3D20": (HEX, 6), "C3D20R": (HEX, 6)}
+
+ONE_POINT = ("C3D6", "C3D8R")
+
+
+def points(kind):
+    corners = [np.array(x, float) for x in KINDS[kind][0]]
+    quadratic = kind[3:5] in ("10", "15", "20")
+    return np.array(corners + ([(corners[a] + corners[b]) / 2 for a, b in EDGES[len(corners)]] if quadratic else []))
+
+
+def deck(kind, face, X):
+    numbers = [1] + list(range(1, len(X) + 1))
+    lines = ["*NODE, NSET=ALL"] + [f"{i + 1}, {x[0]:.12g}, {x[1]:.12g}, {x[2]:.12g}" for i, x in enumerate(X)]
+    lines += [f"*ELEMENT, TYPE={kind}, ELSET=E", ", ".join(map(str, numbers[:11])) + ("," if len(numbers) > 11 else "")]
+    lines += [", ".join(map(str, numbers[11:]))] if len(numbers) > 11 else []
+    lines += ["*MATERIAL, NAME=M", "*ELASTIC", "1e4, .3", "*SOLID SECTION, ELSET=E, MATERIAL=M"]
+    for dof in (1, 2, 3):
+        lines += [f"*ELEMENT, TYPE=SPRING1, ELSET=S{dof}"] + [f"{100 * dof + i}, {i + 1}" for i in range(len(X))]
+        lines += [f"*SPRING, ELSET=S{dof}", str(dof), f"{STIFF:.1f}"]
+    return "\n".join(lines + ["*STEP", "*STATIC", "*DLOAD", f"E, P{face}, {PRESSURE:g}", "*NODE PRINT, NSET=ALL", "U", "*END STEP", ""])
+
+
+def run(*command):
+    ran = subprocess.run(command, capture_output=True, text=True)
+    if ran.returncode:
+        sys.exit(f"ccx_faces: {os.path.basename(command[0])} exit {ran.returncode}: {ran.stderr.strip()}")
+
+
+def resultant(X, u):
+    return np.concatenate([STIFF * u.sum(0), STIFF * np.cross(X, u).sum(0)])
+
+
+worst, count = 0.0, 0
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    for kind, (_, n_faces) in KINDS.items():
+        X = points(kind)
+        for face in range(1, n_faces + 1):
+            open("a.inp", "w").write(deck(kind, face, X))
+            run("ccx", "a")
+            theirs = np.array([[float(x) for x in line.split()[1:]] for line in open("a.dat") if len(line.split()) == 4 and line.split()[0].isdigit()])
+            run(tools + "/hilo-import", "--quiet", "a.inp", "-o", "a.h5", "--scene-out", "a.toml")
+            run(tools + "/hilo-solve", "--quiet", "a.toml", "a.h5", "-o", "run.h5")
+            with h5py.File("run.h5") as f:
+                ours = f["field"][sorted(f["field"])[-1]]["displacement"][:]
+            a, b = resultant(X, ours), resultant(X, theirs)
+            if kind in ONE_POINT:
+                a, b = a[:3], b[:3]
+            off = abs(a - b).max() / np.linalg.norm(b[:3])
+            print(f"{kind:<7} P{face}  {b.round(4)}  off {off:.1e}{'' if off < LIMIT else '  DIFFERS'}")
+            worst, count = max(worst, off), count + 1
+print(f"{count} faces, worst {worst:.1e}")
+sys.exit(0 if worst < LIMIT else 1)

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Solids that share no node with another, and that nothing of the deck holds, moves, loads or ties.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "import/imported.hpp"
+#include "model/scene.hpp"
+
+namespace hilo {
+namespace {
+
+/// Cells that share nodes are one piece: the piece of each node.
+std::vector<std::int64_t> pieces_of(const Mesh& m) {
+  std::vector<std::int64_t> parent(m.X.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](std::int64_t a) {
+    while (parent[a] != a) a = parent[a] = parent[parent[a]];
+    return a;
+  };
+  for (std::int64_t c = 0; c < m.n_cells(); ++c)
+    for (const auto a : m.cell(c)) {
+      const auto x = root(m.cell(c)[0]), y = root(a);
+      parent[std::max(x, y)] = std::min(x, y);
+    }
+  for (size_t a = 0; a < parent.size(); ++a) parent[a] = root(static_cast<std::int64_t>(a));
+  return parent;
+}
+
+/// The names that supports, joints, springs, loads and velocities of the scene lines speak of.
+std::set<std::string> names_at_work(const std::string& scene_lines) {
+  std::set<std::string> names;
+  const Scene scene = Scene::parse(scene_lines, "the deck's scene lines");
+  for (const char* section : {"motion", "joint", "spring", "load", "initial"})
+    for (const Entry& e : scene.entries(section))
+      for (const auto& [key, value] : e.values)
+        if (key == "on" || key == "a" || key == "b") names.insert(value.texts.begin(), value.texts.end());
+  return names;
+}
+
+}  // namespace
+
+void tell_untouched(Imported& in) {
+  const Mesh& m = in.mesh;
+  const auto piece = pieces_of(m);
+  std::map<std::int64_t, std::set<std::string>> regions;  // of each piece
+  std::map<std::int64_t, std::int64_t> first;             // cell of each
+  for (std::int64_t c = 0; c < m.n_cells(); ++c) {
+    const auto p = piece[m.cell(c)[0]];
+    regions[p].insert('"' + m.region_name[m.region[c]] + '"');
+    first.try_emplace(p, m.cell_id[c]);
+  }
+  if (regions.size() < 2) return;
+  std::set<std::int64_t> reached;
+  if (!m.deck_scene.empty())
+    for (const std::string& name : names_at_work(m.deck_scene)) {
+      const auto known = m.all_names();
+      if (std::ranges::find(known, name) == known.end()) continue;  // a body, the ground
+      for (const auto a : m.nodes_of(name, "")) reached.insert(piece[a]);
+    }
+  std::vector<std::string> lines;
+  for (const auto& [p, names] : regions)
+    if (!reached.contains(p)) lines.push_back(fmt::format("{} (from cell {} on)", fmt::join(names, ", "), first[p]));
+  if (lines.empty()) return;
+  const size_t shown = std::min<size_t>(lines.size(), 6);
+  in.notes.push_back(fmt::format("{} of {} solids share no node with another{}: {}{}", lines.size(), regions.size(),
+                                 reached.empty() ? "" : ", and nothing of the deck holds, moves, loads or ties them",
+                                 fmt::join(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(shown), "; "),
+                                 lines.size() > shown ? fmt::format(" and {} more", lines.size() - shown) : ""));
+}
+
+}  // namespace hilo
