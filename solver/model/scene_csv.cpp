@@ -2,10 +2,13 @@
 // Load histories of a scene: from the keys t and value, or from a CSV file.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 
+#include "base/spline.hpp"
 #include "base/units.hpp"
 #include "model/scene_read.hpp"
 #include "model/store.hpp"
@@ -183,9 +186,40 @@ History history_of(const Entry& e, const std::string& label, const Surroundings&
   } else {
     return fail("", "neither a file nor t and value", "write file = \"load.csv\", or t = [...] and value = [...]");
   }
-  for (double& v : h.value) v *= e.number("scale");
+  const double scale = e.number("scale");
+  for (double& v : h.value) v *= scale;
   const std::string& ramp = e.text("interpolation");
-  h.ramp = ramp == "smooth" ? Ramp::smooth : ramp == "smoother" ? Ramp::smoother : Ramp::linear;
+  if (ramp == "smooth" || ramp == "smoother") h.ramp = ramp == "smooth" ? Ramp::smooth : Ramp::smoother;
+  const bool spline = ramp == "spline";
+  if (!spline && e.given("ends")) return fail("ends", "ends are those of interpolation = \"spline\"", "");
+  if (!spline && ramp != "monotone") return h;
+  h.ramp = Ramp::cubic;
+  for (size_t i = 1; i < h.t.size(); ++i)
+    if (h.t[i] == h.t[i - 1])
+      return fail("interpolation", fmt::format("the table jumps at t = {:.6g}, which a smooth curve through its points cannot", h.t[i]),
+                  "linear, smooth and smoother take jumps");
+  const std::string& ends = e.text("ends");
+  if (e.has("slopes") && (!spline || ends != "clamped")) return fail("slopes", "slopes are those of ends = \"clamped\"", "");
+  if (spline && ends == "periodic") {
+    const auto [low, high] = std::minmax_element(h.value.begin(), h.value.end());
+    if (h.t.size() < 3) return fail("ends", "a period has three points or more, the last that of the next period", "");
+    if (std::abs(h.value.back() - h.value.front()) > 1e-9 * (*high - *low))
+      return fail("ends", fmt::format("a period begins with {:.9g} and ends with {:.9g}", h.value.front() / scale, h.value.back() / scale),
+                  "the last point is the first of the next period");
+    h.value.back() = h.value.front();
+    h.repeats = true;
+  }
+  std::array<double, 2> slopes{};
+  if (e.has("slopes")) {
+    if (e.numbers("slopes").size() != 2) return fail("slopes", "two slopes: at the first point and at the last", "");
+    for (int i = 0; i < 2; ++i) slopes[i] = scale * e.numbers("slopes")[i];
+  }
+  h.slopes = !spline ? monotone_slopes(h.t, h.value)
+                     : spline_slopes(h.t, h.value,
+                                     ends == "periodic"  ? SplineEnds::periodic
+                                     : ends == "clamped" ? SplineEnds::clamped
+                                                         : SplineEnds::natural,
+                                     slopes[0], slopes[1]);
   return h;
 }
 

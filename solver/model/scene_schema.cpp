@@ -215,7 +215,14 @@ std::vector<KindSchema> make() {
          "be that "
          "of the scene, or stand beside `scale`"},
         {"scale", number, "1", "1", "factor on the values"},
-        {"interpolation", text, "", "linear", "linear, smooth (cosine ramps) or smoother (ramps with three continuous derivatives)"}}});
+        {"interpolation", text, "", "linear",
+         "linear; smooth (cosine ramps) or smoother (ramps with three continuous derivatives), which stand still at every point and "
+         "are for tables of a few: between the points of a dense sine their mean square rate is 23 % too large; spline (cubic, two "
+         "continuous derivatives) or monotone (cubic, one, rises only where the table does) for measured and sampled courses"},
+        {"ends", text, "", "natural",
+         "of a spline: natural (no curvature there), clamped (`slopes`) or periodic (the table is one period, which repeats for ever)"},
+        {"slopes", numbers, "1/s", "",
+         "of a clamped spline: at the first point and at the last, in values by second; [0, 0] when absent"}}});
   s.push_back(time_schema());
   s.push_back({"solver",
                "",

@@ -79,7 +79,7 @@ void check_ends(const Entries& entries, const Entry& time, Warnings& w) {
         for (const auto& [key, v] : e.values) {
           if (!v.history || v.texts.empty() || v.texts[0] != h.name) continue;
           const History& table = *v.history;
-          if (table.value.back() == 0 || table.t.back() >= time.number("end") * (1 - 1e-9)) continue;
+          if (table.repeats || table.value.back() == 0 || table.t.back() >= time.number("end") * (1 - 1e-9)) continue;
           w.add(h, "file",
                 fmt::format("the table ends at {:.4g} s, before the run does at {:.4g} s: its last value, {:.4g}, holds from there on",
                             table.t.back(), time.number("end"), table.value.back()));

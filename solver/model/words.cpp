@@ -10,7 +10,8 @@ namespace hilo {
 Registry<Word>* words_of(std::string_view section, std::string_view key) {
   static std::map<std::pair<std::string_view, std::string_view>, Registry<Word>> lists{
       {{"motion", "components"}, {"component", {{"x"}, {"y"}, {"z"}}}},
-      {{"history", "interpolation"}, {"interpolation", {{"linear"}, {"smooth"}, {"smoother"}}}},
+      {{"history", "interpolation"}, {"interpolation", {{"linear"}, {"smooth"}, {"smoother"}, {"spline"}, {"monotone"}}}},
+      {{"history", "ends"}, {"ends of a spline", {{"natural"}, {"clamped"}, {"periodic"}}}},
       {{"time", "start"}, {"start", {{"as given"}, {"equilibrium"}}}},
       {{"time", "error_estimate"}, {"word for the error estimate", {{"auto"}, {"always"}, {"never"}}}},
       {{"time", "analysis"}, {"analysis", {{"dynamic"}, {"static"}, {"path"}, {"modes"}}}},

@@ -4,21 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/spline.hpp"
+
 namespace hilo {
-namespace {
-
-/// Tridiagonal system with several right hand sides; entries are overwritten.
-void solve_tridiagonal(const std::vector<double>& low, std::vector<double> mid, const std::vector<double>& up, std::vector<Vec3>& x) {
-  const size_t n = mid.size();
-  for (size_t i = 1; i < n; ++i) {
-    const double f = low[i] / mid[i - 1];
-    mid[i] -= f * up[i - 1];
-    x[i] -= f * x[i - 1];
-  }
-  for (size_t i = n; i-- > 0;) x[i] = ((i + 1 < n ? Vec3(x[i] - up[i] * x[i + 1]) : x[i]) / mid[i]).eval();
-}
-
-}  // namespace
 
 Curve::Curve(std::vector<Vec3> points, bool closed) : closed_(closed), x_(std::move(points)) {
   if (closed_) x_.push_back(x_.front());
@@ -30,21 +18,16 @@ Curve::Curve(std::vector<Vec3> points, bool closed) : closed_(closed), x_(std::m
   const auto h = [&](size_t i) { return s_[i + 1] - s_[i]; };
   const auto slope = [&](size_t i) { return Vec3((x_[i + 1] - x_[i]) / h(i)); };
   // h_{i-1} m_{i-1} + 2 (h_{i-1} + h_i) m_i + h_i m_{i+1} = 6 (slope_i - slope_{i-1})
-  if (closed_) {  // unknowns m_0 .. m_{pieces-1}; the two corner entries are taken off by one more solve (Sherman-Morrison)
-    std::vector<double> low(pieces), mid(pieces), up(pieces);
-    std::vector<Vec3> rhs(pieces), corner(pieces, Vec3::Zero());
+  if (closed_) {  // unknowns m_0 .. m_{pieces-1}
+    Tridiagonal a(pieces);
+    std::vector<Vec3> rhs(pieces);
     for (size_t i = 0; i < pieces; ++i) {
       const size_t before = (i + pieces - 1) % pieces;
-      low[i] = h(before), up[i] = h(i), mid[i] = 2 * (h(before) + h(i));
+      a.low[i] = h(before), a.up[i] = h(i), a.mid[i] = 2 * (h(before) + h(i));
       rhs[i] = 6 * (slope(i) - slope(before));
     }
-    const double gamma = -mid[0], alpha = up[pieces - 1], beta = low[0];  // alpha: last row, first column
-    mid[0] -= gamma, mid[pieces - 1] -= alpha * beta / gamma;
-    corner[0].setConstant(gamma), corner[pieces - 1].setConstant(alpha);
-    solve_tridiagonal(low, mid, up, rhs), solve_tridiagonal(low, mid, up, corner);
-    const double ratio = beta / gamma, under = 1 + corner[0][0] + ratio * corner[pieces - 1][0];
-    const Vec3 factor = (rhs[0] + ratio * rhs[pieces - 1]) / under;
-    for (size_t i = 0; i < pieces; ++i) m_[i] = rhs[i] - factor.cwiseProduct(corner[i]);
+    solve_cyclic(a, rhs);
+    std::copy(rhs.begin(), rhs.end(), m_.begin());
     m_[pieces] = m_[0];
     return;
   }
@@ -53,16 +36,16 @@ Curve::Curve(std::vector<Vec3> points, bool closed) : closed_(closed), x_(std::m
     return;
   }
   const size_t k = n - 2;  // unknowns m_1 .. m_{n-2}; third derivatives are continuous at the second and the last but one point
-  std::vector<double> low(k), mid(k), up(k);
+  Tridiagonal a(k);
   std::vector<Vec3> rhs(k);
   for (size_t i = 0; i < k; ++i) {
-    low[i] = h(i), up[i] = h(i + 1), mid[i] = 2 * (h(i) + h(i + 1));
+    a.low[i] = h(i), a.up[i] = h(i + 1), a.mid[i] = 2 * (h(i) + h(i + 1));
     rhs[i] = 6 * (slope(i + 1) - slope(i));
   }
   const double h0 = h(0), h1 = h(1), ha = h(n - 3), hb = h(n - 2);
-  mid[0] += h0 * (h0 + h1) / h1, up[0] -= h0 * h0 / h1;
-  mid[k - 1] += hb * (ha + hb) / ha, low[k - 1] -= hb * hb / ha;
-  solve_tridiagonal(low, mid, up, rhs);
+  a.mid[0] += h0 * (h0 + h1) / h1, a.up[0] -= h0 * h0 / h1;
+  a.mid[k - 1] += hb * (ha + hb) / ha, a.low[k - 1] -= hb * hb / ha;
+  solve_tridiagonal(a, rhs);
   std::copy(rhs.begin(), rhs.end(), m_.begin() + 1);
   m_[0] = ((h0 + h1) * m_[1] - h0 * m_[2]) / h1;
   m_[n - 1] = ((ha + hb) * m_[n - 2] - hb * m_[n - 3]) / ha;

@@ -151,7 +151,8 @@ constexpr Param angle_key{"angle", number, "rad", "", "drives the joint: angle o
     spin{"spin", number, "rad/s", "", "drives the joint: rate of the angle at history 1, integrated from t = 0"},
     displacement{"displacement", number, "m", "", "drives the joint: slide of b along the axis at history 1"},
     velocity{"velocity", number, "m/s", "", "drives the joint: rate of the slide at history 1, integrated from t = 0"},
-    drive_history{"history", Type::history, "1", "1", "course of what drives the joint, best with interpolation = \"smooth\""},
+    drive_history{"history", Type::history, "1", "1",
+                  "course of what drives the joint: interpolation = \"smooth\" for a few points, \"spline\" for many"},
     third_end{"carrier", text, "", "ground", "what carries both axes: a rigid region, a body, a set, or ground"};
 
 constexpr Param stiffness{

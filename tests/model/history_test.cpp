@@ -2,10 +2,13 @@
 // Histories against exact values and integrals.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <sstream>
 
+#include "base/spline.hpp"
 #include "model/scene.hpp"
 
 using namespace hilo;
@@ -139,4 +142,89 @@ TEST(History, OfOnePointIsConstant) {
   EXPECT_EQ(h(1), 3);
   EXPECT_EQ(h.mean(-1, 1), 3);
   EXPECT_TRUE(h.breaks().empty());
+}
+
+History spline(const std::function<double(double)>& f, double end, int n, SplineEnds ends, double first = 0, double last = 0) {
+  History h;
+  for (int i = 0; i < n; ++i) h.t.push_back(end * i / (n - 1)), h.value.push_back(f(h.t.back()));
+  if (ends == SplineEnds::periodic) h.value.back() = h.value.front(), h.repeats = true;
+  h.ramp = Ramp::cubic, h.slopes = spline_slopes(h.t, h.value, ends, first, last);
+  return h;
+}
+
+// Truth: a clamped spline of a cubic is the cubic, and its mean the integral; a natural one of a line is the line.
+TEST(History, SplineOfACubicIsTheCubic) {
+  const auto f = [](double t) { return 1 - 2 * t + 3 * t * t - 0.5 * t * t * t; };
+  const History h = spline(f, 3, 5, SplineEnds::clamped, -2, -2 + 18 - 13.5);
+  for (const double t : {0.1, 0.7, 1.5, 2.9}) {
+    EXPECT_NEAR(h(t), f(t), 1e-13);
+    EXPECT_NEAR(h.slope(t), -2 + 6 * t - 1.5 * t * t, 1e-13);
+    EXPECT_NEAR(h.curvature(t), 6 - 3 * t, 1e-12);
+  }
+  const auto integral = [](double t) { return t - t * t + t * t * t - t * t * t * t / 8; };
+  EXPECT_NEAR(h.mean(0.2, 2.6), (integral(2.6) - integral(0.2)) / 2.4, 1e-13);
+  const History line = spline([](double t) { return 2 - t; }, 4, 3, SplineEnds::natural);
+  EXPECT_NEAR(line.slope(1.3), -1, 1e-14);
+  EXPECT_NEAR(line(3.3), -1.3, 1e-14);
+}
+
+// Truth: a sine.  A spline errs with the fourth power of its spacing, and the mean square of its rate is right, where ramps that rest at
+// every point have pi^2/8 of it.
+TEST(History, SplineOfADenseSineHasItsRate) {
+  const double end = 2 * pi;
+  const auto square = [&](const History& h) {
+    double sum = 0;
+    for (int i = 0; i < 30000; ++i) sum += std::pow(h.slope(end * (i + 0.5) / 30000), 2) / 30000;
+    return sum / 0.5;
+  };
+  const auto worst = [&](const History& h) {
+    double off = 0;
+    for (int i = 0; i < 1000; ++i) off = std::max(off, std::abs(h(end * i / 1000) - std::sin(end * i / 1000)));
+    return off;
+  };
+  const auto sine = [](double t) { return std::sin(t); };
+  for (const SplineEnds ends : {SplineEnds::natural, SplineEnds::clamped, SplineEnds::periodic}) {
+    const History coarse = spline(sine, end, 31, ends, 1, 1), fine = spline(sine, end, 301, ends, 1, 1);
+    EXPECT_GT(std::log10(worst(coarse) / worst(fine)), 3.9);
+    EXPECT_LT(worst(fine), 1e-8);
+    EXPECT_NEAR(square(fine), 1, 1e-7);
+  }
+  History ramps = spline(sine, end, 301, SplineEnds::natural);
+  ramps.ramp = Ramp::smooth;
+  EXPECT_NEAR(square(ramps), pi * pi / 8, 1e-3);
+}
+
+// Truth: a periodic spline is the sine before its table and after it, also its means over many periods; nothing jumps.
+TEST(History, PeriodicSplineRepeats) {
+  const double end = 2 * pi;
+  const History h = spline([](double t) { return std::sin(t); }, end, 101, SplineEnds::periodic);
+  for (const double t : {-20.0, -0.3, 1.0, 7.0, 200.0}) {
+    EXPECT_NEAR(h(t), std::sin(t), 1e-6);
+    EXPECT_NEAR(h.slope(t), std::cos(t), 1e-4);
+    EXPECT_NEAR(h.curvature(t), -std::sin(t), 2e-3);
+  }
+  EXPECT_NEAR(h.mean(-1, 30), (std::cos(-1) - std::cos(30)) / 31, 1e-7);
+  EXPECT_NEAR(h.mean(6.2, 6.4), (std::cos(6.2) - std::cos(6.4)) / 0.2, 1e-7);
+  EXPECT_NEAR(h.at(end, end - 1e-9).curvature, h.at(end, end + 1e-9).curvature, 1e-9);
+  EXPECT_EQ(breaks_of(h), "");
+}
+
+// Truth: what is held before the first point and after the last leaves there with a kink, or with a jump of the curvature.
+TEST(History, SplineBreaksOnlyAtItsEnds) {
+  EXPECT_EQ(breaks_of(spline([](double t) { return std::sin(t); }, 3, 31, SplineEnds::natural)), "0:1 3:1");
+  EXPECT_EQ(breaks_of(spline([](double t) { return t * t * (3 - t) * (3 - t); }, 3, 31, SplineEnds::clamped)), "0:2 3:2");
+}
+
+// Truth: a monotone one never leaves the values of its neighbours, where a spline swings beyond.
+TEST(History, MonotoneStaysBetweenItsPoints) {
+  History h{{0, 1, 2, 3, 5, 6}, {0, 0, 1, 1, 4, 2}, Ramp::cubic};
+  h.slopes = monotone_slopes(h.t, h.value);
+  for (size_t i = 1; i < h.t.size(); ++i)
+    for (double s = 0; s <= 1; s += 0.05) {
+      const double v = h(h.t[i - 1] + s * (h.t[i] - h.t[i - 1]));
+      EXPECT_GE(v, std::min(h.value[i - 1], h.value[i]) - 1e-12);
+      EXPECT_LE(v, std::max(h.value[i - 1], h.value[i]) + 1e-12);
+    }
+  h.slopes = spline_slopes(h.t, h.value, SplineEnds::natural);
+  EXPECT_LT(h(0.5), -0.01);
 }
