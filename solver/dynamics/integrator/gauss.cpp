@@ -129,7 +129,7 @@ class GaussIntegrator final : public CoupledStages {
 
   void archive(Archive& a, const System&) override {
     a(name(), past_h_, past_a_, past_lambda_, missed_before_, coupled_steps_, most_kinetic_);
-    forget_structure();
+    forget_structure(), end_solver_.reset();
   }
 
  private:
