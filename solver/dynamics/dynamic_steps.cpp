@@ -32,11 +32,14 @@ class DynamicSteps final : public Steps {
     const StepPlan& plan = run_.plan;
     if (plan.asked > 0) control_.emplace(run_.system, run_.integrator->order(), plan.now().demand, end_, step_);
     const std::string& word = time_.text("error_estimate");
-    if (word == "never" || (word == "auto" && !control_ && run_.system.map.n_global > largest_estimated)) {
-      run_.estimate.give_up(word == "never" ? "time.error_estimate has none"
-                                            : "the scene is large, and time.error_estimate does not ask for one");
-      return;
-    }
+    const bool large = !control_ && run_.system.layout.map.n_global > largest_estimated;
+    if (word == "never")
+      run_.estimate.give_up("time.error_estimate has none");
+    else if (run_.system.traits().searches)
+      run_.estimate.give_up("the structure of the scene changes from step to step");
+    else if (word == "auto" && large)
+      run_.estimate.give_up("the scene is large, and time.error_estimate does not ask for one");
+    if (!run_.estimate.why().empty()) return;
     companion_.emplace(
         run_.system, integrator_kinds().at(plan.now().method, time_.where("integrator")).make(time_),
         [this] { return choose_solver(run_.scene, run_.system, false); }, run_.newton);

@@ -55,8 +55,8 @@ void tell_what_is_left(const System& s, const Residual& r, const Unknown& u, New
   const std::vector<double> step = u.increments(s);
   double work = 0;
   for (size_t k = 0; k < step.size() / 3; ++k) {
-    const std::int64_t owned = s.map.global[k] - s.map.first;  // of the ranks that hold the block one counts it
-    if (owned < 0 || owned >= s.map.n_owned) continue;
+    const std::int64_t owned = s.layout.map.global[k] - s.layout.map.first;  // of the ranks that hold the block one counts it
+    if (owned < 0 || owned >= s.layout.map.n_owned) continue;
     for (size_t i = 3 * k; i < 3 * k + 3; ++i) work += r.r[i] * step[i];
   }
   report.left = s.comm->sum(work);

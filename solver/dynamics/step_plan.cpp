@@ -26,7 +26,7 @@ constexpr double least_share = 1e-7;  // of the length: demands of methods above
 /// Gauss is for rigid bodies here, serial.  Forces with kinks spoil any order above the second, and so do its dampers, which see the mean
 /// rate of a step.
 bool gauss_serves(const System& system) {
-  if (system.comm->size > 1 || system.traits().deforms || system.map.n_global > 1000) return false;
+  if (system.comm->size > 1 || system.traits().deforms || system.layout.map.n_global > 1000) return false;
   return std::ranges::all_of(system.part<Springs>().list, [](const Spring& c) { return c.law->conserves(); });
 }
 
