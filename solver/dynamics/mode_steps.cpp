@@ -84,9 +84,10 @@ class ModeSteps final : public Steps {
   /// Whether there are more unknowns than rows that hold them, which are independent.
   static bool is_free(const System& system) {
     size_t n = 0, held = 0;
-    for (const UnknownField& f : system.unknowns) n += 3 * f.size();
-    for (size_t i = 0; i < system.X.size(); ++i)
-      for (int k = 0; k < 3; ++k) held += system.node_block[i] >= 0 && system.fixed[i][k];
+    for (const UnknownField& f : system.unknowns) {
+      n += 3 * f.size();
+      for (size_t k = 0; k < f.size(); ++k) held += std::ranges::count(f.held_of(k), true);
+    }
     for (const char on : system.rows_on()) held += on != 0;
     return n > held;
   }

@@ -27,7 +27,7 @@ constexpr double least_share = 1e-7;  // of the length: demands of methods above
 /// rate of a step.
 bool gauss_serves(const System& system) {
   if (system.comm->size > 1 || system.traits().deforms || system.layout.map.n_global > 1000) return false;
-  return std::ranges::all_of(system.part<Springs>().list, [](const Spring& c) { return c.law->conserves(); });
+  return springs_conserve(system);
 }
 
 /// A demand to begin with.  Second order: the sum of local errors is what is asked.  Higher orders: a coarse one, since what the next pass

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "system/springs.hpp"
+#include "system/system.hpp"
 
 namespace hilo {
 namespace {
@@ -148,6 +149,10 @@ void Springs::add_taken(std::span<const int> group, const Stage& s, std::span<co
       viscous(c, s, lambda, r);
       sum[g] += std::abs(r.dissipated) + std::abs(r.supplied);
     }
+}
+
+bool springs_conserve(const System& system) {
+  return std::ranges::all_of(system.part<Springs>().list, [](const Spring& c) { return c.law->conserves(); });
 }
 
 }  // namespace hilo

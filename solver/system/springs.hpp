@@ -43,4 +43,7 @@ class Springs final : public Contribution {
 /// Elastic response of a spring at a stage, D by its measures at e1.
 void spring_elastic(const Spring& c, const Stage& s, Response& out);
 
+/// Whether the forces of all springs keep energy, without dampers and kinks.
+bool springs_conserve(const System& system);
+
 }  // namespace hilo

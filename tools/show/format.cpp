@@ -26,7 +26,7 @@ Format version {}.
 - `<name>` in a path stands for any name, with `/` written `%2F` and `%` written `%25`; `<step>` for a six-digit field number.
 - A file is written under another name and renamed when it is whole. A results file grows as `run.h5.new` until its first rows are safe. Then it replaces the former `run.h5` and grows under that name, with `complete` = 0 until the run has come to its end. Whatever ends the process, the file is whole as of its last commit ([trust](trust.md)).
 - A file links to the one it was made from: an HDF5 external link with a relative path, and the digest of that file (`fnv1a64`) as an attribute. A changed file is refused, with the command to run. Arrays written at once carry a digest of their bytes (attribute `fnv1a64`), histories a checksum of every chunk (fletcher32).
-- The same input gives the same bytes.
+- The same input gives the same bytes, also on several ranks, but for `solver.kind = "direct"` there: MUMPS adds what ranks send it in the order in which it arrives, so that the last bits differ beside busy processes.
 
 Exit codes and errors: [errors](errors.md).
 )";
@@ -79,14 +79,15 @@ The audit looks at every step before it is accepted and refuses what fails: the 
 | key | what is looked at | bound |
 |---|---|---|
 | `passed`, `failed` | the verdict; where it is false, why the run stopped | |
-| `energy` | kinetic + elastic + potential - work + dissipated: largest change in a step (`step`) and in all (`sum`), over the largest kinetic energy, each with its time. Text where the method does not keep it | max(1e-8, 10 `solver.tolerance`), beside rounding; `sum` after N > 1000 steps N/1000 times that |
+| `energy` | kinetic + elastic + potential - work + dissipated, less what Newton left: largest change in a step (`step`) and in all (`sum`), over the largest kinetic energy, each with its time. Text where the method does not keep it | max(1e-8, 10 `solver.tolerance`), beside rounding; `sum` after N > 1000 steps N/1000 times that |
+| `newton`, in `energy` | what Newton left in all: the work of its residual over each step, and of joint forces as their rows open, over all energies that came or went | max(1e-4, 10 `solver.tolerance`); as `sum` |
 | `joint_rows` | largest value of a joint's row, which joint, when | max(1e-9, 20 `solver.tolerance`), times the scene's length |
 | `dropped_rows` | the same of rows that are redundant and not solved for | the same |
 | `turn` | largest angle by which a body or a cell turned in a step, which, when | 2 rad |
 | `det_F` | least det F at the points of the stress, its region, when; null without cells | above 0, at the points of the mass too |
 | `finite` | positions, velocities and energies | true |
 
-`energy_balance` is the largest |E - E0 - W + D| over the largest kinetic energy, null where nothing moved but by rounding; `constraint_violation` the largest row of a joint.
+`energy_balance` is the largest |E - E0 - W + D|, with what Newton left, over the largest kinetic energy, null where nothing moved but by rounding; `constraint_violation` the largest row of a joint.
 
 `error_estimate`, of runs in time, is what a second solution at twice the step tells of the error of positions: points of bodies and nodes.
 
