@@ -19,7 +19,7 @@ repo, tools = (os.path.abspath(a) for a in sys.argv[1:3])
 os.environ.update(PATH=tools + ":" + os.environ["PATH"], OPENBLAS_NUM_THREADS="1")
 TAGS = 'nonlinear = ["barrel", "recoil_housing"]\nrest = "rigid"\n'
 SETS = ['time.start="as given"', "time.step=2.5e-5", "time.end=5e-4", "load.shot.history={t=[0,2.5e-3],value=[0,3e6]}",
-        "solver.tolerance=1e-7", "solver.kind=cg", "output.interval=5e-4", 'output.fields=["displacement"]']
+        "solver.tolerance=1e-7", "solver.kind=cg", "output.interval=5e-4", 'output.fields=["displacement", "von_mises"]']
 heavier = 1 + 1e-9
 
 

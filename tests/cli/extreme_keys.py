@@ -19,7 +19,7 @@ VALUES = ("1e-300", "1e300", "-1.0", "0.0", "nan", "inf", "3e9")
 MEMORY, SECONDS = 3 << 30, 30
 
 # What a key is where it is not the one that is tried; others take the schema's default or are left out.
-WORDS = {"a": '"ground"', "b": '"arm"', "on": '"arm"', "joint": '"hinge"', "name": '"tried"', "at": "[0, 0, 0]", "axis": "[0, 1, 0]",
+WORDS = {"card": "\"*TIE\"", "a": '"ground"', "b": '"arm"', "on": '"arm"', "joint": '"hinge"', "name": '"tried"', "at": "[0, 0, 0]", "axis": "[0, 1, 0]",
          "x": "[1, 0, 0]", "at_a": "[0, 0, 1]", "at_b": "[0.5, 0, 0]", "sensor": '"felt"', "measure": '"DRI"'}
 NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5, 0, 0]", "inertia": "[0.01, 0.1, 0.1]", "pitch": "0.1",
            "ratio": "2", "radius": "0.1", "stiffness": "100", "angular_stiffness": "100", "damping": "1", "angular_damping": "1",

@@ -42,7 +42,7 @@ def solved(name, tags, sets=()):
     if not own and not step_of(scene):
         end = "time.end=1"  # statics
     interval = "output.interval=" + end.split("=")[1]
-    options = [word for s in (end, interval, 'output.fields=["displacement"]', *sets) for word in ("--set", s)]
+    options = [word for s in (end, interval, 'output.fields=["displacement", "von_mises"]', *sets) for word in ("--set", s)]
     done = subprocess.run(["hilo-solve", "--quiet", *options, scene, tags, "-o", "levels.h5"], stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True, timeout=900)
     if done.returncode:
