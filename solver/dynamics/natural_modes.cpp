@@ -105,7 +105,8 @@ std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, co
   at.factor(pencil.shift);
   const Eigenmodes modes = lowest_modes(pencil, wanted, 1e-6, true, tell);
   if (modes.asymmetry > 1e-4)
-    throw Error("", "the forces of small motions are no gradient: a pressure that follows, a moment that turns along or that nothing balances, "
+    throw Error("",
+                "the forces of small motions are no gradient: a pressure that follows, a moment that turns along or that nothing balances, "
                 "friction under load",
                 "start = \"equilibrium\" balances what can be; modes need forces that have a potential");
   if (!modes.converged) throw Error("", fmt::format("{} modes were not found", wanted), "ask for fewer: time.modes", Exit::not_converged);

@@ -14,7 +14,7 @@ namespace hilo {
 namespace {
 
 constexpr double aim = 0.5, most = 1.4;  // of what is asked: error that a pass aims at, and that is good enough
-constexpr double most_before = 3;       // the same before the end
+constexpr double most_before = 3;        // the same before the end
 constexpr size_t most_passes = 8;
 constexpr double steep = 64,
                  steepest = 1000;     // by which a demand falls at most, where an error is no small part of the motion, and where it is

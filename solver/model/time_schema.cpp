@@ -52,7 +52,8 @@ KindSchema time_schema() {
        "`integrator` is named the method: energy-momentum, gauss where that takes fewer",
        from_to(1e-13, 1)},
       {"error_estimate", text, "", "auto",
-       "whether a second solution at twice the step runs beside, which tells the error of positions: auto (with `tolerance`, and in scenes of "
+       "whether a second solution at twice the step runs beside, which tells the error of positions: auto (with `tolerance`, and in scenes "
+       "of "
        "up to 900 unknowns), always, never"},
       {"integrator", text, "", integrator_words()[0].name, methods()}};
   for (const Param& p : keys_of_methods()) keys.push_back(p);

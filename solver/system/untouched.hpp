@@ -8,8 +8,8 @@
 
 namespace hilo {
 
-/// One line for each, at the start of a run: 'region "lid", about (0, 0.1, 2) m'.  None where the scene is one piece; what has a velocity at
-/// the start is meant to fly.  Collective.
+/// One line for each, at the start of a run: 'region "lid", about (0, 0.1, 2) m'.  None where the scene is one piece; what has a velocity
+/// at the start is meant to fly.  Collective.
 std::vector<std::string> untouched(const System& system);
 
 }  // namespace hilo
