@@ -96,10 +96,11 @@ TEST(OutsideDeckCard, IsSuggestedForAMistypedOneAndKnowsItsPlace) {
   std::string text = inp;
   text.replace(text.find("*LAME"), 5, "*LMAE");
   const Imported in = read(place, "cube.inp", text);
-  ASSERT_EQ(in.not_read.size(), 1u);
+  ASSERT_EQ(in.not_read.size(), 2u) << "the card, and the material that has no law without it";
   EXPECT_EQ(in.not_read[0].what, "*LMAE");
   EXPECT_EQ(in.not_read[0].place, place / "cube.inp:16");
   EXPECT_EQ(in.not_read[0].hint, "did you mean *LAME?");
+  EXPECT_EQ(in.not_read[1].place, place / "cube.inp:12:23");
   try {
     read(place, "early.inp", std::string("*LAME\n1., 1.\n") + inp);
     FAIL() << "was read";
