@@ -16,7 +16,7 @@ namespace hilo {
 namespace {
 
 struct Options {
-  std::string scene, mesh, tolerance = "2%", work = "advise.work", apply, csv;
+  std::string scene, mesh, finer, tolerance = "2%", work = "advise.work", apply, csv;
   std::vector<std::string> overrides, kept_rigid, kept;
   double at_most = 3;
   int at_once = 1;
@@ -65,7 +65,7 @@ void run(const Options& o) {
   if (o.full && o.no_full) throw Error("--full", "contradicts --no-full", "", Exit::usage);
   for (const std::string& file : {o.apply, o.csv})
     if (!file.empty()) check_output(file);
-  Candidates all({o.scene, o.mesh, o.work, o.overrides, tol.value, o.at_once});
+  Candidates all({o.scene, o.mesh, o.finer, o.work, o.overrides, tol.value, o.at_once});
   const Entry& time = all.scene().table("time");
   if (time.text("analysis") != "dynamic" || !time.given("step"))
     throw Error(time.place.text(), "only runs in time with a step are advised on", "analysis = \"dynamic\" and step");
@@ -97,6 +97,9 @@ int main(int argc, char** argv) {
     app->add_option("--keep", o.kept, "a region that stays as it is told: rigid, linear, stiffening or nonlinear (repeatable)")
         ->type_name("NAME=LEVEL")
         ->allow_extra_args(false);
+    app->add_option("--finer", o.finer,
+                    "the same regions in smaller cells: the chosen model runs on it too, and tells the error of the mesh")
+        ->type_name("MESH");
     app->add_flag("--full", o.full, "judge by all cells, not only by those of regions whose linear strains are in doubt");
     app->add_flag("--no-full", o.no_full, "never run cells to judge by; what is then not known is told");
     app->add_option("--at-most", o.at_most, "what the advice may cost, in runs of all cells; what is found by then is told")

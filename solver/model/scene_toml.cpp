@@ -110,7 +110,15 @@ toml::table& list_entry(toml::table& root, const std::string& section, const std
   no_such(where, section, name, names);
 }
 
+/// An empty table whose place is `where`.
+toml::table empty_table(const std::string& where) { return std::move(*toml::parse("x = {}", where).get_as<toml::table>("x")); }
+
+/// A region that the scene has no section of may get one: the mesh decides whether there is such a region.
 toml::table& named_entry(toml::table& root, const std::string& section, const std::string& name, const std::string& where) {
+  if (section == "region") {
+    if (!root.contains(section)) root.insert(section, empty_table(where));
+    if (auto* regions = root[section].as_table(); regions && !regions->contains(name)) regions->insert(name, empty_table(where));
+  }
   auto* group = root[section].as_table();
   if (!group) no_such(where, section, name, {});
   if (auto* t = (*group)[name].as_table()) return *t;
@@ -119,7 +127,7 @@ toml::table& named_entry(toml::table& root, const std::string& section, const st
 
 toml::table& single_entry(toml::table& root, const std::string& section, const std::string& where) {
   if (section == "scene") return root;
-  if (!root.contains(section)) root.insert(section, std::move(*toml::parse("x = {}", where).get("x")));
+  if (!root.contains(section)) root.insert(section, empty_table(where));
   if (auto* t = root[section].as_table()) return *t;
   throw Error(where, fmt::format("{} is not a table", section), fmt::format("write [{}]", section));
 }
@@ -236,9 +244,10 @@ std::vector<Item> in_file_order(const toml::table& table) {
     const Place value = place(node.source());
     items.push_back({std::string(key.str()), value.line == 0 ? value : place(key.source()), &node});
   }
-  std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
-    return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
-  });
+  const auto order = [](const Item& item) {  // what an option gave comes behind the file
+    return std::tuple(item.place.file.starts_with(set_prefix), item.place.line, item.place.column);
+  };
+  std::stable_sort(items.begin(), items.end(), [&](const Item& a, const Item& b) { return order(a) < order(b); });
   return items;
 }
 

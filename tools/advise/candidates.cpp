@@ -2,6 +2,7 @@
 #include "advise/candidates.hpp"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <cmath>
@@ -67,6 +68,15 @@ constexpr Measure measures[] = {{"bend", [](double v) { return 0.03 * std::pow(v
 Candidates::Candidates(Options options)
     : o_(std::move(options)), scene_(Scene::load(o_.scene, o_.overrides)), mesh_(read_mesh_file(o_.mesh)), mesh_digest_(digest(o_.mesh)) {
   check_quantity_regions(scene_, names());
+  if (!o_.finer.empty()) {
+    const MeshFile finer = read_mesh_file(o_.finer);
+    if (finer.mesh.region_name != names()) throw Error(o_.finer, "has other regions than " + o_.mesh, "the same model with smaller cells");
+    refinement_ = std::cbrt(static_cast<double>(finer.mesh.n_cells()) / static_cast<double>(mesh().n_cells()));
+    if (refinement_ < 1.2)
+      throw Error(o_.finer, fmt::format("its cells are {:.3g} times as small: too near to tell the error of the mesh", refinement_),
+                  "half as large is right");
+    finer_digest_ = digest(o_.finer);
+  }
   std::filesystem::create_directories(o_.folder + "/modes");
   std::vector<std::vector<std::int64_t>> nodes;
   for (const std::string& name : names()) nodes.push_back(mesh().nodes_of(name, o_.mesh)), nodes_.push_back(nodes.back().size());
@@ -104,8 +114,11 @@ Candidates::Job Candidates::job(const Request& request) const {
     more.push_back(fmt::format("output.interval={:.17g}", end / 50));
   for (size_t r = 0; r < request.levels.size(); ++r)
     if (request.levels[r] == Level::stiffening) more.push_back(fmt::format("region.\"{}\".stiffening=true", names()[r]));
+  for (size_t r = 0; r < request.levels.size() && request.modes != 1; ++r)
+    if (fidelity(request.levels[r]) == Fidelity::linear)
+      more.push_back(fmt::format("region.\"{}\".modes={}", names()[r], request.modes * modes_of(r)));
   Digest key;
-  key.add(about()).add(mesh_digest_);  // another hilo may compute otherwise
+  key.add(about()).add(request.finer ? finer_digest_ : mesh_digest_);  // another hilo may compute otherwise
   for (const std::string& value : scene_.values())
     if (!value.starts_with("quantity.") && !value.starts_with("scene.title")) key.add(value);
   for (const Level l : request.levels) key.add(word(l));
@@ -133,18 +146,20 @@ void Candidates::run(const std::vector<Request>& list) {
     }
     std::vector<Fidelity> tags;
     for (const Level l : request.levels) tags.push_back(fidelity(l));
-    write_tags(j.name + "-tags.h5", o_.mesh, tags, {"hilo-advise"});
+    write_tags(j.name + "-tags.h5", request.finer ? o_.finer : o_.mesh, tags, {"hilo-advise"});
     processes.push_back({j.command, j.name + ".log"});
     ++runs;
     if (!is_quiet())
       fmt::print(stderr, "run {}: {}{}{}, about {:.2g} s\n", runs, label(request.levels, names()),
-                 request.step != 1 ? fmt::format(", {:g} of the step", request.step) : "",
+                 (request.step != 1 ? fmt::format(", {:g} of the step", request.step) : "") +
+                     (request.modes != 1 ? fmt::format(", {} times the modes", request.modes) : "") + (request.finer ? ", finer mesh" : ""),
                  request.end > 0 ? fmt::format(", to {:.4g} s", request.end) : "", price(request));
   }
   run_processes(processes, o_.at_once);
   for (const auto& [name, request] : of) {
     Candidate& c = done_[name];
-    c.levels = request.levels, c.step = request.step, c.end = request.end, c.run = name + ".h5";
+    static_cast<Request&>(c) = request;
+    c.run = name + ".h5";
     for (const Process& p : processes)
       if (p.log == name + ".log") c.seconds = p.seconds;
     if (is_complete(name))
@@ -187,10 +202,23 @@ void Candidates::read(Candidate& c, const std::string& name) const {
   }
 }
 
-double Candidates::unknowns(const Assignment& levels) const {
+/// Of a linear region, as the scene says.
+int Candidates::modes_of(size_t region) const {
+  int n = 40;
+  for (const Entry& e : scene_.entries("region"))
+    if (e.given("modes") && fnmatch(e.name.c_str(), names()[region].c_str(), 0) == 0) n = static_cast<int>(e.number("modes"));
+  return std::max(n, 1);
+}
+
+double Candidates::unknowns(const Request& request) const {
   double n = 30;
-  for (size_t r = 0; r < levels.size(); ++r)
-    n += levels[r] == Level::rigid ? 6 : levels[r] == Level::linear ? 50 : levels[r] == Level::stiffening ? 1000 : 3 * nodes_[r];
+  for (size_t r = 0; r < request.levels.size(); ++r) {
+    const Level level = request.levels[r];
+    n += level == Level::rigid        ? 6
+         : level == Level::linear     ? 50 * request.modes
+         : level == Level::stiffening ? 1000
+                                      : 3 * nodes_[r] * (request.finer ? std::pow(refinement_, 3) : 1);
+  }
   return n;
 }
 
@@ -198,7 +226,7 @@ double Candidates::unknowns(const Assignment& levels) const {
 double Candidates::work(const Request& r) const {
   const Entry& time = scene_.table("time");
   const double end = r.end > 0 ? r.end : time.number("end");
-  return 6.9e-3 * std::pow(unknowns(r.levels) / 1000, 0.76) * end / (time.number("step") * r.step);
+  return 6.9e-3 * std::pow(unknowns(r) / 1000, 0.76) * end / (time.number("step") * r.step);
 }
 
 double Candidates::price(const Request& request) const {
@@ -206,7 +234,7 @@ double Candidates::price(const Request& request) const {
   double nearest = HUGE_VAL, factor = 1;
   for (const auto& [name, c] : done_) {
     if (!c.failure.empty() || c.seconds <= 0) continue;
-    const double its = work({c.levels, c.step, c.end}), far = std::abs(std::log(wanted / its));
+    const double its = work(c), far = std::abs(std::log(wanted / its));
     if (far < nearest) nearest = far, factor = c.seconds / its;
   }
   return factor * wanted;

@@ -8,15 +8,16 @@
 
 namespace hilo {
 
-/// What is to be run: `step` scales the time step, `end` is where the run ends, 0: where the scene says  [s].
+/// What is to be run: `step` scales the time step, `end` is where the run ends, 0: where the scene says  [s]; `modes` scales how many modes
+/// linear regions have; `finer`: on the finer mesh.
 struct Request {
   Assignment levels;
   double step = 1, end = 0;
+  int modes = 1;
+  bool finer = false;
 };
 
-struct Candidate {
-  Assignment levels;
-  double step = 1, end = 0;
+struct Candidate : Request {
   std::string run;                       // run.h5
   std::string failure;                   // why there is none
   std::vector<QuantityValue> values;     // of the quantities of a run in time
@@ -30,7 +31,7 @@ struct Candidate {
 class Candidates {
  public:
   struct Options {
-    std::string scene, mesh, folder;
+    std::string scene, mesh, finer, folder;  // finer: a mesh of the same regions, or nothing
     std::vector<std::string> overrides;
     double tolerance;  // of quantities that say none, relative
     int at_once = 1;
@@ -40,6 +41,10 @@ class Candidates {
   const Scene& scene() const { return scene_; }
   const Mesh& mesh() const { return mesh_.mesh; }
   const std::vector<std::string>& names() const { return mesh_.mesh.region_name; }
+  /// How many modes the scene gives a linear region, at most.
+  int modes_of(size_t region) const;
+  /// How much smaller the cells of the finer mesh are: the cube root of the ratio of numbers of cells; 0: there is none.
+  double refinement() const { return refinement_; }
   /// Regions that share nodes with region r.
   const std::vector<size_t>& neighbours(size_t r) const { return neighbours_[r]; }
   /// Where one of the linear regions that share nodes has stiffening, all of these have.
@@ -66,12 +71,13 @@ class Candidates {
   };
   Job job(const Request& request) const;
   void read(Candidate& c, const std::string& name) const;
-  double unknowns(const Assignment& levels) const;
+  double unknowns(const Request& request) const;
   double work(const Request& request) const;
   const Options o_;
   const Scene scene_;
   const MeshFile mesh_;
-  std::string mesh_digest_;
+  std::string mesh_digest_, finer_digest_;
+  double refinement_ = 0;
   std::vector<std::vector<size_t>> neighbours_;
   std::vector<double> nodes_;  // by region
   std::map<std::string, Candidate> done_;

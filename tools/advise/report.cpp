@@ -23,16 +23,21 @@ const Candidate* all_rigid(const Advice& a) {
 }
 
 /// Of each quantity: its value by the chosen model, what is allowed, and the parts of the error: what the levels change (to the base,
-/// and from there to the reference), and the time step.
+/// and from there to the reference), the time step, modes left out and the mesh.
 Table budget(const Advice& a) {
-  Table t{{"quantity", "unit", "value", "allowed", "levels", "linear strains", "step", "sum over allowed", "all rigid"}, {}, 2, 4};
+  Table t{{"quantity", "unit", "value", "allowed", "levels", "linear strains", "step", "modes", "mesh", "sum over allowed", "all rigid"},
+          {},
+          2,
+          4};
   const Candidate* rigid = all_rigid(a);
   for (size_t k = 0; k < a.base->values.size(); ++k) {
     const QuantityValue &mine = a.chosen->values[k], &base = a.base->values[k], &its = a.reference->values[k];
     const double levels = mine.value - base.value, strains = base.value - its.value, step = -a.step_signed[k];
-    const double sum = std::abs(mine.value - its.value) + std::abs(step);
+    const double modes = a.modes_signed.empty() ? 0 : -a.modes_signed[k], mesh = a.mesh_signed.empty() ? 0 : -a.mesh_signed[k];
+    const double sum = std::abs(mine.value - its.value) + std::abs(step) + std::abs(modes) + std::abs(mesh);
     t.rows.push_back({mine.name, mine.unit, number(mine.value), number(its.allowed), number(levels),
-                      a.reference == a.base ? "-" : number(strains), number(step), number(sum / its.allowed),
+                      a.reference == a.base ? "-" : number(strains), number(step), a.modes_signed.empty() ? "-" : number(modes),
+                      a.mesh_signed.empty() ? "-" : number(mesh), number(sum / its.allowed),
                       rigid ? number(rigid->values[k].value - its.value) : "-"});
   }
   return t;
@@ -58,7 +63,7 @@ Table regions(const Candidates& all, const Advice& a) {
 std::vector<const Candidate*> by_unknowns(const Advice& a) {
   auto out = a.tried;
   std::stable_sort(out.begin(), out.end(), [](const Candidate* x, const Candidate* y) {
-    return std::tuple(x->unknowns, x->levels, x->end) < std::tuple(y->unknowns, y->levels, y->end);
+    return std::tuple(x->unknowns, x->levels, x->end, x->modes) < std::tuple(y->unknowns, y->levels, y->end, y->modes);
   });
   return out;
 }
@@ -69,16 +74,24 @@ Table models(const Candidates& all, const Advice& a) {
     std::string in = "-";
     const double d = difference(*c, *a.reference, &in);
     if (!c->failure.empty()) in = "does not run: " + c->failure;
-    t.rows.push_back({label(c->levels, all.names()) + (c->end > 0 ? fmt::format(", to {:.4g} s", c->end) : ""), choice(c, a),
-                      c == a.reference ? "-" : in, c->failure.empty() ? c->run : "-", number(d), number(c->unknowns),
+    t.rows.push_back({label(c->levels, all.names()) + (c->modes != 1 ? fmt::format(", {} times the modes", c->modes) : "") +
+                          (c->end > 0 ? fmt::format(", to {:.4g} s", c->end) : ""),
+                      choice(c, a), c == a.reference ? "-" : in, c->failure.empty() ? c->run : "-", number(d), number(c->unknowns),
                       c->failure.empty() ? number(c->cost, 4) : "-"});
   }
   return t;
 }
 
 std::string what_is_known(const Candidates& all, const Advice& a) {
-  return fmt::format("judged by {}; what linear strains leave out of it may be {:.2g} of the tightest tolerance, by their own measures{}",
-                     label(a.reference->levels, all.names()), a.doubt, a.doubt > 0.5 ? ": more than half, and nothing checked it" : "");
+  std::string mesh = a.mesh_signed.empty() ? "; nothing tells the error of the mesh (--finer)" : "";
+  for (size_t k = 0; k < a.mesh_signed.size(); ++k)
+    if (std::abs(a.mesh_signed[k]) > a.reference->values[k].allowed)
+      mesh += fmt::format("; the mesh alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(a.mesh_signed[k]),
+                          a.reference->values[k].unit, a.reference->values[k].name, a.reference->values[k].allowed,
+                          a.reference->values[k].unit);
+  return fmt::format("judged by {}; what linear strains leave out of it may be {:.2g} of the tightest tolerance, by their own measures{}{}",
+                     label(a.reference->levels, all.names()), a.doubt, a.doubt > 0.5 ? ": more than half, and nothing checked it" : "",
+                     mesh);
 }
 
 }  // namespace
@@ -124,9 +137,12 @@ std::string rules(const Candidates& all, const Advice& a, const std::string& com
       if (fidelity(a.chosen->levels[r]) == f) list += (list.empty() ? "" : ", ") + json_text(all.names()[r]);
     if (!list.empty()) text += fmt::format("{} = [{}]\n", word(f), list);
   }
-  for (size_t r = 0; r < all.names().size(); ++r)
+  for (size_t r = 0; r < all.names().size(); ++r) {
     if (a.chosen->levels[r] == Level::stiffening)
       text += fmt::format("# in the scene: [region.\"{}\"] stiffening = true\n", all.names()[r]);
+    if (a.chosen->modes != 1 && fidelity(a.chosen->levels[r]) == Fidelity::linear)
+      text += fmt::format("# in the scene: [region.\"{}\"] modes = {}\n", all.names()[r], a.chosen->modes * all.modes_of(r));
+  }
   return text;
 }
 

@@ -32,6 +32,8 @@ class Search {
     demote();
     choose();
     check_step();
+    check_modes();
+    find_mesh();
     return std::move(a_);
   }
 
@@ -53,7 +55,7 @@ class Search {
   }
   const Candidate& of(const Request& request) {
     const Candidate& c = all_.of(request);
-    if (request.step == 1 && std::find(a_.tried.begin(), a_.tried.end(), &c) == a_.tried.end()) a_.tried.push_back(&c);
+    if (request.step == 1 && !request.finer && std::find(a_.tried.begin(), a_.tried.end(), &c) == a_.tried.end()) a_.tried.push_back(&c);
     return c;
   }
 
@@ -198,6 +200,45 @@ class Search {
     if (step_of(*a_.chosen) > most_step) refuse_step();
     if (!serves(*a_.chosen)) a_.chosen = a_.reference;
     choose();
+  }
+  /// Error of the modes that linear regions of the chosen model have: by as many again; and as many again where that is too large.
+  void check_modes() {
+    const auto is_linear = [](Level l) { return fidelity(l) == Fidelity::linear; };
+    while (std::any_of(a_.chosen->levels.begin(), a_.chosen->levels.end(), is_linear)) {
+      const Candidate& c = *a_.chosen;
+      const Candidate& more = of({c.levels, 1, c.end, 2 * c.modes});
+      if (!more.failure.empty()) {
+        warn("", "more modes do not run, so nothing tells what those left out change: " + more.failure);
+        return;
+      }
+      a_.modes_signed.clear();
+      double largest = 0;
+      for (size_t k = 0; k < c.values.size(); ++k) {
+        a_.modes_signed.push_back(more.values[k].value - c.values[k].value);
+        const double allowed = a_.reference->values[k].allowed;
+        const double fidelity = c.levels == a_.reference->levels ? 0 : over(c.values[k].value - a_.reference->values[k].value, allowed);
+        largest = std::max(largest, over(a_.modes_signed[k], allowed) + a_.step[k] + fidelity);
+      }
+      if (largest <= 1) return;
+      if (c.modes >= 8) {
+        warn("", fmt::format("with {} times the modes of the scene those left out still take more than the tolerance allows", c.modes));
+        return;
+      }
+      a_.chosen = &more;
+      if (a_.reference->levels == c.levels) a_.reference = &more;
+    }
+  }
+  /// Error of the mesh by the chosen model on a finer one; it falls with the square of the size of cells.
+  void find_mesh() {
+    if (all_.refinement() == 0) return;
+    const Candidate& fine = all_.of({a_.chosen->levels, 1, a_.chosen->end, a_.chosen->modes, true});
+    if (!fine.failure.empty()) {
+      warn("", "the finer mesh does not run, so nothing tells the error of the mesh: " + fine.failure);
+      return;
+    }
+    const double square = all_.refinement() * all_.refinement();
+    for (size_t k = 0; k < fine.values.size(); ++k)
+      a_.mesh_signed.push_back(square / (square - 1) * (fine.values[k].value - a_.chosen->values[k].value));
   }
   [[noreturn]] void refuse_step() const {
     const auto k = static_cast<size_t>(std::max_element(a_.step.begin(), a_.step.end()) - a_.step.begin());

@@ -19,7 +19,9 @@ struct Advice {
   const Candidate *base = nullptr, *reference = nullptr, *chosen = nullptr;  // reference: the base, or it with some regions nonlinear
   std::vector<double> step;                                                  // error of the time step over what is allowed, by quantity
   std::vector<double> step_signed;                                           // the same, in the unit of each quantity: to a step of none
-  double doubt = 0;                            // what strains of the second degree may change of the reference, over the tightest tolerance
+  std::vector<double> modes_signed;  // error of the modes of linear regions, likewise; empty: the chosen model has none, or no run tells
+  std::vector<double> mesh_signed;   // error of the mesh, likewise; empty: no finer mesh was given, or it does not run
+  double doubt = 0;                  // what strains of the second degree may change of the reference, over the tightest tolerance
   std::map<size_t, const Candidate*> without;  // the chosen model with this region rigid
   std::vector<const Candidate*> tried;
   std::map<size_t, std::string> kept_rigid;  // regions that cannot deform, and why
