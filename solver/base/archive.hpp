@@ -89,7 +89,7 @@ class Archive {
   void nodes(std::vector<Vector>& x) {
     static_assert(sizeof(Vector) == 3 * sizeof(double));
     if (!shares_) return walk(x);
-    bool some = !x.empty();
+    bool some = any(shares_->nodes, !x.empty());
     walk(some);
     if (restores_) x.resize(some ? shares_->nodes.size() : 0);
     if (some) part(shares_->nodes, reinterpret_cast<double*>(x.data()), 3);
@@ -97,7 +97,7 @@ class Archive {
   /// Increments of all blocks of unknowns, those of nodes first, or none.
   void increments(std::vector<double>& z) {
     if (!shares_) return walk(z);
-    bool some = !z.empty();
+    bool some = any(shares_->blocks, !z.empty());
     walk(some);
     std::vector<double> of_nodes(some ? 3 * shares_->blocks.size() : 0), others;
     if (some && !restores_) {
@@ -112,7 +112,7 @@ class Archive {
   /// What the cells of each batch remember, or nothing.
   void cells(std::vector<std::vector<double>>& batches) {
     if (!shares_) return walk(batches);
-    bool some = !batches.empty();
+    bool some = any(shares_->cells, !batches.empty());
     walk(some);
     if (restores_) batches.assign(some ? shares_->batch.size() : 0, {});
     const int most = shares_->most_remembered;
@@ -137,6 +137,8 @@ class Archive {
   }
 
  private:
+  /// Whether any rank has something to keep: one without nodes or cells takes part for the others.
+  bool any(const Spread& spread, bool here) const { return !restores_ && spread.any(here); }
   void part(const Spread& spread, double* local, int width) {
     const size_t n = spread.size() * width;
     if (!restores_) {

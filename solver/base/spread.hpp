@@ -10,6 +10,8 @@ class Spread {
   /// `number`: of each local thing, the same on every rank that holds it.
   Spread(const Comm& comm, std::vector<std::int64_t> number) : comm_(&comm), number_(std::move(number)) {}
   size_t size() const { return number_.size(); }
+  /// Whether it holds on some rank.  Collective.
+  bool any(bool here) const { return comm_->max(here ? 1.0 : 0.0) > 0; }
   /// Values (n x width) of all things by number, on rank 0; NaN where no rank has the thing.  Collective.
   std::vector<double> gather(const std::vector<double>& local, int width) const;
   /// And back: `all` as rank 0 has it.  Collective.

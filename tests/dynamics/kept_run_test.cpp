@@ -185,6 +185,17 @@ TEST(KeptRun, RefusesWhatBelongsToAnotherSceneOrIsCutShort) {
 
 TEST(DISABLED_KeptOnRanks, GoesOnBitByBit) { expect_goes_on(".", machine(), "", {4, 20}, {"time.end=0.15"}); }
 TEST(DISABLED_KeptOnRanks, GoesOnBitByBitWithCells) { expect_goes_on(".", bar(".", metal), "tags.h5", {3, 14}); }
+TEST(DISABLED_KeptOnRanks, GoesOnBitByBitWhereARankHasNoCell) {
+  if (Comm::world().rank == 0) {
+    write_mesh("one.h5", block_mesh({}), {"test"});
+    write_tags("one-tags.h5", "one.h5", {Fidelity::rigid}, {"test"});
+  }
+  Comm::world().barrier();
+  expect_goes_on(".",
+                 "gravity = [0, 0, -9.81]\n[material.m]\nE = 1e7\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n" +
+                     joint("revolute", "hinge", "ground", "xmin", {0, 0, 0}, "axis = [0, 1, 0]\n") + "[time]\nend = 0.02\nstep = 1e-3\n",
+                 "one-tags.h5", {3, 14});
+}
 
 TEST(KeptRun, GoesOnOnTwoRanks) {
   const Folder folder;
