@@ -61,7 +61,7 @@ void run(const Options& o) {
   } catch (const Error& e) {
     throw Error(e.where, e.message, e.hint, Exit::usage);
   }
-  if (!tol.relative) throw Error("--tol", "is relative", "\"2%\"; a quantity may have its own, with a unit", Exit::usage);
+  if (!tol.relative) throw Error("--tol", "must be a percentage", "\"2%\"; a quantity may have its own, with a unit", Exit::usage);
   if (o.full && o.no_full) throw Error("--full", "contradicts --no-full", "", Exit::usage);
   for (const std::string& file : {o.apply, o.csv})
     if (!file.empty()) check_output(file);

@@ -135,7 +135,9 @@ Base::Base(const RunFile& run, const std::vector<std::string>& bases, const Mode
     for (size_t j = 0; j < part.size(); ++j)  // of a motion without strain no support feels anything
       if (modes.omega2[j] > 1e-9 * highest) part[j] -= force[j] / modes.omega2[j];
   }
-  if (is_all && is_some) throw Error("--base", "axes alone, which move everything that stands still, or names with axes", "", Exit::usage);
+  if (is_all && is_some)
+    throw Error("--base", "an axis alone moves every support, so it cannot stand beside named ones", "all axes alone, or all NAME.AXIS",
+                Exit::usage);
   double off = 0, size = 0;
   for (size_t j = 0; j < part.size() && is_some; ++j)
     off = std::max(off, std::abs(part[j] - of_all[j])), size = std::max(size, std::abs(of_all[j]));
@@ -144,7 +146,9 @@ Base::Base(const RunFile& run, const std::vector<std::string>& bases, const Mode
   } else {
     std::fill(drag.begin(), drag.end(), 0.0);
     if (modes.is_damped)
-      warn("--base", "one support of several: what dampers take of the slow motion between them is left out, some twice the damping ratio");
+      warn("--base",
+           "one of several supports moves: the damping of the slow motion between them is left out (an error of about twice the damping "
+           "ratio)");
   }
 }
 
@@ -155,9 +159,12 @@ void run(const Options& o) {
   const double highest = std::sqrt(std::max(0.0, *std::max_element(modes.omega2.begin(), modes.omega2.end()))) / (2 * std::numbers::pi);
   const double from = o.from > 0 ? o.from : highest / 1000, to = o.to > 0 ? o.to : highest;
   if (!(to > from)) throw Error("--to", fmt::format("{:g} Hz is not above {:g} Hz", to, from), "", Exit::usage);
-  if (o.force.empty() == o.base.empty()) throw Error("response", "either --force or --base says what swings", "", Exit::usage);
-  if (o.relative && o.base.empty()) throw Error("--relative", "is of a --base", "", Exit::usage);
-  if (o.at.empty() && o.force.empty()) throw Error("--at", "which probe answers?", "--at tip.z", Exit::usage);
+  if (o.force.empty() == o.base.empty())
+    throw Error("response", o.base.empty() ? "nothing excites the structure" : "both --force and --base are given",
+                "give either --force or --base", Exit::usage);
+  if (o.relative && o.base.empty())
+    throw Error("--relative", "works with --base alone", "give --base, or leave --relative out", Exit::usage);
+  if (o.at.empty() && o.force.empty()) throw Error("--at", "no probe is named", "--at tip.z", Exit::usage);
   std::optional<Base> base;
   std::vector<double> push;
   if (o.force.empty())

@@ -71,8 +71,8 @@ void check(const FrameOptions& o) {
   refuse(!o.iso.empty() && !o.cut.empty(), "--iso", "and --cut do not go together", "take one");
   refuse(o.scale != 1 && o.deformed != 1, "--deformed", "and --scale both enlarge", "take one");
   refuse(!o.track.empty() && !o.ride.empty(), "--ride", "and --track both move the camera", "take one");
-  refuse(enlarged && !o.trace.empty(), "--trace", "belongs to true positions", "take --scale or --deformed away");
-  refuse(enlarged && !o.forces.empty(), "--forces", "belong to true positions", "take --scale or --deformed away");
+  refuse(enlarged && !o.trace.empty(), "--trace", "needs true positions", "take --scale or --deformed away");
+  refuse(enlarged && !o.forces.empty(), "--forces", "need true positions", "take --scale or --deformed away");
   refuse(o.label.size() > 1 + o.beside.size(), "--label", fmt::format("{} captions for {} runs", o.label.size(), 1 + o.beside.size()),
          "one for each run");
 }

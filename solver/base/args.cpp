@@ -5,11 +5,24 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 
 #include "base/error.hpp"
 
 namespace hilo {
 namespace {
+
+/// CLI11 tells an open range by the largest double, in 309 digits.
+std::string in_words(const CLI::ParseError& error) {
+  const std::string text = error.what();
+  const size_t range = text.find(" not in range 0.0000"), value = text.find("Value ");
+  if (range == text.npos || value > range || text.size() < range + 300) return text;
+  const std::string given = text.substr(value + 6, range - value - 6);
+  char* end = nullptr;
+  const double number = std::strtod(given.c_str(), &end);
+  const bool is_number = end == given.c_str() + given.size();
+  return text.substr(0, value) + given + (!is_number ? " is not a number" : number < 0 ? " is negative" : " is not above 0");
+}
 
 constexpr auto exit_codes =
     "Exit codes: 0 done, 1 usage, 2 bad input, 3 did not converge, 4 resources (memory, disk, packages), 5 own fault, "
@@ -59,7 +72,7 @@ std::vector<std::string> left_over(const CLI::App& app) {
     }
     throw Error("", fmt::format("unexpected argument {}", word), help, Exit::usage);
   }
-  throw Error("", error.what(), help, Exit::usage);
+  throw Error("", in_words(error), help, Exit::usage);
 }
 
 std::string roff(const std::string& text) {

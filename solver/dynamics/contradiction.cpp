@@ -30,7 +30,7 @@ void refuse_contradictions(const Scene& scene, const System& system, const Redun
       if (std::abs(law.at(t).value - start) <= open) continue;
       throw Error(place_of(scene, c),
                   fmt::format("{} is to be driven, but {} at t = {:.3g} s", c.label(),
-                              by.empty() ? "its own rows hold it" : fmt::format("joint \"{}\" holds it still", by), t),
+                              by.empty() ? "the joint does not leave this motion free" : fmt::format("joint \"{}\" holds it still", by), t),
                   "take away the drive, or what holds the same motion");
     }
   }

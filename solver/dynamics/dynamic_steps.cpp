@@ -90,8 +90,8 @@ class DynamicSteps final : public Steps {
     if (time_.text("start") == "equilibrium" && !settle_down(run_)) return false;
     run_.figures.projected = run_.impulses.strike(system, *run_.solver, state, run_.talk).change;
     if (const std::string name = contradicted_joint(system, state.q, state.v, 0); !name.empty())
-      throw Error(run_.scene.path, fmt::format("joint \"{}\" cannot move as the driven joints would have it", name),
-                  "two drives, or a drive and a joint, hold the same motion");
+      throw Error(run_.scene.path, fmt::format("joint \"{}\" cannot follow the driven joints", name),
+                  "two drives, or a drive and a joint, hold the same motion: take one away");
     if (redundancy.singular()) leave_singular_position(rows);
     if (run_.talk && run_.figures.projected > 1e-9)
       fmt::print(stderr, "initial velocities changed by up to {:.3g} m/s to satisfy the joints\n", run_.figures.projected);

@@ -33,7 +33,7 @@ void warn_of_idle_keys(const Entry& time) {
     for (const Param& p : other.keys)
       if (time.given(p.key) && !has(method, p.key)) idle[p.key].push_back(other.name);
   for (const auto& [key, who] : idle)
-    warn(time.where(key), fmt::format("{} says nothing to {}, it is for {}", key, method.name, fmt::join(who, ", ")));
+    warn(time.where(key), fmt::format("{} has no effect with {}, it is for {}", key, method.name, fmt::join(who, ", ")));
 }
 
 std::unique_ptr<Integrator> make_integrator(const Entry& time) { return integrator_kind(time).make(time); }

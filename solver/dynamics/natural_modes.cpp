@@ -105,10 +105,11 @@ std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, co
   at.factor(pencil.shift);
   const Eigenmodes modes = lowest_modes(pencil, wanted, 1e-6, true, tell);
   if (modes.asymmetry > 1e-4)
-    throw Error("",
-                "the forces of small motions are no gradient: a pressure that follows, a moment that turns along or that nothing balances, "
-                "friction under load",
-                "start = \"equilibrium\" balances what can be; modes need forces that have a potential");
+    throw Error(
+        "",
+        "the forces have no potential, so these modes do not exist. Such forces are a pressure that follows its face, a moment that "
+        "turns along, a load that nothing balances, and friction under load",
+        "leave them out of the analysis; start = \"equilibrium\" finds a balance where there is one");
   if (!modes.converged) throw Error("", fmt::format("{} modes were not found", wanted), "ask for fewer: time.modes", Exit::not_converged);
   const RigidMotions rigid(system, at, rest.q);
   // Once more through the inverse, for the multipliers and to see what changes; what rounding brings of other modes goes.

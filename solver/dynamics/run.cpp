@@ -119,7 +119,7 @@ class Run {
     if (run_.system.comm->rank != 0 || run_.analysis != Analysis::dynamic || run_.report.steps == 0) return;
     const auto tell = [&](const std::string& what) { warn(run_.scene.path, what); };
     if (run_.plan.asked > 0 && !e.why().empty() && run_.scene.table("time").text("error_estimate") != "never")
-      return tell("the error at the end is not known, only what steps add to it: " + e.why());
+      return tell("the error at the end of the run is not known, only the errors of single steps: " + e.why());
     if (!e.is_there()) return;
     if (!run_.plan.unmet.empty()) tell("time.tolerance is not met: " + run_.plan.unmet);
     if (const double t = e.meaningless_from(); t < run_.report.t && e.is_chaotic())
@@ -157,7 +157,7 @@ class Run {
         std::vector<std::string_view> able;
         for (const IntegratorKind& other : integrator_kinds())
           if (other.carries_state) able.push_back(other.name);
-        throw Error(time.where("integrator"), run_.integrator->name() + " does not carry what a material remembers (plastic strain)",
+        throw Error(time.where("integrator"), run_.integrator->name() + " cannot keep the plastic strain of a material from step to step",
                     fmt::format("{} do", fmt::join(able, ", ")));
       }
       const double end = time.number("end"), step = time.has("step") ? time.number("step") : end / 20;

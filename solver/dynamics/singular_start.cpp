@@ -39,8 +39,8 @@ double follow_branch(System& system, KktSolver& solver, State& s, Redundancy& re
       ahead = pose_ahead(system, s.q, way, s.t, far / (1 << k));
       if (!ahead) {
         warn("",
-             fmt::format("the branch that leads out of the singular position at the start is lost {:.2g} m away from it: velocities stay "
-                         "those of all branches",
+             fmt::format("the start is a singular position, where motions of several kinds branch off. The branch of the start was lost "
+                         "{:.2g} m away, so velocities mix the branches (start a little beside that position)",
                          far / (1 << k) * system.length));
         return 0;
       }

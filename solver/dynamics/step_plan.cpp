@@ -84,7 +84,7 @@ bool plan_another(StepPlan& plan, const RunReport& report, const Config& q, cons
     return again(std::string(EnergyMomentum::name), known > 0 ? known : first_demand(plan.asked, 2, system.length, end));
   };
   if (!report.complete) return order > 2 && fall_back("");
-  if (plan.passes.size() >= most_passes) return says(fmt::format("it is not met in {} passes", plan.passes.size()));
+  if (plan.passes.size() >= most_passes) return says(fmt::format("{} runs with ever shorter steps did not reach it", plan.passes.size()));
 
   // The leading term of a high order rules late: two passes tell whether their estimates hold.
   const bool holds = order == 2 ? estimate.is_there()

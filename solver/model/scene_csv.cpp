@@ -191,7 +191,7 @@ History history_of(const Entry& e, const std::string& label, const Surroundings&
   const std::string& ramp = e.text("interpolation");
   if (ramp == "smooth" || ramp == "smoother") h.ramp = ramp == "smooth" ? Ramp::smooth : Ramp::smoother;
   const bool spline = ramp == "spline";
-  if (!spline && e.given("ends")) return fail("ends", "ends are those of interpolation = \"spline\"", "");
+  if (!spline && e.given("ends")) return fail("ends", "ends is for interpolation = \"spline\" alone", "set that, or leave ends out");
   if (!spline && ramp != "monotone") return h;
   h.ramp = Ramp::cubic;
   for (size_t i = 1; i < h.t.size(); ++i)
@@ -199,10 +199,11 @@ History history_of(const Entry& e, const std::string& label, const Surroundings&
       return fail("interpolation", fmt::format("the table jumps at t = {:.6g}, which a smooth curve through its points cannot", h.t[i]),
                   "linear, smooth and smoother take jumps");
   const std::string& ends = e.text("ends");
-  if (e.has("slopes") && (!spline || ends != "clamped")) return fail("slopes", "slopes are those of ends = \"clamped\"", "");
+  if (e.has("slopes") && (!spline || ends != "clamped"))
+    return fail("slopes", "slopes is for interpolation = \"spline\" with ends = \"clamped\" alone", "set both, or leave slopes out");
   if (spline && ends == "periodic") {
     const auto [low, high] = std::minmax_element(h.value.begin(), h.value.end());
-    if (h.t.size() < 3) return fail("ends", "a period has three points or more, the last that of the next period", "");
+    if (h.t.size() < 3) return fail("ends", "a period needs at least three points", "the last point is the first of the next period");
     if (std::abs(h.value.back() - h.value.front()) > 1e-9 * (*high - *low))
       return fail("ends", fmt::format("a period begins with {:.9g} and ends with {:.9g}", h.value.front() / scale, h.value.back() / scale),
                   "the last point is the first of the next period");

@@ -35,11 +35,13 @@ void Builder::make_linear_bodies() {
         throw Error(region.where, fmt::format("linear region \"{}\" has no density", region.name), "give its material a density");
       if (region.stiffening != one.stiffening)
         throw Error(region.where,
-                    fmt::format("linear regions \"{}\" and \"{}\" share nodes, so they stiffen both or neither", one.name, region.name));
+                    fmt::format("linear regions \"{}\" and \"{}\" share nodes, but differ in stiffening", one.name, region.name),
+                    "give both the same value");
       if (region.modal_damping != one.modal_damping)
-        throw Error(region.where,
-                    fmt::format("linear regions \"{}\" and \"{}\" share nodes, so their modes are the same: give them one modal_damping",
-                                one.name, region.name));
+        throw Error(
+            region.where,
+            fmt::format("linear regions \"{}\" and \"{}\" share nodes and modes, but differ in modal_damping", one.name, region.name),
+            "give both the same value");
     }
     out_->bodies[new_body_of(members)].linear = true;
   }

@@ -113,13 +113,13 @@ void Builder::warn_of_idle_damping(const Entry& e) const {
       if (feels(r.fidelity)) return;
       names += (names.empty() ? "\"" : ", \"") + r.name + "\" (" + std::string(word(r.fidelity)) + ")";
     }
-    warn(e.where(key), fmt::format("says nothing to {}: {}", names, why));
+    warn(e.where(key), fmt::format("has no effect on {}: {}", names, why));
   };
   tell(
-      "damping", [](Fidelity f) { return f != Fidelity::rigid; }, "nothing rigid strains; mass_damping brakes it");
+      "damping", [](Fidelity f) { return f != Fidelity::rigid; }, "rigid regions do not deform; mass_damping brakes them");
   tell(
       "modal_damping", [](Fidelity f) { return f == Fidelity::linear; },
-      "only linear regions have modes; damping and mass_damping are of all");
+      "only linear regions have modes; use damping or mass_damping for the others");
 }
 
 /// int rho, int rho X, int rho X X^T of every region by the mass rule of its cells: the collapsed mass of a rigid region is exactly

@@ -89,12 +89,13 @@ void Builder::warn_of_limits() const {
   if (comm_.rank != 0) return;
   for (size_t r = 0; r < regions_.size(); ++r) {
     if (reduced[r] > 0)
-      warn(regions_[r].name, "its material flows: hex20 are taken with 2 x 2 x 2 points (hex20r); with 3 x 3 x 3 they lock");
+      warn(regions_[r].name, "plastic hex20 cells are integrated with 2 x 2 x 2 points (hex20r), since they lock with 3 x 3 x 3");
     const double* row = sums.data() + r * columns;
     const Region& region = regions_[r];
     const bool metal = region.material && material_kinds().at(region.material->kind).n_state > 0;  // flows
     if (metal && region.fidelity == Fidelity::linear)
-      warn(region.name, "of linear fidelity it does not flow: stresses above its yield stress are elastic ones (tag it nonlinear)");
+      warn(region.name,
+           "a linear region does not yield: stresses above the yield stress are those of an elastic material (tag it nonlinear)");
     double all = 0;
     for (int s = 0; s < n_shapes; ++s) all += row[s];
     for (int s = 0; s < n_shapes; ++s) {
@@ -106,13 +107,12 @@ void Builder::warn_of_limits() const {
         const double nu = c.lambda / (2 * (c.lambda + c.mu));
         warn(region.name,
              fmt::format("linear {} lock in bending{}{}; expect too stiff an answer (hilo-import --order 2 makes them quadratic)",
-                         shape == Shape::tet4 ? "tetrahedra" : "wedges", metal ? ", and where they flow" : "",
+                         shape == Shape::tet4 ? "tetrahedra" : "wedges", metal ? " and in plastic flow" : "",
                          nu > nearly_incompressible ? fmt::format(" and at a Poisson's ratio of {:.4g}", nu) : ""));
       } else if (shape == Shape::hex8 && metal)
         warn(region.name,
-             "hex8 of a material that flows have eight points and one mean dilatation: bending of walls one cell thick is 20 to 50 % off, "
-             "with "
-             "two cells across 2 % (hilo-import --order 2 makes hex20r)");
+             "plastic hex8 in bending: walls one cell thick are 20 to 50 % off, walls of two cells 2 % (hilo-import --order 2 makes "
+             "hex20r)");
       else if (shape == Shape::hex8 && mean > much_skew)
         warn(region.name,
              fmt::format("skewed hex8, opposite edges turned by {:.2g} rad (mean): in bending about {:.0f} % too stiff with two cells "

@@ -136,8 +136,9 @@ Matrix ModalDamping::damping_of(const Group& group, const Config& q) const {
       scale.insert(scale.end(), 3, 1 / f.scale(k));
     }
   if (n > most_unknowns)
-    throw Error("", fmt::format("modal_damping: {} unknowns of regions and bodies hang together, and {} can at most", n, most_unknowns),
-                "fewer modes: [region.NAME] modes or up_to; or damping by stiffness and mass");
+    throw Error(
+        "", fmt::format("modal_damping: connected regions and bodies have {} unknowns, more than the {} it can treat", n, most_unknowns),
+        "fewer modes: [region.NAME] modes or up_to; or damping by stiffness and mass");
   Vector share = Vector::Zero(n);  // stiffness of amplitudes, times the root of the ratio
   double slowest = 1e300;
   for (const LinearRegion& r : system_.part<LinearRegions>().regions) {

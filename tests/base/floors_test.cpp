@@ -96,13 +96,16 @@ TEST(Floors, RoomsOfPostUseOnlyThoseBelow) {
       {"quantity", {"files", "run", "injury"}},
       {"commands", {"files", "run", "picture", "charts", "scene", "injury", "quantity"}}};
   const fs::path root = fs::path(HILO_SOURCE) / "post";
+  std::set<std::string> met;
   for (const auto& [file, included] : includes(root)) {
     const fs::path inside = fs::relative(file, root);
     if (inside == "main.cpp" || included.rfind("post/", 0) != 0) continue;
     const std::string own = inside.begin()->string(), target = fs::path(included).parent_path().filename().string();
     ASSERT_TRUE(below.contains(own)) << inside << " is in no room";
     EXPECT_TRUE(own == target || below.at(own).contains(target)) << inside << " includes " << included;
+    met.insert(own);
   }
+  for (const char* room : {"charts", "scene", "injury", "quantity", "commands"}) EXPECT_TRUE(met.contains(room)) << room;
 }
 
 // The heavy libraries stay where they belong: MPI in base, PETSc in linear, VTK in post, HDF5 in model, gmsh in tools, METIS there and
@@ -113,6 +116,7 @@ TEST(Floors, LibrariesAreIncludedOnlyWhereTheyBelong) {
       {std::regex("^petsc.*"), "solver/linear"}, {std::regex("^vtk[A-Z_].*"), "post"}, {std::regex("^hdf5\\.h$|^H5.*"), "solver/model"},
       {std::regex("^gmsh.*"), "tools"},          {std::regex("^metis.*"), "tools"},    {std::regex("^toml\\+\\+.*"), "solver/model"},
       {std::regex("^mpi\\.h$"), "solver/base"}};
+  std::set<std::string> met;
   for (const char* folder : {"solver", "tools", "post"})
     for (const auto& [file, included] : includes(root / folder))
       for (const auto& [library, place] : home)
@@ -120,7 +124,9 @@ TEST(Floors, LibrariesAreIncludedOnlyWhereTheyBelong) {
           const std::string at = fs::relative(file, root).string();
           EXPECT_TRUE(at.starts_with(place) || (included == "metis.h" && at.starts_with("solver/linear")) || at == "solver/about.cpp")
               << at << " includes " << included;
+          if (at.starts_with(place)) met.insert(place);
         }
+  for (const auto& [library, place] : home) EXPECT_TRUE(met.contains(place)) << place;
 }
 
 // All is one namespace, and what is linked together by name alone (destructors, members of std::vector) would be one of two by chance.

@@ -133,7 +133,7 @@ TEST(Clock, TakesASpringToFourthOrder) {
   EXPECT_GT(std::log2(coarse / fine), 3.8) << coarse << " " << fine;
 }
 
-/// Energies kept, and places on the same curve, whatever the clock does: also at steps of a tenth of a swing.
+/// Energy is kept whatever the clock does: also at steps of a tenth of a swing.
 TEST(Clock, LeavesEnergyAloneAtLongSteps) {
   const Workplace w;
   w.write("scene.toml", pendulum + "[time]\nend = 40\nstep = 0.2\n");

@@ -101,8 +101,10 @@ TEST_F(Inputs, LinkedInACircleAreRefusedByName) {
 }
 
 TEST_F(Inputs, ARunThatIsRefusedBeforeItsFirstStepLeavesTheFormerResult) {
-  refused("hilo-solve --quiet scene.toml parts.h5 --set time.stepp=1 -o run.h5", input, "...");
+  refused("hilo-solve --quiet scene.toml parts.h5 --set time.stepp=1 -o run.h5", input,
+          "--set time.stepp=1: ...unknown key \"stepp\" (did you mean \"step\"?)");
   put("scene.toml", scene + "[[joint]]\nkind = \"fixed\"\nname = \"weld\"\nb = \"hull\"\nat = [0, 0, 0]\n");
-  refused("hilo-solve --quiet scene.toml parts.h5 --set joint.hinge.spin=1 -o run.h5", input, "...");
+  refused("hilo-solve --quiet scene.toml parts.h5 --set joint.hinge.spin=1 -o run.h5", input,
+          "scene.toml:13:1: joint \"hinge\" ...joint \"weld\" holds it still at t = 2e-06 s (...)");
   EXPECT_EQ(work.run("hilo-show --check run.h5").exit, 0);
 }

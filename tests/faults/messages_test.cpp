@@ -69,7 +69,7 @@ TEST_F(Messages, OfAKeyThatIsForOtherIntegratorsNameThem) {
   put("scene.toml", bodies("integrator = \"bathe\"\nrho = 0.5\n"));
   const auto ran = run("hilo-solve scene.toml -o run.h5", folder);
   EXPECT_EQ(ran.exit, 0) << ran.err;
-  EXPECT_NE(ran.err.find("scene.toml:16:1: rho says nothing to bathe, it is for generalized-alpha, hht, wbz"), std::string::npos)
+  EXPECT_NE(ran.err.find("scene.toml:16:1: rho has no effect with bathe, it is for generalized-alpha, hht, wbz"), std::string::npos)
       << ran.err;
   put("scene.toml", bodies("integrator = \"hht\"\nrho = 0.5\n"));
   EXPECT_EQ(run("hilo-solve scene.toml -o run.h5", folder).err.find("says nothing"), std::string::npos);

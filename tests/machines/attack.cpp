@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs random machines by hand: `machines --family loop --seeds 1-100`, `machines --family loop --seed 7 --write /tmp/x`.
+// Runs random machines by hand: `machines --family loop --from 1 --to 100`, `machines --family loop --from 7 --to 7 --write /tmp/x`.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Judges a run from outside: energy, momentum, joints and turns recomputed from the positions and velocities in the results file and
-// from the data of the machine.  It shares no line with the solver but the readers of files and the shape functions of cells.
+// from the data of the machine.  It shares no line with the solver but the readers of files,
+// the shape functions of cells and the hourglass energy of reduced hexahedra.
 #pragma once
 #include <string>
 #include <vector>

@@ -67,14 +67,23 @@ TEST(J2Point, UniaxialStressIsThatOfItsHardening) {
   linear.hardening = 3e9;
   voce.hardening = 0.5e9, voce.saturation = 700e6, voce.saturation_rate = 17;
   table.strain = {0, 0.01, 0.1, 0.5}, table.stress = {400e6, 500e6, 600e6, 650e6};
-  for (const J2& law : {linear, voce, table})
+  const auto of_table = [](double p) {
+    return p < 0.01  ? 400e6 + 100e6 * p / 0.01
+           : p < 0.1 ? 500e6 + 100e6 * (p - 0.01) / 0.09
+           : p < 0.5 ? 600e6 + 50e6 * (p - 0.1) / 0.4
+                     : 650e6;
+  };
+  const std::pair<J2, std::function<double(double)>> laws[] = {
+      {linear, [](double p) { return Y + 3e9 * p; }},
+      {voce, [](double p) { return Y + 0.5e9 * p + (700e6 - Y) * (1 - std::exp(-17 * p)); }},
+      {table, of_table}};
+  for (const auto& [law, hardened] : laws)
     for (const int steps : {1, 7}) {
       Point at{law};
-      double unused;
       for (int k = 1; k <= steps; ++k)
         for (const double p : {1e-3 * k / steps, 0.3 * k / steps, 1.0 * k / steps}) {
           if (p <= at.p) continue;
-          const double tau = law.hardened(p, unused);
+          const double tau = hardened(p);
           const Mat3 F = uniaxial(tau, p);
           at.go(green(F), INFINITY, k % 2);
           EXPECT_NEAR(at.p, p, 1e-12);
@@ -237,14 +246,12 @@ TEST(J2Point, RateRaisesTheYieldStress) {
   for (const double strain_rate : {1e-3, 40.0, 1e4}) {
     Point at{law};
     const double dt = 1e-3 / strain_rate, tau = Y * (1 + std::pow(strain_rate / 40, 0.2));
-    const double first = tau / E;
     for (int k = 0; k <= 20; ++k) at.go(green(uniaxial(tau, strain_rate * dt * k)), k ? dt : 0);
-    EXPECT_NEAR(first, tau / E, 1);
     EXPECT_NEAR(kirchhoff(uniaxial(tau, 0.02), at.s)(0, 0), tau, 1e-6 * tau);
   }
 }
 
-// Truth: det Fp = 1 and a rigid turn changes neither state nor stored energy (the strain is the same); det stays over thousands of steps.
+// Truth: det Fp = 1; it stays over thousands of steps.
 TEST(J2Point, PlasticFlowKeepsTheVolume) {
   Point at{rich(1)};
   for (int k = 0; k < 2000; ++k) at.go(some_strain(0.2, k), 0.01, true);

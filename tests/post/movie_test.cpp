@@ -78,9 +78,10 @@ TEST(Movie, that_fails_or_is_stopped_leaves_nothing) {
     const char *rest, *text;
     int exit;
   };
-  for (const Fault& f : {Fault{"--times 0.2:0.3", "0.2:0.3 is not within the run (there is 0:0.1)", 2},
-                         Fault{"--times 5", "is no span of time", 1}, Fault{"--speed 1e-9", "frames", 1}, Fault{"--speed 0", "", 1},
-                         Fault{"--speed 1 --outputs", "", 1}, Fault{"--field von_misess", "did you mean \"von_mises\"?", 2}}) {
+  for (const Fault& f :
+       {Fault{"--times 0.2:0.3", "0.2:0.3 is not within the run (there is 0:0.1)", 2}, Fault{"--times 5", "is no span of time", 1},
+        Fault{"--speed 1e-9", "frames", 1}, Fault{"--speed 0", "--speed: 0 is not above 0", 1},
+        Fault{"--speed 1 --outputs", "--speed excludes --outputs", 1}, Fault{"--field von_misess", "did you mean \"von_mises\"?", 2}}) {
     const Ran ran = post(own, std::string("movie run.h5 ") + f.rest + " -o wrong.mp4");
     EXPECT_EQ(ran.exit, f.exit) << f.rest << ran.err;
     EXPECT_NE(ran.err.find(f.text), std::string::npos) << ran.err;

@@ -173,7 +173,9 @@ TEST_F(ImportBdfFields, WhatCannotBeMeantIsRefusedByLine) {
 TEST_F(ImportBdfFields, WeightsBecomeMasses) {
   place.write("a.bdf", tet + "PSOLID,1,1\nMAT1,1,3.+7,,0.3,0.283\nPARAM,WTMASS,.00259\nPARAM,POST,-1\n");
   const Mesh m = imported("a.bdf", "--units in-lbf-s");
-  EXPECT_NEAR(m.region_data[0].density, 7833, 10);  // 0.283 lb/in^3
+  // 0.283 lb/in^3 by WTMASS is lbf s^2/in^4
+  const double density = 0.283 * 0.00259 * 4.4482216152605 / std::pow(0.0254, 4);
+  EXPECT_NEAR(m.region_data[0].density, density, 1e-9 * density);
   EXPECT_NE(err.find("not read: PARAM POST (1, a.bdf:9"), std::string::npos) << err;
 }
 

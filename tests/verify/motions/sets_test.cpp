@@ -228,7 +228,7 @@ TEST_F(Motions, TurnAFlexibleSetThroughLargeAngles) {
   const Results driven = solved(soft, "mesh.h5"), again(*this / "moved.h5");
   for (const double t : {0.001, 0.08, 0.16}) {
     EXPECT_LT((again.at("probe/tip", t).head(3) - driven.at("probe/tip", t).head(3)).norm(), 2e-5) << t;
-    EXPECT_NEAR(again.at("motion/drive", t)[5], driven.at("joint/drive", t)[5], 0.02 * 78 * 900 / 3) << t;
+    EXPECT_NEAR(again.at("motion/drive", t)[5], driven.at("joint/drive", t)[5], 1e-3) << t;
   }
 }
 
@@ -239,7 +239,7 @@ TEST_F(Motions, AreFollowedThroughTurnsThatAStepCannotTake) {
     solved(with(kind) + "--set time.end=0.05");
     EXPECT_GT(reported("cuts"), 0) << kind;
     const Results r(*this / "run.h5");
-    EXPECT_NEAR(r.at("motion/drive", 0.03).head<3>().norm(), 1.5 * 200 * 200, 0.15 * 1.5 * 200 * 200)
+    EXPECT_NEAR(r.at("motion/drive", 0.03).head<3>().norm(), 1.5 * 200 * 200, (kind == "radau" ? 0.08 : 0.12) * 1.5 * 200 * 200)
         << kind << ": two cuts, 0.5 rad a step";
   }
 }

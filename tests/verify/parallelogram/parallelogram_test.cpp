@@ -44,7 +44,9 @@ TEST(Parallelogram, ReactionsAddUpToTheCentripetalForce) {
       // joint frame carried by the crank: inertial axes at the start, turned with the crank
       const double angle = std::atan2(along.x(), along.y());
       const Mat3 frame = Eigen::AngleAxisd(-angle, Vec3::UnitZ()).toRotationMatrix() * frame_of_axis(Vec3::UnitZ());
-      sum += frame * r.at("joint/B" + std::to_string(i), t).head<3>();
+      const Vec3 force = frame * r.at("joint/B" + std::to_string(i), t).head<3>();
+      EXPECT_LT((force + 6 * along).norm(), 1e-3) << i << ": " << force.transpose();
+      sum += force;
     }
     EXPECT_LT((sum + 18 * along).norm(), 1e-3) << "t = " << t << ": " << sum.transpose();
   }

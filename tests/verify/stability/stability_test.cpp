@@ -89,7 +89,7 @@ TEST(StaticStability, APerfectBarIsToldAndLeft) {
   EXPECT_NE(said.find("body \"bar\""), std::string::npos) << said;
 }
 
-// Truth: the start takes the deeper of the stable states, and says how far it is from the one drawn.
+// Truth: the start takes the deeper of the stable states.
 TEST(StaticStability, AStartFromEquilibriumTakesAStableOne) {
   Bar c;
   std::string said;

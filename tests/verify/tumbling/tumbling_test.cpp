@@ -91,6 +91,8 @@ TEST(TumblingBar, EnergyMomentumSurvivesWhereGeneralizedAlphaDoesNot) {
   const Results r = c.results("ga.h5");
   EXPECT_FALSE(r.complete());
   EXPECT_LT(r.t()[r.t().size() - 1], 10);
+  c.solve("--quiet --set solver.cuts=0", "em.h5");
+  EXPECT_TRUE(c.results("em.h5").complete()) << "energy-momentum, at the same step";
 }
 
 }  // namespace
