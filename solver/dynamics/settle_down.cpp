@@ -30,6 +30,7 @@ bool settle_down(RunParts& run) {
     else
       warn(where, found + ". No stable one was found: the run starts there");
   }
+  if (run.talk && !stability.known()) Stability::tell_unknown(run.solver->name());
   Stage rest = stage_at(state.q, 0);
   rest.elapsed = slow, system.advance(rest), system.settle(true);
   if (run.talk) fmt::print(stderr, "equilibrium after {} iterations\n", r.iterations);

@@ -18,7 +18,8 @@ struct Unstable {
   std::string text;       // what it would do
 };
 
-/// Looks at states under the loads at time t times `ramp`.  Serial solvers count eigenvalues; others leave it unknown.
+/// Looks at states under the loads at time t times `ramp`.  Direct solvers count eigenvalues; those that iterate leave it unknown.
+/// Collective; on several ranks the motion is not told and no state is left.
 class Stability {
  public:
   Stability(System& system, KktSolver& solver, double t, double ramp) : system_(system), solver_(solver), t_(t), ramp_(ramp) {}
@@ -27,6 +28,8 @@ class Stability {
   std::optional<Unstable> look(const Config& q, const std::vector<double>& lambda);
   /// Whether look() could tell.
   bool known() const { return known_; }
+  /// Says so in a line where it could not.
+  static void tell_unknown(const std::string& solver);
   /// From an unstable state along its motion, to either side, down to the deeper stable equilibrium; false, and all as it was, where there
   /// is none. `mechanism`: as of equilibrium().
   bool leave(const Unstable& from, Config& q, std::vector<double>& lambda, bool mechanism, const NewtonOptions& options);

@@ -85,7 +85,11 @@ class StaticSteps final : public Steps {
     }
     progress.done();
     run_.report.t = state.t;
-    run_.figures.unstable = at_.unstable_states;
+    if (examined_) run_.figures.unstable = at_.unstable_states;
+    if (run_.talk && is_large())
+      fmt::print(stderr, "stability was not examined: beyond {} unknowns it would cost more than the load steps\n", 3 * most_blocks);
+    else if (run_.talk && !examined_)
+      Stability::tell_unknown(run_.solver->name());
     run_.report.complete = true;
   }
 
@@ -116,8 +120,11 @@ class StaticSteps final : public Steps {
       run_.report.iterations += r.iterations;
     }
     unstable_.reset();
-    if (r.converged && system.n_blocks() <= most_blocks)
-      unstable_ = Stability(system, *run_.solver, reached.t, next).look(reached.q, reached.lambda);
+    if (r.converged && !is_large()) {
+      Stability stability(system, *run_.solver, reached.t, next);
+      unstable_ = stability.look(reached.q, reached.lambda);
+      examined_ = stability.known();
+    }
     if (!r.converged) return r.reason;
     take(reached, next);
     const std::string fault = system.fault(reached.q);
@@ -160,6 +167,7 @@ class StaticSteps final : public Steps {
     at_.unstable = true;
     return run_.audit->look(run_.state.q, reached, {&taken_, 1}, {}, next);
   }
+  bool is_large() const { return run_.system.layout.map.n_global > most_blocks; }
   std::string place() const { return run_.scene.table("time").where("analysis"); }
 
   int n_ = 1;                   // load steps asked for
@@ -173,6 +181,7 @@ class StaticSteps final : public Steps {
   } at_;
   static constexpr int most_blocks = 30000;  // beyond, the count would cost more than the step
   std::optional<Unstable> unstable_;         // the step tried last
+  bool examined_ = true;                     // whether it told
   struct Behind {
     State state;
     double next;

@@ -13,6 +13,8 @@ namespace hilo {
 namespace {
 
 bool quadratic(Shape s) { return info(s).n_nodes > info(s).n_corners; }
+/// Whose samples have the stress an order better than the rest of the cell: tetrahedra and wedges have no such points [barlow-1976].
+bool has_best_points(Shape s) { return quadratic(s) && info(s).n_corners == 8; }
 bool is_bar(Shape s) { return info(s).dimension < 3; }
 
 /// What a cell remembers; null where nothing is.
@@ -92,11 +94,16 @@ StressRecovery::StressRecovery(const System& s) : system_(s) {
   carried_.erase(std::unique(carried_.begin(), carried_.end()), carried_.end());
   if (!carried_.empty()) placed_.resize(s.X.size());
   find_sites();
-  std::vector<double> second(s.mesh->mesh.region_name.size(), 0.0);  // regions with quadratic cells
-  for (const SolidBatch* b : batches_)
-    if (quadratic(b->shape)) second[b->region] = 1;
-  s.comm->sum(second);
-  for (const int order : {1, 2}) patches_.push_back(made_patches(order, second));
+  const size_t n_regions = s.mesh->mesh.region_name.size();
+  std::vector<double> has(2 * n_regions, 0.0);  // of each region: quadratic cells; cells without best points
+  for (const SolidBatch* b : batches_) {
+    if (quadratic(b->shape)) has[2 * b->region] = 1;
+    if (!is_bar(b->shape) && !has_best_points(b->shape)) has[2 * b->region + 1] = 1;
+  }
+  s.comm->sum(has);
+  std::vector<int> degree(n_regions);
+  for (size_t r = 0; r < n_regions; ++r) degree[r] = has[2 * r] == 0 ? 1 : has[2 * r + 1] > 0 ? 2 : 3;
+  for (const int d : {1, 2, 3}) patches_.push_back(made_patches(d, degree));
 }
 
 void StressRecovery::find_sites() {
@@ -117,7 +124,7 @@ void StressRecovery::find_sites() {
   sites_.emplace(*s.comm, key);
 }
 
-StressRecovery::Patches StressRecovery::made_patches(int order, const std::vector<double>& second) const {
+StressRecovery::Patches StressRecovery::made_patches(int degree, const std::vector<int>& degree_of_region) const {
   const System& s = system_;
   std::vector<int> nodes;
   std::vector<std::vector<int>> corners_of(batches_.size());
@@ -125,7 +132,7 @@ StressRecovery::Patches StressRecovery::made_patches(int order, const std::vecto
   std::unordered_map<std::int64_t, int> index;
   for (size_t b = 0; b < batches_.size(); ++b) {
     const SolidBatch& batch = *batches_[b];
-    if (is_bar(batch.shape) || (second[batch.region] > 0) != (order == 2)) continue;
+    if (is_bar(batch.shape) || degree_of_region[batch.region] != degree) continue;
     const int n = info(batch.shape).n_nodes, corners = info(batch.shape).n_corners;
     for (size_t e = 0; e < batch.cells.size(); ++e)
       for (int a = 0; a < corners; ++a) {
@@ -136,7 +143,7 @@ StressRecovery::Patches StressRecovery::made_patches(int order, const std::vecto
         corners_of[b].push_back(it->second);
       }
   }
-  Patches p{order, std::move(nodes), {}, std::move(corners_of), Sharing(*s.comm, key)};
+  Patches p{degree, std::move(nodes), {}, std::move(corners_of), Sharing(*s.comm, key)};
   const size_t n = key.size();
   std::vector<double> shape(n * PatchFit::n_shape, 0.0);
   std::vector<StressPoint> points;
@@ -144,7 +151,7 @@ StressRecovery::Patches StressRecovery::made_patches(int order, const std::vecto
   const auto sample = [&](const Cell& at) {
     at.points(StressPoints::samples, points);
     samples.clear();
-    if (order == 2 && quadratic(at.batch->shape))
+    if (degree > 1 && quadratic(at.batch->shape))
       for (const StressPoint& q : points) samples.push_back(q.X);
     else
       samples.push_back(LinearCellMean(points).X);
@@ -160,8 +167,8 @@ StressRecovery::Patches StressRecovery::made_patches(int order, const std::vecto
   });
   p.sharing.combine(shape, PatchFit::n_shape);
   p.fit.reserve(n);
-  for (size_t v = 0; v < n; ++v) p.fit.emplace_back(order, shape.data() + v * PatchFit::n_shape);
-  const int width = PatchFit::n_moments(order);
+  for (size_t v = 0; v < n; ++v) p.fit.emplace_back(p.degree, shape.data() + v * PatchFit::n_shape);
+  const int width = PatchFit::n_moments(p.degree);
   std::vector<double> moments(n * width, 0.0);
   each_cell(p, nullptr, [&](size_t, size_t, std::span<const int> corner, const Cell& at) {
     sample(at);
@@ -175,20 +182,20 @@ StressRecovery::Patches StressRecovery::made_patches(int order, const std::vecto
 
 /// Polynomials of all patches about their corners (n x rows x 6).
 std::vector<double> StressRecovery::polynomials(const Patches& p, const Config& q, const Memory& memory) const {
-  const size_t n = p.node.size(), width = PatchFit::n_sums(p.order), size = static_cast<size_t>(PatchFit::n_rows(p.order)) * 6;
+  const size_t n = p.node.size(), width = PatchFit::n_sums(p.degree), size = static_cast<size_t>(PatchFit::n_rows(p.degree)) * 6;
   std::vector<double> sums(n * width, 0.0), polynomial(n * size);
   std::vector<StressPoint> points;
   each_cell(p, &q, [&](size_t b, size_t e, std::span<const int> corner, const Cell& at) {
     const SolidBatch& batch = *batches_[b];
     at.points(StressPoints::samples, points, of_cell(batch, memory, b, e));
-    if (p.order == 2 && quadratic(batch.shape)) {
+    if (p.degree > 1 && quadratic(batch.shape)) {
       for (const int v : corner)
         for (const StressPoint& q : points) p.fit[v].add_stress(q.X - system_.X[p.node[v]], q.S, sums.data() + v * width);
     } else {
       const LinearCellMean cell(points);
       for (const int v : corner) {
         p.fit[v].add_stress(cell.X - system_.X[p.node[v]], cell.S, sums.data() + v * width);
-        if (p.order == 1) PatchFit::add_slope(cell.slope, sums.data() + v * width);
+        if (p.degree == 1) PatchFit::add_slope(cell.slope, sums.data() + v * width);
       }
     }
   });
@@ -202,8 +209,7 @@ namespace {
 /// Mean of the polynomials of a cell's corners: of the fullest patches alone, and the more the deeper a corner lies inside the region.
 class CellPolynomial {
  public:
-  template <class Fit>
-  CellPolynomial(const System& s, const std::vector<int>& node, const std::vector<Fit>& fit, const double* polynomial, int rows,
+  CellPolynomial(const System& s, const std::vector<int>& node, const std::vector<PatchFit>& fit, const double* polynomial, int rows,
                  std::span<const int> corner) {
     int best = 0;
     for (const int v : corner) best = std::max(best, fit[v].rank());
@@ -213,30 +219,60 @@ class CellPolynomial {
     for (const int v : corner) {
       if (fit[v].rank() < best) continue;
       const double w = std::exp(-2 * (fit[v].off_centre2() - least));
-      terms_.push_back({s.X[node[v]], w, Rows(polynomial + static_cast<size_t>(v) * rows * 6, rows, 6)});
+      terms_.push_back({s.X[node[v]], w, fit[v], polynomial + static_cast<size_t>(v) * rows * 6});
       sum += w;
     }
     for (Term& t : terms_) t.weight /= sum;
   }
   Vec6 operator()(const Vec3& X) const {
     Vec6 S = Vec6::Zero();
-    for (const Term& t : terms_) S += t.weight * polynomial_at(t.p, X - t.centre);
+    for (const Term& t : terms_) t.fit.add_at(t.p, X - t.centre, t.weight, S);
     return S;
   }
 
  private:
-  using Rows = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>>;
   struct Term {
     Vec3 centre;
     double weight;
-    Rows p;
+    const PatchFit& fit;
+    const double* p;
   };
   std::vector<Term> terms_;
 };
 
 constexpr int n_values = 17;  // of a site: cells, S, F, plastic strain
+constexpr int n_passes = 2;   // over what the samples of quadratic hexahedra miss
 
 }  // namespace
+
+/// Samples (n_cells x n_samples x 6 of each batch) against the stress at the sites, interpolated: what is missed goes to the nodes as the
+/// samples did.
+void StressRecovery::add_missed(const std::vector<std::vector<double>>& samples, std::vector<double>& at_site) const {
+  std::vector<double> change(site_.size() * 6, 0.0);
+  std::vector<StressPoint> points;
+  Cell first;
+  for (size_t b = 0; b < batches_.size(); ++b) {
+    const SolidBatch& batch = *batches_[b];
+    if (samples[b].empty()) continue;
+    look_at(first, b, 0, nullptr);
+    first.points(StressPoints::samples, points);
+    const int n = info(batch.shape).n_nodes, m = static_cast<int>(points.size());
+    Eigen::MatrixXd N(n, m), nodal(6, n), missed(6, m);
+    for (int k = 0; k < m; ++k) N.col(k) = Eigen::Map<const Eigen::VectorXd>(points[k].N, n);
+    const Eigen::MatrixXd back = to_nodes(batch.shape).transpose();
+    for (size_t e = 0; e < batch.cells.size(); ++e) {
+      const int* site = site_of_[b].data() + e * n;
+      for (int a = 0; a < n; ++a) nodal.col(a) = Eigen::Map<const Vec6>(at_site.data() + static_cast<size_t>(site[a]) * n_values + 1);
+      missed = Eigen::Map<const Eigen::MatrixXd>(samples[b].data() + e * m * 6, 6, m);
+      missed.noalias() -= nodal * N;
+      nodal.noalias() = missed * back;
+      for (int a = 0; a < n; ++a) Eigen::Map<Vec6>(change.data() + static_cast<size_t>(site[a]) * 6) += nodal.col(a);
+    }
+  }
+  sites_->combine(change, 6);
+  for (size_t i = 0; i < site_.size(); ++i)
+    for (int c = 0; c < 6; ++c) at_site[i * n_values + 1 + c] += change[i * 6 + c] / at_site[i * n_values];
+}
 
 /// Bars have their own stress alone: the sums of its components and of their von Mises stresses.
 void StressRecovery::add_bars(const Config& q, std::vector<double>& at, std::vector<double>& cell) const {
@@ -272,14 +308,17 @@ StressRecovery::Result StressRecovery::recover(const Config& q, const Memory& me
   Result out;
   out.cell.assign(s.mesh->mesh.n_cells(), 0.0), out.cell_plastic = out.cell;
   std::vector<double> at_site(site_.size() * n_values, 0.0);
+  std::vector<std::vector<double>> samples(batches_.size());  // of quadratic hexahedra
   std::vector<StressPoint> points;
   std::vector<Mat3> F;
   for (const Patches& p : patches_) {
     const auto polynomial = polynomials(p, q, memory);
     each_cell(p, &q, [&](size_t b, size_t e, std::span<const int> corner, const Cell& at) {
       const SolidBatch& batch = *batches_[b];
-      const CellPolynomial P(s, p.node, p.fit, polynomial.data(), PatchFit::n_rows(p.order), corner);
+      const CellPolynomial P(s, p.node, p.fit, polynomial.data(), PatchFit::n_rows(p.degree), corner);
       at.points(StressPoints::samples, points, of_cell(batch, memory, b, e));
+      for (size_t k = 0; p.degree == 3 && k < points.size(); ++k)
+        samples[b].insert(samples[b].end(), points[k].S.data(), points[k].S.data() + 6);
       Eigen::Matrix<double, 6, Eigen::Dynamic> rest(6, points.size());
       for (size_t q = 0; q < points.size(); ++q) rest.col(q) = points[q].S - P(points[q].X);
       const Eigen::Matrix<double, 6, Eigen::Dynamic> extrapolated = rest * to_nodes(batch.shape).transpose();
@@ -302,6 +341,7 @@ StressRecovery::Result StressRecovery::recover(const Config& q, const Memory& me
   sites_->combine(at_site, n_values);
   for (size_t i = 0; i < site_.size(); ++i)
     for (int c = 1; c < n_values; ++c) at_site[i * n_values + c] /= at_site[i * n_values];
+  for (int pass = 0; pass < n_passes; ++pass) add_missed(samples, at_site);
 
   std::vector<double> error(2 * site_.size(), 0.0);  // sum over the cells of V e^2 and of V
   for (const Patches& p : patches_)

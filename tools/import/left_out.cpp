@@ -124,8 +124,6 @@ constexpr std::pair<std::string_view, const char*> losses[] = {
     {"SUPORT", support},
     {"SUPORT1", support},
     {"MPC", tie},
-    {"MPCADD", tie},
-    {"case control MPC", tie},
     {"RBE1", tie},
     {"RBE2", tie},
     {"RBE3", tie},
@@ -172,6 +170,7 @@ bool begins_with(std::string_view what, std::string_view words) {
 
 std::string_view loss_of(const NotRead& n) {
   if (n.output || n.what.find(": numbers behind its ") != std::string::npos) return nothing;
+  if (n.what.find(" of a set that the first subcase does not take") != std::string::npos) return nothing;
   for (const auto& [words, lost] : losses)
     if (begins_with(n.what, words)) return lost;
   return other;

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
+#include "linear/petsc/inertia.hpp"
 
 namespace hilo::petsc {
 
@@ -48,6 +49,11 @@ SolveReport DirectSolver::solve(std::span<const double> b, std::span<double> x, 
   if (report.residual > std::max(1e-6, tolerance_) && max_norm(r_) > 1e-12 * (A * max_norm(x_) + norm))
     report.ok = false, report.message = fmt::format("linear residual {:.1e}", report.residual);
   return report;
+}
+
+std::optional<int> DirectSolver::eigenvalues_below_zero(int first_row) const {
+  matrix_->assemble();
+  return petsc::eigenvalues_below_zero(matrix_->mat(), *shared_, first_row);
 }
 
 std::string DirectSolver::name() const { return size() > 1 ? fmt::format("direct (MUMPS, {} ranks)", size()) : "direct (MUMPS)"; }

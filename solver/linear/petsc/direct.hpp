@@ -16,6 +16,7 @@ class DirectSolver final : public KktSolver {
   void add_diagonal(int block, const double d[3]) override { matrix_->add_diagonal(block, d); }
   void sum_shared(std::span<double> local) override { shared_->sum(local); }
   SolveReport solve(std::span<const double> b, std::span<double> x, double) override;
+  std::optional<int> eigenvalues_below_zero(int first_row) const override;
   bool repeats_cheaply() const override { return is_mostly_dense_; }
   double bytes() const override { return matrix_->bytes() + factor_bytes_; }
   double set_up_seconds() const override { return set_up_; }
@@ -35,7 +36,7 @@ class DirectSolver final : public KktSolver {
   bool is_mostly_dense_ = false;  // bodies and multipliers, whose positions shall be exact; a solve more costs messages
   const Cliques* cliques_ = nullptr;
   std::optional<SharedBlocks> shared_;
-  std::optional<BlockMatrix> matrix_;
+  mutable std::optional<BlockMatrix> matrix_;
   Mat factor_ = nullptr;
   Vector x_, b_, r_, dx_;
 };

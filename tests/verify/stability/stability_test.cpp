@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What statics, starts from equilibrium and paths say of stability: a bar on a torsion spring under a load that buckles it, and columns.
+#include <fmt/format.h>
+
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -288,6 +290,39 @@ reach = 0.02
                                                   "flow";
     }
   EXPECT_NE((ran.out + ran.err).find("largest load"), std::string::npos);
+}
+
+// Truth: a column is stable below Euler's load and not above, and the upright bar not above two thirds of its load.  Solvers that cannot
+// count say so.
+TEST(StaticStability, EverySolverTellsOrSaysThatItDoesNot) {
+  Column c;
+  c.write("column.toml", column("[-1, 0, 0]", "static", 4));
+  c.write("bar.toml", bar(0, "analysis = \"static\"\nsteps = 2\n"));
+  const auto solve = [&](int ranks, const std::string& what, bool counts, bool stable) {
+    const std::string command = "hilo-solve -o run.h5 " + what;
+    const Ran ran = ranks == 1 ? c.run(command) : mpirun(ranks, command, c.path());
+    SCOPED_TRACE(command + "\n" + ran.err);
+    const std::string json = text_of(c / "run.json");
+    EXPECT_EQ(ran.exit, 0);
+    EXPECT_EQ(ran.err.find("stability was not examined") == std::string::npos, counts);
+    EXPECT_EQ(json.find("unstable_states") != std::string::npos, counts);
+    EXPECT_EQ(ran.err.find("the equilibrium is not stable") == std::string::npos, stable || !counts);
+    if (counts && stable) {
+      EXPECT_NE(json.find("\"unstable_states\": 0"), std::string::npos);
+    }
+  };
+  const auto load = [](double share) { return fmt::format(" --set 'load.P.force=[{}, 0, 0]'", -share * euler); };
+  for (const int ranks : {1, 2, 3}) {
+    const std::string parts = ranks == 1 ? "mesh.h5" : "parts.h5";
+    if (ranks > 1) {
+      ASSERT_EQ(c.run(fmt::format("hilo-part --quiet mesh.h5 -n {} -o parts.h5", ranks)).exit, 0);
+    }
+    solve(ranks, "column.toml " + parts + " --set solver.kind=direct" + load(0.95), true, true);
+    solve(ranks, "column.toml " + parts + " --set solver.kind=bddc" + load(1.1), false, false);
+    if (ranks == 2) solve(ranks, "column.toml " + parts + " --set solver.kind=direct" + load(1.5), true, false);
+  }
+  solve(1, "bar.toml --set solver.kind=direct", true, false);
+  solve(1, "bar.toml --set solver.kind=direct --set 'load.P.force=[0, 0, -99]'", true, true);
 }
 
 }  // namespace hilo::test

@@ -74,6 +74,8 @@ void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& i
       c.title = value;
     else if (word == "SPC")
       c.spc = number_in(value, line);
+    else if (word == "MPC")
+      c.mpc = number_in(value, line);
     else if (word == "LOAD")
       c.load = number_in(value, line);
     else if (word == "METHOD")

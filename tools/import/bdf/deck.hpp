@@ -85,7 +85,7 @@ struct BdfSpringData {
 /// What the first subcase takes; -1: none named.
 struct BdfCase {
   std::string title, solution;  // "101"
-  std::int64_t spc = -1, load = -1, method = -1, step = -1, number = -1;
+  std::int64_t spc = -1, load = -1, mpc = -1, method = -1, step = -1, number = -1;
   bool any = false;  // case control is there: CEND is said
 };
 
@@ -132,6 +132,8 @@ struct BdfDeck {
   BdfCase chosen;
   std::map<std::int64_t, std::vector<BdfSupport>> supports;  // by SID
   std::map<std::int64_t, BdfSupportSum> support_sums;        // SPCADD
+  std::map<std::int64_t, std::vector<std::string>> ties;     // MPC by SID: places
+  std::map<std::int64_t, BdfSupportSum> tie_sums;            // MPCADD
   std::map<std::int64_t, std::vector<BdfLoad>> loads;        // by SID
   std::map<std::int64_t, BdfSum> load_sums;                  // LOAD
   std::map<std::int64_t, int> modes;                         // EIGRL, EIGR: how many, 0 not said

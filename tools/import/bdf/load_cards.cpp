@@ -20,12 +20,16 @@ void read_spc(const BdfEntry& e, BdfDeck& deck, Imported&) {
   for (size_t i = 1; i < 7; i += 3)
     if (!d.empty(i)) deck.supports[d.integer(0)].push_back({{d.integer(i)}, components(d, i + 1), d.number(i + 2), d.place()});
 }
-void read_spcadd(const BdfEntry& e, BdfDeck& deck, Imported&) {
-  auto& sum = deck.support_sums[e.data.integer(0)];
-  if (!sum.place.empty()) throw Error(e.data.place(0), fmt::format("SPCADD {} is given twice", e.data.integer(0)));
+void read_sum(const BdfEntry& e, std::map<std::int64_t, BdfSupportSum>& sums) {
+  auto& sum = sums[e.data.integer(0)];
+  if (!sum.place.empty()) throw Error(e.data.place(0), fmt::format("{} {} is given twice", e.name, e.data.integer(0)));
   sum.place = e.data.place();
   grid_list(e.data, 1, sum.sets);
 }
+void read_spcadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.support_sums); }
+void read_mpcadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.tie_sums); }
+/// Where it stands alone: it is not read, and lost only where case control takes it.
+void read_mpc(const BdfEntry& e, BdfDeck& deck, Imported&) { deck.ties[e.data.integer(0)].push_back(e.data.place()); }
 
 Vec3 vector_at(const DataLine& d, size_t field) { return {d.number(field), d.number(field + 1), d.number(field + 2)}; }
 /// The same where a load has no direction without it.
@@ -128,6 +132,7 @@ std::span<const BdfCard> bdf_load_cards() {
       {"SPC1", read_spc1},     {"SPC", read_spc},       {"SPCADD", read_spcadd}, {"FORCE", read_force},   {"FORCE1", read_force},
       {"MOMENT", read_force},  {"MOMENT1", read_force}, {"GRAV", read_gravity},  {"PLOAD4", read_pload4}, {"PLOAD", read_pload},
       {"PLOAD2", read_pload2}, {"LOAD", read_load},     {"EIGRL", read_modes},   {"EIGR", read_modes},    {"TSTEP", read_tstep},
+      {"MPC", read_mpc},       {"MPCADD", read_mpcadd},
   };
   return cards;
 }

@@ -25,6 +25,7 @@ class BdfScene {
   // scene.cpp
   void materials();
   void supports();
+  void tell_ties();
   void supports_of_bodies();
   void time();
   // scene_links.cpp

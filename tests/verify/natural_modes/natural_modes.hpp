@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What tests of modes share: runs, bodies, slender beams, rows of a response.
+#pragma once
+#include <numbers>
+#include <sstream>
+
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+
+constexpr double pi = std::numbers::pi;
+inline const std::string steel = "[material.m]\nE = 2e11\nnu = 0\ndensity = 8000\n[region.\"*\"]\nmaterial = \"m\"\n";
+
+/// A scene of the test, and what modes it has.
+class NaturalModes : public testing::Test {
+ protected:
+  /// Rows of /history/mode, the state of rest left out.
+  Eigen::MatrixXd modes(const std::string& scene, int wanted, const std::string& options = "") {
+    work.write("scene.toml", scene + "[time]\nanalysis = \"modes\"\nmodes = " + std::to_string(wanted) + "\n");
+    ran = work.run("hilo-solve scene.toml " + mesh + " -o run.h5 " + options);
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    if (ran.exit != 0) return Eigen::MatrixXd::Zero(wanted, 10);
+    const Eigen::MatrixXd all = Results(work / "run.h5").history("mode");
+    EXPECT_LT(all.col(8).maxCoeff(), 1e-5) << "shapes satisfy the equations";
+    return all.bottomRows(all.rows() - 1);
+  }
+  Eigen::VectorXd frequencies(const std::string& scene, int wanted) { return modes(scene, wanted).col(0); }
+  void use(const Mesh& m, const std::vector<Fidelity>& fidelity = {}) {
+    write_mesh(work / "mesh.h5", m, {"test"});
+    mesh = "mesh.h5";
+    if (fidelity.empty()) return;
+    write_tags(work / "tags.h5", work / "mesh.h5", fidelity, {"test"});
+    mesh = "tags.h5";
+  }
+  Workplace work;
+  std::string mesh;
+  Ran ran;
+};
+
+inline std::string body(const std::string& name, double mass, const Vec3& com, const Vec3& inertia) {
+  return "[[body]]\nname = \"" + name + "\"\nmass = " + std::to_string(mass) + "\ncom = [" + std::to_string(com[0]) + ", " +
+         std::to_string(com[1]) + ", " + std::to_string(com[2]) + "]\ninertia = [" + std::to_string(inertia[0]) + ", " +
+         std::to_string(inertia[1]) + ", " + std::to_string(inertia[2]) + "]\n";
+}
+
+inline Mesh beam(const Vec3& size, int n) {
+  BlockOptions o;
+  o.shape = Shape::hex20r;
+  o.n[0] = n;
+  o.high = size;
+  return block_mesh(o);
+}
+
+/// Timoshenko's beam by its two bending branches would be more than a slender one needs: corrections of order (r/L)^2 are below 2e-4 here.
+inline const double r_z = 0.01 / std::sqrt(12), r_y = 0.015 / std::sqrt(12),
+                    wave = std::sqrt(2e11 / 8000);                                                // radii of gyration [m], bar speed
+inline double bending(double beta_l, double r) { return beta_l * beta_l * r * wave / (2 * pi); }  // of a beam 1 m long  [Hz]
+
+/// Rows of a response: frequency, amplitude and phase.
+struct Answer {
+  double f, size, phase;
+};
+inline std::vector<Answer> answers(const Ran& ran) {
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  std::istringstream rows(ran.out);
+  std::string line;
+  std::getline(rows, line);
+  std::vector<Answer> out;
+  for (Answer a{}; std::getline(rows, line); out.push_back(a))
+    EXPECT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &a.f, &a.size, &a.phase), 3) << line;
+  return out;
+}
+
+}  // namespace hilo::test
