@@ -15,11 +15,12 @@ namespace {
 
 constexpr double aim = 0.5, most = 1.4;  // of what is asked: error that a pass aims at, and that is good enough
 constexpr double most_before = 3;        // the same before the end
-constexpr size_t most_passes = 8;
+constexpr size_t most_passes = 12;
 constexpr double steep = 64,
                  steepest = 1000;     // by which a demand falls at most, where an error is no small part of the motion, and where it is
 constexpr double loose = 1e-4;        // of the length: where a method may be chosen, a first pass asks no less
-constexpr double many_steps = 5000;   // of second order: gauss is tried first
+constexpr double many_steps = 5000;   // of second order: gauss is tried first,
+constexpr double dear = 10;           // a step of it costs as much as this many of them: so long as it may be cheaper
 constexpr double most_steps = 100;    // of a pass, over those of the first by the same method
 constexpr double least_share = 1e-7;  // of the length: demands of methods above second order below it ask for round-off
 
@@ -91,9 +92,13 @@ bool plan_another(StepPlan& plan, const RunReport& report, const Config& q, cons
                                 : estimate.is_there() && estimate.splits() == 0 && before && changed <= 2 * (before->error + now.error);
   const bool is_met = now.error <= most * plan.asked && estimate.largest() <= most_before * plan.asked;
   if (!holds) {
-    if (by_method > 3)
+    const double less = is_met && estimate.is_there() && estimate.splits() == 0 ? 0.35 : 0.1;
+    const double steps = static_cast<double>(now.steps) * std::pow(less, -1. / 3);
+    // of second order, from its own pass
+    const double others = second_order ? static_cast<double>(second_order->steps) * std::sqrt(second_order->error / (aim * plan.asked)) : 0;
+    if (by_method > 3 && dear * steps > others)
       return fall_back("the error is not known: " + (estimate.is_there() ? "passes do not agree with it" : estimate.why()));
-    return again(now.method, now.demand * (is_met && estimate.is_there() && estimate.splits() == 0 && !before ? 0.35 : 0.1));
+    return again(now.method, less * now.demand);
   }
   if (is_met) return false;
   double seen = power;
