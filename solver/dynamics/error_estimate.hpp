@@ -38,6 +38,8 @@ class ErrorEstimate {
   double share(double error) const { return motion_ > 0 ? error / motion_ : 0; }
   /// Whether the motion made distances, small beside it, grow exponentially.
   bool is_chaotic() const { return growth() > 0; }
+  /// What the motion makes of the rounding of the start until t, where it is chaotic, else 0 [m].
+  double rounding(double t) const;
   /// Time after which positions mean nothing, the error being a fifth of the motion; infinite where there is none.
   double meaningless_from() const;
   void archive(class Archive& a);
