@@ -81,7 +81,7 @@ double ErrorEstimate::meaningless_from() const {
 }
 
 void ErrorEstimate::archive(Archive& a) {
-  a("error estimate", order_, splits_, t_, apart_, most_, most_t_, motion_, spacing_, samples_, why_);
+  a("error estimate", order_, splits_, t_, apart_, most_, most_t_, motion_, spacing_, samples_, why_, is_lost_);
 }
 
 }  // namespace hilo

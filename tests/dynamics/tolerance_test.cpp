@@ -98,6 +98,14 @@ TEST(ErrorEstimate, OfAFixedStepIsToldAndWarnedOf) {
   }
 }
 
+// A closed chain that two joints hit hard: steps are cut, those twice as long fail, and what cannot be estimated is told.
+TEST(ErrorEstimate, ThatIsLostIsTold) {
+  const Workplace w;
+  const Ran ran = w.run("hilo-solve " + std::string(HILO_SOURCE) + "/tests/cases/lost_estimate.toml -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_NE(ran.err.find("the error of positions is not known: a step twice as long fails"), std::string::npos) << ran.err;
+}
+
 // Truth: a body in free rotation under no force keeps its angular momentum; a hundred seconds at 1e-6 take seconds.
 TEST(ErrorEstimate, FreeBodyForAHundredSeconds) {
   const Workplace w;
