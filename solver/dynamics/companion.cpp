@@ -54,7 +54,7 @@ void Companion::catch_up(const State& s, double added, ErrorEstimate& estimate) 
   swap_memory();
   const bool there = step(s.t, 0, estimate);
   swap_memory();
-  if (!there) return estimate.give_up(fmt::format("a step twice as long fails at t = {:.4g} s", state_.t));
+  if (!there) return estimate.lose(fmt::format("a step twice as long fails at t = {:.4g} s", state_.t));
   estimate.look(s.t, apart(system_, s.q, state_.q), apart(system_, s.q, start_), integrator_->order(), added);
 }
 

@@ -67,6 +67,11 @@ double ErrorEstimate::error(double apart, double t) const {
   return apart <= small_part * motion_ ? apart / factor : apart;
 }
 
+double ErrorEstimate::rounding(double t) const {
+  const double rate = growth();
+  return rate > 0 ? std::numeric_limits<double>::epsilon() * motion_ * std::exp(rate * t) : 0;
+}
+
 double ErrorEstimate::meaningless_from() const {
   const double nothing = small_part * motion_, never = std::numeric_limits<double>::infinity();
   if (!(motion_ > 0)) return never;
@@ -76,7 +81,7 @@ double ErrorEstimate::meaningless_from() const {
 }
 
 void ErrorEstimate::archive(Archive& a) {
-  a("error estimate", order_, splits_, t_, apart_, most_, most_t_, motion_, spacing_, samples_, why_);
+  a("error estimate", order_, splits_, t_, apart_, most_, most_t_, motion_, spacing_, samples_, why_, is_lost_);
 }
 
 }  // namespace hilo

@@ -27,6 +27,9 @@ class ErrorEstimate {
   int splits() const { return splits_; }
   /// There is none from here on, for this reason.
   void give_up(const std::string& why) { why_ = why; }
+  /// The same, since the coarser one cannot go on: so coarse are the steps.
+  void lose(const std::string& why) { why_ = why, is_lost_ = true; }
+  bool is_lost() const { return is_lost_; }
   const std::string& why() const { return why_; }
   bool is_there() const { return why_.empty() && t_ > 0; }
 
@@ -38,6 +41,8 @@ class ErrorEstimate {
   double share(double error) const { return motion_ > 0 ? error / motion_ : 0; }
   /// Whether the motion made distances, small beside it, grow exponentially.
   bool is_chaotic() const { return growth() > 0; }
+  /// What the motion makes of the rounding of the start until t, where it is chaotic, else 0 [m].
+  double rounding(double t) const;
   /// Time after which positions mean nothing, the error being a fifth of the motion; infinite where there is none.
   double meaningless_from() const;
   void archive(class Archive& a);
@@ -54,6 +59,7 @@ class ErrorEstimate {
   double t_ = 0, apart_ = 0, most_ = 0, most_t_ = 0, motion_ = 0, spacing_ = 0;
   std::vector<Sample> samples_;
   std::string why_ = "";
+  bool is_lost_ = false;
 };
 
 }  // namespace hilo

@@ -120,6 +120,8 @@ class Run {
     const auto tell = [&](const std::string& what) { warn(run_.scene.path, what); };
     if (run_.plan.asked > 0 && !e.why().empty() && run_.scene.table("time").text("error_estimate") != "never")
       return tell("the error at the end of the run is not known, only the errors of single steps: " + e.why());
+    if (e.is_lost() && run_.plan.asked == 0)
+      tell("the error of positions is not known: " + e.why() + ": take a shorter time.step, or time.tolerance");
     if (!e.is_there()) return;
     if (!run_.plan.unmet.empty()) tell("time.tolerance is not met: " + run_.plan.unmet);
     if (const double t = e.meaningless_from(); t < run_.report.t && e.is_chaotic())

@@ -15,12 +15,14 @@ namespace {
 
 constexpr double aim = 0.5, most = 1.4;  // of what is asked: error that a pass aims at, and that is good enough
 constexpr double most_before = 3;        // the same before the end
-constexpr size_t most_passes = 8;
+constexpr size_t most_passes = 12;
 constexpr double steep = 64,
                  steepest = 1000;     // by which a demand falls at most, where an error is no small part of the motion, and where it is
 constexpr double loose = 1e-4;        // of the length: where a method may be chosen, a first pass asks no less
-constexpr double many_steps = 5000;   // of second order: gauss is tried first
+constexpr double many_steps = 5000;   // of second order: gauss is tried first,
+constexpr double dear = 10;           // a step of it costs as much as this many of them: so long as it may be cheaper
 constexpr double most_steps = 100;    // of a pass, over those of the first by the same method
+constexpr double least_step = 1e-14;  // of the length: smaller local errors of second order are round-off
 constexpr double least_share = 1e-7;  // of the length: demands of methods above second order below it ask for round-off
 
 /// Gauss is for rigid bodies here, serial.  Forces with kinks spoil any order above the second, and so do its dampers, which see the mean
@@ -79,21 +81,31 @@ bool plan_another(StepPlan& plan, const RunReport& report, const Config& q, cons
   /// By energy-momentum, where another method was chosen that does not serve.
   const auto fall_back = [&](const std::string& why) {
     if (!plan.chooses_method || order == 2) return says(why);
-    plan.chooses_method = false;
     const double known = second_order ? second_order->demand * aim * plan.asked / second_order->error : 0;
-    return again(std::string(EnergyMomentum::name), known > 0 ? known : first_demand(plan.asked, 2, system.length, end));
+    const double pieces = known > 0 ? static_cast<double>(second_order->steps) * std::sqrt(second_order->demand / known) : 0;
+    const bool is_far =
+        known > 0 && (pieces > most_steps * static_cast<double>(second_order->steps) || known * end / pieces < least_step * system.length);
+    if (is_far && report.complete) return says(why);
+    plan.chooses_method = false;
+    const std::string method(EnergyMomentum::name);
+    return again(method, is_far ? second_order->demand / steep : known > 0 ? known : first_demand(plan.asked, 2, system.length, end));
   };
   if (!report.complete) return order > 2 && fall_back("");
   if (plan.passes.size() >= most_passes) return says(fmt::format("{} runs with ever shorter steps did not reach it", plan.passes.size()));
 
+  if (estimate.rounding(end) > plan.asked) return says("the motion is chaotic: by the end it makes more of rounding alone, at any step");
   // The leading term of a high order rules late: two passes tell whether their estimates hold.
   const bool holds = order == 2 ? estimate.is_there()
                                 : estimate.is_there() && estimate.splits() == 0 && before && changed <= 2 * (before->error + now.error);
   const bool is_met = now.error <= most * plan.asked && estimate.largest() <= most_before * plan.asked;
   if (!holds) {
-    if (by_method > 3)
+    const double less = is_met && estimate.is_there() && estimate.splits() == 0 ? 0.35 : 0.1;
+    const double steps = static_cast<double>(now.steps) * std::pow(less, -1. / 3);
+    // of second order, from its own pass
+    const double others = second_order ? static_cast<double>(second_order->steps) * std::sqrt(second_order->error / (aim * plan.asked)) : 0;
+    if (by_method > 3 && dear * steps > others)
       return fall_back("the error is not known: " + (estimate.is_there() ? "passes do not agree with it" : estimate.why()));
-    return again(now.method, now.demand * (is_met && estimate.is_there() && estimate.splits() == 0 && !before ? 0.35 : 0.1));
+    return again(now.method, less * now.demand);
   }
   if (is_met) return false;
   double seen = power;
@@ -103,10 +115,11 @@ bool plan_another(StepPlan& plan, const RunReport& report, const Config& q, cons
   less = std::max(less, 1 / (estimate.share(now.error) > 0.05 ? steep : steepest));
   const double demand = less * now.demand, steps = static_cast<double>(now.steps) * std::pow(less, order == 2 ? -1. / 2 : -1. / 3);
   const std::string lack = fmt::format("{:.3g} m at the end where {:.3g} m are asked", now.error, plan.asked);
-  if (order > 2 && demand < least_share * system.length) return fall_back(lack + ": steps as short as that are lost in round-off");
   const bool knows_gauss = std::ranges::any_of(plan.passes, [](const StepPlan::Pass& p) { return p.method == Gauss::name; });
   if (order == 2 && plan.chooses_method && !knows_gauss && steps > many_steps)
     return again(std::string(Gauss::name), first_demand(plan.asked, 6, system.length, end));
+  if (order > 2 ? demand < least_share * system.length : demand * end / steps < least_step * system.length)
+    return fall_back(lack + ": steps as short as that are lost in round-off");
   if (steps > most_steps * static_cast<double>(first->steps))
     return says(fmt::format("{}: that would take about {:.2g} steps instead of {}", lack, steps, now.steps));
   return again(now.method, demand);

@@ -2,6 +2,7 @@
 // time.tolerance is the error of positions at the end, as a fraction of the scene's length, also where the motion multiplies early ones;
 // variable steps keep the order; a fixed step tells its own error.
 #include <fstream>
+#include <numbers>
 
 #include "dynamics/scenes.hpp"
 
@@ -97,6 +98,14 @@ TEST(ErrorEstimate, OfAFixedStepIsToldAndWarnedOf) {
   }
 }
 
+// A closed chain that two joints hit hard: steps are cut, those twice as long fail, and what cannot be estimated is told.
+TEST(ErrorEstimate, ThatIsLostIsTold) {
+  const Workplace w;
+  const Ran ran = w.run("hilo-solve " + std::string(HILO_SOURCE) + "/tests/cases/lost_estimate.toml -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_NE(ran.err.find("the error of positions is not known: a step twice as long fails"), std::string::npos) << ran.err;
+}
+
 // Truth: a body in free rotation under no force keeps its angular momentum; a hundred seconds at 1e-6 take seconds.
 TEST(ErrorEstimate, FreeBodyForAHundredSeconds) {
   const Workplace w;
@@ -119,6 +128,108 @@ tolerance = 1e-6
   for (size_t i = 0; i < truth.size(); ++i) error = std::max(error, (points[i] - truth[i]).norm());
   EXPECT_LT(error, 2e-6 * number_of(w, "run.json", "length"));
   EXPECT_LT(number_of(w, "run.json", "processor_seconds"), 20);
+}
+
+/// Two equal rods that hang on each other in a plane, from the horizontal at rest: the centre of the lower one, by RK4 on their angles.
+class DoublePendulum {
+ public:
+  Vec3 at(double t) {
+    for (; t_ < t; t_ += h_) {
+      h_ = std::min(1e-4, t - t_);
+      const Eigen::Vector4d a = rate(y_), b = rate(y_ + h_ / 2 * a), c = rate(y_ + h_ / 2 * b), d = rate(y_ + h_ * c);
+      y_ += h_ / 6 * (a + 2 * b + 2 * c + d);
+    }
+    return {std::sin(y_[0]) + std::sin(y_[1]) / 2, 0, -std::cos(y_[0]) - std::cos(y_[1]) / 2};
+  }
+
+ private:
+  static Eigen::Vector4d rate(const Eigen::Vector4d& y) {
+    const double I = 0.08333333, g = 9.81, c = std::cos(y[0] - y[1]), s = std::sin(y[0] - y[1]);
+    Eigen::Matrix2d M;
+    M << I + 1.25, c / 2, c / 2, I + 0.25;
+    const Eigen::Vector2d f(-s / 2 * y[3] * y[3] - 1.5 * g * std::sin(y[0]), s / 2 * y[2] * y[2] - g / 2 * std::sin(y[1]));
+    const Eigen::Vector2d a = M.inverse() * f;
+    return {y[2], y[3], a[0], a[1]};
+  }
+  double t_ = 0, h_ = 0;
+  Eigen::Vector4d y_{std::numbers::pi / 2, std::numbers::pi / 2, 0, 0};
+};
+
+void write_double_pendulum(const Workplace& w) {
+  w.write("scene.toml", R"(gravity = [0, 0, -9.81]
+body = [{name = "upper", mass = 1, com = [0.5, 0, 0], inertia = [0.001, 0.08333333, 0.08333333, 0, 0, 0]},
+        {name = "lower", mass = 1, com = [1.5, 0, 0], inertia = [0.001, 0.08333333, 0.08333333, 0, 0, 0]}]
+joint = [{name = "top", kind = "revolute", a = "ground", b = "upper", at = [0, 0, 0], axis = [0, 1, 0]},
+         {name = "elbow", kind = "revolute", a = "upper", b = "lower", at = [1, 0, 0], axis = [0, 1, 0]}]
+[time]
+end = 30
+)");
+}
+
+// Large swings for long: no tolerance holds at 30 s, where a rounding error has become as large as the motion, and the run says until when
+// positions mean anything.  At 2 s and 10 s it meets what is asked.
+TEST(Chaos, IsToldWithTheTimeAfterWhichPositionsMeanNothing) {
+  for (const char* steps : {"--set time.tolerance=1e-4", "--set time.step=5e-4"}) {
+    const Workplace w;
+    write_double_pendulum(w);
+    const Ran ran = w.run(std::string("hilo-solve scene.toml -o run.h5 ") + steps);
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    EXPECT_NE(ran.err.find("the motion is chaotic"), std::string::npos) << ran.err;
+    const double told = number_of(w, "run.json", "meaningless_from"), motion = number_of(w, "run.json", "motion");
+    const Results r(w / "run.h5");
+    const Eigen::MatrixXd lower = r.history("body/lower");
+    DoublePendulum truth;
+    double lost = 0;  // when the error first is a fifth of the motion
+    for (Eigen::Index i = 0; i < lower.rows() && lost == 0; ++i) {
+      const double t = r.t()[static_cast<size_t>(i)];
+      if ((lower.row(i).head(3).transpose() - truth.at(t)).norm() > 0.2 * motion) lost = t;
+    }
+    EXPECT_GT(told / lost, 0.7) << steps << " " << lost;
+    EXPECT_LT(told / lost, 1.5) << steps << " " << lost;
+  }
+  for (const char* end : {"2", "10"}) {
+    const Workplace w;
+    write_double_pendulum(w);
+    const Ran ran = w.run(std::string("hilo-solve scene.toml -o run.h5 --set time.tolerance=1e-4 --set time.end=") + end);
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    EXPECT_EQ(ran.err.find("not met"), std::string::npos) << ran.err;
+    const Vec3 centre = last_points(Results(w / "run.h5"), false)[0];  // of the lower one, the first by name
+    EXPECT_LT((centre - DoublePendulum().at(std::stod(end))).norm(), 2e-4 * number_of(w, "run.json", "length")) << end;
+  }
+}
+
+// Flexible four-bar drawn flat, where branches meet: it starts, and steps follow the tolerance.  Truth: equal steps by another method.
+TEST(SingularStart, ByTolerance) {
+  const Workplace w;
+  for (const char* file : {"tolerance_singular_start.toml", "tolerance_singular_start.inp"})
+    std::filesystem::copy_file(std::string(HILO_SOURCE) + "/tests/cases/" + file, w / file);
+  for (const char* command : {"hilo-import --quiet tolerance_singular_start.inp --regions b0,b1,b2 -o mesh.h5",
+                              "hilo-tag --quiet mesh.h5 --rest nonlinear -o tags.h5"}) {
+    const Ran ran = w.run(command);
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+  }
+  const auto ends = [&](const std::string& more) {
+    const Ran ran = w.run("hilo-solve --quiet tolerance_singular_start.toml tags.h5 -o run.h5 --set time.end=0.02 " + more);
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    std::vector<Vec3> out;
+    const Results r(w / "run.h5");
+    for (const char* probe : {"pb0", "pb1", "pb2"}) {
+      const Eigen::MatrixXd m = r.history(std::string("probe/") + probe);
+      out.emplace_back(m.row(m.rows() - 1).head(3).transpose());
+    }
+    return out;
+  };
+  const auto found = ends("");
+  const double asked = 1e-4 * number_of(w, "run.json", "length");
+  EXPECT_NE(text_of(w / "run.json").find("\"met\": true"), std::string::npos);
+  std::filesystem::copy_file(w / "tolerance_singular_start.toml", w / "copy.toml");
+  const std::string text = text_of(w / "copy.toml");
+  w.write("tolerance_singular_start.toml", text.substr(0, text.find("tolerance = ")));
+  const auto truth = ends("--set time.step=4e-5 --set time.error_estimate='\"never\"' " + integrator("mid-point"));
+  double error = 0;
+  for (size_t i = 0; i < truth.size(); ++i) error = std::max(error, (found[i] - truth[i]).norm());
+  EXPECT_LT(error, 2 * asked);
+  EXPECT_GT(error, 0.05 * asked);
 }
 
 // Truth: RK4 on Euler's equations.  Steps change by a factor of three over the run; the order is that of error over number of steps.

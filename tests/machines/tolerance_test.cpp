@@ -90,7 +90,8 @@ TEST_P(MachinesByTolerance, EndAsNearTheTruthAsAsked) {
   EXPECT_LE(unmet, judged / 3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, MachinesByTolerance, testing::Values("chain", "floating"), [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(Families, MachinesByTolerance, testing::Values("chain", "floating", "tree", "sprung", "parallelogram"),
+                         [](const auto& info) { return info.param; });
 
 }  // namespace
 }  // namespace hilo::test
