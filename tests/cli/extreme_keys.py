@@ -152,6 +152,8 @@ def entry(section, kind, keys, tried, value):
         beside.add("inertia")
     if section == "quantity":
         beside.add("sensor")
+    if kind == "matrix":
+        beside.add("line_mass")
     for key, type_, default in keys:
         if key == tried:
             lines.append(f"{key} = {value}")
