@@ -72,6 +72,13 @@ void respond(const BeamCell& cell, const Stage& s, Response& elastic, Response& 
   }
 }
 
+/// Inertia, weight and drag on the points.
+Rows forces_of_mass(const BeamCell& cell, const Stage& s, const Vec3& gravity) {
+  Rows a = rows_of(*s.a, cell.ends) - everywhere(gravity * s.load_factor);
+  if (s.v && cell.alpha > 0) a += cell.alpha * rows_of(*s.v, cell.ends);
+  return cell.M * a;
+}
+
 }  // namespace
 
 void Beams::add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSection& section, double beta, double alpha) {
@@ -103,7 +110,6 @@ void Beams::number(Layout& layout) {
 void Beams::evaluate(Pass& p) const {
   thread_local ConnectorGradient left, right;
   const Stage& s = p.s;
-  const Rows weight = everywhere(points_.gravity * s.load_factor);
   for (size_t k = 0; k < cells.size(); ++k) {
     if (!points_.counts(static_cast<int>(k))) continue;
     const BeamCell& cell = cells[k];
@@ -115,9 +121,7 @@ void Beams::evaluate(Pass& p) const {
     for (int m = 0; m < max_measures; ++m) force[m] = elastic.s[m] + viscous.s[m];
     add_force(p, c, left, force);
 
-    Rows F = cell.M * (rows_of(*s.a, c) - weight);  // inertia, weight and drag on the points
-    if (s.v && cell.alpha > 0) F += cell.alpha * cell.M * rows_of(*s.v, c);
-    const Rows at_left = rows_of(*s.left, c);
+    const Rows F = forces_of_mass(cell, s, points_.gravity), at_left = rows_of(*s.left, c);
     for (int e = 0; e < 2; ++e) {
       Vec6& body = p.body[c.end[e].body];
       body.head<3>() += row(F, 4 * e);
@@ -217,26 +221,29 @@ std::string Beams::fault(const Config& q) const {
 
 std::vector<Output> Beams::outputs() const {
   std::vector<Output> out;
-  for (const Beam& beam : beams) out.push_back({.group = "beam", .name = beam.name, .n_end = 12 * beam.n_cells});
+  for (const Beam& beam : beams) out.push_back({.group = "beam", .name = beam.name, .n_mid = 12 * beam.n_cells});
   return out;
 }
 
-/// Elastic forces and moments on the sections of each cell, from the side of rising numbers, in the axes of the section.
-void Beams::add_end_values(const Config& q, const Config&, std::vector<double>& out) const {
+/// Forces and moments that a cell exerts on its sections, weight and inertia of its own with them: where nothing is loaded they go on from
+/// cell to cell.
+void Beams::add_mid_values(const Moment& m, std::vector<double>& out) const {
   ConnectorGradient g;
+  const Stage& s = m.s;
   for (const BeamCell& cell : cells) {
-    gradient(cell.ends, q, g);
-    const auto e = cell.ends.values(q);
-    Response r;
-    cell.law->elastic(e, e, r);
+    gradient(cell.ends, *s.left, g);
+    Response elastic, viscous, before;
+    respond(cell, s, elastic, viscous, before);
+    const Rows F = forces_of_mass(cell, s, points_.gravity), at = rows_of(*s.left, cell.ends);
     for (int end = 0; end < 2; ++end) {
       Vec6 f = Vec6::Zero();
-      for (int m = 0; m < ArcLaw::n_measures; ++m) f += r.s[m] * g.G.block<1, 6>(m, 6 * end).transpose();
-      const auto entity = [&](int i) { return end + 2 * i; };  // origin, d1, d2, d3
-      f.tail<3>() -= g.arm[entity(0)].cross(f.head<3>().eval());
+      for (int k = 0; k < ArcLaw::n_measures; ++k) f += (elastic.s[k] + viscous.s[k]) * g.G.block<1, 6>(k, 6 * end).transpose();
+      f.head<3>() += row(F, 4 * end);
+      for (int i = 4 * end + 1; i < 4 * end + 4; ++i) f.tail<3>() += row(at, i).cross(row(F, i));
+      f.tail<3>() -= g.arm[end].cross(f.head<3>().eval());
       const double side = end == 0 ? -1 : 1;
       for (const bool moment : {false, true})
-        for (int i = 1; i < 4; ++i) out.push_back(side * g.y[entity(i)].dot(moment ? f.tail<3>() : f.head<3>()));
+        for (int i = 1; i < 4; ++i) out.push_back(side * g.y[end + 2 * i].dot(moment ? f.tail<3>() : f.head<3>()));  // d1, d2, d3
     }
   }
 }

@@ -51,7 +51,7 @@ class Beams final : public Contribution {
   void add_work(const Moment& m, Work& sum) const override;
   std::string fault(const Config& q) const override;
   std::vector<Output> outputs() const override;
-  void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
+  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
   void tie(Ties& ties) const override;
 
  private:
