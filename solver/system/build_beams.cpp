@@ -55,24 +55,17 @@ void Builder::add_sections() {
     const BeamLine& line = plan.line;
     const size_t last = line.at.size() - 1;
     if (line.closed && (e.given("a") || e.given("b"))) e.refuse(e.given("a") ? "a" : "b", "the beam is closed: it has no ends");
-    for (size_t k = 0; k <= last; ++k) {
-      if (line.closed && k == last) {
-        plan.body.push_back(plan.body.front());
-      } else if ((k == 0 && e.given("a")) || (k == last && e.given("b"))) {
-        plan.body.push_back(-1);
-        continue;
-      } else {
-        plan.body.push_back(new_body(fmt::format("{}.{}", e.name, k), line.at[k]));
+    plan.body.assign(last + 1, -1);
+    for (const auto& [name, k] : section_names(e, line)) {
+      if (body_by_name_.contains(name) || (mesh_ && mesh_->mesh.find_region(name) >= 0))
+        throw Error(e.place.text(), fmt::format("{}: a body or region is called \"{}\", as one of its sections", e.label(), name));
+      if (plan.body[k] < 0) {
+        plan.body[k] = new_body(name, line.at[k]);
         out_->bodies.back().size = line.cells[std::min(k, last - 1)].length;
       }
-      std::vector<std::string> names{fmt::format("{}.{}", e.name, k)};
-      if (k == last) names.push_back(e.name + ".end");
-      for (const std::string& name : names) {
-        if (body_by_name_.contains(name) || (mesh_ && mesh_->mesh.find_region(name) >= 0))
-          throw Error(e.place.text(), fmt::format("{}: a body or region is called \"{}\", as one of its sections", e.label(), name));
-        body_by_name_[name] = plan.body.back();
-      }
+      body_by_name_[name] = plan.body[k];
     }
+    if (line.closed) plan.body[last] = plan.body[0];
     beam_plans_.push_back(std::move(plan));
   }
 }

@@ -7,7 +7,7 @@
 
 #include "physics/axes.hpp"
 #include "physics/spring_kinds.hpp"
-#include "system/beam_line.hpp"
+#include "model/beam_line.hpp"
 #include "system/factor_room.hpp"
 #include "system/reduced_file.hpp"
 #include "system/solids.hpp"

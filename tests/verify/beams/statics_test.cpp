@@ -111,5 +111,27 @@ TEST_F(BeamStatics, PrincetonsBeamIsThatOfAnsys) {
   EXPECT_LT(most, 3e-3);
 }
 
+// On a face of a block of each fidelity; rigid is the least compliant.
+TEST_F(BeamStatics, ABeamRidesOnASetOfARegionOfEveryFidelity) {
+  BlockOptions o;
+  o.n[2] = 4;
+  o.high = Vec3(0.2, 0.2, 1);
+  write_mesh(work / "mesh.h5", block_mesh(o), {"test"});
+  const std::string text =
+      "gravity = [0, 0, -9.81]\n[material.m]\nE = 2e9\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n"
+      "[section.s]\nkind = \"box\"\nwidth = 0.05\nheight = 0.03\nthickness = 0.004\n" +
+      beam_of("[[0.1, 0.1, 1], [1, 0.1, 1.3]]", 4, "a = \"zmax\"\nmaterial = \"m\"") +
+      "[[motion]]\nkind = \"fixed\"\nname = \"base\"\non = \"zmin\"\n" + push("arm.end", Vec3(0, 3, 5)) + tip_probe() + in_steps(2);
+  std::map<Fidelity, Vec3> at;
+  for (const Fidelity level : {Fidelity::nonlinear, Fidelity::linear, Fidelity::rigid}) {
+    write_tags(work / "tags.h5", work / "mesh.h5", {level}, {"test"});
+    const std::string mesh = work / "tags.h5";
+    at[level] = tip(text, "'" + mesh + "'");
+  }
+  EXPECT_LT((at[Fidelity::linear] - at[Fidelity::nonlinear]).norm(), 1e-6);
+  EXPECT_GT((at[Fidelity::rigid] - at[Fidelity::nonlinear]).norm(), 1e-6);
+  EXPECT_LT((at[Fidelity::rigid] - at[Fidelity::nonlinear]).norm(), 1e-4);
+}
+
 }  // namespace
 }  // namespace hilo::test

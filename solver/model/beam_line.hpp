@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where the sections of a beam stand, from its entry in the scene.
 #pragma once
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "model/scene.hpp"
@@ -19,5 +21,8 @@ struct BeamLine {
 
 /// Legs through `points`, straight or arcs of circles, `cells` to each.  Errors at the keys.
 BeamLine beam_line(const Entry& entry);
+
+/// What the sections that are bodies of their own are called, NAME.0, NAME.1 ... NAME.end, and where they are on the line.
+std::vector<std::pair<std::string, size_t>> section_names(const Entry& entry, const BeamLine& line);
 
 }  // namespace hilo

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "system/beam_line.hpp"
+#include "model/beam_line.hpp"
 
 #include <fmt/format.h>
 
@@ -81,6 +81,15 @@ BeamLine beam_line(const Entry& e) {
     if (const double turn = Eigen::AngleAxisd(line.cells[k].frame_a.transpose() * line.cells[k].frame_b).angle(); turn > 1.6)
       e.refuse("cells", fmt::format("cell {} turns by {:.3g} rad before it is loaded", k, turn), "more cells");
   return line;
+}
+
+std::vector<std::pair<std::string, size_t>> section_names(const Entry& e, const BeamLine& line) {
+  std::vector<std::pair<std::string, size_t>> out;
+  const size_t last = line.at.size() - 1;
+  for (size_t k = e.given("a") ? 1 : 0; k <= last - (e.given("b") ? 1 : 0); ++k)
+    if (!line.closed || k < last) out.emplace_back(fmt::format("{}.{}", e.name, k), k);
+  if (!e.given("b")) out.emplace_back(e.name + ".end", line.closed ? 0 : last);
+  return out;
 }
 
 }  // namespace hilo
