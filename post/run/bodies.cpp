@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "model/beam_line.hpp"
 #include "post/run/ellipsoid.hpp"
 #include "post/run/marker.hpp"
 #include "post/run/run_file.hpp"
@@ -64,6 +65,33 @@ void RunFile::stand_in_bodies() {
     add_ellipsoid(file.mesh, e, smallest);
     body.last = file.mesh.X.size();
     bodies_.push_back(std::move(body));
+  }
+  for (const Entry& e : scene.entries("beam")) {  // bars between the sections, each of which follows its body
+    const BeamLine line = beam_line(e);
+    const std::int64_t first = file.mesh.n_nodes();
+    const auto region = static_cast<std::int32_t>(file.mesh.region_name.size());
+    file.mesh.region_name.push_back(e.name);
+    file.mesh.region_data.emplace_back();
+    std::vector<std::string> carrier(line.at.size());
+    for (const auto& [name, k] : section_names(e, line))
+      if (carrier[k].empty()) carrier[k] = name;
+    if (e.given("a")) carrier.front() = e.text("a");
+    if (e.given("b")) carrier.back() = e.text("b");
+    if (line.closed) carrier.back() = carrier.front();
+    for (size_t k = 0; k < line.at.size(); ++k) {
+      file.mesh.node_id.push_back(file.mesh.n_nodes() + 1);
+      file.mesh.X.push_back(line.at[k]);
+      if (k > 0)
+        file.mesh.add_cell(Shape::bar2, std::array{first + static_cast<std::int64_t>(k) - 1, first + static_cast<std::int64_t>(k)}, region,
+                           file.mesh.n_cells() + 1);
+      const auto found = static_cast<size_t>(std::find(names.begin(), names.end(), carrier[k]) - names.begin());
+      if (found == names.size()) continue;  // the ground
+      Body body;
+      for (size_t i = 0; i < 4; ++i) body.X.emplace_back(&points[12 * found + 3 * i]);
+      body.way = series("body." + carrier[k]);
+      body.first = file.mesh.X.size() - 1, body.last = file.mesh.X.size();
+      bodies_.push_back(std::move(body));
+    }
   }
   if (bodies_.empty()) throw Error(path, "holds neither a mesh nor bodies to draw", "its histories are there: hilo-post series --list");
   file.fidelity.assign(file.mesh.region_name.size(), Fidelity::rigid);

@@ -5,11 +5,14 @@
 
 #include <algorithm>
 
+#include "model/beam_line.hpp"
+
 namespace hilo {
 namespace {
 
 constexpr Rgb joint_colour{0.56, 0.10, 0.44}, spring_colour{0.10, 0.42, 0.42}, load_colour{0.80, 0.15, 0.12},
-    support_colour{0.16, 0.30, 0.66}, drive_colour{0.72, 0.38, 0.02}, sensor_colour{0.15, 0.50, 0.18}, mass_colour{0.16, 0.17, 0.19};
+    support_colour{0.16, 0.30, 0.66}, drive_colour{0.72, 0.38, 0.02}, sensor_colour{0.15, 0.50, 0.18}, beam_colour{0.25, 0.35, 0.45},
+    mass_colour{0.16, 0.17, 0.19};
 
 /// At most about `most` of the nodes, evenly taken.
 std::vector<Vec3> thinned(const Mesh& mesh, const std::vector<std::int64_t>& nodes, size_t most) {
@@ -43,6 +46,7 @@ class Collector {
 
   SceneItems collect() {
     for (const Entry& e : scene_.entries("body")) body(e);
+    for (const Entry& e : scene_.entries("beam")) beam(e);
     for (const Entry& e : scene_.entries("joint")) joint(e);
     for (const Entry& e : scene_.entries("spring")) spring(e);
     for (const char* section : {"stop", "motor", "friction"})
@@ -108,6 +112,17 @@ class Collector {
     found_.bodies.push_back(b);
     SceneItem& item = add(Glyph::mass, e, "centre of mass of a body", mass_colour);
     item.at = b.centre;
+  }
+
+  /// Lines between its sections, which are bodies to whoever names them.
+  void beam(const Entry& e) {
+    const BeamLine line = beam_line(e);
+    const size_t last = line.at.size() - 1, stride = std::max<size_t>(1, last / 200);
+    for (size_t k = 0; k < last; k += stride) {
+      SceneItem& item = add(Glyph::link, e, "beam", beam_colour);
+      item.at = line.at[k], item.to = line.at[std::min(k + stride, last)];
+    }
+    for (const auto& [name, k] : section_names(e, line)) found_.bodies.push_back({name, line.at[k], Mat3::Identity(), Vec3::Zero()});
   }
 
   void joint(const Entry& e) {

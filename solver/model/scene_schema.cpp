@@ -4,6 +4,7 @@
 #include "model/quantity_schema.hpp"
 #include "model/scene.hpp"
 #include "model/time_schema.hpp"
+#include "physics/beam_section.hpp"
 #include "physics/material/materials.hpp"
 #include "physics/spring_kinds.hpp"
 
@@ -96,6 +97,31 @@ std::vector<KindSchema> make() {
                "box",
                "nodes in a box along the axes, and the outer facets between them",
                {set_kind, of, {"low", vector3, "m", "!", "a corner"}, {"high", vector3, "m", "!", "the opposite corner"}}});
+  for (const SectionKind& k : section_kinds()) {
+    KindSchema rows{"section", k.name, k.meaning, {{"kind", text, "", "!", "the kind of section"}}};
+    rows.params.insert(rows.params.end(), k.keys.begin(), k.keys.end());
+    if (k.area)
+      rows.params.push_back(
+          {"shear", numbers, "1", "", "factors of shear along 1 and 2; absent: Cowper's, of kind general 1", above(0), {1, 2}});
+    s.push_back(std::move(rows));
+  }
+  section_kinds().close();
+  s.push_back({"beam",
+               "",
+               "a beam of linear elastic material: its sections are bodies called NAME.0, NAME.1 ... NAME.end, but for those that `a` and "
+               "`b` name",
+               {{"points", numbers, "m", "!", "of its axis, [[x, y, z], ...]: legs meet at them; equal first and last ones close it"},
+                {"path", text, "", "line", "between the points: line, or arc: circles through three, each beginning where one ends"},
+                {"cells", numbers, "1", "[8]", "of each leg: one number for all of them, or one for each", at_least(1)},
+                {"section", text, "", "!", "a name of [section.NAME]"},
+                {"material", text, "", "", "a name of [material.NAME], of kind stvk; none where the section is a matrix"},
+                {"orientation", vector3, "1", "",
+                 "direction of axis 2 of the section, made normal to the beam at the start of each leg; absent: z, or y where it runs "
+                 "along z"},
+                {"a", text, "", "", "what the first section rides on, at any distance: a region, body, set, section of a beam, or ground"},
+                {"b", text, "", "", "what the last section rides on"},
+                {"damping", number, "s", "0", "stiffness-proportional damping beta", at_least(0)},
+                {"mass_damping", number, "1/s", "0", "mass-proportional damping alpha (brakes rigid motion too)", at_least(0)}}});
   s.push_back({"body",
                "",
                "a rigid body without a mesh",
@@ -273,7 +299,7 @@ const std::vector<KindSchema>& scene_schema() {
 }
 
 bool is_list_section(std::string_view s) {
-  return !is_single_section(s) && s != "material" && s != "region" && s != "set" && s != "history";
+  return !is_single_section(s) && s != "material" && s != "region" && s != "section" && s != "beam" && s != "set" && s != "history";
 }
 bool is_single_section(std::string_view s) { return s == "scene" || s == "time" || s == "solver" || s == "output"; }
 

@@ -114,17 +114,18 @@ void check_time(const Entries& entries, const Entry& time, Warnings& w) {
   }
 }
 
-/// Materials, histories and sets that nothing names.
+/// Materials, histories, sets and sections that nothing names.
 void check_unused(const Entries& entries, Warnings& w) {
   std::set<std::string> materials, histories, words;
   for (const auto& [section, list] : entries)
     for (const auto& e : list) {
-      if (section == "region" && e.has("material")) materials.insert(e.text("material"));
+      if ((section == "region" || section == "beam") && e.has("material")) materials.insert(e.text("material"));
       for (const auto& [key, value] : e.values) words.insert(value.texts.begin(), value.texts.end());
       const auto h = e.values.find("history");
       if (h != e.values.end() && !h->second.texts.empty()) histories.insert(h->second.texts[0]);
     }
-  for (const auto& [section, used] : {std::pair("material", &materials), std::pair("history", &histories), std::pair("set", &words)})
+  for (const auto& [section, used] :
+       {std::pair("material", &materials), std::pair("history", &histories), std::pair("set", &words), std::pair("section", &words)})
     if (const auto list = entries.find(section); list != entries.end())
       for (const auto& e : list->second)
         if (!used->contains(e.name)) w.add(e, "", "nothing uses it");

@@ -156,6 +156,10 @@ std::vector<ArraySchema>& arrays() {
        "load, 0 at limits of the load, below zero where it falls; eigenvalues of the tangent below zero (0: stable; NaN: not counted)"},
       {"run.h5", "/history/newton", "i4", "(n_t)", "", "Newton iterations of the step"},
       {"run.h5", "/history/body/<name>", "f8", "(n_t, 12)", "m", "positions of the four points of a body"},
+      {"run.h5", "/history/beam/<name>", "f8", "(n_t, n_resultants)", "N, N m",
+       "of each cell of a beam, at its first and at its last section: forces along 1 (shear), 2 (shear) and 3 (stretch) and moments about "
+       "1, "
+       "2 (bending) and 3 (twist), in the axes of the section, of the side of rising numbers on the other"},
       {"run.h5", "/history/modes/<name>", "f8", "(n_t, n_modes)", "m kg^0.5",
        "amplitudes of the modes of a linear region, orthonormal in mass"},
       {"run.h5", "/history/left_out/<name>", "f8", "(n_t, 2)", "J",

@@ -11,7 +11,8 @@ using RowMatrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
 std::string Bodies::count() const {
   int patches = 0, free = 0;
-  for (const Body& b : points_.bodies) patches += b.patch, free += b.free() && !b.patch && !b.linear;
+  for (const Body& b : points_.bodies)
+    patches += b.patch, free += b.free() && !b.patch && !b.linear && b.mass > 0;  // sections of beams have none of their own
   return fmt::format("{} rigid bodies, {} patches", free, patches);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "model/scene_sets.hpp"
+#include "system/beams.hpp"
 #include "system/bodies.hpp"
 #include "system/builder.hpp"
 #include "system/joints.hpp"
@@ -50,11 +51,12 @@ void Builder::add_contributions() {
   s.add<Bodies>(s);
   s.add<LinearRegions>(s);
   s.add<PointMasses>(s);
+  const Beams& beams = s.add<Beams>(s);
   s.add<Welds>(s);
   const Joints& joints = s.add<Joints>(s);
   s.add<Springs>(s, joints);
   s.add<Loads>(s);
-  s.add<Motions>(s);
+  s.add<Motions>(s, beams);
   s.add<Stations>(s);
   s.add<RegionMeasures>(s);
   s.add<ModalDamping>(s);
@@ -92,9 +94,11 @@ std::unique_ptr<System> Builder::build() {
   make_rigid_bodies();
   make_linear_bodies();
   add_free_bodies();
+  add_sections();
   comm_.together([&] { make_batches(); });  // a region that lacks something may have its cells on one rank
   weld_neighbours();
   add_point_masses();
+  add_beams();
   add_motions();
   add_joints();
   add_springs();
@@ -105,6 +109,8 @@ std::unique_ptr<System> Builder::build() {
   if (!mesh_) {  // size of a scene of bodies: what its points span
     Eigen::AlignedBox3d box;
     for (size_t b = 1; b < out_->bodies.size(); ++b) box.extend(out_->bodies[b].Xc);
+    for (const BeamCell& cell : out_->part<Beams>().cells)
+      for (int e = 0; e < 2; ++e) box.extend(Vec3(out_->bodies[cell.ends.end[e].body].Xc + cell.ends.entities[e].r));
     for (const Joint& j : out_->part<Joints>())
       for (const Entity& e : j.entities)
         if (e.point && j.end[e.end].body >= 0) box.extend(Vec3(out_->bodies[j.end[e.end].body].Xc + e.r));

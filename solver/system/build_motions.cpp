@@ -98,6 +98,7 @@ void Builder::set_initial_velocities() {
     std::vector<char> node(out_->X.size(), 0);
     double mass = 0;
     Vec3 moment = Vec3::Zero();
+    bool massless = false;  // sections of beams, whose mass lies between them
     for (const std::string& pattern : e.texts("on")) {
       bool used = false;
       for (size_t r = 0; r < regions_.size(); ++r)
@@ -109,6 +110,7 @@ void Builder::set_initial_velocities() {
       for (const auto& [name, b] : body_by_name_)
         if (fnmatch(pattern.c_str(), name.c_str(), 0) == 0) {
           body[b] = used = true;
+          massless = massless || (b > 0 && out_->bodies[b].mass == 0);
           mass += out_->bodies[b].mass, moment += out_->bodies[b].mass * out_->bodies[b].Xc;
         }
       if (!used) {
@@ -123,6 +125,8 @@ void Builder::set_initial_velocities() {
     for (size_t r = 0; r < regions_.size(); ++r)
       if (region[r])
         for (std::int64_t i : mesh_->nodes_of(regions_[r].name, e.where("on"))) node[i] = 1;
+    if (massless && !e.has("about") && e.vector3("spin").norm() > 0)
+      throw Error(e.place.text(), e.label() + ": a spin of sections of beams needs `about`");
     const Vec3 velocity = e.vector3("velocity"), spin = e.vector3("spin");
     const Vec3 about = e.has("about") ? e.vector3("about") : mass > 0 ? Vec3(moment / mass) : Vec3::Zero();
     for (size_t i = 0; i < node.size(); ++i)

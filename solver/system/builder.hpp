@@ -7,6 +7,7 @@
 
 #include "physics/axes.hpp"
 #include "physics/spring_kinds.hpp"
+#include "model/beam_line.hpp"
 #include "system/factor_room.hpp"
 #include "system/reduced_file.hpp"
 #include "system/solids.hpp"
@@ -73,6 +74,9 @@ class Builder {
   void keep_reductions() const;
   // build_modes.cpp
   void reduce_linear_regions();
+  // build_beams.cpp
+  void add_sections();
+  void add_beams();
   // element_limits.cpp
   void warn_of_limits() const;
   // build_ends.cpp
@@ -121,6 +125,13 @@ class Builder {
   // build_joints.cpp
   void add_joints();
 
+  /// A beam whose sections are known, but for those that ride on what is made later.
+  struct BeamPlan {
+    const Entry* entry;
+    BeamLine line;
+    std::vector<int> body;  // of each section, -1: not yet known
+  };
+
   const Scene& scene_;
   LocalMesh* mesh_;
   const Comm& comm_;
@@ -134,6 +145,7 @@ class Builder {
   Vec3 origin_ = Vec3::Zero();               // of the mass integrals
   std::map<std::string, int> body_by_name_;  // [[body]] entries
   std::map<std::string, int> patch_by_name_;
+  std::vector<BeamPlan> beam_plans_;
   std::vector<std::string> held_by_;  // per node: the entry that made it a follower of a patch or motion
 };
 

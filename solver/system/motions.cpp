@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "system/beams.hpp"
 #include "system/collocation.hpp"
 
 namespace hilo {
@@ -152,9 +153,11 @@ void Motions::add_work(const Moment& moment, Work& sum) const {
       for (int i = 0; i < 3; ++i)
         if (m.body >= 0 || m.component[i]) work += of_inertia.node[n][i] * beyond[i];
     }
-    if (const int b = m.body; b >= 0 && points_.counts(b))
-      work += points_.bodies[b].inertia(s.a->c[b], s.a->R[b], h * s.v0->c[b] + h * h / 2 * s.a->c[b] - (s.end->c[b] - from.c[b]),
-                                        h * s.v0->R[b] + h * h / 2 * s.a->R[b] - (s.end->R[b] - from.R[b]));
+    if (const int b = m.body; b >= 0 && points_.counts(b)) {
+      const Vec3 beyond = h * s.v0->c[b] + h * h / 2 * s.a->c[b] - (s.end->c[b] - from.c[b]);
+      const Mat3 turns = h * s.v0->R[b] + h * h / 2 * s.a->R[b] - (s.end->R[b] - from.R[b]);
+      work += points_.bodies[b].inertia(s.a->c[b], s.a->R[b], beyond, turns) + beams_.inertia(b, *s.a, beyond, turns);
+    }
   }
 }
 

@@ -19,9 +19,11 @@ struct Motion {
   MotionLaw law;
 };
 
+class Beams;
+
 class Motions final : public Contribution {
  public:
-  explicit Motions(const Points& points) : points_(points) {}
+  Motions(const Points& points, const Beams& beams) : points_(points), beams_(beams) {}
   std::vector<Motion> list;
 
   Traits traits() const override;
@@ -44,6 +46,7 @@ class Motions final : public Contribution {
  private:
   Vec6 reaction(const Motion& m, const Forces& f, const Config& q) const;
   const Points& points_;
+  const Beams& beams_;  // whose inertia is not in that of a body
 };
 
 }  // namespace hilo

@@ -20,7 +20,7 @@ MEMORY, SECONDS = 3 << 30, 30
 
 # What a key is where it is not the one that is tried; others take the schema's default or are left out.
 WORDS = {"card": "\"*TIE\"", "a": '"ground"', "b": '"arm"', "on": '"arm"', "joint": '"hinge"', "name": '"tried"', "at": "[0, 0, 0]", "axis": "[0, 1, 0]",
-         "x": "[1, 0, 0]", "at_a": "[0, 0, 1]", "at_b": "[0.5, 0, 0]", "sensor": '"felt"', "measure": '"DRI"'}
+         "x": "[1, 0, 0]", "at_a": "[0, 0, 1]", "at_b": "[0.5, 0, 0]", "sensor": '"felt"', "measure": '"DRI"', "section": '"square"', "material": '"plain"', "path": '"line"'}
 NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5, 0, 0]", "inertia": "[0.01, 0.1, 0.1]", "pitch": "0.1",
            "ratio": "2", "radius": "0.1", "stiffness": "100", "angular_stiffness": "100", "damping": "1", "angular_damping": "1",
            "lower": "-1", "upper": "1", "rate": "[0, 1]", "torque": "[1, 0]", "force": "[1, 0]", "coefficient": "0.1", "length": "1",
@@ -31,6 +31,8 @@ NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5
            "tangential_damping": "[1, 1]", "axes": "[1, 0, 0, 0, 1, 0, 0, 0, 1]", "restitution": "0.5", "rest_speed": "1e-3",
            "slip_velocity": "1e-3", "yield": "1e6", "saturation": "2e6", "saturation_rate": "10",
            "E1": "2e9", "E2": "2e9", "E3": "2e9", "nu12": "0.3", "nu13": "0.3", "nu23": "0.3", "G12": "8e8", "G13": "8e8", "G23": "8e8",
+           "diameter": "0.1", "thickness": "0.02", "width": "0.1", "height": "0.1", "flange": "0.02", "web": "0.02", "I1": "1e-5", "I2": "1e-5", "J": "1e-5",
+           "bending": "[100, 100, 100]", "line_mass": "1", "cells": "[2]", "orientation": "[0, 1, 0]", "shear": "[1, 1]",
            "axis_1": "[1, 0, 0]", "axis_2": "[0, 1, 0]", "hardening_strain": "[0, 0.1]", "hardening_stress": "[1e6, 2e6]"}
 BODIES = """[[body]]
 name = "arm"
@@ -116,6 +118,10 @@ def bad(key, kind, value, default):
     return lists
 
 
+# Of a section that is given by its stiffness.
+MATRIX = {"stiffness": "[1e6, 1e6, 1e6]", "coupling": "[0, 0, 0, 0, 0, 1, 0, 0, 0]", "inertia": "[0.01, 0.1]"}
+
+
 def entry(section, kind, keys, tried, value):
     """The table of the tried key, with what it must have."""
     lines = [f'kind = "{kind}"'] if kind else []
@@ -146,11 +152,15 @@ def entry(section, kind, keys, tried, value):
         beside.add("inertia")
     if section == "quantity":
         beside.add("sensor")
+    if kind == "matrix":
+        beside.add("line_mass")
     for key, type_, default in keys:
         if key == tried:
             lines.append(f"{key} = {value}")
         elif key != "kind" and (default == "must" or key in beside or (key in ("a", "b", "on") and section in ("joint", "spring"))):
             word = of_set(kind, key) if section == "set" and of_set(kind, key) else good(key, type_)
+            if kind == "matrix":
+                word = MATRIX.get(key, word)
             if key == "name" and section == "body":
                 word = '"arm"'
             if section == "load" and kind in ("traction", "pressure") and key == "on":
@@ -188,6 +198,16 @@ def scene(section, kind, keys, tried, value):
         rest = "[material.tried]\n" + "\n".join(lines) + '\n[region."*"]\nmaterial = "tried"\n'
     elif section == "set":
         rest = "[set.tried]\n" + "\n".join(lines) + '\n[[probe]]\nname = "there"\non = "tried"\n'
+    elif section in ("section", "beam"):
+        beam = ["[beam.tried]", 'a = "ground"', 'section = "tried"', "points = [[0, 0, 0], [1, 0, 0]]", "cells = [2]"]
+        beam += ['material = "plain"'] if kind != "matrix" else []
+        square = '[section.square]\nkind = "rectangle"\nwidth = 0.1\nheight = 0.1\n'
+        rest = "[section.tried]\n" + "\n".join(lines + beam) if section == "section" else square + "[beam.tried]\n" + "\n".join(lines)
+        if section == "beam" and tried != "material":
+            rest += '\nmaterial = "plain"'
+        if section == "beam" and tried in ("a", "b"):
+            rest = BODIES % joint_of + rest
+        rest += "\n[material.plain]\nE = 2e9\nnu = 0.3\ndensity = 1000\n"
     elif section == "region":
         rest = '[region."*"]\nmaterial = "plain"\n' + "\n".join(lines) + "\n"
     else:
@@ -256,6 +276,8 @@ def make_mesh():
 def usual(section, kind, key, type_):
     """A value of the key that runs."""
     value = of_set(kind, key) if section == "set" and of_set(kind, key) else good(key, type_)
+    if kind == "matrix":
+        return MATRIX.get(key, value)
     if kind == "bushing" and value.count(",") == 0 and type_ == "numbers":
         value = "[" + ", ".join(3 * [value.strip("[]")]) + "]"
     return "{t = [0, 0.02], value = [0, 1]}" if type_ == "history" else value

@@ -3,6 +3,7 @@
 // equations.  Kinds, keys and integrators are taken from the schema, so that a new one cannot be forgotten.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <set>
 
 #include "dynamics/integrator/make.hpp"
@@ -175,13 +176,41 @@ void add_variants(const KindSchema& kind, std::vector<Variant>& out) {
   }
 }
 
+/// A curved one whose ends ride on bodies, coupled and damped; one with a corner whose first section is a body of its own.
+void add_beams(std::vector<Variant>& out) {
+  std::string text = base;
+  for (const auto& [word, by] : {std::pair{"REGION", ""}, {"JOINT", "spherical"}, {"AXIS", ""}})
+    text.replace(text.find(word), std::strlen(word), by);
+  const std::string section = R"(
+[section.any]
+kind = "matrix"
+stiffness = [3000, 200, 100, 200, 4000, 300, 100, 300, 9000]
+coupling = [10, 20, 30, -20, 40, 10, 50, 20, -30]
+bending = [200, 10, 20, 10, 150, -20, 20, -20, 120]
+line_mass = 2
+inertia = [0.03, 0.05, 0.01]
+)";
+  const std::string arc =
+      "[beam.it]\npath = \"arc\"\npoints = [[0.2, 0.1, 2.1], [0.3, 0.9, 2.2], [0.5, 1.2, 1.7]]\ncells = [2]\nsection = \"any\"\n";
+  for (const char* more : {"", "damping = 0.02\n", "mass_damping = 0.7\n", "orientation = [1, 0.2, 0.3]\n"})
+    out.push_back({std::string("beam ") + more + " on bodies", text + section + arc + "a = \"one\"\nb = \"two\"\n" + more});
+  out.push_back(
+      {"beam with a corner on a set", text + section +
+                                          "[beam.it]\npoints = [[0.2, 0.1, 2.1], [0.3, 0.4, 2.2], [0.3, 0.2, 0.8]]\ncells = [1, 2]\n"
+                                          "section = \"any\"\nb = \"xmax\"\n"});
+}
+
 std::vector<Variant> all_variants() {
   std::vector<Variant> out;
   // sections that no equation of motion is made of
-  const std::set<std::string_view> others{"scene",   "material", "set",  "body",   "initial", "sensor",  "probe",
-                                          "history", "quantity", "time", "solver", "output",  "left_out"};
+  const std::set<std::string_view> others{"scene",   "material", "set",      "body", "initial", "sensor", "probe",
+                                          "section", "history",  "quantity", "time", "solver",  "output", "left_out"};
   for (const KindSchema& kind : scene_schema()) {
     if (others.contains(kind.section)) continue;
+    if (kind.section == "beam") {
+      add_beams(out);
+      continue;
+    }
     if (kind.section != "region") {
       add_variants(kind, out);
       continue;

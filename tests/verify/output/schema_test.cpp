@@ -50,6 +50,19 @@ TEST(ResultsSchema, HoldsEveryArrayAndEveryArrayIsWritten) {
   Case c("everything");
   c.use(half_rigid(), {Fidelity::rigid, Fidelity::nonlinear});
   std::ofstream(c / "more.toml") << text_of(c.source("scene.toml")) << R"(
+[section.rod]
+kind = "circle"
+diameter = 0.02
+[material.plain]
+E = 1e9
+nu = 0.3
+density = 1000
+[beam.whip]
+points = [[0.2, 1.5, 1], [0.2, 2, 1]]
+cells = [2]
+section = "rod"
+material = "plain"
+a = "side"
 [[joint]]
 kind = "cylindrical"
 name = "sleeve"

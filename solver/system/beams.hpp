@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Beams: arc elements between sections, which are bodies of their own or ride on others at an offset and a turn that stay.
+//
+// The mass of an element couples its two sections.  It is constant in their points x = (c, d1, d2, d3), so a step keeps energy and both
+// momenta: along the axis  c = (1 - t + g) c_A + (t - g) c_B + L (t - t^2)/2 (d3A - d3B) + L g/2 (d3A + d3B)  with
+// g = (2 t^3 - 3 t^2 + t)/(1 + Phi), Phi = 12 EI/(GA L^2); of d1 and d2 the mean of a consistent and a lumped one.
+#pragma once
+#include <memory>
+
+#include "physics/beam_arc.hpp"
+#include "physics/beam_section.hpp"
+#include "system/contribution.hpp"
+
+namespace hilo {
+
+struct BeamCell {
+  using Mass = Eigen::Matrix<double, 8, 8>;  // of c, R e_1, R e_2, R e_3 of the bodies at both ends
+  Connector ends;
+  std::unique_ptr<ArcLaw> law;
+  Mass M = Mass::Zero();  // [kg, kg m, kg m^2]
+  double alpha = 0;       // mass-proportional damping [1/s]
+  double size = 0;        // of the section [m]
+};
+
+struct Beam {
+  std::string name;
+  int first = 0, n_cells = 0;  // of the list
+};
+
+/// Where a section is in the reference configuration: its origin, directors by columns, and the body that it rides on.
+struct SectionPlace {
+  Vec3 at;
+  Mat3 frame;
+  int body;
+};
+
+class Beams final : public Contribution {
+ public:
+  explicit Beams(const Points& points) : points_(points) {}
+  std::vector<Beam> beams;
+  std::vector<BeamCell> cells;
+  void add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSection& section, double beta, double alpha);
+  /// w.M v of what is at a body [J].
+  double inertia(int body, const Config& v, const Vec3& w, const Mat3& W) const;
+
+  Traits traits() const override { return {.deforms = !cells.empty(), .has_rates = !cells.empty()}; }
+  std::string count() const override;
+  void number(Layout& layout) override;
+  void evaluate(Pass& p) const override;
+  void add_energy(const Config& q, const Config& v, Energy& sum) const override;
+  void add_work(const Moment& m, Work& sum) const override;
+  std::string fault(const Config& q) const override;
+  std::vector<Output> outputs() const override;
+  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
+  void tie(Ties& ties) const override;
+
+ private:
+  const Points& points_;
+  std::vector<int> clique_;
+};
+
+}  // namespace hilo

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Entries [beam.NAME] and [section.NAME] to sections and cells.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "system/beams.hpp"
+#include "system/builder.hpp"
+
+namespace hilo {
+namespace {
+
+/// The entry of a section of the scene that a key names.
+const Entry& named(const Scene& scene, std::string_view section, const Entry& e, std::string_view key) {
+  std::vector<std::string> names;
+  for (const Entry& found : scene.entries(section)) {
+    if (found.name == e.text(key)) return found;
+    names.push_back(found.name);
+  }
+  const std::string near = suggest(e.text(key), names);
+  e.refuse(key, fmt::format("no {} \"{}\"", section, e.text(key)),
+           !near.empty()   ? near
+           : names.empty() ? fmt::format("write [{}.{}]", section, e.text(key))
+                           : fmt::format("there are: {}", fmt::join(names, ", ")));
+}
+
+BeamSection section_of(const Scene& scene, const Entry& beam, bool is_static) {
+  const Entry& section = named(scene, "section", beam, "section");
+  const SectionKind& kind = section_kinds().at(section.kind, section.place.text());
+  if (!kind.area) {
+    if (beam.given("material"))
+      beam.refuse("material", fmt::format("section \"{}\" is given by its stiffness, without a material", section.name));
+    return section_of_stiffness(section);
+  }
+  if (!beam.given("material")) beam.refuse("", "no material", "material = \"a name of [material.NAME]\"");
+  const Entry& material = named(scene, "material", beam, "material");
+  if (material.kind != "stvk")
+    beam.refuse("material", fmt::format("a beam is linear elastic, and material \"{}\" is of kind \"{}\"", material.name, material.kind),
+                "kind = \"stvk\", or a section of kind \"matrix\"");
+  for (const char* key : {"E", "nu"})
+    if (!material.has(key)) beam.refuse("material", fmt::format("material \"{}\" has no {}", material.name, key));
+  if (!material.has("density") && !is_static) beam.refuse("material", fmt::format("material \"{}\" has no density", material.name));
+  return section_of_area(section, kind, material.number("E"), material.number("nu"),
+                         material.has("density") ? material.number("density") : 0);
+}
+
+}  // namespace
+
+/// The sections of all beams that do not ride on something else, as bodies named NAME.0, NAME.1 ... NAME.end.
+void Builder::add_sections() {
+  for (const Entry& e : scene_.entries("beam")) {
+    BeamPlan plan{&e, beam_line(e), {}};
+    const BeamLine& line = plan.line;
+    const size_t last = line.at.size() - 1;
+    if (line.closed && (e.given("a") || e.given("b"))) e.refuse(e.given("a") ? "a" : "b", "the beam is closed: it has no ends");
+    plan.body.assign(last + 1, -1);
+    for (const auto& [name, k] : section_names(e, line)) {
+      if (body_by_name_.contains(name) || (mesh_ && mesh_->mesh.find_region(name) >= 0))
+        throw Error(e.place.text(), fmt::format("{}: a body or region is called \"{}\", as one of its sections", e.label(), name));
+      if (plan.body[k] < 0) {
+        plan.body[k] = new_body(name, line.at[k]);
+        out_->bodies.back().size = line.cells[std::min(k, last - 1)].length;
+      }
+      body_by_name_[name] = plan.body[k];
+    }
+    if (line.closed) plan.body[last] = plan.body[0];
+    beam_plans_.push_back(std::move(plan));
+  }
+}
+
+void Builder::add_beams() {
+  Beams& beams = out_->part<Beams>();
+  for (BeamPlan& plan : beam_plans_) {
+    const Entry& e = *plan.entry;
+    for (const char* key : {"a", "b"})
+      if (e.given(key)) (key[0] == 'a' ? plan.body.front() : plan.body.back()) = carrier(e, key, true).body;
+    const BeamSection section = section_of(scene_, e, is_static());
+    beams.beams.push_back({e.name, static_cast<int>(beams.cells.size()), static_cast<int>(plan.line.cells.size())});
+    for (size_t k = 0; k < plan.line.cells.size(); ++k) {
+      const BeamLine::Cell& cell = plan.line.cells[k];
+      if (plan.body[k] == plan.body[k + 1]) e.refuse("cells", "both ends of a cell are on one body: it could not deform");
+      const Body& body = out_->bodies[std::max(plan.body[k], plan.body[k + 1])];
+      if (out_->bodies[plan.body[k]].linear || out_->bodies[plan.body[k + 1]].linear)
+        e.refuse(out_->bodies[plan.body[k]].linear ? "a" : "b",
+                 fmt::format("\"{}\" is a linear region: it has no single position", body.name), "a set of its nodes");
+      beams.add_cell({plan.line.at[k], cell.frame_a, plan.body[k]}, {plan.line.at[k + 1], cell.frame_b, plan.body[k + 1]}, section,
+                     e.number("damping"), e.number("mass_damping"));
+      const double L = beams.cells.back().law->length();
+      out_->mass += section.mass * L;
+      out_->stiffness = std::max(out_->stiffness, section.C(2, 2) / L);
+    }
+  }
+}
+
+}  // namespace hilo

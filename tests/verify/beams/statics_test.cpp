@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Beams at rest against closed forms and published values.
+#include <map>
+
+#include "verify/beams/beam_scene.hpp"
+
+namespace hilo::test {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+class BeamStatics : public BeamPlace {};
+
+// 2 pi EI/L closes it to a circle, whatever the number of cells: the strains are those of the helix.
+TEST_F(BeamStatics, AnEndMomentRollsACantileverToACircle) {
+  for (const int n : {4, 7}) {
+    const Results r = solved(plain_section(1e4, 1e4, 100, 100) + beam_of("[[0, 0, 0], [10, 0, 0]]", n) +
+                             twist("arm.end", Vec3(0, 20 * pi, 0)) + tip_probe() + in_steps(8));
+    EXPECT_LT(r.history("probe/tip").bottomRows(1).leftCols<3>().norm(), 1e-8) << n;
+    const Eigen::VectorXd f = r.history("beam/arm").bottomRows(1).transpose();
+    for (int end = 0; end < 2 * n; ++end) {
+      EXPECT_NEAR(f.segment<3>(6 * end + 3).norm(), 20 * pi, 1e-6);
+      EXPECT_LT(f.segment<3>(6 * end).norm(), 1e-6);
+    }
+  }
+}
+
+// Two formulations agree on this value to 2e-7 (beams.md 3); it is of the arc itself, where others take a parabola through its points.
+TEST_F(BeamStatics, TheBendOf45DegreesIsThatOfTheArc) {
+  const double s = std::sin(pi / 8), c = std::cos(pi / 8), h = std::sqrt(0.5);
+  const auto bend = [&](int n, double GJ) {
+    const std::string points =
+        fmt::format("[[0, 0, 0], [{:.17g}, {:.17g}, 0], [{:.17g}, {:.17g}, 0]]", 100 * s, 100 * (1 - c), 100 * h, 100 * (1 - h));
+    return Vec3(tip(plain_section(4.16666667e6, 1e7, 8.3333333e5, GJ) + beam_of(points, n, "a = \"ground\"\npath = \"arc\"") +
+                    push("arm.end", Vec3(0, 0, 600)) + tip_probe() + in_steps(6)) -
+                Vec3(100 * h, 100 * (1 - h), 0));
+  };
+  const Vec3 arc(-23.56058, -13.60463, 53.47548);
+  const double e4 = (bend(4, 8.3333333e5) - arc).norm() / arc.norm(), e8 = (bend(8, 8.3333333e5) - arc).norm() / arc.norm();
+  EXPECT_LT(e8, 2e-5);
+  EXPECT_GT(e4 / e8, 8) << "of fourth order";
+  EXPECT_LT((bend(16, 7.03e5) - Vec3(-23.821, -13.732, 53.610)).norm(), 0.01) << "Sonneville 2014";
+}
+
+// benchmarks.md O10 at alpha 4, by Reissner's beam: 3.28946 and 6.70011 of 10.
+TEST_F(BeamStatics, ACantileverBendsAsReissnersBeam) {
+  const auto u = [&](int n) {
+    return Vec3(tip("[section.s]\nkind = \"matrix\"\nstiffness = [6e4, 6e4, 1.2e5]\nbending = [100, 1e4, 1e4]\n" +
+                    beam_of("[[0, 0, 0], [10, 0, 0]]", n) + push("arm.end", Vec3(0, 0, 4)) + tip_probe() + in_steps(5)) -
+                Vec3(10, 0, 0));
+  };
+  EXPECT_LT((u(4) - Vec3(-3.28946, 0, 6.70011)).norm() / 7.46, 2e-4);
+  EXPECT_LT((u(8) - Vec3(-3.28946, 0, 6.70011)).norm() / 7.46, 1e-5);
+}
+
+// Small loads, one cell: exact of Timoshenko's beam along both axes, in stretch and in twist, wherever the beam points.
+TEST_F(BeamStatics, OneCellIsExactUnderEndLoads) {
+  const double E = 2e11, nu = 0.3, G = E / 2.6, L = 1.5, b = 0.02, h = 0.05, k = 10 * (1 + nu) / (12 + 11 * nu), A = b * h;
+  const std::string section =
+      fmt::format("[section.s]\nkind = \"rectangle\"\nwidth = {}\nheight = {}\n[material.m]\nE = {}\nnu = {}\n", b, h, E, nu);
+  const Vec3 along = Vec3(1, 2, -0.5).normalized(), up = (Vec3::UnitZ() - along.z() * along).normalized(), across = up.cross(along);
+  const std::string beam = beam_of(fmt::format("[[0, 0, 0], [{:.17g}, {:.17g}, {:.17g}]]", L * along.x(), L * along.y(), L * along.z()), 1,
+                                   "a = \"ground\"\nmaterial = \"m\"");
+  const Vec3 f(0.03, 0.05, 20);  // one after the other: stretched, it is stiffer
+  const Vec3 u = tip(section + beam + push("arm.end", f[0] * across + f[1] * up) + tip_probe() + in_steps(1)) - L * along;
+  const Vec3 stretched = tip(section + beam + push("arm.end", f[2] * along) + tip_probe() + in_steps(1)) - L * along;
+  EXPECT_NEAR(u.dot(across), f[0] * (L * L * L / (3 * E * h * b * b * b / 12) + L / (k * G * A)), 1e-5 * u.dot(across));
+  EXPECT_NEAR(u.dot(up), f[1] * (L * L * L / (3 * E * b * h * h * h / 12) + L / (k * G * A)), 1e-5 * u.dot(up));
+  EXPECT_NEAR(stretched.dot(along), f[2] * L / (E * A), 1e-6 * f[2] * L / (E * A));
+  const Results r = solved(section + beam + twist("arm.end", 5e-3 * along) + in_steps(1));
+  const Eigen::VectorXd x = r.history("body/arm.1").bottomRows(1).transpose();  // the points turn with it
+  const Eigen::VectorXd x0 = r.history("body/arm.1").topRows(1).transpose();
+  const Vec3 d0 = x0.segment<3>(3) - x0.head<3>(), d1 = x.segment<3>(3) - x.head<3>();
+  const Vec3 n0 = d0 - d0.dot(along) * along, n1 = d1 - d1.dot(along) * along;
+  const double J = h * b * b * b * (1.0 / 3 - 0.21 * b / h * (1 - std::pow(b / h, 4) / 12));
+  EXPECT_NEAR(std::atan2(n0.cross(n1).dot(along), n0.dot(n1)), 5e-3 * L / (G * J), 2e-3 * 5e-3 * L / (G * J));
+}
+
+// Whatever the shape: the root carries the loads, and the weight of all of it.
+TEST_F(BeamStatics, ForcesAlongABeamAreThoseOfEquilibrium) {
+  const Vec3 P(30, -20, 15), g(1, -2, -9.81);
+  const Results r = solved("gravity = [1, -2, -9.81]\n" + plain_section(1e6, 2e6, 900, 700, "line_mass = 2\ninertia = [0.01, 0.02]") +
+                           beam_of("[[0, 0, 0], [2, 0, 0], [2, 1, 0.5]]", 4) + push("arm.end", P) + tip_probe() + in_steps(4));
+  const Eigen::VectorXd f = r.history("beam/arm").bottomRows(1).transpose();
+  const double mass = 2 * (2 + std::sqrt(1.25));
+  EXPECT_NEAR(f.head<3>().norm(), (P + mass * g).norm(), 1e-8 * mass * g.norm());
+  EXPECT_NEAR(f.segment<3>(12 * 7 + 6).norm(), P.norm(), 1e-8 * P.norm());
+  EXPECT_LT(f.segment<3>(12 * 7 + 9).norm(), 1e-8) << "no moment at the tip";
+  for (const int k : {1, 2, 3, 5, 6, 7})
+    EXPECT_LT((f.segment<6>(12 * k) - f.segment<6>(12 * k - 6)).norm(), 1e-7) << "goes on, section " << k;
+  EXPECT_NEAR(f.segment<3>(12 * 4 + 3).norm(), f.segment<3>(12 * 3 + 9).norm(), 1e-7) << "round the corner";
+}
+
+// Bauchau's measurements at Princeton, as ANSYS' beam has them: w across and flapwise in mm at angles 0, 15 ... 90 degrees.
+TEST_F(BeamStatics, PrincetonsBeamIsThatOfAnsys) {
+  const std::map<double, std::array<std::pair<double, double>, 7>> ansys{
+      {8.896, {{{10.714, 0}, {10.613, 42.082}, {10.112, 79.395}, {8.837, 108.988}, {6.605, 129.888}, {3.539, 142.194}, {0, 146.246}}}},
+      {13.345, {{{16.064, 0}, {16.458, 64.358}, {16.659, 117.736}, {15.186, 156.467}, {11.578, 181.862}, {6.249, 196.097}, {0, 200.678}}}}};
+  const std::string beam =
+      "[section.s]\nkind = \"rectangle\"\nwidth = 12.3777e-3\nheight = 3.2024e-3\n[material.m]\nE = 71.7e9\nnu = 0.31\n" +
+      beam_of("[[0, 0, 0], [0.508, 0, 0]]", 8, "a = \"ground\"\nmaterial = \"m\"") + tip_probe();
+  double most = 0;
+  for (const auto& [P, rows] : ansys)
+    for (int i = 0; i < 7; ++i) {
+      const double beta = i * pi / 12;
+      const Vec3 u = tip(beam + push("arm.end", P * Vec3(0, std::cos(beta), std::sin(beta))) + in_steps(6));
+      const double off = std::max(std::abs(1e3 * std::abs(u.y()) - rows[i].first), std::abs(1e3 * std::abs(u.z()) - rows[i].second));
+      most = std::max(most, off / std::max(rows[i].first, rows[i].second));
+    }
+  std::printf("largest difference from ANSYS' beam: %.2g %%\n", 100 * most);
+  EXPECT_LT(most, 3e-3);
+}
+
+// On a face of a block of each fidelity; rigid is the least compliant.
+TEST_F(BeamStatics, ABeamRidesOnASetOfARegionOfEveryFidelity) {
+  BlockOptions o;
+  o.n[2] = 4;
+  o.high = Vec3(0.2, 0.2, 1);
+  write_mesh(work / "mesh.h5", block_mesh(o), {"test"});
+  const std::string text =
+      "gravity = [0, 0, -9.81]\n[material.m]\nE = 2e9\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n"
+      "[section.s]\nkind = \"box\"\nwidth = 0.05\nheight = 0.03\nthickness = 0.004\n" +
+      beam_of("[[0.1, 0.1, 1], [1, 0.1, 1.3]]", 4, "a = \"zmax\"\nmaterial = \"m\"") +
+      "[[motion]]\nkind = \"fixed\"\nname = \"base\"\non = \"zmin\"\n" + push("arm.end", Vec3(0, 3, 5)) + tip_probe() + in_steps(2);
+  std::map<Fidelity, Vec3> at;
+  for (const Fidelity level : {Fidelity::nonlinear, Fidelity::linear, Fidelity::rigid}) {
+    write_tags(work / "tags.h5", work / "mesh.h5", {level}, {"test"});
+    const std::string mesh = work / "tags.h5";
+    at[level] = tip(text, "'" + mesh + "'");
+  }
+  EXPECT_LT((at[Fidelity::linear] - at[Fidelity::nonlinear]).norm(), 1e-6);
+  EXPECT_GT((at[Fidelity::rigid] - at[Fidelity::nonlinear]).norm(), 1e-6);
+  EXPECT_LT((at[Fidelity::rigid] - at[Fidelity::nonlinear]).norm(), 1e-4);
+}
+
+}  // namespace
+}  // namespace hilo::test
