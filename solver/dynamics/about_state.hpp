@@ -4,8 +4,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "dynamics/linear_step.hpp"
 #include "dynamics/state.hpp"
-#include "system/system.hpp"
 
 namespace hilo {
 
@@ -31,8 +31,7 @@ class AboutState {
   }
   /// Forces on what no law moves.  Collective.
   Eigen::VectorXd free_part(std::vector<double>& r) const {
-    solver_.sum_shared(r);
-    system_.mask_fixed(r);
+    complete(system_, solver_, r);
     return Eigen::Map<const Eigen::VectorXd>(r.data(), n_);
   }
 

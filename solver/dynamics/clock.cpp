@@ -9,7 +9,7 @@ namespace hilo {
 std::vector<std::vector<int>> mechanisms_of_one_freedom(const System& s) {
   const auto n = static_cast<int>(s.bodies.size());
   Ties ties(n);
-  for (const auto& part : s.parts()) part->tie(ties);
+  for (const Equations* part : s.all<Equations>()) part->tie(ties);
   s.comm->sum(ties.excluded());  // cells are on their ranks alone
   std::vector<std::vector<int>> groups(n);
   for (int b = 0; b < n; ++b)
@@ -43,7 +43,7 @@ std::vector<std::string> Clocks::names() const {
 /// v.M w of each mechanism.
 void Clocks::inner(const Config& v, const Config& w, std::vector<double>& out) const {
   out.assign(mechanisms_.size(), 0.0);
-  for (const auto& part : system_.parts()) part->add_inertia(group_, v, w, out);
+  for (const Clocked* part : system_.all<Clocked>()) part->add_inertia(group_, v, w, out);
   system_.comm->sum(out);
 }
 
@@ -71,7 +71,7 @@ void Clocks::plan(const Config& v, double t, double T) {
     for (size_t k = 0; k < mechanisms_.size(); ++k) mechanisms_[k].nodes.push_front({vMv_[k], 0});
   }
   changed_.assign(mechanisms_.size(), 0.0);
-  for (const auto& part : system_.parts()) part->add_timed(group_, t, T, changed_);
+  for (const Clocked* part : system_.all<Clocked>()) part->add_timed(group_, t, T, changed_);
   system_.comm->sum(changed_);
   for (size_t k = 0; k < mechanisms_.size(); ++k) {
     Mechanism& m = mechanisms_[k];
@@ -95,7 +95,7 @@ void Clocks::accept(const Config& v, const Config& a, const Taken& step) {
     inner(v_, jerk_, vMj_), inner(jerk_, jerk_, jMj_);
   }
   taken_.assign(mechanisms_.size(), 0.0);  // the same on all ranks
-  for (const auto& part : system_.parts()) part->add_taken(group_, step.stage, step.lambda, taken_);
+  for (const Clocked* part : system_.all<Clocked>()) part->add_taken(group_, step.stage, step.lambda, taken_);
   for (size_t k = 0; k < mechanisms_.size(); ++k) {
     Mechanism& m = mechanisms_[k];
     auto& n = m.nodes;

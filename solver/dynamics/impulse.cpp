@@ -21,7 +21,7 @@ Impulse strike(const System& system, KktSolver& solver, State& s) {
   impulse.change = project_velocities(system, solver, s.q, s.v, s.t);
   impulse.work = system.energy(s.q, s.v).kinetic - kinetic;
   double most = 1e-6;  // over the rates that occur, so that m/s and rad/s compare, and round-off is none
-  for (const auto& part : system.parts()) {
+  for (const Jumping* part : system.all<Jumping>()) {
     std::vector<Jump> jumps;
     part->add_jumps(s.t, before, s.v, slack, jumps);
     for (const Jump& jump : jumps) {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "dynamics/free_part.hpp"
-#include "dynamics/profile.hpp"
+#include "dynamics/linear_step.hpp"
 
 namespace hilo {
 
@@ -64,210 +64,241 @@ void tell_what_is_left(const System& s, const Residual& r, const Unknown& u, New
   for (double& g : report.gaps) g /= r.sigma;
 }
 
-}  // namespace
+/// One solution on its way.
+class Newton {
+ public:
+  Newton(const System& system, KktSolver& solver, const std::function<Stage(const Unknown&)>& stage, Unknown& u,
+         std::vector<double>& lambda, const NewtonOptions& options, std::optional<Correction> guess)
+      : system_(system),
+        solver_(solver),
+        stage_(stage),
+        u_(u),
+        lambda_(lambda),
+        options_(options),
+        foresees_(system.traits().deforms && options.foresees),
+        last_(std::move(guess)) {
+    if (!foresees_) last_.reset();
+  }
+  NewtonReport take();
 
-NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Unknown&)>& stage, Unknown& u,
-                    std::vector<double>& lambda, const NewtonOptions& options, std::optional<Correction> last) {
-  NewtonReport report;
-  Residual r;
-  std::vector<double> b, z;
-  // The last correction, to first order: a tangent takes the stresses of cells from it (physics/solid, `foresee`).
-  bool foresees = system.traits().deforms && options.foresees;
-  if (!foresees) last.reset();
-  bool foreseen = false;   // in the last tangent
-  std::vector<double> by;  // the last correction, where `last->along` is not known yet
-  const auto evaluate = [&](bool tangent) {
-    const Timed timed(phases().assembly);
-    Stage s = stage(u);
-    if (tangent) foreseen = last && s.e1 == s.end && s.chain == 1;
-    if (tangent && foreseen) {
-      if (!by.empty()) {
-        combine(last->along, {{0, &last->before}});
-        system.add_rates(last->along, last->before, by);
-      }
-      s.before = &last->before, s.along = &last->along;
+ private:
+  void evaluate(bool tangent);
+  SolveReport solve(bool old_factors);
+  double forcing(bool old_factors) const;
+  double correction() const { return system_.comm->max(relative_correction(system_, z_)); }
+  void move();
+  void move_along(double share);
+  void go_as_far_as_allowed();
+  bool go_damped();
+  void repeat_with_old_factors();
+  void polish();
+  void accept();
+  NewtonReport fail(const std::string& reason) { return report_.reason = reason, report_; }
+  bool is_sound() const { return report_.least_det.det > 0 && std::isfinite(report_.residual); }
+  bool is_small_enough() const { return report_.residual <= options_.tolerance; }
+  bool is_rounding() const;
+
+  const System& system_;
+  KktSolver& solver_;
+  const std::function<Stage(const Unknown&)>& stage_;
+  Unknown& u_;
+  std::vector<double>& lambda_;
+  const NewtonOptions& options_;
+  NewtonReport report_;
+  Residual r_;
+  std::vector<double> z_, direction_;  // correction; the whole of one of which shares are taken
+  Config before_;                      // where that one began
+  double share_ = 1;
+  bool damped_ = false;
+  double last_residual_ = 0;
+  bool foresees_;                   // a tangent takes the stresses of cells from the last correction (physics/solid, `foresee`)
+  bool foreseen_ = false;           // in the last tangent
+  std::optional<Correction> last_;  // to first order
+  std::vector<double> by_;          // it, where `last_->along` is not known yet
+};
+
+void Newton::evaluate(bool tangent) {
+  Stage s = stage_(u_);
+  if (tangent) foreseen_ = last_ && s.e1 == s.end && s.chain == 1;
+  if (tangent && foreseen_) {
+    if (!by_.empty()) {
+      combine(last_->along, {{0, &last_->before}});
+      system_.add_rates(last_->along, last_->before, by_);
     }
-    system.evaluate(s, lambda, r, tangent ? &solver : nullptr);
-    solver.sum_shared(r.r);
-    system.mask_fixed(r.r);
-    r.force_scale = report.force = system.comm->max(r.force_scale);
-    report.least_det = r.least_det;
-    if (system.comm->size > 1) {
-      report.least_det.det = -system.comm->max(-r.least_det.det);
-      report.least_det.region = static_cast<int>(system.comm->max(r.least_det.det == report.least_det.det ? r.least_det.region : -1));
-    }
-    report.residual = system.comm->max(relative_residual(system, r));
-    ++phases().evaluations, phases().tangents += tangent;
-  };
-  // What a solve may leave of the residual: a tenth of what is left to the tolerance, and no less than Newton's own error, about the square
-  // of how far the last iteration came [eisenstat-walker-1996], or that of an iteration with old factors, which comes as far as the last
-  // one.
-  double last_residual = 0;
-  const auto forcing = [&](bool old_factors) {
-    const double enough = 0.1 * options.tolerance / std::max(report.residual, 1e-300);
-    const double contraction = last_residual > 0 ? report.residual / last_residual : 1e-2;
-    return std::clamp(std::max(std::min(enough, 0.1), std::min(0.1 * contraction * (old_factors ? 1 : contraction), 1e-3)), 1e-10, 0.1);
-  };
-  const auto solve = [&](bool old_factors) {
-    b.resize(r.r.size()), z.assign(r.r.size(), 0.0);
-    for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
-    const Timed timed(phases().solve);
-    const SolveReport solved = solver.solve(b, z, forcing(old_factors));
-    ++phases().solves, phases().linear_iterations += solved.iterations;
-    report.linear_iterations += solved.iterations;
-    return solved;
-  };
-  const auto move = [&] {
-    if (foresees) {
-      if (!last) last.emplace();
-      last->before = u.q, by = z;
-    }
-    u.move(system, z);
-    const int first = 3 * system.first_joint_block();
-    for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += r.sigma * z[first + i];
-  };
-  std::vector<double> direction;
-  const auto move_along = [&](double share) {
-    z.resize(direction.size());
-    for (size_t i = 0; i < z.size(); ++i) z[i] = share * direction[i];
-    move();
-  };
-  /// Back along the direction, of which `left` remains.
-  const auto move_back = [&](double share, double left) {
-    const std::optional<Correction> from = last;
-    move_along(-share);
-    last = from;
-    for (size_t i = 0; i < by.size(); ++i) by[i] = left * direction[i];
-  };
-  const auto is_sound = [&] { return report.least_det.det > 0 && std::isfinite(report.residual); };
-  // Damped Newton: a share s of the correction z = -K^-1 r, such that the next one by the same matrix, -K^-1 r(u + s z), is smaller by at
-  // least s/4 [deuflhard-2004, the natural monotonicity test].  K weighs forces, moments and constraints against each other.
-  double share = 1;
-  bool damped = false;
-  const auto damped_move = [&] {
-    direction = z;
-    const double size = size_of(system, direction);
-    for (share = std::min(1.0, 4 * share); share > options.least_share; share /= 2) {
-      move_along(share);
+    s.before = &last_->before, s.along = &last_->along;
+  }
+  assemble(system_, solver_, s, lambda_, r_, tangent);
+  report_.least_det = r_.least_det;
+  report_.residual = system_.comm->max(relative_residual(system_, r_));
+}
+
+/// What a solve may leave of the residual: a tenth of what is left to the tolerance, and no less than Newton's own error, about the square
+/// of how far the last iteration came [eisenstat-walker-1996], or that of an iteration with old factors, which comes as far as the last
+/// one.
+double Newton::forcing(bool old_factors) const {
+  const double enough = 0.1 * options_.tolerance / std::max(report_.residual, 1e-300);
+  const double contraction = last_residual_ > 0 ? report_.residual / last_residual_ : 1e-2;
+  return std::clamp(std::max(std::min(enough, 0.1), std::min(0.1 * contraction * (old_factors ? 1 : contraction), 1e-3)), 1e-10, 0.1);
+}
+
+SolveReport Newton::solve(bool old_factors) {
+  SolveReport solved = correct(solver_, r_.r, z_, forcing(old_factors));
+  report_.linear_iterations += solved.iterations;
+  return solved;
+}
+
+void Newton::move() {
+  if (foresees_) {
+    if (!last_) last_.emplace();
+    last_->before = u_.q, by_ = z_;
+  }
+  u_.move(system_, z_);
+  add_multipliers(system_, r_.sigma, z_, lambda_);
+}
+
+void Newton::move_along(double share) {
+  z_.resize(direction_.size());
+  for (size_t i = 0; i < z_.size(); ++i) z_[i] = share * direction_[i];
+  move();
+}
+
+/// The correction, or the share of it that cells and gaps allow.
+void Newton::go_as_far_as_allowed() {
+  before_ = u_.q, direction_ = z_;
+  move();
+  share_ = system_.longest_share(before_, u_.q);
+  if (share_ == 1) return;
+  damped_ = true;
+  move_along(share_ - 1);
+  if (!foresees_) return;
+  last_->before = before_;
+  for (size_t i = 0; i < by_.size(); ++i) by_[i] = share_ * direction_[i];
+}
+
+/// Damped Newton: a share s of the correction z = -K^-1 r, such that the next one by the same matrix, -K^-1 r(u + s z), is smaller by at
+/// least s/4 [deuflhard-2004, the natural monotonicity test].  K weighs forces, moments and constraints against each other.
+bool Newton::go_damped() {
+  direction_ = z_, before_ = u_.q;
+  const double size = size_of(system_, direction_);
+  for (share_ = std::min(1.0, 4 * share_); share_ > options_.least_share; share_ /= 2) {
+    move_along(share_);
+    if (system_.longest_share(before_, u_.q) == 1) {
       evaluate(false);
       if (is_sound() && solve(true).ok) {
-        const double ratio = size_of(system, z) / size;
-        if (ratio <= 1 - share / 4) {
-          damped = share < 1 || ratio > 0.1;
+        const double ratio = size_of(system_, z_) / size;
+        if (ratio <= 1 - share_ / 4) {
+          damped_ = share_ < 1 || ratio > 0.1;
           return true;
         }
       }
-      move_along(-share);
     }
-    return false;
+    move_along(-share_);
+  }
+  return false;
+}
+
+void Newton::accept() {  // the unknown evaluated last
+  tell_what_is_left(system_, r_, u_, report_);
+  report_.converged = true;
+}
+
+/// Modified Newton: iterations with the factors of the last tangent.  They pay where solves are cheap, where the residual is within 1000 of
+/// the tolerance, or where an iteration that gains as much as the last one ends within 10 of it.
+void Newton::repeat_with_old_factors() {
+  const double enough = options_.tolerance;
+  const auto pays = [&] {
+    return solver_.repeats_cheaply()
+               ? report_.residual > 1e-2 * enough
+               : !is_small_enough() && !is_rounding() && report_.residual < std::max(1e3 * enough, std::sqrt(10 * enough * last_residual_));
   };
-  const auto accept = [&] {  // the unknown evaluated last
-    tell_what_is_left(system, r, u, report);
-    report.converged = true;
-  };
-  // where the last factors serve once more for little, one more correction takes constraints and forces to round-off (or, where the
-  // tolerance asked for is a loose one, to five digits beyond)
-  const auto polish = [&] {
-    for (int k = 0; k < 4 && report.residual > 1e-5 * options.tolerance && solver.repeats_cheaply() && solve(true).ok; ++k) {
-      const double correction = system.comm->max(relative_correction(system, z));
-      if (!(correction < 1e-6)) break;
-      move();
-      if (correction < 1e-12) {  // what the old factors leave of it is round-off
-        report.converged = true;
-        return;
-      }
-      evaluate(false);
+  for (int reuse = 0; reuse < 4 && pays(); ++reuse) {
+    const double residual = report_.residual;
+    if (!solve(true).ok) return;
+    const double by = correction();
+    if (!(by < 0.1 * report_.correction)) return;
+    report_.correction = by;
+    move();
+    evaluate(false);
+    last_residual_ = residual;
+    if (!(report_.residual < 0.1 * residual)) return;
+  }
+}
+
+/// Where the last factors serve once more for little, one more correction takes constraints and forces to round-off (or, where the
+/// tolerance asked for is a loose one, to five digits beyond).
+void Newton::polish() {
+  for (int k = 0; k < 4 && report_.residual > 1e-5 * options_.tolerance && solver_.repeats_cheaply() && solve(true).ok; ++k) {
+    const double by = correction();
+    if (!(by < 1e-6)) break;
+    move();
+    if (by < 1e-12) {  // what the old factors leave of it is round-off
+      report_.converged = true;
+      return;
     }
-    accept();
-  };
-  // A correction far below the tolerance, one to come that is nothing to the scene, and a residual within ten of the tolerance: what is
-  // left is the round-off of positions amplified by stiffness; another solve would only draw other digits of it.
-  const auto is_rounding = [&] {
-    return report.correction <= 1e-2 * options.tolerance && report.correction * report.residual <= 1e-13 * last_residual &&
-           report.residual <= 10 * options.tolerance;
-  };
-  double previous = last ? system.largest_difference(u.q, last->before) / system.length : 1e300;
+    evaluate(false);
+  }
+  accept();
+}
+
+/// A correction far below the tolerance, one to come that is nothing to the scene, and a residual within ten of the tolerance: what is left
+/// is the round-off of positions amplified by stiffness; another solve would only draw other digits of it.
+bool Newton::is_rounding() const {
+  return report_.correction <= 1e-2 * options_.tolerance && report_.correction * report_.residual <= 1e-13 * last_residual_ &&
+         report_.residual <= 10 * options_.tolerance;
+}
+
+NewtonReport Newton::take() {
+  double previous = last_ ? system_.largest_difference(u_.q, last_->before) / system_.length : 1e300;
   bool near = false;   // the next residual is likely to be small enough: look at it before building a tangent
   bool moved = false;  // by the last iteration
   for (int it = 0;; ++it) {
     if (near) {
       evaluate(false);
-      // modified Newton: iterations with the factors of the last tangent.  They pay where solves are cheap, where the residual is within
-      // 1000 of the tolerance, or where an iteration that gains as much as the last one ends within 10 of it
-      const auto worth = [&] {
-        return solver.repeats_cheaply()
-                   ? report.residual > 1e-2 * options.tolerance
-                   : report.residual > options.tolerance && !is_rounding() &&
-                         report.residual < std::max(1e3 * options.tolerance, std::sqrt(10 * options.tolerance * last_residual));
-      };
-      for (int reuse = 0; reuse < 4 && worth(); ++reuse) {
-        const double residual = report.residual;
-        if (!solve(true).ok) break;
-        const double correction = system.comm->max(relative_correction(system, z));
-        if (!(correction < 0.1 * report.correction)) break;
-        report.correction = correction;
-        move();
-        evaluate(false);
-        last_residual = residual;
-        if (!(report.residual < 0.1 * residual)) break;
-      }
-      if (report.residual <= options.tolerance || is_rounding()) {
-        polish();
-        return report;
-      }
+      repeat_with_old_factors();
+      if (is_small_enough() || is_rounding()) return polish(), report_;
     }
-    if (it == options.max_iterations) {
-      report.reason = "no convergence within the iterations allowed";
-      return report;
-    }
+    if (it == options_.max_iterations) return fail("no convergence within the iterations allowed");
     evaluate(true);
-    if (moved && !damped && !is_sound()) {  // the last correction went too far: back along it to where cells are whole
-      direction = z, damped = true;
-      for (share = 1; !is_sound() && share > options.least_share;) share /= 2, move_back(share, share), evaluate(false);
-      evaluate(true);
+    if (moved && !damped_ && !is_sound()) {  // the last correction went farther than anyone foresaw: back, and damped from there
+      move_along(-1);
+      damped_ = true, near = moved = false, last_.reset();
+      continue;
     }
-    if (!std::isfinite(report.residual)) {
-      report.reason = "the residual is not finite";
-      return report;
-    }
-    if (report.residual <= options.tolerance && it > 0) {
-      accept();
-      return report;
-    }
+    if (!std::isfinite(report_.residual)) return fail("the residual is not finite");
+    if (is_small_enough() && it > 0) return accept(), report_;
     const SolveReport solved = solve(false);
-    last_residual = report.residual;
-    ++report.iterations;
-    report.correction = solved.ok ? system.comm->max(relative_correction(system, z)) : 1e300;
-    if (foreseen && !(report.correction <= std::max(0.5 * previous, 1e-6))) {  // the stresses foreseen are too large: without them
-      foresees = near = false, last.reset();
+    last_residual_ = report_.residual;
+    ++report_.iterations;
+    report_.correction = solved.ok ? correction() : 1e300;
+    if (foreseen_ && !(report_.correction <= std::max(0.5 * previous, 1e-6))) {  // the stresses foreseen are too large: without them
+      foresees_ = near = false, last_.reset();
       if (!moved) previous = 1e300;
       moved = false;
       continue;
     }
-    if (!solved.ok) {
-      report.reason = solver.name() + ": " + solved.message;
-      if (solved.message.find("singular") != std::string::npos) report.reason += free_part(system, solver, r.sigma);
-      return report;
-    }
-    if (!(report.correction <= options.reach)) {
-      report.reason = "the correction is not finite or leaves the scene";
-      return report;
-    }
-    if (!options.patient && it > 0 && report.correction > 0.5 * previous && report.correction > 1e-6) damped = true;
-    if (!damped) {
-      move();
-    } else if (!damped_move()) {
-      report.reason = "no share of a correction makes the next one smaller";
-      return report;
-    }
-    if (!damped && report.correction <= options.tolerance * 1e-2) {  // far below what the next one could change
+    if (!solved.ok)
+      return fail(solver_.name() + ": " + solved.message +
+                  (solved.message.find("singular") != std::string::npos ? free_part(system_, solver_, r_.sigma) : ""));
+    if (!(report_.correction <= options_.reach)) return fail("the correction is not finite or leaves the scene");
+    if (!options_.patient && it > 0 && report_.correction > 0.5 * previous && report_.correction > 1e-6) damped_ = true;
+    if (!damped_)
+      go_as_far_as_allowed();
+    else if (!go_damped())
+      return fail("no share of a correction makes the next one smaller");
+    if (!damped_ && report_.correction <= options_.tolerance * 1e-2) {  // far below what the next one could change
       evaluate(false);
-      accept();
-      return report;
+      return accept(), report_;
     }
-    near = report.correction < 1e-3, moved = true;
-    previous = report.correction;
+    near = report_.correction < 1e-3, moved = true;
+    previous = report_.correction;
   }
+}
+
+}  // namespace
+
+NewtonReport newton(const System& system, KktSolver& solver, const std::function<Stage(const Unknown&)>& stage, Unknown& u,
+                    std::vector<double>& lambda, const NewtonOptions& options, std::optional<Correction> guess) {
+  return Newton(system, solver, stage, u, lambda, options, std::move(guess)).take();
 }
 
 }  // namespace hilo

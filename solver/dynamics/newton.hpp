@@ -25,7 +25,6 @@ struct NewtonReport {
   int iterations = 0;     // linear solves
   double correction = 0;  // last one, over the scene's length
   double residual = 0;    // last one, over the force scale
-  double force = 0;       // largest force summed into it [N]
   LeastDet least_det;
   int linear_iterations = 0;
   double left = 0;           // work of the residual over the increments of the unknown from where it began [J]

@@ -13,7 +13,7 @@
 #include <cmath>
 
 #include "dynamics/held.hpp"
-#include "dynamics/profile.hpp"
+#include "dynamics/linear_step.hpp"
 #include "dynamics/run_parts.hpp"
 #include "dynamics/start.hpp"
 #include "system/load_path.hpp"
@@ -124,14 +124,9 @@ class PathSteps final : public Steps {
   }
   /// The residual at q, with what a law moves where it is under the share p; with a tangent the solver has it.
   void evaluate(const Config& q, const Vector& lambda, double p, Residual& r, bool tangent, const Correction* last = nullptr) {
-    const Timed timed(phases().assembly);
-    ++phases().evaluations, phases().tangents += tangent;
     Stage s = stage(q, p);
     if (last) s.before = &last->before, s.along = &last->along;
-    run_.system.evaluate(s, lambda, r, tangent ? &*run_.solver : nullptr);
-    run_.solver->sum_shared(r.r);
-    run_.system.mask_fixed(r.r);
-    r.force_scale = run_.system.comm->max(r.force_scale);
+    assemble(run_.system, *run_.solver, s, lambda, r, tangent);
   }
   /// dR/dp, where the residual is r.
   Vector by_load(const Config& q, const Vector& lambda, double p, const Residual& r) {
@@ -145,12 +140,7 @@ class PathSteps final : public Steps {
   }
   /// K z = -r with the tangent evaluated last; false, and `why_`, where that fails.
   bool solve(const Vector& r, Vector& z) {
-    Vector b(r.size());
-    z.assign(r.size(), 0.0);
-    for (size_t i = 0; i < b.size(); ++i) b[i] = -r[i];
-    const Timed timed(phases().solve);
-    const SolveReport solved = run_.solver->solve(b, z);
-    ++phases().solves, phases().linear_iterations += solved.iterations;
+    const SolveReport solved = correct(*run_.solver, r, z);
     if (!solved.ok) why_ = run_.solver->name() + ": " + solved.message;
     return solved.ok;
   }
@@ -204,7 +194,6 @@ class PathSteps final : public Steps {
     };
     move(z);
     const double unit2 = at_.unit * at_.unit;
-    const size_t first = 3 * static_cast<size_t>(system.first_joint_block());
     double last = 1e300;
     for (iterations_ = 0;; ++iterations_, ++run_.report.iterations) {
       Residual r;
@@ -233,7 +222,7 @@ class PathSteps final : public Steps {
       Config moved = u.q;
       system.prescribe(moved, p * end_, p), system.place(moved);
       u.start(system, from.q, moved), move(z);
-      for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += r.sigma * z[first + i];
+      add_multipliers(system, r.sigma, z, lambda);
     }
     const std::optional<int> below = run_.solver->eigenvalues_below_zero(system.first_joint_block());
     to.so_far = so_far;

@@ -78,7 +78,7 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   add("least_det_F", det < 1e299 ? fmt::format("{:.6g}", det) : "null");
   add("audit", run.audit->json(report.complete ? "" : report.reason));
   std::vector<std::pair<std::string, std::string>> said;
-  for (const auto& part : system.parts()) part->add_to_report(said);
+  for (const Observer* part : system.all<Observer>()) part->add_to_report(said);
   for (const auto& [key, value] : said) add(key.c_str(), value);
   if (report.complete && run.options.more)
     for (const auto& [key, value] : run.options.more()) add(key.c_str(), value);

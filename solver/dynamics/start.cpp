@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "dynamics/free_part.hpp"
+#include "dynamics/linear_step.hpp"
 
 namespace hilo {
 namespace {
@@ -47,11 +48,8 @@ double assemble_positions(System& system, KktSolver& solver, Config& q) {
     system.evaluate(stage_of(q, moved), lambda, with, &solver);
     if (!flexible) system.evaluate(stage_of(q, zero), none, without, nullptr);
     for (int i = 0; i < first; ++i) with.r[i] -= without.r[i];
-    solver.sum_shared(with.r);
-    system.mask_fixed(with.r);
-    for (double& r : with.r) r = -r;
-    std::fill(z.begin(), z.end(), 0.0);
-    const SolveReport solved = solver.solve(with.r, z);
+    complete(system, solver, with.r);
+    const SolveReport solved = correct(solver, with.r, z);
     if (!solved.ok) break;
     double turn = 0, shift = 0;  // long turns are taken in parts
     for (const UnknownField& f : system.unknowns)
@@ -98,8 +96,7 @@ double project_velocities(const System& system, KktSolver& solver, const Config&
     inertia.a = &zero;
     system.evaluate(inertia, lambda, without, nullptr);  // the round-off of stiff cells
     for (size_t i = 0; i < r.r.size(); ++i) r.r[i] -= without.r[i];
-    solver.sum_shared(r.r);
-    system.mask_fixed(r.r);
+    complete(system, solver, r.r);
     for (int i = 0; i < 3 * system.first_joint_block(); ++i) b[i] = -r.r[i];
   }
   std::vector<double> rate;
@@ -176,18 +173,14 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
   // linear in accelerations and multipliers, but for friction that the multipliers press: Newton then
   const bool pressed = system.traits().is_pressed;
   Residual r;
-  std::vector<double> rate, acceleration, b, z;
+  std::vector<double> rate, acceleration, z;
   const int first = 3 * system.first_joint_block();
   for (int it = 0; it < (pressed ? 12 : 1); ++it) {
-    system.evaluate(stage, lambda, r, &solver);
-    solver.sum_shared(r.r);
-    system.mask_fixed(r.r);
+    assemble(system, solver, stage, lambda, r, true);
     system.row_rates(s.q, s.v, &a, s.t, rate, &acceleration);  // rows: d2g/dt2 = 0
-    b.resize(r.r.size()), z.assign(r.r.size(), 0.0);
-    for (size_t i = 0; i < b.size(); ++i) b[i] = -r.r[i];
     const std::vector<char> on = system.rows_on();
-    for (size_t i = 0; i < on.size(); ++i) b[first + i] = on[i] ? -r.sigma * acceleration[i] : 0;
-    const SolveReport solved = solver.solve(b, z);
+    for (size_t i = 0; i < on.size(); ++i) r.r[first + i] = on[i] ? r.sigma * acceleration[i] : 0;
+    const SolveReport solved = correct(solver, r.r, z);
     if (!solved.ok)
       throw Error("", fmt::format("the joints and masses do not determine the accelerations: {}{}", solved.message,
                                   free_part(system, solver, r.sigma)));
@@ -243,18 +236,17 @@ std::optional<Correction> take_along(System& system, KktSolver& solver, const st
   Residual at, ahead;
   system.evaluate(stage(before), lambda, at, &solver);
   system.evaluate(stage(nudged), lambda, ahead, nullptr);
-  std::vector<double> b(at.r.size()), z(at.r.size());
-  for (size_t i = 0; i < b.size(); ++i) b[i] = -at.r[i] - (ahead.r[i] - at.r[i]) / little;
-  solver.sum_shared(b);
-  system.mask_fixed(b);
-  if (!solver.solve(b, z, 1e-3).ok) return {};
+  std::vector<double> z;
+  for (size_t i = 0; i < at.r.size(); ++i) at.r[i] += (ahead.r[i] - at.r[i]) / little;
+  complete(system, solver, at.r);
+  if (!correct(solver, at.r, z, 1e-3).ok) return {};
   Correction out{before, {}};
   combine(out.along, {{1, &q}, {-1, &before}});
   system.add_rates(out.along, before, z);
   Unknown u(system, before, q);
   u.move(system, z);
   q = u.q;
-  for (size_t i = 0; i < lambda.size(); ++i) lambda[i] += at.sigma * z[3 * system.first_joint_block() + i];
+  add_multipliers(system, at.sigma, z, lambda);
   return out;
 }
 

@@ -78,7 +78,7 @@ Wanted wanted(const Scene& scene, const System& system) {
       solver == "light" || solver == "klu" || solver == "cholesky" || solver == "umfpack" || (solver == "auto" && unknowns <= 300000);
   if (system.comm->size == 1 && factored) w.memory = resident() + solver_bytes(system);
   w.per_step = 8 * 12;
-  for (const auto& part : system.parts())
+  for (const Observer* part : system.all<Observer>())
     for (const Output& o : part->outputs()) w.per_step += 8 * (o.n_end + o.n_mid);
   if (!time.has("end")) return w;
   const double end = time.number("end"), interval = output.given("interval") ? output.number("interval") : end / 50;

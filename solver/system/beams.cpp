@@ -227,9 +227,11 @@ std::vector<Output> Beams::outputs() const {
 
 /// Forces and moments that a cell exerts on its sections, weight and inertia of its own with them: where nothing is loaded they go on from
 /// cell to cell.
-void Beams::add_mid_values(const Moment& m, std::vector<double>& out) const {
+void Beams::observe(const Sight& sight) {
+  if (!sight.step) return;
   ConnectorGradient g;
-  const Stage& s = m.s;
+  const Stage& s = sight.step->s;
+  std::vector<double>& out = sight.mid;
   for (const BeamCell& cell : cells) {
     gradient(cell.ends, *s.left, g);
     Response elastic, viscous, before;

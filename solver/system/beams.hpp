@@ -34,7 +34,7 @@ struct SectionPlace {
   int body;
 };
 
-class Beams final : public Contribution {
+class Beams final : public Contribution, public Equations, public Stateful, public Observer {
  public:
   explicit Beams(const Points& points) : points_(points) {}
   std::vector<Beam> beams;
@@ -51,7 +51,7 @@ class Beams final : public Contribution {
   void add_work(const Moment& m, Work& sum) const override;
   std::string fault(const Config& q) const override;
   std::vector<Output> outputs() const override;
-  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
+  void observe(const Sight& at) override;
   void tie(Ties& ties) const override;
 
  private:

@@ -156,13 +156,13 @@ std::vector<Output> Bodies::outputs() const {
   return out;
 }
 
-void Bodies::add_end_values(const Config& q, const Config&, std::vector<double>& out) const {
+void Bodies::observe(const Sight& at) {
   if (arms_.empty())
     for (const Body& b : points_.bodies) arms_.push_back(body_arms(b));
   for (size_t b = 1; b < points_.bodies.size(); ++b)
     for (const Vec3& arm : arms_[b]) {
-      const Vec3 x = q.c[b] + q.R[b] * arm;
-      out.insert(out.end(), x.data(), x.data() + 3);
+      const Vec3 x = at.q.c[b] + at.q.R[b] * arm;
+      at.end.insert(at.end.end(), x.data(), x.data() + 3);
     }
 }
 

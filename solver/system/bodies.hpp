@@ -5,7 +5,7 @@
 
 namespace hilo {
 
-class Bodies final : public Contribution {
+class Bodies final : public Contribution, public Equations, public Turning, public Observer, public Clocked {
  public:
   explicit Bodies(const Points& points) : points_(points) {}
   /// Mass-proportional damping of a body: int alpha rho b b^T, b = (1, X - Xc); none of those beyond the list [kg/s, kg m/s, kg m^2/s].
@@ -20,7 +20,7 @@ class Bodies final : public Contribution {
   void look_at_turn(const Config& q0, const Config& q1, int part, Turned& most) const override;
   std::string name(int item) const override { return "body \"" + points_.bodies[item].name + "\""; }
   std::vector<Output> outputs() const override;
-  void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
+  void observe(const Sight& at) override;
   void tie(Ties&) const override {}  // each is alone
   void add_inertia(std::span<const int> group, const Config& v, const Config& w, std::span<double> sum) const override;
   void add_taken(std::span<const int> group, const Stage& s, std::span<const double> lambda, std::span<double> sum) const override;
@@ -29,7 +29,7 @@ class Bodies final : public Contribution {
   bool brakes(size_t b) const { return b < drag.size() && !drag[b].isZero(0) && !points_.bodies[b].linear; }
   void add_drag(Pass& p, size_t b) const;
   const Points& points_;
-  mutable std::vector<std::array<Vec3, 4>> arms_;  // to the four points of each body, when first asked for
+  std::vector<std::array<Vec3, 4>> arms_;  // to the four points of each body, when first asked for
 };
 
 /// Four points of a body from its centre and directors: the centre, and one along each principal axis, in the order of rising moments of

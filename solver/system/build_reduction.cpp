@@ -76,7 +76,7 @@ RegionParcel Builder::parcel_of(int number) {
       out.interfaces.push_back(to_first(rows));
     }
   std::vector<NodalForces> forces;
-  for (const auto& part : out_->parts()) part->add_reference_forces(forces);
+  for (const Loading* part : out_->all<Loading>()) part->add_reference_forces(forces);
   std::vector<std::int64_t> load_sizes;
   std::vector<double> loads;
   for (const NodalForces& list : forces) {

@@ -138,7 +138,9 @@ std::vector<Output> Joints::outputs() const {
 }
 
 /// Reactions: force and moment on b at the joint point, in the joint frame carried by a.
-void Joints::add_mid_values(const Moment& m, std::vector<double>& out) const {
+void Joints::observe(const Sight& at) {
+  if (!at.step) return;
+  const Moment& m = *at.step;
   const Config& q = *m.s.left;
   ConnectorGradient left;
   double force[max_measures];
@@ -153,7 +155,7 @@ void Joints::add_mid_values(const Moment& m, std::vector<double>& out) const {
       slip.tail<3>() -= (q.R[c.end[1].body] * c.point_b).cross(slip.head<3>());
       f += slip;
     }
-    append_in_frame(c, f, q, out);
+    append_in_frame(c, f, q, at.mid);
   }
 }
 

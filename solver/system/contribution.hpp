@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What takes part in the equations of motion: flexible cells, rigid bodies, joints, springs, loads, motions, each in one file behind this
-// interface.  The system and the recorder loop over contributions and know none by name; a new kind is one file, and a line in
-// Builder::build.  A contribution holds many things of its kind (all cells, all joints), so that a call costs nothing beside its work.
+// What takes part in a run: flexible cells, rigid bodies, joints, springs, loads, motions, measures, each a Contribution in one file, and
+// one of each of the roles below that it plays.  The system and the recorder loop over roles and know no contribution by name; a new kind
+// is one file, and a line in Builder::add_contributions.  A contribution holds many things of its kind (all cells, all joints), so that a
+// call costs nothing beside its work.
 //
 // All ranks have the same contributions in the same order, also where a rank has nothing of one: functions may be collective.
 #pragma once
 #include <algorithm>
+#include <concepts>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "base/archive.hpp"
@@ -129,54 +132,90 @@ class Moment {
   mutable std::optional<Forces> forces_;
 };
 
+/// An accepted step as observers see it, or the state before the first one.
+struct Sight {
+  double t;                       // of its end [s], or its number
+  const Config &q, &v;            // at its end
+  const Moment* step;             // null: before the first step
+  std::vector<double>&end, &mid;  // numbers of the outputs, put behind: of the end, and where there is a step of its inside
+};
+
+/// What every contribution says.
 class Contribution {
  public:
   virtual ~Contribution() = default;
   virtual Traits traits() const { return {}; }
   /// "12 joints", for the line that tells what a scene has; "": not told.  Collective.
   virtual std::string count() const { return {}; }
-
-  // unknowns
-  /// Once, before it is numbered; may be collective.
+  /// Once, before anything is numbered; may be collective.
   virtual void prepare() {}
+  /// All that it remembers from accepted steps.
+  virtual void archive(Archive& /*a*/) {}
+};
+
+/// Terms of the equations of motion.
+class Equations {
+ public:
   /// Its blocks of multipliers and its cliques, again whenever the structure changes: what it is called with is all that it depends on.
   virtual void number(Layout& /*layout*/) {}
   /// What can meet in the step of length h [s] that begins at q with velocities v (null in statics); true where its rows or cliques become
   /// others.  Between steps, and at the start.  May be collective; the answer need not be the same on all ranks, rows must be.
   virtual bool search(const Config& /*q*/, const Config* /*v*/, double /*h*/) { return false; }
-  /// Its constraint rows, by the thing that has them; blocks are numbered.
-  virtual void add_constraints(std::vector<std::unique_ptr<Constraint>>& /*out*/) {}
-  /// What the unknowns of a local block belong to (`region "r", at node 7`), or "".
-  virtual std::string owner(int /*block*/) const { return {}; }
-  /// Free nodes that move about as one body, for the first guess of a step.
-  virtual void add_groups(std::vector<std::vector<int>>& /*groups*/) const {}
-
-  // equations
   virtual void evaluate(Pass& p) const = 0;
+  /// The share, in (0, 1], of the way from one configuration to another that a correction of Newton's may go: cells stay whole, gaps are
+  /// not run through.  This rank's answer.
+  virtual double longest_share(const Config& /*from*/, const Config& /*to*/) const { return 1; }
   /// This rank's share; of work, over the step from s.from() to s.end.
   virtual void add_energy(const Config& /*q*/, const Config& /*v*/, Energy& /*sum*/) const {}
   virtual void add_work(const Moment& /*m*/, Work& /*sum*/) const {}
+  /// What the unknowns of a local block belong to (`region "r", at node 7`), or "".
+  virtual std::string owner(int /*block*/) const { return {}; }
+  /// How it connects, holds or moves bodies.  There is no default: what is forgotten here would make clocks wrong without a word.
+  virtual void tie(Ties& ties) const = 0;
+};
+
+/// Rows with multipliers.
+class Constraining {
+ public:
+  /// Those that may depend on others, by the thing that has them; blocks are numbered.
+  virtual void add_constraints(std::vector<std::unique_ptr<Constraint>>& /*out*/) {}
+  /// Marks those that are always kept and are no Constraint, laid out like lambda.
+  virtual void mark_rows(std::vector<char>& /*on*/) const {}
   virtual void look_at_rows(const Config& /*q*/, double /*t*/, double /*factor*/, Violation& /*worst*/) const {}
   /// First and, where given, second derivatives by time of its rows less their courses, laid out like lambda.
   virtual void add_row_rates(const Rates& /*at*/, std::vector<double>& /*rate*/, std::vector<double>* /*acceleration*/) const {}
-  /// Marks those of its rows that are always kept and are no Constraint, laid out like lambda.
-  virtual void mark_rows(std::vector<char>& /*on*/) const {}
-  /// Forces on nodes at their reference positions, one list for each direction that they may take as a region turns below them.
-  virtual void add_reference_forces(std::vector<NodalForces>& /*list*/) const {}
-  virtual void look_at_turn(const Config& /*q0*/, const Config& /*q1*/, int /*part*/, Turned& /*most*/) const {}
-  virtual std::string name(int /*item*/) const { return {}; }
+};
 
-  // laws of motion
-  virtual bool moves() const { return false; }  // nodes or bodies move by a law of its own
-  virtual void prescribe(Config& /*q*/, double /*t*/, double /*ramp*/) const {}
-  virtual void prescribe_rates(double /*t*/, Side /*side*/, Config* /*v*/, Config* /*a*/) const {}
-  virtual void copy_prescribed(const Config& /*from*/, Config& /*to*/) const {}
-  virtual std::string too_far(double /*t0*/, double /*t1*/) const { return {}; }
+/// Nodes and bodies that move by a law.
+class Prescribing {
+ public:
+  /// Whether there are any.
+  virtual bool moves() const = 0;
+  virtual void prescribe(Config& q, double t, double ramp) const = 0;
+  virtual void prescribe_rates(double t, Side side, Config* v, Config* a) const = 0;
+  virtual void copy_prescribed(const Config& from, Config& to) const = 0;
+  /// Why a step from t0 to t1 is too long, or "".
+  virtual std::string too_far(double t0, double t1) const = 0;
+};
+
+/// Laws whose velocities jump.
+class Jumping {
+ public:
   /// Velocities that jump at t from `before` to `after`; `slack`: rates of the rows with those before, laid out like lambda.  Collective.
-  virtual void add_jumps(double /*t*/, const Config& /*before*/, const Config& /*after*/, std::span<const double> /*slack*/,
-                         std::vector<Jump>& /*jumps*/) const {}
+  virtual void add_jumps(double t, const Config& before, const Config& after, std::span<const double> slack,
+                         std::vector<Jump>& jumps) const = 0;
+};
 
-  // state
+/// Loads that are known before the run.
+class Loading {
+ public:
+  /// Forces on nodes at their reference positions, one list for each direction that they may take as a region turns below them.
+  virtual void add_reference_forces(std::vector<NodalForces>& list) const = 0;
+};
+
+/// State that goes on from step to step; Contribution::archive keeps it.
+class Stateful {
+ public:
   /// Why q cannot be, or "" ("joint \"j\" ran off the end of its curve"); the same on all ranks.
   virtual std::string fault(const Config& /*q*/) const { return {}; }
   /// The state at the end of a step of this stage, beside the accepted one, which evaluations go on from until settle().
@@ -185,20 +224,30 @@ class Contribution {
   virtual void settle(bool /*accepted*/) {}
   /// Accept q, with velocities v where they are known, as the state to go on from.
   virtual void commit(const Config& /*q*/, const Config* /*v*/) {}
-  /// All that it remembers from accepted steps.
-  virtual void archive(Archive& /*a*/) {}
+};
 
-  // results
-  virtual std::vector<Output> outputs() const { return {}; }
-  /// Numbers of all outputs in their order, put behind `out`.  Collective.
-  virtual void add_end_values(const Config& /*q*/, const Config& /*v*/, std::vector<double>& /*out*/) const {}
-  virtual void add_mid_values(const Moment& /*m*/, std::vector<double>& /*out*/) const {}
+/// What turns as a whole: bodies, cells.
+class Turning {
+ public:
+  virtual void look_at_turn(const Config& q0, const Config& q1, int part, Turned& most) const = 0;
+  virtual std::string name(int item) const = 0;
+  /// Free nodes that move about as one body, for the first guess of a step.
+  virtual void add_groups(std::vector<std::vector<int>>& /*groups*/) const {}
+};
+
+/// What results are told beside fields: measures, reactions, modes.
+class Observer {
+ public:
+  virtual std::vector<Output> outputs() const = 0;
+  /// Called once for the start of a run and for every accepted step: its numbers, and what it keeps of the whole run.  Collective.
+  virtual void observe(const Sight& at) = 0;
   /// What it has to say of the whole run, for run.json: keys and values; warnings besides.  On rank 0.
   virtual void add_to_report(std::vector<std::pair<std::string, std::string>>& /*report*/) const {}
+};
 
-  // clocks
-  /// How it connects, holds or moves bodies.  There is no default: what is forgotten here would make clocks wrong without a word.
-  virtual void tie(Ties& ties) const = 0;
+/// What clocks of mechanisms ask; `group`: of each body, or -1.
+class Clocked {
+ public:
   /// v.M w of the bodies of each group.
   virtual void add_inertia(std::span<const int> /*group*/, const Config& /*v*/, const Config& /*w*/, std::span<double> /*sum*/) const {}
   /// What forces do differently in [t, t + T] than in [t - T, t] by the time alone: f.M^-1 f of each group [N^2/kg].
@@ -206,6 +255,27 @@ class Contribution {
   /// Energy that rate forces take from, or give to, each group in a step [J].
   virtual void add_taken(std::span<const int> /*group*/, const Stage& /*s*/, std::span<const double> /*lambda*/,
                          std::span<double> /*sum*/) const {}
+};
+
+/// The contributions by the roles that they play, in their order.
+class Cast {
+ public:
+  template <std::derived_from<Contribution> T>
+  void add(T& part) {
+    const auto enter = [&]<class Role>(std::vector<Role*>& list) {
+      if constexpr (std::derived_from<T, Role>) list.push_back(&part);
+    };
+    std::apply([&](auto&... list) { (enter(list), ...); }, lists_);
+  }
+  template <class Role>
+  const std::vector<Role*>& all() const {
+    return std::get<std::vector<Role*>>(lists_);
+  }
+
+ private:
+  template <class... Roles>
+  using Lists = std::tuple<std::vector<Roles*>...>;
+  Lists<Equations, Constraining, Prescribing, Jumping, Loading, Stateful, Turning, Observer, Clocked> lists_;
 };
 
 }  // namespace hilo

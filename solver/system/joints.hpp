@@ -6,7 +6,7 @@
 
 namespace hilo {
 
-class Joints final : public Contribution {
+class Joints final : public Contribution, public Equations, public Constraining, public Jumping, public Stateful, public Observer {
  public:
   explicit Joints(const Points& points) : points_(points) {}
   std::vector<Joint> list;
@@ -37,7 +37,7 @@ class Joints final : public Contribution {
   void commit(const Config& q, const Config* v) override;
   void archive(Archive& a) override;
   std::vector<Output> outputs() const override;
-  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
+  void observe(const Sight& at) override;
   void tie(Ties& ties) const override;
 
  private:

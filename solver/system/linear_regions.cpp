@@ -250,18 +250,14 @@ std::vector<Output> LinearRegions::outputs() const {
   return out;
 }
 
-void LinearRegions::add_end_values(const Config& q, const Config&, std::vector<double>& out) const {
-  for (const LinearRegion& r : regions) {
-    const Modes& m = points_.modes[r.modes];
-    for (int j = 0; j < m.n_modes; ++j) out.push_back(amplitude(m, q, j));
-  }
-}
-
-void LinearRegions::add_mid_values(const Moment& moment, std::vector<double>& out) const {
+void LinearRegions::observe(const Sight& at) {
   of_run_.resize(regions.size());
   for (size_t k = 0; k < regions.size(); ++k) {
     const LinearRegion& r = regions[k];
     const Modes& m = points_.modes[r.modes];
+    for (int j = 0; j < m.n_modes; ++j) at.end.push_back(amplitude(m, at.q, j));
+    if (!at.step) continue;
+    const Moment& moment = *at.step;
     const Eigen::VectorXd eta = amplitudes(m, *moment.s.end);
     const Eigen::VectorXd a = moment.a ? amplitudes(m, *moment.a) : Eigen::VectorXd(Eigen::VectorXd::Zero(m.n_modes));
     const double energy = r.strain.used() ? r.strain.energy(eta) : r.stiffness.dot(eta.cwiseAbs2()) / 2;
@@ -273,7 +269,7 @@ void LinearRegions::add_mid_values(const Moment& moment, std::vector<double>& ou
       run.loads += h * left_out, run.rates += std::max(0.0, change.dot(r.left_out * change) / 2) / h;
     }
     run.a.assign(a.begin(), a.end()), run.t = moment.s.t_end;
-    out.push_back(energy), out.push_back(left_out);
+    at.mid.push_back(energy), at.mid.push_back(left_out);
   }
 }
 

@@ -26,7 +26,7 @@ struct LinearRegion {
   double held_frequency = 0;
 };
 
-class LinearRegions final : public Contribution {
+class LinearRegions final : public Contribution, public Equations, public Stateful, public Observer {
  public:
   explicit LinearRegions(const Points& points) : points_(points) {}
   std::vector<LinearRegion> regions;  // on all ranks the same
@@ -44,8 +44,7 @@ class LinearRegions final : public Contribution {
   void commit(const Config& q, const Config* v) override;
   void archive(Archive& a) override { a("linear regions", told_, too_fast_, of_run_); }
   std::vector<Output> outputs() const override;
-  void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
-  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
+  void observe(const Sight& at) override;
 
   /// The error of the reduction of region k, as the share of the largest strain that modes left out would have, in the norm of strain
   /// energy.
@@ -72,7 +71,7 @@ class LinearRegions final : public Contribution {
     double t = 0;
     double bend = 0, spin = 0;  // as told by the functions above
   };
-  mutable std::vector<OfRun> of_run_;  // by region
+  std::vector<OfRun> of_run_;  // by region
 };
 
 }  // namespace hilo

@@ -12,15 +12,11 @@ struct PathPoint {
 };
 
 /// Takes part in no equation: it holds the row that is written next.
-class LoadPath final : public Contribution {
+class LoadPath final : public Contribution, public Observer {
  public:
   PathPoint now;
-  void evaluate(Pass&) const override {}
-  void tie(Ties&) const override {}
   std::vector<Output> outputs() const override { return {{.group = "", .name = "path", .n_end = 3}}; }
-  void add_end_values(const Config&, const Config&, std::vector<double>& out) const override {
-    out.insert(out.end(), {now.share, now.rise, now.below});
-  }
+  void observe(const Sight& at) override { at.end.insert(at.end.end(), {now.share, now.rise, now.below}); }
 };
 
 }  // namespace hilo

@@ -24,7 +24,7 @@ struct Load {
   double factor(double t0, double t1, double ramp) const { return (ramped ? ramp : 1) * (t1 > t0 ? history.mean(t0, t1) : history(t0)); }
 };
 
-class Loads final : public Contribution {
+class Loads final : public Contribution, public Equations, public Loading, public Clocked {
  public:
   explicit Loads(const Points& points) : points_(points) {}
   std::vector<Load> list;

@@ -174,7 +174,7 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
   Residual unused;
   unused.r.assign(3 * n_blocks(), 0.0);
   Pass p{stage, lambda, unused, &resistance, node, body, 1, with_loads};
-  for (const auto& contribution : parts_) contribution->evaluate(p);
+  for (const Equations* part : all<Equations>()) part->evaluate(p);
 
   std::vector<std::vector<std::int64_t>> tell(comm->size);
   for (auto& list : tell)

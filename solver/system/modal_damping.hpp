@@ -16,7 +16,7 @@
 
 namespace hilo {
 
-class ModalDamping final : public Contribution {
+class ModalDamping final : public Contribution, public Equations {
  public:
   explicit ModalDamping(const System& system) : system_(system) {}
   std::vector<double> ratio;  // by number of Points::modes

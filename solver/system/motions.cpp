@@ -167,10 +167,11 @@ std::vector<Output> Motions::outputs() const {
   return out;
 }
 
-void Motions::add_mid_values(const Moment& moment, std::vector<double>& out) const {
+void Motions::observe(const Sight& at) {
   for (const Motion& m : list) {
-    const Vec6 f = reaction(m, moment.forces(), *moment.s.left);
-    out.insert(out.end(), f.data(), f.data() + 6);
+    if (!at.step) return;
+    const Vec6 f = reaction(m, at.step->forces(), *at.step->s.left);
+    at.mid.insert(at.mid.end(), f.data(), f.data() + 6);
   }
 }
 

@@ -21,7 +21,7 @@ struct Motion {
 
 class Beams;
 
-class Motions final : public Contribution {
+class Motions final : public Contribution, public Equations, public Prescribing, public Jumping, public Stateful, public Observer {
  public:
   Motions(const Points& points, const Beams& beams) : points_(points), beams_(beams) {}
   std::vector<Motion> list;
@@ -40,7 +40,7 @@ class Motions final : public Contribution {
   void add_jumps(double t, const Config& before, const Config& after, std::span<const double> slack,
                  std::vector<Jump>& jumps) const override;
   std::vector<Output> outputs() const override;
-  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
+  void observe(const Sight& at) override;
   void tie(Ties&) const override {}  // what a moving body is joined to says so (Body::moving)
 
  private:

@@ -8,7 +8,8 @@ namespace hilo {
 
 double NaturalMode::frequency() const { return std::copysign(std::sqrt(std::abs(pole2)), pole2) / (2 * std::numbers::pi); }
 
-void NaturalModes::add_end_values(const Config&, const Config&, std::vector<double>& out) const {
+void NaturalModes::observe(const Sight& at) {
+  std::vector<double>& out = at.end;
   out.push_back(now.frequency());
   out.push_back(now.damping);
   out.insert(out.end(), now.mass.data(), now.mass.data() + 6);

@@ -20,12 +20,10 @@ struct NaturalMode {
 };
 
 /// Takes part in no equation: it holds the row that is written next.
-class NaturalModes final : public Contribution {
+class NaturalModes final : public Contribution, public Observer {
  public:
   explicit NaturalModes(int most) : most_(most) {}
   NaturalMode now;
-  void evaluate(Pass&) const override {}
-  void tie(Ties&) const override {}
   std::vector<Output> outputs() const override {
     return {{.group = "", .name = "mode", .n_end = 10},
             {.group = "", .name = "participation", .n_end = 6},
@@ -33,7 +31,7 @@ class NaturalModes final : public Contribution {
             {.group = "", .name = "mode_damping", .n_end = most_},
             {.group = "", .name = "mode_drag", .n_end = 6}};
   }
-  void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
+  void observe(const Sight& at) override;
 
  private:
   int most_;  // modes that are asked for

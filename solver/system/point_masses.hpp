@@ -5,7 +5,7 @@
 
 namespace hilo {
 
-class PointMasses final : public Contribution {
+class PointMasses final : public Contribution, public Equations, public Clocked {
  public:
   explicit PointMasses(const Points& points) : points_(points) {}
   /// At an owned node [kg].

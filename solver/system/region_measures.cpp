@@ -21,6 +21,7 @@ using Vector = Eigen::VectorXd;
 constexpr Index most_motions = 8;                        // that are looked at for buckling, softest first
 constexpr double least_share = 0.02, without_end = 1e3;  // below and at a buckling load
 constexpr double same_pose = 0.1;                        // in which supports are taken as they were [rad, 1]
+enum class Told { at_end, when_it_was };
 
 Vector amplitudes(const Modes& m, const Config& q) {
   Vector out(m.n_modes);
@@ -58,11 +59,9 @@ Matrix square(const Eigen::Ref<const Vector>& pairs, Index n) {
 
 }  // namespace
 
-RegionMeasures::Region& RegionMeasures::region(size_t k, const Config& q) const {
-  const auto& list = system_.part<LinearRegions>().regions;
-  regions_.resize(list.size());
+RegionMeasures::Region& RegionMeasures::region(size_t k, const Config& q) {
   Region& out = regions_[k];
-  const LinearRegion& r = list[k];
+  const LinearRegion& r = system_.part<LinearRegions>().regions[k];
   const Modes& m = system_.modes[r.modes];
   std::vector<double> pose = pose_of(system_, m.body, q);
   const auto moved = [&] {
@@ -105,7 +104,7 @@ RegionMeasures::Region& RegionMeasures::region(size_t k, const Config& q) const 
 }
 
 void RegionMeasures::archive(Archive& a) {
-  a("region measures", t_);
+  a("region measures");
   std::vector<std::vector<double>> kept(regions_.size());
   for (size_t k = 0; k < regions_.size(); ++k) {
     Region& r = regions_[k];
@@ -144,24 +143,21 @@ std::vector<Output> RegionMeasures::outputs() const {
   return out;
 }
 
-void RegionMeasures::add_mid_values(const Moment& m, std::vector<double>&) const {
-  t_ = m.s.t_end;
+void RegionMeasures::observe(const Sight& seen) {
   const auto& linear = system_.part<LinearRegions>();
+  const double t = seen.t;
+  std::vector<double>& out = seen.end;
   regions_.resize(linear.regions.size());
-  for (size_t k = 0; k < regions_.size(); ++k) regions_[k].inertia.look(linear.inertia(k, m), t_);
-}
-
-void RegionMeasures::add_end_values(const Config& q, const Config& v, std::vector<double>& out) const {
-  const auto& list = system_.part<LinearRegions>().regions;
-  for (size_t k = 0; k < list.size(); ++k) {
-    const LinearRegion& r = list[k];
+  for (size_t k = 0; k < regions_.size(); ++k) {
+    const LinearRegion& r = linear.regions[k];
     const Modes& m = system_.modes[r.modes];
+    if (seen.step) regions_[k].inertia.look(linear.inertia(k, *seen.step), t);
     if (m.n_modes == 0 || system_.body_block[m.body] < 0) {
       out.insert(out.end(), {0.0, 0.0, 1.0});
       continue;
     }
-    Region& at = region(k, q);
-    const Vector eta = amplitudes(m, q), s = r.soft.transpose() * eta;
+    Region& at = region(k, seen.q);
+    const Vector eta = amplitudes(m, seen.q), s = r.soft.transpose() * eta;
     Vector pairs(at.second_order.cols());
     for (Index j = 0; j < s.size(); ++j) pairs.segment(QuadraticStrain::pair(0, j), j + 1) = s[j] * s.head(j + 1);
     const Vector f = at.second_order * pairs;
@@ -170,11 +166,12 @@ void RegionMeasures::add_end_values(const Config& q, const Config& v, std::vecto
     const double growth = share < least_share ? 1
                           : share < 1         ? (1 - std::min(share, largest_share(at.axes, eta))) / (1 - share)
                                               : without_end;
-    at.energy.look(energy, t_), at.quadratic.look(quadratic, t_), at.share.look(share, t_);
-    at.growth.look(growth, t_);
+    at.energy.look(energy, t), at.quadratic.look(quadratic, t), at.share.look(share, t);
+    at.growth.look(growth, t);
     const double pull = largest_share(at.stress, -eta);
-    at.tension.look(pull < least_share ? 1 : (1 + pull) / (1 + std::min(pull, largest_share(at.axes, -eta))), t_);
-    at.shortening.look(2 * std::numbers::sqrt3 * shortening(at, t_, s, r.soft.transpose() * amplitudes(m, v)) / std::sqrt(r.A(0, 0)), t_);
+    at.tension.look(pull < least_share ? 1 : (1 + pull) / (1 + std::min(pull, largest_share(at.axes, -eta))), t);
+    at.shortening.look(2 * std::numbers::sqrt3 * shortening(at, t, s, r.soft.transpose() * amplitudes(m, seen.v)) / std::sqrt(r.A(0, 0)),
+                       t);
     out.push_back(quadratic), out.push_back(share), out.push_back(growth);
   }
 }
@@ -200,8 +197,8 @@ void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::strin
       lists[column] += fmt::format("{}{}: {:.3g}", lists[column].empty() ? "" : ", ", json_text(name), x), ++column;
       row.push_back(fmt::format("{:.2g}", x));
     }
-    const auto leaves = [&](const char* measure, double value, double limit, double t, const std::string& text) {
-      if (!text.starts_with("bends by") && !text.starts_with("spins")) warn(name, text);  // told when they happened
+    const auto leaves = [&](const char* measure, double value, double limit, double t, const std::string& text, Told told = Told::at_end) {
+      if (told == Told::at_end) warn(name, text);
       beyond += fmt::format("{}{{\"region\": {}, \"measure\": \"{}\", \"value\": {:.3g}, \"limit\": {:.3g}, \"t\": {}, \"said\": {}}}",
                             beyond.empty() ? "" : ", ", json_text(name), measure, value, limit, t < 0 ? "null" : fmt::format("{:.6g}", t),
                             json_text(text));
@@ -218,11 +215,12 @@ void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::strin
                          band, linear.regions[k].held_frequency));
     if (linear.bend(k) > linear.bend_limit(k))
       leaves("bend", linear.bend(k), linear.bend_limit(k), -1,
-             fmt::format("bends by {:.2g} of its length: more than its modes are good for", linear.bend(k)));
+             fmt::format("bends by {:.2g} of its length: more than its modes are good for", linear.bend(k)), Told::when_it_was);
     if (m.stiffens) continue;
     if (linear.spin(k) >= LinearRegions::spin_limit)
       leaves("spin", linear.spin(k), LinearRegions::spin_limit, -1,
-             fmt::format("spins with a share of {:.2g} of its first frequency: linear strains do not stiffen", linear.spin(k)));
+             fmt::format("spins with a share of {:.2g} of its first frequency: linear strains do not stiffen", linear.spin(k)),
+             Told::when_it_was);
     if (quadratic > much_quadratic)
       leaves("quadratic_strain", quadratic, much_quadratic, r.quadratic.t,
              fmt::format("its supports stretch it as it bends: strains of the second degree are {:.2g} of its strain (norm of energy) at t "

@@ -25,16 +25,13 @@
 
 namespace hilo {
 
-class RegionMeasures final : public Contribution {
+class RegionMeasures final : public Contribution, public Observer {
  public:
   explicit RegionMeasures(const System& system) : system_(system) {}
 
-  void evaluate(Pass&) const override {}
-  void tie(Ties&) const override {}
   void archive(Archive& a) override;
   std::vector<Output> outputs() const override;
-  void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
-  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
+  void observe(const Sight& at) override;
   void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override;
 
   /// The largest so far, and when.
@@ -60,11 +57,10 @@ class RegionMeasures final : public Contribution {
     Peak shortening, inertia;               // accelerations [m/s^2]
     auto peaks() { return std::array{&energy, &quadratic, &share, &growth, &tension, &shortening, &inertia}; }
   };
-  Region& region(size_t k, const Config& q) const;
+  Region& region(size_t k, const Config& q);
   static double shortening(Region& at, double t, const Eigen::VectorXd& s, const Eigen::VectorXd& speed);
   const System& system_;
-  mutable std::vector<Region> regions_;
-  mutable double t_ = 0;
+  std::vector<Region> regions_;
 };
 
 }  // namespace hilo

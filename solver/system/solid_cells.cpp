@@ -20,6 +20,16 @@ double half_cosine2(const Mat3& D0, const Mat3& D1, int dimension) {
   return both > 0 ? ((D0 + D1) / 2).determinant() / std::copysign(std::sqrt(both), before) : 1;
 }
 
+/// Distances of the far ends of a cell's first edges from the plane, or the line, of the others: the least [m].
+double least_height(const SolidBatch& b, const int* nodes, const std::vector<Vec3>& X) {
+  Mat3 D = Mat3::Identity();
+  const auto& edges = info(b.shape).edges;
+  for (size_t k = 0; k < edges.size(); ++k) D.col(k) = X[nodes[edges[k]]] - X[nodes[0]];
+  double most = 0;
+  for (int k = 0; k < 3; ++k) most = std::max(most, D.col(k).cross(D.col((k + 1) % 3)).norm());
+  return std::abs(D.determinant()) / most;
+}
+
 }  // namespace
 
 Traits Solids::traits() const { return {.deforms = some_, .has_rates = some_, .remembers = remembers_}; }
@@ -33,6 +43,15 @@ std::string Solids::count() const {
 void Solids::prepare() {
   some_ = points_.comm->max(batches.empty() ? 0 : 1) > 0;  // cells are on their ranks
   const auto remembers = [](const SolidBatch& b) { return b.kernel.n_state > 0; };
+  least_height_ = 1e300;
+  for (SolidBatch& b : batches) {
+    b.height.clear();
+    if (info(b.shape).dimension < 3) continue;  // a bar has no inside
+    for (size_t e = 0; e < b.cells.size(); ++e) {
+      b.height.push_back(least_height(b, b.nodes.data() + e * static_cast<size_t>(info(b.shape).n_nodes), points_.X));
+      least_height_ = std::min(least_height_, b.height.back());
+    }
+  }
   remembers_ = points_.comm->max(std::any_of(batches.begin(), batches.end(), remembers) ? 1 : 0) > 0;
   nodes_.assign(points_.mesh ? points_.mesh->mesh.region_name.size() : 0, {});  // every rank has an entry for every region
   // the lowest region, the same on all ranks that share a node

@@ -14,8 +14,9 @@ struct SolidBatch {
   double beta = 0, alpha = 0;  // stiffness- and mass-proportional damping [s, 1/s]
   double area = 0;             // of bars [m^2]
   int region;
-  std::vector<int> cells;  // local cells
-  std::vector<int> nodes;  // (n_cells x n)
+  std::vector<int> cells;      // local cells
+  std::vector<int> nodes;      // (n_cells x n)
+  std::vector<double> height;  // of the cells, least at their first corner, where Newton asks how far it may go (n_cells) [m]
   int first_clique = 0;
   SolidKernel kernel;
   // What the cells remember (n_cells x kernel.n_state), evaluations read h0 and nothing but advance() writes h1, so that neither a step
@@ -30,7 +31,7 @@ struct CellMemory {
   void archive(Archive& a) { a.cells(batch); }
 };
 
-class Solids final : public Contribution {
+class Solids final : public Contribution, public Equations, public Stateful, public Turning {
  public:
   explicit Solids(const Points& points) : points_(points) {}
   std::vector<SolidBatch> batches;  // of the cells of this rank
@@ -42,6 +43,7 @@ class Solids final : public Contribution {
   std::string owner(int block) const override;
   void add_groups(std::vector<std::vector<int>>& groups) const override { groups.insert(groups.end(), nodes_.begin(), nodes_.end()); }
   void evaluate(Pass& p) const override;
+  double longest_share(const Config& from, const Config& to) const override;
   void add_energy(const Config& q, const Config& v, Energy& sum) const override;
   void add_work(const Moment& m, Work& sum) const override;
   void look_at_turn(const Config& q0, const Config& q1, int part, Turned& most) const override;
@@ -65,6 +67,7 @@ class Solids final : public Contribution {
   const Points& points_;
   bool remembers_ = false;               // some rank has cells with a state
   bool some_ = false;                    // some rank has cells
+  double least_height_ = 0;              // of the cells of this rank
   std::vector<std::vector<int>> nodes_;  // free ones of each region
   std::vector<char> strain_told_;        // by region: its compression has been told
 };

@@ -117,7 +117,10 @@ std::vector<Output> Springs::outputs() const {
 }
 
 /// Force and moment on b: at the point, in inertial axes, or for what acts along or in a joint, in its frame.
-void Springs::add_mid_values(const Moment& m, std::vector<double>& out) const {
+void Springs::observe(const Sight& at) {
+  if (!at.step) return;
+  const Moment& m = *at.step;
+  std::vector<double>& out = at.mid;
   ConnectorGradient left;
   for (const Spring& c : list) {
     gradient(c, *m.s.left, left);

@@ -6,7 +6,7 @@
 
 namespace hilo {
 
-class Springs final : public Contribution {
+class Springs final : public Contribution, public Equations, public Stateful, public Observer, public Clocked {
  public:
   Springs(const Points& points, const Joints& joints) : points_(points), joints_(joints) {}
   std::vector<Spring> list;
@@ -22,7 +22,7 @@ class Springs final : public Contribution {
   void commit(const Config& q, const Config* v) override;
   void archive(Archive& a) override;
   std::vector<Output> outputs() const override;
-  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
+  void observe(const Sight& at) override;
   void tie(Ties& ties) const override;
   void add_timed(std::span<const int> group, double t, double T, std::span<double> sum) const override;
   void add_taken(std::span<const int> group, const Stage& s, std::span<const double> lambda, std::span<double> sum) const override;

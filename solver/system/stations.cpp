@@ -46,24 +46,15 @@ std::vector<Output> Stations::outputs() const {
   return out;
 }
 
-void Stations::add_end_values(const Config& q, const Config& v, std::vector<double>& out) const {
+void Stations::observe(const Sight& at) {
+  const auto put = [](const auto& x, std::vector<double>& to) { to.insert(to.end(), x.data(), x.data() + x.size()); };
   for (const Station& s : list) {
-    const Vec3 x = mean(s, q);
-    if (s.sensor) {
-      const Mat3 A = axes(s, q, x);
-      out.insert(out.end(), A.data(), A.data() + 9);
-    } else {
-      const Vec3 u = mean(s, v);
-      out.insert(out.end(), x.data(), x.data() + 3);
-      out.insert(out.end(), u.data(), u.data() + 3);
-    }
-  }
-}
-
-void Stations::add_mid_values(const Moment& m, std::vector<double>& out) const {
-  for (const Station& s : list) {
-    const Vec3 a = mean(s, *m.a);
-    out.insert(out.end(), a.data(), a.data() + 3);
+    const Vec3 x = mean(s, at.q);
+    if (s.sensor)
+      put(axes(s, at.q, x), at.end);
+    else
+      put(x, at.end), put(mean(s, at.v), at.end);
+    if (at.step) put(mean(s, *at.step->a), at.mid);
   }
 }
 

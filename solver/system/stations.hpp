@@ -17,16 +17,13 @@ struct Station {
   Mat3 axes = Mat3::Identity();  // sensor axes at the start, columns
 };
 
-class Stations final : public Contribution {
+class Stations final : public Contribution, public Observer {
  public:
   explicit Stations(const Points& points) : points_(points) {}
   std::vector<Station> list;
 
-  void evaluate(Pass&) const override {}
   std::vector<Output> outputs() const override;
-  void add_end_values(const Config& q, const Config& v, std::vector<double>& out) const override;
-  void add_mid_values(const Moment& m, std::vector<double>& out) const override;
-  void tie(Ties&) const override {}
+  void observe(const Sight& at) override;
 
  private:
   /// Position, velocity or acceleration.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "physics/cell_strain.hpp"
 #include "system/solids.hpp"
@@ -41,6 +42,36 @@ std::string Solids::fault(const Config& q) const {
   const int region = static_cast<int>(points_.comm->max(least.det == worst ? least.region : -1));
   return fmt::format("a cell of region \"{}\" is folded between its points (det F = {:.2g}): more cells, C3D20 or tet10 hold longer",
                      points_.mesh->mesh.region_name[region], worst);
+}
+
+/// Where det F stays above zero.  What moves by less than a tenth of its height, apart from all of it, is not looked at.
+double Solids::longest_share(const Config& from, const Config& to) const {
+  constexpr double little = 0.1, least = 1e-3;
+  double most = 0;
+  for (size_t i = 0; i < from.x.size(); ++i) most = std::max(most, (to.x[i] - from.x[i]).squaredNorm());
+  if (2 * std::sqrt(most) < little * least_height_) return 1;
+  double share = 1;
+  std::vector<Vec3> X, x;
+  for (const SolidBatch& b : batches) {
+    const auto n = static_cast<size_t>(info(b.shape).n_nodes);
+    X.resize(n), x.resize(n);
+    for (size_t e = 0; e < b.height.size(); ++e) {
+      const int* nodes = b.nodes.data() + e * n;
+      const auto way = [&](size_t a) -> Vec3 { return to.x[nodes[a]] - from.x[nodes[a]]; };
+      const Vec3 whole = way(0);
+      double far = 0;
+      for (size_t a = 1; a < n; ++a) far = std::max(far, (way(a) - whole).squaredNorm());
+      if (far < std::pow(little * b.height[e], 2)) continue;
+      for (size_t a = 0; a < n; ++a) X[a] = points_.X[nodes[a]];
+      const auto is_whole = [&](double at) {
+        for (size_t a = 0; a < n; ++a) x[a] = from.x[nodes[a]] + at * way(a);
+        return least_det(b.shape, X, x) > 0;
+      };
+      if (is_whole(share) || !is_whole(0)) continue;
+      while (share > least && !is_whole(share)) share /= 2;
+    }
+  }
+  return share;
 }
 
 void Solids::watch_strain(const Config& q) {

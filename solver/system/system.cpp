@@ -16,19 +16,17 @@ void System::prepare() {
   points_ = layout_of_points();
   for (const auto& part : parts_) part->prepare();
   number();
+  traits_ = {};
+  for (const auto& part : parts_) traits_ |= part->traits();
   region_nodes.clear(), constraints_.clear();
-  traits_ = {}, moves_ = false;
-  for (const auto& part : parts_) {
-    part->add_constraints(constraints_);
-    part->add_groups(region_nodes);
-    traits_ |= part->traits();
-    moves_ = moves_ || part->moves();
-  }
+  for (Constraining* part : all<Constraining>()) part->add_constraints(constraints_);
+  for (const Turning* part : all<Turning>()) part->add_groups(region_nodes);
+  moves_ = std::ranges::any_of(all<Prescribing>(), &Prescribing::moves);
 }
 
 Carry System::number() {
   const Layout before = std::exchange(layout, points_);
-  for (const auto& part : parts_) part->number(layout), ++layout.part;
+  for (Equations* part : all<Equations>()) part->number(layout), ++layout.part;
   const auto n = static_cast<std::int64_t>(layout.rows.size());
   BlockMap& map = layout.map;
   for (std::int64_t k = 0; k < n; ++k) map.global.push_back(map.n_global + k);
@@ -41,7 +39,7 @@ Carry System::number() {
 std::optional<Carry> System::search(const Config& q, const Config* v, double h) {
   if (!traits_.searches) return {};
   bool changes = false;
-  for (const auto& part : parts_) changes |= part->search(q, v, h);
+  for (Equations* part : all<Equations>()) changes |= part->search(q, v, h);
   if (comm->max(changes ? 1 : 0) == 0) return {};
   return number();
 }
@@ -75,7 +73,7 @@ void System::add_all(const Stage& stage, std::span<const double> lambda, Residua
   body.assign(bodies.size(), Vec6::Zero());
   out.r.assign(3 * n_blocks(), 0.0);
   Pass p{stage, lambda, out, K, node, body, out.sigma, loads};
-  for (const auto& part : parts_) part->evaluate(p);
+  for (const Equations* part : all<Equations>()) part->evaluate(p);
   reduce(p);
 }
 
@@ -135,16 +133,16 @@ void System::forces(const Stage& stage, std::span<const double> lambda, Forces& 
 }
 
 void System::advance(const Stage& stage) {
-  for (const auto& part : parts_) part->advance(stage);
+  for (Stateful* part : all<Stateful>()) part->advance(stage);
 }
 
 void System::settle(bool accepted) {
-  for (const auto& part : parts_) part->settle(accepted);
+  for (Stateful* part : all<Stateful>()) part->settle(accepted);
 }
 
 Energy System::energy(const Config& q, const Config& v) const {
   Energy out;
-  for (const auto& part : parts_) part->add_energy(q, v, out);
+  for (const Equations* part : all<Equations>()) part->add_energy(q, v, out);
   double all[9] = {out.kinetic,     out.elastic,    out.gravity,    out.momentum[0], out.momentum[1],
                    out.momentum[2], out.angular[0], out.angular[1], out.angular[2]};
   comm->sum(all);
@@ -156,7 +154,7 @@ Energy System::energy(const Config& q, const Config& v) const {
 Work System::work(const Stage& s, std::span<const double> lambda) const {
   const Moment moment(*this, s, lambda, lambda, nullptr);
   Work sum;
-  for (const auto& part : parts_) part->add_work(moment, sum);
+  for (const Equations* part : all<Equations>()) part->add_work(moment, sum);
   double both[2] = {sum.external, sum.dissipated};
   comm->sum(both);
   return {both[0], both[1]};
@@ -164,7 +162,7 @@ Work System::work(const Stage& s, std::span<const double> lambda) const {
 
 Violation System::violation(const Config& q, double t, double factor) const {
   Violation out;
-  for (const auto& part : parts_) part->look_at_rows(q, t, factor, out);
+  for (const Constraining* part : all<Constraining>()) part->look_at_rows(q, t, factor, out);
   if (comm->size == 1) return out;
   const auto share = [&](double& worst, int& block) {
     const double own = worst;
@@ -177,14 +175,14 @@ Violation System::violation(const Config& q, double t, double factor) const {
 
 std::vector<char> System::rows_on() const {
   std::vector<char> on(3 * static_cast<size_t>(n_joint_blocks()), 0);
-  for (const auto& part : parts_) part->mark_rows(on);
+  for (const Constraining* part : all<Constraining>()) part->mark_rows(on);
   for (const auto& c : constraints())
     for (int r = 0; r < c->n_rows(); ++r) on[c->row() + r] = c->active()[r];
   return on;
 }
 
 std::string System::owner(int block) const {
-  for (const auto& part : parts_)
+  for (const Equations* part : all<Equations>())
     if (std::string who = part->owner(block); !who.empty()) return who;
   return "";
 }
@@ -210,14 +208,15 @@ void System::row_rates(const Config& q, const Config& v, const Config* a, double
   if (a) at.up = combined(sigma, *a), at.down = combined(-sigma, *a);
   rate.assign(3 * n_joint_blocks(), 0.0);
   if (acceleration) acceleration->assign(rate.size(), 0.0);
-  for (const auto& part : parts_) part->add_row_rates(at, rate, acceleration);
+  for (const Constraining* part : all<Constraining>()) part->add_row_rates(at, rate, acceleration);
   comm->sum(rate);
   if (acceleration) comm->sum(*acceleration);
 }
 
 System::Turn System::largest_turn(const Config& q0, const Config& q1) const {
   Turned most;
-  for (size_t k = 0; k < parts_.size(); ++k) parts_[k]->look_at_turn(q0, q1, static_cast<int>(k), most);
+  const auto& turning = all<Turning>();
+  for (size_t k = 0; k < turning.size(); ++k) turning[k]->look_at_turn(q0, q1, static_cast<int>(k), most);
   const double worst = -comm->max(-most.cos2);
   if (comm->size > 1) {
     most.part = static_cast<int>(comm->max(most.cos2 == worst ? most.part : -1));
@@ -226,7 +225,13 @@ System::Turn System::largest_turn(const Config& q0, const Config& q1) const {
   return {2 * std::acos(std::sqrt(std::clamp(worst, 0.0, 1.0))), most.part, most.item};
 }
 
-std::string System::name(const Turn& turn) const { return turn.part >= 0 ? parts_[turn.part]->name(turn.item) : ""; }
+std::string System::name(const Turn& turn) const { return turn.part >= 0 ? all<Turning>()[turn.part]->name(turn.item) : ""; }
+
+double System::longest_share(const Config& from, const Config& to) const {
+  double share = 1;
+  for (const Equations* part : all<Equations>()) share = std::min(share, part->longest_share(from, to));
+  return -comm->max(-share);
+}
 
 std::string System::inside_out(const LeastDet& least) const {
   return fmt::format("a cell of region \"{}\" is {}turned inside out (det F = {:.2g})", mesh->mesh.region_name[least.region],
@@ -234,13 +239,13 @@ std::string System::inside_out(const LeastDet& least) const {
 }
 
 std::string System::fault(const Config& q) const {
-  for (const auto& part : parts_)
+  for (const Stateful* part : all<Stateful>())
     if (std::string why = part->fault(q); !why.empty()) return why;
   return "";
 }
 
 void System::commit(const Config& q, const Config* v) {
-  for (const auto& part : parts_) part->commit(q, v);
+  for (Stateful* part : all<Stateful>()) part->commit(q, v);
 }
 
 void System::archive(Archive& a) {
@@ -269,20 +274,20 @@ Shares System::shares() const {
 }
 
 void System::prescribe(Config& q, double t, double ramp) const {
-  for (const auto& part : parts_) part->prescribe(q, t, ramp);
+  for (const Prescribing* part : all<Prescribing>()) part->prescribe(q, t, ramp);
   place(q);
 }
 
 void System::prescribe_rates(double t, Side side, Config* v, Config* a) const {
-  for (const auto& part : parts_) part->prescribe_rates(t, side, v, a);
+  for (const Prescribing* part : all<Prescribing>()) part->prescribe_rates(t, side, v, a);
 }
 
 void System::copy_prescribed(const Config& from, Config& to) const {
-  for (const auto& part : parts_) part->copy_prescribed(from, to);
+  for (const Prescribing* part : all<Prescribing>()) part->copy_prescribed(from, to);
 }
 
 std::string System::too_far(double t0, double t1) const {
-  for (const auto& part : parts_)
+  for (const Prescribing* part : all<Prescribing>())
     if (std::string why = part->too_far(t0, t1); !why.empty()) return why;
   return "";
 }

@@ -31,10 +31,16 @@ class System : public Points {
   T& add(Args&&... args) {
     auto part = std::make_unique<T>(std::forward<Args>(args)...);
     T& out = *part;
+    cast_.add(out);
     parts_.push_back(std::move(part));
     return out;
   }
   std::span<const std::unique_ptr<Contribution>> parts() const { return parts_; }
+  /// Those that play a role, in their order.
+  template <class Role>
+  const std::vector<Role*>& all() const {
+    return cast_.all<Role>();
+  }
   /// The contribution of a type, for what is about that type alone.
   template <class T>
   T& part() {
@@ -88,6 +94,8 @@ class System : public Points {
   Turn largest_turn(const Config& q0, const Config& q1) const;
   /// "body \"b\"" or "a cell of region \"r\"".
   std::string name(const Turn& turn) const;
+  /// The share, in (0, 1], of the way that a correction of Newton's may go: the least that a contribution allows.  Collective.
+  double longest_share(const Config& from, const Config& to) const;
   /// 'a cell of region "r" is [all but] turned inside out (det F = -0.1)'.
   std::string inside_out(const LeastDet& least) const;
 
@@ -127,6 +135,7 @@ class System : public Points {
   Traits traits_;
   bool moves_ = false;
   Layout points_;  // the layout without contributions
+  Cast cast_;
 };
 
 /// Where the modes of linear regions are kept: `from` is taken instead of finding them, and must fit; where there is a `to`, what fits of

@@ -141,10 +141,8 @@ std::vector<std::string> untouched(const System& system) {
   Residual unused;
   unused.r.assign(3 * system.n_blocks(), 0.0);
   Pass p{stage, lambda, unused, &marks, node, body, 1, true};
-  for (const auto& part : system.parts()) {
-    if (part.get() == &system.part<Solids>()) continue;
-    part->evaluate(p);
-  }
+  for (const Equations* part : system.all<Equations>())
+    if (part != &system.part<Solids>()) part->evaluate(p);
   pieces.agree();
 
   const auto n_regions = system.region_nodes.size();

@@ -32,7 +32,7 @@ struct Weld {
   Vec3 turn(const Modes& m, const Config& q) const;
 };
 
-class Welds final : public Contribution {
+class Welds final : public Contribution, public Equations, public Constraining, public Stateful {
  public:
   explicit Welds(const Points& points) : points_(points) {}
   std::vector<Weld> list;  // on all ranks the same

@@ -21,7 +21,7 @@ namespace {
 
 using namespace hilo;
 
-class Balls final : public Contribution {
+class Balls final : public Contribution, public Equations, public Constraining, public Stateful, public Observer {
  public:
   Balls(const System& system, const Entry& entry)
       : points_(system),
@@ -129,6 +129,8 @@ class Balls final : public Contribution {
     near_.clear();
     for (size_t k = 0; k + 1 < list.size(); k += 2) near_.push_back({list[k], list[k + 1]});
   }
+  std::vector<Output> outputs() const override { return {}; }
+  void observe(const Sight&) override {}
   void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override {
     report.emplace_back("layouts", fmt::format("{}", layouts_));
   }

@@ -193,9 +193,9 @@ inertia = [0.03, 0.05, 0.01]
   const std::string arc =
       "[beam.it]\npath = \"arc\"\npoints = [[0.2, 0.1, 2.1], [0.3, 0.9, 2.2], [0.5, 1.2, 1.7]]\ncells = [2]\nsection = \"any\"\n";
   for (const char* more : {"", "damping = 0.02\n", "mass_damping = 0.7\n", "orientation = [1, 0.2, 0.3]\n"})
-    out.push_back({std::string("beam ") + more + " on bodies", text + section + arc + "a = \"one\"\nb = \"two\"\n" + more});
+    out.push_back({"beam", std::string("beam ") + more + " on bodies", text + section + arc + "a = \"one\"\nb = \"two\"\n" + more});
   out.push_back(
-      {"beam with a corner on a set", text + section +
+      {"beam", "beam with a corner on a set", text + section +
                                           "[beam.it]\npoints = [[0.2, 0.1, 2.1], [0.3, 0.4, 2.2], [0.3, 0.2, 0.8]]\ncells = [1, 2]\n"
                                           "section = \"any\"\nb = \"xmax\"\n"});
 }

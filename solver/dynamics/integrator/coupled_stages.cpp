@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "dynamics/linear_step.hpp"
 #include "dynamics/profile.hpp"
 
 namespace hilo {
@@ -41,7 +42,7 @@ void CoupledStages::couple(const System& system) {
 NewtonReport CoupledStages::iterate(const System& system, const NewtonOptions& options) {
   NewtonReport report;
   if (map_.global.empty()) couple(system);
-  const int n = 3 * system.n_blocks(), first = 3 * system.first_joint_block();
+  const int n = 3 * system.n_blocks();
   if (h_ > 2 * kept_h_ || kept_h_ > 2 * h_) kept_ = false;
   const bool lagged = kept_;
   int built = 0;                                           // matrices in this step, iterations of Newton; those between are modified Newton
@@ -86,7 +87,7 @@ NewtonReport CoupledStages::iterate(const System& system, const NewtonOptions& o
     if (!(correction <= options.reach)) return report.reason = "the correction is not finite or leaves the scene", report;
     move(system, z_);
     for (int i = 0; i < n_stages; ++i)
-      for (size_t k = 0; k < lambda_[i].size(); ++k) lambda_[i][k] += r_[i].sigma * z_[i * n + first + k];
+      add_multipliers(system, r_[i].sigma, std::span(z_).subspan(static_cast<size_t>(i) * n, n), lambda_[i]);
     if (!fresh && last > 0) rate_ = rate;
     const double left = rate < 1 ? rate / (1 - rate) : 1e300, enough = sufficient(system, options.tolerance);
     if (left * correction <= enough && left * report.residual <= 1e-2 * options.tolerance) break;

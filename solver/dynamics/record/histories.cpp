@@ -14,7 +14,7 @@ Histories::Histories(const System& system) : system_(system) {
   outputs_ = {{.group = "", .name = "energy", .n_end = 6},
               {.group = "", .name = "momentum", .n_end = 6},
               {.group = "", .name = "constraint", .n_end = 1}};
-  for (const auto& part : system.parts())
+  for (const Observer* part : system.all<Observer>())
     for (Output& output : part->outputs()) outputs_.push_back(std::move(output));
   for (const Output& output : outputs_) {
     arrays_.push_back("/history/" + (output.group.empty() ? output.name : output.group + "/" + to_link_name(output.name)));
@@ -22,21 +22,16 @@ Histories::Histories(const System& system) : system_(system) {
   }
 }
 
-std::vector<double> Histories::end_values(const Config& q, const Config& v, const Ledger& ledger) const {
+Histories::Numbers Histories::numbers(double t, const Config& q, const Config& v, const Ledger& ledger, const Moment* step) const {
   const Energy& e = ledger.energy;
-  std::vector<double> out{e.kinetic, e.elastic, e.gravity, ledger.work, ledger.dissipated, ledger.balance};
-  out.insert(out.end(), e.momentum.data(), e.momentum.data() + 3);
-  out.insert(out.end(), e.angular.data(), e.angular.data() + 3);
-  out.push_back(ledger.rows.worst());
-  for (const auto& part : system_.parts()) part->add_end_values(q, v, out);
+  Numbers out;
+  std::vector<double>& end = out.end;
+  end = {e.kinetic, e.elastic, e.gravity, ledger.work, ledger.dissipated, ledger.balance};
+  end.insert(end.end(), e.momentum.data(), e.momentum.data() + 3);
+  end.insert(end.end(), e.angular.data(), e.angular.data() + 3);
+  end.push_back(ledger.rows.worst());
+  for (Observer* part : system_.all<Observer>()) part->observe({t, q, v, step, end, out.mid});
   return out;
-}
-
-std::vector<double> Histories::mid_values(const Moment& moment) const {
-  std::vector<double> v;
-  v.reserve(n_mid_);
-  for (const auto& part : system_.parts()) part->add_mid_values(moment, v);
-  return v;
 }
 
 void Histories::declare(Store& f) {

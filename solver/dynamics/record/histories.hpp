@@ -11,9 +11,12 @@ namespace hilo {
 class Histories {
  public:
   explicit Histories(const System& system);
-  /// Numbers of a row that belong to an instant, and those that belong inside the step before it.  Collective.
-  std::vector<double> end_values(const Config& q, const Config& v, const Ledger& ledger) const;
-  std::vector<double> mid_values(const Moment& moment) const;
+  /// Numbers of a row that belong to an instant, and those that belong inside the step before it.
+  struct Numbers {
+    std::vector<double> end, mid;
+  };
+  /// What observers see at the end of a step, or before the first one (`step` null); once for each.  Collective.
+  Numbers numbers(double t, const Config& q, const Config& v, const Ledger& ledger, const Moment* step) const;
   size_t n_mid() const { return n_mid_; }
   /// The arrays, without rows.
   void declare(Store& f);

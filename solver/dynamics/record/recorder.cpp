@@ -23,7 +23,7 @@ Recorder::Recorder(const System& system, const Scene& scene, Setup setup)
 void Recorder::first(const State& s, const Ledger& ledger) {
   Row row;
   row.t = s.t;
-  row.point = histories_.end_values(s.q, s.v, ledger);
+  row.point = histories_.numbers(s.t, s.q, s.v, ledger, nullptr).end;
   row.field = true;
   row.q = s.q, row.v = s.v, row.memory = system_.part<Solids>().memory();
   next_field_ = setup_.interval;
@@ -69,14 +69,16 @@ void Recorder::step(const State& s, const Ledger& ledger, const Taken& taken, co
   std::vector<double> shared;
   if (share_) shared = (*share_)(taken.stage, taken.lambda);
   const std::span<const double> lambda = taken.lambda;
-  interval.mid = histories_.mid_values(Moment(system_, taken.stage, lambda, setup_.redundant ? shared : lambda, &a));
+  const Moment moment(system_, taken.stage, lambda, setup_.redundant ? shared : lambda, &a);
+  Histories::Numbers numbers = histories_.numbers(s.t, s.q, v, ledger, &moment);
+  interval.mid = std::move(numbers.mid);
   interval.a = a;
   interval.starts_at_jump = !rows_.empty() && rows_.back().jump;
   intervals_.push_back(std::move(interval));
   Row row;
   row.t = s.t;
   row.newton = iterations, last_t_ = s.t;
-  row.point = histories_.end_values(s.q, v, ledger);
+  row.point = std::move(numbers.end);
   row.jump =
       std::any_of(setup_.jumps.begin(), setup_.jumps.end(), [&](double t) { return std::abs(t - s.t) <= 1.001 * system_.same_time; });
   row.field = setup_.is_static || s.t >= next_field_ * (1 - 1e-9);
