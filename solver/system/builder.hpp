@@ -15,6 +15,8 @@
 namespace hilo {
 
 struct RegionParcel;
+struct Obstacle;
+struct ContactPair;
 
 class Builder {
  public:
@@ -120,6 +122,10 @@ class Builder {
   std::vector<std::string> all_names() const;
   // build_joints.cpp
   void add_joints();
+  // build_contacts.cpp
+  void add_contacts();
+  void add_points_of_body(const Entry& entry, const Obstacle& b, int body, ContactPair& pair);
+  void add_points_of_surface(const Entry& entry, ContactPair& pair);
 
   const Scene& scene_;
   LocalMesh* mesh_;

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 const std::map<std::string, std::set<std::string>> may_include{
     {"base", {"base"}},
     // each law, joint and spring brings its rows of the scene's schema
-    {"model", {"base", "model", "physics/material/materials.hpp", "physics/spring_kinds.hpp"}},
+    {"model", {"base", "model", "physics/material/materials.hpp", "physics/spring_kinds.hpp", "physics/contact/obstacle_kinds.hpp"}},
     {"physics", {"base", "physics"}},
     {"linear", {"base", "linear"}},
     {"system", {"base", "model", "physics", "linear", "system"}},

@@ -178,8 +178,8 @@ void add_variants(const KindSchema& kind, std::vector<Variant>& out) {
 std::vector<Variant> all_variants() {
   std::vector<Variant> out;
   // sections that no equation of motion is made of
-  const std::set<std::string_view> others{"scene",   "material", "set",  "body",   "initial", "sensor",  "probe",
-                                          "history", "quantity", "time", "solver", "output",  "left_out"};
+  const std::set<std::string_view> others{"scene",    "material", "set",    "body",   "initial",  "sensor",   "probe",  "history",
+                                          "quantity", "time",     "solver", "output", "left_out", "obstacle", "contact"};
   for (const KindSchema& kind : scene_schema()) {
     if (others.contains(kind.section)) continue;
     if (kind.section != "region") {
