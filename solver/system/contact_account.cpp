@@ -8,6 +8,11 @@
 #include "system/contacts.hpp"
 
 namespace hilo {
+namespace {
+
+constexpr int resolved = 5;  // steps of an impact, below which it is told
+
+}  // namespace
 
 void Contacts::add_energy(const Config& q, const Config&, Energy& sum) const {
   for (const ContactPair& pair : list)
@@ -42,11 +47,17 @@ void Contacts::advance(const Stage& s) {
         if (pair.shape.at((1 - part) * at.x0 + part * at.x1) < point.law.radius - 0.1 * (within + point.law.radius))
           jumped_ = fmt::format("contact \"{}\": a point goes through the obstacle within one step", pair.name);
     }
-    if (pressing > 0) pair.next.slip += slid / pressing;
+    ContactPair::Sums& now = pair.next;
+    if (pressing > 0) {
+      now.slip += slid / pressing, ++now.steps;
+    } else if (now.steps > 0) {
+      now.shortest = now.impacts++ == 0 ? now.steps : std::min(now.shortest, now.steps), now.steps = 0;
+    }
   }
 }
 
 void Contacts::settle(bool accepted) {
+  jumped_.clear();
   for (ContactPair& pair : list) {
     (accepted ? pair.sums : pair.next) = accepted ? pair.next : pair.sums;
     for (ContactPoint& point : pair.points) (accepted ? point.u : point.next) = accepted ? point.next : point.u;
@@ -96,10 +107,17 @@ void Contacts::add_mid_values(const Moment& m, std::vector<double>& out) const {
 void Contacts::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
   if (list.empty()) return;
   std::string text;
-  for (const ContactPair& pair : list)
-    text +=
-        fmt::format("{}\n    {}: {{\"points\": {}, \"stiffness\": {}, \"slip\": {:.6g}, \"dissipated\": {:.6g}}}", text.empty() ? "" : ",",
-                    json_text(pair.name), pair.points.size(), json_text(pair.told), pair.sums.slip, pair.sums.dissipated);
+  for (const ContactPair& pair : list) {
+    const ContactPair::Sums& sums = pair.sums;
+    if (sums.impacts > 0 && sums.shortest < resolved)
+      warn(fmt::format("contact \"{}\"", pair.name),
+           fmt::format("the shortest of {} impacts lasted {} steps: it gave its energy back, but its force is not resolved", sums.impacts,
+                       sums.shortest));
+    text += fmt::format(
+        "{}\n    {}: {{\"points\": {}, \"stiffness\": {}, \"slip\": {:.6g}, \"dissipated\": {:.6g}, \"impacts\": {}, \"shortest\": {}}}",
+        text.empty() ? "" : ",", json_text(pair.name), pair.points.size(), json_text(pair.told), sums.slip, sums.dissipated, sums.impacts,
+        sums.shortest);
+  }
   report.emplace_back("contacts", "{" + text + "\n  }");
 }
 

@@ -28,6 +28,8 @@ struct ContactPair {
   std::vector<ContactPoint> points;
   struct Sums {
     double slip = 0, dissipated = 0;  // [m, J]
+    int steps = 0;                    // that the contact lasts by now
+    int impacts = 0, shortest = 0;    // that have ended; steps of the shortest, 0: none has
   } sums, next;
 };
 
