@@ -37,7 +37,7 @@ FacetPoints facet_points(std::span<const Vec3> X) {
   return out;
 }
 
-/// Tangential over normal stiffness of two like surfaces [mindlin-1949].
+/// Tangential over normal stiffness of two like surfaces (Mindlin 1949).
 double tangential_ratio(double nu) { return 2 * (1 - nu) / (2 - nu); }
 
 /// 1/R of a ball and what it lies on; nothing where the two radii of curvature differ.
