@@ -5,6 +5,7 @@
 #include "model/scene.hpp"
 #include "model/time_schema.hpp"
 #include "physics/beam_section.hpp"
+#include "physics/contact/obstacle_kinds.hpp"
 #include "physics/material/materials.hpp"
 #include "physics/spring_kinds.hpp"
 
@@ -158,7 +159,13 @@ std::vector<KindSchema> make() {
     if (!k.name.empty()) first.insert(first.begin(), kind_of(k.section == "stop" ? "the kind of stop" : "the kind of motor"));
     s.push_back({k.section, k.name, k.meaning, with(std::move(first), k.keys)});
   }
-  joint_kinds().close(), spring_kinds().close(), joint_force_kinds().close();
+  for (const ObstacleKind& k : obstacle_kinds())
+    s.push_back(
+        {"obstacle", k.name, k.meaning,
+         with({kind_of("the kind of obstacle"), name, {"on", text, "", "ground", "a rigid region, body or set that carries it, or ground"}},
+              k.keys)});
+  s.push_back({"contact", "", "an obstacle and what must not enter it", contact_keys()});
+  obstacle_kinds().close(), joint_kinds().close(), spring_kinds().close(), joint_force_kinds().close();
 
   const Param on{"on", text, "", "!", "set, region or body it acts on"};
   s.push_back({"load",

@@ -170,6 +170,9 @@ std::vector<ArraySchema>& arrays() {
       {"run.h5", "/history/joint/<name>", "f8", "(n_t, 6)", "N, N m",
        "force and moment on b at the joint point, joint frame carried by a; of redundant joints the minimum-norm share"},
       {"run.h5", "/history/spring/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the point, inertial axes"},
+      {"run.h5", "/history/contact/<name>", "f8", "(n_t, 7)", "N, m, 1, m, J",
+       "force on b, inertial axes; largest depth, and that as a share of the cell (of a ball, of a tenth of its radius); slip so far; work "
+       "that friction took so far"},
       {"run.h5", "/history/stop/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the joint point, joint frame carried by a"},
       {"run.h5", "/history/motor/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the joint point, joint frame carried by a"},
       {"run.h5", "/history/friction/<name>", "f8", "(n_t, 6)", "N, N m",

@@ -7,6 +7,7 @@
 #include "system/beams.hpp"
 #include "system/bodies.hpp"
 #include "system/builder.hpp"
+#include "system/contacts.hpp"
 #include "system/joints.hpp"
 #include "system/linear_regions.hpp"
 #include "system/load_path.hpp"
@@ -55,6 +56,7 @@ void Builder::add_contributions() {
   s.add<Welds>(s);
   const Joints& joints = s.add<Joints>(s);
   s.add<Springs>(s, joints);
+  s.add<Contacts>(s);
   s.add<Loads>(s);
   s.add<Motions>(s, beams);
   s.add<Stations>(s);
@@ -103,6 +105,7 @@ std::unique_ptr<System> Builder::build() {
   add_joints();
   add_springs();
   add_joint_forces();
+  add_contacts();
   add_loads();
   add_stations();
   for (const OutsideKind& kind : outside_kinds()) kind.make(scene_, *out_);

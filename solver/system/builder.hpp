@@ -16,6 +16,8 @@
 namespace hilo {
 
 struct RegionParcel;
+struct Obstacle;
+struct ContactPair;
 
 class Builder {
  public:
@@ -124,6 +126,10 @@ class Builder {
   std::vector<std::string> all_names() const;
   // build_joints.cpp
   void add_joints();
+  // build_contacts.cpp
+  void add_contacts();
+  void add_points_of_body(const Entry& entry, const Obstacle& b, int body, ContactPair& pair);
+  void add_points_of_surface(const Entry& entry, ContactPair& pair);
 
   /// A beam whose sections are known, but for those that ride on what is made later.
   struct BeamPlan {

@@ -7,11 +7,11 @@
 namespace hilo {
 namespace {
 
-struct FacetPoint {
-  double N[8], dr[8], ds[8], w;
+struct FacetPoint : FacetShape {
+  double w;
 };
 
-/// Shape functions at the integration points of a facet with n nodes.
+/// The integration points of a facet with n nodes.
 std::vector<FacetPoint> points_of(size_t n) {
   std::vector<FacetPoint> points;
   if (n == 3 || n == 6) {
@@ -19,45 +19,12 @@ std::vector<FacetPoint> points_of(size_t n) {
         {0.445948490915965, 0.445948490915965, 0.223381589678011 / 2}, {0.108103018168070, 0.445948490915965, 0.223381589678011 / 2},
         {0.445948490915965, 0.108103018168070, 0.223381589678011 / 2}, {0.091576213509771, 0.091576213509771, 0.109951743655322 / 2},
         {0.816847572980459, 0.091576213509771, 0.109951743655322 / 2}, {0.091576213509771, 0.816847572980459, 0.109951743655322 / 2}};
-    for (const auto& [r, s, w] : at) {
-      FacetPoint p{};
-      p.w = w;
-      const double L[3] = {1 - r - s, r, s}, Lr[3] = {-1, 1, 0}, Ls[3] = {-1, 0, 1};
-      for (int a = 0; a < 3; ++a) {
-        if (n == 3) {
-          p.N[a] = L[a], p.dr[a] = Lr[a], p.ds[a] = Ls[a];
-        } else {
-          const int b = (a + 1) % 3;
-          p.N[a] = L[a] * (2 * L[a] - 1), p.dr[a] = (4 * L[a] - 1) * Lr[a], p.ds[a] = (4 * L[a] - 1) * Ls[a];
-          p.N[3 + a] = 4 * L[a] * L[b], p.dr[3 + a] = 4 * (Lr[a] * L[b] + L[a] * Lr[b]), p.ds[3 + a] = 4 * (Ls[a] * L[b] + L[a] * Ls[b]);
-        }
-      }
-      points.push_back(p);
-    }
+    for (const auto& [r, s, w] : at) points.push_back({facet_shape(n, r, s), w});
     return points;
   }
   const double g = std::sqrt(0.6), x[3] = {-g, 0, g}, w[3] = {5. / 9, 8. / 9, 5. / 9};
-  static constexpr double corner[8][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}};
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      FacetPoint p{};
-      const double r = x[i], s = x[j];
-      p.w = w[i] * w[j];
-      for (size_t a = 0; a < n; ++a) {
-        const double cr = corner[a][0], cs = corner[a][1];
-        if (n == 4) {
-          p.N[a] = (1 + cr * r) * (1 + cs * s) / 4, p.dr[a] = cr * (1 + cs * s) / 4, p.ds[a] = cs * (1 + cr * r) / 4;
-        } else if (a < 4) {
-          const double u = (1 + cr * r) * (1 + cs * s), v = cr * r + cs * s - 1;
-          p.N[a] = u * v / 4, p.dr[a] = (cr * (1 + cs * s) * v + u * cr) / 4, p.ds[a] = (cs * (1 + cr * r) * v + u * cs) / 4;
-        } else if (cr == 0) {
-          p.N[a] = (1 - r * r) * (1 + cs * s) / 2, p.dr[a] = -r * (1 + cs * s), p.ds[a] = cs * (1 - r * r) / 2;
-        } else {
-          p.N[a] = (1 - s * s) * (1 + cr * r) / 2, p.dr[a] = cr * (1 - s * s) / 2, p.ds[a] = -s * (1 + cr * r);
-        }
-      }
-      points.push_back(p);
-    }
+    for (int j = 0; j < 3; ++j) points.push_back({facet_shape(n, x[i], x[j]), w[i] * w[j]});
   return points;
 }
 
@@ -67,6 +34,38 @@ const std::vector<FacetPoint>& table(size_t n) {
 }
 
 }  // namespace
+
+FacetShape facet_shape(size_t n, double r, double s) {
+  FacetShape p{};
+  if (n == 3 || n == 6) {
+    const double L[3] = {1 - r - s, r, s}, Lr[3] = {-1, 1, 0}, Ls[3] = {-1, 0, 1};
+    for (int a = 0; a < 3; ++a) {
+      if (n == 3) {
+        p.N[a] = L[a], p.dr[a] = Lr[a], p.ds[a] = Ls[a];
+      } else {
+        const int b = (a + 1) % 3;
+        p.N[a] = L[a] * (2 * L[a] - 1), p.dr[a] = (4 * L[a] - 1) * Lr[a], p.ds[a] = (4 * L[a] - 1) * Ls[a];
+        p.N[3 + a] = 4 * L[a] * L[b], p.dr[3 + a] = 4 * (Lr[a] * L[b] + L[a] * Lr[b]), p.ds[3 + a] = 4 * (Ls[a] * L[b] + L[a] * Ls[b]);
+      }
+    }
+    return p;
+  }
+  static constexpr double corner[8][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}};
+  for (size_t a = 0; a < n; ++a) {
+    const double cr = corner[a][0], cs = corner[a][1];
+    if (n == 4) {
+      p.N[a] = (1 + cr * r) * (1 + cs * s) / 4, p.dr[a] = cr * (1 + cs * s) / 4, p.ds[a] = cs * (1 + cr * r) / 4;
+    } else if (a < 4) {
+      const double u = (1 + cr * r) * (1 + cs * s), v = cr * r + cs * s - 1;
+      p.N[a] = u * v / 4, p.dr[a] = (cr * (1 + cs * s) * v + u * cr) / 4, p.ds[a] = (cs * (1 + cr * r) * v + u * cs) / 4;
+    } else if (cr == 0) {
+      p.N[a] = (1 - r * r) * (1 + cs * s) / 2, p.dr[a] = -r * (1 + cs * s), p.ds[a] = cs * (1 - r * r) / 2;
+    } else {
+      p.N[a] = (1 - s * s) * (1 + cr * r) / 2, p.dr[a] = cr * (1 - s * s) / 2, p.ds[a] = -s * (1 + cr * r);
+    }
+  }
+  return p;
+}
 
 std::vector<double> facet_weights(std::span<const Vec3> X) {
   std::vector<double> weight(X.size(), 0.0);

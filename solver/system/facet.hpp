@@ -8,6 +8,12 @@
 
 namespace hilo {
 
+/// Shape functions of a facet of n nodes at (r, s), and their slopes; of a triangle r and s from 0 to 1, else from -1 to 1.
+struct FacetShape {
+  double N[8], dr[8], ds[8];
+};
+FacetShape facet_shape(size_t n, double r, double s);
+
 /// Reference area belonging to each node: int N_a dA [m^2].
 std::vector<double> facet_weights(std::span<const Vec3> X);
 

@@ -16,8 +16,10 @@ namespace fs = std::filesystem;
 
 const std::map<std::string, std::set<std::string>> may_include{
     {"base", {"base"}},
-    // each law, joint, spring and section brings its rows of the scene's schema
-    {"model", {"base", "model", "physics/beam_section.hpp", "physics/material/materials.hpp", "physics/spring_kinds.hpp"}},
+    // each law, joint, spring, section and obstacle brings its rows of the scene's schema
+    {"model",
+     {"base", "model", "physics/beam_section.hpp", "physics/contact/obstacle_kinds.hpp", "physics/material/materials.hpp",
+      "physics/spring_kinds.hpp"}},
     {"physics", {"base", "physics"}},
     {"linear", {"base", "linear"}},
     {"system", {"base", "model", "physics", "linear", "system"}},

@@ -31,9 +31,10 @@ NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5
            "tangential_damping": "[1, 1]", "axes": "[1, 0, 0, 0, 1, 0, 0, 0, 1]", "restitution": "0.5", "rest_speed": "1e-3",
            "slip_velocity": "1e-3", "yield": "1e6", "saturation": "2e6", "saturation_rate": "10",
            "E1": "2e9", "E2": "2e9", "E3": "2e9", "nu12": "0.3", "nu13": "0.3", "nu23": "0.3", "G12": "8e8", "G13": "8e8", "G23": "8e8",
-           "diameter": "0.1", "thickness": "0.02", "width": "0.1", "height": "0.1", "flange": "0.02", "web": "0.02", "I1": "1e-5", "I2": "1e-5", "J": "1e-5",
+            "diameter": "0.1", "thickness": "0.02", "width": "0.1", "height": "0.1", "flange": "0.02", "web": "0.02", "I1": "1e-5", "I2": "1e-5", "J": "1e-5",
            "bending": "[100, 100, 100]", "line_mass": "1", "cells": "[2]", "orientation": "[0, 1, 0]", "shear": "[1, 1]",
-           "axis_1": "[1, 0, 0]", "axis_2": "[0, 1, 0]", "hardening_strain": "[0, 0.1]", "hardening_stress": "[1e6, 2e6]"}
+           "axis_1": "[1, 0, 0]", "axis_2": "[0, 1, 0]", "hardening_strain": "[0, 0.1]", "hardening_stress": "[1e6, 2e6]",
+           "size": "[1, 1, 1]", "tube": "0.05", "modulus": "1e7", "layer": "0.1", "factor": "1", "friction": "0.1"}
 BODIES = """[[body]]
 name = "arm"
 mass = 1
@@ -51,6 +52,18 @@ b = "arm"
 at = [0, 0, 0]
 axis = [0, 1, 0]
 x = [1, 0, 0]
+"""
+SKIN = """[[obstacle]]
+kind = "sphere"
+name = "skin"
+on = "wheel"
+radius = 0.1
+at = [0.4, 3, 4]
+"""
+FLOOR = """[[obstacle]]
+kind = "plane"
+name = "floor"
+at = [0, 0, 3.9]
 """
 MESH = """*NODE
 1, 0, 0, 0
@@ -154,6 +167,8 @@ def entry(section, kind, keys, tried, value):
         beside.add("sensor")
     if kind == "matrix":
         beside.add("line_mass")
+    if section == "contact" and tried not in ("modulus", "layer"):
+        beside.add("stiffness")
     for key, type_, default in keys:
         if key == tried:
             lines.append(f"{key} = {value}")
@@ -167,6 +182,8 @@ def entry(section, kind, keys, tried, value):
                 word = '"top"'
             if kind in ("gear", "rack") and key == "a":
                 word = '"wheel"'
+            if section == "contact" and key in ("a", "b"):
+                word = '"floor"' if key == "a" else '"skin"'
             lines.append(f"{key} = {word}")
     return lines
 
@@ -216,6 +233,8 @@ def scene(section, kind, keys, tried, value):
         if alone and section != "body":
             rest = rest[:rest.index("[[joint]]")]
         rest += f"[[{section}]]\n" + "\n".join(lines) + "\n"
+        if section in ("obstacle", "contact"):
+            rest += SKIN + (FLOOR if section == "contact" else '[[contact]]\nname = "c"\na = "tried"\nb = "skin"\nstiffness = 100\n')
         if section == "quantity":
             rest += '[[sensor]]\nname = "felt"\non = "arm"\n'
     if with_mesh:
@@ -292,7 +311,7 @@ def main():
             value = usual(section, kind, key, type_)
             tries = [("good", value)] + [(v, b) for v in VALUES for b in bad(key, type_, v, good(key, type_) if type_ == "history" else value)]
             for name, value in tries:
-                if name == "good" and (section in ("time", "solver", "output") or key in ("about",)):
+                if name == "good" and (section in ("time", "solver", "output") or key in ("about", "layer")):
                     continue
                 text, with_mesh = scene(section, kind, keys, key, value)
                 wrong, code = judge(text, with_mesh)

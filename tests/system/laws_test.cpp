@@ -194,17 +194,17 @@ inertia = [0.03, 0.05, 0.01]
       "[beam.it]\npath = \"arc\"\npoints = [[0.2, 0.1, 2.1], [0.3, 0.9, 2.2], [0.5, 1.2, 1.7]]\ncells = [2]\nsection = \"any\"\n";
   for (const char* more : {"", "damping = 0.02\n", "mass_damping = 0.7\n", "orientation = [1, 0.2, 0.3]\n"})
     out.push_back({"beam", std::string("beam ") + more + " on bodies", text + section + arc + "a = \"one\"\nb = \"two\"\n" + more});
-  out.push_back(
-      {"beam", "beam with a corner on a set", text + section +
-                                          "[beam.it]\npoints = [[0.2, 0.1, 2.1], [0.3, 0.4, 2.2], [0.3, 0.2, 0.8]]\ncells = [1, 2]\n"
-                                          "section = \"any\"\nb = \"xmax\"\n"});
+  out.push_back({"beam", "beam with a corner on a set",
+                 text + section +
+                     "[beam.it]\npoints = [[0.2, 0.1, 2.1], [0.3, 0.4, 2.2], [0.3, 0.2, 0.8]]\ncells = [1, 2]\n"
+                     "section = \"any\"\nb = \"xmax\"\n"});
 }
 
 std::vector<Variant> all_variants() {
   std::vector<Variant> out;
   // sections that no equation of motion is made of
-  const std::set<std::string_view> others{"scene",   "material", "set",      "body", "initial", "sensor", "probe",
-                                          "section", "history",  "quantity", "time", "solver",  "output", "left_out"};
+  const std::set<std::string_view> others{"scene",   "material", "set",  "body",   "initial", "sensor",   "probe",    "section",
+                                          "history", "quantity", "time", "solver", "output",  "left_out", "obstacle", "contact"};
   for (const KindSchema& kind : scene_schema()) {
     if (others.contains(kind.section)) continue;
     if (kind.section == "beam") {

@@ -93,6 +93,16 @@ name = "rub"
 joint = "sleeve"
 coefficient = 0.1
 radius = 0.1
+[[obstacle]]
+kind = "plane"
+name = "ground"
+at = [0, 0, -9]
+[[contact]]
+name = "landing"
+a = "ground"
+b = "zmin"
+modulus = 1e6
+layer = 0.1
 [[sensor]]
 name = "seat"
 on = "top"

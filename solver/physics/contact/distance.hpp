@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Signed distances of obstacles, in axes of their own: above zero in free space, gradients of unit length.
+#pragma once
+#include <algorithm>
+
+#include "base/math.hpp"
+#include "physics/contact/jet.hpp"
+
+namespace hilo {
+
+/// Plane: below z = 0.  Sphere about the origin.  Cylinder about z, without ends or of a length.  Capsule: a cylinder of a length with half
+/// spheres.  Torus about z.  Box about the origin.
+struct Distance {
+  enum class Kind { plane, sphere, cylinder, capsule, torus, box } kind = Kind::plane;
+  double radius = 0;         // of sphere, cylinder, capsule; of the circle of a torus [m]
+  double tube = 0;           // of a torus [m]
+  double half_length = 0;    // of cylinder (0: no ends) and capsule [m]
+  Vec3 half = Vec3::Zero();  // of a box [m]
+  bool inside = false;       // what moves is within: bowl, bore, container
+
+  /// Half the least extent, which a step must not jump over [m]; of a plane, nothing.
+  double least_extent() const {
+    if (inside || kind == Kind::plane) return 0;
+    if (kind == Kind::box) return half.minCoeff();
+    if (kind == Kind::torus) return tube;
+    return kind == Kind::cylinder && half_length > 0 ? std::min(radius, half_length) : radius;
+  }
+  /// A length of it, for round-off [m].
+  double extent() const { return std::max({radius + tube, half_length, half.maxCoeff()}); }
+  /// Points of a hull see all of it: free space is convex.
+  bool is_container() const { return kind == Kind::plane || (inside && kind != Kind::torus); }
+
+  template <class T>
+  void operator()(const Triple<T>& x, T& phi, Triple<T>& n) const {
+    const T zero(0.0), one(1.0);
+    const auto about = [&](const T& a, const T& b, T& r, T& na, T& nb) {
+      const T square = a * a + b * b;
+      if (value(square) > 0) {
+        r = sqrt(square), na = a / r, nb = b / r;
+      } else {
+        r = zero, na = one, nb = zero;
+      }
+    };
+    // of a rectangle or box, from what each coordinate lies beyond its side
+    const auto beyond = [&](const T* q, int m, T& distance, T* slope) {
+      int most = 0;
+      T square = zero;
+      for (int i = 0; i < m; ++i) {
+        if (value(q[i]) > value(q[most])) most = i;
+        if (value(q[i]) > 0) square = square + q[i] * q[i];
+        slope[i] = zero;
+      }
+      if (value(square) > 0) {
+        distance = sqrt(square);
+        for (int i = 0; i < m; ++i)
+          if (value(q[i]) > 0) slope[i] = q[i] / distance;
+      } else {
+        distance = q[most], slope[most] = one;
+      }
+    };
+    switch (kind) {
+      case Kind::plane:
+        phi = x[2], n = {{zero, zero, one}};
+        break;
+      case Kind::sphere:
+      case Kind::capsule: {
+        T z = x[2];
+        if (kind == Kind::capsule) z = std::abs(value(z)) > half_length ? z - T(value(z) > 0 ? half_length : -half_length) : zero;
+        const Triple<T> y{{x[0], x[1], z}};
+        const T square = dot(y, y);
+        if (value(square) > 0) {
+          const T r = sqrt(square);
+          phi = r - T(radius), n = (one / r) * y;
+        } else {
+          phi = T(-radius), n = {{one, zero, zero}};
+        }
+        break;
+      }
+      case Kind::cylinder: {
+        T r, nx, ny;
+        about(x[0], x[1], r, nx, ny);
+        if (half_length <= 0) {
+          phi = r - T(radius), n = {{nx, ny, zero}};
+          break;
+        }
+        const double side = value(x[2]) < 0 ? -1 : 1;
+        const T q[2] = {r - T(radius), T(side) * x[2] - T(half_length)};
+        T slope[2];
+        beyond(q, 2, phi, slope);
+        n = {{slope[0] * nx, slope[0] * ny, T(side) * slope[1]}};
+        break;
+      }
+      case Kind::torus: {
+        T r, nx, ny, d, nr, nz;
+        about(x[0], x[1], r, nx, ny);
+        about(r - T(radius), x[2], d, nr, nz);
+        phi = d - T(tube), n = {{nr * nx, nr * ny, nz}};
+        break;
+      }
+      case Kind::box: {
+        T q[3], slope[3];
+        double side[3];
+        for (int i = 0; i < 3; ++i) side[i] = value(x[i]) < 0 ? -1 : 1, q[i] = T(side[i]) * x[i] - T(half[i]);
+        beyond(q, 3, phi, slope);
+        for (int i = 0; i < 3; ++i) n[i] = T(side[i]) * slope[i];
+        break;
+      }
+    }
+    if (inside) phi = -phi, n = {{-n[0], -n[1], -n[2]}};
+  }
+  double at(const Vec3& x) const {
+    double phi;
+    Triple<double> n;
+    (*this)(triple<double>(x), phi, n);
+    return phi;
+  }
+};
+
+}  // namespace hilo

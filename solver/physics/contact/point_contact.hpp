@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A point against an obstacle: discrete gradient of its signed distance, pressure as a secant, friction by a bristle.
+//
+// With the measures xi of the point in the axes of the obstacle, of degree two in all points, and n = grad phi at their mean:
+//   D = n + (phi1 - phi0 - n.dxi)/|dxi|^2 dxi,   D.dxi = phi1 - phi0;   f = s D,   s = (V1 - V0)/(phi1 - phi0)
+// so that a step keeps energy and momentum at any length [gonzalez-1996].  Friction: u is how far a bristle of stiffness kt is bent,
+//   u1 = u0 + sigma, shortened to mu p/kt,   f = kt u1,   D = kt u1.sigma - kt (|u1|^2 - |u0|^2)/2 >= 0
+#pragma once
+#include "physics/contact/distance.hpp"
+
+namespace hilo {
+
+/// Forces of a point, in N: V = k g^2/2, or of a ball 2/5 hertz g^(5/2), for a depth g.
+struct PointLaw {
+  double k = 0;         // [N/m]
+  double hertz = 0;     // [N/m^1.5]; above zero: k is not used
+  double kt = 0;        // [N/m]
+  double friction = 0;  // coefficient
+  double radius = 0;    // of the ball that the point is the centre of [m]
+  double potential(double gap) const;
+};
+
+/// -dV/dgap > 0 as a quotient over the step.
+template <class T>
+T secant(const PointLaw& law, double g0, const T& g1) {
+  const double v1 = value(g1);
+  if (g0 >= 0 && v1 >= 0) return T(0.0);
+  if (law.hertz > 0) {  // quotient of fifth powers over squares of the roots
+    const double a = g0 < 0 ? std::sqrt(-g0) : 0;
+    if (v1 >= 0) return T(0.4 * law.hertz * a * a * a * a * a) / (g1 - T(g0));
+    if (a == 0 && g0 > 0) return T(0.4 * law.hertz) * (g1 * g1 * sqrt(-g1)) / (T(g0) - g1);
+    const T b = sqrt(-g1);
+    const T b2 = b * b, sum = b2 * b2 + T(a) * b2 * b + T(a * a) * b2 + T(a * a * a) * b + T(a * a * a * a);
+    return T(0.4 * law.hertz) * sum / (b + T(a));
+  }
+  if (g0 <= 0 && v1 <= 0) return T(law.k / 2) * (T(-g0) - g1);
+  if (g0 > 0) return T(law.k / 2) * g1 * g1 / (T(g0) - g1);
+  return T(law.k / 2 * g0 * g0) / (g1 - T(g0));
+}
+
+/// What a point feels, in axes of the obstacle.
+template <class T>
+struct PointForce {
+  Triple<T> normal, tangential;     // conjugate to the measures of the point, and to those of the material point that slides [N]
+  Triple<T> n;                      // normal of the obstacle
+  Triple<T> u;                      // of the bristle at the end [m]
+  double pressing = 0;              // [N]
+  double slid = 0, dissipated = 0;  // in the step [m, J]
+  bool acts = false;
+};
+
+/// Over the step from measures x0 to x1, `way` that of the material point, from a bristle u0.
+template <class T>
+PointForce<T> over_step(const Distance& shape, const PointLaw& law, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way,
+                        const Vec3& u0) {
+  PointForce<T> out;
+  const T zero(0.0);
+  out.normal = out.tangential = out.n = out.u = {{zero, zero, zero}};
+  double phi0;
+  Triple<double> unused;
+  shape(triple<double>(x0), phi0, unused);
+  T phi1;
+  Triple<T> n1;
+  shape(x1, phi1, n1);
+  const double g0 = phi0 - law.radius;
+  const T g1 = phi1 - T(law.radius);
+  if (g0 >= 0 && value(g1) >= 0) {
+    out.dissipated = law.kt / 2 * u0.squaredNorm();
+    return out;
+  }
+  out.acts = true;
+  const T half(0.5);
+  const Triple<T> start = triple<T>(x0), dx = x1 - start, middle = half * (start + x1);
+  T phi;
+  shape(middle, phi, out.n);
+  Triple<T> D = out.n;
+  const T rest = phi1 - T(phi0) - dot(out.n, dx);
+  if (std::abs(value(rest)) > 1e-14 * (shape.extent() + x0.norm())) D = D + (rest / dot(dx, dx)) * dx;
+  const T p = secant(law, g0, g1);
+  out.normal = (-p) * D, out.pressing = value(p);
+  if (law.friction <= 0) return out;
+  const Triple<T> bent = triple<T>(u0);
+  const Triple<T> sigma = way - dot(out.n, way) * out.n;
+  const Triple<T> trial = bent - dot(out.n, bent) * out.n + sigma;
+  const T limit = T(law.friction / law.kt) * p, square = dot(trial, trial);
+  out.u = trial;
+  if (value(square) > value(limit) * value(limit)) {
+    const T size = sqrt(square);
+    out.u = (limit / size) * trial;
+    out.slid = value(size) - value(limit);
+  }
+  out.tangential = T(law.kt) * out.u;
+  const Vec3 u1 = values(out.u), s = values(sigma);
+  out.dissipated = law.kt * (u1.dot(s) - (u1.squaredNorm() - u0.squaredNorm()) / 2);
+  return out;
+}
+
+/// At one place, for statics and starts: the gradient of the potential, the bristle as it is.
+template <class T>
+PointForce<T> at_rest(const Distance& shape, const PointLaw& law, const Triple<T>& x, const Vec3& u0) {
+  PointForce<T> out;
+  const T zero(0.0);
+  out.normal = out.tangential = out.u = {{zero, zero, zero}};
+  T phi;
+  shape(x, phi, out.n);
+  const T gap = phi - T(law.radius);
+  if (value(gap) >= 0) return out;
+  out.acts = true;
+  const T p = law.hertz > 0 ? T(law.hertz) * (-gap) * sqrt(-gap) : T(-law.k) * gap;
+  out.pressing = value(p);
+  out.normal = (-p) * out.n;
+  out.u = triple<T>(u0), out.tangential = T(law.kt) * out.u;
+  return out;
+}
+
+}  // namespace hilo

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contacts: points of regions and bodies against obstacles that the ground or a body carries.  No rows, no events: forces of gaps that are
+// closed at either end of the step (physics/contact/point_contact).
+#pragma once
+#include "physics/contact/point_contact.hpp"
+#include "system/contribution.hpp"
+
+namespace hilo {
+
+/// A point of a facet, or one that a body carries.
+struct ContactPoint {
+  std::vector<int> nodes;  // none: of the body
+  std::vector<double> share;
+  Vec3 arm = Vec3::Zero();  // from the centre of the body, body axes [m]
+  PointLaw law;
+  double cell = 0;           // the depth that is told as a share of this [m]
+  Vec3 u = Vec3::Zero();     // the bristle, in axes of the obstacle [m]
+  Vec3 next = Vec3::Zero();  // at the end of the step tried last
+};
+
+struct ContactPair {
+  std::string name, told;  // `told`: what the stiffness is and from what
+  Distance shape;
+  int carrier = 0;         // the body that carries it
+  Vec3 at = Vec3::Zero();  // from its centre, body axes [m]
+  Mat3 axes = Mat3::Identity();
+  int body = -1;  // of the points, or -1: they have nodes
+  std::vector<ContactPoint> points;
+  struct Sums {
+    double slip = 0, dissipated = 0;  // [m, J]
+    int steps = 0;                    // that the contact lasts by now
+    int impacts = 0, shortest = 0;    // that have ended; steps of the shortest, 0: none has
+  } sums, next;
+};
+
+class Contacts final : public Contribution, public Equations, public Stateful, public Observer {
+ public:
+  explicit Contacts(const Points& points) : points_(points) {}
+  std::vector<ContactPair> list;
+
+  Traits traits() const override;
+  std::string count() const override;
+  void number(Layout& layout) override;
+  void evaluate(Pass& p) const override;
+  void add_energy(const Config& q, const Config& v, Energy& sum) const override;
+  void add_work(const Moment& m, Work& sum) const override;
+  std::string fault(const Config& q) const override;
+  void advance(const Stage& stage) override;
+  void settle(bool accepted) override;
+  void archive(Archive& a) override;
+  std::vector<Output> outputs() const override;
+  void observe(const Sight& at) override;
+  void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override;
+  void tie(Ties& ties) const override;
+  /// The gap of a point, below zero where it is closed [m].
+  double gap(const ContactPair& pair, const ContactPoint& point, const Config& q) const;
+
+ private:
+  /// Where a point stands within a step.
+  struct Place {
+    Mat3 A0, A1, Am, turn0 = Mat3::Zero(), turn1 = Mat3::Zero(), turn = Mat3::Zero();  // axes of the obstacle; of the points' body
+    Vec3 x0, x1, way = Vec3::Zero();               // measures; `way` of the material point beyond theirs
+    Vec3 arm = Vec3::Zero(), arm1 = Vec3::Zero();  // of the point's body, to the point
+    Vec3 lowest = Vec3::Zero();                    // from the centre of a ball, body axes
+    Vec3 rel, rel1;                                // from the obstacle's body to the point
+    PointForce<double> force;
+    Vec3 normal, tangential;  // on the left [N]
+    Vec3 low = Vec3::Zero();  // from the point to that which slides
+  };
+  Place place(const ContactPair& pair, const ContactPoint& point, const Stage& s) const;
+  Vec3 position(const ContactPair& pair, const ContactPoint& point, const Config& q) const;
+  Vec3 measures(const ContactPair& pair, const Vec3& x, const Config& q) const;
+  void add_tangent(Pass& p, const ContactPair& pair, const ContactPoint& point, const Place& at, int clique) const;
+  const Points& points_;
+  std::vector<std::vector<int>> clique_;  // of each point
+  std::string jumped_;                    // what the step tried last went through
+};
+
+}  // namespace hilo
