@@ -42,8 +42,6 @@ def comment(test):
             break
         lines.append(line[2:].strip())
     text = re.sub(r"\s+", " ", " ".join(lines))
-    text = re.sub(r"benchmarks\.md [A-Z]\d+[^:.;(]*[:.]\s*", "", text)
-    text = re.sub(r"\(?benchmarks\.md [^)]*\)\s*", "", text)
     return re.sub(r" \[[a-z-]+-\d{4}\]", "", text).strip().rstrip(",").replace("|", "\\|").replace("  ", " ")
 
 
@@ -58,7 +56,11 @@ def suites(folder):
 
 def first_paragraph(readme):
     parts = [p for p in readme.read_text().split("\n\n") if p and not p.startswith(("#", "!", "|", "-", "    "))]
-    return re.sub(r"\s+", " ", parts[0]).replace("](../../docs/", "](").strip() if parts else ""
+    text = re.sub(r"\s+", " ", parts[0]).replace("](../../docs/", "](").strip() if parts else ""
+    if text and not text.endswith("."):  # a list or a table follows, which is not here
+        whole, _, last = text.rpartition(". ")
+        text = whole + "." if whole else last.rstrip(":") + "."
+    return text
 
 
 def draw(scene, picture):

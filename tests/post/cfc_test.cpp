@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The filter against the published figures of benchmarks.md O16.
+// The filter against published figures.
 #include "post/injury/cfc.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures of injury against the closed forms of benchmarks.md O16.
+// Measures of injury against closed forms.
 #include "post/injury/injury.hpp"
 
 #include <gtest/gtest.h>

@@ -84,7 +84,7 @@ TEST_F(BeamDynamics, DampingTakesWhatTheBalanceSays) {
   EXPECT_LT(E.col(5).cwiseAbs().maxCoeff(), 1e-9 * E.col(3).cwiseAbs().maxCoeff());
 }
 
-// benchmarks.md O11: four cells, the root turned by a law, whose work is in the balance.
+// Four cells, the root turned by a law, whose work is in the balance.
 TEST_F(BeamDynamics, SpinUpBendsBackAndIsStretched) {
   const auto psi = [](double t) {
     return t < 15 ? 0.4 * (t * t / 2 + std::pow(7.5 / M_PI, 2) * (std::cos(2 * M_PI * t / 15) - 1)) : 6 * t - 45;

@@ -42,7 +42,7 @@ TEST_F(BeamStatics, TheBendOf45DegreesIsThatOfTheArc) {
   EXPECT_LT((bend(16, 7.03e5) - Vec3(-23.821, -13.732, 53.610)).norm(), 0.01) << "Sonneville 2014";
 }
 
-// benchmarks.md O10 at alpha 4, by Reissner's beam: 3.28946 and 6.70011 of 10.
+// At alpha 4, by Reissner's beam: 3.28946 and 6.70011 of 10.
 TEST_F(BeamStatics, ACantileverBendsAsReissnersBeam) {
   const auto u = [&](int n) {
     return Vec3(tip("[section.s]\nkind = \"matrix\"\nstiffness = [6e4, 6e4, 1.2e5]\nbending = [100, 1e4, 1e4]\n" +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Locking: slender, nearly incompressible, skewed and twisted cells in bending against beam theory and published values (benchmarks.md O9,
-// O12). Loads are small, so that the answer is the linear one.
+// Locking: slender, nearly incompressible, skewed and twisted cells in bending against beam theory and published values.  Loads are small,
+// so that the answer is the linear one.
 #include <fmt/format.h>
 
 #include "verify/verify.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O7 (FEBio ri01): with lambda = 0 the block stretches uniformly, l - 1/l = 0.1, so the rigid body moves by 4 (l - 1) =
+// FEBio ri01: with lambda = 0 the block stretches uniformly, l - 1/l = 0.1, so the rigid body moves by 4 (l - 1) =
 // 0.2049969.
 #include "verify/verify.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A constant-velocity joint passes the angle on unchanged at any bend, where a Hooke joint gives tan(out) = tan(in) cos(30) or
-// tan(in)/cos(30) (benchmarks.md O6, rj13).
+// tan(in)/cos(30) (FEBio rj13).
 #include <numbers>
 
 #include "verify/verify.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O2 (IFToMM A02): the published end point; the mechanism passes its singular position, rods in one line, eight times in ten
+// IFToMM A02: the published end point; the mechanism passes its singular position, rods in one line, eight times in ten
 // seconds.
 #include "verify/verify.hpp"
 

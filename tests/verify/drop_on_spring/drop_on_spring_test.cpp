@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O15 b (ANSYS VM65): impact at 0.0719816 s with 27.78489 in/s, deepest 0.5506656 in below the spring's top at 0.1004449 s.
+// ANSYS VM65: impact at 0.0719816 s with 27.78489 in/s, deepest 0.5506656 in below the spring's top at 0.1004449 s.
 #include "verify/verify.hpp"
 
 namespace hilo::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O10: large deflection of a slender solid.  Published (Sze, Liu, Lo 2004): U = 3.286, W = 6.698; Reissner
+// Large deflection of a slender solid.  Published (Sze, Liu, Lo 2004): U = 3.286, W = 6.698; Reissner
 // beam: 3.28946, 6.70011.
 #include "verify/verify.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O17 (Simeon; IVP test set "crank") [simeon-1996]: a steel rod of hexahedra in a slider-crank turning at 150 rad/s.
+// Simeon; IVP test set "crank" [simeon-1996]: a steel rod of hexahedra in a slider-crank turning at 150 rad/s.
 //
 // The published model has sine modes and no coupling of bending and axial force; its q1 at 0.1 s is met by one equation of the first
 // mode about the rigid motion (data/crank/o17.py, to 0.1 %).  A solid has that coupling: the rod is pushed by up to 5 % of its buckling

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O6, rj17 rj11 rj12: one mass on a guide and a spring, closed forms of the forced and of the damped oscillator.
+// FEBio rj17 rj11 rj12: one mass on a guide and a spring, closed forms of the forced and of the damped oscillator.
 #include "verify/verify.hpp"
 
 namespace hilo::test {

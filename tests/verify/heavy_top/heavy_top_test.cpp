@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O5: centre of gravity and pivot force of the heavy top, integrated independently (RK4 on absolute coordinates, converged to
+// Centre of gravity and pivot force of the heavy top, integrated independently (RK4 on absolute coordinates, converged to
 // 1e-9).
 #include "verify/verify.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O6, rj13: Hooke's joint between shafts at 30 degrees, tan(out) = tan(in) cos 30 with the driving yoke normal to the plane
+// FEBio rj13: Hooke's joint between shafts at 30 degrees, tan(out) = tan(in) cos 30 with the driving yoke normal to the plane
 // of the shafts, tan(in)/cos 30 with it in the plane.
 #include "verify/verify.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O4: positions, rates and reactions of single-joint pendulums as ADAMS gives them (Chrono data/testing/joints).  Rforce is
+// Positions, rates and reactions of single-joint pendulums as ADAMS gives them (Chrono data/testing/joints).  Rforce is
 // the force on the ground, minus ours, which is on b in the joint frame.  Chrono accepts 1e-3 m, 1e-4 m/s and 2e-2 N; here h = 1e-3 s.
 #include "verify/verify.hpp"
 

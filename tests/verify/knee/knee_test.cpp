@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O6, rj15: Grood and Suntay's knee.  Truth: rotations about an axis of the femur, the floating axis and one of the tibia,
+// FEBio rj15: Grood and Suntay's knee.  Truth: rotations about an axis of the femur, the floating axis and one of the tibia,
 // each with a slide along it, follow one another in closed form, which fixes every sign; at rest afterwards the joints carry the weight.
 #include "verify/verify.hpp"
 

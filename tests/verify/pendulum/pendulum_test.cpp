@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O1.  Exact by elliptic functions: T = 4 sqrt(L/g) K(1/sqrt 2); P1(10 s) = (-0.2750874626, -0.9614192051); the rod carries
+// Exact by elliptic functions: T = 4 sqrt(L/g) K(1/sqrt 2); P1(10 s) = (-0.2750874626, -0.9614192051); the rod carries
 // 3 m g = 29.43 N at the bottom whatever its length (energy m g L gives v^2/L = 2 g).
 #include "verify/verify.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O14: Taylor's bar, copper at 227 m/s on a rigid, frictionless wall, the scene and mesh of data/taylor.
+// Taylor's bar, copper at 227 m/s on a rigid, frictionless wall, the scene and mesh of data/taylor.
 //
 // Published: 21.42 to 21.43 mm long in the end, the foot 7.22 mm in radius on cells of 0.05 mm (Foulk et al. 2021).  Nodes of the foot stop
 // at once and take their kinetic energy with them, 4 % of it on the coarse mesh, 1.1 % on the fine one: the foot comes out too small by as

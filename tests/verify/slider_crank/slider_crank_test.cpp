@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O6, rj02-05: x = r cos a + sqrt(l^2 - r^2 sin^2 a); after a whole turn everything is back where it was.
+// FEBio rj02-05: x = r cos a + sqrt(l^2 - r^2 sin^2 a); after a whole turn everything is back where it was.
 #include "verify/verify.hpp"
 
 namespace hilo::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O11: tip of the beam in the frame of the hub: u2 least -0.57385 at 6.7625 s, steady u1 = 5.14e-4 by centrifugal stretch.
+// Tip of the beam in the frame of the hub: u2 least -0.57385 at 6.7625 s, steady u1 = 5.14e-4 by centrifugal stretch.
 #include "verify/verify.hpp"
 
 namespace hilo::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// benchmarks.md O3 (IVP test set "andrews", PSIDE at 1e-14): angles of the crank, of K3 and of K5 after 0.03 s, 2.5 turns of the crank.
+// IVP test set "andrews", PSIDE at 1e-14: angles of the crank, of K3 and of K5 after 0.03 s, 2.5 turns of the crank.
 #include "verify/verify.hpp"
 
 namespace hilo::test {
