@@ -13,17 +13,17 @@ void OnCoordinates::spread(const Values& e0, const Values& e1, const Response& a
   coordinates_->gradient(e1, e1, at_end);
   const int n = coordinates_->n_rows();
   out.energy += along.energy, out.dissipated += along.dissipated, out.supplied += along.supplied;
-  for (int r = 0; r < n; ++r)
+  for (int r = 0; r < n; ++r) {
+    Values change{};  // of along.s[r] by each measure at the end
+    for (int k = 0; k < n; ++k)
+      for (int j = 0; j < max_measures; ++j) change[j] += along.D[r][k] * at_end.d[k][j];
     for (int i = 0; i < max_measures; ++i) {
       const double d = g.d[r][i];
       out.s[i] += along.s[r] * d;
       out.by_load[i] += along.by_load[r] * d;
-      for (int j = 0; j < max_measures; ++j) {
-        double D = along.s[r] * g.D[r][i][j];
-        for (int k = 0; k < n; ++k) D += d * along.D[r][k] * at_end.d[k][j];
-        out.D[i][j] += D;
-      }
+      for (int j = 0; j < max_measures; ++j) out.D[i][j] += along.s[r] * g.D[r][i][j] + d * change[j];
     }
+  }
 }
 
 void OnCoordinates::elastic(const Values& e0, const Values& e1, Response& out) const {

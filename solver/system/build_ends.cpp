@@ -94,9 +94,11 @@ Builder::Found Builder::find(const std::string& name, const std::string& where) 
     found.body = it->second;
     return found;
   }
-  const auto names = all_names();
-  if (!mesh_ || std::find(names.begin(), names.end(), name) == names.end()) {
-    const std::string near = suggest(name, names);
+  const auto is_in = [&](const Mesh& m) {
+    return m.find_region(name) >= 0 || m.node_sets.contains(name) || m.facet_sets.contains(name) || m.cell_sets.contains(name);
+  };
+  if (!mesh_ || !is_in(mesh_->mesh)) {
+    const std::string near = suggest(name, all_names());
     throw Error(where, fmt::format("no region, set or body \"{}\"", name),
                 mesh_ || !near.empty() ? near : "no mesh is given: hilo-solve scene.toml tags.h5");
   }

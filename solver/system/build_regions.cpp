@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <unordered_set>
 
 #include "model/scaled_jacobian.hpp"
 #include "model/thin_regions.hpp"
@@ -32,9 +33,17 @@ std::int64_t Builder::put_active_nodes_first() {
     }
   for (size_t i = 0; i < active.size(); ++i)
     if (!in_cell[i]) active[i] = 1;
+  std::unordered_set<std::string_view> quoted;  // what stands between two quotes of one kind
+  const std::string_view text = scene_.text;
+  for (const char quote : {'"', '\''})
+    for (size_t from = text.find(quote); from != text.npos;) {
+      const size_t to = text.find(quote, from + 1);
+      if (to != text.npos) quoted.insert(text.substr(from + 1, to - from - 1));
+      from = to;
+    }
   const auto is_named = [&](const std::string& name) {
-    const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) { return c > 31 && c < 127 && c != '"' && c != '\\'; });
-    return !plain || scene_.text.find('"' + name + '"') != std::string::npos || scene_.text.find("'" + name + "'") != std::string::npos;
+    const auto plain = [](unsigned char c) { return c > 31 && c < 127 && c != '"' && c != '\'' && c != '\\'; };
+    return !std::all_of(name.begin(), name.end(), plain) || quoted.contains(name);
   };
   for (const std::string& name : mesh.all_names()) {
     const int region = mesh.find_region(name);

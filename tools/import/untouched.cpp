@@ -56,12 +56,14 @@ void tell_untouched(Imported& in) {
   }
   if (regions.size() < 2) return;
   std::set<std::int64_t> reached;
-  if (!m.deck_scene.empty())
+  if (!m.deck_scene.empty()) {
+    const auto names = m.all_names();
+    const std::set<std::string> known(names.begin(), names.end());
     for (const std::string& name : names_at_work(m.deck_scene)) {
-      const auto known = m.all_names();
-      if (std::ranges::find(known, name) == known.end()) continue;  // a body, the ground
+      if (!known.contains(name)) continue;  // a body, the ground
       for (const auto a : m.nodes_of(name, "")) reached.insert(piece[a]);
     }
+  }
   std::vector<std::string> lines;
   for (const auto& [p, names] : regions)
     if (!reached.contains(p)) lines.push_back(fmt::format("{} (from cell {} on)", fmt::join(names, ", "), first[p]));
