@@ -12,8 +12,8 @@ BIN = os.path.abspath(sys.argv[1])
 N, SIDE = 6, 0.05
 
 
-def deck():
-    """Bars a, b, c of 1 m along x, one behind the other, six hexahedra of 20 nodes each, with the sets of their ends: a0, a1, ..."""
+def deck(N=N):
+    """Bars a, b, c of 1 m along x, one behind the other, N hexahedra of 20 nodes each, with the sets of their ends: a0, a1, ..."""
     nodes, text, sets, number = [], "", "", 0
     for k, name in enumerate("abc"):
         ids = {}
@@ -59,8 +59,8 @@ def values(tags, *more):
     return {q["quantity"]: q["value"] for q in json.load(open("run.json"))["quantities"]}
 
 
-def tagged(*rules):
-    done = run("hilo-tag", "mesh.h5", *rules, "-o", "tags.h5")
+def tagged(*rules, mesh="mesh.h5"):
+    done = run("hilo-tag", mesh, *rules, "-o", "tags.h5")
     assert done.returncode == 0, done.stderr
     return "tags.h5"
 
@@ -106,6 +106,22 @@ with tempfile.TemporaryDirectory() as folder:
     again = json.loads(run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json").stdout)
     assert {**again, "spent_seconds": 0} == {**advice, "spent_seconds": 0}
     assert before == {f: os.stat("advise.work/" + f).st_mtime_ns for f in os.listdir("advise.work")}  # nothing ran again
+
+    # the error of the mesh, by cells half as long: as four times as many say
+    for n in (2, 4, 8):
+        open("deck.inp", "w").write(deck(n))
+        assert run("hilo-import", "deck.inp", "-o", f"mesh-{n}.h5").returncode == 0
+    done = run("hilo-advise", "scene.toml", "mesh-2.h5", "--tol", "2%", "--json", "--keep", "a=linear", "--keep-rigid", "b", "--keep-rigid", "c",
+               "--finer", "mesh-4.h5")
+    assert done.returncode == 0, done.stderr
+    got = {q["quantity"]: q for q in json.loads(done.stdout)["quantities"]}
+    fine = values(tagged("--rigid", "b", "c", "--rest", "linear", mesh="mesh-8.h5"))
+    for name, q in got.items():
+        r = 2 ** (2 / 3)  # cells half as long along one direction of three
+        at_4 = q["value"] - q["mesh"] * (r - 1) / r
+        print(f"{name}: {q['value']:.2f}, mesh {q['mesh']:.3g}; half as long {at_4:.2f}, a quarter {fine[name]:.2f}")
+        assert abs(at_4 - fine[name]) < 0.5 * abs(q["value"] - fine[name]) and q["mesh"] * (q["value"] - fine[name]) > 0, (name, q, fine)
+    refused("too near", "--finer", "mesh.h5")
 
     # a title and other quantities change no run
     open("scene.toml", "w").write('title = "another"\n' + scene('[[quantity]]\nname = "r.m.s."\nkind = "rms"\njoint = "j0"\n'))
