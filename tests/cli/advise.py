@@ -112,7 +112,7 @@ with tempfile.TemporaryDirectory() as folder:
         open("deck.inp", "w").write(deck(n))
         assert run("hilo-import", "deck.inp", "-o", f"mesh-{n}.h5").returncode == 0
     done = run("hilo-advise", "scene.toml", "mesh-2.h5", "--tol", "2%", "--json", "--keep", "a=linear", "--keep-rigid", "b", "--keep-rigid", "c",
-               "--finer", "mesh-4.h5")
+               "--finer", "mesh-4.h5", "--work", "finer.work")
     assert done.returncode == 0, done.stderr
     got = {q["quantity"]: q for q in json.loads(done.stdout)["quantities"]}
     fine = values(tagged("--rigid", "b", "c", "--rest", "linear", mesh="mesh-8.h5"))
