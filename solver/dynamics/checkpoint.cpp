@@ -51,7 +51,8 @@ Checkpoints::Checkpoints(const Comm& comm, const Scene& scene, RunCommand comman
       last_(wall_clock()),
       looked_(last_),
       step_began_(last_),
-      newest_is_good_(from == newest(output_)) {
+      newest_is_good_(from == newest(output_)),
+      former_is_ours_(!from.empty()) {
   command_.scene = absolute(command_.scene), command_.mesh = absolute(command_.mesh), command_.modes = absolute(command_.modes);
   if (fs::exists(stop_file_))
     throw Error(stop_file_, "this file ends a run, and it is there before the run begins", "remove it", Exit::usage);
@@ -114,8 +115,9 @@ void Checkpoints::write(const StepsSoFar& so_far, const std::function<Kept()>& k
     if (newest_is_good_ && ::rename(path.c_str(), former(output_).c_str()) != 0)
       throw Error(path, fmt::format("cannot rename: {}", std::strerror(errno)), "", Exit::resources);
     f.publish();
+    if (!former_is_ours_) ::unlink(former(output_).c_str());
   });
-  newest_is_good_ = true;
+  newest_is_good_ = former_is_ours_ = true;
   last_ = step_began_ = wall_clock(), took_ = last_ - began;
 }
 

@@ -51,6 +51,7 @@ class Checkpoints {
   double last_, looked_, took_ = 0;   // [s] of the clock: last checkpoint, last look for STOP; seconds that the last one took
   double step_began_, longest_step_ = 0;
   bool newest_is_good_;
+  bool former_is_ours_;  // else it is of a run before, until the first checkpoint of this one
 };
 
 /// The newest checkpoint of results that can be read.

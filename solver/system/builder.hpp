@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "model/beam_line.hpp"
 #include "physics/axes.hpp"
 #include "physics/spring_kinds.hpp"
-#include "model/beam_line.hpp"
 #include "system/factor_room.hpp"
 #include "system/reduced_file.hpp"
 #include "system/solids.hpp"

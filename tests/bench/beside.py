@@ -35,7 +35,7 @@ def seconds(solver, name, ranks, sets):
         if not os.path.exists(parts):
             run("hilo-part", "--quiet", mesh, SCENES[name][0], "-n", str(ranks), "-o", parts)
         mesh = parts
-    options = [word for s in sets + ["output.interval=1e3", "output.fields=[\"displacement\"]"] for word in ("--set", s)]
+    options = [word for s in sets + ["output.interval=1e3", "output.fields=[\"displacement\", \"von_mises\"]"] for word in ("--set", s)]
     launcher = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
     command = [*launcher, os.path.join(solver, "hilo-solve"), "--quiet", *options, SCENES[name][0], *([mesh] if mesh else []), "-o", "beside.h5"]
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)

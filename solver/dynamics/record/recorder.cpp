@@ -50,6 +50,7 @@ void Recorder::open(bool again) {
 }
 
 void Recorder::archive(Archive& a) {
+  file_.keep_checkpoints();
   if (!a.restores() && n_written_ > 0) commit(RunOutput::When::now_safe);
   double interval = setup_.interval;
   a("recorder", rows_, intervals_, past_, n_written_, last_t_, next_field_, interval);

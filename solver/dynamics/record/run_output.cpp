@@ -31,7 +31,9 @@ bool RunOutput::commit(When when) {
   if (!store_ || failure_ || (when == When::now_and_then && !first && began < next_commit_)) return false;
   const bool safe = when == When::now_safe || began - opened_ > 2;  // what takes seconds can be done again
   const auto replace = [this] {                                     // they told of the former file
-    for (const char* ending : {".xdmf", ".json", ".checkpoint.h5", ".checkpoint-1.h5"}) ::unlink((stem(path_) + ending).c_str());
+    for (const char* ending : {".xdmf", ".json"}) ::unlink((stem(path_) + ending).c_str());
+    if (has_checkpoint_) return;
+    for (const char* ending : {".checkpoint.h5", ".checkpoint-1.h5"}) ::unlink((stem(path_) + ending).c_str());
   };
   on_store([&](Store& f) { f.flush(safe, replace); });
   const double ended = wall_clock();

@@ -55,6 +55,8 @@ class RunOutput {
   /// Every rank calls it at the same place, behind share_failure().
   enum class When { now_and_then, now, now_safe };
   bool commit(When when);
+  /// Checkpoints beside the file are of this run from now on, and stay when it takes the place of a former file.
+  void keep_checkpoints() { has_checkpoint_ = true; }
   /// Nothing more is written.
   void close() { store_.reset(); }
 
@@ -64,6 +66,7 @@ class RunOutput {
   bool single_precision_;
   std::unique_ptr<Store> store_;                    // rank 0
   bool has_name_ = false;                           // its own, not that of an unpublished one
+  bool has_checkpoint_ = false;                     // those beside it are of this run
   double opened_ = wall_clock(), next_commit_ = 0;  // [s]
   std::optional<Error> failure_;                    // of a write of this rank
 };
