@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
                   "read everything; exit 2 when a file is truncated, damaged or does not fit the files it links to; of a run on its way "
                   "how far it is");
     app->add_flag("--json", json, "as JSON");
-    app->add_flag("--schema", schema, "print docs/format.md: every array, every key of a scene, exit codes");
+    app->add_flag("--schema", schema, "print every array and every key of a scene: what docs/tools/format.py makes docs/format.md of");
     if (!parse(*app, argc, argv)) return;
     if (schema) {
       fmt::print("{}", format_page());

@@ -69,13 +69,16 @@ void write_csv(const std::string& path, const Picked& picked) {
   write_out(path, csv_text(header, columns));
 }
 
-std::string axis_label(const std::string& unit) {
+/// What the curves of a panel have in common, with its unit: a quantity, or the component they all are of.
+std::string axis_label(const std::string& unit, const std::vector<ChartCurve>& curves) {
   constexpr std::pair<const char*, const char*> names[] = {{"N", "force"},        {"N m", "moment"},      {"J", "energy"},
                                                            {"m", "length"},       {"m/s", "velocity"},    {"m/s^2", "acceleration"},
                                                            {"g", "acceleration"}, {"kg m/s", "momentum"}, {"kg m^2/s", "angular momentum"}};
   for (const auto& [u, name] : names)
     if (unit == u) return fmt::format("{} [{}]", name, unit);
-  return fmt::format("[{}]", unit);
+  const auto component = [](const ChartCurve& c) { return c.label.substr(c.label.rfind('.') + 1); };
+  const bool alike = std::ranges::all_of(curves, [&](const ChartCurve& c) { return component(c) == component(curves.front()); });
+  return fmt::format("{} [{}]", alike ? component(curves.front()) : "value", unit);
 }
 
 /// One panel for each unit; labels lose what all have in common.
@@ -93,11 +96,11 @@ void write_png(const Options& o, const RunFile& run, const Picked& picked) {
                                   : fmt::format("{}: {}", run.title, common.substr(0, common.size() - 1));
   const std::string x = o.x.empty() ? "time [s]" : title_of(picked.x);
   for (const Column& p : picked.y) {
-    const std::string label = axis_label(p.unit);
-    auto panel = std::find_if(figure.panels.begin(), figure.panels.end(), [&](const Panel& q) { return q.y.label == label; });
-    if (panel == figure.panels.end()) panel = figure.panels.insert(figure.panels.end(), Panel{"", {x}, {label}, {}});
+    auto panel = std::find_if(figure.panels.begin(), figure.panels.end(), [&](const Panel& q) { return q.y.label == p.unit; });
+    if (panel == figure.panels.end()) panel = figure.panels.insert(figure.panels.end(), Panel{"", {x}, {p.unit}, {}});
     panel->curves.push_back({p.label.substr(common.size()), picked.x.value, p.value, curve_colour(static_cast<int>(panel->curves.size()))});
   }
+  for (Panel& p : figure.panels) p.y.label = axis_label(p.y.label, p.curves);
   write_chart(figure, o.png);
 }
 

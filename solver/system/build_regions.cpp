@@ -112,16 +112,19 @@ void Builder::read_regions() {
   }
 }
 
-/// Keys of damping that nothing of what they are given to can feel.
+/// Warns of keys of damping without effect on any region that they are given for.
 void Builder::warn_of_idle_damping(const Entry& e) const {
   const auto tell = [&](const char* key, auto&& feels, const char* why) {
     if (comm_.rank != 0 || !e.given(key) || e.number(key) == 0) return;
+    constexpr int shown = 3;
     std::string names;
+    int count = 0;
     for (const Region& r : regions_) {
       if (fnmatch(e.name.c_str(), r.name.c_str(), 0) != 0) continue;
       if (feels(r.fidelity)) return;
-      names += (names.empty() ? "\"" : ", \"") + r.name + "\" (" + std::string(word(r.fidelity)) + ")";
+      if (++count <= shown) names += (names.empty() ? "\"" : ", \"") + r.name + "\" (" + std::string(word(r.fidelity)) + ")";
     }
+    if (count > shown) names = fmt::format("{} regions ({}, ...)", count, names);
     warn(e.where(key), fmt::format("has no effect on {}: {}", names, why));
   };
   tell(

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <numbers>
 
 #include "base/error.hpp"
@@ -184,6 +186,11 @@ void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::strin
   Table table;
   table.header = {"linear region", "modes lack", "load band", "quadratic strain", "buckling", "tension", "shortening", "bend", "spin"};
   std::string lists[8], beyond;
+  struct Beyond {
+    double times;  // the limit
+    std::string region, text;
+  };
+  std::map<std::string, std::vector<Beyond>> warnings;  // by measure
   for (size_t k = 0; k < regions_.size(); ++k) {
     const Modes& m = system_.modes[linear.regions[k].modes];
     const std::string& name = system_.bodies[m.body].name;
@@ -198,7 +205,7 @@ void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::strin
       row.push_back(fmt::format("{:.2g}", x));
     }
     const auto leaves = [&](const char* measure, double value, double limit, double t, const std::string& text, Told told = Told::at_end) {
-      if (told == Told::at_end) warn(name, text);
+      if (told == Told::at_end) warnings[measure].push_back({value / limit, name, text});
       beyond += fmt::format("{}{{\"region\": {}, \"measure\": \"{}\", \"value\": {:.3g}, \"limit\": {:.3g}, \"t\": {}, \"said\": {}}}",
                             beyond.empty() ? "" : ", ", json_text(name), measure, value, limit, t < 0 ? "null" : fmt::format("{:.6g}", t),
                             json_text(text));
@@ -244,6 +251,14 @@ void RegionMeasures::add_to_report(std::vector<std::pair<std::string, std::strin
                          r.shortening.value, r.shortening.t, shortening));
   }
   if (regions_.empty()) return;
+  constexpr size_t shown = 3;  // regions of one measure, the worst ones
+  for (auto& [measure, of] : warnings) {
+    std::ranges::stable_sort(of, std::greater{}, &Beyond::times);
+    for (size_t i = 0; i < std::min(of.size(), shown); ++i) warn(of[i].region, of[i].text);
+    if (of.size() > shown)
+      warn("", fmt::format("{} linear regions more are beyond the limit of {}: beyond_linear of run.json lists them", of.size() - shown,
+                           measure));
+  }
   const char* names[] = {"modes_left_out", "load_band", "quadratic_strain", "buckling", "tension", "shortening", "bend", "spin"};
   for (int i = 0; i < 8; ++i) report.emplace_back(names[i], "{" + lists[i] + "}");
   report.emplace_back("beyond_linear", "[" + beyond + "]");

@@ -90,7 +90,8 @@ def makefile(folder):
     return path.read_text() if path.exists() else ""
 
 
-tool_options = {p.stem: set(re.findall(r"--[a-z][\w-]*", p.read_text())) for p in (repo / "docs/tools").glob("hilo-*.md")}
+tool_options = {p.stem: set(re.findall(r"--[a-z][\w-]*", "".join(q.read_text() for q in [p, *p.with_suffix("").glob("*.md")])))
+                for p in (repo / "docs/tools").glob("hilo-*.md")}
 for every in tool_options.values():
     every |= {"--help", "--version", "--completion", "--man", "--markdown", "--quiet"}
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-# No page of the documentation has a sentence above 40 words, and none is longer than 250 lines.  Code, tables, headings and generated pages
-# are left out; `code` and a link count as the words that a reader sees.
+# No page of the documentation has a sentence above 40 words, and none is longer than 250 lines.  Code, tables and headings are left out;
+# `code` and a link count as the words that a reader sees.
 # Usage: docs_words.py REPO [--table]     --table prints for each page: lines, words, longest sentence, Flesch reading ease.
 # Flesch reading ease (R. Flesch, J. Appl. Psychol. 32, 1948): 206.835 - 1.015 words per sentence - 84.6 syllables per word.
 import pathlib
@@ -9,14 +9,13 @@ import re
 import sys
 
 LONGEST = 40  # words of a sentence
-LINES = 250  # of a page, but for format.md, which is printed from the tables of the program
-GENERATED = "<!-- generated"  # how such a page begins
+LINES = 250  # of a page
 
 
 def pages(repo):
-    found = [repo / "README.md", *(repo / "docs").glob("*.md"), *(repo / "data").glob("*/README.md"), *(repo / "solver").rglob("README.md"),
+    found = [repo / "README.md", *(repo / "docs").rglob("*.md"), *(repo / "data").glob("*/README.md"), *(repo / "solver").rglob("README.md"),
              *(repo / "tests").rglob("README.md")]
-    return sorted(p for p in found if not p.read_text().startswith(GENERATED))
+    return sorted(found)
 
 
 def prose(text):
@@ -96,7 +95,7 @@ def main():
             print(f"{str(name):44} {lines:5} lines {total:6} words, longest sentence {max(counts, default=0):3}, above {LONGEST}: "
                   f"{sum(c > LONGEST for c in counts):3} of {len(counts):4}, Flesch {ease:5.1f}")
         faults += [f"{name}: a sentence of {c} words: {s}" for s, c in zip(all_sentences, counts) if c > LONGEST]
-        if lines > LINES and path.name != "format.md":
+        if lines > LINES:
             faults.append(f"{name}: {lines} lines, more than {LINES}")
     for fault in faults:
         print(f"docs_words: {fault}", file=sys.stderr)

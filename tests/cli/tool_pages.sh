@@ -10,4 +10,6 @@ mkdir "$folder/kept"
 cp "$1"/docs/tools/*.md "$folder/kept"
 mkdir "$folder/fresh"
 mv "$folder"/*.md "$folder/fresh"
+for commands in "$1"/docs/tools/hilo-*/; do cp -r "$commands" "$folder/kept"; done
+for commands in "$folder"/hilo-*/; do mv "$commands" "$folder/fresh"; done
 diff -ru "$folder/kept" "$folder/fresh" || { echo "tool_pages: run docs/tools/write.sh $2" >&2; exit 1; }

@@ -190,11 +190,6 @@ TEST_F(Show, SchemaPageNamesEveryArrayAndEveryKey) {
   }
 }
 
-TEST_F(Show, FormatPageInDocsIsThePrintedOne) {
-  EXPECT_EQ(test::text_of(std::string(HILO_SOURCE) + "/docs/format.md"), place.run("hilo-show --schema").out)
-      << "run hilo-show --schema > docs/format.md";
-}
-
 TEST_F(Show, HelpEndsWithAnExampleThatRuns) {
   const auto help = place.run("hilo-show --help").out;
   ASSERT_NE(help.rfind("Example:\n"), std::string::npos);

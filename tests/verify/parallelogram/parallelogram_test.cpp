@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Three equal parallel cranks and a coupler without gravity: kinetic energy depends on the rate alone, so the cranks turn at 3 rad/s for
-// ever and the coupler, 2 kg on a circle of 1 m, is held by 2 x 9 = 18 N along the cranks, shared equally by symmetry of the minimum-norm
-// reactions.
+// Three equal parallel cranks and a coupler without gravity.  Kinetic energy depends on the rate alone, so the cranks turn at 3 rad/s
+// without end.  The coupler, 2 kg on a circle of 1 m, is held by 2 x 9 = 18 N along the cranks, in equal shares by the symmetry of
+// minimum-norm reactions.
 #include "verify/verify.hpp"
 
 namespace hilo::test {
