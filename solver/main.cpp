@@ -65,7 +65,7 @@ void solve(int argc, char** argv, Comm& comm) {
   app->add_option("scene", o.scene, "scene file (TOML), - for standard input");
   app->add_option("mesh", o.mesh, "mesh.h5, tags.h5 or parts-N.h5; overrides the scene's `mesh`");
   app->add_option("--modes", o.modes,
-                  "reduced.h5 of hilo-reduce: modes of linear regions, which else are found anew; a folder keeps those of all runs");
+                  "reduced.h5 of hilo-reduce: modes of linear regions, without it the run finds them; a folder keeps those of all runs");
   const auto* output =
       app->add_option("-o,--output", o.output, "results file; .xdmf and .json are written beside it")->capture_default_str();
   app->add_option("--set", o.overrides, "override a key of the scene, such as joint.trunnion.at=[0,0,1] (repeatable)")
@@ -84,7 +84,7 @@ void solve(int argc, char** argv, Comm& comm) {
   app->add_option(
       "--time-limit", o.time_limit,
       "stop in time with a checkpoint, such as 3h50m; so do SIGTERM, SIGINT, SIGHUP, SIGUSR1 and a file STOP beside the results");
-  app->add_flag("--dry-run", o.dry_run, "read and check everything, tell the memory and disk that the run will want, then stop");
+  app->add_flag("--dry-run", o.dry_run, "read and check everything, print the memory and disk that the run will need, then stop");
   app->add_flag("--explain", o.explain, "print every value in force, defaults included, then stop");
   app->add_flag("--profile", o.profile, "print seconds, counts and messages by phase at the end");
   if (!parse(*app, argc, argv)) return;

@@ -94,15 +94,14 @@ int main(int argc, char** argv) {
     app->add_option("mesh", o.mesh, "mesh.h5 or tags.h5; its own tags do not matter")->required();
     app->add_option("--tol", o.tolerance, "tolerance of quantities that say none")->capture_default_str();
     app->add_option("--keep-rigid", o.kept_rigid, "a region that stays rigid (repeatable)")->type_name("NAME")->allow_extra_args(false);
-    app->add_option("--keep", o.kept, "a region that stays as it is told: rigid, linear, stiffening or nonlinear (repeatable)")
+    app->add_option("--keep", o.kept, "a region that stays as given: rigid, linear, stiffening or nonlinear (repeatable)")
         ->type_name("NAME=LEVEL")
         ->allow_extra_args(false);
-    app->add_option("--finer", o.finer,
-                    "the same regions in smaller cells: the chosen model runs on it too, and tells the error of the mesh")
+    app->add_option("--finer", o.finer, "the same regions in smaller cells: the chosen model runs on it too, for the error of the mesh")
         ->type_name("MESH");
     app->add_flag("--full", o.full, "judge by all cells, not only by those of regions whose linear strains are in doubt");
-    app->add_flag("--no-full", o.no_full, "never run cells to judge by; what is then not known is told");
-    app->add_option("--at-most", o.at_most, "what the advice may cost, in runs of all cells; what is found by then is told")
+    app->add_flag("--no-full", o.no_full, "never run cells to judge by; the report says what is then unknown");
+    app->add_option("--at-most", o.at_most, "what the advice may cost, in runs of all cells; the report has what is found by then")
         ->capture_default_str()
         ->check(CLI::PositiveNumber);
     app->add_option("-j,--jobs", o.at_once, "runs at a time")->capture_default_str()->check(CLI::PositiveNumber);

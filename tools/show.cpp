@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
     }
     if (paths.empty()) throw Error("", "files are required", "see hilo-show --help", Exit::usage);
     if (only_check) return check(paths);
-    if (json && paths.size() > 1) throw Error("", "--json takes one file", "", Exit::usage);
+    if (json && paths.size() > 1) throw Error("", "--json is for one file", "", Exit::usage);
     for (size_t i = 0; i < paths.size(); ++i) {
       const Summary s = is_scene(paths[i]) ? summary_of_scene(paths[i]) : summary_of_file(paths[i]);
       fmt::print("{}{}", i ? "\n" : "", json ? s.json() : s.text());

@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     std::string mesh_path, rules_path, output = "tags.h5", rest;
     std::vector<std::string> words[3];
     bool json = false, dry = false;
-    app->add_option("mesh", mesh_path, "mesh.h5, or a tags.h5 whose mesh is tagged anew")->required();
+    app->add_option("mesh", mesh_path, "mesh.h5, or a tags.h5 whose mesh is tagged again")->required();
     app->add_option("tags", rules_path,
                     "tags.toml: rigid, nonlinear, linear = [\"name\", \"glob*\", {box = [[..], [..]]}, {set = \"..\"}], rest = \"rigid\"");
     app->add_option("-o,--output", output, "the tags file to write")->capture_default_str()->type_name("FILE");
@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
       app->add_option(fmt::format("--{}", word(f)), words[static_cast<int>(f)], help)->type_name("REGION");
     };
     add(Fidelity::rigid, "rigid regions: name, glob, box:x,y,z,x,y,z (wholly inside) or set:NAME");
-    add(Fidelity::nonlinear, "regions of finite strain, likewise");
+    add(Fidelity::nonlinear, "regions of finite strain, the same");
     add(Fidelity::linear, "regions of small strain on any motion, by modes");
     app->add_option("--rest", rest, "fidelity of all other regions: \"--nonlinear barrel --rest rigid\" makes all but the barrel rigid")
         ->type_name("WORD");

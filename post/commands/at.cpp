@@ -188,7 +188,7 @@ Command at_command(CLI::App& app) {
                   "von_mises, stress_error, plastic_strain, stress, acceleration, displacement, velocity, or a component: stress.xx, "
                   "velocity.z; von_mises_envelope of a run with output.envelope")
       ->required();
-  sub->add_option("--node", o->node, "number of a node, as peak tells it (from 0)")->check(CLI::NonNegativeNumber);
+  sub->add_option("--node", o->node, "number of a node, as peak prints it (from 0)")->check(CLI::NonNegativeNumber);
   sub->add_option("--point", o->point, "x,y,z in m of a material point: where it is in the mesh, before it moves");
   sub->add_option("--line", o->line, "two points x,y,z: points of the mesh from the first to the second")->expected(2);
   sub->add_option("-n", o->n, "points on the line, ends included")->check(CLI::Range(2, 1000000))->capture_default_str();

@@ -83,8 +83,8 @@ void run(const Options& o) {
   warn_of_band(file.records, o.cfc);
   if (!is_quiet() && !o.json)
     fmt::print(stderr,
-               "Proper acceleration in the sensors' axes (x forward, y left, z up), less what was felt at the start (1 g upward at rest);\n"
-               "HIC, SI (CFC 1000 or the highest class the record holds) and clip_3ms (cumulative) take the whole resultant.  Reference "
+               "Proper acceleration in the sensors' axes (x forward, y left, z up), minus the value at the start (1 g upward at rest);\n"
+               "HIC, SI (CFC 1000 or the highest class the record holds) and clip_3ms (cumulative) use the whole resultant.  Reference "
                "levels do not\n"
                "replace their sources; Brinkley's limits were not checked against theirs (a second source agrees on +z).{}\n",
                file.complete ? "" : "  The run is not complete.");

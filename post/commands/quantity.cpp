@@ -48,7 +48,7 @@ Command quantity_command(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("names", o->names, "quantities by name or glob; all by default");
-  sub->add_option("--scene", o->scene, "take the quantities of this scene instead of the run's own");
+  sub->add_option("--scene", o->scene, "the quantities of this scene instead of the run's own");
   sub->add_flag("--json", o->json, "the table as JSON, in SI units and g");
   example(*sub, "  hilo-post quantity run.h5\n  hilo-post quantity run.h5 --json");
   return {sub, [o] { run(*o); }};

@@ -130,7 +130,7 @@ void warn_of_band(const std::vector<SensorRecord>& sensors, double cfc) {
                  true;
       return false;
     };
-    if (!warns(fmt::format("CFC {:g}", cfc), s.filtered_peak, "take a lower class, or another step or mesh"))
+    if (!warns(fmt::format("CFC {:g}", cfc), s.filtered_peak, "choose a lower class, or another step or mesh"))
       warns("raw", s.peak, "quote the filtered one");
   }
 }

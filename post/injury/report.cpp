@@ -141,7 +141,7 @@ void draw(Painter& p, const std::vector<Crew>& crew, double cfc, const Corridor&
   page.gap(2);
   page.paragraph(
       "Axes of each sensor (ISO 8855): x forward, y to the left, z upward. Proper acceleration, in g = 9.80665 m/s^2: what a seat does to "
-      "whom it carries, 1 g upward at rest. Shown is the change from the start of the run; HIC, SI and 3 ms take the whole. The corridor "
+      "whom it carries, 1 g upward at rest. Shown is the change from the start of the run; HIC, SI and 3 ms use the whole. The corridor "
       "is "
       "as given, or from the lowest to the highest sensor.",
       middle);

@@ -99,7 +99,7 @@ void evaluate(const Entry& q, RunFile& run, QuantityValue& v) {
     v.value = run.frequencies[mode];  // the first is the state of rest
     return;
   }
-  if (!run.frequencies.empty()) throw Error(q.place.text(), "an analysis of modes has no histories over time");
+  if (!run.frequencies.empty()) throw Error(q.place.text(), "an analysis of modes has no histories in time");
   if (q.kind == "injury") {
     v.of = fmt::format("sensor {}: {}", q.text("sensor"), q.text("measure"));
     const Crew crew = crew_of(read_sensors(run.path, {q.text("sensor")}, q.number("cfc")).records.front(), q.number("cfc"));
@@ -117,7 +117,7 @@ void evaluate(const Entry& q, RunFile& run, QuantityValue& v) {
   v.of = c.label, v.unit = c.unit;
   for (size_t i = 0; i < c.value.size(); ++i)
     if (!std::isfinite(c.value[i])) throw Error(q.place.text(), fmt::format("its value is not a number at t = {:.6g} s", c.t[i]));
-  if (c.t.size() < 2) throw Error(q.place.text(), "it has one value in this run, not a history over time");
+  if (c.t.size() < 2) throw Error(q.place.text(), "it has one value in this run, not a history in time");
   if (q.kind == "rms") {
     v.value = rms(c);
   } else if (q.kind == "at") {

@@ -69,7 +69,8 @@ Column RunColumns::formula(const std::string& text) {
       Column found = named(name);
       rows = std::min(rows, found.t.size());
       if (!std::equal(c.t.begin(), c.t.begin() + static_cast<std::ptrdiff_t>(rows), found.t.begin()))
-        throw Error(run_.path, fmt::format("\"{}\" has other times than the histories beside it", name), "a formula is over one time");
+        throw Error(run_.path, fmt::format("\"{}\" has other times than the other histories", name),
+                    "the columns of a formula have the same times");
       found.value.resize(c.t.size());
       return found.value;
     });

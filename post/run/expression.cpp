@@ -161,7 +161,7 @@ class Parser {
       while (take(',')) arguments.push_back(sum());
       if (!take(')')) fail("expected \",\" or \")\"");
       if (arguments.size() < f.least || arguments.size() > f.most)
-        fail(fmt::format("{} takes {}{} of them, here are {}", name, f.least, f.most == many ? " or more" : "", arguments.size()));
+        fail(fmt::format("{} needs {}{} arguments, here are {}", name, f.least, f.most == many ? " or more" : "", arguments.size()));
       return f.of(arguments, t_);
     }
     at_ = from;

@@ -53,7 +53,8 @@ void add_frame_options(CLI::App& sub, FrameOptions& o) {
   add(colours, "--range", o.range, "LOW,HIGH of the colours in the shown unit; by default the range over all that is drawn");
   add(colours, "--unit", o.unit, "unit shown: MPa, mm, g, ...; a handy one by default");
   add(colours, "--colours", o.colours,
-      "viridis, cividis (both keep their order in grey print) or diverging (blue, white, orange); auto takes diverging for values of both "
+      "viridis, cividis (both keep their order in grey print) or diverging (blue, white, orange); auto chooses diverging for values of "
+      "both "
       "signs")
       ->check(CLI::IsMember({"auto", "viridis", "cividis", "diverging"}))
       ->capture_default_str();
@@ -66,13 +67,13 @@ void check(const FrameOptions& o) {
     if (wrong) throw Error(option, what, hint, Exit::usage);
   };
   const bool named = is_named_field(o.field), enlarged = o.scale != 1 || o.deformed != 1;
-  refuse(named && !o.minus.empty(), "--minus", fmt::format("{} has no differences", o.field), "take a field of numbers");
-  refuse(named && !o.iso.empty(), "--iso", fmt::format("{} has no values", o.field), "take a field of numbers");
-  refuse(!o.iso.empty() && !o.cut.empty(), "--iso", "and --cut do not go together", "take one");
-  refuse(o.scale != 1 && o.deformed != 1, "--deformed", "and --scale both enlarge", "take one");
-  refuse(!o.track.empty() && !o.ride.empty(), "--ride", "and --track both move the camera", "take one");
-  refuse(enlarged && !o.trace.empty(), "--trace", "needs true positions", "take --scale or --deformed away");
-  refuse(enlarged && !o.forces.empty(), "--forces", "need true positions", "take --scale or --deformed away");
+  refuse(named && !o.minus.empty(), "--minus", fmt::format("{} has no differences", o.field), "choose a field of numbers");
+  refuse(named && !o.iso.empty(), "--iso", fmt::format("{} has no values", o.field), "choose a field of numbers");
+  refuse(!o.iso.empty() && !o.cut.empty(), "--iso", "and --cut do not go together", "give one");
+  refuse(o.scale != 1 && o.deformed != 1, "--deformed", "and --scale both enlarge", "give one");
+  refuse(!o.track.empty() && !o.ride.empty(), "--ride", "and --track both move the camera", "give one");
+  refuse(enlarged && !o.trace.empty(), "--trace", "needs true positions", "leave --scale or --deformed out");
+  refuse(enlarged && !o.forces.empty(), "--forces", "need true positions", "leave --scale or --deformed out");
   refuse(o.label.size() > 1 + o.beside.size(), "--label", fmt::format("{} captions for {} runs", o.label.size(), 1 + o.beside.size()),
          "one for each run");
 }

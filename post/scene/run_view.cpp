@@ -101,7 +101,7 @@ void RunView::make_skins() {
   const Plane* cut = o_.cut.empty() ? nullptr : &plane;
   coloured_ = std::make_unique<Skin>(mesh_, coloured, coloured_bars, cut, solid_);
   toned_ = std::make_unique<Skin>(mesh_, toned, toned_bars, cut, toned_solid);
-  if (coloured_->empty() && toned_->empty()) throw Error("--cut", "takes all that is shown away", "see the box that hilo-show tells");
+  if (coloured_->empty() && toned_->empty()) throw Error("--cut", "removes all that is shown", "see the box that hilo-show prints");
   counted_.assign(static_cast<size_t>(mesh_.n_nodes()), false);
   for (std::int64_t c = 0; c < mesh_.n_cells(); ++c)
     if (valued_[region_of(c)])

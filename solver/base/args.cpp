@@ -141,7 +141,7 @@ std::unique_ptr<CLI::App> make_app(const ToolInfo& info) {
   app->set_help_flag("-h,--help", "this text");
   app->set_version_flag("--version", fmt::format("{} {}{}{}", info.name, version(), info.about.empty() ? "" : "\n", info.about),
                         "version, commit, and versions of libraries");
-  app->add_flag_callback("--quiet", be_quiet, "neither warnings nor progress, nor tables beside a file that was asked for");
+  app->add_flag_callback("--quiet", be_quiet, "no warnings, no progress, and no table where a file is written");
   app->fallthrough();  // --quiet is understood behind a subcommand too
   app->get_formatter()->column_width(34);
   example(*app, info.example);

@@ -7,7 +7,7 @@ namespace hilo::keys {
 
 inline constexpr Param name{"name", Type::text, "", "!", "name, unique within the section"};
 inline constexpr Param history{"history", Type::history, "1", "1",
-                               "factor over time: a name of [history.NAME] or a table {t = [...], value = [...]}"};
+                               "factor as a function of time: a name of [history.NAME] or a table {t = [...], value = [...]}"};
 inline constexpr Param end_a{"a", Type::text, "", "ground", "first end: a rigid region, a body, a set, or ground"};
 inline constexpr Param end_b{"b", Type::text, "", "!", "second end: a rigid region, a body, a set, or ground"};
 inline constexpr Param at{"at", Type::vector3, "m", "!", "joint point, reference coordinates"};

@@ -131,7 +131,8 @@ namespace {
 Checkpoint read_one(const std::string& path, const Comm& comm) {
   const Store f = Store::open(path);
   if (f.text_attribute("/", "format") != "hilo checkpoint") throw Error(path, "is no checkpoint");
-  if (f.number_attribute("/", "version") != 1.0) throw Error(path, "was made by another version of hilo", "run the scene anew");
+  if (f.number_attribute("/", "version") != 1.0)
+    throw Error(path, "was made by another version of hilo", "run the scene again from its start");
   Checkpoint c;
   c.path = path;
   c.t = f.number_attribute("/", "t").value_or(0);

@@ -31,7 +31,7 @@ void refuse_contradictions(const Scene& scene, const System& system, const Redun
       throw Error(place_of(scene, c),
                   fmt::format("{} is to be driven, but {} at t = {:.3g} s", c.label(),
                               by.empty() ? "the joint does not leave this motion free" : fmt::format("joint \"{}\" holds it still", by), t),
-                  "take away the drive, or what holds the same motion");
+                  "remove the drive, or what holds the same motion");
     }
   }
   Config q = system.start;
@@ -49,7 +49,7 @@ void refuse_contradictions(const Scene& scene, const System& system, const Redun
       throw Error(
           place_of(scene, *c),
           fmt::format("{} holds what motion \"{}\" moves: it would open by {:.3g} at t = {:.3g} s", c->label(), c->moved_by(), worst, t),
-          fmt::format("take away the {} or the motion", c->section()));
+          fmt::format("remove the {} or the motion", c->section()));
     }
   }
 }

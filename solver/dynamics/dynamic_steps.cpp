@@ -91,7 +91,7 @@ class DynamicSteps final : public Steps {
     run_.figures.projected = run_.impulses.strike(system, *run_.solver, state, run_.talk).change;
     if (const std::string name = contradicted_joint(system, state.q, state.v, 0); !name.empty())
       throw Error(run_.scene.path, fmt::format("joint \"{}\" cannot follow the driven joints", name),
-                  "two drives, or a drive and a joint, hold the same motion: take one away");
+                  "two drives, or a drive and a joint, hold the same motion: remove one");
     if (redundancy.singular()) leave_singular_position(rows);
     if (run_.talk && run_.figures.projected > 1e-9)
       fmt::print(stderr, "initial velocities changed by up to {:.3g} m/s to satisfy the joints\n", run_.figures.projected);

@@ -37,7 +37,7 @@ Impulse Impulses::strike(const System& system, KktSolver& solver, State& s, bool
   const Impulse impulse = hilo::strike(system, solver, s);
   if (impulse.by.empty()) return impulse;
   ++count_, work_ += impulse.work;
-  if (talk && count_ <= 5) fmt::print(stderr, "{}{}\n", impulse.text(s.t), count_ == 5 ? "; no more are told" : "");
+  if (talk && count_ <= 5) fmt::print(stderr, "{}{}\n", impulse.text(s.t), count_ == 5 ? "; further ones are not printed" : "");
   return impulse;
 }
 

@@ -41,7 +41,7 @@ class PathSteps final : public Steps {
  public:
   PathSteps(RunParts& run, Pause pause) : Steps(run, std::move(pause)), time_(run.scene.table("time")) {
     if (run.system.traits().searches)
-      throw Error(time_.where("analysis"), "a path does not follow what meets and parts on its way", "take analysis = \"static\"");
+      throw Error(time_.where("analysis"), "a path does not follow what meets and parts on its way", "use analysis = \"static\"");
     n_ = time_.number("steps");
     end_ = time_.has("end") ? time_.number("end") : 1;
     reach_ = time_.has("reach") ? time_.number("reach") : 0;

@@ -95,7 +95,7 @@ std::string Profile::text() const {
                       fmt::format("{:.0f}", r.messages), fmt::format("{:.0f}", r.collectives), fmt::format("{:.3f}", r.bytes / 1e6),
                       r.count});
   return t.text() + fmt::format(
-                        "matrix and factors {:.1f} MB, results {:.1f} MB; seconds: mean over the ranks, imbalance: largest over mean; "
+                        "matrix and factors {:.1f} MB, results {:.1f} MB; seconds: mean of the ranks, imbalance: largest divided by mean; "
                         "messages, sums and MB: of the rank with most\n",
                         solver_bytes / 1e6, result_bytes / 1e6);
 }

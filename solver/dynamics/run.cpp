@@ -121,17 +121,17 @@ class Run {
     if (run_.plan.asked > 0 && !e.why().empty() && run_.scene.table("time").text("error_estimate") != "never")
       return tell("the error at the end of the run is not known, only the errors of single steps: " + e.why());
     if (e.is_lost() && run_.plan.asked == 0)
-      tell("the error of positions is not known: " + e.why() + ": take a shorter time.step, or time.tolerance");
+      tell("the error of positions is not known: " + e.why() + ": choose a shorter time.step, or time.tolerance");
     if (!e.is_there()) return;
     if (!run_.plan.unmet.empty()) tell("time.tolerance is not met: " + run_.plan.unmet);
     if (const double t = e.meaningless_from(); t < run_.report.t && e.is_chaotic())
       tell(fmt::format(
           "the motion is chaotic: errors of positions grow exponentially, and from t = {:.3g} s on they are as large as the motion", t));
     else if (run_.plan.asked == 0 && e.share(e.largest()) > 0.05)
-      tell(fmt::format(
-          "positions are off by about {:.2g} % of the motion at t = {:.3g} s, as a second solution at twice the step tells: take a "
-          "shorter time.step, or time.tolerance",
-          100 * e.share(e.largest()), e.largest_t()));
+      tell(
+          fmt::format("positions are off by about {:.2g} % of the motion at t = {:.3g} s, by a second solution at twice the step: choose a "
+                      "shorter time.step, or time.tolerance",
+                      100 * e.share(e.largest()), e.largest_t()));
   }
 
   bool is_static() const { return run_.analysis == Analysis::statics || run_.analysis == Analysis::path; }
@@ -181,8 +181,8 @@ class Run {
     const Entry& time = run_.scene.table("time");
     const IntegratorKind& method = integrator_kinds().at(run_.plan.now().method, time.where("integrator"));
     run_.integrator = method.make(time);
-    run_.energy_unchecked = is_static()                          ? "a static analysis takes the work of a step with the loads at its end"
-                            : run_.analysis != Analysis::dynamic ? "an analysis of modes takes no steps"
+    run_.energy_unchecked = is_static()                          ? "a static analysis counts the work of a step with the loads at its end"
+                            : run_.analysis != Analysis::dynamic ? "an analysis of modes has no steps"
                             : method.keeps_energy                ? ""
                                                                  : "the method does not keep it";
     return method;
@@ -224,7 +224,7 @@ class Run {
     if (setup.envelope && !run_.system.mesh)
       throw Error(output.where("envelope"), "a scene of bodies alone has no nodes to take the largest values of");
     if (setup.envelope && run_.analysis == Analysis::modes)
-      throw Error(output.where("envelope"), "an analysis of modes takes no steps", "leave output.envelope out");
+      throw Error(output.where("envelope"), "an analysis of modes has no steps", "leave output.envelope out");
     for (const Event& e : run_.events)
       if (e.jump) setup.jumps.push_back(e.t);
     setup.provenance = options_.provenance;
@@ -275,7 +275,7 @@ class Run {
   void go_on(Archive& a) {
     archive_rest(a);
     if (!a.is_at_end()) throw Error("", "more was kept than is restored", "", Exit::fault);
-    if (run_.talk) fmt::print(stderr, "goes on from t = {:.6g} s, {} steps behind the start\n", run_.state.t, run_.report.steps);
+    if (run_.talk) fmt::print(stderr, "goes on from t = {:.6g} s, {} steps after the start\n", run_.state.t, run_.report.steps);
   }
 
   const RunOptions& options_;

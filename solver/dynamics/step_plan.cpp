@@ -121,7 +121,7 @@ bool plan_another(StepPlan& plan, const RunReport& report, const Config& q, cons
   if (order > 2 ? demand < least_share * system.length : demand * end / steps < least_step * system.length)
     return fall_back(lack + ": steps as short as that are lost in round-off");
   if (steps > most_steps * static_cast<double>(first->steps))
-    return says(fmt::format("{}: that would take about {:.2g} steps instead of {}", lack, steps, now.steps));
+    return says(fmt::format("{}: that would need about {:.2g} steps instead of {}", lack, steps, now.steps));
   return again(now.method, demand);
 }
 

@@ -91,7 +91,7 @@ Wanted wanted(const Scene& scene, const System& system) {
 }
 
 std::string text(const Wanted& w) {
-  std::string out = "wants ";
+  std::string out = "needs ";
   if (w.memory > 0) out += fmt::format("{} of memory ({} are free) and ", size(w.memory), size(free_memory()));
   out += fmt::format("{} of disk", size(w.disk()));
   if (w.steps == 0) out += fmt::format(" and {:.0f} bytes a step", w.per_step);

@@ -17,7 +17,7 @@ struct Wanted {
 };
 /// From the pattern of the matrix, ordered and counted as its factors will be but not filled, and from what the scene writes.  Collective.
 Wanted wanted(const Scene& scene, const System& system);
-/// One line: "wants 1.2 GB of memory (9.8 GB are free) and 340 MB of disk".
+/// One line: "needs 1.2 GB of memory (9.8 GB are free) and 340 MB of disk".
 std::string text(const Wanted& wanted);
 
 }  // namespace hilo

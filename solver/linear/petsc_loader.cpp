@@ -39,7 +39,7 @@ Make load() {
 std::unique_ptr<KktSolver> make_petsc_solver(const std::string& kind, double tolerance, int subdomains) {
   static const Make make = [] {
     make_room_for_blas();
-    require_address_space(160, "PETSc and MPI take at their start");
+    require_address_space(160, "PETSc and MPI need at their start");
     return load();
   }();
   return std::unique_ptr<KktSolver>(make(kind.c_str(), tolerance, subdomains, tool_name().c_str()));

@@ -34,7 +34,7 @@ void tell_left_out(const Scene& scene) {
 }
 
 void refuse_left_out(const Scene& scene) {
-  const std::string hint = "say it in the scene by other means and take its [[left_out]] away, or --accept-left-out";
+  const std::string hint = "say it in the scene by other means and remove its [[left_out]], or --accept-left-out";
   const std::string& analysis = scene.table("time").text("analysis");
   const bool no_loads = (analysis == "static" || analysis == "path") && !is_loaded(scene);
   for (const Entry& e : scene.entries("left_out")) {

@@ -41,7 +41,7 @@ void check_name(const Entry& q, std::string_view key, const std::string& name, s
 std::string unit_of_formula(const Entry& q) {
   const std::string& text = q.text("formula");
   const auto equals = text.find('=');
-  if (equals == text.npos) fail(q, "formula", "no = in it", "NAME [UNIT] = FORMULA, as hilo-post series takes it");
+  if (equals == text.npos) fail(q, "formula", "no = in it", "NAME [UNIT] = FORMULA, as in hilo-post series");
   const std::string unit = unit_in_heading(text.substr(0, equals));
   return unit.empty() ? "1" : unit;
 }
@@ -57,7 +57,7 @@ std::vector<KindSchema> quantity_schema() {
       {"stress", text, "", "", "of the largest von Mises stress in this region, at the outputs of fields"},
       {"sensor", text, "", "", "of what this sensor felt [g]"},
       {"between", texts, "", "", "of how far the distance of two probes has changed, or that of the third from the line through two"},
-      {"formula", text, "", "", "of columns of the histories, as hilo-post series takes it: \"pull [kN] = joint.pin.Fx/1e3\""},
+      {"formula", text, "", "", "of columns of the histories, as in hilo-post series: \"pull [kN] = joint.pin.Fx/1e3\""},
       {"component", text, "", "", "of a joint force, moment, Fx .. Mz (force); of a sensor resultant, x, y, z (resultant)"},
       cfc};
   const auto kind = [&](std::string_view name, std::string_view meaning, const std::vector<Param>& more) {
@@ -69,7 +69,7 @@ std::vector<KindSchema> quantity_schema() {
   std::vector<Param> at{{"t", number, "s", "!", "the time", at_least(0)}};
   at.insert(at.end(), source.begin(), source.end());
   return {kind("peak", "the value largest in size, with its sign", source), kind("at", "the value at a time", at),
-          kind("rms", "root of the mean square over the run", source),
+          kind("rms", "root of the mean square during the run", source),
           kind("injury", "a measure of hilo-post injury",
                {{"sensor", text, "", "!", "what this sensor felt"},
                 {"measure", text, "", "!", "DRI, HIC15, clip_3ms, peak_x and the others of hilo-post injury"},

@@ -197,7 +197,7 @@ History history_of(const Entry& e, const std::string& label, const Surroundings&
   for (size_t i = 1; i < h.t.size(); ++i)
     if (h.t[i] == h.t[i - 1])
       return fail("interpolation", fmt::format("the table jumps at t = {:.6g}, which a smooth curve through its points cannot", h.t[i]),
-                  "linear, smooth and smoother take jumps");
+                  "linear, smooth and smoother allow jumps");
   const std::string& ends = e.text("ends");
   if (e.has("slopes") && (!spline || ends != "clamped"))
     return fail("slopes", "slopes is for interpolation = \"spline\" with ends = \"clamped\" alone", "set both, or leave slopes out");

@@ -54,14 +54,14 @@ std::vector<KindSchema> make() {
         {"modes", number, "", "40",
          "vibration modes of a linear region, at most; static ones are there besides. By default fewer where all could not stiffen",
          at_least(0)},
-        {"up_to", number, "Hz", "", "vibration modes up to this frequency, but at least four; absent: 0.1 over the step", above(0)},
+        {"up_to", number, "Hz", "", "vibration modes up to this frequency, but at least four; absent: 0.1 divided by the step", above(0)},
         {"shapes", text, "", "",
          "CSV of the modes of a linear region, in place of those that hilo finds: node, then x, y, z of each shape [length]"},
         {"stiffening", boolean, "", "false", "strains of the second degree in the modes: spins and bending that stiffen or shorten"},
         {"modal_damping", number, "1", "0",
          "ratio to the critical damping of the modes of linear regions, as these are held at the start of the run", at_least(0)}}});
   const Param set_kind{"kind", text, "", "!", "the kind of place"};
-  const Param of{"of", texts, "", "[\"*\"]", "regions whose nodes it takes, names or globs"};
+  const Param of{"of", texts, "", "[\"*\"]", "regions whose nodes may belong to it, names or globs"};
   s.push_back({"set",
                "ball",
                "nodes within a distance of a point, and the outer facets between them",
@@ -240,7 +240,7 @@ std::vector<KindSchema> make() {
   s.push_back(
       {"history",
        "",
-       "a named factor over time",
+       "a named factor as a function of time",
        {{"t", numbers, "s", "", "rising times; two equal ones make a jump"},
         {"value", numbers, "", "", "values, in the unit of what the history scales (1 for a factor)"},
         {"file", text, "", "",
@@ -282,13 +282,14 @@ std::vector<KindSchema> make() {
         {"precision", text, "", "double", "double or single"}}});
   for (const OwnSection& own : own_sections()) s.push_back({own.name, "", own.meaning, own.keys});
   own_sections().close();
-  s.push_back({"left_out",
-               "",
-               "what hilo-import did not carry over from a deck: told before a run, which is refused where it would be of another model",
-               {{"card", text, "", "!", "what the deck says"},
-                {"loss", text, "", "other", "what the model lacks by it: load, support, tie, material or other"},
-                {"count", number, "", "1", "how often", at_least(1)},
-                {"place", text, "", "", "file and line of the first"}}});
+  s.push_back(
+      {"left_out",
+       "",
+       "what hilo-import did not carry over from a deck: a warning before a run, which is refused where the model would be another one",
+       {{"card", text, "", "!", "what the deck says"},
+        {"loss", text, "", "other", "what the model lacks by it: load, support, tie, material or other"},
+        {"count", number, "", "1", "how often", at_least(1)},
+        {"place", text, "", "", "file and line of the first"}}});
   for (const auto& [section, key] : {std::pair{"solver", "kind"}, {"output", "fields"}}) words_of(section, key)->close();
   return s;
 }

@@ -65,7 +65,7 @@ std::vector<ArraySchema>& arrays() {
        "then "
        "the softest shapes; last row: of the unit tensor over the volume"},
       {"reduced.h5", "/reduced/<name>/sites", "f8", "(n, n_modes)", "m^-1 kg^-0.5",
-       "displacements of nodes far out over the distance between them"},
+       "displacements of nodes far out, divided by the distance between them"},
       {"reduced.h5", "/reduced/<name>/interfaces", "string", "(n)", "", "what the region is held or moved by"},
       {"reduced.h5", "/reduced/<name>/interface_digests", "string", "(n)", "", "digests of their nodes"},
       {"checkpoint.h5", "/", "", "", "", "attributes: format = \"hilo checkpoint\", version, t [s] and steps of the run when it was kept"},
@@ -109,7 +109,7 @@ std::vector<ArraySchema>& arrays() {
        "Cauchy stress xx yy zz yz xz xy, recovered from the cells of the node's first flexible region alone; 0 on rigid regions"},
       {"run.h5", "/field/<step>/von_mises", "f8", "(n_nodes)", "Pa", "von Mises stress of it; of a node of bars alone the mean of theirs"},
       {"run.h5", "/field/<step>/stress_error", "f8", "(n_nodes)", "Pa",
-       "von Mises stress of recovered less raw stress, root mean square over the cells at the node: what the mesh leaves open"},
+       "von Mises stress of recovered minus raw stress, root mean square over the cells at the node: what the mesh leaves open"},
       {"run.h5", "/field/<step>/cell_von_mises", "f8", "(n_cells)", "Pa",
        "von Mises stress of each cell, mean over its integration points (hex8: 2 x 2 x 2 of its assumed strains), not recovered; 0 on "
        "rigid "
@@ -135,7 +135,8 @@ std::vector<ArraySchema>& arrays() {
       {"run.h5", "/history/mode", "f8", "(n_t, 10)", "Hz, 1, kg, kg m^2, 1, m kg^0.5",
        "of an analysis of modes, in which t is the number of the mode and the first row the state of rest: frequency (below zero: the "
        "state "
-       "is not stable, and this the rate of growth over 2 pi), damping ratio, effective mass along x, y, z and about axes through the "
+       "is not stable, and this the rate of growth divided by 2 pi), damping ratio, effective mass along x, y, z and about axes through "
+       "the "
        "centre "
        "of mass, error of the shape, amplitude of the mode of unit mass in the other arrays (0: a whirl); all other arrays are of that "
        "state with the shape added, a hundred thousandth of the scene at most"},

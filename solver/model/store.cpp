@@ -68,7 +68,7 @@ void Store::Impl::abandon() {
 void Store::Impl::fail_write(const std::string& what) {
   Cause cause = last_cause();
   if (growing && growing->error()) cause.error = growing->error();
-  if (!cause.error && grows_on) throw Error(path, fmt::format("damaged: {}: {}", what, cause.text), "take it from where it was copied");
+  if (!cause.error && grows_on) throw Error(path, fmt::format("damaged: {}: {}", what, cause.text), "copy it again");
   if (!cause.error) throw Error(path, fmt::format("{}: {}", what, cause.text), "", Exit::fault);
   abandon();
   if (temporary) ::unlink(on_disk.c_str());

@@ -140,13 +140,13 @@ void walk_in_child(const std::string& path) {
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == other_attributes)
-    throw Error(path, "damaged: its attributes are not what was written", "make it again, or take it from where it was copied");
+    throw Error(path, "damaged: its attributes are not what was written", "make it again, or copy it again");
   if (WIFEXITED(status) && WEXITSTATUS(status) == no_way_through)
-    throw Error(path, "damaged: its objects and attributes cannot be listed", "make it again, or take it from where it was copied");
+    throw Error(path, "damaged: its objects and attributes cannot be listed", "make it again, or copy it again");
   if (!WIFSIGNALED(status)) return;
   const bool endless = WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL;
   throw Error(path, fmt::format("damaged: the HDF5 library {} it", endless ? "comes to no end with" : "crashes on"),
-              "make it again, or take it from where it was copied");
+              "make it again, or copy it again");
 }
 
 }  // namespace hilo

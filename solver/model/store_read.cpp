@@ -85,8 +85,7 @@ void Store::Impl::check_digest(hid_t array, const std::string& name, std::uint64
   std::uint64_t written = 0;
   const Id a(H5Aopen(array, digest_name, H5P_DEFAULT), H5Aclose);
   if (!a.ok() || H5Aread(a, H5T_NATIVE_UINT64, &written) < 0) fail_read(name);
-  if (written != digest)
-    throw Error(path, fmt::format("damaged: {} is not what was written", name), "make it again, or take it from where it was copied");
+  if (written != digest) throw Error(path, fmt::format("damaged: {} is not what was written", name), "make it again, or copy it again");
 }
 
 namespace {

@@ -49,16 +49,16 @@ KindSchema time_schema() {
       {"start", text, "", "as given", "as given, or equilibrium: a static solve first"},
       {"tolerance", number, "1", "",
        "error of positions at the end, as a fraction of the scene's length: chooses the steps, `step` being the largest, and where no "
-       "`integrator` is named the method: energy-momentum, gauss where that takes fewer",
+       "`integrator` is named the method: energy-momentum, gauss where that needs fewer",
        from_to(1e-13, 1)},
       {"error_estimate", text, "", "auto",
-       "whether a second solution at twice the step runs beside, which tells the error of positions: auto (with `tolerance`, and in scenes "
+       "whether a second solution at twice the step runs beside, to estimate the error of positions: auto (with `tolerance`, and in scenes "
        "of "
        "up to 900 unknowns), always, never"},
       {"integrator", text, "", integrator_words()[0].name, methods()}};
   for (const Param& p : keys_of_methods()) keys.push_back(p);
-  keys.push_back({"steps", number, "1", "1", "load steps of a static analysis; of a path, about what the whole load would take at first",
-                  from_to(1, 1e6)});
+  keys.push_back({"steps", number, "1", "1",
+                  "load steps of a static analysis; of a path, about how many the whole load would need at first", from_to(1, 1e6)});
   keys.push_back({"reach", number, "m", "", "displacement at which a path ends; without, it ends where it has the whole load", above(0)});
   keys.push_back({"modes", number, "1", "10", "how many modes an analysis of modes looks for, the lowest", from_to(1, 1000)});
   keys.push_back({"analysis", text, "", "dynamic",

@@ -176,7 +176,7 @@ std::vector<Param> giving_way(std::vector<Param> keys) {
                 numbers,
                 "N m/rad",
                 "",
-                "likewise about x, y and axis: moment per angle; of three the rotation vector, to half a turn, of two the tilt of the axis",
+                "the same about x, y and axis: moment per angle; of three the rotation vector, to half a turn, of two the tilt of the axis",
                 at_least(0),
                 {1, 3}},
                damping,

@@ -17,7 +17,7 @@ const History& Builder::use_history(const Entry& e, Acts acts) {
     if (b.order == 0 && acts == Acts::as_position && !is_static)
       throw Error(e.where("history"),
                   fmt::format("{}: the history jumps at t = {:.6g}, so the position it prescribes would jump too", e.label(), b.t),
-                  "let the values rise over some time, with interpolation = \"smooth\"");
+                  "let the values rise gradually, with interpolation = \"smooth\"");
   out_->histories.push_back({e.label(), h, acts});
   return h;
 }

@@ -119,7 +119,7 @@ std::string ReducedFile::unfit(const std::string& region, const ReductionKey& wa
     if (std::find(wanted.interfaces.begin(), wanted.interfaces.end(), name) == wanted.interfaces.end())
       return fmt::format("its modes were found with the interface \"{}\" held, and nothing holds it here", name);
   if (differs("loads", wanted.loads)) return "it is of other loads";
-  if (differs("basis", wanted.basis)) return "it was made for other modes, up_to (0.1 over the step, where not given) or stiffening";
+  if (differs("basis", wanted.basis)) return "it was made for other modes, up_to (0.1 divided by the step, where not given) or stiffening";
   return "";
 }
 

@@ -84,9 +84,9 @@ TEST(Resources, ADryRunTellsWhatTheRunTakes) {
         0);
     const Ran told = bar().run("hilo-solve --dry-run scene.toml t.h5");
     double memory = 0, disk = 0;
-    const auto at = told.err.find("wants ");
+    const auto at = told.err.find("needs ");
     ASSERT_NE(at, std::string::npos) << told.err;
-    ASSERT_EQ(std::sscanf(told.err.c_str() + at, "wants %lf MB of memory (%*[^)]) and %lf MB of disk", &memory, &disk), 2) << told.err;
+    ASSERT_EQ(std::sscanf(told.err.c_str() + at, "needs %lf MB of memory (%*[^)]) and %lf MB of disk", &memory, &disk), 2) << told.err;
     ASSERT_EQ(bar().run("hilo-solve --quiet scene.toml t.h5 -o run.h5").exit, 0);
     const std::string report = text_of(bar().path() / "run.json");
     const std::string key = "\"peak_memory_bytes\": ";

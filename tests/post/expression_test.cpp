@@ -63,7 +63,7 @@ TEST(Expression, WhatIsNoFormulaIsToldWithItsColumn) {
                                          {"(1", "column 3: expected \")\""},
                                          {"1 2", "column 3: expected an operator"},
                                          {"sine(t)", "column 1: no function \"sine\"; there are abs"},
-                                         {"atan2(1)", "takes 2 of them, here are 1"},
+                                         {"atan2(1)", "needs 2 arguments, here are 1"},
                                          {"a.my-arm", "no column a.my"},
                                          {"\"a", "column 1: a quote without its end"},
                                          {"1 + *2", "column 5: expected a number"}})

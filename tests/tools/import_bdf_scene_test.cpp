@@ -227,14 +227,14 @@ TEST_F(ImportBdfScene, WhatIsLeftOutIsToldByNameAndNumber) {
   imported("a.bdf", "--scene-out s.toml");
   for (const char* what :
        {"SUBCASE after the first (1, a.bdf:9)", "case control TEMPERATURE (1, a.bdf:5)",
-        "FORCE of a set that the first subcase does not take (2,", "MOMENT on a node of solids, which does not turn (1,", "TEMP (1,",
-        "MPC of a set that the first subcase does not take (1,", "SPC of a set that the first subcase does not take (1,",
+        "FORCE of a set that the first subcase does not use (2,", "MOMENT on a node of solids, which does not turn (1,", "TEMP (1,",
+        "MPC of a set that the first subcase does not use (1,", "SPC of a set that the first subcase does not use (1,",
         "PLOAD4 that varies over the face (1,", "CELAS2 on the rotation of a node of solids, which does not turn (1,",
         "CELAS2 between different components (1,", "CELAS2 below zero (1,", "FORCE on a grid of no element (1,",
         "RBE3 whose grid is a node of a cell (1,", "RBE2 of some components of nodes of solids (1,"}) {
     EXPECT_NE(err.find(std::string("not read: ") + what), std::string::npos) << what << '\n' << err;
     const std::string card = std::string(what).substr(0, std::string(what).rfind(" ("));
-    const bool taken = card.find("does not take") == std::string::npos;  // else nothing is lost
+    const bool taken = card.find("does not use") == std::string::npos;  // else nothing is lost
     EXPECT_EQ(test::text_of(place / "s.toml").find("[[left_out]]\ncard = \"" + card + "\"") != std::string::npos, taken) << what;
   }
   EXPECT_EQ(err.find("STRESS"), std::string::npos) << err;

@@ -51,7 +51,7 @@ TEST_F(ImportBdfTold, CaseControlThatNamesNoSetTakesNone) {
     const Scene s = scene(fmt::format("SOL 103\nCEND\n{}BEGIN BULK\n", control) + cube + foot + force + "EIGRL,4,,,10\n");
     EXPECT_TRUE(s.entries("motion").empty() && s.entries("load").empty()) << control;
     for (const char* card : {"SPC", "FORCE"})
-      EXPECT_NE(err.find(fmt::format("not read: {} of a set that the first subcase does not take (1,", card)), std::string::npos) << err;
+      EXPECT_NE(err.find(fmt::format("not read: {} of a set that the first subcase does not use (1,", card)), std::string::npos) << err;
   }
 }
 
@@ -67,7 +67,7 @@ TEST_F(ImportBdfTold, EntriesBehindAnIncludedEndAreNotLost) {
   imported("b.bdf");
   place.write("c.bdf", head + "INCLUDE 'end.bdf'\n$ nothing\n" + foot);
   refused("c.bdf -o no.h5", 2,
-          "end.bdf:13: ENDDATA ends an included file, but entries follow at c.bdf:8 (take it out of the included file)");
+          "end.bdf:13: ENDDATA ends an included file, but entries follow at c.bdf:8 (remove it from the included file)");
 }
 
 TEST_F(ImportBdfTold, WhatHasNoPlaceInASceneIsNamed) {

@@ -61,7 +61,7 @@ TEST_F(ImportInpSilent, ASpringAMassOrADamperIsTheFirstNumberOfItsLine) {
   const std::string spring =
       bar + "*ELEMENT, TYPE=SPRINGA, ELSET=s\n900, 9, 100\n*SPRING, ELSET=s\n\n1.E4, , 293.\n" + held + statics + end;
   EXPECT_NE(scene(spring).find("stiffness = 10000.0"), std::string::npos);
-  EXPECT_NE(err.find("*SPRING: numbers behind the first"), std::string::npos) << err;
+  EXPECT_NE(err.find("*SPRING: numbers after the first"), std::string::npos) << err;
   EXPECT_NE(scene(bar + "*ELEMENT, TYPE=MASS, ELSET=s\n900, 100\n*MASS, ELSET=s\n5., , 20.\n" + held + statics + end).find("mass = 5.0"),
             std::string::npos);
   expect_told(

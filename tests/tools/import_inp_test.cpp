@@ -314,7 +314,7 @@ TEST_F(ImportInp, NodesNearerThanTheToleranceBecomeOne) {
   EXPECT_EQ(imported("a.inp", "--rest all --merge-nodes 1e-6").n_nodes(), 12);
   EXPECT_EQ(imported("a.inp", "--rest all --merge-nodes 1e-8").n_nodes(), 14);
   refused("a.inp -o b.h5 --rest all --merge-nodes 1.001", 2,
-          "a.inp: 2 of 2 cells have no volume or name a node twice: 1, 2 (take them out of the mesh; after --merge-nodes, try a smaller "
+          "a.inp: 2 of 2 cells have no volume or name a node twice: 1, 2 (remove them from the mesh; after --merge-nodes, try a smaller "
           "distance)");
 }
 

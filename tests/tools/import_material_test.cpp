@@ -186,7 +186,7 @@ TEST_F(ImportMaterial, Mats1WithoutALawHereIsNeverTakenForElastic) {
     EXPECT_NE(test::text_of(place / "s.toml").find(what), std::string::npos) << what << test::text_of(place / "s.toml");
   }
   place.write("a.bdf", bulk("MAT1,17,2.+5,,.3\nMATS1,17,28,PLASTIC,,1,1\nTABLES1,28\n,0.,0.,.01,250.,.02,300.,ENDT\n"));
-  refused("a.bdf -o b.h5", 2, "a.bdf:13:10: MATS1 17: the yield point of table 28 is not at its stress over Young's modulus");
+  refused("a.bdf -o b.h5", 2, "a.bdf:13:10: MATS1 17: the yield point of table 28 is not at its stress divided by Young's modulus");
   place.write("a.bdf", bulk("MAT9,17,1.+5\n"));
   const Mesh m = imported("a.bdf", "--scene-out s.toml");
   EXPECT_TRUE(std::isnan(m.region_data[0].E));

@@ -73,7 +73,7 @@ Candidates::Candidates(Options options)
     if (finer.mesh.region_name != names()) throw Error(o_.finer, "has other regions than " + o_.mesh, "the same model with smaller cells");
     refinement_ = std::cbrt(static_cast<double>(finer.mesh.n_cells()) / static_cast<double>(mesh().n_cells()));
     if (refinement_ < 1.2)
-      throw Error(o_.finer, fmt::format("its cells are {:.3g} times as small: too near to tell the error of the mesh", refinement_),
+      throw Error(o_.finer, fmt::format("its cells are {:.3g} times as small: too near to estimate the error of the mesh", refinement_),
                   "half as large is right");
     finer_digest_ = digest(o_.finer);
   }

@@ -83,7 +83,7 @@ Table models(const Candidates& all, const Advice& a) {
 }
 
 std::string what_is_known(const Candidates& all, const Advice& a) {
-  std::string mesh = a.mesh_signed.empty() ? "; nothing tells the error of the mesh (--finer)" : "";
+  std::string mesh = a.mesh_signed.empty() ? "; the error of the mesh is unknown (--finer)" : "";
   for (size_t k = 0; k < a.mesh_signed.size(); ++k)
     if (std::abs(a.mesh_signed[k]) > a.reference->values[k].allowed)
       mesh += fmt::format("; the mesh alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(a.mesh_signed[k]),

@@ -208,7 +208,7 @@ class Search {
       const Candidate& c = *a_.chosen;
       const Candidate& more = of({c.levels, 1, c.end, 2 * c.modes});
       if (!more.failure.empty()) {
-        warn("", "more modes do not run, so nothing tells what those left out change: " + more.failure);
+        warn("", "more modes do not run, so the error of those left out is unknown: " + more.failure);
         return;
       }
       a_.modes_signed.clear();
@@ -221,7 +221,7 @@ class Search {
       }
       if (largest <= 1) return;
       if (c.modes >= 8) {
-        warn("", fmt::format("with {} times the modes of the scene those left out still take more than the tolerance allows", c.modes));
+        warn("", fmt::format("with {} times the modes of the scene the error of those left out is still above the tolerance", c.modes));
         return;
       }
       a_.chosen = &more;
@@ -233,7 +233,7 @@ class Search {
     if (all_.refinement() == 0) return;
     const Candidate& fine = all_.of({a_.chosen->levels, 1, a_.chosen->end, a_.chosen->modes, true});
     if (!fine.failure.empty()) {
-      warn("", "the finer mesh does not run, so nothing tells the error of the mesh: " + fine.failure);
+      warn("", "the finer mesh does not run, so the error of the mesh is unknown: " + fine.failure);
       return;
     }
     const double square = all_.refinement() * all_.refinement();

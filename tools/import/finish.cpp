@@ -121,7 +121,7 @@ void check_cells(const Mesh& m, const std::string& file) {
   }
   if (!flat.empty())
     throw Error(file, fmt::format("{} of {} cells have no volume or name a node twice: {}", flat.size(), m.n_cells(), first_of(flat)),
-                "take them out of the mesh; after --merge-nodes, try a smaller distance");
+                "remove them from the mesh; after --merge-nodes, try a smaller distance");
   if (!inverted.empty())
     throw Error(
         file,

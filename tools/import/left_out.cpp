@@ -169,8 +169,8 @@ bool begins_with(std::string_view what, std::string_view words) {
 }  // namespace
 
 std::string_view loss_of(const NotRead& n) {
-  if (n.output || n.what.find(": numbers behind its ") != std::string::npos) return nothing;
-  if (n.what.find(" of a set that the first subcase does not take") != std::string::npos) return nothing;
+  if (n.output || n.what.find(": numbers after its ") != std::string::npos) return nothing;
+  if (n.what.find(" of a set that the first subcase does not use") != std::string::npos) return nothing;
   for (const auto& [words, lost] : losses)
     if (begins_with(n.what, words)) return lost;
   return other;

@@ -26,7 +26,8 @@ Table table_of(const PartReport& r) {
 
 std::string line(const std::string& weights, const PartReport& r) {
   return fmt::format(
-      "{}: largest over mean {:.3f} flexible work, {:.3f} rigid work; cut {} facets, {} between flexible cells; {} pieces, {} of flexible "
+      "{}: largest divided by mean: {:.3f} flexible work, {:.3f} rigid work; cut {} facets, {} between flexible cells; {} pieces, {} of "
+      "flexible "
       "cells\n",
       weights, r.flexible_balance, r.rigid_balance, r.cut, r.flexible_cut, sum(r.pieces), sum(r.flexible_pieces));
 }

@@ -24,9 +24,9 @@ Format version {}.
 - Numbers are little-endian: `f8` double, `i8` and `i4` signed integers, `u1` unsigned byte. Text is variable-length UTF-8. Rows come first.
 - Node order within a cell is VTK's. Counting starts at 0. Facets are counted as in the table below, corners first, seen from outside anticlockwise.
 - `<name>` in a path stands for any name, with `/` written `%2F` and `%` written `%25`; `<step>` for a six-digit field number.
-- A file is written under another name and renamed when it is whole. A results file grows as `run.h5.new` until its first rows are safe. Then it replaces the former `run.h5` and grows under that name, with `complete` = 0 until the run has come to its end. Whatever ends the process, the file is whole as of its last commit ([trust](trust.md)).
+- A file is written under another name and renamed when it is whole. A results file grows as `run.h5.new` until its first rows are safe. Then it replaces the earlier `run.h5` and grows under that name, with `complete` = 0 until the run has come to its end. Whatever ends the process, the file is whole as of its last commit ([trust](trust.md)).
 - A file links to the one it was made from: an HDF5 external link with a relative path, and the digest of that file (`fnv1a64`) as an attribute. A changed file is refused, with the command to run. Arrays written at once carry a digest of their bytes (attribute `fnv1a64`), histories a checksum of every chunk (fletcher32).
-- The same input gives the same bytes, also on several ranks, but for `solver.kind = "direct"` there: MUMPS adds what ranks send it in the order in which it arrives, so that the last bits differ beside busy processes.
+- The same input gives the same bytes, also on several ranks. The exception is `solver.kind = "direct"` on ranks: MUMPS adds contributions of ranks in the order of their arrival, so the last bits differ on a busy machine.
 
 Exit codes and errors: [errors](errors.md).
 )";
@@ -79,23 +79,23 @@ The audit looks at every step before it is accepted and refuses what fails: the 
 | key | what is looked at | bound |
 |---|---|---|
 | `passed`, `failed` | the verdict; where it is false, why the run stopped | |
-| `energy` | kinetic + elastic + potential - work + dissipated, less what Newton left: largest change in a step (`step`) and in all (`sum`), over the largest kinetic energy, each with its time. Text where the method does not keep it | max(1e-8, 10 `solver.tolerance`), beside rounding; `sum` after N > 1000 steps N/1000 times that |
-| `newton`, in `energy` | what Newton left in all: the work of its residual over each step, and of joint forces as their rows open, over all energies that came or went | max(1e-4, 10 `solver.tolerance`); as `sum` |
+| `energy` | kinetic + elastic + potential - work + dissipated, minus what Newton left: largest change in a step (`step`) and in all (`sum`), divided by the largest kinetic energy, each with its time. Text where the method does not keep it | max(1e-8, 10 `solver.tolerance`), beside rounding; `sum` after N > 1000 steps N/1000 times that |
+| `newton`, in `energy` | what Newton left in all: the work of its residual during each step, and of joint forces as their rows open, divided by all energies that came or went | max(1e-4, 10 `solver.tolerance`); as `sum` |
 | `joint_rows` | largest value of a joint's row, which joint, when | max(1e-9, 20 `solver.tolerance`), times the scene's length |
 | `dropped_rows` | the same of rows that are redundant and not solved for | the same |
 | `turn` | largest angle by which a body or a cell turned in a step, which, when | 2 rad |
 | `det_F` | least det F at the points of the stress, its region, when; null without cells | above 0, at the points of the mass too |
 | `finite` | positions, velocities and energies | true |
 
-`energy_balance` is the largest |E - E0 - W + D|, with what Newton left, over the largest kinetic energy, null where nothing moved but by rounding; `constraint_violation` the largest row of a joint.
+`energy_balance` is the largest |E - E0 - W + D|, with what Newton left, divided by the largest kinetic energy. It is null where nothing moved except by rounding. `constraint_violation` is the largest row of a joint.
 
-`error_estimate`, of runs in time, is what a second solution at twice the step tells of the error of positions: points of bodies and nodes.
+`error_estimate`, of runs in time, is the error of positions (points of bodies, and nodes) as a second solution at twice the step shows it.
 
 | key | meaning |
 |---|---|
 | `end`, `largest`, `largest_t` | error at the end, the largest and when [m, s] |
-| `end_share`, `largest_share`, `motion` | the same over the longest way of a point from its start, and that way [m] |
-| `amplification` | error at the end over the sum of what steps added, where `time.tolerance` chooses steps of energy-momentum: what the motion made of early errors |
+| `end_share`, `largest_share`, `motion` | the same, divided by the longest way of a point from its start, and that way [m] |
+| `amplification` | error at the end, divided by the sum of what steps added, where `time.tolerance` chooses steps of energy-momentum: what the motion made of early errors |
 | `chaotic`, `meaningless_from` | whether distances, small beside the motion, grew exponentially; from when on the error is a fifth of the motion and more, or null [s] |
 | `asked`, `met`, `passes` | what `time.tolerance` asks [m], whether it is so by this estimate, and method, steps and error of every pass |
 | `why_not` | why there is no estimate; then the keys above, but for the last row, are absent |

@@ -17,7 +17,7 @@ CoupledStages::CoupledStages(std::unique_ptr<SerialKktSolver> solver, Eigen::Mat
 
 void CoupledStages::begin(const System& system, double t, double h) {
   if (system.comm->size > 1) throw Error("", name() + " is serial", "run it without mpirun, or choose another time.integrator");
-  if (system.traits().lumps_masses) throw Error("", name() + " knows no point masses on flexible parts", "use [[body]] entries");
+  if (system.traits().lumps_masses) throw Error("", name() + " has no point masses on flexible parts", "use [[body]] entries");
   check(system);
   if (tried_) drop_matrix();  // the step before was refused: joint rows may have been chosen anew
   tried_ = true, t_ = t, h_ = h;

@@ -135,7 +135,7 @@ class GaussIntegrator final : public CoupledStages {
  private:
   void check(const System& system) const override {
     const auto refuse = [](const std::string& what, const std::string& hint) { throw Error("", "gauss does not know " + what, hint); };
-    const std::string others = "take energy-momentum, or radau for references";
+    const std::string others = "use energy-momentum, or radau for references";
     if (!system.part<Solids>().batches.empty()) refuse("nonlinear regions yet", "make them linear or rigid, or " + others);
   }
 

@@ -169,7 +169,7 @@ BdfEntries::Ends BdfEntries::cut(const Line& line, std::vector<DataField>& field
       else if (n == count + 1 && !f.empty() && f.find_first_not_of("0123456789.eEdD-") != std::string_view::npos)
         ends.label = f;  // "+E1", or a word: a number there is a field too many
       else if (n > count && !f.empty())
-        throw Error(fmt::format("{}:{}", line.place(), column), fmt::format("more than {} fields behind the name on a line", count),
+        throw Error(fmt::format("{}:{}", line.place(), column), fmt::format("more than {} fields after the name on a line", count),
                     "go on in a line that begins with a comma");
       from = i + 1, ++n;
     }
@@ -221,7 +221,7 @@ void BdfEntries::end_data(const Line& l) {
       if (text.empty()) continue;
       if (starts(text, "ENDDATA")) break;
       throw Error(l.place(), fmt::format("ENDDATA ends an included file, but entries follow at {}", more.place()),
-                  "take it out of the included file");
+                  "remove it from the included file");
     }
   }
   stack_.clear();
@@ -238,7 +238,7 @@ bool BdfEntries::next(BdfEntry& e) {
   Ends ends = cut(l, e.data.fields);
   e.name = upper(ends.first);
   if (e.name.empty() || e.name.front() == '+' || e.name.front() == '*')
-    throw Error(l.place(), "a continuation that follows no entry", "sort the continuations behind their entries");
+    throw Error(l.place(), "a continuation that follows no entry", "sort the continuations after their entries");
   bool large = e.name.back() == '*', half = large;
   if (large) e.name.pop_back();
   while (bulk_line(l)) {
@@ -251,7 +251,7 @@ bool BdfEntries::next(BdfEntry& e) {
     }
     if (!same_label(ends.label, more.first))
       throw Error(l.place(), fmt::format("continuation \"{}\" follows a line that goes on at \"{}\"", more.first, ends.label),
-                  "sort the continuations behind their entries");
+                  "sort the continuations after their entries");
     // a large line is half of a small one: what follows the first half is the second
     large = !more.first.empty() && more.first.front() == '*';
     if (half && !large) throw Error(l.place(), "a line of large fields goes on in small ones", "begin the line with *");

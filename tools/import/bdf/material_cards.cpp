@@ -148,7 +148,7 @@ void resolve_metals(BdfDeck& deck, Imported& in) {
       strain.push_back(i == first ? 0 : p), stress.push_back(points[i].second);
       if (i == first && std::abs(p) > 0.01 * std::max(points[i].first, 1e-3))
         throw Error(d.place(1),
-                    fmt::format("MATS1 {}: the yield point of table {} is not at its stress over Young's modulus", id, d.integer(1)));
+                    fmt::format("MATS1 {}: the yield point of table {} is not at its stress divided by Young's modulus", id, d.integer(1)));
       if (i > first && !(strain.back() > strain[strain.size() - 2]))
         throw Error(d.place(1), fmt::format("MATS1 {}: plastic strain does not rise in table {}", id, d.integer(1)));
     }

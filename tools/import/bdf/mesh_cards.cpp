@@ -141,7 +141,7 @@ void read_conrod(const BdfEntry& e, BdfDeck& deck, Imported& in) {
 void read_property(const BdfEntry& e, BdfDeck& deck, Imported&) {
   const auto& d = e.data;
   if (e.name == "PSOLID" && !d.empty(6) && upper(d.text(6)) != "SMECH")
-    throw Error(d.place(6), fmt::format("PSOLID {}: cells of {} are no solids", d.integer(0), d.text(6)), "take them out");
+    throw Error(d.place(6), fmt::format("PSOLID {}: cells of {} are no solids", d.integer(0), d.text(6)), "remove them");
   if (!deck.material_of.try_emplace(d.integer(0), d.integer(1)).second)
     throw Error(d.place(0), fmt::format("property {} is given twice", d.integer(0)), "number each property once");
 }

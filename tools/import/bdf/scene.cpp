@@ -135,7 +135,7 @@ void BdfScene::tell_ties() {
     const bool taken =
         !chosen.any || id == chosen.mpc ||
         (sum != deck_.tie_sums.end() && std::find(sum->second.sets.begin(), sum->second.sets.end(), id) != sum->second.sets.end());
-    in_.skip(taken ? "MPC" : "MPC of a set that the first subcase does not take", places.front(), static_cast<std::int64_t>(places.size()));
+    in_.skip(taken ? "MPC" : "MPC of a set that the first subcase does not use", places.front(), static_cast<std::int64_t>(places.size()));
   }
 }
 
@@ -158,7 +158,7 @@ void BdfScene::supports() {
   tell_ties();
   for (const auto& [id, lines] : deck_.supports)
     if (std::find(sets.begin(), sets.end(), id) == sets.end())
-      in_.skip("SPC of a set that the first subcase does not take", lines.front().place, static_cast<std::int64_t>(lines.size()));
+      in_.skip("SPC of a set that the first subcase does not use", lines.front().place, static_cast<std::int64_t>(lines.size()));
 
   std::map<std::int64_t, Held> held;
   for (size_t a = 0; a < deck_.grids.size(); ++a)

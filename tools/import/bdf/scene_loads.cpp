@@ -55,7 +55,7 @@ void BdfScene::choose_loads() {
       if (!add(sum->second.factor * factor, id)) in_.skip(fmt::format("LOAD of set {}, of which there is none", id), sum->second.place);
   for (const auto& [id, lines] : deck_.loads)
     if (!taken.contains(id))
-      for (const BdfLoad& l : lines) in_.skip(fmt::format("{} of a set that the first subcase does not take", name_of(l.kind)), l.place);
+      for (const BdfLoad& l : lines) in_.skip(fmt::format("{} of a set that the first subcase does not use", name_of(l.kind)), l.place);
 }
 
 void BdfScene::gravity() {

@@ -283,8 +283,8 @@ void tell_off(Imported& in, const std::array<double, 2>& of, const ImportOptions
     if (o.order == 1) would_do += would_do.empty() ? "--order 2" : " or --order 2";
     if (!would_do.empty()) would_do = "; " + would_do + " would do";
   }
-  in.notes.push_back(fmt::format("{}beside the solids of the CAD kernel the mesh has {} volume and {} area{}", far ? "warning: " : "",
-                                 by(of[0]), by(of[1]), would_do));
+  in.notes.push_back(fmt::format("{}compared with the solids of the CAD kernel the mesh has {} volume and {} area{}",
+                                 far ? "warning: " : "", by(of[0]), by(of[1]), would_do));
 }
 
 Imported read_geometry(const std::string& path, const std::string& format, const ImportOptions& options) {

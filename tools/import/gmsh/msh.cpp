@@ -153,7 +153,7 @@ class MshReader {
       in_.skip_line();
       in_.binary = true;
       const auto one = in_.next<std::int32_t>();
-      if (one != 1 && one != 0x01000000) in_.fail("the 1 that tells the order of bytes is missing");
+      if (one != 1 && one != 0x01000000) in_.fail("the 1 that marks the order of bytes is missing");
       in_.swap = one != 1;
     }
     if (in_.word() != "$EndMeshFormat") in_.fail("$EndMeshFormat is missing");

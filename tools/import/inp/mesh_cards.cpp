@@ -93,7 +93,7 @@ void read_elements(InpReading& r) {
       for (size_t i = 0; i < l.fields.size(); ++i) row.push_back(l.integer(i));
     }
     if (row.size() > n + 1) {  // as CalculiX reads it
-      in.skip(fmt::format("*ELEMENT, TYPE={}: numbers behind its {} nodes", upper(card.value("TYPE")), n), l.place());
+      in.skip(fmt::format("*ELEMENT, TYPE={}: numbers after its {} nodes", upper(card.value("TYPE")), n), l.place());
       row.resize(n + 1);
     }
     if (d.points.contains(row[0]) || !d.cell.try_emplace(row[0], static_cast<std::int64_t>(d.shape.size())).second)

@@ -171,7 +171,7 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
         in.skip(v.name + " of several values", v.place);
         continue;
       }
-      if (v.more) in.skip(v.name + ": numbers behind the first, of temperatures or frequencies", v.place);
+      if (v.more) in.skip(v.name + ": numbers after the first, of temperatures or frequencies", v.place);
       if (value < 0) {
         in.skip(v.name + " below zero", v.place);
       } else if (type == "MASS") {
