@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Flipped bytes: a random bit of every kind of hilo's files is turned, and each tool that reads it is run.  None may crash, hang or end with
-an internal fault (exit 5); prints how many flips hilo-show --check finds.  Usage: flipped_bytes.py REPO BIN FLIPS [SEED]"""
+an internal fault (exit 5), and hilo-show --check must find each flip that changes what the file says (by h5py, a reader of others).  Usage: flipped_bytes.py REPO BIN FLIPS [SEED]"""
 import os, random, shutil, subprocess, sys, tempfile
 
 flips, seed = int(sys.argv[3]), int(sys.argv[4]) if len(sys.argv) > 4 else 1
@@ -100,13 +100,13 @@ for name, commands in readers.items():
                 elif said_by(name) == truth:  # nothing was there
                     tally["idle"] += 1
                 else:
-                    missed.append(f"{name}, byte {at} ^ {bit}, behind {whole[max(0, at - 40):at]}")
+                    missed.append(f"{name}, byte {at} ^ {bit} (seed {seed}), after {whole[max(0, at - 40):at]}")
     shutil.copy("kept", name)
     print(f"{name}: {len(whole)} bytes, {flips} flips, {tally['found']} found by --check, {tally['idle']} without effect, "
           f"{flips - tally['found'] - tally['idle']} missed, {tally['crash']} crashes, {tally['hang']} hangs, "
           f"{tally['fault']} internal faults")
 for line in missed:
-    print("missed:", line)
+    print("flipped_bytes: missed:", line, file=sys.stderr)
 for line in bad:
     print("flipped_bytes:", line, file=sys.stderr)
-sys.exit(1 if bad else 0)
+sys.exit(1 if bad or missed else 0)

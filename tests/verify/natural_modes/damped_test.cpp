@@ -30,7 +30,10 @@ TEST_F(NaturalModes, WithADamperThatCouplesThemAreComplex) {
     const C s(-zeta * w, w * std::sqrt(1 - zeta * zeta));
     EXPECT_LT(std::abs(pencil(s).first), 1e-6 * std::norm(s) * std::norm(s) * m1 * m2) << "a pole of the pencil";
   }
-  EXPECT_NEAR(found(1, 1), 0.657, 1e-3);
+  // both pairs, not one twice: the sum and the product of the four poles (Vieta, of det = m1 m2 s^4 + c (m1 + m2) s^3 + ... + k1 k2)
+  const auto w = [&](int j) { return 2 * pi * found(j, 0); };
+  EXPECT_NEAR(2 * found(0, 1) * w(0) + 2 * found(1, 1) * w(1), c * (1 / m1 + 1 / m2), 1e-6 * c);
+  EXPECT_NEAR(w(0) * w(0) * w(1) * w(1) / (k1 * k2 / (m1 * m2)), 1, 1e-6);
   int n = 0;
   for (const Answer& a : answers(work.run("hilo-post response run.h5 --force p1.x --from 1 --to 20 --points 60"))) {
     const auto [det, d] = pencil(C(0, 2 * pi * a.f));
