@@ -20,6 +20,7 @@ const std::vector<Layout>& layouts() {
   static const std::vector<std::string> wrench{"Fx", "Fy", "Fz", "Mx", "My", "Mz"}, newtons{"N", "N", "N", "N m", "N m", "N m"};
   static const std::vector<Layout> table = {
       {"joint", wrench, newtons},
+      {"coordinate", {"slide", "angle"}, {"m", "rad"}},
       {"spring", wrench, newtons},
       {"stop", wrench, newtons},
       {"motor", wrench, newtons},

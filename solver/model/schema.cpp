@@ -170,6 +170,9 @@ std::vector<ArraySchema>& arrays() {
        "which it would buckle; how many times as far it would give way under that load (1000: without end)"},
       {"run.h5", "/history/joint/<name>", "f8", "(n_t, 6)", "N, N m",
        "force and moment on b at the joint point, joint frame carried by a; of redundant joints the minimum-norm share"},
+      {"run.h5", "/history/coordinate/<name>", "f8", "(n_t, 2)", "m, rad",
+       "of a joint with a free slide or angle: displacement of b along the axis and angle of b about it, whole turns included; zero at the "
+       "start, and where the joint leaves none free"},
       {"run.h5", "/history/spring/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the point, inertial axes"},
       {"run.h5", "/history/contact/<name>", "f8", "(n_t, 7)", "N, m, 1, m, J",
        "force on b, inertial axes; largest depth, and that as a share of the cell (of a ball, of a tenth of its radius); slip so far; work "

@@ -55,6 +55,13 @@ Spring along_joint(const Connector& joint, const Config& q, Freedom freedom, std
   return c;
 }
 
+Connector coordinates_of(const Connector& joint, const JointKind& kind, const Config& q) {
+  Spring c = beside(joint);
+  if (kind.frees(Freedom::slide)) add_slide(c, q);
+  if (kind.frees(Freedom::angle)) add_angle(c, q);
+  return c;
+}
+
 Spring friction_in(const Connector& joint, const JointKind& kind, const Config& q, const FrictionIn& f) {
   Spring c = beside(joint);
   c.pressing.rows = kind.pressing;

@@ -86,6 +86,9 @@ std::string missing_stiffness(const JointKind& kind, const Stiffness& stiffness)
 /// `law` along a free direction of a joint (of its geometry), which stands as in q.
 Spring along_joint(const Connector& joint, const Config& q, Freedom freedom, std::unique_ptr<SpringLaw> law);
 
+/// The free directions of a joint as measures, zero as it stands in q: the slide where it has one [m], then sine and cosine of the angle.
+Connector coordinates_of(const Connector& joint, const JointKind& kind, const Config& q);
+
 /// Friction in a joint at the radius of its surfaces; Spring::pressing says which of the joint's multipliers press them together.
 struct FrictionIn {
   double coefficient = 0, radius = 0;

@@ -8,6 +8,7 @@
 #include "system/bodies.hpp"
 #include "system/builder.hpp"
 #include "system/contacts.hpp"
+#include "system/joint_coordinates.hpp"
 #include "system/joints.hpp"
 #include "system/linear_regions.hpp"
 #include "system/load_path.hpp"
@@ -60,6 +61,7 @@ void Builder::add_contributions() {
   s.add<Loads>(s);
   s.add<Motions>(s, beams);
   s.add<Stations>(s);
+  s.add<JointCoordinates>();
   s.add<RegionMeasures>(s);
   s.add<ModalDamping>(s);
   const std::string& analysis = scene_.table("time").text("analysis");
@@ -103,6 +105,7 @@ std::unique_ptr<System> Builder::build() {
   add_beams();
   add_motions();
   add_joints();
+  add_joint_coordinates();
   add_springs();
   add_joint_forces();
   add_contacts();

@@ -22,19 +22,21 @@ void Builder::add_springs() {
   }
 }
 
+std::vector<JointHost> Builder::joint_hosts() const {
+  std::vector<JointHost> out;
+  const std::vector<Joint>& joints = out_->part<Joints>().list;
+  for (size_t j = 0; j < joints.size(); ++j) out.push_back({joints[j], *joints[j].kind, static_cast<int>(j)});
+  for (const Spring& c : out_->part<Springs>().list)
+    if (c.gives_way) out.push_back({c, *c.gives_way, -1});
+  return out;
+}
+
 JointHost Builder::joint_of(const Entry& e) const {
   const std::string& name = e.text("joint");
   std::vector<std::string> names;
-  const std::vector<Joint>& joints = out_->part<Joints>().list;
-  for (size_t j = 0; j < joints.size(); ++j) {
-    const Joint& joint = joints[j];
-    if (joint.name == name) return {joint, *joint.kind, static_cast<int>(j)};
-    names.push_back(joint.name);
-  }
-  for (const Spring& c : out_->part<Springs>().list) {
-    if (!c.gives_way) continue;
-    if (c.name == name) return {c, *c.gives_way, -1};
-    names.push_back(c.name);
+  for (const JointHost& host : joint_hosts()) {
+    if (host.geometry.name == name) return host;
+    names.push_back(host.geometry.name);
   }
   throw Error(e.where("joint"), fmt::format("{}: no joint \"{}\"", e.label(), name), suggest(name, names));
 }

@@ -121,11 +121,14 @@ class Builder {
   // build_springs.cpp
   void add_springs();
   void add_joint_forces();
+  /// Rigid joints, and those that give way.
+  std::vector<JointHost> joint_hosts() const;
   /// The joint that an entry names.
   JointHost joint_of(const Entry& entry) const;
   std::vector<std::string> all_names() const;
   // build_joints.cpp
   void add_joints();
+  void add_joint_coordinates();  // joint_coordinates.cpp
   // build_contacts.cpp
   void add_contacts();
   void add_points_of_body(const Entry& entry, const Obstacle& b, int body, ContactPair& pair);
