@@ -284,7 +284,7 @@ NewtonReport Newton::take() {
     if (!damped_)
       go_as_far_as_allowed();
     else if (!go_damped())
-      return fail("no share of a correction makes the next one smaller");
+      return fail("Newton does not converge, nor with damped corrections");
     if (!damped_ && report_.correction <= options_.tolerance * 1e-2) {  // far below what the next one could change
       evaluate(false);
       return accept(), report_;

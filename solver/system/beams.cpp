@@ -214,7 +214,7 @@ std::string Beams::fault(const Config& q) const {
   for (const Beam& beam : beams)
     for (int k = 0; k < beam.n_cells; ++k)
       if (const double turn = ArcLaw::turn(cells[beam.first + k].ends.values(q)); !(turn < ArcLaw::largest_turn))
-        return fmt::format("beam \"{}\" turns by {:.3g} rad in its cell {}, more than {}: it needs more cells", beam.name, turn, k,
+        return fmt::format("beam \"{}\" turns by {:.3g} rad in its cell {}, more than {}: give it more cells", beam.name, turn, k,
                            ArcLaw::largest_turn);
   return "";
 }

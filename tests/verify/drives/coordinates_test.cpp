@@ -51,7 +51,7 @@ TEST(Coordinate, OfACompliantJointIsTheAngleBetweenItsEnds) {
                             "[[motion]]\nkind = \"rotation\"\nname = \"more\"\non = \"b\"\nat = [0, 0, 0]\naxis = [0, 1, 0]\nangle = 13\n"
                             "history = {t = [0, 2], value = [0, 1]}\n"
                             "[[joint]]\nkind = \"revolute\"\nname = \"bush\"\na = \"a\"\nb = \"b\"\nat = [0, 0, 0]\naxis = [0, -1, 0]\n"
-                            "stiffness = 1e5\nangular_stiffness = [1e3, 1e3]\n" +
+                            "stiffness = 1e5\nangular_stiffness = 1e3\n" +
                             time_of);
   const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
   ASSERT_EQ(ran.exit, 0) << ran.err;
