@@ -76,6 +76,9 @@ def pages_of(text):
     index = "\n## Where is what\n\n" + intro + "\n\n| in the file | keys of |\n|---|---|\n"
     index += "".join(f"| {form} | {', '.join(links)} |\n" for _, form, links in table)
     first, *rest = head
+    first = re.sub(r"\n\n", "\n\n*Answers: which keys may a scene have, which arrays do the files hold, and on which page?*\n\n"
+                   "    hilo-solve --explain scene.toml     # every key of a scene with its value\n"
+                   "    hilo-show run.h5                    # what a file holds\n\n", first, count=1)
     found["format.md"] = NOTE + "\n" + (first.rstrip() + "\n" + index + "\n" + "".join(rest)).rstrip() + "\n"
     return found
 
