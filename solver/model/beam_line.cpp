@@ -16,7 +16,7 @@ Mat3 frame_along(const Entry& e, const Vec3& along) {
   if (e.given("orientation")) {
     up = e.vector3("orientation");
     if (up.cross(along).norm() < 1e-6 * up.norm() || up.norm() == 0)
-      e.refuse("orientation", fmt::format("the beam runs along it, ({:.3g}, {:.3g}, {:.3g})", along.x(), along.y(), along.z()));
+      e.refuse("orientation", fmt::format("it is along the beam, ({:.3g}, {:.3g}, {:.3g})", along.x(), along.y(), along.z()));
   }
   Mat3 out;
   out.col(2) = along;

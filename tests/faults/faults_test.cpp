@@ -40,7 +40,7 @@ TEST_F(Faults, AFileOfTheWrongTypeIsNamed) {
   put("text.vtu", "not at all\n");
   refused("hilo-import scene.toml -o mesh.h5", input, "scene.toml: no reader for \".toml\" files...");
   refused("hilo-import text.msh -o mesh.h5", input,
-          "text.msh:1: no mesh of gmsh: it does not begin with $MeshFormat (a script is read from a file named .geo)");
+          "text.msh:1: not a mesh of gmsh: it does not begin with $MeshFormat (a script is read from a file named .geo)");
   refused("hilo-import text.vtu -o mesh.h5", input, "text.vtu:1: not a VTK file: no \"# vtk DataFile Version\"");
   refused("hilo-tag text.h5 -o out.h5", input, "text.h5: not an HDF5 file");
   refused("hilo-tag two.inp -o out.h5", input, "two.inp: not an HDF5 file");
