@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-# No page of the documentation has a sentence above 40 words, and none is longer than 250 lines.  Code, tables and headings are left out;
+# No page of the documentation has a sentence above 40 words, none is longer than 250 lines, and each of docs/ begins with what it answers.  Code, tables and headings are left out;
 # `code` and a link count as the words that a reader sees.
 # Usage: docs_words.py REPO [--table]     --table prints for each page: lines, words, longest sentence, Flesch reading ease.
 # Flesch reading ease (R. Flesch, J. Appl. Psychol. 32, 1948): 206.835 - 1.015 words per sentence - 84.6 syllables per word.
@@ -99,6 +99,8 @@ def main():
         faults += [f"{name}: a sentence of {c} words: {s}" for s, c in zip(all_sentences, counts) if c > LONGEST]
         if not re.match("contributing|changes|references|errors", path.name):
             faults += [f"{name}: \"{m[0]}\" (docs/contributing.md, Words): {s}" for s in all_sentences for m in HABITS.finditer(s)]
+        if "docs" in name.parts[0:1] and "tools" not in name.parts and name.stem not in ("index", "api") and "*Answers:" not in path.read_text()[:400]:
+            faults.append(f"{name}: does not begin with what it answers (*Answers: ...*)")
         if lines > LINES:
             faults.append(f"{name}: {lines} lines, more than {LINES}")
     for fault in faults:
