@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -204,7 +205,13 @@ void LinearRegions::commit(const Config& q, const Config* v) {
     if (m.n_modes == 0) continue;
     const std::string& name = points_.bodies[m.body].name;
     const auto tell = [&](int what, const std::string& text) {
-      if (!(told_[k] & what) && points_.comm->rank == 0) warn(name, text);
+      constexpr std::ptrdiff_t named = 3;  // regions
+      if (!(told_[k] & what) && points_.comm->rank == 0) {
+        const auto before = std::ranges::count_if(told_, [&](char t) { return (t & what) != 0; });
+        if (before < named) warn(name, text);
+        if (before == named)
+          warn("", "more linear regions leave the range of their strains: beyond_linear of run.json lists them at the end");
+      }
       told_[k] = static_cast<char>(told_[k] | what);
     };
     const Eigen::VectorXd u = r.sites * amplitudes(m, q);

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "system/collocation.hpp"
 #include "system/mode_forces.hpp"
 
@@ -240,8 +242,12 @@ void Welds::commit(const Config& q, const Config*) {
     const Modes& m = points_.modes[list[k].modes];
     const double turn = list[k].turn(m, q).norm(), limit = m.stiffens ? far_where_it_stiffens : far;
     if (!(turn > limit) || told_[k]) continue;
+    constexpr size_t named = 3;  // regions, each at one face; all are in the table at the end of the run
+    std::set<int> regions;
+    for (size_t i = 0; i < list.size(); ++i)
+      if (told_[i]) regions.insert(list[i].modes);
     told_[k] = 1;
-    if (points_.comm->rank == 0)
+    if (points_.comm->rank == 0 && !regions.contains(list[k].modes) && regions.size() < named)
       warn(points_.bodies[m.body].name,
            fmt::format("turns by {:.2g} rad at \"{}\": beyond {:g} {} are off by more than a few per cent ({})", turn, list[k].name, limit,
                        m.stiffens ? "modes with stiffening" : "linear modes",
