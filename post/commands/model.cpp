@@ -50,8 +50,7 @@ std::vector<Group> groups_of(const MeshFile& file, const std::vector<bool>& show
       if (shown[r] && file.fidelity[r] == f) names.push_back(file.mesh.region_name[r]), which.push_back(r);
     for (const NameGroup& g : grouped(names, 8)) {
       const Rgb colour = category_colour(static_cast<int>(groups.size()));
-      Group group{fmt::format("{} regions", word(f)), g.label, f,
-                  f == Fidelity::rigid ? blend(colour, {0.88, 0.88, 0.88}, 0.62) : colour,
+      Group group{fmt::format("{} regions", word(f)), g.label, f, f == Fidelity::rigid ? blend(colour, {0.88, 0.88, 0.88}, 0.62) : colour,
                   std::vector<bool>(shown.size(), false)};
       for (const size_t m : g.members) group.member[which[m]] = true;
       groups.push_back(std::move(group));
@@ -87,7 +86,8 @@ std::vector<Group> groups_by_value(const MeshFile& file, const std::vector<bool>
     group.member[r] = true, rest[r] = false;
     groups.push_back(std::move(group));
   }
-  if (std::find(rest.begin(), rest.end(), true) != rest.end()) groups.push_back({"Other regions", "no value", Fidelity::rigid, neutral, rest});
+  if (std::find(rest.begin(), rest.end(), true) != rest.end())
+    groups.push_back({"Other regions", "no value", Fidelity::rigid, neutral, rest});
   return groups;
 }
 
@@ -215,7 +215,8 @@ void run(const Options& o) {
     if (i.glyph == Glyph::link || i.glyph == Glyph::coil) fit.add(i.to);
   }
   fit.aim(stage->GetActiveCamera());
-  if (!file && !o.values.empty()) throw Error("--values", "the scene has no mesh, so no regions", "give the mesh as second argument", Exit::usage);
+  if (!file && !o.values.empty())
+    throw Error("--values", "the scene has no mesh, so no regions", "give the mesh as second argument", Exit::usage);
   std::vector<Group> groups;
   if (file) {
     groups = o.values.empty() ? groups_of(*file, shown) : groups_by_value(*file, shown, o.values);
@@ -258,7 +259,8 @@ Command model_command(CLI::App& app) {
       ->capture_default_str();
   sub->add_option("--show", o->show, "regions to draw, by name or glob; all by default")->allow_extra_args(false);
   sub->add_option("--hide", o->hide, "regions not to draw")->allow_extra_args(false);
-  sub->add_option("--values", o->values, "CSV of region and number: colours regions by it, as hilo-advise --regions writes it")->type_name("FILE");
+  sub->add_option("--values", o->values, "CSV of region and number: colours regions by it, as hilo-advise --regions writes it")
+      ->type_name("FILE");
   sub->add_flag("--see-through", o->see_through, "rigid regions are transparent");
   sub->add_flag("--no-names", o->no_names, "symbols without their names");
   sub->add_option("--set", o->set, "override a key of the scene: joint.trunnion.at=[0,0,1]")->allow_extra_args(false);

@@ -200,7 +200,7 @@ void Candidates::read(Candidate& c, const std::string& name) const {
   c.values = values_of(run);
   const Json j = json_of_file(name + ".json");
   if (!is_complete(name)) c.ended = run.series("energy").t.back();
-  c.seconds = std::max(c.seconds, j.value("processor_seconds", 0.0)), c.unknowns = j.value("unknowns", 0.0);
+  c.seconds = j.value("processor_seconds", 0.0), c.unknowns = j.value("unknowns", 0.0);
   const double end = c.ended > 0 ? c.ended : c.end;
   c.cost = c.seconds * (end > 0 ? scene_.table("time").number("end") / end : 1);
   for (size_t r = 0; r < names().size(); ++r) {

@@ -8,11 +8,11 @@
 namespace hilo {
 
 struct Process {
-  std::vector<std::string> command;  // a program and what it is given
-  std::string log;                   // where its output and errors go
-  int status = -1;                   // its exit status, 128 and the signal where one ended it
-  double seconds = 0;                // of processors
-  std::function<bool()> is_enough{}; // asked now and then while it runs, may be empty: true ends it
+  std::vector<std::string> command;   // a program and what it is given
+  std::string log;                    // where its output and errors go
+  int status = -1;                    // its exit status, 128 and the signal where one ended it
+  double seconds = 0;                 // of processors
+  std::function<bool()> is_enough{};  // asked now and then while it runs, may be empty: true ends it
   bool ended_early = false;
 };
 

@@ -56,7 +56,7 @@ Table regions(const Candidates& all, const Advice& a) {
                       : without != a.without.end() && !without->second->failure.empty() ? "does not run rigid: " + without->second->failure
                       : without != a.without.end() && without->second->ended > 0
                           ? fmt::format("as far as its run went, {:.4g} s", without->second->ended)
-                                                                                        : "-"});
+                          : "-"});
   }
   return t;
 }
