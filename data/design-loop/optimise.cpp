@@ -3,11 +3,7 @@
 // constraints, no derivatives).  A design is rounded to what a workshop can make and evaluated by `make out/DESIGN/row.csv`: known
 // designs cost nothing, and a second run repeats the first from its files.
 //
-//   optimise STRESS [MPa] DRI [1]           the makes' talk goes to stderr, one line per design to stdout
-//   optimise STRESS [MPa] DRI [1] advised   by the model that hilo-advise chose, out/advised/DESIGN.  The best design of a search is run with
-//                                           all cells too; what that differs by is added to all cheap values, and the search goes on from
-//                                           there until the best stays.  Where a cheap run says that its model is further beyond its
-//                                           range than any design that cells have confirmed, cells run that design too.
+//   optimise STRESS [MPa] DRI [1]        the makes' talk goes to stderr, one line per design to stdout
 #include <nlopt.h>
 
 #include <algorithm>
@@ -18,7 +14,6 @@
 #include <fstream>
 #include <iostream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -49,49 +44,7 @@ std::string name_of(const double* x) {
   return name.str();
 }
 
-std::map<std::string, Design> known, by_cells;  // the second in a search by another model
-std::string model;  // "advised/" or nothing: where designs are made
-double stress_off = 0, dri_off = 0;  // of cells less the model, at the design that was last run with both
-double confirmed_range = 0;           // beyond_range() of the designs that were
-
-void make(const std::string& target) {
-  if (std::system(("make --silent --no-print-directory BUILT=1 " + target + " >&2").c_str()) != 0) std::exit(1);
-}
-
-/// Makes a design by a model and reads what came out.
-void read(Design& d, const std::string& by) {
-  const std::string folder = "out/" + by + d.name;
-  make(folder + "/row.csv");
-  std::ifstream file(folder + "/row.csv");
-  std::vector<std::string> cells;
-  for (std::string cell; std::getline(file, cell, ',');) cells.push_back(cell);
-  d.converged = cells.at(4) == "converged";
-  if (d.converged) d.mass = std::stod(cells.at(5)), d.stress = std::stod(cells.at(6)), d.dri = std::stod(cells.at(7));
-}
-
-/// How far beyond the range of linear strains its regions went: the largest measure over its limit, as run.json tells; 0: none did.
-double beyond_range(const Design& d) {
-  std::ifstream file("out/" + model + d.name + "/run.json");
-  double most = 0;
-  const auto json = nlohmann::json::parse(file, nullptr, false);
-  for (const auto& m : json.is_object() ? json.value("beyond_linear", nlohmann::json::array()) : nlohmann::json::array())
-    most = std::max(most, m.at("value").get<double>() / m.at("limit").get<double>());
-  return most;
-}
-
-/// Runs a design with cells; by how much it differs corrects all others.
-void confirm(const Design& d) {
-  Design& truth = by_cells[d.name] = d;
-  read(truth, "");
-  if (!truth.converged) truth.stress = HUGE_VAL;
-  if (!truth.converged) return;
-  confirmed_range = std::max(confirmed_range, beyond_range(d));
-  stress_off = truth.stress - d.stress, dri_off = truth.dri - d.dri;
-  std::cerr << d.name << " with cells: " << truth.stress << " MPa, DRI " << truth.dri << ", off by " << stress_off << " and " << dri_off << '\n';
-}
-
-double stress(const Design& d) { return by_cells.contains(d.name) ? by_cells.at(d.name).stress : d.stress + stress_off; }
-double dri(const Design& d) { return by_cells.contains(d.name) ? by_cells.at(d.name).dri : d.dri + dri_off; }
+std::map<std::string, Design> known;
 
 /// The design nearest to x, made unless it is there.
 const Design& design(const double* x) {
@@ -101,15 +54,20 @@ const Design& design(const double* x) {
   if (!is_new) return d;
   d.name = name;
   for (size_t i = 0; i < 3; ++i) d.x[i] = x[i];
-  read(d, model);
-  if (!model.empty() && d.converged && beyond_range(d) > 1.2 * confirmed_range) confirm(d);
-  std::printf("%s,%g,%g,%g\n", name.c_str(), d.mass, stress(d), dri(d));
+  const std::string row = "out/" + name + "/row.csv";
+  if (std::system(("make --silent --no-print-directory BUILT=1 " + row + " >&2").c_str()) != 0) std::exit(1);
+  std::ifstream file(row);
+  std::vector<std::string> cells;
+  for (std::string cell; std::getline(file, cell, ',');) cells.push_back(cell);
+  d.converged = cells.at(4) == "converged";
+  if (d.converged) d.mass = std::stod(cells.at(5)), d.stress = std::stod(cells.at(6)), d.dri = std::stod(cells.at(7));
+  std::printf("%s,%g,%g,%g\n", name.c_str(), d.mass, d.stress, d.dri);
   std::fflush(stdout);
   return d;
 }
 
 struct Limit {
-  double (*value)(const Design&);
+  double Design::*value;
   double most;
 };
 
@@ -118,16 +76,14 @@ double mass(unsigned, const double* x, double*, void*) { return design(x).mass; 
 double excess(unsigned, const double* x, double*, void* limit) {
   const auto& [value, most] = *static_cast<Limit*>(limit);
   const Design& d = design(x);
-  return d.converged ? value(d) / most - 1 : 1;
+  return d.converged ? d.*value / most - 1 : 1;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool advised = argc == 4 && std::string(argv[3]) == "advised";
-  if (argc != 3 && !advised) return std::cerr << "usage: optimise STRESS DRI [advised]\n", 1;
-  if (advised) model = "advised/";
-  Limit limits[] = {{stress, std::atof(argv[1])}, {dri, std::atof(argv[2])}};
+  if (argc != 3) return std::cerr << "usage: optimise STRESS DRI\n", 1;
+  Limit limits[] = {{&Design::stress, std::atof(argv[1])}, {&Design::dri, std::atof(argv[2])}};
   nlopt_opt o = nlopt_create(NLOPT_LN_COBYLA, 3);
   double x[3], least[3], most[3], step[3], grain[3], found;
   for (int i = 0; i < 3; ++i) {
@@ -146,19 +102,14 @@ int main(int argc, char** argv) {
   for (bool better = true; better;) {
     const Design* const before = best;
     result = nlopt_optimize(o, x, &found);
-    best = nullptr;
     for (const auto& [name, d] : known)
-      if (d.converged && stress(d) <= limits[0].most && dri(d) <= limits[1].most && (!best || d.mass < best->mass)) best = &d;
+      if (d.converged && d.stress <= limits[0].most && d.dri <= limits[1].most && (!best || d.mass < best->mass)) best = &d;
     better = best != before;
-    if (!best) break;
-    std::copy(best->x.begin(), best->x.end(), x);
-    if (!advised || by_cells.contains(best->name)) continue;
-    confirm(*best);
+    if (best) std::copy(best->x.begin(), best->x.end(), x);
   }
   nlopt_destroy(o);
-  std::cerr << known.size() << " designs, " << (advised ? std::to_string(by_cells.size()) + " of them also with cells, " : "") << "NLopt ended with "
-            << result << ": ";
+  std::cerr << known.size() << " designs, NLopt ended with " << result << ": ";
   if (!best) return std::cerr << "none keeps the limits\n", 3;
-  std::cerr << best->name << ", " << best->mass << " kg, " << stress(*best) << " MPa, DRI " << dri(*best) << '\n';
+  std::cerr << best->name << ", " << best->mass << " kg, " << best->stress << " MPa, DRI " << best->dri << '\n';
   return result > 0 ? 0 : 3;
 }
