@@ -16,7 +16,7 @@ namespace hilo {
 namespace {
 
 struct Options {
-  std::string scene, mesh, finer, tolerance = "2%", work = "advise.work", apply, csv;
+  std::string scene, mesh, finer, tolerance = "2%", work = "advise.work", apply, csv, regions;
   std::vector<std::string> overrides, kept_rigid, kept;
   double at_most = 3;
   int at_once = 1;
@@ -63,7 +63,7 @@ void run(const Options& o) {
   }
   if (!tol.relative) throw Error("--tol", "must be a percentage", "\"2%\"; a quantity may have its own, with a unit", Exit::usage);
   if (o.full && o.no_full) throw Error("--full", "contradicts --no-full", "", Exit::usage);
-  for (const std::string& file : {o.apply, o.csv})
+  for (const std::string& file : {o.apply, o.csv, o.regions})
     if (!file.empty()) check_output(file);
   Candidates all({o.scene, o.mesh, o.finer, o.work, o.overrides, tol.value, o.at_once});
   const Entry& time = all.scene().table("time");
@@ -77,6 +77,7 @@ void run(const Options& o) {
   const Advice advice = advise(all, search);
   fmt::print("{}", o.json ? report_json(all, advice) : report_text(all, advice));
   if (!o.csv.empty()) write_text_file(o.csv, models_csv(all, advice));
+  if (!o.regions.empty()) write_text_file(o.regions, regions_csv(all, advice));
   if (!o.apply.empty()) write_text_file(o.apply, rules(all, advice, "hilo-advise --tol " + o.tolerance));
 }
 
@@ -109,6 +110,7 @@ int main(int argc, char** argv) {
     app->add_option("--work", o.work, "folder of the runs; those that are there are not run again")->capture_default_str();
     app->add_option("--apply", o.apply, "write the choice as rules for hilo-tag: tags.toml")->type_name("FILE");
     app->add_option("--csv", o.csv, "cost and error of every model that ran, for hilo-post chart")->type_name("FILE");
+    app->add_option("--regions", o.regions, "error of each region if it were rigid, for hilo-post model --values")->type_name("FILE");
     app->add_flag("--json", o.json, "the tables as JSON");
     if (!parse(*app, argc, argv)) return;
     note_signals();

@@ -5,6 +5,7 @@
 #include <vtkCamera.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -13,6 +14,7 @@
 #include "base/error.hpp"
 #include "model/scene_sets.hpp"
 #include "post/commands/commands.hpp"
+#include "post/files/csv.hpp"
 #include "post/scene/ellipsoid_surface.hpp"
 #include "post/scene/glyphs.hpp"
 #include "post/scene/names.hpp"
@@ -25,14 +27,14 @@ namespace hilo {
 namespace {
 
 struct Options {
-  std::string scene, mesh, output, camera = "iso", size = "1600x900", title;
+  std::string scene, mesh, output, camera = "iso", size = "1600x900", title, values;
   std::vector<std::string> show, hide, set;
   bool see_through = false, no_names = false;
 };
 
 /// One line of the legend and how its regions are drawn.
 struct Group {
-  std::string label;
+  std::string heading, label;  // groups of one heading stand below it
   Fidelity fidelity;
   Rgb colour;
   std::vector<bool> member;  // per region
@@ -48,12 +50,44 @@ std::vector<Group> groups_of(const MeshFile& file, const std::vector<bool>& show
       if (shown[r] && file.fidelity[r] == f) names.push_back(file.mesh.region_name[r]), which.push_back(r);
     for (const NameGroup& g : grouped(names, 8)) {
       const Rgb colour = category_colour(static_cast<int>(groups.size()));
-      Group group{g.label, f, f == Fidelity::rigid ? blend(colour, {0.88, 0.88, 0.88}, 0.62) : colour,
+      Group group{fmt::format("{} regions", word(f)), g.label, f, f == Fidelity::rigid ? blend(colour, {0.88, 0.88, 0.88}, 0.62) : colour,
                   std::vector<bool>(shown.size(), false)};
       for (const size_t m : g.members) group.member[which[m]] = true;
       groups.push_back(std::move(group));
     }
   }
+  return groups;
+}
+
+/// A region each with its value, the largest first, in colours from dark to bright with the value or its logarithm; the rest is grey.
+std::vector<Group> groups_by_value(const MeshFile& file, const std::vector<bool>& shown, const std::string& path) {
+  const CsvTable table = read_csv(path);
+  if (table.header.size() < 2) throw Error(path, "has one column", "region,value: a header, then a row for each region");
+  const std::vector<double> numbers = table.numbers(1);
+  const auto& names = file.mesh.region_name;
+  std::vector<std::pair<double, size_t>> valued;
+  for (size_t row = 0; row < table.rows(); ++row) {
+    const std::string& name = table.column[0][row];
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end()) throw Error(path, fmt::format("no region \"{}\"", name), suggest(name, names));
+    const auto r = static_cast<size_t>(at - names.begin());
+    if (shown[r] && std::isfinite(numbers[row])) valued.emplace_back(numbers[row], r);
+  }
+  std::stable_sort(valued.begin(), valued.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Group> groups;
+  std::vector<bool> rest = shown;
+  const bool by_logarithm = !valued.empty() && valued.back().first > 0 && valued[0].first > 10 * valued.back().first;
+  const auto scaled = [&](double v) { return by_logarithm ? std::log(v) : v; };
+  for (const auto& [value, r] : valued) {
+    const double low = scaled(valued.back().first), high = scaled(valued[0].first);
+    const double s = high > low ? (scaled(value) - low) / (high - low) : 1;
+    Group group{table.header[1], fmt::format("{}: {:.3g}", names[r], value), Fidelity::nonlinear,
+                map_colour(ColourMap::viridis, 0.15 + 0.8 * s), std::vector<bool>(shown.size(), false)};
+    group.member[r] = true, rest[r] = false;
+    groups.push_back(std::move(group));
+  }
+  if (std::find(rest.begin(), rest.end(), true) != rest.end())
+    groups.push_back({"Other regions", "no value", Fidelity::rigid, neutral, rest});
   return groups;
 }
 
@@ -92,7 +126,7 @@ std::vector<LegendEntry> legend_of(const std::vector<Group>& groups, const Scene
   std::vector<LegendEntry> entries;
   const Group* last = nullptr;
   for (const Group& g : groups) {
-    if (!last || last->fidelity != g.fidelity) entries.push_back({fmt::format("{} regions", word(g.fidelity)), {}, nullptr, true});
+    if (!last || last->heading != g.heading) entries.push_back({g.heading, {}, nullptr, true});
     entries.push_back({g.label, g.colour, nullptr});
     last = &g;
   }
@@ -181,9 +215,11 @@ void run(const Options& o) {
     if (i.glyph == Glyph::link || i.glyph == Glyph::coil) fit.add(i.to);
   }
   fit.aim(stage->GetActiveCamera());
+  if (!file && !o.values.empty())
+    throw Error("--values", "the scene has no mesh, so no regions", "give the mesh as second argument", Exit::usage);
   std::vector<Group> groups;
   if (file) {
-    groups = groups_of(*file, shown);
+    groups = o.values.empty() ? groups_of(*file, shown) : groups_by_value(*file, shown, o.values);
     add_meshed(stage, *file, groups, shown, pixel, frame.model.h, o.see_through);
   }
   for (size_t k = 0; k < items.bodies.size(); ++k)
@@ -223,6 +259,8 @@ Command model_command(CLI::App& app) {
       ->capture_default_str();
   sub->add_option("--show", o->show, "regions to draw, by name or glob; all by default")->allow_extra_args(false);
   sub->add_option("--hide", o->hide, "regions not to draw")->allow_extra_args(false);
+  sub->add_option("--values", o->values, "CSV of region and number: colours regions by it, as hilo-advise --regions writes it")
+      ->type_name("FILE");
   sub->add_flag("--see-through", o->see_through, "rigid regions are transparent");
   sub->add_flag("--no-names", o->no_names, "symbols without their names");
   sub->add_option("--set", o->set, "override a key of the scene: joint.trunnion.at=[0,0,1]")->allow_extra_args(false);

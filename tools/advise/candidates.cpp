@@ -133,21 +133,22 @@ Candidates::Job Candidates::job(const Request& request) const {
   return job;
 }
 
-void Candidates::run(const std::vector<Request>& list) {
+void Candidates::run(const std::vector<Request>& list, const Beyond& beyond) {
   std::vector<Process> processes;
   std::vector<std::pair<std::string, Request>> of;  // the names of their files
   for (const Request& request : list) {
     const Job j = job(request);
     if (done_.contains(j.name) || std::any_of(of.begin(), of.end(), [&](const auto& other) { return other.first == j.name; })) continue;
     of.emplace_back(j.name, request);
-    if (j.done) {
+    if (j.done || is_beyond(j.name, beyond)) {
       ++known;
       continue;
     }
     std::vector<Fidelity> tags;
     for (const Level l : request.levels) tags.push_back(fidelity(l));
     write_tags(j.name + "-tags.h5", request.finer ? o_.finer : o_.mesh, tags, {"hilo-advise"});
-    processes.push_back({j.command, j.name + ".log"});
+    processes.push_back({.command = j.command, .log = j.name + ".log"});
+    if (beyond) processes.back().is_enough = [this, name = j.name, &beyond] { return is_beyond(name, beyond); };
     ++runs;
     if (!is_quiet())
       fmt::print(stderr, "run {}: {}{}{}, about {:.2g} s\n", runs, label(request.levels, names()),
@@ -162,28 +163,46 @@ void Candidates::run(const std::vector<Request>& list) {
     c.run = name + ".h5";
     for (const Process& p : processes)
       if (p.log == name + ".log") c.seconds = p.seconds;
-    if (is_complete(name))
+    if (is_complete(name) || is_beyond(name, beyond))
       read(c, name);
     else
       c.failure = last_line(name + ".log");
   }
 }
 
-const Candidate& Candidates::of(const Request& request) {
-  run({request});
+const Candidate& Candidates::of(const Request& request, const Beyond& beyond) {
+  run({request}, beyond);
   return done_.at(job(request).name);
+}
+
+std::vector<QuantityValue> Candidates::values_of(RunFile& run) const {
+  std::vector<QuantityValue> out;
+  for (QuantityValue& v : quantities(scene_, run)) {
+    if (v.kind == "frequency") continue;
+    if (v.tolerance.empty()) v.allowed = o_.tolerance * std::abs(v.value);
+    out.push_back(std::move(v));
+  }
+  return out;
+}
+
+bool Candidates::is_beyond(const std::string& name, const Beyond& beyond) const {
+  if (!beyond || is_complete(name) || !std::filesystem::exists(name + ".h5")) return false;
+  try {
+    RunFile run(name + ".h5");
+    return beyond(values_of(run));
+  } catch (const Error&) {
+    return false;  // it has no rows yet
+  }
 }
 
 void Candidates::read(Candidate& c, const std::string& name) const {
   RunFile run(c.run);
-  for (QuantityValue& v : quantities(scene_, run)) {
-    if (v.kind == "frequency") continue;
-    if (v.tolerance.empty()) v.allowed = o_.tolerance * std::abs(v.value);
-    c.values.push_back(std::move(v));
-  }
+  c.values = values_of(run);
   const Json j = json_of_file(name + ".json");
+  if (!is_complete(name)) c.ended = run.series("energy").t.back();
   c.seconds = j.value("processor_seconds", 0.0), c.unknowns = j.value("unknowns", 0.0);
-  c.cost = c.seconds * (c.end > 0 ? scene_.table("time").number("end") / c.end : 1);
+  const double end = c.ended > 0 ? c.ended : c.end;
+  c.cost = c.seconds * (end > 0 ? scene_.table("time").number("end") / end : 1);
   for (size_t r = 0; r < names().size(); ++r) {
     for (const Json& b : j.value("beyond_linear", Json::array()))
       if (is_of(b.at("region"), names()[r])) c.beyond.emplace(r, b.at("said"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Models of a scene that differ in the levels of its regions, each run by hilo-solve and kept by content.
 #pragma once
+#include <functional>
 #include <map>
 
 #include "advise/levels.hpp"
@@ -23,6 +24,7 @@ struct Candidate : Request {
   std::vector<QuantityValue> values;     // of the quantities of a run in time
   double seconds = 0, unknowns = 0;      // seconds of processors
   double cost = 0;                       // seconds of a whole run
+  double ended = 0;                      // when it was ended since it cannot serve, its peaks are at least `values`; 0: it was not  [s]
   std::map<size_t, std::string> beyond;  // linear regions that left their range, and what the run said of it
   std::map<size_t, double> doubt;        // of linear regions: what strains of the second degree may change, a share of the answer
   std::map<size_t, double> energy;       // of linear regions: the largest strain energy  [J]
@@ -53,10 +55,12 @@ class Candidates {
   /// Is stiffening cheaper than cells?  It takes about as long as a thousand unknowns of these.
   bool is_large(size_t r) const { return 3 * nodes_[r] > 2000; }
 
-  /// Runs what is not there yet, several at once.
-  void run(const std::vector<Request>& list);
+  /// Can a run no longer serve whose peaks are at least these?
+  using Beyond = std::function<bool(const std::vector<QuantityValue>& so_far)>;
+  /// Runs what is not there yet, several at once; each ends early where `beyond` says so.
+  void run(const std::vector<Request>& list, const Beyond& beyond = {});
   /// A run, or the one that is there of the same scene, mesh and levels.
-  const Candidate& of(const Request& request);
+  const Candidate& of(const Request& request, const Beyond& beyond = {});
   /// Seconds that such a run will take, by the unknowns and steps, as far as runs of this scene tell how fast it goes.
   double price(const Request& request) const;
   /// What all runs have cost, also those of earlier calls.
@@ -70,6 +74,9 @@ class Candidates {
     bool done;
   };
   Job job(const Request& request) const;
+  std::vector<QuantityValue> values_of(RunFile& run) const;
+  /// Does what there is of a run that has not ended say that it is `beyond`?
+  bool is_beyond(const std::string& name, const Beyond& beyond) const;
   void read(Candidate& c, const std::string& name) const;
   double unknowns(const Request& request) const;
   double work(const Request& request) const;

@@ -9,7 +9,7 @@
 namespace hilo {
 namespace {
 
-std::string number(double x, int digits = 6) { return std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "-"; }
+std::string number(double x, int digits = 6) { return std::isfinite(x) ? fmt::format("{:.{}g}", x + 0.0, digits) : "-"; }  // no -0
 
 std::string choice(const Candidate* c, const Advice& a) {
   return c == a.chosen ? "chosen" : c == a.reference ? "reference" : c == a.base ? "base" : "-";
@@ -54,7 +54,9 @@ Table regions(const Candidates& all, const Advice& a) {
                       energy == a.base->energy.end() ? "-" : number(energy->second), number(error),
                       kept != a.kept_rigid.end()                                        ? kept->second
                       : without != a.without.end() && !without->second->failure.empty() ? "does not run rigid: " + without->second->failure
-                                                                                        : "-"});
+                      : without != a.without.end() && without->second->ended > 0
+                          ? fmt::format("as far as its run went, {:.4g} s", without->second->ended)
+                          : "-"});
   }
   return t;
 }
@@ -75,7 +77,9 @@ Table models(const Candidates& all, const Advice& a) {
     const double d = difference(*c, *a.reference, &in);
     if (!c->failure.empty()) in = "does not run: " + c->failure;
     t.rows.push_back({label(c->levels, all.names()) + (c->modes != 1 ? fmt::format(", {} times the modes", c->modes) : "") +
-                          (c->end > 0 ? fmt::format(", to {:.4g} s", c->end) : ""),
+                          (c->ended > 0 ? fmt::format(", ended at {:.4g} s", c->ended)
+                           : c->end > 0 ? fmt::format(", to {:.4g} s", c->end)
+                                        : ""),
                       choice(c, a), c == a.reference ? "-" : in, c->failure.empty() ? c->run : "-", number(d), number(c->unknowns),
                       c->failure.empty() ? number(c->cost, 4) : "-"});
   }
@@ -126,6 +130,13 @@ std::string models_csv(const Candidates& all, const Advice& a) {
   }
   std::string out = "processor time [s],error over allowed,choice,model\n";
   for (const auto& [cost, row] : rows) out += row;
+  return out;
+}
+
+std::string regions_csv(const Candidates& all, const Advice& a) {
+  std::string out = "region,if rigid: error/allowed\n";
+  for (const auto& [r, c] : a.without)
+    if (const double d = difference(*c, *a.reference); std::isfinite(d)) out += fmt::format("\"{}\",{:.4g}\n", all.names()[r], d);
   return out;
 }
 

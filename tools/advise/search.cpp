@@ -53,8 +53,8 @@ class Search {
     const bool cells = std::any_of(levels.begin(), levels.end(), [](Level l) { return l == Level::nonlinear; });
     return {all_.consistent(levels), 1, cells ? window_ : 0};
   }
-  const Candidate& of(const Request& request) {
-    const Candidate& c = all_.of(request);
+  const Candidate& of(const Request& request, const Candidates::Beyond& beyond = {}) {
+    const Candidate& c = all_.of(request, beyond);
     if (request.step == 1 && !request.finer && std::find(a_.tried.begin(), a_.tried.end(), &c) == a_.tried.end()) a_.tried.push_back(&c);
     return c;
   }
@@ -66,10 +66,24 @@ class Search {
     for (size_t k = 0; k < c.values.size(); ++k) {
       const QuantityValue &mine = c.values[k], &its = a_.reference->values[k];
       if (!its.why.empty()) continue;
-      if (!mine.why.empty()) return HUGE_VAL;
+      if (!mine.why.empty() || c.ended > 0) return HUGE_VAL;
       largest = std::max(largest, over(mine.value - its.value, its.allowed) + a_.step[k]);
     }
     return largest + std::min(a_.doubt, 0.5);
+  }
+  /// Of a model that is not the reference: a raw peak that is too large stays so.
+  Candidates::Beyond beyond() const {
+    return [this](const std::vector<QuantityValue>& so_far) {
+      size_t k = 0;
+      for (const Entry& q : all_.scene().entries("quantity")) {
+        if (q.kind == "frequency") continue;
+        const QuantityValue &mine = so_far[k], &its = a_.reference->values[k];
+        const double excess = std::abs(mine.value) - std::abs(its.value);
+        if (q.kind == "peak" && !q.has("cfc") && mine.why.empty() && its.why.empty() && excess > 1.2 * its.allowed) return true;
+        ++k;
+      }
+      return false;
+    };
   }
   bool serves(const Candidate& c) const { return &c == a_.reference || error(c) <= 1; }
   bool too_dear(const Request& next, double planned = 0) const {
@@ -294,7 +308,7 @@ class Search {
     for (size_t k = least; least < most;) {
       const Request next = request(head(k));
       if (k > 0 && too_dear(next)) break;
-      const Candidate& c = of(next);
+      const Candidate& c = of(next, beyond());
       if (serves(c))
         most = k, stride = 0, a_.chosen = &c;
       else
@@ -325,10 +339,10 @@ class Search {
       planned += all_.price(single);
       singles.push_back(single), which.push_back(r);
     }
-    all_.run(singles);
+    all_.run(singles, beyond());
     std::vector<std::pair<double, size_t>> good;  // error, and region
     for (size_t i = 0; i < singles.size(); ++i) {
-      const Candidate& c = of(singles[i]);
+      const Candidate& c = of(singles[i], beyond());
       if (singles[i].levels[which[i]] == Level::rigid) a_.without[which[i]] = &c;
       if (serves(c)) good.emplace_back(error(c), i);
     }
@@ -339,7 +353,7 @@ class Search {
       for (size_t i = first; i < last; ++i) levels[which[good[i].second]] = singles[good[i].second].levels[which[good[i].second]];
       const Request next = request(levels);
       if (next.levels == now || too_dear(next)) return false;
-      const Candidate& c = of(next);
+      const Candidate& c = of(next, beyond());
       if (!serves(c)) return false;
       now = next.levels;
       if (c.cost < 1.1 * a_.chosen->cost) a_.chosen = &c;
@@ -379,6 +393,7 @@ double difference(const Candidate& c, const Candidate& reference, std::string* w
   for (size_t k = 0; k < reference.values.size(); ++k) {
     const QuantityValue &a = c.values[k], &b = reference.values[k];
     if (!b.why.empty()) continue;
+    if (c.ended > 0 && (!a.why.empty() || a.kind != "peak")) continue;
     const double d = a.why.empty() ? over(a.value - b.value, b.allowed) : HUGE_VAL;
     if (d <= largest) continue;
     largest = d;
