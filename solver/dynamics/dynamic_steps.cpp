@@ -14,6 +14,7 @@
 #include "dynamics/run_parts.hpp"
 #include "dynamics/singular_start.hpp"
 #include "dynamics/start.hpp"
+#include "dynamics/step_errors.hpp"
 
 namespace hilo {
 namespace {
@@ -31,18 +32,7 @@ class DynamicSteps final : public Steps {
         progress_(run.options.quiet || run.system.comm->rank != 0, 0, end_) {
     const StepPlan& plan = run_.plan;
     if (plan.asked > 0) control_.emplace(run_.system, run_.integrator->order(), plan.now().demand, end_, step_);
-    const std::string& word = time_.text("error_estimate");
-    const bool large = !control_ && run_.system.layout.map.n_global > largest_estimated;
-    if (word == "never")
-      run_.estimate.give_up("time.error_estimate has none");
-    else if (run_.system.traits().searches)
-      run_.estimate.give_up("the structure of the scene changes from step to step");
-    else if (word == "auto" && large)
-      run_.estimate.give_up("the scene is large, and time.error_estimate does not ask for one");
-    if (!run_.estimate.why().empty()) return;
-    companion_.emplace(
-        run_.system, integrator_kinds().at(plan.now().method, time_.where("integrator")).make(time_),
-        [this] { return choose_solver(run_.scene, run_.system, false); }, run_.newton);
+    take_estimate();
   }
 
   void archive(Archive& a) override {
@@ -50,6 +40,7 @@ class DynamicSteps final : public Steps {
     a("dynamic steps", at_, events);
     if (control_) control_->archive(a);
     if (companion_) companion_->archive(a);
+    if (step_errors_) step_errors_->archive(a);
     const auto same = [](const Event& x, const Event& y) { return x.t == y.t && x.jump == y.jump; };
     if (a.restores() && !std::ranges::equal(events, run_.events, same)) find_place();
   }
@@ -80,6 +71,23 @@ class DynamicSteps final : public Steps {
   }
 
  private:
+  /// By what the error is estimated, or why by nothing.
+  void take_estimate() {
+    ErrorEstimate& estimate = run_.estimate;
+    const std::string& word = time_.text("error_estimate");
+    const bool large = run_.system.layout.map.n_global > largest_estimated, searches = run_.system.traits().searches;
+    if (word == "never") return estimate.give_up("time.error_estimate has none");
+    if (!control_ && (word == "steps" || (word == "auto" && (large || searches)))) {
+      if (run_.integrator->order() > 2) estimate.give_up("steps alone tell the error of methods of second order");
+      if (estimate.why().empty()) step_errors_.emplace();
+      return;
+    }
+    if (searches) return estimate.give_up("the structure of the scene changes from step to step");
+    companion_.emplace(
+        run_.system, integrator_kinds().at(run_.plan.now().method, time_.where("integrator")).make(time_),
+        [this] { return choose_solver(run_.scene, run_.system, false); }, run_.newton);
+  }
+
   /// Positions and velocities to start from; false where there are none.
   bool start() {
     System& system = run_.system;
@@ -104,6 +112,9 @@ class DynamicSteps final : public Steps {
       set_rows(system, now);
     }
     const size_t clocks = run_.integrator->timed().size();
+    if (clocks > 0 && step_errors_)
+      step_errors_.reset(), run_.estimate.give_up("mechanisms go by clocks of their own, which no step tells of");
+    if (step_errors_) step_errors_->begin(state);
     if (run_.talk)
       fmt::print(stderr, "integrator: {}{}\n", run_.integrator->name(),
                  clocks ? fmt::format(", {} mechanism{} of one degree of freedom on a clock of {} own", clocks, clocks > 1 ? "s" : "",
@@ -262,6 +273,7 @@ class DynamicSteps final : public Steps {
                         run_.integrator->velocity());
     run_.system.settle(true);
     ++run_.report.steps;
+    if (step_errors_) step_errors_->follow(run_.system, state, run_.estimate);
     if (companion_ && companion_->has_begun())
       companion_->follow(state, added(), run_.estimate);
     else if (companion_)  // two steps at once may leave a singular position by another branch
@@ -270,9 +282,10 @@ class DynamicSteps final : public Steps {
   }
 
   const Entry& time_;
-  double end_, step_;                   // of the run, of a step at most [s]
-  std::optional<StepControl> control_;  // where the tolerance chooses the steps
-  std::optional<Companion> companion_;  // where the error is estimated
+  double end_, step_;                      // of the run, of a step at most [s]
+  std::optional<StepControl> control_;     // where the tolerance chooses the steps
+  std::optional<Companion> companion_;     // where the error is estimated by a second solution,
+  std::optional<StepErrors> step_errors_;  // and where by its steps alone
   struct Place {
     size_t event = 0;                   // the one that steps go to
     bool begun = false;                 // from the one before,

@@ -38,6 +38,11 @@ void ErrorEstimate::look(double t, double apart, double moved, int order, double
   spacing_ = t / static_cast<double>(samples_.size());
 }
 
+void ErrorEstimate::add_up(double t, double sum, double moved) {
+  is_sum_ = true, t_ = most_t_ = t, apart_ = most_ = sum;
+  motion_ = std::max(motion_, moved);
+}
+
 double ErrorEstimate::trusted() const {
   for (const Sample& s : samples_)
     if (s.most > small_part * motion_) return s.t;
@@ -61,6 +66,7 @@ double ErrorEstimate::growth() const {
 }
 
 double ErrorEstimate::error(double apart, double t) const {
+  if (is_sum_) return apart;
   const double factor = std::pow(2.0, order_) - 1, T = trusted(), rate = growth();
   if (t < T || (t <= T && apart <= small_part * motion_)) return apart / factor;
   if (rate > 0) return std::min(apart, small_part * motion_ / factor * std::exp(rate * (t - T)));
@@ -81,7 +87,7 @@ double ErrorEstimate::meaningless_from() const {
 }
 
 void ErrorEstimate::archive(Archive& a) {
-  a("error estimate", order_, splits_, t_, apart_, most_, most_t_, motion_, spacing_, samples_, why_, is_lost_);
+  a("error estimate", order_, splits_, t_, apart_, most_, most_t_, motion_, spacing_, samples_, why_, is_lost_, is_sum_);
 }
 
 }  // namespace hilo

@@ -22,6 +22,9 @@ class ErrorEstimate {
   /// At time t the solutions are `apart` [m], and the finer one has moved by `moved` since the start [m]; its method is of this order.
   /// `added`: a measure of what its steps have added to the error until then, without what the motion made of it.
   void look(double t, double apart, double moved, int order, double added);
+  /// Without a second solution: what the steps until t have added, `sum` [m], without what the motion made of it.
+  void add_up(double t, double sum, double moved);
+  bool is_sum() const { return is_sum_; }
   /// The coarser one could not take its step and took those of the finer one: there the distance says nothing.
   void split() { ++splits_; }
   int splits() const { return splits_; }
@@ -59,7 +62,7 @@ class ErrorEstimate {
   double t_ = 0, apart_ = 0, most_ = 0, most_t_ = 0, motion_ = 0, spacing_ = 0;
   std::vector<Sample> samples_;
   std::string why_ = "";
-  bool is_lost_ = false;
+  bool is_lost_ = false, is_sum_ = false;
 };
 
 }  // namespace hilo

@@ -129,9 +129,10 @@ class Run {
           "the motion is chaotic: errors of positions grow exponentially, and from t = {:.3g} s on they are as large as the motion", t));
     else if (run_.plan.asked == 0 && e.share(e.largest()) > 0.05)
       tell(
-          fmt::format("positions are off by about {:.2g} % of the motion at t = {:.3g} s, by a second solution at twice the step: choose a "
-                      "shorter time.step, or time.tolerance",
-                      100 * e.share(e.largest()), e.largest_t()));
+          fmt::format("positions are off by about {:.2g} % of the motion at t = {:.3g} s, by {}: choose a shorter time.step, or "
+                      "time.tolerance",
+                      100 * e.share(e.largest()), e.largest_t(),
+                      e.is_sum() ? "the sum of what single steps add" : "a second solution at twice the step"));
   }
 
   bool is_static() const { return run_.analysis == Analysis::statics || run_.analysis == Analysis::path; }

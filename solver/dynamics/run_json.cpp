@@ -22,13 +22,15 @@ std::string error_json(const RunParts& run) {
   };
   const auto number = [](double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : "null"; };
   if (e.is_there()) {
+    add("by", e.is_sum() ? "\"steps\"" : "\"a second solution\"");
     add("end", number(e.end())), add("end_share", number(e.share(e.end())));
     add("largest", number(e.largest())), add("largest_t", number(e.largest_t())), add("largest_share", number(e.share(e.largest())));
     add("motion", number(e.motion()));
     if (run.figures.local > 0) add("amplification", number(e.end() / run.figures.local));
-    add("chaotic", e.is_chaotic() ? "true" : "false"), add("meaningless_from", number(e.meaningless_from()));
+    if (!e.is_sum()) add("chaotic", e.is_chaotic() ? "true" : "false");
+    if (!e.is_sum()) add("meaningless_from", number(e.meaningless_from()));
   } else {
-    add("why_not", json_text(e.why().empty() ? "no step was taken" : e.why()));
+    add("why_not", json_text(!e.why().empty() ? e.why() : run.report.steps > 0 ? "too few steps were taken" : "no step was taken"));
   }
   if (run.plan.asked > 0) {
     add("asked", number(run.plan.asked)), add("met", run.report.complete && run.plan.unmet.empty() && e.is_there() ? "true" : "false");
@@ -71,6 +73,7 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   if (run.plan.asked > 0) add("rejected_steps", fmt::format("{}", figures.rejected));
   if (!figures.modes.empty()) add("modes", figures.modes);
   if (!figures.path.empty()) add("turns", figures.path);
+  if (!figures.jumps.empty()) add("jumps", "[" + figures.jumps + "\n  ]");
   if (figures.unstable >= 0) add("unstable_states", fmt::format("{}", figures.unstable));
   const double balance = run.audit->balance(), det = run.audit->least_det();
   add("energy_balance", std::isnan(balance) ? "null" : fmt::format("{:.6g}", balance));

@@ -23,6 +23,7 @@ struct RunFigures {
   double local = -1;                    // sum of local position errors [m], where the tolerance chooses steps of a method of second order
   std::string modes;                    // of an analysis of modes, JSON
   std::string path;                     // of one of a path: where it turns, JSON
+  std::string jumps;                    // of a static run to other branches, JSON
   long rejected = 0;                    // steps
   long unstable = -1;                   // states of a static run that were kept though not stable
 };

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dynamics/linear_step.hpp"
 #include "dynamics/start.hpp"
 
 namespace hilo {
@@ -21,9 +22,16 @@ Stage Stability::stage(const Config& q, double mass) {
 }
 
 std::optional<int> Stability::below(const Config& q, const std::vector<double>& lambda, double mass) {
-  system_.evaluate(stage(q, mass), lambda, r_, &solver_);
-  system_.mask_fixed(r_.r);
+  assemble(system_, solver_, stage(q, mass), lambda, r_, true);
   return solver_.eigenvalues_below_zero(system_.first_joint_block());
+}
+
+/// a.b of increments without multipliers, over all ranks.
+double Stability::dot(std::span<const double> a, std::span<const double> b) const {
+  double sum = 0;
+  for (int block = 0; block < system_.first_joint_block(); ++block)
+    for (int i = 3 * block; system_.owns(block) && i < 3 * block + 3; ++i) sum += a[i] * b[i];
+  return system_.comm->sum(sum);
 }
 
 /// z.K z by differences, and how much of it may be round-off.
@@ -36,9 +44,8 @@ double Stability::curvature(const Config& q, const std::vector<double>& lambda, 
     for (double& x : way) x *= by;
     system_.move(there, way);
     Residual r;
-    system_.evaluate(stage(there, 0), lambda, r, nullptr);
-    system_.mask_fixed(r.r);
-    for (int i = 0; i < 3 * system_.first_joint_block(); ++i) sum += r.r[i] * z[i] / (2 * by);
+    assemble(system_, solver_, stage(there, 0), lambda, r, false);
+    sum += dot(r.r, z) / (2 * by);
     *noise = 1e-9 * r.force_scale / system_.length;
   }
   return sum;
@@ -62,7 +69,10 @@ std::string Stability::told(const Unstable& u) const {
           text.substr(0, text.find(';')), 1 / std::sqrt(u.rate2), who.empty() ? "a part" : who,
           f.turns() ? "turning about" : "moving along", d[0], d[1], d[2]);
     }
-  return text;
+  const Comm& comm = *system_.comm;  // all say what the first rank says that has it
+  const double first = -comm.max(most == comm.max(most) ? -comm.rank : -comm.size);
+  const std::vector<char> all = comm.gather(comm.rank == first ? std::vector<char>(text.begin(), text.end()) : std::vector<char>());
+  return std::string(all.begin(), all.end());
 }
 
 std::optional<Unstable> Stability::look(const Config& q, const std::vector<double>& lambda) {
@@ -71,10 +81,6 @@ std::optional<Unstable> Stability::look(const Config& q, const std::vector<doubl
   if (!found || *found == 0) return {};
   Unstable out;
   out.motions = *found;
-  if (system_.comm->size > 1) {  // slow ones may be round-off
-    if (below(q, lambda, 1e-6) == 0) return {};
-    return out.text = told(out), out;
-  }
   const auto resists = [&](double mass) { return below(q, lambda, mass).value_or(1) == 0; };
   double low = 1, high = 1;  // [1/s^2]
   if (resists(1)) {
@@ -93,13 +99,15 @@ std::optional<Unstable> Stability::look(const Config& q, const std::vector<doubl
   resists(high);
   std::vector<double> b(r_.r.size(), 0.0), z(b.size(), 0.0);
   const int n = 3 * system_.first_joint_block();
-  for (int i = 0; i < n; ++i) b[i] = std::cos(static_cast<double>(i));  // any vector with something of everything
+  for (int i = 0; i < n; ++i)  // any vector with something of everything
+    b[i] = std::cos(static_cast<double>(3 * system_.layout.map.global[i / 3] + i % 3));
   system_.mask_fixed(b);
   for (int pass = 0; pass < 3; ++pass) {
     if (!solver_.solve(b, z).ok) return out.text = told(out), out;
     double size = 0;
     for (const UnknownField& f : system_.unknowns)
       for (size_t k = 0; k < f.size(); ++k) size = std::max(size, Eigen::Map<const Vec3>(z.data() + 3 * f.block(k)).norm() * f.scale(k));
+    size = system_.comm->max(size);
     for (int i = 0; i < n; ++i) z[i] /= size;
     std::fill(z.begin() + n, z.end(), 0.0);
     for (const UnknownField& f : system_.unknowns)  // forces that go with it
@@ -125,11 +133,7 @@ std::optional<Stability::Way> Stability::descend(const Unstable& from, double si
   std::vector<double> z = from.z;
   for (double& x : z) x *= side * 1e-2 * system_.length;
   const int n = 3 * system_.first_joint_block();
-  const auto work = [&](std::span<const double> way) {
-    double sum = 0;
-    for (int i = 0; i < n; ++i) sum += r_.r[i] * way[i];
-    return sum / 2;
-  };
+  const auto work = [&](std::span<const double> way) { return dot(r_.r, way) / 2; };
   double mass = 2 * from.rate2;
   for (int it = 0; it < 300; ++it) {
     system_.move(at.q, z);
@@ -140,8 +144,7 @@ std::optional<Stability::Way> Stability::descend(const Unstable& from, double si
     if (wrong == 0 && it % 4 == 0) {
       Way end = at;
       if (equilibrium(system_, solver_, end.q, end.lambda, t_, ramp_, mechanism, options).converged) {
-        system_.evaluate(stage(at.q, 0), at.lambda, r_, nullptr);
-        system_.mask_fixed(r_.r);
+        assemble(system_, solver_, stage(at.q, 0), at.lambda, r_, false);
         end.work += work(Unknown(system_, at.q, end.q).increments(system_));
         if (system_.largest_difference(end.q, q) > 1e-4 * system_.length && !look(end.q, end.lambda)) return end;
       }
@@ -152,7 +155,7 @@ std::optional<Stability::Way> Stability::descend(const Unstable& from, double si
     for (size_t i = 0; i < b.size(); ++i) b[i] = -r_.r[i];
     z.assign(b.size(), 0.0);
     if (!solver_.solve(b, z).ok) return {};
-    const double size = relative_correction(system_, z), share = std::min(1.0, 0.1 / size);
+    const double size = system_.comm->max(relative_correction(system_, z)), share = std::min(1.0, 0.1 / size);
     for (double& x : z) x *= share;
     for (size_t i = 0; i < at.lambda.size(); ++i) at.lambda[i] += r_.sigma * z[n + i];
     at.work += work(z);

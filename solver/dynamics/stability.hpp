@@ -2,6 +2,7 @@
 // Stability of equilibrium: motions that the tangent does not resist, and the way from there to a state that is stable.
 #pragma once
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ struct Unstable {
 };
 
 /// Looks at states under the loads at time t times `ramp`.  Direct solvers count eigenvalues; those that iterate leave it unknown.
-/// Collective; on several ranks the motion is not told and no state is left.
+/// Collective.
 class Stability {
  public:
   Stability(System& system, KktSolver& solver, double t, double ramp) : system_(system), solver_(solver), t_(t), ramp_(ramp) {}
@@ -42,6 +43,7 @@ class Stability {
   };
   std::optional<int> below(const Config& q, const std::vector<double>& lambda, double mass);
   double curvature(const Config& q, const std::vector<double>& lambda, const std::vector<double>& z, double* noise);
+  double dot(std::span<const double> a, std::span<const double> b) const;
   std::string told(const Unstable& u) const;
   std::optional<Way> descend(const Unstable& from, double side, const Config& q, const std::vector<double>& lambda, bool mechanism,
                              const NewtonOptions& options);

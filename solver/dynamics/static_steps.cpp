@@ -2,13 +2,14 @@
 // Load steps of a static analysis: equal ones, halved where one fails, that end where a history breaks.
 //
 // A step that ends where equilibrium is not stable has jumped over the branch that bends away, or stands behind a point where branches
-// part: it is halved too, then left along the motion that grows.
+// part: it is halved too, then left along the motion that grows.  So is one that jumps to another branch (dynamics/jump), which is told.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "dynamics/held.hpp"
+#include "dynamics/jump.hpp"
 #include "dynamics/run_parts.hpp"
 #include "dynamics/stability.hpp"
 #include "dynamics/start.hpp"
@@ -47,12 +48,14 @@ class StaticSteps final : public Steps {
       std::string failure = try_step(next, reached, r);
       const bool shorter = at_.step > std::ldexp(1.0 / n_, -std::min(5, run_.max_cuts));
       if (failure.empty() && unstable_ && !at_.unstable && shorter) {
-        behind_ = {reached, next, *unstable_, r};
+        at_.ahead = {reached, next, 0};
         failure = "the equilibrium is not stable: " + unstable_->text;
-      } else if (!failure.empty() && behind_ && !system.traits().remembers) {  // too near to where branches part
-        reached = behind_->state, next = behind_->next, unstable_ = behind_->unstable, r = behind_->r;
-        take(reached, next);
-        failure = leave(next, reached);
+      } else if (failure.empty() && jump_ > 0 && shorter) {
+        at_.ahead = {reached, next, jump_};
+        failure = jumped(next);
+      } else if (!failure.empty() && at_.ahead && !system.traits().remembers) {  // too near to where the branch ends
+        next = at_.ahead->next, r = {};
+        failure = go_ahead(reached);
       } else if (failure.empty()) {
         failure = leave(next, reached);
       }
@@ -61,6 +64,7 @@ class StaticSteps final : public Steps {
         if (why.empty() || r.least_det.det <= 0) why = failure;
         if (at_.step <= std::ldexp(1.0 / n_, -run_.max_cuts)) {
           if (at_.least.det < 0.01 && r.least_det.det > 0) why += "; " + system.inside_out(at_.least);
+          if (r.least_det.det > 0) why += "; where a structure bears no more, analysis = \"path\" finds the limit and goes past it";
           return run_.stop(why + unheld(system, system.start));
         }
         ++run_.report.cuts;
@@ -73,8 +77,9 @@ class StaticSteps final : public Steps {
       run_.recorder->step(reached, run_.audit->ledger(), taken_, no_acceleration_, r.iterations);
       system.settle(true);
       std::swap(state, reached);
-      if (behind_ && (next >= behind_->next || system.traits().remembers)) behind_.reset();
+      if (at_.ahead && (next >= at_.ahead->next || system.traits().remembers)) at_.ahead.reset();
       at_.unstable_states += at_.unstable;
+      if (jump_ > 0) tell_jump(next);
       ++run_.report.steps;
       at_.done = next, at_.step = std::min(1.0 / n_, 2 * at_.step);
       progress.show(at_.done, run_.report.steps, r.iterations);
@@ -86,6 +91,7 @@ class StaticSteps final : public Steps {
     progress.done();
     run_.report.t = state.t;
     if (examined_) run_.figures.unstable = at_.unstable_states;
+    run_.figures.jumps = at_.jumps;
     if (run_.talk && is_large())
       fmt::print(stderr, "stability was not examined: beyond {} unknowns it would cost more than the load steps\n", 3 * most_blocks);
     else if (run_.talk && !examined_)
@@ -119,13 +125,17 @@ class StaticSteps final : public Steps {
       r = equilibrium(system, *run_.solver, reached.q, reached.lambda, reached.t, next, true, options);
       run_.report.iterations += r.iterations;
     }
-    unstable_.reset();
+    unstable_.reset(), jump_ = 0;
     if (r.converged && !is_large()) {
       Stability stability(system, *run_.solver, reached.t, next);
       unstable_ = stability.look(reached.q, reached.lambda);
       examined_ = stability.known();
     }
     if (!r.converged) return r.reason;
+    const bool factored = !is_large() && examined_;
+    if (!unstable_ && (factored || r.iterations > few_iterations))
+      jump_ = BranchJump(system, *run_.solver, options)
+                  .between({state.q, state.lambda, state.t, at_.done}, {reached.q, reached.lambda, reached.t, next}, factored);
     take(reached, next);
     const std::string fault = system.fault(reached.q);
     return fault.empty() ? run_.audit->look(state.q, reached, {&taken_, 1}, r, next) : fault;
@@ -137,6 +147,17 @@ class StaticSteps final : public Steps {
     taken_.stage.elapsed = slow;
     run_.system.advance(taken_.stage);
     taken_.stage.a = &no_acceleration_, taken_.stage.load_factor = next, taken_.stage.work_from = &run_.state.q;
+  }
+
+  /// To the state that lies ahead: why it cannot be accepted, or "".
+  std::string go_ahead(State& reached) {
+    const auto& [to, next, jump] = *at_.ahead;
+    reached = to, jump_ = jump, unstable_.reset();
+    run_.system.commit(reached.q);
+    if (jump == 0) unstable_ = Stability(run_.system, *run_.solver, reached.t, next).look(reached.q, reached.lambda);
+    take(reached, next);
+    const std::string fault = run_.audit->look(run_.state.q, reached, {&taken_, 1}, {}, next);
+    return fault.empty() ? leave(next, reached) : fault;
   }
 
   /// From a state that is not stable to one that is, and what has changed in words: why the step cannot be accepted, or "".
@@ -167,29 +188,40 @@ class StaticSteps final : public Steps {
     at_.unstable = true;
     return run_.audit->look(run_.state.q, reached, {&taken_, 1}, {}, next);
   }
+  std::string jumped(double next) const {
+    return fmt::format("positions jump by {:.3g} m between {:.6g} and {:.6g} of the loads", jump_, at_.done, next);
+  }
+  void tell_jump(double next) {
+    warn(place(), jumped(next) +
+                      ", to another branch of equilibrium, as in a snap-through: analysis = \"path\" follows what lies between, "
+                      "a run in time tells where it would come to rest");
+    at_.jumps +=
+        fmt::format("{}\n    {{\"from\": {:.12g}, \"to\": {:.12g}, \"way\": {:.6g}}}", at_.jumps.empty() ? "" : ",", at_.done, next, jump_);
+  }
   bool is_large() const { return run_.system.layout.map.n_global > most_blocks; }
   std::string place() const { return run_.scene.table("time").where("analysis"); }
 
   int n_ = 1;                   // load steps asked for
   double end_ = 1;              // time of the full load [s]
   std::vector<double> breaks_;  // of the histories, shares of end_
+  struct Ahead {
+    State state;
+    double next, jump;
+  };
   struct Place {
     double done = 0, step = 1;  // shares of the loads
     LeastDet least;             // of the steps taken
     bool unstable = false;      // the last one
     long unstable_states = 0;
+    std::string jumps;           // told, as JSON
+    std::optional<Ahead> ahead;  // the nearest state that is not stable, or on another branch
   } at_;
   static constexpr int most_blocks = 30000;  // beyond, the count would cost more than the step
   std::optional<Unstable> unstable_;         // the step tried last
   bool examined_ = true;                     // whether it told
-  struct Behind {
-    State state;
-    double next;
-    Unstable unstable;
-    NewtonReport r;
-  };
-  std::optional<Behind> behind_;  // the nearest state ahead that is not stable
-  Taken taken_;                   // of the step tried last
+  double jump_ = 0;                          // of the step tried last [m], or 0
+  static constexpr int few_iterations = 5;   // a step that takes no more has not jumped, where telling would cost as much
+  Taken taken_;                              // of the step tried last
   Config no_acceleration_;
 };
 

@@ -74,15 +74,13 @@ void StepControl::restart(const State& s) {
   calm_ = 0;
 }
 
-double StepControl::error(const Config& q1, double h) const {
-  const double t[4] = {past_[0].t, past_[1].t, past_[2].t, t_ + h};
+double largest_third_derivative(const System& system, const std::array<const Config*, 4>& q, const std::array<double, 4>& t) {
   double w[4];  // q[t0, t1, t2, t3] = sum w_k q_k
   for (int i = 0; i < 4; ++i) {
-    w[i] = 1;
+    w[i] = 6;
     for (int j = 0; j < 4; ++j)
       if (j != i) w[i] /= t[i] - t[j];
   }
-  const Config* q[4] = {&past_[0].q, &past_[1].q, &past_[2].q, &q1};
   double top = 0;
   const auto look = [&](double size, const std::array<bool, 3>& held, const auto& value) {
     Vec3 d = Vec3::Zero();
@@ -91,14 +89,20 @@ double StepControl::error(const Config& q1, double h) const {
       if (held[k]) d[k] = 0;  // moves by a law
     top = std::max(top, size * d.norm());
   };
-  for (const UnknownField& f : system_.unknowns)
+  for (const UnknownField& f : system.unknowns)
     for (size_t k = 0; k < f.size(); ++k) {
       const int i = f.item[k];
       if (!f.turns()) look(f.scale(k), f.held_of(k), [&](const Config& c) { return (c.*f.array)[i]; });
       for (int c = 0; c < 3 && f.turns(); ++c) look(f.scale(k), {}, [&](const Config& at) { return Vec3(at.R[i].col(c)); });
     }
+  return system.comm->max(top);
+}
+
+double StepControl::error(const Config& q1, double h) const {
+  const double third =
+      largest_third_derivative(system_, {&past_[0].q, &past_[1].q, &past_[2].q, &q1}, {past_[0].t, past_[1].t, past_[2].t, t_ + h});
   const double at_first = fade_ > 0 ? first_third_ * std::exp(-(t_ - started_) / fade_) : 0;
-  return h * h * h / 12 * std::max(6 * system_.comm->max(top), at_first);
+  return h * h * h / 12 * std::max(third, at_first);
 }
 
 bool StepControl::accept(const Config& q1, double h) {

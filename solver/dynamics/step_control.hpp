@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Times the steps must hit, and the length of the next step from an estimate of the position error.
 #pragma once
+#include <array>
 #include <deque>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct Event {
 /// jumps of prescribed accelerations, do where they are at least `step` apart from each other: what lies closer is a measured table, whose
 /// mean over a step is exact anyway.
 std::vector<Event> events(const System& system, double end, double step);
+
+/// Of all points, from four positions of theirs at four times: the third derivative of what does not move by a law [m/s^3].  Collective.
+double largest_third_derivative(const System& system, const std::array<const Config*, 4>& q, const std::array<double, 4>& t);
 
 /// Second order: keeps the sum of local position errors e = h^3/2 |q[n+1, n, n-1, n-2]| (third divided difference, largest over all points)
 /// at the demand by sharing it out evenly over the run.  Higher orders: keeps e itself at the demand, as a measure of how far a step goes

@@ -52,9 +52,9 @@ KindSchema time_schema() {
        "`integrator` is named the method: energy-momentum, gauss where that needs fewer",
        from_to(1e-13, 1)},
       {"error_estimate", text, "", "auto",
-       "whether a second solution at twice the step runs beside, to estimate the error of positions: auto (with `tolerance`, and in scenes "
-       "of "
-       "up to 900 unknowns), always, never"},
+       "how the error of positions is estimated: always, by a second solution at twice the step; steps, by the sum of what single steps "
+       "add; auto, "
+       "the second solution with `tolerance` and in scenes of up to 900 unknowns, else steps; never"},
       {"integrator", text, "", integrator_words()[0].name, methods()}};
   for (const Param& p : keys_of_methods()) keys.push_back(p);
   keys.push_back({"steps", number, "1", "1",

@@ -14,7 +14,7 @@ Registry<Word>* words_of(std::string_view section, std::string_view key) {
       {{"history", "interpolation"}, {"interpolation", {{"linear"}, {"smooth"}, {"smoother"}, {"spline"}, {"monotone"}}}},
       {{"history", "ends"}, {"ends of a spline", {{"natural"}, {"clamped"}, {"periodic"}}}},
       {{"time", "start"}, {"start", {{"as given"}, {"equilibrium"}}}},
-      {{"time", "error_estimate"}, {"word for the error estimate", {{"auto"}, {"always"}, {"never"}}}},
+      {{"time", "error_estimate"}, {"word for the error estimate", {{"auto"}, {"always"}, {"steps"}, {"never"}}}},
       {{"time", "analysis"}, {"analysis", {{"dynamic"}, {"static"}, {"path"}, {"modes"}}}},
       {{"solver", "kind"},
        {"solver", {{"auto"}, {"light"}, {"klu"}, {"cholesky"}, {"umfpack"}, {"direct"}, {"cg"}, {"iterative"}, {"bddc"}, {"feti-dp"}}}},

@@ -65,12 +65,12 @@ struct Bar : Case {
 
 }  // namespace
 
-// Truth: with a side load of .15 N the bar leans as it pushes, and no state on the way is unstable.  (Where steps are so long that both
-// branches are stable at their end, as with 4, the other one may be met.)
+// Truth: with a side load of .15 N the bar leans as it pushes, and no state on the way is unstable, also where both branches are stable at
+// the end of a step.
 TEST(StaticStability, TheBranchOfTheSideLoadIsFollowed) {
   Bar c;
   std::string said;
-  for (const char* steps : {"10", "20", "40", "100"})
+  for (const char* steps : {"1", "2", "4", "10", "20", "40", "100"})
     for (const double side : {0.15, -0.15}) {
       const double x = c.tip(bar(side, std::string("analysis = \"static\"\nsteps = ") + steps + "\n"), said);
       EXPECT_NEAR(x, std::copysign(std::sin(leaning(std::abs(side))), side), 1e-8) << steps << " steps\n" << said;
@@ -155,6 +155,15 @@ force = )" +
          force + "\n[[probe]]\nname = \"tip\"\non = \"right\"\n[time]\nanalysis = \"" + analysis + "\"\nsteps = " + std::to_string(steps) +
          "\n";
 }
+/// How far aside the tip of a column of 1 m stands under P times Euler's load: P = (2 K(k)/pi)^2, 2 k/K(k) [timoshenko-gere-1961].
+double elastica(double P) {
+  double low = 0.01, high = 0.999;
+  while (high - low > 1e-12) {
+    const double k = (low + high) / 2;
+    (std::pow(2 * std::comp_ellint_1(k) / M_PI, 2) < P ? low : high) = k;
+  }
+  return 2 * low / std::comp_ellint_1(low);
+}
 const double euler = std::pow(M_PI / 2, 2) * 2e11 * std::pow(0.02, 4) / 12;
 
 struct Column : Case {
@@ -196,29 +205,18 @@ TEST(LoadPath, OfAColumnWithASmallSideLoadArrivesInTensOfStates) {
     ASSERT_EQ(ran.exit, 0) << ran.err;
     const auto tip = c.results().history("probe/tip");
     EXPECT_LT(tip.rows(), 100);
-    double low = 0.01, high = 0.999;  // of k
-    while (high - low > 1e-12) {
-      const double k = (low + high) / 2;
-      (std::pow(2 * std::comp_ellint_1(k) / M_PI, 2) < 10000 / euler ? low : high) = k;
-    }
-    EXPECT_NEAR(tip(tip.rows() - 1, 1), 2 * low / std::comp_ellint_1(low), 0.03) << "side load " << side;
+    EXPECT_NEAR(tip(tip.rows() - 1, 1), elastica(10000 / euler), 0.03) << "side load " << side;
   }
 }
 
 // Truth: the same elastica, by load steps: the perfect column is told and left, that with a side load follows it.
 TEST(StaticStability, AColumnEndsOnTheElastica) {
   Column c;
-  double low = 0.01, high = 0.999;
-  while (high - low > 1e-12) {
-    const double k = (low + high) / 2;
-    (std::pow(2 * std::comp_ellint_1(k) / M_PI, 2) < 10000 / euler ? low : high) = k;
-  }
   for (const char* side : {"0", "1", "10"}) {
     const Ran ran = c.solve_column(column(std::string("[-10000, ") + side + ", 0]", "static", 10));
     ASSERT_EQ(ran.exit, 0) << ran.err;
     const auto tip = c.results().history("probe/tip");
-    EXPECT_NEAR(std::hypot(tip(tip.rows() - 1, 1), tip(tip.rows() - 1, 2)), 2 * low / std::comp_ellint_1(low), 0.03)
-        << "side load " << side;
+    EXPECT_NEAR(std::hypot(tip(tip.rows() - 1, 1), tip(tip.rows() - 1, 2)), elastica(10000 / euler), 0.03) << "side load " << side;
     if (side != std::string("1")) {  // such a mesh bends a little more easily across a
                                      // corner of its section than that holds it
       EXPECT_EQ(ran.err.find("not stable") != std::string::npos, side[0] == '0') << ran.err;
@@ -323,6 +321,63 @@ TEST(StaticStability, EverySolverTellsOrSaysThatItDoesNot) {
   }
   solve(1, "bar.toml --set solver.kind=direct", true, false);
   solve(1, "bar.toml --set solver.kind=direct --set 'load.P.force=[0, 0, -99]'", true, true);
+}
+
+// The same on ranks: rows of joints are no eigenvalues below zero, paths tell Euler's load, load steps and starts leave what is not stable.
+TEST(StaticStability, IsTheSameOnRanksWithJoints) {
+  Column c;
+  const auto capped = [](const std::string& time) {  // its head is welded to a body that bears the load
+    std::string text = column("[0, 0, 0]", "static", 4);
+    text.erase(text.find("[time]"));
+    return text + R"([[body]]
+name = "head"
+mass = 1.0
+com = [1, 0, 0]
+inertia = [1e-4, 1e-4, 1e-4]
+[[joint]]
+kind = "fixed"
+name = "weld"
+a = "right"
+b = "head"
+at = [1, 0, 0]
+[[load]]
+kind = "force"
+name = "Q"
+on = "head"
+force = [-1, 0, 0]
+[time]
+)" + time;
+  };
+  const auto load = [](double share) { return fmt::format(" --set 'load.Q.force=[{}, 0, 0]' --set solver.kind=direct", -share * euler); };
+  for (const int ranks : {2, 3}) {
+    const std::string parts = fmt::format("parts{}.h5", ranks);
+    ASSERT_EQ(c.run(fmt::format("hilo-part --quiet mesh.h5 -n {} -o {}", ranks, parts)).exit, 0);
+    const auto solve = [&](const std::string& time, double share) {
+      c.write("scene.toml", capped(time));
+      const Ran ran = mpirun(ranks, "hilo-solve scene.toml " + parts + " -o run.h5" + load(share), c.path());
+      EXPECT_EQ(ran.exit, 0) << ran.err;
+      return ran;
+    };
+    const Ran stable = solve("analysis = \"static\"\nsteps = 4\n", 0.95);
+    EXPECT_NE(text_of(c / "run.json").find("\"unstable_states\": 0"), std::string::npos) << ranks << stable.err;
+    const Ran lost = solve("analysis = \"static\"\nsteps = 4\n", 1.3);
+    EXPECT_NE(lost.err.find("the equilibrium is not stable"), std::string::npos) << ranks << lost.err;
+    EXPECT_NE(lost.err.find("The run goes on from a stable one"), std::string::npos) << ranks << lost.err;
+    const auto tip = c.results().history("probe/tip");
+    EXPECT_NEAR(std::hypot(tip(tip.rows() - 1, 1), tip(tip.rows() - 1, 2)), elastica(1.3), 0.03) << ranks;
+    const Ran path = solve("analysis = \"path\"\nsteps = 10\n", 1.3);
+    const std::string all = path.out + path.err;
+    const size_t at = all.find("stability is lost at ");
+    ASSERT_NE(at, std::string::npos) << all;
+    EXPECT_NEAR(std::stod(all.substr(at + 21)) * 1.3, 1, 0.01) << all;
+    const std::string start = "start = \"equilibrium\"\nend = 2e-4\nstep = 1e-4\n";
+    EXPECT_EQ(solve(start, 0.95).err.find("not stable"), std::string::npos) << ranks;
+    const Ran bent = solve(start, 1.3);
+    EXPECT_NE(bent.err.find("the equilibrium at the start is not stable"), std::string::npos) << ranks;
+    EXPECT_NE(bent.err.find("The run starts from a stable one"), std::string::npos) << ranks << bent.err;
+    const auto first = c.results().history("probe/tip");
+    EXPECT_NEAR(std::hypot(first(0, 1), first(0, 2)), elastica(1.3), 0.03) << ranks;
+  }
 }
 
 }  // namespace hilo::test

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/jump.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/linear_step.hpp"
+#include "dynamics/start.hpp"
+
+namespace hilo {
+namespace {
+
+constexpr double out_of_line = 3;   // times what tangents foresee
+constexpr double of_largest = 0.1;  // of the largest way foreseen, and
+constexpr double of_length = 1e-5;  // of the scene: shorter ways are nothing
+
+/// How far points of a configuration go by a change of it, one after the other: nodes, centres, and directors at the sizes of their bodies.
+template <class Visit>
+void each_way(const System& system, const Config& change, const Visit& visit) {
+  size_t i = 0;
+  for (const Vec3& x : change.x) visit(i++, x.norm());
+  for (size_t b = 0; b < change.c.size(); ++b) {
+    visit(i++, change.c[b].norm());
+    visit(i++, system.bodies[b].size * change.R[b].colwise().norm().maxCoeff());
+  }
+}
+
+}  // namespace
+
+/// How all moves from a state to the loads of another, to first order: what moves by a law takes the rest along.
+Config BranchJump::foreseen(const Loaded& at, const Loaded& other, bool factored) {
+  constexpr double little = 1e-3;  // of the way of what moves by a law
+  system_.commit(at.q);
+  const auto evaluate = [&](const Config& q, const Loaded& loads, bool tangent) {
+    Stage s = stage_at(q, loads.t);
+    s.a = &zero_, s.load_factor = loads.ramp, s.elapsed = slow;
+    Residual r;
+    assemble(system_, solver_, s, at.lambda, r, tangent);
+    return r.r;
+  };
+  std::vector<double> base;
+  if (!factored || system_.moves()) base = evaluate(at.q, at, !factored);
+  std::vector<double> r = evaluate(at.q, other, false), z;
+  Config way;
+  combine(way, {{0, &at.q}});
+  if (system_.moves()) {
+    Config to = at.q, nudged;
+    system_.prescribe(to, other.t, other.ramp);
+    combine(nudged, {{1 - little, &at.q}, {little, &to}});
+    system_.place(nudged);
+    combine(way, {{1 / little, &nudged}, {-1 / little, &at.q}});
+    const std::vector<double> moved = evaluate(nudged, at, false);
+    for (size_t i = 0; i < r.size(); ++i) r[i] += (moved[i] - base[i]) / little;
+  }
+  if (correct(solver_, r, z, 1e-3).ok) {
+    system_.add_rates(way, at.q, z);
+  } else {  // a tangent that is singular foresees any way
+    for (Vec3& x : way.x) x.setConstant(1e150);
+    for (Vec3& c : way.c) c.setConstant(1e150);
+  }
+  return way;
+}
+
+double BranchJump::between(const Loaded& from, const Loaded& to, bool factored) {
+  combine(zero_, {{0, &to.q}});
+  Config way;
+  combine(way, {{1, &to.q}, {-1, &from.q}});
+  std::vector<double> gone, most;
+  each_way(system_, way, [&](size_t, double x) { gone.push_back(x); });
+  most.assign(gone.size(), 0.0);
+  const auto surprise = [&](const Config& foreseen) {
+    double largest = 0, worst = 0;
+    each_way(system_, foreseen, [&](size_t i, double x) { most[i] = std::max(most[i], x), largest = std::max(largest, most[i]); });
+    const double least = std::max(of_largest * system_.comm->max(largest), of_length * system_.length);
+    for (size_t i = 0; i < gone.size(); ++i)
+      if (gone[i] > std::max(out_of_line * most[i], least)) worst = std::max(worst, gone[i]);
+    return system_.comm->max(worst);
+  };
+  const double behind = surprise(foreseen(to, from, factored));
+  if (behind == 0) return 0;
+  double jump = surprise(foreseen(from, to, false));
+  if (jump == 0 && !system_.traits().remembers) {
+    Config q = to.q;
+    std::vector<double> lambda = to.lambda;
+    system_.commit(q);
+    if (equilibrium(system_, solver_, q, lambda, from.t, from.ramp, false, options_).converged &&
+        system_.largest_difference(q, from.q) > out_of_line * of_largest * behind)
+      jump = behind;
+  }
+  system_.commit(to.q);
+  return jump;
+}
+
+}  // namespace hilo

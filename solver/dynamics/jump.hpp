@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether a load step ended on another branch of equilibrium than it began on, as where a flat truss snaps through.
+#pragma once
+#include <vector>
+
+#include "dynamics/newton.hpp"
+
+namespace hilo {
+
+/// A state of equilibrium and its loads: those at time t, times `ramp`.
+struct Loaded {
+  const Config& q;
+  const std::vector<double>& lambda;
+  double t, ramp;
+};
+
+/// On one branch a point moves about as far as the tangents at both ends of the step foresee, the less it differs the shorter the step is.
+/// A jump has a length of its own, however short the step.  Where a point moved more than three times as far as both foresee, the step has
+/// jumped, or is too long to tell.  Where the tangent at the start alone explains the way (it is soft just before a limit of the load, or
+/// the structure stiffens), the loads are taken back: what then comes to another state than the start has jumped.  Collective.
+class BranchJump {
+ public:
+  BranchJump(System& system, KktSolver& solver, const NewtonOptions& options) : system_(system), solver_(solver), options_(options) {}
+  /// The longest way of a point that was not foreseen [m], or 0.  `factored`: the solver has factors of the tangent at `to`.
+  double between(const Loaded& from, const Loaded& to, bool factored);
+
+ private:
+  Config foreseen(const Loaded& at, const Loaded& other, bool factored);
+  System& system_;
+  KktSolver& solver_;
+  NewtonOptions options_;
+  Config zero_;
+};
+
+}  // namespace hilo
