@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Surfaces against each other: energy and momenta of every step at any length of it, whatever the regions are, and closed forms.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <fstream>
+
+#include "dynamics/kept_run.hpp"
+#include "verify/contact/collision.hpp"
+
+namespace hilo::test {
+namespace {
+
+/// Both meshes as one; sets with the name of the region before theirs.
+Mesh together(const Mesh& a, const Mesh& b) {
+  Mesh out;
+  for (const Mesh* m : {&a, &b}) {
+    const auto node = out.n_nodes(), cell = out.n_cells();
+    const auto region = static_cast<std::int32_t>(out.region_name.size());
+    for (const Vec3& x : m->X) out.X.push_back(x), out.node_id.push_back(out.n_nodes());
+    for (std::int64_t c = 0; c < m->n_cells(); ++c) {
+      std::vector<std::int64_t> nodes;
+      for (const std::int64_t i : m->cell(c)) nodes.push_back(node + i);
+      out.add_cell(static_cast<Shape>(m->shape[c]), nodes, region, out.n_cells() + 1);
+    }
+    out.region_name.push_back(m->region_name[0]), out.region_data.push_back(m->region_data[0]);
+    for (const auto& [name, facets] : m->facet_sets)
+      for (const Facet& f : facets) out.facet_sets[m->region_name[0] + name].push_back({cell + f.cell, f.facet});
+  }
+  return out;
+}
+
+/// Two blocks, B turned and above a face of A with a corner ahead.
+Mesh blocks(Shape a, Shape b) {
+  BlockOptions A, B;
+  A.shape = a, A.n[0] = A.n[1] = 3, A.n[2] = 2, A.high = Vec3(1, 1, 0.6), A.regions = {"A"};
+  B.shape = b, B.n[0] = 2, B.n[1] = B.n[2] = 3, B.high = Vec3(0.7, 0.9, 1), B.regions = {"B"};
+  const Mat3 turn = (Eigen::AngleAxisd(0.5, Vec3::UnitZ()) * Eigen::AngleAxisd(0.4, Vec3::UnitY())).toRotationMatrix();
+  double low = 0;
+  for (int k = 0; k < 8; ++k) low = std::min(low, (turn * Vec3(k & 1 ? 0.35 : -0.35, k & 2 ? 0.45 : -0.45, k & 4 ? 0.5 : -0.5))[0]);
+  B.map = [=](const Vec3& x) { return Vec3(turn * (x - Vec3(0.35, 0.45, 0.5)) + Vec3(1.01 - low, 0.45, 0.25)); };
+  return together(block_mesh(A), block_mesh(B));
+}
+
+std::string stiff_if_rigid(Fidelity a, Fidelity b) {
+  return a == Fidelity::rigid && b == Fidelity::rigid ? " --set contact.c.modulus=2e6 --set contact.c.layer=0.2" : "";
+}
+
+void expect_kept(const Worst& w, const std::string& what) {
+  EXPECT_LT(w.energy, 1e-11) << what;
+  EXPECT_LT(w.momentum, 1e-11) << what;
+  EXPECT_LT(w.angular, 1e-11) << what;
+  EXPECT_LE(w.given_back, 1e-15) << what;
+}
+
+// Truth: nothing acts from outside.  A contact takes some 0.06 s; momenta of each block are about 1200 kg m/s and 300 kg m^2/s.
+TEST(Surfaces, BlocksKeepEnergyAndMomentaAtAnyStep) {
+  using enum Fidelity;
+  for (const auto& [a, b] : {std::pair{nonlinear, nonlinear}, {nonlinear, rigid}, {linear, nonlinear}, {rigid, linear}, {rigid, rigid}}) {
+    Case c("contact");
+    c.use(blocks(Shape::hex8, Shape::hex8), {a, b});
+    for (const char* friction : {"0", "0.3"})
+      for (const double share : shares) {
+        const std::string what = fmt::format("{} {} mu {} share {}", word(a), word(b), friction, share);
+        const Results r =
+            c.solved(fmt::format("--set contact.c.friction={} --set time.step={} --set time.end={} --set solver.tolerance=1e-12{}",
+                                 friction, 0.06 * share, share < 0.1 ? 0.1 : 0.3, stiff_if_rigid(a, b)),
+                     "run.h5", "blocks");
+        const Worst w = worst_of(r, 1200, 300);
+        expect_kept(w, what);
+        EXPECT_TRUE(share > 0.4 || w.met > 0) << what;
+      }
+  }
+}
+
+TEST(Surfaces, EveryShapeOfCellMeetsAnother) {
+  for (const auto& [a, b] :
+       {std::pair{Shape::tet4, Shape::hex8}, {Shape::tet10, Shape::hex20}, {Shape::wedge6, Shape::tet10}, {Shape::hex20, Shape::wedge15}}) {
+    Case c("contact");
+    c.use(blocks(a, b));
+    const std::string what = fmt::format("{} {}", info(a).name, info(b).name);
+    const Worst w = worst_of(c.solved("--set time.end=0.12 --set solver.tolerance=1e-12", "run.h5", "blocks"), 1200, 300);
+    expect_kept(w, what);
+    EXPECT_GT(w.met, 3) << what;
+  }
+}
+
+// Truth: bars of equal length change their velocities in the time in which a wave runs there and back, 2/3 s.
+TEST(Surfaces, EqualBarsChangeVelocities) {
+  BlockOptions A, B;
+  A.regions = {"A"}, B.regions = {"B"};
+  A.n[2] = B.n[2] = 100;
+  A.high = B.high = Vec3(0.1, 0.1, 10);
+  B.map = [](const Vec3& x) { return Vec3(x + Vec3(0, 0, 10.01)); };
+  Case c("contact");
+  c.use(together(block_mesh(A), block_mesh(B)));
+  const Results r = c.solved("", "run.h5", "bars");
+  EXPECT_NEAR(r.history("probe/a").bottomRows(1)(0, 5), 0, 1e-3);
+  EXPECT_NEAR(r.history("probe/b").bottomRows(1)(0, 5), 0.1, 1e-3);
+  const auto f = r.history("contact/c");
+  double began = 0, ended = 0;
+  for (Eigen::Index k = 1; k < f.rows(); ++k)
+    if (f(k, 3) > 0) began = began == 0 ? r.t()[k] : began, ended = r.t()[k];
+  EXPECT_NEAR(ended - began, 2. / 3, 0.02 * 2 / 3);
+  EXPECT_NEAR(f(r.index(0.4), 2), 30 * 0.01 * 0.05, 0.03 * 0.015) << "rho c A v/2";
+}
+
+/// Two blocks of 1 x 1 x .5 m, one above the other.
+Mesh stack(Shape a, Shape b, int n_a, int n_b) {
+  BlockOptions A, B;
+  A.regions = {"A"}, B.regions = {"B"};
+  A.shape = a, B.shape = b;
+  A.n[0] = A.n[1] = n_a, B.n[0] = B.n[1] = n_b, A.n[2] = B.n[2] = 3;
+  A.high = Vec3(1, 1, 0.5), B.low = Vec3(0, 0, 0.5), B.high = Vec3(1, 1, 1);
+  return together(block_mesh(A), block_mesh(B));
+}
+
+// Truth: the stress is -0.1 Pa everywhere; strains of the columns of cells tell it.
+TEST(Surfaces, PressBetweenMeshesThatDoNotMatch) {
+  for (const Shape shape : {Shape::hex8})
+    for (const auto& [factor, limit] : {std::pair{"1", 0.05}, {"100", 5e-3}}) {
+      const Mesh mesh = stack(shape, Shape::hex8, 5, 7);
+      Case c("contact");
+      c.use(mesh);
+      const Results r = c.solved(fmt::format("--set contact.c.factor={}", factor), "run.h5", "pressed");
+      const auto u = r.field("displacement");
+      double worst = 0;
+      for (std::int64_t cell = 0; cell < mesh.n_cells(); ++cell) {
+        const auto n = mesh.cell(cell);
+        double rise = 0, height = 0;
+        for (int k = 0; k < 4; ++k) rise += u[n[4 + k]][2] - u[n[k]][2], height += mesh.X[n[4 + k]][2] - mesh.X[n[k]][2];
+        worst = std::max(worst, std::abs(1e4 * rise / height / -0.1 - 1));
+      }
+      EXPECT_LT(worst, limit) << info(shape).name << " " << factor;
+      EXPECT_NEAR(r.history("contact/c").bottomRows(1)(0, 2), 0.1, 1e-8);
+    }
+}
+
+/// Two blocks of any shape, size and fidelity, thrown at each other; what the scene is told of them.
+std::string thrown(int seed, Case& c) {
+  Dice dice(seed + 500);
+  constexpr Shape all[] = {Shape::hex8, Shape::tet4, Shape::wedge6, Shape::hex8, Shape::tet10, Shape::hex20};
+  constexpr Fidelity levels[] = {Fidelity::nonlinear, Fidelity::nonlinear, Fidelity::rigid, Fidelity::linear};
+  const auto pick = [&](int n) { return std::min(n - 1, static_cast<int>(n * dice())); };
+  const auto direction = [&] { return Vec3(dice(-1, 1), dice(-1, 1), dice(-1, 1) + 1e-3).normalized(); };
+  BlockOptions o[2];
+  double radius = 0.01;
+  for (int k = 0; k < 2; ++k) {
+    o[k].shape = all[pick(6)], o[k].regions = {k == 0 ? "A" : "B"};
+    const Vec3 half(dice(0.25, 0.6), dice(0.25, 0.6), dice(0.25, 0.6));
+    for (int& n : o[k].n) n = 1 + pick(o[k].shape == Shape::hex8 ? 3 : 2);
+    o[k].low = -half, o[k].high = half, radius += half.norm();
+  }
+  const Vec3 to = direction();
+  const Mat3 turn = Eigen::AngleAxisd(dice(0, 3), direction()).toRotationMatrix();
+  o[1].map = [=](const Vec3& x) { return Vec3(turn * x + radius * to); };
+  const Fidelity a = levels[pick(4)], b = levels[pick(4)];
+  c.use(together(block_mesh(o[0]), block_mesh(o[1])), {a, b});
+  const double v = std::pow(10, dice(-0.5, 0.7)), step = 0.06 * std::pow(10, dice(-1.2, 0.3));
+  const Vec3 flight = -v * to + 0.3 * v * direction();
+  return fmt::format(
+      "--set 'initial.1.velocity={}' --set 'initial.1.spin={}' --set 'initial.2.velocity=[{},{},{}]' --set 'initial.2.spin={}' "
+      "--set contact.c.friction={} --set time.step={} --set time.end={} --set solver.tolerance=1e-12{}",
+      dice.vector(0.2 * v), dice.vector(v), flight[0], flight[1], flight[2], dice.vector(2 * v), dice() < 0.3 ? 0 : dice(0, 1.5), step,
+      std::min(1.2 / v + 0.15, 150 * step), stiff_if_rigid(a, b));
+}
+
+// Truth: nothing acts from outside, whatever is thrown.
+TEST(Surfaces, AHundredThrowsKeepEnergyAndMomenta) {
+  int met = 0, rubbed = 0;
+  for (int seed = 0; seed < 100; ++seed) {
+    Case c("contact");
+    const std::string options = thrown(seed, c);
+    const Ran ran = c.solve("--quiet " + options, "run.h5", 0, "blocks");
+    if (ran.exit != 0) continue;
+    const Results r = c.results();
+    const auto e = r.history("energy");
+    const double size = std::sqrt(2 * e.col(0).maxCoeff() * 500);  // a momentum of that energy
+    const Worst w = worst_of(r, size, size);
+    expect_kept(w, fmt::format("{}: {}", seed, options));
+    met += w.met > 0, rubbed += e.bottomRows(1)(0, 4) > 1e-3 * w.top;
+  }
+  EXPECT_GT(met, 60);
+  EXPECT_GT(rubbed, 25);
+}
+
+}  // namespace
+}  // namespace hilo::test
