@@ -110,7 +110,7 @@ void Builder::add_surfaces(const Entry& e, const std::vector<std::string>& obsta
       low = std::min(low, k), high = std::max(high, k);
       std::vector<Vec3> X;
       for (int a = 0; a < face.n; ++a) X.push_back(mesh.X[face.node[a]]);
-      const FacetPoints at = facet_points(X);
+      const FacetPoints at = facet_points(X, pair.is_static ? 4 : face.n > 4 ? 3 : 2);
       face.first = static_cast<int>(pair.side[s].points.size()), face.n_points = static_cast<int>(at.area.size());
       for (size_t j = 0; j < at.area.size(); ++j) {
         SurfacePoint point;

@@ -46,20 +46,33 @@ const FacetCut& cut_of(size_t n) {
   return cuts[n == 3 ? 0 : n == 4 ? 1 : n == 6 ? 2 : 3];
 }
 
-FacetPoints facet_points(std::span<const Vec3> X) {
-  const size_t n = X.size();
-  const bool triangle = n == 3 || n == 6;
+FacetPoints facet_points(std::span<const Vec3> X, int n) {
+  struct Gauss {
+    std::array<double, 4> at, weight;
+  };
+  static constexpr Gauss rules[3] = {{{-0.577350269189625764509, 0.577350269189625764509}, {1, 1}},
+                                     {{-0.774596669241483377036, 0, 0.774596669241483377036}, {5. / 9, 8. / 9, 5. / 9}},
+                                     {{-0.861136311594052575224, -0.339981043584856264803, 0.339981043584856264803, 0.861136311594052575224},
+                                      {0.347854845137453857373, 0.652145154862546142627, 0.652145154862546142627, 0.347854845137453857373}}};
+  const size_t nodes = X.size();
+  std::vector<std::array<double, 3>> at;  // place and weight
+  if ((nodes == 3 || nodes == 6) && n == 2) {
+    for (const auto& [r, s] : {std::pair{1. / 6, 1. / 6}, {2. / 3, 1. / 6}, {1. / 6, 2. / 3}}) at.push_back({r, s, 1. / 6});
+  } else if (nodes == 3 || nodes == 6) {  // exact for polynomials of degree four
+    for (const auto& [a, w] : {std::pair{0.445948490915965, 0.223381589678011}, {0.091576213509771, 0.109951743655322}})
+      for (int k = 0; k < 3; ++k) at.push_back({k == 1 ? 1 - 2 * a : a, k == 2 ? 1 - 2 * a : a, w / 2});
+  } else {
+    const Gauss& rule = rules[n - 2];
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) at.push_back({rule.at[i], rule.at[j], rule.weight[i] * rule.weight[j]});
+  }
   FacetPoints out;
-  const double g = 1 / std::sqrt(3.0);
-  const std::vector<std::array<double, 2>> at =
-      triangle ? std::vector<std::array<double, 2>>{{1. / 6, 1. / 6}, {2. / 3, 1. / 6}, {1. / 6, 2. / 3}}
-               : std::vector<std::array<double, 2>>{{-g, -g}, {g, -g}, {g, g}, {-g, g}};
-  for (const auto& [r, s] : at) {
-    const FacetShape shape = facet_shape(n, r, s);
+  for (const auto& [r, s, weight] : at) {
+    const FacetShape shape = facet_shape(nodes, r, s);
     Vec3 tr = Vec3::Zero(), ts = Vec3::Zero();
-    for (size_t a = 0; a < n; ++a) tr += shape.dr[a] * X[a], ts += shape.ds[a] * X[a];
-    out.share.emplace_back(shape.N, shape.N + n);
-    out.area.push_back(tr.cross(ts).norm() * (triangle ? 1. / 6 : 1));
+    for (size_t a = 0; a < nodes; ++a) tr += shape.dr[a] * X[a], ts += shape.ds[a] * X[a];
+    out.share.emplace_back(shape.N, shape.N + nodes);
+    out.area.push_back(tr.cross(ts).norm() * weight);
   }
   return out;
 }

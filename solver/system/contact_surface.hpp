@@ -16,12 +16,13 @@ struct FacetCut {
 };
 const FacetCut& cut_of(size_t n);
 
-/// Points of a facet with their shares of its nodes and their reference areas: 2 x 2 Gauss points, or three of a triangle.
+/// Points of a facet with their shares of its nodes and their reference areas: n x n Gauss points (2 to 4); of a triangle three or, from
+/// n = 3 on, six.
 struct FacetPoints {
   std::vector<std::vector<double>> share;
   std::vector<double> area;  // [m^2]
 };
-FacetPoints facet_points(std::span<const Vec3> X);
+FacetPoints facet_points(std::span<const Vec3> X, int n = 2);
 
 /// Where a point stands between steps.
 struct FacetState {

@@ -118,8 +118,8 @@ Mesh stack(Shape a, Shape b, int n_a, int n_b) {
 
 // Truth: the stress is -0.1 Pa everywhere; strains of the columns of cells tell it.
 TEST(Surfaces, PressBetweenMeshesThatDoNotMatch) {
-  for (const Shape shape : {Shape::hex8})
-    for (const auto& [factor, limit] : {std::pair{"1", 0.05}, {"100", 5e-3}}) {
+  for (const Shape shape : {Shape::hex8, Shape::wedge6})
+    for (const auto& [factor, limit] : {std::pair{"1", 0.02}, {"100", shape == Shape::hex8 ? 1.5e-3 : 5e-3}}) {
       const Mesh mesh = stack(shape, Shape::hex8, 5, 7);
       Case c("contact");
       c.use(mesh);
@@ -129,12 +129,59 @@ TEST(Surfaces, PressBetweenMeshesThatDoNotMatch) {
       for (std::int64_t cell = 0; cell < mesh.n_cells(); ++cell) {
         const auto n = mesh.cell(cell);
         double rise = 0, height = 0;
-        for (int k = 0; k < 4; ++k) rise += u[n[4 + k]][2] - u[n[k]][2], height += mesh.X[n[4 + k]][2] - mesh.X[n[k]][2];
+        const int half = static_cast<int>(n.size()) / 2;
+        for (int k = 0; k < half; ++k) rise += u[n[half + k]][2] - u[n[k]][2], height += mesh.X[n[half + k]][2] - mesh.X[n[k]][2];
         worst = std::max(worst, std::abs(1e4 * rise / height / -0.1 - 1));
       }
       EXPECT_LT(worst, limit) << info(shape).name << " " << factor;
       EXPECT_NEAR(r.history("contact/c").bottomRows(1)(0, 2), 0.1, 1e-8);
     }
+}
+
+// Truth: lengths s times as large, of the same material, take s times as long; velocities are the same, forces s^2 times as large.
+TEST(Surfaces, ScenesOfAnotherSizeAreTheSame) {
+  double first = 0;
+  for (const double s : {1., 1e-3, 1e3}) {
+    Mesh mesh = blocks(Shape::hex8, Shape::hex8);
+    for (Vec3& x : mesh.X) x *= s;
+    Case c("contact");
+    c.use(mesh);
+    const Results r = c.solved(fmt::format("--set time.end={} --set time.step={} --set 'initial.1.spin=[{},0,{}]' "
+                                           "--set 'initial.2.spin=[0,{},{}]' --set solver.tolerance=1e-12",
+                                           0.12 * s, 0.006 * s, 0.3 / s, 2 / s, 2 / s, 1 / s),
+                               "run.h5", "blocks");
+    const double force = r.peak("contact/c", 0, 3) / (s * s);
+    if (first == 0) first = force;
+    EXPECT_GT(first, 1e3);
+    EXPECT_NEAR(force, first, 1e-6 * first) << s;
+  }
+}
+
+// Truth: beside pressure above, only what lies below holds the upper block up, and friction holds it aside; the stress is uniform.
+TEST(Surfaces, HoldAPartThatNothingElseHolds) {
+  Case c("contact");
+  c.use(stack(Shape::hex8, Shape::hex8, 3, 2));
+  std::string text = text_of(c.source("pressed.toml"));
+  for (const char* name : {"side", "back"}) {
+    const size_t at = text.find(fmt::format("[[motion]]\nkind = \"fixed\"\nname = \"{}\"", name));
+    text.erase(at, text.find('\n', text.find("components", at)) + 1 - at);
+  }
+  std::ofstream(c / "held.toml") << text << "[[load]]\nkind = \"traction\"\nname = \"aside\"\non = \"Bzmax\"\ntraction = [0.02, 0.01, 0]\n";
+  const Ran ran = c.run("hilo-solve --quiet held.toml mesh.h5 --set contact.c.friction=0.5 -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Eigen::MatrixXd f = Results(c / "run.h5").history("contact/c").bottomRows(1);
+  EXPECT_NEAR(f(0, 2), 0.1, 1e-8);
+  EXPECT_NEAR(f(0, 0), -0.02, 1e-8);
+  EXPECT_NEAR(f(0, 1), -0.01, 1e-8);
+}
+
+TEST(Surfaces, GoOnBitByBit) {
+  Case c("contact");
+  const Mesh mesh = blocks(Shape::hex8, Shape::hex8);
+  write_mesh(c / "mesh.h5", mesh, {"test"});
+  write_tags(c / "tags.h5", c / "mesh.h5", {Fidelity::nonlinear, Fidelity::linear}, {"test"});
+  expect_goes_on(c.path(), text_of(c.source("blocks.toml")), "mesh.h5", {2, 5, 8, 12}, {"time.end=0.12"});
+  expect_goes_on(c.path(), text_of(c.source("blocks.toml")), "tags.h5", {2, 5, 8, 12}, {"time.end=0.12"});
 }
 
 /// Two blocks of any shape, size and fidelity, thrown at each other; what the scene is told of them.
