@@ -78,4 +78,8 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   std::string jumped_;                    // what the step tried last went through
 };
 
+class System;
+/// A node of each facet of surfaces that may meet others.
+std::vector<int> nodes_that_meet(const System& system);
+
 }  // namespace hilo

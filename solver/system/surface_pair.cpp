@@ -324,6 +324,7 @@ std::string SurfacePair::advance(const Stage& s) {
 }
 
 void SurfacePair::settle(bool accepted) {
+  begin_ = committed_;
   (accepted ? sums : next) = accepted ? next : sums;
   for (ContactSurface& surface : side)
     for (SurfacePoint& point : surface.points) {

@@ -41,7 +41,7 @@ class SurfacePair {
   double dissipated(const Stage& s) const;
   /// Why the step cannot be, or "".
   std::string advance(const Stage& s);
-  void commit(const Config& q) { begin_ = q.x; }
+  void commit(const Config& q) { committed_ = q.x; }
   void settle(bool accepted);
   void archive(Archive& a);
   /// Force on side 1, in the step [N].
@@ -86,6 +86,7 @@ class SurfacePair {
   };
   std::vector<std::vector<Partner>> partners_[2];  // of each facet
   std::vector<Ball> ball_[2];                      // of the last look
+  std::vector<Vec3> committed_;                    // of the state accepted last
   std::vector<Vec3> begin_;                        // where nodes are at the beginning of the step
   std::vector<Vec3> foreseen_;                     // where nodes were to go in the step at work
   std::vector<int> nodes_[2];                      // of both sides
