@@ -176,6 +176,60 @@ TEST(Surfaces, HoldAPartThatNothingElseHolds) {
   EXPECT_NEAR(f(0, 1), -0.01, 1e-8);
 }
 
+/// A plate of 3 x 1 x `thick` m, its top at z = 0, and a block of .3 x .3 x .2 m above its middle.
+Mesh plate(double thick, double gap) {
+  BlockOptions A, B;
+  A.regions = {"A"}, B.regions = {"B"};
+  A.n[0] = 14, A.n[1] = 5, B.n[0] = B.n[1] = B.n[2] = 2;
+  A.low = Vec3(-1, -0.5, -thick), A.high = Vec3(2, 0.5, 0), B.low = Vec3(-0.15, -0.15, gap), B.high = Vec3(0.15, 0.15, 0.2 + gap);
+  return together(block_mesh(A), block_mesh(B));
+}
+
+// Truth: v^2/(2 mu g), over the facets of a plate that is held.
+TEST(Surfaces, SlideToRestOverManyFacets) {
+  for (const Fidelity level : {Fidelity::nonlinear, Fidelity::linear}) {
+    Case c("contact");
+    c.use(plate(0.1, 0), {Fidelity::rigid, level});
+    std::ofstream(c / "slide.toml") << "gravity = [0, 0, -9.81]\n"
+                                    << text_of(c.source("plate.toml")) << "[[motion]]\nkind = \"fixed\"\nname = \"held\"\non = \"A\"\n";
+    const Ran ran = c.run("hilo-solve --quiet slide.toml tags.h5 --set contact.c.friction=0.3 -o run.h5");
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const Results r = c.results();
+    const auto x = r.history("probe/b");
+    const double v2 = 1.04, way = v2 / (2 * 0.3 * 9.81);
+    const Eigen::Index last = x.rows() - 1;
+    EXPECT_NEAR((x.row(last) - x.row(0)).head<2>().norm(), way, 5e-3 * way) << word(level);
+    EXPECT_NEAR((x(last, 1) - x(0, 1)) / (x(last, 0) - x(0, 0)), 0.2, 2e-3) << "it slides straight on";
+    EXPECT_NEAR(r.history("energy").bottomRows(1)(0, 4), 18 * v2 / 2, 0.01 * 9 * v2) << word(level);
+  }
+}
+
+// Truth: what is shot at a plate does not come out behind it, however many thicknesses it flies in a step.
+TEST(Surfaces, NothingGoesThroughAPlate) {
+  for (const double thicknesses : {0.5, 2., 8., 30.}) {
+    Case c("contact");
+    c.use(plate(0.02, 0.31));
+    const Results r =
+        c.solved(fmt::format("--set 'initial.1.velocity=[0,0,-10]' --set time.step={} --set time.end={} --set solver.tolerance=1e-12",
+                             thicknesses * 0.002, std::max(0.08, 6 * thicknesses * 0.002)),
+                 "run.h5", "plate");
+    const auto a = r.history("probe/a"), b = r.history("probe/b");
+    EXPECT_GT((b - a).col(2).minCoeff(), 0.01) << thicknesses << ": the plate bends";
+    EXPECT_LT(r.history("contact/c").col(3).maxCoeff(), 0.02) << thicknesses;
+    EXPECT_LT(b.col(5).minCoeff() + 10, 1e-9) << thicknesses;
+    EXPECT_GT(b(b.rows() - 1, 5), -8) << thicknesses << ": they have met";
+    EXPECT_LT(worst_of(r, 180, 180).energy, 1e-11) << thicknesses;
+  }
+}
+
+// Truth: the weight above, whether regions or sets of their facets are named.
+TEST(Surfaces, SetsOfFacetsMeetAsRegionsDo) {
+  Case c("contact");
+  c.use(stack(Shape::tet10, Shape::hex20, 2, 3));
+  for (const char* names : {"", "--set contact.c.a=Azmax --set contact.c.b=Bzmin", "--set contact.c.a=A --set contact.c.b=Bzmin"})
+    EXPECT_NEAR(c.solved(names, "run.h5", "pressed").history("contact/c").bottomRows(1)(0, 2), 0.1, 1e-8) << names;
+}
+
 TEST(Surfaces, GoOnBitByBit) {
   Case c("contact");
   const Mesh mesh = blocks(Shape::hex8, Shape::hex8);
