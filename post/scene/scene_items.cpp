@@ -53,6 +53,7 @@ class Collector {
       for (const Entry& e : scene_.entries(section)) on_joint(e);
     for (const Entry& e : scene_.entries("load")) load(e);
     for (const Entry& e : scene_.entries("motion")) motion(e);
+    for (const Entry& e : scene_.entries("contact")) contact(e);
     for (const Entry& e : scene_.entries("point_mass")) {
       SceneItem& item = add(Glyph::mass, e, "point mass", mass_colour);
       item.at = e.has("at") ? e.vector3("at") : centre(e, "on");
@@ -216,6 +217,18 @@ class Collector {
     if (!on_body) item.nodes = thinned(file_->mesh, nodes(e, "on"), 150);
     if (e.kind == "rotation") item.along = e.vector3("axis") * e.number("angle");
     if (e.kind == "translation") item.along = e.vector3("displacement");
+  }
+
+  /// A line between what meets, with the nodes of sets.
+  void contact(const Entry& e) {
+    SceneItem& item = add(Glyph::link, e, e.number("friction") > 0 ? "contact with friction" : "contact", drive_colour);
+    const auto place = [&](std::string_view key) {
+      for (const Entry& o : scene_.entries("obstacle"))
+        if (o.name == e.text(key)) return o.vector3("at");
+      add_patch(item, e, key);
+      return centre(e, key);
+    };
+    item.at = place("a"), item.to = place("b");
   }
 
   const Scene& scene_;

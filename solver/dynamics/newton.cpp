@@ -6,6 +6,7 @@
 
 #include "dynamics/free_part.hpp"
 #include "dynamics/linear_step.hpp"
+#include "system/revising.hpp"
 
 namespace hilo {
 
@@ -95,6 +96,7 @@ class Newton {
   void accept();
   NewtonReport fail(const std::string& reason) { return report_.reason = reason, report_; }
   bool is_sound() const { return report_.least_det.det > 0 && std::isfinite(report_.residual); }
+  bool is_revised();
   bool is_small_enough() const { return report_.residual <= options_.tolerance; }
   bool is_rounding() const;
 
@@ -110,6 +112,7 @@ class Newton {
   Config before_;                      // where that one began
   double share_ = 1;
   bool damped_ = false;
+  int revisions_ = 0;
   double last_residual_ = 0;
   bool foresees_;                   // a tangent takes the stresses of cells from the last correction (physics/solid, `foresee`)
   bool foreseen_ = false;           // in the last tangent
@@ -247,6 +250,15 @@ bool Newton::is_rounding() const {
          report_.residual <= 10 * options_.tolerance;
 }
 
+/// Whether the answer makes other equations: what a point meets.  After six times they stay as they are; any choice keeps energy and
+/// momenta.
+bool Newton::is_revised() {
+  constexpr int most = 6;
+  if (revisions_ == most || !revise(system_, stage_(u_))) return false;
+  ++revisions_, damped_ = false, last_.reset();
+  return true;
+}
+
 NewtonReport Newton::take() {
   double previous = last_ ? system_.largest_difference(u_.q, last_->before) / system_.length : 1e300;
   bool near = false;   // the next residual is likely to be small enough: look at it before building a tangent
@@ -255,9 +267,12 @@ NewtonReport Newton::take() {
     if (near) {
       evaluate(false);
       repeat_with_old_factors();
-      if (is_small_enough() || is_rounding()) return polish(), report_;
+      if (is_small_enough() || is_rounding()) {
+        if (!is_revised()) return polish(), report_;
+        near = moved = false, previous = 1e300;
+      }
     }
-    if (it == options_.max_iterations) return fail("no convergence within the iterations allowed");
+    if (it == options_.max_iterations * (1 + revisions_)) return fail("no convergence within the iterations allowed");
     evaluate(true);
     if (moved && !damped_ && !is_sound()) {  // the last correction went farther than anyone foresaw: back, and damped from there
       move_along(-1);
@@ -265,7 +280,11 @@ NewtonReport Newton::take() {
       continue;
     }
     if (!std::isfinite(report_.residual)) return fail("the residual is not finite");
-    if (is_small_enough() && it > 0) return accept(), report_;
+    if (is_small_enough() && it > 0) {
+      if (!is_revised()) return accept(), report_;
+      near = moved = false, previous = 1e300;
+      continue;
+    }
     const SolveReport solved = solve(false);
     last_residual_ = report_.residual;
     ++report_.iterations;
@@ -287,7 +306,9 @@ NewtonReport Newton::take() {
       return fail("Newton does not converge, nor with damped corrections");
     if (!damped_ && report_.correction <= options_.tolerance * 1e-2) {  // far below what the next one could change
       evaluate(false);
-      return accept(), report_;
+      if (!is_revised()) return accept(), report_;
+      near = moved = false, previous = 1e300;
+      continue;
     }
     near = report_.correction < 1e-3, moved = true;
     previous = report_.correction;

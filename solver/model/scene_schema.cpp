@@ -164,7 +164,7 @@ std::vector<KindSchema> make() {
         {"obstacle", k.name, k.meaning,
          with({kind_of("the kind of obstacle"), name, {"on", text, "", "ground", "a rigid region, body or set that carries it, or ground"}},
               k.keys)});
-  s.push_back({"contact", "", "an obstacle and what must not enter it", contact_keys()});
+  s.push_back({"contact", "", "two parts, or an obstacle and a part, that must not enter each other", contact_keys()});
   obstacle_kinds().close(), joint_kinds().close(), spring_kinds().close(), joint_force_kinds().close();
 
   const Param on{"on", text, "", "!", "set, region or body it acts on"};

@@ -5,40 +5,12 @@
 #include <algorithm>
 #include <set>
 
-#include "model/region_surface.hpp"
 #include "physics/contact/obstacle_kinds.hpp"
 #include "system/builder.hpp"
 #include "system/contacts.hpp"
-#include "system/facet.hpp"
 
 namespace hilo {
 namespace {
-
-/// Points of a facet with their shares of its nodes and their reference areas: 2 x 2 Gauss points, or three of a triangle.
-struct FacetPoints {
-  std::vector<std::vector<double>> share;
-  std::vector<double> area;  // [m^2]
-};
-FacetPoints facet_points(std::span<const Vec3> X) {
-  const size_t n = X.size();
-  const bool triangle = n == 3 || n == 6;
-  FacetPoints out;
-  const double g = 1 / std::sqrt(3.0);
-  const std::vector<std::array<double, 2>> at =
-      triangle ? std::vector<std::array<double, 2>>{{1. / 6, 1. / 6}, {2. / 3, 1. / 6}, {1. / 6, 2. / 3}}
-               : std::vector<std::array<double, 2>>{{-g, -g}, {g, -g}, {g, g}, {-g, g}};
-  for (const auto& [r, s] : at) {
-    const FacetShape shape = facet_shape(n, r, s);
-    Vec3 tr = Vec3::Zero(), ts = Vec3::Zero();
-    for (size_t a = 0; a < n; ++a) tr += shape.dr[a] * X[a], ts += shape.ds[a] * X[a];
-    out.share.emplace_back(shape.N, shape.N + n);
-    out.area.push_back(tr.cross(ts).norm() * (triangle ? 1. / 6 : 1));
-  }
-  return out;
-}
-
-/// Tangential over normal stiffness of two like surfaces (Mindlin 1949).
-double tangential_ratio(double nu) { return 2 * (1 - nu) / (2 - nu); }
 
 /// 1/R of a ball and what it lies on; nothing where the two radii of curvature differ.
 double relative_curvature(const Distance& shape, double radius) {
@@ -48,9 +20,18 @@ double relative_curvature(const Distance& shape, double radius) {
 }
 
 /// What contacts are not right for, by name.
-void refuse_what_is_not_there(const Scene& scene, const Comm& comm, const Entry& e) {
+void refuse_what_is_not_there(const Scene& scene, const Comm& comm, const Entry& e, bool surfaces) {
   const Entry& time = scene.table("time");
   const std::string label = e.label();
+  const bool is_static = time.text("analysis") == "static";
+  if (comm.size > 1) throw Error(e.place.text(), fmt::format("{}: contacts run on one rank", label), "run without mpirun");
+  if (is_static && surfaces) return;
+  if (is_static)
+    throw Error(time.where("analysis"),
+                fmt::format("{}: contacts with obstacles are for steps in time, not for analysis = \"static\"", label),
+                "make the obstacle a rigid region with a mesh");
+  if (surfaces && time.given("start") && time.text("start") == "equilibrium")
+    throw Error(time.where("start"), fmt::format("{}: surfaces that meet do not start from equilibrium", label));
   if (time.text("analysis") != "dynamic")
     throw Error(time.where("analysis"),
                 fmt::format("{}: contacts are for steps in time, not for analysis = \"{}\"", label, time.text("analysis")));
@@ -59,7 +40,6 @@ void refuse_what_is_not_there(const Scene& scene, const Comm& comm, const Entry&
   if (time.given("tolerance"))
     throw Error(time.where("tolerance"), fmt::format("{}: contacts are for equal steps, not for a tolerance that chooses them", label),
                 "give time.step");
-  if (comm.size > 1) throw Error(e.place.text(), fmt::format("{}: contacts run on one rank", label), "run without mpirun");
 }
 
 }  // namespace
@@ -80,10 +60,13 @@ void Builder::add_contacts() {
   }
   std::set<std::string> used;
   for (const Entry& e : scene_.entries("contact")) {
-    refuse_what_is_not_there(scene_, comm_, e);
     const auto a = obstacles.find(e.text("a"));
-    if (a == obstacles.end())
-      throw Error(e.where("a"), fmt::format("{}: no obstacle \"{}\"", e.label(), e.text("a")), suggest(e.text("a"), names));
+    refuse_what_is_not_there(scene_, comm_, e, a == obstacles.end());
+    if (a == obstacles.end()) {
+      if (obstacles.contains(e.text("b"))) e.refuse("b", "it is an obstacle: name it as a");
+      add_surfaces(e, names);
+      continue;
+    }
     used.insert(e.text("a"));
     const Named& obstacle = a->second;
     ContactPair pair;
@@ -170,22 +153,8 @@ void Builder::add_points_of_body(const Entry& e, const Obstacle& b, int body, Co
 
 /// Gauss points of the facets of a region's surface, or of a set.
 void Builder::add_points_of_surface(const Entry& e, ContactPair& pair) {
-  const std::string& name = e.text("b");
-  const std::string where = e.where("b");
-  const Found found = find(name, where);
-  if (!mesh_ || found.nodes.empty())
-    throw Error(where, fmt::format("{}: \"{}\" has no surface", e.label(), name),
-                "put an [[obstacle]] of kind sphere or box on it, and name that");
   const Mesh& mesh = mesh_->mesh;
-  std::vector<Facet> facets;
-  if (const auto set = mesh.facet_sets.find(name); set != mesh.facet_sets.end()) {
-    facets = set->second;
-  } else if (found.is_region) {
-    for (const Facet& f : outer_surface(*mesh_, comm_))
-      if (mesh.region[f.cell] == found.region) facets.push_back(f);
-  } else {
-    throw Error(where, fmt::format("{}: \"{}\" is not a region or a set of facets", e.label(), name), "name a 2-D group or *SURFACE");
-  }
+  const std::vector<Facet> facets = facets_of(e, "b");
   if (e.has("stiffness"))
     e.refuse("stiffness", "the stiffness of a surface comes from its region", "scale it by factor, or give a rigid one modulus and layer");
   const double factor = e.number("factor");

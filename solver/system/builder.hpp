@@ -133,6 +133,10 @@ class Builder {
   void add_contacts();
   void add_points_of_body(const Entry& entry, const Obstacle& b, int body, ContactPair& pair);
   void add_points_of_surface(const Entry& entry, ContactPair& pair);
+  // build_surfaces.cpp
+  /// The facets of a region's outer surface, or of a set.
+  std::vector<Facet> facets_of(const Entry& entry, std::string_view key);
+  void add_surfaces(const Entry& entry, const std::vector<std::string>& obstacles);
 
   /// A beam whose sections are known, but for those that ride on what is made later.
   struct BeamPlan {

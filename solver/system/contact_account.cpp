@@ -18,6 +18,7 @@ void Contacts::add_energy(const Config& q, const Config&, Energy& sum) const {
   for (const ContactPair& pair : list)
     for (const ContactPoint& point : pair.points)
       sum.elastic += point.law.potential(gap(pair, point, q)) + point.law.kt / 2 * point.next.squaredNorm();
+  for (const SurfacePair& pair : surfaces) sum.elastic += pair.energy();
 }
 
 void Contacts::add_work(const Moment& m, Work& sum) const {
@@ -25,6 +26,7 @@ void Contacts::add_work(const Moment& m, Work& sum) const {
   for (const ContactPair& pair : list)
     for (const ContactPoint& point : pair.points)
       if (point.law.friction > 0) sum.dissipated += place(pair, point, m.s).force.dissipated;
+  for (const SurfacePair& pair : surfaces) sum.dissipated += pair.dissipated(m.s);
 }
 
 /// A step must not carry a point through an obstacle that it neither begins nor ends in.
@@ -32,6 +34,8 @@ std::string Contacts::fault(const Config&) const { return jumped_; }
 
 void Contacts::advance(const Stage& s) {
   jumped_.clear();
+  for (SurfacePair& pair : surfaces)
+    if (const std::string why = pair.advance(s); !why.empty()) jumped_ = why;
   if (!s.conserving()) return;
   for (ContactPair& pair : list) {
     pair.next = pair.sums;
@@ -47,13 +51,12 @@ void Contacts::advance(const Stage& s) {
         if (pair.shape.at((1 - part) * at.x0 + part * at.x1) < point.law.radius - 0.1 * (within + point.law.radius))
           jumped_ = fmt::format("contact \"{}\": a point goes through the obstacle within one step", pair.name);
     }
-    ContactPair::Sums& now = pair.next;
-    if (pressing > 0) {
-      now.slip += slid / pressing, ++now.steps;
-    } else if (now.steps > 0) {
-      now.shortest = now.impacts++ == 0 ? now.steps : std::min(now.shortest, now.steps), now.steps = 0;
-    }
+    pair.next.add(pressing, slid);
   }
+}
+
+void Contacts::commit(const Config& q, const Config*) {
+  for (SurfacePair& pair : surfaces) pair.commit(q);
 }
 
 void Contacts::settle(bool accepted) {
@@ -62,6 +65,7 @@ void Contacts::settle(bool accepted) {
     (accepted ? pair.sums : pair.next) = accepted ? pair.next : pair.sums;
     for (ContactPoint& point : pair.points) (accepted ? point.u : point.next) = accepted ? point.next : point.u;
   }
+  for (SurfacePair& pair : surfaces) pair.settle(accepted);
 }
 
 void Contacts::archive(Archive& a) {
@@ -69,16 +73,20 @@ void Contacts::archive(Archive& a) {
     a("contact " + pair.name, pair.sums);
     for (ContactPoint& point : pair.points) a("bristle", point.u);
   }
+  for (SurfacePair& pair : surfaces) pair.archive(a);
   settle(false);
 }
 
 std::vector<Output> Contacts::outputs() const {
   std::vector<Output> out;
-  for (const ContactPair& pair : list)
-    out.push_back({"contact", pair.name, 4, 3, [](const double* end, const double* mid, std::vector<double>& row) {
+  const auto add = [&](const std::string& name) {
+    out.push_back({"contact", name, 4, 3, [](const double* end, const double* mid, std::vector<double>& row) {
                      row.assign(mid, mid + 3);
                      row.insert(row.end(), end, end + 4);
                    }});
+  };
+  for (const ContactPair& pair : list) add(pair.name);
+  for (const SurfacePair& pair : surfaces) add(pair.name);
   return out;
 }
 
@@ -98,29 +106,39 @@ void Contacts::observe(const Sight& at) {
       if (const Place here = place(pair, point, at.step->s); here.force.acts) F -= here.normal + here.tangential;
     at.mid.insert(at.mid.end(), F.begin(), F.end());
   }
+  for (const SurfacePair& pair : surfaces) {
+    const auto [deepest, share] = pair.depth();
+    at.end.insert(at.end.end(), {deepest, share, pair.next.slip, pair.next.dissipated});
+    if (!at.step) continue;
+    const Vec3 F = pair.force(at.step->s);
+    at.mid.insert(at.mid.end(), F.begin(), F.end());
+  }
 }
 
 void Contacts::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
-  if (list.empty()) return;
   std::string text;
-  for (const ContactPair& pair : list) {
-    const ContactPair::Sums& sums = pair.sums;
+  const auto tell = [&](const std::string& name, size_t points, const std::string& told, const ContactSums& sums) {
     if (sums.impacts > 0 && sums.shortest < resolved)
-      warn(fmt::format("contact \"{}\"", pair.name),
+      warn(fmt::format("contact \"{}\"", name),
            fmt::format("the shortest of {} impacts lasted {} steps: it gave its energy back, but its force is not resolved", sums.impacts,
                        sums.shortest));
     text += fmt::format(
         "{}\n    {}: {{\"points\": {}, \"stiffness\": {}, \"slip\": {:.6g}, \"dissipated\": {:.6g}, \"impacts\": {}, \"shortest\": {}}}",
-        text.empty() ? "" : ",", json_text(pair.name), pair.points.size(), json_text(pair.told), sums.slip, sums.dissipated, sums.impacts,
-        sums.shortest);
-  }
-  report.emplace_back("contacts", "{" + text + "\n  }");
+        text.empty() ? "" : ",", json_text(name), points, json_text(told), sums.slip, sums.dissipated, sums.impacts, sums.shortest);
+  };
+  for (const ContactPair& pair : list) tell(pair.name, pair.points.size(), pair.told, pair.sums);
+  for (const SurfacePair& pair : surfaces) tell(pair.name, pair.n_points(), pair.told, pair.sums);
+  if (!text.empty()) report.emplace_back("contacts", "{" + text + "\n  }");
 }
 
 void Contacts::tie(Ties& ties) const {
   for (const ContactPair& pair : list)
     for (const int b : {pair.body, pair.carrier})
       if (b > 0) ties.exclude(b);
+  for (const SurfacePair& pair : surfaces)
+    for (const ContactSurface& surface : pair.side)
+      for (const ContactSurface::Face& face : surface.faces)
+        if (const int b = points_.follower[face.node[0]]; b > 0) ties.exclude(b);
 }
 
 }  // namespace hilo

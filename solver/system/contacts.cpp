@@ -20,10 +20,25 @@ Traits Contacts::traits() const {
   const bool slides = std::any_of(list.begin(), list.end(), [](const ContactPair& pair) {
     return std::any_of(pair.points.begin(), pair.points.end(), [](const ContactPoint& x) { return x.law.friction > 0; });
   });
-  return {.remembers = slides};
+  return {.remembers = slides || !surfaces.empty(), .searches = !surfaces.empty()};
 }
 
-std::string Contacts::count() const { return list.empty() ? "" : fmt::format("{} contacts", list.size()); }
+std::string Contacts::count() const {
+  const size_t n = list.size() + surfaces.size();
+  return n == 0 ? "" : fmt::format("{} contacts", n);
+}
+
+bool Contacts::search(const Config& q, const Config* v, double h) {
+  bool changes = false;
+  for (SurfacePair& pair : surfaces) changes |= pair.search(q, v, h);
+  return changes;
+}
+
+bool Contacts::revise(const Stage& stage) {
+  bool changes = false;
+  for (SurfacePair& pair : surfaces) changes |= pair.revise(stage);
+  return changes;
+}
 
 void Contacts::number(Layout& layout) {
   clique_.assign(list.size(), {});
@@ -34,6 +49,7 @@ void Contacts::number(Layout& layout) {
         if (b >= 0 && points_.body_block[b] >= 0) blocks.push_back(points_.body_block[b]), blocks.push_back(points_.body_block[b] + 1);
       clique_[k].push_back(layout.cliques.add(blocks));
     }
+  for (SurfacePair& pair : surfaces) pair.number(layout);
 }
 
 Vec3 Contacts::position(const ContactPair& pair, const ContactPoint& point, const Config& q) const {
@@ -104,6 +120,7 @@ void Contacts::evaluate(Pass& p) const {
       if (p.K) add_tangent(p, pair, point, at, clique_[k][i]);
     }
   }
+  for (const SurfacePair& pair : surfaces) pair.evaluate(p);
 }
 
 void Contacts::add_tangent(Pass& p, const ContactPair& pair, const ContactPoint& point, const Place& at, int clique) const {
@@ -199,6 +216,14 @@ void Contacts::add_tangent(Pass& p, const ContactPair& pair, const ContactPoint&
   }
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> dense = L.transpose() * (K * R);
   p.K->add(clique, dense.data());
+}
+
+std::vector<int> nodes_that_meet(const System& system) {
+  std::vector<int> out;
+  for (const SurfacePair& pair : system.part<Contacts>().surfaces)
+    for (const ContactSurface& surface : pair.side)
+      for (const ContactSurface::Face& face : surface.faces) out.push_back(face.node[0]);
+  return out;
 }
 
 }  // namespace hilo

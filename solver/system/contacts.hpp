@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts: points of regions and bodies against obstacles that the ground or a body carries.  No rows, no events: forces of gaps that are
-// closed at either end of the step (physics/contact/point_contact).
+// Contacts: points of regions and bodies against obstacles that the ground or a body carries, and surfaces against each other
+// (system/surface_pair).  No rows, no events: forces of gaps that are closed at either end of the step (physics/contact).
 #pragma once
 #include "physics/contact/point_contact.hpp"
 #include "system/contribution.hpp"
+#include "system/revising.hpp"
+#include "system/surface_pair.hpp"
 
 namespace hilo {
 
@@ -26,26 +28,26 @@ struct ContactPair {
   Mat3 axes = Mat3::Identity();
   int body = -1;  // of the points, or -1: they have nodes
   std::vector<ContactPoint> points;
-  struct Sums {
-    double slip = 0, dissipated = 0;  // [m, J]
-    int steps = 0;                    // that the contact lasts by now
-    int impacts = 0, shortest = 0;    // that have ended; steps of the shortest, 0: none has
-  } sums, next;
+  ContactSums sums, next;
 };
 
-class Contacts final : public Contribution, public Equations, public Stateful, public Observer {
+class Contacts final : public Contribution, public Equations, public Stateful, public Observer, public Revising {
  public:
   explicit Contacts(const Points& points) : points_(points) {}
   std::vector<ContactPair> list;
+  std::vector<SurfacePair> surfaces;
 
   Traits traits() const override;
   std::string count() const override;
   void number(Layout& layout) override;
+  bool search(const Config& q, const Config* v, double h) override;
+  bool revise(const Stage& stage) override;
   void evaluate(Pass& p) const override;
   void add_energy(const Config& q, const Config& v, Energy& sum) const override;
   void add_work(const Moment& m, Work& sum) const override;
   std::string fault(const Config& q) const override;
   void advance(const Stage& stage) override;
+  void commit(const Config& q, const Config* v) override;
   void settle(bool accepted) override;
   void archive(Archive& a) override;
   std::vector<Output> outputs() const override;
@@ -75,5 +77,9 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   std::vector<std::vector<int>> clique_;  // of each point
   std::string jumped_;                    // what the step tried last went through
 };
+
+class System;
+/// A node of each facet of surfaces that may meet others.
+std::vector<int> nodes_that_meet(const System& system);
 
 }  // namespace hilo

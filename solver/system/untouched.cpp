@@ -10,6 +10,7 @@
 #include <numeric>
 #include <set>
 
+#include "system/contacts.hpp"
 #include "system/loads.hpp"
 #include "system/solids.hpp"
 
@@ -91,7 +92,7 @@ class Marks final : public KktSolver {
   std::set<int> own_;  // of a body alone: its inertia, the stiffness of its modes
 };
 
-/// What is prescribed, pushed, or flies at the start.
+/// What is prescribed, pushed, may be met, or flies at the start.
 void reach_from_outside(const System& system, Pieces& pieces) {
   for (size_t i = 0; i < system.X.size(); ++i)
     if (const auto& f = system.fixed[i]; f[0] || f[1] || f[2]) pieces.reach(pieces.of_node(static_cast<int>(i)));
@@ -106,6 +107,7 @@ void reach_from_outside(const System& system, Pieces& pieces) {
       for (const int i : facet) pieces.reach(pieces.of_node(i));
     if (load.body >= 0) pieces.reach(pieces.of_body(load.body));
   }
+  for (const int i : nodes_that_meet(system)) pieces.reach(pieces.of_node(i));
 }
 
 void join_by_cells(const System& system, Pieces& pieces) {

@@ -40,6 +40,9 @@ struct Triple {
   friend Triple operator-(const Triple& a, const Triple& b) { return {{a[0] - b[0], a[1] - b[1], a[2] - b[2]}}; }
   friend Triple operator*(const T& f, const Triple& a) { return {{f * a[0], f * a[1], f * a[2]}}; }
   friend T dot(const Triple& a, const Triple& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+  friend Triple cross(const Triple& a, const Triple& b) {
+    return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
+  }
 };
 template <class T>
 Triple<T> triple(const Eigen::Vector3d& a) {

@@ -103,10 +103,11 @@ Registry<ObstacleKind>& obstacle_kinds() {
 std::vector<Param> contact_keys() {
   return {
       keys::name,
-      {"a", text, "", "!", "an obstacle"},
+      {"a", text, "", "!", "an obstacle; or a region or a set of facets, which meets b"},
       {"b", text, "", "!", "what meets it: a region, a set of facets, or an obstacle of kind sphere or box on a body"},
       {"friction", number, "1", "0", "coefficient of friction", from_to(0, 5)},
-      {"factor", number, "1", "1", "on the stiffness, which is, of a region, E divided by the depth of the cell at the facet",
+      {"factor", number, "1", "1",
+       "on the stiffness, which is, of a region, E divided by the depth of the cell at the facet; 100 of surfaces in load steps",
        from_to(1e-3, 1000)},
       {"modulus", number, "Pa", "",
        "E* of the pair, 1/E* = (1 - nu_a^2)/E_a + (1 - nu_b^2)/E_b: of rigid surfaces with `layer`, or of a ball by its curvature (Hertz)",

@@ -8,35 +8,13 @@
 
 #include "dynamics/kept_run.hpp"
 #include "verify/block_mesh.hpp"
+#include "verify/contact/collision.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
 namespace {
 
 constexpr double g = 9.81;
-
-struct Worst {
-  double energy = 0, momentum = 0, angular = 0, given_back = 0, top = 0;
-  long met = 0;
-};
-
-/// Largest changes in a step: of the balance of energy over the largest kinetic energy, of the momenta over the largest part of each that a
-/// body has, `momentum` and `angular`; how much friction gave back.
-Worst worst_of(const Results& r, double momentum, double angular) {
-  Worst out;
-  const auto e = r.history("energy"), p = r.history("momentum"), c = r.history("contact/c");
-  out.top = e.col(0).maxCoeff();
-  for (Eigen::Index k = 1; k < e.rows(); ++k) {
-    out.energy = std::max(out.energy, std::abs(e(k, 5) - e(k - 1, 5)) / out.top);
-    out.momentum = std::max(out.momentum, (p.row(k) - p.row(k - 1)).head<3>().norm() / momentum);
-    out.angular = std::max(out.angular, (p.row(k) - p.row(k - 1)).tail<3>().norm() / angular);
-    out.given_back = std::max(out.given_back, (c(k - 1, 6) - c(k, 6)) / out.top);
-    out.met += c(k, 3) > 0;
-  }
-  return out;
-}
-
-const std::vector<double> shares{0.02, 0.1, 0.4, 1, 2};  // of the time of a contact
 
 // Truth: nothing acts from outside.  A ball of 1 kg meets a ring of 2 kg, spinning, oblique; the contact takes pi sqrt(mu/k) = 0.057 s.
 TEST(Contact, BodyOnBodyKeepsEnergyAndMomentaAtAnyStep) {
@@ -232,18 +210,6 @@ TEST(Contact, BarBouncesThreeTimes) {
   EXPECT_NEAR(r.t()[390], 1.3, 1e-9);
   EXPECT_NEAR(f(390, 2), 30 * 0.01 * (0.1 + 0.1 * 0.3), 0.01 * 0.039);
 }
-
-/// Numbers between 0 and 1 that look random.
-class Dice {
- public:
-  explicit Dice(int seed) : at_(1000 * seed) {}
-  double operator()() { return (scatter(++at_) + 1) / 2; }
-  double operator()(double low, double high) { return low + (high - low) * (*this)(); }
-  std::string vector(double size) { return fmt::format("[{}, {}, {}]", (*this)(-size, size), (*this)(-size, size), (*this)(-size, size)); }
-
- private:
-  int at_;
-};
 
 /// A body that carries an obstacle of about 1 m, and another one with a ball, or a box where a container or a plane is met, thrown at it.
 std::string throw_of(int seed) {

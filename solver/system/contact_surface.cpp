@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "system/contact_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace hilo {
+namespace {
+
+FacetCut cut(size_t n) {
+  FacetCut out;
+  const auto node = [](int i) {
+    std::array<double, 8> share{};
+    share[i] = 1;
+    return share;
+  };
+  const int corners = n == 3 || n == 6 ? 3 : 4, m = static_cast<int>(n);
+  for (int i = 0; i < m; ++i) out.corner.push_back(node(i));
+  if (n == 3) {
+    out.triangle = {{0, 1, 2}}, out.on_edge = {{0, 1, 2}};
+  } else if (n == 6) {
+    out.triangle = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}, out.on_edge = {{0, -1, 2}, {0, 1, -1}, {-1, 1, 2}, {-1, -1, -1}};
+  } else {  // about the middle
+    std::array<double, 8> middle{};
+    const FacetShape shape = facet_shape(n, 0, 0);
+    std::copy_n(shape.N, n, middle.begin());
+    out.corner.push_back(middle);
+    for (int e = 0; e < corners; ++e) {
+      const int next = (e + 1) % corners;
+      if (n == 4) {
+        out.triangle.push_back({e, next, m}), out.on_edge.push_back({e, -1, -1});
+      } else {
+        out.triangle.push_back({e, 4 + e, m}), out.on_edge.push_back({e, -1, -1});
+        out.triangle.push_back({4 + e, next, m}), out.on_edge.push_back({e, -1, -1});
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+const FacetCut& cut_of(size_t n) {
+  static const FacetCut cuts[4] = {cut(3), cut(4), cut(6), cut(8)};
+  return cuts[n == 3 ? 0 : n == 4 ? 1 : n == 6 ? 2 : 3];
+}
+
+FacetPoints facet_points(std::span<const Vec3> X, int n) {
+  struct Gauss {
+    std::array<double, 4> at, weight;
+  };
+  static constexpr Gauss rules[3] = {
+      {{-0.577350269189625764509, 0.577350269189625764509}, {1, 1}},
+      {{-0.774596669241483377036, 0, 0.774596669241483377036}, {5. / 9, 8. / 9, 5. / 9}},
+      {{-0.861136311594052575224, -0.339981043584856264803, 0.339981043584856264803, 0.861136311594052575224},
+       {0.347854845137453857373, 0.652145154862546142627, 0.652145154862546142627, 0.347854845137453857373}}};
+  const size_t nodes = X.size();
+  std::vector<std::array<double, 3>> at;  // place and weight
+  if ((nodes == 3 || nodes == 6) && n == 2) {
+    for (const auto& [r, s] : {std::pair{1. / 6, 1. / 6}, {2. / 3, 1. / 6}, {1. / 6, 2. / 3}}) at.push_back({r, s, 1. / 6});
+  } else if (nodes == 3 || nodes == 6) {  // exact for polynomials of degree four
+    for (const auto& [a, w] : {std::pair{0.445948490915965, 0.223381589678011}, {0.091576213509771, 0.109951743655322}})
+      for (int k = 0; k < 3; ++k) at.push_back({k == 1 ? 1 - 2 * a : a, k == 2 ? 1 - 2 * a : a, w / 2});
+  } else {
+    const Gauss& rule = rules[n - 2];
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) at.push_back({rule.at[i], rule.at[j], rule.weight[i] * rule.weight[j]});
+  }
+  FacetPoints out;
+  for (const auto& [r, s, weight] : at) {
+    const FacetShape shape = facet_shape(nodes, r, s);
+    Vec3 tr = Vec3::Zero(), ts = Vec3::Zero();
+    for (size_t a = 0; a < nodes; ++a) tr += shape.dr[a] * X[a], ts += shape.ds[a] * X[a];
+    out.share.emplace_back(shape.N, shape.N + nodes);
+    out.area.push_back(tr.cross(ts).norm() * weight);
+  }
+  return out;
+}
+
+void ContactSurface::find_borders() {
+  std::map<std::pair<int, int>, int> seen;
+  const auto each = [&](auto&& visit) {
+    for (Face& face : faces) {
+      const int corners = face.n == 3 || face.n == 6 ? 3 : 4;
+      for (int e = 0; e < corners; ++e) visit(face, e, std::minmax(int{face.node[e]}, int{face.node[(e + 1) % corners]}));
+    }
+  };
+  each([&](Face&, int, std::pair<int, int> edge) { ++seen[edge]; });
+  each([&](Face& face, int e, std::pair<int, int> edge) { face.border[e] = seen[edge] == 1; });
+}
+
+Vec3 ContactSurface::at(const SurfacePoint& point, std::span<const Vec3> x) const {
+  const Face& face = faces[point.face];
+  Vec3 out = Vec3::Zero();
+  for (int a = 0; a < face.n; ++a) out += point.share[a] * x[face.node[a]];
+  return out;
+}
+
+std::array<Vec3, 3> ContactSurface::triangle(int number, int triangle, std::span<const Vec3> x) const {
+  const Face& face = faces[number];
+  const FacetCut& cut = cut_of(face.n);
+  std::array<Vec3, 3> out;
+  for (int k = 0; k < 3; ++k) {
+    const int c = cut.triangle[triangle][k];
+    if (c < face.n) {
+      out[k] = x[face.node[c]];
+      continue;
+    }
+    out[k] = Vec3::Zero();
+    for (int a = 0; a < face.n; ++a) out[k] += cut.corner[c][a] * x[face.node[a]];
+  }
+  return out;
+}
+
+}  // namespace hilo

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two surfaces that meet: points of both against the facets of the other one (physics/contact/facet_contact).
+//
+// A list of pairs of facets that are near each other is the structure of the matrix.  It lasts while it has all pairs within half of the
+// margin of the way that they are about to go.  Within a step a point has one triangle: the one that it crosses first, else the nearest one
+// in the mean of the step.  It is chosen at the beginning and again when Newton's method has converged (`revise`).
+#pragma once
+#include <optional>
+
+#include "system/contact_surface.hpp"
+#include "system/contribution.hpp"
+
+namespace hilo {
+
+/// Sums of a contact over the run.
+struct ContactSums {
+  double slip = 0, dissipated = 0;  // [m, J]
+  int steps = 0;                    // that the contact lasts by now
+  int impacts = 0, shortest = 0;    // that have ended; steps of the shortest, 0: none has
+  /// A step with this force [N] and this slip times force [N m].
+  void add(double pressing, double slid);
+};
+
+class SurfacePair {
+ public:
+  explicit SurfacePair(const Points& points) : points_(points) {}
+  std::string name, told;  // `told`: what the stiffness is and from what
+  ContactSurface side[2];
+  double margin = 0;       // [m]
+  bool is_static = false;  // load steps: forces at their end, of the gap itself
+  ContactSums sums, next;
+
+  size_t n_points() const { return side[0].points.size() + side[1].points.size(); }
+  /// After both sides are filled.
+  void prepare();
+  void number(Layout& layout);
+  bool search(const Config& q, const Config* v, double h);
+  bool revise(const Stage& s);
+  void evaluate(Pass& p) const;
+  double energy() const;
+  double dissipated(const Stage& s) const;
+  /// Why the step cannot be, or "".
+  std::string advance(const Stage& s);
+  void commit(const Config& q) { committed_ = q.x; }
+  void settle(bool accepted);
+  void archive(Archive& a);
+  /// Force on side 1, in the step [N].
+  Vec3 force(const Stage& s) const;
+  /// Largest depth [m], and as a share of the cell, of what `state` is.
+  std::pair<double, double> depth() const;
+  /// The point that starts deepest in the other side; its depth [m], or nothing.
+  struct Deep {
+    double depth, cell;
+    Vec3 at;
+  };
+  std::optional<Deep> deepest_start(const Config& q);
+
+ private:
+  using Positions = std::span<const Vec3>;
+  struct Target {
+    int face = -1, triangle = -1;
+    bool crossed = false;
+  };
+  struct Ball {  // about a facet and its way
+    Vec3 centre;
+    double radius;
+  };
+  OverTriangle<double> over(int side, const SurfacePoint& point, const FacetState& at, Positions x) const;
+  FacetForce<double> force_of(int side, const SurfacePoint& point, const Stage& s) const;
+  Target target_of(int side, const SurfacePoint& point, Positions x0, Positions x1) const;
+  FacetState begun(int side, const SurfacePoint& point, const Target& target, Positions x0) const;
+  /// Load steps begin where what touches holds [m].
+  double touch(const SurfacePoint& point) const { return is_static ? 1e-8 * point.cell : 0; }
+  Positions begin(const Stage& s) const { return s.conserving() || begin_.empty() ? s.e0->x : begin_; }
+  bool would_act(int side, const SurfacePoint& point, const FacetState& now, Positions x0, Positions x1) const;
+  void look(Positions x0, Positions x1);
+  std::vector<std::pair<int, int>> near(Positions x0, Positions x1, double within) const;
+  void list_partners();
+  void add_tangent(Pass& p, int side, const SurfacePoint& point) const;
+
+  const Points& points_;
+  std::vector<std::pair<int, int>> near_;  // facets of side 0 and 1, ascending
+  std::vector<int> clique_;                // of these
+  struct Partner {
+    int face, pair;  // of the other side; place in near_
+  };
+  std::vector<std::vector<Partner>> partners_[2];  // of each facet
+  std::vector<Ball> ball_[2];                      // of the last look
+  std::vector<Vec3> committed_;                    // of the state accepted last
+  std::vector<Vec3> begin_;                        // where nodes are at the beginning of the step
+  std::vector<Vec3> foreseen_;                     // where nodes were to go in the step at work
+  std::vector<int> nodes_[2];                      // of both sides
+};
+
+}  // namespace hilo

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a collision is judged, and what makes many of them.
+#pragma once
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "verify/block_mesh.hpp"
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+
+struct Worst {
+  double energy = 0, momentum = 0, angular = 0, given_back = 0, top = 0;
+  long met = 0;
+};
+
+/// Largest changes in a step: of the balance of energy over the largest kinetic energy, of the momenta over the largest part of each that a
+/// body has, `momentum` and `angular`; how much friction gave back.
+inline Worst worst_of(const Results& r, double momentum, double angular) {
+  Worst out;
+  const auto e = r.history("energy"), p = r.history("momentum"), c = r.history("contact/c");
+  out.top = e.col(0).maxCoeff();
+  for (Eigen::Index k = 1; k < e.rows(); ++k) {
+    out.energy = std::max(out.energy, std::abs(e(k, 5) - e(k - 1, 5)) / out.top);
+    out.momentum = std::max(out.momentum, (p.row(k) - p.row(k - 1)).head<3>().norm() / momentum);
+    out.angular = std::max(out.angular, (p.row(k) - p.row(k - 1)).tail<3>().norm() / angular);
+    out.given_back = std::max(out.given_back, (c(k - 1, 6) - c(k, 6)) / out.top);
+    out.met += c(k, 3) > 0;
+  }
+  return out;
+}
+
+inline const std::vector<double> shares{0.02, 0.1, 0.4, 1, 2};  // of the time of a contact
+
+/// Numbers between 0 and 1 that look random.
+class Dice {
+ public:
+  explicit Dice(int seed) : at_(1000 * seed) {}
+  double operator()() { return (scatter(++at_) + 1) / 2; }
+  double operator()(double low, double high) { return low + (high - low) * (*this)(); }
+  std::string vector(double size) { return fmt::format("[{}, {}, {}]", (*this)(-size, size), (*this)(-size, size), (*this)(-size, size)); }
+
+ private:
+  int at_;
+};
+
+}  // namespace hilo::test
