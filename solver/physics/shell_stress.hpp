@@ -61,6 +61,10 @@ void shell_points(const M& law, std::span<const Vec3> X, std::span<const Vec3> x
   } else {
     SolidCall<double> call{};
     call.X = X[0].data(), call.x0 = call.x1 = x[0].data(), call.elastic = call.weight = 1, call.linear = law.linear(), call.h0 = state;
+    if constexpr (Remembers<M>) {
+      static const std::vector<double> as_new(S::n_points * M::n_state + shell::n_modes, 0.0);
+      if (!state) call.h0 = as_new.data();
+    }
     shell::Nonlinear<S, M, double> cell(law, call, at.cell, at.e);
     if (!state) cell.find_modes(at.e);
     for (int i = 0; i < shell::n_modes; ++i) modes[i] = cell.modes(state != nullptr)[i];

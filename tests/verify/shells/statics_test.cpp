@@ -33,9 +33,10 @@ class ShellStatics : public ShellPlace {
     use([&] {
       Mesh m = shell_mesh(sphere(10), n, n, 0.04, layers);
       add_stack(m, "A", 0, 0, n, n, layers), add_stack(m, "B", n, 0, n, n, layers);
+      m.node_sets["inside"] = {0};
       return m;
     }());
-    const Results r = solved(shell_of(6.825e7, 0.3) + held("xmin", "\"y\"") + held("xmax", "\"x\"") + held("A", "\"z\"") +
+    const Results r = solved(shell_of(6.825e7, 0.3) + held("xmin", "\"y\"") + held("xmax", "\"x\"") + held("inside", "\"z\"") +
                              push("A", Vec3(P, 0, 0)) + push("B", Vec3(0, -P, 0)) + probe("A") + probe("B") + in_steps(steps));
     iterations = work_iterations();
     return {way(r, "A")[0], -way(r, "B")[1]};
