@@ -72,10 +72,9 @@ TEST_F(ShellStatics, TheHemisphereWithAHole) {
   std::printf("under 400: %.4f and %.4f of 4.067 and 8.178, %.0f iterations\n", in, out, iterations);
   EXPECT_NEAR(in / 4.067, 1, 0.01);
   EXPECT_NEAR(out / 8.178, 1, 0.012);
-  const auto two = hemisphere(16, 200, 5, 2);
-  std::printf("in two layers: %.4f and %.4f\n", two.first, two.second);
-  EXPECT_NEAR(two.first / in, 1, 0.002);
-  EXPECT_NEAR(two.second / out, 1, 0.002);
+  EXPECT_LT(iterations, 120);
+  const double two = hemisphere(16, 1e-3, 1, 2).first / 1e-3;
+  EXPECT_NEAR(two / small, 1, 0.002) << "in two layers";
 }
 
 TEST_F(ShellStatics, TheTwistedBeam) {
@@ -119,24 +118,6 @@ TEST_F(ShellStatics, ACantileverUnderAnEndForce) {
     EXPECT_NEAR(u[2] / 6.698, 1, 0.002);
     EXPECT_LT(work_iterations(), 12);
   }
-}
-
-// [sze-2004] 3.3: ring with a slit, lifted at one side of it.
-TEST_F(ShellStatics, ASlitRing) {
-  use([&] {
-    Mesh m = shell_mesh(
-        [](double u, double v) {
-          const double a = 2 * M_PI * v, r = 6 + 4 * u;
-          return std::pair(Vec3(r * std::cos(a), r * std::sin(a), 0), Vec3(0, 0, 1));
-        },
-        10, 80, 0.03);
-    add_stack(m, "A", 0, 0, 10, 80), add_stack(m, "B", 10, 0, 10, 80);
-    return m;
-  }());
-  const Results r = solved(shell_of(21e6, 0) + held("ymax") + push("ymin", Vec3(0, 0, 3.2)) + probe("A") + probe("B") + in_steps(10));
-  std::printf("%.3f and %.3f of 13.891 and 17.528\n", way(r, "A")[2], way(r, "B")[2]);
-  EXPECT_NEAR(way(r, "A")[2] / 13.891, 1, 0.015);
-  EXPECT_NEAR(way(r, "B")[2] / 17.528, 1, 0.015);
 }
 
 // [sze-2004] 3.5: an open cylinder pulled, to a quarter of the load.
