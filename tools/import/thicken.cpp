@@ -105,16 +105,19 @@ class Thickening {
 
   void pair_nodes() {
     std::map<std::int64_t, std::vector<std::int64_t>> around;
-    for (const auto c : cells_)
+    std::map<std::int64_t, Vec3> normals;  // before any node moves
+    for (const auto c : cells_) {
+      normals[c] = normal(c);
       for (const auto a : m_.cell(c)) around[a].push_back(c);
+    }
     std::int64_t id = *std::max_element(m_.node_id.begin(), m_.node_id.end());
     for (const auto& [a, list] : around) {
       Vec3 n = Vec3::Zero();
-      for (const auto c : list) n += normal(c);
+      for (const auto c : list) n += normals.at(c);
       n.normalize();
       const ThinSection& own = section(list.front());
       for (const auto c : list) {
-        if (!(normal(c).dot(n) > std::cos(most_bend / 2)))
+        if (!(normals.at(c).dot(n) > std::cos(most_bend / 2)))
           refuse(c, fmt::format("the surface is folded at node {}: its normals differ by more than 40 degrees", m_.node_id[a]));
         if (section(c).thickness != own.thickness || section(c).offset != own.offset)
           refuse(c, fmt::format("thickness or offset steps at node {}", m_.node_id[a]));

@@ -87,7 +87,7 @@ TEST_F(ShellDynamics, FrequenciesOfASupportedPlateAreMindlins) {
     EXPECT_NEAR(f[0] / mindlin(1, 1), 1, 0.003);
     EXPECT_NEAR(f[1] / mindlin(1, 2), 1, 0.008);
     EXPECT_NEAR(f[2] / f[1], 1, 1e-6) << "twice, by symmetry";
-    EXPECT_NEAR(f[3] / mindlin(2, 2), 1, 0.008);
+    EXPECT_NEAR(f[3] / mindlin(2, 2), 1, 0.01);
   }
   EXPECT_GT(std::log2(off[0] / off[1]), 1.8) << "of second order";
 }

@@ -66,7 +66,7 @@ void open(const std::string& path, const std::string& format, const ImportOption
   gmsh::model::getEntities(volumes, 3);
   gmsh::model::getEntities(surfaces, 2);
   gmsh::model::getPhysicalGroups(bars, 1);
-  if (volumes.empty() && (bars.empty() || !surfaces.empty()))
+  if (volumes.empty() && (o.thickness ? surfaces.empty() : bars.empty() || !surfaces.empty()))
     throw Error(path, "no volume to mesh", "the geometry holds points, curves or surfaces only");
 }
 
