@@ -47,6 +47,8 @@ void check(Request& r) {
   if (o.order != 1 && o.order != 2) usage("--order is 1 or 2");
   if (o.merge && *o.merge <= 0) usage("--merge-nodes must be positive");
   if (o.size && *o.size <= 0) usage("--size must be positive");
+  if (o.thickness && !(*o.thickness > 0)) usage("--thickness must be positive");
+  if (o.thickness && o.order == 2) usage("--thickness makes linear shells", "leave --order away");
   if (o.per_turn && !(*o.per_turn >= 0 && *o.per_turn <= 1000)) usage("--per-turn is from 0 to 1000");
   try {
     to_si("m", o.units);
@@ -106,6 +108,9 @@ int main(int argc, char** argv) {
     app->add_option("--order", o.order, "2: quadratic cells (linear ones get nodes in the middle of their edges)")->type_name("N");
     app->add_option("--size", o.size, "cell edge when CAD is meshed, at most this when a .geo script is; in the unit of the file")
         ->type_name("H");
+    app->add_option("--thickness", o.thickness,
+                    "surfaces of quadrangles become solid-shells of this thickness about them, in the unit of the file (geo, msh)")
+        ->type_name("T");
     app->add_option(
            "--per-turn", o.per_turn,
            "cells around a full turn of a curved face when CAD is meshed, none finer than an eighth of the size at 12; 0: no finer than "
@@ -113,6 +118,8 @@ int main(int argc, char** argv) {
         ->type_name("N");
     app->add_option("--define", r.defines, "parameter of a .geo script, may be repeated")->type_name("NAME=VALUE")->allow_extra_args(false);
     app->add_flag("--trust", o.trust, "a .geo script may run commands, write files, read the environment and files of other folders");
+    app->add_flag("--thicken", o.thicken,
+                  "shells of a deck (S4, S4R, CQUAD4) become solid-shells: pairs of nodes across the thickness");
     app->add_flag("--flip", o.flip, "turn cells whose nodes are numbered as in a mirror (negative volume)");
     app->add_flag("--keep-apart", o.keep_apart, "solids of a CAD file that touch share no nodes");
     app->add_option("--set", o.sets,

@@ -11,6 +11,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "base/shell_shape.hpp"
 #include "model/mesh.hpp"
 
 namespace hilo {
@@ -130,6 +131,7 @@ class Maker {
 }  // namespace
 
 const Pieces& pieces(Shape shape) {
+  if (shape == shell8) shape = Shape::hex8;
   if (static_cast<int>(shape) >= n_shapes)
     throw Error("", fmt::format("{} is a shape from outside the tree: its cells are not cut", info(shape).name));
   static std::array<Pieces, n_shapes> made;

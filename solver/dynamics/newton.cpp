@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/shell_shape.hpp"
 #include "dynamics/free_part.hpp"
 #include "dynamics/linear_step.hpp"
 #include "system/revising.hpp"
+#include "system/solids.hpp"
 
 namespace hilo {
 
@@ -65,6 +67,13 @@ void tell_what_is_left(const System& s, const Residual& r, const Unknown& u, New
   for (double& g : report.gaps) g /= r.sigma;
 }
 
+/// Thin shells turn far in a correction and swing before they settle: with their stress foreseen they do, and damped they creep.
+bool has_shells(const System& s) {
+  const auto& batches = s.part<Solids>().batches;
+  const bool some = std::any_of(batches.begin(), batches.end(), [](const SolidBatch& b) { return b.shape == shell8; });
+  return s.comm->max(some ? 1 : 0) > 0;
+}
+
 /// One solution on its way.
 class Newton {
  public:
@@ -79,6 +88,7 @@ class Newton {
         foresees_(system.traits().deforms && options.foresees),
         last_(std::move(guess)) {
     if (!foresees_) last_.reset();
+    if (foresees_ && has_shells(system)) growth_ = 10;
   }
   NewtonReport take();
 
@@ -114,6 +124,7 @@ class Newton {
   bool damped_ = false;
   int revisions_ = 0;
   double last_residual_ = 0;
+  double growth_ = 0.5;             // from one correction to the next, with the stress foreseen
   bool foresees_;                   // a tangent takes the stresses of cells from the last correction (physics/solid, `foresee`)
   bool foreseen_ = false;           // in the last tangent
   std::optional<Correction> last_;  // to first order
@@ -289,7 +300,7 @@ NewtonReport Newton::take() {
     last_residual_ = report_.residual;
     ++report_.iterations;
     report_.correction = solved.ok ? correction() : 1e300;
-    if (foreseen_ && !(report_.correction <= std::max(0.5 * previous, 1e-6))) {  // the stresses foreseen are too large: without them
+    if (foreseen_ && !(report_.correction <= std::max(growth_ * previous, 1e-6))) {  // the stresses foreseen are too large: without them
       foresees_ = near = false, last_.reset();
       if (!moved) previous = 1e300;
       moved = false;
@@ -299,7 +310,8 @@ NewtonReport Newton::take() {
       return fail(solver_.name() + ": " + solved.message +
                   (solved.message.find("singular") != std::string::npos ? free_part(system_, solver_, r_.sigma) : ""));
     if (!(report_.correction <= options_.reach)) return fail("the correction is not finite or leaves the scene");
-    if (!options_.patient && it > 0 && report_.correction > 0.5 * previous && report_.correction > 1e-6) damped_ = true;
+    if (!options_.patient && it > 0 && report_.correction > (foreseen_ ? growth_ : 0.5) * previous && report_.correction > 1e-6)
+      damped_ = true;
     if (!damped_)
       go_as_far_as_allowed();
     else if (!go_damped())

@@ -160,7 +160,9 @@ class Run {
         std::vector<std::string_view> able;
         for (const IntegratorKind& other : integrator_kinds())
           if (other.carries_state) able.push_back(other.name);
-        throw Error(time.where("integrator"), run_.integrator->name() + " cannot keep the plastic strain of a material from step to step",
+        throw Error(time.where("integrator"),
+                    run_.integrator->name() +
+                        " cannot keep the plastic strain of a material, or the modes of shells whose law is not linear, from step to step",
                     fmt::format("{} do", fmt::join(able, ", ")));
       }
       const double end = time.number("end"), step = time.has("step") ? time.number("step") : end / 20;

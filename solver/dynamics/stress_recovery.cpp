@@ -259,7 +259,7 @@ void StressRecovery::add_missed(const std::vector<std::vector<double>>& samples,
     const int n = info(batch.shape).n_nodes, m = static_cast<int>(points.size());
     Eigen::MatrixXd N(n, m), nodal(6, n), missed(6, m);
     for (int k = 0; k < m; ++k) N.col(k) = Eigen::Map<const Eigen::VectorXd>(points[k].N, n);
-    const Eigen::MatrixXd back = to_nodes(batch.shape).transpose();
+    const Eigen::MatrixXd back = to_nodes(batch.shape, points.size()).transpose();
     for (size_t e = 0; e < batch.cells.size(); ++e) {
       const int* site = site_of_[b].data() + e * n;
       for (int a = 0; a < n; ++a) nodal.col(a) = Eigen::Map<const Vec6>(at_site.data() + static_cast<size_t>(site[a]) * n_values + 1);
@@ -321,10 +321,10 @@ StressRecovery::Result StressRecovery::recover(const Config& q, const Memory& me
         samples[b].insert(samples[b].end(), points[k].S.data(), points[k].S.data() + 6);
       Eigen::Matrix<double, 6, Eigen::Dynamic> rest(6, points.size());
       for (size_t q = 0; q < points.size(); ++q) rest.col(q) = points[q].S - P(points[q].X);
-      const Eigen::Matrix<double, 6, Eigen::Dynamic> extrapolated = rest * to_nodes(batch.shape).transpose();
+      const Eigen::Matrix<double, 6, Eigen::Dynamic> extrapolated = rest * to_nodes(batch.shape, points.size()).transpose();
       Eigen::VectorXd plastic(points.size());
       for (size_t q = 0; q < points.size(); ++q) plastic[q] = points[q].plastic;
-      const Eigen::VectorXd plastic_at_nodes = to_nodes(batch.shape) * plastic;
+      const Eigen::VectorXd plastic_at_nodes = to_nodes(batch.shape, points.size()) * plastic;
       F.resize(at.X.size());
       at.gradients(F);
       for (size_t a = 0; a < at.X.size(); ++a) {

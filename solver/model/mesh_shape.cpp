@@ -70,7 +70,8 @@ std::array<std::unique_ptr<const Kind>, most_shapes>& kinds() {
                                                                {"tri3", 3, 2, 5, 4, 1, {{0, 1, 2}}, {}, {}},
                                                                {"tri6", 3, 2, 22, 36, 1, {{0, 1, 2}}, {}, tri_edges},
                                                                {"quad4", 4, 2, 9, 5, 1, {{0, 1, 2, 3}}, {}, {}},
-                                                               {"quad8", 4, 2, 23, 37, 1, {{0, 1, 2, 3}}, {}, quad_edges}})
+                                                               {"quad8", 4, 2, 23, 37, 1, {{0, 1, 2, 3}}, {}, quad_edges},
+                                                               {"shell8", 8, 3, 12, 9, 190, hex, hex_corners, {}}})
       t[number++] = std::make_unique<const Kind>(make(row));
     return t;
   }();

@@ -57,6 +57,7 @@ std::vector<KindSchema> make() {
         {"up_to", number, "Hz", "", "vibration modes up to this frequency, but at least four; absent: 0.1 divided by the step", above(0)},
         {"shapes", text, "", "",
          "CSV of the modes of a linear region, in place of those that hilo finds: node, then x, y, z of each shape [length]"},
+        {"shell", boolean, "", "false", "its hex8 cells, in one or more layers, are solid-shells: thin plates and walls that do not lock"},
         {"stiffening", boolean, "", "false", "strains of the second degree in the modes: spins and bending that stiffen or shorten"},
         {"modal_damping", number, "1", "0",
          "ratio to the critical damping of the modes of linear regions, as these are held at the start of the run", at_least(0)}}});

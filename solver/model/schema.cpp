@@ -18,7 +18,7 @@ std::vector<ArraySchema>& arrays() {
       {"mesh.h5", "/mesh/nodes/X", "f8", "(n_nodes, 3)", "m", "reference positions"},
       {"mesh.h5", "/mesh/nodes/id", "i8", "(n_nodes)", "", "number of the node in the deck"},
       {"mesh.h5", "/mesh/cells/shape", "u1", "(n_cells)", "",
-       "0 bar2, 1 tet4, 2 tet10, 3 wedge6, 4 wedge15, 5 hex8, 6 hex20, 7 hex20r, 8 tri3, 9 tri6, 10 quad4, 11 quad8"},
+       "0 bar2, 1 tet4, 2 tet10, 3 wedge6, 4 wedge15, 5 hex8, 6 hex20, 7 hex20r, 8 tri3, 9 tri6, 10 quad4, 11 quad8, 12 shell8"},
       {"mesh.h5", "/mesh/cells/offset", "i8", "(n_cells + 1)", "", "first entry of each cell in /mesh/cells/nodes"},
       {"mesh.h5", "/mesh/cells/nodes", "i8", "(n)", "", "nodes of the cells, VTK order"},
       {"mesh.h5", "/mesh/cells/region", "i4", "(n_cells)", "", "region of each cell"},

@@ -4,12 +4,13 @@
 #include "physics/hourglass.hpp"
 #include "physics/hourglass20.hpp"
 #include "physics/mean_dilatation.hpp"
+#include "physics/shell.hpp"
 
 namespace hilo {
 
-/// Adds to f, K, energy, dissipated and lowers least_det; the caller clears them.
+/// Of a cell with the strains of its shape functions.
 template <class S, class M, class T>
-inline void evaluate_strain(const M& law, const SolidCall<T>& call) {
+inline void evaluate_continuum(const M& law, const SolidCall<T>& call) {
   const Lame c = law.linear();
   using Bulk = typename M::Bulk;
   const double mean = mean_lambda<S, Bulk, Remembers<M>>(c);
@@ -27,6 +28,15 @@ inline void evaluate_strain(const M& law, const SolidCall<T>& call) {
   }
   if constexpr (std::is_same_v<S, Hex8>) add_hourglass(moduli_of(law), call);
   if constexpr (std::is_same_v<S, Hex20R>) add_hourglass20(c, call);
+}
+
+/// Adds to f, K, energy, dissipated and lowers least_det; the caller clears them.
+template <class S, class M, class T>
+inline void evaluate_strain(const M& law, const SolidCall<T>& call) {
+  if constexpr (is_shell<S>)
+    add_shell<S>(law, call);
+  else
+    evaluate_continuum<S>(law, call);
 }
 
 }  // namespace hilo

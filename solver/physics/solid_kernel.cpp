@@ -7,6 +7,7 @@
 #include "physics/bar.hpp"
 #include "physics/shape/from_outside.hpp"
 #include "physics/shape/shapes.hpp"
+#include "physics/shell_cell.hpp"
 
 namespace hilo {
 
@@ -34,15 +35,20 @@ int flowing_points(Shape shape) {
   return of_shape(shape, 0, []<class S>() { return Integrated<S, true>::n_points; });
 }
 
+/// Modes that a shell keeps where stress is not linear in strain (physics/shell.hpp).
+int kept_modes(Shape shape, size_t law) {
+  return shape != shell8 || law == place_of<StVenantKirchhoff> || law == place_of<Orthotropic> ? 0 : shell::n_modes;
+}
+
 }  // namespace
 
 SolidKernel solid_kernel(Shape shape, size_t law) {
   const MaterialKind& kind = material_kinds()[law];
-  const int n_state = kind.n_state * flowing_points(shape);
+  const int n_state = kind.n_state * flowing_points(shape) + kept_modes(shape, law);
   if (shape == Shape::bar2) return {bar_kernel(law), 1, n_state};
   if (const ShapeFunctions* other = shape_from_outside(shape)) return {other->kernel(law), other->width, n_state};
   if (kind.functions) return {kind.functions->kernel(shape), kind.functions->width, n_state};
-  const int w = lanes();
+  const int w = shape == shell8 ? std::min(lanes(), 4) : lanes();  // eight shells are more than the first cache holds
   return {w == 8 ? kernel_lanes8(shape, law) : w == 4 ? kernel_lanes4(shape, law) : kernel_lanes2(shape, law), w, n_state};
 }
 

@@ -80,9 +80,13 @@ void small_strain_points(Shape shape, const Material& material, std::span<const 
   for (size_t k = 0; k < out.size(); ++k) out[k].S = (out[k].S - back[k].S) / (2 * part);
 }
 
-bool has_one_set_of_points(Shape shape, bool remembers) { return shape == Shape::hex8 || remembers; }
+bool has_one_set_of_points(Shape shape, bool remembers) { return shape == Shape::hex8 || shape == shell8 || remembers; }
 
-const Eigen::MatrixXd& to_nodes(Shape shape) {
+const Eigen::MatrixXd& to_nodes(Shape shape, size_t n_samples) {
+  if (shape == shell8 && n_samples == Shell8Full::n_points) {
+    static const Eigen::MatrixXd table = stress::samples_to_nodes<Shell8Full>();
+    return table;
+  }
   if (const ShapeFunctions* other = shape_from_outside(shape)) return other->to_nodes();
   static const Eigen::MatrixXd none;
   return *of_shape(shape, &none, []<class S>() {

@@ -41,8 +41,8 @@ bool has_one_set_of_points(Shape shape, bool remembers);
 void nodal_gradients(Shape shape, std::span<const Vec3> X, std::span<const Vec3> x, std::span<Mat3> F);
 
 /// Values at the nodes of a cell from those at its samples (n_nodes x n_samples), by least squares in the cell's own coordinates: linear
-/// functions, of hexahedra and wedges their products across the axes too; the mean where cells are linear.
-const Eigen::MatrixXd& to_nodes(Shape shape);
+/// functions, of hexahedra, wedges and shells their products across the axes too; the mean where cells are linear.
+const Eigen::MatrixXd& to_nodes(Shape shape, size_t n_samples);
 
 /// Cauchy stress F S F^T / det F.
 Vec6 cauchy(const Mat3& F, const Vec6& S);

@@ -7,6 +7,7 @@
 
 #include "physics/cell_mean.hpp"
 #include "physics/shape/shapes.hpp"
+#include "physics/shell_stress.hpp"
 #include "physics/solid_cell.hpp"
 #include "physics/stress.hpp"
 
@@ -57,11 +58,11 @@ constexpr Quadrature<S::n> node_points() {
 template <class S, int P>
 Eigen::MatrixXd fitted(const Quadrature<P>& rule) {
   const auto basis = [](const double* xi) {
-    Eigen::VectorXd b(S::n <= 8 ? 1 : S::n == 15 ? 6 : S::n == 20 ? 8 : 4);
+    Eigen::VectorXd b(is_shell<S> || S::n == 20 ? 8 : S::n <= 8 ? 1 : S::n == 15 ? 6 : 4);
     b[0] = 1;
     if (b.size() > 1) b.segment(1, 3) << xi[0], xi[1], xi[2];
     if (S::n == 15) b.tail(2) << xi[0] * xi[2], xi[1] * xi[2];
-    if (S::n == 20) b.tail(4) << xi[1] * xi[2], xi[0] * xi[2], xi[0] * xi[1], xi[0] * xi[1] * xi[2];
+    if (b.size() == 8) b.tail(4) << xi[1] * xi[2], xi[0] * xi[2], xi[0] * xi[1], xi[0] * xi[1] * xi[2];
     return b;
   };
   const Eigen::Index n = basis(rule.xi[0]).size();
@@ -209,6 +210,7 @@ void hex8_points(const M& law, std::span<const Vec3> X, std::span<const Vec3> x,
 
 template <class S>
 void gradients_at_nodes(std::span<const Vec3> X, std::span<const Vec3> x, std::span<Mat3> out) {
+  if constexpr (is_shell<S>) return shell_gradients_at_nodes(X, x, out);
   static constexpr Tabulated<S, S::n> table{node_points<S>()};
   Mat3 mean = Mat3::Zero();
   double volume = 0, det[S::n];
@@ -238,7 +240,9 @@ void gradients_at_nodes(std::span<const Vec3> X, std::span<const Vec3> x, std::s
 template <class S, class M>
 void points_of_cell(const M& law, std::span<const Vec3> X, std::span<const Vec3> x, const double* state, StressPoints which,
                     std::vector<StressPoint>& out) {
-  if constexpr (Remembers<M>)
+  if constexpr (is_shell<S>)
+    shell_points<Integrated<S, Remembers<M>>>(law, X, x, state, out);
+  else if constexpr (Remembers<M>)
     remembered_points<Integrated<S, true>>(law, X, x, state, out);
   else if constexpr (std::is_same_v<S, Hex8>)
     hex8_points<false>(law, X, x, out);
@@ -260,7 +264,9 @@ void points_of_law(Shape shape, const M& law, std::span<const Vec3> X, std::span
 /// Values at the nodes from those at the samples.
 template <class S>
 Eigen::MatrixXd samples_to_nodes() {
-  if constexpr (std::is_same_v<S, Hex8> || std::is_base_of_v<Hex20, S>)
+  if constexpr (!std::is_same_v<S, Shell8> && is_shell<S>)
+    return fitted<Shell8>(S::rule());
+  else if constexpr (std::is_same_v<S, Hex8> || std::is_base_of_v<Hex20, S>)
     return fitted<S>(hex_rule<2>());
   else
     return fitted<S>(S::rule());

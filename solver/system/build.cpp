@@ -95,6 +95,7 @@ std::unique_ptr<System> Builder::build() {
   out_->bodies[0].ground = true;
   read_regions();
   integrate_regions();
+  find_shells();
   make_rigid_bodies();
   make_linear_bodies();
   add_free_bodies();

@@ -130,14 +130,15 @@ void Builder::reduce_linear_regions() {
     }
     out_->part<LinearRegions>().regions.push_back(std::move(made));
     std::map<std::pair<int, Shape>, SolidBatch> own;
+    std::vector<std::int64_t> cell_nodes;
     for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
       if (!is_of(e, modes.body)) continue;
       const int region = mesh.region[e];
-      const auto shape = static_cast<Shape>(mesh.shape[e]);
+      const Shape shape = taken_as(e, cell_nodes);
       auto it = own.find({region, shape});
       if (it == own.end()) it = own.emplace(std::pair(region, shape), batch_of(region, shape)).first;
       it->second.cells.push_back(static_cast<int>(e));
-      for (const std::int64_t node : mesh.cell(e)) it->second.nodes.push_back(static_cast<int>(node));
+      for (const std::int64_t node : cell_nodes) it->second.nodes.push_back(static_cast<int>(node));
     }
     for (auto& [kind, batch] : own)
       out_->part<LinearRegions>().cells.push_back(std::move(batch)), out_->part<LinearRegions>().body_of_cells.push_back(modes.body);

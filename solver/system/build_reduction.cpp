@@ -13,6 +13,7 @@
 
 #include "base/digest.hpp"
 #include "base/error.hpp"
+#include "base/shell_shape.hpp"
 #include "linear/shared_cholesky.hpp"
 #include "system/builder.hpp"
 #include "system/linear_regions.hpp"
@@ -49,12 +50,13 @@ RegionParcel Builder::parcel_of(int number) {
     to[0] = list;
     return comm_.exchange(to);
   };
-  std::vector<std::int64_t> words;
+  std::vector<std::int64_t> words, nodes;
   std::vector<double> places;
   for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
     if (is_of(e, body)) {
-      words.push_back(mesh.region[e]), words.push_back(mesh.shape[e]);
-      for (const std::int64_t node : mesh.cell(e)) {
+      const Shape shape = taken_as(e, nodes);
+      words.push_back(mesh.region[e]), words.push_back(static_cast<std::int64_t>(shape));
+      for (const std::int64_t node : nodes) {
         words.push_back(mesh_->node_global[node]);
         places.insert(places.end(), out_->X[node].data(), out_->X[node].data() + 3);
       }
@@ -140,7 +142,8 @@ ReductionInput Builder::reduction_input(const RegionParcel& parcel, const Body& 
   for (auto& [kind, batch] : by_kind) {
     sort_cells(batch);
     const Region& r = regions_[kind.first];
-    in.made_of.push_back(r.material ? r.material->all_values() : fmt::format("E {} nu {}", r.E, r.nu));
+    in.made_of.push_back((kind.second == shell8 ? "shell " : "") +
+                         (r.material ? r.material->all_values() : fmt::format("E {} nu {}", r.E, r.nu)));
     in.cells.push_back(std::move(batch));
   }
   std::vector<char> taken(in.X.size(), 0);

@@ -90,6 +90,7 @@ void Builder::read_regions() {
       if (e.given("modes")) region.n_vibrations = static_cast<int>(e.number("modes")), region.modes_given = true;
       if (e.given("shapes")) region.shapes = e.text("shapes"), region.shapes_where = e.where("shapes");
       if (e.given("up_to")) region.up_to = e.number("up_to");
+      if (e.given("shell")) region.shell = e.boolean("shell"), region.shell_where = e.where("shell");
       if (e.given("stiffening")) region.stiffening = e.boolean("stiffening");
     }
     if (!material.empty()) {
@@ -242,12 +243,13 @@ void Builder::make_batches() {
   if (!mesh_) return;
   const Mesh& mesh = mesh_->mesh;
   std::map<std::pair<int, int>, SolidBatch> by_kind;
+  std::vector<std::int64_t> nodes;
   for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
     const Region& r = regions_[mesh.region[e]];
     if (r.fidelity != Fidelity::nonlinear) continue;
-    SolidBatch& b = by_kind[{mesh.region[e], mesh.shape[e]}];
+    SolidBatch& b = by_kind[{mesh.region[e], static_cast<int>(taken_as(e, nodes))}];
     b.cells.push_back(static_cast<int>(e));
-    for (std::int64_t node : mesh.cell(e)) b.nodes.push_back(static_cast<int>(node));
+    for (std::int64_t node : nodes) b.nodes.push_back(static_cast<int>(node));
   }
   std::vector<double> reduced(regions_.size(), 0.0);
   for (auto& [key, b] : by_kind) {

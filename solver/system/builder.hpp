@@ -34,8 +34,8 @@ class Builder {
     double modal_damping = 0, up_to = 0;  // of a linear one: ratio, Hz
     std::string shapes, shapes_where;     // file of its modes, where they are given
     int n_vibrations = 40;
-    bool modes_given = false, stiffening = false;
-    std::string where;  // of its material, for errors
+    bool modes_given = false, stiffening = false, shell = false;
+    std::string where, shell_where;  // of its material, and of `shell`, for errors
     Fidelity fidelity = Fidelity::nonlinear;
     int body = -1;               // rigid: its body; linear: its mean axes
     double mass = 0;             // integrals over its cells, all ranks
@@ -79,6 +79,10 @@ class Builder {
   // build_beams.cpp
   void add_sections();
   void add_beams();
+  // build_shells.cpp
+  void find_shells();
+  /// The shape that a cell is taken as, and its nodes in the order of that shape.
+  Shape taken_as(std::int64_t cell, std::vector<std::int64_t>& nodes) const;
   // element_limits.cpp
   void warn_of_limits() const;
   // build_ends.cpp
@@ -155,6 +159,7 @@ class Builder {
   std::unique_ptr<System> out_;
   std::vector<Region> regions_;
   std::vector<double> reduced_;              // by region: hex20 taken as hex20r on this rank
+  std::vector<char> shell_axis_;             // by cell: 1 + the axis of a shell's thickness, 0: none; empty: no shells
   Vec3 origin_ = Vec3::Zero();               // of the mass integrals
   std::map<std::string, int> body_by_name_;  // [[body]] entries
   std::map<std::string, int> patch_by_name_;

@@ -80,6 +80,7 @@ void Builder::warn_of_limits() const {
   std::vector<double> sums(regions_.size() * columns, 0.0);
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c) {
     if (regions_[mesh.region[c]].fidelity == Fidelity::rigid || mesh.shape[c] >= n_shapes) continue;
+    if (!shell_axis_.empty() && shell_axis_[static_cast<size_t>(c)] > 0) continue;
     double* row = sums.data() + static_cast<size_t>(mesh.region[c]) * columns;
     row[mesh.shape[c]] += 1, row[n_shapes + mesh.shape[c]] += std::pow(measure(mesh, c), 2);
   }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "base/shell_shape.hpp"
+
 namespace hilo {
 namespace {
 
@@ -119,7 +121,7 @@ void Solids::evaluate(Pass& p) const {
       for (int l = 0; l < W && first + l < count; ++l) {
         const int e = first + l;
         const int* nodes = b.nodes.data() + static_cast<size_t>(e) * n;
-        p.out.least_det.take({det[l], b.region});
+        if (b.shape != shell8) p.out.least_det.take({det[l], b.region});  // a shell may fold on its way: it has its stress foreseen
         bool plain = true;
         for (int k = 0; k < n; ++k) {
           Vec3 fk(f[3 * k * W + l], f[(3 * k + 1) * W + l], f[(3 * k + 2) * W + l]);

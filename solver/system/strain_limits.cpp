@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/shell_shape.hpp"
 #include "physics/cell_strain.hpp"
 #include "system/solids.hpp"
 
@@ -53,6 +54,7 @@ double Solids::longest_share(const Config& from, const Config& to) const {
   double share = 1;
   std::vector<Vec3> X, x;
   for (const SolidBatch& b : batches) {
+    if (b.shape == shell8) continue;  // may fold on its way
     const auto n = static_cast<size_t>(info(b.shape).n_nodes);
     X.resize(n), x.resize(n);
     for (size_t e = 0; e < b.height.size(); ++e) {

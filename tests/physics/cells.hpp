@@ -45,6 +45,10 @@ template <>
 struct ShapeOf<Hex20R> {
   static constexpr Shape shape = Shape::hex20r;
 };
+template <>
+struct ShapeOf<Shell8> {
+  static constexpr Shape shape = shell8;
+};
 
 template <class S>
 inline constexpr bool is_tet = S::n == 4 || S::n == 10;

@@ -20,7 +20,7 @@ struct Name {
     return std::string(info(ShapeOf<S>::shape).name);
   }
 };
-using AllShapes = testing::Types<Tet4, Tet10, Wedge6, Wedge15, Hex8, Hex20, Hex20R>;
+using AllShapes = testing::Types<Tet4, Tet10, Wedge6, Wedge15, Hex8, Hex20, Hex20R, Shell8>;
 TYPED_TEST_SUITE(Lanes, AllShapes, Name);
 
 bool can_run(int width) {

@@ -188,6 +188,7 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
     in.notes.push_back(fmt::format("{} nodes merged with one nearer than {:g}", gone, *options.merge));
   }
   if (const auto gone = drop_unused(in)) in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped", gone));
+  if (options.thickness || (options.thicken && !in.thin.empty())) thicken(in, file);
   if (options.flip || is_mirrored(m))
     in.notes.push_back(fmt::format("{} of {} cells were numbered as in a mirror: turned", flip(m), m.n_cells()));
   if (options.order == 2) raise_order(in);

@@ -25,11 +25,13 @@ struct ImportOptions {
   int order = 1;                                       // 2: quadratic cells
   std::optional<double> merge;                         // distance below which nodes are one        [unit of the file]
   std::optional<double> size;                          // largest edge when a geometry is meshed    [unit of the file]
+  std::optional<double> thickness;                     // surfaces of quadrangles become shells of it     [unit of the file]
   std::optional<double> per_turn;                      // cells around a full turn of a curved face when CAD is meshed
   std::vector<std::string> regions;                    // element sets that become regions, before what the deck says
   std::string rest;                                    // name of the region of cells in no region ("": "rest")
   std::vector<std::pair<std::string, double>> define;  // parameters of a .geo script
   bool trust = false;                                  // a .geo script may run commands and write files
+  bool thicken = false;                                // shells of decks become solid-shells
   bool flip = false;                                   // cells numbered as in a mirror are turned
   bool keep_apart = false;                             // solids of a CAD file that touch share no nodes
   std::vector<std::string> sets;                       // NAME=KIND:KEY=VALUE,..., as [set.NAME] of a scene    [unit of the file]
@@ -50,6 +52,8 @@ struct Imported {
   std::vector<NotRead> not_read;
   std::vector<ThinRegion> thin_regions;      // by region, empty without shells and beams
   std::map<std::int64_t, ThinSection> thin;  // of the cells that are shells or beams
+  mutable std::set<std::int64_t> of_shells;  // their nodes, once asked for
+  std::map<std::int64_t, unsigned> held;     // with --thicken: components that supports hold of a shell's node, bits 0 to 5
   std::optional<double> metre;               // length unit that the file states  [m]
   bool curved = false;                       // quadratic cells made here follow curved surfaces, which may turn some inside out
   std::set<std::string> as_listed;           // node sets that order 2 must not complete: the deck's force acts on each of their nodes
@@ -141,6 +145,11 @@ void raise_order(Imported& in);
 std::int64_t straighten(Mesh& mesh);
 /// Nodes nearer than `distance` become one; returns how many went.
 std::int64_t merge_nodes(Mesh& mesh, double distance);
+/// Shells of quadrangles become solid-shells (shell8), with facet sets REGION_bottom and REGION_top; what has no clear pair of nodes is an
+/// Error: folds, steps of thickness, edges of more than two, triangles, nodes of solids, supports that a pair cannot have.
+void thicken(Imported& in, const std::string& file);
+/// Before: whether a node is of a shell.
+bool is_of_shell(const Imported& in, std::int64_t node);
 /// Nodes of no cell are dropped, from the sets too; returns how many.
 std::int64_t drop_unused(Imported& in);
 /// Adds the sets of --set, by the words and the code of [set.NAME] of scenes; lengths are still in the unit of the file.

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <string>
 
 #include "base/math.hpp"
 
@@ -13,6 +14,7 @@ struct Imported;
 /// What a shell or beam cell is across its mid-surface or line, in the unit of the file.
 struct ThinSection {
   double thickness = 0, offset = 0;        // of a shell: about its mid-surface, which lies off the nodes along the normal
+  std::string no_solid;                    // why a solid-shell cannot stand for a shell
   double area = 0;                         // of a beam
   Mat3 second = Mat3::Zero();              // of a beam: int y y^T dA, axes of the mesh
   Vec3 start = Vec3::Zero(), end = start;  // of a beam: its ends off the nodes

@@ -52,6 +52,7 @@ std::string shapes() {
   }
   out +=
       "\ntri3, tri6, quad4 and quad8 are shells: regions that have them are rigid, their mass is that of `/mesh/regions/thin`.\n"
+      "The shape shell8 is a solid-shell with the nodes of hex8, thick from nodes 0 1 2 3 to 4 5 6 7 ([shells](shells.md)).\n"
       "Hexahedra hex20 and hex20r have the same nodes. The first integrates with 3 x 3 x 3 points, hex20r with 2 x 2 x 2 "
       "([elements](elements.md)).\n"
       "A deck's C3D20 becomes hex20, its C3D20R hex20r; files that do not say, and `hilo-import --order 2`, give hex20r.\n"

@@ -92,6 +92,7 @@ struct BdfCase {
 /// PSHELL, PCOMP: thickness, offset of the mid-surface.  PBAR, PBEAM and their like: area and second moments.
 struct BdfThin {
   double thickness = 0, offset = 0, area = 0, I1 = 0, I2 = 0, I12 = 0;
+  std::string no_solid;  // why a solid-shell cannot stand for it
   std::string place = {};
 };
 

@@ -190,6 +190,13 @@ void BdfScene::supports() {
       }
   }
 
+  for (const auto& [a, h] : held) {
+    if (!options_.thicken || !is_of_shell(in_, a)) continue;
+    if (!axes(a).isIdentity(1e-12)) throw Error(h.place, "SPC of a shell's grid in axes of its own, beside --thicken", "basic axes");
+    if (h.value[3] != 0 || h.value[4] != 0 || h.value[5] != 0)
+      throw Error(h.place, "a shell's grid is turned by SPC: pairs of nodes have no turns");
+    in_.held[a] = h.bits;
+  }
   struct Group {
     Rows rows;
     std::string place;

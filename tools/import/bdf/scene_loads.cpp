@@ -101,6 +101,8 @@ void BdfScene::nodal_loads() {
       }
       case End::node:
         if (!force) {
+          if (options_.thicken && is_of_shell(in_, a))
+            throw Error(l->place, "a moment on a shell's grid: pairs of nodes have no turns", "two forces, or leave --thicken away");
           in_.skip("MOMENT on a node of solids, which does not turn", l->place);
           break;
         }
@@ -125,7 +127,7 @@ void BdfScene::nodal_loads() {
       tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nat = {}\n", place,
                              toml_text(unique("load", end_name(a))), toml_text(end_name(a)), list(v, "N"), point(X(a)));
     } else if (what == End::node) {
-      auto& [rows, first] = equal[v];
+      auto& [rows, first] = equal[options_.thicken && is_of_shell(in_, a) ? Vec3(v / 2) : v];  // each node of a pair takes half
       if (rows.empty()) first = place;
       rows.push_back(a);
     } else

@@ -67,6 +67,10 @@ void read_pshell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   if (d.number(7) != 0) in.skip("PSHELL: mass per area NSM", d.place(7));
   BdfThin s;
   s.thickness = d.number(2);
+  if (d.empty(3) || d.integer(3) != (d.empty(1) ? 0 : d.integer(1)))
+    s.no_solid = "PSHELL with another material in bending, or none";
+  else if ((!d.empty(4) && d.number(4) != 1) || !d.empty(10))
+    s.no_solid = "PSHELL with 12I/T^3 other than 1, or MID4";
   add_property(e, deck, s);
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }
@@ -90,6 +94,7 @@ void read_pcomp(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   BdfThin s;
   s.thickness = layers * sum;
   if (!d.empty(1)) s.offset = d.number(1) + s.thickness / 2;
+  if (!same) s.no_solid = "PCOMP of several materials";
   add_property(e, deck, s);
   if (same)
     deck.material_of.try_emplace(d.integer(0), first);
@@ -148,6 +153,7 @@ void add_thin_cell(const BdfDeck& deck, const BdfDeck::Thin& c, std::span<const 
   if (beam ? !(p.area > 0) : !(p.thickness > 0))
     throw Error(p.place, fmt::format("property {} has no {}", c.property, beam ? "area" : "thickness"));
   ThinSection s;
+  s.no_solid = p.no_solid;
   s.thickness = p.thickness, s.offset = p.offset + c.offset, s.area = p.area, s.start = c.start, s.end = c.end;
   if (beam) {
     const auto& X = in.mesh.X;

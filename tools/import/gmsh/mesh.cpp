@@ -25,6 +25,7 @@ const Kind* kind_of(int type) {
   static const std::vector<Kind> kinds = {
       {1, Shape::bar2, {0, 1}},
       {8, Shape::bar2, {0, 1}, "line3"},
+      {3, quad4, {0, 1, 2, 3}},
       {4, Shape::tet4, {0, 1, 2, 3}},
       {5, Shape::hex8, {0, 1, 2, 3, 4, 5, 6, 7}},
       {6, Shape::wedge6, {0, 1, 2, 3, 4, 5}},
@@ -62,12 +63,13 @@ class GmshReading {
   Imported read() {
     read_nodes();
     read_solids();
+    if (o_.thickness) read_shells();
     std::int64_t flat = 0;
     for (const auto& [key, entity] : from_.entities)
       for (const auto& b : entity.blocks)
         if (std::get<0>(key) == 2) flat += static_cast<std::int64_t>(b.tags.size());
     refuse_flat(path_, flat, in_.mesh.n_cells());
-    read_curves();
+    if (!o_.thickness) read_curves();
     if (in_.mesh.n_cells() == 0) throw Error(path_, "no volume cells and no bars");
     for (const auto& w : reduced_) in_.notes.push_back(fmt::format("{} read without the nodes inside faces and cells", w));
     assign_regions(in_, path_, regions_, false, {}, o_);
@@ -78,7 +80,7 @@ class GmshReading {
           cells.insert(cells.end(), of->second.begin(), of->second.end());
       SetNames(in_).cells(colour, std::move(cells));
     }
-    surface_groups();
+    if (!o_.thickness) surface_groups();
     node_groups();
     return std::move(in_);
   }
@@ -86,8 +88,8 @@ class GmshReading {
  private:
   using Key = GmshMesh::Key;
 
+  static constexpr const char* words[] = {"point", "curve", "surface", "volume"};
   std::string group_name(int dim, int tag) const {
-    static const char* words[] = {"point", "curve", "surface", "volume"};
     const auto name = from_.group_name.find({dim, tag});
     return name == from_.group_name.end() || name->second.empty() ? fmt::format("{}_{}", words[dim], tag) : name->second;
   }
@@ -125,9 +127,9 @@ class GmshReading {
       if (!k)
         throw Error(path_,
                     fmt::format("{} cells of type \"{}\" in {} {} are not read", b->tags.size(),
-                                gmsh_type(b->type) ? gmsh_type(b->type)->name : fmt::format("{}", b->type), dim == 3 ? "volume" : "curve",
-                                std::get<1>(key)),
-                    "supported: tetrahedra, hexahedra and prisms of order 1 and 2, lines");
+                                gmsh_type(b->type) ? gmsh_type(b->type)->name : fmt::format("{}", b->type), words[dim], std::get<1>(key)),
+                    dim == 2 ? "shells are of quadrangles: Mesh.RecombineAll = 1"
+                             : "supported: tetrahedra, hexahedra and prisms of order 1 and 2, lines");
       if (k->reduced) reduced_.insert(k->reduced);
       const size_t per = b->nodes.size() / std::max<size_t>(1, b->tags.size());
       for (size_t e = 0; e < b->tags.size(); ++e) {
@@ -169,6 +171,25 @@ class GmshReading {
       if (!cells.empty()) regions_.push_back({name, cells});
     }
     in_.notes.push_back(fmt::format("no volume groups: each of {} volumes is a region", regions_.size()));
+  }
+
+  /// Quadrangles of the surface groups, or of all surfaces, as shells of --thickness.
+  void read_shells() {
+    if (in_.mesh.n_cells() > 0)
+      throw Error("", fmt::format("--thickness makes shells of surfaces, and {} has volumes", path_), "leave --thickness away",
+                  Exit::usage);
+    const auto add = [&](const std::string& name, const std::vector<Key>& keys) {
+      CellGroup g{name, {}};
+      for (const Key& key : keys) add_cells(key, g.cells);
+      for (const auto c : g.cells) in_.thin[c].thickness = *o_.thickness;
+      if (!g.cells.empty()) regions_.push_back(std::move(g));
+    };
+    for (const auto& [tag, keys] : groups_[2]) add(group_name(2, tag), keys);
+    if (!groups_[2].empty()) return;
+    std::vector<Key> all;
+    for (const auto& [key, entity] : from_.entities)
+      if (std::get<0>(key) == 2) all.push_back(key);
+    add("shell", all);
   }
 
   /// Curve groups: bars where none of the lines is an edge of a solid cell.

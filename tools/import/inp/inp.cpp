@@ -84,8 +84,27 @@ void resolve_cells(InpDeck& d, Imported& in) {
   m.region.assign(d.shape.size(), -1);
 }
 
+/// What supports hold of the nodes of shells that become pairs; what a pair has no place for is an Error.
+void held_components(const InpDeck& d, const std::unordered_set<std::int64_t>& nodes, Imported& in) {
+  const auto of_shells = [&](const InpNodal& l) {
+    auto rows = inp_nodes(d, l.target, l.id, l.place);
+    std::erase_if(rows, [&](std::int64_t a) { return !nodes.contains(a); });
+    return rows;
+  };
+  for (const auto& l : d.supports)
+    for (const auto a : of_shells(l)) {
+      if (d.transformed.size() > 0)
+        throw Error(l.place, "*TRANSFORM beside shells of --thicken is not read", "hold them in the deck's axes");
+      if (l.last > 3 && l.value != 0) throw Error(l.place, "a shell's node is turned by *BOUNDARY: pairs of nodes have no turns");
+      for (int k = l.first; k <= std::min(l.last, 6); ++k) in.held[a] |= 1U << (k - 1);
+    }
+  for (const auto& l : d.forces)
+    if (l.last > 3 && !of_shells(l).empty())
+      throw Error(l.place, "a moment on a shell's node: pairs of nodes have no turns", "two forces, or leave --thicken away");
+}
+
 /// Sections of shells and beams; a cell of these without one is an Error.
-void thin_sections(const InpDeck& d, Imported& in) {
+void thin_sections(const InpDeck& d, Imported& in, bool thicken) {
   const Mesh& m = in.mesh;
   for (const auto& s : d.sections)
     for (const auto id : d.elset.at(s.elset).members) {
@@ -109,8 +128,10 @@ void thin_sections(const InpDeck& d, Imported& in) {
     }
   std::unordered_set<std::int64_t> nodes;
   for (const auto& [c, t] : in.thin) nodes.insert(m.cell(c).begin(), m.cell(c).end());
+  if (thicken) held_components(d, nodes, in);
   for (const auto* lines : {&d.supports, &d.forces})
     for (const auto& l : *lines) {
+      if (thicken) break;
       const auto rows = l.last > 3 && !nodes.empty() ? inp_nodes(d, l.target, l.id, l.place) : std::vector<std::int64_t>{};
       if (const auto n = std::ranges::count_if(rows, [&](std::int64_t a) { return nodes.contains(a); }))
         in.skip("turns and moments of nodes of shells and beams", l.place, n);
@@ -224,7 +245,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   check_names(d);
   turn_materials(d, in);
   resolve_cells(d, in);
-  thin_sections(d, in);
+  thin_sections(d, in, options.thicken);
 
   std::unordered_set<std::int64_t> points;  // elements that are no cells
   for (const auto& [id, p] : d.points) points.insert(id);

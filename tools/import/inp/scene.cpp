@@ -170,11 +170,20 @@ class Writer {
     for (const auto& g : nodal_groups(d_, d_.forces, "*CLOAD", true, turned_, in_)) {
       std::string past;
       if (g.value.norm() == 0 || !history(g.amplitude, "*CLOAD", g.place, past)) continue;
+      const double share = share_of_pairs(g.nodes, g.place);
       const std::string set = set_of(g.target, g.nodes, "force", true);
       tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", g.place,
-                             quoted(unique("load", set)), quoted(set), list(Vec3(g.value * si("N")))) +
+                             quoted(unique("load", set)), quoted(set), list(Vec3(share * g.value * si("N")))) +
                  past;
     }
+  }
+
+  /// 1/2 for nodes of shells that become pairs: each takes half.
+  double share_of_pairs(const Rows& nodes, const std::string& place) const {
+    if (!o_.thicken) return 1;
+    const auto n = static_cast<size_t>(std::ranges::count_if(nodes, [&](std::int64_t a) { return is_of_shell(in_, a); }));
+    if (n > 0 && n < nodes.size()) throw Error(place, "*CLOAD on nodes of shells and of others", "one line for each");
+    return n > 0 ? 0.5 : 1;
   }
 
   /// Reference nodes are held by joints to the ground, or whole.

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Mid-surfaces of quadrangles that become solid-shells: of gmsh with --thickness, of decks with --thicken; what has no clear pair of nodes
+// is refused by name.
+#include <fmt/format.h>
+
+#include "import_case.hpp"
+#include "model/store.hpp"
+
+namespace hilo {
+namespace {
+
+class ImportShell : public test::Import {
+ protected:
+  /// Length of the last way of a probe of run.h5.
+  Vec3 way(const std::string& probe) {
+    const Store run = Store::open(place / "run.h5");
+    const auto x = run.read<double>("/history/probe/" + probe);
+    const size_t n = x.size() / run.shape("/history/probe/" + probe)[0];
+    return Vec3(x[x.size() - n] - x[0], x[x.size() - n + 1] - x[1], x[x.size() - n + 2] - x[2]);
+  }
+};
+
+/// A quarter of a cylinder of radius 1 about y, 2 long.
+const std::string arch =
+    "Point(1) = {1, 0, 0}; Point(2) = {0, 0, 1}; Point(3) = {0, 0, 0}; Circle(1) = {1, 3, 2};\n"
+    "e[] = Extrude {0, 2, 0} { Curve{1}; Layers{4}; Recombine; };\nTransfinite Curve{1} = 11;\n"
+    "Physical Surface(\"roof\") = {e[1]}; Physical Curve(\"front\") = {1}; Physical Point(\"corner\") = {1};\n";
+
+TEST_F(ImportShell, ASurfaceOfGmshHasItsThickness) {
+  place.write("arch.geo", arch);
+  const Mesh m = imported("arch.geo", "--thickness 0.1");
+  ASSERT_EQ(m.n_cells(), 40);
+  ASSERT_EQ(m.n_nodes(), 2 * 55);
+  for (std::int64_t c = 0; c < m.n_cells(); ++c) EXPECT_EQ(info(m.shape[c]).name, "shell8");
+  const double chord = 2 * std::sin(M_PI / 40);  // of a circle of radius 1
+  EXPECT_NEAR(test::volume(m), 10 * chord * 2 * 0.1 * std::cos(M_PI / 40), 2e-4 * test::volume(m));
+  EXPECT_EQ(m.region_name, std::vector<std::string>{"roof"});
+  EXPECT_EQ(m.node_sets.at("corner").size(), 2u) << "a pair";
+  EXPECT_EQ(m.facet_sets.at("front").size(), 10u) << "an edge is a strip of facets";
+  EXPECT_LT(std::abs(test::vector_area(m, m.facet_sets.at("front")).y() + test::volume(m) / 2), 1e-3);
+  const Vec3 top = test::vector_area(m, m.facet_sets.at("roof_top")), bottom = test::vector_area(m, m.facet_sets.at("roof_bottom"));
+  EXPECT_NEAR(std::max(top.norm(), bottom.norm()), 1.05 * 2 * std::sqrt(2), 0.01);
+  EXPECT_NEAR(std::min(top.norm(), bottom.norm()), 0.95 * 2 * std::sqrt(2), 0.01);
+  EXPECT_LT(top.dot(bottom), 0);
+  EXPECT_NEAR(test::volume(imported("arch.geo", "--thickness 100 --units mm-t-s --scale 1000")), test::volume(m), 1e-9);
+}
+
+TEST_F(ImportShell, WhatHasNoClearPairsIsRefused) {
+  place.write("arch.geo", arch);
+  refused("arch.geo -o a.h5", 2,
+          "arch.geo: 40 flat cells (triangles, quadrangles) and no volume (a surface alone, as in an STL, has no "
+          "volume: mesh its inside; lines beside flat cells are their edges, not bars)");
+  refused("arch.geo -o a.h5 --thickness 0", 1, "--thickness must be positive (see hilo-import --help)");
+  refused("arch.geo -o a.h5 --thickness 0.1 --order 2", 1, "--thickness makes linear shells (leave --order away)");
+  const std::string quads = "*ELEMENT, TYPE=S4, ELSET=P\n",
+                    rest = "*MATERIAL, NAME=M\n*ELASTIC\n1e9, .3\n*SHELL SECTION, ELSET=P, MATERIAL=M\n.1\n",
+                    nodes = "*NODE\n1,0,0,0\n2,1,0,0\n3,2,0,0\n4,0,1,0\n5,1,1,0\n6,2,1,0\n7,1,0,1\n8,1,1,1\n9,1,0,-1\n10,1,1,-1\n";
+  place.write("fold.inp", nodes + quads + "1,1,2,5,4\n2,2,7,8,5\n" + rest);
+  refused(
+      "fold.inp -o a.h5 --thicken", 2,
+      "fold.inp: element 1: the surface is folded at node 2: its normals differ by more than 40 degrees (leave them as they are: regions "
+      "that are rigid)");
+  place.write("tee.inp", nodes + quads + "1,1,2,5,4\n2,2,3,6,5\n3,2,7,8,5\n" + rest);
+  refused("tee.inp -o a.h5 --thicken", 2,
+          "tee.inp: element 3: more than two shells meet in nodes 2 and 5 (leave them as they are: regions that are rigid)");
+  place.write("tri.inp", nodes + "*ELEMENT, TYPE=S3, ELSET=P\n1,1,2,5\n" + rest);
+  refused("tri.inp -o a.h5 --thicken", 2, "tri.inp: element 1: tri3 has no solid-shell, quad4 alone (quadrangles (.geo: Recombine))");
+  const std::string flat = nodes + quads + "1,1,2,5,4\n2,2,3,6,5\n" + rest;
+  place.write("pin.inp", flat + "*BOUNDARY\n1,1,3\n*STEP\n*STATIC\n*END STEP\n");
+  refused(
+      "pin.inp -o a.h5 --thicken", 2,
+      "pin.inp: element 1: node 1 is held along x and free to turn about y: a pair of nodes is held in both or in none (clamp it or hold "
+      "it as symmetry does; or leave --thicken away)");
+  place.write("moment.inp", flat + "*STEP\n*STATIC\n*CLOAD\n3,5,1.\n*END STEP\n");
+  refused("moment.inp -o a.h5 --thicken", 2,
+          "moment.inp:26: a moment on a shell's node: pairs of nodes have no turns (two forces, or leave --thicken away)");
+  place.write("step.inp",
+              nodes + quads + "1,1,2,5,4\n*ELEMENT, TYPE=S4, ELSET=Q\n2,2,3,6,5\n" + rest + "*SHELL SECTION, ELSET=Q, MATERIAL=M\n.2\n");
+  refused("step.inp -o a.h5 --thicken", 2,
+          "step.inp: element 2: thickness or offset steps at node 2 (leave them as they are: regions that are rigid)");
+  const std::string plate =
+      "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nCQUAD4,1,7,1,2,3,4\nMAT1,1,2.1+11,,.3,7850.\n";
+  place.write("membrane.bdf", plate + "PSHELL,7,1,.1\n");
+  refused("membrane.bdf -o a.h5 --thicken", 2,
+          "membrane.bdf: element 1: PSHELL with another material in bending, or none is no plate of one material (leave them as they are: "
+          "regions that are rigid)");
+  place.write("soft.bdf", plate + "PSHELL,7,1,.1,1,.5\n");
+  refused("soft.bdf -o a.h5 --thicken", 2,
+          "soft.bdf: element 1: PSHELL with 12I/T^3 other than 1, or MID4 is no plate of one material (leave them as they are: regions "
+          "that are "
+          "rigid)");
+}
+
+/// A strip 10 x 1 x 0.1 along x, clamped at x = 0, with 2 N along z at its end: tip P L^3/(3 E I), and what shear adds.
+constexpr double strip_tip = 2. * 1000 / (3 * 1e9 * 1e-3 / 12) + 2. * 10 / (5. / 6 * 0.5e9 * 0.1);
+
+TEST_F(ImportShell, AClampedDeckOfS4BendsAsItsBeam) {
+  std::string nodes = "*NODE\n", cells = "*ELEMENT, TYPE=S4R, ELSET=STRIP\n";
+  for (int i = 0; i <= 20; ++i) nodes += fmt::format("{},{},0,0\n{},{},1,0\n", 2 * i + 1, i / 2., 2 * i + 2, i / 2.);
+  for (int i = 0; i < 20; ++i) {
+    const int a = 2 * i + 1;
+    cells += i % 2 ? fmt::format("{},{},{},{},{}\n", i + 1, a, a + 2, a + 3, a + 1)
+                   : fmt::format("{},{},{},{},{}\n", i + 1, a, a + 1, a + 3, a + 2);
+  }
+  place.write("strip.inp",
+              nodes + cells +
+                  "*NSET, NSET=ROOT\n1,2\n*NSET, NSET=END\n41,42\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,0.\n*DENSITY\n1000\n"
+                  "*SHELL SECTION, ELSET=STRIP, MATERIAL=M\n.1\n*BOUNDARY\nROOT,1,6\n*STEP\n*STATIC\n*CLOAD\nEND,3,1.\n*END STEP\n");
+  imported("strip.inp", "--thicken --scene-out scene.toml");
+  EXPECT_NE(err.find("20 quadrangles became solid-shells, 42 nodes pairs"), std::string::npos) << err;
+  place.write("scene.toml", test::text_of(place / "scene.toml") + "\n[[probe]]\nname = \"END\"\non = \"END\"\n");
+  const auto ran = place.run("hilo-solve --quiet scene.toml -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_NEAR(way("END").z() / strip_tip, 1, 2e-3);
+}
+
+TEST_F(ImportShell, AClampedDeckOfCquad4BendsAsItsBeam) {
+  std::string deck = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nMAT1,1,1.+9,,0.,1000.\nPSHELL,7,1,.1,1,,1\n";
+  for (int i = 0; i <= 20; ++i) deck += fmt::format("GRID,{},,{:.1f},0.,0.\nGRID,{},,{:.1f},1.,0.\n", 2 * i + 1, i / 2., 2 * i + 2, i / 2.);
+  for (int i = 0; i < 20; ++i) deck += fmt::format("CQUAD4,{},7,{},{},{},{}\n", i + 1, 2 * i + 1, 2 * i + 3, 2 * i + 4, 2 * i + 2);
+  deck += "SPC1,1,123456,1,2\nFORCE,2,41,,1.,0.,0.,1.\nFORCE,2,42,,1.,0.,0.,1.\nENDDATA\n";
+  place.write("strip.bdf", deck);
+  const Mesh m = imported("strip.bdf", "--thicken --scene-out scene.toml");
+  std::string end;
+  for (const auto& [name, set] : m.facet_sets)
+    if (std::abs(m.X[m.facet_nodes(set[0])[0]].x() - 10) < 1e-9 && set.size() == 1) end = name;
+  ASSERT_NE(end, "");
+  place.write("scene.toml", test::text_of(place / "scene.toml") + "\n[[probe]]\nname = \"end\"\non = \"" + end + "\"\n");
+  const auto ran = place.run("hilo-solve --quiet scene.toml -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_NEAR(way("end").z() / strip_tip, 1, 2e-3);
+}
+
+}  // namespace
+}  // namespace hilo

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shells over a patch of a surface, run as a user would.
+#pragma once
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "verify/verify.hpp"
+
+namespace hilo::test {
+
+/// A point of the mid-surface and its normal, along X_u x X_v.
+using Surface = std::function<std::pair<Vec3, Vec3>(double u, double v)>;
+
+/// n_u x n_v cells over the unit square, `layers` through the thickness h; facet sets xmin xmax (of u), ymin ymax (of v), zmin zmax.
+inline Mesh shell_mesh(const Surface& surface, int n_u, int n_v, double h, int layers = 1) {
+  BlockOptions o;
+  o.n[0] = n_u, o.n[1] = n_v, o.n[2] = layers, o.regions = {"shell"};
+  o.map = [&](const Vec3& x) -> Vec3 {
+    const auto [P, N] = surface(x[0], x[1]);
+    return P + h * (x[2] - 0.5) * N;
+  };
+  return block_mesh(o);
+}
+/// Set of the nodes across the thickness at grid point (i, j).
+inline void add_stack(Mesh& m, const std::string& name, int i, int j, int n_u, int n_v, int layers = 1) {
+  for (int k = 0; k <= layers; ++k) m.node_sets[name].push_back(i + (n_u + 1) * (j + (n_v + 1) * k));
+}
+inline Surface plate(double a, double b) {
+  return [=](double u, double v) { return std::pair(Vec3(a * u, b * v, 0), Vec3(0, 0, 1)); };
+}
+/// From the top, z, of a cylinder about y by an angle to x, and along y.
+inline Surface cylinder(double R, double angle, double length) {
+  return [=](double u, double v) {
+    const Vec3 n(std::sin(angle * u), 0, std::cos(angle * u));
+    return std::pair(Vec3(R * n + length * v * Vec3::UnitY()), n);
+  };
+}
+/// An eighth of a sphere with a hole of 18 degrees about z; u goes around.
+inline Surface sphere(double R) {
+  return [=](double u, double v) {
+    const double t = M_PI / 2 - (M_PI / 2 - M_PI / 10) * v, p = M_PI / 2 * u;
+    const Vec3 n(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t));
+    return std::pair(Vec3(R * n), n);
+  };
+}
+
+inline std::string shell_of(double E, double nu, const std::string& more = "density = 1") {
+  return fmt::format("[material.m]\nE = {}\nnu = {}\n{}\n[region.shell]\nmaterial = \"m\"\nshell = true\n", E, nu, more);
+}
+inline std::string held(const std::string& on, const std::string& components = "\"x\", \"y\", \"z\"") {
+  return fmt::format("[[motion]]\nkind = \"fixed\"\nname = \"{0} {2}\"\non = \"{0}\"\ncomponents = [{1}]\n", on, components,
+                     components.size() < 4 ? components.substr(1, 1) : std::to_string(components.size()));
+}
+inline std::string push(const std::string& on, const Vec3& force, const std::string& more = "") {
+  return fmt::format("[[load]]\nkind = \"force\"\nname = \"on {0}\"\non = \"{0}\"\nforce = [{1}, {2}, {3}]\n{4}\n", on, force[0], force[1],
+                     force[2], more);
+}
+inline std::string probe(const std::string& on) { return fmt::format("[[probe]]\nname = \"{0}\"\non = \"{0}\"\n", on); }
+inline std::string in_steps(int n) { return fmt::format("[time]\nanalysis = \"static\"\nsteps = {}\n", n); }
+
+class ShellPlace : public testing::Test {
+ protected:
+  void use(const Mesh& m, const std::vector<Fidelity>& fidelity = {}) {
+    write_mesh(work / "mesh.h5", m, {"test"});
+    mesh = "mesh.h5";
+    if (fidelity.empty()) return;
+    write_tags(work / "tags.h5", work / "mesh.h5", fidelity, {"test"});
+    mesh = "tags.h5";
+  }
+  Results solved(const std::string& scene, const std::string& options = "") {
+    work.write("scene.toml", scene);
+    ran = work.run("hilo-solve --quiet scene.toml " + mesh + " -o run.h5 " + options);
+    if (ran.exit != 0) throw std::runtime_error(ran.err);
+    return Results(work / "run.h5");
+  }
+  /// How far a probe has gone at the end.
+  static Vec3 way(const Results& r, const std::string& probe) {
+    const Eigen::MatrixXd x = r.history("probe/" + probe);
+    return (x.bottomRows(1) - x.topRows(1)).leftCols<3>().transpose();
+  }
+  Workplace work;
+  std::string mesh;
+  Ran ran;
+};
+
+}  // namespace hilo::test
