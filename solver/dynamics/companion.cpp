@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "base/error.hpp"
 #include "dynamics/profile.hpp"
 #include "dynamics/start.hpp"
 
@@ -12,14 +13,15 @@ namespace {
 constexpr double largest_turn = 2;  // [rad], as in the audit
 constexpr int most_cuts = 3;
 
-/// What is done while it lives belongs to none of the phases of the run, but to the rest.
+/// What is done while it lives belongs to none of the phases of the run, but to the rest.  It warns of nothing: the run itself does.
 class Aside {
  public:
-  Aside() = default;
-  ~Aside() { phases() = before_; }
+  explicit Aside(const System& system) : system_(system) { quiet_warnings(true); }
+  ~Aside() { phases() = before_, quiet_warnings(is_quiet() || system_.comm->rank != 0); }
   Aside(const Aside&) = delete;
 
  private:
+  const System& system_;
   Phases before_ = phases();
 };
 
@@ -50,7 +52,7 @@ void Companion::follow(const State& s, double added, ErrorEstimate& estimate) {
 void Companion::catch_up(const State& s, double added, ErrorEstimate& estimate) {
   if (waiting_ == 0 || !estimate.why().empty()) return;
   waiting_ = 0;
-  const Aside aside;
+  const Aside aside(system_);
   swap_memory();
   const bool there = step(s.t, 0, estimate);
   swap_memory();
@@ -59,7 +61,7 @@ void Companion::catch_up(const State& s, double added, ErrorEstimate& estimate) 
 }
 
 void Companion::restart(const State& of_run, bool strikes, double jerk_step) {
-  const Aside aside;
+  const Aside aside(system_);
   state_.t = of_run.t;
   swap_memory();
   if (strikes) untold_.strike(system_, *solver_, state_, false);

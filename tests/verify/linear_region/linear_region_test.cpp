@@ -138,6 +138,7 @@ TEST(LinearRegion, ThatSpinsNearItsFirstFrequencyIsWarnedOfAndBeyondItRefused) {
   EXPECT_EQ(c.solve(end + "1e8", "run.h5", 0, "free").err.find("spins"), std::string::npos);
   const Ran near = c.solve(end + "3e6", "run.h5", 0, "free");
   EXPECT_NE(near.err.find("spins with 18"), std::string::npos) << near.err;
+  EXPECT_EQ(near.err.find("spins with"), near.err.rfind("spins with")) << "once, though a second solution runs beside\n" << near.err;
   EXPECT_NE(near.err.find("tag it nonlinear"), std::string::npos) << near.err;
   const Ran beyond = c.solve(end + "3e5", "run.h5", 3, "free");
   EXPECT_NE(beyond.err.find("linear region \"block\" spins with 18"), std::string::npos) << beyond.err;
