@@ -63,7 +63,6 @@ void Builder::add_contacts() {
     const auto a = obstacles.find(e.text("a"));
     refuse_what_is_not_there(scene_, comm_, e, a == obstacles.end());
     if (a == obstacles.end()) {
-      if (obstacles.contains(e.text("b"))) e.refuse("b", "it is an obstacle: name it as a");
       add_surfaces(e, names);
       continue;
     }

@@ -37,6 +37,7 @@ void Builder::add_surfaces(const Entry& e, const std::vector<std::string>& obsta
   if (!mesh_ || (mesh_->mesh.find_region(name_a) < 0 && !mesh_->mesh.facet_sets.contains(name_a)))
     throw Error(e.where("a"), fmt::format("{}: no obstacle{} \"{}\"", e.label(), mesh_ ? ", region or set of facets" : "", name_a),
                 suggest(name_a, obstacles));
+  if (std::find(obstacles.begin(), obstacles.end(), e.text("b")) != obstacles.end()) e.refuse("b", "it is an obstacle: name it as a");
   if (name_a == e.text("b")) e.refuse("b", "a surface does not meet itself");
   if (e.has("stiffness"))
     e.refuse("stiffness", "the stiffness of a surface comes from its region", "scale it by factor, or give rigid ones modulus and layer");

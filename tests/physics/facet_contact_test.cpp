@@ -63,7 +63,9 @@ TEST_F(FacetContact, KeepsEnergyAndMomentaOfAnyMotion) {
         EXPECT_NEAR(work, stored + f.dissipated, 1e-13 * (1 + top)) << size;
         EXPECT_LT(moment.norm(), 1e-13 * (1 + top)) << size;
         EXPECT_GE(f.dissipated, -1e-15) << size;
-        if (past.offset == 0) EXPECT_NEAR(f.gap, gap_of(z1), 1e-13) << "the way is the change of the gap";
+        if (past.offset == 0) {
+          EXPECT_NEAR(f.gap, gap_of(z1), 1e-13) << "the way is the change of the gap";
+        }
       }
 }
 
