@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/shell_shape.hpp"
 #include "dynamics/free_part.hpp"
 #include "dynamics/linear_step.hpp"
 #include "system/revising.hpp"
-#include "system/solids.hpp"
 
 namespace hilo {
 
@@ -67,13 +65,6 @@ void tell_what_is_left(const System& s, const Residual& r, const Unknown& u, New
   for (double& g : report.gaps) g /= r.sigma;
 }
 
-/// Thin shells turn far in a correction and swing before they settle: with their stress foreseen they do, and damped they creep.
-bool has_shells(const System& s) {
-  const auto& batches = s.part<Solids>().batches;
-  const bool some = std::any_of(batches.begin(), batches.end(), [](const SolidBatch& b) { return b.shape == shell8; });
-  return s.comm->max(some ? 1 : 0) > 0;
-}
-
 /// One solution on its way.
 class Newton {
  public:
@@ -88,7 +79,7 @@ class Newton {
         foresees_(system.traits().deforms && options.foresees),
         last_(std::move(guess)) {
     if (!foresees_) last_.reset();
-    if (foresees_ && has_shells(system)) growth_ = 10;
+    if (foresees_ && system.traits().is_thin) growth_ = 10;  // thin parts settle with their stress foreseen, and damped they creep
   }
   NewtonReport take();
 

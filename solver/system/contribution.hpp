@@ -30,6 +30,7 @@ struct Traits {
   bool is_driven = false;     // moves by a law
   bool remembers = false;     // state that a step moves on: plastic strain
   bool searches = false;      // its rows or cliques change from step to step
+  bool is_thin = false;       // shells: they turn far in a correction, and swing before they settle
   bool lumps_masses = false;  // masses on the diagonal, outside of cliques
   Traits& operator|=(const Traits& other);
 };

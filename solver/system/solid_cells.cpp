@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/shell_shape.hpp"
 #include "system/solids.hpp"
 
 namespace hilo {
@@ -32,7 +33,7 @@ double least_height(const SolidBatch& b, const int* nodes, const std::vector<Vec
 
 }  // namespace
 
-Traits Solids::traits() const { return {.deforms = some_, .has_rates = some_, .remembers = remembers_}; }
+Traits Solids::traits() const { return {.deforms = some_, .has_rates = some_, .remembers = remembers_, .is_thin = is_thin_}; }
 
 std::string Solids::count() const {
   std::int64_t cells = 0;
@@ -53,6 +54,8 @@ void Solids::prepare() {
     }
   }
   remembers_ = points_.comm->max(std::any_of(batches.begin(), batches.end(), remembers) ? 1 : 0) > 0;
+  const auto is_shell = [](const SolidBatch& b) { return b.shape == shell8; };
+  is_thin_ = points_.comm->max(std::any_of(batches.begin(), batches.end(), is_shell) ? 1 : 0) > 0;
   nodes_.assign(points_.mesh ? points_.mesh->mesh.region_name.size() : 0, {});  // every rank has an entry for every region
   // the lowest region, the same on all ranks that share a node
   std::vector<std::int64_t> region(points_.X.size(), std::numeric_limits<std::int64_t>::max());

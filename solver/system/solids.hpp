@@ -66,6 +66,7 @@ class Solids final : public Contribution, public Equations, public Stateful, pub
   void watch_strain(const Config& q);
   const Points& points_;
   bool remembers_ = false;               // some rank has cells with a state
+  bool is_thin_ = false;                 // some rank has shells
   bool some_ = false;                    // some rank has cells
   double least_height_ = 0;              // of the cells of this rank
   std::vector<std::vector<int>> nodes_;  // free ones of each region
