@@ -33,7 +33,7 @@ TEST_F(ImportShell, ASurfaceOfGmshHasItsThickness) {
   ASSERT_EQ(m.n_nodes(), 2 * 55);
   for (std::int64_t c = 0; c < m.n_cells(); ++c) EXPECT_EQ(info(m.shape[c]).name, "shell8");
   const double chord = 2 * std::sin(M_PI / 40);  // of a circle of radius 1
-  EXPECT_NEAR(test::volume(m), 10 * chord * 2 * 0.1 * std::cos(M_PI / 40), 2e-4 * test::volume(m));
+  EXPECT_NEAR(test::volume(m), 10 * chord * 2 * 0.1 * std::cos(M_PI / 40), 1e-3 * test::volume(m));
   EXPECT_EQ(m.region_name, std::vector<std::string>{"roof"});
   EXPECT_EQ(m.node_sets.at("corner").size(), 2u) << "a pair";
   EXPECT_EQ(m.facet_sets.at("front").size(), 10u) << "an edge is a strip of facets";
@@ -42,7 +42,7 @@ TEST_F(ImportShell, ASurfaceOfGmshHasItsThickness) {
   EXPECT_NEAR(std::max(top.norm(), bottom.norm()), 1.05 * 2 * std::sqrt(2), 0.01);
   EXPECT_NEAR(std::min(top.norm(), bottom.norm()), 0.95 * 2 * std::sqrt(2), 0.01);
   EXPECT_LT(top.dot(bottom), 0);
-  EXPECT_NEAR(test::volume(imported("arch.geo", "--thickness 100 --units mm-t-s --scale 1000")), test::volume(m), 1e-9);
+  EXPECT_NEAR(test::volume(imported("arch.geo", "--thickness 0.1 --units mm-t-s --scale 1000")), test::volume(m), 1e-9);
 }
 
 TEST_F(ImportShell, WhatHasNoClearPairsIsRefused) {
