@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shells whose law is not linear keep modes of their cells from step to step: a run that goes on has them, bit by bit.
 #include "dynamics/kept_run.hpp"
-#include "ranks.hpp"
 #include "verify/block_mesh.hpp"
 
 namespace hilo::test {
@@ -23,13 +22,6 @@ TEST(KeptShells, GoOnBitByBit) {
     Folder w;
     expect_goes_on(w.path(), strip(w.path(), law), "mesh.h5", {3, 14});
   }
-}
-TEST(DISABLED_KeptShellsOnRanks, GoOnBitByBit) {
-  for (const char* law : laws) expect_goes_on(".", strip(".", law), "mesh.h5", {3, 14});
-}
-TEST(KeptShells, GoOnOnTwoRanks) {
-  Folder w;
-  expect_passes_on(2, "KeptShellsOnRanks", w.path().string());
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ TEST_F(ImportShell, ASurfaceOfGmshHasItsThickness) {
   ASSERT_EQ(m.n_nodes(), 2 * 55);
   for (std::int64_t c = 0; c < m.n_cells(); ++c) EXPECT_EQ(info(m.shape[c]).name, "shell8");
   const double chord = 2 * std::sin(M_PI / 40);  // of a circle of radius 1
-  EXPECT_NEAR(test::volume(m), 10 * chord * 2 * 0.1 * std::cos(M_PI / 40), 2e-4 * test::volume(m));
+  EXPECT_NEAR(test::volume(m), 10 * chord * 2 * 0.1 * std::cos(M_PI / 40), 1e-3 * test::volume(m));
   EXPECT_EQ(m.region_name, std::vector<std::string>{"roof"});
   EXPECT_EQ(m.node_sets.at("corner").size(), 2u) << "a pair";
   EXPECT_EQ(m.facet_sets.at("front").size(), 10u) << "an edge is a strip of facets";
@@ -42,14 +42,12 @@ TEST_F(ImportShell, ASurfaceOfGmshHasItsThickness) {
   EXPECT_NEAR(std::max(top.norm(), bottom.norm()), 1.05 * 2 * std::sqrt(2), 0.01);
   EXPECT_NEAR(std::min(top.norm(), bottom.norm()), 0.95 * 2 * std::sqrt(2), 0.01);
   EXPECT_LT(top.dot(bottom), 0);
-  EXPECT_NEAR(test::volume(imported("arch.geo", "--thickness 100 --units mm-t-s --scale 1000")), test::volume(m), 1e-9);
+  EXPECT_NEAR(test::volume(imported("arch.geo", "--thickness 0.1 --units mm-t-s --scale 1000")), test::volume(m), 1e-9);
 }
 
 TEST_F(ImportShell, WhatHasNoClearPairsIsRefused) {
   place.write("arch.geo", arch);
-  refused("arch.geo -o a.h5", 2,
-          "arch.geo: 40 flat cells (triangles, quadrangles) and no volume (a surface alone, as in an STL, has no "
-          "volume: mesh its inside; lines beside flat cells are their edges, not bars)");
+  refused("arch.geo -o a.h5", 2, "arch.geo: no volume to mesh (the geometry holds points, curves or surfaces only)");
   refused("arch.geo -o a.h5 --thickness 0", 1, "--thickness must be positive (see hilo-import --help)");
   refused("arch.geo -o a.h5 --thickness 0.1 --order 2", 1, "--thickness makes linear shells (leave --order away)");
   const std::string quads = "*ELEMENT, TYPE=S4, ELSET=P\n",
@@ -73,7 +71,7 @@ TEST_F(ImportShell, WhatHasNoClearPairsIsRefused) {
       "it as symmetry does; or leave --thicken away)");
   place.write("moment.inp", flat + "*STEP\n*STATIC\n*CLOAD\n3,5,1.\n*END STEP\n");
   refused("moment.inp -o a.h5 --thicken", 2,
-          "moment.inp:26: a moment on a shell's node: pairs of nodes have no turns (two forces, or leave --thicken away)");
+          "moment.inp:23: a moment on a shell's node: pairs of nodes have no turns (two forces, or leave --thicken away)");
   place.write("step.inp",
               nodes + quads + "1,1,2,5,4\n*ELEMENT, TYPE=S4, ELSET=Q\n2,2,3,6,5\n" + rest + "*SHELL SECTION, ELSET=Q, MATERIAL=M\n.2\n");
   refused("step.inp -o a.h5 --thicken", 2,

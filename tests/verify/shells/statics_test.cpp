@@ -154,22 +154,24 @@ TEST_F(ShellStatics, StressesOfBothFacesAreThoseOfBending) {
   }
 }
 
-// A strip whose end is pushed far: the moment at its root is yield b h^2/4, with four points across 4 % more.
+// A strip whose end is pushed far: the moment at its root is yield b h^2/4, with four points across 4 % more; the root may narrow.
 TEST_F(ShellStatics, APlasticHingeBearsItsLimit) {
-  use(shell_mesh(plate(1, 0.1), 20, 1, 0.02));
+  Mesh m = shell_mesh(plate(1, 0.1), 20, 1, 0.02);
+  m.node_sets["side"] = {0};
+  use(m);
   const double yield = 2.5e8, limit = yield * 0.1 * 0.02 * 0.02 / 4;
   const auto tip = [&](double share) {
     const Results r = solved(
         "[material.m]\nkind = \"j2\"\nE = 2e11\nnu = 0.3\nyield = 2.5e8\nhardening = 1e7\ndensity = 7800\n"
         "[region.shell]\nmaterial = \"m\"\nshell = true\n" +
-        held("xmin") + push("xmax", Vec3(0, 0, share * limit)) + probe("xmax") + in_steps(10));
+        held("xmin", "\"x\", \"z\"") + held("side", "\"y\"") + push("xmax", Vec3(0, 0, share * limit)) + probe("xmax") + in_steps(10));
     return way(r, "xmax")[2] / (share * limit / (3 * 2e11 * 0.1 * std::pow(0.02, 3) / 12));  // over that of the elastic beam
   };
   const double below = tip(0.6), above = tip(1.0), beyond = tip(1.15);
   std::printf("tip over the elastic one: %.3f %.3f %.3f\n", below, above, beyond);
   EXPECT_NEAR(below, 1, 0.02);
-  EXPECT_LT(above, 3);
-  EXPECT_GT(beyond, 3);
+  EXPECT_LT(above, 1.5);
+  EXPECT_GT(beyond, 2);
 }
 
 }  // namespace
