@@ -12,6 +12,7 @@ namespace {
 
 constexpr double out_of_line = 3;   // times what tangents foresee
 constexpr double of_largest = 0.1;  // of the largest way foreseen, and
+constexpr double backwards = -0.3;  // cosine between the way and what a tangent foresees
 constexpr double of_length = 1e-5;  // of the scene: shorter ways are nothing
 
 /// How far points of a configuration go by a change of it, one after the other: nodes, centres, and directors at the sizes of their bodies.
@@ -23,6 +24,18 @@ void each_way(const System& system, const Config& change, const Visit& visit) {
     visit(i++, change.c[b].norm());
     visit(i++, system.bodies[b].size * change.R[b].colwise().norm().maxCoeff());
   }
+}
+
+/// Of the angle between two ways of all points together.
+double cosine(const System& system, const Config& a, const Config& b) {
+  double sums[3] = {0, 0, 0};
+  const auto add = [&](const auto& x, const auto& y, double weight) {
+    sums[0] += weight * x.cwiseProduct(y).sum(), sums[1] += weight * x.squaredNorm(), sums[2] += weight * y.squaredNorm();
+  };
+  for (size_t i = 0; i < a.x.size(); ++i) add(a.x[i], b.x[i], 1);
+  for (size_t i = 0; i < a.c.size(); ++i) add(a.c[i], b.c[i], 1), add(a.R[i], b.R[i], system.bodies[i].size * system.bodies[i].size);
+  system.comm->sum(sums);
+  return sums[1] > 0 && sums[2] > 0 ? sums[0] / std::sqrt(sums[1] * sums[2]) : 1;
 }
 
 }  // namespace
@@ -76,10 +89,13 @@ double BranchJump::between(const Loaded& from, const Loaded& to, bool factored) 
       if (gone[i] > std::max(out_of_line * most[i], least)) worst = std::max(worst, gone[i]);
     return system_.comm->max(worst);
   };
-  const double behind = surprise(foreseen(to, from, factored));
-  if (behind == 0) return 0;
-  double jump = surprise(foreseen(from, to, false));
-  if (jump == 0 && !system_.traits().remembers) {
+  const double longest = system_.comm->max(gone.empty() ? 0 : *std::max_element(gone.begin(), gone.end()));
+  if (longest < of_length * system_.length) return system_.commit(to.q), 0;
+  const Config at_end = foreseen(to, from, factored), at_start = foreseen(from, to, false);
+  const double behind = surprise(at_end);
+  double jump = surprise(at_start);
+  if (jump == 0 && std::min(cosine(system_, at_start, way), -cosine(system_, at_end, way)) < backwards) jump = longest;
+  if (jump == 0 && behind > 0 && !system_.traits().remembers) {
     Config q = to.q;
     std::vector<double> lambda = to.lambda;
     system_.commit(q);

@@ -15,9 +15,10 @@ struct Loaded {
 };
 
 /// On one branch a point moves about as far as the tangents at both ends of the step foresee, the less it differs the shorter the step is.
-/// A jump has a length of its own, however short the step.  Where a point moved more than three times as far as both foresee, the step has
-/// jumped, or is too long to tell.  Where the tangent at the start alone explains the way (it is soft just before a limit of the load, or
-/// the structure stiffens), the loads are taken back: what then comes to another state than the start has jumped.  Collective.
+/// A jump has a length of its own, however short the step.  Where a point moved more than three times as far as both foresee, or all
+/// against the way that one foresees, the step has jumped, or is too long to tell.  Where the tangent at the start alone explains the way
+/// (it is soft just before a limit of the load, or the structure stiffens), the loads are taken back: what then comes to another state than
+/// the start has jumped.  Collective.
 class BranchJump {
  public:
   BranchJump(System& system, KktSolver& solver, const NewtonOptions& options) : system_(system), solver_(solver), options_(options) {}

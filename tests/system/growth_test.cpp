@@ -42,8 +42,9 @@ struct Springs {
       const std::string name = "n" + std::to_string(i);
       mesh.node_sets[name] = {i};
       const Vec3& x = mesh.X[static_cast<size_t>(i)];
-      text += fmt::format("[[spring]]\nkind = \"bushing\"\nname = \"s{}\"\nb = \"{}\"\nat = [{}, {}, {}]\nstiffness = [1e3, 1e3, 1e3]\n", i,
-                          name, x[0], x[1], x[2]);
+      text += fmt::format(
+          "[[spring]]\nkind = \"axial\"\nname = \"s{}\"\nb = \"{}\"\nat_a = [{}, {}, {}]\nat_b = [{}, {}, {}]\nstiffness = 1e3\n", i, name,
+          x[0], x[1], x[2] - 1, x[0], x[1], x[2]);
     }
     write_mesh(folder / "mesh.h5", mesh, {"test"});
   }
