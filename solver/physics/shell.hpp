@@ -112,7 +112,7 @@ inline void lower_least_det(const Cell<T>& cell, const SolidCall<T>& c, const T 
 /// With stress linear in strain: elastic, viscous, or both.
 template <class S, class Moduli, class T>
 inline void add_linear(const Moduli& moduli, const SolidCall<T>& c, const Cell<T>& cell, const Ends<T>& x, double elastic) {
-  Stiffness<T> k = linear_stiffness<S>(cell, moduli);
+  CellModuli<T> k = linear_stiffness<S>(cell, moduli);
   k.condense();
   const auto times = [&](const T* e, T* s) {
     for (int i = 0; i < n_measures; ++i) {
@@ -171,7 +171,7 @@ class Nonlinear {
         x[i][0] = force_[i];
         for (int j = 0; j < n_modes; ++j) a[i][j] = modes_[i][j];
       }
-      Stiffness<T>::template solve<1>(a, x);
+      CellModuli<T>::template solve<1>(a, x);
       for (int i = 0; i < n_modes; ++i) alpha1_[i] -= x[i][0], squares += force_[i] * x[i][0] / scale;
       worst = 0;
       for (unsigned l = 0; l < sizeof(T) / sizeof(double); ++l)
@@ -195,7 +195,7 @@ class Nonlinear {
     sweep(x.e1, true);
     for (int i = 0; i < n_measures; ++i) s[i] = stress_[i];
     if (!c_.f && !c_.K) return;
-    Stiffness<T> k(cell_.det);
+    CellModuli<T> k(cell_.det);
     if (c_.K) {
       constexpr auto rule = S::rule();
       add_stiffness<S>(

@@ -38,12 +38,12 @@ inline constexpr Product products[] = {
     {22, 3, 3}, {22, 4, 4}, {22, 5, 5}, {22, 6, 6}, {23, 3, 4}, {23, 5, 6}, {24, 3, 5}, {24, 4, 6}, {25, 3, 6}, {25, 4, 5}};  // 33
 
 /// d measure/d u_k has u_with; those of k are terms[first_term[k]] to terms[first_term[k + 1]].
-struct Term {
+struct MapTerm {
   int measure, with;
 };
 inline constexpr int n_terms = 68;
 struct Terms {
-  Term of[n_terms]{};
+  MapTerm of[n_terms]{};
   int first[n_vectors + 1]{};
 };
 inline constexpr Terms terms = [] {
@@ -232,10 +232,10 @@ struct Point {
 
 /// Moduli of measures, and what couples them to the modes.
 template <class T>
-struct Stiffness {
+struct CellModuli {
   T D[n_measures][n_measures], by_modes[n_modes][n_measures], of_modes[n_modes][n_measures], modes[n_modes][n_modes];
 
-  explicit Stiffness(const T& like) {
+  explicit CellModuli(const T& like) {
     const T zero = 0 * like;
     for (int i = 0; i < n_measures; ++i)
       for (int j = 0; j < n_measures; ++j) D[i][j] = zero;
@@ -275,7 +275,7 @@ struct Stiffness {
 
 /// Adds the moduli of all points, covariant and times their volumes (n_points x 6 x 6): of(p) for Point p.
 template <class S, class T, class Moduli>
-inline void add_stiffness(const Cell<T>& cell, const Moduli& of, Stiffness<T>& to) {
+inline void add_stiffness(const Cell<T>& cell, const Moduli& of, CellModuli<T>& to) {
   constexpr auto rule = S::rule();
   for (int q = 0; q < 4; ++q) {
     T N[n_resultants][n_resultants], A[n_modes][n_resultants], B[n_modes][n_resultants];
@@ -341,7 +341,7 @@ inline void covariant(const Point<T>& at, const T (*C)[6], const T& w, T (*to)[6
 
 /// Of moduli that are the same at every point.
 template <class S, class T, class Law>
-inline Stiffness<T> linear_stiffness(const Cell<T>& cell, const Law& moduli) {
+inline CellModuli<T> linear_stiffness(const Cell<T>& cell, const Law& moduli) {
   constexpr auto rule = S::rule();
   T C[6][6];
   for (int i = 0; i < 6; ++i)
@@ -350,7 +350,7 @@ inline Stiffness<T> linear_stiffness(const Cell<T>& cell, const Law& moduli) {
     add_linear_tangent(moduli, 1, C);
   else
     moduli.add_tangent(1, C);
-  Stiffness<T> out(cell.det);
+  CellModuli<T> out(cell.det);
   add_stiffness<S>(
       cell,
       [&](int p, T(*to)[6]) {

@@ -56,7 +56,7 @@ void shell_points(const M& law, std::span<const Vec3> X, std::span<const Vec3> x
       for (int j = 0; j < shell::n_modes; ++j) a[i][j] = k.modes[i][j];
       for (int j = 0; j < shell::n_measures; ++j) b[i][0] -= k.of_modes[i][j] * at.e[j];
     }
-    shell::Stiffness<double>::solve<1>(a, b);
+    shell::CellModuli<double>::solve<1>(a, b);
     for (int i = 0; i < shell::n_modes; ++i) modes[i] = b[i][0];
   } else {
     SolidCall<double> call{};
