@@ -10,6 +10,7 @@
 #include "dynamics/companion.hpp"
 #include "dynamics/contradiction.hpp"
 #include "dynamics/integrator_kinds.hpp"
+#include "dynamics/phase_error.hpp"
 #include "dynamics/predictor.hpp"
 #include "dynamics/run_parts.hpp"
 #include "dynamics/singular_start.hpp"
@@ -78,9 +79,10 @@ class DynamicSteps final : public Steps {
     const bool large = run_.system.layout.map.n_global > largest_estimated, searches = run_.system.traits().searches;
     if (word == "never") return estimate.give_up("time.error_estimate has none");
     if (!control_ && (word == "steps" || (word == "auto" && (large || searches)))) {
-      if (run_.integrator->order() > 2) estimate.give_up("steps alone tell the error of methods of second order");
-      if (estimate.why().empty()) step_errors_.emplace();
-      return;
+      const std::string& method = run_.plan.now().method;
+      if (const std::optional<double> phase = phase_error(time_, method)) return void(step_errors_.emplace(*phase));
+      return estimate.give_up(fmt::format("steps alone tell the error of methods of second order, not of {}{}", method,
+                                          method == Newmark::name ? " where gamma is not 1/2" : ""));
     }
     if (searches) return estimate.give_up("the structure of the scene changes from step to step");
     companion_.emplace(

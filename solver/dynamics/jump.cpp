@@ -6,6 +6,7 @@
 
 #include "dynamics/linear_step.hpp"
 #include "dynamics/start.hpp"
+#include "system/revising.hpp"
 
 namespace hilo {
 namespace {
@@ -26,22 +27,25 @@ void each_way(const System& system, const Config& change, const Visit& visit) {
   }
 }
 
-/// Of the angle between two ways of all points together.
+/// Of the angle between two ways of all points together, each counted on one rank.
 double cosine(const System& system, const Config& a, const Config& b) {
   double sums[3] = {0, 0, 0};
   const auto add = [&](const auto& x, const auto& y, double weight) {
     sums[0] += weight * x.cwiseProduct(y).sum(), sums[1] += weight * x.squaredNorm(), sums[2] += weight * y.squaredNorm();
   };
-  for (size_t i = 0; i < a.x.size(); ++i) add(a.x[i], b.x[i], 1);
-  for (size_t i = 0; i < a.c.size(); ++i) add(a.c[i], b.c[i], 1), add(a.R[i], b.R[i], system.bodies[i].size * system.bodies[i].size);
+  for (size_t i = 0; i < a.x.size(); ++i)
+    if (system.node_owned[i]) add(a.x[i], b.x[i], 1);
+  for (size_t i = 0; i < a.c.size(); ++i)
+    if (system.counts(static_cast<int>(i))) add(a.c[i], b.c[i], 1), add(a.R[i], b.R[i], system.bodies[i].size * system.bodies[i].size);
   system.comm->sum(sums);
   return sums[1] > 0 && sums[2] > 0 ? sums[0] / std::sqrt(sums[1] * sums[2]) : 1;
 }
 
 }  // namespace
 
-/// How all moves from a state to the loads of another, to first order: what moves by a law takes the rest along.
-Config BranchJump::foreseen(const Loaded& at, const Loaded& other, bool factored) {
+/// How all moves from a state to the loads of another, to first order: what moves by a law takes the rest along.  None of a tangent that is
+/// singular.
+std::optional<Config> BranchJump::foreseen(const Loaded& at, const Loaded& other, bool factored) {
   constexpr double little = 1e-3;  // of the way of what moves by a law
   system_.commit(at.q);
   const auto evaluate = [&](const Config& q, const Loaded& loads, bool tangent) {
@@ -65,12 +69,8 @@ Config BranchJump::foreseen(const Loaded& at, const Loaded& other, bool factored
     const std::vector<double> moved = evaluate(nudged, at, false);
     for (size_t i = 0; i < r.size(); ++i) r[i] += (moved[i] - base[i]) / little;
   }
-  if (correct(solver_, r, z, 1e-3).ok) {
-    system_.add_rates(way, at.q, z);
-  } else {  // a tangent that is singular foresees any way
-    for (Vec3& x : way.x) x.setConstant(1e150);
-    for (Vec3& c : way.c) c.setConstant(1e150);
-  }
+  if (!correct(solver_, r, z, 1e-3).ok) return std::nullopt;
+  system_.add_rates(way, at.q, z);
   return way;
 }
 
@@ -81,9 +81,10 @@ double BranchJump::between(const Loaded& from, const Loaded& to, bool factored) 
   std::vector<double> gone, most;
   each_way(system_, way, [&](size_t, double x) { gone.push_back(x); });
   most.assign(gone.size(), 0.0);
-  const auto surprise = [&](const Config& foreseen) {
+  const auto surprise = [&](const std::optional<Config>& foreseen) {
     double largest = 0, worst = 0;
-    each_way(system_, foreseen, [&](size_t i, double x) { most[i] = std::max(most[i], x), largest = std::max(largest, most[i]); });
+    if (!foreseen) return std::fill(most.begin(), most.end(), 1e300), 0.0;  // a tangent that is singular foresees any way
+    each_way(system_, *foreseen, [&](size_t i, double x) { most[i] = std::max(most[i], x), largest = std::max(largest, most[i]); });
     const double least = std::max(of_largest * system_.comm->max(largest), of_length * system_.length);
     for (size_t i = 0; i < gone.size(); ++i)
       if (gone[i] > std::max(out_of_line * most[i], least)) worst = std::max(worst, gone[i]);
@@ -91,17 +92,22 @@ double BranchJump::between(const Loaded& from, const Loaded& to, bool factored) 
   };
   const double longest = system_.comm->max(gone.empty() ? 0 : *std::max_element(gone.begin(), gone.end()));
   if (longest < of_length * system_.length) return system_.commit(to.q), 0;
-  const Config at_end = foreseen(to, from, factored), at_start = foreseen(from, to, false);
+  const std::optional<Config> at_end = foreseen(to, from, factored), at_start = foreseen(from, to, false);
   const double behind = surprise(at_end);
   double jump = surprise(at_start);
-  if (jump == 0 && std::min(cosine(system_, at_start, way), -cosine(system_, at_end, way)) < backwards) jump = longest;
-  if (jump == 0 && behind > 0 && !system_.traits().remembers) {
+  if (jump == 0 && ((at_start && cosine(system_, *at_start, way) < backwards) || (at_end && -cosine(system_, *at_end, way) < backwards)))
+    jump = longest;
+  if (jump == 0 && behind > 0) {  // back by what is remembered at the start
     Config q = to.q;
     std::vector<double> lambda = to.lambda;
     system_.commit(q);
     if (equilibrium(system_, solver_, q, lambda, from.t, from.ramp, false, options_).converged &&
         system_.largest_difference(q, from.q) > out_of_line * of_largest * behind)
       jump = behind;
+    system_.commit(to.q);
+    Stage s = stage_at(to.q, to.t);
+    s.a = &zero_, s.load_factor = to.ramp, s.elapsed = slow;
+    revise(system_, s);
   }
   system_.commit(to.q);
   return jump;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whether a load step ended on another branch of equilibrium than it began on, as where a flat truss snaps through.
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "dynamics/newton.hpp"
@@ -26,7 +27,7 @@ class BranchJump {
   double between(const Loaded& from, const Loaded& to, bool factored);
 
  private:
-  Config foreseen(const Loaded& at, const Loaded& other, bool factored);
+  std::optional<Config> foreseen(const Loaded& at, const Loaded& other, bool factored);
   System& system_;
   KktSolver& solver_;
   NewtonOptions options_;

@@ -17,6 +17,7 @@
 #include "dynamics/run_parts.hpp"
 #include "dynamics/start.hpp"
 #include "system/load_path.hpp"
+#include "system/revising.hpp"
 
 namespace hilo {
 namespace {
@@ -40,7 +41,7 @@ std::string as_json(const std::vector<Turn>& turns) {
 class PathSteps final : public Steps {
  public:
   PathSteps(RunParts& run, Pause pause) : Steps(run, std::move(pause)), time_(run.scene.table("time")) {
-    if (run.system.traits().searches)
+    if (run.system.traits().searches || revises(run.system))
       throw Error(time_.where("analysis"), "a path does not follow what meets and parts on its way", "use analysis = \"static\"");
     n_ = time_.number("steps");
     end_ = time_.has("end") ? time_.number("end") : 1;
@@ -106,13 +107,13 @@ class PathSteps final : public Steps {
   double most_steps() const { return 1000 + 200 * n_; }
   double moved(const Config& q) const { return run_.system.largest_difference(q, run_.system.start); }
 
-  /// Increments as lengths, z.y.
+  /// Increments as lengths, z.y; each block is counted on one rank.
   double dot(const Vector& z, const Vector& y) const {
     const System& s = run_.system;
     double sum = 0;
     for (const UnknownField& f : s.unknowns)
       for (size_t k = 0; k < f.size(); ++k)
-        for (int i = 3 * f.block(k); i < 3 * f.block(k) + 3; ++i) sum += z[i] * y[i] * f.scale(k) * f.scale(k);
+        for (int i = 3 * f.block(k); i < 3 * f.block(k) + 3 && s.owns(f.block(k)); ++i) sum += z[i] * y[i] * f.scale(k) * f.scale(k);
     return s.comm->sum(sum);
   }
   double length(const Way& w) const { return std::sqrt(dot(w.z, w.z) / (at_.unit * at_.unit) + w.p * w.p); }
@@ -257,15 +258,16 @@ class PathSteps final : public Steps {
     return "";
   }
 
-  /// Where stability changes without a limit, the state behind that is moved up to it, as far as states are found there.
+  /// Where stability changes without a limit, the state behind that is moved up to it; where none is found between, looked for behind that.
   void approach(const Way& way, Point& to) {
     double near = 0, far = to.so_far;
     for (int k = 0; k < 8; ++k) {
       const double so_far = (near + far) / 2;
       Point between;
       give_up();
-      if (!find(way, so_far, way, between) || between.on.rise * at_.rise < 0) break;
-      (between.on.below == at_.below ? near : far) = so_far;
+      const bool found = find(way, so_far, way, between);
+      if (found && between.on.rise * at_.rise < 0) break;
+      (!found || between.on.below == at_.below ? near : far) = so_far;
     }
     give_up();
     Point closer;

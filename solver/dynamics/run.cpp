@@ -14,6 +14,7 @@
 #include "dynamics/run_parts.hpp"
 #include "dynamics/start.hpp"
 #include "system/modal_damping.hpp"
+#include "system/revising.hpp"
 
 namespace hilo {
 namespace {
@@ -165,6 +166,9 @@ class Run {
                         " cannot keep the plastic strain of a material, or the modes of shells whose law is not linear, from step to step",
                     fmt::format("{} do", fmt::join(able, ", ")));
       }
+      if (revises(system) && (method.name == Radau::name || method.name == Gauss::name))  // the others solve each stage by `newton`
+        throw Error(time.where("integrator"), run_.integrator->name() + " does not choose again what meets when a step is solved",
+                    "energy-momentum does, and all methods that solve their stages one after another");
       const double end = time.number("end"), step = time.has("step") ? time.number("step") : end / 20;
       run_.events = events(system, end, step), system.same_time = 1e-9 * step;
       run_.events.push_back({end, false});

@@ -24,7 +24,7 @@ void StepErrors::follow(const System& system, const State& s, ErrorEstimate& est
         const double third = largest_third_derivative(system, {&past[0].q, &past[1].q, &past[2].q, &past[3].q},
                                                       {past[0].t, past[1].t, past[2].t, past[3].t});
         const double since = s.t - past[steps_ == 3 * level.stride ? 0 : 2].t, h = (s.t - past[2].t) / level.stride;
-        level.sum += since * h * h / 12 * third;
+        level.sum += since * phase_error_ * h * h * third;
         level.left_out = std::max(level.left_out, third * std::pow((s.t - past[0].t) / 3, 3) / 8);
         past.pop_front();
       }

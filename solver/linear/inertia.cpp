@@ -19,7 +19,7 @@ std::optional<int> eigenvalues_below_zero(const BlockCsr& A, int first_row) {
   double stiffness = 0;
   for (int i = 0; i < n; ++i) stiffness = std::max(stiffness, std::abs(K.coeff(i, i)));
   for (int i = 0; i < rows; ++i)
-    if (const double size = G.row(i).norm(); size > 0) G.row(i) *= std::sqrt(1e6 * stiffness) / size;
+    if (const double size = G.row(i).norm(); size > 0) G.row(i) *= std::sqrt(1e3 * stiffness) / size;
   const Sparse transpose = K.transpose(), S = 0.5 * (K + transpose) + Sparse(G.transpose() * G);
   const Eigen::SimplicialLDLT<Sparse> factors(S);
   if (factors.info() != Eigen::Success) return {};

@@ -8,7 +8,8 @@
 namespace hilo {
 
 /// Eigenvalues below zero of the symmetric part of K on the motions that the rows G allow, of the saddle-point matrix [K G^T; G 0], whose
-/// rows begin with block `first_row`.  Rows are springs a million times as stiff as K.  Nothing where a pivot vanishes.
+/// rows begin with block `first_row`.  Rows are springs a thousand times as stiff as K: of
+/// stiffer ones the round-off hides the soft motions that buckle.  Nothing where a pivot vanishes.
 std::optional<int> eigenvalues_below_zero(const BlockCsr& A, int first_row);
 
 }  // namespace hilo

@@ -42,6 +42,7 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   void number(Layout& layout) override;
   bool search(const Config& q, const Config* v, double h) override;
   bool revise(const Stage& stage) override;
+  bool chooses() const override { return !surfaces.empty(); }
   void evaluate(Pass& p) const override;
   void add_energy(const Config& q, const Config& v, Energy& sum) const override;
   void add_work(const Moment& m, Work& sum) const override;

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   outside::add_force_law();
   outside::add_output_field();
   outside::add_balls();
+  outside::add_buffer();
   outside::add_pyramid();
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();

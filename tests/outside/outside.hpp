@@ -14,6 +14,7 @@ void add_materials();
 void add_force_law();
 void add_output_field();
 void add_balls();
+void add_buffer();
 void add_pyramid();
 
 /// The results of a scene, of a mesh file where one is named.
