@@ -68,7 +68,7 @@ TEST(StepErrors, AreThoseOfTheRun) {
     EXPECT_GT(alone.told / alone.error, 0.2) << step;
     EXPECT_LT(alone.told / alone.error, 6) << step;
     EXPECT_NEAR(alone.motion, beside.motion, 0.05 * beside.motion);
-    EXPECT_EQ(alone.err.find("as the sum of what single steps add tells") != std::string::npos, alone.share > 0.05) << alone.err;
+    EXPECT_EQ(alone.err.find("by the sum of what single steps add: choose") != std::string::npos, alone.share > 0.05) << alone.err;
   }
 }
 
