@@ -52,8 +52,8 @@ TEST(Track, names_that_are_not_there_get_a_suggestion) {
        {Fault{"--track arn", "--track: no region, set, probe, sensor or body \"arn\" (did you mean \"arm\"?)", 2},
         Fault{"--trace ent", "--trace: no region, set, probe, sensor or body \"ent\" (did you mean \"end\"?)", 2},
         Fault{"--forces pim", "--forces: no joint or spring \"pim\" (did you mean \"pin\"?)", 2},
-        Fault{"--ride arm --track arm", "take one", 1}, Fault{"--scale 2 --trace tip", "leave --scale or --deformed out", 1},
-        Fault{"--scale 2 --deformed 2", "take one", 1}}) {
+        Fault{"--ride arm --track arm", "give one", 1}, Fault{"--scale 2 --trace tip", "leave --scale or --deformed out", 1},
+        Fault{"--scale 2 --deformed 2", "give one", 1}}) {
     const Ran ran = place.run(std::string("hilo-post render run.h5 -o x.png ") + f.rest);
     EXPECT_EQ(ran.exit, f.exit) << f.rest;
     EXPECT_NE(ran.err.find(f.text), std::string::npos) << ran.err;

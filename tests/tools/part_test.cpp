@@ -162,8 +162,8 @@ TEST_F(Part, TableAgreesWithTheFile) {
   const auto cells = cells_of_parts(f);
   EXPECT_EQ(ran.out.find("part  cells  flexible  flexible work  rigid work  pieces\n"), 0u) << ran.out;
   EXPECT_NE(ran.out.find("   0    " + std::to_string(cells[0])), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("\nweighted: largest over mean 1.0"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("\nuniform: largest over mean 2.000 flexible work"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\nweighted: largest divided by mean: 1.0"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\nuniform: largest divided by mean: 2.000 flexible work"), std::string::npos) << ran.out;
   EXPECT_EQ(f.provenance.back(), "hilo-part tags.h5 -n 2 -o parts.h5");
   // Facets between parts, counted from the nodes that cells share.
   std::map<std::set<std::int64_t>, std::vector<std::int64_t>> facets;

@@ -90,6 +90,13 @@ Imported read_any(const std::string& path, const ImportOptions& options, const R
       if (options.size && !f.geometry) throw Error("", fmt::format("--size is for a geometry, {} is a mesh", path), "", Exit::usage);
       if (!options.define.empty() && ending != ".geo") throw Error("", "--define is for .geo scripts", "", Exit::usage);
       if (options.trust && ending != ".geo") throw Error("", "--trust is for .geo scripts: no other file runs anything", "", Exit::usage);
+      const bool deck = f.read == read_inp || f.read == read_bdf;
+      if (options.thickness && !f.geometry && ending != ".msh")
+        throw Error("", fmt::format("--thickness is for surfaces of a geometry or of a .msh, {} is neither", path),
+                    deck ? "--thicken makes shells of a deck, with the deck's thickness" : "", Exit::usage);
+      if (options.thicken && !deck)
+        throw Error("", fmt::format("--thicken is for shells of a deck, {} is none", path),
+                    f.geometry || ending == ".msh" ? "--thickness makes shells of its surfaces" : "", Exit::usage);
       if (!options.define.empty()) check_defines(path, options);
       if (ending == ".geo") note_files_of_script(path);
       return f.read(path, options);

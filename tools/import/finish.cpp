@@ -16,7 +16,13 @@ namespace hilo {
 namespace {
 
 /// Rows of nodes move to `row`; -1 takes them out of the sets.
-void renumber(Mesh& m, const std::vector<std::int64_t>& row, std::int64_t n) {
+void renumber(Imported& in, const std::vector<std::int64_t>& row, std::int64_t n) {
+  Mesh& m = in.mesh;
+  std::map<std::int64_t, unsigned> held;
+  for (const auto& [a, bits] : in.held)
+    if (const auto b = row[static_cast<size_t>(a)]; b >= 0) held[b] |= bits;
+  in.held = std::move(held);
+  in.of_shells.clear();
   std::vector<Vec3> X(n);
   std::vector<std::int64_t> id(n, -1);
   for (size_t a = 0; a < row.size(); ++a)
@@ -40,7 +46,8 @@ std::string first_of(const std::vector<std::int64_t>& ids) {
 
 }  // namespace
 
-std::int64_t merge_nodes(Mesh& m, double distance) {
+std::int64_t merge_nodes(Imported& in, double distance) {
+  const Mesh& m = in.mesh;
   const auto n = m.n_nodes();
   std::vector<std::int64_t> root(n);
   std::iota(root.begin(), root.end(), 0);
@@ -79,12 +86,12 @@ std::int64_t merge_nodes(Mesh& m, double distance) {
   std::vector<std::int64_t> row(n);
   std::int64_t kept = 0;
   for (std::int64_t a = 0; a < n; ++a) row[a] = find(a) == a ? kept++ : row[find(a)];  // a root comes before its members
-  if (kept < n) renumber(m, row, kept);
+  if (kept < n) renumber(in, row, kept);
   return n - kept;
 }
 
 std::int64_t drop_unused(Imported& in) {
-  Mesh& m = in.mesh;
+  const Mesh& m = in.mesh;
   std::vector<std::int64_t> row(m.X.size(), -1);
   for (const auto a : m.nodes) row[a] = 0;
   std::int64_t kept = 0;
@@ -92,11 +99,12 @@ std::int64_t drop_unused(Imported& in) {
     if (r == 0) r = kept++;
   const auto gone = m.n_nodes() - kept;
   if (gone == 0) return 0;
-  renumber(m, row, kept);
-  for (auto it = m.node_sets.begin(); it != m.node_sets.end();)
+  renumber(in, row, kept);
+  auto& sets = in.mesh.node_sets;
+  for (auto it = sets.begin(); it != sets.end();)
     if (it->second.empty()) {
       in.notes.push_back(fmt::format("node set \"{}\" holds only nodes of no cell: left out", it->first));
-      it = m.node_sets.erase(it);
+      it = sets.erase(it);
     } else
       ++it;
   return gone;
@@ -184,7 +192,7 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
   for (std::int64_t a = 0; a < m.n_nodes(); ++a)
     if (!m.X[a].allFinite()) throw Error(file, fmt::format("node {} has a coordinate that is not a number", m.node_id[a]));
   if (options.merge) {
-    const auto gone = merge_nodes(m, *options.merge);
+    const auto gone = merge_nodes(in, *options.merge);
     in.notes.push_back(fmt::format("{} nodes merged with one nearer than {:g}", gone, *options.merge));
   }
   if (const auto gone = drop_unused(in)) in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped", gone));

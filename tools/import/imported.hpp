@@ -144,7 +144,7 @@ void raise_order(Imported& in);
 /// Curved cells that are inverted get straight edges, and those their neighbours become inverted by; returns how many.
 std::int64_t straighten(Mesh& mesh);
 /// Nodes nearer than `distance` become one; returns how many went.
-std::int64_t merge_nodes(Mesh& mesh, double distance);
+std::int64_t merge_nodes(Imported& in, double distance);
 /// Shells of quadrangles become solid-shells (shell8), with facet sets REGION_bottom and REGION_top; what has no clear pair of nodes is an
 /// Error: folds, steps of thickness, edges of more than two, triangles, nodes of solids, supports that a pair cannot have.
 void thicken(Imported& in, const std::string& file);

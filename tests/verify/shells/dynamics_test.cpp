@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Solid-shells in motion: natural frequencies against closed forms, what coarse steps keep, linear regions, several ranks.
+#include "base/shell_shape.hpp"
 #include "verify/shells/shell_scene.hpp"
 
 namespace hilo::test {
@@ -105,11 +106,26 @@ TEST_F(ShellDynamics, ALinearRegionHasTheModesOfItsShell) {
   EXPECT_NEAR(nonlinear[0] / beam(1.87510407, 0.01), 1, 1e-3);
   EXPECT_NEAR(nonlinear[1] / beam(1.87510407, 0.02), 1, 3e-3);
   EXPECT_NEAR(nonlinear[2] / beam(4.69409113, 0.01), 1, 5e-3);
-  const Ran refused = [&] {
-    work.write("scene.toml", scene + "stiffening = true\n[time]\nend = 1\nstep = 0.1\n");
-    return work.run("hilo-solve scene.toml tags.h5 -o no.h5");
-  }();
-  EXPECT_NE(refused.exit, 0);
+}
+
+// By name, also where the mesh says that its cells are shells.
+TEST_F(ShellDynamics, StiffeningOfLinearShellsIsRefused) {
+  Mesh m = shell_mesh(plate(1, 0.1), 4, 1, 0.01);
+  std::string scene = shell_of(2e11, 0.3, "density = 8000") + "stiffening = true\n" + held("xmin") + "[time]\nend = 1\nstep = 0.1\n";
+  const auto refused = [&](int line) {
+    use(m, {Fidelity::linear});
+    work.write("scene.toml", scene);
+    const Ran r = work.run("hilo-solve scene.toml tags.h5 -o no.h5");
+    EXPECT_EQ(r.exit, 2);
+    EXPECT_EQ(r.err,
+              fmt::format("hilo-solve: scene.toml:{}:1: region \"shell\": shells have no strains of the second degree in modes (leave out "
+                          "stiffening, or tag the region nonlinear)\n",
+                          line));
+  };
+  refused(8);
+  scene.erase(scene.find("shell = true\n"), 13);
+  std::fill(m.shape.begin(), m.shape.end(), static_cast<std::uint8_t>(shell8));
+  refused(7);
 }
 
 TEST_F(ShellDynamics, RanksFlyTheSameWay) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Solid-shells at rest against published values of thin shells, in the small and in the large.
+#include "physics/shape/hex8.hpp"
 #include "verify/shells/shell_scene.hpp"
 
 namespace hilo::test {
@@ -172,6 +173,65 @@ TEST_F(ShellStatics, APlasticHingeBearsItsLimit) {
   EXPECT_NEAR(below, 1, 0.02);
   EXPECT_LT(above, 1.5);
   EXPECT_GT(beyond, 2);
+}
+
+/// A plate along x from the set "root" ends at x = 1, set "joint", in the middle of a wall along z, with its upper edge the set "top"; both
+/// 0.2 wide and 0.02 thick, regions of their own that share the facets of the joint.
+Mesh tee() {
+  Mesh m;
+  std::map<std::array<std::int64_t, 3>, std::int64_t> node;
+  const auto cell = [&](const Vec3& low, const Vec3& size, int region) {
+    std::int64_t nodes[8];
+    for (int a = 0; a < 8; ++a) {
+      const Vec3 unit = (Vec3(hex_corner[a]) + Vec3::Ones()) / 2, X = low + unit.cwiseProduct(size);
+      const auto [it, fresh] = node.try_emplace({std::lround(1e4 * X[0]), std::lround(1e4 * X[1]), std::lround(1e4 * X[2])}, m.n_nodes());
+      nodes[a] = it->second;
+      if (!fresh) continue;
+      if (it->first[0] == 0) m.node_sets["root"].push_back(nodes[a]);
+      if (it->first[0] == 10000 && (it->first[2] == 2000 || it->first[2] == 2200)) m.node_sets["joint"].push_back(nodes[a]);
+      if (it->first[2] == 4200) m.node_sets["top"].push_back(nodes[a]);
+      m.X.push_back(X), m.node_id.push_back(nodes[a]);
+    }
+    m.add_cell(Shape::hex8, nodes, region, m.n_cells());
+  };
+  for (const double y : {0., 0.1}) {
+    for (int i = 0; i < 20; ++i) cell({0.05 * i, y, 0.2}, {0.05, 0.1, 0.02}, 0);
+    for (const double z : {0., 0.1, 0.22, 0.32}) cell({1, y, z}, {0.02, 0.1, 0.1}, 1);
+    cell({1, y, 0.2}, {0.02, 0.1, 0.02}, 1);
+  }
+  m.region_name = {"shell", "wall"}, m.region_data.resize(2);
+  return m;
+}
+
+// The force on the wall's edge bends both as beams: the plate by its moment, the wall by itself.
+TEST_F(ShellStatics, PlatesThatMeetAreRegionsOfTheirOwn) {
+  use(tee());
+  const double E = 2e11, EI = E * 0.2 * std::pow(0.02, 3) / 12, P = 1, lever = 0.21, turn = P * lever / EI;
+  const std::string scene = shell_of(E, 0) + "[region.wall]\nmaterial = \"m\"\nshell = true\n" + held("root") + push("top", Vec3(P, 0, 0)) +
+                            probe("joint") + probe("top") + in_steps(1);
+  const Results r = solved(scene);
+  const double down = -way(r, "joint")[2] / (turn / 2), over = way(r, "top")[0] / (turn * lever + P * std::pow(0.2, 3) / (3 * EI));
+  std::printf("the joint goes down %.4f, the edge over %.4f of beams\n", down, over);
+  EXPECT_NEAR(down, 1, 0.01);
+  EXPECT_NEAR(over, 1, 0.02);
+}
+
+// A cell that is thick along the plate where its neighbours are across: refused in one region, whichever ranks the two are on.
+TEST_F(ShellStatics, AThicknessThatTurnsIsRefusedAcrossACutToo) {
+  use(shell_mesh([](double u, double v) { return std::pair(Vec3(u < 0.97 ? u : 0.96, 0.1 * v, 1), Vec3(0, 0, 1)); }, 20, 1, 0.02));
+  std::vector<std::int32_t> rank(20, 0);
+  rank.back() = 1;
+  write_parts(work / "parts.h5", work / "mesh.h5", 2, rank, {"test"});
+  work.write("scene.toml", shell_of(2e11, 0) + held("xmin") + in_steps(1));
+  const std::string why =
+      "hilo-solve: scene.toml:7:1: region \"shell\": the thickness turns between the neighbouring cells at (0.925, 0.05, 1) and "
+      "(0.955, 0.05, 1) (regions of their own for plates that meet)\n";
+  const Ran one = work.run("hilo-solve --quiet scene.toml mesh.h5 -o no.h5");
+  EXPECT_EQ(one.exit, 2);
+  EXPECT_EQ(one.err, why);
+  const Ran two = mpirun(2, "hilo-solve --quiet scene.toml parts.h5 -o no.h5", work.path());
+  EXPECT_EQ(two.exit, 2);
+  EXPECT_EQ(two.err.find(why), 0u) << two.err;
 }
 
 }  // namespace

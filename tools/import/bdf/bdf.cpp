@@ -80,8 +80,9 @@ void build(BdfDeck& deck, const std::string& path, const ImportOptions& options,
   std::unordered_set<std::int64_t> of_thin;
   for (const auto& [c, t] : in.thin) of_thin.insert(m.cell(c).begin(), m.cell(c).end());
   const auto tell_turn = [&](std::int64_t grid, const std::string& place) {
-    if (options.thicken) return;  // what pairs of nodes make of it is judged there
-    if (const auto a = deck.row.find(grid); a != deck.row.end() && of_thin.contains(a->second))
+    const auto a = deck.row.find(grid);
+    if (a == deck.row.end() || !of_thin.contains(a->second)) return;
+    if (!options.thicken || !is_of_shell(in, a->second))  // what pairs of nodes make of it is judged in `thicken`
       in.skip("turns and moments of grids of shells and beams", place);
   };
   for (const auto& [sid, lines] : deck.supports)

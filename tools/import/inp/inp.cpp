@@ -85,10 +85,10 @@ void resolve_cells(InpDeck& d, Imported& in) {
 }
 
 /// What supports hold of the nodes of shells that become pairs; what a pair has no place for is an Error.
-void held_components(const InpDeck& d, const std::unordered_set<std::int64_t>& nodes, Imported& in) {
+void held_components(const InpDeck& d, Imported& in) {
   const auto of_shells = [&](const InpNodal& l) {
     auto rows = inp_nodes(d, l.target, l.id, l.place);
-    std::erase_if(rows, [&](std::int64_t a) { return !nodes.contains(a); });
+    std::erase_if(rows, [&](std::int64_t a) { return !is_of_shell(in, a); });
     return rows;
   };
   for (const auto& l : d.supports)
@@ -128,10 +128,12 @@ void thin_sections(const InpDeck& d, Imported& in, bool thicken) {
     }
   std::unordered_set<std::int64_t> nodes;
   for (const auto& [c, t] : in.thin) nodes.insert(m.cell(c).begin(), m.cell(c).end());
-  if (thicken) held_components(d, nodes, in);
+  if (thicken) {
+    held_components(d, in);
+    std::erase_if(nodes, [&](std::int64_t a) { return is_of_shell(in, a); });  // judged there
+  }
   for (const auto* lines : {&d.supports, &d.forces})
     for (const auto& l : *lines) {
-      if (thicken) break;
       const auto rows = l.last > 3 && !nodes.empty() ? inp_nodes(d, l.target, l.id, l.place) : std::vector<std::int64_t>{};
       if (const auto n = std::ranges::count_if(rows, [&](std::int64_t a) { return nodes.contains(a); }))
         in.skip("turns and moments of nodes of shells and beams", l.place, n);
