@@ -236,8 +236,9 @@ SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Pos
     }
   }
   if (soonest <= 1) return faced(s, point, first, p1, x1);
-  const double deep = is_static ? 0 : point.state.past.gap;
-  if (at_border && (!held || least * least - gap * gap > deep * deep)) return {};
+  const double deep = is_static ? 0 : point.state.past.gap, outside = least * least - gap * gap;
+  if (at_border && (!held || outside > deep * deep)) return {};
+  if (is_static && outside > margin * margin / 16) return {};  // far from all: the edge of a corner may be within
   return nearest.inside ? faced(s, point, nearest, p1, x1) : nearest;
 }
 
