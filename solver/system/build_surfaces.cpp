@@ -132,7 +132,10 @@ void Builder::add_surfaces(const Entry& e, const std::vector<std::string>& obsta
     const std::string text = fmt::format("{}: \"{}\" and \"{}\" start {:.3g} m deep in each other, at ({:.4g}, {:.4g}, {:.4g})", e.label(),
                                          name_a, e.text("b"), deep->depth, deep->at[0], deep->at[1], deep->at[2]);
     if (deep->depth > deep->cell) throw Error(e.place.text(), fmt::format("{}: more than a cell", text), "move one of them apart");
-    if (deep->depth > 0.01 * deep->cell) warn(e.place.text(), fmt::format("{}; they begin without force", text));
+    if (deep->depth > 0.01 * deep->cell)
+      warn(e.place.text(),
+           fmt::format("{}; {}", text,
+                       pair.is_static ? "the first load step presses them apart" : "they begin without force, which comes as they slide"));
   }
   out_->part<Contacts>().surfaces.push_back(std::move(pair));
 }

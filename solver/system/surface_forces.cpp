@@ -89,10 +89,7 @@ void SurfacePair::add_tangent(Pass& p, int k, const SurfacePoint& point) const {
 double SurfacePair::energy() const {
   double sum = 0;
   for (const ContactSurface& surface : side)
-    for (const SurfacePoint& point : surface.points) {
-      const FacetPast& past = point.next.past;
-      sum += point.law.potential(past.gap) + point.law.kt / 2 * (past.bent[0] * past.bent[0] + past.bent[1] * past.bent[1]);
-    }
+    for (const SurfacePoint& point : surface.points) sum += stored(point, point.next.past);
   return sum;
 }
 
@@ -100,7 +97,7 @@ double SurfacePair::dissipated(const Stage& s) const {
   double sum = 0;
   for (int k = 0; k < 2; ++k)
     for (const SurfacePoint& point : side[k].points)
-      if (point.law.friction > 0 && point.now.face >= 0) sum += force_of(k, point, s).dissipated;
+      sum += point.law.friction > 0 && point.now.face >= 0 ? force_of(k, point, s).dissipated : released(point);
   return sum;
 }
 

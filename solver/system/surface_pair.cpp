@@ -181,7 +181,7 @@ bool SurfacePair::search(const Config& q, const Config* v, double h) {
   return changes;
 }
 
-/// Balls about the facets and their way.
+/// Balls about the facets and their way, and their normals.
 void SurfacePair::look(Positions x0, Positions x1) {
   for (int s = 0; s < 2; ++s) {
     ball_[s].resize(side[s].faces.size());
@@ -192,13 +192,20 @@ void SurfacePair::look(Positions x0, Positions x1) {
       for (int a = 0; a < face.n; ++a) c += (x0[face.node[a]] + x1[face.node[a]]) / (2 * face.n);
       double r = 0;
       for (int a = 0; a < face.n; ++a) r = std::max({r, (x0[face.node[a]] - c).squaredNorm(), (x1[face.node[a]] - c).squaredNorm()});
-      ball_[s][f] = {c, 1.1 * std::sqrt(r)};
+      Vec3 n = Vec3::Zero();
+      for (int t = 0; t < static_cast<int>(cut_of(face.n).triangle.size()); ++t)
+        for (const Positions x : {x0, x1}) {
+          const auto v = side[s].triangle(static_cast<int>(f), t, x);
+          n += (v[1] - v[0]).cross(v[2] - v[0]);
+        }
+      ball_[s][f] = {c, n.normalized(), 1.1 * std::sqrt(r)};
     }
   }
 }
 
 /// The triangle that a point which is open crosses first on its straight way; else the nearest one in the mean, of load steps at the end,
-/// where those that are equally near are told apart by the larger gap.  What is open does not meet the border of a surface.
+/// where those that are equally near are told apart by the larger gap.  Either gives way to one that faces the point (`faced`).  What is
+/// open does not meet the border of a surface, and what is held leaves it where it is farther outside than deep.
 SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Positions x0, Positions x1) const {
   const bool held = point.state.past.gap < 0;
   const ContactSurface& own = side[s];
@@ -218,34 +225,56 @@ SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Pos
     for (int t = 0; t < static_cast<int>(cut.triangle.size()); ++t) {
       const auto v0 = other.triangle(partner.face, t, x0), v1 = other.triangle(partner.face, t, x1);
       if (!held && away <= way)
-        if (const double when = crossing(p0, p1, v0, v1); when < soonest) soonest = when, first = {partner.face, t, true};
+        if (const double when = crossing(p0, p1, v0, v1); when < soonest) soonest = when, first = {partner.face, t, true, true};
       const Beside at = beside(middle, {(1 - f) * v0[0] + f * v1[0], (1 - f) * v0[1] + f * v1[1], (1 - f) * v0[2] + f * v1[2]});
       const double slack = 1e-9 * least + 1e-12 * ball.radius;
       if (at.distance > least + slack || (at.distance > least - slack && std::abs(at.gap) <= std::abs(gap))) continue;
-      least = std::min(least, at.distance), gap = at.gap, nearest = {partner.face, t, false};
+      least = std::min(least, at.distance), gap = at.gap;
+      nearest = {partner.face, t, false, at.edge < 0 && gap < 0 && -gap < margin / 2};
       const int edge = at.edge < 0 ? -1 : cut.on_edge[t][at.edge];
       at_border = edge >= 0 && face.border[edge];
     }
   }
-  if (soonest <= 1) return first;
-  if (!held && at_border) return {};
-  return nearest;
+  if (soonest <= 1) return faced(s, point, first, p1, x1);
+  const double deep = is_static ? 0 : point.state.past.gap, outside = least * least - gap * gap;
+  if (at_border && (!held || outside > deep * deep)) return {};
+  if (is_static && outside > margin * margin / 16) return {};  // far from all: the edge of a corner may be within
+  return nearest.inside ? faced(s, point, nearest, p1, x1) : nearest;
 }
 
-/// What a point begins a step with against a triangle: an open one at the gap, or at zero where a plane says less; the bristle goes with
-/// the frame, through space to another triangle.
+/// Of a point that is behind a triangle: another that it is over and behind, less deep than half the margin, and that faces it far better,
+/// as where a part that slides comes over it with a side first; else the same.
+SurfacePair::Target SurfacePair::faced(int s, const SurfacePoint& point, const Target& met, const Vec3& p1, Positions x1) const {
+  constexpr double better = 0.5;
+  const Vec3& own = ball_[s][point.face].normal;
+  const double facing = own.dot(ball_[1 - s][met.face].normal);
+  Target out = met;
+  double least = margin / 2;
+  for (const Partner& partner : partners_[s][point.face]) {
+    if (own.dot(ball_[1 - s][partner.face].normal) > facing - better) continue;
+    for (int t = 0; t < static_cast<int>(cut_of(side[1 - s].faces[partner.face].n).triangle.size()); ++t)
+      if (const Beside at = beside(p1, side[1 - s].triangle(partner.face, t, x1)); at.edge < 0 && at.gap < 0 && at.distance < least)
+        least = at.distance, out = {partner.face, t, false, true};
+  }
+  return out;
+}
+
+/// What a point begins a step with against a triangle: an open one at the gap, or at zero where a plane says less, which slip pays if the
+/// point is over the triangle; the bristle goes with the frame, through space to another triangle.
 FacetState SurfacePair::begun(int s, const SurfacePoint& point, const Target& target, Positions x0) const {
   FacetState out = point.state;
   const bool held = out.past.gap < 0;
   if (target.face < 0) {
-    if (!held) out.face = out.triangle = -1;
+    out.face = out.triangle = -1;
+    if (held) out.past = FacetPast{.gap = 1e300};
     return out;
   }
   out.face = target.face, out.triangle = target.triangle;
   const OverTriangle<double> z = over(s, point, out, x0);
   const double gap = gap_of(z);
   if (!held) out.past.gap = std::max(gap, 0.0);
-  out.past.offset = is_static ? 0 : gap - out.past.gap;
+  const bool comes_in = target.inside && gap < -1e-12 * point.cell;
+  out.past.offset = is_static || !(held || comes_in) ? 0 : gap - out.past.gap;
   const auto& [u1, u2] = point.state.past.bent;
   if ((u1 != 0 || u2 != 0) && point.state.face >= 0 && (out.face != point.state.face || out.triangle != point.state.triangle)) {
     const TriangleAxes old(over(s, point, point.state, x0)), now(z);
@@ -265,7 +294,7 @@ OverTriangle<double> SurfacePair::over(int s, const SurfacePoint& point, const F
 bool SurfacePair::would_act(int s, const SurfacePoint& point, const FacetState& now, Positions x0, Positions x1) const {
   if (now.face < 0) return false;
   if (is_static) return gap_of(over(s, point, now, x1)) < touch(point);
-  if (now.past.gap < 0) return true;
+  if (now.past.gap < 0 || now.past.offset < 0) return true;
   return now.past.gap + gap_of(over(s, point, now, x1)) - gap_of(over(s, point, now, x0)) < 0;
 }
 
@@ -316,6 +345,7 @@ std::string SurfacePair::advance(const Stage& s) {
         next.dissipated += f.dissipated, pressing += f.pressing, slid += f.pressing * f.slid;
         if (f.acts) continue;
       }
+      next.dissipated += released(point);
       if (held || partners_[k][point.face].empty()) continue;
       if (target_of(k, point, x0, x1).crossed) why = fmt::format("contact \"{}\": a point goes through a facet within one step", name);
     }

@@ -59,15 +59,16 @@ class SurfacePair {
   using Positions = std::span<const Vec3>;
   struct Target {
     int face = -1, triangle = -1;
-    bool crossed = false;
+    bool crossed = false, inside = false;  // inside: over the triangle and behind it
   };
   struct Ball {  // about a facet and its way
-    Vec3 centre;
+    Vec3 centre, normal;
     double radius;
   };
   OverTriangle<double> over(int side, const SurfacePoint& point, const FacetState& at, Positions x) const;
   FacetForce<double> force_of(int side, const SurfacePoint& point, const Stage& s) const;
   Target target_of(int side, const SurfacePoint& point, Positions x0, Positions x1) const;
+  Target faced(int side, const SurfacePoint& point, const Target& met, const Vec3& p1, Positions x1) const;
   FacetState begun(int side, const SurfacePoint& point, const Target& target, Positions x0) const;
   /// Load steps begin where what touches holds [m].
   double touch(const SurfacePoint& point) const { return is_static ? 1e-8 * point.cell : 0; }
@@ -76,6 +77,11 @@ class SurfacePair {
   void look(Positions x0, Positions x1);
   std::vector<std::pair<int, int>> near(Positions x0, Positions x1, double within) const;
   void list_partners();
+  /// What a point that leaves the border of a surface in the step had stored [J].
+  double released(const SurfacePoint& point) const { return point.now.face < 0 ? stored(point, point.state.past) : 0; }
+  static double stored(const SurfacePoint& point, const FacetPast& past) {
+    return point.law.potential(past.gap) + point.law.kt / 2 * (past.bent[0] * past.bent[0] + past.bent[1] * past.bent[1]);
+  }
   void add_tangent(Pass& p, int side, const SurfacePoint& point) const;
 
   const Points& points_;

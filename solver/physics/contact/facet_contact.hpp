@@ -10,6 +10,7 @@
 // that take up the moment of e, and a couple within the triangle; they vanish in rigid motions.
 // The gap of the law is g*, which the way D:(q1 - q0) moves on.  Where a point comes to another triangle, o = g - g* is paid by the slip:
 //   D* = D + sum_e o sigma_e/(sigma.sigma + 4 o^2) S_e,   a tilt of at most 1/4.
+// So is what a point is deep that a side which slides has come over: it was open, g* = 0, and is pressed as the slip goes on.
 #pragma once
 #include <array>
 
@@ -122,7 +123,8 @@ FacetForce<T> over_step(const PointLaw& law, const OverTriangle<double>& z0, con
   const Triple<T> n1 = unit(cross(z1.t1, z1.t2));
   const Triple<double> n0 = unit(cross(z0.t1, z0.t2));
   out.gap = dot(n1, z1.r) - T(dot(n0, z0.r)) + T(past.gap);
-  if (past.gap >= 0 && value(out.gap) >= 0) return out.dissipated = lost, out;
+  const bool comes_in = past.gap >= 0 && past.offset < 0;
+  if (past.gap >= 0 && value(out.gap) >= 0 && !comes_in) return out.dissipated = lost, out;
   const auto lifted = [](const Triple<double>& a) { return Triple<T>{{T(a[0]), T(a[1]), T(a[2])}}; };
   const OverTriangle<T> start{lifted(z0.r), lifted(z0.t1), lifted(z0.t2)}, dz{z1.r - start.r, z1.t1 - start.t1, z1.t2 - start.t2},
       mean{half * (z1.r + start.r), half * (z1.t1 + start.t1), half * (z1.t2 + start.t2)};
@@ -131,7 +133,7 @@ FacetForce<T> over_step(const PointLaw& law, const OverTriangle<double>& z0, con
   T way = D(dz);
   std::array<FacetGradient<T>, 2> S;
   std::array<T, 2> sigma{zero, zero};
-  const bool pays = past.gap < 0 && past.offset != 0;
+  const bool pays = comes_in || (past.gap < 0 && past.offset != 0);
   if (law.friction > 0 || pays) {
     S = slip_gradients(mean, foot);
     sigma = {S[0](dz), S[1](dz)};
