@@ -128,7 +128,14 @@ void Builder::add_surfaces(const Entry& e, const std::vector<std::string>& obsta
                   both_rigid ? fmt::format("{:.4g} Pa over a layer of {} m", e.number("modulus"), e.number("layer"))
                              : "E over the depth of the cells, both sides in series");
   pair.prepare();
-  if (const auto deep = pair.deepest_start(out_->start)) {
+  const auto deep = pair.deepest_start(out_->start);
+  for (int s = 0; s < 2 && !deep; ++s)
+    if (const auto at = pair.starts_inside(s, out_->start))
+      throw Error(e.place.text(),
+                  fmt::format("{}: \"{}\" starts inside \"{}\", at ({:.4g}, {:.4g}, {:.4g})", e.label(), s == 0 ? name_a : e.text("b"),
+                              s == 0 ? e.text("b") : name_a, (*at)[0], (*at)[1], (*at)[2]),
+                  "move one of them out of the other: what meets faces each other's outer sides");
+  if (deep) {
     const std::string text = fmt::format("{}: \"{}\" and \"{}\" start {:.3g} m deep in each other, at ({:.4g}, {:.4g}, {:.4g})", e.label(),
                                          name_a, e.text("b"), deep->depth, deep->at[0], deep->at[1], deep->at[2]);
     if (deep->depth > deep->cell) throw Error(e.place.text(), fmt::format("{}: more than a cell", text), "move one of them apart");

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 namespace hilo {
 namespace {
@@ -381,6 +382,28 @@ std::pair<double, double> SurfacePair::depth() const {
     for (const SurfacePoint& point : surface.points)
       depth = std::max(depth, -point.next.past.gap), share = std::max(share, -point.next.past.gap / point.cell);
   return {depth, share};
+}
+
+/// Of 64 points by the solid angle of the other side: 4 pi from within, 0 from without (Van Oosterom and Strackee 1983).
+std::optional<Vec3> SurfacePair::starts_inside(int s, const Config& q) const {
+  const ContactSurface& other = side[1 - s];
+  for (const ContactSurface::Face& face : other.faces)
+    if (std::find(face.border.begin(), face.border.end(), true) != face.border.end()) return std::nullopt;
+  const size_t n = side[s].points.size(), stride = std::max<size_t>(1, n / 64);
+  for (size_t i = 0; i < n; i += stride) {
+    const Vec3 at = side[s].at(side[s].points[i], q.x);
+    double angle = 0;
+    for (size_t f = 0; f < other.faces.size(); ++f)
+      for (size_t t = 0; t < cut_of(static_cast<size_t>(other.faces[f].n)).triangle.size(); ++t) {
+        auto x = other.triangle(static_cast<int>(f), static_cast<int>(t), q.x);
+        double l[3];
+        for (int k = 0; k < 3; ++k) x[k] -= at, l[k] = x[k].norm();
+        angle += 2 * std::atan2(x[0].dot(x[1].cross(x[2])),
+                                l[0] * l[1] * l[2] + x[0].dot(x[1]) * l[2] + x[0].dot(x[2]) * l[1] + x[1].dot(x[2]) * l[0]);
+      }
+    if (angle > 2 * std::numbers::pi) return at;
+  }
+  return std::nullopt;
 }
 
 std::optional<SurfacePair::Deep> SurfacePair::deepest_start(const Config& q) {

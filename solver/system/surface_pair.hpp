@@ -54,6 +54,8 @@ class SurfacePair {
     Vec3 at;
   };
   std::optional<Deep> deepest_start(const Config& q);
+  /// A point of side s that starts within the other side, as far from its facets as may be; that side is closed.
+  std::optional<Vec3> starts_inside(int s, const Config& q) const;
 
  private:
   using Positions = std::span<const Vec3>;

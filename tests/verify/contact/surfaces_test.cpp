@@ -86,6 +86,21 @@ TEST(Surfaces, EveryShapeOfCellMeetsAnother) {
   }
 }
 
+// What starts wholly inside the other, far from its facets, would meet nothing.
+TEST(Surfaces, APartInsideAnotherIsRefused) {
+  for (const double off : {1.3, 4.}) {
+    BlockOptions A, B;
+    A.regions = {"A"}, B.regions = {"B"};
+    A.n[0] = A.n[1] = A.n[2] = 3, A.high = Vec3(3, 3, 3), B.high = Vec3(0.3, 0.3, 0.3);
+    B.map = [=](const Vec3& x) { return Vec3(x + off * Vec3::Ones()); };
+    Case c("contact");
+    c.use(together(block_mesh(A), block_mesh(B)));
+    const Ran ran = c.solve("--quiet --set time.end=1e-3 --set time.step=1e-3", "run.h5", 0, "blocks");
+    EXPECT_EQ(ran.exit, off < 3 ? 2 : 0) << ran.err;
+    EXPECT_EQ(ran.err.find("\"B\" starts inside \"A\"") != std::string::npos, off < 3) << ran.err;
+  }
+}
+
 // Truth: bars of equal length change their velocities in the time in which a wave runs there and back, 2/3 s.
 TEST(Surfaces, EqualBarsChangeVelocities) {
   BlockOptions A, B;
