@@ -398,10 +398,11 @@ std::optional<Vec3> SurfacePair::starts_inside(int s, const Config& q) const {
         auto x = other.triangle(static_cast<int>(f), static_cast<int>(t), q.x);
         double l[3];
         for (int k = 0; k < 3; ++k) x[k] -= at, l[k] = x[k].norm();
-        angle += 2 * std::atan2(x[0].dot(x[1].cross(x[2])),
-                                l[0] * l[1] * l[2] + x[0].dot(x[1]) * l[2] + x[0].dot(x[2]) * l[1] + x[1].dot(x[2]) * l[0]);
+        const double volume = x[0].dot(x[1].cross(x[2]));
+        if (std::abs(volume) < 1e-9 * l[0] * l[1] * l[2]) continue;  // in its plane: what touches has 2 pi
+        angle += 2 * std::atan2(volume, l[0] * l[1] * l[2] + x[0].dot(x[1]) * l[2] + x[0].dot(x[2]) * l[1] + x[1].dot(x[2]) * l[0]);
       }
-    if (angle > 2 * std::numbers::pi) return at;
+    if (angle > 3.5 * std::numbers::pi) return at;
   }
   return std::nullopt;
 }
