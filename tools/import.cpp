@@ -118,8 +118,7 @@ int main(int argc, char** argv) {
         ->type_name("N");
     app->add_option("--define", r.defines, "parameter of a .geo script, may be repeated")->type_name("NAME=VALUE")->allow_extra_args(false);
     app->add_flag("--trust", o.trust, "a .geo script may run commands, write files, read the environment and files of other folders");
-    app->add_flag("--thicken", o.thicken,
-                  "shells of a deck (S4, S4R, CQUAD4) become solid-shells: pairs of nodes across the thickness");
+    app->add_flag("--thicken", o.thicken, "shells of a deck (S4, S4R, CQUAD4) become solid-shells: pairs of nodes across the thickness");
     app->add_flag("--flip", o.flip, "turn cells whose nodes are numbered as in a mirror (negative volume)");
     app->add_flag("--keep-apart", o.keep_apart, "solids of a CAD file that touch share no nodes");
     app->add_option("--set", o.sets,

@@ -168,10 +168,9 @@ TEST(Iso, of_a_sphere_comes_near_to_it_and_is_drawn_or_refused) {
     const char *rest, *text;
     int exit;
   };
-  for (const Fault& f :
-       {Fault{"--iso 300", "no value is reached (there are 0 to 10 MPa)", 2}, Fault{"--iso a", "\"a\" is no number", 1},
-        Fault{"--iso 1 --cut x=0", "give one", 1}, Fault{"--cut x", "\"x\" is no plane (write x=0.1", 1},
-        Fault{"--cut x=-1", "removes all that is shown", 2}, Fault{"--iso 1 --field region", "region has no values", 1}}) {
+  for (const Fault& f : {Fault{"--iso 300", "no value is reached (there are 0 to 10 MPa)", 2}, Fault{"--iso a", "\"a\" is no number", 1},
+                         Fault{"--iso 1 --cut x=0", "give one", 1}, Fault{"--cut x", "\"x\" is no plane (write x=0.1", 1},
+                         Fault{"--cut x=-1", "removes all that is shown", 2}, Fault{"--iso 1 --field region", "region has no values", 1}}) {
     const Ran ran = place.run(std::string("hilo-post render run.h5 -o x.png ") + f.rest);
     EXPECT_EQ(ran.exit, f.exit) << f.rest;
     EXPECT_NE(ran.err.find(f.text), std::string::npos) << ran.err;

@@ -142,7 +142,8 @@ class MshReader {
     std::string_view first = in_.word();
     while (first == "$Comments") in_.skip_behind("$EndComments"), first = in_.word();
     if (first == "$NOD" || first == "$PTS" || first == "$NOE") in_.fail("msh 1 is not read", "save it as msh 4.1 or 2.2");
-    if (first != "$MeshFormat") in_.fail("not a mesh of gmsh: it does not begin with $MeshFormat", "a script is read from a file named .geo");
+    if (first != "$MeshFormat")
+      in_.fail("not a mesh of gmsh: it does not begin with $MeshFormat", "a script is read from a file named .geo");
     const auto version = in_.number_in_text<double>();
     const auto binary = in_.number_in_text<int>(), size = in_.number_in_text<int>();
     if (version != 2 && version != 2.1 && version != 2.2 && version != 4 && version != 4.1)
