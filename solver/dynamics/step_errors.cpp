@@ -15,7 +15,7 @@ void StepErrors::begin(const State& s) {
 
 void StepErrors::follow(const System& system, const State& s, ErrorEstimate& estimate) {
   ++steps_;
-  double least = 1e300;
+  double least = 1e300, left_out = 0;
   for (Level& level : levels_) {
     if (steps_ % level.stride == 0) {
       auto& past = level.past;
@@ -29,7 +29,8 @@ void StepErrors::follow(const System& system, const State& s, ErrorEstimate& est
         past.pop_front();
       }
     }
-    if (steps_ >= 3 * level.stride) least = std::min(least, level.sum + level.left_out);
+    left_out = std::max(left_out, level.left_out);
+    if (steps_ >= 3 * level.stride) least = std::min(least, level.sum + left_out);
   }
   if (steps_ % 4 == 0 && least < 1e300) estimate.add_up(s.t, least, apart(system, s.q, start_));
 }

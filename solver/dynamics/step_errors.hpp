@@ -13,8 +13,9 @@ namespace hilo {
 
 /// Of a method of second order with the phase error C: the sum of C h^3 |q'''| over the steps, of the point where it is largest. Vibrations
 /// that steps do not resolve would add up in that sum for ever, and yet are off by about their amplitude.  So third differences are taken
-/// over strides of 2, 8 and 32 steps.  The longer the stride, the fewer vibrations are in its sum, and the larger the amplitude is, an
-/// eighth of the largest difference, that it leaves out.  The least sum of both counts.  What the motion makes of early errors later is not
+/// over strides of 1, 2, 8 and 32 steps.  The longer the stride, the fewer vibrations are in its sum, and the larger the amplitude is, an
+/// eighth of the largest difference, that it leaves out.  The least sum of both counts.  A stride of a period sees no vibration at all: so
+/// what a stride leaves out is no less than what shorter ones do.  What the motion makes of early errors later is not
 /// in it.
 class StepErrors {
  public:
@@ -38,7 +39,7 @@ class StepErrors {
   double phase_error_;  // C
   long steps_ = 0;
   Config start_;
-  std::array<Level, 3> levels_{Level{2}, Level{8}, Level{32}};
+  std::array<Level, 4> levels_{Level{1}, Level{2}, Level{8}, Level{32}};
 };
 
 }  // namespace hilo
