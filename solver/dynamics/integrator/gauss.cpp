@@ -295,10 +295,11 @@ class GaussIntegrator final : public CoupledStages {
     given_.put_rates(v_end_);
     Config w;
     combine(w, {{1, &v1_}, {-1, &v_end_}});
-    const double kinetic = system_->energy(q1_, v1_).kinetic, besides = system_->energy(q1_, w).kinetic;
+    const Energy now = system_->energy(q1_, v1_);
+    const double kinetic = now.kinetic, besides = system_->energy(q1_, w).kinetic;
     kinetic_ = std::max({kinetic, system_->energy(q_[1], v_[1]).kinetic, most_kinetic_});
     if (besides > small_besides * kinetic) lost_ += kinetic - system_->energy(q1_, v_end_).kinetic, v1_ = v_end_;
-    return besides <= large_besides * kinetic_;
+    return besides <= large_besides * kinetic_ + round_off * (std::abs(now.elastic) + std::abs(now.gravity));  // what rests has no other
   }
 
   /// The stages with what they stand for in the work of the step, and its end, which stands for nothing, for reactions.
@@ -314,10 +315,10 @@ class GaussIntegrator final : public CoupledStages {
     taken_[3].stage.work_from = &q1_, taken_[3].stage.span = 1e-200;
   }
 
-  static constexpr double small_besides = 1e-8, large_besides = 1e-3;  // of the kinetic energy
-  double lost_ = 0;                                                    // in the step solved last [J]
-  double kinetic_ = 0, most_kinetic_ = 0;                              // the largest so far, without the step solved last [J]
-  double refused_t_ = -1, refused_h_ = 0;                              // for losing too much
+  static constexpr double small_besides = 1e-8, large_besides = 1e-3, round_off = 1e-12;  // of the kinetic energy; of the others
+  double lost_ = 0;                                                                       // in the step solved last [J]
+  double kinetic_ = 0, most_kinetic_ = 0;  // the largest so far, without the step solved last [J]
+  double refused_t_ = -1, refused_h_ = 0;  // for losing too much
   const System* system_ = nullptr;
   std::unique_ptr<KktSolver> end_solver_;  // of accelerations at the end: the other one keeps its matrix
   bool is_coupled_ = false;                // the matrix of all stages is at work
