@@ -58,6 +58,7 @@ class LightSolver final : public SerialKktSolver {
     is_klu_ = kind == "klu";
     factors_ = is_klu_ ? make_klu() : kind == "umfpack" ? make_umfpack() : make_cholesky(is_dense_);
     is_definite_ = kind == "cholesky";
+    aside_.reset(), rest_ = 0;
     factored_ = ready_ = false;
     weight_.clear();
   }
@@ -120,7 +121,10 @@ class LightSolver final : public SerialKktSolver {
     SolveReport report = factor_and_iterate(b, x, tolerance);
     if ((!report.ok || rate_ > 1) && factors_->sharpen()) before += report.iterations, report = factor_and_iterate(b, x, tolerance);
     if (!report.ok && is_definite_) {
-      warn("", fmt::format("{} fails ({}); unsymmetric factors from here on", name(), report.message));
+      if (!indefinite_ || !told_)
+        warn("", fmt::format("{} fails ({}); unsymmetric factors {}", name(), report.message, indefinite_ ? "instead" : "from here on"));
+      told_ = true;
+      if (indefinite_) aside_ = std::move(factors_), waits_ = rest_ = std::min(2 * rest_ + 1, 15);
       factors_ = make_umfpack(), is_definite_ = false;
       before += report.iterations;
       report = factor_and_iterate(b, x, tolerance);
@@ -129,9 +133,16 @@ class LightSolver final : public SerialKktSolver {
     return report;
   }
 
+  /// Where an earlier matrix was not definite, this one may be.
   bool factor() {
     const Stopwatch watch(set_up_);
-    return factors_->factor(A_);
+    if (aside_ && waits_-- == 0) {
+      if (aside_->factor(A_)) return factors_ = std::move(aside_), is_definite_ = true;
+      waits_ = rest_ = std::min(2 * rest_ + 1, 15);
+    }
+    const bool done = factors_->factor(A_);
+    indefinite_ = is_definite_ && !done;
+    return done;
   }
   bool refactor() {
     const Stopwatch watch(set_up_);
@@ -222,6 +233,9 @@ class LightSolver final : public SerialKktSolver {
   std::unique_ptr<Factors> factors_;
   double set_up_ = 0;
   bool is_klu_ = true, is_definite_ = false;
+  std::unique_ptr<Factors> aside_;  // Cholesky factors that failed as the matrix was not definite; matrices until they try again
+  int waits_ = 0, rest_ = 0;
+  bool indefinite_ = false, told_ = false;
   bool factored_ = false;         // the factors at hand are those of the matrix
   bool ready_ = false;            // the factors at hand serve it preconditioning
   double rate_ = 0, excess_ = 0;  // iterations per decade with fresh factors; those lagging has cost since

@@ -102,6 +102,7 @@ void Builder::add_surfaces(const Entry& e, const std::vector<std::string>& obsta
                         : pair.is_static  ? 100
                                           : 1,
                layer = both_rigid ? e.number("layer") / e.number("modulus") : 0;
+  pair.factor = factor;
   double low = 1e300, high = 0;
   for (int s = 0; s < 2; ++s)
     for (size_t f = 0; f < behind[s].size(); ++f) {

@@ -39,6 +39,7 @@ struct SurfacePoint {
   PointLaw law;
   double cell = 0;              // depth of the cell behind it [m]
   FacetState state, now, next;  // accepted, of the step at work, and at its end
+  std::pair<int, int> left{};   // face and triangle that it had before in the step at work
 };
 
 /// Facets of n <= 8 nodes each.

@@ -172,7 +172,7 @@ bool SurfacePair::search(const Config& q, const Config* v, double h) {
     list_partners();
   }
   for (int s = 0; s < 2; ++s)
-    for (SurfacePoint& point : side[s].points) point.now = point.next = point.state;
+    for (SurfacePoint& point : side[s].points) point.now = point.next = point.state, point.left = {-2, -2};
   look(q.x, foreseen_);
   for (int s = 0; s < 2; ++s)
     for (SurfacePoint& point : side[s].points) {
@@ -265,11 +265,7 @@ SurfacePair::Target SurfacePair::faced(int s, const SurfacePoint& point, const T
 FacetState SurfacePair::begun(int s, const SurfacePoint& point, const Target& target, Positions x0) const {
   FacetState out = point.state;
   const bool held = out.past.gap < 0;
-  if (target.face < 0) {
-    out.face = out.triangle = -1;
-    if (held) out.past = FacetPast{.gap = 1e300};
-    return out;
-  }
+  if (target.face < 0) return {};  // what it stored, gap or bristle, is let go (`released`)
   out.face = target.face, out.triangle = target.triangle;
   const OverTriangle<double> z = over(s, point, out, x0);
   const double gap = gap_of(z);
@@ -308,7 +304,9 @@ bool SurfacePair::revise(const Stage& s) {
     for (SurfacePoint& point : side[k].points) {
       if (partners_[k][point.face].empty()) continue;
       const FacetState now = begun(k, point, target_of(k, point, x0, x1), x0);
-      if (now.face == point.now.face && now.triangle == point.now.triangle) continue;
+      const std::pair to{now.face, now.triangle}, from{point.now.face, point.now.triangle};
+      if (to == from || (to == point.left && from.first >= 0)) continue;  // on the edge between two either will do
+      point.left = from;
       changes = changes || would_act(k, point, point.now, x0, x1) || would_act(k, point, now, x0, x1);
       point.now = now;
     }

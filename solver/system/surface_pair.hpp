@@ -28,6 +28,7 @@ class SurfacePair {
   ContactSurface side[2];
   double margin = 0;       // [m]
   bool is_static = false;  // load steps: forces at their end, of the gap itself
+  double factor = 1;       // of the stiffness
   ContactSums sums, next;
 
   size_t n_points() const { return side[0].points.size() + side[1].points.size(); }
@@ -74,6 +75,8 @@ class SurfacePair {
   FacetState begun(int side, const SurfacePoint& point, const Target& target, Positions x0) const;
   /// Load steps begin where what touches holds [m].
   double touch(const SurfacePoint& point) const { return is_static ? 1e-8 * point.cell : 0; }
+  /// The depth at which the pressure is the modulus of what lies behind [m].
+  double deep(const SurfacePoint& point) const { return point.cell / factor; }
   Positions begin(const Stage& s) const { return s.conserving() || begin_.empty() ? s.e0->x : begin_; }
   bool would_act(int side, const SurfacePoint& point, const FacetState& now, Positions x0, Positions x1) const;
   void look(Positions x0, Positions x1);

@@ -155,10 +155,20 @@ FacetForce<T> over_step(const PointLaw& law, const OverTriangle<double>& z0, con
   return out;
 }
 
+/// What the gradient's own change adds to a tangent, times f; nothing where there is no tangent.
+inline void slow_down(FacetGradient<double>&, double) {}
+template <int N>
+void slow_down(FacetGradient<Jet<N>>& D, double f) {
+  for (Triple<Jet<N>>* a : {&D.r, &D.t1, &D.t2})
+    for (Jet<N>& x : a->x) x.d *= f;
+}
+
 /// At the configuration z1 that a load step from z0 leads to: the gradient of the potential.  Where the gap is below `touch`, the law is
-/// taken as closed, and what touches sticks.
+/// taken as closed, and what touches sticks.  A guess may be far deeper than any answer, `deep`; the tangent then has no more of the
+/// stiffness of a turning normal than at that depth, as a matrix with all of it would not be definite.
 template <class T>
-FacetForce<T> at_end(const PointLaw& law, const OverTriangle<double>& z0, const OverTriangle<T>& z1, const FacetPast& past, double touch) {
+FacetForce<T> at_end(const PointLaw& law, const OverTriangle<double>& z0, const OverTriangle<T>& z1, const FacetPast& past, double touch,
+                     double deep) {
   FacetForce<T> out;
   const T zero(0.0), half(0.5);
   out.on_point = out.on_second = out.on_third = {{zero, zero, zero}};
@@ -167,7 +177,8 @@ FacetForce<T> at_end(const PointLaw& law, const OverTriangle<double>& z0, const 
   out.gap = dot(n, z1.r) - T(past.offset);
   if (value(out.gap) >= touch) return out.dissipated = lost, out;
   std::array<T, 2> foot;
-  const FacetGradient<T> D = gap_gradient(z1, n, foot);
+  FacetGradient<T> D = gap_gradient(z1, n, foot);
+  if (value(out.gap) < -deep) slow_down(D, deep / -value(out.gap));
   const T p = T(-law.k) * out.gap;
   D.add(-p, out);
   out.acts = true, out.pressing = value(p), out.normal = values(n), out.dissipated = lost;

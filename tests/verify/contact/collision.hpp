@@ -11,6 +11,25 @@
 
 namespace hilo::test {
 
+/// Both meshes as one; sets with the name of the region before theirs.
+inline Mesh together(const Mesh& a, const Mesh& b) {
+  Mesh out;
+  for (const Mesh* m : {&a, &b}) {
+    const auto node = out.n_nodes(), cell = out.n_cells();
+    const auto region = static_cast<std::int32_t>(out.region_name.size());
+    for (const Vec3& x : m->X) out.X.push_back(x), out.node_id.push_back(out.n_nodes());
+    for (std::int64_t c = 0; c < m->n_cells(); ++c) {
+      std::vector<std::int64_t> nodes;
+      for (const std::int64_t i : m->cell(c)) nodes.push_back(node + i);
+      out.add_cell(static_cast<Shape>(m->shape[c]), nodes, region, out.n_cells() + 1);
+    }
+    out.region_name.push_back(m->region_name[0]), out.region_data.push_back(m->region_data[0]);
+    for (const auto& [name, facets] : m->facet_sets)
+      for (const Facet& f : facets) out.facet_sets[m->region_name[0] + name].push_back({cell + f.cell, f.facet});
+  }
+  return out;
+}
+
 struct Worst {
   double energy = 0, momentum = 0, angular = 0, given_back = 0, top = 0;
   long met = 0;
