@@ -134,7 +134,11 @@ void solve(int argc, char** argv, Comm& comm) {
   if (!options.mesh.empty()) {
     mesh = std::make_unique<LocalMesh>(read_local_mesh(options.mesh, comm));
     options.provenance = mesh->provenance;
-    if (talk && !mesh->tagged) fmt::print(stderr, "{} is not tagged: all regions are nonlinear\n", options.mesh);
+    if (mesh->mesh.region_name.empty()) {  // of a deck of beams, which stand in the scene
+      if (talk) fmt::print(stderr, "{} has no cells: the run goes without it\n", options.mesh);
+      mesh.reset(), options.mesh.clear();
+    }
+    if (talk && mesh && !mesh->tagged) fmt::print(stderr, "{} is not tagged: all regions are nonlinear\n", options.mesh);
   }
   if (mesh) check_quantity_regions(scene, mesh->mesh.region_name);
   if (from) options.provenance = from->command.provenance;

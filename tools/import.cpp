@@ -66,8 +66,10 @@ void check(Request& r) {
 std::string scene_text(const Request& r, const Imported& in) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::absolute(r.scene_out).parent_path();
-  std::string text = fmt::format("# from {}\nmesh = \"{}\"\n", r.input,
-                                 fs::absolute(r.output).lexically_normal().lexically_relative(folder.lexically_normal()).generic_string());
+  std::string text = fmt::format("# from {}\n", r.input);
+  if (in.mesh.n_cells() > 0)
+    text += fmt::format("mesh = \"{}\"\n",
+                        fs::absolute(r.output).lexically_normal().lexically_relative(folder.lexically_normal()).generic_string());
   if (!in.mesh.deck_scene.empty()) return text + in.mesh.deck_scene;
   text += "# the file carries no materials, supports or loads.  It names:\n";
   for (const auto& name : in.mesh.all_names()) text += fmt::format("#   {}\n", name);
@@ -119,6 +121,8 @@ int main(int argc, char** argv) {
     app->add_option("--define", r.defines, "parameter of a .geo script, may be repeated")->type_name("NAME=VALUE")->allow_extra_args(false);
     app->add_flag("--trust", o.trust, "a .geo script may run commands, write files, read the environment and files of other folders");
     app->add_flag("--thicken", o.thicken, "shells of a deck (S4, S4R, CQUAD4) become solid-shells: pairs of nodes across the thickness");
+    app->add_flag("--rigid-beams", o.rigid_beams,
+                  "beams of a deck become cells of a region that can be rigid alone, not beams of the scene");
     app->add_flag("--flip", o.flip, "turn cells whose nodes are numbered as in a mirror (negative volume)");
     app->add_flag("--keep-apart", o.keep_apart, "solids of a CAD file that touch share no nodes");
     app->add_option("--set", o.sets,

@@ -25,7 +25,8 @@ const std::map<std::string, std::set<std::string>> may_include{
     {"system", {"base", "model", "physics", "linear", "system"}},
     {"dynamics", {"base", "model", "physics", "linear", "system", "dynamics"}},
     {"main", {"base", "model", "physics", "linear", "system", "dynamics"}},
-    {"tools", {"base", "model"}},
+    // sections of beams: what a deck says of one is what a scene says
+    {"tools", {"base", "model", "physics/beam_section.hpp"}},
     // values at points: the shape functions, which know base alone
     {"post", {"base", "model", "physics/shape/shapes.hpp"}},
 };

@@ -160,13 +160,13 @@ TEST_F(ImportShell, ASupportStaysWithItsNode) {
   EXPECT_EQ(imported("clamped.bdf", "--thicken").n_cells(), 20);
 }
 
-// What turns a beam is left out by name beside --thicken too: pairs of nodes are of shells alone.
-TEST_F(ImportShell, SupportsThatHoldBeamsFromTurningAreNamed) {
+// What turns a beam that is a cell is left out by name beside --thicken too: pairs of nodes are of shells alone.
+TEST_F(ImportShell, SupportsThatHoldRigidBeamsFromTurningAreNamed) {
   place.write("beam.bdf",
               "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nMAT1,1,1.+9,,0.,1000.\nPSHELL,7,1,.1,1,,1\nPBAR,8,1,.01,1.-5,1.-5\n"
               "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,0.,0.,1.\nGRID,6,,1.,0.,1.\n"
               "CQUAD4,1,7,1,2,3,4\nCBAR,2,8,5,6,0.,0.,1.\nSPC1,1,123456,1,4\nSPC1,1,123456,5\nFORCE,2,6,,1.,0.,0.,1.\nENDDATA\n");
-  imported("beam.bdf", "--thicken --scene-out scene.toml");
+  imported("beam.bdf", "--thicken --rigid-beams --scene-out scene.toml");
   EXPECT_NE(err.find("turns and moments of grids of shells and beams (1, beam.bdf:18)"), std::string::npos) << err;
   EXPECT_NE(test::text_of(place / "scene.toml").find("card = \"turns and moments of grids of shells and beams\""), std::string::npos);
   place.write("beam.inp",
@@ -174,7 +174,7 @@ TEST_F(ImportShell, SupportsThatHoldBeamsFromTurningAreNamed) {
               "*ELEMENT, TYPE=B31, ELSET=R\n2,5,6\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,.3\n*DENSITY\n1000\n"
               "*SHELL SECTION, ELSET=P, MATERIAL=M\n.1\n*BEAM SECTION, ELSET=R, MATERIAL=M, SECTION=RECT\n.1,.1\n0,0,1\n"
               "*BOUNDARY\n1,1,6\n4,1,6\n5,1,6\n*STEP\n*STATIC\n*CLOAD\n6,5,1.\n*END STEP\n");
-  imported("beam.inp", "--thicken --scene-out scene.toml");
+  imported("beam.inp", "--thicken --rigid-beams --scene-out scene.toml");
   EXPECT_NE(err.find("turns and moments of nodes of shells and beams (2, beam.inp:25)"), std::string::npos) << err;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A material as a deck says it: a law of hilo with the values of its keys, or why it has none.
 #pragma once
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct DeckKey {
 struct DeckMaterial {
   std::string name;
   RegionData data;                 // units of the deck
+  double G = std::nan("");         // shear modulus where the deck gives one beside E
   std::string kind = "stvk";       // of the law
   std::vector<DeckKey> keys = {};  // besides E, nu and density
   std::string no_law = {};         // what has none in hilo, with its place; "" where all has

@@ -195,7 +195,8 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
     const auto gone = merge_nodes(in, *options.merge);
     in.notes.push_back(fmt::format("{} nodes merged with one nearer than {:g}", gone, *options.merge));
   }
-  if (const auto gone = drop_unused(in)) in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped", gone));
+  if (const auto gone = drop_unused(in); gone && in.n_beams == 0)
+    in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped", gone));
   if (options.thickness || (options.thicken && !in.thin.empty())) thicken(in, file);
   if (options.flip || is_mirrored(m))
     in.notes.push_back(fmt::format("{} of {} cells were numbered as in a mirror: turned", flip(m), m.n_cells()));
@@ -213,6 +214,7 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
     if (in.thin_regions[r].any())
       in.notes.push_back(
           fmt::format("region \"{}\" has shells or beams, of which there is no element: it can be rigid alone", m.region_name[r]));
+  if (in.n_beams > 0) in.notes.push_back(fmt::format("{} beams stand in the scene lines alone (--scene-out)", in.n_beams));
   tell_slivers(in);
   tell_untouched(in);
   if (!m.deck_scene.empty()) m.deck_scene += left_out_tables(in);

@@ -32,9 +32,10 @@ struct ImportOptions {
   std::vector<std::pair<std::string, double>> define;  // parameters of a .geo script
   bool trust = false;                                  // a .geo script may run commands and write files
   bool thicken = false;                                // shells of decks become solid-shells
-  bool flip = false;                                   // cells numbered as in a mirror are turned
-  bool keep_apart = false;                             // solids of a CAD file that touch share no nodes
-  std::vector<std::string> sets;                       // NAME=KIND:KEY=VALUE,..., as [set.NAME] of a scene    [unit of the file]
+  bool rigid_beams = false;       // beams of decks are cells of regions that can be rigid alone, not beams of the scene
+  bool flip = false;              // cells numbered as in a mirror are turned
+  bool keep_apart = false;        // solids of a CAD file that touch share no nodes
+  std::vector<std::string> sets;  // NAME=KIND:KEY=VALUE,..., as [set.NAME] of a scene    [unit of the file]
 };
 
 /// A keyword or item of the deck that has no place in the mesh or the scene lines.
@@ -52,6 +53,7 @@ struct Imported {
   std::vector<NotRead> not_read;
   std::vector<ThinRegion> thin_regions;      // by region, empty without shells and beams
   std::map<std::int64_t, ThinSection> thin;  // of the cells that are shells or beams
+  std::int64_t n_beams = 0;                  // elements that are beams of the scene
   mutable std::set<std::int64_t> of_shells;  // their nodes, once asked for
   std::map<std::int64_t, unsigned> held;     // with --thicken: components that supports hold of a shell's node, bits 0 to 5
   std::optional<double> metre;               // length unit that the file states  [m]

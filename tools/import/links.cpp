@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/links.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <bit>
+
+#include "import/deck_material.hpp"
 
 namespace hilo {
 
@@ -21,6 +25,46 @@ std::optional<HoldingJoint> joint_that_holds(unsigned components) {
   if (n_slides == 1 && turns == 0) return HoldingJoint{"in-plane", std::countr_zero(slides)};
   if (n_slides == 2 && turns == 0) return HoldingJoint{"in-line", free(slides)};
   return std::nullopt;
+}
+
+std::string joints_that_hold(unsigned components, const Mat3& axes, const std::string& name, const std::string& a, const std::string& b,
+                             const std::string& at, const std::string& place,
+                             const std::function<std::string(const std::string&, const std::string&)>& unique) {
+  struct Stage {
+    const char* kind;
+    int axis, x;
+  };
+  std::vector<Stage> stages;
+  if (const auto one = joint_that_holds(components)) {
+    stages.push_back({one->kind, one->axis, -1});
+  } else if (components != 0) {
+    const unsigned turns = components >> 3 & 7;
+    const int held = std::countr_zero(turns);
+    for (int k = 0; k < 3; ++k)
+      if (!(components >> k & 1)) stages.push_back({"prismatic", k, -1});
+    if (turns == 0)
+      stages.push_back({"spherical", -1, -1});
+    else if (std::popcount(turns) == 1)  // its cross bends about the two others
+      stages.push_back({"universal", (held + 1) % 3, (held + 2) % 3});
+    else if (std::popcount(turns) == 2)
+      stages.push_back({"revolute", std::countr_zero(7 & ~turns), -1});
+  }
+  std::string out, from = a;
+  for (size_t i = 0; i < stages.size(); ++i) {
+    const Stage& s = stages[i];
+    std::string to = b;
+    if (i + 1 < stages.size()) {
+      to = unique("body", name + "_slide");
+      out += fmt::format("\n[[body]]   # {}\nname = {}\nmass = 0\ncom = {}\n", place, toml_text(to), at);
+    }
+    out += fmt::format("\n[[joint]]   # {}\nkind = \"{}\"\nname = {}\na = {}\nb = {}\nat = {}\n", place, s.kind,
+                       toml_text(unique("joint", name)), toml_text(from), toml_text(to), at);
+    const auto direction = [&](int k) { return toml_list({axes(0, k), axes(1, k), axes(2, k)}); };
+    if (s.axis >= 0) out += fmt::format("axis = {}\n", direction(s.axis));
+    if (s.x >= 0) out += fmt::format("x = {}\n", direction(s.x));
+    from = to;
+  }
+  return out;
 }
 
 std::optional<std::vector<Vec3>> shares_of_mean(const std::vector<Vec3>& X, const std::vector<double>& w, const Vec3& at, const Vec3& F,

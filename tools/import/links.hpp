@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What decks tie together, as the scene says it: shared by the readers of .bdf and .inp.
 #pragma once
+#include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/math.hpp"
@@ -14,6 +16,12 @@ struct HoldingJoint {
   int axis;
 };
 std::optional<HoldingJoint> joint_that_holds(unsigned components);
+
+/// Joints of the scene, one after the other from a to b, that hold components along `axes` (columns) and leave the others free: one joint
+/// where there is one that does, else slides on bodies of no mass between.  `unique` gives a name of a section of the scene that is free.
+std::string joints_that_hold(unsigned components, const Mat3& axes, const std::string& name, const std::string& a, const std::string& b,
+                             const std::string& at, const std::string& place,
+                             const std::function<std::string(const std::string& section, const std::string& wish)>& unique);
 
 /// What a weighted mean of points makes of a force and a moment at a point of it: f = w (F/W + (T^-1 (M + (x - c) x F)) x r), with r from
 /// the weighted mean c, W = sum w and T = sum w (r.r I - r r^T).  Nothing where the points cannot carry the moment.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nastran bulk data: GRID, solids, rods and their properties and materials, in small, large and free fields.
 // (gmsh loses names and the mid-side nodes of long fields, so the reader is ours.)  Shell elements that lie on solids are
-// facet sets; others, and beams, are cells of regions that can be rigid alone.
+// facet sets; others are cells of regions that can be rigid alone.  Beams stand in the scene, or beside such shells are cells too.
 #include <fmt/format.h>
 
 #include <unordered_set>
@@ -73,10 +73,14 @@ void build(BdfDeck& deck, const std::string& path, const ImportOptions& options,
     group_of(s.property).cells.push_back(m.n_cells());
     add_thin_cell(deck, s, nodes, in);
   }
-  for (const auto& b : deck.beams) {
-    group_of(b.property).cells.push_back(m.n_cells());
-    add_thin_cell(deck, b, rows(deck, b.nodes, b), in);
+  if (options.rigid_beams || (!apart.empty() && !options.thicken)) {
+    for (const auto& b : deck.beams) {
+      group_of(b.property).cells.push_back(m.n_cells());
+      add_thin_cell(deck, b, rows(deck, b.nodes, b), in);
+    }
+    deck.beams.clear();
   }
+  in.n_beams = static_cast<std::int64_t>(deck.beams.size());
   std::unordered_set<std::int64_t> of_thin;
   for (const auto& [c, t] : in.thin) of_thin.insert(m.cell(c).begin(), m.cell(c).end());
   const auto tell_turn = [&](std::int64_t grid, const std::string& place) {
@@ -103,12 +107,14 @@ void build(BdfDeck& deck, const std::string& path, const ImportOptions& options,
   }
   SetNames names(in);
   for (auto& [pid, f] : facets) names.facets(property_name(pid), std::move(f));
+  const std::unordered_set<std::int64_t> of_cells(m.nodes.begin(), m.nodes.end());
   for (const auto& [sid, lines] : deck.supports) {
     std::vector<std::int64_t> nodes;
     for (const auto& l : lines)
       for (const auto id : l.grids)
-        if (const auto a = deck.row.find(id); a != deck.row.end()) nodes.push_back(a->second);
-    names.nodes(fmt::format("SPC_{}", sid), std::move(nodes));
+        if (const auto a = deck.row.find(id); a != deck.row.end() && (in.n_beams == 0 || of_cells.contains(a->second)))
+          nodes.push_back(a->second);
+    if (in.n_beams == 0 || !nodes.empty()) names.nodes(fmt::format("SPC_{}", sid), std::move(nodes));
   }
   write_bdf_scene(deck, in, names, options);
 }

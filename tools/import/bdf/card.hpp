@@ -31,6 +31,13 @@ std::span<const BdfCard> bdf_link_cards();      // rigid elements, masses, sprin
 DeckMaterial& material_of(const BdfEntry& e, BdfDeck& deck);
 /// A shell or beam becomes a cell with its section; Error where its property says none.
 void add_thin_cell(const BdfDeck& deck, const BdfDeck::Thin& cell, std::span<const std::int64_t> rows, Imported& in);
+/// Both ends of a beam off its grids, and the direction of plane 1; Error where it lies along the beam and the section has two stiffnesses.
+struct BdfBeamPlace {
+  Vec3 a, b, up;
+};
+BdfBeamPlace place_of_beam(const BdfDeck& deck, const BdfDeck::Thin& beam);
+/// The section of a beam; Error where its property is none of beams.
+const BdfThin& section_of_beam(const BdfDeck& deck, const BdfDeck::Thin& beam);
 /// MATS1 and the tables it names, into the materials.
 void resolve_metals(BdfDeck& deck, Imported& in);
 /// Components of a grid, "123456" in any order, as bits 0 to 5; an Error where it is none.

@@ -11,6 +11,7 @@
 
 #include "import/bdf/axes.hpp"
 #include "import/data_line.hpp"
+#include "import/deck_beams.hpp"
 #include "import/deck_material.hpp"
 #include "import/imported.hpp"
 
@@ -89,9 +90,10 @@ struct BdfCase {
   bool any = false;  // case control is there: CEND is said
 };
 
-/// PSHELL, PCOMP: thickness, offset of the mid-surface.  PBAR, PBEAM and their like: area and second moments.
+/// PSHELL, PCOMP: thickness, offset of the mid-surface.  PBAR, PBEAM and their like: a section, axis 2 in plane 1.
 struct BdfThin {
-  double thickness = 0, offset = 0, area = 0, I1 = 0, I2 = 0, I12 = 0;
+  double thickness = 0, offset = 0;
+  DeckSection section = {};
   std::string no_solid;  // why a solid-shell cannot stand for it
   std::string place = {};
 };
@@ -106,10 +108,12 @@ struct BdfDeck {
   /// A shell (`nodes`: its corners) or a beam.
   struct Thin : Cell {
     std::vector<std::int64_t> middles = {};
-    double offset = 0;                       // of a shell, along its normal
-    std::int64_t towards = 0;                // of a beam: G0
-    Vec3 v = Vec3::Zero();                   // of a beam: in its plane 1
-    Vec3 start = Vec3::Zero(), end = start;  // of a beam: offsets of its ends
+    double offset = 0;                        // of a shell, along its normal
+    std::int64_t towards = 0;                 // of a beam: G0
+    Vec3 v = Vec3::Zero();                    // of a beam: in its plane 1
+    Vec3 start = Vec3::Zero(), end = start;   // of a beam: offsets of its ends
+    std::string card = "beam", axes = "GGG";  // of a beam: OFFT, which axes v and both offsets are in
+    unsigned pins[2] = {0, 0};                // of a beam: components that its ends leave free, in its own axes
   };
   std::vector<Vec3> X;
   std::vector<std::int64_t> node_id;

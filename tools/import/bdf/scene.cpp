@@ -2,6 +2,7 @@
 // Materials, supports and the analysis of a Nastran file as scene lines.
 #include "import/bdf/scene.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -13,9 +14,11 @@ namespace hilo {
 BdfScene::BdfScene(const BdfDeck& deck, Imported& in, SetNames& names, const ImportOptions& options)
     : deck_(deck), in_(in), names_(names), options_(options), used_(deck.X.size(), 0) {
   for (const auto a : in.mesh.nodes) used_[static_cast<size_t>(a)] = 1;
-  Vec3 low = X(in.mesh.nodes[0]), high = low;
-  for (const auto a : in.mesh.nodes) low = low.cwiseMin(X(a)), high = high.cwiseMax(X(a));
-  size_ = (high - low).norm();
+  Eigen::AlignedBox3d box;
+  for (const auto a : in.mesh.nodes) box.extend(X(a));
+  for (const auto& b : deck.beams)
+    for (const auto grid : b.nodes) box.extend(X(row(grid, b.place, b.card)));
+  size_ = box.diagonal().norm();
 }
 
 std::string BdfScene::text() {
@@ -24,6 +27,7 @@ std::string BdfScene::text() {
   gravity();
   materials();
   bodies();
+  beams();
   rigid();
   springs();
   supports();
@@ -75,14 +79,10 @@ BdfScene::End BdfScene::end(std::int64_t row) const {
   return used_[static_cast<size_t>(row)] ? End::node : End::nothing;
 }
 
-bool BdfScene::joint(unsigned components, const Mat3& axes, const std::string& name, const std::string& a, const std::string& b,
+void BdfScene::joint(unsigned components, const Mat3& axes, const std::string& name, const std::string& a, const std::string& b,
                      const Vec3& at, const std::string& place) {
-  const auto j = joint_that_holds(components);
-  if (!j) return false;
-  tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"{}\"\nname = {}\na = {}\nb = {}\nat = {}\n", place, j->kind,
-                         toml_text(unique("joint", name)), toml_text(a), toml_text(b), point(at));
-  if (j->axis >= 0) tables_ += fmt::format("axis = {}\n", direction(axes.col(j->axis)));
-  return true;
+  tables_ += joints_that_hold(components, axes, name, a, b, point(at), place,
+                              [this](const std::string& section, const std::string& wish) { return unique(section, wish); });
 }
 
 void BdfScene::materials() {
@@ -266,8 +266,8 @@ void BdfScene::supports_of_bodies() {
     if (bits == 63)
       tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"fixed\"\nname = {}\non = {}\n", place, toml_text(unique("motion", name)),
                              toml_text(name));
-    else if (bits && !joint(bits, axes(a), name + "_support", "ground", name, X(a), place))
-      in_.skip("SPC of components of a grid of no cell that no joint holds", place);
+    else
+      joint(bits, axes(a), name + "_support", "ground", name, X(a), place);
   }
 }
 

@@ -34,6 +34,10 @@ class BdfScene {
   void bodies();
   void rigid();
   void rigid(const BdfRigid& r);
+  // scene_beams.cpp
+  void beams();
+  void beam(const BdfDeck::Thin& b);
+  std::string section_name(std::int64_t property) const;
   // scene_springs.cpp
   void springs();
   void scalar_spring(const BdfSpring& s, double k, double c);
@@ -70,8 +74,8 @@ class BdfScene {
     const BdfGrid& g = deck_.grids[static_cast<size_t>(row)];
     return axes_at(deck_, g.output.value_or(0), X(row), g.place);
   }
-  /// A joint that holds components (bits 0 to 5) along these axes; false where hilo has none.
-  bool joint(unsigned components, const Mat3& axes, const std::string& name, const std::string& a, const std::string& b, const Vec3& at,
+  /// Joints that hold components (bits 0 to 5) along these axes.
+  void joint(unsigned components, const Mat3& axes, const std::string& name, const std::string& a, const std::string& b, const Vec3& at,
              const std::string& place);
   void spring_along(const Vec3& axis, const std::string& name, const std::string& a, std::int64_t b, double k, double c,
                     const std::string& place);
@@ -86,6 +90,7 @@ class BdfScene {
   std::map<std::int64_t, std::string> body_;     // row -> what makes a body of it
   std::map<std::int64_t, const BdfMean*> mean_;  // row -> the mean that it follows
   std::map<std::int64_t, unsigned> body_held_;   // row -> components
+  std::map<std::int64_t, std::string> on_beam_;  // row of a grid of beams -> place
   std::vector<std::pair<double, const BdfLoad*>> loads_;
   std::map<std::int64_t, std::pair<Vec3, std::string>> force_, moment_;  // row -> sum and first place
   std::set<std::string> made_;                                           // names given, by section

@@ -63,6 +63,15 @@ void BdfScene::join_rigid() {
 }
 
 void BdfScene::find_bodies() {
+  for (const auto& b : deck_.beams)
+    for (const auto grid : b.nodes) {
+      const auto a = row(grid, b.place, b.card);
+      if (options_.thicken && is_of_shell(in_, a))
+        throw Error(b.place, fmt::format("{} {}: grid {} is of shells too: pairs of nodes have no turns", b.card, b.id, grid),
+                    "leave --thicken away: both are cells of rigid regions");
+      body_.try_emplace(a, b.place);
+      on_beam_.try_emplace(a, b.place);
+    }
   join_rigid();
   const auto free = [&](std::int64_t a) { return !used_[static_cast<size_t>(a)]; };
   const auto make = [&](std::int64_t grid, const std::string& place, const std::string& who, bool cell_too = false) {
@@ -187,12 +196,11 @@ void BdfScene::rigid(const BdfRigid& r) {
   Rows nodes;
   std::vector<Vec3> points;
   const auto add = [&](std::int64_t a) { nodes.push_back(a), points.push_back(X(a)); };
-  if (used_[static_cast<size_t>(hub)]) add(hub);
+  if (used_[static_cast<size_t>(hub)] && !on_beam_.contains(hub)) add(hub);
   for (const auto g : r.grids) {
     const auto a = row(g, r.place, r.name);
     if (end(a) == End::body && a != hub) {
-      if (!joint(r.components, axes(a), name, end_name(hub), end_name(a), X(a), r.place))
-        in_.skip(fmt::format("{} of components that no joint holds", r.name), r.place);
+      joint(r.components, axes(a), name, end_name(hub), end_name(a), X(a), r.place);
     }
     if (used_[static_cast<size_t>(a)] && end(a) != End::body) add(a);
   }

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
+#include <map>
 
 #include "base/error.hpp"
 #include "import/bdf/card.hpp"
@@ -49,9 +49,14 @@ void read_beam(const BdfEntry& e, BdfDeck& deck, Imported& in) {
     b.towards = d.integer(4);
   else
     b.v = Vec3(d.number(4), d.number(5), d.number(6));
-  if (!d.empty(7) && upper(d.text(7)) != "GGG") in.skip(e.name + ": OFFT " + upper(d.text(7)), d.place(7));
-  if (d.number(8) != 0 || d.number(9) != 0) in.skip(e.name + ": pin flags PA, PB", d.place(8));
+  b.card = e.name;
+  if (!d.empty(7) && !d.is_integer(7)) b.axes = upper(d.text(7));
+  if (b.axes.size() != 3 || b.axes.find_first_not_of("GBO") != b.axes.npos)
+    throw Error(d.place(7), fmt::format("{}: OFFT {} is not three of G, B, O", e.name, b.axes));
+  for (size_t k = 0; k < 2; ++k)
+    if (!d.empty(8 + k) && d.text(8 + k) != "0") b.pins[k] = components(d, 8 + k);
   for (int i = 0; i < 3; ++i) b.start[i] = d.number(10 + static_cast<size_t>(i)), b.end[i] = d.number(13 + static_cast<size_t>(i));
+  if (e.name == "CBEAM" && (d.number(16) != 0 || d.number(17) != 0)) in.skip("CBEAM: warping grids SA, SB", d.place(16));
   add(deck, std::move(b), deck.beams);
 }
 
@@ -102,77 +107,185 @@ void read_pcomp(const BdfEntry& e, BdfDeck& deck, Imported& in) {
     in.skip("PCOMP of several materials: no density", d.place());
 }
 
-/// PID MID A I1 I2 J NSM; stress points; K1 K2 I12.  PBEAM: PID MID A I1 I2 I12 J NSM, then further stations.
-void read_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+/// K1 and K2 along plane 1 and 2; blank or 0: no shear strain where `stiff`, else 1.
+void set_shear(DeckSection& s, double K1, double K2, bool stiff) {
+  s.shear = {K2 > 0 ? K2 : 1, K1 > 0 ? K1 : 1};
+  s.no_shear_strain = {stiff && !(K2 > 0), stiff && !(K1 > 0)};
+}
+
+/// PID MID A I1 I2 J NSM; stress points; K1 K2 I12.
+void read_pbar(const BdfEntry& e, BdfDeck& deck, Imported&) {
   const auto& d = e.data;
-  const bool beam = e.name == "PBEAM";
   BdfThin s;
-  s.area = d.number(2), s.I1 = d.number(3), s.I2 = d.number(4), s.I12 = d.number(beam ? 5 : 18);
-  if (d.number(beam ? 7 : 6) != 0) in.skip(e.name + ": mass per length NSM", d.place(beam ? 7 : 6));
-  if (beam && !d.empty(18) && d.number(18) != s.area) in.skip("PBEAM that tapers: the section of end A is taken", d.place(18));
+  s.section = general_section(d.number(2), d.number(3), d.number(4), d.number(5));
+  s.section.line_mass = d.number(6), s.section.I12 = -d.number(18);
+  set_shear(s.section, d.number(16), d.number(17), true);
   add_property(e, deck, s);
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }
 
-/// PID MID GROUP TYPE; DIM1 DIM2 ...
+/// PID MID A I1 I2 I12 J NSM, stress points; stations of SO X/XB A I1 I2 I12 J NSM, with stress points where SO is YES; K1 K2 S1 S2 NSI CW;
+/// M1 M2 of both ends, N1 N2 of both ends.
+void read_pbeam(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+  const auto& d = e.data;
+  std::array<double, 6> at_a, middle;
+  for (size_t i = 0; i < 6; ++i) at_a[i] = middle[i] = d.number(2 + i);
+  const auto word = [&](size_t i) { return upper(d.text(i)); };
+  const auto is_station = [&](size_t i) { return word(i) == "YES" || word(i) == "YESA" || word(i) == "NO"; };
+  size_t line = is_station(8) ? 8 : 16;
+  bool tapers = false;
+  for (; is_station(line); line += word(line) == "YES" ? 16 : 8)
+    for (size_t i = 0; i < 6; ++i) {
+      const double there = d.number(line + 2 + i, at_a[i]);
+      tapers = tapers || std::abs(there - at_a[i]) > 1e-6 * std::abs(at_a[i]);
+      if (d.number(line + 1) == 1) middle[i] = (at_a[i] + there) / 2;
+    }
+  if (tapers) in.skip("PBEAM that tapers: the mean of the sections at its ends is taken", d.place());
+  BdfThin s;
+  s.section = general_section(middle[0], middle[1], middle[2], middle[4]);
+  s.section.line_mass = middle[5], s.section.I12 = -middle[3];
+  set_shear(s.section, d.number(line, 1), d.number(line + 1, 1), true);
+  for (size_t i = 4; i < 8; ++i)
+    if (d.number(line + i) != 0) in.skip(i < 6 ? "PBEAM: inertia NSI of its NSM" : "PBEAM: warping CW", d.place(line + i));
+  for (size_t i = 8; i < 16; ++i)
+    if (d.number(line + i) != 0) {
+      in.skip(i < 12 ? "PBEAM: NSM off the shear centre, M1, M2" : "PBEAM: neutral axis off the shear centre, N1, N2", d.place(line + i));
+      break;
+    }
+  add_property(e, deck, s);
+  if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
+}
+
+/// Shapes that [section.NAME] has too: DIM1 is across plane 1 where the shape has a width.
+struct BeamShape {
+  size_t dims;
+  DeckSection (*of)(const std::vector<double>& dim);
+};
+const std::map<std::string, BeamShape> beam_shapes{
+    {"ROD",
+     {1,
+      [](const std::vector<double>& v) {
+        return DeckSection{"circle", {{"diameter", 2 * v[0]}}};
+      }}},
+    {"TUBE",
+     {2,
+      [](const std::vector<double>& v) {
+        return DeckSection{"tube", {{"diameter", 2 * v[0]}, {"thickness", v[0] - v[1]}}};
+      }}},
+    {"BAR",
+     {2,
+      [](const std::vector<double>& v) {
+        return DeckSection{"rectangle", {{"width", v[0]}, {"height", v[1]}}};
+      }}},
+    {"BOX",
+     {4,
+      [](const std::vector<double>& v) {
+        if (v[2] == v[3]) return DeckSection{"box", {{"width", v[0]}, {"height", v[1]}, {"thickness", v[2]}}};
+        const double w = v[0] - 2 * v[3], h = v[1] - 2 * v[2], wm = v[0] - v[3], hm = v[1] - v[2];
+        return general_section(v[0] * v[1] - w * h, (v[0] * std::pow(v[1], 3) - w * h * h * h) / 12,
+                               (v[1] * std::pow(v[0], 3) - h * w * w * w) / 12, 2 * wm * wm * hm * hm / (wm / v[2] + hm / v[3]));
+      }}},
+    {"I",
+     {6,
+      [](const std::vector<double>& v) {
+        if (v[1] != v[2] || v[4] != v[5]) return DeckSection{};
+        return DeckSection{"I", {{"width", v[1]}, {"height", v[0]}, {"flange", v[4]}, {"web", v[3]}}};
+      }}},
+    {"I1",
+     {4,
+      [](const std::vector<double>& v) {  // flanges beyond the web, web, height of the web, whole height
+        return DeckSection{"I", {{"width", v[0] + v[1]}, {"height", v[3]}, {"flange", (v[3] - v[2]) / 2}, {"web", v[1]}}};
+      }}},
+};
+
+/// PID MID GROUP TYPE; DIM1 DIM2 ... NSM
 void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
   const std::string type = upper(d.text(3));
-  const auto dim = [&](size_t i) { return d.number(7 + i); };
-  constexpr double pi = std::numbers::pi;
+  const auto shape = beam_shapes.find(type);
+  const auto refuse = [&](const std::string& what) {
+    return Error(d.place(3), fmt::format("{} {}: {} is not read", e.name, d.integer(0), what),
+                 "ROD, TUBE, BAR, BOX, I and I1 are; write the others as PBAR");
+  };
+  if (shape == beam_shapes.end()) throw refuse("TYPE " + type);
+  std::vector<double> dims;
+  for (size_t i = 0; i < shape->second.dims; ++i) dims.push_back(d.number(8 + i));
   BdfThin s;
-  size_t n = 2;
-  if (type == "ROD") {
-    s.area = pi * dim(1) * dim(1), s.I1 = s.I2 = pi * std::pow(dim(1), 4) / 4, n = 1;
-  } else if (type == "TUBE") {
-    s.area = pi * (dim(1) * dim(1) - dim(2) * dim(2)), s.I1 = s.I2 = pi * (std::pow(dim(1), 4) - std::pow(dim(2), 4)) / 4;
-  } else if (type == "BAR") {
-    s.area = dim(1) * dim(2), s.I1 = dim(1) * std::pow(dim(2), 3) / 12, s.I2 = dim(2) * std::pow(dim(1), 3) / 12;
-  } else if (type == "BOX") {
-    const double w = dim(1) - 2 * dim(4), h = dim(2) - 2 * dim(3);
-    s.area = dim(1) * dim(2) - w * h, n = 4;
-    s.I1 = (dim(1) * std::pow(dim(2), 3) - w * h * h * h) / 12, s.I2 = (dim(2) * std::pow(dim(1), 3) - h * w * w * w) / 12;
-  } else
-    throw Error(d.place(3), fmt::format("{} {}: TYPE {} is not read", e.name, d.integer(0), type),
-                "ROD, TUBE, BAR and BOX are; write the others as PBAR");
-  if (e.name == "PBARL" && d.number(8 + n) != 0) in.skip("PBARL: mass per length NSM", d.place(8 + n));
-  if (e.name == "PBEAML" && d.number(8 + n) != 0) in.skip("PBEAML: mass per length NSM", d.place(8 + n));
+  s.section = shape->second.of(dims);
+  if (!s.section.given()) throw refuse("TYPE " + type + " of two different flanges");
+  s.section.line_mass = d.number(8 + dims.size());
+  if (e.name == "PBEAML" && d.fields.size() > 9 + dims.size())
+    for (size_t i = 0; i < dims.size(); ++i)
+      if (const size_t at = 11 + dims.size() + i; !d.empty(at) && d.number(at) != dims[i]) {
+        in.skip("PBEAML that tapers: the section of end A is taken", d.place(at));
+        break;
+      }
   add_property(e, deck, s);
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }
 
 }  // namespace
 
-void add_thin_cell(const BdfDeck& deck, const BdfDeck::Thin& c, std::span<const std::int64_t> rows, Imported& in) {
-  const auto found = deck.thin.find(c.property);
-  const bool beam = c.shape == Shape::bar2;
+const BdfThin& section_of_beam(const BdfDeck& deck, const BdfDeck::Thin& b) {
+  const auto found = deck.thin.find(b.property);
   if (found == deck.thin.end())
-    throw Error(c.place, fmt::format("{} {}: no property {}", beam ? "beam" : "shell", c.id, c.property),
-                beam ? "PBAR, PBARL, PBEAM, PBEAML" : "PSHELL, PCOMP");
+    throw Error(b.place, fmt::format("beam {}: no property {}", b.id, b.property), "PBAR, PBARL, PBEAM, PBEAML");
   const BdfThin& p = found->second;
-  if (beam ? !(p.area > 0) : !(p.thickness > 0))
-    throw Error(p.place, fmt::format("property {} has no {}", c.property, beam ? "area" : "thickness"));
+  if (!p.section.given() || !(p.section.area(0.3, p.place).A > 0)) throw Error(p.place, fmt::format("property {} has no area", b.property));
+  return p;
+}
+
+BdfBeamPlace place_of_beam(const BdfDeck& deck, const BdfDeck::Thin& b) {
+  std::array<std::int64_t, 2> rows;
+  for (size_t k = 0; k < 2; ++k) {
+    const auto at = deck.row.find(b.nodes[k]);
+    if (at == deck.row.end()) throw Error(b.place, fmt::format("element {} names node {}, which does not exist", b.id, b.nodes[k]));
+    rows[k] = at->second;
+  }
+  const auto X = [&](size_t k) { return deck.X[static_cast<size_t>(rows[k])]; };
+  const auto turned = [&](size_t letter, size_t k, const Vec3& v) -> Vec3 {
+    if (v.norm() == 0 || b.axes[letter] == 'B') return v;
+    if (b.axes[letter] == 'O')
+      throw Error(b.place, fmt::format("{} {}: OFFT {}, offsets in axes of the beam, are not read", b.card, b.id, b.axes), "GGG");
+    const BdfGrid& g = deck.grids[static_cast<size_t>(rows[k])];
+    return axes_at(deck, g.output.value_or(0), X(k), g.place) * v;
+  };
+  BdfBeamPlace out{X(0) + turned(1, 0, b.start), X(1) + turned(2, 1, b.end), turned(0, 0, b.v)};
+  if (b.towards != 0) {
+    const auto grid = deck.row.find(b.towards);
+    if (grid == deck.row.end()) throw Error(b.place, fmt::format("beam {} names node {}, which does not exist", b.id, b.towards));
+    out.up = deck.X[static_cast<size_t>(grid->second)] - X(0);
+  }
+  const Vec3 along = out.b - out.a;
+  if (!(along.norm() > 0)) throw Error(b.place, fmt::format("beam {} has no length", b.id));
+  if (!(along.cross(out.up).norm() > 1e-9 * along.norm() * out.up.norm())) {
+    const DeckSection& s = section_of_beam(deck, b).section;
+    const SectionArea area = s.area(0.3, b.place);
+    if (area.I1 != area.I2 || s.I12 != 0 || area.shear_1 != area.shear_2)
+      throw Error(b.place, fmt::format("beam {}: its orientation lies along it, or is none", b.id));
+    out.up = along.unitOrthogonal();
+  }
+  return out;
+}
+
+void add_thin_cell(const BdfDeck& deck, const BdfDeck::Thin& c, std::span<const std::int64_t> rows, Imported& in) {
   ThinSection s;
-  s.no_solid = p.no_solid;
-  s.thickness = p.thickness, s.offset = p.offset + c.offset, s.area = p.area, s.start = c.start, s.end = c.end;
-  if (beam) {
-    const auto& X = in.mesh.X;
-    const Vec3 along = X[static_cast<size_t>(rows[1])] + c.end - X[static_cast<size_t>(rows[0])] - c.start;
-    Vec3 v = c.v;
-    if (c.towards != 0) {
-      const auto grid = deck.row.find(c.towards);
-      if (grid == deck.row.end()) throw Error(c.place, fmt::format("beam {} names node {}, which does not exist", c.id, c.towards));
-      v = deck.X[static_cast<size_t>(grid->second)] - X[static_cast<size_t>(rows[0])];
-    }
-    if (!(along.cross(v).norm() > 1e-9 * along.norm() * v.norm())) {
-      if (p.I1 != p.I2 || p.I12 != 0) throw Error(c.place, fmt::format("beam {}: its orientation lies along it, or is none", c.id));
-      v = along.unitOrthogonal();
-    }
-    if ((deck.grids[static_cast<size_t>(rows[0])].output.value_or(0) != 0 ||
-         deck.grids[static_cast<size_t>(rows[1])].output.value_or(0) != 0) &&
-        (c.towards == 0 || c.start.norm() + c.end.norm() > 0))
-      in.skip("CBAR, CBEAM: orientation and offsets in the displacement axes of a grid, taken as those of the model", c.place);
-    s.second = second_of_section(along, v, p.I1, p.I2, p.I12);
+  if (c.shape == Shape::bar2) {
+    const DeckSection& section = section_of_beam(deck, c).section;
+    const BdfBeamPlace at = place_of_beam(deck, c);
+    const SectionArea area = section.area(0.3, c.place);
+    s.area = area.A;
+    s.start = at.a - in.mesh.X[static_cast<size_t>(rows[0])], s.end = at.b - in.mesh.X[static_cast<size_t>(rows[1])];
+    s.second = second_of_section(at.b - at.a, at.up, area.I1, area.I2, -section.I12);
+    if (section.line_mass != 0) in.skip("PBAR, PBEAM: mass per length NSM", section_of_beam(deck, c).place);
+    if (c.pins[0] || c.pins[1]) in.skip(c.card + ": pin flags PA, PB", c.place);
+  } else {
+    const auto found = deck.thin.find(c.property);
+    if (found == deck.thin.end()) throw Error(c.place, fmt::format("shell {}: no property {}", c.id, c.property), "PSHELL, PCOMP");
+    const BdfThin& p = found->second;
+    if (!(p.thickness > 0)) throw Error(p.place, fmt::format("property {} has no thickness", c.property));
+    s.no_solid = p.no_solid;
+    s.thickness = p.thickness, s.offset = p.offset + c.offset;
   }
   in.thin[in.mesh.n_cells()] = s;
   in.mesh.add_cell(c.shape, rows, -1, c.id);
@@ -190,8 +303,8 @@ std::span<const BdfCard> bdf_thin_cards() {
       {"CBEAM", read_beam},
       {"PSHELL", read_pshell},
       {"PCOMP", read_pcomp},
-      {"PBAR", read_section},
-      {"PBEAM", read_section},
+      {"PBAR", read_pbar},
+      {"PBEAM", read_pbeam},
       {"PBARL", read_shape_of_section},
       {"PBEAML", read_shape_of_section},
   };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "import/deck_beams.hpp"
 #include "import/deck_material.hpp"
 #include "import/imported.hpp"
 #include "import/inp/lines.hpp"
@@ -49,9 +51,21 @@ struct InpSection {
   std::string orientation = {}, orientation_name = {}, orientation_place = {};
   std::string law = {};  // key of InpDeck::laws
   std::string card = "*SOLID SECTION";
-  double thickness = 0, offset = 0;  // of shells: the mid-surface off the nodes, along the normal
-  double I1 = 0, I2 = 0;             // of beams: int y^2 dA along n1 and n2
-  Vec3 n1 = Vec3(0, 0, -1);          // of beams
+  double thickness = 0, offset = 0;   // of shells: the mid-surface off the nodes, along the normal
+  DeckSection beam = {};              // of beams
+  bool along_n2 = false;              // of beams: axis 2 of `beam` is n2, not n1
+  Vec3 n1 = Vec3(0, 0, -1);           // of beams
+  Vec3 off = Vec3::Zero();            // of beams: their line off the nodes, along n1 and n2; OFFSET1 and 2 say where the nodes are
+  std::optional<DeckMaterial> own{};  // *BEAM GENERAL SECTION says its moduli itself
+};
+/// *ELEMENT of beams, which are cells only where they are to be rigid.
+struct InpBeam {
+  std::string type;  // "B31"
+  std::int64_t id;
+  std::vector<std::int64_t> nodes;  // numbers of the deck, two or three
+  std::string place;
+  const std::string* file = nullptr;
+  int line = 0;
 };
 /// One line of *BOUNDARY, *CLOAD or *INITIAL CONDITIONS, TYPE=VELOCITY: a value on degrees of freedom first..last of a node or node set.
 struct InpNodal {
@@ -114,6 +128,7 @@ struct InpBody {
   Vec3 X;
   std::string place;
   std::vector<InpCarried> carries;
+  std::vector<std::int64_t> bodies = {};  // by number: nodes of beams that it carries
 };
 struct InpMean {
   Vec3 X;
@@ -152,8 +167,9 @@ struct InpDeck {
   std::string material;                      // the one that *ELASTIC and *DENSITY speak of
   std::vector<InpSection> sections;
   std::vector<InpTie> ties;
-  std::unordered_set<std::int64_t> beams;   // elements that are no bars
-  std::map<std::int64_t, InpPoint> points;  // by number of the element
+  std::map<std::int64_t, InpBeam> beams;        // by number; empty where they are cells
+  std::unordered_set<std::int64_t> beam_cells;  // elements of bars that are beams
+  std::map<std::int64_t, InpPoint> points;      // by number of the element
   std::vector<InpPointValue> point_values;
   std::unordered_map<std::int64_t, Vec3> loose;  // nodes of no cell
   std::map<std::int64_t, InpBody> bodies;        // by node, as found
@@ -193,6 +209,12 @@ Shape inp_shape(const Card& card);
 /// of a node set of the deck, `surface` that of a surface.
 void write_inp_scene(const InpDeck& deck, Imported& in, SetNames& names, const std::map<std::string, std::string>& node_set,
                      const std::map<std::string, std::string>& surface, const ImportOptions& options);
+/// Beams as cells of bars; an Error where one has three nodes.
+void beams_as_cells(InpDeck& deck);
+/// Nodes of beams are bodies.
+void find_beams(InpDeck& deck, Imported& in, bool thicken);
+/// Sections, materials, beams and what ties their nodes to solids, as scene lines.
+std::string write_beams(const InpDeck& deck, Imported& in, SetNames& names, const ImportOptions& options);
 /// Facets of the deck's faces: the local facet that has the corners of face `face` of an Abaqus element; -1 where there is none.
 int inp_facet(Shape shape, int face);
 /// Rows of the nodes, or cells, that a target names; numbers that no cell uses are left out.

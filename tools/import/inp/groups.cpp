@@ -47,13 +47,20 @@ std::vector<char> turned_nodes(const InpDeck& d, const Mesh& mesh) {
   return turned;
 }
 
+/// Nodes of cells that a line speaks of, but for those that are bodies too, of beams: ties speak of these.
+static Rows nodes_of_cells(const InpDeck& d, const InpNodal& l, const Imported& in) {
+  Rows rows = inp_nodes(d, l.target, l.id, l.place);
+  std::erase_if(rows, [&](std::int64_t a) { return d.bodies.contains(in.mesh.node_id[static_cast<size_t>(a)]); });
+  return rows;
+}
+
 std::vector<Held> held_groups(const InpDeck& d, const std::vector<char>& turned, Imported& in) {
   // the last line that speaks of a component of a node holds it
   std::unordered_map<std::int64_t, size_t> claim;
   for (size_t i = 0; i < d.supports.size(); ++i) {
     const auto& b = d.supports[i];
     if (const auto n = of_no_cell(d, b)) in.skip("*BOUNDARY on a node of no cell", b.place, n);
-    for (const auto a : inp_nodes(d, b.target, b.id, b.place))
+    for (const auto a : nodes_of_cells(d, b, in))
       for (int k = b.first - 1; k < std::min(b.last, 3); ++k) claim[3 * a + k] = i;  // nodes of solids do not turn
   }
   const auto fixed = [&](std::int64_t a, int k) {
@@ -73,7 +80,7 @@ std::vector<Held> held_groups(const InpDeck& d, const std::vector<char>& turned,
     const auto& b = d.supports[i];
     const std::string amplitude = b.value == 0 ? "" : b.amplitude;
     for (int k = b.first - 1; k < std::min(b.last, 3); ++k)
-      for (const auto a : inp_nodes(d, b.target, b.id, b.place)) {
+      for (const auto a : nodes_of_cells(d, b, in)) {
         const auto c = claim.find(3 * a + k);
         if (c == claim.end() || c->second != i) continue;
         if (b.target.empty()) {
@@ -120,7 +127,7 @@ std::vector<Nodal> nodal_groups(const InpDeck& d, const std::vector<InpNodal>& l
   std::map<std::pair<std::int64_t, std::string>, Nodal> of_node;
   for (const auto& f : lines) {
     if (const auto n = of_no_cell(d, f, !add)) in.skip(fmt::format("{} on a node of no cell", what), f.place, n);
-    Rows nodes = inp_nodes(d, f.target, f.id, f.place);
+    Rows nodes = nodes_of_cells(d, f, in);
     const auto away = std::count_if(nodes.begin(), nodes.end(), [&](std::int64_t a) { return turned[a]; });
     if (away) {
       in.skip(fmt::format("{} in axes of *TRANSFORM", what), f.place, away);
@@ -205,6 +212,7 @@ std::vector<std::int64_t> inp_nodes(const InpDeck& d, const std::string& target,
 std::vector<std::int64_t> inp_cells(const InpDeck& d, const std::string& target, std::int64_t id, const std::string& place) {
   Rows rows;
   if (target.empty()) {
+    if (d.beams.contains(id)) return rows;
     const auto c = d.cell.find(id);
     if (c == d.cell.end()) throw Error(place, fmt::format("no element {}", id));
     return {c->second};

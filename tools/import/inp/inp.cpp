@@ -30,11 +30,13 @@ void check_names(const InpDeck& d) {
 void turn_materials(InpDeck& d, Imported& in) {
   for (auto& s : d.sections) {
     DeckMaterial law;  // of a section without a material: none
-    if (s.material.empty())
+    if (s.own)
+      law = *s.own;
+    else if (s.material.empty())
       law.no_law = s.card + " without MATERIAL, " + s.place;
     else
       law = d.materials.at(s.material);
-    s.law = s.material;
+    s.law = s.own ? "\n" + s.elset : s.material;
     if (law.kind == "orthotropic" && law.no_law.empty() && !s.orientation.empty()) {
       const InpOrientation& o = d.orientations.at(s.orientation);
       s.law += "\n" + s.orientation;
@@ -75,9 +77,11 @@ void resolve_cells(InpDeck& d, Imported& in) {
       d.unused.insert(d.node_id[a]);
     }
   for (auto& a : m.nodes) a = row[a];
-  if (!d.unused.empty())
-    in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped, the first is {}", d.unused.size(),
-                                   *std::min_element(d.unused.begin(), d.unused.end())));
+  std::set<std::int64_t> dropped(d.unused.begin(), d.unused.end());
+  for (const auto& [id, b] : d.beams)
+    for (const auto node : b.nodes) dropped.erase(node);
+  if (!dropped.empty())
+    in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped, the first is {}", dropped.size(), *dropped.begin()));
   m.shape = d.shape;
   m.cell_id = d.cell_id;
   m.offset = d.offset;
@@ -111,18 +115,24 @@ void thin_sections(const InpDeck& d, Imported& in, bool thicken) {
       const auto found = d.cell.find(id);
       if (found == d.cell.end()) continue;
       const auto c = found->second;
-      const bool shell = info(m.shape[c]).dimension == 2, beam = d.beams.contains(id);
+      const bool shell = info(m.shape[c]).dimension == 2, beam = d.beam_cells.contains(id);
       const char* due = shell ? "*SHELL SECTION" : beam ? "*BEAM SECTION" : "*SOLID SECTION";
-      if (upper(s.card) != upper(due)) throw Error(s.place, fmt::format("{} on element {}", s.card, id), fmt::format("it needs {}", due));
+      if (upper(s.card) != upper(due) && !(beam && s.own))
+        throw Error(s.place, fmt::format("{} on element {}", s.card, id), fmt::format("it needs {}", due));
       if (!shell && !beam) continue;
       ThinSection t;
-      t.thickness = s.thickness, t.offset = s.offset, t.area = s.area;
+      t.thickness = s.thickness, t.offset = s.offset;
       if (beam) {
+        const SectionArea area = s.beam.area(0.3, s.place);
+        t.area = area.A;
         const Vec3 along = m.X[m.cell(c)[1]] - m.X[m.cell(c)[0]];
         if (!(along.cross(s.n1).norm() > 1e-6 * along.norm() * s.n1.norm()))
           throw Error(s.place, fmt::format("{}: element {} lies along the direction 1 of its section", s.card, id));
         // n1 may be askew: its part across the beam counts
-        t.second = second_of_section(along, s.n1, s.I1, s.I2, 0);
+        const Vec3 up = s.along_n2 ? Vec3(along.cross(s.n1)) : s.n1,
+                   n1 = (s.n1 - along * along.dot(s.n1) / along.squaredNorm()).normalized();
+        t.second = second_of_section(along, up, area.I1, area.I2, -s.beam.I12);
+        t.start = t.end = s.off[0] * n1 + s.off[1] * along.normalized().cross(n1);
       }
       in.thin[c] = t;
     }
@@ -139,7 +149,7 @@ void thin_sections(const InpDeck& d, Imported& in, bool thicken) {
         in.skip("turns and moments of nodes of shells and beams", l.place, n);
     }
   for (std::int64_t c = 0; c < m.n_cells(); ++c)
-    if ((info(m.shape[c]).dimension == 2 || d.beams.contains(m.cell_id[c])) && !in.thin.contains(c))
+    if ((info(m.shape[c]).dimension == 2 || d.beam_cells.contains(m.cell_id[c])) && !in.thin.contains(c))
       throw Error(fmt::format("{}:{}", *d.cell_file[c], d.cell_line[c]), fmt::format("element {} has no section", m.cell_id[c]),
                   "shells need *SHELL SECTION, beams *BEAM SECTION");
 }
@@ -242,20 +252,27 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   InpDeck d;
   parse_inp(path, d, in, inp_cards());
   if (d.X.empty()) throw Error(path, "no nodes", "a deck has *NODE");
-  if (d.shape.empty()) throw Error(path, "no elements", "a deck has *ELEMENT");
+  if (d.shape.empty() && d.beams.empty()) throw Error(path, "no elements", "a deck has *ELEMENT");
   unqualify(d);
   check_names(d);
   turn_materials(d, in);
+  if (options.rigid_beams ||
+      (!options.thicken && std::ranges::any_of(d.shape, [](auto s) { return info(static_cast<Shape>(s)).dimension == 2; })))
+    beams_as_cells(d);
   resolve_cells(d, in);
+  find_beams(d, in, options.thicken);
   thin_sections(d, in, options.thicken);
 
   std::unordered_set<std::int64_t> points;  // elements that are no cells
   for (const auto& [id, p] : d.points) points.insert(id);
+  for (const auto& [id, b] : d.beams) points.insert(id);
   std::vector<CellGroup> regions, groups;
   std::set<std::string> in_section;
   for (const auto& s : d.sections) {
     const auto& set = d.elset.at(s.elset);
-    if (in_section.insert(s.elset).second) regions.push_back({set.name, rows(set, d.cell, &points, "element", in)});
+    if (!in_section.insert(s.elset).second) continue;
+    if (auto cells = rows(set, d.cell, &points, "element", in); !cells.empty() || s.beam.sizes.empty())
+      regions.push_back({set.name, std::move(cells)});
   }
   for (const auto& key : d.elset_order)
     if (!in_section.count(key)) groups.push_back({d.elset.at(key).name, rows(d.elset.at(key), d.cell, &points, "element", in)});
@@ -281,8 +298,11 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     }
     surface[upper(s.name)] = names.facets(s.name, std::move(facets));
   }
-  for (const auto& key : d.nset_order)
-    node_set[key] = names.nodes(d.nset.at(key).name, rows(d.nset.at(key), d.node, &d.unused, "node", in));
+  for (const auto& key : d.nset_order) {
+    auto nodes = rows(d.nset.at(key), d.node, &d.unused, "node", in);
+    const bool of_beams = nodes.empty() && std::ranges::any_of(d.nset.at(key).members, [&](auto id) { return d.bodies.contains(id); });
+    node_set[key] = of_beams ? "" : names.nodes(d.nset.at(key).name, std::move(nodes));
+  }
   for (const auto& s : d.surfaces) {
     if (!s.of_nodes) continue;
     std::vector<std::int64_t> nodes;

@@ -232,26 +232,85 @@ void read_shell_section(InpReading& r) {
   r.deck.sections.push_back(s);
 }
 
+/// The shape of a section by its sizes; extents along directions 1 and 2 to `extent`.
+DeckSection beam_shape(InpReading& r, const DataLine& l, bool& along_n2, std::array<double, 2>& extent) {
+  const Card& card = r.card;
+  const std::string type = card.word("SECTION").starts_with("RECT") ? "RECT" : card.word("SECTION");
+  const auto v = [&](size_t i) { return l.number(i, i == 1 && type == "RECT" ? l.number(0) : 0); };
+  extent = {v(0), v(1)};
+  if (type == "RECT") return {"rectangle", {{"width", v(1)}, {"height", v(0)}}};
+  if (type == "CIRC" || type == "PIPE") extent = {2 * v(0), 2 * v(0)};
+  if (type == "CIRC" && l.empty(1)) {
+    r.skip(
+        "*BEAM SECTION, SECTION=CIRC: its one number is the radius, as in Abaqus; in CalculiX it is the diameter, and two are diameters");
+    return {"circle", {{"diameter", 2 * v(0)}}};
+  }
+  if (type == "CIRC" && v(0) == v(1)) return {"circle", {{"diameter", v(0)}}};
+  if (type == "CIRC") {  // the ellipse of CalculiX
+    const double p = v(0) / 2, q = v(1) / 2, pi = std::numbers::pi;
+    extent = {v(0), v(1)};
+    DeckSection s = general_section(pi * p * q, pi * p * p * p * q / 4, pi * p * q * q * q / 4, pi * std::pow(p * q, 3) / (p * p + q * q));
+    s.shear = {0.89, 0.89};  // of a circle
+    return s;
+  }
+  if (type == "PIPE") return {"tube", {{"diameter", 2 * v(0)}, {"thickness", v(1)}}};
+  const bool equal = v(2) == v(3) && v(3) == v(4) && v(4) == v(5);
+  if (type == "BOX" && equal) return {"box", {{"width", v(1)}, {"height", v(0)}, {"thickness", v(2)}}};
+  along_n2 = type == "I" && v(0) == v(1) / 2 && v(2) == v(3) && v(4) == v(5);
+  if (along_n2) return {"I", {{"width", v(2)}, {"height", v(1)}, {"flange", v(4)}, {"web", v(6)}}};
+  throw Error(card.place("SECTION"),
+              fmt::format("{}, SECTION={} is not read{}", card.name, type,
+                          type == "BOX" ? " with several thicknesses"
+                          : type == "I" ? " but with equal flanges, about its middle"
+                                        : ""),
+              "RECT, CIRC, PIPE, BOX and I are");
+}
+
 /// Sizes of the section, then its direction 1.
 void read_beam_section(InpReading& r) {
-  if (const auto odd = unknown_param(r.card, {"ELSET", "MATERIAL", "SECTION", "ORIENTATION"}); !odd.empty())
+  if (const auto odd = unknown_param(r.card, {"ELSET", "MATERIAL", "SECTION", "ORIENTATION", "OFFSET1", "OFFSET2"}); !odd.empty())
     throw Error(r.card.place() + ":1", odd + " is not read", "a section without it");
   InpSection s = section_of(r);
   DataLine l;
   if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", r.card.name + " lacks its data line", "the sizes of the section");
-  const std::string type = r.card.need("SECTION") == "" ? "" : r.card.word("SECTION");
-  constexpr double pi = std::numbers::pi;
-  const double a = l.number(0), b = l.number(1);
-  if (type == "RECT")
-    s.area = a * b, s.I1 = b * a * a * a / 12, s.I2 = a * b * b * b / 12;
-  else if (type == "CIRC")
-    s.area = pi * a * a, s.I1 = s.I2 = pi * std::pow(a, 4) / 4;
-  else if (type == "PIPE")
-    s.area = pi * (a * a - (a - b) * (a - b)), s.I1 = s.I2 = pi * (std::pow(a, 4) - std::pow(a - b, 4)) / 4;
-  else
-    throw Error(r.card.place("SECTION"), fmt::format("{}, SECTION={} is not read", r.card.name, type), "RECT, CIRC and PIPE are");
-  if (!(s.area > 0)) throw Error(l.place(0), fmt::format("{}: an area of {:g}", r.card.name, s.area));
+  r.card.need("SECTION");
+  std::array<double, 2> extent;
+  s.beam = beam_shape(r, l, s.along_n2, extent);
+  s.beam.area(0.3, l.place(0));
   if (r.lines.next_data(l)) s.n1 = Vec3(l.number(0), l.number(1), l.number(2));
+  for (int k = 0; k < 2; ++k)
+    if (const char* key = k == 0 ? "OFFSET1" : "OFFSET2"; r.card.has(key)) {
+      const std::string word = r.card.word(key);
+      char* end = nullptr;
+      s.off[k] = -std::strtod(word.c_str(), &end) * extent[static_cast<size_t>(k)];
+      if (*end || end == word.c_str()) throw Error(r.card.place(key), fmt::format("{}={} is no number", key, word));
+    }
+  r.deck.sections.push_back(s);
+}
+
+/// A, I11, I12, I22, J; direction 1; E, G.  Direction 1 is axis 2 of hilo, so I11 = int x2^2 is I2.  With a shape and a MATERIAL, as in
+/// CalculiX, it is *BEAM SECTION.
+void read_general_section(InpReading& r) {
+  const std::string type = r.card.has("SECTION") ? r.card.word("SECTION") : "GENERAL";
+  if (type != "GENERAL" && r.card.has("MATERIAL")) return read_beam_section(r);
+  if (type != "GENERAL") throw Error(r.card.place("SECTION"), fmt::format("{}, SECTION={} is not read", r.card.name, type), "GENERAL is");
+  if (const auto odd = unknown_param(r.card, {"ELSET", "SECTION", "DENSITY", "POISSON"}); !odd.empty())
+    throw Error(r.card.place() + ":1", odd + " is not read", "a section without it");
+  InpSection s{upper(r.card.need("ELSET")), "", r.card.need("ELSET"), "", r.card.place("ELSET"), ""};
+  s.card = r.card.name;
+  DataLine l;
+  if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", r.card.name + " lacks its data lines", "A, I11, I12, I22, J");
+  s.beam = general_section(l.number(0), l.number(3), l.number(1), l.number(4));
+  s.beam.I12 = -l.number(2);
+  const std::string place = l.place();
+  if (r.lines.next_data(l) && !(l.empty(0) && l.empty(1) && l.empty(2))) s.n1 = Vec3(l.number(0), l.number(1), l.number(2));
+  if (!r.lines.next_data(l)) throw Error(place, r.card.name + " lacks its third line", "E, G");
+  DeckMaterial own;
+  own.name = s.elset_name + "_section";
+  own.data.E = l.number(0), own.G = l.number(1), own.data.nu = own.data.E / (2 * own.G) - 1;
+  if (!(own.data.E > 0) || !(own.G > 0)) throw Error(l.place(), fmt::format("{}: E {:g}, G {:g}", r.card.name, own.data.E, own.G));
+  if (r.card.has("DENSITY")) own.data.density = std::strtod(r.card.word("DENSITY").c_str(), nullptr);
+  s.own = own;
   r.deck.sections.push_back(s);
 }
 
@@ -265,6 +324,7 @@ std::span<const InpCard> inp_material_cards() {
       {"SOLIDSECTION", read_section},
       {"SHELLSECTION", read_shell_section},
       {"BEAMSECTION", read_beam_section},
+      {"BEAMGENERALSECTION", read_general_section},
       {"PLASTIC", read_plastic},
       {"RATEDEPENDENT", read_rates},
       {"HYPERELASTIC", read_rubber},

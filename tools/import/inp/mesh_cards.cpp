@@ -11,7 +11,7 @@ namespace hilo {
 namespace {
 
 constexpr const char* supported =
-    "C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 and their I, R, H, M, T variants, T3D2; as rigid regions S3, S4, S6, S8, B31";
+    "C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 and their I, R, H, M, T variants, T3D2, B31, B32; as rigid regions S3, S4, S6, S8";
 
 InpSet& set_named(const std::string& name, std::map<std::string, InpSet>& sets, std::vector<std::string>& order) {
   const std::string key = upper(name);
@@ -66,8 +66,12 @@ void read_nodes(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
   }
 }
 
-/// Beams of two nodes, which become cells of bars with a section of their own.
-bool is_beam(const std::string& type) { return type == "B31" || type == "B31R" || type == "B31H" || type == "B33"; }
+/// How many nodes a beam has; 0: no beam.
+size_t nodes_of_beam(const std::string& type) {
+  static const std::map<std::string, size_t> types{{"B31", 2}, {"B31R", 2}, {"B31H", 2}, {"B33", 2}, {"B32", 3}, {"B32R", 3}, {"B32H", 3}};
+  const auto known = types.find(type);
+  return known == types.end() ? 0 : known->second;
+}
 
 void read_elements(InpReading& r) {
   if (read_points(r, upper(r.card.need("TYPE")))) return;
@@ -75,9 +79,10 @@ void read_elements(InpReading& r) {
   InpLines& lines = r.lines;
   InpDeck& d = r.deck;
   Imported& in = r.in;
-  const Shape shape = inp_shape(card);
-  const size_t n = static_cast<size_t>(info(shape).n_nodes);
-  const bool beams = is_beam(upper(card.need("TYPE")));
+  const std::string type = upper(card.need("TYPE"));
+  const size_t of_beam = nodes_of_beam(type);
+  const Shape shape = of_beam ? Shape::bar2 : inp_shape(card);
+  const size_t n = of_beam ? of_beam : static_cast<size_t>(info(shape).n_nodes);
   InpSet* set = card.has("ELSET") ? &set_of_cells(card.need("ELSET"), d) : nullptr;
   DataLine l;
   std::vector<std::int64_t> row;
@@ -92,20 +97,27 @@ void read_elements(InpReading& r) {
         throw Error(place, fmt::format("element {} has {} of its {} nodes", row.empty() ? 0 : row[0], row.empty() ? 0 : row.size() - 1, n));
       for (size_t i = 0; i < l.fields.size(); ++i) row.push_back(l.integer(i));
     }
+    if (of_beam && row.size() > n + 1)
+      throw Error(place, fmt::format("{} {}: a node of its orientation is not read", type, row[0]),
+                  "the direction n1 on the second line of its section");
     if (row.size() > n + 1) {  // as CalculiX reads it
       in.skip(fmt::format("*ELEMENT, TYPE={}: numbers after its {} nodes", upper(card.value("TYPE")), n), l.place());
       row.resize(n + 1);
     }
-    if (d.points.contains(row[0]) || !d.cell.try_emplace(row[0], static_cast<std::int64_t>(d.shape.size())).second)
+    if (d.points.contains(row[0]) || d.beams.contains(row[0]) || d.cell.contains(row[0]))
       throw Error(place, fmt::format("element {} is given twice", row[0]), "number each element once");
+    if (set) set->members.push_back(row[0]);
+    if (of_beam) {
+      d.beams[row[0]] = {type, row[0], {row.begin() + 1, row.end()}, place, file, line};
+      continue;
+    }
+    d.cell[row[0]] = static_cast<std::int64_t>(d.shape.size());
     d.shape.push_back(static_cast<std::uint8_t>(shape));
     d.cell_id.push_back(row[0]);
     d.cell_nodes.insert(d.cell_nodes.end(), row.begin() + 1, row.end());
     d.offset.push_back(static_cast<std::int64_t>(d.cell_nodes.size()));
     d.cell_line.push_back(line);
     d.cell_file.push_back(file);
-    if (set) set->members.push_back(row[0]);
-    if (beams) d.beams.insert(row[0]);
   }
 }
 
@@ -125,7 +137,9 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
     const auto it = d.elset.find(card.word("ELSET"));
     if (it == d.elset.end()) throw Error(card.place("ELSET"), fmt::format("no element set \"{}\"", card.value("ELSET")));
     for (const auto e : it->second.members)
-      if (const auto c = d.cell.find(e); c != d.cell.end())
+      if (const auto b = d.beams.find(e); b != d.beams.end())
+        add.insert(add.end(), b->second.nodes.begin(), b->second.nodes.end());
+      else if (const auto c = d.cell.find(e); c != d.cell.end())
         add.insert(add.end(), d.cell_nodes.begin() + d.offset[c->second], d.cell_nodes.begin() + d.offset[c->second + 1]);
   }
   DataLine l;
@@ -213,7 +227,7 @@ Shape inp_shape(const Card& card) {
   const auto refuse = [&](const std::string& why) {
     return Error(place, fmt::format("element type \"{}\": {}", type, why), fmt::format("supported: {}", supported));
   };
-  if (type == "T3D2" || is_beam(type)) return Shape::bar2;
+  if (type == "T3D2") return Shape::bar2;
   static const std::map<std::string, Shape> shells{{"S3", tri3},  {"S3R", tri3},  {"S6", tri6},  {"STRI3", tri3}, {"STRI65", tri6},
                                                    {"S4", quad4}, {"S4R", quad4}, {"S8", quad8}, {"S8R", quad8}};
   if (const auto shell = shells.find(type); shell != shells.end()) return shell->second;

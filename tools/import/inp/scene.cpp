@@ -2,6 +2,7 @@
 // The scene lines that a deck's materials, supports and loads become, and the sets that those lines name.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -38,6 +39,7 @@ class Writer {
     gravity();
     materials();
     tables_ += write_ties(d_, in_, names_, o_);
+    tables_ += write_beams(d_, in_, names_, o_);
     supports();
     supports_of_ties();
     forces();
@@ -91,9 +93,12 @@ class Writer {
   }
 
   void gravity() {
-    std::vector<Vec3> g;
-    std::map<std::int64_t, Vec3> of_mass;
-    bool odd = false;
+    std::vector<Vec3> g(in_.mesh.shape.size(), Vec3::Zero());
+    std::map<std::int64_t, Vec3> beside;  // what has mass without being a cell, by element
+    for (const auto& [id, point] : d_.points)
+      if (point.type == "MASS") beside[id] = Vec3::Zero();
+    for (const auto& [id, beam] : d_.beams) beside[id] = Vec3::Zero();
+    bool any = false;
     std::string place;
     for (const auto& p : d_.distributed) {
       if (p.face != -1) continue;
@@ -102,22 +107,20 @@ class Writer {
         in_.skip("*DLOAD GRAV with AMPLITUDE", p.place);
         continue;
       }
-      g.resize(in_.mesh.shape.size(), Vec3::Zero());
-      for (const auto c : inp_cells(d_, p.target, p.id, p.place)) g[c] += p.value * p.direction;
-      for (const auto& [id, point] : d_.points) {  // what has mass without being a cell
-        if (point.type != "MASS") continue;
-        Vec3& of = of_mass.try_emplace(id, Vec3::Zero()).first->second;
-        const auto set = d_.elset.find(p.target);
-        if (p.target.empty() ? p.id == id : set != d_.elset.end() && std::ranges::count(set->second.members, id) > 0)
-          of += p.value * p.direction;
-      }
+      any = true;
+      const Vec3 more = p.value * p.direction;
+      if (!p.target.empty() || !beside.contains(p.id))
+        for (const auto c : inp_cells(d_, p.target, p.id, p.place)) g[static_cast<size_t>(c)] += more;
+      const auto set = d_.elset.find(p.target);
+      const std::vector<std::int64_t> alone{p.id}, none;
+      for (const auto id : p.target.empty() ? alone : set == d_.elset.end() ? none : set->second.members)
+        if (const auto one = beside.find(id); one != beside.end()) one->second += more;
     }
-    for (const auto& x : g) odd = odd || x != g[0];
-    for (const auto& [id, x] : of_mass) odd = odd || x != g[0];
-    if (odd)
+    for (const auto& [id, x] : beside) g.push_back(x);
+    if (std::ranges::any_of(g, [&](const Vec3& x) { return x != g.front(); }))
       in_.skip("*DLOAD GRAV on a part of the model", place);
-    else if (!g.empty())
-      head_ += fmt::format("gravity = {}\n", list(Vec3(g[0] * si("m/s^2"))));
+    else if (any)
+      head_ += fmt::format("gravity = {}\n", list(Vec3(g.front() * si("m/s^2"))));
   }
 
   void materials() {
@@ -200,18 +203,13 @@ class Writer {
       });
     for (const auto& [id, h] : held) {
       const std::string name = quoted(body_name(d_, id));
-      const auto j = joint_that_holds(h.first);
-      if (h.first == 63) {
+      if (h.first == 63)
         tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"fixed\"\nname = {}\non = {}\n", h.second,
                                quoted(unique("motion", body_name(d_, id))), name);
-      } else if (!j) {
-        in_.skip("*BOUNDARY on components of a reference node that no joint holds", h.second);
-      } else {
-        const Vec3 X = d_.bodies.at(id).X * si("m") * o_.scale;
-        tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"{}\"\nname = {}\nb = {}\nat = {}\n", h.second, j->kind,
-                               quoted(unique("joint", body_name(d_, id) + "_support")), name, list(X));
-        if (j->axis >= 0) tables_ += fmt::format("axis = {}\n", list(Vec3(Vec3::Unit(j->axis))));
-      }
+      else
+        tables_ += joints_that_hold(h.first, Mat3::Identity(), body_name(d_, id) + "_support", "ground", body_name(d_, id),
+                                    list(Vec3(d_.bodies.at(id).X * si("m") * o_.scale)), h.second,
+                                    [this](const std::string& section, const std::string& wish) { return unique(section, wish); });
     }
   }
 
@@ -339,12 +337,16 @@ class Writer {
   double dynamic_step(double end) {
     const double given = d_.step_increment > 0 ? d_.step_increment : end;
     if (d_.direct) return given;
-    Vec3 low = in_.mesh.X.front(), high = low;
-    for (const Vec3& x : in_.mesh.X) low = low.cwiseMin(x), high = high.cwiseMax(x);
+    Eigen::AlignedBox3d box;
+    for (const Vec3& x : in_.mesh.X) box.extend(x);
+    for (const auto& [id, body] : d_.bodies) box.extend(body.X);
     double fastest = 0;
     for (const RegionData& r : in_.mesh.region_data)
       if (r.E > 0 && r.density > 0) fastest = std::max(fastest, std::sqrt(r.E / r.density));
-    const double wave = fastest > 0 ? (high - low).norm() / fastest / 5 : end / 100;
+    if (!d_.beams.empty())
+      for (const auto& [name, m] : d_.laws)
+        if (m.data.E > 0 && m.data.density > 0) fastest = std::max(fastest, std::sqrt(m.data.E / m.data.density));
+    const double wave = fastest > 0 ? box.diagonal().norm() / fastest / 5 : end / 100;
     const double step = std::min({given, std::max(wave, end / 1000), end / 20});
     in_.notes.push_back(fmt::format(
         "*DYNAMIC without DIRECT: a step of {:g}{}", step * si("s"),

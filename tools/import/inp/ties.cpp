@@ -72,11 +72,26 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
       in.skip(t.name + " without *KINEMATIC or *DISTRIBUTING", t.place);
       continue;
     }
-    if (d.node.contains(ref)) {
+    if (d.node.contains(ref) && !d.bodies.contains(ref)) {
       in.skip(t.name + " whose reference node is a node of a cell", t.place);
       continue;
     }
-    const auto w = members(d, t, in.mesh, surface);
+    auto w = members(d, t, in.mesh, surface);
+    std::vector<std::int64_t> beams;  // nodes of beams among them
+    if (const auto set = d.nset.find(t.of); t.kind == InpTie::Of::nodes && set != d.nset.end())
+      for (const auto id : set->second.members)
+        if (d.bodies.contains(id) && id != ref) {
+          beams.push_back(id);
+          if (const auto a = d.node.find(id); a != d.node.end()) w.erase(a->second);
+        }
+    if (t.kind != InpTie::Of::nodes && !d.beams.empty())
+      if (const auto set = d.elset.find(t.of);
+          set != d.elset.end() && std::ranges::any_of(set->second.members, [&](auto id) { return d.beams.contains(id); }))
+        throw Error(t.place, fmt::format("{}: element set \"{}\" has beams", t.name, set->second.name), "a set of their nodes");
+    if (t.mean && !beams.empty()) {
+      in.skip(t.name + ", distributing, of nodes of beams", t.place);
+      continue;
+    }
     if (t.mean) {
       if (t.own_axes && (t.components & 7) != 7)
         in.skip(t.name + ", distributing, of some components in axes of its own", t.place);
@@ -94,7 +109,8 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
     auto& body = d.bodies.try_emplace(ref, InpBody{place_of(d, ref, t.place), t.place, {}}).first->second;
     std::vector<std::int64_t> rows;
     for (const auto& [a, weight] : w) rows.push_back(a);
-    body.carries.push_back({t.name, t.place, rows});
+    if (!rows.empty()) body.carries.push_back({t.name, t.place, rows});
+    body.bodies.insert(body.bodies.end(), beams.begin(), beams.end());
     if (!t.turns.name.empty() || t.turns.id) d.turns_of[node_of(d, t.turns)] = ref;
   }
 }
@@ -224,6 +240,10 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
   for (const auto& [id, m] : mass)
     if (m > 0)
       text += fmt::format("\n[[point_mass]]\nname = {0}\non = {0}\nmass = {1}\n", toml_text(end_name(id)), toml_number(m * si("kg")));
+  for (const auto& [id, b] : d.bodies)
+    for (const auto other : b.bodies)
+      text += fmt::format("\n[[joint]]   # {}\nkind = \"fixed\"\nname = \"{}_{}\"\na = \"{}\"\nb = \"{}\"\nat = {}\n", b.place,
+                          body_name(d, id), other, body_name(d, id), body_name(d, other), point(b.X));
   for (const auto& [id, b] : d.bodies)
     for (const InpCarried& c : b.carries) {
       std::vector<Vec3> points;

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Beams of decks as beams of the scene, run and compared with closed forms.
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "import_case.hpp"
+
+namespace hilo {
+namespace {
+
+using std::numbers::pi;
+
+class ImportBeam : public test::Import {
+ protected:
+  /// Imports and runs a deck.
+  void solve(const std::string& text, const std::string& file = "a.bdf", const std::string& options = "") {
+    place.write(file, text);
+    const auto ran =
+        place.run("hilo-import --quiet " + file + " -o out.h5 --scene-out a.toml " + options + " && hilo-solve a.toml -o run.h5");
+    ASSERT_EQ(ran.exit, 0) << ran.err << '\n' << text;
+    table = ran.out;
+    told = ran.err;
+  }
+  /// Of columns of the histories, last row less first row.
+  std::vector<double> change(const std::string& columns) {
+    const auto ran = place.run("hilo-post series run.h5 '" + columns + "' -o -");
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    std::vector<std::vector<double>> rows;
+    std::istringstream lines(ran.out);
+    std::string line, word;
+    std::getline(lines, line);
+    while (std::getline(lines, line)) {
+      std::istringstream words(line);
+      rows.emplace_back();
+      while (std::getline(words, word, ',')) rows.back().push_back(std::strtod(word.c_str(), nullptr));
+    }
+    std::vector<double> out;
+    for (size_t i = 1; i < rows.back().size(); ++i) out.push_back(rows.back()[i] - rows.front()[i]);
+    return out;
+  }
+  Vec3 moved(const std::string& body) {
+    const auto v = change("body." + body + "*");
+    return {v[0], v[1], v[2]};
+  }
+  double frequency(int mode) {
+    std::istringstream lines(table);
+    std::string line;
+    while (std::getline(lines, line)) {
+      std::istringstream words(line);
+      int n = 0;
+      double f = 0;
+      if (words >> n >> f && n == mode) return f;
+    }
+    return 0;
+  }
+  std::string table, told;
+};
+
+const std::string stat = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\n";
+const std::string modes = "SOL 103\nCEND\nSPC = 1\nMETHOD = 3\nBEGIN BULK\nEIGRL,3,,,3\n";
+const std::string steel = "MAT1,1,2.1+11,,.3,7850.\n";
+constexpr double E = 2.1e11, G = E / 2.6;
+
+TEST_F(ImportBeam, ACantileverOfTwoBarsHasTheTipOfTimoshenko) {
+  // .04 high in plane 1, along y; .02 wide along z; offsets put the bars beside their grids by 3 along z
+  solve(stat + "GRID,1,,0.,0.,3.\nGRID,2,,.5,0.,3.\nGRID,3,,1.,0.,3.\nGRID,9,,0.,7.,3.\nPBARL,5,1,,BAR,,,,,+\n+,.02,.04\n" + steel +
+        "CBAR,1,5,1,2,9,,,,+\n+,,,0.,0.,-3.,0.,0.,-3.\nCBAR,2,5,2,3,9,,,,+\n+,,,0.,0.,-3.,0.,0.,-3.\n"
+        "SPC1,1,123456,1\nFORCE,2,3,,1.,0.,-.1,0.\nMOMENT,2,3,,1.,-.3,0.,0.\n");
+  const double A = .0008, I = .02 * .04 * .04 * .04 / 12, k = 10 * 1.3 / (12 + 11 * .3);
+  // the force acts 3 beside the line: its moment there, -.1 * -(3), and the deck's own take each other away
+  EXPECT_NEAR(moved("grid_3").y(), -.1 * (1 / (3 * E * I) + 1 / (k * G * A)), 1e-5 * .1 / (3 * E * I));
+  const auto forces = change("beam.CBAR_1*");
+  EXPECT_NEAR(std::abs(forces[3]) + std::abs(forces[4]), .1, 1e-6) << "bending at the root";
+}
+
+TEST_F(ImportBeam, SecondMomentsBendInTheirPlanesAndI12CouplesThem) {
+  const auto run = [&](const std::string& force) {
+    solve(stat + "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCBAR,1,5,1,2,0.,0.,1.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7,,,+\n+,,,,,,,,,+\n+,,,1.-7\n" +
+          steel + "SPC1,1,123456,1\nFORCE,2,2,,1.," + force + "\n");
+    return moved("grid_2");
+  };
+  // y of the element is z of the model, its z is -y: int yz dA = 1e-7 turns a load along z towards -y... by the inverse of the moments
+  Eigen::Matrix2d I;
+  I << 4e-7, 1e-7, 1e-7, 1e-7;
+  const Eigen::Vector2d u = I.inverse() * Eigen::Vector2d(1, 0) / (3 * E);  // along element y and z
+  const Vec3 z = run("0.,0.,1.");
+  EXPECT_NEAR(z.z(), u[0], 1e-4 * u[0]);
+  EXPECT_NEAR(z.y(), -u[1], 1e-4 * std::abs(u[1]));
+  const Vec3 y = run("0.,1.,0.");
+  EXPECT_NEAR(y.z(), z.y(), 1e-6 * std::abs(z.y())) << "Maxwell's reciprocity";
+}
+
+TEST_F(ImportBeam, PinsFreeTurnsAndSupportsOfAnyComponentsHold) {
+  // clamped grids, pinned ends: P L^3/(48 E I) and no moment there
+  const std::string mesh = "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,2.,0.,0.\nPBAR,5,1,1.-3,2.-7,2.-7,4.-7\n" + steel;
+  solve(stat + mesh + "CBAR,1,5,1,2,0.,0.,1.,,+\n+,56,\nCBAR,2,5,2,3,0.,0.,1.,,+\n+,,56\nSPC1,1,123456,1,3\nFORCE,2,2,,1.,0.,0.,-1.\n");
+  EXPECT_NEAR(moved("grid_2").z(), -8 / (48 * E * 2e-7), 1e-5 * 8 / (48 * E * 2e-7));
+  // the same by supports: a pin that holds the turn about its line too, and a roller
+  solve(stat + mesh + "CBAR,1,5,1,2,0.,0.,1.\nCBAR,2,5,2,3,0.,0.,1.\nSPC1,1,1234,1\nSPC1,1,23,3\nFORCE,2,2,,1.,0.,0.,-1.\n");
+  EXPECT_NEAR(moved("grid_2").z(), -8 / (48 * E * 2e-7), 1e-5 * 8 / (48 * E * 2e-7));
+  // turns alone are held at the far end: a guide, which moves by P L^3/(12 E I), and along the beam and across it freely
+  solve(stat + mesh + "CBAR,1,5,1,2,0.,0.,1.\nCBAR,2,5,2,3,0.,0.,1.\nSPC1,1,123456,1\nSPC1,1,456,3\nFORCE,2,3,,1.,0.,0.,-1.\n");
+  EXPECT_NEAR(moved("grid_3").z(), -8 / (12 * E * 2e-7), 1e-5 * 8 / (12 * E * 2e-7));
+  EXPECT_EQ(moved("grid_1"), Vec3::Zero());
+}
+
+TEST_F(ImportBeam, AMassOnMasslessBarsSwingsAsOnASpring) {
+  // no RHO: f = sqrt(3 E I / (M L^3)) / 2 pi along y and z; a rigid element carries the mass beyond the tip
+  solve(modes +
+        "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,0.,0.\nCBAR,1,5,1,2,0.,0.,1.\nPBAR,5,1,1.-3,1.-7,4.-7,4.-7\n"
+        "MAT1,1,2.1+11,,.3\nSPC1,1,123456,1\nRBE2,7,2,123456,3\nCONM2,8,3,,5.\n");
+  EXPECT_NEAR(frequency(1), std::sqrt(3 * E * 1e-7 / 5) / (2 * pi), 1e-4 * 18);
+  EXPECT_NEAR(frequency(2), std::sqrt(3 * E * 4e-7 / 5) / (2 * pi), 1e-4 * 36);
+}
+
+TEST_F(ImportBeam, ACantileverVibratesAtEulersFrequencies) {
+  std::string mesh = modes + steel + "PBARL,5,1,,ROD,,,,,+\n+,.005\nSPC1,1,123456,1\n";  // L/r 400: no shear to speak of
+  for (int i = 0; i <= 8; ++i) mesh += "GRID," + std::to_string(i + 1) + ",," + std::to_string(.125 * i) + ",0.,0.\n";
+  for (int i = 1; i <= 8; ++i)
+    mesh += "CBAR," + std::to_string(i) + ",5," + std::to_string(i) + ',' + std::to_string(i + 1) + ",0.,0.,1.\n";
+  solve(mesh);
+  const double r = .005, f = 3.5160152685 / (2 * pi) * std::sqrt(E * r * r / 4 / 7850);
+  EXPECT_NEAR(frequency(1), f, 2e-4 * f);
+  EXPECT_NEAR(frequency(3), f * 22.0344916 / 3.5160152685, 2e-3 * f * 6.27);
+}
+
+TEST_F(ImportBeam, AQuarterRingOfB32FollowsCastigliano) {
+  // radius 1, clamped at (1,0), a force along -x... of the free end (0,1) in its plane: u = F R^3/(E I) pi/4 along the force
+  std::string deck = "*NODE\n";
+  const int n = 8;
+  for (int i = 0; i <= 2 * n; ++i)
+    deck +=
+        std::to_string(i + 1) + ',' + std::to_string(std::cos(pi / 4 / n * i)) + ',' + std::to_string(std::sin(pi / 4 / n * i)) + ",0\n";
+  deck += "*ELEMENT,TYPE=B32,ELSET=RING\n";
+  for (int i = 0; i < n; ++i)
+    deck +=
+        std::to_string(i + 1) + ',' + std::to_string(2 * i + 1) + ',' + std::to_string(2 * i + 2) + ',' + std::to_string(2 * i + 3) + '\n';
+  deck +=
+      "*MATERIAL,NAME=M\n*ELASTIC\n2.1e11,.3\n*BEAM SECTION,ELSET=RING,MATERIAL=M,SECTION=RECT\n.02,.01\n0,0,1\n"
+      "*BOUNDARY\n1,1,6\n*STEP\n*STATIC\n*CLOAD\n17,2,.01\n*END STEP\n";
+  solve(deck, "a.inp");
+  const double I = .02 * std::pow(.01, 3) / 12;
+  // moment F cos at the angle from the clamp: int cos^2 = pi/4
+  EXPECT_NEAR(moved("node_17").y(), .01 * pi / 4 / (E * I), 1e-3 * .01 * pi / 4 / (E * I));
+}
+
+TEST_F(ImportBeam, SectionsOfInpDecksBendInTheirDirections) {
+  const auto tip = [&](const std::string& section, const std::string& load, const std::string& type = "B31") {
+    solve("*NODE,NSET=ALL\n1,0,0,0\n2,.5,0,0\n3,1,0,0\n*ELEMENT,TYPE=" + type +
+              ",ELSET=E\n1,1,2\n2,2,3\n*MATERIAL,NAME=M\n*ELASTIC\n2.1e11,.3\n" + section + "*BOUNDARY\n1,1,6\n*STEP\n*STATIC\n*CLOAD\n3," +
+              load + "\n*END STEP\n",
+          "a.inp");
+    return moved("node_3");
+  };
+  const double P = 1e-3;
+  const auto near = [&](double u, double I, double kGA) { EXPECT_NEAR(u, P * (1 / (3 * E * I) + 1 / kGA), 1e-5 * P / (3 * E * I)); };
+  const std::string of = "*BEAM SECTION,ELSET=E,MATERIAL=M,SECTION=";
+  const double k = 10 * 1.3 / (12 + 11 * .3);
+  near(tip(of + "RECT\n.02,.05\n0,1,0\n", "2,1e-3").y(), .05 * 8e-6 / 12, k * G * .001);  // .02 along n1 = y
+  near(tip(of + "RECT\n.02,.05\n0,1,0\n", "3,1e-3").z(), .02 * 125e-6 / 12, k * G * .001);
+  near(tip(of + "CIRC\n.01,.01\n0,1,0\n", "2,1e-3").y(), pi * std::pow(.005, 4) / 4, 7.8 / 8.8 * G * pi * 25e-6);  // CalculiX: diameters
+  near(tip("*BEAM GENERAL SECTION,ELSET=E\n1e-3,4e-7,0,1e-7,2e-7\n0,1,0\n2.1e11,8e10\n", "2,1e-3").y(), 1e-7, 8e10 * 1e-3);
+  near(tip(of + "RECT\n.02,.05\n0,1,0\n", "3,1e-3", "B33").z(), .02 * 125e-6 / 12, 1e4 * E * .001);  // no shear strain
+  // the nodes lie on the lower face, half of .02 below the line: a pull bends the end up
+  const Vec3 up = tip(of + "RECT,OFFSET1=-.5\n.02,.05\n0,1,0\n", "1,1.");
+  EXPECT_NEAR(up.y(), .01 / (2 * E * .05 * 8e-6 / 12), 1e-4 * 7e-7);
+  tip(of + "CIRC\n.01\n0,1,0\n", "2,1e-3");
+  EXPECT_NE(told.find("its one number is the radius, as in Abaqus"), std::string::npos) << told;
+}
+
+TEST_F(ImportBeam, BarsHoldABlockOfSolidsByItsNodes) {
+  // four bars along x pull at the corners of a stiff block: 4 E A/L, and the block does not turn with them
+  std::string deck = stat + "MAT1,2,1.+15,,.3,1.\nPSOLID,2,2\nPBAR,5,1,1.-5,2.-8,2.-8,4.-8\n" + steel;
+  const double y[] = {0, 1, 1, 0}, z[] = {0, 0, 1, 1};
+  for (int i = 0; i < 4; ++i)
+    for (int x = 0; x < 3; ++x)
+      deck += "GRID," + std::to_string(10 * x + i + 1) + ",," + std::to_string(x) + ".," + std::to_string(y[i]) + ',' +
+              std::to_string(z[i]) + '\n';
+  deck += "CHEXA,1,2,11,12,13,14,21,22,+\n+,23,24\n";
+  for (int i = 1; i <= 4; ++i)
+    deck += "CBAR," + std::to_string(i + 1) + ",5," + std::to_string(i) + ',' + std::to_string(10 + i) + ",0.,0.,1.\nFORCE,2," +
+            std::to_string(20 + i) + ",,100.,1.,0.,0.\n";
+  solve(deck + "SPC1,1,123456,1,THRU,4\n");
+  EXPECT_NEAR(moved("grid_11").x(), 100 / (E * 1e-5), 1e-4 * 100 / (E * 1e-5));
+  const Mesh m = read_mesh_file(place / "out.h5").mesh;
+  EXPECT_EQ(m.n_cells(), 1);
+  EXPECT_EQ(m.n_nodes(), 8);
+}
+
+TEST_F(ImportBeam, ARunWithTheMeshOfNoCellsGoesWithoutIt) {
+  solve(stat + "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCBAR,1,5,1,2,0.,0.,1.\nPBARL,5,1,,I,,,,,+\n+,.2,.1,.1,.01,.02,.02\n" + steel +
+        "SPC1,1,123456,1\nFORCE,2,2,,1.,0.,0.,1.\n");
+  const auto ran = place.run("hilo-solve a.toml out.h5 -o b.h5");
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_NE(ran.err.find("out.h5 has no cells: the run goes without it"), std::string::npos) << ran.err;
+}
+
+TEST_F(ImportBeam, WhatABeamCannotCarryIsRefusedOrTold) {
+  const std::string grids = "GRID,1,,0.,0.,0.\nGRID,2,,3.,0.,0.\n" + steel;
+  place.write("a.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBARL,5,1,,HAT,,,,,+\n+,.2,.4\n");
+  refused("a.bdf -o b.h5", 2, "a.bdf:5:12: PBARL 5: TYPE HAT is not read (ROD, TUBE, BAR, BOX, I and I1 are; write the others as PBAR)");
+  place.write("b.bdf", grids + "CBAR,1,5,1,2,1.,0.,0.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7\n");
+  refused("b.bdf -o b.h5", 2, "b.bdf:4:6: beam 1: its orientation lies along it, or is none");
+  place.write("c.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.,GOG,+\n+,,,1.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7\n");
+  refused("c.bdf -o b.h5", 2, "c.bdf:4:6: CBAR 1: OFFT GOG, offsets in axes of the beam, are not read (GGG)");
+  place.write("d.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBAR,5,9,1.-3,4.-7,1.-7,2.-7\n");
+  refused("d.bdf -o b.h5", 2, "d.bdf:5: property 5 of beams has no material (MAT1)");
+  place.write("e.bdf", "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nCQUAD4,1,7,1,2,3,4\nPSHELL,7,1,.1,1\n" +
+                           steel + "CBAR,2,5,1,2,0.,1.,0.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7\n");
+  refused(
+      "e.bdf -o b.h5 --thicken", 2,
+      "e.bdf:8:6: CBAR 2: grid 1 is of shells too: pairs of nodes have no turns (leave --thicken away: both are cells of rigid regions)");
+  place.write("f.bdf", grids + "CBEAM,1,5,1,2,0.,1.,0.\nPBEAM,5,1,1.-3,4.-7,1.-7,,2.-7,,+\n+,,,,,,,,,+\n+,NO,1.,2.-3,8.-7,2.-7,,4.-7\n");
+  imported("f.bdf", "--scene-out f.toml");
+  EXPECT_NE(err.find("not read: PBEAM that tapers: the mean of the sections at its ends is taken"), std::string::npos) << err;
+  EXPECT_EQ(place.run("grep -c 'area = 0.0015' f.toml").out, "1\n");
+  const std::string nodes = "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n";
+  place.write("a.inp", nodes + "*ELEMENT,TYPE=B31,ELSET=E\n1,1,2,3\n");
+  refused("a.inp -o b.h5", 2,
+          "a.inp:6:1: B31 1: a node of its orientation is not read (the direction n1 on the second line of its section)");
+  place.write("b.inp", nodes + "*ELEMENT,TYPE=B31,ELSET=E\n1,1,2\n");
+  refused("b.inp -o b.h5", 2, "b.inp:6:1: element 1 has no section (beams need *BEAM SECTION)");
+}
+
+}  // namespace
+}  // namespace hilo

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// CBAR and CBEAM as beams of the scene between the bodies of their grids.
+#include <Eigen/Geometry>
+
+#include "base/error.hpp"
+#include "import/bdf/scene.hpp"
+#include "import/links.hpp"
+
+namespace hilo {
+
+/// Sections and materials, the beams, and a common point of each grid that is a node of solids too, which does not turn.
+void BdfScene::beams() {
+  std::set<std::int64_t> properties, materials;
+  for (const auto& b : deck_.beams) {
+    if (properties.insert(b.property).second) {
+      const BdfThin& p = section_of_beam(deck_, b);
+      const auto mid = deck_.material_of.find(b.property);
+      const auto mat = mid == deck_.material_of.end() ? deck_.materials.end() : deck_.materials.find(mid->second);
+      if (mat == deck_.materials.end()) throw Error(p.place, fmt::format("property {} of beams has no material", b.property), "MAT1");
+      const DeckMaterial& m = mat->second;
+      if (m.kind != "stvk" || !m.no_law.empty()) in_.skip("MATS1 of beams, which are linear elastic", p.place);
+      if (p.section.kind == "general" && !(p.section.area(0.3, p.place).J > 0))
+        in_.notes.push_back(fmt::format("{}: property {} has no J: a millionth of I1 + I2 is taken", p.place, b.property));
+      if (has_scene_material(p.section, m) && materials.insert(mat->first).second) tables_ += m.table(m.name, options_.units);
+      tables_ += section_table(section_name(b.property), p.section, m, options_.units, p.place);
+    }
+    beam(b);
+  }
+  for (const auto& [a, place] : on_beam_)
+    if (used_[static_cast<size_t>(a)]) joint(7, Mat3::Identity(), end_name(a) + "_node", end_name(a), node_set(a), X(a), place);
+}
+
+std::string BdfScene::section_name(std::int64_t property) const {
+  const auto name = deck_.property_name.find(property);
+  return clean_name(name == deck_.property_name.end() ? fmt::format("pid_{}", property) : name->second);
+}
+
+void BdfScene::beam(const BdfDeck::Thin& b) {
+  const BdfBeamPlace at = place_of_beam(deck_, b);
+  const DeckMaterial& m = deck_.materials.at(deck_.material_of.at(b.property));
+  const double metre = si("m") * options_.scale;
+  DeckBeam out{unique("beam", fmt::format("{}_{}", b.card, b.id)),
+               b.place,
+               section_name(b.property),
+               "",
+               {at.a * metre, at.b * metre},
+               at.up,
+               "",
+               ""};
+  if (has_scene_material(section_of_beam(deck_, b).section, m)) out.material = clean_name(m.name);
+  for (size_t k = 0; k < 2; ++k)
+    if (!b.pins[k]) (k == 0 ? out.a : out.b) = end_name(row(b.nodes[k], b.place, b.card));
+  tables_ += beam_table(out);
+  Mat3 own;  // x along, plane 1 holds y
+  own.col(0) = (at.b - at.a).normalized();
+  own.col(2) = own.col(0).cross(at.up).normalized();
+  own.col(1) = own.col(2).cross(own.col(0));
+  for (size_t k = 0; k < 2; ++k)
+    if (b.pins[k])
+      joint(63 & ~b.pins[k], own, out.name + (k == 0 ? "_pin_a" : "_pin_b"), end_name(row(b.nodes[k], b.place, b.card)),
+            out.name + (k == 0 ? ".0" : ".end"), k == 0 ? at.a : at.b, b.place);
+}
+
+}  // namespace hilo

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Beams of decks as lines of a scene: [section.NAME] of a property and its material, [beam.NAME] of an element.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/math.hpp"
+#include "import/deck_material.hpp"
+#include "physics/beam_section.hpp"
+
+namespace hilo {
+
+/// A cross-section as a deck says it, in units of the deck; axes 1 and 2 as in [section.NAME].
+struct DeckSection {
+  std::string kind = "general";                          // of hilo
+  std::vector<std::pair<std::string, double>> sizes;     // its keys
+  double I12 = 0;                                        // of "general": int X1 X2
+  double line_mass = 0;                                  // beside that of the material
+  std::optional<std::array<double, 2>> shear = {};       // factors along 1 and 2; absent: those of the kind
+  std::array<bool, 2> no_shear_strain = {false, false};  // along 1 and 2: as stiff as 1e4 E A
+  bool given() const { return !sizes.empty(); }
+  /// A, I1, I2, J and shear factors; Error at `place` where no section has these sizes.
+  SectionArea area(double nu, const std::string& place) const;
+};
+
+/// One that is given by its area, second moments about axes 1 and 2, and J.
+DeckSection general_section(double A, double I1, double I2, double J);
+
+/// Whether the section is written with a material of the scene; else as stiffnesses, for what the material or its kind cannot say.
+bool has_scene_material(const DeckSection& section, const DeckMaterial& material);
+/// [section.NAME] in SI; Error at `place` where the material says no moduli.
+std::string section_table(const std::string& name, const DeckSection& section, const DeckMaterial& material, const std::string& units,
+                          const std::string& place);
+
+/// An element between two bodies.
+struct DeckBeam {
+  std::string name, place, section, material;  // material: "" where the section has none
+  std::vector<Vec3> points;                    // [m]; three: an arc
+  Vec3 up;                                     // near axis 2
+  std::string a, b;                            // bodies; "" for an end with a section of its own
+};
+std::string beam_table(const DeckBeam& beam);
+
+}  // namespace hilo

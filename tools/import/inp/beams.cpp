@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Beams of an .inp deck: their nodes become bodies, their elements beams of the scene between these.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <numbers>
+
+#include "base/error.hpp"
+#include "base/param.hpp"
+#include "import/inp/ties.hpp"
+
+namespace hilo {
+namespace {
+
+/// The points of a beam of three nodes as two arcs, each through a point between: the circle through the nodes; straight ones as lines.
+std::array<std::vector<Vec3>, 2> halves(const Vec3& a, const Vec3& m, const Vec3& b) {
+  const Vec3 u = m - a, v = b - a, normal = u.cross(v);
+  if (normal.norm() < 1e-6 * u.norm() * v.norm()) return {{{a, m}, {m, b}}};
+  const Vec3 centre = a + (u.squaredNorm() * v - v.squaredNorm() * u).cross(normal) / (2 * normal.squaredNorm());
+  const auto between = [&](const Vec3& x, const Vec3& y) -> Vec3 {
+    return centre + (x - centre).norm() * ((x + y) / 2 - centre).normalized();  // each half is less than half a turn
+  };
+  return {{{a, between(a, m), m}, {m, between(m, b), b}}};
+}
+
+std::map<std::int64_t, const InpSection*> sections_of(const InpDeck& d) {
+  std::map<std::int64_t, const InpSection*> of;
+  for (const auto& s : d.sections)
+    for (const auto id : d.elset.at(s.elset).members) {
+      const auto b = d.beams.find(id);
+      if (b == d.beams.end()) continue;
+      if (!s.beam.given()) throw Error(s.place, fmt::format("{} on element {}", s.card, id), "it needs *BEAM SECTION");
+      of[id] = &s;
+    }
+  for (const auto& [id, b] : d.beams)
+    if (!of.contains(id)) throw Error(b.place, fmt::format("element {} has no section", id), "beams need *BEAM SECTION");
+  return of;
+}
+
+}  // namespace
+
+void beams_as_cells(InpDeck& d) {
+  for (const auto& [id, b] : d.beams) {
+    if (b.nodes.size() != 2)
+      throw Error(b.place, fmt::format("{} {}: beams of three nodes are no cells of rigid regions", b.type, id), "B31");
+    d.cell[id] = static_cast<std::int64_t>(d.shape.size());
+    d.shape.push_back(static_cast<std::uint8_t>(Shape::bar2));
+    d.cell_id.push_back(id);
+    d.cell_nodes.insert(d.cell_nodes.end(), b.nodes.begin(), b.nodes.end());
+    d.offset.push_back(static_cast<std::int64_t>(d.cell_nodes.size()));
+    d.cell_line.push_back(b.line);
+    d.cell_file.push_back(b.file);
+    d.beam_cells.insert(id);
+  }
+  d.beams.clear();
+}
+
+void find_beams(InpDeck& d, Imported& in, bool thicken) {
+  in.n_beams = static_cast<std::int64_t>(d.beams.size());
+  std::unordered_set<std::int64_t> of_shells;
+  if (thicken)
+    for (std::int64_t c = 0; c < in.mesh.n_cells(); ++c)
+      if (info(in.mesh.shape[static_cast<size_t>(c)]).dimension == 2) of_shells.insert(in.mesh.cell(c).begin(), in.mesh.cell(c).end());
+  for (const auto& [id, b] : d.beams)
+    for (const auto node : b.nodes) {
+      const auto a = d.node.find(node);
+      const auto x = d.loose.find(node);
+      if (a == d.node.end() && x == d.loose.end())
+        throw Error(b.place, fmt::format("element {} names node {}, which does not exist", id, node));
+      if (a != d.node.end() && of_shells.contains(a->second))
+        throw Error(b.place, fmt::format("{} {}: node {} is of shells too: pairs of nodes have no turns", b.type, id, node),
+                    "leave --thicken away: both are cells of rigid regions");
+      d.bodies.try_emplace(node, InpBody{a != d.node.end() ? in.mesh.X[static_cast<size_t>(a->second)] : x->second, b.place, {}});
+    }
+}
+
+std::string write_beams(const InpDeck& d, Imported& in, SetNames& names, const ImportOptions& o) {
+  const double metre = to_si("m", o.units) * o.scale;
+  const auto point = [&](const Vec3& x) { return toml_list({x.x() * metre, x.y() * metre, x.z() * metre}); };
+  std::string out;
+  std::set<std::string> materials;
+  std::map<const InpSection*, std::array<std::string, 2>> written;  // names of section (stiff in shear or not), by B33
+  const auto of = sections_of(d);
+  std::set<std::string> of_cells;  // materials that cells have written
+  for (const auto& s : d.sections)
+    for (const auto id : d.elset.at(s.elset).members)
+      if (d.cell.contains(id)) of_cells.insert(s.law);
+  for (const auto& [id, b] : d.beams) {
+    const InpSection& s = *of.at(id);
+    const DeckMaterial& m = d.laws.at(s.law);
+    const bool thin = b.type == "B33";
+    std::string& name = written[&s][thin];
+    DeckSection section = s.beam;
+    section.no_shear_strain = {thin, thin};
+    const bool with_material = has_scene_material(section, m);
+    if (name.empty()) {
+      name = clean_name(s.elset_name) + (thin ? "_B33" : "");
+      for (const auto& [other, used] : written)
+        if (other != &s && used[thin] == name) name += fmt::format("_{}", written.size());
+      if (m.kind != "stvk" || !m.no_law.empty()) in.skip("*PLASTIC of beams, which are linear elastic", s.place);
+      if (with_material && !of_cells.contains(s.law) && materials.insert(s.law).second) out += m.table(m.name, o.units);
+      out += section_table(name, section, m, o.units, s.place);
+    }
+    std::vector<Vec3> X;
+    for (const auto node : b.nodes) X.push_back(d.bodies.at(node).X);
+    const auto lines = b.nodes.size() == 3 ? halves(X[0], X[1], X[2]) : std::array<std::vector<Vec3>, 2>{X, {}};
+    const size_t n = b.nodes.size() - 1;
+    for (size_t k = 0; k < n; ++k) {
+      DeckBeam beam{fmt::format("{}_{}", b.type, id),
+                    b.place,
+                    name,
+                    with_material ? clean_name(m.name) : "",
+                    lines[k],
+                    Vec3::Zero(),
+                    body_name(d, b.nodes[k]),
+                    body_name(d, b.nodes[k + 1])};
+      if (n == 2) beam.name += k == 0 ? "a" : "b";
+      const Vec3 along = beam.points.back() - beam.points.front();
+      if (!(along.norm() > 0)) throw Error(b.place, fmt::format("element {} has no length", id));
+      if (!(along.cross(s.n1).norm() > 1e-6 * along.norm() * s.n1.norm()))
+        throw Error(s.place, fmt::format("{}: element {} lies along the direction 1 of its section", s.card, id));
+      const Vec3 n1 = (s.n1 - along * along.dot(s.n1) / along.squaredNorm()).normalized(), n2 = along.normalized().cross(n1);
+      beam.up = s.along_n2 ? n2 : n1;
+      for (Vec3& x : beam.points) x = (x + s.off[0] * n1 + s.off[1] * n2) * metre;
+      out += beam_table(beam);
+    }
+  }
+  std::set<std::int64_t> nodes;
+  for (const auto& [id, b] : d.beams)
+    for (const auto node : b.nodes)
+      if (d.node.contains(node)) nodes.insert(node);
+  for (const auto node : nodes) {  // of solids too, which do not turn
+    const std::string set = names.nodes(fmt::format("node_{}_of_cells", node), {d.node.at(node)});
+    in.as_listed.insert(set);
+    out += fmt::format("\n[[joint]]   # {}\nkind = \"spherical\"\nname = \"node_{}_of_cells\"\na = {}\nb = {}\nat = {}\n",
+                       d.bodies.at(node).place, node, toml_text(body_name(d, node)), toml_text(set), point(d.bodies.at(node).X));
+  }
+  return out;
+}
+
+}  // namespace hilo
