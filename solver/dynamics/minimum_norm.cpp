@@ -2,6 +2,11 @@
 #include "dynamics/minimum_norm.hpp"
 
 namespace hilo {
+namespace {
+
+constexpr int klu_below = 200;  // blocks; beyond, nested dissection keeps the factors of nets thin
+
+}  // namespace
 
 MinimumNorm::MinimumNorm(const System& system) : system_(system) {
   std::vector<int> number(system.n_blocks(), -1);
@@ -15,7 +20,12 @@ MinimumNorm::MinimumNorm(const System& system) : system_(system) {
     cliques_.add(blocks);
   }
   A_.structure(cliques_, n);
-  factors_ = make_klu();
+  if (n < klu_below) {
+    factors_ = make_klu();
+  } else {
+    factors_ = make_cholesky(std::vector<char>(n, 0));
+    factors_->sharpen();  // the shift is far below the round-off of single precision
+  }
 }
 
 std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const double> lambda) {
@@ -45,7 +55,7 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   const double shift = 1e-10 * largest;
   const double d[3] = {shift, shift, shift};
   for (int i = 0; i < A_.n_blocks(); ++i) A_.add_diagonal(i, d);
-  if (!factors_->refactor(A_)) factors_->factor(A_);
+  if (!factors_->refactor(A_) && !factors_->factor(A_)) throw Error("", "the shares of redundant joint rows cannot be found: no factors of them");
   Eigen::VectorXd y = Eigen::VectorXd::Zero(f.size()), r = f, product(f.size());
   for (int pass = 0; pass < 8 && r.norm() > 1e-14 * f.norm(); ++pass) {
     factors_->solve(r.data(), product.data());

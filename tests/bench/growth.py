@@ -91,6 +91,7 @@ def flexible_mesh(n, path):
                     f.write(f"{8 * i + 4 * k + m + 1}, {x}, {0.1 * y}, {0.1 * z}\n")
         for i in range(n):
             f.write(f"*ELEMENT, TYPE=C3D8, ELSET=r{i}\n{i + 1}, " + ", ".join(str(8 * i + m + 1) for m in range(8)) + "\n")
+            f.write(f"*SOLID SECTION, ELSET=r{i}\n")
         for i in range(n):
             for k, name in enumerate(("left", "right")):
                 f.write(f"*NSET, NSET={name}{i}\n" + ", ".join(str(8 * i + 4 * k + m + 1) for m in range(4)) + "\n")
@@ -147,7 +148,7 @@ for family in o.families.split(","):
     start, step = [], []
     for n in map(int, o.sizes.split(",")):
         scene_of(family, n)
-        if family == "flexible" and not command([f"{binaries}/hilo-import", "--quiet", "mesh.inp", "-o", "mesh.h5", "--regions", *(f"r{i}" for i in range(n))], o.limit):
+        if family == "flexible" and not command([f"{binaries}/hilo-import", "--quiet", "mesh.inp", "-o", "mesh.h5"], o.limit):
             sys.exit("hilo-import: " + open("words").read())
         steps = max(o.steps, 5000 // n)
         few = command(solve + ["--set", "time.end=0.002"], o.limit)
