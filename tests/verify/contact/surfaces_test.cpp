@@ -9,7 +9,7 @@
 #include "dynamics/kept_run.hpp"
 #include "verify/contact/collision.hpp"
 
-namespace hilo::test {
+namespace hilo::test::surfaces_test {
 namespace {
 
 /// Both meshes as one; sets with the name of the region before theirs.
@@ -351,4 +351,4 @@ TEST(Surfaces, AHundredThrowsKeepEnergyAndMomenta) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::surfaces_test
