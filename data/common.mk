@@ -31,7 +31,7 @@ setup:
 
 # Ninja itself finds out that there is nothing to do; it takes as many jobs as make -jN says, or one for each core.
 build: setup
-	@[ -f $(BUILD)/build.ninja ] || cmake -S $(ROOT) -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release > $(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
+	@[ -f $(BUILD)/build.ninja ] || cmake -S $(ROOT) -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON > $(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
 	@cmake --build $(BUILD) $(filter -j%,$(MAKEFLAGS)) --target $(TOOLS) hilo-petsc
 endif
 

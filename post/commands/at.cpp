@@ -20,7 +20,7 @@
 namespace hilo {
 namespace {
 
-struct Options {
+struct AtOptions {
   std::string run, field, point, steps = "all", times, unit, csv;
   std::vector<std::string> line, show, hide;
   std::int64_t node = -1;
@@ -71,7 +71,7 @@ Located at_point(const Mesh& mesh, const Vec3& X, const std::vector<bool>& wante
                   : fmt::format("region \"{}\" is {:.4g} m away", mesh.region_name[static_cast<size_t>(nearest.region)], nearest.distance));
 }
 
-Places places(const Options& o, RunFile& run, const std::vector<bool>& wanted, const std::string& label) {
+Places places(const AtOptions& o, RunFile& run, const std::vector<bool>& wanted, const std::string& label) {
   const Mesh& mesh = run.mesh();
   Places p;
   if (o.node >= 0) {
@@ -130,7 +130,7 @@ Shown shown(const std::string& name, const std::vector<std::string>& known) {
   return s;
 }
 
-void run(const Options& o) {
+void run(const AtOptions& o) {
   if ((o.node >= 0) + !o.point.empty() + !o.line.empty() != 1)
     throw Error("at", "where?", "give one of --node N, --point x,y,z and --line x,y,z x,y,z", Exit::usage);
   RunFile run(o.run);
@@ -182,7 +182,7 @@ void run(const Options& o) {
 
 Command at_command(CLI::App& app) {
   auto* sub = app.add_subcommand("at", "a field at a node, at a material point or along a line, over the outputs of a run");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<AtOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("field", o->field,
                   "von_mises, stress_error, plastic_strain, stress, acceleration, displacement, velocity, or a component: stress.xx, "

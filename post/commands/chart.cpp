@@ -17,7 +17,7 @@
 namespace hilo {
 namespace {
 
-struct Options {
+struct ChartOptions {
   std::vector<std::string> files, y;
   std::string x, by, log, title, x_label, y_label, size = "1280x720", png;
   std::vector<double> x_range, y_range, slopes;
@@ -40,7 +40,7 @@ std::string plain(const std::string& header) { return header.substr(0, header.fi
 
 std::string join(const std::string& a, const std::string& b) { return a.empty() || b.empty() ? a + b : a + ", " + b; }
 
-void run(const Options& o) {
+void run(const ChartOptions& o) {
   Figure figure;
   figure.title = o.title;
   std::tie(figure.width, figure.height) = parse_size(o.size);
@@ -114,7 +114,7 @@ void run(const Options& o) {
 
 Command chart_command(CLI::App& app) {
   auto* sub = app.add_subcommand("chart", "a chart of CSV files: a line of column names \"name [unit]\", then numbers");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<ChartOptions>();
   sub->add_option("files", o->files, "CSV files; - for stdin")->required();
   sub->add_option("-x", o->x, "column of the abscissa, by name or number from 1; the first by default");
   sub->add_option("-y", o->y, "columns to draw, -y once for each; all others by default")->allow_extra_args(false);

@@ -19,7 +19,7 @@
 namespace hilo {
 namespace {
 
-struct Options {
+struct CompareOptions {
   std::vector<std::string> files, y;
   std::string x;
   bool json = false;
@@ -39,7 +39,7 @@ struct Curves {
 
 std::string title_of(const Column& c) { return fmt::format("{} [{}]", c.label, c.unit); }
 
-Curves of_run(const Options& o, const std::string& path) {
+Curves of_run(const CompareOptions& o, const std::string& path) {
   const RunFile run(path);
   RunColumns columns(run, {});
   const auto picked = columns.pick(o.y.empty() ? run.series_names() : o.y);
@@ -59,7 +59,7 @@ Curves of_run(const Options& o, const std::string& path) {
   return c;
 }
 
-Curves of_table(const Options& o, const std::string& path) {
+Curves of_table(const CompareOptions& o, const std::string& path) {
   const CsvTable table = read_csv(path);
   const size_t x = o.x.empty() ? 0 : table.find(o.x);
   Curves c{path, "", table.header[x], table.numbers(x), {}};
@@ -70,7 +70,7 @@ Curves of_table(const Options& o, const std::string& path) {
   return c;
 }
 
-Curves read(const Options& o, const std::string& path) {
+Curves read(const CompareOptions& o, const std::string& path) {
   Curves c = path.ends_with(".h5") ? of_run(o, path) : of_table(o, path);
   if (!std::all_of(c.x.begin(), c.x.end(), [](double x) { return std::isfinite(x); }) || !std::is_sorted(c.x.begin(), c.x.end()))
     throw Error(path, fmt::format("\"{}\" does not rise from row to row", c.x_title), "choose the abscissa with -x");
@@ -96,9 +96,9 @@ double peak_of(const std::vector<double>& values) {
   return peak;
 }
 
-std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x == 0 ? 0.0 : x) : "-"; }
+std::string six_digits(double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x == 0 ? 0.0 : x) : "-"; }
 
-void run(const Options& o) {
+void run(const CompareOptions& o) {
   std::vector<Curves> all;
   for (const auto& file : o.files) all.push_back(read(o, file));
   const auto names = distinct_names(o.files);
@@ -123,7 +123,7 @@ void run(const Options& o) {
       continue;
     }
     const double peak = peak_of(truth);
-    table.rows.push_back({title, first.name, number(truth.empty() ? NAN : truth.front()), number(peak), "-", "-", "-"});
+    table.rows.push_back({title, first.name, six_digits(truth.empty() ? NAN : truth.front()), six_digits(peak), "-", "-", "-"});
     for (size_t k = 1; k < all.size(); ++k) {
       const auto& values = *all[k].find(title);
       double off = -1, at = NAN;
@@ -131,8 +131,8 @@ void run(const Options& o) {
         if (row[k][j] == nowhere) continue;
         if (const double d = std::abs(values[j] - truth[row[k][j]]); d > off) off = d, at = all[k].x[j];
       }
-      table.rows.push_back({title, all[k].name, number(values.front()), number(peak_of(values)), number(off < 0 ? NAN : off),
-                            number(off < 0 || peak == 0 ? NAN : 100 * off / peak), number(at)});
+      table.rows.push_back({title, all[k].name, six_digits(values.front()), six_digits(peak_of(values)), six_digits(off < 0 ? NAN : off),
+                            six_digits(off < 0 || peak == 0 ? NAN : 100 * off / peak), six_digits(at)});
     }
   }
   if (table.rows.empty()) throw Error(first.path, "has no column in common with all the others");
@@ -143,7 +143,7 @@ void run(const Options& o) {
 
 Command compare_command(CLI::App& app) {
   auto* sub = app.add_subcommand("compare", "how far tables or runs are from the first, at the instants that both have");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<CompareOptions>();
   sub->add_option("files", o->files, "CSV files as series writes them, or run.h5 of hilo-solve; the first is the measure")
       ->required()
       ->expected(2, 99);

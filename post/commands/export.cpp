@@ -22,7 +22,7 @@
 namespace hilo {
 namespace {
 
-struct Options {
+struct ExportOptions {
   std::string run, output, step = "last";
   bool deformed = false;
 };
@@ -54,7 +54,7 @@ void attach(vtkFieldData* to, const std::string& name, const std::vector<T>& val
   to->AddArray(array);
 }
 
-void run(const Options& o) {
+void run(const ExportOptions& o) {
   RunFile file(o.run);
   const auto steps = file.select_steps(o.step, "");
   if (steps.size() != 1) throw Error("--step", "one step makes one file", "", Exit::usage);
@@ -103,7 +103,7 @@ void run(const Options& o) {
 
 Command export_command(CLI::App& app) {
   auto* sub = app.add_subcommand("export", "one step as VTU (ParaView opens run.xdmf without this)");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<ExportOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("-o,--output", o->output, "VTU file; - for stdout")->required();
   sub->add_option("--step", o->step, "first, last or a number")->capture_default_str();

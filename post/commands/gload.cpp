@@ -21,14 +21,14 @@
 namespace hilo {
 namespace {
 
-struct Options {
+struct GloadOptions {
   std::string run, csv, png, size;
   std::vector<std::string> sensors{"*"};
   double cfc = 60;
   bool json = false;
 };
 
-void write_csv(const Options& o, const std::vector<SensorRecord>& sensors) {
+void write_sensors(const GloadOptions& o, const std::vector<SensorRecord>& sensors) {
   std::vector<std::string> header{"t [s]"};
   std::vector<std::vector<double>> columns{sensors.front().t};
   constexpr const char* axis[] = {"x", "y", "z", "resultant"};
@@ -42,7 +42,7 @@ void write_csv(const Options& o, const std::vector<SensorRecord>& sensors) {
   write_out(o.csv, csv_text(header, columns));
 }
 
-void write_png(const Options& o, const Sensors& run) {
+void draw_sensors(const GloadOptions& o, const Sensors& run) {
   const auto& sensors = run.records;
   Figure figure;
   figure.title = fmt::format("{}: proper acceleration", run.title);
@@ -63,7 +63,7 @@ void write_png(const Options& o, const Sensors& run) {
   write_chart(figure, o.png);
 }
 
-std::string table_of(const Options& o, const std::vector<SensorRecord>& sensors) {
+std::string sensor_table(const GloadOptions& o, const std::vector<SensorRecord>& sensors) {
   Table table;
   table.header = {"sensor"};
   constexpr const char* part[] = {"x", "y", "z", "res"};
@@ -85,13 +85,13 @@ std::string table_of(const Options& o, const std::vector<SensorRecord>& sensors)
   return o.json ? table.json("") + "\n" : table.text();
 }
 
-void run(const Options& o) {
+void run(const GloadOptions& o) {
   const Sensors file = read_sensors(o.run, o.sensors, o.cfc);
   const auto& sensors = file.records;
-  if (!o.csv.empty()) write_csv(o, sensors);
-  if (!o.png.empty()) write_png(o, file);
+  if (!o.csv.empty()) write_sensors(o, sensors);
+  if (!o.png.empty()) draw_sensors(o, file);
   const bool in_files = !o.csv.empty() || !o.png.empty();
-  if (o.csv != "-" && (o.json || !in_files || !is_quiet())) write_out("-", table_of(o, sensors));
+  if (o.csv != "-" && (o.json || !in_files || !is_quiet())) write_out("-", sensor_table(o, sensors));
   warn_of_band(sensors, o.cfc);
   if (!is_quiet() && !o.json)
     fmt::print(
@@ -106,7 +106,7 @@ void run(const Options& o) {
 
 Command gload_command(CLI::App& app) {
   auto* sub = app.add_subcommand("gload", "G-loads of the sensors: peaks, 3 ms clip, raw and CFC-filtered curves");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<GloadOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve, or a CSV: t [s], x [g], y [g], z [g] (seat.x ... for several)")->required();
   sub->add_option("--sensor", o->sensors, "sensors by name or glob")->allow_extra_args(false)->default_str("*");
   sub->add_option("--cfc", o->cfc, "channel frequency class of the filter: 60, 180, 600 or 1000 (SAE J211-1)")

@@ -18,7 +18,7 @@
 namespace hilo {
 namespace {
 
-struct Options {
+struct InjuryOptions {
   std::string run, csv, page, eiband, corridor;
   std::vector<std::string> sensors{"*"};
   double cfc = 60;
@@ -69,7 +69,7 @@ std::string csv_of(const Table& table) {
   return out;
 }
 
-void run(const Options& o) {
+void run(const InjuryOptions& o) {
   const Sensors file = read_sensors(o.run, o.sensors, o.cfc);
   std::vector<Crew> crew;
   for (const SensorRecord& record : file.records) crew.push_back(crew_of(record, o.cfc));
@@ -95,7 +95,7 @@ void run(const Options& o) {
 Command injury_command(CLI::App& app) {
   auto* sub =
       app.add_subcommand("injury", "what the sensors' loads do to people: DRI, HIC, 3 ms clip, Brinkley, ISO 2631; a page to print");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<InjuryOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve, or a CSV: t [s], x [g], y [g], z [g] (seat.x ... for several)")->required();
   sub->add_option("--sensor", o->sensors, "sensors by name or glob")->allow_extra_args(false)->default_str("*");
   sub->add_option("--cfc", o->cfc, "channel frequency class of the pulses: 60, 180, 600 or 1000 (SAE J211-1)")

@@ -21,7 +21,7 @@
 namespace hilo {
 namespace {
 
-struct Options {
+struct MeshOptions {
   std::string mesh, output, field = "region", camera = "iso", size = "1280x720", edges = "feature", title;
   std::vector<std::string> show, hide;
   double angle = 0.7;  // [rad]
@@ -46,7 +46,7 @@ std::int64_t draw_slivers(vtkRenderer* stage, const Mesh& mesh, const std::vecto
   return count;
 }
 
-void run(const Options& o) {
+void run(const MeshOptions& o) {
   const MeshFile file = read_mesh_file(o.mesh);
   const Mesh& mesh = file.mesh;
   const auto shown = shown_regions(mesh, o.show, o.hide);
@@ -114,7 +114,7 @@ void run(const Options& o) {
 
 Command mesh_command(CLI::App& app) {
   auto* sub = app.add_subcommand("mesh", "picture of a mesh, its tags or its parts");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<MeshOptions>();
   sub->add_option("mesh", o->mesh, "mesh.h5, tags.h5 or parts-N.h5")->required();
   sub->add_option("-o,--output", o->output, "PNG file")->required();
   sub->add_option("--field", o->field, "region, fidelity or partition")

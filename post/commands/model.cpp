@@ -26,7 +26,7 @@
 namespace hilo {
 namespace {
 
-struct Options {
+struct ModelOptions {
   std::string scene, mesh, output, camera = "iso", size = "1600x900", title, values;
   std::vector<std::string> show, hide, set;
   bool see_through = false, no_names = false;
@@ -91,7 +91,7 @@ std::vector<Group> groups_by_value(const MeshFile& file, const std::vector<bool>
   return groups;
 }
 
-std::string mesh_path(const Options& o, const Scene& scene) {
+std::string mesh_path(const ModelOptions& o, const Scene& scene) {
   if (!o.mesh.empty()) return o.mesh;
   const Entry& head = scene.table("scene");
   const std::string mesh = head.has("mesh") ? head.text("mesh") : "";
@@ -163,7 +163,7 @@ std::vector<bool> with_names(const SceneItems& scene, const Vec3& back) {
   return named;
 }
 
-void draw_items(Painter& p, const Options& o, const SceneItems& scene, const Projection& project, const Vec3& back, const Box& box) {
+void draw_items(Painter& p, const ModelOptions& o, const SceneItems& scene, const Projection& project, const Vec3& back, const Box& box) {
   const double size = 26 * p.scale;
   std::vector<Label> labels;
   const std::vector<bool> named = with_names(scene, back);
@@ -185,7 +185,7 @@ void draw_gravity(Painter& p, const Vec3& g, const Fit& fit) {
   p.text(at - 12 * p.scale * d.normalized(), "g", 16, Across::centre, Up::middle, {0.35, 0.36, 0.38}, true);
 }
 
-void run(const Options& o) {
+void run(const ModelOptions& o) {
   const Scene scene = Scene::load(o.scene, o.set);
   for (const auto& w : scene.warnings) fmt::print(stderr, "hilo-post: warning: {}\n", w);
   const std::string path = mesh_path(o, scene);
@@ -251,7 +251,7 @@ void run(const Options& o) {
 
 Command model_command(CLI::App& app) {
   auto* sub = app.add_subcommand("model", "picture of a scene before any run: regions, joints, loads, supports, sensors");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<ModelOptions>();
   sub->add_option("scene", o->scene, "scene.toml; - for standard input")->required();
   sub->add_option("mesh", o->mesh, "mesh.h5, tags.h5 or parts-N.h5; that of the scene by default");
   sub->add_option("-o,--output", o->output, "PNG file")->required();

@@ -20,7 +20,7 @@
 namespace hilo {
 namespace {
 
-struct Options : FrameOptions {
+struct MovieOptions : FrameOptions {
   std::string output, times;
   double fps = 25, speed = 0;
   int jobs = 0;
@@ -67,7 +67,7 @@ class Progress {
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now(), last_ = began_;
 };
 
-void run(Options o) {
+void run(MovieOptions o) {
   if (!o.output.ends_with(".mp4") && o.output != "-") throw Error(o.output, "movies are MP4", "give the file the ending .mp4", Exit::usage);
   auto [width, height] = parse_size(o.size);
   width += width % 2, height += height % 2;  // 4:2:0 has colours for pairs of pixels
@@ -129,7 +129,7 @@ void run(Options o) {
 
 Command movie_command(CLI::App& app) {
   auto* sub = app.add_subcommand("movie", "an MP4 of a run, coloured by a field");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<MovieOptions>();
   add_frame_options(*sub, *o);
   sub->add_option("-o,--output", o->output, "movie.mp4; - for standard output")->required();
   sub->add_option("--times", o->times, "FROM:TO in s; the whole run by default. Of an analysis of modes 3:4 is mode 3, which swings once");

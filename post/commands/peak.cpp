@@ -17,13 +17,13 @@
 namespace hilo {
 namespace {
 
-struct Options {
+struct PeakOptions {
   std::string run, field = "von_mises", steps = "all", times, unit;
   std::vector<std::string> show, hide;
   bool json = false;
 };
 
-void run(const Options& o) {
+void run(const PeakOptions& o) {
   RunFile run(o.run);
   const MeshFile& file = run.mesh_file();
   const Mesh& mesh = file.mesh;
@@ -67,7 +67,7 @@ Command peak_command(CLI::App& app) {
       "peak",
       "largest value of a field in every region over the steps written, with place and time; over all steps where the run has "
       "output.envelope");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<PeakOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("--field", o->field,
                   "von_mises, stress_error, plastic_strain, acceleration, displacement, velocity (or .x .y .z of these), stress.xx")

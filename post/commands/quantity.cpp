@@ -11,13 +11,13 @@
 namespace hilo {
 namespace {
 
-struct Options {
+struct QuantityOptions {
   std::string run, scene;
   std::vector<std::string> names;
   bool json = false;
 };
 
-void run(const Options& o) {
+void run(const QuantityOptions& o) {
   RunFile file(o.run);
   const Scene scene = o.scene.empty() ? scene_of(file) : Scene::load(o.scene);
   const auto all = quantities(scene, file);
@@ -45,7 +45,7 @@ void run(const Options& o) {
 
 Command quantity_command(CLI::App& app) {
   auto* sub = app.add_subcommand("quantity", "the quantities that the scene asks for, [[quantity]], with what they may be off");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<QuantityOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("names", o->names, "quantities by name or glob; all by default");
   sub->add_option("--scene", o->scene, "the quantities of this scene instead of the run's own");

@@ -14,19 +14,19 @@
 namespace hilo {
 namespace {
 
-struct Options : FrameOptions {
+struct RenderOptions : FrameOptions {
   std::string output, steps = "last", times;
   int jobs = 0;
 };
 
-std::string path_of(const Options& o, const Step& step, size_t n) {
+std::string path_of(const RenderOptions& o, const Step& step, size_t n) {
   if (o.output == "-" && n == 1) return o.output;
   const bool png = o.output.ends_with(".png");
   if (png && n == 1) return o.output;
   return fmt::format("{}-{}.png", png ? o.output.substr(0, o.output.size() - 4) : o.output, step.key);
 }
 
-void run(const Options& o) {
+void run(const RenderOptions& o) {
   Frames frames(o);
   const std::vector<Step> steps = frames.run().select_steps(o.steps, o.times);
   std::vector<double> times;
@@ -52,7 +52,7 @@ void run(const Options& o) {
 
 Command render_command(CLI::App& app) {
   auto* sub = app.add_subcommand("render", "PNG frames of a run, coloured by a field");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<RenderOptions>();
   add_frame_options(*sub, *o);
   sub->add_option("-o,--output", o->output,
                   "PNG file of a single step (- for standard output), or start of the names: out/frame gives out/frame-000012.png")

@@ -30,7 +30,7 @@
 namespace hilo {
 namespace {
 
-struct Options {
+struct ResponseOptions {
   std::string run, force, of = "displacement", csv, png, title, size = "1280x720";
   std::vector<std::string> at, base;
   bool relative = false;
@@ -152,7 +152,7 @@ Base::Base(const RunFile& run, const std::vector<std::string>& bases, const Mode
   }
 }
 
-void run(const Options& o) {
+void run(const ResponseOptions& o) {
   const RunFile file(o.run);
   if (file.frequencies.size() < 2) throw Error(o.run, "holds no modes", "run the scene with time.analysis = \"modes\"");
   const Modes modes = modes_of(file, o.damping);
@@ -222,7 +222,7 @@ void run(const Options& o) {
 Command response_command(CLI::App& app) {
   auto* sub = app.add_subcommand("response",
                                  "amplitude and phase of probes under a harmonic force at one of them, or on a base that swings, by modes");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<ResponseOptions>();
   sub->add_option("run", o->run, "run.h5 of a scene with time.analysis = \"modes\" and probes")->required();
   sub->add_option("--force", o->force, "probe and axis that a force of 1 N swings along: tip.z");
   sub->add_option("--base", o->base,

@@ -22,7 +22,7 @@
 namespace hilo {
 namespace {
 
-struct Options {
+struct SeriesOptions {
   std::string run, csv, png, size = "1280x720", title, x, times;
   std::vector<std::string> names, lets;
   bool list = false, json = false;
@@ -34,7 +34,7 @@ struct Picked {
   std::vector<Column> y;
 };
 
-Picked pick(const Options& o, const RunFile& run) {
+Picked pick(const SeriesOptions& o, const RunFile& run) {
   RunColumns columns(run, o.lets);
   Picked p{{}, columns.pick(o.names)};
   p.x = o.x.empty() ? Column{"t", "s", p.y.front().t, p.y.front().t} : columns.one(o.x);
@@ -60,12 +60,12 @@ Picked pick(const Options& o, const RunFile& run) {
   return p;
 }
 
-std::string title_of(const Column& c) { return fmt::format("{} [{}]", c.label, c.unit); }
+std::string column_title(const Column& c) { return fmt::format("{} [{}]", c.label, c.unit); }
 
 void write_csv(const std::string& path, const Picked& picked) {
-  std::vector<std::string> header{title_of(picked.x)};
+  std::vector<std::string> header{column_title(picked.x)};
   std::vector<std::vector<double>> columns{picked.x.value};
-  for (const Column& c : picked.y) header.push_back(title_of(c)), columns.push_back(c.value);
+  for (const Column& c : picked.y) header.push_back(column_title(c)), columns.push_back(c.value);
   write_out(path, csv_text(header, columns));
 }
 
@@ -82,7 +82,7 @@ std::string axis_label(const std::string& unit, const std::vector<ChartCurve>& c
 }
 
 /// One panel for each unit; labels lose what all have in common.
-void write_png(const Options& o, const RunFile& run, const Picked& picked) {
+void write_png(const SeriesOptions& o, const RunFile& run, const Picked& picked) {
   Figure figure;
   std::tie(figure.width, figure.height) = parse_size(o.size);
   std::string common = picked.y.front().label.substr(0, picked.y.front().label.rfind('.') + 1);
@@ -94,7 +94,7 @@ void write_png(const Options& o, const RunFile& run, const Picked& picked) {
   figure.title = !o.title.empty() ? o.title
                  : common.empty() ? run.title
                                   : fmt::format("{}: {}", run.title, common.substr(0, common.size() - 1));
-  const std::string x = o.x.empty() ? "time [s]" : title_of(picked.x);
+  const std::string x = o.x.empty() ? "time [s]" : column_title(picked.x);
   for (const Column& p : picked.y) {
     auto panel = std::find_if(figure.panels.begin(), figure.panels.end(), [&](const Panel& q) { return q.y.label == p.unit; });
     if (panel == figure.panels.end()) panel = figure.panels.insert(figure.panels.end(), Panel{"", {x}, {p.unit}, {}});
@@ -104,7 +104,7 @@ void write_png(const Options& o, const RunFile& run, const Picked& picked) {
   write_chart(figure, o.png);
 }
 
-void list(const Options& o, const RunFile& run) {
+void list(const SeriesOptions& o, const RunFile& run) {
   Table table{{"history", "columns", "units"}, {}, 3};
   for (const std::string& name : run.series_names()) {
     const Series s = run.describe(name);
@@ -142,7 +142,7 @@ void warn_of_band(const RunFile& run, const std::vector<Column>& columns) {
   if (count > 0) warn(run.path, count == 1 ? what : fmt::format("{}; so have {} columns more", what, count - 1));
 }
 
-void run(const Options& o) {
+void run(const SeriesOptions& o) {
   const RunFile file(o.run);
   if (o.list) return list(o, file);
   if (o.names.empty())
@@ -157,7 +157,7 @@ void run(const Options& o) {
 
 Command series_command(CLI::App& app) {
   auto* sub = app.add_subcommand("series", "histories (reactions, energies, probes, ...) as CSV or as a chart");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<SeriesOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("names", o->names,
                   "histories or columns by name or glob: energy, joint.trunnion, \"joint.*.Fx\"; or a formula: \"pull [kN] = "

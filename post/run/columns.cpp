@@ -11,7 +11,7 @@
 namespace hilo {
 namespace {
 
-std::string trimmed(const std::string& text) {
+std::string trimmed_blanks(const std::string& text) {
   const auto from = text.find_first_not_of(' '), to = text.find_last_not_of(' ');
   return from == std::string::npos ? "" : text.substr(from, to - from + 1);
 }
@@ -58,9 +58,9 @@ Column RunColumns::named(const std::string& name) {
 
 Column RunColumns::formula(const std::string& text) {
   const auto equals = text.find('=');
-  const std::string left = trimmed(text.substr(0, equals)), right = trimmed(text.substr(equals + 1));
+  const std::string left = trimmed_blanks(text.substr(0, equals)), right = trimmed_blanks(text.substr(equals + 1));
   const auto bracket = left.find(" [");
-  Column c{trimmed(left.substr(0, bracket)), bracket == std::string::npos ? "1" : left.substr(bracket + 2), {}, {}};
+  Column c{trimmed_blanks(left.substr(0, bracket)), bracket == std::string::npos ? "1" : left.substr(bracket + 2), {}, {}};
   if (c.unit.ends_with(']')) c.unit.pop_back();
   if (c.label.empty()) throw Error("", fmt::format("\"{}\" gives its column no name", text), "NAME [UNIT] = FORMULA", Exit::usage);
   c.t = run_.store().read<double>("/history/t");

@@ -13,7 +13,7 @@
 namespace hilo {
 namespace {
 
-constexpr Rgb joint_colour{0.56, 0.10, 0.44}, spring_colour{0.05, 0.36, 0.36}, held_colour{0.16, 0.30, 0.66};
+constexpr Rgb joint_force_colour{0.56, 0.10, 0.44}, spring_force_colour{0.05, 0.36, 0.36}, held_colour{0.16, 0.30, 0.66};
 
 const Entry* find(const Scene& scene, const std::string& section, const std::string& name) {
   for (const Entry& e : scene.entries(section))
@@ -55,7 +55,7 @@ ForceArrow arrow(RunFile& run, const Scene& scene, const std::string& history) {
   ForceArrow f;
   f.name = name;
   f.history = run.series(history);
-  f.colour = group == "spring" ? spring_colour : group == "motion" ? held_colour : joint_colour;
+  f.colour = group == "spring" ? spring_force_colour : group == "motion" ? held_colour : joint_force_colour;
   const bool on_joint = group == "stop" || group == "motor" || group == "friction";
   const Entry* e = find(scene, group, name);
   if (!e && group == "spring") e = find(scene, "joint", name);  // one that gives way

@@ -11,7 +11,7 @@
 namespace hilo {
 namespace {
 
-constexpr double largest_turn = 2;  // [rad]
+constexpr double turn_limit = 2;    // [rad]
 constexpr double rounding = 1e-12;  // of sums over the scene
 constexpr double digit = 1e-15;     // of a force times the scene's length, in work
 
@@ -73,7 +73,7 @@ std::string Audit::look(const Config& q0, const State& end, std::span<const Take
   turn_ = system_.largest_turn(q0, end.q);
   if (!std::isfinite(next_.balance)) return "energies are not finite";
   if (det_.det <= 0) return system_.inside_out(det_);
-  if (turn_.angle > largest_turn) return fmt::format("{} turns by {:.3g} rad in one step", system_.name(turn_), turn_.angle);
+  if (turn_.angle > turn_limit) return fmt::format("{} turns by {:.3g} rad in one step", system_.name(turn_), turn_.angle);
   const Violation& g = next_.rows;
   const double open = row_bound_ * system_.length;
   if (!(g.kept <= open)) return fmt::format("{} opens by {:.2g}", system_.row_owner(g.kept_block), g.kept);
@@ -159,7 +159,7 @@ std::string Audit::json(const std::string& failure) const {
   rows("joint_rows", worst_.rows.kept, worst_.rows.kept_block, worst_.kept_t);
   rows("dropped_rows", worst_.rows.dropped, worst_.rows.dropped_block, worst_.dropped_t);
   out += fmt::format("    \"turn\": {{\"largest\": {}, \"of\": {}, \"t\": {}, \"bound\": {}}},\n", number(worst_.turn.angle),
-                     worst_.turn.angle > 0 ? json_text(system_.name(worst_.turn)) : "null", number(worst_.turn_t), number(largest_turn));
+                     worst_.turn.angle > 0 ? json_text(system_.name(worst_.turn)) : "null", number(worst_.turn_t), number(turn_limit));
   const auto& [det, region] = worst_.det;
   out += fmt::format("    \"det_F\": {{\"least\": {}, \"region\": {}, \"t\": {}}},\n", region >= 0 ? number(det) : "null",
                      region >= 0 ? json_text(system_.mesh->mesh.region_name[region]) : "null", number(worst_.det_t));

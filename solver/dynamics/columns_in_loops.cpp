@@ -7,7 +7,7 @@
 namespace hilo {
 namespace {
 
-using Entry = Eigen::SparseMatrix<double>::InnerIterator;
+using ColumnEntry = Eigen::SparseMatrix<double>::InnerIterator;
 
 constexpr double plain = 1e-3;  // what is independent beyond doubt: what the others of its group leave of a unit column
 
@@ -16,7 +16,7 @@ bool are_independent(const Eigen::SparseMatrix<double>& A, int first, int last, 
   if (rows.size() < static_cast<size_t>(last - first)) return false;
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.size()), last - first);
   for (int k = first; k < last; ++k)
-    for (Entry it(A, k); it; ++it)
+    for (ColumnEntry it(A, k); it; ++it)
       if (const auto at = std::lower_bound(rows.begin(), rows.end(), static_cast<int>(it.row())); at != rows.end() && *at == it.row())
         own(at - rows.begin(), k - first) = it.value();
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(own);
@@ -34,7 +34,7 @@ std::vector<int> columns_in_loops(const Eigen::SparseMatrix<double>& A, const st
   std::vector<std::vector<int>> rows(n), groups(A.rows());  // that a group meets, that meet a row
   for (int g = 0; g < n; ++g) {
     for (int k = first[g]; k < first[g + 1]; ++k)
-      for (Entry it(A, k); it; ++it) rows[g].push_back(static_cast<int>(it.row()));
+      for (ColumnEntry it(A, k); it; ++it) rows[g].push_back(static_cast<int>(it.row()));
     std::sort(rows[g].begin(), rows[g].end());
     rows[g].erase(std::unique(rows[g].begin(), rows[g].end()), rows[g].end());
     for (const int row : rows[g]) groups[row].push_back(g);

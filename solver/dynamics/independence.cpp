@@ -13,7 +13,7 @@
 namespace hilo {
 namespace {
 
-using Entry = Eigen::SparseMatrix<double>::InnerIterator;
+using ColumnEntry = Eigen::SparseMatrix<double>::InnerIterator;
 using Column = std::vector<std::pair<int, double>>;
 
 constexpr Eigen::Index dense_at_most = 48, dense_in_doubt = 600;  // columns
@@ -54,15 +54,15 @@ Independence from(const SparseQr& qr) {
   };
   for (Eigen::Index k = qr.rank; k < qr.R.cols(); ++k) {
     Column& factors = out.depends.emplace_back();
-    for (Entry it(qr.R, k); it; ++it) add(static_cast<int>(it.row()), it.value());
+    for (ColumnEntry it(qr.R, k); it; ++it) add(static_cast<int>(it.row()), it.value());
     while (!next.empty()) {
       const int j = next.top();
       next.pop();
       double value = 0;
-      for (Entry it(qr.R, j); it; ++it)
+      for (ColumnEntry it(qr.R, j); it; ++it)
         if (it.row() == j) value = x[j] / it.value();
       if (std::abs(value) > nothing) {
-        for (Entry it(qr.R, j); it && it.row() < j; ++it) add(static_cast<int>(it.row()), -value * it.value());
+        for (ColumnEntry it(qr.R, j); it && it.row() < j; ++it) add(static_cast<int>(it.row()), -value * it.value());
         factors.emplace_back(j, value);
       }
       x[j] = 0, is_met[j] = 0;
@@ -147,7 +147,7 @@ Independence independent_columns(const Eigen::SparseMatrix<double>& A, Eigen::In
   std::iota(order.begin() + first.rank, order.end(), static_cast<int>(n_plain));
   std::vector<Eigen::Triplet<double>> entries;
   for (Eigen::Index k = 0; k < order.size(); ++k)
-    for (Entry it(A, order[k]); it; ++it) entries.emplace_back(it.row(), k, it.value());
+    for (ColumnEntry it(A, order[k]); it; ++it) entries.emplace_back(it.row(), k, it.value());
   Eigen::SparseMatrix<double> sorted(A.rows(), order.size());
   sorted.setFromTriplets(entries.begin(), entries.end());
   Independence out = from(sparse_qr(sorted, dependent, ColumnOrder::given));
@@ -172,7 +172,7 @@ std::vector<std::vector<int>> connected_columns(const Eigen::SparseMatrix<double
     return k;
   };
   for (int k = 0; k < static_cast<int>(columns.size()); ++k)
-    for (Entry it(A, columns[k]); it; ++it)
+    for (ColumnEntry it(A, columns[k]); it; ++it)
       if (int& other = first[it.row()]; other < 0)
         other = k;
       else
@@ -186,13 +186,13 @@ std::vector<std::vector<int>> connected_columns(const Eigen::SparseMatrix<double
 Eigen::SparseMatrix<double> part_of(const Eigen::SparseMatrix<double>& A, const std::vector<int>& columns, std::vector<int>& number) {
   std::vector<int> met;
   for (const int column : columns)
-    for (Entry it(A, column); it; ++it) met.push_back(static_cast<int>(it.row()));
+    for (ColumnEntry it(A, column); it; ++it) met.push_back(static_cast<int>(it.row()));
   std::sort(met.begin(), met.end());
   met.erase(std::unique(met.begin(), met.end()), met.end());
   for (size_t i = 0; i < met.size(); ++i) number[met[i]] = static_cast<int>(i);
   std::vector<Eigen::Triplet<double>> entries;
   for (size_t k = 0; k < columns.size(); ++k)
-    for (Entry it(A, columns[k]); it; ++it) entries.emplace_back(number[it.row()], static_cast<int>(k), it.value());
+    for (ColumnEntry it(A, columns[k]); it; ++it) entries.emplace_back(number[it.row()], static_cast<int>(k), it.value());
   Eigen::SparseMatrix<double> out(static_cast<Eigen::Index>(met.size()), static_cast<Eigen::Index>(columns.size()));
   out.setFromTriplets(entries.begin(), entries.end());
   return out;

@@ -22,7 +22,7 @@
 namespace hilo {
 namespace {
 
-using Vector = std::vector<double>;
+using Numbers = std::vector<double>;
 
 /// Where the loads, or the displacements, turn back on the path; or where its stability changes between two states without that.
 struct Turn {
@@ -94,7 +94,7 @@ class PathSteps final : public Steps {
  private:
   /// A direction of the path: increments, their multipliers behind them, and the share of the loads.
   struct Way {
-    Vector z;
+    Numbers z;
     double p = 0;
   };
   /// A state reached: the share of the loads, the rise of the path there, eigenvalues of the tangent below zero.
@@ -108,7 +108,7 @@ class PathSteps final : public Steps {
   double moved(const Config& q) const { return run_.system.largest_difference(q, run_.system.start); }
 
   /// Increments as lengths, z.y; each block is counted on one rank.
-  double dot(const Vector& z, const Vector& y) const {
+  double dot(const Numbers& z, const Numbers& y) const {
     const System& s = run_.system;
     double sum = 0;
     for (const UnknownField& f : s.unknowns)
@@ -124,13 +124,13 @@ class PathSteps final : public Steps {
     return s;
   }
   /// The residual at q, with what a law moves where it is under the share p; with a tangent the solver has it.
-  void evaluate(const Config& q, const Vector& lambda, double p, Residual& r, bool tangent, const Correction* last = nullptr) {
+  void evaluate(const Config& q, const Numbers& lambda, double p, Residual& r, bool tangent, const Correction* last = nullptr) {
     Stage s = stage(q, p);
     if (last) s.before = &last->before, s.along = &last->along;
     assemble(run_.system, *run_.solver, s, lambda, r, tangent);
   }
   /// dR/dp, where the residual is r.
-  Vector by_load(const Config& q, const Vector& lambda, double p, const Residual& r) {
+  Numbers by_load(const Config& q, const Numbers& lambda, double p, const Residual& r) {
     constexpr double little = 1e-6;
     Config nudged = q;
     run_.system.prescribe(nudged, (p + little) * end_, p + little), run_.system.place(nudged);
@@ -140,7 +140,7 @@ class PathSteps final : public Steps {
     return ahead.r;
   }
   /// K z = -r with the tangent evaluated last; false, and `why_`, where that fails.
-  bool solve(const Vector& r, Vector& z) {
+  bool solve(const Numbers& r, Numbers& z) {
     const SolveReport solved = correct(*run_.solver, r, z);
     if (!solved.ok) why_ = run_.solver->name() + ": " + solved.message;
     return solved.ok;
@@ -161,7 +161,7 @@ class PathSteps final : public Steps {
       std::fill(way.z.begin() + 3 * run_.system.first_joint_block(), way.z.end(), 0.0);
     }
     if (run_.report.steps > 0) {
-      Vector far = Unknown(run_.system, run_.system.start, state.q).increments(run_.system);
+      Numbers far = Unknown(run_.system, run_.system.start, state.q).increments(run_.system);
       far.resize(way.z.size(), 0.0);
       at_.unit = std::max(at_.unit, 3 * std::sqrt(dot(far, far)));
     }
@@ -181,12 +181,12 @@ class PathSteps final : public Steps {
     Config guess = from.q;
     system.prescribe(guess, p * end_, p), system.place(guess);
     Unknown u(system, from.q, guess);
-    Vector lambda = from.lambda, z = way.z, by_share;
+    Numbers lambda = from.lambda, z = way.z, by_share;
     for (double& x : z) x *= so_far;
     std::optional<Correction> foreseen;  // the last correction, to first order (physics/solid,
                                          // `foresee`), while corrections halve
     bool foresees = system.traits().deforms;
-    const auto move = [&](const Vector& by) {
+    const auto move = [&](const Numbers& by) {
       if (foresees) {
         foreseen.emplace(Correction{u.q, none_});
         system.add_rates(foreseen->along, u.q, by);
@@ -206,7 +206,7 @@ class PathSteps final : public Steps {
       if (!std::isfinite(report_.residual)) return why_ = "the residual is not finite", false;
       if (iterations_ > 0 && (report_.residual <= options.tolerance || last <= 1e-2 * options.tolerance)) break;
       if (iterations_ == most_iterations) return why_ = "no convergence within the iterations allowed", false;
-      Vector z_p;
+      Numbers z_p;
       if (!solve(r.r, z) || !solve(by_load(u.q, lambda, p, r), z_p)) return false;
       const double slant = dot(across.z, z_p) + unit2 * across.p, dp = -dot(across.z, z) / slant;
       for (size_t i = 0; i < z.size(); ++i) z[i] += dp * z_p[i];
@@ -248,7 +248,7 @@ class PathSteps final : public Steps {
     if (reach_ == 0 && at_.share < 1 && to.on.share >= 1) {  // the share is given
       give_up();
       const double ahead = (1 - at_.share) / (to.on.share - at_.share) * at_.radius;
-      Way across{Vector(way.z.size(), 0.0), 1};
+      Way across{Numbers(way.z.size(), 0.0), 1};
       way.p = (1 - at_.share) / ahead;
       return find(way, ahead, across, to) ? "" : why_;
     }

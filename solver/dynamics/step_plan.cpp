@@ -18,7 +18,7 @@ constexpr double most_before = 3;        // the same before the end
 constexpr size_t most_passes = 12;
 constexpr double steep = 64,
                  steepest = 1000;     // by which a demand falls at most, where an error is no small part of the motion, and where it is
-constexpr double loose = 1e-4;        // of the length: where a method may be chosen, a first pass asks no less
+constexpr double loosest = 1e-4;      // of the length: where a method may be chosen, a first pass asks no less
 constexpr double many_steps = 5000;   // of second order: gauss is tried first,
 constexpr double dear = 10;           // a step of it costs as much as this many of them: so long as it may be cheaper
 constexpr double most_steps = 100;    // of a pass, over those of the first by the same method
@@ -50,7 +50,7 @@ StepPlan first_plan(const Scene& scene, const System& system) {
     plan.chooses_method =
         !time.given("integrator") && !time.given("dissipation") && time.text("error_estimate") != "never" && gauss_serves(system);
     const int order = method == Gauss::name ? 6 : method == Radau::name ? 5 : 2;
-    const double first = plan.chooses_method ? std::max(plan.asked, loose * system.length) : plan.asked;
+    const double first = plan.chooses_method ? std::max(plan.asked, loosest * system.length) : plan.asked;
     plan.passes.push_back({method, first_demand(first, order, system.length, time.number("end"))});
   } else {
     plan.passes.push_back({method});

@@ -18,9 +18,9 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 /// What the spin adds to the equations, in coordinates of the basis.
-class Spin : AboutState {
+class SpinTerms : AboutState {
  public:
-  Spin(const System& system, KktSolver& solver, const State& state, const std::vector<FoundMode>& basis)
+  SpinTerms(const System& system, KktSolver& solver, const State& state, const std::vector<FoundMode>& basis)
       : AboutState(system, solver, state) {
     basis_.resize(n_, static_cast<Eigen::Index>(basis.size()));
     for (size_t j = 0; j < basis.size(); ++j) basis_.col(static_cast<Eigen::Index>(j)) = Eigen::Map<const Vector>(basis[j].x.data(), n_);
@@ -96,8 +96,8 @@ class Spin : AboutState {
 };
 
 /// Error where stiffness, damping or forces at another angle of the spin are others.
-void refuse_uneven(const System& system, const State& state, const Spin& spin, const std::vector<FoundMode>& basis) {
-  const Spin::Terms here = spin.at(0), further = spin.at(1);
+void refuse_uneven(const System& system, const State& state, const SpinTerms& spin, const std::vector<FoundMode>& basis) {
+  const SpinTerms::Terms here = spin.at(0), further = spin.at(1);
   double largest = here.C.squaredNorm(), slowest = 1e300;
   for (const FoundMode& mode : basis) largest = std::max(largest, std::abs(mode.figures.omega2));
   for (const FoundMode& mode : basis)
@@ -141,8 +141,8 @@ std::string not_steady(const System& system, const State& state) {
 
 std::vector<FoundMode> whirling_modes(const System& system, KktSolver& solver, const State& state, const std::vector<FoundMode>& basis,
                                       int wanted) {
-  const Spin spin(system, solver, state, basis);
-  const Spin::Terms here = spin.at(0);
+  const SpinTerms spin(system, solver, state, basis);
+  const SpinTerms::Terms here = spin.at(0);
   refuse_uneven(system, state, spin, basis);
   const auto m = static_cast<Eigen::Index>(basis.size());
   Matrix A = Matrix::Zero(2 * m, 2 * m);

@@ -25,7 +25,7 @@ struct Kind {
   int work;
 };
 
-Kind make(const ShapeRow& row) {
+Kind make_shape(const ShapeRow& row) {
   const int n = row.corners + static_cast<int>(row.edges.size());
   Kind k{{row.name, n, row.corners, row.dimension, row.vtk, row.xdmf, row.facets,
           row.neighbours.empty() ? std::vector<int>{1} : row.neighbours[0]},
@@ -72,7 +72,7 @@ std::array<std::unique_ptr<const Kind>, most_shapes>& kinds() {
                                                                {"quad4", 4, 2, 9, 5, 1, {{0, 1, 2, 3}}, {}, {}},
                                                                {"quad8", 4, 2, 23, 37, 1, {{0, 1, 2, 3}}, {}, quad_edges},
                                                                {"shell8", 8, 3, 12, 9, 190, hex, hex_corners, {}}})
-      t[number++] = std::make_unique<const Kind>(make(row));
+      t[number++] = std::make_unique<const Kind>(make_shape(row));
     return t;
   }();
   return table;
@@ -150,7 +150,7 @@ void add_shape_row(Shape shape, const ShapeRow& row) {
   for (const auto& k : kinds())
     if (k && (k->info.name == row.name || &k == &kinds()[number]))
       throw Error("", fmt::format("shape \"{}\", number {}: there is one", row.name, number), "", Exit::fault);
-  kinds()[number] = std::make_unique<const Kind>(make(row));
+  kinds()[number] = std::make_unique<const Kind>(make_shape(row));
 }
 
 int work_of_cell(Shape shape) { return kind(shape).work; }

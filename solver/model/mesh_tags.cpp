@@ -17,15 +17,15 @@ namespace {
 
 const std::vector<std::string> keys{"rigid", "linear", "nonlinear", "rest"};
 
-std::string place(const toml::node& node) { return place_of(node).text(); }
+std::string place_text(const toml::node& node) { return place_of_node(node).text(); }
 
 Vec3 read_point(const toml::node& node) {
   const auto* list = node.as_array();
-  if (!list || list->size() != 3) throw Error(place(node), "a corner of a box is three numbers", "box = [[x, y, z], [x, y, z]]");
+  if (!list || list->size() != 3) throw Error(place_text(node), "a corner of a box is three numbers", "box = [[x, y, z], [x, y, z]]");
   Vec3 x;
   for (int i = 0; i < 3; ++i) {
     const auto number = (*list)[i].value<double>();
-    if (!number) throw Error(place((*list)[i]), fmt::format("wanted a number, not {}", type_word((*list)[i])));
+    if (!number) throw Error(place_text((*list)[i]), fmt::format("wanted a number, not {}", type_word((*list)[i])));
     x[i] = *number;
   }
   return x;
@@ -37,7 +37,7 @@ void order_box(TagRule& rule) {
 }
 
 TagRule read_rule(Fidelity fidelity, const toml::node& node) {
-  TagRule rule{fidelity, TagRule::By::name, "", {}, {}, place(node)};
+  TagRule rule{fidelity, TagRule::By::name, "", {}, {}, place_text(node)};
   if (const auto text = node.value<std::string>()) {
     rule.pattern = *text;
     return rule;
@@ -48,14 +48,14 @@ TagRule read_rule(Fidelity fidelity, const toml::node& node) {
   const Item item = in_file_order(*table).front();
   if (item.key == "box") {
     const auto* corners = item.node->as_array();
-    if (!corners || corners->size() != 2) throw Error(place(*item.node), "a box is two corners", "box = [[x, y, z], [x, y, z]]");
+    if (!corners || corners->size() != 2) throw Error(place_text(*item.node), "a box is two corners", "box = [[x, y, z], [x, y, z]]");
     rule.by = TagRule::By::box;
     rule.low = read_point((*corners)[0]), rule.high = read_point((*corners)[1]);
     order_box(rule);
   } else if (item.key == "set") {
     rule.by = TagRule::By::set;
     const auto name = item.node->value<std::string>();
-    if (!name) throw Error(place(*item.node), fmt::format("wanted the name of a set, not {}", type_word(*item.node)));
+    if (!name) throw Error(place_text(*item.node), fmt::format("wanted the name of a set, not {}", type_word(*item.node)));
     rule.pattern = *name;
   } else {
     throw Error(item.place.text(), fmt::format("unknown key \"{}\"", item.key), suggest(item.key, std::vector<std::string>{"box", "set"}));
@@ -132,13 +132,13 @@ TagRules read_tag_rules(const std::string& path) {
     }
     if (item.key == "rest") {
       const auto text = item.node->value<std::string>();
-      if (!text) throw Error(place(*item.node), fmt::format("wanted rigid, linear or nonlinear, not {}", type_word(*item.node)));
-      rules.rest = fidelity_of(*text, place(*item.node));
+      if (!text) throw Error(place_text(*item.node), fmt::format("wanted rigid, linear or nonlinear, not {}", type_word(*item.node)));
+      rules.rest = fidelity_of(*text, place_text(*item.node));
       continue;
     }
     const auto* list = item.node->as_array();
     if (!list)
-      throw Error(place(*item.node), fmt::format("wanted a list of regions, not {}", type_word(*item.node)),
+      throw Error(place_text(*item.node), fmt::format("wanted a list of regions, not {}", type_word(*item.node)),
                   fmt::format("{} = [\"name\"]", item.key));
     for (const auto& node : *list) rules.rules.push_back(read_rule(fidelity_of(item.key, where), node));
   }

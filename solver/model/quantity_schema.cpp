@@ -25,7 +25,7 @@ std::vector<std::string> components_of(const Entry& q) {
   return {};
 }
 
-[[noreturn]] void fail(const Entry& q, std::string_view key, const std::string& what, const std::string& hint = "") {
+[[noreturn]] void fail_quantity(const Entry& q, std::string_view key, const std::string& what, const std::string& hint = "") {
   throw Error(q.where(key), q.label() + ": " + what, hint);
 }
 
@@ -34,14 +34,14 @@ void check_name(const Entry& q, std::string_view key, const std::string& name, s
   if (std::find(names.begin(), names.end(), name) != names.end()) return;
   std::string hint = suggest(name, names);
   if (hint.empty()) hint = names.empty() ? fmt::format("the scene has no {}", what) : fmt::format("there are: {}", fmt::join(names, ", "));
-  fail(q, key, fmt::format("no {} \"{}\"", what, name), hint);
+  fail_quantity(q, key, fmt::format("no {} \"{}\"", what, name), hint);
 }
 
 /// "label [unit] = formula": its unit, "1" without one.
 std::string unit_of_formula(const Entry& q) {
   const std::string& text = q.text("formula");
   const auto equals = text.find('=');
-  if (equals == text.npos) fail(q, "formula", "no = in it", "NAME [UNIT] = FORMULA, as in hilo-post series");
+  if (equals == text.npos) fail_quantity(q, "formula", "no = in it", "NAME [UNIT] = FORMULA, as in hilo-post series");
   const std::string unit = unit_in_heading(text.substr(0, equals));
   return unit.empty() ? "1" : unit;
 }
@@ -122,28 +122,29 @@ void check_quantities(const Entries& entries) {
       for (const char* s : sources)
         if (q.has(s)) given.emplace_back(s);
       if (given.size() != 1)
-        fail(q, given.empty() ? "kind" : given[1], given.empty() ? "of what?" : fmt::format("one of {}", fmt::join(given, ", ")),
-             "give one of joint, stress, sensor, between, formula");
+        fail_quantity(q, given.empty() ? "kind" : given[1], given.empty() ? "of what?" : fmt::format("one of {}", fmt::join(given, ", ")),
+                      "give one of joint, stress, sensor, between, formula");
     }
     if (q.has("joint")) check_name(q, "joint", q.text("joint"), "joint", names("joint"));
     if (q.has("sensor")) check_name(q, "sensor", q.text("sensor"), "sensor", names("sensor"));
     if (q.has("between")) {
       if (q.texts("between").size() < 2 || q.texts("between").size() > 3)
-        fail(q, "between", fmt::format("{} probes", q.texts("between").size()), "two probes, or three");
+        fail_quantity(q, "between", fmt::format("{} probes", q.texts("between").size()), "two probes, or three");
       for (const std::string& p : q.texts("between")) check_name(q, "between", p, "probe", names("probe"));
     }
     if (q.has("component")) check_name(q, "component", q.text("component"), "component", components_of(q));
-    if (q.has("cfc") && q.given("cfc") && !q.has("sensor")) fail(q, "cfc", "only what sensors felt is filtered", "give a sensor");
+    if (q.has("cfc") && q.given("cfc") && !q.has("sensor")) fail_quantity(q, "cfc", "only what sensors felt is filtered", "give a sensor");
     if (const auto output = entries.find("output"); q.has("stress") && output != entries.end())
       for (const Entry& o : output->second)
         if (const auto& f = o.texts("fields"); std::find(f.begin(), f.end(), "von_mises") == f.end())
-          fail(q, "stress", "the run does not put out von_mises", "add it to output.fields");
+          fail_quantity(q, "stress", "the run does not put out von_mises", "add it to output.fields");
     if (q.has("formula")) unit_of_formula(q);
     if (q.has("tolerance")) parse_tolerance(q.text("tolerance"), unit_of(q).value_or(""), q.where("tolerance"));
     if (const auto time = entries.find("time"); q.kind == "at" && time != entries.end())
       for (const Entry& t : time->second)
         if (t.has("end") && q.number("t") > t.number("end"))
-          fail(q, "t", fmt::format("{:g} s is after the end", q.number("t")), fmt::format("the run ends at {:g} s", t.number("end")));
+          fail_quantity(q, "t", fmt::format("{:g} s is after the end", q.number("t")),
+                        fmt::format("the run ends at {:g} s", t.number("end")));
   }
 }
 

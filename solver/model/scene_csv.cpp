@@ -16,7 +16,7 @@
 namespace hilo {
 namespace {
 
-std::string_view trim(std::string_view s) {
+std::string_view trim_cell(std::string_view s) {
   const auto first = s.find_first_not_of(" \t\r"), last = s.find_last_not_of(" \t\r");
   return first == s.npos ? "" : s.substr(first, last - first + 1);
 }
@@ -33,7 +33,7 @@ std::vector<Field> fields_of(std::string_view line) {
     const size_t end = std::min(line.find_first_of(",;\t", begin), line.size());
     const std::string_view raw = line.substr(begin, end - begin);
     const size_t blank = std::min(raw.find_first_not_of(" \r"), raw.size());
-    fields.push_back({trim(raw), static_cast<int>(begin + blank + 1)});
+    fields.push_back({trim_cell(raw), static_cast<int>(begin + blank + 1)});
     begin = end + 1;
   }
   return fields;
@@ -73,7 +73,7 @@ HistoryTable read_history_csv(const std::string& path, const std::string& where)
     const std::string_view line = std::string_view(text).substr(begin, end - begin);
     begin = end + 1;
     ++line_number;
-    if (trim(line).empty() || trim(line).starts_with('#')) continue;
+    if (trim_cell(line).empty() || trim_cell(line).starts_with('#')) continue;
     const auto fields = fields_of(line);
     const auto at = [&](size_t i) { return fmt::format("{}:{}:{}", path, line_number, fields[i].column); };
     if (fields.size() != 2)
@@ -110,7 +110,7 @@ std::vector<std::vector<double>> read_rows_csv(const std::string& path, const st
     const std::string_view line = std::string_view(text).substr(begin, end - begin);
     begin = end + 1;
     ++line_number;
-    if (trim(line).empty() || trim(line).starts_with('#')) continue;
+    if (trim_cell(line).empty() || trim_cell(line).starts_with('#')) continue;
     const auto fields = fields_of(line);
     const auto at = [&](size_t i) { return fmt::format("{}:{}:{}", path, line_number, fields[i].column); };
     const bool fits = columns == 0 ? rule.fits(fields.size()) : fields.size() == columns;

@@ -70,10 +70,10 @@ void read_list(std::string_view section, const Item& item, const Surroundings& a
   for (const auto& node : *list) {
     const auto* table = node.as_table();
     if (!table)
-      throw Error(place_of(node).text(), fmt::format("{} holds {}, not a table", section, type_word(node)),
+      throw Error(place_of_node(node).text(), fmt::format("{} holds {}, not a table", section, type_word(node)),
                   fmt::format("write [[{}]]", section));
     const auto name = (*table)["name"].value<std::string>().value_or("");
-    out.push_back(read_entry(section, *table, name, place_of(node), around));
+    out.push_back(read_entry(section, *table, name, place_of_node(node), around));
     if (!out.back().given("name")) continue;
     const Place& place = out.back().values.find("name")->second.place;
     check_name(section, name, place);

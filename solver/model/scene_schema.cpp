@@ -22,7 +22,7 @@ std::string any_of(const std::vector<std::string>& words) {
   return out;
 }
 
-std::vector<KindSchema> make() {
+std::vector<KindSchema> make_schema() {
   std::vector<KindSchema> s;
   s.push_back({"scene",
                "",
@@ -303,7 +303,7 @@ Registry<OwnSection>& own_sections() {
 }
 
 const std::vector<KindSchema>& scene_schema() {
-  static const std::vector<KindSchema> schema = make();
+  static const std::vector<KindSchema> schema = make_schema();
   return schema;
 }
 

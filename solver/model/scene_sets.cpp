@@ -48,7 +48,7 @@ class Where {
   double radius_ = 0, half_ = 1e300, tolerance_ = 0;
 };
 
-[[noreturn]] void fail(const Entry& e, std::string_view key, const std::string& what, const std::string& hint) {
+[[noreturn]] void fail_set(const Entry& e, std::string_view key, const std::string& what, const std::string& hint) {
   throw Error(e.where(key), e.label() + ": " + what, hint);
 }
 
@@ -68,7 +68,7 @@ std::vector<std::int64_t> nodes_of_regions(const Entry& e, const LocalMesh& loca
       const auto nodes = local.nodes_of(region, e.where("of"));
       found.insert(found.end(), nodes.begin(), nodes.end());
     }
-    if (!any) fail(e, "of", fmt::format("no region \"{}\"", pattern), suggest(pattern, local.mesh.region_name));
+    if (!any) fail_set(e, "of", fmt::format("no region \"{}\"", pattern), suggest(pattern, local.mesh.region_name));
   }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
@@ -88,8 +88,8 @@ Found within(const Entry& e, const LocalMesh& local, const std::vector<Facet>& s
   }
   nearest = -comm.max(-nearest);
   if (nearest > 0)
-    fail(e, "kind", fmt::format("no node lies there; the nearest is {:.4g} m off", nearest),
-         "look at the places: hilo-post mesh --edges all");
+    fail_set(e, "kind", fmt::format("no node lies there; the nearest is {:.4g} m off", nearest),
+             "look at the places: hilo-post mesh --edges all");
   for (const Facet& f : surface) {
     const auto its = mesh.facet_nodes(f);
     if (std::all_of(its.begin(), its.end(), [&](std::int64_t i) { return std::binary_search(found.nodes.begin(), found.nodes.end(), i); }))
@@ -121,12 +121,13 @@ Found face_near(const Entry& e, const LocalMesh& local, const std::vector<Facet>
     nearest[face[i]] = std::min(nearest[face[i]], distance(all[i], at));
   }
   const auto best = std::min_element(nearest.begin(), nearest.end());
-  if (best == nearest.end()) fail(e, "of", "the regions have no outer facets", "");
+  if (best == nearest.end()) fail_set(e, "of", "the regions have no outer facets", "");
   if (*best > tolerance)
-    fail(e, "at", fmt::format("the nearest face is {:.4g} m off", *best), "look at the places: hilo-post mesh --faces");
+    fail_set(e, "at", fmt::format("the nearest face is {:.4g} m off", *best), "look at the places: hilo-post mesh --faces");
   for (auto other = nearest.begin(); other != nearest.end(); ++other)
     if (other != best && *other <= *best + 1e-6 * local.length)
-      fail(e, "at", "two faces are as near to the point as each other", "a point amid the face, not on its border: hilo-post mesh --faces");
+      fail_set(e, "at", "two faces are as near to the point as each other",
+               "a point amid the face, not on its border: hilo-post mesh --faces");
   const int wanted = static_cast<int>(best - nearest.begin());
   Found found;
   std::set<std::int64_t> nodes;
@@ -150,12 +151,12 @@ void add_scene_sets(const Scene& scene, LocalMesh& local, const Comm& comm) {
   const std::vector<Facet> surface = outer_surface(local, comm);
   for (const Entry& e : entries) {
     if (std::find(names.begin(), names.end(), e.name) != names.end())
-      fail(e, "kind", fmt::format("the mesh has a region or set \"{}\" already", e.name), "give the set another name");
+      fail_set(e, "kind", fmt::format("the mesh has a region or set \"{}\" already", e.name), "give the set another name");
     Found found = e.kind == "near" ? face_near(e, local, surface, comm) : within(e, local, surface, comm);
     double owned = 0;
     for (const std::int64_t i : found.nodes) owned += local.node_owned[i] != 0;
     if (comm.sum(owned) == 1 && comm.size > 1)
-      fail(e, "kind", "a single node, which on several ranks only a set of the mesh can be", "a larger place, or one rank");
+      fail_set(e, "kind", "a single node, which on several ranks only a set of the mesh can be", "a larger place, or one rank");
     mesh.node_sets[e.name] = std::move(found.nodes);
     if (comm.sum(static_cast<double>(found.facets.size())) > 0) mesh.facet_sets[e.name] = std::move(found.facets);
   }

@@ -251,7 +251,7 @@ std::vector<Item> in_file_order(const toml::table& table) {
   return items;
 }
 
-Place place_of(const toml::node& node) { return place(node.source()); }
+Place place_of_node(const toml::node& node) { return place(node.source()); }
 
 std::string_view type_word(const toml::node& node) {
   switch (node.type()) {

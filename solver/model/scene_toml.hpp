@@ -28,7 +28,7 @@ struct Item {
   const toml::node* node;
 };
 std::vector<Item> in_file_order(const toml::table& table);
-Place place_of(const toml::node& node);
+Place place_of_node(const toml::node& node);
 
 /// "text", "a number", "a list", ... for messages.
 std::string_view type_word(const toml::node& node);

@@ -25,7 +25,7 @@ struct Reading {
   [[noreturn]] void wrong_type(const toml::node& node, std::string_view expected) const {
     std::string hint(param.meaning);
     if (!param.unit.empty() && param.unit != "1") hint = fmt::format("in {} of the system {}, without the unit", param.unit, around.units);
-    fail(node.source().path ? place_of(node) : item.place, fmt::format("{} is {}, not {}", item.key, type_word(node), expected), hint);
+    fail(node.source().path ? place_of_node(node) : item.place, fmt::format("{} is {}, not {}", item.key, type_word(node), expected), hint);
   }
 };
 
@@ -35,21 +35,21 @@ bool is_whole(const Param& p) { return p.key == "steps" || p.key == "iterations"
 /// zero.
 constexpr double largest = 1e30, smallest = 1e-30;
 
-double number(const Reading& r, const toml::node& node) {
+double read_number(const Reading& r, const toml::node& node) {
   const auto x = node.value<double>();
   if (!x || !node.is_number()) r.wrong_type(node, "a number");
   const double si = *x * to_si(r.param.unit, r.around.units);
-  if (!std::isfinite(si)) r.fail(place_of(node), fmt::format("{} = {} is not finite", r.item.key, *x));
+  if (!std::isfinite(si)) r.fail(place_of_node(node), fmt::format("{} = {} is not finite", r.item.key, *x));
   if (!r.param.range.contains(si)) {
     const Range& range = r.param.range;
     const bool interval = std::isfinite(range.low) && std::isfinite(range.high);
-    r.fail(place_of(node), fmt::format("{} = {} {} {}", r.item.key, *x, interval ? "is not in" : "is not", range.text()));
+    r.fail(place_of_node(node), fmt::format("{} = {} {} {}", r.item.key, *x, interval ? "is not in" : "is not", range.text()));
   }
   if (std::abs(si) > largest || (r.param.range.low == 0 && r.param.range.low_open && si < smallest))
-    r.fail(place_of(node), fmt::format("{} = {} is beyond what can be computed with", r.item.key, *x),
+    r.fail(place_of_node(node), fmt::format("{} = {} is beyond what can be computed with", r.item.key, *x),
            fmt::format("sizes from {:g} to {:g}{}", smallest, largest,
                        r.param.unit.empty() || r.param.unit == "1" ? "" : fmt::format(" {}, in SI units", r.param.unit)));
-  if (is_whole(r.param) && si != std::floor(si)) r.fail(place_of(node), fmt::format("{} = {} is not a whole number", r.item.key, *x));
+  if (is_whole(r.param) && si != std::floor(si)) r.fail(place_of_node(node), fmt::format("{} = {} is not a whole number", r.item.key, *x));
   return si;
 }
 
@@ -71,9 +71,9 @@ std::vector<double> list_of_numbers(const Reading& r, const std::vector<size_t>&
   std::vector<double> values;
   for (const auto& x : *list) {
     const auto* row = r.param.key == "points" ? x.as_array() : nullptr;  // points may be rows of three
-    if (row && row->size() != 3) r.fail(place_of(x), fmt::format("a point of {} numbers, not 3", row->size()));
-    for (size_t k = 0; row && k < 3; ++k) values.push_back(number(r, (*row)[k]));
-    if (!row) values.push_back(number(r, x));
+    if (row && row->size() != 3) r.fail(place_of_node(x), fmt::format("a point of {} numbers, not 3", row->size()));
+    for (size_t k = 0; row && k < 3; ++k) values.push_back(read_number(r, (*row)[k]));
+    if (!row) values.push_back(read_number(r, x));
   }
   return values;
 }
@@ -84,7 +84,7 @@ std::string word(const Reading& r, const toml::node& node) {
   const auto allowed = choices(r.section, r.param.key);
   if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), *s) == allowed.end()) {
     const std::string hint = suggest(*s, allowed);
-    r.fail(place_of(node), fmt::format("{} = \"{}\" is not known", r.item.key, *s),
+    r.fail(place_of_node(node), fmt::format("{} = \"{}\" is not known", r.item.key, *s),
            hint.empty() ? fmt::format("one of: {}", fmt::join(allowed, ", ")) : hint);
   }
   return *s;
@@ -92,7 +92,7 @@ std::string word(const Reading& r, const toml::node& node) {
 
 History factor(const Reading& r) {
   const toml::node& node = *r.item.node;
-  if (node.is_number()) return {{0}, {number(r, node)}};
+  if (node.is_number()) return {{0}, {read_number(r, node)}};
   if (const auto name = node.value<std::string>(); name && node.is_string()) {
     if (const auto h = r.around.histories.find(*name); h != r.around.histories.end()) return h->second;
     std::vector<std::string> names;
@@ -104,7 +104,7 @@ History factor(const Reading& r) {
   }
   if (const auto* table = node.as_table()) {
     const std::string owner = r.label + ": history";
-    return history_of(read_entry("history", *table, "", place_of(node), r.around, owner), owner, r.around);
+    return history_of(read_entry("history", *table, "", place_of_node(node), r.around, owner), owner, r.around);
   }
   r.wrong_type(node, "a history: a name, a number or a table");
 }
@@ -117,14 +117,14 @@ Value read_value(std::string_view section, const Param& param, const Item& item,
   v.place = item.place;
   switch (param.type) {
     case Type::number:
-      v.numbers = {number(r, *item.node)};
+      v.numbers = {read_number(r, *item.node)};
       break;
     case Type::vector3:
       v.numbers = list_of_numbers(r, {3});
       break;
     case Type::numbers:
       if (const auto n = lengths_of(param); item.node->is_number() && std::find(n.begin(), n.end(), 1u) != n.end())
-        v.numbers = {number(r, *item.node)};
+        v.numbers = {read_number(r, *item.node)};
       else
         v.numbers = list_of_numbers(r, n);
       break;

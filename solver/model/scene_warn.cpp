@@ -68,7 +68,7 @@ double shortest_rise(const History& h) {
 }
 
 /// A history of a file that ends before the run, at a value that is not zero: that it is held may not be meant.
-void check_ends(const Entries& entries, const Entry& time, Warnings& w) {
+void warn_of_ends(const Entries& entries, const Entry& time, Warnings& w) {
   if (!time.has("end") || time.text("analysis") != "dynamic") return;
   const auto named = entries.find("history");
   if (named == entries.end()) return;
@@ -89,7 +89,7 @@ void check_ends(const Entries& entries, const Entry& time, Warnings& w) {
   }
 }
 
-void check_time(const Entries& entries, const Entry& time, Warnings& w) {
+void warn_of_time(const Entries& entries, const Entry& time, Warnings& w) {
   if (time.has("reach") && time.text("analysis") != "path") w.add(time, "reach", "says nothing but to analysis = \"path\"");
   if (!time.has("step")) return;
   const double step = time.number("step");
@@ -145,8 +145,8 @@ std::vector<std::string> find_implausible(const Entries& entries) {
       check_places(e, w);
       if (section == "region" && e.number("mass_damping") > 0) w.add(e, "mass_damping", "brakes rigid motion too; `damping` does not");
     }
-  check_ends(entries, entries.find("time")->second.front(), w);
-  check_time(entries, entries.find("time")->second.front(), w);
+  warn_of_ends(entries, entries.find("time")->second.front(), w);
+  warn_of_time(entries, entries.find("time")->second.front(), w);
   check_unused(entries, w);
   return std::move(w.lines);
 }

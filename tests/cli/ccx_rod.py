@@ -5,12 +5,17 @@ must not come out low because nodal stress is the mean of what the cells have in
 
   ccx_rod.py REPO BIN [H]     H: edge of the cells, 0.008 m"""
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 
 import h5py
 import numpy as np
+
+if shutil.which("ccx") is None:
+    print("this system has no CalculiX to compare with")
+    sys.exit(77)
 
 repo, tools = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 edge = sys.argv[3] if len(sys.argv) > 3 else "0.008"

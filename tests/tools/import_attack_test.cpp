@@ -9,7 +9,7 @@
 #include "import_case.hpp"
 #include "model/scene.hpp"
 
-namespace hilo {
+namespace hilo::test::import_attack_test {
 namespace {
 
 /// Cut, doubled, swapped and overwritten pieces; some values that no field expects.
@@ -270,4 +270,4 @@ TEST(ImportAttack, DamagedInpDecksAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_attack_test

@@ -7,7 +7,7 @@
 
 #include "import_case.hpp"
 
-namespace hilo {
+namespace hilo::test::import_bdf_fields_test {
 namespace {
 
 using test::volume;
@@ -179,4 +179,4 @@ TEST_F(ImportBdfFields, WeightsBecomeMasses) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_bdf_fields_test

@@ -10,7 +10,7 @@
 #include "model/scene.hpp"
 #include "model/store.hpp"
 
-namespace hilo {
+namespace hilo::test::import_bdf_scene_test {
 namespace {
 
 /// A bar of four cubes of 1 m along x, E = 1 GPa, nu = 0: grids 1 to 4 at its foot, 17 to 20 at its head (4, 0..1, 0..1).
@@ -255,4 +255,4 @@ TEST_F(ImportBdfScene, UnitsConvertWhatTheLinesSay) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_bdf_scene_test

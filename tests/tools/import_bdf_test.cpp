@@ -2,7 +2,7 @@
 // Nastran bulk data in its three field formats.
 #include "import_case.hpp"
 
-namespace hilo {
+namespace hilo::test::import_bdf_test {
 namespace {
 
 using test::cells_of;
@@ -98,4 +98,4 @@ TEST_F(ImportBdf, WrongEntriesAreNamedByLine) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_bdf_test

@@ -5,7 +5,7 @@
 #include "import_case.hpp"
 #include "model/scene.hpp"
 
-namespace hilo {
+namespace hilo::test::import_bdf_told_test {
 namespace {
 
 const std::string cube =
@@ -138,4 +138,4 @@ TEST_F(ImportBdfTold, MassesApartOnAGridHaveTheInertiaOfTheScaledGeometry) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_bdf_told_test

@@ -6,7 +6,7 @@
 #include "import_case.hpp"
 #include "model/scaled_jacobian.hpp"
 
-namespace hilo {
+namespace hilo::test::import_cad_test {
 namespace {
 
 using test::cells_of;
@@ -211,4 +211,4 @@ TEST_F(ImportCad, TheVolumeIsThatOfTheKernelToOnePercentAndTold) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_cad_test

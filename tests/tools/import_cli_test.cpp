@@ -3,7 +3,7 @@
 #include "import_case.hpp"
 #include "model/scene.hpp"
 
-namespace hilo {
+namespace hilo::test::import_cli_test {
 namespace {
 
 class ImportCommand : public test::Import {
@@ -113,4 +113,4 @@ TEST_F(ImportCommand, HelpEndsWithAnExample) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_cli_test

@@ -6,7 +6,7 @@
 
 #include "import_case.hpp"
 
-namespace hilo {
+namespace hilo::test::import_gmsh_test {
 namespace {
 
 using test::cells_of;
@@ -325,4 +325,4 @@ TEST_F(ImportGmsh, AGroupThatGmshLeavesEmptyIsTold) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_gmsh_test

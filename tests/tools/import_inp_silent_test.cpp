@@ -6,7 +6,7 @@
 #include "model/scene.hpp"
 #include "model/store.hpp"
 
-namespace hilo {
+namespace hilo::test::import_inp_silent_test {
 namespace {
 
 /// A bar of two cubes of 1 m along x, held at its foot; node 100 beside its head.
@@ -136,4 +136,4 @@ TEST_F(ImportInpSilent, TheFirstCauseIsNamed) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_inp_silent_test

@@ -9,7 +9,7 @@
 #include "model/scene.hpp"
 #include "model/store.hpp"
 
-namespace hilo {
+namespace hilo::test::import_inp_test {
 namespace {
 
 using test::vector_area;
@@ -379,4 +379,4 @@ TEST_F(ImportInp, ADensityThatFitsNoMaterialIsSaidAloud) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_inp_test

@@ -10,7 +10,7 @@
 #include "model/scene.hpp"
 #include "model/store.hpp"
 
-namespace hilo {
+namespace hilo::test::import_inp_ties_test {
 namespace {
 
 /// A bar of four cubes of 1 m along x, E = 1 GPa, nu = 0: nodes 1 to 4 at its foot, 17 to 20 at its head; 100 beside the head.
@@ -129,4 +129,4 @@ TEST_F(ImportInpTies, WhatIsLeftOutIsToldByName) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_inp_ties_test

@@ -3,7 +3,7 @@
 #include "import_case.hpp"
 #include "model/scene.hpp"
 
-namespace hilo {
+namespace hilo::test::import_material_test {
 namespace {
 
 using ImportMaterial = test::Import;
@@ -199,4 +199,4 @@ TEST_F(ImportMaterial, Mats1WithoutALawHereIsNeverTakenForElastic) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_material_test

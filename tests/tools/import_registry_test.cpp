@@ -6,7 +6,7 @@
 #include "import/inp/card.hpp"
 #include "import_case.hpp"
 
-namespace hilo::test {
+namespace hilo::test::import_registry_test {
 namespace {
 
 using ImportRegistry = Import;
@@ -102,4 +102,4 @@ TEST_F(ImportRegistry, AnEntryOfABdfDeckFromOutsideIsOneRow) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::import_registry_test

@@ -6,7 +6,7 @@
 #include "import_case.hpp"
 #include "model/store.hpp"
 
-namespace hilo {
+namespace hilo::test::import_shell_test {
 namespace {
 
 class ImportShell : public test::Import {
@@ -191,4 +191,4 @@ TEST_F(ImportShell, ThicknessIsForSurfacesAndThickenForDecks) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_shell_test

@@ -5,7 +5,7 @@
 #include "import_case.hpp"
 #include "model/thin_regions.hpp"
 
-namespace hilo {
+namespace hilo::test::import_thin_test {
 namespace {
 
 /// Volume, centre and int (r.r I - r r^T) about it, of a region of out.h5.
@@ -127,4 +127,4 @@ TEST_F(ImportThin, OnlyRigidMayBeSaidOfThemAndAPlateSwingsAsItShould) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_thin_test

@@ -2,7 +2,7 @@
 // VTK files of every encoding, as written by VTK 9.1 (tests/tools/decks).
 #include "import_case.hpp"
 
-namespace hilo {
+namespace hilo::test::import_vtk_test {
 namespace {
 
 using test::cells_of;
@@ -65,4 +65,4 @@ TEST_F(ImportVtk, CellsWithoutARegionArrayAreARegionAndThatIsSaid) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::import_vtk_test

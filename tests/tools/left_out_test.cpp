@@ -3,7 +3,7 @@
 #include "import_case.hpp"
 #include "model/scene.hpp"
 
-namespace hilo {
+namespace hilo::test::left_out_test {
 namespace {
 
 const std::string bar =
@@ -164,4 +164,4 @@ TEST_F(LeftOut, SpringsToTheGroundHoldASolidInAStaticRun) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::left_out_test

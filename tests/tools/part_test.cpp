@@ -8,7 +8,7 @@
 #include "../cli.hpp"
 #include "../model/block.hpp"
 
-namespace hilo {
+namespace hilo::test::part_test {
 namespace {
 
 using test::block;
@@ -228,4 +228,4 @@ TEST_F(Part, HelpEndsWithAnExampleThatRuns) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::part_test

@@ -7,7 +7,7 @@
 #include "model/schema.hpp"
 #include "model/store.hpp"
 
-namespace hilo {
+namespace hilo::test::show_test {
 namespace {
 
 using test::block;
@@ -197,4 +197,4 @@ TEST_F(Show, HelpEndsWithAnExampleThatRuns) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::show_test

@@ -4,7 +4,7 @@
 #include "../cli.hpp"
 #include "../model/block.hpp"
 
-namespace hilo {
+namespace hilo::test::tag_test {
 namespace {
 
 using test::block;
@@ -153,4 +153,4 @@ TEST_F(Tag, CompletionAndManPageKnowEveryOption) {
 }
 
 }  // namespace
-}  // namespace hilo
+}  // namespace hilo::test::tag_test

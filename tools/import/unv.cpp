@@ -18,16 +18,16 @@ namespace hilo {
 namespace {
 
 /// A finite-element descriptor: dimension, our shape of solids and bars, the nodes: ours[i] = theirs[p[i]]; faces keep their corners.
-struct Kind {
+struct UnvKind {
   int id, dimension;
   Shape shape;
   std::vector<int> p;
   size_t n_nodes;
 };
-const Kind* kind_of(int id) {
+const UnvKind* unv_kind(int id) {
   // quadratic cells are listed ring by ring: corner, middle, corner, ...
   static const std::vector<int> line{0, 1}, line3{0, 2}, tri{0, 1, 2}, tri6{0, 2, 4}, quad{0, 1, 2, 3}, quad8{0, 2, 4, 6};
-  static const std::vector<Kind> kinds = {
+  static const std::vector<UnvKind> kinds = {
       {11, 1, Shape::bar2, line, 2},
       {21, 1, Shape::bar2, line, 2},
       {22, 1, Shape::bar2, line3, 3},
@@ -96,7 +96,7 @@ class UnvReader {
     return table;
   }
   struct Element {
-    const Kind* kind;
+    const UnvKind* kind;
     std::int64_t id, property;
     std::vector<std::int64_t> nodes;  // rows
     std::int64_t cell = -1;
@@ -164,7 +164,7 @@ class UnvReader {
       const auto place = l_.place(0);
       const auto id = static_cast<int>(l_.integer(1));
       const auto n = static_cast<size_t>(l_.integer(5));
-      e.kind = kind_of(id);
+      e.kind = unv_kind(id);
       if (!e.kind)
         throw Error(l_.place(1), fmt::format("element {}: descriptor {} is not read", e.id, id),
                     "supported: rods 11, beams as lines 21 22 24, faces 41 42 44 45 91 92 94 95, solids 111 112 113 115 116 118");

@@ -17,20 +17,20 @@ namespace {
 constexpr const char* region_arrays[] = {"MATERIALIDS",   "MATERIALID",    "REGION",   "REGIONID", "REGIONS",
                                          "CELLENTITYIDS", "GMSH:PHYSICAL", "MATERIAL", "PARTID"};
 
-struct Kind {
+struct VtkKind {
   int type;
   Shape shape;
   std::vector<int> p;  // ours[i] = theirs[p[i]]; as many as we keep
   const char* name;
   size_t n_nodes;
 };
-const Kind* kind_of(int type) {
+const VtkKind* vtk_kind(int type) {
   const auto first = [](int n) {
     std::vector<int> v(n);
     for (int i = 0; i < n; ++i) v[i] = i;
     return v;
   };
-  static const std::vector<Kind> kinds = {
+  static const std::vector<VtkKind> kinds = {
       {3, Shape::bar2, first(2), "line", 2},
       {10, Shape::tet4, first(4), "tetra", 4},
       {11, Shape::hex8, {0, 1, 3, 2, 4, 5, 7, 6}, "voxel", 8},
@@ -75,12 +75,12 @@ Imported read_vtk(const std::string& path, const ImportOptions& options) {
     m.X.emplace_back(g.points[3 * a], g.points[3 * a + 1], g.points[3 * a + 2]);
     m.node_id.push_back(static_cast<std::int64_t>(a));
   }
-  const bool solids = std::any_of(g.types.begin(), g.types.end(), [](int t) { return kind_of(t) && kind_of(t)->shape != Shape::bar2; });
+  const bool solids = std::any_of(g.types.begin(), g.types.end(), [](int t) { return vtk_kind(t) && vtk_kind(t)->shape != Shape::bar2; });
   refuse_flat(path, std::ranges::count_if(g.types, is_flat), solids);
   std::vector<std::int64_t> cell_of;  // number in the file
   std::vector<std::int64_t> nodes;
   for (size_t c = 0; c < g.types.size(); ++c) {
-    const Kind* k = kind_of(g.types[c]);
+    const VtkKind* k = vtk_kind(g.types[c]);
     if (is_flat(g.types[c]) || (k && k->shape == Shape::bar2 && solids)) {
       in.skip(fmt::format("VTK cells of type {}", g.types[c]), path);
       continue;

@@ -2,7 +2,7 @@
 // Start positions that the scene draws apart are put together, velocities follow the drive, and what cannot be put together is named.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::assembly_test {
 namespace {
 
 // Exact: the crank stands at 30 degrees and turns at 1 rad/s; the other pin is where the circles of coupler and rocker meet.
@@ -64,4 +64,4 @@ TEST(Assembly, NamesTheJointThatCannotBeClosed) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::assembly_test

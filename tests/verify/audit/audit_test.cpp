@@ -7,7 +7,7 @@
 
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::audit_test {
 namespace {
 
 /// Position of a material point, given at the start, from the four points of its body (centre and one along each axis).
@@ -142,4 +142,4 @@ TEST(Audit, DrivesThatPartCompanyStopTheRun) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::audit_test

@@ -4,7 +4,7 @@
 
 #include "verify/beams/beam_scene.hpp"
 
-namespace hilo::test {
+namespace hilo::test::beams_dynamics_test {
 namespace {
 
 class BeamDynamics : public BeamPlace {
@@ -139,4 +139,4 @@ TEST_F(BeamDynamics, IsTheSameOnRanks) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::beams_dynamics_test

@@ -5,7 +5,7 @@
 
 #include "verify/beams/beam_scene.hpp"
 
-namespace hilo::test {
+namespace hilo::test::modes_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -122,4 +122,4 @@ TEST_F(BeamModes, AFrameOfAStripBucklesOutOfItsPlane) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::modes_test

@@ -4,7 +4,7 @@
 
 #include "verify/beams/beam_scene.hpp"
 
-namespace hilo::test {
+namespace hilo::test::beams_statics_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -134,4 +134,4 @@ TEST_F(BeamStatics, ABeamRidesOnASetOfARegionOfEveryFidelity) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::beams_statics_test

@@ -5,7 +5,7 @@
 
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::bending_test {
 namespace {
 
 Vec3 tip_of(const Mesh& m, const std::string& options) {
@@ -310,4 +310,4 @@ TEST(Compression, BeyondWhatALawOrACellStandsForIsTold) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::bending_test

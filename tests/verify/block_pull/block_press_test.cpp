@@ -3,7 +3,7 @@
 // that no step begins with one layer of cells squeezed alone.  Elastic: 32 steps end where four do.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::block_press_test {
 namespace {
 
 const std::string scene = R"(
@@ -61,4 +61,4 @@ TEST(BlockPress, InFourStepsTakesFewIterationsAndEndsWhereManyStepsDo) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::block_press_test

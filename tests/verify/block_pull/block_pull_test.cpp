@@ -3,7 +3,7 @@
 // 0.2049969.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::block_pull_test {
 namespace {
 
 BlockOptions block() {
@@ -48,4 +48,4 @@ TEST(BlockPull, RigidRegionThatSharesTheFaceMovesByTheClosedForm) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::block_pull_test

@@ -2,7 +2,7 @@
 // Lee's frame pushed down by what moves by a law, to more than a third of its height.
 #include "verify/lee_frame.hpp"
 
-namespace hilo::test {
+namespace hilo::test::frame_push_test {
 namespace {
 
 /// 237 iterations in 60 steps, of which one is halved since it ends in a state
@@ -24,4 +24,4 @@ TEST(FramePush, TakesFewIterationsAndCuts) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::frame_push_test

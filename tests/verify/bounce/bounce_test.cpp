@@ -2,7 +2,7 @@
 // A stop gives the energy back that it took, or the part that its restitution asks for.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::bounce_test {
 namespace {
 
 /// Heights the flights reach, z + v^2/(2 g) at their first recorded instant; free flight is exact at any step.
@@ -86,4 +86,4 @@ TEST(Bounce, MistakesAreNamed) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::bounce_test

@@ -3,7 +3,7 @@
 // there is one.  Truth: energy, the rows that were dropped, and the same motion by Radau IIA5.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::bricard_test {
 namespace {
 
 TEST(Bricard, RunsAsGivenNamesTheRedundantJointAndKeepsTheDroppedRow) {
@@ -34,4 +34,4 @@ TEST(Bricard, ConvergesToTheMotionOfRadau) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::bricard_test

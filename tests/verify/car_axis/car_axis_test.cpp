@@ -3,7 +3,7 @@
 // derivative makes.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::car_axis_test {
 namespace {
 
 // Truth: the published solution at t = 3, computed with 1e-14 there: positions of both wheels and the two multipliers.
@@ -21,4 +21,4 @@ TEST(CarAxis, RoadOfASplineThrough300PointsHasItsMultipliers) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::car_axis_test

@@ -3,7 +3,7 @@
 // The force is the mean over the path of the step, which keeps p V exactly and the angular momentum to second order.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::closed_box_test {
 namespace {
 
 TEST(ClosedBox, EnergyPlusPressureTimesVolumeStays) {
@@ -55,4 +55,4 @@ TEST(ClosedBox, AngularMomentumIsKeptToSecondOrder) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::closed_box_test

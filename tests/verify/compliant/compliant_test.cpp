@@ -2,7 +2,7 @@
 // Joints that give way: springs along the rows of the joint.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::compliant_test {
 namespace {
 
 // Truth: let go, a mass m on k and c sinks as -m g/k (1 - exp(-d t)(cos w t + d/w sin w t)), d = c/(2 m), w^2 = k/m - d^2; the mount
@@ -161,4 +161,4 @@ TEST(CompliantJoint, MistakesAreNamed) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::compliant_test

@@ -5,7 +5,7 @@
 
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::constant_velocity_test {
 namespace {
 
 using std::numbers::pi;
@@ -48,4 +48,4 @@ TEST(ConstantVelocityJoint, DoesWhatAHookeJointDoesNot) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::constant_velocity_test

@@ -11,7 +11,7 @@
 #include "verify/contact/collision.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::contact_test {
 namespace {
 
 constexpr double g = 9.81;
@@ -276,4 +276,4 @@ TEST(Contact, GoesOnBitByBit) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::contact_test

@@ -9,7 +9,7 @@
 #include "dynamics/kept_run.hpp"
 #include "verify/contact/collision.hpp"
 
-namespace hilo::test {
+namespace hilo::test::surfaces_test {
 namespace {
 
 /// Two blocks, B turned and above a face of A with a corner ahead.
@@ -338,4 +338,4 @@ TEST(Surfaces, AHundredThrowsKeepEnergyAndMomenta) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::surfaces_test

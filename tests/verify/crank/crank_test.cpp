@@ -8,7 +8,7 @@
 #include "verify/truth.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::crank_test {
 namespace {
 
 /// Side thrust; big end along and across the crank; small end along z and x; main bearing along z and x [kN]; torque [N m].
@@ -60,4 +60,4 @@ TEST(Crank, BearingForcesOfTheRigidDriveAreTheClosedForm) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::crank_test

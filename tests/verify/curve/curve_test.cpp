@@ -2,7 +2,7 @@
 // A point on a curve: the tautochrone, momentum and energy of a bead on a moving track, and what happens at the end of a curve.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::curve_test {
 namespace {
 
 // Exact: on x = r (p + sin p), z = r (1 - cos p) the arc is s = 4 r sin(p/2) = s0 cos(omega t) with omega^2 = g/(4 r).
@@ -91,4 +91,4 @@ TEST(PointOnCurve, SaysWhatIsWrongWithItsPoints) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::curve_test

@@ -3,7 +3,7 @@
 // disk.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::cutting_test {
 namespace {
 
 BlockOptions bar() {
@@ -45,4 +45,4 @@ TEST(StepControl, StopsWithExitThreeAndAReadableFileWhenItMayNotCut) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::cutting_test

@@ -3,7 +3,7 @@
 // is touched.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::damping_test {
 namespace {
 
 Mesh bar() {
@@ -78,4 +78,4 @@ TEST(Damping, ProportionalToMassTakesTheSameOfRigidLinearAndNonlinear) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::damping_test

@@ -9,7 +9,7 @@
 
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::walk_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -252,4 +252,4 @@ TEST(Damping, ThatSaysNothingIsTold) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::walk_test

@@ -2,7 +2,7 @@
 // NAFEMS 5T: peak deflection 1.043 mm at 0.0117 s, peak fibre stress 18.76 MPa, static deflection 0.538 mm; within 2 %.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::deep_beam_test {
 namespace {
 
 Mesh beam(Shape shape, int along) {
@@ -49,4 +49,4 @@ TEST(DeepBeam, SuddenLoadPeaksWhereNafemsSaysWithItsStress) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::deep_beam_test

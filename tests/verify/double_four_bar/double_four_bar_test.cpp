@@ -3,7 +3,7 @@
 // seconds.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::double_four_bar_test {
 namespace {
 
 TEST(DoubleFourBar, PassesItsSingularPositionsAndEndsWhereItShould) {
@@ -28,4 +28,4 @@ TEST(DoubleFourBar, PassesItsSingularPositionsAndEndsWhereItShould) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::double_four_bar_test

@@ -2,7 +2,7 @@
 // Driven joints: the course is kept to round-off, the reaction is what the motion asks for, the work is accounted for.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::drives_test {
 namespace {
 
 constexpr double g = 9.81;
@@ -99,4 +99,4 @@ TEST(DrivenJoint, RefusesACourseThatJumpsAndTwoDrives) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::drives_test

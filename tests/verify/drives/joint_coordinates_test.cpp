@@ -2,7 +2,7 @@
 // Histories of the slide and the angle of joints, against what probes and closed forms say of the same motion.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::joint_coordinates_test {
 namespace {
 
 std::string body(const std::string& name) {
@@ -62,4 +62,4 @@ TEST(Coordinate, OfACompliantJointIsTheAngleBetweenItsEnds) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::joint_coordinates_test

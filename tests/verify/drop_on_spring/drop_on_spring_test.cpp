@@ -2,7 +2,7 @@
 // ANSYS VM65: impact at 0.0719816 s with 27.78489 in/s, deepest 0.5506656 in below the spring's top at 0.1004449 s.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::drop_on_spring_test {
 namespace {
 
 TEST(DropOnSpring, HitsAndTurnsWhereTheClosedFormSays) {
@@ -23,4 +23,4 @@ TEST(DropOnSpring, HitsAndTurnsWhereTheClosedFormSays) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::drop_on_spring_test

@@ -3,7 +3,7 @@
 // beam: 3.28946, 6.70011.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::elastica_test {
 namespace {
 
 void expect_tip(Shape shape, int along, const std::string& law) {
@@ -31,4 +31,4 @@ TEST(Elastica, OfNeoHookeanHexahedraIsWithinHalfAPercent) { expect_tip(Shape::he
 TEST(Elastica, OfQuadraticHexahedraIsWithinHalfAPercent) { expect_tip(Shape::hex20, 40, "stvk"); }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::elastica_test

@@ -3,7 +3,7 @@
 // time integral of weight, loads and what the ground exerts through joints, springs and motions.
 #include "verify/everything/half_rigid.hpp"
 
-namespace hilo::test {
+namespace hilo::test::everything_test {
 namespace {
 
 TEST(Everything, EnergyIsInBalance) {
@@ -41,4 +41,4 @@ TEST(Everything, ImpulseOfAllForcesIsTheChangeOfMomentum) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::everything_test

@@ -14,7 +14,7 @@
 #include "verify/truth.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::flexible_crank_test {
 namespace {
 
 constexpr double crank = 0.15, rod = 0.3, rate = 150, side = 0.008;
@@ -142,4 +142,4 @@ TEST(FlexibleCrank, IsAsPublishedByTheFourShapes) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::flexible_crank_test

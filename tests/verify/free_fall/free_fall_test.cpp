@@ -3,7 +3,7 @@
 // same with unit acceleration and 1 s: 0.5.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::free_fall_test {
 namespace {
 
 class FreeFall : public testing::TestWithParam<std::tuple<Shape, Fidelity>> {};
@@ -58,4 +58,4 @@ TEST(FreeFallSensor, FeelsNothing) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::free_fall_test

@@ -2,7 +2,7 @@
 // Friction in joints: the decelerations, decrements and creeps of Coulomb's law.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::friction_test {
 namespace {
 
 constexpr double g = 9.81;
@@ -105,4 +105,4 @@ TEST(Friction, MistakesAreNamed) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::friction_test

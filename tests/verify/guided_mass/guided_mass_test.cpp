@@ -2,7 +2,7 @@
 // FEBio rj17 rj11 rj12: one mass on a guide and a spring, closed forms of the forced and of the damped oscillator.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::guided_mass_test {
 namespace {
 
 // z(t) = 8/5 (7 + 8 cos 2 pi t) sin^4(pi t)
@@ -68,4 +68,4 @@ TEST(GuidedMass, DampedSettlesAsTheClosedFormSays) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::guided_mass_test

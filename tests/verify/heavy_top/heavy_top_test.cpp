@@ -3,7 +3,7 @@
 // 1e-9).
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::heavy_top_test {
 namespace {
 
 TEST(HeavyTop, CentreIsWithinAMillimetreOverTwoSeconds) {
@@ -46,4 +46,4 @@ TEST(HeavyTop, CentreConvergesAtSecondOrder) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::heavy_top_test

@@ -3,7 +3,7 @@
 // of the shafts, tan(in)/cos 30 with it in the plane.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::hooke_joint_test {
 namespace {
 
 /// Angle of the output shaft from a point of it at unit distance from its axis.
@@ -28,4 +28,4 @@ TEST(HookeJoint, TransmitsTheAngleOfItsYokeInThePlane) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::hooke_joint_test

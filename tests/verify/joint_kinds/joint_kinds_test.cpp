@@ -4,7 +4,7 @@
 
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::joint_kinds_test {
 namespace {
 
 using std::numbers::pi;
@@ -105,4 +105,4 @@ TEST(RackJoint, FallsWithThePinionsInertia) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::joint_kinds_test

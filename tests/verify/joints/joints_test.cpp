@@ -3,7 +3,7 @@
 // the force on the ground, minus ours, which is on b in the joint frame.  Chrono accepts 1e-3 m, 1e-4 m/s and 2e-2 N; here h = 1e-3 s.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::joints_test {
 namespace {
 
 constexpr double position_limit = 1e-4, force_limit = 1e-2;
@@ -120,4 +120,4 @@ TEST(FixedJoint, CarriesWeightAndMomentWithTheirSigns) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::joints_test

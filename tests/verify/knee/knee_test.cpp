@@ -3,7 +3,7 @@
 // each with a slide along it, follow one another in closed form, which fixes every sign; at rest afterwards the joints carry the weight.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::knee_test {
 namespace {
 
 Mat3 turned(double angle, const Vec3& axis) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
@@ -35,4 +35,4 @@ TEST(Knee, AtRestCarriesTheWeightOfWhatIsBelowEachJoint) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::knee_test

@@ -2,7 +2,7 @@
 // Rubber and wood through the whole program: what a free bar keeps, and what a beam does.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::laws_test {
 namespace {
 
 // Truth: energy to 1e-10 and momenta to 1e-12 of a free bar that bends as it tumbles, whatever its law and cells.
@@ -46,4 +46,4 @@ TEST(Laws, BeamOfWoodBendsByItsOwnModuli) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::laws_test

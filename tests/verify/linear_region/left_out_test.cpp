@@ -8,7 +8,7 @@
 
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::left_out_test {
 namespace {
 
 // How much modes leave out, told by the run itself, against the true difference from a run with all modes: of a cantilever shaken between
@@ -91,4 +91,4 @@ fields = ["displacement"]
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::left_out_test

@@ -6,7 +6,7 @@
 
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::linear_region_test {
 namespace {
 
 Mesh bar(double from, double to, int n, Shape shape = Shape::hex8) {
@@ -324,4 +324,4 @@ TEST(LinearRegion, TendsToTheRigidBodyWithTheInverseOfItsStiffness) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::linear_region_test

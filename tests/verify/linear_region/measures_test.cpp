@@ -8,7 +8,7 @@
 
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::measures_test {
 namespace {
 
 constexpr double pi = std::numbers::pi, E = 1e9, h = 0.05, L = 1, I = h * h * h * h / 12, A = h * h;
@@ -160,4 +160,4 @@ TEST_F(LinearMeasures, WhatIsPulledWhileItBendsTellsThatItStiffens) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::measures_test

@@ -2,7 +2,7 @@
 // A million steps: what must be kept is kept to round-off, judged from the results file alone.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::long_run_test {
 namespace {
 
 constexpr double eps = 2.220446049250313e-16;
@@ -47,4 +47,4 @@ TEST(LongRun, OfAFreeBodyKeepsAngularMomentum) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::long_run_test

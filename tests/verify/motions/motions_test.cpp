@@ -3,7 +3,7 @@
 // the law from the first step on, at kinks and behind them, with every integrator; what moves them is measured and its work accounted for.
 #include "verify/motions/motions.hpp"
 
-namespace hilo::test {
+namespace hilo::test::motions_test {
 namespace {
 
 // Exact: the cart has 1 m/s and the energy of it throughout; the bob follows as x = 1 + t - sin(10 t)/10, and the hand that moves the cart
@@ -147,4 +147,4 @@ step = 0.01
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::motions_test

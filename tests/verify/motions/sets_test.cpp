@@ -2,7 +2,7 @@
 // What moves by a law, of flexible parts: sets that move whole or by components, through large turns, and what is refused.
 #include "verify/motions/motions.hpp"
 
-namespace hilo::test {
+namespace hilo::test::sets_test {
 namespace {
 
 // Exact: a load on what moves by a law changes nothing but the hand, which takes over its work.
@@ -258,4 +258,4 @@ TEST_F(Motions, RefuseAHistoryThatJumpsAndComponentsMovedTwice) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::sets_test

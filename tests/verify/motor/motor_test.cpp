@@ -2,7 +2,7 @@
 // M = M0 (1 - w/w0) on an inertia J: w = w0 (1 - exp(-M0 t/(J w0))).
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::motor_test {
 namespace {
 
 TEST(Motor, RunsUpAsTheExponentialOfItsLine) {
@@ -40,4 +40,4 @@ TEST(Motor, ReactsOnWhatCarriesIt) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::motor_test

@@ -4,7 +4,7 @@
 
 #include "verify/natural_modes/natural_modes.hpp"
 
-namespace hilo::test {
+namespace hilo::test::damped_test {
 namespace {
 
 // Two masses with a damper between them: the quadratic pencil of 2 x 2 by its own complex arithmetic here.
@@ -87,4 +87,4 @@ TEST_F(NaturalModes, OfACantileverWithADamperAtItsTip) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::damped_test

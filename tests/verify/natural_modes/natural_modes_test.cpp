@@ -5,7 +5,7 @@
 #include <complex>
 #include <tuple>
 
-namespace hilo::test {
+namespace hilo::test::natural_modes_test {
 namespace {
 
 TEST_F(NaturalModes, OfACantileverAreThoseOfItsBeam) {
@@ -246,4 +246,4 @@ TEST_F(NaturalModes, AreRefusedWhereTheyHaveNoMeaning) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::natural_modes_test

@@ -5,7 +5,7 @@
 
 #include "verify/natural_modes/natural_modes.hpp"
 
-namespace hilo::test {
+namespace hilo::test::response_test {
 namespace {
 
 // A force at the front shakes a vehicle of two freedoms; its damping is .01 s times its stiffness.
@@ -122,4 +122,4 @@ TEST_F(NaturalModes, OnABaseThatSwingsFeelTheDragOfSpace) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::response_test

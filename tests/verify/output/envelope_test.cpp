@@ -8,7 +8,7 @@
 
 #include "verify/everything/half_rigid.hpp"
 
-namespace hilo::test {
+namespace hilo::test::envelope_test {
 namespace {
 
 using Array = Eigen::ArrayXd;
@@ -165,4 +165,4 @@ TEST(Envelope, IsWhatPeakTells) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::envelope_test

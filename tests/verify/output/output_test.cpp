@@ -5,7 +5,7 @@
 #include "model/block.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::output_test {
 namespace {
 
 constexpr int nx = 12, ny = 10, nz = 10, border = 5;  // more rows than a rank writes by itself
@@ -120,4 +120,4 @@ TEST(Output, InSinglePrecisionIsRoundedAndHalfAsLarge) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::output_test

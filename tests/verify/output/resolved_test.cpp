@@ -4,7 +4,7 @@
 
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::resolved_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -87,4 +87,4 @@ TEST(Resolved, PeaksThatStepsDoNotResolveAreMarked) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::resolved_test

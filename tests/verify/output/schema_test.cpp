@@ -9,7 +9,7 @@
 
 #include "verify/everything/half_rigid.hpp"
 
-namespace hilo::test {
+namespace hilo::test::schema_test {
 namespace {
 
 /// Arrays and links of a file.
@@ -131,4 +131,4 @@ on = "zmax"
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::schema_test

@@ -4,7 +4,7 @@
 // minimum-norm reactions.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::parallelogram_test {
 namespace {
 
 TEST(Parallelogram, RunsWithRedundantRevolutesAndSaysSo) {
@@ -82,4 +82,4 @@ TEST(Parallelogram, OverconstrainedRunIsTheSameMotionAsAWellPosedOne) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::parallelogram_test

@@ -3,7 +3,7 @@
 #include "physics/stress.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::patch_test {
 namespace {
 
 class Patch : public testing::TestWithParam<Shape> {
@@ -115,4 +115,4 @@ TEST_P(Patch, UniformTractionStretchesTheBlockUniformly) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::patch_test

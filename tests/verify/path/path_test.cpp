@@ -2,7 +2,7 @@
 // Paths of equilibrium past limits of load and of displacement: bars whose path is known in closed form, and Lee's frame.
 #include "verify/lee_frame.hpp"
 
-namespace hilo::test {
+namespace hilo::test::path_test {
 namespace {
 
 constexpr double EA = 2e6, height = 0.3;  // of two bars from (-1, 0), (1, 0) to (0, height)
@@ -221,4 +221,4 @@ TEST(LoadPath, OfLeesFrameIsThatOfDisplacementControl) {
   EXPECT_LT(path.col(0).minCoeff(), 0) << "it snaps back under a load upwards";
 }
 
-}  // namespace hilo::test
+}  // namespace hilo::test::path_test

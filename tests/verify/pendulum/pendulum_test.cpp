@@ -3,7 +3,7 @@
 // 3 m g = 29.43 N at the bottom whatever its length (energy m g L gives v^2/L = 2 g).
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::pendulum_test {
 namespace {
 
 const Vec3 exact_at_10(-0.2750874626, -0.9614192051, 0);
@@ -121,4 +121,4 @@ TEST(Pendulum, BalanceStaysBelow1em10Over100000Steps) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::pendulum_test

@@ -7,7 +7,7 @@
 #include "model/scene_sets.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::placed_sets_test {
 namespace {
 
 Mesh beam() {
@@ -231,4 +231,4 @@ TEST(PlacedSets, ARunInWhichNothingCanMoveEnds) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::placed_sets_test

@@ -2,7 +2,7 @@
 // Metal that flows: closed forms through the whole program, the balance of energy of a bar that yields as it tumbles, published values.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::plasticity_test {
 namespace {
 
 // Truth: uniaxial stress at finite strain.  ln(l/L) = tau/E + e_p, tau is the Kirchhoff stress, the force tau A/l.  Isotropic hardening H
@@ -182,4 +182,4 @@ TEST(Plasticity, WhatDoesNotCarryPlasticStrainIsRefused) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::plasticity_test

@@ -6,7 +6,7 @@
 // much.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::taylor_test {
 namespace {
 
 struct Bar {
@@ -45,4 +45,4 @@ TEST(DISABLED_LongTaylorBar, OfFinerCellsIsAsPublished) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::taylor_test

@@ -4,7 +4,7 @@
 
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::reduced_file_test {
 namespace {
 
 Mesh bars(int n) {
@@ -198,4 +198,4 @@ TEST_F(ReducedFile, TellsTheMassThatVibrationsCarry) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::reduced_file_test

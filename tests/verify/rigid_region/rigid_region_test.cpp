@@ -4,7 +4,7 @@
 
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::rigid_region_test {
 namespace {
 
 /// Mass, centre, principal moments.
@@ -149,4 +149,4 @@ TEST(RigidRegions, ThatTouchAreOneBodyAndThoseApartAreTwo) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::rigid_region_test

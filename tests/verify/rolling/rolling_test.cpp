@@ -2,7 +2,7 @@
 // Rolling and knife edges against closed forms, and against the equations of motion of a disc.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::rolling_test {
 namespace {
 
 Vec3 place(const Eigen::MatrixXd& x, Eigen::Index i) { return {x(i, 0), x(i, 1), x(i, 2)}; }
@@ -150,4 +150,4 @@ TEST(Rolling, MistakesAreNamed) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::rolling_test

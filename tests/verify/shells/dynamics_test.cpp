@@ -3,7 +3,7 @@
 #include "base/shell_shape.hpp"
 #include "verify/shells/shell_scene.hpp"
 
-namespace hilo::test {
+namespace hilo::test::shells_dynamics_test {
 namespace {
 
 class ShellDynamics : public ShellPlace {
@@ -177,4 +177,4 @@ TEST_F(ShellDynamics, WhatHasNoClearThicknessIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::shells_dynamics_test

@@ -3,7 +3,7 @@
 #include "physics/shape/hex8.hpp"
 #include "verify/shells/shell_scene.hpp"
 
-namespace hilo::test {
+namespace hilo::test::shells_statics_test {
 namespace {
 
 class ShellStatics : public ShellPlace {
@@ -235,4 +235,4 @@ TEST_F(ShellStatics, AThicknessThatTurnsIsRefusedAcrossACutToo) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::shells_statics_test

@@ -2,7 +2,7 @@
 // FEBio rj02-05: x = r cos a + sqrt(l^2 - r^2 sin^2 a); after a whole turn everything is back where it was.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::slider_crank_test {
 namespace {
 
 TEST(SliderCrank, SliderIsWhereTheTriangleSays) {
@@ -15,4 +15,4 @@ TEST(SliderCrank, SliderIsWhereTheTriangleSays) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::slider_crank_test

@@ -2,7 +2,7 @@
 // Tip of the beam in the frame of the hub: u2 least -0.57385 at 6.7625 s, steady u1 = 5.14e-4 by centrifugal stretch.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::spin_up_test {
 namespace {
 
 double psi(double t) { return t < 15 ? 0.4 * (t * t / 2 + std::pow(7.5 / M_PI, 2) * (std::cos(2 * M_PI * t / 15) - 1)) : 6 * t - 45; }
@@ -57,4 +57,4 @@ INSTANTIATE_TEST_SUITE_P(Levels, SpinUp, testing::Values(Fidelity::nonlinear, Fi
                          [](const auto& p) { return std::string(word(p.param)); });
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::spin_up_test

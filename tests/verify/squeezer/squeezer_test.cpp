@@ -2,7 +2,7 @@
 // IVP test set "andrews", PSIDE at 1e-14: angles of the crank, of K3 and of K5 after 0.03 s, 2.5 turns of the crank.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::squeezer_test {
 namespace {
 
 struct Angles {
@@ -46,4 +46,4 @@ TEST(Squeezer, BalanceOfEnergyHoldsTo50Milliseconds) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::squeezer_test

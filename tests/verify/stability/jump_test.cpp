@@ -8,7 +8,7 @@
 
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::jump_test {
 namespace {
 
 constexpr double EA = 2e6, height = 0.3;  // of two bars from (-1, 0), (1, 0) to (0, height)
@@ -367,4 +367,4 @@ steps = {}
     }
 }
 
-}  // namespace hilo::test
+}  // namespace hilo::test::jump_test

@@ -4,7 +4,7 @@
 
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::stability_test {
 namespace {
 
 /// A bar of 1 m on a torsion spring of 100 N m/rad, upright: it buckles at 100 N.
@@ -383,4 +383,4 @@ force = [-1, 0, 0]
   }
 }
 
-}  // namespace hilo::test
+}  // namespace hilo::test::stability_test

@@ -2,7 +2,7 @@
 // A stiff elastic region is a rigid one with a compliance of 1/E: its tip's distance from the rigid answer falls as 1/E, slope -1 in log E.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::stiffened_test {
 namespace {
 
 Mesh two_regions() {
@@ -63,4 +63,4 @@ TEST(TwoIntegrators, AgreeToSecondOrderOnAFlexibleScene) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::stiffened_test

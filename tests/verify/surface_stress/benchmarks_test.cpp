@@ -9,7 +9,7 @@
 
 #include "verify/surface_stress/le10.hpp"
 
-namespace hilo::test {
+namespace hilo::test::benchmarks_test {
 namespace {
 
 using std::numbers::pi;
@@ -200,4 +200,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& of) { return std::string(of.param.name); });
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::benchmarks_test

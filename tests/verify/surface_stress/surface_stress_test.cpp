@@ -3,7 +3,7 @@
 #include "physics/stress.hpp"
 #include "verify/surface_stress/le10.hpp"
 
-namespace hilo::test {
+namespace hilo::test::surface_stress_test {
 namespace {
 
 // Truth: sigma_yy = -5.38 MPa at the hole's edge, on top, on the long axis (NAFEMS LE10).
@@ -91,4 +91,4 @@ TEST(SurfaceStress, ErrorIsNotLessThanThatOfTheRawStress) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::surface_stress_test

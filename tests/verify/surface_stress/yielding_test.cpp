@@ -5,7 +5,7 @@
 #include "physics/stress.hpp"
 #include "verify/surface_stress/le10.hpp"
 
-namespace hilo::test {
+namespace hilo::test::yielding_test {
 namespace {
 
 /// Largest error of the nodal von Mises stress over the yield stress, n cells of hex20r through the wall, loaded to `pressure`.
@@ -46,4 +46,4 @@ TEST(SurfaceStress, WhereATubeYieldsConverges) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::yielding_test

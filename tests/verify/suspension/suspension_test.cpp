@@ -8,7 +8,7 @@
 
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::suspension_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -225,4 +225,4 @@ TEST(Suspension, BouncesAndHopsAsTheTwoDegreeFormula) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::suspension_test

@@ -3,7 +3,7 @@
 // energy.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::torque_test {
 namespace {
 
 TEST(Torque, SpinsABodyUpAboutItsPrincipalAxis) {
@@ -36,4 +36,4 @@ TEST(Torque, WorkIsTheGainOfKineticEnergyWhileTheBodyTumbles) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::torque_test

@@ -4,7 +4,7 @@
 #include "physics/cells.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::tumbling_test {
 namespace {
 
 struct Sums {
@@ -96,4 +96,4 @@ TEST(TumblingBar, EnergyMomentumSurvivesWhereGeneralizedAlphaDoesNot) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::tumbling_test

@@ -2,7 +2,7 @@
 // A bar without loads follows the rotation of its end as a rigid body: x = at + R (X - at), and Green's strain of a rotation is zero.
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::turned_bar_test {
 namespace {
 
 class TurnedBar : public testing::TestWithParam<Shape> {};
@@ -31,4 +31,4 @@ TEST_P(TurnedBar, FollowsWithoutStress) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::turned_bar_test

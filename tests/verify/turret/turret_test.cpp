@@ -7,7 +7,7 @@
 #include "verify/truth.hpp"
 #include "verify/verify.hpp"
 
-namespace hilo::test {
+namespace hilo::test::turret_test {
 namespace {
 
 /// The mesh of data/turret, tagged both ways in a folder of its own.
@@ -81,4 +81,4 @@ TEST(Turret, TheBearingForceOfAStifferSupportComesToTheRigidOneAsOneOverE) {
 }
 
 }  // namespace
-}  // namespace hilo::test
+}  // namespace hilo::test::turret_test

@@ -159,11 +159,11 @@ void read_param(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   in.notes.push_back(fmt::format("{}: PARAM WTMASS: densities and masses times {:g}", d.place(), deck.mass_factor));
 }
 
-[[noreturn]] void refuse(const BdfEntry& e, const char* why) {
+[[noreturn]] void refuse_card(const BdfEntry& e, const char* why) {
   throw Error(e.data.place() + ":1", fmt::format("{}: {}", e.name, why), bdf_supported);
 }
-void pyramid(const BdfEntry& e, BdfDeck&, Imported&) { refuse(e, "pyramids are not read"); }
-void axisymmetric(const BdfEntry& e, BdfDeck&, Imported&) { refuse(e, "axisymmetric elements are not three-dimensional"); }
+void pyramid(const BdfEntry& e, BdfDeck&, Imported&) { refuse_card(e, "pyramids are not read"); }
+void axisymmetric(const BdfEntry& e, BdfDeck&, Imported&) { refuse_card(e, "axisymmetric elements are not three-dimensional"); }
 
 }  // namespace
 

@@ -12,7 +12,7 @@
 namespace hilo {
 namespace {
 
-std::int64_t property_in(const DataLine& d, size_t field) { return d.empty(field) ? d.integer(0) : d.integer(field); }
+std::int64_t property_of(const DataLine& d, size_t field) { return d.empty(field) ? d.integer(0) : d.integer(field); }
 
 void add(BdfDeck& deck, BdfDeck::Thin c, std::vector<BdfDeck::Thin>& to) {
   if (!deck.cell_ids.insert(c.id).second) throw Error(c.place, fmt::format("element {} is given twice", c.id), "number each element once");
@@ -23,7 +23,7 @@ void add(BdfDeck& deck, BdfDeck::Thin c, std::vector<BdfDeck::Thin>& to) {
 template <size_t corners, size_t middles, size_t offset, size_t thickness>
 void read_shell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
-  BdfDeck::Thin s{{corners == 3 ? tri3 : quad4, d.integer(0), property_in(d, 1), {}, d.place(0)}};
+  BdfDeck::Thin s{{corners == 3 ? tri3 : quad4, d.integer(0), property_of(d, 1), {}, d.place(0)}};
   for (size_t i = 0; i < corners; ++i) s.nodes.push_back(d.integer(2 + i));
   size_t there = 0;
   for (size_t i = 0; i < middles; ++i) there += !d.empty(2 + corners + i);
@@ -44,7 +44,7 @@ void read_shell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
 /// EID PID GA GB X1 X2 X3 (or G0) OFFT; PA PB W1A W2A W3A W1B W2B W3B
 void read_beam(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
-  BdfDeck::Thin b{{Shape::bar2, d.integer(0), property_in(d, 1), {d.integer(2), d.integer(3)}, d.place(0)}};
+  BdfDeck::Thin b{{Shape::bar2, d.integer(0), property_of(d, 1), {d.integer(2), d.integer(3)}, d.place(0)}};
   if (d.empty(5) && d.empty(6) && d.is_integer(4))
     b.towards = d.integer(4);
   else

@@ -13,16 +13,16 @@ namespace hilo {
 namespace {
 
 /// A gmsh element type, ours and the order of its nodes: ours[i] = gmsh[p[i]].
-struct Kind {
+struct GmshKind {
   int type;
   Shape shape;
   std::vector<int> p;
   const char* reduced = nullptr;  // what it was before nodes were left out
 };
-const Kind* kind_of(int type) {
+const GmshKind* gmsh_kind(int type) {
   static const std::vector<int> hex20{0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15};
   static const std::vector<int> wedge15{0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11};
-  static const std::vector<Kind> kinds = {
+  static const std::vector<GmshKind> kinds = {
       {1, Shape::bar2, {0, 1}},
       {8, Shape::bar2, {0, 1}, "line3"},
       {3, quad4, {0, 1, 2, 3}},
@@ -123,7 +123,7 @@ class GmshReading {
     std::stable_sort(blocks.begin(), blocks.end(), [](const auto* a, const auto* b) { return family(a->type) < family(b->type); });
     std::vector<std::int64_t> n;
     for (const auto* b : blocks) {
-      const Kind* k = kind_of(b->type);
+      const GmshKind* k = gmsh_kind(b->type);
       if (!k)
         throw Error(path_,
                     fmt::format("{} cells of type \"{}\" in {} {} are not read", b->tags.size(),

@@ -19,15 +19,15 @@ void read_heading(InpReading& r) {
 }
 
 // Abaqus parts: one of them is read as if flat, more would need their numbers told apart.
-[[noreturn]] void refuse(const InpReading& r, const std::string& what) {
+[[noreturn]] void refuse_step(const InpReading& r, const std::string& what) {
   throw Error(r.card.place() + ":1", what + " is not read",
               "write a flat deck: in Abaqus/CAE \"Do not use parts and assemblies in input files\"");
 }
 void read_part(InpReading& r) {
-  if (++r.parts > 1) refuse(r, "more than one *PART");
+  if (++r.parts > 1) refuse_step(r, "more than one *PART");
 }
 void read_instance(InpReading& r) {
-  if (++r.instances > 1) refuse(r, "more than one *INSTANCE");
+  if (++r.instances > 1) refuse_step(r, "more than one *INSTANCE");
   r.deck.instance = r.card.value("NAME");
   r.deck.in_assembly = false;  // what stands between it and its end is the part's
   DataLine l;

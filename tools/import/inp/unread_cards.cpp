@@ -12,8 +12,8 @@ void output(InpReading& r) { r.in.skip(r.card.name, r.card.place(), 1, true); }
 [[noreturn]] void refuse(const InpReading& r, const char* hint) { throw Error(r.card.place() + ":1", r.card.name + " is not read", hint); }
 void nodes(InpReading& r) { refuse(r, "write the nodes out"); }
 void elements(InpReading& r) { refuse(r, "write the elements out"); }
-void axes(InpReading& r) { refuse(r, "write the nodes in the axes of the model"); }
-void numbers(InpReading& r) { refuse(r, "write the numbers out"); }
+void refuse_axes(InpReading& r) { refuse(r, "write the nodes in the axes of the model"); }
+void refuse_numbers(InpReading& r) { refuse(r, "write the numbers out"); }
 
 }  // namespace
 
@@ -22,7 +22,7 @@ std::span<const InpCard> inp_unread_cards() {
       {"NGEN", nodes},           {"NFILL", nodes},
       {"NCOPY", nodes},          {"NMAP", nodes},
       {"ELGEN", elements},       {"ELCOPY", elements},
-      {"SYSTEM", axes},          {"PARAMETER", numbers},
+      {"SYSTEM", refuse_axes},   {"PARAMETER", refuse_numbers},
       {"NODEPRINT", output},     {"NODEFILE", output},
       {"NODEOUTPUT", output},    {"ELPRINT", output},
       {"ELFILE", output},        {"ELEMENTOUTPUT", output},
