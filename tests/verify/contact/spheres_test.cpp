@@ -58,6 +58,9 @@ TEST(Surfaces, SpheresOfHertz) {
   EXPECT_NEAR(r.history("contact/c").bottomRows(1)(0, 2), force_of_hertz(0.004), 0.01 * force_of_hertz(0.004));
   EXPECT_EQ(c.reported("cuts"), 0);
   EXPECT_LT(c.reported("newton_iterations"), 60);
+  const Results two = c.solved("--set time.steps=2", "run.h5", "spheres");
+  EXPECT_NEAR(two.history("contact/c").bottomRows(1)(0, 2) / r.history("contact/c").bottomRows(1)(0, 2), 1, 1e-8)
+      << "however it came there";
 }
 
 // Truth: the pressure under a force, p0 sqrt(1 - r^2/a^2), whatever holds the spheres far away; a is 2 mm, the largest strain 0.03.

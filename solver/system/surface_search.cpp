@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which facets of two surfaces are near each other.
+#include <algorithm>
+#include <tuple>
+
+#include "system/surface_pair.hpp"
+
+namespace hilo {
+namespace {
+
+struct Box {
+  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
+  void take(const Vec3& x) { low = low.cwiseMin(x), high = high.cwiseMax(x); }
+  void widen(double by) { low.array() -= by, high.array() += by; }
+  bool meets(const Box& other) const { return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all(); }
+};
+
+}  // namespace
+
+/// Pairs of facets whose boxes over the way from x0 to x1 come within a distance of each other: sorted along the longest axis of where both
+/// sides can meet at all.
+std::vector<std::pair<int, int>> SurfacePair::near(Positions x0, Positions x1, double within) const {
+  std::vector<Box> box[2];
+  Box all[2];
+  for (int s = 0; s < 2; ++s)
+    for (const ContactSurface::Face& face : side[s].faces) {
+      Box& b = box[s].emplace_back();
+      for (int a = 0; a < face.n; ++a) b.take(x0[face.node[a]]), b.take(x1[face.node[a]]);
+      b.widen(within / 2);
+      all[s].take(b.low), all[s].take(b.high);
+    }
+  std::vector<std::pair<int, int>> out;
+  const Vec3 extent = all[0].high.cwiseMin(all[1].high) - all[0].low.cwiseMax(all[1].low);
+  if (!(extent.minCoeff() >= 0)) return out;
+  int axis = 0;
+  extent.maxCoeff(&axis);
+  struct Entry {
+    double low;
+    int side, face;
+  };
+  std::vector<Entry> order;
+  for (int s = 0; s < 2; ++s)
+    for (size_t f = 0; f < box[s].size(); ++f)
+      if (box[s][f].meets(all[1 - s])) order.push_back({box[s][f].low[axis], s, static_cast<int>(f)});
+  std::sort(order.begin(), order.end(),
+            [](const Entry& a, const Entry& b) { return std::tie(a.low, a.side, a.face) < std::tie(b.low, b.side, b.face); });
+  std::vector<int> open[2];
+  for (const Entry& e : order) {
+    const Box& own = box[e.side][e.face];
+    std::vector<int>& others = open[1 - e.side];
+    std::erase_if(others, [&](int f) { return box[1 - e.side][f].high[axis] < e.low; });
+    for (const int f : others)
+      if (own.meets(box[1 - e.side][f])) out.emplace_back(e.side == 0 ? e.face : f, e.side == 0 ? f : e.face);
+    open[e.side].push_back(e.face);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+void SurfacePair::list_partners() {
+  for (int s = 0; s < 2; ++s) partners_[s].assign(side[s].faces.size(), {});
+  for (size_t k = 0; k < near_.size(); ++k) {
+    partners_[0][near_[k].first].push_back({near_[k].second, static_cast<int>(k)});
+    partners_[1][near_[k].second].push_back({near_[k].first, static_cast<int>(k)});
+  }
+}
+
+bool SurfacePair::search(const Config& q, const Config* v, double h) {
+  begin_ = foreseen_ = q.x;
+  if (v && h > 0)
+    for (const auto& nodes : nodes_)
+      for (const int i : nodes) foreseen_[i] += h * v->x[i];
+  const auto with_held = [&](std::vector<std::pair<int, int>> list) {
+    for (int s = 0; s < 2; ++s)
+      for (const SurfacePoint& point : side[s].points)
+        if (point.state.past.gap < 0) list.emplace_back(s == 0 ? point.face : point.state.face, s == 0 ? point.state.face : point.face);
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
+  };
+  bool changes = false;
+  const auto needed = with_held(near(q.x, foreseen_, margin / 2));
+  if (!std::includes(near_.begin(), near_.end(), needed.begin(), needed.end()) || near_.size() > 4 * needed.size() + 64) {
+    auto wide = with_held(near(q.x, foreseen_, margin));
+    changes = wide != near_;
+    near_ = std::move(wide);
+    list_partners();
+  }
+  for (int s = 0; s < 2; ++s)
+    for (SurfacePoint& point : side[s].points) point.now = point.next = point.state, point.left = {-2, -2};
+  look(q.x, foreseen_);
+  for (int s = 0; s < 2; ++s)
+    for (SurfacePoint& point : side[s].points) {
+      const bool alone = partners_[s][point.face].empty();
+      point.now = begun(s, point, alone ? Target{} : target_of(s, point, q.x, foreseen_), q.x);
+    }
+  return changes;
+}
+
+}  // namespace hilo
