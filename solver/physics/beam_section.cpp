@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/thin_walls.hpp"
+
 namespace hilo {
 namespace {
 
@@ -70,6 +72,57 @@ SectionArea double_tee(const EntryValues& e, double nu) {
           along_web};
 }
 
+/// A rectangle of a section: its middle, width and height.
+struct Part {
+  double x, y, b, h;
+};
+/// An open section of rectangles, about its centre of area, and of the middles of its walls.
+SectionArea of_walls(const std::vector<Part>& parts, const std::vector<Wall>& walls) {
+  SectionArea out;
+  double x = 0, y = 0;
+  for (const Part& p : parts) out.A += p.b * p.h, x += p.b * p.h * p.x, y += p.b * p.h * p.y;
+  x /= out.A, y /= out.A;
+  for (const Part& p : parts) {
+    const double A = p.b * p.h, dx = p.x - x, dy = p.y - y;
+    out.I1 += A * (p.h * p.h / 12 + dy * dy), out.I2 += A * (p.b * p.b / 12 + dx * dx), out.I12 += A * dx * dy;
+    out.J += torsion_of_rectangle(p.b, p.h);
+  }
+  const OpenWalls thin = open_walls(walls);
+  out.s1 = thin.shear_centre[0], out.s2 = thin.shear_centre[1];
+  out.shear_1 = thin.stiffness(0, 0), out.shear_2 = thin.stiffness(1, 1), out.shear_12 = thin.stiffness(0, 1);
+  return out;
+}
+
+void check_walls(const EntryValues& e, double flanges, double webs) {
+  if (flanges >= e.number("height")) e.refuse(e.has("flange") ? "flange" : "thickness", "the walls fill the height");
+  if (webs >= e.number("width")) e.refuse(e.has("web") ? "web" : "thickness", "the walls fill the width");
+}
+
+SectionArea tee(const EntryValues& e, double) {
+  const double b = e.number("width"), h = e.number("height"), f = e.number("flange"), w = e.number("web"), top = h - f / 2;
+  check_walls(e, f, w);
+  return of_walls({{0, top, b, f}, {0, (h - f) / 2, w, h - f}},
+                  {{{-b / 2, top}, {0, top}, f}, {{b / 2, top}, {0, top}, f}, {{0, 0}, {0, top}, w}});
+}
+
+SectionArea angle(const EntryValues& e, double) {
+  const double b = e.number("width"), h = e.number("height"), t = e.number("thickness");
+  check_walls(e, t, t);
+  return of_walls({{b / 2, t / 2, b, t}, {t / 2, (h + t) / 2, t, h - t}},
+                  {{{b, t / 2}, {t / 2, t / 2}, t}, {{t / 2, t / 2}, {t / 2, h}, t}});
+}
+
+/// Of a channel or a Z: where the lower flange goes.
+SectionArea with_two_flanges(const EntryValues& e, double side) {
+  const double b = e.number("width"), h = e.number("height"), f = e.number("flange"), w = e.number("web"), top = (h - f) / 2;
+  check_walls(e, 2 * f, w);
+  const double beside = b / 2, tip = b - w / 2;  // from the middle of the web, whose outer side is that of the flange
+  return of_walls({{0, 0, w, h}, {beside, top, b - w, f}, {side * beside, -top, b - w, f}},
+                  {{{tip, top}, {0, top}, f}, {{0, top}, {0, -top}, w}, {{0, -top}, {side * tip, -top}, f}});
+}
+SectionArea channel(const EntryValues& e, double) { return with_two_flanges(e, 1); }
+SectionArea zed(const EntryValues& e, double) { return with_two_flanges(e, -1); }
+
 SectionArea general(const EntryValues& e, double) { return {e.number("area"), e.number("I1"), e.number("I2"), e.number("J"), 1, 1}; }
 
 /// Three numbers, a diagonal, or nine, by rows.
@@ -94,12 +147,18 @@ double torsion_of_rectangle(double a, double b) {
 
 BeamSection section_of_area(const EntryValues& entry, const SectionKind& kind, double E, double nu, double density) {
   SectionArea a = kind.area(entry, nu);
-  if (entry.given("shear")) a.shear_1 = entry.numbers("shear").front(), a.shear_2 = entry.numbers("shear").back();
+  if (entry.given("shear")) a.shear_1 = entry.numbers("shear").front(), a.shear_2 = entry.numbers("shear").back(), a.shear_12 = 0;
   if (!(std::min(a.shear_1, a.shear_2) > 0)) entry.refuse("shear", "a factor of shear is not above 0");
   const double G = E / (2 * (1 + nu));
   BeamSection out;
   out.C = Eigen::Matrix<double, 6, 1>(a.shear_1 * G * a.A, a.shear_2 * G * a.A, E * a.A, E * a.I1, E * a.I2, G * a.J).asDiagonal();
-  out.mass = density * a.A, out.J11 = density * a.I2, out.J22 = density * a.I1;
+  out.C(3, 4) = out.C(4, 3) = -E * a.I12;
+  const Eigen::Vector2d twist(-a.s2, a.s1);  // shear strain in the shear centre by twist about the origin
+  out.C(0, 1) = out.C(1, 0) = a.shear_12 * G * a.A;
+  const Eigen::Vector2d coupled = out.C.topLeftCorner<2, 2>() * twist;
+  out.C.block<2, 1>(0, 5) = coupled, out.C.block<1, 2>(5, 0) = coupled.transpose();
+  out.C(5, 5) += coupled.dot(twist);
+  out.mass = density * a.A, out.J11 = density * a.I2, out.J22 = density * a.I1, out.J12 = density * a.I12;
   out.size = std::sqrt((a.I1 + a.I2) / a.A);
   return out;
 }
@@ -126,16 +185,22 @@ Registry<SectionKind>& section_kinds() {
   static const Param height{"height", number, "m", "!", "along axis 2", above(0)};
   static const Param diameter{"diameter", number, "m", "!", "outside", above(0)};
   static const Param thickness{"thickness", number, "m", "!", "of the walls", above(0)};
+  static const Param of_flange{"flange", number, "m", "!", "thickness of each", above(0)};
+  static const Param of_web{"web", number, "m", "!", "its thickness", above(0)};
   static Registry<SectionKind> kinds{
       "kind of section",
       {{"circle", "a full circle", {diameter}, circle},
        {"tube", "a round tube", {diameter, thickness}, tube},
        {"rectangle", "a full rectangle", {width, height}, rectangle},
        {"box", "a rectangular tube of one thickness; J after Bredt", {width, height, thickness}, box},
-       {"I",
-        "two flanges and a web between them; open: it warps freely",
-        {width, height, {"flange", number, "m", "!", "thickness of each", above(0)}, {"web", number, "m", "!", "its thickness", above(0)}},
-        double_tee},
+       {"I", "two flanges and a web between them; open: it warps freely", {width, height, of_flange, of_web}, double_tee},
+       {"T", "a flange on a web below it; shear by the flow in its walls", {width, height, of_flange, of_web}, tee},
+       {"L", "two legs, along axes 1 and 2 from their corner; shear by the flow in its walls", {width, height, thickness}, angle},
+       {"C", "two flanges along axis 1 from a web; shear by the flow in its walls", {width, height, of_flange, of_web}, channel},
+       {"Z",
+        "a flange along axis 1 above a web, one against it below; width: of each flange with the web",
+        {width, height, of_flange, of_web},
+        zed},
        {"general",
         "given by its numbers",
         {{"area", number, "m^2", "!", "A", above(0)},

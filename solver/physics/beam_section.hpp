@@ -20,6 +20,9 @@ struct SectionArea {
   double I1 = 0, I2 = 0;            // int X2^2, int X1^2: bending about axes 1 and 2 [m^4]
   double J = 0;                     // of torsion [m^4]
   double shear_1 = 1, shear_2 = 1;  // factors of shear along 1 and 2
+  double shear_12 = 0;              // what couples them, over G A
+  double I12 = 0;                   // int X1 X2 [m^4]
+  double s1 = 0, s2 = 0;            // shear centre, from the centre of area [m]
 };
 
 struct BeamSection {

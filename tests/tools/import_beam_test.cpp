@@ -91,6 +91,20 @@ TEST_F(ImportBeam, SecondMomentsBendInTheirPlanesAndI12CouplesThem) {
   EXPECT_NEAR(y.z(), z.y(), 1e-6 * std::abs(z.y())) << "Maxwell's reciprocity";
 }
 
+// A channel 30 high, 10 wide, web 2, flanges 6, as one of others' decks has it: bends by the moments of its rectangles, and does not twist.
+TEST_F(ImportBeam, AChannelOfABarBendsAboutItsCentreOfArea) {
+  solve(stat +
+        "GRID,1,,0.,0.,0.\nGRID,2,,1000.,0.,0.\nCBAR,1,5,1,2,0.,1.,0.\nPBARL,5,1,,CHAN,,,,,+\n+,10.,30.,2.,6.\nMAT1,1,3.+7,,.3\n"
+        "SPC1,1,123456,1\nFORCE,2,2,,1.,0.,0.,1.\nFORCE,2,2,,1.,0.,1.,0.\n");
+  const double A = 30 * 10 - 18 * 8, x = (60 + 2 * 48 * 6) / A,
+               Iz = (30 * 8. + 2 * 6 * 512) / 12 + 60 * (x - 1) * (x - 1) + 96 * (6 - x) * (6 - x);
+  const double Iy = (10. * 27000 - 8. * 5832) / 12, bend = 1e9 / (3 * 3e7);
+  EXPECT_NEAR(moved("grid_2").y(), bend / Iy, 0.01 * bend / Iy);  // shear: 0.3 %
+  EXPECT_NEAR(moved("grid_2").z(), bend / Iz, 0.01 * bend / Iz);
+  const auto v = change("body.grid_2*");
+  EXPECT_NEAR(v[8], v[2], 1e-9) << "no twist";
+}
+
 TEST_F(ImportBeam, PinsFreeTurnsAndSupportsOfAnyComponentsHold) {
   // clamped grids, pinned ends: P L^3/(48 E I) and no moment there
   const std::string mesh = "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,2.,0.,0.\nPBAR,5,1,1.-3,2.-7,2.-7,4.-7\n" + steel;
@@ -199,7 +213,8 @@ TEST_F(ImportBeam, ARunWithTheMeshOfNoCellsGoesWithoutIt) {
 TEST_F(ImportBeam, WhatABeamCannotCarryIsRefusedOrTold) {
   const std::string grids = "GRID,1,,0.,0.,0.\nGRID,2,,3.,0.,0.\n" + steel;
   place.write("a.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBARL,5,1,,HAT,,,,,+\n+,.2,.4\n");
-  refused("a.bdf -o b.h5", 2, "a.bdf:5:12: PBARL 5: TYPE HAT is not read (ROD, TUBE, BAR, BOX, I and I1 are; write the others as PBAR)");
+  refused("a.bdf -o b.h5", 2,
+          "a.bdf:5:12: PBARL 5: TYPE HAT is not read (ROD, TUBE, BAR, BOX, I, I1, T and CHAN are; write the others as PBAR)");
   place.write("b.bdf", grids + "CBAR,1,5,1,2,1.,0.,0.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7\n");
   refused("b.bdf -o b.h5", 2, "b.bdf:4:6: beam 1: its orientation lies along it, or is none");
   place.write("c.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.,GOG,+\n+,,,1.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7\n");

@@ -133,5 +133,77 @@ TEST_F(BeamStatics, ABeamRidesOnASetOfARegionOfEveryFidelity) {
   EXPECT_LT((at[Fidelity::rigid] - at[Fidelity::nonlinear]).norm(), 1e-4);
 }
 
+/// The turn about its line and the displacement of the tip of a metre of a section of thin walls, loaded in its centre of area.
+class BeamOpenSections : public BeamPlace {
+ protected:
+  struct Tip {
+    Vec3 u;
+    double twist;
+  };
+  Tip loaded(const std::string& section, const Vec3& force, const Vec3& torque = Vec3::Zero()) {
+    const Results r = solved("[section.s]\n" + section + "\n[material.m]\nE = 2e11\nnu = 0.3\n" +
+                             beam_of("[[0, 0, 0], [1, 0, 0]]", 1, "material = \"m\"\na = \"ground\"") + push("arm.end", force) +
+                             twist("arm.end", torque) + in_steps(1));
+    const Eigen::RowVectorXd x = r.history("body/arm.1").bottomRows(1);
+    // axis 1 of the section is y, 2 is z; columns: its origin, and that with each direction of the model
+    return {Vec3(x.segment<3>(0).transpose()) - Vec3(1, 0, 0), std::atan2(x[8] - x[2], x[7] - x[1])};
+  }
+  static constexpr double E = 2e11, G = E / 2.6;
+};
+
+// Of a channel of one thickness the shear centre lies e = 3 b^2/(h + 6 b) beyond the web (middles of walls); a force in the centre of area
+// twists it by its arm, a force and its moment about the shear centre do not.
+TEST_F(BeamOpenSections, AChannelTwistsAboutItsShearCentre) {
+  const double t = 0.001, b = 0.04, h = 0.08, e = 3 * b * b / (h + 6 * b);
+  const std::string c = fmt::format("kind = \"C\"\nwidth = {}\nheight = {}\nflange = {}\nweb = {}\n", b + t / 2, h + t, t, t);
+  const double centre = b * b / (h + 2 * b), arm = centre + e, J = (h + 2 * b) * t * t * t / 3;
+  const double force = 1e-3;
+  const Tip tip = loaded(c, Vec3(0, 0, force));
+  EXPECT_NEAR(std::abs(tip.twist), force * arm / (G * J), 0.015 * force * arm / (G * J)) << "the walls' ends round J off";
+  const double sign = tip.twist > 0 ? 1 : -1;
+  EXPECT_LT(std::abs(loaded(c, Vec3(0, 0, force), Vec3(-sign * force * arm, 0, 0)).twist), 0.015 * std::abs(tip.twist));
+  EXPECT_LT(std::abs(loaded(c, Vec3(0, force, 0)).twist), 1e-9 * std::abs(tip.twist)) << "along its axis of symmetry";
+}
+
+// Of an angle both shear forces pass through the corner; equal legs bend by the principal moments about the diagonals.
+TEST_F(BeamOpenSections, AnAngleBendsAskewAndTwistsAboutItsCorner) {
+  const double t = 0.002, a = 0.1, force = 0.01;
+  const std::string l = fmt::format("kind = \"L\"\nwidth = {0}\nheight = {0}\nthickness = {1}\n", a, t);
+  const double m = a - t / 2, centre = m / 4, J = 2 * m * t * t * t / 3;  // of the middles
+  const Tip tip = loaded(l, Vec3(0, 0, force));
+  EXPECT_NEAR(std::abs(tip.twist), force * centre / (G * J), 0.03 * force * centre / (G * J));
+  // without the twist's share: principal moments m^3 t/3 about the axis of symmetry, m^3 t/12 about the other
+  const double sign = tip.twist > 0 ? 1 : -1;
+  const Tip pure = loaded(l, Vec3(0, 0, force), Vec3(-sign * force * centre, 0, 0));
+  const double strong = force / 2 / (3 * E * m * m * m * t / 3), weak = force / 2 / (3 * E * m * m * m * t / 12);
+  EXPECT_NEAR(pure.u.z(), strong + weak, 0.03 * weak);
+  EXPECT_NEAR(std::abs(pure.u.y()), weak - strong, 0.03 * weak);
+}
+
+// A Z is alike when turned by half a turn: its shear centre is its centre of area; it bends askew, by int X1 X2 = (b h)^2 t ... of its
+// flanges.
+TEST_F(BeamOpenSections, AZBendsAskewWithoutTwist) {
+  const double t = 0.001, b = 0.04, h = 0.08, force = 1e-3;
+  const Tip tip =
+      loaded(fmt::format("kind = \"Z\"\nwidth = {}\nheight = {}\nflange = {}\nweb = {}\n", b + t / 2, h + t, t, t), Vec3(0, 0, force));
+  Eigen::Matrix2d I;  // int X1^2, X1 X2, X2^2
+  I << 2 * b * b * b * t / 3, b * b / 2 * h / 2 * t * 2, b * b / 2 * h / 2 * t * 2, h * h * h * t / 12 + 2 * b * t * h * h / 4;
+  const Eigen::Vector2d u = I.inverse() * Eigen::Vector2d(0, force) / (3 * E);
+  EXPECT_NEAR(tip.u.z(), u[1], 0.02 * u[1]);
+  EXPECT_NEAR(tip.u.y(), u[0], 0.03 * std::abs(u[0]));
+  EXPECT_LT(std::abs(tip.twist), 1e-9);
+}
+
+// The shear centre of a T is where flange and web meet; a deep web carries shear as 5/6 of a rectangle where the flange is small.
+TEST_F(BeamOpenSections, ATTwistsAboutItsJunction) {
+  const double f = 0.001, w = 0.001, b = 0.06, h = 0.06, force = 1e-3;
+  const double m = h - f / 2, below = m * m * w / 2 / (m * w + b * f), J = (m + b) * f * f * f / 3;  // of the centre below the flange
+  const Tip tip = loaded(fmt::format("kind = \"T\"\nwidth = {}\nheight = {}\nflange = {}\nweb = {}\n", b, h, f, w), Vec3(0, force, 0));
+  EXPECT_NEAR(std::abs(tip.twist), force * below / (G * J), 0.02 * force * below / (G * J));
+  EXPECT_LT(
+      std::abs(loaded(fmt::format("kind = \"T\"\nwidth = {}\nheight = {}\nflange = {}\nweb = {}\n", b, h, f, w), Vec3(0, 0, force)).twist),
+      1e-9);
+}
+
 }  // namespace
 }  // namespace hilo::test::beams_statics_test

@@ -156,6 +156,15 @@ void read_pbeam(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }
 
+/// Off whose centre of area the shear centre lies: CBAR takes both as one.
+DeckSection without_shear_centre(const char* kind, const std::vector<double>& v) {
+  const SectionArea a =
+      DeckSection{kind, {{"width", v[0]}, {"height", v[1]}, {"flange", v[2]}, {"web", v[3]}}}.area(0.3, fmt::format("TYPE {}", kind));
+  DeckSection out = general_section(a.A, a.I1, a.I2, a.J);
+  out.shear = {a.shear_1, a.shear_2};
+  return out;
+}
+
 /// Shapes that [section.NAME] has too: DIM1 is across plane 1 where the shape has a width.
 struct BeamShape {
   size_t dims;
@@ -191,6 +200,12 @@ const std::map<std::string, BeamShape> beam_shapes{
         if (v[1] != v[2] || v[4] != v[5]) return DeckSection{};
         return DeckSection{"I", {{"width", v[1]}, {"height", v[0]}, {"flange", v[4]}, {"web", v[3]}}};
       }}},
+    {"T", {4, [](const std::vector<double>& v) { return without_shear_centre("T", v); }}},
+    {"CHAN",
+     {4,
+      [](const std::vector<double>& v) {
+        return without_shear_centre("C", {v[0], v[1], v[3], v[2]});
+      }}},
     {"I1",
      {4,
       [](const std::vector<double>& v) {  // flanges beyond the web, web, height of the web, whole height
@@ -205,7 +220,7 @@ void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto shape = beam_shapes.find(type);
   const auto refuse = [&](const std::string& what) {
     return Error(d.place(3), fmt::format("{} {}: {} is not read", e.name, d.integer(0), what),
-                 "ROD, TUBE, BAR, BOX, I and I1 are; write the others as PBAR");
+                 "ROD, TUBE, BAR, BOX, I, I1, T and CHAN are; write the others as PBAR");
   };
   if (shape == beam_shapes.end()) throw refuse("TYPE " + type);
   std::vector<double> dims;
@@ -213,6 +228,7 @@ void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   BdfThin s;
   s.section = shape->second.of(dims);
   if (!s.section.given()) throw refuse("TYPE " + type + " of two different flanges");
+  if (e.name == "PBEAML" && (type == "T" || type == "CHAN")) in.skip("PBEAML: neutral axis off the shear centre", d.place(3));
   s.section.line_mass = d.number(8 + dims.size());
   if (e.name == "PBEAML" && d.fields.size() > 9 + dims.size())
     for (size_t i = 0; i < dims.size(); ++i)
