@@ -12,10 +12,10 @@ constexpr size_t most_apart = 256;  // histories of a group, each an array of it
 
 const std::string times = "/history/t", iterations = "/history/newton";
 
-/// Columns of an output's row, as its array has them.
-std::int64_t row_width(const Output& output) {
-  const auto shape = row_shape(run_array("/history/" + (output.group.empty() ? output.name : output.group + "/any")));
-  return shape.size() == 1 && shape[0] > 0 ? shape[0] : shape.empty() ? 1 : output.n_end + output.n_mid;
+/// Columns of the histories in an output's group by the schema; 0 where it leaves them open.
+std::int64_t schema_width(const Output& output) {
+  const auto shape = row_shape(run_array("/history/" + output.group + "/any"));
+  return shape.empty() ? 1 : shape[0];
 }
 
 }  // namespace
@@ -27,9 +27,16 @@ Histories::Histories(const System& system) : system_(system) {
   for (const Observer* part : system.all<Observer>())
     for (Output& output : part->outputs()) outputs_.push_back(std::move(output));
   std::map<std::pair<std::string, std::int64_t>, size_t> alike;  // of a group, as wide
-  const auto kind_of = [](const Output& o) { return std::pair{o.group, row_width(o)}; };
+  std::map<std::string, std::int64_t> widths;                    // of groups, by the schema; 0: as many as a history has
+  const auto width_of = [&](const Output& o) {
+    const auto found = widths.find(o.group);
+    const std::int64_t width = found != widths.end() ? found->second : widths[o.group] = schema_width(o);
+    return width > 0 ? width : o.n_end + o.n_mid;
+  };
+  const auto kind_of = [&](const Output& o) { return std::pair{o.group, width_of(o)}; };
   std::map<std::string, size_t> in_group;
-  for (const Output& output : outputs_) ++alike[kind_of(output)], ++in_group[output.group];
+  for (const Output& output : outputs_)
+    if (!output.group.empty()) ++alike[kind_of(output)], ++in_group[output.group];
   std::map<std::string, int> made;
   for (const Output& output : outputs_) {
     n_mid_ += static_cast<size_t>(output.n_mid);
@@ -37,7 +44,7 @@ Histories::Histories(const System& system) : system_(system) {
     int& table = table_of_.emplace_back(-1);
     if (!output.group.empty() && in_group[output.group] > most_apart && alike[kind_of(output)] == in_group[output.group]) {
       const auto [at, is_new] = made.emplace(output.group, static_cast<int>(tables_.size()));
-      if (is_new) tables_.push_back({group, {}, static_cast<size_t>(row_width(output))});
+      if (is_new) tables_.push_back({group, {}, static_cast<size_t>(width_of(output))});
       table = at->second;
       tables_[table].members.push_back(link), arrays_.emplace_back();
     } else {
