@@ -75,7 +75,15 @@ Independence from(const SparseQr& qr) {
 /// Exchanges of a column for one that depends on it, until no factor is far above one: what the motion leaves of the others' rows is
 /// round-off times these factors.  Each enlarges the volume of those kept.
 void exchange(Independence& found) {
-  constexpr double enough = 1.01;
+  size_t n_factors = 0;
+  double largest = 0;
+  for (const Column& column : found.depends) {
+    n_factors += column.size();
+    for (const auto& [i, value] : column) largest = std::max(largest, std::abs(value));
+  }
+  // Nets have a factor for each joint around a mesh or within it: what a few of ten cost in digits is not worth maps of them all.
+  const double enough = n_factors > 100000 ? 10 : 1.01;
+  if (largest < enough) return;
   std::vector<std::map<int, double>> columns;  // of factors, and which columns have one at a place
   std::vector<std::set<int>> places(static_cast<size_t>(found.rank));
   for (size_t k = 0; k < found.depends.size(); ++k) {

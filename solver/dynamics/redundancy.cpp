@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <set>
 
 #include "dynamics/independence.hpp"
+#include "linear/sparse_cholesky.hpp"
 
 namespace hilo {
 namespace {
@@ -48,6 +48,17 @@ UnitRows unit_rows(const System& system, const Config& q, Rows which) {
   return out;
 }
 
+/// Names of constraints, sorted; of many the first in the scene, and how many others.
+std::string names_of(const System& system, std::vector<int>& list) {
+  constexpr size_t named = 12;
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  std::set<std::string> names;
+  for (size_t k = 0; k < std::min(list.size(), named); ++k) names.insert(system.constraints()[list[k]]->name());
+  const std::string text = fmt::format("{}", fmt::join(names, ", "));
+  return list.size() > named ? fmt::format("{} and {} more", text, list.size() - named) : text;
+}
+
 /// Rows that depend on others at q, up to `dependent` of a unit row, are switched off.
 Redundancy choose_rows(System& system, const Config& q, double dependent) {
   Redundancy report;
@@ -73,15 +84,15 @@ Redundancy choose_rows(System& system, const Config& q, double dependent) {
       Active active = c.active();
       active[r] = false;
       c.set_active(active);
-      std::set<std::string> others;
+      std::vector<int> others;
       bool on_drives = false;
       for (const auto& [i, factor] : found.depends[k - found.rank]) {
         if (std::abs(factor) <= 1e-6) continue;
         const auto other = all.rows[group[found.order[i]]];
-        if (other.first != one) others.insert(constraints[other.first]->name());
+        if (other.first != one) others.push_back(other.first);
         on_drives = on_drives || is_drive(system, other);
       }
-      const std::string names = fmt::format("{}", fmt::join(others, ", "));
+      const std::string names = names_of(system, others);
       if (is_drive(system, row) && !on_drives) report.held.push_back({one, names});
       report.dropped.push_back(fmt::format(
           "{} row {}{}", c.label(), r + 1,
@@ -121,15 +132,7 @@ class Nearest {
     Eigen::SparseMatrix<double> K = A * Eigen::SparseMatrix<double>(A.transpose()), I(K.rows(), K.cols());
     I.setIdentity();
     K += mu * I;
-    const auto as_before = [](std::vector<int>& before, const int* now, Eigen::Index n) {
-      if (std::equal(before.begin(), before.end(), now, now + n)) return true;
-      before.assign(now, now + n);
-      return false;
-    };
-    const bool is_analysed = as_before(start_, K.outerIndexPtr(), K.cols() + 1) & as_before(row_, K.innerIndexPtr(), K.nonZeros());
-    if (!is_analysed) factors_.analyzePattern(K);
-    factors_.factorize(K);
-    if (factors_.info() != Eigen::Success) return false;
+    if (!factors_.factor(K)) return false;
     if (plane_.size() > 0) through_ = factors_.solve(plane_);
     return true;
   }
@@ -144,8 +147,7 @@ class Nearest {
  private:
   const Eigen::SparseMatrix<double>* A_ = nullptr;
   Eigen::VectorXd plane_, through_;  // its normal, and that through the factors
-  std::vector<int> start_, row_;     // the pattern
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors_;
+  SparseCholesky factors_;
 };
 
 constexpr double round_off = 1e-9;  // what others leave of a unit row that depends on them

@@ -15,9 +15,49 @@ namespace {
 
 // Rows read as columns are the transpose: both factor it and solve transposed.
 
-/// Factors of the entries that have ever differed from zero: many of a joint's never do, and a plane mechanism's motions out of its plane
-/// come apart from those within.
-class Klu final : public Factors {
+/// The entries that have ever differed from zero: many of a joint's never do, and a plane mechanism's motions out of its plane come apart
+/// from those within.
+class KeptEntries {
+ protected:
+  /// The entries of the pattern; false where another one differs from zero.
+  bool gather(const BlockCsr& A) {
+    const double* from = A.values().data();
+    long here = 0, all = 0;
+    for (size_t j = 0; j < place_.size(); ++j) value_[j] = from[place_[j]], here += value_[j] != 0;
+    for (size_t k = 0; k < A.values().size(); ++k) all += from[k] != 0;
+    return here == all;
+  }
+  /// A new pattern, with these entries too.
+  void widen(const BlockCsr& A) {
+    if (++n_patterns_ == most_patterns) kept_.assign(A.values().size(), 1);
+    find_pattern(A), gather(A);
+  }
+
+  int n_ = 0;
+  std::vector<int> start_, column_;  // the pattern
+  std::vector<double> value_;
+
+ private:
+  void find_pattern(const BlockCsr& A) {
+    n_ = A.n();
+    const auto& values = A.values();
+    kept_.resize(values.size(), 0);
+    start_.assign(1, 0), column_.clear(), place_.clear();
+    for (int i = 0; i < n_; ++i) {
+      for (int k = A.row_start()[i]; k < A.row_start()[i + 1]; ++k)
+        if (kept_[k] |= values[k] != 0; kept_[k]) column_.push_back(A.column()[k]), place_.push_back(k);
+      start_.push_back(static_cast<int>(column_.size()));
+    }
+    value_.resize(column_.size());
+  }
+
+  static constexpr int most_patterns = 20;  // before all entries are taken
+  int n_patterns_ = 0;
+  std::vector<char> kept_;  // of the matrix's entries
+  std::vector<int> place_;  // of the pattern's among them
+};
+
+class Klu final : public Factors, KeptEntries {
  public:
   Klu() {
     klu_defaults(&common_);
@@ -28,8 +68,7 @@ class Klu final : public Factors {
   bool factor(const BlockCsr& A) override {
     if (!symbolic_ || !gather(A)) {
       forget();
-      if (++n_patterns_ == most_patterns) kept_.assign(A.values().size(), 1);
-      find_pattern(A), gather(A);
+      widen(A);
       std::vector<int> order = least_fill();
       if (order.empty()) return false;
       symbolic_ = klu_analyze_given(n_, start_.data(), column_.data(), order.data(), order.data(), &common_);
@@ -55,18 +94,6 @@ class Klu final : public Factors {
     if (numeric_) klu_free_numeric(&numeric_, &common_);
     if (symbolic_) klu_free_symbolic(&symbolic_, &common_);
   }
-  void find_pattern(const BlockCsr& A) {
-    n_ = A.n();
-    const auto& values = A.values();
-    kept_.resize(values.size(), 0);
-    start_.assign(1, 0), column_.clear(), place_.clear();
-    for (int i = 0; i < n_; ++i) {
-      for (int k = A.row_start()[i]; k < A.row_start()[i + 1]; ++k)
-        if (kept_[k] |= values[k] != 0; kept_[k]) column_.push_back(A.column()[k]), place_.push_back(k);
-      start_.push_back(static_cast<int>(column_.size()));
-    }
-    value_.resize(column_.size());
-  }
   /// By COLAMD: multipliers have no diagonal, so that pivots move.  Rows of what has many neighbours, the body in the middle of a star, say
   /// nothing of the order and would fill all of it: they go to the end.  Empty where memory fails.
   std::vector<int> least_fill() const {
@@ -81,26 +108,12 @@ class Klu final : public Factors {
     order.resize(n_);
     return order;
   }
-  /// The entries of the pattern; false where another one differs from zero.
-  bool gather(const BlockCsr& A) {
-    const double* from = A.values().data();
-    long here = 0, all = 0;
-    for (size_t j = 0; j < place_.size(); ++j) value_[j] = from[place_[j]], here += value_[j] != 0;
-    for (size_t k = 0; k < A.values().size(); ++k) all += from[k] != 0;
-    return here == all;
-  }
-
-  static constexpr int most_patterns = 20;  // before all entries are taken
-  int n_ = 0, n_patterns_ = 0;
-  std::vector<char> kept_;                   // of the matrix's entries
-  std::vector<int> start_, column_, place_;  // the pattern, and the entries it takes
-  std::vector<double> value_;
   klu_common common_{};
   klu_symbolic* symbolic_ = nullptr;
   klu_numeric* numeric_ = nullptr;
 };
 
-class Umfpack final : public Factors {
+class Umfpack final : public Factors, KeptEntries {
  public:
   Umfpack() {
     make_room_for_blas();
@@ -113,9 +126,13 @@ class Umfpack final : public Factors {
     if (symbolic_) umfpack_di_free_symbolic(&symbolic_);
   }
   bool factor(const BlockCsr& A) override {
-    const int *p = A.row_start().data(), *i = A.column().data();
-    const double* a = A.values().data();
-    if (!symbolic_ && umfpack_di_symbolic(A.n(), A.n(), p, i, a, &symbolic_, control_, info_) != UMFPACK_OK) return false;
+    if (!symbolic_ || !gather(A)) {
+      if (symbolic_) umfpack_di_free_symbolic(&symbolic_);
+      widen(A);
+    }
+    const int *p = start_.data(), *i = column_.data();
+    const double* a = value_.data();
+    if (!symbolic_ && umfpack_di_symbolic(n_, n_, p, i, a, &symbolic_, control_, info_) != UMFPACK_OK) return false;
     if (numeric_) umfpack_di_free_numeric(&numeric_);
     const int status = umfpack_di_numeric(p, i, a, symbolic_, &numeric_, control_, info_);
     if (status == UMFPACK_ERROR_out_of_memory) throw std::bad_alloc();

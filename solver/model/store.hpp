@@ -59,8 +59,15 @@ class Store {
                   const std::string& meaning = "", const std::string& time = "");
   template <class T>
   void append(const std::string& array, std::span<const T> row);
-  /// A growing array keeps its first rows alone.
-  void keep_rows(const std::string& array, std::int64_t count);
+  /// Many growing arrays of `width` columns as one, which costs far less: each is read as GROUP/MEMBER, as if it were apart.  `members`:
+  /// their names as links.  append_table() adds a row of all of them.
+  template <class T>
+  void start_table(const std::string& group, const std::vector<std::string>& members, std::int64_t width, const std::string& unit = "",
+                   const std::string& meaning = "", const std::string& time = "");
+  template <class T>
+  void append_table(const std::string& group, std::span<const T> row);
+  /// A growing array, or table of this group, keeps its first rows alone.
+  void keep_rows(const std::string& name, std::int64_t count);
   /// Without this array or group.
   void remove(const std::string& object);
 

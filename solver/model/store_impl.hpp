@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
+#include <optional>
 #include <type_traits>
 #include <unordered_map>
 #include <utility>
@@ -113,11 +114,14 @@ inline constexpr size_t row_buffer = 1 << 16, all_row_buffers = 1 << 26;
 /// Arrays of rows that stay open: each holds 15 kB, and twice the time that opening it again takes.
 inline constexpr size_t most_open = 1000;
 
+/// Where the members of a table are, in their group: names as users give them are never written so.
+inline constexpr const char *table_link = "/%table", *names_link = "/%names";
+
 /// An array that grows, with the rows not written yet.
 struct Rows {
   Id set;  // where it stays open
   hid_t type;
-  size_t row_bytes;
+  size_t row_bytes, room;      // of a row, and of those that are gathered
   std::vector<hsize_t> shape;  // first entry: rows in the file
   std::vector<std::byte> pending;
 };
@@ -132,6 +136,11 @@ struct Store::Impl {
   int lock = -1;                      // descriptor that tells others of it
   std::unordered_map<std::string, Rows> rows;
   size_t pending_bytes = 0;  // of all rows
+  struct Names {
+    std::vector<std::string> list;  // as links
+    std::unordered_map<std::string, std::int64_t> place;
+  };
+  std::unordered_map<std::string, Names> names;  // of the tables that were asked for, by group
 
   ~Impl();
 
@@ -154,12 +163,17 @@ struct Store::Impl {
   }
 
   Id open_array(const std::string& array) const;
+  std::vector<std::string> strings(const std::string& array) const;
   /// Error where an array says that it is larger than its file.
   void check_room(hid_t array, const std::string& name, std::int64_t elements, size_t bytes) const;
   /// Error where an array has a digest, and not that of `bytes`.
   void check_digest(hid_t array, const std::string& name, std::uint64_t digest) const;
 
   bool exists(const std::string& object) const;
+  /// Members of the table of a group, or null where it has none.
+  const Names* table_names(const std::string& group);
+  /// The table that an array is a member of, and its place; nothing where it is an array of its own, or there is none.
+  std::optional<std::pair<std::string, std::int64_t>> member(const std::string& array);
 
   /// The groups above an object, made where there are none.
   void make_groups(const std::string& object);

@@ -26,10 +26,34 @@ Id Store::Impl::open_array(const std::string& array) const {
   return set;
 }
 
-bool Store::has(const std::string& object) const { return impl_->exists(object); }
+const Store::Impl::Names* Store::Impl::table_names(const std::string& group) {
+  if (const auto found = names.find(group); found != names.end()) return &found->second;
+  if (!exists(group + table_link)) return nullptr;
+  Names& own = names[group];
+  own.list = strings(group + names_link);
+  for (size_t k = 0; k < own.list.size(); ++k) own.place[own.list[k]] = static_cast<std::int64_t>(k);
+  return &own;
+}
+
+std::optional<std::pair<std::string, std::int64_t>> Store::Impl::member(const std::string& array) {
+  const auto cut = array.rfind('/');
+  if (cut == 0 || cut == array.npos || exists(array)) return {};
+  const std::string group = array.substr(0, cut);
+  const Names* all = table_names(group);
+  const auto found = all ? all->place.find(array.substr(cut + 1)) : decltype(all->place.end()){};
+  if (!all || found == all->place.end()) return {};
+  return std::pair{group + table_link, found->second};
+}
+
+bool Store::has(const std::string& object) const { return impl_->exists(object) || impl_->member(object); }
 
 std::vector<std::string> Store::list(const std::string& group) const {
   std::vector<std::string> names;
+  if (const auto* members = impl_->table_names(group)) {
+    names = members->list;
+    std::sort(names.begin(), names.end());
+    return names;
+  }
   if (!has(group)) return names;
   const Id g(H5Gopen2(impl_->file, group.c_str(), H5P_DEFAULT), H5Gclose);
   if (!g.ok()) return names;
@@ -43,6 +67,7 @@ std::vector<std::string> Store::list(const std::string& group) const {
 }
 
 bool Store::is_array(const std::string& object) const {
+  if (impl_->member(object)) return true;
   if (!has(object)) return false;
   const Id o(H5Oopen(impl_->file, object.c_str(), H5P_DEFAULT), H5Oclose);
   return o.ok() && H5Iget_type(o) == H5I_DATASET;
@@ -50,13 +75,17 @@ bool Store::is_array(const std::string& object) const {
 
 std::vector<std::int64_t> Store::shape(const std::string& array) const {
   impl_->drain();
-  const Id set = impl_->open_array(array);
+  const auto in_table = impl_->member(array);
+  const Id set = impl_->open_array(in_table ? in_table->first : array);
   const Id space(H5Dget_space(set), H5Sclose);
-  return extent(space);
+  auto n = extent(space);
+  if (in_table) n.erase(n.begin() + 1);
+  return n;
 }
 
 std::string Store::type(const std::string& array) const {
-  const Id set = impl_->open_array(array);
+  const auto in_table = impl_->member(array);
+  const Id set = impl_->open_array(in_table ? in_table->first : array);
   const Id t(H5Dget_type(set), H5Tclose);
   const size_t size = H5Tget_size(t);
   switch (H5Tget_class(t)) {
@@ -116,7 +145,8 @@ std::vector<T> Store::read(const std::string& array) const {
 template <class T>
 std::vector<T> Store::read_rows(const std::string& array, std::int64_t first, std::int64_t count) const {
   impl_->drain();
-  const Id set = impl_->open_array(array);
+  const auto in_table = impl_->member(array);
+  const Id set = impl_->open_array(in_table ? in_table->first : array);
   const Id type(H5Dget_type(set), H5Tclose);
   if (const auto c = H5Tget_class(type); c != H5T_INTEGER && c != H5T_FLOAT)
     throw Error(impl_->path, fmt::format("{} does not hold numbers", array));
@@ -129,11 +159,14 @@ std::vector<T> Store::read_rows(const std::string& array, std::int64_t first, st
   if (n.empty()) n.push_back(1);
   impl_->check_room(set, array, checked_product(n), H5Tget_size(type));
   n[0] = count;
+  if (in_table && (n.size() != 3 || in_table->second >= n[1])) throw Error(impl_->path, fmt::format("damaged: no {} in its table", array));
+  if (in_table) n[1] = 1;
   std::vector<T> values(static_cast<size_t>(product(n)));
   if (values.empty()) return values;
-  if (count < rows) {
+  if (count < rows || in_table) {
     std::vector<hsize_t> start(n.size(), 0), size(n.begin(), n.end());
     start[0] = static_cast<hsize_t>(first);
+    if (in_table) start[1] = static_cast<hsize_t>(in_table->second);
     H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
     const Id room = simple_space(n);
     if (H5Dread(set, memory_type<T>(), room, space, H5P_DEFAULT, values.data()) < 0) impl_->fail_read(array);
@@ -170,14 +203,16 @@ std::optional<std::vector<std::string>> strings_of(hid_t file_type, hid_t space,
 
 }  // namespace
 
-std::vector<std::string> Store::read_strings(const std::string& array) const {
-  const Id set = impl_->open_array(array);
+std::vector<std::string> Store::read_strings(const std::string& array) const { return impl_->strings(array); }
+
+std::vector<std::string> Store::Impl::strings(const std::string& array) const {
+  const Id set = open_array(array);
   const Id type(H5Dget_type(set), H5Tclose), space(H5Dget_space(set), H5Sclose);
-  if (H5Tget_class(type) != H5T_STRING) throw Error(impl_->path, fmt::format("{} does not hold text", array));
-  impl_->check_room(set, array, checked_product(extent(space)), H5Tget_size(type));
+  if (H5Tget_class(type) != H5T_STRING) throw Error(path, fmt::format("{} does not hold text", array));
+  check_room(set, array, checked_product(extent(space)), H5Tget_size(type));
   auto texts = strings_of(type, space, [&](hid_t t, void* to) { return H5Dread(set, t, H5S_ALL, H5S_ALL, text_transfer(), to); });
-  if (!texts) impl_->fail_read(array);
-  impl_->check_digest(set, array, digest_of(*texts));
+  if (!texts) fail_read(array);
+  check_digest(set, array, digest_of(*texts));
   return *texts;
 }
 
@@ -187,7 +222,9 @@ std::string Store::read_text(const std::string& array) const {
   return texts[0];
 }
 
-std::optional<std::string> Store::text_attribute(const std::string& object, const std::string& name) const {
+std::optional<std::string> Store::text_attribute(const std::string& of, const std::string& name) const {
+  const auto in_table = impl_->member(of);
+  const std::string& object = in_table ? in_table->first : of;
   if (!has(object) || H5Aexists_by_name(impl_->file, object.c_str(), name.c_str(), H5P_DEFAULT) <= 0) return std::nullopt;
   const Id a(H5Aopen_by_name(impl_->file, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   const Id type(H5Aget_type(a), H5Tclose), space(H5Aget_space(a), H5Sclose);

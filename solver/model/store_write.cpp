@@ -171,6 +171,12 @@ void Store::start_rows(const std::string& array, std::vector<std::int64_t> row_s
     now.push_back(static_cast<hsize_t>(n)), most.push_back(static_cast<hsize_t>(n));
     chunk.push_back(std::max<hsize_t>(1, static_cast<hsize_t>(n)));
   }
+  size_t gathered = row_buffer;
+  if (row_shape.size() == 2 && row_bytes > room) {  // of a table: some rows of some members, which are read alone
+    chunk[0] = std::clamp<hsize_t>(all_row_buffers / 16 / row_bytes, 1, 32);
+    chunk[1] = std::clamp<hsize_t>(row_buffer / 2 / (chunk[0] * chunk[2] * sizeof(T)), 1, now[1]);
+    gathered = std::max<size_t>(gathered, chunk[0] * row_bytes);
+  }
   if (impl_->grows_on && impl_->exists(array)) {
     const auto had = shape(array);
     Id set = impl_->open_array(array);
@@ -179,7 +185,7 @@ void Store::start_rows(const std::string& array, std::vector<std::int64_t> row_s
       throw Error(impl_->path, fmt::format("{} has other rows than the run that goes on", array));
     now[0] = static_cast<hsize_t>(had[0]);
     if (impl_->rows.size() >= most_open) set = Id();
-    impl_->rows.emplace(array, Rows{std::move(set), memory_type<T>(), row_bytes, std::move(now), {}});
+    impl_->rows.emplace(array, Rows{std::move(set), memory_type<T>(), row_bytes, gathered, std::move(now), {}});
     return;
   }
   const Id space(H5Screate_simple(static_cast<int>(now.size()), now.data(), most.data()), H5Sclose);
@@ -191,7 +197,18 @@ void Store::start_rows(const std::string& array, std::vector<std::int64_t> row_s
   if (!meaning.empty()) impl_->text_attribute(set, "meaning", meaning);
   if (!time.empty()) impl_->text_attribute(set, "time", time);
   if (impl_->rows.size() >= most_open) set = Id();
-  impl_->rows.emplace(array, Rows{std::move(set), memory_type<T>(), row_bytes, std::move(now), {}});
+  impl_->rows.emplace(array, Rows{std::move(set), memory_type<T>(), row_bytes, gathered, std::move(now), {}});
+}
+
+template <class T>
+void Store::start_table(const std::string& group, const std::vector<std::string>& members, std::int64_t width, const std::string& unit,
+                        const std::string& meaning, const std::string& time) {
+  start_rows<T>(group + table_link, {static_cast<std::int64_t>(members.size()), width}, unit, meaning, time);
+  write_strings(group + names_link, members);
+}
+template <class T>
+void Store::append_table(const std::string& group, std::span<const T> row) {
+  append<T>(group + table_link, row);
 }
 
 template <class T>
@@ -203,13 +220,14 @@ void Store::append(const std::string& array, std::span<const T> row) {
   const auto bytes = std::as_bytes(row);
   r.pending.insert(r.pending.end(), bytes.begin(), bytes.end());
   impl_->pending_bytes += bytes.size();
-  if (r.pending.size() >= row_buffer)
+  if (r.pending.size() >= r.room)
     impl_->drain(r, array);
   else if (impl_->pending_bytes >= all_row_buffers)
     impl_->drain();
 }
 
-void Store::keep_rows(const std::string& array, std::int64_t count) {
+void Store::keep_rows(const std::string& name, std::int64_t count) {
+  const std::string array = impl_->rows.contains(name) ? name : name + table_link;
   auto& r = impl_->rows.at(array);
   if (static_cast<hsize_t>(count) > r.shape[0])
     throw Error(impl_->path, fmt::format("{} has {} rows, wanted {} to go on from", array, r.shape[0], count));
@@ -250,6 +268,9 @@ void Store::link(const std::string& name, const std::string& target, const std::
   template std::int64_t Store::reserve<T>(const std::string&, std::vector<std::int64_t>, const std::string&, const std::string&); \
   template void Store::start_rows<T>(const std::string&, std::vector<std::int64_t>, const std::string&, const std::string&,       \
                                      const std::string&);                                                                         \
+  template void Store::start_table<T>(const std::string&, const std::vector<std::string>&, std::int64_t, const std::string&,      \
+                                      const std::string&, const std::string&);                                                    \
+  template void Store::append_table<T>(const std::string&, std::span<const T>);                                                   \
   template void Store::append<T>(const std::string&, std::span<const T>);
 HILO_STORE_TYPE(double)
 HILO_STORE_TYPE(float)

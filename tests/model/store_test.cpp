@@ -176,6 +176,55 @@ TEST(Store, GrowingFileCanBeReadAfterEachFlush) {
   }
 }
 
+TEST(Store, MembersOfATableAreReadAsIfTheyWereApart) {
+  const Folder folder;
+  constexpr std::int64_t n = 500, width = 6, rows = 90;
+  std::vector<std::string> names;
+  for (int k = 0; k < n; ++k) names.push_back("m" + std::to_string((7 * k) % n));
+  const auto value = [](std::int64_t row, std::int64_t k, std::int64_t c) { return 1e6 * static_cast<double>(row) + 10. * k + c; };
+  const auto append = [&](Store& f, std::int64_t row) {
+    std::vector<double> all;
+    for (std::int64_t k = 0; k < n; ++k)
+      for (std::int64_t c = 0; c < width; ++c) all.push_back(value(row, k, c));
+    f.append_table<double>("/history/joint", all);
+  };
+  {
+    Store f = Store::create_growing(folder / "a.h5");
+    f.start_table<double>("/history/joint", names, width, "N", "force", "/t");
+    for (std::int64_t row = 0; row < rows; ++row) {
+      append(f, row);
+      if (row == 40) f.flush();
+    }
+    f.flush();
+  }
+  {
+    Store f = Store::open_growing(folder / "a.h5");  // goes on from row 70
+    f.start_table<double>("/history/joint", names, width, "N", "force", "/t");
+    f.keep_rows("/history/joint", 70);
+    append(f, 70);
+    f.flush();
+  }
+  const Store f = Store::open(folder / "a.h5");
+  std::vector<std::string> sorted = names;
+  std::sort(sorted.begin(), sorted.end());
+  EXPECT_EQ(f.list("/history/joint"), sorted);
+  for (const std::int64_t k : {std::int64_t{0}, std::int64_t{257}, n - 1}) {
+    const std::string array = "/history/joint/" + names[k];
+    EXPECT_TRUE(f.has(array) && f.is_array(array));
+    EXPECT_EQ(f.shape(array), (std::vector<std::int64_t>{71, width}));
+    EXPECT_EQ(f.type(array), "f8");
+    EXPECT_EQ(f.text_attribute(array, "unit"), "N");
+    EXPECT_EQ(f.text_attribute(array, "time"), "/t");
+    const std::vector<double> own = f.read<double>(array), some = f.read_rows<double>(array, 60, 2);
+    for (std::int64_t row = 0; row < 71; ++row)
+      for (std::int64_t c = 0; c < width; ++c) ASSERT_EQ(own[row * width + c], value(row, k, c));
+    EXPECT_EQ(some.front(), value(60, k, 0));
+  }
+  EXPECT_FALSE(f.has("/history/joint/m500"));
+  EXPECT_FALSE(f.is_array("/history/joint"));
+  EXPECT_NE(error_of([&] { f.read<double>("/history/joint/m500"); }).message.find("no array"), std::string::npos);
+}
+
 TEST(Store, WhatWasFlushedSurvivesAKilledRun) {
   const Folder folder;
   const pid_t child = ::fork();

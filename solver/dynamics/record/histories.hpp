@@ -28,7 +28,14 @@ class Histories {
  private:
   const System& system_;
   std::vector<Output> outputs_;      // of the run, then of the contributions
-  std::vector<std::string> arrays_;  // their paths
+  std::vector<std::string> arrays_;  // their paths; empty where they are in a table
+  struct Table {
+    std::string group;
+    std::vector<std::string> members;  // as links
+    size_t width = 0;                  // columns of each
+  };
+  std::vector<Table> tables_;
+  std::vector<int> table_of_;  // of each output, or -1
   size_t n_mid_ = 0;
 };
 

@@ -122,6 +122,17 @@ on = "zmax"
   hold_against_schema(linear.solved("--set time.end=0.0158 --set material.soft.E=1e9", "run.h5", "free").file(), met);
   hold_against_schema(linear.solved("--set 'time.analysis=\"modes\"'", "run.h5", "cantilever").file(), met);
   hold_against_schema(linear.solved("--set 'time.analysis=\"path\"'", "run.h5", "cantilever").file(), met);
+  std::string many = "[time]\nend = 0.002\nstep = 0.001\n";
+  for (int k = 0; k < 300; ++k)
+    many += "[[body]]\nname = \"b" + std::to_string(k) + "\"\nmass = 1\ncom = [" + std::to_string(k) + ", 0, 0]\ninertia = [1, 1, 1]\n";
+  std::ofstream(c / "many.toml") << many;
+  ASSERT_EQ(c.run("hilo-solve --quiet many.toml -o many.h5").exit, 0);
+  const Store table = Store::open(c / "many.h5");
+  hold_against_schema(table, met);
+  for (const char* array : {"/history/body/%table", "/history/body/%names"}) {
+    EXPECT_TRUE(table.has(array));
+    met.insert(std::string(array).replace(9, 4, "<name>"));
+  }
   const std::set<std::string> elsewhere{"/parts/rank", "/checkpoint", "/cell/state"};  // of runs on several ranks; reserved
   for (const ArraySchema& row : file_schema()) {
     if (row.file == "run.h5" && !elsewhere.contains(std::string(row.path))) {
