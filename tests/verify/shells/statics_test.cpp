@@ -231,7 +231,7 @@ TEST_F(ShellStatics, AThicknessThatTurnsIsRefusedAcrossACutToo) {
   EXPECT_EQ(one.err, why);
   const Ran two = mpirun(2, "hilo-solve --quiet scene.toml parts.h5 -o no.h5", work.path());
   EXPECT_EQ(two.exit, 2);
-  EXPECT_EQ(two.err.find(why), 0u) << two.err;
+  EXPECT_NE(two.err.find(why), std::string::npos) << two.err;  // mpirun puts its own words before or behind
 }
 
 }  // namespace
