@@ -11,19 +11,19 @@
 namespace hilo {
 namespace {
 
-using PointRows = Eigen::Matrix<double, 8, 3>;  // a row for each of the points of M
+using Rows = Eigen::Matrix<double, 8, 3>;  // a row for each of the points of M
 
 /// Centre and directors of the bodies at both ends.
-PointRows rows_of(const Config& q, const Connector& c) {
-  PointRows out;
+Rows rows_of(const Config& q, const Connector& c) {
+  Rows out;
   out << q.c[c.end[0].body].transpose(), q.R[c.end[0].body].transpose(), q.c[c.end[1].body].transpose(), q.R[c.end[1].body].transpose();
   return out;
 }
-Vec3 row(const PointRows& rows, int i) { return rows.row(i).transpose(); }
+Vec3 row(const Rows& rows, int i) { return rows.row(i).transpose(); }
 
 /// Rows of an acceleration that is the same everywhere.
-PointRows everywhere(const Vec3& g) {
-  PointRows out = PointRows::Zero();
+Rows everywhere(const Vec3& g) {
+  Rows out = Rows::Zero();
   out.row(0) = out.row(4) = g.transpose();
   return out;
 }
@@ -73,8 +73,8 @@ void respond(const BeamCell& cell, const Stage& s, Response& elastic, Response& 
 }
 
 /// Inertia, weight and drag on the points.
-PointRows forces_of_mass(const BeamCell& cell, const Stage& s, const Vec3& gravity) {
-  PointRows a = rows_of(*s.a, cell.ends) - everywhere(gravity * s.load_factor);
+Rows forces_of_mass(const BeamCell& cell, const Stage& s, const Vec3& gravity) {
+  Rows a = rows_of(*s.a, cell.ends) - everywhere(gravity * s.load_factor);
   if (s.v && cell.alpha > 0) a += cell.alpha * rows_of(*s.v, cell.ends);
   return cell.M * a;
 }
@@ -121,7 +121,7 @@ void Beams::evaluate(Pass& p) const {
     for (int m = 0; m < max_measures; ++m) force[m] = elastic.s[m] + viscous.s[m];
     add_force(p, c, left, force);
 
-    const PointRows F = forces_of_mass(cell, s, points_.gravity), at_left = rows_of(*s.left, c);
+    const Rows F = forces_of_mass(cell, s, points_.gravity), at_left = rows_of(*s.left, c);
     for (int e = 0; e < 2; ++e) {
       Vec6& body = p.body[c.end[e].body];
       body.head<3>() += row(F, 4 * e);
@@ -143,7 +143,7 @@ void Beams::evaluate(Pass& p) const {
     add_geometric(c, left, right, force, s.slope, K);
 
     const BeamCell::Mass slope = (s.mass_slope + (s.v ? cell.alpha * s.alpha_slope : 0)) * cell.M;
-    const PointRows at_end = rows_of(*s.end, c);
+    const Rows at_end = rows_of(*s.end, c);
     for (int a = 0; a < 8; ++a) {
       const bool turns_a = a % 4 > 0;
       const Mat3 lever = turns_a ? skew(row(at_left, a)) : Mat3::Identity();
@@ -171,7 +171,7 @@ void Beams::add_energy(const Config& q, const Config& v, Energy& sum) const {
     Response r;
     cell.law->elastic(e, e, r);
     sum.elastic += r.energy;
-    const PointRows x = rows_of(q, cell.ends), V = rows_of(v, cell.ends), momenta = cell.M * V;
+    const Rows x = rows_of(q, cell.ends), V = rows_of(v, cell.ends), momenta = cell.M * V;
     sum.kinetic += momenta.cwiseProduct(V).sum() / 2;
     sum.momentum += row(momenta, 0) + row(momenta, 4);
     for (int i = 0; i < 8; ++i) sum.angular += row(x, i).cross(row(momenta, i));
@@ -203,7 +203,7 @@ double Beams::inertia(int body, const Config& v, const Vec3& w, const Mat3& W) c
   for (const BeamCell& cell : cells)
     for (int e = 0; e < 2; ++e)
       if (cell.ends.end[e].body == body) {
-        const PointRows F = cell.M * rows_of(v, cell.ends);
+        const Rows F = cell.M * rows_of(v, cell.ends);
         sum += row(F, 4 * e).dot(w);
         for (int i = 0; i < 3; ++i) sum += row(F, 4 * e + 1 + i).dot(W.col(i));
       }
@@ -236,7 +236,7 @@ void Beams::observe(const Sight& sight) {
     gradient(cell.ends, *s.left, g);
     Response elastic, viscous, before;
     respond(cell, s, elastic, viscous, before);
-    const PointRows F = forces_of_mass(cell, s, points_.gravity), at = rows_of(*s.left, cell.ends);
+    const Rows F = forces_of_mass(cell, s, points_.gravity), at = rows_of(*s.left, cell.ends);
     for (int end = 0; end < 2; ++end) {
       Vec6 f = Vec6::Zero();
       for (int k = 0; k < ArcLaw::n_measures; ++k) f += (elastic.s[k] + viscous.s[k]) * g.G.block<1, 6>(k, 6 * end).transpose();

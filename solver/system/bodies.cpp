@@ -58,11 +58,11 @@ void Bodies::evaluate(Pass& p) const {
 
 namespace {
 
-using DirectorRows = Eigen::Matrix<double, 4, 3>;
+using Rows = Eigen::Matrix<double, 4, 3>;
 
 /// Centre and directors.
-DirectorRows rows_of(const Config& q, int b) {
-  DirectorRows out;
+Rows rows_of(const Config& q, int b) {
+  Rows out;
   out << q.c[b].transpose(), q.R[b].transpose();
   return out;
 }
@@ -79,14 +79,14 @@ void Bodies::add_drag(Pass& p, size_t number) const {
   const auto b = static_cast<int>(number);
   const Stage& s = p.s;
   const Eigen::Matrix4d D = (s.tempo ? s.tempo[b] : 1) * drag[number];
-  const DirectorRows F = D * rows_of(*s.v, b), left = rows_of(*s.left, b);
-  const auto row = [](const DirectorRows& rows, int i) { return Vec3(rows.row(i).transpose()); };
+  const Rows F = D * rows_of(*s.v, b), left = rows_of(*s.left, b);
+  const auto row = [](const Rows& rows, int i) { return Vec3(rows.row(i).transpose()); };
   p.body[b].head<3>() += row(F, 0);
   for (int i = 1; i < 4; ++i) p.body[b].tail<3>() += row(left, i).cross(row(F, i));
   if (!p.K || points_.body_block[b] < 0) return;
-  DirectorRows end = rows_of(*s.end, b);
+  Rows end = rows_of(*s.end, b);
   end.row(0).setZero();  // turns leave the centre
-  const DirectorRows W = s.alpha_slope * D * end;
+  const Rows W = s.alpha_slope * D * end;
   RowMatrix6 K = RowMatrix6::Zero();
   K.topLeftCorner<3, 3>().diagonal().setConstant(s.alpha_slope * D(0, 0));
   K.topRightCorner<3, 3>() = -skew(row(W, 0));

@@ -12,10 +12,10 @@ namespace {
 
 using Values = MeasurePath::Values;
 
-using MeasureVector = Eigen::Matrix<double, max_measures, 1>;
-using Vectors = std::array<MeasureVector, Collocation::n>;
+using Vector = Eigen::Matrix<double, max_measures, 1>;
+using Vectors = std::array<Vector, Collocation::n>;
 
-MeasureVector vector_of(const Values& x) { return Eigen::Map<const MeasureVector>(x.data()); }
+Vector vector_of(const Values& x) { return Eigen::Map<const Vector>(x.data()); }
 Vectors ways_of(const MeasurePath& path) { return {vector_of(path.way[0]), vector_of(path.way[1]), vector_of(path.way[2])}; }
 
 }  // namespace
@@ -51,10 +51,10 @@ void elastic_along(const SpringLaw& law, const MeasurePath& path, const Collocat
   for (auto& row : out.D)  // so far the derivative by the second argument alone
     for (double& d : row) d *= 2;
   law.elastic(path.e0, path.e1, r = {});
-  MeasureVector stiffness, force = slopes[i];
+  Vector stiffness, force = slopes[i];
   for (int m = 0; m < max_measures; ++m) stiffness[m] = std::abs(r.D[m][m]);
   complete(vector_of(r.s), slopes, ways_of(path), stiffness, step, i, force);
-  Eigen::Map<MeasureVector>(out.s.data()) = force;
+  Eigen::Map<Vector>(out.s.data()) = force;
 }
 
 void gradient_along(const RowLaw& rows, const MeasurePath& path, const Collocation& step, int i, RowLaw::Gradient& out) {
@@ -64,11 +64,10 @@ void gradient_along(const RowLaw& rows, const MeasurePath& path, const Collocati
   out = at[i];
   const Vectors ways = ways_of(path);
   for (int r = 0; r < rows.n_rows(); ++r) {
-    const MeasureVector mean = vector_of(whole.d[r]);
-    MeasureVector d = vector_of(at[i].d[r]);
-    complete(mean, {vector_of(at[0].d[r]), vector_of(at[1].d[r]), vector_of(at[2].d[r])}, ways, MeasureVector(mean.cwiseAbs2()), step, i,
-             d);
-    Eigen::Map<MeasureVector>(out.d[r].data()) = d;
+    const Vector mean = vector_of(whole.d[r]);
+    Vector d = vector_of(at[i].d[r]);
+    complete(mean, {vector_of(at[0].d[r]), vector_of(at[1].d[r]), vector_of(at[2].d[r])}, ways, Vector(mean.cwiseAbs2()), step, i, d);
+    Eigen::Map<Vector>(out.d[r].data()) = d;
   }
 }
 

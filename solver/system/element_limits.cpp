@@ -15,7 +15,7 @@ namespace {
 /// How far a hexahedron is from a parallelepiped: the angle, in radians, by which its opposite edges are turned against each other in the
 /// second worst of its three planes.  With x = m_r xi_r + p_r xi_j xi_k + ... the angle of plane jk is |p_r|/min(|m_j|, |m_k|).  A taper in
 /// one plane alone (rings, fans) hinders only what bends in that plane; it counts, in the same measure, in cells of thin walls.
-double opposite_turn(const Mesh& mesh, std::int64_t c) {
+double skew(const Mesh& mesh, std::int64_t c) {
   Vec3 m[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}, p[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   const auto nodes = mesh.cell(c);
   for (int a = 0; a < 8; ++a)
@@ -51,7 +51,7 @@ constexpr int wedge15_edge[9][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 
 double measure(const Mesh& mesh, std::int64_t c) {
   switch (static_cast<Shape>(mesh.shape[c])) {
     case Shape::hex8:
-      return opposite_turn(mesh, c);
+      return skew(mesh, c);
     case Shape::hex20:
       return bulge(mesh, c, Hex20::edge, 8);
     case Shape::tet10:

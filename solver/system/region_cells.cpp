@@ -7,7 +7,7 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using CellMatrix = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>;
 
-void gather_rows(const MatrixXd& V, std::span<const int> nodes, MatrixXd& local) {
+void gather(const MatrixXd& V, std::span<const int> nodes, MatrixXd& local) {
   local.resize(static_cast<Index>(3 * nodes.size()), V.cols());
   for (size_t a = 0; a < nodes.size(); ++a) local.middleRows(3 * static_cast<Index>(a), 3) = V.middleRows(3 * nodes[a], 3);
 }
@@ -40,7 +40,7 @@ MatrixXd RegionCells::times(Kind kind, const MatrixXd& V, const VectorXd* u) con
   each(
       kind,
       [&](std::span<const int> nodes, const double* Ke) {
-        gather_rows(V, nodes, local);
+        gather(V, nodes, local);
         product.noalias() = CellMatrix(Ke, local.rows(), local.rows()) * local;
         for (size_t a = 0; a < nodes.size(); ++a) out.middleRows(3 * nodes[a], 3) += product.middleRows(3 * static_cast<Index>(a), 3);
       },
@@ -53,7 +53,7 @@ MatrixXd RegionCells::projected_stiffness(const MatrixXd& V, const VectorXd& u) 
   each(
       stiffness,
       [&](std::span<const int> nodes, const double* Ke) {
-        gather_rows(V, nodes, local);
+        gather(V, nodes, local);
         product.noalias() = CellMatrix(Ke, local.rows(), local.rows()) * local;
         out.noalias() += local.transpose() * product;
       },

@@ -25,7 +25,7 @@ constexpr double least_share = 0.02, without_end = 1e3;  // below and at a buckl
 constexpr double same_pose = 0.1;                        // in which supports are taken as they were [rad, 1]
 enum class Told { at_end, when_it_was };
 
-Vector modal_amplitudes(const Modes& m, const Config& q) {
+Vector amplitudes(const Modes& m, const Config& q) {
   Vector out(m.n_modes);
   for (int j = 0; j < m.n_modes; ++j) out[j] = q.eta[m.first + j / 3][j % 3];
   return out;
@@ -159,7 +159,7 @@ void RegionMeasures::observe(const Sight& seen) {
       continue;
     }
     Region& at = region(k, seen.q);
-    const Vector eta = modal_amplitudes(m, seen.q), s = r.soft.transpose() * eta;
+    const Vector eta = amplitudes(m, seen.q), s = r.soft.transpose() * eta;
     Vector pairs(at.second_order.cols());
     for (Index j = 0; j < s.size(); ++j) pairs.segment(QuadraticStrain::pair(0, j), j + 1) = s[j] * s.head(j + 1);
     const Vector f = at.second_order * pairs;
@@ -172,8 +172,8 @@ void RegionMeasures::observe(const Sight& seen) {
     at.growth.look(growth, t);
     const double pull = largest_share(at.stress, -eta);
     at.tension.look(pull < least_share ? 1 : (1 + pull) / (1 + std::min(pull, largest_share(at.axes, -eta))), t);
-    at.shortening.look(
-        2 * std::numbers::sqrt3 * shortening(at, t, s, r.soft.transpose() * modal_amplitudes(m, seen.v)) / std::sqrt(r.A(0, 0)), t);
+    at.shortening.look(2 * std::numbers::sqrt3 * shortening(at, t, s, r.soft.transpose() * amplitudes(m, seen.v)) / std::sqrt(r.A(0, 0)),
+                       t);
     out.push_back(quadratic), out.push_back(share), out.push_back(growth);
   }
 }

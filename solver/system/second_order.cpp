@@ -34,7 +34,7 @@ Matrix softest(const Matrix& modes, const Vector& omega2, const Matrix& interfac
   return V * stiffness.eigenvectors().leftCols(std::min(n, most_soft));
 }
 
-void gather_shapes(const ByRows& V, std::span<const int> nodes, Matrix& local) {
+void gather(const ByRows& V, std::span<const int> nodes, Matrix& local) {
   local.resize(static_cast<Index>(3 * nodes.size()), V.cols());
   for (size_t a = 0; a < nodes.size(); ++a) local.middleRows(3 * static_cast<Index>(a), 3) = V.middleRows(3 * nodes[a], 3);
 }
@@ -80,7 +80,7 @@ SecondOrder second_order(const ReductionInput& in, const Matrix& modes, const Ve
       X.clear();
       for (const int i : nodes) X.push_back(in.X[i]);
       cell_gradients(b.shape, b.material, X, at);
-      gather_shapes(all, nodes, local), gather_shapes(soft, nodes, soft_local);
+      gather(all, nodes, local), gather(soft, nodes, soft_local);
       for (size_t p = 0; p < at.volume.size(); ++p) {
         gradients(local, at.dN.data() + p * nodes_of_cell, H);
         gradients(soft_local, at.dN.data() + p * nodes_of_cell, Hs.rightCols(n - 3));

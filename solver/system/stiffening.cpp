@@ -10,7 +10,7 @@ using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-constexpr double least_energy = 1e-4;  // of the energy of the largest derivative, below which one is left out
+constexpr double least_share = 1e-4;  // of the energy of the largest derivative, below which one is left out
 
 /// Amplitude at which a mode moves its nodes by a share of the region: the stiffness is a polynomial of the second degree in amplitudes, so
 /// differences of any width are exact but for round-off, which is least where the degrees are of one size.
@@ -38,7 +38,7 @@ Matrix modal_derivatives(const RegionCells& cells, const Matrix& modes, const Ve
   const Matrix G = all.transpose() * cells.times(RegionCells::stiffness, all);
   const Eigen::SelfAdjointEigenSolver<Matrix> energy((G + G.transpose()) / 2);
   Index kept = 0;
-  while (kept < G.cols() && energy.eigenvalues()[G.cols() - 1 - kept] > least_energy * energy.eigenvalues()[G.cols() - 1]) ++kept;
+  while (kept < G.cols() && energy.eigenvalues()[G.cols() - 1 - kept] > least_share * energy.eigenvalues()[G.cols() - 1]) ++kept;
   return all * energy.eigenvectors().rightCols(kept);
 }
 

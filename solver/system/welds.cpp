@@ -12,8 +12,8 @@ namespace hilo {
 namespace {
 
 constexpr int pair_a[3] = {0, 1, 2}, pair_b[3] = {1, 2, 0};
-using Map = Eigen::GradientRows<double, 3, Eigen::Dynamic>;
-using GradientRows = ModeForces::GradientRows;
+using Map = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+using Matrix = ModeForces::Matrix;
 
 std::vector<Vec3> shapes_of_direction(const Weld& w, int i) {
   std::vector<Vec3> out;
@@ -39,9 +39,9 @@ Map region_map(bool point, const Vec3& arm, const Mat3& turn, const std::vector<
 /// Rows over the unknowns of the region and the body (3 n_blocks x 6 + 3 n_mode_blocks + 6) where the region is turned by `turn` and moves
 /// its directions by `of`; arms from the centres of both.
 template <class Place>
-GradientRows gradient_at(const Weld& w, const Place& x, const Vec3& arm, const Vec3& arm_body, const Mat3& turn, const Map (&of)[3]) {
+Matrix gradient_at(const Weld& w, const Place& x, const Vec3& arm, const Vec3& arm_body, const Mat3& turn, const Map (&of)[3]) {
   const Eigen::Index n = of[0].cols();
-  GradientRows G = GradientRows::Zero(3 * w.n_blocks(), n + 6);
+  Matrix G = Matrix::Zero(3 * w.n_blocks(), n + 6);
   G.topLeftCorner(3, n) = region_map(true, arm, turn, w.mean);
   for (int i = 0; i < 3; ++i) G(i, n + i) = -1;
   G.block<3, 3>(0, n + 3) = skew(arm_body);
@@ -166,10 +166,10 @@ void Welds::evaluate(Pass& p) const {
 
     const Mat3 hat = left_turn(s, m.body), &R = s.end->R[m.body];
     const Eigen::Index n = 6 + 3 * m.n_blocks, at_body = n, at_rows = n + 6, rows = 3 * w.n_blocks(), all = at_rows + rows;
-    GradientRows K = GradientRows::Zero(all, all);
+    Matrix K = Matrix::Zero(all, all);
     Map L[3], Z[3];  // of the directions
     for (int i = 0; i < 3; ++i) L[i] = region_map(false, left.d[i], hat, shapes[i]), Z[i] = region_map(false, end.d[i], R, shapes[i]);
-    const GradientRows G_left = gradient_at(w, left, arm, arm_body, hat, L), G_right = gradient_at(w, end, arm_end, arm_body_end, R, Z);
+    const Matrix G_left = gradient_at(w, left, arm, arm_body, hat, L), G_right = gradient_at(w, end, arm_end, arm_body_end, R, Z);
     K.block<3, 3>(at_body + 3, at_body + 3) -= s.slope * skew(f) * skew(arm_body_end);
     for (int i = 0; i < 3; ++i) {
       const int a = pair_a[i], b = pair_b[i];

@@ -9,7 +9,7 @@ import re
 import sys
 
 repo = os.path.abspath(sys.argv[1])
-TOGETHER = ["solver/base", "solver/model", "solver/system", "solver/dynamics", "tools/import", "post", "tests/tools", "tests/verify"]  # others are compiled one by one
+TOGETHER = ["solver/base", "solver/model", "solver/dynamics", "tools/import", "post", "tests/tools", "tests/verify"]  # others are compiled one by one
 
 
 def declared(path):
