@@ -15,8 +15,7 @@ namespace hilo {
 /// that steps do not resolve would add up in that sum for ever, and yet are off by about their amplitude.  So third differences are taken
 /// over strides of 1, 2, 8 and 32 steps.  The longer the stride, the fewer vibrations are in its sum, and the larger the amplitude is, an
 /// eighth of the largest difference, that it leaves out.  The least sum of both counts.  A stride of a period sees no vibration at all: so
-/// what a stride leaves out is no less than what shorter ones do.  What the motion makes of early errors later is not
-/// in it.
+/// what a stride leaves out is no less than what shorter ones do.  What the motion makes of early errors later is not in it.
 class StepErrors {
  public:
   explicit StepErrors(double phase_error) : phase_error_(std::abs(phase_error)) {}

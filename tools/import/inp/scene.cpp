@@ -18,7 +18,6 @@ namespace {
 
 constexpr std::array<const char*, 3> axes{"x", "y", "z"};
 
-std::string quoted(const std::string& s) { return toml_text(s); }
 std::string num(double x) { return toml_number(x); }
 std::string list(const std::vector<double>& v) { return toml_list(v); }
 std::string list(const Vec3& v) { return list(std::vector<double>{v.x(), v.y(), v.z()}); }
@@ -50,7 +49,7 @@ class Writer {
     time();
     if (tables_.empty() && head_.empty()) return "";
     std::string s = "units = \"m-kg-s\"\n";
-    if (!d_.title.empty()) s = fmt::format("title = {}\n", quoted(d_.title)) + s;
+    if (!d_.title.empty()) s = fmt::format("title = {}\n", toml_text(d_.title)) + s;
     return s + head_ + tables_;
   }
 
@@ -88,7 +87,7 @@ class Writer {
       return false;
     }
     wanted_.insert(amplitude);
-    line = fmt::format("history = {}\n", quoted(clean_name(a->second.name)));
+    line = fmt::format("history = {}\n", toml_text(clean_name(a->second.name)));
     return true;
   }
 
@@ -139,14 +138,14 @@ class Writer {
       const auto& mat = d_.laws.at(s.law);
       if (!mat.no_law.empty() || (mat.kind == "stvk" && std::isnan(mat.data.E))) {
         const std::string why = mat.no_law.empty() ? "no *ELASTIC" : mat.no_law;
-        lines[r] = fmt::format("# region {}: {} has no law here ({}), give it one\n", quoted(m.region_name[r]),
-                               mat.name.empty() ? "it" : "material " + quoted(mat.name), why);
-        in_.skip(fmt::format("*MATERIAL of region {}: no law of hilo ({})", quoted(m.region_name[r]), why), s.place, 1, false,
+        lines[r] = fmt::format("# region {}: {} has no law here ({}), give it one\n", toml_text(m.region_name[r]),
+                               mat.name.empty() ? "it" : "material " + toml_text(mat.name), why);
+        in_.skip(fmt::format("*MATERIAL of region {}: no law of hilo ({})", toml_text(m.region_name[r]), why), s.place, 1, false,
                  "give it one in the scene");
         continue;
       }
       used.insert(s.law);
-      lines[r] = fmt::format("[region.{}]\nmaterial = {}\n", quoted(m.region_name[r]), quoted(clean_name(mat.name)));
+      lines[r] = fmt::format("[region.{}]\nmaterial = {}\n", toml_text(m.region_name[r]), toml_text(clean_name(mat.name)));
       if (static_cast<Shape>(m.shape[c]) == Shape::bar2 && s.area > 0) lines[r] += fmt::format("area = {}\n", num(s.area * si("m^2")));
     }
     for (const auto& key : used) tables_ += d_.laws.at(key).table(d_.laws.at(key).name, o_.units);
@@ -165,7 +164,7 @@ class Writer {
       if (h.on[k]) parts += fmt::format("{}\"{}\"", parts.empty() ? "" : ", ", axes[k]);
     const std::string set = set_of(h.target, h.nodes, "support", false);
     tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"{}\"\nname = {}\non = {}\ncomponents = [{}]\n", h.place,
-                           h.moved ? "translation" : "fixed", quoted(unique("motion", set)), quoted(set), parts);
+                           h.moved ? "translation" : "fixed", toml_text(unique("motion", set)), toml_text(set), parts);
     if (h.moved) tables_ += fmt::format("displacement = {}\n", list(Vec3(h.value * si("m")))) + past;
   }
 
@@ -176,7 +175,7 @@ class Writer {
       const double share = share_of_pairs(g.nodes, g.place);
       const std::string set = set_of(g.target, g.nodes, "force", true);
       tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", g.place,
-                             quoted(unique("load", set)), quoted(set), list(Vec3(share * g.value * si("N")))) +
+                             toml_text(unique("load", set)), toml_text(set), list(Vec3(share * g.value * si("N")))) +
                  past;
     }
   }
@@ -202,10 +201,10 @@ class Writer {
         if (place.empty()) place = b.place;
       });
     for (const auto& [id, h] : held) {
-      const std::string name = quoted(body_name(d_, id));
+      const std::string name = toml_text(body_name(d_, id));
       if (h.first == 63)
         tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"fixed\"\nname = {}\non = {}\n", h.second,
-                               quoted(unique("motion", body_name(d_, id))), name);
+                               toml_text(unique("motion", body_name(d_, id))), name);
       else
         tables_ += joints_that_hold(h.first, Mat3::Identity(), body_name(d_, id) + "_support", "ground", body_name(d_, id),
                                     list(Vec3(d_.bodies.at(id).X * si("m") * o_.scale)), h.second,
@@ -234,12 +233,12 @@ class Writer {
         const std::string name = body_name(d_, key.first);
         if (s.F.norm() > 0)
           tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nat = {}\n", s.place,
-                                 quoted(unique("load", name)), quoted(name), list(Vec3(s.F * si("N"))),
+                                 toml_text(unique("load", name)), toml_text(name), list(Vec3(s.F * si("N"))),
                                  list(Vec3(d_.bodies.at(key.first).X * si("m") * o_.scale))) +
                      past;
         if (s.M.norm() > 0)
           tables_ += fmt::format("\n[[load]]   # {}\nkind = \"torque\"\nname = {}\non = {}\ntorque = {}\n", s.place,
-                                 quoted(unique("load", name + "_torque")), quoted(name), list(Vec3(s.M * si("N m")))) +
+                                 toml_text(unique("load", name + "_torque")), toml_text(name), list(Vec3(s.M * si("N m")))) +
                      past;
         continue;
       }
@@ -257,7 +256,7 @@ class Writer {
         if ((*shares)[i].norm() > 0) {
           const std::string set = set_of("", {rows[i]}, "share", true);
           tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", s.place,
-                                 quoted(unique("load", set)), quoted(set), list(Vec3((*shares)[i] * si("N")))) +
+                                 toml_text(unique("load", set)), toml_text(set), list(Vec3((*shares)[i] * si("N")))) +
                      past;
         }
     }
@@ -311,7 +310,7 @@ class Writer {
       if (g.name.empty()) g.name = names_.facets(g.wish.empty() ? fmt::format("pressure_{}", ++made_["pressure"]) : g.wish, g.facets);
       if (g.name.empty()) continue;
       tables_ += fmt::format("\n[[load]]   # {}\nkind = \"pressure\"\nname = {}\non = {}\npressure = {}\n", g.place,
-                             quoted(unique("load", g.name)), quoted(g.name), num(g.value * si("Pa"))) +
+                             toml_text(unique("load", g.name)), toml_text(g.name), num(g.value * si("Pa"))) +
                  past;
     }
   }
@@ -319,7 +318,7 @@ class Writer {
   void velocities() {
     for (const auto& g : nodal_groups(d_, d_.velocities, "*INITIAL CONDITIONS, TYPE=VELOCITY", false, turned_, in_)) {
       const std::string set = set_of(g.target, g.nodes, "velocity", false);
-      tables_ += fmt::format("\n[[initial]]   # {}\non = [{}]\nvelocity = {}\n", g.place, quoted(set), list(Vec3(g.value * si("m/s"))));
+      tables_ += fmt::format("\n[[initial]]   # {}\non = [{}]\nvelocity = {}\n", g.place, toml_text(set), list(Vec3(g.value * si("m/s"))));
     }
   }
 
@@ -328,7 +327,7 @@ class Writer {
       const auto& a = d_.amplitudes.at(key);
       std::vector<double> t = a.t;
       for (auto& x : t) x *= si("s");
-      tables_ += fmt::format("\n[history.{}]\nt = {}\nvalue = {}\n", quoted(clean_name(a.name)), list(t), list(a.value));
+      tables_ += fmt::format("\n[history.{}]\nt = {}\nvalue = {}\n", toml_text(clean_name(a.name)), list(t), list(a.value));
     }
   }
 
