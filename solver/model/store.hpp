@@ -59,6 +59,8 @@ class Store {
                   const std::string& meaning = "", const std::string& time = "");
   template <class T>
   void append(const std::string& array, std::span<const T> row);
+  /// Are the arrays of this group members of a table?
+  bool is_table(const std::string& group) const;
   /// Many growing arrays of `width` columns as one, which costs far less: each is read as GROUP/MEMBER, as if it were apart.  `members`:
   /// their names as links.  append_table() adds a row of all of them.
   template <class T>

@@ -45,6 +45,7 @@ std::optional<std::pair<std::string, std::int64_t>> Store::Impl::member(const st
   return std::pair{group + table_link, found->second};
 }
 
+bool Store::is_table(const std::string& group) const { return impl_->exists(group + table_link); }
 bool Store::has(const std::string& object) const { return impl_->exists(object) || impl_->member(object); }
 
 std::vector<std::string> Store::list(const std::string& group) const {

@@ -172,7 +172,7 @@ void Store::start_rows(const std::string& array, std::vector<std::int64_t> row_s
     chunk.push_back(std::max<hsize_t>(1, static_cast<hsize_t>(n)));
   }
   size_t gathered = row_buffer;
-  if (row_shape.size() == 2 && row_bytes > room) {  // of a table: some rows of some members, which are read alone
+  if (row_shape.size() == 2 && row_bytes > room / 32) {  // of a table: some rows of some members, which are read alone
     chunk[0] = std::clamp<hsize_t>(all_row_buffers / 16 / row_bytes, 1, 32);
     chunk[1] = std::clamp<hsize_t>(row_buffer / 2 / (chunk[0] * chunk[2] * sizeof(T)), 1, now[1]);
     gathered = std::max<size_t>(gathered, chunk[0] * row_bytes);
@@ -203,8 +203,12 @@ void Store::start_rows(const std::string& array, std::vector<std::int64_t> row_s
 template <class T>
 void Store::start_table(const std::string& group, const std::vector<std::string>& members, std::int64_t width, const std::string& unit,
                         const std::string& meaning, const std::string& time) {
+  const bool goes_on = impl_->grows_on && impl_->exists(group + names_link);
+  if (goes_on && impl_->strings(group + names_link) != members)
+    throw Error(impl_->path, group + " has other members than in the run that goes on, or in another order",
+                "give it their names and order");
   start_rows<T>(group + table_link, {static_cast<std::int64_t>(members.size()), width}, unit, meaning, time);
-  write_strings(group + names_link, members);
+  if (!goes_on) write_strings(group + names_link, members);
 }
 template <class T>
 void Store::append_table(const std::string& group, std::span<const T> row) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/record/histories.hpp"
 
+#include <fmt/format.h>
+
 #include <map>
 
 #include "dynamics/record/run_output.hpp"
@@ -77,10 +79,27 @@ void Histories::declare(Store& f) {
   }
 }
 
-void Histories::shorten(Store& f, std::int64_t n_rows) const {
-  f.keep_rows(times, n_rows), f.keep_rows(iterations, n_rows);
+void Histories::take_apart(size_t table) {
+  for (size_t k = 0; k < arrays_.size(); ++k)
+    if (table_of_[k] == static_cast<int>(table)) {
+      table_of_[k] = -1, arrays_[k] = tables_[table].group + "/" + to_link_name(outputs_[k].name);
+    } else if (table_of_[k] > static_cast<int>(table)) {
+      --table_of_[k];
+    }
+  tables_.erase(tables_.begin() + static_cast<std::ptrdiff_t>(table));
+}
+
+void Histories::go_on(Store& f, std::int64_t n_rows) {
+  for (size_t k = tables_.size(); k-- > 0;)
+    if (!f.is_table(tables_[k].group)) take_apart(k);
+  std::vector<std::string> arrays{times, iterations};
   for (const std::string& array : arrays_)
-    if (!array.empty()) f.keep_rows(array, n_rows);
+    if (!array.empty()) arrays.push_back(array);
+  for (const std::string& array : arrays)
+    if (const std::int64_t had = f.has(array) ? f.shape(array)[0] : 0; had < n_rows)
+      throw Error(f.path(), fmt::format("{} has {} rows, wanted {} to go on from", array, had, n_rows));
+  declare(f);
+  for (const std::string& array : arrays) f.keep_rows(array, n_rows);
   for (const Table& table : tables_) f.keep_rows(table.group, n_rows);
 }
 

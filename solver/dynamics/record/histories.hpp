@@ -20,12 +20,15 @@ class Histories {
   size_t n_mid() const { return n_mid_; }
   /// The arrays, without rows.
   void declare(Store& f);
-  /// The arrays, with their first rows alone.
-  void shorten(Store& f, std::int64_t n_rows) const;
+  /// Those of a file that goes on after so many rows, and no more of them.  A file that lacks some is an error, and stays as it was.
+  void go_on(Store& f, std::int64_t n_rows);
   /// A row; `mid` as interpolated to its instant.
   void append(Store& f, double t, int newton, const std::vector<double>& end, const std::vector<double>& mid) const;
 
  private:
+  /// A table of a file of before there were any: its members are arrays of their own.
+  void take_apart(size_t table);
+
   const System& system_;
   std::vector<Output> outputs_;      // of the run, then of the contributions
   std::vector<std::string> arrays_;  // their paths; empty where they are in a table

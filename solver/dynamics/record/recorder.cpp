@@ -35,7 +35,7 @@ void Recorder::first(const State& s, const Ledger& ledger) {
 void Recorder::open(bool again) {
   if (again)
     file_.open([&](Store& f) {
-      histories_.declare(f), histories_.shorten(f, n_written_);
+      histories_.go_on(f, n_written_);
       if (mesh_) mesh_->shorten(f);
     });
   else

@@ -141,5 +141,32 @@ on = "zmax"
   }
 }
 
+/// Probes at x = their number, in this order.
+void write_probes(const Workplace& work, const std::string& name, int first, int last) {
+  std::ofstream out(work / name);
+  out << "[[body]]\nname = \"b\"\nmass = 1\ncom = [0, 0, 0]\ninertia = [1, 1, 1]\n[time]\nend = 0.02\nstep = 0.001\n";
+  for (int k = first; k != last; k += first < last ? 1 : -1)
+    out << "[[probe]]\nname = \"p" << k << "\"\non = \"b\"\nat = [" << k << ", 0, 0]\n";
+}
+
+// Columns belong to names: a run goes on with the same ones alone, and a file that is refused stays as it was.
+TEST(Schema, ATableGoesOnWithItsOwnNames) {
+  const Workplace work;
+  write_probes(work, "scene.toml", 0, 300), write_probes(work, "turned.toml", 299, -1), write_probes(work, "more.toml", 0, 301);
+  ASSERT_EQ(work.run("hilo-solve --quiet scene.toml -o run.h5 --checkpoint 10steps").exit, 0);
+  const std::string before = text_of(work / "run.h5");
+  for (const char* other : {"turned.toml", "more.toml"}) {
+    const Ran refused = work.run(std::string("hilo-solve --quiet --accept --restart run.h5 --set time.end=0.04 ") + other);
+    EXPECT_EQ(refused.exit, 2) << refused.err;
+    EXPECT_EQ(text_of(work / "run.h5"), before) << other;
+  }
+  const Ran ran = work.run("hilo-solve --quiet --restart run.h5 --set time.end=0.04");
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  const Store file = Store::open(work / "run.h5");
+  const auto x = file.read<double>("/history/probe/p7");
+  EXPECT_EQ(x.size() / static_cast<size_t>(file.shape("/history/probe/p7")[1]), 41u);
+  for (size_t i = 0; i < x.size(); i += x.size() / 41) EXPECT_EQ(x[i], 7);
+}
+
 }  // namespace
 }  // namespace hilo::test::schema_test
