@@ -171,7 +171,7 @@ bool SurfacePair::revise(const Stage& s) {
       if (partners_[k][point.face].empty()) continue;
       const FacetState now = begun(k, point, target_of(k, point, x0, x1), x0);
       const std::pair to{now.face, now.triangle}, from{point.now.face, point.now.triangle};
-      if (to == from || (to == point.left && would_act(k, point, point.now, x0, x1))) continue;  // on the edge between two either will do
+      if (to == from || (to == point.left && from.first >= 0)) continue;  // on the edge between two either will do
       point.left = from;
       changes = changes || would_act(k, point, point.now, x0, x1) || would_act(k, point, now, x0, x1);
       point.now = now;
