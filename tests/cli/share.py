@@ -5,6 +5,8 @@ import os
 
 DAY = int(os.environ.get("HILO_DAY", datetime.date.today().toordinal()))
 
+print(f"HILO_DAY={DAY}: a share of the cases, unless all were asked for", flush=True)
+
 
 def today(number, parts):
     """Is the case of this number run today, where one of so many parts is?  HILO_DAY=N repeats another day."""
