@@ -128,6 +128,31 @@ TEST_F(ImportBeam, AMassOnMasslessBarsSwingsAsOnASpring) {
   EXPECT_NEAR(frequency(2), std::sqrt(3 * E * 4e-7 / 5) / (2 * pi), 1e-4 * 36);
 }
 
+TEST_F(ImportBeam, WeightsOfBeamsPerLengthAreMassesToo) {
+  // NSM is a weight under PARAM WTMASS: the frequencies are those of a tenth of all mass
+  const std::string deck =
+      modes + "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCBAR,1,5,1,2,0.,0.,1.\nPBAR,5,1,1.-3,1.-7,4.-7,4.-7,50.\n" + steel + "SPC1,1,123456,1\n";
+  solve(deck);
+  const double f = frequency(1);
+  solve(deck + "PARAM,WTMASS,.1\n");
+  EXPECT_NEAR(frequency(1), f * std::sqrt(10), 1e-5 * f);
+}
+
+TEST_F(ImportBeam, ACouplingOfASurfaceOfNodesHoldsThoseOfBeams) {
+  // a stiff body between a cantilever and a held block: as a rigid body of the same nodes, and far stiffer than the cantilever alone
+  std::string deck =
+      "*NODE\n1,0,0,0\n2,1,0,0\n99,1.5,.5,.5\n11,2,0,0\n12,3,0,0\n13,3,1,0\n14,2,1,0\n15,2,0,1\n16,3,0,1\n17,3,1,1\n18,2,1,1\n"
+      "*ELEMENT,TYPE=B31,ELSET=E\n1,1,2\n*ELEMENT,TYPE=C3D8,ELSET=S\n50,11,12,13,14,15,16,17,18\n"
+      "*BEAM SECTION,ELSET=E,MATERIAL=M,SECTION=RECT\n.04,.04\n0,1,0\n*SOLID SECTION,ELSET=S,MATERIAL=M\n"
+      "*MATERIAL,NAME=M\n*ELASTIC\n2.1e11,.3\n*NSET,NSET=T\n2,11,14,15,18\n";
+  const std::string rest = "*BOUNDARY\n12,1,3\n13,1,3\n16,1,3\n17,1,3\n1,1,6\n*STEP\n*STATIC\n*CLOAD\n2,3,1000.\n*END STEP\n";
+  solve(deck + "*RIGID BODY,REF NODE=99,NSET=T\n" + rest, "a.inp");
+  const double as_body = moved("node_2").z();
+  solve(deck + "*SURFACE,NAME=SU,TYPE=NODE\nT\n*COUPLING,CONSTRAINT NAME=C,REF NODE=99,SURFACE=SU\n*KINEMATIC\n1,6\n" + rest, "a.inp");
+  EXPECT_NEAR(moved("node_2").z(), as_body, 1e-6 * std::abs(as_body));
+  EXPECT_LT(std::abs(as_body), 1e-2 * 1000 / (3 * E * std::pow(.04, 4) / 12));
+}
+
 TEST_F(ImportBeam, ACantileverVibratesAtEulersFrequencies) {
   std::string mesh = modes + steel + "PBARL,5,1,,ROD,,,,,+\n+,.005\nSPC1,1,123456,1\n";  // L/r 400: no shear to speak of
   for (int i = 0; i <= 8; ++i) mesh += "GRID," + std::to_string(i + 1) + ",," + std::to_string(.125 * i) + ",0.,0.\n";
@@ -215,6 +240,10 @@ TEST_F(ImportBeam, WhatABeamCannotCarryIsRefusedOrTold) {
   place.write("a.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBARL,5,1,,HAT,,,,,+\n+,.2,.4\n");
   refused("a.bdf -o b.h5", 2,
           "a.bdf:5:12: PBARL 5: TYPE HAT is not read (ROD, TUBE, BAR, BOX, I, I1, T and CHAN are; write the others as PBAR)");
+  place.write("a.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBARL,5,1,,BOX,,,,,+\n+,.1,.2,.12,.06\n");
+  refused(
+      "a.bdf -o b.h5", 2,
+      "a.bdf:5:12: PBARL 5: TYPE BOX with such walls is not read (ROD, TUBE, BAR, BOX, I, I1, T and CHAN are; write the others as PBAR)");
   place.write("b.bdf", grids + "CBAR,1,5,1,2,1.,0.,0.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7\n");
   refused("b.bdf -o b.h5", 2, "b.bdf:4:6: beam 1: its orientation lies along it, or is none");
   place.write("c.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.,GOG,+\n+,,,1.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7\n");

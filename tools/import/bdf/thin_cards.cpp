@@ -190,7 +190,9 @@ const std::map<std::string, BeamShape> beam_shapes{
      {4,
       [](const std::vector<double>& v) {
         if (v[2] == v[3]) return DeckSection{"box", {{"width", v[0]}, {"height", v[1]}, {"thickness", v[2]}}};
-        const double w = v[0] - 2 * v[3], h = v[1] - 2 * v[2], wm = v[0] - v[3], hm = v[1] - v[2];
+        const double w = v[0] - 2 * v[3], h = v[1] - 2 * v[2], thin = std::min(v[2], v[3]);
+        if (!(thin > 0 && w > 0 && h > 0)) return DeckSection{};
+        const double wm = v[0] - v[3], hm = v[1] - v[2];
         return general_section(v[0] * v[1] - w * h, (v[0] * std::pow(v[1], 3) - w * h * h * h) / 12,
                                (v[1] * std::pow(v[0], 3) - h * w * w * w) / 12, 2 * wm * wm * hm * hm / (wm / v[2] + hm / v[3]));
       }}},
@@ -227,15 +229,17 @@ void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   for (size_t i = 0; i < shape->second.dims; ++i) dims.push_back(d.number(8 + i));
   BdfThin s;
   s.section = shape->second.of(dims);
-  if (!s.section.given()) throw refuse("TYPE " + type + " of two different flanges");
+  if (!s.section.given()) throw refuse("TYPE " + type + (type == "BOX" ? " with such walls" : " of two different flanges"));
   if (e.name == "PBEAML" && (type == "T" || type == "CHAN")) in.skip("PBEAML: neutral axis off the shear centre", d.place(3));
   s.section.line_mass = d.number(8 + dims.size());
-  if (e.name == "PBEAML" && d.fields.size() > 9 + dims.size())
-    for (size_t i = 0; i < dims.size(); ++i)
-      if (const size_t at = 11 + dims.size() + i; !d.empty(at) && d.number(at) != dims[i]) {
-        in.skip("PBEAML that tapers: the section of end A is taken", d.place(at));
-        break;
-      }
+  const auto differs = [&](size_t at, double from) { return !d.empty(at) && d.number(at) != from; };
+  for (size_t station = 11 + dims.size(); e.name == "PBEAML" && station < d.fields.size(); station += dims.size() + 3) {  // behind SO, X/XB
+    bool tapers = differs(station + dims.size(), s.section.line_mass);
+    for (size_t i = 0; i < dims.size(); ++i) tapers = tapers || differs(station + i, dims[i]);
+    if (!tapers) continue;
+    in.skip("PBEAML that tapers: the section of end A is taken", d.place(station));
+    break;
+  }
   add_property(e, deck, s);
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }

@@ -128,6 +128,9 @@ std::vector<Nodal> nodal_groups(const InpDeck& d, const std::vector<InpNodal>& l
   for (const auto& f : lines) {
     if (const auto n = of_no_cell(d, f, !add)) in.skip(fmt::format("{} on a node of no cell", what), f.place, n);
     Rows nodes = nodes_of_cells(d, f, in);
+    if (!add)  // loads reach the bodies, velocities do not
+      if (const size_t all = inp_nodes(d, f.target, f.id, f.place).size(); all > nodes.size())
+        in.skip(fmt::format("{} on a node of a beam or a tie", what), f.place, static_cast<std::int64_t>(all - nodes.size()));
     const auto away = std::count_if(nodes.begin(), nodes.end(), [&](std::int64_t a) { return turned[a]; });
     if (away) {
       in.skip(fmt::format("{} in axes of *TRANSFORM", what), f.place, away);

@@ -291,7 +291,10 @@ class Writer {
         continue;
       }
       const auto cells = inp_cells(d_, p.target, p.id, p.place);
-      if (cells.empty()) in_.skip("*DLOAD on elements that are no cells", p.place);
+      const auto set = d_.elset.find(p.target);
+      const bool has_beams =
+          set != d_.elset.end() && std::ranges::any_of(set->second.members, [&](auto id) { return d_.beams.contains(id); });
+      if (cells.empty() || has_beams) in_.skip("*DLOAD on elements that are no cells", p.place);
       const Group g{p.target.empty() ? std::string() : fmt::format("{}_P{}", d_.elset.at(p.target).name, p.face),
                     "",
                     p.amplitude,

@@ -31,6 +31,23 @@ Vec3 place_of(const InpDeck& d, std::int64_t id, const std::string& place) {
   return x->second;
 }
 
+/// Numbers of the nodes of its set, or of its surface of nodes, those of no cell too.
+std::vector<std::int64_t> ids_of(const InpDeck& d, const InpTie& t) {
+  std::vector<std::int64_t> ids;
+  const auto add = [&](const std::string& set) {
+    if (const auto found = d.nset.find(set); found != d.nset.end())
+      ids.insert(ids.end(), found->second.members.begin(), found->second.members.end());
+  };
+  if (t.kind == InpTie::Of::nodes) add(t.of);
+  if (t.kind == InpTie::Of::surface)
+    for (const InpSurface& s : d.surfaces)
+      if (s.of_nodes && upper(s.name) == t.of)
+        for (const auto& l : s.lines) l.target.empty() ? ids.push_back(l.id) : add(l.target);
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
 /// Nodes of a surface with the area that each stands for; of sets 1 each.
 std::map<std::int64_t, double> members(const InpDeck& d, const InpTie& t, const Mesh& m,
                                        const std::map<std::string, std::string>& surface) {
@@ -51,10 +68,13 @@ std::map<std::int64_t, double> members(const InpDeck& d, const InpTie& t, const 
         w[nodes[i]] += area * (n == corners ? 1. / static_cast<double>(n) : i >= corners ? 1. / 3 : n == 6 ? 0. : -1. / 12);
     }
   } else {
+    bool found = false;
     for (const InpSurface& s2 : d.surfaces)
-      if (s2.of_nodes && upper(s2.name) == t.of)
+      if (s2.of_nodes && upper(s2.name) == t.of) {
+        found = true;
         for (const auto& l : s2.lines) add(inp_nodes(d, l.target, l.id, l.place));
-    if (w.empty()) throw Error(t.place, fmt::format("{}: no surface \"{}\"", t.name, t.of));
+      }
+    if (!found) throw Error(t.place, fmt::format("{}: no surface \"{}\"", t.name, t.of));
   }
   return w;
 }
@@ -78,16 +98,19 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
     }
     auto w = members(d, t, in.mesh, surface);
     std::vector<std::int64_t> beams;  // nodes of beams among them
-    if (const auto set = d.nset.find(t.of); t.kind == InpTie::Of::nodes && set != d.nset.end())
-      for (const auto id : set->second.members)
-        if (d.bodies.contains(id) && id != ref) {
-          beams.push_back(id);
-          if (const auto a = d.node.find(id); a != d.node.end()) w.erase(a->second);
-        }
+    for (const auto id : ids_of(d, t))
+      if (d.bodies.contains(id) && id != ref) {
+        beams.push_back(id);
+        if (const auto a = d.node.find(id); a != d.node.end()) w.erase(a->second);
+      }
     if (t.kind != InpTie::Of::nodes && !d.beams.empty())
       if (const auto set = d.elset.find(t.of);
           set != d.elset.end() && std::ranges::any_of(set->second.members, [&](auto id) { return d.beams.contains(id); }))
         throw Error(t.place, fmt::format("{}: element set \"{}\" has beams", t.name, set->second.name), "a set of their nodes");
+    if (!t.mean && !beams.empty() && t.components != 63) {
+      in.skip(t.name + " of some components, of nodes of beams", t.place);
+      continue;
+    }
     if (t.mean && !beams.empty()) {
       in.skip(t.name + ", distributing, of nodes of beams", t.place);
       continue;
