@@ -11,7 +11,6 @@
 namespace hilo {
 namespace {
 
-constexpr double turn_limit = 2;    // [rad]
 constexpr double rounding = 1e-12;  // of sums over the scene
 constexpr double digit = 1e-15;     // of a force times the scene's length, in work
 

@@ -17,6 +17,8 @@
 
 namespace hilo {
 
+inline constexpr double turn_limit = 2;  // of a part in a step [rad]
+
 /// Energies at an instant, the work and dissipation until then [J], and how far joints are open.
 struct Ledger {
   Energy energy;

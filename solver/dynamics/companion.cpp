@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "dynamics/audit.hpp"
 #include "dynamics/profile.hpp"
 #include "dynamics/start.hpp"
 
 namespace hilo {
 namespace {
 
-constexpr double turn_of_step = 2;  // [rad], as in the audit
 constexpr int most_cuts = 3;
 
 /// What is done while it lives belongs to none of the phases of the run, but to the rest.  It warns of nothing: the run itself does.
@@ -85,7 +85,7 @@ bool Companion::try_step(double to) {
     if (!integrator_->solve(tools, state_, to - state_.t, p).converged) continue;
     integrator_->end(reached_);
     system_.advance(integrator_->taken().back().stage);
-    if (!system_.fault(reached_.q).empty() || system_.largest_turn(state_.q, reached_.q).angle > turn_of_step) continue;
+    if (!system_.fault(reached_.q).empty() || system_.largest_turn(state_.q, reached_.q).angle > turn_limit) continue;
     integrator_->accept(state_);
     state_.t = to;
     system_.commit(state_.q, &state_.v);

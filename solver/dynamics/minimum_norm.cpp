@@ -55,7 +55,8 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   const double shift = 1e-10 * largest;
   const double d[3] = {shift, shift, shift};
   for (int i = 0; i < A_.n_blocks(); ++i) A_.add_diagonal(i, d);
-  if (!factors_->refactor(A_) && !factors_->factor(A_)) throw Error("", "the shares of redundant joint rows cannot be found: no factors of them");
+  if (!factors_->refactor(A_) && !factors_->factor(A_))
+    throw Error("", "the shares of redundant joint rows cannot be found: no factors of them");
   Eigen::VectorXd y = Eigen::VectorXd::Zero(f.size()), r = f, product(f.size());
   for (int pass = 0; pass < 8 && r.norm() > 1e-14 * f.norm(); ++pass) {
     factors_->solve(r.data(), product.data());

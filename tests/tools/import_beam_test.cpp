@@ -138,13 +138,18 @@ TEST_F(ImportBeam, WeightsOfBeamsPerLengthAreMassesToo) {
   EXPECT_NEAR(frequency(1), f * std::sqrt(10), 1e-5 * f);
 }
 
+/// A block of nodes 11 to 18 at x = 2 to 3, and the rest of a deck whose beams are in E.
+const std::string block =
+    "11,2,0,0\n12,3,0,0\n13,3,1,0\n14,2,1,0\n15,2,0,1\n16,3,0,1\n17,3,1,1\n18,2,1,1\n*ELEMENT,TYPE=C3D8,ELSET=S\n50,11,12,13,14,15,16,17,"
+    "18\n";
+const std::string section =
+    "*BEAM SECTION,ELSET=E,MATERIAL=M,SECTION=RECT\n.04,.04\n0,1,0\n*SOLID "
+    "SECTION,ELSET=S,MATERIAL=M\n*MATERIAL,NAME=M\n*ELASTIC\n2.1e11,.3\n*DENSITY\n7850.\n";
+
 TEST_F(ImportBeam, ACouplingOfASurfaceOfNodesHoldsThoseOfBeams) {
   // a stiff body between a cantilever and a held block: as a rigid body of the same nodes, and far stiffer than the cantilever alone
-  std::string deck =
-      "*NODE\n1,0,0,0\n2,1,0,0\n99,1.5,.5,.5\n11,2,0,0\n12,3,0,0\n13,3,1,0\n14,2,1,0\n15,2,0,1\n16,3,0,1\n17,3,1,1\n18,2,1,1\n"
-      "*ELEMENT,TYPE=B31,ELSET=E\n1,1,2\n*ELEMENT,TYPE=C3D8,ELSET=S\n50,11,12,13,14,15,16,17,18\n"
-      "*BEAM SECTION,ELSET=E,MATERIAL=M,SECTION=RECT\n.04,.04\n0,1,0\n*SOLID SECTION,ELSET=S,MATERIAL=M\n"
-      "*MATERIAL,NAME=M\n*ELASTIC\n2.1e11,.3\n*NSET,NSET=T\n2,11,14,15,18\n";
+  const std::string deck =
+      "*NODE\n1,0,0,0\n2,1,0,0\n99,1.5,.5,.5\n" + block + "*ELEMENT,TYPE=B31,ELSET=E\n1,1,2\n" + section + "*NSET,NSET=T\n2,11,14,15,18\n";
   const std::string rest = "*BOUNDARY\n12,1,3\n13,1,3\n16,1,3\n17,1,3\n1,1,6\n*STEP\n*STATIC\n*CLOAD\n2,3,1000.\n*END STEP\n";
   solve(deck + "*RIGID BODY,REF NODE=99,NSET=T\n" + rest, "a.inp");
   const double as_body = moved("node_2").z();
@@ -244,6 +249,14 @@ TEST_F(ImportBeam, WhatABeamCannotCarryIsRefusedOrTold) {
   refused(
       "a.bdf -o b.h5", 2,
       "a.bdf:5:12: PBARL 5: TYPE BOX with such walls is not read (ROD, TUBE, BAR, BOX, I, I1, T and CHAN are; write the others as PBAR)");
+  for (const auto& [type, dims, blank] : {std::tuple{"TUBE", ".1", 2}, std::tuple{"I1", ",.1,.2,.3", 1}}) {
+    place.write("a.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBARL,5,1,," + type + ",,,,,+\n+," + dims + "\n");
+    refused(
+        "a.bdf -o b.h5", 2,
+        fmt::format(
+            "a.bdf:5:12: PBARL 5: TYPE {} without DIM{} is not read (ROD, TUBE, BAR, BOX, I, I1, T and CHAN are; write the others as PBAR)",
+            type, blank));
+  }
   place.write("b.bdf", grids + "CBAR,1,5,1,2,1.,0.,0.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7\n");
   refused("b.bdf -o b.h5", 2, "b.bdf:4:6: beam 1: its orientation lies along it, or is none");
   place.write("c.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.,GOG,+\n+,,,1.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7\n");
@@ -259,12 +272,26 @@ TEST_F(ImportBeam, WhatABeamCannotCarryIsRefusedOrTold) {
   imported("f.bdf", "--scene-out f.toml");
   EXPECT_NE(err.find("not read: PBEAM that tapers: the mean of the sections at its ends is taken"), std::string::npos) << err;
   EXPECT_EQ(place.run("grep -c 'area = 0.0015' f.toml").out, "1\n");
+  place.write("g.bdf", grids + "CBEAM,1,5,1,2,0.,1.,0.\nPBEAML,5,1,,BAR,,,,,+\n+,.1,.1,0.,YES,.5,.1,.1,0.,+\n+,YES,1.,.05,.05,0.\n");
+  imported("g.bdf", "--scene-out g.toml");
+  EXPECT_NE(err.find("not read: PBEAML that tapers: the section of end A is taken"), std::string::npos) << err;
   const std::string nodes = "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n";
   place.write("a.inp", nodes + "*ELEMENT,TYPE=B31,ELSET=E\n1,1,2,3\n");
   refused("a.inp -o b.h5", 2,
           "a.inp:6:1: B31 1: a node of its orientation is not read (the direction n1 on the second line of its section)");
   place.write("b.inp", nodes + "*ELEMENT,TYPE=B31,ELSET=E\n1,1,2\n");
   refused("b.inp -o b.h5", 2, "b.inp:6:1: element 1 has no section (beams need *BEAM SECTION)");
+  const std::string both = "*NODE\n1,0,0,0\n99,0,3,0\n" + block + "*ELEMENT,TYPE=B31,ELSET=E\n1,1,11\n*ELSET,ELSET=ALL\n1,50\n" + section;
+  place.write(
+      "c.inp",
+      both + "*INITIAL CONDITIONS,TYPE=VELOCITY\n11,3,2.\n12,3,2.\n*RELEASE\n1,S1,M1\n*STEP\n*STATIC\n*DLOAD\nALL,P1,5.\n*END STEP\n");
+  imported("c.inp", "--scene-out c.toml");
+  for (const char* lost :
+       {"*INITIAL CONDITIONS, TYPE=VELOCITY on a node of a beam or a tie", "*RELEASE", "*DLOAD on elements that are no cells"})
+    EXPECT_NE(err.find(lost), std::string::npos) << lost << '\n' << err;
+  EXPECT_EQ(place.run("grep -c 'loss = \"tie\"' c.toml").out, "1\n");
+  place.write("d.inp", both + "*SURFACE,NAME=U,TYPE=NODE\n99\n*COUPLING,CONSTRAINT NAME=C,REF NODE=1,SURFACE=U\n*KINEMATIC\n1,6\n");
+  refused("d.inp -o d.h5", 2, "d.inp:29: *COUPLING: no node of surface \"U\" is of a cell or a beam");
 }
 
 }  // namespace

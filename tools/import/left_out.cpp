@@ -37,6 +37,7 @@ constexpr std::pair<std::string_view, const char*> losses[] = {
     {"turns and moments", load},
     {"*EQUATION", tie},
     {"*MPC", tie},
+    {"*RELEASE", tie},
     {"*NETWORK MPC", tie},
     {"*TIE", tie},
     {"*CONTACT PAIR", tie},

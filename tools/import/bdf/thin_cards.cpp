@@ -226,7 +226,10 @@ void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   };
   if (shape == beam_shapes.end()) throw refuse("TYPE " + type);
   std::vector<double> dims;
-  for (size_t i = 0; i < shape->second.dims; ++i) dims.push_back(d.number(8 + i));
+  for (size_t i = 0; i < shape->second.dims; ++i) {
+    if (d.empty(8 + i)) throw refuse(fmt::format("TYPE {} without DIM{}", type, i + 1));
+    dims.push_back(d.number(8 + i));
+  }
   BdfThin s;
   s.section = shape->second.of(dims);
   if (!s.section.given()) throw refuse("TYPE " + type + (type == "BOX" ? " with such walls" : " of two different flanges"));

@@ -103,6 +103,8 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
         beams.push_back(id);
         if (const auto a = d.node.find(id); a != d.node.end()) w.erase(a->second);
       }
+    if (t.kind == InpTie::Of::surface && w.empty() && beams.empty())
+      throw Error(t.place, fmt::format("{}: no node of surface \"{}\" is of a cell or a beam", t.name, t.of));
     if (t.kind != InpTie::Of::nodes && !d.beams.empty())
       if (const auto set = d.elset.find(t.of);
           set != d.elset.end() && std::ranges::any_of(set->second.members, [&](auto id) { return d.beams.contains(id); }))
