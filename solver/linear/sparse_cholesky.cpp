@@ -19,7 +19,7 @@ struct SparseCholesky::Impl {
   Impl() {
     make_room_for_blas();
     cholmod_start(&common);
-    common.print = 0;
+    common.print = 0, common.final_ll = 1;  // L D L^T would take what is indefinite
   }
   ~Impl() {
     cholmod_free_dense(&x, &common), cholmod_free_dense(&y, &common), cholmod_free_dense(&e, &common);

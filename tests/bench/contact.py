@@ -71,7 +71,8 @@ def mesh():
         [f"*SOLID SECTION, ELSET={k}, MATERIAL=M" for k in "AB"], cell - 1
 
 
-HELD = "".join(f'[[motion]]\nkind = "fixed"\nname = "{s}"\non = "{s}"\ncomponents = ["{c}"]\n' for s, c in (("AX", "x"), ("BX", "x"), ("AY", "y"), ("BY", "y")))
+HELD = "".join(f'[[motion]]\nkind = "fixed"\nname = "{s}"\non = "{s}"\ncomponents = ["{c}"]\n'
+               for s, c in (("AX", "x"), ("BX", "x"), ("AY", "y"), ("BY", "y")))
 SCENE = f"""[material.M]
 E = 2e10
 nu = 0.3

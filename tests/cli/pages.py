@@ -14,8 +14,8 @@ import tempfile
 
 # Run elsewhere, or not here at all.
 ELSEWHERE = {"cluster.md": "make -C tests slurm", "tour.md": "cli.tour", "tour-assembly.md": "cli.tour", "errors.md": "cli.errors",
-             "library.md": "cli.library", "ccx-decks.md": "cli.ccx_decks", "pictures.md": "needs the runs of data/firing", "design-loop.md": "make -C data/design-loop", "contributing.md": "builds",
-             "verification.md": "builds"}
+             "library.md": "cli.library", "ccx-decks.md": "cli.ccx_decks", "pictures.md": "needs the runs of data/firing",
+             "design-loop.md": "make -C data/design-loop", "contributing.md": "builds", "verification.md": "builds"}
 ARM = """title = "An arm"
 gravity = [0, -9.80665, 0]
 material.aluminium = {E = 70e9, nu = 0.33, density = 2700}
@@ -31,7 +31,8 @@ time = {end = 0.02, step = 1e-3, start = "equilibrium"}
 PLATE = "".join(f"GRID,{1 + i + 2 * j + 4 * k},,{i}.,{j}.,{k}.\n" for k in (0, 1) for j in (0, 1) for i in (0, 1))
 DECK = ("SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nMAT1,1,2.1+5,,.3,7.85-9\nPSOLID,1,1\n" + PLATE + "CHEXA,1,1,1,2,4,3,5,6,+\n+,8,7\n"
         "SPC1,1,123,1,2,3,4\nFORCE,2,5,,100.,1.,0.,0.\nENDDATA\n")
-SET_UP = """hilo-import --quiet arm.step --size 60 --order 2 -o mesh.h5 --set 'bore=cylinder:at=[0,0,15],axis=[0,0,1],radius=10' --set 'face=near:460,0,15'
+SET_UP = """hilo-import --quiet arm.step --size 60 --order 2 -o mesh.h5 \\
+  --set 'bore=cylinder:at=[0,0,15],axis=[0,0,1],radius=10' --set 'face=near:460,0,15'
 hilo-tag --quiet mesh.h5 --nonlinear arm --rigid block -o tags.h5
 hilo-solve --quiet scene.toml tags.h5 -o run.h5 --checkpoint 5steps
 hilo-solve --quiet scene.toml tags.h5 --set 'time.analysis="modes"' --set time.modes=4 -o modes.h5"""
@@ -44,7 +45,7 @@ def blocks_of(text):
 
 
 def parts_of(text):
-    """What to do: ("file", name, text), ("sh" or "python", text)."""
+    """What to do: ("file", text, name), ("sh" or "python", text, "")."""
     for kind, block in blocks_of(text):
         name = re.match(r"(?:#|//|\*\*) ([\w-]+\.\w+):?", block)
         if kind in ("toml", "") and name:

@@ -11,7 +11,3 @@ print(f"HILO_DAY={DAY}: a share of the cases, unless all were asked for", flush=
 def today(number, parts):
     """Is the case of this number run today, where one of so many parts is?  HILO_DAY=N repeats another day."""
     return number % parts == DAY % parts
-
-
-def told(parts):
-    return f"(one of {parts} parts, HILO_DAY={DAY})"
