@@ -70,18 +70,24 @@ TEST(DISABLED_WaitForOne, ThatWorks) {
   comm.barrier();
 }
 
-Ran run_on(int ranks, const std::string& suite) {
+TEST(DISABLED_TwoRanks, ShareOneCore) {
+  EXPECT_EQ(Comm::world().ranks_here, 2);
+  EXPECT_EQ(Comm::world().cores_here, 1);
+}
+
+Ran run_on(int ranks, const std::string& suite, const std::string& under = "") {
   const std::string self = fs::read_symlink("/proc/self/exe").string();
   return run(
       "unset $(compgen -e | grep -E '^(OMPI|OPAL|ORTE|PMIX|PRTE)_') HILO_NOTHING\n"
       "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_mpi_yield_when_idle=1 "
-      "OMPI_MCA_hwloc_base_binding_policy=none timeout 120 mpirun -n " +
-          std::to_string(ranks) + " '" + self + "' --gtest_also_run_disabled_tests --gtest_filter='*DISABLED_" + suite + ".*'",
+      "OMPI_MCA_hwloc_base_binding_policy=none timeout 120 " +
+          under + "mpirun -n " + std::to_string(ranks) + " '" + self + "' --gtest_also_run_disabled_tests --gtest_filter='*DISABLED_" +
+          suite + "'",
       ".");
 }
 
 TEST(Comm, RanksThatWaitInDifferentPlacesEndAndSayWhere) {
-  const Ran ran = run_on(3, "WaitForEachOther");
+  const Ran ran = run_on(3, "WaitForEachOther.*");
   EXPECT_EQ(ran.exit, static_cast<int>(Exit::fault)) << ran.err;
   const auto at = ran.err.find("ranks wait for each other for ever: rank 0 waits at ");
   ASSERT_NE(at, ran.err.npos) << ran.err;
@@ -89,8 +95,13 @@ TEST(Comm, RanksThatWaitInDifferentPlacesEndAndSayWhere) {
   EXPECT_NE(ran.err.find("comm_test.cpp:", at), ran.err.npos) << ran.err;
 }
 
+TEST(Comm, CountsTheCoresThatItsRanksShare) {
+  const Ran ran = run_on(2, "TwoRanks.*", "taskset 1 ");
+  EXPECT_EQ(ran.exit, 0) << ran.out << ran.err;
+}
+
 TEST(Comm, ARankThatWaitsLongSaysWhere) {
-  const Ran ran = run_on(2, "WaitForOne");
+  const Ran ran = run_on(2, "WaitForOne.*");
   EXPECT_EQ(ran.exit, 0) << ran.err;
   EXPECT_NE(ran.err.find("rank 0 works, rank 1 waits at "), ran.err.npos) << ran.err;
 }

@@ -7,11 +7,13 @@ repo=$(realpath "$1")
 bin=$(realpath "$2")
 [ "$(id -u)" = 0 ] || { echo "slurm: needs root, for its daemons" >&2; exit 4; }
 folder=$(mktemp -d)
+own_munge=
 ended() {
   scancel --full --user root 2> /dev/null || true
   pkill -F "$folder/n1.pid" 2> /dev/null || true
   pkill -F "$folder/n2.pid" 2> /dev/null || true
   pkill -F "$folder/control.pid" 2> /dev/null || true
+  [ -z "$own_munge" ] || runuser -u munge -- /usr/sbin/munged --stop || true  # mpirun waits two seconds for a socket that nobody serves
   sleep 1
   rm -rf "$folder"
 }
@@ -20,7 +22,7 @@ fail() { echo "slurm: $*" >&2; cat "$folder"/work/slurm-*.out >&2; tail -n 3 "$f
 
 # ---- the cluster
 install -d -o munge -g munge /run/munge
-pgrep -x munged > /dev/null || runuser -u munge -- /usr/sbin/munged
+pgrep -x munged > /dev/null || { runuser -u munge -- /usr/sbin/munged; own_munge=yes; }
 mkdir "$folder"/{state,n1,n2,work}
 export SLURM_CONF=$folder/slurm.conf
 host=$(hostname -s)
