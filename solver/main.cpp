@@ -9,6 +9,7 @@
 
 #include "about.hpp"
 #include "base/args.hpp"
+#include "base/crowd.hpp"
 #include "base/error.hpp"
 #include "base/interrupt.hpp"
 #include "base/on_ranks.hpp"
@@ -89,9 +90,9 @@ void solve(int argc, char** argv, Comm& comm) {
   app->add_flag("--profile", o.profile, "print seconds, counts and messages by phase at the end");
   if (!parse(*app, argc, argv)) return;
   const bool talk = !is_quiet() && comm.rank == 0;
-  if (talk && comm.ranks_here > comm.cores_here)
+  if (const Crowd here = crowd(comm); talk && here.ranks > here.cores)
     fmt::print(stderr, "hilo-solve: note: {} ranks share {} cores, and wait for each other; as many ranks as cores are faster\n",
-               comm.ranks_here, comm.cores_here);
+               here.ranks, here.cores);
   if (comm.rank != 0) quiet_warnings(true);
 
   std::optional<Checkpoint> from;

@@ -3,7 +3,6 @@
 
 #define OMPI_SKIP_MPICXX 1
 #include <mpi.h>
-#include <sched.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -53,21 +52,7 @@ Comm::Comm() {
   if (!runs) MPI_Init(nullptr, nullptr);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &size);
-  if (runs) return;
-  watch_ = new Watch(rank, size);
-  look_around();
-}
-
-void Comm::look_around() {
-  MPI_Comm machine;
-  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
-  MPI_Comm_size(machine, &ranks_here);
-  cpu_set_t cores;  // of a rank that is bound, its own alone
-  CPU_ZERO(&cores);
-  sched_getaffinity(0, sizeof cores, &cores);
-  MPI_Allreduce(MPI_IN_PLACE, &cores, sizeof cores, MPI_BYTE, MPI_BOR, machine);
-  cores_here = CPU_COUNT(&cores);
-  MPI_Comm_free(&machine);
+  if (!runs) watch_ = new Watch(rank, size);
 }
 
 void Comm::sum(std::span<double> v, Where at) const {

@@ -24,8 +24,6 @@ class Comm {
   /// Of one rank that has everything, such as a whole mesh: whatever is done with it waits for nobody.
   static const Comm& alone();
   int rank = 0, size = 1;
-  /// Ranks on this machine, and the cores that they may use together.
-  int ranks_here = 1, cores_here = 1;
   void sum(std::span<double> values, Where at = Where::current()) const;  // over the ranks, in place
   double sum(double value, Where at = Where::current()) const;
   double max(double value, Where at = Where::current()) const;
@@ -76,7 +74,6 @@ class Comm {
   class Call;
   Comm();
   explicit Comm(OneRank) {}
-  void look_around();
   std::vector<int> counts(size_t mine, Where at) const;
   void gather(const void* mine, void* all, const std::vector<int>& count, size_t bytes_each, Where at) const;
   Watch* watch_ = nullptr;  // where this process started MPI, until finish()

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <thread>
 
+#include "base/crowd.hpp"
 #include "base/error.hpp"
 #include "base/printable.hpp"
 #include "base/watch.hpp"
@@ -71,8 +72,9 @@ TEST(DISABLED_WaitForOne, ThatWorks) {
 }
 
 TEST(DISABLED_TwoRanks, ShareOneCore) {
-  EXPECT_EQ(Comm::world().ranks_here, 2);
-  EXPECT_EQ(Comm::world().cores_here, 1);
+  const Crowd here = crowd(Comm::world());
+  EXPECT_EQ(here.ranks, 2);
+  EXPECT_EQ(here.cores, 1);
 }
 
 Ran run_on(int ranks, const std::string& suite, const std::string& under = "") {

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/crowd.hpp"
+
+#include <sched.h>
+#define OMPI_SKIP_MPICXX 1
+#include <mpi.h>
+
+namespace hilo {
+
+Crowd crowd(const Comm& comm) {
+  Crowd out;
+  if (comm.size == 1) return out;
+  MPI_Comm machine;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+  MPI_Comm_size(machine, &out.ranks);
+  cpu_set_t cores;  // of a rank that is bound, its own alone
+  CPU_ZERO(&cores);
+  sched_getaffinity(0, sizeof cores, &cores);
+  MPI_Allreduce(MPI_IN_PLACE, &cores, sizeof cores, MPI_BYTE, MPI_BOR, machine);
+  out.cores = CPU_COUNT(&cores);
+  MPI_Comm_free(&machine);
+  return out;
+}
+
+}  // namespace hilo
