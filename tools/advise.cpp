@@ -87,9 +87,10 @@ void run(const Options& o) {
 int main(int argc, char** argv) {
   using namespace hilo;
   return guarded("hilo-advise", [&] {
-    const auto app =
-        make_app({"hilo-advise", "The cheapest model, rigid and linear regions, that keeps the quantities of a scene to a tolerance.",
-                  "hilo-advise scene.toml tags.h5 --tol 2% --apply tags.toml", about()});
+    const auto app = make_app(
+        {"hilo-advise",
+         "The cheapest fidelity of each region (rigid, linear, stiffening, nonlinear) that keeps the quantities of a scene to a tolerance.",
+         "hilo-advise scene.toml tags.h5 --tol 2% --apply tags.toml", about()});
     Options o;
     app->add_option("scene", o.scene, "scene file (TOML) with [[quantity]]")->required();
     app->add_option("mesh", o.mesh, "mesh.h5 or tags.h5; its own tags do not matter")->required();

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Each row of docs/errors.md is run: `command` | exit code | message.  errors.py REPO BIN [--print] [WORD]
+"""Each row of tests/cli/errors.md is run: `command` | exit code | message.  errors.py REPO BIN [--print] [WORD]
 
-The page's own code blocks make the folder: those that begin with `# FILE` are files, the block behind "runs before" is a script.  Every
+That list's own code blocks make the folder: those that begin with `# FILE` are files, the block behind "runs before" is a script.  Every
 command runs in a folder of its own; stderr must have the parts of the message in their order, `...` standing for anything, and a command that
 fails must leave the files as they were, but for what its exit code says it keeps (3 and 6: results and checkpoints).
---print writes what each command says instead; WORD chooses rows."""
+Each row of docs/errors.md, `message` | code | what to do, or `said` | meaning | what to do of warnings, is a part of one of them, with its hint
+where that is `code`.  --print writes what each command says instead; WORD chooses rows."""
 import os
 import re
 import shutil
@@ -18,7 +19,8 @@ words = [a for a in sys.argv[3:] if a != "--print"]
 os.environ.update(PATH=tools + ":" + os.environ["PATH"], OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                   OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1", OMPI_MCA_hwloc_base_binding_policy="none",
                   OPENBLAS_NUM_THREADS="1")
-page = open(os.path.join(repo, "docs/errors.md")).read()
+page = open(os.path.join(repo, "tests/cli/errors.md")).read()
+reader = open(os.path.join(repo, "docs/errors.md")).read()
 
 
 def contents(folder):
@@ -52,6 +54,9 @@ def check(row, start):
         lines = [l for l in done.stderr.splitlines() if re.match(r"hilo-\w+: (?!warning: |note: )", l)]
         if len(lines) != 1:
             wrong.append(f"{len(lines)} lines, not one")
+    if code == 0:
+        shutil.rmtree(folder)
+        return wrong, done
     after = contents(folder)
     situation = re.split(r"[;&] ", command)[:-1]  # what comes before the command in question may change files, that command may not
     may = [re.escape(word) for part in situation for word in re.split(r"[\s=]", part)] + [r"run\..*"] * (code in (3, 6) or "hilo-solve" in str(situation))
@@ -62,11 +67,25 @@ def check(row, start):
     return wrong, done
 
 
+def unfounded(rows):
+    """Rows of the page that no command of the list shows."""
+    found = re.findall(r"^\| `([^`]+)` \| (\d|[^|`][^|]*) \| (.*) \|$", reader, re.M)
+    if len(found) != len(re.findall(r"^\| `", reader, re.M)) or not found:
+        sys.exit("docs/errors.md has rows that are not: message | code | what to do, or said | meaning | what to do")
+    for said, code, do in found:
+        hint = re.fullmatch(r"`([^`]+)`(?:[;,.] .*)?", do)
+        wanted = [w.replace("\\|", "|") for w in (said, hint[1] if hint else "")]
+        if not any(int(code) == c if code.isdigit() else c == 0 for _, c, m in rows if all(w in m for w in wanted)):
+            yield said
+
+
 def main():
     rows = re.findall(r"^\| `([^`]+)` \| (\d) \| `([^`]*)` \|$", page, re.M)
     rows = [(command.replace("\\|", "|"), int(code), message.replace("\\|", "|")) for command, code, message in rows]
     if len(rows) != len(re.findall(r"^\| `", page, re.M)) or not rows:
-        sys.exit("docs/errors.md has rows that are not: command | code | message")
+        sys.exit("tests/cli/errors.md has rows that are not: command | code | message")
+    if lost := list(unfounded(rows)):
+        sys.exit("\n".join(f"docs/errors.md: no command of tests/cli/errors.md says with this code and hint: {said}" for said in lost))
     with tempfile.TemporaryDirectory() as temporary:
         start = os.path.join(temporary, "start")
         os.mkdir(start)

@@ -216,6 +216,45 @@ TEST_F(ShellStatics, PlatesThatMeetAreRegionsOfTheirOwn) {
   EXPECT_NEAR(over, 1, 0.02);
 }
 
+// Clamped square under a pressure, one cell thick: Kirchhoff's 0.00126532 p L^4/D,
+// by a Ritz series of 49 polynomials; a thick plate bends further by shear.
+TEST_F(ShellStatics, AClampedPlateInOneLayer) {
+  const double E = 2.1e11, nu = 0.3;
+  struct Row {
+    const char* name;
+    Shape shape;
+    bool shell;
+    double off[3][2];  // by L/h 20, 100, 500 and 8, 16 cells along a side
+  } rows[] = {{"shell8", Shape::hex8, true, {}}, {"hex20r", Shape::hex20r, false, {}}, {"tet10", Shape::tet10, false, {}}};
+  const double thickness[] = {0.05, 0.01, 0.002};
+  for (Row& row : rows)
+    for (int k = 0; k < 3; ++k)
+      for (const int n : {8, 16}) {
+        const double h = thickness[k], p = 1e8 * h * h * h, w = 0.00126532 * p * 12 * (1 - nu * nu) / (E * h * h * h);
+        BlockOptions o;
+        o.shape = row.shape, o.n[0] = o.n[1] = n, o.regions = {"shell"}, o.low[2] = -h / 2, o.high[2] = h / 2;
+        Mesh m = block_mesh(o);
+        for (int i = 0; i < m.n_nodes(); ++i)
+          if (const Vec3 x = m.X[i]; x[0] * (1 - x[0]) * x[1] * (1 - x[1]) < 1e-9) m.node_sets["edge"].push_back(i);
+        use(m);
+        std::string scene = shell_of(E, nu) + held("edge");
+        if (!row.shell) scene.replace(scene.find("shell = true\n"), 13, "");
+        scene += fmt::format(
+            "[set.middle]\nkind = \"ball\"\nat = [0.5, 0.5, 0]\nradius = {}\n[[load]]\nkind = \"pressure\"\nname = \"p\"\n"
+            "on = \"zmax\"\npressure = {}\n",
+            0.51 * h, p);
+        row.off[k][n / 16] = -way(solved(scene + probe("middle") + in_steps(1)), "middle")[2] / w - 1;
+        std::printf("%s, L/h %3.0f, %2d cells: %+.4f\n", row.name, 1 / h, n, row.off[k][n / 16]);
+      }
+  for (int k = 1; k < 3; ++k) {
+    EXPECT_NEAR(rows[0].off[k][0], 0, 0.016);
+    EXPECT_NEAR(rows[0].off[k][1], 0, 0.005);
+    EXPECT_LT(rows[1].off[k][0], 2 * rows[0].off[k][0]) << "a solid of one layer is stiffer";
+    EXPECT_LT(rows[2].off[k][0], rows[1].off[k][0]);
+  }
+  EXPECT_GT(rows[0].off[0][1], rows[0].off[1][1] + 0.02) << "shear of a thick plate";
+}
+
 // A cell that is thick along the plate where its neighbours are across: refused in one region, whichever ranks the two are on.
 TEST_F(ShellStatics, AThicknessThatTurnsIsRefusedAcrossACutToo) {
   use(shell_mesh([](double u, double v) { return std::pair(Vec3(u < 0.97 ? u : 0.96, 0.1 * v, 1), Vec3(0, 0, 1)); }, 20, 1, 0.02));
