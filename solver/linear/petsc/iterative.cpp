@@ -101,6 +101,9 @@ class IterativeSolver final : public KktSolver {
     return report;
   }
 
+  std::optional<int> eigenvalues_below_zero(int first_row) const override {
+    return direct_ ? direct_->eigenvalues_below_zero(first_row) : std::nullopt;
+  }
   double bytes() const override {
     return direct_ ? direct_->bytes() : system_->bytes() + 8. * static_cast<double>(krylov_->vectors() * system_->n_all());
   }
