@@ -148,6 +148,50 @@ def mass_beside_its_grid():
     assert abs(z / (1 / (3 * 2.1e11 * 1e-8)) - 1) < 1e-4, f"tip at {z}"
 
 
+def tip(*deck, name, options=()):
+    """Where the end of a cantilever of one beam goes, and the force or moment of what moves it there."""
+    write(name, *deck)
+    run("hilo-import", "--quiet", name, "-o", "mesh.h5", "--scene-out", "scene.toml", *options)
+    node = "node_2" if name.endswith("inp") else "grid_2"
+    with open("scene.toml") as file:
+        x = 0.5 if "--scale" in options else 1.0
+        scene = file.read() + table("probe", name="tip", on=node, at=[x, 0.0, 0.0])
+    write("probed.toml", scene)
+    run("hilo-solve", "--quiet", "probed.toml", "-o", "run.h5")
+    with h5py.File("run.h5") as file:
+        joints = file["history/joint"] if "joint" in file["history"] else {}
+        return file["history/probe/tip"][-1][:3] - [x, 0, 0], [numpy.linalg.norm(joints[j][-1]) for j in joints]
+
+
+NASTRAN = ["SOL 101", "CEND", "LOAD = 1", "SPC = 1", "BEGIN BULK", "GRID,1,,0.,0.,0.", "GRID,2,,1.,0.,0.", "CBAR,1,1,1,2,0.,0.,1.",
+           "PBAR,1,1,1e-4,1e-8,1e-8,2e-8", "MAT1,1,2.1e11,,.3,7800.", "SPC1,1,123456,1"]
+ABAQUS = ["*NODE, NSET=ALL", "1,0.,0.,0.", "2,1.,0.,0.", "*ELEMENT,TYPE=B33,ELSET=E1", "1,1,2", "*BEAM SECTION,ELSET=E1,SECTION=RECT,MATERIAL=S",
+          ".01,.02", "0.,0.,1.", "*MATERIAL,NAME=S", "*ELASTIC", "2.1e11,.3", "*DENSITY", "7800.", "*BOUNDARY", "1,1,6", "*STEP", "*STATIC"]
+
+
+def ends_of_beams_are_moved():
+    """Displacements and turns that decks prescribe of nodes of beams: 3 E I u / L^3, and E I turn / L with half of that turn's way."""
+    EI, u = 2.1e11 * 1e-8, 1e-3
+    held = "FORCE,1,1,,0.,0.,0.,1."  # at the root: Nastran asks for a load
+    for deck in ([*NASTRAN, held, f"SPC,1,2,3,{u}", "ENDDATA"], [*NASTRAN, "SPC1,1,3,2", f"SPCD,1,2,3,{u}", "ENDDATA"]):
+        way, forces = tip(*deck, name="deck.bdf")
+        assert abs(way[2] / u - 1) < 1e-9 and abs(max(forces) / (3 * EI * u) - 1) < 1e-4, (way, forces)
+    way, forces = tip(*NASTRAN, held, f"SPC,1,2,5,{u}", "ENDDATA", name="deck.bdf")
+    assert abs(way[2] / (-u / 2) - 1) < 1e-4 and abs(max(forces) / (EI * u) - 1) < 1e-4, (way, forces)
+    way, forces = tip(*ABAQUS, "*BOUNDARY", f"2,3,3,{u}", "*END STEP", name="deck.inp")
+    I = .02 * .01**3 / 12
+    assert abs(way[2] / u - 1) < 1e-9 and abs(max(forces) / (3 * 2.1e11 * I * u) - 1) < 1e-4, (way, forces)
+    write("deck.bdf", *NASTRAN, held, f"SPC,1,2,34,{u}", "ENDDATA")
+    assert "moved and turned" in run("hilo-import", "--quiet", "deck.bdf", "-o", "mesh.h5", "--scene-out", "scene.toml", exit=2)
+
+
+def scaled_beams():
+    """A deck at half its size: a cantilever's length and section are halved, F L^3 / (3 E I) becomes twice as large."""
+    deck = [*NASTRAN, "FORCE,1,2,,1.,0.,0.,1.", "ENDDATA"]
+    whole, half = tip(*deck, name="deck.bdf")[0][2], tip(*deck, name="deck.bdf", options=("--scale", "0.5"))[0][2]
+    assert abs(half / whole - 2) < 1e-3, f"{whole} at full size, {half} at half"
+
+
 def slender_arm_by_cg():
     """Where no preconditioner does, factors go on, and the run says so: the same answer as theirs."""
     bar("arm.h5", 60, 0.01, 4, order=2)
@@ -172,7 +216,7 @@ def compare_many_bodies():
 
 
 ALL = [restart_in_another_order, restart_with_another_table, shares_beside_a_gear, factors_ask_for_more_room, mass_beside_its_grid,
-       slender_arm_by_cg, compare_many_bodies]
+       ends_of_beams_are_moved, scaled_beams, slender_arm_by_cg, compare_many_bodies]
 failed = 0
 for test in ALL:
     if len(sys.argv) > 2 and test.__name__ not in sys.argv[2:]:
