@@ -115,7 +115,8 @@ void solve(int argc, char** argv, Comm& comm) {
   CheckpointPolicy policy = policy_of(o);
   policy.began = began;
 
-  const Scene scene = from && o.scene == "-" ? Scene::parse(from->scene, "-", o.overrides) : Scene::load(o.scene, o.overrides, comm);
+  Scene scene = from && o.scene == "-" ? Scene::parse(from->scene, "-", o.overrides) : Scene::load(o.scene, o.overrides, comm);
+  if (from) scene.put_in_order(from->values);
   for (const auto& w : scene.warnings) warn("", w);
   if (comm.rank == 0) tell_left_out(scene);
   if (o.explain) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 
 #include "base/args.hpp"
@@ -30,10 +31,10 @@ struct Curves {
   std::string path, name, x_title;
   std::vector<double> x;
   std::vector<std::pair<std::string, std::vector<double>>> y;  // title, values
+  std::map<std::string, size_t> place;                         // of the first with a title
   const std::vector<double>* find(const std::string& title) const {
-    for (const auto& [own, values] : y)
-      if (own == title) return &values;
-    return nullptr;
+    const auto found = place.find(title);
+    return found == place.end() ? nullptr : &y[found->second].second;
   }
 };
 
@@ -42,9 +43,9 @@ std::string title_of(const Column& c) { return fmt::format("{} [{}]", c.label, c
 Curves of_run(const CompareOptions& o, const std::string& path) {
   const RunFile run(path);
   RunColumns columns(run, {});
-  const auto picked = columns.pick(o.y.empty() ? run.series_names() : o.y);
+  const auto picked = columns.pick(o.y.empty() ? std::vector<std::string>{"*"} : o.y);
   if (picked.empty()) throw Error(path, "holds no history");
-  Curves c{path, "", "t [s]", picked.front().t, {}};
+  Curves c{path, "", "t [s]", picked.front().t, {}, {}};
   if (!o.x.empty()) {
     const Column x = columns.one(o.x);
     c.x = x.value, c.x_title = title_of(x);
@@ -62,7 +63,7 @@ Curves of_run(const CompareOptions& o, const std::string& path) {
 Curves of_table(const CompareOptions& o, const std::string& path) {
   const CsvTable table = read_csv(path);
   const size_t x = o.x.empty() ? 0 : table.find(o.x);
-  Curves c{path, "", table.header[x], table.numbers(x), {}};
+  Curves c{path, "", table.header[x], table.numbers(x), {}, {}};
   if (o.y.empty())
     for (size_t k = 0; k < table.header.size(); ++k)
       if (k != x) c.y.emplace_back(table.header[k], table.numbers(k));
@@ -74,6 +75,7 @@ Curves read(const CompareOptions& o, const std::string& path) {
   Curves c = path.ends_with(".h5") ? of_run(o, path) : of_table(o, path);
   if (!std::all_of(c.x.begin(), c.x.end(), [](double x) { return std::isfinite(x); }) || !std::is_sorted(c.x.begin(), c.x.end()))
     throw Error(path, fmt::format("\"{}\" does not rise from row to row", c.x_title), "choose the abscissa with -x");
+  for (size_t k = 0; k < c.y.size(); ++k) c.place.emplace(c.y[k].first, k);
   return c;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "base/error.hpp"
 #include "post/run/expression.hpp"
@@ -33,6 +34,13 @@ const Series& RunColumns::history(const std::string& name) {
   return found->second;
 }
 
+/// Read once: every file has thousands, and every name that is asked for looks at all of them.
+const Series& RunColumns::described(const std::string& name) {
+  auto found = described_.find(name);
+  if (found == described_.end()) found = described_.emplace(name, run_.describe(name)).first;
+  return found->second;
+}
+
 Column RunColumns::column(const std::string& name, const Series& what, size_t c) {
   const Series& s = history(name);
   Column p{name + "." + what.column[c], what.unit[c], s.t, {}};
@@ -44,7 +52,7 @@ Column RunColumns::named(const std::string& name) {
   if (const auto let = let_.find(name); let != let_.end()) return let->second;
   std::vector<std::string> labels;
   for (const std::string& history : known_) {
-    const Series what = run_.describe(history);
+    const Series& what = described(history);
     for (size_t c = 0; c < what.column.size(); ++c) {
       labels.push_back(history + "." + what.column[c]);
       if (labels.back() == name) return column(history, what, c);
@@ -81,22 +89,21 @@ Column RunColumns::formula(const std::string& text) {
 
 std::vector<Column> RunColumns::pick(const std::vector<std::string>& wanted) {
   std::vector<Column> picked;
-  const auto have = [&](const std::string& label) {
-    return std::any_of(picked.begin(), picked.end(), [&](const Column& p) { return p.label == label; });
-  };
+  std::set<std::string> have;
   for (const std::string& glob : wanted) {
     if (glob.find('=') != std::string::npos) {
       picked.push_back(formula(glob));
+      have.insert(picked.back().label);
       continue;
     }
     bool any = false;
     for (const std::string& name : known_) {
-      const Series what = run_.describe(name);
+      const Series& what = described(name);
       for (size_t c = 0; c < what.column.size(); ++c) {
         const std::string label = name + "." + what.column[c];
         if (!matches(glob, name) && !matches(glob, label)) continue;
         any = true;
-        if (!have(label)) picked.push_back(column(name, what, c));
+        if (have.insert(label).second) picked.push_back(column(name, what, c));
       }
     }
     if (any) continue;

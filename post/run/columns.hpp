@@ -27,13 +27,14 @@ class RunColumns {
 
  private:
   const Series& history(const std::string& name);
+  const Series& described(const std::string& name);
   Column column(const std::string& history_name, const Series& what, size_t c);
   Column formula(const std::string& text);
   Column named(const std::string& name);
 
   const RunFile& run_;
   const std::vector<std::string> known_;
-  std::map<std::string, Series> read_;
+  std::map<std::string, Series> read_, described_;
   std::map<std::string, Column> let_;
 };
 

@@ -70,9 +70,12 @@ std::vector<std::string> RunFile::series_names() const {
 }
 
 Series RunFile::describe(const std::string& name) const {
-  const auto names = series_names();
-  if (std::find(names.begin(), names.end(), name) == names.end())
-    throw Error(path, fmt::format("no history \"{}\"", name), suggest(name, names));
+  const auto dot = name.find('.');  // with one, no list of thousands is asked
+  if (dot == std::string::npos || dot + 1 == name.size() || !store_->has(array_of(name))) {
+    const auto names = series_names();
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw Error(path, fmt::format("no history \"{}\"", name), suggest(name, names));
+  }
   Series s;
   s.name = name;
   const auto shape = store_->shape(array_of(name));

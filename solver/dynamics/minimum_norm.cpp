@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/minimum_norm.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
 namespace hilo {
 namespace {
 
-constexpr int klu_below = 200;  // blocks; beyond, nested dissection keeps the factors of nets thin
+constexpr int klu_below = 200;   // blocks; beyond, nested dissection keeps the factors of nets thin
+constexpr double shift = 1e-10;  // of unknowns whose rows are unit ones together
 
 }  // namespace
 
@@ -31,45 +37,82 @@ MinimumNorm::MinimumNorm(const System& system) : system_(system) {
 std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const double> lambda) {
   const auto all = system_.constraints();
   const auto n = static_cast<int>(all.size());
-  A_.zero();
   std::vector<DenseRows> G(n);
-  Eigen::VectorXd f = Eigen::VectorXd::Zero(A_.n());
-  double largest = 0;
+  std::vector<Mat3> scale(A_.n_blocks(), Mat3::Zero());  // of unknowns: their rows next to each other are near unit ones
   for (int j = 0; j < n; ++j) {
-    const Constraint& c = *all[j];
-    G[j] = c.gradient(stage);
+    G[j] = all[j]->gradient(stage);
+    for (size_t k = 0; k < cliques_[j].size(); ++k) {
+      const auto part = G[j].middleCols<3>(3 * static_cast<Eigen::Index>(k));
+      scale[cliques_[j][k]] += part.transpose() * part;
+    }
+  }
+  for (Mat3& S : scale) {
+    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(S);
+    Vec3 factor = Vec3::Zero();
+    for (int i = 0; i < 3; ++i)
+      if (eigen.eigenvalues()[i] > 1e-15 * eigen.eigenvalues()[2]) factor[i] = 1 / std::sqrt(eigen.eigenvalues()[i]);
+    S = eigen.eigenvectors() * factor.asDiagonal() * eigen.eigenvectors().transpose();
+  }
+  A_.zero();
+  for (int j = 0; j < n; ++j) {
+    for (size_t k = 0; k < cliques_[j].size(); ++k) {
+      auto part = G[j].middleCols<3>(3 * static_cast<Eigen::Index>(k));
+      part = (part * scale[cliques_[j][k]]).eval();
+    }
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, max_directions, max_directions> K =
         decltype(K)::Zero(G[j].cols(), G[j].cols());
     for (Eigen::Index r = 0; r < G[j].rows(); ++r)
       for (Eigen::Index i = 0; i < G[j].cols(); ++i)
         if (G[j](r, i) != 0) K.row(i) += G[j](r, i) * G[j].row(r);
-    largest = std::max(largest, K.diagonal().maxCoeff());
     A_.add(j, K.data());
-    for (int r = 0; r < c.n_rows(); ++r) {
-      if (!c.active()[r]) continue;
-      const auto blocks = cliques_[j];
-      for (size_t k = 0; k < blocks.size(); ++k)
-        f.segment<3>(3 * blocks[k]) += lambda[c.row() + r] * G[j].row(r).segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
-    }
   }
-  const double shift = 1e-10 * largest;
-  const double d[3] = {shift, shift, shift};
+  constexpr double d[3] = {shift, shift, shift};
   for (int i = 0; i < A_.n_blocks(); ++i) A_.add_diagonal(i, d);
-  if (!factors_->refactor(A_) && !factors_->factor(A_))
-    throw Error("", "the shares of redundant joint rows cannot be found: no factors of them");
-  Eigen::VectorXd y = Eigen::VectorXd::Zero(f.size()), r = f, product(f.size());
-  for (int pass = 0; pass < 8 && r.norm() > 1e-14 * f.norm(); ++pass) {
-    factors_->solve(r.data(), product.data());
-    y += product;
-    A_.multiply(y.data(), product.data());
-    r = f - product + shift * y;
-  }
+  const auto fail = [&](int j, const std::string& why) {
+    throw Error("", fmt::format("{}: the shares of redundant rows cannot be found: {}", all[j]->label(), why),
+                "leave out a joint that is redundant", Exit::not_converged);
+  };
+  if (!factors_->refactor(A_) && !factors_->factor(A_)) fail(0, "no factors of them");
+  const auto forces = [&](std::span<const double> of, bool all_rows) {  // G^T lambda
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(A_.n());
+    for (int j = 0; j < n; ++j)
+      for (int r = 0; r < G[j].rows(); ++r)
+        for (size_t k = 0; k < cliques_[j].size() && (all_rows || all[j]->active()[r]); ++k)
+          out.segment<3>(3 * cliques_[j][k]) +=
+              of[all[j]->row() + r] * G[j].row(r).segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
+    return out;
+  };
+  const auto shares = [&](const Eigen::VectorXd& y) {  // G y
+    std::vector<double> out(lambda.size(), 0.0);
+    Eigen::Matrix<double, max_directions, 1> own;
+    for (int j = 0; j < n; ++j) {
+      const auto blocks = cliques_[j];
+      for (size_t k = 0; k < blocks.size(); ++k) own.segment<3>(3 * static_cast<Eigen::Index>(k)) = y.segment<3>(3 * blocks[k]);
+      Eigen::Map<Eigen::VectorXd>(&out[all[j]->row()], G[j].rows()) = G[j] * own.head(G[j].cols());
+    }
+    return out;
+  };
+  // conjugate gradients on G^T G y = f: a few, as the factors err by their shift alone
   std::vector<double> out(lambda.size(), 0.0);
-  Eigen::Matrix<double, max_directions, 1> own;
-  for (int j = 0; j < n; ++j) {
-    const auto blocks = cliques_[j];
-    for (size_t k = 0; k < blocks.size(); ++k) own.segment<3>(3 * static_cast<Eigen::Index>(k)) = y.segment<3>(3 * blocks[k]);
-    Eigen::Map<Eigen::VectorXd>(&out[all[j]->row()], G[j].rows()) = G[j] * own.head(G[j].cols());
+  const Eigen::VectorXd f = forces(lambda, false);
+  Eigen::VectorXd r = f, z(f.size()), p = Eigen::VectorXd::Zero(f.size());
+  double before = 1;
+  for (int pass = 0; pass < 50 && r.norm() > 1e-14 * f.norm(); ++pass) {
+    factors_->solve(r.data(), z.data());
+    const double now = r.dot(z);
+    if (!(now > 0)) break;
+    p = z + (pass > 0 ? now / before : 0) * p, before = now;
+    const std::vector<double> q = shares(p);
+    const double alpha = now / Eigen::Map<const Eigen::VectorXd>(q.data(), static_cast<Eigen::Index>(q.size())).squaredNorm();
+    for (size_t i = 0; i < out.size(); ++i) out[i] += alpha * q[i];
+    r = f - forces(out, true);
+  }
+  if (!(r.norm() <= 1e-8 * f.norm())) {
+    Eigen::Index worst = 0;
+    r.cwiseAbs().maxCoeff(&worst);
+    int j = 0;
+    while (j < n - 1 && std::ranges::find(cliques_[j], static_cast<int>(worst / 3)) == cliques_[j].end()) ++j;
+    fail(j, fmt::format("their forces differ by {:.1e} from those of the rows that are kept", r.norm() / f.norm()));
   }
   return out;
 }

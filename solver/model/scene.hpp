@@ -82,6 +82,8 @@ class Scene {
   std::string explain() const;
   /// The same as "section.name.key = value", values in full, of tables and files that they name their digests.
   std::vector<std::string> values() const;
+  /// Entries of each section in the order in which such lines name them, those they do not name last: what is kept goes by this order.
+  void put_in_order(std::span<const std::string> values);
   std::vector<std::string> warnings;  // implausible values, one line each, with place
 
  private:

@@ -93,12 +93,31 @@ std::vector<std::string> Scene::values() const {
       for (const double value : v.history->value) digest.add(value);
       text += fmt::format(" {}", digest.text());
     }
-    for (const std::string& word : v.texts)
-      if (const auto file = std::filesystem::path(folder) / word; word.ends_with(".csv") && std::filesystem::is_regular_file(file))
+    if (p.key == "file" || p.key == "shapes")
+      if (const auto file = std::filesystem::path(folder) / v.texts.front(); std::filesystem::is_regular_file(file))
         text += fmt::format(" {}", digest(file.string()));
     out.push_back(fmt::format("{} = {}", key, text));
   });
   return out;
+}
+
+void Scene::put_in_order(std::span<const std::string> values) {
+  std::map<std::string, size_t, std::less<>> place;  // of the first line of an entry
+  for (size_t i = 0; i < values.size(); ++i) {
+    const std::string_view key = std::string_view(values[i]).substr(0, values[i].find(" = "));
+    place.emplace(key.substr(0, key.rfind('.') + 1), i);
+  }
+  for (auto& [section, list] : entries_) {
+    std::vector<std::pair<size_t, size_t>> order;
+    for (size_t i = 0; i < list.size(); ++i) {
+      const auto at = place.find(path_of(list[i], i + 1));
+      order.emplace_back(at == place.end() ? values.size() : at->second, i);
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<Entry> sorted;
+    for (const auto& [at, i] : order) sorted.push_back(std::move(list[i]));
+    list = std::move(sorted);
+  }
 }
 
 std::string Scene::explain() const {

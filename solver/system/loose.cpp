@@ -28,6 +28,48 @@ struct Block {
   bool inner = true;  // it meets but cells, and nothing of it is prescribed
 };
 
+/// Takes a tangent, and finds how far from a body's centre what resists its turns acts: of a point mass on a beam, this is no small part of
+/// the beam, though the body itself has no size.
+class Reach final : public KktSolver {
+ public:
+  explicit Reach(const System& system) : system_(system), arm(system.bodies.size(), 0.0) {
+    centre_of_.assign(system.first_joint_block(), -1);
+    for (size_t b = 0; b < system.bodies.size(); ++b)
+      if (system.body_block[b] >= 0) centre_of_[system.body_block[b] + 1] = static_cast<int>(b);
+  }
+  void structure(const Cliques&, const BlockMap&) override {}
+  void zero() override {}
+  void add(int clique, const double* dense) override {
+    const auto list = system_.layout.cliques[clique];
+    const auto n = static_cast<Eigen::Index>(list.size());
+    const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> K(dense, 3 * n, 3 * n);
+    for (Eigen::Index turn = 0; turn < n; ++turn) {
+      if (list[turn] < 0 || list[turn] >= system_.first_joint_block() || centre_of_[list[turn]] < 0) continue;
+      const auto centre = std::find(list.begin(), list.end(), list[turn] - 1) - list.begin();
+      if (centre == n) continue;
+      double& most = arm[centre_of_[list[turn]]];
+      const auto take = [&](double turns, double moves) {
+        if (moves > 0) most = std::max(most, turns / moves);
+      };
+      take(std::sqrt(K.block<3, 3>(3 * turn, 3 * turn).norm()), std::sqrt(K.block<3, 3>(3 * centre, 3 * centre).norm()));
+      for (Eigen::Index row = 0; row < n; ++row)
+        if (list[row] >= system_.first_joint_block())
+          take(K.block<3, 3>(3 * row, 3 * turn).norm(), K.block<3, 3>(3 * row, 3 * centre).norm());
+    }
+  }
+  void add_diagonal(int, const double*) override {}
+  void sum_shared(std::span<double>) override {}
+  SolveReport solve(std::span<const double>, std::span<double>, double) override { return {}; }
+  std::string name() const override { return "reach"; }
+
+ private:
+  const System& system_;
+  std::vector<int> centre_of_;  // of a block of turns, its body
+
+ public:
+  std::vector<double> arm;  // [m], of each body, 0 where nothing that moves it resists turns
+};
+
 /// Takes a tangent, and keeps the sum N.
 class Resistance final : public KktSolver {
  public:
@@ -129,9 +171,22 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
       if (s[5 + r] > 0) names.push_back('"' + mesh->mesh.region_name[r] + '"');
     p.name = fmt::format("region{} {}", names.size() > 1 ? "s" : "", fmt::join(names, ", "));
   }
+  std::vector<Vec3> node(X.size(), Vec3::Zero());
+  std::vector<Vec6> body(bodies.size(), Vec6::Zero());
+  std::vector<double> lambda(3 * n_joint_blocks(), 0.0);
+  Residual unused;
+  unused.r.assign(3 * n_blocks(), 0.0);
+  const auto evaluate = [&](KktSolver& into) {
+    Pass p{stage, lambda, unused, &into, node, body, 1, with_loads};
+    for (const Equations* part : all<Equations>()) part->evaluate(p);
+  };
+  Reach reach(*this);
+  evaluate(reach);
+  comm->max(reach.arm);
   for (size_t k = 0; k < moving.size(); ++k) {
     const Body& body = bodies[moving[k]];
-    parts[n_clusters + k] = {q.c[moving[k]], body.size, (body.patch ? "joint patch \"" : "body \"") + body.name + '"'};
+    parts[n_clusters + k] = {q.c[moving[k]], std::max(body.size, reach.arm[moving[k]]),
+                             (body.patch ? "joint patch \"" : "body \"") + body.name + '"'};
   }
   for (Part& p : parts)
     if (!(p.length > 1e-9 * length)) p.length = length;
@@ -168,13 +223,7 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
 
   Resistance resistance(*this, blocks);
   resistance.n_clusters = n_clusters;
-  std::vector<Vec3> node(X.size(), Vec3::Zero());
-  std::vector<Vec6> body(bodies.size(), Vec6::Zero());
-  std::vector<double> lambda(3 * n_joint_blocks(), 0.0);
-  Residual unused;
-  unused.r.assign(3 * n_blocks(), 0.0);
-  Pass p{stage, lambda, unused, &resistance, node, body, 1, with_loads};
-  for (const Equations* part : all<Equations>()) part->evaluate(p);
+  evaluate(resistance);
 
   std::vector<std::vector<std::int64_t>> tell(comm->size);
   for (auto& list : tell)

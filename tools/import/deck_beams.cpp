@@ -64,8 +64,11 @@ bool has_scene_material(const DeckSection& s, const DeckMaterial& m) {
   return isotropic && s.I12 == 0 && s.line_mass == 0 && std::ranges::all_of(s.sizes, [](const auto& size) { return size.second > 0; });
 }
 
-std::string section_table(const std::string& name, const DeckSection& s, const DeckMaterial& m, const std::string& units,
+std::string section_table(const std::string& name, DeckSection s, const DeckMaterial& m, const std::string& units, double scale,
                           const std::string& place) {
+  const auto power = [](const std::string& key) { return key == "area" ? 2 : key[0] == 'I' || key[0] == 'J' ? 4 : 1; };  // of a length
+  for (auto& [key, value] : s.sizes) value *= std::pow(scale, power(key));
+  s.I12 *= std::pow(scale, 4);
   const double E = m.data.E, G = shear_modulus(m);
   if (!(E > 0) || !(G > 0)) throw Error(place, fmt::format("material {} has no Young's or shear modulus, which a beam needs", m.name));
   const auto si = [&](const char* unit) { return to_si(unit, units); };
@@ -75,8 +78,7 @@ std::string section_table(const std::string& name, const DeckSection& s, const D
                        s.no_shear_strain[1] ? stiff_in_shear * E / G : area.shear_2};
   if (has_scene_material(s, m)) {
     out += fmt::format("kind = \"{}\"\n", s.kind);
-    for (const auto& [key, value] : s.sizes)
-      out += fmt::format("{} = {}\n", key, toml_number(value * si(key == "area" ? "m^2" : key[0] == 'I' || key[0] == 'J' ? "m^4" : "m")));
+    for (const auto& [key, value] : s.sizes) out += fmt::format("{} = {}\n", key, toml_number(value * std::pow(si("m"), power(key))));
     if (s.shear || s.no_shear_strain[0] || s.no_shear_strain[1]) out += fmt::format("shear = {}\n", toml_list({k[0], k[1]}));
     return out;
   }

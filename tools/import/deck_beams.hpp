@@ -31,9 +31,9 @@ DeckSection general_section(double A, double I1, double I2, double J);
 
 /// Whether the section is written with a material of the scene; else as stiffnesses, for what the material or its kind cannot say.
 bool has_scene_material(const DeckSection& section, const DeckMaterial& material);
-/// [section.NAME] in SI; Error at `place` where the material says no moduli.
-std::string section_table(const std::string& name, const DeckSection& section, const DeckMaterial& material, const std::string& units,
-                          const std::string& place);
+/// [section.NAME] in SI, its lengths times `scale` as those of the geometry; Error at `place` where the material says no moduli.
+std::string section_table(const std::string& name, DeckSection section, const DeckMaterial& material, const std::string& units,
+                          double scale, const std::string& place);
 
 /// An element between two bodies.
 struct DeckBeam {

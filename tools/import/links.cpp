@@ -8,6 +8,7 @@
 #include <Eigen/QR>
 #include <bit>
 
+#include "base/error.hpp"
 #include "import/deck_material.hpp"
 
 namespace hilo {
@@ -65,6 +66,28 @@ std::string joints_that_hold(unsigned components, const Mat3& axes, const std::s
     from = to;
   }
   return out;
+}
+
+std::string motion_of_body(const std::string& name, const std::string& on, const Prescribed& by, const std::string& at,
+                           const std::string& past, const std::string& place) {
+  const std::string head = fmt::format("\n[[motion]]   # {}\nkind = \"{}\"\nname = {}\non = {}\n", place,
+                                       !by.any()                 ? "fixed"
+                                       : by.turn == Vec3::Zero() ? "translation"
+                                                                 : "rotation",
+                                       toml_text(name), toml_text(on));
+  if (!by.any()) return head;
+  if (by.turn == Vec3::Zero()) return head + fmt::format("displacement = {}\n", toml_list({by.way.x(), by.way.y(), by.way.z()})) + past;
+  if (by.way != Vec3::Zero())
+    throw Error(place, fmt::format("\"{}\" is moved and turned by given amounts, which is not read", on), "move it or turn it");
+  const Vec3 axis = by.turn.normalized();
+  return head +
+         fmt::format("at = {}\naxis = {}\nangle = {}\n", at, toml_list({axis.x(), axis.y(), axis.z()}), toml_number(by.turn.norm())) + past;
+}
+
+std::string moving_body(const std::string& name, const Prescribed& by, const std::string& at, const std::string& past,
+                        const std::string& place) {
+  return fmt::format("\n[[body]]   # {}\nname = {}\nmass = 0.0\ncom = {}\n", place, toml_text(name), at) +
+         motion_of_body(name, name, by, at, past, place);
 }
 
 std::optional<std::vector<Vec3>> shares_of_mean(const std::vector<Vec3>& X, const std::vector<double>& w, const Vec3& at, const Vec3& F,

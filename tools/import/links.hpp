@@ -23,6 +23,19 @@ std::string joints_that_hold(unsigned components, const Mat3& axes, const std::s
                              const std::string& at, const std::string& place,
                              const std::function<std::string(const std::string& section, const std::string& wish)>& unique);
 
+/// What a deck prescribes of a body beside components that it holds.
+struct Prescribed {
+  Vec3 way = Vec3::Zero(), turn = Vec3::Zero();  // [m], [rad]
+  bool any() const { return way != Vec3::Zero() || turn != Vec3::Zero(); }
+};
+/// [[motion]] of the body `on`: held, moved, or turned about an axis through `at`; `past`: its history.  Error at `place` where it moves
+/// and turns, or turns about more than one axis.
+std::string motion_of_body(const std::string& name, const std::string& on, const Prescribed& by, const std::string& at,
+                           const std::string& past, const std::string& place);
+/// A body of no mass at `at` that goes this way: what holds another to it moves that.
+std::string moving_body(const std::string& name, const Prescribed& by, const std::string& at, const std::string& past,
+                        const std::string& place);
+
 /// What a weighted mean of points makes of a force and a moment at a point of it: f = w (F/W + (T^-1 (M + (x - c) x F)) x r), with r from
 /// the weighted mean c, W = sum w and T = sum w (r.r I - r r^T).  Nothing where the points cannot carry the moment.
 std::optional<std::vector<Vec3>> shares_of_mean(const std::vector<Vec3>& X, const std::vector<double>& w, const Vec3& at, const Vec3& F,

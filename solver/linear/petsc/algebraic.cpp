@@ -152,10 +152,7 @@ class InverseOfSymmetric final : public AlgebraicInverse {
   Mat assembled() override {
     if (!whole_) whole_ = make_whole_();
     whole_->zero();
-    F_.for_each_block([&](PetscInt i, PetscInt j, const Matrix3d& block) {
-      const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> values = block;
-      whole_->add_row(i, {&j, 1}, values.data());
-    });
+    F_.for_each_row([&](PetscInt i, std::span<const PetscInt> columns, const double* values) { whole_->add_row(i, columns, values); });
     whole_->assemble();
     return whole_->mat();
   }

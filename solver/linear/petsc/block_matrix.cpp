@@ -110,6 +110,25 @@ void BlockMatrix::assemble() {
   open_ = false;
 }
 
+void BlockMatrix::for_each_row(const Row& row) const {
+  PetscInt first = 0, last = 0, n = 0;
+  check(MatGetOwnershipRange(A_, &first, &last));
+  std::vector<PetscInt> columns;
+  std::vector<double> values;
+  for (PetscInt i = first; i < last; i += 3) {
+    for (PetscInt r = 0; r < 3; ++r) {  // of a block row all have the same columns
+      const PetscInt* at = nullptr;
+      const PetscScalar* of = nullptr;
+      check(MatGetRow(A_, i + r, &n, &at, &of));
+      if (r == 0) columns.clear(), values.clear();
+      for (PetscInt k = 0; k < n && r == 0; k += 3) columns.push_back(at[k] / 3);
+      values.insert(values.end(), of, of + n);
+      check(MatRestoreRow(A_, i + r, &n, &at, &of));
+    }
+    row(i / 3, columns, values.data());
+  }
+}
+
 double BlockMatrix::bytes() const {
   MatInfo info;
   return MatGetInfo(A_, MAT_LOCAL, &info) ? 0 : info.memory;

@@ -26,6 +26,7 @@ class BlockMatrix final : public FlexibleMatrix {
   Mat mat() const override { return A_; }
   PetscInt n_owned() const override { return n_owned_; }
   double bytes() const override;
+  void for_each_row(const Row& row) const override;
 
  private:
   Mat A_ = nullptr;

@@ -10,6 +10,11 @@
 #include "linear/petsc/inertia.hpp"
 
 namespace hilo::petsc {
+namespace {
+
+constexpr PetscInt largest_room = 30000;  // [%], far beyond what delayed pivots need: memory ends before
+
+}  // namespace
 
 void DirectSolver::structure(const Cliques& cliques, const BlockMap& map) {
   check(MatDestroy(&factor_));
@@ -58,39 +63,45 @@ std::optional<int> DirectSolver::eigenvalues_below_zero(int first_row) const {
 
 std::string DirectSolver::name() const { return size() > 1 ? fmt::format("direct (MUMPS, {} ranks)", size()) : "direct (MUMPS)"; }
 
-/// "" or what went wrong.  The analysis is kept: the pattern does not change.
+/// A factor with room for delayed pivots: "" or what went wrong.
+std::string DirectSolver::analyse() {
+  MatFactorInfo info;
+  check(MatFactorInfoInitialize(&info));
+  check(MatGetFactor(matrix_->mat(), MATSOLVERMUMPS, MAT_FACTOR_LU, &factor_));
+  set(14, room_);
+  set(24, 1);                                // find null pivots instead of dividing by them
+  set(13, 1);                                // no ScaLAPACK at the root: it would hide them there
+  set(10, 0);                                // refinement is ours
+  check(MatMumpsSetCntl(factor_, 1, 0.01));  // threshold of partial pivoting: multipliers have no diagonal
+  check(MatLUFactorSymbolic(factor_, matrix_->mat(), nullptr, nullptr, &info));
+  const auto error = infog(1);
+  return error < 0 ? failure("analysis", error) : "";
+}
+
+/// "" or what went wrong.  The analysis is kept, as the pattern does not change, until a factorisation fails: PETSc does nothing with a
+/// factor that has failed once, whatever is asked of it.
 std::string DirectSolver::factor() {
   const Stopwatch watch(set_up_);
   PetscReal norm = 0;  // MUMPS asks for memory without end where numbers are not finite
   check(MatNorm(matrix_->mat(), NORM_FROBENIUS, &norm));
   if (!std::isfinite(norm)) return "the matrix is not finite";
-  MatFactorInfo info;
-  check(MatFactorInfoInitialize(&info));
-  if (!factor_) {
-    check(MatGetFactor(matrix_->mat(), MATSOLVERMUMPS, MAT_FACTOR_LU, &factor_));
-    set(14, 35);                               // room for delayed pivots [%]
-    set(24, 1);                                // find null pivots instead of dividing by them
-    set(13, 1);                                // no ScaLAPACK at the root: it would hide them there
-    set(10, 0);                                // refinement is ours
-    check(MatMumpsSetCntl(factor_, 1, 0.01));  // threshold of partial pivoting: multipliers have no diagonal
-    check(MatLUFactorSymbolic(factor_, matrix_->mat(), nullptr, nullptr, &info));
-    if (const auto error = infog(1); error < 0) return failure("analysis", error);
-  }
-  for (PetscInt room = 35;; room *= 2) {
+  for (;; room_ *= 2) {
+    if (!factor_)
+      if (const std::string problem = analyse(); !problem.empty()) return check(MatDestroy(&factor_)), problem;
+    MatFactorInfo info;
+    check(MatFactorInfoInitialize(&info));
     check(MatLUFactorNumeric(factor_, matrix_->mat(), &info));
-    const auto error = infog(1);
-    const bool more_room = error == -8 || error == -9 || error == -14 || error == -15 || error == -17 || error == -20;
-    if (more_room && room < 1000) {
-      set(14, 2 * room);
-      continue;
-    }
     PetscInt megabytes = 0;
     check(MatMumpsGetInfo(factor_, 16, &megabytes));
     factor_bytes_ = 1e6 * megabytes;
-    if (error == -10) return "the matrix is singular";
-    if (error < 0) return failure("factorisation", error);
-    if (const auto null = infog(28); null > 0) return fmt::format("the matrix is singular ({} null pivot{})", null, null > 1 ? "s" : "");
-    return "";
+    const auto error = infog(1), null = infog(28);
+    if (error >= 0) return null > 0 ? fmt::format("the matrix is singular ({} null pivot{})", null, null > 1 ? "s" : "") : "";
+    const bool wants_room = error == -8 || error == -9 || error == -14 || error == -15 || error == -17 || error == -20;
+    const std::string problem = error == -10                         ? "the matrix is singular"
+                                : wants_room && room_ < largest_room ? ""
+                                                                     : failure("factorisation", error);
+    check(MatDestroy(&factor_));
+    if (!problem.empty()) return problem;
   }
 }
 

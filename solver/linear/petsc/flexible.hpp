@@ -27,6 +27,9 @@ class FlexibleMatrix {
   virtual Mat mat() const = 0;
   virtual PetscInt n_owned() const = 0;  // blocks
   virtual double bytes() const = 0;      // of this rank
+  /// What this rank has of the assembled matrix: of each row of blocks by global numbers, its columns and 3 x 3n values, row major.
+  using Row = std::function<void(PetscInt row, std::span<const PetscInt> columns, const double* values)>;
+  virtual void for_each_row(const Row& row) const = 0;
   /// The largest |K - K^T| / |K + K^T| of the cliques added on this rank since zero(), where the kind keeps the symmetric part alone.
   virtual double asymmetry() const { return 0; }
 };

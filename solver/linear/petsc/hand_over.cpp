@@ -3,7 +3,7 @@
 
 namespace hilo::petsc {
 
-std::unique_ptr<DirectSolver> hand_over(const SubdomainMatrix& F, const Coupling& coupling, const Cliques& cliques, const BlockMap& map,
+std::unique_ptr<DirectSolver> hand_over(const FlexibleMatrix& F, const Coupling& coupling, const Cliques& cliques, const BlockMap& map,
                                         double tolerance) {
   auto direct = std::make_unique<DirectSolver>(tolerance);
   direct->structure(cliques, map);

@@ -3,12 +3,12 @@
 #pragma once
 #include "linear/petsc/coupling.hpp"
 #include "linear/petsc/direct.hpp"
-#include "linear/petsc/subdomain_matrix.hpp"
+#include "linear/petsc/flexible.hpp"
 
 namespace hilo::petsc {
 
 /// A direct solver with the matrix as it is assembled in `F` and `coupling`.
-std::unique_ptr<DirectSolver> hand_over(const SubdomainMatrix& F, const Coupling& coupling, const Cliques& cliques, const BlockMap& map,
+std::unique_ptr<DirectSolver> hand_over(const FlexibleMatrix& F, const Coupling& coupling, const Cliques& cliques, const BlockMap& map,
                                         double tolerance);
 
 }  // namespace hilo::petsc

@@ -45,22 +45,25 @@ double largest_diagonal(Mat K) {
 
 std::optional<int> negative_pivots(Mat S) {
   check(MatSetOption(S, MAT_SYMMETRIC, PETSC_TRUE));
-  Mat factor = nullptr;
-  check(MatGetFactor(S, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &factor));
-  check(MatMumpsSetIcntl(factor, 13, 1));  // ScaLAPACK would hide the pivots of the root
-  check(MatMumpsSetIcntl(factor, 24, 1));
-  check(MatMumpsSetIcntl(factor, 14, 100));
-  MatFactorInfo info;
-  check(MatFactorInfoInitialize(&info));
-  check(MatCholeskyFactorSymbolic(factor, S, nullptr, &info));
   PetscInt error = 0, negative = 0;
-  check(MatMumpsGetInfog(factor, 1, &error));
-  if (error >= 0) {
-    check(MatCholeskyFactorNumeric(factor, S, &info));
+  for (PetscInt room = 100; room < 30000; room *= 2) {  // for delayed pivots [%]
+    Mat factor = nullptr;
+    check(MatGetFactor(S, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &factor));
+    check(MatMumpsSetIcntl(factor, 13, 1));  // ScaLAPACK would hide the pivots of the root
+    check(MatMumpsSetIcntl(factor, 24, 1));
+    check(MatMumpsSetIcntl(factor, 14, room));
+    MatFactorInfo info;
+    check(MatFactorInfoInitialize(&info));
+    check(MatCholeskyFactorSymbolic(factor, S, nullptr, &info));
     check(MatMumpsGetInfog(factor, 1, &error));
-    check(MatMumpsGetInfog(factor, 12, &negative));
+    if (error >= 0) {
+      check(MatCholeskyFactorNumeric(factor, S, &info));
+      check(MatMumpsGetInfog(factor, 1, &error));
+      check(MatMumpsGetInfog(factor, 12, &negative));
+    }
+    check(MatDestroy(&factor));
+    if (error != -8 && error != -9) break;
   }
-  check(MatDestroy(&factor));
   if (error < 0) return {};
   return static_cast<int>(negative);
 }

@@ -19,6 +19,8 @@ namespace {
 constexpr double worth_wanting = 1e-4;
 /// Part of an element's tangent that is not symmetric beyond which Newton with the symmetric part takes thrice the iterations.
 constexpr double too_unsymmetric = 0.01;
+/// Unknowns whose factors cost less than a second preconditioner that may not do either, and those whose factors find room as a rule.
+constexpr std::int64_t soon_factored = 150000, at_last_factored = 1000000;
 
 class IterativeSolver final : public KktSolver {
  public:
@@ -73,8 +75,8 @@ class IterativeSolver final : public KktSolver {
     if (!lagged || !report.ok) {
       if (!(report.residual < 1)) check(VecSet(x_, 0));
       report = set_up_and_attempt();
-      bool stronger;
-      while ((stronger = system_->inverse().strengthen(report.iterations, !report.ok)) && !report.ok) {
+      bool stronger = false;
+      while (!gives_up(report, soon_factored) && (stronger = system_->inverse().strengthen(report.iterations, !report.ok)) && !report.ok) {
         before += report.iterations;
         check(VecSet(x_, 0));
         report = set_up_and_attempt();
@@ -83,9 +85,9 @@ class IterativeSolver final : public KktSolver {
       rate_ = report.iterations / decades;
       report.iterations += before;
     }
-    if (!report.ok && kind_->goes_direct) {
+    if (gives_up(report, at_last_factored)) {
       if (rank() == 0) warn("", fmt::format("{} fails ({}); direct from here on", name(), report.message));
-      auto direct = hand_over(static_cast<const SubdomainMatrix&>(system_->matrix()), system_->coupling(), *cliques_, *map_, tolerance_);
+      auto direct = hand_over(system_->matrix(), system_->coupling(), *cliques_, *map_, tolerance_);
       krylov_.reset(), system_.reset();
       direct_ = std::move(direct);
       before = report.iterations;
@@ -93,11 +95,15 @@ class IterativeSolver final : public KktSolver {
       report.iterations += before;
       return report;
     }
+    if (!report.ok) report.message += "; solver.kind = \"direct\" does where its factors find room";
     if (within_.all > 0) report.iterations = within_.all, report.most_within = within_.most;
     to_local(*shared_, x_, x);
     return report;
   }
 
+  std::optional<int> eigenvalues_below_zero(int first_row) const override {
+    return direct_ ? direct_->eigenvalues_below_zero(first_row) : std::nullopt;
+  }
   double bytes() const override {
     return direct_ ? direct_->bytes() : system_->bytes() + 8. * static_cast<double>(krylov_->vectors() * system_->n_all());
   }
@@ -115,6 +121,11 @@ class IterativeSolver final : public KktSolver {
  private:
   Method gmres() const { return system_->inverse().varies() ? Method::flexible_gmres : Method::gmres; }
 
+  /// Whether factors go on from here: of `at_most` unknowns, but for substructures, which have factors themselves.
+  bool gives_up(const SolveReport& report, std::int64_t at_most) const {
+    if (report.ok) return false;
+    return kind_->goes_direct ? at_most == at_last_factored : std::isfinite(report.residual) && 3 * map_->n_global <= at_most;
+  }
   /// From the next matrix on; this one is at hand as its symmetric part alone.
   void take_whole_tangent() {
     if (rank() == 0) warn("", "CG: parts turn too far in a step for a symmetric tangent; GMRES with the whole one from here on");
@@ -193,7 +204,7 @@ class IterativeSolver final : public KktSolver {
   std::optional<SharedBlocks> shared_;
   std::optional<Saddle> system_;
   std::optional<Krylov> krylov_;
-  std::unique_ptr<DirectSolver> direct_;  // once substructuring has failed
+  std::unique_ptr<DirectSolver> direct_;  // once what is iterative has failed
   Vector x_, b_, r_, dx_;
 };
 

@@ -285,7 +285,7 @@ void SubdomainMatrix::for_each_symmetric_block(const std::function<void(PetscInt
   check(MatSeqBAIJRestoreArray(local_, &from));
 }
 
-void SubdomainMatrix::for_each_row(const std::function<void(PetscInt, std::span<const PetscInt>, const double*)>& row) const {
+void SubdomainMatrix::for_each_row(const Row& row) const {
   PetscScalar* from;
   check(MatSeqBAIJGetArray(local_, &from));
   std::vector<PetscInt> columns;

@@ -42,7 +42,7 @@ class SubdomainMatrix final : public FlexibleMatrix {
   void for_each_symmetric_block(const std::function<void(PetscInt i, PetscInt j, const double* block)>& visit) const;
 
   /// Give its rows to `row` by global numbers, 3 x 3n values each (of each subdomain: to be summed).
-  void for_each_row(const std::function<void(PetscInt row, std::span<const PetscInt> columns, const double* values)>& row) const;
+  void for_each_row(const Row& row) const override;
 
  private:
   void choose_blocks(const Cliques& cliques, const BlockMap& map, const SharedBlocks& shared, int n);

@@ -46,6 +46,12 @@ class SymmetricMatrix final : public FlexibleMatrix {
   std::vector<Eigen::Matrix3d> diagonals() const;
   /// Give what this rank has of the matrix to `visit`, blocks by global numbers.
   void for_each_block(const std::function<void(PetscInt i, PetscInt j, const Eigen::Matrix3d& block)>& visit) const;
+  void for_each_row(const Row& row) const override {
+    for_each_block([&](PetscInt i, PetscInt j, const Eigen::Matrix3d& block) {
+      const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> values = block;
+      row(i, {&j, 1}, values.data());
+    });
+  }
 
  private:
   size_t find(int row, int column) const;

@@ -24,11 +24,12 @@ struct BdfSupport {
   double value;
   std::string place;
 };
-/// FORCE, MOMENT and their like: a vector at a grid; GRAV: an acceleration; pressures on faces.
+/// FORCE, MOMENT and their like: a vector at a grid; GRAV: an acceleration; pressures on faces; SPCD: where a support goes.
 struct BdfLoad {
-  enum class Kind { force, moment, gravity, pressure } kind;
+  enum class Kind { force, moment, gravity, pressure, displacement } kind;
   std::int64_t grid = 0, system = 0;
-  double size = 0;                          // N, N m, m/s^2, Pa in units of the deck
+  double size = 0;                          // N, N m, m/s^2, Pa, m or rad in units of the deck
+  unsigned components = 0;                  // SPCD: bits 0 to 5
   Vec3 direction = Vec3::Zero();            // in `system`; of a pressure: zero for one along the normal
   std::array<std::int64_t, 2> towards{};    // FORCE1, MOMENT1: along the line of two grids
   std::vector<std::int64_t> elements = {};  // of a pressure

@@ -51,6 +51,15 @@ void read_force(const BdfEntry& e, BdfDeck& deck, Imported&) {
   }
   deck.loads[d.integer(0)].push_back(l);
 }
+void read_spcd(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  for (size_t i = 1; i < 7; i += 3)
+    if (!d.empty(i)) {
+      BdfLoad l{BdfLoad::Kind::displacement};
+      l.grid = d.integer(i), l.components = components(d, i + 1), l.size = d.number(i + 2), l.place = d.place();
+      deck.loads[d.integer(0)].push_back(l);
+    }
+}
 void read_gravity(const BdfEntry& e, BdfDeck& deck, Imported&) {
   const auto& d = e.data;
   BdfLoad l{BdfLoad::Kind::gravity};
@@ -129,10 +138,10 @@ void read_tstep(const BdfEntry& e, BdfDeck& deck, Imported& in) {
 
 std::span<const BdfCard> bdf_load_cards() {
   static constexpr BdfCard cards[] = {
-      {"SPC1", read_spc1},     {"SPC", read_spc},       {"SPCADD", read_spcadd}, {"FORCE", read_force},   {"FORCE1", read_force},
-      {"MOMENT", read_force},  {"MOMENT1", read_force}, {"GRAV", read_gravity},  {"PLOAD4", read_pload4}, {"PLOAD", read_pload},
-      {"PLOAD2", read_pload2}, {"LOAD", read_load},     {"EIGRL", read_modes},   {"EIGR", read_modes},    {"TSTEP", read_tstep},
-      {"MPC", read_mpc},       {"MPCADD", read_mpcadd},
+      {"SPC1", read_spc1},    {"SPC", read_spc},       {"SPCD", read_spcd},     {"SPCADD", read_spcadd}, {"FORCE", read_force},
+      {"FORCE1", read_force}, {"MOMENT", read_force},  {"MOMENT1", read_force}, {"GRAV", read_gravity},  {"PLOAD4", read_pload4},
+      {"PLOAD", read_pload},  {"PLOAD2", read_pload2}, {"LOAD", read_load},     {"EIGRL", read_modes},   {"EIGR", read_modes},
+      {"TSTEP", read_tstep},  {"MPC", read_mpc},       {"MPCADD", read_mpcadd},
   };
   return cards;
 }

@@ -101,7 +101,9 @@ void BdfScene::materials() {
       continue;
     }
     const auto area = deck_.area_of.find(property);
-    std::string keys = area != deck_.area_of.end() && area->second > 0 ? fmt::format("area = {}\n", number(area->second, "m^2")) : "";
+    std::string keys = area != deck_.area_of.end() && area->second > 0
+                           ? fmt::format("area = {}\n", number(area->second * options_.scale * options_.scale, "m^2"))
+                           : "";
     if (!mat->second.no_law.empty()) {
       lines += fmt::format("\n# region {}: material {} has no law here ({}), give it one\n", region, mat->first, mat->second.no_law);
     } else if (!mat->second.elastic()) {
@@ -189,6 +191,16 @@ void BdfScene::supports() {
           if (s.components >> k & 1) h.value[k] = s.value;
       }
   }
+  for (const auto& [factor, l] : loads_) {
+    if (l->kind != BdfLoad::Kind::displacement) continue;
+    const auto h = held.find(row(l->grid, l->place, "SPCD"));
+    if (h == held.end() || (l->components & ~h->second.bits)) {
+      in_.skip("SPCD of a component that no SPC holds", l->place);
+      continue;
+    }
+    for (size_t k = 0; k < 6; ++k)
+      if (l->components >> k & 1) h->second.value[k] = factor * l->size;
+  }
 
   for (const auto& [a, h] : held) {
     if (!options_.thicken || !is_of_shell(in_, a)) continue;
@@ -206,9 +218,15 @@ void BdfScene::supports() {
   for (const auto& [a, h] : held) {
     const End what = end(a);
     if (what == End::body) {
+      HeldBody& body = body_held_[a];
+      body.bits |= h.bits;
+      int turns = 0;
       for (size_t k = 0; k < 6; ++k)
-        if ((h.bits >> k & 1) && h.value[k] != 0) in_.skip("SPC with a displacement on a grid of no cell", h.place);
-      body_held_[a] |= h.bits;
+        if (h.bits >> k & 1) {
+          (k < 3 ? body.by.way : body.by.turn) += h.value[k] * (k < 3 ? si("m") : 1) * axes(a).col(static_cast<Eigen::Index>(k % 3));
+          turns += k > 2 && h.value[k] != 0;
+        }
+      if (turns > 1) throw Error(h.place, "SPC turns the grid of a body about more than one axis, which is not read", "about one");
       continue;
     }
     if (what != End::node) {
@@ -261,13 +279,15 @@ void BdfScene::supports() {
 
 /// A body is held by a joint to the ground, or whole.
 void BdfScene::supports_of_bodies() {
-  for (const auto& [a, bits] : body_held_) {
+  for (const auto& [a, held] : body_held_) {
     const std::string name = end_name(a), place = deck_.grids[static_cast<size_t>(a)].place;
-    if (bits == 63)
-      tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"fixed\"\nname = {}\non = {}\n", place, toml_text(unique("motion", name)),
-                             toml_text(name));
-    else
-      joint(bits, axes(a), name + "_support", "ground", name, X(a), place);
+    std::string to = "ground";
+    if (held.bits == 63) {
+      tables_ += motion_of_body(unique("motion", name), name, held.by, point(X(a)), "", place);
+      continue;
+    }
+    if (held.by.any()) tables_ += moving_body(to = unique("body", name + "_moved"), held.by, point(X(a)), "", place);
+    joint(held.bits, axes(a), name + "_support", to, name, X(a), place);
   }
 }
 

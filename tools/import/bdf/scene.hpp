@@ -9,6 +9,7 @@
 
 #include "base/param.hpp"
 #include "import/bdf/card.hpp"
+#include "import/links.hpp"
 
 namespace hilo {
 
@@ -89,7 +90,11 @@ class BdfScene {
   std::vector<BdfRigid> rigid_;                  // those that share a turning node as one
   std::map<std::int64_t, std::string> body_;     // row -> what makes a body of it
   std::map<std::int64_t, const BdfMean*> mean_;  // row -> the mean that it follows
-  std::map<std::int64_t, unsigned> body_held_;   // row -> components
+  struct HeldBody {
+    unsigned bits = 0;  // components
+    Prescribed by;
+  };
+  std::map<std::int64_t, HeldBody> body_held_;  // by row
   std::map<std::int64_t, std::string> on_beam_;  // row of a grid of beams -> place
   std::vector<std::pair<double, const BdfLoad*>> loads_;
   std::map<std::int64_t, std::pair<Vec3, std::string>> force_, moment_;  // row -> sum and first place

@@ -22,7 +22,7 @@ void BdfScene::beams() {
       if (p.section.kind == "general" && !(p.section.area(0.3, p.place).J > 0))
         in_.notes.push_back(fmt::format("{}: property {} has no J: a millionth of I1 + I2 is taken", p.place, b.property));
       if (has_scene_material(p.section, m) && materials.insert(mat->first).second) tables_ += m.table(m.name, options_.units);
-      tables_ += section_table(section_name(b.property), p.section, m, options_.units, p.place);
+      tables_ += section_table(section_name(b.property), p.section, m, options_.units, options_.scale, p.place);
     }
     beam(b);
   }

@@ -24,6 +24,8 @@ const char* name_of(BdfLoad::Kind kind) {
       return "GRAV";
     case BdfLoad::Kind::pressure:
       return "PLOAD";
+    case BdfLoad::Kind::displacement:
+      return "SPCD";
   }
   return "";
 }

@@ -99,7 +99,7 @@ std::string write_beams(const InpDeck& d, Imported& in, SetNames& names, const I
         if (other != &s && used[thin] == name) name += fmt::format("_{}", written.size());
       if (m.kind != "stvk" || !m.no_law.empty()) in.skip("*PLASTIC of beams, which are linear elastic", s.place);
       if (with_material && !of_cells.contains(s.law) && materials.insert(s.law).second) out += m.table(m.name, o.units);
-      out += section_table(name, section, m, o.units, s.place);
+      out += section_table(name, section, m, o.units, o.scale, s.place);
     }
     std::vector<Vec3> X;
     for (const auto node : b.nodes) X.push_back(d.bodies.at(node).X);

@@ -146,7 +146,8 @@ class Writer {
       }
       used.insert(s.law);
       lines[r] = fmt::format("[region.{}]\nmaterial = {}\n", toml_text(m.region_name[r]), toml_text(clean_name(mat.name)));
-      if (static_cast<Shape>(m.shape[c]) == Shape::bar2 && s.area > 0) lines[r] += fmt::format("area = {}\n", num(s.area * si("m^2")));
+      if (static_cast<Shape>(m.shape[c]) == Shape::bar2 && s.area > 0)
+        lines[r] += fmt::format("area = {}\n", num(s.area * o_.scale * o_.scale * si("m^2")));
     }
     for (const auto& key : used) tables_ += d_.laws.at(key).table(d_.laws.at(key).name, o_.units);
     for (const auto& l : lines)
@@ -188,27 +189,42 @@ class Writer {
     return n > 0 ? 0.5 : 1;
   }
 
-  /// Reference nodes are held by joints to the ground, or whole.
+  /// Reference nodes are held by joints to the ground or to what moves them, or whole.
   void supports_of_ties() {
-    std::map<std::int64_t, std::pair<unsigned, std::string>> held;
+    struct HeldBody {
+      unsigned bits = 0;
+      bool moves = false;
+      std::string place, amplitude;  // of what moves it
+      Prescribed by;
+    };
+    std::map<std::int64_t, HeldBody> held;
     for (const auto& b : d_.supports)
       tied_lines(d_, b, [&](std::int64_t id, int first, int last) {
-        if (b.value != 0) return in_.skip("*BOUNDARY with a displacement on a reference node", b.place);
         if (!d_.bodies.contains(id)) return in_.skip("*BOUNDARY on the node of a distributing coupling", b.place);
         if (own_axes_.contains(id)) return in_.skip("*BOUNDARY in axes of *TRANSFORM", b.place);
-        auto& [bits, place] = held[id];
-        for (int k = first; k <= last; ++k) bits |= 1u << (k - 1);
-        if (place.empty()) place = b.place;
+        HeldBody& h = held[id];
+        for (int k = first; k <= last; ++k) {
+          h.bits |= 1u << (k - 1);
+          (k > 3 ? h.by.turn : h.by.way)[(k - 1) % 3] = b.value * (k > 3 ? 1 : si("m"));
+        }
+        if ((h.by.turn.array() != 0).count() > 1)
+          throw Error(b.place, "*BOUNDARY turns a reference node about more than one axis, which is not read", "about one");
+        if (b.value != 0 && h.moves && h.amplitude != b.amplitude)
+          throw Error(b.place, "*BOUNDARY moves a reference node by two amplitudes, which is not read", "one for all its components");
+        if (b.value != 0) h.moves = true, h.amplitude = b.amplitude;
+        if (h.place.empty()) h.place = b.place;
       });
     for (const auto& [id, h] : held) {
-      const std::string name = toml_text(body_name(d_, id));
-      if (h.first == 63)
-        tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"fixed\"\nname = {}\non = {}\n", h.second,
-                               toml_text(unique("motion", body_name(d_, id))), name);
-      else
-        tables_ += joints_that_hold(h.first, Mat3::Identity(), body_name(d_, id) + "_support", "ground", body_name(d_, id),
-                                    list(Vec3(d_.bodies.at(id).X * si("m") * o_.scale)), h.second,
-                                    [this](const std::string& section, const std::string& wish) { return unique(section, wish); });
+      const std::string name = body_name(d_, id), at = list(Vec3(d_.bodies.at(id).X * si("m") * o_.scale));
+      std::string past, to = "ground";
+      if (h.by.any() && !history(h.amplitude, "*BOUNDARY", h.place, past)) continue;
+      if (h.bits == 63) {
+        tables_ += motion_of_body(unique("motion", name), name, h.by, at, past, h.place);
+        continue;
+      }
+      if (h.by.any()) tables_ += moving_body(to = unique("body", name + "_moved"), h.by, at, past, h.place);
+      tables_ += joints_that_hold(h.bits, Mat3::Identity(), name + "_support", to, name, at, h.place,
+                                  [this](const std::string& section, const std::string& wish) { return unique(section, wish); });
     }
   }
 
