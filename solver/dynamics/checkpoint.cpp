@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <set>
+#include <tuple>
 
 #include "base/interrupt.hpp"
 #include "dynamics/profile.hpp"
@@ -196,6 +198,15 @@ bool may_differ(const std::string& key, const std::string& was, const std::strin
          key == "solver.iterations";
 }
 
+/// Entries of things that have a state, as "body.arm".
+std::set<std::string> things(const std::map<std::string, std::string>& values) {
+  std::set<std::string> out;
+  for (const auto& [key, value] : values)
+    for (const char* section : {"body.", "point_mass.", "beam.", "joint.", "spring.", "contact.", "motion.", "region."})
+      if (key.starts_with(section)) out.insert(key.substr(0, key.rfind('.')));
+  return out;
+}
+
 }  // namespace
 
 void require_same(const Checkpoint& from, const Scene& scene, const std::string& mesh, bool accept) {
@@ -212,6 +223,12 @@ void require_same(const Checkpoint& from, const Scene& scene, const std::string&
     if (!accept) throw Error(scene.path, what, hint);
     warn(scene.path, what);
   };
+  const auto had = things(was), has = things(is);
+  for (const auto& [one, other, what] : {std::tuple(&had, &has, "is not there, and was"), std::tuple(&has, &had, "is there, and was not")})
+    for (const std::string& thing : *one)
+      if (accept && !other->contains(thing))
+        throw Error(scene.path, fmt::format("{} {} when the run was kept: its state cannot be taken over", thing, what),
+                    "run the scene from its start");
   const bool in_time = value(is, "time.analysis") == "\"dynamic\"";
   std::map<std::string, std::string> keys = was;
   keys.insert(is.begin(), is.end());

@@ -244,6 +244,19 @@ class Run {
 
   /// The walk through all that the run remembers, in two parts: what the recorder is made from, and the rest.
   void archive_start(Archive& a) {
+    std::vector<std::string> bodies;  // sections of beams too
+    std::vector<double> modes;        // numbers of them and how far they reach: of another reduction these are others
+    for (const Body& body : run_.system.bodies) bodies.push_back(body.name);
+    for (const Modes& of : run_.system.modes) {
+      modes.push_back(of.n_modes);
+      modes.insert(modes.end(), of.lever.begin(), of.lever.end());
+    }
+    auto kept_bodies = bodies;
+    auto kept_modes = modes;
+    a("bodies", kept_bodies, kept_modes);
+    if (kept_bodies != bodies || !std::ranges::equal(kept_modes, modes, [](double x, double y) { return std::abs(x - y) <= 1e-6 * y; }))
+      throw Error(run_.scene.path, "the run that was kept has other bodies, sections of beams or modes of regions",
+                  "run the scene from its start");
     a("start", run_.redundancy, run_.state, run_.report, run_.figures, run_.impulses, run_.plan, run_.estimate);
     run_.system.archive(a);
     if (a.restores() && run_.system.traits().searches) run_.follow(run_.system.number());

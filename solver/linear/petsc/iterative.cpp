@@ -19,8 +19,8 @@ namespace {
 constexpr double worth_wanting = 1e-4;
 /// Part of an element's tangent that is not symmetric beyond which Newton with the symmetric part takes thrice the iterations.
 constexpr double too_unsymmetric = 0.01;
-/// Unknowns whose factors cost less than a second preconditioner that may not do either, and those whose factors find room as a rule.
-constexpr std::int64_t soon_factored = 150000, at_last_factored = 1000000;
+/// Unknowns whose factors find room; beyond, a run would rather have shorter steps.
+constexpr std::int64_t most_factored = 300000;
 
 class IterativeSolver final : public KktSolver {
  public:
@@ -75,8 +75,8 @@ class IterativeSolver final : public KktSolver {
     if (!lagged || !report.ok) {
       if (!(report.residual < 1)) check(VecSet(x_, 0));
       report = set_up_and_attempt();
-      bool stronger = false;
-      while (!gives_up(report, soon_factored) && (stronger = system_->inverse().strengthen(report.iterations, !report.ok)) && !report.ok) {
+      bool stronger;
+      while ((stronger = system_->inverse().strengthen(report.iterations, !report.ok)) && !report.ok) {
         before += report.iterations;
         check(VecSet(x_, 0));
         report = set_up_and_attempt();
@@ -85,7 +85,7 @@ class IterativeSolver final : public KktSolver {
       rate_ = report.iterations / decades;
       report.iterations += before;
     }
-    if (gives_up(report, at_last_factored)) {
+    if (gives_up(report)) {
       if (rank() == 0) warn("", fmt::format("{} fails ({}); direct from here on", name(), report.message));
       auto direct = hand_over(system_->matrix(), system_->coupling(), *cliques_, *map_, tolerance_);
       krylov_.reset(), system_.reset();
@@ -121,10 +121,9 @@ class IterativeSolver final : public KktSolver {
  private:
   Method gmres() const { return system_->inverse().varies() ? Method::flexible_gmres : Method::gmres; }
 
-  /// Whether factors go on from here: of `at_most` unknowns, but for substructures, which have factors themselves.
-  bool gives_up(const SolveReport& report, std::int64_t at_most) const {
-    if (report.ok) return false;
-    return kind_->goes_direct ? at_most == at_last_factored : std::isfinite(report.residual) && 3 * map_->n_global <= at_most;
+  /// Whether factors go on from here.
+  bool gives_up(const SolveReport& report) const {
+    return !report.ok && (kind_->goes_direct || (std::isfinite(report.residual) && 3 * map_->n_global <= most_factored));
   }
   /// From the next matrix on; this one is at hand as its symmetric part alone.
   void take_whole_tangent() {
