@@ -86,16 +86,30 @@ Table models(const Candidates& all, const Advice& a) {
   return t;
 }
 
+/// Is it always a raw acceleration that smaller models than the chosen one lose?
+std::string told_of_raw(const Advice& a) {
+  const QuantityValue* lost = nullptr;
+  for (const Candidate* c : a.tried) {
+    std::string in;
+    if (!c->failure.empty() || c->unknowns >= a.chosen->unknowns || difference(*c, *a.reference, &in) <= 1) continue;
+    const auto& values = a.reference->values;
+    const auto found = std::find_if(values.begin(), values.end(), [&](const QuantityValue& v) { return v.name == in; });
+    if (found == values.end() || found->of.find(", raw") == std::string::npos || (lost && lost != &*found)) return "";
+    lost = &*found;
+  }
+  return lost ? fmt::format("; smaller models lose \"{}\" alone: a raw acceleration holds all frequencies (give it a cfc)", lost->name)
+              : "";
+}
+
 std::string what_is_known(const Candidates& all, const Advice& a) {
   std::string mesh = a.mesh.empty() ? "; the error of the mesh is unknown (--finer)" : "";
   for (size_t k = 0; k < a.mesh.size(); ++k)
-    if (std::abs(a.mesh[k]) > a.reference->values[k].allowed)
-      mesh +=
-          fmt::format("; the mesh alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(a.mesh[k]), a.reference->values[k].unit,
-                      a.reference->values[k].name, a.reference->values[k].allowed, a.reference->values[k].unit);
+    if (const QuantityValue& v = a.reference->values[k]; std::abs(a.mesh[k]) > v.allowed)
+      mesh += fmt::format("; the mesh alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(a.mesh[k]), v.unit, v.name,
+                          v.allowed, v.unit);
   return fmt::format("judged by {}; what linear strains leave out of it may be {:.2g} of the tightest tolerance, by their own measures{}{}",
                      label(a.reference->levels, all.names()), a.doubt, a.doubt > 0.5 ? ": more than half, and nothing checked it" : "",
-                     mesh);
+                     told_of_raw(a) + mesh);
 }
 
 }  // namespace

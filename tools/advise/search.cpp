@@ -139,8 +139,11 @@ class Search {
       if (levels == before) throw Error("", "no model runs: " + c.failure, "", Exit::not_converged);
       warn("", fmt::format("{} does not run, and nothing says why: {}", label(before, all_.names()), c.failure));
     }
+    const double end = all_.scene().table("time").number("end");
     for (const QuantityValue& v : a_.base->values)
-      if (!v.why.empty()) throw Error("", v.why, v.of.starts_with("von Mises") ? "output.interval says when fields are there" : "");
+      if (!v.why.empty())
+        throw Error("", v.why,
+                    v.of.starts_with("von Mises") ? fmt::format("output.interval = {:.2g}: fields at 50 instants", end / 50) : "");
     window_ = window_of(*a_.base);
   }
 
