@@ -166,8 +166,9 @@ std::string rules(const Candidates& all, const Advice& a, const std::string& com
   for (size_t r = 0; r < all.names().size(); ++r) {
     if (a.chosen->levels[r] == Level::stiffening)
       text += fmt::format("# in the scene: [region.\"{}\"] stiffening = true\n", all.names()[r]);
-    if (a.chosen->modes != 1 && fidelity(a.chosen->levels[r]) == Fidelity::linear)
-      text += fmt::format("# in the scene: [region.\"{}\"] modes = {}\n", all.names()[r], a.chosen->modes * all.modes_of(r));
+    if (a.chosen->modes == 1 || fidelity(a.chosen->levels[r]) != Fidelity::linear) continue;
+    const auto [most, up_to] = all.modes_of(r, a.chosen->modes);
+    text += fmt::format("# in the scene: [region.\"{}\"] modes = {}, up_to = {:.6g}\n", all.names()[r], most, up_to);
   }
   return text;
 }
