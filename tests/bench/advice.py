@@ -94,13 +94,11 @@ def half_sine(T):
 
 
 class Scene:
-    cells = 6  # along a beam
-
     def __init__(self, name, deck, end, step, equilibrium=False):
         self.name, self.deck, self.end, self.step, self.equilibrium, self.text, self.regions = name, deck, end, step, equilibrium, "", []
 
-    def beam(self, name, start, stop, side, E, n=None):
-        self.deck.beam(name, start, stop, side, E, n or self.cells)
+    def beam(self, name, start, stop, side, E, n=6):
+        self.deck.beam(name, start, stop, side, E, n)
         self.text += f'[region.{name}]\ndamping = {damping(E, math.dist(start, stop), side):.6g}\n'
         self.regions.append(name)
 
@@ -291,7 +289,10 @@ class Judge:
         spent = max(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, advice["spent_seconds"])  # runs may be kept
 
         def error(path):
-            got = {q["quantity"]: q["value"] for q in json.load(open(path.replace(".h5", ".json")))["quantities"]}
+            run = json.load(open(path.replace(".h5", ".json")))
+            if not run["complete"]:
+                return math.inf  # ended early
+            got = {q["quantity"]: q["value"] for q in run["quantities"]}
             return max(abs(got[q] / want[q] - 1) for q in want) / self.part()
 
         models = [(m["s"], error(m["run"]), m) for m in advice["models"] if m["s"] is not None]
@@ -363,7 +364,6 @@ def main():
     print("scene n   chosen    rigid  linear   /best   /all advice   true   told         choice", flush=True)
     rows = []
     for name in names(o.scenes):
-        Scene.cells = 6 if name in PUBLISHED else 4  # those at random are many
         s = PUBLISHED[name](name) if name in PUBLISHED else drawn(name)
         os.makedirs(os.path.join(top, s.name), exist_ok=True)
         os.chdir(os.path.join(top, s.name))

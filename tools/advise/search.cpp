@@ -11,7 +11,8 @@
 namespace hilo {
 namespace {
 
-constexpr double most_step = 0.8;  // of a tolerance: what a step may take of it before no model can be judged
+constexpr double most_step = 0.8;   // of a tolerance: what a step may take of it before no model can be judged
+constexpr double small_step = 0.2;  // up to which twice the step, for a quarter of the cost of half of it, is exact enough
 
 double over(double difference, double allowed) { return std::abs(difference) / std::max(allowed, 1e-300); }
 
@@ -94,7 +95,7 @@ class Search {
   }
   bool serves(const Candidate& c) const { return &c == a_.reference || error(c) <= 1; }
   bool too_dear(const Request& next, double planned = 0) const {
-    const double step = serves(*a_.base) ? 0 : all_.price({a_.reference->levels, 0.5, window_});  // check_step may want it
+    const double step = serves(*a_.base) ? 0 : all_.price({a_.reference->levels, 2, window_});  // check_step may want it
     return all_.spent() + planned + all_.price(next) + step > o_.at_most * a_.all_cells;
   }
 
@@ -158,7 +159,7 @@ class Search {
     }
     const Entry& time = all_.scene().table("time");
     const double step = time.number("step");
-    return last < time.number("end") ? std::max(10.0, std::ceil(last / step)) * step : 0;
+    return last < 0.9 * time.number("end") ? std::max(10.0, 2 * std::ceil(last / step / 2)) * step : 0;
   }
 
   /// The base with all regions nonlinear whose linear strains are in doubt, or that left their range, as far as quantities have their
@@ -181,8 +182,9 @@ class Search {
       levels = all_.consistent(levels);
       return levels != before;
     };
-    bool early = window_ > 0;
-    for (bool more = look(*a_.base); more;) {
+    bool more = look(*a_.base);
+    if (!a_.base->beyond.empty()) window_ = 0;  // its instants tell nothing
+    for (bool early = window_ > 0; more;) {
       const Request next = request(levels);
       if (!is_quiet())
         fmt::print(stderr, "linear strains of some regions are in doubt: a run to judge by, to {:.4g} s, takes about {:.2g} s\n",
@@ -203,12 +205,21 @@ class Search {
     }
   }
 
-  /// Error of the step by (h, h/2) of a model and the order of the method; is it too large to judge any model by?
+  /// Error of the step of a model by its order of two: from (2h, h) where that is small, else from (h, h/2).  Too large to judge any model?
   bool is_coarse(const Candidate& c) {
-    const Candidate& fine = all_.of({c.levels, 0.5, window_});
-    if (!fine.failure.empty()) throw Error("", "half the step does not run: " + fine.failure, "", Exit::not_converged);
-    a_.step = part(c, fine, 4. / 3);
+    const double end = window_of(c);
+    const Candidate& twice = all_.of({c.levels, 2, end});
+    if (has_all(twice)) {
+      a_.step = part(c, twice, -1. / 3);
+      if (step_over(largest_step()) < small_step) return false;
+    }
+    const Candidate& half = all_.of({c.levels, 0.5, end});
+    if (!half.failure.empty()) throw Error("", "half the step does not run: " + half.failure, "", Exit::not_converged);
+    a_.step = part(c, half, 4. / 3);
     return step_over(largest_step()) > most_step;
+  }
+  static bool has_all(const Candidate& c) {
+    return c.failure.empty() && std::all_of(c.values.begin(), c.values.end(), [](const QuantityValue& v) { return v.why.empty(); });
   }
   double step_over(size_t k) const { return over(a_.step[k], a_.reference->values[k].allowed); }
   size_t largest_step() const {
@@ -219,7 +230,8 @@ class Search {
   }
   /// What a step this long cannot tell no model will.  Far beyond its range the base may need shorter steps than the reference.
   void find_step() {
-    if (is_coarse(*a_.base) && (a_.reference == a_.base || is_coarse(*a_.reference))) refuse_step();
+    if (difference(*a_.base, *a_.reference) < 1 && !is_coarse(*a_.base)) return;
+    if (is_coarse(*a_.reference)) refuse_step();
   }
   /// Where the base does not answer as the reference, its steps are no measure of those of cells.
   void check_step() {
@@ -233,7 +245,7 @@ class Search {
     const auto is_linear = [](Level l) { return fidelity(l) == Fidelity::linear; };
     while (std::any_of(a_.chosen->levels.begin(), a_.chosen->levels.end(), is_linear)) {
       const Candidate& c = *a_.chosen;
-      const Candidate& more = of({c.levels, 1, c.end, 2 * c.modes});
+      const Candidate& more = of({c.levels, 1, window_of(c), 2 * c.modes});
       if (!more.failure.empty()) return warn("", "more modes do not run, so the error of those left out is unknown: " + more.failure);
       a_.modes = part(c, more, 1);
       double largest = 0;
@@ -253,7 +265,7 @@ class Search {
   /// Error of the mesh by the chosen model on a finer one; it falls with the square of the size of cells.
   void find_mesh() {
     if (all_.refinement() == 0) return;
-    const Candidate& fine = all_.of({a_.chosen->levels, 1, a_.chosen->end, a_.chosen->modes, true});
+    const Candidate& fine = all_.of({a_.chosen->levels, 1, window_of(*a_.chosen), a_.chosen->modes, true});
     if (!fine.failure.empty()) return warn("", "the finer mesh does not run, so the error of the mesh is unknown: " + fine.failure);
     const double square = all_.refinement() * all_.refinement();
     a_.mesh = part(*a_.chosen, fine, square / (square - 1));
