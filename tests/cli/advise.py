@@ -11,7 +11,7 @@ import tempfile
 import time
 
 BIN = os.path.abspath(sys.argv[1])
-N, SIDE = 6, 0.05
+N, SIDE = 4, 0.05
 
 
 def deck(N=N):
