@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Does hilo-advise choose well?  It advises on scenes of beams, those of a published study by name (c1 .. e6) and others drawn at random
 (numbers), and every model it ran is judged by a truth outside it: all regions nonlinear at half the step.
-Usage: advice.py BIN FOLDER SCENE... [--tol 2%] [-- options of hilo-advise]      SCENE: c1, f2, all26, 7, 100-160
+Usage: advice.py BIN FOLDER SCENE... [--tol 2%] [--every] [--kept] [-- options of hilo-advise]      SCENE: c1, f2, all26, 7, 100-160
 Columns: true error of the chosen model over the tolerance, largest of all quantities; that of all rigid and all linear; processor seconds of
-the chosen one over those of the cheapest model that meets the tolerance in truth of those that
-ran, and over those of all nonlinear; of the advice, in runs of all nonlinear; whether that checked it."""
+the chosen one over those of the cheapest model that meets the tolerance in truth of those that ran, and over those of all nonlinear; of the
+advice, in runs of all nonlinear; true error of the quantity that is off most, with its sign, and what the budget adds up to; whether cells
+checked it. At the end the sums. A refusal is right where all nonlinear at this step is off by more than 0.6 of the tolerance."""
 import argparse
+import itertools
 import json
 import math
 import os
@@ -207,7 +209,7 @@ def drawn(seed):
     n = 3 if kind == "four_bar" else r.choice([3, 3, 4, 5, 6] if kind == "chain" else [2, 3, 4])
     Es = [10 ** r.uniform(9.5, 11.3) if r.random() < 0.5 else 2e11 for _ in range(n)]
     axes = None
-    if r.random() < 0.5 and kind in ("chain", "spun"):
+    if r.random() < 0.8 and kind in ("chain", "spun"):
         axes = [[0, 1, 0]] + [r.choice([[0, 1, 0], [1, 0, 0] if kind == "chain" else [0, 0, 1]]) for _ in range(n - 1)]
     if kind == "chain":
         Tp = 10 ** r.uniform(-2, -0.5)
@@ -223,53 +225,117 @@ def drawn(seed):
 
 
 class Judge:
-    def __init__(self, tools):
-        self.tools = os.path.abspath(tools)
+    def __init__(self, tools, tolerance, is_every, options):
+        self.tools, self.tolerance, self.is_every, self.options = os.path.abspath(tools), tolerance, is_every, options
 
     def call(self, tool, *more, limit=3000):
         return subprocess.run([os.path.join(self.tools, tool), "--quiet", *more], capture_output=True, text=True, timeout=limit)
 
-    def truth(self):
-        if not os.path.exists("truth.json"):
+    def cells(self, s, part):
+        """All regions nonlinear at this part of the step; None where that does not run."""
+        name = "truth" if part == 0.5 else f"cells-{part:g}"
+        if not os.path.exists(name + ".json"):
             done = self.call("hilo-tag", "mesh.h5", "--rest", "nonlinear", "-o", "truth-tags.h5")
             assert done.returncode == 0, done.stderr
-            step = next(line for line in open("scene.toml") if line.startswith("step")).split("=")[1]
-            done = self.call("hilo-solve", "scene.toml", "truth-tags.h5", "--set", f"time.step={float(step) / 2:.9g}", "-o", "truth.h5")
-            if done.returncode != 0:
-                return None
-        return json.load(open("truth.json"))
+            self.call("hilo-solve", "scene.toml", "truth-tags.h5", "--set", f"time.step={s.step * part:.9g}", "-o", name + ".h5")
+        run = json.load(open(name + ".json")) if os.path.exists(name + ".json") else {}
+        return run if run.get("complete") else None
 
-    def judged(self, s, tol, options):
+    def is_right(self, s):
+        """Of a refusal: do all cells do no better with this step, 4/3 of what half of it changes being above 0.6 of the tolerance?"""
+        runs = [self.cells(s, part) for part in (1, 0.5)]
+        if None in runs:
+            return True, "all cells do not run"
+        whole, half = ([q["value"] for q in run["quantities"]] for run in runs)
+        step = max(4 / 3 * abs(b / a - 1) / self.part() for a, b in zip(half, whole))
+        return step > 0.6, f"the step makes {step:.2f} of the tolerance with all cells"
+
+    def every(self, s, chosen):
+        """Models of each region rigid, linear or nonlinear, with no more regions nonlinear than the chosen one has."""
+        for levels in itertools.product(("rigid", "linear", "nonlinear"), repeat=len(s.regions)):
+            if levels.count("nonlinear") > sum(r["level"] == "nonlinear" for r in chosen["regions"]):
+                continue
+            name = "every-" + "".join(level[0] for level in levels)
+            if not os.path.exists(name + ".json"):
+                rules = [word for r, level in zip(s.regions, levels) for word in ("--" + level, r)]
+                done = self.call("hilo-tag", "mesh.h5", *rules, "-o", "every-tags.h5")
+                assert done.returncode == 0, done.stderr
+                self.call("hilo-solve", "scene.toml", "every-tags.h5", "--modes", "advise.work/modes", "-o", name + ".h5")
+            if os.path.exists(name + ".json"):
+                yield json.load(open(name + ".json"))["processor_seconds"], name + ".h5"
+
+    def part(self):
+        return float(self.tolerance.strip("%")) / 100
+
+    def judged(self, s):
+        """What became of a scene: its row, and what is summed."""
         s.write()
         if not os.path.exists("mesh.h5"):
             done = self.call("hilo-import", "deck.inp", "-o", "mesh.h5")
             assert done.returncode == 0, done.stderr
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        done = self.call("hilo-advise", "scene.toml", "mesh.h5", "--tol", tol, "--json", *options)
+        done = self.call("hilo-advise", "scene.toml", "mesh.h5", "--tol", self.tolerance, "--json", *self.options)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         if done.returncode != 0:
-            return f"{s.name:5} {len(s.regions)}  refused: {done.stderr.strip().splitlines()[-1][:170]}", None, None
+            right, why = self.is_right(s)
+            said = done.stderr.strip().splitlines()[-1].removeprefix("hilo-advise: ")[:150]
+            return {"right": right, "row": f"refused{'' if right else ' WRONGLY'}: {said}; {why}"}
         advice = json.loads(done.stdout)
-        truth = self.truth()
+        truth = self.cells(s, 0.5)
         if truth is None:
-            return f"{s.name:5} no truth: all nonlinear at half the step does not run", None, None
+            return {"right": True, "row": "no truth: all nonlinear at half the step does not run"}
         want = {q["quantity"]: q["value"] for q in truth["quantities"]}
-        part = float(tol.strip("%")) / 100
         full = truth["processor_seconds"] / 2
+        spent = max(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, advice["spent_seconds"])  # runs may be kept
 
         def error(path):
-            got = {q["quantity"]: q["value"] for q in json.load(open(path.replace(".h5", ".json")))["quantities"]}
-            return max(abs(got[q] / want[q] - 1) for q in want) / part
+            run = json.load(open(path.replace(".h5", ".json")))
+            if not run["complete"]:
+                return math.inf  # ended early
+            got = {q["quantity"]: q["value"] for q in run["quantities"]}
+            return max(abs(got[q] / want[q] - 1) for q in want) / self.part()
 
         models = [(m["s"], error(m["run"]), m) for m in advice["models"] if m["s"] is not None]
         chosen = next(row for row in models if "chosen" in row[2]["choice"])
-        best = min((c for c, e, m in models if e <= 1), default=math.nan)
         rigid = next((e for c, e, m in models if m["model"] == "all rigid"), math.nan)
         linear = next((e for c, e, m in models if m["model"] in ("linear all", "linear " + ", ".join(s.regions))), math.nan)
-        spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        row = (f"{s.name:5} {len(s.regions)}  {chosen[1]:7.2f} {rigid:8.2f} {linear:7.2f}   {chosen[0] / best:5.2f} {chosen[0] / full:6.3f}"
-               f" {spent / full:6.2f} {'checked' if advice['checked'] else '       '}  {chosen[2]['model']}")
-        return row, chosen[1], spent / full
+        true = [c for c, e, m in models if e <= 1]
+        if self.is_every and len(s.regions) <= 3:
+            true += [c for c, run in self.every(s, advice) if error(run) <= 1]
+        out = {"error": chosen[1], "over_best": chosen[0] / min(true, default=math.nan), "share": chosen[0] / full,
+               "advice": spent / full, "total": []}
+        # the signed sum of the budget, to half the step, against what is true of the quantity that is off most
+        for q in advice["quantities"]:
+            told = sum(q[k] or 0 for k in ("levels", "linear strains", "modes")) + 0.75 * q["step"]
+            true = q["value"] - want[q["quantity"]]
+            out["total"].append((true / want[q["quantity"]] / self.part(), told / want[q["quantity"]] / self.part()))
+        true, told = max(out["total"], key=lambda pair: abs(pair[0]))
+        out["row"] = (f"{out['error']:7.2f} {rigid:8.2f} {linear:7.2f}   {out['over_best']:5.2f} {out['share']:6.3f} {out['advice']:6.2f}"
+                      f" {true:6.2f} {told:6.2f} {'checked' if advice['checked'] else '       '}  {chosen[2]['model']}")
+        return out
+
+
+def sums(rows):
+    """The lines of what was set out to be reached."""
+    answered = [r for r in rows if "error" in r]
+    refused = [r for r in rows if "error" not in r]
+
+    def share(what, good, of):
+        return f"{what}: {sum(map(good, of))} of {len(of)}" + (f" ({100 * sum(map(good, of)) / len(of):.0f} %)" if of else "")
+
+    costs = [r["advice"] for r in answered] or [math.nan]
+    print(f"answered {len(answered)} of {len(rows)}, refused {len(refused)}, of these wrongly {sum(not r['right'] for r in refused)}")
+    print(share("within the tolerance", lambda r: r["error"] <= 1, answered), f"largest {max([r['error'] for r in answered], default=0):.2f}")
+    print(share("at most 1.5 times the cheapest true one", lambda r: r["over_best"] <= 1.5, answered),
+          share("; other than all cells", lambda r: r["share"] < 0.7, answered))
+    print(f"advice in runs of all cells: median {statistics.median(costs):.2f}, mean {statistics.mean(costs):.2f}, most {max(costs):.2f}")
+    worst = [max(r["total"], key=lambda pair: abs(pair[0])) for r in answered]
+    every = [pair for r in answered for pair in r["total"]]
+    for what, pairs in (("the worst quantity of a scene", worst), ("all", every)):
+        for least in (0, 0.1):
+            print(share(f"budget over true total within .8 to 1.25, {what}, true total at least {least} of the tolerance",
+                        lambda pair: 0.8 <= pair[1] / pair[0] <= 1.25, [pair for pair in pairs if abs(pair[0]) > least]))
+    print(share("budget off by at most a tenth of the tolerance, all", lambda pair: abs(pair[1] - pair[0]) <= 0.1, every))
 
 
 def names(words):
@@ -290,21 +356,23 @@ def main():
     parser.add_argument("folder")
     parser.add_argument("scenes", nargs="+")
     parser.add_argument("--tol", default="2%")
+    parser.add_argument("--every", action="store_true", help="of three regions: the cheapest of all models, not only of those it ran")
+    parser.add_argument("--kept", action="store_true", help="take what earlier calls found in the folder")
     o = parser.parse_args(mine)
-    judge = Judge(o.bin)
+    judge = Judge(o.bin, o.tol, o.every, theirs)
     top = os.path.abspath(o.folder)
-    print("scene n   chosen    rigid  linear   /best   /all advice           choice", flush=True)
-    met, wrong, refused, costs = 0, 0, 0, []
+    print("scene n   chosen    rigid  linear   /best   /all advice   true   told         choice", flush=True)
+    rows = []
     for name in names(o.scenes):
         s = PUBLISHED[name](name) if name in PUBLISHED else drawn(name)
         os.makedirs(os.path.join(top, s.name), exist_ok=True)
         os.chdir(os.path.join(top, s.name))
-        row, error, cost = judge.judged(s, o.tol, theirs)
-        print(row, flush=True)
-        costs += [] if cost is None else [cost]
-        met, wrong, refused = met + (error is not None and error <= 1), wrong + (error is not None and error > 1), refused + (error is None)
-    print(f"{met} within the tolerance, {wrong} not, {refused} refused; advice in runs of all cells: "
-          f"median {statistics.median(costs or [0]):.2f}, mean {statistics.mean(costs or [0]):.2f}, most {max(costs or [0]):.2f}")
+        if not (o.kept and os.path.exists("judged.json")):
+            judged = judge.judged(s)  # before the file is there
+            json.dump(judged, open("judged.json", "w"))
+        rows.append(json.load(open("judged.json")))
+        print(f"{s.name:5} {len(s.regions)}  {rows[-1]['row']}", flush=True)
+    sums(rows)
 
 
 if __name__ == "__main__":

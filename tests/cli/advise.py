@@ -4,12 +4,14 @@
 and refuses what it cannot say.  Usage: advise.py BIN"""
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 BIN = os.path.abspath(sys.argv[1])
-N, SIDE = 6, 0.05
+N, SIDE = 4, 0.05
 
 
 def deck(N=N):
@@ -93,6 +95,7 @@ with tempfile.TemporaryDirectory() as folder:
     assert level == {"a": "linear", "b": "rigid", "c": "rigid"}, level
     errors = {m["model"]: m["error over allowed"] for m in advice["models"]}
     assert errors["all rigid"] > 1 and errors["linear a"] < 1 and len(errors) < 8, errors
+    assert all(q["modes"] != 0 for q in advice["quantities"]), advice["quantities"]  # there were more modes to find
     assert advice["checked"] and "nonlinear a; linear b, c" in " ".join(errors), errors  # it bends enough for doubt of linear strains
 
     truth = values(tagged("--rest", "nonlinear"), "--set", "time.step=5e-4")
@@ -173,7 +176,22 @@ with tempfile.TemporaryDirectory() as folder:
     assert told["a"][0] == "linear" and told["c"][0] == "rigid" and told["b"] == ("rigid", "a joint or spring names it as a whole"), told
     open("scene.toml", "w").write(scene())
 
+    # a signal ends its solvers too
+    advise = subprocess.Popen([os.path.join(BIN, "hilo-advise"), "--quiet", "scene.toml", "mesh.h5", "--set", "time.step=1e-6", "--work", "ended.work"],
+                              stderr=subprocess.PIPE, text=True)
+    solvers = []
+    while not solvers and advise.poll() is None:
+        time.sleep(0.02)
+        solvers = [int(word) for word in open(f"/proc/{advise.pid}/task/{advise.pid}/children").read().split()]
+    advise.send_signal(signal.SIGTERM)
+    said = advise.communicate(timeout=60)[1]
+    assert advise.returncode == 6 and "its runs have ended" in said, (advise.returncode, said)
+    assert solvers and not any(os.path.exists(f"/proc/{solver}") for solver in solvers), solvers
+
     refused("the step alone makes", "--tol", "0.001%")
+    open("scene.toml", "w").write(scene('[[quantity]]\nname = "s"\nkind = "peak"\nstress = "a"\n[output]\ninterval = 10\n'))
+    refused("output.interval = 0.008")
+    open("scene.toml", "w").write(scene())
     refused("no region", "--keep-rigid", "d")
     refused("no level", "--keep", "a=soft")
     refused("has no level", "--keep", "a")

@@ -114,9 +114,12 @@ Candidates::Job Candidates::job(const Request& request) const {
     more.push_back(fmt::format("output.interval={:.17g}", end / 50));
   for (size_t r = 0; r < request.levels.size(); ++r)
     if (request.levels[r] == Level::stiffening) more.push_back(fmt::format("region.\"{}\".stiffening=true", names()[r]));
-  for (size_t r = 0; r < request.levels.size() && request.modes != 1; ++r)
-    if (fidelity(request.levels[r]) == Fidelity::linear)
-      more.push_back(fmt::format("region.\"{}\".modes={}", names()[r], request.modes * modes_of(r)));
+  for (size_t r = 0; r < request.levels.size() && (request.modes != 1 || request.step != 1); ++r) {
+    if (fidelity(request.levels[r]) != Fidelity::linear) continue;
+    const Modes m = modes_of(r, request.modes);  // with half the step the same modes
+    more.push_back(fmt::format("region.\"{}\".up_to={:.17g}", names()[r], m.up_to));
+    if (request.modes != 1) more.push_back(fmt::format("region.\"{}\".modes={}", names()[r], m.most));
+  }
   Digest key;
   key.add(about()).add(request.finer ? finer_digest_ : mesh_digest_);  // another hilo may compute otherwise
   for (const std::string& value : scene_.values())
@@ -221,12 +224,16 @@ void Candidates::read(Candidate& c, const std::string& name) const {
   }
 }
 
-/// Of a linear region, as the scene says.
-int Candidates::modes_of(size_t region) const {
-  int n = 40;
-  for (const Entry& e : scene_.entries("region"))
-    if (e.given("modes") && fnmatch(e.name.c_str(), names()[region].c_str(), 0) == 0) n = static_cast<int>(e.number("modes"));
-  return std::max(n, 1);
+Candidates::Modes Candidates::modes_of(size_t region, int scale) const {
+  Modes out{40, 0.1 / scene_.table("time").number("step")};
+  for (const Entry& e : scene_.entries("region")) {
+    if (fnmatch(e.name.c_str(), names()[region].c_str(), 0) != 0) continue;
+    if (e.given("modes")) out.most = static_cast<int>(e.number("modes"));
+    if (e.given("up_to")) out.up_to = e.number("up_to");
+  }
+  out.most = std::max(out.most, 1) * scale;
+  if (scale > 1) out.up_to *= 4.0 * scale * scale;
+  return out;
 }
 
 double Candidates::unknowns(const Request& request) const {

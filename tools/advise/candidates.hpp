@@ -10,7 +10,7 @@
 namespace hilo {
 
 /// What is to be run: `step` scales the time step, `end` is where the run ends, 0: where the scene says  [s]; `modes` scales how many modes
-/// linear regions have; `finer`: on the finer mesh.
+/// linear regions may have; `finer`: on the finer mesh.
 struct Request {
   Assignment levels;
   double step = 1, end = 0;
@@ -43,8 +43,13 @@ class Candidates {
   const Scene& scene() const { return scene_; }
   const Mesh& mesh() const { return mesh_.mesh; }
   const std::vector<std::string>& names() const { return mesh_.mesh.region_name; }
-  /// How many modes the scene gives a linear region, at most.
-  int modes_of(size_t region) const;
+  /// How many vibration modes a linear region has at most, and up to which frequency [Hz].  As the scene says, or `scale` times as many:
+  /// frequencies of beams grow with the square of their number, and twice as far, for at least four modes there are in any case.
+  struct Modes {
+    int most;
+    double up_to;
+  };
+  Modes modes_of(size_t region, int scale) const;
   /// How much smaller the cells of the finer mesh are: the cube root of the ratio of numbers of cells; 0: there is none.
   double refinement() const { return refinement_; }
   /// Regions that share nodes with region r.

@@ -32,12 +32,12 @@ Table budget(const Advice& a) {
   const Candidate* rigid = all_rigid(a);
   for (size_t k = 0; k < a.base->values.size(); ++k) {
     const QuantityValue &mine = a.chosen->values[k], &base = a.base->values[k], &its = a.reference->values[k];
-    const double levels = mine.value - base.value, strains = base.value - its.value, step = -a.step_signed[k];
-    const double modes = a.modes_signed.empty() ? 0 : -a.modes_signed[k], mesh = a.mesh_signed.empty() ? 0 : -a.mesh_signed[k];
+    const double levels = mine.value - base.value, strains = base.value - its.value, step = -a.step[k];
+    const double modes = a.modes.empty() ? 0 : -a.modes[k], mesh = a.mesh.empty() ? 0 : -a.mesh[k];
     const double sum = std::abs(mine.value - its.value) + std::abs(step) + std::abs(modes) + std::abs(mesh);
     t.rows.push_back({mine.name, mine.unit, number(mine.value), number(its.allowed), number(levels),
-                      a.reference == a.base ? "-" : number(strains), number(step), a.modes_signed.empty() ? "-" : number(modes),
-                      a.mesh_signed.empty() ? "-" : number(mesh), number(sum / its.allowed),
+                      a.reference == a.base ? "-" : number(strains), number(step), a.modes.empty() ? "-" : number(modes),
+                      a.mesh.empty() ? "-" : number(mesh), number(sum / its.allowed),
                       rigid ? number(rigid->values[k].value - its.value) : "-"});
   }
   return t;
@@ -86,16 +86,30 @@ Table models(const Candidates& all, const Advice& a) {
   return t;
 }
 
+/// Is it always a raw acceleration that smaller models than the chosen one lose?
+std::string told_of_raw(const Advice& a) {
+  const QuantityValue* lost = nullptr;
+  for (const Candidate* c : a.tried) {
+    std::string in;
+    if (!c->failure.empty() || c->unknowns >= a.chosen->unknowns || difference(*c, *a.reference, &in) <= 1) continue;
+    const auto& values = a.reference->values;
+    const auto found = std::find_if(values.begin(), values.end(), [&](const QuantityValue& v) { return v.name == in; });
+    if (found == values.end() || found->of.find(", raw") == std::string::npos || (lost && lost != &*found)) return "";
+    lost = &*found;
+  }
+  return lost ? fmt::format("; smaller models lose \"{}\" alone: a raw acceleration holds all frequencies (give it a cfc)", lost->name)
+              : "";
+}
+
 std::string what_is_known(const Candidates& all, const Advice& a) {
-  std::string mesh = a.mesh_signed.empty() ? "; the error of the mesh is unknown (--finer)" : "";
-  for (size_t k = 0; k < a.mesh_signed.size(); ++k)
-    if (std::abs(a.mesh_signed[k]) > a.reference->values[k].allowed)
-      mesh += fmt::format("; the mesh alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(a.mesh_signed[k]),
-                          a.reference->values[k].unit, a.reference->values[k].name, a.reference->values[k].allowed,
-                          a.reference->values[k].unit);
+  std::string mesh = a.mesh.empty() ? "; the error of the mesh is unknown (--finer)" : "";
+  for (size_t k = 0; k < a.mesh.size(); ++k)
+    if (const QuantityValue& v = a.reference->values[k]; std::abs(a.mesh[k]) > v.allowed)
+      mesh += fmt::format("; the mesh alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(a.mesh[k]), v.unit, v.name,
+                          v.allowed, v.unit);
   return fmt::format("judged by {}; what linear strains leave out of it may be {:.2g} of the tightest tolerance, by their own measures{}{}",
                      label(a.reference->levels, all.names()), a.doubt, a.doubt > 0.5 ? ": more than half, and nothing checked it" : "",
-                     mesh);
+                     told_of_raw(a) + mesh);
 }
 
 }  // namespace
@@ -111,7 +125,8 @@ std::string report_text(const Candidates& all, const Advice& a) {
 }
 
 std::string report_json(const Candidates& all, const Advice& a) {
-  const double step = a.step.empty() ? 0 : *std::max_element(a.step.begin(), a.step.end());
+  double step = 0;
+  for (size_t k = 0; k < a.step.size(); ++k) step = std::max(step, std::abs(a.step[k]) / a.reference->values[k].allowed);
   return fmt::format(
       "{{\n  \"step_over_allowed\": {},\n  \"doubt_over_allowed\": {},\n  \"checked\": {},\n  \"all_cells_seconds\": {},\n  "
       "\"spent_seconds\": "
@@ -151,8 +166,9 @@ std::string rules(const Candidates& all, const Advice& a, const std::string& com
   for (size_t r = 0; r < all.names().size(); ++r) {
     if (a.chosen->levels[r] == Level::stiffening)
       text += fmt::format("# in the scene: [region.\"{}\"] stiffening = true\n", all.names()[r]);
-    if (a.chosen->modes != 1 && fidelity(a.chosen->levels[r]) == Fidelity::linear)
-      text += fmt::format("# in the scene: [region.\"{}\"] modes = {}\n", all.names()[r], a.chosen->modes * all.modes_of(r));
+    if (a.chosen->modes == 1 || fidelity(a.chosen->levels[r]) != Fidelity::linear) continue;
+    const auto [most, up_to] = all.modes_of(r, a.chosen->modes);
+    text += fmt::format("# in the scene: [region.\"{}\"] modes = {}, up_to = {:.6g}\n", all.names()[r], most, up_to);
   }
   return text;
 }

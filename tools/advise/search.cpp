@@ -15,6 +15,13 @@ constexpr double most_step = 0.8;  // of a tolerance: what a step may take of it
 
 double over(double difference, double allowed) { return std::abs(difference) / std::max(allowed, 1e-300); }
 
+/// What the quantities of a model are off by, from a run that is finer in one thing, by `factor` times what that changes.
+std::vector<double> part(const Candidate& c, const Candidate& finer, double factor) {
+  std::vector<double> out;
+  for (size_t k = 0; k < c.values.size(); ++k) out.push_back(factor * (finer.values[k].value - c.values[k].value));
+  return out;
+}
+
 class Search {
  public:
   Search(Candidates& all, const SearchOptions& o) : all_(all), o_(o), n_(all.names().size()) {}
@@ -67,7 +74,7 @@ class Search {
       const QuantityValue &mine = c.values[k], &its = a_.reference->values[k];
       if (!its.why.empty()) continue;
       if (!mine.why.empty() || c.ended > 0) return HUGE_VAL;
-      largest = std::max(largest, over(mine.value - its.value, its.allowed) + a_.step[k]);
+      largest = std::max(largest, over(mine.value - its.value, its.allowed) + over(a_.step[k], its.allowed));
     }
     return largest + std::min(a_.doubt, 0.5);
   }
@@ -132,8 +139,11 @@ class Search {
       if (levels == before) throw Error("", "no model runs: " + c.failure, "", Exit::not_converged);
       warn("", fmt::format("{} does not run, and nothing says why: {}", label(before, all_.names()), c.failure));
     }
+    const double end = all_.scene().table("time").number("end");
     for (const QuantityValue& v : a_.base->values)
-      if (!v.why.empty()) throw Error("", v.why, v.of.starts_with("von Mises") ? "output.interval says when fields are there" : "");
+      if (!v.why.empty())
+        throw Error("", v.why,
+                    v.of.starts_with("von Mises") ? fmt::format("output.interval = {:.2g}: fields at 50 instants", end / 50) : "");
     window_ = window_of(*a_.base);
   }
 
@@ -148,7 +158,7 @@ class Search {
     }
     const Entry& time = all_.scene().table("time");
     const double step = time.number("step");
-    return last < time.number("end") ? std::max(10.0, std::ceil(last / step)) * step : 0;
+    return last < 0.9 * time.number("end") ? std::max(10.0, 2 * std::ceil(last / step / 2)) * step : 0;
   }
 
   /// The base with all regions nonlinear whose linear strains are in doubt, or that left their range, as far as quantities have their
@@ -171,8 +181,9 @@ class Search {
       levels = all_.consistent(levels);
       return levels != before;
     };
-    bool early = window_ > 0;
-    for (bool more = look(*a_.base); more;) {
+    bool more = look(*a_.base);
+    if (!a_.base->beyond.empty()) window_ = 0;  // its instants tell nothing
+    for (bool early = window_ > 0; more;) {
       const Request next = request(levels);
       if (!is_quiet())
         fmt::print(stderr, "linear strains of some regions are in doubt: a run to judge by, to {:.4g} s, takes about {:.2g} s\n",
@@ -193,25 +204,30 @@ class Search {
     }
   }
 
-  /// Error of the step by (h, h/2) of a model and the order of the method; the largest, over what is allowed.
-  double step_of(const Candidate& c) {
-    const Candidate& fine = all_.of({c.levels, 0.5, window_});
-    if (!fine.failure.empty()) throw Error("", "half the step does not run: " + fine.failure, "", Exit::not_converged);
-    a_.step.clear(), a_.step_signed.clear();
-    for (size_t k = 0; k < c.values.size(); ++k) {
-      a_.step_signed.push_back(4. / 3 * (fine.values[k].value - c.values[k].value));
-      a_.step.push_back(over(a_.step_signed[k], c.values[k].allowed));
-    }
-    return *std::max_element(a_.step.begin(), a_.step.end());
+  /// Error of the step of a model by (h, h/2) and its order of two; too large to judge any model?  Twice the step would be cheaper, but of
+  /// a machine that rings it told .1 of a tolerance where .9 is true.
+  bool is_coarse(const Candidate& c) {
+    const Candidate& half = all_.of({c.levels, 0.5, window_of(c)});
+    if (!half.failure.empty()) throw Error("", "half the step does not run: " + half.failure, "", Exit::not_converged);
+    a_.step = part(c, half, 4. / 3);
+    return step_over(largest_step()) > most_step;
+  }
+  double step_over(size_t k) const { return over(a_.step[k], a_.reference->values[k].allowed); }
+  size_t largest_step() const {
+    size_t out = 0;
+    for (size_t k = 1; k < a_.step.size(); ++k)
+      if (step_over(k) > step_over(out)) out = k;
+    return out;
   }
   /// What a step this long cannot tell no model will.  Far beyond its range the base may need shorter steps than the reference.
   void find_step() {
-    if (step_of(*a_.base) > most_step && (a_.reference == a_.base || step_of(*a_.reference) > most_step)) refuse_step();
+    if (difference(*a_.base, *a_.reference) < 1 && !is_coarse(*a_.base)) return;
+    if (is_coarse(*a_.reference)) refuse_step();
   }
   /// Where the base does not answer as the reference, its steps are no measure of those of cells.
   void check_step() {
     if (serves(*a_.base) || a_.chosen == a_.base) return;
-    if (step_of(*a_.chosen) > most_step) refuse_step();
+    if (is_coarse(*a_.chosen)) refuse_step();
     if (!serves(*a_.chosen)) a_.chosen = a_.reference;
     choose();
   }
@@ -220,24 +236,19 @@ class Search {
     const auto is_linear = [](Level l) { return fidelity(l) == Fidelity::linear; };
     while (std::any_of(a_.chosen->levels.begin(), a_.chosen->levels.end(), is_linear)) {
       const Candidate& c = *a_.chosen;
-      const Candidate& more = of({c.levels, 1, c.end, 2 * c.modes});
-      if (!more.failure.empty()) {
-        warn("", "more modes do not run, so the error of those left out is unknown: " + more.failure);
-        return;
-      }
-      a_.modes_signed.clear();
+      const Candidate& more = of({c.levels, 1, window_of(c), 2 * c.modes});
+      if (!more.failure.empty()) return warn("", "more modes do not run, so the error of those left out is unknown: " + more.failure);
+      a_.modes = part(c, more, 1);
       double largest = 0;
       for (size_t k = 0; k < c.values.size(); ++k) {
-        a_.modes_signed.push_back(more.values[k].value - c.values[k].value);
-        const double allowed = a_.reference->values[k].allowed;
-        const double fidelity = c.levels == a_.reference->levels ? 0 : over(c.values[k].value - a_.reference->values[k].value, allowed);
-        largest = std::max(largest, over(a_.modes_signed[k], allowed) + a_.step[k] + fidelity);
+        const QuantityValue& its = a_.reference->values[k];
+        const double levels = c.levels == a_.reference->levels ? 0 : over(c.values[k].value - its.value, its.allowed);
+        largest = std::max(largest, over(a_.modes[k], its.allowed) + step_over(k) + levels);
       }
       if (largest <= 1) return;
-      if (c.modes >= 8) {
-        warn("", fmt::format("with {} times the modes of the scene the error of those left out is still above the tolerance", c.modes));
-        return;
-      }
+      if (c.modes >= 8)
+        return warn("",
+                    fmt::format("with {} times the modes of the scene the error of those left out is still above the tolerance", c.modes));
       a_.chosen = &more;
       if (a_.reference->levels == c.levels) a_.reference = &more;
     }
@@ -245,25 +256,21 @@ class Search {
   /// Error of the mesh by the chosen model on a finer one; it falls with the square of the size of cells.
   void find_mesh() {
     if (all_.refinement() == 0) return;
-    const Candidate& fine = all_.of({a_.chosen->levels, 1, a_.chosen->end, a_.chosen->modes, true});
-    if (!fine.failure.empty()) {
-      warn("", "the finer mesh does not run, so the error of the mesh is unknown: " + fine.failure);
-      return;
-    }
+    const Candidate& fine = all_.of({a_.chosen->levels, 1, window_of(*a_.chosen), a_.chosen->modes, true});
+    if (!fine.failure.empty()) return warn("", "the finer mesh does not run, so the error of the mesh is unknown: " + fine.failure);
     const double square = all_.refinement() * all_.refinement();
-    for (size_t k = 0; k < fine.values.size(); ++k)
-      a_.mesh_signed.push_back(square / (square - 1) * (fine.values[k].value - a_.chosen->values[k].value));
+    a_.mesh = part(*a_.chosen, fine, square / (square - 1));
   }
   [[noreturn]] void refuse_step() const {
-    const auto k = static_cast<size_t>(std::max_element(a_.step.begin(), a_.step.end()) - a_.step.begin());
+    const size_t k = largest_step();
     const QuantityValue& v = a_.reference->values[k];
     const Entry& time = all_.scene().table("time");
     throw Error(time.where("step"),
-                fmt::format("the step alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(a_.step_signed[k]), v.unit, v.name,
+                fmt::format("the step alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(a_.step[k]), v.unit, v.name,
                             v.allowed, v.unit),
                 v.of.find(", raw") != std::string::npos ? "a raw acceleration holds all frequencies: give it a cfc"
                                                         : fmt::format("time.step = {:.2g}, or a larger tolerance",
-                                                                      time.number("step") * std::sqrt(most_step / 2 / a_.step[k])));
+                                                                      time.number("step") * std::sqrt(most_step / 2 / step_over(k))));
   }
 
   void tell_plan() const {

@@ -17,11 +17,10 @@ struct SearchOptions {
 /// What decided, and what of it is known.
 struct Advice {
   const Candidate *base = nullptr, *reference = nullptr, *chosen = nullptr;  // reference: the base, or it with some regions nonlinear
-  std::vector<double> step;                                                  // error of the time step over what is allowed, by quantity
-  std::vector<double> step_signed;                                           // the same, in the unit of each quantity: to a step of none
-  std::vector<double> modes_signed;  // error of the modes of linear regions, likewise; empty: the chosen model has none, or no run tells
-  std::vector<double> mesh_signed;   // error of the mesh, likewise; empty: no finer mesh was given, or it does not run
-  double doubt = 0;                  // what strains of the second degree may change of the reference, over the tightest tolerance
+  // parts of the error of the chosen model by quantity, each in its unit: what a step of none, all modes and cells of no size would change
+  std::vector<double> step, modes,
+      mesh;          // modes: empty where it has none; mesh: where no finer one was given; both: where that does not run
+  double doubt = 0;  // what strains of the second degree may change of the reference, over the tightest tolerance
   std::map<size_t, const Candidate*> without;  // the chosen model with this region rigid
   std::vector<const Candidate*> tried;
   std::map<size_t, std::string> kept_rigid;  // regions that cannot deform, and why
