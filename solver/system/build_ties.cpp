@@ -115,6 +115,16 @@ void Builder::close_ties() {
     if (list[k].largest_move > 1e-6 * mesh_->length)
       warn(tied_[k].first, fmt::format("{}: nodes of b are moved by up to {:.3g} m onto a", tied_[k].second, list[k].largest_move));
   }
+  const Mesh& mesh = mesh_->mesh;
+  for (std::int64_t cell = 0; cell < mesh.n_cells(); ++cell) {
+    const auto of = mesh.cell(cell);
+    const bool moved = std::ranges::any_of(of, [&](std::int64_t i) { return X[i] != before[i]; });
+    if (moved && info(mesh.shape[cell]).dimension == 3 && !(quality(mesh, cell).scaled_jacobian > 0))
+      throw Error(
+          tied_.front().first,
+          fmt::format("{}: nodes that are moved onto the other surface turn cell {} inside out", tied_.front().second, mesh.cell_id[cell]),
+          "give a smaller gap, or move the parts together");
+  }
   out_->X = X;
   out_->start.x.assign(X.begin(), X.begin() + n_active_);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mortar rows between two surfaces whose meshes do not match [puso-laursen-2004, popp-2009]:
+// Mortar rows between two surfaces whose meshes do not match [puso-2004, wohlmuth-2000]:
 //   sum_s n_is x_s - sum_m m_im x_m = 0,   n_is = int psi_i N_s dA,   m_im = int psi_i N_m dA   over what both surfaces cover.
 // Shape functions sum to one on both sides and are taken at the same points, so that sum_s n_is = sum_m m_im whatever the quadrature.
 // On facets of three and four nodes psi is dual to N over the covered part, n_is = delta_is int N_s; on facets of six and eight, N itself.
