@@ -78,7 +78,11 @@ void Builder::close_ties() {
                            e.given("gap") ? fmt::format("{:g} m", e.number("gap")) : std::string("a twentieth of its size")),
                "move the parts together, or give gap");
     SurfaceTie tie;
-    tie.name = e.name, tie.n_nodes = found.n_nodes, tie.covered = found.covered;
+    tie.name = e.name, tie.n_nodes = found.n_nodes, tie.n_tied = static_cast<int>(found.rows.size()), tie.covered = found.covered;
+    for (const MortarFacet& f : b)
+      for (int k = 0; k < f.n; ++k)
+        for (int l = 0; l < f.n; ++l)
+          if (k != l) tie.beside[f.node[k]].insert(f.node[l]);
     tied_.emplace_back(e.place.text(), e.label());
     for (const MortarRow& row : found.rows) {
       TiedRow& to = tie.rows.emplace_back();
@@ -139,7 +143,7 @@ void Builder::add_ties() {
       for (const auto& [i, w] : row.term) bodies.insert(out_->follower[i]);
     if (bodies.size() == 1 && *bodies.begin() >= 0)
       throw Error(tied_[k].first, fmt::format("{}: both sides are of one body", tied_[k].second));
-    if (tie.n_off() == 3 * static_cast<int>(tie.rows.size()))
+    if (std::ranges::none_of(tie.rows, [](const TiedRow& row) { return row.on[0] || row.on[1] || row.on[2]; }))
       warn(tied_[k].first, fmt::format("{}: it does nothing, both sides are held or tied already", tied_[k].second));
   }
 }

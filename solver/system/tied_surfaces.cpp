@@ -11,12 +11,14 @@
 #include "system/collocation.hpp"
 
 namespace hilo {
+namespace {
 
-int SurfaceTie::n_off() const {
-  int n = 0;
-  for (const TiedRow& row : rows) n += static_cast<int>(std::count(row.on.begin(), row.on.end(), false));
-  return n;
-}
+// What is held must leave so much of a row that stays: less would hold a node of a by a small weight.
+constexpr double least_left = 0.05;
+constexpr double independent = 1e-3;  // what other rows must leave
+constexpr double round_off = 1e-9;
+
+}  // namespace
 
 template <class Use>
 void TiedSurfaces::each(Use&& use) const {
@@ -117,6 +119,7 @@ void TiedSurfaces::look_at_rows(const Config& q, double, double, Violation& wors
     Vec3 g = Vec3::Zero();
     for (const auto& [i, w] : row.term) g += w * q.x[i];
     for (int c = 0; c < 3; ++c) {
+      if (!row.on[c] && !row.implied[c]) continue;
       double& most = row.on[c] ? worst.kept : worst.dropped;
       if (const double x = std::isnan(g[c]) ? 1e300 : std::abs(g[c]); x > most)
         most = x, (row.on[c] ? worst.kept_block : worst.dropped_block) = place_[k].block - points_.first_joint_block();
@@ -144,37 +147,81 @@ void TiedSurfaces::tie(Ties& ties) const {
     for (const OnBody& on : at.bodies) ties.exclude(on.body);
 }
 
+bool TiedSurfaces::is_free(int node, int c) const { return points_.follower[node] < 0 && !points_.fixed[node][c]; }
+
+/// Components of rows whose own node is held, or follows a body, go to the rows of the nodes beside it that are free in them, where there
+/// are some.
+void TiedSurfaces::share_held(SurfaceTie& tie) const {
+  std::map<int, size_t> row_of;
+  for (size_t k = 0; k < tie.rows.size(); ++k) row_of[tie.rows[k].node] = k;
+  std::vector<std::array<std::map<size_t, double>, 3>> more(tie.rows.size());  // of a row: what it takes of others, by component
+  std::vector<std::array<bool, 3>> given(tie.rows.size());
+  for (size_t k = 0; k < tie.rows.size(); ++k)
+    for (int c = 0; c < 3; ++c) {
+      const int own = tie.rows[k].node;
+      if (is_free(own, c)) continue;
+      std::vector<size_t> takers;
+      for (const int i : tie.beside[own])
+        if (const auto it = row_of.find(i); it != row_of.end() && is_free(i, c)) takers.push_back(it->second);
+      for (const size_t to : takers) more[to][c][k] = 1. / static_cast<double>(takers.size());
+      given[k][c] = !takers.empty();
+    }
+  std::vector<TiedRow> rows;
+  for (size_t k = 0; k < tie.rows.size(); ++k) {
+    std::map<std::map<size_t, double>, std::array<bool, 3>> alike;  // components that take the same
+    for (int c = 0; c < 3; ++c)
+      if (!given[k][c]) alike[more[k][c]][c] = true;
+    for (const auto& [taken, on] : alike) {
+      std::map<int, double> sum(tie.rows[k].term.begin(), tie.rows[k].term.end());
+      for (const auto& [from, share] : taken)
+        for (const auto& [i, w] : tie.rows[from].term) sum[i] += share * w;
+      rows.push_back({tie.rows[k].node, {sum.begin(), sum.end()}, on, {}});
+    }
+  }
+  tie.rows = std::move(rows);
+  tie.beside.clear();
+}
+
 /// A row whose own node is free and in no other row is independent of the rest.  So are all rows where the own nodes are free and no tie
 /// has one of another: n is positive definite.  What is left goes through a QR.
 void TiedSurfaces::choose_rows() {
-  std::map<int, int> met, owner;  // rows that have a node; the tie that has it as a row's own
+  std::map<int, int> met, owner;  // rows that have a component of a node; the tie that has the node as a row's own
   std::vector<std::pair<TiedRow*, Place>> rows;
   bool apart = true;
+  for (SurfaceTie& tie : list) share_held(tie);
   for (size_t t = 0; t < list.size(); ++t)
     for (TiedRow& row : list[t].rows) {
       rows.emplace_back(&row, place_of(row));
-      for (const auto& [i, w] : row.term) ++met[i];
-      apart = owner.emplace(row.node, static_cast<int>(t)).second && apart;
+      for (const auto& [i, w] : row.term)
+        for (int c = 0; c < 3; ++c) met[3 * i + c] += row.on[c];
+      const auto [at, fresh] = owner.emplace(row.node, static_cast<int>(t));
+      apart = apart && at->second == static_cast<int>(t);
     }
-  const auto is_free = [&](int i, int c) { return points_.follower[i] < 0 && !points_.fixed[i][c]; };
   std::vector<std::pair<size_t, int>> left;  // row, component
   for (size_t k = 0; k < rows.size(); ++k)
     for (int c = 0; c < 3; ++c) {
       const int own = rows[k].first->node;
+      if (!rows[k].first->on[c]) continue;
       if (!is_free(own, c)) apart = false;
-      if (!is_free(own, c) || met[own] > 1) left.emplace_back(k, c);
+      if (!is_free(own, c) || met[3 * own + c] > 1) left.emplace_back(k, c);
     }
   each([&](const SurfaceTie& tie, const TiedRow& row, size_t) {
     for (const auto& [i, w] : row.term)
       if (const auto it = owner.find(i); it != owner.end()) apart = apart && &list[it->second] == &tie;
   });
   if (left.empty() || apart) return;
+  const auto n_on = [](const SurfaceTie& tie) {
+    int sum = 0;
+    for (const TiedRow& row : tie.rows) sum += static_cast<int>(std::count(row.on.begin(), row.on.end(), true));
+    return sum;
+  };
+  for (SurfaceTie& tie : list) tie.n_off = n_on(tie);
   std::map<int, int> column;
   std::vector<Eigen::Triplet<double>> entries;
   const auto at = [&](int unknown) { return column.emplace(unknown, static_cast<int>(column.size())).first->second; };
   const int n = static_cast<int>(points_.X.size());
-  for (size_t j = 0; j < left.size(); ++j) {
-    const auto& [k, c] = left[j];
+  std::vector<std::pair<size_t, int>> tried;
+  for (const auto& [k, c] : left) {
     std::vector<std::pair<int, double>> entry;
     for (const auto& [i, w] : rows[k].second.nodes)
       if (!points_.fixed[i][c]) entry.emplace_back(3 * i + c, w);
@@ -187,29 +234,33 @@ void TiedSurfaces::choose_rows() {
     double size = 0;
     for (const auto& [u, x] : entry) size += x * x;
     size = std::sqrt(size);
-    if (!(size > 1e-9)) {
-      rows[k].first->on[c] = false;
+    if (!(size > least_left)) {
+      rows[k].first->on[c] = false, rows[k].first->implied[c] = !(size > round_off);
       continue;
     }
-    for (const auto& [u, x] : entry) entries.emplace_back(at(u), static_cast<int>(j), x / size);
+    for (const auto& [u, x] : entry) entries.emplace_back(at(u), static_cast<int>(tried.size()), x / size);
+    tried.emplace_back(k, c);
   }
-  if (entries.empty()) return;
-  Eigen::SparseMatrix<double> A(static_cast<Eigen::Index>(column.size()), static_cast<Eigen::Index>(left.size()));
+  Eigen::SparseMatrix<double> A(static_cast<Eigen::Index>(column.size()), static_cast<Eigen::Index>(tried.size()));
   A.setFromTriplets(entries.begin(), entries.end());
-  const SparseQr qr = sparse_qr(A, 1e-9, ColumnOrder::least_fill);
-  for (Eigen::Index j = qr.rank; j < A.cols(); ++j) {
-    const auto& [k, c] = left[qr.order[j]];
-    rows[k].first->on[c] = false;
+  for (const double dependent : {independent, round_off}) {
+    if (tried.empty()) break;
+    const SparseQr qr = sparse_qr(A, dependent, ColumnOrder::least_fill);
+    for (Eigen::Index j = qr.rank; j < A.cols(); ++j) {
+      const auto& [k, c] = tried[qr.order[j]];
+      if (dependent == independent) rows[k].first->on[c] = false;
+      rows[k].first->implied[c] = !rows[k].first->on[c] && dependent == round_off;
+    }
   }
+  for (SurfaceTie& tie : list) tie.n_off -= n_on(tie);
 }
 
 void TiedSurfaces::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
   if (list.empty()) return;
   std::string text;
   for (const SurfaceTie& tie : list)
-    text +=
-        fmt::format("{}\n    {}: {{\"nodes\": {}, \"tied\": {}, \"covered\": {:.6g}, \"largest_move\": {:.6g}, \"implied_rows\": {}}}",
-                    text.empty() ? "" : ",", json_text(tie.name), tie.n_nodes, tie.rows.size(), tie.covered, tie.largest_move, tie.n_off());
+    text += fmt::format("{}\n    {}: {{\"nodes\": {}, \"tied\": {}, \"covered\": {:.6g}, \"largest_move\": {:.6g}, \"implied_rows\": {}}}",
+                        text.empty() ? "" : ",", json_text(tie.name), tie.n_nodes, tie.n_tied, tie.covered, tie.largest_move, tie.n_off);
   report.emplace_back("ties", "{" + text + "}");
 }
 

@@ -2,10 +2,13 @@
 // Surfaces that are tied though their meshes do not match: mortar rows (system/mortar), linear in positions with constant weights.
 //
 // The weights of a row sum to zero, and the row vanishes in the reference: multipliers have neither a resultant nor a moment.  Nodes that
-// follow a body take part by its motion.  Rows that depend on others (where nodes are held, or of two ties) are chosen off at the start;
-// as all rows are linear and vanish in the reference, those that are kept imply them.
+// follow a body take part by its motion.  The row of a node that is held is shared by the rows beside it, so that they still reproduce a
+// constant [puso-2004]: it would hold nodes of a.  Rows that depend on others (of two ties, or between nodes that are held) are chosen off
+// at the start; as all rows are linear and vanish in the reference, those that are kept imply them.
 #pragma once
 #include <array>
+#include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,14 +21,15 @@ struct TiedRow {
   int node = -1;                             // of b, whose weight is 1
   std::vector<std::pair<int, double>> term;  // local nodes and weights, of which the sum is zero
   std::array<bool, 3> on{true, true, true};  // components
+  std::array<bool, 3> implied{};             // that are off, as others have all of them
 };
 
 struct SurfaceTie {
   std::string name;
   std::vector<TiedRow> rows;
-  int n_nodes = 0;                       // of b
-  double covered = 0, largest_move = 0;  // share of the area of b [1]; of a node at the start [m]
-  int n_off() const;                     // components of rows that others imply
+  std::map<int, std::set<int>> beside;     // nodes of b that share a facet, until the rows are chosen
+  int n_nodes = 0, n_tied = 0, n_off = 0;  // of b; with a row; components of rows that others imply
+  double covered = 0, largest_move = 0;    // share of the area of b [1]; of a node at the start [m]
 };
 
 class TiedSurfaces final : public Contribution, public Equations, public Constraining, public Observer {
@@ -50,6 +54,8 @@ class TiedSurfaces final : public Contribution, public Equations, public Constra
   void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override;
 
  private:
+  bool is_free(int node, int component) const;
+  void share_held(SurfaceTie& tie) const;
   /// What of a row acts on one free body: total weight, and the weighted arms in its axes [m].
   struct OnBody {
     int body;

@@ -314,7 +314,7 @@ def make_mesh():
     for name, text, regions in (("mesh", MESH, ["block"]), ("two", MESH + LID, ["block", "lid"])):
         with open("deck.inp", "w") as f:
             f.write(text)
-        subprocess.run([tools + "/hilo-import", "--quiet", "deck.inp", "--regions", *regions, "-o", name + ".h5"], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([tools + "/hilo-import", "--quiet", "deck.inp", "--regions", ",".join(regions), "-o", name + ".h5"], check=True, stdout=subprocess.DEVNULL)
 
 
 def usual(section, kind, key, type_):
