@@ -47,7 +47,7 @@ TEST(Ties, PatchAcrossMeshesThatDoNotMatch) {
     const Results r = c.solved("", "run.h5", "pull");
     const auto [off, slope] = off_linear(mesh.X, r.field("displacement"));
     EXPECT_LT(off, 1e-9) << text_of(c / "run.json") << info(a).name << " " << info(b).name;
-    EXPECT_NEAR(slope, 1e-5, 1e-9) << info(a).name << " " << info(b).name;
+    EXPECT_NEAR(slope, 1e-4, 5e-8) << info(a).name << " " << info(b).name;
   }
 }
 
@@ -65,10 +65,10 @@ struct Kept {
 };
 
 /// The stack with a common surface that is curved, so that nodes of one side lie off the facets of the other.
-Mesh bent(Shape a, Shape b) {
+Mesh bent(Shape a, Shape b, int n = 3) {
   const auto rise = [](const Vec3& x) { return 0.08 * std::sin(std::numbers::pi * x[0]) * (1 + x[1]); };
   return stack(
-      a, b, 3, 4, [=](const Vec3& x) { return Vec3(x + Vec3(0, 0, 2 * x[2] * rise(x))); },
+      a, b, n, n + 1, [=](const Vec3& x) { return Vec3(x + Vec3(0, 0, 2 * x[2] * rise(x))); },
       [=](const Vec3& x) { return Vec3(x + Vec3(0, 0, 2 * (1 - x[2]) * rise(x))); });
 }
 
@@ -96,9 +96,9 @@ TEST(Ties, CurvedOnesKeepEnergyAndMomenta) {
 TEST(Ties, EveryIntegratorHoldsThem) {
   for (const std::string method : {"mid-point", "bdf2", "generalized-alpha", "bathe", "U0", "V0", "radau", "gauss"}) {
     Case c("ties");
-    c.use(bent(Shape::hex8, Shape::hex8));
+    c.use(bent(Shape::hex8, Shape::hex8, 2));
     const Ran ran =
-        c.solve("--set time.end=0.06 --set 'time.integrator=\"" + method + "\"'", "run.h5", method == "gauss" ? 2 : 0, "flight");
+        c.solve("--set time.end=0.04 --set 'time.integrator=\"" + method + "\"'", "run.h5", method == "gauss" ? 2 : 0, "flight");
     if (ran.exit != 0) continue;
     const Kept kept(c.results());
     EXPECT_LT(kept.momentum, 1e-9) << method;
@@ -163,13 +163,13 @@ TEST(Ties, OfAnEdgeAndOfHeldNodes) {
   std::string text = text_of(c.source("pull.toml"));
   for (const auto& [name, a, b] : {std::tuple{"second", "Azmax", "Czmin"}, {"third", "Cxmin", "Bxmax"}})
     text = fmt::format("[[tie]]\nname = \"{}\"\na = \"{}\"\nb = \"{}\"\n", name, a, b) + text;
-  text += "[[load]]\nkind = \"traction\"\nname = \"q\"\non = \"Czmax\"\ntraction = [0, 0, 0.1]\n";
+  text += "[[load]]\nkind = \"traction\"\nname = \"q\"\non = \"Czmax\"\ntraction = [0, 0, 1]\n";
   c.write("scene.toml", text);
   const Ran ran = c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5");
   ASSERT_EQ(ran.exit, 0) << ran.err;
   const auto [off, slope] = off_linear(m.X, c.results().field("displacement"));
   EXPECT_LT(off, 1e-9);
-  EXPECT_NEAR(slope, 1e-5, 1e-9);
+  EXPECT_NEAR(slope, 1e-4, 5e-8);
 }
 
 /// One line with its place, and exit 2, of the flight with another surface b.
