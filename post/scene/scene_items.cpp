@@ -53,7 +53,8 @@ class Collector {
       for (const Entry& e : scene_.entries(section)) on_joint(e);
     for (const Entry& e : scene_.entries("load")) load(e);
     for (const Entry& e : scene_.entries("motion")) motion(e);
-    for (const Entry& e : scene_.entries("contact")) contact(e);
+    for (const Entry& e : scene_.entries("contact")) between(e, e.number("friction") > 0 ? "contact with friction" : "contact");
+    for (const Entry& e : scene_.entries("tie")) between(e, "tie");
     for (const Entry& e : scene_.entries("point_mass")) {
       SceneItem& item = add(Glyph::mass, e, "point mass", mass_colour);
       item.at = e.has("at") ? e.vector3("at") : centre(e, "on");
@@ -220,8 +221,8 @@ class Collector {
   }
 
   /// A line between what meets, with the nodes of sets.
-  void contact(const Entry& e) {
-    SceneItem& item = add(Glyph::link, e, e.number("friction") > 0 ? "contact with friction" : "contact", drive_colour);
+  void between(const Entry& e, const char* meaning) {
+    SceneItem& item = add(Glyph::link, e, meaning, drive_colour);
     const auto place = [&](std::string_view key) {
       for (const Entry& o : scene_.entries("obstacle"))
         if (o.name == e.text(key)) return o.vector3("at");

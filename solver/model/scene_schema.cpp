@@ -166,6 +166,13 @@ std::vector<KindSchema> make_schema() {
          with({kind_of("the kind of obstacle"), name, {"on", text, "", "ground", "a rigid region, body or set that carries it, or ground"}},
               k.keys)});
   s.push_back({"contact", "", "two parts, or an obstacle and a part, that must not enter each other", contact_keys()});
+  s.push_back({"tie",
+               "",
+               "two surfaces that stay together though their meshes do not match",
+               {name,
+                {"a", text, "", "!", "a region or set of facets: the stiffer, coarser or rigid side"},
+                {"b", text, "", "!", "a region or set of facets, nonlinear: its nodes follow a; the finer side"},
+                {"gap", number, "m", "", "largest gap that is closed; absent: a twentieth of a facet of b", above(0)}}});
   obstacle_kinds().close(), joint_kinds().close(), spring_kinds().close(), joint_force_kinds().close();
 
   const Param on{"on", text, "", "!", "set, region or body it acts on"};

@@ -21,6 +21,7 @@
 #include "system/solids.hpp"
 #include "system/springs.hpp"
 #include "system/stations.hpp"
+#include "system/tied_surfaces.hpp"
 #include "system/welds.hpp"
 
 namespace hilo {
@@ -58,6 +59,7 @@ void Builder::add_contributions() {
   const Joints& joints = s.add<Joints>(s);
   s.add<Springs>(s, joints);
   s.add<Contacts>(s);
+  s.add<TiedSurfaces>(s);
   s.add<Loads>(s);
   s.add<Motions>(s, beams);
   s.add<Stations>(s);
@@ -94,6 +96,7 @@ std::unique_ptr<System> Builder::build() {
   new_body("ground", Vec3::Zero());
   out_->bodies[0].ground = true;
   read_regions();
+  close_ties();
   integrate_regions();
   find_shells();
   make_rigid_bodies();
@@ -110,6 +113,7 @@ std::unique_ptr<System> Builder::build() {
   add_springs();
   add_joint_forces();
   add_contacts();
+  add_ties();
   add_loads();
   add_stations();
   for (const OutsideKind& kind : outside_kinds()) kind.make(scene_, *out_);

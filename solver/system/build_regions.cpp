@@ -51,12 +51,13 @@ std::int64_t Builder::put_active_nodes_first() {
     if (!is_named(name) || (region >= 0 && mesh_->fidelity[region] != Fidelity::linear)) continue;
     for (const std::int64_t i : mesh_->nodes_of(name, "")) active[i] = 1;
   }
-  for (const Entry& e : scene_.entries("contact"))  // surfaces of rigid regions that meet others
-    for (const char* side : {"a", "b"})
-      if (const int r = mesh.find_region(e.text(side)); r >= 0 && mesh_->fidelity[r] == Fidelity::rigid)
-        for (const Facet& f : outer_surface(*mesh_, comm_))
-          if (mesh.region[f.cell] == r)
-            for (const std::int64_t i : mesh.facet_nodes(f)) active[i] = 1;
+  for (const char* section : {"contact", "tie"})  // surfaces of rigid regions that meet others
+    for (const Entry& e : scene_.entries(section))
+      for (const char* side : {"a", "b"})
+        if (const int r = mesh.find_region(e.text(side)); r >= 0 && mesh_->fidelity[r] == Fidelity::rigid)
+          for (const Facet& f : outer_surface(*mesh_, comm_))
+            if (mesh.region[f.cell] == r)
+              for (const std::int64_t i : mesh.facet_nodes(f)) active[i] = 1;
   return mesh_->put_first(active);
 }
 

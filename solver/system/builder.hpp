@@ -9,6 +9,7 @@
 #include "physics/axes.hpp"
 #include "physics/spring_kinds.hpp"
 #include "system/factor_room.hpp"
+#include "system/mortar.hpp"
 #include "system/reduced_file.hpp"
 #include "system/solids.hpp"
 #include "system/system.hpp"
@@ -141,6 +142,10 @@ class Builder {
   /// The facets of a region's outer surface, or of a set.
   std::vector<Facet> facets_of(const Entry& entry, std::string_view key);
   void add_surfaces(const Entry& entry, const std::vector<std::string>& obstacles);
+  // build_ties.cpp
+  std::vector<MortarFacet> tied_facets(const Entry& entry, std::string_view key);
+  void close_ties();
+  void add_ties();
 
   /// A beam whose sections are known, but for those that ride on what is made later.
   struct BeamPlan {
@@ -164,7 +169,9 @@ class Builder {
   std::map<std::string, int> body_by_name_;  // [[body]] entries
   std::map<std::string, int> patch_by_name_;
   std::vector<BeamPlan> beam_plans_;
-  std::vector<std::string> held_by_;  // per node: the entry that made it a follower of a patch or motion
+  std::vector<std::vector<MortarRow>> mortar_;             // by tie
+  std::vector<std::pair<std::string, std::string>> tied_;  // place and label, by tie
+  std::vector<std::string> held_by_;                       // per node: the entry that made it a follower of a patch or motion
 };
 
 }  // namespace hilo

@@ -40,7 +40,7 @@ NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5
             "diameter": "0.1", "thickness": "0.02", "width": "0.1", "height": "0.1", "flange": "0.02", "web": "0.02", "I1": "1e-5", "I2": "1e-5", "J": "1e-5",
            "bending": "[100, 100, 100]", "line_mass": "1", "cells": "[2]", "orientation": "[0, 1, 0]", "shear": "[1, 1]",
            "axis_1": "[1, 0, 0]", "axis_2": "[0, 1, 0]", "hardening_strain": "[0, 0.1]", "hardening_stress": "[1e6, 2e6]",
-           "size": "[1, 1, 1]", "tube": "0.05", "modulus": "1e7", "layer": "0.1", "factor": "1", "friction": "0.1"}
+           "size": "[1, 1, 1]", "tube": "0.05", "modulus": "1e7", "layer": "0.1", "gap": "0.1", "factor": "1", "friction": "0.1"}
 BODIES = """[[body]]
 name = "arm"
 mass = 1
@@ -86,6 +86,20 @@ MESH = """*NODE
 1, 2, 3, 4
 *SURFACE, NAME=top
 block, S2
+"""
+LID = """*NODE
+11, 0, 0, 1
+12, 1, 0, 1
+13, 1, 1, 1
+14, 0, 1, 1
+15, 0, 0, 2
+16, 1, 0, 2
+17, 1, 1, 2
+18, 0, 1, 2
+*ELEMENT, TYPE=C3D8, ELSET=lid
+2, 11, 12, 13, 14, 15, 16, 17, 18
+*SURFACE, NAME=sole
+lid, S1
 """
 
 
@@ -190,6 +204,8 @@ def entry(section, kind, keys, tried, value):
                 word = '"wheel"'
             if section == "contact" and key in ("a", "b"):
                 word = '"floor"' if key == "a" else '"skin"'
+            if section == "tie" and key in ("a", "b"):
+                word = '"top"' if key == "a" else '"sole"'
             lines.append(f"{key} = {word}")
     return lines
 
@@ -197,7 +213,7 @@ def entry(section, kind, keys, tried, value):
 def scene(section, kind, keys, tried, value):
     """A small scene in which the key matters, and whether it has the mesh."""
     lines = entry(section, kind, keys, tried, value)
-    with_mesh = section in ("material", "region", "set") or kind in ("traction", "pressure")
+    with_mesh = section in ("material", "region", "set", "tie") or kind in ("traction", "pressure")
     times, rest = "[time]\nend = 0.05\nstep = 0.01\n", ""
     joint_of = {"stop": {"slide": "prismatic"}, "motor": {"linear": "prismatic"}}.get(section, {}).get(kind, "revolute")
     if section == "scene":
@@ -247,6 +263,8 @@ def scene(section, kind, keys, tried, value):
         held = '[[motion]]\nkind = "fixed"\nname = "held"\non = "base"\n'
         plain = '[material.plain]\nE = 2e9\nnu = 0.3\ndensity = 1000\n' + ("" if "[region" in rest else '[region."*"]\nmaterial = "plain"\n')
         rest += held + plain
+    if section == "tie":
+        return 'mesh = "two.h5"\n' + rest + times, False
     return rest + times, with_mesh
 
 
@@ -293,9 +311,10 @@ def judge(text, with_mesh):
 
 
 def make_mesh():
-    with open("block.inp", "w") as f:
-        f.write(MESH)
-    subprocess.run([tools + "/hilo-import", "--quiet", "block.inp", "--regions", "block", "-o", "mesh.h5"], check=True, stdout=subprocess.DEVNULL)
+    for name, text, regions in (("mesh", MESH, ["block"]), ("two", MESH + LID, ["block", "lid"])):
+        with open("deck.inp", "w") as f:
+            f.write(text)
+        subprocess.run([tools + "/hilo-import", "--quiet", "deck.inp", "--regions", ",".join(regions), "-o", name + ".h5"], check=True, stdout=subprocess.DEVNULL)
 
 
 def usual(section, kind, key, type_):

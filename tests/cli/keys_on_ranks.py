@@ -139,7 +139,7 @@ def main():
             text, with_mesh = keys.scene(section, kind, rows, key, keys.usual(section, kind, key, type_))
             for ranks in (2, 3) if everything else (2 + n % 2,):
                 n += 1
-                wrong += (everything or share.today(n, 3)) and not ends(f"{section} {kind} {key}", text, with_mesh, ranks, key == "about" or kind == "box" or section in ("contact", "obstacle"))  # a single node; one rank alone
+                wrong += (everything or share.today(n, 3)) and not ends(f"{section} {kind} {key}", text, with_mesh, ranks, key == "about" or kind == "box" or section in ("contact", "obstacle", "tie"))  # a single node; one rank alone
     for what, text in word_scenes():
         for ranks in (2, 3) if everything else (2 + n % 2,):
             n += 1

@@ -254,5 +254,26 @@ TEST_F(ImportBdfScene, UnitsConvertWhatTheLinesSay) {
   EXPECT_NEAR(head().x(), 4 * 4 / 1e9 * 1e-3, 1e-16);                    // 4 N over 1 mm^2 of 1e9 MPa, 4 mm
 }
 
+// Truth: 10 N on the front of a cube that is glued to the head of the bar come out at the foot; a set that is not taken glues nothing.
+TEST_F(ImportBdfScene, GlueOfTwoRegionsOfFacesIsATie) {
+  std::string cube;
+  for (int i = 0; i < 18; ++i) cube += fmt::format("GRID,{},,{}.,{:.1f},{:.1f}\n", 201 + i, 4 + i / 9, (i / 3 % 3) / 2., (i % 3) / 2.);
+  std::string faces = "BSURFS,8,,,";
+  for (int c = 0; c < 4; ++c) {
+    const int a = 201 + 3 * (c / 2) + c % 2;
+    cube += fmt::format("CHEXA,{},1,{},{},{},{},{},{}\n,{},{}\n", 11 + c, a, a + 3, a + 4, a + 1, a + 9, a + 12, a + 13, a + 10);
+    faces += fmt::format("{}{},{},{},{}", c % 2 ? "\n," : ",", 11 + c, a, a + 3, a + 4);
+  }
+  const std::string glue = faces + "\nBSURFS,7,,,,4,17,18,19\nBGSET,5,8,7,0.1\nBGSET,6,8,7\n";
+  run("SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBGSET = 5\nBEGIN BULK\n" + bar() + cube + glue + foot + "FORCE,2,214,,10.,1.,0.,0.\nENDDATA\n",
+      true);
+  const auto f = last("motion/SPC_1", 6);
+  EXPECT_NEAR(f[0], -10, 1e-6);
+  const Scene s = Scene::load(place / "s.toml");
+  ASSERT_EQ(s.entries("tie").size(), 1u);
+  EXPECT_EQ(s.entries("tie")[0].number("gap"), 0.1);
+  EXPECT_TRUE(s.entries("left_out").empty());
+}
+
 }  // namespace
 }  // namespace hilo::test::import_bdf_scene_test

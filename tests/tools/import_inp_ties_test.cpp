@@ -129,5 +129,34 @@ TEST_F(ImportInpTies, WhatIsLeftOutIsToldByName) {
   EXPECT_EQ(s.entries("motion")[0].vector3("displacement"), Vec3(.5, 0, 0));
 }
 
+/// A cube in front of the bar's head, of 2 x 2 x 1 cells whose nodes are 201 and on, and *TIE of its back with the head.
+std::string tied_cube(const std::string& back, const std::string& tie) {
+  std::string s = "*NODE\n";
+  for (int i = 0; i < 18; ++i) s += fmt::format("{}, {}, {}, {}\n", 201 + i, 4 + i / 9, (i / 3 % 3) / 2., (i % 3) / 2.);
+  s += "*ELEMENT, TYPE=C3D8, ELSET=cube\n";
+  for (int c = 0; c < 4; ++c) {
+    const int a = 201 + 3 * (c / 2) + c % 2;
+    s += fmt::format("{}, {}, {}, {}, {}, {}, {}, {}, {}\n", 11 + c, a, a + 3, a + 4, a + 1, a + 9, a + 12, a + 13, a + 10);
+  }
+  return s + "*SOLID SECTION, ELSET=cube, MATERIAL=m\n*NSET, NSET=middle\n214\n" + back + "*TIE, NAME=weld" + tie + "\nback, end\n";
+}
+
+// Truth: a pull of 10 N at the middle of the cube's front comes out at the foot.
+TEST_F(ImportInpTies, TiedSurfacesCarryWhatIsPulled) {
+  for (const auto& [back, tie] : {std::pair{"*SURFACE, NAME=back\ncube, S1\n", ", POSITION TOLERANCE=0.1"},
+                                  {"*NSET, NSET=behind, GENERATE\n201, 209\n*SURFACE, NAME=back, TYPE=NODE\nbehind\n", ", ADJUST=NO"}}) {
+    run(bar + tied_cube(back, tie) + held + statics + "*CLOAD\nmiddle, 1, 10.\nmiddle, 2, 1.\n*END STEP\n");
+    const auto f = foot();
+    EXPECT_NEAR(f[0], -10, 1e-6);
+    EXPECT_NEAR(f[1], -1, 1e-6);
+    EXPECT_NEAR(f[5], -5, 1e-4) << "1 N at 5 m, less what 10 N do as it bends";
+    const Scene s = Scene::load(place / "s.toml");
+    ASSERT_EQ(s.entries("tie").size(), 1u);
+    EXPECT_EQ(s.entries("tie")[0].text("a"), "end");
+    EXPECT_EQ(s.entries("tie")[0].has("gap"), std::string(tie).find("TOL") != std::string::npos);
+    EXPECT_EQ(err.find("ADJUST=NO") != std::string::npos, std::string(tie).find("ADJUST") != std::string::npos) << err;
+  }
+}
+
 }  // namespace
 }  // namespace hilo::test::import_inp_ties_test

@@ -82,6 +82,17 @@ std::vector<Facet> free_facets(const Mesh& mesh, const std::vector<std::int64_t>
   return free;
 }
 
+std::vector<Facet> facets_within(const Mesh& mesh, const std::vector<std::int64_t>& nodes) {
+  std::vector<char> in(mesh.X.size(), 0);
+  for (const auto i : nodes) in[i] = 1;
+  std::vector<std::int64_t> cells;
+  for (std::int64_t c = 0; c < mesh.n_cells(); ++c)
+    if (std::ranges::any_of(mesh.cell(c), [&](std::int64_t i) { return in[i]; })) cells.push_back(c);
+  std::vector<Facet> out = free_facets(mesh, cells);
+  std::erase_if(out, [&](const Facet& f) { return !std::ranges::all_of(mesh.facet_nodes(f), [&](std::int64_t i) { return in[i]; }); });
+  return out;
+}
+
 void refuse_flat(const std::string& file, std::int64_t flat, std::int64_t solids) {
   if (flat > 0 && solids == 0)
     throw Error(file, fmt::format("{} flat cells (triangles, quadrangles) and no volume", flat),

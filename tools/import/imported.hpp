@@ -107,6 +107,9 @@ std::vector<Facet> match_facets(const Mesh& mesh, const std::vector<std::vector<
 /// Of `candidates`, the facets that no second cell shares.
 std::vector<Facet> free_facets(const Mesh& mesh, const std::vector<std::int64_t>& cells);
 
+/// The facets that no second cell shares and whose nodes are all among these.
+std::vector<Facet> facets_within(const Mesh& mesh, const std::vector<std::int64_t>& nodes);
+
 /// Of `lines`, given by their ends, those that have both ends in one solid cell: edges of a solid, not bars.
 using LineEnds = std::set<std::pair<std::int64_t, std::int64_t>>;
 LineEnds lines_on_solids(const Mesh& mesh, const std::vector<std::pair<std::int64_t, std::int64_t>>& lines);

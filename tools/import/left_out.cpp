@@ -13,13 +13,13 @@
 namespace hilo {
 namespace {
 
-constexpr const char *load = "load", *support = "support", *tie = "tie", *material = "material", *other = "other", *nothing = "";
+constexpr const char *load = "load", *support = "support", *tie = "tie", *material = "material", *other = "other", *not_missed = "";
 
 /// The first row whose words the card begins with says what is lost.
 constexpr std::pair<std::string_view, const char*> losses[] = {
     // Abaqus and CalculiX
-    {"*NODE: the same node again", nothing},
-    {"*STATIC", nothing},
+    {"*NODE: the same node again", not_missed},
+    {"*STATIC", not_missed},
     {"*BOUNDARY on degree of freedom", other},
     {"*BOUNDARY with a displacement", load},
     {"*BOUNDARY", support},
@@ -80,7 +80,7 @@ constexpr std::pair<std::string_view, const char*> losses[] = {
     {"PARAM G", other},
     {"PARAM W3", other},
     {"PARAM W4", other},
-    {"PARAM", nothing},
+    {"PARAM", not_missed},
     {"FORCE of a set", other},
     {"MOMENT of a set", other},
     {"GRAV of a set", other},
@@ -135,7 +135,10 @@ constexpr std::pair<std::string_view, const char*> losses[] = {
     {"RSPLINE", tie},
     {"BCTABLE", tie},
     {"BCTSET", tie},
-    {"BSURFS", tie},
+    {"BGSET", tie},
+    {"BSURF", tie},
+    {"BCPROP", tie},
+    {"BCPROPS", tie},
     {"CELAS1", tie},
     {"CELAS2", tie},
     {"CELAS3", tie},
@@ -170,8 +173,8 @@ bool begins_with(std::string_view what, std::string_view words) {
 }  // namespace
 
 std::string_view loss_of(const NotRead& n) {
-  if (n.output || n.what.find(": numbers after its ") != std::string::npos) return nothing;
-  if (n.what.find(" of a set that the first subcase does not use") != std::string::npos) return nothing;
+  if (n.output || n.what.find(": numbers after its ") != std::string::npos) return not_missed;
+  if (n.what.find(" of a set that the first subcase does not use") != std::string::npos) return not_missed;
   for (const auto& [words, lost] : losses)
     if (begins_with(n.what, words)) return lost;
   return other;

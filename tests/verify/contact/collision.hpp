@@ -11,10 +11,11 @@
 
 namespace hilo::test {
 
-/// Both meshes as one; sets with the name of the region before theirs.
-inline Mesh together(const Mesh& a, const Mesh& b) {
+/// All meshes as one; sets with the name of the region before theirs.
+template <class... More>
+Mesh together(const Mesh& a, const More&... more) {
   Mesh out;
-  for (const Mesh* m : {&a, &b}) {
+  for (const Mesh* m : {&a, &more...}) {
     const auto node = out.n_nodes(), cell = out.n_cells();
     const auto region = static_cast<std::int32_t>(out.region_name.size());
     for (const Vec3& x : m->X) out.X.push_back(x), out.node_id.push_back(out.n_nodes());

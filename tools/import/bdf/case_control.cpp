@@ -76,6 +76,8 @@ void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& i
       c.spc = number_in(value, line);
     else if (word == "MPC")
       c.mpc = number_in(value, line);
+    else if (word == "BGSET")
+      c.glue = number_in(value, line);
     else if (word == "LOAD")
       c.load = number_in(value, line);
     else if (word == "METHOD")

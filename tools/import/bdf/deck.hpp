@@ -84,10 +84,22 @@ struct BdfSpring {
 struct BdfSpringData {
   std::array<double, 6> k{}, c{};
 };
+/// BSURFS: a face of a solid by three of its corners.
+struct BdfGlueFace {
+  std::int64_t element;
+  std::array<std::int64_t, 3> grids;
+  std::string place;
+};
+/// BGSET: regions that are glued, and how far apart they may be; 0: not said.
+struct BdfGlue {
+  std::int64_t source, target;
+  double distance;
+  std::string place;
+};
 /// What the first subcase takes; -1: none named.
 struct BdfCase {
   std::string title, solution;  // "101"
-  std::int64_t spc = -1, load = -1, mpc = -1, method = -1, step = -1, number = -1;
+  std::int64_t spc = -1, load = -1, mpc = -1, glue = -1, method = -1, step = -1, number = -1;
   bool any = false;  // case control is there: CEND is said
 };
 
@@ -136,14 +148,17 @@ struct BdfDeck {
   std::map<std::int64_t, std::vector<std::pair<double, double>>> tables;  // TABLES1: x, y
   double mass_factor = 1;                                                 // PARAM, WTMASS
   BdfCase chosen;
-  std::map<std::int64_t, std::vector<BdfSupport>> supports;  // by SID
-  std::map<std::int64_t, BdfSupportSum> support_sums;        // SPCADD
-  std::map<std::int64_t, std::vector<std::string>> ties;     // MPC by SID: places
-  std::map<std::int64_t, BdfSupportSum> tie_sums;            // MPCADD
-  std::map<std::int64_t, std::vector<BdfLoad>> loads;        // by SID
-  std::map<std::int64_t, BdfSum> load_sums;                  // LOAD
-  std::map<std::int64_t, int> modes;                         // EIGRL, EIGR: how many, 0 not said
-  std::map<std::int64_t, std::pair<double, double>> steps;   // TSTEP: end, step
+  std::map<std::int64_t, std::vector<BdfSupport>> supports;     // by SID
+  std::map<std::int64_t, BdfSupportSum> support_sums;           // SPCADD
+  std::map<std::int64_t, std::vector<std::string>> ties;        // MPC by SID: places
+  std::map<std::int64_t, BdfSupportSum> tie_sums;               // MPCADD
+  std::map<std::int64_t, std::vector<BdfGlueFace>> glue_faces;  // BSURFS
+  std::map<std::int64_t, std::vector<BdfGlue>> glue;            // BGSET by GSID
+  std::map<std::int64_t, BdfSupportSum> glue_sums;              // BGADD
+  std::map<std::int64_t, std::vector<BdfLoad>> loads;           // by SID
+  std::map<std::int64_t, BdfSum> load_sums;                     // LOAD
+  std::map<std::int64_t, int> modes;                            // EIGRL, EIGR: how many, 0 not said
+  std::map<std::int64_t, std::pair<double, double>> steps;      // TSTEP: end, step
   std::vector<BdfRigid> rigid;
   std::vector<BdfMean> means;
   std::vector<BdfMass> masses;

@@ -164,6 +164,22 @@ void read_pbush1d(const BdfEntry& e, BdfDeck& deck, Imported& in) {
     if (!d.empty(i)) return in.skip("PBUSH1D that is not linear", d.place(i));
 }
 
+/// ID - - - EID G1 G2 G3 EID G1 G2 G3 ...
+void read_bsurfs(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  std::vector<BdfGlueFace>& faces = deck.glue_faces[d.integer(0)];
+  for (size_t i = 4; i < d.fields.size(); i += 4) {
+    if (d.empty(i)) continue;
+    faces.push_back({d.integer(i), {d.integer(i + 1), d.integer(i + 2), d.integer(i + 3)}, d.place(i)});
+  }
+}
+/// GSID SID TID SDIST - EXT - -, and more pairs behind, a line each.
+void read_bgset(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  for (size_t i = 1; i < d.fields.size(); i += 8)
+    if (!d.empty(i)) deck.glue[d.integer(0)].push_back({d.integer(i), d.integer(i + 1), d.number(i + 2), d.place(i)});
+}
+
 }  // namespace
 
 std::span<const BdfCard> bdf_link_cards() {
@@ -171,6 +187,7 @@ std::span<const BdfCard> bdf_link_cards() {
       {"RBE2", read_rbe2},     {"RBAR", read_rbar},     {"RROD", read_rrod},     {"RBE3", read_rbe3},     {"CONM2", read_conm2},
       {"CELAS1", read_scalar}, {"CELAS2", read_scalar}, {"CDAMP1", read_scalar}, {"CDAMP2", read_scalar}, {"CBUSH", read_bush},
       {"CBUSH1D", read_bush},  {"PELAS", read_pelas},   {"PDAMP", read_pelas},   {"PBUSH", read_pbush},   {"PBUSH1D", read_pbush1d},
+      {"BSURFS", read_bsurfs}, {"BGSET", read_bgset},
   };
   return cards;
 }

@@ -28,6 +28,7 @@ void read_sum(const BdfEntry& e, std::map<std::int64_t, BdfSupportSum>& sums) {
 }
 void read_spcadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.support_sums); }
 void read_mpcadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.tie_sums); }
+void read_bgadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.glue_sums); }
 /// Where it stands alone: it is not read, and lost only where case control takes it.
 void read_mpc(const BdfEntry& e, BdfDeck& deck, Imported&) { deck.ties[e.data.integer(0)].push_back(e.data.place()); }
 
@@ -141,7 +142,7 @@ std::span<const BdfCard> bdf_load_cards() {
       {"SPC1", read_spc1},    {"SPC", read_spc},       {"SPCD", read_spcd},     {"SPCADD", read_spcadd}, {"FORCE", read_force},
       {"FORCE1", read_force}, {"MOMENT", read_force},  {"MOMENT1", read_force}, {"GRAV", read_gravity},  {"PLOAD4", read_pload4},
       {"PLOAD", read_pload},  {"PLOAD2", read_pload2}, {"LOAD", read_load},     {"EIGRL", read_modes},   {"EIGR", read_modes},
-      {"TSTEP", read_tstep},  {"MPC", read_mpc},       {"MPCADD", read_mpcadd},
+      {"TSTEP", read_tstep},  {"MPC", read_mpc},       {"MPCADD", read_mpcadd}, {"BGADD", read_bgadd},
   };
   return cards;
 }

@@ -33,6 +33,7 @@ std::string BdfScene::text() {
   supports();
   nodal_loads();
   pressures();
+  glue();
   time();
   if (tables_.empty() && head_.empty()) return "";
   std::string s = "units = \"m-kg-s\"\n";

@@ -39,6 +39,9 @@ class BdfScene {
   void beams();
   void beam(const BdfDeck::Thin& b);
   std::string section_name(std::int64_t property) const;
+  // scene_glue.cpp
+  std::string glue_surface(std::int64_t region);
+  void glue();
   // scene_springs.cpp
   void springs();
   void scalar_spring(const BdfSpring& s, double k, double c);
@@ -98,6 +101,7 @@ class BdfScene {
   std::map<std::int64_t, std::string> on_beam_;  // row of a grid of beams -> place
   std::vector<std::pair<double, const BdfLoad*>> loads_;
   std::map<std::int64_t, std::pair<Vec3, std::string>> force_, moment_;  // row -> sum and first place
+  std::map<std::int64_t, std::string> glue_name_;                        // region -> set
   std::set<std::string> made_;                                           // names given, by section
   std::map<Rows, std::string> set_by_rows_;
   std::string head_, tables_;

@@ -107,6 +107,12 @@ struct InpTie {
   bool left_out = false;    // told already
   unsigned components = 0;  // bits 0 to 5
 };
+/// *TIE of two surfaces, by upper-case name.
+struct InpTied {
+  std::string name, slave, master, place;
+  double tolerance = -1;  // POSITION TOLERANCE; below 0: none
+  bool adjust = true;
+};
 /// *ELEMENT of one or two points: MASS, SPRINGA, SPRING1, DASHPOTA; and the values of *MASS, *SPRING, *DASHPOT.
 struct InpPoint {
   std::string type;
@@ -167,6 +173,7 @@ struct InpDeck {
   std::string material;                      // the one that *ELASTIC and *DENSITY speak of
   std::vector<InpSection> sections;
   std::vector<InpTie> ties;
+  std::vector<InpTied> tied;
   std::map<std::int64_t, InpBeam> beams;        // by number; empty where they are cells
   std::unordered_set<std::int64_t> beam_cells;  // elements of bars that are beams
   std::map<std::int64_t, InpPoint> points;      // by number of the element

@@ -310,6 +310,9 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
       const auto more = inp_nodes(d, line.target, line.id, line.place);
       nodes.insert(nodes.end(), more.begin(), more.end());
     }
+    // whole faces of them are what a *TIE can speak of
+    if (std::ranges::any_of(d.tied, [&](const InpTied& t) { return t.slave == upper(s.name) || t.master == upper(s.name); }))
+      surface[upper(s.name)] = names.facets(s.name + "_faces", facets_within(in.mesh, nodes));
     names.nodes(s.name, std::move(nodes));
   }
   for (const auto& g : groups)

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cards of an .inp deck that tie nodes together: *COUPLING, *RIGID BODY, and the values of elements of points: *MASS, *SPRING,
+// The cards of an .inp deck that tie nodes together: *COUPLING, *RIGID BODY, *TIE, and the values of elements of points: *MASS, *SPRING,
 // *DASHPOT.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
@@ -65,6 +66,27 @@ void read_rigid_body(InpReading& r) {
   r.deck.ties.push_back(t);
 }
 
+/// Pairs of surfaces that stay together, the one whose nodes follow first.
+void read_tie(InpReading& r) {
+  if (const auto odd = unknown_param(r.card, {"NAME", "POSITIONTOLERANCE", "ADJUST", "TYPE"}); !odd.empty()) return r.skip(odd);
+  double tolerance = -1;
+  if (r.card.has("POSITIONTOLERANCE")) {
+    const std::string text = r.card.need("POSITIONTOLERANCE");
+    char* end = nullptr;
+    tolerance = std::strtod(text.c_str(), &end);
+    if (*end != 0 || !(tolerance >= 0)) throw Error(r.card.place("POSITIONTOLERANCE"), fmt::format("*TIE: \"{}\" is no tolerance", text));
+  }
+  DataLine l;
+  while (r.lines.next_data(l)) {
+    InpTied t;
+    t.name = r.card.has("NAME") ? r.card.need("NAME") : "tie", t.place = l.place();
+    t.slave = upper(l.text(0)), t.master = upper(l.text(1)), t.adjust = r.card.word("ADJUST") != "NO";
+    t.tolerance = tolerance;
+    if (t.slave.empty() || t.master.empty()) throw Error(l.place(0), "*TIE: two surfaces are expected", "SLAVE, MASTER");
+    r.deck.tied.push_back(std::move(t));
+  }
+}
+
 /// The first number of a line; in front of it, for springs and dampers, a line with the degrees of freedom of SPRING1 and SPRING2.
 void read_value(InpReading& r) {
   if (const auto odd = unknown_param(r.card, {"ELSET"}); !odd.empty()) return r.skip(odd);
@@ -104,6 +126,7 @@ std::span<const InpCard> inp_tie_cards() {
       {"KINEMATIC", read_coupling_kind},
       {"DISTRIBUTING", read_coupling_kind},
       {"RIGIDBODY", read_rigid_body},
+      {"TIE", read_tie},
       {"MASS", read_value},
       {"SPRING", read_value},
       {"DASHPOT", read_value},

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Surfaces that are tied though their meshes do not match: mortar rows (system/mortar), linear in positions with constant weights.
+//
+// The weights of a row sum to zero, and the row vanishes in the reference: multipliers have neither a resultant nor a moment.  Nodes that
+// follow a body take part by its motion.  The row of a node that is held is shared by the rows beside it, so that they still reproduce a
+// constant [puso-2004]: it would hold nodes of a.  Rows that depend on others (of two ties, or between nodes that are held) are chosen off
+// at the start; as all rows are linear and vanish in the reference, those that are kept imply them.
+#pragma once
+#include <array>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "system/contribution.hpp"
+
+namespace hilo {
+
+struct TiedRow {
+  int node = -1;                             // of b, whose weight is 1
+  std::vector<std::pair<int, double>> term;  // local nodes and weights, of which the sum is zero
+  std::array<bool, 3> on{true, true, true};  // components
+  std::array<bool, 3> implied{};             // that are off, as others have all of them
+};
+
+struct SurfaceTie {
+  std::string name;
+  std::vector<TiedRow> rows;
+  std::map<int, std::set<int>> beside;     // nodes of b that share a facet, until the rows are chosen
+  int n_nodes = 0, n_tied = 0, n_off = 0;  // of b; with a row; components of rows that others imply
+  double covered = 0, largest_move = 0;    // share of the area of b [1]; of a node at the start [m]
+};
+
+class TiedSurfaces final : public Contribution, public Equations, public Constraining, public Observer {
+ public:
+  explicit TiedSurfaces(const Points& points) : points_(points) {}
+  std::vector<SurfaceTie> list;
+
+  /// Switches off rows that depend on others.  Nodes, bodies and what is held must be known.
+  void choose_rows();
+
+  Traits traits() const override { return {.constrains = !list.empty()}; }
+  std::string count() const override;
+  void number(Layout& layout) override;
+  std::string owner(int block) const override;
+  void evaluate(Pass& p) const override;
+  void look_at_rows(const Config& q, double t, double factor, Violation& worst) const override;
+  void add_row_rates(const Rates& at, std::vector<double>& rate, std::vector<double>* acceleration) const override;
+  void mark_rows(std::vector<char>& on) const override;
+  void tie(Ties& ties) const override;
+  std::vector<Output> outputs() const override { return {}; }
+  void observe(const Sight&) override {}
+  void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override;
+
+ private:
+  bool is_free(int node, int component) const;
+  void share_held(SurfaceTie& tie) const;
+  /// What of a row acts on one free body: total weight, and the weighted arms in its axes [m].
+  struct OnBody {
+    int body;
+    double weight;
+    Vec3 arm;
+  };
+  struct Place {
+    int block, clique;
+    std::vector<std::pair<int, double>> nodes;  // free ones
+    std::vector<OnBody> bodies;                 // free ones
+  };
+  template <class Use>
+  void each(Use&& use) const;
+  Vec3 value(const TiedRow& row, const Config& q) const;
+  Place place_of(const TiedRow& row) const;
+  const Points& points_;
+  std::vector<Place> place_;  // by row, of all ties one after the other
+};
+
+}  // namespace hilo

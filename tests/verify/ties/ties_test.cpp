@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Surfaces that are tied though their meshes do not match: patch tests, momenta in free flight, and closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "model/integrators.hpp"
+#include "verify/contact/collision.hpp"
+
+namespace hilo::test::ties_test {
+namespace {
+
+using Map = std::function<Vec3(const Vec3&)>;
+
+/// Two blocks of 1 x 1 x .5 m, one on the other.
+Mesh stack(Shape a, Shape b, int n_a, int n_b, const Map& map_a = nullptr, const Map& map_b = nullptr) {
+  BlockOptions A, B;
+  A.regions = {"A"}, B.regions = {"B"}, A.shape = a, B.shape = b, A.map = map_a, B.map = map_b;
+  A.n[0] = A.n[1] = n_a, B.n[0] = B.n[1] = n_b, A.n[2] = B.n[2] = 2;
+  A.high = Vec3(1, 1, 0.5), B.low = Vec3(0, 0, 0.5), B.high = Vec3(1, 1, 1);
+  Mesh m = together(block_mesh(A), block_mesh(B));
+  add_node_set(m, "side", [](const Vec3& x) { return std::abs(x[0]) < 1e-9; });
+  add_node_set(m, "back", [](const Vec3& x) { return std::abs(x[1]) < 1e-9; });
+  return m;
+}
+
+/// Largest distance of the displacements from the linear field that fits them best, over the largest displacement; and its slope dz/dz.
+std::pair<double, double> off_linear(const std::vector<Vec3>& X, const std::vector<Vec3>& u) {
+  Eigen::MatrixXd A(X.size(), 4), B(X.size(), 3);
+  for (size_t i = 0; i < X.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    A.row(k) << 1, X[i].transpose();
+    B.row(k) = u[i].transpose();
+  }
+  const Eigen::MatrixXd F = A.colPivHouseholderQr().solve(B);
+  return {(A * F - B).cwiseAbs().maxCoeff() / B.cwiseAbs().maxCoeff(), F(3, 2)};
+}
+
+// Truth: uniform stress is a linear field, p/E along it.
+TEST(Ties, PatchAcrossMeshesThatDoNotMatch) {
+  using enum Shape;
+  for (const auto& [a, b] : {std::pair{hex8, hex8}, {tet4, hex8}, {hex8, wedge6}, {hex20, tet10}, {tet10, wedge15}, {hex8, hex20}}) {
+    Case c("ties");
+    const Mesh mesh = stack(a, b, 2, 3);
+    c.use(mesh);
+    const Results r = c.solved("", "run.h5", "pull");
+    const auto [off, slope] = off_linear(mesh.X, r.field("displacement"));
+    EXPECT_LT(off, 1e-9) << text_of(c / "run.json") << info(a).name << " " << info(b).name;
+    EXPECT_NEAR(slope, 1e-4, 5e-8) << info(a).name << " " << info(b).name;
+  }
+}
+
+/// Largest change in a step: of energy over the largest, of both momenta over those of the parts.
+struct Kept {
+  double energy = 0, momentum = 0, angular = 0;
+  explicit Kept(const Results& r) {
+    const auto e = r.history("energy"), p = r.history("momentum");
+    for (Eigen::Index k = 1; k < e.rows(); ++k) {
+      energy = std::max(energy, std::abs(e(k, 5) - e(k - 1, 5)) / e.col(0).maxCoeff());
+      momentum = std::max(momentum, (p.row(k) - p.row(k - 1)).head<3>().norm() / 1000);
+      angular = std::max(angular, (p.row(k) - p.row(k - 1)).tail<3>().norm() / 1000);
+    }
+  }
+};
+
+/// The stack with a common surface that is curved, so that nodes of one side lie off the facets of the other.
+Mesh bent(Shape a, Shape b, int n = 3) {
+  const auto rise = [](const Vec3& x) { return 0.08 * std::sin(std::numbers::pi * x[0]) * (1 + x[1]); };
+  return stack(
+      a, b, n, n + 1, [=](const Vec3& x) { return Vec3(x + Vec3(0, 0, 2 * x[2] * rise(x))); },
+      [=](const Vec3& x) { return Vec3(x + Vec3(0, 0, 2 * (1 - x[2]) * rise(x))); });
+}
+
+// Truth: nothing acts from outside.  Parts have momenta of about 1000 kg m/s and kg m^2/s.
+TEST(Ties, CurvedOnesKeepEnergyAndMomenta) {
+  using enum Shape;
+  using enum Fidelity;
+  for (const auto& [a, b, level] :
+       {std::tuple{hex8, hex8, nonlinear}, {tet4, hex8, nonlinear}, {hex20, tet10, nonlinear}, {wedge6, hex8, rigid}}) {
+    Case c("ties");
+    c.use(bent(a, b, 2), {level, nonlinear});
+    const Results r = c.solved("", "run.h5", "flight");
+    const Kept kept(r);
+    const std::string what = fmt::format("{} {} {}", info(a).name, info(b).name, word(level));
+    EXPECT_LT(kept.energy, 1e-11) << what;
+    EXPECT_LT(kept.momentum, 1e-12) << what;
+    EXPECT_LT(kept.angular, 1e-12) << what;
+    EXPECT_GT(r.history("energy").col(1).maxCoeff(), 1) << what << ": it shakes";
+    const double moved = c.reported("largest_move");
+    EXPECT_TRUE(moved > 1e-4 && moved < 0.05) << what << ": " << moved;
+  }
+}
+
+// Truth: the mean of the gap over facets that move stays zero, so that surfaces stay together to their sag.
+TEST(Ties, EveryIntegratorHoldsThem) {
+  for (const std::string method : {"mid-point", "bdf2", "generalized-alpha", "bathe", "U0", "V0", "radau", "gauss"}) {
+    Case c("ties");
+    c.use(bent(Shape::hex8, Shape::hex8, 2));
+    const Ran ran =
+        c.solve("--set time.end=0.04 --set 'time.integrator=\"" + method + "\"'", "run.h5", method == "gauss" ? 2 : 0, "flight");
+    if (ran.exit != 0) continue;
+    const Kept kept(c.results());
+    EXPECT_LT(kept.momentum, 1e-9) << method;
+  }
+}
+
+// Truth: (2 n - 1) c/(4 L) of a bar that is held at one end, c = 5000 m/s.
+TEST(Ties, ABarOfTwoMeshesRings) {
+  BlockOptions A, B;
+  A.regions = {"A"}, B.regions = {"B"};
+  A.n[0] = A.n[1] = 1, B.n[0] = B.n[1] = 2, A.n[2] = 20, B.n[2] = 30;
+  A.high = Vec3(0.1, 0.1, 1), B.low = Vec3(0, 0, 1), B.high = Vec3(0.1, 0.1, 2);
+  Mesh m = together(block_mesh(A), block_mesh(B));
+  add_node_set(m, "guide", [](const Vec3& x) { return x[2] > 1e-9; });
+  Case c("ties");
+  c.use(m);
+  const Eigen::MatrixXd f = c.solved("", "run.h5", "bar").history("mode").bottomRows(3);
+  for (int n = 1; n <= 3; ++n) EXPECT_NEAR(f(n - 1, 0) / ((2 * n - 1) * 5000. / 8), 1, 2e-3) << n;
+}
+
+// Truth: one mesh, and beams: F L^3/(3 E I) with the shear of Timoshenko.
+TEST(Ties, ACantileverOfTwoMeshesBendsAsOne) {
+  const auto tip = [](bool tied, Shape a, Shape b) {
+    BlockOptions A, B;
+    A.regions = {"A"}, B.regions = {"B"}, A.shape = a, B.shape = b;
+    A.n[0] = A.n[1] = 2, A.n[2] = tied ? 4 : 8, A.high = Vec3(0.1, 0.1, tied ? 0.5 : 1);
+    B.n[0] = B.n[1] = 3, B.n[2] = 5, B.low = Vec3(0, 0, 0.5), B.high = Vec3(0.1, 0.1, 1);
+    Mesh m = tied ? together(block_mesh(A), block_mesh(B)) : block_mesh(A);
+    add_node_set(m, "wall", [](const Vec3& x) { return x[2] < 1e-9; });
+    add_node_set(m, "tip", [](const Vec3& x) { return x[2] > 1 - 1e-9; });
+    Case c("ties");
+    c.use(m);
+    std::string text = text_of(c.source("cantilever.toml"));
+    if (tied) text += "[[tie]]\nname = \"weld\"\na = \"Azmax\"\nb = \"Bzmin\"\n";
+    c.write("scene.toml", text);
+    const Ran ran = c.run("hilo-solve scene.toml mesh.h5 -o run.h5");
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    const auto u = c.results().field("displacement");
+    double sum = 0, n = 0;
+    for (std::int64_t i = 0; i < m.n_nodes(); ++i)
+      if (m.X[i][2] > 1 - 1e-9) sum += u[i][0], ++n;
+    return sum / n;
+  };
+  const double one = tip(false, Shape::hex20, Shape::hex20), I = std::pow(0.1, 4) / 12;
+  EXPECT_NEAR(one / (1e3 / (3 * 2e11 * I) + 1e3 / (2e11 / 2.6 * 0.01 * 5 / 6)), 1, 0.02) << "the wall holds its width";
+  EXPECT_NEAR(tip(true, Shape::hex20, Shape::hex20) / one, 1, 2e-3);
+  EXPECT_NEAR(tip(true, Shape::tet10, Shape::hex20) / one, 1, 1e-2);
+  EXPECT_NEAR(tip(true, Shape::hex20, Shape::wedge15) / one, 1, 1e-2);
+}
+
+// Three blocks about an edge: its nodes are of two ties, and some of them are held.  Truth: uniform stress.
+TEST(Ties, OfAnEdgeAndOfHeldNodes) {
+  BlockOptions A, B, C;
+  A.regions = {"A"}, B.regions = {"B"}, C.regions = {"C"};
+  A.n[0] = 3, A.n[1] = 2, B.n[0] = B.n[1] = C.n[1] = 3, C.n[0] = 2;
+  A.high = Vec3(1, 1, 0.5), B.low = Vec3(0, 0, 0.5), B.high = Vec3(0.5, 1, 1), C.low = Vec3(0.5, 0, 0.5), C.high = Vec3(1, 1, 1);
+  Mesh m = together(block_mesh(A), block_mesh(B), block_mesh(C));
+  add_node_set(m, "side", [](const Vec3& x) { return std::abs(x[0]) < 1e-9; });
+  add_node_set(m, "back", [](const Vec3& x) { return std::abs(x[1]) < 1e-9; });
+  Case c("ties");
+  c.use(m);
+  std::string text = text_of(c.source("pull.toml"));
+  for (const auto& [name, a, b] : {std::tuple{"second", "Azmax", "Czmin"}, {"third", "Cxmin", "Bxmax"}})
+    text = fmt::format("[[tie]]\nname = \"{}\"\na = \"{}\"\nb = \"{}\"\n", name, a, b) + text;
+  text += "[[load]]\nkind = \"traction\"\nname = \"q\"\non = \"Czmax\"\ntraction = [0, 0, 1]\n";
+  c.write("scene.toml", text);
+  const Ran ran = c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const auto [off, slope] = off_linear(m.X, c.results().field("displacement"));
+  EXPECT_LT(off, 1e-9);
+  EXPECT_NEAR(slope, 1e-4, 5e-8);
+}
+
+/// One line with its place, and exit 2, of the flight with another surface b.
+void expect_refused(const Mesh& mesh, const std::vector<Fidelity>& levels, const std::string& b, const std::string& words) {
+  Case c("ties");
+  c.use(mesh, levels);
+  std::string text = text_of(c.source("flight.toml"));
+  text.replace(text.find("\"Bzmin\""), 7, '"' + b + '"');
+  if (words.find("twentieth") != std::string::npos) text.replace(text.find("gap ="), 10, "");
+  c.write("scene.toml", text);
+  const Ran ran = c.run(std::string("hilo-solve --quiet scene.toml ") + (levels.empty() ? "mesh.h5" : "tags.h5"));
+  EXPECT_EQ(ran.exit, 2) << words;
+  EXPECT_NE(ran.err.find(words), std::string::npos) << ran.err;
+  EXPECT_NE(ran.err.find("hilo-solve: scene.toml:1"), std::string::npos) << ran.err;
+}
+
+TEST(Ties, ThatCannotBeAreRefused) {
+  using enum Fidelity;
+  const Mesh good = bent(Shape::hex8, Shape::hex8);
+  expect_refused(good, {linear, nonlinear}, "Bzmin", "region \"A\" is linear");
+  expect_refused(good, {nonlinear, rigid}, "Bzmin", "region \"B\" is rigid");
+  expect_refused(good, {}, "Azmax", "a surface is not tied to itself");
+  expect_refused(good, {}, "Azmin", "faces one of");
+  expect_refused(good, {}, "A", "both surfaces have node");
+  expect_refused(good, {}, "side", "\"side\" has no facets");
+  expect_refused(good, {}, "Bzmim", "did you mean \"Bzmin\"");
+  const Mesh apart = stack(Shape::hex8, Shape::hex8, 3, 4, nullptr, [](const Vec3& x) { return Vec3(x + Vec3(0, 0, 0.06)); });
+  expect_refused(apart, {}, "Bzmin", "0.06 m off \"Azmax\", more than 0.0125 m, a twentieth of a facet (");
+}
+
+}  // namespace
+}  // namespace hilo::test::ties_test

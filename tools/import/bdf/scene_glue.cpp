@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// BGSET of regions of faces (BSURFS) as [[tie]] of the scene: the source's nodes follow the target.
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "import/bdf/scene.hpp"
+
+namespace hilo {
+
+/// The facets of a region, as a set; "" where it has none.
+std::string BdfScene::glue_surface(std::int64_t region) {
+  const auto faces = deck_.glue_faces.find(region);
+  if (faces == deck_.glue_faces.end()) return "";
+  const auto [at, fresh] = glue_name_.try_emplace(region);
+  if (!fresh) return at->second;
+  std::vector<Facet> facets;
+  for (const BdfGlueFace& f : faces->second) {
+    const auto cell = deck_.cell_row.find(f.element);
+    if (cell == deck_.cell_row.end()) throw Error(f.place, fmt::format("BSURFS {}: no solid element {}", region, f.element));
+    const auto nodes = in_.mesh.cell(cell->second);
+    const ShapeInfo& s = info(in_.mesh.shape[static_cast<size_t>(cell->second)]);
+    std::int64_t found = -1;
+    for (size_t i = 0; i < s.facets.size(); ++i)
+      if (std::ranges::all_of(f.grids, [&](std::int64_t grid) {
+            const auto a = row(grid, f.place, "BSURFS");
+            return std::ranges::any_of(s.facets[i], [&](int local) { return nodes[static_cast<size_t>(local)] == a; });
+          }))
+        found = static_cast<std::int64_t>(i);
+    if (found < 0)
+      throw Error(f.place, fmt::format("BSURFS {}: element {} has no face of grids {}, {} and {}", region, f.element, f.grids[0],
+                                       f.grids[1], f.grids[2]));
+    facets.push_back({cell->second, found});
+  }
+  return at->second = names_.facets(fmt::format("glue_{}", region), std::move(facets));
+}
+
+void BdfScene::glue() {
+  const BdfCase& chosen = deck_.chosen;
+  const auto sum = deck_.glue_sums.find(chosen.glue);
+  for (const auto& [id, pairs] : deck_.glue)
+    for (const BdfGlue& g : pairs) {
+      const bool taken = !chosen.any || id == chosen.glue || (sum != deck_.glue_sums.end() && std::ranges::count(sum->second.sets, id) > 0);
+      if (!taken) {
+        in_.skip("BGSET of a set that the first subcase does not use", g.place);
+        continue;
+      }
+      const std::string a = glue_surface(g.target), b = glue_surface(g.source);
+      if (a.empty() || b.empty()) {
+        in_.skip("BGSET of a region that is no BSURFS", g.place);
+        continue;
+      }
+      tables_ += fmt::format("\n[[tie]]   # {}\nname = {}\na = {}\nb = {}\n", g.place, toml_text(unique("tie", fmt::format("glue_{}", id))),
+                             toml_text(a), toml_text(b));
+      if (g.distance > 0) tables_ += fmt::format("gap = {}\n", number(g.distance, "m"));
+    }
+}
+
+}  // namespace hilo
