@@ -76,6 +76,7 @@ void read_tie(InpReading& r) {
     tolerance = std::strtod(text.c_str(), &end);
     if (*end != 0 || !(tolerance >= 0)) throw Error(r.card.place("POSITIONTOLERANCE"), fmt::format("*TIE: \"{}\" is no tolerance", text));
   }
+  bool any = false;
   DataLine l;
   while (r.lines.next_data(l)) {
     InpTied t;
@@ -84,7 +85,9 @@ void read_tie(InpReading& r) {
     t.tolerance = tolerance;
     if (t.slave.empty() || t.master.empty()) throw Error(l.place(0), "*TIE: two surfaces are expected", "SLAVE, MASTER");
     r.deck.tied.push_back(std::move(t));
+    any = true;
   }
+  if (!any) r.skip("*TIE of nothing");
 }
 
 /// The first number of a line; in front of it, for springs and dampers, a line with the degrees of freedom of SPRING1 and SPRING2.
