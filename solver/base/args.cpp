@@ -25,7 +25,7 @@ std::string in_words(const CLI::ParseError& error) {
 }
 
 constexpr auto exit_codes =
-    "Exit codes: 0 done, 1 usage, 2 bad input, 3 did not converge, 4 resources (memory, disk, packages), 5 own fault, "
+    "Exit codes: 0 done, 1 usage, 2 bad input, 3 did not converge, 4 resources (memory, disk, packages), 5 internal error, "
     "6 stopped from outside";
 
 /// Long options of an app and its subcommands' names: what a completion offers and a mistyped word is compared with.
