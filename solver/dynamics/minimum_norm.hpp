@@ -15,8 +15,8 @@ namespace hilo {
 class MinimumNorm {
  public:
   explicit MinimumNorm(const System& system);
-  /// All rows of all joints counted, at the stage's left configuration; laid out like lambda.  Error (exit 3) where their forces differ
-  /// from those of the rows kept by more than 1e-8 of these.
+  /// All rows of all joints counted, at the stage's left configuration; laid out like lambda.  Where their forces differ from those of the
+  /// rows kept by more than 1e-8, the latter, and a warning.
   std::vector<double> operator()(const Stage& stage, std::span<const double> lambda);
 
  private:
@@ -24,6 +24,7 @@ class MinimumNorm {
   Cliques cliques_;  // of joints
   BlockCsr A_;       // G^T G, scaled and shifted
   std::unique_ptr<Factors> factors_;
+  bool told_ = false;
 };
 
 }  // namespace hilo
