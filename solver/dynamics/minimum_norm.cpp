@@ -9,8 +9,9 @@
 namespace hilo {
 namespace {
 
-constexpr int klu_below = 200;   // blocks; beyond, nested dissection keeps the factors of nets thin
-constexpr double shift = 1e-10;  // of unknowns whose rows are unit ones together
+constexpr int klu_below = 200;        // blocks; beyond, nested dissection keeps the factors of nets thin
+constexpr double shift = 1e-10;       // of unknowns whose rows are unit ones together
+constexpr double least_size = 1e-14;  // of squares of gradients in a block; what is smaller may be round-off
 
 }  // namespace
 
@@ -49,8 +50,8 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   for (Mat3& S : scale) {
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(S);
     Vec3 factor = Vec3::Zero();
-    for (int i = 0; i < 3; ++i)
-      if (eigen.eigenvalues()[i] > 1e-15 * eigen.eigenvalues()[2]) factor[i] = 1 / std::sqrt(eigen.eigenvalues()[i]);
+    for (int i = 0; i < 3 && eigen.eigenvalues()[2] > 0; ++i)
+      factor[i] = 1 / std::sqrt(std::max(eigen.eigenvalues()[i], least_size * eigen.eigenvalues()[2]));
     S = eigen.eigenvectors() * factor.asDiagonal() * eigen.eigenvectors().transpose();
   }
   A_.zero();
