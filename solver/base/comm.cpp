@@ -10,6 +10,7 @@
 #include <new>
 #include <utility>
 
+#include "base/crowd.hpp"
 #include "base/error.hpp"
 #include "base/watch.hpp"
 
@@ -52,7 +53,9 @@ Comm::Comm() {
   if (!runs) MPI_Init(nullptr, nullptr);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &size);
-  if (!runs) watch_ = new Watch(rank, size);
+  if (runs) return;
+  watch_ = new Watch(rank, size);
+  if (const Crowd here = crowd(*this); here.ranks > here.cores) sleep_while_waiting();
 }
 
 void Comm::sum(std::span<double> v, Where at) const {

@@ -93,14 +93,15 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   for (int j = 0; j < n; ++j)
     for (int r = 0; r < G[j].rows(); ++r)
       if (all[j]->active()[r]) size = std::hypot(size, lambda[all[j]->row() + r] * G[j].row(r).norm());
-  std::vector<double> out;
-  Eigen::VectorXd r;
-  // conjugate gradients on G^T G y = f: a few, as the factors err by their shift alone
+  std::vector<double> best;
+  Eigen::VectorXd left;  // of f by the best
+  // conjugate gradients on G^T G y = f: a few, as the factors err by their shift alone; at round-off they would go astray
   const auto find = [&] {
-    out.assign(lambda.size(), 0.0), r = f;
-    Eigen::VectorXd z(f.size()), p = Eigen::VectorXd::Zero(f.size());
+    std::vector<double> out(lambda.size(), 0.0);
+    Eigen::VectorXd r = f, z(f.size()), p = Eigen::VectorXd::Zero(f.size());
+    best = out, left = r;
     double before = 1;
-    for (int pass = 0; pass < 50 && r.norm() > 1e-14 * f.norm(); ++pass) {
+    for (int pass = 0, since = 0; pass < 50 && since < 3 && left.norm() > 1e-15 * size; ++pass) {
       factors_->solve(r.data(), z.data());
       const double now = r.dot(z);
       if (!(now > 0)) break;
@@ -109,18 +110,20 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
       const double alpha = now / Eigen::Map<const Eigen::VectorXd>(q.data(), static_cast<Eigen::Index>(q.size())).squaredNorm();
       for (size_t i = 0; i < out.size(); ++i) out[i] += alpha * q[i];
       r = f - forces(out, true);
+      ++since;
+      if (r.norm() < left.norm()) best = out, left = r, since = 0;
     }
-    return r.norm() <= 1e-8 * size;
+    return left.norm() <= 1e-8 * size;
   };
-  if ((factors_->refactor(A_) && find()) || (factors_->factor(A_) && find())) return out;  // old pivots may be bad ones
+  if ((factors_->refactor(A_) && find()) || (factors_->factor(A_) && find())) return best;  // old pivots may be bad ones
   Eigen::Index worst = 0;
-  if (r.size() > 0) r.cwiseAbs().maxCoeff(&worst);
+  if (left.size() > 0) left.cwiseAbs().maxCoeff(&worst);
   int j = 0;
   while (j < n - 1 && std::ranges::find(cliques_[j], static_cast<int>(worst / 3)) == cliques_[j].end()) ++j;
   if (!told_)
     warn("",
          fmt::format("{}: shares of redundant rows are not found (off by {:.1e}): at such instants reactions are those of the rows kept",
-                     all[j]->label(), size > 0 ? r.norm() / size : 1));
+                     all[j]->label(), size > 0 ? left.norm() / size : 1));
   told_ = true;
   return {lambda.begin(), lambda.end()};
 }
