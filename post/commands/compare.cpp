@@ -43,8 +43,8 @@ std::string title_of(const Column& c) { return fmt::format("{} [{}]", c.label, c
 Curves of_run(const CompareOptions& o, const std::string& path) {
   const RunFile run(path);
   RunColumns columns(run, {});
+  if (run.series_names().empty()) throw Error(path, "holds no history");
   const auto picked = columns.pick(o.y.empty() ? std::vector<std::string>{"*"} : o.y);
-  if (picked.empty()) throw Error(path, "holds no history");
   Curves c{path, "", "t [s]", picked.front().t, {}, {}};
   if (!o.x.empty()) {
     const Column x = columns.one(o.x);

@@ -33,9 +33,9 @@ Crowd crowd(const Comm& comm) {
   MPI_Comm_size(machine, &out.ranks);
   cpu_set_t cores;  // of a rank that is bound, its own alone
   CPU_ZERO(&cores);
-  sched_getaffinity(0, sizeof cores, &cores);
+  const bool known = sched_getaffinity(0, sizeof cores, &cores) == 0;  // not on machines of more than 1024
   MPI_Allreduce(MPI_IN_PLACE, &cores, sizeof cores, MPI_BYTE, MPI_BOR, machine);
-  out.cores = CPU_COUNT(&cores);
+  out.cores = known ? CPU_COUNT(&cores) : out.ranks;
   MPI_Comm_free(&machine);
   return out;
 }

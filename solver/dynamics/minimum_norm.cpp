@@ -9,9 +9,9 @@
 namespace hilo {
 namespace {
 
-constexpr int klu_below = 200;        // blocks; beyond, nested dissection keeps the factors of nets thin
-constexpr double shift = 1e-10;       // of unknowns whose rows are unit ones together
-constexpr double least_size = 1e-14;  // of squares of gradients in a block; what is smaller may be round-off
+constexpr int klu_below = 200;   // blocks; beyond, nested dissection keeps the factors of nets thin
+constexpr double shift = 1e-10;  // of unknowns whose rows are unit ones together
+constexpr double least = 1e-26;  // of squares of gradients in a block; what is below is round-off
 
 }  // namespace
 
@@ -47,38 +47,53 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
       scale[cliques_[j][k]] += part.transpose() * part;
     }
   }
-  for (Mat3& S : scale) {
-    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(S);
-    Vec3 factor = Vec3::Zero();
-    for (int i = 0; i < 3 && eigen.eigenvalues()[2] > 0; ++i)
-      factor[i] = 1 / std::sqrt(std::max(eigen.eigenvalues()[i], least_size * eigen.eigenvalues()[2]));
-    S = eigen.eigenvectors() * factor.asDiagonal() * eigen.eigenvectors().transpose();
+  std::vector<Vec3> squares(scale.size(), Vec3::Zero());  // along the axes of each block, by rows: those of the sum end in round-off
+  std::vector<Mat3> axes;
+  for (const Mat3& S : scale) axes.push_back(Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvectors());
+  for (int j = 0; j < n; ++j)
+    for (size_t k = 0; k < cliques_[j].size(); ++k) {
+      const int block = cliques_[j][k];
+      squares[block] += (G[j].middleCols<3>(3 * static_cast<Eigen::Index>(k)) * axes[block]).colwise().squaredNorm().transpose();
+    }
+  for (size_t block = 0; block < scale.size(); ++block) {
+    const Vec3& of = squares[block];
+    const Vec3 factor = (of.array() > least * of.maxCoeff()).select(of.cwiseSqrt().cwiseInverse(), 0);
+    scale[block] = axes[block] * factor.asDiagonal() * axes[block].transpose();
   }
   A_.zero();
   for (int j = 0; j < n; ++j) {
+    DenseRows scaled = G[j];
     for (size_t k = 0; k < cliques_[j].size(); ++k) {
-      auto part = G[j].middleCols<3>(3 * static_cast<Eigen::Index>(k));
+      auto part = scaled.middleCols<3>(3 * static_cast<Eigen::Index>(k));
       part = (part * scale[cliques_[j][k]]).eval();
     }
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, max_directions, max_directions> K =
-        decltype(K)::Zero(G[j].cols(), G[j].cols());
-    for (Eigen::Index r = 0; r < G[j].rows(); ++r)
-      for (Eigen::Index i = 0; i < G[j].cols(); ++i)
-        if (G[j](r, i) != 0) K.row(i) += G[j](r, i) * G[j].row(r);
+        decltype(K)::Zero(scaled.cols(), scaled.cols());
+    for (Eigen::Index r = 0; r < scaled.rows(); ++r)
+      for (Eigen::Index i = 0; i < scaled.cols(); ++i)
+        if (scaled(r, i) != 0) K.row(i) += scaled(r, i) * scaled.row(r);
     A_.add(j, K.data());
   }
   constexpr double d[3] = {shift, shift, shift};
   for (int i = 0; i < A_.n_blocks(); ++i) A_.add_diagonal(i, d);
-  const auto forces = [&](std::span<const double> of, bool all_rows) {  // G^T lambda
+  const auto scaled = [&](Eigen::VectorXd y) {
+    for (size_t block = 0; block < scale.size(); ++block) {
+      auto part = y.segment<3>(3 * static_cast<Eigen::Index>(block));
+      part = (scale[block] * part).eval();
+    }
+    return y;
+  };
+  const auto forces = [&](std::span<const double> of, bool all_rows) {  // G^T lambda, scaled
     Eigen::VectorXd out = Eigen::VectorXd::Zero(A_.n());
     for (int j = 0; j < n; ++j)
       for (int r = 0; r < G[j].rows(); ++r)
         for (size_t k = 0; k < cliques_[j].size() && (all_rows || all[j]->active()[r]); ++k)
           out.segment<3>(3 * cliques_[j][k]) +=
               of[all[j]->row() + r] * G[j].row(r).segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
-    return out;
+    return scaled(std::move(out));
   };
-  const auto shares = [&](const Eigen::VectorXd& y) {  // G y
+  const auto shares = [&](const Eigen::VectorXd& of) {  // G y
+    const Eigen::VectorXd y = scaled(of);
     std::vector<double> out(lambda.size(), 0.0);
     Eigen::Matrix<double, max_directions, 1> own;
     for (int j = 0; j < n; ++j) {
@@ -92,7 +107,9 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   double size = 0;  // of the forces of single rows, which may cancel
   for (int j = 0; j < n; ++j)
     for (int r = 0; r < G[j].rows(); ++r)
-      if (all[j]->active()[r]) size = std::hypot(size, lambda[all[j]->row() + r] * G[j].row(r).norm());
+      for (size_t k = 0; k < cliques_[j].size() && all[j]->active()[r]; ++k)
+        size = std::hypot(
+            size, lambda[all[j]->row() + r] * (G[j].row(r).segment<3>(3 * static_cast<Eigen::Index>(k)) * scale[cliques_[j][k]]).norm());
   std::vector<double> best;
   Eigen::VectorXd left;  // of f by the best
   // conjugate gradients on G^T G y = f: a few, as the factors err by their shift alone; at round-off they would go astray

@@ -72,6 +72,11 @@ void Builder::close_ties() {
                fmt::format("node {} at {} is {:.3g} m off \"{}\", more than {:.3g} m{}", mesh.node_id[found.open_node],
                            place(mesh.X[found.open_node]), found.open, e.text("a"), found.open_limit, limit),
                fmt::format("move the parts together, or give gap = {:.3g}", 1.05 * found.open));
+    if (found.twice_node >= 0)
+      e.refuse("b",
+               fmt::format("at node {}, {}, a facet of b faces \"{}\" in two layers", mesh.node_id[found.twice_node],
+                           place(mesh.X[found.twice_node]), e.text("a")),
+               "name the facets that are to be tied as a set, or give a smaller gap");
     if (found.rows.empty())
       e.refuse("b",
                fmt::format("no facet of \"{}\" faces one of \"{}\" within {}", e.text("b"), e.text("a"),
@@ -111,8 +116,10 @@ void Builder::close_ties() {
   for (size_t pass = 0; pass < 2 + list.size(); ++pass)
     for (size_t k = 0; k < list.size(); ++k)
       if (open(k) > 0) close_gaps(mortar_[k], X);
+  double farthest = 0;  // from the origin, whose round-off gaps have
+  for (const Vec3& x : before) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
   for (size_t k = 0; k < list.size(); ++k) {
-    if (const double gap = open(k); !(gap < 1e-12 * mesh_->length))
+    if (const double gap = open(k); !(gap < 1e-12 * mesh_->length + 1e-14 * farthest))
       throw Error(tied_[k].first, fmt::format("{}: {:.3g} m stay open, as another tie moves the same nodes", tied_[k].second, gap),
                   "tie each node once, or mesh the surfaces so that they fit");
     for (const MortarRow& row : mortar_[k]) list[k].largest_move = std::max(list[k].largest_move, (X[row.node] - before[row.node]).norm());
@@ -123,11 +130,13 @@ void Builder::close_ties() {
   for (std::int64_t cell = 0; cell < mesh.n_cells(); ++cell) {
     const auto of = mesh.cell(cell);
     const bool moved = std::ranges::any_of(of, [&](std::int64_t i) { return X[i] != before[i]; });
-    if (moved && info(mesh.shape[cell]).dimension == 3 && !(quality(mesh, cell).scaled_jacobian > 0))
-      throw Error(
-          tied_.front().first,
-          fmt::format("{}: nodes that are moved onto the other surface turn cell {} inside out", tied_.front().second, mesh.cell_id[cell]),
-          "give a smaller gap, or move the parts together");
+    if (!moved || info(mesh.shape[cell]).dimension != 3 || quality(mesh, cell).scaled_jacobian > 0) continue;
+    const auto moves = [&](const std::vector<MortarRow>& rows) {
+      return std::ranges::any_of(rows, [&](const MortarRow& row) { return std::ranges::find(of, row.node) != of.end(); });
+    };
+    const auto& [place, label] = tied_[static_cast<size_t>(std::ranges::find_if(mortar_, moves) - mortar_.begin())];
+    throw Error(place, fmt::format("{}: nodes that are moved onto the other surface turn cell {} inside out", label, mesh.cell_id[cell]),
+                "give a smaller gap, or move the parts together");
   }
   out_->X = X;
   out_->start.x.assign(X.begin(), X.begin() + n_active_);

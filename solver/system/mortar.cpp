@@ -204,8 +204,9 @@ Mortar mortar(std::span<const Vec3> X, std::span<const MortarFacet> slave, std::
         widest = std::max(widest, std::abs(g)), ahead = std::max(ahead, g);
       });
       if (widest > limit) {
-        for (int a = 0; a < f.n && ahead > limit; ++a)
-          if (Sum& s = sums[f.node[a]]; ahead < s.open) s.open = ahead, s.limit = limit;
+        const double off = ahead > limit ? ahead : widest < size / 2 ? widest : HUGE_VAL;  // a deeper one is another layer
+        for (int a = 0; a < f.n; ++a)
+          if (Sum& s = sums[f.node[a]]; off < s.open) s.open = off, s.limit = limit;
         continue;
       }
       out.widest = std::max(out.widest, widest), out.facet = std::max(out.facet, size), facet_covered += area_of(piece);
@@ -213,6 +214,7 @@ Mortar mortar(std::span<const Vec3> X, std::span<const MortarFacet> slave, std::
     }
     if (pieces.empty()) continue;
     covered += facet_covered;
+    if (facet_covered > 1.05 * own_area) out.twice_node = f.node[0];
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(f.n, f.n), psi = Eigen::MatrixXd::Identity(f.n, f.n);
     Eigen::VectorXd D = Eigen::VectorXd::Zero(f.n);
     for (const auto& [m, points] : pieces)

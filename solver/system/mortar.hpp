@@ -34,6 +34,7 @@ struct Mortar {
   double open = 0;        // largest gap beyond it, in front of a node without a row [m]
   int open_node = -1;     // this node
   double open_limit = 0;  // and what was allowed there [m]
+  int twice_node = -1;    // of a facet that faces two layers of the other side
 };
 
 /// Rows of the slave facets against the others, at X.  Facets that face each other within `gap` [m] are tied; below 0: a twentieth of the

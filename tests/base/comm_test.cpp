@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -80,11 +81,15 @@ TEST(DISABLED_TwoRanks, ShareOneCore) {
   EXPECT_EQ(here.cores, 1);
   const auto took = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
   const double before = took();
+  const auto began = std::chrono::steady_clock::now();
   if (comm.rank == 0)
     while (took() < before + 1) {
     }
   comm.barrier();
-  EXPECT_LT(took() - before, comm.rank == 1 ? 0.4 : 2);
+  const std::chrono::duration<double> all = std::chrono::steady_clock::now() - began;
+  if (comm.rank == 1) {
+    EXPECT_LT((took() - before) / all.count(), 0.2);  // one that asks without end takes half, or a third beside one more process
+  }
 }
 
 Ran run_on(int ranks, const std::string& suite, const std::string& under = "") {
@@ -108,7 +113,7 @@ TEST(Comm, RanksThatWaitInDifferentPlacesEndAndSayWhere) {
 }
 
 TEST(Comm, RanksThatWaitLeaveTheirCoreToThoseThatWork) {
-  const Ran ran = run_on(2, "TwoRanks.*", "taskset 1 ");
+  const Ran ran = run_on(2, "TwoRanks.*", "taskset -c $(taskset -cp $$ | grep -oE '[0-9]+' | sed -n 2p) ");
   EXPECT_EQ(ran.exit, 0) << ran.out << ran.err;
 }
 

@@ -21,7 +21,10 @@ TEST(Gauss, IsOfOrderSixInPositionVelocityAccelerationAndReaction) {
     EXPECT_GT(order(&Errors::x), 5.5) << c.scene << " " << coarse.x << " " << fine.x;
     EXPECT_GT(order(&Errors::v), 5.5) << c.scene << " " << coarse.v << " " << fine.v;
     EXPECT_GT(order(&Errors::a), 5.5) << c.scene << " " << coarse.a << " " << fine.a;
-    EXPECT_GT(order(&Errors::force), 5.5) << c.scene << " " << coarse.force << " " << fine.force;
+    double size = 0;  // of the force, whose shares of redundant rows are found to 1e-12
+    for (const Truth& truth : c.truth) size = std::max(size, truth.force.norm());
+    EXPECT_TRUE(order(&Errors::force) > 5.5 || fine.force < 1e-12 * size)
+        << c.scene << " " << coarse.force << " " << fine.force << " of " << size;
   }
 }
 

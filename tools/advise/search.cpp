@@ -15,10 +15,14 @@ constexpr double most_step = 0.8;  // of a tolerance: what a step may take of it
 
 double over(double difference, double allowed) { return std::abs(difference) / std::max(allowed, 1e-300); }
 
-/// What the quantities of a model are off by, from a run that is finer in one thing, by `factor` times what that changes.
+/// What the quantities of a model are off by, from a run that is finer in one thing, by `factor` times what that changes; infinite where
+/// one of both has no value.
 std::vector<double> part(const Candidate& c, const Candidate& finer, double factor) {
   std::vector<double> out;
-  for (size_t k = 0; k < c.values.size(); ++k) out.push_back(factor * (finer.values[k].value - c.values[k].value));
+  for (size_t k = 0; k < c.values.size(); ++k) {
+    const double change = factor * (finer.values[k].value - c.values[k].value);
+    out.push_back(std::isfinite(change) ? change : HUGE_VAL);
+  }
   return out;
 }
 
@@ -204,10 +208,15 @@ class Search {
     }
   }
 
+  /// Where a run ends that is compared with a model's: at its window, but not after the run itself; 0: at the end.
+  double end_beside(const Candidate& c) const {
+    const double window = window_of(c);
+    return c.end > 0 && (window == 0 || c.end < window) ? c.end : window;
+  }
   /// Error of the step of a model by (h, h/2) and its order of two; too large to judge any model?  Twice the step would be cheaper, but of
   /// a machine that rings it told .1 of a tolerance where .9 is true.
   bool is_coarse(const Candidate& c) {
-    const Candidate& half = all_.of({c.levels, 0.5, window_of(c)});
+    const Candidate& half = all_.of({c.levels, 0.5, end_beside(c)});
     if (!half.failure.empty()) throw Error("", "half the step does not run: " + half.failure, "", Exit::not_converged);
     a_.step = part(c, half, 4. / 3);
     return step_over(largest_step()) > most_step;
@@ -236,8 +245,9 @@ class Search {
     const auto is_linear = [](Level l) { return fidelity(l) == Fidelity::linear; };
     while (std::any_of(a_.chosen->levels.begin(), a_.chosen->levels.end(), is_linear)) {
       const Candidate& c = *a_.chosen;
-      const Candidate& more = of({c.levels, 1, window_of(c), 2 * c.modes});
-      if (!more.failure.empty()) return warn("", "more modes do not run, so the error of those left out is unknown: " + more.failure);
+      const Candidate& more = of({c.levels, 1, c.end, 2 * c.modes});  // which may be chosen
+      if (!more.failure.empty())
+        return a_.modes.clear(), warn("", "more modes do not run, so the error of those left out is unknown: " + more.failure);
       a_.modes = part(c, more, 1);
       double largest = 0;
       for (size_t k = 0; k < c.values.size(); ++k) {
@@ -256,7 +266,7 @@ class Search {
   /// Error of the mesh by the chosen model on a finer one; it falls with the square of the size of cells.
   void find_mesh() {
     if (all_.refinement() == 0) return;
-    const Candidate& fine = all_.of({a_.chosen->levels, 1, window_of(*a_.chosen), a_.chosen->modes, true});
+    const Candidate& fine = all_.of({a_.chosen->levels, 1, end_beside(*a_.chosen), a_.chosen->modes, true});
     if (!fine.failure.empty()) return warn("", "the finer mesh does not run, so the error of the mesh is unknown: " + fine.failure);
     const double square = all_.refinement() * all_.refinement();
     a_.mesh = part(*a_.chosen, fine, square / (square - 1));

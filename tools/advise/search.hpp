@@ -17,10 +17,11 @@ struct SearchOptions {
 /// What decided, and what of it is known.
 struct Advice {
   const Candidate *base = nullptr, *reference = nullptr, *chosen = nullptr;  // reference: the base, or it with some regions nonlinear
-  // parts of the error of the chosen model by quantity, each in its unit: what a step of none, all modes and cells of no size would change
-  std::vector<double> step, modes,
-      mesh;          // modes: empty where it has none; mesh: where no finer one was given; both: where that does not run
-  double doubt = 0;  // what strains of the second degree may change of the reference, over the tightest tolerance
+  // parts of the error of the chosen model by quantity, each in its unit; empty where that is not known
+  std::vector<double> step;                    // what a step of none would change
+  std::vector<double> modes;                   // what all modes of its linear regions would
+  std::vector<double> mesh;                    // what cells of no size would
+  double doubt = 0;                            // what strains of the second degree may change of the reference, over the tightest tolerance
   std::map<size_t, const Candidate*> without;  // the chosen model with this region rigid
   std::vector<const Candidate*> tried;
   std::map<size_t, std::string> kept_rigid;  // regions that cannot deform, and why

@@ -12,13 +12,13 @@
 namespace hilo::petsc {
 namespace {
 
-constexpr PetscInt largest_room = 30000;  // [%], far beyond what delayed pivots need: memory ends before
+constexpr PetscInt largest_room = 5000;  // [%], far beyond what delayed pivots need
 
 }  // namespace
 
 void DirectSolver::structure(const Cliques& cliques, const BlockMap& map) {
   check(MatDestroy(&factor_));
-  factored_ = false;
+  factored_ = false, room_ = usual_room;
   is_mostly_dense_ = 4 * map.first_dense < 3 * map.n_global;
   cliques_ = &cliques;
   shared_.emplace(map);

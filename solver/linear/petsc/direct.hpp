@@ -35,7 +35,8 @@ class DirectSolver final : public KktSolver {
   double tolerance_, factor_bytes_ = 0, set_up_ = 0;
   bool factored_ = false;         // the factors are those of the matrix
   bool is_mostly_dense_ = false;  // bodies and multipliers, whose positions shall be exact; a solve more costs messages
-  PetscInt room_ = 35;            // for delayed pivots, of what the analysis expects [%]; doubled where it does not do
+  static constexpr PetscInt usual_room = 35;
+  PetscInt room_ = usual_room;  // for delayed pivots, of what the analysis expects [%]; doubled where it does not do
   const Cliques* cliques_ = nullptr;
   std::optional<SharedBlocks> shared_;
   mutable std::optional<BlockMatrix> matrix_;

@@ -198,6 +198,12 @@ TEST(Ties, ThatCannotBeAreRefused) {
   expect_refused(good, {}, "Bzmim", "did you mean \"Bzmin\"");
   const Mesh apart = stack(Shape::hex8, Shape::hex8, 3, 4, nullptr, [](const Vec3& x) { return Vec3(x + Vec3(0, 0, 0.06)); });
   expect_refused(apart, {}, "Bzmin", "0.06 m off \"Azmax\", more than 0.0125 m, a twentieth of a facet (");
+  const Mesh deep = stack(Shape::hex8, Shape::hex8, 3, 4, nullptr, [](const Vec3& x) { return Vec3(x - Vec3(0, 0, 0.06)); });
+  expect_refused(deep, {}, "Bzmin", "0.06 m off \"Azmax\", more than 0.0125 m, a twentieth of a facet (");
+  Mesh twice = good;
+  const std::vector<Facet> top = twice.facet_sets.at("Azmax");
+  twice.facet_sets["Azmax"].insert(twice.facet_sets["Azmax"].end(), top.begin(), top.end());
+  expect_refused(twice, {}, "Bzmin", "faces \"Azmax\" in two layers");
 }
 
 }  // namespace

@@ -37,6 +37,8 @@ std::string BdfScene::glue_surface(std::int64_t region) {
 void BdfScene::glue() {
   const BdfCase& chosen = deck_.chosen;
   const auto sum = deck_.glue_sums.find(chosen.glue);
+  if (chosen.glue >= 0 && sum == deck_.glue_sums.end() && !deck_.glue.contains(chosen.glue))
+    in_.skip(fmt::format("BGSET = {}, of which there is none", chosen.glue), "case control");
   for (const auto& [id, pairs] : deck_.glue)
     for (const BdfGlue& g : pairs) {
       const bool taken = !chosen.any || id == chosen.glue || (sum != deck_.glue_sums.end() && std::ranges::count(sum->second.sets, id) > 0);
@@ -51,7 +53,7 @@ void BdfScene::glue() {
       }
       tables_ += fmt::format("\n[[tie]]   # {}\nname = {}\na = {}\nb = {}\n", g.place, toml_text(unique("tie", fmt::format("glue_{}", id))),
                              toml_text(a), toml_text(b));
-      if (g.distance > 0) tables_ += fmt::format("gap = {}\n", number(g.distance, "m"));
+      if (g.distance > 0) tables_ += fmt::format("gap = {}\n", number(g.distance * options_.scale, "m"));
     }
 }
 

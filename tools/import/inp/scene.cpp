@@ -350,7 +350,7 @@ class Writer {
         in_.notes.push_back(fmt::format("{}: *TIE, ADJUST=NO: nodes off the other surface are moved onto it all the same", t.place));
       tables_ += fmt::format("\n[[tie]]   # {}\nname = {}\na = {}\nb = {}\n", t.place, toml_text(unique("tie", clean_name(t.name))),
                              toml_text(a->second), toml_text(b->second));
-      if (t.tolerance > 0) tables_ += fmt::format("gap = {}\n", num(t.tolerance * si("m")));
+      if (t.tolerance > 0) tables_ += fmt::format("gap = {}\n", num(t.tolerance * si("m") * o_.scale));
     }
   }
 
