@@ -41,7 +41,7 @@ struct Mortar {
 /// slave facet's size.
 Mortar mortar(std::span<const Vec3> X, std::span<const MortarFacet> slave, std::span<const MortarFacet> master, double gap);
 
-/// Moves nodes of the slave side by n^-1 times the gap, so that the rows vanish at X; the largest move [m].
-double close_gaps(std::span<const MortarRow> rows, std::span<Vec3> X);
+/// Moves nodes of the slave side by n^-1 times the gap, so that the rows vanish at X.
+void close_gaps(std::span<const MortarRow> rows, std::span<Vec3> X);
 
 }  // namespace hilo

@@ -203,8 +203,9 @@ inertia = [0.03, 0.05, 0.01]
 std::vector<Variant> all_variants() {
   std::vector<Variant> out;
   // sections that no equation of motion is made of
-  const std::set<std::string_view> others{"scene",   "material", "set",  "body",   "initial", "sensor",   "probe",    "section",
-                                          "history", "quantity", "time", "solver", "output",  "left_out", "obstacle", "contact", "tie"};
+  const std::set<std::string_view> others{"scene",  "material", "set",      "body",     "initial", "sensor",
+                                          "probe",  "section",  "history",  "quantity", "time",    "solver",
+                                          "output", "left_out", "obstacle", "contact",  "tie"};
   for (const KindSchema& kind : scene_schema()) {
     if (others.contains(kind.section)) continue;
     if (kind.section == "beam") {

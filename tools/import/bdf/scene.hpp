@@ -97,7 +97,7 @@ class BdfScene {
     unsigned bits = 0;  // components
     Prescribed by;
   };
-  std::map<std::int64_t, HeldBody> body_held_;  // by row
+  std::map<std::int64_t, HeldBody> body_held_;   // by row
   std::map<std::int64_t, std::string> on_beam_;  // row of a grid of beams -> place
   std::vector<std::pair<double, const BdfLoad*>> loads_;
   std::map<std::int64_t, std::pair<Vec3, std::string>> force_, moment_;  // row -> sum and first place
