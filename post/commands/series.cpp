@@ -118,6 +118,7 @@ void list(const SeriesOptions& o, const RunFile& run) {
 
 /// Of peaks of forces and accelerations that say more of step and mesh than of the scene, beside what their history has in the same unit.
 void warn_of_band(const RunFile& run, const std::vector<Column>& columns) {
+  if (run.store().has("/scene") && scene_of(run).table("time").text("analysis") != "dynamic") return;  // t is no time
   const ResolvedBand band = resolved_band(run);
   constexpr std::string_view kinds[] = {"N", "N m", "m/s^2", "g"};
   size_t count = 0;

@@ -15,6 +15,7 @@ constexpr double out_of_line = 3;   // times what tangents foresee
 constexpr double of_largest = 0.1;  // of the largest way foreseen, and
 constexpr double backwards = -0.3;  // cosine between the way and what a tangent foresees
 constexpr double of_length = 1e-5;  // of the scene: shorter ways are nothing
+constexpr double of_force = 1e-3;   // of the largest force: a residual below it is balance
 
 /// How far points of a configuration go by a change of it, one after the other: nodes, centres, and directors at the sizes of their bodies.
 template <class Visit>
@@ -43,21 +44,31 @@ double cosine(const System& system, const Config& a, const Config& b) {
 
 }  // namespace
 
+/// A state, or one near to it, under the loads of another.
+Residual BranchJump::evaluate(const Config& q, const Loaded& state, const Loaded& loads, bool tangent) {
+  Stage s = stage_at(q, loads.t);
+  s.a = &zero_, s.load_factor = loads.ramp, s.elapsed = slow;
+  Residual r;
+  assemble(system_, solver_, s, state.lambda, r, tangent);
+  return r;
+}
+
+/// Whether a state is in balance under its own loads, at the forces of another.
+bool BranchJump::balanced(const Loaded& at, const Loaded& other) {
+  system_.commit(at.q);
+  Residual r = evaluate(at.q, at, at, false);
+  r.force_scale = std::max(r.force_scale, evaluate(other.q, other, other, false).force_scale);
+  return system_.comm->max(relative_residual(system_, r)) < of_force;
+}
+
 /// How all moves from a state to the loads of another, to first order: what moves by a law takes the rest along.  None of a tangent that is
 /// singular.
 std::optional<Config> BranchJump::foreseen(const Loaded& at, const Loaded& other, bool factored) {
   constexpr double little = 1e-3;  // of the way of what moves by a law
   system_.commit(at.q);
-  const auto evaluate = [&](const Config& q, const Loaded& loads, bool tangent) {
-    Stage s = stage_at(q, loads.t);
-    s.a = &zero_, s.load_factor = loads.ramp, s.elapsed = slow;
-    Residual r;
-    assemble(system_, solver_, s, at.lambda, r, tangent);
-    return r.r;
-  };
   std::vector<double> base;
-  if (!factored || system_.moves()) base = evaluate(at.q, at, !factored);
-  std::vector<double> r = evaluate(at.q, other, false), z;
+  if (!factored || system_.moves()) base = evaluate(at.q, at, at, !factored).r;
+  std::vector<double> r = evaluate(at.q, at, other, false).r, z;
   Config way;
   combine(way, {{0, &at.q}});
   if (system_.moves()) {
@@ -66,7 +77,7 @@ std::optional<Config> BranchJump::foreseen(const Loaded& at, const Loaded& other
     combine(nudged, {{1 - little, &at.q}, {little, &to}});
     system_.place(nudged);
     combine(way, {{1 / little, &nudged}, {-1 / little, &at.q}});
-    const std::vector<double> moved = evaluate(nudged, at, false);
+    const std::vector<double> moved = evaluate(nudged, at, at, false).r;
     for (size_t i = 0; i < r.size(); ++i) r[i] += (moved[i] - base[i]) / little;
   }
   if (!correct(solver_, r, z, 1e-3).ok) return std::nullopt;
@@ -91,7 +102,7 @@ double BranchJump::between(const Loaded& from, const Loaded& to, bool factored) 
     return system_.comm->max(worst);
   };
   const double longest = system_.comm->max(gone.empty() ? 0 : *std::max_element(gone.begin(), gone.end()));
-  if (longest < of_length * system_.length) return system_.commit(to.q), 0;
+  if (longest < of_length * system_.length || !balanced(from, to)) return system_.commit(to.q), 0;
   const std::optional<Config> at_end = foreseen(to, from, factored), at_start = foreseen(from, to, false);
   const double behind = surprise(at_end);
   double jump = surprise(at_start);

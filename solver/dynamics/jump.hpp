@@ -19,7 +19,7 @@ struct Loaded {
 /// A jump has a length of its own, however short the step.  Where a point moved more than three times as far as both foresee, or all
 /// against the way that one foresees, the step has jumped, or is too long to tell.  Where the tangent at the start alone explains the way
 /// (it is soft just before a limit of the load, or the structure stiffens), the loads are taken back: what then comes to another state than
-/// the start has jumped.  Collective.
+/// the start has jumped.  A start that its own loads do not balance, as before a preload, is on no branch.  Collective.
 class BranchJump {
  public:
   BranchJump(System& system, KktSolver& solver, const NewtonOptions& options) : system_(system), solver_(solver), options_(options) {}
@@ -27,6 +27,8 @@ class BranchJump {
   double between(const Loaded& from, const Loaded& to, bool factored);
 
  private:
+  Residual evaluate(const Config& q, const Loaded& state, const Loaded& loads, bool tangent);
+  bool balanced(const Loaded& at, const Loaded& other);
   std::optional<Config> foreseen(const Loaded& at, const Loaded& other, bool factored);
   System& system_;
   KktSolver& solver_;

@@ -176,12 +176,12 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
   std::vector<double> lambda(3 * n_joint_blocks(), 0.0);
   Residual unused;
   unused.r.assign(3 * n_blocks(), 0.0);
-  const auto evaluate = [&](KktSolver& into) {
-    Pass p{stage, lambda, unused, &into, node, body, 1, with_loads};
+  const auto evaluate = [&](KktSolver& into, bool loads) {
+    Pass p{stage, lambda, unused, &into, node, body, 1, loads};
     for (const Equations* part : all<Equations>()) part->evaluate(p);
   };
   Reach reach(*this);
-  evaluate(reach);
+  evaluate(reach, false);  // loads have turns without moves
   comm->max(reach.arm);
   for (size_t k = 0; k < moving.size(); ++k) {
     const Body& body = bodies[moving[k]];
@@ -223,7 +223,7 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
 
   Resistance resistance(*this, blocks);
   resistance.n_clusters = n_clusters;
-  evaluate(resistance);
+  evaluate(resistance, with_loads);
 
   std::vector<std::vector<std::int64_t>> tell(comm->size);
   for (auto& list : tell)

@@ -171,6 +171,36 @@ TEST(Surfaces, HoldAPartThatNothingElseHolds) {
   EXPECT_NEAR(f(0, 1), -0.01, 1e-8);
 }
 
+// Truth: the diagram of a bolted joint. Plates of stiffness K under a bolt of stiffness k, preload P: the bolt has P K/(K + k) and the
+// share k/(K + k) of a pull, and all of it once the pull is P. A preload at the first step is no jump to another branch.
+TEST(Surfaces, PartWhenThePullIsThePreload) {
+  constexpr double K = 1e4, k = 2500, P = 10;
+  Case c("contact");
+  c.use(stack(Shape::hex8, Shape::hex8, 3, 2));
+  std::ofstream(c / "bolt.toml") << text_of(c.source("pressed.toml"))
+                                 << fmt::format(R"([[spring]]
+kind = "axial"
+name = "bolt"
+b = "Bzmax"
+at_a = [0.5, 0.5, 0]
+at_b = [0.5, 0.5, 1]
+stiffness = {}
+preload = {}
+)",
+                                                k, P);
+  const Ran ran = c.run("hilo-solve bolt.toml mesh.h5 --set load.p.pressure=-12 --set time.steps=6 -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_EQ(ran.err.find("jump"), std::string::npos) << ran.err;
+  const Results r(c / "run.h5");
+  const auto t = r.history("t"), bolt = r.history("spring/bolt"), clamp = r.history("contact/c");
+  ASSERT_EQ(t.rows(), 7);
+  for (Eigen::Index i = 1; i < t.rows(); ++i) {
+    const double pull = 12 * t(i, 0), tension = pull < P ? (P * K + pull * k) / (K + k) : pull;
+    EXPECT_NEAR(-bolt(i, 2), tension, 3e-3 * P) << pull;
+    EXPECT_NEAR(clamp(i, 2), tension - pull, 3e-3 * P) << pull;
+  }
+}
+
 /// A plate of 3 x 1 x `thick` m, its top at z = 0, and a block of .3 x .3 x .2 m above its middle.
 Mesh plate(double thick, double gap) {
   BlockOptions A, B;
