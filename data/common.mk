@@ -21,6 +21,8 @@ export OMPI_MCA_rmaps_base_oversubscribe := 1
 export PRTE_MCA_rmaps_default_mapping_policy := :oversubscribe
 export OMPI_MCA_hwloc_base_binding_policy := none
 export PRTE_MCA_hwloc_default_binding_policy := none
+# Open MPI 5.0.7 complains of every rank on a machine with IPv6 (open-mpi/ompi, issue 14079)
+export OMPI_MCA_btl_tcp_disable_family := 6
 export OPENBLAS_NUM_THREADS := 1
 export PYTHONDONTWRITEBYTECODE := 1
 
