@@ -15,9 +15,14 @@ SHELL := /bin/bash
 
 export OMPI_ALLOW_RUN_AS_ROOT := 1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
-export OMPI_MCA_rmaps_base_oversubscribe := 1
 export OMPI_MCA_mpi_yield_when_idle := 1
+# more ranks than cores, bound to none: Open MPI 4 and 5
+export OMPI_MCA_rmaps_base_oversubscribe := 1
+export PRTE_MCA_rmaps_default_mapping_policy := :oversubscribe
 export OMPI_MCA_hwloc_base_binding_policy := none
+export PRTE_MCA_hwloc_default_binding_policy := none
+# Open MPI 5.0.7 complains of every rank on a machine with IPv6 (open-mpi/ompi, issue 14079)
+export OMPI_MCA_btl_tcp_disable_family := 6
 export OPENBLAS_NUM_THREADS := 1
 export PYTHONDONTWRITEBYTECODE := 1
 

@@ -17,10 +17,7 @@ inline void expect_passes_on(int ranks, const std::string& suite, const std::str
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   // what MPI has put into this process' environment would confuse its children
   const std::string clean = "unset $(compgen -e | grep -E '^(OMPI|OPAL|ORTE|PMIX|PRTE)_') HILO_NOTHING\n";
-  const std::string launcher =
-      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
-      "OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_hwloc_base_binding_policy=none timeout 300 mpirun -n " +
-      std::to_string(ranks) + " ";
+  const std::string launcher = for_ranks + "timeout 300 mpirun -n " + std::to_string(ranks) + " ";
   const Ran ran = run(clean + (ranks == 1 ? "timeout 300 " : launcher) + "'" + self +
                           "' --gtest_also_run_disabled_tests --gtest_filter='*DISABLED_" + suite + ".*'",
                       folder);

@@ -12,11 +12,19 @@
 namespace hilo {
 namespace {
 
-/// CLI11 tells an open range by the largest double, in 309 digits.
+/// CLI11 tells a range as "1 to 8" (2.1) or "[1 - 8]" (2.4), and an open one by the smallest and largest doubles.
 std::string in_words(const CLI::ParseError& error) {
-  const std::string text = error.what();
-  const size_t range = text.find(" not in range 0.0000"), value = text.find("Value ");
-  if (range == text.npos || value > range || text.size() < range + 300) return text;
+  const std::string text = error.what(), words = " not in range ";
+  const size_t range = text.rfind(words), value = text.find("Value ");
+  if (range == text.npos || value > range) return text;
+  const size_t from = text.find_first_not_of('[', range + words.size());
+  if (from == text.npos) return text;
+  char* after = nullptr;
+  const double least = std::strtod(text.c_str() + from, &after);
+  const size_t to = text.find_first_of("0123456789", static_cast<size_t>(after - text.c_str()));
+  if (to == text.npos) return text;
+  const double most = std::strtod(text.c_str() + to, nullptr);
+  if (most < 1e300) return text.substr(0, range) + words + fmt::format("{} to {}", least, most);
   const std::string given = text.substr(value + 6, range - value - 6);
   char* end = nullptr;
   const double number = std::strtod(given.c_str(), &end);

@@ -94,13 +94,10 @@ TEST(DISABLED_TwoRanks, ShareOneCore) {
 
 Ran run_on(int ranks, const std::string& suite, const std::string& under = "") {
   const std::string self = fs::read_symlink("/proc/self/exe").string();
-  return run(
-      "unset $(compgen -e | grep -E '^(OMPI|OPAL|ORTE|PMIX|PRTE)_') HILO_NOTHING\n"
-      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_mpi_yield_when_idle=1 "
-      "OMPI_MCA_hwloc_base_binding_policy=none timeout 120 " +
-          under + "mpirun -n " + std::to_string(ranks) + " '" + self + "' --gtest_also_run_disabled_tests --gtest_filter='*DISABLED_" +
-          suite + "'",
-      ".");
+  return run("unset $(compgen -e | grep -E '^(OMPI|OPAL|ORTE|PMIX|PRTE)_') HILO_NOTHING\n" + for_ranks + "timeout 120 " + under +
+                 "mpirun -n " + std::to_string(ranks) + " '" + self + "' --gtest_also_run_disabled_tests --gtest_filter='*DISABLED_" +
+                 suite + "'",
+             ".");
 }
 
 TEST(Comm, RanksThatWaitInDifferentPlacesEndAndSayWhere) {

@@ -6,7 +6,8 @@ bin=$(realpath "$1"); ranks=${2:-4}; shift; shift || true
 scene=$(realpath "$(dirname "$0")/../../data/firing")
 folder=$(mktemp -d); trap 'rm -rf "$folder"' EXIT
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_mpi_yield_when_idle=1
-export OMPI_MCA_hwloc_base_binding_policy=none OPENBLAS_NUM_THREADS=1
+export PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
+export OMPI_MCA_hwloc_base_binding_policy=none PRTE_MCA_hwloc_default_binding_policy=none OPENBLAS_NUM_THREADS=1
 "$bin/hilo-import" "$scene/vehicle.geo" -o "$folder/mesh.h5" --define SIZE=1 > "$folder/log"
 "$bin/hilo-tag" "$folder/mesh.h5" "$scene/../scaling/tags.toml" -o "$folder/tags.h5" >> "$folder/log"
 "$bin/hilo-part" "$folder/tags.h5" "$scene/scene.toml" -n "$ranks" -o "$folder/parts.h5" >> "$folder/log"

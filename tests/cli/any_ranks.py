@@ -21,10 +21,10 @@ import tempfile
 import h5py
 import numpy
 
+import on_ranks
+
 repo, tools = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-os.environ.update(PATH=tools + ":" + os.environ["PATH"], OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                  OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1", OMPI_MCA_hwloc_base_binding_policy="none",
-                  OPENBLAS_NUM_THREADS="1")
+on_ranks.use(tools)
 
 # name: scene, how its mesh is made (geometry and options of hilo-import), options of hilo-tag, overrides of the scene
 BLOCK = "stability/block.geo"

@@ -14,11 +14,11 @@ import subprocess
 import sys
 import tempfile
 
+import on_ranks
+
 repo, tools = (os.path.abspath(a) for a in sys.argv[1:3])
 words = [a for a in sys.argv[3:] if a != "--print"]
-os.environ.update(PATH=tools + ":" + os.environ["PATH"], OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                  OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1", OMPI_MCA_hwloc_base_binding_policy="none",
-                  OPENBLAS_NUM_THREADS="1")
+on_ranks.use(tools)
 page = open(os.path.join(repo, "tests/cli/errors.md")).read()
 reader = open(os.path.join(repo, "docs/errors.md")).read()
 

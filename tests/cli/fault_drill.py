@@ -21,6 +21,7 @@ import time
 
 import h5py
 
+import on_ranks
 import share
 from drill import SCENES, command, numbers, run, same, scene_files
 
@@ -28,9 +29,7 @@ repo, tools, library = (os.path.abspath(a) for a in sys.argv[1:4])
 stride = int(sys.argv[4]) if len(sys.argv) > 4 else 97
 all_of_it = len(sys.argv) > 4
 kills = 20 if all_of_it else 2
-os.environ.update(PATH=tools + ":" + os.environ["PATH"], OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                  OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1", OMPI_MCA_hwloc_base_binding_policy="none",
-                  OPENBLAS_NUM_THREADS="1")
+on_ranks.use(tools)
 random.seed(2026)
 CHECKPOINT = ["--checkpoint", "7steps"]
 counts = {"kills": 0, "full disks": 0, "cut files": 0, "restarts": 0, "rows kept": 0}

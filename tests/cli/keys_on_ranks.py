@@ -14,11 +14,11 @@ import sys
 import tempfile
 
 import extreme_keys as keys
+import on_ranks
 import share
 
 everything = "all" in sys.argv[2:]
-os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_rmaps_base_oversubscribe="1",
-                  OMPI_MCA_mpi_yield_when_idle="1", OMPI_MCA_hwloc_base_binding_policy="none", OPENBLAS_NUM_THREADS="1")
+on_ranks.use()
 SECONDS = int(os.environ.get("SECONDS_EACH", 60))
 BLOCK = """[material.plain]
 E = 2e9

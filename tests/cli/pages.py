@@ -12,6 +12,8 @@ import subprocess
 import sys
 import tempfile
 
+import on_ranks
+
 # Run elsewhere, or not here at all.
 ELSEWHERE = {"cluster.md": "make -C tests slurm", "tour.md": "cli.tour", "tour-assembly.md": "cli.tour", "errors.md": "cli.errors",
              "library.md": "cli.library", "ccx-decks.md": "cli.ccx_decks", "pictures.md": "needs the runs of data/firing",
@@ -67,8 +69,7 @@ def run(kind, block, folder, environment):
 
 
 def main(repo, tools, pages):
-    environment = dict(os.environ, PATH=tools + ":" + os.environ["PATH"], OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                       OMPI_MCA_rmaps_base_oversubscribe="1")
+    environment = dict(os.environ, **on_ranks.ENVIRONMENT, PATH=tools + ":" + os.environ["PATH"])
     wanted = pages or sorted(p for p in os.listdir(os.path.join(repo, "docs")) if p.endswith(".md") and p not in ELSEWHERE)
     ran = 0
     with tempfile.TemporaryDirectory() as place:

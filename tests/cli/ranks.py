@@ -15,11 +15,11 @@ import tempfile
 
 import h5py
 
+import on_ranks
 import share
 
 repo, tools = sys.argv[1:3]
-os.environ.update(PATH=tools + ":" + os.environ["PATH"], OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                  OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1", OPENBLAS_NUM_THREADS="1")
+on_ranks.use(tools)
 scene = os.path.join(repo, "data/firing")
 sets = ["--set", "solver.tolerance=1e-12", "--set", "solver.kind=direct", "--set", "time.end=0.0125", "--set", "output.interval=0.0025"]
 

@@ -57,7 +57,8 @@ for _ in $(seq 30); do [ "$(sinfo --noheader --states=idle --format=%D)" = 2 ] &
 cd "$folder/work"
 export PATH=$bin:$PATH OPENBLAS_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
 export OMPI_MCA_btl=self,tcp OMPI_MCA_btl_tcp_if_include=lo  # two nodes of one host name would share memory that is not theirs
-export OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_hwloc_base_binding_policy=none
+export PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
+export OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_hwloc_base_binding_policy=none PRTE_MCA_hwloc_default_binding_policy=none
 cp "$repo"/data/turret/scene.toml .
 hilo-import --quiet --trust "$repo/data/turret/turret.geo" -o mesh.h5 --define SIZE=0
 hilo-tag --quiet mesh.h5 "$repo/data/turret/tags-flexible.toml" -o tags.h5

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The packages of BUILD on a bare Debian 12: apt installs them, an ordinary user runs the whole tour without the source tree, and a program
-# is built on the libraries.  Prints what the packages bring along, beside what the build needs.
+# The packages of BUILD on a bare Debian of this machine's release: apt installs them, an ordinary user runs the whole tour without the source
+# tree, and a program is built on the libraries.  Prints what the packages bring along, beside what the build needs.
 # The bare system is made once in FOLDER, by debootstrap, and stays bare: what a test does lies in a layer above it.
 # Usage, as root: bare.sh REPO BUILD FOLDER        make -C tests package
 set -euo pipefail
@@ -14,7 +14,7 @@ base=$folder/base root=$folder/root
 if [ ! -e "$folder/done" ]; then
   rm -rf "$base"
   mkdir -p "$base"
-  debootstrap --variant=minbase bookworm "$base" > "$folder/debootstrap.log" || { tail "$folder/debootstrap.log"; exit 4; }
+  debootstrap --variant=minbase "$(. /etc/os-release; echo "$VERSION_CODENAME")" "$base" > "$folder/debootstrap.log" || { tail "$folder/debootstrap.log"; exit 4; }
   touch "$folder/done"
 fi
 rm -rf "$folder/upper" "$folder/work"

@@ -11,9 +11,11 @@ repo, tools, out = (os.path.abspath(a) for a in sys.argv[1:4])
 limit = int(os.environ.get("LIMIT", 300))  # seconds that a row may take
 most = int(os.environ.get("MOST", 128))  # subdomains; on two cores more than 32 ranks take minutes
 wanted = sys.argv[4:] or ["serial", "block", "ranks", "subdomains"]
-os.environ.update(PATH=tools + ":" + os.environ["PATH"], OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                  OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1", OMPI_MCA_hwloc_base_binding_policy="none",
-                  OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")
+sys.path.insert(0, os.path.join(repo, "tests/cli"))
+import on_ranks
+
+on_ranks.use(tools)
+os.environ["OMP_NUM_THREADS"] = "1"
 os.makedirs(out, exist_ok=True)
 scene = os.path.join(repo, "data/firing/scene.toml")
 
