@@ -2,6 +2,7 @@
 // A results file as pictures and tables see it: mesh, tags, field steps and histories, read a step at a time.  A run in progress can be
 // read.
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ struct Series {
   size_t rows() const { return t.size(); }
   double at(size_t row, size_t c) const { return value[row * column.size() + c]; }
 };
+
+struct RunBeam;
 
 class RunFile {
  public:
@@ -64,7 +67,9 @@ class RunFile {
   /// Steps by "all", "first", "last" or numbers "0,5,10"; by times "0.01,0.02" the nearest ones.
   std::vector<Step> select_steps(const std::string& numbers, const std::string& times) const;
 
-  /// Names of all histories: "energy", "joint.trunnion", ...
+  /// Beams of the scene, read at the first call; none where the scene cannot be read.
+  const std::vector<RunBeam>& beams() const;
+  /// Names of all histories: "energy", "joint.trunnion", ...; beam_stress.NAME is made of beam.NAME where the section has a face.
   std::vector<std::string> series_names() const;
   /// Columns and units without the values.
   Series describe(const std::string& name) const;
@@ -85,6 +90,8 @@ class RunFile {
     Series way;           // of these points
     size_t first, last;   // its nodes
   };
+  const RunBeam* stressed_beam(const std::string& series) const;  // null where the name is of another history
+  mutable std::shared_ptr<const std::vector<RunBeam>> beams_;
   Field bodies_displacement(const Step& step) const;
   std::vector<Body> bodies_;  // that stand in for a mesh
 };
