@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/error.hpp"
 
@@ -52,7 +53,14 @@ std::vector<RunBeam> beams_of(const RunFile& run) {
   std::vector<RunBeam> out;
   if (!run.store().has("/history/beam")) return out;
   const Scene scene = scene_of(run);
-  for (const Entry& e : scene.entries("beam")) out.push_back(beam_of(scene, e));
+  std::map<std::string, std::string> own;  // a section by each of its names
+  for (const Entry& e : scene.entries("beam")) {
+    out.push_back(beam_of(scene, e));
+    for (const auto& [name, k] : section_names(e, out.back().line)) own[name] = out.back().on[k];
+  }
+  for (RunBeam& b : out)
+    for (std::string* on : {&b.on.front(), &b.on.back()})
+      if (const auto found = own.find(*on); found != own.end()) *on = found->second;
   return out;
 }
 
