@@ -152,7 +152,7 @@ RunFile::Field RunFile::field(const Step& step, const std::string& name) const {
     throw Error(path, fmt::format("no field \"{}\" in step {}", name, step.key), hint);
   }
   Field f = own_field(step, name);
-  if (swept_) swept_->append(*this, step, name, f);
+  if (swept_) swept_->append(step, name, f);
   return f;
 }
 

@@ -54,6 +54,7 @@ SweptBeams::SweptBeams(const RunFile& run, MeshFile& file)
   for (size_t k = 0; k < beams_.size(); ++k) {
     const RunBeam& b = beams_[k];
     drawn_.push_back(b.face ? *b.face : stand_in_face(b));
+    forces_.push_back(b.face ? run.series("beam." + b.name) : Series{});
     const SectionFace& face = drawn_.back();
     const auto region = static_cast<std::int32_t>(mesh.region_name.size());
     mesh.region_name.push_back(b.name);
@@ -133,22 +134,19 @@ std::vector<Vec3> SweptBeams::positions(const Poses& poses) const {
   return out;
 }
 
-std::vector<double> SweptBeams::stress(const RunFile& run, const std::string& name, size_t wanted) const {
+std::vector<double> SweptBeams::stress(const std::string& name, size_t wanted) const {
   std::vector<double> out;
-  Series forces;
-  for (size_t i = 0; i < nodes_.size(); ++i) {
-    const Node& n = nodes_[i];
-    const RunBeam& b = beams_[n.beam];
-    if (forces.name != "beam." + b.name) forces = run.series("beam." + b.name);
+  for (const Node& n : nodes_) {
+    if (!beams_[n.beam].face) {
+      out.push_back(0);
+      continue;
+    }
+    const Series& forces = forces_[n.beam];
     const size_t row = std::min(wanted, forces.rows() - 1);
     const auto value = [&](const Vec6& f) {
       const SectionStress s = stress_at(drawn_[n.beam], drawn_[n.beam].points[n.point], f);
       return name == "von_mises" ? s.von_mises() : s.axial;
     };
-    if (!b.face) {
-      out.push_back(0);
-      continue;
-    }
     double x = value((1 - n.s) * beam_forces(forces, row, n.cell, 0) + n.s * beam_forces(forces, row, n.cell, 1));
     if (n.last)  // where a force acts on a section, the larger of both sides
       if (const double other = value(beam_forces(forces, row, n.cell + 1, 0)); std::abs(other) > std::abs(x)) x = other;
@@ -157,7 +155,7 @@ std::vector<double> SweptBeams::stress(const RunFile& run, const std::string& na
   return out;
 }
 
-void SweptBeams::append(const RunFile& run, const Step& step, const std::string& name, RunFile::Field& field) const {
+void SweptBeams::append(const Step& step, const std::string& name, RunFile::Field& field) const {
   const auto add = [&](const std::vector<Vec3>& values) {
     for (const Vec3& v : values) field.value.insert(field.value.end(), v.data(), v.data() + 3);
   };
@@ -174,7 +172,7 @@ void SweptBeams::append(const RunFile& run, const Step& step, const std::string&
     for (size_t i = 0; i < x.size(); ++i) x[i] = b > a ? Vec3((x[i] - before[i]) / (t_[b] - t_[a])) : Vec3::Zero();
     add(x);
   } else if (name == "von_mises" || name == "axial_stress") {
-    const std::vector<double> s = stress(run, name, row);
+    const std::vector<double> s = stress(name, row);
     field.value.insert(field.value.end(), s.begin(), s.end());
   } else {
     const size_t n = name.starts_with("cell_") ? static_cast<size_t>(n_cells_) : nodes_.size();

@@ -20,7 +20,7 @@ class SweptBeams {
   bool stressed() const;  // has any beam a face
   bool has_face(size_t region) const { return beams_[region - first_region_].face.has_value(); }
   /// Adds the values of the nodes, or of the cells, of beams to those of the mesh at a step.
-  void append(const RunFile& run, const Step& step, const std::string& name, RunFile::Field& field) const;
+  void append(const Step& step, const std::string& name, RunFile::Field& field) const;
 
  private:
   struct Carrier {
@@ -36,12 +36,13 @@ class SweptBeams {
   using Poses = std::map<std::string, Pose>;
   Poses poses(const RunFile::Field& own, size_t row) const;
   std::vector<Vec3> positions(const Poses& poses) const;
-  std::vector<double> stress(const RunFile& run, const std::string& name, size_t row) const;
+  std::vector<double> stress(const std::string& name, size_t row) const;
 
   size_t first_node_, first_region_;
   std::int64_t n_cells_ = 0;
   std::vector<RunBeam> beams_;
   std::vector<SectionFace> drawn_;  // of each beam
+  std::vector<Series> forces_;      // of those that have a face
   std::vector<Node> nodes_;
   std::vector<Vec3> X_;
   std::vector<double> t_;  // of the histories
