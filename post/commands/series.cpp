@@ -111,7 +111,12 @@ void list(const SeriesOptions& o, const RunFile& run) {
     std::vector<std::string> units;
     for (const auto& u : s.unit)
       if (std::find(units.begin(), units.end(), u) == units.end()) units.push_back(u);
-    table.rows.push_back({name, fmt::format("{}", fmt::join(s.column, " ")), fmt::format("{}", fmt::join(units, ", "))});
+    constexpr size_t most = 24;  // of a beam there may be thousands
+    const bool many = !o.json && s.column.size() > most;
+    table.rows.push_back({name,
+                          fmt::format("{}", fmt::join(s.column.begin(), many ? s.column.begin() + most / 2 : s.column.end(), " ")) +
+                              (many ? fmt::format(" ... {}, {} in all", s.column.back(), s.column.size()) : ""),
+                          fmt::format("{}", fmt::join(units, ", "))});
   }
   write_out("-", o.json ? table.json("") + "\n" : table.text());
 }

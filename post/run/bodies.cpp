@@ -6,10 +6,11 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "model/beam_line.hpp"
 #include "post/run/ellipsoid.hpp"
 #include "post/run/marker.hpp"
+#include "post/run/run_beams.hpp"
 #include "post/run/run_file.hpp"
+#include "post/run/swept_beams.hpp"
 
 namespace hilo {
 namespace {
@@ -43,7 +44,7 @@ void add_ellipsoid(Mesh& mesh, const Ellipsoid& body, double smallest) {
 }  // namespace
 
 void RunFile::stand_in_bodies() {
-  if (has_mesh() || !bodies_.empty()) return;
+  if (has_mesh() || mesh_) return;
   const auto names = store_->read_strings("/body/name");
   const auto points = store_->read<double>("/body/points");
   const Scene scene = scene_of(*this);
@@ -66,44 +67,19 @@ void RunFile::stand_in_bodies() {
     body.last = file.mesh.X.size();
     bodies_.push_back(std::move(body));
   }
-  for (const Entry& e : scene.entries("beam")) {  // bars between the sections, each of which follows its body
-    const BeamLine line = beam_line(e);
-    const std::int64_t first = file.mesh.n_nodes();
-    const auto region = static_cast<std::int32_t>(file.mesh.region_name.size());
-    file.mesh.region_name.push_back(e.name);
-    file.mesh.region_data.emplace_back();
-    std::vector<std::string> carrier(line.at.size());
-    for (const auto& [name, k] : section_names(e, line))
-      if (carrier[k].empty()) carrier[k] = name;
-    if (e.given("a")) carrier.front() = e.text("a");
-    if (e.given("b")) carrier.back() = e.text("b");
-    if (line.closed) carrier.back() = carrier.front();
-    for (size_t k = 0; k < line.at.size(); ++k) {
-      file.mesh.node_id.push_back(file.mesh.n_nodes() + 1);
-      file.mesh.X.push_back(line.at[k]);
-      if (k > 0)
-        file.mesh.add_cell(Shape::bar2, std::array{first + static_cast<std::int64_t>(k) - 1, first + static_cast<std::int64_t>(k)}, region,
-                           file.mesh.n_cells() + 1);
-      const auto found = static_cast<size_t>(std::find(names.begin(), names.end(), carrier[k]) - names.begin());
-      if (found == names.size()) continue;  // the ground
-      Body body;
-      for (size_t i = 0; i < 4; ++i) body.X.emplace_back(&points[12 * found + 3 * i]);
-      body.way = series("body." + carrier[k]);
-      body.first = file.mesh.X.size() - 1, body.last = file.mesh.X.size();
-      bodies_.push_back(std::move(body));
-    }
-  }
-  if (bodies_.empty()) throw Error(path, "holds neither a mesh nor bodies to draw", "its histories are there: hilo-post series --list");
+  if (bodies_.empty() && beams().empty())
+    throw Error(path, "holds neither a mesh nor bodies to draw", "its histories are there: hilo-post series --list");
   file.fidelity.assign(file.mesh.region_name.size(), Fidelity::rigid);
   file.tagged = true;
   mesh_ = std::move(file);
   steps.clear();
-  for (size_t row = 0; row < bodies_.front().way.rows(); ++row) steps.push_back({fmt::format("{:06}", row), bodies_.front().way.t[row]});
+  const std::vector<double> t = bodies_.empty() ? series("beam." + beams().front().name).t : bodies_.front().way.t;
+  for (size_t row = 0; row < t.size(); ++row) steps.push_back({fmt::format("{:06}", row), t[row]});
 }
 
 RunFile::Field RunFile::bodies_displacement(const Step& step) const {
   const auto row = static_cast<size_t>(std::stoul(step.key));
-  Field u{std::vector<double>(3 * mesh_->mesh.X.size()), 3};
+  Field u{std::vector<double>(3 * (swept_ ? swept_->first_node() : mesh_->mesh.X.size())), 3};
   for (const Body& body : bodies_) {
     std::vector<Vec3> now;
     for (size_t i = 0; i < 4; ++i) now.emplace_back(body.way.at(row, 3 * i), body.way.at(row, 3 * i + 1), body.way.at(row, 3 * i + 2));

@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "model/mesh_source.hpp"
 #include "model/scene_sets.hpp"
+#include "post/run/swept_beams.hpp"
 
 namespace hilo {
 namespace {
@@ -128,35 +129,56 @@ std::string array_of(const Step& step, const std::string& name) {
 }  // namespace
 
 std::vector<std::string> RunFile::fields(const Step& step) const {
-  if (!bodies_.empty()) return {"displacement"};
-  std::vector<std::string> names = store_->list("/field/" + step.key);
+  std::vector<std::string> names = has_mesh() ? store_->list("/field/" + step.key) : std::vector<std::string>{"displacement"};
+  if (swept_ && swept_->stressed())
+    for (const char* of : {"von_mises", "axial_stress"})
+      if (std::find(names.begin(), names.end(), of) == names.end()) names.emplace_back(of);
+  if (!has_mesh()) return names;
   for (const std::string& of : store_->list("/envelope"))
     names.push_back(of.ends_with("_time") ? of.substr(0, of.size() - 5) + "_envelope_time" : of + "_envelope");
   return names;
 }
 
 bool RunFile::has_field(const Step& step, const std::string& name) const {
-  return bodies_.empty() ? store_->has(array_of(step, name)) : name == "displacement";
+  if (swept_ && swept_->stressed() && (name == "von_mises" || name == "axial_stress")) return true;
+  return has_mesh() ? store_->has(array_of(step, name)) : name == "displacement";
 }
 
 RunFile::Field RunFile::field(const Step& step, const std::string& name) const {
-  const std::string array = array_of(step, name);
   const auto names = fields(step);
   if (!has_field(step, name)) {
     std::string hint = suggest(name, names);
     if (hint.empty()) hint = fmt::format("there are {}", fmt::join(names, ", "));
     throw Error(path, fmt::format("no field \"{}\" in step {}", name, step.key), hint);
   }
-  if (!bodies_.empty()) return bodies_displacement(step);
+  Field f = own_field(step, name);
+  if (swept_) swept_->append(step, name, f);
+  return f;
+}
+
+RunFile::Field RunFile::own_field(const Step& step, const std::string& name) const {
+  if (!has_mesh()) return name == "displacement" ? bodies_displacement(step) : Field{std::vector<double>(swept_->first_node()), 1};
+  const std::string array = array_of(step, name);
+  if (!store_->has(array)) return {std::vector<double>(swept_->first_node()), 1};  // of beams alone
   const auto shape = store_->shape(array);
   Field f{store_->read<double>(array), shape.size() > 1 ? static_cast<int>(shape[1]) : 1};
-  if (row_.empty()) return f;
+  if (row_.empty() || name.starts_with("cell_")) return f;
   const auto width = static_cast<size_t>(f.columns);
   std::vector<double> all(row_.size() * width);
   for (size_t n = 0; n < row_.size(); ++n)
     std::copy_n(f.value.begin() + static_cast<std::ptrdiff_t>(static_cast<size_t>(std::max<std::int64_t>(0, row_[n])) * width), width,
                 all.begin() + static_cast<std::ptrdiff_t>(n * width));
   return {std::move(all), f.columns};
+}
+
+bool RunFile::gives(size_t region, const std::string& field) const {
+  if (!swept_ || region < swept_->first_region()) return field != "axial_stress";
+  return field == "displacement" || ((field == "axial_stress" || field == "von_mises") && swept_->has_face(region));
+}
+
+void RunFile::draw_beams() {
+  if (swept_ || beams().empty()) return;
+  swept_ = std::make_shared<SweptBeams>(*this, const_cast<MeshFile&>(mesh_file()));
 }
 
 std::vector<Step> RunFile::select_steps(const std::string& numbers, const std::string& times) const {

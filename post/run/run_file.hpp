@@ -2,6 +2,7 @@
 // A results file as pictures and tables see it: mesh, tags, field steps and histories, read a step at a time.  A run in progress can be
 // read.
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,9 @@ struct Series {
   double at(size_t row, size_t c) const { return value[row * column.size() + c]; }
 };
 
+struct RunBeam;
+class SweptBeams;
+
 class RunFile {
  public:
   /// Error when the file is missing, is no run, or its mesh.h5 has gone.
@@ -46,6 +50,11 @@ class RunFile {
   /// For a scene of bodies alone: ellipsoids of their inertia stand for a mesh, a region each, and the rows of the histories for outputs of
   /// displacements.  Nothing changes where there is a mesh.
   void stand_in_bodies();
+  /// Beams join the mesh, swept along their axes: regions of their names, with displacements, axial_stress and von_mises where the section
+  /// has a face.  After stand_in_bodies.
+  void draw_beams();
+  /// Does a region have values of a field of nodes?  A drawn beam has the three above, and nothing else has axial_stress.
+  bool gives(size_t region, const std::string& field) const;
   bool has_mesh() const { return store_->linked("/mesh") || store_->has("/mesh"); }
 
   /// A nodal or cell field of a step and its number of columns; Error with the names there are.  Of a run with output.envelope each step
@@ -59,12 +68,16 @@ class RunFile {
   bool has_field(const Step& step, const std::string& name) const;
   /// Does the run hold the fields of a node?  One that keeps the skin of its regions alone gives each inner node the values of the nearest
   /// node of the skin, counted in cells: in no picture without a cut are they seen.
-  bool holds(std::int64_t node) const { return row_.empty() || held_[static_cast<size_t>(node)]; }
+  bool holds(std::int64_t node) const {
+    return row_.empty() || node >= static_cast<std::int64_t>(row_.size()) || held_[static_cast<size_t>(node)];
+  }
   bool is_skin() const { return store_->has("/skin/node"); }
   /// Steps by "all", "first", "last" or numbers "0,5,10"; by times "0.01,0.02" the nearest ones.
   std::vector<Step> select_steps(const std::string& numbers, const std::string& times) const;
 
-  /// Names of all histories: "energy", "joint.trunnion", ...
+  /// Beams of the scene, read at the first call; none where the scene cannot be read.
+  const std::vector<RunBeam>& beams() const;
+  /// Names of all histories: "energy", "joint.trunnion", ...; beam_stress.NAME is made of beam.NAME where the section has a face.
   std::vector<std::string> series_names() const;
   /// Columns and units without the values.
   Series describe(const std::string& name) const;
@@ -85,6 +98,10 @@ class RunFile {
     Series way;           // of these points
     size_t first, last;   // its nodes
   };
+  const RunBeam* stressed_beam(const std::string& series) const;  // null where the name is of another history
+  mutable std::shared_ptr<const std::vector<RunBeam>> beams_;
+  Field own_field(const Step& step, const std::string& name) const;  // of the mesh, or of bodies that stand in for it
+  std::shared_ptr<SweptBeams> swept_;
   Field bodies_displacement(const Step& step) const;
   std::vector<Body> bodies_;  // that stand in for a mesh
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "post/run/run_beams.hpp"
 #include "post/run/run_file.hpp"
 
 namespace hilo {
@@ -56,7 +57,33 @@ std::string array_of(const std::string& name) {
   return "/history/" + (dot == std::string::npos ? name : name.substr(0, dot) + "/" + to_link_name(name.substr(dot + 1)));
 }
 
+/// At both ends of each cell, forces and moments.
+void name_beam_columns(Series& s, size_t columns) {
+  constexpr std::pair<const char*, const char*> of[] = {{"V1", "N"}, {"V2", "N"}, {"N", "N"}, {"M1", "N m"}, {"M2", "N m"}, {"T", "N m"}};
+  for (size_t c = 0; c < columns; ++c)
+    s.column.push_back(fmt::format("cell{}.{}.{}", c / 12, c % 12 < 6 ? "a" : "b", of[c % 6].first)), s.unit.emplace_back(of[c % 6].second);
+}
+
 }  // namespace
+
+const std::vector<RunBeam>& RunFile::beams() const {
+  if (beams_) return *beams_;
+  std::vector<RunBeam> found;
+  try {
+    found = beams_of(*this);
+  } catch (const Error&) {  // kinds of a program outside this tree: its histories are there all the same
+  }
+  beams_ = std::make_shared<const std::vector<RunBeam>>(std::move(found));
+  return *beams_;
+}
+
+const RunBeam* RunFile::stressed_beam(const std::string& series) const {
+  constexpr std::string_view group = "beam_stress.";
+  if (!series.starts_with(group)) return nullptr;
+  for (const RunBeam& b : beams())
+    if (b.face && b.name == series.substr(group.size())) return &b;
+  return nullptr;
+}
 
 std::vector<std::string> RunFile::series_names() const {
   std::vector<std::string> names;
@@ -65,11 +92,15 @@ std::vector<std::string> RunFile::series_names() const {
     const auto members = store_->list("/history/" + item);  // of an array: none
     for (const std::string& member : members) names.push_back(item + "." + from_link_name(member));
     if (members.empty() && !store_->shape("/history/" + item).empty()) names.push_back(item);
+    if (item == "beam")
+      for (const RunBeam& b : beams())
+        if (b.face) names.push_back("beam_stress." + b.name);
   }
   return names;
 }
 
 Series RunFile::describe(const std::string& name) const {
+  if (const RunBeam* beam = stressed_beam(name)) return described_beam_stress(*beam);
   const auto dot = name.find('.');  // with one, no list of thousands is asked
   if (dot == std::string::npos || dot + 1 == name.size() || !store_->has(array_of(name))) {
     const auto names = series_names();
@@ -83,6 +114,7 @@ Series RunFile::describe(const std::string& name) const {
   const std::string group = name.substr(0, name.find('.'));
   for (const Layout& layout : layouts())
     if (layout.group == group && layout.column.size() == columns) s.column = layout.column, s.unit = layout.unit;
+  if (group == "beam" && columns % 12 == 0) name_beam_columns(s, columns);
   if (s.column.empty()) {
     const std::string unit = store_->text_attribute(array_of(name), "unit").value_or("");
     for (size_t c = 0; c < columns; ++c) s.column.push_back(columns == 1 ? "value" : std::to_string(c)), s.unit.push_back(unit);
@@ -92,6 +124,11 @@ Series RunFile::describe(const std::string& name) const {
 
 Series RunFile::series(const std::string& name) const {
   Series s = describe(name);
+  if (const RunBeam* beam = stressed_beam(name)) {
+    const Series forces = series("beam." + beam->name);
+    s.t = forces.t, s.value = beam_stress(*beam, forces);
+    return s;
+  }
   const std::string array = array_of(name);
   s.value = store_->read<double>(array);
   s.t = store_->read<double>(store_->text_attribute(array, "time").value_or("/history/t"));

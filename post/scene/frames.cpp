@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "post/charts/ticks.hpp"
+#include "post/run/run_beams.hpp"
 
 namespace hilo {
 namespace {
@@ -54,7 +55,9 @@ std::vector<Box> divided(const Box& whole, size_t n, bool row, double gap, doubl
 }  // namespace
 
 Frames::Frames(const FrameOptions& o) : o_(o) {
-  if (o_.field == "von_mises" && !RunFile(o.run).has_mesh()) {
+  const RunFile first(o.run);
+  const auto has_face = [](const RunBeam& b) { return b.face.has_value(); };
+  if (o_.field == "von_mises" && !first.has_mesh() && std::none_of(first.beams().begin(), first.beams().end(), has_face)) {
     warn(o.run, "bodies without a mesh have no stress: drawn by their names");
     o_.field = "region";
   }
@@ -70,7 +73,10 @@ Frames::Frames(const FrameOptions& o) : o_(o) {
     difference_ = names[0] + " minus " + names[1];
   }
   if (!by_names() && std::none_of(views_.begin(), views_.end(), [](const auto& v) { return v->has_values(); }))
-    throw Error(o.run, fmt::format("all regions shown are rigid: they have no {}", views_.front()->field().label),
+    throw o_.field == "axial_stress"
+        ? Error(o.run, "nothing that is shown has axial stress",
+                "it is of beams whose section has a kind with a shape; try --field von_mises")
+        : Error(o.run, fmt::format("all regions shown are rigid: they have no {}", views_.front()->field().label),
                 "try --field acceleration");
 }
 
@@ -117,7 +123,7 @@ void Frames::choose_colours(const Extent& range) {
     bar_.high += room;
   }
   for (const auto& v : views_)
-    if (v->has_neutral()) bar_.neutral = "rigid";
+    if (v->has_neutral()) bar_.neutral = v->run().beams().empty() ? "rigid" : "no value";
   if (o_.iso.empty()) return;
   iso_ = parse_levels(o_.iso);
   bar_.marks = iso_;

@@ -31,6 +31,7 @@ void same_mesh(const Mesh& a, const Mesh& b, const std::string& path_a, const st
 RunFile opened(const std::string& path) {
   RunFile run(path);
   run.stand_in_bodies();
+  run.draw_beams();
   return run;
 }
 
@@ -51,9 +52,9 @@ RunView::RunView(const FrameOptions& o, const std::string& path)
     field_ = shown_field(o.field, run_.fields(run_.steps.front()));
   }
   for (size_t r = 0; r < shown_.size(); ++r)
-    if (field_.flexible_only && file_.fidelity[r] == Fidelity::rigid) valued_[r] = false;
+    if ((field_.flexible_only && file_.fidelity[r] == Fidelity::rigid) || !run_.gives(r, field_.array)) valued_[r] = false;
   if (!o.minus.empty()) {
-    minus_ = std::make_unique<RunFile>(o.minus);
+    minus_ = std::make_unique<RunFile>(opened(o.minus));
     same_mesh(mesh_, minus_->mesh(), run_.path, minus_->path);
     for (size_t r = 0; r < shown_.size(); ++r)
       if (field_.flexible_only && minus_->mesh_file().fidelity[r] == Fidelity::rigid) valued_[r] = false;

@@ -19,6 +19,7 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
   };
   const std::vector<std::string> xyz{"x", "y", "z"};
   const std::vector<Known> table = {{"von_mises", "von Mises stress", "Pa", {}},
+                                    {"axial_stress", "axial stress of beams", "Pa", {}},
                                     {"stress_error", "error of stress", "Pa", {}},
                                     {"plastic_strain", "plastic strain", "1", {}},
                                     {"stress", "stress", "Pa", {"xx", "yy", "zz", "yz", "xz", "xy"}},
@@ -37,6 +38,7 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
     if (array != k.array) continue;
     ShownField f{array, -1, k.label, k.unit};
     f.flexible_only = f.unit == "Pa" || f.unit == "1" || array.starts_with("von_mises");
+    f.from_zero = array != "axial_stress";
     const std::string component = dot == std::string::npos ? "" : name.substr(dot + 1);
     const auto at = std::find(k.components.begin(), k.components.end(), component);
     if ((component.empty() && array != "stress")) return f;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "physics/thin_walls.hpp"
+#include "physics/section_face.hpp"
 
 namespace hilo {
 namespace {
@@ -72,22 +72,17 @@ SectionArea double_tee(const EntryValues& e, double nu) {
           along_web};
 }
 
-/// A rectangle of a section: its middle, width and height.
-struct Part {
-  double x, y, b, h;
-};
 /// An open section of rectangles, about its centre of area, and of the middles of its walls.
-SectionArea of_walls(const std::vector<Part>& parts, const std::vector<Wall>& walls) {
+SectionArea area_of(const OpenShape& shape) {
   SectionArea out;
-  double x = 0, y = 0;
-  for (const Part& p : parts) out.A += p.b * p.h, x += p.b * p.h * p.x, y += p.b * p.h * p.y;
-  x /= out.A, y /= out.A;
-  for (const Part& p : parts) {
-    const double A = p.b * p.h, dx = p.x - x, dy = p.y - y;
+  const Eigen::Vector2d centre = shape.centre();
+  for (const OpenShape::Part& p : shape.parts) {
+    const double A = p.b * p.h, dx = p.x - centre.x(), dy = p.y - centre.y();
+    out.A += A;
     out.I1 += A * (p.h * p.h / 12 + dy * dy), out.I2 += A * (p.b * p.b / 12 + dx * dx), out.I12 += A * dx * dy;
     out.J += torsion_of_rectangle(p.b, p.h);
   }
-  const OpenWalls thin = open_walls(walls);
+  const OpenWalls thin = open_walls(shape.walls);
   out.s1 = thin.shear_centre[0], out.s2 = thin.shear_centre[1];
   out.shear_1 = thin.stiffness(0, 0), out.shear_2 = thin.stiffness(1, 1), out.shear_12 = thin.stiffness(0, 1);
   return out;
@@ -98,30 +93,56 @@ void check_walls(const EntryValues& e, double flanges, double webs) {
   if (webs >= e.number("width")) e.refuse(e.has("web") ? "web" : "thickness", "the walls fill the width");
 }
 
-SectionArea tee(const EntryValues& e, double) {
-  const double b = e.number("width"), h = e.number("height"), f = e.number("flange"), w = e.number("web"), top = h - f / 2;
-  check_walls(e, f, w);
-  return of_walls({{0, top, b, f}, {0, (h - f) / 2, w, h - f}},
-                  {{{-b / 2, top}, {0, top}, f}, {{b / 2, top}, {0, top}, f}, {{0, 0}, {0, top}, w}});
+OpenShape double_tee_shape(const EntryValues& e) {
+  const double b = e.number("width"), h = e.number("height"), f = e.number("flange"), w = e.number("web"), top = (h - f) / 2;
+  return {{{0, -top, b, f}, {0, top, b, f}, {0, 0, w, h - 2 * f}},
+          {{{-b / 2, -top}, {0, -top}, f},
+           {{b / 2, -top}, {0, -top}, f},
+           {{-b / 2, top}, {0, top}, f},
+           {{b / 2, top}, {0, top}, f},
+           {{0, -top}, {0, top}, w}}};
 }
 
-SectionArea angle(const EntryValues& e, double) {
+OpenShape tee_shape(const EntryValues& e) {
+  const double b = e.number("width"), h = e.number("height"), f = e.number("flange"), w = e.number("web"), top = h - f / 2;
+  check_walls(e, f, w);
+  return {{{0, top, b, f}, {0, (h - f) / 2, w, h - f}}, {{{-b / 2, top}, {0, top}, f}, {{b / 2, top}, {0, top}, f}, {{0, 0}, {0, top}, w}}};
+}
+
+OpenShape angle_shape(const EntryValues& e) {
   const double b = e.number("width"), h = e.number("height"), t = e.number("thickness");
   check_walls(e, t, t);
-  return of_walls({{b / 2, t / 2, b, t}, {t / 2, (h + t) / 2, t, h - t}},
-                  {{{b, t / 2}, {t / 2, t / 2}, t}, {{t / 2, t / 2}, {t / 2, h}, t}});
+  return {{{b / 2, t / 2, b, t}, {t / 2, (h + t) / 2, t, h - t}}, {{{b, t / 2}, {t / 2, t / 2}, t}, {{t / 2, t / 2}, {t / 2, h}, t}}};
 }
 
 /// Of a channel or a Z: where the lower flange goes.
-SectionArea with_two_flanges(const EntryValues& e, double side) {
+OpenShape two_flanges(const EntryValues& e, double side) {
   const double b = e.number("width"), h = e.number("height"), f = e.number("flange"), w = e.number("web"), top = (h - f) / 2;
   check_walls(e, 2 * f, w);
   const double beside = b / 2, tip = b - w / 2;  // from the middle of the web, whose outer side is that of the flange
-  return of_walls({{0, 0, w, h}, {beside, top, b - w, f}, {side * beside, -top, b - w, f}},
-                  {{{tip, top}, {0, top}, f}, {{0, top}, {0, -top}, w}, {{0, -top}, {side * tip, -top}, f}});
+  return {{{0, 0, w, h}, {beside, top, b - w, f}, {side * beside, -top, b - w, f}},
+          {{{tip, top}, {0, top}, f}, {{0, top}, {0, -top}, w}, {{0, -top}, {side * tip, -top}, f}}};
 }
-SectionArea channel(const EntryValues& e, double) { return with_two_flanges(e, 1); }
-SectionArea zed(const EntryValues& e, double) { return with_two_flanges(e, -1); }
+
+SectionArea tee(const EntryValues& e, double) { return area_of(tee_shape(e)); }
+SectionArea angle(const EntryValues& e, double) { return area_of(angle_shape(e)); }
+SectionArea channel(const EntryValues& e, double) { return area_of(two_flanges(e, 1)); }
+SectionArea zed(const EntryValues& e, double) { return area_of(two_flanges(e, -1)); }
+
+SectionFace circle_face(const EntryValues& e, double nu) { return round_face(circle(e, nu), e.number("diameter") / 2, 0, nu); }
+SectionFace tube_face(const EntryValues& e, double nu) {
+  const double r = e.number("diameter") / 2;
+  return round_face(tube(e, nu), r, r - e.number("thickness"), nu);
+}
+SectionFace rectangle_face(const EntryValues& e, double nu) { return full_face(rectangle(e, nu), e.number("width"), e.number("height")); }
+SectionFace box_face(const EntryValues& e, double nu) {
+  return hollow_face(box(e, nu), e.number("width"), e.number("height"), e.number("thickness"));
+}
+SectionFace double_tee_face(const EntryValues& e, double nu) { return open_face(double_tee(e, nu), double_tee_shape(e)); }
+SectionFace tee_face(const EntryValues& e, double nu) { return open_face(tee(e, nu), tee_shape(e)); }
+SectionFace angle_face(const EntryValues& e, double nu) { return open_face(angle(e, nu), angle_shape(e)); }
+SectionFace channel_face(const EntryValues& e, double nu) { return open_face(channel(e, nu), two_flanges(e, 1)); }
+SectionFace zed_face(const EntryValues& e, double nu) { return open_face(zed(e, nu), two_flanges(e, -1)); }
 
 SectionArea general(const EntryValues& e, double) { return {e.number("area"), e.number("I1"), e.number("I2"), e.number("J"), 1, 1}; }
 
@@ -189,18 +210,27 @@ Registry<SectionKind>& section_kinds() {
   static const Param of_web{"web", number, "m", "!", "its thickness", above(0)};
   static Registry<SectionKind> kinds{
       "kind of section",
-      {{"circle", "a full circle", {diameter}, circle},
-       {"tube", "a round tube", {diameter, thickness}, tube},
-       {"rectangle", "a full rectangle", {width, height}, rectangle},
-       {"box", "a rectangular tube of one thickness; J after Bredt", {width, height, thickness}, box},
-       {"I", "two flanges and a web between them; open: it warps freely", {width, height, of_flange, of_web}, double_tee},
-       {"T", "a flange on a web below it; shear by the flow in its walls", {width, height, of_flange, of_web}, tee},
-       {"L", "two legs, along axes 1 and 2 from their corner; shear by the flow in its walls", {width, height, thickness}, angle},
-       {"C", "two flanges along axis 1 from a web; shear by the flow in its walls", {width, height, of_flange, of_web}, channel},
+      {{"circle", "a full circle", {diameter}, circle, circle_face},
+       {"tube", "a round tube", {diameter, thickness}, tube, tube_face},
+       {"rectangle", "a full rectangle", {width, height}, rectangle, rectangle_face},
+       {"box", "a rectangular tube of one thickness; J after Bredt", {width, height, thickness}, box, box_face},
+       {"I", "two flanges and a web between them; open: it warps freely", {width, height, of_flange, of_web}, double_tee, double_tee_face},
+       {"T", "a flange on a web below it; shear by the flow in its walls", {width, height, of_flange, of_web}, tee, tee_face},
+       {"L",
+        "two legs, along axes 1 and 2 from their corner; shear by the flow in its walls",
+        {width, height, thickness},
+        angle,
+        angle_face},
+       {"C",
+        "two flanges along axis 1 from a web; shear by the flow in its walls",
+        {width, height, of_flange, of_web},
+        channel,
+        channel_face},
        {"Z",
         "a flange along axis 1 above a web, one against it below; width: of each flange with the web",
         {width, height, of_flange, of_web},
-        zed},
+        zed,
+        zed_face},
        {"general",
         "given by its numbers",
         {{"area", number, "m^2", "!", "A", above(0)},

@@ -4,6 +4,7 @@
 // Axis 1 lies across (widths), axis 2 upward (heights), 3 along the beam; the origin is the centre of area.
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "base/entry_values.hpp"
@@ -32,11 +33,25 @@ struct BeamSection {
   double size = 0;                   // a length of the section, as its radius of gyration [m]
 };
 
+/// The face of a section: points with what stress they take, and cells between them for pictures.
+struct SectionFace {
+  struct Point {
+    Eigen::Vector2d at;                 // from the centre of area [m]
+    Eigen::Matrix<double, 2, 3> shear;  // stress along 1 and 2 by forces along 1, 2 [1/m^2] and by torsion about the shear centre [1/m^3]
+  };
+  SectionArea area;
+  std::vector<Point> points = {};              // extreme fibres among them
+  std::vector<std::array<int, 4>> cells = {};  // of points, about axis 3; -1 last in a triangle
+  bool round = false;                          // alike in all directions
+};
+
 struct SectionKind {
   std::string_view name, meaning;
   std::vector<Param> keys;  // of the scene, besides the kind
   /// nu: Poisson's ratio, of which the shear factors depend; null: the section is given by its stiffness, without a material.
   SectionArea (*area)(const EntryValues& entry, double nu) = nullptr;
+  /// Null: nothing is known of its shape, and it has no stress at points.
+  SectionFace (*face)(const EntryValues& entry, double nu) = nullptr;
 };
 Registry<SectionKind>& section_kinds();
 
@@ -44,6 +59,18 @@ Registry<SectionKind>& section_kinds();
 BeamSection section_of_area(const EntryValues& entry, const SectionKind& kind, double E, double nu, double density);
 /// A section given by its stiffness.
 BeamSection section_of_stiffness(const EntryValues& entry);
+
+/// Stress at a point of a face under the forces and moments of beams, V1, V2, N, M1, M2, T [N, N m].
+struct SectionStress {
+  double axial = 0, shear = 0;  // [Pa]
+  double von_mises() const;
+};
+SectionStress stress_at(const SectionFace& face, const SectionFace::Point& point, const Vec6& forces);
+/// Over all points: the highest and the lowest axial stress and the largest von Mises stress [Pa].
+struct StressRange {
+  double high = 0, low = 0, von_mises = 0;
+};
+StressRange stress_range(const SectionFace& face, const Vec6& forces);
 
 /// Saint-Venant's constant of torsion of a rectangle, by its series [m^4].
 double torsion_of_rectangle(double a, double b);

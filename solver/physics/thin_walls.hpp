@@ -19,4 +19,7 @@ struct OpenWalls {
 /// q' = -t x.M^-1 V along each wall, of second moments M about the centre; the moment of q is that of V in the shear centre.
 OpenWalls open_walls(const std::vector<Wall>& walls);
 
+/// That flow in the wall nearest to a point, of those in the direction `along`, as a vector; columns: of unit forces along 1 and 2 [1/m].
+Eigen::Matrix2d flow_near(const std::vector<Wall>& walls, const Eigen::Vector2d& at, const Eigen::Vector2d& along);
+
 }  // namespace hilo

@@ -68,6 +68,17 @@ density = 2700
 [region."*"]
 material = "alloy"
 
+[section.rod]
+kind = "circle"
+diameter = 0.01
+
+[beam.mast]
+points = [[0, 0.2, 0], [0, 0.2, 0.3]]
+cells = [2]
+section = "rod"
+material = "alloy"
+a = "ground"
+
 [[joint]]
 kind = "revolute"
 name = "hinge"

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "post/run/run_beams.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.hpp"
+
+namespace hilo {
+namespace {
+
+const Entry* find(const Scene& scene, std::string_view section, const std::string& name) {
+  for (const Entry& e : scene.entries(section))
+    if (e.name == name) return &e;
+  return nullptr;
+}
+
+RunBeam beam_of(const Scene& scene, const Entry& e) {
+  RunBeam b{e.name, beam_line(e), {0}, {}, {}, Vec3::Zero()};
+  for (const BeamLine::Cell& cell : b.line.cells) {
+    const double half = Eigen::AngleAxisd(cell.frame_a.transpose() * cell.frame_b).angle() / 2;
+    b.s.push_back(b.s.back() + cell.length * (half > 1e-6 ? half / std::sin(half) : 1));
+  }
+  b.on.resize(b.line.at.size());
+  for (const auto& [name, k] : section_names(e, b.line))
+    if (b.on[k].empty()) b.on[k] = name;
+  if (e.given("a")) b.on.front() = e.text("a");
+  if (e.given("b")) b.on.back() = e.text("b");
+  if (b.line.closed) b.on.back() = b.on.front();
+  const Entry *section = find(scene, "section", e.text("section")),
+              *material = e.has("material") ? find(scene, "material", e.text("material")) : nullptr;
+  if (!section) return b;
+  const SectionKind& kind = section_kinds().at(section->kind, section->place.text());
+  const double nu = material && material->has("nu") ? material->number("nu") : 0;
+  SectionArea area{.A = 1};
+  if (!kind.area) {
+    const BeamSection s = section_of_stiffness(*section);
+    area.I1 = s.C(3, 3) / s.C(2, 2), area.I2 = s.C(4, 4) / s.C(2, 2);
+  } else {
+    area = kind.area(*section, nu);
+  }
+  b.radii = Vec3(std::sqrt(area.I1 / area.A), std::sqrt(area.I2 / area.A), 0);
+  if (kind.face) b.face = kind.face(*section, nu);
+  return b;
+}
+
+}  // namespace
+
+std::vector<RunBeam> beams_of(const RunFile& run) {
+  std::vector<RunBeam> out;
+  if (!run.store().has("/history/beam")) return out;
+  const Scene scene = scene_of(run);
+  std::map<std::string, std::string> own;  // a section by each of its names
+  for (const Entry& e : scene.entries("beam")) {
+    out.push_back(beam_of(scene, e));
+    for (const auto& [name, k] : section_names(e, out.back().line)) own[name] = out.back().on[k];
+  }
+  for (RunBeam& b : out)
+    for (std::string* on : {&b.on.front(), &b.on.back()})
+      if (const auto found = own.find(*on); found != own.end()) *on = found->second;
+  return out;
+}
+
+Vec6 beam_forces(const Series& beam, size_t row, size_t cell, int end) {
+  return Eigen::Map<const Vec6>(beam.value.data() + row * beam.column.size() + 12 * cell + 6 * static_cast<size_t>(end));
+}
+
+Series described_beam_stress(const RunBeam& beam) {
+  Series s;
+  s.name = "beam_stress." + beam.name;
+  std::vector<std::string> places{""};
+  for (size_t k = 0; k < beam.line.cells.size(); ++k)
+    for (const char* end : {"a", "b"}) places.push_back(fmt::format("cell{}.{}.", k, end));
+  for (const std::string& place : places)
+    for (const char* what : {"high", "low", "von_mises"}) s.column.push_back(place + what), s.unit.emplace_back("Pa");
+  return s;
+}
+
+std::vector<double> beam_stress(const RunBeam& beam, const Series& forces) {
+  std::vector<double> out;
+  for (size_t row = 0; row < forces.rows(); ++row) {
+    const size_t first = out.size();
+    out.resize(first + 3);
+    StressRange all{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), 0};
+    for (size_t k = 0; k < beam.line.cells.size(); ++k)
+      for (const int end : {0, 1}) {
+        const StressRange r = stress_range(*beam.face, beam_forces(forces, row, k, end));
+        all.high = std::max(all.high, r.high), all.low = std::min(all.low, r.low), all.von_mises = std::max(all.von_mises, r.von_mises);
+        out.insert(out.end(), {r.high, r.low, r.von_mises});
+      }
+    out[first] = all.high, out[first + 1] = all.low, out[first + 2] = all.von_mises;
+  }
+  return out;
+}
+
+}  // namespace hilo

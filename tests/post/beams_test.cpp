@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Beams as pictures draw them: swept sections with the stress of their points.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "cli.hpp"
+#include "post/run/playback.hpp"
+#include "post/run/run_beams.hpp"
+
+namespace hilo::test {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+class DrawnBeams : public testing::Test {
+ protected:
+  RunFile solved(const std::string& scene) {
+    work.write("scene.toml", scene);
+    const Ran ran = work.run("hilo-solve --quiet scene.toml -o run.h5");
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    RunFile run(work / "run.h5");
+    run.stand_in_bodies();
+    run.draw_beams();
+    return run;
+  }
+  Workplace work;
+};
+
+constexpr const char* steel = "[material.m]\nE = 2e11\nnu = 0.3\n[time]\nanalysis = \"static\"\nsteps = 4\n";
+
+double volume(const Mesh& mesh, const char* name) {
+  const int region = mesh.find_region(name);
+  double sum = 0;
+  for (std::int64_t c = 0; c < mesh.n_cells(); ++c)
+    if (mesh.region[static_cast<size_t>(c)] == region) sum += quality(mesh, c).volume;
+  return sum;
+}
+
+// The face of each section is swept along its axis: area times length, of rectangles to round-off, of a circle as of its 36 sides.
+TEST_F(DrawnBeams, HaveTheVolumeOfTheirSections) {
+  RunFile run = solved(
+      std::string(steel) +
+      "[section.i]\nkind = \"I\"\nwidth = 0.1\nheight = 0.2\nflange = 0.01\nweb = 0.008\n[section.c]\nkind = \"circle\"\ndiameter = 0.04\n"
+      "[section.g]\nkind = \"general\"\narea = 0.01\nI1 = 1e-5\nI2 = 4e-6\nJ = 1e-6\n"
+      "[beam.one]\npoints = [[0, 0, 0], [1, 2, 2]]\nsection = \"i\"\nmaterial = \"m\"\na = \"ground\"\n"
+      "[beam.two]\npoints = [[1, 2, 2], [1, 2, 3]]\nsection = \"c\"\nmaterial = \"m\"\na = \"one.end\"\n"
+      "[beam.three]\npoints = [[1, 2, 3], [2, 2, 3]]\nsection = \"g\"\nmaterial = \"m\"\na = \"two.end\"\n");
+  const double sides = 18 / pi * std::sin(pi / 18);
+  EXPECT_NEAR(volume(run.mesh(), "one"), 3 * (2 * 0.1 * 0.01 + 0.18 * 0.008), 1e-9);
+  EXPECT_NEAR(volume(run.mesh(), "two"), pi * 0.02 * 0.02 * sides, 1e-9);
+  EXPECT_NEAR(volume(run.mesh(), "three"), 12 * std::sqrt(1e-5 * 4e-6) / 0.01, 1e-9) << "of the same radii of gyration";
+  const auto region = [&](const char* name) { return static_cast<size_t>(run.mesh().find_region(name)); };
+  EXPECT_TRUE(run.gives(region("one"), "axial_stress"));
+  EXPECT_FALSE(run.gives(region("three"), "axial_stress"));
+  EXPECT_FALSE(run.gives(region("one"), "acceleration"));
+}
+
+// Rolled to a circle of radius R, a fibre at the height y is bent to R - y, wherever between two sections, and its stress is E y/R.
+TEST_F(DrawnBeams, FollowTheHelixOfEachCell) {
+  const double L = 10, h = 0.2, b = 0.1, R = L / (2 * pi), M = 2e11 * b * h * h * h / 12 / R;
+  RunFile run = solved(std::string("[section.s]\nkind = \"rectangle\"\nwidth = 0.1\nheight = 0.2\n[material.m]\nE = 2e11\nnu = 0.3\n"
+                                   "[time]\nanalysis = \"static\"\nsteps = 8\n"
+                                   "[beam.arm]\npoints = [[0, 0, 0], [10, 0, 0]]\ncells = [5]\nsection = \"s\"\nmaterial = \"m\"\n"
+                                   "a = \"ground\"\n[[load]]\nkind = \"torque\"\nname = \"t\"\non = \"arm.end\"\ntorque = [0, ") +
+                       std::to_string(-M) + ", 0]\n");
+  Playback playback(run);
+  const std::vector<Vec3> x = playback.positions(playback.last());
+  const RunFile::Field stress = run.field(run.steps.back(), "axial_stress");
+  ASSERT_EQ(stress.value.size(), x.size());
+  for (size_t n = 0; n < x.size(); ++n) {
+    const double up = run.mesh().X[n].z();
+    EXPECT_NEAR(std::hypot(x[n].x(), x[n].z() - R), R - up, 1e-6);
+    EXPECT_NEAR(stress.value[n], -2e11 * up / R, 1e-5 * 2e11 * h / 2 / R);
+  }
+}
+
+}  // namespace
+}  // namespace hilo::test

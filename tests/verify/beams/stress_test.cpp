@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Forces, moments and stress along beams, as hilo-post shows them, against closed forms.
+#include <map>
+#include <sstream>
+
+#include "verify/beams/beam_scene.hpp"
+
+namespace hilo::test::beams_stress_test {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+class BeamStress : public BeamPlace {
+ protected:
+  /// Columns of `hilo-post beam run.h5 WHAT -o -` by their first word.
+  std::map<std::string, std::vector<double>> along(const std::string& scene, const std::string& what = "arm") {
+    (void)solved(scene);
+    const Ran post = work.run("hilo-post beam run.h5 " + what + " -o -");
+    EXPECT_EQ(post.exit, 0) << post.err;
+    std::istringstream lines(post.out);
+    std::string line, cell;
+    std::getline(lines, line);
+    std::vector<std::string> names;
+    for (std::istringstream header(line); std::getline(header, cell, ',');) names.push_back(cell.substr(0, cell.find(' ')));
+    std::map<std::string, std::vector<double>> out;
+    while (std::getline(lines, line)) {
+      size_t c = 0;
+      for (std::istringstream row(line); std::getline(row, cell, ',');)
+        out[names.at(c++)].push_back(cell.empty() ? std::nan("") : std::stod(cell));
+    }
+    return out;
+  }
+};
+
+constexpr const char* steel = "[material.m]\nE = 2e11\nnu = 0.3\n";
+
+// A cantilever with a force at its tip: m = F (L - x), its stress m c/I = 6 m/(b h^2), that of the force 1.5 F/(b h).
+TEST_F(BeamStress, ACantileverHasTheMomentAndStressOfItsTipForce) {
+  const double F = 2, L = 1.2, b = 0.02, h = 0.05;
+  const auto at = along(fmt::format("[section.s]\nkind = \"rectangle\"\nwidth = {}\nheight = {}\n", b, h) + steel +
+                        beam_of(fmt::format("[[0, 0, 0], [{}, 0, 0]]", L), 4, "a = \"ground\"\nmaterial = \"m\"") +
+                        push("arm.end", Vec3(0, 0, F)) + in_steps(1));
+  ASSERT_EQ(at.at("s").size(), 8u);
+  for (size_t i = 0; i < 8; ++i) {
+    const double s = L / 4 * std::ceil(i / 2.0), m = F * (L - s), stress = 6 * m / (b * h * h), room = 1e-6 * 6 * F * L / (b * h * h);
+    EXPECT_NEAR(at.at("s")[i], s, 1e-12);
+    EXPECT_NEAR(at.at("V2")[i], F, 1e-6 * F);
+    EXPECT_NEAR(at.at("M1")[i], -m, 1e-6 * F * L) << "pressed above";
+    EXPECT_NEAR(at.at("high")[i], stress, room);
+    EXPECT_NEAR(at.at("low")[i], -stress, room);
+    EXPECT_NEAR(at.at("von_mises")[i], std::max(stress, std::sqrt(3.0) * 1.5 * F / (b * h)), room);
+    for (const char* none : {"V1", "N", "M2", "T"}) EXPECT_LT(std::abs(at.at(none)[i]), 1e-4 * F) << none;
+  }
+}
+
+// A quarter of a circle, held at its foot: at the angle a a force F along x at its tip leaves m = F R (1 - sin a), n = -F sin a, one along
+// z the torsion F R (1 - sin a) with the moment F R cos a.
+TEST_F(BeamStress, AnArchBearsWhatEquilibriumAsks) {
+  const double F = 0.02, R = 0.8, r = 0.01, A = pi * r * r, I = pi * r * r * r * r / 4, h = std::sqrt(0.5) * R;
+  const double middle = std::sqrt(3.0) * (3 + 2 * 0.3) / (2 + 2 * 0.3) * F / A;  // von Mises stress of the force alone
+  const std::string arch = fmt::format("[section.s]\nkind = \"circle\"\ndiameter = {}\n", 2 * r) + steel +
+                           beam_of(fmt::format("[[{0}, 0, 0], [{1:.17g}, {1:.17g}, 0], [0, {0}, 0]]", R, h), 6,
+                                   "a = \"ground\"\nmaterial = \"m\"\npath = \"arc\"");
+  const auto flat = along(arch + push("arm.end", Vec3(F, 0, 0)) + in_steps(1));
+  const auto out = along(arch + push("arm.end", Vec3(0, 0, F)) + in_steps(1));
+  for (size_t i = 0; i < 12; ++i) {
+    const double a = pi / 12 * std::ceil(i / 2.0), m = F * R * (1 - std::sin(a)), n = -F * std::sin(a), bending = m * r / I;
+    EXPECT_NEAR(flat.at("s")[i], R * a, 1e-9);
+    EXPECT_NEAR(flat.at("N")[i], n, 1e-4 * F);
+    EXPECT_NEAR(std::hypot(flat.at("M1")[i], flat.at("M2")[i]), m, 1e-4 * F * R);
+    EXPECT_NEAR(flat.at("high")[i], n / A + bending, 1e-4 * F * R * r / I);
+    EXPECT_NEAR(flat.at("low")[i], n / A - bending, 1e-4 * F * R * r / I);
+    const double twist = F * R * (1 - std::sin(a)), bend = F * R * std::cos(a);
+    EXPECT_NEAR(std::abs(out.at("T")[i]), twist, 1e-3 * F * R);
+    EXPECT_NEAR(std::hypot(out.at("M1")[i], out.at("M2")[i]), bend, 1e-3 * F * R);
+    EXPECT_NEAR(out.at("von_mises")[i], std::max(std::hypot(bend * r / I, std::sqrt(3.0) * twist * r / (2 * I)), middle),
+                5e-3 * F * R * r / I);
+  }
+}
+
+// Of a falling weight on a bar: histories, the least and the largest of all steps and a quantity agree with n/A of the bar.
+TEST_F(BeamStress, HistoriesEnvelopesAndQuantitiesAreOfTheSameStress) {
+  const Results r =
+      solved("gravity = [0, 0, -9.81]\n[section.s]\nkind = \"circle\"\ndiameter = 0.01\n" + std::string(steel) + "density = 7850\n" +
+             beam_of("[[0, 0, 0], [0, 0, -1]]", 2, "a = \"ground\"\nmaterial = \"m\"") +
+             "[[point_mass]]\nname = \"w\"\non = \"arm.end\"\nmass = 50\n" +
+             "[[quantity]]\nname = \"bar\"\nkind = \"peak\"\nformula = \"stress [Pa] = beam_stress.arm.high\"\n" + in_time(0.008, 2e-5));
+  const double A = pi * 0.005 * 0.005;
+  const Eigen::MatrixXd f = r.history("beam/arm");
+  const double most = std::max({f.col(2).maxCoeff(), f.col(8).maxCoeff(), f.col(14).maxCoeff(), f.col(20).maxCoeff()});
+  EXPECT_GT(most, 1.9 * 50 * 9.81) << "twice the weight, which falls onto an unloaded bar";
+  EXPECT_LT(most, 2.1 * 52 * 9.81);
+  const Ran series = work.run("hilo-post series run.h5 beam_stress.arm.high beam_stress.arm.cell1.b.low -o -");
+  ASSERT_EQ(series.exit, 0) << series.err;
+  double high = 0, low = 0;
+  std::istringstream lines(series.out);
+  std::string line;
+  std::getline(lines, line);
+  for (Eigen::Index row = 0; std::getline(lines, line); ++row) {
+    double t, h, l;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &t, &h, &l), 3);
+    high = std::max(high, h), low = std::max(low, l);
+    EXPECT_NEAR(l, f(row, 20) / A, 1e-6 * most / A);
+  }
+  EXPECT_NEAR(high, most / A, 1e-6 * most / A);
+  const Ran quantity = work.run("hilo-post quantity run.h5");
+  EXPECT_NE(quantity.out.find(fmt::format("{:.5g}", high).substr(0, 6)), std::string::npos) << quantity.out << quantity.err;
+  const Ran over = work.run("hilo-post beam run.h5 arm --envelope -o -");
+  EXPECT_NE(over.out.find(fmt::format(",{},", f.col(2).maxCoeff())), std::string::npos) << over.out;
+}
+
+// Where nothing is known of the shape there is no stress, and no number stands for it.
+TEST_F(BeamStress, ASectionWithoutShapeHasNone) {
+  const auto at =
+      along(plain_section(1e6, 2e6, 900, 700) + beam_of("[[0, 0, 0], [1, 0, 0]]", 1) + push("arm.end", Vec3(0, 3, 0)) + in_steps(1));
+  EXPECT_NEAR(at.at("M2")[0], 3, 1e-4);
+  EXPECT_TRUE(std::isnan(at.at("high")[0]));
+  EXPECT_EQ(work.run("hilo-post series run.h5 beam_stress.arm").exit, 2);
+  const Ran none = work.run("hilo-post beam run.h5 am");
+  EXPECT_EQ(none.exit, 2);
+  EXPECT_NE(none.err.find("arm"), std::string::npos) << none.err;
+}
+
+}  // namespace
+}  // namespace hilo::test::beams_stress_test
