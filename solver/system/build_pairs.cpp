@@ -57,9 +57,7 @@ std::vector<PairFacet> Builder::on_first_rank(const std::vector<Facet>& facets) 
   }
   sent = comm_.to_first(sent);
   if (comm_.rank != 0) return {};
-  const auto place = [](const Sent& x) { return std::pair(x.cell, x.facet); };
-  std::ranges::sort(sent, {}, place);
-  sent.erase(std::ranges::unique(sent, {}, place).begin(), sent.end());
+  std::ranges::sort(sent, {}, [](const Sent& x) { return std::pair(x.cell, x.facet); });
   std::unordered_map<std::int64_t, int> local;
   for (size_t i = 0; i < mesh_->node_global.size(); ++i) local[mesh_->node_global[i]] = static_cast<int>(i);
   std::vector<PairFacet> out;

@@ -66,6 +66,10 @@ class OnRanks {
     if (scene_.mesh.n_cells() == 0) return;
     write_mesh(case_ / "mesh.h5", scene_.mesh, {"test"});
     write_tags(case_ / "tags.h5", case_ / "mesh.h5", scene_.fidelity, {"test"});
+    if (std::ranges::find(scene_.fidelity, Fidelity::linear) == scene_.fidelity.end()) return;
+    const Ran ran = case_.run("hilo-reduce --quiet scene.toml tags.h5 " + scene_.options + " -o modes.h5");  // modes found anew differ
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    scene_.options += " --modes modes.h5";
   }
   Results alone() const { return solved(1, "tags.h5", "one.h5"); }
   Results on(int ranks, Division division) const {
