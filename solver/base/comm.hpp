@@ -2,6 +2,7 @@
 // The ranks of a run.  One rank never starts MPI.
 #pragma once
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <numeric>
 #include <source_location>
@@ -41,6 +42,27 @@ class Comm {
     if (size == 1) return mine;
     std::vector<T> all(std::accumulate(count.begin(), count.end(), size_t{0}));
     gather(mine.data(), all.data(), count, sizeof(T), at);
+    return all;
+  }
+  /// The list of rank 0, on all.
+  template <class T>
+  std::vector<T> of_first(std::vector<T> mine, Where at = Where::current()) const {
+    if (rank != 0) mine.clear();
+    return gather(mine, at);
+  }
+  /// The lists of all ranks, one after the other, on rank 0 alone; T has no pointers in it.
+  template <class T>
+  std::vector<T> to_first(const std::vector<T>& mine, Where at = Where::current()) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    std::vector<std::vector<char>> to(size);
+    to[0].resize(mine.size() * sizeof(T));
+    if (!mine.empty()) std::memcpy(to[0].data(), mine.data(), to[0].size());
+    std::vector<T> all;
+    for (const std::vector<char>& list : exchange(to, at)) {
+      const size_t before = all.size();
+      all.resize(before + list.size() / sizeof(T));
+      if (!list.empty()) std::memcpy(all.data() + before, list.data(), list.size());
+    }
     return all;
   }
   void barrier(Where at = Where::current()) const;

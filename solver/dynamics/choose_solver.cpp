@@ -46,12 +46,18 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
     if (unknowns > 300000) kind = "cg";
     const std::int64_t ranks = system.comm->size, flexible = 3 * system.layout.map.first_dense;
     const auto held = system.comm->sum(std::count_if(system.node_block.begin(), system.node_block.end(), [](int k) { return k >= 0; }));
-    if (ranks >= 2 && flexible > 3000 && flexible / ranks <= 100000 && unknowns - flexible <= 3000 && 2 * held < flexible) kind = "bddc";
+    const bool is_far = ranks >= 2 && system.traits().reaches;
+    if (is_far) kind = "direct";
+    if (ranks >= 2 && !is_far && flexible > 3000 && flexible / ranks <= 100000 && unknowns - flexible <= 3000 && 2 * held < flexible)
+      kind = "bddc";
     why = fmt::format("{} unknowns on {} rank{}", unknowns, system.comm->size, system.comm->size == 1 ? "" : "s");
   }
   const SolverKind& chosen = solver_kinds().at(kind, e.where("kind"));
   if (chosen.serial && system.comm->size > 1 && unknowns > 0)
     throw Error(e.where("kind"), "the light solvers are serial", "use bddc, direct, cg or iterative under mpirun");
+  if (system.comm->size > 1 && system.traits().reaches && kind != "direct")
+    throw Error(e.where("kind"), fmt::format("surfaces that meet or are tied run on several ranks with \"direct\" alone, not \"{}\"", kind),
+                "leave solver.kind out, or run without mpirun");
   auto solver = chosen.make(kind, e);
   solver->structure(system.layout.cliques, system.layout.map);
   if (talk) fmt::print(stderr, "solver {}: {}\n", solver->name(), why);

@@ -163,10 +163,17 @@ LocalMesh read_local_mesh(const std::string& path, const Comm& comm) {
 }
 
 std::int64_t LocalMesh::put_first(const std::vector<char>& marked) {
-  std::vector<std::int64_t> to(marked.size()), from;
+  std::vector<std::int64_t> from;
   for (const bool wanted : {true, false})
     for (size_t i = 0; i < marked.size(); ++i)
-      if ((marked[i] != 0) == wanted) to[i] = static_cast<std::int64_t>(from.size()), from.push_back(static_cast<std::int64_t>(i));
+      if ((marked[i] != 0) == wanted) from.push_back(static_cast<std::int64_t>(i));
+  reorder(from);
+  return std::count_if(marked.begin(), marked.end(), [](char m) { return m != 0; });
+}
+
+void LocalMesh::reorder(const std::vector<std::int64_t>& from) {
+  std::vector<std::int64_t> to(from.size());
+  for (size_t i = 0; i < from.size(); ++i) to[from[i]] = static_cast<std::int64_t>(i);
   const auto permute = [&](auto& values) {
     auto old = values;
     for (size_t i = 0; i < from.size(); ++i) values[i] = old[from[i]];
@@ -179,7 +186,6 @@ std::int64_t LocalMesh::put_first(const std::vector<char>& marked) {
   };
   for (auto& [name, list] : mesh.node_sets) renumber(list);
   for (auto& [name, list] : elsewhere) renumber(list);
-  return std::count_if(marked.begin(), marked.end(), [](char m) { return m != 0; });
 }
 
 std::vector<std::int64_t> LocalMesh::nodes_of(const std::string& name, const std::string& where) const {

@@ -29,11 +29,17 @@ struct LocalMesh {
   std::vector<std::int64_t> nodes_of(const std::string& name, const std::string& where) const;
   /// Renumber the nodes: those marked come first, both kinds in the order they had; how many are marked.
   std::int64_t put_first(const std::vector<char>& marked);
+  /// Renumber the nodes: `from` has their present numbers in the new order.
+  void reorder(const std::vector<std::int64_t>& from);
 };
 
 /// Read a mesh, tags or parts file.  On several ranks each reads its slice of the rows and cells travel to the rank that the parts file
 /// (or a partition made on the spot) gives them, so no rank holds the whole mesh.  The node of a set of one node is local to every rank
 /// (a joint may end there).  Errors are the same on all ranks.
 LocalMesh read_local_mesh(const std::string& path, const Comm& comm);
+
+/// Rank 0 gets the nodes that any rank has marked (n_nodes), with all names that they belong to: nodes beside its cells, whose owners stay.
+/// Nodes keep the order of the file.  Collective.
+void bring_to_first(LocalMesh& local, const std::vector<char>& marked, const Comm& comm);
 
 }  // namespace hilo

@@ -84,6 +84,7 @@ std::unique_ptr<System> Builder::build() {
   out_->gravity = scene_.table("scene").vector3("gravity");
   if (mesh_) {
     add_scene_sets(scene_, *mesh_, comm_);
+    bring_pairs_together();
     n_active_ = put_active_nodes_first();
     out_->X = mesh_->mesh.X;
     out_->node_owned = mesh_->node_owned;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 #include "physics/contact/obstacle_kinds.hpp"
@@ -19,12 +20,18 @@ double relative_curvature(const Distance& shape, double radius) {
   return std::nan("");
 }
 
+/// From the least to the largest of what was seen.
+struct Extremes {
+  double low = 1e300, high = -1e300;
+  void take(double x) { low = std::min(low, x), high = std::max(high, x); }
+  std::string text() const { return high <= low * (1 + 1e-3) ? fmt::format("{:.4g}", high) : fmt::format("{:.4g} to {:.4g}", low, high); }
+};
+
 /// What contacts are not right for, by name.
-void refuse_what_is_not_there(const Scene& scene, const Comm& comm, const Entry& e, bool surfaces) {
+void refuse_what_is_not_there(const Scene& scene, const Entry& e, bool surfaces) {
   const Entry& time = scene.table("time");
   const std::string label = e.label();
   const bool is_static = time.text("analysis") == "static";
-  if (comm.size > 1) throw Error(e.place.text(), fmt::format("{}: contacts run on one rank", label), "run without mpirun");
   if (is_static && surfaces) return;
   if (is_static)
     throw Error(time.where("analysis"),
@@ -61,7 +68,7 @@ void Builder::add_contacts() {
   std::set<std::string> used;
   for (const Entry& e : scene_.entries("contact")) {
     const auto a = obstacles.find(e.text("a"));
-    refuse_what_is_not_there(scene_, comm_, e, a == obstacles.end());
+    refuse_what_is_not_there(scene_, e, a == obstacles.end());
     if (a == obstacles.end()) {
       add_surfaces(e, names);
       continue;
@@ -69,7 +76,7 @@ void Builder::add_contacts() {
     used.insert(e.text("a"));
     const Named& obstacle = a->second;
     ContactPair pair;
-    pair.name = e.name, pair.shape = obstacle.obstacle.shape;
+    pair.name = e.name, pair.shape = obstacle.obstacle.shape, pair.friction = e.number("friction");
     pair.carrier = obstacle.body, pair.axes = obstacle.obstacle.axes;
     pair.at = obstacle.obstacle.at - out_->bodies[pair.carrier].Xc;
     const std::string& b = e.text("b");
@@ -77,7 +84,7 @@ void Builder::add_contacts() {
       used.insert(b), add_points_of_body(e, ball->second.obstacle, ball->second.body, pair);
     else
       add_points_of_surface(e, pair);
-    if (pair.points.empty()) throw Error(e.where("b"), fmt::format("{}: \"{}\" has no surface", e.label(), b));
+    if (pair.n_points == 0) throw Error(e.where("b"), fmt::format("{}: \"{}\" has no surface", e.label(), b));
     const auto is_held = [&](int body) { return body == 0 || !out_->bodies[body].free(); };
     bool held = is_held(pair.carrier) && (pair.body < 0 || is_held(pair.body));
     for (const ContactPoint& point : pair.points)
@@ -85,18 +92,18 @@ void Builder::add_contacts() {
         const auto& fixed = out_->fixed[i];
         held = held && (out_->follower[i] >= 0 ? is_held(out_->follower[i]) : fixed[0] && fixed[1] && fixed[2]);
       }
-    if (held) throw Error(e.place.text(), fmt::format("{}: both sides are held", e.label()));
-    double deepest = 0;
-    const ContactPoint* worst = nullptr;
+    if (comm_.max(held ? 0 : 1) == 0) throw Error(e.place.text(), fmt::format("{}: both sides are held", e.label()));
+    double own = 0, cell = 0;
     const Contacts& contacts = out_->part<Contacts>();
     for (const ContactPoint& point : pair.points)
-      if (const double depth = -contacts.gap(pair, point, out_->start); depth > deepest) deepest = depth, worst = &point;
-    if (worst && deepest > worst->cell)
-      throw Error(
-          e.place.text(),
-          fmt::format("{}: \"{}\" starts {:.3g} m deep in \"{}\", more than {:.3g} m", e.label(), b, deepest, a->first, worst->cell),
-          "move one of them apart");
-    if (worst && deepest > 0.01 * worst->cell)
+      if (const double depth = -contacts.gap(pair, point, out_->start); depth > own) own = depth, cell = point.cell;
+    const double deepest = comm_.max(own);
+    cell = comm_.max(own == deepest ? cell : 0);
+    if (deepest > cell)
+      throw Error(e.place.text(),
+                  fmt::format("{}: \"{}\" starts {:.3g} m deep in \"{}\", more than {:.3g} m", e.label(), b, deepest, a->first, cell),
+                  "move one of them apart");
+    if (deepest > 0.01 * cell)
       warn(e.place.text(), fmt::format("{}: \"{}\" starts {:.3g} m deep in \"{}\"", e.label(), b, deepest, a->first));
     out_->part<Contacts>().list.push_back(std::move(pair));
   }
@@ -138,78 +145,91 @@ void Builder::add_points_of_body(const Entry& e, const Obstacle& b, int body, Co
     out_->stiffness = std::max(out_->stiffness, 2 * E * R * std::sqrt(1e-3));
   }
   const Vec3 centre = b.at - out_->bodies[body].Xc;
+  pair.n_points = ball ? 1 : 8;
+  if (!out_->counts(body)) return;
   if (ball) {
     point.arm = centre, law.radius = b.shape.radius, point.cell = 0.1 * b.shape.radius;
     pair.points.push_back(std::move(point));
-    return;
+  } else {
+    point.cell = b.shape.half.minCoeff();
+    for (int k = 0; k < 8; ++k) {
+      point.arm = centre + b.axes * Vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1).cwiseProduct(b.shape.half);
+      pair.points.push_back(point);
+    }
   }
-  point.cell = b.shape.half.minCoeff();
-  for (int k = 0; k < 8; ++k) {
-    point.arm = centre + b.axes * Vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1).cwiseProduct(b.shape.half);
-    pair.points.push_back(point);
-  }
+  pair.number.resize(pair.points.size());
+  std::iota(pair.number.begin(), pair.number.end(), 0);
 }
 
-/// Gauss points of the facets of a region's surface, or of a set.
+/// Gauss points of the facets of a region's surface, or of a set.  Each rank has those of its cells.
 void Builder::add_points_of_surface(const Entry& e, ContactPair& pair) {
   const Mesh& mesh = mesh_->mesh;
   const std::vector<Facet> facets = facets_of(e, "b");
   if (e.has("stiffness"))
     e.refuse("stiffness", "the stiffness of a surface comes from its region", "scale it by factor, or give a rigid one modulus and layer");
+  const char* const several = "it has rigid and flexible regions, or several bodies";
   const double factor = e.number("factor");
   std::map<int, double> modulus;  // of regions
-  double low = 1e300, high = 0, E = 0, depth_low = 1e300, depth_high = 0;
-  for (const Facet& f : facets) {
-    const std::vector<std::int64_t> nodes = mesh.facet_nodes(f);
-    if (nodes.size() < 3) continue;
-    const int r = mesh.region[f.cell];
-    const Region& region = regions_[r];
-    const bool rigid = region.fidelity == Fidelity::rigid;
-    int body = rigid ? region.body : -1;
-    if (region.fidelity == Fidelity::linear && region.body == pair.carrier) body = pair.carrier;
-    if (body >= 0 && body == pair.carrier) e.refuse("b", "both are on the same body");
-    if (body != pair.body && !pair.points.empty())
-      e.refuse("b", "it has rigid and flexible regions, or several bodies", "one contact for each");
-    pair.body = body;
-    double nu = 0.3, k = 0, depth = std::abs(quality(mesh, f.cell).volume) / std::max(facet_area(mesh, f).norm(), 1e-300);
-    const double cell = depth;
-    if (rigid) {
-      if (!e.has("layer") || !e.has("modulus"))
-        e.refuse("", fmt::format("region \"{}\" is rigid, and so is the obstacle: nothing says how stiff they are", region.name),
-                 "give modulus and layer, or tag it linear or nonlinear");
-      E = e.number("modulus"), depth = e.number("layer"), k = factor * E / depth;
-    } else {
-      if (e.has("layer")) e.refuse("layer", fmt::format("region \"{}\" is not rigid", region.name));
-      if (e.has("modulus"))
-        e.refuse("modulus", fmt::format("region \"{}\" is not rigid: its stiffness comes from its material", region.name));
-      if (!modulus.contains(r)) modulus[r] = young_of(linear_moduli(material_of(region)));
-      E = modulus[r], k = factor * E / depth;
-      if (!std::isnan(region.nu)) nu = region.nu;
-    }
-    std::vector<Vec3> X;
-    for (const std::int64_t i : nodes) X.push_back(mesh.X[i]);
-    const FacetPoints at = facet_points(X);
-    for (size_t j = 0; j < at.area.size(); ++j) {
-      ContactPoint point;
-      point.law.k = k * at.area[j], point.law.kt = tangential_ratio(nu) * point.law.k, point.law.friction = e.number("friction");
-      point.cell = rigid ? std::min(cell, depth) : cell;
-      if (body >= 0) {
-        Vec3 x = Vec3::Zero();
-        for (size_t n = 0; n < X.size(); ++n) x += at.share[j][n] * X[n];
-        point.arm = x - out_->bodies[body].Xc;
+  Extremes stiffness, E, depth, body;
+  std::vector<std::array<std::int64_t, 3>> counts;  // cell and facet in the mesh, points
+  comm_.together([&] {
+    for (const Facet& f : facets) {
+      const std::vector<std::int64_t> nodes = mesh.facet_nodes(f);
+      if (nodes.size() < 3) continue;
+      const int r = mesh.region[f.cell];
+      const Region& region = regions_[r];
+      const bool rigid = region.fidelity == Fidelity::rigid;
+      const bool follows = rigid || (region.fidelity == Fidelity::linear && region.body == pair.carrier);
+      if (follows && region.body == pair.carrier) e.refuse("b", "both are on the same body");
+      body.take(follows ? region.body : -1);
+      if (body.low < body.high) e.refuse("b", several, "one contact for each");
+      double nu = 0.3, k = 0, deep = std::abs(quality(mesh, f.cell).volume) / std::max(facet_area(mesh, f).norm(), 1e-300);
+      const double cell = deep;
+      if (rigid) {
+        if (!e.has("layer") || !e.has("modulus"))
+          e.refuse("", fmt::format("region \"{}\" is rigid, and so is the obstacle: nothing says how stiff they are", region.name),
+                   "give modulus and layer, or tag it linear or nonlinear");
+        E.take(e.number("modulus")), deep = e.number("layer"), k = factor * e.number("modulus") / deep;
       } else {
-        point.nodes.assign(nodes.begin(), nodes.end()), point.share = at.share[j];
+        if (e.has("layer")) e.refuse("layer", fmt::format("region \"{}\" is not rigid", region.name));
+        if (e.has("modulus"))
+          e.refuse("modulus", fmt::format("region \"{}\" is not rigid: its stiffness comes from its material", region.name));
+        if (!modulus.contains(r)) modulus[r] = young_of(linear_moduli(material_of(region)));
+        E.take(modulus[r]), k = factor * modulus[r] / deep;
+        if (!std::isnan(region.nu)) nu = region.nu;
       }
-      pair.points.push_back(std::move(point));
+      std::vector<Vec3> X;
+      for (const std::int64_t i : nodes) X.push_back(mesh.X[i]);
+      const FacetPoints at = facet_points(X);
+      for (size_t j = 0; j < at.area.size(); ++j) {
+        ContactPoint point;
+        point.law.k = k * at.area[j], point.law.kt = tangential_ratio(nu) * point.law.k, point.law.friction = pair.friction;
+        point.cell = rigid ? std::min(cell, deep) : cell;
+        if (follows) {
+          Vec3 x = Vec3::Zero();
+          for (size_t n = 0; n < X.size(); ++n) x += at.share[j][n] * X[n];
+          point.arm = x - out_->bodies[region.body].Xc;
+        } else {
+          point.nodes.assign(nodes.begin(), nodes.end()), point.share = at.share[j];
+        }
+        pair.points.push_back(std::move(point));
+      }
+      counts.push_back({mesh_->cell_global[f.cell], f.facet, static_cast<std::int64_t>(at.area.size())});
+      stiffness.take(k), depth.take(deep);
     }
-    low = std::min(low, k), high = std::max(high, k), depth_low = std::min(depth_low, depth), depth_high = std::max(depth_high, depth);
-  }
-  const auto range = [](double a, double b) {
-    return b <= a * (1 + 1e-3) ? fmt::format("{:.4g}", b) : fmt::format("{:.4g} to {:.4g}", a, b);
-  };
-  pair.told = fmt::format("{} Pa/m: {}{:.4g} Pa over {} m, the depth of {}", range(low, high),
-                          factor == 1 ? "" : fmt::format("{:g} times ", factor), E, range(depth_low, depth_high),
-                          pair.body >= 0 ? "the layer" : "the cells");
+  });
+  for (Extremes* range : {&stiffness, &E, &depth, &body}) range->low = -comm_.max(-range->low), range->high = comm_.max(range->high);
+  if (body.low < body.high) e.refuse("b", several, "one contact for each");
+  if (body.low <= body.high) pair.body = static_cast<int>(body.low);
+  auto all = comm_.gather(counts);
+  std::sort(all.begin(), all.end());
+  std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> first;  // point of each facet
+  for (const auto& [cell, facet, n] : all) first[{cell, facet}] = pair.n_points, pair.n_points += n;
+  for (const auto& [cell, facet, n] : counts)
+    for (std::int64_t k = 0; k < n; ++k) pair.number.push_back(first.at({cell, facet}) + k);
+  pair.told =
+      fmt::format("{} Pa/m: {}{} Pa over {} m, the depth of {}", stiffness.text(), factor == 1 ? "" : fmt::format("{:g} times ", factor),
+                  E.text(), depth.text(), pair.body >= 0 ? "the layer" : "the cells");
 }
 
 }  // namespace hilo

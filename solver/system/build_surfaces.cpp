@@ -15,7 +15,7 @@ std::vector<Facet> Builder::facets_of(const Entry& e, std::string_view key) {
   const std::string& name = e.text(key);
   const std::string where = e.where(key);
   const Found found = find(name, where);
-  if (!mesh_ || found.nodes.empty())
+  if (!mesh_ || found.n_global == 0)
     throw Error(where, fmt::format("{}: \"{}\" has no surface", e.label(), name),
                 "put an [[obstacle]] of kind sphere or box on it, and name that");
   const Mesh& mesh = mesh_->mesh;
@@ -29,6 +29,9 @@ std::vector<Facet> Builder::facets_of(const Entry& e, std::string_view key) {
     throw Error(where, fmt::format("{}: \"{}\" is not a region or a set of facets", e.label(), name), "name a 2-D group or *SURFACE");
   }
   std::erase_if(facets, [&](const Facet& f) { return info(mesh.shape[f.cell]).dimension != 3; });
+  const auto place = [](const Facet& f) { return std::pair(f.cell, f.facet); };
+  std::ranges::sort(facets, {}, place);
+  facets.erase(std::ranges::unique(facets, {}, place).begin(), facets.end());
   return facets;
 }
 
@@ -41,38 +44,42 @@ void Builder::add_surfaces(const Entry& e, const std::vector<std::string>& obsta
   if (name_a == e.text("b")) e.refuse("b", "a surface does not meet itself");
   if (e.has("stiffness"))
     e.refuse("stiffness", "the stiffness of a surface comes from its region", "scale it by factor, or give rigid ones modulus and layer");
+  SurfacePair pair(*out_);
+  pair.name = e.name, pair.is_static = is_static();
+  const std::array<std::vector<PairFacet>, 2> facets{on_first_rank(facets_of(e, "a")), on_first_rank(facets_of(e, "b"))};
+  comm_.on_first([&] { fill_surfaces(e, facets, pair); });
+  out_->part<Contacts>().surfaces.push_back(std::move(pair));
+}
+
+/// What rank 0 has of a pair: all of it.
+void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFacet>, 2>& facets, SurfacePair& pair) {
+  const std::string& name_a = e.text("a");
   const Mesh& mesh = mesh_->mesh;
   struct Behind {                 // a facet
     double compliance, nu, cell;  // l/E [m/Pa]; 0: rigid
   };
-  SurfacePair pair(*out_);
-  pair.name = e.name;
   std::vector<Behind> behind[2];
   double mean[2] = {0, 0}, area[2] = {0, 0};  // compliance, over the area
   std::map<int, double> modulus;              // of regions
   std::set<int> bodies[2];                    // -1: nodes of their own
-  std::vector<std::int64_t> nodes[2];
+  std::vector<int> nodes[2];
   bool rigid[2] = {false, false}, held = true;
   for (int s = 0; s < 2; ++s) {
     const std::string_view key = s == 0 ? "a" : "b";
-    for (const Facet& f : facets_of(e, key)) {
-      const std::vector<std::int64_t> list = mesh.facet_nodes(f);
-      const int r = mesh.region[f.cell];
-      const Region& region = regions_[r];
-      const double A = facet_area(mesh, f).norm(), depth = std::abs(quality(mesh, f.cell).volume) / std::max(A, 1e-300);
-      Behind& its = behind[s].emplace_back(Behind{0, std::isnan(region.nu) ? 0.3 : region.nu, depth});
+    for (const PairFacet& f : facets[s]) {
+      const Region& region = regions_[f.region];
+      Behind& its = behind[s].emplace_back(Behind{0, std::isnan(region.nu) ? 0.3 : region.nu, f.depth});
       if (region.fidelity == Fidelity::rigid) {
         rigid[s] = true;
       } else {
-        if (!modulus.contains(r)) modulus[r] = young_of(linear_moduli(material_of(region)));
-        its.compliance = depth / modulus[r];
+        if (!modulus.contains(f.region)) modulus[f.region] = young_of(linear_moduli(material_of(region)));
+        its.compliance = f.depth / modulus[f.region];
       }
-      mean[s] += A * its.compliance, area[s] += A;
+      mean[s] += f.area * its.compliance, area[s] += f.area;
       ContactSurface::Face& face = pair.side[s].faces.emplace_back();
-      face.n = static_cast<int>(list.size());
+      face.n = f.n, face.node = f.node;
       for (int a = 0; a < face.n; ++a) {
-        const auto i = static_cast<int>(list[a]);
-        face.node[a] = i;
+        const int i = face.node[a];
         nodes[s].push_back(i);
         const int body = out_->follower[i];
         bodies[s].insert(body);
@@ -85,7 +92,7 @@ void Builder::add_surfaces(const Entry& e, const std::vector<std::string>& obsta
     std::sort(nodes[s].begin(), nodes[s].end());
   }
   if (held) throw Error(e.place.text(), fmt::format("{}: both sides are held", e.label()));
-  std::vector<std::int64_t> both;
+  std::vector<int> both;
   std::set_intersection(nodes[0].begin(), nodes[0].end(), nodes[1].begin(), nodes[1].end(), std::back_inserter(both));
   if (!both.empty())
     e.refuse("b", fmt::format("both surfaces have node {}: what hangs together does not meet", mesh.node_id[both.front()]),
@@ -97,7 +104,6 @@ void Builder::add_surfaces(const Entry& e, const std::vector<std::string>& obsta
              "give modulus and layer, or tag one linear or nonlinear");
   for (const char* key : {"layer", "modulus"})
     if (!both_rigid && e.has(key)) e.refuse(key, "a surface that can bend has its stiffness from its material");
-  pair.is_static = is_static();
   const double factor = e.given("factor") ? e.number("factor")
                         : pair.is_static  ? 100
                                           : 1,
@@ -145,7 +151,6 @@ void Builder::add_surfaces(const Entry& e, const std::vector<std::string>& obsta
            fmt::format("{}; {}", text,
                        pair.is_static ? "the first load step presses them apart" : "they begin without force, which comes as they slide"));
   }
-  out_->part<Contacts>().surfaces.push_back(std::move(pair));
 }
 
 }  // namespace hilo

@@ -10,6 +10,7 @@
 #include "physics/spring_kinds.hpp"
 #include "system/factor_room.hpp"
 #include "system/mortar.hpp"
+#include "system/pair_facet.hpp"
 #include "system/reduced_file.hpp"
 #include "system/solids.hpp"
 #include "system/system.hpp"
@@ -19,6 +20,8 @@ namespace hilo {
 struct RegionParcel;
 struct Obstacle;
 struct ContactPair;
+struct SurfaceTie;
+class SurfacePair;
 
 class Builder {
  public:
@@ -138,12 +141,19 @@ class Builder {
   void add_contacts();
   void add_points_of_body(const Entry& entry, const Obstacle& b, int body, ContactPair& pair);
   void add_points_of_surface(const Entry& entry, ContactPair& pair);
+  // build_pairs.cpp
+  void bring_pairs_together();
+  /// The facets of all ranks in the order of the mesh, on rank 0 alone.  Collective.
+  std::vector<PairFacet> on_first_rank(const std::vector<Facet>& facets) const;
   // build_surfaces.cpp
-  /// The facets of a region's outer surface, or of a set.
+  /// This rank's facets of a region's outer surface, or of a set, in the order of the mesh.  Collective.
   std::vector<Facet> facets_of(const Entry& entry, std::string_view key);
   void add_surfaces(const Entry& entry, const std::vector<std::string>& obstacles);
+  void fill_surfaces(const Entry& entry, const std::array<std::vector<PairFacet>, 2>& facets, SurfacePair& pair);
   // build_ties.cpp
-  std::vector<MortarFacet> tied_facets(const Entry& entry, std::string_view key);
+  std::vector<Facet> facets_to_tie(const Entry& entry, std::string_view key);
+  std::vector<MortarFacet> tied_facets(const Entry& entry, std::string_view key, const std::vector<PairFacet>& facets) const;
+  void find_tie(const Entry& entry, const std::array<std::vector<PairFacet>, 2>& facets, SurfaceTie& tie);
   void close_ties();
   void add_ties();
 

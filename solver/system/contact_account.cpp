@@ -33,26 +33,39 @@ void Contacts::add_work(const Moment& m, Work& sum) const {
 std::string Contacts::fault(const Config&) const { return jumped_; }
 
 void Contacts::advance(const Stage& s) {
-  jumped_.clear();
+  if (list.empty() && surfaces.empty()) return;
+  std::string why;
   for (SurfacePair& pair : surfaces)
-    if (const std::string why = pair.advance(s); !why.empty()) jumped_ = why;
-  if (!s.conserving()) return;
+    if (const std::string told = pair.advance(s); !told.empty()) why = told;
+  std::vector<double> sums;  // of each pair: pressing, pressing times slip, dissipated
   for (ContactPair& pair : list) {
-    pair.next = pair.sums;
-    double pressing = 0, slid = 0;
+    if (!s.conserving()) break;
+    double pressing = 0, slid = 0, dissipated = 0;
     const double within = pair.shape.least_extent();
     for (ContactPoint& point : pair.points) {
       const Place at = place(pair, point, s);
       point.next = values(at.force.u);
-      pair.next.dissipated += at.force.dissipated;
+      dissipated += at.force.dissipated;
       pressing += at.force.pressing, slid += at.force.pressing * at.force.slid;
       if (at.force.acts || within == 0) continue;
       for (const double part : {0.25, 0.5, 0.75})
         if (pair.shape.at((1 - part) * at.x0 + part * at.x1) < point.law.radius - 0.1 * (within + point.law.radius))
-          jumped_ = fmt::format("contact \"{}\": a point goes through the obstacle within one step", pair.name);
+          why = fmt::format("contact \"{}\": a point goes through the obstacle within one step", pair.name);
     }
-    pair.next.add(pressing, slid);
+    sums.insert(sums.end(), {pressing, slid, dissipated});
   }
+  const Comm& comm = *points_.comm;
+  comm.sum(sums);
+  for (size_t k = 0; 3 * k < sums.size(); ++k) {
+    list[k].next = list[k].sums;
+    list[k].next.dissipated += sums[3 * k + 2];
+    list[k].next.add(sums[3 * k], sums[3 * k + 1]);
+  }
+  const double lowest = -comm.max(why.empty() ? -1e300 : -comm.rank);  // of the ranks that have something to say
+  if (lowest != comm.rank) why.clear();
+  jumped_.clear();
+  if (lowest < comm.size)
+    for (const char c : comm.gather(std::vector<char>(why.begin(), why.end()))) jumped_ += c;
 }
 
 void Contacts::commit(const Config& q, const Config*) {
@@ -71,7 +84,10 @@ void Contacts::settle(bool accepted) {
 void Contacts::archive(Archive& a) {
   for (ContactPair& pair : list) {
     a("contact " + pair.name, pair.sums);
-    for (ContactPoint& point : pair.points) a("bristle", point.u);
+    std::vector<double> bristles;
+    for (const ContactPoint& point : pair.points) bristles.insert(bristles.end(), point.u.begin(), point.u.end());
+    a.spread({*points_.comm, pair.number}, bristles, 3);
+    for (size_t k = 0; k < pair.points.size(); ++k) pair.points[k].u = Eigen::Map<const Vec3>(bristles.data() + 3 * k);
   }
   for (SurfacePair& pair : surfaces) pair.archive(a);
   settle(false);
@@ -93,26 +109,30 @@ std::vector<Output> Contacts::outputs() const {
 /// Largest depth [m], as a share of the cell, slip so far [m] and what friction took [J].
 /// At the end: depths, slip and dissipation; inside: the force on b.
 void Contacts::observe(const Sight& at) {
+  if (list.empty() && surfaces.empty()) return;
+  std::vector<double> end, mid;  // of this rank
   for (const ContactPair& pair : list) {
     double deepest = 0, share = 0;
     for (const ContactPoint& point : pair.points) {
       const double depth = -gap(pair, point, at.q);
       deepest = std::max(deepest, depth), share = std::max(share, depth / point.cell);
     }
-    at.end.insert(at.end.end(), {deepest, share, pair.next.slip, pair.next.dissipated});
+    end.insert(end.end(), {deepest, share, pair.next.slip, pair.next.dissipated});
     if (!at.step) continue;
     Vec3 F = Vec3::Zero();
     for (const ContactPoint& point : pair.points)
       if (const Place here = place(pair, point, at.step->s); here.force.acts) F -= here.normal + here.tangential;
-    at.mid.insert(at.mid.end(), F.begin(), F.end());
+    mid.insert(mid.end(), F.begin(), F.end());
   }
   for (const SurfacePair& pair : surfaces) {
     const auto [deepest, share] = pair.depth();
-    at.end.insert(at.end.end(), {deepest, share, pair.next.slip, pair.next.dissipated});
+    end.insert(end.end(), {deepest, share, pair.next.slip, pair.next.dissipated});
     if (!at.step) continue;
     const Vec3 F = pair.force(at.step->s);
-    at.mid.insert(at.mid.end(), F.begin(), F.end());
+    mid.insert(mid.end(), F.begin(), F.end());
   }
+  points_.comm->max(end), points_.comm->sum(mid);
+  at.end.insert(at.end.end(), end.begin(), end.end()), at.mid.insert(at.mid.end(), mid.begin(), mid.end());
 }
 
 void Contacts::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
@@ -126,7 +146,7 @@ void Contacts::add_to_report(std::vector<std::pair<std::string, std::string>>& r
         "{}\n    {}: {{\"points\": {}, \"stiffness\": {}, \"slip\": {:.6g}, \"dissipated\": {:.6g}, \"impacts\": {}, \"shortest\": {}}}",
         text.empty() ? "" : ",", json_text(name), points, json_text(told), sums.slip, sums.dissipated, sums.impacts, sums.shortest);
   };
-  for (const ContactPair& pair : list) tell(pair.name, pair.points.size(), pair.told, pair.sums);
+  for (const ContactPair& pair : list) tell(pair.name, static_cast<size_t>(pair.n_points), pair.told, pair.sums);
   for (const SurfacePair& pair : surfaces) tell(pair.name, pair.n_points(), pair.told, pair.sums);
   if (!text.empty()) report.emplace_back("contacts", "{" + text + "\n  }");
 }

@@ -17,10 +17,8 @@ namespace hilo {
 using Rows12 = Eigen::Matrix<double, 3, 12>;
 
 Traits Contacts::traits() const {
-  const bool slides = std::any_of(list.begin(), list.end(), [](const ContactPair& pair) {
-    return std::any_of(pair.points.begin(), pair.points.end(), [](const ContactPoint& x) { return x.law.friction > 0; });
-  });
-  return {.remembers = slides || !surfaces.empty(), .searches = !surfaces.empty()};
+  const bool slides = std::ranges::any_of(list, [](const ContactPair& pair) { return pair.friction > 0; });
+  return {.remembers = slides || !surfaces.empty(), .searches = !surfaces.empty(), .reaches = !surfaces.empty()};
 }
 
 std::string Contacts::count() const {
@@ -47,7 +45,7 @@ void Contacts::number(Layout& layout) {
       std::vector<int> blocks = points_.blocks_of(point.nodes);
       for (const int b : {list[k].body, list[k].carrier})
         if (b >= 0 && points_.body_block[b] >= 0) blocks.push_back(points_.body_block[b]), blocks.push_back(points_.body_block[b] + 1);
-      clique_[k].push_back(layout.cliques.add(blocks));
+      clique_[k].push_back(layout.cliques.add(blocks, !point.nodes.empty()));
     }
   for (SurfacePair& pair : surfaces) pair.number(layout);
 }

@@ -27,7 +27,10 @@ struct ContactPair {
   Vec3 at = Vec3::Zero();  // from its centre, body axes [m]
   Mat3 axes = Mat3::Identity();
   int body = -1;  // of the points, or -1: they have nodes
-  std::vector<ContactPoint> points;
+  double friction = 0;
+  std::vector<ContactPoint> points;  // that this rank evaluates: of facets of its cells; those of a body without mesh are on one rank
+  std::vector<std::int64_t> number;  // of these, among all
+  std::int64_t n_points = 0;         // of all
   ContactSums sums, next;
 };
 

@@ -105,13 +105,25 @@ void SurfacePair::settle(bool accepted) {
 
 void SurfacePair::archive(Archive& a) {
   std::vector<int> list;
+  std::vector<FacetState> states;
+  std::vector<ContactSums> account{sums};
   for (const auto& [i, j] : near_) list.push_back(i), list.push_back(j);
-  a("surfaces " + name, sums, list);
-  near_.clear();
-  for (size_t k = 0; k + 1 < list.size(); k += 2) near_.emplace_back(list[k], list[k + 1]);
+  for (const ContactSurface& surface : side)
+    for (const SurfacePoint& point : surface.points) states.push_back(point.state);
+  if (!a.restores()) {  // what rank 0 has, all keep
+    const Comm& comm = *points_.comm;
+    list = comm.of_first(list), states = comm.of_first(states), account = comm.of_first(account);
+  }
+  a("surfaces " + name, account, list, states);
+  if (n_points() > 0) {
+    near_.clear();
+    for (size_t k = 0; k + 1 < list.size(); k += 2) near_.emplace_back(list[k], list[k + 1]);
+    sums = account.front();
+    auto state = states.begin();
+    for (ContactSurface& surface : side)
+      for (SurfacePoint& point : surface.points) point.state = *state++;
+  }
   list_partners();
-  for (ContactSurface& surface : side)
-    for (SurfacePoint& point : surface.points) a("point", point.state);
   settle(false);
 }
 

@@ -21,6 +21,7 @@ struct ContactSums {
   void add(double pressing, double slid);
 };
 
+/// On rank 0, which has all nodes of both; the other ranks know its name.
 class SurfacePair {
  public:
   explicit SurfacePair(const Points& points) : points_(points) {}
@@ -42,7 +43,9 @@ class SurfacePair {
   double dissipated(const Stage& s) const;
   /// Why the step cannot be, or "".
   std::string advance(const Stage& s);
-  void commit(const Config& q) { committed_ = q.x; }
+  void commit(const Config& q) {
+    if (n_points() > 0) committed_ = q.x;
+  }
   void settle(bool accepted);
   void archive(Archive& a);
   /// Force on side 1, in the step [N].

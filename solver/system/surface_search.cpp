@@ -66,6 +66,7 @@ void SurfacePair::list_partners() {
 }
 
 bool SurfacePair::search(const Config& q, const Config* v, double h) {
+  if (n_points() == 0) return false;  // of another rank
   begin_ = foreseen_ = q.x;
   if (v && h > 0)
     for (const auto& nodes : nodes_)

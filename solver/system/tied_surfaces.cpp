@@ -50,6 +50,7 @@ void TiedSurfaces::number(Layout& layout) {
   each([&](const SurfaceTie&, const TiedRow& row, size_t k) {
     Place& at = place_.emplace_back(place_of(row));
     at.block = layout.add_rows(static_cast<int>(k), 1);
+    if (row.term.empty()) return;
     std::vector<int> blocks;
     for (const auto& [i, w] : at.nodes) blocks.push_back(points_.node_block[i]);
     for (const OnBody& on : at.bodies) blocks.push_back(points_.body_block[on.body]), blocks.push_back(points_.body_block[on.body] + 1);
@@ -62,7 +63,7 @@ std::string TiedSurfaces::owner(int block) const {
   std::string out;
   if (!place_.empty() && block >= place_.front().block && block <= place_.back().block)
     each([&](const SurfaceTie& tie, const TiedRow& row, size_t k) {
-      if (place_[k].block == block) out = fmt::format("tie \"{}\", at node {}", tie.name, points_.mesh->mesh.node_id[row.node]);
+      if (place_[k].block == block) out = fmt::format("tie \"{}\", at node {}", tie.name, row.number);
     });
   return out;
 }
@@ -80,6 +81,7 @@ void TiedSurfaces::evaluate(Pass& p) const {
   if (s.rates_alone) return;
   std::vector<double> dense;
   each([&](const SurfaceTie&, const TiedRow& row, size_t k) {
+    if (row.term.empty()) return;
     const Place& at = place_[k];
     Vec3 g = value(row, *s.end);
     if (s.step) g = value(row, *s.w1) + value(row, *s.step->start) - value(row, *s.w0);  // increments, of which the sum is g(q1)
@@ -175,7 +177,7 @@ void TiedSurfaces::share_held(SurfaceTie& tie) const {
       std::map<int, double> sum(tie.rows[k].term.begin(), tie.rows[k].term.end());
       for (const auto& [from, share] : taken)
         for (const auto& [i, w] : tie.rows[from].term) sum[i] += share * w;
-      rows.push_back({tie.rows[k].node, {sum.begin(), sum.end()}, on, {}});
+      rows.push_back({tie.rows[k].node, {sum.begin(), sum.end()}, on, {}, -1});
     }
   }
   tie.rows = std::move(rows);
@@ -253,6 +255,22 @@ void TiedSurfaces::choose_rows() {
     }
   }
   for (SurfaceTie& tie : list) tie.n_off -= n_on(tie);
+}
+
+void TiedSurfaces::tell_rows() {
+  struct Told {
+    std::int64_t tie, number;
+    std::array<bool, 3> on, implied;
+  };
+  std::vector<Told> told;
+  for (size_t t = 0; t < list.size(); ++t)
+    for (TiedRow& row : list[t].rows) {
+      row.number = points_.mesh->mesh.node_id[row.node];
+      told.push_back({static_cast<std::int64_t>(t), row.number, row.on, row.implied});
+    }
+  told = points_.comm->of_first(told);
+  if (points_.comm->rank == 0) return;
+  for (const Told& row : told) list[row.tie].rows.push_back({-1, {}, row.on, row.implied, row.number});
 }
 
 void TiedSurfaces::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {

@@ -17,11 +17,13 @@
 
 namespace hilo {
 
+/// On rank 0, which has all nodes of both sides; the other ranks know which components are on.
 struct TiedRow {
   int node = -1;                             // of b, whose weight is 1
   std::vector<std::pair<int, double>> term;  // local nodes and weights, of which the sum is zero
   std::array<bool, 3> on{true, true, true};  // components
   std::array<bool, 3> implied{};             // that are off, as others have all of them
+  std::int64_t number = -1;                  // of the node in the deck
 };
 
 struct SurfaceTie {
@@ -39,8 +41,10 @@ class TiedSurfaces final : public Contribution, public Equations, public Constra
 
   /// Switches off rows that depend on others.  Nodes, bodies and what is held must be known.
   void choose_rows();
+  /// What all ranks have to know of the rows of rank 0.  Collective.
+  void tell_rows();
 
-  Traits traits() const override { return {.constrains = !list.empty()}; }
+  Traits traits() const override { return {.constrains = !list.empty(), .reaches = !list.empty()}; }
   std::string count() const override;
   void number(Layout& layout) override;
   std::string owner(int block) const override;

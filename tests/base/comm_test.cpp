@@ -32,6 +32,8 @@ void expect_no_calls_alone() {
                                                  [&] { comm.before(1); },
                                                  [&] { comm.copy(x, 0); },
                                                  [&] { comm.gather(std::vector{1}); },
+                                                 [&] { comm.of_first(std::vector{1}); },
+                                                 [&] { comm.to_first(std::vector{1}); },
                                                  [&] { comm.barrier(); },
                                                  [&] { comm.exchange(std::vector<std::vector<double>>(comm.size)); }};
   for (const auto& call : calls) {
