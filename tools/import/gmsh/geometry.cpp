@@ -141,6 +141,8 @@ std::string try_to_mesh(const ImportOptions& o) {
     if (o.order == 2 && !volumes.empty()) gmsh::model::mesh::setOrder(2);
   } catch (const std::string& e) {
     return e;
+  } catch (const std::runtime_error& e) {  // from gmsh 4.13 on
+    return e.what();
   } catch (int) {
     return GmshSession::errors();
   }
@@ -214,6 +216,12 @@ void refuse_at_limit(const std::string& path) {
 GmshMesh meshed_at(double factor, double per_turn, std::string& failed, const std::string& path, const std::string& format,
                    const ImportOptions& options) {
   GmshSession session(options);
+  const auto refuse = [&](const std::string& e) -> GmshMesh {
+    refuse_at_limit(path);
+    if (session.printed().find("ERR StepFile") != std::string::npos) throw Error(path, wrong_syntax);
+    const bool memory = e.find("ut of memory") != e.npos || e.find("malloc failed") != e.npos;
+    throw Error(path, "gmsh: " + e, "", memory ? Exit::resources : Exit::input);
+  };
   try {
     GmshMesh mesh;
     const double unit = read_unit(path, format, mesh);
@@ -236,11 +244,12 @@ GmshMesh meshed_at(double factor, double per_turn, std::string& failed, const st
     if (mesh.metre)
       for (Vec3& x : mesh.X) x /= unit;
     return mesh;
+  } catch (const Error&) {
+    throw;
   } catch (const std::string& e) {
-    refuse_at_limit(path);
-    if (session.printed().find("ERR StepFile") != std::string::npos) throw Error(path, wrong_syntax);
-    const bool memory = e.find("ut of memory") != e.npos || e.find("malloc failed") != e.npos;
-    throw Error(path, "gmsh: " + e, "", memory ? Exit::resources : Exit::input);
+    return refuse(e);
+  } catch (const std::runtime_error& e) {  // from gmsh 4.13 on
+    return refuse(e.what());
   } catch (const std::bad_alloc&) {
     throw Error(path, "not enough memory to read it, or its counts are damaged", "", Exit::resources);
   } catch (const std::length_error&) {
