@@ -73,16 +73,21 @@ std::string Motions::too_far(double t0, double t1) const {
 }
 
 std::string Motions::fault(const Config& q) const {
-  double found = -1;
+  double found = -1, follows = 0;  // of the nodes that a joint or spring has made a rigid patch
   for (size_t k = 0; k < list.size(); ++k) {
     const Motion& m = list[k];
     if (m.moving || m.body >= 0) continue;
     for (const int n : m.nodes)
       for (int i = 0; i < 3; ++i)
-        if (m.component[i] && !(std::abs(q.x[n][i] - points_.X[n][i]) <= 1e-12 * points_.length)) found = static_cast<double>(k);
+        if (m.component[i] && !(std::abs(q.x[n][i] - points_.X[n][i]) <= 1e-12 * points_.length))
+          found = static_cast<double>(k), follows = points_.follower[n] >= 0 ? 1 : 0;
   }
-  found = points_.comm->max(found);
-  return found < 0 ? "" : fmt::format("nodes that motion \"{}\" holds have left their places", list[static_cast<size_t>(found)].name);
+  const double last = points_.comm->max(found);
+  if (last < 0) return "";
+  follows = points_.comm->max(found == last ? follows : 0);
+  return fmt::format(
+      "nodes that motion \"{}\" holds have left their places{}", list[static_cast<size_t>(last)].name,
+      follows > 0 ? ", with the rigid patch that a joint or spring makes of them: guide it by a joint, planar or prismatic" : "");
 }
 
 void Motions::copy_prescribed(const Config& from, Config& to) const {

@@ -257,5 +257,40 @@ TEST_F(Motions, RefuseAHistoryThatJumpsAndComponentsMovedTwice) {
   EXPECT_NE(ran.err.find("motion \"drive\" prescribes the same component of a node"), std::string::npos) << ran.err;
 }
 
+// A node of a rigid patch that is to be held in y alone goes with the patch: not without a word.
+TEST_F(Motions, OfNodesThatArePartOfAPatchAreNotLeftOut) {
+  write_mesh(*this / "mesh.h5", bar(), {"test"});
+  write("scene.toml", R"([material.steel]
+E = 2e11
+nu = 0.3
+density = 7800
+[region.bar]
+material = "steel"
+[[motion]]
+kind = "fixed"
+name = "root"
+on = "xmin"
+[[motion]]
+kind = "fixed"
+name = "side"
+on = "ymin"
+components = ["y"]
+[[spring]]
+kind = "axial"
+name = "pull"
+b = "xmax"
+at_a = [1, 1, 0]
+at_b = [1, 0, 0]
+stiffness = 1e6
+preload = 1e3
+[time]
+analysis = "static"
+steps = 1
+)");
+  const Ran ran = run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5");
+  EXPECT_EQ(ran.exit, 3);
+  EXPECT_NE(ran.err.find("motion \"side\" holds have left their places, with the rigid patch"), std::string::npos) << ran.err;
+}
+
 }  // namespace
 }  // namespace hilo::test::sets_test
