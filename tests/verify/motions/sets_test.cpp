@@ -270,6 +270,12 @@ material = "steel"
 kind = "fixed"
 name = "root"
 on = "xmin"
+components = ["x"]
+[[motion]]
+kind = "fixed"
+name = "floor"
+on = "zmin"
+components = ["z"]
 [[motion]]
 kind = "fixed"
 name = "side"
