@@ -123,13 +123,12 @@ Mesh brick() {
 TEST(OnRanks, ABlockSlidesOnThePlane) {
   const std::string slides =
       "--set 'gravity=[0,0,-9.81]' --set 'obstacle.ground.at=[0,0,0]' --set contact.c.friction=0.3 --set material.soft.E=2e8 "
-      "--set 'initial.1.velocity=[1,0,0]' --set 'initial.1.spin=[0,0,0.5]' --set time.end=0.1 --set time.step=2e-3 "
+      "--set 'initial.1.velocity=[1,0,0]' --set 'initial.1.spin=[0,0,0.5]' --set time.end=0.04 --set time.step=2e-3 "
       "--set solver.tolerance=1e-13";
   for (const Fidelity level : {nonlinear, linear, rigid}) {
     const std::string stiff = level == rigid ? " --set contact.c.modulus=2e8 --set contact.c.layer=0.2" : "";
     const OnRanks runs({"contact", "drop", slides + stiff, brick(), {level}});
-    const auto ways =
-        level == nonlinear ? std::vector{std::pair{2, scattered}, {3, away}, {7, scattered}} : std::vector{std::pair{3, scattered}};
+    const auto ways = level == nonlinear ? std::vector{std::pair{2, scattered}, {3, away}} : std::vector{std::pair{2, scattered}};
     expect_same_on(runs, ways, 1e-9, std::string(word(level)));
   }
 }
@@ -182,8 +181,7 @@ Mesh stack(bool bent) {
 }
 
 TEST(OnRanks, TiesHold) {
-  expect_same_on(OnRanks({"ties", "pull", "", stack(false), {nonlinear, nonlinear}}), {{2, scattered}, {3, away}, {7, scattered}}, 1e-9,
-                 "pulled");
+  expect_same_on(OnRanks({"ties", "pull", "", stack(false), {nonlinear, nonlinear}}), {{2, scattered}, {3, away}}, 1e-9, "pulled");
   for (const Fidelity level : {nonlinear, rigid})
     expect_same_on(OnRanks({"ties", "flight", "", stack(true), {level, nonlinear}}),
                    {{3, level == rigid ? scattered : away}, {4, scattered}}, 1e-9, fmt::format("in flight, a {}", word(level)));
