@@ -185,7 +185,8 @@ Command at_command(CLI::App& app) {
   const auto o = std::make_shared<AtOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("field", o->field,
-                  "von_mises, stress_error, plastic_strain, stress, acceleration, displacement, velocity, or a component: stress.xx, "
+                  "von_mises, stress_error, plastic_strain, contact_pressure, stress, acceleration, displacement, velocity, or a "
+                  "component: stress.xx, "
                   "velocity.z; von_mises_envelope of a run with output.envelope")
       ->required();
   sub->add_option("--node", o->node, "number of a node, as peak prints it (from 0)")->check(CLI::NonNegativeNumber);

@@ -26,7 +26,8 @@ void add_frame_options(CLI::App& sub, FrameOptions& o) {
   };
   const char *what = "What is drawn", *camera = "Camera", *colours = "Colours and picture";
   add(what, "--field", o.field,
-      "von_mises, axial_stress (of beams), stress_error, plastic_strain, acceleration, displacement, velocity (or .x .y .z of these), "
+      "von_mises, axial_stress (of beams), stress_error, plastic_strain, contact_pressure, acceleration, displacement, velocity (or .x .y "
+      ".z of these), "
       "stress.xx, region, fidelity, "
       "partition")
       ->capture_default_str();

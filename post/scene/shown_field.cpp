@@ -22,6 +22,7 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
                                     {"axial_stress", "axial stress of beams", "Pa", {}},
                                     {"stress_error", "error of stress", "Pa", {}},
                                     {"plastic_strain", "plastic strain", "1", {}},
+                                    {"contact_pressure", "contact pressure", "Pa", {}},
                                     {"stress", "stress", "Pa", {"xx", "yy", "zz", "yz", "xz", "xy"}},
                                     {"displacement", "displacement", "m", xyz},
                                     {"velocity", "velocity", "m/s", xyz},
@@ -54,14 +55,13 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
   std::vector<std::string> names;
   for (const auto& k : known)
     if (!k.starts_with("cell_")) names.push_back(k);
-  names.insert(names.end(), {"region", "fidelity", "partition", "von_mises", "stress_error", "plastic_strain", "acceleration",
-                             "displacement", "velocity"});
+  names.insert(names.end(), {"region", "fidelity", "partition", "von_mises", "stress_error", "plastic_strain", "contact_pressure",
+                             "acceleration", "displacement", "velocity"});
   std::string hint = suggest(name, names);
-  throw Error(
-      "--field", fmt::format("no field \"{}\"", name),
-      hint.empty()
-          ? "von_mises, stress_error, plastic_strain, acceleration, displacement, velocity, stress.xx, region, fidelity or partition"
-          : hint);
+  throw Error("--field", fmt::format("no field \"{}\"", name),
+              hint.empty() ? "von_mises, stress_error, plastic_strain, contact_pressure, acceleration, displacement, velocity, stress.xx, "
+                             "region, fidelity or partition"
+                           : hint);
 }
 
 std::vector<double> reduced(RunFile::Field raw, const ShownField& field, const std::string& path) {

@@ -77,7 +77,7 @@ std::string Stability::told(const Unstable& u) const {
 
 std::optional<Unstable> Stability::look(const Config& q, const std::vector<double>& lambda) {
   const std::optional<int> found = below(q, lambda, 0);
-  known_ = found.has_value();
+  known_ = found.has_value(), factored_ = found == 0;
   if (!found || *found == 0) return {};
   Unstable out;
   out.motions = *found;

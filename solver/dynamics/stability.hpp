@@ -29,6 +29,8 @@ class Stability {
   std::optional<Unstable> look(const Config& q, const std::vector<double>& lambda);
   /// Whether look() could tell.
   bool known() const { return known_; }
+  /// Whether the solver has the factors of the tangent looked at last: not where masses were added to it.
+  bool factored() const { return factored_; }
   /// Says so in a line where it could not.
   static void tell_unknown(const std::string& solver);
   /// From an unstable state along its motion, to either side, down to the deeper stable equilibrium; false, and all as it was, where there
@@ -52,7 +54,7 @@ class Stability {
   System& system_;
   KktSolver& solver_;
   double t_, ramp_;
-  bool known_ = false;
+  bool known_ = false, factored_ = false;
   Config zero_;
   Residual r_;
 };

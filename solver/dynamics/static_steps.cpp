@@ -13,6 +13,7 @@
 #include "dynamics/run_parts.hpp"
 #include "dynamics/stability.hpp"
 #include "dynamics/start.hpp"
+#include "system/contacts.hpp"
 
 namespace hilo {
 namespace {
@@ -64,7 +65,10 @@ class StaticSteps final : public Steps {
         if (why.empty() || r.least_det.det <= 0) why = failure;
         if (at_.step <= std::ldexp(1.0 / n_, -run_.max_cuts)) {
           if (at_.least.det < 0.01 && r.least_det.det > 0) why += "; " + system.inside_out(at_.least);
-          if (r.least_det.det > 0) why += "; where a structure bears no more, analysis = \"path\" finds the limit and goes past it";
+          if (r.least_det.det > 0)
+            why += system.part<Contacts>().count().empty()
+                       ? "; where a structure bears no more, analysis = \"path\" finds the limit and goes past it"
+                       : "; a part may slide where friction holds no more, or part from what holds it: a run in time shows where it goes";
           return run_.stop(why + unheld(system, system.start));
         }
         ++run_.report.cuts;
@@ -126,14 +130,14 @@ class StaticSteps final : public Steps {
       run_.report.iterations += r.iterations;
     }
     unstable_.reset(), jump_ = 0;
+    bool factored = false;
     if (r.converged && !is_large()) {
       Stability stability(system, *run_.solver, reached.t, next);
       unstable_ = stability.look(reached.q, reached.lambda);
-      examined_ = stability.known();
+      examined_ = stability.known(), factored = stability.factored();
     }
     if (!r.converged) return r.reason;
-    const bool factored = !is_large() && examined_;
-    if (!unstable_ && (factored || r.iterations > few_iterations))
+    if (!unstable_ && ((examined_ && !is_large()) || r.iterations > few_iterations))
       jump_ = BranchJump(system, *run_.solver, options)
                   .between({state.q, state.lambda, state.t, at_.done}, {reached.q, reached.lambda, reached.t, next}, factored);
     take(reached, next);

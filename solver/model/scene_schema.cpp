@@ -281,7 +281,8 @@ std::vector<KindSchema> make_schema() {
        "what the results hold",
        {{"interval", number, "s", "", "time between field outputs; every 1/50 of the run when absent", above(0)},
         {"fields", texts, "",
-         "[\"displacement\", \"velocity\", \"acceleration\", \"stress\", \"von_mises\", \"stress_error\", \"plastic_strain\"]",
+         "[\"displacement\", \"velocity\", \"acceleration\", \"stress\", \"von_mises\", \"stress_error\", \"plastic_strain\", "
+         "\"contact_pressure\"]",
          "nodal fields"},
         {"nodes", text, "", "all", "whose fields: all, or skin: those on the surface of a region, which pictures without cuts show"},
         {"envelope", boolean, "", "false",

@@ -114,6 +114,9 @@ std::vector<ArraySchema>& arrays() {
        "von Mises stress of each cell, mean over its integration points (hex8: 2 x 2 x 2 of its assumed strains), not recovered; 0 on "
        "rigid "
        "cells"},
+      {"run.h5", "/field/<step>/contact_pressure", "f8", "(n_nodes)", "Pa",
+       "of [[contact]]: of planes through the pressures of the points of its pressed facets, their mean; only where facets may meet "
+       "something"},
       {"run.h5", "/field/<step>/plastic_strain", "f8", "(n_nodes)", "1",
        "equivalent plastic strain: that of the integration points extrapolated in each cell of the node's first flexible region, their "
        "mean; "

@@ -19,7 +19,7 @@ Registry<Word>* words_of(std::string_view section, std::string_view key) {
       {{"solver", "kind"},
        {"solver", {{"auto"}, {"light"}, {"klu"}, {"cholesky"}, {"umfpack"}, {"direct"}, {"cg"}, {"iterative"}, {"bddc"}, {"feti-dp"}}}},
       {{"output", "fields"},
-       {"field", {{"displacement"}, {"velocity"}, {"acceleration"}, {"stress"}, {"von_mises"}, {"stress_error"}, {"plastic_strain"}}}},
+       {"field", {{"displacement"}, {"velocity"}, {"acceleration"}, {"stress"}, {"von_mises"}, {"stress_error"}, {"plastic_strain"}, {"contact_pressure"}}}},
       {{"left_out", "loss"}, {"loss", {{"load"}, {"support"}, {"tie"}, {"material"}, {"other"}}}},
       {{"output", "nodes"}, {"choice of nodes", {{"all"}, {"skin"}}}},
       {{"output", "precision"}, {"precision", {{"double"}, {"single"}}}},

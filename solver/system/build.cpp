@@ -58,7 +58,7 @@ void Builder::add_contributions() {
   s.add<Welds>(s);
   const Joints& joints = s.add<Joints>(s);
   s.add<Springs>(s, joints);
-  s.add<Contacts>(s);
+  s.add<Contacts>(s, is_static());
   s.add<TiedSurfaces>(s);
   s.add<Loads>(s);
   s.add<Motions>(s, beams);

@@ -31,17 +31,12 @@ struct Extremes {
 void refuse_what_is_not_there(const Scene& scene, const Entry& e, bool surfaces) {
   const Entry& time = scene.table("time");
   const std::string label = e.label();
-  const bool is_static = time.text("analysis") == "static";
-  if (is_static && surfaces) return;
-  if (is_static)
-    throw Error(time.where("analysis"),
-                fmt::format("{}: contacts with obstacles are for steps in time, not for analysis = \"static\"", label),
-                "make the obstacle a rigid region with a mesh");
+  if (time.text("analysis") == "static") return;
   if (surfaces && time.given("start") && time.text("start") == "equilibrium")
     throw Error(time.where("start"), fmt::format("{}: surfaces that meet do not start from equilibrium", label));
   if (time.text("analysis") != "dynamic")
     throw Error(time.where("analysis"),
-                fmt::format("{}: contacts are for steps in time, not for analysis = \"{}\"", label, time.text("analysis")));
+                fmt::format("{}: contacts are for load steps and steps in time, not for analysis = \"{}\"", label, time.text("analysis")));
   if (time.text("integrator") != "energy-momentum")
     throw Error(time.where("integrator"), fmt::format("{}: contacts are for integrator = \"energy-momentum\"", label));
   if (time.given("tolerance"))
@@ -83,7 +78,7 @@ void Builder::add_contacts() {
     if (const auto ball = obstacles.find(b); ball != obstacles.end())
       used.insert(b), add_points_of_body(e, ball->second.obstacle, ball->second.body, pair);
     else
-      add_points_of_surface(e, pair);
+      add_points_of_surface(e, pair), pair.has_facets = true;
     if (pair.n_points == 0) throw Error(e.where("b"), fmt::format("{}: \"{}\" has no surface", e.label(), b));
     const auto is_held = [&](int body) { return body == 0 || !out_->bodies[body].free(); };
     bool held = is_held(pair.carrier) && (pair.body < 0 || is_held(pair.body));
@@ -168,9 +163,8 @@ void Builder::add_points_of_surface(const Entry& e, ContactPair& pair) {
   if (e.has("stiffness"))
     e.refuse("stiffness", "the stiffness of a surface comes from its region", "scale it by factor, or give a rigid one modulus and layer");
   const char* const several = "it has rigid and flexible regions, or several bodies";
-  const double factor = e.number("factor");
   std::map<int, double> modulus;  // of regions
-  Extremes stiffness, E, depth, body;
+  Extremes stiffness, E, depth, times, body;
   std::vector<std::array<std::int64_t, 3>> counts;  // cell and facet in the mesh, points
   comm_.together([&] {
     for (const Facet& f : facets) {
@@ -183,6 +177,7 @@ void Builder::add_points_of_surface(const Entry& e, ContactPair& pair) {
       if (follows && region.body == pair.carrier) e.refuse("b", "both are on the same body");
       body.take(follows ? region.body : -1);
       if (body.low < body.high) e.refuse("b", several, "one contact for each");
+      const double factor = e.given("factor") || rigid || !is_static() ? e.number("factor") : static_factor;
       double nu = 0.3, k = 0, deep = std::abs(quality(mesh, f.cell).volume) / std::max(facet_area(mesh, f).norm(), 1e-300);
       const double cell = deep;
       if (rigid) {
@@ -200,25 +195,28 @@ void Builder::add_points_of_surface(const Entry& e, ContactPair& pair) {
       }
       std::vector<Vec3> X;
       for (const std::int64_t i : nodes) X.push_back(mesh.X[i]);
-      const FacetPoints at = facet_points(X);
+      const FacetPoints at = facet_points(X, is_static() ? 4 : 2);
       for (size_t j = 0; j < at.area.size(); ++j) {
         ContactPoint point;
+        point.facet.assign(nodes.begin(), nodes.end()), point.share = at.share[j], point.area = at.area[j];
         point.law.k = k * at.area[j], point.law.kt = tangential_ratio(nu) * point.law.k, point.law.friction = pair.friction;
         point.cell = rigid ? std::min(cell, deep) : cell;
+        if (!rigid) point.deep = cell / factor;
         if (follows) {
           Vec3 x = Vec3::Zero();
           for (size_t n = 0; n < X.size(); ++n) x += at.share[j][n] * X[n];
           point.arm = x - out_->bodies[region.body].Xc;
         } else {
-          point.nodes.assign(nodes.begin(), nodes.end()), point.share = at.share[j];
+          point.nodes = point.facet;
         }
         pair.points.push_back(std::move(point));
       }
       counts.push_back({mesh_->cell_global[f.cell], f.facet, static_cast<std::int64_t>(at.area.size())});
-      stiffness.take(k), depth.take(deep);
+      stiffness.take(k), depth.take(deep), times.take(factor);
     }
   });
-  for (Extremes* range : {&stiffness, &E, &depth, &body}) range->low = -comm_.max(-range->low), range->high = comm_.max(range->high);
+  for (Extremes* range : {&stiffness, &E, &depth, &times, &body})
+    range->low = -comm_.max(-range->low), range->high = comm_.max(range->high);
   if (body.low < body.high) e.refuse("b", several, "one contact for each");
   if (body.low <= body.high) pair.body = static_cast<int>(body.low);
   auto all = comm_.gather(counts);
@@ -227,9 +225,9 @@ void Builder::add_points_of_surface(const Entry& e, ContactPair& pair) {
   for (const auto& [cell, facet, n] : all) first[{cell, facet}] = pair.n_points, pair.n_points += n;
   for (const auto& [cell, facet, n] : counts)
     for (std::int64_t k = 0; k < n; ++k) pair.number.push_back(first.at({cell, facet}) + k);
-  pair.told =
-      fmt::format("{} Pa/m: {}{} Pa over {} m, the depth of {}", stiffness.text(), factor == 1 ? "" : fmt::format("{:g} times ", factor),
-                  E.text(), depth.text(), pair.body >= 0 ? "the layer" : "the cells");
+  pair.told = fmt::format("{} Pa/m: {}{} Pa over {} m, the depth of {}", stiffness.text(),
+                          times.high == 1 ? "" : fmt::format("{:g} times ", times.high), E.text(), depth.text(),
+                          pair.body >= 0 ? "the layer" : "the cells");
 }
 
 }  // namespace hilo

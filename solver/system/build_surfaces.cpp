@@ -104,9 +104,9 @@ void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFac
              "give modulus and layer, or tag one linear or nonlinear");
   for (const char* key : {"layer", "modulus"})
     if (!both_rigid && e.has(key)) e.refuse(key, "a surface that can bend has its stiffness from its material");
-  const double factor = e.given("factor") ? e.number("factor")
-                        : pair.is_static  ? 100
-                                          : 1,
+  const double factor = e.given("factor")               ? e.number("factor")
+                        : pair.is_static && !both_rigid ? static_factor
+                                                        : 1,
                layer = both_rigid ? e.number("layer") / e.number("modulus") : 0;
   pair.factor = factor;
   double low = 1e300, high = 0;
@@ -124,6 +124,7 @@ void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFac
         SurfacePoint point;
         point.face = static_cast<int>(f);
         std::copy(at.share[j].begin(), at.share[j].end(), point.share.begin());
+        point.area = at.area[j];
         point.law.k = k * at.area[j] / 2, point.law.kt = tangential_ratio(its.nu) * point.law.k, point.law.friction = e.number("friction");
         point.cell = both_rigid ? std::min(its.cell, e.number("layer")) : its.cell;
         pair.side[s].points.push_back(point);

@@ -22,7 +22,7 @@ void Contacts::add_energy(const Config& q, const Config&, Energy& sum) const {
 }
 
 void Contacts::add_work(const Moment& m, Work& sum) const {
-  if (!m.s.conserving()) return;
+  if (is_start(m.s)) return;
   for (const ContactPair& pair : list)
     for (const ContactPoint& point : pair.points)
       if (point.law.friction > 0) sum.dissipated += place(pair, point, m.s).force.dissipated;
@@ -39,7 +39,7 @@ void Contacts::advance(const Stage& s) {
     if (const std::string told = pair.advance(s); !told.empty()) why = told;
   std::vector<double> sums;  // of each pair: pressing, pressing times slip, dissipated
   for (ContactPair& pair : list) {
-    if (!s.conserving()) break;
+    if (is_start(s)) break;
     double pressing = 0, slid = 0, dissipated = 0;
     const double within = pair.shape.least_extent();
     for (ContactPoint& point : pair.points) {
@@ -69,11 +69,12 @@ void Contacts::advance(const Stage& s) {
 }
 
 void Contacts::commit(const Config& q, const Config*) {
+  if (is_static_ && !list.empty()) committed_ = q;
   for (SurfacePair& pair : surfaces) pair.commit(q);
 }
 
 void Contacts::settle(bool accepted) {
-  jumped_.clear();
+  jumped_.clear(), begin_ = committed_;
   for (ContactPair& pair : list) {
     (accepted ? pair.sums : pair.next) = accepted ? pair.next : pair.sums;
     for (ContactPoint& point : pair.points) (accepted ? point.u : point.next) = accepted ? point.next : point.u;
@@ -133,6 +134,36 @@ void Contacts::observe(const Sight& at) {
   }
   points_.comm->max(end), points_.comm->sum(mid);
   at.end.insert(at.end.end(), end.begin(), end.end()), at.mid.insert(at.mid.end(), mid.begin(), mid.end());
+}
+
+bool Contacts::has_facets() const {
+  return !surfaces.empty() || std::ranges::any_of(list, [](const ContactPair& pair) { return pair.has_facets; });
+}
+
+void Contacts::each_facet(const Config& q, const std::function<void(const Pressed&)>& visit) const {
+  const auto of_facet = [&](std::span<const int> nodes, const auto& points, const auto& pressing) {
+    const auto n = static_cast<Eigen::Index>(points.size()), m = static_cast<Eigen::Index>(nodes.size());
+    Pressed facet{nodes, Eigen::MatrixXd(n, m), Eigen::VectorXd(n), Eigen::VectorXd(n)};
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const auto& point = points[static_cast<size_t>(k)];
+      facet.share.row(k) = Eigen::Map<const Eigen::RowVectorXd>(point.share.data(), m);
+      facet.area[k] = point.area, facet.pressure[k] = pressing(point) / point.area;
+    }
+    visit(facet);
+  };
+  for (const ContactPair& pair : list)
+    for (size_t first = 0, last; first < pair.points.size() && pair.has_facets; first = last) {
+      for (last = first; last < pair.points.size() && pair.points[last].facet == pair.points[first].facet;) ++last;
+      of_facet(pair.points[first].facet, std::span(pair.points).subspan(first, last - first),
+               [&](const ContactPoint& point) { return point.law.k * std::max(-gap(pair, point, q), 0.); });
+    }
+  for (const SurfacePair& pair : surfaces)
+    for (const ContactSurface& side : pair.side)
+      for (const ContactSurface::Face& face : side.faces)
+        of_facet({face.node.data(), static_cast<size_t>(face.n)}, std::span(side.points).subspan(face.first, face.n_points),
+                 [](const SurfacePoint& point) {
+                   return 2 * point.law.k * std::max(-point.next.past.gap, 0.);
+                 });  // the other half: of the other side
 }
 
 void Contacts::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {

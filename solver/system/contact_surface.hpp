@@ -38,6 +38,7 @@ struct SurfacePoint {
   std::array<double, 8> share{};
   PointLaw law;
   double cell = 0;              // depth of the cell behind it [m]
+  double area = 0;              // [m^2]
   FacetState state, now, next;  // accepted, of the step at work, and at its end
   std::pair<int, int> left{};   // face and triangle that it had before in the step at work
 };

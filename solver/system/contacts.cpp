@@ -65,20 +65,30 @@ double Contacts::gap(const ContactPair& pair, const ContactPoint& point, const C
   return pair.shape.at(measures(pair, position(pair, point, q), q)) - point.law.radius;
 }
 
+template <class T>
+PointForce<T> Contacts::force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1,
+                              const Triple<T>& way) const {
+  return is_static_ ? at_end(pair.shape, point.law, x1, way, point.u, touch(point), point.deep)
+                    : over_step(pair.shape, point.law, x0, x1, way, point.u);
+}
+
 Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& point, const Stage& s) const {
   Place at;
-  const Vec3 p0 = position(pair, point, *s.e0), p1 = position(pair, point, *s.e1);
-  at.x0 = measures(pair, p0, *s.e0), at.x1 = measures(pair, p1, *s.e1);
+  const Config& e0 = begin(s);
+  const Vec3 p0 = position(pair, point, e0), p1 = position(pair, point, *s.e1);
+  at.x0 = measures(pair, p0, e0), at.x1 = measures(pair, p1, *s.e1);
   const PointLaw& law = point.law;
-  if (pair.shape.at(at.x0) >= law.radius && pair.shape.at(at.x1) >= law.radius && s.conserving()) {
-    at.force = over_step(pair.shape, law, at.x0, triple<double>(at.x1), triple<double>(at.x1 - at.x0), point.u);
+  const bool is_start = this->is_start(s);
+  const double open = is_static_ ? touch(point) : 0;
+  if (!is_start && pair.shape.at(at.x0) >= law.radius + open && pair.shape.at(at.x1) >= law.radius + open) {
+    at.force = force(pair, point, at.x0, triple<double>(at.x1), triple<double>(at.x1 - at.x0));
     return at;
   }
   const int o = pair.carrier, b = pair.body;
-  at.A0 = s.e0->R[o] * pair.axes, at.A1 = s.e1->R[o] * pair.axes, at.Am = s.left->R[o] * pair.axes;
+  at.A0 = e0.R[o] * pair.axes, at.A1 = s.e1->R[o] * pair.axes, at.Am = s.left->R[o] * pair.axes;
   at.rel = position(pair, point, *s.left) - s.left->c[o], at.rel1 = p1 - s.e1->c[o];
   if (b >= 0) {
-    at.turn0 = s.e0->R[b], at.turn1 = s.e1->R[b], at.turn = s.left->R[b];
+    at.turn0 = e0.R[b], at.turn1 = s.e1->R[b], at.turn = s.left->R[b];
     at.arm = at.turn * point.arm, at.arm1 = at.turn1 * point.arm;
   }
   const bool rolls = law.radius > 0 && law.friction > 0;
@@ -90,8 +100,8 @@ Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& poi
     at.lowest = at.turn.inverse() * at.low;
     at.way = at.A1.transpose() * (at.turn1 * at.lowest) - at.A0.transpose() * (at.turn0 * at.lowest);
   }
-  if (s.conserving())
-    at.force = over_step(pair.shape, law, at.x0, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way), point.u);
+  if (!is_start)
+    at.force = force(pair, point, at.x0, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way));
   else
     at.force = at_rest(pair.shape, law, triple<double>((1 - s.weight) * at.x0 + s.weight * at.x1), point.u);
   at.normal = at.Am * values(at.force.normal), at.tangential = at.Am * values(at.force.tangential);
@@ -145,7 +155,7 @@ void Contacts::add_tangent(Pass& p, const ContactPair& pair, const ContactPoint&
     Triple<T> x1 = triple<T>(at.x1), way = triple<T>(at.x1 - at.x0 + at.way);
     for (int i = 0; i < 3; ++i) x1[i].d[i] = 1, way[i].d[N - 3 + i] = 1;
     const auto f = [&] {
-      if (s.conserving()) return over_step(pair.shape, point.law, at.x0, x1, way, point.u);
+      if (!is_start(s)) return force(pair, point, at.x0, x1, way);
       const Triple<T> x = s.e0 == s.e1 ? x1 : T(1 - s.weight) * triple<T>(at.x0) + T(s.weight) * x1;
       return at_rest(pair.shape, point.law, x, point.u);
     }();

@@ -2,6 +2,8 @@
 // Contacts: points of regions and bodies against obstacles that the ground or a body carries, and surfaces against each other
 // (system/surface_pair).  No rows, no events: forces of gaps that are closed at either end of the step (physics/contact).
 #pragma once
+#include <functional>
+
 #include "physics/contact/point_contact.hpp"
 #include "system/contribution.hpp"
 #include "system/revising.hpp"
@@ -9,13 +11,19 @@
 
 namespace hilo {
 
+/// Of the stiffness of facets of regions that bend, in load steps.
+constexpr double static_factor = 100;
+
 /// A point of a facet, or one that a body carries.
 struct ContactPoint {
   std::vector<int> nodes;  // none: of the body
+  std::vector<int> facet;  // nodes of its facet, whose shape functions `share` are
+  double area = 0;         // of the facet [m^2]
   std::vector<double> share;
   Vec3 arm = Vec3::Zero();  // from the centre of the body, body axes [m]
   PointLaw law;
   double cell = 0;           // the depth that is told as a share of this [m]
+  double deep = HUGE_VAL;    // the depth at which the pressure is the modulus of what lies behind [m]
   Vec3 u = Vec3::Zero();     // the bristle, in axes of the obstacle [m]
   Vec3 next = Vec3::Zero();  // at the end of the step tried last
 };
@@ -31,12 +39,13 @@ struct ContactPair {
   std::vector<ContactPoint> points;  // that this rank evaluates: of facets of its cells; those of a body without mesh are on one rank
   std::vector<std::int64_t> number;  // of these, among all
   std::int64_t n_points = 0;         // of all
+  bool has_facets = false;
   ContactSums sums, next;
 };
 
 class Contacts final : public Contribution, public Equations, public Stateful, public Observer, public Revising {
  public:
-  explicit Contacts(const Points& points) : points_(points) {}
+  Contacts(const Points& points, bool is_static) : points_(points), is_static_(is_static) {}
   std::vector<ContactPair> list;
   std::vector<SurfacePair> surfaces;
 
@@ -58,6 +67,16 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   void observe(const Sight& at) override;
   void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override;
   void tie(Ties& ties) const override;
+  /// Of all ranks' meshes.
+  bool has_facets() const;
+  /// Pressure of the points of a facet [Pa], their shares of its nodes (points x nodes) and their areas [m^2].
+  struct Pressed {
+    std::span<const int> nodes;
+    Eigen::MatrixXd share;
+    Eigen::VectorXd pressure, area;
+  };
+  /// For each facet of this rank.
+  void each_facet(const Config& q, const std::function<void(const Pressed&)>& visit) const;
   /// The gap of a point, below zero where it is closed [m].
   double gap(const ContactPair& pair, const ContactPoint& point, const Config& q) const;
 
@@ -74,10 +93,20 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
     Vec3 low = Vec3::Zero();  // from the point to that which slides
   };
   Place place(const ContactPair& pair, const ContactPoint& point, const Stage& s) const;
+  template <class T>
+  PointForce<T> force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way) const;
   Vec3 position(const ContactPair& pair, const ContactPoint& point, const Config& q) const;
   Vec3 measures(const ContactPair& pair, const Vec3& x, const Config& q) const;
   void add_tangent(Pass& p, const ContactPair& pair, const ContactPoint& point, const Place& at, int clique) const;
+  /// Load steps begin where what touches holds [m].
+  static double touch(const ContactPoint& point) { return 1e-8 * point.cell; }
+  /// The beginning of the step.
+  const Config& begin(const Stage& s) const { return is_static_ && !begin_.R.empty() ? begin_ : *s.e0; }
+  /// Of a start, not of a step.
+  bool is_start(const Stage& s) const { return is_static_ == s.conserving(); }
   const Points& points_;
+  const bool is_static_;                  // load steps: forces at their end
+  Config committed_, begin_;              // of load steps: the state accepted last, and where the step began
   std::vector<std::vector<int>> clique_;  // of each point
   std::string jumped_;                    // what the step tried last went through
 };

@@ -14,6 +14,7 @@
 #include <bit>
 #include <cmath>
 
+#include "system/contacts.hpp"
 #include "system/rigid_motion.hpp"
 #include "system/solids.hpp"
 #include "system/system.hpp"
@@ -88,7 +89,7 @@ class Resistance final : public KktSolver {
       if (b < system_.first_joint_block() && std::find(parts.begin(), parts.end(), blocks_[b].part) == parts.end())
         parts.push_back(blocks_[b].part);
     }
-    if (parts.empty() || (inside && parts.size() == 1 && n > 1)) return;  // a point alone is held from outside
+    if (parts.empty() || (inside && parts.size() == 1 && n > 1 && !of_contacts)) return;  // a point alone is held from outside
     const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> K(dense, 3 * n, 3 * n);
     Eigen::MatrixXd V = Eigen::MatrixXd::Zero(3 * n, 6 * static_cast<Eigen::Index>(parts.size()));
     for (int i = 0; i < n; ++i)
@@ -118,7 +119,8 @@ class Resistance final : public KktSolver {
   void sum_shared(std::span<double>) override {}
   SolveReport solve(std::span<const double>, std::span<double>, double) override { return {}; }
   std::string name() const override { return "resistance"; }
-  int n_clusters = 0;  // parts of nodes; bodies follow
+  int n_clusters = 0;        // parts of nodes; bodies follow
+  bool of_contacts = false;  // which hold a part from outside
 
  private:
   const System& system_;
@@ -176,12 +178,9 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
   std::vector<double> lambda(3 * n_joint_blocks(), 0.0);
   Residual unused;
   unused.r.assign(3 * n_blocks(), 0.0);
-  const auto evaluate = [&](KktSolver& into, bool loads) {
-    Pass p{stage, lambda, unused, &into, node, body, 1, loads};
-    for (const Equations* part : all<Equations>()) part->evaluate(p);
-  };
   Reach reach(*this);
-  evaluate(reach, false);  // loads have turns without moves
+  Pass pass{stage, lambda, unused, &reach, node, body, 1, false};  // loads have turns without moves
+  for (const Equations* part : all<Equations>()) part->evaluate(pass);
   comm->max(reach.arm);
   for (size_t k = 0; k < moving.size(); ++k) {
     const Body& body = bodies[moving[k]];
@@ -223,7 +222,11 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
 
   Resistance resistance(*this, blocks);
   resistance.n_clusters = n_clusters;
-  evaluate(resistance, with_loads);
+  pass.K = &resistance, pass.loads = with_loads;
+  for (const Equations* equations : all<Equations>()) {
+    resistance.of_contacts = equations == &part<Contacts>();
+    equations->evaluate(pass);
+  }
 
   std::vector<std::vector<std::int64_t>> tell(comm->size);
   for (auto& list : tell)

@@ -12,7 +12,7 @@
 namespace hilo::test {
 namespace {
 
-constexpr int steps = 100, rigid_seeds = 19, flexible_seeds = 10;
+constexpr int steps = 100, rigid_seeds = 19, flexible_seeds = 6;
 
 class RandomMachines : public testing::TestWithParam<std::tuple<Family, double>> {};
 

@@ -6,7 +6,7 @@
 namespace hilo {
 
 Registry<FieldKind>& field_kinds() {
-  static Registry<FieldKind> kinds{"source of fields", {{"motion", motion_fields}, {"stress", stress_fields}}};
+  static Registry<FieldKind> kinds{"source of fields", {{"motion", motion_fields}, {"stress", stress_fields}, {"contact", contact_fields}}};
   return kinds;
 }
 

@@ -68,6 +68,8 @@ void add_field(const FieldKind& kind, const std::vector<std::string_view>& words
 
 /// Displacement, velocity and acceleration of nodes.
 std::unique_ptr<FieldSource> motion_fields(const System& system, const std::vector<std::int64_t>& node_row);
+/// Pressure of contacts on nodes.
+std::unique_ptr<FieldSource> contact_fields(const System& system, const std::vector<std::int64_t>& node_row);
 /// Recovered stress of nodes and stress of cells.
 std::unique_ptr<FieldSource> stress_fields(const System& system, const std::vector<std::int64_t>& node_row);
 

@@ -155,12 +155,11 @@ FacetForce<T> over_step(const PointLaw& law, const OverTriangle<double>& z0, con
   return out;
 }
 
-/// What the gradient's own change adds to a tangent, times f; nothing where there is no tangent.
-inline void slow_down(FacetGradient<double>&, double) {}
-template <int N>
-void slow_down(FacetGradient<Jet<N>>& D, double f) {
-  for (Triple<Jet<N>>* a : {&D.r, &D.t1, &D.t2})
-    for (Jet<N>& x : a->x) x.d *= f;
+/// What the gradient's own change adds to a tangent, times f.
+template <class T>
+void slow_down(FacetGradient<T>& D, double f) {
+  for (Triple<T>* a : {&D.r, &D.t1, &D.t2})
+    for (T& x : a->x) slow_down(x, f);
 }
 
 /// At the configuration z1 that a load step from z0 leads to: the gradient of the potential.  Where the gap is below `touch`, the law is

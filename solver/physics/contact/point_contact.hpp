@@ -49,6 +49,25 @@ struct PointForce {
   bool acts = false;
 };
 
+/// The bristle after the material point has gone `way` along an obstacle of normal out.n, shortened to mu p/kt unless it sticks.
+template <class T>
+void bend(const PointLaw& law, const Triple<T>& way, const Vec3& u0, const T& p, bool sticks, PointForce<T>& out) {
+  if (law.friction <= 0) return;
+  const Triple<T> bent = triple<T>(u0);
+  const Triple<T> sigma = way - dot(out.n, way) * out.n;
+  const Triple<T> trial = bent - dot(out.n, bent) * out.n + sigma;
+  const T limit = T(law.friction / law.kt) * p, square = dot(trial, trial);
+  out.u = trial;
+  if (!sticks && value(square) > value(limit) * value(limit)) {
+    const T size = sqrt(square);
+    out.u = (limit / size) * trial;
+    out.slid = value(size) - value(limit);
+  }
+  out.tangential = T(law.kt) * out.u;
+  const Vec3 u1 = values(out.u), s = values(sigma);
+  out.dissipated = law.kt * (u1.dot(s) - (u1.squaredNorm() - u0.squaredNorm()) / 2);
+}
+
 /// Over the step from measures x0 to x1, `way` that of the material point, from a bristle u0.
 template <class T>
 PointForce<T> over_step(const Distance& shape, const PointLaw& law, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way,
@@ -78,24 +97,38 @@ PointForce<T> over_step(const Distance& shape, const PointLaw& law, const Vec3& 
   if (std::abs(value(rest)) > 1e-14 * (shape.extent() + x0.norm())) D = D + (rest / dot(dx, dx)) * dx;
   const T p = secant(law, g0, g1);
   out.normal = (-p) * D, out.pressing = value(p);
-  if (law.friction <= 0) return out;
-  const Triple<T> bent = triple<T>(u0);
-  const Triple<T> sigma = way - dot(out.n, way) * out.n;
-  const Triple<T> trial = bent - dot(out.n, bent) * out.n + sigma;
-  const T limit = T(law.friction / law.kt) * p, square = dot(trial, trial);
-  out.u = trial;
-  if (value(square) > value(limit) * value(limit)) {
-    const T size = sqrt(square);
-    out.u = (limit / size) * trial;
-    out.slid = value(size) - value(limit);
-  }
-  out.tangential = T(law.kt) * out.u;
-  const Vec3 u1 = values(out.u), s = values(sigma);
-  out.dissipated = law.kt * (u1.dot(s) - (u1.squaredNorm() - u0.squaredNorm()) / 2);
+  bend(law, way, u0, p, false, out);
   return out;
 }
 
-/// At one place, for statics and starts: the gradient of the potential, the bristle as it is.
+/// At the measures x1 that a load step leads to: the gradient of the potential.  Where the gap is below `touch` [m], the law is taken as
+/// closed, and what touches sticks.  A guess may be far deeper than any answer, `deep` [m]; the tangent then has no more of the stiffness
+/// of a turning normal than at that depth.
+template <class T>
+PointForce<T> at_end(const Distance& shape, const PointLaw& law, const Triple<T>& x1, const Triple<T>& way, const Vec3& u0, double touch,
+                     double deep) {
+  PointForce<T> out;
+  const T zero(0.0);
+  out.normal = out.tangential = out.u = {{zero, zero, zero}};
+  T phi;
+  shape(x1, phi, out.n);
+  const T gap = phi - T(law.radius);
+  if (value(gap) >= touch) {
+    out.dissipated = law.kt / 2 * u0.squaredNorm();
+    return out;
+  }
+  out.acts = true;
+  const double depth = -value(gap), least = 1e-6 * law.radius;  // of a ball: below, as stiff as there, so that what rests is held
+  const T p = law.hertz > 0 ? T(law.hertz) * (-gap) * (depth > least ? sqrt(-gap) : T(std::sqrt(least))) : T(-law.k) * gap;
+  Triple<T> n = out.n;
+  if (depth > deep)
+    for (T& x : n.x) slow_down(x, deep / depth);
+  out.normal = (-p) * n, out.pressing = value(p);
+  bend(law, way, u0, p, depth <= touch, out);
+  return out;
+}
+
+/// At one place, for starts: the gradient of the potential, the bristle as it is.
 template <class T>
 PointForce<T> at_rest(const Distance& shape, const PointLaw& law, const Triple<T>& x, const Vec3& u0) {
   PointForce<T> out;

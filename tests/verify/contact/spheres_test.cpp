@@ -63,6 +63,16 @@ TEST(Surfaces, SpheresOfHertz) {
       << "however it came there";
 }
 
+// Truth: two equal spheres meet in a plane, which either may be.
+TEST(Surfaces, ASphereOnAPlaneIsOneOfTwo) {
+  Case c("contact");
+  c.use(spheres(0.01, 4, 1.35, 0.033));
+  const Results r = c.solved("", "run.h5", "on_plane");
+  EXPECT_NEAR(r.history("contact/c").bottomRows(1)(0, 2), force_of_hertz(0.004), 0.01 * force_of_hertz(0.004));
+  EXPECT_EQ(c.reported("cuts"), 0);
+  EXPECT_LT(c.reported("newton_iterations"), 60);
+}
+
 // Truth: the pressure under a force, p0 sqrt(1 - r^2/a^2), whatever holds the spheres far away; a is 2 mm, the largest strain 0.03.
 TEST(Surfaces, PressureOfHertzWhereStrainIsSmall) {
   const Mesh mesh = spheres(2e-3, 5, 1.45, 0.03);
@@ -73,15 +83,19 @@ TEST(Surfaces, PressureOfHertzWhereStrainIsSmall) {
   EXPECT_NEAR(F, force_of_hertz(1.6e-4), 0.02 * F) << "half spheres are not half spaces";
   const double a = std::cbrt(3 * 4 * F * R_star / (4 * E_star)), p0 = 2 * E_star * a / (std::numbers::pi * R_star);
   const auto stress = r.table("/field/" + r.steps().back() + "/stress");
-  double sum = 0, exact = 0;
+  const auto pressure = r.table("/field/" + r.steps().back() + "/contact_pressure");
+  double sum = 0, exact = 0, sum_of_pressures = 0;
   for (std::int64_t i = 0; i < mesh.n_nodes(); ++i) {
     const double rho = mesh.X[i].head<2>().norm();
     if (std::abs(mesh.X[i][2]) > 2e-5 || rho > 0.7 * a) continue;
     sum -= stress(i, 2), exact += p0 * std::sqrt(1 - rho * rho / (a * a));
+    sum_of_pressures += pressure(i, 0);
+    EXPECT_NEAR(pressure(i, 0), p0 * std::sqrt(1 - rho * rho / (a * a)), 0.08 * p0) << rho;
     EXPECT_NEAR(-stress(i, 2), p0 * std::sqrt(1 - rho * rho / (a * a)), 0.08 * p0) << rho;
   }
   EXPECT_GT(exact, 20 * p0);
   EXPECT_NEAR(sum, exact, 0.03 * exact);
+  EXPECT_NEAR(sum_of_pressures, exact, 0.03 * exact);
 }
 
 }  // namespace

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Obstacles in load steps: closed forms of what rests, is pressed and is pushed.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "verify/block_mesh.hpp"
+#include "verify/contact/collision.hpp"
+#include "verify/verify.hpp"
+
+namespace hilo::test::load_steps_test {
+namespace {
+
+constexpr double g = 9.81;
+
+Eigen::VectorXd last(const Results& r, const std::string& history) { return r.history(history).bottomRows(1).transpose(); }
+
+/// Least and largest contact pressure of the nodes of a plane z = const, at the end [Pa].
+std::pair<double, double> pressures(const Results& r, const Mesh& mesh, double z) {
+  const auto p = r.table("/field/" + r.steps().back() + "/contact_pressure");
+  std::pair<double, double> out{1e300, -1e300};
+  for (std::int64_t i = 0; i < mesh.n_nodes(); ++i)
+    if (std::abs(mesh.X[i][2] - z) < 1e-9) out = {std::min(out.first, p(i, 0)), std::max(out.second, p(i, 0))};
+  return out;
+}
+
+/// A block of 1 x 1 x 1 m, E 1 MPa, nu 0, on a plane; `more` holds and loads it.
+struct OnPlane : Case {
+  OnPlane(const std::string& more, Shape shape, Fidelity fidelity) : Case("contact") {
+    BlockOptions o;
+    o.shape = shape;
+    o.n[0] = o.n[1] = 2, o.n[2] = 4;
+    mesh = block_mesh(o);
+    use(mesh, {fidelity});
+    std::ofstream(*this / "scene.toml") << "[material.m]\nE = 1e6\nnu = 0\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n"
+                                           "[[obstacle]]\nkind = \"plane\"\nname = \"ground\"\n"
+                                           "[[contact]]\nname = \"c\"\na = \"ground\"\nb = \"block\"\n[time]\nanalysis = \"static\"\n"
+                                        << more;
+  }
+  Mesh mesh;
+  Results run(const std::string& options = "") const {
+    const Ran ran = Case::run("hilo-solve --quiet scene.toml tags.h5 " + options + " -o run.h5");
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    return Results(*this / "run.h5");
+  }
+};
+
+// Truth: uniaxial stress p, and layers of 100 E/l at the foot: the top sinks by p (1 + l/100)/E to first order in p/E.
+TEST(LoadSteps, ABlockIsPressedOnAPlane) {
+  const std::string press =
+      "steps = 1\n[[load]]\nkind = \"pressure\"\nname = \"p\"\non = \"zmax\"\npressure = 10\n"
+      "[[motion]]\nkind = \"fixed\"\nname = \"x\"\non = \"xmin\"\ncomponents = [\"x\"]\n"
+      "[[motion]]\nkind = \"fixed\"\nname = \"y\"\non = \"ymin\"\ncomponents = [\"y\"]\n"
+      "[[probe]]\nname = \"top\"\non = \"zmax\"\n";
+  for (const Shape shape : {Shape::hex8, Shape::tet4, Shape::hex20, Shape::tet10}) {
+    const OnPlane c(press, shape, Fidelity::nonlinear);
+    const Results r = c.run();
+    EXPECT_NEAR(last(r, "contact/c")[2], 10, 1e-8);
+    const double l = shape == Shape::tet4 || shape == Shape::tet10 ? 0.25 / 3 : 0.25;  // volume over the area of the facet
+    EXPECT_NEAR(last(r, "probe/top")[2] - 1, -1e-5 * (1 + l / 100), 3e-5 * 1e-5) << info(shape).name;
+    const auto [least, most] = pressures(r, c.mesh, 0);
+    EXPECT_NEAR(least, 10, 0.01) << info(shape).name;
+    EXPECT_NEAR(most, 10, 0.01) << info(shape).name;
+    EXPECT_EQ(pressures(r, c.mesh, 0.5).second, 0) << info(shape).name;
+  }
+}
+
+// Truth: the sum of the tractions mu p, whatever the block's own deformation; the work of friction is that of the way its foot goes.  It
+// slides on an obstacle or on another region in the steps that were asked for: friction is no jump to another branch.
+TEST(LoadSteps, ABlockIsPressedAndPushed) {
+  const std::string push =
+      "steps = 10\nend = 1\n[[motion]]\nkind = \"translation\"\nname = \"down\"\non = \"top\"\ncomponents = [\"z\"]\n"
+      "displacement = [0, 0, -1e-3]\nhistory = {t = [0, 0.5, 1], value = [0, 1, 1]}\n"
+      "[[motion]]\nkind = \"translation\"\nname = \"aside\"\non = \"top\"\ncomponents = [\"x\", \"y\"]\n"
+      "displacement = [0.03, 0.04, 0]\nhistory = {t = [0, 0.5, 1], value = [0, 0, 1]}\n"
+      "[set]\ntop = {kind = \"plane\", at = [0, 0, 1], axis = [0, 0, 1]}\n";
+  for (const bool on_region : {false, true}) {
+    OnPlane c(push + (on_region ? "[[motion]]\nkind = \"fixed\"\nname = \"floor\"\non = \"low\"\n"
+                                  "[set.low]\nkind = \"plane\"\nat = [0, 0, -0.5]\naxis = [0, 0, 1]\n"
+                                : ""),
+              Shape::hex8, Fidelity::nonlinear);
+    if (on_region) {
+      BlockOptions o;
+      o.regions = {"base"}, o.n[0] = o.n[1] = 4, o.n[2] = 2, o.low = Vec3(-0.5, -0.5, -0.5), o.high = Vec3(1.5, 1.5, 0);
+      c.mesh = together(block_mesh(o), c.mesh);
+      c.use(c.mesh, {Fidelity::nonlinear, Fidelity::nonlinear});
+    }
+    const Results r = c.run(std::string("--set contact.c.friction=0.3") + (on_region ? " --set 'contact.c.a=\"base\"'" : ""));
+    const Eigen::VectorXd f = last(r, "contact/c");
+    EXPECT_NEAR(f[2], on_region ? 750 : 1000, on_region ? 150 : 10) << "half as deep as the block is high, and wider";
+    EXPECT_NEAR(f[0] / f[2], -0.3 * 0.6, 2e-3);
+    EXPECT_NEAR(f[1] / f[2], -0.3 * 0.8, 2e-3);
+    EXPECT_NEAR(std::hypot(f[0], f[1]), 0.3 * f[2], 5e-4 * f[2]);
+    EXPECT_NEAR(f[6], 0.3 * f[2] * f[5], 0.02 * f[6]);
+    EXPECT_NEAR(f[5], 0.05, 0.003) << "less what the block shears";
+    EXPECT_NEAR(last(r, "energy")[4], f[6], 1e-9 * f[6]);
+    EXPECT_LE(c.reported("steps"), 12);
+    EXPECT_LT(c.reported("newton_iterations"), 100);
+  }
+}
+
+// Truth: weight over area, and a layer of E E*/layer that a part of 1 t sinks into.  A rigid part stands on it, and holds by friction.
+TEST(LoadSteps, ARigidBlockStands) {
+  const OnPlane c("steps = 2\n", Shape::hex8, Fidelity::rigid);
+  const Results r = c.run("--set 'gravity=[1,0,-9.81]' --set contact.c.friction=0.3 --set contact.c.modulus=1e8 --set contact.c.layer=0.1");
+  const Eigen::VectorXd f = last(r, "contact/c");
+  EXPECT_NEAR(f[2], 1000 * g, 1e-6);
+  EXPECT_NEAR(f[0], -1000, 1e-6);
+  const auto [least, most] = pressures(r, c.mesh, 0);
+  EXPECT_NEAR((least + most) / 2, 1000 * g, 1e-3 * 1000 * g) << "the push tilts it";
+  EXPECT_NEAR((most - least) / 2, 6 * 500, 0.01 * 3000) << "by 500 N m";
+}
+
+// Truth: the law of the lever and Hertz.  A body on three balls stands by friction, and slides off where the push is more than mu m g.
+TEST(LoadSteps, ABodyStandsOnThreeBalls) {
+  const Case c("contact");
+  std::string text =
+      "gravity = [0, 0, -9.81]\n[[body]]\nname = \"b\"\nmass = 30\ncom = [0.1, 0.2, 0.4]\ninertia = [1, 1, 1]\n"
+      "[[obstacle]]\nkind = \"plane\"\nname = \"ground\"\n"
+      "[[load]]\nkind = \"force\"\nname = \"push\"\non = \"b\"\nforce = [50, 0, 0]\nat = [0.1, 0.2, 0]\n"
+      "[time]\nanalysis = \"static\"\nsteps = 4\n";
+  const Vec3 at[] = {Vec3(0.6, 0, 0.1), Vec3(-0.4, 0.5, 0.1), Vec3(-0.4, -0.5, 0.1)};
+  for (int k = 0; k < 3; ++k)
+    text += fmt::format(
+        "[[obstacle]]\nkind = \"sphere\"\nname = \"ball {0}\"\non = \"b\"\nradius = 0.1\nat = [{1}, {2}, {3}]\n"
+        "[[contact]]\nname = \"{0}\"\na = \"ground\"\nb = \"ball {0}\"\nmodulus = 1e9\nfriction = 0.3\n",
+        k, at[k][0], at[k][1], at[k][2]);
+  std::ofstream(c / "scene.toml") << text;
+  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  Eigen::Matrix3d lever;
+  for (int k = 0; k < 3; ++k) lever.col(k) << 1, at[k][0], at[k][1];
+  const Vec3 weight = lever.inverse() * (30 * g * Vec3(1, 0.1, 0.2));
+  const Results r(c / "run.h5");
+  double aside = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::VectorXd f = last(r, fmt::format("contact/{}", k));
+    EXPECT_NEAR(f[2], weight[k], 2e-3 * weight[k]) << "the balls roll a little";
+    EXPECT_NEAR(f[3], std::pow(f[2] / (4. / 3 * 1e9 * std::sqrt(0.1)), 2. / 3), 1e-6 * f[3]);
+    aside += f[0];
+  }
+  EXPECT_NEAR(aside, -50, 1e-6);
+  const Ran slides = c.run("hilo-solve --quiet scene.toml --set 'load.push.force=[100,0,0]' -o run.h5");
+  EXPECT_EQ(slides.exit, 3) << slides.err;
+  EXPECT_NE(slides.err.find("a part may slide where friction holds no more"), std::string::npos) << slides.err;
+}
+}  // namespace
+}  // namespace hilo::test::load_steps_test
