@@ -28,6 +28,13 @@ std::pair<double, double> pressures(const Results& r, const Mesh& mesh, double z
 
 /// A block of 1 x 1 x 1 m, E 1 MPa, nu 0, on a plane; `more` holds and loads it.
 struct OnPlane : Case {
+  /// A region below it instead.
+  void add_base() {
+    BlockOptions o;
+    o.regions = {"base"}, o.n[0] = o.n[1] = 4, o.n[2] = 2, o.low = Vec3(-0.5, -0.5, -0.5), o.high = Vec3(1.5, 1.5, 0);
+    mesh = together(block_mesh(o), mesh);
+    use(mesh, {Fidelity::nonlinear, Fidelity::nonlinear});
+  }
   OnPlane(const std::string& more, Shape shape, Fidelity fidelity) : Case("contact") {
     BlockOptions o;
     o.shape = shape;
@@ -81,12 +88,7 @@ TEST(LoadSteps, ABlockIsPressedAndPushed) {
                                   "[set.low]\nkind = \"plane\"\nat = [0, 0, -0.5]\naxis = [0, 0, 1]\n"
                                 : ""),
               Shape::hex8, Fidelity::nonlinear);
-    if (on_region) {
-      BlockOptions o;
-      o.regions = {"base"}, o.n[0] = o.n[1] = 4, o.n[2] = 2, o.low = Vec3(-0.5, -0.5, -0.5), o.high = Vec3(1.5, 1.5, 0);
-      c.mesh = together(block_mesh(o), c.mesh);
-      c.use(c.mesh, {Fidelity::nonlinear, Fidelity::nonlinear});
-    }
+    if (on_region) c.add_base();
     const Results r = c.run(std::string("--set contact.c.friction=0.3") + (on_region ? " --set 'contact.c.a=\"base\"'" : ""));
     const Eigen::VectorXd f = last(r, "contact/c");
     EXPECT_NEAR(f[2], on_region ? 750 : 1000, on_region ? 150 : 10) << "half as deep as the block is high, and wider";
@@ -98,6 +100,18 @@ TEST(LoadSteps, ABlockIsPressedAndPushed) {
     EXPECT_NEAR(last(r, "energy")[4], f[6], 1e-9 * f[6]);
     EXPECT_LE(c.reported("steps"), 12);
     EXPECT_LT(c.reported("newton_iterations"), 100);
+  }
+}
+
+// Truth: its weight.  Contact alone holds it, against what does not move: an obstacle, or a region that is held as a whole.
+TEST(LoadSteps, ABlockStands) {
+  for (const bool on_region : {false, true}) {
+    OnPlane c(std::string("steps = 1\n") + (on_region ? "[[motion]]\nkind = \"fixed\"\nname = \"floor\"\non = \"base\"\n" : ""),
+              Shape::hex8, Fidelity::nonlinear);
+    if (on_region) c.add_base();
+    const Results r =
+        c.run(std::string("--set contact.c.friction=0.3 --set 'gravity=[0,0,-9.81]'") + (on_region ? " --set 'contact.c.a=\"base\"'" : ""));
+    EXPECT_NEAR(last(r, "contact/c")[2], 1000 * g, 1e-5 * 1000 * g);
   }
 }
 
