@@ -27,6 +27,7 @@ const std::vector<Layout>& layouts() {
       {"motor", wrench, newtons},
       {"friction", wrench, newtons},
       {"motion", wrench, newtons},
+      {"tie", wrench, newtons},
       {"energy", {"kinetic", "elastic", "gravity", "external_work", "dissipated", "balance"}, {"J", "J", "J", "J", "J", "J"}},
       {"momentum", {"px", "py", "pz", "Lx", "Ly", "Lz"}, {"kg m/s", "kg m/s", "kg m/s", "kg m^2/s", "kg m^2/s", "kg m^2/s"}},
       {"sensor", {"x", "y", "z"}, {"g", "g", "g"}},

@@ -186,6 +186,8 @@ std::vector<ArraySchema>& arrays() {
        "force and moment on b at the joint point, joint frame carried by a"},
       {"run.h5", "/history/motion/<name>", "f8", "(n_t, 6)", "N, N m",
        "force and moment on what is held, about the mean of its nodes or the body's centre, inertial axes"},
+      {"run.h5", "/history/tie/<name>", "f8", "(n_t, 6)", "N, N m",
+       "force and moment on b, about the mean of its nodes that are tied, inertial axes"},
       {"run.h5", "/history/sensor/<name>", "f8", "(n_t, 3)", "1", "proper acceleration R^T (a - g)/g0 in sensor axes: +1 upward at rest"},
       {"run.h5", "/history/probe/<name>", "f8", "(n_t, 9)", "m, m/s, m/s^2", "position, velocity, acceleration"},
       {"run.h5", "/history/<name>/%table", "f8", "(n_t, n, n_columns)", "",

@@ -83,6 +83,7 @@ void Builder::find_tie(const Entry& e, const std::array<std::vector<PairFacet>, 
     for (int k = 0; k < f.n; ++k)
       for (int l = 0; l < f.n; ++l)
         if (k != l) tie.beside[f.node[k]].insert(f.node[l]);
+  for (const auto& [i, others] : tie.beside) tie.b_nodes.push_back(i);
   for (const MortarRow& row : found.rows) {
     TiedRow& to = tie.rows.emplace_back();
     to.node = row.node, to.term = row.term;

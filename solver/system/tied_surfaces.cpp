@@ -143,6 +143,44 @@ void TiedSurfaces::mark_rows(std::vector<char>& on) const {
   });
 }
 
+std::vector<Output> TiedSurfaces::outputs() const {
+  std::vector<Output> out;
+  for (const SurfaceTie& tie : list) out.push_back({.group = "tie", .name = tie.name, .n_mid = 6});
+  return out;
+}
+
+void TiedSurfaces::observe(const Sight& at) {
+  if (!at.step || list.empty()) return;
+  const Config& q = *at.step->s.left;
+  struct Sum {
+    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  // moment about the origin
+    std::set<int> tied;
+  };
+  std::map<const SurfaceTie*, Sum> sums;
+  each([&](const SurfaceTie& tie, const TiedRow& row, size_t k) {
+    if (row.term.empty()) return;
+    Sum& sum = sums[&tie];
+    sum.tied.insert(row.node);
+    const double* lambda = at.step->lambda.data() + 3 * (place_[k].block - points_.first_joint_block());
+    Vec3 f = Vec3::Zero();
+    for (int c = 0; c < 3; ++c)
+      if (row.on[c]) f[c] = -lambda[c];
+    for (const auto& [i, w] : row.term)
+      if (std::ranges::binary_search(tie.b_nodes, i)) sum.force += w * f, sum.moment += w * q.x[i].cross(f);
+  });
+  std::vector<double> mid;
+  for (const SurfaceTie& tie : list) {
+    const Sum& sum = sums[&tie];
+    Vec3 middle = Vec3::Zero();
+    for (const int i : sum.tied) middle += q.x[i] / static_cast<double>(sum.tied.size());
+    const Vec3 moment = sum.moment - middle.cross(sum.force);
+    mid.insert(mid.end(), sum.force.begin(), sum.force.end());
+    mid.insert(mid.end(), moment.begin(), moment.end());
+  }
+  points_.comm->sum(mid);
+  at.mid.insert(at.mid.end(), mid.begin(), mid.end());
+}
+
 /// What hangs on a mesh has no clock of its own.
 void TiedSurfaces::tie(Ties& ties) const {
   for (const Place& at : place_)

@@ -30,6 +30,7 @@ struct SurfaceTie {
   std::string name;
   std::vector<TiedRow> rows;
   std::map<int, std::set<int>> beside;     // nodes of b that share a facet, until the rows are chosen
+  std::vector<int> b_nodes;                // ascending
   int n_nodes = 0, n_tied = 0, n_off = 0;  // of b; with a row; components of rows that others imply
   double covered = 0, largest_move = 0;    // share of the area of b [1]; of a node at the start [m]
 };
@@ -53,8 +54,9 @@ class TiedSurfaces final : public Contribution, public Equations, public Constra
   void add_row_rates(const Rates& at, std::vector<double>& rate, std::vector<double>* acceleration) const override;
   void mark_rows(std::vector<char>& on) const override;
   void tie(Ties& ties) const override;
-  std::vector<Output> outputs() const override { return {}; }
-  void observe(const Sight&) override {}
+  std::vector<Output> outputs() const override;
+  /// Force and moment on b about the mean of its nodes that are tied.
+  void observe(const Sight& at) override;
   void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override;
 
  private:

@@ -43,11 +43,12 @@ Off off(const Results& one, const Results& other) {
   };
   const double energy = one.history("energy").leftCols(3).cwiseAbs().maxCoeff();
   look("energy", 0, 5, energy), look("momentum", 0, 3, 1), look("momentum", 3, 3, 1);
-  for (const char* group : {"contact", "probe"})
+  for (const char* group : {"contact", "probe", "tie"})
     if (one.file().has(std::string("/history/") + group))
       for (const std::string& name : one.file().list(std::string("/history/") + group)) {
         const std::string path = std::string(group) + "/" + name;
         look(path, 0, 3, 1e-12);
+        if (*group == 't') look(path, 3, 3, 1e-12);
         for (Eigen::Index k = 3; k < 7 && *group == 'c'; ++k) look(path, k, 1, k == 6 ? energy : 1e-3);
       }
   if (!one.file().list("/field").empty()) {

@@ -48,6 +48,8 @@ TEST(Ties, PatchAcrossMeshesThatDoNotMatch) {
     const auto [off, slope] = off_linear(mesh.X, r.field("displacement"));
     EXPECT_LT(off, 1e-9) << text_of(c / "run.json") << info(a).name << " " << info(b).name;
     EXPECT_NEAR(slope, 1e-4, 5e-8) << info(a).name << " " << info(b).name;
+    const Eigen::VectorXd carried = r.at("tie/weld", 1), pulled = -Eigen::VectorXd::Unit(6, 2);
+    EXPECT_LT((carried - pulled).norm(), 1e-9) << carried.transpose() << info(a).name << " " << info(b).name;
   }
 }
 
@@ -136,6 +138,11 @@ TEST(Ties, ACantileverOfTwoMeshesBendsAsOne) {
     c.write("scene.toml", text);
     const Ran ran = c.run("hilo-solve scene.toml mesh.h5 -o run.h5");
     EXPECT_EQ(ran.exit, 0) << ran.err;
+    if (tied) {  // the law of the lever
+      const Eigen::VectorXd carried = c.results().at("tie/weld", 1);
+      EXPECT_NEAR(carried[0], -1e3, 1e-5) << info(a).name << " " << info(b).name;
+      EXPECT_NEAR(carried[4], -500, 0.1) << carried.transpose() << info(a).name << " " << info(b).name;
+    }
     const auto u = c.results().field("displacement");
     double sum = 0, n = 0;
     for (std::int64_t i = 0; i < m.n_nodes(); ++i)
