@@ -70,7 +70,8 @@ Command peak_command(CLI::App& app) {
   const auto o = std::make_shared<PeakOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("--field", o->field,
-                  "von_mises, stress_error, plastic_strain, acceleration, displacement, velocity (or .x .y .z of these), stress.xx")
+                  "von_mises, stress_error, plastic_strain, acceleration, displacement, velocity (or .x .y .z of these), stress.xx, "
+                  "shell_moment.m11")
       ->capture_default_str();
   sub->add_option("--steps", o->steps, "all, first, last or numbers: 0,5,10")->capture_default_str();
   sub->add_option("--times", o->times, "times in s, instead of --steps: the nearest ones");
