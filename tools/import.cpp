@@ -111,7 +111,7 @@ int main(int argc, char** argv) {
     app->add_option("--size", o.size, "cell edge when CAD is meshed, at most this when a .geo script is; in the unit of the file")
         ->type_name("H");
     app->add_option("--thickness", o.thickness,
-                    "surfaces of quadrangles become solid-shells of this thickness about them, in the unit of the file (geo, msh)")
+                    "surfaces become solid-shells of this thickness about them, in the unit of the file (geo, msh)")
         ->type_name("T");
     app->add_option(
            "--per-turn", o.per_turn,
@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
         ->type_name("N");
     app->add_option("--define", r.defines, "parameter of a .geo script, may be repeated")->type_name("NAME=VALUE")->allow_extra_args(false);
     app->add_flag("--trust", o.trust, "a .geo script may run commands, write files, read the environment and files of other folders");
-    app->add_flag("--thicken", o.thicken, "shells of a deck (S4, S4R, CQUAD4) become solid-shells: pairs of nodes across the thickness");
+    app->add_flag("--thicken", o.thicken, "shells of a deck (S3 to S8R, CTRIA3 to CQUAD8) become solid-shells: pairs of nodes across the thickness");
     app->add_flag("--rigid-beams", o.rigid_beams,
                   "beams of a deck become cells of a region that can be rigid alone, not beams of the scene");
     app->add_flag("--flip", o.flip, "turn cells whose nodes are numbered as in a mirror (negative volume)");

@@ -108,7 +108,7 @@ struct Shown {
     for (size_t a = 0; a < at.nodes.size(); ++a)
       for (size_t c = 0; c < width; ++c) x[c] += at.N[a] * raw.value.at(static_cast<size_t>(at.nodes[a]) * width + c);
     if (field.component >= 0) return {x.at(static_cast<size_t>(field.component))};
-    if (width == 3) x.push_back(std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]));
+    if (columns.size() == width + 1) x.push_back(std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]));
     return x;
   }
 };
@@ -118,14 +118,14 @@ bool is_envelope(const std::string& name) { return name.find("_envelope") != nam
 
 Shown shown(const std::string& name, const std::vector<std::string>& known) {
   if (is_named_field(name)) throw Error("FIELD", fmt::format("{} is a name, not a number", name), "", Exit::usage);
-  if (name == "stress") {
-    Shown s{shown_field("stress.xx", known), {}};
-    s.field.component = -1, s.field.label = "stress";
-    for (const char* c : {"xx", "yy", "zz", "yz", "xz", "xy"}) s.columns.push_back(std::string("stress.") + c);
+  if (const auto components = components_of(name); !components.empty()) {
+    Shown s{shown_field(name + "." + components.front(), known), {}};
+    s.field.component = -1, s.field.label = name;
+    for (const std::string& c : components) s.columns.push_back(fmt::format("{}.{}", name, c));
     return s;
   }
   Shown s{shown_field(name, known), {name}};
-  if (s.field.component < 0 && s.field.unit.starts_with("m") && !is_envelope(name))  // a vector
+  if (s.field.component < 0 && (s.field.unit.starts_with("m") || name == "shell_axis") && !is_envelope(name))  // a vector
     s.columns = {name + ".x", name + ".y", name + ".z", name};
   return s;
 }
@@ -187,7 +187,7 @@ Command at_command(CLI::App& app) {
   sub->add_option("field", o->field,
                   "von_mises, stress_error, plastic_strain, contact_pressure, stress, acceleration, displacement, velocity, or a "
                   "component: stress.xx, "
-                  "velocity.z; von_mises_envelope of a run with output.envelope")
+                  "velocity.z, shell_force; von_mises_envelope of a run with output.envelope")
       ->required();
   sub->add_option("--node", o->node, "number of a node, as peak prints it (from 0)")->check(CLI::NonNegativeNumber);
   sub->add_option("--point", o->point, "x,y,z in m of a material point: where it is in the mesh, before it moves");

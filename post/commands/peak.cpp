@@ -71,7 +71,8 @@ Command peak_command(CLI::App& app) {
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("--field", o->field,
                   "von_mises, stress_error, plastic_strain, contact_pressure, acceleration, displacement, velocity (or .x .y .z of these), "
-                  "stress.xx")
+                  "stress.xx, "
+                  "shell_moment.m11")
       ->capture_default_str();
   sub->add_option("--steps", o->steps, "all, first, last or numbers: 0,5,10")->capture_default_str();
   sub->add_option("--times", o->times, "times in s, instead of --steps: the nearest ones");

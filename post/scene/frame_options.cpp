@@ -28,7 +28,7 @@ void add_frame_options(CLI::App& sub, FrameOptions& o) {
   add(what, "--field", o.field,
       "von_mises, axial_stress (of beams), stress_error, plastic_strain, contact_pressure, acceleration, displacement, velocity (or .x .y "
       ".z of these), "
-      "stress.xx, region, fidelity, "
+      "stress.xx, shell_force.n11, shell_moment.m11, shell_stress.s11, region, fidelity, "
       "partition")
       ->capture_default_str();
   add(what, "--show", o.show, "regions to draw, by name or glob; all by default");

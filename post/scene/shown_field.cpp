@@ -12,37 +12,57 @@
 
 namespace hilo {
 
+namespace {
+
+struct Known {
+  const char *array, *label, *unit;
+  std::vector<std::string> components;
+};
+const std::vector<Known>& known_fields() {
+  static const std::vector<std::string> xyz{"x", "y", "z"};
+  static const std::vector<Known> table = {{"von_mises", "von Mises stress", "Pa", {}},
+                                           {"axial_stress", "axial stress of beams", "Pa", {}},
+                                           {"stress_error", "error of stress", "Pa", {}},
+                                           {"plastic_strain", "plastic strain", "1", {}},
+                                           {"contact_pressure", "contact pressure", "Pa", {}},
+                                           {"stress", "stress", "Pa", {"xx", "yy", "zz", "yz", "xz", "xy"}},
+                                           {"shell_force", "force of shells", "N/m", {"n11", "n22", "n12", "q1", "q2"}},
+                                           {"shell_moment", "moment of shells", "N", {"m11", "m22", "m12"}},
+                                           {"shell_stress", "stress of shells", "Pa", {"s11", "s22", "s12", "mean11", "mean22", "mean12"}},
+                                           {"shell_axis", "axis of shells", "1", xyz},
+                                           {"displacement", "displacement", "m", xyz},
+                                           {"velocity", "velocity", "m/s", xyz},
+                                           {"acceleration", "acceleration", "m/s^2", xyz},
+                                           {"von_mises_envelope", "largest von Mises stress", "Pa", {}},
+                                           {"displacement_envelope", "largest displacement", "m", {}},
+                                           {"acceleration_envelope", "largest acceleration", "m/s^2", {}},
+                                           {"von_mises_envelope_time", "time of largest von Mises stress", "s", {}},
+                                           {"displacement_envelope_time", "time of largest displacement", "s", {}},
+                                           {"acceleration_envelope_time", "time of largest acceleration", "s", {}}};
+  return table;
+}
+
+bool is_vector(const Known& k) { return k.components.size() == 3 && k.components.front() == "x"; }
+
+}  // namespace
+
+std::vector<std::string> components_of(const std::string& array) {
+  for (const Known& k : known_fields())
+    if (array == k.array && !is_vector(k)) return k.components;
+  return {};
+}
+
 ShownField shown_field(const std::string& name, const std::vector<std::string>& known) {
-  struct Known {
-    const char *array, *label, *unit;
-    std::vector<std::string> components;
-  };
-  const std::vector<std::string> xyz{"x", "y", "z"};
-  const std::vector<Known> table = {{"von_mises", "von Mises stress", "Pa", {}},
-                                    {"axial_stress", "axial stress of beams", "Pa", {}},
-                                    {"stress_error", "error of stress", "Pa", {}},
-                                    {"plastic_strain", "plastic strain", "1", {}},
-                                    {"contact_pressure", "contact pressure", "Pa", {}},
-                                    {"stress", "stress", "Pa", {"xx", "yy", "zz", "yz", "xz", "xy"}},
-                                    {"displacement", "displacement", "m", xyz},
-                                    {"velocity", "velocity", "m/s", xyz},
-                                    {"acceleration", "acceleration", "m/s^2", xyz},
-                                    {"von_mises_envelope", "largest von Mises stress", "Pa", {}},
-                                    {"displacement_envelope", "largest displacement", "m", {}},
-                                    {"acceleration_envelope", "largest acceleration", "m/s^2", {}},
-                                    {"von_mises_envelope_time", "time of largest von Mises stress", "s", {}},
-                                    {"displacement_envelope_time", "time of largest displacement", "s", {}},
-                                    {"acceleration_envelope_time", "time of largest acceleration", "s", {}}};
   const auto dot = name.find('.');
   const std::string array = name.substr(0, dot);
-  for (const Known& k : table) {
+  for (const Known& k : known_fields()) {
     if (array != k.array) continue;
     ShownField f{array, -1, k.label, k.unit};
-    f.flexible_only = f.unit == "Pa" || f.unit == "1" || array.starts_with("von_mises");
+    f.flexible_only = f.unit == "Pa" || f.unit == "1" || array.starts_with("von_mises") || array.starts_with("shell_");
     f.from_zero = array != "axial_stress";
     const std::string component = dot == std::string::npos ? "" : name.substr(dot + 1);
     const auto at = std::find(k.components.begin(), k.components.end(), component);
-    if ((component.empty() && array != "stress")) return f;
+    if (component.empty() && k.components.size() < 4 && array != "shell_moment") return f;
     if (at == k.components.end())
       throw Error("--field",
                   k.components.empty() ? fmt::format("{} has no components", array) : fmt::format("which component of {}?", array),
@@ -58,10 +78,13 @@ ShownField shown_field(const std::string& name, const std::vector<std::string>& 
   names.insert(names.end(), {"region", "fidelity", "partition", "von_mises", "stress_error", "plastic_strain", "contact_pressure",
                              "acceleration", "displacement", "velocity"});
   std::string hint = suggest(name, names);
-  throw Error("--field", fmt::format("no field \"{}\"", name),
-              hint.empty() ? "von_mises, stress_error, plastic_strain, contact_pressure, acceleration, displacement, velocity, stress.xx, "
-                             "region, fidelity or partition"
-                           : hint);
+  throw Error(
+      "--field", fmt::format("no field \"{}\"", name),
+      hint.empty()
+          ? "von_mises, stress_error, plastic_strain, contact_pressure, acceleration, displacement, velocity, stress.xx, shell_moment.m11, "
+            "region, fidelity or "
+            "partition"
+          : hint);
 }
 
 std::vector<double> reduced(RunFile::Field raw, const ShownField& field, const std::string& path) {

@@ -19,6 +19,8 @@ struct ShownField {
 };
 /// Error (exit 2) with a suggestion for a name that no run can hold.
 ShownField shown_field(const std::string& name, const std::vector<std::string>& known);
+/// Names of the columns of an array that is shown a component at a time: stress and what shells bear; none of others.
+std::vector<std::string> components_of(const std::string& array);
 /// One number per row, in the stored unit: the component, or the size of a vector.  `path` is what an error names.
 std::vector<double> reduced(RunFile::Field raw, const ShownField& field, const std::string& path);
 

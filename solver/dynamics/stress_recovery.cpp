@@ -2,11 +2,14 @@
 #include "dynamics/stress_recovery.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
 
+#include "base/shell_shape.hpp"
 #include "dynamics/cell_mean.hpp"
 #include "model/mesh.hpp"
+#include "model/region_surface.hpp"
 #include "system/linear_regions.hpp"
 
 namespace hilo {
@@ -93,7 +96,7 @@ StressRecovery::StressRecovery(const System& s) : system_(s) {
   std::sort(carried_.begin(), carried_.end());
   carried_.erase(std::unique(carried_.begin(), carried_.end()), carried_.end());
   if (!carried_.empty()) placed_.resize(s.X.size());
-  find_sites();
+  find_sites(), find_free_sides();
   const size_t n_regions = s.mesh->mesh.region_name.size();
   std::vector<double> has(2 * n_regions, 0.0);  // of each region: quadratic cells; cells without best points
   for (const SolidBatch* b : batches_) {
@@ -274,6 +277,52 @@ void StressRecovery::add_missed(const std::vector<std::vector<double>>& samples,
     for (int c = 0; c < 6; ++c) at_site[i * n_values + 1 + c] += change[i * 6 + c] / at_site[i * n_values];
 }
 
+void StressRecovery::find_free_sides() {
+  const System& s = system_;
+  free_sides_.resize(batches_.size());
+  double any = 0;
+  for (const SolidBatch* b : batches_)
+    if (b->shape == shell8) any = 1;
+  any_shells_ = s.comm->max(any) > 0;
+  if (!any_shells_) return;
+  std::unordered_map<std::int64_t, std::vector<Facet>> of_cell;
+  for (const Facet& f : region_surface(*s.mesh, *s.comm)) of_cell[f.cell].push_back(f);
+  for (size_t b = 0; b < batches_.size(); ++b) {
+    const SolidBatch& batch = *batches_[b];
+    if (batch.shape != shell8) continue;
+    free_sides_[b].assign(batch.cells.size(), 0);
+    for (size_t e = 0; e < batch.cells.size(); ++e)
+      for (const Facet& f : of_cell[batch.cells[e]]) {
+        const auto nodes = s.mesh->mesh.facet_nodes(f);
+        for (int k = 0; k < 4; ++k) {
+          const int* node = batch.nodes.data() + e * 8;
+          if (std::ranges::all_of(std::array{k, (k + 1) % 4, k + 4, (k + 1) % 4 + 4},
+                                  [&](int a) { return std::ranges::find(nodes, node[a]) != nodes.end(); }))
+            free_sides_[b][e] |= 1U << k;
+        }
+      }
+  }
+}
+
+/// `own` of the shells' cells (n_cells x 8 x 6 of each batch); value: six numbers of each site, `stride` apart.  Collective.
+void StressRecovery::go_on_to_edges(const std::vector<std::vector<double>>& own, const std::vector<double>& at_site, double* value,
+                                    int stride) const {
+  std::vector<double> change(site_.size() * 6, 0.0);
+  for (size_t b = 0; b < batches_.size(); ++b)
+    for (size_t e = 0; e < free_sides_[b].size(); ++e)
+      for (int k = 0; k < 4; ++k)
+        for (int a = k; (free_sides_[b][e] >> k & 1U) && a < k + 2; ++a)
+          for (const int up : {0, 4}) {
+            const int here = a % 4 + up, across = (a == k ? k + 3 : k + 2) % 4 + up;
+            const auto to = static_cast<size_t>(site_of_[b][e * 8 + here]), from = static_cast<size_t>(site_of_[b][e * 8 + across]);
+            for (size_t c = 0; c < 6; ++c)
+              change[to * 6 + c] += own[b][(e * 8 + across) * 6 + c] - value[from * static_cast<size_t>(stride) + c];
+          }
+  sites_->combine(change, 6);
+  for (size_t i = 0; i < site_.size(); ++i)
+    for (size_t c = 0; c < 6; ++c) value[i * static_cast<size_t>(stride) + c] += change[i * 6 + c] / at_site[i * n_values];
+}
+
 /// Bars have their own stress alone: the sums of its components and of their von Mises stresses.
 void StressRecovery::add_bars(const Config& q, std::vector<double>& at, std::vector<double>& cell) const {
   Cell ends;
@@ -292,7 +341,7 @@ void StressRecovery::add_bars(const Config& q, std::vector<double>& at, std::vec
   }
 }
 
-StressRecovery::Result StressRecovery::recover(const Config& q, const Memory& memory) const {
+StressRecovery::Result StressRecovery::recover(const Config& q, const Memory& memory, bool shells) const {
   const System& s = system_;
   for (const int node : carried_) {
     const int body = s.follower[node];
@@ -308,7 +357,9 @@ StressRecovery::Result StressRecovery::recover(const Config& q, const Memory& me
   Result out;
   out.cell.assign(s.mesh->mesh.n_cells(), 0.0), out.cell_plastic = out.cell;
   std::vector<double> at_site(site_.size() * n_values, 0.0);
-  std::vector<std::vector<double>> samples(batches_.size());  // of quadratic hexahedra
+  std::vector<std::vector<double>> samples(batches_.size());                            // of quadratic hexahedra
+  std::vector<double> through(shells ? site_.size() * 6 : 0, 0.0);                      // stress with the mean and moment of shells' points
+  std::vector<std::vector<double>> own(batches_.size()), own_through(batches_.size());  // of shells (n_cells x 8 x 6)
   std::vector<StressPoint> points;
   std::vector<Mat3> F;
   for (const Patches& p : patches_) {
@@ -334,6 +385,14 @@ StressRecovery::Result StressRecovery::recover(const Config& q, const Memory& me
         for (int c = 0; c < 6; ++c) to[1 + c] += S[c];
         for (int c = 0; c < 9; ++c) to[7 + c] += F[a].data()[c];
         to[16] += plastic_at_nodes[a];
+        if (batch.shape == shell8) own[b].insert(own[b].end(), S.data(), S.data() + 6);
+      }
+      if (!shells || batch.shape != shell8) return;
+      const Eigen::Matrix<double, 6, 8> linear = rest * shell_moments_to_nodes(points.size()).transpose();
+      for (int a = 0; a < 8; ++a) {
+        const Vec6 S = P(at.X[a]) + linear.col(a);
+        Eigen::Map<Vec6>(through.data() + static_cast<size_t>(site_of_[b][e * 8 + a]) * 6) += S;
+        own_through[b].insert(own_through[b].end(), S.data(), S.data() + 6);
       }
     });
   }
@@ -342,6 +401,12 @@ StressRecovery::Result StressRecovery::recover(const Config& q, const Memory& me
   for (size_t i = 0; i < site_.size(); ++i)
     for (int c = 1; c < n_values; ++c) at_site[i * n_values + c] /= at_site[i * n_values];
   for (int pass = 0; pass < n_passes; ++pass) add_missed(samples, at_site);
+  if (any_shells_) go_on_to_edges(own, at_site, at_site.data() + 1, n_values);
+  if (any_shells_ && shells) {
+    sites_->combine(through, 6);
+    for (size_t i = 0; i < through.size(); ++i) through[i] /= at_site[i / 6 * n_values];
+    go_on_to_edges(own_through, at_site, through.data(), 6);
+  }
 
   std::vector<double> error(2 * site_.size(), 0.0);  // sum over the cells of V e^2 and of V
   for (const Patches& p : patches_)
@@ -375,6 +440,7 @@ StressRecovery::Result StressRecovery::recover(const Config& q, const Memory& me
     out.plastic.push_back(std::max(0.0, v[16]));  // what is extrapolated may fall below
     out.error.push_back(bar ? 0 : std::sqrt(error[2 * i] / error[2 * i + 1]));
   }
+  if (shells) add_shells(at_site, through, out);
   return out;
 }
 

@@ -283,7 +283,7 @@ std::vector<KindSchema> make_schema() {
         {"fields", texts, "",
          "[\"displacement\", \"velocity\", \"acceleration\", \"stress\", \"von_mises\", \"stress_error\", \"plastic_strain\", "
          "\"contact_pressure\"]",
-         "nodal fields"},
+         "nodal fields; beside these shell: forces and moments per length, stress and axes of shells"},
         {"nodes", text, "", "all", "whose fields: all, or skin: those on the surface of a region, which pictures without cuts show"},
         {"envelope", boolean, "", "false",
          "the largest von Mises stress, acceleration and displacement of each node over all steps, with their times, at the end of the "

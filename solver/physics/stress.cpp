@@ -95,6 +95,11 @@ const Eigen::MatrixXd& to_nodes(Shape shape, size_t n_samples) {
   });
 }
 
+const Eigen::MatrixXd& shell_moments_to_nodes(size_t n_samples) {
+  static const Eigen::MatrixXd full = stress::fitted<Shell8>(Shell8Full::rule(), true);
+  return n_samples == Shell8Full::n_points ? full : to_nodes(shell8, n_samples);
+}
+
 void nodal_gradients(Shape shape, std::span<const Vec3> X, std::span<const Vec3> x, std::span<Mat3> F) {
   if (const ShapeFunctions* other = shape_from_outside(shape)) return other->nodal_gradients(X, x, F);
   of_shape(shape, false, [&]<class S>() {

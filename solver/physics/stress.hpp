@@ -41,8 +41,12 @@ bool has_one_set_of_points(Shape shape, bool remembers);
 void nodal_gradients(Shape shape, std::span<const Vec3> X, std::span<const Vec3> x, std::span<Mat3> F);
 
 /// Values at the nodes of a cell from those at its samples (n_nodes x n_samples), by least squares in the cell's own coordinates: linear
-/// functions, of hexahedra, wedges and shells their products across the axes too; the mean where cells are linear.
+/// functions, of hexahedra, wedges and shells their products across the axes too; the mean where cells are linear.  With four layers of
+/// samples in a shell, by the two next to each face.
 const Eigen::MatrixXd& to_nodes(Shape shape, size_t n_samples);
+
+/// Of a shell8 the linear functions across its thickness with the same mean and moment as the samples (8 x n_samples).
+const Eigen::MatrixXd& shell_moments_to_nodes(size_t n_samples);
 
 /// Cauchy stress F S F^T / det F.
 Vec6 cauchy(const Mat3& F, const Vec6& S);

@@ -56,7 +56,7 @@ constexpr Quadrature<S::n> node_points() {
 
 /// Least squares from the points of a rule to the nodes.
 template <class S, int P>
-Eigen::MatrixXd fitted(const Quadrature<P>& rule) {
+Eigen::MatrixXd fitted(const Quadrature<P>& rule, bool weighted = false) {
   const auto basis = [](const double* xi) {
     Eigen::VectorXd b(is_shell<S> || S::n == 20 ? 8 : S::n <= 8 ? 1 : S::n == 15 ? 6 : 4);
     b[0] = 1;
@@ -68,9 +68,22 @@ Eigen::MatrixXd fitted(const Quadrature<P>& rule) {
   const Eigen::Index n = basis(rule.xi[0]).size();
   Eigen::MatrixXd at_points(P, n), at_nodes(S::n, n);
   const auto nodes = node_points<S>();
-  for (int p = 0; p < P; ++p) at_points.row(p) = basis(rule.xi[p]);
+  Eigen::VectorXd w = Eigen::VectorXd::Ones(P);
+  for (int p = 0; p < P; ++p) at_points.row(p) = basis(rule.xi[p]), w[p] = weighted ? rule.w[p] : 1;
   for (int a = 0; a < S::n; ++a) at_nodes.row(a) = basis(nodes.xi[a]);
-  return at_nodes * (at_points.transpose() * at_points).inverse() * at_points.transpose();
+  return at_nodes * (at_points.transpose() * w.asDiagonal() * at_points).inverse() * at_points.transpose() * w.asDiagonal();
+}
+
+/// Each face of a shell with four layers of points by the two next to it: what has yielded is not linear across.
+inline Eigen::MatrixXd faces_of_shell() {
+  constexpr auto rule = Shell8Full::rule();
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(8, 16);
+  for (const int face : {0, 1}) {
+    Quadrature<8> near;
+    for (int p = 0; p < 8; ++p) std::copy_n(rule.xi[8 * face + p], 3, near.xi[p]);
+    out.block<4, 8>(4 * face, 8 * face) = fitted<Shell8>(near).middleRows(4 * face, 4);
+  }
+  return out;
 }
 
 /// `law` without what the mean has of it.
@@ -265,7 +278,7 @@ void points_of_law(Shape shape, const M& law, std::span<const Vec3> X, std::span
 template <class S>
 Eigen::MatrixXd samples_to_nodes() {
   if constexpr (!std::is_same_v<S, Shell8> && is_shell<S>)
-    return fitted<Shell8>(S::rule());
+    return faces_of_shell();
   else if constexpr (std::is_same_v<S, Hex8> || std::is_base_of_v<Hex20, S>)
     return fitted<S>(hex_rule<2>());
   else

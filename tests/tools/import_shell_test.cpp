@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mid-surfaces of quadrangles that become solid-shells: of gmsh with --thickness, of decks with --thicken; what has no clear pair of nodes
+// Mid-surfaces that become solid-shells: of gmsh with --thickness, of decks with --thicken; what has no clear pair of nodes
 // is refused by name.
 #include <fmt/format.h>
 
@@ -63,8 +63,12 @@ TEST_F(ImportShell, WhatHasNoClearPairsIsRefused) {
   place.write("tee.inp", nodes + quads + "1,1,2,5,4\n2,2,3,6,5\n3,2,7,8,5\n" + rest);
   refused("tee.inp -o a.h5 --thicken", 2,
           "tee.inp: element 3: more than two shells meet in nodes 2 and 5 (leave them as they are: regions that are rigid)");
-  place.write("tri.inp", nodes + "*ELEMENT, TYPE=S3, ELSET=P\n1,1,2,5\n" + rest);
-  refused("tri.inp -o a.h5 --thicken", 2, "tri.inp: element 1: tri3 has no solid-shell, quad4 alone (quadrangles (.geo: Recombine))");
+  place.write("apart.inp", nodes +
+                               "11,.5,0,0\n12,.5,.5,0\n13,0,.5,0\n14,.5,0,0\n15,.5,-.5,0\n16,0,-.5,0\n17,0,-1,0\n"
+                               "*ELEMENT, TYPE=S6, ELSET=P\n1,1,2,4,11,12,13\n2,2,1,17,14,16,15\n" +
+                               rest);
+  refused("apart.inp -o a.h5 --thicken", 2,
+          "apart.inp: element 2: nodes 11 and 14 stand in the middle of one edge (--merge-nodes, where they are one)");
   const std::string flat = nodes + quads + "1,1,2,5,4\n2,2,3,6,5\n" + rest;
   place.write("pin.inp", flat + "*BOUNDARY\n1,1,3\n*STEP\n*STATIC\n*END STEP\n");
   refused(
@@ -114,6 +118,89 @@ TEST_F(ImportShell, AClampedDeckOfS4BendsAsItsBeam) {
   EXPECT_NEAR(way("END").z() / strip_tip, 1, 2e-3);
 }
 
+/// The strip in 10 fields of 1 x 1, its elements by this function of the field and of the node at (2 i, 2 j) halves; loads at its end.
+void write_strip(const Workplace& place, const std::function<std::string(int, const std::function<int(int, int)>&)>& field, bool middles) {
+  std::string text = "*NODE\n";
+  const auto node = [](int i, int j) { return 3 * i + j + 1; };
+  std::set<int> used;
+  std::string cells;
+  for (int k = 0; k < 10; ++k) cells += field(k, [&](int i, int j) { return used.insert(node(2 * k + i, j)), node(2 * k + i, j); });
+  for (int i = 0; i <= 20; ++i)
+    for (int j = 0; j <= 2; ++j)
+      if (used.contains(node(i, j))) text += fmt::format("{},{},{},0\n", node(i, j), i / 2., j / 2.);
+  const char* middle = middles ? ",2" : "";
+  place.write("strip.inp", text + cells + "*NSET, NSET=ROOT\n1,3" + middle + "\n*NSET, NSET=END\n61,63\n" +
+                               (middles ? "*NSET, NSET=MID\n62\n" : "") +
+                               "*ELSET, ELSET=STRIP\nT,Q\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,0.\n*DENSITY\n1000\n"
+                               "*SHELL SECTION, ELSET=STRIP, MATERIAL=M\n.1\n*BOUNDARY\nROOT,1,6\n*STEP\n*STATIC\n*CLOAD\n" +
+                               (middles ? "END,3,.3333333333\nMID,3,1.3333333333\n" : "END,3,1.\n") + "*END STEP\n");
+}
+
+// Triangles, triangles beside quadrangles and both with mid-side nodes: all become quadrangles that share the deck's nodes.
+TEST_F(ImportShell, TrianglesAndMidSideNodesBendAsTheBeam) {
+  const auto solved_tip = [&] {
+    place.write("scene.toml", test::text_of(place / "scene.toml") + "\n[[probe]]\nname = \"END\"\non = \"END\"\n");
+    const auto ran = place.run("hilo-solve --quiet scene.toml -o run.h5");
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    return ran.exit == 0 ? way("END").z() / strip_tip : 0.;
+  };
+  const std::string t = "*ELEMENT, TYPE=S3, ELSET=T\n", q = "*ELEMENT, TYPE=S4, ELSET=Q\n";
+  write_strip(
+      place,
+      [&](int k, const auto& n) {
+        return k % 2 ? q + fmt::format("{},{},{},{},{}\n", 100 + k, n(0, 0), n(2, 0), n(2, 2), n(0, 2))
+                     : t + fmt::format("{},{},{},{}\n{},{},{},{}\n", 2 * k + 1, n(0, 0), n(2, 0), n(2, 2), 2 * k + 2, n(0, 0), n(2, 2),
+                                       n(0, 2));
+      },
+      false);
+  const Mesh mixed = imported("strip.inp", "--thicken --scene-out scene.toml");
+  EXPECT_EQ(mixed.n_cells(), 5 * 6 + 5 * 4);
+  EXPECT_NEAR(test::volume(mixed), 1, 1e-12);
+  EXPECT_NE(err.find("15 surfaces have triangles or mid-side nodes among them: 50 quadrangles"), std::string::npos) << err;
+  const double linear = solved_tip();
+  EXPECT_NEAR(linear, 1, 0.005);
+  write_strip(
+      place,
+      [&](int k, const auto& n) {
+        return k % 2 ? "*ELEMENT, TYPE=S8R, ELSET=Q\n" + fmt::format("{},{},{},{},{},{},{},{},{}\n", 100 + k, n(0, 0), n(2, 0), n(2, 2),
+                                                                     n(0, 2), n(1, 0), n(2, 1), n(1, 2), n(0, 1))
+                     : "*ELEMENT, TYPE=S6, ELSET=T\n" + fmt::format("{},{},{},{},{},{},{}\n{},{},{},{},{},{},{}\n", 2 * k + 1, n(0, 0),
+                                                                    n(2, 0), n(2, 2), n(1, 0), n(2, 1), n(1, 1), 2 * k + 2, n(0, 0),
+                                                                    n(2, 2), n(0, 2), n(1, 1), n(1, 2), n(0, 1));
+      },
+      true);
+  EXPECT_EQ(imported("strip.inp", "--thicken --scene-out scene.toml").n_nodes(), 2 * (63 + 10)) << "a centre of each, middles of the deck";
+  const double quadratic = solved_tip();
+  std::printf("tip of the beam's: S3 and S4 %.4f, S6 and S8R %.4f\n", linear, quadratic);
+  EXPECT_NEAR(quadratic, linear, 2e-3) << "the same quadrangles, the load on three nodes instead of two";
+}
+
+// A quarter of a clamped square in triangles of gmsh, under pressure: Kirchhoff's 0.00126532 p a^4/D.
+TEST_F(ImportShell, APlateOfTrianglesIsAsExactWhenThin) {
+  place.write(
+      "plate.geo",
+      "Point(1) = {0, 0, 0}; Point(2) = {0.5, 0, 0}; Point(3) = {0.5, 0.5, 0}; Point(4) = {0, 0.5, 0};\n"
+      "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};\nCurve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};\n"
+      "Mesh.MeshSizeMax = 0.1;\nPhysical Surface(\"plate\") = {1}; Physical Curve(\"x\") = {4}; Physical Curve(\"y\") = {1};\n"
+      "Physical Curve(\"edge\") = {2, 3}; Physical Point(\"middle\") = {1};\n");
+  for (const double h : {0.01, 0.001}) {
+    const Mesh m = imported("plate.geo", fmt::format("--thickness {}", h));
+    EXPECT_EQ(info(m.shape[0]).name, "shell8");
+    const double p = 1e8 * h * h * h, w = 0.00126532 * p * 12 * (1 - 0.09) / (2.1e11 * h * h * h);
+    std::string scene = "mesh = \"out.h5\"\n[material.m]\nE = 2.1e11\nnu = 0.3\ndensity = 7850\n[region.plate]\nmaterial = \"m\"\n";
+    for (const auto& [on, components] : {std::pair{"edge", "\"x\", \"y\""}, {"edge", "\"z\""}, {"x", "\"x\""}, {"y", "\"y\""}})
+      scene += fmt::format("[[motion]]\nkind = \"fixed\"\nname = \"{0} {2}\"\non = \"{0}\"\ncomponents = [{1}]\n", on, components,
+                           std::string(components).size());
+    place.write("scene.toml", scene + fmt::format("[[load]]\nkind = \"pressure\"\nname = \"p\"\non = \"plate_top\"\npressure = {}\n", p) +
+                                  "[[probe]]\nname = \"middle\"\non = \"middle\"\n[time]\nanalysis = \"static\"\nsteps = 1\n");
+    const auto ran = place.run("hilo-solve --quiet scene.toml -o run.h5");
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const double share = std::abs(way("middle").z()) / w;
+    std::printf("h %g: %.4f of Kirchhoff's, %d cells\n", h, share, static_cast<int>(m.n_cells()));
+    EXPECT_NEAR(share, 1, 0.01);
+  }
+}
+
 /// The strip of CQUAD4 with its load and these lines.
 std::string cquad4_strip(const std::string& lines) {
   std::string deck = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nMAT1,1,1.+9,,0.,1000.\nPSHELL,7,1,.1,1,,1\n" + lines;
@@ -133,6 +220,52 @@ TEST_F(ImportShell, AClampedDeckOfCquad4BendsAsItsBeam) {
   const auto ran = place.run("hilo-solve --quiet scene.toml -o run.h5");
   ASSERT_EQ(ran.exit, 0) << ran.err;
   EXPECT_NEAR(way("end").z() / strip_tip, 1, 2e-3);
+}
+
+// A quarter of a clamped square under a force in its middle, in CTRIA3: 0.00560 P a^2/D [timoshenko-1959].  Nodes between the supports of
+// symmetry and the corners, which are held in more, are held as on both sides.
+TEST_F(ImportShell, AQuarterOfAPlateOfCtria3HasTheSymmetryOfTheWhole) {
+  const int n = 8;
+  const auto grid = [&](int i, int j) { return i * (n + 1) + j + 1; };
+  std::string deck = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nMAT1,1,2.1+11,,.3,7850.\nPSHELL,7,1,.01,1,,1\n";
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j) {
+      deck += fmt::format("GRID,{},,{:.5f},{:.5f},0.\n", grid(i, j), 0.5 * i / n, 0.5 * j / n);
+      if (i == n || j == n) deck += fmt::format("SPC1,1,123456,{}\n", grid(i, j));
+      if (i == 0) deck += fmt::format("SPC1,1,156,{}\n", grid(i, j));
+      if (j == 0) deck += fmt::format("SPC1,1,246,{}\n", grid(i, j));
+    }
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      deck += fmt::format("CTRIA3,{},7,{},{},{}\nCTRIA3,{},7,{},{},{}\n", 2 * (i * n + j) + 1, grid(i, j), grid(i + 1, j),
+                          grid(i + 1, j + 1), 2 * (i * n + j) + 2, grid(i, j), grid(i + 1, j + 1), grid(i, j + 1));
+  place.write("plate.bdf", deck + "FORCE,2,1,,25.,0.,0.,1.\nENDDATA\n");
+  const Mesh m = imported("plate.bdf", "--thicken --scene-out scene.toml");
+  EXPECT_EQ(m.n_cells(), 3 * 2 * n * n);
+  std::set<std::int64_t> held;
+  const std::string scene = test::text_of(place / "scene.toml");
+  const auto take = [&](const std::string& name) {
+    if (m.node_sets.contains(name)) held.insert(m.node_sets.at(name).begin(), m.node_sets.at(name).end());
+    if (m.facet_sets.contains(name))
+      for (const Facet& f : m.facet_sets.at(name))
+        for (const auto a : m.facet_nodes(f)) held.insert(a);
+  };
+  for (size_t at = scene.find("[[motion]]"); at != scene.npos; at = scene.find("[[motion]]", at + 1)) {
+    const size_t from = scene.find("on = \"", at) + 6;
+    take(scene.substr(from, scene.find('"', from) - from));
+  }
+  for (std::int64_t a = 0; a < m.n_nodes(); ++a)
+    if (m.X[a].x() * m.X[a].y() * (0.5 - m.X[a].x()) * (0.5 - m.X[a].y()) < 1e-12) {
+      EXPECT_TRUE(held.contains(a)) << m.X[a].transpose();
+    }
+  place.write("scene.toml", scene +
+                                "\n[set.middle]\nkind = \"ball\"\nat = [0, 0, 0]\nradius = 0.006\n[[probe]]\nname = \"middle\"\non = "
+                                "\"middle\"\n");
+  const auto ran = place.run("hilo-solve --quiet scene.toml -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const double share = way("middle").z() / (0.0056 * 100 * 12 * (1 - 0.09) / (2.1e11 * 1e-6));
+  std::printf("middle %.4f of Timoshenko's\n", share);
+  EXPECT_NEAR(share, 1, 0.02);
 }
 
 // Grids of no element, and grids that are merged, leave a support on its own node.

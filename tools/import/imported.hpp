@@ -58,7 +58,8 @@ struct Imported {
   std::map<std::int64_t, unsigned> held;     // with --thicken: components that supports hold of a shell's node, bits 0 to 5
   std::optional<double> metre;               // length unit that the file states  [m]
   bool curved = false;                       // quadratic cells made here follow curved surfaces, which may turn some inside out
-  std::set<std::string> as_listed;           // node sets that order 2 must not complete: the deck's force acts on each of their nodes
+  std::set<std::string>
+      as_listed;  // node sets that order 2 and divided shells must not complete: the deck's force acts on each of their nodes
 
   void skip(const std::string& what, const std::string& place, std::int64_t count = 1, bool output = false, const std::string& hint = "");
 };
@@ -150,9 +151,13 @@ void raise_order(Imported& in);
 std::int64_t straighten(Mesh& mesh);
 /// Nodes nearer than `distance` become one; returns how many went.
 std::int64_t merge_nodes(Imported& in, double distance);
-/// Shells of quadrangles become solid-shells (shell8), with facet sets REGION_bottom and REGION_top; what has no clear pair of nodes is an
-/// Error: folds, steps of thickness, edges of more than two, triangles, nodes of solids, supports that a pair cannot have.
+/// Shells become solid-shells (shell8), with facet sets REGION_bottom and REGION_top; what has no clear pair of nodes is an Error: folds,
+/// steps of thickness, edges of more than two, nodes of solids, supports that a pair cannot have.
 void thicken(Imported& in, const std::string& file);
+/// Before: where shells have triangles or mid-side nodes, all of them become quadrangles, three of a triangle and four of a quadrangle.
+void divide_surfaces(Imported& in, const std::string& file);
+/// Before: whether that will happen.
+bool is_divided(const Imported& in);
 /// Before: whether a node is of a shell.
 bool is_of_shell(const Imported& in, std::int64_t node);
 /// Nodes of no cell are dropped, from the sets too; returns how many.

@@ -28,7 +28,7 @@ class Thickening {
   }
 
   void run() {
-    if (cells_.empty()) throw Error(file_, "there are no shells to be thickened", "S4, S4R, CQUAD4, or surfaces of quadrangles");
+    if (cells_.empty()) throw Error(file_, "there are no shells to be thickened", "S3 to S8R, CTRIA3 to CQUAD8, or surfaces");
     check_cells();
     turn_alike();
     pair_nodes();
@@ -50,8 +50,6 @@ class Thickening {
       if (info(m_.shape[c]).dimension != 2)
         for (const auto a : m_.cell(c)) of_solid[a] = 1;
     for (const auto c : cells_) {
-      const auto shape = static_cast<Shape>(m_.shape[c]);
-      if (shape != quad4) refuse(c, fmt::format("{} has no solid-shell, quad4 alone", info(shape).name), "quadrangles (.geo: Recombine)");
       if (!section(c).no_solid.empty()) refuse(c, section(c).no_solid + " is no plate of one material");
       for (const auto a : m_.cell(c))
         if (of_solid[a]) refuse(c, fmt::format("node {} is of a solid or bar too: a pair of nodes does not fit", m_.node_id[a]));
@@ -219,6 +217,9 @@ bool is_of_shell(const Imported& in, std::int64_t node) {
   return in.of_shells.contains(node);
 }
 
-void thicken(Imported& in, const std::string& file) { Thickening(in, file).run(); }
+void thicken(Imported& in, const std::string& file) {
+  divide_surfaces(in, file);
+  Thickening(in, file).run();
+}
 
 }  // namespace hilo

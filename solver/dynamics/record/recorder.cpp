@@ -165,7 +165,12 @@ void Recorder::write_row(const std::vector<std::pair<double, const Interval*>>& 
     for (const auto& [w, interval] : weights) combine(sum, {{1, &a}, {w, &interval->a}}), std::swap(a, sum);
     const Snapshot at{row.q, row.v, a, row.memory.batch};
     if (setup_.envelope) mesh_->envelop(row.t, at);
-    if (row.field) mesh_->write(row.t, at);
+    try {
+      if (row.field) mesh_->write(row.t, at);
+    } catch (const Error& e) {  // sources of fields know no scene
+      if (e.where != "output.fields") throw;
+      throw Error(scene_.table("output").where("fields"), e.message, e.hint, e.exit);
+    }
   }
   file_.on_store([&](Store& f) { histories_.append(f, row.t, row.newton, row.point, mid); });
 }

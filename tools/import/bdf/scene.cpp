@@ -50,7 +50,7 @@ std::string BdfScene::unique(const std::string& section, const std::string& wish
 std::string BdfScene::set_of(Rows nodes, const std::string& wish, bool listed) {
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  const bool apart = listed && options_.order == 2;
+  const bool apart = listed && (options_.order == 2 || (options_.thicken && is_divided(in_)));
   if (set_by_rows_.empty())
     for (const auto& [name, set] : in_.mesh.node_sets) {
       Rows of_cells;

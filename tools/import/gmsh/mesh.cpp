@@ -25,7 +25,11 @@ const GmshKind* gmsh_kind(int type) {
   static const std::vector<GmshKind> kinds = {
       {1, Shape::bar2, {0, 1}},
       {8, Shape::bar2, {0, 1}, "line3"},
+      {2, tri3, {0, 1, 2}},
       {3, quad4, {0, 1, 2, 3}},
+      {9, tri6, {0, 1, 2, 3, 4, 5}},
+      {16, quad8, {0, 1, 2, 3, 4, 5, 6, 7}},
+      {10, quad8, {0, 1, 2, 3, 4, 5, 6, 7}, "quad9"},
       {4, Shape::tet4, {0, 1, 2, 3}},
       {5, Shape::hex8, {0, 1, 2, 3, 4, 5, 6, 7}},
       {6, Shape::wedge6, {0, 1, 2, 3, 4, 5}},
@@ -128,8 +132,7 @@ class GmshReading {
         throw Error(path_,
                     fmt::format("{} cells of type \"{}\" in {} {} are not read", b->tags.size(),
                                 gmsh_type(b->type) ? gmsh_type(b->type)->name : fmt::format("{}", b->type), words[dim], std::get<1>(key)),
-                    dim == 2 ? "shells are of quadrangles: Mesh.RecombineAll = 1"
-                             : "supported: tetrahedra, hexahedra and prisms of order 1 and 2, lines");
+                    "supported: tetrahedra, hexahedra and prisms of order 1 and 2, lines; with --thickness triangles and quadrangles");
       if (k->reduced) reduced_.insert(k->reduced);
       const size_t per = b->nodes.size() / std::max<size_t>(1, b->tags.size());
       for (size_t e = 0; e < b->tags.size(); ++e) {
@@ -173,7 +176,7 @@ class GmshReading {
     in_.notes.push_back(fmt::format("no volume groups: each of {} volumes is a region", regions_.size()));
   }
 
-  /// Quadrangles of the surface groups, or of all surfaces, as shells of --thickness.
+  /// Triangles and quadrangles of the surface groups, or of all surfaces, as shells of --thickness.
   void read_shells() {
     if (in_.mesh.n_cells() > 0)
       throw Error("", fmt::format("--thickness makes shells of surfaces, and {} has volumes", path_), "leave --thickness away",

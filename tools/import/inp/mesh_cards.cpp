@@ -11,8 +11,8 @@ namespace hilo {
 namespace {
 
 constexpr const char* supported =
-    "C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 and their I, R, H, M, T variants, T3D2, B31, B32, B33; as rigid regions S3, S4, S6, S8; S4 by "
-    "--thicken";
+    "C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 and their I, R, H, M, T variants, T3D2, B31, B32, B33; as rigid regions or by --thicken "
+    "S3, S4, S6, S8";
 
 InpSet& set_named(const std::string& name, std::map<std::string, InpSet>& sets, std::vector<std::string>& order) {
   const std::string key = upper(name);

@@ -67,7 +67,8 @@ class Writer {
   std::string set_of(const std::string& target, Rows nodes, const std::string& wish, bool each) {
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    const bool as_listed = each && o_.order == 2;  // a force per node stays on the nodes it was given for
+    const bool as_listed =
+        each && (o_.order == 2 || (o_.thicken && is_divided(in_)));  // a force per node stays on the nodes it was given for
     if (!target.empty() && !as_listed) {
       const auto& name = node_set_.at(target);
       if (!name.empty() && in_.mesh.nodes_of(name, name) == nodes) return name;
