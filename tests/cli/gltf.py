@@ -62,8 +62,8 @@ class Glb:
             q = np.array(self.sampled(key, index, "rotation", node.get("rotation", [0, 0, 0, 1])), float)
             assert abs(np.linalg.norm(q) - 1) < 1e-6
             x, y, z, w = q / np.linalg.norm(q)
-            R = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)], [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-                          [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+            K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+            R = np.eye(3) + 2 * w * K + 2 * K @ K
             to = np.array(self.sampled(key, index, "translation", node.get("translation", [0, 0, 0])), float)
             here = lambda p: parent(p @ R.T + to)
             if "mesh" in node:
