@@ -193,8 +193,8 @@ Command at_command(CLI::App& app) {
   sub->add_option("--point", o->point, "x,y,z in m of a material point: where it is in the mesh, before it moves");
   sub->add_option("--line", o->line, "two points x,y,z: points of the mesh from the first to the second")->expected(2);
   sub->add_option("-n", o->n, "points on the line, ends included")->check(CLI::Range(2, 1000000))->capture_default_str();
-  sub->add_option("--steps", o->steps, "all, first, last or numbers: 0,5,10")->capture_default_str();
-  sub->add_option("--times", o->times, "times in s, instead of --steps: the nearest ones");
+  sub->add_option("--steps", o->steps, "all, first, last or numbers: 0,5,10:20")->capture_default_str();
+  sub->add_option("--times", o->times, "times in s, or FROM:TO, instead of --steps: the nearest ones");
   sub->add_option("--show", o->show, "regions, by name or glob; all by default")->allow_extra_args(false);
   sub->add_option("--hide", o->hide, "regions to leave out")->allow_extra_args(false);
   sub->add_option("--unit", o->unit, "unit shown: MPa, mm, g, ...; a handy one by default");

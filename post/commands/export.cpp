@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// hilo-post export: one step as a VTU file for other programs.
+// hilo-post export: one step as a VTU file for other programs, or steps as glTF.
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -18,12 +18,16 @@
 #include "post/commands/commands.hpp"
 #include "post/files/output.hpp"
 #include "post/run/run_file.hpp"
+#include "post/run/times.hpp"
+#include "post/scene/gltf.hpp"
 
 namespace hilo {
 namespace {
 
 struct ExportOptions {
-  std::string run, output, step = "last";
+  std::string run, output, steps = "last", times, field, range;
+  std::vector<std::string> show, hide;
+  double speed = 0;
   bool deformed = false;
 };
 
@@ -54,10 +58,50 @@ void attach(vtkFieldData* to, const std::string& name, const std::vector<T>& val
   to->AddArray(array);
 }
 
+/// Regions a field has no values in: of the cells, and of the nodes that no other cell has.
+void blank(RunFile& run, const std::string& name, bool of_cells, RunFile::Field& field) {
+  const Mesh& mesh = run.mesh();
+  std::vector<bool> has(field.value.size() / static_cast<size_t>(field.columns), false);
+  for (std::int64_t c = 0; c < mesh.n_cells(); ++c) {
+    if (!run.gives(static_cast<size_t>(mesh.region[static_cast<size_t>(c)]), name)) continue;
+    if (of_cells)
+      has[static_cast<size_t>(c)] = true;
+    else
+      for (const std::int64_t n : mesh.cell(c)) has[static_cast<size_t>(n)] = run.holds(n);
+  }
+  for (size_t i = 0; i < field.value.size(); ++i)
+    if (!has[i / static_cast<size_t>(field.columns)]) field.value[i] = std::numeric_limits<double>::quiet_NaN();
+}
+
+void export_gltf(const ExportOptions& o, RunFile& file, std::vector<Step> steps) {
+  if (steps.size() > 1 && !file.frequencies.empty())
+    throw Error("--steps", "steps of an analysis of modes are modes, not instants", "one of them, or hilo-post movie", Exit::usage);
+  const double span = steps.back().t - steps.front().t;
+  GltfOptions g{std::move(steps), o.field.empty() ? "region" : o.field,
+                o.range,          o.show,
+                o.hide,           o.speed > 0 || !(span > 0) ? std::max(o.speed, 1e-9) : handy_speed(span)};
+  const Gltf made = gltf_of(file, g);
+  if (made.left_out > 0) warn(o.run, fmt::format("{} bars have no surface: they are not in {}", made.left_out, o.output));
+  write_out(o.output, made.bytes);
+}
+
 void run(const ExportOptions& o) {
   RunFile file(o.run);
-  const auto steps = file.select_steps(o.step, "");
-  if (steps.size() != 1) throw Error("--step", "one step makes one file", "", Exit::usage);
+  if (o.output.ends_with(".gltf"))
+    throw Error(o.output, "glTF is written in its binary form", "give the file the ending .glb", Exit::usage);
+  const bool gltf = o.output.ends_with(".glb");
+  for (const auto& [given, option] : {std::pair{!o.field.empty(), "--field"},
+                                      {!o.range.empty(), "--range"},
+                                      {!o.show.empty(), "--show"},
+                                      {!o.hide.empty(), "--hide"},
+                                      {o.speed > 0, "--speed"}})
+    if (given && !gltf) throw Error(option, "is of glTF alone: VTU has all fields and regions", "give -o the ending .glb", Exit::usage);
+  if (gltf && o.deformed) throw Error("--deformed", "glTF has the positions of the run anyway", "leave it out", Exit::usage);
+  if (!file.has_mesh() && (gltf || !file.beams().empty())) file.stand_in_bodies();
+  file.draw_beams();
+  const auto steps = file.select_steps(o.steps, o.times);
+  if (gltf) return export_gltf(o, file, steps);
+  if (steps.size() != 1) throw Error("--steps", "one step makes one VTU file", "", Exit::usage);
   const Step& step = steps.front();
   const MeshFile& tagged = file.mesh_file();
   const Mesh& mesh = tagged.mesh;
@@ -66,10 +110,9 @@ void run(const ExportOptions& o) {
     auto field = file.field(step, name);
     const auto rows = static_cast<std::int64_t>(field.value.size()) / field.columns;
     const auto shown = field.value;
-    if (file.is_skin())
-      for (size_t i = 0; i < field.value.size(); ++i)
-        if (!file.holds(static_cast<std::int64_t>(i) / field.columns)) field.value[i] = std::numeric_limits<double>::quiet_NaN();
-    if (rows == mesh.n_nodes() && !name.starts_with("cell_"))
+    const bool of_cells = name.starts_with("cell_") && rows == mesh.n_cells();
+    if (file.is_skin() || !file.beams().empty()) blank(file, name, of_cells, field);
+    if (rows == mesh.n_nodes() && !of_cells)
       attach<vtkDoubleArray>(grid->GetPointData(), name, field.value, field.columns);
     else if (rows == mesh.n_cells())
       attach<vtkDoubleArray>(grid->GetCellData(), name, field.value, field.columns);
@@ -102,13 +145,29 @@ void run(const ExportOptions& o) {
 }  // namespace
 
 Command export_command(CLI::App& app) {
-  auto* sub = app.add_subcommand("export", "one step as VTU (ParaView opens run.xdmf without this)");
+  auto* sub = app.add_subcommand(
+      "export", "one step as VTU, or the run as glTF for slides and browsers (ParaView opens run.h5 and run.xdmf without this)");
   const auto o = std::make_shared<ExportOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
-  sub->add_option("-o,--output", o->output, "VTU file; - for stdout")->required();
-  sub->add_option("--step", o->step, "first, last or a number")->capture_default_str();
+  sub->add_option("-o,--output", o->output, "run.vtu, or run.glb for glTF; - for VTU on stdout")->required();
+  sub->add_option("--steps,--step", o->steps, "first, last or a number; glTF moves through several: all, 0,5,10 or 0:20")
+      ->capture_default_str();
+  sub->add_option("--times", o->times, "times in s or FROM:TO, instead of --steps: the nearest ones");
   sub->add_flag("--deformed", o->deformed, "points where they are at that time; reference positions by default");
-  example(*sub, "  hilo-post export run.h5 --step last -o run.vtu");
+  const char* only = "Of glTF alone";
+  sub->add_option("--field", o->field,
+                  "colours, as hilo-post render has them; where steps are several, the value largest in size; region by default")
+      ->group(only);
+  sub->add_option("--range", o->range, "LOW,HIGH of the colours in the unit of the file; by default the range over all that is drawn")
+      ->group(only);
+  sub->add_option("--show", o->show, "regions, by name or glob; all by default")->allow_extra_args(false)->group(only);
+  sub->add_option("--hide", o->hide, "regions to leave out")->allow_extra_args(false)->group(only);
+  sub->add_option("--speed", o->speed, "seconds of the run in a second of the animation; by default it lasts about 10 s")
+      ->check(CLI::PositiveNumber)
+      ->group(only);
+  example(*sub,
+          "  hilo-post export run.h5 --steps last -o run.vtu\n"
+          "  hilo-post export run.h5 --steps all --field von_mises -o run.glb");
   return {sub, [o] { run(*o); }};
 }
 

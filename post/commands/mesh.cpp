@@ -87,12 +87,17 @@ void run(const MeshOptions& o) {
     if (!places[i]) unseen += fmt::format("{}{}", unseen.empty() ? "" : ", ", i + 1);
   picture.paint([&](Painter& p) {
     const Projection project(stage, frame.model);
-    for (size_t i = 0; i < places.size(); ++i)
-      if (places[i]) {
-        const Vec2 at = project(*places[i]);
-        p.disc(at, 11 * p.scale, white);
-        p.text(at, fmt::format("{}", i + 1), 13, Across::centre, Up::middle, ink, true);
-      }
+    std::vector<Vec2> points;
+    for (const auto& place : places)
+      if (place) points.push_back(project(*place));
+    const auto labels = spread_labels(points, 23 * p.scale, frame.model);
+    for (size_t k = 0; k < labels.size(); ++k)
+      if ((labels[k] - points[k]).norm() > 4 * p.scale) p.line(points[k], labels[k], ink, 1.2), p.disc(points[k], 3 * p.scale, ink);
+    for (size_t i = 0, k = 0; i < places.size(); ++i) {
+      if (!places[i]) continue;
+      p.disc(labels[k], 11 * p.scale, white);
+      p.text(labels[k++], fmt::format("{}", i + 1), 13, Across::centre, Up::middle, ink, true);
+    }
     std::string line = fmt::format("{} cells, {} nodes", mesh.n_cells(), mesh.n_nodes());
     if (o.slivers) line += fmt::format(", {} slivers (scaled Jacobian below {})", n_slivers, sliver_limit);
     draw_title(p, o.title.empty() ? o.mesh : o.title, line);

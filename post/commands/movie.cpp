@@ -27,14 +27,6 @@ struct MovieOptions : FrameOptions {
   bool outputs = false;
 };
 
-/// The speed of 1, 2 or 5 times a power of ten that makes a movie of 6 to 15 s.
-double handy_speed(double span) {
-  const double wanted = span / 10, power = std::pow(10, std::floor(std::log10(wanted)));
-  for (const double digit : {1.0, 2.0, 5.0})
-    if (digit * power >= wanted / 1.5) return digit * power;
-  return 10 * power;
-}
-
 std::string speed_text(double speed) {
   if (std::abs(speed - 1) < 1e-12) return "real speed";
   return speed < 1 ? fmt::format("slowed {:g} times", 1 / speed) : fmt::format("{:g} times real speed", speed);

@@ -74,8 +74,8 @@ Command peak_command(CLI::App& app) {
                   "stress.xx, "
                   "shell_moment.m11")
       ->capture_default_str();
-  sub->add_option("--steps", o->steps, "all, first, last or numbers: 0,5,10")->capture_default_str();
-  sub->add_option("--times", o->times, "times in s, instead of --steps: the nearest ones");
+  sub->add_option("--steps", o->steps, "all, first, last or numbers: 0,5,10:20")->capture_default_str();
+  sub->add_option("--times", o->times, "times in s, or FROM:TO, instead of --steps: the nearest ones");
   sub->add_option("--show", o->show, "regions, by name or glob; all by default")->allow_extra_args(false);
   sub->add_option("--hide", o->hide, "regions to leave out")->allow_extra_args(false);
   sub->add_option("--unit", o->unit, "unit shown: MPa, mm, g, ...; a handy one by default");

@@ -57,8 +57,8 @@ Command render_command(CLI::App& app) {
   sub->add_option("-o,--output", o->output,
                   "PNG file of a single step (- for standard output), or start of the names: out/frame gives out/frame-000012.png")
       ->required();
-  sub->add_option("--steps", o->steps, "all, first, last or numbers: 0,5,10")->capture_default_str();
-  sub->add_option("--times", o->times, "times in s, instead of --steps: the nearest ones are drawn");
+  sub->add_option("--steps", o->steps, "all, first, last or numbers: 0,5,10:20")->capture_default_str();
+  sub->add_option("--times", o->times, "times in s, or FROM:TO, instead of --steps: the nearest ones are drawn");
   sub->add_option("--jobs", o->jobs, "processes that draw frames at the same time; one per core by default")->check(CLI::Range(1, 64));
   example(*sub,
           "  hilo-post render run.h5 --field von_mises --steps last --camera iso -o stress.png\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// hilo-post series: any history of a run as CSV or as a chart.
+// hilo-post series: any history of a run as CSV, as universal file or as a chart.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -13,6 +13,7 @@
 #include "post/commands/commands.hpp"
 #include "post/files/csv.hpp"
 #include "post/files/output.hpp"
+#include "post/files/universal.hpp"
 #include "post/injury/resolved_band.hpp"
 #include "post/picture/picture.hpp"
 #include "post/run/columns.hpp"
@@ -61,6 +62,12 @@ Picked pick(const SeriesOptions& o, const RunFile& run) {
 }
 
 std::string column_title(const Column& c) { return fmt::format("{} [{}]", c.label, c.unit); }
+
+void write_universal(const std::string& path, const RunFile& run, const Picked& picked) {
+  std::vector<UniversalColumn> columns;
+  for (const Column& c : picked.y) columns.push_back({c.label, c.unit, c.value});
+  write_out(path, universal_text(run.title, {picked.x.label, picked.x.unit, picked.x.value}, columns, run.path));
+}
 
 void write_csv(const std::string& path, const Picked& picked) {
   std::vector<std::string> header{column_title(picked.x)};
@@ -156,13 +163,15 @@ void run(const SeriesOptions& o) {
   const Picked picked = pick(o, file);
   warn_of_band(file, picked.y);
   if (!o.png.empty()) write_png(o, file, picked);
+  if (o.csv.ends_with(".unv") || o.csv.ends_with(".uff")) return write_universal(o.csv, file, picked);
   if (!o.csv.empty() || o.png.empty()) write_csv(o.csv.empty() ? "-" : o.csv, picked);
 }
 
 }  // namespace
 
 Command series_command(CLI::App& app) {
-  auto* sub = app.add_subcommand("series", "histories (reactions, energies, probes, ...) as CSV or as a chart");
+  auto* sub =
+      app.add_subcommand("series", "histories (reactions, energies, probes, ...) as CSV, as universal file (dataset 58) or as a chart");
   const auto o = std::make_shared<SeriesOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("names", o->names,
@@ -173,7 +182,8 @@ Command series_command(CLI::App& app) {
       ->allow_extra_args(false);
   sub->add_option("-x", o->x, "abscissa: a column or a formula, \"angle [deg] = 360*t\"; the time by default");
   sub->add_option("--times", o->times, "FROM:TO in s; the whole run by default");
-  sub->add_option("-o,--output", o->csv, "CSV file; stdout when neither this nor --png is given");
+  sub->add_option("-o,--output", o->csv,
+                  "CSV file, or a universal file where the ending is .unv or .uff; CSV on stdout when neither this nor --png is given");
   sub->add_option("--png", o->png, "chart, one panel for each unit");
   sub->add_option("--title", o->title, "title of the chart");
   sub->add_option("--size", o->size, "size of the chart, WIDTHxHEIGHT")->capture_default_str();
@@ -181,6 +191,7 @@ Command series_command(CLI::App& app) {
   sub->add_flag("--json", o->json, "the list as JSON");
   example(*sub,
           "  hilo-post series run.h5 energy -o energy.csv --png energy.png\n"
+          "  hilo-post series run.h5 energy -o energy.unv\n"
           "  hilo-post series run.h5 'energy in all [J] = energy.kinetic + energy.elastic + energy.gravity' --times 0.01: -o all.csv");
   return {sub, [o] { run(*o); }};
 }

@@ -15,6 +15,7 @@
 #include "model/mesh_source.hpp"
 #include "model/scene_sets.hpp"
 #include "post/run/swept_beams.hpp"
+#include "post/run/times.hpp"
 
 namespace hilo {
 namespace {
@@ -184,6 +185,15 @@ void RunFile::draw_beams() {
 std::vector<Step> RunFile::select_steps(const std::string& numbers, const std::string& times) const {
   if (steps.empty())
     throw Error(path, "holds no field output yet", complete ? "see output.interval of the scene" : "the run is in progress");
+  if (times.find(':') != times.npos) {
+    const auto [from, to] = parse_times(times, {steps.front().t, steps.back().t});
+    const double slack = 1e-9 * (steps.back().t - steps.front().t);
+    std::vector<Step> chosen;
+    for (const Step& s : steps)
+      if (s.t >= from - slack && s.t <= to + slack) chosen.push_back(s);
+    if (chosen.empty()) throw Error("--times", fmt::format("{} holds no output of the run", times), "see output.interval of the scene");
+    return chosen;
+  }
   if (!times.empty()) {
     double spacing = 0;
     for (size_t k = 1; k < steps.size(); ++k) spacing = std::max(spacing, steps[k].t - steps[k - 1].t);
@@ -203,10 +213,16 @@ std::vector<Step> RunFile::select_steps(const std::string& numbers, const std::s
   if (numbers == "last") return {steps.back()};
   std::vector<Step> chosen;
   for (const std::string& text : split(numbers, ',')) {
-    const double k = number(text, "--steps");
-    if (k < 0 || k >= static_cast<double>(steps.size()) || k != std::floor(k))
-      throw Error(path, fmt::format("no step {}", text), fmt::format("there are 0 to {}", steps.size() - 1));
-    chosen.push_back(steps[static_cast<size_t>(k)]);
+    const auto one = [&](const std::string& part) {
+      const double k = number(part, "--steps");
+      if (k < 0 || k >= static_cast<double>(steps.size()) || k != std::floor(k))
+        throw Error(path, fmt::format("no step {}", part), fmt::format("there are 0 to {}", steps.size() - 1));
+      return static_cast<size_t>(k);
+    };
+    const auto colon = text.find(':');
+    const size_t first = one(text.substr(0, colon)), last = colon == text.npos ? first : one(text.substr(colon + 1));
+    if (last < first) throw Error("--steps", fmt::format("\"{}\" goes backwards", text), "write FROM:TO", Exit::usage);
+    for (size_t k = first; k <= last; ++k) chosen.push_back(steps[k]);
   }
   return chosen;
 }

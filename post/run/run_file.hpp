@@ -72,7 +72,7 @@ class RunFile {
     return row_.empty() || node >= static_cast<std::int64_t>(row_.size()) || held_[static_cast<size_t>(node)];
   }
   bool is_skin() const { return store_->has("/skin/node"); }
-  /// Steps by "all", "first", "last" or numbers "0,5,10"; by times "0.01,0.02" the nearest ones.
+  /// Steps by "all", "first", "last" or numbers "0,5,10:20"; by times "0.01,0.02" the nearest ones, or all from "0.01:0.02".
   std::vector<Step> select_steps(const std::string& numbers, const std::string& times) const;
 
   /// Beams of the scene, read at the first call; none where the scene cannot be read.

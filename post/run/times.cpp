@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "base/error.hpp"
 
@@ -30,6 +31,13 @@ std::pair<double, double> parse_times(const std::string& text, std::pair<double,
   if (from < all.first - slack || to > all.second + slack)
     throw Error("--times", fmt::format("{} is not within the run", text), fmt::format("there is {:g}:{:g}", all.first, all.second));
   return {std::max(from, all.first), std::min(to, all.second)};
+}
+
+double handy_speed(double span) {
+  const double wanted = span / 10, power = std::pow(10, std::floor(std::log10(wanted)));
+  for (const double digit : {1.0, 2.0, 5.0})
+    if (digit * power >= wanted / 1.5) return digit * power;
+  return 10 * power;
 }
 
 }  // namespace hilo

@@ -41,7 +41,8 @@ void add_frame_options(CLI::App& sub, FrameOptions& o) {
   add(what, "--force-scale", o.force_scale, "force in N of an arrow as long as a tenth of the picture's height; a handy one by default")
       ->check(CLI::PositiveNumber);
   add(what, "--trace", o.trace, "a probe, sensor, region, set, body or x,y,z (the nearest node) whose way is drawn");
-  add(what, "--deformed", o.deformed, "factor on deformations: what is no rigid motion, of each connected part by itself")
+  add(what, "--deformed", o.deformed,
+      "factor on deformations: what is no rigid motion, of each connected part by itself; of a mode on its whole shape")
       ->capture_default_str();
   add(what, "--scale", o.scale, "factor on whole displacements")->capture_default_str();
   add(what, "--edges", o.edges, "none, feature or all")->check(CLI::IsMember({"none", "feature", "all"}))->capture_default_str();

@@ -90,4 +90,27 @@ std::vector<std::optional<Vec3>> places_of_numbers(const std::vector<NumberedFac
   return places;
 }
 
+std::vector<Vec2> spread_labels(std::vector<Vec2> at, double apart, const Box& within) {
+  const double wanted = 1.02 * apart, share = 0.15;  // small pushes, that come to an end: large ones throw labels farther than they need
+  for (int round = 0; round < 500; ++round) {
+    bool moved = false;
+    for (size_t i = 0; i < at.size(); ++i)
+      for (size_t j = 0; j < i; ++j) {
+        Vec2 from = at[i] - at[j];
+        const double d = from.norm();
+        if (d >= apart) continue;
+        if (d < 1e-6 * apart) from = Vec2(std::cos(2.4 * static_cast<double>(i)), std::sin(2.4 * static_cast<double>(i)));  // any way
+        const Vec2 push = share * (wanted - d) / 2 * from.normalized();
+        at[i] += push, at[j] -= push;
+        moved = true;
+      }
+    if (!moved) break;
+    for (Vec2& x : at) {
+      x.x() = std::clamp(x.x(), within.x, within.x + within.w);
+      x.y() = std::clamp(x.y(), within.y, within.y + within.h);
+    }
+  }
+  return at;
+}
+
 }  // namespace hilo

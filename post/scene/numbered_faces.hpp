@@ -6,6 +6,7 @@
 
 #include "base/table.hpp"
 #include "model/smooth_faces.hpp"
+#include "post/picture/picture.hpp"
 
 class vtkCamera;
 
@@ -25,5 +26,9 @@ Table table_of_faces(const Mesh& mesh, const std::vector<NumberedFace>& faces);
 
 /// Where the number of each face stands: the middle of a facet that the camera sees; nothing where it sees none.
 std::vector<std::optional<Vec3>> places_of_numbers(const std::vector<NumberedFace>& faces, vtkCamera* camera);
+
+/// Places of labels in a picture, moved until each pair is `apart` [pixels], and within the box.  Labels that
+/// collide with none stay.  Where there is no room for all some overlap still.
+std::vector<Vec2> spread_labels(std::vector<Vec2> at, double apart, const Box& within);
 
 }  // namespace hilo

@@ -63,7 +63,7 @@ RunView::RunView(const FrameOptions& o, const std::string& path)
     field_.label += ", difference";
   }
   make_skins();
-  if (o.deformed != 1) find_parts();
+  if (o.deformed != 1) run_.frequencies.empty() ? find_parts() : void(rest_ = playback_->positions(run_.steps.front().t));
   const bool enlarged = o.scale != 1 || o.deformed != 1;
   if (const std::string& name = o.track.empty() ? o.ride : o.track; !name.empty()) {
     leader_ = std::make_unique<Marker>(run_, name, o.track.empty() ? "--ride" : "--track");
@@ -149,6 +149,10 @@ void RunView::find_parts() {
 }
 
 void RunView::enlarge(std::vector<Vec3>& x) const {
+  if (!rest_.empty()) {  // motion and deformation of the parts of a shape belong together
+    for (size_t n = 0; n < x.size(); ++n) x[n] = rest_[n] + o_.deformed * (x[n] - rest_[n]);
+    return;
+  }
   std::vector<std::vector<std::int64_t>> nodes;
   for (size_t n = 0; n < x.size(); ++n) {
     const auto k = static_cast<size_t>(part_[n]);

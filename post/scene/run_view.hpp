@@ -79,6 +79,7 @@ class RunView {
   std::unique_ptr<Annotations> annotations_;
   std::unique_ptr<Marker> leader_;  // of the camera
   std::vector<int> part_;           // connected part of each node, where deformations are enlarged
+  std::vector<Vec3> rest_;          // of an analysis of modes: there the whole shape is
   Pose drawn_;
   ShownField field_;
   NamedCells named_;

@@ -203,6 +203,8 @@ std::vector<ArraySchema>& arrays() {
       {"run.h5", "/xdmf/topology", "i8", "(n)", "", "cells as XDMF's mixed list, for ParaView"},
       {"run.h5", "/xdmf/X", "f8", "(n_nodes, 3)", "m", "reference positions, repeated for ParaView"},
       {"run.h5", "/xdmf/region", "i4", "(n_cells)", "", "region of each cell"},
+      {"run.h5", "/VTKHDF", "group", "", "",
+       "the same fields, by the names above, as VTK's file format VTKHDF 2.0 has them: views of these arrays, written when the run ends"},
       {"run.h5", "/checkpoint", "group", "", "", "reserved"},
       {"run.h5", "/cell/state", "group", "", "", "reserved: history variables and element modes, global numbering"},
   };

@@ -72,10 +72,18 @@ class Store {
   void keep_rows(const std::string& name, std::int64_t count);
   /// Without this array or group.
   void remove(const std::string& object);
+  /// Arrays of this file, one after the other along their first axis, seen as one that takes no room; of a part "" the rows are NaN.  Parts
+  /// are alike in shape.
+  void write_view(const std::string& array, const std::vector<std::string>& parts);
+  /// One more name of an array.
+  void name_also(const std::string& array, const std::string& name);
 
   void set(const std::string& object, const std::string& attribute, const std::string& value);
   void set(const std::string& object, const std::string& attribute, double value);
   void set(const std::string& object, const std::string& attribute, std::int64_t value);
+  void set(const std::string& object, const std::string& attribute, std::span<const std::int64_t> values);
+  /// Text of fixed length, as some readers want it.
+  void set_ascii(const std::string& object, const std::string& attribute, const std::string& value);
   std::optional<std::string> text_attribute(const std::string& object, const std::string& attribute) const;
   std::optional<double> number_attribute(const std::string& object, const std::string& attribute) const;
 

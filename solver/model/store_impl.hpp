@@ -180,7 +180,8 @@ struct Store::Impl {
   Id make_group(const std::string& group);
   Id make_array(const std::string& array, hid_t type, hid_t space, hid_t creation, hid_t access = H5P_DEFAULT);
 
-  void attribute(hid_t object, const std::string& name, hid_t type, hid_t memory, const void* value);
+  void attribute(hid_t object, const std::string& name, hid_t type, hid_t memory, const void* value,
+                 std::span<const std::int64_t> shape = {});
   void text_attribute(hid_t object, const std::string& name, const std::string& value);
   /// The object an attribute belongs to; a group of that name is made where there is nothing.
   Id owner(const std::string& object);

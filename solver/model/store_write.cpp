@@ -7,6 +7,7 @@
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <limits>
 
 #include "base/digest.hpp"
 #include "base/error.hpp"
@@ -45,9 +46,10 @@ Id Store::Impl::make_array(const std::string& array, hid_t type, hid_t space, hi
   return set;
 }
 
-void Store::Impl::attribute(hid_t object, const std::string& name, hid_t type, hid_t memory, const void* value) {
+void Store::Impl::attribute(hid_t object, const std::string& name, hid_t type, hid_t memory, const void* value,
+                            std::span<const std::int64_t> shape) {
   if (H5Aexists(object, name.c_str()) > 0) need(H5Adelete(object, name.c_str()) >= 0, "cannot replace attribute " + name);
-  const Id space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Id space = simple_space(shape);
   const Id made(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   need(made.ok() && H5Awrite(made, memory, value) >= 0, "cannot write attribute " + name);
 }
@@ -256,6 +258,48 @@ void Store::set(const std::string& object, const std::string& attribute, double 
 void Store::set(const std::string& object, const std::string& attribute, std::int64_t value) {
   const Id o = impl_->owner(object);
   impl_->attribute(o, attribute, H5T_STD_I64LE, H5T_NATIVE_INT64, &value);
+}
+
+void Store::set(const std::string& object, const std::string& attribute, std::span<const std::int64_t> values) {
+  const std::int64_t count[] = {static_cast<std::int64_t>(values.size())};
+  impl_->attribute(impl_->owner(object), attribute, H5T_STD_I64LE, H5T_NATIVE_INT64, values.data(), count);
+}
+void Store::set_ascii(const std::string& object, const std::string& attribute, const std::string& value) {
+  const Id type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, value.size());
+  impl_->attribute(impl_->owner(object), attribute, type, type, value.c_str());
+}
+
+void Store::write_view(const std::string& array, const std::vector<std::string>& parts) {
+  std::vector<std::int64_t> of;  // shape of a part
+  bool is_double = false;
+  for (const std::string& part : parts) {
+    if (part.empty()) continue;
+    if (const auto n = shape(part); of.empty())
+      of = n;
+    else if (n != of)
+      throw Error(impl_->path, fmt::format("{} is not of the shape of the other parts of {}", part, array), "", Exit::fault);
+    is_double |= type(part) == "f8";
+  }
+  auto all = of;
+  all.at(0) *= static_cast<std::int64_t>(parts.size());
+  const Id space = simple_space(all), part_space = simple_space(of), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  H5Pset_fill_value(creation, H5T_NATIVE_DOUBLE, &nothing);
+  std::vector<hsize_t> start(of.size(), 0), count(of.begin(), of.end());
+  for (size_t k = 0; k < parts.size(); ++k) {
+    if (parts[k].empty()) continue;
+    start[0] = k * count[0];
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+    impl_->need(H5Pset_virtual(creation, space, ".", parts[k].c_str(), part_space) >= 0, "cannot map " + parts[k]);
+  }
+  H5Sselect_all(space);
+  impl_->make_array(array, is_double ? file_type<double>() : file_type<float>(), space, creation);
+}
+
+void Store::name_also(const std::string& array, const std::string& name) {
+  impl_->make_groups(name);
+  impl_->need(H5Lcreate_hard(impl_->file, array.c_str(), impl_->file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT) >= 0, "cannot name " + name);
 }
 
 void Store::link(const std::string& name, const std::string& target, const std::string& object) {

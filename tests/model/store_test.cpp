@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <functional>
 
@@ -305,6 +306,28 @@ TEST(Store, PythonReadsEveryKindOfArray) {
       "assert list(f[\"names\"].asstr()[:]) == [\"hull\", \"größe\"]; assert f[\"scene\"].asstr()[()] == \"[time]\"; "
       "assert f.attrs[\"format\"] == \"hilo mesh\"";
   EXPECT_EQ(std::system(("/usr/bin/python3 -c '" + script + "'").c_str()), 0);
+}
+
+TEST(Store, AViewShowsArraysOneAfterTheOther) {
+  const Folder folder;
+  Store store = Store::create(folder / "a.h5");
+  store.write<float>("/a", std::vector<float>{1, 2, 3, 4}, {2, 2});
+  store.write<double>("/b", std::vector<double>{5, 6, 7, 0.1}, {2, 2});
+  store.write<double>("/short", std::vector<double>{5, 6}, {1, 2});
+  store.write_view("/v/all", {"/a", "", "/b"});
+  store.name_also("/b", "/v/b");
+  store.set("/v", "version", std::vector<std::int64_t>{2, 0});
+  store.set_ascii("/v", "type", "grid");
+  EXPECT_EQ(error_of([&] { store.write_view("/v/odd", {"/a", "/short"}); }).exit, Exit::fault);
+  store.publish();
+  const Store back = Store::open(folder / "a.h5");
+  EXPECT_EQ(back.shape("/v/all"), (std::vector<std::int64_t>{6, 2}));
+  EXPECT_EQ(back.type("/v/all"), "f8") << "as exact as its parts";
+  EXPECT_EQ(back.read_rows<double>("/v/all", 0, 2), (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_EQ(back.read_rows<double>("/v/all", 4, 2), (std::vector<double>{5, 6, 7, 0.1}));
+  for (const double x : back.read_rows<double>("/v/all", 2, 2)) EXPECT_TRUE(std::isnan(x));
+  EXPECT_EQ(back.read<double>("/v/b"), back.read<double>("/b"));
+  EXPECT_EQ(back.text_attribute("/v", "type"), "grid");
 }
 
 TEST(Store, NamesWithSlashesComeBackUnchanged) {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Beams as pictures draw them: swept sections with the stress of their points.
 #include <gtest/gtest.h>
+#include <vtkDataArray.h>
+#include <vtkPointData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridReader.h>
 
 #include <cmath>
 #include <numbers>
@@ -73,6 +77,20 @@ TEST_F(DrawnBeams, FollowTheHelixOfEachCell) {
     const double up = run.mesh().X[n].z();
     EXPECT_NEAR(std::hypot(x[n].x(), x[n].z() - R), R - up, 1e-6);
     EXPECT_NEAR(stress.value[n], -2e11 * up / R, 1e-5 * 2e11 * h / 2 / R);
+  }
+  // an export holds what the pictures draw
+  const Ran ran = work.run("hilo-post export run.h5 --deformed -o run.vtu");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const auto reader = vtkSmartPointer<vtkXMLUnstructuredGridReader>::New();
+  reader->SetFileName((work / "run.vtu").c_str());
+  reader->Update();
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  ASSERT_EQ(static_cast<size_t>(grid->GetNumberOfPoints()), x.size());
+  EXPECT_EQ(grid->GetNumberOfCells(), run.mesh().n_cells());
+  for (size_t n = 0; n < x.size(); ++n) {
+    const auto at = static_cast<vtkIdType>(n);
+    EXPECT_LT((Eigen::Map<const Vec3>(grid->GetPoint(at)) - x[n]).norm(), 1e-12);
+    EXPECT_EQ(grid->GetPointData()->GetArray("axial_stress")->GetTuple1(at), stress.value[n]);
   }
 }
 

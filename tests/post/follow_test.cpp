@@ -86,6 +86,33 @@ TEST(Deformed, enlarges_what_is_no_rigid_motion) {
   EXPECT_NEAR(stretched.second.y() - stretched.first.y(), 0.5, 1e-9);
 }
 
+// In a mode of a mechanism parts move and deform by one amplitude: what enlarges one enlarges the other, or their joint is torn.
+TEST(Deformed, of_a_mode_is_the_whole_shape) {
+  const Workplace place;
+  const std::string path = write_moving_run(
+      place, [](const Vec3& X, double t) { return Vec3(X + 1e-7 * t * Vec3(X.x() - 2, 5, 0)); }, 1);
+  {
+    Store run = Store::open_growing(path);
+    run.write<double>("/history/mode", std::vector<double>(110, 1.0), {11, 10});
+    run.flush();
+  }
+  FrameOptions o;
+  o.run = path, o.field = "displacement", o.show = {"arm"};
+  const auto moved = [&](double factor) {  // the corner farthest along x and along y
+    o.deformed = factor;
+    RunView view(o, o.run);
+    std::vector<Vec3> at;
+    view.survey(1, Fit(View(), 1), at);
+    Vec3 high = Vec3::Constant(-1e9);
+    for (const Vec3& x : at) high = high.cwiseMax(x);
+    return Vec3(high - Vec3(4, 0.5, 0.5));
+  };
+  const Vec3 once = moved(1), larger = moved(7);
+  EXPECT_GT(once.x(), 1e-7);
+  EXPECT_NEAR(once.y() / once.x(), 2.5, 1e-6);
+  EXPECT_NEAR((larger - 7 * once).norm(), 0, 1e-9);
+}
+
 TEST(Marker, finds_the_pose_of_regions_sets_probes_sensors_and_points) {
   const Workplace place;
   RunFile run(write_moving_run(place, spin, 3));

@@ -145,19 +145,24 @@ void MeshPart::archive(Archive& a) {
 void MeshPart::shorten(Store& f) const {
   for (const std::string& step : f.list("/field"))
     if (step >= fmt::format("{:06}", times_.size())) f.remove("/field/" + step);
+  f.remove("/VTKHDF");
   f.remove("/xdmf");
   f.remove("/envelope");
 }
 
 void MeshPart::show() {
   if (wall_clock() - last_xdmf_ < 1) return;
-  finish();
+  file_.on_store([&](Store& f) {
+    if (!times_.empty()) write_xdmf(f);
+  });
   last_xdmf_ = wall_clock();
 }
 
 void MeshPart::finish() {
   file_.on_store([&](Store& f) {
-    if (!times_.empty()) write_xdmf(f);
+    if (times_.empty()) return;
+    write_xdmf(f);
+    write_vtkhdf(f);
   });
 }
 

@@ -24,9 +24,9 @@ class MeshPart {
   void write_envelope();
   /// A file that grows on, without what declare() and later steps write anew.
   void shorten(Store& f) const;
-  /// Points ParaView at the arrays of the results file, where it has fields: at the end, and now and then on the way.
-  void finish();
+  /// Points ParaView at the arrays of the results file, where it has fields: now and then on the way, and at the end within that file too.
   void show();
+  void finish();
   void archive(Archive& a);
 
  private:
@@ -37,6 +37,7 @@ class MeshPart {
   void write_skin(const std::vector<Facet>& facets);
   void write_topology(Store& f);
   void write_xdmf(Store& f);
+  void write_vtkhdf(Store& f);
   const System& system_;
   RunOutput& file_;
   std::vector<std::string> wanted_;
