@@ -28,6 +28,7 @@ struct InpCard {
   std::string_view name;  // "SOLIDSECTION": upper case, blanks removed
   void (*read)(InpReading&);
   bool first_step_only = false;  // what it says of a second step does not become scene lines
+  bool of_step = false;          // or only where one run can say both (inp/steps)
 };
 using InpCards = Registry<InpCard>;
 

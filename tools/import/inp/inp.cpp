@@ -9,6 +9,8 @@
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
+#include "import/inp/equations.hpp"
+#include "import/inp/steps.hpp"
 #include "import/inp/ties.hpp"
 
 namespace hilo {
@@ -236,8 +238,10 @@ void parse_inp(const std::string& path, InpDeck& d, Imported& in, const InpCards
       r.skip(r.card.name + " in step 2 and later");
     else if (known == by_key.end())
       in.skip(r.card.name, r.card.place(), 1, false, slip_of(r.card.key, cards));
-    else
+    else {
+      if (r.step > 1 && known->second->of_step) d.step_cards.push_back({r.card.name, r.card.place(), r.step});
       known->second->read(r);
+    }
   }
   if (!any) throw Error(path, "no keyword in it", "an Abaqus or CalculiX deck has lines such as *NODE");
 }
@@ -248,12 +252,14 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     in.notes.push_back(path + " is a Nastran deck, and read as one");
     return in;
   }
+  if (options.subcase) throw Error("", fmt::format("--subcase is for a Nastran file, {} is none", path), "", Exit::usage);
   Imported in;
   InpDeck d;
   parse_inp(path, d, in, inp_cards());
   if (d.X.empty()) throw Error(path, "no nodes", "a deck has *NODE");
   if (d.shape.empty() && d.beams.empty()) throw Error(path, "no elements", "a deck has *ELEMENT");
   unqualify(d);
+  join_steps(d, in);
   check_names(d);
   turn_materials(d, in);
   if (options.rigid_beams ||
@@ -319,6 +325,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     if (const auto& ids = d.elset.at(upper(g.name)).members;
         !g.cells.empty() || ids.empty() || !std::ranges::all_of(ids, [&](std::int64_t id) { return points.contains(id); }))
       names.cells(g.name, g.cells);
+  find_equations(d, in);
   find_ties(d, in, surface);
   write_inp_scene(d, in, names, node_set, surface, options);
   return in;

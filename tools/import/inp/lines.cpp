@@ -105,9 +105,40 @@ bool InpLines::next_line(std::string_view& line) {
       include(bare, fmt::format("{}:{}", *s.path, s.line));
       continue;
     }
+    if (!values_.empty()) put_values(line);
     return true;
   }
   return false;
+}
+
+void InpLines::put_values(std::string_view& line) {
+  if (line.find('<') == line.npos) return;
+  std::string out;
+  for (size_t at = 0; at < line.size();) {
+    const size_t from = line.find('<', at), to = from == line.npos ? from : line.find('>', from);
+    if (to == line.npos) {
+      out += line.substr(at);
+      break;
+    }
+    const std::string name(strip(line.substr(from + 1, to - from - 1)));
+    const auto value = values_.find(name);
+    if (value == values_.end())
+      throw Error(fmt::format("{}:{}:{}", *stack_.back().path, stack_.back().line, from + 1),
+                  fmt::format("no parameter \"{}\" so far", name), "*PARAMETER gives it before");
+    out += line.substr(at, from - at);
+    out += value->second, at = to + 1;
+  }
+  line = replaced_.emplace_back(std::move(out));
+}
+
+bool InpLines::next_text(std::string_view& text, std::string& place) {
+  if (!next_line(text)) return false;
+  if (strip(text).front() == '*') {
+    ahead_ = text;
+    return false;
+  }
+  place = fmt::format("{}:{}", *stack_.back().path, stack_.back().line);
+  return true;
 }
 
 bool InpLines::next_data(DataLine& data) {

@@ -18,6 +18,24 @@ void read_heading(InpReading& r) {
     for (size_t i = 0; i < l.fields.size(); ++i) r.deck.title += (i ? ", " : "") + std::string(l.text(i));
 }
 
+/// Lines "name = expression"; `#` begins a comment.
+void read_parameter(InpReading& r) {
+  std::string_view text;
+  std::string place;
+  while (r.lines.next_text(text, place)) {
+    text = text.substr(0, text.find('#'));
+    const size_t first = text.find_first_not_of(" \t");
+    if (first == text.npos) continue;
+    const size_t equals = text.find('=');
+    if (equals == text.npos || equals == first) throw Error(place, "*PARAMETER: \"name = expression\" is expected");
+    const std::string name(text.substr(first, text.find_last_not_of(" \t", equals - 1) + 1 - first));
+    if (name.find_first_of(" ,<>()\"'") != name.npos) throw Error(place, fmt::format("*PARAMETER: \"{}\" is no name", name));
+    const auto value = evaluate_parameter(text.substr(equals + 1), r.deck.parameters, place);
+    r.deck.parameters[name] = value;
+    r.lines.set(name, value.text());
+  }
+}
+
 // Abaqus parts: one of them is read as if flat, more would need their numbers told apart.
 [[noreturn]] void refuse_step(const InpReading& r, const std::string& what) {
   throw Error(r.card.place() + ":1", what + " is not read",
@@ -65,27 +83,38 @@ void end_instance(InpReading& r) {
 
 void read_step(InpReading& r) {
   r.supports_before_step = r.deck.supports.size();
-  if (++r.step == 2) r.in.notes.push_back(fmt::format("{}: only the first step becomes scene lines", r.card.place()));
+  ++r.step;
+  InpStep& s = r.deck.steps.emplace_back();
+  s.place = r.card.place(), s.nlgeom = r.card.has("NLGEOM") && r.card.word("NLGEOM") != "NO", s.perturbation = r.card.has("PERTURBATION");
+  if (r.card.has("AMPLITUDE")) s.ramps = r.card.word("AMPLITUDE") != "STEP", s.ramps_said = true;
+}
+
+/// The step at hand; a procedure may stand without one.
+InpStep& step_of(InpReading& r) {
+  if (r.deck.steps.empty()) r.deck.steps.emplace_back();
+  return r.deck.steps.back();
 }
 
 /// *STATIC, *DYNAMIC and *FREQUENCY become scene lines.
 void read_procedure(InpReading& r) {
-  r.deck.procedure = r.card.name;
+  InpStep& s = step_of(r);
+  s.procedure = r.card.name;
+  if (!s.ramps_said) s.ramps = r.card.key == "STATIC";
   DataLine l;
-  if (r.lines.next_data(l)) r.deck.step_increment = l.number(0), r.deck.step_end = l.number(1);
-  r.deck.direct = r.card.has("DIRECT") || r.card.has("EXPLICIT");
+  if (r.lines.next_data(l)) s.increment = l.number(0), s.end = l.number(1);
+  s.direct = r.card.has("DIRECT") || r.card.has("EXPLICIT");
   for (const auto& [key, p] : r.card.params)
     if (key != "DIRECT" && key != "EXPLICIT" && key != "SOLVER") r.skip(fmt::format("{}, {}", r.card.name, key));
 }
 /// How many modes; a band of frequencies is not asked for.
 void read_frequency(InpReading& r) {
-  r.deck.procedure = r.card.name;
+  step_of(r).procedure = r.card.name;
   DataLine l;
-  if (r.lines.next_data(l)) r.deck.n_modes = static_cast<int>(std::clamp(l.number(0), 0.0, 1000.0));
+  if (r.lines.next_data(l)) step_of(r).n_modes = static_cast<int>(std::clamp(l.number(0), 0.0, 1000.0));
 }
 void other_procedure(InpReading& r) {
-  r.deck.procedure = r.card.name;
-  r.skip(r.card.name);
+  step_of(r).procedure = r.card.name;
+  if (r.step < 2) r.skip(r.card.name);
 }
 void end_assembly(InpReading& r) { r.deck.in_assembly = false; }
 void nothing(InpReading&) {}
@@ -95,6 +124,7 @@ void nothing(InpReading&) {}
 std::span<const InpCard> inp_step_cards() {
   static constexpr InpCard cards[] = {
       {"HEADING", read_heading},
+      {"PARAMETER", read_parameter},
       {"PART", read_part},
       {"ENDPART", nothing},
       {"ASSEMBLY", read_assembly},
@@ -103,28 +133,28 @@ std::span<const InpCard> inp_step_cards() {
       {"ENDINSTANCE", end_instance},
       {"STEP", read_step},
       {"ENDSTEP", nothing},
-      {"STATIC", read_procedure, true},
-      {"DYNAMIC", read_procedure, true},
-      {"FREQUENCY", read_frequency, true},
-      {"COMPLEXFREQUENCY", other_procedure, true},
-      {"BUCKLE", other_procedure, true},
-      {"HEATTRANSFER", other_procedure, true},
-      {"MODALDYNAMIC", other_procedure, true},
-      {"STEADYSTATEDYNAMICS", other_procedure, true},
-      {"VISCO", other_procedure, true},
-      {"COUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, true},
-      {"UNCOUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, true},
-      {"CFD", other_procedure, true},
-      {"ELECTROMAGNETICS", other_procedure, true},
-      {"SENSITIVITY", other_procedure, true},
-      {"GREEN", other_procedure, true},
-      {"NOANALYSIS", other_procedure, true},
-      {"SUBSTRUCTUREGENERATE", other_procedure, true},
-      {"GEOSTATIC", other_procedure, true},
-      {"RANDOMRESPONSE", other_procedure, true},
-      {"CRACKPROPAGATION", other_procedure, true},
-      {"ROBUSTDESIGN", other_procedure, true},
-      {"FEASIBLEDIRECTION", other_procedure, true},
+      {"STATIC", read_procedure, false, true},
+      {"DYNAMIC", read_procedure, false, true},
+      {"FREQUENCY", read_frequency, false, true},
+      {"COMPLEXFREQUENCY", other_procedure, false, true},
+      {"BUCKLE", other_procedure, false, true},
+      {"HEATTRANSFER", other_procedure, false, true},
+      {"MODALDYNAMIC", other_procedure, false, true},
+      {"STEADYSTATEDYNAMICS", other_procedure, false, true},
+      {"VISCO", other_procedure, false, true},
+      {"COUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, false, true},
+      {"UNCOUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, false, true},
+      {"CFD", other_procedure, false, true},
+      {"ELECTROMAGNETICS", other_procedure, false, true},
+      {"SENSITIVITY", other_procedure, false, true},
+      {"GREEN", other_procedure, false, true},
+      {"NOANALYSIS", other_procedure, false, true},
+      {"SUBSTRUCTUREGENERATE", other_procedure, false, true},
+      {"GEOSTATIC", other_procedure, false, true},
+      {"RANDOMRESPONSE", other_procedure, false, true},
+      {"CRACKPROPAGATION", other_procedure, false, true},
+      {"ROBUSTDESIGN", other_procedure, false, true},
+      {"FEASIBLEDIRECTION", other_procedure, false, true},
   };
   return cards;
 }
