@@ -206,6 +206,48 @@ TEST_F(ImportInpRows, NodesOnEdgesThatTurnACellInsideOutAreStraightened) {
   EXPECT_NE(err.find("1 cells that the nodes on their edges turned inside out have straight edges"), std::string::npos) << err;
 }
 
+// A part of one cube, three times: as it is, moved along x, and moved and turned by 90 degrees about z.  Its sets, sections and supports
+// are those of each instance.  Truth: places by hand; a pull on the face of the second does not reach the third.
+TEST_F(ImportInpRows, InstancesOfPartsHaveNumbersAndNamesOfTheirOwn) {
+  const std::string parts =
+      "*PART, NAME=cube\n*NODE\n1, 0, 0, 0\n2, 0, 1, 0\n3, 0, 1, 1\n4, 0, 0, 1\n5, 2, 0, 0\n6, 2, 1, 0\n7, 2, 1, 1\n8, 2, 0, 1\n"
+      "*ELEMENT, TYPE=C3D8, ELSET=all\n1, 1, 2, 3, 4, 5, 6, 7, 8\n*NSET, NSET=foot, GENERATE\n1, 4\n*NSET, NSET=both\nfoot, 7\n"
+      "*SURFACE, NAME=end\nall, S2\n*SOLID SECTION, ELSET=all, MATERIAL=m\n*END PART\n"
+      "*PART, NAME=unused\n*NODE\n1, 0, 0, 0\n*END PART\n";
+  const std::string assembly =
+      "*ASSEMBLY, NAME=a\n*INSTANCE, NAME=A-1, PART=cube\n*END INSTANCE\n*INSTANCE, NAME=B-1, PART=cube\n10., 0., 0.\n*END INSTANCE\n"
+      "*INSTANCE, NAME=C-1, PART=CUBE\n0., 5., 0.\n0., 0., 0., 0., 0., 1., 90.\n*END INSTANCE\n"
+      "*NODE\n1, 20., 0., 0.\n*NSET, NSET=feet\nA-1.foot, B-1.foot, C-1.foot\n*NSET, NSET=tip, INSTANCE=B-1\n7\n*NSET, NSET=tips\nC-1.7, "
+      "tip\n"
+      "*ELSET, ELSET=_top, INSTANCE=C-1\n1\n*SURFACE, NAME=top\n_top, S2\n*END ASSEMBLY\n";
+  const std::string rest =
+      "*MATERIAL, NAME=m\n*ELASTIC\n1e9, 0.\n*DENSITY\n1000.\n*BOUNDARY\nfeet, 1, 3\n*STEP\n*STATIC\n*CLOAD\ntip, 1, 1.\nA-1.8, 2, 3.\n"
+      "*DSLOAD\nB-1.end, P, -4e3\n*END STEP\n";
+  solve(parts + assembly + rest);
+  EXPECT_EQ(err.find("not read"), std::string::npos) << err;
+  const Mesh m = read_mesh_file(place / "out.h5").mesh;
+  EXPECT_EQ(m.n_cells(), 3);
+  EXPECT_NEAR(volume(m), 6, 1e-12);
+  const auto mean = [&](const std::string& set) {
+    Vec3 sum = Vec3::Zero();
+    const auto nodes = m.nodes_of(set, "");
+    for (const auto a : nodes) sum += m.X[a] / static_cast<double>(nodes.size());
+    return sum;
+  };
+  EXPECT_LT((mean("A-1.foot") - Vec3(0, .5, .5)).norm(), 1e-12);
+  EXPECT_LT((mean("B-1.foot") - Vec3(10, .5, .5)).norm(), 1e-12);
+  EXPECT_LT((mean("C-1.foot") - Vec3(-5.5, 0, .5)).norm(), 1e-12);  // (0, 5.5) turned
+  EXPECT_EQ(m.nodes_of("C-1.both", "").size(), 5u);
+  EXPECT_EQ(m.nodes_of("feet", "").size(), 12u);
+  EXPECT_LT((mean("tip") - Vec3(12, 1, 1)).norm(), 1e-12);
+  EXPECT_LT((mean("tips") - (Vec3(12, 1, 1) + Vec3(-6, 2, 1)) / 2).norm(), 1e-12);
+  EXPECT_LT((vector_area(m, m.facet_sets.at("top")) - Vec3(0, 1, 0)).norm(), 1e-12);
+  EXPECT_EQ(cells_of(m, "B-1.all"), 1);
+  EXPECT_NEAR(moved(2'000'000'005).x(), 4e3 * 2 / 1e9, 1e-8);  // and what the tip's 1 N does
+  EXPECT_EQ(moved(3'000'000'005).norm(), 0);
+  EXPECT_GT(moved(1'000'000'008).y(), 0);
+}
+
 TEST_F(ImportInpRows, Msh1IsRead) {
   place.write("a.msh",
               "$NOD\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n$ENDNOD\n$ELM\n3\n1 4 7 1 4 1 2 3 4\n2 4 8 2 4 2 3 4 5\n"

@@ -116,6 +116,10 @@ TEST_F(ImportInpSteps, WhatOneRunCannotSayIsToldAndTheStepsBeforeItStay) {
        "a support that is not there from the first step on", "*BOUNDARY in step 3 and later", 2},
       {statics + pull + end + "*STEP\n*BUCKLE\n2\n" + side + end, "*BUCKLE is not read", "*CLOAD in step 2 and later", 1},
       {statics + pull + end + "*STEP\n*FREQUENCY\n2\n" + end, "that of the unloaded model", "*FREQUENCY in step 2 and later", 1},
+      {"*EQUATION\n2\n9, 1, 1., 10, 1, -1.\n" + statics + pull + end + statics + side + "*EQUATION, REMOVE\n9, 1\n" + end,
+       "*EQUATION, REMOVE is not read", "*CLOAD in step 2 and later", 1},
+      {statics + pull + end + statics + side + "*CHANGE SOLID SECTION, ELSET=bar, MATERIAL=m\n" + end, "*CHANGE SOLID SECTION is not read",
+       "*CLOAD in step 2 and later", 1},
       {statics + "*DLOAD\nbar, GRAV, 9., 1., 0., 0.\n" + end + statics + pull + end, "gravity that is not there all the time",
        "*CLOAD in step 2 and later", 1},
   };

@@ -3,6 +3,7 @@
 // outside the tree `inp_cards().add({"LAME", read_lame})` before the first deck is read.
 #pragma once
 #include <initializer_list>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,8 @@ struct InpReading {
   int step = 0;                     // 0 before the first *STEP
   size_t supports_before_step = 0;  // that OP=NEW forgets
   int parts = 0, instances = 0;     // *PART, *INSTANCE so far
+  bool several = false;             // instances or parts: each instance is its part, read once more
+  std::map<std::string, InpLines::Mark> part_at = {};
   void skip(const std::string& what) { in.skip(what, card.place()); }
 };
 

@@ -103,6 +103,7 @@ struct InpTarget {
 /// *STEP.
 struct InpStep {
   std::string place, procedure;  // "*STATIC"
+  std::string not_read;          // a card in it that is not
   bool nlgeom = false, perturbation = false;
   bool ramps = true, ramps_said = false;                                   // loads without an amplitude; by AMPLITUDE of *STEP
   bool new_supports = false, new_forces = false, new_distributed = false;  // OP=NEW
@@ -247,6 +248,12 @@ struct InpDeck {
   // *ASSEMBLY: its nodes have numbers of their own, and its sets stand beside those of the part that have the same name ("INSTANCE.NAME")
   bool in_assembly = false;
   std::string instance;  // as written
+  // of several instances: what is added to the numbers of the one being read, and in front of its names
+  std::int64_t shift = 0;
+  std::string prefix;                            // "PART-1-1."
+  std::map<std::string, std::int64_t> shift_of;  // by upper-case name
+  size_t first_node = 0, first_section = 0;      // of that instance
+  std::int64_t node_shift() const;
   struct Placed {
     Vec3 by = Vec3::Zero(), at = Vec3::Zero();
     Mat3 turn = Mat3::Identity();
@@ -262,8 +269,9 @@ struct InpDeck {
   InpPlan plan;
 };
 
-/// Added to the numbers of nodes of an assembly.
-inline constexpr std::int64_t assembly_numbers = 1'000'000'000'000;
+/// Added to the numbers of nodes of an assembly, and for each of several instances.
+inline constexpr std::int64_t assembly_numbers = 1'000'000'000'000, instance_numbers = 1'000'000'000;
+inline std::int64_t InpDeck::node_shift() const { return in_assembly ? assembly_numbers : shift; }
 /// A qualified name, "ASSEMBLY.TOP" or "PART-1-1.TOP", as the deck's own where that is what it has.
 std::string unqualified(const std::string& name);
 /// Supports, loads, surfaces and sections name sets as the deck has them; numbers behind a dot become numbers.

@@ -214,11 +214,12 @@ std::vector<Nodal> nodal_groups(const InpDeck& d, const std::vector<InpNodal>& l
 std::string unqualified(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
 void unqualify(InpDeck& d) {
-  const auto own = [](std::string& target, std::int64_t& id, const auto& known) {
+  const auto own = [&](std::string& target, std::int64_t& id, const auto& known) {
     if (target.find('.') == std::string::npos || known(target)) return;
+    const auto instance = d.shift_of.find(target.substr(0, target.rfind('.')));
     target = unqualified(target);
     if (target.empty() || target.size() > 18 || target.find_first_not_of("0123456789") != std::string::npos) return;
-    id = std::stoll(target);
+    id = std::stoll(target) + (instance == d.shift_of.end() ? 0 : instance->second);
     target.clear();
   };
   const auto nset = [&](const std::string& key) { return d.nset.contains(key); };

@@ -224,6 +224,17 @@ std::string slip_of(std::string_view word, const InpCards& cards) {
   return "";
 }
 
+/// Sets, surfaces and orientations of one of several instances have its name in front.
+void qualify(Card& card, const std::string& prefix) {
+  for (auto& [key, param] : card.params) {
+    const bool defines = key == "NAME" && (card.key == "SURFACE" || card.key == "ORIENTATION");
+    const bool number = !param.value.empty() && param.value.find_first_not_of("0123456789") == std::string::npos;
+    if (defines || key == "NSET" || key == "ELSET" || key == "SURFACE" || key == "TIENSET" || key == "ORIENTATION" ||
+        ((key == "REFNODE" || key == "ROTNODE") && !number))
+      param.value = prefix + param.value;
+  }
+}
+
 }  // namespace
 
 void parse_inp(const std::string& path, InpDeck& d, Imported& in, const InpCards& cards) {
@@ -231,14 +242,17 @@ void parse_inp(const std::string& path, InpDeck& d, Imported& in, const InpCards
   for (const auto& c : cards) by_key[c.name] = &c;
   InpReading r{InpLines(path), d, in};
   bool any = false;
+  r.several = r.lines.count("*INSTANCE") > 1 || r.lines.count("*PART") > 1;
   while (r.lines.next_card(r.card)) {
     any = true;
     const auto known = by_key.find(r.card.key);
-    if (r.step > 1 && (known == by_key.end() || known->second->first_step_only))
+    if (r.step > 1 && (known == by_key.end() || known->second->first_step_only)) {
       r.skip(r.card.name + " in step 2 and later");
-    else if (known == by_key.end())
+      if (r.card.key != "CONTROLS" && d.steps.back().not_read.empty()) d.steps.back().not_read = r.card.name;
+    } else if (known == by_key.end())
       in.skip(r.card.name, r.card.place(), 1, false, slip_of(r.card.key, cards));
     else {
+      if (!d.prefix.empty()) qualify(r.card, d.prefix);
       if (r.step > 1 && known->second->of_step) d.step_cards.push_back({r.card.name, r.card.place(), r.step});
       known->second->read(r);
     }

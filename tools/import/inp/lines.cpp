@@ -60,7 +60,7 @@ std::string Card::need(const std::string& param) const {
 InpLines::InpLines(const std::string& path) : folder_(std::filesystem::path(path).parent_path().string()) { open(path, ""); }
 
 void InpLines::open(const std::string& path, const std::string& place) {
-  Source s{std::make_shared<const std::string>(path), std::make_shared<const std::string>(read_gz(path, place)), 0, 0};
+  Source s{std::make_shared<const std::string>(path), std::make_shared<const std::string>(read_gz(path, place))};
   if (s.text->substr(0, 65536).find('\0') != std::string::npos)
     throw Error(path, "not a text file", "hilo-import reads .inp decks as text");
   stack_.push_back(s);
@@ -96,7 +96,7 @@ bool InpLines::next_line(std::string_view& line) {
     }
     const size_t end = std::min(s.text->find('\n', s.at), s.text->size());
     line = std::string_view(*s.text).substr(s.at, end - s.at);
-    s.at = end + 1;
+    s.line_at = s.at, s.at = end + 1;
     ++s.line;
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     const auto bare = strip(line);
@@ -110,6 +110,29 @@ bool InpLines::next_line(std::string_view& line) {
   }
   return false;
 }
+
+int InpLines::count(std::string_view word) const {
+  int n = 0;
+  const std::string& text = *kept_.front().text;
+  for (size_t at = 0; at < text.size(); at = std::min(text.find('\n', at), text.size()) + 1) {
+    const std::string line = upper(std::string_view(text).substr(at, word.size() + 8));
+    n += line.starts_with(word) && (line.size() == word.size() || !std::isalnum(static_cast<unsigned char>(line[word.size()])));
+  }
+  return n;
+}
+
+InpLines::Mark InpLines::mark() const { return {stack_.back()}; }
+
+void InpLines::read_again(const Mark& from) {
+  if (ahead_) {  // it is read once more when this is done
+    Source& s = stack_.back();
+    s.at = s.line_at, --s.line;
+    ahead_.reset();
+  }
+  stack_.push_back(from.source);
+}
+
+void InpLines::go_back() { stack_.pop_back(); }
 
 void InpLines::put_values(std::string_view& line) {
   if (line.find('<') == line.npos) return;

@@ -36,18 +36,8 @@ void read_parameter(InpReading& r) {
   }
 }
 
-// Abaqus parts: one of them is read as if flat, more would need their numbers told apart.
-[[noreturn]] void refuse_step(const InpReading& r, const std::string& what) {
-  throw Error(r.card.place() + ":1", what + " is not read",
-              "write a flat deck: in Abaqus/CAE \"Do not use parts and assemblies in input files\"");
-}
-void read_part(InpReading& r) {
-  if (++r.parts > 1) refuse_step(r, "more than one *PART");
-}
-void read_instance(InpReading& r) {
-  if (++r.instances > 1) refuse_step(r, "more than one *INSTANCE");
-  r.deck.instance = r.card.value("NAME");
-  r.deck.in_assembly = false;  // what stands between it and its end is the part's
+/// Its lines move it and turn it.
+void place_instance(InpReading& r) {
   DataLine l;
   if (!r.lines.next_data(l)) return;
   InpDeck::Placed& p = r.deck.placed;
@@ -63,6 +53,45 @@ void read_instance(InpReading& r) {
   p.turn = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
 }
 
+std::vector<std::string> names_of(const std::map<std::string, InpLines::Mark>& parts) {
+  std::vector<std::string> names;
+  for (const auto& [name, mark] : parts) names.push_back(name);
+  return names;
+}
+
+/// A part that stands alone is read where it is; of several, each instance reads its part once more.
+void read_part(InpReading& r) {
+  ++r.parts;
+  if (!r.several) return;
+  const std::string name = upper(r.card.need("NAME")), place = r.card.place();
+  r.part_at.emplace(name, r.lines.mark());
+  while (r.card.key != "ENDPART")
+    if (!r.lines.next_card(r.card)) throw Error(place, "*PART without *END PART");
+}
+void end_part(InpReading& r) {
+  if (r.several) r.lines.go_back();
+}
+void read_instance(InpReading& r) {
+  InpDeck& d = r.deck;
+  ++r.instances;
+  d.instance = r.card.value("NAME");
+  d.in_assembly = false;  // what stands between it and its end is the part's
+  d.placed = {}, d.first_node = d.X.size(), d.first_section = d.sections.size();
+  const auto part = r.part_at.find(r.card.word("PART"));
+  if (r.several) {
+    r.card.need("NAME");
+    if (part == r.part_at.end())
+      throw Error(r.card.place("PART"), fmt::format("*INSTANCE of part \"{}\", which is not there", r.card.value("PART")),
+                  suggest(r.card.word("PART"), names_of(r.part_at)));
+    if (r.instances >= assembly_numbers / instance_numbers) throw Error(r.card.place(), "too many *INSTANCE");
+    d.shift = r.instances * instance_numbers, d.prefix = d.instance + ".";
+    if (!d.shift_of.emplace(upper(d.instance), d.shift).second)
+      throw Error(r.card.place("NAME"), fmt::format("*INSTANCE {} is given twice", d.instance), "give each a name of its own");
+  }
+  place_instance(r);
+  if (r.several) r.lines.read_again(part->second);
+}
+
 /// What follows is of the assembly.
 void read_assembly(InpReading& r) {
   r.deck.in_assembly = true;
@@ -74,10 +103,12 @@ void read_assembly(InpReading& r) {
 void end_instance(InpReading& r) {
   InpDeck& d = r.deck;
   const InpDeck::Placed& p = d.placed;
-  for (size_t a = 0; a < d.X.size(); ++a)
+  for (size_t a = r.several ? d.first_node : 0; a < d.X.size(); ++a)
     if (d.node_id[a] < assembly_numbers) d.X[a] = p.at + p.turn * (d.X[a] + p.by - p.at);
-  for (auto& [name, o] : d.orientations) o.a = p.turn * o.a, o.b = p.turn * o.b;
-  for (InpSection& s : d.sections) s.n1 = p.turn * s.n1;
+  for (auto& [name, o] : d.orientations)
+    if (name.starts_with(upper(d.prefix))) o.a = p.turn * o.a, o.b = p.turn * o.b;
+  for (size_t s = r.several ? d.first_section : 0; s < d.sections.size(); ++s) d.sections[s].n1 = p.turn * d.sections[s].n1;
+  d.shift = 0, d.prefix.clear();
   read_assembly(r);
 }
 
@@ -126,7 +157,7 @@ std::span<const InpCard> inp_step_cards() {
       {"HEADING", read_heading},
       {"PARAMETER", read_parameter},
       {"PART", read_part},
-      {"ENDPART", nothing},
+      {"ENDPART", end_part},
       {"ASSEMBLY", read_assembly},
       {"ENDASSEMBLY", end_assembly},
       {"INSTANCE", read_instance},

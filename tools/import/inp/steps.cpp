@@ -232,7 +232,9 @@ size_t longest(const InpDeck& d, std::string& why) {
     const bool nonlinear =
         std::any_of(d.steps.begin(), d.steps.begin() + static_cast<std::ptrdiff_t>(k), [](const InpStep& x) { return x.nlgeom; });
     why.clear();
-    if (!is_static && !is_dynamic && !is_modes)
+    if (!s.not_read.empty())
+      why = s.not_read + " is not read";
+    else if (!is_static && !is_dynamic && !is_modes)
       why = s.procedure.empty() ? "it computes what is not read" : s.procedure + " is not read";
     else if (before.procedure != "*STATIC" && !(before.procedure == "*DYNAMIC" && is_dynamic))
       why = fmt::format("{} after {} is another run", s.procedure, before.procedure.empty() ? "another analysis" : before.procedure);

@@ -18,7 +18,7 @@ InpTarget target_in(const InpReading& r, const std::string& key) {
   const std::string value = card.need(key);
   InpTarget t{upper(value), 0, card.place(key)};
   if (!t.name.empty() && t.name.size() < 18 && t.name.find_first_not_of("0123456789") == std::string::npos)
-    t.id = std::stoll(t.name) + (r.deck.in_assembly ? assembly_numbers : 0), t.name.clear();
+    t.id = std::stoll(t.name) + r.deck.node_shift(), t.name.clear();
   return t;
 }
 
@@ -79,7 +79,8 @@ void read_distributing(InpReading& r) {
   t.reference = {upper(r.card.need("ELSET")), 0, r.card.place("ELSET")};
   DataLine l;
   while (r.lines.next_data(l)) {
-    InpTarget of{l.is_integer(0) ? "" : upper(l.text(0)), l.is_integer(0) ? l.integer(0) : 0, l.place(0)};
+    InpTarget of{l.is_integer(0) ? "" : upper(r.deck.prefix) + upper(l.text(0)), l.is_integer(0) ? l.integer(0) + r.deck.node_shift() : 0,
+                 l.place(0)};
     const double w = l.number(1, 1);
     if (!(w > 0)) throw Error(l.place(1), fmt::format("{}: a weight of {:g}", t.name, w), "one above zero");
     t.weights.emplace_back(of, w);
@@ -90,7 +91,12 @@ void read_distributing(InpReading& r) {
 
 /// How many terms; and then node or set, component and factor of each, on as many lines as they need.
 void read_equation(InpReading& r) {
-  if (const auto odd = unknown_param(r.card, {"INPUT"}); !odd.empty() || r.card.has("INPUT")) return r.skip("*EQUATION, " + odd);
+  if (const auto odd = unknown_param(r.card, {}); !odd.empty() || r.step > 0) {
+    const std::string what = odd.empty() ? r.card.name : odd;
+    r.skip(r.step > 0 ? what + " in a step" : what);
+    if (r.step > 0) r.deck.steps.back().not_read = what;
+    return;
+  }
   DataLine l;
   while (r.lines.next_data(l)) {
     InpEquation e{{}, l.place()};
@@ -101,7 +107,7 @@ void read_equation(InpReading& r) {
       for (size_t i = 0; i < l.fields.size() && e.terms.size() < static_cast<size_t>(n); i += 3) {
         const bool number = l.is_integer(i);
         e.terms.push_back(
-            {{number ? "" : upper(l.text(i)), number ? l.integer(i) + (r.deck.in_assembly ? assembly_numbers : 0) : 0, l.place(i)},
+            {{number ? "" : upper(r.deck.prefix) + upper(l.text(i)), number ? l.integer(i) + r.deck.node_shift() : 0, l.place(i)},
              static_cast<int>(l.integer(i + 1)),
              l.number(i + 2)});
       }
@@ -158,8 +164,8 @@ bool read_points(InpReading& r, const std::string& type) {
   InpSet* set = r.card.has("ELSET") ? &set_of_cells(r.card.need("ELSET"), r.deck) : nullptr;
   DataLine l;
   while (r.lines.next_data(l)) {
-    InpPoint p{type, l.integer(0), {}, l.place()};
-    for (size_t i = 0; i < kind->second; ++i) p.nodes.push_back(l.integer(1 + i) + (r.deck.in_assembly ? assembly_numbers : 0));
+    InpPoint p{type, l.integer(0) + r.deck.shift, {}, l.place()};
+    for (size_t i = 0; i < kind->second; ++i) p.nodes.push_back(l.integer(1 + i) + r.deck.node_shift());
     if (r.deck.cell.contains(p.id) || !r.deck.points.try_emplace(p.id, p).second)
       throw Error(l.place(0), fmt::format("element {} is given twice", p.id), "number each element once");
     if (set) set->members.push_back(p.id);
