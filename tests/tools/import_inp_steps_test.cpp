@@ -120,8 +120,8 @@ TEST_F(ImportInpSteps, WhatOneRunCannotSayIsToldAndTheStepsBeforeItStay) {
        "*EQUATION, REMOVE is not read", "*CLOAD in step 2 and later", 1},
       {statics + pull + end + statics + side + "*CHANGE SOLID SECTION, ELSET=bar, MATERIAL=m\n" + end, "*CHANGE SOLID SECTION is not read",
        "*CLOAD in step 2 and later", 1},
-      {statics + "*DLOAD\nbar, GRAV, 9., 1., 0., 0.\n" + end + statics + pull + end, "gravity that is not there all the time",
-       "*CLOAD in step 2 and later", 1},
+      {statics + "*DLOAD\nbar, GRAV, 9., 1., 0., 0.\n" + end + statics + pull + end,
+       "gravity, which a run has from its beginning to its end", "*CLOAD in step 2 and later", 1},
   };
   for (const auto& c : cases) {
     place.write("a.inp", bar + c.text);

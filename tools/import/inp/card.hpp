@@ -22,6 +22,7 @@ struct InpReading {
   int step = 0;                     // 0 before the first *STEP
   size_t supports_before_step = 0;  // that OP=NEW forgets
   int parts = 0, instances = 0;     // *PART, *INSTANCE so far
+  bool in_part = false;             // read once more
   bool several = false;             // instances or parts: each instance is its part, read once more
   std::map<std::string, InpLines::Mark> part_at = {};
   void skip(const std::string& what) { in.skip(what, card.place()); }

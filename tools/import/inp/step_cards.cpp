@@ -59,9 +59,14 @@ std::vector<std::string> names_of(const std::map<std::string, InpLines::Mark>& p
   return names;
 }
 
+[[noreturn]] void refuse_included(const InpReading& r, const char* what) {
+  throw Error(r.card.place() + ":1", fmt::format("more than one {}, in included files, is not read", what),
+              "write *PART and *INSTANCE into the deck itself");
+}
+
 /// A part that stands alone is read where it is; of several, each instance reads its part once more.
 void read_part(InpReading& r) {
-  ++r.parts;
+  if (!r.several && ++r.parts > 1) refuse_included(r, "*PART");
   if (!r.several) return;
   const std::string name = upper(r.card.need("NAME")), place = r.card.place();
   r.part_at.emplace(name, r.lines.mark());
@@ -69,11 +74,15 @@ void read_part(InpReading& r) {
     if (!r.lines.next_card(r.card)) throw Error(place, "*PART without *END PART");
 }
 void end_part(InpReading& r) {
-  if (r.several) r.lines.go_back();
+  if (!r.several) return;
+  if (!r.in_part) throw Error(r.card.place() + ":1", "*END PART without *PART");
+  r.in_part = false;
+  r.lines.go_back();
 }
 void read_instance(InpReading& r) {
   InpDeck& d = r.deck;
-  ++r.instances;
+  if (++r.instances > 1 && !r.several) refuse_included(r, "*INSTANCE");
+  if (r.in_part) throw Error(r.card.place() + ":1", "*INSTANCE in a *PART");
   d.instance = r.card.value("NAME");
   d.in_assembly = false;  // what stands between it and its end is the part's
   d.placed = {}, d.first_node = d.X.size(), d.first_section = d.sections.size();
@@ -89,7 +98,7 @@ void read_instance(InpReading& r) {
       throw Error(r.card.place("NAME"), fmt::format("*INSTANCE {} is given twice", d.instance), "give each a name of its own");
   }
   place_instance(r);
-  if (r.several) r.lines.read_again(part->second);
+  if (r.several) r.lines.read_again(part->second), r.in_part = true;
 }
 
 /// What follows is of the assembly.

@@ -129,7 +129,7 @@ class Joiner {
     for (const Item& item : items) {
       InpDistributed l = d_.distributed[item.line];
       if (!course(item, l.value, l.amplitude, l.place)) continue;
-      if (l.face < 0 && !l.amplitude.empty()) throw Cannot{"gravity that is not there all the time", l.place};
+      if (l.face < 0 && !l.amplitude.empty()) throw Cannot{"gravity, which a run has from its beginning to its end", l.place};
       out.push_back(l);
     }
     return out;
