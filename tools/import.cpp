@@ -123,6 +123,9 @@ int main(int argc, char** argv) {
     app->add_flag("--thicken", o.thicken, "shells of a deck (S3 to S8R, CTRIA3 to CQUAD8) become solid-shells: pairs of nodes across the thickness");
     app->add_flag("--rigid-beams", o.rigid_beams,
                   "beams of a deck become cells of a region that can be rigid alone, not beams of the scene");
+    app->add_option("--subcase", o.subcase,
+                    "number of the SUBCASE of a Nastran file whose loads and supports are taken; the first one when absent")
+        ->type_name("N");
     app->add_flag("--flip", o.flip, "turn cells whose nodes are numbered as in a mirror (negative volume)");
     app->add_flag("--keep-apart", o.keep_apart, "solids of a CAD file that touch share no nodes");
     app->add_option("--set", o.sets,

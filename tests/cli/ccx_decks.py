@@ -43,7 +43,7 @@ def some(names):
 left, whole = collections.defaultdict(list), []
 for name, what in imported.items():
     words = {n["what"] for n in what["not_read"] if not n["output"]}
-    words = {"cards of the second and later steps" if w.endswith("in step 2 and later") else w for w in words}
+    words = {"cards of the second and later steps" if re.search(r" in step \d+ and later$", w) else w for w in words}
     words = {re.sub(r"^(\*[A-Z ]+?)[,:]? .*", r"\1", w) if w.startswith("*") else re.sub(r"\d+", "N", w) for w in words}
     for word in words:
         left[word].append(name)

@@ -13,10 +13,9 @@ import gzip, os, subprocess, sys, tempfile
 import h5py
 
 FOLDER = "/usr/share/doc/calculix-ccx-test/examples/test/"
-DECKS = [("beamf", [], range(0, 9), 1e-3), ("contact5", [], range(0, 10), 1e-3), ("beamptied3", [], range(0, 10), 1e-3),
-         ("damper1", [], range(6, 8), 1e-3),
-         ("beamf2", ["step 1"], range(1, 8), 2e-3), ("beampisof", ["step 1"], range(0, 8), 4e-3)]
-ABOUT = ["--set", 'time.analysis="modes"', "--set", 'time.start="equilibrium"', "--set", "time.modes=8"]
+DECKS = [("beamf", range(0, 9), 1e-3), ("contact5", range(0, 10), 1e-3), ("beamptied3", range(0, 10), 1e-3),
+         ("damper1", range(6, 8), 1e-3),
+         ("beamf2", range(1, 8), 2e-3), ("beampisof", range(0, 8), 4e-3)]
 
 
 def text_of(name):
@@ -35,13 +34,13 @@ def main():
     bin = sys.argv[2]
     failed = 0
     print(f"{'deck':10} {'modes':>6} {'largest difference':>19} {'limit':>7}")
-    for name, about, modes, limit in DECKS:
+    for name, modes, limit in DECKS:
         with tempfile.TemporaryDirectory() as folder:
             deck = os.path.join(folder, name + ".inp")
             open(deck, "w").write(text_of(name + ".inp"))
             run = lambda *command: subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL)
             run(bin + "/hilo-import", deck, "--units", "mm-t-s", "-o", "mesh.h5", "--scene-out", "scene.toml", "--quiet")
-            run(bin + "/hilo-solve", "scene.toml", "mesh.h5", "-o", "run.h5", "--quiet", "--accept-left-out", *(ABOUT if about else []))
+            run(bin + "/hilo-solve", "scene.toml", "mesh.h5", "-o", "run.h5", "--quiet", "--accept-left-out")
             found = h5py.File(os.path.join(folder, "run.h5"))["history/mode"][1:, 0]
             true = stored(name)
             worst = max(abs(found[k] / true[k] - 1) for k in modes)

@@ -65,7 +65,7 @@ def printed(path):
 
 def compare(binaries, deck, full):
     with open(deck + ".inp", "w") as f:
-        text = "\n".join(lines_of(deck)) + "\n"
+        text = re.split(r"^\*END *STEP.*$", "\n".join(lines_of(deck)), maxsplit=1, flags=re.M | re.I)[0] + "*END STEP\n"
         f.write(re.sub("C3D20R", "C3D20", text, flags=re.I) if full else text)
     for command in ([binaries + "/hilo-import", deck + ".inp", "-o", deck + ".h5", "--scene-out", deck + ".toml"],
                     [binaries + "/hilo-solve", deck + ".toml", deck + ".h5", "-o", "run.h5"]):

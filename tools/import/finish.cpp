@@ -205,9 +205,9 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
   const double factor = options.scale * in.metre.value_or(to_si("m", options.units));
   if (factor != 1)
     for (auto& x : m.X) x *= factor;
-  if (in.curved)
-    if (const auto n = straighten(m))
-      in.notes.push_back(fmt::format("{} cells that a curved surface turned inside out have straight edges", n));
+  if (const auto n = straighten(m))
+    in.notes.push_back(in.curved ? fmt::format("{} cells that a curved surface turned inside out have straight edges", n)
+                                 : fmt::format("warning: {} cells that the nodes on their edges turned inside out have straight edges", n));
   check_cells(m, file);
   add_thin_moments(in, factor);
   for (size_t r = 0; r < in.thin_regions.size(); ++r)

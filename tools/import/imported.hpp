@@ -32,10 +32,11 @@ struct ImportOptions {
   std::vector<std::pair<std::string, double>> define;  // parameters of a .geo script
   bool trust = false;                                  // a .geo script may run commands and write files
   bool thicken = false;                                // shells of decks become solid-shells
-  bool rigid_beams = false;       // beams of decks are cells of regions that can be rigid alone, not beams of the scene
-  bool flip = false;              // cells numbered as in a mirror are turned
-  bool keep_apart = false;        // solids of a CAD file that touch share no nodes
-  std::vector<std::string> sets;  // NAME=KIND:KEY=VALUE,..., as [set.NAME] of a scene    [unit of the file]
+  bool rigid_beams = false;             // beams of decks are cells of regions that can be rigid alone, not beams of the scene
+  std::optional<std::int64_t> subcase;  // of a Nastran file; the first one when absent
+  bool flip = false;                    // cells numbered as in a mirror are turned
+  bool keep_apart = false;              // solids of a CAD file that touch share no nodes
+  std::vector<std::string> sets;        // NAME=KIND:KEY=VALUE,..., as [set.NAME] of a scene    [unit of the file]
 };
 
 /// A keyword or item of the deck that has no place in the mesh or the scene lines.

@@ -122,4 +122,19 @@ bool on_a_line(const std::vector<Vec3>& points) {
   return !(v[1] > 1e-10 * v[2]);
 }
 
+std::string sliding_body(const std::string& name, const std::string& joint, const std::string& axis, const std::string& at,
+                         const std::string& place) {
+  std::string out = fmt::format("\n[[body]]   # {}\nname = {}\nmass = 0\ncom = {}\n", place, toml_text(name), at);
+  if (!joint.empty())
+    out += fmt::format("\n[[joint]]   # {}\nkind = \"prismatic\"\nname = {}\nb = {}\nat = {}\naxis = {}\n", place, toml_text(joint),
+                       toml_text(name), at, axis);
+  return out;
+}
+
+std::string joint_to_slide(const std::string& name, const std::string& body, const std::string& node, const std::string& axis,
+                           const std::string& at, const std::string& place) {
+  return fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\nname = {}\na = {}\nb = {}\nat = {}\naxis = {}\n", place, toml_text(name),
+                     toml_text(body), toml_text(node), at, axis);
+}
+
 }  // namespace hilo

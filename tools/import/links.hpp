@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What decks tie together, as the scene says it: shared by the readers of .bdf and .inp.
 #pragma once
+#include <algorithm>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/math.hpp"
@@ -43,5 +47,30 @@ std::optional<std::vector<Vec3>> shares_of_mean(const std::vector<Vec3>& X, cons
 
 /// Whether points lie on a line, or at one place.
 bool on_a_line(const std::vector<Vec3>& points);
+
+/// A displacement of a node: its number, and its component.
+using Displacement = std::pair<std::int64_t, int>;
+/// Displacements that are equal, each with the least of those that it equals.
+class EqualDisplacements {
+ public:
+  Displacement root(Displacement x) {
+    auto& up = up_.try_emplace(x, x).first->second;
+    return up == x ? x : up = root(up);
+  }
+  void unite(Displacement a, Displacement b) {
+    a = root(a), b = root(b);
+    up_[std::max(a, b)] = std::min(a, b);
+  }
+  const std::map<Displacement, Displacement>& all() const { return up_; }
+
+ private:
+  std::map<Displacement, Displacement> up_;
+};
+/// A body of no mass, with the joint of this name that lets it slide along an axis; `joint` "": without one.
+std::string sliding_body(const std::string& name, const std::string& joint, const std::string& axis, const std::string& at,
+                         const std::string& place);
+/// What keeps a node at the place of that body along the axis.
+std::string joint_to_slide(const std::string& name, const std::string& body, const std::string& node, const std::string& axis,
+                           const std::string& at, const std::string& place);
 
 }  // namespace hilo

@@ -146,7 +146,7 @@ Imported read_bdf(const std::string& path, const ImportOptions& options) {
   resolve_axes(deck);
   resolve_metals(deck, in);
   settle_densities(deck, in);
-  read_case(entries.case_lines(), deck, in);
+  read_case(entries.case_lines(), deck, in, options.subcase);
   build(deck, path, options, in);
   return in;
 }

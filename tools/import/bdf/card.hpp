@@ -2,6 +2,7 @@
 // The entries of a Nastran file that are known: a name and what reads it.  Another entry is one more row of the table of its family, or
 // from outside the tree `bdf_cards().add({"MATLAME", read_lame})` before the first file is read.
 #pragma once
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -48,7 +49,7 @@ size_t grid_list(const DataLine& d, size_t field, std::vector<std::int64_t>& out
 /// Reads the entries.  One that is not among `cards` is counted in `in.not_read`.
 void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards& cards);
 /// Executive and case control: title, solution, which supports and loads the first subcase takes.
-void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& in);
+void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& in, std::optional<std::int64_t> subcase = {});
 /// The lines of a scene (mesh.deck_scene) and the sets they name.
 void write_bdf_scene(const BdfDeck& deck, Imported& in, SetNames& names, const ImportOptions& options);
 

@@ -2,6 +2,7 @@
 // Executive and case control of a Nastran file: what stands before BEGIN BULK.  The first subcase becomes scene lines; what stands above
 // the subcases holds for each of them.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 
@@ -52,9 +53,10 @@ std::int64_t number_in(const std::string& value, const BdfCaseLine& line) {
 
 }  // namespace
 
-void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& in) {
+void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& in, std::optional<std::int64_t> subcase) {
   BdfCase& c = deck.chosen;
   bool others = false, goes_on = false;
+  std::vector<std::int64_t> numbers;  // of subcases
   for (const BdfCaseLine& line : lines) {
     const bool rest = goes_on, comma = line.text.back() == ',';  // of a request that goes on behind a comma
     const auto [word, value] = parts(line.text);
@@ -62,9 +64,12 @@ void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& i
     if (rest) continue;
     if (word == "CEND") c.any = true;
     if (word == "SUBCASE" || word == "SUBCOM" || word == "SYM" || word == "REPCASE") {
-      others = word != "SUBCASE" || c.number >= 0;
-      if (others) in.skip(word + (word == "SUBCASE" ? " after the first" : ""), line.place);
-      if (!others) c.number = value.empty() ? 1 : number_in(value, line);
+      const bool is_case = word == "SUBCASE";
+      const std::int64_t number = !is_case ? -1 : value.empty() ? 1 : number_in(value, line);
+      if (is_case) numbers.push_back(number);
+      others = !is_case || c.number >= 0 || (subcase && number != *subcase);
+      if (others) in.skip(!is_case ? word : subcase ? fmt::format("SUBCASE but {}", *subcase) : "SUBCASE after the first", line.place);
+      if (!others) c.number = number;
       continue;
     }
     if (others) continue;
@@ -91,6 +96,9 @@ void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& i
     } else if (!is_request(word))
       in.skip("case control " + word.substr(0, 40), line.place);
   }
+  if (subcase && c.number < 0)
+    throw Error("", fmt::format("--subcase {}: there is none", *subcase), fmt::format("subcases: {}", fmt::join(numbers, ", ")),
+                Exit::usage);
 }
 
 }  // namespace hilo

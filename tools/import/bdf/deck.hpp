@@ -111,6 +111,17 @@ struct BdfThin {
   std::string place = {};
 };
 
+/// MPC: the sum of displacements, times factors, is zero.
+struct BdfEquation {
+  struct Term {
+    std::int64_t grid, component;
+    double factor;
+  };
+  Term a, b;
+  bool more = false;  // terms behind these two
+  std::string place;
+};
+
 struct BdfDeck {
   struct Cell {
     Shape shape;
@@ -150,7 +161,7 @@ struct BdfDeck {
   BdfCase chosen;
   std::map<std::int64_t, std::vector<BdfSupport>> supports;     // by SID
   std::map<std::int64_t, BdfSupportSum> support_sums;           // SPCADD
-  std::map<std::int64_t, std::vector<std::string>> ties;        // MPC by SID: places
+  std::map<std::int64_t, std::vector<BdfEquation>> ties;        // MPC by SID
   std::map<std::int64_t, BdfSupportSum> tie_sums;               // MPCADD
   std::map<std::int64_t, std::vector<BdfGlueFace>> glue_faces;  // BSURFS
   std::map<std::int64_t, std::vector<BdfGlue>> glue;            // BGSET by GSID

@@ -29,8 +29,16 @@ void read_sum(const BdfEntry& e, std::map<std::int64_t, BdfSupportSum>& sums) {
 void read_spcadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.support_sums); }
 void read_mpcadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.tie_sums); }
 void read_bgadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.glue_sums); }
-/// Where it stands alone: it is not read, and lost only where case control takes it.
-void read_mpc(const BdfEntry& e, BdfDeck& deck, Imported&) { deck.ties[e.data.integer(0)].push_back(e.data.place()); }
+void read_mpc(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  const auto term = [&](size_t i) {
+    return d.empty(i) ? BdfEquation::Term{0, 0, 0}
+                      : BdfEquation::Term{d.integer(i), d.empty(i + 1) ? 0 : d.integer(i + 1), d.number(i + 2)};
+  };
+  BdfEquation m{term(1), term(4), false, d.place()};
+  for (size_t i = 7; i < d.fields.size(); ++i) m.more = m.more || !d.empty(i);
+  deck.ties[d.integer(0)].push_back(m);
+}
 
 Vec3 vector_at(const DataLine& d, size_t field) { return {d.number(field), d.number(field + 1), d.number(field + 2)}; }
 /// The same where a load has no direction without it.

@@ -130,18 +130,6 @@ struct Held {
 
 }  // namespace
 
-/// MPC is not read: of the sets that the first subcase takes, or of all without case control, it is lost.
-void BdfScene::tell_ties() {
-  const BdfCase& chosen = deck_.chosen;
-  const auto sum = deck_.tie_sums.find(chosen.mpc);
-  for (const auto& [id, places] : deck_.ties) {
-    const bool taken =
-        !chosen.any || id == chosen.mpc ||
-        (sum != deck_.tie_sums.end() && std::find(sum->second.sets.begin(), sum->second.sets.end(), id) != sum->second.sets.end());
-    in_.skip(taken ? "MPC" : "MPC of a set that the first subcase does not use", places.front(), static_cast<std::int64_t>(places.size()));
-  }
-}
-
 void BdfScene::supports() {
   std::vector<std::int64_t> sets;
   const BdfCase& chosen = deck_.chosen;
@@ -158,7 +146,7 @@ void BdfScene::supports() {
     sets = sum->second.sets;
   else if (take >= 0)
     sets = {take};
-  tell_ties();
+  equations();
   for (const auto& [id, lines] : deck_.supports)
     if (std::find(sets.begin(), sets.end(), id) == sets.end())
       in_.skip("SPC of a set that the first subcase does not use", lines.front().place, static_cast<std::int64_t>(lines.size()));

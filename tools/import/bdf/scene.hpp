@@ -26,7 +26,8 @@ class BdfScene {
   // scene.cpp
   void materials();
   void supports();
-  void tell_ties();
+  void equations();
+  std::string why_no_slide(const BdfEquation& m) const;
   void supports_of_bodies();
   void time();
   // scene_links.cpp

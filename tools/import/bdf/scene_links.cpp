@@ -213,4 +213,54 @@ void BdfScene::rigid(const BdfRigid& r) {
   joint(63, Mat3::Identity(), name, end_name(hub), set_of(nodes, name), X(hub), r.place);
 }
 
+/// Why an MPC is not one of two equal displacements of nodes of solids, or "".
+std::string BdfScene::why_no_slide(const BdfEquation& m) const {
+  if (m.more || m.a.component != m.b.component || m.a.factor == 0 || std::abs(m.a.factor + m.b.factor) > 1e-9 * std::abs(m.a.factor))
+    return " of more than two equal displacements";
+  if (m.a.component < 1 || m.a.component > 3) return " of turns";
+  for (const auto grid : {m.a.grid, m.b.grid}) {
+    const auto a = row(grid, m.place, "MPC");
+    if (end(a) != End::node) return " of a grid of no solid";
+    if (!axes(a).isIdentity(1e-12)) return " in axes of its own";
+  }
+  return "";
+}
+
+/// Of the sets that the first subcase takes, or of all without case control: displacements that are equal are those of a body of no mass,
+/// which slides along them.
+void BdfScene::equations() {
+  const BdfCase& chosen = deck_.chosen;
+  const auto sum = deck_.tie_sums.find(chosen.mpc);
+  EqualDisplacements equals;
+  std::map<Displacement, std::string> place;
+  for (const auto& [id, list] : deck_.ties) {
+    const bool taken =
+        !chosen.any || id == chosen.mpc ||
+        (sum != deck_.tie_sums.end() && std::find(sum->second.sets.begin(), sum->second.sets.end(), id) != sum->second.sets.end());
+    if (!taken) in_.skip("MPC of a set that the first subcase does not use", list.front().place, static_cast<std::int64_t>(list.size()));
+    for (const BdfEquation& m : list) {
+      if (!taken) continue;
+      if (const std::string why = why_no_slide(m); !why.empty()) {
+        in_.skip("MPC" + why, m.place);
+        continue;
+      }
+      const int k = static_cast<int>(m.a.component);
+      const Displacement a{row(m.a.grid, m.place, "MPC"), k}, b{row(m.b.grid, m.place, "MPC"), k};
+      equals.unite(a, b);
+      place.try_emplace(a, m.place), place.try_emplace(b, m.place);
+    }
+  }
+  std::map<Displacement, std::string> body;
+  for (const auto& [x, up] : equals.all()) {
+    const std::string axis = direction(Vec3::Unit(x.second - 1));
+    auto& name = body[equals.root(x)];
+    if (name.empty()) {
+      name = unique("body", fmt::format("equal_{}", "xyz"[x.second - 1]));
+      tables_ += sliding_body(name, unique("joint", name), axis, point(X(x.first)), place[x]);
+    }
+    const std::string node = node_set(x.first);
+    tables_ += joint_to_slide(unique("joint", node + "_equal"), name, node, axis, point(X(x.first)), place[x]);
+  }
+}
+
 }  // namespace hilo

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files of gmsh's mesh format, msh 2.0 to 2.2, 4.0 and 4.1, text and binary.
+// Files of gmsh's mesh format, msh 2.0 to 2.2, 4.0 and 4.1, text and binary, and 1.
 // The library would take whatever does not begin as a mesh for a script and run it, so the reader is ours: it runs nothing.  Nothing is
 // allocated by a count that the rest of the file could not fill.
 #include <fmt/format.h>
@@ -110,6 +110,7 @@ class MshReader {
   GmshMesh read() {
     bool nodes = false, elements = false;
     header();
+    if (version_ == 1) return read1();
     for (auto name = in_.word(); !name.empty(); name = in_.word()) {
       if (name.size() < 2 || name[0] != '$') in_.fail(fmt::format("\"{}\" stands outside of a section", name.substr(0, 40)));
       const std::string section(name);
@@ -138,10 +139,32 @@ class MshReader {
   }
 
  private:
+  /// msh 1, text alone: no names, and one physical and one elementary tag of each element.
+  GmshMesh read1() {
+    nodes2();
+    if (in_.word() != "$ENDNOD") in_.fail("$ENDNOD is missing", "cut off, or its count is damaged?");
+    if (in_.word() != "$ELM") in_.fail("no $ELM behind $ENDNOD", "cut off?");
+    for (size_t n = in_.count<int>(6); n > 0; --n) {
+      const auto id = in_.next<std::int32_t>();
+      const GmshType& t = type(in_.next<std::int32_t>());
+      const int group = std::abs(in_.next<std::int32_t>()), tag = in_.next<std::int32_t>(), nodes = in_.next<std::int32_t>();
+      if (nodes != t.n_nodes) in_.fail(fmt::format("a {} of {} nodes", t.name, nodes));
+      auto& entity = mesh_.entities[{t.dimension, tag, group}];
+      if (group > 0 && entity.groups.empty()) entity.groups = {group};
+      element(entity, t, id);
+    }
+    if (in_.word() != "$ENDELM") in_.fail("$ENDELM is missing", "cut off, or its count is damaged?");
+    order_nodes();
+    return std::move(mesh_);
+  }
+
   void header() {
     std::string_view first = in_.word();
     while (first == "$Comments") in_.skip_behind("$EndComments"), first = in_.word();
-    if (first == "$NOD" || first == "$PTS" || first == "$NOE") in_.fail("msh 1 is not read", "save it as msh 4.1 or 2.2");
+    if (first == "$NOD") {
+      version_ = 1;
+      return;
+    }
     if (first != "$MeshFormat")
       in_.fail("not a mesh of gmsh: it does not begin with $MeshFormat", "a script is read from a file named .geo");
     const auto version = in_.number_in_text<double>();

@@ -3,6 +3,7 @@
 // outside the tree `inp_cards().add({"LAME", read_lame})` before the first deck is read.
 #pragma once
 #include <initializer_list>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,9 @@ struct InpReading {
   int step = 0;                     // 0 before the first *STEP
   size_t supports_before_step = 0;  // that OP=NEW forgets
   int parts = 0, instances = 0;     // *PART, *INSTANCE so far
+  bool in_part = false;             // read once more
+  bool several = false;             // instances or parts: each instance is its part, read once more
+  std::map<std::string, InpLines::Mark> part_at = {};
   void skip(const std::string& what) { in.skip(what, card.place()); }
 };
 
@@ -28,6 +32,7 @@ struct InpCard {
   std::string_view name;  // "SOLIDSECTION": upper case, blanks removed
   void (*read)(InpReading&);
   bool first_step_only = false;  // what it says of a second step does not become scene lines
+  bool of_step = false;          // or only where one run can say both (inp/steps)
 };
 using InpCards = Registry<InpCard>;
 

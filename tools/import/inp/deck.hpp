@@ -16,6 +16,7 @@
 #include "import/deck_material.hpp"
 #include "import/imported.hpp"
 #include "import/inp/lines.hpp"
+#include "import/inp/parameter.hpp"
 
 namespace hilo {
 
@@ -75,6 +76,7 @@ struct InpNodal {
   double value;
   std::string amplitude;  // upper case, "" without
   std::string place;
+  int step = 0;  // 0 before the first
 };
 /// One line of *DLOAD or *DSLOAD: pressure on a face of elements, or gravity.
 struct InpDistributed {
@@ -85,27 +87,84 @@ struct InpDistributed {
   Vec3 direction;
   std::string amplitude;
   std::string place;
+  int step = 0;
 };
 struct InpAmplitude {
   std::string name;
   std::vector<double> t, value;
+  bool total = false;  // TIME=TOTAL TIME
 };
-
 /// A node by number or by a set that holds it alone.
 struct InpTarget {
   std::string name;  // upper case, "" for a number
   std::int64_t id = 0;
   std::string place = {};
 };
+/// *STEP.
+struct InpStep {
+  std::string place, procedure;  // "*STATIC"
+  std::string not_read;          // a card in it that is not
+  bool nlgeom = false, perturbation = false;
+  bool ramps = true, ramps_said = false;                                   // loads without an amplitude; by AMPLITUDE of *STEP
+  bool new_supports = false, new_forces = false, new_distributed = false;  // OP=NEW
+  double increment = 0, end = 0;
+  bool direct = false;  // increments of just that length
+  int n_modes = 0;      // of *FREQUENCY
+  double period() const { return end > 0 ? end : 1; }
+};
+/// *TRANSFORM: axes of nodes.
+struct InpTransform {
+  std::string target;  // node set, upper case
+  std::int64_t id = 0;
+  std::string place;
+  bool cylindrical = false, is_read = true;
+  Vec3 a = Vec3::UnitX(), b = Vec3::UnitY();
+  /// As columns, at a point; zero where there are none.
+  Mat3 axes(const Vec3& at) const;
+};
+/// *EQUATION: a sum of displacements, times factors, is zero.
+struct InpEquation {
+  struct Term {
+    InpTarget node;
+    int component;
+    double factor;
+  };
+  std::vector<Term> terms;
+  std::string place;
+};
+/// Displacements along one axis that are equal: rows of nodes of cells.
+struct InpSlide {
+  int component = 0;  // 1 to 3
+  Vec3 X;
+  std::vector<std::int64_t> rows;
+  std::string place;
+};
+/// A card of a later step that becomes scene lines only where one run can say that step too.
+struct InpStepCard {
+  std::string name, place;
+  int step;
+};
+/// What the scene runs.
+struct InpPlan {
+  std::string procedure;
+  double increment = 0, end = 0;
+  bool direct = false;
+  int n_modes = 0;
+  int steps = 1;                  // static ones, one behind the other
+  bool from_equilibrium = false;  // of static steps before it
+};
+
 /// *COUPLING or *RIGID BODY: what follows a reference node, or what it is the mean of.
 struct InpTie {
-  enum class Of { nodes, cells, surface } kind = Of::nodes;
+  enum class Of { nodes, cells, surface, weighted } kind = Of::nodes;
   std::string name, of, place;  // card, upper-case name of the set or surface
   InpTarget reference, turns;   // turns: the ROT NODE, whose displacements are the reference node's rotations
   bool mean = false, undecided = false;
-  bool own_axes = false;    // of an ORIENTATION, which say something where only some components are tied
-  bool left_out = false;    // told already
-  unsigned components = 0;  // bits 0 to 5
+  bool no_node = false;                                    // *RIGID BODY without REF NODE: one of its own
+  std::vector<std::pair<InpTarget, double>> weights = {};  // of a DCOUP3D, whose element set `reference` names
+  bool own_axes = false;                                   // of an ORIENTATION, which say something where only some components are tied
+  bool left_out = false;                                   // told already
+  unsigned components = 0;                                 // bits 0 to 5
 };
 /// *TIE of two surfaces, by upper-case name.
 struct InpTied {
@@ -185,23 +244,34 @@ struct InpDeck {
   std::vector<InpNodal> supports, forces, velocities;  // degrees of freedom up to 6, which only reference nodes have
   std::vector<InpDistributed> distributed;
   std::map<std::string, InpAmplitude> amplitudes;
+  std::map<std::string, InpParameter> parameters;
   // *ASSEMBLY: its nodes have numbers of their own, and its sets stand beside those of the part that have the same name ("INSTANCE.NAME")
   bool in_assembly = false;
   std::string instance;  // as written
+  // of several instances: what is added to the numbers of the one being read, and in front of its names
+  std::int64_t shift = 0;
+  std::string prefix;                            // "PART-1-1."
+  std::map<std::string, std::int64_t> shift_of;  // by upper-case name
+  size_t first_node = 0, first_section = 0;      // of that instance
+  std::int64_t node_shift() const;
   struct Placed {
     Vec3 by = Vec3::Zero(), at = Vec3::Zero();
     Mat3 turn = Mat3::Identity();
   } placed;                                       // of the instance
   std::set<std::string> part_nsets, part_elsets;  // upper case
-  std::vector<std::string> transformed;           // node sets (upper case) or numbers with axes of their own
-  std::string title, procedure;                   // "*STATIC"
-  double step_increment = 0, step_end = 0;
-  bool direct = false;  // steps of just that increment
-  int n_modes = 0;      // of *FREQUENCY
+  std::vector<InpTransform> transformed;          // nodes with axes of their own
+  std::vector<InpEquation> equations;
+  std::vector<InpSlide> slides;
+  std::map<std::pair<std::int64_t, int>, int> slide_of;  // node and component
+  std::string title;
+  std::vector<InpStep> steps;
+  std::vector<InpStepCard> step_cards;
+  InpPlan plan;
 };
 
-/// Added to the numbers of nodes of an assembly.
-inline constexpr std::int64_t assembly_numbers = 1'000'000'000'000;
+/// Added to the numbers of nodes of an assembly, and for each of several instances.
+inline constexpr std::int64_t assembly_numbers = 1'000'000'000'000, instance_numbers = 1'000'000'000;
+inline std::int64_t InpDeck::node_shift() const { return in_assembly ? assembly_numbers : shift; }
 /// A qualified name, "ASSEMBLY.TOP" or "PART-1-1.TOP", as the deck's own where that is what it has.
 std::string unqualified(const std::string& name);
 /// Supports, loads, surfaces and sections name sets as the deck has them; numbers behind a dot become numbers.

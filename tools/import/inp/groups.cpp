@@ -39,11 +39,25 @@ std::int64_t of_no_cell(const InpDeck& d, const InpNodal& l, bool tied_too = fal
 
 }  // namespace
 
-std::vector<char> turned_nodes(const InpDeck& d, const Mesh& mesh) {
-  std::vector<char> turned(mesh.X.size(), 0);
-  for (const auto& key : d.transformed)
-    if (d.nset.count(key))
-      for (const auto a : inp_nodes(d, key, 0, "")) turned[a] = 1;
+Mat3 InpTransform::axes(const Vec3& at) const {
+  Vec3 x = a, y = b, z = b - a;
+  if (cylindrical) {  // x away from the axis, z along it
+    z.normalize();
+    x = at - a - z * z.dot(at - a);
+    y = z.cross(x);
+  } else {
+    z = x.cross(y), y = z.cross(x);
+  }
+  if (!is_read || !(x.norm() > 1e-9 * (at.norm() + a.norm())) || !(y.norm() > 0) || !(z.norm() > 0)) return Mat3::Zero();
+  Mat3 out;
+  out << x.normalized(), y.normalized(), z.normalized();
+  return out;
+}
+
+std::vector<int> turned_nodes(const InpDeck& d, const Mesh& mesh) {
+  std::vector<int> turned(mesh.X.size(), -1);
+  for (size_t t = 0; t < d.transformed.size(); ++t)
+    for (const auto a : inp_nodes(d, d.transformed[t].target, d.transformed[t].id, d.transformed[t].place)) turned[a] = static_cast<int>(t);
   return turned;
 }
 
@@ -54,7 +68,7 @@ static Rows nodes_of_cells(const InpDeck& d, const InpNodal& l, const Imported& 
   return rows;
 }
 
-std::vector<Held> held_groups(const InpDeck& d, const std::vector<char>& turned, Imported& in) {
+std::vector<Held> held_groups(const InpDeck& d, const std::vector<int>& turned, Imported& in, std::vector<HeldAskew>& askew) {
   // the last line that speaks of a component of a node holds it
   std::unordered_map<std::int64_t, size_t> claim;
   for (size_t i = 0; i < d.supports.size(); ++i) {
@@ -67,13 +81,34 @@ std::vector<Held> held_groups(const InpDeck& d, const std::vector<char>& turned,
     const auto c = claim.find(3 * a + k);
     return c != claim.end() && d.supports[c->second].value == 0;
   };
+  std::vector<Held> groups;
+  std::map<std::array<bool, 3>, size_t> along_axes;  // of *TRANSFORM, where these are the model's in another order
   std::int64_t lost = 0;
-  for (std::int64_t a = 0; a < in.mesh.n_nodes(); ++a)
-    if (turned[a] && !(fixed(a, 0) && fixed(a, 1) && fixed(a, 2)))
-      for (int k = 0; k < 3; ++k) lost += static_cast<std::int64_t>(claim.erase(3 * a + k));
+  for (std::int64_t a = 0; a < in.mesh.n_nodes(); ++a) {
+    if (turned[a] < 0 || (fixed(a, 0) && fixed(a, 1) && fixed(a, 2))) continue;
+    const Mat3 axes = d.transformed[turned[a]].axes(in.mesh.X[a]);
+    std::array<bool, 3> straight{};
+    std::string place;
+    for (int k = 0; k < 3; ++k) {
+      const auto c = claim.find(3 * a + k);
+      if (c == claim.end()) continue;
+      const Vec3 axis = axes.col(k);
+      Eigen::Index along;
+      if (!fixed(a, k) || !(axis.norm() > 0))
+        ++lost;
+      else if (axis.cwiseAbs().maxCoeff(&along) > 1 - 1e-12)
+        straight[along] = true, place = d.supports[c->second].place;
+      else
+        askew.push_back({a, axis, d.supports[c->second].place});
+      claim.erase(c);
+    }
+    if (place.empty()) continue;
+    const auto [at, fresh] = along_axes.try_emplace(straight, groups.size());
+    if (fresh) groups.push_back({"", "", place, straight});
+    groups[at->second].nodes.push_back(a);
+  }
   if (lost) in.skip("*BOUNDARY in axes of *TRANSFORM", "", lost);
 
-  std::vector<Held> groups;
   std::map<std::tuple<std::string, std::string, int, double>, size_t> of_set;  // target, amplitude, component, value
   std::map<std::int64_t, std::array<std::int64_t, 3>> of_node;                 // single nodes: line of each component
   for (size_t i = 0; i < d.supports.size(); ++i) {
@@ -121,7 +156,7 @@ std::vector<Held> held_groups(const InpDeck& d, const std::vector<char>& turned,
 }
 
 std::vector<Nodal> nodal_groups(const InpDeck& d, const std::vector<InpNodal>& lines, const char* what, bool add,
-                                const std::vector<char>& turned, Imported& in) {
+                                const std::vector<int>& turned, Imported& in) {
   std::vector<Nodal> groups;
   std::map<std::pair<std::string, std::string>, size_t> of_set;
   std::map<std::pair<std::int64_t, std::string>, Nodal> of_node;
@@ -131,14 +166,25 @@ std::vector<Nodal> nodal_groups(const InpDeck& d, const std::vector<InpNodal>& l
     if (!add)  // loads reach the bodies, velocities do not
       if (const size_t all = inp_nodes(d, f.target, f.id, f.place).size(); all > nodes.size())
         in.skip(fmt::format("{} on a node of a beam or a tie", what), f.place, static_cast<std::int64_t>(all - nodes.size()));
-    const auto away = std::count_if(nodes.begin(), nodes.end(), [&](std::int64_t a) { return turned[a]; });
-    if (away) {
-      in.skip(fmt::format("{} in axes of *TRANSFORM", what), f.place, away);
-      continue;
-    }
     if (nodes.empty()) continue;
     if (f.first > 3) {
       in.skip(fmt::format("{} on degree of freedom {}", what, f.first), f.place);
+      continue;
+    }
+    if (std::ranges::any_of(nodes, [&](std::int64_t a) { return turned[a] >= 0; })) {
+      std::int64_t lost = 0;
+      for (const auto a : nodes) {
+        const Vec3 axis =
+            turned[a] < 0 ? Vec3(Vec3::Unit(f.first - 1)) : Vec3(d.transformed[turned[a]].axes(in.mesh.X[a]).col(f.first - 1));
+        if (!add || !(axis.norm() > 0)) {
+          ++lost;
+          continue;
+        }
+        Nodal& n = of_node[{a, f.amplitude}];
+        n.value += f.value * axis, n.amplitude = f.amplitude;
+        if (n.place.empty()) n.place = f.place;
+      }
+      if (lost) in.skip(fmt::format("{} in axes of *TRANSFORM", what), f.place, lost);
       continue;
     }
     Nodal* n;
@@ -168,11 +214,12 @@ std::vector<Nodal> nodal_groups(const InpDeck& d, const std::vector<InpNodal>& l
 std::string unqualified(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
 void unqualify(InpDeck& d) {
-  const auto own = [](std::string& target, std::int64_t& id, const auto& known) {
+  const auto own = [&](std::string& target, std::int64_t& id, const auto& known) {
     if (target.find('.') == std::string::npos || known(target)) return;
+    const auto instance = d.shift_of.find(target.substr(0, target.rfind('.')));
     target = unqualified(target);
     if (target.empty() || target.size() > 18 || target.find_first_not_of("0123456789") != std::string::npos) return;
-    id = std::stoll(target);
+    id = std::stoll(target) + (instance == d.shift_of.end() ? 0 : instance->second);
     target.clear();
   };
   const auto nset = [&](const std::string& key) { return d.nset.contains(key); };
@@ -190,7 +237,9 @@ void unqualify(InpDeck& d) {
     t.kind == InpTie::Of::nodes ? own(t.of, none, nset) : t.kind == InpTie::Of::cells ? own(t.of, none, elset) : own(t.of, none, surface);
   for (InpTied& t : d.tied) own(t.slave, none, surface), own(t.master, none, surface);
   for (InpSection& s : d.sections) own(s.elset, none, elset);
-  for (std::string& t : d.transformed) own(t, none, nset);
+  for (InpTransform& t : d.transformed) own(t.target, t.id, nset);
+  for (InpEquation& e : d.equations)
+    for (auto& t : e.terms) own(t.node.name, t.node.id, nset);
 }
 
 std::vector<std::int64_t> inp_nodes(const InpDeck& d, const std::string& target, std::int64_t id, const std::string& place) {

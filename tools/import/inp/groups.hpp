@@ -15,8 +15,15 @@ struct Held {
   bool moved = false;
   Rows nodes = {};
 };
+/// A component of a node held along an axis that is none of the model's.
+struct HeldAskew {
+  std::int64_t node;
+  Vec3 axis;
+  std::string place;
+};
 /// *BOUNDARY by set, or equal supports of single nodes together; the last line that speaks of a component of a node holds it.
-std::vector<Held> held_groups(const InpDeck& deck, const std::vector<char>& turned, Imported& in);
+/// `askew`: those in axes of *TRANSFORM.
+std::vector<Held> held_groups(const InpDeck& deck, const std::vector<int>& turned, Imported& in, std::vector<HeldAskew>& askew);
 
 /// A vector on each node of a group.
 struct Nodal {
@@ -26,9 +33,9 @@ struct Nodal {
 };
 /// *CLOAD (values on the same node add up) or initial velocities (the last one holds): by set, or equal vectors of single nodes together.
 std::vector<Nodal> nodal_groups(const InpDeck& deck, const std::vector<InpNodal>& lines, const char* what, bool add,
-                                const std::vector<char>& turned, Imported& in);
+                                const std::vector<int>& turned, Imported& in);
 
-/// Which nodes have axes of their own (*TRANSFORM).
-std::vector<char> turned_nodes(const InpDeck& deck, const Mesh& mesh);
+/// Which *TRANSFORM each node has, or -1.
+std::vector<int> turned_nodes(const InpDeck& deck, const Mesh& mesh);
 
 }  // namespace hilo

@@ -9,6 +9,8 @@
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
+#include "import/inp/equations.hpp"
+#include "import/inp/steps.hpp"
 #include "import/inp/ties.hpp"
 
 namespace hilo {
@@ -222,6 +224,17 @@ std::string slip_of(std::string_view word, const InpCards& cards) {
   return "";
 }
 
+/// Sets, surfaces and orientations of one of several instances have its name in front.
+void qualify(Card& card, const std::string& prefix) {
+  for (auto& [key, param] : card.params) {
+    const bool defines = key == "NAME" && (card.key == "SURFACE" || card.key == "ORIENTATION");
+    const bool number = !param.value.empty() && param.value.find_first_not_of("0123456789") == std::string::npos;
+    if (defines || key == "NSET" || key == "ELSET" || key == "SURFACE" || key == "TIENSET" || key == "ORIENTATION" ||
+        ((key == "REFNODE" || key == "ROTNODE") && !number))
+      param.value = prefix + param.value;
+  }
+}
+
 }  // namespace
 
 void parse_inp(const std::string& path, InpDeck& d, Imported& in, const InpCards& cards) {
@@ -229,15 +242,20 @@ void parse_inp(const std::string& path, InpDeck& d, Imported& in, const InpCards
   for (const auto& c : cards) by_key[c.name] = &c;
   InpReading r{InpLines(path), d, in};
   bool any = false;
+  r.several = r.lines.count("*INSTANCE") > 1 || r.lines.count("*PART") > 1;
   while (r.lines.next_card(r.card)) {
     any = true;
     const auto known = by_key.find(r.card.key);
-    if (r.step > 1 && (known == by_key.end() || known->second->first_step_only))
+    if (r.step > 1 && (known == by_key.end() || known->second->first_step_only)) {
       r.skip(r.card.name + " in step 2 and later");
-    else if (known == by_key.end())
+      if (r.card.key != "CONTROLS" && d.steps.back().not_read.empty()) d.steps.back().not_read = r.card.name;
+    } else if (known == by_key.end())
       in.skip(r.card.name, r.card.place(), 1, false, slip_of(r.card.key, cards));
-    else
+    else {
+      if (!d.prefix.empty()) qualify(r.card, d.prefix);
+      if (r.step > 1 && known->second->of_step) d.step_cards.push_back({r.card.name, r.card.place(), r.step});
       known->second->read(r);
+    }
   }
   if (!any) throw Error(path, "no keyword in it", "an Abaqus or CalculiX deck has lines such as *NODE");
 }
@@ -248,12 +266,14 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     in.notes.push_back(path + " is a Nastran deck, and read as one");
     return in;
   }
+  if (options.subcase) throw Error("", fmt::format("--subcase is for a Nastran file, {} is none", path), "", Exit::usage);
   Imported in;
   InpDeck d;
   parse_inp(path, d, in, inp_cards());
   if (d.X.empty()) throw Error(path, "no nodes", "a deck has *NODE");
   if (d.shape.empty() && d.beams.empty()) throw Error(path, "no elements", "a deck has *ELEMENT");
   unqualify(d);
+  join_steps(d, in);
   check_names(d);
   turn_materials(d, in);
   if (options.rigid_beams ||
@@ -319,6 +339,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     if (const auto& ids = d.elset.at(upper(g.name)).members;
         !g.cells.empty() || ids.empty() || !std::ranges::all_of(ids, [&](std::int64_t id) { return points.contains(id); }))
       names.cells(g.name, g.cells);
+  find_equations(d, in);
   find_ties(d, in, surface);
   write_inp_scene(d, in, names, node_set, surface, options);
   return in;

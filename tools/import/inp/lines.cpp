@@ -60,7 +60,7 @@ std::string Card::need(const std::string& param) const {
 InpLines::InpLines(const std::string& path) : folder_(std::filesystem::path(path).parent_path().string()) { open(path, ""); }
 
 void InpLines::open(const std::string& path, const std::string& place) {
-  Source s{std::make_shared<const std::string>(path), std::make_shared<const std::string>(read_gz(path, place)), 0, 0};
+  Source s{std::make_shared<const std::string>(path), std::make_shared<const std::string>(read_gz(path, place))};
   if (s.text->substr(0, 65536).find('\0') != std::string::npos)
     throw Error(path, "not a text file", "hilo-import reads .inp decks as text");
   stack_.push_back(s);
@@ -96,7 +96,7 @@ bool InpLines::next_line(std::string_view& line) {
     }
     const size_t end = std::min(s.text->find('\n', s.at), s.text->size());
     line = std::string_view(*s.text).substr(s.at, end - s.at);
-    s.at = end + 1;
+    s.line_at = s.at, s.at = end + 1;
     ++s.line;
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     const auto bare = strip(line);
@@ -105,9 +105,63 @@ bool InpLines::next_line(std::string_view& line) {
       include(bare, fmt::format("{}:{}", *s.path, s.line));
       continue;
     }
+    if (!values_.empty()) put_values(line);
     return true;
   }
   return false;
+}
+
+int InpLines::count(std::string_view word) const {
+  int n = 0;
+  const std::string& text = *kept_.front().text;
+  for (size_t at = 0; at < text.size(); at = std::min(text.find('\n', at), text.size()) + 1) {
+    const std::string line = upper(std::string_view(text).substr(at, word.size() + 8));
+    n += line.starts_with(word) && (line.size() == word.size() || !std::isalnum(static_cast<unsigned char>(line[word.size()])));
+  }
+  return n;
+}
+
+InpLines::Mark InpLines::mark() const { return {stack_.back()}; }
+
+void InpLines::read_again(const Mark& from) {
+  if (ahead_) {  // it is read once more when this is done
+    Source& s = stack_.back();
+    s.at = s.line_at, --s.line;
+    ahead_.reset();
+  }
+  stack_.push_back(from.source);
+}
+
+void InpLines::go_back() { stack_.pop_back(); }
+
+void InpLines::put_values(std::string_view& line) {
+  if (line.find('<') == line.npos) return;
+  std::string out;
+  for (size_t at = 0; at < line.size();) {
+    const size_t from = line.find('<', at), to = from == line.npos ? from : line.find('>', from);
+    if (to == line.npos) {
+      out += line.substr(at);
+      break;
+    }
+    const std::string name(strip(line.substr(from + 1, to - from - 1)));
+    const auto value = values_.find(name);
+    if (value == values_.end())
+      throw Error(fmt::format("{}:{}:{}", *stack_.back().path, stack_.back().line, from + 1),
+                  fmt::format("no parameter \"{}\" so far", name), "*PARAMETER gives it before");
+    out += line.substr(at, from - at);
+    out += value->second, at = to + 1;
+  }
+  line = replaced_.emplace_back(std::move(out));
+}
+
+bool InpLines::next_text(std::string_view& text, std::string& place) {
+  if (!next_line(text)) return false;
+  if (strip(text).front() == '*') {
+    ahead_ = text;
+    return false;
+  }
+  place = fmt::format("{}:{}", *stack_.back().path, stack_.back().line);
+  return true;
 }
 
 bool InpLines::next_data(DataLine& data) {

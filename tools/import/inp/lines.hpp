@@ -2,6 +2,7 @@
 // The lines of an Abaqus or CalculiX deck: keyword cards with parameters, and data lines cut at commas.
 #pragma once
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -43,22 +44,42 @@ class InpLines {
   bool next_card(Card& card);
   /// The next data line before the next card.
   bool next_data(DataLine& line);
+  /// The same as a whole, with its place.
+  bool next_text(std::string_view& text, std::string& place);
+  /// How many lines of the deck's file begin with this word, "*INSTANCE".
+  int count(std::string_view word) const;
+  /// The place behind the card at hand, for read_again().
+  struct Mark;
+  Mark mark() const;
+  /// Reads on from there, until go_back().
+  void read_again(const Mark& from);
+  void go_back();
+  /// What stands for `<name>` in the lines that follow (*PARAMETER).
+  void set(const std::string& name, const std::string& value) { values_[name] = value; }
 
  private:
   struct Source {
     std::shared_ptr<const std::string> path;
     std::shared_ptr<const std::string> text;
-    size_t at = 0;
+    size_t at = 0, line_at = 0;  // behind the last line, and where it began
     int line = 0;
   };
   bool next_line(std::string_view& line);
+  void put_values(std::string_view& line);
   void open(const std::string& path, const std::string& place);
   /// Goes on with the file that an *INCLUDE line names, seen from the folder of the deck, then returns to this one.
   void include(std::string_view line, const std::string& place);
+  friend struct Mark;
   std::vector<Source> stack_;
   std::vector<Source> kept_;  // texts and names that fields and places point into
   std::string folder_;
   std::optional<std::string_view> ahead_;
+  std::map<std::string, std::string> values_;
+  std::deque<std::string> replaced_;  // lines with values, which fields point into
+};
+
+struct InpLines::Mark {
+  InpLines::Source source;
 };
 
 }  // namespace hilo

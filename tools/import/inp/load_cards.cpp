@@ -53,13 +53,15 @@ void read_supports(InpReading& r) {
   if (const auto odd = unknown_param(card, {"OP", "AMPLITUDE", "TYPE", "FIXED", "LOADCASE"}); !odd.empty()) return r.skip(odd);
   if (card.has("TYPE") && card.word("TYPE") != "DISPLACEMENT") return r.skip("*BOUNDARY, TYPE=" + card.word("TYPE"));
   if (other_case(r)) return;
-  if (r.step > 0 && card.word("OP") == "NEW")
+  if (r.step > 1 && card.word("OP") == "NEW")
+    d.steps.back().new_supports = true;
+  else if (r.step == 1 && card.word("OP") == "NEW")
     d.supports.erase(d.supports.begin(), d.supports.begin() + static_cast<std::ptrdiff_t>(std::exchange(r.supports_before_step, 0)));
   const std::string amplitude = card.word("AMPLITUDE");
   DataLine l;
   while (r.lines.next_data(l)) {
     InpNodal b;
-    b.amplitude = amplitude;
+    b.amplitude = amplitude, b.step = r.step;
     b.place = l.place();
     target_of(l, b.target, b.id);
     if (!l.is_integer(1)) {
@@ -89,7 +91,7 @@ void read_nodal(InpReading& r, std::vector<InpNodal>& into) {
   DataLine l;
   while (r.lines.next_data(l)) {
     InpNodal f;
-    f.amplitude = card.word("AMPLITUDE");
+    f.amplitude = card.word("AMPLITUDE"), f.step = r.step;
     f.place = l.place();
     target_of(l, f.target, f.id);
     f.first = f.last = static_cast<int>(l.integer(1));
@@ -103,7 +105,9 @@ void read_nodal(InpReading& r, std::vector<InpNodal>& into) {
 
 void read_forces(InpReading& r) {
   if (const auto odd = unknown_param(r.card, {"OP", "AMPLITUDE", "LOADCASE"}); !odd.empty()) return r.skip(odd);
-  if (!other_case(r)) read_nodal(r, r.deck.forces);
+  if (other_case(r)) return;
+  if (r.step > 1 && r.card.word("OP") == "NEW") r.deck.steps.back().new_forces = true;
+  read_nodal(r, r.deck.forces);
 }
 
 void read_initial(InpReading& r) {
@@ -117,10 +121,11 @@ void read_distributed(InpReading& r) {
   if (const auto odd = unknown_param(card, {"OP", "AMPLITUDE", "LOADCASE"}); !odd.empty()) return r.skip(odd);
   if (other_case(r)) return;
   const bool surface = card.key == "DSLOAD";
+  if (r.step > 1 && card.word("OP") == "NEW") r.deck.steps.back().new_distributed = true;
   DataLine l;
   while (r.lines.next_data(l)) {
     const std::string label = upper(l.text(1));
-    InpDistributed p{"", 0, 0, l.number(2), Vec3::Zero(), card.word("AMPLITUDE"), l.place()};
+    InpDistributed p{"", 0, 0, l.number(2), Vec3::Zero(), card.word("AMPLITUDE"), l.place(), r.step};
     if (l.text(0).empty()) {  // Abaqus: no target means the whole model
       in.skip(fmt::format("{} without a set", card.name), p.place);
       continue;
@@ -143,6 +148,15 @@ void read_distributed(InpReading& r) {
   }
 }
 
+void read_transform(InpReading& r) {
+  InpTransform t{upper(r.card.need("NSET")), 0, r.card.place()};
+  const std::string type = r.card.has("TYPE") ? r.card.word("TYPE") : "R";
+  t.cylindrical = type == "C", t.is_read = type == "R" || type == "C";
+  DataLine l;
+  if (r.lines.next_data(l)) t.a = Vec3(l.number(0), l.number(1), l.number(2)), t.b = Vec3(l.number(3), l.number(4), l.number(5));
+  r.deck.transformed.push_back(t);
+}
+
 void read_amplitude(InpReading& r) {
   const Card& card = r.card;
   if (const auto odd = unknown_param(card, {"NAME", "TIME", "VALUE", "DEFINITION"});
@@ -154,7 +168,7 @@ void read_amplitude(InpReading& r) {
   const std::string name = card.need("NAME");
   auto& a = r.deck.amplitudes[upper(name)];
   if (!a.name.empty()) throw Error(card.place(), fmt::format("*AMPLITUDE {} is given twice", name), "give each a name of its own");
-  a.name = name;
+  a.name = name, a.total = card.word("TIME").starts_with("TOTAL");
   DataLine l;
   while (r.lines.next_data(l))
     for (size_t i = 0; i < l.fields.size(); i += 2) {  // a last value that is not there is 0
@@ -171,13 +185,9 @@ void read_amplitude(InpReading& r) {
 
 std::span<const InpCard> inp_load_cards() {
   static constexpr InpCard cards[] = {
-      {"BOUNDARY", read_supports, true},
-      {"CLOAD", read_forces, true},
-      {"DLOAD", read_distributed, true},
-      {"DSLOAD", read_distributed, true},
-      {"INITIALCONDITIONS", read_initial, true},
-      {"AMPLITUDE", read_amplitude, true},
-      {"TRANSFORM", [](InpReading& r) { r.deck.transformed.push_back(r.card.has("NSET") ? r.card.word("NSET") : ""); }, true},
+      {"BOUNDARY", read_supports, false, true},  {"CLOAD", read_forces, false, true},       {"DLOAD", read_distributed, false, true},
+      {"DSLOAD", read_distributed, false, true}, {"INITIALCONDITIONS", read_initial, true}, {"AMPLITUDE", read_amplitude},
+      {"TRANSFORM", read_transform, true},
   };
   return cards;
 }

@@ -52,8 +52,9 @@ void read_nodes(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
   DataLine l;
   while (lines.next_data(l)) {
     auto id = l.integer(0);
-    if (id < 1 || id >= assembly_numbers) throw Error(l.place(0), fmt::format("node number {} is not one", id));
-    if (d.in_assembly) id += assembly_numbers;
+    if (id < 1 || id >= (d.shift ? instance_numbers : assembly_numbers))
+      throw Error(l.place(0), fmt::format("node number {} is not one", id));
+    id += d.node_shift();
     const Vec3 x(l.number(1), l.number(2), l.number(3));
     const auto [it, fresh] = d.node.try_emplace(id, static_cast<std::int64_t>(d.X.size()));
     if (fresh) {
@@ -98,6 +99,7 @@ void read_elements(InpReading& r) {
         throw Error(place, fmt::format("element {} has {} of its {} nodes", row.empty() ? 0 : row[0], row.empty() ? 0 : row.size() - 1, n));
       for (size_t i = 0; i < l.fields.size(); ++i) row.push_back(l.integer(i));
     }
+    for (auto& number : row) number += d.shift;
     if (of_beam && row.size() > n + 1)
       throw Error(place, fmt::format("{} {}: a node of its orientation is not read", type, row[0]),
                   "the direction n1 on the second line of its section");
@@ -128,8 +130,13 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
   const std::string name = card.need(key);
   make_room(name, key == "NSET", d);
   set_named(name, sets, order);
-  const std::int64_t shift = d.in_assembly && key == "NSET" && !card.has("INSTANCE") ? assembly_numbers : 0;
+  const auto of_instance = d.shift_of.find(card.word("INSTANCE"));
+  const std::int64_t shift = of_instance != d.shift_of.end()          ? of_instance->second
+                             : key == "ELSET" || card.has("INSTANCE") ? d.shift
+                                                                      : d.node_shift();
   const auto find = [&](std::string_view text) {  // a set so far, by its name or its qualified one
+    for (const std::string& prefix : {d.prefix, card.has("INSTANCE") ? card.value("INSTANCE") + "." : ""})
+      if (const auto own = sets.find(upper(prefix + std::string(text))); !prefix.empty() && own != sets.end()) return own;
     const auto exact = sets.find(upper(text));
     return exact != sets.end() ? exact : sets.find(unqualified(upper(text)));
   };
@@ -168,7 +175,8 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
       if (text.size() > 1 && text.front() == '"') text = text.substr(1, text.size() - 2);
       if (const DataLine own{l.file, l.line, {{text.substr(text.rfind('.') + 1), l.fields[i].column}}};
           text.find('.') != text.npos && own.is_integer(0)) {  // "PART-1-1.17"
-        add.push_back(own.integer(0));
+        const auto qualified = d.shift_of.find(upper(text.substr(0, text.rfind('.'))));
+        add.push_back(own.integer(0) + (qualified == d.shift_of.end() ? 0 : qualified->second));
         continue;
       }
       const auto it = find(text);
@@ -196,11 +204,11 @@ void read_surface(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
   while (lines.next_data(l)) {
     InpSurface::Line one{"", 0, 0, l.place()};
     if (l.is_integer(0))
-      one.id = l.integer(0);
+      one.id = l.integer(0) + (s.of_nodes ? d.node_shift() : d.shift);
     else {
       std::string_view text = l.text(0);
       if (text.size() > 1 && text.front() == '"') text = text.substr(1, text.size() - 2);
-      one.target = upper(text);
+      one.target = upper(d.prefix) + upper(text);
     }
     const std::string face = upper(l.text(1));
     if (!s.of_nodes && !face.empty()) {

@@ -18,18 +18,26 @@ void read_heading(InpReading& r) {
     for (size_t i = 0; i < l.fields.size(); ++i) r.deck.title += (i ? ", " : "") + std::string(l.text(i));
 }
 
-// Abaqus parts: one of them is read as if flat, more would need their numbers told apart.
-[[noreturn]] void refuse_step(const InpReading& r, const std::string& what) {
-  throw Error(r.card.place() + ":1", what + " is not read",
-              "write a flat deck: in Abaqus/CAE \"Do not use parts and assemblies in input files\"");
+/// Lines "name = expression"; `#` begins a comment.
+void read_parameter(InpReading& r) {
+  std::string_view text;
+  std::string place;
+  while (r.lines.next_text(text, place)) {
+    text = text.substr(0, text.find('#'));
+    const size_t first = text.find_first_not_of(" \t");
+    if (first == text.npos) continue;
+    const size_t equals = text.find('=');
+    if (equals == text.npos || equals == first) throw Error(place, "*PARAMETER: \"name = expression\" is expected");
+    const std::string name(text.substr(first, text.find_last_not_of(" \t", equals - 1) + 1 - first));
+    if (name.find_first_of(" ,<>()\"'") != name.npos) throw Error(place, fmt::format("*PARAMETER: \"{}\" is no name", name));
+    const auto value = evaluate_parameter(text.substr(equals + 1), r.deck.parameters, place);
+    r.deck.parameters[name] = value;
+    r.lines.set(name, value.text());
+  }
 }
-void read_part(InpReading& r) {
-  if (++r.parts > 1) refuse_step(r, "more than one *PART");
-}
-void read_instance(InpReading& r) {
-  if (++r.instances > 1) refuse_step(r, "more than one *INSTANCE");
-  r.deck.instance = r.card.value("NAME");
-  r.deck.in_assembly = false;  // what stands between it and its end is the part's
+
+/// Its lines move it and turn it.
+void place_instance(InpReading& r) {
   DataLine l;
   if (!r.lines.next_data(l)) return;
   InpDeck::Placed& p = r.deck.placed;
@@ -45,6 +53,54 @@ void read_instance(InpReading& r) {
   p.turn = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
 }
 
+std::vector<std::string> names_of(const std::map<std::string, InpLines::Mark>& parts) {
+  std::vector<std::string> names;
+  for (const auto& [name, mark] : parts) names.push_back(name);
+  return names;
+}
+
+[[noreturn]] void refuse_included(const InpReading& r, const char* what) {
+  throw Error(r.card.place() + ":1", fmt::format("more than one {}, in included files, is not read", what),
+              "write *PART and *INSTANCE into the deck itself");
+}
+
+/// A part that stands alone is read where it is; of several, each instance reads its part once more.
+void read_part(InpReading& r) {
+  if (!r.several && ++r.parts > 1) refuse_included(r, "*PART");
+  if (!r.several) return;
+  const std::string name = upper(r.card.need("NAME")), place = r.card.place();
+  r.part_at.emplace(name, r.lines.mark());
+  while (r.card.key != "ENDPART")
+    if (!r.lines.next_card(r.card)) throw Error(place, "*PART without *END PART");
+}
+void end_part(InpReading& r) {
+  if (!r.several) return;
+  if (!r.in_part) throw Error(r.card.place() + ":1", "*END PART without *PART");
+  r.in_part = false;
+  r.lines.go_back();
+}
+void read_instance(InpReading& r) {
+  InpDeck& d = r.deck;
+  if (++r.instances > 1 && !r.several) refuse_included(r, "*INSTANCE");
+  if (r.in_part) throw Error(r.card.place() + ":1", "*INSTANCE in a *PART");
+  d.instance = r.card.value("NAME");
+  d.in_assembly = false;  // what stands between it and its end is the part's
+  d.placed = {}, d.first_node = d.X.size(), d.first_section = d.sections.size();
+  const auto part = r.part_at.find(r.card.word("PART"));
+  if (r.several) {
+    r.card.need("NAME");
+    if (part == r.part_at.end())
+      throw Error(r.card.place("PART"), fmt::format("*INSTANCE of part \"{}\", which is not there", r.card.value("PART")),
+                  suggest(r.card.word("PART"), names_of(r.part_at)));
+    if (r.instances >= assembly_numbers / instance_numbers) throw Error(r.card.place(), "too many *INSTANCE");
+    d.shift = r.instances * instance_numbers, d.prefix = d.instance + ".";
+    if (!d.shift_of.emplace(upper(d.instance), d.shift).second)
+      throw Error(r.card.place("NAME"), fmt::format("*INSTANCE {} is given twice", d.instance), "give each a name of its own");
+  }
+  place_instance(r);
+  if (r.several) r.lines.read_again(part->second), r.in_part = true;
+}
+
 /// What follows is of the assembly.
 void read_assembly(InpReading& r) {
   r.deck.in_assembly = true;
@@ -56,36 +112,49 @@ void read_assembly(InpReading& r) {
 void end_instance(InpReading& r) {
   InpDeck& d = r.deck;
   const InpDeck::Placed& p = d.placed;
-  for (size_t a = 0; a < d.X.size(); ++a)
+  for (size_t a = r.several ? d.first_node : 0; a < d.X.size(); ++a)
     if (d.node_id[a] < assembly_numbers) d.X[a] = p.at + p.turn * (d.X[a] + p.by - p.at);
-  for (auto& [name, o] : d.orientations) o.a = p.turn * o.a, o.b = p.turn * o.b;
-  for (InpSection& s : d.sections) s.n1 = p.turn * s.n1;
+  for (auto& [name, o] : d.orientations)
+    if (name.starts_with(upper(d.prefix))) o.a = p.turn * o.a, o.b = p.turn * o.b;
+  for (size_t s = r.several ? d.first_section : 0; s < d.sections.size(); ++s) d.sections[s].n1 = p.turn * d.sections[s].n1;
+  d.shift = 0, d.prefix.clear();
   read_assembly(r);
 }
 
 void read_step(InpReading& r) {
   r.supports_before_step = r.deck.supports.size();
-  if (++r.step == 2) r.in.notes.push_back(fmt::format("{}: only the first step becomes scene lines", r.card.place()));
+  ++r.step;
+  InpStep& s = r.deck.steps.emplace_back();
+  s.place = r.card.place(), s.nlgeom = r.card.has("NLGEOM") && r.card.word("NLGEOM") != "NO", s.perturbation = r.card.has("PERTURBATION");
+  if (r.card.has("AMPLITUDE")) s.ramps = r.card.word("AMPLITUDE") != "STEP", s.ramps_said = true;
+}
+
+/// The step at hand; a procedure may stand without one.
+InpStep& step_of(InpReading& r) {
+  if (r.deck.steps.empty()) r.deck.steps.emplace_back();
+  return r.deck.steps.back();
 }
 
 /// *STATIC, *DYNAMIC and *FREQUENCY become scene lines.
 void read_procedure(InpReading& r) {
-  r.deck.procedure = r.card.name;
+  InpStep& s = step_of(r);
+  s.procedure = r.card.name;
+  if (!s.ramps_said) s.ramps = r.card.key == "STATIC";
   DataLine l;
-  if (r.lines.next_data(l)) r.deck.step_increment = l.number(0), r.deck.step_end = l.number(1);
-  r.deck.direct = r.card.has("DIRECT") || r.card.has("EXPLICIT");
+  if (r.lines.next_data(l)) s.increment = l.number(0), s.end = l.number(1);
+  s.direct = r.card.has("DIRECT") || r.card.has("EXPLICIT");
   for (const auto& [key, p] : r.card.params)
     if (key != "DIRECT" && key != "EXPLICIT" && key != "SOLVER") r.skip(fmt::format("{}, {}", r.card.name, key));
 }
 /// How many modes; a band of frequencies is not asked for.
 void read_frequency(InpReading& r) {
-  r.deck.procedure = r.card.name;
+  step_of(r).procedure = r.card.name;
   DataLine l;
-  if (r.lines.next_data(l)) r.deck.n_modes = static_cast<int>(std::clamp(l.number(0), 0.0, 1000.0));
+  if (r.lines.next_data(l)) step_of(r).n_modes = static_cast<int>(std::clamp(l.number(0), 0.0, 1000.0));
 }
 void other_procedure(InpReading& r) {
-  r.deck.procedure = r.card.name;
-  r.skip(r.card.name);
+  step_of(r).procedure = r.card.name;
+  if (r.step < 2) r.skip(r.card.name);
 }
 void end_assembly(InpReading& r) { r.deck.in_assembly = false; }
 void nothing(InpReading&) {}
@@ -95,36 +164,37 @@ void nothing(InpReading&) {}
 std::span<const InpCard> inp_step_cards() {
   static constexpr InpCard cards[] = {
       {"HEADING", read_heading},
+      {"PARAMETER", read_parameter},
       {"PART", read_part},
-      {"ENDPART", nothing},
+      {"ENDPART", end_part},
       {"ASSEMBLY", read_assembly},
       {"ENDASSEMBLY", end_assembly},
       {"INSTANCE", read_instance},
       {"ENDINSTANCE", end_instance},
       {"STEP", read_step},
       {"ENDSTEP", nothing},
-      {"STATIC", read_procedure, true},
-      {"DYNAMIC", read_procedure, true},
-      {"FREQUENCY", read_frequency, true},
-      {"COMPLEXFREQUENCY", other_procedure, true},
-      {"BUCKLE", other_procedure, true},
-      {"HEATTRANSFER", other_procedure, true},
-      {"MODALDYNAMIC", other_procedure, true},
-      {"STEADYSTATEDYNAMICS", other_procedure, true},
-      {"VISCO", other_procedure, true},
-      {"COUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, true},
-      {"UNCOUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, true},
-      {"CFD", other_procedure, true},
-      {"ELECTROMAGNETICS", other_procedure, true},
-      {"SENSITIVITY", other_procedure, true},
-      {"GREEN", other_procedure, true},
-      {"NOANALYSIS", other_procedure, true},
-      {"SUBSTRUCTUREGENERATE", other_procedure, true},
-      {"GEOSTATIC", other_procedure, true},
-      {"RANDOMRESPONSE", other_procedure, true},
-      {"CRACKPROPAGATION", other_procedure, true},
-      {"ROBUSTDESIGN", other_procedure, true},
-      {"FEASIBLEDIRECTION", other_procedure, true},
+      {"STATIC", read_procedure, false, true},
+      {"DYNAMIC", read_procedure, false, true},
+      {"FREQUENCY", read_frequency, false, true},
+      {"COMPLEXFREQUENCY", other_procedure, false, true},
+      {"BUCKLE", other_procedure, false, true},
+      {"HEATTRANSFER", other_procedure, false, true},
+      {"MODALDYNAMIC", other_procedure, false, true},
+      {"STEADYSTATEDYNAMICS", other_procedure, false, true},
+      {"VISCO", other_procedure, false, true},
+      {"COUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, false, true},
+      {"UNCOUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, false, true},
+      {"CFD", other_procedure, false, true},
+      {"ELECTROMAGNETICS", other_procedure, false, true},
+      {"SENSITIVITY", other_procedure, false, true},
+      {"GREEN", other_procedure, false, true},
+      {"NOANALYSIS", other_procedure, false, true},
+      {"SUBSTRUCTUREGENERATE", other_procedure, false, true},
+      {"GEOSTATIC", other_procedure, false, true},
+      {"RANDOMRESPONSE", other_procedure, false, true},
+      {"CRACKPROPAGATION", other_procedure, false, true},
+      {"ROBUSTDESIGN", other_procedure, false, true},
+      {"FEASIBLEDIRECTION", other_procedure, false, true},
   };
   return cards;
 }

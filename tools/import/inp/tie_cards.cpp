@@ -18,7 +18,7 @@ InpTarget target_in(const InpReading& r, const std::string& key) {
   const std::string value = card.need(key);
   InpTarget t{upper(value), 0, card.place(key)};
   if (!t.name.empty() && t.name.size() < 18 && t.name.find_first_not_of("0123456789") == std::string::npos)
-    t.id = std::stoll(t.name) + (r.deck.in_assembly ? assembly_numbers : 0), t.name.clear();
+    t.id = std::stoll(t.name) + r.deck.node_shift(), t.name.clear();
   return t;
 }
 
@@ -61,9 +61,59 @@ void read_rigid_body(InpReading& r) {
     }
   if (const auto odd = unknown_param(r.card, {"NSET", "TIENSET", "ELSET", "REFNODE", "ROTNODE"}); !odd.empty() || t.of.empty())
     return r.skip(odd.empty() ? "*RIGID BODY without a set" : odd);
-  t.reference = target_in(r, "REFNODE");
+  if (r.card.has("REFNODE"))
+    t.reference = target_in(r, "REFNODE");
+  else if (r.card.has("ROTNODE"))
+    return r.skip("*RIGID BODY with ROT NODE and without REF NODE");
+  else
+    t.no_node = true;
   if (r.card.has("ROTNODE")) t.turns = target_in(r, "ROTNODE");
   r.deck.ties.push_back(t);
+}
+
+/// A DCOUP3D is the mean of nodes, with weights.
+void read_distributing(InpReading& r) {
+  if (const auto odd = unknown_param(r.card, {"ELSET"}); !odd.empty()) return r.skip(odd);
+  InpTie t;
+  t.name = r.card.name, t.place = r.card.place(), t.kind = InpTie::Of::weighted, t.mean = true, t.components = 63;
+  t.reference = {upper(r.card.need("ELSET")), 0, r.card.place("ELSET")};
+  DataLine l;
+  while (r.lines.next_data(l)) {
+    InpTarget of{l.is_integer(0) ? "" : upper(r.deck.prefix) + upper(l.text(0)), l.is_integer(0) ? l.integer(0) + r.deck.node_shift() : 0,
+                 l.place(0)};
+    const double w = l.number(1, 1);
+    if (!(w > 0)) throw Error(l.place(1), fmt::format("{}: a weight of {:g}", t.name, w), "one above zero");
+    t.weights.emplace_back(of, w);
+  }
+  if (t.weights.empty()) return r.skip(t.name + " of no node");
+  r.deck.ties.push_back(t);
+}
+
+/// How many terms; and then node or set, component and factor of each, on as many lines as they need.
+void read_equation(InpReading& r) {
+  if (const auto odd = unknown_param(r.card, {}); !odd.empty() || r.step > 0) {
+    const std::string what = odd.empty() ? r.card.name : odd;
+    r.skip(r.step > 0 ? what + " in a step" : what);
+    if (r.step > 0) r.deck.steps.back().not_read = what;
+    return;
+  }
+  DataLine l;
+  while (r.lines.next_data(l)) {
+    InpEquation e{{}, l.place()};
+    const auto n = l.integer(0);
+    if (n < 1 || n > 1'000'000) throw Error(l.place(0), fmt::format("*EQUATION of {} terms", n));
+    while (e.terms.size() < static_cast<size_t>(n)) {
+      if (!r.lines.next_data(l)) throw Error(e.place, fmt::format("*EQUATION has {} of its {} terms", e.terms.size(), n));
+      for (size_t i = 0; i < l.fields.size() && e.terms.size() < static_cast<size_t>(n); i += 3) {
+        const bool number = l.is_integer(i);
+        e.terms.push_back(
+            {{number ? "" : upper(r.deck.prefix) + upper(l.text(i)), number ? l.integer(i) + r.deck.node_shift() : 0, l.place(i)},
+             static_cast<int>(l.integer(i + 1)),
+             l.number(i + 2)});
+      }
+    }
+    r.deck.equations.push_back(std::move(e));
+  }
 }
 
 /// Pairs of surfaces that stay together, the one whose nodes follow first.
@@ -107,15 +157,15 @@ void read_value(InpReading& r) {
 }  // namespace
 
 bool read_points(InpReading& r, const std::string& type) {
-  static const std::map<std::string, size_t> kinds{{"MASS", 1},    {"SPRINGA", 2},  {"SPRING1", 1},
-                                                   {"SPRING2", 2}, {"DASHPOTA", 2}, {"DASHPOT1", 1}};
+  static const std::map<std::string, size_t> kinds{{"MASS", 1},     {"SPRINGA", 2},  {"SPRING1", 1}, {"SPRING2", 2},
+                                                   {"DASHPOTA", 2}, {"DASHPOT1", 1}, {"DCOUP3D", 1}};
   const auto kind = kinds.find(type);
   if (kind == kinds.end()) return false;
   InpSet* set = r.card.has("ELSET") ? &set_of_cells(r.card.need("ELSET"), r.deck) : nullptr;
   DataLine l;
   while (r.lines.next_data(l)) {
-    InpPoint p{type, l.integer(0), {}, l.place()};
-    for (size_t i = 0; i < kind->second; ++i) p.nodes.push_back(l.integer(1 + i) + (r.deck.in_assembly ? assembly_numbers : 0));
+    InpPoint p{type, l.integer(0) + r.deck.shift, {}, l.place()};
+    for (size_t i = 0; i < kind->second; ++i) p.nodes.push_back(l.integer(1 + i) + r.deck.node_shift());
     if (r.deck.cell.contains(p.id) || !r.deck.points.try_emplace(p.id, p).second)
       throw Error(l.place(0), fmt::format("element {} is given twice", p.id), "number each element once");
     if (set) set->members.push_back(p.id);
@@ -128,6 +178,8 @@ std::span<const InpCard> inp_tie_cards() {
       {"COUPLING", read_coupling},
       {"KINEMATIC", read_coupling_kind},
       {"DISTRIBUTING", read_coupling_kind},
+      {"DISTRIBUTINGCOUPLING", read_distributing},
+      {"EQUATION", read_equation},
       {"RIGIDBODY", read_rigid_body},
       {"TIE", read_tie},
       {"MASS", read_value},

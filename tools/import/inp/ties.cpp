@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/param.hpp"
+#include "import/inp/equations.hpp"
 #include "import/inp/groups.hpp"
 #include "import/links.hpp"
 
@@ -57,6 +58,9 @@ std::map<std::int64_t, double> members(const InpDeck& d, const InpTie& t, const 
   };
   if (t.kind == InpTie::Of::nodes) {
     add(inp_nodes(d, t.of, 0, t.place));
+  } else if (t.kind == InpTie::Of::weighted) {
+    for (const auto& [of, weight] : t.weights)
+      for (const auto a : inp_nodes(d, of.name, of.id, of.place)) w[a] += weight;
   } else if (t.kind == InpTie::Of::cells) {
     for (const auto c : inp_cells(d, t.of, 0, t.place)) add({m.cell(c).begin(), m.cell(c).end()});
   } else if (const auto s = surface.find(t.of); s != surface.end() && m.facet_sets.contains(s->second)) {
@@ -79,15 +83,44 @@ std::map<std::int64_t, double> members(const InpDeck& d, const InpTie& t, const 
   return w;
 }
 
+/// The node of the one DCOUP3D of its element set.
+std::int64_t node_of_coupling(const InpDeck& d, const InpTie& t) {
+  const auto set = d.elset.find(t.reference.name);
+  if (set == d.elset.end())
+    throw Error(t.reference.place, fmt::format("no element set \"{}\"", t.reference.name), suggest_name(t.reference.name, d.elset));
+  const InpPoint* one = nullptr;
+  for (const auto id : set->second.members)
+    if (const auto p = d.points.find(id); p != d.points.end() && p->second.type == "DCOUP3D") {
+      if (one) throw Error(t.place, fmt::format("{}: element set \"{}\" has several DCOUP3D", t.name, set->second.name), "one for each");
+      one = &p->second;
+    }
+  if (!one) throw Error(t.place, fmt::format("{}: element set \"{}\" has no DCOUP3D", t.name, set->second.name));
+  return one->nodes[0];
+}
+
+/// In the middle of what a rigid body carries.
+Vec3 mean_of(const InpDeck& d, const InpTie& t, const std::map<std::int64_t, double>& w, const Mesh& m) {
+  Vec3 sum = Vec3::Zero();
+  double n = 0;
+  for (const auto& [a, weight] : w) sum += m.X[a], n += 1;
+  if (n == 0)
+    for (const auto id : ids_of(d, t))
+      if (const auto x = d.loose.find(id); x != d.loose.end()) sum += x->second, n += 1;
+  return n > 0 ? Vec3(sum / n) : sum;
+}
+
 }  // namespace
 
 void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string>& surface) {
+  std::int64_t own = 0;  // numbers below zero are reference nodes that the deck does not have
   for (const auto& [id, p] : d.points)
     for (const auto n : p.nodes)
-      if (!d.node.contains(n)) d.bodies.try_emplace(n, InpBody{place_of(d, n, p.place), p.place, {}});
+      if (p.type != "DCOUP3D" && !d.node.contains(n)) d.bodies.try_emplace(n, InpBody{place_of(d, n, p.place), p.place, {}});
   for (const InpTie& t : d.ties) {
     if (t.left_out) continue;
-    const auto ref = node_of(d, t.reference);
+    auto w = members(d, t, in.mesh, surface);
+    const auto ref = t.no_node ? --own : t.kind == InpTie::Of::weighted ? node_of_coupling(d, t) : node_of(d, t.reference);
+    if (t.no_node) d.loose[ref] = mean_of(d, t, w, in.mesh);
     if (t.undecided) {
       in.skip(t.name + " without *KINEMATIC or *DISTRIBUTING", t.place);
       continue;
@@ -96,7 +129,6 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
       in.skip(t.name + " whose reference node is a node of a cell", t.place);
       continue;
     }
-    auto w = members(d, t, in.mesh, surface);
     std::vector<std::int64_t> beams;  // nodes of beams among them
     for (const auto id : ids_of(d, t))
       if (d.bodies.contains(id) && id != ref) {
@@ -140,7 +172,9 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
   }
 }
 
-bool is_tied(const InpDeck& d, std::int64_t id) { return d.bodies.contains(id) || d.means.contains(id) || d.turns_of.contains(id); }
+bool is_tied(const InpDeck& d, std::int64_t id) {
+  return is_slide(d, id) || d.bodies.contains(id) || d.means.contains(id) || d.turns_of.contains(id);
+}
 
 void tied_lines(const InpDeck& d, const InpNodal& l, const std::function<void(std::int64_t, int, int)>& use) {
   std::vector<std::int64_t> ids{l.id};
@@ -162,7 +196,7 @@ void tied_lines(const InpDeck& d, const InpNodal& l, const std::function<void(st
 /// No name of a set: what names one would mean the other.
 std::string body_name(const InpDeck& d, std::int64_t id) {
   const bool assembly = id >= assembly_numbers;
-  std::string name = fmt::format("node_{}", assembly ? id - assembly_numbers : id);
+  std::string name = id < 0 ? fmt::format("rigid_body_{}", -id) : fmt::format("node_{}", assembly ? id - assembly_numbers : id);
   const auto taken = [&] {
     const std::string key = upper(name);
     return d.nset.contains(key) || d.elset.contains(key) ||
@@ -254,7 +288,8 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
     }
   }
   for (const auto& [id, p] : d.points)
-    if (!valued.contains(id)) in.skip("*ELEMENT, TYPE=" + p.type + " without a value", p.place);
+    if (!valued.contains(id) && !(p.type == "DCOUP3D" && d.means.contains(p.nodes[0])))
+      in.skip("*ELEMENT, TYPE=" + p.type + " without a value", p.place);
 
   std::string text;
   for (const auto& [id, b] : d.bodies) {

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The scene lines of an .inp deck, in the making: what its parts (supports, loads) share.
+#pragma once
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/param.hpp"
+#include "import/inp/groups.hpp"
+
+namespace hilo {
+
+/// Writes the lines in the order of a scene file.
+class InpScene {
+ public:
+  InpScene(const InpDeck& deck, Imported& in, SetNames& names, const std::map<std::string, std::string>& node_set,
+           const std::map<std::string, std::string>& surface, const ImportOptions& options);
+  std::string text();
+
+ private:
+  // scene.cpp
+  void materials();
+  void histories();
+  double dynamic_step(double end);
+  void time();
+  // scene_supports.cpp
+  void supports();
+  void write(const Held& h);
+  void supports_of_ties();
+  void slides();
+  void tied();
+  // scene_loads.cpp
+  void gravity();
+  void forces();
+  double share_of_pairs(const Rows& nodes, const std::string& place) const;
+  void forces_of_ties();
+  void pressures();
+  void velocities();
+
+  static std::string num(double x) { return toml_number(x); }
+  static std::string list(const Vec3& v) { return toml_list({v.x(), v.y(), v.z()}); }
+  /// A point of the geometry, which --scale scales too.
+  std::string point(const Vec3& x) const { return list(Vec3(x * si("m") * o_.scale)); }
+  double si(const char* unit) const { return to_si(unit, o_.units); }
+  std::string unique(const std::string& section, const std::string& wish);
+  /// The set that holds just these nodes: the one named in the deck where it is that, else a new one.
+  std::string set_of(const std::string& target, Rows nodes, const std::string& wish, bool each);
+  /// " history" line of an amplitude, or false when the deck's amplitude was not read.
+  bool history(const std::string& amplitude, const std::string& what, const std::string& place, std::string& line);
+
+  const InpDeck& d_;
+  Imported& in_;
+  SetNames& names_;
+  const std::map<std::string, std::string>&node_set_, &surface_;
+  const ImportOptions& o_;
+  std::set<std::int64_t> own_axes_;      // the same by number, nodes of no cell too
+  std::vector<int> turned_;              // *TRANSFORM of each node, or -1
+  std::set<std::string> used_, wanted_;  // names given; amplitudes that a line scales by
+  std::map<std::string, int> made_;      // sets made of single nodes or elements
+  std::string head_, tables_;
+};
+
+}  // namespace hilo

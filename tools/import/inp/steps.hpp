@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Several *STEPs of a deck as one run, where one run can say them.
+#pragma once
+#include "import/inp/deck.hpp"
+
+namespace hilo {
+
+/// Supports and loads of the first steps become those of one run, with amplitudes over its whole time, and `deck.plan` says what is run:
+/// static steps one behind the other, or what follows from their equilibrium, dynamic steps or modes.  Steps that this cannot say are
+/// named, with what is in them.
+void join_steps(InpDeck& deck, Imported& in);
+
+}  // namespace hilo
