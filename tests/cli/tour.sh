@@ -19,6 +19,7 @@ bash -euo pipefail blocks.sh | tee said.txt
 /usr/bin/python3 read.py > read.txt
 grep -q '^largest moment' read.txt || fail "the Python block of the tour says no largest moment"
 "$repo/tests/cli/xdmf.py" run.xdmf
+"$repo/tests/cli/vtkhdf.py" run.h5
 # what the blocks say they write is there
 for file in $(grep -oE -- '(-o|--png) [a-z0-9-]+\.[a-z0-9]+' blocks.sh | cut -d' ' -f2); do
   [ -s "$file" ] || fail "$file is missing"

@@ -158,11 +158,11 @@ void MeshPart::show() {
   last_xdmf_ = wall_clock();
 }
 
-void MeshPart::finish() {
+void MeshPart::finish(bool whole) {
   file_.on_store([&](Store& f) {
     if (times_.empty()) return;
     write_xdmf(f);
-    write_vtkhdf(f);
+    if (whole) write_vtkhdf(f);
   });
 }
 

@@ -24,9 +24,10 @@ class MeshPart {
   void write_envelope();
   /// A file that grows on, without what declare() and later steps write anew.
   void shorten(Store& f) const;
-  /// Points ParaView at the arrays of the results file, where it has fields: now and then on the way, and at the end within that file too.
+  /// Points ParaView at the arrays of the results file, where it has fields: now and then on the way, and at the end within that file too,
+  /// which commits it: `whole` says that every rank has written all of its pieces.
   void show();
-  void finish();
+  void finish(bool whole);
   void archive(Archive& a);
 
  private:

@@ -180,14 +180,15 @@ void Recorder::finish(bool complete) {
   file_.on_store([&](Store& f) { f.set("/", "complete", static_cast<std::int64_t>(complete)); });
   if (mesh_) mesh_->write_envelope();
   commit(RunOutput::When::now);
-  if (mesh_) mesh_->finish();
+  if (mesh_) mesh_->finish(true);
   file_.share_failure();
   file_.close();
 }
 
 void Recorder::give_up() {
-  if (n_written_ > 0 && system_.comm->size == 1) file_.on_store([](Store& f) { f.flush(); });
-  if (n_written_ > 0 && mesh_) mesh_->finish();
+  const bool alone = system_.comm->size == 1;
+  if (n_written_ > 0 && alone) file_.on_store([](Store& f) { f.flush(); });
+  if (n_written_ > 0 && mesh_) mesh_->finish(alone);
   file_.close();
 }
 
