@@ -49,6 +49,16 @@ TEST_F(ImportInpSteps, StaticOnesFollowEachOtherAndLoadsStayUntilTheyAreGivenAne
   EXPECT_EQ(err.find("not read"), std::string::npos) << err;
 }
 
+// What yields remembers how it came there: as many load steps as the deck begins with.  What is elastic needs one.
+TEST_F(ImportInpSteps, WhatYieldsTakesTheIncrementOfTheDeck) {
+  for (const bool yields : {false, true}) {
+    std::string text = bar + "*STEP\n*STATIC\n.05, 1.\n*CLOAD\nhead, 1, 1.\n" + end;
+    if (yields) text.insert(text.find("*DENSITY"), "*PLASTIC\n1e6, 0.\n2e6, 0.1\n");
+    solve(text);
+    EXPECT_EQ(Scene::load(place / "s.toml").table("time").number("steps"), yields ? 20 : 1);
+  }
+}
+
 // Half way through a step: a load without an amplitude has gone half the way from its last value; one with an amplitude is where that is.
 TEST_F(ImportInpSteps, LoadsGoFromWhereTheyWereAndAmplitudesBeginWithTheirStep) {
   solve(bar + "*AMPLITUDE, NAME=a\n0., 0., .5, 1., 1., 0.\n" + statics + "*CLOAD\nhead, 1, 1.\n" + end + statics +

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <set>
 
+#include "verify/contact/collision.hpp"
 #include "verify/everything/half_rigid.hpp"
 
 namespace hilo::test::schema_test {
@@ -124,6 +125,19 @@ on = "zmax"
   hold_against_schema(linear.solved("--set time.end=0.0158 --set material.soft.E=1e9", "run.h5", "free").file(), met);
   hold_against_schema(linear.solved("--set 'time.analysis=\"modes\"'", "run.h5", "cantilever").file(), met);
   hold_against_schema(linear.solved("--set 'time.analysis=\"path\"'", "run.h5", "cantilever").file(), met);
+  Case tied("output");  // a plate on a block
+  BlockOptions block, plate;
+  block.regions = {"block"}, plate.regions = {"plate"};
+  plate.n[0] = plate.n[1] = 2, plate.low = Vec3(0, 0, 1), plate.high = Vec3(1, 1, 1.1);
+  tied.use(together(block_mesh(block), block_mesh(plate)));
+  std::ofstream(tied / "tied.toml") << "material.m = {E = 1e6, nu = 0.3, density = 1000}\nregion.block.material = \"m\"\n"
+                                       "region.plate = {material = \"m\", shell = true}\n"
+                                       "tie = [{name = \"weld\", a = \"blockzmax\", b = \"platezmin\"}]\n"
+                                       "motion = [{kind = \"fixed\", name = \"foot\", on = \"blockzmin\"}]\n"
+                                       "output.fields = [\"displacement\", \"shell\"]\ntime.analysis = \"static\"\n";
+  const Ran of_tied = tied.run("hilo-solve --quiet tied.toml mesh.h5 -o run.h5");
+  ASSERT_EQ(of_tied.exit, 0) << of_tied.err;
+  hold_against_schema(tied.results().file(), met);
   std::string many = "[time]\nend = 0.002\nstep = 0.001\n";
   for (int k = 0; k < 300; ++k)
     many += "[[body]]\nname = \"b" + std::to_string(k) + "\"\nmass = 1\ncom = [" + std::to_string(k) + ", 0, 0]\ninertia = [1, 1, 1]\n";

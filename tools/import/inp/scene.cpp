@@ -149,7 +149,11 @@ void InpScene::time() {
   if (plan.procedure == "*STATIC") {
     tables_ += "\n[time]\nanalysis = \"static\"\n";
     if (!wanted_.empty()) tables_ += fmt::format("end = {}\n", num(end));
-    if (plan.steps > 1) tables_ += fmt::format("steps = {}\n", plan.steps);
+    int steps = plan.steps;
+    const bool yields = std::ranges::any_of(d_.laws, [](const auto& law) { return law.second.kind == "j2"; });
+    if (yields && plan.increment > 0)  // what yields remembers how it came there
+      steps = std::max(steps, static_cast<int>(std::ceil(std::min(100., deck_end / plan.increment - 1e-9))));
+    if (steps > 1) tables_ += fmt::format("steps = {}\n", steps);
   } else if (plan.procedure == "*DYNAMIC") {
     tables_ += fmt::format("\n[time]\nend = {}\n", num(end));
     tables_ += fmt::format("step = {}\n{}", num(dynamic_step(deck_end) * si("s")), start);
