@@ -310,7 +310,7 @@ class Run {
 void RunParts::follow(const Carry& carry) {
   solver->structure(system.layout.cliques, system.layout.map);
   state.lambda = carry(state.lambda);
-  integrator->carry(carry);
+  if (integrator) integrator->carry(carry);
 }
 
 void Steps::search(double h) {

@@ -39,8 +39,9 @@ class StaticSteps final : public Steps {
       run_.audit->start(state);
       run_.recorder->first(state, run_.audit->ledger());
     }
+    system.commit(state.q), system.settle(false);  // where the first step begins, also of a run that goes on
     Progress progress(run_.options.quiet || system.comm->rank != 0, 0, 1);
-    combine(no_acceleration_, {{0, &state.q}});
+    no_acceleration_.resize_like(state.q);  // zeros without a sign
     State reached = state;
     std::string why;  // of the first failure since the last good state, or that a cell would be inside out
     while (at_.done < 1 - 1e-12) {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "dynamics/kept_run.hpp"
 #include "verify/block_mesh.hpp"
 #include "verify/contact/collision.hpp"
 #include "verify/verify.hpp"
@@ -100,6 +101,8 @@ TEST(LoadSteps, ABlockIsPressedAndPushed) {
     EXPECT_NEAR(last(r, "energy")[4], f[6], 1e-9 * f[6]);
     EXPECT_LE(c.reported("steps"), 12);
     EXPECT_LT(c.reported("newton_iterations"), 100);
+    expect_goes_on(c.path(), text_of(c / "scene.toml"), "tags.h5", {2, 6, 9},
+                   {"contact.c.friction=0.3", on_region ? "contact.c.a=\"base\"" : "time.steps=10"});
   }
 }
 
