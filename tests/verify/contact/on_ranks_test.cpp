@@ -48,7 +48,7 @@ Off off(const Results& one, const Results& other) {
       for (const std::string& name : one.file().list(std::string("/history/") + group)) {
         const std::string path = std::string(group) + "/" + name;
         look(path, 0, 3, 1e-12);
-        if (*group == 't') look(path, 3, 3, 1e-12);
+        if (*group == 't') look(path, 3, 3, one.history(path).leftCols(3).cwiseAbs().maxCoeff());  // at an arm of 1 m
         for (Eigen::Index k = 3; k < 7 && *group == 'c'; ++k) look(path, k, 1, k == 6 ? energy : 1e-3);
       }
   if (!one.file().list("/field").empty()) {
