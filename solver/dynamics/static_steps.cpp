@@ -13,7 +13,7 @@
 #include "dynamics/run_parts.hpp"
 #include "dynamics/stability.hpp"
 #include "dynamics/start.hpp"
-#include "system/contacts.hpp"
+#include "system/touching.hpp"
 
 namespace hilo {
 namespace {
@@ -67,9 +67,9 @@ class StaticSteps final : public Steps {
         if (at_.step <= std::ldexp(1.0 / n_, -run_.max_cuts)) {
           if (at_.least.det < 0.01 && r.least_det.det > 0) why += "; " + system.inside_out(at_.least);
           if (r.least_det.det > 0)
-            why += system.part<Contacts>().count().empty()
-                       ? "; where a structure bears no more, analysis = \"path\" finds the limit and goes past it"
-                       : "; a part may slide where friction holds no more, or part from what holds it: a run in time shows where it goes";
+            why += touching(system)
+                       ? "; a part may slide where friction holds no more, or part from what holds it: a run in time shows where it goes"
+                       : "; where a structure bears no more, analysis = \"path\" finds the limit and goes past it";
           return run_.stop(why + unheld(system, system.start));
         }
         ++run_.report.cuts;

@@ -2,12 +2,11 @@
 // Contacts: points of regions and bodies against obstacles that the ground or a body carries, and surfaces against each other
 // (system/surface_pair).  No rows, no events: forces of gaps that are closed at either end of the step (physics/contact).
 #pragma once
-#include <functional>
-
 #include "physics/contact/point_contact.hpp"
 #include "system/contribution.hpp"
 #include "system/revising.hpp"
 #include "system/surface_pair.hpp"
+#include "system/touching.hpp"
 
 namespace hilo {
 
@@ -43,7 +42,7 @@ struct ContactPair {
   ContactSums sums, next;
 };
 
-class Contacts final : public Contribution, public Equations, public Stateful, public Observer, public Revising {
+class Contacts final : public Contribution, public Equations, public Stateful, public Observer, public Revising, public Touching {
  public:
   Contacts(const Points& points, bool is_static) : points_(points), is_static_(is_static) {}
   std::vector<ContactPair> list;
@@ -67,16 +66,9 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   void observe(const Sight& at) override;
   void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override;
   void tie(Ties& ties) const override;
-  /// Of all ranks' meshes.
-  bool has_facets() const;
-  /// Pressure of the points of a facet [Pa], their shares of its nodes (points x nodes) and their areas [m^2].
-  struct Pressed {
-    std::span<const int> nodes;
-    Eigen::MatrixXd share;
-    Eigen::VectorXd pressure, area;
-  };
-  /// For each facet of this rank.
-  void each_facet(const Config& q, const std::function<void(const Pressed&)>& visit) const;
+  bool touches() const override { return !list.empty() || !surfaces.empty(); }
+  bool has_facets() const override;
+  void each_facet(const Config& q, const std::function<void(const Pressed&)>& visit) const override;
   /// The gap of a point, below zero where it is closed [m].
   double gap(const ContactPair& pair, const ContactPoint& point, const Config& q) const;
 

@@ -14,10 +14,9 @@
 #include <bit>
 #include <cmath>
 
-#include "system/contacts.hpp"
 #include "system/rigid_motion.hpp"
 #include "system/solids.hpp"
-#include "system/system.hpp"
+#include "system/touching.hpp"
 
 namespace hilo {
 namespace {
@@ -224,7 +223,7 @@ System::Loose System::loose(const Stage& stage, bool with_loads) const {
   resistance.n_clusters = n_clusters;
   pass.K = &resistance, pass.loads = with_loads;
   for (const Equations* equations : all<Equations>()) {
-    resistance.of_contacts = equations == &part<Contacts>();
+    resistance.of_contacts = dynamic_cast<const Touching*>(equations) != nullptr;
     equations->evaluate(pass);
   }
 

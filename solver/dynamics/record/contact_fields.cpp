@@ -4,7 +4,7 @@
 #include <Eigen/QR>
 
 #include "dynamics/record/fields.hpp"
-#include "system/contacts.hpp"
+#include "system/touching.hpp"
 
 namespace hilo {
 namespace {
@@ -15,11 +15,11 @@ class ContactFields final : public FieldSource {
   std::vector<Field> fields() const override { return {{.name = "contact_pressure", .label = "contact pressure [Pa]"}}; }
 
   void write(const Snapshot& at, FieldWriter& to) override {
-    const Contacts& contacts = system_.part<Contacts>();
-    if (!contacts.has_facets()) return;
+    const Touching* contacts = touching(system_);
+    if (!contacts || !contacts->has_facets()) return;
     const Slabs& rows = to.node_rows();
     std::vector<std::vector<double>> send(system_.comm->size);  // row, area times pressure, area
-    contacts.each_facet(at.q, [&](const Contacts::Pressed& facet) {
+    contacts->each_facet(at.q, [&](const Touching::Pressed& facet) {
       if (facet.pressure.maxCoeff() <= 0) return;  // around a corner, or beyond the border
       const Eigen::VectorXd pressure = of_nodes(facet);
       const double area = facet.area.sum();
@@ -44,7 +44,7 @@ class ContactFields final : public FieldSource {
 
  private:
   /// Of a plane in the reference, exact for pressures that are linear there.
-  Eigen::VectorXd of_nodes(const Contacts::Pressed& facet) const {
+  Eigen::VectorXd of_nodes(const Touching::Pressed& facet) const {
     const auto n = static_cast<Eigen::Index>(facet.nodes.size());
     Eigen::MatrixX3d X(n, 3);
     for (Eigen::Index a = 0; a < n; ++a) X.row(a) = system_.X[facet.nodes[static_cast<size_t>(a)]].transpose();

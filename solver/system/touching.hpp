@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What holds parts by touching them.
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <span>
+
+#include "system/system.hpp"
+
+namespace hilo {
+
+/// A role that a contribution may play besides those of contribution.hpp.
+class Touching {
+ public:
+  virtual ~Touching() = default;
+  /// Whether there is anything to touch; the same on all ranks.
+  virtual bool touches() const = 0;
+  /// Whether facets of the mesh do; the same on all ranks.
+  virtual bool has_facets() const = 0;
+  /// Pressure of the points of a facet [Pa], their shares of its nodes (points x nodes) and their areas [m^2].
+  struct Pressed {
+    std::span<const int> nodes;
+    Eigen::MatrixXd share;
+    Eigen::VectorXd pressure, area;
+  };
+  /// For each facet of this rank.
+  virtual void each_facet(const Config& q, const std::function<void(const Pressed&)>& visit) const = 0;
+};
+
+/// That of the scene, or null.
+inline const Touching* touching(const System& system) {
+  for (const auto& part : system.parts())
+    if (const auto* found = dynamic_cast<const Touching*>(part.get()); found && found->touches()) return found;
+  return nullptr;
+}
+
+}  // namespace hilo
