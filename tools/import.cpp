@@ -120,7 +120,8 @@ int main(int argc, char** argv) {
         ->type_name("N");
     app->add_option("--define", r.defines, "parameter of a .geo script, may be repeated")->type_name("NAME=VALUE")->allow_extra_args(false);
     app->add_flag("--trust", o.trust, "a .geo script may run commands, write files, read the environment and files of other folders");
-    app->add_flag("--thicken", o.thicken, "shells of a deck (S3 to S8R, CTRIA3 to CQUAD8) become solid-shells: pairs of nodes across the thickness");
+    app->add_flag("--thicken", o.thicken,
+                  "shells of a deck (S3 to S8R, CTRIA3 to CQUAD8) become solid-shells: pairs of nodes across the thickness");
     app->add_flag("--rigid-beams", o.rigid_beams,
                   "beams of a deck become cells of a region that can be rigid alone, not beams of the scene");
     app->add_option("--subcase", o.subcase,

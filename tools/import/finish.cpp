@@ -212,8 +212,8 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
   add_thin_moments(in, factor);
   for (size_t r = 0; r < in.thin_regions.size(); ++r)
     if (in.thin_regions[r].any())
-      in.notes.push_back(fmt::format(
-          "region \"{}\" has shells or beams: it can be rigid alone (--thicken makes solid-shells)", m.region_name[r]));
+      in.notes.push_back(
+          fmt::format("region \"{}\" has shells or beams: it can be rigid alone (--thicken makes solid-shells)", m.region_name[r]));
   if (in.n_beams > 0) in.notes.push_back(fmt::format("{} beams stand in the scene lines alone (--scene-out)", in.n_beams));
   tell_slivers(in);
   tell_untouched(in);

@@ -107,7 +107,8 @@ std::vector<Param> contact_keys() {
       {"b", text, "", "!", "what meets it: a region, a set of facets, or an obstacle of kind sphere or box on a body"},
       {"friction", number, "1", "0", "coefficient of friction", from_to(0, 5)},
       {"factor", number, "1", "1",
-       "on the stiffness, which is, of a region, E divided by the depth of the cell at the facet; absent in load steps: 100 where a part bends",
+       "on the stiffness, which is, of a region, E divided by the depth of the cell at the facet; absent in load steps: 100 where a part "
+       "bends",
        from_to(1e-3, 1000)},
       {"modulus", number, "Pa", "",
        "E* of the pair, 1/E* = (1 - nu_a^2)/E_a + (1 - nu_b^2)/E_b: of rigid surfaces with `layer`, or of a ball by its curvature (Hertz)",
