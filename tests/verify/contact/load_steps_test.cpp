@@ -154,7 +154,7 @@ TEST(LoadSteps, ABodyStandsOnThreeBalls) {
   double aside = 0;
   for (int k = 0; k < 3; ++k) {
     const Eigen::VectorXd f = last(r, fmt::format("contact/{}", k));
-    EXPECT_NEAR(f[2], weight[k], 2e-4 * weight[k]) << "the balls roll a little";
+    EXPECT_NEAR(f[2], weight[k], 5e-4 * weight[k]) << "the balls roll a little";
     EXPECT_NEAR(f[3], std::pow(f[2] / (4. / 3 * 1e9 * std::sqrt(0.1)), 2. / 3), 1e-6 * f[3]);
     aside += f[0];
   }
