@@ -9,6 +9,7 @@ W(P): work of P subdomains, measured in one process; undivided: the coarse probl
 "modelled: vehicle L": one million hexahedra, E = (W/P)/T, against the same work on one rank; work per unknown of the measured subdomains
 of that size (102, 51 and 25 thousand unknowns), iterations of P subdomains."""
 import csv
+import os
 import sys
 from math import log2
 
@@ -44,10 +45,8 @@ def efficiencies(rows):
         share = UNKNOWNS_L / UNKNOWNS_M * work / P
         yield P, "modelled: vehicle L", share / (IMBALANCE * share + serial[P]["undivided"] + exchange(P))
     yield 1, "measured", 1
-    if 2 in measured:
-        yield 2, "measured", one / (2 * measured[2])
-    if 4 in measured:
-        yield 4, "measured (4 ranks on 2 cores)", one / (4 * measured[4])
+    for P, work in measured.items():
+        yield P, "measured" if P <= os.cpu_count() else "measured, more ranks than cores", one / (P * work)
 
 
 def main():
