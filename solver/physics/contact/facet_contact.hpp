@@ -95,13 +95,13 @@ std::array<FacetGradient<T>, 2> slip_gradients(const OverTriangle<T>& m, const s
   return out;
 }
 
-/// The bristle after a slip sigma, shortened to mu p/kt unless it sticks, and its force along S.
+/// The bristle after a slip sigma, shortened to mu p/kt, and its force along S.
 template <class T>
-void bend(const PointLaw& law, const std::array<T, 2>& sigma, const std::array<FacetGradient<T>, 2>& S, const T& p, bool sticks,
-          const FacetPast& past, FacetForce<T>& out) {
+void bend(const PointLaw& law, const std::array<T, 2>& sigma, const std::array<FacetGradient<T>, 2>& S, const T& p, const FacetPast& past,
+          FacetForce<T>& out) {
   std::array<T, 2> u{T(past.bent[0]) + sigma[0], T(past.bent[1]) + sigma[1]};
-  const T limit = T(law.friction / law.kt) * p, square = u[0] * u[0] + u[1] * u[1];
-  if (!sticks && value(square) > value(limit) * value(limit)) {
+  const T limit = value(p) > 0 ? T(law.friction / law.kt) * p : T(0.0), square = u[0] * u[0] + u[1] * u[1];
+  if (value(square) > value(limit) * value(limit)) {
     const T size = sqrt(square);
     out.slid = value(size) - value(limit);
     u = {limit / size * u[0], limit / size * u[1]};
@@ -151,7 +151,7 @@ FacetForce<T> over_step(const PointLaw& law, const OverTriangle<double>& z0, con
   D.add(-p, out);
   out.pressing = value(p), out.normal = values(D.r), out.dissipated = lost;
   if (law.friction <= 0 || !(value(p) > 0)) return out;
-  bend(law, sigma, S, p, false, past, out);
+  bend(law, sigma, S, p, past, out);
   return out;
 }
 
@@ -163,8 +163,8 @@ void slow_down(FacetGradient<T>& D, double f) {
 }
 
 /// At the configuration z1 that a load step from z0 leads to: the gradient of the potential.  Where the gap is below `touch`, the law is
-/// taken as closed, and what touches sticks.  A guess may be far deeper than any answer, `deep`; the tangent then has no more of the
-/// stiffness of a turning normal than at that depth, as a matrix with all of it would not be definite.
+/// taken as closed: what touches without pressure sticks at no slip.  A guess may be far deeper than any answer, `deep`; the tangent then
+/// has no more of the stiffness of a turning normal than at that depth, as a matrix with all of it would not be definite.
 template <class T>
 FacetForce<T> at_end(const PointLaw& law, const OverTriangle<double>& z0, const OverTriangle<T>& z1, const FacetPast& past, double touch,
                      double deep) {
@@ -188,7 +188,7 @@ FacetForce<T> at_end(const PointLaw& law, const OverTriangle<double>& z0, const 
   std::array<T, 2> foot_of_mean;
   gap_gradient(mean, unit(cross(mean.t1, mean.t2)), foot_of_mean);
   const auto way = slip_gradients(mean, foot_of_mean), S = slip_gradients(z1, foot);
-  bend(law, {way[0](dz), way[1](dz)}, S, p, value(p) <= law.k * touch, past, out);
+  bend(law, {way[0](dz), way[1](dz)}, S, p, past, out);
   return out;
 }
 

@@ -49,16 +49,16 @@ struct PointForce {
   bool acts = false;
 };
 
-/// The bristle after the material point has gone `way` along an obstacle of normal out.n, shortened to mu p/kt unless it sticks.
+/// The bristle after the material point has gone `way` along an obstacle of normal out.n, shortened to mu p/kt.
 template <class T>
-void bend(const PointLaw& law, const Triple<T>& way, const Vec3& u0, const T& p, bool sticks, PointForce<T>& out) {
+void bend(const PointLaw& law, const Triple<T>& way, const Vec3& u0, const T& p, PointForce<T>& out) {
   if (law.friction <= 0) return;
   const Triple<T> bent = triple<T>(u0);
   const Triple<T> sigma = way - dot(out.n, way) * out.n;
   const Triple<T> trial = bent - dot(out.n, bent) * out.n + sigma;
-  const T limit = T(law.friction / law.kt) * p, square = dot(trial, trial);
+  const T limit = value(p) > 0 ? T(law.friction / law.kt) * p : T(0.0), square = dot(trial, trial);
   out.u = trial;
-  if (!sticks && value(square) > value(limit) * value(limit)) {
+  if (value(square) > value(limit) * value(limit)) {
     const T size = sqrt(square);
     out.u = (limit / size) * trial;
     out.slid = value(size) - value(limit);
@@ -97,13 +97,13 @@ PointForce<T> over_step(const Distance& shape, const PointLaw& law, const Vec3& 
   if (std::abs(value(rest)) > 1e-14 * (shape.extent() + x0.norm())) D = D + (rest / dot(dx, dx)) * dx;
   const T p = secant(law, g0, g1);
   out.normal = (-p) * D, out.pressing = value(p);
-  bend(law, way, u0, p, false, out);
+  bend(law, way, u0, p, out);
   return out;
 }
 
 /// At the measures x1 that a load step leads to: the gradient of the potential.  Where the gap is below `touch` [m], the law is taken as
-/// closed, and what touches sticks.  A guess may be far deeper than any answer, `deep` [m]; the tangent then has no more of the stiffness
-/// of a turning normal than at that depth.
+/// closed: what touches without pressure sticks at no slip.  A guess may be far deeper than any answer, `deep` [m]; the tangent then has no
+/// more of the stiffness of a turning normal than at that depth.
 template <class T>
 PointForce<T> at_end(const Distance& shape, const PointLaw& law, const Triple<T>& x1, const Triple<T>& way, const Vec3& u0, double touch,
                      double deep) {
@@ -124,7 +124,7 @@ PointForce<T> at_end(const Distance& shape, const PointLaw& law, const Triple<T>
   if (depth > deep)
     for (T& x : n.x) slow_down(x, deep / depth);
   out.normal = (-p) * n, out.pressing = value(p);
-  bend(law, way, u0, p, depth <= touch, out);
+  bend(law, way, u0, p, out);
   return out;
 }
 

@@ -106,6 +106,23 @@ TEST(LoadSteps, ABlockIsPressedAndPushed) {
   }
 }
 
+// Truth: mu p A, however many steps: points whose pressure passes zero slide in each of them.
+TEST(LoadSteps, ABlockSlidesInManySteps) {
+  OnPlane c(
+      "steps = 64\nend = 0.8\n[[motion]]\nkind = \"translation\"\nname = \"down\"\non = \"top\"\ncomponents = [\"z\"]\n"
+      "displacement = [0, 0, -1e-3]\nhistory = {t = [0, 0.5, 1], value = [0, 1, 1]}\n"
+      "[[motion]]\nkind = \"translation\"\nname = \"aside\"\non = \"top\"\ncomponents = [\"x\", \"y\"]\n"
+      "displacement = [0.03, 0.04, 0]\nhistory = {t = [0, 0.5, 1], value = [0, 0, 1]}\n"
+      "[set]\ntop = {kind = \"plane\", at = [0, 0, 1], axis = [0, 0, 1]}\nlow = {kind = \"plane\", at = [0, 0, -0.5], axis = [0, 0, 1]}\n"
+      "[[motion]]\nkind = \"fixed\"\nname = \"floor\"\non = \"low\"\n",
+      Shape::hex8, Fidelity::nonlinear);
+  c.add_base();
+  const Results r = c.run("--set contact.c.friction=0.3 --set 'contact.c.a=\"base\"'");
+  const Eigen::VectorXd f = last(r, "contact/c");
+  EXPECT_NEAR(std::hypot(f[0], f[1]), 0.3 * f[2], 5e-4 * f[2]);
+  EXPECT_LE(c.reported("steps"), 65);
+}
+
 // Truth: its weight.  Contact alone holds it, against what does not move: an obstacle, or a region that is held as a whole.
 TEST(LoadSteps, ABlockStands) {
   for (const bool on_region : {false, true}) {
