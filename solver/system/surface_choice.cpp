@@ -100,7 +100,7 @@ SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Pos
         if (const double when = crossing(p0, p1, v0, v1); when < soonest) soonest = when, first = {partner.face, t, true, true};
       const Beside at = beside(middle, {(1 - f) * v0[0] + f * v1[0], (1 - f) * v0[1] + f * v1[1], (1 - f) * v0[2] + f * v1[2]});
       const double slack = 1e-9 * least + 1e-12 * ball.radius;
-      if (at.distance > least + slack || (at.distance > least - slack && std::abs(at.gap) <= std::abs(gap))) continue;
+      if (at.distance > least + slack || (at.distance > least - slack && std::abs(at.gap) <= std::abs(gap) + slack)) continue;
       least = std::min(least, at.distance), gap = at.gap;
       nearest = {partner.face, t, false, at.edge < 0 && gap < 0 && -gap < margin / 2};
       const int edge = at.edge < 0 ? -1 : cut.on_edge[t][at.edge];

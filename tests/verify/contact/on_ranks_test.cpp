@@ -166,6 +166,16 @@ TEST(OnRanks, BlocksCollideWithFriction) {
   }
 }
 
+// Points of one block lie on the borders of the other one's triangles, and are as near to two of them.
+TEST(OnRanks, ABlockIsPushedInLoadSteps) {
+  BlockOptions A, B;
+  A.regions = {"A"}, B.regions = {"B"};
+  A.n[0] = A.n[1] = 4, A.low = Vec3(-0.5, -0.5, -0.5), A.high = Vec3(1.5, 1.5, 0);
+  B.n[0] = B.n[1] = 2, B.n[2] = 2;
+  expect_same_on(OnRanks({"contact", "pushed", "", together(block_mesh(A), block_mesh(B)), {nonlinear, nonlinear}}),
+                 {{2, by_parts}, {3, scattered}}, 1e-8, "pushed");
+}
+
 Mesh stack(bool bent) {
   BlockOptions A, B;
   A.regions = {"A"}, B.regions = {"B"};
