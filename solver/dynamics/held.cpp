@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "dynamics/newton.hpp"
+#include "system/touching.hpp"
 
 namespace hilo {
 namespace {
@@ -20,8 +21,12 @@ System::Loose loose(const System& system, const Config& q, double t, double ramp
 }  // namespace
 
 void require_held(const System& system, const Config& q, double t, double ramp, const std::string& where) {
-  if (const auto found = loose(system, q, t, ramp, true); !found.text.empty())
-    throw Error(where, found.text + ": a static analysis has no answer", "hold it by a motion, a joint or a spring");
+  if (const auto found = loose(system, q, t, ramp, true); !found.text.empty()) {
+    const Touching* contacts = touching(system);
+    const std::string apart = contacts ? contacts->apart(q) : "";
+    throw Error(where, found.text + ": a static analysis has no answer",
+                "hold it by a motion, a joint or a spring" + (apart.empty() ? "" : "; " + apart + ", and holds nothing before it touches"));
+  }
 }
 
 /// A translation that is free here is free for ever where joints and springs feel nothing of a long way along it.

@@ -17,7 +17,7 @@ namespace hilo {
 Stage Stability::stage(const Config& q, double mass) {
   combine(zero_, {{0, &q}});
   Stage s = stage_at(q, t_);
-  s.a = &zero_, s.load_factor = ramp_, s.elapsed = slow, s.mass_slope = mass;
+  s.a = &zero_, s.load_factor = ramp_, s.elapsed = slow, s.mass_slope = mass, s.fixed_friction = true;
   return s;
 }
 
@@ -77,7 +77,7 @@ std::string Stability::told(const Unstable& u) const {
 
 std::optional<Unstable> Stability::look(const Config& q, const std::vector<double>& lambda) {
   const std::optional<int> found = below(q, lambda, 0);
-  known_ = found.has_value(), factored_ = found == 0;
+  known_ = found.has_value(), factored_ = found == 0 && !system_.traits().slides;
   if (!found || *found == 0) return {};
   Unstable out;
   out.motions = *found;

@@ -140,6 +140,23 @@ bool Contacts::has_facets() const {
   return !surfaces.empty() || std::ranges::any_of(list, [](const ContactPair& pair) { return pair.has_facets; });
 }
 
+std::string Contacts::apart(const Config& q) const {
+  std::vector<double> gaps;
+  for (const ContactPair& pair : list) {
+    gaps.push_back(1e300);
+    for (const ContactPoint& point : pair.points) gaps.back() = std::min(gaps.back(), gap(pair, point, q) - touch(point));
+  }
+  for (const SurfacePair& pair : surfaces) gaps.push_back(pair.least_gap(q));
+  for (double& g : gaps) g = -g;
+  points_.comm->max(gaps);
+  std::string out;
+  for (size_t k = 0; k < gaps.size(); ++k)
+    if (const double g = -gaps[k]; g > 0 && g < 1e299)
+      out += fmt::format("{}contact \"{}\" begins {:.3g} m apart", out.empty() ? "" : ", ",
+                         k < list.size() ? list[k].name : surfaces[k - list.size()].name, g);
+  return out;
+}
+
 void Contacts::each_facet(const Config& q, const std::function<void(const Pressed&)>& visit) const {
   const auto of_facet = [&](std::span<const int> nodes, const auto& points, const auto& pressing) {
     const auto n = static_cast<Eigen::Index>(points.size()), m = static_cast<Eigen::Index>(nodes.size());

@@ -17,8 +17,11 @@ namespace hilo {
 using Rows12 = Eigen::Matrix<double, 3, 12>;
 
 Traits Contacts::traits() const {
-  const bool slides = std::ranges::any_of(list, [](const ContactPair& pair) { return pair.friction > 0; });
-  return {.remembers = slides || !surfaces.empty(), .searches = !surfaces.empty(), .reaches = !surfaces.empty()};
+  const bool bends = std::ranges::any_of(list, [](const ContactPair& pair) { return pair.friction > 0; });
+  return {.remembers = bends || !surfaces.empty(),
+          .searches = !surfaces.empty(),
+          .slides = bends || !surfaces.empty(),
+          .reaches = !surfaces.empty()};
 }
 
 std::string Contacts::count() const {
@@ -66,9 +69,9 @@ double Contacts::gap(const ContactPair& pair, const ContactPoint& point, const C
 }
 
 template <class T>
-PointForce<T> Contacts::force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1,
-                              const Triple<T>& way) const {
-  return is_static_ ? at_end(pair.shape, point.law, x1, way, point.u, touch(point), point.deep)
+PointForce<T> Contacts::force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way,
+                              bool fixed) const {
+  return is_static_ ? at_end(pair.shape, point.law.with_fixed(fixed), x1, way, point.u, touch(point), point.deep)
                     : over_step(pair.shape, point.law, x0, x1, way, point.u);
 }
 
@@ -155,7 +158,7 @@ void Contacts::add_tangent(Pass& p, const ContactPair& pair, const ContactPoint&
     Triple<T> x1 = triple<T>(at.x1), way = triple<T>(at.x1 - at.x0 + at.way);
     for (int i = 0; i < 3; ++i) x1[i].d[i] = 1, way[i].d[N - 3 + i] = 1;
     const auto f = [&] {
-      if (!is_start(s)) return force(pair, point, at.x0, x1, way);
+      if (!is_start(s)) return force(pair, point, at.x0, x1, way, s.fixed_friction);
       const Triple<T> x = s.e0 == s.e1 ? x1 : T(1 - s.weight) * triple<T>(at.x0) + T(s.weight) * x1;
       return at_rest(pair.shape, point.law, x, point.u);
     }();

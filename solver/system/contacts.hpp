@@ -68,6 +68,7 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   void tie(Ties& ties) const override;
   bool touches() const override { return !list.empty() || !surfaces.empty(); }
   bool has_facets() const override;
+  std::string apart(const Config& q) const override;
   void each_facet(const Config& q, const std::function<void(const Pressed&)>& visit) const override;
   /// The gap of a point, below zero where it is closed [m].
   double gap(const ContactPair& pair, const ContactPoint& point, const Config& q) const;
@@ -86,7 +87,8 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   };
   Place place(const ContactPair& pair, const ContactPoint& point, const Stage& s) const;
   template <class T>
-  PointForce<T> force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way) const;
+  PointForce<T> force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way,
+                      bool fixed = false) const;
   Vec3 position(const ContactPair& pair, const ContactPoint& point, const Config& q) const;
   Vec3 measures(const ContactPair& pair, const Vec3& x, const Config& q) const;
   void add_tangent(Pass& p, const ContactPair& pair, const ContactPoint& point, const Place& at, int clique) const;

@@ -64,8 +64,8 @@ void SurfacePair::add_tangent(Pass& p, int k, const SurfacePoint& point) const {
   };
   const OverTriangle<T> z{seeded(z1.r, 0), seeded(z1.t1, 3), seeded(z1.t2, 6)};
   const OverTriangle<double> z0 = over(k, point, point.now, begin(s));
-  const FacetForce<T> f =
-      s.conserving() ? over_step(point.law, z0, z, point.now.past) : at_end(point.law, z0, z, point.now.past, touch(point), deep(point));
+  const FacetForce<T> f = s.conserving() ? over_step(point.law, z0, z, point.now.past)
+                                         : at_end(point.law.with_fixed(s.fixed_friction), z0, z, point.now.past, touch(point), deep(point));
   Side9 K9;
   for (int i = 0; i < 3; ++i) K9.row(i) = f.on_point[i].d, K9.row(3 + i) = f.on_second[i].d, K9.row(6 + i) = f.on_third[i].d;
   K9 *= s.chain;

@@ -158,6 +158,14 @@ std::optional<Vec3> SurfacePair::starts_inside(int s, const Config& q) const {
   return std::nullopt;
 }
 
+double SurfacePair::least_gap(const Config& q) const {
+  double least = 1e300;
+  for (int s = 0; s < 2; ++s)
+    for (const SurfacePoint& point : side[s].points)
+      if (point.now.face >= 0) least = std::min(least, gap_of(over(s, point, point.now, q.x)) - touch(point));
+  return least;
+}
+
 std::optional<SurfacePair::Deep> SurfacePair::deepest_start(const Config& q) {
   search(q, nullptr, 0);
   std::optional<Deep> out;

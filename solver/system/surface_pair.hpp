@@ -58,6 +58,8 @@ class SurfacePair {
     Vec3 at;
   };
   std::optional<Deep> deepest_start(const Config& q);
+  /// Over the points that face the other side, less what counts as touching [m]; 1e300: none does.
+  double least_gap(const Config& q) const;
   /// A point of side s that starts within the other side, as far from its facets as may be; that side is closed.
   std::optional<Vec3> starts_inside(int s, const Config& q) const;
 

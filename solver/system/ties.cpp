@@ -19,7 +19,7 @@ void Ties::connect(int a, int b) { parent_[root(a)] = root(b); }
 Traits& Traits::operator|=(const Traits& o) {
   deforms |= o.deforms, constrains |= o.constrains, has_rates |= o.has_rates;
   is_pressed |= o.is_pressed, is_driven |= o.is_driven, remembers |= o.remembers, searches |= o.searches;
-  is_thin |= o.is_thin, lumps_masses |= o.lumps_masses, reaches |= o.reaches;
+  is_thin |= o.is_thin, lumps_masses |= o.lumps_masses, slides |= o.slides, reaches |= o.reaches;
   return *this;
 }
 

@@ -17,6 +17,8 @@ class Touching {
   virtual bool touches() const = 0;
   /// Whether facets of the mesh do; the same on all ranks.
   virtual bool has_facets() const = 0;
+  /// Which of its pairs are known to be apart, and by how much: "contact "c" begins 1e-05 m apart", or "".  Collective.
+  virtual std::string apart(const Config& q) const = 0;
   /// Pressure of the points of a facet [Pa], their shares of its nodes (points x nodes) and their areas [m^2].
   struct Pressed {
     std::span<const int> nodes;

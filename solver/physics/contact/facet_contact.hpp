@@ -100,7 +100,7 @@ template <class T>
 void bend(const PointLaw& law, const std::array<T, 2>& sigma, const std::array<FacetGradient<T>, 2>& S, const T& p, const FacetPast& past,
           FacetForce<T>& out) {
   std::array<T, 2> u{T(past.bent[0]) + sigma[0], T(past.bent[1]) + sigma[1]};
-  const T limit = value(p) > 0 ? T(law.friction / law.kt) * p : T(0.0), square = u[0] * u[0] + u[1] * u[1];
+  const T limit = law.limit(p), square = u[0] * u[0] + u[1] * u[1];
   if (value(square) > value(limit) * value(limit)) {
     const T size = sqrt(square);
     out.slid = value(size) - value(limit);

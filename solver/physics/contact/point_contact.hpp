@@ -17,7 +17,18 @@ struct PointLaw {
   double kt = 0;        // [N/m]
   double friction = 0;  // coefficient
   double radius = 0;    // of the ball that the point is the centre of [m]
+  bool fixed = false;   // tangents without the change of mu p
   double potential(double gap) const;
+  /// How far the bristle bends at most, mu p/kt [m].
+  template <class T>
+  T limit(const T& p) const {
+    return value(p) > 0 ? T(friction / kt) * (fixed ? T(value(p)) : p) : T(0.0);
+  }
+  PointLaw with_fixed(bool is_fixed) const {
+    PointLaw out = *this;
+    out.fixed = is_fixed;
+    return out;
+  }
 };
 
 /// -dV/dgap > 0 as a quotient over the step.
@@ -56,7 +67,7 @@ void bend(const PointLaw& law, const Triple<T>& way, const Vec3& u0, const T& p,
   const Triple<T> bent = triple<T>(u0);
   const Triple<T> sigma = way - dot(out.n, way) * out.n;
   const Triple<T> trial = bent - dot(out.n, bent) * out.n + sigma;
-  const T limit = value(p) > 0 ? T(law.friction / law.kt) * p : T(0.0), square = dot(trial, trial);
+  const T limit = law.limit(p), square = dot(trial, trial);
   out.u = trial;
   if (value(square) > value(limit) * value(limit)) {
     const T size = sqrt(square);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Obstacles in load steps: closed forms of what rests, is pressed and is pushed.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -180,5 +181,41 @@ TEST(LoadSteps, ABodyStandsOnThreeBalls) {
   EXPECT_EQ(slides.exit, 3) << slides.err;
   EXPECT_NE(slides.err.find("a part may slide where friction holds no more"), std::string::npos) << slides.err;
 }
+// Truth: Stribeck.  A ring of Z balls without play, each as stiff against either race: the ball at an angle psi from the load bears
+// 4 F/Z cos(psi), those above it nothing.  Friction alone keeps balls from rolling away.
+TEST(LoadSteps, ABallBearing) {
+  constexpr int Z = 12;
+  constexpr double r = 0.01, inner = 0.05, F = 1000;
+  const Case c("contact");
+  std::string text = fmt::format(
+      "[[body]]\nname = \"shaft\"\nmass = 1\ncom = [0, 0, 0]\ninertia = [1e-3, 1e-3, 1e-3]\n"
+      "[[obstacle]]\nkind = \"cylinder\"\nname = \"outer\"\naxis = [0, 0, 1]\nradius = {}\ninside = true\n"
+      "[[obstacle]]\nkind = \"cylinder\"\nname = \"inner\"\non = \"shaft\"\naxis = [0, 0, 1]\nradius = {}\n"
+      "[[joint]]\nkind = \"planar\"\nname = \"flat\"\na = \"ground\"\nb = \"shaft\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n"
+      "[[spring]]\nkind = \"bushing\"\nname = \"twist\"\nb = \"shaft\"\nat = [0, 0, 0]\nangular_stiffness = [0, 0, 1]\n"
+      "[[load]]\nkind = \"force\"\nname = \"push\"\non = \"shaft\"\nforce = [{}, 0, 0]\n[time]\nanalysis = \"static\"\nsteps = 4\n",
+      inner + 2 * r, inner, F);
+  for (int i = 0; i < Z; ++i) {
+    const double psi = 2 * std::numbers::pi * i / Z, x = (inner + r) * std::cos(psi), y = (inner + r) * std::sin(psi);
+    text += fmt::format(
+        "[[body]]\nname = \"ball {0}\"\nmass = 0.03\ncom = [{1}, {2}, 0]\ninertia = [1e-6, 1e-6, 1e-6]\n"
+        "[[obstacle]]\nkind = \"sphere\"\nname = \"surface {0}\"\non = \"ball {0}\"\nat = [{1}, {2}, 0]\nradius = {3}\n"
+        "[[spring]]\nkind = \"bushing\"\nname = \"cage {0}\"\nb = \"ball {0}\"\nat = [{1}, {2}, 0]\nstiffness = [1, 1, 1]\n"
+        "angular_stiffness = [1e-3, 1e-3, 1e-3]\n",
+        i, x, y, r);
+    for (const char* race : {"outer", "inner"})
+      text += fmt::format("[[contact]]\nname = \"{0} {1}\"\na = \"{0}\"\nb = \"surface {1}\"\nstiffness = 1e8\nfriction = 0.1\n", race, i);
+  }
+  c.write("scene.toml", text);
+  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Results run(c / "run.h5");
+  for (int i = 0; i < Z; ++i)
+    for (const char* race : {"outer", "inner"})
+      EXPECT_NEAR(last(run, fmt::format("contact/{} {}", race, i)).head<3>().norm(),
+                  4 * F / Z * std::max(0.0, std::cos(2 * std::numbers::pi * i / Z)), 1e-6 * F)
+          << race << " " << i;
+}
+
 }  // namespace
 }  // namespace hilo::test::load_steps_test
