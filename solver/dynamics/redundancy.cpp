@@ -27,7 +27,9 @@ enum class Rows { all, active, plain };  // plain: all but those of drives
 
 UnitRows unit_rows(const System& system, const Config& q, Rows which) {
   UnitRows out;
-  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<int> start{0}, place;
+  std::vector<double> value;
+  std::vector<std::pair<int, double>> entries;
   const auto constraints = system.constraints();
   for (size_t j = 0; j < constraints.size(); ++j) {
     const Constraint& c = *constraints[j];
@@ -39,12 +41,20 @@ UnitRows unit_rows(const System& system, const Config& q, Rows which) {
       const double norm = G.row(r).norm();
       for (Eigen::Index i = 0; i < G.cols(); ++i)
         if (const double x = norm > 0 ? G(r, i) / norm : 0; std::abs(x) > 1e-14)
-          entries.emplace_back(3 * blocks[i / 3] + static_cast<int>(i % 3), static_cast<int>(out.rows.size()), x);
+          entries.emplace_back(3 * blocks[i / 3] + static_cast<int>(i % 3), x);
+      std::sort(entries.begin(), entries.end());
+      for (const auto& [at, x] : entries)
+        if (static_cast<int>(place.size()) > start.back() && place.back() == at)
+          value.back() += x;
+        else
+          place.push_back(at), value.push_back(x);
+      start.push_back(static_cast<int>(place.size())), entries.clear();
       out.rows.emplace_back(static_cast<int>(j), r), out.norm.push_back(norm);
     }
   }
-  out.A.resize(3 * static_cast<Eigen::Index>(system.n_blocks()), static_cast<Eigen::Index>(out.rows.size()));
-  out.A.setFromTriplets(entries.begin(), entries.end());
+  out.A = Eigen::Map<const Eigen::SparseMatrix<double>>(3 * static_cast<Eigen::Index>(system.n_blocks()),
+                                                        static_cast<Eigen::Index>(out.rows.size()), start.back(), start.data(),
+                                                        place.data(), value.data());
   return out;
 }
 
@@ -128,24 +138,26 @@ class Nearest {
  public:
   static constexpr double mu = 1e-10;  // far below the square of `aside`, which rows that are independent beside q alone have
   bool factor(const Eigen::SparseMatrix<double>& A, const Eigen::VectorXd& plane) {
-    A_ = &A, plane_ = plane;
     Eigen::SparseMatrix<double> K = A * Eigen::SparseMatrix<double>(A.transpose()), I(K.rows(), K.cols());
     I.setIdentity();
     K += mu * I;
     if (!factors_.factor(K)) return false;
-    if (plane_.size() > 0) through_ = factors_.solve(plane_);
+    stay_in(plane);
     return true;
+  }
+  void stay_in(const Eigen::VectorXd& plane) {
+    plane_ = plane;
+    if (plane_.size() > 0) through_ = factors_.solve(plane_);
   }
   /// The part of y that the rows leave.
   Eigen::VectorXd left_of(const Eigen::VectorXd& y) const { return mu * factors_.solve(y); }
-  /// A (A^T A)^-1 b, without what leaves the plane.
-  Eigen::VectorXd operator()(const Eigen::VectorXd& b) const {
-    const Eigen::VectorXd y = factors_.solve(*A_ * b);
+  /// A (A^T A)^-1 b, without what leaves the plane; A may be of a pose beside the one factored.
+  Eigen::VectorXd operator()(const Eigen::SparseMatrix<double>& A, const Eigen::VectorXd& b) const {
+    const Eigen::VectorXd y = factors_.solve(A * b);
     return y - plane_.dot(y) / (1 + plane_.dot(through_)) * through_;
   }
 
  private:
-  const Eigen::SparseMatrix<double>* A_ = nullptr;
   Eigen::VectorXd plane_, through_;  // its normal, and that through the factors
   SparseCholesky factors_;
 };
@@ -157,23 +169,34 @@ const double independent_beside =
 
 /// A pose beside q that these rows allow, along the part of `direction` that they leave; nothing where they leave none or do not close.
 /// The increments that close them stay in the plane `far` ahead, or branches would draw them back to q, where all of them meet.
-std::optional<Config> beside(const System& system, const Config& q, const Eigen::VectorXd& direction, double t, double far, Rows rows) {
+/// `at_q`: the factors of these rows at q, if they are made already; they serve beside q too while gaps close by tenths.
+std::optional<Config> beside(const System& system, const Config& q, const Eigen::VectorXd& direction, double t, double far, Rows rows,
+                             Nearest* at_q = nullptr) {
   constexpr int iterations = 40;
-  UnitRows unit = unit_rows(system, q, rows);
-  Nearest nearest;
-  if (!nearest.factor(unit.A, {})) return {};
+  UnitRows unit;
+  Nearest own;
+  Nearest& nearest = at_q ? *at_q : own;
+  if (!at_q && !nearest.factor(unit_rows(system, q, rows).A, {})) return {};
   Eigen::VectorXd y = nearest.left_of(direction);
   if (!(y.norm() > 1e-6 * direction.norm())) return {};
   y *= far * system.length / y.cwiseAbs().maxCoeff();
   const Eigen::VectorXd plane = y.normalized();
   Config out = q;
   displace(system, out, y);
+  if (at_q) nearest.stay_in(plane);
+  double before = at_q ? 1e300 : 0;
   for (int k = 0; k < iterations; ++k) {
     unit = unit_rows(system, out, rows);
     const Eigen::VectorXd g = gaps(system, unit, out, t);
-    if (g.size() == 0 || g.cwiseAbs().maxCoeff() < 1e-14 * system.length) return out;
-    if (!nearest.factor(unit.A, plane)) return {};
-    displace(system, out, -nearest(g));
+    const double now = g.size() == 0 ? 0 : g.cwiseAbs().maxCoeff();
+    if (now < 1e-14 * system.length) return out;
+    if (!(now < before / 10)) {
+      if (at_q) return beside(system, q, direction, t, far, rows);  // these factors do not serve
+      if (!nearest.factor(unit.A, plane)) return {};
+    } else {
+      before = now;
+    }
+    displace(system, out, -nearest(unit.A, g));
   }
   const Eigen::VectorXd g = gaps(system, unit_rows(system, out, rows), out, t);
   if (g.cwiseAbs().maxCoeff() < 1e-12 * system.length) return out;
@@ -221,9 +244,12 @@ Redundancy drop_redundant_rows(System& system, const Config& q, double t) {
   // Rows that depend on others at q alone open with the square of the way aside, redundant ones do not.  A branch that closes all of them
   // tells which are independent along it: more than at q, and fewer than at any pose off the branches.
   const std::vector<Active> at_pose = active_rows(system);
+  constexpr int many = 1000;  // rows
+  Nearest at_q;
+  const bool shares = here.rank > many && at_q.factor(unit_rows(system, q, Rows::active).A, {});
   for (unsigned seed = 1; seed <= 2; ++seed) {
     const Eigen::VectorXd direction = some_direction(system, seed);
-    std::optional<Config> near = beside(system, q, direction, t, aside, Rows::active);
+    std::optional<Config> near = beside(system, q, direction, t, aside, Rows::active, shares ? &at_q : nullptr);
     if (!near) break;
     const UnitRows all = unit_rows(system, *near, Rows::all);
     const Eigen::VectorXd g = gaps(system, all, *near, t);
