@@ -29,7 +29,7 @@ class KeptEntries {
   }
   /// A new pattern, with these entries too.
   void widen(const BlockCsr& A) {
-    if (++n_patterns_ >= (A.n() < large ? most_patterns : most_of_large)) kept_.assign(A.values().size(), 1);
+    if (++n_patterns_ == most_patterns) kept_.assign(A.values().size(), 1);
     find_pattern(A), gather(A);
   }
 
@@ -51,8 +51,7 @@ class KeptEntries {
     value_.resize(column_.size());
   }
 
-  static constexpr int most_patterns = 20, most_of_large = 4;  // before all entries are taken
-  static constexpr int large = 30000;                          // unknowns, whose orders cost as much as some steps
+  static constexpr int most_patterns = 20;  // before all entries are taken
   int n_patterns_ = 0;
   std::vector<char> kept_;  // of the matrix's entries
   std::vector<int> place_;  // of the pattern's among them
