@@ -29,6 +29,12 @@ Registry<SolverKind>& solver_kinds() {
   return kinds;
 }
 
+std::int64_t most_factored(const System& system) {
+  constexpr std::int64_t of_cells = 300000, of_bodies = 3000000;
+  const BlockMap& map = system.layout.map;
+  return system.comm->size == 1 && 2 * map.first_dense < map.n_global ? of_bodies : of_cells;
+}
+
 void add_solver(const SolverKind& kind) {
   words_of("solver", "kind")->add({kind.name});
   solver_kinds().add(kind);
@@ -43,7 +49,7 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
     kind = "klu", why = "nothing is free to move";
   } else if (kind == "auto") {
     kind = system.comm->size > 1 ? "direct" : "light";
-    if (unknowns > 300000) kind = "cg";
+    if (unknowns > most_factored(system)) kind = "cg";
     const std::int64_t ranks = system.comm->size, flexible = 3 * system.layout.map.first_dense;
     const auto held = system.comm->sum(std::count_if(system.node_block.begin(), system.node_block.end(), [](int k) { return k >= 0; }));
     const bool is_far = ranks >= 2 && system.traits().reaches;

@@ -113,12 +113,12 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
   std::vector<double> best;
   Eigen::VectorXd left;  // of f by the best
   // conjugate gradients on G^T G y = f: a few, as the factors err by their shift alone; at round-off they would go astray
-  const auto find = [&] {
+  const auto find = [&](int passes, double enough) {
     std::vector<double> out(lambda.size(), 0.0);
     Eigen::VectorXd r = f, z(f.size()), p = Eigen::VectorXd::Zero(f.size());
     best = out, left = r;
     double before = 1;
-    for (int pass = 0, since = 0; pass < 50 && since < 3 && left.norm() > 1e-15 * size; ++pass) {
+    for (int pass = 0, since = 0; pass < passes && since < 3 && left.norm() > 1e-15 * size; ++pass) {
       factors_->solve(r.data(), z.data());
       const double now = r.dot(z);
       if (!(now > 0)) break;
@@ -130,9 +130,15 @@ std::vector<double> MinimumNorm::operator()(const Stage& stage, std::span<const 
       ++since;
       if (r.norm() < left.norm()) best = out, left = r, since = 0;
     }
-    return left.norm() <= 1e-8 * size;
+    return left.norm() <= enough * size;
   };
-  if ((factors_->refactor(A_) && find()) || (factors_->factor(A_) && find())) return best;  // old pivots may be bad ones
+  constexpr int most = 50, lagging = 10;
+  if (serves_ && find(lagging, 1e-12)) return best;
+  serves_ = false;
+  if ((factors_->refactor(A_) && find(most, 1e-8)) || (factors_->factor(A_) && find(most, 1e-8))) {  // old pivots may be bad ones
+    serves_ = A_.n_blocks() >= klu_below;
+    return best;
+  }
   Eigen::Index worst = 0;
   if (left.size() > 0) left.cwiseAbs().maxCoeff(&worst);
   int j = 0;

@@ -24,6 +24,7 @@ class MinimumNorm {
   Cliques cliques_;  // of joints
   BlockCsr A_;       // G^T G, scaled and shifted
   std::unique_ptr<Factors> factors_;
+  bool serves_ = false;  // the factors of an instant before, of many unknowns: a few more passes cost less than factors
   bool told_ = false;
 };
 

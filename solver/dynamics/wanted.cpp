@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "base/free_memory.hpp"
+#include "dynamics/choose_solver.hpp"
 #include "dynamics/record/fields.hpp"
 #include "linear/front_order.hpp"
 #include "model/schema.hpp"
@@ -74,8 +75,8 @@ Wanted wanted(const Scene& scene, const System& system) {
   const Entry &time = scene.table("time"), &output = scene.table("output");
   const std::string& solver = scene.table("solver").text("kind");
   const std::int64_t unknowns = 3 * system.layout.map.n_global;
-  const bool factored =
-      solver == "light" || solver == "klu" || solver == "cholesky" || solver == "umfpack" || (solver == "auto" && unknowns <= 300000);
+  const bool factored = solver == "light" || solver == "klu" || solver == "cholesky" || solver == "umfpack" ||
+                        (solver == "auto" && unknowns <= most_factored(system));
   if (system.comm->size == 1 && factored) w.memory = resident() + solver_bytes(system);
   w.per_step = 8 * 12;
   for (const Observer* part : system.all<Observer>())

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "base/error.hpp"
 
@@ -27,10 +28,8 @@ std::vector<std::int64_t> Mesh::facet_nodes(const Facet& f) const {
 }
 
 std::vector<std::int64_t> Mesh::nodes_of(const std::string& name, const std::string& where) const {
-  std::vector<char> in(X.size(), 0);
-  const auto take = [&](std::span<const std::int64_t> list) {
-    for (const auto n : list) in[n] = 1;
-  };
+  std::vector<std::int64_t> out;
+  const auto take = [&](std::span<const std::int64_t> list) { out.insert(out.end(), list.begin(), list.end()); };
   if (const int r = find_region(name); r >= 0) {
     for (std::int64_t c = 0; c < n_cells(); ++c)
       if (region[c] == r) take(cell(c));
@@ -43,15 +42,26 @@ std::vector<std::int64_t> Mesh::nodes_of(const std::string& name, const std::str
   } else {
     throw Error(where, fmt::format("no region or set \"{}\" in the mesh", name), suggest(name, all_names()));
   }
-  std::vector<std::int64_t> out;
-  for (size_t n = 0; n < in.size(); ++n)
-    if (in[n]) out.push_back(static_cast<std::int64_t>(n));
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 
 int Mesh::find_region(std::string_view name) const {
-  const auto at = std::find(region_name.begin(), region_name.end(), name);
-  return at == region_name.end() ? -1 : static_cast<int>(at - region_name.begin());
+  constexpr size_t many = 100;
+  if (region_name.size() < many) {
+    const auto at = std::find(region_name.begin(), region_name.end(), name);
+    return at == region_name.end() ? -1 : static_cast<int>(at - region_name.begin());
+  }
+  // the numbers of the list asked for last: it is the same one for thousands of names, none of which changes meanwhile
+  thread_local std::unordered_map<std::string, int> number;
+  thread_local const std::string* list = nullptr;
+  if (list != region_name.data() || number.size() != region_name.size()) {
+    number.clear(), list = region_name.data();
+    for (size_t r = 0; r < region_name.size(); ++r) number.emplace(region_name[r], static_cast<int>(r));
+  }
+  const auto at = number.find(std::string(name));
+  return at == number.end() ? -1 : at->second;
 }
 
 std::vector<std::string> Mesh::all_names() const {

@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 #include "base/error.hpp"
@@ -168,11 +169,13 @@ std::vector<Fidelity> fidelity_by_name(const Store& tags, const std::vector<std:
   }
   const auto names = tags.read_strings("/tags/region");
   check_size(tags, "/tags/fidelity", words.size(), names.size());
+  std::unordered_map<std::string_view, size_t> number;
+  for (size_t k = 0; k < names.size(); ++k) number.emplace(names[k], k);
   for (size_t r = 0; r < regions.size(); ++r) {
-    const auto at = std::ranges::find(names, regions[r]);
-    if (at == names.end())
+    const auto at = number.find(regions[r]);
+    if (at == number.end())
       throw Error(source, fmt::format("no tag for the region \"{}\" of the mesh", regions[r]), "the mesh has changed: tag it again");
-    levels[r] = fidelity_of(words[static_cast<size_t>(at - names.begin())], tags.path());
+    levels[r] = fidelity_of(words[at->second], tags.path());
   }
   return levels;
 }

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
 
 #include "model/scene_read.hpp"
 
@@ -35,10 +36,12 @@ void check_ends(const Entry& e) {
 }
 
 void check_bodies(std::span<const Entry> bodies, std::span<const Entry> regions) {
+  std::map<std::string_view, const Entry*> named;
+  for (const auto& r : regions) named.emplace(r.name, &r);
   for (const auto& b : bodies) {
     if (b.name == "ground") fail(b, "name", "\"ground\" is the inertial frame", "give the body another name");
-    for (const auto& r : regions)
-      if (r.name == b.name) fail(b, "name", "a region has the same name", "first at " + r.place.text());
+    if (const auto r = named.find(b.name); r != named.end())
+      fail(b, "name", "a region has the same name", "first at " + r->second->place.text());
     const auto& J = b.numbers("inertia");
     if (std::min({J[0], J[1], J[2]}) < 0) fail(b, "inertia", "a moment of inertia is negative");
     if (!b.has("axes")) continue;

@@ -26,8 +26,14 @@ std::string one_of(const std::string& name, const std::vector<std::string>& cand
 
 /// The kind a table says it is, among those its section has.
 const KindSchema& kind_of(std::string_view section, const toml::table& table, const std::string& label, const Place& place) {
+  const auto& all = scene_schema();
+  const auto given = table["kind"].value<std::string_view>();
+  for (bool first = true; const auto& s : all) {
+    if (s.section != section) continue;
+    if ((first && s.kind.empty()) || (given && s.kind == *given)) return s;
+    first = false;
+  }
   const auto kinds = kinds_of(section);
-  if (kinds.front()->kind.empty()) return *kinds.front();
   std::vector<std::string> names;
   for (const auto* k : kinds) names.emplace_back(k->kind);
   const auto items = in_file_order(table);
@@ -130,7 +136,9 @@ Entry read_entry(std::string_view section, const toml::table& table, const std::
     if (entry.values.contains(param.key) || param.fallback.empty()) continue;
     if (param.fallback == "!")
       throw Error(place.text(), fmt::format("{}: \"{}\" is missing", label, param.key), std::string(param.meaning));
-    Value v = default_value(param);
+    std::optional<Value>& known = around.known[&param].fallback;
+    if (!known) known = default_value(param);
+    Value v = *known;
     v.place = place;
     entry.values.emplace(param.key, std::move(v));
   }
@@ -145,7 +153,7 @@ Entries read_sections(const toml::table& root, Surroundings& around) {
   // The units first, since all else depends on them; then the histories, which others name.
   for (const auto& item : items) {
     if (std::find(names.begin(), names.end(), item.key) != names.end()) continue;
-    const auto scene = kinds_of("scene").front()->params;
+    const auto& scene = kinds_of("scene").front()->params;
     const bool known = std::any_of(scene.begin(), scene.end(), [&](const Param& p) { return p.key == item.key; });
     if (!known && (item.node->is_table() || item.node->is_array_of_tables())) {
       throw Error(item.place.text(), fmt::format("unknown section \"{}\"", item.key), one_of(item.key, names, "sections"));

@@ -3,7 +3,9 @@
 #pragma once
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "model/scene_toml.hpp"
@@ -16,6 +18,13 @@ using Entries = std::map<std::string, std::vector<Entry>, std::less<>>;
 struct Surroundings {
   std::string file, folder, units = "m-kg-s";
   std::map<std::string, History, std::less<>> histories;  // of the [history.NAME] tables
+  /// What a parameter of the schema is found to say, once for all entries.
+  struct Known {
+    std::optional<double> factor;  // to SI
+    std::vector<std::string> choices;
+    std::optional<Value> fallback;
+  };
+  mutable std::unordered_map<const Param*, Known> known;
 };
 
 /// Check a TOML value against its parameter and convert it to SI; `label` says whose value it is.

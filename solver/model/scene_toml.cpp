@@ -221,8 +221,7 @@ void apply_override(toml::table& root, const std::string& option) {
 }
 
 std::string toml_text(const toml::table& root) {
-  toml::table rest = root;
-  std::ostringstream regions;
+  std::ostringstream out, regions;
   if (const auto* group = root["region"].as_table()) {
     for (const auto& item : in_file_order(*group)) {
       toml::table one, outer;
@@ -231,10 +230,12 @@ std::string toml_text(const toml::table& root) {
       outer.insert("region", one);
       regions << "\n\n" << outer;
     }
+    toml::table rest = root;
     rest.erase("region");
+    out << rest << regions.str() << "\n";
+  } else {
+    out << root << "\n";
   }
-  std::ostringstream out;
-  out << rest << regions.str() << "\n";
   return out.str();
 }
 

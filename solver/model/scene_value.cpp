@@ -18,6 +18,7 @@ struct Reading {
   const Item& item;
   const std::string& label;
   const Surroundings& around;
+  const Surroundings::Known& known;
 
   [[noreturn]] void fail(const Place& place, const std::string& what, const std::string& hint = "") const {
     throw Error(place.text(), label.empty() ? what : label + ": " + what, hint);
@@ -38,7 +39,7 @@ constexpr double largest = 1e30, smallest = 1e-30;
 double read_number(const Reading& r, const toml::node& node) {
   const auto x = node.value<double>();
   if (!x || !node.is_number()) r.wrong_type(node, "a number");
-  const double si = *x * to_si(r.param.unit, r.around.units);
+  const double si = *x * *r.known.factor;
   if (!std::isfinite(si)) r.fail(place_of_node(node), fmt::format("{} = {} is not finite", r.item.key, *x));
   if (!r.param.range.contains(si)) {
     const Range& range = r.param.range;
@@ -81,7 +82,7 @@ std::vector<double> list_of_numbers(const Reading& r, const std::vector<size_t>&
 std::string word(const Reading& r, const toml::node& node) {
   const auto s = node.value<std::string>();
   if (!s || !node.is_string()) r.wrong_type(node, "text");
-  const auto allowed = choices(r.section, r.param.key);
+  const auto& allowed = r.known.choices;
   if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), *s) == allowed.end()) {
     const std::string hint = suggest(*s, allowed);
     r.fail(place_of_node(node), fmt::format("{} = \"{}\" is not known", r.item.key, *s),
@@ -112,7 +113,9 @@ History factor(const Reading& r) {
 }  // namespace
 
 Value read_value(std::string_view section, const Param& param, const Item& item, const std::string& label, const Surroundings& around) {
-  const Reading r{section, param, item, label, around};
+  Surroundings::Known& known = around.known[&param];
+  if (!known.factor) known.factor = to_si(param.unit, around.units), known.choices = choices(section, param.key);
+  const Reading r{section, param, item, label, around, known};
   Value v;
   v.place = item.place;
   switch (param.type) {

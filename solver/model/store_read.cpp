@@ -11,7 +11,7 @@
 namespace hilo {
 
 bool Store::Impl::exists(const std::string& object) const {
-  if (object == "/") return true;
+  if (object == "/" || H5Oexists_by_name(file, object.c_str(), H5P_DEFAULT) > 0) return true;
   for (size_t at = object.find('/', 1);; at = object.find('/', at + 1)) {
     const std::string part = object.substr(0, at);
     if (H5Lexists(file, part.c_str(), H5P_DEFAULT) <= 0 || H5Oexists_by_name(file, part.c_str(), H5P_DEFAULT) <= 0) return false;

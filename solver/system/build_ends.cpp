@@ -36,11 +36,11 @@ double Builder::count_owned(const std::vector<int>& nodes) const {
 /// The mean axes that some of the nodes follow, the same on all ranks.
 std::vector<int> Builder::linear_bodies_at(const std::vector<int>& nodes) const {
   std::vector<int> out;
-  for (size_t b = 0; b < out_->bodies.size(); ++b) {
-    if (!out_->bodies[b].linear) continue;
-    const bool here = std::any_of(nodes.begin(), nodes.end(), [&](int i) { return out_->follower[i] == static_cast<int>(b); });
-    if (comm_.max(here ? 1 : 0) > 0) out.push_back(static_cast<int>(b));
-  }
+  for (const int i : nodes)
+    if (const int b = out_->follower[i]; b >= 0 && out_->bodies[b].linear) out.push_back(b);
+  out = comm_.gather(out);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 

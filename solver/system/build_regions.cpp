@@ -64,6 +64,15 @@ std::int64_t Builder::put_active_nodes_first() {
 void Builder::read_regions() {
   if (!mesh_) return;
   const auto thin = mesh_->file.empty() ? std::vector<ThinRegion>{} : read_thin_regions(mesh_->file);
+  const auto entries = scene_.entries("region");
+  std::map<std::string_view, size_t> plain;  // entries of names without wild cards
+  std::vector<size_t> globs;
+  for (size_t k = 0; k < entries.size(); ++k)
+    if (entries[k].name.find_first_of("*?[\\") == std::string::npos)
+      plain.emplace(entries[k].name, k);
+    else
+      globs.push_back(k);
+  std::vector<char> used(entries.size(), 0);
   for (size_t r = 0; r < mesh_->mesh.region_name.size(); ++r) {
     Region region;
     region.name = mesh_->mesh.region_name[r];
@@ -80,8 +89,14 @@ void Builder::read_regions() {
                               region.name, word(region.fidelity)),
                   fmt::format("hilo-tag --rigid '{}'", region.name));
     std::string material;
-    for (const Entry& e : scene_.entries("region")) {
-      if (fnmatch(e.name.c_str(), region.name.c_str(), 0) != 0) continue;
+    std::vector<size_t> its;
+    if (const auto own = plain.find(region.name); own != plain.end()) its.push_back(own->second);
+    for (const size_t k : globs)
+      if (fnmatch(entries[k].name.c_str(), region.name.c_str(), 0) == 0) its.push_back(k);
+    std::sort(its.begin(), its.end());
+    for (const size_t k : its) {
+      const Entry& e = entries[k];
+      used[k] = 1;
       if (e.given("material")) material = e.text("material"), region.where = e.where("material");
       if (e.given("mass")) region.mass_wanted = e.number("mass");
       if (e.given("area")) region.area = e.number("area");
@@ -111,12 +126,9 @@ void Builder::read_regions() {
     if (region.where.empty()) region.where = scene_.path;
     regions_.push_back(std::move(region));
   }
-  for (const Entry& e : scene_.entries("region")) {
-    bool used = false;
-    for (const Region& r : regions_) used = used || fnmatch(e.name.c_str(), r.name.c_str(), 0) == 0;
-    std::vector<std::string> names;
-    for (const Region& r : regions_) names.push_back(r.name);
-    if (!used) throw Error(e.place.text(), fmt::format("no region matches \"{}\"", e.name), suggest(e.name, names));
+  for (size_t k = 0; k < entries.size(); ++k) {
+    const Entry& e = entries[k];
+    if (!used[k]) throw Error(e.place.text(), fmt::format("no region matches \"{}\"", e.name), suggest(e.name, mesh_->mesh.region_name));
     warn_of_idle_damping(e);
   }
 }

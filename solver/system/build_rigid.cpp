@@ -6,14 +6,29 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
+#include <unordered_set>
 
 #include "system/bodies.hpp"
 #include "system/builder.hpp"
 
 namespace hilo {
 
+namespace {
+
+/// Pairs that any rank has found, each once, on all of them.
+void unite(std::vector<double>& pairs, const Comm& comm) {
+  const std::vector<double> all = comm.gather(pairs);
+  std::set<std::pair<double, double>> each;
+  for (size_t i = 0; i + 1 < all.size(); i += 2) each.emplace(all[i], all[i + 1]);
+  pairs.clear();
+  for (const auto& [a, b] : each) pairs.insert(pairs.end(), {a, b});
+}
+
+}  // namespace
+
 std::vector<std::vector<int>> Builder::joined_regions(Fidelity fidelity, std::vector<double>& shared) const {
-  comm_.sum(shared);
+  unite(shared, comm_);
   const int n = static_cast<int>(regions_.size());
   std::vector<int> root(n);
   std::iota(root.begin(), root.end(), 0);
@@ -21,9 +36,10 @@ std::vector<std::vector<int>> Builder::joined_regions(Fidelity fidelity, std::ve
     while (root[r] != r) r = root[r] = root[root[r]];
     return r;
   };
-  for (int a = 0; a < n; ++a)
-    for (int b = 0; b < n; ++b)
-      if (shared[static_cast<size_t>(a) * n + b] > 0) root[std::max(find_root(a), find_root(b))] = std::min(find_root(a), find_root(b));
+  for (size_t i = 0; i + 1 < shared.size(); i += 2) {
+    const int a = find_root(static_cast<int>(shared[i])), b = find_root(static_cast<int>(shared[i + 1]));
+    root[std::max(a, b)] = std::min(a, b);
+  }
   std::map<int, std::vector<int>> groups;
   for (int r = 0; r < n; ++r)
     if (regions_[r].fidelity == fidelity) groups[find_root(r)].push_back(r);
@@ -65,6 +81,7 @@ int Builder::new_body_of(const std::vector<int>& members) {
 /// would lock. `rigid`: region of each local node, or -1.  Collective.
 void Builder::join_by_sets(const std::vector<int>& rigid, std::vector<double>& shared) const {
   const auto n = static_cast<int>(regions_.size());
+  if (std::ranges::none_of(regions_, [](const Region& r) { return r.fidelity == Fidelity::rigid; })) return;
   const auto first_of_body = [&] {  // by region
     std::vector<int> first(n, -1);
     auto joined = shared;
@@ -73,34 +90,35 @@ void Builder::join_by_sets(const std::vector<int>& rigid, std::vector<double>& s
     return first;
   };
   const std::vector<int> apart = first_of_body();
-  const auto names = mesh_->mesh.all_names();
+  const auto all = mesh_->mesh.all_names();
+  const std::unordered_set<std::string> names(all.begin(), all.end());
   struct End {
     const Entry* entry;
     const char* key;
     std::vector<int> bodies;  // that it has nodes of, by their first regions
   };
   std::vector<End> ends;
+  std::vector<double> met;  // an end, a body, by pairs
   for (const char* section : {"joint", "spring"})
     for (const Entry& e : scene_.entries(section))
       for (const char* key : {"a", "b"}) {
         const std::string& name = e.text(key);
-        std::vector<double> in(n, 0.0);
+        const auto end = static_cast<double>(ends.size());
         if (const int region = mesh_->mesh.find_region(name); region >= 0) {
-          if (apart[region] >= 0) in[apart[region]] = 1;
-        } else if (std::find(names.begin(), names.end(), name) != names.end()) {
+          if (apart[region] >= 0) met.insert(met.end(), {end, static_cast<double>(apart[region])});
+        } else if (names.contains(name)) {
           for (const std::int64_t i : mesh_->nodes_of(name, e.where(key)))
-            if (rigid[i] >= 0) in[apart[rigid[i]]] = 1;
+            if (rigid[i] >= 0) met.insert(met.end(), {end, static_cast<double>(apart[rigid[i]])});
         }
-        comm_.sum(in);
-        End& end = ends.emplace_back(End{&e, key, {}});
-        for (int r = 0; r < n; ++r)
-          if (in[r] > 0) end.bodies.push_back(r);
+        ends.push_back({&e, key, {}});
       }
+  unite(met, comm_);
+  for (size_t i = 0; i + 1 < met.size(); i += 2) ends[static_cast<size_t>(met[i])].bodies.push_back(static_cast<int>(met[i + 1]));
   std::vector<std::string> told;
   for (const End& end : ends)
     for (size_t k = 1; k < end.bodies.size(); ++k) {
       const int one = end.bodies[0], other = end.bodies[k];
-      shared[static_cast<size_t>(one) * n + other] = 1;
+      shared.insert(shared.end(), {static_cast<double>(one), static_cast<double>(other)});
       const std::string what = fmt::format("\"{}\" has nodes of the rigid regions \"{}\" and \"{}\", which move as one body",
                                            end.entry->text(end.key), regions_[one].name, regions_[other].name);
       if (comm_.rank == 0 && std::find(told.begin(), told.end(), what) == told.end())
@@ -122,7 +140,7 @@ void Builder::join_by_sets(const std::vector<int>& rigid, std::vector<double>& s
 void Builder::make_rigid_bodies() {
   if (!mesh_) return;
   const Mesh& mesh = mesh_->mesh;
-  const int n_regions = static_cast<int>(regions_.size()), n = static_cast<int>(mesh.n_nodes());
+  const int n = static_cast<int>(mesh.n_nodes());
   // rigid region of every local node, also where the rigid cell lives on another rank: rows are kept at rank (row mod ranks)
   std::vector<std::vector<std::int64_t>> tell(comm_.size), ask(comm_.size);
   for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
@@ -133,11 +151,12 @@ void Builder::make_rigid_bodies() {
       }
   for (int i = 0; i < n; ++i) ask[mesh_->node_global[i] % comm_.size].push_back(mesh_->node_global[i]);
   std::map<std::int64_t, int> region_of_row;
-  std::vector<double> shared(static_cast<size_t>(n_regions) * n_regions, 0.0);  // regions that meet at a node
+  std::vector<double> shared;  // regions that meet at a node, by pairs
   for (const auto& list : comm_.exchange(tell))
     for (size_t k = 0; k + 1 < list.size(); k += 2) {
       const auto [it, fresh] = region_of_row.try_emplace(list[k], static_cast<int>(list[k + 1]));
-      if (!fresh) shared[static_cast<size_t>(it->second) * n_regions + list[k + 1]] = 1;
+      if (!fresh && it->second != list[k + 1])
+        shared.insert(shared.end(), {static_cast<double>(it->second), static_cast<double>(list[k + 1])});
     }
   auto questions = comm_.exchange(ask);
   for (auto& list : questions)

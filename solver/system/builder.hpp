@@ -53,8 +53,8 @@ class Builder {
   void read_regions();
   void warn_of_idle_damping(const Entry& e) const;
   void integrate_regions();
-  /// The regions of a fidelity, in groups that hang together by nodes they share; `shared` (n_regions x n_regions): above zero where a rank
-  /// has seen a node of both; summed here.  Collective.
+  /// The regions of a fidelity, in groups that hang together by nodes they share; `shared`: pairs of which a rank has seen a node of both,
+  /// one after the other; all ranks' here afterwards.  Collective.
   std::vector<std::vector<int>> joined_regions(Fidelity fidelity, std::vector<double>& shared) const;
   /// One body with the mass of these regions, which it becomes the body of.
   int new_body_of(const std::vector<int>& members);

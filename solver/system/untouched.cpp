@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -147,21 +148,22 @@ std::vector<std::string> untouched(const System& system) {
     if (part != &system.part<Solids>()) part->evaluate(p);
   pieces.agree();
 
-  const auto n_regions = system.region_nodes.size();
-  std::vector<double> sums(static_cast<size_t>(pieces.size()) * (4 + n_regions), 0.0);  // count, x, regions
-  const auto of = [&](int k) { return sums.data() + static_cast<size_t>(k) * (4 + n_regions); };
+  std::vector<double> sums(static_cast<size_t>(pieces.size()) * 4, 0.0);  // count, x
+  const auto of = [&](int k) { return sums.data() + static_cast<size_t>(k) * 4; };
   for (size_t i = 0; i < system.X.size(); ++i)
     if (const int k = pieces.of_node(static_cast<int>(i)); k >= 0 && system.node_owned[i]) {
       double* s = of(pieces.root(k));
       s[0] += 1;
       for (int x = 0; x < 3; ++x) s[1 + x] += system.X[i][x];
     }
+  std::set<std::array<int, 2>> regions;  // a piece, a region that it has cells of
   for (const SolidBatch& b : system.part<Solids>().batches) {
     const auto n = static_cast<size_t>(info(b.shape).n_nodes);
     for (size_t e = 0; e < b.cells.size(); ++e)
-      if (const int k = pieces.of_node(b.nodes[e * n]); k >= 0) of(pieces.root(k))[4 + b.region] = 1;
+      if (const int k = pieces.of_node(b.nodes[e * n]); k >= 0) regions.insert({pieces.root(k), b.region});
   }
   system.comm->sum(sums);
+  for (const auto& item : system.comm->gather(std::vector(regions.begin(), regions.end()))) regions.insert(item);
   std::map<int, std::set<std::string>> bodies;  // of each piece, but for the massless ones that joints hold
   for (size_t b = 1; b < system.bodies.size(); ++b)
     if (const Body& body = system.bodies[b]; !body.patch)
@@ -175,8 +177,8 @@ std::vector<std::string> untouched(const System& system) {
     if (names.empty() && s[0] == 0) continue;  // a patch
     ++total;
     if (pieces.is_reached(k)) continue;
-    for (size_t r = 0; r < n_regions; ++r)
-      if (s[4 + r] > 0) names.insert('"' + system.mesh->mesh.region_name[r] + '"');
+    for (auto it = regions.lower_bound({k, 0}); it != regions.end() && (*it)[0] == k; ++it)
+      names.insert('"' + system.mesh->mesh.region_name[(*it)[1]] + '"');
     const Vec3 at = s[0] > 0 ? Vec3(Vec3(s[1], s[2], s[3]) / s[0]) : system.start.c[k - pieces.of_body(0)];
     out.push_back(fmt::format("{}, about ({:.4g}, {:.4g}, {:.4g}) m", fmt::join(names, ", "), at.x(), at.y(), at.z()));
   }

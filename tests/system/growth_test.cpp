@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a scene of four times as many springs costs to read and to build: four times as much, not sixteen.
+// What a scene of four times as many springs or regions costs to read and to build: four times as much, not sixteen.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -7,6 +7,7 @@
 
 #include "model/local_mesh.hpp"
 #include "system/system.hpp"
+#include "system/untouched.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -63,6 +64,45 @@ TEST(Growth, OfSpringsAtManyNodesIsLinear) {
   const auto build = [](const Springs& s) {
     return [scene = Scene::parse(s.text, "scene.toml"), mesh = read_local_mesh(s.folder / "mesh.h5", Comm::world())]() mutable {
       build_system(scene, &mesh, Comm::world());
+    };
+  };
+  EXPECT_LT(growth(RUSAGE_SELF, build(few), build(many)), 6);
+}
+
+/// n bars of one hexahedron each, regions of their own, on revolutes at sets of their nodes.
+struct Bars {
+  explicit Bars(int n) {
+    text = "[material.m]\nE = 1e6\nnu = 0.3\ndensity = 1000\n[time]\nend = 1e-3\nstep = 1e-3\n";
+    Mesh mesh;
+    for (int i = 0; i < n; ++i) {
+      const std::string number = std::to_string(i);
+      std::vector<std::int64_t> nodes;
+      for (int k = 0; k < 8; ++k) {
+        nodes.push_back(8 * i + k);
+        mesh.X.push_back(Vec3(i + k / 4, k % 4 % 3 ? 0.1 : -0.1, k % 4 / 2 ? 0.1 : -0.1)), mesh.node_id.push_back(8 * i + k + 1);
+      }
+      mesh.add_cell(Shape::hex8, nodes, i, i + 1);
+      mesh.region_name.push_back("r" + number), mesh.region_data.emplace_back();
+      mesh.node_sets["left" + number] = {nodes.begin(), nodes.begin() + 4};
+      mesh.node_sets["right" + number] = {nodes.begin() + 4, nodes.end()};
+      text += fmt::format(
+          "[region.r{}]\nmaterial = \"m\"\n[[joint]]\nkind = \"revolute\"\nname = \"j{}\"\na = \"{}\"\nb = \"left{}\"\n"
+          "at = [{}, 0, 0]\naxis = [0, 0, 1]\n",
+          i, i, i == 0 ? "ground" : "right" + std::to_string(i - 1), i, i);
+    }
+    write_mesh(folder / "mesh.h5", mesh, {"test"});
+  }
+  Folder folder;
+  std::string text;
+};
+
+// 10 000 took 32 s and 2.5 GB: tables of regions by regions, and of regions by bodies.
+TEST(Growth, OfRegionsOnJointsIsLinear) {
+  const Bars few(500), many(2000);
+  const auto build = [](const Bars& b) {
+    return [scene = Scene::parse(b.text, "scene.toml"), path = b.folder / "mesh.h5"] {
+      LocalMesh mesh = read_local_mesh(path, Comm::world());
+      EXPECT_EQ(untouched(*build_system(scene, &mesh, Comm::world())).size(), 0u);
     };
   };
   EXPECT_LT(growth(RUSAGE_SELF, build(few), build(many)), 6);
