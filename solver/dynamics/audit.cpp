@@ -63,7 +63,7 @@ std::string Audit::look(const Config& q0, const State& end, std::span<const Take
   next_.work = sums_.work + std::max(0.0, -taken_away), next_.dissipated = sums_.dissipated + std::max(0.0, taken_away);
   for (const Taken& part : taken) {
     const Work w = system_.work(part.stage, part.lambda);
-    next_.work += w.external, next_.dissipated += w.dissipated;
+    next_.work += w.external, next_.dissipated += w.dissipated, next_.energy.elastic += w.stored;
   }
   next_.left = sums_.left + newton.left + opened(newton.gaps, taken);
   next_.rows = system_.violation(end.q, end.t, load_factor);

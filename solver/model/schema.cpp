@@ -139,7 +139,8 @@ std::vector<ArraySchema>& arrays() {
       {"run.h5", "/envelope/von_mises_time", "f8", "(n_nodes)", "s", "when it was, the first time"},
       {"run.h5", "/history/t", "f8", "(n_t)", "s", "times of all histories below; first row is the start"},
       {"run.h5", "/history/energy", "f8", "(n_t, 6)", "J",
-       "columns: kinetic, elastic, gravity potential, external work, dissipated, balance E - E0 - W + D"},
+       "columns: kinetic, elastic (with what time.dissipation stores), gravity potential, external work, dissipated, balance E - E0 - W + "
+       "D"},
       {"run.h5", "/history/momentum", "f8", "(n_t, 6)", "kg m/s, kg m^2/s", "linear, and angular about the origin"},
       {"run.h5", "/history/constraint", "f8", "(n_t)", "m", "largest violation of a joint row"},
       {"run.h5", "/history/mode", "f8", "(n_t, 10)", "Hz, 1, kg, kg m^2, 1, m kg^0.5",

@@ -25,7 +25,17 @@ void run_bar(const KernelCall& k) {
     const BarState s = law.bar((1 - w) * e0 + w * e1);
     step = {s.S, w * s.slope};
   }
-  const double rate = k.viscous * young_of(law.linear()), S = k.area * (k.elastic * step.S + rate * (e1 - e0)),
+  double from = e0;
+  if (k.past[0]) {
+    const auto strain = [&](const double* x) {
+      double l = 0;
+      for (int i = 0; i < 3; ++i) l += (x[3 + i] - x[i]) * (x[3 + i] - x[i]);
+      return (l / L2 - 1) / 2;
+    };
+    const double one = strain(k.past[0]), two = strain(k.past[1]);
+    from += k.recall[0] * (e0 - one) + k.recall[1] * (one - two);
+  }
+  const double rate = k.viscous * young_of(law.linear()), S = k.area * (k.elastic * step.S + rate * (e1 - from)),
                D = k.area * (k.elastic * step.slope + rate);
   double S_K = S;  // of the strain that the last correction foresaw (solid::foresee)
   if (k.before && k.K) {
@@ -35,11 +45,11 @@ void run_bar(const KernelCall& k) {
       e += d * (d + 2 * (k.along[3 + i] - k.along[i]));
     }
     e /= 2 * L2;
-    S_K = k.area * rate * (e - e0);
+    S_K = k.area * rate * (e - from);
     if (k.elastic != 0) S_K += k.area * k.elastic * (w == 0.5 ? law.bar_step(e0, e).S : law.bar((1 - w) * e0 + w * e).S);
   }
   if (k.energy) *k.energy = k.area * L * law.bar(e1).W;
-  if (k.dissipated) *k.dissipated = k.area * L * rate * (e1 - e0) * (e1 - e0);
+  if (k.dissipated) *k.dissipated = k.area * L * rate * (e1 - from) * (e1 - e0);
   if (k.least_det) *k.least_det = 1;
   const double m = k.density * k.area * L / 6;
   for (int a = 0; a < 2; ++a)

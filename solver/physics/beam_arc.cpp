@@ -109,7 +109,7 @@ struct End {
   }
 };
 
-using Strain = Eigen::Matrix<double, 6, 1>;
+using Strain = ArcLaw::Strain;
 Strain values(const std::array<Dual, 6>& e) { return Strain(e[0].v, e[1].v, e[2].v, e[3].v, e[4].v, e[5].v); }
 
 /// Adds D^T (n, m), D the discrete gradient of L times the strains.
@@ -163,11 +163,13 @@ void ArcLaw::elastic(const Values& r0, const Values& r1, Response& out) const {
   out.energy += L_ / 2 * strain.dot(C_ * strain);
 }
 
-void ArcLaw::resist(const Values& r0, const Values& r1, double factor, Response& out) const {
+ArcLaw::Strain ArcLaw::strain(const Values& e) { return hilo::values(End(e, false).strain()); }
+
+void ArcLaw::resist(const Values& r0, const Values& r1, double factor, const Strain& recalled, Response& out) const {
   const End e0(r0, false), e1(r1, true);
   const std::array<Dual, 6> x0 = e0.strain(), x1 = e1.strain();
   std::array<Dual, 6> change;
-  for (int i = 0; i < 6; ++i) change[i] = (factor / L_) * (x1[i] - x0[i]);
+  for (int i = 0; i < 6; ++i) change[i] = (factor / L_) * (x1[i] - x0[i] - constant(recalled[i]));
   const std::array<Dual, 6> resultants = times(C_, change);
   add_forces(e0, e1, resultants, out);
   out.dissipated += hilo::values(resultants).dot(hilo::values(x1) - hilo::values(x0));

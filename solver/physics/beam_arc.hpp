@@ -22,10 +22,13 @@ class ArcLaw final : public SpringLaw {
   ArcLaw(const Values& e, const Stiffness& C, double beta);
   double length() const { return L_; }
   void elastic(const Values& e0, const Values& e1, Response& out) const override;
-  /// Adds `factor` C* (eps1 - eps0), which never pays in.
-  void resist(const Values& e0, const Values& e1, double factor, Response& out) const;
+  using Strain = Eigen::Matrix<double, 6, 1>;
+  /// L eps [m, 1].
+  static Strain strain(const Values& e);
+  /// Adds `factor` C* (eps1 - eps0 - recalled/L); without what is recalled [m, 1] it never pays in.
+  void resist(const Values& e0, const Values& e1, double factor, const Strain& recalled, Response& out) const;
   void viscous(const Values& r0, const Values& r1, const Interval& step, Response& out) const override {
-    if (beta_ > 0) resist(r0, r1, beta_ / step.h, out);
+    if (beta_ > 0) resist(r0, r1, beta_ / step.h, Strain::Zero(), out);
   }
   bool conserves() const override { return beta_ == 0; }
   /// Turn of section B against A [rad]; beyond pi it comes back.

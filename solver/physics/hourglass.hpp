@@ -125,21 +125,30 @@ inline void add_hourglass(const Moduli& moduli, const SolidCall<T>& call) {
   hg.measure(call.x0, u1, h1, b0);
   hg.measure(xm, um, hm, unused);
   hg.measure(call.x1, u1, h1, b1);
-  T s[4][3], step[4][3], rate[4][3];
+  T s[4][3], step[4][3], rate[4][3], from[4][3];
+  for (int r = 0; r < 4; ++r)
+    for (int A = 0; A < 3; ++A) from[r][A] = b0[r][A];
+  if (call.viscous != 0)
+    solid::add_recalled<12>(call, &from[0][0], [&](const T* x, T* to) {
+      T u[3][3], h[4][3], b[4][3];
+      hg.measure(x, u, h, b);
+      for (int r = 0; r < 4; ++r)
+        for (int A = 0; A < 3; ++A) to[3 * r + A] = b[r][A];
+    });
   for (int r = 0; r < 4; ++r)
     for (int A = 0; A < 3; ++A)
-      s[r][A] = call.elastic * ((1 - call.weight) * b0[r][A] + call.weight * b1[r][A]) + call.viscous * (b1[r][A] - b0[r][A]);
+      s[r][A] = call.elastic * ((1 - call.weight) * b0[r][A] + call.weight * b1[r][A]) + call.viscous * (b1[r][A] - from[r][A]);
   hg.conjugate(s, t);
   if (call.energy || call.dissipated) {
     T t1[4][3];
     hg.conjugate(b1, t1);
     for (int r = 0; r < 4; ++r)
-      for (int A = 0; A < 3; ++A) step[r][A] = b1[r][A] - b0[r][A];
+      for (int A = 0; A < 3; ++A) step[r][A] = b1[r][A] - from[r][A];
     hg.conjugate(step, rate);
     for (int r = 0; r < 4; ++r)
       for (int A = 0; A < 3; ++A) {
         if (call.energy) *call.energy += t1[r][A] * b1[r][A] / 2;
-        if (call.dissipated) *call.dissipated += call.viscous * rate[r][A] * step[r][A];
+        if (call.dissipated) *call.dissipated += call.viscous * rate[r][A] * (b1[r][A] - b0[r][A]);
       }
   }
   if (call.f)
@@ -166,7 +175,7 @@ inline void add_hourglass(const Moduli& moduli, const SolidCall<T>& call) {
     for (int r = 0; r < 4; ++r)
       for (int A = 0; A < 3; ++A) {
         for (int i = 0; i < 3; ++i) b[r][A] += u[A][i] * dh[r][i] + du[A][i] * h[r][i];
-        s[r][A] = call.elastic * ((1 - call.weight) * b0[r][A] + call.weight * b[r][A]) + call.viscous * (b[r][A] - b0[r][A]);
+        s[r][A] = call.elastic * ((1 - call.weight) * b0[r][A] + call.weight * b[r][A]) + call.viscous * (b[r][A] - from[r][A]);
       }
     hg.conjugate(s, t);
   }

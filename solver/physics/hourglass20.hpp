@@ -126,6 +126,12 @@ inline void add_hourglass20(const Lame& moduli, const SolidCall<T>& call) {
   T xm[60];
   for (int i = 0; i < 60; ++i) xm[i] = (1 - call.weight) * call.x0[i] + call.weight * call.x1[i];
   const auto s0 = hg.measure(call.x0), s1 = hg.measure(call.x1), sm = hg.measure(xm);
+  auto from = s0;
+  if (call.viscous != 0)
+    solid::add_recalled<6>(call, &from.c[0][0], [&](const T* x, T* to) {
+      const auto s = hg.measure(x);
+      for (int i = 0; i < 6; ++i) to[i] = s.c[i / 2][i % 2];
+    });
   typename H::State before;
   if (call.before) before = hg.measure(call.before);
   const double slope = call.elastic * call.weight + call.viscous;
@@ -134,7 +140,7 @@ inline void add_hourglass20(const Lame& moduli, const SolidCall<T>& call) {
     for (int a = 0; a < 20; ++a) side[A][a] = 0 * xm[0];
   for (int z = 0; z < 3; ++z)
     for (int w = 0; w < 2; ++w) {
-      const T k = hg.stiffness[z][w], c0 = s0.c[z][w], c1 = s1.c[z][w], rate = call.viscous * (c1 - c0);
+      const T k = hg.stiffness[z][w], c0 = s0.c[z][w], c1 = s1.c[z][w], rate = call.viscous * (c1 - from.c[z][w]);
       const T stress = k * (call.elastic * ((1 - call.weight) * c0 + call.weight * c1) + rate);
       if (call.energy) *call.energy += k * c1 * c1 / 2;
       if (call.dissipated) *call.dissipated += k * rate * (c1 - c0);
@@ -155,7 +161,7 @@ inline void add_hourglass20(const Lame& moduli, const SolidCall<T>& call) {
         c_ahead = before.c[z][w];
         for (int i = 0; i < 60; ++i) c_ahead += B1[i] * call.along[i];
       }
-      const T foreseen = k * (call.elastic * ((1 - call.weight) * c0 + call.weight * c_ahead) + call.viscous * (c_ahead - c0));
+      const T foreseen = k * (call.elastic * ((1 - call.weight) * c0 + call.weight * c_ahead) + call.viscous * (c_ahead - from.c[z][w]));
       const T half = call.weight / 2 * foreseen, *u = hg.one(z, w), *v = hg.two(z, w);
       for (int a = 0; a < 20; ++a) side[x][a] += half * u[a], side[y][a] -= half * v[a];
     }

@@ -105,7 +105,19 @@ inline void add_mean_dilatation(double lambda, const SolidCall<T>& c) {
     }
   }
   theta0 = theta0 / size, theta1 = theta1 / size;
-  const T rate = lambda * c.viscous * (theta1 - theta0);
+  T from = theta0;
+  if (c.viscous != 0)
+    solid::add_recalled<1>(c, &from, [&](const T* x, T* to) {
+      *to = zero;
+      for (int p = 0; p < S::n_points; ++p) {
+        T g[n][3], F[3][3], e[6];
+        const T weight = solid::point_gradients<S>(p, c.X, g);
+        solid::gradient<n>(x, g, F);
+        solid::green_lagrange(F, e);
+        *to += weight * (e[0] + e[1] + e[2]) / size;
+      }
+    });
+  const T rate = lambda * c.viscous * (theta1 - from);
   MeanStress<T> mean{rate, zero};
   if (c.dissipated) *c.dissipated += size * rate * (theta1 - theta0);
   double slope_theta = lambda * c.viscous;
@@ -127,7 +139,7 @@ inline void add_mean_dilatation(double lambda, const SolidCall<T>& c) {
   stress_only.energy = stress_only.dissipated = stress_only.least_det = nullptr;
   MeanStress<T> foreseen = mean;  // by the last correction to first order, for K (solid::foresee)
   if (c.before && c.K) {
-    T theta = zero, by_theta = zero, from = zero, to = zero, by = zero;
+    T theta = zero, by_theta = zero, start = zero, to = zero, by = zero;
     for (int p = 0; p < S::n_points; ++p) {
       T g[n][3], F0[3][3], e0[6], e1[6], step[6];
       const T weight = solid::point_gradients<S>(p, c.X, g);
@@ -140,17 +152,17 @@ inline void add_mean_dilatation(double lambda, const SolidCall<T>& c) {
         if (w != 0.5)
           for (int i = 0; i < 6; ++i) e0[i] = e1[i] = (1 - w) * e0[i] + w * e1[i];
         volume::over_step(e0, e1, M, A, cof1, d0, d1);
-        from += weight * d0, to += weight * d1;
+        start += weight * d0, to += weight * d1;
         for (int i = 0; i < 6; ++i) by += 2 * weight * cof1[i] * step[i];
       }
     }
     const T theta_ahead = (theta + by_theta) / size;
-    foreseen.theta = lambda * c.viscous * (theta_ahead - theta0);
+    foreseen.theta = lambda * c.viscous * (theta_ahead - from);
     if constexpr (by_trace) {
       foreseen.theta += lambda * c.elastic * ((1 - w) * theta0 + w * theta_ahead);
     } else if (c.elastic != 0) {
       T q = zero, q_1 = zero;
-      Bulk::quotient(T(from / size), T(to / size), q, q_1);
+      Bulk::quotient(T(start / size), T(to / size), q, q_1);
       foreseen.D = lambda * c.elastic * (q + (w == 0.5 ? 1 : 2 * w) * q_1 * by / size);
     }
   }

@@ -126,14 +126,24 @@ inline void add_linear(const Moduli& moduli, const SolidCall<T>& c, const Cell<T
     for (int i = 0; i < n_measures; ++i) sum += e[i] * s[i];
     return sum;
   };
+  T from[n_measures];
+  for (int i = 0; i < n_measures; ++i) from[i] = x.e0[i];
+  if (c.viscous != 0)
+    solid::add_recalled<n_measures>(c, from, [&](const T* at, T* to) {
+      T u[n_vectors][3];
+      vectors(at, u), measures(u, to);
+      for (int i = 0; i < n_measures; ++i) to[i] -= cell.m[i];
+    });
   const auto mean = [&](const T* end, T* e) {
-    for (int i = 0; i < n_measures; ++i) e[i] = elastic * ((1 - c.weight) * x.e0[i] + c.weight * end[i]) + c.viscous * (end[i] - x.e0[i]);
+    for (int i = 0; i < n_measures; ++i) e[i] = elastic * ((1 - c.weight) * x.e0[i] + c.weight * end[i]) + c.viscous * (end[i] - from[i]);
   };
   T e[n_measures], s[n_measures], ahead[n_measures];
   if (c.energy) *c.energy += 0.5 * product(x.e1);
   if (c.dissipated && c.viscous != 0) {
-    for (int i = 0; i < n_measures; ++i) e[i] = x.e1[i] - x.e0[i];
-    *c.dissipated += c.viscous * product(e);
+    T rate[n_measures];
+    for (int i = 0; i < n_measures; ++i) rate[i] = x.e1[i] - from[i];
+    times(rate, e);
+    for (int i = 0; i < n_measures; ++i) *c.dissipated += c.viscous * e[i] * (x.e1[i] - x.e0[i]);
   }
   if (!c.f && !c.K) return;
   mean(x.e1, e), times(e, s);

@@ -6,7 +6,7 @@
 //
 // With w = 1/2 the stress is a discrete gradient, S.(E1 - E0) = W1 - W0: E is quadratic in x, so B_mid (x1 - x0) = E1 - E0 and the work
 // of f over the step is exactly the change of W [simo-tarnow-1992].  Otherwise it is S((1 - w) E0 + w E1); w = 1 is the end point.
-// Rate terms act as stress: S += viscous C (E1 - E0).
+// Rate terms act as stress: S += viscous C (E1 - E0); for dissipation less what it recalls of earlier steps.
 #pragma once
 #include "physics/solid_stress.hpp"
 
@@ -16,7 +16,7 @@ namespace solid {
 /// Contribution of integration point p of weight w [m^3] (already times det).
 template <int n, class Material, class T>
 inline void add_point(const Material& material, const SolidCall<T>& c, const T (*g)[3], const T& w, [[maybe_unused]] int p = 0) {
-  T F0[3][3], F1[3][3], Fm[3][3], e0[6], e1[6], s[6], D[6][6];
+  T F0[3][3], F1[3][3], Fm[3][3], e0[6], e1[6], from[6], s[6], D[6][6];
   gradient<n>(c.x0, g, F0);
   gradient<n>(c.x1, g, F1);
   green_lagrange(F0, e0);
@@ -24,11 +24,18 @@ inline void add_point(const Material& material, const SolidCall<T>& c, const T (
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) Fm[i][j] = (1 - c.weight) * F0[i][j] + c.weight * F1[i][j];
   for (int i = 0; i < 6; ++i) {
-    s[i] = 0 * w;
+    s[i] = 0 * w, from[i] = e0[i];
     for (int j = 0; j < 6; ++j) D[i][j] = 0 * w;
   }
   if (c.elastic != 0 || (Remembers<Material> && c.energy)) add_elastic(material, c, p, w, e0, e1, s, c.K ? D : nullptr);
-  if (c.viscous != 0) add_viscous(material, c, w, e0, e1, s, c.K ? D : nullptr, c.dissipated);
+  if (c.viscous != 0) {
+    add_recalled<6>(c, from, [&](const T* x, T* e) {
+      T F[3][3];
+      gradient<n>(x, g, F);
+      green_lagrange(F, e);
+    });
+    add_viscous(material, c, w, e0, from, e1, s, c.K ? D : nullptr, c.dissipated);
+  }
   if constexpr (!Remembers<Material>)
     if (c.energy) *c.energy += w * material.energy(e1);
   if (c.least_det) {
@@ -46,7 +53,7 @@ inline void add_point(const Material& material, const SolidCall<T>& c, const T (
       for (int i = 0; i < 3; ++i) c.f[3 * a + i] += P[i][0] * g[a][0] + P[i][1] * g[a][1] + P[i][2] * g[a][2];
   }
   if (!c.K) return;
-  if (c.before) foresee<n>(material, c, g, w, p, e0, e1, s, D);
+  if (c.before) foresee<n>(material, c, g, w, p, e0, from, e1, s, D);
   T DB[6][3 * n], Bm[n][6][3];
   for (int a = 0; a < n; ++a) {
     T B1[6][3];

@@ -21,6 +21,8 @@ struct KernelCall {
   double* h1 = nullptr;
   double elapsed = 0;
   const double *before = nullptr, *along = nullptr;
+  const double* past[2] = {nullptr, nullptr};
+  double recall[2] = {0, 0};
 };
 
 /// Kernel of a shape and a law (law_index(material)) and the number of cells it takes at once; no function where the law has no such cells.

@@ -41,7 +41,9 @@ static void run_kernel(const KernelCall& k) {
                           k.elapsed,
                           0,
                           lanes_of(k.before),
-                          lanes_of(k.along)};
+                          lanes_of(k.along),
+                          {lanes_of(k.past[0]), lanes_of(k.past[1])},
+                          {k.recall[0], k.recall[1]}};
   if (k.elastic != 0 || k.viscous != 0 || k.energy) evaluate_strain<S>(law, call);
   if (k.a) add_mass<S>(call);
 }

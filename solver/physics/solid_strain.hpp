@@ -17,7 +17,7 @@ struct SolidCall {
   const T* x0;        // positions at the start of step (n x 3)     [m]
   const T* x1;        // positions at its end           (n x 3)     [m]
   double elastic;     // 1, or 0 to leave the elastic stress out
-  double viscous;     // factor of C (E1 - E0): beta/h + chi/2      [1]
+  double viscous;     // factor of C (E1 - E0 - what is recalled)   [1]
   Lame linear;        // moduli C of the rate terms and of the hourglass stiffness [Pa]
   T* f;               // internal force                 (n x 3)     [N]     or null
   T* K;               // tangent, row major             (3n x 3n)   [N/m]   or null
@@ -36,6 +36,9 @@ struct SolidCall {
   // of Newton's last correction, for the stress of K (solid::foresee); null: none
   const T* before = nullptr;  // x1 before it                 (n x 3)     [m]
   const T* along = nullptr;   // what it was, to first order  (n x 3)     [m]
+  // strains that `viscous` recalls: recall[0] (E0 - E(past[0])) + recall[1] (E(past[0]) - E(past[1])), system/stage.hpp; null: none
+  const T* past[2] = {nullptr, nullptr};  // (n x 3) [m]
+  double recall[2] = {0, 0};
 };
 
 /// A law whose points have a state.
@@ -45,6 +48,15 @@ concept Remembers = requires {
 };
 
 namespace solid {
+
+/// Adds to m measures at the start of the step what is recalled of them; `measure(x, e)` puts those of a configuration.
+template <int m, class T, class Measure>
+inline void add_recalled(const SolidCall<T>& c, T* e, const Measure& measure) {
+  if (!c.past[0]) return;
+  T one[m], two[m];
+  measure(c.past[0], one), measure(c.past[1], two);
+  for (int i = 0; i < m; ++i) e[i] += c.recall[0] * (e[i] - one[i]) + c.recall[1] * (one[i] - two[i]);
+}
 
 /// Gradients of the shape functions in the reference configuration, and det(dX/dxi).
 template <int n, class T>

@@ -31,19 +31,19 @@ inline void step_point(const M& law, const SolidCall<T>& c, int p, const T& w, c
   }
 }
 
-/// Adds the rate terms to the stress, and to D where given.
+/// Adds the rate terms to the stress, and to D where given; `from`: e0 with what is recalled.
 template <class Material, class T>
-inline void add_viscous(const Material& material, const SolidCall<T>& c, const T& w, const T e0[6], const T e1[6], T s[6], T (*D)[6],
-                        T* dissipated) {
+inline void add_viscous(const Material& material, const SolidCall<T>& c, const T& w, const T e0[6], const T from[6], const T e1[6], T s[6],
+                        T (*D)[6], T* dissipated) {
   T rate[6], q[6];
-  for (int i = 0; i < 6; ++i) rate[i] = e1[i] - e0[i];
+  for (int i = 0; i < 6; ++i) rate[i] = e1[i] - from[i];
   if constexpr (Directed<Material>)
     material.moduli.stress(rate, q);
   else
     linear_stress(c.linear, rate, q);
   for (int i = 0; i < 6; ++i) {
     s[i] += c.viscous * q[i];
-    if (dissipated) *dissipated += w * c.viscous * q[i] * rate[i];
+    if (dissipated) *dissipated += w * c.viscous * q[i] * (e1[i] - e0[i]);
   }
   if (!D) return;
   if constexpr (Directed<Material>)
@@ -93,8 +93,8 @@ inline void strain_along(const SolidCall<T>& c, const T (*g)[3], T e[6], T by[6]
 ///
 /// Where volume is all but kept, the pressure is foreseen likewise, from det C to first order; D gets what it changes.
 template <int n, class Material, class T>
-inline void foresee(const Material& material, const SolidCall<T>& c, const T (*g)[3], const T& w, int p, const T e0[6], const T e1[6],
-                    T s[6], [[maybe_unused]] T (*D)[6]) {
+inline void foresee(const Material& material, const SolidCall<T>& c, const T (*g)[3], const T& w, int p, const T e0[6], const T from[6],
+                    const T e1[6], T s[6], [[maybe_unused]] T (*D)[6]) {
   T e[6], by[6];
   strain_along<n>(c, g, e, by);
   T ahead[6];
@@ -102,7 +102,7 @@ inline void foresee(const Material& material, const SolidCall<T>& c, const T (*g
   SolidCall<T> quiet = c;
   quiet.energy = quiet.dissipated = quiet.h1 = nullptr;
   if (c.elastic != 0) add_elastic(material, quiet, p, w, e0, ahead, s, static_cast<T(*)[6]>(nullptr));
-  if (c.viscous != 0) add_viscous(material, c, w, e0, ahead, s, static_cast<T(*)[6]>(nullptr), static_cast<T*>(nullptr));
+  if (c.viscous != 0) add_viscous(material, c, w, e0, from, ahead, s, static_cast<T(*)[6]>(nullptr), static_cast<T*>(nullptr));
   if constexpr (requires { typename Material::Bulk; } && !Remembers<Material>) {
     using Bulk = typename Material::Bulk;
     if constexpr (!std::is_same_v<Bulk, NoBulk> && !std::is_same_v<Bulk, SquareOfTrace>) {
@@ -110,12 +110,12 @@ inline void foresee(const Material& material, const SolidCall<T>& c, const T (*g
       const double lambda = material.linear().lambda, slope_share = c.weight == 0.5 ? 1 : 2 * c.weight;
       T M[6], A[6], cof[6], D0 = 0 * w, D1 = D0, q = D0, q_1 = D0;
       const auto at = [&](const T end[6]) {
-        T from[6], to[6];
+        T start[6], to[6];
         for (int i = 0; i < 6; ++i) {
           const T mean = (1 - c.weight) * e0[i] + c.weight * end[i];
-          from[i] = c.weight == 0.5 ? e0[i] : mean, to[i] = c.weight == 0.5 ? end[i] : mean;
+          start[i] = c.weight == 0.5 ? e0[i] : mean, to[i] = c.weight == 0.5 ? end[i] : mean;
         }
-        volume::over_step(from, to, M, A, cof, D0, D1);
+        volume::over_step(start, to, M, A, cof, D0, D1);
         Bulk::quotient(D0, D1, q, q_1);
       };
       at(e);

@@ -48,7 +48,16 @@ BeamCell::Mass linked_mass(const BeamSection& s, double L) {
   return M;
 }
 
-/// Elastic response at a stage with what chi takes, D by the measures at e1; rate forces, D by those at w1, and `before` by those at w0.
+/// Changes of strain over the steps before that dissipation recalls.
+ArcLaw::Strain recalled(const BeamCell& cell, const Dissipation& d, const Config& from, double last, double before) {
+  if (last == 0 && before == 0) return ArcLaw::Strain::Zero();
+  const auto at = [&](const Config& q) { return ArcLaw::strain(cell.ends.values(q)); };
+  const ArcLaw::Strain one = at(*d.one);
+  return last * (at(from) - one) + before * (one - at(*d.two));
+}
+
+/// Elastic response at a stage with what dissipation takes, D by the measures at e1; rate forces, D by those at w1, and `before` by those
+/// at w0.
 void respond(const BeamCell& cell, const Stage& s, Response& elastic, Response& viscous, Response& before) {
   const auto e0 = cell.ends.values(*s.e0), e1 = cell.ends.values(*s.e1);
   if (!s.rates_alone) {
@@ -63,7 +72,8 @@ void respond(const BeamCell& cell, const Stage& s, Response& elastic, Response& 
       for (auto& of : elastic.D)  // so far the derivative by the second argument alone
         for (double& d : of) d *= 2 * s.weight;
     }
-    if (s.chi > 0) cell.law->resist(e0, e1, s.chi / 2, elastic);
+    if (const Dissipation* d = s.dissipation)
+      cell.law->resist(e0, e1, d->kappa, recalled(cell, *d, *s.e0, d->last(), d->before()), elastic);
   }
   if (s.h > 0) {
     const auto w0 = cell.ends.values(*s.w0), w1 = cell.ends.values(*s.w1);
@@ -184,9 +194,11 @@ void Beams::add_work(const Moment& m, Work& sum) const {
   for (size_t k = 0; k < cells.size(); ++k) {
     if (!points_.counts(static_cast<int>(k))) continue;
     const BeamCell& cell = cells[k];
-    Response taken;
-    if (s.chi > 0) cell.law->resist(cell.ends.values(*s.e0), cell.ends.values(*s.e1), s.chi / 2, taken);
-    sum.dissipated += taken.dissipated;
+    sum.add(s, [&](const Config& from, const Config& to, double last, double before) {
+      Response taken;
+      cell.law->resist(cell.ends.values(from), cell.ends.values(to), 1, recalled(cell, *s.dissipation, from, last, before), taken);
+      return taken.dissipated;
+    });
     if (s.h > 0) {
       Response rate;
       cell.law->viscous(cell.ends.values(*s.w0), cell.ends.values(*s.w1), {s.h}, rate);

@@ -42,9 +42,25 @@ struct Energy {
   Vec3 momentum = Vec3::Zero(), angular = Vec3::Zero();  // [kg m/s], about the origin [kg m^2/s]
 };
 
-/// Over the step of a stage: work of loads, of motors and of prescribed motions, and dissipation of rate terms [J].
+/// Over the step of a stage: work of loads, of motors and of prescribed motions, and dissipation of rate terms; at its end, what the
+/// dissipation of the integrator stores of what it took [J].
 struct Work {
-  double external = 0, dissipated = 0;
+  double external = 0, dissipated = 0, stored = 0;
+  /// Of a stage's Dissipation; `form(from, to, last, before)`: (D - last D1 - before D2).C D, D the change from `from` to `to`, D1 and D2
+  /// those of the steps before `from`.
+  template <class Form>
+  void add(const Stage& s, const Form& form) {
+    if (!s.dissipation) return;
+    const Dissipation& d = *s.dissipation;
+    constexpr double g = 0.57735026918962576, whole = 2. / 3 - g / 2, mixed = g - 1. / 3, past = 1. / 3 - g / 2;  // of Psi
+    const double D1 = form(*d.one, *s.e0, 0, 0), D2 = form(*d.two, *d.one, 0, 0);
+    // D1.D2 from the square of their sum
+    const double mixed_before = (form(*d.two, *s.e0, 0, 0) - D1 - D2) / 2;
+    const double at_end = d.kappa * (whole * form(*s.e0, *s.e1, -mixed / whole * d.share1, 0) + past * d.share1 * d.share1 * D1);
+    const double at_start = d.kappa * (whole * D1 + mixed * d.share_before * mixed_before + past * d.share_before * d.share_before * D2);
+    stored += at_end;
+    dissipated += d.kappa * form(*s.e0, *s.e1, d.last(), d.before()) - (at_end - at_start);
+  }
 };
 
 /// Largest |g| of the constraint rows that are kept and of those dropped as redundant [m, 1], with the multiplier blocks (from the first

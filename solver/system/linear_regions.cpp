@@ -85,6 +85,12 @@ Eigen::VectorXd force_along(const LinearRegion& r, const Modes& m, const Stage& 
   return out;
 }
 
+/// Changes of the amplitudes over the steps before that dissipation recalls.
+Eigen::VectorXd recalled(const Modes& m, const Dissipation& d, const Config& from, double last, double before) {
+  const Eigen::VectorXd one = amplitudes(m, *d.one);
+  return last * (amplitudes(m, from) - one) + before * (one - amplitudes(m, *d.two));
+}
+
 /// Times h: of the rate terms on the amplitudes.
 Eigen::VectorXd viscous_force(const LinearRegion& r, const Modes& m, const Stage& s) {
   if (r.viscous.size() == 0 || !(s.h > 0)) return Eigen::VectorXd::Zero(m.n_modes);
@@ -139,8 +145,10 @@ void LinearRegions::evaluate(Pass& p) const {
         elastic = r.stiffness.cwiseProduct((1 - s.weight) * eta0 + s.weight * eta1);
         if (p.K) slope_of_elastic.diagonal() = s.weight * r.stiffness;
       }
-      elastic += s.chi / 2 * r.stiffness.cwiseProduct(eta1 - eta0);
-      if (p.K) slope_of_elastic.diagonal() += s.chi / 2 * r.stiffness;
+      if (const Dissipation* d = s.dissipation) {
+        elastic += d->kappa * r.stiffness.cwiseProduct(eta1 - eta0 - recalled(m, *d, *s.e0, d->last(), d->before()));
+        if (p.K) slope_of_elastic.diagonal() += d->kappa * r.stiffness;
+      }
     }
     for (int j = 0; j < m.n_modes; ++j) {
       double f = 0;
@@ -182,10 +190,10 @@ void LinearRegions::add_work(const Moment& moment, Work& sum) const {
   for (const LinearRegion& r : regions) {
     const Modes& m = points_.modes[r.modes];
     if (!points_.counts(m.body)) continue;
-    for (int j = 0; j < m.n_modes; ++j) {
-      const double step = amplitude(m, *s.e1, j) - amplitude(m, *s.e0, j);
-      sum.dissipated += s.chi / 2 * r.stiffness[j] * step * step;
-    }
+    sum.add(s, [&](const Config& from, const Config& to, double last, double before) {
+      const Eigen::VectorXd step = amplitudes(m, to) - amplitudes(m, from);
+      return r.stiffness.cwiseProduct(step).dot(step - recalled(m, *s.dissipation, from, last, before));
+    });
     const Eigen::VectorXd viscous = viscous_force(r, m, s);
     for (int j = 0; j < m.n_modes && s.h > 0; ++j)
       sum.dissipated += s.share() * viscous[j] * (amplitude(m, *s.w1, j) - amplitude(m, *s.w0, j)) / s.h;

@@ -145,7 +145,7 @@ void Motions::add_work(const Moment& moment, Work& sum) const {
   }
   if (!s.v0) return;
   Stage inertia = s;
-  inertia.rates_alone = true, inertia.load_factor = 0, inertia.v = nullptr, inertia.chi = 0, inertia.h = 0;
+  inertia.rates_alone = true, inertia.load_factor = 0, inertia.v = nullptr, inertia.dissipation = nullptr, inertia.h = 0;
   inertia.e0 = inertia.e1 = inertia.w0 = inertia.w1 = &points_.start;  // without strain
   const std::vector<double> none(moment.lambda.size(), 0.0);
   const Moment inert(moment, inertia, none);

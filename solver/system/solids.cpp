@@ -25,7 +25,7 @@ class Scratch {
 
 /// Arrays of one call, (entry x lanes).
 struct Lanes {
-  Scratch X, x0, x1, a, f, K, f2, K2, h0, h1, before, along, scalar[3];
+  Scratch X, x0, x1, a, f, K, f2, K2, h0, h1, before, along, one, two, scalar[3];
 };
 
 void gather(const SolidBatch& b, int first, int W, const std::vector<Vec3>& from, double* to) {
@@ -67,32 +67,30 @@ void Solids::evaluate(Pass& p) const {
            *f = lanes.f.get(n3 * W);
     double* K = p.K ? lanes.K.get(static_cast<size_t>(n3) * n3 * W) : nullptr;
     double* det = lanes.scalar[0].get(W);
-    const double rate = s.h > 0 ? b.beta / s.h : 0;
-    KernelCall call{X_,
-                    x0,
-                    x1,
-                    1,
-                    same_pair ? rate + s.chi / 2 : s.chi / 2,
-                    parameters(b.material),
-                    f,
-                    K,
-                    nullptr,
-                    nullptr,
-                    det,
-                    b.density,
-                    a,
-                    (s.mass_slope + b.alpha * s.alpha_slope) / s.chain,
-                    b.area,
-                    s.weight};
+    const double rate = s.h > 0 ? b.beta / s.h : 0, viscous = (s.dissipation ? s.dissipation->kappa : 0) + (same_pair ? rate : 0);
+    KernelCall call{X_,      x0,
+                    x1,      1,
+                    viscous, parameters(b.material),
+                    f,       K,
+                    nullptr, nullptr,
+                    det,     b.density,
+                    a,       (s.mass_slope + b.alpha * s.alpha_slope) / s.chain,
+                    b.area,  s.weight};
     double* h0 = lanes.h0.get(static_cast<size_t>(b.kernel.n_state) * W);
     call.h0 = h0, call.elapsed = s.elapsed;
     double *before = lanes.before.get(n3 * W), *along = lanes.along.get(n3 * W);
+    double *one = lanes.one.get(n3 * W), *two = lanes.two.get(n3 * W);
+    if (const Dissipation* d = s.dissipation) {
+      const double share = d->kappa / viscous;
+      call.past[0] = one, call.past[1] = two, call.recall[0] = share * d->last(), call.recall[1] = share * d->before();
+    }
     if (K && s.before) call.before = before, call.along = along;
     for (int first = 0; first < count; first += W) {
       gather(b, first, W, X, X_);
       gather(b, first, W, s.e0->x, x0);
       gather(b, first, W, s.e1->x, x1);
       gather(b, first, W, s.a->x, a);
+      if (call.past[0]) gather(b, first, W, s.dissipation->one->x, one), gather(b, first, W, s.dissipation->two->x, two);
       if (call.before) gather(b, first, W, s.before->x, before), gather(b, first, W, s.along->x, along);
       if (b.kernel.n_state > 0) gather_state(b, first, W, b.h0, h0);
       for (int k = 0; k < n; ++k)
@@ -226,28 +224,34 @@ void Solids::archive(Archive& a) {
 }
 
 /// Dissipation by flow, and work of the rate terms and of the stress dissipation of the cells over a step, this rank's share.
-double Solids::dissipation(const Stage& s) const {
+void Solids::add_dissipation(const Stage& s, Work& sum) const {
   thread_local Lanes lanes;
   const auto& X = points_.X;
-  double total = 0;
-  const auto add = [&](const SolidBatch& b, const Config& q0, const Config& q1, double viscous) {
-    if (viscous == 0) return;
+  const auto work = [&](const SolidBatch& b, const Config& q0, const Config& q1, double viscous, double last = 0, double before = 0) {
+    double total = 0;
+    if (viscous == 0) return total;
     const int W = b.kernel.width, n = info(b.shape).n_nodes, n3 = 3 * n, count = static_cast<int>(b.cells.size());
     double *X_ = lanes.X.get(n3 * W), *x0 = lanes.x0.get(n3 * W), *x1 = lanes.x1.get(n3 * W), *D = lanes.scalar[0].get(W);
     for (int first = 0; first < count; first += W) {
       gather(b, first, W, X, X_);
       gather(b, first, W, q0.x, x0);
       gather(b, first, W, q1.x, x1);
-      b.kernel.call({X_, x0, x1, 0, viscous, parameters(b.material), nullptr, nullptr, nullptr, D, nullptr, 0, nullptr, 0, b.area});
+      KernelCall call{X_, x0, x1, 0, viscous, parameters(b.material), nullptr, nullptr, nullptr, D, nullptr, 0, nullptr, 0, b.area};
+      if (last != 0 || before != 0) {
+        double *one = lanes.one.get(n3 * W), *two = lanes.two.get(n3 * W);
+        gather(b, first, W, s.dissipation->one->x, one), gather(b, first, W, s.dissipation->two->x, two);
+        call.past[0] = one, call.past[1] = two, call.recall[0] = last, call.recall[1] = before;
+      }
+      b.kernel.call(call);
       for (int l = 0; l < W && first + l < count; ++l) total += D[l];
     }
+    return total;
   };
   for (const SolidBatch& b : batches) {
-    if (s.elapsed > 0) total += b.dissipated;
-    add(b, *s.e0, *s.e1, s.chi / 2);
-    if (s.h > 0) add(b, *s.w0, *s.w1, b.beta / s.h * s.share());
+    if (s.elapsed > 0) sum.dissipated += b.dissipated;
+    sum.add(s, [&](const Config& from, const Config& to, double last, double before) { return work(b, from, to, 1, last, before); });
+    if (s.h > 0) sum.dissipated += work(b, *s.w0, *s.w1, b.beta / s.h * s.share());
   }
-  return total;
 }
 
 /// Mass-proportional damping: alpha M v.dx.
@@ -272,6 +276,9 @@ double Solids::mass_damping(const Stage& s) const {
   return total;
 }
 
-void Solids::add_work(const Moment& m, Work& sum) const { sum.dissipated += dissipation(m.s) + mass_damping(m.s); }
+void Solids::add_work(const Moment& m, Work& sum) const {
+  add_dissipation(m.s, sum);
+  sum.dissipated += mass_damping(m.s);
+}
 
 }  // namespace hilo

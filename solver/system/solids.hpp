@@ -61,7 +61,7 @@ class Solids final : public Contribution, public Equations, public Stateful, pub
   int clusters(std::vector<std::int64_t>& cluster_of) const;
 
  private:
-  double dissipation(const Stage& s) const;
+  void add_dissipation(const Stage& s, Work& sum) const;
   double mass_damping(const Stage& s) const;
   void watch_strain(const Config& q);
   const Points& points_;

@@ -155,9 +155,9 @@ Work System::work(const Stage& s, std::span<const double> lambda) const {
   const Moment moment(*this, s, lambda, lambda, nullptr);
   Work sum;
   for (const Equations* part : all<Equations>()) part->add_work(moment, sum);
-  double both[2] = {sum.external, sum.dissipated};
-  comm->sum(both);
-  return {both[0], both[1]};
+  double all[3] = {sum.external, sum.dissipated, sum.stored};
+  comm->sum(all);
+  return {all[0], all[1], all[2]};
 }
 
 Violation System::violation(const Config& q, double t, double factor) const {

@@ -323,15 +323,26 @@ TEST_P(Tangent, OfTheWholeSystemIsTheDerivativeOfItsResidual) {
   system->move(q1, kick);
   system->prescribe(q1, s.t + 0.02);
   system->commit(s.q);
+  Config past[2] = {s.q, s.q};
+  Dissipation recalled{0, &past[0], &past[1], 0.9, 0.7, 0.8};
+  for (int k = 0; k < 2; ++k) {
+    for (int i = 0; i < n; ++i) kick[i] = 0.02 * small(*system, i) * scatter(6000 + 100 * k + i);
+    system->move(past[k], kick);
+  }
+  const auto stage_to = [&](const Unknown& u) {
+    Stage stage = integrator->stage(0, u);
+    if (stage.dissipation) recalled.kappa = stage.dissipation->kappa, stage.dissipation = &recalled;
+    return stage;
+  };
 
   DenseKkt K;
   K.structure(system->layout.cliques, system->layout.map);
   Residual at;
-  system->evaluate(integrator->stage(0, Unknown(*system, s.q, q1)), s.lambda, at, &K);
+  system->evaluate(stage_to(Unknown(*system, s.q, q1)), s.lambda, at, &K);
   const double scale = K.A.topLeftCorner(first, first).cwiseAbs().maxCoeff();
   const auto residual = [&](const Config& q, const std::vector<double>& lambda) {
     Residual r;
-    system->evaluate(integrator->stage(0, Unknown(*system, s.q, q)), lambda, r, nullptr);
+    system->evaluate(stage_to(Unknown(*system, s.q, q)), lambda, r, nullptr);
     system->mask_fixed(r.r);
     return Eigen::Map<const Eigen::VectorXd>(r.r.data(), n).eval();
   };

@@ -2,7 +2,9 @@
 // M (v1 - v0)/h + f(q0, q1) + G(q_mid)^T lambda = F_mean,   (q1 - q0)/h = (v0 + v1)/2,   g(q1) = 0
 #include "model/integrator/energy_momentum.hpp"
 
+#include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "dynamics/clock.hpp"
 #include "dynamics/integrator/make.hpp"
@@ -10,13 +12,47 @@
 namespace hilo {
 namespace {
 
+/// What dissipation recalls of the steps before (system/stage.hpp), none at first.
+class StrainMemory {
+ public:
+  /// chi: a strain that alternates is met by the stress chi/2 C (E1 - E0).
+  explicit StrainMemory(double chi) : kappa_(3 * chi / 8) {}
+  void begin(const Config& q0, double h) {
+    if (kappa_ == 0) return;
+    if (accepted_) {
+      std::swap(two_, one_), std::swap(one_, start_);
+      n_ = std::min(n_ + 1, 2), share_before_ = share_, h_before_ = h_;
+      accepted_ = false;
+    }
+    start_ = q0, h_ = h;
+    share_ = n_ > 0 ? std::min(1.0, h / h_before_) : 0;
+  }
+  void accept() { accepted_ = true; }
+  const Dissipation* of_step(const Config& q0) {
+    if (kappa_ == 0) return nullptr;
+    const Config* one = n_ > 0 ? &one_ : &q0;
+    dissipation_ = {kappa_, one, n_ > 1 ? &two_ : one, share_, share_ * share_before_, share_before_};
+    return &dissipation_;
+  }
+  void archive(Archive& a) { a("strain memory", n_, accepted_, h_, h_before_, share_, share_before_, start_, one_, two_); }
+
+ private:
+  double kappa_;
+  int n_ = 0;              // steps that are recalled
+  bool accepted_ = false;  // the step begun last: its start belongs to the memory of the next one
+  double h_ = 0, h_before_ = 0, share_ = 0, share_before_ = 0;
+  Config start_, one_, two_;
+  Dissipation dissipation_;
+};
+
 class EnergyMomentumIntegrator final : public StageIntegrator {
  public:
-  explicit EnergyMomentumIntegrator(double chi) : chi_(chi) {}
+  explicit EnergyMomentumIntegrator(double chi) : chi_(chi), memory_(chi) {}
   std::string name() const override { return std::string(EnergyMomentum::name) + (chi_ > 0 ? " with stress dissipation" : ""); }
 
   void begin(const System& system, const State& s, double h) override {
     t_ = s.t, t_end_ = s.t + h, v0_ = s.v, h_ = h;
+    memory_.begin(s.q, h);
     if (clocks_) clocks_->plan(s.v, s.t, h);
     given_.at(system, t_end_, v0_), given_.mean_from(v0_, h_);
   }
@@ -35,7 +71,7 @@ class EnergyMomentumIntegrator final : public StageIntegrator {
     s.a = &a_, s.v0 = &v0_, s.mass_slope = 2 / (h_ * h_);
     if (clocks_) s.tempo = clocks_->tempo().data();
     s.v = &v_mid_, s.alpha_slope = 1 / h_;
-    s.chi = chi_;
+    s.dissipation = memory_.of_step(u.q0);
     s.t0 = t_, s.t1 = s.t_end = t_end_;
     return s;
   }
@@ -50,12 +86,14 @@ class EnergyMomentumIntegrator final : public StageIntegrator {
     given_.put(&v, nullptr);
   }
   void finish(const Config& v) override {
+    memory_.accept();
     if (clocks_) clocks_->accept(v, a_, taken()[0]);
   }
   void forget() override {
     if (clocks_) clocks_->restart();
   }
   void archive_history(Archive& a, const System& system) override {
+    memory_.archive(a);
     bool timed = clocks_.has_value();
     a("timed", timed);
     if (timed && !clocks_) system_ = &system, clocks_.emplace(system);
@@ -85,6 +123,7 @@ class EnergyMomentumIntegrator final : public StageIntegrator {
   double chi_, t_ = 0, t_end_ = 0, h_ = 0;
   const System* system_ = nullptr;
   std::optional<Clocks> clocks_;
+  StrainMemory memory_;
   Config v0_, mid_, v_mid_, a_;
   GivenRates given_;
 };

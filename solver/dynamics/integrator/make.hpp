@@ -6,7 +6,7 @@
 
 namespace hilo {
 
-/// chi adds dissipation chi/2 C (E1 - E0) to the stress of flexible parts.
+/// chi: dissipation in the stress of flexible parts, chi/2 C (E1 - E0) for what alternates, of order h^2 for what steps resolve.
 std::unique_ptr<StageIntegrator> make_energy_momentum(double chi);
 std::unique_ptr<StageIntegrator> make_mid_point();
 struct AlphaParameters {
