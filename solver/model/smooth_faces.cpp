@@ -171,10 +171,8 @@ FaceShape shape_of_face(std::span<const SurfaceFacet> facets) {
   if (eigen.eigenvalues()[0] > 0.05 || eigen.eigenvalues()[1] < 1e-3) return s;
   std::vector<Vec3> points;
   std::set<std::int64_t> corners;
-  double reach = 0;
   for (const SurfaceFacet& f : facets)
-    for (size_t i = 0; i < static_cast<size_t>(f.n_corners); ++i)
-      points.push_back(f.at(i) - centroid), corners.insert(f.node[i]), reach = std::max(reach, points.back().norm());
+    for (size_t i = 0; i < static_cast<size_t>(f.n_corners); ++i) points.push_back(f.at(i) - centroid), corners.insert(f.node[i]);
   if (corners.size() < 6) return s;  // a cylinder passes through any five points
   Vec3 axis = eigen.eigenvectors().col(0), at = Vec3::Zero();
   double radius = 0, off = 0;
@@ -201,6 +199,8 @@ FaceShape shape_of_face(std::span<const SurfaceFacet> facets) {
     at += step[0] * u + step[1] * v, axis = (axis + step[2] * u + step[3] * v).normalized(), radius += step[4];
     if (!(step.norm() < 1e3 * (1 + radius))) return s;
   }
+  double reach = 0;  // of the face across the axis
+  for (const Vec3& x : points) reach = std::max(reach, (x - x.dot(axis) * axis).norm());
   if (!(off < 2e-3 * std::min(radius, reach)) || radius > 100 * reach) return s;
   double low = 1e300, high = -1e300, outward = 0;
   for (const Vec3& x : points) low = std::min(low, (x - at).dot(axis)), high = std::max(high, (x - at).dot(axis));
