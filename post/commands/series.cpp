@@ -175,7 +175,8 @@ Command series_command(CLI::App& app) {
   const auto o = std::make_shared<SeriesOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("names", o->names,
-                  "histories or columns by name or glob: energy, joint.trunnion, \"joint.*.Fx\"; or a formula: \"pull [kN] = "
+                  "histories or columns by name or glob: energy, joint.trunnion, \"joint.*.Fx\", joint.trunnion.F and .M for resultants; "
+                  "or a formula: \"pull [kN] = "
                   "hypot(joint.pin.Fx, joint.pin.Fy)/1e3\", of columns, t [s], pi, + - * / ^ and " +
                       expression_functions() + " (d: rate, start: first value)");
   sub->add_option("--let", o->lets, "NAME = FORMULA: a name for the formulas after it, no column; --let once for each")

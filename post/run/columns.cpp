@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/error.hpp"
@@ -15,6 +16,17 @@ namespace {
 std::string trimmed_blanks(const std::string& text) {
   const auto from = text.find_first_not_of(' '), to = text.find_last_not_of(' ');
   return from == std::string::npos ? "" : text.substr(from, to - from + 1);
+}
+
+/// Resultants of a history: "F" of Fx, Fy and Fz, "M" of Mx, My and Mz; where their columns begin.
+std::vector<std::pair<std::string, size_t>> resultants(const Series& what) {
+  std::vector<std::pair<std::string, size_t>> found;
+  for (size_t c = 0; c + 2 < what.column.size(); ++c)
+    for (const char* of : {"F", "M"})
+      if (what.column[c] == std::string(of) + "x" && what.column[c + 1] == std::string(of) + "y" &&
+          what.column[c + 2] == std::string(of) + "z")
+        found.emplace_back(of, c);
+  return found;
 }
 
 }  // namespace
@@ -48,6 +60,13 @@ Column RunColumns::column(const std::string& name, const Series& what, size_t c)
   return p;
 }
 
+Column RunColumns::resultant(const std::string& name, const Series& what, const std::string& of, size_t first) {
+  const Series& s = history(name);
+  Column p{name + "." + of, what.unit[first], s.t, {}};
+  for (size_t row = 0; row < s.rows(); ++row) p.value.push_back(std::hypot(s.at(row, first), s.at(row, first + 1), s.at(row, first + 2)));
+  return p;
+}
+
 Column RunColumns::named(const std::string& name) {
   if (const auto let = let_.find(name); let != let_.end()) return let->second;
   std::vector<std::string> labels;
@@ -56,6 +75,10 @@ Column RunColumns::named(const std::string& name) {
     for (size_t c = 0; c < what.column.size(); ++c) {
       labels.push_back(history + "." + what.column[c]);
       if (labels.back() == name) return column(history, what, c);
+    }
+    for (const auto& [of, first] : resultants(what)) {
+      labels.push_back(history + "." + of);
+      if (labels.back() == name) return resultant(history, what, of, first);
     }
   }
   for (const auto& [let, value] : let_) labels.push_back(let);
@@ -104,6 +127,12 @@ std::vector<Column> RunColumns::pick(const std::vector<std::string>& wanted) {
         if (!matches(glob, name) && !matches(glob, label)) continue;
         any = true;
         if (have.insert(label).second) picked.push_back(column(name, what, c));
+      }
+      for (const auto& [of, first] : resultants(what)) {
+        if (const std::string label = name + "." + of; !glob.ends_with("." + of) || !matches(glob, label) || !have.insert(label).second)
+          continue;
+        any = true;
+        picked.push_back(resultant(name, what, of, first));
       }
     }
     if (any) continue;

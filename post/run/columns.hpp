@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Columns of the histories of a run, by name, by glob, or by formula over other columns.
+// Columns of the histories of a run, by name, by glob, or by formula over other columns; `F` and `M` are resultants of Fx, Fy, Fz and of
+// Mx, My, Mz.
 #pragma once
 #include <map>
 #include <string>
@@ -29,6 +30,7 @@ class RunColumns {
   const Series& history(const std::string& name);
   const Series& described(const std::string& name);
   Column column(const std::string& history_name, const Series& what, size_t c);
+  Column resultant(const std::string& history_name, const Series& what, const std::string& of, size_t first);
   Column formula(const std::string& text);
   Column named(const std::string& name);
 

@@ -28,17 +28,17 @@ struct Symbol {
 };
 constexpr Symbol symbols[] = {
     {"joint", "fixed", Glyph::block},         {"joint", "spherical", Glyph::ball},     {"joint", "constant-velocity", Glyph::ball},
-    {"joint", "point-on-curve", Glyph::ball}, {"joint", "in-plane", Glyph::ball},      {"joint", "distance", Glyph::link},
-    {"joint", "prismatic", Glyph::slider},    {"joint", "cylindrical", Glyph::slider}, {"joint", "screw", Glyph::slider},
-    {"joint", "in-line", Glyph::slider},      {"joint", "planar", Glyph::slider},      {"joint", "revolute", Glyph::hinge},
-    {"joint", "universal", Glyph::hinge},     {"joint", "gear", Glyph::hinge},         {"joint", "rack", Glyph::hinge},
-    {"joint", "rolling", Glyph::hinge},       {"joint", "knife-edge", Glyph::hinge},   {"spring", "axial", Glyph::coil},
-    {"spring", "stop", Glyph::coil},          {"spring", "torsion", Glyph::spiral},    {"spring", "support", Glyph::ground},
-    {"spring", "bushing", Glyph::bushing},    {"stop", "angle", Glyph::stop},          {"stop", "slide", Glyph::stop},
-    {"motor", "rotary", Glyph::turn},         {"motor", "linear", Glyph::arrow},       {"friction", "", Glyph::friction},
-    {"load", "force", Glyph::arrow},          {"load", "traction", Glyph::arrow},      {"load", "pressure", Glyph::arrow},
-    {"load", "torque", Glyph::turn},          {"motion", "fixed", Glyph::clamp},       {"motion", "translation", Glyph::arrow},
-    {"motion", "rotation", Glyph::turn}};
+    {"joint", "point-on-curve", Glyph::ball}, {"joint", "weighted-sum", Glyph::link},  {"joint", "in-plane", Glyph::ball},
+    {"joint", "distance", Glyph::link},       {"joint", "prismatic", Glyph::slider},   {"joint", "cylindrical", Glyph::slider},
+    {"joint", "screw", Glyph::slider},        {"joint", "in-line", Glyph::slider},     {"joint", "planar", Glyph::slider},
+    {"joint", "revolute", Glyph::hinge},      {"joint", "universal", Glyph::hinge},    {"joint", "gear", Glyph::hinge},
+    {"joint", "rack", Glyph::hinge},          {"joint", "rolling", Glyph::hinge},      {"joint", "knife-edge", Glyph::hinge},
+    {"spring", "axial", Glyph::coil},         {"spring", "curve", Glyph::coil},        {"spring", "stop", Glyph::coil},
+    {"spring", "torsion", Glyph::spiral},     {"spring", "support", Glyph::ground},    {"spring", "bushing", Glyph::bushing},
+    {"stop", "angle", Glyph::stop},           {"stop", "slide", Glyph::stop},          {"motor", "rotary", Glyph::turn},
+    {"motor", "linear", Glyph::arrow},        {"friction", "", Glyph::friction},       {"load", "force", Glyph::arrow},
+    {"load", "traction", Glyph::arrow},       {"load", "pressure", Glyph::arrow},      {"load", "torque", Glyph::turn},
+    {"motion", "fixed", Glyph::clamp},        {"motion", "translation", Glyph::arrow}, {"motion", "rotation", Glyph::turn}};
 
 class Collector {
  public:

@@ -151,8 +151,13 @@ std::vector<KindSchema> make_schema() {
     return keys;
   };
   const auto kind_of = [](std::string_view meaning) { return Param{"kind", text, "", "!", meaning}; };
+  const Param reactions{
+      "reactions", text, "", "a",
+      "axes of its reaction: a or b (the joint frame, carried by that end), ground (inertial), or a body or rigid region, "
+      "whose axes are inertial at the start"};
   for (const JointKind& k : joint_kinds())
-    s.push_back({"joint", k.name, k.meaning, with({kind_of("the kind of joint"), name, keys::end_a, keys::end_b}, k.keys)});
+    s.push_back(
+        {"joint", k.name, k.meaning, with({kind_of("the kind of joint"), name, keys::end_a, keys::end_b}, with(k.keys, {reactions}))});
   for (const SpringKind& k : spring_kinds())
     s.push_back({"spring", k.name, k.meaning, with({kind_of("the kind of spring"), name, keys::end_a, keys::end_b}, k.keys)});
   for (const JointForceKind& k : joint_force_kinds()) {
@@ -203,6 +208,23 @@ std::vector<KindSchema> make_schema() {
                 {"torque", vector3, "N m", "!", "moment"},
                 {"follower", boolean, "", "false", "the moment turns with the body"},
                 keys::history}});
+
+  const Param part{"on", text, "", "!", "region or set of cells it acts on; for an acceleration a rigid region or a body too"};
+  s.push_back({"load",
+               "acceleration",
+               "what gravity is, for a part of the model: mass times this acceleration, inertial axes",
+               {kind_of("the kind of load"), name, part, {"acceleration", vector3, "m/s^2", "!", "force per mass"}, keys::history}});
+  s.push_back(
+      {"load",
+       "centrifugal",
+       "mass times distance from an axis times the square of a speed, away from the axis, as things are drawn; history times this force",
+       {kind_of("the kind of load"),
+        name,
+        part,
+        {"at", vector3, "m", "!", "point of the axis"},
+        {"axis", vector3, "1", "!", "axis of the rotation; need not be of unit length"},
+        {"speed", number, "rad/s", "!", "speed of the rotation"},
+        keys::history}});
 
   s.push_back({"motion",
                "fixed",

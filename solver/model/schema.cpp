@@ -180,7 +180,8 @@ std::vector<ArraySchema>& arrays() {
        "of a linear region: strain energy of strains of the second degree that its supports let nothing take back; its load over that at "
        "which it would buckle; how many times as far it would give way under that load (1000: without end)"},
       {"run.h5", "/history/joint/<name>", "f8", "(n_t, 6)", "N, N m",
-       "force and moment on b at the joint point, joint frame carried by a; of redundant joints the minimum-norm share"},
+       "force and moment on b at the joint point, joint frame carried by a, or in the axes that `reactions` names; of redundant joints the "
+       "minimum-norm share"},
       {"run.h5", "/history/coordinate/<name>", "f8", "(n_t, 2)", "m, rad",
        "of a joint with a free slide or angle: displacement of b along the axis and angle of b about it, whole turns included; zero at the "
        "start, and where the joint leaves none free"},

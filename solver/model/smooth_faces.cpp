@@ -4,9 +4,11 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 namespace hilo {
 namespace {
@@ -36,6 +38,68 @@ Eigen::Vector3d circle(const std::vector<Eigen::Vector2d>& points) {
   return {s[0] / 2, s[1] / 2, std::sqrt(std::max(0.0, s[2] + (s[0] * s[0] + s[1] * s[1]) / 4))};
 }
 
+/// Whether a face lies on the cylinder of another: its corners do, and its facets go no deeper below than `deepest`.
+class Cylinder {
+ public:
+  Cylinder(const FaceShape& s, std::span<const SurfaceFacet> facets, const std::vector<size_t>& seed)
+      : middle_(s.middle), axis_(s.axis), radius_(s.radius), sign_(s.kind == "shaft" ? 1 : -1) {
+    for (const size_t i : seed) deepest_ = std::max(deepest_, depth(facets[i]));
+  }
+  bool has(const SurfaceFacet& f) const {
+    for (size_t k = 0; k < static_cast<size_t>(f.n_corners); ++k)
+      if (std::abs(across(f.at(k)).norm() - radius_) > 2e-3 * radius_) return false;
+    const Vec3 normal = f.area().normalized();
+    return sign_ * normal.dot(across(f.centre()).normalized()) > 0.5 && depth(f) < 3.5 * deepest_;
+  }
+
+ private:
+  Vec3 across(const Vec3& x) const { return x - middle_ - (x - middle_).dot(axis_) * axis_; }
+  double depth(const SurfaceFacet& f) const {
+    double deep = 0;
+    const auto n = static_cast<size_t>(f.n_corners);
+    for (size_t k = 0; k < n; ++k) deep = std::max(deep, radius_ - across((f.at(k) + f.at((k + 1) % n)) / 2).norm());
+    return deep;
+  }
+  Vec3 middle_, axis_;
+  double radius_, sign_, deepest_ = 0;
+};
+
+using Edges = std::map<std::pair<std::int64_t, std::int64_t>, std::vector<size_t>>;
+
+/// Faces of coarse cells on one cylinder, whose facets turn by more than the angle, become one.
+template <class Find>
+void join_cylinders(std::span<const SurfaceFacet> facets, const Edges& edges, std::vector<size_t>& root, const Find& find) {
+  constexpr size_t most = 5000;  // a cylinder of more facets is not coarse
+  std::map<size_t, std::vector<size_t>> face;
+  for (size_t i = 0; i < facets.size(); ++i) face[find(i)].push_back(i);
+  std::map<size_t, std::set<size_t>> beside;
+  for (const auto& [edge, of] : edges)
+    if (of.size() == 2 && find(of[0]) != find(of[1])) beside[find(of[0])].insert(find(of[1])), beside[find(of[1])].insert(find(of[0]));
+  std::vector<std::pair<double, size_t>> seeds;
+  std::map<size_t, FaceShape> shape;
+  for (const auto& [id, its] : face) {
+    if (its.size() < 3 || its.size() > most || !beside.contains(id)) continue;
+    std::vector<SurfaceFacet> own;
+    for (const size_t i : its) own.push_back(facets[i]);
+    if (auto s = shape_of_face(own); s.radius > 0) seeds.emplace_back(-s.area, id), shape[id] = std::move(s);
+  }
+  std::ranges::sort(seeds);
+  std::set<size_t> taken;
+  for (const auto& [area, seed] : seeds) {
+    if (!taken.insert(seed).second) continue;
+    const Cylinder cylinder(shape[seed], facets, face[seed]);
+    std::vector<size_t> open{seed};
+    for (size_t k = 0; k < open.size(); ++k)
+      for (const size_t other : beside[open[k]]) {
+        if (taken.contains(other) || face[other].size() > most) continue;
+        if (!std::ranges::all_of(face[other], [&](size_t i) { return cylinder.has(facets[i]); })) continue;
+        taken.insert(other), open.push_back(other);
+        const size_t a = find(seed), b = find(other);
+        root[std::max(a, b)] = std::min(a, b);
+      }
+  }
+}
+
 }  // namespace
 
 Vec3 SurfaceFacet::centre() const {
@@ -55,7 +119,7 @@ std::vector<int> smooth_faces(std::span<const SurfaceFacet> facets, double angle
     while (root[i] != i) i = root[i] = root[root[i]];
     return i;
   };
-  std::map<std::pair<std::int64_t, std::int64_t>, std::vector<size_t>> edges;
+  Edges edges;
   std::vector<Vec3> normal;
   for (size_t i = 0; i < facets.size(); ++i) {
     normal.push_back(facets[i].area().normalized());
@@ -68,6 +132,7 @@ std::vector<int> smooth_faces(std::span<const SurfaceFacet> facets, double angle
       const size_t a = find(of[0]), b = find(of[1]);
       root[std::max(a, b)] = std::min(a, b);
     }
+  join_cylinders(facets, edges, root, find);
   std::vector<int> face(facets.size(), -1);
   int n_faces = 0;
   for (size_t i = 0; i < facets.size(); ++i) face[i] = find(i) == i ? n_faces++ : face[find(i)];
@@ -105,8 +170,10 @@ FaceShape shape_of_face(std::span<const SurfaceFacet> facets) {
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(normals / s.area);
   if (eigen.eigenvalues()[0] > 0.05 || eigen.eigenvalues()[1] < 1e-3) return s;
   std::vector<Vec3> points;
+  std::set<std::int64_t> corners;
   for (const SurfaceFacet& f : facets)
-    for (size_t i = 0; i < static_cast<size_t>(f.n_corners); ++i) points.push_back(f.at(i) - centroid);
+    for (size_t i = 0; i < static_cast<size_t>(f.n_corners); ++i) points.push_back(f.at(i) - centroid), corners.insert(f.node[i]);
+  if (corners.size() < 6) return s;  // a cylinder passes through any five points
   Vec3 axis = eigen.eigenvectors().col(0), at = Vec3::Zero();
   double radius = 0, off = 0;
   for (int iteration = 0; iteration < 20; ++iteration) {
@@ -132,7 +199,9 @@ FaceShape shape_of_face(std::span<const SurfaceFacet> facets) {
     at += step[0] * u + step[1] * v, axis = (axis + step[2] * u + step[3] * v).normalized(), radius += step[4];
     if (!(step.norm() < 1e3 * (1 + radius))) return s;
   }
-  if (!(off < 2e-3 * radius)) return s;
+  double reach = 0;  // of the face across the axis
+  for (const Vec3& x : points) reach = std::max(reach, (x - x.dot(axis) * axis).norm());
+  if (!(off < 2e-3 * std::min(radius, reach)) || radius > 100 * reach) return s;
   double low = 1e300, high = -1e300, outward = 0;
   for (const Vec3& x : points) low = std::min(low, (x - at).dot(axis)), high = std::max(high, (x - at).dot(axis));
   s.middle = centroid + at + (low + high) / 2 * axis;

@@ -24,7 +24,7 @@ void derivatives(const Term& t, const Vec3* y, Use use) {
       use(t.j, 2 * t.coef * (y[t.j] - y[t.i]));
       break;
     case Term::coordinate:
-      use(t.i, -t.coef * t.unit);
+      if (t.i >= 0) use(t.i, -t.coef * t.unit);  // else it is taken from the origin
       use(t.j, t.coef * t.unit);
       break;
   }
@@ -59,7 +59,7 @@ double term_value(const Term& t, const Vec3* y) {
     case Term::distance2:
       return t.coef * (y[t.j] - y[t.i]).squaredNorm();
     case Term::coordinate:
-      return t.coef * t.unit.dot(y[t.j] - y[t.i]);
+      return t.coef * t.unit.dot(t.i >= 0 ? Vec3(y[t.j] - y[t.i]) : y[t.j]);
   }
   return 0;
 }

@@ -121,6 +121,23 @@ Joint rack(const JointPlace& j, const Config& q) {
   return m.with({{{1, slide}, {-j.ratio, turn_a, SumRows::angle}}}, 0);
 }
 
+/// One row, linear in positions: factors times displacements along fixed axes sum to zero.
+Joint weighted_sum(const JointPlace& j, const Config& q) {
+  JointMaker m(j, q);
+  constexpr int origin = -1;
+  const auto term = [&](int end, const Vec3& at, size_t k) {
+    const double* own = j.own.data() + 4 * k;  // factor and axis
+    return Term{Term::coordinate, origin, m.c.add_point(end, q, at), 0, own[0], Vec3(own[1], own[2], own[3])};
+  };
+  std::vector<Term> terms{term(0, j.at, 0), term(1, j.at_b, 1)};
+  if (j.own.size() > 8) {
+    m.c.n_ends = 3, m.c.end[2] = j.carrier;
+    terms.push_back(term(2, Vec3(j.own[12], j.own[13], j.own[14]), 2));
+  }
+  m.zero(std::move(terms));
+  return m.with();
+}
+
 void soften_distance(Joint& joint, std::vector<double>& free) {
   free = {std::sqrt(joint.measures[0].offset)};
   joint.measures[0].offset = 0;
@@ -143,6 +160,24 @@ void read_distance(const EntryValues& e, JointPlace& j) {
   j.at = e.vector3("at_a"), j.at_b = e.vector3("at_b");
   if (!((j.at - j.at_b).norm() > 0)) e.refuse("at_b", "the two points coincide", "a spherical joint holds them together");
   if (e.has("length")) j.length = e.number("length");
+}
+
+void read_weighted_sum(const EntryValues& e, JointPlace& j) {
+  j.at = e.vector3("at_a"), j.at_b = e.vector3("at_b");
+  std::vector<double> factors = e.numbers("factors");
+  const bool third = e.has("carrier");
+  for (const char* key : {"at_carrier", "axis_carrier", "factor_carrier"})
+    if (!third && e.given(key)) e.refuse(key, "there is no carrier", "leave it out, or name the third end");
+  if (third) factors.push_back(e.number("factor_carrier"));
+  size_t k = 0;
+  for (const char* key : {"axis_a", "axis_b", "axis_carrier"}) {
+    if (k == factors.size()) break;
+    if (factors[k] == 0) e.refuse(k < 2 ? "factors" : "factor_carrier", "a factor of zero", "leave that end out");
+    const Vec3 axis = direction(e, key);
+    j.own.insert(j.own.end(), {factors[k++], axis[0], axis[1], axis[2]});
+  }
+  const Vec3 at = third && e.has("at_carrier") ? e.vector3("at_carrier") : Vec3(Vec3::Zero());
+  if (third) j.own.insert(j.own.end(), {at[0], at[1], at[2]});
 }
 
 using enum Type;
@@ -312,6 +347,24 @@ Registry<JointKind>& joint_kinds() {
              nullptr,
              nullptr,
              true},
+            {"weighted-sum",
+             "factors times displacements of points of a, b and a third end, each along an inertial axis, sum to zero: blocks and tackles, "
+             "*EQUATION (1 row)",
+             {keys::at_a,
+              keys::at_b,
+              {"at_carrier", vector3, "m", "", "point on the carrier"},
+              {"factors", numbers, "1", "!", "of a and of b", any_number, {2}},
+              {"factor_carrier", number, "1", "1", "of the carrier"},
+              {"axis_a", vector3, "1", "[0, 0, 1]", "axis of the displacement of a"},
+              {"axis_b", vector3, "1", "[0, 0, 1]", "of b"},
+              {"axis_carrier", vector3, "1", "[0, 0, 1]", "of the carrier"},
+              {"carrier", text, "", "", "third end: a rigid region, a body, or a set"}},
+             weighted_sum,
+             "",
+             {},
+             {},
+             none,
+             read_weighted_sum},
             {"distance",
              "constant distance of two points (1 row)",
              giving_way_along(

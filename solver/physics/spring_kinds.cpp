@@ -4,8 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/keys.hpp"
 #include "physics/axes.hpp"
+#include "physics/spring_curve.hpp"
 
 namespace hilo {
 namespace {
@@ -29,6 +33,25 @@ Spring axial(const SpringPlace& s, const Config& q) {
   const double length = (e.given("length") ? e.number("length") : distance) - (k > 0 ? preload / k : 0);
   return make_axial_spring(
       {.a = s.a, .b = s.b, .at_a = at_a, .at_b = at_b, .stiffness = k, .damping = e.number("damping"), .length = length}, q);
+}
+
+Spring curve(const SpringPlace& s, const Config& q) {
+  const EntryValues& e = s.entry;
+  const Vec3 at_a = e.vector3("at_a"), at_b = e.vector3("at_b");
+  const double distance = (at_b - at_a).norm();
+  const std::vector<double>&x = e.numbers("extension"), &f = e.numbers("force");
+  if (!(distance > 0)) e.refuse("at_b", "the two points coincide");
+  if (x.size() < 2 || x.size() != f.size())
+    e.refuse("force", fmt::format("{} forces at {} extensions", f.size(), x.size()), "two at least, and as many of each");
+  double steepest = 0;
+  for (size_t i = 1; i < x.size(); ++i) {
+    if (!(x[i] > x[i - 1])) e.refuse("extension", fmt::format("value {} is not above the one before it", i + 1));
+    steepest = std::max(steepest, std::abs((f[i] - f[i - 1]) / (x[i] - x[i - 1])));
+  }
+  const double free = e.given("length") ? e.number("length") : distance;
+  Spring c = along_distance(s.a, s.b, at_a, at_b, q, make_curve(free, e.number("damping"), x, f));
+  c.stiffness = steepest;
+  return c;
 }
 
 Spring torsion(const SpringPlace& s, const Config& q) {
@@ -117,6 +140,15 @@ Registry<SpringKind>& spring_kinds() {
             {"length", number, "m", "", "free length; the initial distance when absent", at_least(0)},
             {"preload", number, "N", "0", "tension at the initial distance, added by shifting the free length; needs a stiffness"}},
            axial},
+          {"curve",
+           "force by a table over the extension of the line of two points, linear between its points and constant beyond them",
+           {keys::at_a,
+            keys::at_b,
+            {"extension", numbers, "m", "!", "ascending; distance less free length"},
+            {"force", numbers, "N", "!", "tension at each of them"},
+            {"damping", number, "N s/m", "0", "force per rate of extension", at_least(0)},
+            {"length", number, "m", "", "free length; the initial distance when absent", at_least(0)}},
+           curve},
           {"torsion",
            "spring and damper about an axis that a and b share through a joint",
            {keys::axis,

@@ -83,7 +83,7 @@ void Builder::add_joints() {
     JointPlace j;
     j.kind = e.kind;
     j.a = carrier(e, "a", kind.turns != JointKind::Turns::none), j.b = carrier(e, "b", kind.turns == JointKind::Turns::both);
-    if (e.has("carrier")) j.carrier = carrier(e, "carrier", true);
+    if (e.has("carrier")) j.carrier = carrier(e, "carrier", kind.turns != JointKind::Turns::none);
     const auto different = [&](const Carrier& one, const Carrier& other, const char* key, const char* other_key) {
       if (one.body != other.body || one.node != other.node) return;
       e.refuse(key, fmt::format("{} and {} are the same body", other_key, key),
@@ -103,6 +103,7 @@ void Builder::add_joints() {
     const std::string driven = driving_key(e);
     if (e.has("stiffness") || e.has("angular_stiffness")) {
       if (!driven.empty()) e.refuse(driven, "a joint that gives way cannot be driven", "put a motor or a rigid joint");
+      if (e.given("reactions")) e.refuse("reactions", "a joint that gives way tells its force in its frame", "leave it out");
       out_->part<Springs>().list.push_back(compliant(e, j, out_->start));
       continue;
     }
@@ -116,7 +117,21 @@ void Builder::add_joints() {
       c.drive.law = MotionLaw(e.number(driven), is_rate, use_history(e, is_rate ? Acts::as_rate : Acts::as_position), !e.given("history"));
       c.drive.unit = j.driven == JointPlace::Driven::angle ? "rad/s" : "m/s";
     }
-    out_->part<Joints>().list.push_back(std::move(c));
+    auto& joints = out_->part<Joints>();
+    if (const std::string& axes = e.text("reactions"); axes != "a") {
+      Joints::Axes told;
+      if (axes == "b") {
+        told.body = c.end[1].body;
+        told.in = j.frame;
+        if (told.body >= 0) told.in = out_->start.R[told.body].transpose() * j.frame;
+      } else if (const Found found = find(axes, e.where("reactions")); found.body < 0) {
+        e.refuse("reactions", fmt::format("\"{}\" has no axes that turn with it", axes), "a, b, ground, a body or a rigid region");
+      } else {
+        told.body = found.body;
+      }
+      joints.told_in[joints.list.size()] = told;
+    }
+    joints.list.push_back(std::move(c));
   }
 }
 

@@ -137,7 +137,7 @@ std::vector<Output> Joints::outputs() const {
   return out;
 }
 
-/// Reactions: force and moment on b at the joint point, in the joint frame carried by a.
+/// Reactions: force and moment on b at the joint point, in the joint frame carried by a, or in the axes asked for.
 void Joints::observe(const Sight& at) {
   if (!at.step) return;
   const Moment& m = *at.step;
@@ -154,6 +154,13 @@ void Joints::observe(const Sight& at) {
       Vec6 slip = Slip(c, q, m.s.v).force(lambda + c.n_position_rows());
       slip.tail<3>() -= (q.R[c.end[1].body] * c.point_b).cross(slip.head<3>());
       f += slip;
+    }
+    if (const auto axes = told_in.find(j); axes != told_in.end()) {
+      const Mat3 frame = axes->second.body >= 0 ? Mat3(q.R[axes->second.body] * axes->second.in) : axes->second.in;
+      const Vec3 force = frame.transpose() * f.head<3>(), moment = frame.transpose() * f.tail<3>();
+      at.mid.insert(at.mid.end(), force.data(), force.data() + 3);
+      at.mid.insert(at.mid.end(), moment.data(), moment.data() + 3);
+      continue;
     }
     append_in_frame(c, f, q, at.mid);
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Joints: constraint rows with multipliers.
 #pragma once
+#include <map>
+
 #include "system/connector_clique.hpp"
 #include "system/constraint.hpp"
 
@@ -10,6 +12,12 @@ class Joints final : public Contribution, public Equations, public Constraining,
  public:
   explicit Joints(const Points& points) : points_(points) {}
   std::vector<Joint> list;
+  /// Axes, carried by a body or inertial (-1), in which the reactions of a joint are told; by joint.  The others: its frame, carried by a.
+  struct Axes {
+    int body = -1;
+    Mat3 in = Mat3::Identity();
+  };
+  std::map<size_t, Axes> told_in;
   auto begin() { return list.begin(); }
   auto end() { return list.end(); }
   auto begin() const { return list.begin(); }

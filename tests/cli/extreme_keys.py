@@ -26,7 +26,7 @@ MEMORY, SECONDS = 3 << 30, 30
 
 # What a key is where it is not the one that is tried; others take the schema's default or are left out.
 WORDS = {"card": "\"*TIE\"", "a": '"ground"', "b": '"arm"', "on": '"arm"', "joint": '"hinge"', "name": '"tried"', "at": "[0, 0, 0]", "axis": "[0, 1, 0]",
-         "x": "[1, 0, 0]", "at_a": "[0, 0, 1]", "at_b": "[0.5, 0, 0]", "sensor": '"felt"', "measure": '"DRI"', "section": '"square"', "material": '"plain"', "path": '"line"'}
+         "x": "[1, 0, 0]", "at_a": "[0, 0, 1]", "at_b": "[0.5, 0, 0]", "sensor": '"felt"', "measure": '"DRI"', "section": '"square"', "reactions": '"ground"', "carrier": '"wheel"', "material": '"plain"', "path": '"line"'}
 NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5, 0, 0]", "inertia": "[0.01, 0.1, 0.1]", "pitch": "0.1",
            "ratio": "2", "radius": "0.1", "stiffness": "100", "angular_stiffness": "100", "damping": "1", "angular_damping": "1",
            "lower": "-1", "upper": "1", "rate": "[0, 1]", "torque": "[1, 0]", "force": "[1, 0]", "coefficient": "0.1", "length": "1",
@@ -40,7 +40,7 @@ NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5
             "diameter": "0.1", "thickness": "0.02", "width": "0.1", "height": "0.1", "flange": "0.02", "web": "0.02", "I1": "1e-5", "I2": "1e-5", "J": "1e-5",
            "bending": "[100, 100, 100]", "line_mass": "1", "cells": "[2]", "orientation": "[0, 1, 0]", "shear": "[1, 1]",
            "axis_1": "[1, 0, 0]", "axis_2": "[0, 1, 0]", "hardening_strain": "[0, 0.1]", "hardening_stress": "[1e6, 2e6]",
-           "size": "[1, 1, 1]", "tube": "0.05", "modulus": "1e7", "layer": "0.1", "gap": "0.1", "factor": "1", "friction": "0.1"}
+           "factors": "[1, 1]", "extension": "[0, 1]", "acceleration": "[1, 0, 0]", "speed": "1", "size": "[1, 1, 1]", "tube": "0.05", "modulus": "1e7", "layer": "0.1", "gap": "0.1", "factor": "1", "friction": "0.1"}
 BODIES = """[[body]]
 name = "arm"
 mass = 1
@@ -173,6 +173,8 @@ def entry(section, kind, keys, tried, value):
         beside |= {"radius", "about"}
     if kind == "point-on-curve":
         beside.add("points")
+    if tried.endswith("_carrier"):
+        beside.add("carrier")
     if section == "history":
         beside |= {"t", "value"}
     if section == "material":
@@ -200,6 +202,8 @@ def entry(section, kind, keys, tried, value):
                 word = '"arm"'
             if section == "load" and kind in ("traction", "pressure") and key == "on":
                 word = '"top"'
+            if section == "load" and kind == "centrifugal" and key == "on":
+                word = '"block"'
             if kind in ("gear", "rack") and key == "a":
                 word = '"wheel"'
             if section == "contact" and key in ("a", "b"):
@@ -213,7 +217,7 @@ def entry(section, kind, keys, tried, value):
 def scene(section, kind, keys, tried, value):
     """A small scene in which the key matters, and whether it has the mesh."""
     lines = entry(section, kind, keys, tried, value)
-    with_mesh = section in ("material", "region", "set", "tie") or kind in ("traction", "pressure")
+    with_mesh = section in ("material", "region", "set", "tie") or kind in ("traction", "pressure", "centrifugal")
     times, rest = "[time]\nend = 0.05\nstep = 0.01\n", ""
     joint_of = {"stop": {"slide": "prismatic"}, "motor": {"linear": "prismatic"}}.get(section, {}).get(kind, "revolute")
     if section == "scene":

@@ -49,6 +49,22 @@ TEST(Series, takes_single_columns_and_globs_and_writes_to_stdout) {
   EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 202);
 }
 
+TEST(Series, resultants_of_forces_and_moments) {
+  const auto& place = sample_place();
+  ASSERT_EQ(post(place, "series run.h5 joint.trunnion.F 'joint.*.M' 'half [N] = joint.trunnion.F/2' -o r.csv").exit, 0);
+  const CsvTable table = read_csv(place / "r.csv");
+  const auto joint = Store::open(place / "run.h5").read<double>("/history/joint/trunnion");
+  const auto F = table.numbers(table.find("joint.trunnion.F [N]")), M = table.numbers(table.find("joint.trunnion.M [N m]")),
+             half = table.numbers(table.find("half [N]"));
+  ASSERT_EQ(6 * F.size(), joint.size());
+  for (size_t i = 0; i < F.size(); ++i) {
+    const double* f = joint.data() + 6 * i;
+    EXPECT_NEAR(F[i] * F[i], f[0] * f[0] + f[1] * f[1] + f[2] * f[2], 1e-12 * F[i] * F[i]);
+    EXPECT_NEAR(M[i] * M[i], f[3] * f[3] + f[4] * f[4] + f[5] * f[5], 1e-12 * M[i] * M[i]);
+    EXPECT_EQ(half[i], F[i] / 2);
+  }
+}
+
 TEST(Series, lists_what_there_is) {
   const Ran ran = post(sample_place(), "series run.h5 --list");
   ASSERT_EQ(ran.exit, 0) << ran.err;

@@ -71,7 +71,16 @@ std::string value_of(const KindSchema& kind, const Param& p) {
       {"at_b", "[0.2, 1.5, 1.9]"},
       {"axis", "[0.1, 0.2, 1]"},
       {"x", "[1, 0.1, 0.2]"},
+      {"axis_a", "[0.3, 1, 0.2]"},
       {"axis_b", "[0.2, 0.4, 1]"},
+      {"axis_carrier", "[0.1, -0.4, 1]"},
+      {"at_carrier", "[0.4, 0.2, 1.1]"},
+      {"factors", "[2, -1.5]"},
+      {"factor_carrier", "0.7"},
+      {"extension", "[-0.5, 1.5]"},
+      {"reactions", "\"arm\""},
+      {"acceleration", "[30, 20, -50]"},
+      {"speed", "7"},
       {"axle", "[0.2, 1, 0.3]"},
       {"edge", "[0.2, 1, 0.3]"},
       {"direction", "[0, 1, 0.1]"},
@@ -113,6 +122,7 @@ std::string value_of(const KindSchema& kind, const Param& p) {
   if (key == "name") return "\"it\"";
   if (kind.section == "region") return key == "damping" ? "0.02" : "0.7";
   if (key == "kind") return '"' + std::string(kind.kind) + '"';
+  if (key == "on" && (kind.kind == "acceleration" || kind.kind == "centrifugal")) return "\"block\"";
   if (key == "on") return kind.kind == "torque" ? "\"two\"" : kind.section == "motion" ? "\"line\"" : "\"xmax\"";
   if (key == "displacement" && p.type == Type::vector3) return "[0.1, 0.2, -0.1]";
   if ((key == "torque" || key == "force") && p.type == Type::vector3) return "[50, 20, -30]";
@@ -145,6 +155,7 @@ void add_variants(const KindSchema& kind, std::vector<Variant>& out) {
       keys.insert("stiffness"), keys.insert("angular_stiffness");
     if (kind.section == "joint" && key == "history") continue;  // of what drives the joint: with those
     if (kind.section == "joint" && (key == "angle" || key == "spin" || key == "displacement" || key == "velocity")) keys.insert("history");
+    if (key.ends_with("_carrier")) keys.insert("carrier");
     if (key == "restitution" || key == "rest_speed") keys.insert("restitution");
     if ((kind.section == "stop" || kind.kind == "stop") && key != "lower") keys.insert("upper");
     if (key == "length" || key == "preload" || (key == "angle" && kind.section == "spring")) keys.insert("stiffness");

@@ -130,6 +130,19 @@ axis = [0, 0.2, 1]
 direction = [0, 1, 0.1]
 radius = 0.3
 [[joint]]
+kind = "weighted-sum"
+name = "rope"
+a = "zmax"
+b = "top"
+carrier = "side"
+at_a = [0.3, 0.1, 2]
+at_b = [0.1, 0.2, 2.2]
+at_carrier = [0.3, 1, 1.2]
+axis_a = [1, 0.2, 0]
+axis_carrier = [0, 1, 1]
+factors = [2, -1.5]
+factor_carrier = 0.7
+[[joint]]
 kind = "point-on-curve"
 name = "cam"
 a = "top"

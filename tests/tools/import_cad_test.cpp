@@ -180,6 +180,76 @@ TEST_F(ImportCad, ASizeThatGmshCannotMeshIsReplacedAndThatIsTold) {
   EXPECT_NEAR(volume(m), exact, 0.15 * exact);
 }
 
+// Spheres of 10 and 9.5 in facets of 5 cut each other; of two regions the one where is named.
+TEST_F(ImportCad, FacetsThatCutEachOtherAreToldWithRegionAndPlace) {
+  place.write("a.geo",
+              "SetFactory(\"OpenCASCADE\");\nSphere(1) = {0, 0, 0, 10};\nSphere(2) = {0, 0, 0, 9.5};\n"
+              "BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };\nBox(7) = {30, 0, 0, 1, 1, 1};\n"
+              "Physical Volume(\"ball\") = {3};\nPhysical Volume(\"box\") = {7};\nMesh.MeshSizeMin = 5;\n");
+  const auto ran = place.run("hilo-import a.geo -o a.h5");
+  EXPECT_EQ(ran.exit, 2);
+  const std::string before = "PLC Error:  A segment and a facet intersect at point: facets of \"ball\" cut each other at (";
+  const size_t at = ran.err.find(before);
+  ASSERT_NE(at, std::string::npos) << ran.err;
+  Vec3 x;
+  ASSERT_EQ(std::sscanf(ran.err.c_str() + at + before.size(), "%lf, %lf, %lf", &x[0], &x[1], &x[2]), 3) << ran.err;
+  EXPECT_TRUE(x.norm() > 7 && x.norm() < 10) << x.transpose();
+}
+
+/// The text with `name` as the name of the record of this kind that refers to number `id`.
+std::string named(const std::string& text, const std::string& kind, const std::string& id, const std::string& name) {
+  for (size_t at = text.find(kind + "('',"); at != std::string::npos; at = text.find(kind + "('',", at + 1))
+    if (const std::string record = text.substr(at, text.find(';', at) - at); record.find(id + ",") != std::string::npos)
+      return text.substr(0, at) + kind + "('" + name + "'," + text.substr(at + kind.size() + 4);
+  ADD_FAILURE() << "no " << kind << " of " << id;
+  return text;
+}
+
+TEST_F(ImportCad, NamesOfFacesAndEdgesOfAStepFileAreSets) {
+  const std::string plain = made(
+      "Box(1) = {0, 0, 0, 40, 20, 10};\nCylinder(2) = {10, 10, 0, 0, 0, 10, 4};\nCylinder(3) = {30, 10, 0, 0, 0, 10, 4};\n"
+      "BooleanDifference(4) = { Volume{1}; Delete; }{ Volume{2,3}; Delete; };\nBox(5) = {40, 0, 0, 5, 20, 10};\n",
+      "a.step");
+  // each cylinder by its own point, each circle too
+  std::string text = plain;
+  const auto number_of = [&](const std::string& record) {  // "#12 = KIND(...)" -> "#12"
+    const size_t at = plain.find(record), from = plain.rfind('#', at);
+    EXPECT_NE(at, std::string::npos) << record;
+    return plain.substr(from, plain.find(' ', from) - from);
+  };
+  int n_cylinders = 0;
+  for (size_t at = plain.find("CYLINDRICAL_SURFACE("); at != std::string::npos; at = plain.find("CYLINDRICAL_SURFACE(", at + 1)) {
+    const std::string record = plain.substr(at, plain.find(';', at) - at),
+                      axes = record.substr(record.find('#'), record.find(',', 23) - record.find('#'));
+    const std::string placement = plain.substr(plain.find(axes + " = "), 200),
+                      point =
+                          placement.substr(placement.find('#', 2), placement.find(',', placement.find('#', 2)) - placement.find('#', 2));
+    const bool left = plain.substr(plain.find(point + " = "), 60).find("(10.,10.,") != std::string::npos;
+    text = named(text, "ADVANCED_FACE", number_of(record), left ? "left bore" : "right bore");
+    ++n_cylinders;
+  }
+  ASSERT_EQ(n_cylinders, 2);
+  bool closed = false;  // an edge that ends where it begins is a circle
+  for (size_t at = text.find("EDGE_CURVE('',"); at != std::string::npos && !closed; at = text.find("EDGE_CURVE('',", at + 1)) {
+    const size_t first = at + 14, second = text.find(',', first) + 1;
+    closed = text.substr(first, second - first) == text.substr(second, second - first);
+    if (closed) text = text.substr(0, at) + "EDGE_CURVE('rim'," + text.substr(first);
+  }
+  ASSERT_TRUE(closed);
+  place.write("a.step", text);
+  const Mesh m = imported("a.step", "--size 4");
+  for (const auto& [name, x] : {std::pair("left bore", 10.), {"right bore", 30.}}) {
+    ASSERT_TRUE(m.facet_sets.contains(name)) << name << out << err;
+    EXPECT_GT(m.facet_sets.at(name).size(), 20U) << name;
+    for (const Facet& f : m.facet_sets.at(name))
+      for (const auto i : m.facet_nodes(f)) EXPECT_NEAR(std::hypot(m.X[i].x() - x * 1e-3, m.X[i].y() - 0.01), 4e-3, 1e-9) << name;
+  }
+  ASSERT_TRUE(m.node_sets.contains("rim")) << out;
+  const auto& rim = m.node_sets.at("rim");
+  EXPECT_GE(rim.size(), 8U);
+  for (const auto i : rim) EXPECT_NEAR(m.X[i].z(), m.X[rim[0]].z(), 1e-9);
+}
+
 TEST_F(ImportCad, SliversAreToldWithTheirPlace) {
   place.write("a.geo", "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 0.01};\nMesh.MeshSizeMin = 1;\nMesh.MeshSizeMax = 2;\n");
   const Mesh m = imported("a.geo");

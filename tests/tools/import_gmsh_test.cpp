@@ -324,5 +324,29 @@ TEST_F(ImportGmsh, AGroupThatGmshLeavesEmptyIsTold) {
   EXPECT_EQ(err.find("\"block\""), std::string::npos) << err;
 }
 
+// Two tetrahedra on a triangle, in two partitions as gmsh writes them: each has an entity of its own, and their border another.
+TEST_F(ImportGmsh, PartitionsArePutTogether) {
+  const auto file = [](int n_partitions, const char* second) {
+    return std::string("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 8 \"foot\"\n3 9 \"part\"\n$EndPhysicalNames\n") +
+           "$Entities\n0 0 1 1\n1 0 0 0 1 1 1 1 8 0\n1 0 0 0 1 1 1 1 9 0\n$EndEntities\n$PartitionedEntities\n" +
+           std::to_string(n_partitions) +
+           "\n0\n0 0 2 2\n2 2 1 1 1 0 0 0 1 1 0 1 8 0\n3 3 1 2 1 2 0 0 0 1 1 1 0 0\n2 3 1 1 1 0 0 0 1 1 1 1 9 0\n3 3 1 1 2 0 0 0 1 1 1 1 9 "
+           "0\n"
+           "$EndPartitionedEntities\n$Nodes\n1 5 1 5\n3 2 0 5\n1\n2\n3\n4\n5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n$EndNodes\n" +
+           second;
+  };
+  place.write("a.msh",
+              file(2, "$Elements\n4 4 1 4\n2 2 2 1\n1 1 2 3\n2 3 2 1\n2 2 3 4\n3 2 4 1\n3 1 2 3 4\n3 3 4 1\n4 2 3 4 5\n$EndElements\n"));
+  const Mesh m = imported("a.msh");
+  EXPECT_EQ(cells_of(m, "part"), 2);
+  EXPECT_NEAR(volume(m), 1. / 6 + 1. / 3, 1e-15);
+  EXPECT_EQ(m.facet_sets.at("foot").size(), 1U);
+  EXPECT_EQ(m.facet_sets.size(), 1U) << "the border between the parts is no set";
+  EXPECT_NE(err.find("the mesh is in 2 parts, which are put together"), std::string::npos) << err;
+  place.write("b.msh", file(2, "$Elements\n1 1 3 3\n3 2 4 1\n3 1 2 3 4\n$EndElements\n"));
+  imported("b.msh");
+  EXPECT_NE(err.find("warning: the file holds 1 of the 2 parts of its mesh"), std::string::npos) << err;
+}
+
 }  // namespace
 }  // namespace hilo::test::import_gmsh_test

@@ -69,10 +69,10 @@ TEST_F(ImportInpSilent, ASpringAMassOrADamperIsTheFirstNumberOfItsLine) {
       bar + "*ELEMENT, TYPE=SPRINGA, ELSET=s\n900, 9, 100\n*SPRING, ELSET=s\n\n1.E4, , 293.\n2.E4, , 400.\n" + held + statics + end);
 }
 
-TEST_F(ImportInpSilent, GravityOfCellsThatMassesDoNotFeelIsTold) {
+TEST_F(ImportInpSilent, GravityOfCellsIsTheirsAloneAndThatOfMassesAloneIsTold) {
   const std::string mass = bar + "*ELEMENT, TYPE=MASS, ELSET=s\n900, 12\n*MASS, ELSET=s\n500.\n" + held + statics;
-  expect_told("*DLOAD GRAV on a part of the model", mass + "*DLOAD\nbar, GRAV, 10., 0., 0., -1.\n" + end);
-  expect_told("*DLOAD GRAV on a part of the model", mass + "*DLOAD\ns, GRAV, 10., 0., 0., -1.\n" + end);
+  EXPECT_NEAR(foot(mass + "*DLOAD\nbar, GRAV, 10., 0., 0., -1.\n" + end)[2], 10 * 2000, 1e-3);
+  expect_told("*DLOAD GRAV on a part of the model, of masses and beams", mass + "*DLOAD\ns, GRAV, 10., 0., 0., -1.\n" + end);
   EXPECT_NEAR(foot(mass + "*DLOAD\nbar, GRAV, 10., 0., 0., -1.\ns, GRAV, 10., 0., 0., -1.\n" + end)[2], 10 * 2500, 1e-3);
 }
 

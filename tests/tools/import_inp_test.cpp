@@ -155,7 +155,7 @@ TEST_F(ImportInp, SupportsAndLoadsBecomeSceneLinesOnTheirSets) {
 
 TEST_F(ImportInp, WhatIsNotReadIsListedWithItsLine) {
   imported(deck("loads.inp"), "--units mm-t-s");
-  for (const char* said : {"1 nodes belong to no cell: dropped, the first is 99", "not read: *DLOAD CENTRIF (1, ", "loads.inp:40)",
+  for (const char* said : {"1 nodes belong to no cell: dropped, the first is 99", "not read: *DLOAD BX (1, ", "loads.inp:40)",
                            "not read: *TEMPERATURE (1, ", "loads.inp:41)", "*NODE FILE (1, ", "a request for output",
                            "only the first step becomes scene lines", "*CLOAD in step 2 and later (1, "})
     EXPECT_NE(err.find(said), std::string::npos) << said << "\n" << err;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // VTK files of every encoding, as written by VTK 9.1 (tests/tools/decks).
+#include "import/imported.hpp"
 #include "import_case.hpp"
 
 namespace hilo::test::import_vtk_test {
@@ -40,6 +41,25 @@ TEST_F(ImportVtk, DamagedFilesAreNamedAndLeaveNothing) {
   }
 }
 
+// Truth: volumes by hand.  Two pyramids on one square, and one on a face of a cube; each in two halves that fit.
+TEST_F(ImportVtk, PyramidsAreTwoTetrahedraEach) {
+  place.write("a.vtk",
+              "# vtk DataFile Version 3.0\npyramids\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 float\n1 0 0 1 1 0 0 1 0 0 0 0 .5 .5 "
+              "1 .5 .5 -2\nCELLS 2 12\n5 0 1 2 3 4\n5 1 0 3 2 5\nCELL_TYPES 2\n14\n14\n");
+  const Mesh m = imported("a.vtk");
+  EXPECT_NEAR(volume(m), 1. / 3 + 2. / 3, 1e-7);
+  EXPECT_EQ(m.n_cells(), 4);
+  std::vector<std::int64_t> all{0, 1, 2, 3};
+  EXPECT_EQ(free_facets(m, all).size(), 8U) << "the four halves of the square meet";
+  EXPECT_TRUE(err.find("2 pyramids are two tetrahedra each\n") != std::string::npos && err.find("stand on") == std::string::npos) << err;
+  place.write(
+      "b.vtk",
+      "# vtk DataFile Version 3.0\non a cube\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 9 float\n0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 "
+      "1 1 1 0 1 1 .5 .5 2\nCELLS 2 15\n8 0 1 2 3 4 5 6 7\n5 4 5 6 7 8\nCELL_TYPES 2\n12\n14\n");
+  EXPECT_NEAR(volume(imported("b.vtk")), 1 + 1. / 3, 1e-7);
+  EXPECT_NE(err.find("warning: 1 pyramids stand on a quadrangle of a hexahedron or prism"), std::string::npos) << err;
+}
+
 TEST_F(ImportVtk, CellsWithoutARegionArrayAreARegionAndThatIsSaid) {
   place.write("a.vtk",
               "# vtk DataFile Version 3.0\none tetrahedron\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 "
@@ -50,9 +70,11 @@ TEST_F(ImportVtk, CellsWithoutARegionArrayAreARegionAndThatIsSaid) {
       << err;
   EXPECT_NEAR(volume(imported("a.vtk", "--rest all")), 1. / 6, 1e-7);
   place.write("b.vtk",
-              "# vtk DataFile Version 3.0\na pyramid\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 1 1 0 0 1 0 0 0 "
-              "1\nCELLS 1 6\n5 0 1 2 3 4\nCELL_TYPES 1\n14\n");
-  refused("b.vtk -o a.h5", 2, "b.vtk: cell 0 is of VTK type 14 (supported: lines, tetrahedra, hexahedra, voxels, wedges of order 1 and 2)");
+              "# vtk DataFile Version 3.0\na polyhedron\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 1 1 0 0 1 0 0 0 "
+              "1\nCELLS 1 6\n5 0 1 2 3 4\nCELL_TYPES 1\n42\n");
+  refused(
+      "b.vtk -o a.h5", 2,
+      "b.vtk: cell 0 is of VTK type 42 (supported: lines, tetrahedra, hexahedra, voxels, wedges of order 1 and 2, pyramids of 5 nodes)");
   place.write("c.vtk",
               "# vtk DataFile Version 3.0\nbad node\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1 0 0 1 1 0\nCELLS 1 5\n4 0 1 "
               "2 3\nCELL_TYPES 1\n10\n");

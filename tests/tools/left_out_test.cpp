@@ -45,7 +45,7 @@ TEST_F(LeftOut, IsToldByImportAndBeforeTheRunAlsoWhenQuietAndIsInRunJson) {
 }
 
 TEST_F(LeftOut, ATieThatWasLostIsRefusedUnlessAccepted) {
-  for (const char* tie : {"*EQUATION\n2\n9, 1, 1., 10, 1, -2.\n", "*CONTACT PAIR, INTERACTION=i\nend, end\n",
+  for (const char* tie : {"*EQUATION\n2\n9, 4, 1., 10, 4, -2.\n", "*CONTACT PAIR, INTERACTION=i\nend, end\n",
                           "*TIE, CYCLIC SYMMETRY, NAME=t\nend, end\n", "*MPC\nPLANE, 9, 10, 11, 12\n"}) {
     import(bar + tie + held + statics + pull + end);
     const std::string card = std::string(tie).substr(0, std::string(tie).find_first_of(",\n"));
@@ -62,8 +62,8 @@ TEST_F(LeftOut, AnMpcIsLostOnlyWhereCaseControlTakesIt) {
     place.write("a.bdf", control +
                              "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,0.,0.,1.\n"
                              "GRID,6,,1.,0.,1.\nGRID,7,,1.,1.,1.\nGRID,8,,0.,1.,1.\nCHEXA,1,1,1,2,3,4,5,6\n,7,8\nPSOLID,1,1\n"
-                             "MAT1,1,1.+9,,0.,1000.\nSPC1,1,123,1,2,3,4\nFORCE,2,7,,1.,1.,0.,0.\nMPC,5,6,1,1.,7,1,-2.\n"
-                             "MPC,6,6,2,1.,7,2,-2.\nMPCADD,9,5,6\nENDDATA\n");
+                             "MAT1,1,1.+9,,0.,1000.\nSPC1,1,123,1,2,3,4\nFORCE,2,7,,1.,1.,0.,0.\nMPC,5,6,4,1.,7,4,-2.\n"
+                             "MPC,6,6,5,1.,7,5,-2.\nMPCADD,9,5,6\nENDDATA\n");
     imported("a.bdf", "--quiet --scene-out s.toml");
     std::vector<std::string> cards;
     const Scene s = Scene::load(place / "s.toml");
@@ -74,7 +74,7 @@ TEST_F(LeftOut, AnMpcIsLostOnlyWhereCaseControlTakesIt) {
   EXPECT_TRUE(import_bdf(control).empty());
   solved(0);
   for (const char* mpc : {"MPC = 5\n", "MPC = 9\n"}) {
-    EXPECT_EQ(import_bdf(control + mpc), std::vector<std::string>{"MPC of more than two equal displacements"});
+    EXPECT_EQ(import_bdf(control + mpc), std::vector<std::string>{"MPC of turns"});
     EXPECT_NE(solved(2).find("import left out MPC"), std::string::npos);
   }
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a reader of hilo-import hands back: a mesh whose regions and sets are named, and what it has to say aloud.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -118,6 +120,12 @@ LineEnds lines_on_solids(const Mesh& mesh, const std::vector<std::pair<std::int6
 
 /// A file of `flat` triangles and quadrangles without a solid: the lines in it are their edges, and no bars.  Throws Error where it is one.
 void refuse_flat(const std::string& file, std::int64_t flat, std::int64_t solids);
+
+/// A pyramid of five nodes, base first, as two tetrahedra: its base is cut through its lowest node, so that two pyramids on a base agree.
+std::array<std::vector<std::int64_t>, 2> halves_of_pyramid(std::span<const std::int64_t> nodes);
+inline constexpr std::int64_t second_half = 1'000'000'000'000'000;  // added to the number of a deck's pyramid for the second one
+/// What is said of them: fields are continuous at the nodes of a base alone where a cell with a quadrangle there is its neighbour.
+void tell_pyramids(Imported& in, std::int64_t n);
 
 /// The readers.  Each throws Error with file:line where the file has lines.
 Imported read_inp(const std::string& path, const ImportOptions& options);

@@ -131,6 +131,36 @@ std::string sliding_body(const std::string& name, const std::string& joint, cons
   return out;
 }
 
+std::string joints_of_sum(const std::vector<SumTerm>& terms, const std::string& name, const std::string& place,
+                          const std::function<std::string(const std::string& section, const std::string& wish)>& unique) {
+  const auto list = [](const Vec3& v) { return toml_list({v.x(), v.y(), v.z()}); };
+  if (terms.size() == 1)
+    return fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\nname = {}\nb = {}\nat = {}\naxis = {}\n", place,
+                       toml_text(unique("joint", name)), toml_text(terms[0].end), terms[0].at, list(terms[0].way.normalized()));
+  std::string out;
+  const auto row = [&](const SumTerm& a, const SumTerm& b, const SumTerm* c) {
+    out += fmt::format("\n[[joint]]   # {}\nkind = \"weighted-sum\"\nname = {}\na = {}\nb = {}\nat_a = {}\nat_b = {}\n", place,
+                       toml_text(unique("joint", name)), toml_text(a.end), toml_text(b.end), a.at, b.at);
+    out += fmt::format("axis_a = {}\naxis_b = {}\n", list(a.way.normalized()), list(b.way.normalized()));
+    if (c) {
+      out += fmt::format("carrier = {}\nat_carrier = {}\naxis_carrier = {}\n", toml_text(c->end), c->at, list(c->way.normalized()));
+      out += fmt::format("factor_carrier = {}\n", toml_number(c->way.norm()));
+    }
+    out += fmt::format("factors = {}\n", toml_list({a.way.norm(), b.way.norm()}));
+  };
+  SumTerm first = terms[0];
+  size_t next = 1;
+  for (; terms.size() - next > 2; ++next) {
+    const std::string body = unique("body", name + "_sum");
+    out += sliding_body(body, unique("joint", body), "[1, 0, 0]", terms[0].at, place);
+    const SumTerm sum{body, terms[0].at, -Vec3::UnitX()};
+    row(first, terms[next], &sum);
+    first = {body, terms[0].at, Vec3::UnitX()};
+  }
+  row(first, terms[next], next + 1 < terms.size() ? &terms[next + 1] : nullptr);
+  return out;
+}
+
 std::string joint_to_slide(const std::string& name, const std::string& body, const std::string& node, const std::string& axis,
                            const std::string& at, const std::string& place) {
   return fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\nname = {}\na = {}\nb = {}\nat = {}\naxis = {}\n", place, toml_text(name),

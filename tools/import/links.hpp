@@ -45,6 +45,15 @@ std::string moving_body(const std::string& name, const Prescribed& by, const std
 std::optional<std::vector<Vec3>> shares_of_mean(const std::vector<Vec3>& X, const std::vector<double>& w, const Vec3& at, const Vec3& F,
                                                 const Vec3& M);
 
+/// A term of a sum of displacements that is zero: what moves, at which point, and its axis times its factor.
+struct SumTerm {
+  std::string end, at;  // a set of one node or a body of the scene; "[1, 2, 3]"
+  Vec3 way;
+};
+/// Joints of the scene that keep the sum at zero; those of more than three terms by bodies of no mass that move as sums of the first ones.
+std::string joints_of_sum(const std::vector<SumTerm>& terms, const std::string& name, const std::string& place,
+                          const std::function<std::string(const std::string& section, const std::string& wish)>& unique);
+
 /// Whether points lie on a line, or at one place.
 bool on_a_line(const std::vector<Vec3>& points);
 

@@ -46,6 +46,7 @@ const VtkKind* vtk_kind(int type) {
     if (k.type == type) return &k;
   return nullptr;
 }
+constexpr int pyramid5 = 14;
 bool is_flat(int type) { return type <= 2 || (type >= 4 && type <= 9) || (type >= 21 && type <= 23) || type == 28 || type == 34; }
 
 void check(const VtkGrid& g, const std::string& path) {
@@ -75,19 +76,32 @@ Imported read_vtk(const std::string& path, const ImportOptions& options) {
     m.X.emplace_back(g.points[3 * a], g.points[3 * a + 1], g.points[3 * a + 2]);
     m.node_id.push_back(static_cast<std::int64_t>(a));
   }
-  const bool solids = std::any_of(g.types.begin(), g.types.end(), [](int t) { return vtk_kind(t) && vtk_kind(t)->shape != Shape::bar2; });
+  const bool solids = std::any_of(g.types.begin(), g.types.end(),
+                                  [](int t) { return t == pyramid5 || (vtk_kind(t) && vtk_kind(t)->shape != Shape::bar2); });
   refuse_flat(path, std::ranges::count_if(g.types, is_flat), solids);
   std::vector<std::int64_t> cell_of;  // number in the file
   std::vector<std::int64_t> nodes;
+  std::int64_t n_pyramids = 0;
   for (size_t c = 0; c < g.types.size(); ++c) {
     const VtkKind* k = vtk_kind(g.types[c]);
     if (is_flat(g.types[c]) || (k && k->shape == Shape::bar2 && solids)) {
       in.skip(fmt::format("VTK cells of type {}", g.types[c]), path);
       continue;
     }
+    if (g.types[c] == pyramid5) {
+      if (g.offsets[c + 1] - g.offsets[c] != 5) throw Error(path, fmt::format("cell {}: a pyramid has 5 nodes", c));
+      auto id = static_cast<std::int64_t>(c);
+      for (const auto& half : halves_of_pyramid(std::span(g.connectivity).subspan(static_cast<size_t>(g.offsets[c]), 5))) {
+        m.add_cell(Shape::tet4, half, -1, id);
+        cell_of.push_back(static_cast<std::int64_t>(c));
+        id = static_cast<std::int64_t>(g.types.size()) + n_pyramids;
+      }
+      ++n_pyramids;
+      continue;
+    }
     if (!k)
       throw Error(path, fmt::format("cell {} is of VTK type {}", c, g.types[c]),
-                  "supported: lines, tetrahedra, hexahedra, voxels, wedges of order 1 and 2");
+                  "supported: lines, tetrahedra, hexahedra, voxels, wedges of order 1 and 2, pyramids of 5 nodes");
     if (static_cast<size_t>(g.offsets[c + 1] - g.offsets[c]) != k->n_nodes)
       throw Error(path, fmt::format("cell {}: a {} has {} nodes", c, k->name, k->n_nodes));
     if (k->p.size() < k->n_nodes) in.skip(fmt::format("nodes inside a {}", k->name), path);
@@ -97,6 +111,7 @@ Imported read_vtk(const std::string& path, const ImportOptions& options) {
     cell_of.push_back(static_cast<std::int64_t>(c));
   }
   if (m.n_cells() == 0) throw Error(path, "no volume cells and no lines");
+  tell_pyramids(in, n_pyramids);
 
   std::vector<CellGroup> regions;
   for (const char* wanted : region_arrays) {

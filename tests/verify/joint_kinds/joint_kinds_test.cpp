@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Closed forms of single joints: planar, in-plane, in-line, screw, gear, rack.
+// Closed forms of single joints: planar, in-plane, in-line, screw, gear, rack, weighted sum.
 #include <numbers>
 
 #include "verify/verify.hpp"
@@ -102,6 +102,44 @@ TEST(RackJoint, FallsWithThePinionsInertia) {
     EXPECT_NEAR(std::remainder(std::atan2(-rim[2], rim[0]) - (0.5 - z) / 0.1, 2 * pi), 0, 1e-12);
   }
   EXPECT_LT(c.reported("energy_balance"), 1e-11);
+}
+
+// Exact: z_i'' = -g + lambda f_i/m_i with lambda = g sum f/sum(f^2/m), and the rope pulls b with lambda.
+TEST(WeightedSumJoint, HangsThreeWeightsFromOneRope) {
+  const Case c("joint_kinds");
+  const Results r = c.solved("", "run.h5", "tackle");
+  const double lambda = g * (2 + 1 - 0.5) / (4. / 2 + 1. / 3 + 0.25 / 1);
+  const struct {
+    const char* name;
+    double from, f, m;
+  } weights[] = {{"one", 1, 2, 2}, {"two", 0.5, 1, 3}, {"three", 0.2, -0.5, 1}};
+  for (const auto& w : weights) {
+    const double a = -g + lambda * w.f / w.m;
+    for (double t : {0.3, 1.0}) EXPECT_NEAR(r.at(std::string("probe/") + w.name, t)[2], w.from + a * t * t / 2, 1e-11) << w.name;
+  }
+  EXPECT_NEAR(r.at("joint/rope", 0.5)[2], lambda, 1e-9);
+  EXPECT_LT(c.reported("energy_balance"), 1e-12);
+  EXPECT_LT(c.reported("constraint_violation"), 1e-12);
+}
+
+// Exact by energy: along the arm m l omega^2 + m g sin(theta) with omega^2 = 2 m g l sin(theta)/(m l^2 + J), across it m g cos(theta) J/(m
+// l^2 + J).
+TEST(Reactions, AreToldInTheAxesOfTheGroundOfABodyOrOfB) {
+  const Case c("joint_kinds");
+  const double m = 2, J = 0.1, t = 0.5;
+  const auto solved = [&](const std::string& axes) { return c.solved("--set joint.pivot.reactions=" + axes, "run.h5", "swing"); };
+  const Results in_bob = solved("bob"), on_ground = solved("ground"), on_b = solved("b");
+  const Vec3 x = in_bob.at("probe/bob", t).head<3>();
+  const double theta = std::atan2(-x[2], x[0]), square = 2 * m * g * std::sin(theta) / (m + J);
+  ASSERT_GT(theta, 0.5);
+  const Vec3 exact(-(m * square + m * g * std::sin(theta)), 0, m * g * std::cos(theta) * J / (m + J));
+  EXPECT_LT((in_bob.at("joint/pivot", t).head<3>() - exact).norm(), 1e-3) << in_bob.at("joint/pivot", t).transpose();
+  const Vec3 along = x.normalized(), up(-along[2], 0, along[0]);
+  EXPECT_LT((on_ground.at("joint/pivot", t).head<3>() - exact[0] * along - exact[2] * up).norm(), 1e-3);
+  const auto b = on_b.at("joint/pivot", t);  // its third axis is the pivot's
+  EXPECT_NEAR(b.head<2>().norm(), exact.norm(), 1e-3);
+  EXPECT_NEAR(b[2], 0, 1e-9);
+  EXPECT_NEAR(on_ground.at("joint/pivot", t).head<3>().norm(), exact.norm(), 1e-3);
 }
 
 }  // namespace

@@ -55,6 +55,7 @@ void build(BdfDeck& deck, const std::string& path, const ImportOptions& options,
     group_of(r.property).cells.push_back(m.n_cells());
     m.add_cell(r.shape, rows(deck, r.nodes, r), -1, r.id);
   }
+  tell_pyramids(in, static_cast<std::int64_t>(deck.pyramids.size()) / 2);
   // shells whose property has them on solids alone are sets of facets, the others cells of a rigid region, as beams are
   std::vector<std::vector<std::int64_t>> faces;
   for (const auto& s : deck.shells) faces.push_back(rows(deck, s.nodes, s));

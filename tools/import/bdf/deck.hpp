@@ -26,9 +26,9 @@ struct BdfSupport {
 };
 /// FORCE, MOMENT and their like: a vector at a grid; GRAV: an acceleration; pressures on faces; SPCD: where a support goes.
 struct BdfLoad {
-  enum class Kind { force, moment, gravity, pressure, displacement } kind;
+  enum class Kind { force, moment, gravity, rotation, pressure, displacement } kind;
   std::int64_t grid = 0, system = 0;
-  double size = 0;                          // N, N m, m/s^2, Pa, m or rad in units of the deck
+  double size = 0;                          // N, N m, m/s^2, turns/s, Pa, m or rad in units of the deck
   unsigned components = 0;                  // SPCD: bits 0 to 5
   Vec3 direction = Vec3::Zero();            // in `system`; of a pressure: zero for one along the normal
   std::array<std::int64_t, 2> towards{};    // FORCE1, MOMENT1: along the line of two grids
@@ -117,8 +117,7 @@ struct BdfEquation {
     std::int64_t grid, component;
     double factor;
   };
-  Term a, b;
-  bool more = false;  // terms behind these two
+  std::vector<Term> terms;
   std::string place;
 };
 
@@ -149,6 +148,7 @@ struct BdfDeck {
   std::vector<Thin> shells, beams;
   std::map<std::int64_t, BdfThin> thin;  // by property
   std::set<std::int64_t> cell_ids;
+  std::set<std::int64_t> pyramids;                          // elements, and their second halves
   std::unordered_map<std::int64_t, std::int64_t> cell_row;  // number of a cell -> row of cells
   std::map<std::int64_t, std::int64_t> material_of;         // property -> material
   std::map<std::int64_t, double> area_of;                   // property of rods -> cross-section

@@ -34,6 +34,12 @@ void read_rbar(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   else
     in.skip("RBAR whose independent components are of both ends", d.place());
 }
+/// EID GA GB CB ALPHA: a carries b.
+void read_rbar1(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+  const auto& d = e.data;
+  expansion(d, 4, e.name, in);
+  deck.rigid.push_back({e.name, d.place(), d.integer(0), d.integer(1), d.empty(3) ? 63 : components(d, 3), {d.integer(2)}});
+}
 /// RROD: EID GA GB CMA CMB: keeps its length.
 void read_rrod(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
@@ -184,10 +190,10 @@ void read_bgset(const BdfEntry& e, BdfDeck& deck, Imported&) {
 
 std::span<const BdfCard> bdf_link_cards() {
   static constexpr BdfCard cards[] = {
-      {"RBE2", read_rbe2},     {"RBAR", read_rbar},     {"RROD", read_rrod},     {"RBE3", read_rbe3},     {"CONM2", read_conm2},
-      {"CELAS1", read_scalar}, {"CELAS2", read_scalar}, {"CDAMP1", read_scalar}, {"CDAMP2", read_scalar}, {"CBUSH", read_bush},
-      {"CBUSH1D", read_bush},  {"PELAS", read_pelas},   {"PDAMP", read_pelas},   {"PBUSH", read_pbush},   {"PBUSH1D", read_pbush1d},
-      {"BSURFS", read_bsurfs}, {"BGSET", read_bgset},
+      {"RBE2", read_rbe2},       {"RBAR", read_rbar},     {"RBAR1", read_rbar1},   {"RROD", read_rrod},     {"RBE3", read_rbe3},
+      {"CONM2", read_conm2},     {"CELAS1", read_scalar}, {"CELAS2", read_scalar}, {"CDAMP1", read_scalar}, {"CDAMP2", read_scalar},
+      {"CBUSH", read_bush},      {"CBUSH1D", read_bush},  {"PELAS", read_pelas},   {"PDAMP", read_pelas},   {"PBUSH", read_pbush},
+      {"PBUSH1D", read_pbush1d}, {"BSURFS", read_bsurfs}, {"BGSET", read_bgset},
   };
   return cards;
 }

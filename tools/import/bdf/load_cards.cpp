@@ -31,12 +31,10 @@ void read_mpcadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck
 void read_bgadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.glue_sums); }
 void read_mpc(const BdfEntry& e, BdfDeck& deck, Imported&) {
   const auto& d = e.data;
-  const auto term = [&](size_t i) {
-    return d.empty(i) ? BdfEquation::Term{0, 0, 0}
-                      : BdfEquation::Term{d.integer(i), d.empty(i + 1) ? 0 : d.integer(i + 1), d.number(i + 2)};
-  };
-  BdfEquation m{term(1), term(4), false, d.place()};
-  for (size_t i = 7; i < d.fields.size(); ++i) m.more = m.more || !d.empty(i);
+  BdfEquation m{{}, d.place()};
+  for (size_t line = 0; 8 * line < d.fields.size(); ++line)  // two terms a line, behind an empty field
+    for (const size_t i : {8 * line + 1, 8 * line + 4})
+      if (i < d.fields.size() && !d.empty(i)) m.terms.push_back({d.integer(i), d.empty(i + 1) ? 0 : d.integer(i + 1), d.number(i + 2)});
   deck.ties[d.integer(0)].push_back(m);
 }
 
@@ -74,6 +72,16 @@ void read_gravity(const BdfEntry& e, BdfDeck& deck, Imported&) {
   BdfLoad l{BdfLoad::Kind::gravity};
   l.system = d.empty(1) ? 0 : d.integer(1), l.place = d.place();
   l.size = d.number(2), l.direction = direction_at(e, 3);
+  deck.loads[d.integer(0)].push_back(l);
+}
+
+/// SID G CID A R1 R2 R3 METHOD RACC: the whole turns about an axis through a grid.
+void read_rforce(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+  const auto& d = e.data;
+  if (d.number(8) != 0) in.skip("RFORCE: angular acceleration", d.place(8));
+  BdfLoad l{BdfLoad::Kind::rotation};
+  l.grid = d.empty(1) ? 0 : d.integer(1), l.system = d.empty(2) ? 0 : d.integer(2), l.place = d.place();
+  l.size = d.number(3), l.direction = direction_at(e, 4);
   deck.loads[d.integer(0)].push_back(l);
 }
 
@@ -147,10 +155,10 @@ void read_tstep(const BdfEntry& e, BdfDeck& deck, Imported& in) {
 
 std::span<const BdfCard> bdf_load_cards() {
   static constexpr BdfCard cards[] = {
-      {"SPC1", read_spc1},    {"SPC", read_spc},       {"SPCD", read_spcd},     {"SPCADD", read_spcadd}, {"FORCE", read_force},
-      {"FORCE1", read_force}, {"MOMENT", read_force},  {"MOMENT1", read_force}, {"GRAV", read_gravity},  {"PLOAD4", read_pload4},
-      {"PLOAD", read_pload},  {"PLOAD2", read_pload2}, {"LOAD", read_load},     {"EIGRL", read_modes},   {"EIGR", read_modes},
-      {"TSTEP", read_tstep},  {"MPC", read_mpc},       {"MPCADD", read_mpcadd}, {"BGADD", read_bgadd},
+      {"SPC1", read_spc1},     {"SPC", read_spc},      {"SPCD", read_spcd},     {"SPCADD", read_spcadd}, {"FORCE", read_force},
+      {"FORCE1", read_force},  {"MOMENT", read_force}, {"MOMENT1", read_force}, {"GRAV", read_gravity},  {"RFORCE", read_rforce},
+      {"PLOAD4", read_pload4}, {"PLOAD", read_pload},  {"PLOAD2", read_pload2}, {"LOAD", read_load},     {"EIGRL", read_modes},
+      {"EIGR", read_modes},    {"TSTEP", read_tstep},  {"MPC", read_mpc},       {"MPCADD", read_mpcadd}, {"BGADD", read_bgadd},
   };
   return cards;
 }

@@ -162,18 +162,31 @@ void read_param(const BdfEntry& e, BdfDeck& deck, Imported& in) {
 [[noreturn]] void refuse_card(const BdfEntry& e, const char* why) {
   throw Error(e.data.place() + ":1", fmt::format("{}: {}", e.name, why), bdf_supported);
 }
-void pyramid(const BdfEntry& e, BdfDeck&, Imported&) { refuse_card(e, "pyramids are not read"); }
+/// EID PID G1 to G5, the base first: two tetrahedra.
+void read_pyramid(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  std::vector<std::int64_t> n;
+  for (size_t i = 2; i < 7; ++i) n.push_back(d.integer(i));
+  for (size_t i = 7; i < d.fields.size(); ++i)
+    if (!d.empty(i)) refuse_card(e, "pyramids of mid-side nodes are not read");
+  std::int64_t id = d.integer(0);
+  for (const auto& half : halves_of_pyramid(n)) {
+    add(deck, {Shape::tet4, id, property_in(d, 1), half, d.place(0)});
+    deck.pyramids.insert(id);
+    id += second_half;
+  }
+}
 void axisymmetric(const BdfEntry& e, BdfDeck&, Imported&) { refuse_card(e, "axisymmetric elements are not three-dimensional"); }
 
 }  // namespace
 
 std::span<const BdfCard> bdf_mesh_cards() {
   static constexpr BdfCard cards[] = {
-      {"GRID", read_grid},     {"GRDSET", read_grid_default}, {"CORD1R", read_cord1},      {"CORD1C", read_cord1},
-      {"CORD1S", read_cord1},  {"CORD2R", read_cord2},        {"CORD2C", read_cord2},      {"CORD2S", read_cord2},
-      {"CTETRA", read_solid},  {"CPENTA", read_solid},        {"CHEXA", read_solid},       {"CROD", read_rod},
-      {"CONROD", read_conrod}, {"PSOLID", read_property},     {"PROD", read_rod_property}, {"PARAM", read_param},
-      {"CPYRAM", pyramid},     {"CTRAX3", axisymmetric},      {"CTRAX6", axisymmetric},
+      {"GRID", read_grid},      {"GRDSET", read_grid_default}, {"CORD1R", read_cord1},      {"CORD1C", read_cord1},
+      {"CORD1S", read_cord1},   {"CORD2R", read_cord2},        {"CORD2C", read_cord2},      {"CORD2S", read_cord2},
+      {"CTETRA", read_solid},   {"CPENTA", read_solid},        {"CHEXA", read_solid},       {"CROD", read_rod},
+      {"CONROD", read_conrod},  {"PSOLID", read_property},     {"PROD", read_rod_property}, {"PARAM", read_param},
+      {"CPYRAM", read_pyramid}, {"CTRAX3", axisymmetric},      {"CTRAX6", axisymmetric},
   };
   return cards;
 }

@@ -25,6 +25,7 @@ std::string BdfScene::text() {
   find_bodies();
   choose_loads();
   gravity();
+  rotation();
   materials();
   bodies();
   beams();

@@ -27,7 +27,9 @@ class BdfScene {
   void materials();
   void supports();
   void equations();
-  std::string why_no_slide(const BdfEquation& m) const;
+  std::string why_no_sum(const BdfEquation& m) const;
+  bool is_slide(const BdfEquation& m) const;
+  void sum_up(const BdfEquation& m);
   void supports_of_bodies();
   void time();
   // scene_links.cpp
@@ -51,6 +53,7 @@ class BdfScene {
   // scene_loads.cpp
   void choose_loads();
   void gravity();
+  void rotation();
   void nodal_loads();
   void distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const std::string& place);
   void pressures();

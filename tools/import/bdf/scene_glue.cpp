@@ -16,6 +16,7 @@ std::string BdfScene::glue_surface(std::int64_t region) {
   std::vector<Facet> facets;
   for (const BdfGlueFace& f : faces->second) {
     const auto cell = deck_.cell_row.find(f.element);
+    if (deck_.pyramids.contains(f.element)) throw Error(f.place, fmt::format("BSURFS {}: faces of pyramids are not read", region));
     if (cell == deck_.cell_row.end()) throw Error(f.place, fmt::format("BSURFS {}: no solid element {}", region, f.element));
     const auto nodes = in_.mesh.cell(cell->second);
     const ShapeInfo& s = info(in_.mesh.shape[static_cast<size_t>(cell->second)]);

@@ -213,17 +213,39 @@ void BdfScene::rigid(const BdfRigid& r) {
   joint(63, Mat3::Identity(), name, end_name(hub), set_of(nodes, name), X(hub), r.place);
 }
 
-/// Why an MPC is not one of two equal displacements of nodes of solids, or "".
-std::string BdfScene::why_no_slide(const BdfEquation& m) const {
-  if (m.more || m.a.component != m.b.component || m.a.factor == 0 || std::abs(m.a.factor + m.b.factor) > 1e-9 * std::abs(m.a.factor))
-    return " of more than two equal displacements";
-  if (m.a.component < 1 || m.a.component > 3) return " of turns";
-  for (const auto grid : {m.a.grid, m.b.grid}) {
-    const auto a = row(grid, m.place, "MPC");
-    if (end(a) != End::node) return " of a grid of no solid";
-    if (!axes(a).isIdentity(1e-12)) return " in axes of its own";
+/// Why the displacements of an MPC cannot be summed, or "".
+std::string BdfScene::why_no_sum(const BdfEquation& m) const {
+  if (m.terms.empty()) return " of no term";
+  for (const auto& t : m.terms) {
+    if (t.component < 1 || t.component > 3) return " of turns";
+    if (const End e = end(row(t.grid, m.place, "MPC")); e != End::node && e != End::body) return " of a grid of no solid";
   }
   return "";
+}
+
+/// Two displacements of nodes of solids that are equal.
+bool BdfScene::is_slide(const BdfEquation& m) const {
+  if (m.terms.size() != 2) return false;
+  const auto &a = m.terms[0], &b = m.terms[1];
+  return a.component == b.component && a.factor != 0 && std::abs(a.factor + b.factor) <= 1e-9 * std::abs(a.factor) &&
+         std::ranges::all_of(m.terms, [&](const BdfEquation::Term& t) {
+           const auto r = row(t.grid, m.place, "MPC");
+           return end(r) == End::node && axes(r).isIdentity(1e-12);
+         });
+}
+
+void BdfScene::sum_up(const BdfEquation& m) {
+  std::map<std::int64_t, Vec3> of;
+  for (const auto& t : m.terms) {
+    const auto r = row(t.grid, m.place, "MPC");
+    of.try_emplace(r, Vec3::Zero()).first->second += t.factor * axes(r).col(t.component - 1);
+  }
+  std::vector<SumTerm> terms;
+  for (const auto& [r, way] : of)
+    if (way != Vec3::Zero()) terms.push_back({end_name(r), point(X(r)), way});
+  if (!terms.empty())
+    tables_ += joints_of_sum(terms, "equation", m.place,
+                             [this](const std::string& section, const std::string& wish) { return unique(section, wish); });
 }
 
 /// Of the sets that the first subcase takes, or of all without case control: displacements that are equal are those of a body of no mass,
@@ -240,12 +262,16 @@ void BdfScene::equations() {
     if (!taken) in_.skip("MPC of a set that the first subcase does not use", list.front().place, static_cast<std::int64_t>(list.size()));
     for (const BdfEquation& m : list) {
       if (!taken) continue;
-      if (const std::string why = why_no_slide(m); !why.empty()) {
+      if (const std::string why = why_no_sum(m); !why.empty()) {
         in_.skip("MPC" + why, m.place);
         continue;
       }
-      const int k = static_cast<int>(m.a.component);
-      const Displacement a{row(m.a.grid, m.place, "MPC"), k}, b{row(m.b.grid, m.place, "MPC"), k};
+      if (!is_slide(m)) {
+        sum_up(m);
+        continue;
+      }
+      const int k = static_cast<int>(m.terms[0].component);
+      const Displacement a{row(m.terms[0].grid, m.place, "MPC"), k}, b{row(m.terms[1].grid, m.place, "MPC"), k};
       equals.unite(a, b);
       place.try_emplace(a, m.place), place.try_emplace(b, m.place);
     }

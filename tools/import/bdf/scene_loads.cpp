@@ -2,6 +2,7 @@
 // Loads of a Nastran file as scene lines: forces by node, moments on bodies, pressures and tractions on facets, gravity.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "import/bdf/scene.hpp"
@@ -22,6 +23,8 @@ const char* name_of(BdfLoad::Kind kind) {
       return "MOMENT";
     case BdfLoad::Kind::gravity:
       return "GRAV";
+    case BdfLoad::Kind::rotation:
+      return "RFORCE";
     case BdfLoad::Kind::pressure:
       return "PLOAD";
     case BdfLoad::Kind::displacement:
@@ -65,6 +68,31 @@ void BdfScene::gravity() {
   for (const auto& [factor, l] : loads_)
     if (l->kind == BdfLoad::Kind::gravity) g += factor * l->size * (axes_at(deck_, l->system, Vec3::Zero(), l->place) * l->direction);
   if (g.norm() > 0) head_ += fmt::format("gravity = {}\n", list(g, "m/s^2"));
+}
+
+/// Of all solids; the angular velocity is that of the entry times the length of its direction.
+void BdfScene::rotation() {
+  for (const auto& [factor, l] : loads_) {
+    if (l->kind != BdfLoad::Kind::rotation) continue;
+    if (factor != 1) {
+      in_.skip("RFORCE times a factor of LOAD", l->place);
+      continue;
+    }
+    const Vec3 at = l->grid ? X(row(l->grid, l->place, "RFORCE")) : Vec3(Vec3::Zero());
+    const Vec3 axis = axes_at(deck_, l->system, at, l->place) * l->direction;
+    if (!deck_.masses.empty() || !on_beam_.empty()) in_.skip("RFORCE on masses and beams", l->place);
+    std::vector<char> has(in_.mesh.region_name.size(), 0);
+    for (std::int64_t c = 0; c < in_.mesh.n_cells(); ++c)
+      if (info(in_.mesh.shape[static_cast<size_t>(c)]).dimension != 2)
+        has[static_cast<size_t>(in_.mesh.region[static_cast<size_t>(c)])] = 1;
+    if (std::ranges::find(has, 0) != has.end()) in_.skip("RFORCE on shells", l->place);
+    const double speed = 2 * std::numbers::pi * l->size * axis.norm() / si("s");
+    for (size_t r = 0; r < has.size(); ++r)
+      if (has[r] && speed != 0)
+        tables_ += fmt::format("\n[[load]]   # {}\nkind = \"centrifugal\"\nname = {}\non = {}\nat = {}\naxis = {}\nspeed = {}\n", l->place,
+                               toml_text(unique("load", in_.mesh.region_name[r] + "_centrifugal")), toml_text(in_.mesh.region_name[r]),
+                               point(at), direction(axis.normalized()), toml_number(std::abs(speed)));
+  }
 }
 
 void BdfScene::distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const std::string& place) {
@@ -149,6 +177,7 @@ void BdfScene::nodal_loads() {
 /// The facet of a solid that PLOAD4 names by one or two of its corners.
 Facet BdfScene::face_of_solid(const BdfLoad& l, std::int64_t element) const {
   const auto c = deck_.cell_row.at(element);
+  if (deck_.pyramids.contains(element)) throw Error(l.place, fmt::format("a pressure on a face of CPYRAM {} is not read", element));
   const ShapeInfo& s = info(in_.mesh.shape[static_cast<size_t>(c)]);
   const auto nodes = in_.mesh.cell(c);
   const auto local = [&](std::int64_t grid) {  // which corner of the cell

@@ -126,13 +126,42 @@ std::string short_name(int tag) {
   return name.empty() || name.starts_with("Open CASCADE STEP translator") ? fmt::format("volume_{}", tag) : name;  // the writer's own
 }
 
-/// Area and centre of a face: what tells it from others after its number has changed.
-std::array<double, 4> print_of(int tag) {
+/// Area or length, and centre, of a face or an edge: what tells it from others after its number has changed.
+std::array<double, 4> print_of(int dim, int tag) {
   std::array<double, 4> p{};
-  gmsh::model::occ::getMass(2, tag, p[0]);
-  gmsh::model::occ::getCenterOfMass(2, tag, p[1], p[2], p[3]);
+  gmsh::model::occ::getMass(dim, tag, p[0]);
+  gmsh::model::occ::getCenterOfMass(dim, tag, p[1], p[2], p[3]);
   return p;
 }
+
+/// Faces or edges under a name, to be found again after the solids are cut at one another.
+class Prints {
+ public:
+  explicit Prints(int dim) : dim_(dim) {}
+  void add(const std::string& name, int tag) { prints_[name].push_back(print_of(dim_, tag)); }
+  bool empty() const { return prints_.empty(); }
+  void look_at(int tag) {
+    const auto print = print_of(dim_, tag);
+    const double length = dim_ == 2 ? std::sqrt(std::abs(print[0])) : print[0];
+    const auto is_it = [&](const std::array<double, 4>& p) {
+      return std::abs(p[0] - print[0]) < 1e-6 * print[0] && std::hypot(p[1] - print[1], p[2] - print[2], p[3] - print[3]) < 1e-6 * length;
+    };
+    for (auto& [name, prints] : prints_)  // of two solids that touch both may give it the name
+      if (std::erase_if(prints, is_it) > 0) groups_[name].push_back(tag);
+  }
+  void make_groups(std::vector<std::string>& notes) const {
+    for (const auto& [name, tags] : groups_) gmsh::model::setPhysicalName(dim_, gmsh::model::addPhysicalGroup(dim_, tags), name);
+    for (const auto& [name, prints] : prints_)
+      if (!prints.empty())
+        notes.push_back(fmt::format("{}: {} of its {} were cut where solids touch, and are not in the set", name, prints.size(),
+                                    dim_ == 2 ? "faces" : "edges"));
+  }
+
+ private:
+  int dim_;
+  std::map<std::string, std::vector<std::array<double, 4>>> prints_;
+  std::map<std::string, std::vector<int>> groups_;
+};
 
 std::string listed(const std::set<std::string>& names) {
   std::string text;
@@ -173,7 +202,8 @@ std::optional<LengthUnit> iges_unit(const std::string& text) {
   return LengthUnit{name_of(name->second), name->second};
 }
 
-void join_touching(bool keep_apart, std::map<std::string, std::vector<int>>& solids, std::vector<std::string>& notes) {
+void join_touching(bool keep_apart, const std::vector<NamedEntity>& named, std::map<std::string, std::vector<int>>& solids,
+                   std::vector<std::string>& notes) {
   gmsh::vectorpair volumes, faces;
   gmsh::model::getEntities(volumes, 3);
   gmsh::model::getEntities(faces, 2);
@@ -184,13 +214,13 @@ void join_touching(bool keep_apart, std::map<std::string, std::vector<int>>& sol
     if (!taken.insert(name[tag]).second) taken.insert(name[tag] = fmt::format("{}_{}", name[tag], tag));  // two solids under one label
     gmsh::model::setEntityName(3, tag, name[tag]);
   }
-  std::map<std::string, std::vector<std::array<double, 4>>> coloured;  // prints of the faces that differ from their solid
+  Prints of_faces(2), of_edges(1);  // faces that have a name, or differ in colour from their solid; edges with a name
+  for (const NamedEntity& e : named) (e.dim == 2 ? of_faces : of_edges).add(e.name, e.tag);
   for (const auto& [dim, tag] : faces) {
     std::vector<int> up, down;
     gmsh::model::getAdjacencies(2, tag, up, down);
     const std::string colour = colour_of(2, tag);
-    if (!colour.empty() && std::none_of(up.begin(), up.end(), [&](int v) { return solid_colour[v] == colour; }))
-      coloured[colour].push_back(print_of(tag));
+    if (!colour.empty() && std::none_of(up.begin(), up.end(), [&](int v) { return solid_colour[v] == colour; })) of_faces.add(colour, tag);
   }
   std::map<int, std::vector<std::string>> parents;  // of the solids that are there in the end
   for (const auto& [dim, tag] : volumes) parents[tag] = {name[tag]};
@@ -225,7 +255,6 @@ void join_touching(bool keep_apart, std::map<std::string, std::vector<int>>& sol
   std::set<std::string> pairs;
   size_t shared = 0;
   gmsh::model::getEntities(faces, 2);
-  std::map<std::string, std::vector<int>> groups;
   for (const auto& [dim, tag] : faces) {
     std::vector<int> up, down;
     gmsh::model::getAdjacencies(2, tag, up, down);
@@ -233,26 +262,19 @@ void join_touching(bool keep_apart, std::map<std::string, std::vector<int>>& sol
       const auto &a = parents[up[0]][0], &b = parents[up[1]][0];
       ++shared, pairs.insert(a < b ? fmt::format("\"{}\" and \"{}\"", a, b) : fmt::format("\"{}\" and \"{}\"", b, a));
     }
-    if (coloured.empty()) continue;
-    const auto print = print_of(tag);
-    const double length = std::sqrt(std::abs(print[0]));
-    for (auto& [colour, prints] : coloured)
-      for (auto p = prints.begin(); p != prints.end(); ++p)
-        if (std::abs((*p)[0] - print[0]) < 1e-6 * print[0] &&
-            std::hypot((*p)[1] - print[1], (*p)[2] - print[2], (*p)[3] - print[3]) < 1e-6 * length) {
-          groups[colour].push_back(tag);
-          prints.erase(p);
-          break;
-        }
+    if (!of_faces.empty()) of_faces.look_at(tag);
+  }
+  if (!of_edges.empty()) {
+    gmsh::vectorpair edges;
+    gmsh::model::getEntities(edges, 1);
+    for (const auto& [dim, tag] : edges) of_edges.look_at(tag);
   }
   if (shared)
     notes.push_back(
         fmt::format("{} faces of solids that touch have their nodes in common, as if glued (--keep-apart leaves solids apart): {}", shared,
                     listed(pairs)));
-  for (const auto& [colour, tags] : groups) gmsh::model::setPhysicalName(2, gmsh::model::addPhysicalGroup(2, tags), colour);
-  for (const auto& [colour, prints] : coloured)
-    if (!prints.empty())
-      notes.push_back(fmt::format("{}: {} of its faces were cut where solids touch, and are not in the set", colour, prints.size()));
+  of_faces.make_groups(notes);
+  of_edges.make_groups(notes);
   std::set<std::string> all;
   for (const auto& [tag, colour] : solid_colour) all.insert(colour);
   if (all.size() > 1)

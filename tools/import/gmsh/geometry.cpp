@@ -59,7 +59,9 @@ void open(const std::string& path, const std::string& format, const ImportOption
     gmsh::model::occ::importShapes(path, made, false, format);
     gmsh::model::occ::synchronize();
     mesh.of_solids = true;
-    join_touching(o.keep_apart, mesh.coloured, mesh.notes);
+    std::vector<NamedEntity> named;
+    if (format == "step") named = step_names(read_text_file(path), mesh.metre.value_or(1e-3) / 1e-3, mesh.notes);
+    join_touching(o.keep_apart, named, mesh.coloured, mesh.notes);
   }
   if (const auto e = GmshSession::errors(); !e.empty()) throw Error(path, e);
   gmsh::vectorpair volumes, surfaces, bars;
@@ -131,26 +133,39 @@ std::array<double, 2> off(const Imported& in, const std::array<double, 2>& solid
   return {volume / solids[0] - 1, area / solids[1] - 1};
 }
 
+/// What gmsh has thrown and what it has logged, each once.
+std::string told(const std::string& thrown) {
+  const std::string logged = GmshSession::errors();
+  if (logged.find(thrown) != logged.npos) return logged;
+  return logged.empty() ? thrown : thrown + "; " + logged;
+}
+
+/// Why the volumes cannot be filled, with the place, of which gmsh says nothing.
+std::string unfilled(const std::string& errors, double unit) {
+  const std::string where = errors.find("PLC Error") == errors.npos ? "" : where_facets_cut(unit);
+  return where.empty() ? errors : errors + ": " + where;
+}
+
 /// Meshes what is open; why that failed, or "".
-std::string try_to_mesh(const ImportOptions& o) {
+std::string try_to_mesh(const ImportOptions& o, double unit) {
   gmsh::vectorpair volumes;
   gmsh::model::getEntities(volumes, 3);
   try {
     gmsh::model::mesh::generate(!volumes.empty() ? 3 : o.thickness ? 2 : 1);
-    if (const auto e = GmshSession::errors(); !e.empty()) return e;
+    if (const auto e = GmshSession::errors(); !e.empty()) return unfilled(e, unit);
     if (o.order == 2 && !volumes.empty()) gmsh::model::mesh::setOrder(2);
   } catch (const std::string& e) {
-    return e;
+    return unfilled(told(e), unit);
   } catch (const std::runtime_error& e) {  // from gmsh 4.13 on
-    return e.what();
+    return unfilled(told(e.what()), unit);
   } catch (int) {
-    return GmshSession::errors();
+    return unfilled(GmshSession::errors(), unit);
   }
   for (const auto& [dim, tag] : volumes) {
     std::vector<int> types;
     std::vector<std::vector<std::size_t>> tags, nodes;
     gmsh::model::mesh::getElements(types, tags, nodes, 3, tag);
-    if (types.empty()) return fmt::format("no cells in volume {}", tag);
+    if (types.empty()) return fmt::format("no cells in {}", name_of_volume(tag));
   }
   return "";
 }
@@ -220,7 +235,7 @@ GmshMesh meshed_at(double factor, double per_turn, std::string& failed, const st
     refuse_at_limit(path);
     if (session.printed().find("ERR StepFile") != std::string::npos) throw Error(path, wrong_syntax);
     const bool memory = e.find("ut of memory") != e.npos || e.find("malloc failed") != e.npos;
-    throw Error(path, "gmsh: " + e, "", memory ? Exit::resources : Exit::input);
+    throw Error(path, "gmsh: " + told(e), "", memory ? Exit::resources : Exit::input);
   };
   try {
     GmshMesh mesh;
@@ -233,7 +248,7 @@ GmshMesh meshed_at(double factor, double per_turn, std::string& failed, const st
     if (options.size) set_size(format, *options.size * unit);
     if (!is_script(format)) set_per_turn(per_turn, options, unit);
     if (factor != 1) gmsh::option::setNumber("Mesh.MeshSizeFactor", factor);
-    failed = try_to_mesh(options);
+    failed = try_to_mesh(options, unit);
     if (!failed.empty()) {
       refuse_at_limit(path);
       return mesh;

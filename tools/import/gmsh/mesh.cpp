@@ -75,6 +75,7 @@ class GmshReading {
     refuse_flat(path_, flat, in_.mesh.n_cells());
     if (!o_.thickness) read_curves();
     if (in_.mesh.n_cells() == 0) throw Error(path_, "no volume cells and no bars");
+    tell_pyramids(in_, n_pyramids_);
     for (const auto& w : reduced_) in_.notes.push_back(fmt::format("{} read without the nodes inside faces and cells", w));
     assign_regions(in_, path_, regions_, false, {}, o_);
     for (const auto& [colour, volumes] : from_.coloured) {
@@ -120,6 +121,26 @@ class GmshReading {
     return row_[tag];
   }
 
+  static constexpr int pyramid5 = 7;
+  void add_pyramids(const GmshMesh::Block& b, std::vector<std::int64_t>& cells) {
+    if (next_id_ == 0)
+      for (const auto& [key, entity] : from_.entities)
+        for (const auto& block : entity.blocks)
+          for (const auto id : block.tags) next_id_ = std::max(next_id_, id + 1);
+    std::vector<std::int64_t> n(5);
+    for (size_t e = 0; e < b.tags.size(); ++e, ++n_pyramids_) {
+      for (size_t i = 0; i < 5; ++i) n[i] = row(b.nodes[5 * e + i], b.tags[e]);
+      std::int64_t id = b.tags[e];
+      for (const auto& half : halves_of_pyramid(n)) {
+        cells.push_back(in_.mesh.n_cells());
+        in_.mesh.add_cell(Shape::tet4, half, -1, id);
+        if (!ids_.insert(id).second) throw Error(path_, fmt::format("element {} is given twice", id), "number each element once");
+        id = next_id_++;
+      }
+      --next_id_;
+    }
+  }
+
   void add_cells(const Key& key, std::vector<std::int64_t>& cells) {
     const int dim = std::get<0>(key);
     std::vector<const GmshMesh::Block*> blocks;
@@ -127,12 +148,17 @@ class GmshReading {
     std::stable_sort(blocks.begin(), blocks.end(), [](const auto* a, const auto* b) { return family(a->type) < family(b->type); });
     std::vector<std::int64_t> n;
     for (const auto* b : blocks) {
+      if (b->type == pyramid5) {
+        add_pyramids(*b, cells);
+        continue;
+      }
       const GmshKind* k = gmsh_kind(b->type);
       if (!k)
         throw Error(path_,
                     fmt::format("{} cells of type \"{}\" in {} {} are not read", b->tags.size(),
                                 gmsh_type(b->type) ? gmsh_type(b->type)->name : fmt::format("{}", b->type), words[dim], std::get<1>(key)),
-                    "supported: tetrahedra, hexahedra and prisms of order 1 and 2, lines; with --thickness triangles and quadrangles");
+                    "supported: tetrahedra, hexahedra and prisms of order 1 and 2, pyramids of 5 nodes, lines; with --thickness triangles "
+                    "and quadrangles");
       if (k->reduced) reduced_.insert(k->reduced);
       const size_t per = b->nodes.size() / std::max<size_t>(1, b->tags.size());
       for (size_t e = 0; e < b->tags.size(); ++e) {
@@ -290,6 +316,7 @@ class GmshReading {
   std::vector<CellGroup> regions_;
   std::unordered_set<int> bar_groups_;
   std::set<std::string> reduced_;
+  std::int64_t n_pyramids_ = 0, next_id_ = 0;
 };
 
 }  // namespace

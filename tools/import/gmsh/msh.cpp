@@ -9,6 +9,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <set>
 
 #include "base/error.hpp"
 #include "import/data_line.hpp"
@@ -119,7 +121,7 @@ class MshReader {
       else if (section == "$Entities" && version_ >= 4)
         in_.skip_line(), entities();
       else if (section == "$PartitionedEntities")
-        in_.fail("the mesh is in partitions", "save it whole: hilo-part makes its own");
+        in_.skip_line(), partitioned_entities();
       else if (section == "$Nodes" && !nodes)
         in_.skip_line(), nodes = true, version_ < 4 ? nodes2() : nodes4();
       else if (section == "$Elements" && nodes && !elements)
@@ -134,6 +136,7 @@ class MshReader {
         in_.fail(fmt::format("$End{} is missing", section.substr(1)), "cut off, or its counts are damaged?");
     }
     if (!nodes || !elements) throw Error(path_, fmt::format("no ${}", nodes ? "Elements" : "Nodes"), "cut off?");
+    tell_partitions();
     order_nodes();
     return std::move(mesh_);
   }
@@ -207,6 +210,43 @@ class MshReader {
       }
   }
 
+  /// Entities that gmsh has cut into parts: what is on a part is on the whole.  Borders between parts are of less dimension than what they
+  /// divide; elements on them, of no group of the model, are left out.
+  void partitioned_entities() {
+    n_partitions_ = in_.count<std::int64_t>(1);
+    for (size_t ghosts = in_.count<std::int64_t>(2); ghosts > 0; --ghosts) in_.next<std::int32_t>(), in_.next<std::int32_t>();
+    std::array<size_t, 4> n{};
+    for (auto& one : n) one = in_.count<std::int64_t>(1);
+    for (int dim = 0; dim < 4; ++dim)
+      for (size_t i = 0; i < n[static_cast<size_t>(dim)]; ++i) {
+        const int tag = in_.next<std::int32_t>(), of_dim = in_.next<std::int32_t>(), of = in_.next<std::int32_t>();
+        Part& part = part_[{dim, tag, 0}];
+        part.is_border = of_dim != dim;
+        part.of = {dim, part.is_border ? tag : of, part.is_border ? 1 : 0};  // a border is no entity of the model
+        for (size_t k = in_.count<std::int64_t>(1); k > 0; --k) part.partitions.push_back(in_.next<std::int32_t>());
+        for (int x = dim == 0 && version_ > 4 ? 3 : 6; x > 0; --x) in_.next<double>();
+        std::vector<int> groups;
+        for (size_t k = in_.count<std::int64_t>(1); k > 0; --k) groups.push_back(std::abs(in_.next<std::int32_t>()));
+        auto& entity = mesh_.entities[part.of];
+        if (entity.groups.empty() && !part.is_border) entity.groups = groups;  // those of the whole, where it is in the file
+        if (dim > 0)
+          for (size_t bounds = in_.count<std::int64_t>(1); bounds > 0; --bounds) in_.next<std::int32_t>();
+      }
+  }
+  /// gmsh may write each part to a file of its own.
+  void tell_partitions() {
+    if (n_partitions_ == 0) return;
+    std::set<int> there;
+    int most = 0;
+    for (const auto& [key, part] : part_) most = std::max(most, part.is_border ? 0 : std::get<0>(key));
+    for (const auto& [key, part] : part_)
+      if (part.filled && std::get<0>(key) == most) there.insert(part.partitions.begin(), part.partitions.end());
+    mesh_.notes.push_back(
+        there.size() < n_partitions_
+            ? fmt::format("warning: the file holds {} of the {} parts of its mesh: the others are missing", there.size(), n_partitions_)
+            : fmt::format("the mesh is in {} parts, which are put together (hilo-part makes others)", n_partitions_));
+  }
+
   void node(std::int64_t tag, const GmshMesh::Key& on) {
     if (tag <= 0) in_.fail(fmt::format("node number {}", tag));
     mesh_.node_tag.push_back(tag);
@@ -224,11 +264,13 @@ class MshReader {
   }
 
   /// Dimension and tag of the entity of a block.
-  GmshMesh::Key block() {
+  GmshMesh::Key block(bool of_elements) {
     const int first = in_.next<std::int32_t>(), second = in_.next<std::int32_t>();
     const int dim = version_ > 4 ? first : second, tag = version_ > 4 ? second : first;
     if (dim < 0 || dim > 3) in_.fail(fmt::format("a block of dimension {}", dim));
-    return {dim, tag, 0};
+    const auto part = part_.find({dim, tag, 0});
+    if (part != part_.end() && of_elements) part->second.filled = true;
+    return part == part_.end() ? GmshMesh::Key{dim, tag, 0} : part->second.of;
   }
 
   void nodes4() {
@@ -236,7 +278,7 @@ class MshReader {
     in_.count<std::int64_t>(4);
     if (version_ > 4) big(), big();
     for (size_t b = 0; b < blocks; ++b) {
-      const auto on = block();
+      const auto on = block(false);
       const int parametric = in_.next<std::int32_t>();
       const size_t n = in_.count<std::int64_t>(4);
       const size_t extra = parametric ? static_cast<size_t>(std::get<0>(on)) : 0;
@@ -258,7 +300,7 @@ class MshReader {
     const GmshType* t = gmsh_type(number);
     if (!t)
       in_.fail(fmt::format("elements of type {} are not read", number),
-               "supported: tetrahedra, hexahedra and prisms of order 1 and 2, lines");
+               "supported: tetrahedra, hexahedra and prisms of order 1 and 2, pyramids of 5 nodes, lines");
     return *t;
   }
 
@@ -291,7 +333,7 @@ class MshReader {
     in_.count<std::int64_t>(2);
     if (version_ > 4) big(), big();
     for (size_t b = 0; b < blocks; ++b) {
-      const auto on = block();
+      const auto on = block(true);
       const GmshType& t = type(in_.next<std::int32_t>());
       if (t.dimension != std::get<0>(on)) in_.fail(fmt::format("\"{}\" in an entity of dimension {}", t.name, std::get<0>(on)));
       const size_t n = in_.count<std::int64_t>(1);
@@ -329,6 +371,13 @@ class MshReader {
   MshInput in_;
   double version_ = 0;
   GmshMesh mesh_;
+  struct Part {
+    GmshMesh::Key of;  // the whole
+    std::vector<int> partitions = {};
+    bool is_border = false, filled = false;
+  };
+  std::map<GmshMesh::Key, Part> part_;
+  size_t n_partitions_ = 0;
   std::vector<GmshMesh::Key> on_;  // entity of each node
 };
 

@@ -31,7 +31,7 @@ class GmshSession {
   ~GmshSession();
   GmshSession(const GmshSession&) = delete;
   GmshSession& operator=(const GmshSession&) = delete;
-  /// The first three lines that gmsh marked as errors, once each; "" without one.
+  /// The first six lines that gmsh marked as errors, once each, and how many more; "" without one.
   static std::string errors();
   /// What was written to stdout so far.
   std::string printed();

@@ -82,12 +82,13 @@ struct InpNodal {
 struct InpDistributed {
   std::string target;  // element set or surface, upper case, or "" for element `id`
   std::int64_t id;
-  int face;  // 1.., 0: a whole surface, -1: gravity
-  double value;
+  int face;      // 1.., 0: a whole surface, -1: gravity, -2: centrifugal
+  double value;  // of the last the square of the speed
   Vec3 direction;
   std::string amplitude;
   std::string place;
   int step = 0;
+  Vec3 at = Vec3::Zero();  // a point of the axis of rotation
 };
 struct InpAmplitude {
   std::string name;
@@ -139,6 +140,12 @@ struct InpSlide {
   std::vector<std::int64_t> rows;
   std::string place;
 };
+/// An *EQUATION of other than equal displacements: factors times axes of rows of nodes of cells and of slides.
+struct InpSum {
+  std::map<std::int64_t, Vec3> rows;
+  std::map<int, double> slides;
+  std::string place;
+};
 /// A card of a later step that becomes scene lines only where one run can say that step too.
 struct InpStepCard {
   std::string name, place;
@@ -183,6 +190,7 @@ struct InpPointValue {
   std::string elset, name, place;
   std::vector<double> first, second = {};  // numbers of its lines
   bool more = false;                       // further numbers on the last
+  bool table = false;                      // NONLINEAR: forces and extensions
 };
 /// A reference node that became a body, with the nodes it carries; or the mean of nodes with weights.
 struct InpCarried {
@@ -218,6 +226,7 @@ struct InpDeck {
   std::vector<std::int64_t> node_id;
   std::unordered_map<std::int64_t, std::int64_t> node;  // number in the deck -> row of X, of nodes that a cell uses
   std::unordered_set<std::int64_t> unused;              // nodes of no cell
+  std::unordered_set<std::int64_t> pyramids;            // elements, and their second halves
   std::vector<std::uint8_t> shape;
   std::vector<std::int64_t> cell_id, offset{0}, cell_nodes;  // nodes as numbers of the deck
   std::vector<int> cell_line;
@@ -263,6 +272,7 @@ struct InpDeck {
   std::vector<InpEquation> equations;
   std::vector<InpSlide> slides;
   std::map<std::pair<std::int64_t, int>, int> slide_of;  // node and component
+  std::vector<InpSum> sums;
   std::string title;
   std::vector<InpStep> steps;
   std::vector<InpStepCard> step_cards;

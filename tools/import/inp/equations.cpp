@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "import/inp/groups.hpp"
 #include "import/links.hpp"
 
 namespace hilo {
@@ -22,7 +23,7 @@ std::vector<std::int64_t> nodes_of(const InpDeck& d, const InpTarget& t) {
 /// Why a displacement cannot be one of an equation, or "".
 std::string why_not(const InpDeck& d, std::int64_t node, int component, const std::set<std::int64_t>& turned) {
   if (component < 1 || component > 3) return "of turns or temperatures";
-  if (turned.contains(node)) return "in axes of *TRANSFORM";
+  if (turned.contains(node) && !d.node.contains(node)) return "in axes of *TRANSFORM, of a node of no cell";
   if (d.bodies.contains(node)) return "of nodes of beams";
   if (!d.node.contains(node) && !d.loose.contains(node)) return "of a node that does not exist";
   for (const InpTie& t : d.ties)
@@ -30,6 +31,18 @@ std::string why_not(const InpDeck& d, std::int64_t node, int component, const st
   for (const auto& [id, p] : d.points)
     if (!d.node.contains(node) && std::ranges::count(p.nodes, node)) return "of a node of springs or masses alone";
   return "";
+}
+
+struct EquationSum {
+  std::map<Displacement, double> of;
+  std::string place;
+};
+
+constexpr size_t most_terms = 1000;  // each beyond the third is a body
+
+bool of_nothing(const InpSum& s) {
+  return std::ranges::all_of(s.rows, [](const auto& r) { return r.second == Vec3::Zero(); }) &&
+         std::ranges::all_of(s.slides, [](const auto& r) { return r.second == 0; });
 }
 
 }  // namespace
@@ -40,27 +53,43 @@ void find_equations(InpDeck& d, Imported& in) {
     for (const auto id : nodes_of(d, {t.target, t.id, t.place})) turned.insert(id);
   EqualDisplacements equals;
   std::map<Displacement, std::string> place;
+  std::vector<EquationSum> sums;
   for (const InpEquation& e : d.equations) {
     std::string why;
-    for (const auto& t : e.terms)
-      for (const auto node : nodes_of(d, t.node))
+    std::vector<std::vector<std::int64_t>> nodes;
+    size_t n = 1;  // a term may have a set: one equation for each of its nodes
+    bool askew = false;
+    for (const auto& t : e.terms) {
+      nodes.push_back(nodes_of(d, t.node));
+      if (nodes.back().size() != 1 && n != 1 && nodes.back().size() != n)
+        throw Error(e.place, fmt::format("*EQUATION between {} nodes and {}", n, nodes.back().size()), "sets of as many nodes");
+      n = std::max(n, nodes.back().size());
+      for (const auto node : nodes.back()) {
         if (why.empty()) why = why_not(d, node, t.component, turned);
+        askew = askew || turned.contains(node);
+      }
+    }
     const auto& first = e.terms[0];
+    const auto node_of = [&](size_t term, size_t i) { return nodes[term][nodes[term].size() == 1 ? 0 : i]; };
     if (!why.empty()) {
       in.skip("*EQUATION " + why, e.place);
     } else if (e.terms.size() == 1) {
       d.supports.push_back({first.node.name, first.node.id, first.component, first.component, 0, "", e.place});
-    } else if (const auto& second = e.terms.back(); e.terms.size() > 2 || first.component != second.component ||
-                                                    std::abs(first.factor + second.factor) > 1e-9 * std::abs(first.factor)) {
-      in.skip("*EQUATION that is more than two equal displacements", e.place);
-    } else {
-      const auto a = nodes_of(d, first.node), b = nodes_of(d, second.node);
-      if (a.size() != b.size() && b.size() != 1 && a.size() != 1)
-        throw Error(e.place, fmt::format("*EQUATION between {} nodes and {}", a.size(), b.size()), "sets of as many nodes");
-      for (size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
-        const Displacement x{a[a.size() == 1 ? 0 : i], first.component}, y{b[b.size() == 1 ? 0 : i], first.component};
+    } else if (const auto& second = e.terms.back(); e.terms.size() == 2 && !askew && first.component == second.component &&
+                                                    std::abs(first.factor + second.factor) <= 1e-9 * std::abs(first.factor)) {
+      for (size_t i = 0; i < n; ++i) {
+        const Displacement x{node_of(0, i), first.component}, y{node_of(1, i), first.component};
         equals.unite(x, y);
         place.try_emplace(x, e.place), place.try_emplace(y, e.place);
+      }
+    } else {
+      for (size_t i = 0; i < n; ++i) {
+        EquationSum& sum = sums.emplace_back(EquationSum{{}, e.place});
+        for (size_t k = 0; k < e.terms.size(); ++k) {
+          const Displacement x{node_of(k, i), e.terms[k].component};
+          sum.of[x] += e.terms[k].factor;
+          if (!d.node.contains(x.first)) equals.root(x), place.try_emplace(x, e.place);
+        }
       }
     }
   }
@@ -74,6 +103,26 @@ void find_equations(InpDeck& d, Imported& in) {
     }
     d.slide_of[x] = at->second;
     if (const auto a = d.node.find(x.first); a != d.node.end()) d.slides[at->second].rows.push_back(a->second);
+  }
+  const std::vector<int> axes = turned_nodes(d, in.mesh);
+  for (const EquationSum& sum : sums) {
+    InpSum to{{}, {}, sum.place};
+    for (const auto& [x, factor] : sum.of) {
+      if (factor == 0) continue;
+      const auto row = d.node.find(x.first);
+      if (row == d.node.end()) {
+        to.slides[d.slide_of.at(x)] += factor;
+        continue;
+      }
+      const int of = axes[static_cast<size_t>(row->second)];
+      const Mat3 own = of < 0 ? Mat3(Mat3::Identity()) : d.transformed[static_cast<size_t>(of)].axes(in.mesh.X[row->second]);
+      to.rows.try_emplace(row->second, Vec3::Zero()).first->second += factor * own.col(x.second - 1);
+    }
+    if (of_nothing(to)) continue;
+    if (to.rows.size() + to.slides.size() > most_terms)
+      in.skip(fmt::format("*EQUATION of more than {} terms", most_terms), sum.place);
+    else
+      d.sums.push_back(std::move(to));
   }
 }
 

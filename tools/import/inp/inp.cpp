@@ -52,6 +52,22 @@ void turn_materials(InpDeck& d, Imported& in) {
   }
 }
 
+/// Sets that have a pyramid have both halves of it.
+void complete_pyramids(InpDeck& d) {
+  if (d.pyramids.empty()) return;
+  for (auto& [name, set] : d.elset) {
+    std::vector<std::int64_t> more;
+    for (const auto id : set.members)
+      if (d.pyramids.contains(id)) more.push_back(id + second_half);
+    set.members.insert(set.members.end(), more.begin(), more.end());
+  }
+}
+/// A face of a pyramid by its number would be one of a half.
+void refuse_face(const InpDeck& d, std::int64_t element, const std::string& place) {
+  if (d.pyramids.contains(element))
+    throw Error(place, fmt::format("element {} is a pyramid, whose faces by number are not read", element), "a surface of element sets");
+}
+
 /// Node numbers of the cells become rows; nodes that no cell uses go.
 void resolve_cells(InpDeck& d, Imported& in) {
   Mesh& m = in.mesh;
@@ -273,6 +289,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   if (d.X.empty()) throw Error(path, "no nodes", "a deck has *NODE");
   if (d.shape.empty() && d.beams.empty()) throw Error(path, "no elements", "a deck has *ELEMENT");
   unqualify(d);
+  complete_pyramids(d);
   join_steps(d, in);
   check_names(d);
   turn_materials(d, in);
@@ -280,6 +297,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
       (!options.thicken && std::ranges::any_of(d.shape, [](auto s) { return info(static_cast<Shape>(s)).dimension == 2; })))
     beams_as_cells(d);
   resolve_cells(d, in);
+  tell_pyramids(in, static_cast<std::int64_t>(d.pyramids.size()) / 2);
   find_beams(d, in, options.thicken);
   thin_sections(d, in, options.thicken);
 
@@ -311,6 +329,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
         facets.insert(facets.end(), free.begin(), free.end());
       } else
         for (const auto c : cells) {
+          refuse_face(d, in.mesh.cell_id[c], line.place);
           const int f = inp_facet(static_cast<Shape>(in.mesh.shape[c]), line.face);
           if (f < 0) throw Error(line.place, fmt::format("*SURFACE {}: element {} has no face S{}", s.name, in.mesh.cell_id[c], line.face));
           facets.push_back({c, f});

@@ -138,6 +138,13 @@ void read_distributed(InpReading& r) {
       p.direction = Vec3(l.number(3), l.number(4), l.number(5));
       if (p.direction.norm() == 0) throw Error(l.place(3), "GRAV: the direction has no length");
       p.direction.normalize();
+    } else if (!surface && label == "CENTRIF") {
+      p.face = -2;
+      p.at = Vec3(l.number(3), l.number(4), l.number(5));
+      p.direction = Vec3(l.number(6), l.number(7), l.number(8));
+      if (p.direction.norm() == 0) throw Error(l.place(6), "CENTRIF: the axis has no length");
+      if (p.value < 0) throw Error(l.place(2), "CENTRIF: the square of a speed is below zero");
+      p.direction.normalize();
     } else if (!surface && label.size() == 2 && label[0] == 'P' && label[1] >= '1' && label[1] <= '6')
       p.face = label[1] - '0';
     else {

@@ -84,7 +84,8 @@ void read_elements(InpReading& r) {
   const std::string type = upper(card.need("TYPE"));
   const size_t of_beam = nodes_of_beam(type);
   const Shape shape = of_beam ? Shape::bar2 : inp_shape(card);
-  const size_t n = of_beam ? of_beam : static_cast<size_t>(info(shape).n_nodes);
+  const bool pyramid = type.starts_with("C3D5");
+  const size_t n = pyramid ? 5 : of_beam ? of_beam : static_cast<size_t>(info(shape).n_nodes);
   InpSet* set = card.has("ELSET") ? &set_of_cells(card.need("ELSET"), d) : nullptr;
   DataLine l;
   std::vector<std::int64_t> row;
@@ -114,13 +115,23 @@ void read_elements(InpReading& r) {
       d.beams[row[0]] = {type, row[0], {row.begin() + 1, row.end()}, place, file, line};
       continue;
     }
-    d.cell[row[0]] = static_cast<std::int64_t>(d.shape.size());
-    d.shape.push_back(static_cast<std::uint8_t>(shape));
-    d.cell_id.push_back(row[0]);
-    d.cell_nodes.insert(d.cell_nodes.end(), row.begin() + 1, row.end());
-    d.offset.push_back(static_cast<std::int64_t>(d.cell_nodes.size()));
-    d.cell_line.push_back(line);
-    d.cell_file.push_back(file);
+    const auto add = [&](std::int64_t id, std::span<const std::int64_t> nodes) {
+      d.cell[id] = static_cast<std::int64_t>(d.shape.size());
+      d.shape.push_back(static_cast<std::uint8_t>(shape));
+      d.cell_id.push_back(id);
+      d.cell_nodes.insert(d.cell_nodes.end(), nodes.begin(), nodes.end());
+      d.offset.push_back(static_cast<std::int64_t>(d.cell_nodes.size()));
+      d.cell_line.push_back(line);
+      d.cell_file.push_back(file);
+    };
+    const auto nodes = std::span<const std::int64_t>(row).subspan(1);
+    if (!pyramid) {
+      add(row[0], nodes);
+      continue;
+    }
+    const auto halves = halves_of_pyramid(nodes);
+    add(row[0], halves[0]), add(row[0] + second_half, halves[1]);
+    d.pyramids.insert({row[0], row[0] + second_half});
   }
 }
 
@@ -147,8 +158,10 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
     for (const auto e : it->second.members)
       if (const auto b = d.beams.find(e); b != d.beams.end())
         add.insert(add.end(), b->second.nodes.begin(), b->second.nodes.end());
-      else if (const auto c = d.cell.find(e); c != d.cell.end())
-        add.insert(add.end(), d.cell_nodes.begin() + d.offset[c->second], d.cell_nodes.begin() + d.offset[c->second + 1]);
+      else
+        for (const auto half : {e, e + second_half})
+          if (const auto c = d.cell.find(half); c != d.cell.end())
+            add.insert(add.end(), d.cell_nodes.begin() + d.offset[c->second], d.cell_nodes.begin() + d.offset[c->second + 1]);
   }
   DataLine l;
   while (lines.next_data(l)) {
@@ -252,7 +265,8 @@ Shape inp_shape(const Card& card) {
       if (nodes == "15") return Shape::wedge15;
       if (nodes == "20") return variant.find('R') == std::string::npos ? Shape::hex20 : Shape::hex20r;
     }
-    if (nodes == "5" || nodes == "13") throw refuse("pyramids are not read");
+    if (nodes == "5") return Shape::tet4;  // two of them
+    if (nodes == "13") throw refuse("pyramids of mid-side nodes are not read");
     throw refuse("this solid is not read");
   }
   // Prefixes from the longest to the shortest, each with its reason.

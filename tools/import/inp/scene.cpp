@@ -32,9 +32,11 @@ std::string InpScene::text() {
   supports();
   supports_of_ties();
   slides();
+  sums();
   forces();
   forces_of_ties();
   pressures();
+  centrifugal();
   tied();
   velocities();
   histories();

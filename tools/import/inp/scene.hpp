@@ -29,9 +29,13 @@ class InpScene {
   void write(const Held& h);
   void supports_of_ties();
   void slides();
+  void sums();
   void tied();
   // scene_loads.cpp
   void gravity();
+  std::vector<std::int64_t> elements_of(const InpDistributed& p) const;
+  void centrifugal();
+  void load_of_mass(const InpDistributed& p, const char* kind, const std::string& wish, const std::string& what);
   void forces();
   double share_of_pairs(const Rows& nodes, const std::string& place) const;
   void forces_of_ties();

@@ -18,29 +18,73 @@ void InpScene::gravity() {
   for (const auto& [id, point] : d_.points)
     if (point.type == "MASS") beside[id] = Vec3::Zero();
   for (const auto& [id, beam] : d_.beams) beside[id] = Vec3::Zero();
-  bool any = false;
-  std::string place;
+  bool any = false, in_time = false;
   for (const auto& p : d_.distributed) {
     if (p.face != -1) continue;
-    place = p.place;
-    if (!p.amplitude.empty()) {
-      in_.skip("*DLOAD GRAV with AMPLITUDE", p.place);
-      continue;
-    }
-    any = true;
+    any = true, in_time = in_time || !p.amplitude.empty();
     const Vec3 more = p.value * p.direction;
     if (!p.target.empty() || !beside.contains(p.id))
       for (const auto c : inp_cells(d_, p.target, p.id, p.place)) g[static_cast<size_t>(c)] += more;
-    const auto set = d_.elset.find(p.target);
-    const std::vector<std::int64_t> alone{p.id}, none;
-    for (const auto id : p.target.empty() ? alone : set == d_.elset.end() ? none : set->second.members)
+    for (const auto id : elements_of(p))
       if (const auto one = beside.find(id); one != beside.end()) one->second += more;
   }
+  const size_t n_cells = g.size();
   for (const auto& [id, x] : beside) g.push_back(x);
-  if (std::ranges::any_of(g, [&](const Vec3& x) { return x != g.front(); }))
-    in_.skip("*DLOAD GRAV on a part of the model", place);
-  else if (any)
+  if (!any) return;
+  if (!in_time && std::ranges::all_of(g, [&](const Vec3& x) { return x == g.front(); })) {
     head_ += fmt::format("gravity = {}\n", list(Vec3(g.front() * si("m/s^2"))));
+    return;
+  }
+  // what weighs in parts, or by a history, takes a load for each
+  for (const auto& p : d_.distributed) {
+    if (p.face != -1) continue;
+    if (const auto ids = elements_of(p); std::ranges::any_of(ids, [&](std::int64_t id) { return beside.contains(id); }))
+      in_.skip("*DLOAD GRAV on a part of the model, of masses and beams", p.place);
+    if (n_cells > 0)
+      load_of_mass(p, "acceleration", "gravity", fmt::format("acceleration = {}\n", list(Vec3(p.value * p.direction * si("m/s^2")))));
+  }
+}
+
+/// Numbers of the elements of a line.
+std::vector<std::int64_t> InpScene::elements_of(const InpDistributed& p) const {
+  if (p.target.empty()) return {p.id};
+  const auto set = d_.elset.find(p.target);
+  return set == d_.elset.end() ? std::vector<std::int64_t>{} : set->second.members;
+}
+
+void InpScene::centrifugal() {
+  for (const auto& p : d_.distributed) {
+    if (p.face != -2 || p.value == 0) continue;
+    if (const auto ids = elements_of(p); std::ranges::any_of(ids, [&](std::int64_t id) { return d_.beams.contains(id); }))
+      in_.skip("*DLOAD CENTRIF on beams", p.place);
+    load_of_mass(p, "centrifugal", "centrifugal",
+                 fmt::format("at = {}\naxis = {}\nspeed = {}\n", point(p.at), list(p.direction), num(std::sqrt(p.value) / si("s"))));
+  }
+}
+
+/// On the regions that a line has whole, and on a set of the other cells.
+void InpScene::load_of_mass(const InpDistributed& p, const char* kind, const std::string& wish, const std::string& what) {
+  auto cells = inp_cells(d_, p.target, p.id, p.place);
+  std::string past;
+  if (cells.empty() || !history(p.amplitude, "*DLOAD", p.place, past)) return;
+  const Mesh& m = in_.mesh;
+  std::vector<std::int64_t> of_region(m.region_name.size(), 0), here(m.region_name.size(), 0);
+  for (const auto r : m.region) ++of_region[static_cast<size_t>(r)];
+  std::ranges::sort(cells);
+  cells.erase(std::ranges::unique(cells).begin(), cells.end());
+  for (const auto c : cells) ++here[static_cast<size_t>(m.region[static_cast<size_t>(c)])];
+  std::vector<std::string> on;
+  for (size_t r = 0; r < here.size(); ++r)
+    if (here[r] > 0 && here[r] == of_region[r]) on.push_back(m.region_name[r]);
+  std::erase_if(cells, [&](std::int64_t c) {
+    const auto r = static_cast<size_t>(m.region[static_cast<size_t>(c)]);
+    return here[r] == of_region[r];
+  });
+  if (!cells.empty()) on.push_back(names_.cells(fmt::format("{}_{}", wish, ++made_[wish]), cells));
+  for (const std::string& name : on)
+    tables_ += fmt::format("\n[[load]]   # {}\nkind = \"{}\"\nname = {}\non = {}\n{}", p.place, kind,
+                           toml_text(unique("load", name + "_" + wish)), toml_text(name), what) +
+               past;
 }
 
 void InpScene::forces() {
@@ -169,6 +213,8 @@ void InpScene::pressures() {
                   p.value,
                   {}};
     for (const auto c : cells) {
+      if (d_.pyramids.contains(in_.mesh.cell_id[c]))
+        throw Error(p.place, fmt::format("*DLOAD: element {} is a pyramid, whose faces by number are not read", in_.mesh.cell_id[c]));
       const int f = inp_facet(static_cast<Shape>(in_.mesh.shape[c]), p.face);
       if (f < 0) throw Error(p.place, fmt::format("*DLOAD: element {} has no face P{}", in_.mesh.cell_id[c], p.face));
       add(g, {c, f});

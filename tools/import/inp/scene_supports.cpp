@@ -66,6 +66,20 @@ void InpScene::slides() {
   }
 }
 
+void InpScene::sums() {
+  for (const InpSum& s : d_.sums) {
+    std::vector<SumTerm> terms;
+    for (const auto& [a, way] : s.rows)
+      if (way != Vec3::Zero()) terms.push_back({set_of("", {a}, "equation", true), point(in_.mesh.X[a]), way});
+    for (const auto& [slide, factor] : s.slides) {
+      const InpSlide& of = d_.slides[static_cast<size_t>(slide)];
+      if (factor != 0) terms.push_back({slide_name(d_, slide), point(of.X), factor * Vec3::Unit(of.component - 1)});
+    }
+    tables_ += joints_of_sum(terms, "equation", s.place,
+                             [this](const std::string& section, const std::string& wish) { return unique(section, wish); });
+  }
+}
+
 /// Reference nodes are held by joints to the ground or to what moves them, or whole.
 void InpScene::supports_of_ties() {
   struct HeldBody {

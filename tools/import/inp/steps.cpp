@@ -113,14 +113,15 @@ class Joiner {
   }
 
   std::vector<InpDistributed> joined_distributed() {
-    using Key = std::tuple<std::string, std::int64_t, int, std::array<double, 3>>;
+    using Key = std::tuple<std::string, std::int64_t, int, std::array<double, 6>>;
     std::map<Key, size_t> known;
     std::vector<Item> items;
     for (size_t i = 0; i < d_.distributed.size(); ++i) {
       const InpDistributed& l = d_.distributed[i];
       if (index(l.step) >= n_) continue;
-      const Vec3 e = l.direction;
-      const auto [at, fresh] = known.try_emplace(Key{l.target, l.target.empty() ? l.id : 0, l.face, {e.x(), e.y(), e.z()}}, items.size());
+      const Vec3 e = l.direction, x = l.at;
+      const auto [at, fresh] =
+          known.try_emplace(Key{l.target, l.target.empty() ? l.id : 0, l.face, {e.x(), e.y(), e.z(), x.x(), x.y(), x.z()}}, items.size());
       if (fresh) items.push_back({i, std::vector<Item::Given>(n_)});
       give(items[at->second], l.step, l.value, l.amplitude, true, l.place);
     }
@@ -129,7 +130,6 @@ class Joiner {
     for (const Item& item : items) {
       InpDistributed l = d_.distributed[item.line];
       if (!course(item, l.value, l.amplitude, l.place)) continue;
-      if (l.face < 0 && !l.amplitude.empty()) throw Cannot{"gravity, which a run has from its beginning to its end", l.place};
       out.push_back(l);
     }
     return out;

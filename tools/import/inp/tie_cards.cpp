@@ -142,14 +142,17 @@ void read_tie(InpReading& r) {
 
 /// The first number of a line; in front of it, for springs and dampers, a line with the degrees of freedom of SPRING1 and SPRING2.
 void read_value(InpReading& r) {
-  if (const auto odd = unknown_param(r.card, {"ELSET"}); !odd.empty()) return r.skip(odd);
+  if (const auto odd = r.card.key == "SPRING" ? unknown_param(r.card, {"ELSET", "NONLINEAR"}) : unknown_param(r.card, {"ELSET"});
+      !odd.empty())
+    return r.skip(odd);
   InpPointValue v{upper(r.card.need("ELSET")), r.card.name, r.card.place(), {}};
   DataLine l;
   while (r.lines.next_data(l)) {
     if (l.fields.empty()) continue;
     v.first.push_back(l.number(0)), v.second.push_back(l.number(1));
     v.more = false;  // of the last line
-    for (size_t i = 1; i < l.fields.size(); ++i) v.more = v.more || !l.empty(i);
+    v.table = r.card.has("NONLINEAR");
+    for (size_t i = v.table ? 2 : 1; i < l.fields.size(); ++i) v.more = v.more || !l.empty(i);
   }
   r.deck.point_values.push_back(std::move(v));
 }

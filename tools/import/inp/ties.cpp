@@ -242,6 +242,27 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
       if ((type == "MASS") != (v.name == "*MASS") || (type[0] == 'S') != (v.name == "*SPRING")) continue;
       if (!valued.insert(id).second)
         throw Error(v.place, fmt::format("{} of element {} is given twice", v.name, id), "give each element one value");
+      if (v.table) {
+        if (type != "SPRINGA") {
+          in.skip(v.name + ", NONLINEAR, of " + type, v.place);
+          continue;
+        }
+        const auto a = p->second.nodes[0], b = p->second.nodes[1];
+        if (!((X(b) - X(a)).norm() > 0)) throw Error(p->second.place, fmt::format("{} {} has no length", type, id));
+        std::vector<std::pair<double, double>> points;  // extension and force
+        for (size_t i = 0; i < v.first.size(); ++i) points.emplace_back(v.second[i] * si("m"), v.first[i] * si("N"));
+        std::ranges::sort(points);
+        std::vector<double> extension, force;
+        for (const auto& [x, f] : points) extension.push_back(x), force.push_back(f);
+        if (points.size() < 2 || std::ranges::adjacent_find(extension) != extension.end())
+          throw Error(v.place, "*SPRING, NONLINEAR: two forces at least, at extensions that differ", "force, extension");
+        if (v.more) in.skip(v.name + ": numbers behind force and extension, of temperatures", v.place);
+        springs += fmt::format(
+            "\n[[spring]]   # {}\nkind = \"curve\"\nname = \"{}_{}\"\na = {}\nb = {}\nat_a = {}\nat_b = {}\nextension = {}\nforce = {}\n",
+            p->second.place, type, id, toml_text(end_name(a)), toml_text(end_name(b)), point(X(a)), point(X(b)), toml_list(extension),
+            toml_list(force));
+        continue;
+      }
       if (v.first.size() > n_lines) {
         in.skip(v.name + " of several values", v.place);
         continue;

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pyramids of five nodes, of which hilo has no cell.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "import/imported.hpp"
+
+namespace hilo {
+
+std::array<std::vector<std::int64_t>, 2> halves_of_pyramid(std::span<const std::int64_t> n) {
+  const auto lowest = std::min_element(n.begin(), n.begin() + 4) - n.begin();
+  if (lowest % 2 == 0) return {{{n[0], n[1], n[2], n[4]}, {n[0], n[2], n[3], n[4]}}};
+  return {{{n[0], n[1], n[3], n[4]}, {n[1], n[2], n[3], n[4]}}};
+}
+
+void tell_pyramids(Imported& in, std::int64_t n) {
+  if (n == 0) return;
+  in.notes.push_back(fmt::format("{} pyramids are two tetrahedra each", n));
+  std::set<std::vector<std::int64_t>> quadrangles;  // of other cells, by their nodes
+  std::int64_t beside = 0;
+  const Mesh& m = in.mesh;
+  const auto key = [](std::vector<std::int64_t> nodes) {
+    std::ranges::sort(nodes);
+    return nodes;
+  };
+  for (std::int64_t c = 0; c < m.n_cells(); ++c) {
+    const ShapeInfo& s = info(m.shape[c]);
+    if (s.dimension != 3) continue;
+    for (const auto& facet : s.facets) {
+      std::vector<std::int64_t> corners;
+      for (const int a : facet)
+        if (a < s.n_corners) corners.push_back(m.cell(c)[a]);
+      if (corners.size() == 4) quadrangles.insert(key(corners));
+    }
+  }
+  for (std::int64_t c = 0; c + 1 < m.n_cells(); ++c) {  // two halves stand side by side, and share the apex, which is their last node
+    const auto a = m.cell(c), b = m.cell(c + 1);
+    if (m.shape[c] != static_cast<std::uint8_t>(Shape::tet4) || m.shape[c + 1] != m.shape[c] || a[3] != b[3]) continue;
+    std::vector<std::int64_t> base{a[0], a[1], a[2], b[0], b[1], b[2]};
+    std::ranges::sort(base);
+    base.erase(std::ranges::unique(base).begin(), base.end());
+    if (base.size() == 4) beside += quadrangles.contains(base);
+  }
+  if (beside > 0)
+    in.notes.push_back(
+        fmt::format("warning: {} pyramids stand on a quadrangle of a hexahedron or prism: fields agree at its corners alone, and it counts "
+                    "as outer surface",
+                    beside));
+}
+
+}  // namespace hilo
