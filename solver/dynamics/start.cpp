@@ -143,7 +143,7 @@ void nearest_velocities(const System& system, KktSolver& solver, const Config& q
   system.add_rates(v, q, z);
 }
 
-void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda) {
+void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda, bool has_mass) {
   // guess: bodies that keep their spin, everything else unaccelerated; the solve adds the rest
   combine(a, {{0, &s.v}});
   for (const UnknownField& f : system.unknowns)
@@ -176,7 +176,7 @@ void solve_acceleration(const System& system, KktSolver& solver, const State& s,
   std::vector<double> rate, acceleration, z;
   const int first = 3 * system.first_joint_block();
   for (int it = 0; it < (pressed ? 12 : 1); ++it) {
-    assemble(system, solver, stage, lambda, r, true);
+    assemble(system, solver, stage, lambda, r, pressed || !has_mass);
     system.row_rates(s.q, s.v, &a, s.t, rate, &acceleration);  // rows: d2g/dt2 = 0
     const std::vector<char> on = system.rows_on();
     for (size_t i = 0; i < on.size(); ++i) r.r[first + i] = on[i] ? r.sigma * acceleration[i] : 0;

@@ -15,9 +15,12 @@ double assemble_positions(System& system, KktSolver& solver, Config& q);
 /// Velocities from time t on, in the mass norm: those of the laws for what moves by one, and consistent with the joints and what drives
 /// them for the rest; returns the largest change of what is free [m/s].
 double project_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t);
-/// Accelerations and multipliers that satisfy equations and constraints at (s.q, s.v) at time s.t.
-void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda);
-/// v becomes the nearest velocities, in the mass norm, that directors, products of modes and joints allow at time t.
+/// Accelerations and multipliers that satisfy equations and constraints at (s.q, s.v) at time s.t.  `has_mass`: the solver holds the matrix
+/// of mass and rows at s.q.
+void solve_acceleration(const System& system, KktSolver& solver, const State& s, Config& a, std::vector<double>& lambda,
+                        bool has_mass = false);
+/// v becomes the nearest velocities, in the mass norm, that directors, products of modes and joints allow at time t; the solver then holds
+/// the matrix of mass and rows at q.
 void nearest_velocities(const System& system, KktSolver& solver, const Config& q, Config& v, double t);
 /// s.a and s.lambda that satisfy equations and constraints at (q, v) at time t, and s.jerk by forward differences over h.
 void consistent_acceleration(const System& system, KktSolver& solver, State& s, double h);

@@ -145,13 +145,12 @@ void gradient(const Connector& c, const Config& q, const Config& turned, Connect
     for (size_t e = 0; e < c.entities.size(); ++e) g.dy[m][e].setZero();
     for (const Term& t : c.measures[m].terms) {
       g.e[m] += term_value(t, g.y);
-      derivatives(t, g.y, [&](int e, const Vec3& d) { g.dy[m][e] += d; });
-    }
-    for (size_t e = 0; e < c.entities.size(); ++e) {
-      const int base = 6 * c.entities[e].end;
-      const Vec3& d = g.dy[m][e];
-      if (c.entities[e].point) g.G.block<1, 3>(m, base) += d.transpose();
-      g.G.block<1, 3>(m, base + 3) += g.arm[e].cross(d).transpose();
+      derivatives(t, g.y, [&](int e, const Vec3& d) {
+        const int base = 6 * c.entities[e].end;
+        g.dy[m][e] += d;
+        if (c.entities[e].point) g.G.block<1, 3>(m, base) += d.transpose();
+        g.G.block<1, 3>(m, base + 3) += g.arm[e].cross(d).transpose();
+      });
     }
   }
 }

@@ -27,17 +27,20 @@ Vec3 turned(const Stage& s, int body) {
 }
 
 MeasurePath::MeasurePath(const Connector& c, const Collocation& step) : e0(c.values(*step.start)), e1(e0) {
-  for (int j = 0; j < Collocation::n; ++j) {
-    way[j] = c.values(*step.after[j]);
-    const Values behind = c.values(*step.before[j]);
-    for (size_t m = 0; m < max_measures; ++m) way[j][m] = m < c.measures.size() ? way[j][m] - behind[m] : 0;
-  }
+  for (int j = 0; j < Collocation::n; ++j) way[j] = way_of(c, step, j);
   for (int i = 0; i < Collocation::n; ++i) {
     at[i] = e0;
     for (int j = 0; j < Collocation::n; ++j)
       for (size_t m = 0; m < max_measures; ++m) at[i][m] += step.a[i][j] * way[j][m];
   }
   for (size_t m = 0; m < max_measures; ++m) e1[m] += step.b[0] * way[0][m] + step.b[1] * way[1][m] + step.b[2] * way[2][m];
+}
+
+Values MeasurePath::way_of(const Connector& c, const Collocation& step, int j) {
+  Values out = c.values(*step.after[j]);
+  const Values behind = c.values(*step.before[j]);
+  for (size_t m = 0; m < c.measures.size(); ++m) out[m] -= behind[m];
+  return out;
 }
 
 void elastic_along(const SpringLaw& law, const MeasurePath& path, const Collocation& step, int i, Response& out) {

@@ -29,6 +29,8 @@ Vec3 turned(const Stage& s, int body);
 struct MeasurePath {
   using Values = std::array<double, max_measures>;
   MeasurePath(const Connector& c, const Collocation& step);
+  /// way[j] alone.
+  static Values way_of(const Connector& c, const Collocation& step, int j);
   Values e0, e1;               // at its ends
   Values way[Collocation::n];  // h G(Q_j) V_j
   Values at[Collocation::n];   // E_j

@@ -53,9 +53,8 @@ void add_velocity_rows(const Joint& c, const Stage& s, const Slip& slip, const d
 
 /// Position rows of a stage that shares its step with others: their increments over it, of which the sum over the stages is
 /// g(q1) - law(t1).
-void increments_of_rows(const Joint& c, const Stage& s, const MeasurePath& path, const RowLaw::Gradient* d, double* g) {
+void increments_of_rows(const Joint& c, const Stage& s, const MeasurePath::Values& way, const RowLaw::Gradient* d, double* g) {
   const Collocation& step = *s.step;
-  const MeasurePath::Values& way = path.way[s.member];
   double open[max_rows];
   gaps(c, *step.start, step.t, s.load_factor, open);
   for (int r = 0; r < c.n_position_rows(); ++r) {
@@ -74,15 +73,14 @@ void increments_of_rows(const Joint& c, const Stage& s, const MeasurePath& path,
 }
 
 /// Their gradients by the increments of `end`.
-void gradients_of_increments(const Joint& c, const Stage& s, const MeasurePath& path, const RowLaw::Gradient* d, const DirectionRows& left,
-                             DirectionRows& out) {
+void gradients_of_increments(const Joint& c, const Stage& s, const MeasurePath::Values& way, const RowLaw::Gradient* d,
+                             const DirectionRows& left, DirectionRows& out) {
   ConnectorGradient before, after;
   gradient(c, *s.w0, *s.end, before), gradient(c, *s.w1, *s.end, after);
   DirectionRows ways = s.slope1() * after.G - s.slope0() * before.G;
   out = ways;
   if (!d) return;
   rows_over_directions(c, *d, ways, out);
-  const auto& way = path.way[s.member];
   for (int r = 0; r < c.n_position_rows(); ++r)
     for (size_t m = 0; m < c.measures.size(); ++m)
       for (size_t k = 0; k < c.measures.size(); ++k)
@@ -143,11 +141,11 @@ void Joints::evaluate(Pass& p) const {
     c.row_values(right.e, g);
     if (c.drive.row >= 0) g[c.drive.row] -= c.drive.law.at(s.t_end, s.t_end, s.load_factor).value;
     const int base = row(j), n = c.n_rows(), n_position = c.n_position_rows();
-    std::optional<MeasurePath> path;  // of a stage that shares its step
+    MeasurePath::Values way{};  // of a stage that shares its step
     if (s.step) {
-      path.emplace(c, *s.step);
-      if (c.rows) gradient_along(*c.rows, *path, *s.step, s.member, at_stage);
-      increments_of_rows(c, s, *path, c.rows ? &at_stage : nullptr, g);
+      way = MeasurePath::way_of(c, *s.step, s.member);
+      if (c.rows) gradient_along(*c.rows, MeasurePath(c, *s.step), *s.step, s.member, at_stage);
+      increments_of_rows(c, s, way, c.rows ? &at_stage : nullptr, g);
     }
     std::optional<Slip> slip;
     if (c.velocity_rows) slip.emplace(c, *s.left, s.v);
@@ -167,18 +165,18 @@ void Joints::evaluate(Pass& p) const {
     if (!p.K) continue;
     ConnectorMatrix K = ConnectorMatrix::Zero(c.n_directions(), c.n_directions());
     add_geometric(c, left, right, force, s.slope, K);
-    if (!c.rows && !slip && !path) {
+    if (!c.rows && !slip && !s.step) {
       add_clique(p, points_, c, clique_[j], K, {(n + 2) / 3, &left.G, &right.G, c.active.data(), n});
       continue;
     }
     if (!c.rows) {
       left_rows = left.G, right_rows = right.G;
-      if (path) gradients_of_increments(c, s, *path, nullptr, left.G, right_rows);
+      if (s.step) gradients_of_increments(c, s, way, nullptr, left.G, right_rows);
       if (slip) add_velocity_rows(c, s, *slip, lambda, left_rows, right_rows, K);
       add_clique(p, points_, c, clique_[j], K, {(n + 2) / 3, &left_rows, &right_rows, c.active.data(), n});
       continue;
     }
-    if (!path) row_gradient(c, s, left, at_stage);
+    if (!s.step) row_gradient(c, s, left, at_stage);
     c.rows->gradient(right.e, right.e, at_end);
     const bool pair = s.conserving();  // the rows' gradient depends on e1, else on the left configuration
     gradient(c, pair ? *s.e1 : *s.left, *s.end, mixed);
@@ -190,8 +188,8 @@ void Joints::evaluate(Pass& p) const {
         if (D != 0) K += (pair ? s.chain : 2 * s.slope) * D * left.G.row(m).head(width).transpose() * mixed.G.row(k).head(width);
       }
     rows_over_directions(c, at_stage, left.G, left_rows);
-    if (path)
-      gradients_of_increments(c, s, *path, &at_stage, mixed.G, right_rows);
+    if (s.step)
+      gradients_of_increments(c, s, way, &at_stage, mixed.G, right_rows);
     else
       rows_over_directions(c, at_end, right.G, right_rows);
     if (slip) add_velocity_rows(c, s, *slip, lambda, left_rows, right_rows, K);

@@ -63,6 +63,7 @@ class CoupledStages : public Integrator {
   struct OneMatrix {  // of the size of a stage
     bool kept = false;
     double h = 0, d = 0;  // of the step it was built for; diagonal of T
+    int iterations = 0;   // of that step with it
     Stage stage;          // that it is the tangent of, at the middle one,
     Config q, v, a, before, after;
     Residual r, still;                   // its residual, and without accelerations and multipliers

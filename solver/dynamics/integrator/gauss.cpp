@@ -100,17 +100,18 @@ class GaussIntegrator final : public CoupledStages {
   /// Accelerations and multipliers at the end, at velocities that the joints allow: those of the stages are of lower order.
   void accept(State& s) override {
     State at{.t = end_time(), .q = q1_, .v = v_end_, .a = {}, .jerk = {}, .snap = {}, .lambda = {}};
-    solve_acceleration(*system_, *end_solver_, at, a_end_, taken_.back().lambda);
+    solve_acceleration(*system_, *end_solver_, at, a_end_, taken_.back().lambda, true);
     if (given_.any()) system_->prescribe_rates(t_ + h_, Side::left, nullptr, &a_end_), system_->follow(a_end_);
     end(s), accepted();
     most_kinetic_ = kinetic_;
     s.t = t_ + h_;
     for (int i = 0; i < 3; ++i) {
       past_a_[i] = a_[i], past_lambda_[i] = lambda_[i];
+      for (size_t k = 0; k < lambda_[i].size(); ++k) guessed_[i][k] = lambda_[i][k] - guessed_[i][k];
       increments(*system_, i, reached_);
       for (size_t k = 0; k < reached_.size(); ++k) missed_[i][k] = reached_[k] - missed_[i][k];
       if (predictor_ == Predictor::rigid_rotation && past_h_ > 0)
-        missed_before_[i].accept(*system_, h_, std::move(missed_[i]), lambda_[i]);
+        missed_before_[i].accept(*system_, h_, std::move(missed_[i]), std::move(guessed_[i]));
       else  // what another guess missed says nothing of this one
         missed_before_[i].clear();
     }
@@ -172,6 +173,10 @@ class GaussIntegrator final : public CoupledStages {
       given_.put(i, dq_[i], turn_[i]);
       increments(system, i, missed_[i]);
       if (const auto z = missed_before_[i].increments(system, h_); goes_on && !z.empty()) shift(system, i, z);
+      guessed_[i] = lambda_[i];
+      if (!goes_on) continue;
+      const std::vector<double> more = missed_before_[i].multipliers(std::vector<double>(lambda_[i].size(), 0.0));
+      for (size_t k = 0; k < more.size(); ++k) lambda_[i][k] += more[k];
     }
     place_directors(system);
   }
@@ -332,7 +337,7 @@ class GaussIntegrator final : public CoupledStages {
   GivenStages given_;
   Predictor predictor_ = Predictor::hold;  // of the step solved last
   std::array<Extrapolation, 3> missed_before_;
-  std::array<std::vector<double>, 3> missed_;  // by the first guess
+  std::array<std::vector<double>, 3> missed_, guessed_;  // by the first guess; multipliers of the polynomials, and what these missed
   std::vector<double> reached_;
   double past_h_ = 0;  // 0: no step before
   std::vector<Taken> taken_;

@@ -2,31 +2,46 @@
 #include "dynamics/integrator/stage_directors.hpp"
 
 namespace hilo {
-namespace {
 
-using Columns = Eigen::Matrix<double, 9, 3>;
+StageDirectors::StageDirectors(const Eigen::Matrix3d& A, const std::array<Vec3, 3>& w) : A_(A), w_(w) {}
 
-Mat9 matrix_of(const Eigen::Matrix3d& A, const std::array<Vec3, 3>& w) {
-  Mat9 K = Mat9::Identity();
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) K.block<3, 3>(3 * i, 3 * j) -= A(i, j) * skew(w[j]);
-  return K;
+const StageDirectors::Factors& StageDirectors::factors() const {
+  if (factors_) return *factors_;
+  Factors& f = factors_.emplace();
+  const Mat3 S[3] = {skew(w_[0]), skew(w_[1]), skew(w_[2])};
+  const auto block = [&](int i, int j) {
+    Mat3 K = -A_(i, j) * S[j];
+    if (i == j) K += Mat3::Identity();
+    return K;
+  };
+  f.u01 = block(0, 1), f.u02 = block(0, 2);
+  f.inverse[0] = block(0, 0).inverse();
+  f.l10 = block(1, 0) * f.inverse[0], f.l20 = block(2, 0) * f.inverse[0];
+  f.inverse[1] = Mat3(block(1, 1) - f.l10 * f.u01).inverse();
+  f.u12 = block(1, 2) - f.l10 * f.u02;
+  f.l21 = (block(2, 1) - f.l20 * f.u01) * f.inverse[1];
+  f.inverse[2] = Mat3(block(2, 2) - f.l20 * f.u02 - f.l21 * f.u12).inverse();
+  return f;
 }
 
-std::array<Mat3, 3> parts(const Columns& x) { return {x.topRows<3>(), x.middleRows<3>(3), x.bottomRows<3>()}; }
-
-}  // namespace
-
-StageDirectors::StageDirectors(const Eigen::Matrix3d& A, const std::array<Vec3, 3>& w) : A_(A), w_(w), matrix_(matrix_of(A, w)) {}
+void StageDirectors::solve(std::array<Mat3, 3>& x) const {
+  const Factors& f = factors();
+  x[1] -= f.l10 * x[0];
+  x[2] -= f.l20 * x[0] + f.l21 * x[1];
+  x[2] = (f.inverse[2] * x[2]).eval();
+  x[1] = (f.inverse[1] * (x[1] - f.u12 * x[2])).eval();
+  x[0] = (f.inverse[0] * (x[0] - f.u01 * x[1] - f.u02 * x[2])).eval();
+}
 
 std::array<Mat3, 3> StageDirectors::grow(const Mat3& start, const std::array<Mat3, 3>* more) const {
-  Columns rhs = Columns::Zero();
+  std::array<Mat3, 3> x{Mat3::Zero(), Mat3::Zero(), Mat3::Zero()};
   for (int j = 0; j < 3; ++j) {
     Mat3 part = skew(w_[j]) * start;
     if (more) part += (*more)[j];
-    for (int i = 0; i < 3; ++i) rhs.middleRows<3>(3 * i) += A_(i, j) * part;
+    for (int i = 0; i < 3; ++i) x[i] += A_(i, j) * part;
   }
-  return parts(matrix_.solve(rhs));
+  solve(x);
+  return x;
 }
 
 StageDirectors::Moves StageDirectors::moves(const std::array<Mat3, 3>& R) const {
@@ -34,9 +49,9 @@ StageDirectors::Moves StageDirectors::moves(const std::array<Mat3, 3>& R) const 
   const std::array<Mat3, 3> inverse{R[0].inverse(), R[1].inverse(), R[2].inverse()};
   for (int j = 0; j < 3; ++j)
     for (int c = 0; c < 3; ++c) {
-      Columns rhs;
-      for (int i = 0; i < 3; ++i) rhs.middleRows<3>(3 * i) = A_(i, j) * skew(Vec3::Unit(c)) * R[j];
-      const std::array<Mat3, 3> dR = parts(matrix_.solve(rhs));
+      const Mat3 turned = skew(Vec3::Unit(c)) * R[j];
+      std::array<Mat3, 3> dR{A_(0, j) * turned, A_(1, j) * turned, A_(2, j) * turned};
+      solve(dR);
       for (int i = 0; i < 3; ++i) {
         out.dR[i][3 * j + c] = dR[i];
         out.turns.block<3, 1>(3 * i, 3 * j + c) = axial(dR[i] * inverse[i]);

@@ -4,6 +4,7 @@
 #pragma once
 #include <Eigen/LU>
 #include <array>
+#include <optional>
 
 #include "system/collocation.hpp"
 
@@ -32,9 +33,17 @@ class StageDirectors {
   Vec9 nearly_spins(const std::array<Mat3, 3>& R, const Vec9& t) const;
 
  private:
+  /// Block factors of the matrix of the R_i, I - a_ij skew_j: each pivot is the unit matrix plus what turns.
+  struct Factors {
+    Mat3 l10, l20, l21, u01, u02, u12, inverse[3];
+  };
+  const Factors& factors() const;
+  /// X_i - sum_j a_ij skew_j X_j = x_i.
+  void solve(std::array<Mat3, 3>& x) const;
+
   Eigen::Matrix3d A_;
   std::array<Vec3, 3> w_;
-  Eigen::PartialPivLU<Mat9> matrix_;
+  mutable std::optional<Factors> factors_;  // made when first asked for
 };
 
 }  // namespace hilo

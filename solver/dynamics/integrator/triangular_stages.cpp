@@ -83,7 +83,8 @@ NewtonReport CoupledStages::iterate_triangular(const System& system, KktSolver& 
   one_.d = T(0, 0);
   if (h_ > 1.5 * one_.h || one_.h > 1.5 * h_) one_.kept = false;
   bool built = false;
-  double last = 0;  // correction of the iteration before with the same matrix
+  int with_it = 0;                     // iterations with the matrix at hand
+  double last = 0, last_residual = 0;  // of the iteration before with it: correction, residual
   for (int it = 0; it < options.max_iterations; ++it) {
     {
       const Timed timed(phases().assembly);
@@ -91,14 +92,16 @@ NewtonReport CoupledStages::iterate_triangular(const System& system, KktSolver& 
       evaluate(system, nullptr);
       judge(system, report);
       if (!std::isfinite(report.residual)) return report.reason = "the residual is not finite", report;
-      if (!one_.kept) build_triangular(system, solver), built = true, last = 0;
+      if (!one_.kept) build_triangular(system, solver), built = true, with_it = 0, last = 0;
     }
     const Timed timed(phases().solve);
     const SolveReport solved = solve_triangular(system, solver, T);
-    ++report.iterations;
+    ++report.iterations, ++with_it;
     const double correction = solved.ok ? largest_correction(system) : 1e300;
     const double rate = last > 0 ? correction / last : 0.25;
-    if (!(correction < 0.3) || (correction > 1e-14 && rate > 0.7)) {  // it leads astray
+    // it leads astray; a first correction of multipliers alone moves positions by what an old matrix has of other rows, and the next one
+    // moves them back
+    if (!(correction < 0.3) || (correction > 1e-14 && rate > 0.7 && !(report.residual < 0.3 * last_residual))) {
       if (built) return report.reason = "the stages do not follow one another", report;
       one_.kept = false;
       continue;
@@ -111,11 +114,14 @@ NewtonReport CoupledStages::iterate_triangular(const System& system, KktSolver& 
     const bool falls = last > 0 && left * correction <= enough, rounds = correction < 1e-14 && rate > 0.3;
     if ((falls && left * report.residual <= 1e-2 * options.tolerance) ||
         (rounds && report.residual <= 1e-2 * options.tolerance + rounding(system))) {
+      // a new matrix costs about one iteration
+      if (built) one_.iterations = with_it;
+      if (with_it > one_.iterations) one_.kept = false;
       report.converged = true;
       return report;
     }
     if (!built && last > 0 && std::log(left * correction / enough) > -5 * std::log(rate)) one_.kept = false;
-    last = one_.kept ? correction : 0;
+    last = one_.kept ? correction : 0, last_residual = report.residual;
   }
   return report.reason = "no convergence within the iterations allowed", report;
 }
