@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "model/beam_line.hpp"
@@ -27,18 +28,19 @@ struct Symbol {
   Glyph glyph;
 };
 constexpr Symbol symbols[] = {
-    {"joint", "fixed", Glyph::block},         {"joint", "spherical", Glyph::ball},     {"joint", "constant-velocity", Glyph::ball},
-    {"joint", "point-on-curve", Glyph::ball}, {"joint", "weighted-sum", Glyph::link},  {"joint", "in-plane", Glyph::ball},
-    {"joint", "distance", Glyph::link},       {"joint", "prismatic", Glyph::slider},   {"joint", "cylindrical", Glyph::slider},
-    {"joint", "screw", Glyph::slider},        {"joint", "in-line", Glyph::slider},     {"joint", "planar", Glyph::slider},
-    {"joint", "revolute", Glyph::hinge},      {"joint", "universal", Glyph::hinge},    {"joint", "gear", Glyph::hinge},
-    {"joint", "rack", Glyph::hinge},          {"joint", "rolling", Glyph::hinge},      {"joint", "knife-edge", Glyph::hinge},
-    {"spring", "axial", Glyph::coil},         {"spring", "curve", Glyph::coil},        {"spring", "stop", Glyph::coil},
-    {"spring", "torsion", Glyph::spiral},     {"spring", "support", Glyph::ground},    {"spring", "bushing", Glyph::bushing},
-    {"stop", "angle", Glyph::stop},           {"stop", "slide", Glyph::stop},          {"motor", "rotary", Glyph::turn},
-    {"motor", "linear", Glyph::arrow},        {"friction", "", Glyph::friction},       {"load", "force", Glyph::arrow},
-    {"load", "traction", Glyph::arrow},       {"load", "pressure", Glyph::arrow},      {"load", "torque", Glyph::turn},
-    {"motion", "fixed", Glyph::clamp},        {"motion", "translation", Glyph::arrow}, {"motion", "rotation", Glyph::turn}};
+    {"joint", "fixed", Glyph::block},         {"joint", "spherical", Glyph::ball},    {"joint", "constant-velocity", Glyph::ball},
+    {"joint", "point-on-curve", Glyph::ball}, {"joint", "weighted-sum", Glyph::link}, {"joint", "in-plane", Glyph::ball},
+    {"joint", "distance", Glyph::link},       {"joint", "prismatic", Glyph::slider},  {"joint", "cylindrical", Glyph::slider},
+    {"joint", "screw", Glyph::slider},        {"joint", "in-line", Glyph::slider},    {"joint", "planar", Glyph::slider},
+    {"joint", "revolute", Glyph::hinge},      {"joint", "universal", Glyph::hinge},   {"joint", "gear", Glyph::hinge},
+    {"joint", "rack", Glyph::hinge},          {"joint", "rolling", Glyph::hinge},     {"joint", "knife-edge", Glyph::hinge},
+    {"spring", "axial", Glyph::coil},         {"spring", "curve", Glyph::coil},       {"spring", "stop", Glyph::coil},
+    {"spring", "torsion", Glyph::spiral},     {"spring", "support", Glyph::ground},   {"spring", "bushing", Glyph::bushing},
+    {"stop", "angle", Glyph::stop},           {"stop", "slide", Glyph::stop},         {"motor", "rotary", Glyph::turn},
+    {"motor", "linear", Glyph::arrow},        {"friction", "", Glyph::friction},      {"load", "force", Glyph::arrow},
+    {"load", "acceleration", Glyph::arrow},   {"load", "centrifugal", Glyph::arrow},  {"load", "traction", Glyph::arrow},
+    {"load", "pressure", Glyph::arrow},       {"load", "torque", Glyph::turn},        {"motion", "fixed", Glyph::clamp},
+    {"motion", "translation", Glyph::arrow},  {"motion", "rotation", Glyph::turn}};
 
 class Collector {
  public:
@@ -189,8 +191,14 @@ class Collector {
     SceneItem& item = add(glyph, e, e.kind, load_colour);
     item.at = e.kind == "force" && e.has("at") ? e.vector3("at") : centre(e, "on");
     if (!find_body(e.text("on"))) item.nodes = thinned(file_->mesh, nodes(e, "on"), 150);
-    item.along = e.kind == "pressure" ? Vec3(inward(e) * e.number("pressure")) : e.vector3(e.kind);
-    if (e.kind == "force" && file_ && file_->mesh.find_region(e.text("on")) >= 0)
+    if (e.kind == "centrifugal") {
+      const Vec3 axis = e.vector3("axis").normalized(), from = item.at - e.vector3("at");
+      item.along = from - from.dot(axis) * axis;
+      if (!(item.along.norm() > 0)) item.along = axis.unitOrthogonal();  // about its own middle: any way out
+    } else {
+      item.along = e.kind == "pressure" ? Vec3(inward(e) * e.number("pressure")) : e.vector3(e.kind);
+    }
+    if ((e.kind == "force" || e.kind == "acceleration" || e.kind == "centrifugal") && file_ && file_->mesh.find_region(e.text("on")) >= 0)
       item.nodes.clear();  // a whole region: the arrow says enough
   }
 
