@@ -62,9 +62,10 @@ class CoupledStages : public Integrator {
   std::vector<double> b_, z_;
   struct OneMatrix {  // of the size of a stage
     bool kept = false;
-    double h = 0, d = 0;  // of the step it was built for; diagonal of T
-    int iterations = 0;   // of that step with it
-    Stage stage;          // that it is the tangent of, at the middle one,
+    double h = 0, d = 0;                 // of the step it was built for; diagonal of T
+    int iterations = 0;                  // of that step with it
+    bool pulls = true, weighed = false;  // K z of a stage counts for the next ones; that has been found out
+    Stage stage;                         // that it is the tangent of, at the middle one,
     Config q, v, a, before, after;
     Residual r, still;                   // its residual, and without accelerations and multipliers
     std::vector<double> none, b;         // multipliers; right-hand side

@@ -7,6 +7,7 @@
 // in which a lower triangular T, of which all stages have the same diagonal d, takes the place of A: the stages follow one another with the
 // one matrix M/(d h)^2 + C/(d h) + K, and K z_j of those before goes to the right-hand side [van-der-houwen-de-swart-1997].  C z_j does
 // not: where it counts, what is left of the corrections falls more slowly.
+#include <algorithm>
 #include <cmath>
 
 #include "dynamics/integrator/coupled_stages.hpp"
@@ -30,7 +31,7 @@ void CoupledStages::build_triangular(const System& system, KktSolver& solver) {
   still.a = &o.zero;
   system.evaluate(still, o.none, o.still, nullptr);
   phases().evaluations += 2, ++phases().tangents;
-  o.kept = true, o.h = h_;
+  o.kept = o.pulls = true, o.weighed = false, o.h = h_;
 }
 
 /// One iteration: increments z_ of all stages, with those of their multipliers, from the residuals r_.
@@ -47,13 +48,13 @@ SolveReport CoupledStages::solve_triangular(const System& system, KktSolver& sol
       for (int k = 0; k < first; ++k) o.b[k] -= A2(i, j) * r_[j].r[k];
       for (int k = first; k < n; ++k) o.b[k] -= g * r_[j].r[k];
     }
-    for (int j = 0; j < i; ++j)
+    for (int j = 0; j < i && o.pulls; ++j)
       for (int k = 0; k < first; ++k) o.b[k] -= T2(i, j) * o.pull[j][k];
     const std::span<double> z(z_.data() + static_cast<size_t>(i) * n, n);
     std::fill(z.begin(), z.end(), 0.0);
     ++phases().solves;
     if (!(solved = solver.solve(o.b, z)).ok) return solved;
-    if (i + 1 == n_stages) break;
+    if (i + 1 == n_stages || !o.pulls) continue;
     // K z = b - G^T l - M z/(d h)^2
     combine(o.trial_a, {{0, &o.a}});
     system.add_rates(o.trial_a, o.q, z);
@@ -67,6 +68,14 @@ SolveReport CoupledStages::solve_triangular(const System& system, KktSolver& sol
     o.pull[i].resize(first);
     for (int k = 0; k < first; ++k) o.pull[i][k] = o.b[k] - (o.by_trial.r[k] - o.still.r[k]);
     system.mask_fixed(o.pull[i]);
+    if (o.weighed) continue;
+    // where K z is nothing beside the inertia of z, as where bodies alone resolve their motion, it costs more than it gains
+    system.evaluate(trial, o.none, o.by_trial, nullptr);
+    ++phases().evaluations;
+    double pull = 0, inertia = 0;
+    for (int k = 0; k < first; ++k)
+      pull = std::max(pull, std::abs(o.pull[i][k])), inertia = std::max(inertia, std::abs(o.by_trial.r[k] - o.still.r[k]));
+    o.pulls = !(pull < 2e-3 * inertia), o.weighed = true;
   }
   for (int k = first; k < n; ++k) {  // A^2 l/d^2 was found
     const double y[3] = {z_[k], z_[n + k], z_[2 * n + k]};
