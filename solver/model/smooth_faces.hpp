@@ -35,8 +35,8 @@ std::vector<int> smooth_faces(std::span<const SurfaceFacet> facets, double angle
 /// From a point to the nearest point of a facet (of its triangles)  [m].
 double distance(const SurfaceFacet& f, const Vec3& x);
 
-/// What a face is: a plane, a bore (a cylinder seen from inside), a shaft, or free.  A cylinder has six corners at least, and a radius of 100
-/// times the face's size at most.
+/// What a face is: a plane, a bore (a cylinder seen from inside), a shaft, or free.  A cylinder has six corners at least, and a radius of
+/// 100 times the face's size at most.
 struct FaceShape {
   std::string kind;                                 // "plane", "bore", "shaft", "free"
   double area = 0, radius = 0, length = 0;          // [m^2], [m], [m] along the axis
