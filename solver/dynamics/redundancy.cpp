@@ -14,20 +14,7 @@
 namespace hilo {
 namespace {
 
-constexpr int many = 1000;  // rows
-
-/// The length that makes lengths of rotations: the scene's; of many rows the mean size of its bodies, which is what joints are away from
-/// their centres.  A row of ten thousand links is ten thousand times as long, and its turns would be lost beside its moves.
-double turn_length(const System& system) {
-  int rows = 0;
-  for (const auto& c : system.constraints()) rows += c->n_rows();
-  double sum = 0, n = 0;
-  for (const Body& b : system.bodies)
-    if (b.size > 0) sum += b.size * b.size, n += 1;
-  return rows < many || sum == 0 ? system.length : std::min(system.length, std::sqrt(sum / n));
-}
-
-/// Unit rows of all constraints at q as columns over the unknowns, rotations in units of `turn_length`.
+/// Unit rows of all constraints at q as columns over the unknowns, rotations in units of the scene's length.
 struct UnitRows {
   std::vector<std::pair<int, int>> rows;  // constraint, row
   std::vector<double> norm;
@@ -40,40 +27,24 @@ enum class Rows { all, active, plain };  // plain: all but those of drives
 
 UnitRows unit_rows(const System& system, const Config& q, Rows which) {
   UnitRows out;
-  std::vector<int> start{0}, place;
-  std::vector<double> value;
-  std::vector<std::pair<int, double>> entries;
-  std::vector<char> turns(system.n_blocks(), 0);
-  for (const UnknownField& f : system.unknowns)
-    for (size_t k = 0; k < f.size() && f.turns(); ++k) turns[f.block(k)] = 1;
-  const double per_turn = system.length / turn_length(system);  // gradients come in units of the scene's length
+  std::vector<Eigen::Triplet<double>> entries;
   const auto constraints = system.constraints();
   for (size_t j = 0; j < constraints.size(); ++j) {
     const Constraint& c = *constraints[j];
-    DenseRows G = c.gradient(stage_at(q, 0));
+    const DenseRows G = c.gradient(stage_at(q, 0));
     const auto blocks = c.blocks();
-    for (size_t k = 0; k < blocks.size() && per_turn != 1; ++k)
-      if (turns[blocks[k]]) G.middleCols<3>(3 * static_cast<Eigen::Index>(k)) *= per_turn;
     for (int r = 0; r < c.n_rows(); ++r) {
       if (which == Rows::active && !c.active()[r]) continue;
       if (which == Rows::plain && c.is_driven(r)) continue;
       const double norm = G.row(r).norm();
       for (Eigen::Index i = 0; i < G.cols(); ++i)
         if (const double x = norm > 0 ? G(r, i) / norm : 0; std::abs(x) > 1e-14)
-          entries.emplace_back(3 * blocks[i / 3] + static_cast<int>(i % 3), x);
-      std::sort(entries.begin(), entries.end());
-      for (const auto& [at, x] : entries)
-        if (static_cast<int>(place.size()) > start.back() && place.back() == at)
-          value.back() += x;
-        else
-          place.push_back(at), value.push_back(x);
-      start.push_back(static_cast<int>(place.size())), entries.clear();
+          entries.emplace_back(3 * blocks[i / 3] + static_cast<int>(i % 3), static_cast<int>(out.rows.size()), x);
       out.rows.emplace_back(static_cast<int>(j), r), out.norm.push_back(norm);
     }
   }
-  out.A = Eigen::Map<const Eigen::SparseMatrix<double>>(3 * static_cast<Eigen::Index>(system.n_blocks()),
-                                                        static_cast<Eigen::Index>(out.rows.size()), start.back(), start.data(),
-                                                        place.data(), value.data());
+  out.A.resize(3 * static_cast<Eigen::Index>(system.n_blocks()), static_cast<Eigen::Index>(out.rows.size()));
+  out.A.setFromTriplets(entries.begin(), entries.end());
   return out;
 }
 
@@ -145,10 +116,9 @@ Eigen::VectorXd gaps(const System& system, const UnitRows& unit, const Config& q
 
 void displace(const System& system, Config& q, const Eigen::VectorXd& y) {
   std::vector<double> z(y.data(), y.data() + y.size());
-  const double unit = turn_length(system);
   for (const UnknownField& f : system.unknowns)
     for (size_t k = 0; k < f.size() && f.turns(); ++k)
-      for (int i = 0; i < 3; ++i) z[3 * f.block(k) + i] /= unit;
+      for (int i = 0; i < 3; ++i) z[3 * f.block(k) + i] /= system.length;
   system.move(q, z);
 }
 
@@ -158,80 +128,65 @@ class Nearest {
  public:
   static constexpr double mu = 1e-10;  // far below the square of `aside`, which rows that are independent beside q alone have
   bool factor(const Eigen::SparseMatrix<double>& A, const Eigen::VectorXd& plane) {
+    A_ = &A, plane_ = plane;
     Eigen::SparseMatrix<double> K = A * Eigen::SparseMatrix<double>(A.transpose()), I(K.rows(), K.cols());
     I.setIdentity();
     K += mu * I;
     if (!factors_.factor(K)) return false;
-    stay_in(plane);
-    return true;
-  }
-  void stay_in(const Eigen::VectorXd& plane) {
-    plane_ = plane;
     if (plane_.size() > 0) through_ = factors_.solve(plane_);
+    return true;
   }
   /// The part of y that the rows leave.
   Eigen::VectorXd left_of(const Eigen::VectorXd& y) const { return mu * factors_.solve(y); }
-  /// A (A^T A)^-1 b, without what leaves the plane; A may be of a pose beside the one factored.
-  Eigen::VectorXd operator()(const Eigen::SparseMatrix<double>& A, const Eigen::VectorXd& b) const {
-    const Eigen::VectorXd y = factors_.solve(A * b);
+  /// A (A^T A)^-1 b, without what leaves the plane.
+  Eigen::VectorXd operator()(const Eigen::VectorXd& b) const {
+    const Eigen::VectorXd y = factors_.solve(*A_ * b);
     return y - plane_.dot(y) / (1 + plane_.dot(through_)) * through_;
   }
 
  private:
+  const Eigen::SparseMatrix<double>* A_ = nullptr;
   Eigen::VectorXd plane_, through_;  // its normal, and that through the factors
   SparseCholesky factors_;
 };
 
 constexpr double round_off = 1e-9;  // what others leave of a unit row that depends on them
-constexpr double aside = 1e-3;      // how far to look, over `turn_length`
+constexpr double aside = 1e-3;      // how far to look, over the scene's length
 const double independent_beside =
     std::pow(aside, 1.5);  // what others leave there of a unit row that depends on them at q alone is about `aside`
 
 /// A pose beside q that these rows allow, along the part of `direction` that they leave; nothing where they leave none or do not close.
 /// The increments that close them stay in the plane `far` ahead, or branches would draw them back to q, where all of them meet.
-/// `at_q`: the factors of these rows at q, if they are made already; they serve beside q too while gaps close by tenths.
-std::optional<Config> beside(const System& system, const Config& q, const Eigen::VectorXd& direction, double t, double far, Rows rows,
-                             Nearest* at_q = nullptr) {
+std::optional<Config> beside(const System& system, const Config& q, const Eigen::VectorXd& direction, double t, double far, Rows rows) {
   constexpr int iterations = 40;
-  UnitRows unit;
-  Nearest own;
-  Nearest& nearest = at_q ? *at_q : own;
-  if (!at_q && !nearest.factor(unit_rows(system, q, rows).A, {})) return {};
+  UnitRows unit = unit_rows(system, q, rows);
+  Nearest nearest;
+  if (!nearest.factor(unit.A, {})) return {};
   Eigen::VectorXd y = nearest.left_of(direction);
   if (!(y.norm() > 1e-6 * direction.norm())) return {};
-  y *= far * turn_length(system) / y.cwiseAbs().maxCoeff();
+  y *= far * system.length / y.cwiseAbs().maxCoeff();
   const Eigen::VectorXd plane = y.normalized();
   Config out = q;
   displace(system, out, y);
-  if (at_q) nearest.stay_in(plane);
-  double before = at_q ? 1e300 : 0;
   for (int k = 0; k < iterations; ++k) {
     unit = unit_rows(system, out, rows);
     const Eigen::VectorXd g = gaps(system, unit, out, t);
-    const double now = g.size() == 0 ? 0 : g.cwiseAbs().maxCoeff();
-    if (now < 1e-14 * system.length) return out;
-    if (!(now < before / 10)) {
-      if (at_q) return beside(system, q, direction, t, far, rows);  // these factors do not serve
-      if (!nearest.factor(unit.A, plane)) return {};
-    } else {
-      before = now;
-    }
-    displace(system, out, -nearest(unit.A, g));
+    if (g.size() == 0 || g.cwiseAbs().maxCoeff() < 1e-14 * system.length) return out;
+    if (!nearest.factor(unit.A, plane)) return {};
+    displace(system, out, -nearest(g));
   }
   const Eigen::VectorXd g = gaps(system, unit_rows(system, out, rows), out, t);
   if (g.cwiseAbs().maxCoeff() < 1e-12 * system.length) return out;
   return {};
 }
 
-/// Largest move of a node or centre, and turn times `turn_length`, between two poses.
-double way(const System& system, const Config& a, const Config& b) {
-  return system.largest_difference(a, b, std::sqrt(2) * turn_length(system));
-}
+/// Largest move of a node or centre, and turn times the scene's length, between two poses.
+double way(const System& system, const Config& a, const Config& b) { return system.largest_difference(a, b, std::sqrt(2) * system.length); }
 
 /// A pose beside q that all rows but those of drives allow; nothing where they lead back.
 std::optional<Config> branch(const System& system, const Config& q, const Eigen::VectorXd& direction, double t, double far) {
   std::optional<Config> out = beside(system, q, direction, t, far, Rows::plain);
-  if (out && way(system, q, *out) < 0.1 * far * turn_length(system)) out.reset();
+  if (out && way(system, q, *out) < 0.1 * far * system.length) out.reset();
   return out;
 }
 
@@ -266,16 +221,13 @@ Redundancy drop_redundant_rows(System& system, const Config& q, double t) {
   // Rows that depend on others at q alone open with the square of the way aside, redundant ones do not.  A branch that closes all of them
   // tells which are independent along it: more than at q, and fewer than at any pose off the branches.
   const std::vector<Active> at_pose = active_rows(system);
-  Nearest at_q;
-  const bool shares = here.rank > many && at_q.factor(unit_rows(system, q, Rows::active).A, {});
   for (unsigned seed = 1; seed <= 2; ++seed) {
     const Eigen::VectorXd direction = some_direction(system, seed);
-    std::optional<Config> near = beside(system, q, direction, t, aside, Rows::active, shares ? &at_q : nullptr);
+    std::optional<Config> near = beside(system, q, direction, t, aside, Rows::active);
     if (!near) break;
     const UnitRows all = unit_rows(system, *near, Rows::all);
     const Eigen::VectorXd g = gaps(system, all, *near, t);
-    const double closed = std::max(1e-4 * aside * aside * turn_length(system), 1e-11 * system.length);  // but for round-off around loops
-    if (g.cwiseAbs().maxCoeff() < closed) continue;
+    if (g.cwiseAbs().maxCoeff() < 1e-4 * aside * aside * system.length) continue;
     if (const auto pose = branch(system, q, direction, t, aside)) near = pose;
     Redundancy there = choose_rows(system, *near, independent_beside);
     if (there.rank > here.rank) {
@@ -311,7 +263,7 @@ std::optional<Config> pose_ahead(const System& system, const Config& q, const Co
         continue;
       }
       const Mat3 S = v.R[i] * q.R[i].transpose();
-      y.segment<3>(3 * f.block(k)) = turn_length(system) / 2 * Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1));
+      y.segment<3>(3 * f.block(k)) = system.length / 2 * Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1));
     }
   if (y.isZero(0)) return {};
   return branch(system, q, y, t, far);
