@@ -82,10 +82,10 @@ std::optional<Unstable> Stability::look(const Config& q, const std::vector<doubl
   Unstable out;
   out.motions = *found;
   const auto resists = [&](double mass) { return below(q, lambda, mass).value_or(1) == 0; };
-  double low = 1, high = 1;  // [1/s^2]
+  if (resists(1e-12)) return {};  // slower than a million seconds
+  double low = 1, high = 1;       // [1/s^2]
   if (resists(1)) {
-    while (low > 1e-12 && resists(low)) low /= 16;
-    if (low <= 1e-12) return {};  // slower than a million seconds
+    while (resists(low)) low /= 16;
     high = 16 * low;
   } else {
     while (high < 1e24 && !resists(high)) high *= 16;

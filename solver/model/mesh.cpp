@@ -53,10 +53,15 @@ int Mesh::find_region(std::string_view name) const {
     const auto at = std::find(region_name.begin(), region_name.end(), name);
     return at == region_name.end() ? -1 : static_cast<int>(at - region_name.begin());
   }
-  // the numbers of the list asked for last: it is the same one for thousands of names, none of which changes meanwhile
+  // the numbers of the list asked for last: it is the same one for thousands of names
   thread_local std::unordered_map<std::string, int> number;
   thread_local const std::string* list = nullptr;
-  if (list != region_name.data() || number.size() != region_name.size()) {
+  const auto has = [&](size_t r) {
+    const auto at = number.find(region_name[r]);
+    return at != number.end() && at->second == static_cast<int>(r);
+  };
+  const size_t last = region_name.size() - 1;
+  if (list != region_name.data() || number.size() != region_name.size() || !has(0) || !has(last / 2) || !has(last)) {  // another list
     number.clear(), list = region_name.data();
     for (size_t r = 0; r < region_name.size(); ++r) number.emplace(region_name[r], static_cast<int>(r));
   }
