@@ -48,6 +48,7 @@ std::string entry(const KindSchema& kind, std::string_view history_key, std::str
   for (const Param& p : kind.params) {
     if (p.key == "kind" || (p.fallback != "!" && p.key != also && p.key != history_key)) continue;
     const bool facets = p.key == "on" && (kind.kind == "traction" || kind.kind == "pressure");
+    const bool cells = p.key == "on" && (kind.kind == "acceleration" || kind.kind == "centrifugal");
     out << p.key << " = ";
     if (p.type == Type::history)
       out << (also == "angle" || also == "displacement" || kind.section == "motion"
@@ -58,7 +59,7 @@ std::string entry(const KindSchema& kind, std::string_view history_key, std::str
     else if (p.key == "joint")
       out << "\"axle\"\n";
     else if (p.type == Type::text)
-      out << (facets ? "\"xmax\"\n" : p.key == "b" ? "\"other\"\n" : "\"wheel\"\n");
+      out << (facets ? "\"xmax\"\n" : cells ? "\"block\"\n" : p.key == "b" ? "\"other\"\n" : "\"wheel\"\n");
     else if (p.type == Type::vector3)
       out << "[0, 0, 1]\n";
     else if (p.type == Type::numbers)

@@ -41,7 +41,7 @@ TEST_F(Mistake, UnknownKey) {
   EXPECT_EQ(
       refusal(hinge + "weight = 2\n"),
       "scene.toml:9:1: joint \"trunnion\": unknown key \"weight\" (keys: kind, name, a, b, at, axis, x, angle, spin, history, stiffness, "
-      "angular_stiffness, damping, angular_damping)");
+      "angular_stiffness, damping, angular_damping, reactions)");
 }
 
 TEST_F(Mistake, UnknownKind) {
