@@ -92,30 +92,42 @@ std::optional<Unstable> Stability::look(const Config& q, const std::vector<doubl
     low = high / 16;
   }
   if (high >= 1e24) return out.text = told(out), out;  // what has no mass
-  while (high > (1 + 1e-4) * low) {
-    const double mid = std::sqrt(low * high);
-    (resists(mid) ? high : low) = mid;
-  }
-  resists(high);
-  std::vector<double> b(r_.r.size(), 0.0), z(b.size(), 0.0);
+  std::vector<double> b(r_.r.size()), z;
   const int n = 3 * system_.first_joint_block();
-  for (int i = 0; i < n; ++i)  // any vector with something of everything
-    b[i] = std::cos(static_cast<double>(3 * system_.layout.map.global[i / 3] + i % 3));
-  system_.mask_fixed(b);
-  for (int pass = 0; pass < 3; ++pass) {
-    if (!solver_.solve(b, z).ok) return out.text = told(out), out;
-    double size = 0;
-    for (const UnknownField& f : system_.unknowns)
-      for (size_t k = 0; k < f.size(); ++k) size = std::max(size, Eigen::Map<const Vec3>(z.data() + 3 * f.block(k)).norm() * f.scale(k));
-    size = system_.comm->max(size);
-    for (int i = 0; i < n; ++i) z[i] /= size;
-    std::fill(z.begin() + n, z.end(), 0.0);
-    for (const UnknownField& f : system_.unknowns)  // forces that go with it
-      for (size_t k = 0; k < f.size(); ++k)
-        for (int i = 3 * f.block(k); i < 3 * f.block(k) + 3; ++i) b[i] = z[i] * f.scale(k) * f.scale(k);
-  }
+  const auto find_motion = [&] {  // by the factors of K + high M
+    resists(high);
+    std::fill(b.begin(), b.end(), 0.0), z.assign(b.size(), 0.0);
+    for (int i = 0; i < n; ++i)  // any vector with something of everything
+      b[i] = std::cos(static_cast<double>(3 * system_.layout.map.global[i / 3] + i % 3));
+    system_.mask_fixed(b);
+    for (int pass = 0; pass < 3; ++pass) {
+      if (!solver_.solve(b, z).ok) return false;
+      double size = 0;
+      for (const UnknownField& f : system_.unknowns)
+        for (size_t k = 0; k < f.size(); ++k) size = std::max(size, Eigen::Map<const Vec3>(z.data() + 3 * f.block(k)).norm() * f.scale(k));
+      size = system_.comm->max(size);
+      for (int i = 0; i < n; ++i) z[i] /= size;
+      std::fill(z.begin() + n, z.end(), 0.0);
+      for (const UnknownField& f : system_.unknowns)  // forces that go with it
+        for (size_t k = 0; k < f.size(); ++k)
+          for (int i = 3 * f.block(k); i < 3 * f.block(k) + 3; ++i) b[i] = z[i] * f.scale(k) * f.scale(k);
+    }
+    return true;
+  };
   double noise = 0;
-  if (!(curvature(q, lambda, z, &noise) < -noise)) return {};
+  const auto grows = [&] { return curvature(q, lambda, z, &noise) < -noise; };
+  const auto enclose = [&](double within) {
+    while (high > within * low) {
+      const double mid = std::sqrt(low * high);
+      (resists(mid) ? high : low) = mid;
+    }
+  };
+  enclose(1.2);
+  // What slides has no stiffness along its way, and holds where it turns back: a first look at the motion tells.
+  if (system_.traits().slides && find_motion() && !grows()) return {};
+  enclose(1 + 1e-4);
+  if (!find_motion()) return out.text = told(out), out;
+  if (!grows()) return {};
   out.z = z, out.rate2 = high, out.text = told(out);
   return out;
 }
