@@ -32,7 +32,7 @@ struct Traits {
   bool searches = false;      // its rows or cliques change from step to step
   bool is_thin = false;       // shells: they turn far in a correction, and swing before they settle
   bool lumps_masses = false;  // masses on the diagonal, outside of cliques
-  bool slides = false;        // friction of contacts
+  bool slides = false;        // contacts that may have friction
   bool reaches = false;       // joins nodes of which the rank that evaluates it has no cell
   Traits& operator|=(const Traits& other);
 };
