@@ -35,8 +35,9 @@ struct Cliques {
 struct BlockMap {
   std::vector<std::int64_t> global;  // (n_local)
   std::int64_t first = 0, n_owned = 0, n_global = 0;
-  std::int64_t first_dense = 0;  // global blocks from here on belong to bodies and multipliers; the last rank owns them
-  std::vector<double> X;         // positions of the local blocks (n_local x 3), or empty: multigrid finds rigid motions from them [m]
+  std::int64_t first_dense = 0;   // global blocks from here on belong to bodies and multipliers; the last rank owns them
+  std::int64_t n_with_cells = 0;  // the first of these, of bodies that cells hold alone: they are definite as cells are
+  std::vector<double> X;          // positions of the local blocks (n_local x 3), or empty: multigrid finds rigid motions from them [m]
 };
 
 /// What a solve did.

@@ -44,7 +44,7 @@ class LightSolver final : public SerialKktSolver {
   void structure(const Cliques& cliques, const BlockMap& map) override {
     A_.structure(cliques, static_cast<int>(map.global.size()));
     is_dense_.assign(map.global.size(), 0);
-    for (size_t i = 0; i < map.global.size(); ++i) is_dense_[i] = map.global[i] >= map.first_dense;
+    for (size_t i = 0; i < map.global.size(); ++i) is_dense_[i] = map.global[i] >= map.first_dense + map.n_with_cells;
     const auto n_dense = 3 * std::count(is_dense_.begin(), is_dense_.end(), 1);
     std::string kind = kind_;
     if (kind == "light" && n_dense == A_.n() && A_.n() >= rigid_klu_below && work_per_entry(A_) < thin) kind = "klu";

@@ -11,7 +11,7 @@ namespace hilo {
 void bring_to_first(LocalMesh& local, const std::vector<char>& marked, const Comm& comm) {
   if (comm.size == 1) return;
   struct Sent {
-    std::int64_t row, id;
+    std::int64_t row, id, block;
     double x[3];
   };
   struct Member {
@@ -22,7 +22,7 @@ void bring_to_first(LocalMesh& local, const std::vector<char>& marked, const Com
   std::vector<Sent> nodes;
   std::vector<Member> members;
   for (size_t i = 0; i < marked.size(); ++i)
-    if (marked[i]) nodes.push_back({local.node_global[i], mesh.node_id[i], {mesh.X[i][0], mesh.X[i][1], mesh.X[i][2]}});
+    if (marked[i]) nodes.push_back({local.node_global[i], mesh.node_id[i], mesh.block.empty() ? -1 : mesh.block[i], {mesh.X[i][0], mesh.X[i][1], mesh.X[i][2]}});
   for (size_t k = 0; k < names.size() && !nodes.empty(); ++k)
     for (const std::int64_t i : local.nodes_of(names[k], ""))
       if (marked[i]) members.push_back({local.node_global[i], static_cast<std::int64_t>(k)});
@@ -34,6 +34,7 @@ void bring_to_first(LocalMesh& local, const std::vector<char>& marked, const Com
   for (const Sent& node : nodes) {
     if (std::binary_search(had.begin(), had.end(), node.row) || !added.try_emplace(node.row, mesh.n_nodes()).second) continue;
     mesh.X.emplace_back(node.x[0], node.x[1], node.x[2]);
+    if (!mesh.block.empty()) mesh.block.push_back(node.block);
     mesh.node_id.push_back(node.id), local.node_global.push_back(node.row), local.node_owned.push_back(0);
   }
   for (const Member& member : members) {

@@ -39,6 +39,7 @@ void Distribution::open() {
     if (list->size() != m.region_name.size())
       throw damaged(fmt::format("/mesh/regions has {} and {} entries", list->size(), m.region_name.size()));
   for (size_t r = 0; r < m.region_name.size(); ++r) m.region_data.push_back({density[r], E[r], nu[r]});
+  read_blocks(s, m);
   if (s.has("/mesh/deck_scene")) m.deck_scene = s.read_text("/mesh/deck_scene");
   out_.n_nodes_global = s.shape("/mesh/nodes/X").at(0), out_.n_cells_global = s.shape("/mesh/cells/shape").at(0);
   nodes_ = {out_.n_nodes_global, comm_.size}, cells_ = {out_.n_cells_global, comm_.size};
@@ -107,6 +108,10 @@ void Distribution::read_cells() {
   X_ = s.read_rows<double>("/mesh/nodes/X", first_node, n_nodes);
   node_id_ = s.read_rows<std::int64_t>("/mesh/nodes/id", first_node, n_nodes);
   if (X_.size() != 3 * node_id_.size()) throw damaged("/mesh/nodes/X has not three columns");
+  if (!out_.mesh.block_name.empty()) {
+    block_ = s.read_rows<std::int64_t>("/mesh/nodes/block", first_node, n_nodes);
+    if (block_.size() != node_id_.size()) throw damaged("/mesh/nodes/block is not as long as /mesh/nodes/id");
+  }
   if (n_parts_ == 0) return;
   part_ = file_.read_rows<std::int32_t>("/parts/rank", first, n);
   for (const auto r : part_)
@@ -179,6 +184,7 @@ void LocalMesh::reorder(const std::vector<std::int64_t>& from) {
     for (size_t i = 0; i < from.size(); ++i) values[i] = old[from[i]];
   };
   permute(mesh.X), permute(mesh.node_id), permute(node_global), permute(node_owned);
+  if (!mesh.block.empty()) permute(mesh.block);
   for (auto& node : mesh.nodes) node = to[node];
   const auto renumber = [&](std::vector<std::int64_t>& list) {
     for (auto& node : list) node = to[node];

@@ -71,6 +71,10 @@ void Distribution::find_owners() {
   out_.mesh.X.resize(rows.size());
   for (size_t i = 0; i < rows.size(); ++i) out_.mesh.X[i] = Vec3(X[3 * i], X[3 * i + 1], X[3 * i + 2]);
   out_.mesh.node_id = fetch(rows, node_id_, 1);
+  if (!out_.mesh.block_name.empty()) {
+    out_.mesh.block = fetch(rows, block_, 1);
+    comm_.together([&] { check_blocks(mesh_file(), out_.mesh); });
+  }
   double box[6];
   for (int k = 0; k < 6; ++k) {
     double high = -1e300;
@@ -78,7 +82,7 @@ void Distribution::find_owners() {
     box[k] = comm_.max(high);
   }
   if (nodes_.n > 0) out_.length = std::hypot(box[0] + box[3], box[1] + box[4], box[2] + box[5]);
-  std::vector<double>().swap(X_), Rows().swap(node_id_);
+  std::vector<double>().swap(X_), Rows().swap(node_id_), Rows().swap(block_);
 }
 
 }  // namespace hilo::division

@@ -97,7 +97,7 @@ class Distribution {
   // this rank's slice of the file
   std::vector<std::uint8_t> shape_;
   std::vector<std::int32_t> region_, part_;
-  Rows cell_id_, offset_, cell_nodes_, node_id_;
+  Rows cell_id_, offset_, cell_nodes_, node_id_, block_;
   std::vector<double> X_;
   std::vector<int> rank_of_cell_;          // where each cell of the slice went
   std::vector<std::vector<int>> holders_;  // ranks that have each node of the slice, ascending

@@ -52,6 +52,9 @@ struct Mesh {
   std::map<std::string, std::vector<std::int64_t>> node_sets;  // named sets of nodes
   std::map<std::string, std::vector<Facet>> facet_sets;        // named sets of facets (boundary faces)
   std::map<std::string, std::vector<std::int64_t>> cell_sets;  // named sets of cells
+  std::vector<std::int64_t> block;                             // of nodes that move as one body: its number, or -1 (n_nodes; empty: none)
+  std::vector<std::string> block_name;                         // (n_blocks)
+  std::vector<Vec3> block_at;                                  // the point that is the body's own  (n_blocks x 3)  [m]
   std::string deck_scene;                                      // scene lines that the deck's loads and supports became ("" if none)
 
   std::int64_t n_nodes() const { return static_cast<std::int64_t>(X.size()); }

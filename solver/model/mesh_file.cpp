@@ -110,6 +110,12 @@ Mesh read_mesh(const Store& store) {
   for (const auto* list : {&density, &E, &nu}) check_size(store, "/mesh/regions", list->size(), m.region_name.size());
   for (size_t r = 0; r < m.region_name.size(); ++r) m.region_data.push_back({density[r], E[r], nu[r]});
   check_cells(store, m);
+  read_blocks(store, m);
+  if (store.has("/mesh/nodes/block")) {
+    m.block = store.read<std::int64_t>("/mesh/nodes/block");
+    check_size(store, "/mesh/nodes/block", m.block.size(), m.X.size());
+    check_blocks(store, m);
+  }
   read_sets(store, m);
   if (store.has("/mesh/deck_scene")) m.deck_scene = store.read_text("/mesh/deck_scene");
   return m;
@@ -129,6 +135,21 @@ void check_shapes(const Store& mesh, std::span<const std::uint8_t> shapes, std::
     if (!is_shape(shape) || (shape >= first_outside && !name))
       throw Error(mesh.path(), fmt::format("damaged: /mesh/cells/shape of cell {} is {}", first + static_cast<std::int64_t>(c), shape));
   }
+}
+
+void read_blocks(const Store& store, Mesh& m) {
+  if (!store.has("/mesh/nodes/block")) return;
+  m.block_name = store.read_strings("/mesh/blocks/name");
+  const auto X = store.read<double>("/mesh/blocks/X");
+  check_size(store, "/mesh/blocks/X", X.size(), 3 * m.block_name.size());
+  for (size_t b = 0; b < m.block_name.size(); ++b) m.block_at.emplace_back(X[3 * b], X[3 * b + 1], X[3 * b + 2]);
+}
+
+void check_blocks(const Store& store, const Mesh& m) {
+  for (const auto b : m.block)
+    if (b < -1 || b >= static_cast<std::int64_t>(m.block_name.size()))
+      throw Error(store.path(), fmt::format("damaged: /mesh/nodes/block holds {}, allowed is -1 to {}", b,
+                                            static_cast<std::int64_t>(m.block_name.size()) - 1));
 }
 
 std::string holder(const Store& store, const std::string& what) {
@@ -232,6 +253,11 @@ Store unpublished_mesh(const std::string& path, const Mesh& m, const std::vector
   const auto n = m.n_nodes();
   put<double>(store, "/mesh/nodes/X", {n ? m.X[0].data() : nullptr, m.X.size() * 3}, {n, 3});
   put(store, "/mesh/nodes/id", m.node_id);
+  if (!m.block.empty()) {
+    put(store, "/mesh/nodes/block", m.block);
+    store.write_strings("/mesh/blocks/name", m.block_name);
+    put<double>(store, "/mesh/blocks/X", {m.block_at[0].data(), 3 * m.block_at.size()}, {static_cast<std::int64_t>(m.block_at.size()), 3});
+  }
   put(store, "/mesh/cells/shape", m.shape);
   for (const std::uint8_t shape : std::set<std::uint8_t>(m.shape.begin(), m.shape.end()))
     if (shape >= first_outside) store.set("/mesh/cells/shape", name_of_shape(shape), std::string(info(shape).name));

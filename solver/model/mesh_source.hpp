@@ -22,6 +22,9 @@ void link_to(Store& store, const std::string& what, const std::string& target);
 /// The fidelity of each region by its name, from a tags file (`source`: the file that was given).
 std::vector<Fidelity> fidelity_by_name(const Store& tags, const std::vector<std::string>& regions, const std::string& source);
 
+/// Names and places of the blocks of nodes, where a mesh has some; and Error where a node's is none of them.
+void read_blocks(const Store& mesh, Mesh& m);
+void check_blocks(const Store& mesh, const Mesh& m);
 /// Numbers of shapes in a mesh file: Error where this program has none of the number, or another shape than the program that wrote the
 /// file. `first`: of the first cell of these.
 void check_shapes(const Store& mesh, std::span<const std::uint8_t> shapes, std::int64_t first = 0);

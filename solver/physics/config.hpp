@@ -42,16 +42,19 @@ struct Config {
 /// A rigid super-element: rigid regions joined by shared nodes, a massless patch, a body without mesh, or one whose motion is prescribed.
 struct Body {
   std::string name;
-  Vec3 Xc = Vec3::Zero();  // reference position of its centre of mass      [m]
-  double mass = 0;         //                                               [kg]
-  Mat3 J = Mat3::Zero();   // Euler tensor int rho (X - Xc)(X - Xc)^T dV    [kg m^2]
-  double size = 1;         // a length of the body, for scaling             [m]
-  std::string motion;      // that prescribes it
-  bool held = false;       // by that motion
-  bool moving = false;     // by the law of that motion
-  bool ground = false;     // fixed for ever; body 0
-  bool patch = false;      // massless, made for a joint on a flexible region
-  bool linear = false;     // the mean axes of a linear region, whose inertia is not that of a rigid body
+  Vec3 Xc = Vec3::Zero();    // reference position of its centre of mass      [m]
+  double mass = 0;           //                                               [kg]
+  Mat3 J = Mat3::Zero();     // Euler tensor int rho (X - Xc)(X - Xc)^T dV    [kg m^2]
+  double size = 1;           // a length of the body, for scaling             [m]
+  std::string motion;        // that prescribes it
+  bool held = false;         // by that motion
+  bool moving = false;       // by the law of that motion
+  bool ground = false;       // fixed for ever; body 0
+  bool patch = false;        // massless, made for a joint on a flexible region
+  bool block = false;        // massless, of nodes that the mesh says move as one
+  bool has_cells = false;    // on the nodes of such a block, be it of a body of the scene: they hold it
+  Vec3 line = Vec3::Zero();  // along which all of these nodes lie: nothing resists a turn about it
+  bool linear = false;       // the mean axes of a linear region, whose inertia is not that of a rigid body
   bool free() const { return !held && !ground; }
   /// v.M w of velocities of its centre and directors [J].
   double inertia(const Vec3& v, const Mat3& V, const Vec3& w, const Mat3& W) const {

@@ -12,8 +12,9 @@ using RowMatrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 std::string Bodies::count() const {
   int patches = 0, free = 0;
   for (const Body& b : points_.bodies)
-    patches += b.patch, free += b.free() && !b.patch && !b.linear && b.mass > 0;  // sections of beams have none of their own
-  return fmt::format("{} rigid bodies, {} patches", free, patches);
+    patches += b.patch && !b.block, free += b.free() && !b.patch && !b.linear && b.mass > 0;  // sections of beams have none of their own
+  const auto blocks = std::ranges::count_if(points_.bodies, [](const Body& b) { return b.block; });
+  return fmt::format("{} rigid bodies, {} patches{}", free, patches, blocks > 0 ? fmt::format(", {} blocks of nodes", blocks) : "");
 }
 
 std::string Bodies::owner(int block) const {
@@ -30,8 +31,9 @@ void Bodies::evaluate(Pass& p) const {
   const Vec3& gravity = points_.gravity;
   for (size_t b = 0; b < points_.bodies.size(); ++b) {
     const Body& body = points_.bodies[b];
-    if (body.linear || (body.mass == 0 && body.J.isZero(0))) continue;
-    if (!points_.counts(static_cast<int>(b))) continue;
+    if (body.linear || !points_.counts(static_cast<int>(b))) continue;
+    if (p.K && !body.line.isZero(0)) stiffen_line(p, b);
+    if (body.mass == 0 && body.J.isZero(0)) continue;
     const Vec3 force = body.mass * (s.a->c[b] - gravity * s.load_factor);
     const Mat3 AJ = s.a->R[b] * body.J;
     Vec3 moment = Vec3::Zero();
@@ -54,6 +56,18 @@ void Bodies::evaluate(Pass& p) const {
     K.bottomRightCorner<3, 3>() = Kr;
     p.K->add(points_.body_clique[b], K.data());
   }
+}
+
+/// A body whose nodes lie on a line: a tangent for the turn about it, without a force.  Such a turn moves nothing, so that the answer is
+/// the same; where something else resists it, this share of a stiffness changes no more than Newton's last correction.
+void Bodies::stiffen_line(Pass& p, size_t b) const {
+  const Body& body = points_.bodies[b];
+  if (points_.body_block[b] < 0) return;
+  constexpr double share = 1e-6;
+  const Vec3 line = p.s.end->R[b] * body.line;
+  RowMatrix6 K = RowMatrix6::Zero();
+  K.bottomRightCorner<3, 3>() = share * points_.stiffness * body.size * body.size * p.s.slope * line * line.transpose();
+  p.K->add(points_.body_clique[b], K.data());
 }
 
 namespace {
@@ -152,7 +166,8 @@ std::array<Vec3, 4> body_arms(const Body& b) {
 
 std::vector<Output> Bodies::outputs() const {
   std::vector<Output> out;
-  for (size_t b = 1; b < points_.bodies.size(); ++b) out.push_back({.group = "body", .name = points_.bodies[b].name, .n_end = 12});
+  for (size_t b = 1; b < points_.bodies.size(); ++b)
+    if (!points_.bodies[b].block) out.push_back({.group = "body", .name = points_.bodies[b].name, .n_end = 12});
   return out;
 }
 
@@ -161,6 +176,7 @@ void Bodies::observe(const Sight& at) {
     for (const Body& b : points_.bodies) arms_.push_back(body_arms(b));
   for (size_t b = 1; b < points_.bodies.size(); ++b)
     for (const Vec3& arm : arms_[b]) {
+      if (points_.bodies[b].block) continue;
       const Vec3 x = at.q.c[b] + at.q.R[b] * arm;
       at.end.insert(at.end.end(), x.data(), x.data() + 3);
     }

@@ -28,6 +28,7 @@ class Bodies final : public Contribution, public Equations, public Turning, publ
  private:
   bool brakes(size_t b) const { return b < drag.size() && !drag[b].isZero(0) && !points_.bodies[b].linear; }
   void add_drag(Pass& p, size_t b) const;
+  void stiffen_line(Pass& p, size_t b) const;
   const Points& points_;
   std::vector<std::array<Vec3, 4>> arms_;  // to the four points of each body, when first asked for
 };

@@ -61,7 +61,7 @@ void Builder::add_contributions() {
   s.add<Contacts>(s, is_static());
   s.add<TiedSurfaces>(s);
   s.add<Loads>(s);
-  s.add<Motions>(s, beams);
+  s.add<Motions>(s, beams, joints);
   s.add<Stations>(s);
   s.add<JointCoordinates>();
   s.add<RegionMeasures>(s);
@@ -117,6 +117,7 @@ std::unique_ptr<System> Builder::build() {
   add_ties();
   add_loads();
   add_stations();
+  make_blocks();
   for (const OutsideKind& kind : outside_kinds()) kind.make(scene_, *out_);
   if (!mesh_) {  // size of a scene of bodies: what its points span
     Eigen::AlignedBox3d box;

@@ -97,14 +97,21 @@ Builder::Found Builder::find(const std::string& name, const std::string& where) 
   const auto is_in = [&](const Mesh& m) {
     return m.find_region(name) >= 0 || m.node_sets.contains(name) || m.facet_sets.contains(name) || m.cell_sets.contains(name);
   };
-  if (!mesh_ || !is_in(mesh_->mesh)) {
+  const auto block = !mesh_ || is_in(mesh_->mesh) ? -1 : std::ranges::find(mesh_->mesh.block_name, name) - mesh_->mesh.block_name.begin();
+  const bool is_block = block >= 0 && block < std::ssize(mesh_->mesh.block_name);
+  if (!mesh_ || !(is_block || is_in(mesh_->mesh))) {
     const std::string near = suggest(name, all_names());
     throw Error(where, fmt::format("no region, set or body \"{}\"", name),
                 mesh_ || !near.empty() ? near : "no mesh is given: hilo-solve scene.toml tags.h5");
   }
   found.region = mesh_->mesh.find_region(name);
   found.is_region = found.region >= 0;
-  for (std::int64_t i : mesh_->nodes_of(name, where)) found.nodes.push_back(static_cast<int>(i));
+  if (is_block) {
+    for (int i = 0; i < static_cast<int>(out_->X.size()); ++i)
+      if (mesh_->mesh.block[i] == block) found.nodes.push_back(i);
+  } else {
+    for (std::int64_t i : mesh_->nodes_of(name, where)) found.nodes.push_back(static_cast<int>(i));
+  }
   found.n_global = static_cast<std::int64_t>(std::llround(count_owned(found.nodes)));
   if (found.is_region && regions_[found.region].fidelity == Fidelity::rigid) {
     found.body = regions_[found.region].body;

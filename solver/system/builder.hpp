@@ -134,6 +134,9 @@ class Builder {
   /// The joint that an entry names.
   JointHost joint_of(const Entry& entry) const;
   std::vector<std::string> all_names() const;
+  // build_blocks.cpp
+  void make_blocks();
+  void hold_blocks(const std::vector<int>& body_of);
   // build_joints.cpp
   void add_joints();
   void add_joint_coordinates();  // joint_coordinates.cpp

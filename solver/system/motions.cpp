@@ -10,6 +10,7 @@
 
 #include "system/beams.hpp"
 #include "system/collocation.hpp"
+#include "system/joints.hpp"
 
 namespace hilo {
 
@@ -101,7 +102,9 @@ void Motions::copy_prescribed(const Config& from, Config& to) const {
 }
 
 /// Force and moment on what a motion holds.
-Vec6 Motions::reaction(const Motion& m, const Forces& f, const Config& q) const {
+Vec6 Motions::reaction(const Motion& m, const Moment& at) const {
+  const Forces& f = at.forces();
+  const Config& q = *at.s.left;
   Vec6 r = Vec6::Zero();
   if (m.body >= 0) return f.body[m.body];
   double count = 0;
@@ -119,6 +122,17 @@ Vec6 Motions::reaction(const Motion& m, const Forces& f, const Config& q) const 
     r.tail<3>() += (q.x[n] - mean).cross(force);
   }
   points_.comm->sum(std::span<double>(r.data(), 6));
+  for (const int j : m.joints) {
+    const Joint& joint = joints_[static_cast<size_t>(j)];
+    for (size_t k = 0; k < joint.measures.size(); ++k) {
+      const Term& term = joint.measures[k].terms.front();
+      const Entity& point = joint.entities[static_cast<size_t>(term.j)];
+      const int body = joint.end[1].body;
+      const Vec3 force = -at.lambda[static_cast<size_t>(joints_.row(static_cast<size_t>(j))) + k] * term.unit;
+      r.head<3>() += force;
+      r.tail<3>() += (q.c[body] + q.R[body] * point.r - mean).cross(force);
+    }
+  }
   return r;
 }
 
@@ -175,7 +189,7 @@ std::vector<Output> Motions::outputs() const {
 void Motions::observe(const Sight& at) {
   for (const Motion& m : list) {
     if (!at.step) return;
-    const Vec6 f = reaction(m, at.step->forces(), *at.step->s.left);
+    const Vec6 f = reaction(m, *at.step);
     at.mid.insert(at.mid.end(), f.data(), f.data() + 6);
   }
 }

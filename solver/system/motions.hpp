@@ -9,8 +9,9 @@ namespace hilo {
 /// Prescribed motion of a body (fixed, translation, rotation) or of single components of nodes.
 struct Motion {
   std::string name;
-  int body = -1;           // the driven body, or -1: components of nodes
-  std::vector<int> nodes;  // nodes of the components, or followers of the driven body
+  int body = -1;            // the driven body, or -1: components of nodes
+  std::vector<int> nodes;   // nodes of the components, or followers of the driven body
+  std::vector<int> joints;  // that hold the components of nodes of blocks, by number
   std::array<bool, 3> component{true, true, true};
   Vec3 displacement = Vec3::Zero();  // at law 1 [m]
   Vec3 at = Vec3::Zero(), axis = Vec3::Zero();
@@ -20,10 +21,11 @@ struct Motion {
 };
 
 class Beams;
+class Joints;
 
 class Motions final : public Contribution, public Equations, public Prescribing, public Jumping, public Stateful, public Observer {
  public:
-  Motions(const Points& points, const Beams& beams) : points_(points), beams_(beams) {}
+  Motions(const Points& points, const Beams& beams, const Joints& joints) : points_(points), beams_(beams), joints_(joints) {}
   std::vector<Motion> list;
 
   Traits traits() const override;
@@ -44,9 +46,10 @@ class Motions final : public Contribution, public Equations, public Prescribing,
   void tie(Ties&) const override {}  // what a moving body is joined to says so (Body::moving)
 
  private:
-  Vec6 reaction(const Motion& m, const Forces& f, const Config& q) const;
+  Vec6 reaction(const Motion& m, const Moment& at) const;
   const Points& points_;
-  const Beams& beams_;  // whose inertia is not in that of a body
+  const Beams& beams_;    // whose inertia is not in that of a body
+  const Joints& joints_;  // that hold nodes of blocks
 };
 
 }  // namespace hilo

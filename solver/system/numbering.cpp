@@ -28,8 +28,11 @@ std::pair<int, int> Points::number_points(Cliques& cliques) {
     if (follower[i] < 0) node_block[i] = next++, nodes.item.push_back(i);
   const int n_node_blocks = next;
   centres.first = next, turns.first = next + 1;
-  for (size_t b = 0; b < bodies.size(); ++b) {
-    if (!bodies[b].free()) continue;
+  std::vector<size_t> order;  // bodies that cells hold stand beside the nodes
+  for (const bool with_cells : {true, false})
+    for (size_t b = 0; b < bodies.size(); ++b)
+      if (bodies[b].free() && bodies[b].has_cells == with_cells) order.push_back(b);
+  for (const size_t b : order) {
     const int blocks[2] = {next, next + 1};
     body_block[b] = next, next += 2;
     body_clique[b] = cliques.add(blocks);
@@ -82,6 +85,11 @@ BlockMap Points::number_globally(int n_node_blocks, int n_local) const {
   for (size_t i = 0; i < X.size(); ++i)
     if (node_block[i] >= 0)
       for (int k = 0; k < 3; ++k) map.X[3 * node_block[i] + k] = X[i][k];
+  for (size_t b = 0; b < bodies.size(); ++b)
+    if (bodies[b].has_cells && body_block[b] >= 0) {
+      for (int k = 0; k < 6; ++k) map.X[3 * body_block[b] + k] = bodies[b].Xc[k % 3];
+      map.n_with_cells += 2;
+    }
   map.global.resize(n_local);
   if (comm->size == 1) {
     for (int i = 0; i < n_local; ++i) map.global[i] = i;

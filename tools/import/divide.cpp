@@ -29,7 +29,6 @@ class Dividing {
     for (const auto c : cells_) divide(c);
     rebuild();
     complete_sets();
-    in_.of_shells.clear();
     in_.notes.push_back(
         fmt::format("{} surfaces have triangles or mid-side nodes among them: {} quadrangles, three of each triangle, four of each "
                     "quadrangle",
@@ -58,6 +57,17 @@ class Dividing {
     return m_.n_nodes() - 1;
   }
 
+  /// The mean over some nodes, where all have a thickness of their own.
+  void take_thickness(std::int64_t node, std::span<const std::int64_t> of) {
+    double sum = 0;
+    for (const auto a : of) {
+      const auto own = in_.thickness_at.find(a);
+      if (own == in_.thickness_at.end()) return;
+      sum += own->second;
+    }
+    in_.thickness_at.try_emplace(node, sum / static_cast<double>(of.size()));
+  }
+
   void divide(std::int64_t c) {
     const auto own = m_.cell(c);
     const std::vector<std::int64_t> nodes(own.begin(), own.end());
@@ -69,10 +79,12 @@ class Dividing {
       auto found = middle_.find(edge(a, b));
       if (found == middle_.end()) found = middle_.emplace(edge(a, b), new_node((m_.X[a] + m_.X[b]) / 2)).first;
       mid.push_back(found->second);
+      if (found->second >= first_new_) take_thickness(found->second, std::array{a, b});
       of_corners += m_.X[a] / corners, of_middles += m_.X[mid.back()] / corners;
     }
     // the interpolation of six or eight nodes in the middle
     const auto centre = new_node(corners == 3 ? Vec3(4. / 3 * of_middles - of_corners / 3) : Vec3(2 * of_middles - of_corners));
+    take_thickness(centre, std::span(nodes).first(static_cast<size_t>(corners)));
     auto& of = children_[c];
     for (int k = 0; k < corners; ++k) of.push_back({nodes[k], mid[k], centre, mid[(k + corners - 1) % corners]});
     n_made_ += corners;

@@ -22,7 +22,18 @@ void renumber(Imported& in, const std::vector<std::int64_t>& row, std::int64_t n
   for (const auto& [a, bits] : in.held)
     if (const auto b = row[static_cast<size_t>(a)]; b >= 0) held[b] |= bits;
   in.held = std::move(held);
-  in.of_shells.clear();
+  decltype(in.body_of_node) body_of_node;
+  for (auto& [a, name] : in.body_of_node)
+    if (const auto b = row[static_cast<size_t>(a)]; b >= 0) body_of_node[b] = std::move(name);
+  in.body_of_node = std::move(body_of_node);
+  decltype(in.thickness_at) thickness_at;
+  for (const auto& [a, t] : in.thickness_at)
+    if (const auto b = row[static_cast<size_t>(a)]; b >= 0) thickness_at[b] = t;
+  in.thickness_at = std::move(thickness_at);
+  decltype(in.nodes_counted) nodes_counted;
+  for (const auto& [a, n] : in.nodes_counted)
+    if (const auto b = row[static_cast<size_t>(a)]; b >= 0) nodes_counted[b] = n;
+  in.nodes_counted = std::move(nodes_counted);
   std::vector<Vec3> X(n);
   std::vector<std::int64_t> id(n, -1);
   for (size_t a = 0; a < row.size(); ++a)
@@ -203,8 +214,9 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
   if (options.order == 2) raise_order(in);
   add_placed_sets(in, options.sets);
   const double factor = options.scale * in.metre.value_or(to_si("m", options.units));
-  if (factor != 1)
-    for (auto& x : m.X) x *= factor;
+  for (auto* points : {&m.X, &m.block_at})
+    for (auto& x : *points) x *= factor;
+  if (!m.block.empty()) m.block.resize(m.X.size(), -1);
   if (const auto n = straighten(m))
     in.notes.push_back(in.curved ? fmt::format("{} cells that a curved surface turned inside out have straight edges", n)
                                  : fmt::format("warning: {} cells that the nodes on their edges turned inside out have straight edges", n));

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -18,6 +19,8 @@
 #include "model/thin_regions.hpp"
 
 namespace hilo {
+
+class Sheets;
 
 /// The options of hilo-import, as the readers see them.
 struct ImportOptions {
@@ -57,10 +60,15 @@ struct Imported {
   std::vector<ThinRegion> thin_regions;      // by region, empty without shells and beams
   std::map<std::int64_t, ThinSection> thin;  // of the cells that are shells or beams
   std::int64_t n_beams = 0;                  // elements that are beams of the scene
-  mutable std::set<std::int64_t> of_shells;  // their nodes, once asked for
-  std::map<std::int64_t, unsigned> held;     // with --thicken: components that supports hold of a shell's node, bits 0 to 5
-  std::optional<double> metre;               // length unit that the file states  [m]
-  bool curved = false;                       // quadratic cells made here follow curved surfaces, which may turn some inside out
+  // with --thicken, of nodes of shells
+  std::shared_ptr<const Sheets> sheets;              // of the deck's shells
+  std::map<std::int64_t, unsigned> held;             // components that supports hold by themselves, bits 0 to 5
+  std::map<std::int64_t, std::string> body_of_node;  // the body that the deck's scene has of one: all its pairs move with it
+  std::map<std::int64_t, size_t> nodes_counted;      // what the deck's scene takes one to become
+  std::map<std::int64_t, double> thickness_at;       // where the deck states it by node, in the unit of the file
+  std::set<std::string> below;                       // facet sets that mean the faces against the normals of the deck's shells
+  std::optional<double> metre;                       // length unit that the file states  [m]
+  bool curved = false;                               // quadratic cells made here follow curved surfaces, which may turn some inside out
   std::set<std::string>
       as_listed;  // node sets that order 2 and divided shells must not complete: the deck's force acts on each of their nodes
 
@@ -160,15 +168,13 @@ void raise_order(Imported& in);
 std::int64_t straighten(Mesh& mesh);
 /// Nodes nearer than `distance` become one; returns how many went.
 std::int64_t merge_nodes(Imported& in, double distance);
-/// Shells become solid-shells (shell8), with facet sets REGION_bottom and REGION_top; what has no clear pair of nodes is an Error: folds,
-/// steps of thickness, edges of more than two, nodes of solids, supports that a pair cannot have.
+/// Shells become solid-shells (shell8), with facet sets REGION_bottom and REGION_top: a pair of nodes for each sheet that a node is in
+/// (sheets.hpp).  Nodes of several sheets, of solids too, and those that the deck's scene has bodies of are blocks of the mesh.
 void thicken(Imported& in, const std::string& file);
 /// Before: where shells have triangles or mid-side nodes, all of them become quadrangles, three of a triangle and four of a quadrangle.
 void divide_surfaces(Imported& in, const std::string& file);
 /// Before: whether that will happen.
 bool is_divided(const Imported& in);
-/// Before: whether a node is of a shell.
-bool is_of_shell(const Imported& in, std::int64_t node);
 /// Nodes of no cell are dropped, from the sets too; returns how many.
 std::int64_t drop_unused(Imported& in);
 /// Adds the sets of --set, by the words and the code of [set.NAME] of scenes; lengths are still in the unit of the file.

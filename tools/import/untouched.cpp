@@ -14,7 +14,7 @@
 namespace hilo {
 namespace {
 
-/// Cells that share nodes are one piece: the piece of each node.
+/// Cells that share nodes are one piece, and so are those on a block of nodes: the piece of each node.
 std::vector<std::int64_t> pieces_of(const Mesh& m) {
   std::vector<std::int64_t> parent(m.X.size());
   std::iota(parent.begin(), parent.end(), 0);
@@ -22,10 +22,18 @@ std::vector<std::int64_t> pieces_of(const Mesh& m) {
     while (parent[a] != a) a = parent[a] = parent[parent[a]];
     return a;
   };
+  const auto unite = [&](std::int64_t a, std::int64_t b) {
+    const auto x = root(a), y = root(b);
+    parent[std::max(x, y)] = std::min(x, y);
+  };
   for (std::int64_t c = 0; c < m.n_cells(); ++c)
-    for (const auto a : m.cell(c)) {
-      const auto x = root(m.cell(c)[0]), y = root(a);
-      parent[std::max(x, y)] = std::min(x, y);
+    for (const auto a : m.cell(c)) unite(m.cell(c)[0], a);
+  std::vector<std::int64_t> of_block(m.block_name.size(), -1);
+  for (size_t a = 0; a < m.block.size(); ++a)
+    if (const auto b = m.block[a]; b >= 0) {
+      auto& one = of_block[static_cast<size_t>(b)];
+      if (one < 0) one = static_cast<std::int64_t>(a);
+      unite(one, static_cast<std::int64_t>(a));
     }
   for (size_t a = 0; a < parent.size(); ++a) parent[a] = root(static_cast<std::int64_t>(a));
   return parent;
@@ -58,8 +66,10 @@ void tell_untouched(Imported& in) {
   std::set<std::int64_t> reached;
   if (!m.deck_scene.empty()) {
     const auto names = m.all_names();
-    const std::set<std::string> known(names.begin(), names.end());
-    for (const std::string& name : names_at_work(m.deck_scene)) {
+    const std::set<std::string> known(names.begin(), names.end()), at_work = names_at_work(m.deck_scene);
+    for (size_t a = 0; a < m.block.size(); ++a)
+      if (m.block[a] >= 0 && at_work.contains(m.block_name[static_cast<size_t>(m.block[a])])) reached.insert(piece[a]);
+    for (const std::string& name : at_work) {
       if (!known.contains(name)) continue;  // a body, the ground
       for (const auto a : m.nodes_of(name, "")) reached.insert(piece[a]);
     }

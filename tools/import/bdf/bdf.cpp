@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "import/bdf/card.hpp"
+#include "import/sheets.hpp"
 
 namespace hilo {
 namespace {
@@ -83,12 +84,13 @@ void build(BdfDeck& deck, const std::string& path, const ImportOptions& options,
     deck.beams.clear();
   }
   in.n_beams = static_cast<std::int64_t>(deck.beams.size());
+  if (options.thicken) in.sheets = std::make_shared<Sheets>(in);
   std::unordered_set<std::int64_t> of_thin;
   for (const auto& [c, t] : in.thin) of_thin.insert(m.cell(c).begin(), m.cell(c).end());
   const auto tell_turn = [&](std::int64_t grid, const std::string& place) {
     const auto a = deck.row.find(grid);
     if (a == deck.row.end() || !of_thin.contains(a->second)) return;
-    if (!options.thicken || !is_of_shell(in, a->second))  // what pairs of nodes make of it is judged in `thicken`
+    if (!in.sheets || in.sheets->at(a->second).empty())  // a grid of shells that become pairs is a body where it has to turn
       in.skip("turns and moments of grids of shells and beams", place);
   };
   for (const auto& [sid, lines] : deck.supports)

@@ -19,11 +19,14 @@ BdfScene::BdfScene(const BdfDeck& deck, Imported& in, SetNames& names, const Imp
   for (const auto& b : deck.beams)
     for (const auto grid : b.nodes) box.extend(X(row(grid, b.place, b.card)));
   size_ = box.diagonal().norm();
+  for (std::int64_t c = 0; c < in.mesh.n_cells() && in.sheets; ++c)
+    if (info(in.mesh.shape[c]).dimension != 2) of_solids_.insert(in.mesh.cell(c).begin(), in.mesh.cell(c).end());
 }
 
 std::string BdfScene::text() {
-  find_bodies();
   choose_loads();
+  hold();
+  find_bodies();
   gravity();
   rotation();
   materials();
@@ -120,18 +123,8 @@ void BdfScene::materials() {
   tables_ += lines;
 }
 
-namespace {
-
-/// Components that a node is held in, and at which values.
-struct Held {
-  unsigned bits = 0;
-  std::array<double, 6> value{};
-  std::string place;
-};
-
-}  // namespace
-
-void BdfScene::supports() {
+/// What the supports of the subcase hold.
+void BdfScene::hold() {
   std::vector<std::int64_t> sets;
   const BdfCase& chosen = deck_.chosen;
   const auto is_there = [&](std::int64_t id) { return deck_.supports.contains(id) || deck_.support_sums.contains(id); };
@@ -147,15 +140,13 @@ void BdfScene::supports() {
     sets = sum->second.sets;
   else if (take >= 0)
     sets = {take};
-  equations();
   for (const auto& [id, lines] : deck_.supports)
     if (std::find(sets.begin(), sets.end(), id) == sets.end())
       in_.skip("SPC of a set that the first subcase does not use", lines.front().place, static_cast<std::int64_t>(lines.size()));
 
-  std::map<std::int64_t, Held> held;
   for (size_t a = 0; a < deck_.grids.size(); ++a)
     if (const std::string& always = deck_.grids[a].held; !always.empty()) {
-      Held& h = held[static_cast<std::int64_t>(a)];
+      Held& h = held_[static_cast<std::int64_t>(a)];
       h.place = deck_.grids[a].place;
       for (const char c : always)
         if (c != '0') h.bits |= 1u << (c - '1');
@@ -174,7 +165,7 @@ void BdfScene::supports() {
           in_.skip("SPC on a grid that is not there", s.place);
           continue;
         }
-        Held& h = held[a->second];
+        Held& h = held_[a->second];
         if (h.place.empty()) h.place = s.place;
         h.bits |= s.components;
         for (size_t k = 0; k < 6; ++k)
@@ -183,29 +174,25 @@ void BdfScene::supports() {
   }
   for (const auto& [factor, l] : loads_) {
     if (l->kind != BdfLoad::Kind::displacement) continue;
-    const auto h = held.find(row(l->grid, l->place, "SPCD"));
-    if (h == held.end() || (l->components & ~h->second.bits)) {
+    const auto h = held_.find(row(l->grid, l->place, "SPCD"));
+    if (h == held_.end() || (l->components & ~h->second.bits)) {
       in_.skip("SPCD of a component that no SPC holds", l->place);
       continue;
     }
     for (size_t k = 0; k < 6; ++k)
       if (l->components >> k & 1) h->second.value[k] = factor * l->size;
   }
+}
 
-  for (const auto& [a, h] : held) {
-    if (!options_.thicken || !is_of_shell(in_, a)) continue;
-    if (!axes(a).isIdentity(1e-12)) throw Error(h.place, "SPC of a shell's grid in axes of its own, beside --thicken", "basic axes");
-    if (h.value[3] != 0 || h.value[4] != 0 || h.value[5] != 0)
-      throw Error(h.place, "a shell's grid is turned by SPC: pairs of nodes have no turns");
-    in_.held[a] = h.bits;
-  }
+void BdfScene::supports() {
+  equations();
   struct Group {
     Rows rows;
     std::string place;
   };
   std::map<unsigned, Group> fixed;
   std::map<std::pair<unsigned, std::array<double, 3>>, Group> moved;
-  for (const auto& [a, h] : held) {
+  for (const auto& [a, h] : held_) {
     const End what = end(a);
     if (what == End::body) {
       HeldBody& body = body_held_[a];
@@ -223,6 +210,7 @@ void BdfScene::supports() {
       in_.skip(what == End::mean ? "SPC on the grid of an RBE3" : "SPC on a grid of no element", h.place);
       continue;
     }
+    if (is_of_shell(a)) in_.held[a] = h.bits;
     const Mat3 own = axes(a);
     unsigned still = 0, moves = 0;
     std::array<double, 3> by{};

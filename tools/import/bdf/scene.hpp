@@ -3,13 +3,16 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <array>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "base/param.hpp"
 #include "import/bdf/card.hpp"
 #include "import/links.hpp"
+#include "import/sheets.hpp"
 
 namespace hilo {
 
@@ -25,6 +28,7 @@ class BdfScene {
 
   // scene.cpp
   void materials();
+  void hold();
   void supports();
   void equations();
   std::string why_no_sum(const BdfEquation& m) const;
@@ -34,6 +38,7 @@ class BdfScene {
   void time();
   // scene_links.cpp
   void find_bodies();
+  void find_bodies_of_shells();
   void join_rigid();
   void bodies();
   void rigid();
@@ -101,7 +106,20 @@ class BdfScene {
     unsigned bits = 0;  // components
     Prescribed by;
   };
-  std::map<std::int64_t, HeldBody> body_held_;   // by row
+  std::map<std::int64_t, HeldBody> body_held_;  // by row
+  struct Held {
+    unsigned bits = 0;
+    std::array<double, 6> value{};
+    std::string place;
+  };
+  std::map<std::int64_t, Held> held_;  // by row: components that a grid is held in, and at which values
+  std::set<std::int64_t> of_solids_;   // rows, beside shells that become pairs
+  /// The sheets that a grid of shells is in, where these become pairs of nodes.
+  const std::vector<Sheets::Part>& sheets(std::int64_t row) const {
+    static const std::vector<Sheets::Part> none;
+    return in_.sheets ? in_.sheets->at(row) : none;
+  }
+  bool is_of_shell(std::int64_t row) const { return !sheets(row).empty(); }
   std::map<std::int64_t, std::string> on_beam_;  // row of a grid of beams -> place
   std::vector<std::pair<double, const BdfLoad*>> loads_;
   std::map<std::int64_t, std::pair<Vec3, std::string>> force_, moment_;  // row -> sum and first place

@@ -27,7 +27,8 @@ void BdfScene::beams() {
     beam(b);
   }
   for (const auto& [a, place] : on_beam_)
-    if (used_[static_cast<size_t>(a)]) joint(7, Mat3::Identity(), end_name(a) + "_node", end_name(a), node_set(a), X(a), place);
+    if (used_[static_cast<size_t>(a)] && !is_of_shell(a))
+      joint(7, Mat3::Identity(), end_name(a) + "_node", end_name(a), node_set(a), X(a), place);
 }
 
 std::string BdfScene::section_name(std::int64_t property) const {

@@ -62,17 +62,48 @@ void BdfScene::join_rigid() {
   }
 }
 
+/// A grid of shells that become pairs of nodes is a body, in whose block its pairs are, where a pair cannot bear what acts on it.  A rigid
+/// element takes pairs as they are where it has three grids that are not on a line, in all components.
+void BdfScene::find_bodies_of_shells() {
+  const auto make = [&](std::int64_t grid, const std::string& place, const std::string& who) {
+    if (const auto a = grid == 0 ? -1 : row(grid, place, who); a >= 0 && is_of_shell(a)) body_.try_emplace(a, place);
+  };
+  for (const BdfRigid& r : rigid_) {
+    std::vector<Vec3> points;
+    for (const auto g : r.grids)
+      if (const auto a = row(g, r.place, r.name); used_[static_cast<size_t>(a)] && !body_.contains(a)) points.push_back(X(a));
+    make(r.hub, r.place, r.name);
+    if (r.components != 63 || points.size() < 3 || on_a_line(points))
+      for (const auto g : r.grids) make(g, r.place, r.name);
+  }
+  for (const BdfSpring& s : deck_.springs)
+    for (const auto g : s.grids) make(g, s.place, s.name);
+  for (const BdfMass& m : deck_.masses) make(m.grid, m.place, "CONM2");
+  for (const auto& [id, list] : deck_.ties)
+    for (const BdfEquation& m : list)
+      for (const auto& t : m.terms) make(t.grid, m.place, "MPC");
+  for (const auto& [factor, l] : loads_) {
+    const bool turns = l->kind == BdfLoad::Kind::moment;
+    if (!turns && l->kind != BdfLoad::Kind::force) continue;
+    const auto a = row(l->grid, l->place, turns ? "MOMENT" : "FORCE");
+    if (is_of_shell(a) && (turns || std::ranges::any_of(sheets(a), [](const Sheets::Part& p) { return p.offset != 0; })))
+      body_.try_emplace(a, l->place);
+  }
+  for (const auto& [a, h] : held_) {
+    const bool turned = h.value[3] != 0 || h.value[4] != 0 || h.value[5] != 0;
+    if (is_of_shell(a) && needs_body(sheets(a), {h.bits, turned, !axes(a).isIdentity(1e-12)})) body_.try_emplace(a, h.place);
+  }
+}
+
 void BdfScene::find_bodies() {
   for (const auto& b : deck_.beams)
     for (const auto grid : b.nodes) {
       const auto a = row(grid, b.place, b.card);
-      if (options_.thicken && is_of_shell(in_, a))
-        throw Error(b.place, fmt::format("{} {}: grid {} is of shells too: pairs of nodes have no turns", b.card, b.id, grid),
-                    "leave --thicken away: both are cells of rigid regions");
       body_.try_emplace(a, b.place);
       on_beam_.try_emplace(a, b.place);
     }
   join_rigid();
+  if (in_.sheets) find_bodies_of_shells();
   const auto free = [&](std::int64_t a) { return !used_[static_cast<size_t>(a)]; };
   const auto make = [&](std::int64_t grid, const std::string& place, const std::string& who, bool cell_too = false) {
     if (const auto a = row(grid, place, who); cell_too || free(a)) body_.try_emplace(a, place);
@@ -99,6 +130,8 @@ void BdfScene::find_bodies() {
   }
   for (const BdfMass& m : deck_.masses)
     if (const auto a = row(m.grid, m.place, "CONM2"); !mean_.contains(a)) make(m.grid, m.place, "CONM2");
+  for (const auto& [a, place] : body_)
+    if (is_of_shell(a)) in_.body_of_node[a] = body_name(deck_.node_id[static_cast<size_t>(a)]);
 }
 
 /// Bodies with the masses at their grids; masses on nodes and means.
@@ -196,7 +229,7 @@ void BdfScene::rigid(const BdfRigid& r) {
   Rows nodes;
   std::vector<Vec3> points;
   const auto add = [&](std::int64_t a) { nodes.push_back(a), points.push_back(X(a)); };
-  if (used_[static_cast<size_t>(hub)] && !on_beam_.contains(hub)) add(hub);
+  if (used_[static_cast<size_t>(hub)] && !on_beam_.contains(hub) && !is_of_shell(hub)) add(hub);
   for (const auto g : r.grids) {
     const auto a = row(g, r.place, r.name);
     if (end(a) == End::body && a != hub) {

@@ -131,8 +131,6 @@ void BdfScene::nodal_loads() {
       }
       case End::node:
         if (!force) {
-          if (options_.thicken && is_of_shell(in_, a))
-            throw Error(l->place, "a moment on a shell's grid: pairs of nodes have no turns", "two forces, or leave --thicken away");
           in_.skip("MOMENT on a node of solids, which does not turn", l->place);
           break;
         }
@@ -157,7 +155,12 @@ void BdfScene::nodal_loads() {
       tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nat = {}\n", place,
                              toml_text(unique("load", end_name(a))), toml_text(end_name(a)), list(v, "N"), point(X(a)));
     } else if (what == End::node) {
-      auto& [rows, first] = equal[options_.thicken && is_of_shell(in_, a) ? Vec3(v / 2) : v];  // each node of a pair takes half
+      Vec3 each = v;
+      if (is_of_shell(a)) {  // each node of its pairs takes its share
+        in_.nodes_counted[a] = count_nodes(sheets(a), of_solids_.contains(a));
+        each /= static_cast<double>(in_.nodes_counted[a]);
+      }
+      auto& [rows, first] = equal[each];
       if (rows.empty()) first = place;
       rows.push_back(a);
     } else
@@ -168,10 +171,17 @@ void BdfScene::nodal_loads() {
     tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", group.second,
                            toml_text(unique("load", set)), toml_text(set), list(v, "N"));
   }
-  for (const auto& [a, m] : moment_)
+  for (auto& [a, m] : moment_) {
+    if (is_of_shell(a) && !on_beam_.contains(a) && is_flat(sheets(a))) {
+      const Vec3& n = sheets(a).front().normal;
+      if (std::abs(m.first.dot(n)) > 1e-6 * m.first.norm())
+        in_.skip("MOMENT about the normal of a shell, which does not resist it", m.second);
+      m.first -= n * n.dot(m.first);
+    }
     if (m.first.norm() > 0)
       tables_ += fmt::format("\n[[load]]   # {}\nkind = \"torque\"\nname = {}\non = {}\ntorque = {}\n", m.second,
                              toml_text(unique("load", end_name(a) + "_torque")), toml_text(end_name(a)), list(m.first, "N m"));
+  }
 }
 
 /// The facet of a solid that PLOAD4 names by one or two of its corners.

@@ -55,21 +55,14 @@ void beams_as_cells(InpDeck& d) {
   d.beams.clear();
 }
 
-void find_beams(InpDeck& d, Imported& in, bool thicken) {
+void find_beams(InpDeck& d, Imported& in) {
   in.n_beams = static_cast<std::int64_t>(d.beams.size());
-  std::unordered_set<std::int64_t> of_shells;
-  if (thicken)
-    for (std::int64_t c = 0; c < in.mesh.n_cells(); ++c)
-      if (info(in.mesh.shape[static_cast<size_t>(c)]).dimension == 2) of_shells.insert(in.mesh.cell(c).begin(), in.mesh.cell(c).end());
   for (const auto& [id, b] : d.beams)
     for (const auto node : b.nodes) {
       const auto a = d.node.find(node);
       const auto x = d.loose.find(node);
       if (a == d.node.end() && x == d.loose.end())
         throw Error(b.place, fmt::format("element {} names node {}, which does not exist", id, node));
-      if (a != d.node.end() && of_shells.contains(a->second))
-        throw Error(b.place, fmt::format("{} {}: node {} is of shells too: pairs of nodes have no turns", b.type, id, node),
-                    "leave --thicken away: both are cells of rigid regions");
       d.bodies.try_emplace(node, InpBody{a != d.node.end() ? in.mesh.X[static_cast<size_t>(a->second)] : x->second, b.place, {}});
     }
 }
@@ -128,7 +121,7 @@ std::string write_beams(const InpDeck& d, Imported& in, SetNames& names, const I
   std::set<std::int64_t> nodes;
   for (const auto& [id, b] : d.beams)
     for (const auto node : b.nodes)
-      if (d.node.contains(node)) nodes.insert(node);
+      if (const auto a = d.node.find(node); a != d.node.end() && !in.body_of_node.contains(a->second)) nodes.insert(node);
   for (const auto node : nodes) {  // of solids too, which do not turn
     const std::string set = names.nodes(fmt::format("node_{}_of_cells", node), {d.node.at(node)});
     in.as_listed.insert(set);

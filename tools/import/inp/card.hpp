@@ -54,6 +54,9 @@ DeckMaterial& material_of(InpReading& r);
 /// And the card's first data line; Error with what is expected there where it has none.
 DeckMaterial& material_of(InpReading& r, DataLine& l, const char* expected);
 
+/// Target of a line: a number or the name of a set.
+void target_of(const DataLine& l, std::string& target, std::int64_t& id);
+
 /// *ELEMENT of a type of points (MASS, SPRINGA, ...); false where it is of cells.
 bool read_points(InpReading& r, const std::string& type);
 

@@ -32,6 +32,7 @@ struct InpSurface {
     std::int64_t id;     // element or node where there is no set
     int face;
     std::string place;
+    bool of_shell = false;  // SPOS or SNEG: face 2 or 1
   };
   std::string name;
   bool of_nodes = false;
@@ -112,6 +113,11 @@ struct InpStep {
   bool direct = false;  // increments of just that length
   int n_modes = 0;      // of *FREQUENCY
   double period() const { return end > 0 ? end : 1; }
+};
+/// *NODAL THICKNESS of shells.
+struct InpThickness {
+  InpTarget node;
+  double value = 0;
 };
 /// *TRANSFORM: axes of nodes.
 struct InpTransform {
@@ -201,7 +207,7 @@ struct InpBody {
   Vec3 X;
   std::string place;
   std::vector<InpCarried> carries;
-  std::vector<std::int64_t> bodies = {};  // by number: nodes of beams that it carries
+  std::vector<std::pair<std::int64_t, unsigned>> bodies = {};  // nodes that are bodies too and that it carries, by number; components
 };
 struct InpMean {
   Vec3 X;
@@ -269,6 +275,7 @@ struct InpDeck {
   } placed;                                       // of the instance
   std::set<std::string> part_nsets, part_elsets;  // upper case
   std::vector<InpTransform> transformed;          // nodes with axes of their own
+  std::vector<InpThickness> thicknesses;
   std::vector<InpEquation> equations;
   std::vector<InpSlide> slides;
   std::map<std::pair<std::int64_t, int>, int> slide_of;  // node and component
@@ -299,7 +306,9 @@ void write_inp_scene(const InpDeck& deck, Imported& in, SetNames& names, const s
 /// Beams as cells of bars; an Error where one has three nodes.
 void beams_as_cells(InpDeck& deck);
 /// Nodes of beams are bodies.
-void find_beams(InpDeck& deck, Imported& in, bool thicken);
+void find_beams(InpDeck& deck, Imported& in);
+/// Nodes of shells that pairs of nodes cannot stand for are bodies.
+void find_bodies_of_shells(InpDeck& deck, Imported& in);
 /// Sections, materials, beams and what ties their nodes to solids, as scene lines.
 std::string write_beams(const InpDeck& deck, Imported& in, SetNames& names, const ImportOptions& options);
 /// Facets of the deck's faces: the local facet that has the corners of face `face` of an Abaqus element; -1 where there is none.

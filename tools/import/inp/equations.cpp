@@ -8,11 +8,11 @@
 
 #include "import/inp/groups.hpp"
 #include "import/links.hpp"
+#include "import/sheets.hpp"
 
 namespace hilo {
-namespace {
 
-std::vector<std::int64_t> nodes_of(const InpDeck& d, const InpTarget& t) {
+std::vector<std::int64_t> numbers_of(const InpDeck& d, const InpTarget& t) {
   if (t.name.empty()) return {t.id};
   auto set = d.nset.find(t.name);
   if (set == d.nset.end()) set = d.nset.find(unqualified(t.name));
@@ -20,14 +20,20 @@ std::vector<std::int64_t> nodes_of(const InpDeck& d, const InpTarget& t) {
   return set->second.members;
 }
 
+namespace {
+
 /// Why a displacement cannot be one of an equation, or "".
-std::string why_not(const InpDeck& d, std::int64_t node, int component, const std::set<std::int64_t>& turned) {
+std::string why_not(const InpDeck& d, const Imported& in, std::int64_t node, int component, const std::set<std::int64_t>& turned) {
+  const auto of_shells = [&](std::int64_t id) {
+    const auto a = d.node.find(id);
+    return a != d.node.end() && in.sheets && !in.sheets->at(a->second).empty();
+  };
   if (component < 1 || component > 3) return "of turns or temperatures";
   if (turned.contains(node) && !d.node.contains(node)) return "in axes of *TRANSFORM, of a node of no cell";
-  if (d.bodies.contains(node)) return "of nodes of beams";
+  if (d.bodies.contains(node) && !of_shells(node)) return "of nodes of beams";
   if (!d.node.contains(node) && !d.loose.contains(node)) return "of a node that does not exist";
   for (const InpTie& t : d.ties)
-    if (!t.no_node && t.kind != InpTie::Of::weighted && std::ranges::count(nodes_of(d, t.reference), node)) return "of a reference node";
+    if (!t.no_node && t.kind != InpTie::Of::weighted && std::ranges::count(numbers_of(d, t.reference), node)) return "of a reference node";
   for (const auto& [id, p] : d.points)
     if (!d.node.contains(node) && std::ranges::count(p.nodes, node)) return "of a node of springs or masses alone";
   return "";
@@ -50,7 +56,7 @@ bool of_nothing(const InpSum& s) {
 void find_equations(InpDeck& d, Imported& in) {
   std::set<std::int64_t> turned;
   for (const InpTransform& t : d.transformed)
-    for (const auto id : nodes_of(d, {t.target, t.id, t.place})) turned.insert(id);
+    for (const auto id : numbers_of(d, {t.target, t.id, t.place})) turned.insert(id);
   EqualDisplacements equals;
   std::map<Displacement, std::string> place;
   std::vector<EquationSum> sums;
@@ -60,12 +66,12 @@ void find_equations(InpDeck& d, Imported& in) {
     size_t n = 1;  // a term may have a set: one equation for each of its nodes
     bool askew = false;
     for (const auto& t : e.terms) {
-      nodes.push_back(nodes_of(d, t.node));
+      nodes.push_back(numbers_of(d, t.node));
       if (nodes.back().size() != 1 && n != 1 && nodes.back().size() != n)
         throw Error(e.place, fmt::format("*EQUATION between {} nodes and {}", n, nodes.back().size()), "sets of as many nodes");
       n = std::max(n, nodes.back().size());
       for (const auto node : nodes.back()) {
-        if (why.empty()) why = why_not(d, node, t.component, turned);
+        if (why.empty()) why = why_not(d, in, node, t.component, turned);
         askew = askew || turned.contains(node);
       }
     }

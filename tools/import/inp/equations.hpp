@@ -5,6 +5,8 @@
 
 namespace hilo {
 
+/// Numbers of the nodes that a term names.
+std::vector<std::int64_t> numbers_of(const InpDeck& deck, const InpTarget& target);
 /// Terms of one node become supports, those of two equal displacements `deck.slides`; others are named.
 void find_equations(InpDeck& deck, Imported& in);
 /// The slide of a displacement (1 to 3) of a node, or -1.

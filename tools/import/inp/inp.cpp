@@ -12,6 +12,7 @@
 #include "import/inp/equations.hpp"
 #include "import/inp/steps.hpp"
 #include "import/inp/ties.hpp"
+#include "import/sheets.hpp"
 
 namespace hilo {
 namespace {
@@ -106,25 +107,6 @@ void resolve_cells(InpDeck& d, Imported& in) {
   m.region.assign(d.shape.size(), -1);
 }
 
-/// What supports hold of the nodes of shells that become pairs; what a pair has no place for is an Error.
-void held_components(const InpDeck& d, Imported& in) {
-  const auto of_shells = [&](const InpNodal& l) {
-    auto rows = inp_nodes(d, l.target, l.id, l.place);
-    std::erase_if(rows, [&](std::int64_t a) { return !is_of_shell(in, a); });
-    return rows;
-  };
-  for (const auto& l : d.supports)
-    for (const auto a : of_shells(l)) {
-      if (d.transformed.size() > 0)
-        throw Error(l.place, "*TRANSFORM beside shells of --thicken is not read", "hold them in the deck's axes");
-      if (l.last > 3 && l.value != 0) throw Error(l.place, "a shell's node is turned by *BOUNDARY: pairs of nodes have no turns");
-      for (int k = l.first; k <= std::min(l.last, 6); ++k) in.held[a] |= 1U << (k - 1);
-    }
-  for (const auto& l : d.forces)
-    if (l.last > 3 && !of_shells(l).empty())
-      throw Error(l.place, "a moment on a shell's node: pairs of nodes have no turns", "two forces, or leave --thicken away");
-}
-
 /// Sections of shells and beams; a cell of these without one is an Error.
 void thin_sections(const InpDeck& d, Imported& in, bool thicken) {
   const Mesh& m = in.mesh;
@@ -157,8 +139,8 @@ void thin_sections(const InpDeck& d, Imported& in, bool thicken) {
   std::unordered_set<std::int64_t> nodes;
   for (const auto& [c, t] : in.thin) nodes.insert(m.cell(c).begin(), m.cell(c).end());
   if (thicken) {
-    held_components(d, in);
-    std::erase_if(nodes, [&](std::int64_t a) { return is_of_shell(in, a); });  // judged there
+    in.sheets = std::make_shared<Sheets>(in);
+    std::erase_if(nodes, [&](std::int64_t a) { return !in.sheets->at(a).empty(); });  // bodies where they have to turn
   }
   for (const auto* lines : {&d.supports, &d.forces})
     for (const auto& l : *lines) {
@@ -298,8 +280,12 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     beams_as_cells(d);
   resolve_cells(d, in);
   tell_pyramids(in, static_cast<std::int64_t>(d.pyramids.size()) / 2);
-  find_beams(d, in, options.thicken);
+  find_beams(d, in);
   thin_sections(d, in, options.thicken);
+  if (in.sheets)
+    find_bodies_of_shells(d, in);
+  else
+    for (const InpThickness& t : d.thicknesses) in.skip("*NODAL THICKNESS of regions that are rigid", t.node.place);
 
   std::unordered_set<std::int64_t> points;  // elements that are no cells
   for (const auto& [id, p] : d.points) points.insert(id);
@@ -322,6 +308,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   for (const auto& s : d.surfaces) {
     if (s.of_nodes) continue;
     std::vector<Facet> facets;
+    bool below = false;  // the faces of shells against their normals
     for (const auto& line : s.lines) {
       const auto cells = inp_cells(d, line.target, line.id, line.place);
       if (line.face == 0) {
@@ -330,12 +317,27 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
       } else
         for (const auto c : cells) {
           refuse_face(d, in.mesh.cell_id[c], line.place);
+          if (const bool shell = info(in.mesh.shape[c]).dimension == 2;
+              line.face <= 2 && (shell || line.of_shell)) {  // against its normal, along it
+            if (!shell)
+              throw Error(line.place, fmt::format("*SURFACE {}: element {} is no shell", s.name, in.mesh.cell_id[c]),
+                          "S1 to S6 of a solid");
+            if (!facets.empty() && below != (line.face == 1))
+              throw Error(line.place, fmt::format("*SURFACE {}: both faces of shells, or shells and solids", s.name), "a surface of each");
+            below = line.face == 1;
+            facets.push_back({c, 0});
+            continue;
+          }
+          if (below)
+            throw Error(line.place, fmt::format("*SURFACE {}: the faces of shells against their normals, and of solids", s.name),
+                        "a surface of each");
           const int f = inp_facet(static_cast<Shape>(in.mesh.shape[c]), line.face);
           if (f < 0) throw Error(line.place, fmt::format("*SURFACE {}: element {} has no face S{}", s.name, in.mesh.cell_id[c], line.face));
           facets.push_back({c, f});
         }
     }
     surface[upper(s.name)] = names.facets(s.name, std::move(facets));
+    if (below) in.below.insert(surface[upper(s.name)]);
   }
   for (const auto& key : d.nset_order) {
     auto nodes = rows(d.nset.at(key), d.node, &d.unused, "node", in);
@@ -360,6 +362,9 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
       names.cells(g.name, g.cells);
   find_equations(d, in);
   find_ties(d, in, surface);
+  for (const auto& [id, body] : d.bodies)
+    if (const auto a = d.node.find(id); a != d.node.end() && in.sheets && !in.sheets->at(a->second).empty())
+      in.body_of_node[a->second] = body_name(d, id);
   write_inp_scene(d, in, names, node_set, surface, options);
   return in;
 }

@@ -9,9 +9,7 @@
 #include "import/inp/card.hpp"
 
 namespace hilo {
-namespace {
 
-/// Target of a line: a number or the name of a set.
 void target_of(const DataLine& l, std::string& target, std::int64_t& id) {
   id = 0;
   target.clear();
@@ -24,6 +22,8 @@ void target_of(const DataLine& l, std::string& target, std::int64_t& id) {
   target = upper(text);
   if (target.empty()) throw Error(l.place(0), "expected a number or the name of a set");
 }
+
+namespace {
 
 /// Abaqus names for supports: the held components as first, last pairs.
 std::vector<std::pair<int, int>> named_support(const std::string& word) {
@@ -147,6 +147,8 @@ void read_distributed(InpReading& r) {
       p.direction.normalize();
     } else if (!surface && label.size() == 2 && label[0] == 'P' && label[1] >= '1' && label[1] <= '6')
       p.face = label[1] - '0';
+    else if (!surface && label == "P")
+      p.face = -3;
     else {
       in.skip(fmt::format("{} {}", card.name, label), p.place);
       continue;

@@ -232,6 +232,18 @@ void read_shell_section(InpReading& r) {
   r.deck.sections.push_back(s);
 }
 
+void read_nodal_thickness(InpReading& r) {
+  DataLine l;
+  while (r.lines.next_data(l)) {
+    InpThickness t;
+    t.node.place = l.place();
+    target_of(l, t.node.name, t.node.id);
+    t.value = l.number(1);
+    if (!(t.value > 0)) throw Error(l.place(1), fmt::format("{}: a thickness of {:g}", r.card.name, t.value));
+    r.deck.thicknesses.push_back(t);
+  }
+}
+
 /// The shape of a section by its sizes; extents along directions 1 and 2 to `extent`.
 DeckSection beam_shape(InpReading& r, const DataLine& l, bool& along_n2, std::array<double, 2>& extent) {
   const Card& card = r.card;
@@ -323,6 +335,7 @@ std::span<const InpCard> inp_material_cards() {
       {"DENSITY", read_density},
       {"SOLIDSECTION", read_section},
       {"SHELLSECTION", read_shell_section},
+      {"NODALTHICKNESS", read_nodal_thickness},
       {"BEAMSECTION", read_beam_section},
       {"BEAMGENERALSECTION", read_general_section},
       {"PLASTIC", read_plastic},

@@ -225,6 +225,11 @@ void read_surface(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
     }
     const std::string face = upper(l.text(1));
     if (!s.of_nodes && !face.empty()) {
+      if (face == "SPOS" || face == "SNEG") {
+        one.face = face == "SPOS" ? 2 : 1, one.of_shell = true;
+        s.lines.push_back(one);
+        continue;
+      }
       if (face.size() != 2 || face[0] != 'S' || face[1] < '1' || face[1] > '6') {
         in.skip(fmt::format("*SURFACE: face {}", face), l.place());
         continue;

@@ -37,7 +37,8 @@ class InpScene {
   void centrifugal();
   void load_of_mass(const InpDistributed& p, const char* kind, const std::string& wish, const std::string& what);
   void forces();
-  double share_of_pairs(const Rows& nodes, const std::string& place) const;
+  std::map<size_t, Rows> by_number_of_nodes(const Rows& nodes);
+  std::string end_of(std::int64_t row, const std::string& wish);
   void forces_of_ties();
   void pressures();
   void velocities();
@@ -60,6 +61,8 @@ class InpScene {
   const ImportOptions& o_;
   std::set<std::int64_t> own_axes_;      // the same by number, nodes of no cell too
   std::vector<int> turned_;              // *TRANSFORM of each node, or -1
+  std::set<std::int64_t> of_solids_;     // rows, beside shells that become pairs
+  std::set<std::int64_t> of_beams_;      // numbers of nodes
   std::set<std::string> used_, wanted_;  // names given; amplitudes that a line scales by
   std::map<std::string, int> made_;      // sets made of single nodes or elements
   std::string head_, tables_;

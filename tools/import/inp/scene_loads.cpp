@@ -9,6 +9,7 @@
 #include "import/inp/scene.hpp"
 #include "import/inp/ties.hpp"
 #include "import/links.hpp"
+#include "import/sheets.hpp"
 
 namespace hilo {
 
@@ -91,20 +92,24 @@ void InpScene::forces() {
   for (const auto& g : nodal_groups(d_, d_.forces, "*CLOAD", true, turned_, in_)) {
     std::string past;
     if (g.value.norm() == 0 || !history(g.amplitude, "*CLOAD", g.place, past)) continue;
-    const double share = share_of_pairs(g.nodes, g.place);
-    const std::string set = set_of(g.target, g.nodes, "force", true);
-    tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", g.place,
-                           toml_text(unique("load", set)), toml_text(set), list(Vec3(share * g.value * si("N")))) +
-               past;
+    for (const auto& [n, nodes] : by_number_of_nodes(g.nodes)) {
+      const std::string set = set_of(g.target, nodes, "force", true);
+      tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", g.place,
+                             toml_text(unique("load", set)), toml_text(set), list(Vec3(g.value * si("N") / static_cast<double>(n)))) +
+                 past;
+    }
   }
 }
 
-/// 1/2 for nodes of shells that become pairs: each takes half.
-double InpScene::share_of_pairs(const Rows& nodes, const std::string& place) const {
-  if (!o_.thicken) return 1;
-  const auto n = static_cast<size_t>(std::ranges::count_if(nodes, [&](std::int64_t a) { return is_of_shell(in_, a); }));
-  if (n > 0 && n < nodes.size()) throw Error(place, "*CLOAD on nodes of shells and of others", "one line for each");
-  return n > 0 ? 0.5 : 1;
+/// Nodes by how many they become: one of shells a pair for each sheet, each of which takes its share.
+std::map<size_t, Rows> InpScene::by_number_of_nodes(const Rows& nodes) {
+  std::map<size_t, Rows> out;
+  for (const auto a : nodes) {
+    size_t n = 1;
+    if (in_.sheets && !in_.sheets->at(a).empty()) n = in_.nodes_counted[a] = count_nodes(in_.sheets->at(a), of_solids_.contains(a));
+    out[n].push_back(a);
+  }
+  return out;
 }
 
 /// Forces and moments at reference nodes: on the body, or shared by the nodes of a distributing coupling.
@@ -147,9 +152,17 @@ void InpScene::forces_of_ties() {
                                toml_text(unique("load", name)), toml_text(name), list(Vec3(s.F * si("N"))),
                                list(Vec3(d_.bodies.at(key.first).X * si("m") * o_.scale))) +
                    past;
-      if (s.M.norm() > 0)
+      Vec3 M = s.M;
+      if (const auto a = d_.node.find(key.first); a != d_.node.end() && in_.sheets && !in_.sheets->at(a->second).empty() &&
+                                                  !of_beams_.contains(key.first) && is_flat(in_.sheets->at(a->second))) {
+        const Vec3& n = in_.sheets->at(a->second).front().normal;
+        if (std::abs(M.dot(n)) > 1e-6 * M.norm())
+          in_.skip("*CLOAD: a moment about the normal of a shell, which does not resist it", s.place);
+        M -= n * n.dot(M);
+      }
+      if (M.norm() > 0)
         tables_ += fmt::format("\n[[load]]   # {}\nkind = \"torque\"\nname = {}\non = {}\ntorque = {}\n", s.place,
-                               toml_text(unique("load", name + "_torque")), toml_text(name), list(Vec3(s.M * si("N m")))) +
+                               toml_text(unique("load", name + "_torque")), toml_text(name), list(Vec3(M * si("N m")))) +
                    past;
       continue;
     }
@@ -165,9 +178,10 @@ void InpScene::forces_of_ties() {
     }
     for (size_t i = 0; i < rows.size(); ++i)
       if ((*shares)[i].norm() > 0) {
+        const auto n = static_cast<double>(by_number_of_nodes({rows[i]}).begin()->first);
         const std::string set = set_of("", {rows[i]}, "share", true);
         tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nper_node = true\n", s.place,
-                               toml_text(unique("load", set)), toml_text(set), list(Vec3((*shares)[i] * si("N")))) +
+                               toml_text(unique("load", set)), toml_text(set), list(Vec3((*shares)[i] * si("N") / n))) +
                    past;
       }
   }
@@ -178,20 +192,21 @@ void InpScene::pressures() {
     std::string wish, name, amplitude, place;
     double value;
     std::vector<Facet> facets;
+    bool below = false;  // of shells: against their normals
     std::set<std::pair<std::int64_t, int>> has = {};
   };
   std::vector<Group> groups;  // what is said twice counts twice
   const auto add = [&](const Group& g, const Facet& f) {
     Group* to = nullptr;
     for (auto& old : groups)
-      if (old.name.empty() && old.wish == g.wish && old.amplitude == g.amplitude && old.value == g.value &&
+      if (old.name.empty() && old.wish == g.wish && old.amplitude == g.amplitude && old.value == g.value && old.below == g.below &&
           !old.has.contains({f.cell, f.facet}))
         to = &old;
     if (!to) to = &groups.emplace_back(g);
     to->facets.push_back(f), to->has.insert({f.cell, f.facet});
   };
   for (const auto& p : d_.distributed) {
-    if (p.face < 0) continue;
+    if (p.face == -1 || p.face == -2) continue;
     if (p.face == 0) {
       const auto s = surface_.find(p.target);
       if (s == surface_.end()) throw Error(p.place, fmt::format("*DSLOAD: no element surface \"{}\"", p.target));
@@ -206,12 +221,19 @@ void InpScene::pressures() {
     const bool has_beams =
         set != d_.elset.end() && std::ranges::any_of(set->second.members, [&](auto id) { return d_.beams.contains(id); });
     if (cells.empty() || has_beams) in_.skip("*DLOAD on elements that are no cells", p.place);
-    const Group g{p.target.empty() ? std::string() : fmt::format("{}_P{}", d_.elset.at(p.target).name, p.face),
-                  "",
-                  p.amplitude,
-                  p.place,
-                  p.value,
-                  {}};
+    const std::string of_set = p.target.empty() ? std::string() : d_.elset.at(p.target).name + "_P";
+    if (p.face == -3) {  // along the normal of a shell: half of it on each face is that on the middle
+      const double half = in_.sheets ? 0.5 : 1;
+      for (const auto c : cells) {
+        if (info(in_.mesh.shape[static_cast<size_t>(c)]).dimension != 2)
+          throw Error(p.place, fmt::format("*DLOAD: element {} is no shell", in_.mesh.cell_id[static_cast<size_t>(c)]),
+                      "P1 to P6 of a solid");
+        add({of_set, "", p.amplitude, p.place, -half * p.value, {}}, {c, 0});
+        if (in_.sheets) add({of_set.empty() ? "" : of_set + "_below", "", p.amplitude, p.place, half * p.value, {}, true}, {c, 0});
+      }
+      continue;
+    }
+    const Group g{of_set.empty() ? "" : fmt::format("{}{}", of_set, p.face), "", p.amplitude, p.place, p.value, {}};
     for (const auto c : cells) {
       if (d_.pyramids.contains(in_.mesh.cell_id[c]))
         throw Error(p.place, fmt::format("*DLOAD: element {} is a pyramid, whose faces by number are not read", in_.mesh.cell_id[c]));
@@ -225,6 +247,7 @@ void InpScene::pressures() {
     if (!history(g.amplitude, "*DLOAD", g.place, past)) continue;
     if (g.name.empty()) g.name = names_.facets(g.wish.empty() ? fmt::format("pressure_{}", ++made_["pressure"]) : g.wish, g.facets);
     if (g.name.empty()) continue;
+    if (g.below) in_.below.insert(g.name);
     tables_ += fmt::format("\n[[load]]   # {}\nkind = \"pressure\"\nname = {}\non = {}\npressure = {}\n", g.place,
                            toml_text(unique("load", g.name)), toml_text(g.name), num(g.value * si("Pa"))) +
                past;

@@ -31,6 +31,12 @@ void InpScene::write(const Held& h) {
   if (h.moved) tables_ += fmt::format("displacement = {}\n", list(Vec3(h.value * si("m")))) + past;
 }
 
+/// What a joint of a node of cells names: its body, or the set of it.
+std::string InpScene::end_of(std::int64_t row, const std::string& wish) {
+  const auto body = in_.body_of_node.find(row);
+  return body != in_.body_of_node.end() ? body->second : set_of("", {row}, wish, true);
+}
+
 /// Equal displacements: a body of no mass that slides along their axis, held or moved as a node of no cell among them is, and in whose
 /// plane each node of a cell stays.
 void InpScene::slides() {
@@ -60,7 +66,7 @@ void InpScene::slides() {
       tables_ += motion_of_body(unique("motion", name), name, by, at, past, h.place);
     }
     for (const auto a : s.rows) {
-      const std::string set = set_of("", {a}, "equal", true);
+      const std::string set = end_of(a, "equal");
       tables_ += joint_to_slide(unique("joint", set), name, set, axis, point(in_.mesh.X[a]), s.place);
     }
   }
@@ -70,7 +76,7 @@ void InpScene::sums() {
   for (const InpSum& s : d_.sums) {
     std::vector<SumTerm> terms;
     for (const auto& [a, way] : s.rows)
-      if (way != Vec3::Zero()) terms.push_back({set_of("", {a}, "equation", true), point(in_.mesh.X[a]), way});
+      if (way != Vec3::Zero()) terms.push_back({end_of(a, "equation"), point(in_.mesh.X[a]), way});
     for (const auto& [slide, factor] : s.slides) {
       const InpSlide& of = d_.slides[static_cast<size_t>(slide)];
       if (factor != 0) terms.push_back({slide_name(d_, slide), point(of.X), factor * Vec3::Unit(of.component - 1)});

@@ -11,6 +11,7 @@
 #include "import/inp/equations.hpp"
 #include "import/inp/groups.hpp"
 #include "import/links.hpp"
+#include "import/sheets.hpp"
 
 namespace hilo {
 namespace {
@@ -129,8 +130,20 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
       in.skip(t.name + " whose reference node is a node of a cell", t.place);
       continue;
     }
-    std::vector<std::int64_t> beams;  // nodes of beams among them
-    for (const auto id : ids_of(d, t))
+    if (in.sheets && !t.mean) {  // a patch of pairs turns with the body, and must not lie on a line
+      std::vector<Vec3> points;
+      for (const auto& [a, weight] : w) points.push_back(in.mesh.X[static_cast<size_t>(a)]);
+      if (t.components != 63 || on_a_line(points))
+        for (const auto& [a, weight] : w)
+          if (!in.sheets->at(a).empty())
+            d.bodies.try_emplace(in.mesh.node_id[static_cast<size_t>(a)], InpBody{in.mesh.X[static_cast<size_t>(a)], t.place, {}});
+    }
+    std::vector<std::int64_t> beams;  // nodes of beams, and others that are bodies, among them
+    std::vector<std::int64_t> ids = ids_of(d, t);
+    for (const auto& [a, weight] : w) ids.push_back(in.mesh.node_id[static_cast<size_t>(a)]);
+    std::ranges::sort(ids);
+    ids.erase(std::ranges::unique(ids).begin(), ids.end());
+    for (const auto id : ids)
       if (d.bodies.contains(id) && id != ref) {
         beams.push_back(id);
         if (const auto a = d.node.find(id); a != d.node.end()) w.erase(a->second);
@@ -141,8 +154,8 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
       if (const auto set = d.elset.find(t.of);
           set != d.elset.end() && std::ranges::any_of(set->second.members, [&](auto id) { return d.beams.contains(id); }))
         throw Error(t.place, fmt::format("{}: element set \"{}\" has beams", t.name, set->second.name), "a set of their nodes");
-    if (!t.mean && !beams.empty() && t.components != 63) {
-      in.skip(t.name + " of some components, of nodes of beams", t.place);
+    if (!t.mean && !beams.empty() && t.components != 63 && t.own_axes) {
+      in.skip(t.name + " of some components in axes of its own, of nodes of beams", t.place);
       continue;
     }
     if (t.mean && !beams.empty()) {
@@ -167,7 +180,7 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
     std::vector<std::int64_t> rows;
     for (const auto& [a, weight] : w) rows.push_back(a);
     if (!rows.empty()) body.carries.push_back({t.name, t.place, rows});
-    body.bodies.insert(body.bodies.end(), beams.begin(), beams.end());
+    for (const auto id : beams) body.bodies.emplace_back(id, t.components);
     if (!t.turns.name.empty() || t.turns.id) d.turns_of[node_of(d, t.turns)] = ref;
   }
 }
@@ -322,9 +335,10 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
     if (m > 0)
       text += fmt::format("\n[[point_mass]]\nname = {0}\non = {0}\nmass = {1}\n", toml_text(end_name(id)), toml_number(m * si("kg")));
   for (const auto& [id, b] : d.bodies)
-    for (const auto other : b.bodies)
-      text += fmt::format("\n[[joint]]   # {}\nkind = \"fixed\"\nname = \"{}_{}\"\na = \"{}\"\nb = \"{}\"\nat = {}\n", b.place,
-                          body_name(d, id), other, body_name(d, id), body_name(d, other), point(b.X));
+    for (const auto& [other, components] : b.bodies)
+      text +=
+          joints_that_hold(components, Mat3::Identity(), fmt::format("{}_{}", body_name(d, id), other), body_name(d, id),
+                           body_name(d, other), point(X(other)), b.place, [](const std::string&, const std::string& wish) { return wish; });
   for (const auto& [id, b] : d.bodies)
     for (const InpCarried& c : b.carries) {
       std::vector<Vec3> points;

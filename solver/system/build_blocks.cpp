@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nodes that the mesh says move as one, at folds of shells: each block is a body without mass, or the body that some of its nodes follow.
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "system/builder.hpp"
+#include "system/joints.hpp"
+#include "system/motions.hpp"
+
+namespace hilo {
+namespace {
+
+/// Nodes nearer to a line than this share of their distances from its middle lie on it.
+constexpr double on_line = 1e-3;
+
+/// Components of a block's points that are held, as rows of its rigid motion: those that the others do not imply.
+class HeldRows {
+ public:
+  explicit HeldRows(double size) : size_(size) {}
+  bool is_new(const Vec3& arm, int component) {
+    Eigen::Matrix<double, 6, 1> row;
+    const Vec3 e = Vec3::Unit(component);
+    row << e, arm.cross(e) / size_;
+    for (const auto& other : rows_) row -= other * other.dot(row);
+    for (const auto& other : rows_) row -= other * other.dot(row);
+    if (row.norm() < 1e-6) return false;
+    rows_.push_back(row.normalized());
+    return true;
+  }
+
+ private:
+  double size_;
+  std::vector<Eigen::Matrix<double, 6, 1>> rows_;
+};
+
+}  // namespace
+
+/// After all that makes bodies of nodes.  Collective.
+void Builder::make_blocks() {
+  if (!mesh_ || mesh_->mesh.block_name.empty()) return;
+  const Mesh& mesh = mesh_->mesh;
+  const size_t n = mesh.block_name.size();
+  const auto n_nodes = static_cast<int>(mesh.X.size());
+  const auto refuse = [&](size_t b, const std::string& why, const std::string& hint) {
+    throw Error(mesh_->file,
+                fmt::format("the nodes at ({:.4g}, {:.4g}, {:.4g}), {}, move as one, {}", mesh.block_at[b][0], mesh.block_at[b][1],
+                            mesh.block_at[b][2], mesh.block_name[b], why),
+                hint);
+  };
+  std::set<std::pair<double, double>> met;   // block, what a node of it follows
+  std::vector<double> moments(10 * n, 0.0);  // number, places and their squares, about the block's own
+  for (int i = 0; i < n_nodes; ++i) {
+    const auto b = mesh.block[i];
+    if (b < 0) continue;
+    met.emplace(static_cast<double>(b), out_->follower[i]);
+    if (!out_->node_owned[i]) continue;
+    double* m = moments.data() + 10 * b;
+    const Vec3 r = out_->X[i] - mesh.block_at[static_cast<size_t>(b)];
+    const double more[10] = {1, r[0], r[1], r[2], r[0] * r[0], r[1] * r[1], r[2] * r[2], r[0] * r[1], r[0] * r[2], r[1] * r[2]};
+    for (int k = 0; k < 10; ++k) m[k] += more[k];
+  }
+  comm_.sum(moments);
+  std::vector<double> pairs;
+  for (const auto& [block, body] : met) pairs.insert(pairs.end(), {block, body});
+  pairs = comm_.gather(pairs);
+  std::vector<std::set<int>> follows(n);
+  for (size_t i = 0; i + 1 < pairs.size(); i += 2) follows[static_cast<size_t>(pairs[i])].insert(static_cast<int>(pairs[i + 1]));
+  std::vector<int> body_of(n, -1);
+  for (size_t b = 0; b < n; ++b) {
+    std::set<int> bodies = follows[b];
+    const bool has_free = bodies.erase(-1) > 0;
+    for (const int body : bodies)
+      if (out_->bodies[body].linear)
+        refuse(b, fmt::format("and the region \"{}\" is linear", out_->bodies[body].name), "folds are in nonlinear and rigid regions");
+    const auto named = body_by_name_.find(mesh.block_name[b]);
+    if (named != body_by_name_.end()) bodies.insert(named->second);
+    const auto still = [&](int body) { return out_->bodies[body].ground || (out_->bodies[body].held && !out_->bodies[body].moving); };
+    if (bodies.size() > 1 && !std::ranges::all_of(bodies, still))
+      refuse(b, fmt::format("and belong to \"{}\" and \"{}\"", out_->bodies[*bodies.begin()].name, out_->bodies[*bodies.rbegin()].name),
+             "one of them, joined to the other");
+    if (!has_free) continue;
+    const double* m = moments.data() + 10 * b;
+    const Vec3 mean = Vec3(m[1], m[2], m[3]) / m[0];
+    Mat3 S;
+    S << m[4], m[7], m[8], m[7], m[5], m[9], m[8], m[9], m[6];
+    S = S / m[0] - mean * mean.transpose();
+    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(S);
+    const double size = std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
+    int body = bodies.empty() ? -1 : *bodies.begin();
+    if (body < 0) {
+      body = new_body(mesh.block_name[b], mesh.block_at[b]);
+      out_->bodies[body].patch = out_->bodies[body].block = true;
+      out_->bodies[body].size = std::max(size, 1e-9 * out_->length);
+    }
+    if (follows[b].size() == 1 && eigen.eigenvalues()[1] < on_line * on_line * eigen.eigenvalues()[2])
+      out_->bodies[body].line = eigen.eigenvectors().col(2);
+    out_->bodies[body].has_cells = true;
+    body_of[b] = body;
+  }
+  for (int i = 0; i < n_nodes; ++i)
+    if (mesh.block[i] >= 0 && out_->follower[i] < 0 && body_of[static_cast<size_t>(mesh.block[i])] >= 0)
+      out_->follower[i] = body_of[static_cast<size_t>(mesh.block[i])];
+  hold_blocks(body_of);
+}
+
+/// Single components that motions hold of nodes of blocks: rows of their bodies.  Collective.
+void Builder::hold_blocks(const std::vector<int>& body_of) {
+  const Mesh& mesh = mesh_->mesh;
+  auto& motions = out_->part<Motions>().list;
+  std::vector<double> held;  // motion, block, place of a node
+  for (size_t k = 0; k < motions.size(); ++k) {
+    Motion& m = motions[k];
+    if (m.body >= 0) continue;
+    for (const int i : m.nodes) {
+      if (mesh.block[i] < 0) continue;
+      if (out_->node_owned[i])
+        held.insert(held.end(), {static_cast<double>(k), static_cast<double>(mesh.block[i]), out_->X[i][0], out_->X[i][1], out_->X[i][2]});
+      out_->fixed[i] = {false, false, false};
+    }
+    std::erase_if(m.nodes, [&](int i) { return mesh.block[i] >= 0; });
+  }
+  held = comm_.gather(held);
+  std::set<std::array<double, 5>> all;
+  for (size_t i = 0; i + 4 < held.size(); i += 5) all.insert({held[i + 1], held[i], held[i + 2], held[i + 3], held[i + 4]});  // by block
+  auto& joints = out_->part<Joints>().list;
+  double block = -1;
+  std::optional<HeldRows> rows;
+  std::map<std::pair<double, double>, std::vector<std::pair<Vec3, int>>> wanted;  // motion and block: points and components
+  for (const auto& [b, k, x, y, z] : all) {
+    const auto number = static_cast<size_t>(b);
+    const Motion& m = motions[static_cast<size_t>(k)];
+    if (m.moving)
+      throw Error(scene_.path,
+                  fmt::format("motion \"{}\" moves single components of nodes of {}, which move as one", m.name, mesh.block_name[number]),
+                  "all three, or a joint");
+    const Body& body = out_->bodies[body_of[number]];
+    if (block != b) rows.emplace(body.size), block = b;
+    for (int c = 0; c < 3; ++c)
+      if (const Vec3 at(x, y, z); m.component[c] && rows->is_new(at - body.Xc, c)) wanted[{k, b}].emplace_back(at, c);
+  }
+  for (const auto& [key, points] : wanted) {
+    Motion& m = motions[static_cast<size_t>(key.first)];
+    const auto number = static_cast<size_t>(key.second);
+    const int body = body_of[number];
+    Joint c;
+    c.name = fmt::format("{} {}", m.name, mesh.block_name[number]);
+    c.kind = &joint_kinds().at("in-plane");
+    c.join({0, -1}, {body, -1}, out_->start, points[0].first, Mat3::Identity());
+    for (const auto& [at, component] : points) {
+      const int a = c.add_point(0, out_->start, at), b = c.add_point(1, out_->start, at);
+      c.add_zero_measure({{Term::coordinate, a, b, 0, 1, Vec3::Unit(component)}}, out_->start);
+    }
+    m.joints.push_back(static_cast<int>(joints.size()));
+    joints.push_back(std::move(c));
+  }
+}
+
+}  // namespace hilo

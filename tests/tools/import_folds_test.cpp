@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shells of decks that fold, meet, change their thickness, turn at their supports or carry beams: frames of strips against beam theory.
+#include <fmt/format.h>
+
+#include "import_case.hpp"
+#include "model/store.hpp"
+
+namespace hilo::test::import_folds_test {
+namespace {
+
+constexpr double E = 1e9, t = 0.1, EI = E * t * t * t / 12, EA = E * t, kGA = 5. / 6 * E / 2 * t;  // of strips 1 wide, nu = 0
+
+/// Strips along polylines in the plane of x and z, one cell (or more) wide along y.
+struct Frame {
+  double step = 0.5;
+  int across = 1;
+  std::string nodes, cells;
+  std::map<std::pair<long, long>, int> number;  // first node of a station
+  std::map<std::string, std::string> of_set;
+  int n_cells = 0;
+
+  int station(double x, double z) {
+    const auto [it, fresh] =
+        number.try_emplace({std::lround(1e6 * x), std::lround(1e6 * z)}, static_cast<int>(number.size()) * (across + 1) + 1);
+    if (fresh)
+      for (int k = 0; k <= across; ++k) nodes += fmt::format("{},{},{},{}\n", it->second + k, x, static_cast<double>(k) / across, z);
+    return it->second;
+  }
+  void strip(double x0, double z0, double x1, double z1, const std::string& set = "PLATE") {
+    const int n = static_cast<int>(std::lround(std::hypot(x1 - x0, z1 - z0) / step));
+    for (int i = 0; i < n; ++i) {
+      const double a = static_cast<double>(i) / n, b = static_cast<double>(i + 1) / n;
+      const int p = station(x0 + a * (x1 - x0), z0 + a * (z1 - z0)), q = station(x0 + b * (x1 - x0), z0 + b * (z1 - z0));
+      for (int k = 0; k < across; ++k) of_set[set] += fmt::format("{},{},{},{},{}\n", ++n_cells, p + k, q + k, q + k + 1, p + k + 1);
+    }
+  }
+  std::string nodes_at(double x, double z) {
+    const int p = station(x, z);
+    std::string s;
+    for (int k = 0; k <= across; ++k) s += fmt::format("{}{}", k ? "," : "", p + k);
+    return s + "\n";
+  }
+  /// Forces or moments on the nodes of a station, whose sum is `value`.
+  std::string load(double x, double z, int component, double value) {
+    const int p = station(x, z);
+    std::string s;
+    for (int k = 0; k <= across; ++k)
+      s += fmt::format("{},{},{:.15g}\n", p + k, component, value / across * (k == 0 || k == across ? 0.5 : 1));
+    return s;
+  }
+  std::string deck(const std::string& sets, const std::string& supports, const std::string& loads, const std::string& more = "",
+                   const std::string& procedure = "*STATIC") const {
+    std::string s = "*NODE\n" + nodes, sections;
+    for (const auto& [set, cells_of] : of_set) {
+      s += "*ELEMENT, TYPE=S4, ELSET=" + set + "\n" + cells_of;
+      sections += fmt::format("*SHELL SECTION, ELSET={}, MATERIAL=M\n{}\n", set, set == "THICK" ? 2 * t : t);
+    }
+    return s + sets + fmt::format("*MATERIAL, NAME=M\n*ELASTIC\n{},0.\n*DENSITY\n1000\n", E) + sections + more + "*BOUNDARY\n" + supports +
+           "*STEP\n" + procedure + "\n*CLOAD\n" + loads + "*END STEP\n";
+  }
+};
+
+class ImportFolds : public test::Import {
+ protected:
+  /// How far the set TIP goes; `more` scene lines, `ranks` of them.
+  Vec3 tip(const std::string& deck, const std::string& more = "", int ranks = 1) {
+    place.write("deck.inp", deck);
+    imported("deck.inp", "--thicken --scene-out scene.toml");
+    place.write("run.toml", test::text_of(place / "scene.toml") + "\n[[probe]]\nname = \"TIP\"\non = \"TIP\"\n" + more);
+    const auto ran =
+        place.run(fmt::format("{}hilo-solve --quiet run.toml -o run.h5", ranks > 1 ? fmt::format("mpirun -n {} ", ranks) : ""));
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    if (ran.exit != 0) return Vec3::Zero();
+    const Store run = Store::open(place / "run.h5");
+    const auto x = run.read<double>("/history/probe/TIP");
+    const size_t n = x.size() / run.shape("/history/probe/TIP")[0];
+    return Vec3(x[x.size() - n] - x[0], x[x.size() - n + 1] - x[1], x[x.size() - n + 2] - x[2]);
+  }
+};
+
+TEST_F(ImportFolds, ACornerIsStiffAndNoMore) {
+  Frame f;
+  f.strip(0, 0, 10, 0), f.strip(10, 0, 10, 10);
+  const std::string sets = "*NSET, NSET=ROOT\n" + f.nodes_at(0, 0) + "*NSET, NSET=TIP\n" + f.nodes_at(10, 10);
+  constexpr double F = 1e-3, a = 10, b = 10;
+  const Vec3 way = tip(f.deck(sets, "ROOT,1,6\n", f.load(10, 10, 1, F)));
+  EXPECT_NE(err.find("2 nodes of folds"), std::string::npos) << err;
+  EXPECT_NEAR(way.x() / (F * (b * b * b / (3 * EI) + b * b * a / EI + a / EA + b / kGA)), 1, 1e-3);
+  EXPECT_NEAR(way.z() / (F * b * a * a / (2 * EI)), -1, 1e-3);
+  for (const int ranks : {2, 3})
+    EXPECT_LT((tip(f.deck(sets, "ROOT,1,6\n", f.load(10, 10, 1, F)), "", ranks) - way).norm(), 1e-9 * way.norm());
+}
+
+TEST_F(ImportFolds, ATeeSharesItsMoment) {
+  Frame f;
+  f.strip(-10, 0, 0, 0), f.strip(0, 0, 10, 0), f.strip(0, 0, 0, 10);
+  const std::string sets =
+      "*NSET, NSET=ROOT\n" + f.nodes_at(-10, 0) + "*NSET, NSET=ROOT\n" + f.nodes_at(10, 0) + "*NSET, NSET=TIP\n" + f.nodes_at(0, 10);
+  constexpr double F = 1e-3, a = 10, b = 10;
+  const Vec3 way = tip(f.deck(sets, "ROOT,1,6\n", f.load(0, 10, 1, F)));
+  const double turn = 4 * EI / a * (1 + 3 * EI / (kGA * a * a)) / (1 + 12 * EI / (kGA * a * a));  // moment of one half for a unit turn
+  EXPECT_NEAR(way.x() / (F * (b * b * b / (3 * EI) + b * b / (2 * turn) + a / (2 * EA) + b / kGA)), 1, 1e-3);
+}
+
+TEST_F(ImportFolds, HingesLetTheStripTurn) {
+  Frame f;
+  f.strip(0, 0, 10, 0);
+  const std::string sets =
+      "*NSET, NSET=A\n" + f.nodes_at(0, 0) + "*NSET, NSET=B\n" + f.nodes_at(10, 0) + "*NSET, NSET=TIP\n" + f.nodes_at(5, 0);
+  constexpr double F = 1e-3, L = 10;
+  const double want = F * (L * L * L / (48 * EI) + L / (4 * kGA));
+  EXPECT_NEAR(tip(f.deck(sets, "A,1,3\nB,2,3\n", f.load(5, 0, 3, F))).z() / want, 1, 1e-3);
+  EXPECT_NEAR(tip(f.deck(sets, "A,1,4\nA,6\nB,2,4\nB,6\n", f.load(5, 0, 3, F))).z() / want, 1, 1e-3) << "no turn but about the hinge";
+}
+
+TEST_F(ImportFolds, AMomentBendsTheStrip) {
+  Frame f;
+  f.strip(0, 0, 10, 0);
+  const std::string sets = "*NSET, NSET=ROOT\n" + f.nodes_at(0, 0) + "*NSET, NSET=TIP\n" + f.nodes_at(10, 0);
+  constexpr double M = 1e-3, L = 10;
+  EXPECT_NEAR(tip(f.deck(sets, "ROOT,1,6\n", f.load(10, 0, 5, M))).z() / (M * L * L / (2 * EI)), -1, 1e-3);
+  tip(f.deck(sets, "ROOT,1,6\n", f.load(10, 0, 6, M) + f.load(10, 0, 3, M)), "");
+  EXPECT_NE(err.find("a moment about the normal of a shell, which does not resist it"), std::string::npos) << err;
+}
+
+TEST_F(ImportFolds, AStepOfThicknessKeepsTheMiddle) {
+  Frame f;
+  f.strip(0, 0, 5, 0, "THICK"), f.strip(5, 0, 10, 0);
+  const std::string sets = "*NSET, NSET=ROOT\n" + f.nodes_at(0, 0) + "*NSET, NSET=TIP\n" + f.nodes_at(10, 0);
+  constexpr double F = 1e-3, L = 5;
+  // root half eight times as stiff: F at its end and F L as a moment there
+  const double root = F * L * L * L / (3 * 8 * EI) + F * L * L * L / (2 * 8 * EI), turn = F * L * L / (2 * 8 * EI) + F * L * L / (8 * EI);
+  EXPECT_NEAR(tip(f.deck(sets, "ROOT,1,6\n", f.load(10, 0, 3, F))).z() / (root + turn * L + F * L * L * L / (3 * EI) + F * L / kGA * 1.5),
+              1, 1e-3);
+  EXPECT_NEAR(tip(f.deck(sets, "ROOT,1,6\n", f.load(10, 0, 1, 1e3))).x() / (1e3 * L / EA * 1.5), 1, 1e-3);
+}
+
+TEST_F(ImportFolds, AStiffenerBelowThePlateBendsWithIt) {
+  Frame f;
+  f.across = 2;
+  f.strip(0, 0, 10, 0);
+  const std::string sets = "*NSET, NSET=ROOT\n" + f.nodes_at(0, 0) + "*NSET, NSET=TIP\n" + f.nodes_at(10, 0);
+  std::string beams = "*ELEMENT, TYPE=B31, ELSET=RIB\n";
+  for (int i = 0; i < 20; ++i) beams += fmt::format("{},{},{}\n", 1000 + i, f.station(i / 2., 0) + 1, f.station(i / 2. + 0.5, 0) + 1);
+  const double b = 0.1, h = 0.2, off = -0.15;  // n1 is z: the rib hangs below
+  const std::string rib = fmt::format("*BEAM SECTION, ELSET=RIB, MATERIAL=M, SECTION=RECT, OFFSET1={}\n{},{}\n0,0,1\n", off / h, h, b);
+  constexpr double M = 1e-3, L = 10;
+  const double A = b * h, I = b * h * h * h / 12, whole = EI + E * I + E * A * t / (A + t) * off * off;
+  // far from its end, where the moment of the plate's middle node spreads, the panel bends as one
+  const Vec3 way = tip(f.deck(sets + beams, "ROOT,1,6\n", f.load(10, 0, 5, M), rib));
+  EXPECT_NEAR(way.z() / (M * L * L / (2 * whole)), -1, 0.02);
+}
+
+TEST_F(ImportFolds, AnEdgeOnASolidIsAHinge) {
+  // a strip between two blocks, on their upper edges: a beam on two hinges
+  std::string nodes = "*NODE\n", cells = "*ELEMENT, TYPE=S4, ELSET=PLATE\n";
+  for (int i = 0; i <= 20; ++i) nodes += fmt::format("{},{},0,0\n{},{},1,0\n", 2 * i + 1, i / 2., 2 * i + 2, i / 2.);
+  for (int i = 0; i < 20; ++i) cells += fmt::format("{},{},{},{},{}\n", i + 1, 2 * i + 1, 2 * i + 3, 2 * i + 4, 2 * i + 2);
+  for (int end = 0; end < 2; ++end) {
+    const double x0 = end ? 10 : 0, x1 = end ? 11 : -1;
+    const int n = 100 + 10 * end;
+    nodes += fmt::format("{},{},0,-1\n{},{},1,-1\n{},{},0,-1\n{},{},1,-1\n{},{},0,0\n{},{},1,0\n", n, x0, n + 1, x0, n + 2, x1, n + 3, x1,
+                         n + 4, x1, n + 5, x1);
+  }
+  cells += "*ELEMENT, TYPE=C3D8, ELSET=BLOCK\n101,102,100,101,103,104,1,2,105\n102,110,112,113,111,41,114,115,42\n";
+  const std::string deck =
+      nodes + cells +
+      "*NSET, NSET=ROOT\n100,101,102,103,110,111,112,113\n*NSET, NSET=TIP\n21,22\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,0.\n*DENSITY\n1000\n"
+      "*MATERIAL, NAME=HARD\n*ELASTIC\n1e12,0.\n*DENSITY\n1000\n"
+      "*SHELL SECTION, ELSET=PLATE, MATERIAL=M\n.1\n*SOLID SECTION, ELSET=BLOCK, MATERIAL=HARD\n*BOUNDARY\nROOT,1,3\n"
+      "*STEP\n*STATIC\n*CLOAD\n21,3,5e-4\n22,3,5e-4\n*END STEP\n";
+  const Vec3 way = tip(deck);
+  EXPECT_NE(err.find("4 nodes of shells are nodes of solids too, which do not turn: hinges"), std::string::npos) << err;
+  EXPECT_NEAR(way.z() / (1e-3 * (1000 / (48 * EI) + 10 / (4 * kGA))), 1, 2e-3);
+}
+
+/// Three plates 1 x 1 that meet along y.
+const std::string tee =
+    "Point(1) = {0, 0, 0}; Point(2) = {0, 1, 0}; Line(1) = {1, 2}; Transfinite Curve{1} = 5;\n"
+    "a[] = Extrude {-1, 0, 0} { Curve{1}; Layers{4}; Recombine; };\n"
+    "b[] = Extrude {1, 0, 0} { Curve{1}; Layers{4}; Recombine; };\n"
+    "c[] = Extrude {0, 0, 1} { Curve{1}; Layers{4}; Recombine; };\n"
+    "Physical Surface(\"left\") = {a[1]}; Physical Surface(\"right\") = {b[1]}; Physical Surface(\"up\") = {c[1]};\n"
+    "Physical Curve(\"side\") = {a[0]}; Physical Curve(\"top\") = {c[0]};\n"
+    "Physical Curve(\"front\") = {a[2], b[2], c[2]}; Physical Curve(\"back\") = {a[3], b[3], c[3]};\n";
+const std::string rubber = "[material.rubber]\nE = 2e7\nnu = 0.0\ndensity = 1000\n[region.\"*\"]\nmaterial = \"rubber\"\n";
+
+TEST_F(ImportFolds, ComponentsOfALineAreHeldOnceAndTheirReactionIsWhole) {
+  place.write("tee.geo", tee);
+  EXPECT_EQ(imported("tee.geo", "--thickness 0.05").block_name.size(), 5u);
+  place.write("pull.toml", rubber +
+                               "[[motion]]\nkind = \"fixed\"\nname = \"front\"\non = \"front\"\ncomponents = [\"y\", \"z\"]\n"
+                               "[[motion]]\nkind = \"fixed\"\nname = \"side\"\non = \"side\"\ncomponents = [\"x\"]\n"
+                               "[[load]]\nkind = \"traction\"\nname = \"pull\"\non = \"back\"\ntraction = [0, 1000, 0]\n"
+                               "[[probe]]\nname = \"back\"\non = \"back\"\n[time]\nanalysis = \"static\"\n");
+  for (const int ranks : {1, 3}) {
+    const auto ran = place.run(fmt::format("mpirun -n {} hilo-solve --quiet pull.toml out.h5 -o run.h5", ranks));
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const Store run = Store::open(place / "run.h5");
+    const auto x = run.read<double>("/history/probe/back"), f = run.read<double>("/history/motion/front");
+    EXPECT_NEAR((x[x.size() - 8] - x[1]) / (1000 / 2e7), 1, 1e-3);
+    EXPECT_NEAR(f[f.size() - 5] / -150, 1, 1e-6) << "1000 Pa on three strips of 0.05 m^2";
+  }
+}
+
+TEST_F(ImportFolds, AThrownTeeKeepsItsEnergyAndMomenta) {
+  place.write("tee.geo", tee);
+  imported("tee.geo", "--thickness 0.05");
+  place.write("throw.toml", rubber +
+                                "[[initial]]\non = [\"up\"]\nvelocity = [2, 0, 3]\nspin = [3, 2, 5]\nabout = [0, 0, 0]\n"
+                                "[[initial]]\non = [\"left\", \"right\"]\nvelocity = [0, 1, 0]\n[[probe]]\nname = \"top\"\non = \"top\"\n"
+                                "[time]\nend = 0.5\nstep = 0.01\n");
+  const auto end = [&](const std::string& command) {
+    const auto ran = place.run(command + " -o run.h5");
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    const Store run = Store::open(place / "run.h5");
+    const auto E = run.read<double>("/history/energy"), p = run.read<double>("/history/momentum"),
+               x = run.read<double>("/history/probe/top");
+    const size_t n = E.size() / 6;
+    for (size_t i = 1; i < n; ++i) {
+      EXPECT_NEAR((E[6 * i] + E[6 * i + 1]) / (E[0] + E[1]), 1, 1e-10);
+      for (size_t k = 0; k < 6; ++k) EXPECT_NEAR(p[6 * i + k], p[k], 1e-9 * std::abs(p[2]));
+    }
+    EXPECT_GT(*std::max_element(E.begin() + 1, E.end()), 0);
+    return Vec3(x[x.size() - 9], x[x.size() - 8], x[x.size() - 7]);
+  };
+  const Vec3 one = end("hilo-solve --quiet throw.toml out.h5");
+  EXPECT_LT((end("mpirun -n 2 hilo-solve --quiet throw.toml out.h5") - one).norm(), 1e-8);
+}
+
+}  // namespace
+}  // namespace hilo::test::import_folds_test
