@@ -250,17 +250,21 @@ class PathSteps final : public Steps {
       const double ahead = (1 - at_.share) / (to.on.share - at_.share) * at_.radius;
       Way across{Numbers(way.z.size(), 0.0), 1};
       way.p = (1 - at_.share) / ahead;
-      return find(way, ahead, across, to) ? "" : why_;
+      if (!find(way, ahead, across, to)) return why_;
+      if (changes(to)) approach(way, ahead, across, to);
+      return "";
     }
     if (at_.rise * to.on.rise < 0 && !at_.from_limit) return limit(way, to);
     at_.from_limit = false;
-    if (std::abs(to.on.below - at_.below) > 0 && !at_.after_turn && run_.report.steps > 0) approach(way, to);
+    if (changes(to)) approach(way, to.so_far, way, to);
     return "";
   }
+  bool changes(const Point& to) const { return std::abs(to.on.below - at_.below) > 0 && !at_.after_turn && run_.report.steps > 0; }
 
-  /// Where stability changes without a limit, the state behind that is moved up to it; where none is found between, looked for behind that.
-  void approach(const Way& way, Point& to) {
-    double near = 0, far = to.so_far;
+  /// Where stability changes without a limit, the state behind that, which is `whole` ahead in a plane across, is moved up to it; where none
+  /// is found between, looked for behind that.
+  void approach(const Way& way, double whole, const Way& across, Point& to) {
+    double near = 0, far = whole;
     for (int k = 0; k < 8; ++k) {
       const double so_far = (near + far) / 2;
       Point between;
@@ -270,10 +274,9 @@ class PathSteps final : public Steps {
       (!found || between.on.below == at_.below ? near : far) = so_far;
     }
     give_up();
-    Point closer;
-    if (find(way, far, way, closer) && closer.on.below != at_.below) return std::swap(to, closer);
+    if (find(way, far, way, to) && to.on.below != at_.below) return;
     give_up();
-    find(way, to.so_far, way, to);
+    find(way, whole, across, to);
   }
 
   /// The state where the share of the loads is largest or least, between here and one too far: where the rise is zero, by secants that keep

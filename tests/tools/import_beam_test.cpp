@@ -263,11 +263,6 @@ TEST_F(ImportBeam, WhatABeamCannotCarryIsRefusedOrTold) {
   refused("c.bdf -o b.h5", 2, "c.bdf:4:6: CBAR 1: OFFT GOG, offsets in axes of the beam, are not read (GGG)");
   place.write("d.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBAR,5,9,1.-3,4.-7,1.-7,2.-7\n");
   refused("d.bdf -o b.h5", 2, "d.bdf:5: property 5 of beams has no material (MAT1)");
-  place.write("e.bdf", "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nCQUAD4,1,7,1,2,3,4\nPSHELL,7,1,.1,1\n" +
-                           steel + "CBAR,2,5,1,2,0.,1.,0.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7\n");
-  refused(
-      "e.bdf -o b.h5 --thicken", 2,
-      "e.bdf:8:6: CBAR 2: grid 1 is of shells too: pairs of nodes have no turns (leave --thicken away: both are cells of rigid regions)");
   place.write("f.bdf", grids + "CBEAM,1,5,1,2,0.,1.,0.\nPBEAM,5,1,1.-3,4.-7,1.-7,,2.-7,,+\n+,,,,,,,,,+\n+,NO,1.,2.-3,8.-7,2.-7,,4.-7\n");
   imported("f.bdf", "--scene-out f.toml");
   EXPECT_NE(err.find("not read: PBEAM that tapers: the mean of the sections at its ends is taken"), std::string::npos) << err;
