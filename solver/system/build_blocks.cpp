@@ -39,6 +39,36 @@ class HeldRows {
 
 }  // namespace
 
+std::vector<int> Builder::whole_blocks(std::vector<int> nodes) const {
+  const auto& block = mesh_->mesh.block;
+  if (mesh_->mesh.block_name.empty()) return nodes;
+  std::set<int> blocks;
+  for (const int i : nodes)
+    if (block[i] >= 0) blocks.insert(static_cast<int>(block[i]));
+  std::vector<int> all = comm_.gather(std::vector<int>(blocks.begin(), blocks.end()));
+  blocks.insert(all.begin(), all.end());
+  if (blocks.empty()) return nodes;
+  for (int i = 0; i < static_cast<int>(block.size()); ++i)
+    if (block[i] >= 0 && blocks.contains(static_cast<int>(block[i]))) nodes.push_back(i);
+  std::ranges::sort(nodes);
+  nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+  return nodes;
+}
+
+void Builder::join_by_blocks(const std::vector<int>& region, std::vector<double>& shared) const {
+  if (mesh_->mesh.block_name.empty()) return;
+  std::set<std::pair<double, double>> met;  // block, region
+  for (size_t i = 0; i < region.size(); ++i)
+    if (region[i] >= 0 && mesh_->mesh.block[i] >= 0) met.emplace(static_cast<double>(mesh_->mesh.block[i]), region[i]);
+  std::vector<double> pairs;
+  for (const auto& [block, r] : met) pairs.insert(pairs.end(), {block, r});
+  pairs = comm_.gather(pairs);
+  std::map<double, double> first;
+  for (size_t i = 0; i + 1 < pairs.size(); i += 2)
+    if (const auto [at, fresh] = first.try_emplace(pairs[i], pairs[i + 1]); !fresh && at->second != pairs[i + 1])
+      shared.insert(shared.end(), {at->second, pairs[i + 1]});
+}
+
 /// After all that makes bodies of nodes.  Collective.
 void Builder::make_blocks() {
   if (!mesh_ || mesh_->mesh.block_name.empty()) return;
@@ -70,12 +100,22 @@ void Builder::make_blocks() {
   std::vector<std::set<int>> follows(n);
   for (size_t i = 0; i + 1 < pairs.size(); i += 2) follows[static_cast<size_t>(pairs[i])].insert(static_cast<int>(pairs[i + 1]));
   std::vector<int> body_of(n, -1);
+  std::vector<double> of_nonlinear(n, 0.0);  // nodes of cells of nonlinear regions
+  for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
+    if (regions_[mesh.region[e]].fidelity == Fidelity::nonlinear)
+      for (const auto i : mesh.cell(e))
+        if (mesh.block[i] >= 0) of_nonlinear[static_cast<size_t>(mesh.block[i])] = 1;
+  comm_.sum(of_nonlinear);
   for (size_t b = 0; b < n; ++b) {
     std::set<int> bodies = follows[b];
+    if (const auto linear = std::ranges::find_if(bodies, [&](int body) { return body >= 0 && out_->bodies[body].linear; });
+        linear != bodies.end()) {  // its reduction has the block
+      if (bodies.size() > 1 || of_nonlinear[b] > 0 || body_by_name_.contains(mesh.block_name[b]))
+        refuse(b, fmt::format("and \"{}\" is linear and not alone there", out_->bodies[*linear].name),
+               "the regions that meet there linear, without beams, hinges and moments; or nonlinear");
+      continue;
+    }
     const bool has_free = bodies.erase(-1) > 0;
-    for (const int body : bodies)
-      if (out_->bodies[body].linear)
-        refuse(b, fmt::format("and the region \"{}\" is linear", out_->bodies[body].name), "folds are in nonlinear and rigid regions");
     const auto named = body_by_name_.find(mesh.block_name[b]);
     if (named != body_by_name_.end()) bodies.insert(named->second);
     const auto still = [&](int body) { return out_->bodies[body].ground || (out_->bodies[body].held && !out_->bodies[body].moving); };

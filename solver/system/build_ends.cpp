@@ -156,32 +156,33 @@ int Builder::held_to(int node) const {
 /// The nodes of a set become followers of one massless body; where some of them belong to a rigid body already, they all join it.
 int Builder::patch_of(const std::string& name, const Found& found, const std::string& where) {
   if (const auto it = patch_by_name_.find(name); it != patch_by_name_.end()) return it->second;
+  const std::vector<int> nodes = whole_blocks(found.nodes);
   double other = -1;
-  for (int i : found.nodes) other = std::max<double>(other, held_to(i));
+  for (int i : nodes) other = std::max<double>(other, held_to(i));
   int body = static_cast<int>(comm_.max(other));
   const bool joins = body >= 0;
   if (!joins) {
-    body = new_body(name, mean_of(found.nodes));
+    body = new_body(name, mean_of(nodes));
     out_->bodies[body].patch = true;
-    out_->bodies[body].size = spread_of(found.nodes);
+    out_->bodies[body].size = spread_of(nodes);
     if (out_->bodies[body].size == 0)
       throw Error(where, fmt::format("the {} nodes of \"{}\" lie on a line and cannot carry a joint", found.n_global, name),
                   "name a set of nodes on a face");
   }
-  const std::vector<int> linear = linear_bodies_at(found.nodes);
+  const std::vector<int> linear = linear_bodies_at(nodes);
   std::vector<int> others;
-  for (const int i : found.nodes)
+  for (const int i : nodes)
     if (out_->follower[i] < 0 || !out_->bodies[out_->follower[i]].linear) others.push_back(i);
   follow_all(others, body, where);
   comm_.together([&] {
-    for (const int i : found.nodes)
+    for (const int i : nodes)
       if (const int held = held_to(i); held >= 0 && held != body)
         throw Error(where, fmt::format("node {} is held by \"{}\" already", mesh_->mesh.node_id[i], out_->bodies[held].name),
                     "the sets of two entries overlap");
   });
   for (const int of : linear) {
     std::vector<int> its;
-    for (const int i : found.nodes)
+    for (const int i : nodes)
       if (out_->follower[i] == of) its.push_back(i);
     weld(of, body, name, its);
   }

@@ -27,6 +27,7 @@ void Builder::make_linear_bodies() {
       if (first[i] != r) shared.insert(shared.end(), {static_cast<double>(first[i]), static_cast<double>(r)});
     }
   }
+  join_by_blocks(first, shared);
   for (const auto& members : joined_regions(Fidelity::linear, shared)) {
     const Region& one = regions_[members.front()];
     for (const int r : members) {

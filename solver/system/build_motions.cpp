@@ -122,6 +122,8 @@ void Builder::set_initial_velocities() {
         if (!e.has("about") && e.vector3("spin").norm() > 0) throw Error(e.place.text(), e.label() + ": a spin of a set needs `about`");
       }
     }
+    for (size_t r = 0; r < regions_.size(); ++r)  // a part of a linear body: its other regions keep theirs
+      if (const int b = regions_[r].body; !region[r] && b >= 0 && body[b] && out_->bodies[b].linear) by_nodes[b] = 1;
     for (size_t r = 0; r < regions_.size(); ++r)
       if (region[r])
         for (std::int64_t i : mesh_->nodes_of(regions_[r].name, e.where("on"))) node[i] = 1;

@@ -10,6 +10,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "base/digest.hpp"
 #include "base/error.hpp"
@@ -90,6 +91,10 @@ RegionParcel Builder::parcel_of(int number) {
       loads.insert(loads.end(), force.data(), force.data() + 3);
     }
   }
+  rows.clear();
+  for (size_t i = 0; i < mesh.block.size(); ++i)
+    if (mesh.block[i] >= 0 && out_->follower[i] == body) rows.push_back(mesh_->node_global[i]), rows.push_back(mesh.block[i]);
+  out.blocks = to_first(rows);
   if (!out.shapes.empty()) {
     rows.clear();
     for (std::int64_t e = 0; e < mesh.n_cells(); ++e)
@@ -146,6 +151,11 @@ ReductionInput Builder::reduction_input(const RegionParcel& parcel, const Body& 
                          (r.material ? r.material->all_values() : fmt::format("E {} nu {}", r.E, r.nu)));
     in.cells.push_back(std::move(batch));
   }
+  std::map<std::int64_t, std::set<int>> blocks;
+  for (const auto& list : parcel.blocks)
+    for (size_t k = 0; k < list.size(); k += 2)
+      if (const auto i = parcel.local.find(list[k]); i != parcel.local.end()) blocks[list[k + 1]].insert(i->second);
+  for (const auto& [block, nodes] : blocks) in.blocks.emplace_back(nodes.begin(), nodes.end());
   std::vector<char> taken(in.X.size(), 0);
   for (size_t k = 0; k < parcel.welds.size(); ++k) {
     auto set = parcel.nodes_of(k + 1);

@@ -171,6 +171,7 @@ void Builder::make_rigid_bodies() {
     const int keeper = static_cast<int>(mesh_->node_global[i] % comm_.size);
     rigid[i] = static_cast<int>(answers[keeper][cursor[keeper]++]);
   }
+  join_by_blocks(rigid, shared);
   join_by_sets(rigid, shared);
 
   for (const auto& members : joined_regions(Fidelity::rigid, shared)) {

@@ -136,6 +136,10 @@ class Builder {
   std::vector<std::string> all_names() const;
   // build_blocks.cpp
   void make_blocks();
+  /// The nodes, and all others of the blocks that some of them are in.  Collective.
+  std::vector<int> whole_blocks(std::vector<int> nodes) const;
+  /// Regions that have nodes of one block, by pairs behind `shared`; `region`: of each local node, or -1.  Collective.
+  void join_by_blocks(const std::vector<int>& region, std::vector<double>& shared) const;
   void hold_blocks(const std::vector<int>& body_of);
   // build_joints.cpp
   void add_joints();

@@ -27,15 +27,29 @@ class Flexibility {
   void find_room();
   void mend(Eigen::Ref<Matrix> b) const;
   Matrix times(const Matrix& x) const;
+  void number(const ReductionInput& in);
+  void add_cells();
+  /// What forces on the nodes are on the unknowns, T^T F, and the displacements of the nodes, T z: the nodes of a block move as one.
+  Matrix on_unknowns(const Matrix& F) const;
+  Matrix at_nodes(const Matrix& z) const;
   const ReductionInput& in_;
   const RegionCells& cells_;
   SharedCholesky& factor_;
   const Matrix &rigid_, &M_rigid_;
   bool free_;
+  double stiff_ = 0;                             // largest of the cells
   bool single_ = false;                          // the factor is in single precision,
   std::string folder_;                           // and in a file
   std::vector<std::pair<int, double>> springs_;  // unknowns and stiffness
-  std::vector<int> block_;
+  std::vector<int> block_;                       // of nodes; first of two, displacement and turn, of those that move as one; -1: held
+  std::vector<char> is_of_block_;
+  std::vector<Vec3> arm_;  // of these, from the middle of their block
+  struct Line {            // of a block whose nodes lie along it: nothing resists its turn about it
+    int block;
+    Vec3 along;
+    double stiff = 0;
+  };
+  std::vector<Line> lines_;
   int n_blocks_ = 0;
 };
 

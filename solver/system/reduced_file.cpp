@@ -73,6 +73,7 @@ ReductionKey key_of(const ReductionInput& in) {
   Digest mesh;
   for (const Vec3& X : in.X)
     for (const double x : X) mesh.add(x);
+  for (const auto& block : in.blocks) mesh.add(of_nodes(block));
   key.mesh = mesh.add(cells).text(), key.material = Digest().add(materials).text();
   for (const auto& load : in.loads) {
     std::uint64_t sum = 0;

@@ -30,6 +30,7 @@ struct ReductionInput {
   std::vector<std::vector<int>> rigid;                   // interfaces that move as rigid bodies,
   std::vector<std::string> rigid_names;                  // and their names
   std::vector<int> free;                                 // nodes of an interface that move freely
+  std::vector<std::vector<int>> blocks;                  // nodes that move as one
   Vec3 centre = Vec3::Zero();                            // of mass
   std::vector<std::vector<std::pair<int, Vec3>>> loads;  // on nodes
   int n_vibrations = 0;                                  // vibration modes, at most

@@ -27,6 +27,7 @@ struct RegionParcel {
   std::vector<std::vector<std::int64_t>> load_sizes;               // how many forces of each load, the same loads on all ranks
   std::vector<std::vector<double>> loads;                          // rows and forces
   std::vector<std::vector<std::int64_t>> numbers;                  // rows and numbers in the deck, where shapes are given
+  std::vector<std::vector<std::int64_t>> blocks;                   // rows and numbers of blocks, of nodes that move as one
   std::map<std::int64_t, int> local;                               // of rows, in the order of their numbers
 
   /// Numbers of the nodes in the region, rising.
