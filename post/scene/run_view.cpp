@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "model/mesh_pieces.hpp"
 
 namespace hilo {
 namespace {
@@ -130,19 +131,11 @@ void RunView::find_framed(const std::vector<Facet>& outside) {
 }
 
 void RunView::find_parts() {
-  std::vector<std::int64_t> parent(static_cast<size_t>(mesh_.n_nodes()));
-  for (size_t n = 0; n < parent.size(); ++n) parent[n] = static_cast<std::int64_t>(n);
-  const auto root = [&](std::int64_t n) {
-    while (parent[static_cast<size_t>(n)] != n)
-      n = parent[static_cast<size_t>(n)] = parent[static_cast<size_t>(parent[static_cast<size_t>(n)])];
-    return n;
-  };
-  for (std::int64_t c = 0; c < mesh_.n_cells(); ++c)
-    for (const auto n : mesh_.cell(c)) parent[static_cast<size_t>(root(n))] = root(mesh_.cell(c)[0]);
-  std::vector<int> number(parent.size(), -1);
+  const std::vector<std::int64_t> piece = pieces_of(mesh_);
+  std::vector<int> number(piece.size(), -1);
   int count = 0;
-  for (size_t n = 0; n < parent.size(); ++n) {
-    int& k = number[static_cast<size_t>(root(static_cast<std::int64_t>(n)))];
+  for (const auto p : piece) {
+    int& k = number[static_cast<size_t>(p)];
     if (k < 0) k = count++;
     part_.push_back(k);
   }

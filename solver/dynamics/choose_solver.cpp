@@ -49,7 +49,8 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
     kind = "klu", why = "nothing is free to move";
   } else if (kind == "auto") {
     kind = system.comm->size > 1 ? "direct" : "light";
-    if (unknowns > most_factored(system)) kind = "cg";
+    constexpr std::int64_t most_beside = 1000;  // blocks of unknowns of folds, which iterative solvers eliminate densely
+    if (unknowns > most_factored(system) && system.layout.map.n_with_cells < most_beside) kind = "cg";
     const std::int64_t ranks = system.comm->size, flexible = 3 * system.layout.map.first_dense;
     const auto held = system.comm->sum(std::count_if(system.node_block.begin(), system.node_block.end(), [](int k) { return k >= 0; }));
     const bool is_far = ranks >= 2 && system.traits().reaches;
