@@ -209,6 +209,15 @@ std::vector<KindSchema> make_schema() {
                 {"follower", boolean, "", "false", "the moment turns with the body"},
                 keys::history}});
 
+  s.push_back({"load",
+               "line",
+               "force per length along a beam, inertial axes",
+               {kind_of("the kind of load"),
+                name,
+                {"on", text, "", "!", "beam it acts on, or a glob"},
+                {"force_per_length", vector3, "N/m", "!", "force per length of the beam as drawn"},
+                keys::history}});
+
   const Param part{"on", text, "", "!", "region or set of cells it acts on; for an acceleration a rigid region or a body too"};
   s.push_back({"load",
                "acceleration",

@@ -48,6 +48,13 @@ BeamCell::Mass linked_mass(const BeamSection& s, double L) {
   return M;
 }
 
+/// Shares of the points of an element of a section by itself in a force that is uniform along it: those of the mass, integrated.
+Eigen::Matrix<double, 8, 1> line_shares(double L) {
+  Eigen::Matrix<double, 8, 1> u = Eigen::Matrix<double, 8, 1>::Zero();
+  u[0] = u[4] = L / 2, u[3] = L * L / 12, u[7] = -L * L / 12;
+  return u;
+}
+
 /// Changes of strain over the steps before that dissipation recalls.
 ArcLaw::Strain recalled(const BeamCell& cell, const Dissipation& d, const Config& from, double last, double before) {
   if (last == 0 && before == 0) return ArcLaw::Strain::Zero();
@@ -107,19 +114,33 @@ void Beams::add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSec
     T.block<3, 3>(4 * k + 1, 4 * k + 1) = (to_body * place.frame).transpose();
   }
   cell.M = T.transpose() * linked_mass(section, cell.law->length()) * T;
+  cell.line = T.transpose() * line_shares(cell.law->length());
   cells.push_back(std::move(cell));
 }
 
-std::string Beams::count() const { return cells.empty() ? "" : fmt::format("{} beams of {} cells", beams.size(), cells.size()); }
+std::string Beams::count() const {
+  if (cells.empty()) return "";
+  return fmt::format("{} beams of {} cells{}", beams.size(), cells.size(),
+                     lines.empty() ? "" : fmt::format(" under {} loads by length", lines.size()));
+}
 
 void Beams::number(Layout& layout) {
   clique_.clear();
   for (const BeamCell& cell : cells) clique_.push_back(layout.cliques.add(blocks_of_ends(points_, cell.ends)));
 }
 
+std::vector<Vec3> Beams::line_forces(const Stage& s) const {
+  if (lines.empty()) return {};
+  std::vector<Vec3> out(cells.size(), Vec3::Zero());
+  for (const LineLoad& l : lines)
+    for (int k = 0; k < l.n_cells; ++k) out[l.first + k] += l.load.factor(s.t0, s.t1, s.load_factor) * l.load.value;
+  return out;
+}
+
 void Beams::evaluate(Pass& p) const {
   thread_local ConnectorGradient left, right;
   const Stage& s = p.s;
+  const std::vector<Vec3> line = p.loads ? line_forces(s) : std::vector<Vec3>{};
   for (size_t k = 0; k < cells.size(); ++k) {
     if (!points_.counts(static_cast<int>(k))) continue;
     const BeamCell& cell = cells[k];
@@ -131,7 +152,9 @@ void Beams::evaluate(Pass& p) const {
     for (int m = 0; m < max_measures; ++m) force[m] = elastic.s[m] + viscous.s[m];
     add_force(p, c, left, force);
 
-    const Rows F = forces_of_mass(cell, s, points_.gravity), at_left = rows_of(*s.left, c);
+    Rows F = forces_of_mass(cell, s, points_.gravity);
+    if (!line.empty()) F -= cell.line * line[k].transpose();
+    const Rows at_left = rows_of(*s.left, c);
     for (int e = 0; e < 2; ++e) {
       Vec6& body = p.body[c.end[e].body];
       body.head<3>() += row(F, 4 * e);
@@ -191,9 +214,12 @@ void Beams::add_energy(const Config& q, const Config& v, Energy& sum) const {
 
 void Beams::add_work(const Moment& m, Work& sum) const {
   const Stage& s = m.s;
+  const std::vector<Vec3> line = line_forces(s);
   for (size_t k = 0; k < cells.size(); ++k) {
     if (!points_.counts(static_cast<int>(k))) continue;
     const BeamCell& cell = cells[k];
+    if (!line.empty())
+      sum.external += (cell.line.transpose() * (rows_of(*s.end, cell.ends) - rows_of(s.from(), cell.ends))).dot(line[k].transpose());
     sum.add(s, [&](const Config& from, const Config& to, double last, double before) {
       Response taken;
       cell.law->resist(cell.ends.values(from), cell.ends.values(to), 1, recalled(cell, *s.dissipation, from, last, before), taken);
@@ -237,21 +263,25 @@ std::vector<Output> Beams::outputs() const {
   return out;
 }
 
-/// Forces and moments that a cell exerts on its sections, weight and inertia of its own with them: where nothing is loaded they go on from
-/// cell to cell.
+/// Forces and moments that a cell exerts on its sections, weight, inertia and loads of its own with them: where nothing is loaded they go
+/// on from cell to cell.
 void Beams::observe(const Sight& sight) {
   if (!sight.step) return;
   ConnectorGradient g;
   const Stage& s = sight.step->s;
   std::vector<double>& out = sight.mid;
-  for (const BeamCell& cell : cells) {
+  const std::vector<Vec3> line = line_forces(s);
+  for (size_t k = 0; k < cells.size(); ++k) {
+    const BeamCell& cell = cells[k];
     gradient(cell.ends, *s.left, g);
     Response elastic, viscous, before;
     respond(cell, s, elastic, viscous, before);
-    const Rows F = forces_of_mass(cell, s, points_.gravity), at = rows_of(*s.left, cell.ends);
+    Rows F = forces_of_mass(cell, s, points_.gravity);
+    if (!line.empty()) F -= cell.line * line[k].transpose();
+    const Rows at = rows_of(*s.left, cell.ends);
     for (int end = 0; end < 2; ++end) {
       Vec6 f = Vec6::Zero();
-      for (int k = 0; k < ArcLaw::n_measures; ++k) f += (elastic.s[k] + viscous.s[k]) * g.G.block<1, 6>(k, 6 * end).transpose();
+      for (int m = 0; m < ArcLaw::n_measures; ++m) f += (elastic.s[m] + viscous.s[m]) * g.G.block<1, 6>(m, 6 * end).transpose();
       f.head<3>() += row(F, 4 * end);
       for (int i = 4 * end + 1; i < 4 * end + 4; ++i) f.tail<3>() += row(at, i).cross(row(F, i));
       f.tail<3>() -= g.arm[end].cross(f.head<3>().eval());

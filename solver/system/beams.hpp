@@ -10,6 +10,7 @@
 #include "physics/beam_arc.hpp"
 #include "physics/beam_section.hpp"
 #include "system/contribution.hpp"
+#include "system/loads.hpp"
 
 namespace hilo {
 
@@ -17,14 +18,21 @@ struct BeamCell {
   using Mass = Eigen::Matrix<double, 8, 8>;  // of c, R e_1, R e_2, R e_3 of the bodies at both ends
   Connector ends;
   std::unique_ptr<ArcLaw> law;
-  Mass M = Mass::Zero();  // [kg, kg m, kg m^2]
-  double alpha = 0;       // mass-proportional damping [1/s]
-  double size = 0;        // of the section [m]
+  Mass M = Mass::Zero();             // [kg, kg m, kg m^2]
+  Eigen::Matrix<double, 8, 1> line;  // int u ds, the share of each of these points in a force per length [m, m^2]
+  double alpha = 0;                  // mass-proportional damping [1/s]
+  double size = 0;                   // of the section [m]
 };
 
 struct Beam {
   std::string name;
   int first = 0, n_cells = 0;  // of the list
+};
+
+/// A force per length on some cells, inertial axes: the value of the load.
+struct LineLoad {
+  Load load;  // [N/m]
+  int first = 0, n_cells = 0;
 };
 
 /// Where a section is in the reference configuration: its origin, directors by columns, and the body that it rides on.
@@ -39,6 +47,7 @@ class Beams final : public Contribution, public Equations, public Stateful, publ
   explicit Beams(const Points& points) : points_(points) {}
   std::vector<Beam> beams;
   std::vector<BeamCell> cells;
+  std::vector<LineLoad> lines;
   void add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSection& section, double beta, double alpha);
   /// w.M v of what is at a body [J].
   double inertia(int body, const Config& v, const Vec3& w, const Mat3& W) const;
@@ -55,6 +64,8 @@ class Beams final : public Contribution, public Equations, public Stateful, publ
   void tie(Ties& ties) const override;
 
  private:
+  /// Forces per length on each cell.
+  std::vector<Vec3> line_forces(const Stage& s) const;
   const Points& points_;
   std::vector<int> clique_;
 };

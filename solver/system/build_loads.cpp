@@ -1,17 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // [[load]] entries.
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <algorithm>
-#include <functional>
 
 #include "physics/axes.hpp"
-#include "physics/solid_kernel.hpp"
+#include "system/beams.hpp"
 #include "system/builder.hpp"
 #include "system/facet.hpp"
 #include "system/loads.hpp"
 
 namespace hilo {
+
+/// On the beams that an entry names.
+void Builder::add_line_load(const Entry& e, const Load& load) {
+  Beams& beams = out_->part<Beams>();
+  const std::string& on = e.text("on");
+  bool any = false;
+  std::vector<std::string> names;
+  for (const Beam& beam : beams.beams) {
+    names.push_back(beam.name);
+    if (fnmatch(on.c_str(), beam.name.c_str(), 0) != 0) continue;
+    beams.lines.push_back({load, beam.first, beam.n_cells});
+    any = true;
+  }
+  if (!any) throw Error(e.where("on"), fmt::format("{}: no beam \"{}\"", e.label(), on), suggest(on, names));
+}
 
 void Builder::add_loads() {
   for (const Entry& e : scene_.entries("load")) {
@@ -19,6 +34,11 @@ void Builder::add_loads() {
     load.name = e.name;
     load.history = use_history(e, Acts::as_force);
     load.ramped = !e.given("history");
+    if (e.kind == "line") {
+      load.value = e.vector3("force_per_length");
+      add_line_load(e, load);
+      continue;
+    }
     const std::string where = e.where("on"), &on = e.text("on");
     const Found found = find(on, where);
     if (found.body == 0) throw Error(where, e.label() + ": a load on the ground does nothing");
@@ -82,53 +102,10 @@ void Builder::add_loads() {
       load.follower = e.boolean("follower");
       load.body = body_of(on, found, where);
     };
-    // Forces of the mass of cells at accelerations that are linear in the reference position, by the mass rule of the cells; by node.
-    const auto forces_of_mass = [&](const std::function<Vec3(const Vec3&)>& acceleration) {
-      if (!mesh_) throw Error(where, fmt::format("{}: the scene has no mesh", e.label()), "name a body");
-      const Mesh& mesh = mesh_->mesh;
-      const int region = mesh.find_region(on);
-      const auto set = mesh.cell_sets.find(on);
-      if (region < 0 && set == mesh.cell_sets.end())
-        throw Error(where, fmt::format("{}: \"{}\" is no region and no set of cells", e.label(), on), "mass is in cells");
-      std::vector<std::int64_t> cells;
-      for (std::int64_t c = 0; region >= 0 && c < mesh.n_cells(); ++c)
-        if (mesh.region[c] == region) cells.push_back(c);
-      if (region < 0) cells = set->second;
-      std::map<int, Vec3> force;
-      const StVenantKirchhoff no_matter{{1, 1}};  // the mass alone is asked for
-      struct alignas(64) Line {
-        double value[8];
-      };
-      std::vector<Line> scratch;
-      comm_.together([&] {
-        for (const std::int64_t c : cells) {
-          const Region& r = regions_[mesh.region[c]];
-          if (r.fidelity != Fidelity::nonlinear)
-            throw Error(where,
-                        fmt::format("{}: region \"{}\" is {}", e.label(), r.name, r.fidelity == Fidelity::rigid ? "rigid" : "linear"),
-                        fmt::format("tag it nonlinear: hilo-tag --nonlinear '{}'", r.name));
-          if (!(r.density > 0))
-            throw Error(where, fmt::format("{}: region \"{}\" has no density", e.label(), r.name), "give its material a density");
-          if (info(mesh.shape[c]).dimension == 2) continue;  // has none as a cell
-          const auto nodes = mesh.cell(c);
-          const SolidKernel kernel = solid_kernel(static_cast<Shape>(mesh.shape[c]), place_of<StVenantKirchhoff>);
-          const int n3 = 3 * static_cast<int>(nodes.size()), w = std::min(lanes(), kernel.width);
-          scratch.resize(9 * nodes.size());
-          double *X = scratch[0].value, *a = scratch[n3].value, *f = scratch[2 * static_cast<size_t>(n3)].value;
-          for (int i = 0; i < n3; ++i)
-            for (int l = 0; l < w; ++l)
-              X[i * w + l] = mesh.X[nodes[i / 3]][i % 3] - origin_[i % 3], a[i * w + l] = acceleration(mesh.X[nodes[i / 3]])[i % 3];
-          kernel.call({X, X, X, 0, 0, &no_matter, f, nullptr, nullptr, nullptr, nullptr, r.density, a, 0, r.area});
-          for (int i = 0; i < n3; i += 3)
-            force.try_emplace(static_cast<int>(nodes[i / 3]), Vec3::Zero()).first->second += Vec3(f[i * w], f[(i + 1) * w], f[(i + 2) * w]);
-        }
-      });
-      return force;
-    };
     // each component is a load of its own
     const auto of_mass = [&](const std::function<Vec3(const Vec3&)>& acceleration) {
       load.kind = Load::Kind::nodal;
-      const auto force = forces_of_mass(acceleration);
+      const auto force = forces_of_mass(e, acceleration);
       for (int k = 0; k < 3; ++k) {
         Load one = load;
         one.value = Vec3::Unit(k);

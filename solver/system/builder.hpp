@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scene and mesh become a System: regions to batches and bodies, names to carriers, entries to connectors, loads and motions.
 #pragma once
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ struct RegionParcel;
 struct Obstacle;
 struct ContactPair;
 struct SurfaceTie;
+struct Load;
 class SurfacePair;
 
 class Builder {
@@ -119,6 +121,10 @@ class Builder {
   void set_initial_velocities();
   // build_loads.cpp
   void add_loads();
+  void add_line_load(const Entry& e, const Load& load);
+  // build_mass_loads.cpp
+  /// Forces of the mass of the cells that an entry names, at accelerations that are linear in the reference position; by node.
+  std::map<int, Vec3> forces_of_mass(const Entry& e, const std::function<Vec3(const Vec3&)>& acceleration) const;
   // build_entries.cpp
   /// The history of an entry; every one that acts on the system is taken through here, so that its jumps and kinks are known.
   const History& use_history(const Entry& entry, Acts acts);

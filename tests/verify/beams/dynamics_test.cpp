@@ -84,6 +84,19 @@ TEST_F(BeamDynamics, DampingTakesWhatTheBalanceSays) {
   EXPECT_LT(E.col(5).cwiseAbs().maxCoeff(), 1e-9 * E.col(3).cwiseAbs().maxCoeff());
 }
 
+// A free beam under a force per length: the impulse, on one rank and on two; the balance is checked in every step.
+TEST_F(BeamDynamics, ALineLoadGivesItsImpulse) {
+  const std::string scene = plain_section(1e4, 1e4, 100, 100, "line_mass = 2\ninertia = [0.1, 0.1]") +
+                            beam_of("[[0, 0, 0], [3, 4, 0]]", 4, "") +
+                            "[[load]]\nkind = \"line\"\nname = \"gust\"\non = \"arm\"\nforce_per_length = [1, 2, -3]\n"
+                            "history = {t = [0, 1], value = [0, 2]}\n" +
+                            in_time(1, 0.1);
+  for (const char* options : {"", "--set time.integrator=\"generalized-alpha\""}) {
+    const Eigen::MatrixXd p = solved(scene, options).history("momentum");
+    EXPECT_LT((p.bottomRows(1).leftCols<3>().transpose() - 5 * Vec3(1, 2, -3)).norm(), 1e-9) << options;
+  }
+}
+
 // Four cells, the root turned by a law, whose work is in the balance.
 TEST_F(BeamDynamics, SpinUpBendsBackAndIsStretched) {
   const auto psi = [](double t) {

@@ -53,6 +53,24 @@ TEST_F(BeamStatics, ACantileverBendsAsReissnersBeam) {
   EXPECT_LT((u(8) - Vec3(-3.28946, 0, 6.70011)).norm() / 7.46, 1e-5);
 }
 
+// q L^4/8EI and q L^2/2GA, and the forces q (L - x) and q (L - x)^2/2 at each section, whatever the number of cells.
+TEST_F(BeamStatics, AUniformLoadBendsACantilever) {
+  const double EI = 1e4, GA = 1e5, L = 10, q = 1e-3;
+  for (const int n : {1, 3}) {
+    const Results r = solved(
+        "[section.s]\nkind = \"matrix\"\nstiffness = [1e5, 1e5, 1e7]\nbending = [1e4, 1e4, 1e4]\n" + beam_of("[[0, 0, 0], [10, 0, 0]]", n) +
+        "[[load]]\nkind = \"line\"\nname = \"snow\"\non = \"ar*\"\nforce_per_length = [0, 0, -1e-3]\n" + tip_probe() + in_steps(1));
+    const Eigen::MatrixXd tip = r.history("probe/tip");
+    EXPECT_NEAR(tip(tip.rows() - 1, 2) / (-q * std::pow(L, 4) / (8 * EI) - q * L * L / (2 * GA)), 1, n == 1 ? 1e-3 : 1e-4) << n;
+    const Eigen::VectorXd f = r.history("beam/arm").bottomRows(1).transpose();
+    for (int end = 0; end < 2 * n; ++end) {
+      const double x = L * ((end + 1) / 2) / n;
+      EXPECT_NEAR(f.segment<3>(6 * end).norm(), q * (L - x), 1e-8);
+      EXPECT_NEAR(f.segment<3>(6 * end + 3).norm(), q * (L - x) * (L - x) / 2, 1e-7);
+    }
+  }
+}
+
 // Small loads, one cell: exact of Timoshenko's beam along both axes, in stretch and in twist, wherever the beam points.
 TEST_F(BeamStatics, OneCellIsExactUnderEndLoads) {
   const double E = 2e11, nu = 0.3, G = E / 2.6, L = 1.5, b = 0.02, h = 0.05, k = 10 * (1 + nu) / (12 + 11 * nu), A = b * h;
