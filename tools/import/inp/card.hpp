@@ -38,6 +38,7 @@ using InpCards = Registry<InpCard>;
 
 /// The families, one file each.
 std::span<const InpCard> inp_mesh_cards();      // *NODE, *ELEMENT, sets, surfaces
+std::span<const InpCard> inp_generate_cards();  // *NGEN, *NFILL, *ELGEN
 std::span<const InpCard> inp_material_cards();  // *MATERIAL and what follows it, sections
 std::span<const InpCard> inp_load_cards();      // supports, loads, histories
 std::span<const InpCard> inp_tie_cards();       // couplings, rigid bodies, masses, springs

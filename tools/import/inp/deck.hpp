@@ -24,6 +24,7 @@ namespace hilo {
 struct InpSet {
   std::string name;  // as first written
   std::vector<std::int64_t> members;
+  bool unsorted = false;  // UNSORTED: *NFILL takes them in this order, not by number
 };
 /// *SURFACE: lines "target, face"; face 0 means the free faces, and in a node surface nothing.
 struct InpSurface {
@@ -274,6 +275,9 @@ struct InpDeck {
     Mat3 turn = Mat3::Identity();
   } placed;                                       // of the instance
   std::set<std::string> part_nsets, part_elsets;  // upper case
+  Vec3 system_at = Vec3::Zero();                  // *SYSTEM, in which nodes are given
+  Mat3 system_axes = Mat3::Identity();            // as columns
+  std::int64_t generated = 0;                     // nodes and elements by *NGEN, *NFILL, *ELGEN
   std::vector<InpTransform> transformed;          // nodes with axes of their own
   std::vector<InpThickness> thicknesses;
   std::vector<InpEquation> equations;
@@ -294,8 +298,9 @@ std::string unqualified(const std::string& name);
 /// Supports, loads, surfaces and sections name sets as the deck has them; numbers behind a dot become numbers.
 void unqualify(InpDeck& deck);
 
-/// The element set of this name, new where there is none; one of the part makes room in an assembly.
+/// The set of this name, new where there is none; one of the part makes room in an assembly.
 InpSet& set_of_cells(const std::string& name, InpDeck& deck);
+InpSet& set_of_nodes(const std::string& name, InpDeck& deck);
 /// The shape of an element type, or an Error at the card that says why there is none.
 Shape inp_shape(const Card& card);
 

@@ -271,6 +271,10 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   if (d.X.empty()) throw Error(path, "no nodes", "a deck has *NODE");
   if (d.shape.empty() && d.beams.empty()) throw Error(path, "no elements", "a deck has *ELEMENT");
   unqualify(d);
+  for (auto& [name, set] : d.elset) {  // *ELGEN gives its first element to the set that *ELEMENT gave it to
+    std::ranges::sort(set.members);
+    set.members.erase(std::ranges::unique(set.members).begin(), set.members.end());
+  }
   complete_pyramids(d);
   join_steps(d, in);
   check_names(d);
