@@ -186,7 +186,7 @@ struct InpTied {
   double tolerance = -1;  // POSITION TOLERANCE; below 0: none
   bool adjust = true;
 };
-/// *ELEMENT of one or two points: MASS, SPRINGA, SPRING1, DASHPOTA; and the values of *MASS, *SPRING, *DASHPOT.
+/// *ELEMENT of one or two points: MASS, SPRINGA, SPRING1, DASHPOTA and their like; and the values of *MASS, *SPRING, *DASHPOT.
 struct InpPoint {
   std::string type;
   std::int64_t id;
@@ -197,7 +197,7 @@ struct InpPointValue {
   std::string elset, name, place;
   std::vector<double> first, second = {};  // numbers of its lines
   bool more = false;                       // further numbers on the last
-  bool table = false;                      // NONLINEAR: forces and extensions
+  bool table = false;                      // NONLINEAR: forces, and extensions or their rates
 };
 /// A reference node that became a body, with the nodes it carries; or the mean of nodes with weights.
 struct InpCarried {
