@@ -118,5 +118,57 @@ TEST_F(ImportInpSprings, WhatNoSceneSaysIsNamed) {
   }
 }
 
+// The base of a spring: x'' = a(t) = 3 + 6 t to 1 s and 9 from then on: x = 3/2 t^2 + t^3, and 5/2 + 6 (t - 1) + 9/2 (t - 1)^2.  Mass 11 is
+// the support itself.
+TEST_F(ImportInpSprings, SupportsMoveByVelocityAndAcceleration) {
+  const auto exact = [](double t) { return t < 1 ? 1.5 * t * t + t * t * t : 2.5 + 6 * (t - 1) + 4.5 * (t - 1) * (t - 1); };
+  const std::string amplitude = "*AMPLITUDE, NAME=quake\n0., 1., 1., 3.\n", dynamic = "*DYNAMIC, DIRECT\n.01, 2.\n";
+  const std::string held = "*BOUNDARY\n11, 1\n";
+  for (const std::string& move : {dynamic + "*BOUNDARY, TYPE=ACCELERATION, AMPLITUDE=quake\n11, 1, 1, 3.\n",
+                                  dynamic + held + "*BASE MOTION, DOF=1, AMPLITUDE=quake, SCALE=3.\n"}) {
+    SCOPED_TRACE(move);
+    const auto x = way(1, amplitude, move);
+    ASSERT_EQ(x.size(), 201u);
+    for (size_t i = 0; i < x.size(); i += 20) EXPECT_NEAR(x[i], exact(static_cast<double>(i) / 100), 1e-9) << i;
+  }
+  // a velocity: 1 + 2 t to 1 s, then 3: t + t^2, 2 + 3 (t - 1)
+  const auto x = way(1, amplitude, dynamic + "*BOUNDARY, TYPE=VELOCITY, AMPLITUDE=quake\n11, 1, 1, 1.\n");
+  ASSERT_EQ(x.size(), 201u);
+  for (size_t i = 0; i < x.size(); i += 20) {
+    const double t = static_cast<double>(i) / 100;
+    EXPECT_NEAR(x[i], t < 1 ? t + t * t : 2 + 3 * (t - 1), 2e-3) << i;
+  }
+  // without an amplitude: at once
+  EXPECT_NEAR(end(1, "", dynamic + "*BOUNDARY, TYPE=ACCELERATION\n11, 1, 1, 3.\n"), 6, 1e-9);
+}
+
+TEST_F(ImportInpSprings, BaseMotionsThatNoSceneSaysAreNamed) {
+  const std::string amplitude = "*AMPLITUDE, NAME=q\n0., 1., 1., 3.\n";
+  const std::pair<const char*, const char*> cases[] = {
+      {"*STEADY STATE DYNAMICS\n1., 9.\n*BASE MOTION, DOF=1, AMPLITUDE=q\n", "*BASE MOTION of *STEADY STATE DYNAMICS"},
+      {"*MODAL DYNAMIC\n.1, 9.\n*BASE MOTION, DOF=1, AMPLITUDE=q\n", "*BASE MOTION of *MODAL DYNAMIC"},
+      {"*DYNAMIC\n.1, 9.\n*BASE MOTION, DOF=5, AMPLITUDE=q\n", "*BASE MOTION on degree of freedom 5"},
+      {"*DYNAMIC\n.1, 9.\n*BASE MOTION, DOF=1, AMPLITUDE=q, BASE NAME=b\n", "*BASE MOTION, BASENAME=b"},
+      {"*STATIC\n*BOUNDARY, TYPE=VELOCITY\n11, 1, 1, 3.\n", "*BOUNDARY, TYPE=VELOCITY, of *STATIC"},
+      {"*DYNAMIC\n.1, 9.\n*BOUNDARY, TYPE=ACCELERATION, AMPLITUDE=none\n11, 1, 1, 3.\n",
+       "*BOUNDARY, TYPE=ACCELERATION, with *AMPLITUDE NONE"},
+      {"*FREQUENCY\n3\n*END STEP\n*STEP\n*MODAL DYNAMIC\n.1, 9.\n*BASE MOTION, DOF=1, AMPLITUDE=q\n", "*BASE MOTION in step 2 and later"},
+  };
+  for (const auto& [step, what] : cases) {
+    place.write("a.inp", cube(1) + amplitude + "*STEP\n" + step + "*END STEP\n");
+    imported("a.inp", "--scene-out s.toml");
+    EXPECT_NE(err.find(std::string("not read: ") + what + " (1,"), std::string::npos) << what << '\n' << err;
+    EXPECT_NE(test::text_of(place / "s.toml").find(fmt::format("card = \"{}\"", what)), std::string::npos) << what;
+  }
+  for (const auto& [card, message] : {std::pair{"*BASE MOTION, DOF=7, AMPLITUDE=q\n", "a.inp:38:19: *BASE MOTION, DOF=7 (1 to 6)"},
+                                      {"*BASE MOTION, AMPLITUDE=q\n", "a.inp:38:1: *BASE MOTION lacks DOF="},
+                                      {"*BASE MOTION, DOF=1, AMPLITUDE=q, SCALE=x\n", "a.inp:38:41: expected a number, found \"x\""},
+                                      {"*BASE MOTION, DOF=1, AMPLITUDE=q, TYPE=JERK\n",
+                                       "a.inp:38:40: *BASE MOTION, TYPE=JERK (DISPLACEMENT, VELOCITY or ACCELERATION)"}}) {
+    place.write("a.inp", cube(1) + amplitude + "*STEP\n*DYNAMIC\n.1, 9.\n" + card + "*END STEP\n");
+    refused("a.inp -o a.h5", 2, message);
+  }
+}
+
 }  // namespace
 }  // namespace hilo::test::import_inp_springs_test

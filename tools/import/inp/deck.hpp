@@ -79,6 +79,13 @@ struct InpNodal {
   std::string amplitude;  // upper case, "" without
   std::string place;
   int step = 0;  // 0 before the first
+  int rate = 0;  // of a support: 1 where the value is a velocity, 2 an acceleration
+};
+/// *BASE MOTION: what is held in a component moves along it.
+struct InpBaseMotion {
+  int component = 1, rate = 2, step = 1;
+  double scale = 1;
+  std::string amplitude, place;  // upper case
 };
 /// One line of *DLOAD or *DSLOAD: pressure on a face of elements, or gravity.
 struct InpDistributed {
@@ -95,7 +102,8 @@ struct InpDistributed {
 struct InpAmplitude {
   std::string name;
   std::vector<double> t, value;
-  bool total = false;  // TIME=TOTAL TIME
+  bool total = false;               // TIME=TOTAL TIME
+  std::vector<double> slopes = {};  // at both ends, of a cubic spline; empty: linear between the points
 };
 /// A node by number or by a set that holds it alone.
 struct InpTarget {
@@ -258,6 +266,7 @@ struct InpDeck {
   std::map<std::int64_t, InpMean> means;
   std::map<std::int64_t, std::int64_t> turns_of;       // ROT NODE -> reference node
   std::vector<InpNodal> supports, forces, velocities;  // degrees of freedom up to 6, which only reference nodes have
+  std::vector<InpBaseMotion> base_motions;
   std::vector<InpDistributed> distributed;
   std::map<std::string, InpAmplitude> amplitudes;
   std::map<std::string, InpParameter> parameters;
