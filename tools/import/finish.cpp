@@ -229,7 +229,12 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
   if (in.n_beams > 0) in.notes.push_back(fmt::format("{} beams stand in the scene lines alone (--scene-out)", in.n_beams));
   tell_slivers(in);
   tell_untouched(in);
-  if (!m.deck_scene.empty()) m.deck_scene += left_out_tables(in);
+  for (DeckCase& c : in.cases)
+    if (!c.scene.empty()) c.scene += left_out_tables(c.not_read);
+  if (!in.cases.empty())
+    m.deck_scene = in.cases.front().scene;
+  else if (!m.deck_scene.empty())
+    m.deck_scene += left_out_tables(in.not_read);
   for (size_t r = 0; r < m.region_name.size(); ++r) {
     auto& data = m.region_data[r];
     data.density *= to_si("kg/m^3", options.units);

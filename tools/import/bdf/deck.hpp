@@ -98,7 +98,7 @@ struct BdfGlue {
 };
 /// What the first subcase takes; -1: none named.
 struct BdfCase {
-  std::string title, solution;  // "101"
+  std::string title, subtitle, label, solution;  // "101"
   std::int64_t spc = -1, load = -1, mpc = -1, glue = -1, method = -1, step = -1, number = -1;
   bool any = false;  // case control is there: CEND is said
 };

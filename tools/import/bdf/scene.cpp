@@ -14,6 +14,8 @@ namespace hilo {
 BdfScene::BdfScene(const BdfDeck& deck, Imported& in, SetNames& names, const ImportOptions& options)
     : deck_(deck), in_(in), names_(names), options_(options), used_(deck.X.size(), 0) {
   for (const auto a : in.mesh.nodes) used_[static_cast<size_t>(a)] = 1;
+  for (const auto& name : in.mesh.all_names())
+    if (!in.cases.empty()) made_.insert("set/" + name), made_.insert("facets/" + name);  // of the subcases before
   Eigen::AlignedBox3d box;
   for (const auto a : in.mesh.nodes) box.extend(X(a));
   for (const auto& b : deck.beams)

@@ -264,7 +264,8 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     in.notes.push_back(path + " is a Nastran deck, and read as one");
     return in;
   }
-  if (options.subcase) throw Error("", fmt::format("--subcase is for a Nastran file, {} is none", path), "", Exit::usage);
+  if (options.subcase || options.every_subcase)
+    throw Error("", fmt::format("--subcase is for a Nastran file, {} is none", path), "", Exit::usage);
   Imported in;
   InpDeck d;
   parse_inp(path, d, in, inp_cards());
