@@ -4,6 +4,7 @@
 // facet sets; others are cells of regions that can be rigid alone.  Beams stand in the scene, or beside such shells are cells too.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <unordered_set>
 
 #include "base/error.hpp"
@@ -183,6 +184,17 @@ void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards&
       in.skip(e.name.substr(0, 40), e.data.place());
 }
 
+/// Of ranges of grids the grids that are there.
+void resolve_ranges(BdfDeck& deck) {
+  std::vector<std::int64_t> ids = deck.node_id;
+  std::ranges::sort(ids);
+  for (auto& [sid, lines] : deck.supports)
+    for (BdfSupport& s : lines)
+      for (const BdfRange& r : s.ranges)
+        for (auto id = std::ranges::lower_bound(ids, r.first); id != ids.end() && *id <= r.last; ++id)
+          if ((*id - r.first) % r.by == 0) s.grids.push_back(*id);
+}
+
 Imported read_bdf(const std::string& path, const ImportOptions& options) {
   Imported in;
   BdfDeck deck;
@@ -194,6 +206,7 @@ Imported read_bdf(const std::string& path, const ImportOptions& options) {
   for (const auto& [id, name] : entries.property_names())  // one name for two properties would make one region of two materials
     deck.property_name[id] = taken.insert(name).second ? name : fmt::format("{}_{}", name, id);
   resolve_axes(deck);
+  resolve_ranges(deck);
   resolve_metals(deck, in);
   settle_densities(deck, in);
   const auto& case_lines = entries.case_lines();

@@ -45,6 +45,8 @@ void resolve_metals(BdfDeck& deck, Imported& in);
 unsigned components(const DataLine& d, size_t field);
 /// Numbers of a list from a field on, "THRU" and "BY" understood; ends at a word or a real number, whose field is returned.
 size_t grid_list(const DataLine& d, size_t field, std::vector<std::int64_t>& out);
+/// The same with ranges as ranges, of which not every number needs to be there.
+size_t grid_list(const DataLine& d, size_t field, std::vector<std::int64_t>& out, std::vector<BdfRange>& ranges);
 
 /// Reads the entries.  One that is not among `cards` is counted in `in.not_read`.
 void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards& cards);

@@ -17,12 +17,17 @@
 
 namespace hilo {
 
+/// first THRU last BY by: of what there is among these numbers.
+struct BdfRange {
+  std::int64_t first, last, by;
+};
 /// A line of SPC or SPC1: grids held in components (bits 0 to 5), at a value in SPC.
 struct BdfSupport {
   std::vector<std::int64_t> grids;
   unsigned components;
   double value;
   std::string place;
+  std::vector<BdfRange> ranges = {};
 };
 /// FORCE, MOMENT and their like: a vector at a grid; GRAV: an acceleration; pressures on faces; SPCD: where a support goes.
 struct BdfLoad {
