@@ -94,6 +94,25 @@ TEST_F(ImportInpSprings, DampersOfTablesAndComponents) {
         << nodes;
 }
 
+// No cell at all: 11 N on the table of a spring, and a mass of 2 kg on 800 N/m.
+TEST_F(ImportInpSprings, DecksOfSpringsAndMassesAloneAreScenesOfBodies) {
+  place.write("a.inp",
+              "*NODE\n1, 0., 0., 0.\n2, 1., 0., 0.\n*ELEMENT, TYPE=SPRINGA, ELSET=s\n1, 1, 2\n*BOUNDARY\n1, 1, 3\n2, 2, 3\n"
+              "*SPRING, ELSET=s, NONLINEAR\n\n0., 0.\n10., 1.\n100., 20.\n*STEP\n*STATIC\n*CLOAD\n2, 1, 11.\n*END STEP\n");
+  place.write("b.bdf",
+              "SOL 103\nCEND\nSPC = 1\nMETHOD = 4\nBEGIN BULK\nGRID,1,,0.,0.,0.,,23456\nGRID,2,,1.,0.,0.\nSPC1,1,123456,2\n"
+              "CONM2,5,1,,2.\nCELAS2,6,800.,1,1,2,1\nEIGRL,4,,,1\nENDDATA\n");
+  imported("a.inp", "--scene-out s.toml");
+  auto ran = place.run("hilo-solve --quiet s.toml -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err << test::text_of(place / "s.toml");
+  const auto x = Store::open(place / "run.h5").read<double>("/history/body/node_2");
+  EXPECT_NEAR(x[x.size() - 12] - x[0], 1 + 19 / 90., 1e-9);
+  imported("b.bdf", "--scene-out s.toml");
+  ran = place.run("hilo-solve --quiet s.toml -o run.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err << test::text_of(place / "s.toml");
+  EXPECT_NEAR(Store::open(place / "run.h5").read<double>("/history/mode").at(10), 20 / (2 * 3.14159265358979), 1e-8);
+}
+
 TEST_F(ImportInpSprings, WhatNoSceneSaysIsNamed) {
   place.write("a.inp",
               cube(1) +

@@ -206,7 +206,7 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
     const auto gone = merge_nodes(in, *options.merge);
     in.notes.push_back(fmt::format("{} nodes merged with one nearer than {:g}", gone, *options.merge));
   }
-  if (const auto gone = drop_unused(in); gone && in.n_beams == 0)
+  if (const auto gone = drop_unused(in); gone && in.n_beams == 0 && m.n_cells() > 0)
     in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped", gone));
   if (options.thickness || (options.thicken && !in.thin.empty())) thicken(in, file);
   if (options.flip || is_mirrored(m))

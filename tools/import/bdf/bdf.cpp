@@ -120,6 +120,7 @@ void build(BdfDeck& deck, const std::string& path, const std::vector<BdfCaseLine
     deck.beams.clear();
   }
   in.n_beams = static_cast<std::int64_t>(deck.beams.size());
+  if (m.n_cells() == 0 && deck.beams.empty()) in.notes.push_back("masses and springs stand in the scene lines alone (--scene-out)");
   if (options.thicken) in.sheets = std::make_shared<Sheets>(in);
   std::unordered_set<std::int64_t> of_thin;
   for (const auto& [c, t] : in.thin) of_thin.insert(m.cell(c).begin(), m.cell(c).end());
@@ -148,13 +149,13 @@ void build(BdfDeck& deck, const std::string& path, const std::vector<BdfCaseLine
   SetNames names(in);
   for (auto& [pid, f] : facets) names.facets(property_name(pid), std::move(f));
   const std::unordered_set<std::int64_t> of_cells(m.nodes.begin(), m.nodes.end());
+  const bool all = in.n_beams == 0 && m.n_cells() > 0;  // beside bodies alone sets of their grids say nothing
   for (const auto& [sid, lines] : deck.supports) {
     std::vector<std::int64_t> nodes;
     for (const auto& l : lines)
       for (const auto id : l.grids)
-        if (const auto a = deck.row.find(id); a != deck.row.end() && (in.n_beams == 0 || of_cells.contains(a->second)))
-          nodes.push_back(a->second);
-    if (in.n_beams == 0 || !nodes.empty()) names.nodes(fmt::format("SPC_{}", sid), std::move(nodes));
+        if (const auto a = deck.row.find(id); a != deck.row.end() && (all || of_cells.contains(a->second))) nodes.push_back(a->second);
+    if (all || !nodes.empty()) names.nodes(fmt::format("SPC_{}", sid), std::move(nodes));
   }
   if (!options.every_subcase) return write_bdf_scene(deck, in, names, options);
   const std::vector<NotRead> told = in.not_read;
@@ -201,7 +202,8 @@ Imported read_bdf(const std::string& path, const ImportOptions& options) {
   BdfEntries entries(path);
   parse_bdf(entries, deck, in, bdf_cards());
   if (deck.X.empty()) throw Error(path, "no GRID", "a Nastran file has GRID entries");
-  if (deck.cells.empty() && deck.shells.empty() && deck.beams.empty()) throw Error(path, "no elements", bdf_supported);
+  if (deck.cells.empty() && deck.shells.empty() && deck.beams.empty() && deck.masses.empty() && deck.springs.empty())
+    throw Error(path, "no elements", bdf_supported);
   std::set<std::string> taken;
   for (const auto& [id, name] : entries.property_names())  // one name for two properties would make one region of two materials
     deck.property_name[id] = taken.insert(name).second ? name : fmt::format("{}_{}", name, id);

@@ -99,7 +99,9 @@ void resolve_cells(InpDeck& d, Imported& in) {
   std::set<std::int64_t> dropped(d.unused.begin(), d.unused.end());
   for (const auto& [id, b] : d.beams)
     for (const auto node : b.nodes) dropped.erase(node);
-  if (!dropped.empty())
+  if (d.shape.empty() && d.beams.empty())
+    in.notes.push_back("masses, springs and dampers stand in the scene lines alone (--scene-out)");
+  else if (!dropped.empty())
     in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped, the first is {}", dropped.size(), *dropped.begin()));
   m.shape = d.shape;
   m.cell_id = d.cell_id;
@@ -270,7 +272,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
   InpDeck d;
   parse_inp(path, d, in, inp_cards());
   if (d.X.empty()) throw Error(path, "no nodes", "a deck has *NODE");
-  if (d.shape.empty() && d.beams.empty()) throw Error(path, "no elements", "a deck has *ELEMENT");
+  if (d.shape.empty() && d.beams.empty() && d.points.empty()) throw Error(path, "no elements", "a deck has *ELEMENT");
   unqualify(d);
   for (auto& [name, set] : d.elset) {  // *ELGEN gives its first element to the set that *ELEMENT gave it to
     std::ranges::sort(set.members);

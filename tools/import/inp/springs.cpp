@@ -175,7 +175,7 @@ std::string why_no_spring(const InpPointSpring& s) {
     if (dof != other || !(dof == 1 || dof == 2 || dof == 3))
       return why(s.ends.size() == 2 ? ", but along one component of both nodes" : ", but along a component");
   }
-  if (!s.value.table && values > 1) return why(" of several values");
+  if (!s.value.table && values > 1) return s.value.name + " of several values";
   if (s.value.table && s.value.name == "*DASHPOT" && head == 0 && !s.ends[0].turns && !s.ends[1].turns)
     return why(" between two nodes that do not turn");
   return "";
