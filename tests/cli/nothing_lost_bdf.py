@@ -112,7 +112,7 @@ def make(seed, folder):
             return grid[key]
         g = grid[key] = next(ids)
         cp = r.choice(systems)
-        held = r.choice(["123", "3", None, None, None, None, None, None, None])
+        held = None if key[0] == "frame" else r.choice(["123", "3", None, None, None, None, None, None, None])
         place[g] = X
         w.card("GRID", g, cp if cp or r.random() < 0.5 else None, *map(float, known.coordinates(cp, X)), r.choice(outputs) or None, held)
         return g
@@ -125,6 +125,11 @@ def make(seed, folder):
     def middle(a, b):
         return add_grid((a, b) if a < b else (b, a), (at(*a) + at(*b)) / 2)
 
+    if r.random() < 0.5:  # a system by three grids, which are those of no cell
+        frame = [add_grid(("frame", k), size * np.array(x)) for k, x in enumerate(((5.0, 0, 0), (5.0, 0, 1.0), (6.0, 1.0, 0)))]
+        w.card("CORD1R", 77, *frame)
+        systems.append(77)
+        known = Deck("\n".join(w.lines).splitlines())
     cells, element = [], 0
     EDGES = {"CTETRA": [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
              "CPENTA": [(0, 1), (1, 2), (2, 0), (0, 3), (1, 4), (2, 5), (3, 4), (4, 5), (5, 3)],
@@ -152,7 +157,7 @@ def make(seed, folder):
         w.card("PARAM", "WTMASS", 0.00259)
     # supports
     face = [grid[p] for p in grid if isinstance(p[0], int) and p[0] == 0]
-    others = [grid[p] for p in grid if grid[p] not in face]
+    others = [grid[p] for p in grid if grid[p] not in face and p[0] != "frame"]
     w.card("SPC1", 11, r.choice(["123", "123456", "13", "2"]), *face)
     for g in r.sample(others, min(2, len(others))):
         w.card("SPC", 12, g, r.choice(["1", "23", "123"]), r.choice([None, 0.0, size * 1e-3]))
@@ -169,7 +174,9 @@ def make(seed, folder):
         w.card("FORCE", r.choice(sets), g, r.choice(systems) or None, r.uniform(-9, 9), *map(float, v))
     for _ in range(r.randint(0, 3)):
         e, corners = r.choice(cells)
-        w.card("PLOAD4", r.choice(sets), e, r.uniform(-9, 9), None, None, None, *loaded_face(kind, [grid[c] for c in corners], r))
+        face = (loaded_face(kind, [grid[c] for c in corners], r) + (None,))[:2]
+        way = [r.choice([s for s in systems if not known.systems or s == 0 or known.systems[s][0] == "R"]) or None, 1.0, r.gauss(0, 1), r.gauss(0, 1)]
+        w.card("PLOAD4", r.choice(sets), e, r.uniform(-9, 9), None, None, None, *face, *(way if r.random() < 0.3 else []))
     if r.random() < 0.5:
         a, b = r.sample(others, 2) if len(others) > 1 else (others[0], face[0])
         w.card("FORCE1", r.choice(sets), r.choice(others), r.uniform(-9, 9), a, b)
@@ -267,16 +274,18 @@ class Deck:
         self.systems, self.X, self.output, self.cells, self.material, self.density, self.wtmass = {}, {}, {}, {}, {}, {}, 1
         for name, f in self.entries:
             if name.startswith("CORD2"):
-                p = np.array([number(v) for v in f[2:11]]).reshape(3, 3)
-                z = (p[1] - p[0]) / np.linalg.norm(p[1] - p[0])
-                y = np.cross(z, p[2] - p[0])
-                y /= np.linalg.norm(y)
-                self.systems[whole(f[0])] = (name[5], p[0], np.array([np.cross(y, z), y, z]).T)
+                self.system(whole(f[0]), name[5], np.array([number(v) for v in f[2:11]]).reshape(3, 3))
+        grids = [f for name, f in self.entries if name == "GRID"]
+        for last in (False, True):
+            for f in grids:
+                if (whole(f[1]) in self.systems or f[1] in ("", "0")) and whole(f[0]) not in self.X:
+                    self.X[whole(f[0])] = self.point(whole(f[1]), [number(v) for v in f[2:5]])
+                    self.output[whole(f[0])] = whole(f[5])
+            for name, f in self.entries:
+                if name.startswith("CORD1") and not last:
+                    self.system(whole(f[0]), name[5], np.array([self.X[int(g)] for g in f[1:4]]))
         for name, f in self.entries:
-            if name == "GRID":
-                self.X[whole(f[0])] = self.point(whole(f[1]), [number(v) for v in f[2:5]])
-                self.output[whole(f[0])] = whole(f[5])
-            elif name in SOLIDS:
+            if name in SOLIDS:
                 nodes = [int(v) for v in f[2:] if v]
                 self.cells[whole(f[0])] = (whole(f[1]), nodes, SOLIDS[name][0])
             elif name == "PSOLID":
@@ -286,6 +295,12 @@ class Deck:
             elif name == "PARAM" and f[0] == "WTMASS":
                 self.wtmass = number(f[1])
         self.used = {g for _, nodes, _ in self.cells.values() for g in nodes}
+
+    def system(self, cid, kind, p):
+        z = (p[1] - p[0]) / np.linalg.norm(p[1] - p[0])
+        y = np.cross(z, p[2] - p[0])
+        y /= np.linalg.norm(y)
+        self.systems[cid] = (kind, p[0], np.array([np.cross(y, z), y, z]).T)
 
     def point(self, cid, x):
         if cid == 0:
@@ -359,7 +374,7 @@ class Acts:
     def __init__(self):
         self.askew = []  # supports along other axes: node, axis
         self.held, self.pressure, self.gravity, self.carried = {}, collections.Counter(), np.zeros(3), {}
-        self.force, self.moment = (collections.defaultdict(lambda: np.zeros(3)) for _ in range(2))
+        self.force, self.moment, self.traction = (collections.defaultdict(lambda: np.zeros(3)) for _ in range(3))
         self.mass, self.com = collections.Counter(), {}
 
 
@@ -413,7 +428,11 @@ def read_deck(d):
                     continue
                 if n == 4 and other in corners or n != 4 and len(face) == 3 and other or n != 4 and len(face) == 4 and other not in corners:
                     continue
-                a.pressure[frozenset(corners)] += s * number(f[2])
+                way = np.array([number(x) for x in f[9:12]])
+                if way.any():
+                    a.traction[frozenset(corners)] += s * number(f[2]) * (d.axes(whole(f[8]), np.zeros(3)) @ way) / np.linalg.norm(way)
+                else:
+                    a.pressure[frozenset(corners)] += s * number(f[2])
         elif name == "CONM2":
             g, m = whole(f[1]), number(f[3]) * d.wtmass
             a.mass[g] += m
@@ -440,11 +459,15 @@ def read_scene(scene, mesh):
             of, v = (a.force, load["force"]) if load["kind"] == "force" else (a.moment, load["torque"])
             for i in sets.get(load["on"], [grid(load["on"])] if load["on"].startswith("grid_") else []):
                 of[int(i)] += v
-        elif load["kind"] == "pressure":
+        elif load["kind"] in ("pressure", "traction"):
             for cell, facet in facets[load["on"]][...]:
                 nodes = ids[cells[offset[cell]:offset[cell + 1]]]
                 n = {4: 4, 10: 4, 6: 6, 15: 6, 8: 8, 20: 8}[len(nodes)]
-                a.pressure[frozenset(int(nodes[k]) for k in FACES[n][facet])] += load["pressure"]
+                corners = frozenset(int(nodes[k]) for k in FACES[n][facet])
+                if load["kind"] == "pressure":
+                    a.pressure[corners] += load["pressure"]
+                else:
+                    a.traction[corners] += load["traction"]
     a.gravity = np.array(scene.get("gravity", [0, 0, 0]), float)
     for m in scene.get("point_mass", []):
         for i in sets[m["on"]]:
@@ -497,21 +520,20 @@ def judge(d, scene, mesh, said):
         along = int(np.argmax(np.abs(axis)))
         if whole_node:
             ok = all((g, c) in has.held and has.held[g, c][1] == 0 for c in range(3))
-        elif abs(axis[along]) > 1 - 1e-9:
-            ok = (g, along) in has.held and near(has.held[g, along][1], value * np.sign(axis[along]), size)
         else:
-            ok = "support" in lost if value else any(i == g and near(abs(x @ axis), 1, 1) for i, x in has.askew)
+            ok = abs(axis[along]) > 1 - 1e-6 and (g, along) in has.held and near(has.held[g, along][1], value * np.sign(axis[along]), size)
+            ok = ok or ("support" in lost if value else any(i == g and near(abs(x @ axis), 1, 1) for i, x in has.askew))
         if not ok:
             faults.append(f"the support of grid {g} in {k + 1} is missing")
     for g, k in [*has.held, *has.askew]:
         if not any((g, c) in deck.held for c in range(3)):
             faults.append(f"a support of grid {g}, which the deck does not hold")
     if "load" not in lost:
-        for what, ours, theirs in (("force", deck.force, has.force), ("moment", deck.moment, has.moment)):
+        for what, ours, theirs in (("force", deck.force, has.force), ("moment", deck.moment, has.moment), ("traction", deck.traction, has.traction)):
             big = max([1e-300] + [np.abs(v).max() for v in ours.values()])
             off = [g for g in set(ours) | set(theirs) if not near(ours.get(g, np.zeros(3)), theirs.get(g, np.zeros(3)), big)]
             if off:
-                faults.append(f"the {what} of {len(off)} grids differs: {off[:3]}")
+                faults.append(f"the {what} of {len(off)} grids or faces differs: {off[:3]}")
         off = [f for f in set(deck.pressure) | set(has.pressure) if not near(deck.pressure[f], has.pressure[f], 10)]
         if off:
             faults.append(f"pressures of {len(off)} faces differ: {sorted(off[0])}")

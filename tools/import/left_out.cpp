@@ -119,6 +119,7 @@ constexpr std::pair<std::string_view, const char*> losses[] = {
     {"case control TEMPERATURE", load},
     {"case control TEMP", load},
     {"SPC with a displacement", load},
+    {"SPC on a grid of no element", not_missed},
     {"SPC", support},
     {"SPC1", support},
     {"SPCADD", support},
