@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmsh.h>
 
+#include <charconv>
 #include <cstdlib>
 #include <filesystem>
 
@@ -22,6 +23,7 @@ namespace {
 struct Request {
   std::string input, output, scene_out;
   std::vector<std::string> defines;
+  std::string subcase;
   bool json = false;
   ImportOptions options;
 };
@@ -43,6 +45,15 @@ std::pair<std::string, double> definition(const std::string& text) {
 void check(Request& r) {
   auto& o = r.options;
   for (const auto& d : r.defines) o.define.push_back(definition(d));
+  if (r.subcase == "all") {
+    if (o.thicken) usage("--subcase all beside --thicken: the pairs of nodes depend on the supports", "--subcase N, one after the other");
+    o.every_subcase = true;
+  } else if (!r.subcase.empty()) {
+    std::int64_t n = 0;
+    const auto [end, bad] = std::from_chars(r.subcase.data(), r.subcase.data() + r.subcase.size(), n);
+    if (bad != std::errc() || end != r.subcase.data() + r.subcase.size()) usage(fmt::format("--subcase {}: a number, or all", r.subcase));
+    o.subcase = n;
+  }
   if (o.scale <= 0) usage("--scale must be positive");
   if (o.order != 1 && o.order != 2) usage("--order is 1 or 2");
   if (o.merge && *o.merge <= 0) usage("--merge-nodes must be positive");
@@ -62,18 +73,36 @@ void check(Request& r) {
   if (!r.scene_out.empty() && fs::absolute(r.scene_out) == fs::absolute(r.output)) usage("--scene-out and --output name the same file");
 }
 
+/// The files of --scene-out: with --subcase all "scene_3.toml" for SUBCASE 3.
+std::string scene_file(const Request& r, const DeckCase& c) {
+  const std::filesystem::path p = r.scene_out;
+  return (p.parent_path() / fmt::format("{}_{}{}", p.stem().string(), c.number, p.extension().string())).string();
+}
+
 /// The scene of --scene-out: the deck's own lines, or where there are none what a scene can name.
-std::string scene_text(const Request& r, const Imported& in) {
+std::string scene_text(const Request& r, const Imported& in, const std::string& lines, const std::vector<NotRead>& not_read) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::absolute(r.scene_out).parent_path();
   std::string text = fmt::format("# from {}\n", r.input);
   if (in.mesh.n_cells() > 0)
     text += fmt::format("mesh = \"{}\"\n",
                         fs::absolute(r.output).lexically_normal().lexically_relative(folder.lexically_normal()).generic_string());
-  if (!in.mesh.deck_scene.empty()) return text + in.mesh.deck_scene;
+  if (!lines.empty()) return text + lines;
   text += "# the file carries no materials, supports or loads.  It names:\n";
   for (const auto& name : in.mesh.all_names()) text += fmt::format("#   {}\n", name);
-  return text + left_out_tables(in);
+  return text + left_out_tables(not_read);
+}
+
+void write_scenes(const Request& r, const Imported& in) {
+  if (r.scene_out.empty()) return;
+  for (const DeckCase& c : in.cases) {
+    const std::string file = scene_file(r, c);
+    check_output(file);
+    if (std::filesystem::absolute(file) == std::filesystem::absolute(r.output))
+      usage(fmt::format("SUBCASE {} and --output name the same file", c.number));
+  }
+  for (const DeckCase& c : in.cases) write_text_file(scene_file(r, c), scene_text(r, in, c.scene, c.not_read));
+  if (in.cases.empty()) write_text_file(r.scene_out, scene_text(r, in, in.mesh.deck_scene, in.not_read));
 }
 
 void talk(const Imported& in) {
@@ -124,8 +153,10 @@ int main(int argc, char** argv) {
                   "shells of a deck (S3 to S8R, CTRIA3 to CQUAD8) become solid-shells: pairs of nodes across the thickness");
     app->add_flag("--rigid-beams", o.rigid_beams,
                   "beams of a deck become cells of a region that can be rigid alone, not beams of the scene");
-    app->add_option("--subcase", o.subcase,
-                    "number of the SUBCASE of a Nastran file whose loads and supports are taken; the first one when absent")
+    app->add_option(
+           "--subcase", r.subcase,
+           "number of the SUBCASE of a Nastran file whose loads and supports are taken; the first one when absent; all: a scene for "
+           "each of them, scene_N.toml by --scene-out scene.toml, and one mesh with the sets of all")
         ->type_name("N");
     app->add_flag("--flip", o.flip, "turn cells whose nodes are numbered as in a mirror (negative volume)");
     app->add_flag("--keep-apart", o.keep_apart, "solids of a CAD file that touch share no nodes");
@@ -149,9 +180,11 @@ int main(int argc, char** argv) {
     finish(in, r.input, o);
     Store mesh = unpublished_mesh(r.output, in.mesh, {command_line(argc, argv)});
     if (!in.thin_regions.empty()) write_thin_regions(mesh, in.thin_regions);
-    if (!r.scene_out.empty()) write_text_file(r.scene_out, scene_text(r, in));  // both files or none
+    write_scenes(r, in);  // all files or none
     mesh.publish();
     talk(in);
-    if (r.json || !is_quiet()) fmt::print("{}", r.json ? import_json(in, r.input, r.output) : import_table(in));
+    std::vector<std::string> scenes;
+    for (const DeckCase& c : in.cases) scenes.push_back(r.scene_out.empty() ? "" : scene_file(r, c));
+    if (r.json || !is_quiet()) fmt::print("{}", r.json ? import_json(in, r.input, r.output, scenes) : import_table(in, scenes));
   });
 }

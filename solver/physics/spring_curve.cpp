@@ -19,8 +19,9 @@ struct CurveLaw final : SpringLaw {
   struct At {
     double force, slope, work;
   };
+  /// At the first point the slope is that behind it: a table that begins at rest resists what begins to pull.
   At at(double e) const {
-    if (e <= x.front()) return {f.front(), 0, f.front() * (e - x.front())};
+    if (e < x.front()) return {f.front(), 0, f.front() * (e - x.front())};
     if (e >= x.back()) return {f.back(), 0, work.back() + f.back() * (e - x.back())};
     const auto i = static_cast<size_t>(std::upper_bound(x.begin(), x.end(), e) - x.begin());
     const double slope = (f[i] - f[i - 1]) / (x[i] - x[i - 1]), d = e - x[i - 1];

@@ -64,6 +64,7 @@ Counts attack(const std::string& name, const std::string& text, int tries, const
     place.write(name, bad);
     ImportOptions options;
     options.order = i % 5 == 0 ? 2 : 1;
+    options.every_subcase = i % 4 == 1 && name.ends_with(".bdf");
     try {
       Imported in = read_any(place / name, options);
       finish(in, place / name, options);
@@ -246,6 +247,104 @@ f, P, 2.
 b-1.e, GRAV, 9.81, 0., 0., -1.
 *END STEP
 )";
+
+// Nodes and elements generated and copied, springs and dampers by tables, supports by velocity and acceleration.
+const std::string generated = R"(*SYSTEM
+0., 0., 0., 1., 0., 0.
+0., 1., 0.
+*NODE, SYSTEM=C
+1, 0., 0., 0.
+3, 2., 0., 0.
+*NODE
+21, 0, 2, 0
+23, 2, 2, 0
+201, 0, 0, 4
+203, 2, 0, 4
+221, 0, 2, 4
+223, 2, 2, 4
+*NGEN, NSET=front
+1, 3
+*NGEN, NSET=back
+21, 23, 1
+*NFILL, NSET=floor, BIAS=1.5
+front, back, 2, 10
+*NGEN
+201, 203
+*NSET, NSET=up, GENERATE
+201, 203
+*NSET, NSET=up2, GENERATE
+221, 223
+*NGEN
+221, 223
+*NFILL, NSET=roof, BIAS=1.5
+up, up2, 2, 10
+*NFILL, TWO STEP
+floor, roof, 2, 100
+*ELEMENT, TYPE=C3D8, ELSET=block
+1, 1, 2, 12, 11, 101, 102, 112, 111
+*ELGEN, ELSET=block
+1, 2, 1, 1, 2, 10, 10, 2, 100, 100
+*NCOPY, OLD SET=roof, CHANGE NUMBER=1000, SHIFT, MULTIPLE=2, NEW SET=far
+0., 0., 3.
+0., 0., 0., 0., 0., 1., 30.
+*NCOPY, OLD SET=roof, CHANGE NUMBER=5000, REFLECT=MIRROR
+0., 0., 7., 1., 0., 7.
+0., 1., 7.
+*NODE
+901, 5., 0., 0.
+903, 5., 2., 0.
+*NGEN, LINE=C
+901, 903, 1, , 5., 1., 0., 0., 0., 1.
+*ELEMENT, TYPE=MASS, ELSET=p
+901, 901
+*ELGEN, ELSET=p
+901, 3
+*MASS, ELSET=p
+2.
+*ELEMENT, TYPE=SPRING1, ELSET=s
+910, 901
+*SPRING, ELSET=s, NONLINEAR
+1
+-1., -1.
+1., 1.
+*ELEMENT, TYPE=DASHPOT2, ELSET=d
+911, 901, 902
+*DASHPOT, ELSET=d, NONLINEAR
+2, 2
+-1., -1.
+1., 1.
+*ELEMENT, TYPE=DASHPOTA, ELSET=da
+912, 902, 903
+*DASHPOT, ELSET=da, NONLINEAR
+
+-1., -1.
+1., 1.
+*MATERIAL, NAME=m
+*ELASTIC
+1e9, 0.
+*DENSITY
+1000.
+*SOLID SECTION, ELSET=block, MATERIAL=m
+*AMPLITUDE, NAME=q
+0., 0., 1., 1., 1., 2., 3., 0.
+*BOUNDARY
+floor, 1, 3
+901, 1, 6
+*STEP
+*DYNAMIC, DIRECT
+.1, 1.
+*BASE MOTION, DOF=1, AMPLITUDE=q, SCALE=2.
+*BOUNDARY, TYPE=VELOCITY, AMPLITUDE=q
+903, 2, 2, 1.
+*END STEP
+)";
+
+TEST(ImportAttack, DamagedDecksThatGenerateAreReadOrRefused) {
+  const test::Workplace place;
+  const Counts n = attack("a.inp", generated, 600, place);
+  EXPECT_GT(n.read, 100);
+  EXPECT_GT(n.refused, 100);
+}
 
 TEST(ImportAttack, DamagedNastranFilesAreReadOrRefused) {
   const test::Workplace place;

@@ -158,6 +158,13 @@ TEST_F(ImportBdfScene, SpringsOfEveryCardGiveWayByForceOverStiffness) {
     by_property += fmt::format("CELAS1,{},8,,,{},1\n", 200 + g, g);
     bushes += fmt::format("CBUSH,{},8,{},,,,,0\n", 200 + g, g);
   }
+  std::string behind = "CHEXA,900,1,305,306,307,308,301,302\n,303,304\nSPC1,1,123,301,THRU,308\n", between, bushes_between;
+  for (int g = 0; g < 8; ++g)
+    behind += fmt::format("GRID,{},,{}.,{}.,{}.\n", 301 + g, -(g / 4), g % 4 == 1 || g % 4 == 2 ? 1 : 0, g % 4 > 1 ? 1 : 0);
+  for (int g = 1; g <= 4; ++g) {
+    between += fmt::format("CELAS2,{},2.5+5,{},1,{},1\n", 200 + g, 300 + g, g);
+    bushes_between += fmt::format("CBUSH,{},8,{},{},,,,0\n", 200 + g, 300 + g, g);
+  }
   const std::pair<const char*, std::string> cases[] = {
       {"CELAS2 to the ground", aside + four},
       {"CELAS1 to the ground", aside + by_property + "PELAS,8,2.5+5\n"},
@@ -169,6 +176,10 @@ TEST_F(ImportBdfScene, SpringsOfEveryCardGiveWayByForceOverStiffness) {
       {"CELAS2 between two hubs, along their line",
        hub + "GRID,101,,-2.,.5,.5\nSPC1,1,123456,101\nSPC1,1,23456,100\nCELAS2,200,1.+6,101,1,100,1\n"},
       {"CBUSH1D", hub + "GRID,101,,-2.,.5,.5\nSPC1,1,123456,101\nSPC1,1,23456,100\nCBUSH1D,200,8,101,100\nPBUSH1D,8,1.+6\n"},
+      {"CELAS2 between two hubs, across their line",
+       hub + "GRID,101,,-2.,3.5,.7\nSPC1,1,123456,101\nSPC1,1,23456,100\nCELAS2,200,1.+6,101,1,100,1\n"},
+      {"CELAS2 between nodes of solids at one place", aside + behind + between},
+      {"CBUSH between nodes of solids at one place", aside + behind + bushes_between + "PBUSH,8,K,2.5+5\n"},
       {"CELAS2 in the grid's own axes",
        "CORD2R,7,,0.,0.,0.,0.,0.,1.\n,0.,1.,0.\nGRID,100,,-1.,.5,.5,7\nRBE2,60,100,123456,1,2,3,4\nSPC1,1,13456,100\nCELAS2,200,1.+6,100,"
        "2\n"},
@@ -179,6 +190,22 @@ TEST_F(ImportBdfScene, SpringsOfEveryCardGiveWayByForceOverStiffness) {
     if (HasFatalFailure()) return;
     EXPECT_NEAR(head().x(), 400 / 1e6 + 1.6e-6, 1e-9);
   }
+}
+
+// Dampers of 400 N s/m in all at the nodes of a cube of 1000 kg: m v' = F - c v, of F = 4 N, to 1e-4 of the way at 10 s.
+TEST_F(ImportBdfScene, DampersAloneAtNodesOfSolidsBrakeThem) {
+  std::string text =
+      "SOL 109\nCEND\nSPC = 1\nLOAD = 2\nTSTEP = 3\nBEGIN BULK\nTSTEP,3,200,.05\nCHEXA,1,1,1,2,3,4,5,6\n,7,8\nPSOLID,1,1\n"
+      "MAT1,1,1.+9,,0.,1000.\nSPC1,1,23,1,THRU,8\n";
+  for (int g = 0; g < 8; ++g)
+    text += fmt::format("GRID,{},,{}.,{}.,{}.\nCDAMP2,{},50.,{},1\nFORCE,2,{},,.5,1.,0.,0.\n", 1 + g, g % 4 == 1 || g % 4 == 2 ? 1 : 0,
+                        g % 4 > 1 ? 1 : 0, g / 4, 20 + g, 1 + g, 1 + g);
+  run(text);
+  if (HasFatalFailure()) return;
+  const Store s = Store::open(place / "run.h5");
+  const auto u = s.read<double>("/field/" + s.list("/field").back() + "/displacement");
+  const double m = 1000, c = 400, t = 10;
+  EXPECT_NEAR(u[0], 4 / c * (t - m / c * (1 - std::exp(-c * t / m))), 1e-5);
 }
 
 // f = sqrt(k/m)/(2 pi), and of a rotor on a torsional spring sqrt(k/J)/(2 pi); the inertia of CONM2 is the tensor with -I21.

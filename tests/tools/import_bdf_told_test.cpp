@@ -61,6 +61,18 @@ TEST_F(ImportBdfTold, ComponentsMayHaveBlanksAndContinuationsAnyCase) {
   EXPECT_EQ(s.entries("motion")[0].texts("components").size(), 3u);
 }
 
+// Not every grid of a range needs to be there, and a wide range takes no memory.
+TEST_F(ImportBdfTold, ARangeOfSupportsHoldsTheGridsThatAreThere) {
+  for (const char* range : {"1,THRU,4", "4,1,THRU,3", "-", "3,4,1,2"}) {
+    const std::string line = range[0] == '-' ? "SPC1,1,123,1,THRU,999999999,BY,5\n" : fmt::format("SPC1,1,123,{}\n", range);
+    scene(head + cube + line + force);
+    const Mesh m = read_mesh_file(place / "out.h5").mesh;
+    EXPECT_EQ(m.node_sets.at("SPC_1").size(), range[0] == '-' ? 2u : 4u) << line;
+    EXPECT_EQ(err.find("not read"), std::string::npos) << err;
+  }
+  told(head + cube + "SPC1,1,123,1,44\n" + force, "SPC on a grid that is not there (1, a.bdf:");
+}
+
 TEST_F(ImportBdfTold, EntriesBehindAnIncludedEndAreNotLost) {
   place.write("end.bdf", cube + "ENDDATA\n");
   place.write("b.bdf", head + "INCLUDE 'end.bdf'\n$ nothing\n" + "\nENDDATA\n");

@@ -346,7 +346,7 @@ TEST_F(ImportInp, WrongDecksAreNamedByLineAndColumnAndLeaveNothing) {
       {two_cubes + "*MATERIAL, NAME=m\n*ELASTIC\n-1., 0.\n", "a.inp:20:1: material m: Young's modulus -1 is not positive"},
       {two_cubes + "*MATERIAL, NAME=m\n*ELASTIC\n1., 0.5\n", "a.inp:20:5: material m: Poisson's ratio 0.5 is not in (-1, 0.5)"},
       {two_cubes + "*MATERIAL, NAME=m\n*DENSITY\n-7850\n", "a.inp:20:1: material m: density -7850 is not positive"},
-      {two_cubes + "*NGEN\n1, 2\n", "a.inp:18:1: *NGEN is not read (write the nodes out)"},
+      {two_cubes + "*NMAP, NSET=left\n1, 2\n", "a.inp:18:1: *NMAP is not read (write the nodes out)"},
       {two_cubes + "*PART, NAME=a\n*PART, NAME=b\n", "a.inp:18: *PART without *END PART"},
       {two_cubes + "*PART, NAME=a\n*END PART\n*PART, NAME=b\n*END PART\n*END PART\n", "a.inp:22:1: *END PART without *PART"},
       {two_cubes + "*PART, NAME=a\n*END PART\n*INSTANCE, NAME=i, PART=missing\n*END INSTANCE\n*INSTANCE, NAME=j, PART=a\n*END INSTANCE\n",

@@ -94,7 +94,8 @@ Imported read_any(const std::string& path, const ImportOptions& options, const R
       if (options.thickness && !f.geometry && ending != ".msh")
         throw Error("", fmt::format("--thickness is for surfaces of a geometry or of a .msh, {} is neither", path),
                     deck ? "--thicken makes shells of a deck, with the deck's thickness" : "", Exit::usage);
-      if (options.subcase && !deck) throw Error("", fmt::format("--subcase is for a Nastran file, {} is none", path), "", Exit::usage);
+      if ((options.subcase || options.every_subcase) && !deck)
+        throw Error("", fmt::format("--subcase is for a Nastran file, {} is none", path), "", Exit::usage);
       if (options.thicken && !deck)
         throw Error("", fmt::format("--thicken is for shells of a deck, {} is none", path),
                     f.geometry || ending == ".msh" ? "--thickness makes shells of its surfaces" : "", Exit::usage);

@@ -206,7 +206,7 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
     const auto gone = merge_nodes(in, *options.merge);
     in.notes.push_back(fmt::format("{} nodes merged with one nearer than {:g}", gone, *options.merge));
   }
-  if (const auto gone = drop_unused(in); gone && in.n_beams == 0)
+  if (const auto gone = drop_unused(in); gone && in.n_beams == 0 && m.n_cells() > 0)
     in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped", gone));
   if (options.thickness || (options.thicken && !in.thin.empty())) thicken(in, file);
   if (options.flip || is_mirrored(m))
@@ -229,7 +229,12 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
   if (in.n_beams > 0) in.notes.push_back(fmt::format("{} beams stand in the scene lines alone (--scene-out)", in.n_beams));
   tell_slivers(in);
   tell_untouched(in);
-  if (!m.deck_scene.empty()) m.deck_scene += left_out_tables(in);
+  for (DeckCase& c : in.cases)
+    if (!c.scene.empty()) c.scene += left_out_tables(c.not_read);
+  if (!in.cases.empty())
+    m.deck_scene = in.cases.front().scene;
+  else if (!m.deck_scene.empty())
+    m.deck_scene += left_out_tables(in.not_read);
   for (size_t r = 0; r < m.region_name.size(); ++r) {
     auto& data = m.region_data[r];
     data.density *= to_si("kg/m^3", options.units);

@@ -39,6 +39,7 @@ struct ImportOptions {
   bool thicken = false;                                // shells of decks become solid-shells
   bool rigid_beams = false;             // beams of decks are cells of regions that can be rigid alone, not beams of the scene
   std::optional<std::int64_t> subcase;  // of a Nastran file; the first one when absent
+  bool every_subcase = false;           // a scene for each of them
   bool flip = false;                    // cells numbered as in a mirror are turned
   bool keep_apart = false;              // solids of a CAD file that touch share no nodes
   std::vector<std::string> sets;        // NAME=KIND:KEY=VALUE,..., as [set.NAME] of a scene    [unit of the file]
@@ -53,10 +54,18 @@ struct NotRead {
   std::string hint = {};  // what it may be a slip of
 };
 
+/// A SUBCASE of a Nastran file, where each has a scene.
+struct DeckCase {
+  std::int64_t number;
+  std::string title, scene;
+  std::vector<NotRead> not_read = {};
+};
+
 struct Imported {
   Mesh mesh;                       // numbers of the deck; region -1 until assign_regions
   std::vector<std::string> notes;  // said on stderr, one line each
   std::vector<NotRead> not_read;
+  std::vector<DeckCase> cases;               // of --subcase all; the first one is mesh.deck_scene too
   std::vector<ThinRegion> thin_regions;      // by region, empty without shells and beams
   std::map<std::int64_t, ThinSection> thin;  // of the cells that are shells or beams
   std::int64_t n_beams = 0;                  // elements that are beams of the scene
@@ -80,7 +89,7 @@ std::string_view loss_of(const NotRead& n);
 /// Notes the solids that share no node with another and that no line of the deck's scene acts on.
 void tell_untouched(Imported& in);
 /// The [[left_out]] of a scene.
-std::string left_out_tables(const Imported& in);
+std::string left_out_tables(const std::vector<NotRead>& not_read);
 
 /// A named group of cells; `tag` is its number in the file.
 struct CellGroup {
@@ -184,8 +193,9 @@ std::int64_t flip(Mesh& mesh);
 /// Throws Error naming the cells when any is inverted or has no volume.
 void check_cells(const Mesh& mesh, const std::string& file);
 
-/// The table on stdout, and the same as JSON.
-std::string import_table(const Imported& in);
-std::string import_json(const Imported& in, const std::string& file, const std::string& output);
+/// The table on stdout, and the same as JSON; `scenes` are the files of the subcases, "" where none is written.
+std::string import_table(const Imported& in, const std::vector<std::string>& scenes = {});
+std::string import_json(const Imported& in, const std::string& file, const std::string& output,
+                        const std::vector<std::string>& scenes = {});
 
 }  // namespace hilo

@@ -119,6 +119,7 @@ constexpr std::pair<std::string_view, const char*> losses[] = {
     {"case control TEMPERATURE", load},
     {"case control TEMP", load},
     {"SPC with a displacement", load},
+    {"SPC on a grid of no element", not_missed},
     {"SPC", support},
     {"SPC1", support},
     {"SPCADD", support},
@@ -174,15 +175,16 @@ bool begins_with(std::string_view what, std::string_view words) {
 
 std::string_view loss_of(const NotRead& n) {
   if (n.output || n.what.find(": numbers after its ") != std::string::npos) return not_missed;
-  if (n.what.find(" of a set that the first subcase does not use") != std::string::npos) return not_missed;
+  for (const char* unused : {" of a set that the first subcase does not use", " of a set that no subcase uses"})
+    if (n.what.find(unused) != std::string::npos) return not_missed;
   for (const auto& [words, lost] : losses)
     if (begins_with(n.what, words)) return lost;
   return other;
 }
 
-std::string left_out_tables(const Imported& in) {
+std::string left_out_tables(const std::vector<NotRead>& not_read) {
   std::string text;
-  for (const NotRead& n : in.not_read) {
+  for (const NotRead& n : not_read) {
     const auto lost = loss_of(n);
     if (lost.empty()) continue;
     text += fmt::format("\n[[left_out]]\ncard = {}\nloss = \"{}\"\n", toml_text(n.what), lost);

@@ -64,11 +64,19 @@ std::vector<SetRow> sets_of(const Mesh& m) {
   return rows;
 }
 
+/// How many "[[load]]" there are.
+int tables_in(const std::string& scene, const std::string& word) {
+  const std::string table = "\n[[" + word + "]]";
+  int n = 0;
+  for (size_t at = 0; (at = scene.find(table, at)) != scene.npos; ++at) ++n;
+  return n;
+}
+
 std::string vec_json(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
 
 }  // namespace
 
-std::string import_table(const Imported& in) {
+std::string import_table(const Imported& in, const std::vector<std::string>& scenes) {
   const Mesh& m = in.mesh;
   const auto rows = rows_of(m);
   Table lines{{"region", "cells", "volume [m^3]", "x from [m]", "to", "y from", "to", "z from", "to", "quality min", "mean", "shapes"}, {}};
@@ -94,10 +102,22 @@ std::string import_table(const Imported& in) {
     text += '\n';
     text += l.text();
   }
+  if (!in.cases.empty()) {
+    Table l{{"subcase", "scene", "loads", "motions", "left out", "title"}, {}};
+    for (size_t i = 0; i < in.cases.size(); ++i) {
+      const DeckCase& c = in.cases[i];
+      const auto lost = std::ranges::count_if(c.not_read, [](const NotRead& n) { return !loss_of(n).empty(); });
+      l.rows.push_back({fmt::format("{}", c.number), i < scenes.size() && !scenes[i].empty() ? scenes[i] : "-",
+                        fmt::format("{}", tables_in(c.scene, "load")), fmt::format("{}", tables_in(c.scene, "motion")),
+                        fmt::format("{}", lost), c.title});
+    }
+    text += '\n';
+    text += l.text();
+  }
   return text;
 }
 
-std::string import_json(const Imported& in, const std::string& file, const std::string& output) {
+std::string import_json(const Imported& in, const std::string& file, const std::string& output, const std::vector<std::string>& scenes) {
   const Mesh& m = in.mesh;
   const auto rows = rows_of(m);
   std::string s = fmt::format("{{\n  \"file\": {},\n  \"mesh\": {},\n  \"nodes\": {},\n  \"cells\": {},\n  \"regions\": [", json_text(file),
@@ -118,6 +138,10 @@ std::string import_json(const Imported& in, const std::string& file, const std::
   for (size_t i = 0; i < sets.size(); ++i)
     s += fmt::format("{}\n    {{\"name\": {}, \"kind\": \"{}\", \"count\": {}}}", i ? "," : "", json_text(sets[i].name), sets[i].kind,
                      sets[i].count);
+  if (!in.cases.empty()) s += "\n  ],\n  \"subcases\": [";
+  for (size_t i = 0; i < in.cases.size(); ++i)
+    s += fmt::format("{}\n    {{\"number\": {}, \"title\": {}, \"scene\": {}}}", i ? "," : "", in.cases[i].number,
+                     json_text(in.cases[i].title), i < scenes.size() && !scenes[i].empty() ? json_text(scenes[i]) : "null");
   s += "\n  ],\n  \"notes\": [";
   for (size_t i = 0; i < in.notes.size(); ++i) s += fmt::format("{}\n    {}", i ? "," : "", json_text(in.notes[i]));
   s += "\n  ],\n  \"not_read\": [";

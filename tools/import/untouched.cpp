@@ -39,9 +39,14 @@ void tell_untouched(Imported& in) {
   }
   if (regions.size() < 2) return;
   std::set<std::int64_t> reached;
-  if (!m.deck_scene.empty()) {
-    const auto names = m.all_names();
-    const std::set<std::string> known(names.begin(), names.end()), at_work = names_at_work(m.deck_scene);
+  std::vector<std::string> scenes;
+  for (const DeckCase& c : in.cases) scenes.push_back(c.scene);
+  if (in.cases.empty()) scenes.push_back(m.deck_scene);
+  const auto all = m.all_names();
+  const std::set<std::string> known(all.begin(), all.end());
+  for (const std::string& scene : scenes) {
+    if (scene.empty()) continue;
+    const std::set<std::string> at_work = names_at_work(scene);
     for (size_t a = 0; a < m.block.size(); ++a)
       if (m.block[a] >= 0 && at_work.contains(m.block_name[static_cast<size_t>(m.block[a])])) reached.insert(piece[a]);
     for (const std::string& name : at_work) {

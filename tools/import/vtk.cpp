@@ -47,7 +47,7 @@ const VtkKind* vtk_kind(int type) {
   return nullptr;
 }
 constexpr int pyramid5 = 14;
-bool is_flat(int type) { return type <= 2 || (type >= 4 && type <= 9) || (type >= 21 && type <= 23) || type == 28 || type == 34; }
+bool is_flat_type(int type) { return type <= 2 || (type >= 4 && type <= 9) || (type >= 21 && type <= 23) || type == 28 || type == 34; }
 
 void check(const VtkGrid& g, const std::string& path) {
   if (g.points.empty()) throw Error(path, "no points");
@@ -78,13 +78,13 @@ Imported read_vtk(const std::string& path, const ImportOptions& options) {
   }
   const bool solids = std::any_of(g.types.begin(), g.types.end(),
                                   [](int t) { return t == pyramid5 || (vtk_kind(t) && vtk_kind(t)->shape != Shape::bar2); });
-  refuse_flat(path, std::ranges::count_if(g.types, is_flat), solids);
+  refuse_flat(path, std::ranges::count_if(g.types, is_flat_type), solids);
   std::vector<std::int64_t> cell_of;  // number in the file
   std::vector<std::int64_t> nodes;
   std::int64_t n_pyramids = 0;
   for (size_t c = 0; c < g.types.size(); ++c) {
     const VtkKind* k = vtk_kind(g.types[c]);
-    if (is_flat(g.types[c]) || (k && k->shape == Shape::bar2 && solids)) {
+    if (is_flat_type(g.types[c]) || (k && k->shape == Shape::bar2 && solids)) {
       in.skip(fmt::format("VTK cells of type {}", g.types[c]), path);
       continue;
     }

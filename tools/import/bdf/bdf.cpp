@@ -4,6 +4,7 @@
 // facet sets; others are cells of regions that can be rigid alone.  Beams stand in the scene, or beside such shells are cells too.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <unordered_set>
 
 #include "base/error.hpp"
@@ -37,8 +38,43 @@ void settle_densities(BdfDeck& deck, Imported& in) {
                                  deck.materials.size(), ids, n > 5 ? ", ..." : ""));
 }
 
+/// The sets of one kind that no subcase takes.
+template <class Lines, class Sums>
+void tell_unused(const Lines& lines, const Sums& sums, const std::set<std::int64_t>& chosen, const char* what, Imported& in) {
+  std::set<std::int64_t> used = chosen;
+  for (const auto& [id, sum] : sums)
+    if (chosen.contains(id)) {
+      if constexpr (requires { sum.sets; })
+        used.insert(sum.sets.begin(), sum.sets.end());
+      else
+        for (const auto& [factor, part] : sum.parts) used.insert(part);
+    }
+  for (const auto& [id, list] : lines)
+    if (!used.contains(id))
+      in.skip(fmt::format("{} of a set that no subcase uses", what), list.front().place, static_cast<std::int64_t>(list.size()));
+}
+
+/// What is told of all subcases, each thing once; what one of them does not take another one may.
+void join_told(const BdfDeck& deck, const std::vector<BdfCase>& cases, Imported& in) {
+  std::vector<NotRead> all;
+  std::set<std::pair<std::string, std::string>> said;  // what, and its place
+  for (const DeckCase& c : in.cases)
+    for (const NotRead& n : c.not_read)
+      if (n.what.find(" of a set that the first subcase does not use") == std::string::npos && said.insert({n.what, n.place}).second)
+        all.push_back(n);
+  in.not_read = std::move(all);
+  std::set<std::int64_t> load, spc, mpc, glue;
+  for (const BdfCase& c : cases) load.insert(c.load), spc.insert(c.spc), mpc.insert(c.mpc), glue.insert(c.glue);
+  tell_unused(deck.loads, deck.load_sums, load, "loads", in);
+  tell_unused(deck.supports, deck.support_sums, spc, "supports", in);
+  tell_unused(deck.ties, deck.tie_sums, mpc, "MPC", in);
+  tell_unused(deck.glue, deck.glue_sums, glue, "BGSET", in);
+  std::set<std::string> notes;
+  std::erase_if(in.notes, [&](const std::string& note) { return !notes.insert(note).second; });
+}
+
 /// Cells by property, shells as sets of facets, supports as sets of nodes.
-void build(BdfDeck& deck, const std::string& path, const ImportOptions& options, Imported& in) {
+void build(BdfDeck& deck, const std::string& path, const std::vector<BdfCaseLine>& case_lines, const ImportOptions& options, Imported& in) {
   Mesh& m = in.mesh;
   m.X = deck.X;
   m.node_id = deck.node_id;
@@ -84,6 +120,7 @@ void build(BdfDeck& deck, const std::string& path, const ImportOptions& options,
     deck.beams.clear();
   }
   in.n_beams = static_cast<std::int64_t>(deck.beams.size());
+  if (m.n_cells() == 0 && deck.beams.empty()) in.notes.push_back("masses and springs stand in the scene lines alone (--scene-out)");
   if (options.thicken) in.sheets = std::make_shared<Sheets>(in);
   std::unordered_set<std::int64_t> of_thin;
   for (const auto& [c, t] : in.thin) of_thin.insert(m.cell(c).begin(), m.cell(c).end());
@@ -112,15 +149,27 @@ void build(BdfDeck& deck, const std::string& path, const ImportOptions& options,
   SetNames names(in);
   for (auto& [pid, f] : facets) names.facets(property_name(pid), std::move(f));
   const std::unordered_set<std::int64_t> of_cells(m.nodes.begin(), m.nodes.end());
+  const bool all = in.n_beams == 0 && m.n_cells() > 0;  // beside bodies alone sets of their grids say nothing
   for (const auto& [sid, lines] : deck.supports) {
     std::vector<std::int64_t> nodes;
     for (const auto& l : lines)
       for (const auto id : l.grids)
-        if (const auto a = deck.row.find(id); a != deck.row.end() && (in.n_beams == 0 || of_cells.contains(a->second)))
-          nodes.push_back(a->second);
-    if (in.n_beams == 0 || !nodes.empty()) names.nodes(fmt::format("SPC_{}", sid), std::move(nodes));
+        if (const auto a = deck.row.find(id); a != deck.row.end() && (all || of_cells.contains(a->second))) nodes.push_back(a->second);
+    if (all || !nodes.empty()) names.nodes(fmt::format("SPC_{}", sid), std::move(nodes));
   }
-  write_bdf_scene(deck, in, names, options);
+  if (!options.every_subcase) return write_bdf_scene(deck, in, names, options);
+  const std::vector<NotRead> told = in.not_read;
+  std::vector<BdfCase> cases;
+  for (const auto number : subcases_of(case_lines, path)) {
+    in.not_read = told;
+    deck.chosen = {};
+    read_case(case_lines, deck, in, number);
+    std::erase_if(in.not_read, [](const NotRead& n) { return n.what.starts_with("SUBCASE but "); });
+    write_bdf_scene(deck, in, names, options);
+    const BdfCase& c = cases.emplace_back(deck.chosen);
+    in.cases.push_back({number, !c.label.empty() ? c.label : !c.subtitle.empty() ? c.subtitle : c.title, in.mesh.deck_scene, in.not_read});
+  }
+  join_told(deck, cases, in);
 }
 
 }  // namespace
@@ -136,21 +185,38 @@ void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards&
       in.skip(e.name.substr(0, 40), e.data.place());
 }
 
+/// Of ranges of grids the grids that are there.
+void resolve_ranges(BdfDeck& deck) {
+  std::vector<std::int64_t> ids = deck.node_id;
+  std::ranges::sort(ids);
+  for (auto& [sid, lines] : deck.supports)
+    for (BdfSupport& s : lines)
+      for (const BdfRange& r : s.ranges)
+        for (auto id = std::ranges::lower_bound(ids, r.first); id != ids.end() && *id <= r.last; ++id)
+          if ((*id - r.first) % r.by == 0) s.grids.push_back(*id);
+}
+
 Imported read_bdf(const std::string& path, const ImportOptions& options) {
   Imported in;
   BdfDeck deck;
   BdfEntries entries(path);
   parse_bdf(entries, deck, in, bdf_cards());
   if (deck.X.empty()) throw Error(path, "no GRID", "a Nastran file has GRID entries");
-  if (deck.cells.empty() && deck.shells.empty() && deck.beams.empty()) throw Error(path, "no elements", bdf_supported);
+  if (deck.cells.empty() && deck.shells.empty() && deck.beams.empty() && deck.masses.empty() && deck.springs.empty())
+    throw Error(path, "no elements", bdf_supported);
   std::set<std::string> taken;
   for (const auto& [id, name] : entries.property_names())  // one name for two properties would make one region of two materials
     deck.property_name[id] = taken.insert(name).second ? name : fmt::format("{}_{}", name, id);
   resolve_axes(deck);
+  resolve_ranges(deck);
   resolve_metals(deck, in);
   settle_densities(deck, in);
-  read_case(entries.case_lines(), deck, in, options.subcase);
-  build(deck, path, options, in);
+  const auto& case_lines = entries.case_lines();
+  if (options.every_subcase)
+    subcases_of(case_lines, path);
+  else
+    read_case(case_lines, deck, in, options.subcase);
+  build(deck, path, case_lines, options, in);
   return in;
 }
 

@@ -45,11 +45,15 @@ void resolve_metals(BdfDeck& deck, Imported& in);
 unsigned components(const DataLine& d, size_t field);
 /// Numbers of a list from a field on, "THRU" and "BY" understood; ends at a word or a real number, whose field is returned.
 size_t grid_list(const DataLine& d, size_t field, std::vector<std::int64_t>& out);
+/// The same with ranges as ranges, of which not every number needs to be there.
+size_t grid_list(const DataLine& d, size_t field, std::vector<std::int64_t>& out, std::vector<BdfRange>& ranges);
 
 /// Reads the entries.  One that is not among `cards` is counted in `in.not_read`.
 void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards& cards);
 /// Executive and case control: title, solution, which supports and loads the first subcase takes.
 void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& in, std::optional<std::int64_t> subcase = {});
+/// The numbers of all subcases; an Error where there is none.
+std::vector<std::int64_t> subcases_of(const std::vector<BdfCaseLine>& lines, const std::string& path);
 /// The lines of a scene (mesh.deck_scene) and the sets they name.
 void write_bdf_scene(const BdfDeck& deck, Imported& in, SetNames& names, const ImportOptions& options);
 

@@ -17,7 +17,7 @@ unsigned components(const DataLine& d, size_t field) {
   return bits;
 }
 
-size_t grid_list(const DataLine& d, size_t field, std::vector<std::int64_t>& out) {
+size_t grid_list(const DataLine& d, size_t field, std::vector<std::int64_t>& out, std::vector<BdfRange>& ranges) {
   for (; field < d.fields.size(); ++field) {
     if (d.empty(field)) continue;
     if (d.is_integer(field)) {
@@ -30,11 +30,23 @@ size_t grid_list(const DataLine& d, size_t field, std::vector<std::int64_t>& out
     std::int64_t by = 1;
     field += 1;
     if (upper(d.text(field + 1)) == "BY") by = d.integer(field + 2), field += 2;
-    if (by < 1 || last < first || (last - first) / by > 100'000'000)
+    if (by < 1 || first < 1 || last < first || last > 1'000'000'000'000)
       throw Error(d.place(field), fmt::format("{} THRU {} names no usable range", first, last));
-    for (auto i = first + by; i <= last; i += by) out.push_back(i);
+    out.pop_back();
+    ranges.push_back({first, last, by});
   }
   return field;
+}
+
+size_t grid_list(const DataLine& d, size_t field, std::vector<std::int64_t>& out) {
+  std::vector<BdfRange> ranges;
+  const size_t end = grid_list(d, field, out, ranges);
+  for (const BdfRange& r : ranges) {
+    if ((r.last - r.first) / r.by > 100'000'000)
+      throw Error(d.place(field), fmt::format("{} THRU {} names no usable range", r.first, r.last));
+    for (auto i = r.first; i <= r.last; i += r.by) out.push_back(i);
+  }
+  return end;
 }
 
 BdfCards& bdf_cards() {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 
 #include "base/error.hpp"
@@ -53,6 +54,25 @@ std::int64_t number_in(const std::string& value, const BdfCaseLine& line) {
 
 }  // namespace
 
+std::vector<std::int64_t> subcases_of(const std::vector<BdfCaseLine>& lines, const std::string& path) {
+  constexpr size_t most = 1000;
+  std::vector<std::int64_t> numbers;
+  bool goes_on = false;
+  for (const BdfCaseLine& line : lines) {
+    const bool rest = goes_on;
+    const auto [word, value] = parts(line.text);
+    goes_on = line.text.back() == ',' && (rest || goes_on_by_comma(word));
+    if (rest || word != "SUBCASE") continue;
+    const std::int64_t number = value.empty() ? 1 : number_in(value, line);
+    if (std::ranges::find(numbers, number) != numbers.end())
+      throw Error(line.place, fmt::format("SUBCASE {} is given twice", number), "number each once, or take the first by --subcase");
+    numbers.push_back(number);
+    if (numbers.size() > most) throw Error(line.place, fmt::format("more than {} subcases", most), "take some of them by --subcase N");
+  }
+  if (numbers.empty()) throw Error("", fmt::format("--subcase all: {} has no SUBCASE", path), "leave --subcase away", Exit::usage);
+  return numbers;
+}
+
 void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& in, std::optional<std::int64_t> subcase) {
   BdfCase& c = deck.chosen;
   bool others = false, goes_on = false;
@@ -77,6 +97,8 @@ void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& i
       c.solution = upper(value.substr(0, value.find_first_of(" ,")));
     else if (word == "TITLE")
       c.title = value;
+    else if (word == "SUBTITLE" || word == "LABEL")
+      (word == "LABEL" ? c.label : c.subtitle) = value;
     else if (word == "SPC")
       c.spc = number_in(value, line);
     else if (word == "MPC")

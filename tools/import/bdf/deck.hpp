@@ -17,12 +17,17 @@
 
 namespace hilo {
 
+/// first THRU last BY by: of what there is among these numbers.
+struct BdfRange {
+  std::int64_t first, last, by;
+};
 /// A line of SPC or SPC1: grids held in components (bits 0 to 5), at a value in SPC.
 struct BdfSupport {
   std::vector<std::int64_t> grids;
   unsigned components;
   double value;
   std::string place;
+  std::vector<BdfRange> ranges = {};
 };
 /// FORCE, MOMENT and their like: a vector at a grid; GRAV: an acceleration; pressures on faces; SPCD: where a support goes.
 struct BdfLoad {
@@ -98,7 +103,7 @@ struct BdfGlue {
 };
 /// What the first subcase takes; -1: none named.
 struct BdfCase {
-  std::string title, solution;  // "101"
+  std::string title, subtitle, label, solution;  // "101"
   std::int64_t spc = -1, load = -1, mpc = -1, glue = -1, method = -1, step = -1, number = -1;
   bool any = false;  // case control is there: CEND is said
 };

@@ -11,7 +11,7 @@ namespace {
 void read_spc1(const BdfEntry& e, BdfDeck& deck, Imported&) {
   const auto& d = e.data;
   BdfSupport s{{}, components(d, 1), 0, d.place()};
-  if (const size_t end = grid_list(d, 2, s.grids); end < d.fields.size())
+  if (const size_t end = grid_list(d, 2, s.grids, s.ranges); end < d.fields.size())
     throw Error(d.place(end), fmt::format("SPC1: expected a grid, found \"{}\"", d.text(end)));
   deck.supports[d.integer(0)].push_back(std::move(s));
 }

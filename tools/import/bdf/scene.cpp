@@ -14,6 +14,8 @@ namespace hilo {
 BdfScene::BdfScene(const BdfDeck& deck, Imported& in, SetNames& names, const ImportOptions& options)
     : deck_(deck), in_(in), names_(names), options_(options), used_(deck.X.size(), 0) {
   for (const auto a : in.mesh.nodes) used_[static_cast<size_t>(a)] = 1;
+  for (const auto& name : in.mesh.all_names())
+    if (!in.cases.empty()) made_.insert("set/" + name), made_.insert("facets/" + name);  // of the subcases before
   Eigen::AlignedBox3d box;
   for (const auto a : in.mesh.nodes) box.extend(X(a));
   for (const auto& b : deck.beams)
@@ -190,6 +192,12 @@ void BdfScene::supports() {
     Rows rows;
     std::string place;
   };
+  struct Askew {
+    std::int64_t row;
+    Vec3 axis;
+    std::string place;
+  };
+  std::vector<Askew> askew;  // held along an axis that is none of the basic system
   std::map<unsigned, Group> fixed;
   std::map<std::pair<unsigned, std::array<double, 3>>, Group> moved;
   for (const auto& [a, h] : held_) {
@@ -220,7 +228,10 @@ void BdfScene::supports() {
       Eigen::Index along;
       own.col(k).cwiseAbs().maxCoeff(&along);
       if (std::abs(own(along, k)) < 1 - 1e-12) {
-        in_.skip("SPC along axes that are not those of the basic system", h.place);
+        if (h.value[static_cast<size_t>(k)] == 0 && !is_of_shell(a))
+          askew.push_back({a, own.col(k), h.place});
+        else
+          in_.skip("SPC along axes that are not those of the basic system", h.place);
         continue;
       }
       const double value = h.value[static_cast<size_t>(k)];
@@ -251,6 +262,11 @@ void BdfScene::supports() {
     tables_ += fmt::format("\n[[motion]]   # {}\nkind = \"translation\"\nname = {}\non = {}\ncomponents = [{}]\ndisplacement = {}\n",
                            g.place, toml_text(unique("motion", set)), toml_text(set), parts(key.first),
                            list(Vec3(key.second[0], key.second[1], key.second[2]), "m"));
+  }
+  for (const Askew& h : askew) {
+    const std::string node = node_set(h.row);
+    tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\nname = {}\nb = {}\nat = {}\naxis = {}\n", h.place,
+                           toml_text(unique("joint", node + "_support")), toml_text(node), point(X(h.row)), direction(h.axis));
   }
   supports_of_bodies();
 }

@@ -53,6 +53,8 @@ class BdfScene {
   // scene_springs.cpp
   void springs();
   void scalar_spring(const BdfSpring& s, double k, double c);
+  void sliding_spring(const Vec3& axis, const std::string& name, std::int64_t a, std::int64_t b, double k, double c,
+                      const std::string& place);
   void line_spring(const BdfSpring& s, double k, double c);
   void bush(const BdfSpring& s, const BdfSpringData& p);
   // scene_loads.cpp

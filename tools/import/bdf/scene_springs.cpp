@@ -57,11 +57,32 @@ void BdfScene::spring_along(const Vec3& axis, const std::string& name, const std
                            toml_list({0, 0, c * si("N s/m")}));
     return;
   }
-  if (k == 0) return in_.skip(name.substr(0, name.find('_')) + ": damping without stiffness at a node of solids", place);
+  if (k == 0 && a == "ground") return sliding_spring(axis, name, -1, b, k, c, place);
+  if (k == 0) return in_.skip(name.substr(0, name.find('_')) + ": damping without stiffness between a body and a node of solids", place);
   tables_ +=
       fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\nname = {}\na = {}\nb = {}\nat = {}\naxis = {}\nstiffness = {}\n", place,
                   toml_text(unique("joint", name)), toml_text(a), toml_text(end_name(b)), point(at), direction(axis), number(k, "N/m"));
   if (c > 0) tables_ += fmt::format("damping = {}\n", number(c, "N s/m"));
+}
+
+/// A body of no mass slides along the axis with b, on the ground or on another that slides with a: the force acts along the axis at each
+/// grid, wherever they are.
+void BdfScene::sliding_spring(const Vec3& axis, const std::string& name, std::int64_t a, std::int64_t b, double k, double c,
+                              const std::string& place) {
+  const std::string way = direction(axis);
+  const auto slider = [&](const std::string& wish, const std::string& on, std::int64_t grid) {
+    const std::string body = unique("body", wish), at = point(X(grid));
+    tables_ += sliding_body(body, "", "", at, place);
+    tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"prismatic\"\nname = {}\na = {}\nb = {}\nat = {}\naxis = {}\n", place,
+                           toml_text(unique("joint", body)), toml_text(on), toml_text(body), at, way);
+    tables_ += joint_to_slide(unique("joint", body + "_end"), body, end_name(grid), way, at, place);
+    return body;
+  };
+  const std::string on = a < 0 ? "ground" : slider(name + "_carrier", "ground", a), body = slider(name + "_slide", on, b);
+  const Vec3 from = X(b), to = from + 4 * size_ * axis;  // far enough that the distance is the slide and a constant
+  tables_ += fmt::format(
+      "\n[[spring]]   # {}\nkind = \"axial\"\nname = {}\na = {}\nb = {}\nat_a = {}\nat_b = {}\nstiffness = {}\ndamping = {}\n", place,
+      toml_text(unique("spring", name)), toml_text(on), toml_text(body), point(from), point(to), number(k, "N/m"), number(c, "N s/m"));
 }
 
 void BdfScene::line_spring(const BdfSpring& s, double k, double c) {
@@ -96,8 +117,11 @@ void BdfScene::scalar_spring(const BdfSpring& s, double k, double c) {
   }
   const bool apart = gap.norm() > 1e-9 * size_;
   if (apart && gap.cross(axis).norm() < 1e-9 * gap.norm()) return line_spring(s, k, c);
-  if (apart) return in_.skip(s.name + " across the line of its grids", s.place);
-  if (a >= 0 && end(a) != End::body) return in_.skip(s.name + " between two nodes of solids at one place", s.place);
+  if (apart || (a >= 0 && end(a) != End::body)) {
+    for (const auto one : {a, b})
+      if (one >= 0 && end(one) != End::body && end(one) != End::node) return in_.skip(s.name + " on a grid of no element", s.place);
+    return sliding_spring(axis, name, a, b, k, c, s.place);
+  }
   spring_along(axis, name, end_name(a), b, k, c, s.place);
 }
 
@@ -135,10 +159,10 @@ void BdfScene::bush(const BdfSpring& s, const BdfSpringData& p) {
   }
   if (turns(b)) std::swap(a, b);
   if (apart) return in_.skip(s.name + " with a length at a node of solids, which does not turn", s.place);
-  if (!turns(a)) return in_.skip(s.name + " between two nodes of solids at one place", s.place);
+  if (!turns(a) && (end(a) != End::node || end(b) != End::node)) return in_.skip(s.name + " on a grid of no element", s.place);
   for (Eigen::Index i = 0; i < 3; ++i)
     if (const double k = p.k[static_cast<size_t>(i)], c = p.c[static_cast<size_t>(i)]; k > 0 || c > 0)
-      spring_along(own.col(i), name, end_name(a), b, k, c, s.place);
+      turns(a) ? spring_along(own.col(i), name, end_name(a), b, k, c, s.place) : sliding_spring(own.col(i), name, a, b, k, c, s.place);
   for (size_t i = 3; i < 6; ++i)
     if (p.k[i] > 0 || p.c[i] > 0) return in_.skip(s.name + " on the rotation of a node of solids, which does not turn", s.place);
 }

@@ -38,8 +38,10 @@ using InpCards = Registry<InpCard>;
 
 /// The families, one file each.
 std::span<const InpCard> inp_mesh_cards();      // *NODE, *ELEMENT, sets, surfaces
+std::span<const InpCard> inp_generate_cards();  // *NGEN, *NFILL, *ELGEN
 std::span<const InpCard> inp_material_cards();  // *MATERIAL and what follows it, sections
 std::span<const InpCard> inp_load_cards();      // supports, loads, histories
+std::span<const InpCard> inp_motion_cards();    // *BASE MOTION
 std::span<const InpCard> inp_tie_cards();       // couplings, rigid bodies, masses, springs
 std::span<const InpCard> inp_step_cards();      // heading, parts, steps, procedures
 std::span<const InpCard> inp_unread_cards();    // requests for output, and cards without which the mesh would be another

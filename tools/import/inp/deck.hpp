@@ -24,6 +24,7 @@ namespace hilo {
 struct InpSet {
   std::string name;  // as first written
   std::vector<std::int64_t> members;
+  bool unsorted = false;  // UNSORTED: *NFILL takes them in this order, not by number
 };
 /// *SURFACE: lines "target, face"; face 0 means the free faces, and in a node surface nothing.
 struct InpSurface {
@@ -78,6 +79,13 @@ struct InpNodal {
   std::string amplitude;  // upper case, "" without
   std::string place;
   int step = 0;  // 0 before the first
+  int rate = 0;  // of a support: 1 where the value is a velocity, 2 an acceleration
+};
+/// *BASE MOTION: what is held in a component moves along it.
+struct InpBaseMotion {
+  int component = 1, rate = 2, step = 1;
+  double scale = 1;
+  std::string amplitude, place;  // upper case
 };
 /// One line of *DLOAD or *DSLOAD: pressure on a face of elements, or gravity.
 struct InpDistributed {
@@ -94,7 +102,8 @@ struct InpDistributed {
 struct InpAmplitude {
   std::string name;
   std::vector<double> t, value;
-  bool total = false;  // TIME=TOTAL TIME
+  bool total = false;               // TIME=TOTAL TIME
+  std::vector<double> slopes = {};  // at both ends, of a cubic spline; empty: linear between the points
 };
 /// A node by number or by a set that holds it alone.
 struct InpTarget {
@@ -185,7 +194,7 @@ struct InpTied {
   double tolerance = -1;  // POSITION TOLERANCE; below 0: none
   bool adjust = true;
 };
-/// *ELEMENT of one or two points: MASS, SPRINGA, SPRING1, DASHPOTA; and the values of *MASS, *SPRING, *DASHPOT.
+/// *ELEMENT of one or two points: MASS, SPRINGA, SPRING1, DASHPOTA and their like; and the values of *MASS, *SPRING, *DASHPOT.
 struct InpPoint {
   std::string type;
   std::int64_t id;
@@ -196,7 +205,7 @@ struct InpPointValue {
   std::string elset, name, place;
   std::vector<double> first, second = {};  // numbers of its lines
   bool more = false;                       // further numbers on the last
-  bool table = false;                      // NONLINEAR: forces and extensions
+  bool table = false;                      // NONLINEAR: forces, and extensions or their rates
 };
 /// A reference node that became a body, with the nodes it carries; or the mean of nodes with weights.
 struct InpCarried {
@@ -257,6 +266,7 @@ struct InpDeck {
   std::map<std::int64_t, InpMean> means;
   std::map<std::int64_t, std::int64_t> turns_of;       // ROT NODE -> reference node
   std::vector<InpNodal> supports, forces, velocities;  // degrees of freedom up to 6, which only reference nodes have
+  std::vector<InpBaseMotion> base_motions;
   std::vector<InpDistributed> distributed;
   std::map<std::string, InpAmplitude> amplitudes;
   std::map<std::string, InpParameter> parameters;
@@ -274,6 +284,9 @@ struct InpDeck {
     Mat3 turn = Mat3::Identity();
   } placed;                                       // of the instance
   std::set<std::string> part_nsets, part_elsets;  // upper case
+  Vec3 system_at = Vec3::Zero();                  // *SYSTEM, in which nodes are given
+  Mat3 system_axes = Mat3::Identity();            // as columns
+  std::int64_t generated = 0;                     // nodes and elements by *NGEN, *NFILL, *ELGEN
   std::vector<InpTransform> transformed;          // nodes with axes of their own
   std::vector<InpThickness> thicknesses;
   std::vector<InpEquation> equations;
@@ -294,8 +307,9 @@ std::string unqualified(const std::string& name);
 /// Supports, loads, surfaces and sections name sets as the deck has them; numbers behind a dot become numbers.
 void unqualify(InpDeck& deck);
 
-/// The element set of this name, new where there is none; one of the part makes room in an assembly.
+/// The set of this name, new where there is none; one of the part makes room in an assembly.
 InpSet& set_of_cells(const std::string& name, InpDeck& deck);
+InpSet& set_of_nodes(const std::string& name, InpDeck& deck);
 /// The shape of an element type, or an Error at the card that says why there is none.
 Shape inp_shape(const Card& card);
 

@@ -99,7 +99,9 @@ void resolve_cells(InpDeck& d, Imported& in) {
   std::set<std::int64_t> dropped(d.unused.begin(), d.unused.end());
   for (const auto& [id, b] : d.beams)
     for (const auto node : b.nodes) dropped.erase(node);
-  if (!dropped.empty())
+  if (d.shape.empty() && d.beams.empty())
+    in.notes.push_back("masses, springs and dampers stand in the scene lines alone (--scene-out)");
+  else if (!dropped.empty())
     in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped, the first is {}", dropped.size(), *dropped.begin()));
   m.shape = d.shape;
   m.cell_id = d.cell_id;
@@ -264,14 +266,20 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     in.notes.push_back(path + " is a Nastran deck, and read as one");
     return in;
   }
-  if (options.subcase) throw Error("", fmt::format("--subcase is for a Nastran file, {} is none", path), "", Exit::usage);
+  if (options.subcase || options.every_subcase)
+    throw Error("", fmt::format("--subcase is for a Nastran file, {} is none", path), "", Exit::usage);
   Imported in;
   InpDeck d;
   parse_inp(path, d, in, inp_cards());
   if (d.X.empty()) throw Error(path, "no nodes", "a deck has *NODE");
-  if (d.shape.empty() && d.beams.empty()) throw Error(path, "no elements", "a deck has *ELEMENT");
+  if (d.shape.empty() && d.beams.empty() && d.points.empty()) throw Error(path, "no elements", "a deck has *ELEMENT");
   unqualify(d);
+  for (auto& [name, set] : d.elset) {  // *ELGEN gives its first element to the set that *ELEMENT gave it to
+    std::ranges::sort(set.members);
+    set.members.erase(std::ranges::unique(set.members).begin(), set.members.end());
+  }
   complete_pyramids(d);
+  find_motions(d, in);
   join_steps(d, in);
   check_names(d);
   turn_materials(d, in);

@@ -51,7 +51,9 @@ void read_supports(InpReading& r) {
   InpDeck& d = r.deck;
   Imported& in = r.in;
   if (const auto odd = unknown_param(card, {"OP", "AMPLITUDE", "TYPE", "FIXED", "LOADCASE"}); !odd.empty()) return r.skip(odd);
-  if (card.has("TYPE") && card.word("TYPE") != "DISPLACEMENT") return r.skip("*BOUNDARY, TYPE=" + card.word("TYPE"));
+  const std::string type = card.has("TYPE") ? card.word("TYPE") : "DISPLACEMENT";
+  const int rate = type == "VELOCITY" ? 1 : type == "ACCELERATION" ? 2 : 0;
+  if (rate == 0 && type != "DISPLACEMENT") return r.skip("*BOUNDARY, TYPE=" + type);
   if (other_case(r)) return;
   if (r.step > 1 && card.word("OP") == "NEW")
     d.steps.back().new_supports = true;
@@ -61,7 +63,7 @@ void read_supports(InpReading& r) {
   DataLine l;
   while (r.lines.next_data(l)) {
     InpNodal b;
-    b.amplitude = amplitude, b.step = r.step;
+    b.amplitude = amplitude, b.step = r.step, b.rate = rate;
     b.place = l.place();
     target_of(l, b.target, b.id);
     if (!l.is_integer(1)) {

@@ -2,7 +2,10 @@
 // The cards of an .inp deck that make the mesh: *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "import/inp/card.hpp"
@@ -45,17 +48,19 @@ void make_room(const std::string& name, bool of_nodes, InpDeck& d) {
 }
 
 void read_nodes(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
-  if (card.has("SYSTEM") && card.word("SYSTEM") != "R")
-    throw Error(card.place("SYSTEM"), "*NODE in cylindrical or spherical axes is not read", "write the nodes in rectangular axes");
-  if (card.has("NSET")) make_room(card.need("NSET"), true, d);
-  InpSet* set = card.has("NSET") ? &set_named(card.need("NSET"), d.nset, d.nset_order) : nullptr;
+  const std::string system = card.has("SYSTEM") ? card.word("SYSTEM") : "R";
+  if (system != "R" && system != "C")
+    throw Error(card.place("SYSTEM"), "*NODE in spherical axes is not read", "write the nodes in rectangular or cylindrical axes");
+  InpSet* set = card.has("NSET") ? &set_of_nodes(card.need("NSET"), d) : nullptr;
   DataLine l;
   while (lines.next_data(l)) {
     auto id = l.integer(0);
     if (id < 1 || id >= (d.shift ? instance_numbers : assembly_numbers))
       throw Error(l.place(0), fmt::format("node number {} is not one", id));
     id += d.node_shift();
-    const Vec3 x(l.number(1), l.number(2), l.number(3));
+    Vec3 x(l.number(1), l.number(2), l.number(3));
+    if (const double t = x[1] * std::numbers::pi / 180; system == "C") x = Vec3(x[0] * std::cos(t), x[0] * std::sin(t), x[2]);
+    x = d.system_at + d.system_axes * x;
     const auto [it, fresh] = d.node.try_emplace(id, static_cast<std::int64_t>(d.X.size()));
     if (fresh) {
       d.X.push_back(x);
@@ -66,6 +71,30 @@ void read_nodes(const Card& card, InpLines& lines, InpDeck& d, Imported& in) {
       throw Error(l.place(0), fmt::format("node {} is given twice, at two places", id), "number each node once");
     if (set) set->members.push_back(id);
   }
+}
+
+/// Axes of the nodes that follow: their origin, a point of the first one, and one of the plane of the first two; nothing: those of the
+/// model.
+void read_system(InpReading& r) {
+  InpDeck& d = r.deck;
+  d.system_at = Vec3::Zero(), d.system_axes = Mat3::Identity();
+  std::vector<double> x;
+  DataLine l;
+  std::string place = r.card.place();
+  while (r.lines.next_data(l)) {
+    place = l.place();
+    for (size_t i = 0; i < l.fields.size(); ++i) x.push_back(l.number(i));
+    x.resize(x.size() <= 3 ? 3 : x.size() <= 6 ? 6 : 9);
+  }
+  if (x.empty()) return;
+  const auto at = [&](size_t i) { return Vec3(x[3 * i], x[3 * i + 1], x[3 * i + 2]); };
+  d.system_at = at(0);
+  if (x.size() == 3) return;
+  // without a third point the axes turn about the third one of the model
+  const Vec3 a = at(1) - at(0), b = x.size() == 9 ? Vec3(at(2) - at(0)) : Vec3(Vec3::UnitZ().cross(a)), z = a.cross(b);
+  if (!(z.norm() > 1e-9 * a.norm() * b.norm()) || !(a.norm() > 0)) throw Error(place, "*SYSTEM: its points are on a line");
+  d.system_axes.col(0) = a.normalized(), d.system_axes.col(2) = z.normalized();
+  d.system_axes.col(1) = d.system_axes.col(2).cross(d.system_axes.col(0));
 }
 
 /// How many nodes a beam has; 0: no beam.
@@ -140,7 +169,7 @@ void read_set(const Card& card, const std::string& key, InpLines& lines, std::ma
               std::vector<std::string>& order, InpDeck& d) {
   const std::string name = card.need(key);
   make_room(name, key == "NSET", d);
-  set_named(name, sets, order);
+  set_named(name, sets, order).unsorted |= card.has("UNSORTED");
   const auto of_instance = d.shift_of.find(card.word("INSTANCE"));
   const std::int64_t shift = of_instance != d.shift_of.end()          ? of_instance->second
                              : key == "ELSET" || card.has("INSTANCE") ? d.shift
@@ -247,6 +276,10 @@ InpSet& set_of_cells(const std::string& name, InpDeck& d) {
   make_room(name, false, d);
   return set_named(name, d.elset, d.elset_order);
 }
+InpSet& set_of_nodes(const std::string& name, InpDeck& d) {
+  make_room(name, true, d);
+  return set_named(name, d.nset, d.nset_order);
+}
 
 Shape inp_shape(const Card& card) {
   const std::string type = upper(card.need("TYPE"));
@@ -329,6 +362,7 @@ int inp_facet(Shape shape, int face) {
 std::span<const InpCard> inp_mesh_cards() {
   static constexpr InpCard cards[] = {
       {"NODE", [](InpReading& r) { read_nodes(r.card, r.lines, r.deck, r.in); }},
+      {"SYSTEM", read_system},
       {"ELEMENT", read_elements},
       {"NSET", [](InpReading& r) { read_set(r.card, "NSET", r.lines, r.deck.nset, r.deck.nset_order, r.deck); }},
       {"ELSET", [](InpReading& r) { read_set(r.card, "ELSET", r.lines, r.deck.elset, r.deck.elset_order, r.deck); }},

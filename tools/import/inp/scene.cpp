@@ -122,6 +122,9 @@ void InpScene::histories() {
     std::vector<double> t = a.t;
     for (auto& x : t) x *= si("s");
     tables_ += fmt::format("\n[history.{}]\nt = {}\nvalue = {}\n", toml_text(clean_name(a.name)), toml_list(t), toml_list(a.value));
+    if (!a.slopes.empty())
+      tables_ += fmt::format("interpolation = \"spline\"\nends = \"clamped\"\nslopes = {}\n",
+                             toml_list({a.slopes[0] / si("s"), a.slopes[1] / si("s")}));
   }
 }
 

@@ -112,6 +112,25 @@ void InpScene::supports_of_ties() {
       if (b.value != 0) h.moves = true, h.amplitude = b.amplitude;
       if (h.place.empty()) h.place = b.place;
     });
+  // a node of springs, dampers and masses alone has no turns
+  std::set<std::int64_t> turning = of_beams_;
+  for (const auto& [turns, reference] : d_.turns_of) turning.insert(reference);
+  for (const auto& [id, b] : d_.bodies) {
+    if (!b.carries.empty() || !b.bodies.empty()) turning.insert(id);
+    for (const auto& [other, components] : b.bodies) turning.insert(other);
+  }
+  for (const auto& f : d_.forces)
+    tied_lines(d_, f, [&](std::int64_t id, int first, int) {
+      if (first > 3) turning.insert(id);
+    });
+  std::set<std::int64_t> of_points;
+  for (const auto& [element, p] : d_.points) of_points.insert(p.nodes.begin(), p.nodes.end());
+  for (const auto& [id, b] : d_.bodies)
+    if (of_points.contains(id) && !turning.contains(id) && !d_.node.contains(id)) {
+      HeldBody& h = held[id];
+      h.bits |= 56;
+      if (h.place.empty()) h.place = b.place;
+    }
   for (const auto& [id, h] : held) {
     const std::string name = body_name(d_, id), at = list(Vec3(d_.bodies.at(id).X * si("m") * o_.scale));
     std::string past, to = "ground";

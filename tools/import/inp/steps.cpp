@@ -185,6 +185,8 @@ class Joiner {
       const double at_once = k == first_ && k > 0 ? t0 + 1e-9 * P : t0;
       if (has_amplitude) {
         const auto a = d_.amplitudes.find(g.amplitude);
+        if (a != d_.amplitudes.end() && !a->second.slopes.empty())
+          throw Cannot{"a support that moves by a velocity or an acceleration", place};
         if (a != d_.amplitudes.end() && a->second.total && total > 0) throw Cannot{"an amplitude over the time of all steps", place};
         if (in_run) {
           put(at_once, g.value * at(g.amplitude, 0, place));

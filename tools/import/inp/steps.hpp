@@ -9,5 +9,7 @@ namespace hilo {
 /// static steps one behind the other, or what follows from their equilibrium, dynamic steps or modes.  Steps that this cannot say are
 /// named, with what is in them.
 void join_steps(InpDeck& deck, Imported& in);
+/// Before: velocities and accelerations of supports, and *BASE MOTION, become displacements.
+void find_motions(InpDeck& deck, Imported& in);
 
 }  // namespace hilo

@@ -142,7 +142,7 @@ void read_tie(InpReading& r) {
 
 /// The first number of a line; in front of it, for springs and dampers, a line with the degrees of freedom of SPRING1 and SPRING2.
 void read_value(InpReading& r) {
-  if (const auto odd = r.card.key == "SPRING" ? unknown_param(r.card, {"ELSET", "NONLINEAR"}) : unknown_param(r.card, {"ELSET"});
+  if (const auto odd = r.card.key == "MASS" ? unknown_param(r.card, {"ELSET"}) : unknown_param(r.card, {"ELSET", "NONLINEAR"});
       !odd.empty())
     return r.skip(odd);
   InpPointValue v{upper(r.card.need("ELSET")), r.card.name, r.card.place(), {}};
@@ -160,8 +160,8 @@ void read_value(InpReading& r) {
 }  // namespace
 
 bool read_points(InpReading& r, const std::string& type) {
-  static const std::map<std::string, size_t> kinds{{"MASS", 1},     {"SPRINGA", 2},  {"SPRING1", 1}, {"SPRING2", 2},
-                                                   {"DASHPOTA", 2}, {"DASHPOT1", 1}, {"DCOUP3D", 1}};
+  static const std::map<std::string, size_t> kinds{{"MASS", 1},     {"SPRINGA", 2},  {"SPRING1", 1},  {"SPRING2", 2},
+                                                   {"DASHPOTA", 2}, {"DASHPOT1", 1}, {"DASHPOT2", 2}, {"DCOUP3D", 1}};
   const auto kind = kinds.find(type);
   if (kind == kinds.end()) return false;
   InpSet* set = r.card.has("ELSET") ? &set_of_cells(r.card.need("ELSET"), r.deck) : nullptr;

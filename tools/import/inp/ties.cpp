@@ -10,6 +10,7 @@
 #include "base/param.hpp"
 #include "import/inp/equations.hpp"
 #include "import/inp/groups.hpp"
+#include "import/inp/springs.hpp"
 #include "import/links.hpp"
 #include "import/sheets.hpp"
 
@@ -251,74 +252,32 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
       if (p == d.points.end() || v.first.empty()) continue;
       const std::string& type = p->second.type;
       const double value = v.first.back();
-      const size_t n_lines = type == "SPRING1" || type == "SPRING2" || type == "DASHPOT1" ? 2 : 1;
-      if ((type == "MASS") != (v.name == "*MASS") || (type[0] == 'S') != (v.name == "*SPRING")) continue;
+      if (type == "DCOUP3D" || (type == "MASS") != (v.name == "*MASS") || (type[0] == 'S') != (v.name == "*SPRING")) continue;
       if (!valued.insert(id).second)
         throw Error(v.place, fmt::format("{} of element {} is given twice", v.name, id), "give each element one value");
-      if (v.table) {
-        if (type != "SPRINGA") {
-          in.skip(v.name + ", NONLINEAR, of " + type, v.place);
-          continue;
-        }
-        const auto a = p->second.nodes[0], b = p->second.nodes[1];
-        if (!((X(b) - X(a)).norm() > 0)) throw Error(p->second.place, fmt::format("{} {} has no length", type, id));
-        std::vector<std::pair<double, double>> points;  // extension and force
-        for (size_t i = 0; i < v.first.size(); ++i) points.emplace_back(v.second[i] * si("m"), v.first[i] * si("N"));
-        std::ranges::sort(points);
-        std::vector<double> extension, force;
-        for (const auto& [x, f] : points) extension.push_back(x), force.push_back(f);
-        if (points.size() < 2 || std::ranges::adjacent_find(extension) != extension.end())
-          throw Error(v.place, "*SPRING, NONLINEAR: two forces at least, at extensions that differ", "force, extension");
-        if (v.more) in.skip(v.name + ": numbers behind force and extension, of temperatures", v.place);
-        springs += fmt::format(
-            "\n[[spring]]   # {}\nkind = \"curve\"\nname = \"{}_{}\"\na = {}\nb = {}\nat_a = {}\nat_b = {}\nextension = {}\nforce = {}\n",
-            p->second.place, type, id, toml_text(end_name(a)), toml_text(end_name(b)), point(X(a)), point(X(b)), toml_list(extension),
-            toml_list(force));
-        continue;
-      }
-      if (v.first.size() > n_lines) {
-        in.skip(v.name + " of several values", v.place);
-        continue;
-      }
-      if (v.more) in.skip(v.name + ": numbers after the first, of temperatures or frequencies", v.place);
-      if (value < 0) {
+      if (v.more)
+        in.skip(v.name + (v.table ? ": numbers after the first two, of temperatures"
+                                  : ": numbers after the first, of temperatures or frequencies"),
+                v.place);
+      if (!v.table && value < 0) {
         in.skip(v.name + " below zero", v.place);
-      } else if (type == "MASS") {
-        mass[p->second.nodes[0]] += value;
-      } else if (type.back() == 'A') {
-        const auto a = p->second.nodes[0], b = p->second.nodes[1];
-        if (!((X(b) - X(a)).norm() > 0)) throw Error(p->second.place, fmt::format("{} {} has no length", type, id));
-        springs += fmt::format("\n[[spring]]   # {}\nkind = \"axial\"\nname = \"{}_{}\"\na = {}\nb = {}\nat_a = {}\nat_b = {}\n{} = {}\n",
-                               p->second.place, type, id, toml_text(end_name(a)), toml_text(end_name(b)), point(X(a)), point(X(b)),
-                               type[0] == 'S' ? "stiffness" : "damping", toml_number(value * si(type[0] == 'S' ? "N/m" : "N s/m")));
-      } else if (type == "SPRING2") {  // along one component of both nodes: exact where they are at one place, or on a line along it
-        const auto a = p->second.nodes[0], b = p->second.nodes[1];
-        const int dof = static_cast<int>(v.first.front());
-        const Vec3 d = X(b) - X(a), axis = dof >= 1 && dof <= 3 ? Vec3(Vec3::Unit(dof - 1)) : Vec3(Vec3::Zero());
-        const bool together = d.norm() < 1e-9 * (X(a).norm() + X(b).norm()) || d.norm() == 0;
-        if (v.first.size() != 2 || axis.norm() == 0 || v.second.front() != dof || (!together && d.cross(axis).norm() > 1e-9 * d.norm())) {
-          in.skip("*SPRING of SPRING2, but along one component of both nodes, in the line between them", v.place);
-          continue;
-        }
-        const std::string ends =
-            fmt::format("name = \"{}_{}\"\na = {}\nb = {}\n", type, id, toml_text(end_name(a)), toml_text(end_name(b)));
-        const std::string stiffness = toml_number(value * si("N/m"));
-        springs += together ? fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\n{}at = {}\naxis = {}\nstiffness = {}\n",
-                                          p->second.place, ends, point(X(a)), toml_list({axis.x(), axis.y(), axis.z()}), stiffness)
-                            : fmt::format("\n[[spring]]   # {}\nkind = \"axial\"\n{}at_a = {}\nat_b = {}\nstiffness = {}\n",
-                                          p->second.place, ends, point(X(a)), point(X(b)), stiffness);
-      } else {
-        const auto b = p->second.nodes[0];
-        const int dof = static_cast<int>(v.first.front());
-        if (v.first.size() != 2 || dof < 1 || dof > 3 || type[0] != 'S') {
-          in.skip(fmt::format("{} of {}, but along a component with a value", v.name, type), v.place);
-          continue;
-        }
-        const Vec3 axis = Vec3::Unit(dof - 1);
-        springs += fmt::format("\n[[joint]]   # {}\nkind = \"in-plane\"\nname = \"{}_{}\"\nb = {}\nat = {}\naxis = {}\nstiffness = {}\n",
-                               p->second.place, type, id, toml_text(end_name(b)), point(X(b)), toml_list({axis.x(), axis.y(), axis.z()}),
-                               toml_number(value * si("N/m")));
+        continue;
       }
+      if (type == "MASS") {
+        if (v.first.size() > 1)
+          in.skip(v.name + " of several values", v.place);
+        else
+          mass[p->second.nodes[0]] += value;
+        continue;
+      }
+      InpPointSpring spring{p->second, v, {}};
+      for (const auto node : p->second.nodes) spring.ends.push_back({"", X(node), d.bodies.contains(node)});
+      if (std::string why = why_no_spring(spring); !why.empty()) {
+        in.skip(why, v.place);
+        continue;
+      }
+      for (size_t k = 0; k < spring.ends.size(); ++k) spring.ends[k].name = end_name(p->second.nodes[k]);
+      springs += write_point_spring(d, in, spring, o);
     }
   }
   for (const auto& [id, p] : d.points)

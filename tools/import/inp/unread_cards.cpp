@@ -11,25 +11,17 @@ void output(InpReading& r) { r.in.skip(r.card.name, r.card.place(), 1, true); }
 
 [[noreturn]] void refuse(const InpReading& r, const char* hint) { throw Error(r.card.place() + ":1", r.card.name + " is not read", hint); }
 void nodes(InpReading& r) { refuse(r, "write the nodes out"); }
-void elements(InpReading& r) { refuse(r, "write the elements out"); }
-void refuse_axes(InpReading& r) { refuse(r, "write the nodes in the axes of the model"); }
 
 }  // namespace
 
 std::span<const InpCard> inp_unread_cards() {
   static constexpr InpCard cards[] = {
-      {"NGEN", nodes},           {"NFILL", nodes},       {"NCOPY", nodes},
-      {"NMAP", nodes},           {"ELGEN", elements},    {"ELCOPY", elements},
-      {"SYSTEM", refuse_axes},   {"NODEPRINT", output},  {"NODEFILE", output},
-      {"NODEOUTPUT", output},    {"ELPRINT", output},    {"ELFILE", output},
-      {"ELEMENTOUTPUT", output}, {"OUTPUT", output},     {"CONTACTFILE", output},
-      {"CONTACTPRINT", output},  {"FACEPRINT", output},  {"CONTACTOUTPUT", output},
-      {"SECTIONPRINT", output},  {"PREPRINT", output},   {"ENERGYPRINT", output},
-      {"MONITOR", output},       {"TIMEPOINTS", output}, {"FILEFORMAT", output},
-      {"ENERGYOUTPUT", output},  {"RESTART", output},    {"ENERGYFILE", output},
-      {"SECTIONFILE", output},   {"MODALFILE", output},  {"MODALPRINT", output},
-      {"PRINT", output},         {"FILEOUTPUT", output}, {"INTEGRATEDOUTPUT", output},
-      {"RADIATIONFILE", output},
+      {"NMAP", nodes},        {"NODEPRINT", output},        {"NODEFILE", output},      {"NODEOUTPUT", output},   {"ELPRINT", output},
+      {"ELFILE", output},     {"ELEMENTOUTPUT", output},    {"OUTPUT", output},        {"CONTACTFILE", output},  {"CONTACTPRINT", output},
+      {"FACEPRINT", output},  {"CONTACTOUTPUT", output},    {"SECTIONPRINT", output},  {"PREPRINT", output},     {"ENERGYPRINT", output},
+      {"MONITOR", output},    {"TIMEPOINTS", output},       {"FILEFORMAT", output},    {"ENERGYOUTPUT", output}, {"RESTART", output},
+      {"ENERGYFILE", output}, {"SECTIONFILE", output},      {"MODALFILE", output},     {"MODALPRINT", output},   {"PRINT", output},
+      {"FILEOUTPUT", output}, {"INTEGRATEDOUTPUT", output}, {"RADIATIONFILE", output},
   };
   return cards;
 }
