@@ -74,6 +74,33 @@ TEST_F(ImportBeam, ACantileverOfTwoBarsHasTheTipOfTimoshenko) {
   EXPECT_NEAR(std::abs(forces[3]) + std::abs(forces[4]), .1, 1e-6) << "bending at the root";
 }
 
+// Two bars of .5 under 3 N/m along y, by four ways to say so; what is no uniform load over a whole beam is told.
+TEST_F(ImportBeam, ForcesPerLengthBendBars) {
+  const double A = .0008, I = .02 * .04 * .04 * .04 / 12, k = 10 * 1.3 / (12 + 11 * .3),
+               want = .3 * (1 / (8 * E * I) + 1 / (2 * k * G * A));
+  const auto deck = [&](const std::string& loads) {
+    return stat + "GRID,1,,0.,0.,0.\nGRID,2,,.5,0.,0.\nGRID,3,,1.,0.,0.\nPBARL,5,1,,BAR,,,,,+\n+,.02,.04\n" + steel +
+           "CBAR,1,5,1,2,0.,1.,0.\nCBAR,2,5,2,3,0.,1.,0.\nSPC1,1,123456,1\n" + loads;
+  };
+  for (const char* load : {"FY,FR,0.,.3,1.,.3", "FYE,LE,0.,.3,.5,.3", "FY,FRPR,0.,.3,1.,.3"}) {
+    solve(deck(fmt::format("PLOAD1,2,1,{0}\nPLOAD1,2,2,{0}\n", load)));
+    EXPECT_NEAR(moved("grid_3").y() / want, 1, 1e-4) << load;
+  }
+  place.write("t.bdf",
+              deck("PLOAD1,2,1,FY,FR,0.,.3,.5,.3\nPLOAD1,2,1,FY,FR,0.,.3,1.,.4\nPLOAD1,2,1,FY,FR,.5,.3\nPLOAD1,2,2,MZ,FR,0.,.3,1.,.3\n"));
+  imported("t.bdf", "--scene-out t.toml");
+  for (const char* lost :
+       {"PLOAD1 on a part of a beam", "PLOAD1 that varies along the beam", "PLOAD1 at a point of a beam", "PLOAD1 of moments"})
+    EXPECT_NE(err.find(lost), std::string::npos) << lost << '\n' << err;
+  place.write("w.bdf", deck("PLOAD1,2,1,FQ,FR,0.,.3,1.,.3\n"));
+  refused("w.bdf -o b.h5", 2, "w.bdf:15:12: PLOAD1: no type \"FQ\" (FX, FY, FZ, FXE, FYE, FZE or moments)");
+  solve(
+      "*NODE,NSET=ALL\n1,0,0,0\n2,.5,0,0\n3,1,0,0\n*ELEMENT,TYPE=B31,ELSET=E\n1,1,2\n2,2,3\n*MATERIAL,NAME=M\n*ELASTIC\n2.1e11,.3\n"
+      "*BEAM SECTION,ELSET=E,MATERIAL=M,SECTION=RECT\n.04,.02\n0,1,0\n*BOUNDARY\n1,1,6\n*STEP\n*STATIC\n*DLOAD\nE,PY,.3\n*END STEP\n",
+      "a.inp");
+  EXPECT_NEAR(moved("node_3").y() / want, 1, 1e-4);
+}
+
 TEST_F(ImportBeam, SecondMomentsBendInTheirPlanesAndI12CouplesThem) {
   const auto run = [&](const std::string& force) {
     solve(stat + "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCBAR,1,5,1,2,0.,0.,1.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7,,,+\n+,,,,,,,,,+\n+,,,1.-7\n" +

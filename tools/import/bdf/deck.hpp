@@ -31,15 +31,18 @@ struct BdfSupport {
 };
 /// FORCE, MOMENT and their like: a vector at a grid; GRAV: an acceleration; pressures on faces; SPCD: where a support goes.
 struct BdfLoad {
-  enum class Kind { force, moment, gravity, rotation, pressure, displacement } kind;
+  enum class Kind { force, moment, gravity, rotation, pressure, displacement, line } kind;
   std::int64_t grid = 0, system = 0;
-  double size = 0;                          // N, N m, m/s^2, turns/s, Pa, m or rad in units of the deck
-  unsigned components = 0;                  // SPCD: bits 0 to 5
-  Vec3 direction = Vec3::Zero();            // in `system`; of a pressure: zero for one along the normal
-  std::array<std::int64_t, 2> towards{};    // FORCE1, MOMENT1: along the line of two grids
-  std::vector<std::int64_t> elements = {};  // of a pressure
-  std::array<std::int64_t, 2> face{};       // PLOAD4 on solids: G1, and G3 or G4
-  std::vector<std::int64_t> corners = {};   // PLOAD: a face by its grids
+  double size = 0;                           // N, N m, m/s^2, turns/s, Pa, m, rad or N/m in units of the deck
+  unsigned components = 0;                   // SPCD: bits 0 to 5
+  Vec3 direction = Vec3::Zero();             // in `system`; of a pressure: zero for one along the normal
+  std::array<std::int64_t, 2> towards{};     // FORCE1, MOMENT1: along the line of two grids
+  std::vector<std::int64_t> elements = {};   // of a pressure
+  std::array<std::int64_t, 2> face{};        // PLOAD4 on solids: G1, and G3 or G4
+  std::vector<std::int64_t> corners = {};    // PLOAD: a face by its grids
+  bool own_axes = false, projected = false;  // PLOAD1: in axes of the beam; per length across the load
+  std::array<double, 2> from_to{};           // PLOAD1: where it begins and ends, of the length or in units of the deck
+  bool as_share = false;                     // the former
   std::string place = {};
 };
 /// LOAD: sets of loads with factors.

@@ -151,14 +151,33 @@ void read_tstep(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   deck.steps[d.integer(0)] = {end, d.number(2)};
 }
 
+/// A force per length of a beam; what is no uniform one is told.
+void read_pload1(const BdfEntry& e, BdfDeck& deck, Imported& in) {
+  const auto& d = e.data;
+  const std::string type = upper(d.text(2)), scale = upper(d.text(3));
+  const bool known_scale = scale == "LE" || scale == "FR" || scale == "LEPR" || scale == "FRPR";
+  if (type.size() < 2 || (type[0] != 'F' && type[0] != 'M') || type[1] < 'X' || type[1] > 'Z' || (type.size() > 2 && type.substr(2) != "E"))
+    throw Error(d.place(2), fmt::format("PLOAD1: no type \"{}\"", d.text(2)), "FX, FY, FZ, FXE, FYE, FZE or moments");
+  if (!known_scale) throw Error(d.place(3), fmt::format("PLOAD1: no scale \"{}\"", d.text(3)), "LE, FR, LEPR or FRPR");
+  if (type[0] == 'M') return in.skip("PLOAD1 of moments", d.place());
+  if (d.empty(6) || d.number(6) == d.number(4)) return in.skip("PLOAD1 at a point of a beam", d.place());
+  if (d.number(5) != d.number(7)) return in.skip("PLOAD1 that varies along the beam", d.place());
+  BdfLoad l{BdfLoad::Kind::line};
+  l.elements = {d.integer(1)}, l.size = d.number(5), l.place = d.place(), l.direction = Vec3::Unit(type[1] - 'X');
+  l.own_axes = type.size() > 2, l.projected = scale.size() > 2, l.as_share = scale.starts_with("FR"),
+  l.from_to = {d.number(4), d.number(6)};
+  deck.loads[d.integer(0)].push_back(l);
+}
+
 }  // namespace
 
 std::span<const BdfCard> bdf_load_cards() {
   static constexpr BdfCard cards[] = {
-      {"SPC1", read_spc1},     {"SPC", read_spc},      {"SPCD", read_spcd},     {"SPCADD", read_spcadd}, {"FORCE", read_force},
-      {"FORCE1", read_force},  {"MOMENT", read_force}, {"MOMENT1", read_force}, {"GRAV", read_gravity},  {"RFORCE", read_rforce},
-      {"PLOAD4", read_pload4}, {"PLOAD", read_pload},  {"PLOAD2", read_pload2}, {"LOAD", read_load},     {"EIGRL", read_modes},
-      {"EIGR", read_modes},    {"TSTEP", read_tstep},  {"MPC", read_mpc},       {"MPCADD", read_mpcadd}, {"BGADD", read_bgadd},
+      {"SPC1", read_spc1},     {"SPC", read_spc},       {"SPCD", read_spcd},     {"SPCADD", read_spcadd}, {"FORCE", read_force},
+      {"FORCE1", read_force},  {"MOMENT", read_force},  {"MOMENT1", read_force}, {"GRAV", read_gravity},  {"RFORCE", read_rforce},
+      {"PLOAD1", read_pload1}, {"PLOAD4", read_pload4}, {"PLOAD", read_pload},   {"PLOAD2", read_pload2}, {"LOAD", read_load},
+      {"EIGRL", read_modes},   {"EIGR", read_modes},    {"TSTEP", read_tstep},   {"MPC", read_mpc},       {"MPCADD", read_mpcadd},
+      {"BGADD", read_bgadd},
   };
   return cards;
 }

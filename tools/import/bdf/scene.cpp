@@ -39,6 +39,7 @@ std::string BdfScene::text() {
   supports();
   nodal_loads();
   pressures();
+  line_loads();
   glue();
   time();
   if (tables_.empty() && head_.empty()) return "";

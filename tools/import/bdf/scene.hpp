@@ -64,6 +64,7 @@ class BdfScene {
   void nodal_loads();
   void distribute(const BdfMean& m, const Vec3& F, const Vec3& M, const std::string& place);
   void pressures();
+  void line_loads();
   Facet face_of_solid(const BdfLoad& l, std::int64_t element) const;
 
   double si(const char* unit) const { return to_si(unit, options_.units); }
@@ -123,6 +124,12 @@ class BdfScene {
   }
   bool is_of_shell(std::int64_t row) const { return !sheets(row).empty(); }
   std::map<std::int64_t, std::string> on_beam_;  // row of a grid of beams -> place
+  struct MadeBeam {
+    std::string name;
+    Mat3 axes;      // x along, y in plane 1
+    double length;  // in units of the deck
+  };
+  std::map<std::int64_t, MadeBeam> made_beams_;  // by element
   std::vector<std::pair<double, const BdfLoad*>> loads_;
   std::map<std::int64_t, std::pair<Vec3, std::string>> force_, moment_;  // row -> sum and first place
   std::map<std::int64_t, std::string> glue_name_;                        // region -> set

@@ -56,6 +56,7 @@ void BdfScene::beam(const BdfDeck::Thin& b) {
   own.col(0) = (at.b - at.a).normalized();
   own.col(2) = own.col(0).cross(at.up).normalized();
   own.col(1) = own.col(2).cross(own.col(0));
+  made_beams_[b.id] = {out.name, own, (at.b - at.a).norm()};
   for (size_t k = 0; k < 2; ++k)
     if (b.pins[k])
       joint(63 & ~b.pins[k], own, out.name + (k == 0 ? "_pin_a" : "_pin_b"), end_name(row(b.nodes[k], b.place, b.card)),

@@ -29,6 +29,8 @@ const char* name_of(BdfLoad::Kind kind) {
       return "PLOAD";
     case BdfLoad::Kind::displacement:
       return "SPCD";
+    case BdfLoad::Kind::line:
+      return "PLOAD1";
   }
   return "";
 }
@@ -181,6 +183,29 @@ void BdfScene::nodal_loads() {
     if (m.first.norm() > 0)
       tables_ += fmt::format("\n[[load]]   # {}\nkind = \"torque\"\nname = {}\non = {}\ntorque = {}\n", m.second,
                              toml_text(unique("load", end_name(a) + "_torque")), toml_text(end_name(a)), list(m.first, "N m"));
+  }
+}
+
+/// PLOAD1 over whole beams.
+void BdfScene::line_loads() {
+  for (const auto& [factor, l] : loads_) {
+    if (l->kind != BdfLoad::Kind::line) continue;
+    const auto beam = made_beams_.find(l->elements.front());
+    if (beam == made_beams_.end()) {
+      in_.skip("PLOAD1 on an element that is no beam of the scene", l->place);
+      continue;
+    }
+    const auto& [name, axes, length] = beam->second;
+    const double whole = l->as_share ? 1 : length;
+    if (std::abs(l->from_to[0]) > 1e-6 * whole || std::abs(l->from_to[1] - whole) > 1e-6 * whole) {
+      in_.skip("PLOAD1 on a part of a beam", l->place);
+      continue;
+    }
+    const Vec3 way = l->own_axes ? Vec3(axes * l->direction) : l->direction;
+    const double across = l->projected ? axes.col(0).cross(way).norm() : 1;
+    if (const Vec3 f = factor * l->size * across * way; f.norm() > 0)
+      tables_ += fmt::format("\n[[load]]   # {}\nkind = \"line\"\nname = {}\non = {}\nforce_per_length = {}\n", l->place,
+                             toml_text(unique("load", name + "_line")), toml_text(name), list(f, "N/m"));
   }
 }
 

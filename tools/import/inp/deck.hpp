@@ -91,7 +91,7 @@ struct InpBaseMotion {
 struct InpDistributed {
   std::string target;  // element set or surface, upper case, or "" for element `id`
   std::int64_t id;
-  int face;      // 1.., 0: a whole surface, -1: gravity, -2: centrifugal
+  int face;      // 1.., 0: a whole surface, -1: gravity, -2: centrifugal, -3: along the normal of shells, -4: by length of beams
   double value;  // of the last the square of the speed
   Vec3 direction;
   std::string amplitude;

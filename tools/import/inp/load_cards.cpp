@@ -151,6 +151,8 @@ void read_distributed(InpReading& r) {
       p.face = label[1] - '0';
     else if (!surface && label == "P")
       p.face = -3;
+    else if (!surface && (label == "PX" || label == "PY" || label == "PZ"))
+      p.face = -4, p.direction = Vec3::Unit(label[1] - 'X');
     else {
       in.skip(fmt::format("{} {}", card.name, label), p.place);
       continue;

@@ -39,6 +39,7 @@ std::string InpScene::text() {
   forces();
   forces_of_ties();
   pressures();
+  line_loads();
   centrifugal();
   tied();
   velocities();

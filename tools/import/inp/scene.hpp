@@ -41,6 +41,7 @@ class InpScene {
   std::string end_of(std::int64_t row, const std::string& wish);
   void forces_of_ties();
   void pressures();
+  void line_loads();
   void velocities();
 
   static std::string num(double x) { return toml_number(x); }

@@ -187,6 +187,32 @@ void InpScene::forces_of_ties() {
   }
 }
 
+/// PX, PY, PZ: forces per length of beams.
+void InpScene::line_loads() {
+  for (const auto& p : d_.distributed) {
+    if (p.face != -4 || p.value == 0) continue;
+    std::string past;
+    if (!history(p.amplitude, "*DLOAD", p.place, past)) continue;
+    std::int64_t others = 0;
+    for (const auto id : elements_of(p)) {
+      const auto b = d_.beams.find(id);
+      if (b == d_.beams.end()) {
+        ++others;
+        continue;
+      }
+      const std::string name = fmt::format("{}_{}", b->second.type, id);
+      const bool halves = b->second.nodes.size() == 3;
+      for (const char* half : {"a", "b"})
+        if (halves || *half == 'a')
+          tables_ += fmt::format("\n[[load]]   # {}\nkind = \"line\"\nname = {}\non = {}\nforce_per_length = {}\n", p.place,
+                                 toml_text(unique("load", name + "_line")), toml_text(halves ? name + half : name),
+                                 list(Vec3(p.value * p.direction * si("N/m")))) +
+                     past;
+    }
+    if (others > 0) in_.skip("*DLOAD PX, PY, PZ on elements that are no beams of the scene", p.place, others);
+  }
+}
+
 void InpScene::pressures() {
   struct Group {
     std::string wish, name, amplitude, place;
@@ -206,7 +232,7 @@ void InpScene::pressures() {
     to->facets.push_back(f), to->has.insert({f.cell, f.facet});
   };
   for (const auto& p : d_.distributed) {
-    if (p.face == -1 || p.face == -2) continue;
+    if (p.face == -1 || p.face == -2 || p.face == -4) continue;
     if (p.face == 0) {
       const auto s = surface_.find(p.target);
       if (s == surface_.end()) throw Error(p.place, fmt::format("*DSLOAD: no element surface \"{}\"", p.target));
