@@ -8,6 +8,7 @@
 
 #include "dynamics/free_part.hpp"
 #include "dynamics/linear_step.hpp"
+#include "system/revising.hpp"
 
 namespace hilo {
 namespace {
@@ -276,6 +277,7 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
       system, solver,
       [&](const Unknown& at) {
         const Stage s = stage(at.q);
+        if (o.always_chooses) revise(system, s);
         if (mechanism) tau = std::min(tau * 1.3, 20.0);
         return s;
       },

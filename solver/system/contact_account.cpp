@@ -29,6 +29,13 @@ void Contacts::add_work(const Moment& m, Work& sum) const {
   for (const SurfacePair& pair : surfaces) sum.dissipated += pair.dissipated(m.s);
 }
 
+int Contacts::outside(const ContactPair& pair, const Config& q) const {
+  if (!pair.shape.field) return 0;
+  return static_cast<int>(std::ranges::count_if(pair.points, [&](const ContactPoint& point) {
+    return pair.shape.field->outside(measures(pair, position(pair, point, q), q)).distance > 0;
+  }));
+}
+
 /// A step must not carry a point through an obstacle that it neither begins nor ends in.
 std::string Contacts::fault(const Config&) const { return jumped_; }
 
@@ -37,7 +44,7 @@ void Contacts::advance(const Stage& s) {
   std::string why;
   for (SurfacePair& pair : surfaces)
     if (const std::string told = pair.advance(s); !told.empty()) why = told;
-  std::vector<double> sums;  // of each pair: pressing, pressing times slip, dissipated
+  std::vector<double> sums;  // of each pair: pressing, pressing times slip, dissipated, points past the border
   for (ContactPair& pair : list) {
     if (is_start(s)) break;
     double pressing = 0, slid = 0, dissipated = 0;
@@ -52,14 +59,15 @@ void Contacts::advance(const Stage& s) {
         if (pair.shape.at((1 - part) * at.x0 + part * at.x1) < point.law.radius - 0.1 * (within + point.law.radius))
           why = fmt::format("contact \"{}\": a point goes through the obstacle within one step", pair.name);
     }
-    sums.insert(sums.end(), {pressing, slid, dissipated});
+    sums.insert(sums.end(), {pressing, slid, dissipated, double(outside(pair, *s.e1))});
   }
   const Comm& comm = *points_.comm;
   comm.sum(sums);
-  for (size_t k = 0; 3 * k < sums.size(); ++k) {
+  for (size_t k = 0; 4 * k < sums.size(); ++k) {
     list[k].next = list[k].sums;
-    list[k].next.dissipated += sums[3 * k + 2];
-    list[k].next.add(sums[3 * k], sums[3 * k + 1]);
+    list[k].next.dissipated += sums[4 * k + 2];
+    list[k].next.outside = std::max(list[k].sums.outside, static_cast<int>(sums[4 * k + 3]));
+    list[k].next.add(sums[4 * k], sums[4 * k + 1]);
   }
   const double lowest = -comm.max(why.empty() ? -1e300 : -comm.rank);  // of the ranks that have something to say
   if (lowest != comm.rank) why.clear();
@@ -194,6 +202,11 @@ void Contacts::add_to_report(std::vector<std::pair<std::string, std::string>>& r
         "{}\n    {}: {{\"points\": {}, \"stiffness\": {}, \"slip\": {:.6g}, \"dissipated\": {:.6g}, \"impacts\": {}, \"shortest\": {}}}",
         text.empty() ? "" : ",", json_text(name), points, json_text(told), sums.slip, sums.dissipated, sums.impacts, sums.shortest);
   };
+  for (const ContactPair& pair : list)
+    if (pair.sums.outside > pair.outside)
+      warn(fmt::format("contact \"{}\"", pair.name),
+           fmt::format("{} of {} points have gone past the border of the height field, where nothing holds them", pair.sums.outside,
+                       pair.n_points));
   for (const ContactPair& pair : list) tell(pair.name, static_cast<size_t>(pair.n_points), pair.told, pair.sums);
   for (const SurfacePair& pair : surfaces) tell(pair.name, pair.n_points(), pair.told, pair.sums);
   if (!text.empty()) report.emplace_back("contacts", "{" + text + "\n  }");

@@ -68,6 +68,13 @@ double Contacts::gap(const ContactPair& pair, const ContactPoint& point, const C
   return pair.shape.at(measures(pair, position(pair, point, q), q)) - point.law.radius;
 }
 
+void Contacts::hold(const Config& q) {
+  about_ = q;
+  for (ContactPair& pair : list)
+    for (ContactPoint& point : pair.points) point.held = HeldPoint::at(point.law, gap(pair, point, q), point.u);
+  for (SurfacePair& pair : surfaces) pair.hold(q);
+}
+
 template <class T>
 PointForce<T> Contacts::force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way,
                               bool fixed) const {
@@ -103,7 +110,9 @@ Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& poi
     at.lowest = at.turn.inverse() * at.low;
     at.way = at.A1.transpose() * (at.turn1 * at.lowest) - at.A0.transpose() * (at.turn0 * at.lowest);
   }
-  if (!is_start)
+  if (holds())
+    at.force = about(point.held, pair.shape, law, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way), point.u);
+  else if (!is_start)
     at.force = force(pair, point, at.x0, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way));
   else
     at.force = at_rest(pair.shape, law, triple<double>((1 - s.weight) * at.x0 + s.weight * at.x1), point.u);
@@ -158,6 +167,7 @@ void Contacts::add_tangent(Pass& p, const ContactPair& pair, const ContactPoint&
     Triple<T> x1 = triple<T>(at.x1), way = triple<T>(at.x1 - at.x0 + at.way);
     for (int i = 0; i < 3; ++i) x1[i].d[i] = 1, way[i].d[N - 3 + i] = 1;
     const auto f = [&] {
+      if (holds()) return about(point.held, pair.shape, point.law, x1, way, point.u);
       if (!is_start(s)) return force(pair, point, at.x0, x1, way, s.fixed_friction);
       const Triple<T> x = s.e0 == s.e1 ? x1 : T(1 - s.weight) * triple<T>(at.x0) + T(s.weight) * x1;
       return at_rest(pair.shape, point.law, x, point.u);

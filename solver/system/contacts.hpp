@@ -25,6 +25,7 @@ struct ContactPoint {
   double deep = HUGE_VAL;    // the depth at which the pressure is the modulus of what lies behind [m]
   Vec3 u = Vec3::Zero();     // the bristle, in axes of the obstacle [m]
   Vec3 next = Vec3::Zero();  // at the end of the step tried last
+  HeldPoint held;            // in small motions about a state
 };
 
 struct ContactPair {
@@ -39,6 +40,7 @@ struct ContactPair {
   std::vector<std::int64_t> number;  // of these, among all
   std::int64_t n_points = 0;         // of all
   bool has_facets = false;
+  int outside = 0;  // points that start past the border of a height field
   ContactSums sums, next;
 };
 
@@ -69,7 +71,10 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   bool touches() const override { return !list.empty() || !surfaces.empty(); }
   bool has_facets() const override;
   std::string apart(const Config& q) const override;
+  void hold(const Config& q) override;
   void each_facet(const Config& q, const std::function<void(const Pressed&)>& visit) const override;
+  /// Points that are past the border of a height field, on this rank.
+  int outside(const ContactPair& pair, const Config& q) const;
   /// The gap of a point, below zero where it is closed [m].
   double gap(const ContactPair& pair, const ContactPoint& point, const Config& q) const;
 
@@ -95,11 +100,14 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   /// Load steps begin where what touches holds [m].
   static double touch(const ContactPoint& point) { return 1e-8 * point.cell; }
   /// The beginning of the step.
-  const Config& begin(const Stage& s) const { return is_static_ && !begin_.R.empty() ? begin_ : *s.e0; }
+  const Config& begin(const Stage& s) const { return holds() ? about_ : is_static_ && !begin_.R.empty() ? begin_ : *s.e0; }
+  /// Whether motions are small ones about a state.
+  bool holds() const { return !about_.R.empty(); }
   /// Of a start, not of a step.
   bool is_start(const Stage& s) const { return is_static_ == s.conserving(); }
   const Points& points_;
   const bool is_static_;                  // load steps: forces at their end
+  Config about_;                          // in small motions: the state
   Config committed_, begin_;              // of load steps: the state accepted last, and where the step began
   std::vector<std::vector<int>> clique_;  // of each point
   std::string jumped_;                    // what the step tried last went through

@@ -56,6 +56,14 @@ OverTriangle<double> SurfacePair::over(int s, const SurfacePoint& point, const F
 
 std::string SurfacePair::advance(const Stage& s) {
   next = sums;
+  if (settles(s)) {  // the state that steps in time go on from
+    for (int k = 0; k < 2; ++k)
+      for (SurfacePoint& point : side[k].points) {
+        point.next = point.now;
+        point.next.past = FacetPast{.gap = point.now.face < 0 ? 1e300 : gap_of(over(k, point, point.now, s.e1->x))};
+      }
+    return "";
+  }
   if (is_static == s.conserving()) return "";
   const Positions x0 = begin(s), x1 = s.e1->x;
   std::string why;
@@ -91,6 +99,18 @@ std::string SurfacePair::advance(const Stage& s) {
     }
   next.add(pressing, slid);
   return why;
+}
+
+void SurfacePair::hold(const Config& q) {
+  if (n_points() == 0) return;
+  about_ = q.x;
+  for (int k = 0; k < 2; ++k)
+    for (SurfacePoint& point : side[k].points) {
+      point.now = point.state, point.held = {};
+      if (point.now.face < 0 || !(point.state.past.gap < 0)) continue;
+      const auto& [u1, u2] = point.state.past.bent;
+      point.held = HeldPoint::at(point.law, gap_of(over(k, point, point.now, q.x)) - point.state.past.offset, {u1, u2, 0});
+    }
 }
 
 void SurfacePair::settle(bool accepted) {

@@ -157,4 +157,42 @@ PointForce<T> at_rest(const Distance& shape, const PointLaw& law, const Triple<T
   return out;
 }
 
+/// How a point was when small motions about a state began: one that is pressed is held by the slopes of its law, whichever way it moves.
+struct HeldPoint {
+  bool pressed = false, sticks = false;  // sticks: friction that does not slide holds along the obstacle too
+  double gap = 0, pressing = 0;          // [m, N]
+  /// Of a gap g and a bristle u.
+  static HeldPoint at(const PointLaw& law, double g, const Vec3& u) {
+    HeldPoint out{.pressed = g < 0, .gap = g};
+    out.pressing = g >= 0 ? 0 : law.hertz > 0 ? -law.hertz * g * std::sqrt(-g) : -law.k * g;
+    out.sticks = out.pressed && law.friction > 0 && law.kt * u.norm() < law.friction * out.pressing;
+    return out;
+  }
+  /// Pressure at another gap.
+  template <class T>
+  T pressing_at(const PointLaw& law, const T& g) const {
+    const double slope = law.hertz > 0 ? 1.5 * law.hertz * std::sqrt(-gap) : law.k;
+    return T(pressing) + T(slope) * (T(gap) - g);
+  }
+};
+
+/// In small motions about a state: `way` of the material point since then, from a bristle u0.
+template <class T>
+PointForce<T> about(const HeldPoint& held, const Distance& shape, const PointLaw& law, const Triple<T>& x, const Triple<T>& way,
+                    const Vec3& u0) {
+  PointForce<T> out;
+  const T zero(0.0);
+  out.normal = out.tangential = out.u = {{zero, zero, zero}};
+  T phi;
+  shape(x, phi, out.n);
+  if (!held.pressed) return out;
+  out.acts = true;
+  const T p = held.pressing_at(law, phi - T(law.radius));
+  out.pressing = value(p), out.normal = (-p) * out.n;
+  out.u = triple<T>(u0);
+  if (held.sticks) out.u = out.u + way - dot(out.n, way) * out.n;
+  out.tangential = T(law.kt) * out.u;
+  return out;
+}
+
 }  // namespace hilo
