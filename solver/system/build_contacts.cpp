@@ -9,6 +9,7 @@
 
 #include "model/height_grid.hpp"
 #include "physics/contact/obstacle_kinds.hpp"
+#include "physics/coordinates.hpp"
 #include "system/builder.hpp"
 #include "system/contact_entries.hpp"
 #include "system/contacts.hpp"
@@ -45,7 +46,10 @@ std::shared_ptr<const HeightField> height_field_of(const Entry& e, const Scene& 
 void refuse_what_is_not_there(const Scene& scene, const Entry& e) {
   const Entry& time = scene.table("time");
   const std::string label = e.label();
-  if (time.text("analysis") == "static") return;
+  if (time.text("analysis") == "static") {
+    if (e.given("restitution")) e.refuse("restitution", "load steps have no impacts", "leave it out");
+    return;
+  }
   if (time.text("analysis") == "modes") return;
   if (time.text("analysis") != "dynamic")
     throw Error(time.where("analysis"), fmt::format("{}: contacts are for load steps, steps in time and modes, not for analysis = \"{}\"",
@@ -100,6 +104,7 @@ void Builder::add_contacts() {
     const Named& obstacle = a->second;
     ContactPair pair;
     pair.name = e.name, pair.shape = obstacle.obstacle.shape, pair.friction = e.number("friction");
+    pair.loses = e.number("restitution") < 1;
     pair.carrier = obstacle.body, pair.axes = obstacle.obstacle.axes;
     pair.at = obstacle.obstacle.at - out_->bodies[pair.carrier].Xc;
     const std::string& b = e.text("b");
@@ -154,7 +159,7 @@ void Builder::add_points_of_body(const Entry& e, const Obstacle& b, int body, Co
   pair.body = body;
   ContactPoint point;
   PointLaw& law = point.law;
-  law.friction = e.number("friction");
+  law.friction = e.number("friction"), law.loss = hunt_crossley(e.number("restitution")), law.slow = e.number("rest_speed");
   const double ratio = tangential_ratio(0.3);
   if (e.given("layer")) e.refuse("layer", "a layer is of a surface of facets");
   if (e.has("stiffness")) {
@@ -200,6 +205,7 @@ void Builder::add_points_of_surface(const Entry& e, ContactPair& pair) {
   const char* const several = "it has rigid and flexible regions, or several bodies";
   std::map<int, double> modulus;  // of regions
   Extremes stiffness, E, depth, times, body;
+  const double loss = hunt_crossley(e.number("restitution"));
   std::vector<std::array<std::int64_t, 3>> counts;  // cell and facet in the mesh, points
   comm_.together([&] {
     for (const Facet& f : facets) {
@@ -235,6 +241,7 @@ void Builder::add_points_of_surface(const Entry& e, ContactPair& pair) {
         ContactPoint point;
         point.facet.assign(nodes.begin(), nodes.end()), point.share = at.share[j], point.area = at.area[j];
         point.law.k = k * at.area[j], point.law.kt = tangential_ratio(nu) * point.law.k, point.law.friction = pair.friction;
+        point.law.loss = loss, point.law.slow = e.number("rest_speed");
         point.cell = rigid ? std::min(cell, deep) : cell;
         if (!rigid) point.deep = cell / factor;
         if (follows) {

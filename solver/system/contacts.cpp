@@ -18,7 +18,8 @@ using Rows12 = Eigen::Matrix<double, 3, 12>;
 
 Traits Contacts::traits() const {
   const bool bends = std::ranges::any_of(list, [](const ContactPair& pair) { return pair.friction > 0; });
-  return {.remembers = bends || !surfaces.empty(),
+  const bool loses = std::ranges::any_of(list, &ContactPair::loses);
+  return {.remembers = bends || loses || !surfaces.empty(),
           .searches = !surfaces.empty(),
           .slides = bends || !surfaces.empty(),
           .reaches = !surfaces.empty()};
@@ -77,9 +78,9 @@ void Contacts::hold(const Config& q) {
 
 template <class T>
 PointForce<T> Contacts::force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way,
-                              bool fixed) const {
+                              bool fixed, double h) const {
   return is_static_ ? at_end(pair.shape, point.law.with_fixed(fixed), x1, way, point.u, touch(point), point.deep)
-                    : over_step(pair.shape, point.law, x0, x1, way, point.u);
+                    : over_step(pair.shape, point.law, x0, x1, way, point.u, {h, point.approach});
 }
 
 Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& point, const Stage& s) const {
@@ -113,7 +114,7 @@ Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& poi
   if (holds())
     at.force = about(point.held, pair.shape, law, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way), point.u);
   else if (!is_start)
-    at.force = force(pair, point, at.x0, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way));
+    at.force = force(pair, point, at.x0, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way), false, s.h);
   else
     at.force = at_rest(pair.shape, law, triple<double>((1 - s.weight) * at.x0 + s.weight * at.x1), point.u);
   at.normal = at.Am * values(at.force.normal), at.tangential = at.Am * values(at.force.tangential);
@@ -168,7 +169,7 @@ void Contacts::add_tangent(Pass& p, const ContactPair& pair, const ContactPoint&
     for (int i = 0; i < 3; ++i) x1[i].d[i] = 1, way[i].d[N - 3 + i] = 1;
     const auto f = [&] {
       if (holds()) return about(point.held, pair.shape, point.law, x1, way, point.u);
-      if (!is_start(s)) return force(pair, point, at.x0, x1, way, s.fixed_friction);
+      if (!is_start(s)) return force(pair, point, at.x0, x1, way, s.fixed_friction, s.h);
       const Triple<T> x = s.e0 == s.e1 ? x1 : T(1 - s.weight) * triple<T>(at.x0) + T(s.weight) * x1;
       return at_rest(pair.shape, point.law, x, point.u);
     }();

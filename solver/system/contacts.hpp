@@ -21,11 +21,12 @@ struct ContactPoint {
   std::vector<double> share;
   Vec3 arm = Vec3::Zero();  // from the centre of the body, body axes [m]
   PointLaw law;
-  double cell = 0;           // the depth that is told as a share of this [m]
-  double deep = HUGE_VAL;    // the depth at which the pressure is the modulus of what lies behind [m]
-  Vec3 u = Vec3::Zero();     // the bristle, in axes of the obstacle [m]
-  Vec3 next = Vec3::Zero();  // at the end of the step tried last
-  HeldPoint held;            // in small motions about a state
+  double cell = 0;                         // the depth that is told as a share of this [m]
+  double deep = HUGE_VAL;                  // the depth at which the pressure is the modulus of what lies behind [m]
+  Vec3 u = Vec3::Zero();                   // the bristle, in axes of the obstacle [m]
+  Vec3 next = Vec3::Zero();                // at the end of the step tried last
+  double approach = 0, next_approach = 0;  // speed at which the contact began; after the step tried last [m/s]
+  HeldPoint held;                          // in small motions about a state
 };
 
 struct ContactPair {
@@ -36,6 +37,7 @@ struct ContactPair {
   Mat3 axes = Mat3::Identity();
   int body = -1;  // of the points, or -1: they have nodes
   double friction = 0;
+  bool loses = false;                // by restitution
   std::vector<ContactPoint> points;  // that this rank evaluates: of facets of its cells; those of a body without mesh are on one rank
   std::vector<std::int64_t> number;  // of these, among all
   std::int64_t n_points = 0;         // of all
@@ -93,7 +95,7 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   Place place(const ContactPair& pair, const ContactPoint& point, const Stage& s) const;
   template <class T>
   PointForce<T> force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way,
-                      bool fixed = false) const;
+                      bool fixed = false, double h = 0) const;
   Vec3 position(const ContactPair& pair, const ContactPoint& point, const Config& q) const;
   Vec3 measures(const ContactPair& pair, const Vec3& x, const Config& q) const;
   void add_tangent(Pass& p, const ContactPair& pair, const ContactPoint& point, const Place& at, int clique) const;

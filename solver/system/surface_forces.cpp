@@ -31,7 +31,7 @@ template <class T>
 FacetForce<T> SurfacePair::force(const SurfacePoint& point, const Stage& s, const OverTriangle<double>& z0,
                                  const OverTriangle<T>& z1) const {
   if (!about_.empty()) return about(point.held, point.law, z0, z1, point.now.past);
-  if (s.conserving()) return over_step(point.law, z0, z1, point.now.past);
+  if (s.conserving()) return over_step(point.law, z0, z1, point.now.past, s.h);
   return at_end(point.law.with_fixed(s.fixed_friction), z0, z1, past_of(point, s), touch(point), deep(point));
 }
 
@@ -103,7 +103,7 @@ double SurfacePair::dissipated(const Stage& s) const {
   double sum = 0;
   for (int k = 0; k < 2; ++k)
     for (const SurfacePoint& point : side[k].points)
-      sum += point.law.friction > 0 && point.now.face >= 0 ? force_of(k, point, s).dissipated : released(point);
+      sum += (point.law.friction > 0 || point.law.loss > 0) && point.now.face >= 0 ? force_of(k, point, s).dissipated : released(point);
   return sum;
 }
 

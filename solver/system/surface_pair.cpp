@@ -89,6 +89,7 @@ std::string SurfacePair::advance(const Stage& s) {
       if (point.now.face >= 0) {
         const FacetForce<double> f = force_of(k, point, s);
         point.next.past.gap = f.gap, point.next.past.bent = f.bent;
+        point.next.past.approach = Approach{s.h, point.now.past.approach}.after(point.now.past.gap, f.gap);
         point.next.past.offset = is_static ? 0 : gap_of(over(k, point, point.now, x1)) - f.gap;
         next.dissipated += f.dissipated, pressing += f.pressing, slid += f.pressing * f.slid;
         if (f.acts) continue;

@@ -31,6 +31,7 @@ class SurfacePair {
   double margin = 0;       // [m]
   bool is_static = false;  // load steps: forces at their end, of the gap itself
   double factor = 1;       // of the stiffness
+  bool loses = false;      // by restitution
   ContactSums sums, next;
 
   size_t n_points() const { return side[0].points.size() + side[1].points.size(); }

@@ -29,6 +29,7 @@ struct FacetPast {
   double gap = 0;                // of the law, g* [m]
   double offset = 0;             // of the gap to the triangle, g - g* [m]
   std::array<double, 2> bent{};  // the bristle, along the first edge and across it [m]
+  double approach = 0;           // speed at which the contact began [m/s]
 };
 
 /// What acts, conjugate to r, t1 and t2 [N].
@@ -115,7 +116,8 @@ void bend(const PointLaw& law, const std::array<T, 2>& sigma, const std::array<F
 
 /// Over the step from z0 to z1.
 template <class T>
-FacetForce<T> over_step(const PointLaw& law, const OverTriangle<double>& z0, const OverTriangle<T>& z1, const FacetPast& past) {
+FacetForce<T> over_step(const PointLaw& law, const OverTriangle<double>& z0, const OverTriangle<T>& z1, const FacetPast& past,
+                        double h = 0) {
   FacetForce<T> out;
   const T zero(0.0), half(0.5);
   out.on_point = out.on_second = out.on_third = {{zero, zero, zero}};
@@ -147,9 +149,9 @@ FacetForce<T> over_step(const PointLaw& law, const OverTriangle<double>& z0, con
     }
   }
   out.gap = T(past.gap) + way, out.acts = true;
-  const T p = secant(law, past.gap, out.gap);
+  const T stored = secant(law, past.gap, out.gap), p = damped(law, stored, past.gap, out.gap, {h, past.approach});
   D.add(-p, out);
-  out.pressing = value(p), out.normal = values(D.r), out.dissipated = lost;
+  out.pressing = value(p), out.normal = values(D.r), out.dissipated = lost + (value(p) - value(stored)) * (past.gap - value(out.gap));
   if (law.friction <= 0 || !(value(p) > 0)) return out;
   bend(law, sigma, S, p, past, out);
   return out;
