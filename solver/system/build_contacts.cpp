@@ -157,6 +157,7 @@ void Builder::add_points_of_body(const Entry& e, const Obstacle& b, int body, Co
                      "of a hollow at a time",
                      e.label(), b.shape.radius, pair.shape.field->least_hollow()));
   pair.body = body;
+  if (ball) pair.shape.reach = b.shape.radius;
   ContactPoint point;
   PointLaw& law = point.law;
   law.friction = e.number("friction"), law.loss = hunt_crossley(e.number("restitution")), law.slow = e.number("rest_speed");

@@ -92,7 +92,8 @@ Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& poi
   const bool is_start = this->is_start(s);
   const double open = is_static_ ? touch(point) : 0;
   if (!is_start && pair.shape.at(at.x0) >= law.radius + open && pair.shape.at(at.x1) >= law.radius + open) {
-    at.force = force(pair, point, at.x0, triple<double>(at.x1), triple<double>(at.x1 - at.x0));
+    at.force.normal = at.force.tangential = at.force.n = at.force.u = triple<double>(Vec3::Zero());
+    at.force.dissipated = law.kt / 2 * point.u.squaredNorm();
     return at;
   }
   const int o = pair.carrier, b = pair.body;

@@ -28,7 +28,7 @@ std::vector<double> even(double low, double high, int n) {
 }
 Distance over(HeightField field) {
   Distance out;
-  out.kind = Distance::Kind::height_field, out.field = std::make_shared<HeightField>(std::move(field));
+  out.kind = Distance::Kind::height_field, out.field = std::make_shared<HeightField>(std::move(field)), out.reach = 10;
   return out;
 }
 
@@ -127,6 +127,33 @@ TEST_F(HeightFieldTest, IsADistance) {
   EXPECT_NEAR(flat.at({2.5, 1, -3}), 0.5, 1e-15);
   EXPECT_NEAR(flat.at({1, -0.25, -3}), 0.25, 1e-15);
   EXPECT_GT(flat.at({-0.1, 1, 0.5}), 0);
+}
+
+// Truth: the distance by the search.  What is taken as far is farther than what meets the surface reaches, and its distance that of a
+// plane.
+TEST_F(HeightFieldTest, WhatIsFarIsFar) {
+  const auto f = [](double u, double v) { return 0.2 * std::sin(4 * u) * std::cos(3 * v) - 0.4 * u; };
+  const Distance exact = over(field_of(even(-2, 2, 41), even(-2, 2, 41), f));
+  Distance quick = exact;
+  int far = 0;
+  for (const double reach : {0., 0.1, 0.3})
+    for (int k = 0; k < 500; ++k) {
+      quick.reach = reach;
+      const Vec3 p(in(-1.5, 1.5), in(-1.5, 1.5), in(-0.5, 2.5));
+      const double truth = exact.at(p), found = quick.at(p);
+      if (quick.field->is_beyond(p, reach)) {
+        ++far;
+        EXPECT_GT(truth, reach);
+        EXPECT_GT(found, reach);
+      } else {
+        EXPECT_EQ(truth, found);
+      }
+    }
+  EXPECT_GT(far, 300);
+  EXPECT_LT(far, 1200);
+  Distance tilted = over(field_of({-1, 1}, {-1, 1}, [](double u, double v) { return 0.5 * u - v; }));
+  tilted.reach = 0;
+  EXPECT_NEAR(tilted.at({0.1, 0.2, 20}), (20 - 0.05 + 0.2) / 1.5, 1e-13);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ struct Distance {
   Vec3 half = Vec3::Zero();  // of a box [m]
   bool inside = false;       // what moves is within: bowl, bore, container
   std::shared_ptr<const HeightField> field{};
+  double reach = 0;  // radius of what meets a field: farther off, its distance is one to first order [m]
 
   /// Half the least extent, which a step must not jump over [m]; of a plane, nothing.
   double least_extent() const {
@@ -124,11 +125,13 @@ struct Distance {
 
  private:
   /// The distance from the nearest point of the surface, and n the normal there: both are exact, n to first order in x, as the foot is one
-  /// step of Newton's method from where it is found to be.
+  /// step of Newton's method from where it is found to be.  Far above all that may touch: the height above the surface times the cosine of
+  /// its slope, and the normal below.
   template <class T>
   void over_heights(const Triple<T>& x, T& phi, Triple<T>& n) const {
     const Vec3 p = values(x);
-    const auto [u, v] = field->nearest(p);
+    const bool far = field->is_beyond(p, reach);
+    const auto [u, v] = far ? std::array{p[0], p[1]} : field->nearest(p);
     const HeightField::Height s = field->at(u, v);
     const double up = p[2] - s.h;
     double a = 1 + s.hx * s.hx - up * s.hxx, b = s.hx * s.hy - up * s.hxy, d = 1 + s.hy * s.hy - up * s.hyy;
@@ -136,7 +139,8 @@ struct Distance {
     const double det = a * d - b * b;
     const Triple<T> r{{x[0] - T(u), x[1] - T(v), x[2] - T(s.h)}};
     const T gu = r[0] + T(s.hx) * r[2], gv = r[1] + T(s.hy) * r[2];
-    const T du = T(d / det) * gu - T(b / det) * gv, dv = T(a / det) * gv - T(b / det) * gu;
+    const double share = far ? 0 : 1 / det;
+    const T du = T(share * d) * gu - T(share * b) * gv, dv = T(share * a) * gv - T(share * b) * gu;
     const T sx = T(s.hx) + T(s.hxx) * du + T(s.hxy) * dv, sy = T(s.hy) + T(s.hxy) * du + T(s.hyy) * dv;
     const T size = sqrt(sx * sx + sy * sy + T(1.0));
     n = {{-sx / size, -sy / size, T(1.0) / size}};

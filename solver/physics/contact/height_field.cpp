@@ -70,6 +70,7 @@ HeightField::HeightField(std::vector<double> x, std::vector<double> y, const std
   extent_ =
       std::max({std::abs(x_.front()), std::abs(x_.back()), std::abs(y_.front()), std::abs(y_.back()), std::abs(low_), std::abs(high_)});
   spacing_ = extent_;
+  piece_ = std::max((x_.back() - x_.front()) / double(nx - 1), (y_.back() - y_.front()) / double(ny - 1));
   for (const std::vector<double>* t : {&x_, &y_})
     for (size_t k = 1; k < t->size(); ++k) spacing_ = std::min(spacing_, (*t)[k] - (*t)[k - 1]);
   for (const double u : x_)
@@ -78,6 +79,7 @@ HeightField::HeightField(std::vector<double> x, std::vector<double> y, const std
       // the larger root of det(second - curvature metric) = 0, second of the surface over sqrt(1 + slope^2)
       const double E = 1 + at.hx * at.hx, F = at.hx * at.hy, G = 1 + at.hy * at.hy, s = std::sqrt(1 + at.hx * at.hx + at.hy * at.hy);
       const double a = E * G - F * F, b = (at.hxx * G + at.hyy * E - 2 * at.hxy * F) / s, c = (at.hxx * at.hyy - at.hxy * at.hxy) / (s * s);
+      steep_ = std::max(steep_, 1.1 * s);
       const double curvature = (b + std::sqrt(std::max(b * b - 4 * a * c, 0.))) / (2 * a);
       if (curvature > 0) hollow_ = std::min(hollow_, 1 / curvature);
     }
@@ -87,6 +89,11 @@ bool HeightField::is_finite() const {
   return std::isfinite(extent_) && std::ranges::all_of(node_, [](const auto& node) {
            return std::ranges::all_of(node, [](double x) { return std::abs(x) < 1e150; });
          });
+}
+
+bool HeightField::is_beyond(const Vec3& p, double distance) const {
+  const double least = steep_ * (distance + 2 * piece_);
+  return p[2] > low_ + least && (p[2] > high_ + least || p[2] > at(p[0], p[1]).h + least);
 }
 
 HeightField::Height HeightField::at(double u, double v) const {

@@ -30,6 +30,8 @@ class HeightField {
     double sign;
   };
   Outside outside(const Vec3& p) const;
+  /// Whether p is above the surface by more than a distance and two pieces of the grid; quick.
+  bool is_beyond(const Vec3& p, double distance) const;
   double low() const { return low_; }
   double high() const { return high_; }
   double extent() const { return extent_; }
@@ -41,7 +43,7 @@ class HeightField {
  private:
   std::vector<double> x_, y_;
   std::vector<std::array<double, 4>> node_;  // height, slopes along x and y, mixed derivative
-  double low_ = 0, high_ = 0, extent_ = 0, spacing_ = 0, hollow_ = HUGE_VAL;
+  double low_ = 0, high_ = 0, extent_ = 0, spacing_ = 0, piece_ = 0, steep_ = 1, hollow_ = HUGE_VAL;
 };
 
 }  // namespace hilo

@@ -53,20 +53,25 @@ T secant(const PointLaw& law, double g0, const T& g1) {
   return T(law.k / 2 * g0 * g0) / (g1 - T(g0));
 }
 
-/// The step, and the speed at which the contact at work began.
+/// The step, and the largest speed of approach of the contact at work.
 struct Approach {
   double h = 0, speed = 0;  // [s, m/s]
-  /// Of the contact after a step from gap g0 to g1: that of a step which ends open or began so is the speed to be known next.
-  double after(double g0, double g1) const { return g1 >= 0 || g0 > 0 ? (h > 0 ? std::max(0., (g0 - g1) / h) : 0) : speed; }
+  /// After a step from gap g0 to g1; what is open begins with its own.
+  double after(double g0, double g1) const {
+    const double rate = h > 0 ? std::max(0., (g0 - g1) / h) : 0;
+    return g0 > 0 || g1 >= 0 ? rate : std::max(speed, rate);
+  }
 };
 
-/// The pressure p of a step from gap g0 to g1 with what restitution takes.
+/// The pressure p of a step from gap g0 to g1 with what restitution takes: p (1 + loss rate/speed), the quotient at most 1, at least zero.
+/// What comes faster than the contact began, as a part at rest that is hit, begins anew with its own speed.
 template <class T>
 T damped(const PointLaw& law, const T& p, double g0, const T& g1, const Approach& approach) {
   if (law.loss == 0 || approach.h <= 0 || !(value(p) > 0)) return p;
   const T rate = (T(g0) - g1) / T(approach.h);
-  const bool begins = g0 > 0 && value(rate) > law.slow;  // with this very speed
-  const T factor = begins ? T(law.loss) : T(law.loss / (g0 > 0 ? law.slow : std::max(approach.speed, law.slow))) * rate;
+  const double speed = std::max(g0 > 0 ? 0. : approach.speed, law.slow);
+  if (value(rate) >= speed) return T(1 + law.loss) * p;
+  const T factor = T(law.loss / speed) * rate;
   return value(factor) > -1 ? p * (T(1.0) + factor) : T(0.0);
 }
 

@@ -119,6 +119,28 @@ TEST(Restitution, ABallComesToRest) {
   EXPECT_LT(std::abs(x(x.rows() - 1, 5)), 1e-3);
 }
 
+// Truth: three balls that fall on each other and on the ground come to rest there, and nothing is given back on the way.
+TEST(Restitution, APileComesToRest) {
+  const Place c;
+  std::string scene =
+      "gravity = [0, 0, -9.81]\n[[obstacle]]\nkind = \"sphere\"\nname = \"ground\"\nradius = 1\nat = [0, 0, 1]\ninside = true\n";
+  const Vec3 at[] = {{0, 0, 0.3}, {0.15, 0.02, 0.6}, {-0.1, 0.05, 0.9}};
+  for (int k = 0; k < 3; ++k)
+    scene += fmt::format(
+        "[[body]]\nname = \"b{0}\"\nmass = 1\ncom = [{1}, {2}, {3}]\ninertia = [4e-3, 4e-3, 4e-3]\n[[obstacle]]\nkind = "
+        "\"sphere\"\nname = \"s{0}\"\non = \"b{0}\"\nradius = 0.1\nat = [{1}, {2}, {3}]\n",
+        k, at[k][0], at[k][1], at[k][2]);
+  const Results r = c.solved(scene +
+                             "[[contact]]\nname = \"c\"\na = \"all\"\nb = \"all\"\nstiffness = 1e4\nfriction = 0.3\nrestitution = 0.4\n"
+                             "rest_speed = 0.01\n[solver]\ntolerance = 1e-12\n[time]\nend = 6\nstep = 0.004\n");
+  const auto e = r.history("energy");
+  for (Eigen::Index k = 1; k < e.rows(); ++k) {
+    EXPECT_LT(std::abs(e(k, 5) - e(k - 1, 5)), 1e-11 * 30) << k;
+    EXPECT_GE(e(k, 4), e(k - 1, 4) - 1e-13) << k;
+  }
+  EXPECT_LT(e(e.rows() - 1, 0), 1e-2) << "from 18 J";
+}
+
 TEST(Restitution, GoesOnBitByBit) {
   const Folder folder;
   const Case c("contact");
