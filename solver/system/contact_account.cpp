@@ -47,6 +47,10 @@ void Contacts::advance(const Stage& s) {
   std::vector<double> sums;  // of each pair: pressing, pressing times slip, dissipated, points past the border
   for (ContactPair& pair : list) {
     if (is_start(s)) break;
+    if (settles(s)) {
+      for (ContactPoint& point : pair.points) point.next = values(place(pair, point, s).force.u);
+      continue;
+    }
     double pressing = 0, slid = 0, dissipated = 0;
     const double within = pair.shape.least_extent();
     for (ContactPoint& point : pair.points) {

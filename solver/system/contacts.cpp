@@ -78,9 +78,9 @@ void Contacts::hold(const Config& q) {
 
 template <class T>
 PointForce<T> Contacts::force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way,
-                              bool fixed, double h) const {
-  return is_static_ ? at_end(pair.shape, point.law.with_fixed(fixed), x1, way, point.u, touch(point), point.deep)
-                    : over_step(pair.shape, point.law, x0, x1, way, point.u, {h, point.approach});
+                              const Stage& s, bool fixed) const {
+  return is_static_ || settles(s) ? at_end(pair.shape, point.law.with_fixed(fixed), x1, way, point.u, touch(point), point.deep)
+                                  : over_step(pair.shape, point.law, x0, x1, way, point.u, {s.h, point.approach});
 }
 
 Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& point, const Stage& s) const {
@@ -90,7 +90,7 @@ Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& poi
   at.x0 = measures(pair, p0, e0), at.x1 = measures(pair, p1, *s.e1);
   const PointLaw& law = point.law;
   const bool is_start = this->is_start(s);
-  const double open = is_static_ ? touch(point) : 0;
+  const double open = is_static_ || settles(s) ? touch(point) : 0;
   if (!is_start && pair.shape.at(at.x0) >= law.radius + open && pair.shape.at(at.x1) >= law.radius + open) {
     at.force.normal = at.force.tangential = at.force.n = at.force.u = triple<double>(Vec3::Zero());
     at.force.dissipated = law.kt / 2 * point.u.squaredNorm();
@@ -115,7 +115,7 @@ Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& poi
   if (holds())
     at.force = about(point.held, pair.shape, law, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way), point.u);
   else if (!is_start)
-    at.force = force(pair, point, at.x0, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way), false, s.h);
+    at.force = force(pair, point, at.x0, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way), s);
   else
     at.force = at_rest(pair.shape, law, triple<double>((1 - s.weight) * at.x0 + s.weight * at.x1), point.u);
   at.normal = at.Am * values(at.force.normal), at.tangential = at.Am * values(at.force.tangential);
@@ -170,7 +170,7 @@ void Contacts::add_tangent(Pass& p, const ContactPair& pair, const ContactPoint&
     for (int i = 0; i < 3; ++i) x1[i].d[i] = 1, way[i].d[N - 3 + i] = 1;
     const auto f = [&] {
       if (holds()) return about(point.held, pair.shape, point.law, x1, way, point.u);
-      if (!is_start(s)) return force(pair, point, at.x0, x1, way, s.fixed_friction, s.h);
+      if (!is_start(s)) return force(pair, point, at.x0, x1, way, s, s.fixed_friction);
       const Triple<T> x = s.e0 == s.e1 ? x1 : T(1 - s.weight) * triple<T>(at.x0) + T(s.weight) * x1;
       return at_rest(pair.shape, point.law, x, point.u);
     }();

@@ -95,18 +95,22 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   Place place(const ContactPair& pair, const ContactPoint& point, const Stage& s) const;
   template <class T>
   PointForce<T> force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way,
-                      bool fixed = false, double h = 0) const;
+                      const Stage& s, bool fixed = false) const;
   Vec3 position(const ContactPair& pair, const ContactPoint& point, const Config& q) const;
   Vec3 measures(const ContactPair& pair, const Vec3& x, const Config& q) const;
   void add_tangent(Pass& p, const ContactPair& pair, const ContactPoint& point, const Place& at, int clique) const;
   /// Load steps begin where what touches holds [m].
   static double touch(const ContactPoint& point) { return 1e-8 * point.cell; }
   /// The beginning of the step.
-  const Config& begin(const Stage& s) const { return holds() ? about_ : is_static_ && !begin_.R.empty() ? begin_ : *s.e0; }
+  const Config& begin(const Stage& s) const {
+    return holds() ? about_ : settles(s) ? points_.start : is_static_ && !begin_.R.empty() ? begin_ : *s.e0;
+  }
+  /// Whether a state of equilibrium is sought from which steps in time are to start: forces as of one load step from what is drawn.
+  bool settles(const Stage& s) const { return !is_static_ && !s.conserving() && s.elapsed > 1e300; }
   /// Whether motions are small ones about a state.
   bool holds() const { return !about_.R.empty(); }
   /// Of a start, not of a step.
-  bool is_start(const Stage& s) const { return is_static_ == s.conserving(); }
+  bool is_start(const Stage& s) const { return is_static_ == s.conserving() && !settles(s); }
   const Points& points_;
   const bool is_static_;                  // load steps: forces at their end
   Config about_;                          // in small motions: the state

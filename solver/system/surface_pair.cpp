@@ -60,7 +60,10 @@ std::string SurfacePair::advance(const Stage& s) {
     for (int k = 0; k < 2; ++k)
       for (SurfacePoint& point : side[k].points) {
         point.next = point.now;
-        point.next.past = FacetPast{.gap = point.now.face < 0 ? 1e300 : gap_of(over(k, point, point.now, s.e1->x))};
+        point.next.past = FacetPast{.gap = 1e300};
+        if (point.now.face < 0) continue;
+        const FacetForce<double> f = force_of(k, point, s);
+        point.next.past.gap = gap_of(over(k, point, point.now, s.e1->x)), point.next.past.bent = f.bent;
       }
     return "";
   }
@@ -197,6 +200,8 @@ std::optional<SurfacePair::Deep> SurfacePair::deepest_start(const Config& q) {
           out = Deep{depth, point.cell, side[s].at(point, q.x)};
   near_.clear();
   list_partners();
+  for (ContactSurface& surface : side)  // nothing acts before there are pairs of facets in the matrix
+    for (SurfacePoint& point : surface.points) point.now = point.state;
   return out;
 }
 

@@ -84,7 +84,7 @@ class SurfacePair {
   FacetState begun(int side, const SurfacePoint& point, const Target& target, Positions x0) const;
   /// Load steps begin where what touches holds [m].
   double touch(const SurfacePoint& point) const { return is_static || settles_ ? 1e-8 * point.cell : 0; }
-  /// Whether a state of equilibrium is sought from which steps in time are to start: forces of the gap itself, friction does not act.
+  /// Whether a state of equilibrium is sought from which steps in time are to start: forces as of one load step from what is drawn.
   bool settles(const Stage& s) const { return !is_static && !s.conserving() && s.elapsed > 1e300; }
   /// By the end of a step alone, as load steps choose.
   bool at_end_alone() const { return is_static || settles_; }
@@ -92,7 +92,8 @@ class SurfacePair {
   double deep(const SurfacePoint& point) const { return point.cell / factor; }
   Positions begin(const Stage& s) const {
     if (!about_.empty()) return about_;
-    return s.conserving() || settles(s) || begin_.empty() ? s.e0->x : begin_;
+    if (settles(s)) return points_.start.x;
+    return s.conserving() || begin_.empty() ? s.e0->x : begin_;
   }
   /// What a point has of the past in a stage: nothing where equilibrium is sought.
   FacetPast past_of(const SurfacePoint& point, const Stage& s) const { return settles(s) ? FacetPast{} : point.now.past; }

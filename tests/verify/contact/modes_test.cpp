@@ -189,6 +189,42 @@ TEST(ContactModes, SurfacesStartFromEquilibrium) {
   }
 }
 
+// Truth: what friction can hold stays where it is drawn, on a slope of 0.2, by forces m g; of a slope it cannot hold there is no
+// equilibrium.
+TEST(ContactModes, FrictionHoldsFromTheStart) {
+  const Place c;
+  const std::string box = lies("kind = \"box\"\nsize = [0.6, 0.4, 0.2]", {0.05, 0.07, 0.1}, 0.1, "stiffness = 1e5\nfriction = 0.5");
+  const std::string time = "[time]\nstart = \"equilibrium\"\nend = 0.1\nstep = 0.002\n";
+  const Results r = c.run(box + time, "--set 'gravity=[1.962,0,-9.81]'");
+  const auto e = r.history("energy"), f = r.history("contact/c");
+  EXPECT_LT(e.col(0).maxCoeff(), 1e-12);
+  EXPECT_NEAR(f(f.rows() - 1, 0), -2 * 1.962, 1e-6);
+  EXPECT_NEAR(f(f.rows() - 1, 2), 2 * 9.81, 1e-6);
+  EXPECT_LT((e.col(5).array() - e(0, 5)).abs().maxCoeff(), 1e-11);
+  std::ofstream(c / "scene.toml") << box + time;
+  const Ran ran = static_cast<const Case&>(c).run("hilo-solve --quiet scene.toml --set 'gravity=[6,0,-9.81]' -o run.h5");
+  EXPECT_EQ(ran.exit, 3) << ran.err;
+  // two blocks of cells that nothing else holds sideways, drawn a millimetre apart, the upper one rigid or not
+  for (const Fidelity upper : {Fidelity::nonlinear, Fidelity::rigid}) {
+    BlockOptions A, B;
+    A.regions = {"A"}, B.regions = {"B"};
+    A.n[0] = A.n[1] = A.n[2] = 3, A.high = Vec3(1, 1, 0.3), B.n[0] = B.n[1] = B.n[2] = 2, B.low = Vec3(0.1, 0.1, 0.301),
+    B.high = Vec3(0.9, 0.9, 0.6);
+    Place two;
+    two.use(together(block_mesh(A), block_mesh(B)), {Fidelity::nonlinear, upper});
+    const Results s = two.run(
+        "gravity = [1, 0, -9.81]\n[material.m]\nE = 1e7\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n"
+        "[[motion]]\nkind = \"fixed\"\nname = \"foot\"\non = \"Azmin\"\n[[contact]]\nname = \"c\"\na = \"A\"\nb = \"B\"\nfriction = 0.4\n" +
+            time,
+        "tags.h5");
+    const double m = 1000 * 0.64 * 0.299;
+    const auto F = s.history("contact/c");
+    EXPECT_NEAR(F(F.rows() - 1, 0), -m, 1e-3 * m) << word(upper);
+    EXPECT_NEAR(F(F.rows() - 1, 2), 9.81 * m, 1e-3 * m) << word(upper);
+    EXPECT_LT(s.history("energy").col(0).maxCoeff(), 1e-8) << word(upper);
+  }
+}
+
 // Truth: two rods with the layers between them: beta tan(beta L) = 2 k/E = 1/l, k = E/(2 l).
 TEST(ContactModes, ARodStandsOnAnother) {
   const Stack c;
