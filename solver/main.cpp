@@ -20,8 +20,10 @@
 #include "model/inputs.hpp"
 #include "model/left_out.hpp"
 #include "model/quantity_schema.hpp"
+#include "model/scene_sets.hpp"
 #include "model/store.hpp"
 #include "post/quantity/quantity.hpp"
+#include "system/contact_entries.hpp"
 #include "system/untouched.hpp"
 
 namespace hilo {
@@ -121,6 +123,13 @@ void solve(int argc, char** argv, Comm& comm) {
   if (comm.rank == 0) tell_left_out(scene);
   if (o.explain) {
     if (comm.rank == 0) fmt::print("{}", scene.explain());
+    if (meets_all(scene)) {
+      const std::string path = o.mesh.empty() ? scene.mesh_path() : o.mesh;
+      const auto mesh = path.empty() ? nullptr : std::make_unique<LocalMesh>(read_local_mesh(path, comm));
+      if (mesh) add_scene_sets(scene, *mesh, comm);
+      const std::string pairs = told_pairs(scene, mesh.get(), comm);
+      if (comm.rank == 0) fmt::print("{}", pairs);
+    }
     return;
   }
   if (!from && !o.accept_left_out) refuse_left_out(scene);

@@ -55,7 +55,8 @@ class Collector {
       for (const Entry& e : scene_.entries(section)) on_joint(e);
     for (const Entry& e : scene_.entries("load")) load(e);
     for (const Entry& e : scene_.entries("motion")) motion(e);
-    for (const Entry& e : scene_.entries("contact")) between(e, e.number("friction") > 0 ? "contact with friction" : "contact");
+    for (const Entry& e : scene_.entries("contact"))  // "all" has no place
+      if (e.text("a") != "all" && e.text("b") != "all") between(e, e.number("friction") > 0 ? "contact with friction" : "contact");
     for (const Entry& e : scene_.entries("tie")) between(e, "tie");
     for (const Entry& e : scene_.entries("point_mass")) {
       SceneItem& item = add(Glyph::mass, e, "point mass", mass_colour);

@@ -5,16 +5,17 @@
 
 #include "base/error.hpp"
 #include "dynamics/newton.hpp"
+#include "dynamics/start.hpp"
 #include "system/touching.hpp"
 
 namespace hilo {
 namespace {
 
-System::Loose loose(const System& system, const Config& q, double t, double ramp, bool with_loads) {
+System::Loose loose(const System& system, const Config& q, double t, double ramp, bool with_loads, double elapsed = 0) {
   Config zero;
   combine(zero, {{0, &q}});
   Stage s = stage_at(q, t);
-  s.a = &zero, s.load_factor = ramp;
+  s.a = &zero, s.load_factor = ramp, s.elapsed = elapsed;
   return system.loose(s, with_loads);
 }
 
@@ -31,8 +32,9 @@ void require_held(const System& system, const Config& q, double t, double ramp, 
 
 /// A translation that is free here is free for ever where joints and springs feel nothing of a long way along it.
 void require_rest(const System& system, const Config& q, const std::string& where) {
-  const auto found = loose(system, q, 0, 1, true);
-  if (found.straight.empty()) return;
+  const auto found = loose(system, q, 0, 1, true, slow);
+  const Touching* contacts = touching(system);
+  if (found.straight.empty() || (contacts && contacts->has_facets())) return;  // what it may come to lie on is not known yet
   Config zero;
   combine(zero, {{0, &q}});
   Stage s = stage_at(q, 0);

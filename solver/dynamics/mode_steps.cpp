@@ -10,6 +10,7 @@
 #include "dynamics/run_parts.hpp"
 #include "dynamics/start.hpp"
 #include "dynamics/whirl.hpp"
+#include "system/touching.hpp"
 
 namespace hilo {
 namespace {
@@ -59,6 +60,12 @@ class ModeSteps final : public Steps {
       throw Error(time_.where("analysis"), "modes are those of a state at rest, or of bodies that turn steadily in their places: " + why,
                   "see what [[initial]] gives");
     system.commit(rest.q);
+    if (Touching* contacts = touching(system)) {
+      if (spins)
+        throw Error(time_.where("analysis"), "modes of what spins are not found where [[contact]] may hold it",
+                    "leave out the spin or the contact");
+      contacts->hold(rest.q);
+    }
     run_.audit->start(rest);
     run_.recorder->first(rest, run_.audit->ledger());
     Progress progress(run_.options.quiet, 0, time_.number("modes"));

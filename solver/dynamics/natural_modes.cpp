@@ -103,7 +103,16 @@ std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, co
   pencil.shift = good_shift(at, pencil, wanted, [&](double shift) { at.factor(shift); });
   if (std::isnan(pencil.shift)) return {};
   at.factor(pencil.shift);
-  const Eigenmodes modes = lowest_modes(pencil, wanted, 1e-6, true, tell);
+  Eigenmodes modes = lowest_modes(pencil, wanted, 1e-6, true, tell);
+  // where all the others are as fast as the mean of all, motions that nothing resists hide them from so low a shift
+  if (modes.omega2.size() < wanted && (modes.omega2.array().abs() < 1e-3 * pencil.shift).all()) {
+    const double low = pencil.shift;
+    at.factor(pencil.shift = 1e-2 * at.mean_omega2());
+    if (Eigenmodes more = lowest_modes(pencil, wanted, 1e-6, true, tell); more.omega2.size() > modes.omega2.size())
+      modes = std::move(more);
+    else
+      at.factor(pencil.shift = low);
+  }
   if (modes.asymmetry > 1e-4)
     throw Error(
         "",

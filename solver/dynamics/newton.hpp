@@ -14,10 +14,11 @@ namespace hilo {
 struct NewtonOptions {
   double tolerance = 1e-10;  // residual over the largest force it sums; correction over the scene's length
   int max_iterations = 25;
-  bool patient = false;       // do not give up on slow contraction
-  double reach = 1e3;         // largest correction, in lengths of the scene; a guess farther off may lead to another root
-  bool foresees = false;      // tangents have the stresses that the last correction foresaw, while corrections halve
-  double least_share = 1e-3;  // of a damped correction; below it the guess is given up
+  bool patient = false;         // do not give up on slow contraction
+  bool always_chooses = false;  // what is chosen within a step is chosen in every iteration: where equilibrium is far
+  double reach = 1e3;           // largest correction, in lengths of the scene; a guess farther off may lead to another root
+  bool foresees = false;        // tangents have the stresses that the last correction foresaw, while corrections halve
+  double least_share = 1e-3;    // of a damped correction; below it the guess is given up
 };
 
 struct NewtonReport {

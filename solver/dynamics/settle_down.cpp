@@ -10,6 +10,7 @@
 #include "dynamics/run_parts.hpp"
 #include "dynamics/stability.hpp"
 #include "dynamics/start.hpp"
+#include "system/revising.hpp"
 
 namespace hilo {
 namespace {
@@ -57,26 +58,38 @@ bool settle_down(RunParts& run) {
   State& state = run.state;
   require_rest(system, state.q, run.scene.table("time").where("start"));
   const Config drawn = state.q;
-  const NewtonReport r = equilibrium(system, *run.solver, state.q, state.lambda, 0, 1, true, run.newton);
+  NewtonOptions options = run.newton;
+  options.always_chooses = revises(system);
+  NewtonReport r;
+  constexpr int most = 8;  // times that surfaces come to meet other facets than were near before
+  for (int pass = 0; pass < most; ++pass) {
+    r = equilibrium(system, *run.solver, state.q, state.lambda, 0, 1, true, options);
+    if (!r.converged) break;
+    const auto carry = system.search(state.q, nullptr, 0);
+    if (!carry) break;
+    run.follow(*carry);
+  }
   if (!r.converged) {
     run.audit->start(state);
     run.recorder->first(state, run.audit->ledger());
     run.stop("no static equilibrium at the start: " + r.reason + unheld(system, system.start));
     return false;
   }
+  Stage rest = stage_at(state.q, 0);
+  rest.elapsed = slow;
+  revise(system, rest);
   Stability stability(system, *run.solver, 0, 1);
   if (const auto unstable = stability.look(state.q, state.lambda)) {
     const Config before = state.q;
     const std::string where = run.scene.table("time").where("start"),
                       found = "the equilibrium at the start is not stable: " + unstable->text;
-    if (stability.leave(*unstable, state.q, state.lambda, true, run.newton))
+    if (stability.leave(*unstable, state.q, state.lambda, true, options))
       warn(where, fmt::format("{}. The run starts from a stable one, {:.3g} m away", found, system.largest_difference(before, state.q)));
     else
       warn(where, found + ". No stable one was found: the run starts there");
   }
   if (run.talk && !stability.known()) Stability::tell_unknown(run.solver->name());
-  Stage rest = stage_at(state.q, 0);
-  rest.elapsed = slow, system.advance(rest), system.settle(true);
+  revise(system, rest), system.advance(rest), system.settle(true);
   const std::string moved = told_moves(system, drawn, state.q);
   if (run.talk) fmt::print(stderr, "equilibrium after {} iterations{}\n", r.iterations, moved);
   return true;

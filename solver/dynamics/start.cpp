@@ -8,6 +8,7 @@
 
 #include "dynamics/free_part.hpp"
 #include "dynamics/linear_step.hpp"
+#include "system/revising.hpp"
 
 namespace hilo {
 namespace {
@@ -258,7 +259,7 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
   system.prescribe(q, t, ramp);
   Config zero = q;
   combine(zero, {{0, &q}});
-  double tau = 0.05;  // of the pseudo mass M/tau^2, grows from iteration to iteration
+  double tau = options.always_chooses ? 0.005 : 0.05;  // of the pseudo mass M/tau^2, grows; small where parts are to meet
   const auto stage = [&](const Config& at) {
     Stage s = stage_at(at, t);
     s.a = &zero;
@@ -276,6 +277,7 @@ NewtonReport equilibrium(System& system, KktSolver& solver, Config& q, std::vect
       system, solver,
       [&](const Unknown& at) {
         const Stage s = stage(at.q);
+        if (o.always_chooses) revise(system, s);
         if (mechanism) tau = std::min(tau * 1.3, 20.0);
         return s;
       },

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Load histories of a scene: from the keys t and value, or from a CSV file.
+// CSV files of a scene: load histories (also from the keys t and value), rows of numbers, points, grids of heights.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 
 #include "base/spline.hpp"
 #include "base/units.hpp"
+#include "model/height_grid.hpp"
 #include "model/scene_read.hpp"
 #include "model/store.hpp"
 
@@ -128,6 +129,53 @@ std::vector<std::vector<double>> read_rows_csv(const std::string& path, const st
     rows.push_back(std::move(x));
   }
   return rows;
+}
+
+HeightGrid read_height_grid(const std::string& path, const std::string& where) {
+  if (is_missing(path)) throw Error(where, fmt::format("no file {}", path), "paths in a scene are relative to the scene's folder");
+  std::string text = read_text_file(path, where);
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  constexpr const char* form = "the first line is a word and the x of each column, the others a y and the heights there";
+  HeightGrid grid;
+  int line_number = 0;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = std::string_view(text).substr(begin, end - begin);
+    begin = end + 1;
+    ++line_number;
+    if (trim_cell(line).empty() || trim_cell(line).starts_with('#')) continue;
+    const auto fields = fields_of(line);
+    const auto at = [&](size_t i) { return fmt::format("{}:{}:{}", path, line_number, fields[i].column); };
+    const auto rising = [&](std::vector<double>& list, size_t k, char name) {
+      double x = 0;
+      if (!to_number(fields[k].text, x))
+        throw Error(at(k), fmt::format("\"{}\" is not a number: {} is expected", fields[k].text, name), form);
+      if (!list.empty() && !(x > list.back()))
+        throw Error(at(k), fmt::format("{} = {} comes after {}", name, x, list.back()), "both must rise");
+      list.push_back(x);
+    };
+    double x = 0;
+    if (grid.x.empty()) {
+      if (to_number(fields[0].text, x)) throw Error(at(0), "no header line", form);
+      for (size_t k = 1; k < fields.size(); ++k) rising(grid.x, k, 'x');
+      if (grid.x.size() < 2) throw Error(at(0), fmt::format("{} column of heights: a field has two at least", grid.x.size()), form);
+      continue;
+    }
+    if (fields.size() != grid.x.size() + 1)
+      throw Error(at(fields.size() > grid.x.size() ? grid.x.size() + 1 : fields.size() - 1),
+                  fmt::format("{} columns where the header has {}", fields.size(), grid.x.size() + 1), form);
+    rising(grid.y, 0, 'y');
+    for (size_t k = 1; k < fields.size(); ++k) {
+      if (fields[k].text.empty()) throw Error(at(k), "a hole: no height", "a field has a height at each point; fill holes first");
+      if (!to_number(fields[k].text, x))
+        throw Error(at(k), fmt::format("\"{}\" is not a height", fields[k].text), "a field has a number at each point; fill holes first");
+      grid.heights.push_back(x);
+    }
+  }
+  if (grid.y.size() < 2)
+    throw Error(fmt::format("{}:{}:1", path, line_number + (line_number == 0)),
+                fmt::format("{} row{} of heights: a field has two at least", grid.y.size(), grid.y.size() == 1 ? "" : "s"), form);
+  return grid;
 }
 
 std::vector<Vec3> read_points_csv(const std::string& path, const std::string& where) {

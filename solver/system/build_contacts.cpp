@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <numeric>
 #include <set>
 
+#include "model/height_grid.hpp"
 #include "physics/contact/obstacle_kinds.hpp"
+#include "physics/coordinates.hpp"
 #include "system/builder.hpp"
+#include "system/contact_entries.hpp"
 #include "system/contacts.hpp"
 
 namespace hilo {
@@ -27,16 +31,29 @@ struct Extremes {
   std::string text() const { return high <= low * (1 + 1e-3) ? fmt::format("{:.4g}", high) : fmt::format("{:.4g} to {:.4g}", low, high); }
 };
 
+/// The heights of an obstacle of that kind.
+std::shared_ptr<const HeightField> height_field_of(const Entry& e, const Scene& scene) {
+  const std::filesystem::path file = e.text("file");
+  HeightGrid grid = read_height_grid((scene.folder == "." ? file : scene.folder / file).string(), e.where("file"));
+  for (std::vector<double>* list : {&grid.x, &grid.y, &grid.heights})
+    for (double& x : *list) x *= to_si("m", scene.units);
+  auto out = std::make_shared<HeightField>(std::move(grid.x), std::move(grid.y), grid.heights);
+  if (!out->is_finite()) e.refuse("file", "heights or slopes of the field are too large");
+  return out;
+}
+
 /// What contacts are not right for, by name.
-void refuse_what_is_not_there(const Scene& scene, const Entry& e, bool surfaces) {
+void refuse_what_is_not_there(const Scene& scene, const Entry& e) {
   const Entry& time = scene.table("time");
   const std::string label = e.label();
-  if (time.text("analysis") == "static") return;
-  if (surfaces && time.given("start") && time.text("start") == "equilibrium")
-    throw Error(time.where("start"), fmt::format("{}: surfaces that meet do not start from equilibrium", label));
+  if (time.text("analysis") == "static") {
+    if (e.given("restitution")) e.refuse("restitution", "load steps have no impacts", "leave it out");
+    return;
+  }
+  if (time.text("analysis") == "modes") return;
   if (time.text("analysis") != "dynamic")
-    throw Error(time.where("analysis"),
-                fmt::format("{}: contacts are for load steps and steps in time, not for analysis = \"{}\"", label, time.text("analysis")));
+    throw Error(time.where("analysis"), fmt::format("{}: contacts are for load steps, steps in time and modes, not for analysis = \"{}\"",
+                                                    label, time.text("analysis")));
   if (time.text("integrator") != "energy-momentum")
     throw Error(time.where("integrator"), fmt::format("{}: contacts are for integrator = \"energy-momentum\"", label));
   if (time.given("tolerance"))
@@ -55,15 +72,30 @@ void Builder::add_contacts() {
   std::map<std::string, Named> obstacles;
   std::vector<std::string> names;
   for (const Entry& e : scene_.entries("obstacle")) {
-    const Obstacle made = obstacle_kinds().at(e.kind, e.place.text()).make(e);
+    Obstacle made = obstacle_kinds().at(e.kind, e.place.text()).make(e);
+    if (made.shape.kind == Distance::Kind::height_field) made.shape.field = height_field_of(e, scene_);
     const std::string &on = e.text("on"), where = e.where("on");
     obstacles[e.name] = {&e, made, body_of(on, find(on, where), where)};
     names.push_back(e.name);
   }
   std::set<std::string> used;
-  for (const Entry& e : scene_.entries("contact")) {
+  const auto is_held = [&](int body) { return body == 0 || !out_->bodies[body].free(); };
+  const auto body_behind = [&](const std::string& name) {  // that all of it follows, or -1
+    if (const auto o = obstacles.find(name); o != obstacles.end()) return o->second.body;
+    const int r = mesh_ ? mesh_->mesh.find_region(name) : -1;
+    return r >= 0 && regions_[r].fidelity != Fidelity::nonlinear ? regions_[r].body : -1;
+  };
+  size_t taken = 0;  // of an "all"
+  const std::vector<ContactEntry> entries = contact_entries(scene_, mesh_, comm_);
+  for (const auto& [e, of_all] : entries) {
     const auto a = obstacles.find(e.text("a"));
-    refuse_what_is_not_there(scene_, e, a == obstacles.end());
+    refuse_what_is_not_there(scene_, e);
+    if (of_all) {
+      used.insert(e.text("a")), used.insert(e.text("b"));
+      const int one = body_behind(e.text("a")), other = body_behind(e.text("b"));
+      if (one >= 0 && other >= 0 && (one == other || (is_held(one) && is_held(other)))) continue;
+      ++taken;
+    }
     if (a == obstacles.end()) {
       add_surfaces(e, names);
       continue;
@@ -72,6 +104,7 @@ void Builder::add_contacts() {
     const Named& obstacle = a->second;
     ContactPair pair;
     pair.name = e.name, pair.shape = obstacle.obstacle.shape, pair.friction = e.number("friction");
+    pair.loses = e.number("restitution") < 1;
     pair.carrier = obstacle.body, pair.axes = obstacle.obstacle.axes;
     pair.at = obstacle.obstacle.at - out_->bodies[pair.carrier].Xc;
     const std::string& b = e.text("b");
@@ -80,7 +113,6 @@ void Builder::add_contacts() {
     else
       add_points_of_surface(e, pair), pair.has_facets = true;
     if (pair.n_points == 0) throw Error(e.where("b"), fmt::format("{}: \"{}\" has no surface", e.label(), b));
-    const auto is_held = [&](int body) { return body == 0 || !out_->bodies[body].free(); };
     bool held = is_held(pair.carrier) && (pair.body < 0 || is_held(pair.body));
     for (const ContactPoint& point : pair.points)
       for (const int i : point.nodes) {
@@ -90,6 +122,7 @@ void Builder::add_contacts() {
     if (comm_.max(held ? 0 : 1) == 0) throw Error(e.place.text(), fmt::format("{}: both sides are held", e.label()));
     double own = 0, cell = 0;
     const Contacts& contacts = out_->part<Contacts>();
+    pair.outside = static_cast<int>(comm_.sum(double(contacts.outside(pair, out_->start))));
     for (const ContactPoint& point : pair.points)
       if (const double depth = -contacts.gap(pair, point, out_->start); depth > own) own = depth, cell = point.cell;
     const double deepest = comm_.max(own);
@@ -102,6 +135,8 @@ void Builder::add_contacts() {
       warn(e.place.text(), fmt::format("{}: \"{}\" starts {:.3g} m deep in \"{}\"", e.label(), b, deepest, a->first));
     out_->part<Contacts>().list.push_back(std::move(pair));
   }
+  if (const auto some = std::ranges::find(entries, true, &ContactEntry::of_all); some != entries.end() && taken == 0)
+    throw Error(some->entry.place.text(), "\"all\" stands for no pair: those that could meet are held or on the same body");
   for (const auto& [name, obstacle] : obstacles)
     if (!used.contains(name)) warn(obstacle.entry->place.text(), fmt::format("{}: no contact names it", obstacle.entry->label()));
 }
@@ -116,10 +151,16 @@ void Builder::add_points_of_body(const Entry& e, const Obstacle& b, int body, Co
   if (!ball && !pair.shape.is_container()) e.refuse("b", "the corners of a box meet a plane, or the inside of an obstacle, alone");
   if (ball && pair.shape.inside && b.shape.radius >= pair.shape.radius + pair.shape.half.minCoeff())
     e.refuse("b", "the ball is as large as what it is in");
+  if (pair.shape.field && ball && b.shape.radius > pair.shape.field->least_hollow())
+    warn(e.where("b"),
+         fmt::format("{}: the ball, of {:.3g} m, is larger than the hollows of the height field, of {:.3g} m: it touches one side "
+                     "of a hollow at a time",
+                     e.label(), b.shape.radius, pair.shape.field->least_hollow()));
   pair.body = body;
+  if (ball) pair.shape.reach = b.shape.radius;
   ContactPoint point;
   PointLaw& law = point.law;
-  law.friction = e.number("friction");
+  law.friction = e.number("friction"), law.loss = hunt_crossley(e.number("restitution")), law.slow = e.number("rest_speed");
   const double ratio = tangential_ratio(0.3);
   if (e.given("layer")) e.refuse("layer", "a layer is of a surface of facets");
   if (e.has("stiffness")) {
@@ -165,6 +206,7 @@ void Builder::add_points_of_surface(const Entry& e, ContactPair& pair) {
   const char* const several = "it has rigid and flexible regions, or several bodies";
   std::map<int, double> modulus;  // of regions
   Extremes stiffness, E, depth, times, body;
+  const double loss = hunt_crossley(e.number("restitution"));
   std::vector<std::array<std::int64_t, 3>> counts;  // cell and facet in the mesh, points
   comm_.together([&] {
     for (const Facet& f : facets) {
@@ -200,6 +242,7 @@ void Builder::add_points_of_surface(const Entry& e, ContactPair& pair) {
         ContactPoint point;
         point.facet.assign(nodes.begin(), nodes.end()), point.share = at.share[j], point.area = at.area[j];
         point.law.k = k * at.area[j], point.law.kt = tangential_ratio(nu) * point.law.k, point.law.friction = pair.friction;
+        point.law.loss = loss, point.law.slow = e.number("rest_speed");
         point.cell = rigid ? std::min(cell, deep) : cell;
         if (!rigid) point.deep = cell / factor;
         if (follows) {

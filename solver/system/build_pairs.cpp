@@ -6,6 +6,7 @@
 
 #include "model/region_surface.hpp"
 #include "system/builder.hpp"
+#include "system/contact_entries.hpp"
 
 namespace hilo {
 
@@ -18,20 +19,22 @@ void Builder::bring_pairs_together() {
   };
   std::vector<int> regions;
   bool some = false;
-  for (const char* section : {"contact", "tie"})
-    for (const Entry& e : scene_.entries(section)) {
-      const auto is_a = [&](const Entry& obstacle) { return obstacle.name == e.text("a"); };
-      if (section == std::string_view("contact") && std::ranges::any_of(scene_.entries("obstacle"), is_a)) continue;
-      for (const char* side : {"a", "b"}) {
-        const std::string& name = e.text(side);
-        if (const auto set = mesh.facet_sets.find(name); set != mesh.facet_sets.end()) {
-          some = true;
-          for (const Facet& f : set->second) mark(f);
-        } else if (const int region = mesh.find_region(name); region >= 0) {
-          regions.push_back(region);
-        }
+  const auto mark_sides = [&](const Entry& e) {
+    for (const char* side : {"a", "b"}) {
+      const std::string& name = e.text(side);
+      if (const auto set = mesh.facet_sets.find(name); set != mesh.facet_sets.end()) {
+        some = true;
+        for (const Facet& f : set->second) mark(f);
+      } else if (const int region = mesh.find_region(name); region >= 0) {
+        regions.push_back(region);
       }
     }
+  };
+  for (const ContactEntry& pair : contact_entries(scene_, mesh_, comm_)) {
+    const auto is_a = [&](const Entry& obstacle) { return obstacle.name == pair.entry.text("a"); };
+    if (std::ranges::none_of(scene_.entries("obstacle"), is_a)) mark_sides(pair.entry);
+  }
+  for (const Entry& e : scene_.entries("tie")) mark_sides(e);
   if (!regions.empty())
     for (const Facet& f : outer_surface(*mesh_, comm_))
       if (std::ranges::find(regions, mesh.region[f.cell]) != regions.end()) mark(f);

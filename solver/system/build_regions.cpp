@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <unordered_set>
 
 #include "model/region_surface.hpp"
 #include "model/scaled_jacobian.hpp"
 #include "model/thin_regions.hpp"
 #include "system/builder.hpp"
+#include "system/contact_entries.hpp"
 #include "system/solids.hpp"
 
 namespace hilo {
@@ -51,13 +53,17 @@ std::int64_t Builder::put_active_nodes_first() {
     if (!is_named(name) || (region >= 0 && mesh_->fidelity[region] != Fidelity::linear)) continue;
     for (const std::int64_t i : mesh_->nodes_of(name, "")) active[i] = 1;
   }
-  for (const char* section : {"contact", "tie"})  // surfaces of rigid regions that meet others
-    for (const Entry& e : scene_.entries(section))
-      for (const char* side : {"a", "b"})
-        if (const int r = mesh.find_region(e.text(side)); r >= 0 && mesh_->fidelity[r] == Fidelity::rigid)
-          for (const Facet& f : outer_surface(*mesh_, comm_))
-            if (mesh.region[f.cell] == r)
-              for (const std::int64_t i : mesh.facet_nodes(f)) active[i] = 1;
+  std::set<int> meet;  // rigid regions, and those that no text names: their surfaces meet others
+  const auto take_sides = [&](const Entry& e, bool of_all) {
+    for (const char* side : {"a", "b"})
+      if (const int r = mesh.find_region(e.text(side)); r >= 0 && (of_all || mesh_->fidelity[r] == Fidelity::rigid)) meet.insert(r);
+  };
+  for (const ContactEntry& pair : contact_entries(scene_, mesh_, comm_)) take_sides(pair.entry, pair.of_all);
+  for (const Entry& e : scene_.entries("tie")) take_sides(e, false);
+  if (!meet.empty())
+    for (const Facet& f : outer_surface(*mesh_, comm_))
+      if (meet.contains(mesh.region[f.cell]))
+        for (const std::int64_t i : mesh.facet_nodes(f)) active[i] = 1;
   return mesh_->put_first(active);
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "model/region_surface.hpp"
+#include "physics/coordinates.hpp"
 #include "system/builder.hpp"
 #include "system/contacts.hpp"
 
@@ -45,7 +46,7 @@ void Builder::add_surfaces(const Entry& e, const std::vector<std::string>& obsta
   if (e.has("stiffness"))
     e.refuse("stiffness", "the stiffness of a surface comes from its region", "scale it by factor, or give rigid ones modulus and layer");
   SurfacePair pair(*out_);
-  pair.name = e.name, pair.is_static = is_static();
+  pair.name = e.name, pair.is_static = is_static(), pair.loses = e.number("restitution") < 1;
   const std::array<std::vector<PairFacet>, 2> facets{on_first_rank(facets_of(e, "a")), on_first_rank(facets_of(e, "b"))};
   comm_.on_first([&] { fill_surfaces(e, facets, pair); });
   out_->part<Contacts>().surfaces.push_back(std::move(pair));
@@ -109,6 +110,7 @@ void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFac
                                                         : 1,
                layer = both_rigid ? e.number("layer") / e.number("modulus") : 0;
   pair.factor = factor;
+  const double loss = hunt_crossley(e.number("restitution"));
   double low = 1e300, high = 0;
   for (int s = 0; s < 2; ++s)
     for (size_t f = 0; f < behind[s].size(); ++f) {
@@ -126,6 +128,7 @@ void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFac
         std::copy(at.share[j].begin(), at.share[j].end(), point.share.begin());
         point.area = at.area[j];
         point.law.k = k * at.area[j] / 2, point.law.kt = tangential_ratio(its.nu) * point.law.k, point.law.friction = e.number("friction");
+        point.law.loss = loss, point.law.slow = e.number("rest_speed");
         point.cell = both_rigid ? std::min(its.cell, e.number("layer")) : its.cell;
         pair.side[s].points.push_back(point);
       }

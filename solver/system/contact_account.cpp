@@ -25,8 +25,15 @@ void Contacts::add_work(const Moment& m, Work& sum) const {
   if (is_start(m.s)) return;
   for (const ContactPair& pair : list)
     for (const ContactPoint& point : pair.points)
-      if (point.law.friction > 0) sum.dissipated += place(pair, point, m.s).force.dissipated;
+      if (point.law.friction > 0 || point.law.loss > 0) sum.dissipated += place(pair, point, m.s).force.dissipated;
   for (const SurfacePair& pair : surfaces) sum.dissipated += pair.dissipated(m.s);
+}
+
+int Contacts::outside(const ContactPair& pair, const Config& q) const {
+  if (!pair.shape.field) return 0;
+  return static_cast<int>(std::ranges::count_if(pair.points, [&](const ContactPoint& point) {
+    return pair.shape.field->outside(measures(pair, position(pair, point, q), q)).distance > 0;
+  }));
 }
 
 /// A step must not carry a point through an obstacle that it neither begins nor ends in.
@@ -37,14 +44,21 @@ void Contacts::advance(const Stage& s) {
   std::string why;
   for (SurfacePair& pair : surfaces)
     if (const std::string told = pair.advance(s); !told.empty()) why = told;
-  std::vector<double> sums;  // of each pair: pressing, pressing times slip, dissipated
+  std::vector<double> sums;  // of each pair: pressing, pressing times slip, dissipated, points past the border
   for (ContactPair& pair : list) {
     if (is_start(s)) break;
+    if (settles(s)) {
+      for (ContactPoint& point : pair.points) point.next = values(place(pair, point, s).force.u);
+      continue;
+    }
     double pressing = 0, slid = 0, dissipated = 0;
     const double within = pair.shape.least_extent();
     for (ContactPoint& point : pair.points) {
       const Place at = place(pair, point, s);
       point.next = values(at.force.u);
+      if (point.law.loss > 0)
+        point.next_approach =
+            Approach{s.h, point.approach}.after(pair.shape.at(at.x0) - point.law.radius, pair.shape.at(at.x1) - point.law.radius);
       dissipated += at.force.dissipated;
       pressing += at.force.pressing, slid += at.force.pressing * at.force.slid;
       if (at.force.acts || within == 0) continue;
@@ -52,14 +66,15 @@ void Contacts::advance(const Stage& s) {
         if (pair.shape.at((1 - part) * at.x0 + part * at.x1) < point.law.radius - 0.1 * (within + point.law.radius))
           why = fmt::format("contact \"{}\": a point goes through the obstacle within one step", pair.name);
     }
-    sums.insert(sums.end(), {pressing, slid, dissipated});
+    sums.insert(sums.end(), {pressing, slid, dissipated, double(outside(pair, *s.e1))});
   }
   const Comm& comm = *points_.comm;
   comm.sum(sums);
-  for (size_t k = 0; 3 * k < sums.size(); ++k) {
+  for (size_t k = 0; 4 * k < sums.size(); ++k) {
     list[k].next = list[k].sums;
-    list[k].next.dissipated += sums[3 * k + 2];
-    list[k].next.add(sums[3 * k], sums[3 * k + 1]);
+    list[k].next.dissipated += sums[4 * k + 2];
+    list[k].next.outside = std::max(list[k].sums.outside, static_cast<int>(sums[4 * k + 3]));
+    list[k].next.add(sums[4 * k], sums[4 * k + 1]);
   }
   const double lowest = -comm.max(why.empty() ? -1e300 : -comm.rank);  // of the ranks that have something to say
   if (lowest != comm.rank) why.clear();
@@ -77,7 +92,10 @@ void Contacts::settle(bool accepted) {
   jumped_.clear(), begin_ = committed_;
   for (ContactPair& pair : list) {
     (accepted ? pair.sums : pair.next) = accepted ? pair.next : pair.sums;
-    for (ContactPoint& point : pair.points) (accepted ? point.u : point.next) = accepted ? point.next : point.u;
+    for (ContactPoint& point : pair.points) {
+      (accepted ? point.u : point.next) = accepted ? point.next : point.u;
+      (accepted ? point.approach : point.next_approach) = accepted ? point.next_approach : point.approach;
+    }
   }
   for (SurfacePair& pair : surfaces) pair.settle(accepted);
 }
@@ -86,9 +104,10 @@ void Contacts::archive(Archive& a) {
   for (ContactPair& pair : list) {
     a("contact " + pair.name, pair.sums);
     std::vector<double> bristles;
-    for (const ContactPoint& point : pair.points) bristles.insert(bristles.end(), point.u.begin(), point.u.end());
-    a.spread({*points_.comm, pair.number}, bristles, 3);
-    for (size_t k = 0; k < pair.points.size(); ++k) pair.points[k].u = Eigen::Map<const Vec3>(bristles.data() + 3 * k);
+    for (const ContactPoint& point : pair.points) bristles.insert(bristles.end(), {point.u[0], point.u[1], point.u[2], point.approach});
+    a.spread({*points_.comm, pair.number}, bristles, 4);
+    for (size_t k = 0; k < pair.points.size(); ++k)
+      pair.points[k].u = Eigen::Map<const Vec3>(bristles.data() + 4 * k), pair.points[k].approach = bristles[4 * k + 3];
   }
   for (SurfacePair& pair : surfaces) pair.archive(a);
   settle(false);
@@ -185,17 +204,22 @@ void Contacts::each_facet(const Config& q, const std::function<void(const Presse
 
 void Contacts::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {
   std::string text;
-  const auto tell = [&](const std::string& name, size_t points, const std::string& told, const ContactSums& sums) {
+  const auto tell = [&](const std::string& name, size_t points, const std::string& told, const ContactSums& sums, bool loses) {
     if (sums.impacts > 0 && sums.shortest < resolved)
-      warn(fmt::format("contact \"{}\"", name),
-           fmt::format("the shortest of {} impacts lasted {} steps: it gave its energy back, but its force is not resolved", sums.impacts,
-                       sums.shortest));
+      warn(fmt::format("contact \"{}\"", name), fmt::format("the shortest of {} impacts lasted {} steps: {}", sums.impacts, sums.shortest,
+                                                            loses ? "its force and its restitution are not resolved"
+                                                                  : "it gave its energy back, but its force is not resolved"));
     text += fmt::format(
         "{}\n    {}: {{\"points\": {}, \"stiffness\": {}, \"slip\": {:.6g}, \"dissipated\": {:.6g}, \"impacts\": {}, \"shortest\": {}}}",
         text.empty() ? "" : ",", json_text(name), points, json_text(told), sums.slip, sums.dissipated, sums.impacts, sums.shortest);
   };
-  for (const ContactPair& pair : list) tell(pair.name, static_cast<size_t>(pair.n_points), pair.told, pair.sums);
-  for (const SurfacePair& pair : surfaces) tell(pair.name, pair.n_points(), pair.told, pair.sums);
+  for (const ContactPair& pair : list)
+    if (pair.sums.outside > pair.outside)
+      warn(fmt::format("contact \"{}\"", pair.name),
+           fmt::format("{} of {} points have gone past the border of the height field, where nothing holds them", pair.sums.outside,
+                       pair.n_points));
+  for (const ContactPair& pair : list) tell(pair.name, static_cast<size_t>(pair.n_points), pair.told, pair.sums, pair.loses);
+  for (const SurfacePair& pair : surfaces) tell(pair.name, pair.n_points(), pair.told, pair.sums, pair.loses);
   if (!text.empty()) report.emplace_back("contacts", "{" + text + "\n  }");
 }
 

@@ -40,6 +40,7 @@ struct SurfacePoint {
   double cell = 0;              // depth of the cell behind it [m]
   double area = 0;              // [m^2]
   FacetState state, now, next;  // accepted, of the step at work, and at its end
+  HeldPoint held;               // in small motions about a state
   std::pair<int, int> left{};   // face and triangle that it had before in the step at work
 };
 

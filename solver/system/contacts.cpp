@@ -18,7 +18,8 @@ using Rows12 = Eigen::Matrix<double, 3, 12>;
 
 Traits Contacts::traits() const {
   const bool bends = std::ranges::any_of(list, [](const ContactPair& pair) { return pair.friction > 0; });
-  return {.remembers = bends || !surfaces.empty(),
+  const bool loses = std::ranges::any_of(list, &ContactPair::loses);
+  return {.remembers = bends || loses || !surfaces.empty(),
           .searches = !surfaces.empty(),
           .slides = bends || !surfaces.empty(),
           .reaches = !surfaces.empty()};
@@ -68,11 +69,18 @@ double Contacts::gap(const ContactPair& pair, const ContactPoint& point, const C
   return pair.shape.at(measures(pair, position(pair, point, q), q)) - point.law.radius;
 }
 
+void Contacts::hold(const Config& q) {
+  about_ = q;
+  for (ContactPair& pair : list)
+    for (ContactPoint& point : pair.points) point.held = HeldPoint::at(point.law, gap(pair, point, q), point.u);
+  for (SurfacePair& pair : surfaces) pair.hold(q);
+}
+
 template <class T>
 PointForce<T> Contacts::force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way,
-                              bool fixed) const {
-  return is_static_ ? at_end(pair.shape, point.law.with_fixed(fixed), x1, way, point.u, touch(point), point.deep)
-                    : over_step(pair.shape, point.law, x0, x1, way, point.u);
+                              const Stage& s, bool fixed) const {
+  return is_static_ || settles(s) ? at_end(pair.shape, point.law.with_fixed(fixed), x1, way, point.u, touch(point), point.deep)
+                                  : over_step(pair.shape, point.law, x0, x1, way, point.u, {s.h, point.approach});
 }
 
 Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& point, const Stage& s) const {
@@ -82,9 +90,10 @@ Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& poi
   at.x0 = measures(pair, p0, e0), at.x1 = measures(pair, p1, *s.e1);
   const PointLaw& law = point.law;
   const bool is_start = this->is_start(s);
-  const double open = is_static_ ? touch(point) : 0;
+  const double open = is_static_ || settles(s) ? touch(point) : 0;
   if (!is_start && pair.shape.at(at.x0) >= law.radius + open && pair.shape.at(at.x1) >= law.radius + open) {
-    at.force = force(pair, point, at.x0, triple<double>(at.x1), triple<double>(at.x1 - at.x0));
+    at.force.normal = at.force.tangential = at.force.n = at.force.u = triple<double>(Vec3::Zero());
+    at.force.dissipated = law.kt / 2 * point.u.squaredNorm();
     return at;
   }
   const int o = pair.carrier, b = pair.body;
@@ -103,8 +112,10 @@ Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& poi
     at.lowest = at.turn.inverse() * at.low;
     at.way = at.A1.transpose() * (at.turn1 * at.lowest) - at.A0.transpose() * (at.turn0 * at.lowest);
   }
-  if (!is_start)
-    at.force = force(pair, point, at.x0, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way));
+  if (holds())
+    at.force = about(point.held, pair.shape, law, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way), point.u);
+  else if (!is_start)
+    at.force = force(pair, point, at.x0, triple<double>(at.x1), triple<double>(at.x1 - at.x0 + at.way), s);
   else
     at.force = at_rest(pair.shape, law, triple<double>((1 - s.weight) * at.x0 + s.weight * at.x1), point.u);
   at.normal = at.Am * values(at.force.normal), at.tangential = at.Am * values(at.force.tangential);
@@ -158,7 +169,8 @@ void Contacts::add_tangent(Pass& p, const ContactPair& pair, const ContactPoint&
     Triple<T> x1 = triple<T>(at.x1), way = triple<T>(at.x1 - at.x0 + at.way);
     for (int i = 0; i < 3; ++i) x1[i].d[i] = 1, way[i].d[N - 3 + i] = 1;
     const auto f = [&] {
-      if (!is_start(s)) return force(pair, point, at.x0, x1, way, s.fixed_friction);
+      if (holds()) return about(point.held, pair.shape, point.law, x1, way, point.u);
+      if (!is_start(s)) return force(pair, point, at.x0, x1, way, s, s.fixed_friction);
       const Triple<T> x = s.e0 == s.e1 ? x1 : T(1 - s.weight) * triple<T>(at.x0) + T(s.weight) * x1;
       return at_rest(pair.shape, point.law, x, point.u);
     }();

@@ -21,10 +21,12 @@ struct ContactPoint {
   std::vector<double> share;
   Vec3 arm = Vec3::Zero();  // from the centre of the body, body axes [m]
   PointLaw law;
-  double cell = 0;           // the depth that is told as a share of this [m]
-  double deep = HUGE_VAL;    // the depth at which the pressure is the modulus of what lies behind [m]
-  Vec3 u = Vec3::Zero();     // the bristle, in axes of the obstacle [m]
-  Vec3 next = Vec3::Zero();  // at the end of the step tried last
+  double cell = 0;                         // the depth that is told as a share of this [m]
+  double deep = HUGE_VAL;                  // the depth at which the pressure is the modulus of what lies behind [m]
+  Vec3 u = Vec3::Zero();                   // the bristle, in axes of the obstacle [m]
+  Vec3 next = Vec3::Zero();                // at the end of the step tried last
+  double approach = 0, next_approach = 0;  // speed at which the contact began; after the step tried last [m/s]
+  HeldPoint held;                          // in small motions about a state
 };
 
 struct ContactPair {
@@ -35,10 +37,12 @@ struct ContactPair {
   Mat3 axes = Mat3::Identity();
   int body = -1;  // of the points, or -1: they have nodes
   double friction = 0;
+  bool loses = false;                // by restitution
   std::vector<ContactPoint> points;  // that this rank evaluates: of facets of its cells; those of a body without mesh are on one rank
   std::vector<std::int64_t> number;  // of these, among all
   std::int64_t n_points = 0;         // of all
   bool has_facets = false;
+  int outside = 0;  // points that start past the border of a height field
   ContactSums sums, next;
 };
 
@@ -69,7 +73,10 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   bool touches() const override { return !list.empty() || !surfaces.empty(); }
   bool has_facets() const override;
   std::string apart(const Config& q) const override;
+  void hold(const Config& q) override;
   void each_facet(const Config& q, const std::function<void(const Pressed&)>& visit) const override;
+  /// Points that are past the border of a height field, on this rank.
+  int outside(const ContactPair& pair, const Config& q) const;
   /// The gap of a point, below zero where it is closed [m].
   double gap(const ContactPair& pair, const ContactPoint& point, const Config& q) const;
 
@@ -88,18 +95,25 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   Place place(const ContactPair& pair, const ContactPoint& point, const Stage& s) const;
   template <class T>
   PointForce<T> force(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way,
-                      bool fixed = false) const;
+                      const Stage& s, bool fixed = false) const;
   Vec3 position(const ContactPair& pair, const ContactPoint& point, const Config& q) const;
   Vec3 measures(const ContactPair& pair, const Vec3& x, const Config& q) const;
   void add_tangent(Pass& p, const ContactPair& pair, const ContactPoint& point, const Place& at, int clique) const;
   /// Load steps begin where what touches holds [m].
   static double touch(const ContactPoint& point) { return 1e-8 * point.cell; }
   /// The beginning of the step.
-  const Config& begin(const Stage& s) const { return is_static_ && !begin_.R.empty() ? begin_ : *s.e0; }
+  const Config& begin(const Stage& s) const {
+    return holds() ? about_ : settles(s) ? points_.start : is_static_ && !begin_.R.empty() ? begin_ : *s.e0;
+  }
+  /// Whether a state of equilibrium is sought from which steps in time are to start: forces as of one load step from what is drawn.
+  bool settles(const Stage& s) const { return !is_static_ && !s.conserving() && s.elapsed > 1e300; }
+  /// Whether motions are small ones about a state.
+  bool holds() const { return !about_.R.empty(); }
   /// Of a start, not of a step.
-  bool is_start(const Stage& s) const { return is_static_ == s.conserving(); }
+  bool is_start(const Stage& s) const { return is_static_ == s.conserving() && !settles(s); }
   const Points& points_;
   const bool is_static_;                  // load steps: forces at their end
+  Config about_;                          // in small motions: the state
   Config committed_, begin_;              // of load steps: the state accepted last, and where the step began
   std::vector<std::vector<int>> clique_;  // of each point
   std::string jumped_;                    // what the step tried last went through

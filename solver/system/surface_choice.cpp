@@ -82,7 +82,7 @@ SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Pos
   const bool held = point.state.past.gap < 0;
   const ContactSurface& own = side[s];
   const ContactSurface& other = side[1 - s];
-  const double f = is_static ? 1 : 0.5;
+  const double f = at_end_alone() ? 1 : 0.5;
   const Vec3 p0 = own.at(point, x0), p1 = own.at(point, x1), middle = (1 - f) * p0 + f * p1;
   const double way = (p1 - p0).norm() / 2;
   Target nearest, first;
@@ -108,9 +108,9 @@ SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Pos
     }
   }
   if (soonest <= 1) return faced(s, point, first, p1, x1);
-  const double deep = is_static ? 0 : point.state.past.gap, outside = least * least - gap * gap;
+  const double deep = at_end_alone() ? 0 : point.state.past.gap, outside = least * least - gap * gap;
   if (at_border && (!held || outside > deep * deep)) return {};
-  if (is_static && outside > margin * margin / 16) return {};  // far from all: the edge of a corner may be within
+  if (at_end_alone() && outside > margin * margin / 16) return {};  // far from all: the edge of a corner may be within
   return nearest.inside ? faced(s, point, nearest, p1, x1) : nearest;
 }
 
@@ -142,7 +142,7 @@ FacetState SurfacePair::begun(int s, const SurfacePoint& point, const Target& ta
   const double gap = gap_of(z);
   if (!held) out.past.gap = std::max(gap, 0.0);
   const bool comes_in = target.inside && gap < -1e-12 * point.cell;
-  out.past.offset = is_static || !(held || comes_in) ? 0 : gap - out.past.gap;
+  out.past.offset = at_end_alone() || !(held || comes_in) ? 0 : gap - out.past.gap;
   const auto& [u1, u2] = point.state.past.bent;
   if ((u1 != 0 || u2 != 0) && point.state.face >= 0 && (out.face != point.state.face || out.triangle != point.state.triangle)) {
     const TriangleAxes old(over(s, point, point.state, x0)), now(z);
@@ -156,14 +156,16 @@ FacetState SurfacePair::begun(int s, const SurfacePoint& point, const Target& ta
 
 bool SurfacePair::would_act(int s, const SurfacePoint& point, const FacetState& now, Positions x0, Positions x1) const {
   if (now.face < 0) return false;
-  if (is_static) return gap_of(over(s, point, now, x1)) < touch(point);
+  if (at_end_alone()) return gap_of(over(s, point, now, x1)) < touch(point);
   if (now.past.gap < 0 || now.past.offset < 0) return true;
   return now.past.gap + gap_of(over(s, point, now, x1)) - gap_of(over(s, point, now, x0)) < 0;
 }
 
 bool SurfacePair::revise(const Stage& s) {
-  if (is_static == s.conserving()) return false;  // a start, whose choice is that of the step to come
-  const Positions x0 = begin(s), x1 = s.e1->x;
+  if (!about_.empty()) return false;
+  settles_ = settles(s);
+  if (is_static == s.conserving() && !settles_) return false;  // a start, whose choice is that of the step to come
+  const Positions x1 = s.e1->x, x0 = settles_ ? x1 : begin(s);
   look(x0, x1);
   bool changes = false;
   for (int k = 0; k < 2; ++k)
@@ -171,7 +173,12 @@ bool SurfacePair::revise(const Stage& s) {
       if (partners_[k][point.face].empty()) continue;
       const FacetState now = begun(k, point, target_of(k, point, x0, x1), x0);
       const std::pair to{now.face, now.triangle}, from{point.now.face, point.now.triangle};
-      if (to == from || (to == point.left && from.first >= 0)) continue;  // on the edge between two either will do
+      if (to == from || (to == point.left && from.first >= 0 && !settles_)) continue;  // on the edge between two either will do
+      if (settles_ && from.first >= 0 && to.first >= 0) {  // chosen in every iteration: triangles side by side are not to take turns
+        const Vec3 x = side[k].at(point, x1);
+        const double was = beside(x, side[1 - k].triangle(from.first, from.second, x1)).distance;
+        if (was < beside(x, side[1 - k].triangle(to.first, to.second, x1)).distance + 1e-3 * margin) continue;
+      }
       point.left = from;
       changes = changes || would_act(k, point, point.now, x0, x1) || would_act(k, point, now, x0, x1);
       point.now = now;

@@ -27,10 +27,16 @@ struct NodeShares {
 
 }  // namespace
 
+template <class T>
+FacetForce<T> SurfacePair::force(const SurfacePoint& point, const Stage& s, const OverTriangle<double>& z0,
+                                 const OverTriangle<T>& z1) const {
+  if (!about_.empty()) return about(point.held, point.law, z0, z1, point.now.past);
+  if (s.conserving()) return over_step(point.law, z0, z1, point.now.past, s.h);
+  return at_end(point.law.with_fixed(s.fixed_friction), z0, z1, past_of(point, s), touch(point), deep(point));
+}
+
 FacetForce<double> SurfacePair::force_of(int k, const SurfacePoint& point, const Stage& s) const {
-  const OverTriangle<double> z0 = over(k, point, point.now, begin(s)), z1 = over(k, point, point.now, s.e1->x);
-  return s.conserving() ? over_step(point.law, z0, z1, point.now.past)
-                        : at_end(point.law, z0, z1, point.now.past, touch(point), deep(point));
+  return force(point, s, over(k, point, point.now, begin(s)), over(k, point, point.now, s.e1->x));
 }
 
 void SurfacePair::evaluate(Pass& p) const {
@@ -64,8 +70,7 @@ void SurfacePair::add_tangent(Pass& p, int k, const SurfacePoint& point) const {
   };
   const OverTriangle<T> z{seeded(z1.r, 0), seeded(z1.t1, 3), seeded(z1.t2, 6)};
   const OverTriangle<double> z0 = over(k, point, point.now, begin(s));
-  const FacetForce<T> f = s.conserving() ? over_step(point.law, z0, z, point.now.past)
-                                         : at_end(point.law.with_fixed(s.fixed_friction), z0, z, point.now.past, touch(point), deep(point));
+  const FacetForce<T> f = force(point, s, z0, z);
   Side9 K9;
   for (int i = 0; i < 3; ++i) K9.row(i) = f.on_point[i].d, K9.row(3 + i) = f.on_second[i].d, K9.row(6 + i) = f.on_third[i].d;
   K9 *= s.chain;
@@ -98,7 +103,7 @@ double SurfacePair::dissipated(const Stage& s) const {
   double sum = 0;
   for (int k = 0; k < 2; ++k)
     for (const SurfacePoint& point : side[k].points)
-      sum += point.law.friction > 0 && point.now.face >= 0 ? force_of(k, point, s).dissipated : released(point);
+      sum += (point.law.friction > 0 || point.law.loss > 0) && point.now.face >= 0 ? force_of(k, point, s).dissipated : released(point);
   return sum;
 }
 

@@ -56,6 +56,17 @@ OverTriangle<double> SurfacePair::over(int s, const SurfacePoint& point, const F
 
 std::string SurfacePair::advance(const Stage& s) {
   next = sums;
+  if (settles(s)) {  // the state that steps in time go on from
+    for (int k = 0; k < 2; ++k)
+      for (SurfacePoint& point : side[k].points) {
+        point.next = point.now;
+        point.next.past = FacetPast{.gap = 1e300};
+        if (point.now.face < 0) continue;
+        const FacetForce<double> f = force_of(k, point, s);
+        point.next.past.gap = gap_of(over(k, point, point.now, s.e1->x)), point.next.past.bent = f.bent;
+      }
+    return "";
+  }
   if (is_static == s.conserving()) return "";
   const Positions x0 = begin(s), x1 = s.e1->x;
   std::string why;
@@ -81,6 +92,7 @@ std::string SurfacePair::advance(const Stage& s) {
       if (point.now.face >= 0) {
         const FacetForce<double> f = force_of(k, point, s);
         point.next.past.gap = f.gap, point.next.past.bent = f.bent;
+        point.next.past.approach = Approach{s.h, point.now.past.approach}.after(point.now.past.gap, f.gap);
         point.next.past.offset = is_static ? 0 : gap_of(over(k, point, point.now, x1)) - f.gap;
         next.dissipated += f.dissipated, pressing += f.pressing, slid += f.pressing * f.slid;
         if (f.acts) continue;
@@ -91,6 +103,18 @@ std::string SurfacePair::advance(const Stage& s) {
     }
   next.add(pressing, slid);
   return why;
+}
+
+void SurfacePair::hold(const Config& q) {
+  if (n_points() == 0) return;
+  about_ = q.x;
+  for (int k = 0; k < 2; ++k)
+    for (SurfacePoint& point : side[k].points) {
+      point.now = point.state, point.held = {};
+      if (point.now.face < 0 || !(point.state.past.gap < 0)) continue;
+      const auto& [u1, u2] = point.state.past.bent;
+      point.held = HeldPoint::at(point.law, gap_of(over(k, point, point.now, q.x)) - point.state.past.offset, {u1, u2, 0});
+    }
 }
 
 void SurfacePair::settle(bool accepted) {
@@ -176,6 +200,8 @@ std::optional<SurfacePair::Deep> SurfacePair::deepest_start(const Config& q) {
           out = Deep{depth, point.cell, side[s].at(point, q.x)};
   near_.clear();
   list_partners();
+  for (ContactSurface& surface : side)  // nothing acts before there are pairs of facets in the matrix
+    for (SurfacePoint& point : surface.points) point.now = point.state;
   return out;
 }
 

@@ -17,6 +17,7 @@ struct ContactSums {
   double slip = 0, dissipated = 0;  // [m, J]
   int steps = 0;                    // that the contact lasts by now
   int impacts = 0, shortest = 0;    // that have ended; steps of the shortest, 0: none has
+  int outside = 0;                  // most points that were past the border of a height field at once
   /// A step with this force [N] and this slip times force [N m].
   void add(double pressing, double slid);
 };
@@ -30,6 +31,7 @@ class SurfacePair {
   double margin = 0;       // [m]
   bool is_static = false;  // load steps: forces at their end, of the gap itself
   double factor = 1;       // of the stiffness
+  bool loses = false;      // by restitution
   ContactSums sums, next;
 
   size_t n_points() const { return side[0].points.size() + side[1].points.size(); }
@@ -41,6 +43,8 @@ class SurfacePair {
   void evaluate(Pass& p) const;
   double energy() const;
   double dissipated(const Stage& s) const;
+  /// From now on, small motions about q.
+  void hold(const Config& q);
   /// Why the step cannot be, or "".
   std::string advance(const Stage& s);
   void commit(const Config& q) {
@@ -79,10 +83,22 @@ class SurfacePair {
   Target faced(int side, const SurfacePoint& point, const Target& met, const Vec3& p1, Positions x1) const;
   FacetState begun(int side, const SurfacePoint& point, const Target& target, Positions x0) const;
   /// Load steps begin where what touches holds [m].
-  double touch(const SurfacePoint& point) const { return is_static ? 1e-8 * point.cell : 0; }
+  double touch(const SurfacePoint& point) const { return is_static || settles_ ? 1e-8 * point.cell : 0; }
+  /// Whether a state of equilibrium is sought from which steps in time are to start: forces as of one load step from what is drawn.
+  bool settles(const Stage& s) const { return !is_static && !s.conserving() && s.elapsed > 1e300; }
+  /// By the end of a step alone, as load steps choose.
+  bool at_end_alone() const { return is_static || settles_; }
   /// The depth at which the pressure is the modulus of what lies behind [m].
   double deep(const SurfacePoint& point) const { return point.cell / factor; }
-  Positions begin(const Stage& s) const { return s.conserving() || begin_.empty() ? s.e0->x : begin_; }
+  Positions begin(const Stage& s) const {
+    if (!about_.empty()) return about_;
+    if (settles(s)) return points_.start.x;
+    return s.conserving() || begin_.empty() ? s.e0->x : begin_;
+  }
+  /// What a point has of the past in a stage: nothing where equilibrium is sought.
+  FacetPast past_of(const SurfacePoint& point, const Stage& s) const { return settles(s) ? FacetPast{} : point.now.past; }
+  template <class T>
+  FacetForce<T> force(const SurfacePoint& point, const Stage& s, const OverTriangle<double>& z0, const OverTriangle<T>& z1) const;
   bool would_act(int side, const SurfacePoint& point, const FacetState& now, Positions x0, Positions x1) const;
   void look(Positions x0, Positions x1);
   std::vector<std::pair<int, int>> near(Positions x0, Positions x1, double within) const;
@@ -102,6 +118,8 @@ class SurfacePair {
   };
   std::vector<std::vector<Partner>> partners_[2];  // of each facet
   std::vector<Ball> ball_[2];                      // of the last look
+  bool settles_ = false;                           // in the stage that was chosen for last
+  std::vector<Vec3> about_;                        // in small motions: where nodes are in the state
   std::vector<Vec3> committed_;                    // of the state accepted last
   std::vector<Vec3> begin_;                        // where nodes are at the beginning of the step
   std::vector<Vec3> foreseen_;                     // where nodes were to go in the step at work

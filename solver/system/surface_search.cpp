@@ -67,7 +67,7 @@ void SurfacePair::list_partners() {
 
 bool SurfacePair::search(const Config& q, const Config* v, double h) {
   if (n_points() == 0) return false;  // of another rank
-  begin_ = foreseen_ = q.x;
+  begin_ = foreseen_ = q.x, settles_ = false;
   if (v && h > 0)
     for (const auto& nodes : nodes_)
       for (const int i : nodes) foreseen_[i] += h * v->x[i];

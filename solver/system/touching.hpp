@@ -19,6 +19,8 @@ class Touching {
   virtual bool has_facets() const = 0;
   /// Which of its pairs are known to be apart, and by how much: "contact "c" begins 1e-05 m apart", or "".  Collective.
   virtual std::string apart(const Config& q) const = 0;
+  /// From now on, small motions about q: what is pressed there is held, and nothing else meets.
+  virtual void hold(const Config& q) = 0;
   /// Pressure of the points of a facet [Pa], their shares of its nodes (points x nodes) and their areas [m^2].
   struct Pressed {
     std::span<const int> nodes;
@@ -30,9 +32,9 @@ class Touching {
 };
 
 /// That of the scene, or null.
-inline const Touching* touching(const System& system) {
+inline Touching* touching(const System& system) {
   for (const auto& part : system.parts())
-    if (const auto* found = dynamic_cast<const Touching*>(part.get()); found && found->touches()) return found;
+    if (auto* found = dynamic_cast<Touching*>(part.get()); found && found->touches()) return found;
   return nullptr;
 }
 

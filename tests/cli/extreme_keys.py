@@ -26,7 +26,7 @@ MEMORY, SECONDS = 3 << 30, 30
 
 # What a key is where it is not the one that is tried; others take the schema's default or are left out.
 WORDS = {"card": "\"*TIE\"", "a": '"ground"', "b": '"arm"', "on": '"arm"', "joint": '"hinge"', "name": '"tried"', "at": "[0, 0, 0]", "axis": "[0, 1, 0]",
-         "x": "[1, 0, 0]", "at_a": "[0, 0, 1]", "at_b": "[0.5, 0, 0]", "sensor": '"felt"', "measure": '"DRI"', "section": '"square"', "reactions": '"ground"', "carrier": '"wheel"', "material": '"plain"', "path": '"line"'}
+         "x": "[1, 0, 0]", "at_a": "[0, 0, 1]", "at_b": "[0.5, 0, 0]", "sensor": '"felt"', "measure": '"DRI"', "section": '"square"', "reactions": '"ground"', "carrier": '"wheel"', "material": '"plain"', "path": '"line"', "file": '"road.csv"'}
 NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5, 0, 0]", "inertia": "[0.01, 0.1, 0.1]", "pitch": "0.1",
            "ratio": "2", "radius": "0.1", "stiffness": "100", "angular_stiffness": "100", "damping": "1", "angular_damping": "1",
            "lower": "-1", "upper": "1", "rate": "[0, 1]", "torque": "[1, 0]", "force": "[1, 0]", "coefficient": "0.1", "length": "1",
@@ -315,6 +315,8 @@ def judge(text, with_mesh):
 
 
 def make_mesh():
+    with open("road.csv", "w") as f:
+        f.write("y\\x,-9,0,9\n-9,0,0.1,0\n0,0.1,0,0\n9,0,0,0\n")
     for name, text, regions in (("mesh", MESH, ["block"]), ("two", MESH + LID, ["block", "lid"])):
         with open("deck.inp", "w") as f:
             f.write(text)

@@ -2,31 +2,36 @@
 // Signed distances of obstacles, in axes of their own: above zero in free space, gradients of unit length.
 #pragma once
 #include <algorithm>
+#include <memory>
 
 #include "base/math.hpp"
+#include "physics/contact/height_field.hpp"
 #include "physics/contact/jet.hpp"
 
 namespace hilo {
 
 /// Plane: below z = 0.  Sphere about the origin.  Cylinder about z, without ends or of a length.  Capsule: a cylinder of a length with half
-/// spheres.  Torus about z.  Box about the origin.
+/// spheres.  Torus about z.  Box about the origin.  Height field: below the heights, with walls straight down from its border.
 struct Distance {
-  enum class Kind { plane, sphere, cylinder, capsule, torus, box } kind = Kind::plane;
+  enum class Kind { plane, sphere, cylinder, capsule, torus, box, height_field } kind = Kind::plane;
   double radius = 0;         // of sphere, cylinder, capsule; of the circle of a torus [m]
   double tube = 0;           // of a torus [m]
   double half_length = 0;    // of cylinder (0: no ends) and capsule [m]
   Vec3 half = Vec3::Zero();  // of a box [m]
   bool inside = false;       // what moves is within: bowl, bore, container
+  std::shared_ptr<const HeightField> field{};
+  double reach = 0;  // radius of what meets a field: farther off, its distance is one to first order [m]
 
   /// Half the least extent, which a step must not jump over [m]; of a plane, nothing.
   double least_extent() const {
     if (inside || kind == Kind::plane) return 0;
+    if (kind == Kind::height_field) return (field->high() - field->low()) / 2;
     if (kind == Kind::box) return half.minCoeff();
     if (kind == Kind::torus) return tube;
     return kind == Kind::cylinder && half_length > 0 ? std::min(radius, half_length) : radius;
   }
   /// A length of it, for round-off [m].
-  double extent() const { return std::max({radius + tube, half_length, half.maxCoeff()}); }
+  double extent() const { return std::max({radius + tube, half_length, half.maxCoeff(), field ? field->extent() : 0}); }
   /// Points of a hull see all of it: free space is convex.
   bool is_container() const { return kind == Kind::plane || (inside && kind != Kind::torus); }
 
@@ -97,6 +102,9 @@ struct Distance {
         phi = d - T(tube), n = {{nr * nx, nr * ny, nz}};
         break;
       }
+      case Kind::height_field:
+        over_heights(x, phi, n);
+        break;
       case Kind::box: {
         T q[3], slope[3];
         double side[3];
@@ -113,6 +121,36 @@ struct Distance {
     Triple<double> n;
     (*this)(triple<double>(x), phi, n);
     return phi;
+  }
+
+ private:
+  /// The distance from the nearest point of the surface, and n the normal there: both are exact, n to first order in x, as the foot is one
+  /// step of Newton's method from where it is found to be.  Far above all that may touch: the height above the surface times the cosine of
+  /// its slope, and the normal below.
+  template <class T>
+  void over_heights(const Triple<T>& x, T& phi, Triple<T>& n) const {
+    const Vec3 p = values(x);
+    const bool far = field->is_beyond(p, reach);
+    const auto [u, v] = far ? std::array{p[0], p[1]} : field->nearest(p);
+    const HeightField::Height s = field->at(u, v);
+    const double up = p[2] - s.h;
+    double a = 1 + s.hx * s.hx - up * s.hxx, b = s.hx * s.hy - up * s.hxy, d = 1 + s.hy * s.hy - up * s.hyy;
+    if (!(a > 0 && a * d - b * b > 1e-3 * a * d)) a = 1 + s.hx * s.hx, b = s.hx * s.hy, d = 1 + s.hy * s.hy;
+    const double det = a * d - b * b;
+    const Triple<T> r{{x[0] - T(u), x[1] - T(v), x[2] - T(s.h)}};
+    const T gu = r[0] + T(s.hx) * r[2], gv = r[1] + T(s.hy) * r[2];
+    const double share = far ? 0 : 1 / det;
+    const T du = T(share * d) * gu - T(share * b) * gv, dv = T(share * a) * gv - T(share * b) * gu;
+    const T sx = T(s.hx) + T(s.hxx) * du + T(s.hxy) * dv, sy = T(s.hy) + T(s.hxy) * du + T(s.hyy) * dv;
+    const T size = sqrt(sx * sx + sy * sy + T(1.0));
+    n = {{-sx / size, -sy / size, T(1.0) / size}};
+    phi = dot(n, r);
+    const HeightField::Outside out = field->outside(p);
+    if (out.distance <= value(phi)) return;
+    const T zero(0.0);
+    n = {{zero, zero, zero}};
+    n[out.axis] = T(out.sign);
+    phi = T(out.sign) * (x[out.axis] - T(p[out.axis])) + T(out.distance);
   }
 };
 

@@ -29,6 +29,7 @@ struct FacetPast {
   double gap = 0;                // of the law, g* [m]
   double offset = 0;             // of the gap to the triangle, g - g* [m]
   std::array<double, 2> bent{};  // the bristle, along the first edge and across it [m]
+  double approach = 0;           // speed at which the contact began [m/s]
 };
 
 /// What acts, conjugate to r, t1 and t2 [N].
@@ -115,7 +116,8 @@ void bend(const PointLaw& law, const std::array<T, 2>& sigma, const std::array<F
 
 /// Over the step from z0 to z1.
 template <class T>
-FacetForce<T> over_step(const PointLaw& law, const OverTriangle<double>& z0, const OverTriangle<T>& z1, const FacetPast& past) {
+FacetForce<T> over_step(const PointLaw& law, const OverTriangle<double>& z0, const OverTriangle<T>& z1, const FacetPast& past,
+                        double h = 0) {
   FacetForce<T> out;
   const T zero(0.0), half(0.5);
   out.on_point = out.on_second = out.on_third = {{zero, zero, zero}};
@@ -147,9 +149,9 @@ FacetForce<T> over_step(const PointLaw& law, const OverTriangle<double>& z0, con
     }
   }
   out.gap = T(past.gap) + way, out.acts = true;
-  const T p = secant(law, past.gap, out.gap);
+  const T stored = secant(law, past.gap, out.gap), p = damped(law, stored, past.gap, out.gap, {h, past.approach});
   D.add(-p, out);
-  out.pressing = value(p), out.normal = values(D.r), out.dissipated = lost;
+  out.pressing = value(p), out.normal = values(D.r), out.dissipated = lost + (value(p) - value(stored)) * (past.gap - value(out.gap));
   if (law.friction <= 0 || !(value(p) > 0)) return out;
   bend(law, sigma, S, p, past, out);
   return out;
@@ -160,6 +162,33 @@ template <class T>
 void slow_down(FacetGradient<T>& D, double f) {
   for (Triple<T>* a : {&D.r, &D.t1, &D.t2})
     for (T& x : a->x) slow_down(x, f);
+}
+
+/// In small motions about a state z0, at z1: what was pressed there is held by the slopes of its law, whichever way it moves.
+template <class T>
+FacetForce<T> about(const HeldPoint& held, const PointLaw& law, const OverTriangle<double>& z0, const OverTriangle<T>& z1,
+                    const FacetPast& past) {
+  FacetForce<T> out;
+  const T zero(0.0), half(0.5);
+  out.on_point = out.on_second = out.on_third = {{zero, zero, zero}};
+  const Triple<T> n = unit(cross(z1.t1, z1.t2));
+  out.gap = dot(n, z1.r) - T(past.offset);
+  out.bent = past.bent;
+  if (!held.pressed) return out;
+  out.acts = true;
+  std::array<T, 2> foot, foot_of_mean;
+  const FacetGradient<T> D = gap_gradient(z1, n, foot);
+  const T p = held.pressing_at(law, out.gap);
+  D.add(-p, out);
+  out.pressing = value(p), out.normal = values(n);
+  if (!held.sticks) return out;
+  const auto lifted = [](const Triple<double>& a) { return Triple<T>{{T(a[0]), T(a[1]), T(a[2])}}; };
+  const OverTriangle<T> start{lifted(z0.r), lifted(z0.t1), lifted(z0.t2)}, dz{z1.r - start.r, z1.t1 - start.t1, z1.t2 - start.t2},
+      mean{half * (z1.r + start.r), half * (z1.t1 + start.t1), half * (z1.t2 + start.t2)};
+  gap_gradient(mean, unit(cross(mean.t1, mean.t2)), foot_of_mean);
+  const auto way = slip_gradients(mean, foot_of_mean), S = slip_gradients(z1, foot);
+  for (size_t e = 0; e < 2; ++e) S[e].add(T(law.kt) * (T(past.bent[e]) + way[e](dz)), out);
+  return out;
 }
 
 /// At the configuration z1 that a load step from z0 leads to: the gradient of the potential.  Where the gap is below `touch`, the law is

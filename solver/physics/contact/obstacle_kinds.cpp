@@ -47,6 +47,11 @@ Obstacle torus(const EntryValues& e) {
   if (out.shape.tube >= out.shape.radius) e.refuse("tube", "the tube is as large as the ring: there is no hole");
   return out;
 }
+Obstacle height_field(const EntryValues& e) {  // its heights are in a file, which who knows files reads
+  Obstacle out = along_axis(e, Distance::Kind::height_field);
+  out.axes = frame_of_axis(direction(e, "axis"), direction(e, "x"));
+  return out;
+}
 Obstacle box(const EntryValues& e) {
   Obstacle out = along_axis(e, Distance::Kind::box);
   out.axes = frame_of_axis(direction(e, "axis"), direction(e, "x"));
@@ -96,16 +101,26 @@ Registry<ObstacleKind>& obstacle_kinds() {
          {"x", vector3, "1", "[1, 0, 0]", "its first axis, made normal to `axis`"},
          {"size", vector3, "m", "!", "edges along x, across, and along `axis`"},
          within("what it meets is within the box")},
-        box}}};
+        box},
+       {"height-field",
+        "all that lies below heights over a grid: a road, a terrain, a measured surface",
+        {{"at", vector3, "m", "[0, 0, 0]", "where x = y = height = 0 of the file lies, reference coordinates"},
+         {"axis", vector3, "1", "[0, 0, 1]", "the direction of the heights"},
+         {"x", vector3, "1", "[1, 0, 0]", "the direction of x of the file, made normal to `axis`"},
+         {"file", text, "", "!",
+          "CSV in the length of the scene: a word and the x of the columns, then lines of a y and the heights there; x and y rise"}},
+        height_field}}};
   return kinds;
 }
 
 std::vector<Param> contact_keys() {
   return {
       keys::name,
-      {"a", text, "", "!", "an obstacle; or a region or a set of facets, which meets b"},
-      {"b", text, "", "!", "what meets it: a region, a set of facets, or an obstacle of kind sphere or box on a body"},
+      {"a", text, "", "!", "an obstacle; or a region or a set of facets, which meets b; or all: every obstacle and region"},
+      {"b", text, "", "!", "what meets it: a region, a set of facets, or an obstacle of kind sphere or box on a body; or all"},
       {"friction", number, "1", "0", "coefficient of friction", from_to(0, 5)},
+      {"restitution", number, "1", "1", "speed after an impact, divided by that before it; 1 gives the energy back exactly", from_to(0, 1)},
+      {"rest_speed", number, "m/s", "1e-3", "slower impacts lose no smaller part of their speed than they would at this one", above(0)},
       {"factor", number, "1", "1",
        "on the stiffness, which is, of a region, E divided by the depth of the cell at the facet; absent in load steps: 100 where a part "
        "bends",

@@ -5,6 +5,8 @@
 //   D = n + (phi1 - phi0 - n.dxi)/|dxi|^2 dxi,   D.dxi = phi1 - phi0;   f = s D,   s = (V1 - V0)/(phi1 - phi0)
 // so that a step keeps energy and momentum at any length [gonzalez-1996].  Friction: u is how far a bristle of stiffness kt is bent,
 //   u1 = u0 + sigma, shortened to mu p/kt,   f = kt u1,   D = kt u1.sigma - kt (|u1|^2 - |u0|^2)/2 >= 0
+// Restitution: the pressure is s (1 + alpha times the speed of approach), at least zero, as of stops (physics/stop): what it takes is above
+// zero in and out, and it acts along D, so that momenta stay.
 #pragma once
 #include "physics/contact/distance.hpp"
 
@@ -17,6 +19,8 @@ struct PointLaw {
   double kt = 0;        // [N/m]
   double friction = 0;  // coefficient
   double radius = 0;    // of the ball that the point is the centre of [m]
+  double loss = 0;      // alpha v of the damper that keeps what restitution asks (`hunt_crossley`); 0: none is lost
+  double slow = 0;      // speed below which no larger share is lost [m/s]
   bool fixed = false;   // tangents without the change of mu p
   double potential(double gap) const;
   /// How far the bristle bends at most, mu p/kt [m].
@@ -47,6 +51,28 @@ T secant(const PointLaw& law, double g0, const T& g1) {
   if (g0 <= 0 && v1 <= 0) return T(law.k / 2) * (T(-g0) - g1);
   if (g0 > 0) return T(law.k / 2) * g1 * g1 / (T(g0) - g1);
   return T(law.k / 2 * g0 * g0) / (g1 - T(g0));
+}
+
+/// The step, and the largest speed of approach of the contact at work.
+struct Approach {
+  double h = 0, speed = 0;  // [s, m/s]
+  /// After a step from gap g0 to g1; what is open begins with its own.
+  double after(double g0, double g1) const {
+    const double rate = h > 0 ? std::max(0., (g0 - g1) / h) : 0;
+    return g0 > 0 || g1 >= 0 ? rate : std::max(speed, rate);
+  }
+};
+
+/// The pressure p of a step from gap g0 to g1 with what restitution takes: p (1 + loss rate/speed), the quotient at most 1, at least zero.
+/// What comes faster than the contact began, as a part at rest that is hit, begins anew with its own speed.
+template <class T>
+T damped(const PointLaw& law, const T& p, double g0, const T& g1, const Approach& approach) {
+  if (law.loss == 0 || approach.h <= 0 || !(value(p) > 0)) return p;
+  const T rate = (T(g0) - g1) / T(approach.h);
+  const double speed = std::max(g0 > 0 ? 0. : approach.speed, law.slow);
+  if (value(rate) >= speed) return T(1 + law.loss) * p;
+  const T factor = T(law.loss / speed) * rate;
+  return value(factor) > -1 ? p * (T(1.0) + factor) : T(0.0);
 }
 
 /// What a point feels, in axes of the obstacle.
@@ -82,7 +108,7 @@ void bend(const PointLaw& law, const Triple<T>& way, const Vec3& u0, const T& p,
 /// Over the step from measures x0 to x1, `way` that of the material point, from a bristle u0.
 template <class T>
 PointForce<T> over_step(const Distance& shape, const PointLaw& law, const Vec3& x0, const Triple<T>& x1, const Triple<T>& way,
-                        const Vec3& u0) {
+                        const Vec3& u0, const Approach& approach = {}) {
   PointForce<T> out;
   const T zero(0.0);
   out.normal = out.tangential = out.n = out.u = {{zero, zero, zero}};
@@ -106,9 +132,10 @@ PointForce<T> over_step(const Distance& shape, const PointLaw& law, const Vec3& 
   Triple<T> D = out.n;
   const T rest = phi1 - T(phi0) - dot(out.n, dx);
   if (std::abs(value(rest)) > 1e-14 * (shape.extent() + x0.norm())) D = D + (rest / dot(dx, dx)) * dx;
-  const T p = secant(law, g0, g1);
+  const T stored = secant(law, g0, g1), p = damped(law, stored, g0, g1, approach);
   out.normal = (-p) * D, out.pressing = value(p);
   bend(law, way, u0, p, out);
+  out.dissipated += (value(p) - value(stored)) * (g0 - value(g1));
   return out;
 }
 
@@ -154,6 +181,44 @@ PointForce<T> at_rest(const Distance& shape, const PointLaw& law, const Triple<T
   out.pressing = value(p);
   out.normal = (-p) * out.n;
   out.u = triple<T>(u0), out.tangential = T(law.kt) * out.u;
+  return out;
+}
+
+/// How a point was when small motions about a state began: one that is pressed is held by the slopes of its law, whichever way it moves.
+struct HeldPoint {
+  bool pressed = false, sticks = false;  // sticks: friction that does not slide holds along the obstacle too
+  double gap = 0, pressing = 0;          // [m, N]
+  /// Of a gap g and a bristle u.
+  static HeldPoint at(const PointLaw& law, double g, const Vec3& u) {
+    HeldPoint out{.pressed = g < 0, .gap = g};
+    out.pressing = g >= 0 ? 0 : law.hertz > 0 ? -law.hertz * g * std::sqrt(-g) : -law.k * g;
+    out.sticks = out.pressed && law.friction > 0 && law.kt * u.norm() < law.friction * out.pressing;
+    return out;
+  }
+  /// Pressure at another gap.
+  template <class T>
+  T pressing_at(const PointLaw& law, const T& g) const {
+    const double slope = law.hertz > 0 ? 1.5 * law.hertz * std::sqrt(-gap) : law.k;
+    return T(pressing) + T(slope) * (T(gap) - g);
+  }
+};
+
+/// In small motions about a state: `way` of the material point since then, from a bristle u0.
+template <class T>
+PointForce<T> about(const HeldPoint& held, const Distance& shape, const PointLaw& law, const Triple<T>& x, const Triple<T>& way,
+                    const Vec3& u0) {
+  PointForce<T> out;
+  const T zero(0.0);
+  out.normal = out.tangential = out.u = {{zero, zero, zero}};
+  T phi;
+  shape(x, phi, out.n);
+  if (!held.pressed) return out;
+  out.acts = true;
+  const T p = held.pressing_at(law, phi - T(law.radius));
+  out.pressing = value(p), out.normal = (-p) * out.n;
+  out.u = triple<T>(u0);
+  if (held.sticks) out.u = out.u + way - dot(out.n, way) * out.n;
+  out.tangential = T(law.kt) * out.u;
   return out;
 }
 

@@ -245,5 +245,20 @@ TEST_F(NaturalModes, AreRefusedWhereTheyHaveNoMeaning) {
   EXPECT_NE(moving.err.find("something moves along"), std::string::npos) << moving.err;
 }
 
+// Truth: 4 k/m, 4 k a^2/J, 4 k b^2/J, and three motions that nothing resists, beside which the others are all as fast as the mean of all.
+TEST_F(NaturalModes, OfABodyThatSlidesFreelyOnFourSprings) {
+  const double k = 1e5, a = 0.3, b = 0.2;
+  std::string scene = body("part", 2, {0, 0, 0}, {0.05, 0.07, 0.1});
+  for (int i = 0; i < 4; ++i)
+    scene += "[[spring]]\nkind = \"bushing\"\nname = \"s" + std::to_string(i) + "\"\na = \"ground\"\nb = \"part\"\nat = [" +
+             std::to_string(i & 1 ? a : -a) + ", " + std::to_string(i & 2 ? b : -b) + ", 0]\nstiffness = [0, 0, 1e5]\n";
+  const auto f = frequencies(scene, 6);
+  ASSERT_EQ(f.size(), 6);
+  EXPECT_LT(f.head(3).cwiseAbs().maxCoeff(), 1e-6 * f[5]);
+  std::vector<double> truth{4 * k / 2, 4 * k * b * b / 0.05, 4 * k * a * a / 0.07};
+  std::ranges::sort(truth);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(f[3 + i], std::sqrt(truth[static_cast<size_t>(i)]) / (2 * pi), 1e-7 * f[5]) << i;
+}
+
 }  // namespace
 }  // namespace hilo::test::natural_modes_test

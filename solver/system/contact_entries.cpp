@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "system/contact_entries.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "base/error.hpp"
+#include "system/facet.hpp"
+
+namespace hilo {
+namespace {
+
+/// What may meet something: an obstacle, or a surface of the mesh.
+struct Party {
+  std::string name;
+  const Entry* obstacle = nullptr;
+  int region = -1;  // -1: a set of facets, or an obstacle
+  bool is_on(const std::string& body) const { return obstacle ? obstacle->text("on") == body : name == body; }
+  bool is_hollow() const { return obstacle && obstacle->has("inside") && obstacle->boolean("inside"); }
+  bool is_ball() const { return obstacle && obstacle->kind == "sphere" && !is_hollow() && obstacle->text("on") != "ground"; }
+  bool is_box() const { return obstacle && obstacle->kind == "box" && !is_hollow() && obstacle->text("on") != "ground"; }
+  bool is_seen_by_corners() const { return is_hollow() || (obstacle && obstacle->kind == "plane"); }
+};
+
+class Parties {
+ public:
+  Parties(const Scene& scene, const LocalMesh* mesh, const Comm& comm) : mesh_(mesh) {
+    for (const Entry& e : scene.entries("obstacle")) all_.push_back({e.name, &e, -1});
+    if (!mesh) return;
+    const Mesh& m = mesh->mesh;
+    std::vector<double> solid(m.region_name.size(), 0.0);
+    for (std::int64_t c = 0; c < m.n_cells(); ++c)
+      if (info(m.shape[c]).dimension == 3) solid[m.region[c]] = 1;
+    comm.max(solid);
+    for (size_t r = 0; r < solid.size(); ++r)
+      if (solid[r] > 0) all_.push_back({m.region_name[r], nullptr, static_cast<int>(r)});
+    for (const Entry& e : scene.entries("contact"))
+      for (const char* key : {"a", "b"})
+        if (const auto set = m.facet_sets.find(e.text(key)); set != m.facet_sets.end()) {
+          std::vector<int> own;
+          for (const Facet& f : set->second) own.push_back(m.region[f.cell]);
+          own = comm.gather(own);
+          std::ranges::sort(own);
+          own.erase(std::ranges::unique(own).begin(), own.end());
+          set_regions_[set->first] = own;
+        }
+    std::vector<std::vector<int>> regions_of(m.X.size());
+    for (std::int64_t c = 0; c < m.n_cells(); ++c)
+      for (const auto i : m.cell(c))
+        if (auto& list = regions_of[i]; std::ranges::find(list, m.region[c]) == list.end()) list.push_back(m.region[c]);
+    std::vector<std::array<std::int64_t, 2>> touching;  // by the rows of nodes that other ranks may have in other regions
+    for (size_t i = 0; i < regions_of.size(); ++i)
+      for (const int r : regions_of[i]) touching.push_back({mesh->node_global[i], r});
+    for (const auto& list : regions_of)
+      for (const int a : list)
+        for (const int b : list) shared_.insert({a, b});
+    if (comm.size == 1) return;
+    touching = comm.gather(touching);
+    std::ranges::sort(touching);
+    for (size_t i = 0; i < touching.size();) {
+      size_t end = i;
+      while (end < touching.size() && touching[end][0] == touching[i][0]) ++end;
+      for (size_t a = i; a < end; ++a)
+        for (size_t b = i; b < end; ++b) shared_.insert({static_cast<int>(touching[a][1]), static_cast<int>(touching[b][1])});
+      i = end;
+    }
+  }
+  bool has(const std::string& name) const {
+    return std::ranges::any_of(all_, [&](const Party& p) { return p.name == name; }) || (mesh_ && mesh_->mesh.facet_sets.contains(name));
+  }
+  std::vector<Party> named(const Entry& e, std::string_view key) const {
+    const std::string& name = e.text(key);
+    if (name == "all" && !has(name)) return all_;
+    for (const Party& p : all_)
+      if (p.name == name) return {p};
+    if (has(name)) return {{name, nullptr, -1}};
+    std::vector<std::string> names;
+    for (const Party& p : all_) names.push_back(p.name);
+    throw Error(e.where(key), fmt::format("{}: no obstacle{} \"{}\"", e.label(), mesh_ ? ", region or set of facets" : "", name),
+                suggest(name, names));
+  }
+  bool hang_together(const Party& a, const Party& b) const {
+    for (const int i : regions(a))
+      for (const int j : regions(b))
+        if (shared_.contains({i, j})) return true;
+    return false;
+  }
+  bool is_rigid(const Party& p) const {
+    return std::ranges::any_of(regions(p), [&](int r) { return mesh_->fidelity[r] == Fidelity::rigid; });
+  }
+
+ private:
+  /// The region itself, or those of the facets of a set.
+  std::vector<int> regions(const Party& p) const {
+    if (p.region >= 0 || !mesh_) return {p.region};
+    const auto set = set_regions_.find(p.name);
+    return set == set_regions_.end() ? std::vector<int>{} : set->second;
+  }
+
+  const LocalMesh* mesh_;
+  std::vector<Party> all_;
+  std::set<std::pair<int, int>> shared_;  // regions that have a node in common, or are the same
+  std::map<std::string, std::vector<int>> set_regions_;
+};
+
+/// The pair in the order of an entry, obstacle first; nothing where they cannot meet.
+std::optional<std::pair<Party, Party>> ordered(const Party& x, const Party& y, const Parties& parties) {
+  if (x.name == y.name) return {};
+  if (!x.obstacle && !y.obstacle) return parties.hang_together(x, y) ? std::nullopt : std::optional(std::pair(x, y));
+  if (!x.obstacle) return ordered(y, x, parties);
+  if (!y.obstacle) return x.is_on(y.name) ? std::nullopt : std::optional(std::pair(x, y));
+  if (x.obstacle->text("on") == y.obstacle->text("on")) return {};
+  if (y.is_ball() || (y.is_box() && x.is_seen_by_corners())) return std::pair(x, y);
+  if (x.is_ball() || (x.is_box() && y.is_seen_by_corners())) return std::pair(y, x);
+  return {};
+}
+
+}  // namespace
+
+bool meets_all(const Scene& scene) {
+  return std::ranges::any_of(scene.entries("contact"), [](const Entry& e) { return e.text("a") == "all" || e.text("b") == "all"; });
+}
+
+std::vector<ContactEntry> contact_entries(const Scene& scene, const LocalMesh* mesh, const Comm& comm) {
+  std::vector<ContactEntry> out;
+  const auto entries = scene.entries("contact");
+  if (!meets_all(scene)) {
+    for (const Entry& e : entries) out.push_back({e, false});
+    return out;
+  }
+  Parties parties(scene, mesh, comm);
+  const auto is_all = [&](const Entry& e) { return (e.text("a") == "all" || e.text("b") == "all") && !parties.has("all"); };
+  std::set<std::pair<std::string, std::string>> done;
+  std::set<std::string> names;
+  const auto take = [&](const std::string& a, const std::string& b) { return done.insert(std::minmax(a, b)).second; };
+  for (const char* section : {"contact", "tie"})
+    for (const Entry& e : scene.entries(section))
+      if (section == std::string_view("tie") || !is_all(e)) take(e.text("a"), e.text("b")), names.insert(e.name);
+  for (const Entry& e : entries) {
+    if (!is_all(e)) {
+      out.push_back({e, false});
+      continue;
+    }
+    size_t n = 0;
+    for (const Party& x : parties.named(e, "a"))
+      for (const Party& y : parties.named(e, "b")) {
+        const auto pair = ordered(x, y, parties);
+        if (!pair || !take(x.name, y.name)) continue;
+        ++n;
+        const auto& [a, b] = *pair;
+        Entry one = e;
+        one.name = fmt::format("{}_{}_{}", e.name, a.name, b.name);
+        for (int k = 2; !names.insert(one.name).second; ++k) one.name = fmt::format("{}_{}_{}_{}", e.name, a.name, b.name, k);
+        one.values.at("a").texts = {a.name}, one.values.at("b").texts = {b.name};
+        // keys of the entry that are for pairs of another kind
+        const bool of_surface = !b.obstacle, rigid = of_surface && parties.is_rigid(b) && (a.obstacle || parties.is_rigid(a));
+        const auto drop = [&](const char* key) { one.values.erase(key); };
+        if (of_surface) drop("stiffness");
+        if (!of_surface || !rigid) drop("layer");
+        if (of_surface && !rigid) drop("modulus");
+        if (!of_surface && one.has("modulus") && one.has("stiffness")) {
+          const bool hertz = b.is_ball() && (a.obstacle->kind == "plane" || a.obstacle->kind == "sphere");
+          drop(hertz ? "stiffness" : "modulus");
+        }
+        out.push_back({std::move(one), true});
+      }
+    if (n == 0)
+      throw Error(e.where(e.text("a") == "all" ? "a" : "b"), fmt::format("{}: \"all\" stands for no pair", e.label()),
+                  "an [[obstacle]] and a region, or two regions without a common node, that no other [[contact]] or [[tie]] names");
+  }
+  return out;
+}
+
+std::string told_pairs(const Scene& scene, const LocalMesh* mesh, const Comm& comm) {
+  std::string out;
+  for (const ContactEntry& pair : contact_entries(scene, mesh, comm))
+    if (pair.of_all) out += fmt::format("# {}: a = \"{}\", b = \"{}\"\n", pair.entry.label(), pair.entry.text("a"), pair.entry.text("b"));
+  return out;
+}
+
+}  // namespace hilo

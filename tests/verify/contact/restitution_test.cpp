@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Restitution of contacts: velocities after impacts in closed form, at most what is there is taken, and momenta stay.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "dynamics/kept_run.hpp"
+#include "verify/block_mesh.hpp"
+#include "verify/contact/collision.hpp"
+#include "verify/verify.hpp"
+
+namespace hilo::test::contact_restitution_test {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+struct Place : Case {
+  Place() : Case("contact") {}
+  Results solved(const std::string& scene, const std::string& options = "") const {
+    std::ofstream(*this / "scene.toml") << scene;
+    const Ran ran = Case::run("hilo-solve --quiet scene.toml " + options + " -o run.h5");
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    return Results(*this / "run.h5");
+  }
+};
+
+/// A ball of 1 kg and 0.1 m above the ground.
+std::string ball(double z, double v, double gravity, const std::string& contact, double end, double step) {
+  return fmt::format(
+      "gravity = [0, 0, {}]\n[[body]]\nname = \"ball\"\nmass = 1\ncom = [0, 0, {}]\ninertia = [4e-3, 4e-3, 4e-3]\n[[obstacle]]\nkind = "
+      "\"plane\"\nname = \"ground\"\n[[obstacle]]\nkind = \"sphere\"\nname = \"skin\"\non = \"ball\"\nradius = 0.1\nat = [0, 0, {}]\n"
+      "[[contact]]\nname = \"c\"\na = \"ground\"\nb = \"skin\"\n{}\n[[initial]]\non = [\"ball\"]\nvelocity = [0, 0, {}]\n[[probe]]\nname = "
+      "\"p\"\non = \"ball\"\n[solver]\ntolerance = 1e-12\n[time]\nend = {:.17g}\nstep = {:.17g}\n",
+      gravity, z, z, contact, v, end, step);
+}
+
+// Truth: e v, of linear contact and of Hertz; what is dissipated is (1 - e^2) m v^2/2.
+TEST(Restitution, OfABallIsAsAsked) {
+  const Place c;
+  const double Tc = pi / std::sqrt(1e5);  // of the stiffness; the law of Hertz is about as fast
+  for (const char* law : {"stiffness = 1e5", "modulus = 1e7"})
+    for (const double e : {0.1, 0.5, 0.9}) {
+      const Results r = c.solved(ball(0.101, -1, 0, fmt::format("{}\nrestitution = {}", law, e), 8 * Tc, Tc / 100));
+      const auto x = r.history("probe/p"), energy = r.history("energy");
+      EXPECT_NEAR(x(x.rows() - 1, 5), e, 0.01) << law;
+      EXPECT_NEAR(energy(energy.rows() - 1, 4), (1 - e * e) / 2, 0.01) << law;
+      EXPECT_LT((energy.col(5).array() - energy(0, 5)).abs().maxCoeff(), 1e-12) << law;
+      for (Eigen::Index k = 1; k < energy.rows(); ++k) EXPECT_GE(energy(k, 4), energy(k - 1, 4) - 1e-15) << law << k;
+    }
+}
+
+// Truth: from a height H, impacts at 1, 1 + 2 e, 1 + 2 e + 2 e^2 times sqrt(2 H/g), and e^2 H, e^4 H between them.
+TEST(Restitution, ABallBouncesLower) {
+  const Place c;
+  const double H = 0.5, g = 9.81, e = 0.6, T = std::sqrt(2 * H / g);
+  const Results r = c.solved(ball(0.1 + H, 0, -g, "stiffness = 1e6\nrestitution = 0.6", (1 + 2 * e + 2 * e * e) * T, 2e-4));
+  const auto x = r.history("probe/p");
+  const auto highest = [&](double from, double to) {
+    double out = 0;
+    for (Eigen::Index k = 0; k < x.rows(); ++k)
+      if (r.t()[k] > from && r.t()[k] < to) out = std::max(out, x(k, 2) - 0.1);
+    return out;
+  };
+  EXPECT_NEAR(highest(1.2 * T, (1 + 2 * e) * T), e * e * H, 0.02 * e * e * H);
+  EXPECT_NEAR(highest((1.2 + 2 * e) * T, 9 * T), std::pow(e, 4) * H, 0.03 * std::pow(e, 4) * H);
+}
+
+// Truth: nothing acts from outside; steps from a fiftieth of the contact to twice its time.
+TEST(Restitution, KeepsMomentaAndGivesNothingBack) {
+  const Place c;
+  for (const double share : shares) {
+    const Results r =
+        c.solved(text_of(c.source("two.toml")),
+                 fmt::format("--set contact.c.restitution=0.4 --set time.step={} --set solver.tolerance=1e-12", 0.057 * share));
+    const Worst w = worst_of(r, 1, 0.1);
+    EXPECT_LT(std::max({w.energy, w.momentum, w.angular}), 1e-11) << share;
+    EXPECT_LE(w.given_back, 1e-15) << share;
+  }
+}
+
+// Truth: of two equal rigid blocks, one at rest, (1 - e) v/2 and (1 + e) v/2 after; of one that falls flat on the ground, e v.
+TEST(Restitution, OfSurfacesIsAsAsked) {
+  BlockOptions A, B;
+  A.n[0] = A.n[1] = A.n[2] = B.n[0] = B.n[1] = B.n[2] = 1;
+  A.regions = {"A"}, B.regions = {"B"}, B.low = Vec3(0, 0, 1.002), B.high = Vec3(1, 1, 2.002);
+  Place c;
+  c.use(together(block_mesh(A), block_mesh(B)), {Fidelity::rigid, Fidelity::rigid});
+  const std::string scene =
+      "[material.m]\nE = 1e9\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n[[probe]]\nname = \"a\"\non = \"A\"\n"
+      "[[probe]]\nname = \"b\"\non = \"B\"\n[solver]\ntolerance = 1e-12\n[time]\nend = 0.06\nstep = 2e-4\n";
+  for (const double e : {0.2, 0.7}) {
+    const std::string law = fmt::format("modulus = 1e7\nlayer = 0.1\nrestitution = {}\n", e);
+    const Results r =
+        c.solved(scene + "[[contact]]\nname = \"c\"\na = \"A\"\nb = \"B\"\n" + law + "[[initial]]\non = [\"B\"]\nvelocity = [0, 0, -1]\n",
+                 "tags.h5");
+    const auto a = r.history("probe/a"), b = r.history("probe/b");
+    EXPECT_NEAR(a(a.rows() - 1, 5), -(1 + e) / 2, 0.01);
+    EXPECT_NEAR(b(b.rows() - 1, 5), -(1 - e) / 2, 0.01);
+    const Worst w = worst_of(r, 1000, 1000);
+    EXPECT_LT(std::max({w.energy, w.momentum, w.angular}), 1e-11);
+    const Results fallen = c.solved(scene +
+                                        "[[obstacle]]\nkind = \"plane\"\nname = \"ground\"\nat = [0, 0, -0.002]\n[[contact]]\nname = "
+                                        "\"c\"\na = \"ground\"\nb = \"A\"\n" +
+                                        law + "[[initial]]\non = [\"A\"]\nvelocity = [0, 0, -1]\n",
+                                    "tags.h5");
+    const auto x = fallen.history("probe/a");
+    EXPECT_NEAR(x(x.rows() - 1, 5), e, 0.01);
+  }
+}
+
+// Truth: a ball set down comes to rest at depth m g/k: restitution damps what friction and stiffness do not.
+TEST(Restitution, ABallComesToRest) {
+  const Place c;
+  const Results r = c.solved(ball(0.11, 0, -9.81, "stiffness = 1e4\nrestitution = 0.3\nrest_speed = 0.02", 2, 1e-3));
+  const auto x = r.history("probe/p");
+  EXPECT_NEAR(x(x.rows() - 1, 2), 0.1 - 9.81 / 1e4, 1e-6);
+  EXPECT_LT(std::abs(x(x.rows() - 1, 5)), 1e-3);
+}
+
+// Truth: three balls that fall on each other and on the ground come to rest there, and nothing is given back on the way.
+TEST(Restitution, APileComesToRest) {
+  const Place c;
+  std::string scene =
+      "gravity = [0, 0, -9.81]\n[[obstacle]]\nkind = \"sphere\"\nname = \"ground\"\nradius = 1\nat = [0, 0, 1]\ninside = true\n";
+  const Vec3 at[] = {{0, 0, 0.3}, {0.15, 0.02, 0.6}, {-0.1, 0.05, 0.9}};
+  for (int k = 0; k < 3; ++k)
+    scene += fmt::format(
+        "[[body]]\nname = \"b{0}\"\nmass = 1\ncom = [{1}, {2}, {3}]\ninertia = [4e-3, 4e-3, 4e-3]\n[[obstacle]]\nkind = "
+        "\"sphere\"\nname = \"s{0}\"\non = \"b{0}\"\nradius = 0.1\nat = [{1}, {2}, {3}]\n",
+        k, at[k][0], at[k][1], at[k][2]);
+  const Results r = c.solved(scene +
+                             "[[contact]]\nname = \"c\"\na = \"all\"\nb = \"all\"\nstiffness = 1e4\nfriction = 0.3\nrestitution = 0.4\n"
+                             "rest_speed = 0.01\n[solver]\ntolerance = 1e-12\n[time]\nend = 6\nstep = 0.004\n");
+  const auto e = r.history("energy");
+  for (Eigen::Index k = 1; k < e.rows(); ++k) {
+    EXPECT_LT(std::abs(e(k, 5) - e(k - 1, 5)), 1e-11 * 30) << k;
+    EXPECT_GE(e(k, 4), e(k - 1, 4) - 1e-13) << k;
+  }
+  EXPECT_LT(e(e.rows() - 1, 0), 1e-2) << "from 18 J";
+}
+
+TEST(Restitution, GoesOnBitByBit) {
+  const Folder folder;
+  const Case c("contact");
+  expect_goes_on(folder.path(), text_of(c.source("two.toml")), "", {10, 25, 28, 40}, {"contact.c.restitution=0.4"});
+}
+
+}  // namespace
+}  // namespace hilo::test::contact_restitution_test
