@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 
 #include "base/spline.hpp"
 #include "base/units.hpp"
@@ -58,16 +59,14 @@ bool is_missing(const std::string& path) {
   return !std::filesystem::exists(path, error) && !error;
 }
 
-constexpr const char* order_rule = "times must rise; two equal ones make a jump";
+using PlaceOf = std::function<std::string(size_t)>;  // of a field, file:line:column
 
-}  // namespace
-
-HistoryTable read_history_csv(const std::string& path, const std::string& where) {
+/// The lines that hold something, by their fields, one after the other.  Where the file ends is returned.
+std::string each_line(const std::string& path, const std::string& where,
+                      const std::function<void(const std::vector<Field>&, const PlaceOf&)>& use) {
   if (is_missing(path)) throw Error(where, fmt::format("no file {}", path), "paths in a scene are relative to the scene's folder");
   std::string text = read_text_file(path, where);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-  HistoryTable h;
-  bool header = false;
   int line_number = 0;
   for (size_t begin = 0; begin < text.size();) {
     const size_t end = std::min(text.find('\n', begin), text.size());
@@ -76,7 +75,19 @@ HistoryTable read_history_csv(const std::string& path, const std::string& where)
     ++line_number;
     if (trim_cell(line).empty() || trim_cell(line).starts_with('#')) continue;
     const auto fields = fields_of(line);
-    const auto at = [&](size_t i) { return fmt::format("{}:{}:{}", path, line_number, fields[i].column); };
+    use(fields, [&](size_t i) { return fmt::format("{}:{}:{}", path, line_number, fields[i].column); });
+  }
+  return fmt::format("{}:{}:1", path, line_number + (line_number == 0));
+}
+
+constexpr const char* order_rule = "times must rise; two equal ones make a jump";
+
+}  // namespace
+
+HistoryTable read_history_csv(const std::string& path, const std::string& where) {
+  HistoryTable h;
+  bool header = false;
+  const std::string last = each_line(path, where, [&](const std::vector<Field>& fields, const PlaceOf& at) {
     if (fields.size() != 2)
       throw Error(at(fields.size() > 2 ? 2 : 0),
                   fmt::format("{} column{} where two are expected: time and value", fields.size(), fields.size() == 1 ? "" : "s"));
@@ -86,34 +97,22 @@ HistoryTable read_history_csv(const std::string& path, const std::string& where)
       if (numeric) throw Error(at(0), "no header line", "write \"t,value\" above the first numbers");
       header = true;
       for (size_t i = 0; i < 2; ++i) h.unit[i] = unit_in_heading(fields[i].text), h.place[i] = at(i);
-      continue;
+      return;
     }
     if (!numeric) throw Error(at(0), fmt::format("\"{}\" is not a number", fields[0].text));
     if (!to_number(fields[1].text, value)) throw Error(at(1), fmt::format("\"{}\" is not a number", fields[1].text));
     h.t.push_back(t);
     h.value.push_back(value);
     if (const auto why = disorder(h.t, h.t.size() - 1); !why.empty()) throw Error(at(0), why, order_rule);
-  }
-  if (h.t.empty())
-    throw Error(fmt::format("{}:{}:1", path, line_number + (line_number == 0)), "no times and values",
-                "a header line, then lines \"t,value\"");
+  });
+  if (h.t.empty()) throw Error(last, "no times and values", "a header line, then lines \"t,value\"");
   return h;
 }
 
 std::vector<std::vector<double>> read_rows_csv(const std::string& path, const std::string& where, const RowRule& rule) {
-  if (is_missing(path)) throw Error(where, fmt::format("no file {}", path), "paths in a scene are relative to the scene's folder");
-  const std::string text = read_text_file(path, where);
   std::vector<std::vector<double>> rows;
   size_t columns = 0;
-  int line_number = 0;
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = std::string_view(text).substr(begin, end - begin);
-    begin = end + 1;
-    ++line_number;
-    if (trim_cell(line).empty() || trim_cell(line).starts_with('#')) continue;
-    const auto fields = fields_of(line);
-    const auto at = [&](size_t i) { return fmt::format("{}:{}:{}", path, line_number, fields[i].column); };
+  each_line(path, where, [&](const std::vector<Field>& fields, const PlaceOf& at) {
     const bool fits = columns == 0 ? rule.fits(fields.size()) : fields.size() == columns;
     if (!fits)
       throw Error(at(0), fmt::format("{} column{} where {} are expected", fields.size(), fields.size() == 1 ? "" : "s", rule.expected));
@@ -122,30 +121,19 @@ std::vector<std::vector<double>> read_rows_csv(const std::string& path, const st
       if (to_number(fields[0].text, x[0]))
         throw Error(at(0), "no header line", fmt::format("write \"{}\" above the first numbers", rule.header));
       columns = fields.size();
-      continue;
+      return;
     }
     for (size_t k = 0; k < columns; ++k)
       if (!to_number(fields[k].text, x[k])) throw Error(at(k), fmt::format("\"{}\" is not a number", fields[k].text));
     rows.push_back(std::move(x));
-  }
+  });
   return rows;
 }
 
 HeightGrid read_height_grid(const std::string& path, const std::string& where) {
-  if (is_missing(path)) throw Error(where, fmt::format("no file {}", path), "paths in a scene are relative to the scene's folder");
-  std::string text = read_text_file(path, where);
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   constexpr const char* form = "the first line is a word and the x of each column, the others a y and the heights there";
   HeightGrid grid;
-  int line_number = 0;
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = std::string_view(text).substr(begin, end - begin);
-    begin = end + 1;
-    ++line_number;
-    if (trim_cell(line).empty() || trim_cell(line).starts_with('#')) continue;
-    const auto fields = fields_of(line);
-    const auto at = [&](size_t i) { return fmt::format("{}:{}:{}", path, line_number, fields[i].column); };
+  const std::string last = each_line(path, where, [&](const std::vector<Field>& fields, const PlaceOf& at) {
     const auto rising = [&](std::vector<double>& list, size_t k, char name) {
       double x = 0;
       if (!to_number(fields[k].text, x))
@@ -159,7 +147,7 @@ HeightGrid read_height_grid(const std::string& path, const std::string& where) {
       if (to_number(fields[0].text, x)) throw Error(at(0), "no header line", form);
       for (size_t k = 1; k < fields.size(); ++k) rising(grid.x, k, 'x');
       if (grid.x.size() < 2) throw Error(at(0), fmt::format("{} column of heights: a field has two at least", grid.x.size()), form);
-      continue;
+      return;
     }
     if (fields.size() != grid.x.size() + 1)
       throw Error(at(fields.size() > grid.x.size() ? grid.x.size() + 1 : fields.size() - 1),
@@ -171,10 +159,9 @@ HeightGrid read_height_grid(const std::string& path, const std::string& where) {
         throw Error(at(k), fmt::format("\"{}\" is not a height", fields[k].text), "a field has a number at each point; fill holes first");
       grid.heights.push_back(x);
     }
-  }
+  });
   if (grid.y.size() < 2)
-    throw Error(fmt::format("{}:{}:1", path, line_number + (line_number == 0)),
-                fmt::format("{} row{} of heights: a field has two at least", grid.y.size(), grid.y.size() == 1 ? "" : "s"), form);
+    throw Error(last, fmt::format("{} row{} of heights: a field has two at least", grid.y.size(), grid.y.size() == 1 ? "" : "s"), form);
   return grid;
 }
 
