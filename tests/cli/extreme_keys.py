@@ -40,7 +40,7 @@ NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5
             "diameter": "0.1", "thickness": "0.02", "width": "0.1", "height": "0.1", "flange": "0.02", "web": "0.02", "I1": "1e-5", "I2": "1e-5", "J": "1e-5",
            "bending": "[100, 100, 100]", "line_mass": "1", "cells": "[2]", "orientation": "[0, 1, 0]", "shear": "[1, 1]",
            "axis_1": "[1, 0, 0]", "axis_2": "[0, 1, 0]", "hardening_strain": "[0, 0.1]", "hardening_stress": "[1e6, 2e6]",
-           "factors": "[1, 1]", "extension": "[0, 1]", "acceleration": "[1, 0, 0]", "speed": "1", "size": "[1, 1, 1]", "tube": "0.05", "modulus": "1e7", "layer": "0.1", "gap": "0.1", "factor": "1", "friction": "0.1"}
+           "factors": "[1, 1]", "extension": "[0, 1]", "acceleration": "[1, 0, 0]", "force_per_length": "[1, 0, 0]", "speed": "1", "size": "[1, 1, 1]", "tube": "0.05", "modulus": "1e7", "layer": "0.1", "gap": "0.1", "factor": "1", "friction": "0.1"}
 BODIES = """[[body]]
 name = "arm"
 mass = 1
@@ -204,6 +204,8 @@ def entry(section, kind, keys, tried, value):
                 word = '"top"'
             if section == "load" and kind == "centrifugal" and key == "on":
                 word = '"block"'
+            if kind == "line" and key == "on":
+                word = '"whip"'
             if kind in ("gear", "rack") and key == "a":
                 word = '"wheel"'
             if section == "contact" and key in ("a", "b"):
@@ -261,6 +263,9 @@ def scene(section, kind, keys, tried, value):
         rest += f"[[{section}]]\n" + "\n".join(lines) + "\n"
         if section in ("obstacle", "contact"):
             rest += SKIN + (FLOOR if section == "contact" else '[[contact]]\nname = "c"\na = "tried"\nb = "skin"\nstiffness = 100\n')
+        if kind == "line":
+            rest += '[section.square]\nkind = "rectangle"\nwidth = 0.1\nheight = 0.1\n[beam.whip]\na = "ground"\nsection = "square"\npoints = [[0, 0, 0], [1, 0, 0]]\n'
+            rest += 'cells = [2]\nmaterial = "plain"\n[material.plain]\nE = 2e9\nnu = 0.3\ndensity = 1000\n'
         if section == "quantity":
             rest += '[[sensor]]\nname = "felt"\non = "arm"\n'
     if with_mesh:

@@ -80,6 +80,7 @@ std::string value_of(const KindSchema& kind, const Param& p) {
       {"extension", "[-0.5, 1.5]"},
       {"reactions", "\"arm\""},
       {"acceleration", "[30, 20, -50]"},
+      {"force_per_length", "[30, 20, -50]"},
       {"speed", "7"},
       {"axle", "[0.2, 1, 0.3]"},
       {"edge", "[0.2, 1, 0.3]"},
@@ -123,6 +124,7 @@ std::string value_of(const KindSchema& kind, const Param& p) {
   if (kind.section == "region") return key == "damping" ? "0.02" : "0.7";
   if (key == "kind") return '"' + std::string(kind.kind) + '"';
   if (key == "on" && (kind.kind == "acceleration" || kind.kind == "centrifugal")) return "\"block\"";
+  if (key == "on" && kind.kind == "line") return "\"it\"";
   if (key == "on") return kind.kind == "torque" ? "\"two\"" : kind.section == "motion" ? "\"line\"" : "\"xmax\"";
   if (key == "displacement" && p.type == Type::vector3) return "[0.1, 0.2, -0.1]";
   if ((key == "torque" || key == "force") && p.type == Type::vector3) return "[50, 20, -30]";
@@ -137,6 +139,19 @@ struct Variant {
   std::string kind, name, scene;
   Fidelity fidelity = Fidelity::nonlinear;  // of the region
 };
+
+/// A section that couples all that it can, and a curved beam of it.
+const std::string any_section = R"(
+[section.any]
+kind = "matrix"
+stiffness = [3000, 200, 100, 200, 4000, 300, 100, 300, 9000]
+coupling = [10, 20, 30, -20, 40, 10, 50, 20, -30]
+bending = [200, 10, 20, 10, 150, -20, 20, -20, 120]
+line_mass = 2
+inertia = [0.03, 0.05, 0.01]
+)";
+const std::string arc =
+    "[beam.it]\npath = \"arc\"\npoints = [[0.2, 0.1, 2.1], [0.3, 0.9, 2.2], [0.5, 1.2, 1.7]]\ncells = [2]\nsection = \"any\"\n";
 
 /// The kind with what it must be given, and once more with each of the other keys.
 void add_variants(const KindSchema& kind, std::vector<Variant>& out) {
@@ -179,6 +194,7 @@ void add_variants(const KindSchema& kind, std::vector<Variant>& out) {
       put("JOINT", helper);
       put("AXIS", std::string(helper == "spherical" ? "" : "axis = [0.2, 1, 0.3]\n") + (helper == "screw" ? "pitch = 0.3\n" : ""));
       if (kind.section != "region") text += entry;
+      if (kind.kind == "line") text += any_section + arc + "a = \"one\"\nb = \"two\"\n";
       const std::string its_kind = std::string(kind.section) + " " + std::string(kind.kind), name = its_kind + " " + key + " on " + helper;
       out.push_back({its_kind, name, text});
       for (const Fidelity fidelity : {Fidelity::rigid, Fidelity::linear})
@@ -192,21 +208,10 @@ void add_beams(std::vector<Variant>& out) {
   std::string text = base;
   for (const auto& [word, by] : {std::pair{"REGION", ""}, {"JOINT", "spherical"}, {"AXIS", ""}})
     text.replace(text.find(word), std::strlen(word), by);
-  const std::string section = R"(
-[section.any]
-kind = "matrix"
-stiffness = [3000, 200, 100, 200, 4000, 300, 100, 300, 9000]
-coupling = [10, 20, 30, -20, 40, 10, 50, 20, -30]
-bending = [200, 10, 20, 10, 150, -20, 20, -20, 120]
-line_mass = 2
-inertia = [0.03, 0.05, 0.01]
-)";
-  const std::string arc =
-      "[beam.it]\npath = \"arc\"\npoints = [[0.2, 0.1, 2.1], [0.3, 0.9, 2.2], [0.5, 1.2, 1.7]]\ncells = [2]\nsection = \"any\"\n";
   for (const char* more : {"", "damping = 0.02\n", "mass_damping = 0.7\n", "orientation = [1, 0.2, 0.3]\n"})
-    out.push_back({"beam", std::string("beam ") + more + " on bodies", text + section + arc + "a = \"one\"\nb = \"two\"\n" + more});
+    out.push_back({"beam", std::string("beam ") + more + " on bodies", text + any_section + arc + "a = \"one\"\nb = \"two\"\n" + more});
   out.push_back({"beam", "beam with a corner on a set",
-                 text + section +
+                 text + any_section +
                      "[beam.it]\npoints = [[0.2, 0.1, 2.1], [0.3, 0.4, 2.2], [0.3, 0.2, 0.8]]\ncells = [1, 2]\n"
                      "section = \"any\"\nb = \"xmax\"\n"});
 }
