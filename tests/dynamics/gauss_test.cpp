@@ -220,7 +220,7 @@ TEST(Gauss, ItsMatrixIsTheDerivativeOfItsEquations) {
   auto solver = std::make_unique<Along>();
   Along& along = *solver;
   Unwilling none;
-  const StepTools tools{*system, none, {1e-300, 25, false, 1e3}};
+  const StepTools tools{*system, none, {.tolerance = 1e-300}};
   const auto gauss = make_gauss(std::move(solver));
   gauss->solve(tools, s, 0.1, Predictor::velocity);
   ASSERT_EQ(along.b.size(), 3u);
