@@ -55,18 +55,15 @@ std::vector<int> Builder::whole_blocks(std::vector<int> nodes) const {
   return nodes;
 }
 
-void Builder::join_by_blocks(const std::vector<int>& region, std::vector<double>& shared) const {
+void Builder::join_by_blocks(const std::vector<int>& region, Pairs& shared) const {
   if (mesh_->mesh.block_name.empty()) return;
-  std::set<std::pair<double, double>> met;  // block, region
+  Pairs met;  // block, region
   for (size_t i = 0; i < region.size(); ++i)
-    if (region[i] >= 0 && mesh_->mesh.block[i] >= 0) met.emplace(static_cast<double>(mesh_->mesh.block[i]), region[i]);
-  std::vector<double> pairs;
-  for (const auto& [block, r] : met) pairs.insert(pairs.end(), {block, r});
-  pairs = comm_.gather(pairs);
-  std::map<double, double> first;
-  for (size_t i = 0; i + 1 < pairs.size(); i += 2)
-    if (const auto [at, fresh] = first.try_emplace(pairs[i], pairs[i + 1]); !fresh && at->second != pairs[i + 1])
-      shared.insert(shared.end(), {at->second, pairs[i + 1]});
+    if (region[i] >= 0 && mesh_->mesh.block[i] >= 0) met.insert({static_cast<int>(mesh_->mesh.block[i]), region[i]});
+  agree(met, comm_);
+  std::map<int, int> first;
+  for (const auto& [block, r] : met)
+    if (const auto [at, fresh] = first.try_emplace(block, r); !fresh) shared.insert({at->second, r});
 }
 
 /// After all that makes bodies of nodes.  Collective.
@@ -81,12 +78,12 @@ void Builder::make_blocks() {
                             mesh.block_at[b][2], mesh.block_name[b], why),
                 hint);
   };
-  std::set<std::pair<double, double>> met;   // block, what a node of it follows
+  Pairs met;                                 // block, what a node of it follows
   std::vector<double> moments(10 * n, 0.0);  // number, places and their squares, about the block's own
   for (int i = 0; i < n_nodes; ++i) {
     const auto b = mesh.block[i];
     if (b < 0) continue;
-    met.emplace(static_cast<double>(b), out_->follower[i]);
+    met.insert({static_cast<int>(b), out_->follower[i]});
     if (!out_->node_owned[i]) continue;
     double* m = moments.data() + 10 * b;
     const Vec3 r = out_->X[i] - mesh.block_at[static_cast<size_t>(b)];
@@ -94,11 +91,9 @@ void Builder::make_blocks() {
     for (int k = 0; k < 10; ++k) m[k] += more[k];
   }
   comm_.sum(moments);
-  std::vector<double> pairs;
-  for (const auto& [block, body] : met) pairs.insert(pairs.end(), {block, body});
-  pairs = comm_.gather(pairs);
+  agree(met, comm_);
   std::vector<std::set<int>> follows(n);
-  for (size_t i = 0; i + 1 < pairs.size(); i += 2) follows[static_cast<size_t>(pairs[i])].insert(static_cast<int>(pairs[i + 1]));
+  for (const auto& [block, body] : met) follows[static_cast<size_t>(block)].insert(body);
   std::vector<int> body_of(n, -1);
   std::vector<double> of_nonlinear(n, 0.0);  // nodes of cells of nonlinear regions
   for (std::int64_t e = 0; e < mesh.n_cells(); ++e)

@@ -18,13 +18,13 @@ void Builder::make_linear_bodies() {
   if (!mesh_) return;
   const auto n = static_cast<int>(regions_.size());
   std::vector<int> first(out_->X.size(), -1);
-  std::vector<double> shared;  // regions that meet at a node, by pairs
+  Pairs shared;  // regions that meet at a node
   for (int r = 0; r < n; ++r) {
     if (regions_[r].fidelity != Fidelity::linear) continue;
     for (const std::int64_t i : mesh_->nodes_of(regions_[r].name, regions_[r].where)) {
       if (out_->follower[i] >= 0) continue;
       if (first[i] < 0) first[i] = r;
-      if (first[i] != r) shared.insert(shared.end(), {static_cast<double>(first[i]), static_cast<double>(r)});
+      if (first[i] != r) shared.insert({first[i], r});
     }
   }
   join_by_blocks(first, shared);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <set>
 #include <unordered_set>
 
 #include "system/bodies.hpp"
@@ -14,21 +13,8 @@
 
 namespace hilo {
 
-namespace {
-
-/// Pairs that any rank has found, each once, on all of them.
-void unite(std::vector<double>& pairs, const Comm& comm) {
-  const std::vector<double> all = comm.gather(pairs);
-  std::set<std::pair<double, double>> each;
-  for (size_t i = 0; i + 1 < all.size(); i += 2) each.emplace(all[i], all[i + 1]);
-  pairs.clear();
-  for (const auto& [a, b] : each) pairs.insert(pairs.end(), {a, b});
-}
-
-}  // namespace
-
-std::vector<std::vector<int>> Builder::joined_regions(Fidelity fidelity, std::vector<double>& shared) const {
-  unite(shared, comm_);
+std::vector<std::vector<int>> Builder::joined_regions(Fidelity fidelity, Pairs& shared) const {
+  agree(shared, comm_);
   const int n = static_cast<int>(regions_.size());
   std::vector<int> root(n);
   std::iota(root.begin(), root.end(), 0);
@@ -36,8 +22,8 @@ std::vector<std::vector<int>> Builder::joined_regions(Fidelity fidelity, std::ve
     while (root[r] != r) r = root[r] = root[root[r]];
     return r;
   };
-  for (size_t i = 0; i + 1 < shared.size(); i += 2) {
-    const int a = find_root(static_cast<int>(shared[i])), b = find_root(static_cast<int>(shared[i + 1]));
+  for (const auto& [one, other] : shared) {
+    const int a = find_root(one), b = find_root(other);
     root[std::max(a, b)] = std::min(a, b);
   }
   std::map<int, std::vector<int>> groups;
@@ -79,7 +65,7 @@ int Builder::new_body_of(const std::vector<int>& members) {
 
 /// A set that a joint or spring holds moves as one body, and so do the rigid regions that have nodes of it; not both ends of one, which it
 /// would lock. `rigid`: region of each local node, or -1.  Collective.
-void Builder::join_by_sets(const std::vector<int>& rigid, std::vector<double>& shared) const {
+void Builder::join_by_sets(const std::vector<int>& rigid, Pairs& shared) const {
   const auto n = static_cast<int>(regions_.size());
   if (std::ranges::none_of(regions_, [](const Region& r) { return r.fidelity == Fidelity::rigid; })) return;
   const auto first_of_body = [&] {  // by region
@@ -98,27 +84,27 @@ void Builder::join_by_sets(const std::vector<int>& rigid, std::vector<double>& s
     std::vector<int> bodies;  // that it has nodes of, by their first regions
   };
   std::vector<End> ends;
-  std::vector<double> met;  // an end, a body, by pairs
+  Pairs met;  // an end, a body
   for (const char* section : {"joint", "spring"})
     for (const Entry& e : scene_.entries(section))
       for (const char* key : {"a", "b"}) {
         const std::string& name = e.text(key);
-        const auto end = static_cast<double>(ends.size());
+        const auto end = static_cast<int>(ends.size());
         if (const int region = mesh_->mesh.find_region(name); region >= 0) {
-          if (apart[region] >= 0) met.insert(met.end(), {end, static_cast<double>(apart[region])});
+          if (apart[region] >= 0) met.insert({end, apart[region]});
         } else if (names.contains(name)) {
           for (const std::int64_t i : mesh_->nodes_of(name, e.where(key)))
-            if (rigid[i] >= 0) met.insert(met.end(), {end, static_cast<double>(apart[rigid[i]])});
+            if (rigid[i] >= 0) met.insert({end, apart[rigid[i]]});
         }
         ends.push_back({&e, key, {}});
       }
-  unite(met, comm_);
-  for (size_t i = 0; i + 1 < met.size(); i += 2) ends[static_cast<size_t>(met[i])].bodies.push_back(static_cast<int>(met[i + 1]));
+  agree(met, comm_);
+  for (const auto& [end, body] : met) ends[static_cast<size_t>(end)].bodies.push_back(body);
   std::vector<std::string> told;
   for (const End& end : ends)
     for (size_t k = 1; k < end.bodies.size(); ++k) {
       const int one = end.bodies[0], other = end.bodies[k];
-      shared.insert(shared.end(), {static_cast<double>(one), static_cast<double>(other)});
+      shared.insert({one, other});
       const std::string what = fmt::format("\"{}\" has nodes of the rigid regions \"{}\" and \"{}\", which move as one body",
                                            end.entry->text(end.key), regions_[one].name, regions_[other].name);
       if (comm_.rank == 0 && std::find(told.begin(), told.end(), what) == told.end())
@@ -151,12 +137,11 @@ void Builder::make_rigid_bodies() {
       }
   for (int i = 0; i < n; ++i) ask[mesh_->node_global[i] % comm_.size].push_back(mesh_->node_global[i]);
   std::map<std::int64_t, int> region_of_row;
-  std::vector<double> shared;  // regions that meet at a node, by pairs
+  Pairs shared;  // regions that meet at a node
   for (const auto& list : comm_.exchange(tell))
     for (size_t k = 0; k + 1 < list.size(); k += 2) {
       const auto [it, fresh] = region_of_row.try_emplace(list[k], static_cast<int>(list[k + 1]));
-      if (!fresh && it->second != list[k + 1])
-        shared.insert(shared.end(), {static_cast<double>(it->second), static_cast<double>(list[k + 1])});
+      if (!fresh && it->second != list[k + 1]) shared.insert({it->second, static_cast<int>(list[k + 1])});
     }
   auto questions = comm_.exchange(ask);
   for (auto& list : questions)

@@ -12,6 +12,7 @@
 #include "system/factor_room.hpp"
 #include "system/mortar.hpp"
 #include "system/pair_facet.hpp"
+#include "system/pairs.hpp"
 #include "system/reduced_file.hpp"
 #include "system/solids.hpp"
 #include "system/system.hpp"
@@ -55,12 +56,12 @@ class Builder {
   void read_regions();
   void warn_of_idle_damping(const Entry& e) const;
   void integrate_regions();
-  /// The regions of a fidelity, in groups that hang together by nodes they share; `shared`: pairs of which a rank has seen a node of both,
-  /// one after the other; all ranks' here afterwards.  Collective.
-  std::vector<std::vector<int>> joined_regions(Fidelity fidelity, std::vector<double>& shared) const;
+  /// The regions of a fidelity, in groups that hang together by nodes they share; `shared`: pairs of which a rank has seen a node of both;
+  /// all ranks' here afterwards.  Collective.
+  std::vector<std::vector<int>> joined_regions(Fidelity fidelity, Pairs& shared) const;
   /// One body with the mass of these regions, which it becomes the body of.
   int new_body_of(const std::vector<int>& members);
-  void join_by_sets(const std::vector<int>& rigid, std::vector<double>& shared) const;
+  void join_by_sets(const std::vector<int>& rigid, Pairs& shared) const;
   void make_rigid_bodies();
   Material material_of(const Region& r) const;
   void make_batches();
@@ -144,8 +145,8 @@ class Builder {
   void make_blocks();
   /// The nodes, and all others of the blocks that some of them are in.  Collective.
   std::vector<int> whole_blocks(std::vector<int> nodes) const;
-  /// Regions that have nodes of one block, by pairs behind `shared`; `region`: of each local node, or -1.  Collective.
-  void join_by_blocks(const std::vector<int>& region, std::vector<double>& shared) const;
+  /// Regions that have nodes of one block, to `shared`; `region`: of each local node, or -1.  Collective.
+  void join_by_blocks(const std::vector<int>& region, Pairs& shared) const;
   void hold_blocks(const std::vector<int>& body_of);
   // build_joints.cpp
   void add_joints();
