@@ -2,6 +2,7 @@
 #include "post/scene/scene_items.hpp"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -28,19 +29,19 @@ struct Symbol {
   Glyph glyph;
 };
 constexpr Symbol symbols[] = {
-    {"joint", "fixed", Glyph::block},         {"joint", "spherical", Glyph::ball},    {"joint", "constant-velocity", Glyph::ball},
-    {"joint", "point-on-curve", Glyph::ball}, {"joint", "weighted-sum", Glyph::link}, {"joint", "in-plane", Glyph::ball},
-    {"joint", "distance", Glyph::link},       {"joint", "prismatic", Glyph::slider},  {"joint", "cylindrical", Glyph::slider},
-    {"joint", "screw", Glyph::slider},        {"joint", "in-line", Glyph::slider},    {"joint", "planar", Glyph::slider},
-    {"joint", "revolute", Glyph::hinge},      {"joint", "universal", Glyph::hinge},   {"joint", "gear", Glyph::hinge},
-    {"joint", "rack", Glyph::hinge},          {"joint", "rolling", Glyph::hinge},     {"joint", "knife-edge", Glyph::hinge},
-    {"spring", "axial", Glyph::coil},         {"spring", "curve", Glyph::coil},       {"spring", "stop", Glyph::coil},
-    {"spring", "torsion", Glyph::spiral},     {"spring", "support", Glyph::ground},   {"spring", "bushing", Glyph::bushing},
-    {"stop", "angle", Glyph::stop},           {"stop", "slide", Glyph::stop},         {"motor", "rotary", Glyph::turn},
-    {"motor", "linear", Glyph::arrow},        {"friction", "", Glyph::friction},      {"load", "force", Glyph::arrow},
-    {"load", "acceleration", Glyph::arrow},   {"load", "centrifugal", Glyph::arrow},  {"load", "traction", Glyph::arrow},
-    {"load", "pressure", Glyph::arrow},       {"load", "torque", Glyph::turn},        {"motion", "fixed", Glyph::clamp},
-    {"motion", "translation", Glyph::arrow},  {"motion", "rotation", Glyph::turn}};
+    {"joint", "fixed", Glyph::block},         {"joint", "spherical", Glyph::ball},     {"joint", "constant-velocity", Glyph::ball},
+    {"joint", "point-on-curve", Glyph::ball}, {"joint", "weighted-sum", Glyph::link},  {"joint", "in-plane", Glyph::ball},
+    {"joint", "distance", Glyph::link},       {"joint", "prismatic", Glyph::slider},   {"joint", "cylindrical", Glyph::slider},
+    {"joint", "screw", Glyph::slider},        {"joint", "in-line", Glyph::slider},     {"joint", "planar", Glyph::slider},
+    {"joint", "revolute", Glyph::hinge},      {"joint", "universal", Glyph::hinge},    {"joint", "gear", Glyph::hinge},
+    {"joint", "rack", Glyph::hinge},          {"joint", "rolling", Glyph::hinge},      {"joint", "knife-edge", Glyph::hinge},
+    {"spring", "axial", Glyph::coil},         {"spring", "curve", Glyph::coil},        {"spring", "stop", Glyph::coil},
+    {"spring", "torsion", Glyph::spiral},     {"spring", "support", Glyph::ground},    {"spring", "bushing", Glyph::bushing},
+    {"stop", "angle", Glyph::stop},           {"stop", "slide", Glyph::stop},          {"motor", "rotary", Glyph::turn},
+    {"motor", "linear", Glyph::arrow},        {"friction", "", Glyph::friction},       {"load", "force", Glyph::arrow},
+    {"load", "acceleration", Glyph::arrow},   {"load", "centrifugal", Glyph::arrow},   {"load", "traction", Glyph::arrow},
+    {"load", "line", Glyph::arrow},           {"load", "pressure", Glyph::arrow},      {"load", "torque", Glyph::turn},
+    {"motion", "fixed", Glyph::clamp},        {"motion", "translation", Glyph::arrow}, {"motion", "rotation", Glyph::turn}};
 
 class Collector {
  public:
@@ -187,6 +188,15 @@ class Collector {
     if (glyph == Glyph::turn) {
       SceneItem& item = add(glyph, e, e.kind, load_colour);
       item.at = centre(e, "on"), item.along = e.vector3("torque");
+      return;
+    }
+    if (e.kind == "line") {  // in the middle of each beam
+      for (const Entry& beam : scene_.entries("beam")) {
+        if (fnmatch(e.text("on").c_str(), beam.name.c_str(), 0) != 0) continue;
+        const std::vector<Vec3> at = beam_line(beam).at;
+        SceneItem& item = add(glyph, e, "force per length", load_colour);
+        item.at = at[at.size() / 2], item.along = e.vector3("force_per_length");
+      }
       return;
     }
     SceneItem& item = add(glyph, e, e.kind, load_colour);

@@ -38,6 +38,10 @@ std::string axle(const std::string& kind) {
   return "[[joint]]\nkind = \"" + kind + "\"\nname = \"axle\"\nb = \"wheel\"\nat = [0, 0, 2]\naxis = [0, 0, 1]\n";
 }
 
+const std::string whip =
+    "[section.s]\nkind = \"matrix\"\nstiffness = [1, 1, 1]\nbending = [1, 1, 1]\nline_mass = 1\ninertia = [1, 1]\n"
+    "[beam.whip]\npoints = [[5, 0, 0], [6, 0, 0]]\ncells = [1]\nsection = \"s\"\n";
+
 const std::set<std::string_view> driving{"angle", "spin", "displacement", "velocity"};
 
 /// The entry of a kind with what it must have; of the optional keys `also` alone.
@@ -59,7 +63,11 @@ std::string entry(const KindSchema& kind, std::string_view history_key, std::str
     else if (p.key == "joint")
       out << "\"axle\"\n";
     else if (p.type == Type::text)
-      out << (facets ? "\"xmax\"\n" : cells ? "\"block\"\n" : p.key == "b" ? "\"other\"\n" : "\"wheel\"\n");
+      out << (kind.kind == "line" ? "\"whip\"\n"
+              : facets            ? "\"xmax\"\n"
+              : cells             ? "\"block\"\n"
+              : p.key == "b"      ? "\"other\"\n"
+                                  : "\"wheel\"\n");
     else if (p.type == Type::vector3)
       out << "[0, 0, 1]\n";
     else if (p.type == Type::numbers)
@@ -101,7 +109,8 @@ TEST_F(HistoryEvents, FollowEveryHistoryOfTheSchema) {
         if (kind.section == "joint" && driving.contains(p.key)) ways.push_back(p.key);
       if (ways.empty()) ways.push_back("");
       for (const std::string_view way : ways) {
-        const std::string drawn = surroundings + (kind.section == "motor" ? axle(kind.kind == "rotary" ? "revolute" : "prismatic") : "") +
+        const std::string drawn = surroundings + (kind.kind == "line" ? whip : "") +
+                                  (kind.section == "motor" ? axle(kind.kind == "rotary" ? "revolute" : "prismatic") : "") +
                                   entry(kind, key.key, way);
         SCOPED_TRACE(drawn);
         EXPECT_TRUE(of(drawn).at(odd, true)) << kind.section << " " << kind.kind << " " << key.key << " " << way;
