@@ -61,7 +61,7 @@ void Builder::add_contributions() {
   s.add<Contacts>(s, is_static());
   s.add<TiedSurfaces>(s);
   s.add<Loads>(s);
-  s.add<Motions>(s, beams, joints);
+  s.add<Motions>(s, beams, [&joints](const Moment& at, int j) { return joints.held_points(at, j); });
   s.add<Stations>(s);
   s.add<JointCoordinates>();
   s.add<RegionMeasures>(s);

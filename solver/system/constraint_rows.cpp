@@ -138,6 +138,19 @@ std::vector<Output> Joints::outputs() const {
 }
 
 /// Reactions: force and moment on b at the joint point, in the joint frame carried by a, or in the axes asked for.
+std::vector<std::array<Vec3, 2>> Joints::held_points(const Moment& at, int j) const {
+  std::vector<std::array<Vec3, 2>> out;
+  const Joint& c = list[static_cast<size_t>(j)];
+  const Config& q = *at.s.left;
+  const int body = c.end[1].body;
+  for (size_t k = 0; k < c.measures.size(); ++k) {
+    const Term& term = c.measures[k].terms.front();
+    const Vec3& arm = c.entities[static_cast<size_t>(term.j)].r;
+    out.push_back({q.c[body] + q.R[body] * arm, -at.lambda[static_cast<size_t>(row(static_cast<size_t>(j))) + k] * term.unit});
+  }
+  return out;
+}
+
 void Joints::observe(const Sight& at) {
   if (!at.step) return;
   const Moment& m = *at.step;

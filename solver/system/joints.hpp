@@ -47,6 +47,8 @@ class Joints final : public Contribution, public Equations, public Constraining,
   std::vector<Output> outputs() const override;
   void observe(const Sight& at) override;
   void tie(Ties& ties) const override;
+  /// Of a joint whose rows are single components of points of b that ground holds: the points, and the forces on them.
+  std::vector<std::array<Vec3, 2>> held_points(const Moment& at, int joint) const;
 
  private:
   const Points& points_;

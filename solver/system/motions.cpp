@@ -10,7 +10,6 @@
 
 #include "system/beams.hpp"
 #include "system/collocation.hpp"
-#include "system/joints.hpp"
 
 namespace hilo {
 
@@ -122,17 +121,11 @@ Vec6 Motions::reaction(const Motion& m, const Moment& at) const {
     r.tail<3>() += (q.x[n] - mean).cross(force);
   }
   points_.comm->sum(std::span<double>(r.data(), 6));
-  for (const int j : m.joints) {
-    const Joint& joint = joints_[static_cast<size_t>(j)];
-    for (size_t k = 0; k < joint.measures.size(); ++k) {
-      const Term& term = joint.measures[k].terms.front();
-      const Entity& point = joint.entities[static_cast<size_t>(term.j)];
-      const int body = joint.end[1].body;
-      const Vec3 force = -at.lambda[static_cast<size_t>(joints_.row(static_cast<size_t>(j))) + k] * term.unit;
+  for (const int j : m.joints)
+    for (const auto& [point, force] : held_(at, j)) {
       r.head<3>() += force;
-      r.tail<3>() += (q.c[body] + q.R[body] * point.r - mean).cross(force);
+      r.tail<3>() += (point - mean).cross(force);
     }
-  }
   return r;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is held or moves by a law: bodies, and single components of nodes.
 #pragma once
+#include <functional>
+
 #include "physics/motion_law.hpp"
 #include "system/contribution.hpp"
 
@@ -21,11 +23,13 @@ struct Motion {
 };
 
 class Beams;
-class Joints;
+
+/// Where joints hold components of points, and the forces they hold them with; by number of the joint.
+using HeldPoints = std::function<std::vector<std::array<Vec3, 2>>(const Moment&, int)>;
 
 class Motions final : public Contribution, public Equations, public Prescribing, public Jumping, public Stateful, public Observer {
  public:
-  Motions(const Points& points, const Beams& beams, const Joints& joints) : points_(points), beams_(beams), joints_(joints) {}
+  Motions(const Points& points, const Beams& beams, HeldPoints held) : points_(points), beams_(beams), held_(std::move(held)) {}
   std::vector<Motion> list;
 
   Traits traits() const override;
@@ -48,8 +52,8 @@ class Motions final : public Contribution, public Equations, public Prescribing,
  private:
   Vec6 reaction(const Motion& m, const Moment& at) const;
   const Points& points_;
-  const Beams& beams_;    // whose inertia is not in that of a body
-  const Joints& joints_;  // that hold nodes of blocks
+  const Beams& beams_;     // whose inertia is not in that of a body
+  const HeldPoints held_;  // nodes of blocks
 };
 
 }  // namespace hilo

@@ -67,8 +67,8 @@ class ImportFolds : public test::Import {
     place.write("deck.inp", deck);
     imported("deck.inp", "--thicken --scene-out scene.toml");
     place.write("run.toml", test::text_of(place / "scene.toml") + "\n[[probe]]\nname = \"TIP\"\non = \"TIP\"\n" + more);
-    const auto ran =
-        place.run(fmt::format("{}hilo-solve --quiet run.toml -o run.h5", ranks > 1 ? fmt::format("mpirun -n {} ", ranks) : ""));
+    const auto ran = place.run(
+        fmt::format("{}hilo-solve --quiet run.toml -o run.h5", ranks > 1 ? test::for_ranks + fmt::format(" mpirun -n {} ", ranks) : ""));
     EXPECT_EQ(ran.exit, 0) << ran.err;
     if (ran.exit != 0) return Vec3::Zero();
     const Store run = Store::open(place / "run.h5");
@@ -115,7 +115,7 @@ TEST_F(ImportFolds, AFoldIsAsStiffInALinearRegion) {
   const auto held = first_modes("out.h5", false), free = first_modes("out.h5", true);
   ASSERT_EQ(place.run("hilo-tag out.h5 --rest linear -o tags.h5").exit, 0);
   for (const int ranks : {1, 2}) {
-    const auto ran = place.run(fmt::format("mpirun -n {} hilo-solve --quiet run.toml tags.h5 -o run.h5", ranks));
+    const auto ran = place.run(test::for_ranks + fmt::format(" mpirun -n {} hilo-solve --quiet run.toml tags.h5 -o run.h5", ranks));
     ASSERT_EQ(ran.exit, 0) << ran.err;
     const auto x = Store::open(place / "run.h5").read<double>("/history/probe/TIP");
     const size_t n = x.size() - 9;
@@ -281,7 +281,7 @@ TEST_F(ImportFolds, ComponentsOfALineAreHeldOnceAndTheirReactionIsWhole) {
                                "[[load]]\nkind = \"traction\"\nname = \"pull\"\non = \"back\"\ntraction = [0, 1000, 0]\n"
                                "[[probe]]\nname = \"back\"\non = \"back\"\n[time]\nanalysis = \"static\"\n");
   for (const int ranks : {1, 3}) {
-    const auto ran = place.run(fmt::format("mpirun -n {} hilo-solve --quiet pull.toml out.h5 -o run.h5", ranks));
+    const auto ran = place.run(test::for_ranks + fmt::format(" mpirun -n {} hilo-solve --quiet pull.toml out.h5 -o run.h5", ranks));
     ASSERT_EQ(ran.exit, 0) << ran.err;
     const Store run = Store::open(place / "run.h5");
     const auto x = run.read<double>("/history/probe/back"), f = run.read<double>("/history/motion/front");
@@ -313,7 +313,7 @@ TEST_F(ImportFolds, AThrownTeeKeepsItsEnergyAndMomenta) {
   };
   end("hilo-solve --quiet throw.toml out.h5");
   const Vec3 one = end("hilo-solve --quiet throw.toml out.h5 --set time.end=0.03");
-  EXPECT_LT((end("mpirun -n 2 hilo-solve --quiet throw.toml out.h5 --set time.end=0.03") - one).norm(), 1e-8);
+  EXPECT_LT((end(test::for_ranks + " mpirun -n 2 hilo-solve --quiet throw.toml out.h5 --set time.end=0.03") - one).norm(), 1e-8);
 }
 
 // One of three linear regions that are one body moves at the start: it took the whole body along.

@@ -236,7 +236,7 @@ TEST(ContactModes, APileDrawnInTouchRuns) {
     B.low = Vec3(0.013, 0, 0.1 - off), B.high = Vec3(0.213, 0.2, 0.2);
     C.low = Vec3(0.026, 0, 0.1 + 0.2 - 0.1 + off), C.high = Vec3(0.226, 0.2, 0.3);
     Place c;
-    c.use(together(together(block_mesh(A), block_mesh(B)), block_mesh(C)), {Fidelity::nonlinear, Fidelity::nonlinear, Fidelity::nonlinear});
+    c.use(together(block_mesh(A), block_mesh(B), block_mesh(C)), {Fidelity::nonlinear, Fidelity::nonlinear, Fidelity::nonlinear});
     const Results r = c.run(
         "gravity = [0, 0, -9.81]\n[material.m]\nE = 1e7\nnu = 0.3\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n"
         "[[motion]]\nkind = \"fixed\"\nname = \"foot\"\non = \"Azmin\"\n[[contact]]\nname = \"c\"\na = \"A\"\nb = \"B\"\nfriction = 0.3\n"
