@@ -316,6 +316,29 @@ TEST_F(ImportFolds, AThrownTeeKeepsItsEnergyAndMomenta) {
   EXPECT_LT((end(test::for_ranks + " mpirun -n 2 hilo-solve --quiet throw.toml out.h5 --set time.end=0.03") - one).norm(), 1e-8);
 }
 
+// A block by its name, on one rank and on two: the force on it is what holds the plates.
+TEST_F(ImportFolds, ABlockHasAName) {
+  place.write("tee.geo", tee);
+  imported("tee.geo", "--thickness 0.05");
+  const std::string scene = rubber +
+                            "[[motion]]\nkind = \"fixed\"\nname = \"side\"\non = \"side\"\n[time]\nanalysis = \"static\"\n"
+                            "[[load]]\nkind = \"force\"\nname = \"f\"\nforce = [0, 0, 0.01]\non = ";
+  place.write("f.toml", scene + "\"block_2\"\n[[probe]]\nname = \"p\"\non = \"block_2\"\n");
+  for (const char* launcher : {"", "mpirun -n 2 "}) {
+    const auto ran = place.run("export " + test::for_ranks + "\n" + launcher + "hilo-solve --quiet f.toml out.h5 -o run.h5");
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const Store run = Store::open(place / "run.h5");
+    const auto x = run.read<double>("/history/probe/p"), f = run.read<double>("/history/motion/side");
+    EXPECT_LT((Vec3(x[0], x[1], x[2]) - Vec3(0, 1, 0)).norm(), 1e-12) << "node 2 of the mesh";
+    EXPECT_GT(x[x.size() - 7], 0);
+    EXPECT_NEAR(f[f.size() - 4], -0.01, 1e-8);
+  }
+  place.write("w.toml", scene + "\"block_99\"\n");
+  const auto wrong = place.run("hilo-solve --quiet w.toml out.h5 -o w.h5");
+  EXPECT_EQ(wrong.exit, 2);
+  EXPECT_NE(wrong.err.find("no region, set or body \"block_99\""), std::string::npos) << wrong.err;
+}
+
 // One of three linear regions that are one body moves at the start: it took the whole body along.
 TEST_F(ImportFolds, APartOfALinearBodyHasAVelocityOfItsOwn) {
   place.write("tee.geo", tee);
