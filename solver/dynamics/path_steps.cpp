@@ -261,8 +261,8 @@ class PathSteps final : public Steps {
   }
   bool changes(const Point& to) const { return std::abs(to.on.below - at_.below) > 0 && !at_.after_turn && run_.report.steps > 0; }
 
-  /// Where stability changes without a limit, the state behind that, which is `whole` ahead in a plane across, is moved up to it; where none
-  /// is found between, looked for behind that.
+  /// Where stability changes without a limit, the state behind that, which is `whole` ahead in a plane across, is moved up to it; where
+  /// none is found between, looked for behind that.
   void approach(const Way& way, double whole, const Way& across, Point& to) {
     double near = 0, far = whole;
     for (int k = 0; k < 8; ++k) {

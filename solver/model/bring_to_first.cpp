@@ -22,7 +22,9 @@ void bring_to_first(LocalMesh& local, const std::vector<char>& marked, const Com
   std::vector<Sent> nodes;
   std::vector<Member> members;
   for (size_t i = 0; i < marked.size(); ++i)
-    if (marked[i]) nodes.push_back({local.node_global[i], mesh.node_id[i], mesh.block.empty() ? -1 : mesh.block[i], {mesh.X[i][0], mesh.X[i][1], mesh.X[i][2]}});
+    if (marked[i])
+      nodes.push_back(
+          {local.node_global[i], mesh.node_id[i], mesh.block.empty() ? -1 : mesh.block[i], {mesh.X[i][0], mesh.X[i][1], mesh.X[i][2]}});
   for (size_t k = 0; k < names.size() && !nodes.empty(); ++k)
     for (const std::int64_t i : local.nodes_of(names[k], ""))
       if (marked[i]) members.push_back({local.node_global[i], static_cast<std::int64_t>(k)});

@@ -302,7 +302,8 @@ TEST_F(ImportInpRows, ParametersStandForNumbers) {
   std::map<std::int64_t, Vec3> force;
   const Scene scene = Scene::load(place / "s.toml");
   for (const Entry& load : scene.entries("load"))
-    for (const auto a : m.nodes_of(load.text("on"), "")) force.try_emplace(m.node_id[a], Vec3::Zero()).first->second += load.vector3("force");
+    for (const auto a : m.nodes_of(load.text("on"), ""))
+      force.try_emplace(m.node_id[a], Vec3::Zero()).first->second += load.vector3("force");
   EXPECT_NEAR(force.at(9).x(), -449.5, 1e-10);
   EXPECT_NEAR(force.at(10).y(), .5, 1e-15);
   for (const auto& [line, message] :
