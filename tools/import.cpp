@@ -22,7 +22,7 @@ namespace {
 
 struct Request {
   std::string input, output, scene_out;
-  std::vector<std::string> defines;
+  std::vector<std::string> defines, thickness;
   std::string subcase;
   bool json = false;
   ImportOptions options;
@@ -32,19 +32,21 @@ struct Request {
   throw Error("", what, hint, Exit::usage);
 }
 
-/// NAME=VALUE of --define
-std::pair<std::string, double> definition(const std::string& text) {
-  const auto eq = text.find('=');
+/// NAME=VALUE of an option; where a value alone is one, the name is "".
+std::pair<std::string, double> definition(const std::string& option, const std::string& text, bool needs_name) {
+  const auto eq = text.rfind('=');
+  const std::string number = eq == std::string::npos ? needs_name ? "" : text : text.substr(eq + 1);
   char* end = nullptr;
-  const double value = eq == std::string::npos ? 0 : std::strtod(text.c_str() + eq + 1, &end);
-  if (eq == std::string::npos || eq == 0 || end == text.c_str() + eq + 1 || *end)
-    usage(fmt::format("--define {}: expected NAME=NUMBER", text));
-  return {text.substr(0, eq), value};
+  const double value = std::strtod(number.c_str(), &end);
+  if (eq == 0 || number.empty() || *end) usage(fmt::format("{} {}: expected {}", option, text, needs_name ? "NAME=NUMBER" : "T or NAME=T"));
+  return {eq == std::string::npos ? "" : text.substr(0, eq), value};
 }
 
 void check(Request& r) {
   auto& o = r.options;
-  for (const auto& d : r.defines) o.define.push_back(definition(d));
+  for (const auto& d : r.defines) o.define.push_back(definition("--define", d, true));
+  for (const auto& t : r.thickness)
+    if (!o.thickness.insert(definition("--thickness", t, false)).second) usage(fmt::format("--thickness {}: stated twice", t));
   if (r.subcase == "all") {
     if (o.thicken) usage("--subcase all beside --thicken: the pairs of nodes depend on the supports", "--subcase N, one after the other");
     o.every_subcase = true;
@@ -58,8 +60,9 @@ void check(Request& r) {
   if (o.order != 1 && o.order != 2) usage("--order is 1 or 2");
   if (o.merge && *o.merge <= 0) usage("--merge-nodes must be positive");
   if (o.size && *o.size <= 0) usage("--size must be positive");
-  if (o.thickness && !(*o.thickness > 0)) usage("--thickness must be positive");
-  if (o.thickness && o.order == 2) usage("--thickness makes linear shells", "leave --order away");
+  for (const auto& [name, t] : o.thickness)
+    if (!(t > 0)) usage("--thickness must be positive");
+  if (!o.thickness.empty() && o.order == 2) usage("--thickness makes linear shells", "leave --order away");
   if (o.per_turn && !(*o.per_turn >= 0 && *o.per_turn <= 1000)) usage("--per-turn is from 0 to 1000");
   try {
     to_si("m", o.units);
@@ -139,9 +142,11 @@ int main(int argc, char** argv) {
     app->add_option("--order", o.order, "2: quadratic cells (linear ones get nodes in the middle of their edges)")->type_name("N");
     app->add_option("--size", o.size, "cell edge when CAD is meshed, at most this when a .geo script is; in the unit of the file")
         ->type_name("H");
-    app->add_option("--thickness", o.thickness,
-                    "surfaces become solid-shells of this thickness about them, in the unit of the file (geo, msh)")
-        ->type_name("T");
+    app->add_option("--thickness", r.thickness,
+                    "surfaces become solid-shells of this thickness about them, in the unit of the file (geo, msh); NAME=T: one group of "
+                    "them, beside volumes too, may be repeated")
+        ->type_name("[NAME=]T")
+        ->allow_extra_args(false);
     app->add_option(
            "--per-turn", o.per_turn,
            "cells around a full turn of a curved face when CAD is meshed, none finer than an eighth of the size at 12; 0: no finer than "

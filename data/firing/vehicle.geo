@@ -2,6 +2,8 @@
 //
 //   gmsh -3 -setnumber SIZE 1 vehicle.geo
 //
+//   gmsh -3 -setnumber HULL 1 vehicle.geo       (the hull as plates: mid-surfaces hull_floor ... hull_side, see hull.toml)
+//
 // Metres. x forward, y left, z up; the ground is z = 0 and the wheels stand on it. Region masses: budget.csv.
 //  - Parts joined by a joint never touch: a gap of some millimetres, so that they share no node.
 //  - Parts that are bonded share their nodes.
@@ -10,6 +12,8 @@
 
 // ---------------------------------------------------------------- size of the mesh
 DefineConstant[ SIZE = {0, Name "SIZE"} ];                // 0 small, 1 medium, 2 a million hexahedra in the gun
+
+DefineConstant[ HULL = {0, Name "HULL"} ];                // 0 a solid, 1 the mid-surfaces of its plates
 
 s = SIZE;
 DefineConstant[                                 // cells along the edges of the blocks; the tetrahedra
@@ -136,29 +140,32 @@ Return
 
 // ---------------------------------------------------------------- hull and what is bonded to it
 z_floor = 0.51;
-pX() = {-3.0, -2.8, 2.3, 3.0, 2.6, 2.0, -3.0};
-pZ() = {0.65, 0.45, 0.45, 0.85, 1.15, z_roof, z_roof};
-y0 = -y_hull; dy = 2*y_hull;
-Call Prism;
-hull = v;
-pX() = {-2.9, -2.75, 2.25, 2.85, 2.5, 1.95, -2.9};
-pZ() = {0.69, z_floor, z_floor, 0.87, 1.10, 1.34, 1.34};
-y0 = -(y_hull - t_side); dy = -2*y0;
-Call Prism;
-cut() = {v};
 r_race = 0.64; R_race = 0.78;                             // of the turret ring
-v = newv; Cylinder(v) = {x_ring, 0, 1.30, 0, 0, 0.2, r_race}; cut() += v;
-For m In {0:1}
-  side = 1 - 2*m;
-  For j In {0:3}
-    xc = x_wheel(j) + dx_arm; zc = r_wheel + dz_arm; r = r_pivot + g_arm;
-    y0 = side*(y_hull - t_side - 0.02); dy = side*(t_side + 0.04);
-    Call Rod;
-    cut() += v;
+hull = {};
+If (!HULL)
+  pX() = {-3.0, -2.8, 2.3, 3.0, 2.6, 2.0, -3.0};
+  pZ() = {0.65, 0.45, 0.45, 0.85, 1.15, z_roof, z_roof};
+  y0 = -y_hull; dy = 2*y_hull;
+  Call Prism;
+  hull = v;
+  pX() = {-2.9, -2.75, 2.25, 2.85, 2.5, 1.95, -2.9};
+  pZ() = {0.69, z_floor, z_floor, 0.87, 1.10, 1.34, 1.34};
+  y0 = -(y_hull - t_side); dy = -2*y0;
+  Call Prism;
+  cut() = {v};
+  v = newv; Cylinder(v) = {x_ring, 0, 1.30, 0, 0, 0.2, r_race}; cut() += v;
+  For m In {0:1}
+    side = 1 - 2*m;
+    For j In {0:3}
+      xc = x_wheel(j) + dx_arm; zc = r_wheel + dz_arm; r = r_pivot + g_arm;
+      y0 = side*(y_hull - t_side - 0.02); dy = side*(t_side + 0.04);
+      Call Rod;
+      cut() += v;
+    EndFor
   EndFor
-EndFor
-v = newv; BooleanDifference(v) = { Volume{hull}; Delete; }{ Volume{cut()}; Delete; };
-hull = v;
+  v = newv; BooleanDifference(v) = { Volume{hull}; Delete; }{ Volume{cut()}; Delete; };
+  hull = v;
+EndIf
 
 // crew capsule: a closed box on the floor with three seats (each with its occupant)
 v1 = newv; Box(v1) = {0.40, -0.70, z_floor, 1.50, 1.40, 0.79};
@@ -176,8 +183,13 @@ sponson_r = newv; Box(sponson_r) = {-2.80, -y_hull - 0.35, 1.05, 4.80, 0.35, 0.3
 v1 = newv; Cylinder(v1) = {x_ring, 0, z_roof, 0, 0, h_ring, R_race};
 v2 = newv; Cylinder(v2) = {x_ring, 0, z_roof, 0, 0, h_ring, r_race};
 race_l = newv; BooleanDifference(race_l) = { Volume{v1}; Delete; }{ Volume{v2}; Delete; };
-hulls() = {hull, capsule, seat_d, seat_c, seat_g, engine, gears, magazine, sponson_l, sponson_r, race_l};
+hulls() = {hull(), capsule, seat_d, seat_c, seat_g, engine, gears, magazine, sponson_l, sponson_r, race_l};
 BooleanFragments{ Volume{hulls()}; Delete; }{}            // bonded parts share faces; volume numbers stay
+
+plates() = {}; bored() = {};
+If (HULL)
+  Include "hull.geo";
+EndIf
 
 // ---------------------------------------------------------------- turret and what is bonded to it
 z_tur = z_roof + 2*h_ring + g_ring; z_base = z_tur + 0.06; z_top = 2.22;
@@ -216,7 +228,9 @@ sight = newv; Box(sight) = {-0.30, 0.40, z_top + 0.06, 0.30, 0.25, 0.22};
 turrets() = {turret, cheek(), mantlet, race_u, ammo_l, ammo_r, loader, sight};
 BooleanFragments{ Volume{turrets()}; Delete; }{}
 
-Physical Volume("hull") = hull;
+If (!HULL)
+  Physical Volume("hull") = hull;
+EndIf
 Physical Volume("crew_capsule") = capsule;
 Physical Volume("driver_seat") = seat_d;
 Physical Volume("commander_seat") = seat_c;
@@ -268,8 +282,13 @@ For m In {0:1}
   For j In {0:3}
     xw = x_wheel(j); xp = xw + dx_arm; q = r_pivot + g_arm + d;
     y0 = m ? -y_hull : y_hull - t_side;
-    f() = Surface In BoundingBox {xp - q, y0 - d, zp - q, xp + q, y0 + t_side + d, zp + q};
-    Physical Surface(Sprintf(StrCat("pivot_", name, "%g_hull"), j + 1)) = f(); pins() += f();
+    If (HULL)
+      f() = Curve In BoundingBox {xp - q, y0 - d, zp - q, xp + q, y0 + t_side + d, zp + q};
+      Physical Curve(Sprintf(StrCat("pivot_", name, "%g_hull"), j + 1)) = f(); bored() += f();
+    Else
+      f() = Surface In BoundingBox {xp - q, y0 - d, zp - q, xp + q, y0 + t_side + d, zp + q};
+      Physical Surface(Sprintf(StrCat("pivot_", name, "%g_hull"), j + 1)) = f(); pins() += f();
+    EndIf
     pX() = {}; pZ() = {}; y0 = side*y_arm; dy = side*t_arm;
     For i In {0:3}
       t = phi + (2*i - 3)*Pi/6;
@@ -303,6 +322,12 @@ MeshSize { PointsOf{ Volume{hulls(), turrets()}; } } = 0.45*fine;
 MeshSize { PointsOf{ Volume{capsule, seat_d, seat_c, seat_g}; } } = 0.30*fine;
 MeshSize { PointsOf{ Volume{cheek(), mantlet}; } } = 0.20*fine;
 MeshSize { PointsOf{ Volume{arms()}; } } = 0.16*fine;
+If (HULL)
+  MeshSize { PointsOf{ Surface{plates()}; } } = 0.30*fine;
+  Transfinite Curve { bored() } = n_circle/4 + 1;
+  Recombine Surface { plates() };
+  Mesh.RecombinationAlgorithm = 0;                        // the default turns some triangles at the bores over
+EndIf
 For i In {0:#pins()-1:4}
   f() = pins({i:i+3}); c() = Abs(CombinedBoundary { Surface{f()}; }); e() = Abs(Boundary { Surface{f()}; }); e() -= c();
   Transfinite Curve { c() } = n_circle/4 + 1;

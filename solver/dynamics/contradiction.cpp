@@ -11,7 +11,7 @@ namespace {
 
 constexpr int samples = 1000;  // instants of a run that are looked at
 
-std::string place_of(const Scene& scene, const Constraint& c) {
+std::string line_of(const Scene& scene, const Constraint& c) {
   for (const Entry& e : scene.entries(c.section()))
     if (e.name == c.name()) return e.place.text();
   return scene.path;
@@ -28,7 +28,7 @@ void refuse_contradictions(const Scene& scene, const System& system, const Redun
     for (int k = 1; k <= samples; ++k) {
       const double t = end * k / samples;
       if (std::abs(law.at(t).value - start) <= open) continue;
-      throw Error(place_of(scene, c),
+      throw Error(line_of(scene, c),
                   fmt::format("{} is to be driven, but {} at t = {:.3g} s", c.label(),
                               by.empty() ? "the joint does not leave this motion free" : fmt::format("joint \"{}\" holds it still", by), t),
                   "remove the drive, or what holds the same motion");
@@ -47,7 +47,7 @@ void refuse_contradictions(const Scene& scene, const System& system, const Redun
       const double worst = std::abs(*std::max_element(g, g + c->n_rows(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
       if (worst <= open) continue;
       throw Error(
-          place_of(scene, *c),
+          line_of(scene, *c),
           fmt::format("{} holds what motion \"{}\" moves: it would open by {:.3g} at t = {:.3g} s", c->label(), c->moved_by(), worst, t),
           fmt::format("remove the {} or the motion", c->section()));
     }

@@ -47,6 +47,54 @@ TEST_F(ImportShell, ASurfaceOfGmshHasItsThickness) {
   EXPECT_NEAR(test::volume(imported("arch.geo", "--thickness 0.1 --units mm-t-s --scale 1000")), test::volume(m), 1e-9);
 }
 
+// A floor of two plates and a wall, each of its own thickness, a solid beside them, and a group of surfaces on one of them that is a set.
+TEST_F(ImportShell, GroupsOfSurfacesHaveTheirOwnThicknessBesideSolids) {
+  place.write("room.geo",
+              "SetFactory(\"OpenCASCADE\");\nRectangle(1) = {0, 0, 0, 1, 1};\nRectangle(2) = {1, 0, 0, 1, 1};\n"
+              "Rectangle(3) = {0.25, 0.25, 0, 0.5, 0.5};\n"
+              "Point(101) = {2, 0, 1}; Point(102) = {2, 1, 1};\n"
+              "p() = BooleanFragments{ Surface{1, 2}; Delete; }{ Surface{3}; Delete; };\n"
+              "c() = Curve In BoundingBox {1.99, -0.01, -0.01, 2.01, 1.01, 0.01};\nw() = Extrude {0, 0, 1} { Curve{c()}; };\n"
+              "Box(9) = {0.25, 0.25, 0.1, 0.5, 0.5, 0.5};\nMesh.MeshSizeMax = 0.2;\nd = 0.01;\n"
+              "thin() = Surface In BoundingBox {-d, -d, -d, 1 + d, 1 + d, d};\n"
+              "Physical Surface(\"thin\") = thin();\nthick() = Surface In BoundingBox {1 - d, -d, -d, 2 + d, 1 + d, d};\n"
+              "Physical Surface(\"thick\") = thick();\nPhysical Surface(\"wall\") = {w(1)};\n"
+              "foot() = Surface In BoundingBox {0.25 - d, 0.25 - d, -d, 0.75 + d, 0.75 + d, d};\n"
+              "Physical Surface(\"foot\") = foot();\nPhysical Volume(\"box\") = {9};\n"
+              "under() = Surface In BoundingBox {0, 0, 0.1 - d, 1, 1, 0.1 + d};\nPhysical Surface(\"under\") = under();\n"
+              "Recombine Surface { thin(), thick(), w(1) };\nMesh.RecombinationAlgorithm = 0;\n");
+  const std::string named = "--thickness thin=0.02 --thickness thick=0.04 --thickness wall=0.05";
+  const Mesh m = imported("room.geo", named);
+  EXPECT_EQ(m.region_name, (std::vector<std::string>{"box", "thin", "thick", "wall"}));
+  std::map<std::string, double> volume;
+  for (std::int64_t c = 0; c < m.n_cells(); ++c) volume[m.region_name[m.region[c]]] += quality(m, c).volume;
+  EXPECT_NEAR(volume["box"], 0.125, 1e-12);
+  EXPECT_NEAR(volume["thin"], 0.02, 1e-12) << "its middle, to where it meets the other's";
+  EXPECT_NEAR(volume["thick"], 0.04, 1e-12);
+  EXPECT_NEAR(volume["wall"], 0.05, 1e-12);
+  EXPECT_NEAR(test::vector_area(m, m.facet_sets.at("foot")).norm(), 0.25, 1e-12) << "one face of it";
+  EXPECT_NEAR(test::vector_area(m, m.facet_sets.at("under")).z(), -0.25, 1e-12) << "a face of the solid";
+  EXPECT_FALSE(m.block_name.empty()) << "the step of thickness and the fold";
+  refused("room.geo -o a.h5 --thickness 0.1", 1,
+          "--thickness makes shells of surfaces, and room.geo has volumes (name the groups of surfaces: --thickness NAME=T)");
+  refused("room.geo -o a.h5 --thickness wal=0.1", 1, "--thickness wal=0.1: no group of surfaces has this name (did you mean \"wall\"?)");
+  refused("room.geo -o a.h5 --thickness wall=0.1 --thickness wall=0.2", 1, "--thickness wall=0.2: stated twice (see hilo-import --help)");
+  refused("room.geo -o a.h5 --thickness wall=", 1, "--thickness wall=: expected T or NAME=T (see hilo-import --help)");
+  const auto twice = place.run("hilo-import room.geo -o a.h5 --thickness thin=0.1 --thickness foot=0.1");
+  EXPECT_EQ(twice.exit, 1);
+  EXPECT_NE(twice.err.find("is in two groups that become shells, \"foot\" the second (name one of them: --thickness NAME=T)"),
+            std::string::npos)
+      << twice.err;
+  // a mistake of a mesher: an element turned over onto its neighbour
+  place.write("over.inp",
+              "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,.4,0,0\n6,.4,1,0\n*ELEMENT, TYPE=S4, ELSET=P\n1,1,2,3,4\n"
+              "2,2,5,6,3\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,.3\n*SHELL SECTION, ELSET=P, MATERIAL=M\n.01\n");
+  imported("over.inp", "--thicken");
+  EXPECT_NE(err.find("warning: 1 shells lie on a neighbour, edge on edge, as those of a mesher's mistake do: the first is element 2"),
+            std::string::npos)
+      << err;
+}
+
 TEST_F(ImportShell, WhatHasNoClearPairsIsRefused) {
   place.write("arch.geo", arch);
   refused("arch.geo -o a.h5", 2, "arch.geo: no volume to mesh (the geometry holds points, curves or surfaces only)");

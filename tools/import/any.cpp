@@ -91,7 +91,7 @@ Imported read_any(const std::string& path, const ImportOptions& options, const R
       if (!options.define.empty() && ending != ".geo") throw Error("", "--define is for .geo scripts", "", Exit::usage);
       if (options.trust && ending != ".geo") throw Error("", "--trust is for .geo scripts: no other file runs anything", "", Exit::usage);
       const bool deck = f.read == read_inp || f.read == read_bdf;
-      if (options.thickness && !f.geometry && ending != ".msh")
+      if (!options.thickness.empty() && !f.geometry && ending != ".msh")
         throw Error("", fmt::format("--thickness is for surfaces of a geometry or of a .msh, {} is neither", path),
                     deck ? "--thicken makes shells of a deck, with the deck's thickness" : "", Exit::usage);
       if ((options.subcase || options.every_subcase) && !deck)

@@ -208,7 +208,7 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
   }
   if (const auto gone = drop_unused(in); gone && in.n_beams == 0 && m.n_cells() > 0)
     in.notes.push_back(fmt::format("{} nodes belong to no cell: dropped", gone));
-  if (options.thickness || (options.thicken && !in.thin.empty())) thicken(in, file);
+  if (!options.thickness.empty() || (options.thicken && !in.thin.empty())) thicken(in, file);
   if (options.flip || is_mirrored(m))
     in.notes.push_back(fmt::format("{} of {} cells were numbered as in a mirror: turned", flip(m), m.n_cells()));
   if (options.order == 2) raise_order(in);

@@ -30,7 +30,7 @@ struct ImportOptions {
   int order = 1;                                       // 2: quadratic cells
   std::optional<double> merge;                         // distance below which nodes are one        [unit of the file]
   std::optional<double> size;                          // largest edge when a geometry is meshed    [unit of the file]
-  std::optional<double> thickness;                     // surfaces of quadrangles become shells of it     [unit of the file]
+  std::map<std::string, double> thickness;             // surface groups become shells; "": those not named  [unit of the file]
   std::optional<double> per_turn;                      // cells around a full turn of a curved face when CAD is meshed
   std::vector<std::string> regions;                    // element sets that become regions, before what the deck says
   std::string rest;                                    // name of the region of cells in no region ("": "rest")

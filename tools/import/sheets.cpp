@@ -14,6 +14,8 @@ namespace {
 
 /// Normals of neighbouring cells further apart than this make a fold [rad]; half of it is how far one may be from the mean at a node.
 constexpr double most_bend = 40 * M_PI / 180;
+/// Neighbours that enclose less lie on each other [rad].
+constexpr double least_open = 10 * M_PI / 180;
 
 using Edge = std::pair<std::int64_t, std::int64_t>;
 
@@ -47,8 +49,10 @@ class Finding {
     std::iota(root_.begin(), root_.end(), size_t{0});
   }
 
-  void run(std::map<std::int64_t, bool>& turned, std::map<std::int64_t, std::vector<Sheets::Part>>& at) {
+  void run(std::map<std::int64_t, bool>& turned, std::map<std::int64_t, std::vector<Sheets::Part>>& at, std::vector<std::int64_t>& folded) {
     list_edges();
+    for (const auto& [edge, sides] : edges_)
+      if (sides.size() == 2 && cosine(sides) < -std::cos(least_open)) folded.push_back(shells_[sides[1].shell].cell);
     turn_alike();
     for (const auto& [edge, sides] : edges_)
       if (is_smooth(sides) && turned_[sides[0].shell] == (turned_[sides[1].shell] != against(sides))) join(sides[0], sides[1]);
@@ -68,12 +72,15 @@ class Finding {
   /// Whether the two are numbered against each other.
   static bool against(const std::vector<Side>& sides) { return sides[0].forward == sides[1].forward; }
 
+  /// Of the angle between the normals on one side.
+  double cosine(const std::vector<Side>& sides) const {
+    return (against(sides) ? -1 : 1) * shells_[sides[0].shell].normal.dot(shells_[sides[1].shell].normal);
+  }
   bool is_smooth(const std::vector<Side>& sides) const {
     if (sides.size() != 2) return false;
     const Shell &a = shells_[sides[0].shell], &b = shells_[sides[1].shell];
-    const double sign = against(sides) ? -1 : 1;
-    return a.section->thickness == b.section->thickness && a.section->offset == sign * b.section->offset &&
-           sign * a.normal.dot(b.normal) > std::cos(most_bend);
+    return a.section->thickness == b.section->thickness && a.section->offset == (against(sides) ? -1 : 1) * b.section->offset &&
+           cosine(sides) > std::cos(most_bend);
   }
 
   /// Neighbours across smooth edges get their normals on the same side; where a sheet has one side alone, as a Moebius strip, an edge stays
@@ -158,7 +165,7 @@ class Finding {
 
 }  // namespace
 
-Sheets::Sheets(const Imported& in) { Finding(in).run(turned_, at_); }
+Sheets::Sheets(const Imported& in) { Finding(in).run(turned_, at_, folded_); }
 
 const std::vector<Sheets::Part>& Sheets::at(std::int64_t node) const {
   static const std::vector<Part> none;

@@ -31,10 +31,13 @@ class Sheets {
   bool is_turned(std::int64_t cell) const { return turned_.at(cell); }
   /// All nodes, each with its sheets.
   const std::map<std::int64_t, std::vector<Part>>& all() const { return at_; }
+  /// Shells that lie on a neighbour.
+  const std::vector<std::int64_t>& folded() const { return folded_; }
 
  private:
   std::map<std::int64_t, bool> turned_;
   std::map<std::int64_t, std::vector<Part>> at_;
+  std::vector<std::int64_t> folded_;
 };
 
 /// Whether a pair of nodes along n can stand for a support of a shell's node: it holds both nodes or none, so (turn x n)_i is held with

@@ -36,6 +36,13 @@ class Thickening {
     if (!m_.block_name.empty())
       in_.notes.push_back(fmt::format("{} nodes of folds, edges of several shells, steps of thickness, beams and moments are rigid blocks",
                                       m_.block_name.size()));
+    if (const auto& folded = sheets_.folded(); !folded.empty()) {
+      const Vec3 X = m_.X[m_.cell(folded[0])[0]];
+      in_.notes.push_back(
+          fmt::format("warning: {} shells lie on a neighbour, edge on edge, as those of a mesher's mistake do: the first is "
+                      "element {}, at ({:.4g}, {:.4g}, {:.4g})",
+                      folded.size(), m_.cell_id[folded[0]], X[0], X[1], X[2]));
+    }
     if (n_hinges_ > 0) in_.notes.push_back(fmt::format("{} nodes of shells are nodes of solids too, which do not turn: hinges", n_hinges_));
   }
 

@@ -68,7 +68,7 @@ void open(const std::string& path, const std::string& format, const ImportOption
   gmsh::model::getEntities(volumes, 3);
   gmsh::model::getEntities(surfaces, 2);
   gmsh::model::getPhysicalGroups(bars, 1);
-  if (volumes.empty() && (o.thickness ? surfaces.empty() : bars.empty() || !surfaces.empty()))
+  if (volumes.empty() && (!o.thickness.empty() ? surfaces.empty() : bars.empty() || !surfaces.empty()))
     throw Error(path, "no volume to mesh", "the geometry holds points, curves or surfaces only");
 }
 
@@ -151,7 +151,7 @@ std::string try_to_mesh(const ImportOptions& o, double unit) {
   gmsh::vectorpair volumes;
   gmsh::model::getEntities(volumes, 3);
   try {
-    gmsh::model::mesh::generate(!volumes.empty() ? 3 : o.thickness ? 2 : 1);
+    gmsh::model::mesh::generate(!volumes.empty() ? 3 : !o.thickness.empty() ? 2 : 1);
     if (const auto e = GmshSession::errors(); !e.empty()) return unfilled(e, unit);
     if (o.order == 2 && !volumes.empty()) gmsh::model::mesh::setOrder(2);
   } catch (const std::string& e) {

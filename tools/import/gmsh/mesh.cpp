@@ -67,13 +67,13 @@ class GmshReading {
   Imported read() {
     read_nodes();
     read_solids();
-    if (o_.thickness) read_shells();
+    if (!o_.thickness.empty()) read_shells();
     std::int64_t flat = 0;
     for (const auto& [key, entity] : from_.entities)
       for (const auto& b : entity.blocks)
         if (std::get<0>(key) == 2) flat += static_cast<std::int64_t>(b.tags.size());
     refuse_flat(path_, flat, in_.mesh.n_cells());
-    if (!o_.thickness) read_curves();
+    if (o_.thickness.empty()) read_curves();
     if (in_.mesh.n_cells() == 0) throw Error(path_, "no volume cells and no bars");
     tell_pyramids(in_, n_pyramids_);
     for (const auto& w : reduced_) in_.notes.push_back(fmt::format("{} read without the nodes inside faces and cells", w));
@@ -85,7 +85,7 @@ class GmshReading {
           cells.insert(cells.end(), of->second.begin(), of->second.end());
       SetNames(in_).cells(colour, std::move(cells));
     }
-    if (!o_.thickness) surface_groups();
+    surface_groups();
     node_groups();
     return std::move(in_);
   }
@@ -202,23 +202,42 @@ class GmshReading {
     in_.notes.push_back(fmt::format("no volume groups: each of {} volumes is a region", regions_.size()));
   }
 
-  /// Triangles and quadrangles of the surface groups, or of all surfaces, as shells of --thickness.
+  /// Triangles and quadrangles of the surface groups that --thickness names, or of all surfaces, as shells.
   void read_shells() {
-    if (in_.mesh.n_cells() > 0)
-      throw Error("", fmt::format("--thickness makes shells of surfaces, and {} has volumes", path_), "leave --thickness away",
-                  Exit::usage);
-    const auto add = [&](const std::string& name, const std::vector<Key>& keys) {
+    const auto others = o_.thickness.find("");
+    const bool is_named = others == o_.thickness.end();
+    if (in_.mesh.n_cells() > 0 && !is_named)
+      throw Error("", fmt::format("--thickness makes shells of surfaces, and {} has volumes", path_),
+                  "name the groups of surfaces: --thickness NAME=T", Exit::usage);
+    const auto add = [&](const std::string& name, const std::vector<Key>& keys, double thickness) {
       CellGroup g{name, {}};
-      for (const Key& key : keys) add_cells(key, g.cells);
-      for (const auto c : g.cells) in_.thin[c].thickness = *o_.thickness;
+      for (const Key& key : keys) {
+        if (of_surface_.contains(key))
+          throw Error("",
+                      fmt::format("--thickness: surface {} is in two groups that become shells, \"{}\" the second", std::get<1>(key), name),
+                      "name one of them: --thickness NAME=T", Exit::usage);
+        auto& cells = of_surface_[key];
+        add_cells(key, cells);
+        g.cells.insert(g.cells.end(), cells.begin(), cells.end());
+      }
+      for (const auto c : g.cells) in_.thin[c].thickness = thickness;
       if (!g.cells.empty()) regions_.push_back(std::move(g));
     };
-    for (const auto& [tag, keys] : groups_[2]) add(group_name(2, tag), keys);
+    std::vector<std::string> names;
+    for (const auto& [tag, keys] : groups_[2]) {
+      names.push_back(group_name(2, tag));
+      const auto own = o_.thickness.find(names.back());
+      if (own != o_.thickness.end() || !is_named) add(names.back(), keys, (own != o_.thickness.end() ? own : others)->second);
+    }
+    for (const auto& [name, thickness] : o_.thickness)
+      if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
+        throw Error("", fmt::format("--thickness {}={:g}: no group of surfaces has this name", name, thickness), suggest(name, names),
+                    Exit::usage);
     if (!groups_[2].empty()) return;
     std::vector<Key> all;
     for (const auto& [key, entity] : from_.entities)
       if (std::get<0>(key) == 2) all.push_back(key);
-    add("shell", all);
+    add("shell", all, others->second);
   }
 
   /// Curve groups: bars where none of the lines is an edge of a solid cell.
@@ -266,9 +285,15 @@ class GmshReading {
     SetNames names(in_);
     std::vector<std::vector<std::int64_t>> faces;
     std::vector<size_t> first{0};
+    const auto is_shell = [&](const Key& key) { return of_surface_.contains(key); };
+    std::erase_if(groups_[2], [&](const auto& group) {  // these are regions
+      const auto own = o_.thickness.find(group_name(2, group.first));
+      return !o_.thickness.empty() && (own != o_.thickness.end() || o_.thickness.contains(""));
+    });
     for (const auto& [tag, keys] : groups_[2]) {
       for (const auto& key : keys)
         for (const auto& b : from_.entities.at(key).blocks) {
+          if (is_shell(key)) continue;
           const size_t corners = face_corners(b.type), per = b.tags.empty() ? 0 : b.nodes.size() / b.tags.size();
           for (size_t e = 0; corners && e < b.tags.size(); ++e) {
             faces.emplace_back();
@@ -286,6 +311,9 @@ class GmshReading {
         if (found[i].cell >= 0) facets.push_back(found[i]);
       const size_t missing = first[g + 1] - first[g] - facets.size();
       ++g;
+      for (const auto& key : keys)
+        if (is_shell(key))
+          for (const auto c : of_surface_.at(key)) facets.push_back({c, 0});  // the face of its normal (thicken)
       if (facets.empty()) {
         names.nodes(name, group_nodes(keys));
         in_.notes.push_back(fmt::format("surface group \"{}\" lies on no cell: a node set", name));
@@ -312,7 +340,7 @@ class GmshReading {
   std::map<int, std::map<int, std::vector<Key>>> groups_;  // by dimension and tag
   std::vector<std::int64_t> row_;                          // node number of gmsh -> row of X, or -1
   std::unordered_set<std::int64_t> ids_;
-  std::map<Key, std::vector<std::int64_t>> of_volume_;
+  std::map<Key, std::vector<std::int64_t>> of_volume_, of_surface_;
   std::vector<CellGroup> regions_;
   std::unordered_set<int> bar_groups_;
   std::set<std::string> reduced_;
