@@ -94,11 +94,11 @@ std::pair<double, double> figures_of(const Poles& poles, const std::vector<size_
 
 }  // namespace
 
-void add_damping(std::vector<FoundMode>& modes, const Linearized& at, double shift) {
+void add_damping(std::vector<FoundMode>& modes, const Linearized& at, double shift, size_t wanted) {
   constexpr double enough = 2e-6;
   constexpr int passes = 12;
   constexpr Index most_more = 200;
-  const auto m = static_cast<Index>(modes.size());
+  const auto m = static_cast<Index>(modes.size()), asked = static_cast<Index>(wanted);
   Span span{Matrix(at.n(), m), Matrix(at.n(), m), Matrix(at.n(), m), Matrix(at.n(), m)};
   std::vector<char> is_rigid;
   double fastest = 0;
@@ -111,7 +111,10 @@ void add_damping(std::vector<FoundMode>& modes, const Linearized& at, double shi
     is_rigid.push_back(std::abs(mode.figures.omega2) <= 1e-9 * shift);
   }
   const Matrix C = (span.V.transpose() * span.CV + span.CV.transpose() * span.V) / 2;
-  for (Index j = 0; j < m; ++j) modes[static_cast<size_t>(j)].figures.coupling.assign(C.col(j).begin(), C.col(j).end());
+  for (Index j = 0; j < asked; ++j) {
+    const auto column = C.col(j).head(asked);
+    modes[static_cast<size_t>(j)].figures.coupling.assign(column.begin(), column.end());
+  }
   if (!(C.cwiseAbs().maxCoeff() > 1e-12 * std::sqrt(fastest))) return;
 
   Poles best;
@@ -121,10 +124,10 @@ void add_damping(std::vector<FoundMode>& modes, const Linearized& at, double shi
     const Matrix K = span.V.transpose() * span.KV;
     Poles poles = poles_of((K + K.transpose()) / 2, span.V.transpose() * span.CV);
     auto pairs = match(poles, is_rigid);
-    Vector error(m);
+    Vector error(asked);
     std::vector<std::pair<Vector, Vector>> more;  // answers of K + shift M to what is left, and that
     error.setZero();
-    for (Index j = 0; j < m; ++j)
+    for (Index j = 0; j < asked; ++j)
       for (const size_t i : pairs[static_cast<size_t>(j)]) {
         const Complex p = poles.pole[i];
         const Eigen::VectorXcd y = poles.shape.col(static_cast<Index>(i));
@@ -151,13 +154,14 @@ void add_damping(std::vector<FoundMode>& modes, const Linearized& at, double shi
   }
 
   // what a sum over these modes alone, as a response is, would make of it
-  Matrix K = Matrix::Zero(m, m);
-  for (Index j = 0; j < m; ++j) K(j, j) = modes[static_cast<size_t>(j)].figures.omega2;
-  const Poles few = poles_of(K, C);
+  Matrix K = Matrix::Zero(asked, asked);
+  for (Index j = 0; j < asked; ++j) K(j, j) = modes[static_cast<size_t>(j)].figures.omega2;
+  const Poles few = poles_of(K, C.topLeftCorner(asked, asked));
+  is_rigid.resize(wanted);
   const auto few_pairs = match(few, is_rigid);
   double worst = 0, ratio_here = 0, ratio_there = 0;
   size_t who = 0;
-  for (size_t j = 0; j < modes.size(); ++j) {
+  for (size_t j = 0; j < wanted; ++j) {
     if (best_pairs[j].empty()) continue;
     NaturalMode& f = modes[j].figures;
     std::tie(f.pole2, f.damping) = figures_of(best, best_pairs[j]);

@@ -81,7 +81,7 @@ class ModeSteps final : public Steps {
     run_.report.table = as_table(modes, system.mass);
     run_.report.t = static_cast<double>(modes.size());
     for (const FoundMode& m : modes)
-      if (!(m.figures.error < 1e-4))
+      if (!(m.figures.error < most_error))
         return run_.stop(
             fmt::format("the mode of {:.6g} Hz leaves {:.2g} of the equations of motion", m.figures.frequency(), m.figures.error));
     run_.report.complete = true;

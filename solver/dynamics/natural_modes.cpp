@@ -83,10 +83,10 @@ double good_shift(Linearized& at, Pencil pencil, int wanted, const std::function
   return pencil.shift;
 }
 
-}  // namespace
-
-std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, const State& rest, int wanted, bool at_rest,
-                                     const std::function<void(int)>& tell) {
+/// `found` modes, or all there are, none where more than wanted do not converge; the first `wanted` ones with their damping, where
+/// `damped`.
+std::vector<FoundMode> find_modes(const System& system, KktSolver& solver, const State& rest, int found, int wanted, bool damped,
+                                  const std::function<void(int)>& tell) {
   Linearized at(system, solver, rest);
   const auto by_columns = [](const Eigen::MatrixXd& X, auto&& product) {
     Eigen::MatrixXd out(X.rows(), X.cols());
@@ -100,15 +100,15 @@ std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, co
   };
   Pencil pencil{at.n(), [&](const Eigen::MatrixXd& X) { return by_columns(X, [&](const Vector& x) { return at.mass(x); }); },
                 [&](const Eigen::MatrixXd& X) { return by_columns(X, inverse); }, 0};
-  pencil.shift = good_shift(at, pencil, wanted, [&](double shift) { at.factor(shift); });
+  pencil.shift = good_shift(at, pencil, found, [&](double shift) { at.factor(shift); });
   if (std::isnan(pencil.shift)) return {};
   at.factor(pencil.shift);
-  Eigenmodes modes = lowest_modes(pencil, wanted, 1e-6, true, tell);
+  Eigenmodes modes = lowest_modes(pencil, found, 1e-6, true, tell);
   // where all the others are as fast as the mean of all, motions that nothing resists hide them from so low a shift
-  if (modes.omega2.size() < wanted && (modes.omega2.array().abs() < 1e-3 * pencil.shift).all()) {
+  if (modes.omega2.size() < found && (modes.omega2.array().abs() < 1e-3 * pencil.shift).all()) {
     const double low = pencil.shift;
     at.factor(pencil.shift = 1e-2 * at.mean_omega2());
-    if (Eigenmodes more = lowest_modes(pencil, wanted, 1e-6, true, tell); more.omega2.size() > modes.omega2.size())
+    if (Eigenmodes more = lowest_modes(pencil, found, 1e-6, true, tell); more.omega2.size() > modes.omega2.size())
       modes = std::move(more);
     else
       at.factor(pencil.shift = low);
@@ -119,7 +119,8 @@ std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, co
         "the forces have no potential, so these modes do not exist. Such forces are a pressure that follows its face, a moment that "
         "turns along, a load that nothing balances, and friction under load",
         "leave them out of the analysis; start = \"equilibrium\" finds a balance where there is one");
-  if (!modes.converged) throw Error("", fmt::format("{} modes were not found", wanted), "ask for fewer: time.modes", Exit::not_converged);
+  if (!modes.converged && found > wanted) return {};
+  if (!modes.converged) throw Error("", fmt::format("{} modes were not found", found), "ask for fewer: time.modes", Exit::not_converged);
   const RigidMotions rigid(system, at, rest.q);
   // Once more through the inverse, for the multipliers and to see what changes; what rounding brings of other modes goes.
   const Eigen::Index m = modes.omega2.size();
@@ -159,8 +160,24 @@ std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, co
     clean.push_back(std::move(mu));
   }
   for (size_t j = 0; j < out.size(); ++j) out[j].mu = std::move(clean[j]);
-  if (at_rest && system.traits().has_rates) add_damping(out, at, pencil.shift);
+  if (damped) add_damping(out, at, pencil.shift, std::min(out.size(), static_cast<size_t>(wanted)));
   return out;
+}
+
+}  // namespace
+
+std::vector<FoundMode> natural_modes(const System& system, KktSolver& solver, const State& rest, int wanted, bool at_rest,
+                                     const std::function<void(int)>& tell) {
+  const bool damped = at_rest && system.traits().has_rates;
+  std::vector<FoundMode> modes;
+  for (int found = wanted;; found *= 2) {  // strong dampers couple the modes to many beyond those asked for
+    auto next = find_modes(system, solver, rest, found, wanted, damped, tell);
+    const bool are_all = std::ssize(next) < found;
+    next.resize(std::min(next.size(), static_cast<size_t>(wanted)));
+    if (!next.empty() || found == wanted) modes = std::move(next);
+    const bool are_good = std::ranges::all_of(modes, [](const FoundMode& m) { return m.figures.error < most_error; });
+    if (!damped || are_all || are_good || found >= 4 * wanted) return modes;
+  }
 }
 
 }  // namespace hilo

@@ -10,6 +10,9 @@
 
 namespace hilo {
 
+/// Of the equations of motion that a mode may leave (`NaturalMode::error`).
+inline constexpr double most_error = 1e-4;
+
 struct FoundMode {
   NaturalMode figures;
   std::vector<double> x;   // increments of the unknowns, of unit mass (3 x n_blocks before the multipliers)

@@ -83,14 +83,16 @@ class Krylov {
   }
 
   /// The best `wanted` pairs of the columns that the inverse has seen.  Images of all but the last of them lie in the basis; `rest`: W^T M
-  /// W of what the images of these have beside it.
+  /// W of what the images of these have beside it.  Of a space that is exhausted the pairs beyond are rounding: they are left out.
   Ritz ritz(Index wanted, const Matrix& rest) const {
     const Eigen::SelfAdjointEigenSolver<Matrix> all(T_);
     std::vector<Index> order(static_cast<size_t>(T_.cols()));
     std::iota(order.begin(), order.end(), 0);
     const auto size = [&](Index i) { return std::abs(all.eigenvalues()[i]); };
     std::sort(order.begin(), order.end(), [&](Index a, Index b) { return size(a) > size(b); });
-    const Index count = std::min(wanted, T_.cols());
+    const double rounding = std::min(10 * asymmetry_, 1e-11 * size(order[0]));
+    Index count = std::min(wanted, T_.cols());
+    while (count > 1 && size(order[static_cast<size_t>(count) - 1]) < rounding) --count;
     Ritz out{Vector(count), Vector(count), Matrix(T_.cols(), count)};
     for (Index j = 0; j < count; ++j) {
       const Index i = order[static_cast<size_t>(j)];
@@ -133,12 +135,12 @@ Eigenmodes lowest_modes(const Pencil& pencil, int wanted, double tolerance, bool
     const Index k = krylov.size();
     const Matrix rest = krylov.apply();
     ritz = krylov.ritz(wanted, rest);
-    const bool exhausted = krylov.size() == k;
+    const bool exhausted = krylov.size() == k, are_all = exhausted || ritz.nu.size() < std::min<Index>(wanted, k);
     const auto good = exhausted ? ritz.nu.size() : ((ritz.residual.array() <= tolerance * ritz.nu.array().abs()).count());
     if (tell) tell(static_cast<int>(good));
     if (exhausted) left = 0;
     if (left > 0) --left;
-    if (left > 0 || good < ritz.nu.size() || (!exhausted && good < wanted)) continue;
+    if (left > 0 || good < ritz.nu.size() || (!are_all && good < wanted)) continue;
     if (!doubt && !exhausted) {
       sure = true;
       break;

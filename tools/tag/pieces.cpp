@@ -17,6 +17,13 @@ std::vector<std::string> loose_pieces(const Mesh& mesh, const std::vector<Fideli
   };
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c)
     for (const std::int64_t i : mesh.cell(c)) parent[root(i)] = root(mesh.cell(c)[0]);
+  std::vector<std::int64_t> of_block(mesh.block_name.size(), -1);
+  for (size_t i = 0; i < mesh.block.size(); ++i)
+    if (mesh.block[i] >= 0) {
+      auto& first = of_block[static_cast<size_t>(mesh.block[i])];
+      if (first < 0) first = static_cast<std::int64_t>(i);
+      parent[root(static_cast<std::int64_t>(i))] = root(first);
+    }
   std::vector<std::set<std::int64_t>> pieces(mesh.region_name.size());
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c)
     if (fidelity[mesh.region[c]] != Fidelity::rigid) pieces[mesh.region[c]].insert(root(mesh.cell(c)[0]));

@@ -8,7 +8,7 @@
 
 namespace hilo {
 
-/// A line for each flexible region whose cells hang together neither by their own nodes nor by those of other regions.
+/// A line for each flexible region whose cells hang together neither by their own nodes nor by those of other regions, nor by blocks.
 std::vector<std::string> loose_pieces(const Mesh& mesh, const std::vector<Fidelity>& fidelity);
 
 }  // namespace hilo

@@ -86,5 +86,67 @@ TEST_F(NaturalModes, OfACantileverWithADamperAtItsTip) {
   EXPECT_NEAR(f(0, 1) / (-s.real() / std::abs(s)), 1, 5e-3);
 }
 
+// A row of masses between springs, a third of them on strong dampers, which couple the modes asked for to many above them.
+TEST_F(NaturalModes, StrongDampersCoupleThoseAskedForToManyOthers) {
+  constexpr int n = 150, wanted = 30;
+  constexpr double dampers[] = {0, 0, 30, 0, 0, 4};
+  const auto mass = [](int i) { return 1 + 0.1 * (i % 7); };
+  std::string scene;
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 2 * n), K = Eigen::MatrixXd::Zero(n, n);
+  A.topRightCorner(n, n).setIdentity();
+  const auto spring = [&](const std::string& name, const std::string& ends, double k, double c) {
+    scene +=
+        fmt::format("[[spring]]\nkind = \"bushing\"\nname = \"{}\"\n{}\nstiffness = [0, 0, {}]\ndamping = [0, 0, {}]\n", name, ends, k, c);
+  };
+  for (int i = 0; i < n; ++i) {
+    const double c = dampers[i % 6];
+    scene += body(fmt::format("b{}", i), mass(i), {double(i), 0, 0}, {1, 1, 1}) +
+             fmt::format("[[joint]]\nkind = \"prismatic\"\nname = \"j{0}\"\nb = \"b{0}\"\nat = [{0}, 0, 0]\naxis = [0, 0, 1]\n", i);
+    spring(fmt::format("s{}", i), fmt::format("b = \"b{0}\"\nat = [{0}, 0, 0]", i), 10 * (i + 1), c);
+    K(i, i) += 10 * (i + 1), A(n + i, n + i) = -c / mass(i);
+    if (i == 0) continue;
+    spring(fmt::format("t{}", i), fmt::format("a = \"b{}\"\nb = \"b{}\"\nat = [{}, 0, 0]", i - 1, i, i - 0.5), 1e4, 0);
+    K(i, i) += 1e4, K(i - 1, i - 1) += 1e4, K(i, i - 1) -= 1e4, K(i - 1, i) -= 1e4;
+  }
+  for (int i = 0; i < n; ++i) A.row(n + i).head(n) = -K.row(i) / mass(i);
+  const Eigen::VectorXcd truth = A.eigenvalues();
+  const auto found = modes(scene, wanted);
+  for (int j = 0; j < found.rows(); ++j) {  // the root of the product of a pair, and its damping ratio
+    double nearest = 1e300;
+    for (const auto& p : truth)
+      nearest =
+          std::min(nearest, std::abs(std::abs(p) / (2 * pi) - found(j, 0)) / found(j, 0) + std::abs(-p.real() / std::abs(p) - found(j, 1)));
+    EXPECT_LT(nearest, 1e-6) << found(j, 0) << " Hz, " << found(j, 1);
+  }
+}
+
+// A vehicle on eight arms has 22 modes: what else the factors show of a space that is exhausted is rounding.
+TEST_F(NaturalModes, AreNoMoreThanThereAre) {
+  std::string scene = body("hull", 20000, {0, 0, 1}, {2e4, 5e4, 6e4});
+  for (int k = 0; k < 8; ++k) {
+    const double x = 1.85 - 1.3 * (k / 2), y = k % 2 ? -1.1 : 1.1;
+    const auto named = [&](const char* text) {
+      return fmt::format(fmt::runtime(text), fmt::arg("n", k), fmt::arg("x", x), fmt::arg("p", x + 0.45), fmt::arg("y", y));
+    };
+    scene +=
+        body(fmt::format("arm{}", k), 104, {x + 0.2, y, 0.57}, {1, 8, 8}) + body(fmt::format("wheel{}", k), 152, {x, y, 0.42}, {8, 13, 8}) +
+        named(
+            "[[joint]]\nkind = \"revolute\"\nname = \"pivot{n}\"\na = \"hull\"\nb = \"arm{n}\"\nat = [{p}, {y}, 0.72]\naxis = [0, 1, 0]\n"
+            "[[joint]]\nkind = \"revolute\"\nname = \"axle{n}\"\na = \"arm{n}\"\nb = \"wheel{n}\"\nat = [{x}, {y}, 0.42]\naxis = [0, 1, "
+            "0]\n"
+            "[[spring]]\nkind = \"torsion\"\nname = \"bar{n}\"\na = \"hull\"\nb = \"arm{n}\"\naxis = [0, 1, 0]\nstiffness = 6e4\ndamping = "
+            "3200\n"
+            "[[spring]]\nkind = \"torsion\"\nname = \"brake{n}\"\na = \"arm{n}\"\nb = \"wheel{n}\"\naxis = [0, 1, 0]\nstiffness = "
+            "1e6\ndamping = 2000\n"
+            "[[spring]]\nkind = \"bushing\"\nname = \"tyre{n}\"\nb = \"wheel{n}\"\nat = [{x}, {y}, 0]\nstiffness = [1e6, 8e5, "
+            "1.5e6]\ndamping = [1e4, 1e4, 1.2e4]\n");
+  }
+  for (const int wanted : {40, 100}) {
+    const auto all = modes(scene, wanted);
+    EXPECT_EQ(all.rows(), 6 + 8 + 8);
+    EXPECT_LT(all.col(0).maxCoeff(), 60) << "Hz";
+  }
+}
+
 }  // namespace
 }  // namespace hilo::test::damped_test
