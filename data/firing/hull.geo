@@ -1,6 +1,6 @@
 // The plates of the hull as mid-surfaces, for vehicle.geo with HULL 1: hull_floor, hull_roof, hull_rear, hull_step (between these two),
 // hull_nose, hull_front (below the nose), hull_glacis, hull_side.  Their middles lie between the outlines of the solid; their thicknesses
-// are in the Makefile.  Bores and the hole under the ring are open.  What stands on a plate or is bolted to it has a foot there, a set of
+// are in the Makefile.  The outer strips hull_rim_floor ... lie within the thick sides, and are as stiff as those hold them.  Bores and the hole under the ring are open.  What stands on a plate or is bolted to it has a foot there, a set of
 // its facets.
 
 // The face with the corners qX, qY, qZ: surface f
@@ -16,16 +16,20 @@ Macro Face
   f = news; Plane Surface(f) = {l};
 Return
 
-y_side = y_hull - t_side/2; z_low = (0.45 + z_floor)/2; z_high = (1.34 + z_roof)/2;
+y_side = y_hull - t_side/2; y_in = y_hull - t_side; z_low = (0.45 + z_floor)/2; z_high = (1.34 + z_roof)/2;
 mX() = {-2.95, -2.775, 2.275, 2.925, 2.55, 1.975, -2.95};
 mZ() = {0.67, z_low, z_low, 0.86, 1.125, z_high, z_high};
 whole() = {}; parts() = {};                               // plates; what divides them
 For k In {0:6}
   i = (k+1) % 7;
-  w = k == 5 ? -y_side : y_side;                          // a foot lies on the side of the normal
-  qX() = {mX(k), mX(i), mX(i), mX(k)}; qY() = {-w, -w, w, w}; qZ() = {mZ(k), mZ(i), mZ(i), mZ(k)};
-  Call Face;
-  whole() += f;
+  yA() = {-y_side, -y_in, y_in}; yB() = {-y_in, y_in, y_side};
+  For j In {0:2}
+    ya = k == 5 ? yB(j) : yA(j); yb = k == 5 ? yA(j) : yB(j);             // a foot lies on the side of the normal
+    i = (k+1) % 7;
+    qX() = {mX(k), mX(i), mX(i), mX(k)}; qY() = {ya, ya, yb, yb}; qZ() = {mZ(k), mZ(i), mZ(i), mZ(k)};
+    Call Face;
+    whole() += f;
+  EndFor
 EndFor
 For m In {0:1}
   y0 = (1 - 2*m)*y_side;
@@ -84,9 +88,13 @@ For k In {0:6}
   i = (k+1) % 7;
   name = StrChoice(k==0, "step", StrChoice(k==1, "floor", StrChoice(k==2, "front", StrChoice(k==3, "nose",
          StrChoice(k==4, "glacis", StrChoice(k==5, "roof", "rear"))))));
-  f() = Surface In BoundingBox {(mX(k) < mX(i) ? mX(k) : mX(i)) - d, -y_side - d, (mZ(k) < mZ(i) ? mZ(k) : mZ(i)) - d,
-                                (mX(k) > mX(i) ? mX(k) : mX(i)) + d, y_side + d, (mZ(k) > mZ(i) ? mZ(k) : mZ(i)) + d};
+  xa = (mX(k) < mX(i) ? mX(k) : mX(i)) - d; xb = (mX(k) > mX(i) ? mX(k) : mX(i)) + d;
+  za = (mZ(k) < mZ(i) ? mZ(k) : mZ(i)) - d; zb = (mZ(k) > mZ(i) ? mZ(k) : mZ(i)) + d;
+  f() = Surface In BoundingBox {xa, -y_in - d, za, xb, y_in + d, zb};
   Physical Surface(StrCat("hull_", name)) = f(); plates() += f();
+  f() = Surface In BoundingBox {xa, -y_side - d, za, xb, -y_in + d, zb};
+  f() += Surface In BoundingBox {xa, y_in - d, za, xb, y_side + d, zb};
+  Physical Surface(StrCat("hull_rim_", name)) = f(); plates() += f();
 EndFor
 f() = Surface In BoundingBox {-4, y_side - d, 0, 4, y_side + d, 2};
 f() += Surface In BoundingBox {-4, -y_side - d, 0, 4, -y_side + d, 2};

@@ -148,6 +148,7 @@ class Builder {
   /// Regions that have nodes of one block, to `shared`; `region`: of each local node, or -1.  Collective.
   void join_by_blocks(const std::vector<int>& region, Pairs& shared) const;
   void hold_blocks(const std::vector<int>& body_of);
+  void drop_spinning_torques();
   // build_joints.cpp
   void add_joints();
   void add_joint_coordinates();  // joint_coordinates.cpp

@@ -18,7 +18,8 @@ struct Load {
   std::vector<std::vector<int>> facets;  // pressure: nodes of each facet, outward
   std::vector<int> cliques;              // of the facets
   int body = -1;
-  Vec3 arm = Vec3::Zero();  // body axes
+  Vec3 arm = Vec3::Zero();   // body axes
+  Vec3 line = Vec3::Zero();  // of a torque, body axes: nothing resists its part about that
   History history;
   bool ramped = false;  // without a history: follows the load factor of a static analysis
   double factor(double t0, double t1, double ramp) const { return (ramped ? ramp : 1) * (t1 > t0 ? history.mean(t0, t1) : history(t0)); }
@@ -38,6 +39,8 @@ class Loads final : public Contribution, public Equations, public Loading, publi
   void add_timed(std::span<const int> group, double t, double T, std::span<double> sum) const override;
 
  private:
+  /// Force or torque on a body at the time of a stage.
+  static Vec3 on_body(const Load& load, double factor, const Stage& s);
   void on_nodes(const Load& load, double factor, Pass& p) const;
   void on_body(const Load& load, double factor, Pass& p) const;
   void on_facets(const Load& load, double factor, Pass& p) const;

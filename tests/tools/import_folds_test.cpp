@@ -158,6 +158,23 @@ TEST_F(ImportFolds, AMomentBendsTheStrip) {
   EXPECT_NE(err.find("a moment about the normal of a shell, which does not resist it"), std::string::npos) << err;
 }
 
+// Half a radian and more, the strip saddles: its pairs lean across, and a small part of each moment is about them, which nothing resists.
+TEST_F(ImportFolds, AMomentTurnsAStripThatSaddles) {
+  Frame f;
+  f.across = 4;
+  f.strip(0, 0, 5, 0);
+  const std::string sets = "*NSET, NSET=TIP\n" + f.nodes_at(5, 0) + "*NSET, NSET=ROOT\n" + f.nodes_at(0, 0);
+  for (const double angle : {0.5, 1.0}) {
+    std::string deck = f.deck(sets, "ROOT,1,6\n", f.load(5, 0, 5, -EI * angle / 5));
+    deck.replace(deck.find(",0.\n*DENSITY"), 3, ",.3");
+    const Vec3 u = tip(deck);
+    const auto along = [](double a) { return 5 * (1 - std::cos(a)) / a; };
+    std::printf("%.1f rad: %.4f of a beam's\n", angle, u.z() / along(angle));
+    EXPECT_LT(u.z(), 1.003 * along(angle)) << "a beam that contracts freely";
+    EXPECT_GT(u.z(), along(0.91 * angle)) << "a plate that does not";
+  }
+}
+
 TEST_F(ImportFolds, AStepOfThicknessKeepsTheMiddle) {
   Frame f;
   f.strip(0, 0, 5, 0, "THICK"), f.strip(5, 0, 10, 0);
