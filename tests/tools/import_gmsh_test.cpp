@@ -199,6 +199,8 @@ TEST_F(ImportGmsh, AScriptIsMeshedWithItsParametersSizeAndOrder) {
 TEST_F(ImportGmsh, OptionsThatWouldDoNothingAreErrors) {
   place.write("a.geo", boxes("hex"));
   refused("a.geo -o a.h5 --define M=3", 1, "--define M: the script has no such name (did you mean \"N\"?)");
+  place.write("b.geo", "Include \"a.geo\";\n");
+  refused("b.geo -o a.h5 --define M=3", 1, "--define M: the script has no such name (did you mean \"N\"?)");
   mesh(boxes("hex"), "a.msh");
   refused("a.msh -o a.h5 --define N=3", 1, "--define is for .geo scripts");
   refused("a.msh -o a.h5 --size 3", 1, "--size is for a geometry, a.msh is a mesh");

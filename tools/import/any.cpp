@@ -16,10 +16,38 @@
 namespace hilo {
 namespace {
 
-/// A name given to --define that the script never mentions does nothing: it is an error.  Scripts that include others are not looked into.
+/// Every text in quotes of a script that is the name of a file beside it: gmsh merges or includes it.
+std::vector<std::string> files_of_script(const std::string& path) {
+  const std::string text = read_text_file(path);
+  std::vector<std::string> files;
+  for (size_t from = 0; (from = text.find('"', from)) != text.npos;) {
+    const size_t to = text.find('"', ++from);
+    if (to == text.npos) break;
+    const auto file = std::filesystem::path(path).parent_path() / text.substr(from, to - from);
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(file, ignored)) files.push_back(file.string());
+    from = to + 1;
+  }
+  return files;
+}
+
+/// A name given to --define that neither the script nor those it includes mention does nothing: it is an error.  Where an included file
+/// is not found, nothing is looked into.
 void check_defines(const std::string& path, const ImportOptions& options) {
-  std::ifstream in(path);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::string text;
+  std::vector<std::string> files{path};
+  for (size_t i = 0; i < files.size(); ++i) {
+    const std::string own = read_text_file(files[i]);
+    size_t includes = 0;
+    for (size_t at = 0; (at = own.find("Include", at)) != own.npos; at += 7) ++includes;
+    for (const auto& file : files_of_script(files[i]))
+      if (file.ends_with(".geo") && includes > 0) {
+        --includes;
+        if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+      }
+    if (includes > 0) return;
+    text += own + '\n';
+  }
   std::set<std::string> words;
   std::string word;
   for (const char c : text + ' ')
@@ -29,24 +57,10 @@ void check_defines(const std::string& path, const ImportOptions& options) {
       if (!word.empty() && !std::isdigit(static_cast<unsigned char>(word[0]))) words.insert(word);
       word.clear();
     }
-  if (words.count("Include")) return;
   for (const auto& [name, value] : options.define)
     if (!words.count(name))
       throw Error("", fmt::format("--define {}: the script has no such name", name),
                   suggest(name, std::vector<std::string>(words.begin(), words.end())), Exit::usage);
-}
-
-/// What a script merges or includes, gmsh reads for itself: every text in quotes that is the name of a file beside the script.
-void note_files_of_script(const std::string& path) {
-  const std::string text = read_text_file(path);
-  for (size_t from = 0; (from = text.find('"', from)) != text.npos;) {
-    const size_t to = text.find('"', ++from);
-    if (to == text.npos) break;
-    const auto file = std::filesystem::path(path).parent_path() / text.substr(from, to - from);
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(file, ignored)) note_input(file.string());
-    from = to + 1;
-  }
 }
 
 }  // namespace
@@ -100,7 +114,8 @@ Imported read_any(const std::string& path, const ImportOptions& options, const R
         throw Error("", fmt::format("--thicken is for shells of a deck, {} is none", path),
                     f.geometry || ending == ".msh" ? "--thickness makes shells of its surfaces" : "", Exit::usage);
       if (!options.define.empty()) check_defines(path, options);
-      if (ending == ".geo") note_files_of_script(path);
+      if (ending == ".geo")
+        for (const auto& file : files_of_script(path)) note_input(file);
       return f.read(path, options);
     }
     known += std::string(known.empty() ? "" : " ") + std::string(f.name);
