@@ -235,7 +235,8 @@ with tempfile.TemporaryDirectory() as folder:
     for number, (name, (_, _, all_ranks)) in enumerate(SCENES.items()):
         if not all_of_it and not share.today(number, 3):
             continue
-        five_instants(name, all_ranks[0])
+        if name != "modes":  # one step: it keeps nothing to go on from
+            five_instants(name, all_ranks[0])
         if all_ranks[0] == 1:
             every_write(name, stride)
         for ranks in all_ranks:
