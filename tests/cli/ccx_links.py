@@ -112,7 +112,7 @@ with tempfile.TemporaryDirectory() as folder:
         out += ["*BOUNDARY"] + held + ["*STEP", "*STATIC", "*CLOAD", f"{number(6, 4)}, 1, 2.", f"{number(6, 4)}, 2, 3.", f"{number(6, 4)}, 3, .02", "*END STEP"]
         return "\n".join(out) + "\n"
 
-    for what, held in (("a clamp", ["left, 1, 6"]), ("a guide", ["left, 1, 6", "low, 2, 2"]), ("turns held", ["left, 1, 3", "low, 2, 4"])):
+    for what, held in (("a clamp", ["left, 1, 6"]), ("a guide", ["left, 1, 6", "low, 2, 2"]), ("a moved edge", ["left, 1, 6", "low, 2, 2, 0.02"]), ("turns held", ["left, 1, 3", "low, 2, 4"])):
         answers = []
         for angle in (0, math.pi / 6):
             with open("plate.inp", "w") as f:

@@ -112,6 +112,11 @@ struct InpTarget {
   std::string place = {};
 };
 /// *STEP.
+/// *STEADY STATE DYNAMICS: frequencies, and the ratio of damping of all modes.
+struct InpSweep {
+  double from = 0, to = 0, ratio = 0;
+  int points = 0;  // 0: there is none
+};
 /// *MODAL DAMPING: ratios, as first mode, last mode, ratio; or factors of mass and stiffness.
 struct InpModalDamping {
   std::vector<std::array<double, 3>> ratios = {};
@@ -132,7 +137,7 @@ struct InpStep {
   InpModalDamping damping = {};
   double alpha = 0, beta = 0, ratio = 0;  // of its regions
   bool modal = false;                     // modes are summed: *DAMPING of materials says nothing
-  std::string sweep = {};                 // the command that sums the modes
+  InpSweep sweep = {};
   double period() const { return end > 0 ? end : 1; }
 };
 /// *NODAL THICKNESS of shells.
@@ -191,7 +196,8 @@ struct InpPlan {
   bool direct = false;
   int n_modes = 0;
   double alpha = 0, beta = 0, ratio = 0;  // damping of the regions
-  std::string sweep = {};
+  InpSweep sweep = {};
+  std::string place = {};         // of its *STEP
   bool modal = false;             // without that of materials
   int steps = 1;                  // static ones, one behind the other
   bool from_equilibrium = false;  // of static steps before it

@@ -48,7 +48,8 @@ std::string why_not(const InpDeck& d, const Imported& in, std::int64_t node, int
     return a != d.node.end() && in.sheets && !in.sheets->at(a->second).empty();
   };
   if (component < 1 || component > 6) return "of temperatures or potentials";
-  if (turned.contains(node) && !d.node.contains(node)) return "in axes of *TRANSFORM, of a node of no cell";
+  if (turned.contains(node) && (!d.node.contains(node) || (body_of(d, node).is && !of_shells(node))))
+    return "in axes of *TRANSFORM, of a node of no solid";
   if (!d.node.contains(node) && !d.loose.contains(node) && !body_of(d, node).is) return "of a node that does not exist";
   for (const InpTie& t : d.ties)
     if (t.mean && !t.no_node && t.kind != InpTie::Of::weighted && std::ranges::count(numbers_of(d, t.reference), node))

@@ -140,13 +140,8 @@ void take_modal(InpDeck& d, Imported& in) {
       if (l.value != 0 || l.rate != 0)
         in.skip("*BOUNDARY with a displacement, a velocity or an acceleration that swings", l.place), l.value = 0, l.rate = 0,
                                                                                                       l.amplitude.clear();
-    s.sweep =
-        fmt::format("hilo-post response modes.h5 --loads --at PROBE.AXIS --from {:g} --to {:g} --points {}", s.increment, s.end, s.points);
-    if (ratio > 0) {
-      in.skip("*MODAL DAMPING of one ratio", m.place, 1, false, fmt::format("hilo-post response --damping {:g}", ratio));
-      s.sweep += fmt::format(" --damping {:g}", ratio);
-    }
-    in.notes.push_back(fmt::format("{}: {} becomes an analysis of modes, and then `{}`", s.place, name, s.sweep));
+    s.sweep = {s.increment, s.end, ratio > 0 ? ratio : 0, s.points};
+    if (ratio > 0) in.skip("*MODAL DAMPING of one ratio", m.place, 1, false, fmt::format("hilo-post response --damping {:g}", ratio));
     s.increment = s.end = 0;
   }
   d.steps[0] = s;

@@ -174,8 +174,13 @@ void InpScene::time() {
   } else if (plan.procedure == "*FREQUENCY") {
     tables_ += fmt::format("\n[time]\nanalysis = \"modes\"\n{}", start);
     if (plan.n_modes > 0) tables_ += fmt::format("modes = {}\n", plan.n_modes);
-    if (!plan.sweep.empty()) {
-      tables_ += fmt::format("# then: {}\n", plan.sweep);
+    if (const InpSweep& sweep = plan.sweep; sweep.points > 0) {
+      const double hertz = 1 / si("s");
+      std::string then = fmt::format("hilo-post response modes.h5 --loads --at PROBE.AXIS --from {:g} --to {:g} --points {}",
+                                     sweep.from * hertz, sweep.to * hertz, sweep.points);
+      if (sweep.ratio > 0) then += fmt::format(" --damping {:g}", sweep.ratio);
+      in_.notes.push_back(fmt::format("{}: *STEADY STATE DYNAMICS becomes an analysis of modes, and then `{}`", plan.place, then));
+      tables_ += fmt::format("# then: {}\n", then);
       std::set<std::string> done;
       for (const std::string& set : d_.printed)
         if (const auto name = node_set_.find(set); name != node_set_.end() && !name->second.empty() && done.insert(set).second)

@@ -261,7 +261,7 @@ void join_steps(InpDeck& d, Imported& in) {
   for (;; --n) {
     if (n == 1) {
       const InpStep& s = d.steps[0];
-      d.plan = {s.procedure, s.increment, s.end, s.direct, s.n_modes, s.alpha, s.beta, s.ratio, s.sweep, s.modal};
+      d.plan = {s.procedure, s.increment, s.end, s.direct, s.n_modes, s.alpha, s.beta, s.ratio, s.sweep, s.place, s.modal};
       std::erase_if(d.supports, [](const InpNodal& l) { return l.step > 1; });
       std::erase_if(d.forces, [](const InpNodal& l) { return l.step > 1; });
       std::erase_if(d.distributed, [](const InpDistributed& l) { return l.step > 1; });
