@@ -68,7 +68,7 @@ class Model:
         self.faces, self.lines, self.points = [], [], []
         for group in r.sample(range(41, 80), r.randint(1, 3)):
             for t, c, _ in r.sample(self.cells, min(len(self.cells), r.randint(1, 6))):
-                f = r.choice(FACES[t][1:] if t == "pyramid" else FACES[t])  # its base becomes two facets, and is told
+                f = r.choice(FACES[t])
                 self.faces.append(([c[k] for k in f] + ([self.between(c[f[k]], c[f[(k + 1) % len(f)]]) for k in range(len(f))] if quadratic else []), group))
         once = {}
         for nodes, group in self.faces:  # a face in two groups is listed twice by some formats only
@@ -126,8 +126,15 @@ def written(m, got, name_of_region, digits):
         ways = [[at(part) for part in way] for way in (halves(c) if kind == "pyramid" else [[c]])]
         for one in next((w for w in ways if all((name_of_region(region), c[1]) in got.cells for c in w)), ways[0]):
             s.cells[one] += 1
+    bases = {frozenset(c[:4]) for kind, c, _ in m.cells if kind == "pyramid"} - {frozenset(c[k] for k in f) for kind, c, _ in m.cells if kind != "pyramid" for f in FACES[kind]}
+    facets = set().union(*got.facets.values()) if got.facets else set()
     for nodes, group in m.faces:
-        s.facets.setdefault(group, set()).add(frozenset(P[a] for a in nodes[:4 if len(nodes) in (4, 8) else 3]))
+        corners_of = nodes[:4 if len(nodes) in (4, 8) else 3]
+        ways = [[corners_of]]
+        if frozenset(nodes) in bases:  # the base of a pyramid is two facets
+            ways = [[[nodes[k], nodes[(k + 1) % 4], nodes[(k + 2) % 4]], [nodes[k], nodes[(k + 2) % 4], nodes[(k + 3) % 4]]] for k in (0, 1)]
+        ways = [{frozenset(P[a] for a in part) for part in way} for way in ways]
+        s.facets.setdefault(group, set()).update(next((w for w in ways if w <= facets), ways[0]))
     for nodes, group in m.lines:
         s.nodes.setdefault(group, set()).update(P[a] for a in nodes)
     for node, group in m.points:

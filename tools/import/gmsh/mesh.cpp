@@ -290,6 +290,27 @@ class GmshReading {
     return nodes;
   }
 
+  /// The facets of each face: one, none, or the two that the base of a pyramid is cut into.
+  std::vector<std::vector<Facet>> facets_of(const std::vector<std::vector<std::int64_t>>& faces) const {
+    std::vector<std::vector<Facet>> out(faces.size());
+    std::vector<std::vector<std::int64_t>> halves;
+    std::vector<size_t> of;
+    const auto found = match_facets(in_.mesh, faces);
+    for (size_t i = 0; i < faces.size(); ++i) {
+      if (found[i].cell >= 0) out[i].push_back(found[i]);
+      if (found[i].cell >= 0 || n_pyramids_ == 0 || faces[i].size() != 4) continue;
+      const auto& f = faces[i];
+      const auto k = static_cast<size_t>(std::ranges::min_element(f) - f.begin());  // as halves_of_pyramid() cuts it
+      halves.push_back({f[k], f[(k + 1) % 4], f[(k + 2) % 4]});
+      halves.push_back({f[k], f[(k + 2) % 4], f[(k + 3) % 4]});
+      of.push_back(i);
+    }
+    const auto two = match_facets(in_.mesh, halves);
+    for (size_t j = 0; j < of.size(); ++j)
+      if (two[2 * j].cell >= 0 && two[2 * j + 1].cell >= 0) out[of[j]] = {two[2 * j], two[2 * j + 1]};
+    return out;
+  }
+
   void surface_groups() {
     SetNames names(in_);
     std::vector<std::vector<std::int64_t>> faces;
@@ -305,14 +326,15 @@ class GmshReading {
         }
       first.push_back(faces.size());
     }
-    const auto found = match_facets(in_.mesh, faces);
+    const auto found = facets_of(faces);
     size_t g = 0;
     for (const auto& [tag, keys] : groups_[2]) {
       const std::string name = group_name(2, tag);
       std::vector<Facet> facets;
+      size_t missing = 0;
+      const size_t all = first[g + 1] - first[g];
       for (size_t i = first[g]; i < first[g + 1]; ++i)
-        if (found[i].cell >= 0) facets.push_back(found[i]);
-      const size_t missing = first[g + 1] - first[g] - facets.size();
+        facets.insert(facets.end(), found[i].begin(), found[i].end()), missing += found[i].empty();
       ++g;
       if (facets.empty()) {
         names.nodes(name, group_nodes(keys));
@@ -320,8 +342,7 @@ class GmshReading {
         continue;
       }
       if (missing)
-        in_.notes.push_back(
-            fmt::format("surface group \"{}\": {} of its {} faces lie on no cell: left out", name, missing, missing + facets.size()));
+        in_.notes.push_back(fmt::format("surface group \"{}\": {} of its {} faces lie on no cell: left out", name, missing, all));
       names.facets(name, std::move(facets));
     }
   }
@@ -340,8 +361,8 @@ class GmshReading {
           if (std::get<0>(key) == 1) lines.emplace_back(row(b.nodes[e * per], b.tags[e]), row(b.nodes[e * per + 1], b.tags[e]));
         }
     }
-    const auto found = match_facets(in_.mesh, faces);
-    if (const auto n = std::ranges::count_if(found, [](const Facet& f) { return f.cell < 0; }))
+    const auto found = facets_of(faces);
+    if (const auto n = std::ranges::count_if(found, [](const auto& f) { return f.empty(); }))
       in_.skip("triangles and quadrangles of no group, on no solid", path_, n);
     const auto on_solids = lines_on_solids(in_.mesh, lines);
     if (const auto n = std::ranges::count_if(lines, [&](const auto& l) { return !on_solids.count(l); }))

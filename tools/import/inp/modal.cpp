@@ -127,8 +127,9 @@ void take_modal(InpDeck& d, Imported& in) {
   if (std::isnan(ratio)) in.skip("*MODAL DAMPING of other ratios for other modes", m.place);
   if (!sweep) {
     s.procedure = "*DYNAMIC", s.ratio = std::isnan(ratio) ? 0 : ratio;
-    in.notes.push_back(fmt::format("{}: {} becomes a run in time of all modes, large motions too{}", s.place, name,
-                                   s.ratio > 0 ? "; only linear regions have its *MODAL DAMPING (hilo-tag --rest linear)" : ""));
+    in.notes.push_back(
+        fmt::format("{}: {} becomes a run in time of all modes, large motions too (the step of *FREQUENCY alone gives frequencies){}",
+                    s.place, name, s.ratio > 0 ? "; only linear regions have its *MODAL DAMPING (hilo-tag --rest linear)" : ""));
   } else {
     s.procedure = "*FREQUENCY", s.n_modes = n_modes;
     const auto constant = [&](auto& l) {
