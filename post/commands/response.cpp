@@ -4,10 +4,10 @@
 //   H(omega) = sum_j phi_j(out) y_j,     (omega_j^2 - omega^2) y_j + i omega sum_k C_jk y_k = p_j,     phi of unit mass,
 //
 // modes phi without damping, and C what dampers and regions make of them, which couples them.
-// Of a force p_j = phi_j(in).  A base that moves with the acceleration e exp(i omega t) pushes each mode with p_j = -phi_j.M s, s what it
-// moves slowly; where all that stands still moves, s = e, and phi_j.M s = -F_j/omega_j^2, F_j the force on a held set, where it alone does.
-// What brakes s, mass-proportional damping, pushes too: -phi_j.C s/(i omega).  To what moves against the base s(out) comes, -s/omega^2 as
-// displacement.
+// Of a force p_j = phi_j(in), of the scene's loads p_j = phi_j.F.  A base that moves with the acceleration e exp(i omega t) pushes each
+// mode with p_j = -phi_j.M s, s what it moves slowly; where all that stands still moves, s = e, and phi_j.M s = -F_j/omega_j^2, F_j the
+// force on a held set, where it alone does. What brakes s, mass-proportional damping, pushes too: -phi_j.C s/(i omega).  To what moves
+// against the base s(out) comes, -s/omega^2 as displacement.
 #include <fmt/format.h>
 
 #include <Eigen/LU>
@@ -33,7 +33,7 @@ namespace {
 struct ResponseOptions {
   std::string run, force, of = "displacement", csv, png, title, size = "1280x720";
   std::vector<std::string> at, base;
-  bool relative = false;
+  bool relative = false, loads = false;
   double from = 0, to = 0, damping = 0;
   int points = 1000;
 };
@@ -159,24 +159,33 @@ void run(const ResponseOptions& o) {
   const double highest = std::sqrt(std::max(0.0, *std::max_element(modes.omega2.begin(), modes.omega2.end()))) / (2 * std::numbers::pi);
   const double from = o.from > 0 ? o.from : highest / 1000, to = o.to > 0 ? o.to : highest;
   if (!(to > from)) throw Error("--to", fmt::format("{:g} Hz is not above {:g} Hz", to, from), "", Exit::usage);
-  if (o.force.empty() == o.base.empty())
-    throw Error("response", o.base.empty() ? "nothing excites the structure" : "both --force and --base are given",
-                "give either --force or --base", Exit::usage);
+  if (const int n = !o.force.empty() + !o.base.empty() + o.loads; n != 1)
+    throw Error("response", n == 0 ? "nothing excites the structure" : "several of --force, --base and --loads are given",
+                "give --force, --base or --loads", Exit::usage);
   if (o.relative && o.base.empty())
     throw Error("--relative", "works with --base alone", "give --base, or leave --relative out", Exit::usage);
   if (o.at.empty() && o.force.empty()) throw Error("--at", "no probe is named", "--at tip.z", Exit::usage);
   std::optional<Base> base;
   std::vector<double> push;
-  if (o.force.empty())
+  if (!o.base.empty()) {
     base.emplace(file, o.base, modes);
-  else
+  } else if (o.loads) {
+    const Series loads = file.series("mode_load");
+    for (size_t j = 0; j < modes.omega2.size(); ++j) push.push_back(loads.at(j + 1, 0));
+    if (std::ranges::all_of(push, [](double p) { return p == 0; }))
+      throw Error("--loads", "the scene has no load that moves a mode", "[[load]] without a history, or --force", Exit::usage);
+  } else {
     push = place_of(file, o.force, modes).shape;
-  const std::string unit = base ? (o.of == "displacement" ? "s^2"
-                                   : o.of == "velocity"   ? "s"
-                                                          : "1")
-                                : (o.of == "displacement" ? "m/N"
-                                   : o.of == "velocity"   ? "m/s/N"
-                                                          : "m/s^2/N");
+  }
+  const std::string unit = o.loads ? (o.of == "displacement" ? "m"
+                                      : o.of == "velocity"   ? "m/s"
+                                                             : "m/s^2")
+                           : base  ? (o.of == "displacement" ? "s^2"
+                                      : o.of == "velocity"   ? "s"
+                                                             : "1")
+                                   : (o.of == "displacement" ? "m/N"
+                                      : o.of == "velocity"   ? "m/s/N"
+                                                             : "m/s^2/N");
   const int rates = o.of == "displacement" ? 0 : o.of == "velocity" ? 1 : 2;
   std::vector<std::string> header{"frequency [Hz]"};
   std::vector<std::vector<double>> columns(1);
@@ -191,9 +200,8 @@ void run(const ResponseOptions& o) {
   }
   Figure figure;
   std::tie(figure.width, figure.height) = parse_size(o.size);
-  figure.title = o.title.empty() ? fmt::format("{}: {}{} over {}", file.title, o.of, o.relative ? " against the base" : "",
-                                               base ? "the acceleration of the base" : "a force along " + o.force)
-                                 : o.title;
+  const std::string cause = o.loads ? " under the loads" : base ? " over the acceleration of the base" : " over a force along " + o.force;
+  figure.title = o.title.empty() ? fmt::format("{}: {}{}{}", file.title, o.of, o.relative ? " against the base" : "", cause) : o.title;
   figure.panels = {{"", {"frequency [Hz]", true}, {fmt::format("{} [{}]", o.of, unit), true}, {}},
                    {"", {"frequency [Hz]", true}, {"phase [degrees]"}, {}}};
   for (const std::string& at : o.at.empty() ? std::vector{o.force} : o.at) {
@@ -220,8 +228,7 @@ void run(const ResponseOptions& o) {
 }  // namespace
 
 Command response_command(CLI::App& app) {
-  auto* sub = app.add_subcommand("response",
-                                 "amplitude and phase of probes under a harmonic force at one of them, or on a base that swings, by modes");
+  auto* sub = app.add_subcommand("response", "amplitude and phase of probes under a harmonic force, or on a base that swings, by modes");
   const auto o = std::make_shared<ResponseOptions>();
   sub->add_option("run", o->run, "run.h5 of a scene with time.analysis = \"modes\" and probes")->required();
   sub->add_option("--force", o->force, "probe and axis that a force of 1 N swings along: tip.z");
@@ -229,6 +236,7 @@ Command response_command(CLI::App& app) {
                   "axis along which all that stands still swings with 1 m/s^2: z; or a motion of the scene and an axis, whose set swings "
                   "alone: wall.z; --base once for each, they swing together")
       ->allow_extra_args(false);
+  sub->add_flag("--loads", o->loads, "all loads of the scene, and gravity, swing together, with the values that they have at t = 0");
   sub->add_flag("--relative", o->relative, "of a base: how probes move against it");
   sub->add_option("--at", o->at, "probe and axis that answers, --at once for each; that of the force by default")->allow_extra_args(false);
   sub->add_option("--of", o->of, "displacement, velocity or acceleration")
@@ -246,7 +254,8 @@ Command response_command(CLI::App& app) {
   sub->add_option("--size", o->size, "size of the chart, WIDTHxHEIGHT")->capture_default_str();
   example(*sub,
           "  hilo-post response modes.h5 --force tip.z --damping 0.01 -o response.csv --png response.png\n"
-          "  hilo-post response modes.h5 --base z --at tip.z --of acceleration --damping 0.01 -o transmissibility.csv");
+          "  hilo-post response modes.h5 --base z --at tip.z --of acceleration --damping 0.01 -o transmissibility.csv\n"
+          "  hilo-post response modes.h5 --loads --at tip.z --damping 0.01 -o swing.csv");
   return {sub, [o] { run(*o); }};
 }
 

@@ -44,6 +44,7 @@ const std::vector<Layout>& layouts() {
       {"contact", {"Fx", "Fy", "Fz", "depth", "share_of_cell", "slip", "friction_work"}, {"N", "N", "N", "m", "1", "m", "J"}},
       {"path", {"load", "rise", "negative_eigenvalues"}, {"1", "1", "1"}},
       {"mode_stiffness", {"omega2"}, {"1/s^2"}},
+      {"mode_load", {"force"}, {"N kg^-0.5"}},
       {"left_out", {"strain", "left_out"}, {"J", "J"}},
       {"second_order", {"quadratic", "buckling", "growth"}, {"J", "1", "1"}},
       {"constraint", {"violation"}, {"m"}},

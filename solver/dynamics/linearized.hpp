@@ -58,6 +58,19 @@ class Linearized : AboutState {
     return (out[1] - out[0]) / (2 * step);
   }
 
+  /// What loads and gravity push with at the state.
+  Vector loads() const {
+    Vector out[2];
+    for (const int on : {0, 1}) {
+      Stage s = stage(state_.q);
+      s.load_factor = on;
+      Residual r;
+      system_.evaluate(s, state_.lambda, r, nullptr);
+      out[on] = free_part(r.r);
+    }
+    return out[0] - out[1];
+  }
+
   /// C v, by rates too small for friction to slip, over ways that rounding does not see; with `dampers`, or of mass alone.
   Vector damping_of(const Config& rate, bool dampers = true) const {
     const double speed = 1e-6 * system_.length / std::max(1e-300, system_.largest_rate(rate)), h = 10;

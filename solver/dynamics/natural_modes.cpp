@@ -122,6 +122,7 @@ std::vector<FoundMode> find_modes(const System& system, KktSolver& solver, const
   if (!modes.converged && found > wanted) return {};
   if (!modes.converged) throw Error("", fmt::format("{} modes were not found", found), "ask for fewer: time.modes", Exit::not_converged);
   const RigidMotions rigid(system, at, rest.q);
+  const Vector loads = at.loads();
   // Once more through the inverse, for the multipliers and to see what changes; what rounding brings of other modes goes.
   const Eigen::Index m = modes.omega2.size();
   Eigen::MatrixXd M(at.n(), m), x(at.n(), m);
@@ -154,7 +155,7 @@ std::vector<FoundMode> find_modes(const System& system, KktSolver& solver, const
     f.figures.omega2 = f.figures.pole2 = modes.omega2[j];
     f.figures.error += std::sqrt(std::abs(change.dot(at.mass(change))));  // not a number remains one
     f.figures.part = rigid.part_of(shape), f.figures.mass = f.figures.part.cwiseAbs2();
-    f.figures.drag = rigid.drag.transpose() * shape;
+    f.figures.drag = rigid.drag.transpose() * shape, f.figures.load = loads.dot(shape);
     f.x.assign(shape.begin(), shape.end());
     for (double& value : mu) value /= norm;
     clean.push_back(std::move(mu));

@@ -166,6 +166,8 @@ std::vector<ArraySchema>& arrays() {
       {"run.h5", "/history/mode_drag", "f8", "(n_t, 6)", "kg^0.5/s",
        "of an analysis of modes: forces of damping on each mode where everything moves along x, y, z, what stands still too (of "
        "mass-proportional damping alone), and where that stands still"},
+      {"run.h5", "/history/mode_load", "f8", "(n_t, 1)", "N kg^-0.5",
+       "of an analysis of modes: share of each mode of unit mass in the loads and gravity of the scene at t = 0 (0: a whirl)"},
       {"run.h5", "/history/path", "f8", "(n_t, 3)", "1",
        "of an analysis of a path, in which t is the number of the state: share of the loads; its rise along the path, 1 where all of a "
        "step is "

@@ -19,6 +19,7 @@ void NaturalModes::observe(const Sight& at) {
   out.push_back(now.omega2);
   for (size_t k = 0; k < static_cast<size_t>(most_); ++k) out.push_back(k < now.coupling.size() ? now.coupling[k] : 0);
   out.insert(out.end(), now.drag.data(), now.drag.data() + 6);
+  out.push_back(now.load);
 }
 
 }  // namespace hilo

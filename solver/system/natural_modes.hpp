@@ -14,6 +14,7 @@ struct NaturalMode {
   double error = 0;          // of the shape: what the equations of motion leave of it
   double amplitude = 0;      // with which a mode of unit mass is put out [m kg^0.5]
   Vec6 drag = Vec6::Zero();  // phi.C i along x, y, z: of mass-proportional damping, and of dampers to what stands still too  [kg^0.5/s]
+  double load = 0;           // phi.F of the loads at the start; 0 of a whirl  [N kg^-0.5]
   std::vector<double> coupling;  // phi.C phi_k of all modes [1/s]
   /// [Hz]; of an unstable mode minus its rate of growth over 2 pi.
   double frequency() const;
@@ -25,11 +26,9 @@ class NaturalModes final : public Contribution, public Observer {
   explicit NaturalModes(int most) : most_(most) {}
   NaturalMode now;
   std::vector<Output> outputs() const override {
-    return {{.group = "", .name = "mode", .n_end = 10},
-            {.group = "", .name = "participation", .n_end = 6},
-            {.group = "", .name = "mode_stiffness", .n_end = 1},
-            {.group = "", .name = "mode_damping", .n_end = most_},
-            {.group = "", .name = "mode_drag", .n_end = 6}};
+    return {{.group = "", .name = "mode", .n_end = 10},          {.group = "", .name = "participation", .n_end = 6},
+            {.group = "", .name = "mode_stiffness", .n_end = 1}, {.group = "", .name = "mode_damping", .n_end = most_},
+            {.group = "", .name = "mode_drag", .n_end = 6},      {.group = "", .name = "mode_load", .n_end = 1}};
   }
   void observe(const Sight& at) override;
 

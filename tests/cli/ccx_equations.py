@@ -13,8 +13,11 @@ import numpy as np
 FOLDER = "/usr/share/doc/calculix-ccx-test/examples/test/"
 SMALL, LIMIT = 1e-4, 1e-6
 binaries = os.path.abspath(sys.argv[2])
-if not os.path.isdir(FOLDER) or not shutil.which("ccx"):
-    sys.exit("ccx_equations: no ccx, or no decks (apt-get install calculix-ccx calculix-ccx-test)")
+if not os.path.isdir(FOLDER):
+    sys.exit("ccx_equations: no decks (apt-get install calculix-ccx-test)")
+if not shutil.which("ccx"):
+    print("ccx_equations: no ccx (apt-get install calculix-ccx)")
+    sys.exit(77)
 
 
 def printed(text):

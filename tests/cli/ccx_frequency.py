@@ -37,7 +37,10 @@ def main():
     for name, modes, limit in DECKS:
         with tempfile.TemporaryDirectory() as folder:
             deck = os.path.join(folder, name + ".inp")
-            open(deck, "w").write(text_of(name + ".inp"))
+            text = text_of(name + ".inp")
+            if "*MODAL DYNAMIC" in text:  # becomes a run in time, and its modes are asked for by the step alone
+                text = text[: text.index("*END STEP") + len("*END STEP")] + "\n"
+            open(deck, "w").write(text)
             run = lambda *command: subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL)
             run(bin + "/hilo-import", deck, "--units", "mm-t-s", "-o", "mesh.h5", "--scene-out", "scene.toml", "--quiet")
             run(bin + "/hilo-solve", "scene.toml", "mesh.h5", "-o", "run.h5", "--quiet", "--accept-left-out")

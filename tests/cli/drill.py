@@ -64,6 +64,39 @@ SCENES = {
 }
 
 
+CONTACT = """[[obstacle]]
+kind = "plane"
+name = "floor"
+at = [0, 0, 0]
+axis = [0, 1, 0]
+[[obstacle]]
+kind = "sphere"
+name = "skin"
+on = "ball"
+at = [0.1, 0.15, 0]
+radius = 0.1
+[[contact]]
+name = "bounce"
+a = "floor"
+b = "skin"
+stiffness = 1e5
+friction = 0.3
+"""
+SCENES |= {
+    "contact": (
+        GRAVITY + body("ball", [0.1, 0.15, 0]) +
+        '[[initial]]\non = ["ball"]\nvelocity = [1.5, -1, 0]\n' +
+        CONTACT + short(2e-3), False, [1, 2]),
+    "gauss": (PENDULUM + body("bob", [0.6, -0.3, 0]) + joint("spherical", "link", "arm", "bob", [0.6, 0, 0]) +
+              short(2e-2).replace("[time]\n", '[time]\nintegrator = "gauss"\n'), False, [1]),
+    "static, plastic": (MESH.format(law='kind = "j2"\nyield = 2e4\nhardening = 1e6\n', pull=-40).replace("damping = 1e-4\n", "") +
+                        '[time]\nanalysis = "static"\nend = 0.01\nsteps = 30\n[solver]\ntolerance = 1e-10\n', True, [1]),
+    "path": (MESH.format(law="", pull=-200).replace("damping = 1e-4\n", "").split("history")[0] +
+             '[time]\nanalysis = "path"\nsteps = 30\n[solver]\ntolerance = 1e-10\n', True, [1]),
+    "modes": (MESH.format(law="", pull=-200).split("[[load]]")[0] + '[time]\nanalysis = "modes"\nmodes = 12\n', True, [1]),
+}
+
+
 def command(name, ranks, *more):
     scene, mesh, _ = SCENES[name]
     launcher = ["mpirun", "-n", str(ranks)] if ranks > 1 else []

@@ -103,6 +103,8 @@ for number, source in enumerate(sources):
                 failed.append(f"{source}: {name}: {ours.stderr!r}, gmsh {theirs.stderr!r}")
             continue
         a, b = arrays("ours.h5"), arrays("theirs.h5")
+        if name.endswith(".mesh"):  # references become sets here, and entities without a group there (cli.nothing_lost_mesh compares them)
+            a, b = ({key: v for key, v in one.items() if not key.startswith("sets/")} for one in (a, b))
         differ = [key for key in sorted(set(a) | set(b)) if key not in a or key not in b or not same(a[key], b[key])]
         if differ:
             failed.append(f"{source}: {name}: {differ}")

@@ -112,11 +112,12 @@ TEST_F(ImportInpTies, WhatIsLeftOutIsToldByName) {
       bar +
           "*ELEMENT, TYPE=MASS, ELSET=p\n50, 17\n51, 18\n*MASS, ELSET=p\n2.\n*ELEMENT, TYPE=DASHPOTA, ELSET=d\n52, 17, 101\n"
           "*DASHPOT, ELSET=d\n\n7.\n*ELEMENT, TYPE=SPRING1, ELSET=q\n53, 17\n*SPRING, ELSET=q, NONLINEAR\n3\n0., 0.\n1., 1.\n"
-          "*COUPLING, REF NODE=100, SURFACE=end, CONSTRAINT NAME=c\n*KINEMATIC\n1, 2\n"
+          "*ORIENTATION, NAME=o\n0., 1., 0., -1., 0., 0.\n"
+          "*COUPLING, REF NODE=100, SURFACE=end, CONSTRAINT NAME=c, ORIENTATION=o\n*KINEMATIC\n1, 2\n"
           "*COUPLING, REF NODE=17, SURFACE=end, CONSTRAINT NAME=e\n*KINEMATIC\n1, 6\n*BOUNDARY\n101, 1, 1, .5\n101, 4, 4\n100, 1\n");
   imported("a.inp", "--scene-out s.toml");
-  for (const char* what :
-       {"*COUPLING of some components (1,", "*COUPLING whose reference node is a node of a cell (1,", "*BOUNDARY on a node of no cell (1,"})
+  for (const char* what : {"*COUPLING of some components in axes of its own (1,", "*COUPLING whose reference node is a node of a cell (1,",
+                           "*BOUNDARY on a node of no cell (1,"})
     EXPECT_NE(err.find(std::string("not read: ") + what), std::string::npos) << what << '\n' << err;
   const Scene s = Scene::load(place / "s.toml");
   double mass = 0;

@@ -23,6 +23,7 @@ struct DeckMaterial {
   double G = std::nan("");         // shear modulus where the deck gives one beside E
   std::string kind = "stvk";       // of the law
   std::vector<DeckKey> keys = {};  // besides E, nu and density
+  double alpha = 0, beta = 0;      // damping by mass and by stiffness, which regions have
   std::string no_law = {};         // what has none in hilo, with its place; "" where all has
   bool elastic() const { return no_law.empty() && kind == "stvk"; }
   void become(const std::string& other);  // of another kind; two of them are none

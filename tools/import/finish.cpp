@@ -161,6 +161,37 @@ bool is_mirrored(const Mesh& m) {
   return any;
 }
 
+/// Solid cells of the same nodes, as where a file lists an element twice: mass and stiffness there are doubled.
+void tell_doubled(Imported& in) {
+  const Mesh& m = in.mesh;
+  std::vector<std::pair<std::uint64_t, std::int64_t>> key;  // of the nodes, in any order, and the cell
+  for (std::int64_t c = 0; c < m.n_cells(); ++c) {
+    if (info(m.shape[c]).dimension != 3) continue;
+    std::uint64_t sum = 0;
+    for (const auto a : m.cell(c)) {
+      auto x = static_cast<std::uint64_t>(a) + 0x9e3779b97f4a7c15u;  // mixed as in splitmix64
+      x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+      x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+      sum += x ^ (x >> 31);
+    }
+    key.emplace_back(sum, c);
+  }
+  std::ranges::sort(key);
+  const auto sorted = [&](std::int64_t c) {
+    std::vector<std::int64_t> nodes(m.cell(c).begin(), m.cell(c).end());
+    std::ranges::sort(nodes);
+    return nodes;
+  };
+  std::int64_t doubled = 0, one = 0, other = 0;
+  for (size_t i = 1; i < key.size(); ++i)
+    if (key[i].first == key[i - 1].first && sorted(key[i].second) == sorted(key[i - 1].second) && doubled++ == 0)
+      one = m.cell_id[key[i - 1].second], other = m.cell_id[key[i].second];
+  if (doubled)
+    in.notes.push_back(
+        fmt::format("warning: {} cells have the nodes of another cell, the first are {} and {}: mass and stiffness count twice there",
+                    doubled, one, other));
+}
+
 /// Cells that pass and are nearly flat all the same: each region's, with the place of the worst.
 void tell_slivers(Imported& in) {
   const Mesh& m = in.mesh;
@@ -227,6 +258,7 @@ void finish(Imported& in, const std::string& file, const ImportOptions& options)
       in.notes.push_back(
           fmt::format("region \"{}\" has shells or beams: it can be rigid alone (--thicken makes solid-shells)", m.region_name[r]));
   if (in.n_beams > 0) in.notes.push_back(fmt::format("{} beams stand in the scene lines alone (--scene-out)", in.n_beams));
+  tell_doubled(in);
   tell_slivers(in);
   tell_untouched(in);
   for (DeckCase& c : in.cases)

@@ -75,6 +75,7 @@ constexpr std::pair<std::string_view, const char*> losses[] = {
     {"*POTENTIAL", material},
     {"*EXPANSION", material},
     {"*DAMPING", material},
+    {"*MODAL DAMPING", material},
     {"*MATERIAL", material},
     // Nastran
     {"PARAM G", other},

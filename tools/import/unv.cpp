@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "base/error.hpp"
 #include "base/param.hpp"
@@ -149,7 +150,7 @@ class UnvReader {
 
   void nodes() {
     while (more()) {
-      const auto id = l_.integer(0);
+      const auto id = l_.integer(0);  // the coordinates are those of the part, whatever the node's systems are
       if (!row_.try_emplace(id, in_.mesh.n_nodes()).second)
         throw Error(l_.place(0), fmt::format("node {} is given twice", id), "number each node once");
       must();
@@ -277,7 +278,18 @@ class UnvReader {
       }
   }
 
+  void tell_loose_faces() {
+    std::unordered_set<std::int64_t> grouped;
+    for (const auto& g : groups_) grouped.insert(g.elements.begin(), g.elements.end());
+    std::vector<std::vector<std::int64_t>> faces;
+    for (const auto& e : elements_)
+      if (e.kind->dimension == 2 && !grouped.count(e.id)) faces.push_back(e.nodes);
+    if (const auto n = std::ranges::count_if(match_facets(in_.mesh, faces), [](const Facet& f) { return f.cell < 0; }))
+      in_.skip("faces of no group, on no solid", path_, n);
+  }
+
   void sets() {
+    tell_loose_faces();
     SetNames names(in_);
     for (const auto& g : groups_) {
       std::vector<std::vector<std::int64_t>> faces;
@@ -294,6 +306,8 @@ class UnvReader {
         if (e->cell < 0) rows.insert(rows.end(), e->nodes.begin(), e->nodes.end());
       for (const auto id : g.nodes)
         if (const auto a = row_.find(id); a != row_.end()) rows.push_back(a->second);
+      if (const auto gone = std::ranges::count_if(g.nodes, [&](std::int64_t id) { return !row_.count(id); }))
+        in_.notes.push_back(fmt::format("group \"{}\": {} of its numbers are no node: left out", g.name, gone));
       if (!rows.empty()) names.nodes(g.name, std::move(rows));
       if (g.nodes.empty() && g.elements.empty()) in_.notes.push_back(fmt::format("group \"{}\" is empty: left out", g.name));
       const auto unknown = std::count_if(g.elements.begin(), g.elements.end(), [&](std::int64_t id) { return !of_id_.count(id); });

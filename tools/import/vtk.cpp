@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include "base/error.hpp"
 #include "import/data_line.hpp"
@@ -63,6 +64,21 @@ void check(const VtkGrid& g, const std::string& path) {
   }
 }
 
+/// VTK's own linear wedges have the base the other way round than those of its quadratic ones and of other programs, which many writers
+/// forget: where all are numbered so, all are turned.
+void turn_wedges(Imported& in) {
+  Mesh& m = in.mesh;
+  std::vector<std::int64_t> wedges;
+  for (std::int64_t c = 0; c < m.n_cells(); ++c)
+    if (m.shape[c] == static_cast<std::uint8_t>(Shape::wedge6)) wedges.push_back(c);
+  if (wedges.empty() || std::ranges::any_of(wedges, [&](std::int64_t c) { return !(quality(m, c).volume < 0); })) return;
+  for (const auto c : wedges) {
+    auto* n = m.nodes.data() + m.offset[c];
+    std::swap(n[1], n[2]), std::swap(n[4], n[5]);
+  }
+  in.notes.push_back(fmt::format("{} wedges are numbered as VTK's documentation has them: turned", wedges.size()));
+}
+
 }  // namespace
 
 Imported read_vtk(const std::string& path, const ImportOptions& options) {
@@ -111,22 +127,47 @@ Imported read_vtk(const std::string& path, const ImportOptions& options) {
     cell_of.push_back(static_cast<std::int64_t>(c));
   }
   if (m.n_cells() == 0) throw Error(path, "no volume cells and no lines");
+  turn_wedges(in);
   tell_pyramids(in, n_pyramids);
 
-  std::vector<CellGroup> regions;
-  for (const char* wanted : region_arrays) {
-    const auto found = std::find_if(g.cell_data.begin(), g.cell_data.end(), [&](const auto& a) { return upper(a.first) == wanted; });
-    if (found == g.cell_data.end() || found->second.size() != g.types.size()) continue;
-    const auto& v = found->second;
-    if (std::any_of(v.begin(), v.end(), [](double x) { return x != std::floor(x); })) continue;
+  // Of an array of whole numbers the cells of each value.
+  const auto by_values = [&](const std::string& name, const std::string& prefix) {
     std::map<std::int64_t, CellGroup> by_value;
+    const auto& v = g.cell_data.at(name);
     for (size_t c = 0; c < cell_of.size(); ++c)
       by_value[static_cast<std::int64_t>(v[cell_of[c]])].cells.push_back(static_cast<std::int64_t>(c));
-    for (auto& [value, group] : by_value) regions.push_back({fmt::format("region_{}", value), std::move(group.cells)});
-    in.notes.push_back(fmt::format("regions by the values of cell array \"{}\"", found->first));
+    std::vector<CellGroup> groups;
+    for (auto& [value, group] : by_value) groups.push_back({fmt::format("{}_{}", prefix, value), std::move(group.cells)});
+    return groups;
+  };
+  const auto is_whole = [&](const std::string& name) {
+    const auto& v = g.cell_data.at(name);
+    return v.size() == g.types.size() && std::ranges::all_of(v, [](double x) { return x == std::floor(x) && std::abs(x) < 9e15; });
+  };
+  std::vector<CellGroup> regions, groups;
+  std::string of_regions;
+  for (const char* wanted : region_arrays) {
+    const auto found = std::ranges::find_if(g.cell_data, [&](const auto& a) { return upper(a.first) == wanted; });
+    if (found == g.cell_data.end() || !is_whole(found->first)) continue;
+    of_regions = found->first;
+    regions = by_values(of_regions, "region");
+    in.notes.push_back(fmt::format("regions by the values of cell array \"{}\"", of_regions));
     break;
   }
-  assign_regions(in, path, regions, false, {}, options);
+  constexpr size_t most_groups = 1000;  // an array of more values numbers cells
+  for (const auto& [name, values] : g.cell_data) {
+    if (name == of_regions) continue;
+    std::set<double> different;
+    for (size_t c = 0; c < values.size() && different.size() <= most_groups; ++c) different.insert(values[c]);
+    const bool few = different.size() <= most_groups && !different.empty() && is_whole(name);
+    auto more = few ? by_values(name, name) : std::vector<CellGroup>();
+    in.skip(few ? fmt::format("cell array \"{}\" (--regions {},... makes regions of its values)", name, more.front().name)
+                : fmt::format("cell array \"{}\"", name),
+            path);
+    if (few) std::ranges::move(more, std::back_inserter(groups));
+  }
+  for (const auto& name : g.not_read) in.skip(name, path);
+  assign_regions(in, path, regions, false, groups, options);
   return in;
 }
 

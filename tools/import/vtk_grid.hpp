@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct VtkGrid {
   std::vector<std::int64_t> connectivity, offsets;       // offsets: one more than cells, from 0
   std::vector<int> types;                                // VTK cell types
   std::map<std::string, std::vector<double>> cell_data;  // arrays of one component
+  std::set<std::string> not_read;                        // arrays of nodes, and of cells with several components
 };
 
 /// Legacy .vtk, ASCII or binary, versions up to 5.1.

@@ -133,8 +133,14 @@ VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
   const std::string mode = upper(s.line());
   if (mode != "ASCII" && mode != "BINARY") throw Error(path + ":3", fmt::format("expected ASCII or BINARY, found \"{}\"", mode));
   s.binary = mode == "BINARY";
-  bool of_cells = false;
+  bool of_cells = false, of_nodes = false;
   std::int64_t n_data = 0;
+  const auto keep = [&](const std::string& name, std::int64_t components, std::vector<double> v) {
+    if (of_cells && components == 1)
+      g.cell_data[name] = std::move(v);
+    else if (of_cells || of_nodes)
+      g.not_read.insert(fmt::format("{} array \"{}\"", of_cells ? "cell" : "node", name));
+  };
   for (std::string w = upper(s.word()); !w.empty(); w = upper(s.word())) {
     if (w == "DATASET") {
       if (const std::string kind = upper(s.word()); kind != "UNSTRUCTURED_GRID")
@@ -170,7 +176,7 @@ VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
     } else if (w == "CELL_TYPES")
       g.types = s.numbers<int>(s.count(w), "int");
     else if (w == "CELL_DATA" || w == "POINT_DATA") {
-      of_cells = w == "CELL_DATA";
+      of_cells = w == "CELL_DATA", of_nodes = !of_cells;
       n_data = s.count(w);
     } else if (w == "SCALARS") {
       const std::string rest = s.line();  // name type [components]
@@ -184,9 +190,10 @@ VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
       else
         s.back(here);
       auto v = s.numbers<double>(n_data * components, lower(type));
-      if (of_cells && components == 1) g.cell_data[name] = std::move(v);
+      keep(name, components, std::move(v));
     } else if (w == "VECTORS" || w == "NORMALS" || w == "TENSORS") {
-      s.word();
+      const std::string name = s.word();
+      keep(name, 3, {});
       const auto type = lower(s.word());
       s.numbers<double>(n_data * (w == "TENSORS" ? 9 : 3), type);
     } else if (w == "FIELD") {
@@ -204,7 +211,7 @@ VtkGrid read_vtk_legacy(const std::string& path, const std::string& bytes) {
         const auto type = lower(s.word());
         if (type == "string") s.fail(fmt::format("array {} of strings is not read", name));
         auto v = s.numbers<double>(components * tuples, type);
-        if (of_cells && components == 1) g.cell_data[name] = std::move(v);
+        keep(name, components, std::move(v));
       }
     } else if (w == "LOOKUP_TABLE") {
       s.word();

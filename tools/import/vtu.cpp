@@ -253,6 +253,8 @@ class Vtu {
       g.points = values(t);
     else if (section == "CellData" && one && t.attributes["type"] != "String")
       g.cell_data[name] = values(t);
+    else if (section == "CellData" || section == "PointData")
+      g.not_read.insert(fmt::format("{} array \"{}\"", section == "CellData" ? "cell" : "node", name));
     else if (section == "Cells") {
       const auto v = values(t);
       if (name == "connectivity") g.connectivity.assign(v.begin(), v.end());

@@ -49,8 +49,15 @@ TEST_F(NaturalModes, GiveTheTransmissibilityOfAMassOnASpring) {
   modes(body("mass", m, {0, 0, 0}, {1, 1, 1}) +
             "[[joint]]\nkind = \"prismatic\"\nname = \"guide\"\nb = \"mass\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n" +
             "[[spring]]\nkind = \"bushing\"\nname = \"s\"\nb = \"mass\"\nat = [0, 0, 0]\nstiffness = [0, 0, 1200]\ndamping = [0, 0, 20]\n"
-            "[[probe]]\nname = \"top\"\non = \"mass\"\nat = [0, 0, 0]\n",
+            "[[probe]]\nname = \"top\"\non = \"mass\"\nat = [0, 0, 0]\n"
+            "[[load]]\nkind = \"force\"\nname = \"push\"\non = \"mass\"\nforce = [4, 0, 6]\n",
         3);
+  const std::vector<Answer> pushed = answers(work.run("hilo-post response run.h5 --loads --at top.z --from 0.3 --to 30 --points 40"));
+  EXPECT_EQ(pushed.size(), 40U);
+  for (const Answer& a : pushed) {
+    const double w = 2 * pi * a.f;
+    EXPECT_LT(std::abs(std::polar(a.size, a.phase * pi / 180) / (6.0 / std::complex<double>(k - m * w * w, c * w)) - 1.0), 1e-5) << a.f;
+  }
   const std::string command = "hilo-post response run.h5 --base z --at top.z --from 0.3 --to 30 --points 40 ";
   for (const bool relative : {false, true})
     for (const Answer& a : answers(work.run(command + (relative ? "--relative" : "--of acceleration")))) {

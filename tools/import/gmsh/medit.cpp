@@ -33,9 +33,12 @@ class MeditReader {
         vertices(n);
       else if (const Kind* k = kind_of(key))
         elements(*k, n);
-      else  // corners, ridges, normals: numbers only
+      else {  // numbers only
+        if (!says_nothing(key)) tell(std::string(key), n);
         while (at_ < text_.size() && !std::isalpha(static_cast<unsigned char>(peek()))) word();
+      }
     }
+    name_references();
     order_nodes();
     return std::move(mesh_);
   }
@@ -57,10 +60,31 @@ class MeditReader {
         {"TetrahedraP2", 11, {0, 1, 2, 3, 4, 5, 6, 7, 9, 8}},
         {"Hexahedra", 5, {0, 1, 2, 3, 4, 5, 6, 7}},
         {"Prisms", 6, {0, 1, 2, 3, 4, 5}},
+        {"Pyramids", 7, {0, 1, 2, 3, 4}},
     };
     for (const auto& k : kinds)
       if (k.key == key) return &k;
     return nullptr;
+  }
+
+  /// What meshers mark of the geometry: a mesh without it is the same.
+  static bool says_nothing(std::string_view key) {
+    for (const auto* part :
+         {"Corners", "Ridges", "Required", "Normal", "Tangent", "Parallel", "BoundingBox", "AngleOfCornerBound", "Geometry"})
+      if (key.find(part) != key.npos) return true;
+    return false;
+  }
+  void tell(const std::string& key, std::int64_t n) {
+    for (const auto* cells : {"Tetra", "Hexa", "Prism", "Pyramid", "Wedge"})
+      if (key.starts_with(cells) && n > 0)
+        fail(fmt::format("{} {} are not read", n, key),
+             "supported: Tetrahedra, TetrahedraP2, Hexahedra, Prisms, Pyramids, Triangles, Quadrilaterals and Edges");
+    mesh_.notes.push_back(fmt::format("not read: {} {}", n, key));
+  }
+  /// References are all that a surface or a curve has for a name; 0 is none.
+  void name_references() {
+    for (auto& [key, entity] : mesh_.entities)
+      if (const auto [dimension, reference, part] = key; (dimension == 1 || dimension == 2) && reference != 0) entity.groups = {reference};
   }
 
   void blanks() {
@@ -89,8 +113,9 @@ class MeditReader {
       fail(w.empty() ? "the file ends here" : fmt::format("\"{}\" is not a number", w.substr(0, 40)));
     return value;
   }
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}:{}", path_, 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n')), what);
+  [[noreturn]] void fail(const std::string& what, const std::string& hint = "") const {
+    throw Error(fmt::format("{}:{}", path_, 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n')), what,
+                hint);
   }
 
   void vertices(std::int64_t n) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -85,8 +86,10 @@ class GmshReading {
           cells.insert(cells.end(), of->second.begin(), of->second.end());
       SetNames(in_).cells(colour, std::move(cells));
     }
-    surface_groups();
+    surface_groups(), tell_loose();
     node_groups();
+    for (const auto& [key, name] : from_.group_name)
+      if (!groups_[key.first].count(key.second)) in_.notes.push_back(fmt::format("group \"{}\" has no elements: left out", name));
     return std::move(in_);
   }
 
@@ -128,8 +131,13 @@ class GmshReading {
         for (const auto& block : entity.blocks)
           for (const auto id : block.tags) next_id_ = std::max(next_id_, id + 1);
     std::vector<std::int64_t> n(5);
-    for (size_t e = 0; e < b.tags.size(); ++e, ++n_pyramids_) {
+    for (size_t e = 0; e < b.tags.size(); ++e) {
       for (size_t i = 0; i < 5; ++i) n[i] = row(b.nodes[5 * e + i], b.tags[e]);
+      if (const auto same = again(pyramid5, n); same >= 0) {
+        cells.push_back(same), cells.push_back(same + 1);
+        continue;
+      }
+      ++n_pyramids_;
       std::int64_t id = b.tags[e];
       for (const auto& half : halves_of_pyramid(n)) {
         cells.push_back(in_.mesh.n_cells());
@@ -141,8 +149,20 @@ class GmshReading {
     }
   }
 
+  /// The cell that an element is already, -1 for a new one.  msh 1 and 2 list an element of several groups once for each of them.
+  std::int64_t again(int type, const std::vector<std::int64_t>& nodes) {
+    if (!in_several_groups_) return -1;
+    auto key = nodes;
+    key.insert(key.end(), {type, tag_});
+    const auto [at, fresh] = cell_of_.try_emplace(std::move(key), in_.mesh.n_cells());
+    return fresh ? -1 : at->second;
+  }
+
   void add_cells(const Key& key, std::vector<std::int64_t>& cells) {
-    const int dim = std::get<0>(key);
+    const int dim = std::get<0>(key), tag = std::get<1>(key);
+    const auto first = from_.entities.lower_bound({dim, tag, std::numeric_limits<int>::min()}), second = std::next(first);
+    in_several_groups_ = second != from_.entities.end() && std::get<0>(second->first) == dim && std::get<1>(second->first) == tag;
+    tag_ = tag;
     std::vector<const GmshMesh::Block*> blocks;
     for (const auto& b : from_.entities.at(key).blocks) blocks.push_back(&b);
     std::stable_sort(blocks.begin(), blocks.end(), [](const auto* a, const auto* b) { return family(a->type) < family(b->type); });
@@ -164,6 +184,10 @@ class GmshReading {
       for (size_t e = 0; e < b->tags.size(); ++e) {
         n.clear();
         for (const int i : k->p) n.push_back(row(b->nodes[e * per + static_cast<size_t>(i)], b->tags[e]));
+        if (const auto same = again(b->type, n); same >= 0) {
+          cells.push_back(same);
+          continue;
+        }
         cells.push_back(in_.mesh.n_cells());
         in_.mesh.add_cell(k->shape, n, -1, b->tags[e]);
         if (!ids_.insert(b->tags[e]).second)
@@ -259,7 +283,11 @@ class GmshReading {
     const auto on_solids = lines_on_solids(in_.mesh, lines);
     std::set<Key> used;
     for (const auto& [tag, one] : of_group) {
-      if (one.empty() || std::any_of(one.begin(), one.end(), [&](const auto& l) { return on_solids.count(l); })) continue;
+      const auto on = std::ranges::count_if(one, [&](const auto& l) { return on_solids.count(l); });
+      if (const auto off = static_cast<std::ptrdiff_t>(one.size()) - on; on > 0 && off > 0)
+        in_.notes.push_back(
+            fmt::format("curve group \"{}\": {} of its {} lines lie on no solid: no bars of them", group_name(1, tag), off, one.size()));
+      if (one.empty() || on > 0) continue;
       CellGroup g{group_name(1, tag), {}};
       for (const auto& key : groups_[1][tag])
         if (used.insert(key).second) add_cells(key, g.cells);
@@ -281,16 +309,37 @@ class GmshReading {
     return nodes;
   }
 
+  /// The facets of each face: one, none, or the two that the base of a pyramid is cut into.
+  std::vector<std::vector<Facet>> facets_of(const std::vector<std::vector<std::int64_t>>& faces) const {
+    std::vector<std::vector<Facet>> out(faces.size());
+    std::vector<std::vector<std::int64_t>> halves;
+    std::vector<size_t> of;
+    const auto found = match_facets(in_.mesh, faces);
+    for (size_t i = 0; i < faces.size(); ++i) {
+      if (found[i].cell >= 0) out[i].push_back(found[i]);
+      if (found[i].cell >= 0 || n_pyramids_ == 0 || faces[i].size() != 4) continue;
+      const auto& f = faces[i];
+      const auto k = static_cast<size_t>(std::ranges::min_element(f) - f.begin());  // as halves_of_pyramid() cuts it
+      halves.push_back({f[k], f[(k + 1) % 4], f[(k + 2) % 4]});
+      halves.push_back({f[k], f[(k + 2) % 4], f[(k + 3) % 4]});
+      of.push_back(i);
+    }
+    const auto two = match_facets(in_.mesh, halves);
+    for (size_t j = 0; j < of.size(); ++j)
+      if (two[2 * j].cell >= 0 && two[2 * j + 1].cell >= 0) out[of[j]] = {two[2 * j], two[2 * j + 1]};
+    return out;
+  }
+
   void surface_groups() {
     SetNames names(in_);
     std::vector<std::vector<std::int64_t>> faces;
     std::vector<size_t> first{0};
     const auto is_shell = [&](const Key& key) { return of_surface_.contains(key); };
-    std::erase_if(groups_[2], [&](const auto& group) {  // these are regions
-      const auto own = o_.thickness.find(group_name(2, group.first));
-      return !o_.thickness.empty() && (own != o_.thickness.end() || o_.thickness.contains(""));
+    auto groups = groups_[2];
+    std::erase_if(groups, [&](const auto& group) {  // these are regions
+      return o_.thickness.contains("") || o_.thickness.contains(group_name(2, group.first));
     });
-    for (const auto& [tag, keys] : groups_[2]) {
+    for (const auto& [tag, keys] : groups) {
       for (const auto& key : keys)
         for (const auto& b : from_.entities.at(key).blocks) {
           if (is_shell(key)) continue;
@@ -302,14 +351,15 @@ class GmshReading {
         }
       first.push_back(faces.size());
     }
-    const auto found = match_facets(in_.mesh, faces);
+    const auto found = facets_of(faces);
     size_t g = 0;
-    for (const auto& [tag, keys] : groups_[2]) {
+    for (const auto& [tag, keys] : groups) {
       const std::string name = group_name(2, tag);
       std::vector<Facet> facets;
+      size_t missing = 0;
+      const size_t all = first[g + 1] - first[g];
       for (size_t i = first[g]; i < first[g + 1]; ++i)
-        if (found[i].cell >= 0) facets.push_back(found[i]);
-      const size_t missing = first[g + 1] - first[g] - facets.size();
+        facets.insert(facets.end(), found[i].begin(), found[i].end()), missing += found[i].empty();
       ++g;
       for (const auto& key : keys)
         if (is_shell(key))
@@ -320,10 +370,31 @@ class GmshReading {
         continue;
       }
       if (missing)
-        in_.notes.push_back(
-            fmt::format("surface group \"{}\": {} of its {} faces lie on no cell: left out", name, missing, missing + facets.size()));
+        in_.notes.push_back(fmt::format("surface group \"{}\": {} of its {} faces lie on no cell: left out", name, missing, all));
       names.facets(name, std::move(facets));
     }
+  }
+
+  /// Elements of no group that are no faces or edges of the cells: shells and bars that nothing names.
+  void tell_loose() {
+    std::vector<std::vector<std::int64_t>> faces;
+    std::vector<std::pair<std::int64_t, std::int64_t>> lines;
+    for (const auto& [key, entity] : from_.entities) {
+      if (!entity.groups.empty() || of_surface_.contains(key)) continue;
+      for (const auto& b : entity.blocks)
+        for (size_t e = 0; e < b.tags.size(); ++e) {
+          const size_t per = b.nodes.size() / b.tags.size(), corners = face_corners(b.type);
+          if (corners) faces.emplace_back();
+          for (size_t i = 0; i < corners; ++i) faces.back().push_back(row(b.nodes[e * per + i], b.tags[e]));
+          if (std::get<0>(key) == 1 && of_surface_.empty()) lines.emplace_back(row(b.nodes[e * per], b.tags[e]), row(b.nodes[e * per + 1], b.tags[e]));
+        }
+    }
+    const auto found = facets_of(faces);
+    if (const auto n = std::ranges::count_if(found, [](const auto& f) { return f.empty(); }))
+      in_.skip("triangles and quadrangles of no group, on no solid", path_, n);
+    const auto on_solids = lines_on_solids(in_.mesh, lines);
+    if (const auto n = std::ranges::count_if(lines, [&](const auto& l) { return !on_solids.count(l); }))
+      in_.skip("lines of no group, on no solid", path_, n);
   }
 
   void node_groups() {
@@ -344,6 +415,9 @@ class GmshReading {
   std::vector<CellGroup> regions_;
   std::unordered_set<int> bar_groups_;
   std::set<std::string> reduced_;
+  bool in_several_groups_ = false;                             // this entity: its elements may be listed several times
+  int tag_ = 0;                                                // of this entity
+  std::map<std::vector<std::int64_t>, std::int64_t> cell_of_;  // of entities in several groups: by nodes, type and tag
   std::int64_t n_pyramids_ = 0, next_id_ = 0;
 };
 

@@ -130,6 +130,8 @@ class MshReader {
         in_.fail(fmt::format("{} {}", section, nodes ? "a second time" : "before $Nodes"));
       else {  // data on nodes, periodic surfaces, comments: not for us
         in_.skip_behind("$End" + section.substr(1));
+        if (section != "$Comments" && section != "$Periodic" && section != "$Parametrizations" && section != "$GhostElements")
+          ++unread_[section];
         continue;
       }
       if (const auto end = in_.word(); end != "$End" + section.substr(1))
@@ -137,6 +139,7 @@ class MshReader {
     }
     if (!nodes || !elements) throw Error(path_, fmt::format("no ${}", nodes ? "Elements" : "Nodes"), "cut off?");
     tell_partitions();
+    for (const auto& [section, n] : unread_) mesh_.notes.push_back(fmt::format("not read: {} sections {}", n, section));
     order_nodes();
     return std::move(mesh_);
   }
@@ -378,7 +381,8 @@ class MshReader {
   };
   std::map<GmshMesh::Key, Part> part_;
   size_t n_partitions_ = 0;
-  std::vector<GmshMesh::Key> on_;  // entity of each node
+  std::map<std::string, int> unread_;  // sections by name
+  std::vector<GmshMesh::Key> on_;      // entity of each node
 };
 
 }  // namespace

@@ -90,6 +90,7 @@ std::string write_beams(const InpDeck& d, Imported& in, SetNames& names, const I
       name = clean_name(s.elset_name) + (thin ? "_B33" : "");
       for (const auto& [other, used] : written)
         if (other != &s && used[thin] == name) name += fmt::format("_{}", written.size());
+      if (m.alpha != 0 || m.beta != 0) in.skip("*DAMPING of beams", s.place);
       if (m.kind != "stvk" || !m.no_law.empty()) in.skip("*PLASTIC of beams, which are linear elastic", s.place);
       if (with_material && !of_cells.contains(s.law) && materials.insert(s.law).second) out += m.table(m.name, o.units);
       out += section_table(name, section, m, o.units, o.scale, s.place);

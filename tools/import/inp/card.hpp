@@ -44,6 +44,7 @@ std::span<const InpCard> inp_load_cards();      // supports, loads, histories
 std::span<const InpCard> inp_motion_cards();    // *BASE MOTION
 std::span<const InpCard> inp_tie_cards();       // couplings, rigid bodies, masses, springs
 std::span<const InpCard> inp_step_cards();      // heading, parts, steps, procedures
+std::span<const InpCard> inp_modal_cards();     // what sums modes
 std::span<const InpCard> inp_unread_cards();    // requests for output, and cards without which the mesh would be another
 /// All of them.
 InpCards& inp_cards();

@@ -112,6 +112,18 @@ struct InpTarget {
   std::string place = {};
 };
 /// *STEP.
+/// *STEADY STATE DYNAMICS: frequencies, and the ratio of damping of all modes.
+struct InpSweep {
+  double from = 0, to = 0, ratio = 0;
+  int points = 0;  // 0: there is none
+};
+/// *MODAL DAMPING: ratios, as first mode, last mode, ratio; or factors of mass and stiffness.
+struct InpModalDamping {
+  std::vector<std::array<double, 3>> ratios = {};
+  double alpha = 0, beta = 0;
+  bool rayleigh = false;
+  std::string place = {};
+};
 struct InpStep {
   std::string place, procedure;  // "*STATIC"
   std::string not_read;          // a card in it that is not
@@ -121,6 +133,11 @@ struct InpStep {
   double increment = 0, end = 0;
   bool direct = false;  // increments of just that length
   int n_modes = 0;      // of *FREQUENCY
+  int points = 20;      // of *STEADY STATE DYNAMICS, whose band are increment and end
+  InpModalDamping damping = {};
+  double alpha = 0, beta = 0, ratio = 0;  // of its regions
+  bool modal = false;                     // modes are summed: *DAMPING of materials says nothing
+  InpSweep sweep = {};
   double period() const { return end > 0 ? end : 1; }
 };
 /// *NODAL THICKNESS of shells.
@@ -157,8 +174,14 @@ struct InpSlide {
 };
 /// An *EQUATION of other than equal displacements: factors times axes of rows of nodes of cells and of slides.
 struct InpSum {
+  struct OfBody {
+    std::int64_t id;  // the node that is a body
+    int component;    // 1 to 6
+    double factor;
+  };
   std::map<std::int64_t, Vec3> rows;
   std::map<int, double> slides;
+  std::vector<OfBody> bodies = {};
   std::string place;
 };
 /// A card of a later step that becomes scene lines only where one run can say that step too.
@@ -172,6 +195,10 @@ struct InpPlan {
   double increment = 0, end = 0;
   bool direct = false;
   int n_modes = 0;
+  double alpha = 0, beta = 0, ratio = 0;  // damping of the regions
+  InpSweep sweep = {};
+  std::string place = {};         // of its *STEP
+  bool modal = false;             // without that of materials
   int steps = 1;                  // static ones, one behind the other
   bool from_equilibrium = false;  // of static steps before it
 };
@@ -211,6 +238,7 @@ struct InpPointValue {
 struct InpCarried {
   std::string name, place;
   std::vector<std::int64_t> rows;
+  unsigned components = 7;  // of *KINEMATIC: displacements that follow
 };
 struct InpBody {
   Vec3 X;
@@ -297,6 +325,7 @@ struct InpDeck {
   std::vector<InpStep> steps;
   std::vector<InpStepCard> step_cards;
   InpPlan plan;
+  std::vector<std::string> printed;  // node sets of *NODE PRINT, upper case
 };
 
 /// Added to the numbers of nodes of an assembly, and for each of several instances.

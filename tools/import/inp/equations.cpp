@@ -22,20 +22,42 @@ std::vector<std::int64_t> numbers_of(const InpDeck& d, const InpTarget& t) {
 
 namespace {
 
+/// The body that a node is or turns: of beams, a reference node, the ROT NODE of one, or a node of springs and masses alone.
+struct EquationBody {
+  bool is = false, turns = false;
+  std::int64_t id = 0;
+  bool of_turns = false;  // a ROT NODE, whose displacements are turns
+};
+EquationBody body_of(const InpDeck& d, std::int64_t node) {
+  const auto is = [&](const InpTarget& t) { return (!t.name.empty() || t.id) && std::ranges::count(numbers_of(d, t), node); };
+  for (const InpTie& t : d.ties) {
+    if (t.no_node || t.mean || t.kind == InpTie::Of::weighted || t.left_out) continue;
+    if (is(t.turns)) return {true, true, numbers_of(d, t.reference).front(), true};
+    if (is(t.reference)) return {true, true, node};
+  }
+  if (d.bodies.contains(node)) return {true, true, node};
+  for (const auto& [id, p] : d.points)
+    if (!d.node.contains(node) && std::ranges::count(p.nodes, node)) return {true, false, node};
+  return {};
+}
+
 /// Why a displacement cannot be one of an equation, or "".
 std::string why_not(const InpDeck& d, const Imported& in, std::int64_t node, int component, const std::set<std::int64_t>& turned) {
   const auto of_shells = [&](std::int64_t id) {
     const auto a = d.node.find(id);
     return a != d.node.end() && in.sheets && !in.sheets->at(a->second).empty();
   };
-  if (component < 1 || component > 3) return "of turns or temperatures";
-  if (turned.contains(node) && !d.node.contains(node)) return "in axes of *TRANSFORM, of a node of no cell";
-  if (d.bodies.contains(node) && !of_shells(node)) return "of nodes of beams";
-  if (!d.node.contains(node) && !d.loose.contains(node)) return "of a node that does not exist";
+  if (component < 1 || component > 6) return "of temperatures or potentials";
+  if (turned.contains(node) && (!d.node.contains(node) || (body_of(d, node).is && !of_shells(node))))
+    return "in axes of *TRANSFORM, of a node of no solid";
+  if (!d.node.contains(node) && !d.loose.contains(node) && !body_of(d, node).is) return "of a node that does not exist";
   for (const InpTie& t : d.ties)
-    if (!t.no_node && t.kind != InpTie::Of::weighted && std::ranges::count(numbers_of(d, t.reference), node)) return "of a reference node";
+    if (t.mean && !t.no_node && t.kind != InpTie::Of::weighted && std::ranges::count(numbers_of(d, t.reference), node))
+      return "of the node of a distributing coupling";
   for (const auto& [id, p] : d.points)
-    if (!d.node.contains(node) && std::ranges::count(p.nodes, node)) return "of a node of springs or masses alone";
+    if (p.type == "DCOUP3D" && std::ranges::count(p.nodes, node)) return "of the node of a distributing coupling";
+  if (component > 3 && of_shells(node)) return "of turns of nodes of shells";
+  if (component > 3 && !body_of(d, node).turns) return "of turns of a node that has none";
   return "";
 }
 
@@ -47,7 +69,7 @@ struct EquationSum {
 constexpr size_t most_terms = 1000;  // each beyond the third is a body
 
 bool of_nothing(const InpSum& s) {
-  return std::ranges::all_of(s.rows, [](const auto& r) { return r.second == Vec3::Zero(); }) &&
+  return s.bodies.empty() && std::ranges::all_of(s.rows, [](const auto& r) { return r.second == Vec3::Zero(); }) &&
          std::ranges::all_of(s.slides, [](const auto& r) { return r.second == 0; });
 }
 
@@ -60,6 +82,11 @@ void find_equations(InpDeck& d, Imported& in) {
   EqualDisplacements equals;
   std::map<Displacement, std::string> place;
   std::vector<EquationSum> sums;
+  // a node of shells that is a body stands in the mesh all the same
+  const auto is_body = [&](std::int64_t node) {
+    const auto a = d.node.find(node);
+    return body_of(d, node).is && !(a != d.node.end() && in.sheets && !in.sheets->at(a->second).empty());
+  };
   for (const InpEquation& e : d.equations) {
     std::string why;
     std::vector<std::vector<std::int64_t>> nodes;
@@ -72,7 +99,7 @@ void find_equations(InpDeck& d, Imported& in) {
       n = std::max(n, nodes.back().size());
       for (const auto node : nodes.back()) {
         if (why.empty()) why = why_not(d, in, node, t.component, turned);
-        askew = askew || turned.contains(node);
+        askew = askew || turned.contains(node) || is_body(node);
       }
     }
     const auto& first = e.terms[0];
@@ -94,7 +121,7 @@ void find_equations(InpDeck& d, Imported& in) {
         for (size_t k = 0; k < e.terms.size(); ++k) {
           const Displacement x{node_of(k, i), e.terms[k].component};
           sum.of[x] += e.terms[k].factor;
-          if (!d.node.contains(x.first)) equals.root(x), place.try_emplace(x, e.place);
+          if (!d.node.contains(x.first) && !is_body(x.first)) equals.root(x), place.try_emplace(x, e.place);
         }
       }
     }
@@ -112,9 +139,14 @@ void find_equations(InpDeck& d, Imported& in) {
   }
   const std::vector<int> axes = turned_nodes(d, in.mesh);
   for (const EquationSum& sum : sums) {
-    InpSum to{{}, {}, sum.place};
+    InpSum to{{}, {}, {}, sum.place};
     for (const auto& [x, factor] : sum.of) {
       if (factor == 0) continue;
+      if (is_body(x.first)) {
+        const EquationBody body = body_of(d, x.first);
+        to.bodies.push_back({body.id, x.second + (body.of_turns ? 3 : 0), factor});
+        continue;
+      }
       const auto row = d.node.find(x.first);
       if (row == d.node.end()) {
         to.slides[d.slide_of.at(x)] += factor;
@@ -125,7 +157,7 @@ void find_equations(InpDeck& d, Imported& in) {
       to.rows.try_emplace(row->second, Vec3::Zero()).first->second += factor * own.col(x.second - 1);
     }
     if (of_nothing(to)) continue;
-    if (to.rows.size() + to.slides.size() > most_terms)
+    if (to.rows.size() + to.slides.size() + 2 * to.bodies.size() > most_terms)
       in.skip(fmt::format("*EQUATION of more than {} terms", most_terms), sum.place);
     else
       d.sums.push_back(std::move(to));

@@ -279,6 +279,7 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
     set.members.erase(std::ranges::unique(set.members).begin(), set.members.end());
   }
   complete_pyramids(d);
+  take_modal(d, in);
   find_motions(d, in);
   join_steps(d, in);
   check_names(d);

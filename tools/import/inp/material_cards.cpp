@@ -171,6 +171,20 @@ void read_density(InpReading& r) {
   skip_temperatures(r, l);
 }
 
+/// Factors of mass and stiffness.
+void read_damping(InpReading& r) {
+  auto& m = material_of(r);
+  if (const auto odd = unknown_param(r.card, {"ALPHA", "BETA"}); !odd.empty()) return r.skip(odd);
+  for (auto& [key, into] : {std::pair{"ALPHA", &m.alpha}, std::pair{"BETA", &m.beta}}) {
+    if (!r.card.has(key)) continue;
+    const std::string text = r.card.word(key);
+    char* end = nullptr;
+    *into = std::strtod(text.c_str(), &end);
+    if (end == text.c_str() || *end || !(*into >= 0))
+      throw Error(r.card.place(key), fmt::format("*DAMPING, {}={}", key, text), "a number of 0 or more");
+  }
+}
+
 void read_orientation(InpReading& r) {
   InpOrientation o;
   o.name = r.card.need("NAME"), o.place = r.card.place();
@@ -333,6 +347,7 @@ std::span<const InpCard> inp_material_cards() {
       {"MATERIAL", read_material},
       {"ELASTIC", read_elastic},
       {"DENSITY", read_density},
+      {"DAMPING", read_damping},
       {"SOLIDSECTION", read_section},
       {"SHELLSECTION", read_shell_section},
       {"NODALTHICKNESS", read_nodal_thickness},

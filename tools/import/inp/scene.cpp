@@ -111,7 +111,12 @@ void InpScene::materials() {
     lines[r] = fmt::format("[region.{}]\nmaterial = {}\n", toml_text(m.region_name[r]), toml_text(clean_name(mat.name)));
     if (static_cast<Shape>(m.shape[c]) == Shape::bar2 && s.area > 0)
       lines[r] += fmt::format("area = {}\n", num(s.area * o_.scale * o_.scale * si("m^2")));
+    const double alpha = d_.plan.modal ? d_.plan.alpha : mat.alpha, beta = d_.plan.modal ? d_.plan.beta : mat.beta;
+    if (alpha != 0) lines[r] += fmt::format("mass_damping = {}\n", num(alpha / si("s")));
+    if (beta != 0) lines[r] += fmt::format("damping = {}\n", num(beta * si("s")));
+    if (d_.plan.ratio > 0) lines[r] += fmt::format("modal_damping = {}\n", num(d_.plan.ratio));
   }
+  if (!d_.beams.empty() && (d_.plan.alpha != 0 || d_.plan.beta != 0 || d_.plan.ratio > 0)) in_.skip("*MODAL DAMPING of beams", "", 1);
   for (const auto& key : used) tables_ += d_.laws.at(key).table(d_.laws.at(key).name, o_.units);
   for (const auto& l : lines)
     if (!l.empty()) tables_ += "\n" + l;
@@ -169,6 +174,18 @@ void InpScene::time() {
   } else if (plan.procedure == "*FREQUENCY") {
     tables_ += fmt::format("\n[time]\nanalysis = \"modes\"\n{}", start);
     if (plan.n_modes > 0) tables_ += fmt::format("modes = {}\n", plan.n_modes);
+    if (const InpSweep& sweep = plan.sweep; sweep.points > 0) {
+      const double hertz = 1 / si("s");
+      std::string then = fmt::format("hilo-post response modes.h5 --loads --at PROBE.AXIS --from {:g} --to {:g} --points {}",
+                                     sweep.from * hertz, sweep.to * hertz, sweep.points);
+      if (sweep.ratio > 0) then += fmt::format(" --damping {:g}", sweep.ratio);
+      in_.notes.push_back(fmt::format("{}: *STEADY STATE DYNAMICS becomes an analysis of modes, and then `{}`", plan.place, then));
+      tables_ += fmt::format("# then: {}\n", then);
+      std::set<std::string> done;
+      for (const std::string& set : d_.printed)
+        if (const auto name = node_set_.find(set); name != node_set_.end() && !name->second.empty() && done.insert(set).second)
+          tables_ += fmt::format("\n[[probe]]\nname = {0}\non = {0}\n", toml_text(name->second));
+    }
   }
 }
 void write_inp_scene(const InpDeck& d, Imported& in, SetNames& names, const std::map<std::string, std::string>& node_set,

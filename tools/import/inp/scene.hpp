@@ -27,8 +27,10 @@ class InpScene {
   // scene_supports.cpp
   void supports();
   void write(const Held& h);
+  Mat3 axes_of(std::int64_t id) const;
   void supports_of_ties();
   void slides();
+  double length() const;
   void sums();
   void tied();
   // scene_loads.cpp

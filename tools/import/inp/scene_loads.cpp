@@ -129,9 +129,14 @@ void InpScene::forces_of_ties() {
         return;
       }
       if (is_slide(d_, id)) return in_.skip("*CLOAD on a node of no cell", f.place);
-      if (own_axes_.contains(id)) return in_.skip("*CLOAD in axes of *TRANSFORM", f.place);
+      Mat3 axes = Mat3::Identity();
+      if (d_.bodies.contains(id))
+        axes = axes_of(id);
+      else if (own_axes_.contains(id))
+        axes.setZero();
+      if (axes.isZero()) return in_.skip("*CLOAD in axes of *TRANSFORM", f.place);
       Sum& s = sums[{id, f.amplitude}];
-      (first > 3 ? s.M : s.F)[(first - 1) % 3] += f.value;
+      (first > 3 ? s.M : s.F) += f.value * axes.col((first - 1) % 3);
       if (s.place.empty()) s.place = f.place;
     });
   for (const auto& [key, s] : on_slide) {

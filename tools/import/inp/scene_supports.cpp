@@ -2,6 +2,8 @@
 // What a deck holds, moves and ties, as scene lines.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include "base/error.hpp"
 #include "import/inp/equations.hpp"
 #include "import/inp/scene.hpp"
@@ -72,9 +74,40 @@ void InpScene::slides() {
   }
 }
 
+/// Of the model, for points beside others.
+double InpScene::length() const {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : in_.mesh.X) box.extend(x);
+  for (const auto& [id, b] : d_.bodies) box.extend(b.X);
+  const double size = box.isEmpty() ? 0 : box.diagonal().norm();
+  return size > 0 ? size : 1;
+}
+
 void InpScene::sums() {
   for (const InpSum& s : d_.sums) {
     std::vector<SumTerm> terms;
+    if (std::ranges::any_of(s.bodies, [&](const auto& b) { return !d_.bodies.contains(b.id); })) {
+      in_.skip("*EQUATION of a reference node of which nothing is made", s.place);
+      continue;
+    }
+    bool turns = false;
+    for (const auto& b : s.bodies) {
+      const Vec3 X = d_.bodies.at(b.id).X, e = Vec3::Unit((b.component - 1) % 3);
+      if (b.component > 3) {  // a small turn is what a point beside goes, over its distance
+        const Vec3 beside = Vec3::Unit(b.component % 3), way = e.cross(beside);
+        const double L = length();
+        const std::string of = unique("body", body_name(d_, b.id) + "_turn");  // the ends of a sum are different bodies
+        tables_ += fmt::format("\n[[body]]   # {}\nname = {}\nmass = 0\ncom = {}\n", s.place, toml_text(of), point(X + L * beside));
+        tables_ += fmt::format("\n[[joint]]   # {}\nkind = \"fixed\"\nname = {}\na = {}\nb = {}\nat = {}\n", s.place,
+                               toml_text(unique("joint", of)), toml_text(body_name(d_, b.id)), toml_text(of), point(X + L * beside));
+        terms.push_back({of, point(X + L * beside), b.factor / L * way});
+        terms.push_back({body_name(d_, b.id), point(X), -b.factor / L * way});
+        turns = true;
+      } else {
+        terms.push_back({body_name(d_, b.id), point(X), b.factor * e});
+      }
+    }
+    if (turns) in_.notes.push_back(fmt::format("{}: *EQUATION of turns holds for small ones: it has their sines", s.place));
     for (const auto& [a, way] : s.rows)
       if (way != Vec3::Zero()) terms.push_back({end_of(a, "equation"), point(in_.mesh.X[a]), way});
     for (const auto& [slide, factor] : s.slides) {
@@ -84,6 +117,19 @@ void InpScene::sums() {
     tables_ += joints_of_sum(terms, "equation", s.place,
                              [this](const std::string& section, const std::string& wish) { return unique(section, wish); });
   }
+}
+
+/// Of a body's supports and forces, as columns; zero where they are not read.
+Mat3 InpScene::axes_of(std::int64_t id) const {
+  if (!own_axes_.contains(id)) return Mat3::Identity();
+  for (const auto& [turns, reference] : d_.turns_of)
+    if (reference == id) return Mat3::Zero();  // its turns may have other axes than its displacements
+  const InpTransform* of = nullptr;
+  for (const InpTransform& t : d_.transformed) {
+    const auto set = d_.nset.find(t.target);
+    if (t.target.empty() ? t.id == id : set != d_.nset.end() && std::ranges::count(set->second.members, id)) of = &t;
+  }
+  return of ? of->axes(d_.bodies.at(id).X) : Mat3(Mat3::Zero());
 }
 
 /// Reference nodes are held by joints to the ground or to what moves them, or whole.
@@ -99,7 +145,7 @@ void InpScene::supports_of_ties() {
     tied_lines(d_, b, [&](std::int64_t id, int first, int last) {
       if (is_slide(d_, id)) return;
       if (!d_.bodies.contains(id)) return in_.skip("*BOUNDARY on the node of a distributing coupling", b.place);
-      if (own_axes_.contains(id)) return in_.skip("*BOUNDARY in axes of *TRANSFORM", b.place);
+      if (axes_of(id).isZero()) return in_.skip("*BOUNDARY in axes of *TRANSFORM", b.place);
       HeldBody& h = held[id];
       for (int k = first; k <= last; ++k) {
         h.bits |= 1u << (k - 1);
@@ -131,7 +177,9 @@ void InpScene::supports_of_ties() {
       h.bits |= 56;
       if (h.place.empty()) h.place = b.place;
     }
-  for (const auto& [id, h] : held) {
+  for (auto& [id, h] : held) {
+    const Mat3 axes = axes_of(id);
+    h.by.way = axes * h.by.way, h.by.turn = axes * h.by.turn;
     const std::string name = body_name(d_, id), at = list(Vec3(d_.bodies.at(id).X * si("m") * o_.scale));
     std::string past, to = "ground";
     if (h.by.any() && !history(h.amplitude, "*BOUNDARY", h.place, past)) continue;
@@ -140,7 +188,7 @@ void InpScene::supports_of_ties() {
       continue;
     }
     if (h.by.any()) tables_ += moving_body(to = unique("body", name + "_moved"), h.by, at, past, h.place);
-    tables_ += joints_that_hold(h.bits, Mat3::Identity(), name + "_support", to, name, at, h.place,
+    tables_ += joints_that_hold(h.bits, axes, name + "_support", to, name, at, h.place,
                                 [this](const std::string& section, const std::string& wish) { return unique(section, wish); });
   }
 }

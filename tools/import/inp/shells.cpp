@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "import/inp/equations.hpp"
+#include "import/inp/groups.hpp"
 #include "import/inp/ties.hpp"
 #include "import/links.hpp"
 #include "import/sheets.hpp"
@@ -27,20 +28,29 @@ void find_bodies_of_shells(InpDeck& d, Imported& in) {
     std::erase_if(rows, [&](std::int64_t a) { return in.sheets->at(a).empty(); });
     return rows;
   };
-  std::map<std::int64_t, std::pair<ShellSupport, std::string>> held;
+  struct Support {
+    ShellSupport support;
+    std::string place;
+    bool moves = false;
+  };
+  std::map<std::int64_t, Support> held;
+  const std::vector<int> axes = turned_nodes(d, in.mesh);
   for (const auto& l : d.supports)
     for (const auto a : of_shells(l)) {
-      if (!d.transformed.empty()) throw Error(l.place, "*TRANSFORM beside shells of --thicken is not read", "hold them in the deck's axes");
-      auto& [support, place] = held[a];
+      auto& [support, place, moves] = held[a];
       for (int k = l.first; k <= std::min(l.last, 6); ++k) support.held |= 1U << (k - 1);
       support.turned = support.turned || (l.last > 3 && l.value != 0);
-      place = l.place;
+      place = l.place, moves = moves || l.value != 0;
     }
-  for (const auto& [a, h] : held)
-    if (needs_body(in.sheets->at(a), h.first))
-      make(a, h.second);
+  for (const auto& [a, h] : held) {
+    // in axes of its own a node is a body, unless these say nothing
+    const unsigned turns = h.support.held >> 3;
+    const bool all = (h.support.held & 7) == 7 && (turns == 0 || turns == 7) && !h.moves;
+    if (needs_body(in.sheets->at(a), h.support) || (axes[static_cast<size_t>(a)] >= 0 && !all))
+      make(a, h.place);
     else
-      in.held[a] = h.first.held;
+      in.held[a] = h.support.held;
+  }
   for (const auto& l : d.forces)
     for (const auto a : of_shells(l))
       if (l.last > 3 || std::ranges::any_of(in.sheets->at(a), [](const Sheets::Part& p) { return p.offset != 0; })) make(a, l.place);

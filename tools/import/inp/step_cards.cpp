@@ -179,8 +179,6 @@ std::span<const InpCard> inp_step_cards() {
       {"COMPLEXFREQUENCY", other_procedure, false, true},
       {"BUCKLE", other_procedure, false, true},
       {"HEATTRANSFER", other_procedure, false, true},
-      {"MODALDYNAMIC", other_procedure, false, true},
-      {"STEADYSTATEDYNAMICS", other_procedure, false, true},
       {"VISCO", other_procedure, false, true},
       {"COUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, false, true},
       {"UNCOUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, false, true},

@@ -44,7 +44,8 @@ class Joiner {
   InpPlan plan() {
     InpPlan p;
     const auto& last = d_.steps[n_ - 1];
-    p.procedure = last.procedure, p.n_modes = last.n_modes, p.from_equilibrium = first_ > 0;
+    p.procedure = last.procedure, p.n_modes = last.n_modes, p.alpha = last.alpha, p.beta = last.beta, p.ratio = last.ratio,
+    p.modal = last.modal, p.from_equilibrium = first_ > 0;
     p.direct = true;
     for (size_t k = first_; k < n_; ++k) {
       const InpStep& s = d_.steps[k];
@@ -260,7 +261,7 @@ void join_steps(InpDeck& d, Imported& in) {
   for (;; --n) {
     if (n == 1) {
       const InpStep& s = d.steps[0];
-      d.plan = {s.procedure, s.increment, s.end, s.direct, s.n_modes};
+      d.plan = {s.procedure, s.increment, s.end, s.direct, s.n_modes, s.alpha, s.beta, s.ratio, s.sweep, s.place, s.modal};
       std::erase_if(d.supports, [](const InpNodal& l) { return l.step > 1; });
       std::erase_if(d.forces, [](const InpNodal& l) { return l.step > 1; });
       std::erase_if(d.distributed, [](const InpDistributed& l) { return l.step > 1; });

@@ -9,7 +9,9 @@ namespace hilo {
 /// static steps one behind the other, or what follows from their equilibrium, dynamic steps or modes.  Steps that this cannot say are
 /// named, with what is in them.
 void join_steps(InpDeck& deck, Imported& in);
-/// Before: velocities and accelerations of supports, and *BASE MOTION, become displacements.
+/// Before: *FREQUENCY and *MODAL DYNAMIC or *STEADY STATE DYNAMICS behind it become one step.
+void take_modal(InpDeck& deck, Imported& in);
+/// Then: velocities and accelerations of supports, and *BASE MOTION, become displacements.
 void find_motions(InpDeck& deck, Imported& in);
 
 }  // namespace hilo

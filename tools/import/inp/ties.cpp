@@ -17,6 +17,8 @@
 namespace hilo {
 namespace {
 
+constexpr size_t most_rows = 2000;  // nodes of a coupling of some components: joints for each
+
 /// The node that a target names.
 std::int64_t node_of(const InpDeck& d, const InpTarget& t) {
   if (t.name.empty()) return t.id;
@@ -172,15 +174,18 @@ void find_ties(InpDeck& d, Imported& in, const std::map<std::string, std::string
         in.skip(t.name + " of a node that has one already", t.place);
       continue;
     }
-    if ((t.components & 7) != 7) {
-      in.skip(t.name + " of some components", t.place);
+    if ((t.components & 7) != 7 && (t.own_axes || (!w.empty() && (t.components & 7) == 0) || w.size() > most_rows)) {
+      in.skip(t.name + (t.own_axes             ? " of some components in axes of its own"
+                        : w.size() > most_rows ? fmt::format(" of some components of more than {} nodes", most_rows)
+                                               : " of turns alone, which nodes of solids do not have"),
+              t.place);
       continue;
     }
     if (d.means.erase(ref) > 0) in.skip("*DISTRIBUTING of a node that is *KINEMATIC too", t.place);
     auto& body = d.bodies.try_emplace(ref, InpBody{place_of(d, ref, t.place), t.place, {}}).first->second;
     std::vector<std::int64_t> rows;
     for (const auto& [a, weight] : w) rows.push_back(a);
-    if (!rows.empty()) body.carries.push_back({t.name, t.place, rows});
+    if (!rows.empty()) body.carries.push_back({t.name, t.place, rows, t.components & 7});
     for (const auto id : beams) body.bodies.emplace_back(id, t.components);
     if (!t.turns.name.empty() || t.turns.id) d.turns_of[node_of(d, t.turns)] = ref;
   }
@@ -238,6 +243,9 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
     if (name.empty()) name = names.nodes(fmt::format("node_{}", id), {d.node.at(id)}), in.as_listed.insert(name);
     return name;
   };
+  std::set<std::int64_t> own_axes;
+  for (const InpTransform& t : d.transformed)
+    for (const auto id : numbers_of(d, {t.target, t.id, t.place})) own_axes.insert(id);
   std::map<std::int64_t, double> mass;
   std::string springs;
   std::set<std::int64_t> valued;
@@ -268,6 +276,10 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
           in.skip(v.name + " of several values", v.place);
         else
           mass[p->second.nodes[0]] += value;
+        continue;
+      }
+      if (!type.ends_with('A') && std::ranges::any_of(p->second.nodes, [&](auto n) { return own_axes.contains(n); })) {
+        in.skip(v.name + " in axes of *TRANSFORM", v.place);
         continue;
       }
       InpPointSpring spring{p->second, v, {}};
@@ -306,6 +318,14 @@ std::string write_ties(const InpDeck& d, Imported& in, SetNames& names, const Im
         const int n = ++used[body_name(d, id)];
         return n == 1 ? body_name(d, id) : fmt::format("{}_{}", body_name(d, id), n);
       };
+      if (c.components != 7) {  // planes of the body, in which the nodes stay
+        for (const auto a : c.rows)
+          for (int k = 0; k < 3; ++k)
+            if (c.components >> k & 1)
+              text += joint_to_slide(name(), body_name(d, id), end_name(in.mesh.node_id[a]),
+                                     toml_list({1. * (k == 0), 1. * (k == 1), 1. * (k == 2)}), point(in.mesh.X[a]), c.place);
+        continue;
+      }
       if (on_a_line(points)) {
         for (const auto a : c.rows)
           text += fmt::format("\n[[joint]]   # {}\nkind = \"spherical\"\nname = \"{}\"\na = \"{}\"\nb = {}\nat = {}\n", c.place, name(),

@@ -7,7 +7,10 @@
 namespace hilo {
 namespace {
 
-void output(InpReading& r) { r.in.skip(r.card.name, r.card.place(), 1, true); }
+void output(InpReading& r) {
+  r.in.skip(r.card.name, r.card.place(), 1, true);
+  if (r.card.key == "NODEPRINT" && r.card.has("NSET")) r.deck.printed.push_back(r.card.word("NSET"));
+}
 
 [[noreturn]] void refuse(const InpReading& r, const char* hint) { throw Error(r.card.place() + ":1", r.card.name + " is not read", hint); }
 void nodes(InpReading& r) { refuse(r, "write the nodes out"); }
