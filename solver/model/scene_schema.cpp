@@ -102,9 +102,15 @@ std::vector<KindSchema> make_schema() {
   for (const SectionKind& k : section_kinds()) {
     KindSchema rows{"section", k.name, k.meaning, {{"kind", text, "", "!", "the kind of section"}}};
     rows.params.insert(rows.params.end(), k.keys.begin(), k.keys.end());
-    if (k.area)
-      rows.params.push_back(
-          {"shear", numbers, "1", "", "factors of shear along 1 and 2; absent: Cowper's, of kind general 1", above(0), {1, 2}});
+    if (k.area || k.meshed)
+      rows.params.push_back({"shear",
+                             numbers,
+                             "1",
+                             "",
+                             k.meshed ? "factors of shear along 1 and 2; absent: those of the face"
+                                      : "factors of shear along 1 and 2; absent: Cowper's, of kind general 1",
+                             above(0),
+                             {1, 2}});
     s.push_back(std::move(rows));
   }
   section_kinds().close();

@@ -9,6 +9,7 @@
 
 #include "physics/beam_arc.hpp"
 #include "physics/beam_section.hpp"
+#include "physics/section_mesh.hpp"
 #include "system/contribution.hpp"
 #include "system/loads.hpp"
 
@@ -27,6 +28,12 @@ struct BeamCell {
 struct Beam {
   std::string name;
   int first = 0, n_cells = 0;  // of the list
+};
+
+/// A meshed section of the scene.
+struct NamedSection {
+  std::string name;
+  SectionMesh mesh;
 };
 
 /// A force per length on some cells, inertial axes: the value of the load.
@@ -48,6 +55,7 @@ class Beams final : public Contribution, public Equations, public Stateful, publ
   std::vector<Beam> beams;
   std::vector<BeamCell> cells;
   std::vector<LineLoad> lines;
+  std::vector<NamedSection> meshes;
   void add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSection& section, double beta, double alpha);
   /// w.M v of what is at a body [J].
   double inertia(int body, const Config& v, const Vec3& w, const Mat3& W) const;

@@ -61,6 +61,30 @@ TEST_F(DrawnBeams, HaveTheVolumeOfTheirSections) {
   EXPECT_FALSE(run.gives(region("one"), "acceleration"));
 }
 
+// A meshed section is drawn by its cells, holes too: of a ring of 12 quadrangles of 9 nodes a tube of 24 sides.
+TEST_F(DrawnBeams, HaveTheOutlineOfTheirMesh) {
+  std::string nodes, cells;
+  const int n = 12;  // quadrangles of 9 nodes around
+  int number = 0;
+  for (int i = 0; i < 2 * n; ++i)
+    for (const double r : {0.03, 0.04, 0.05}) {
+      nodes += std::to_string(++number) + " " + std::to_string(r * std::cos(pi * i / n)) + " " + std::to_string(r * std::sin(pi * i / n)) +
+               " 0\n";
+    }
+  for (int i = 0; i < n; ++i) {
+    const auto at = [&](int j, int k) { return " " + std::to_string(3 * ((2 * i + j) % (2 * n)) + k + 1); };
+    cells += std::to_string(i + 1) + " 10 2 0 1" + at(0, 0) + at(0, 2) + at(2, 2) + at(2, 0) + at(0, 1) + at(1, 2) + at(2, 1) + at(1, 0) +
+             at(1, 1) + "\n";
+  }
+  work.write("tube.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(number) + "\n" + nodes +
+                             "$EndNodes\n$Elements\n" + std::to_string(n) + "\n" + cells + "$EndElements\n");
+  RunFile run = solved(std::string(steel) + "[section.t]\nkind = \"mesh\"\nfile = \"tube.msh\"\n" +
+                       "[beam.one]\npoints = [[0, 0, 0], [0, 2, 0]]\nsection = \"t\"\nmaterial = \"m\"\na = \"ground\"\n");
+  const double sides = n / pi * std::sin(pi / n);
+  EXPECT_NEAR(volume(run.mesh(), "one"), 2 * pi * (0.05 * 0.05 - 0.03 * 0.03) * sides, 1e-6);
+  EXPECT_TRUE(run.gives(static_cast<size_t>(run.mesh().find_region("one")), "axial_stress"));
+}
+
 // Rolled to a circle of radius R, a fibre at the height y is bent to R - y, wherever between two sections, and its stress is E y/R.
 TEST_F(DrawnBeams, FollowTheHelixOfEachCell) {
   const double L = 10, h = 0.2, b = 0.1, R = L / (2 * pi), M = 2e11 * b * h * h * h / 12 / R;
