@@ -142,7 +142,9 @@ TEST(SectionMesh, AnEllipseHasItsTorsion) {
   EXPECT_NEAR(face.area.J, pi * std::pow(a * b, 3) / (a * a + b * b), 1e-4 * face.area.J);
   EXPECT_NEAR(face.area.I1, pi * a * b * b * b / 4, 1e-4 * face.area.I1);
   for (const auto& p : face.points)
-    if ((p.at - Vector2d(0, b)).norm() < 1e-9) EXPECT_NEAR(p.shear(0, 2), -2 / (pi * a * b * b), 3e-3 * 0.65);
+    if ((p.at - Vector2d(0, b)).norm() < 1e-9) {
+      EXPECT_NEAR(p.shear(0, 2), -2 / (pi * a * b * b), 3e-3 * 0.65);
+    }
 }
 
 // sqrt(3)/80 of the fourth power of the side, and 20 T/a^3 amid each side [timoshenko-goodier, 107].

@@ -61,6 +61,25 @@ TEST_F(DrawnBeams, HaveTheVolumeOfTheirSections) {
   EXPECT_FALSE(run.gives(region("one"), "acceleration"));
 }
 
+// The peak of a cantilever under a force at its tip is at the root, at its outer fibres: 6 F L/(b h^2).
+TEST_F(DrawnBeams, HaveTheirPeaksInTheTable) {
+  (void)solved(std::string(steel) + "[section.s]\nkind = \"rectangle\"\nwidth = 0.1\nheight = 0.2\n" +
+               "[beam.one]\npoints = [[0, 0, 0], [2, 0, 0]]\nsection = \"s\"\nmaterial = \"m\"\na = \"ground\"\n"
+               "[[load]]\nkind = \"force\"\nname = \"f\"\non = \"one.end\"\nforce = [0, 0, 100]\n");
+  for (const char* field : {"axial_stress", "von_mises"}) {
+    const Ran ran = work.run(std::string("hilo-post peak run.h5 --unit Pa --field ") + field);
+    ASSERT_EQ(ran.exit, 0) << ran.err;
+    char name[20];
+    double value = 0, t = 0, X = 0, Y = 0, Z = 0;
+    ASSERT_EQ(std::sscanf(ran.out.substr(ran.out.find('\n') + 1).c_str(), "%19s %lf %lf - %lf %lf %lf", name, &value, &t, &X, &Y, &Z), 6)
+        << ran.out;
+    EXPECT_NEAR(std::abs(value), 6 * 100 * 2 / (0.1 * 0.2 * 0.2), 1) << field;
+    EXPECT_EQ(std::string(name), "one");
+    EXPECT_NEAR(X, 0, 1e-9);
+    EXPECT_NEAR(std::abs(Z), 0.1, 1e-9);
+  }
+}
+
 // A meshed section is drawn by its cells, holes too: of a ring of 12 quadrangles of 9 nodes a tube of 24 sides.
 TEST_F(DrawnBeams, HaveTheOutlineOfTheirMesh) {
   std::string nodes, cells;
