@@ -61,6 +61,22 @@ TEST_F(DrawnBeams, HaveTheVolumeOfTheirSections) {
   EXPECT_FALSE(run.gives(region("one"), "acceleration"));
 }
 
+// An obstacle with a file beside beams: its file may be elsewhere by now.
+TEST_F(DrawnBeams, AreDrawnBesideAFieldOfHeights) {
+  work.write("road.csv", "y\\x,-9,9\n-9,0,0\n9,0,0\n");
+  (void)solved(
+      "[material.m]\nE = 2e11\nnu = 0.3\ndensity = 7850\n[time]\nend = 0.002\nstep = 0.001\n"
+      "[section.s]\nkind = \"circle\"\ndiameter = 0.1\n[beam.one]\npoints = [[0, 0, 5], [2, 0, 5]]\nsection = \"s\"\nmaterial = \"m\"\n"
+      "[[obstacle]]\nkind = \"height-field\"\nname = \"road\"\nfile = \"road.csv\"\n"
+      "[[obstacle]]\nkind = \"sphere\"\nname = \"skin\"\non = \"one.0\"\nradius = 0.1\nat = [0, 0, 5]\n"
+      "[[contact]]\nname = \"c\"\na = \"road\"\nb = \"skin\"\nstiffness = 1e4\n");
+  std::filesystem::remove(work / "road.csv");
+  RunFile run(work / "run.h5");
+  run.stand_in_bodies();
+  run.draw_beams();
+  EXPECT_NEAR(volume(run.mesh(), "one"), 2 * pi * 0.05 * 0.05 * 18 / pi * std::sin(pi / 18), 1e-9);
+}
+
 // The peak of a cantilever under a force at its tip is at the root, at its outer fibres: 6 F L/(b h^2).
 TEST_F(DrawnBeams, HaveTheirPeaksInTheTable) {
   (void)solved(std::string(steel) + "[section.s]\nkind = \"rectangle\"\nwidth = 0.1\nheight = 0.2\n" +

@@ -348,12 +348,15 @@ Imported read_geometry(const std::string& path, const std::string& format, const
   return in;
 }
 
-/// Surfaces as gmsh's text of version 2.2.
+/// Surfaces as gmsh's text of version 2.2: those of physical groups alone where there is one, as gmsh saves them.
 std::string text_of(const GmshMesh& mesh) {
   std::string nodes, cells;
   std::int64_t n = 0;
+  const auto is_surface = [](const auto& e) { return std::get<0>(e.first) == 2; };
+  const bool grouped =
+      std::any_of(mesh.entities.begin(), mesh.entities.end(), [&](const auto& e) { return is_surface(e) && !e.second.groups.empty(); });
   for (const auto& [key, entity] : mesh.entities) {
-    if (std::get<0>(key) != 2) continue;
+    if (std::get<0>(key) != 2 || (grouped && entity.groups.empty())) continue;
     for (const GmshMesh::Block& b : entity.blocks) {
       const size_t per = b.tags.empty() ? 0 : b.nodes.size() / b.tags.size();
       for (size_t i = 0; i < b.tags.size(); ++i) {
