@@ -324,13 +324,13 @@ TEST_F(ImportBeam, AFaceOfAScriptBecomesASection) {
       "Circle(1) = {2, 1, 3}; Circle(2) = {3, 1, 2}; Circle(3) = {4, 1, 5}; Circle(4) = {5, 1, 4};\n"
       "Curve Loop(1) = {1, 2}; Curve Loop(2) = {3, 4}; Plane Surface(1) = {1, 2};\n";
   place.write("ring.geo", ring);
-  const Ran face = place.run("hilo-import ring.geo --face -o ring.msh --size 12 --json");
+  const auto face = place.run("hilo-import ring.geo --face -o ring.msh --size 12 --json");
   ASSERT_EQ(face.exit, 0) << face.err;
   place.write(
       "s.toml",
       "section.ring = {kind = \"mesh\", file = \"ring.msh\", scale = 1e-3}\nmaterial.m = {E = 2e11, nu = 0.3}\n"
       "beam.b = {points = [[0, 0, 0], [1, 0, 0]], section = \"ring\", material = \"m\", a = \"ground\"}\ntime.analysis = \"static\"\n");
-  const Ran solved = place.run("hilo-solve --quiet s.toml -o s.h5 && hilo-post beam s.h5 --sections");
+  const auto solved = place.run("hilo-solve --quiet s.toml -o s.h5 && hilo-post beam s.h5 --sections");
   ASSERT_EQ(solved.exit, 0) << solved.err;
   double A = 0, I1 = 0, I2 = 0, I12 = 0, J = 0;
   ASSERT_EQ(std::sscanf(solved.out.substr(solved.out.find('\n') + 1).c_str(), "b %lf %lf %lf %lf %lf", &A, &I1, &I2, &I12, &J), 5)
@@ -350,7 +350,7 @@ TEST_F(ImportBeam, AFaceOfAScriptBecomesASection) {
               ring +
                   "Point(11) = {90, 0, 0}; Point(12) = {99, 0, 0}; Point(13) = {90, 9, 0};\n"
                   "Line(11) = {11, 12}; Line(12) = {12, 13}; Line(13) = {13, 11}; Curve Loop(9) = {11, 12, 13}; Plane Surface(2) = {9};\n");
-  const Ran two = place.run("hilo-import two.geo --face -o r.msh --size 12");
+  const auto two = place.run("hilo-import two.geo --face -o r.msh --size 12");
   EXPECT_EQ(two.exit, 2);
   EXPECT_NE(two.err.find("the face falls into parts"), std::string::npos) << two.err;
 }

@@ -66,12 +66,12 @@ TEST_F(ImportThin, LayersOfInpDecksAreOnePlateOrAreTold) {
            layers;
   };
   place.write("a.inp", deck(".01,,M\n.03,3,m\n.02,,M\n"));
-  const Mass mass = mass_of(place, imported("a.inp"), "e");
+  const Mass mass = mass_of(place, imported("a.inp"), "E");
   EXPECT_NEAR(mass.V, .06, 1e-15);
   EXPECT_NEAR(mass.c.z(), .03, 1e-15);
   EXPECT_NEAR(volume(imported("a.inp", "--thicken")), .06, 1e-12);
   place.write("b.inp", deck(".01,,M\n.03,,N\n.01,,M\n"));
-  EXPECT_NEAR(mass_of(place, imported("b.inp"), "e").V, .05, 1e-15);
+  EXPECT_NEAR(mass_of(place, imported("b.inp"), "E").V, .05, 1e-15);
   EXPECT_NE(err.find("*SHELL SECTION, COMPOSITE of several materials or orientations: no stiffness, no density"), std::string::npos) << err;
   refused(
       "b.inp -o b.h5 --thicken", 2,

@@ -272,7 +272,9 @@ TEST_F(BeamStatics, ALoadThatTurnsWithTheSectionsRollsTheBeam) {
     const double away = std::hypot(at[0] - x, at[2] - z);
     std::printf("%d cells: (%.5f, %.5f), %.2g of L away\n", cells, at[0], at[2], away);
     EXPECT_LT(away, 0.2 / (cells * cells));
-    if (before > 0) EXPECT_LT(away, before / 3.2) << "of second order";
+    if (before > 0) {
+      EXPECT_LT(away, before / 3.2) << "of second order";
+    }
     before = away;
   }
 }

@@ -184,7 +184,7 @@ TEST_F(BeamStress, AMeshedSectionWithoutItsFileIsRefused) {
     EXPECT_EQ(r.exit, 2);
     return r.err;
   };
-  EXPECT_NE(said("[section.s]\nkind = \"mesh\"\n").find("scene.toml:1:1: section \"s\": no file of its mesh"), std::string::npos);
+  EXPECT_NE(said("[section.s]\nkind = \"mesh\"\n").find("scene.toml:1:10: section \"s\": no file of its mesh"), std::string::npos);
   EXPECT_NE(said("[section.s]\nkind = \"mesh\"\nfile = \"none.msh\"\n").find("scene.toml:3:1: section \"s\": no file"), std::string::npos);
   work.write("face.msh", face_file(1, 1, 1, 1).substr(0, 80));
   EXPECT_NE(said("[section.s]\nkind = \"mesh\"\nfile = \"face.msh\"\n").find("face.msh:1"), std::string::npos);
