@@ -78,9 +78,9 @@ TEST_F(ImportThin, LayersOfInpDecksAreOnePlateOrAreTold) {
       "b.inp: element 1: *SHELL SECTION, COMPOSITE of several materials or orientations is no plate of one material (leave them as they "
       "are: regions that are rigid)");
   place.write("c.inp", deck(".01,,\n"));
-  refused("c.inp -o c.h5", 2, "c.inp:17: *SHELL SECTION, COMPOSITE: a layer without a material (thickness, , MATERIAL)");
+  refused("c.inp -o c.h5", 2, "c.inp:19: *SHELL SECTION, COMPOSITE: a layer without a material (thickness, , MATERIAL)");
   place.write("d.inp", deck("0,,M\n"));
-  refused("d.inp -o d.h5", 2, "d.inp:17:1: *SHELL SECTION: a layer of thickness 0");
+  refused("d.inp -o d.h5", 2, "d.inp:19:1: *SHELL SECTION: a layer of thickness 0");
 }
 
 TEST_F(ImportThin, ABarHasTheInertiaOfItsSection) {
