@@ -67,15 +67,16 @@ class Lines {
 };
 
 /// Elements of gmsh by their number.
-struct Kind {
+struct FaceElement {
   int type, dimension, corners, nodes;
   const char* name;
 };
-constexpr Kind kinds[] = {{15, 0, 1, 1, "points"},     {1, 1, 2, 2, "lines"},        {8, 1, 2, 3, "lines"},       {26, 1, 2, 4, "lines"},
-                          {27, 1, 2, 5, "lines"},      {28, 1, 2, 6, "lines"},       {2, 2, 3, 3, "triangles"},   {9, 2, 3, 6, "triangles"},
-                          {3, 2, 4, 4, "quadrangles"}, {16, 2, 4, 8, "quadrangles"}, {10, 2, 4, 9, "quadrangles"}};
-const Kind& kind_of(const Lines& lines, int type) {
-  for (const Kind& k : kinds)
+constexpr FaceElement face_elements[] = {{15, 0, 1, 1, "points"},      {1, 1, 2, 2, "lines"},       {8, 1, 2, 3, "lines"},
+                                         {26, 1, 2, 4, "lines"},       {27, 1, 2, 5, "lines"},      {28, 1, 2, 6, "lines"},
+                                         {2, 2, 3, 3, "triangles"},    {9, 2, 3, 6, "triangles"},   {3, 2, 4, 4, "quadrangles"},
+                                         {16, 2, 4, 8, "quadrangles"}, {10, 2, 4, 9, "quadrangles"}};
+const FaceElement& element_of(const Lines& lines, int type) {
+  for (const FaceElement& k : face_elements)
     if (k.type == type) return k;
   constexpr int solids[] = {4, 5, 6, 7, 11, 12, 13, 14, 17, 18, 19};
   if (std::find(std::begin(solids), std::end(solids), type) != std::end(solids))
@@ -86,7 +87,7 @@ const Kind& kind_of(const Lines& lines, int type) {
 
 struct Read {
   struct Element {
-    const Kind* kind;
+    const FaceElement* kind;
     std::array<std::int64_t, 9> node;
     int line;
   };
@@ -97,7 +98,7 @@ struct Read {
     if (!x.allFinite() || x.cwiseAbs().maxCoeff() > 1e12) lines.fail("this is no place of a section");
     if (!nodes.emplace(tag, std::pair{x, lines.number()}).second) lines.fail(fmt::format("node {} stands twice", tag));
   }
-  void add_element(Lines& lines, const Kind& kind) {
+  void add_element(Lines& lines, const FaceElement& kind) {
     if (kind.dimension < 2) return;
     Element e{&kind, {}, lines.number()};
     for (int i = 0; i < kind.nodes; ++i) e.node[static_cast<size_t>(i)] = lines.get<std::int64_t>("a node");
@@ -147,7 +148,7 @@ void read_elements(Lines& lines, bool is_2, size_t bytes, Read& out) {
   for (std::int64_t i = 0; is_2 && i < n; ++i) {
     lines.need("an element");
     (void)lines.get<std::int64_t>("the number of an element");
-    const Kind& kind = kind_of(lines, lines.get<int>("the type of an element"));
+    const FaceElement& kind = element_of(lines, lines.get<int>("the type of an element"));
     const std::int64_t tags = count(lines, "tags", 1000);
     for (std::int64_t k = 0; k < tags; ++k) (void)lines.get<std::int64_t>("a tag");
     out.add_element(lines, kind);
@@ -155,7 +156,7 @@ void read_elements(Lines& lines, bool is_2, size_t bytes, Read& out) {
   for (std::int64_t b = 0; !is_2 && b < n; ++b) {
     lines.need("a block of elements");
     for (int k = 0; k < 2; ++k) (void)lines.get<int>("dimension and number of a block");
-    const Kind& kind = kind_of(lines, lines.get<int>("the type of elements"));
+    const FaceElement& kind = element_of(lines, lines.get<int>("the type of elements"));
     const std::int64_t m = count(lines, "elements", bytes);
     for (std::int64_t i = 0; i < m; ++i) {
       lines.need("an element");
