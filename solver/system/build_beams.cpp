@@ -12,6 +12,7 @@
 #include "model/store.hpp"
 #include "system/beams.hpp"
 #include "system/builder.hpp"
+#include "system/section_meshes.hpp"
 
 namespace hilo {
 namespace {
@@ -138,5 +139,7 @@ void Builder::add_beams() {
     }
   }
 }
+
+const std::vector<NamedSection>& section_meshes(const System& system) { return system.part<Beams>().meshes; }
 
 }  // namespace hilo

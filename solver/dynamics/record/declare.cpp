@@ -6,6 +6,7 @@
 #include "model/mesh_source.hpp"
 #include "system/beams.hpp"
 #include "system/bodies.hpp"
+#include "system/section_meshes.hpp"
 
 namespace hilo {
 
@@ -49,7 +50,7 @@ void Recorder::declare_bodies(Store& f) const {
     write_array(f, "/body/mass", mass, {n_bodies});
     write_array(f, "/body/inertia", inertia, {n_bodies, 3});
   }
-  for (const NamedSection& section : system_.part<Beams>().meshes) {
+  for (const NamedSection& section : section_meshes(system_)) {
     const SectionMesh& m = section.mesh;
     std::vector<double> x;
     std::vector<std::int32_t> cells;
