@@ -14,6 +14,7 @@
 #include "import/imported.hpp"
 #include "model/inputs.hpp"
 #include "model/mesh_source.hpp"
+#include "model/section_file.hpp"
 #include "model/store.hpp"
 
 using namespace hilo;
@@ -24,7 +25,7 @@ struct Request {
   std::string input, output, scene_out;
   std::vector<std::string> defines, thickness;
   std::string subcase;
-  bool json = false;
+  bool json = false, face = false;
   ImportOptions options;
 };
 
@@ -108,6 +109,25 @@ void write_scenes(const Request& r, const Imported& in) {
   if (in.cases.empty()) write_text_file(r.scene_out, scene_text(r, in, in.mesh.deck_scene, in.not_read));
 }
 
+void write_face(Request& r, bool order_given) {
+  if (r.options.units_given) usage("--units beside --face: the face keeps the lengths of the file", "`scale` in [section.NAME]");
+  if (r.options.scale != 1) usage("--scale beside --face: the face keeps the lengths of the file", "`scale` in [section.NAME]");
+  if (!r.scene_out.empty()) usage("--scene-out beside --face: a face has no scene");
+  if (!r.output.ends_with(".msh")) usage(fmt::format("--face writes a mesh of gmsh: -o {} does not end in .msh", r.output));
+  if (!order_given) r.options.order = 2;
+  const std::string text = face_of(r.input, r.options);
+  const SectionMesh mesh = section_mesh_of(text, r.output);
+  const SectionArea a = meshed_face(mesh, 0.3).area;
+  write_text_file(r.output, text);
+  if (is_quiet() && !r.json) return;
+  if (r.json)
+    fmt::print("{{\"cells\": {}, \"A\": {}, \"I1\": {}, \"I2\": {}, \"I12\": {}, \"J\": {}, \"s1\": {}, \"s2\": {}}}\n", mesh.cells.size(),
+               a.A, a.I1, a.I2, a.I12, a.J, a.s1, a.s2);
+  else
+    fmt::print("{} cells; A {:.6g}, I1 {:.6g}, I2 {:.6g}, I12 {:.6g}, J {:.6g}, shear centre ({:.6g}, {:.6g}) from the centre of area\n",
+               mesh.cells.size(), a.A, a.I1, a.I2, a.I12, a.J, a.s1, a.s2);
+}
+
 void talk(const Imported& in) {
   if (!is_quiet())
     for (const auto& n : in.notes) fmt::print(stderr, "hilo-import: {}\n", n);
@@ -164,6 +184,9 @@ int main(int argc, char** argv) {
            "each of them, scene_N.toml by --scene-out scene.toml, and one mesh with the sets of all")
         ->type_name("N");
     app->add_flag("--flip", o.flip, "turn cells whose nodes are numbered as in a mirror (negative volume)");
+    app->add_flag("--face", r.face,
+                  "a plane surface of a .geo or CAD file becomes the face of a section of beams: -o face.msh, in the unit of the file; of "
+                  "quadratic cells unless --order 1 is given");
     app->add_flag("--keep-apart", o.keep_apart, "solids of a CAD file that touch share no nodes");
     app->add_option("--set", o.sets,
                     "a set by place, with the words of [set.NAME] in a scene, in the unit of the file; may be repeated: "
@@ -181,6 +204,7 @@ int main(int argc, char** argv) {
     if (!parse(*app, argc, argv)) return;
     o.units_given = units->count() > 0;
     check(r);
+    if (r.face) return write_face(r, app->count("--order") > 0);
     Imported in = read_any(r.input, o);
     finish(in, r.input, o);
     Store mesh = unpublished_mesh(r.output, in.mesh, {command_line(argc, argv)});

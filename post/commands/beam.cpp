@@ -25,7 +25,7 @@ struct BeamOptions {
   std::string run, csv, png, size = "1280x900", title;
   std::vector<std::string> names;
   std::vector<double> times;
-  bool envelope = false, json = false;
+  bool envelope = false, json = false, sections = false;
 };
 
 constexpr const char *value_words[] = {"V1", "V2", "N", "M1", "M2", "T", "high", "low", "von_mises"},
@@ -126,6 +126,20 @@ void overview(const BeamOptions& o, const RunFile& run) {
   write_out("-", o.json ? table.json("") + "\n" : table.text());
 }
 
+/// The numbers of the section of every beam.
+void sections(const BeamOptions& o, const RunFile& run) {
+  Table table{{"beam", "A [m^2]", "I1 [m^4]", "I2 [m^4]", "I12 [m^4]", "J [m^4]", "k1", "k2", "k12", "s1 [m]", "s2 [m]"}, {}, 1, 6};
+  const Chain chain = chain_of(run, o.names);
+  for (const RunBeam& b : run.beams()) {
+    if (!chain.forces.contains(b.name)) continue;
+    auto& row = table.rows.emplace_back(std::vector<std::string>{b.name});
+    const SectionArea a = b.area.value_or(SectionArea{});
+    for (const double x : {a.A, a.I1, a.I2, a.I12, a.J, a.shear_1, a.shear_2, a.shear_12, a.s1, a.s2})
+      row.push_back(b.area ? fmt::format("{:.6g}", x) : "-");
+  }
+  write_out("-", o.json ? table.json("") + "\n" : table.text());
+}
+
 /// BeamCurves over s: those of a time, or the least and the largest of all steps.
 struct BeamCurves {
   std::string label;
@@ -155,6 +169,11 @@ void write_png(const BeamOptions& o, const RunFile& run, const std::vector<doubl
 
 void run(const BeamOptions& o) {
   const RunFile run(o.run);
+  if (o.sections) {
+    BeamOptions all = o;
+    if (o.names.empty()) all.names = {"*"};
+    return sections(all, run);
+  }
   if (o.names.empty() || (o.envelope && o.csv.empty() && o.png.empty())) {
     BeamOptions all = o;
     if (o.names.empty()) all.names = {"*"};
@@ -228,6 +247,9 @@ Command beam_command(CLI::App& app) {
   sub->add_option("names", o->names, "beams by name or glob, one after the other; without any: the largest values of every beam");
   sub->add_option("--times", o->times, "times in s, the nearest steps; the last step by default")->delimiter(',');
   sub->add_flag("--envelope", o->envelope, "the least and the largest of all steps")->excludes("--times");
+  sub->add_flag("--sections", o->sections,
+                "the numbers of each section: area, second moments, torsion constant, factors of shear, shear centre")
+      ->excludes("--times", "--envelope");
   sub->add_option("-o,--output", o->csv, "CSV file, - for stdout; a table on stdout when neither this nor --png is given");
   sub->add_option("--png", o->png, "chart over the length: forces, moments, stress");
   sub->add_option("--title", o->title, "title of the chart");

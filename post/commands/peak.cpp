@@ -25,24 +25,37 @@ struct PeakOptions {
 
 void run(const PeakOptions& o) {
   RunFile run(o.run);
+  const bool of_beams = !run.beams().empty() && (o.field == "von_mises" || o.field == "axial_stress");
+  if (of_beams && !run.has_mesh()) run.stand_in_bodies();
+  const size_t n_own = of_beams || run.has_mesh() ? run.mesh_file().mesh.region_name.size() : 0;  // before the beams
+  if (of_beams) run.draw_beams();
   const MeshFile& file = run.mesh_file();
   const Mesh& mesh = file.mesh;
   const auto steps = run.select_steps(o.steps, o.times);
   if (is_named_field(o.field)) throw Error("--field", fmt::format("{} is a name, not a number", o.field), "", Exit::usage);
   const ShownField field = shown_field(o.field, run.fields(steps.front()));
   std::vector<bool> shown = shown_regions(mesh, o.show, o.hide);
+  const bool own = !of_beams || run.store().has("/field/" + steps.front().key + "/" + field.array);  // of the mesh too
   for (size_t r = 0; r < shown.size(); ++r)
-    if (field.flexible_only && file.fidelity[r] == Fidelity::rigid) shown[r] = false;
+    if ((r < n_own && !own) || (field.flexible_only && file.fidelity[r] == Fidelity::rigid) || !run.gives(r, field.array)) shown[r] = false;
   // over all steps of the run, where it has that and nothing less was asked for
   const std::string envelope = o.field + "_envelope";
   const bool of_all = o.steps == "all" && o.times.empty() && run.has_field(steps.back(), envelope);
+  const auto of_steps = [&](const std::vector<bool>& regions) {
+    return field_peaks(run, steps, regions, [&](const Step& step) { return reduced(run.field(step, field.array), field, run.path); });
+  };
   auto peaks =
-      of_all ? field_peaks(run, {steps.back()}, shown, [&](const Step& step) { return run.field(step, envelope).value; })
-             : field_peaks(run, steps, shown, [&](const Step& step) { return reduced(run.field(step, field.array), field, run.path); });
+      of_all ? field_peaks(run, {steps.back()}, shown, [&](const Step& step) { return run.field(step, envelope).value; }) : of_steps(shown);
   if (of_all) {
     const auto t = run.field(steps.back(), envelope + "_time").value;
     for (FieldPeak& p : peaks)
       if (p.node >= 0) p.t = t.at(static_cast<size_t>(p.node));
+    if (of_beams) {  // which no envelope has
+      std::vector<bool> beams = shown;
+      std::fill_n(beams.begin(), n_own, false);
+      const auto theirs = of_steps(beams);
+      std::copy(theirs.begin() + static_cast<std::ptrdiff_t>(n_own), theirs.end(), peaks.begin() + static_cast<std::ptrdiff_t>(n_own));
+    }
   }
   double largest = 0;
   for (const FieldPeak& p : peaks) largest = std::max(largest, std::abs(p.value));
@@ -52,8 +65,8 @@ void run(const PeakOptions& o) {
     if (peaks[r].node < 0) continue;
     const Vec3& X = mesh.X[static_cast<size_t>(peaks[r].node)];
     table.rows.push_back({mesh.region_name[r], fmt::format("{:.6g}", peaks[r].value * unit.factor), fmt::format("{:.6g}", peaks[r].t),
-                          fmt::format("{}", peaks[r].node), fmt::format("{:.5g}", X[0]), fmt::format("{:.5g}", X[1]),
-                          fmt::format("{:.5g}", X[2])});
+                          of_beams && r >= n_own ? "-" : fmt::format("{}", peaks[r].node), fmt::format("{:.5g}", X[0]),
+                          fmt::format("{:.5g}", X[1]), fmt::format("{:.5g}", X[2])});
   }
   if (table.rows.empty())
     throw Error(run.path, fmt::format("all regions asked for are rigid: they have no {}", field.label), "try --field acceleration");
@@ -66,11 +79,12 @@ Command peak_command(CLI::App& app) {
   auto* sub = app.add_subcommand(
       "peak",
       "largest value of a field in every region over the steps written, with place and time; over all steps where the run has "
-      "output.envelope");
+      "output.envelope; of beams von_mises and axial_stress, with the place on the section before the run");
   const auto o = std::make_shared<PeakOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("--field", o->field,
-                  "von_mises, stress_error, plastic_strain, contact_pressure, acceleration, displacement, velocity (or .x .y .z of these), "
+                  "von_mises, axial_stress (of beams), stress_error, plastic_strain, contact_pressure, acceleration, displacement, "
+                  "velocity (or .x .y .z of these), "
                   "stress.xx, "
                   "shell_moment.m11")
       ->capture_default_str();

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "physics/section_mesh.hpp"
 
 namespace hilo {
 namespace {
@@ -18,8 +19,34 @@ const Entry* find(const Scene& scene, std::string_view section, const std::strin
   return nullptr;
 }
 
-RunBeam beam_of(const Scene& scene, const Entry& e) {
-  RunBeam b{e.name, beam_line(e), {0}, {}, {}, Vec3::Zero()};
+/// Faces of the meshed sections that a run keeps.
+class KeptFaces {
+ public:
+  explicit KeptFaces(const Store& store) : store_(store) {}
+  bool contains(const std::string& name) const { return store_.has("/section/" + name + "/cells"); }
+  const SectionFace& face(const std::string& name, double nu) {
+    const auto known = faces_.find({name, nu});
+    if (known != faces_.end()) return known->second;
+    SectionMesh mesh;
+    const auto x = store_.read<double>("/section/" + name + "/points");
+    const auto cells = store_.read<std::int32_t>("/section/" + name + "/cells");
+    for (size_t i = 0; i + 1 < x.size(); i += 2) mesh.X.emplace_back(x[i], x[i + 1]);
+    for (size_t i = 0; i + 8 < cells.size(); i += 9) std::copy_n(&cells[i], 9, mesh.cells.emplace_back().begin());
+    for (const auto& cell : mesh.cells)
+      for (size_t i = 0; i < cell.size(); ++i)
+        if (const int node = cell[i]; node >= static_cast<int>(mesh.X.size()) || (node < 0 && (i < 6 || node != cell[6] || node != -1)))
+          throw Error("/section/" + name + "/cells", fmt::format("a cell has node {} of {}", cell[i], mesh.X.size()),
+                      "the file is damaged");
+    return faces_.emplace(std::pair{name, nu}, meshed_face(mesh, nu)).first->second;
+  }
+
+ private:
+  const Store& store_;
+  std::map<std::pair<std::string, double>, SectionFace> faces_;
+};
+
+RunBeam beam_of(const Scene& scene, const Entry& e, KeptFaces& meshed) {
+  RunBeam b{e.name, beam_line(e), {0}, {}, {}, {}, Vec3::Zero()};
   for (const BeamLine::Cell& cell : b.line.cells) {
     const double half = Eigen::AngleAxisd(cell.frame_a.transpose() * cell.frame_b).angle() / 2;
     b.s.push_back(b.s.back() + cell.length * (half > 1e-6 ? half / std::sin(half) : 1));
@@ -36,14 +63,21 @@ RunBeam beam_of(const Scene& scene, const Entry& e) {
   const SectionKind& kind = section_kinds().at(section->kind, section->place.text());
   const double nu = material && material->has("nu") ? material->number("nu") : 0;
   SectionArea area{.A = 1};
-  if (!kind.area) {
+  if (kind.meshed) {
+    if (!meshed.contains(section->name)) return b;
+    b.face = meshed.face(section->name, nu), area = b.face->area;
+  } else if (!kind.area) {
     const BeamSection s = section_of_stiffness(*section);
     area.I1 = s.C(3, 3) / s.C(2, 2), area.I2 = s.C(4, 4) / s.C(2, 2);
   } else {
     area = kind.area(*section, nu);
   }
+  if (kind.area || kind.meshed) b.area = area;
+  if (b.area && section->given("shear"))
+    b.area->shear_1 = section->numbers("shear").front(), b.area->shear_2 = section->numbers("shear").back(), b.area->shear_12 = 0;
   b.radii = Vec3(std::sqrt(area.I1 / area.A), std::sqrt(area.I2 / area.A), 0);
   if (kind.face) b.face = kind.face(*section, nu);
+  if (b.face && b.face->points.empty()) b.face.reset();
   return b;
 }
 
@@ -53,9 +87,10 @@ std::vector<RunBeam> beams_of(const RunFile& run) {
   std::vector<RunBeam> out;
   if (!run.store().has("/history/beam")) return out;
   const Scene scene = scene_of(run);
+  KeptFaces meshed(run.store());
   std::map<std::string, std::string> own;  // a section by each of its names
   for (const Entry& e : scene.entries("beam")) {
-    out.push_back(beam_of(scene, e));
+    out.push_back(beam_of(scene, e, meshed));
     for (const auto& [name, k] : section_names(e, out.back().line)) own[name] = out.back().on[k];
   }
   for (RunBeam& b : out)

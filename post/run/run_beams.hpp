@@ -17,7 +17,9 @@ struct RunBeam {
   std::vector<double> s;            // way of the sections along the axis before the run (n_cells + 1) [m]
   std::vector<std::string> on;      // what each section rides on: a body of its own, or what `a` and `b` name
   std::optional<SectionFace> face;  // none: its numbers are all that is known of the section
-  Vec3 radii;                       // of gyration about axes 1 and 2, and 0 [m]
+  std::optional<SectionArea> area;  // none of a section that is given by its stiffness
+  bool has_outline() const { return face && !face->cells.empty(); }  // else points with stress alone, or none
+  Vec3 radii;                                                        // of gyration about axes 1 and 2, and 0 [m]
 };
 /// Of the scene that a run keeps.
 std::vector<RunBeam> beams_of(const RunFile& run);

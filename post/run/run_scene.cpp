@@ -10,7 +10,8 @@ namespace hilo {
 Scene scene_of(const RunFile& run) {
   toml::table root = parse_toml(run.store().read_text("/scene"), run.path);
   const std::function<void(toml::table&)> strip = [&](toml::table& table) {
-    table.erase("history"), table.erase("file");
+    table.erase("history");
+    if (!table.contains("kind")) table.erase("file");  // of a history: what has a kind reads its file when it is built
     for (auto&& [key, node] : table) {
       if (auto* inner = node.as_table()) strip(*inner);
       if (auto* list = node.as_array())

@@ -48,13 +48,13 @@ SweptBeams::SweptBeams(const RunFile& run, MeshFile& file)
   Mesh& mesh = file.mesh;
   const auto names = run.store().read_strings("/body/name");
   const auto points = run.store().read<double>("/body/points");
-  size_t n_cells = 0;
-  for (const RunBeam& b : beams_) n_cells += b.line.cells.size();
-  const int slices = n_cells <= 200 ? 4 : n_cells <= 2000 ? 2 : 1;
+  size_t n_points = 0;
+  for (const RunBeam& b : beams_) n_points += b.line.cells.size() * (b.has_outline() ? b.face->points.size() : 4);
+  const int slices = n_points <= 15'000 ? 4 : n_points <= 150'000 ? 2 : 1;
   for (size_t k = 0; k < beams_.size(); ++k) {
     const RunBeam& b = beams_[k];
-    drawn_.push_back(b.face ? *b.face : stand_in_face(b));
-    forces_.push_back(b.face ? run.series("beam." + b.name) : Series{});
+    drawn_.push_back(b.has_outline() ? *b.face : stand_in_face(b));
+    forces_.push_back(b.has_outline() ? run.series("beam." + b.name) : Series{});
     const SectionFace& face = drawn_.back();
     const auto region = static_cast<std::int32_t>(mesh.region_name.size());
     mesh.region_name.push_back(b.name);
@@ -96,7 +96,7 @@ SweptBeams::SweptBeams(const RunFile& run, MeshFile& file)
 }
 
 bool SweptBeams::stressed() const {
-  return std::any_of(beams_.begin(), beams_.end(), [](const RunBeam& b) { return b.face.has_value(); });
+  return std::any_of(beams_.begin(), beams_.end(), [](const RunBeam& b) { return b.has_outline(); });
 }
 
 SweptBeams::Poses SweptBeams::poses(const RunFile::Field& own, size_t wanted) const {
@@ -137,7 +137,7 @@ std::vector<Vec3> SweptBeams::positions(const Poses& poses) const {
 std::vector<double> SweptBeams::stress(const std::string& name, size_t wanted) const {
   std::vector<double> out;
   for (const Node& n : nodes_) {
-    if (!beams_[n.beam].face) {
+    if (!beams_[n.beam].has_outline()) {
       out.push_back(0);
       continue;
     }

@@ -56,7 +56,7 @@ std::vector<Box> divided(const Box& whole, size_t n, bool row, double gap, doubl
 
 Frames::Frames(const FrameOptions& o) : o_(o) {
   const RunFile first(o.run);
-  const auto has_face = [](const RunBeam& b) { return b.face.has_value(); };
+  const auto has_face = [](const RunBeam& b) { return b.has_outline(); };
   if (o_.field == "von_mises" && !first.has_mesh() && std::none_of(first.beams().begin(), first.beams().end(), has_face)) {
     warn(o.run, "bodies without a mesh have no stress: drawn by their names");
     o_.field = "region";

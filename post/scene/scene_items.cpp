@@ -193,9 +193,12 @@ class Collector {
     if (e.kind == "line") {  // in the middle of each beam
       for (const Entry& beam : scene_.entries("beam")) {
         if (fnmatch(e.text("on").c_str(), beam.name.c_str(), 0) != 0) continue;
-        const std::vector<Vec3> at = beam_line(beam).at;
+        const BeamLine line = beam_line(beam);
+        const size_t k = line.at.size() / 2;
         SceneItem& item = add(glyph, e, "force per length", load_colour);
-        item.at = at[at.size() / 2], item.along = e.vector3("force_per_length");
+        item.at = line.at[k], item.along = e.vector3("force_per_length");
+        if (e.has("force_per_length_end")) item.along = (item.along + e.vector3("force_per_length_end")) / 2;
+        if (e.boolean("follower")) item.along = line.cells[k - 1].frame_b * item.along;
       }
       return;
     }

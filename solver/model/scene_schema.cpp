@@ -102,9 +102,15 @@ std::vector<KindSchema> make_schema() {
   for (const SectionKind& k : section_kinds()) {
     KindSchema rows{"section", k.name, k.meaning, {{"kind", text, "", "!", "the kind of section"}}};
     rows.params.insert(rows.params.end(), k.keys.begin(), k.keys.end());
-    if (k.area)
-      rows.params.push_back(
-          {"shear", numbers, "1", "", "factors of shear along 1 and 2; absent: Cowper's, of kind general 1", above(0), {1, 2}});
+    if (k.area || k.meshed)
+      rows.params.push_back({"shear",
+                             numbers,
+                             "1",
+                             "",
+                             k.meshed ? "factors of shear along 1 and 2; absent: those of the face"
+                                      : "factors of shear along 1 and 2; absent: Cowper's, of kind general 1",
+                             above(0),
+                             {1, 2}});
     s.push_back(std::move(rows));
   }
   section_kinds().close();
@@ -211,11 +217,13 @@ std::vector<KindSchema> make_schema() {
 
   s.push_back({"load",
                "line",
-               "force per length along a beam, inertial axes",
+               "force per length along a beam, in inertial axes or in those of its sections",
                {kind_of("the kind of load"),
                 name,
                 {"on", text, "", "!", "beam it acts on, or a glob"},
-                {"force_per_length", vector3, "N/m", "!", "force per length of the beam as drawn"},
+                {"force_per_length", vector3, "N/m", "!", "force per length of the beam as drawn; at its first point where it varies"},
+                {"force_per_length_end", vector3, "N/m", "", "at its last point, even between; absent: the same all along"},
+                {"follower", boolean, "", "false", "along axes 1, 2 and 3 of the sections, with which it turns"},
                 keys::history}});
 
   const Param part{"on", text, "", "!", "region or set of cells it acts on; for an acceleration a rigid region or a body too"};

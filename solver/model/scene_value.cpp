@@ -71,9 +71,11 @@ std::vector<double> list_of_numbers(const Reading& r, const std::vector<size_t>&
            std::string(r.param.meaning));
   std::vector<double> values;
   for (const auto& x : *list) {
-    const auto* row = r.param.key == "points" ? x.as_array() : nullptr;  // points may be rows of three
-    if (row && row->size() != 3) r.fail(place_of_node(x), fmt::format("a point of {} numbers, not 3", row->size()));
-    for (size_t k = 0; row && k < 3; ++k) values.push_back(read_number(r, (*row)[k]));
+    const size_t per_row = r.param.key == "points" ? 3 : r.param.key == "fibres" ? 2 : 0;  // points may be rows
+    const auto* row = per_row > 0 ? x.as_array() : nullptr;
+    if (row && row->size() != per_row) r.fail(place_of_node(x), fmt::format("a point of {} numbers, not {}", row->size(), per_row));
+    if (per_row == 2 && !row) r.fail(place_of_node(x), "a point is a row of 2 numbers", "fibres = [[0.05, 0.1], [-0.05, 0.1]]");
+    for (size_t k = 0; row && k < per_row; ++k) values.push_back(read_number(r, (*row)[k]));
     if (!row) values.push_back(read_number(r, x));
   }
   return values;

@@ -146,6 +146,15 @@ SectionFace zed_face(const EntryValues& e, double nu) { return open_face(zed(e, 
 
 SectionArea general(const EntryValues& e, double) { return {e.number("area"), e.number("I1"), e.number("I2"), e.number("J"), 1, 1}; }
 
+/// Axial stress at the points that are given; none of shear, which the numbers do not say.
+SectionFace fibres_of(const EntryValues& e, double nu) {
+  SectionFace face{.area = general(e, nu)};
+  if (!e.has("fibres")) return face;
+  const std::vector<double>& x = e.numbers("fibres");
+  for (size_t i = 0; i + 1 < x.size(); i += 2) face.points.push_back({{x[i], x[i + 1]}, Eigen::Matrix<double, 2, 3>::Zero()});
+  return face;
+}
+
 /// Three numbers, a diagonal, or nine, by rows.
 Mat3 matrix_of(const EntryValues& e, std::string_view key) {
   if (!e.has(key)) return Mat3::Zero();
@@ -166,8 +175,7 @@ double torsion_of_rectangle(double a, double b) {
   return a * cubed(b) / 3 * (1 - 192 / std::pow(pi, 5) * b / a * sum);
 }
 
-BeamSection section_of_area(const EntryValues& entry, const SectionKind& kind, double E, double nu, double density) {
-  SectionArea a = kind.area(entry, nu);
+BeamSection section_of_area(const EntryValues& entry, SectionArea a, double E, double nu, double density) {
   if (entry.given("shear")) a.shear_1 = entry.numbers("shear").front(), a.shear_2 = entry.numbers("shear").back(), a.shear_12 = 0;
   if (!(std::min(a.shear_1, a.shear_2) > 0)) entry.refuse("shear", "a factor of shear is not above 0");
   const double G = E / (2 * (1 + nu));
@@ -236,8 +244,17 @@ Registry<SectionKind>& section_kinds() {
         {{"area", number, "m^2", "!", "A", above(0)},
          {"I1", number, "m^4", "!", "int X2^2: bending about axis 1", above(0)},
          {"I2", number, "m^4", "!", "int X1^2: bending about axis 2", above(0)},
-         {"J", number, "m^4", "!", "of torsion", above(0)}},
-        general},
+         {"J", number, "m^4", "!", "of torsion", above(0)},
+         {"fibres", numbers, "m", "", "points with axial stress, from the centre of area along axes 1 and 2, [[x1, x2], ...]"}},
+        general,
+        fibres_of},
+       {"mesh",
+        "the face in a mesh of triangles and quadrangles; factors of shear by the energy of Saint-Venant's flexure",
+        {{"file", text, "", "", ".msh of gmsh, as text: x along axis 1, y along axis 2, in the scene's unit of length"},
+         {"scale", number, "1", "1", "factor on the lengths of the file", above(0)}},
+        nullptr,
+        nullptr,
+        true},
        {"matrix",
         "given by its stiffness about the origin, without a material; three numbers are a diagonal, nine a matrix by rows",
         {{"stiffness", numbers, "N", "!", "shear along 1 and 2, stretch", any_number, {3, 9}},

@@ -48,15 +48,17 @@ struct SectionFace {
 struct SectionKind {
   std::string_view name, meaning;
   std::vector<Param> keys;  // of the scene, besides the kind
-  /// nu: Poisson's ratio, of which the shear factors depend; null: the section is given by its stiffness, without a material.
+  /// nu: Poisson's ratio, of which the shear factors depend; null, and not meshed: the section is given by its stiffness, without a
+  /// material.
   SectionArea (*area)(const EntryValues& entry, double nu) = nullptr;
   /// Null: nothing is known of its shape, and it has no stress at points.
   SectionFace (*face)(const EntryValues& entry, double nu) = nullptr;
+  bool meshed = false;  // its area and face are those of a mesh (physics/section_mesh) that `file` names
 };
 Registry<SectionKind>& section_kinds();
 
-/// A section of an area, of Young's modulus E [Pa], Poisson's ratio nu and density [kg/m^3].
-BeamSection section_of_area(const EntryValues& entry, const SectionKind& kind, double E, double nu, double density);
+/// A section of an area of the entry's kind, or of its mesh, of Young's modulus E [Pa], Poisson's ratio nu and density [kg/m^3].
+BeamSection section_of_area(const EntryValues& entry, SectionArea area, double E, double nu, double density);
 /// A section given by its stiffness.
 BeamSection section_of_stiffness(const EntryValues& entry);
 

@@ -28,17 +28,23 @@ Rows everywhere(const Vec3& g) {
   return out;
 }
 
-/// Linked mass of an element of a section by itself, on c, d1, d2, d3 of both ends.
-BeamCell::Mass linked_mass(const BeamSection& s, double L) {
+/// Shares of c, d1, d2, d3 of both ends in points of the axis of an element of a section by itself: use(t, shares, ds).
+template <class Use>
+void each_share(const BeamSection& s, double L, const Use& use) {
   constexpr double x[] = {0.8611363115940526, 0.3399810435848563}, w[] = {0.3478548451374538, 0.6521451548625461};  // Gauss, 4 points
-  BeamCell::Mass M = BeamCell::Mass::Zero();
   const double phi = 12 / (L * L) * std::max(s.C(3, 3) / s.C(1, 1), s.C(4, 4) / s.C(0, 0));
   for (int k = 0; k < 4; ++k) {
     const double t = (1 + (k % 2 ? -1 : 1) * x[k / 2]) / 2, g = (2 * t * t * t - 3 * t * t + t) / (1 + phi), bow = (t - t * t) / 2;
     Eigen::Matrix<double, 8, 1> u = Eigen::Matrix<double, 8, 1>::Zero();
     u[0] = 1 - t + g, u[4] = t - g, u[3] = L * (g / 2 + bow), u[7] = L * (g / 2 - bow);
-    M += w[k / 2] * L / 2 * s.mass * u * u.transpose();
+    use(t, u, w[k / 2] * L / 2);
   }
+}
+
+/// Linked mass of an element of a section by itself, on c, d1, d2, d3 of both ends.
+BeamCell::Mass linked_mass(const BeamSection& s, double L) {
+  BeamCell::Mass M = BeamCell::Mass::Zero();
+  each_share(s, L, [&](double, const Eigen::Matrix<double, 8, 1>& u, double ds) { M += ds * s.mass * u * u.transpose(); });
   for (const int a : {0, 4})
     for (const int b : {0, 4}) {
       const double share = L * (a == b ? 5.0 : 1.0) / 12;
@@ -48,11 +54,14 @@ BeamCell::Mass linked_mass(const BeamSection& s, double L) {
   return M;
 }
 
-/// Shares of the points of an element of a section by itself in a force that is uniform along it: those of the mass, integrated.
-Eigen::Matrix<double, 8, 1> line_shares(double L) {
-  Eigen::Matrix<double, 8, 1> u = Eigen::Matrix<double, 8, 1>::Zero();
-  u[0] = u[4] = L / 2, u[3] = L * L / 12, u[7] = -L * L / 12;
-  return u;
+/// int u (1 - t)^2 ds, int u t (1 - t) ds, int u t^2 ds of the shares u of an element of a section by itself.
+std::array<Eigen::Matrix<double, 8, 1>, 3> line_shares(const BeamSection& s, double L) {
+  std::array<Eigen::Matrix<double, 8, 1>, 3> out;
+  for (auto& column : out) column.setZero();
+  each_share(s, L, [&](double t, const Eigen::Matrix<double, 8, 1>& u, double ds) {
+    out[0] += ds * (1 - t) * (1 - t) * u, out[1] += ds * t * (1 - t) * u, out[2] += ds * t * t * u;
+  });
+  return out;
 }
 
 /// Changes of strain over the steps before that dissipation recalls.
@@ -114,7 +123,8 @@ void Beams::add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSec
     T.block<3, 3>(4 * k + 1, 4 * k + 1) = (to_body * place.frame).transpose();
   }
   cell.M = T.transpose() * linked_mass(section, cell.law->length()) * T;
-  cell.line = T.transpose() * line_shares(cell.law->length());
+  cell.sections = T;
+  cell.line = line_shares(section, cell.law->length());
   cells.push_back(std::move(cell));
 }
 
@@ -129,18 +139,34 @@ void Beams::number(Layout& layout) {
   for (const BeamCell& cell : cells) clique_.push_back(layout.cliques.add(blocks_of_ends(points_, cell.ends)));
 }
 
-std::vector<Vec3> Beams::line_forces(const Stage& s) const {
+std::vector<Beams::LineForces> Beams::line_forces(const Stage& s) const {
   if (lines.empty()) return {};
-  std::vector<Vec3> out(cells.size(), Vec3::Zero());
-  for (const LineLoad& l : lines)
-    for (int k = 0; k < l.n_cells; ++k) out[l.first + k] += l.load.factor(s.t0, s.t1, s.load_factor) * l.load.value;
+  std::vector<LineForces> out(cells.size());
+  for (const LineLoad& l : lines) {
+    const double factor = l.load.factor(s.t0, s.t1, s.load_factor);
+    for (size_t k = 0; k < l.at.size(); ++k) {
+      const BeamCell& cell = cells[l.first + k];
+      const auto& [a, b] = l.at[k];
+      if (!l.load.follower) {
+        out[l.first + k].F += factor * cell.sections.transpose() *
+                              ((cell.line[0] + cell.line[1]) * a.transpose() + (cell.line[1] + cell.line[2]) * b.transpose());
+        continue;
+      }
+      BeamCell::Mass of_directors = BeamCell::Mass::Zero();  // (p_A (1 - t) + p_B t) along directors that are linear between the ends
+      for (int i = 0; i < 3; ++i) {
+        of_directors.col(1 + i) = a[i] * cell.line[0] + b[i] * cell.line[1];
+        of_directors.col(5 + i) = a[i] * cell.line[1] + b[i] * cell.line[2];
+      }
+      out[l.first + k].K += factor * cell.sections.transpose() * of_directors * cell.sections;
+    }
+  }
   return out;
 }
 
 void Beams::evaluate(Pass& p) const {
   thread_local ConnectorGradient left, right;
   const Stage& s = p.s;
-  const std::vector<Vec3> line = p.loads ? line_forces(s) : std::vector<Vec3>{};
+  const std::vector<LineForces> line = p.loads ? line_forces(s) : std::vector<LineForces>{};
   for (size_t k = 0; k < cells.size(); ++k) {
     if (!points_.counts(static_cast<int>(k))) continue;
     const BeamCell& cell = cells[k];
@@ -153,8 +179,8 @@ void Beams::evaluate(Pass& p) const {
     add_force(p, c, left, force);
 
     Rows F = forces_of_mass(cell, s, points_.gravity);
-    if (!line.empty()) F -= cell.line * line[k].transpose();
     const Rows at_left = rows_of(*s.left, c);
+    if (!line.empty()) F -= line[k].F + line[k].K * at_left;
     for (int e = 0; e < 2; ++e) {
       Vec6& body = p.body[c.end[e].body];
       body.head<3>() += row(F, 4 * e);
@@ -175,7 +201,8 @@ void Beams::evaluate(Pass& p) const {
     add_slope(*s.e1, s.chain, elastic);
     add_geometric(c, left, right, force, s.slope, K);
 
-    const BeamCell::Mass slope = (s.mass_slope + (s.v ? cell.alpha * s.alpha_slope : 0)) * cell.M;
+    BeamCell::Mass slope = (s.mass_slope + (s.v ? cell.alpha * s.alpha_slope : 0)) * cell.M;
+    if (!line.empty()) slope -= s.slope * line[k].K;
     const Rows at_end = rows_of(*s.end, c);
     for (int a = 0; a < 8; ++a) {
       const bool turns_a = a % 4 > 0;
@@ -214,12 +241,14 @@ void Beams::add_energy(const Config& q, const Config& v, Energy& sum) const {
 
 void Beams::add_work(const Moment& m, Work& sum) const {
   const Stage& s = m.s;
-  const std::vector<Vec3> line = line_forces(s);
+  const std::vector<LineForces> line = line_forces(s);
   for (size_t k = 0; k < cells.size(); ++k) {
     if (!points_.counts(static_cast<int>(k))) continue;
     const BeamCell& cell = cells[k];
     if (!line.empty())
-      sum.external += (cell.line.transpose() * (rows_of(*s.end, cell.ends) - rows_of(s.from(), cell.ends))).dot(line[k].transpose());
+      sum.external += (line[k].F + line[k].K * rows_of(*s.left, cell.ends))
+                          .cwiseProduct(rows_of(*s.end, cell.ends) - rows_of(s.from(), cell.ends))
+                          .sum();
     sum.add(s, [&](const Config& from, const Config& to, double last, double before) {
       Response taken;
       cell.law->resist(cell.ends.values(from), cell.ends.values(to), 1, recalled(cell, *s.dissipation, from, last, before), taken);
@@ -270,15 +299,15 @@ void Beams::observe(const Sight& sight) {
   ConnectorGradient g;
   const Stage& s = sight.step->s;
   std::vector<double>& out = sight.mid;
-  const std::vector<Vec3> line = line_forces(s);
+  const std::vector<LineForces> line = line_forces(s);
   for (size_t k = 0; k < cells.size(); ++k) {
     const BeamCell& cell = cells[k];
     gradient(cell.ends, *s.left, g);
     Response elastic, viscous, before;
     respond(cell, s, elastic, viscous, before);
     Rows F = forces_of_mass(cell, s, points_.gravity);
-    if (!line.empty()) F -= cell.line * line[k].transpose();
     const Rows at = rows_of(*s.left, cell.ends);
+    if (!line.empty()) F -= line[k].F + line[k].K * at;
     for (int end = 0; end < 2; ++end) {
       Vec6 f = Vec6::Zero();
       for (int m = 0; m < ArcLaw::n_measures; ++m) f += (elastic.s[m] + viscous.s[m]) * g.G.block<1, 6>(m, 6 * end).transpose();

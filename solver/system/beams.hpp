@@ -9,6 +9,7 @@
 
 #include "physics/beam_arc.hpp"
 #include "physics/beam_section.hpp"
+#include "physics/section_mesh.hpp"
 #include "system/contribution.hpp"
 #include "system/loads.hpp"
 
@@ -18,10 +19,12 @@ struct BeamCell {
   using Mass = Eigen::Matrix<double, 8, 8>;  // of c, R e_1, R e_2, R e_3 of the bodies at both ends
   Connector ends;
   std::unique_ptr<ArcLaw> law;
-  Mass M = Mass::Zero();             // [kg, kg m, kg m^2]
-  Eigen::Matrix<double, 8, 1> line;  // int u ds, the share of each of these points in a force per length [m, m^2]
-  double alpha = 0;                  // mass-proportional damping [1/s]
-  double size = 0;                   // of the section [m]
+  Mass M = Mass::Zero();  // [kg, kg m, kg m^2]
+  Mass sections;          // c, d1, d2, d3 of both sections from these points
+  /// int u (1 - t)^2 ds, int u t (1 - t) ds, int u t^2 ds, u the shares of the points of the sections in a point at t [m, m^2]
+  std::array<Eigen::Matrix<double, 8, 1>, 3> line;
+  double alpha = 0;  // mass-proportional damping [1/s]
+  double size = 0;   // of the section [m]
 };
 
 struct Beam {
@@ -29,10 +32,18 @@ struct Beam {
   int first = 0, n_cells = 0;  // of the list
 };
 
-/// A force per length on some cells, inertial axes: the value of the load.
+/// A meshed section of the scene.
+struct NamedSection {
+  std::string name;
+  SectionMesh mesh;
+};
+
+/// A force per length on the cells of a beam, linear along each cell: in inertial axes, or in axes of the sections, which it then turns
+/// with.
 struct LineLoad {
-  Load load;  // [N/m]
-  int first = 0, n_cells = 0;
+  Load load;
+  int first = 0;
+  std::vector<std::array<Vec3, 2>> at;  // both ends of each cell [N/m]
 };
 
 /// Where a section is in the reference configuration: its origin, directors by columns, and the body that it rides on.
@@ -48,6 +59,7 @@ class Beams final : public Contribution, public Equations, public Stateful, publ
   std::vector<Beam> beams;
   std::vector<BeamCell> cells;
   std::vector<LineLoad> lines;
+  std::vector<NamedSection> meshes;
   void add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSection& section, double beta, double alpha);
   /// w.M v of what is at a body [J].
   double inertia(int body, const Config& v, const Vec3& w, const Mat3& W) const;
@@ -64,8 +76,13 @@ class Beams final : public Contribution, public Equations, public Stateful, publ
   void tie(Ties& ties) const override;
 
  private:
-  /// Forces per length on each cell.
-  std::vector<Vec3> line_forces(const Stage& s) const;
+  /// What loads by length exert on the points of a cell: F + K x, of the points x.
+  struct LineForces {
+    Eigen::Matrix<double, 8, 3> F = Eigen::Matrix<double, 8, 3>::Zero();
+    BeamCell::Mass K = BeamCell::Mass::Zero();
+  };
+  /// On each cell; empty without such loads.
+  std::vector<LineForces> line_forces(const Stage& s) const;
   const Points& points_;
   std::vector<int> clique_;
 };

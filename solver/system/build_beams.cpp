@@ -5,9 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <map>
 
+#include "model/section_file.hpp"
+#include "model/store.hpp"
 #include "system/beams.hpp"
 #include "system/builder.hpp"
+#include "system/section_meshes.hpp"
 
 namespace hilo {
 namespace {
@@ -26,10 +31,49 @@ const Entry& named(const Scene& scene, std::string_view section, const Entry& e,
                            : fmt::format("there are: {}", fmt::join(names, ", ")));
 }
 
-BeamSection section_of(const Scene& scene, const Entry& beam, bool is_static) {
+/// The mesh of a section, read on one rank for all.
+SectionMesh mesh_of(const Scene& scene, const Entry& section, const Comm& comm) {
+  if (!section.has("file")) section.refuse("", "no file of its mesh", "file = \"face.msh\", as hilo-import --face writes it");
+  const std::filesystem::path file = section.text("file");
+  const std::string path = (scene.folder == "." ? file : scene.folder / file).string();
+  if (std::error_code error; !std::filesystem::exists(path, error) && !error)
+    section.refuse("file", fmt::format("no file {}", path), "paths in a scene are relative to the scene's folder");
+  std::vector<char> text;
+  comm.on_first([&] {
+    const std::string read = read_text_file(path, section.where("file"));
+    text.assign(read.begin(), read.end());
+  });
+  text = comm.of_first(std::move(text));
+  SectionMesh mesh = section_mesh_of({text.begin(), text.end()}, path);
+  for (Eigen::Vector2d& x : mesh.X) x *= section.number("scale") * to_si("m", scene.units);
+  return mesh;
+}
+
+/// Faces of meshed sections, by name and Poisson's ratio.
+class Faces {
+ public:
+  Faces(const Scene& scene, const Comm& comm, std::vector<NamedSection>& meshes) : scene_(scene), comm_(comm), meshes_(meshes) {}
+  const SectionArea& area(const Entry& section, double nu) {
+    const auto known = areas_.find({section.name, nu});
+    if (known != areas_.end()) return known->second;
+    auto mesh = std::find_if(meshes_.begin(), meshes_.end(), [&](const NamedSection& s) { return s.name == section.name; });
+    if (mesh == meshes_.end()) mesh = meshes_.insert(meshes_.end(), {section.name, mesh_of(scene_, section, comm_)});
+    const SectionFace face = meshed_face(mesh->mesh, nu);
+    for (size_t i = 0; i < face.points.size(); ++i) mesh->mesh.X[i] = face.points[i].at;
+    return areas_.emplace(std::pair{section.name, nu}, face.area).first->second;
+  }
+
+ private:
+  const Scene& scene_;
+  const Comm& comm_;
+  std::vector<NamedSection>& meshes_;
+  std::map<std::pair<std::string, double>, SectionArea> areas_;
+};
+
+BeamSection section_of(const Scene& scene, const Entry& beam, bool is_static, Faces& faces) {
   const Entry& section = named(scene, "section", beam, "section");
   const SectionKind& kind = section_kinds().at(section.kind, section.place.text());
-  if (!kind.area) {
+  if (!kind.area && !kind.meshed) {
     if (beam.given("material"))
       beam.refuse("material", fmt::format("section \"{}\" is given by its stiffness, without a material", section.name));
     return section_of_stiffness(section);
@@ -42,7 +86,8 @@ BeamSection section_of(const Scene& scene, const Entry& beam, bool is_static) {
   for (const char* key : {"E", "nu"})
     if (!material.has(key)) beam.refuse("material", fmt::format("material \"{}\" has no {}", material.name, key));
   if (!material.has("density") && !is_static) beam.refuse("material", fmt::format("material \"{}\" has no density", material.name));
-  return section_of_area(section, kind, material.number("E"), material.number("nu"),
+  const double nu = material.number("nu");
+  return section_of_area(section, kind.meshed ? faces.area(section, nu) : kind.area(section, nu), material.number("E"), nu,
                          material.has("density") ? material.number("density") : 0);
 }
 
@@ -72,11 +117,12 @@ void Builder::add_sections() {
 
 void Builder::add_beams() {
   Beams& beams = out_->part<Beams>();
+  Faces faces(scene_, comm_, beams.meshes);
   for (BeamPlan& plan : beam_plans_) {
     const Entry& e = *plan.entry;
     for (const char* key : {"a", "b"})
       if (e.given(key)) (key[0] == 'a' ? plan.body.front() : plan.body.back()) = carrier(e, key, true).body;
-    const BeamSection section = section_of(scene_, e, is_static());
+    const BeamSection section = section_of(scene_, e, is_static(), faces);
     beams.beams.push_back({e.name, static_cast<int>(beams.cells.size()), static_cast<int>(plan.line.cells.size())});
     for (size_t k = 0; k < plan.line.cells.size(); ++k) {
       const BeamLine::Cell& cell = plan.line.cells[k];
@@ -93,5 +139,7 @@ void Builder::add_beams() {
     }
   }
 }
+
+const std::vector<NamedSection>& section_meshes(const System& system) { return system.part<Beams>().meshes; }
 
 }  // namespace hilo

@@ -17,12 +17,21 @@ namespace hilo {
 void Builder::add_line_load(const Entry& e, const Load& load) {
   Beams& beams = out_->part<Beams>();
   const std::string& on = e.text("on");
+  const Vec3 from = e.vector3("force_per_length"), end = e.has("force_per_length_end") ? e.vector3("force_per_length_end") : from;
   bool any = false;
   std::vector<std::string> names;
   for (const Beam& beam : beams.beams) {
     names.push_back(beam.name);
     if (fnmatch(on.c_str(), beam.name.c_str(), 0) != 0) continue;
-    beams.lines.push_back({load, beam.first, beam.n_cells});
+    double length = 0, s = 0;
+    for (int k = 0; k < beam.n_cells; ++k) length += beams.cells[beam.first + k].law->length();
+    LineLoad line{load, beam.first, {}};
+    for (int k = 0; k < beam.n_cells; ++k) {
+      const double to = s + beams.cells[beam.first + k].law->length();
+      line.at.push_back({from + s / length * (end - from), from + to / length * (end - from)});
+      s = to;
+    }
+    beams.lines.push_back(std::move(line));
     any = true;
   }
   if (!any) throw Error(e.where("on"), fmt::format("{}: no beam \"{}\"", e.label(), on), suggest(on, names));
@@ -35,7 +44,7 @@ void Builder::add_loads() {
     load.history = use_history(e, Acts::as_force);
     load.ramped = !e.given("history");
     if (e.kind == "line") {
-      load.value = e.vector3("force_per_length");
+      load.follower = e.boolean("follower");
       add_line_load(e, load);
       continue;
     }

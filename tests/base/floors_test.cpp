@@ -16,19 +16,19 @@ namespace fs = std::filesystem;
 
 const std::map<std::string, std::set<std::string>> may_include{
     {"base", {"base"}},
-    // each law, joint, spring, section and obstacle brings its rows of the scene's schema
+    // each law, joint, spring, section and obstacle brings its rows of the scene's schema; a section's mesh is read into its own form
     {"model",
      {"base", "model", "physics/beam_section.hpp", "physics/contact/obstacle_kinds.hpp", "physics/material/materials.hpp",
-      "physics/spring_kinds.hpp"}},
+      "physics/section_mesh.hpp", "physics/spring_kinds.hpp"}},
     {"physics", {"base", "physics"}},
     {"linear", {"base", "linear"}},
     {"system", {"base", "model", "physics", "linear", "system"}},
     {"dynamics", {"base", "model", "physics", "linear", "system", "dynamics"}},
     {"main", {"base", "model", "physics", "linear", "system", "dynamics"}},
     // sections of beams: what a deck says of one is what a scene says
-    {"tools", {"base", "model", "physics/beam_section.hpp"}},
+    {"tools", {"base", "model", "physics/beam_section.hpp", "physics/section_mesh.hpp"}},
     // values at points: the shape functions, which know base alone; stress at points of the sections of beams
-    {"post", {"base", "model", "physics/beam_section.hpp", "physics/shape/shapes.hpp"}},
+    {"post", {"base", "model", "physics/beam_section.hpp", "physics/section_mesh.hpp", "physics/shape/shapes.hpp"}},
 };
 const std::set<std::string> floors{"base", "model", "physics", "linear", "system", "dynamics"};
 

@@ -40,7 +40,7 @@ NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5
             "diameter": "0.1", "thickness": "0.02", "width": "0.1", "height": "0.1", "flange": "0.02", "web": "0.02", "I1": "1e-5", "I2": "1e-5", "J": "1e-5",
            "bending": "[100, 100, 100]", "line_mass": "1", "cells": "[2]", "orientation": "[0, 1, 0]", "shear": "[1, 1]",
            "axis_1": "[1, 0, 0]", "axis_2": "[0, 1, 0]", "hardening_strain": "[0, 0.1]", "hardening_stress": "[1e6, 2e6]",
-           "factors": "[1, 1]", "extension": "[0, 1]", "acceleration": "[1, 0, 0]", "force_per_length": "[1, 0, 0]", "speed": "1", "size": "[1, 1, 1]", "tube": "0.05", "modulus": "1e7", "layer": "0.1", "gap": "0.1", "factor": "1", "friction": "0.1"}
+           "factors": "[1, 1]", "extension": "[0, 1]", "acceleration": "[1, 0, 0]", "force_per_length": "[1, 0, 0]", "speed": "1", "size": "[1, 1, 1]", "tube": "0.05", "modulus": "1e7", "layer": "0.1", "gap": "0.1", "factor": "1", "friction": "0.1", "fibres": "[[0.05, 0.1]]"}
 BODIES = """[[body]]
 name = "arm"
 mass = 1
@@ -86,6 +86,21 @@ MESH = """*NODE
 1, 2, 3, 4
 *SURFACE, NAME=top
 block, S2
+"""
+FACE = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+4
+1 0 0 0
+2 0.1 0 0
+3 0.1 0.2 0
+4 0 0.2 0
+$EndNodes
+$Elements
+1
+1 3 2 0 1 1 2 3 4
+$EndElements
 """
 LID = """*NODE
 11, 0, 0, 1
@@ -144,6 +159,8 @@ def bad(key, kind, value, default):
         return [f"{{t = [0, 0.02], value = [{value}, 1]}}", f"{{t = [0, {value}], value = [0, 1]}}"]
     if key == "points":
         return [f"[[{value}, 0, 0], [1, 0, 0], [2, 1, 0]]"]
+    if key == "fibres":
+        return [f"[[{value}, 0.1]]"]
     numbers = default.strip("[]").split(",")
     lists = ["[" + ", ".join([value] + numbers[1:]) + "]"]
     if len(numbers) > 1 and value in ("1e300", "3e9"):
@@ -189,6 +206,8 @@ def entry(section, kind, keys, tried, value):
         beside.add("sensor")
     if kind == "matrix":
         beside.add("line_mass")
+    if section == "section" and kind == "mesh":
+        beside.add("file")
     if section == "contact" and tried not in ("modulus", "layer"):
         beside.add("stiffness")
     for key, type_, default in keys:
@@ -204,6 +223,8 @@ def entry(section, kind, keys, tried, value):
                 word = '"top"'
             if section == "load" and kind == "centrifugal" and key == "on":
                 word = '"block"'
+            if kind == "mesh" and key == "file":
+                word = '"face.msh"'
             if kind == "line" and key == "on":
                 word = '"whip"'
             if kind in ("gear", "rack") and key == "a":
@@ -322,6 +343,8 @@ def judge(text, with_mesh):
 def make_mesh():
     with open("road.csv", "w") as f:
         f.write("y\\x,-9,0,9\n-9,0,0.1,0\n0,0.1,0,0\n9,0,0,0\n")
+    with open("face.msh", "w") as f:
+        f.write(FACE)
     for name, text, regions in (("mesh", MESH, ["block"]), ("two", MESH + LID, ["block", "lid"])):
         with open("deck.inp", "w") as f:
             f.write(text)
@@ -331,6 +354,8 @@ def make_mesh():
 def usual(section, kind, key, type_):
     """A value of the key that runs."""
     value = of_set(kind, key) if section == "set" and of_set(kind, key) else good(key, type_)
+    if kind == "mesh" and key == "file":
+        return '"face.msh"'
     if kind == "matrix":
         return MATRIX.get(key, value)
     if kind == "bushing" and value.count(",") == 0 and type_ == "numbers":

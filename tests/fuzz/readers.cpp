@@ -10,6 +10,7 @@
 #include "model/mesh_tags.hpp"
 #include "model/scene.hpp"
 #include "model/scene_read.hpp"
+#include "model/section_file.hpp"
 #include "model/store.hpp"
 #include "post/files/csv.hpp"
 
@@ -46,6 +47,7 @@ void table(const std::string& path) {
     }
 }
 void points(const std::string& path) { read_points_csv(path, "fuzz"); }
+void section(const std::string& path) { meshed_face(section_mesh_of(read_text_file(path), path), 0.3); }
 void history(const std::string& path) { read_history_csv(path, "fuzz"); }
 
 }  // namespace
@@ -66,6 +68,7 @@ std::span<const Reader> readers() {
       {"csv", ".csv", table},
       {"points", ".csv", points},
       {"history", ".csv", history},
+      {"section", ".msh", section},
       {"store", ".h5", store},
   };
   return all;

@@ -46,6 +46,12 @@ for number, solid in enumerate(solids):
 for path in glob.glob("*-*"):
     with open(path, "rb") as f:
         put({"mesh": "medit"}.get(path.split(".")[-1], path.split(".")[-1]), path, f.read())
+for order in 1, 2:
+    with open("face.geo", "w") as f:
+        f.write("Point(1) = {0, 0, 0}; Extrude {1, 0, 0} {Point{1}; Layers{2};} Extrude {0, 1, 0} {Line{1}; Layers{2};" + " Recombine;" * (order - 1) + "}\n")
+    subprocess.run([bin + "/hilo-import", "face.geo", "--face", "--order", str(order), "-o", "face.msh", "--quiet"], check=True)
+    with open("face.msh", "rb") as f:
+        put("section", f"{order}.msh", f.read())
 subprocess.run([bin + "/hilo-tag", "0.h5", "--rest", "rigid", "-o", "tags.h5", "--quiet"], check=True)
 subprocess.run([bin + "/hilo-part", "tags.h5", "-n", "2", "-o", "parts.h5", "--quiet"], check=True)
 for path in "0.h5", "1.h5", "tags.h5", "parts.h5":

@@ -81,6 +81,7 @@ std::string value_of(const KindSchema& kind, const Param& p) {
       {"reactions", "\"arm\""},
       {"acceleration", "[30, 20, -50]"},
       {"force_per_length", "[30, 20, -50]"},
+      {"force_per_length_end", "[-20, 60, 10]"},
       {"speed", "7"},
       {"axle", "[0.2, 1, 0.3]"},
       {"edge", "[0.2, 1, 0.3]"},

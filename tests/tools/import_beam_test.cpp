@@ -86,11 +86,12 @@ TEST_F(ImportBeam, ForcesPerLengthBendBars) {
     solve(deck(fmt::format("PLOAD1,2,1,{0}\nPLOAD1,2,2,{0}\n", load)));
     EXPECT_NEAR(moved("grid_3").y() / want, 1, 1e-4) << load;
   }
-  place.write("t.bdf",
-              deck("PLOAD1,2,1,FY,FR,0.,.3,.5,.3\nPLOAD1,2,1,FY,FR,0.,.3,1.,.4\nPLOAD1,2,1,FY,FR,.5,.3\nPLOAD1,2,2,MZ,FR,0.,.3,1.,.3\n"));
+  // one that falls evenly to nothing at the tip: w L^4/(30 E I) + w L^2/(6 k G A)
+  solve(deck("PLOAD1,2,1,FY,FR,0.,.3,1.,.15\nPLOAD1,2,2,FY,LE,0.,.15,.5,0.\n"));
+  EXPECT_NEAR(moved("grid_3").y() / (.3 * (1 / (30 * E * I) + 1 / (6 * k * G * A))), 1, 1e-4);
+  place.write("t.bdf", deck("PLOAD1,2,1,FY,FR,0.,.3,.5,.3\nPLOAD1,2,1,FY,FR,.5,.3\nPLOAD1,2,2,MZ,FR,0.,.3,1.,.3\n"));
   imported("t.bdf", "--scene-out t.toml");
-  for (const char* lost :
-       {"PLOAD1 on a part of a beam", "PLOAD1 that varies along the beam", "PLOAD1 at a point of a beam", "PLOAD1 of moments"})
+  for (const char* lost : {"PLOAD1 on a part of a beam", "PLOAD1 at a point of a beam", "PLOAD1 of moments"})
     EXPECT_NE(err.find(lost), std::string::npos) << lost << '\n' << err;
   place.write("w.bdf", deck("PLOAD1,2,1,FQ,FR,0.,.3,1.,.3\n"));
   refused("w.bdf -o b.h5", 2, "w.bdf:15:12: PLOAD1: no type \"FQ\" (FX, FY, FZ, FXE, FYE, FZE or moments)");
@@ -314,6 +315,44 @@ TEST_F(ImportBeam, WhatABeamCannotCarryIsRefusedOrTold) {
   EXPECT_EQ(place.run("grep -c 'loss = \"tie\"' c.toml").out, "1\n");
   place.write("d.inp", both + "*SURFACE,NAME=U,TYPE=NODE\n99\n*COUPLING,CONSTRAINT NAME=C,REF NODE=1,SURFACE=U\n*KINEMATIC\n1,6\n");
   refused("d.inp -o d.h5", 2, "d.inp:29: *COUPLING: no node of surface \"U\" is of a cell or a beam");
+}
+
+// --face meshes a ring of a .geo script as a section, of which the solver finds A, I and J.
+TEST_F(ImportBeam, AFaceOfAScriptBecomesASection) {
+  const std::string ring =
+      "Point(1) = {0, 0, 0}; Point(2) = {50, 0, 0}; Point(3) = {-50, 0, 0}; Point(4) = {30, 0, 0}; Point(5) = {-30, 0, 0};\n"
+      "Circle(1) = {2, 1, 3}; Circle(2) = {3, 1, 2}; Circle(3) = {4, 1, 5}; Circle(4) = {5, 1, 4};\n"
+      "Curve Loop(1) = {1, 2}; Curve Loop(2) = {3, 4}; Plane Surface(1) = {1, 2};\n";
+  place.write("ring.geo", ring);
+  const auto face = place.run("hilo-import ring.geo --face -o ring.msh --size 12 --json");
+  ASSERT_EQ(face.exit, 0) << face.err;
+  place.write(
+      "s.toml",
+      "section.ring = {kind = \"mesh\", file = \"ring.msh\", scale = 1e-3}\nmaterial.m = {E = 2e11, nu = 0.3}\n"
+      "beam.b = {points = [[0, 0, 0], [1, 0, 0]], section = \"ring\", material = \"m\", a = \"ground\"}\ntime.analysis = \"static\"\n");
+  const auto solved = place.run("hilo-solve --quiet s.toml -o s.h5 && hilo-post beam s.h5 --sections");
+  ASSERT_EQ(solved.exit, 0) << solved.err;
+  double A = 0, I1 = 0, I2 = 0, I12 = 0, J = 0;
+  ASSERT_EQ(std::sscanf(solved.out.substr(solved.out.find('\n') + 1).c_str(), "b %lf %lf %lf %lf %lf", &A, &I1, &I2, &I12, &J), 5)
+      << solved.out;
+  const double four = std::pow(0.05, 4) - std::pow(0.03, 4);
+  EXPECT_NEAR(A, M_PI * (0.05 * 0.05 - 0.03 * 0.03), 1e-3 * A);
+  EXPECT_NEAR(I1, M_PI / 4 * four, 1e-3 * I1);
+  EXPECT_NEAR(J, M_PI / 2 * four, 1e-3 * J);
+  refused("ring.geo --face -o ring.h5", 1, "--face writes a mesh of gmsh: -o ring.h5 does not end in .msh (see hilo-import --help)");
+  refused("ring.geo --face -o r.msh --units mm-t-s", 1,
+          "--units beside --face: the face keeps the lengths of the file (`scale` in [section.NAME])");
+  refused("ring.msh --face -o r.msh", 2,
+          "ring.msh: no geometry that a face can be meshed of (a .geo, .step, .brep or .iges file; a scene names a .msh file itself)");
+  place.write("lines.geo", "Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Line(1) = {1, 2};\n");
+  refused("lines.geo --face -o r.msh", 2, "lines.geo: no surface to mesh (the face of a section is a plane surface in x and y)");
+  place.write("two.geo",
+              ring +
+                  "Point(11) = {90, 0, 0}; Point(12) = {99, 0, 0}; Point(13) = {90, 9, 0};\n"
+                  "Line(11) = {11, 12}; Line(12) = {12, 13}; Line(13) = {13, 11}; Curve Loop(9) = {11, 12, 13}; Plane Surface(2) = {9};\n");
+  const auto two = place.run("hilo-import two.geo --face -o r.msh --size 12");
+  EXPECT_EQ(two.exit, 2);
+  EXPECT_NE(two.err.find("the face falls into parts"), std::string::npos) << two.err;
 }
 
 }  // namespace

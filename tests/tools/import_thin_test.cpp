@@ -57,6 +57,32 @@ TEST_F(ImportThin, OffsetsAndLayersMoveTheMidSurface) {
   EXPECT_NEAR(mass.c.z(), .2 + .03, 1e-15);
 }
 
+// Layers of one material are one plate of their thickness; of several, a region with thickness alone, which is told, and no solid-shell.
+TEST_F(ImportThin, LayersOfInpDecksAreOnePlateOrAreTold) {
+  const auto deck = [](const std::string& layers) {
+    return "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n*ELEMENT,TYPE=S4,ELSET=E\n1,1,2,3,4\n*MATERIAL,NAME=M\n*ELASTIC\n2e11,.3\n*"
+           "DENSITY\n1.\n"
+           "*MATERIAL,NAME=N\n*ELASTIC\n1e10,.3\n*DENSITY\n2.\n*SHELL SECTION,ELSET=E,COMPOSITE,OFFSET=-.5\n" +
+           layers;
+  };
+  place.write("a.inp", deck(".01,,M\n.03,3,m\n.02,,M\n"));
+  const Mass mass = mass_of(place, imported("a.inp"), "E");
+  EXPECT_NEAR(mass.V, .06, 1e-15);
+  EXPECT_NEAR(mass.c.z(), .03, 1e-15);
+  EXPECT_NEAR(volume(imported("a.inp", "--thicken")), .06, 1e-12);
+  place.write("b.inp", deck(".01,,M\n.03,,N\n.01,,M\n"));
+  EXPECT_NEAR(mass_of(place, imported("b.inp"), "E").V, .05, 1e-15);
+  EXPECT_NE(err.find("*SHELL SECTION, COMPOSITE of several materials or orientations: no stiffness, no density"), std::string::npos) << err;
+  refused(
+      "b.inp -o b.h5 --thicken", 2,
+      "b.inp: element 1: *SHELL SECTION, COMPOSITE of several materials or orientations is no plate of one material (leave them as they "
+      "are: regions that are rigid)");
+  place.write("c.inp", deck(".01,,\n"));
+  refused("c.inp -o c.h5", 2, "c.inp:19: *SHELL SECTION, COMPOSITE: a layer without a material (thickness, , MATERIAL)");
+  place.write("d.inp", deck("0,,M\n"));
+  refused("d.inp -o d.h5", 2, "d.inp:19:1: *SHELL SECTION: a layer of thickness 0");
+}
+
 TEST_F(ImportThin, ABarHasTheInertiaOfItsSection) {
   place.write("a.bdf",
               "GRID,1,,0.,0.,0.\nGRID,2,,3.,0.,0.\nCBAR,1,5,1,2,0.,1.,0.\nPBARL,5,1,,BAR,,,,,+\n+,.2,.4\nMAT1,1,1.,,.3,1.\n"

@@ -41,6 +41,7 @@ struct ImportOptions {
   std::optional<std::int64_t> subcase;  // of a Nastran file; the first one when absent
   bool every_subcase = false;           // a scene for each of them
   bool flip = false;                    // cells numbered as in a mirror are turned
+  bool face = false;                    // the surface is a section of beams, not the border of solids
   bool keep_apart = false;              // solids of a CAD file that touch share no nodes
   std::vector<std::string> sets;        // NAME=KIND:KEY=VALUE,..., as [set.NAME] of a scene    [unit of the file]
 };
@@ -156,6 +157,9 @@ Imported read_geo(const std::string& path, const ImportOptions& options);
 Imported read_step(const std::string& path, const ImportOptions& options);
 Imported read_brep(const std::string& path, const ImportOptions& options);
 Imported read_iges(const std::string& path, const ImportOptions& options);
+
+/// The face of a section of beams, meshed or read, as the text of a .msh file in the unit of the file.  Error where there is no surface.
+std::string face_of(const std::string& path, const ImportOptions& options);
 
 /// A kind of file by the ending of its name.
 struct MeshFormat {

@@ -4,7 +4,9 @@
 
 #include "dynamics/record/recorder.hpp"
 #include "model/mesh_source.hpp"
+#include "system/beams.hpp"
 #include "system/bodies.hpp"
+#include "system/section_meshes.hpp"
 
 namespace hilo {
 
@@ -47,6 +49,15 @@ void Recorder::declare_bodies(Store& f) const {
     write_array(f, "/body/points", points, {n_bodies, 4, 3});
     write_array(f, "/body/mass", mass, {n_bodies});
     write_array(f, "/body/inertia", inertia, {n_bodies, 3});
+  }
+  for (const NamedSection& section : section_meshes(system_)) {
+    const SectionMesh& m = section.mesh;
+    std::vector<double> x;
+    std::vector<std::int32_t> cells;
+    for (const auto& at : m.X) x.insert(x.end(), at.data(), at.data() + 2);
+    for (const auto& cell : m.cells) cells.insert(cells.end(), cell.begin(), cell.end());
+    write_array(f, "/section/" + section.name + "/points", x, {static_cast<std::int64_t>(m.X.size()), 2});
+    write_array(f, "/section/" + section.name + "/cells", cells, {static_cast<std::int64_t>(m.cells.size()), 9});
   }
 }
 

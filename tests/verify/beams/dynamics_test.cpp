@@ -97,6 +97,22 @@ TEST_F(BeamDynamics, ALineLoadGivesItsImpulse) {
   }
 }
 
+// One that turns with the beam and varies along it: the balance of energy holds at every step, and it drives what it is on without an end.
+TEST_F(BeamDynamics, ALineLoadThatTurnsIsInTheBalance) {
+  const std::string scene =
+      plain_section(1e4, 1e4, 100, 100, "line_mass = 2\ninertia = [0.1, 0.1]") + beam_of("[[0, 0, 0], [3, 4, 0]]", 4, "") +
+      "[[load]]\nkind = \"line\"\nname = \"jet\"\non = \"arm\"\nforce_per_length = [2, 4, -3]\nforce_per_length_end = [-1, 3, 5]\n"
+      "follower = true\nhistory = {t = [0, 2], value = [0, 2]}\n" +
+      in_time(2, 0.05);
+  const Results one = solved(scene);
+  const Eigen::MatrixXd E = one.history("energy");
+  EXPECT_GT(E.col(0).maxCoeff(), 10) << "it moves";
+  EXPECT_LT(E.col(5).cwiseAbs().maxCoeff(), 1e-8 * E.col(0).maxCoeff());
+  const Ran ran = mpirun(2, "hilo-solve --quiet scene.toml -o two.h5", work.path());
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_LT((Results(work / "two.h5").history("beam/arm") - one.history("beam/arm")).cwiseAbs().maxCoeff(), 1e-6);
+}
+
 // Four cells, the root turned by a law, whose work is in the balance.
 TEST_F(BeamDynamics, SpinUpBendsBackAndIsStretched) {
   const auto psi = [](double t) {

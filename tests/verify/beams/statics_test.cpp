@@ -223,5 +223,61 @@ TEST_F(BeamOpenSections, ATTwistsAboutItsJunction) {
       1e-9);
 }
 
+/// A load by length, along the whole of a beam.
+std::string along(const Vec3& from, const Vec3& end, bool follower = false) {
+  return fmt::format(
+      "[[load]]\nkind = \"line\"\nname = \"wind\"\non = \"arm\"\nforce_per_length = [{}, {}, {}]\nforce_per_length_end = [{}, {}, {}]\n{}",
+      from[0], from[1], from[2], end[0], end[1], end[2], follower ? "follower = true\n" : "");
+}
+
+// Triangular loads: w L^4/(30 E I) where it falls to nothing at the tip, 11 w L^4/(120 E I) where it rises to the tip; shear w L^2/(6 G A)
+// and w L^2/(3 G A).  Exact with one cell, and in its middle with two.
+TEST_F(BeamStatics, ALoadThatVariesBendsAsItsTriangle) {
+  const double L = 2, EI = 900, GA = 4e4, w = 1e-3;
+  for (const int cells : {1, 2, 3}) {
+    const std::string beam = plain_section(GA, 2e6, EI, 700) + beam_of("[[0, 0, 0], [2, 0, 0]]", cells) + tip_probe() + in_steps(1);
+    const double falling = tip(beam + along({0, 0, w}, {0, 0, 0}))[2], rising = tip(beam + along({0, w, 0}, {0, w, 0}))[1];
+    EXPECT_NEAR(falling, w * std::pow(L, 4) / (30 * EI) + w * L * L / (6 * GA), 1e-6 * falling) << cells;
+    EXPECT_NEAR(rising, w * std::pow(L, 4) / (8 * EI) + w * L * L / (2 * GA), 1e-6 * rising) << cells;
+    const double late = tip(beam + along({0, 0, 0}, {0, 0, w}))[2];
+    EXPECT_NEAR(late, 11 * w * std::pow(L, 4) / (120 * EI) + w * L * L / (3 * GA), 1e-6 * late) << cells;
+  }
+}
+
+// A load across the sections that turns with them and falls from 1 to 0.4, until the tip has turned by about half a turn.  Along the deformed
+// axis N' = k V, V' = -k N - p, M' = -V with k = M/EI, from N = V = M = 0 at the tip on: integrated here with fine steps.
+TEST_F(BeamStatics, ALoadThatTurnsWithTheSectionsRollsTheBeam) {
+  const double L = 1, EI = 10, p = 470;
+  const auto load = [&](double s) { return p * (1 - 0.6 * s / L); };
+  Eigen::Matrix<double, 6, 1> y = Eigen::Matrix<double, 6, 1>::Zero();  // N, V, M, angle, x, y, from the tip back, in axes of the tip
+  const auto slope = [&](double s, const Eigen::Matrix<double, 6, 1>& u) {
+    const double k = u[2] / EI;
+    Eigen::Matrix<double, 6, 1> d;
+    d << k * u[1], -k * u[0] - load(s), -u[1], k, std::cos(u[3]), std::sin(u[3]);
+    return d;
+  };
+  const int n = 4000;
+  for (int i = 0; i < n; ++i) {
+    const double h = -L / n, s = L + i * h;
+    const auto a = slope(s, y), b = slope(s + h / 2, y + h / 2 * a), c = slope(s + h / 2, y + h / 2 * b), d = slope(s + h, y + h * c);
+    y += h / 6 * (a + 2 * b + 2 * c + d);
+  }
+  // in axes of the root: the tip from there
+  const double turn = -y[3], x = -(std::cos(y[3]) * y[4] + std::sin(y[3]) * y[5]), z = -(-std::sin(y[3]) * y[4] + std::cos(y[3]) * y[5]);
+  std::printf("turn %.4f, tip (%.4f, %.4f)\n", turn, x, z);
+  double before = 0;
+  for (const int cells : {8, 16, 32}) {
+    const Vec3 at = tip(plain_section(1e7, 1e7, EI, 10) + beam_of("[[0, 0, 0], [1, 0, 0]]", cells) +
+                        along({0, p, 0}, {0, 0.4 * p, 0}, true) + tip_probe() + in_steps(10));
+    const double away = std::hypot(at[0] - x, at[2] - z);
+    std::printf("%d cells: (%.5f, %.5f), %.2g of L away\n", cells, at[0], at[2], away);
+    EXPECT_LT(away, 0.2 / (cells * cells));
+    if (before > 0) {
+      EXPECT_LT(away, before / 3.2) << "of second order";
+    }
+    before = away;
+  }
+}
+
 }  // namespace
 }  // namespace hilo::test::beams_statics_test

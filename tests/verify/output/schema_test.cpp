@@ -138,6 +138,14 @@ on = "zmax"
   const Ran of_tied = tied.run("hilo-solve --quiet tied.toml mesh.h5 -o run.h5");
   ASSERT_EQ(of_tied.exit, 0) << of_tied.err;
   hold_against_schema(tied.results().file(), met);
+  std::ofstream(tied / "face.msh") << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
+                                      "$Elements\n1\n1 2 2 0 1 1 2 3\n$EndElements\n";
+  std::ofstream(tied / "beam.toml") << "material.m = {E = 1e6, nu = 0.3}\nsection.s = {kind = \"mesh\", file = \"face.msh\"}\n"
+                                       "beam.b = {points = [[0, 0, 0], [9, 0, 0]], section = \"s\", material = \"m\", a = \"ground\"}\n"
+                                       "time.analysis = \"static\"\n";
+  const Ran of_beam = tied.run("hilo-solve --quiet beam.toml -o beam.h5");
+  ASSERT_EQ(of_beam.exit, 0) << of_beam.err;
+  hold_against_schema(Store::open(tied / "beam.h5"), met);
   std::string many = "[time]\nend = 0.002\nstep = 0.001\n";
   for (int k = 0; k < 300; ++k)
     many += "[[body]]\nname = \"b" + std::to_string(k) + "\"\nmass = 1\ncom = [" + std::to_string(k) + ", 0, 0]\ninertia = [1, 1, 1]\n";

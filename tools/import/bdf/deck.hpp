@@ -33,6 +33,7 @@ struct BdfSupport {
 struct BdfLoad {
   enum class Kind { force, moment, gravity, rotation, pressure, displacement, line } kind;
   std::int64_t grid = 0, system = 0;
+  double size_end = 0;                       // of a line: at the end of the beam
   double size = 0;                           // N, N m, m/s^2, turns/s, Pa, m, rad or N/m in units of the deck
   unsigned components = 0;                   // SPCD: bits 0 to 5
   Vec3 direction = Vec3::Zero();             // in `system`; of a pressure: zero for one along the normal

@@ -161,9 +161,8 @@ void read_pload1(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   if (!known_scale) throw Error(d.place(3), fmt::format("PLOAD1: no scale \"{}\"", d.text(3)), "LE, FR, LEPR or FRPR");
   if (type[0] == 'M') return in.skip("PLOAD1 of moments", d.place());
   if (d.empty(6) || d.number(6) == d.number(4)) return in.skip("PLOAD1 at a point of a beam", d.place());
-  if (d.number(5) != d.number(7)) return in.skip("PLOAD1 that varies along the beam", d.place());
   BdfLoad l{BdfLoad::Kind::line};
-  l.elements = {d.integer(1)}, l.size = d.number(5), l.place = d.place(), l.direction = Vec3::Unit(type[1] - 'X');
+  l.elements = {d.integer(1)}, l.size = d.number(5), l.size_end = d.number(7), l.place = d.place(), l.direction = Vec3::Unit(type[1] - 'X');
   l.own_axes = type.size() > 2, l.projected = scale.size() > 2, l.as_share = scale.starts_with("FR"),
   l.from_to = {d.number(4), d.number(6)};
   deck.loads[d.integer(0)].push_back(l);

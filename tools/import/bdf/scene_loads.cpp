@@ -203,9 +203,11 @@ void BdfScene::line_loads() {
     }
     const Vec3 way = l->own_axes ? Vec3(axes * l->direction) : l->direction;
     const double across = l->projected ? axes.col(0).cross(way).norm() : 1;
-    if (const Vec3 f = factor * l->size * across * way; f.norm() > 0)
-      tables_ += fmt::format("\n[[load]]   # {}\nkind = \"line\"\nname = {}\non = {}\nforce_per_length = {}\n", l->place,
-                             toml_text(unique("load", name + "_line")), toml_text(name), list(f, "N/m"));
+    const Vec3 one = factor * across * way;
+    if (one.norm() == 0 || (l->size == 0 && l->size_end == 0)) continue;
+    tables_ += fmt::format("\n[[load]]   # {}\nkind = \"line\"\nname = {}\non = {}\nforce_per_length = {}\n", l->place,
+                           toml_text(unique("load", name + "_line")), toml_text(name), list(l->size * one, "N/m"));
+    if (l->size_end != l->size) tables_ += fmt::format("force_per_length_end = {}\n", list(l->size_end * one, "N/m"));
   }
 }
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <new>
 #include <stdexcept>
 
@@ -68,7 +69,8 @@ void open(const std::string& path, const std::string& format, const ImportOption
   gmsh::model::getEntities(volumes, 3);
   gmsh::model::getEntities(surfaces, 2);
   gmsh::model::getPhysicalGroups(bars, 1);
-  if (volumes.empty() && (!o.thickness.empty() ? surfaces.empty() : bars.empty() || !surfaces.empty()))
+  if (o.face && surfaces.empty()) throw Error(path, "no surface to mesh", "the face of a section is a plane surface in x and y");
+  if (!o.face && volumes.empty() && (!o.thickness.empty() ? surfaces.empty() : bars.empty() || !surfaces.empty()))
     throw Error(path, "no volume to mesh", "the geometry holds points, curves or surfaces only");
 }
 
@@ -151,9 +153,14 @@ std::string try_to_mesh(const ImportOptions& o, double unit) {
   gmsh::vectorpair volumes;
   gmsh::model::getEntities(volumes, 3);
   try {
+<<<<<<< HEAD
     gmsh::model::mesh::generate(!volumes.empty() ? 3 : !o.thickness.empty() ? 2 : 1);
+=======
+    if (o.face && !volumes.empty()) return "it holds solids, and the face of a section is a surface alone";
+    gmsh::model::mesh::generate(!volumes.empty() ? 3 : o.thickness || o.face ? 2 : 1);
+>>>>>>> 90ec548d92bc66b3d20170d03e6063fdcc816fd9
     if (const auto e = GmshSession::errors(); !e.empty()) return unfilled(e, unit);
-    if (o.order == 2 && !volumes.empty()) gmsh::model::mesh::setOrder(2);
+    if (o.order == 2 && (o.face || !volumes.empty())) gmsh::model::mesh::setOrder(2);
   } catch (const std::string& e) {
     return unfilled(told(e), unit);
   } catch (const std::runtime_error& e) {  // from gmsh 4.13 on
@@ -345,7 +352,52 @@ Imported read_geometry(const std::string& path, const std::string& format, const
   return in;
 }
 
+/// Surfaces as gmsh's text of version 2.2: those of physical groups alone where there is one, as gmsh saves them.
+std::string text_of(const GmshMesh& mesh) {
+  std::string nodes, cells;
+  std::int64_t n = 0;
+  const auto is_surface = [](const auto& e) { return std::get<0>(e.first) == 2; };
+  const bool grouped =
+      std::any_of(mesh.entities.begin(), mesh.entities.end(), [&](const auto& e) { return is_surface(e) && !e.second.groups.empty(); });
+  for (const auto& [key, entity] : mesh.entities) {
+    if (std::get<0>(key) != 2 || (grouped && entity.groups.empty())) continue;
+    for (const GmshMesh::Block& b : entity.blocks) {
+      const size_t per = b.tags.empty() ? 0 : b.nodes.size() / b.tags.size();
+      for (size_t i = 0; i < b.tags.size(); ++i) {
+        cells += fmt::format("{} {} 2 0 {}", ++n, b.type, std::get<1>(key));
+        for (size_t k = 0; k < per; ++k) cells += fmt::format(" {}", b.nodes[per * i + k]);
+        cells += '\n';
+      }
+    }
+  }
+  for (size_t i = 0; i < mesh.X.size(); ++i)
+    nodes += fmt::format("{} {} {} {}\n", mesh.node_tag[i], mesh.X[i].x(), mesh.X[i].y(), mesh.X[i].z());
+  return fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{}$EndNodes\n$Elements\n{}\n{}$EndElements\n", mesh.X.size(), nodes,
+                     n, cells);
+}
+
 }  // namespace
+
+std::string face_of(const std::string& path, const ImportOptions& options) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  const std::map<std::string, const char*> formats{{".geo", "geo"},  {".step", "step"}, {".stp", "step"}, {".brep", "brep"},
+                                                   {".brp", "brep"}, {".iges", "iges"}, {".igs", "iges"}};
+  const auto format = formats.find(ending);
+  if (format == formats.end())
+    throw Error(path, "no geometry that a face can be meshed of", "a .geo, .step, .brep or .iges file; a scene names a .msh file itself");
+  (void)read_text_file(path);  // says what is wrong with it
+  if (ending == ".geo" && !options.trust) refuse_commands(path);
+  ImportOptions o = options;
+  o.face = true;
+  GmshMesh mesh;
+  const CrashGuard guard(path);
+  const auto mesh_it = [&] { mesh = meshed(path, format->second, o, o.per_turn.value_or(usual_per_turn)); };
+  if (o.trust)
+    mesh_it();
+  else
+    (void)confined(mesh_it);
+  return text_of(mesh);
+}
 
 Imported read_geo(const std::string& path, const ImportOptions& options) { return read_geometry(path, "geo", options); }
 Imported read_step(const std::string& path, const ImportOptions& options) { return read_geometry(path, "step", options); }

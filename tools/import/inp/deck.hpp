@@ -55,6 +55,7 @@ struct InpSection {
   std::string law = {};  // key of InpDeck::laws
   std::string card = "*SOLID SECTION";
   double thickness = 0, offset = 0;   // of shells: the mid-surface off the nodes, along the normal
+  std::string no_solid = {};          // of shells: why a solid-shell cannot stand for them
   DeckSection beam = {};              // of beams
   bool along_n2 = false;              // of beams: axis 2 of `beam` is n2, not n1
   Vec3 n1 = Vec3(0, 0, -1);           // of beams

@@ -36,7 +36,7 @@ void turn_materials(InpDeck& d, Imported& in) {
     if (s.own)
       law = *s.own;
     else if (s.material.empty())
-      law.no_law = s.card + " without MATERIAL, " + s.place;
+      law.no_law = (s.no_solid.empty() ? s.card + " without MATERIAL" : s.no_solid) + ", " + s.place;
     else
       law = d.materials.at(s.material);
     s.law = s.own ? "\n" + s.elset : s.material;
@@ -123,7 +123,7 @@ void thin_sections(const InpDeck& d, Imported& in, bool thicken) {
         throw Error(s.place, fmt::format("{} on element {}", s.card, id), fmt::format("it needs {}", due));
       if (!shell && !beam) continue;
       ThinSection t;
-      t.thickness = s.thickness, t.offset = s.offset;
+      t.thickness = s.thickness, t.offset = s.offset, t.no_solid = s.no_solid;
       if (beam) {
         const SectionArea area = s.beam.area(0.3, s.place);
         t.area = area.A;

@@ -217,25 +217,51 @@ void read_section(InpReading& r) {
   r.deck.sections.push_back(s);
 }
 
-InpSection section_of(InpReading& r) {
+InpSection section_of(InpReading& r, bool layered = false) {
   const Card& card = r.card;
   InpSection s{upper(card.need("ELSET")), upper(card.value("MATERIAL")), card.need("ELSET"),
                card.value("MATERIAL"),    card.place("ELSET"),           card.place("MATERIAL")};
   s.card = card.name;
-  if (s.material.empty()) r.skip(card.name + " without MATERIAL");
+  if (s.material.empty() && !layered) r.skip(card.name + " without MATERIAL");
   return s;
+}
+
+/// Lines of COMPOSITE: thickness, points of integration, material and orientation of each layer.  Layers of one material are one plate.
+void read_layers(InpReading& r, InpSection& s) {
+  DataLine l;
+  bool same = true;
+  while (r.lines.next_data(l)) {
+    const double t = l.number(0);
+    if (!(t > 0)) throw Error(l.place(0), fmt::format("{}: a layer of thickness {:g}", r.card.name, t));
+    if (l.empty(2)) throw Error(l.place(), r.card.name + ", COMPOSITE: a layer without a material", "thickness, , MATERIAL");
+    if (s.thickness == 0) {
+      s.material = upper(l.text(2)), s.material_name = l.text(2), s.material_place = l.place(2);
+      if (!l.empty(3)) s.orientation = upper(l.text(3)), s.orientation_name = l.text(3), s.orientation_place = l.place(3);
+    }
+    same = same && upper(l.text(2)) == s.material && (l.empty(3) || upper(l.text(3)) == s.orientation);
+    s.thickness += t;
+  }
+  if (!(s.thickness > 0)) throw Error(r.card.place() + ":1", r.card.name + ", COMPOSITE lacks its layers", "thickness, , MATERIAL");
+  if (same) return;
+  s.no_solid = r.card.name + ", COMPOSITE of several materials or orientations", s.material.clear();
+  r.skip(s.no_solid + ": no stiffness, no density");
 }
 
 /// Thickness; OFFSET: where the nodes lie, in thicknesses above the mid-surface.
 void read_shell_section(InpReading& r) {
-  if (const auto odd = unknown_param(r.card, {"ELSET", "MATERIAL", "OFFSET", "ORIENTATION", "SECTIONINTEGRATION", "DENSITY"});
+  const bool layered = r.card.has("COMPOSITE");
+  if (const auto odd = unknown_param(r.card, {"ELSET", "MATERIAL", "OFFSET", "ORIENTATION", "SECTIONINTEGRATION", "DENSITY", "COMPOSITE"});
       !odd.empty() || r.card.has("DENSITY"))
     throw Error(r.card.place() + ":1", (odd.empty() ? r.card.name + ", DENSITY" : odd) + " is not read", "give a material and a thickness");
-  InpSection s = section_of(r);
-  DataLine l;
-  if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", r.card.name + " lacks its data line", "the thickness");
-  s.thickness = l.number(0);
-  if (!(s.thickness > 0)) throw Error(l.place(0), fmt::format("{}: a thickness of {:g}", r.card.name, s.thickness));
+  InpSection s = section_of(r, layered);
+  if (layered) {
+    read_layers(r, s);
+  } else {
+    DataLine l;
+    if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", r.card.name + " lacks its data line", "the thickness");
+    s.thickness = l.number(0);
+    if (!(s.thickness > 0)) throw Error(l.place(0), fmt::format("{}: a thickness of {:g}", r.card.name, s.thickness));
+  }
   if (r.card.has("OFFSET")) {
     const std::string word = r.card.word("OFFSET");
     char* end = nullptr;
