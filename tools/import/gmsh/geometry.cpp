@@ -153,12 +153,7 @@ std::string try_to_mesh(const ImportOptions& o, double unit) {
   gmsh::vectorpair volumes;
   gmsh::model::getEntities(volumes, 3);
   try {
-<<<<<<< HEAD
-    gmsh::model::mesh::generate(!volumes.empty() ? 3 : !o.thickness.empty() ? 2 : 1);
-=======
-    if (o.face && !volumes.empty()) return "it holds solids, and the face of a section is a surface alone";
-    gmsh::model::mesh::generate(!volumes.empty() ? 3 : o.thickness || o.face ? 2 : 1);
->>>>>>> 90ec548d92bc66b3d20170d03e6063fdcc816fd9
+    gmsh::model::mesh::generate(!volumes.empty() ? 3 : !o.thickness.empty() || o.face ? 2 : 1);
     if (const auto e = GmshSession::errors(); !e.empty()) return unfilled(e, unit);
     if (o.order == 2 && (o.face || !volumes.empty())) gmsh::model::mesh::setOrder(2);
   } catch (const std::string& e) {
