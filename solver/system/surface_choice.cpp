@@ -143,6 +143,8 @@ FacetState SurfacePair::begun(int s, const SurfacePoint& point, const Target& ta
   if (!held) out.past.gap = std::max(gap, 0.0);
   const bool comes_in = target.inside && gap < -1e-12 * point.cell;
   out.past.offset = at_end_alone() || !(held || comes_in) ? 0 : gap - out.past.gap;
+  // what is next to nothing beside the depth, or round-off, waits: paid by a slip as small, it would be as stiff as the inverse of both
+  if (std::abs(out.past.offset) < std::max(1e-3 * -out.past.gap, 1e-9 * point.cell)) out.past.offset = 0;
   const auto& [u1, u2] = point.state.past.bent;
   if ((u1 != 0 || u2 != 0) && point.state.face >= 0 && (out.face != point.state.face || out.triangle != point.state.triangle)) {
     const TriangleAxes old(over(s, point, point.state, x0)), now(z);
