@@ -170,21 +170,19 @@ bool SurfacePair::revise(const Stage& s) {
   const Positions x1 = s.e1->x, x0 = settles_ ? x1 : begin(s);
   look(x0, x1);
   bool changes = false;
-  for (int k = 0; k < 2; ++k)
-    for (SurfacePoint& point : side[k].points) {
-      if (partners_[k][point.face].empty()) continue;
-      const FacetState now = begun(k, point, target_of(k, point, x0, x1), x0);
-      const std::pair to{now.face, now.triangle}, from{point.now.face, point.now.triangle};
-      if (to == from || (to == point.left && from.first >= 0 && !settles_)) continue;  // on the edge between two either will do
-      if (settles_ && from.first >= 0 && to.first >= 0) {  // chosen in every iteration: triangles side by side are not to take turns
-        const Vec3 x = side[k].at(point, x1);
-        const double was = beside(x, side[1 - k].triangle(from.first, from.second, x1)).distance;
-        if (was < beside(x, side[1 - k].triangle(to.first, to.second, x1)).distance + 1e-3 * margin) continue;
-      }
-      point.left = from;
-      changes = changes || would_act(k, point, point.now, x0, x1) || would_act(k, point, now, x0, x1);
-      point.now = now;
+  each_listed([&](int k, SurfacePoint& point) {
+    const FacetState now = begun(k, point, target_of(k, point, x0, x1), x0);
+    const std::pair to{now.face, now.triangle}, from{point.now.face, point.now.triangle};
+    if (to == from || (to == point.left && from.first >= 0 && !settles_)) return;  // on the edge between two either will do
+    if (settles_ && from.first >= 0 && to.first >= 0) {  // chosen in every iteration: triangles side by side are not to take turns
+      const Vec3 x = side[k].at(point, x1);
+      const double was = beside(x, side[1 - k].triangle(from.first, from.second, x1)).distance;
+      if (was < beside(x, side[1 - k].triangle(to.first, to.second, x1)).distance + 1e-3 * margin) return;
     }
+    point.left = from;
+    changes = changes || would_act(k, point, point.now, x0, x1) || would_act(k, point, now, x0, x1);
+    point.now = now;
+  });
   return changes;
 }
 

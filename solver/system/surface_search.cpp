@@ -38,6 +38,16 @@ void SurfacePair::list_partners() {
     partners_[0][near_[k].first].push_back({near_[k].second, static_cast<int>(k)});
     partners_[1][near_[k].second].push_back({near_[k].first, static_cast<int>(k)});
   }
+  for (int s = 0; s < 2; ++s) {
+    listed_[s].clear();
+    for (size_t i = 0; i < side[s].points.size(); ++i) {
+      SurfacePoint& point = side[s].points[i];
+      if (!partners_[s][point.face].empty())
+        listed_[s].push_back(static_cast<int>(i));
+      else
+        point.state = point.now = point.next = {}, point.left = {-2, -2};  // it is open
+    }
+  }
 }
 
 bool SurfacePair::search(const Config& q, const Config* v, double h) {
@@ -47,9 +57,11 @@ bool SurfacePair::search(const Config& q, const Config* v, double h) {
     for (const auto& nodes : nodes_)
       for (const int i : nodes) foreseen_[i] += h * v->x[i];
   const auto with_held = [&](std::vector<std::pair<int, int>> list) {
-    for (int s = 0; s < 2; ++s)
-      for (const SurfacePoint& point : side[s].points)
-        if (point.state.past.gap < 0) list.emplace_back(s == 0 ? point.face : point.state.face, s == 0 ? point.state.face : point.face);
+    each_listed([&](int s, const SurfacePoint& point) {
+      const auto& [u1, u2] = point.state.past.bent;  // of what has opened in the last step: to be let go in this one
+      if (point.state.face >= 0 && (point.state.past.gap < 0 || u1 != 0 || u2 != 0))
+        list.emplace_back(s == 0 ? point.face : point.state.face, s == 0 ? point.state.face : point.face);
+    });
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
     return list;
@@ -62,14 +74,9 @@ bool SurfacePair::search(const Config& q, const Config* v, double h) {
     near_ = std::move(wide);
     list_partners();
   }
-  for (int s = 0; s < 2; ++s)
-    for (SurfacePoint& point : side[s].points) point.now = point.next = point.state, point.left = {-2, -2};
+  each_listed([](int, SurfacePoint& point) { point.now = point.next = point.state, point.left = {-2, -2}; });
   look(q.x, foreseen_);
-  for (int s = 0; s < 2; ++s)
-    for (SurfacePoint& point : side[s].points) {
-      const bool alone = partners_[s][point.face].empty();
-      point.now = begun(s, point, alone ? Target{} : target_of(s, point, q.x, foreseen_), q.x);
-    }
+  each_listed([&](int s, SurfacePoint& point) { point.now = begun(s, point, target_of(s, point, q.x, foreseen_), q.x); });
   return changes;
 }
 
