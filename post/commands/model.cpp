@@ -169,7 +169,13 @@ void draw_items(Painter& p, const ModelOptions& o, const SceneItems& scene, cons
   const std::vector<bool> named = with_names(scene, back);
   for (const SceneItem& i : scene.items) {
     const Vec2 at = project(i.at), to = project(i.to);
-    draw_glyph(p, i.glyph, at, project.direction(i.at, i.along), project.direction(i.at, i.above), to, i.colour, size);
+    for (const std::vector<Vec3>& line : i.lines) {
+      std::vector<Vec2> drawn;
+      for (const Vec3& x : line) drawn.push_back(project(x));
+      p.line(drawn, i.colour, 1.2);
+    }
+    if (i.glyph != Glyph::outline)
+      draw_glyph(p, i.glyph, at, project.direction(i.at, i.along), project.direction(i.at, i.above), to, i.colour, size);
     const bool two_ends = i.glyph == Glyph::link || i.glyph == Glyph::coil;
     if (named[static_cast<size_t>(&i - scene.items.data())]) labels.push_back({two_ends ? Vec2(0.5 * (at + to)) : at, i.name, i.colour});
   }

@@ -42,6 +42,7 @@ const std::vector<Layout>& layouts() {
        {"x", "y", "z", "about_x", "about_y", "about_z"},
        {"kg^0.5", "kg^0.5", "kg^0.5", "kg^0.5 m", "kg^0.5 m", "kg^0.5 m"}},
       {"contact", {"Fx", "Fy", "Fz", "depth", "share_of_cell", "slip", "friction_work"}, {"N", "N", "N", "m", "1", "m", "J"}},
+      {"heap", {"pairs", "depth", "share_of_radius", "slip", "friction_work", "force"}, {"1", "m", "1", "m", "J", "N"}},
       {"path", {"load", "rise", "negative_eigenvalues"}, {"1", "1", "1"}},
       {"mode_stiffness", {"omega2"}, {"1/s^2"}},
       {"mode_load", {"force"}, {"N kg^-0.5"}},

@@ -140,6 +140,10 @@ void draw_glyph(Painter& p, Glyph glyph, const Vec2& at, const Vec2& along, cons
         p.line(at + side * size * d - 0.34 * size * across, at + side * size * d + 0.34 * size * across, colour, 1.6 * pen);
       break;
     }
+    case Glyph::outline:  // its lines are drawn where they are; in legends a frame
+      p.line(std::vector<Vec2>{at + Vec2(-r, -r), at + Vec2(r, -r), at + Vec2(r, r), at + Vec2(-r, r), at + Vec2(-r, -r)}, colour,
+             0.7 * pen);
+      break;
     case Glyph::friction:  // teeth around
       for (int k = 0; k < 12; ++k) {
         const Vec2 d(std::cos(M_PI * k / 6), std::sin(M_PI * k / 6));

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "model/beam_line.hpp"
+#include "physics/contact/obstacle_kinds.hpp"
 
 namespace hilo {
 namespace {
@@ -56,6 +57,7 @@ class Collector {
       for (const Entry& e : scene_.entries(section)) on_joint(e);
     for (const Entry& e : scene_.entries("load")) load(e);
     for (const Entry& e : scene_.entries("motion")) motion(e);
+    for (const Entry& e : scene_.entries("obstacle")) obstacle(e);
     for (const Entry& e : scene_.entries("contact"))  // "all" has no place
       if (e.text("a") != "all" && e.text("b") != "all") between(e, e.number("friction") > 0 ? "contact with friction" : "contact");
     for (const Entry& e : scene_.entries("tie")) between(e, "tie");
@@ -240,6 +242,92 @@ class Collector {
     if (!on_body) item.nodes = thinned(file_->mesh, nodes(e, "on"), 150);
     if (e.kind == "rotation") item.along = e.vector3("axis") * e.number("angle");
     if (e.kind == "translation") item.along = e.vector3("displacement");
+  }
+
+  /// The middle of what there is, and half its extent [m].
+  std::pair<Vec3, double> extent() const {
+    Vec3 low = Vec3::Constant(1e300), high = -low;
+    if (file_)
+      for (const Vec3& x : file_->mesh.X) low = low.cwiseMin(x), high = high.cwiseMax(x);
+    for (const auto& b : found_.bodies) low = low.cwiseMin(b.centre), high = high.cwiseMax(b.centre);
+    for (const Entry& e : scene_.entries("obstacle"))  // on bodies, which may be points
+      if (e.text("on") != "ground" && e.has("radius"))
+        for (const double r : {-e.number("radius"), e.number("radius")})
+          low = low.cwiseMin(Vec3(e.vector3("at").array() + r)), high = high.cwiseMax(Vec3(e.vector3("at").array() + r));
+    if (!(low[0] <= high[0])) return {Vec3::Zero(), 1};
+    return {(low + high) / 2, std::max((high - low).norm() / 2, 1e-300)};
+  }
+
+  /// Its outline, in its true size; of what has no end, as far as the model.
+  void obstacle(const Entry& e) {
+    const Obstacle made = obstacle_kinds().at(e.kind, e.place.text()).make(e);
+    SceneItem& item = add(Glyph::outline, e, "obstacle: " + e.kind, support_colour);
+    item.at = made.at;
+    const auto [middle, size] = extent();
+    const Distance& shape = made.shape;
+    const auto line = [&](int n, auto&& at) {
+      auto& points = item.lines.emplace_back();
+      for (int k = 0; k <= n; ++k) points.push_back(item.at + made.axes * at(static_cast<double>(k) / n));
+    };
+    const auto circle = [&](const Vec3& about, const Vec3& a, const Vec3& b) {
+      line(48, [&](double s) { return Vec3(about + std::cos(2 * M_PI * s) * a + std::sin(2 * M_PI * s) * b); });
+    };
+    const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
+    const double r = shape.radius;
+    switch (shape.kind) {
+      case Distance::Kind::plane: {  // a net below the model
+        const Vec3 local = made.axes.transpose() * (middle - made.at);
+        item.at = made.at + made.axes * Vec3(local[0], local[1], 0);
+        for (int k = -2; k <= 2; ++k) {
+          line(1, [&](double s) { return Vec3(size * (2 * s - 1), size * k / 2, 0); });
+          line(1, [&](double s) { return Vec3(size * k / 2, size * (2 * s - 1), 0); });
+        }
+        break;
+      }
+      case Distance::Kind::sphere:
+        circle(Vec3::Zero(), r * x, r * y), circle(Vec3::Zero(), r * x, r * z), circle(Vec3::Zero(), r * y, r * z);
+        break;
+      case Distance::Kind::cylinder:
+      case Distance::Kind::capsule: {
+        const bool endless = shape.half_length <= 0;
+        const double half = endless ? size : shape.half_length;
+        if (endless) item.at = made.at + made.axes.col(2) * made.axes.col(2).dot(middle - made.at);
+        for (const double side : {-half, half}) {
+          circle(side * z, r * x, r * y);
+          for (const Vec3& across : {x, y})
+            if (shape.kind == Distance::Kind::capsule)
+              line(24, [&](double s) {
+                return Vec3(side * z + std::cos(M_PI * s) * r * across + std::copysign(r, side) * std::sin(M_PI * s) * z);
+              });
+        }
+        for (int k = 0; k < 4; ++k)
+          line(1, [&](double s) { return Vec3(r * std::cos(M_PI * k / 2), r * std::sin(M_PI * k / 2), half * (2 * s - 1)); });
+        break;
+      }
+      case Distance::Kind::torus:
+        for (const double side : {-shape.tube, shape.tube})
+          circle(Vec3::Zero(), (r + side) * x, (r + side) * y), circle(side * z, r * x, r * y);
+        for (int k = 0; k < 4; ++k) {
+          const Vec3 out(std::cos(M_PI * k / 2), std::sin(M_PI * k / 2), 0);
+          circle(r * out, shape.tube * out, shape.tube * z);
+        }
+        break;
+      case Distance::Kind::box:
+        for (int axis = 0; axis < 3; ++axis)
+          for (int k = 0; k < 4; ++k) {
+            Vec3 corner = shape.half;
+            corner[(axis + 1) % 3] *= k & 1 ? 1 : -1, corner[(axis + 2) % 3] *= k & 2 ? 1 : -1;
+            line(1, [&](double s) {
+              Vec3 at = corner;
+              at[axis] *= 2 * s - 1;
+              return at;
+            });
+          }
+        break;
+      case Distance::Kind::height_field:  // its heights are in a file
+        item.glyph = Glyph::cross;
+        break;
+    }
   }
 
   /// A line between what meets, with the nodes of sets.

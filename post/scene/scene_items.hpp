@@ -29,18 +29,20 @@ enum class Glyph {
   cross,
   mass,
   stop,
-  friction
+  friction,
+  outline
 };
 
 struct SceneItem {
   Glyph glyph = Glyph::ball;
   std::string name, meaning;  // "trunnion", "revolute joint"
   Rgb colour;
-  Vec3 at = Vec3::Zero();     // its point          [m]
-  Vec3 to = Vec3::Zero();     // second point of links and coils  [m]
-  Vec3 along = Vec3::Zero();  // axis or direction, of any length
-  Vec3 above = Vec3::Zero();  // second axis of a triad
-  std::vector<Vec3> nodes;    // what it holds: drawn as dots (thinned)
+  Vec3 at = Vec3::Zero();                  // its point          [m]
+  Vec3 to = Vec3::Zero();                  // second point of links and coils  [m]
+  Vec3 along = Vec3::Zero();               // axis or direction, of any length
+  Vec3 above = Vec3::Zero();               // second axis of a triad
+  std::vector<Vec3> nodes;                 // what it holds: drawn as dots (thinned)
+  std::vector<std::vector<Vec3>> lines{};  // of an outline
 };
 
 struct SceneItems {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/registry.hpp"
 #include "base/stopwatch.hpp"
@@ -19,6 +20,8 @@ constexpr int klu_below = 900;  // unknowns; where a quarter of them are of bodi
 constexpr int mixed_klu_below = 1500;
 constexpr int rigid_klu_below = 30000;  // where all of them are; beyond, while factors stay thin
 constexpr double thin = 60;             // multiplications a factor's entry
+constexpr int net_from = 600;           // unknowns of a net of bodies, without multipliers, that UMFPACK does faster,
+constexpr double thin_net = 25;         // unless its factors are thinner than this
 constexpr int dense_at_most = 1200;     // unknowns of bodies and multipliers beside a Cholesky factor
 constexpr int least_iterations = 10;    // that lagged factors are given
 
@@ -56,6 +59,7 @@ class LightSolver final : public SerialKktSolver {
              : n_dense <= dense_at_most && 2 * n_dense < A_.n() ? "cholesky"
                                                                 : "umfpack";
     is_klu_ = kind == "klu";
+    may_be_net_ = is_klu_ && kind_ == "light" && n_dense == A_.n() && A_.n() >= net_from && A_.n() < rigid_klu_below;
     factors_ = is_klu_ ? make_klu() : kind == "umfpack" ? make_umfpack() : make_cholesky(is_dense_);
     is_definite_ = kind == "cholesky";
     aside_.reset(), rest_ = 0;
@@ -71,6 +75,8 @@ class LightSolver final : public SerialKktSolver {
 
   SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) override {
     if (A_.n() == 0) return {};  // nothing is free to move
+    if (std::exchange(may_be_net_, false) && has_whole_diagonal() && work_per_entry(A_) >= thin_net)
+      is_klu_ = false, factors_ = make_umfpack(), is_definite_ = false;
     return is_klu_ ? solve_refined(b, x) : solve_iterated(b, x, tolerance);
   }
   bool repeats_cheaply() const override { return is_klu_; }
@@ -216,6 +222,16 @@ class LightSolver final : public SerialKktSolver {
     return report;
   }
 
+  /// Whether no row is of a multiplier.
+  bool has_whole_diagonal() const {
+    const auto &start = A_.row_start(), &column = A_.column();
+    for (int i = 0; i < A_.n(); ++i) {
+      const auto at = std::lower_bound(column.begin() + start[i], column.begin() + start[i + 1], i);
+      if (at == column.begin() + start[i + 1] || *at != i || A_.values()[static_cast<size_t>(at - column.begin())] == 0) return false;
+    }
+    return true;
+  }
+
   /// One over the largest entry of each row.
   void find_weights() {
     weight_.resize(A_.n());
@@ -233,6 +249,7 @@ class LightSolver final : public SerialKktSolver {
   std::unique_ptr<Factors> factors_;
   double set_up_ = 0;
   bool is_klu_ = true, is_definite_ = false;
+  bool may_be_net_ = false;         // rigid bodies that contacts and springs alone hold: the matrix tells
   std::unique_ptr<Factors> aside_;  // Cholesky factors that failed as the matrix was not definite; matrices until they try again
   int waits_ = 0, rest_ = 0;
   bool indefinite_ = false, told_ = false;

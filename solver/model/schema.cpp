@@ -199,6 +199,9 @@ std::vector<ArraySchema>& arrays() {
       {"run.h5", "/history/contact/<name>", "f8", "(n_t, 7)", "N, m, 1, m, J",
        "force on b, inertial axes; largest depth, and that as a share of the cell (of a ball, of a tenth of its radius); slip so far; work "
        "that friction took so far"},
+      {"run.h5", "/history/heap/<name>", "f8", "(n_t, 6)", "1, m, 1, m, J, N",
+       "of a [[contact]] of all balls, more than 1000 pairs: pairs that are pressed; largest depth, and that as a share of a tenth of the "
+       "radius; slip so far, the mean by pressure; work that friction took so far; largest force of a pair"},
       {"run.h5", "/history/stop/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the joint point, joint frame carried by a"},
       {"run.h5", "/history/motor/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the joint point, joint frame carried by a"},
       {"run.h5", "/history/friction/<name>", "f8", "(n_t, 6)", "N, N m",

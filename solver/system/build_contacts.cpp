@@ -61,6 +61,41 @@ void refuse_what_is_not_there(const Scene& scene, const Entry& e) {
                 "give time.step");
 }
 
+/// What all balls of a heap have in common.
+BallHeap heap_of(const Entry& e) {
+  BallHeap heap;
+  heap.name = e.name, heap.loses = e.number("restitution") < 1;
+  PointLaw& law = heap.law;
+  law.friction = e.number("friction"), law.loss = hunt_crossley(e.number("restitution")), law.slow = e.number("rest_speed");
+  if (e.has("modulus")) {
+    heap.modulus = e.number("factor") * e.number("modulus");
+    heap.told =
+        fmt::format("F = 4/3 E* sqrt(R) depth^1.5 of each pair of balls, E* {:.4g} Pa, 1/R the sum of both curvatures", heap.modulus);
+  } else if (e.has("stiffness")) {
+    law.k = e.number("factor") * e.number("stiffness"), law.kt = tangential_ratio(0.3) * law.k;
+    heap.told = fmt::format("{:.4g} N/m of each pair of balls, as given", law.k);
+  } else {
+    e.refuse("", "both are rigid: nothing says how stiff they are", "give modulus, E* of the pair (Hertz), or stiffness");
+  }
+  return heap;
+}
+
+/// Balls that start deep in each other.
+void look_at_start(const Entry& e, const BallHeap& heap, const std::vector<std::string>& names, const Contacts& contacts, const Config& q) {
+  double depth = 0, share = 0;
+  std::pair<int, int> worst;
+  for (const auto& pair : heap.overlaps(q)) {
+    const ContactPair both = heap.pair_of(pair.first, pair.second);
+    const double d = -contacts.gap(both, both.points[0], q), s = d / both.points[0].cell;
+    if (s > share) depth = d, share = s, worst = pair;
+  }
+  if (share <= 0.01) return;
+  const std::string told =
+      fmt::format("{}: \"{}\" starts {:.3g} m deep in \"{}\"", e.label(), names[worst.second], depth, names[worst.first]);
+  if (share > 1) throw Error(e.place.text(), fmt::format("{}, more than {:.3g} m", told, depth / share), "move one of them apart");
+  warn(e.place.text(), told);
+}
+
 }  // namespace
 
 void Builder::add_contacts() {
@@ -87,9 +122,37 @@ void Builder::add_contacts() {
   };
   size_t taken = 0;  // of an "all"
   const std::vector<ContactEntry> entries = contact_entries(scene_, mesh_, comm_);
-  for (const auto& [e, of_all] : entries) {
+  for (const auto& [e, of_all, balls, never] : entries) {
     const auto a = obstacles.find(e.text("a"));
     refuse_what_is_not_there(scene_, e);
+    if (!balls.empty()) {
+      used.insert(balls.begin(), balls.end()), ++taken;
+      BallHeap heap = heap_of(e);
+      std::map<std::string, int> number;
+      std::vector<char> held;
+      for (const std::string& name : balls) {
+        const Named& ball = obstacles.at(name);
+        number[name] = static_cast<int>(heap.balls.size());
+        heap.balls.push_back({ball.body, ball.obstacle.at - out_->bodies[ball.body].Xc, ball.obstacle.shape.radius});
+        held.push_back(is_held(ball.body));
+      }
+      const auto leave_out = [&](int i, int j) { heap.never.emplace_back(std::min(i, j), std::max(i, j)); };
+      for (const auto& [one, other] : never)
+        if (number.contains(one) && number.contains(other)) leave_out(number[one], number[other]);
+      std::map<int, std::vector<int>> on;  // balls by body; what is held is as one
+      for (int i = 0; i < static_cast<int>(balls.size()); ++i) on[held[i] ? 0 : heap.balls[i].body].push_back(i);
+      for (const auto& [body, list] : on)
+        for (size_t i = 0; i < list.size(); ++i)
+          for (size_t j = 0; j < i; ++j) leave_out(list[j], list[i]);
+      std::ranges::sort(heap.never);
+      look_at_start(e, heap, balls, out_->part<Contacts>(), out_->start);
+      heap.is_mine = comm_.rank == 0;
+      double largest = 0;
+      for (const BallHeap::Ball& ball : heap.balls) largest = std::max(largest, ball.radius);
+      out_->stiffness = std::max(out_->stiffness, heap.modulus > 0 ? heap.modulus * largest * std::sqrt(1e-3) : heap.law.k);
+      out_->part<Contacts>().heaps.push_back(std::move(heap));
+      continue;
+    }
     if (of_all) {
       used.insert(e.text("a")), used.insert(e.text("b"));
       const int one = body_behind(e.text("a")), other = body_behind(e.text("b"));
@@ -175,8 +238,7 @@ void Builder::add_points_of_body(const Entry& e, const Obstacle& b, int body, Co
     const double curvature = ball ? relative_curvature(pair.shape, b.shape.radius) : std::nan("");
     if (!(curvature > 0)) e.refuse("modulus", "Hertz is of a ball on a plane or on another ball", "give stiffness");
     const double E = e.number("factor") * e.number("modulus"), R = 1 / curvature;
-    law.hertz = 4. / 3 * E * std::sqrt(R);
-    law.kt = ratio * 2 * E * R * std::sqrt(1e-3);  // the slope at a depth of R/1000
+    law.take_hertz(E, R);
     pair.told = fmt::format("F = {:.4g} N/m^1.5 depth^1.5: 4/3 E* sqrt(R), E* {:.4g} Pa, R {:.4g} m", law.hertz, E, R);
     out_->stiffness = std::max(out_->stiffness, 2 * E * R * std::sqrt(1e-3));
   }

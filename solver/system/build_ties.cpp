@@ -42,7 +42,7 @@ std::vector<MortarFacet> Builder::tied_facets(const Entry& e, std::string_view k
       e.refuse(key, fmt::format("region \"{}\" is linear: its modes are not those of a tied surface", region.name),
                fmt::format("tag it nonlinear or rigid: hilo-tag --nonlinear '{}'", region.name));
     if (region.fidelity == Fidelity::rigid && key == "b")
-      e.refuse(key, fmt::format("region \"{}\" is rigid, and nodes of b follow a", region.name), "name it as a, and the other side as b");
+      e.refuse(key, fmt::format("region \"{}\" is rigid, and so is the other side", region.name), "weld rigid parts by a joint");
     out.push_back({f.n, f.node});
   }
   if (out.empty()) e.refuse(key, fmt::format("\"{}\" has no facets", name), "name a region of solid cells or a set of their facets");
@@ -97,13 +97,23 @@ void Builder::find_tie(const Entry& e, const std::array<std::vector<PairFacet>, 
 /// Before anything is integrated: nodes of b are moved onto a.
 void Builder::close_ties() {
   std::vector<SurfaceTie>& list = out_->part<TiedSurfaces>().list;
-  for (const Entry& e : scene_.entries("tie")) {
+  for (Entry e : scene_.entries("tie")) {
     if (!mesh_) e.refuse("a", "the scene has no mesh: nothing to tie", "name two regions or sets of facets of a mesh");
     if (e.text("a") == e.text("b")) e.refuse("b", "a surface is not tied to itself");
     tied_.emplace_back(e.place.text(), e.label());
     SurfaceTie& tie = list.emplace_back();
     tie.name = e.name;
-    const std::array<std::vector<PairFacet>, 2> facets{on_first_rank(facets_to_tie(e, "a")), on_first_rank(facets_to_tie(e, "b"))};
+    std::vector<Facet> of_a = facets_to_tie(e, "a"), of_b = facets_to_tie(e, "b");
+    const auto bends = [&](const std::vector<Facet>& side) {
+      const auto is_rigid = [&](const Facet& f) { return regions_[mesh_->mesh.region[f.cell]].fidelity == Fidelity::rigid; };
+      return comm_.max(std::ranges::all_of(side, is_rigid) ? 0 : 1) > 0;
+    };
+    const bool a_bends = bends(of_a), b_bends = bends(of_b);
+    if (a_bends && !b_bends && comm_.max(of_b.empty() ? 0 : 1) > 0) {  // nodes follow what is rigid
+      tie.turned = true;
+      std::swap(of_a, of_b), std::swap(e.values.at("a"), e.values.at("b"));
+    }
+    const std::array<std::vector<PairFacet>, 2> facets{on_first_rank(of_a), on_first_rank(of_b)};
     comm_.on_first([&] { find_tie(e, facets, tie); });
   }
   if (list.empty()) return;

@@ -15,17 +15,19 @@ constexpr int resolved = 5;  // steps of an impact, below which it is told
 }  // namespace
 
 void Contacts::add_energy(const Config& q, const Config&, Energy& sum) const {
-  for (const ContactPair& pair : list)
+  each_pair([&](const ContactPair& pair) {
     for (const ContactPoint& point : pair.points)
       sum.elastic += point.law.potential(gap(pair, point, q)) + point.law.kt / 2 * point.next.squaredNorm();
+  });
   for (const SurfacePair& pair : surfaces) sum.elastic += pair.energy();
 }
 
 void Contacts::add_work(const Moment& m, Work& sum) const {
   if (is_start(m.s)) return;
-  for (const ContactPair& pair : list)
+  each_pair([&](const ContactPair& pair) {
     for (const ContactPoint& point : pair.points)
       if (point.law.friction > 0 || point.law.loss > 0) sum.dissipated += place(pair, point, m.s).force.dissipated;
+  });
   for (const SurfacePair& pair : surfaces) sum.dissipated += pair.dissipated(m.s);
 }
 
@@ -39,34 +41,57 @@ int Contacts::outside(const ContactPair& pair, const Config& q) const {
 /// A step must not carry a point through an obstacle that it neither begins nor ends in.
 std::string Contacts::fault(const Config&) const { return jumped_; }
 
+Contacts::Did Contacts::advance(ContactPair& pair, const Stage& s) {
+  Did out;
+  const double within = pair.shape.least_extent();
+  for (ContactPoint& point : pair.points) {
+    const Place at = place(pair, point, s);
+    point.next = values(at.force.u);
+    if (settles(s)) continue;
+    if (point.law.loss > 0)
+      point.next_approach =
+          Approach{s.h, point.approach}.after(pair.shape.at(at.x0) - point.law.radius, pair.shape.at(at.x1) - point.law.radius);
+    out.dissipated += at.force.dissipated;
+    out.pressing += at.force.pressing, out.slid += at.force.pressing * at.force.slid;
+    if (at.force.acts || within == 0) continue;
+    for (const double part : {0.25, 0.5, 0.75})
+      if (pair.shape.at((1 - part) * at.x0 + part * at.x1) < point.law.radius - 0.1 * (within + point.law.radius))
+        out.why = fmt::format("contact \"{}\": a point goes through the obstacle within one step", pair.name);
+  }
+  return out;
+}
+
 void Contacts::advance(const Stage& s) {
-  if (list.empty() && surfaces.empty()) return;
+  if (!touches()) return;
   std::string why;
   for (SurfacePair& pair : surfaces)
     if (const std::string told = pair.advance(s); !told.empty()) why = told;
   std::vector<double> sums;  // of each pair: pressing, pressing times slip, dissipated, points past the border
+  const auto tell = [&](const std::string& reason) {
+    if (!reason.empty()) why = reason;
+  };
+  for (BallHeap& heap : heaps) {
+    if (is_start(s)) break;
+    tell(heap.unforeseen(begin(s), *s.e1));
+    heap.next = heap.sums;
+    double pressing = 0, slid = 0;
+    for (ContactPair& pair : heap.near) {
+      const Did did = advance(pair, s);
+      if (settles(s)) continue;
+      tell(did.why);
+      pressing += did.pressing, slid += did.slid, heap.next.dissipated += did.dissipated;
+      pair.next = pair.sums, pair.next.add(did.pressing, did.slid);
+      if (pair.next.impacts == pair.sums.impacts) continue;
+      heap.next.shortest = heap.next.impacts++ == 0 ? pair.sums.steps : std::min(heap.next.shortest, pair.sums.steps);
+    }
+    if (pressing > 0) heap.next.slip += slid / pressing;
+  }
   for (ContactPair& pair : list) {
     if (is_start(s)) break;
-    if (settles(s)) {
-      for (ContactPoint& point : pair.points) point.next = values(place(pair, point, s).force.u);
-      continue;
-    }
-    double pressing = 0, slid = 0, dissipated = 0;
-    const double within = pair.shape.least_extent();
-    for (ContactPoint& point : pair.points) {
-      const Place at = place(pair, point, s);
-      point.next = values(at.force.u);
-      if (point.law.loss > 0)
-        point.next_approach =
-            Approach{s.h, point.approach}.after(pair.shape.at(at.x0) - point.law.radius, pair.shape.at(at.x1) - point.law.radius);
-      dissipated += at.force.dissipated;
-      pressing += at.force.pressing, slid += at.force.pressing * at.force.slid;
-      if (at.force.acts || within == 0) continue;
-      for (const double part : {0.25, 0.5, 0.75})
-        if (pair.shape.at((1 - part) * at.x0 + part * at.x1) < point.law.radius - 0.1 * (within + point.law.radius))
-          why = fmt::format("contact \"{}\": a point goes through the obstacle within one step", pair.name);
-    }
-    sums.insert(sums.end(), {pressing, slid, dissipated, double(outside(pair, *s.e1))});
+    const Did did = advance(pair, s);
+    if (settles(s)) continue;
+    tell(did.why);
+    sums.insert(sums.end(), {did.pressing, did.slid, did.dissipated, double(outside(pair, *s.e1))});
   }
   const Comm& comm = *points_.comm;
   comm.sum(sums);
@@ -84,19 +109,20 @@ void Contacts::advance(const Stage& s) {
 }
 
 void Contacts::commit(const Config& q, const Config*) {
-  if (is_static_ && !list.empty()) committed_ = q;
+  if (is_static_ && touches()) committed_ = q;
   for (SurfacePair& pair : surfaces) pair.commit(q);
 }
 
 void Contacts::settle(bool accepted) {
   jumped_.clear(), begin_ = committed_;
-  for (ContactPair& pair : list) {
+  each_pair([&](ContactPair& pair) {
     (accepted ? pair.sums : pair.next) = accepted ? pair.next : pair.sums;
     for (ContactPoint& point : pair.points) {
       (accepted ? point.u : point.next) = accepted ? point.next : point.u;
       (accepted ? point.approach : point.next_approach) = accepted ? point.next_approach : point.approach;
     }
-  }
+  });
+  for (BallHeap& heap : heaps) (accepted ? heap.sums : heap.next) = accepted ? heap.next : heap.sums;
   for (SurfacePair& pair : surfaces) pair.settle(accepted);
 }
 
@@ -110,6 +136,7 @@ void Contacts::archive(Archive& a) {
       pair.points[k].u = Eigen::Map<const Vec3>(bristles.data() + 4 * k), pair.points[k].approach = bristles[4 * k + 3];
   }
   for (SurfacePair& pair : surfaces) pair.archive(a);
+  for (BallHeap& heap : heaps) heap.archive(a, *points_.comm);
   settle(false);
 }
 
@@ -123,13 +150,14 @@ std::vector<Output> Contacts::outputs() const {
   };
   for (const ContactPair& pair : list) add(pair.name);
   for (const SurfacePair& pair : surfaces) add(pair.name);
+  for (const BallHeap& heap : heaps) out.push_back({"heap", heap.name, 5, 1});
   return out;
 }
 
 /// Largest depth [m], as a share of the cell, slip so far [m] and what friction took [J].
 /// At the end: depths, slip and dissipation; inside: the force on b.
 void Contacts::observe(const Sight& at) {
-  if (list.empty() && surfaces.empty()) return;
+  if (!touches()) return;
   std::vector<double> end, mid;  // of this rank
   for (const ContactPair& pair : list) {
     double deepest = 0, share = 0;
@@ -151,6 +179,19 @@ void Contacts::observe(const Sight& at) {
     const Vec3 F = pair.force(at.step->s);
     mid.insert(mid.end(), F.begin(), F.end());
   }
+  for (const BallHeap& heap :
+       heaps) {  // pairs that are pressed, the deepest one, slip and dissipation; inside: the largest force of a pair
+    double pressed = 0, deepest = 0, share = 0, force = 0;
+    for (const ContactPair& pair : heap.near) {
+      const double depth = -gap(pair, pair.points[0], at.q);
+      pressed += depth > 0, deepest = std::max(deepest, depth), share = std::max(share, depth / pair.points[0].cell);
+      if (!at.step) continue;
+      if (const Place here = place(pair, pair.points[0], at.step->s); here.force.acts)
+        force = std::max(force, (here.normal + here.tangential).norm());
+    }
+    end.insert(end.end(), {pressed, deepest, share, heap.next.slip, heap.next.dissipated});
+    if (at.step) mid.push_back(force);
+  }
   points_.comm->max(end), points_.comm->sum(mid);
   at.end.insert(at.end.end(), end.begin(), end.end()), at.mid.insert(at.mid.end(), mid.begin(), mid.end());
 }
@@ -166,13 +207,20 @@ std::string Contacts::apart(const Config& q) const {
     for (const ContactPoint& point : pair.points) gaps.back() = std::min(gaps.back(), gap(pair, point, q) - touch(point));
   }
   for (const SurfacePair& pair : surfaces) gaps.push_back(pair.least_gap(q));
+  for (const BallHeap& heap : heaps) {
+    gaps.push_back(1e300);
+    for (const ContactPair& pair : heap.near) gaps.back() = std::min(gaps.back(), gap(pair, pair.points[0], q) - touch(pair.points[0]));
+  }
+  const auto name = [&](size_t k) {
+    if (k < list.size()) return list[k].name;
+    return (k -= list.size()) < surfaces.size() ? surfaces[k].name : heaps[k - surfaces.size()].name;
+  };
   for (double& g : gaps) g = -g;
   points_.comm->max(gaps);
   std::string out;
   for (size_t k = 0; k < gaps.size(); ++k)
     if (const double g = -gaps[k]; g > 0 && g < 1e299)
-      out += fmt::format("{}contact \"{}\" begins {:.3g} m apart", out.empty() ? "" : ", ",
-                         k < list.size() ? list[k].name : surfaces[k - list.size()].name, g);
+      out += fmt::format("{}contact \"{}\" begins {:.3g} m apart", out.empty() ? "" : ", ", name(k), g);
   return out;
 }
 
@@ -220,6 +268,7 @@ void Contacts::add_to_report(std::vector<std::pair<std::string, std::string>>& r
                        pair.n_points));
   for (const ContactPair& pair : list) tell(pair.name, static_cast<size_t>(pair.n_points), pair.told, pair.sums, pair.loses);
   for (const SurfacePair& pair : surfaces) tell(pair.name, pair.n_points(), pair.told, pair.sums, pair.loses);
+  for (const BallHeap& heap : heaps) tell(heap.name, heap.balls.size(), heap.told, heap.sums, heap.loses);
   if (!text.empty()) report.emplace_back("contacts", "{" + text + "\n  }");
 }
 
@@ -227,6 +276,8 @@ void Contacts::tie(Ties& ties) const {
   for (const ContactPair& pair : list)
     for (const int b : {pair.body, pair.carrier})
       if (b > 0) ties.exclude(b);
+  for (const BallHeap& heap : heaps)
+    for (const BallHeap::Ball& ball : heap.balls) ties.exclude(ball.body);
   for (const SurfacePair& pair : surfaces)
     for (const ContactSurface& surface : pair.side)
       for (const ContactSurface::Face& face : surface.faces)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -130,25 +131,40 @@ std::vector<ContactEntry> contact_entries(const Scene& scene, const LocalMesh* m
   std::vector<ContactEntry> out;
   const auto entries = scene.entries("contact");
   if (!meets_all(scene)) {
-    for (const Entry& e : entries) out.push_back({e, false});
+    for (const Entry& e : entries) out.push_back({.entry = e});
     return out;
   }
   Parties parties(scene, mesh, comm);
   const auto is_all = [&](const Entry& e) { return (e.text("a") == "all" || e.text("b") == "all") && !parties.has("all"); };
   std::set<std::pair<std::string, std::string>> done;
   std::set<std::string> names;
+  bool has_heap = false;
   const auto take = [&](const std::string& a, const std::string& b) { return done.insert(std::minmax(a, b)).second; };
   for (const char* section : {"contact", "tie"})
     for (const Entry& e : scene.entries(section))
       if (section == std::string_view("tie") || !is_all(e)) take(e.text("a"), e.text("b")), names.insert(e.name);
   for (const Entry& e : entries) {
     if (!is_all(e)) {
-      out.push_back({e, false});
+      out.push_back({.entry = e});
       continue;
     }
     size_t n = 0;
-    for (const Party& x : parties.named(e, "a"))
-      for (const Party& y : parties.named(e, "b")) {
+    const std::vector<Party> of_a = parties.named(e, "a"), of_b = parties.named(e, "b");
+    if (e.text("a") == e.text("b") && !has_heap) {
+      ContactEntry heap{.entry = e, .of_all = true};
+      for (const Party& p : of_a)
+        if (p.is_ball()) heap.balls.push_back(p.name);
+      has_heap = heap.balls.size() * (heap.balls.size() - 1) / 2 > most_pairs_of_balls;
+      if (has_heap) {
+        std::ranges::copy(done, std::back_inserter(heap.never));
+        names.insert(e.name);
+        for (const char* key : {"layer", e.has("modulus") ? "stiffness" : ""}) heap.entry.values.erase(key);
+        out.push_back(std::move(heap)), ++n;
+      }
+    }
+    for (const Party& x : of_a)
+      for (const Party& y : of_b) {
+        if (has_heap && x.is_ball() && y.is_ball()) continue;
         const auto pair = ordered(x, y, parties);
         if (!pair || !take(x.name, y.name)) continue;
         ++n;
@@ -167,7 +183,7 @@ std::vector<ContactEntry> contact_entries(const Scene& scene, const LocalMesh* m
           const bool hertz = b.is_ball() && (a.obstacle->kind == "plane" || a.obstacle->kind == "sphere");
           drop(hertz ? "stiffness" : "modulus");
         }
-        out.push_back({std::move(one), true});
+        out.push_back({.entry = std::move(one), .of_all = true});
       }
     if (n == 0)
       throw Error(e.where(e.text("a") == "all" ? "a" : "b"), fmt::format("{}: \"all\" stands for no pair", e.label()),
@@ -179,7 +195,10 @@ std::vector<ContactEntry> contact_entries(const Scene& scene, const LocalMesh* m
 std::string told_pairs(const Scene& scene, const LocalMesh* mesh, const Comm& comm) {
   std::string out;
   for (const ContactEntry& pair : contact_entries(scene, mesh, comm))
-    if (pair.of_all) out += fmt::format("# {}: a = \"{}\", b = \"{}\"\n", pair.entry.label(), pair.entry.text("a"), pair.entry.text("b"));
+    if (!pair.balls.empty())
+      out += fmt::format("# {}: {} balls, in pairs as they come near each other\n", pair.entry.label(), pair.balls.size());
+    else if (pair.of_all)
+      out += fmt::format("# {}: a = \"{}\", b = \"{}\"\n", pair.entry.label(), pair.entry.text("a"), pair.entry.text("b"));
   return out;
 }
 

@@ -19,20 +19,19 @@ using Rows12 = Eigen::Matrix<double, 3, 12>;
 Traits Contacts::traits() const {
   const bool bends = std::ranges::any_of(list, [](const ContactPair& pair) { return pair.friction > 0; });
   const bool loses = std::ranges::any_of(list, &ContactPair::loses);
-  return {.remembers = bends || loses || !surfaces.empty(),
-          .searches = !surfaces.empty(),
-          .slides = bends || !surfaces.empty(),
-          .reaches = !surfaces.empty()};
+  const bool finds = !surfaces.empty() || !heaps.empty();
+  return {.remembers = bends || loses || finds, .searches = finds, .slides = bends || finds, .reaches = !surfaces.empty()};
 }
 
 std::string Contacts::count() const {
-  const size_t n = list.size() + surfaces.size();
+  const size_t n = list.size() + surfaces.size() + heaps.size();
   return n == 0 ? "" : fmt::format("{} contacts", n);
 }
 
 bool Contacts::search(const Config& q, const Config* v, double h) {
   bool changes = false;
   for (SurfacePair& pair : surfaces) changes |= pair.search(q, v, h);
+  for (BallHeap& heap : heaps) changes |= heap.search(q, v, h);
   return changes;
 }
 
@@ -43,14 +42,14 @@ bool Contacts::revise(const Stage& stage) {
 }
 
 void Contacts::number(Layout& layout) {
-  clique_.assign(list.size(), {});
-  for (size_t k = 0; k < list.size(); ++k)
-    for (const ContactPoint& point : list[k].points) {
+  each_pair([&](ContactPair& pair) {
+    for (ContactPoint& point : pair.points) {
       std::vector<int> blocks = points_.blocks_of(point.nodes);
-      for (const int b : {list[k].body, list[k].carrier})
+      for (const int b : {pair.body, pair.carrier})
         if (b >= 0 && points_.body_block[b] >= 0) blocks.push_back(points_.body_block[b]), blocks.push_back(points_.body_block[b] + 1);
-      clique_[k].push_back(layout.cliques.add(blocks, !point.nodes.empty()));
+      point.clique = layout.cliques.add(blocks, !point.nodes.empty());
     }
+  });
   for (SurfacePair& pair : surfaces) pair.number(layout);
 }
 
@@ -71,8 +70,9 @@ double Contacts::gap(const ContactPair& pair, const ContactPoint& point, const C
 
 void Contacts::hold(const Config& q) {
   about_ = q;
-  for (ContactPair& pair : list)
+  each_pair([&](ContactPair& pair) {
     for (ContactPoint& point : pair.points) point.held = HeldPoint::at(point.law, gap(pair, point, q), point.u);
+  });
   for (SurfacePair& pair : surfaces) pair.hold(q);
 }
 
@@ -124,10 +124,8 @@ Contacts::Place Contacts::place(const ContactPair& pair, const ContactPoint& poi
 
 void Contacts::evaluate(Pass& p) const {
   if (p.s.rates_alone) return;
-  for (size_t k = 0; k < list.size(); ++k) {
-    const ContactPair& pair = list[k];
-    for (size_t i = 0; i < pair.points.size(); ++i) {
-      const ContactPoint& point = pair.points[i];
+  each_pair([&](const ContactPair& pair) {
+    for (const ContactPoint& point : pair.points) {
       const Place at = place(pair, point, p.s);
       if (!at.force.acts) continue;
       const Vec3 F = at.normal + at.tangential;
@@ -139,14 +137,14 @@ void Contacts::evaluate(Pass& p) const {
       p.body[pair.carrier].head<3>() -= F;
       p.body[pair.carrier].tail<3>() -= at.rel.cross(F) + at.low.cross(at.tangential);
       p.scale(F.norm());
-      if (p.K) add_tangent(p, pair, point, at, clique_[k][i]);
+      if (p.K) add_tangent(p, pair, point, at);
     }
-  }
+  });
   for (const SurfacePair& pair : surfaces) pair.evaluate(p);
 }
 
-void Contacts::add_tangent(Pass& p, const ContactPair& pair, const ContactPoint& point, const Place& at, int clique) const {
-  const std::span<const int> blocks = points_.layout.cliques[clique];
+void Contacts::add_tangent(Pass& p, const ContactPair& pair, const ContactPoint& point, const Place& at) const {
+  const std::span<const int> blocks = points_.layout.cliques[point.clique];
   if (blocks.empty()) return;
   const Stage& s = p.s;
   const auto columns = [](int first, const Mat3& A) {
@@ -238,7 +236,7 @@ void Contacts::add_tangent(Pass& p, const ContactPair& pair, const ContactPoint&
     }
   }
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> dense = L.transpose() * (K * R);
-  p.K->add(clique, dense.data());
+  p.K->add(point.clique, dense.data());
 }
 
 std::vector<int> nodes_that_meet(const System& system) {

@@ -2,7 +2,8 @@
 // Contacts: points of regions and bodies against obstacles that the ground or a body carries, and surfaces against each other
 // (system/surface_pair).  No rows, no events: forces of gaps that are closed at either end of the step (physics/contact).
 #pragma once
-#include "physics/contact/point_contact.hpp"
+#include "system/ball_heap.hpp"
+#include "system/contact_pair.hpp"
 #include "system/contribution.hpp"
 #include "system/revising.hpp"
 #include "system/surface_pair.hpp"
@@ -13,44 +14,12 @@ namespace hilo {
 /// Of the stiffness of facets of regions that bend, in load steps.
 constexpr double static_factor = 100;
 
-/// A point of a facet, or one that a body carries.
-struct ContactPoint {
-  std::vector<int> nodes;  // none: of the body
-  std::vector<int> facet;  // nodes of its facet, whose shape functions `share` are
-  double area = 0;         // of the facet [m^2]
-  std::vector<double> share;
-  Vec3 arm = Vec3::Zero();  // from the centre of the body, body axes [m]
-  PointLaw law;
-  double cell = 0;                         // the depth that is told as a share of this [m]
-  double deep = HUGE_VAL;                  // the depth at which the pressure is the modulus of what lies behind [m]
-  Vec3 u = Vec3::Zero();                   // the bristle, in axes of the obstacle [m]
-  Vec3 next = Vec3::Zero();                // at the end of the step tried last
-  double approach = 0, next_approach = 0;  // speed at which the contact began; after the step tried last [m/s]
-  HeldPoint held;                          // in small motions about a state
-};
-
-struct ContactPair {
-  std::string name, told;  // `told`: what the stiffness is and from what
-  Distance shape;
-  int carrier = 0;         // the body that carries it
-  Vec3 at = Vec3::Zero();  // from its centre, body axes [m]
-  Mat3 axes = Mat3::Identity();
-  int body = -1;  // of the points, or -1: they have nodes
-  double friction = 0;
-  bool loses = false;                // by restitution
-  std::vector<ContactPoint> points;  // that this rank evaluates: of facets of its cells; those of a body without mesh are on one rank
-  std::vector<std::int64_t> number;  // of these, among all
-  std::int64_t n_points = 0;         // of all
-  bool has_facets = false;
-  int outside = 0;  // points that start past the border of a height field
-  ContactSums sums, next;
-};
-
 class Contacts final : public Contribution, public Equations, public Stateful, public Observer, public Revising, public Touching {
  public:
   Contacts(const Points& points, bool is_static) : points_(points), is_static_(is_static) {}
   std::vector<ContactPair> list;
   std::vector<SurfacePair> surfaces;
+  std::vector<BallHeap> heaps;
 
   Traits traits() const override;
   std::string count() const override;
@@ -70,7 +39,7 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   void observe(const Sight& at) override;
   void add_to_report(std::vector<std::pair<std::string, std::string>>& report) const override;
   void tie(Ties& ties) const override;
-  bool touches() const override { return !list.empty() || !surfaces.empty(); }
+  bool touches() const override { return !list.empty() || !surfaces.empty() || !heaps.empty(); }
   bool has_facets() const override;
   std::string apart(const Config& q) const override;
   void hold(const Config& q) override;
@@ -98,7 +67,25 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
                       const Stage& s, bool fixed = false) const;
   Vec3 position(const ContactPair& pair, const ContactPoint& point, const Config& q) const;
   Vec3 measures(const ContactPair& pair, const Vec3& x, const Config& q) const;
-  void add_tangent(Pass& p, const ContactPair& pair, const ContactPoint& point, const Place& at, int clique) const;
+  void add_tangent(Pass& p, const ContactPair& pair, const ContactPoint& point, const Place& at) const;
+  /// What a pair did in a step.
+  struct Did {
+    double pressing = 0, slid = 0, dissipated = 0;  // [N, N m, J]
+    std::string why;                                // the step cannot be
+  };
+  Did advance(ContactPair& pair, const Stage& s);
+  template <class Visit>
+  void each_pair(Visit&& visit) {
+    for (ContactPair& pair : list) visit(pair);
+    for (BallHeap& heap : heaps)
+      for (ContactPair& pair : heap.near) visit(pair);
+  }
+  template <class Visit>
+  void each_pair(Visit&& visit) const {
+    for (const ContactPair& pair : list) visit(pair);
+    for (const BallHeap& heap : heaps)
+      for (const ContactPair& pair : heap.near) visit(pair);
+  }
   /// Load steps begin where what touches holds [m].
   static double touch(const ContactPoint& point) { return 1e-8 * point.cell; }
   /// The beginning of the step.
@@ -112,11 +99,10 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   /// Of a start, not of a step.
   bool is_start(const Stage& s) const { return is_static_ == s.conserving() && !settles(s); }
   const Points& points_;
-  const bool is_static_;                  // load steps: forces at their end
-  Config about_;                          // in small motions: the state
-  Config committed_, begin_;              // of load steps: the state accepted last, and where the step began
-  std::vector<std::vector<int>> clique_;  // of each point
-  std::string jumped_;                    // what the step tried last went through
+  const bool is_static_;      // load steps: forces at their end
+  Config about_;              // in small motions: the state
+  Config committed_, begin_;  // of load steps: the state accepted last, and where the step began
+  std::string jumped_;        // what the step tried last went through
 };
 
 class System;

@@ -143,6 +143,8 @@ FacetState SurfacePair::begun(int s, const SurfacePoint& point, const Target& ta
   if (!held) out.past.gap = std::max(gap, 0.0);
   const bool comes_in = target.inside && gap < -1e-12 * point.cell;
   out.past.offset = at_end_alone() || !(held || comes_in) ? 0 : gap - out.past.gap;
+  // what is next to nothing beside the depth, or round-off, waits: paid by a slip as small, it would be as stiff as the inverse of both
+  if (std::abs(out.past.offset) < std::max(1e-3 * -out.past.gap, 1e-9 * point.cell)) out.past.offset = 0;
   const auto& [u1, u2] = point.state.past.bent;
   if ((u1 != 0 || u2 != 0) && point.state.face >= 0 && (out.face != point.state.face || out.triangle != point.state.triangle)) {
     const TriangleAxes old(over(s, point, point.state, x0)), now(z);
@@ -168,21 +170,19 @@ bool SurfacePair::revise(const Stage& s) {
   const Positions x1 = s.e1->x, x0 = settles_ ? x1 : begin(s);
   look(x0, x1);
   bool changes = false;
-  for (int k = 0; k < 2; ++k)
-    for (SurfacePoint& point : side[k].points) {
-      if (partners_[k][point.face].empty()) continue;
-      const FacetState now = begun(k, point, target_of(k, point, x0, x1), x0);
-      const std::pair to{now.face, now.triangle}, from{point.now.face, point.now.triangle};
-      if (to == from || (to == point.left && from.first >= 0 && !settles_)) continue;  // on the edge between two either will do
-      if (settles_ && from.first >= 0 && to.first >= 0) {  // chosen in every iteration: triangles side by side are not to take turns
-        const Vec3 x = side[k].at(point, x1);
-        const double was = beside(x, side[1 - k].triangle(from.first, from.second, x1)).distance;
-        if (was < beside(x, side[1 - k].triangle(to.first, to.second, x1)).distance + 1e-3 * margin) continue;
-      }
-      point.left = from;
-      changes = changes || would_act(k, point, point.now, x0, x1) || would_act(k, point, now, x0, x1);
-      point.now = now;
+  each_listed([&](int k, SurfacePoint& point) {
+    const FacetState now = begun(k, point, target_of(k, point, x0, x1), x0);
+    const std::pair to{now.face, now.triangle}, from{point.now.face, point.now.triangle};
+    if (to == from || (to == point.left && from.first >= 0 && !settles_)) return;  // on the edge between two either will do
+    if (settles_ && from.first >= 0 && to.first >= 0) {  // chosen in every iteration: triangles side by side are not to take turns
+      const Vec3 x = side[k].at(point, x1);
+      const double was = beside(x, side[1 - k].triangle(from.first, from.second, x1)).distance;
+      if (was < beside(x, side[1 - k].triangle(to.first, to.second, x1)).distance + 1e-3 * margin) return;
     }
+    point.left = from;
+    changes = changes || would_act(k, point, point.now, x0, x1) || would_act(k, point, now, x0, x1);
+    point.now = now;
+  });
   return changes;
 }
 

@@ -40,18 +40,17 @@ FacetForce<double> SurfacePair::force_of(int k, const SurfacePoint& point, const
 }
 
 void SurfacePair::evaluate(Pass& p) const {
-  for (int k = 0; k < 2; ++k)
-    for (const SurfacePoint& point : side[k].points) {
-      if (point.now.face < 0) continue;
-      const FacetForce<double> f = force_of(k, point, p.s);
-      if (!f.acts) continue;
-      const NodeShares at(side[k], side[1 - k], point);
-      const Vec3 on_point = values(f.on_point), on_second = values(f.on_second), on_third = values(f.on_third);
-      for (size_t a = 0; a < at.nodes.size(); ++a)
-        p.node[at.nodes[a]] += at.share[a][0] * on_point + at.share[a][1] * on_second + at.share[a][2] * on_third;
-      p.scale(on_point.norm());
-      if (p.K) add_tangent(p, k, point);
-    }
+  each_listed([&](int k, const SurfacePoint& point) {
+    if (point.now.face < 0) return;
+    const FacetForce<double> f = force_of(k, point, p.s);
+    if (!f.acts) return;
+    const NodeShares at(side[k], side[1 - k], point);
+    const Vec3 on_point = values(f.on_point), on_second = values(f.on_second), on_third = values(f.on_third);
+    for (size_t a = 0; a < at.nodes.size(); ++a)
+      p.node[at.nodes[a]] += at.share[a][0] * on_point + at.share[a][1] * on_second + at.share[a][2] * on_third;
+    p.scale(on_point.norm());
+    if (p.K) add_tangent(p, k, point);
+  });
 }
 
 void SurfacePair::add_tangent(Pass& p, int k, const SurfacePoint& point) const {
@@ -94,25 +93,24 @@ void SurfacePair::add_tangent(Pass& p, int k, const SurfacePoint& point) const {
 
 double SurfacePair::energy() const {
   double sum = 0;
-  for (const ContactSurface& surface : side)
-    for (const SurfacePoint& point : surface.points) sum += stored(point, point.next.past);
+  each_listed([&](int, const SurfacePoint& point) { sum += stored(point, point.next.past); });
   return sum;
 }
 
 double SurfacePair::dissipated(const Stage& s) const {
   double sum = 0;
-  for (int k = 0; k < 2; ++k)
-    for (const SurfacePoint& point : side[k].points)
-      sum += (point.law.friction > 0 || point.law.loss > 0) && point.now.face >= 0 ? force_of(k, point, s).dissipated : released(point);
+  each_listed([&](int k, const SurfacePoint& point) {
+    sum += (point.law.friction > 0 || point.law.loss > 0) && point.now.face >= 0 ? force_of(k, point, s).dissipated : released(point);
+  });
   return sum;
 }
 
 Vec3 SurfacePair::force(const Stage& s) const {
   Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < 2; ++k)
-    for (const SurfacePoint& point : side[k].points)
-      if (point.now.face >= 0)
-        if (const FacetForce<double> f = force_of(k, point, s); f.acts) sum += (k == 0 ? 1 : -1) * values(f.on_point);
+  each_listed([&](int k, const SurfacePoint& point) {
+    if (point.now.face < 0) return;
+    if (const FacetForce<double> f = force_of(k, point, s); f.acts) sum += (k == 0 ? 1 : -1) * values(f.on_point);
+  });
   return sum;
 }
 

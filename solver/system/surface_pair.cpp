@@ -85,22 +85,21 @@ std::string SurfacePair::advance(const Stage& s) {
   }
   double pressing = 0, slid = 0;
   look(x0, x1);
-  for (int k = 0; k < 2; ++k)
-    for (SurfacePoint& point : side[k].points) {
-      point.next = point.now;
-      const bool held = point.state.past.gap < 0;
-      if (point.now.face >= 0) {
-        const FacetForce<double> f = force_of(k, point, s);
-        point.next.past.gap = f.gap, point.next.past.bent = f.bent;
-        point.next.past.approach = Approach{s.h, point.now.past.approach}.after(point.now.past.gap, f.gap);
-        point.next.past.offset = is_static ? 0 : gap_of(over(k, point, point.now, x1)) - f.gap;
-        next.dissipated += f.dissipated, pressing += f.pressing, slid += f.pressing * f.slid;
-        if (f.acts) continue;
-      }
-      next.dissipated += released(point);
-      if (held || partners_[k][point.face].empty()) continue;
-      if (target_of(k, point, x0, x1).crossed) why = fmt::format("contact \"{}\": a point goes through a facet within one step", name);
+  each_listed([&](int k, SurfacePoint& point) {
+    point.next = point.now;
+    const bool held = point.state.past.gap < 0;
+    if (point.now.face >= 0) {
+      const FacetForce<double> f = force_of(k, point, s);
+      point.next.past.gap = f.gap, point.next.past.bent = f.bent;
+      point.next.past.approach = Approach{s.h, point.now.past.approach}.after(point.now.past.gap, f.gap);
+      point.next.past.offset = is_static ? 0 : gap_of(over(k, point, point.now, x1)) - f.gap;
+      next.dissipated += f.dissipated, pressing += f.pressing, slid += f.pressing * f.slid;
+      if (f.acts) return;
     }
+    next.dissipated += released(point);
+    if (held) return;
+    if (target_of(k, point, x0, x1).crossed) why = fmt::format("contact \"{}\": a point goes through a facet within one step", name);
+  });
   next.add(pressing, slid);
   return why;
 }
@@ -120,11 +119,10 @@ void SurfacePair::hold(const Config& q) {
 void SurfacePair::settle(bool accepted) {
   begin_ = committed_;
   (accepted ? sums : next) = accepted ? next : sums;
-  for (ContactSurface& surface : side)
-    for (SurfacePoint& point : surface.points) {
-      if (accepted) point.state = point.next;
-      point.now = point.next = point.state;
-    }
+  each_listed([&](int, SurfacePoint& point) {
+    if (accepted) point.state = point.next;
+    point.now = point.next = point.state;
+  });
 }
 
 void SurfacePair::archive(Archive& a) {
@@ -153,9 +151,9 @@ void SurfacePair::archive(Archive& a) {
 
 std::pair<double, double> SurfacePair::depth() const {
   double depth = 0, share = 0;
-  for (const ContactSurface& surface : side)
-    for (const SurfacePoint& point : surface.points)
-      depth = std::max(depth, -point.next.past.gap), share = std::max(share, -point.next.past.gap / point.cell);
+  each_listed([&](int, const SurfacePoint& point) {
+    depth = std::max(depth, -point.next.past.gap), share = std::max(share, -point.next.past.gap / point.cell);
+  });
   return {depth, share};
 }
 

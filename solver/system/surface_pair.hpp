@@ -117,13 +117,25 @@ class SurfacePair {
     int face, pair;  // of the other side; place in near_
   };
   std::vector<std::vector<Partner>> partners_[2];  // of each facet
-  std::vector<Ball> ball_[2];                      // of the last look
-  bool settles_ = false;                           // in the stage that was chosen for last
-  std::vector<Vec3> about_;                        // in small motions: where nodes are in the state
-  std::vector<Vec3> committed_;                    // of the state accepted last
-  std::vector<Vec3> begin_;                        // where nodes are at the beginning of the step
-  std::vector<Vec3> foreseen_;                     // where nodes were to go in the step at work
-  std::vector<int> nodes_[2];                      // of both sides
+  std::vector<int> listed_[2];                     // points of facets that have partners: what the others remember is nothing
+  /// Each of them, of both sides.
+  template <class Visit>
+  void each_listed(Visit&& visit) {
+    for (int s = 0; s < 2; ++s)
+      for (const int i : listed_[s]) visit(s, side[s].points[i]);
+  }
+  template <class Visit>
+  void each_listed(Visit&& visit) const {
+    for (int s = 0; s < 2; ++s)
+      for (const int i : listed_[s]) visit(s, side[s].points[i]);
+  }
+  std::vector<Ball> ball_[2];    // of the last look
+  bool settles_ = false;         // in the stage that was chosen for last
+  std::vector<Vec3> about_;      // in small motions: where nodes are in the state
+  std::vector<Vec3> committed_;  // of the state accepted last
+  std::vector<Vec3> begin_;      // where nodes are at the beginning of the step
+  std::vector<Vec3> foreseen_;   // where nodes were to go in the step at work
+  std::vector<int> nodes_[2];    // of both sides
 };
 
 }  // namespace hilo

@@ -1,59 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which facets of two surfaces are near each other.
 #include <algorithm>
-#include <tuple>
 
+#include "system/near_boxes.hpp"
 #include "system/surface_pair.hpp"
 
 namespace hilo {
-namespace {
 
-struct Box {
-  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
-  void take(const Vec3& x) { low = low.cwiseMin(x), high = high.cwiseMax(x); }
-  void widen(double by) { low.array() -= by, high.array() += by; }
-  bool meets(const Box& other) const { return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all(); }
-};
-
-}  // namespace
-
-/// Pairs of facets whose boxes over the way from x0 to x1 come within a distance of each other: sorted along the longest axis of where both
-/// sides can meet at all.
+/// Pairs of facets whose boxes over the way from x0 to x1 come within a distance of each other, of those that the other side can meet at
+/// all.
 std::vector<std::pair<int, int>> SurfacePair::near(Positions x0, Positions x1, double within) const {
-  std::vector<Box> box[2];
-  Box all[2];
+  std::vector<AxisBox> box[2];
+  AxisBox all[2];
   for (int s = 0; s < 2; ++s)
     for (const ContactSurface::Face& face : side[s].faces) {
-      Box& b = box[s].emplace_back();
+      AxisBox& b = box[s].emplace_back();
       for (int a = 0; a < face.n; ++a) b.take(x0[face.node[a]]), b.take(x1[face.node[a]]);
       b.widen(within / 2);
-      all[s].take(b.low), all[s].take(b.high);
+      all[s].take(b);
     }
-  std::vector<std::pair<int, int>> out;
-  const Vec3 extent = all[0].high.cwiseMin(all[1].high) - all[0].low.cwiseMax(all[1].low);
-  if (!(extent.minCoeff() >= 0)) return out;
-  int axis = 0;
-  extent.maxCoeff(&axis);
-  struct Entry {
-    double low;
-    int side, face;
-  };
-  std::vector<Entry> order;
-  for (int s = 0; s < 2; ++s)
+  if (!all[0].meets(all[1])) return {};
+  std::vector<int> face[2];
+  for (int s = 0; s < 2; ++s) {
+    size_t n = 0;
     for (size_t f = 0; f < box[s].size(); ++f)
-      if (box[s][f].meets(all[1 - s])) order.push_back({box[s][f].low[axis], s, static_cast<int>(f)});
-  std::sort(order.begin(), order.end(),
-            [](const Entry& a, const Entry& b) { return std::tie(a.low, a.side, a.face) < std::tie(b.low, b.side, b.face); });
-  std::vector<int> open[2];
-  for (const Entry& e : order) {
-    const Box& own = box[e.side][e.face];
-    std::vector<int>& others = open[1 - e.side];
-    std::erase_if(others, [&](int f) { return box[1 - e.side][f].high[axis] < e.low; });
-    for (const int f : others)
-      if (own.meets(box[1 - e.side][f])) out.emplace_back(e.side == 0 ? e.face : f, e.side == 0 ? f : e.face);
-    open[e.side].push_back(e.face);
+      if (box[s][f].meets(all[1 - s])) face[s].push_back(static_cast<int>(f)), box[s][n++] = box[s][f];
+    box[s].resize(n);
   }
-  std::sort(out.begin(), out.end());
+  std::vector<std::pair<int, int>> out = near_boxes(box[0], box[1]);
+  for (auto& [f, g] : out) f = face[0][f], g = face[1][g];
   return out;
 }
 
@@ -62,6 +37,16 @@ void SurfacePair::list_partners() {
   for (size_t k = 0; k < near_.size(); ++k) {
     partners_[0][near_[k].first].push_back({near_[k].second, static_cast<int>(k)});
     partners_[1][near_[k].second].push_back({near_[k].first, static_cast<int>(k)});
+  }
+  for (int s = 0; s < 2; ++s) {
+    listed_[s].clear();
+    for (size_t i = 0; i < side[s].points.size(); ++i) {
+      SurfacePoint& point = side[s].points[i];
+      if (!partners_[s][point.face].empty())
+        listed_[s].push_back(static_cast<int>(i));
+      else
+        point.state = point.now = point.next = {}, point.left = {-2, -2};  // it is open
+    }
   }
 }
 
@@ -72,9 +57,11 @@ bool SurfacePair::search(const Config& q, const Config* v, double h) {
     for (const auto& nodes : nodes_)
       for (const int i : nodes) foreseen_[i] += h * v->x[i];
   const auto with_held = [&](std::vector<std::pair<int, int>> list) {
-    for (int s = 0; s < 2; ++s)
-      for (const SurfacePoint& point : side[s].points)
-        if (point.state.past.gap < 0) list.emplace_back(s == 0 ? point.face : point.state.face, s == 0 ? point.state.face : point.face);
+    each_listed([&](int s, const SurfacePoint& point) {
+      const auto& [u1, u2] = point.state.past.bent;  // of what has opened in the last step: to be let go in this one
+      if (point.state.face >= 0 && (point.state.past.gap < 0 || u1 != 0 || u2 != 0))
+        list.emplace_back(s == 0 ? point.face : point.state.face, s == 0 ? point.state.face : point.face);
+    });
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
     return list;
@@ -87,14 +74,9 @@ bool SurfacePair::search(const Config& q, const Config* v, double h) {
     near_ = std::move(wide);
     list_partners();
   }
-  for (int s = 0; s < 2; ++s)
-    for (SurfacePoint& point : side[s].points) point.now = point.next = point.state, point.left = {-2, -2};
+  each_listed([](int, SurfacePoint& point) { point.now = point.next = point.state, point.left = {-2, -2}; });
   look(q.x, foreseen_);
-  for (int s = 0; s < 2; ++s)
-    for (SurfacePoint& point : side[s].points) {
-      const bool alone = partners_[s][point.face].empty();
-      point.now = begun(s, point, alone ? Target{} : target_of(s, point, q.x, foreseen_), q.x);
-    }
+  each_listed([&](int s, SurfacePoint& point) { point.now = begun(s, point, target_of(s, point, q.x, foreseen_), q.x); });
   return changes;
 }
 

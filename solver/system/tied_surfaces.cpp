@@ -173,8 +173,9 @@ void TiedSurfaces::observe(const Sight& at) {
     const Sum& sum = sums[&tie];
     Vec3 middle = Vec3::Zero();
     for (const int i : sum.tied) middle += q.x[i] / static_cast<double>(sum.tied.size());
-    const Vec3 moment = sum.moment - middle.cross(sum.force);
-    mid.insert(mid.end(), sum.force.begin(), sum.force.end());
+    const double sign = tie.turned ? -1 : 1;
+    const Vec3 force = sign * sum.force, moment = sign * (sum.moment - middle.cross(sum.force));
+    mid.insert(mid.end(), force.begin(), force.end());
     mid.insert(mid.end(), moment.begin(), moment.end());
   }
   points_.comm->sum(mid);

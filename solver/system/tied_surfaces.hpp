@@ -32,6 +32,7 @@ struct SurfaceTie {
   std::map<int, std::set<int>> beside;     // nodes of b that share a facet, until the rows are chosen
   std::vector<int> b_nodes;                // ascending
   int n_nodes = 0, n_tied = 0, n_off = 0;  // of b; with a row; components of rows that others imply
+  bool turned = false;                     // the scene names as b what is rigid: it is a here
   double covered = 0, largest_move = 0;    // share of the area of b [1]; of a node at the start [m]
 };
 

@@ -27,8 +27,10 @@ const std::map<std::string, std::set<std::string>> may_include{
     {"main", {"base", "model", "physics", "linear", "system", "dynamics"}},
     // sections of beams: what a deck says of one is what a scene says
     {"tools", {"base", "model", "physics/beam_section.hpp", "physics/section_mesh.hpp"}},
-    // values at points: the shape functions, which know base alone; stress at points of the sections of beams
-    {"post", {"base", "model", "physics/beam_section.hpp", "physics/section_mesh.hpp", "physics/shape/shapes.hpp"}},
+    // values at points: the shape functions, which know base alone; stress at points of the sections of beams; outlines of obstacles
+    {"post",
+     {"base", "model", "physics/beam_section.hpp", "physics/contact/obstacle_kinds.hpp", "physics/section_mesh.hpp",
+      "physics/shape/shapes.hpp"}},
 };
 const std::set<std::string> floors{"base", "model", "physics", "linear", "system", "dynamics"};
 

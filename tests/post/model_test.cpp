@@ -2,8 +2,11 @@
 // The picture of a scene before it runs.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "cli.hpp"
+#include "physics/contact/obstacle_kinds.hpp"
 #include "picture_file.hpp"
 #include "post/scene/scene_items.hpp"
 #include "sample_run.hpp"
@@ -124,6 +127,36 @@ radius = 0.05
   const Ran ran = place.run("hilo-post model scene.toml --set motor.drive.joint=truniom -o model.png");
   EXPECT_EQ(ran.exit, 2);
   EXPECT_NE(ran.err.find("no joint \"truniom\" (did you mean \"trunnion\"?)"), std::string::npos) << ran.err;
+}
+
+// Truth: an outline lies on the surface of its obstacle.
+TEST(Model, obstacles_have_their_outlines) {
+  const Workplace place;
+  const std::string at = "at = [1, 2, 3]\n", axis = "axis = [1, 2, 2]\n";
+  place.write("scene.toml", "[[body]]\nname = \"b\"\nmass = 1\ncom = [0, 0, 0]\ninertia = [1, 1, 1]\n[time]\nend = 1\nstep = 0.1\n" +
+                                ("[[obstacle]]\nkind = \"plane\"\nname = \"plane\"\n" + at + axis) +
+                                "[[obstacle]]\nkind = \"sphere\"\nname = \"sphere\"\nradius = 0.5\non = \"b\"\n" + at +
+                                "[[obstacle]]\nkind = \"cylinder\"\nname = \"cylinder\"\nradius = 0.5\nlength = 3\n" + at + axis +
+                                "[[obstacle]]\nkind = \"cylinder\"\nname = \"bore\"\nradius = 0.5\ninside = true\n" + at + axis +
+                                "[[obstacle]]\nkind = \"capsule\"\nname = \"capsule\"\nradius = 0.5\nlength = 3\n" + at + axis +
+                                "[[obstacle]]\nkind = \"torus\"\nname = \"torus\"\nradius = 0.5\ntube = 0.2\n" + at + axis +
+                                "[[obstacle]]\nkind = \"box\"\nname = \"box\"\nsize = [1, 2, 3]\nx = [0, 1, 0]\n" + at + axis);
+  const Scene scene = Scene::load(place / "scene.toml");
+  const SceneItems found = scene_items(scene, nullptr);
+  int outlines = 0;
+  for (const Entry& e : scene.entries("obstacle")) {
+    const Obstacle obstacle = obstacle_kinds().at(e.kind, "").make(e);
+    const auto item = std::ranges::find(found.items, e.name, &SceneItem::name);
+    ASSERT_NE(item, found.items.end()) << e.name;
+    EXPECT_EQ(item->glyph, Glyph::outline);
+    EXPECT_GE(item->lines.size(), 3u) << e.name;
+    for (const auto& line : item->lines)
+      for (const Vec3& x : line) EXPECT_NEAR(obstacle.shape.at(obstacle.axes.transpose() * (x - obstacle.at)), 0, 1e-12) << e.name;
+    ++outlines;
+  }
+  EXPECT_EQ(outlines, 7);
+  const Ran ran = place.run("hilo-post model scene.toml -o model.png");
+  EXPECT_EQ(ran.exit, 0) << ran.err;
 }
 
 TEST(Model, an_ellipsoid_has_the_inertia_of_its_body) {

@@ -23,6 +23,8 @@ struct PointLaw {
   double slow = 0;      // speed below which no larger share is lost [m/s]
   bool fixed = false;   // tangents without the change of mu p
   double potential(double gap) const;
+  /// Of a ball of relative radius R on a ball, plane or bowl: 4/3 E* sqrt(R), and along the surface the slope at a depth of R/1000.
+  void take_hertz(double E, double R) { hertz = 4. / 3 * E * std::sqrt(R), kt = (2 * 0.7 / 1.7) * 2 * E * R * std::sqrt(1e-3); }
   /// How far the bristle bends at most, mu p/kt [m].
   template <class T>
   T limit(const T& p) const {

@@ -2,6 +2,8 @@
 // Two spheres as meshes that do not match, in load steps, against Hertz (Johnson, Contact Mechanics, 1985, section 4.2).
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -96,6 +98,64 @@ TEST(Surfaces, PressureOfHertzWhereStrainIsSmall) {
   EXPECT_GT(exact, 20 * p0);
   EXPECT_NEAR(sum, exact, 0.03 * exact);
   EXPECT_NEAR(sum_of_pressures, exact, 0.03 * exact);
+}
+
+// NAFEMS R0094, problem 1: 35 kN a millimetre on a cylinder of steel of 50 mm, on aluminium.  Truth: Hertz, p0 3585 MPa and half width
+// 6.21 mm.  The strain is 0.03 there: pressure and place are of the surface as it is.
+TEST(Surfaces, CylinderOnABlock) {
+  constexpr double thick = 1e-3, E = 1 / ((1 - 0.09) / 2.1e11 + (1 - 0.09) / 7e10), a = 6.21e-3, p0 = 3.585e9;
+  constexpr int n = 24;
+  BlockOptions o[2];
+  const std::vector<double> x[2] = {graded(a / n, n + 3, 1.3, 0.1), graded(1.1 * a / n, n + 2, 1.3, 0.033)},
+                            z[2] = {graded(a / n, 3, 1.3, 0.1), graded(a / n, 3, 1.3, R)};
+  for (int s = 0; s < 2; ++s) {
+    o[s].regions = {s == 0 ? "A" : "B"};
+    o[s].n[0] = static_cast<int>(x[s].size()) - 1, o[s].n[1] = 1, o[s].n[2] = static_cast<int>(z[s].size()) - 1;
+    const auto at = [](const std::vector<double>& list, double share) {
+      return list[static_cast<size_t>(std::lround(share * static_cast<double>(list.size() - 1)))];
+    };
+    o[s].map = [&x, &z, at, s](const Vec3& p) {
+      const double across = at(x[s], p[0]), low = s == 0 ? 0 : R - std::sqrt(R * R - across * across);
+      return Vec3(across, thick * p[1], s == 0 ? -at(z[0], 1 - p[2]) : low + (1 - low / R) * at(z[1], p[2]));
+    };
+  }
+  const Mesh block = block_mesh(o[0]);
+  Mesh mesh = together(block, block_mesh(o[1]));
+  const auto is_inside = [](const Vec3& X) { return X[2] > -0.1 + 1e-9 && X[2] < R - 1e-9; };
+  add_node_set(mesh, "x", [&](const Vec3& X) { return X[0] < 1e-12 && is_inside(X); });
+  add_node_set(mesh, "y", is_inside);
+  Case c("contact");
+  c.use(mesh);
+  const Results r = c.solved("", "run.h5", "cylinder");
+  const double F = 2 * r.history("contact/c").bottomRows(1)(0, 2) / thick;
+  EXPECT_NEAR(F, 3.5e7, 0.01 * 3.5e7) << "the approach is chosen for it";
+  EXPECT_NEAR(std::sqrt(F * E / (std::numbers::pi * R)), p0, 0.005 * p0);
+  const auto u = r.table("/field/" + r.steps().back() + "/displacement");
+  const auto pressure = r.table("/field/" + r.steps().back() + "/contact_pressure");
+  double fitted = 0, width = 0;
+  for (int s = 0; s < 2; ++s) {
+    std::vector<std::array<double, 3>> at;  // X, x, and pressure of the reference area
+    for (std::int64_t i = 0; i < mesh.n_nodes(); ++i) {
+      const Vec3& X = mesh.X[i];
+      const double surface = s == 0 ? 0 : R - std::sqrt(std::max(0., R * R - X[0] * X[0]));
+      if ((i < block.n_nodes()) == (s == 0) && X[1] < 1e-9 && X[0] < 2 * a && std::abs(X[2] - surface) < 1e-9)
+        at.push_back({X[0], X[0] + u(i, 0), pressure(i, 0)});
+    }
+    std::ranges::sort(at);
+    ASSERT_GT(at.size(), size_t(n));
+    double both = 0, square = 0, sum = 0, moment = 0;
+    for (size_t k = 0; k + 1 < at.size(); ++k) {
+      const double from = at[k][1], to = at[k + 1][1], now = (at[k + 1][0] - at[k][0]) / (to - from),
+                   p = now * (at[k][2] + at[k + 1][2]) / 2, middle = (from + to) / 2;
+      sum += p * (to - from), moment += p * (to - from) * middle;
+      if (middle > 0.7 * a) continue;
+      const double e = std::sqrt(1 - middle * middle / (a * a));
+      both += p * e, square += e * e;
+    }
+    fitted += both / square / 2, width += moment / sum * 3 * std::numbers::pi / 4 / 2;
+  }
+  EXPECT_NEAR(fitted, p0, 0.03 * p0);
+  EXPECT_NEAR(width, a, 0.03 * a);
 }
 
 }  // namespace

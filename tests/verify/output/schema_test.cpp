@@ -149,6 +149,10 @@ on = "zmax"
   std::string many = "[time]\nend = 0.002\nstep = 0.001\n";
   for (int k = 0; k < 300; ++k)
     many += "[[body]]\nname = \"b" + std::to_string(k) + "\"\nmass = 1\ncom = [" + std::to_string(k) + ", 0, 0]\ninertia = [1, 1, 1]\n";
+  many += "[[contact]]\nname = \"heap\"\na = \"all\"\nb = \"all\"\nstiffness = 1\n";
+  for (int k = 0; k < 50; ++k)
+    many += "[[obstacle]]\nkind = \"sphere\"\nname = \"s" + std::to_string(k) + "\"\non = \"b" + std::to_string(k) +
+            "\"\nradius = 0.1\nat = [" + std::to_string(k) + ", 0, 0]\n";
   std::ofstream(c / "many.toml") << many;
   ASSERT_EQ(c.run("hilo-solve --quiet many.toml -o many.h5").exit, 0);
   const Store table = Store::open(c / "many.h5");

@@ -94,6 +94,24 @@ TEST(Ties, CurvedOnesKeepEnergyAndMomenta) {
   }
 }
 
+// Truth: the run that names the rigid side as a; forces are those on the other side.
+TEST(Ties, OfARigidBAreThoseOfARigidA) {
+  Case c("ties");
+  c.use(bent(Shape::hex8, Shape::hex8, 2), {Fidelity::rigid, Fidelity::nonlinear});
+  const Results r = c.solved("", "run.h5", "flight");
+  std::string text = text_of(c.source("flight.toml"));
+  text.replace(text.find("\"Azmax\""), 7, "\"x\""), text.replace(text.find("\"Bzmin\""), 7, "\"Azmax\""),
+      text.replace(text.find("\"x\""), 3, "\"Bzmin\"");
+  c.write("turned.toml", text);
+  const Ran ran = c.run("hilo-solve --quiet turned.toml tags.h5 -o turned.h5");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Results turned(c / "turned.h5");
+  const auto e = r.history("energy"), f = r.history("tie/weld");
+  EXPECT_GT(f.cwiseAbs().maxCoeff(), 1);
+  EXPECT_LT((turned.history("energy") - e).cwiseAbs().maxCoeff(), 1e-12 * e.col(0).maxCoeff());
+  EXPECT_LT((turned.history("tie/weld") + f).cwiseAbs().maxCoeff(), 1e-9 * f.cwiseAbs().maxCoeff());
+}
+
 // Truth: the mean of the gap over facets that move stays zero, so that surfaces stay together to their sag.
 TEST(Ties, EveryIntegratorHoldsThem) {
   for (const std::string method : {"mid-point", "bdf2", "generalized-alpha", "bathe", "U0", "V0", "radau", "gauss"}) {
@@ -197,7 +215,7 @@ TEST(Ties, ThatCannotBeAreRefused) {
   using enum Fidelity;
   const Mesh good = bent(Shape::hex8, Shape::hex8);
   expect_refused(good, {linear, nonlinear}, "Bzmin", "region \"A\" is linear");
-  expect_refused(good, {nonlinear, rigid}, "Bzmin", "region \"B\" is rigid");
+  expect_refused(good, {rigid, rigid}, "Bzmin", "region \"B\" is rigid, and so is the other side");
   expect_refused(good, {}, "Azmax", "a surface is not tied to itself");
   expect_refused(good, {}, "Azmin", "faces one of");
   expect_refused(good, {}, "A", "both surfaces have node");
