@@ -166,6 +166,20 @@ void read_elements(Lines& lines, bool is_2, size_t bytes, Read& out) {
   }
 }
 
+/// Several named groups of surfaces may stand for several materials, of which a section has one.
+void refuse_materials(Lines& lines, size_t bytes) {
+  lines.need("the number of names");
+  const std::int64_t n = count(lines, "names", bytes);
+  int surfaces = 0;
+  for (std::int64_t i = 0; i < n; ++i) {
+    lines.need("a name");
+    surfaces += lines.get<int>("the dimension of a group") == 2;
+  }
+  if (surfaces > 1)
+    lines.fail(fmt::format("{} groups of surfaces: a section has one material", surfaces),
+               "one group; for several materials kind = \"matrix\" takes the 6 x 6 numbers");
+}
+
 Read read(Lines& lines, size_t bytes) {
   Read out;
   bool known = false, is_2 = false;
@@ -178,6 +192,8 @@ Read read(Lines& lines, size_t bytes) {
       if (version != 2.2 && version != 4.1) lines.fail(fmt::format("version {} of .msh", version), how_to_write);
       if (lines.get<int>("0, for text") != 0) lines.fail("a binary file", how_to_write);
       known = true, is_2 = version == 2.2;
+    } else if (word == "$PhysicalNames") {
+      refuse_materials(lines, bytes);
     } else if (word == "$Nodes") {
       read_nodes(lines, is_2, bytes, out);
     } else if (word == "$Elements") {

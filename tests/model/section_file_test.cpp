@@ -61,6 +61,8 @@ TEST(SectionFile, RefusesWhatIsNoFaceWithItsLine) {
     for (const char* part : parts) EXPECT_NE(got.find(part), std::string::npos) << got << "\nhas no " << part;
   };
   said("", {"f.msh:1:1: an empty file"});
+  said("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 3 \"edge\"\n2 1 \"steel\"\n2 2 \"rubber\"\n$EndPhysicalNames\n",
+       {"f.msh:8:", "2 groups of surfaces: a section has one material", "kind = \"matrix\""});
   said("*NODE\n1, 0, 0\n", {"f.msh:1:1: this is no mesh of gmsh", "Mesh.Binary = 0"});
   said("$MeshFormat\n4 0 8\n", {"f.msh:2:2: version 4 of .msh"});
   said("$MeshFormat\n2.2 1 8\n", {"f.msh:2", "binary"});
