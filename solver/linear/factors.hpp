@@ -29,8 +29,9 @@ class Factors {
 /// Solves that take as long as `flops` of dense factorisation: a solve reads its entries once at memory speed, eight flops each.
 inline double factor_cost(double flops, double entries) { return 1 + flops / (16 * (entries + 1)); }
 
-/// LU that keeps its pivots while they serve [davis-2010]; for some thousand unknowns, of bodies and joints alone some ten thousand.
-std::unique_ptr<Factors> make_klu();
+/// LU that keeps its pivots while they serve [davis-2010]; for some thousand unknowns, of bodies and joints alone (`of_bodies`) some ten
+/// thousand.
+std::unique_ptr<Factors> make_klu(bool of_bodies = false);
 /// Unsymmetric multifrontal LU [davis-2004].
 std::unique_ptr<Factors> make_umfpack();
 /// Cholesky factors of the flexible blocks [chen-2008] and the Schur complement of the others, of the matrix's symmetric part.

@@ -60,7 +60,7 @@ class LightSolver final : public SerialKktSolver {
                                                                 : "umfpack";
     is_klu_ = kind == "klu";
     may_be_net_ = is_klu_ && kind_ == "light" && n_dense == A_.n() && A_.n() >= net_from && A_.n() < rigid_klu_below;
-    factors_ = is_klu_ ? make_klu() : kind == "umfpack" ? make_umfpack() : make_cholesky(is_dense_);
+    factors_ = is_klu_ ? make_klu(n_dense == A_.n()) : kind == "umfpack" ? make_umfpack() : make_cholesky(is_dense_);
     is_definite_ = kind == "cholesky";
     aside_.reset(), rest_ = 0;
     factored_ = ready_ = false;

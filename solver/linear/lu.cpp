@@ -60,7 +60,7 @@ class KeptEntries {
 
 class Klu final : public Factors, KeptEntries {
  public:
-  Klu() {
+  explicit Klu(bool of_bodies) : of_bodies_(of_bodies) {
     klu_defaults(&common_);
     common_.btf = 0;  // the saddle point is one block
     common_.scale = 2;
@@ -95,8 +95,9 @@ class Klu final : public Factors, KeptEntries {
     if (numeric_) klu_free_numeric(&numeric_, &common_);
     if (symbolic_) klu_free_symbolic(&symbolic_, &common_);
   }
-  /// By AMD where every row has its diagonal, as of springs and contacts alone: half the fill and less of that by COLAMD.
+  /// By AMD where every row of bodies has its diagonal, as of springs and contacts alone: half the fill and less of that by COLAMD.
   std::vector<int> least_fill() const {
+    if (!of_bodies_) return least_fill_by_columns();
     for (int i = 0; i < n_; ++i) {
       const auto first = column_.begin() + start_[i], last = column_.begin() + start_[i + 1];
       const auto at = std::lower_bound(first, last, i);
@@ -120,6 +121,7 @@ class Klu final : public Factors, KeptEntries {
     order.resize(n_);
     return order;
   }
+  const bool of_bodies_;  // all unknowns are of bodies and joints
   klu_common common_{};
   klu_symbolic* symbolic_ = nullptr;
   klu_numeric* numeric_ = nullptr;
@@ -165,7 +167,7 @@ class Umfpack final : public Factors, KeptEntries {
 
 }  // namespace
 
-std::unique_ptr<Factors> make_klu() { return std::make_unique<Klu>(); }
+std::unique_ptr<Factors> make_klu(bool of_bodies) { return std::make_unique<Klu>(of_bodies); }
 std::unique_ptr<Factors> make_umfpack() { return std::make_unique<Umfpack>(); }
 
 }  // namespace hilo

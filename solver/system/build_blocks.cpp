@@ -144,7 +144,8 @@ void Builder::make_blocks() {
   drop_spinning_torques();
 }
 
-/// A torque about the line on which all nodes of a body lie would turn it for ever, where nothing but loads and what looks at it names the body.
+/// A torque about the line on which all nodes of a body lie would turn it for ever, where nothing but loads and what looks at it names the
+/// body.
 void Builder::drop_spinning_torques() {
   auto& loads = out_->part<Loads>().list;
   const auto spins = [&](const Load& l) { return l.kind == Load::Kind::body_torque && !out_->bodies[l.body].line.isZero(0); };

@@ -244,8 +244,8 @@ TEST_F(BeamStatics, ALoadThatVariesBendsAsItsTriangle) {
   }
 }
 
-// A load across the sections that turns with them and falls from 1 to 0.4, until the tip has turned by about half a turn.  Along the deformed
-// axis N' = k V, V' = -k N - p, M' = -V with k = M/EI, from N = V = M = 0 at the tip on: integrated here with fine steps.
+// A load across the sections that turns with them and falls from 1 to 0.4, until the tip has turned by about half a turn.  Along the
+// deformed axis N' = k V, V' = -k N - p, M' = -V with k = M/EI, from N = V = M = 0 at the tip on: integrated here with fine steps.
 TEST_F(BeamStatics, ALoadThatTurnsWithTheSectionsRollsTheBeam) {
   const double L = 1, EI = 10, p = 470;
   const auto load = [&](double s) { return p * (1 - 0.6 * s / L); };

@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "import/data_line.hpp"
+#include "import/gmsh/element_types.hpp"
 #include "import/gmsh/mesh.hpp"
 
 namespace hilo {

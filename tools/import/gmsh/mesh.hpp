@@ -41,13 +41,6 @@ struct GmshMesh {
   std::vector<std::string> notes;
 };
 
-/// A type of element by its number in gmsh; null for one that is not known here.
-struct GmshType {
-  int type, dimension, n_nodes;
-  const char* name;
-};
-const GmshType* gmsh_type(int type);
-
 /// The entity of least dimension whose elements have the node, for each node.
 std::vector<GmshMesh::Key> entity_of_nodes(const GmshMesh& mesh);
 

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "import/gmsh/element_types.hpp"
+
+#include <string>
+
+namespace hilo {
+
+const GmshKind* gmsh_kind(int type) {
+  static const std::vector<int> hex20{0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15};
+  static const std::vector<int> wedge15{0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11};
+  static const std::vector<GmshKind> kinds = {
+      {1, Shape::bar2, {0, 1}},
+      {8, Shape::bar2, {0, 1}, "line3"},
+      {2, tri3, {0, 1, 2}},
+      {3, quad4, {0, 1, 2, 3}},
+      {9, tri6, {0, 1, 2, 3, 4, 5}},
+      {16, quad8, {0, 1, 2, 3, 4, 5, 6, 7}},
+      {10, quad8, {0, 1, 2, 3, 4, 5, 6, 7}, "quad9"},
+      {4, Shape::tet4, {0, 1, 2, 3}},
+      {5, Shape::hex8, {0, 1, 2, 3, 4, 5, 6, 7}},
+      {6, Shape::wedge6, {0, 1, 2, 3, 4, 5}},
+      {11, Shape::tet10, {0, 1, 2, 3, 4, 5, 6, 7, 9, 8}},
+      {17, Shape::hex20r, hex20},
+      {12, Shape::hex20r, hex20, "hex27"},
+      {18, Shape::wedge15, wedge15},
+      {13, Shape::wedge15, wedge15, "wedge18"},
+  };
+  for (const auto& k : kinds)
+    if (k.type == type) return &k;
+  return nullptr;
+}
+
+size_t face_corners(int type) { return type == 2 || type == 9 ? 3 : type == 3 || type == 16 || type == 10 ? 4 : 0; }
+
+const GmshType* gmsh_type(int type) {
+  static const GmshType types[] = {
+      {1, 1, 2, "Line 2"},
+      {2, 2, 3, "Triangle 3"},
+      {3, 2, 4, "Quadrilateral 4"},
+      {4, 3, 4, "Tetrahedron 4"},
+      {5, 3, 8, "Hexahedron 8"},
+      {6, 3, 6, "Prism 6"},
+      {7, 3, 5, "Pyramid 5"},
+      {8, 1, 3, "Line 3"},
+      {9, 2, 6, "Triangle 6"},
+      {10, 2, 9, "Quadrilateral 9"},
+      {11, 3, 10, "Tetrahedron 10"},
+      {12, 3, 27, "Hexahedron 27"},
+      {13, 3, 18, "Prism 18"},
+      {14, 3, 14, "Pyramid 14"},
+      {15, 0, 1, "Point"},
+      {16, 2, 8, "Quadrilateral 8"},
+      {17, 3, 20, "Hexahedron 20"},
+      {18, 3, 15, "Prism 15"},
+      {19, 3, 13, "Pyramid 13"},
+      {20, 2, 9, "Triangle 9"},
+      {21, 2, 10, "Triangle 10"},
+      {22, 2, 12, "Triangle 12"},
+      {23, 2, 15, "Triangle 15"},
+      {24, 2, 15, "Triangle 15I"},
+      {25, 2, 21, "Triangle 21"},
+      {26, 1, 4, "Line 4"},
+      {27, 1, 5, "Line 5"},
+      {28, 1, 6, "Line 6"},
+      {29, 3, 20, "Tetrahedron 20"},
+      {30, 3, 35, "Tetrahedron 35"},
+      {31, 3, 56, "Tetrahedron 56"},
+      {36, 2, 16, "Quadrilateral 16"},
+      {37, 2, 25, "Quadrilateral 25"},
+      {92, 3, 64, "Hexahedron 64"},
+      {93, 3, 125, "Hexahedron 125"},
+  };
+  for (const auto& t : types)
+    if (t.type == type) return &t;
+  return nullptr;
+}
+
+}  // namespace hilo
