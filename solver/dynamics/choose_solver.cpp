@@ -5,8 +5,7 @@
 
 #include <algorithm>
 
-#include "base/shell_shape.hpp"
-#include "system/solids.hpp"
+#include "system/mostly_shells.hpp"
 
 namespace hilo {
 namespace {
@@ -32,19 +31,11 @@ Registry<SolverKind>& solver_kinds() {
   return kinds;
 }
 
-/// Whether most cells are shells: the factors of a surface stay thin, and incomplete factors and multigrid hardly see that it bends.
-static bool is_surface(const System& system) {
-  double shells = 0, others = 0;
-  for (const auto& part : system.parts())
-    if (const auto* solids = dynamic_cast<const Solids*>(part.get()))
-      for (const SolidBatch& b : solids->batches) (b.shape == shell8 ? shells : others) += static_cast<double>(b.cells.size());
-  return system.comm->sum(shells) > system.comm->sum(others);
-}
-
 std::int64_t most_factored(const System& system) {
+  // factors of a surface stay thin; incomplete factors and multigrid hardly see that it bends
   constexpr std::int64_t of_cells = 300000, of_surfaces_and_bodies = 3000000;
   const BlockMap& map = system.layout.map;
-  const bool stays_thin = 2 * map.first_dense < map.n_global || is_surface(system);
+  const bool stays_thin = 2 * map.first_dense < map.n_global || mostly_shells(system);
   return system.comm->size == 1 && stays_thin ? of_surfaces_and_bodies : of_cells;
 }
 
@@ -68,7 +59,7 @@ std::unique_ptr<KktSolver> choose_solver(const Scene& scene, const System& syste
     const auto held = system.comm->sum(std::count_if(system.node_block.begin(), system.node_block.end(), [](int k) { return k >= 0; }));
     const bool is_far = ranks >= 2 && system.traits().reaches;
     if (is_far) kind = "direct";
-    if (ranks >= 2 && !is_far && flexible > 3000 && (flexible / ranks <= 100000 || is_surface(system)) && unknowns - flexible <= 3000 &&
+    if (ranks >= 2 && !is_far && flexible > 3000 && (flexible / ranks <= 100000 || mostly_shells(system)) && unknowns - flexible <= 3000 &&
         2 * held < flexible)
       kind = "bddc";
     why = fmt::format("{} unknowns on {} rank{}", unknowns, system.comm->size, system.comm->size == 1 ? "" : "s");

@@ -118,6 +118,7 @@ std::unique_ptr<System> Builder::build() {
   add_loads();
   add_stations();
   make_blocks();
+  drop_spinning_torques();
   for (const OutsideKind& kind : outside_kinds()) kind.make(scene_, *out_);
   if (!mesh_) {  // size of a scene of bodies: what its points span
     Eigen::AlignedBox3d box;

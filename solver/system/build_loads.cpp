@@ -4,6 +4,8 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <set>
+#include <string_view>
 
 #include "physics/axes.hpp"
 #include "system/beams.hpp"
@@ -151,6 +153,28 @@ void Builder::add_loads() {
         .at(e.kind, e.place.text())
         .read();
     out_->part<Loads>().list.push_back(std::move(load));
+  }
+}
+
+/// A torque about the line on which all nodes of a body lie would turn it for ever, where nothing but loads and what looks at it names the
+/// body.
+void Builder::drop_spinning_torques() {
+  auto& loads = out_->part<Loads>().list;
+  const auto spins = [&](const Load& l) { return l.kind == Load::Kind::body_torque && !out_->bodies[l.body].line.isZero(0); };
+  if (std::ranges::none_of(loads, spins)) return;
+  const std::set<std::string_view> idle{"body", "load", "probe", "sensor", "quantity"};
+  std::set<std::string_view> named;
+  for (const KindSchema& kind : scene_schema())
+    if (!idle.contains(kind.section))
+      for (const Entry& e : scene_.entries(kind.section))
+        for (const auto& [key, value] : e.values) named.insert(value.texts.begin(), value.texts.end());
+  for (Load& l : loads) {
+    if (!spins(l) || named.contains(out_->bodies[l.body].name)) continue;
+    l.line = out_->bodies[l.body].line;
+    if (const double along = std::abs(l.value.dot(l.line)); along > 1e-3 * l.value.norm())
+      warn(scene_.path, fmt::format("load \"{}\": {:.3g} N m of its torque is about the line through the nodes of \"{}\", which does not "
+                                    "resist it: left out",
+                                    l.name, along, out_->bodies[l.body].name));
   }
 }
 

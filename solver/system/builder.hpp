@@ -122,6 +122,7 @@ class Builder {
   void set_initial_velocities();
   // build_loads.cpp
   void add_loads();
+  void drop_spinning_torques();
   void add_line_load(const Entry& e, const Load& load);
   // build_mass_loads.cpp
   /// Forces of the mass of the cells that an entry names, at accelerations that are linear in the reference position; by node.
@@ -148,7 +149,6 @@ class Builder {
   /// Regions that have nodes of one block, to `shared`; `region`: of each local node, or -1.  Collective.
   void join_by_blocks(const std::vector<int>& region, Pairs& shared) const;
   void hold_blocks(const std::vector<int>& body_of);
-  void drop_spinning_torques();
   // build_joints.cpp
   void add_joints();
   void add_joint_coordinates();  // joint_coordinates.cpp
