@@ -161,7 +161,7 @@ std::vector<FoundMode> find_modes(const System& system, KktSolver& solver, const
     clean.push_back(std::move(mu));
   }
   for (size_t j = 0; j < out.size(); ++j) out[j].mu = std::move(clean[j]);
-  if (damped) add_damping(out, at, pencil.shift, std::min(out.size(), static_cast<size_t>(wanted)));
+  if (damped && !out.empty()) add_damping(out, at, pencil.shift, std::min(out.size(), static_cast<size_t>(wanted)));
   return out;
 }
 

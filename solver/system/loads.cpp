@@ -45,7 +45,7 @@ void Loads::on_nodes(const Load& load, double factor, Pass& p) const {
   }
 }
 
-Vec3 Loads::on_body(const Load& load, double factor, const Stage& s) {
+Vec3 Loads::acting(const Load& load, double factor, const Stage& s) {
   const Mat3& R = s.left->R[load.body];
   const Vec3 f = factor * (load.follower ? Vec3(R * load.value) : load.value);
   if (load.line.isZero(0)) return f;
@@ -58,7 +58,7 @@ void Loads::on_body(const Load& load, double factor, Pass& p) const {
   const Stage& s = p.s;
   const int b = load.body;
   const bool force = load.kind == Load::Kind::body_force;
-  const Vec3 f = on_body(load, factor, s);
+  const Vec3 f = acting(load, factor, s);
   Mat3 K = Mat3::Zero();
   if (force) {
     p.body[b].head<3>() -= f;
@@ -136,7 +136,7 @@ void Loads::add_work(const Moment& m, Work& sum) const {
       }
     } else if (points_.counts(load.body)) {
       const int b = load.body;
-      const Vec3 f = on_body(load, factor, s);
+      const Vec3 f = acting(load, factor, s);
       if (load.kind == Load::Kind::body_force) {
         sum.external += f.dot(s.end->c[b] - s.from().c[b] + (s.end->R[b] - s.from().R[b]) * load.arm);
       } else {  // R1 - R0 = skew(w) (R0 + R1)/2 defines the rotation increment w

@@ -40,7 +40,7 @@ class Loads final : public Contribution, public Equations, public Loading, publi
 
  private:
   /// Force or torque on a body at the time of a stage.
-  static Vec3 on_body(const Load& load, double factor, const Stage& s);
+  static Vec3 acting(const Load& load, double factor, const Stage& s);
   void on_nodes(const Load& load, double factor, Pass& p) const;
   void on_body(const Load& load, double factor, Pass& p) const;
   void on_facets(const Load& load, double factor, Pass& p) const;
