@@ -296,11 +296,11 @@ class GmshReading {
     return out;
   }
 
+  /// Of a shell the face of its normal, which becomes one of its two (thicken).
   void surface_groups() {
     SetNames names(in_);
     std::vector<std::vector<std::int64_t>> faces;
     std::vector<size_t> first{0};
-    const auto is_shell = [&](const Key& key) { return of_surface_.contains(key); };
     auto groups = groups_[2];
     std::erase_if(groups, [&](const auto& group) {  // these are regions
       return o_.thickness.contains("") || o_.thickness.contains(group_name(2, group.first));
@@ -308,7 +308,6 @@ class GmshReading {
     for (const auto& [tag, keys] : groups) {
       for (const auto& key : keys)
         for (const auto& b : from_.entities.at(key).blocks) {
-          if (is_shell(key)) continue;
           const size_t corners = face_corners(b.type), per = b.tags.empty() ? 0 : b.nodes.size() / b.tags.size();
           for (size_t e = 0; corners && e < b.tags.size(); ++e) {
             faces.emplace_back();
@@ -327,9 +326,6 @@ class GmshReading {
       for (size_t i = first[g]; i < first[g + 1]; ++i)
         facets.insert(facets.end(), found[i].begin(), found[i].end()), missing += found[i].empty();
       ++g;
-      for (const auto& key : keys)
-        if (is_shell(key))
-          for (const auto c : of_surface_.at(key)) facets.push_back({c, 0});  // the face of its normal (thicken)
       if (facets.empty()) {
         names.nodes(name, group_nodes(keys));
         in_.notes.push_back(fmt::format("surface group \"{}\" lies on no cell: a node set", name));
