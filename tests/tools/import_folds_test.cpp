@@ -334,6 +334,17 @@ TEST_F(ImportFolds, AThrownTeeKeepsItsEnergyAndMomenta) {
 }
 
 // A block by its name, on one rank and on two: the force on it is what holds the plates.
+// Two legs of one region that another region joins by its folds.
+TEST_F(ImportFolds, WhatBlocksJoinIsNoLoosePiece) {
+  Frame f;
+  f.strip(0, 0, 0, 1, "LEGS"), f.strip(0, 1, 1, 1, "ROOF"), f.strip(1, 1, 1, 0, "LEGS");
+  place.write("deck.inp", f.deck("*NSET, NSET=ROOT\n" + f.nodes_at(0, 0), "ROOT,1,6\n", f.load(1, 0, 3, 1.0)));
+  imported("deck.inp", "--thicken --scene-out scene.toml");
+  const auto ran = place.run("hilo-tag out.h5 --linear '*' -o tags.h5");
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_EQ(ran.err.find("pieces"), std::string::npos) << ran.err;
+}
+
 TEST_F(ImportFolds, ABlockHasAName) {
   place.write("tee.geo", tee);
   imported("tee.geo", "--thickness 0.05");
