@@ -85,6 +85,16 @@ TEST_F(ImportShell, GroupsOfSurfacesHaveTheirOwnThicknessBesideSolids) {
   EXPECT_NE(twice.err.find("is in two groups that become shells, \"foot\" the second (name one of them: --thickness NAME=T)"),
             std::string::npos)
       << twice.err;
+  // msh 2 lists an element once for each of its groups
+  const std::string nodes = "$Nodes\n6\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n$EndNodes\n",
+                    names = "$PhysicalNames\n2\n2 1 \"plate\"\n2 2 \"foot\"\n$EndPhysicalNames\n",
+                    cells = "$Elements\n3\n1 3 2 1 1 1 2 5 4\n2 3 2 1 2 2 3 6 5\n3 3 2 2 1 1 2 5 4\n$EndElements\n";
+  place.write("two.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + names + nodes + cells);
+  const Mesh two = imported("two.msh", "--thickness plate=0.1");
+  EXPECT_EQ(two.n_cells(), 2);
+  EXPECT_NEAR(test::vector_area(two, two.facet_sets.at("foot")).z(), 1, 1e-12);
+  refused("two.msh -o a.h5 --thickness plate=0.1 --thickness foot=0.2", 1,
+          "--thickness: surface 1 is in two groups that become shells, \"foot\" the second (name one of them: --thickness NAME=T)");
   // a mistake of a mesher: an element turned over onto its neighbour
   place.write("over.inp",
               "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,.4,0,0\n6,.4,1,0\n*ELEMENT, TYPE=S4, ELSET=P\n1,1,2,3,4\n"

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -202,15 +204,18 @@ class GmshReading {
     const auto add = [&](const std::string& name, const std::vector<Key>& keys, double thickness) {
       CellGroup g{name, {}};
       for (const Key& key : keys) {
-        if (of_surface_.contains(key))
+        bool is_new = of_surface_.insert(key).second;
+        const auto first = static_cast<std::ptrdiff_t>(g.cells.size());
+        if (is_new) add_cells(key, g.cells);
+        for (const auto c : std::span(g.cells).subspan(static_cast<size_t>(first))) {  // msh 2 has an entity for each group
+          const auto [at, fresh] = in_.thin.try_emplace(c);
+          is_new = is_new && fresh, at->second.thickness = thickness;
+        }
+        if (!is_new)
           throw Error("",
                       fmt::format("--thickness: surface {} is in two groups that become shells, \"{}\" the second", std::get<1>(key), name),
                       "name one of them: --thickness NAME=T", Exit::usage);
-        auto& cells = of_surface_[key];
-        add_cells(key, cells);
-        g.cells.insert(g.cells.end(), cells.begin(), cells.end());
       }
-      for (const auto c : g.cells) in_.thin[c].thickness = thickness;
       if (!g.cells.empty()) regions_.push_back(std::move(g));
     };
     std::vector<std::string> names;
@@ -374,7 +379,8 @@ class GmshReading {
   std::map<int, std::map<int, std::vector<Key>>> groups_;  // by dimension and tag
   std::vector<std::int64_t> row_;                          // node number of gmsh -> row of X, or -1
   std::unordered_set<std::int64_t> ids_;
-  std::map<Key, std::vector<std::int64_t>> of_volume_, of_surface_;
+  std::map<Key, std::vector<std::int64_t>> of_volume_;
+  std::set<Key> of_surface_;  // that became shells
   std::vector<CellGroup> regions_;
   std::unordered_set<int> bar_groups_;
   std::set<std::string> reduced_;
