@@ -151,7 +151,7 @@ int main(int argc, char** argv) {
          about({"gmsh " GMSH_API_VERSION})});
     Request r;
     auto& o = r.options;
-    app->add_option("input", r.input, "inp (plain or .gz), bdf, msh, unv, vtk, vtu, mesh; geo, step, brep, iges are meshed")
+    app->add_option("input", r.input, "inp (plain or .gz), bdf, msh, unv, vtk, vtu, mesh, med, exo; geo, step, brep, iges are meshed")
         ->required()
         ->type_name("FILE");
     app->add_option("-o,--output", r.output, "mesh file to write")->required()->type_name("mesh.h5");

@@ -4,10 +4,12 @@
 #define OMPI_SKIP_MPICXX 1
 #include <mpi.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <thread>
 #include <utility>
 
 #include "base/crowd.hpp"
@@ -96,7 +98,10 @@ void Comm::barrier(Where at) const {
   if (size > 1) MPI_Barrier(MPI_COMM_WORLD);
 }
 void Comm::abort(int exit_code) const {
-  if (size > 1) MPI_Abort(MPI_COMM_WORLD, exit_code);
+  if (size > 1) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // Open MPI 5 has lost what was said just before
+    MPI_Abort(MPI_COMM_WORLD, exit_code);
+  }
   std::exit(exit_code);
 }
 void Comm::finish() {

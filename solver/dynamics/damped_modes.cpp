@@ -3,10 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+
+#include "linear/eigen_pairs.hpp"
 
 namespace hilo {
 namespace {
@@ -51,13 +52,13 @@ Poles poles_of(const Matrix& K, const Matrix& C) {
   Matrix A = Matrix::Zero(2 * n, 2 * n);
   A.topRightCorner(n, n).setIdentity();
   A.bottomLeftCorner(n, n) = -K / (unit * unit), A.bottomRightCorner(n, n) = -C / unit;
-  const Eigen::EigenSolver<Matrix> all(A);
+  const EigenPairs all = eigen_pairs(std::move(A));
   Poles out;
   out.shape.resize(n, 2 * n);
   for (Index i = 0; i < 2 * n; ++i) {
-    const Complex p = unit * all.eigenvalues()[i];
+    const Complex p = unit * all.values[i];
     if (p.imag() < 0) continue;
-    out.shape.col(static_cast<Index>(out.pole.size())) = all.eigenvectors().col(i).head(n).normalized();
+    out.shape.col(static_cast<Index>(out.pole.size())) = all.vectors.col(i).head(n).normalized();
     out.pole.push_back(p);
   }
   out.shape.conservativeResize(Eigen::NoChange, static_cast<Index>(out.pole.size()));

@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
 #include "dynamics/about_state.hpp"
+#include "linear/eigen_pairs.hpp"
 #include "system/uneven.hpp"
 
 namespace hilo {
@@ -150,20 +150,20 @@ std::vector<FoundMode> whirling_modes(const System& system, KktSolver& solver, c
   A.bottomLeftCorner(m, m) = -here.K;
   for (Eigen::Index j = 0; j < m; ++j) A(m + j, j) -= basis[static_cast<size_t>(j)].figures.omega2;
   A.bottomRightCorner(m, m) = -here.C;
-  const Eigen::EigenSolver<Matrix> pairs(A);
+  const EigenPairs pairs = eigen_pairs(std::move(A));
   std::vector<Eigen::Index> order;  // one of each pair; real ones are kept where they grow
-  const auto mu = [&](Eigen::Index i) { return pairs.eigenvalues()[i]; };
-  const double largest = pairs.eigenvalues().cwiseAbs().maxCoeff();
+  const auto mu = [&](Eigen::Index i) { return pairs.values[i]; };
+  const double largest = pairs.values.cwiseAbs().maxCoeff();
   for (Eigen::Index i = 0; i < 2 * m; ++i)
     if (mu(i).imag() > 1e-7 * largest || (std::abs(mu(i).imag()) <= 1e-7 * largest && mu(i).real() > 1e-7 * largest)) order.push_back(i);
   std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return std::abs(mu(a)) < std::abs(mu(b)); });
   if (static_cast<int>(order.size()) > wanted) order.resize(static_cast<size_t>(wanted));
   Eigen::Matrix<double, Eigen::Dynamic, 6> parts(m, 6);
   for (Eigen::Index j = 0; j < m; ++j) parts.row(j) = basis[static_cast<size_t>(j)].figures.part.transpose();
-  const Eigen::MatrixXcd left = pairs.eigenvectors().fullPivLu().inverse().rightCols(m) * parts;
+  const Eigen::MatrixXcd left = pairs.vectors.fullPivLu().inverse().rightCols(m) * parts;
   std::vector<FoundMode> out;
   for (const Eigen::Index i : order) {
-    Eigen::VectorXcd y = pairs.eigenvectors().col(i).head(m);
+    Eigen::VectorXcd y = pairs.vectors.col(i).head(m);
     Eigen::Index most = 0;
     y.cwiseAbs().maxCoeff(&most);
     y *= std::conj(y[most]) / std::abs(y[most]) / y.norm();  // its largest share at its turning point
@@ -183,7 +183,7 @@ std::vector<FoundMode> whirling_modes(const System& system, KktSolver& solver, c
     // with p the parts of the basis, p.(s^2 + s C + K)^-1 p = sum of r/(s - mu) over all poles, and the sum of r mu is p.p
     for (int k = 0; k < 6; ++k)
       f.figures.mass[k] =
-          (swings ? 2 : 1) * (mu(i) * (pairs.eigenvectors().col(i).head(m).transpose() * parts.col(k)).value() * left(i, k)).real();
+          (swings ? 2 : 1) * (mu(i) * (pairs.vectors.col(i).head(m).transpose() * parts.col(k)).value() * left(i, k)).real();
     out.push_back(std::move(f));
   }
   return out;

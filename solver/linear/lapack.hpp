@@ -2,6 +2,8 @@
 // BLAS and LAPACK: the one place where their Fortran symbols are declared.  Matrices by columns, `stride` apart; triangles are lower ones.
 #pragma once
 
+#include <vector>
+
 #define HILO_BLAS(T, p)                                                                                                               \
   void p##trsv_(const char*, const char*, const char*, const int*, const T*, const int*, T*, const int*);                             \
   void p##gemv_(const char*, const int*, const int*, const T*, const T*, const int*, const T*, const int*, const T*, T*, const int*); \
@@ -21,6 +23,8 @@ void dpotrs_(const char*, const int*, const int*, const double*, const int*, dou
 void dtrtri_(const char*, const char*, const int*, double*, const int*, int*);
 void dsyevr_(const char*, const char*, const char*, const int*, double*, const int*, const double*, const double*, const int*, const int*,
              const double*, int*, double*, double*, const int*, int*, double*, const int*, int*, const int*, int*);
+void dgeev_(const char*, const char*, const int*, double*, const int*, double*, double*, double*, const int*, double*, const int*, double*,
+            const int*, int*);
 }
 #undef HILO_BLAS
 
@@ -93,6 +97,19 @@ inline void solve(int n, int columns, const double* L, double* X) {
 inline void invert_triangle(int n, double* L) {
   int info = 0;
   dtrtri_("L", "N", &n, L, &n, &info);
+}
+
+/// Eigenvalues and, by columns, eigenvectors of A (n x n), which is lost; of a complex pair the real and the imaginary part of one vector
+/// stand in its two columns.  False where the iteration does not end.
+inline bool eigen_pairs(int n, double* A, double* re, double* im, double* V) {
+  const int one = 1, ask = -1;
+  int info = 0;
+  double size = 0, none = 0;
+  dgeev_("N", "V", &n, A, &n, re, im, &none, &one, V, &n, &size, &ask, &info);
+  std::vector<double> room(static_cast<size_t>(size));
+  const int length = static_cast<int>(size);
+  dgeev_("N", "V", &n, A, &n, re, im, &none, &one, V, &n, room.data(), &length, &info);
+  return info == 0;
 }
 
 }  // namespace hilo::lapack

@@ -325,6 +325,87 @@ def write_by_vtk(m, path, binary):
     w.Write()
 
 
+def write_med(m, path):
+    """By meshio, which writes nodes as it is given them: MED looks at a base from within.  A group is a family, of one name."""
+    order = {"tetra": [0, 2, 1, 3], "wedge": [0, 2, 1, 3, 5, 4], "hexahedron": [0, 3, 2, 1, 4, 7, 6, 5], "pyramid": [0, 3, 2, 1, 4]}
+    for t, edges in EDGES.items():
+        at = {frozenset(e): k for k, e in enumerate(edges)}
+        order[QUADRATIC[t]] = order[t] + [corners(t) + at[frozenset((order[t][a], order[t][b]))] for a, b in edges]
+    by, tags, family = collections.defaultdict(list), collections.defaultdict(list), {}
+    for kind, nodes, g in entries_of(m, points=False):
+        by[kind].append([nodes[k] for k in order.get(kind, range(len(nodes)))])
+        tags[kind].append(-g)
+        family[-g] = [f"the group {g}"]
+    at = np.zeros(len(m.X), int)
+    for a, g in m.points:
+        at[a] = g
+    mesh = meshio.Mesh(np.array(m.X), [(k, np.array(n)) for k, n in by.items()], cell_data={"cell_tags": [np.array(t) for t in tags.values()]}, point_data={"point_tags": at, "heat": at * 0.5})
+    mesh.cell_tags, mesh.point_tags = {g: n for g, n in family.items() if g}, {g: [f"the group {g}"] for _, g in m.points}
+    mesh.write(path, file_format="med")
+
+
+def write_exodus(m, path):
+    """As the manual of Exodus II says, NetCDF in its classic form.  Blocks have one kind of element, so regions are renumbered."""
+    from scipy.io import netcdf_file
+    sides = {"hexahedron": [(0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (0, 4, 7, 3), (0, 3, 2, 1), (4, 5, 6, 7)], "tetra": [(0, 1, 3), (1, 2, 3), (0, 3, 2), (0, 2, 1)],
+             "wedge": [(0, 1, 4, 3), (1, 2, 5, 4), (0, 3, 5, 2), (0, 2, 1), (3, 4, 5)], "pyramid": [(0, 1, 4), (1, 2, 4), (2, 3, 4), (0, 4, 3), (0, 3, 2, 1)]}
+    words = {"hexahedron": "HEX", "tetra": "TETRA", "wedge": "WEDGE", "pyramid": "PYRAMID"}
+    m.cells = [(t, c, 1000 * g + list(words).index(t)) for t, c, g in m.cells]
+    f = netcdf_file(path, "w")
+    f.api_version, f.version, f.floating_point_word_size, f.file_size, f.title = np.float32(7), np.float32(7), np.int32(8), np.int32(1), b"random"
+    made = {}
+
+    def array(name, values, **dimensions):
+        for d, n in dimensions.items():
+            if d not in made:
+                f.createDimension(d, n)
+                made[d] = n
+        v = f.createVariable(name, "d" if values.dtype.kind == "f" else "c" if values.dtype.kind == "S" else "i", tuple(dimensions))
+        v[:] = values
+        return v
+
+    def names(name, texts, dimension):
+        array(name, np.array([[bytes([b]) for b in t.encode().ljust(33, b"\0")] for t in texts], "S1"), **{dimension: len(texts), "len_name": 33})
+
+    X = np.array(m.X)
+    f.createDimension("num_dim", 3)
+    array("node_num_map", np.arange(len(X)) * 3 + 5, num_nodes=len(X))  # first in the file, where the library sees no coordinates
+    for k, axis in enumerate("xyz"):
+        array(f"coord{axis}", X[:, k], num_nodes=len(X))
+    blocks = collections.defaultdict(list)
+    for t, c, g in m.cells:
+        blocks[t, g].append(c)
+    f.createDimension("num_elem", sum(map(len, blocks.values())))
+    side_of, number = {}, 0
+    array("eb_prop1", np.array([g for _, g in blocks], int), num_el_blk=len(blocks)).name = b"ID"
+    array("eb_status", np.ones(len(blocks), int), num_el_blk=len(blocks))
+    names("eb_names", [f"the group {g}" for _, g in blocks], "num_el_blk")
+    for b, ((t, g), cells) in enumerate(blocks.items(), 1):
+        n = corners(t)
+        swap = {20: list(range(12)) + list(range(16, 20)) + list(range(12, 16)), 15: list(range(9)) + list(range(12, 15)) + list(range(9, 12))}.get(len(cells[0]), range(len(cells[0])))
+        v = array(f"connect{b}", np.array([[c[k] + 1 for k in swap] for c in cells], int), **{f"num_el_in_blk{b}": len(cells), f"num_nod_per_el{b}": len(cells[0])})
+        v.elem_type = f"{words[t]}{len(cells[0])}".encode()
+        for c in cells:
+            number += 1
+            for k, side in enumerate(sides[t], 1):
+                side_of[frozenset(c[a] for a in side)] = (number, k)
+    sets, nodes = collections.defaultdict(list), collections.defaultdict(list)
+    for face, g in m.faces:
+        sets[g].append(side_of[frozenset(face[:4 if len(face) in (4, 8) else 3])])
+    for n, g in [(a, g) for line, g in m.lines for a in line] + m.points:
+        nodes[g].append(n)
+    for word, groups, dimension in (("ss", sets, "num_side_sets"), ("ns", nodes, "num_node_sets")):
+        array(f"{word}_prop1", np.array(list(groups), int), **{dimension: len(groups)}).name = b"ID"
+        array(f"{word}_status", np.ones(len(groups), int), **{dimension: len(groups)})
+        names(f"{word}_names", [f"the group {g}" for g in groups], dimension)
+    for k, rows in enumerate(sets.values(), 1):
+        array(f"elem_ss{k}", np.array([r[0] for r in rows], int), **{f"num_side_ss{k}": len(rows)})
+        array(f"side_ss{k}", np.array([r[1] for r in rows], int), **{f"num_side_ss{k}": len(rows)})
+    for k, rows in enumerate(nodes.values(), 1):
+        array(f"node_ns{k}", np.array(rows, int) + 1, **{f"num_nod_ns{k}": len(rows)})
+    f.close()
+
+
 def write_deck(m, path):
     """Of decks the scene's own tests say more; here cells alone."""
     cells, tags = block(entries_of(m, False, False, False), m)
@@ -347,6 +428,8 @@ FORMATS = [
     ("msh 4.1", ".msh", write_msh41, ALL, True, plain, LOOSE),
     ("Medit", ".mesh", write_medit, ALL, False, (plain[0], plain[1], lambda g: f"curve_{g}"), LOOSE),
     ("universal", ".unv", write_unv, NO_PYRAMID, False, (lambda g: f"the group {g}",) * 3, ("faces of no group, on no solid", "lines of no group, on no solid")),
+    ("MED", ".med", write_med, ALL, True, (lambda g: f"the group {g}",) * 3, ("faces of no group, on no solid", "lines of no group, on no solid", "fields")),
+    ("Exodus", ".exo", write_exodus, ALL, True, (lambda g: f"the group {g}",) * 3, ()),
     ("VTK 4.2", ".vtk", lambda m, p: write_vtk(m, p, "MaterialIds", file_format="vtk", binary=False), ALL, True, vtk_names, vtk_said),
     ("VTK 5.1, bytes", ".vtk", lambda m, p: write_vtk(m, p, "gmsh:physical", file_format="vtk", binary=True), ALL, True, vtk_names, vtk_said),
     ("vtu", ".vtu", lambda m, p: write_vtk(m, p, "region", binary=False), ALL, True, vtk_names, vtk_said),
@@ -396,6 +479,19 @@ with tempfile.TemporaryDirectory() as work:
                     of[key] = kept
             counts[name] += 1
             faults += [f"{where}: {f}" for f in found]
+    # damaged files, which libraries read: one line, soon, in little memory
+    r = random.Random(SEEDS[0])
+    for path in [p for seed in SEEDS for p in pathlib.Path().glob(f"m{seed}-*") if p.suffix in (".med", ".exo")]:
+        whole = path.read_bytes()
+        for k in range(4):
+            place = r.randrange(60) if k == 0 else r.randrange(len(whole))  # counts stand in front
+            damaged = whole[:place] if k == 1 else whole[:place] + r.choice([b"\0" * 4, b"\xff" * 4, b"\x7f" * 4]) + whole[place + 4:]
+            pathlib.Path(f"damaged{path.suffix}").write_bytes(damaged)
+            ran = subprocess.run([tools / "hilo-import", f"damaged{path.suffix}", "-o", "m.h5"], capture_output=True, text=True, timeout=30)
+            counts["damaged files"] += 1
+            if ran.returncode not in (0, 2) or (ran.returncode and len(ran.stderr.strip().splitlines()) != 1):
+                faults.append(f"{path} damaged at {place}, way {k}: exit {ran.returncode}: {ran.stderr}")
+
     # small files with what no writer above writes: words that must be said, exit code
     cube = "\n".join(f"{i + 1} {x} {y} {z}" for i, (x, y, z) in enumerate([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]))
     msh = f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 5 \"one\"\n3 7 \"empty\"\n$EndPhysicalNames\n$Nodes\n8\n{cube}\n$EndNodes\n$Elements\n"

@@ -43,6 +43,14 @@ TEST_F(ImportInpSilent, APressureSaidTwiceCountsTwice) {
   for (const auto& loads : two) EXPECT_NEAR(foot(bar + held + statics + loads + end)[0], 10, 1e-6) << loads;
 }
 
+TEST_F(ImportInpSilent, NamesInLatin1BecomeUtf8) {
+  std::string text = bar + held + statics + end;
+  for (size_t at; (at = text.find("ELSET=bar")) != text.npos;) text.replace(at, 9, "ELSET=K\xF6rper");
+  EXPECT_NE(scene(text).find("[region.\"K\xC3\xB6rper\"]"), std::string::npos);
+  EXPECT_EQ(cells_of(read_mesh_file(place / "out.h5").mesh, "K\xC3\xB6rper"), 2);
+  EXPECT_EQ(place.run("hilo-solve --quiet s.toml -o run.h5").exit, 0);
+}
+
 TEST_F(ImportInpSilent, OpNewForgetsTheSupportsBeforeTheStepAlone) {
   const std::string text =
       scene(bar + "*BOUNDARY\nhead, 2, 2\n" + statics + "*BOUNDARY, OP=NEW\nfoot, 1, 3\n*BOUNDARY, OP=NEW\n12, 3, 3\n" + end);

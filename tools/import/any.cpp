@@ -66,24 +66,14 @@ void check_defines(const std::string& path, const ImportOptions& options) {
 }  // namespace
 
 Registry<MeshFormat>& mesh_formats() {
-  static Registry<MeshFormat> all{"mesh format",
-                                  {{".inp", read_inp},
-                                   {".bdf", read_bdf},
-                                   {".nas", read_bdf},
-                                   {".dat", read_bdf},
-                                   {".fem", read_bdf},
-                                   {".unv", read_unv},
-                                   {".vtk", read_vtk},
-                                   {".vtu", read_vtk},
-                                   {".msh", read_msh},
-                                   {".mesh", read_medit},
-                                   {".stl", read_stl},
-                                   {".geo", read_geo, true},
-                                   {".step", read_step, true},
-                                   {".stp", read_step, true},
-                                   {".brep", read_brep, true},
-                                   {".iges", read_iges, true},
-                                   {".igs", read_iges, true}}};
+  static Registry<MeshFormat> all{
+      "mesh format", {{".inp", read_inp},         {".bdf", read_bdf},        {".nas", read_bdf},         {".dat", read_bdf},
+                      {".fem", read_bdf},         {".unv", read_unv},        {".vtk", read_vtk},         {".vtu", read_vtk},
+                      {".msh", read_msh},         {".mesh", read_medit},     {".med", read_med},         {".rmed", read_med},
+                      {".exo", read_exodus},      {".ex2", read_exodus},     {".exii", read_exodus},     {".e", read_exodus},
+                      {".g", read_exodus},        {".gen", read_exodus},     {".stl", read_stl},         {".geo", read_geo, true},
+                      {".step", read_step, true}, {".stp", read_step, true}, {".brep", read_brep, true}, {".iges", read_iges, true},
+                      {".igs", read_iges, true}}};
   return all;
 }
 

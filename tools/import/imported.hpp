@@ -142,6 +142,8 @@ void refuse_flat(const std::string& file, std::int64_t flat, std::int64_t solids
 /// A pyramid of five nodes, base first, as two tetrahedra: its base is cut through its lowest node, so that two pyramids on a base agree.
 std::array<std::vector<std::int64_t>, 2> halves_of_pyramid(std::span<const std::int64_t> nodes);
 inline constexpr std::int64_t second_half = 1'000'000'000'000'000;  // added to the number of a deck's pyramid for the second one
+/// The facets of each face, given by its corners: one, none, or the two that the base of a pyramid is cut into.
+std::vector<std::vector<Facet>> facets_of(const Mesh& mesh, const std::vector<std::vector<std::int64_t>>& faces);
 /// What is said of them: fields are continuous at the nodes of a base alone where a cell with a quadrangle there is its neighbour.
 void tell_pyramids(Imported& in, std::int64_t n);
 
@@ -151,6 +153,8 @@ Imported read_bdf(const std::string& path, const ImportOptions& options);
 Imported read_unv(const std::string& path, const ImportOptions& options);
 Imported read_vtk(const std::string& path, const ImportOptions& options);
 Imported read_msh(const std::string& path, const ImportOptions& options);
+Imported read_med(const std::string& path, const ImportOptions& options);
+Imported read_exodus(const std::string& path, const ImportOptions& options);
 Imported read_medit(const std::string& path, const ImportOptions& options);
 Imported read_stl(const std::string& path, const ImportOptions& options);
 Imported read_geo(const std::string& path, const ImportOptions& options);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/utf8.hpp"
 #include "import/imported.hpp"
 
 namespace hilo {
@@ -36,7 +37,7 @@ void Imported::skip(const std::string& what, const std::string& place, std::int6
 }
 
 std::string clean_name(const std::string& name) {
-  std::string s = name;
+  std::string s = as_utf8(name);
   std::replace(s.begin(), s.end(), '/', '_');
   for (auto& c : s)
     if (static_cast<unsigned char>(c) < 32) c = '_';

@@ -14,6 +14,26 @@ std::array<std::vector<std::int64_t>, 2> halves_of_pyramid(std::span<const std::
   return {{{n[0], n[1], n[3], n[4]}, {n[1], n[2], n[3], n[4]}}};
 }
 
+std::vector<std::vector<Facet>> facets_of(const Mesh& mesh, const std::vector<std::vector<std::int64_t>>& faces) {
+  std::vector<std::vector<Facet>> out(faces.size());
+  std::vector<std::vector<std::int64_t>> halves;
+  std::vector<size_t> of;
+  const auto found = match_facets(mesh, faces);
+  for (size_t i = 0; i < faces.size(); ++i) {
+    if (found[i].cell >= 0) out[i].push_back(found[i]);
+    if (found[i].cell >= 0 || faces[i].size() != 4) continue;
+    const auto& f = faces[i];
+    const auto k = static_cast<size_t>(std::ranges::min_element(f) - f.begin());  // as halves_of_pyramid() cuts it
+    halves.push_back({f[k], f[(k + 1) % 4], f[(k + 2) % 4]});
+    halves.push_back({f[k], f[(k + 2) % 4], f[(k + 3) % 4]});
+    of.push_back(i);
+  }
+  const auto two = match_facets(mesh, halves);
+  for (size_t j = 0; j < of.size(); ++j)
+    if (two[2 * j].cell >= 0 && two[2 * j + 1].cell >= 0) out[of[j]] = {two[2 * j], two[2 * j + 1]};
+  return out;
+}
+
 void tell_pyramids(Imported& in, std::int64_t n) {
   if (n == 0) return;
   in.notes.push_back(fmt::format("{} pyramids are two tetrahedra each", n));

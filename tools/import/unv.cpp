@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // I-DEAS universal files: datasets 164 (units), 2411 (nodes), 2412 (elements) and the groups 2429 to 2477.
-// (gmsh 4.8 crashes on groups that name an element it does not know, so the reader is ours.)  Groups of solids are regions, of faces facet
-// sets, of lines bars or node sets as in a gmsh file; without groups of solids a region is a physical property.
+// (gmsh 4.8 crashes on groups that name an element it does not know, so the reader is ours.)
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <unordered_map>
-#include <unordered_set>
 
 #include "base/error.hpp"
 #include "base/param.hpp"
+#include "base/utf8.hpp"
 #include "import/data_line.hpp"
-#include "import/imported.hpp"
+#include "import/grouped.hpp"
 
 namespace hilo {
 namespace {
@@ -55,7 +53,7 @@ const UnvKind* unv_kind(int id) {
 
 class UnvReader {
  public:
-  UnvReader(const std::string& path, const ImportOptions& o) : path_(path), o_(o), text_(read_gz(path, "")) {}
+  UnvReader(const std::string& path, const ImportOptions& o) : path_(path), o_(o), text_(as_utf8(read_gz(path, ""))) {}
 
   Imported read() {
     while (line()) {
@@ -71,9 +69,8 @@ class UnvReader {
       }
     }
     if (in_.mesh.X.empty()) throw Error(path_, "no nodes (dataset 2411)", "a universal file of a mesh has datasets 2411 and 2412");
-    if (elements_.empty()) throw Error(path_, "no elements (dataset 2412)");
-    build();
-    return std::move(in_);
+    if (mesh_.n_elements() == 0) throw Error(path_, "no elements (dataset 2412)");
+    return mesh_.finish(path_, o_, "property");
   }
 
  private:
@@ -96,16 +93,6 @@ class UnvReader {
                                                            {"164", [](R& r) { r.units(); }}};
     return table;
   }
-  struct Element {
-    const UnvKind* kind;
-    std::int64_t id, property;
-    std::vector<std::int64_t> nodes;  // rows
-    std::int64_t cell = -1;
-  };
-  struct Group {
-    std::string name;
-    std::vector<std::int64_t> nodes, elements;  // numbers of the file
-  };
 
   /// The next line, cut at blanks.
   bool line() {
@@ -151,48 +138,46 @@ class UnvReader {
   void nodes() {
     while (more()) {
       const auto id = l_.integer(0);  // the coordinates are those of the part, whatever the node's systems are
-      if (!row_.try_emplace(id, in_.mesh.n_nodes()).second)
-        throw Error(l_.place(0), fmt::format("node {} is given twice", id), "number each node once");
+      const auto place = l_.place(0);
       must();
-      in_.mesh.X.emplace_back(l_.number(0), l_.number(1), l_.number(2));
-      in_.mesh.node_id.push_back(id);
+      if (!mesh_.add_node(id, {l_.number(0), l_.number(1), l_.number(2)}))
+        throw Error(place, fmt::format("node {} is given twice", id), "number each node once");
     }
   }
 
   void elements() {
     while (more()) {
-      Element e{nullptr, l_.integer(0), l_.integer(2), {}};
+      const auto number = l_.integer(0), property = l_.integer(2);
       const auto place = l_.place(0);
       const auto id = static_cast<int>(l_.integer(1));
       const auto n = static_cast<size_t>(l_.integer(5));
-      e.kind = unv_kind(id);
-      if (!e.kind)
-        throw Error(l_.place(1), fmt::format("element {}: descriptor {} is not read", e.id, id),
+      const UnvKind* kind = unv_kind(id);
+      if (!kind)
+        throw Error(l_.place(1), fmt::format("element {}: descriptor {} is not read", number, id),
                     "supported: rods 11, beams as lines 21 22 24, faces 41 42 44 45 91 92 94 95, solids 111 112 113 115 116 118");
-      if (n != e.kind->n_nodes)
-        throw Error(place, fmt::format("element {}: descriptor {} has {} nodes, not {}", e.id, id, e.kind->n_nodes, n));
-      if (e.kind->dimension == 1) must();  // orientation and cross-sections of beams
+      if (n != kind->n_nodes)
+        throw Error(place, fmt::format("element {}: descriptor {} has {} nodes, not {}", number, id, kind->n_nodes, n));
+      if (kind->dimension == 1) must();  // orientation and cross-sections of beams
       std::vector<std::int64_t> all;
       while (all.size() < n) {
         must();
         for (size_t i = 0; i < l_.fields.size(); ++i) all.push_back(l_.integer(i));
       }
-      for (const int i : e.kind->p) {
-        const auto a = row_.find(all[static_cast<size_t>(i)]);
-        if (a == row_.end())
-          throw Error(place, fmt::format("element {} names node {}, which does not exist", e.id, all[static_cast<size_t>(i)]));
-        e.nodes.push_back(a->second);
+      std::vector<std::int64_t> rows;
+      for (const int i : kind->p) {
+        rows.push_back(mesh_.row(all[static_cast<size_t>(i)]));
+        if (rows.back() < 0)
+          throw Error(place, fmt::format("element {} names node {}, which does not exist", number, all[static_cast<size_t>(i)]));
       }
-      if (!of_id_.try_emplace(e.id, elements_.size()).second)
-        throw Error(place, fmt::format("element {} is given twice", e.id), "number each element once");
-      elements_.push_back(std::move(e));
+      if (!mesh_.add_element(kind->dimension, kind->shape, number, property, std::move(rows)))
+        throw Error(place, fmt::format("element {} is given twice", number), "number each element once");
     }
   }
 
   /// `width` numbers an entity: type (7 node, 8 element), number, and two that say nothing here.
   void groups(size_t width) {
     while (more()) {
-      Group g;
+      GroupedMesh::Group g;
       const auto number = l_.integer(0), count = l_.integer(7);
       must();
       const auto first = raw_.find_first_not_of(' '), last = raw_.find_last_not_of(' ');
@@ -209,123 +194,18 @@ class UnvReader {
             in_.skip(fmt::format("group members of type {}", type), l_.place());
         }
       }
-      groups_.push_back(std::move(g));
-    }
-  }
-
-  std::vector<Element*> members(const Group& g, int dimension) {
-    std::vector<Element*> found;
-    for (const auto id : g.elements)
-      if (const auto e = of_id_.find(id); e != of_id_.end() && elements_[e->second].kind->dimension == dimension)
-        found.push_back(&elements_[e->second]);
-    return found;
-  }
-
-  void add(Element& e) {
-    if (e.cell >= 0) return;
-    e.cell = in_.mesh.n_cells();
-    in_.mesh.add_cell(e.kind->shape, e.nodes, -1, e.id);
-  }
-
-  void build() {
-    std::int64_t flat = 0, solids = 0;
-    for (const auto& e : elements_) flat += e.kind->dimension == 2, solids += e.kind->dimension == 3;
-    refuse_flat(path_, flat, solids);
-    std::vector<CellGroup> regions;
-    for (auto& e : elements_)
-      if (e.kind->dimension == 3) add(e);
-    for (const auto& g : groups_) {
-      CellGroup c{g.name, {}};
-      for (const auto* e : members(g, 3)) c.cells.push_back(e->cell);
-      if (!c.cells.empty()) regions.push_back(std::move(c));
-    }
-    if (regions.empty() && o_.rest.empty()) {
-      std::map<std::int64_t, CellGroup> by_property;
-      for (const auto& e : elements_)
-        if (e.cell >= 0) by_property[e.property].cells.push_back(e.cell);
-      for (auto& [property, c] : by_property) regions.push_back({fmt::format("property_{}", property), std::move(c.cells)});
-      if (!regions.empty()) in_.notes.push_back("no groups of solids: each physical property is a region");
-    }
-    bars(regions);
-    if (in_.mesh.n_cells() == 0) throw Error(path_, "no solid elements and no bars");
-    assign_regions(in_, path_, regions, false, {}, o_);
-    sets();
-  }
-
-  /// Groups of lines that lie on no solid; without solids all lines, in groups or not.
-  void bars(std::vector<CellGroup>& regions) {
-    std::vector<std::pair<std::int64_t, std::int64_t>> lines;
-    for (const auto& e : elements_)
-      if (e.kind->dimension == 1) lines.emplace_back(e.nodes[0], e.nodes[1]);
-    const auto on_solids = lines_on_solids(in_.mesh, lines);
-    const bool solids = in_.mesh.n_cells() > 0;
-    for (const auto& g : groups_) {
-      const auto found = members(g, 1);
-      if (found.empty() || std::any_of(found.begin(), found.end(), [&](const Element* e) {
-            return on_solids.count({e->nodes[0], e->nodes[1]});
-          }))
-        continue;
-      CellGroup c{g.name, {}};
-      for (auto* e : found) add(*e), c.cells.push_back(e->cell);
-      regions.push_back(std::move(c));
-    }
-    for (auto& e : elements_)
-      if (e.kind->dimension == 1 && e.cell < 0) {
-        if (!solids)
-          add(e);
-        else if (!on_solids.count({e.nodes[0], e.nodes[1]}))
-          in_.skip("lines of no group, on no solid", path_);
-      }
-  }
-
-  void tell_loose_faces() {
-    std::unordered_set<std::int64_t> grouped;
-    for (const auto& g : groups_) grouped.insert(g.elements.begin(), g.elements.end());
-    std::vector<std::vector<std::int64_t>> faces;
-    for (const auto& e : elements_)
-      if (e.kind->dimension == 2 && !grouped.count(e.id)) faces.push_back(e.nodes);
-    if (const auto n = std::ranges::count_if(match_facets(in_.mesh, faces), [](const Facet& f) { return f.cell < 0; }))
-      in_.skip("faces of no group, on no solid", path_, n);
-  }
-
-  void sets() {
-    tell_loose_faces();
-    SetNames names(in_);
-    for (const auto& g : groups_) {
-      std::vector<std::vector<std::int64_t>> faces;
-      for (const auto* e : members(g, 2)) faces.push_back(e->nodes);
-      std::vector<Facet> facets;
-      for (const auto& f : match_facets(in_.mesh, faces))
-        if (f.cell >= 0) facets.push_back(f);
-      if (facets.size() < faces.size())
-        in_.notes.push_back(
-            fmt::format("group \"{}\": {} of its {} faces lie on no cell: left out", g.name, faces.size() - facets.size(), faces.size()));
-      if (!facets.empty()) names.facets(g.name, std::move(facets));
-      std::vector<std::int64_t> rows;
-      for (const auto* e : members(g, 1))
-        if (e->cell < 0) rows.insert(rows.end(), e->nodes.begin(), e->nodes.end());
-      for (const auto id : g.nodes)
-        if (const auto a = row_.find(id); a != row_.end()) rows.push_back(a->second);
-      if (const auto gone = std::ranges::count_if(g.nodes, [&](std::int64_t id) { return !row_.count(id); }))
-        in_.notes.push_back(fmt::format("group \"{}\": {} of its numbers are no node: left out", g.name, gone));
-      if (!rows.empty()) names.nodes(g.name, std::move(rows));
-      if (g.nodes.empty() && g.elements.empty()) in_.notes.push_back(fmt::format("group \"{}\" is empty: left out", g.name));
-      const auto unknown = std::count_if(g.elements.begin(), g.elements.end(), [&](std::int64_t id) { return !of_id_.count(id); });
-      if (unknown) in_.notes.push_back(fmt::format("group \"{}\": {} of its numbers are no element: left out", g.name, unknown));
+      mesh_.add_group(std::move(g));
     }
   }
 
   std::string path_;
   const ImportOptions& o_;
   std::string text_;
-  Imported in_;
+  GroupedMesh mesh_;
+  Imported& in_ = mesh_.in;
   size_t at_ = 0;
   DataLine l_;
   std::string_view raw_;
-  std::unordered_map<std::int64_t, std::int64_t> row_;
-  std::unordered_map<std::int64_t, size_t> of_id_;
-  std::vector<Element> elements_;
-  std::vector<Group> groups_;
 };
 
 }  // namespace

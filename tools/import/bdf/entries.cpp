@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/utf8.hpp"
 #include "import/imported.hpp"
 
 namespace hilo {
@@ -77,7 +78,7 @@ BdfEntries::BdfEntries(const std::string& path) {
 void BdfEntries::open(const std::string& path, const std::string& place) {
   auto s = std::make_unique<Source>();
   s->path = path;
-  s->text = without_tabs(read_gz(path, place));
+  s->text = without_tabs(as_utf8(read_gz(path, place)));
   if (std::string_view(s->text).substr(0, 65536).find('\0') != std::string_view::npos)
     throw Error(place.empty() ? path : place, fmt::format("\"{}\" is not a text file", path), "hilo-import reads Nastran files as text");
   stack_.push_back(s.get());

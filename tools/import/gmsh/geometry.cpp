@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "import/crash_guard.hpp"
 #include "import/gmsh/cad.hpp"
 #include "import/gmsh/confined.hpp"
 #include "import/gmsh/mesh.hpp"
@@ -319,7 +320,7 @@ Imported read_geometry(const std::string& path, const std::string& format, const
     GmshMesh mesh;
     std::string note;
     {
-      const CrashGuard guard(path);
+      const CrashGuard guard(path, "gmsh");
       const auto mesh_it = [&] { mesh = meshed(path, format, options, per_turn); };
       if (options.trust)
         mesh_it();
@@ -385,7 +386,7 @@ std::string face_of(const std::string& path, const ImportOptions& options) {
   ImportOptions o = options;
   o.face = true;
   GmshMesh mesh;
-  const CrashGuard guard(path);
+  const CrashGuard guard(path, "gmsh");
   const auto mesh_it = [&] { mesh = meshed(path, format->second, o, o.per_turn.value_or(usual_per_turn)); };
   if (o.trust)
     mesh_it();

@@ -280,27 +280,6 @@ class GmshReading {
     return nodes;
   }
 
-  /// The facets of each face: one, none, or the two that the base of a pyramid is cut into.
-  std::vector<std::vector<Facet>> facets_of(const std::vector<std::vector<std::int64_t>>& faces) const {
-    std::vector<std::vector<Facet>> out(faces.size());
-    std::vector<std::vector<std::int64_t>> halves;
-    std::vector<size_t> of;
-    const auto found = match_facets(in_.mesh, faces);
-    for (size_t i = 0; i < faces.size(); ++i) {
-      if (found[i].cell >= 0) out[i].push_back(found[i]);
-      if (found[i].cell >= 0 || n_pyramids_ == 0 || faces[i].size() != 4) continue;
-      const auto& f = faces[i];
-      const auto k = static_cast<size_t>(std::ranges::min_element(f) - f.begin());  // as halves_of_pyramid() cuts it
-      halves.push_back({f[k], f[(k + 1) % 4], f[(k + 2) % 4]});
-      halves.push_back({f[k], f[(k + 2) % 4], f[(k + 3) % 4]});
-      of.push_back(i);
-    }
-    const auto two = match_facets(in_.mesh, halves);
-    for (size_t j = 0; j < of.size(); ++j)
-      if (two[2 * j].cell >= 0 && two[2 * j + 1].cell >= 0) out[of[j]] = {two[2 * j], two[2 * j + 1]};
-    return out;
-  }
-
   /// Of a shell the face of its normal, which becomes one of its two (thicken).
   void surface_groups() {
     SetNames names(in_);
@@ -321,7 +300,7 @@ class GmshReading {
         }
       first.push_back(faces.size());
     }
-    const auto found = facets_of(faces);
+    const auto found = facets_of(in_.mesh, faces);
     size_t g = 0;
     for (const auto& [tag, keys] : groups) {
       const std::string name = group_name(2, tag);
@@ -357,7 +336,7 @@ class GmshReading {
             lines.emplace_back(row(b.nodes[e * per], b.tags[e]), row(b.nodes[e * per + 1], b.tags[e]));
         }
     }
-    const auto found = facets_of(faces);
+    const auto found = facets_of(in_.mesh, faces);
     if (const auto n = std::ranges::count_if(found, [](const auto& f) { return f.empty(); }))
       in_.skip("triangles and quadrangles of no group, on no solid", path_, n);
     const auto on_solids = lines_on_solids(in_.mesh, lines);

@@ -5,58 +5,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmsh.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <iostream>
 
 #include "base/error.hpp"
 
 namespace hilo {
-namespace {
-
-bool reading = false;
-int crash_exit = static_cast<int>(Exit::input);
-std::string end_line;    // what is said where a script ends the program
-std::string crash_line;  // what the handler of a crash writes: made beforehand, since it may not allocate
-
-}  // namespace
-
-CrashGuard::CrashGuard(const std::string& path) {
-  rlimit room{};
-  const bool limited = getrlimit(RLIMIT_AS, &room) == 0 && room.rlim_cur != RLIM_INFINITY;
-  crash_exit = static_cast<int>(limited ? Exit::resources : Exit::input);
-  crash_line = limited ? fmt::format(
-                             "{}: {}: gmsh did not survive the limit of {} MB of memory (raise it, ulimit -v; what the file is worth "
-                             "cannot be told before)\n",
-                             tool_name(), path, room.rlim_cur >> 20)
-                       : fmt::format("{}: {}: gmsh crashed on it (is the file damaged?)\n", tool_name(), path);
-  end_line = fmt::format("{}: {}: the script ends the program before there is a mesh (Exit)\n", tool_name(), path);
-  static const bool once = std::atexit([] {
-                             if (!reading) return;
-                             if (write(2, end_line.data(), end_line.size()) < 0) _exit(static_cast<int>(Exit::fault));
-                             _exit(static_cast<int>(Exit::input));
-                           }) == 0;
-  reading = once;
-  struct sigaction act {};
-  act.sa_handler = [](int) {
-    if (write(2, crash_line.data(), crash_line.size()) < 0) _exit(static_cast<int>(Exit::fault));
-    _exit(crash_exit);
-  };
-  for (size_t i = 0; i < signals_.size(); ++i) sigaction(signals_[i], &act, &before_[i]);
-  // the default handler would say more than our one line
-  terminate_ = std::set_terminate([] { std::raise(SIGABRT); });
-}
-
-CrashGuard::~CrashGuard() {
-  reading = false;
-  std::set_terminate(terminate_);
-  for (size_t i = 0; i < signals_.size(); ++i) sigaction(signals_[i], &before_[i], nullptr);
-}
-
 GmshSession::GmshSession(const ImportOptions& o) {
   std::fflush(stdout);
   stdout_ = dup(1);

@@ -1,28 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The gmsh library, kept quiet, and its crashes turned into errors.
+// The gmsh library, kept quiet.
 #pragma once
 #include <array>
-#include <csignal>
-#include <exception>
 #include <string>
 
 #include "import/imported.hpp"
 
 namespace hilo {
-
-/// A damaged file can crash gmsh or OpenCASCADE.  While this lives a crash says so in one line and ends with "bad input".
-class CrashGuard {
- public:
-  explicit CrashGuard(const std::string& path);
-  ~CrashGuard();
-  CrashGuard(const CrashGuard&) = delete;
-  CrashGuard& operator=(const CrashGuard&) = delete;
-
- private:
-  static constexpr std::array<int, 4> signals_{SIGSEGV, SIGABRT, SIGBUS, SIGFPE};
-  std::array<struct sigaction, 4> before_{};
-  std::terminate_handler terminate_;
-};
 
 /// gmsh as long as this lives.  OpenCASCADE writes to stdout, which is data: what it says there is kept apart.
 class GmshSession {

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/utf8.hpp"
 
 namespace hilo {
 namespace {
@@ -60,7 +61,7 @@ std::string Card::need(const std::string& param) const {
 InpLines::InpLines(const std::string& path) : folder_(std::filesystem::path(path).parent_path().string()) { open(path, ""); }
 
 void InpLines::open(const std::string& path, const std::string& place) {
-  Source s{std::make_shared<const std::string>(path), std::make_shared<const std::string>(read_gz(path, place))};
+  Source s{std::make_shared<const std::string>(path), std::make_shared<const std::string>(as_utf8(read_gz(path, place)))};
   if (s.text->substr(0, 65536).find('\0') != std::string::npos)
     throw Error(path, "not a text file", "hilo-import reads .inp decks as text");
   stack_.push_back(s);
