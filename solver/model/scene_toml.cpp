@@ -9,6 +9,8 @@
 #include <charconv>
 #include <sstream>
 
+#include "base/utf8.hpp"
+
 namespace hilo {
 namespace {
 
@@ -179,11 +181,12 @@ toml::table parse_toml(std::string_view text, const std::string& file) {
     return toml::parse(text, file);
   } catch (const toml::parse_error& e) {
     throw Error(Place{file, static_cast<int>(e.source().begin.line), static_cast<int>(e.source().begin.column)}.text(),
-                std::string(e.description()));
+                std::string(e.description()), e.description().find("utf-8") == std::string_view::npos ? "" : "save the file as UTF-8");
   }
 }
 
-void apply_override(toml::table& root, const std::string& option) {
+void apply_override(toml::table& root, const std::string& given) {
+  const std::string option = as_utf8(given);
   const std::string where = std::string(set_prefix) + option;
   char quote = 0;
   size_t equals = 0;

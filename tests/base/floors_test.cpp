@@ -117,10 +117,14 @@ TEST(Floors, RoomsOfPostUseOnlyThoseBelow) {
 // where a rank's cells are split into subdomains; about.cpp reads their versions.
 TEST(Floors, LibrariesAreIncludedOnlyWhereTheyBelong) {
   const fs::path root = HILO_SOURCE;
-  const std::vector<std::pair<std::regex, std::string>> home{
-      {std::regex("^petsc.*"), "solver/linear"}, {std::regex("^vtk[A-Z_].*"), "post"}, {std::regex("^hdf5\\.h$|^H5.*"), "solver/model"},
-      {std::regex("^gmsh.*"), "tools"},          {std::regex("^metis.*"), "tools"},    {std::regex("^toml\\+\\+.*"), "solver/model"},
-      {std::regex("^mpi\\.h$"), "solver/base"}};
+  const std::vector<std::pair<std::regex, std::string>> home{{std::regex("^petsc.*"), "solver/linear"},
+                                                             {std::regex("^vtk[A-Z_].*"), "post"},
+                                                             {std::regex("^hdf5\\.h$|^H5.*"), "solver/model"},
+                                                             {std::regex("^gmsh.*"), "tools"},
+                                                             {std::regex("^metis.*"), "tools"},
+                                                             {std::regex("^toml\\+\\+.*"), "solver/model"},
+                                                             {std::regex("^mpi\\.h$"), "solver/base"},
+                                                             {std::regex("^(med|exodusII)\\.h$"), "tools/import"}};
   std::set<std::string> met;
   for (const char* folder : {"solver", "tools", "post"})
     for (const auto& [file, included] : includes(root / folder))

@@ -49,7 +49,7 @@ with tempfile.TemporaryDirectory() as folder:
         theirs = printed(open(deck + ".dat").read())
         talk = run(binaries + "/hilo-import", deck + ".inp", "-o", "mesh.h5", "--scene-out", "scene.toml")
         lost = [line for line in talk.splitlines() if "not read" in line and "request for output" not in line]
-        scale = lambda m: m[1] + re.sub(r"[-+.\deE]+", lambda n: repr(float(n[0]) * SMALL), m[2])
+        scale = lambda m: m[1] + re.sub(r"[-+.\deE]+", lambda n: repr(float(float(n[0]) * SMALL)), m[2])
         scene = re.sub(r"^((?:force|pressure|displacement) = )(.*)$", scale, open("scene.toml").read(), flags=re.M)
         with open("scene.toml", "w") as f:
             f.write(scene + "\n[solver]\ntolerance = 1e-12\n")

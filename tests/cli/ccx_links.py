@@ -63,7 +63,7 @@ def solve(name, *options):
     """Displacements of the nodes by number, of loads multiplied by SMALL; and what was not read."""
     talk = run(binaries + "/hilo-import", name + ".inp", "-o", "mesh.h5", "--scene-out", "scene.toml", *options)
     lost = [line for line in talk.splitlines() if "not read" in line and "*NODE PRINT" not in line]
-    scale = lambda m: m[1] + re.sub(r"[-+.\deE]+", lambda n: repr(float(n[0]) * SMALL), m[2])
+    scale = lambda m: m[1] + re.sub(r"[-+.\deE]+", lambda n: repr(float(float(n[0]) * SMALL)), m[2])
     scene = re.sub(r"^((?:force|torque|displacement) = )(.*)$", scale, open("scene.toml").read(), flags=re.M)
     with open("scene.toml", "w") as f:
         f.write(scene + "\n[solver]\ntolerance = 1e-12\n")

@@ -67,7 +67,7 @@ with tempfile.TemporaryDirectory() as folder:
             table = []
             for f in theirs[::2, 0]:  # ccx prints the real part, then the imaginary one
                 words = command[1].replace("PROBE.AXIS", "N1.x --at N1.y --at N1.z").split()
-                words[words.index("--from") + 1], words[words.index("--to") + 1], words[words.index("--points") + 1] = repr(f), repr(f * (1 + 1e-9)), "2"
+                words[words.index("--from") + 1], words[words.index("--to") + 1], words[words.index("--points") + 1] = repr(float(f)), repr(float(f * (1 + 1e-9))), "2"
                 row = subprocess.run(words, capture_output=True, text=True, check=True).stdout.splitlines()[-1].split(",")
                 table.append([float(v) for v in row[1::2]])
             ours = 1e3 * np.array(table)

@@ -108,7 +108,7 @@ def compare(binaries, deck):
     b = np.array([theirs[n] for n in nodes])
     largest = abs(b).max()
     factor = 1.0 if nonlinear else min(1.0, SMALL * extent / largest)
-    scale = lambda m: m[1] + re.sub(r"[-+.\deE]+", lambda number: repr(float(number[0]) * factor), m[2])
+    scale = lambda m: m[1] + re.sub(r"[-+.\deE]+", lambda number: repr(float(float(number[0]) * factor)), m[2])
     with open("scene.toml") as f:
         scene = SCALED.sub(scale, f.read())
     with open("scene.toml", "w") as f:

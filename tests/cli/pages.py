@@ -84,6 +84,9 @@ def main(repo, tools, pages):
             commands = sum(kind != "file" for kind, _, _ in parts)
             if not commands:
                 continue
+            if not shutil.which("ccx") and any(re.search(r"\bccx -i", block) for _, block, _ in parts):
+                print(f"{page}: left out, as this Debian has no CalculiX")
+                continue
             folder = os.path.join(place, page[:-3])
             shutil.copytree(ready, folder)
             for kind, block, name in parts:

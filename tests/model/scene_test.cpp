@@ -176,6 +176,7 @@ TEST_F(Override, TakesNumbersAsPeopleTypeThem) {
   EXPECT_EQ(load(hinge, {"joint.trunnion.axis=[-.5, 1., +2.]"}).entries("joint")[0].vector3("axis"), Vec3(-0.5, 1, 2));
   EXPECT_EQ(load("", {"scene.title=of 2. and .5"}).table("scene").text("title"), "of 2. and .5") << "a text stays as it is";
   EXPECT_EQ(load("", {"scene.title='.5'"}).table("scene").text("title"), ".5");
+  EXPECT_EQ(load("", {"scene.title=K\xF6rper"}).table("scene").text("title"), "K\xC3\xB6rper") << "from a terminal in Latin-1";
 }
 
 TEST_F(Override, LeavesATextThatGivesTheSameScene) {

@@ -278,7 +278,9 @@ TEST_F(ImportGmsh, WrongFilesAreNamedAndLeaveNothing) {
   refused("absent.msh -o a.h5", 2, "absent.msh: no such file");
   place.write("a.xyz", "x");
   refused("a.xyz -o a.h5", 2,
-          "a.xyz: no reader for \".xyz\" files (there is one for .inp .bdf .nas .dat .fem .unv .vtk .vtu .msh .mesh .stl .geo .step .stp "
+          "a.xyz: no reader for \".xyz\" files (there is one for .inp .bdf .nas .dat .fem .unv .vtk .vtu .msh .mesh .med .rmed .exo .ex2 "
+          ".exii .e "
+          ".g .gen .stl .geo .step .stp "
           ".brep .iges .igs .inp.gz)");
   place.write("a.stl",
               "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n");

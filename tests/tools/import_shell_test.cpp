@@ -353,16 +353,40 @@ TEST_F(ImportShell, SupportsThatHoldRigidBeamsFromTurningAreNamed) {
   EXPECT_NE(err.find("turns and moments of nodes of shells and beams (2, beam.inp:25)"), std::string::npos) << err;
 }
 
+// A floor and a wall of two thicknesses that meet at a fold, and an edge with a name, by a universal file as by gmsh's own.
+TEST_F(ImportShell, SurfacesOfAUniversalFileAreShellsAsThoseOfGmsh) {
+  place.write("made.geo",
+              "Point(1)={0,0,0}; Point(2)={1,0,0}; Point(3)={1,1,0}; Point(4)={0,1,0}; Point(5)={1,0,1}; Point(6)={1,1,1};\n"
+              "Line(1)={1,2}; Line(2)={2,3}; Line(3)={3,4}; Line(4)={4,1}; Line(5)={2,5}; Line(6)={5,6}; Line(7)={6,3};\n"
+              "Curve Loop(1)={1,2,3,4}; Plane Surface(1)={1}; Curve Loop(2)={5,6,7,-2}; Plane Surface(2)={2};\n"
+              "Transfinite Curve{:}=4; Transfinite Surface{:}; Recombine Surface{1};\n"
+              "Physical Surface(\"floor\")={1}; Physical Surface(\"wall\")={2}; Physical Curve(\"edge\")={4};\n"
+              "Mesh 2;\nSave \"a.unv\";\nSave \"a.msh\";\n");
+  ASSERT_EQ(place.run("hilo-import made.geo --trust --thickness 0.1 -o made.h5").exit, 0);
+  const std::string thick = "--thickness floor=0.1 --thickness wall=0.05";
+  const Mesh other = imported("a.msh", thick), m = imported("a.unv", thick);
+  for (const char* region : {"floor", "wall"}) EXPECT_EQ(cells_of(m, region), cells_of(other, region)) << region;
+  EXPECT_EQ(cells_of(m, "floor"), 9 * 4);  // the wall's triangles become quadrangles, and with them all surfaces
+  EXPECT_EQ(m.X.size(), other.X.size());
+  EXPECT_NEAR(volume(m), volume(other), 1e-12);
+  EXPECT_NEAR(volume(m), 0.15, 0.01);
+  EXPECT_EQ(m.block_name.size(), other.block_name.size());
+  EXPECT_EQ(m.facet_sets.at("edge").size(), other.facet_sets.at("edge").size());  // across the thickness
+  refused("a.unv -o a.h5 --thickness walls=0.1", 1, "--thickness walls=0.1: no group of surfaces has this name (did you mean \"wall\"?)");
+  EXPECT_EQ(cells_of(imported("a.unv", "--thickness 0.1"), "wall"), cells_of(m, "wall"));
+}
+
 TEST_F(ImportShell, ThicknessIsForSurfacesAndThickenForDecks) {
   place.write("arch.geo", arch);
   refused("arch.geo -o a.h5 --thicken", 1,
           "--thicken is for shells of a deck, arch.geo is none (--thickness makes shells of its surfaces)");
   place.write("strip.bdf", cquad4_strip("SPC1,1,123456,1,2\n"));
   refused("strip.bdf -o a.h5 --thickness 0.3", 1,
-          "--thickness is for surfaces of a geometry or of a .msh, strip.bdf is neither (--thicken makes shells of a deck, with the deck's "
+          "--thickness is for surfaces of a geometry, .msh, .unv, .med or Exodus file, strip.bdf is none (--thicken makes shells of a "
+          "deck, with the deck's "
           "thickness)");
   place.write("a.vtk", "# vtk DataFile Version 3.0\n");
-  refused("a.vtk -o a.h5 --thickness 0.3", 1, "--thickness is for surfaces of a geometry or of a .msh, a.vtk is neither");
+  refused("a.vtk -o a.h5 --thickness 0.3", 1, "--thickness is for surfaces of a geometry, .msh, .unv, .med or Exodus file, a.vtk is none");
 }
 
 }  // namespace

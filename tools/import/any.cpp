@@ -66,14 +66,32 @@ void check_defines(const std::string& path, const ImportOptions& options) {
 }  // namespace
 
 Registry<MeshFormat>& mesh_formats() {
-  static Registry<MeshFormat> all{
-      "mesh format", {{".inp", read_inp},         {".bdf", read_bdf},        {".nas", read_bdf},         {".dat", read_bdf},
-                      {".fem", read_bdf},         {".unv", read_unv},        {".vtk", read_vtk},         {".vtu", read_vtk},
-                      {".msh", read_msh},         {".mesh", read_medit},     {".med", read_med},         {".rmed", read_med},
-                      {".exo", read_exodus},      {".ex2", read_exodus},     {".exii", read_exodus},     {".e", read_exodus},
-                      {".g", read_exodus},        {".gen", read_exodus},     {".stl", read_stl},         {".geo", read_geo, true},
-                      {".step", read_step, true}, {".stp", read_step, true}, {".brep", read_brep, true}, {".iges", read_iges, true},
-                      {".igs", read_iges, true}}};
+  static Registry<MeshFormat> all{"mesh format",
+                                  {{".inp", read_inp},
+                                   {".bdf", read_bdf},
+                                   {".nas", read_bdf},
+                                   {".dat", read_bdf},
+                                   {".fem", read_bdf},
+                                   {".unv", read_unv, false, true},
+                                   {".vtk", read_vtk},
+                                   {".vtu", read_vtk},
+                                   {".msh", read_msh, false, true},
+                                   {".mesh", read_medit},
+                                   {".med", read_med, false, true},
+                                   {".rmed", read_med, false, true},
+                                   {".exo", read_exodus, false, true},
+                                   {".ex2", read_exodus, false, true},
+                                   {".exii", read_exodus, false, true},
+                                   {".e", read_exodus, false, true},
+                                   {".g", read_exodus, false, true},
+                                   {".gen", read_exodus, false, true},
+                                   {".stl", read_stl},
+                                   {".geo", read_geo, true},
+                                   {".step", read_step, true},
+                                   {".stp", read_step, true},
+                                   {".brep", read_brep, true},
+                                   {".iges", read_iges, true},
+                                   {".igs", read_iges, true}}};
   return all;
 }
 
@@ -95,14 +113,14 @@ Imported read_any(const std::string& path, const ImportOptions& options, const R
       if (!options.define.empty() && ending != ".geo") throw Error("", "--define is for .geo scripts", "", Exit::usage);
       if (options.trust && ending != ".geo") throw Error("", "--trust is for .geo scripts: no other file runs anything", "", Exit::usage);
       const bool deck = f.read == read_inp || f.read == read_bdf;
-      if (!options.thickness.empty() && !f.geometry && ending != ".msh")
-        throw Error("", fmt::format("--thickness is for surfaces of a geometry or of a .msh, {} is neither", path),
+      if (!options.thickness.empty() && !f.geometry && !f.has_surfaces)
+        throw Error("", fmt::format("--thickness is for surfaces of a geometry, .msh, .unv, .med or Exodus file, {} is none", path),
                     deck ? "--thicken makes shells of a deck, with the deck's thickness" : "", Exit::usage);
       if ((options.subcase || options.every_subcase) && !deck)
         throw Error("", fmt::format("--subcase is for a Nastran file, {} is none", path), "", Exit::usage);
       if (options.thicken && !deck)
         throw Error("", fmt::format("--thicken is for shells of a deck, {} is none", path),
-                    f.geometry || ending == ".msh" ? "--thickness makes shells of its surfaces" : "", Exit::usage);
+                    f.geometry || f.has_surfaces ? "--thickness makes shells of its surfaces" : "", Exit::usage);
       if (!options.define.empty()) check_defines(path, options);
       if (ending == ".geo")
         for (const auto& file : files_of_script(path)) note_input(file);

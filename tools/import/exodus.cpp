@@ -205,7 +205,7 @@ void add_block(GroupedMesh& mesh, const ExodusFile& file, const ex_block& b, std
             path, fmt::format("element {} of block \"{}\" names the node in place {}, and there are {}", id, name, node, node_ids.size()));
       rows.push_back(node - 1);
     }
-    if (!mesh.add_element(kind->dimension, kind->shape, id, b.id, std::move(rows)))
+    if (!mesh.add_element(kind->dimension, kind->shape, id, b.id, std::move(rows), kind->n_nodes > 4))
       throw Error(path, fmt::format("element {} is given twice", id), "number each element once");
     group.elements.push_back(id);
   }

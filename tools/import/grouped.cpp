@@ -10,6 +10,8 @@
 #include "base/error.hpp"
 #include "base/printable.hpp"
 #include "base/utf8.hpp"
+#include "import/shell_groups.hpp"
+#include "model/thin_regions.hpp"
 
 namespace hilo {
 
@@ -25,9 +27,10 @@ std::int64_t GroupedMesh::row(std::int64_t id) const {
   return found == row_.end() ? -1 : found->second;
 }
 
-bool GroupedMesh::add_element(int dimension, Shape shape, std::int64_t id, std::int64_t property, std::vector<std::int64_t> rows) {
+bool GroupedMesh::add_element(int dimension, Shape shape, std::int64_t id, std::int64_t property, std::vector<std::int64_t> rows,
+                              bool has_middles) {
   if (!of_id_.try_emplace(id, elements_.size()).second) return false;
-  elements_.push_back({dimension, shape, id, property, std::move(rows)});
+  elements_.push_back({dimension, shape, id, property, std::move(rows), has_middles});
   return true;
 }
 
@@ -68,7 +71,7 @@ void GroupedMesh::add_cells(Element& e, std::vector<std::int64_t>& cells) {
 Imported GroupedMesh::finish(const std::string& path, const ImportOptions& options, const std::string& property) {
   std::int64_t flat = 0, solids = 0, pyramids = 0;
   for (const auto& e : elements_) flat += e.dimension == 2, solids += e.dimension == 3, pyramids += e.is_pyramid();
-  refuse_flat(path, flat, solids);
+  if (options.thickness.empty()) refuse_flat(path, flat, solids);
   std::vector<CellGroup> regions;
   std::map<std::int64_t, CellGroup> by_property;
   for (auto& e : elements_)
@@ -82,13 +85,47 @@ Imported GroupedMesh::finish(const std::string& path, const ImportOptions& optio
     for (auto& [number, c] : by_property) regions.push_back({fmt::format("{}_{}", property, number), std::move(c.cells)});
     if (!regions.empty()) in.notes.push_back(fmt::format("no groups of solids: each {} is a region", property));
   }
-  add_bars(regions, path);
+  if (options.thickness.empty())
+    add_bars(regions, path);
+  else
+    add_shells(regions, path, options);
   if (in.mesh.n_cells() == 0) throw Error(path, "no solid elements and no bars");
   assign_regions(in, path, regions, false, {}, options);
   tell_loose_faces(path);
-  add_sets();
+  add_sets(options);
   tell_pyramids(in, pyramids);
   return std::move(in);
+}
+
+/// Triangles and quadrangles of the groups that --thickness names, or all of them, as shells.
+void GroupedMesh::add_shells(std::vector<CellGroup>& regions, const std::string& path, const ImportOptions& options) {
+  ShellGroups shells(options, path, in.mesh.n_cells() > 0);
+  std::int64_t middles = 0;
+  const auto add = [&](const std::string& name, const std::vector<Element*>& faces, double thickness) {
+    CellGroup g{name, {}};
+    for (Element* e : faces) {
+      if (e->cell >= 0) ShellGroups::refuse_twice(e->id, name);
+      e->shape = e->nodes.size() == 3 ? tri3 : quad4;
+      middles += e->has_middles;
+      add_cells(*e, g.cells);
+      in.thin[e->cell].thickness = thickness;
+    }
+    if (!g.cells.empty()) regions.push_back(std::move(g));
+  };
+  bool any = false;
+  for (const auto& g : groups_)
+    if (const auto faces = members(g, 2); !faces.empty()) {
+      any = true;
+      if (const auto thickness = shells.thickness_of(g.name)) add(g.name, faces, *thickness);
+    }
+  shells.require_all_names();
+  if (!any) {
+    std::vector<Element*> all;
+    for (auto& e : elements_)
+      if (e.dimension == 2) all.push_back(&e);
+    add("shell", all, shells.thickness_of_all());
+  }
+  if (middles > 0) in.notes.push_back(fmt::format("{} shells lose the nodes in the middle of their edges", middles));
 }
 
 /// Groups of lines that lie on no solid; without solids all lines, in groups or not.
@@ -128,14 +165,16 @@ void GroupedMesh::tell_loose_faces(const std::string& path) {
     in.skip("faces of no group, on no solid", path, n);
 }
 
-void GroupedMesh::add_sets() {
+void GroupedMesh::add_sets(const ImportOptions& options) {
   SetNames names(in);
   const auto lost = [&](const Group& g, std::ptrdiff_t n, const char* what) {
     if (n > 0) in.notes.push_back(fmt::format("group \"{}\": {} of its numbers are no {}: left out", g.name, n, what));
   };
   for (const auto& g : groups_) {
     auto faces = g.faces;
-    for (const auto* e : members(g, 2)) faces.push_back(e->nodes);
+    const bool is_shell = options.thickness.contains("") || options.thickness.contains(g.name);
+    for (const auto* e : members(g, 2))
+      if (!is_shell) faces.push_back(e->nodes);
     std::vector<Facet> facets;
     size_t loose = 0;
     for (const auto& of : facets_of(in.mesh, faces)) {

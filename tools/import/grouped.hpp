@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A mesh of numbered elements with named groups, as universal files, Exodus II and MED hold it, and what it becomes: groups of solids are
-// regions, of faces facet sets, of lines bars or node sets as in a gmsh file; without groups of solids a region is a property.
+// regions, of faces facet sets (shells with --thickness), of lines bars or node sets as in a gmsh file; without groups of solids a region
+// is a property.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -18,6 +19,7 @@ class GroupedMesh {
     Shape shape;
     std::int64_t id, property;
     std::vector<std::int64_t> nodes;
+    bool has_middles = false;  // of a face: nodes that are not taken
     std::int64_t cell = -1;
     [[nodiscard]] bool is_pyramid() const { return dimension == 3 && shape == Shape::tet4 && nodes.size() == 5; }
   };
@@ -33,7 +35,8 @@ class GroupedMesh {
   [[nodiscard]] std::int64_t row(std::int64_t id) const;
   /// An element of dimension 1, 2 or 3 (its shape is of no use in dimension 2), its nodes in our order: of faces the corners, of lines the
   /// ends; a solid tet4 of five nodes is a pyramid, base first.  False where its number was there before.
-  bool add_element(int dimension, Shape shape, std::int64_t id, std::int64_t property, std::vector<std::int64_t> rows);
+  bool add_element(int dimension, Shape shape, std::int64_t id, std::int64_t property, std::vector<std::int64_t> rows,
+                   bool has_middles = false);
   /// The element of this number, or null.
   [[nodiscard]] const Element* find(std::int64_t id) const;
   void add_group(Group group);
@@ -48,9 +51,10 @@ class GroupedMesh {
  private:
   std::vector<Element*> members(const Group& group, int dimension);
   void add_cells(Element& element, std::vector<std::int64_t>& cells);
+  void add_shells(std::vector<CellGroup>& regions, const std::string& path, const ImportOptions& options);
   void add_bars(std::vector<CellGroup>& regions, const std::string& path);
   void tell_loose_faces(const std::string& path);
-  void add_sets();
+  void add_sets(const ImportOptions& options);
 
   std::unordered_map<std::int64_t, std::int64_t> row_;
   std::unordered_map<std::int64_t, size_t> of_id_;

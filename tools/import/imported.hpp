@@ -169,7 +169,8 @@ std::string face_of(const std::string& path, const ImportOptions& options);
 struct MeshFormat {
   std::string_view name;  // its ending, ".inp"
   Imported (*read)(const std::string&, const ImportOptions&);
-  bool geometry = false;  // is meshed: --size has a meaning
+  bool geometry = false;      // is meshed: --size has a meaning
+  bool has_surfaces = false;  // of which --thickness makes shells
 };
 /// Those there are; another reader is one file and a row here, from outside the tree `mesh_formats().add({".cube", read_cube})`.
 Registry<MeshFormat>& mesh_formats();

@@ -4,7 +4,6 @@
 #define OMPI_SKIP_MPICXX 1
 #include <fmt/format.h>
 #include <med.h>
-#include <mpi.h>  // before MED, which wants its types
 
 #include <array>
 #include <filesystem>
@@ -221,7 +220,7 @@ Imported read_med(const std::string& path, const ImportOptions& options) {
         if (node < 1 || node > n_nodes) throw Error(path, fmt::format("element {} names node {}, and there are {}", id, node, n_nodes));
         rows.push_back(node - 1);
       }
-      mesh.add_element(kind.dimension, kind.shape, id, 0, std::move(rows));
+      mesh.add_element(kind.dimension, kind.shape, id, 0, std::move(rows), kind.n_nodes > 4);
       for (const auto& name : names_of(family[static_cast<size_t>(e)]))
         groups[name].elements.push_back(id), solids_in_groups |= kind.dimension == 3;
       if (kind.dimension == 3) solids.elements.push_back(id);

@@ -169,7 +169,7 @@ class UnvReader {
         if (rows.back() < 0)
           throw Error(place, fmt::format("element {} names node {}, which does not exist", number, all[static_cast<size_t>(i)]));
       }
-      if (!mesh_.add_element(kind->dimension, kind->shape, number, property, std::move(rows)))
+      if (!mesh_.add_element(kind->dimension, kind->shape, number, property, std::move(rows), kind->n_nodes > 4))
         throw Error(place, fmt::format("element {} is given twice", number), "number each element once");
     }
   }

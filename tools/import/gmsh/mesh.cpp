@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "import/gmsh/element_types.hpp"
+#include "import/shell_groups.hpp"
 
 namespace hilo {
 namespace {
@@ -196,11 +197,7 @@ class GmshReading {
 
   /// Triangles and quadrangles of the surface groups that --thickness names, or of all surfaces, as shells.
   void read_shells() {
-    const auto others = o_.thickness.find("");
-    const bool is_named = others == o_.thickness.end();
-    if (in_.mesh.n_cells() > 0 && !is_named)
-      throw Error("", fmt::format("--thickness makes shells of surfaces, and {} has volumes", path_),
-                  "name the groups of surfaces: --thickness NAME=T", Exit::usage);
+    ShellGroups shells(o_, path_, in_.mesh.n_cells() > 0);
     const auto add = [&](const std::string& name, const std::vector<Key>& keys, double thickness) {
       CellGroup g{name, {}};
       for (const Key& key : keys) {
@@ -211,28 +208,18 @@ class GmshReading {
           const auto [at, fresh] = in_.thin.try_emplace(c);
           is_new = is_new && fresh, at->second.thickness = thickness;
         }
-        if (!is_new)
-          throw Error("",
-                      fmt::format("--thickness: surface {} is in two groups that become shells, \"{}\" the second", std::get<1>(key), name),
-                      "name one of them: --thickness NAME=T", Exit::usage);
+        if (!is_new) ShellGroups::refuse_twice(std::get<1>(key), name);
       }
       if (!g.cells.empty()) regions_.push_back(std::move(g));
     };
-    std::vector<std::string> names;
-    for (const auto& [tag, keys] : groups_[2]) {
-      names.push_back(group_name(2, tag));
-      const auto own = o_.thickness.find(names.back());
-      if (own != o_.thickness.end() || !is_named) add(names.back(), keys, (own != o_.thickness.end() ? own : others)->second);
-    }
-    for (const auto& [name, thickness] : o_.thickness)
-      if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
-        throw Error("", fmt::format("--thickness {}={:g}: no group of surfaces has this name", name, thickness), suggest(name, names),
-                    Exit::usage);
+    for (const auto& [tag, keys] : groups_[2])
+      if (const auto thickness = shells.thickness_of(group_name(2, tag))) add(group_name(2, tag), keys, *thickness);
+    shells.require_all_names();
     if (!groups_[2].empty()) return;
     std::vector<Key> all;
     for (const auto& [key, entity] : from_.entities)
       if (std::get<0>(key) == 2) all.push_back(key);
-    add("shell", all, others->second);
+    add("shell", all, shells.thickness_of_all());
   }
 
   /// Curve groups: bars where none of the lines is an edge of a solid cell.
