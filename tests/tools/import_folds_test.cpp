@@ -58,6 +58,39 @@ TEST_F(ImportFolds, AFoldIsAsStiffInALinearRegion) {
   for (size_t k = 0; k < free.size(); ++k) EXPECT_NEAR(of_free[k] / free[k], 1, 1e-5);
 }
 
+// Of n shells between clamps the bent share is 4/n^2 too small, and from a clamp to a free end exact: mid-side nodes do not help.
+TEST_F(ImportFolds, ShortRowsBendTooLittleAndAreToldOf) {
+  constexpr double q = 1e-5, L = 10, bends = q * L * L * L * L / EI;
+  for (const int n : {2, 4, 8}) {
+    Frame f;
+    f.step = L / n;
+    f.strip(0, 0, L, 0);
+    const std::string ends = "*NSET, NSET=ROOT\n" + f.nodes_at(0, 0) + "*NSET, NSET=END\n" + f.nodes_at(L, 0);
+    const std::string pressed = fmt::format("1,3,1e-30\n*DLOAD\nPLATE,P,{}\n", q);
+    const auto way = [&](double x, const char* supports) {
+      return tip(f.deck(ends + "*NSET, NSET=TIP\n" + f.nodes_at(x, 0), supports, pressed)).z();
+    };
+    const double between = way(5, "ROOT,1,6\nEND,1,6\n");
+    EXPECT_NEAR(between / (bends / 384), n == 2 ? 0 : 1 - 4. / (n * n), 2e-3) << n;
+    const std::string told = fmt::format(
+        "warning: {} shells stand in rows of less than 8 from a fold or clamp to the next; the shortest has {}, "
+        "at ({:.4g}, 0.5, 0): so few {} (",
+        n, n, L / n / 2, n == 2 ? "hardly bend" : "bend up to 25 % too little");
+    EXPECT_EQ(err.find(told) != std::string::npos, n < 8) << told << err;
+    EXPECT_NEAR(way(L, "ROOT,1,6\n") / (bends / 8), 1, 1e-3) << n;
+    EXPECT_EQ(err.find("stand in rows"), std::string::npos) << err;
+  }
+  // an angle of two quadratic shells, each as four: two between the clamp and the fold, and two to the free edge
+  place.write("angle.inp",
+              "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,.5,0,0\n6,1,.5,0\n7,.5,1,0\n8,0,.5,0\n9,1,0,1\n10,1,1,1\n11,1,0,.5\n12,1,.5,1\n"
+              "13,1,1,.5\n*ELEMENT, TYPE=S8R, ELSET=E\n1,1,2,3,4,5,6,7,8\n2,2,9,10,3,11,12,13,6\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,.3\n"
+              "*SHELL SECTION, ELSET=E, MATERIAL=M\n.01\n*BOUNDARY\n1,1,6\n4,1,6\n8,1,6\n");
+  imported("angle.inp", "--thicken");
+  EXPECT_NE(err.find("warning: 4 shells stand in rows of less than 8 from a fold or clamp to the next; the shortest has 2"),
+            std::string::npos)
+      << err;
+}
+
 TEST_F(ImportFolds, ATeeSharesItsMoment) {
   Frame f;
   f.strip(-10, 0, 0, 0), f.strip(0, 0, 10, 0), f.strip(0, 0, 0, 10);
