@@ -10,7 +10,6 @@
 #include "system/builder.hpp"
 #include "system/joints.hpp"
 #include "system/motions.hpp"
-#include "system/welds.hpp"
 
 namespace hilo {
 namespace {
@@ -149,18 +148,11 @@ void Builder::make_blocks() {
     for (const int i : nodes_of[b])
       if (out_->follower[i] == linear) its.push_back(i);
     weld(linear, body, out_->bodies[body].name, its);
-    for (Weld& w : out_->part<Welds>().list)
-      if (w.body == body && out_->modes[w.modes].body == linear) w.of_block = true;
   }
   for (int i = 0; i < n_nodes; ++i)
     if (mesh.block[i] >= 0 && out_->follower[i] < 0 && body_of[static_cast<size_t>(mesh.block[i])] >= 0)
       out_->follower[i] = body_of[static_cast<size_t>(mesh.block[i])];
   hold_blocks(body_of);
-  std::set<int> joined;
-  for (const Joint& j : out_->part<Joints>().list)
-    for (const Carrier& end : j.ends()) joined.insert(end.body);
-  for (Weld& w : out_->part<Welds>().list)
-    w.yields = w.of_block && out_->bodies[w.body].block && !out_->bodies[w.body].held && !joined.contains(w.body);
 }
 
 /// Single components that motions hold of nodes of blocks: rows of their bodies.  Collective.

@@ -17,6 +17,7 @@
 #include "base/shell_shape.hpp"
 #include "linear/shared_cholesky.hpp"
 #include "system/builder.hpp"
+#include "system/joints.hpp"
 #include "system/linear_regions.hpp"
 #include "system/region_parcel.hpp"
 
@@ -71,8 +72,13 @@ RegionParcel Builder::parcel_of(int number) {
   for (size_t i = 0; i < free.size(); ++i)
     if (free[i]) rows.push_back(mesh_->node_global[i]);
   out.interfaces.push_back(to_first(rows));
+  std::set<int> joined;
+  for (const Joint& j : out_->part<Joints>().list)
+    for (const Carrier& end : j.ends()) joined.insert(end.body);
   for (Weld& w : out_->part<Welds>().list)
     if (w.modes == number) {
+      const Body& other = out_->bodies[w.body];
+      w.yields = w.of_block && other.block && !other.held && !joined.contains(w.body);
       out.welds.push_back(&w);
       rows.clear();
       for (const int i : w.nodes) rows.push_back(mesh_->node_global[i]);

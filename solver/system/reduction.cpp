@@ -71,8 +71,9 @@ struct InterfaceMotions {
   Index n_rigid = 0, n_first = 0;  // of all rigid interfaces, of the first; 0 where that moves with others
 };
 
-/// Axes that nodes can turn about: nodes on a line turn about the two across it alone.
+/// Axes that nodes can turn about: nodes on a line turn about the two across it alone, a single one about none.
 std::vector<Vec3> turns_of(const Face& face) {
+  if (face.is_point) return {};
   if (face.is_line()) return {face.axes.col(0), face.axes.col(1)};
   return {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
 }

@@ -12,7 +12,6 @@ namespace hilo {
 namespace {
 
 constexpr int pair_a[3] = {0, 1, 2}, pair_b[3] = {1, 2, 0};
-constexpr int left_out = 0;  // pair of axes across a line
 using Map = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 using Matrix = ModeForces::Matrix;
 
@@ -22,8 +21,8 @@ std::vector<Vec3> shapes_of_direction(const Weld& w, int i) {
   return out;
 }
 
-/// Of the row of a pair of axes; 0: it is left out.
-double factor(const Weld& w, int i) { return w.on_line && i == left_out ? 0 : 1 / (w.share[pair_a[i]] + w.share[pair_b[i]]); }
+/// Of the row of a pair of axes; 0 where it is left out.
+double factor(const Weld& w, int i) { return i < w.left_out ? 0 : 1 / (w.share[pair_a[i]] + w.share[pair_b[i]]); }
 
 /// Of the row of a stretch.
 double stretch_factor(const Weld& w, size_t i) { return 0.5 / (w.share[w.stretches[i].first] * w.share[w.stretches[i].second]); }
@@ -186,7 +185,7 @@ void Welds::evaluate(Pass& p) const {
     }
     K.block(0, at_rows, n + 6, rows) = p.sigma * G_left.transpose();
     K.block(at_rows, 0, rows, n + 6) = p.sigma * G_right;
-    if (w.on_line) K(at_rows + 3 + left_out, at_rows + 3 + left_out) = p.sigma;
+    for (int i = 0; i < w.left_out; ++i) K(at_rows + 3 + i, at_rows + 3 + i) = p.sigma;
     p.K->add(clique_[k], K.data());
   }
 }
@@ -224,7 +223,7 @@ void Welds::mark_rows(std::vector<char>& on) const {
   for (size_t k = 0; k < list.size(); ++k) {
     const auto first = on.begin() + 3 * (block_[k] - points_.first_joint_block());
     std::fill_n(first, list[k].n_rows(), 1);
-    if (list[k].on_line) first[3 + left_out] = 0;
+    std::fill_n(first + 3, list[k].left_out, 0);
   }
 }
 

@@ -169,24 +169,7 @@ TEST_F(ImportFolds, AStiffenerBelowThePlateBendsWithIt) {
 }
 
 TEST_F(ImportFolds, AnEdgeOnASolidIsAHinge) {
-  // a strip between two blocks, on their upper edges: a beam on two hinges
-  std::string nodes = "*NODE\n", cells = "*ELEMENT, TYPE=S4, ELSET=PLATE\n";
-  for (int i = 0; i <= 20; ++i) nodes += fmt::format("{},{},0,0\n{},{},1,0\n", 2 * i + 1, i / 2., 2 * i + 2, i / 2.);
-  for (int i = 0; i < 20; ++i) cells += fmt::format("{},{},{},{},{}\n", i + 1, 2 * i + 1, 2 * i + 3, 2 * i + 4, 2 * i + 2);
-  for (int end = 0; end < 2; ++end) {
-    const double x0 = end ? 10 : 0, x1 = end ? 11 : -1;
-    const int n = 100 + 10 * end;
-    nodes += fmt::format("{},{},0,-1\n{},{},1,-1\n{},{},0,-1\n{},{},1,-1\n{},{},0,0\n{},{},1,0\n", n, x0, n + 1, x0, n + 2, x1, n + 3, x1,
-                         n + 4, x1, n + 5, x1);
-  }
-  cells += "*ELEMENT, TYPE=C3D8, ELSET=BLOCK\n101,102,100,101,103,104,1,2,105\n102,110,112,113,111,41,114,115,42\n";
-  const std::string deck =
-      nodes + cells +
-      "*NSET, NSET=ROOT\n100,101,102,103,110,111,112,113\n*NSET, NSET=TIP\n21,22\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,0.\n*DENSITY\n1000\n"
-      "*MATERIAL, NAME=HARD\n*ELASTIC\n1e12,0.\n*DENSITY\n1000\n"
-      "*SHELL SECTION, ELSET=PLATE, MATERIAL=M\n.1\n*SOLID SECTION, ELSET=BLOCK, MATERIAL=HARD\n*BOUNDARY\nROOT,1,3\n"
-      "*STEP\n*STATIC\n*CLOAD\n21,3,5e-4\n22,3,5e-4\n*END STEP\n";
-  const Vec3 way = tip(deck);
+  const Vec3 way = tip(strip_between_blocks());
   EXPECT_NE(err.find("4 nodes of shells are nodes of solids too, which do not turn: hinges"), std::string::npos) << err;
   EXPECT_NEAR(way.z() / (1e-3 * (1000 / (48 * EI) + 10 / (4 * kGA))), 1, 3e-3);
 }
