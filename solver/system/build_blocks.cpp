@@ -78,12 +78,15 @@ void Builder::make_blocks() {
                             mesh.block_at[b][2], mesh.block_name[b], why),
                 hint);
   };
-  Pairs met;                                 // block, what a node of it follows
+  Pairs met;  // block, what a node of it follows
+  std::vector<std::vector<int>> nodes_of(n);
   std::vector<double> moments(10 * n, 0.0);  // number, places and their squares, about the block's own
   for (int i = 0; i < n_nodes; ++i) {
     const auto b = mesh.block[i];
     if (b < 0) continue;
     met.insert({static_cast<int>(b), out_->follower[i]});
+    if (const int held = held_to(i); held >= 0) met.insert({static_cast<int>(b), held});  // by a weld, where it is of a linear region
+    nodes_of[static_cast<size_t>(b)].push_back(i);
     if (!out_->node_owned[i]) continue;
     double* m = moments.data() + 10 * b;
     const Vec3 r = out_->X[i] - mesh.block_at[static_cast<size_t>(b)];
@@ -100,24 +103,27 @@ void Builder::make_blocks() {
     if (regions_[mesh.region[e]].fidelity == Fidelity::nonlinear)
       for (const auto i : mesh.cell(e))
         if (mesh.block[i] >= 0) of_nonlinear[static_cast<size_t>(mesh.block[i])] = 1;
-  comm_.sum(of_nonlinear);
+  std::vector<double> is_held(n, 0.0);  // in single components
+  for (const Motion& m : out_->part<Motions>().list)
+    for (const int i : m.nodes)
+      if (m.body < 0 && mesh.block[i] >= 0) is_held[static_cast<size_t>(mesh.block[i])] = 1;
+  comm_.sum(of_nonlinear), comm_.sum(is_held);
   for (size_t b = 0; b < n; ++b) {
     std::set<int> bodies = follows[b];
-    if (const auto linear = std::ranges::find_if(bodies, [&](int body) { return body >= 0 && out_->bodies[body].linear; });
-        linear != bodies.end()) {  // its reduction has the block
-      if (bodies.size() > 1 || of_nonlinear[b] > 0 || body_by_name_.contains(mesh.block_name[b]))
-        refuse(b, fmt::format("and \"{}\" is linear and not alone there", out_->bodies[*linear].name),
-               "the regions that meet there linear, without beams, hinges and moments; or nonlinear");
-      continue;
-    }
-    const bool has_free = bodies.erase(-1) > 0;
+    const auto of_modes = [&](int body) { return body >= 0 && out_->bodies[body].linear; };
+    const auto found = std::ranges::find_if(bodies, of_modes);
+    const int linear = found == bodies.end() ? -1 : *found;  // regions that meet in a block are one
+    if (linear >= 0) bodies.erase(linear);
     const auto named = body_by_name_.find(mesh.block_name[b]);
-    if (named != body_by_name_.end()) bodies.insert(named->second);
+    const bool has_body = named != body_by_name_.end();
+    if (linear >= 0 && bodies.empty() && of_nonlinear[b] == 0 && is_held[b] == 0 && !has_body) continue;  // its reduction has the block
+    const bool has_free = bodies.erase(-1) > 0, is_alone = bodies.empty();
+    if (has_body) bodies.insert(named->second);
     const auto still = [&](int body) { return out_->bodies[body].ground || (out_->bodies[body].held && !out_->bodies[body].moving); };
     if (bodies.size() > 1 && !std::ranges::all_of(bodies, still))
       refuse(b, fmt::format("and belong to \"{}\" and \"{}\"", out_->bodies[*bodies.begin()].name, out_->bodies[*bodies.rbegin()].name),
              "one of them, joined to the other");
-    if (!has_free) continue;
+    if (!has_free && linear < 0) continue;
     const double* m = moments.data() + 10 * b;
     const Vec3 mean = Vec3(m[1], m[2], m[3]) / m[0];
     Mat3 S;
@@ -131,10 +137,17 @@ void Builder::make_blocks() {
       out_->bodies[body].patch = out_->bodies[body].block = true;
       out_->bodies[body].size = std::max(size, 1e-9 * out_->length);
     }
-    if (follows[b].size() == 1 && eigen.eigenvalues()[1] < on_line * on_line * eigen.eigenvalues()[2])
+    if (is_alone && eigen.eigenvalues()[1] < on_line * on_line * eigen.eigenvalues()[2])
       out_->bodies[body].line = eigen.eigenvectors().col(2);
-    out_->bodies[body].has_cells = true;
     body_of[b] = body;
+    if (linear < 0) {
+      out_->bodies[body].has_cells = true;
+      continue;
+    }
+    std::vector<int> its;
+    for (const int i : nodes_of[b])
+      if (out_->follower[i] == linear) its.push_back(i);
+    weld(linear, body, out_->bodies[body].name, its);
   }
   for (int i = 0; i < n_nodes; ++i)
     if (mesh.block[i] >= 0 && out_->follower[i] < 0 && body_of[static_cast<size_t>(mesh.block[i])] >= 0)

@@ -53,15 +53,19 @@ void Builder::make_linear_bodies() {
 /// Nodes of one region and body are one weld, whatever names them.  Collective.
 void Builder::weld(int linear_body, int body, const std::string& name, const std::vector<int>& nodes) {
   auto& list = out_->part<Welds>().list;
+  const auto& names = mesh_->mesh.block_name;
+  const bool of_block =
+      comm_.max(!names.empty() && std::ranges::any_of(nodes, [&](int i) { return mesh_->mesh.block[i] >= 0; }) ? 1 : 0) > 0;
   for (Weld& w : list)
     if (out_->modes[w.modes].body == linear_body && w.body == body) {
       for (const int i : nodes)
         if (std::find(w.nodes.begin(), w.nodes.end(), i) == w.nodes.end()) w.nodes.push_back(i);
       w.at = mean_of(w.nodes);
+      w.of_block = w.of_block || of_block;
       return;
     }
   Weld w;
-  w.name = name, w.body = body, w.nodes = nodes, w.at = mean_of(nodes);
+  w.name = name, w.body = body, w.nodes = nodes, w.at = mean_of(nodes), w.of_block = of_block;
   w.modes = out_->modes_of[linear_body];
   list.push_back(std::move(w));
 }

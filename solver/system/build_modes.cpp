@@ -34,7 +34,8 @@ void Builder::reduce_linear_regions() {
     const auto& local = parcel.local;
     Reduction found;
     if (comm_.rank != 0) SharedCholesky(comm_).serve();
-    std::vector<double> head;  // modes, first frequency left out, omega2, A, levers, then axes, shares, means and stretches of each weld
+    std::vector<double>
+        head;  // modes, first frequency left out, omega2, A, levers, then of each weld: rows left out, axes, shares, means and stretches
     if (comm_.rank == 0) {
       const ReductionInput in = reduction_input(parcel, axes);
       const auto n = static_cast<int>(in.X.size());
@@ -60,7 +61,8 @@ void Builder::reduce_linear_regions() {
         std::vector<Vec3> places_of;
         for (const int i : nodes) places_of.push_back(in.X[i]);
         const Face face(places_of, at);
-        if (!(face.share[0] + face.share[1] > 1e-9))
+        head.push_back(!welds[k - 1]->of_block ? 0 : face.is_point ? 3 : face.is_line() ? 1 : 0);
+        if (!welds[k - 1]->of_block && !(face.share[0] + face.share[1] > 1e-9))
           throw Error(parcel.where,
                       fmt::format("linear region \"{}\" shares nodes on a line alone with \"{}\": they are hinged there",
                                   out_->bodies[modes.body].name, welds[k - 1]->name),
@@ -75,7 +77,7 @@ void Builder::reduce_linear_regions() {
           for (const int i : nodes) {
             const Vec3 u = found.shapes.block<3, 1>(3 * i, j);
             mean += u / static_cast<double>(nodes.size());
-            stretch += u * (in.X[i] - at).transpose() * face.axes / face.second;
+            if (!face.is_point) stretch += u * (in.X[i] - at).transpose() * face.axes / face.second;
           }
           head.insert(head.end(), mean.data(), mean.data() + 3), head.insert(head.end(), stretch.data(), stretch.data() + 9);
         }
@@ -119,6 +121,7 @@ void Builder::reduce_linear_regions() {
         for (int i = 0; i < 3; ++i) out.col(i) = next_vector();
         return out;
       };
+      w->left_out = static_cast<int>(next());
       w->axes = next_matrix(), w->share = next_vector();
       const auto n_stretches = static_cast<int>(next());
       for (int p = 0; p < n_stretches; ++p) {

@@ -52,7 +52,10 @@ void Builder::add_motions() {
     if (found.body >= 0 && !whole)
       throw Error(where, fmt::format("{}: \"{}\" is rigid and can only be held whole", e.label(), e.text("on")),
                   "use a joint to the ground");
-    if (found.linear && !whole)
+    const auto of_linear = [&](int i) { return out_->follower[i] >= 0 && out_->bodies[out_->follower[i]].linear; };
+    const auto in_block = [&](int i) { return !mesh_->mesh.block_name.empty() && mesh_->mesh.block[i] >= 0; };  // which is a body
+    const bool elsewhere = std::ranges::any_of(found.nodes, [&](int i) { return of_linear(i) && !in_block(i); });
+    if (found.linear && !whole && comm_.max(elsewhere ? 1 : 0) > 0)
       throw Error(where, fmt::format("{}: \"{}\" belongs to a linear region and can only be held whole", e.label(), e.text("on")),
                   "use a joint to the ground, or tag the region nonlinear");
     if (whole || found.body >= 0) {
@@ -71,7 +74,7 @@ void Builder::add_motions() {
     } else {
       comm_.together([&] {  // a rank alone may have the node
         for (int i : found.nodes)
-          if (out_->follower[i] >= 0)
+          if (out_->follower[i] >= 0 && !of_linear(i))
             throw Error(where, fmt::format("{}: node {} belongs to a rigid body and cannot have single components prescribed", e.label(),
                                            mesh_->mesh.node_id[i]));
       });

@@ -17,6 +17,7 @@
 #include "base/shell_shape.hpp"
 #include "linear/shared_cholesky.hpp"
 #include "system/builder.hpp"
+#include "system/joints.hpp"
 #include "system/linear_regions.hpp"
 #include "system/region_parcel.hpp"
 
@@ -71,8 +72,13 @@ RegionParcel Builder::parcel_of(int number) {
   for (size_t i = 0; i < free.size(); ++i)
     if (free[i]) rows.push_back(mesh_->node_global[i]);
   out.interfaces.push_back(to_first(rows));
+  std::set<int> joined;
+  for (const Joint& j : out_->part<Joints>().list)
+    for (const Carrier& end : j.ends()) joined.insert(end.body);
   for (Weld& w : out_->part<Welds>().list)
     if (w.modes == number) {
+      const Body& other = out_->bodies[w.body];
+      w.yields = w.of_block && other.block && !other.held && !joined.contains(w.body);
       out.welds.push_back(&w);
       rows.clear();
       for (const int i : w.nodes) rows.push_back(mesh_->node_global[i]);
@@ -151,18 +157,24 @@ ReductionInput Builder::reduction_input(const RegionParcel& parcel, const Body& 
                          (r.material ? r.material->all_values() : fmt::format("E {} nu {}", r.E, r.nu)));
     in.cells.push_back(std::move(batch));
   }
+  std::vector<char> taken(in.X.size(), 0);
+  size_t n_yield = 0;
+  for (size_t k = 0; k < parcel.welds.size(); ++k) {
+    auto set = parcel.nodes_of(k + 1);
+    std::erase_if(set, [&](int i) { return taken[i] != 0; });
+    for (const int i : set) taken[i] = parcel.welds[k]->yields ? 2 : 1;
+    n_yield += parcel.welds[k]->yields;
+    if (!set.empty()) in.rigid.push_back(std::move(set)), in.rigid_names.push_back(parcel.welds[k]->name);
+  }
+  if (n_yield > most_free / 2)
+    warn(axes.name,
+         fmt::format("linear, it meets other shells at {} nodes of folds: they move together by polynomials of the fifth degree", n_yield));
   std::map<std::int64_t, std::set<int>> blocks;
   for (const auto& list : parcel.blocks)
     for (size_t k = 0; k < list.size(); k += 2)
       if (const auto i = parcel.local.find(list[k]); i != parcel.local.end()) blocks[list[k + 1]].insert(i->second);
-  for (const auto& [block, nodes] : blocks) in.blocks.emplace_back(nodes.begin(), nodes.end());
-  std::vector<char> taken(in.X.size(), 0);
-  for (size_t k = 0; k < parcel.welds.size(); ++k) {
-    auto set = parcel.nodes_of(k + 1);
-    std::erase_if(set, [&](int i) { return taken[i] != 0; });
-    for (const int i : set) taken[i] = 1;
-    if (!set.empty()) in.rigid.push_back(std::move(set)), in.rigid_names.push_back(parcel.welds[k]->name);
-  }
+  for (const auto& [block, nodes] : blocks)
+    if (!std::ranges::all_of(nodes, [&](int i) { return taken[i] == 1; })) in.blocks.emplace_back(nodes.begin(), nodes.end());
   in.free = parcel.nodes_of(0);
   std::erase_if(in.free, [&](int i) { return taken[i] != 0; });
   if (in.free.size() > most_free)

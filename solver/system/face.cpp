@@ -11,7 +11,8 @@ Face::Face(std::span<const Vec3> nodes, const Vec3& mean) {
   for (const Vec3& x : nodes) spread += (x - mean) * (x - mean).transpose();
   const Eigen::SelfAdjointEigenSolver<Mat3> principal(spread);
   axes = principal.eigenvectors(), second = spread.trace();
-  share = principal.eigenvalues() / second;
+  is_point = nodes.size() < 2;
+  share = is_point ? Vec3(Vec3::Zero()) : Vec3(principal.eigenvalues() / second);
   for (int b = 0; b < 3; ++b)
     for (int a = 0; a <= b; ++a)
       if (share[a] > flat && share[b] > flat) stretches.emplace_back(a, b);

@@ -73,7 +73,6 @@ ReductionKey key_of(const ReductionInput& in) {
   Digest mesh;
   for (const Vec3& X : in.X)
     for (const double x : X) mesh.add(x);
-  for (const auto& block : in.blocks) mesh.add(of_nodes(block));
   key.mesh = mesh.add(cells).text(), key.material = Digest().add(materials).text();
   for (const auto& load : in.loads) {
     std::uint64_t sum = 0;
@@ -90,6 +89,9 @@ ReductionKey key_of(const ReductionInput& in) {
     key.interfaces.push_back(in.rigid_names[k]), key.digests.push_back(Digest().add(of_nodes(in.rigid[k])).text());
   if (!in.free.empty())
     key.interfaces.emplace_back("nodes of nonlinear regions"), key.digests.push_back(Digest().add(of_nodes(in.free)).text());
+  Digest folds;
+  for (const auto& block : in.blocks) folds.add(of_nodes(block));
+  if (!in.blocks.empty()) key.interfaces.emplace_back("nodes of folds"), key.digests.push_back(folds.text());
   return key;
 }
 

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <set>
 #include <utility>
 
 #include "linear/block_krylov.hpp"
@@ -63,30 +65,81 @@ Matrix smooth_functions(const std::vector<Vec3>& at) {
   return qr.householderQ() * Matrix::Identity(n, qr.rank());
 }
 
-/// Motions of the interfaces, zero elsewhere; where the region stiffens, rigid ones can be stretched too, as a linear map that turns them
-/// does (system/welds.hpp).
-Matrix interface_motions(const ReductionInput& in) {
+/// Motions of the interfaces, zero elsewhere, rigid ones first.
+struct InterfaceMotions {
+  Matrix columns;
+  Index n_rigid = 0, n_first = 0;  // of all rigid interfaces, of the first; 0 where that moves with others
+};
+
+/// Axes that nodes can turn about: nodes on a line turn about the two across it alone, a single one about none.
+std::vector<Vec3> turns_of(const Face& face) {
+  if (face.is_point) return {};
+  if (face.is_line()) return {face.axes.col(0), face.axes.col(1)};
+  return {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+}
+
+/// Many blocks of nodes along folds, each moved and turned as smooth functions of its place say.
+void add_smooth_blocks(const ReductionInput& in, const std::vector<std::vector<int>>& sets, std::vector<Vector>& columns) {
+  std::vector<Vec3> means;
+  std::vector<Face> faces;
+  double arm = 0;
+  for (const auto& set : sets) {
+    std::vector<Vec3> at;
+    for (const int i : set) at.push_back(in.X[i]);
+    means.push_back(std::accumulate(at.begin(), at.end(), Vec3(Vec3::Zero())) / static_cast<double>(at.size()));
+    faces.emplace_back(at, means.back());
+    for (const Vec3& x : at) arm = std::max(arm, (x - means.back()).norm());
+  }
+  const Matrix functions = smooth_functions(means);
   const auto rows = 3 * static_cast<Index>(in.X.size());
-  std::vector<Vector> columns;
-  for (const auto& set : in.rigid) {
-    Vec3 mean = Vec3::Zero();
-    for (const int i : set) mean += in.X[i] / static_cast<double>(set.size());
+  for (Index j = 0; j < functions.cols(); ++j)
     for (int k = 0; k < 6; ++k) {
       Vector v = Vector::Zero(rows);
-      for (const int i : set) v.segment<3>(3 * i) = k < 3 ? Vec3(Vec3::Unit(k)) : Vec3(Vec3::Unit(k - 3)).cross(Vec3(in.X[i] - mean));
-      columns.push_back(std::move(v));
+      for (size_t b = 0; b < sets.size(); ++b) {
+        Vec3 turn = Vec3::Zero();
+        if (k >= 3)
+          for (const Vec3& axis : turns_of(faces[b])) turn += axis[k - 3] * axis;
+        for (const int i : sets[b])
+          v.segment<3>(3 * i) = functions(static_cast<Index>(b), j) * (k < 3 ? Vec3(Vec3::Unit(k)) : turn.cross(in.X[i] - means[b]));
+      }
+      if (k < 3 || v.norm() > 1e-6 * arm) columns.push_back(std::move(v));  // plates do not turn about their normal
     }
-    if (!in.stiffening) continue;
+}
+
+/// Where the region stiffens, rigid interfaces can be stretched too, as a linear map that turns them does (system/welds.hpp).
+InterfaceMotions interface_motions(const ReductionInput& in) {
+  const auto rows = 3 * static_cast<Index>(in.X.size());
+  std::vector<Vector> columns;
+  InterfaceMotions out;
+  const std::set<std::vector<int>> blocks(in.blocks.begin(), in.blocks.end());
+  std::vector<std::vector<int>> many;
+  for (const auto& set : in.rigid)
+    if (blocks.contains(set)) many.push_back(set);
+  if (many.size() <= most_free / 2) many.clear();  // they turn too
+  for (size_t k = 0; k < in.rigid.size(); ++k) {
+    if (!many.empty() && blocks.contains(in.rigid[k])) continue;
+    const auto& set = in.rigid[k];
+    Vec3 mean = Vec3::Zero();
+    for (const int i : set) mean += in.X[i] / static_cast<double>(set.size());
     std::vector<Vec3> at;
     for (const int i : set) at.push_back(in.X[i]);
     const Face face(at, mean);
+    const auto add = [&](auto&& motion) {
+      Vector v = Vector::Zero(rows);
+      for (const int i : set) v.segment<3>(3 * i) = motion(Vec3(in.X[i] - mean));
+      columns.push_back(std::move(v));
+    };
+    for (int c = 0; c < 3; ++c) add([&](const Vec3&) { return Vec3(Vec3::Unit(c)); });
+    for (const Vec3& axis : turns_of(face)) add([&](const Vec3& r) { return Vec3(axis.cross(r)); });
+    if (k == 0) out.n_first = static_cast<Index>(columns.size());
+    if (!in.stiffening) continue;
     for (const auto& [a, b] : face.stretches) {
       const Mat3 E = face.axes.col(a) * face.axes.col(b).transpose();
-      Vector v = Vector::Zero(rows);
-      for (const int i : set) v.segment<3>(3 * i) = (E + E.transpose()) * (in.X[i] - mean);
-      columns.push_back(std::move(v));
+      add([&](const Vec3& r) { return Vec3((E + E.transpose()) * r); });
     }
   }
+  if (!many.empty()) add_smooth_blocks(in, many, columns);
+  out.n_rigid = in.stiffening ? 6 * static_cast<Index>(in.rigid.size()) : static_cast<Index>(columns.size());
   std::vector<Vec3> free;
   for (const int i : in.free) free.push_back(in.X[i]);
   const auto n_free = static_cast<Index>(free.size());
@@ -97,8 +150,8 @@ Matrix interface_motions(const ReductionInput& in) {
       for (Index i = 0; i < n_free; ++i) v[3 * in.free[i] + k] = functions(i, j);
       columns.push_back(std::move(v));
     }
-  Matrix out(rows, static_cast<Index>(columns.size()));
-  for (size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Index>(k)) = columns[k];
+  out.columns.resize(rows, static_cast<Index>(columns.size()));
+  for (size_t k = 0; k < columns.size(); ++k) out.columns.col(static_cast<Index>(k)) = columns[k];
   return out;
 }
 
@@ -213,12 +266,12 @@ struct ModeBasis {
 };
 
 /// Constraint, static, load and vibration modes.
-std::vector<Matrix> found_modes(const ReductionInput& in, const RegionCells& cells, const Flexibility& flexibility, Reduction& out) {
+std::vector<Matrix> found_modes(const ReductionInput& in, const RegionCells& cells, const Flexibility& flexibility,
+                                const Matrix& at_interfaces, Reduction& out) {
   const auto tell = [&](const std::string& what) {
     if (in.progress) in.progress(what);
   };
   const auto rows = 3 * static_cast<Index>(in.X.size());
-  const Matrix at_interfaces = interface_motions(in);
   std::vector<Matrix> parts;
   tell("static modes");
   Matrix fields = Matrix::Zero(rows, 12);
@@ -290,13 +343,14 @@ Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
   tell("factor");
   const Flexibility flexibility(in, cells, rigid, M_rigid, factor);
   Reduction out;
-  std::vector<Matrix> parts = in.given.cols() > 0 ? std::vector<Matrix>{in.given} : found_modes(in, cells, flexibility, out);
+  const bool is_given = in.given.cols() > 0;
+  const InterfaceMotions interfaces = is_given ? InterfaceMotions{} : interface_motions(in);
+  std::vector<Matrix> parts = is_given ? std::vector<Matrix>{in.given} : found_modes(in, cells, flexibility, interfaces.columns, out);
 
   tell("basis");
-  const bool has_rigid = in.given.cols() == 0 && !in.rigid.empty();  // moved alike, all interfaces make a rigid motion
-  const ModeBasis basis(cells, rigid, M_rigid, has_rigid ? 6 : 0);
+  const ModeBasis basis(cells, rigid, M_rigid, interfaces.n_first);  // moved alike, all interfaces make a rigid motion
   basis.find(parts, out);
-  if (in.stiffening && in.given.cols() == 0) {
+  if (in.stiffening && !is_given) {
     tell("modal derivatives");
     Reduction bending;  // what the region does where it is soft: its vibrations between interfaces, and what those do
     const Matrix& found = parts.back();
@@ -319,8 +373,7 @@ Reduction reduced(const ReductionInput& in, SharedCholesky& factor) {
   out.sites = at_sites(in.X, in.centre, out.shapes);
   tell("error");
   out.left_out = energy_left_out(cells, flexibility, out);
-  const Index n_interface = in.given.cols() > 0 ? 0 : 6 * static_cast<Index>(in.rigid.size());  // rigid ones come first
-  SecondOrder second = second_order(in, out.shapes, out.omega2, cells.times_mass(parts.front().leftCols(n_interface)));
+  SecondOrder second = second_order(in, out.shapes, out.omega2, cells.times_mass(parts.front().leftCols(interfaces.n_rigid)));
   out.soft = std::move(second.soft), out.second_order = std::move(second.forces);
   factor.end();
   out.A = moments(in, out.shapes, cells.scalar_mass());

@@ -23,7 +23,8 @@ std::vector<int> connected(const System& system, int region) {
     if (const int first = system.body_block[b]; first >= 0)
       of_block[static_cast<size_t>(first)] = of_block[static_cast<size_t>(first) + 1] = static_cast<int>(b);
   std::vector<std::vector<int>> ties;
-  for (const Weld& w : system.part<Welds>().list) ties.push_back({system.modes[w.modes].body, w.body});
+  for (const Weld& w : system.part<Welds>().list)
+    if (!w.yields) ties.push_back({system.modes[w.modes].body, w.body});
   for (const auto& c : system.constraints()) {
     auto& tie = ties.emplace_back();
     for (const int block : c->blocks()) tie.push_back(of_block[static_cast<size_t>(block)]);
@@ -65,7 +66,7 @@ RegionSupport support_of(const System& system, const LinearRegion& region, const
   for (const Weld& w : system.part<Welds>().list) {
     const int body = system.modes[w.modes].body;
     const Index a = of_body[static_cast<size_t>(body)], b = of_body[static_cast<size_t>(w.body)];
-    if (a < 0 && b < 0) continue;
+    if ((a < 0 && b < 0) || w.yields) continue;  // nonlinear neighbours hold nothing
     const Matrix G = system.part<Welds>().gradient(w, q);
     for (Index r = 0; r < G.rows(); ++r) {
       Vector row = Vector::Zero(n);

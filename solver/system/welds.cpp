@@ -21,8 +21,8 @@ std::vector<Vec3> shapes_of_direction(const Weld& w, int i) {
   return out;
 }
 
-/// Of the row of a pair of axes.
-double factor(const Weld& w, int i) { return 1 / (w.share[pair_a[i]] + w.share[pair_b[i]]); }
+/// Of the row of a pair of axes; 0 where it is left out.
+double factor(const Weld& w, int i) { return i < w.left_out ? 0 : 1 / (w.share[pair_a[i]] + w.share[pair_b[i]]); }
 
 /// Of the row of a stretch.
 double stretch_factor(const Weld& w, size_t i) { return 0.5 / (w.share[w.stretches[i].first] * w.share[w.stretches[i].second]); }
@@ -185,6 +185,7 @@ void Welds::evaluate(Pass& p) const {
     }
     K.block(0, at_rows, n + 6, rows) = p.sigma * G_left.transpose();
     K.block(at_rows, 0, rows, n + 6) = p.sigma * G_right;
+    for (int i = 0; i < w.left_out; ++i) K(at_rows + 3 + i, at_rows + 3 + i) = p.sigma;
     p.K->add(clique_[k], K.data());
   }
 }
@@ -219,7 +220,11 @@ void Welds::add_row_rates(const Rates& at, std::vector<double>& rate, std::vecto
 }
 
 void Welds::mark_rows(std::vector<char>& on) const {
-  for (size_t k = 0; k < list.size(); ++k) std::fill_n(on.begin() + 3 * (block_[k] - points_.first_joint_block()), list[k].n_rows(), 1);
+  for (size_t k = 0; k < list.size(); ++k) {
+    const auto first = on.begin() + 3 * (block_[k] - points_.first_joint_block());
+    std::fill_n(first, list[k].n_rows(), 1);
+    std::fill_n(first + 3, list[k].left_out, 0);
+  }
 }
 
 Vec3 Weld::turn(const Modes& m, const Config& q) const {

@@ -9,6 +9,9 @@
 // and where the region stiffens, so that a face that turns far stays as it is,
 //   (d_a.d_b/(s_a s_b) - delta_ab)/2 = 0 for the axes that the nodes have an extent along,
 // of degree two in all coordinates: gradients at the mid-point are difference quotients, and the rows neither work nor turn.
+//
+// The nodes of a plate at a fold may lie on a line, e_3.  Their turn about it is none of the plate's: the row of (1, 2) is left out.  A
+// solid's single node at a hinge has none of the three.
 #pragma once
 #include "system/contribution.hpp"
 
@@ -18,6 +21,9 @@ struct Weld {
   std::string name;                            // of the set, or of the body
   int modes = -1;                              // of Points::modes
   int body = -1;                               // it is welded to
+  bool of_block = false;                       // made of nodes that move as one, which may lie on a line,
+  bool yields = false;                         // with a body that is of such nodes alone, held by cells and nothing else
+  int left_out = 0;                            // of the rows of turns, the first: 1 on a line, 3 of a single node
   Vec3 at = Vec3::Zero();                      // the mean of the nodes, reference position [m]
   std::vector<int> nodes;                      // local ones
   Mat3 axes = Mat3::Identity();                // e_i, columns
@@ -26,6 +32,7 @@ struct Weld {
   std::vector<Vec3> mean;                      // u_j    (3 n_blocks)       [m]
   std::vector<Mat3> stretch;                   // g_ji, columns (3 n_blocks) [1]
 
+  /// With those that are left out.
   int n_rows() const { return 6 + static_cast<int>(stretches.size()); }
   int n_blocks() const { return (n_rows() + 2) / 3; }
   /// Turn of the nodes in linear theory [rad].

@@ -2,81 +2,13 @@
 // Shells of decks that fold, meet, change their thickness, turn at their supports or carry beams: frames of strips against beam theory.
 #include <fmt/format.h>
 
-#include "import_case.hpp"
-#include "model/store.hpp"
+#include "fold_frames.hpp"
 
 namespace hilo::test::import_folds_test {
 namespace {
 
-constexpr double E = 1e9, t = 0.1, EI = E * t * t * t / 12, EA = E * t, kGA = 5. / 6 * E / 2 * t;  // of strips 1 wide, nu = 0
-
-/// Strips along polylines in the plane of x and z, one cell (or more) wide along y.
-struct Frame {
-  double step = 0.5;
-  int across = 1;
-  std::string nodes, cells;
-  std::map<std::pair<long, long>, int> number;  // first node of a station
-  std::map<std::string, std::string> of_set;
-  int n_cells = 0;
-
-  int station(double x, double z) {
-    const auto [it, fresh] =
-        number.try_emplace({std::lround(1e6 * x), std::lround(1e6 * z)}, static_cast<int>(number.size()) * (across + 1) + 1);
-    if (fresh)
-      for (int k = 0; k <= across; ++k) nodes += fmt::format("{},{},{},{}\n", it->second + k, x, static_cast<double>(k) / across, z);
-    return it->second;
-  }
-  void strip(double x0, double z0, double x1, double z1, const std::string& set = "PLATE") {
-    const int n = static_cast<int>(std::lround(std::hypot(x1 - x0, z1 - z0) / step));
-    for (int i = 0; i < n; ++i) {
-      const double a = static_cast<double>(i) / n, b = static_cast<double>(i + 1) / n;
-      const int p = station(x0 + a * (x1 - x0), z0 + a * (z1 - z0)), q = station(x0 + b * (x1 - x0), z0 + b * (z1 - z0));
-      for (int k = 0; k < across; ++k) of_set[set] += fmt::format("{},{},{},{},{}\n", ++n_cells, p + k, q + k, q + k + 1, p + k + 1);
-    }
-  }
-  std::string nodes_at(double x, double z) {
-    const int p = station(x, z);
-    std::string s;
-    for (int k = 0; k <= across; ++k) s += fmt::format("{}{}", k ? "," : "", p + k);
-    return s + "\n";
-  }
-  /// Forces or moments on the nodes of a station, whose sum is `value`.
-  std::string load(double x, double z, int component, double value) {
-    const int p = station(x, z);
-    std::string s;
-    for (int k = 0; k <= across; ++k)
-      s += fmt::format("{},{},{:.15g}\n", p + k, component, value / across * (k == 0 || k == across ? 0.5 : 1));
-    return s;
-  }
-  std::string deck(const std::string& sets, const std::string& supports, const std::string& loads, const std::string& more = "",
-                   const std::string& procedure = "*STATIC") const {
-    std::string s = "*NODE\n" + nodes, sections;
-    for (const auto& [set, cells_of] : of_set) {
-      s += "*ELEMENT, TYPE=S4, ELSET=" + set + "\n" + cells_of;
-      sections += fmt::format("*SHELL SECTION, ELSET={}, MATERIAL=M\n{}\n", set, set == "THICK" ? 2 * t : t);
-    }
-    return s + sets + fmt::format("*MATERIAL, NAME=M\n*ELASTIC\n{},0.\n*DENSITY\n1000\n", E) + sections + more + "*BOUNDARY\n" + supports +
-           "*STEP\n" + procedure + "\n*CLOAD\n" + loads + "*END STEP\n";
-  }
-};
-
-class ImportFolds : public test::Import {
- protected:
-  /// How far the set TIP goes; `more` scene lines, `ranks` of them.
-  Vec3 tip(const std::string& deck, const std::string& more = "", int ranks = 1) {
-    place.write("deck.inp", deck);
-    imported("deck.inp", "--thicken --scene-out scene.toml");
-    place.write("run.toml", test::text_of(place / "scene.toml") + "\n[[probe]]\nname = \"TIP\"\non = \"TIP\"\n" + more);
-    const auto ran = place.run(
-        fmt::format("{}hilo-solve --quiet run.toml -o run.h5", ranks > 1 ? test::for_ranks + fmt::format(" mpirun -n {} ", ranks) : ""));
-    EXPECT_EQ(ran.exit, 0) << ran.err;
-    if (ran.exit != 0) return Vec3::Zero();
-    const Store run = Store::open(place / "run.h5");
-    const auto x = run.read<double>("/history/probe/TIP");
-    const size_t n = x.size() / run.shape("/history/probe/TIP")[0];
-    return Vec3(x[x.size() - n] - x[0], x[x.size() - n + 1] - x[1], x[x.size() - n + 2] - x[2]);
-  }
-};
+using namespace fold_frames;
+class ImportFolds : public Folds {};
 
 TEST_F(ImportFolds, ACornerIsStiffAndNoMore) {
   Frame f;
@@ -124,6 +56,39 @@ TEST_F(ImportFolds, AFoldIsAsStiffInALinearRegion) {
   const auto of_modes = first_modes("tags.h5", false), of_free = first_modes("tags.h5", true);
   for (size_t k = 0; k < held.size(); ++k) EXPECT_NEAR(of_modes[k] / held[k], 1, 1e-5);
   for (size_t k = 0; k < free.size(); ++k) EXPECT_NEAR(of_free[k] / free[k], 1, 1e-5);
+}
+
+// Of n shells between clamps the bent share is 4/n^2 too small, and from a clamp to a free end exact: mid-side nodes do not help.
+TEST_F(ImportFolds, ShortRowsBendTooLittleAndAreToldOf) {
+  constexpr double q = 1e-5, L = 10, bends = q * L * L * L * L / EI;
+  for (const int n : {2, 4, 8}) {
+    Frame f;
+    f.step = L / n;
+    f.strip(0, 0, L, 0);
+    const std::string ends = "*NSET, NSET=ROOT\n" + f.nodes_at(0, 0) + "*NSET, NSET=END\n" + f.nodes_at(L, 0);
+    const std::string pressed = fmt::format("1,3,1e-30\n*DLOAD\nPLATE,P,{}\n", q);
+    const auto way = [&](double x, const char* supports) {
+      return tip(f.deck(ends + "*NSET, NSET=TIP\n" + f.nodes_at(x, 0), supports, pressed)).z();
+    };
+    const double between = way(5, "ROOT,1,6\nEND,1,6\n");
+    EXPECT_NEAR(between / (bends / 384), n == 2 ? 0 : 1 - 4. / (n * n), 2e-3) << n;
+    const std::string told = fmt::format(
+        "warning: {} shells stand in rows of less than 8 from a fold or clamp to the next; the shortest has {}, "
+        "at ({:.4g}, 0.5, 0): so few {} (",
+        n, n, L / n / 2, n == 2 ? "hardly bend" : "bend up to 25 % too little");
+    EXPECT_EQ(err.find(told) != std::string::npos, n < 8) << told << err;
+    EXPECT_NEAR(way(L, "ROOT,1,6\n") / (bends / 8), 1, 1e-3) << n;
+    EXPECT_EQ(err.find("stand in rows"), std::string::npos) << err;
+  }
+  // an angle of two quadratic shells, each as four: two between the clamp and the fold, and two to the free edge
+  place.write("angle.inp",
+              "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,.5,0,0\n6,1,.5,0\n7,.5,1,0\n8,0,.5,0\n9,1,0,1\n10,1,1,1\n11,1,0,.5\n12,1,.5,1\n"
+              "13,1,1,.5\n*ELEMENT, TYPE=S8R, ELSET=E\n1,1,2,3,4,5,6,7,8\n2,2,9,10,3,11,12,13,6\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,.3\n"
+              "*SHELL SECTION, ELSET=E, MATERIAL=M\n.01\n*BOUNDARY\n1,1,6\n4,1,6\n8,1,6\n");
+  imported("angle.inp", "--thicken");
+  EXPECT_NE(err.find("warning: 4 shells stand in rows of less than 8 from a fold or clamp to the next; the shortest has 2"),
+            std::string::npos)
+      << err;
 }
 
 TEST_F(ImportFolds, ATeeSharesItsMoment) {
@@ -204,24 +169,7 @@ TEST_F(ImportFolds, AStiffenerBelowThePlateBendsWithIt) {
 }
 
 TEST_F(ImportFolds, AnEdgeOnASolidIsAHinge) {
-  // a strip between two blocks, on their upper edges: a beam on two hinges
-  std::string nodes = "*NODE\n", cells = "*ELEMENT, TYPE=S4, ELSET=PLATE\n";
-  for (int i = 0; i <= 20; ++i) nodes += fmt::format("{},{},0,0\n{},{},1,0\n", 2 * i + 1, i / 2., 2 * i + 2, i / 2.);
-  for (int i = 0; i < 20; ++i) cells += fmt::format("{},{},{},{},{}\n", i + 1, 2 * i + 1, 2 * i + 3, 2 * i + 4, 2 * i + 2);
-  for (int end = 0; end < 2; ++end) {
-    const double x0 = end ? 10 : 0, x1 = end ? 11 : -1;
-    const int n = 100 + 10 * end;
-    nodes += fmt::format("{},{},0,-1\n{},{},1,-1\n{},{},0,-1\n{},{},1,-1\n{},{},0,0\n{},{},1,0\n", n, x0, n + 1, x0, n + 2, x1, n + 3, x1,
-                         n + 4, x1, n + 5, x1);
-  }
-  cells += "*ELEMENT, TYPE=C3D8, ELSET=BLOCK\n101,102,100,101,103,104,1,2,105\n102,110,112,113,111,41,114,115,42\n";
-  const std::string deck =
-      nodes + cells +
-      "*NSET, NSET=ROOT\n100,101,102,103,110,111,112,113\n*NSET, NSET=TIP\n21,22\n*MATERIAL, NAME=M\n*ELASTIC\n1e9,0.\n*DENSITY\n1000\n"
-      "*MATERIAL, NAME=HARD\n*ELASTIC\n1e12,0.\n*DENSITY\n1000\n"
-      "*SHELL SECTION, ELSET=PLATE, MATERIAL=M\n.1\n*SOLID SECTION, ELSET=BLOCK, MATERIAL=HARD\n*BOUNDARY\nROOT,1,3\n"
-      "*STEP\n*STATIC\n*CLOAD\n21,3,5e-4\n22,3,5e-4\n*END STEP\n";
-  const Vec3 way = tip(deck);
+  const Vec3 way = tip(strip_between_blocks());
   EXPECT_NE(err.find("4 nodes of shells are nodes of solids too, which do not turn: hinges"), std::string::npos) << err;
   EXPECT_NEAR(way.z() / (1e-3 * (1000 / (48 * EI) + 10 / (4 * kGA))), 1, 3e-3);
 }

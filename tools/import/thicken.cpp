@@ -15,6 +15,7 @@
 #include "base/shell_shape.hpp"
 #include "import/imported.hpp"
 #include "import/sheets.hpp"
+#include "import/shell_rows.hpp"
 
 namespace hilo {
 namespace {
@@ -29,6 +30,7 @@ class Thickening {
   void run() {
     if (cells_.empty()) throw Error(file_, "there are no shells to be thickened", "S3 to S8R, CTRIA3 to CQUAD8, or surfaces");
     check_cells();
+    look_for_short_rows();
     pair_nodes();
     rebuild();
     edges_and_faces();
@@ -54,6 +56,21 @@ class Thickening {
   [[noreturn]] void refuse(std::int64_t c, const std::string& why,
                            const char* hint = "leave them as they are: regions that are rigid") const {
     throw Error(file_, fmt::format("element {}: {}", m_.cell_id[c], why), hint);
+  }
+
+  /// A surface of few shells between folds and clamps is far too stiff there, and its answer looks like any other.
+  void look_for_short_rows() {
+    const ShortRows rows = short_rows(in_, sheets_, cells_);
+    if (rows.cell < 0) return;
+    Vec3 X = Vec3::Zero();
+    for (const auto a : m_.cell(rows.cell)) X += m_.X[a] / 4;
+    const std::string off =
+        rows.fewest < 3 ? "hardly bend" : fmt::format("bend up to {:.0f} % too little", 400. / (rows.fewest * rows.fewest));
+    in_.notes.push_back(
+        fmt::format("warning: {} shells stand in rows of less than {} from a fold or clamp to the next; the shortest has {}, at ({:.4g}, "
+                    "{:.4g}, {:.4g}): "
+                    "so few {} (more elements across; mid-side nodes do not help)",
+                    rows.n_shells, enough_in_a_row, rows.fewest, X[0], X[1], X[2], off));
   }
 
   void check_cells() {
