@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "base/shell_shape.hpp"
 #include "system/builder.hpp"
 #include "system/joints.hpp"
 #include "system/motions.hpp"
@@ -36,6 +37,29 @@ class HeldRows {
   double size_;
   std::vector<Eigen::Matrix<double, 6, 1>> rows_;
 };
+
+/// A shell that deforms turns on a solid that deforms, as a hinge, and not on a rigid one: said, because the mesh is the same.  Flags are
+/// by region.  Collective.
+void tell_clamps(const Mesh& mesh, const std::vector<char>& is_rigid, const std::vector<char>& is_shell, const Comm& comm,
+                 const std::string& file) {
+  const size_t n = mesh.block_name.size();
+  std::vector<double> met(2 * n, 0.0);  // by block: a rigid solid, a shell that deforms
+  for (std::int64_t e = 0; e < mesh.n_cells(); ++e) {
+    const bool rigid = is_rigid[mesh.region[e]], shell = is_shell[mesh.region[e]] || static_cast<Shape>(mesh.shape[e]) == shell8;
+    if (rigid == shell) continue;
+    for (const auto i : mesh.cell(e))
+      if (mesh.block[i] >= 0) met[2 * static_cast<size_t>(mesh.block[i]) + (rigid ? 0 : 1)] = 1;
+  }
+  comm.sum(met);
+  size_t clamps = 0, first = 0;
+  for (size_t b = n; b-- > 0;)
+    if (met[2 * b] > 0 && met[2 * b + 1] > 0) ++clamps, first = b;
+  const Vec3& at = mesh.block_at[first];
+  if (clamps > 0)
+    warn(file, fmt::format("{} nodes where shells stand on rigid solids are clamps, that at ({:.4g}, {:.4g}, {:.4g}) among them; on solids "
+                           "that deform they are hinges",
+                           clamps, at[0], at[1], at[2]));
+}
 
 }  // namespace
 
@@ -153,6 +177,9 @@ void Builder::make_blocks() {
     if (mesh.block[i] >= 0 && out_->follower[i] < 0 && body_of[static_cast<size_t>(mesh.block[i])] >= 0)
       out_->follower[i] = body_of[static_cast<size_t>(mesh.block[i])];
   hold_blocks(body_of);
+  std::vector<char> is_rigid, is_shell;
+  for (const Region& r : regions_) is_rigid.push_back(r.fidelity == Fidelity::rigid), is_shell.push_back(r.shell);
+  tell_clamps(mesh, is_rigid, is_shell, comm_, mesh_->file);
 }
 
 /// Single components that motions hold of nodes of blocks: rows of their bodies.  Collective.

@@ -74,6 +74,10 @@ def plotted(text):
     return blocks
 
 
+class NothingPrinted(Exception):
+    """The deck's reference has no displacements of its first step."""
+
+
 def first_step(deck):
     """Is the first step of the deck nonlinear, and how long is it?"""
     lines = [l for l in deck.splitlines() if not l.startswith("**") and l.strip()]
@@ -101,7 +105,10 @@ def compare(binaries, deck):
         row_of = {int(n): i for i, n in enumerate(f["/mesh/nodes/id"][:])}
         extent = np.ptp(f["/mesh/nodes/X"][:], axis=0).max()
     blocks = printed(read(deck + ".dat.ref")) or plotted(read(deck + ".frd.ref"))
-    theirs = blocks[max(t for t in blocks if t <= period * (1 + 1e-6))]
+    times = [t for t in blocks if t <= period * (1 + 1e-6)]
+    if not times:
+        raise NothingPrinted("nothing is printed of the first step")  # beamwrite of Debian 13
+    theirs = blocks[max(times)]
     nodes = [n for n in theirs if n in row_of]
     if not nodes:
         raise RuntimeError("no node in common with the reference")
@@ -128,13 +135,17 @@ def main():
         sys.exit(f"ccx_reference.py: no {FOLDER} (apt-get install calculix-ccx-test)")
     binaries, decks = os.path.abspath(sys.argv[2]), sys.argv[3:] or list(DECKS)
     print(f"{'deck':<20}{'element':<9}{'nodes':>6}  {'analysis':<10}{'largest u':>11}{'difference':>12}{'limit':>9}")
-    good = 0
+    good = left_out = 0
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         for deck in decks:
             limit = DECKS.get(deck, REDUCED)
             try:
                 elements, nodes, analysis, largest, difference, left = compare(binaries, deck)
+            except NothingPrinted as error:
+                print(f"{deck:<20}{error}: left out")
+                left_out += 1
+                continue
             except (RuntimeError, StopIteration, ValueError) as error:
                 print(f"{deck:<20}{error or 'no static step'}")
                 continue
@@ -145,8 +156,8 @@ def main():
                 note += "  not read: " + ", ".join(left)
             print(f"{deck:<20}{elements:<9}{nodes:>6}  {analysis:<10}{largest:>11.4g}{difference:>12.1e}{limit:>9.0e}{note}", flush=True)
         os.chdir("/")
-    print(f"{good} of {len(decks)} decks agree")
-    sys.exit(0 if good == len(decks) and (sys.argv[3:] or good >= WANTED) else 1)
+    print(f"{good} of {len(decks) - left_out} decks agree")
+    sys.exit(0 if good == len(decks) - left_out and (sys.argv[3:] or good >= WANTED) else 1)
 
 
 main()

@@ -92,9 +92,10 @@ class Folds : public test::Import {
     }
     place.write("run.toml", test::text_of(place / "scene.toml") + "\n[[probe]]\nname = \"TIP\"\non = \"TIP\"\n" + more);
     const auto ran =
-        place.run(fmt::format("{}hilo-solve --quiet run.toml {} -o run.h5",
-                              ranks > 1 ? test::for_ranks + fmt::format(" mpirun -n {} ", ranks) : "", tags.empty() ? "" : "tags.h5"));
+        place.run(fmt::format("{}hilo-solve run.toml {} -o run.h5", ranks > 1 ? test::for_ranks + fmt::format(" mpirun -n {} ", ranks) : "",
+                              tags.empty() ? "" : "tags.h5"));
     EXPECT_EQ(ran.exit, 0) << ran.err;
+    err += ran.err;
     if (ran.exit != 0) return Vec3::Zero();
     const Store run = Store::open(place / "run.h5");
     const auto x = run.read<double>("/history/probe/TIP");
