@@ -162,13 +162,15 @@ std::optional<Vec3> SurfacePair::starts_crossed(const Config& q) const {
 }
 
 /// Of as many points as a fraction of a second allows, moved into the material by a little: the solid angle is 4 pi, and 8 pi where another
-/// part of it covers them.
+/// part of it covers them.  At folds of shells plates overlap by half their thickness, as they are meant to.
 std::optional<Vec3> SurfacePair::starts_inside_itself(const Config& q) const {
   if (!itself || !is_closed(0)) return std::nullopt;
   const std::vector<SurfacePoint>& points = side[0].points;
   const size_t n = std::max<size_t>(64, 1'000'000 / side[0].faces.size());
   const size_t stride = points.size() <= n ? 1 : points.size() / n | 1;  // odd: of all places within facets
   for (size_t i = 0; i < points.size(); i += stride) {
+    const ContactSurface::Face& face = side[0].faces[points[i].face];
+    if (std::any_of(face.joint.begin(), face.joint.begin() + face.n, [](int joint) { return joint < 0; })) continue;
     const auto v = side[0].triangle(points[i].face, 0, q.x);
     const Vec3 at = side[0].at(points[i], q.x), n = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
     if (solid_angle(0, at - 0.05 * points[i].cell * n, q.x) > 6 * std::numbers::pi) return at;
