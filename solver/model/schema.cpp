@@ -196,9 +196,9 @@ std::vector<ArraySchema>& arrays() {
        "of a joint with a free slide or angle: displacement of b along the axis and angle of b about it, whole turns included; zero at the "
        "start, and where the joint leaves none free"},
       {"run.h5", "/history/spring/<name>", "f8", "(n_t, 6)", "N, N m", "force and moment on b at the point, inertial axes"},
-      {"run.h5", "/history/contact/<name>", "f8", "(n_t, 7)", "N, m, 1, m, J",
-       "force on b, inertial axes; largest depth, and that as a share of the cell (of a ball, of a tenth of its radius); slip so far; work "
-       "that friction took so far"},
+      {"run.h5", "/history/contact/<name>", "f8", "(n_t, 8)", "N, m, 1, m, J, N",
+       "force on b, inertial axes, zero where a surface meets itself; largest depth, and that as a share of the cell (of a ball, of a "
+       "tenth of its radius); slip so far; work that friction took so far; sum of the sizes of the normal forces of all points"},
       {"run.h5", "/history/heap/<name>", "f8", "(n_t, 6)", "1, m, 1, m, J, N",
        "of a [[contact]] of all balls, more than 1000 pairs: pairs that are pressed; largest depth, and that as a share of a tenth of the "
        "radius; slip so far, the mean by pressure; work that friction took so far; largest force of a pair"},

@@ -42,15 +42,32 @@ void Builder::add_surfaces(const Entry& e, const std::vector<std::string>& obsta
     throw Error(e.where("a"), fmt::format("{}: no obstacle{} \"{}\"", e.label(), mesh_ ? ", region or set of facets" : "", name_a),
                 suggest(name_a, obstacles));
   if (std::find(obstacles.begin(), obstacles.end(), e.text("b")) != obstacles.end()) e.refuse("b", "it is an obstacle: name it as a");
-  if (name_a == e.text("b")) e.refuse("b", "a surface does not meet itself");
   if (e.has("stiffness"))
     e.refuse("stiffness", "the stiffness of a surface comes from its region", "scale it by factor, or give rigid ones modulus and layer");
   SurfacePair pair(*out_);
   pair.name = e.name, pair.is_static = is_static(), pair.loses = e.number("restitution") < 1;
-  const std::array<std::vector<PairFacet>, 2> facets{on_first_rank(facets_of(e, "a")), on_first_rank(facets_of(e, "b"))};
+  pair.itself = name_a == e.text("b");
+  std::array<std::vector<PairFacet>, 2> facets{on_first_rank(facets_of(e, "a"))};
+  if (!pair.itself) facets[1] = on_first_rank(facets_of(e, "b"));
   comm_.on_first([&] { fill_surfaces(e, facets, pair); });
   out_->part<Contacts>().surfaces.push_back(std::move(pair));
 }
+
+namespace {
+
+/// A facet that both have.
+bool have_one_in_common(const std::array<std::vector<PairFacet>, 2>& facets) {
+  std::set<std::set<int>> of_a;
+  const auto key = [](const PairFacet& f) {
+    std::set<int> nodes(f.node.begin(), f.node.begin() + f.n);
+    nodes.insert(-1 - f.region);
+    return nodes;
+  };
+  for (const PairFacet& f : facets[0]) of_a.insert(key(f));
+  return std::ranges::any_of(facets[1], [&](const PairFacet& f) { return of_a.contains(key(f)); });
+}
+
+}  // namespace
 
 /// What rank 0 has of a pair: all of it.
 void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFacet>, 2>& facets, SurfacePair& pair) {
@@ -65,7 +82,8 @@ void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFac
   std::set<int> bodies[2];                    // -1: nodes of their own
   std::vector<int> nodes[2];
   bool rigid[2] = {false, false}, held = true;
-  for (int s = 0; s < 2; ++s) {
+  const int n_sides = pair.itself ? 1 : 2;
+  for (int s = 0; s < n_sides; ++s) {
     const std::string_view key = s == 0 ? "a" : "b";
     for (const PairFacet& f : facets[s]) {
       const Region& region = regions_[f.region];
@@ -78,7 +96,10 @@ void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFac
       }
       mean[s] += f.area * its.compliance, area[s] += f.area;
       ContactSurface::Face& face = pair.side[s].faces.emplace_back();
-      face.n = f.n, face.node = f.node;
+      face.n = f.n, face.node = f.node, face.joint = f.node, face.cell = f.depth;
+      if (!mesh.block_name.empty())
+        for (int a = 0; a < face.n; ++a)
+          if (const std::int64_t block = mesh.block[f.node[a]]; block >= 0) face.joint[a] = -1 - static_cast<int>(block);
       for (int a = 0; a < face.n; ++a) {
         const int i = face.node[a];
         nodes[s].push_back(i);
@@ -92,13 +113,21 @@ void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFac
     mean[s] /= area[s];
     std::sort(nodes[s].begin(), nodes[s].end());
   }
-  if (held) throw Error(e.place.text(), fmt::format("{}: both sides are held", e.label()));
+  if (held) throw Error(e.place.text(), fmt::format("{}: {}", e.label(), pair.itself ? "it is held" : "both sides are held"));
+  if (pair.itself) {
+    if (rigid[0])
+      e.refuse("a", fmt::format("\"{}\" is rigid, or has rigid regions: what is rigid does not meet itself", name_a),
+               "name a surface that can bend");
+    bodies[1] = bodies[0], nodes[1] = nodes[0], mean[1] = mean[0];
+    pair.side[1].faces = pair.side[0].faces;
+  }
+  const bool on_one = bodies[0].size() == 1 && bodies[0] == bodies[1] && *bodies[0].begin() >= 0;
+  if (on_one && out_->modes_of[*bodies[0].begin()] < 0) e.refuse("b", "both are on the same body");
   std::vector<int> both;
-  std::set_intersection(nodes[0].begin(), nodes[0].end(), nodes[1].begin(), nodes[1].end(), std::back_inserter(both));
-  if (!both.empty())
-    e.refuse("b", fmt::format("both surfaces have node {}: what hangs together does not meet", mesh.node_id[both.front()]),
-             "name the facets that can meet as two sets");
-  if (bodies[0].size() == 1 && bodies[0] == bodies[1] && *bodies[0].begin() >= 0) e.refuse("b", "both are on the same body");
+  std::ranges::set_intersection(nodes[0], nodes[1], std::back_inserter(both));
+  pair.hangs = on_one || !both.empty();
+  if (!pair.itself && pair.hangs && have_one_in_common(facets))
+    e.refuse("b", "both surfaces have facets in common, which would meet twice", "name one set as a and b, or two without common facets");
   const bool both_rigid = rigid[0] && rigid[1];
   if (both_rigid && (!e.has("layer") || !e.has("modulus")))
     e.refuse("", "both surfaces have rigid regions: nothing says how stiff they are",
@@ -112,7 +141,7 @@ void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFac
   pair.factor = factor;
   const double loss = hunt_crossley(e.number("restitution"));
   double low = 1e300, high = 0;
-  for (int s = 0; s < 2; ++s)
+  for (int s = 0; s < n_sides; ++s)
     for (size_t f = 0; f < behind[s].size(); ++f) {
       ContactSurface::Face& face = pair.side[s].faces[f];
       const Behind& its = behind[s][f];
@@ -140,15 +169,28 @@ void Builder::fill_surfaces(const Entry& e, const std::array<std::vector<PairFac
                              : "E over the depth of the cells, both sides in series");
   pair.prepare();
   const auto deep = pair.deepest_start(out_->start);
-  for (int s = 0; s < 2 && !deep; ++s)
+  const auto told_at = [](const Vec3& x) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", x[0], x[1], x[2]); };
+  if (pair.hangs) {
+    auto at = pair.starts_inside_itself(out_->start);
+    if (!at) at = pair.starts_crossed(out_->start);
+    if (at)
+      throw Error(e.place.text(),
+                  pair.itself
+                      ? fmt::format("{}: \"{}\" starts inside itself, at {}", e.label(), name_a, told_at(*at))
+                      : fmt::format("{}: \"{}\" and \"{}\" start in each other, at {}", e.label(), name_a, e.text("b"), told_at(*at)),
+                  "move what can meet apart, or name the facets that can meet as a set");
+  }
+  for (int s = 0; s < 2 && !deep && !pair.itself; ++s)
     if (const auto at = pair.starts_inside(s, out_->start))
       throw Error(e.place.text(),
-                  fmt::format("{}: \"{}\" starts inside \"{}\", at ({:.4g}, {:.4g}, {:.4g})", e.label(), s == 0 ? name_a : e.text("b"),
-                              s == 0 ? e.text("b") : name_a, (*at)[0], (*at)[1], (*at)[2]),
+                  fmt::format("{}: \"{}\" starts inside \"{}\", at {}", e.label(), s == 0 ? name_a : e.text("b"),
+                              s == 0 ? e.text("b") : name_a, told_at(*at)),
                   "move one of them out of the other: what meets faces each other's outer sides");
   if (deep) {
-    const std::string text = fmt::format("{}: \"{}\" and \"{}\" start {:.3g} m deep in each other, at ({:.4g}, {:.4g}, {:.4g})", e.label(),
-                                         name_a, e.text("b"), deep->depth, deep->at[0], deep->at[1], deep->at[2]);
+    const std::string text =
+        pair.itself ? fmt::format("{}: \"{}\" starts {:.3g} m deep in itself, at {}", e.label(), name_a, deep->depth, told_at(deep->at))
+                    : fmt::format("{}: \"{}\" and \"{}\" start {:.3g} m deep in each other, at {}", e.label(), name_a, e.text("b"),
+                                  deep->depth, told_at(deep->at));
     if (deep->depth > deep->cell) throw Error(e.place.text(), fmt::format("{}: more than a cell", text), "move one of them apart");
     if (deep->depth > 0.01 * deep->cell)
       warn(e.place.text(),

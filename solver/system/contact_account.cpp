@@ -143,9 +143,10 @@ void Contacts::archive(Archive& a) {
 std::vector<Output> Contacts::outputs() const {
   std::vector<Output> out;
   const auto add = [&](const std::string& name) {
-    out.push_back({"contact", name, 4, 3, [](const double* end, const double* mid, std::vector<double>& row) {
+    out.push_back({"contact", name, 4, 4, [](const double* end, const double* mid, std::vector<double>& row) {
                      row.assign(mid, mid + 3);
                      row.insert(row.end(), end, end + 4);
+                     row.push_back(mid[3]);
                    }});
   };
   for (const ContactPair& pair : list) add(pair.name);
@@ -155,7 +156,7 @@ std::vector<Output> Contacts::outputs() const {
 }
 
 /// Largest depth [m], as a share of the cell, slip so far [m] and what friction took [J].
-/// At the end: depths, slip and dissipation; inside: the force on b.
+/// At the end: depths, slip and dissipation; inside: the force on b and the sum of the normal forces of points.
 void Contacts::observe(const Sight& at) {
   if (!touches()) return;
   std::vector<double> end, mid;  // of this rank
@@ -168,16 +169,18 @@ void Contacts::observe(const Sight& at) {
     end.insert(end.end(), {deepest, share, pair.next.slip, pair.next.dissipated});
     if (!at.step) continue;
     Vec3 F = Vec3::Zero();
+    double pressing = 0;
     for (const ContactPoint& point : pair.points)
-      if (const Place here = place(pair, point, at.step->s); here.force.acts) F -= here.normal + here.tangential;
-    mid.insert(mid.end(), F.begin(), F.end());
+      if (const Place here = place(pair, point, at.step->s); here.force.acts)
+        F -= here.normal + here.tangential, pressing += std::max(here.force.pressing, 0.);
+    mid.insert(mid.end(), {F[0], F[1], F[2], pressing});
   }
   for (const SurfacePair& pair : surfaces) {
     const auto [deepest, share] = pair.depth();
     end.insert(end.end(), {deepest, share, pair.next.slip, pair.next.dissipated});
     if (!at.step) continue;
-    const Vec3 F = pair.force(at.step->s);
-    mid.insert(mid.end(), F.begin(), F.end());
+    const SurfacePair::Pressing f = pair.force(at.step->s);
+    mid.insert(mid.end(), {f.on_b[0], f.on_b[1], f.on_b[2], f.sum});
   }
   for (const BallHeap& heap :
        heaps) {  // pairs that are pressed, the deepest one, slip and dissipation; inside: the largest force of a pair
@@ -244,10 +247,11 @@ void Contacts::each_facet(const Config& q, const std::function<void(const Presse
   for (const SurfacePair& pair : surfaces)
     for (const ContactSurface& side : pair.side)
       for (const ContactSurface::Face& face : side.faces)
-        of_facet({face.node.data(), static_cast<size_t>(face.n)}, std::span(side.points).subspan(face.first, face.n_points),
-                 [](const SurfacePoint& point) {
-                   return 2 * point.law.k * std::max(-point.next.past.gap, 0.);
-                 });  // the other half: of the other side
+        if (face.n_points > 0)
+          of_facet({face.node.data(), static_cast<size_t>(face.n)}, std::span(side.points).subspan(face.first, face.n_points),
+                   [](const SurfacePoint& point) {
+                     return 2 * point.law.k * std::max(-point.next.past.gap, 0.);
+                   });  // the other half: of the other side
 }
 
 void Contacts::add_to_report(std::vector<std::pair<std::string, std::string>>& report) const {

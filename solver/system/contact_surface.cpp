@@ -79,15 +79,21 @@ FacetPoints facet_points(std::span<const Vec3> X, int n) {
 }
 
 void ContactSurface::find_borders() {
-  std::map<std::pair<int, int>, int> seen;
+  std::map<std::pair<int, int>, std::vector<int>> seen;
   const auto each = [&](auto&& visit) {
     for (Face& face : faces) {
       const int corners = face.n == 3 || face.n == 6 ? 3 : 4;
       for (int e = 0; e < corners; ++e) visit(face, e, std::minmax(int{face.node[e]}, int{face.node[(e + 1) % corners]}));
     }
   };
-  each([&](Face&, int, std::pair<int, int> edge) { ++seen[edge]; });
-  each([&](Face& face, int e, std::pair<int, int> edge) { face.border[e] = seen[edge] == 1; });
+  const auto number = [&](const Face& face) { return static_cast<int>(&face - faces.data()); };
+  each([&](Face& face, int, std::pair<int, int> edge) { seen[edge].push_back(number(face)); });
+  each([&](Face& face, int e, std::pair<int, int> edge) {
+    const std::vector<int>& have = seen[edge];
+    face.border[e] = have.size() == 1;
+    const auto other = std::ranges::find_if(have, [&](int f) { return f != number(face); });
+    face.across[e] = other == have.end() ? -1 : *other;
+  });
 }
 
 Vec3 ContactSurface::at(const SurfacePoint& point, std::span<const Vec3> x) const {

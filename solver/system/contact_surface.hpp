@@ -49,8 +49,11 @@ struct ContactSurface {
   struct Face {
     int n = 0;
     std::array<int, 8> node{};
+    std::array<int, 8> joint{};    // its nodes; those that move as one have one number
     std::array<bool, 4> border{};  // edges that no other facet of the surface has
+    std::array<int, 4> across{};   // the facet beyond each edge, or -1
     int first = 0, n_points = 0;   // of its points
+    double cell = 0;               // depth of the cell behind it [m]
   };
   std::vector<Face> faces;
   std::vector<SurfacePoint> points;

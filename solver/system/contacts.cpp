@@ -242,8 +242,10 @@ void Contacts::add_tangent(Pass& p, const ContactPair& pair, const ContactPoint&
 std::vector<int> nodes_that_meet(const System& system) {
   std::vector<int> out;
   for (const SurfacePair& pair : system.part<Contacts>().surfaces)
-    for (const ContactSurface& surface : pair.side)
+    for (const ContactSurface& surface : pair.side) {
+      if (pair.itself) break;  // nothing else comes to it
       for (const ContactSurface::Face& face : surface.faces) out.push_back(face.node[0]);
+    }
   return out;
 }
 

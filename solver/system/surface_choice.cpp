@@ -89,6 +89,7 @@ SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Pos
   double least = 1e300, gap = 0, soonest = 2;
   bool at_border = false;
   for (const Partner& partner : partners_[s][point.face]) {
+    if (hangs && !may_meet(s, point, partner.face)) continue;
     const Ball& ball = ball_[1 - s][partner.face];
     const double away = (middle - ball.centre).norm() - ball.radius;
     if (away > least && away > way) continue;
@@ -99,12 +100,13 @@ SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Pos
       if (!held && away <= way)
         if (const double when = crossing(p0, p1, v0, v1); when < soonest) soonest = when, first = {partner.face, t, true, true};
       const Beside at = beside(middle, {(1 - f) * v0[0] + f * v1[0], (1 - f) * v0[1] + f * v1[1], (1 - f) * v0[2] + f * v1[2]});
+      if (hangs && !may_meet_there(s, point, partner.face, at.distance, at.gap)) continue;
       const double slack = 1e-9 * least + 1e-12 * ball.radius;
       if (at.distance > least + slack || (at.distance > least - slack && std::abs(at.gap) <= std::abs(gap) + slack)) continue;
       least = std::min(least, at.distance), gap = at.gap;
       nearest = {partner.face, t, false, at.edge < 0 && gap < 0 && -gap < margin / 2};
       const int edge = at.edge < 0 ? -1 : cut.on_edge[t][at.edge];
-      at_border = edge >= 0 && face.border[edge];
+      at_border = edge >= 0 && (face.border[edge] || (hangs && is_beside(s, point.face, face.across[edge])));
     }
   }
   if (soonest <= 1) return faced(s, point, first, p1, x1);
@@ -124,8 +126,10 @@ SurfacePair::Target SurfacePair::faced(int s, const SurfacePoint& point, const T
   double least = margin / 2;
   for (const Partner& partner : partners_[s][point.face]) {
     if (own.dot(ball_[1 - s][partner.face].normal) > facing - better) continue;
+    if (hangs && !may_meet(s, point, partner.face)) continue;
     for (int t = 0; t < static_cast<int>(cut_of(side[1 - s].faces[partner.face].n).triangle.size()); ++t)
-      if (const Beside at = beside(p1, side[1 - s].triangle(partner.face, t, x1)); at.edge < 0 && at.gap < 0 && at.distance < least)
+      if (const Beside at = beside(p1, side[1 - s].triangle(partner.face, t, x1));
+          at.edge < 0 && at.gap < 0 && at.distance < least && (!hangs || may_meet_there(s, point, partner.face, at.distance, at.gap)))
         least = at.distance, out = {partner.face, t, false, true};
   }
   return out;

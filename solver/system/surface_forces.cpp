@@ -105,13 +105,16 @@ double SurfacePair::dissipated(const Stage& s) const {
   return sum;
 }
 
-Vec3 SurfacePair::force(const Stage& s) const {
-  Vec3 sum = Vec3::Zero();
+SurfacePair::Pressing SurfacePair::force(const Stage& s) const {
+  Pressing out;
   each_listed([&](int k, const SurfacePoint& point) {
     if (point.now.face < 0) return;
-    if (const FacetForce<double> f = force_of(k, point, s); f.acts) sum += (k == 0 ? 1 : -1) * values(f.on_point);
+    const FacetForce<double> f = force_of(k, point, s);
+    if (!f.acts) return;
+    if (!itself) out.on_b += (k == 0 ? 1 : -1) * values(f.on_point);
+    out.sum += std::max(f.pressing, 0.);
   });
-  return sum;
+  return out;
 }
 
 }  // namespace hilo

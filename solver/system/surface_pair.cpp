@@ -157,25 +157,33 @@ std::pair<double, double> SurfacePair::depth() const {
   return {depth, share};
 }
 
-/// Of 64 points by the solid angle of the other side: 4 pi from within, 0 from without (Van Oosterom and Strackee 1983).
+bool SurfacePair::is_closed(int s) const {
+  return std::ranges::none_of(side[s].faces,
+                              [](const ContactSurface::Face& face) { return std::ranges::find(face.border, true) != face.border.end(); });
+}
+
+/// Of side s, seen from a point: 4 pi from within, 0 from without (Van Oosterom and Strackee 1983).
+double SurfacePair::solid_angle(int s, const Vec3& at, Positions positions) const {
+  double angle = 0;
+  for (size_t f = 0; f < side[s].faces.size(); ++f)
+    for (size_t t = 0; t < cut_of(static_cast<size_t>(side[s].faces[f].n)).triangle.size(); ++t) {
+      auto x = side[s].triangle(static_cast<int>(f), static_cast<int>(t), positions);
+      double l[3];
+      for (int k = 0; k < 3; ++k) x[k] -= at, l[k] = x[k].norm();
+      const double volume = x[0].dot(x[1].cross(x[2]));
+      if (std::abs(volume) < 1e-9 * l[0] * l[1] * l[2]) continue;  // in its plane: what touches has 2 pi
+      angle += 2 * std::atan2(volume, l[0] * l[1] * l[2] + x[0].dot(x[1]) * l[2] + x[0].dot(x[2]) * l[1] + x[1].dot(x[2]) * l[0]);
+    }
+  return angle;
+}
+
+/// Of 64 points, by the solid angle of the other side.
 std::optional<Vec3> SurfacePair::starts_inside(int s, const Config& q) const {
-  const ContactSurface& other = side[1 - s];
-  for (const ContactSurface::Face& face : other.faces)
-    if (std::find(face.border.begin(), face.border.end(), true) != face.border.end()) return std::nullopt;
+  if (!is_closed(1 - s)) return std::nullopt;
   const size_t n = side[s].points.size(), stride = std::max<size_t>(1, n / 64);
   for (size_t i = 0; i < n; i += stride) {
     const Vec3 at = side[s].at(side[s].points[i], q.x);
-    double angle = 0;
-    for (size_t f = 0; f < other.faces.size(); ++f)
-      for (size_t t = 0; t < cut_of(static_cast<size_t>(other.faces[f].n)).triangle.size(); ++t) {
-        auto x = other.triangle(static_cast<int>(f), static_cast<int>(t), q.x);
-        double l[3];
-        for (int k = 0; k < 3; ++k) x[k] -= at, l[k] = x[k].norm();
-        const double volume = x[0].dot(x[1].cross(x[2]));
-        if (std::abs(volume) < 1e-9 * l[0] * l[1] * l[2]) continue;  // in its plane: what touches has 2 pi
-        angle += 2 * std::atan2(volume, l[0] * l[1] * l[2] + x[0].dot(x[1]) * l[2] + x[0].dot(x[2]) * l[1] + x[1].dot(x[2]) * l[0]);
-      }
-    if (angle > 3.5 * std::numbers::pi) return at;
+    if (solid_angle(1 - s, at, q.x) > 3.5 * std::numbers::pi) return at;
   }
   return std::nullopt;
 }
@@ -189,6 +197,7 @@ double SurfacePair::least_gap(const Config& q) const {
 }
 
 std::optional<SurfacePair::Deep> SurfacePair::deepest_start(const Config& q) {
+  if (hangs) find_back_to_back(q.x);
   search(q, nullptr, 0);
   std::optional<Deep> out;
   for (int s = 0; s < 2; ++s)

@@ -4,6 +4,9 @@
 // A list of pairs of facets that are near each other is the structure of the matrix.  It lasts while it has all pairs within half of the
 // margin of the way that they are about to go.  Within a step a point has one triangle: the one that it crosses first, else the nearest one
 // in the mean of the step.  It is chosen at the beginning and again when Newton's method has converged (`revise`).
+//
+// Surfaces of what hangs together, and one that meets itself, have facets side by side and back to back, which never meet:
+// self_contact.cpp.
 #pragma once
 #include <optional>
 
@@ -32,6 +35,8 @@ class SurfacePair {
   bool is_static = false;  // load steps: forces at their end, of the gap itself
   double factor = 1;       // of the stiffness
   bool loses = false;      // by restitution
+  bool hangs = false;      // both hang together: they may have nodes in common
+  bool itself = false;     // both are one: side 0 has the points, side 1 the facets that they meet
   ContactSums sums, next;
 
   size_t n_points() const { return side[0].points.size() + side[1].points.size(); }
@@ -52,8 +57,12 @@ class SurfacePair {
   }
   void settle(bool accepted);
   void archive(Archive& a);
-  /// Force on side 1, in the step [N].
-  Vec3 force(const Stage& s) const;
+  /// Force on side 1, in the step, zero where a surface meets itself; the sum of the sizes of the normal forces of all points [N].
+  struct Pressing {
+    Vec3 on_b = Vec3::Zero();
+    double sum = 0;
+  };
+  Pressing force(const Stage& s) const;
   /// Largest depth [m], and as a share of the cell, of what `state` is.
   std::pair<double, double> depth() const;
   /// The point that starts deepest in the other side; its depth [m], or nothing.
@@ -66,6 +75,10 @@ class SurfacePair {
   double least_gap(const Config& q) const;
   /// A point of side s that starts within the other side, as far from its facets as may be; that side is closed.
   std::optional<Vec3> starts_inside(int s, const Config& q) const;
+  /// A point of a surface that meets itself starts behind another part of it.
+  std::optional<Vec3> starts_inside_itself(const Config& q) const;
+  /// Where surfaces of what hangs together start crossed.
+  std::optional<Vec3> starts_crossed(const Config& q) const;
 
  private:
   using Positions = std::span<const Vec3>;
@@ -102,6 +115,14 @@ class SurfacePair {
   bool would_act(int side, const SurfacePoint& point, const FacetState& now, Positions x0, Positions x1) const;
   void look(Positions x0, Positions x1);
   std::vector<std::pair<int, int>> near(Positions x0, Positions x1, double within) const;
+  std::vector<std::pair<int, int>> near_by_boxes(Positions x0, Positions x1, double within) const;
+  bool is_closed(int s) const;
+  double solid_angle(int s, const Vec3& at, Positions x) const;
+  bool is_beside(int s, int f, int g) const;
+  void find_back_to_back(Positions x);
+  void leave_out_what_cannot_meet(std::vector<std::pair<int, int>>& list, Positions x0, Positions x1, bool loosely) const;
+  bool may_meet(int s, const SurfacePoint& point, int face) const;
+  bool may_meet_there(int s, const SurfacePoint& point, int face, double distance, double gap) const;
   void list_partners();
   /// What a point that leaves the border of a surface in the step had stored [J].
   double released(const SurfacePoint& point) const { return point.now.face < 0 ? stored(point, point.state.past) : 0; }
@@ -111,8 +132,9 @@ class SurfacePair {
   void add_tangent(Pass& p, int side, const SurfacePoint& point) const;
 
   const Points& points_;
-  std::vector<std::pair<int, int>> near_;  // facets of side 0 and 1, ascending
-  std::vector<int> clique_;                // of these
+  std::vector<std::pair<int, int>> near_;   // facets of side 0 and 1, ascending
+  std::vector<std::pair<int, int>> never_;  // of what hangs together: back to back in the reference, ascending
+  std::vector<int> clique_;                 // of these
   struct Partner {
     int face, pair;  // of the other side; place in near_
   };

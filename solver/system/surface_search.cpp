@@ -10,6 +10,12 @@ namespace hilo {
 /// Pairs of facets whose boxes over the way from x0 to x1 come within a distance of each other, of those that the other side can meet at
 /// all.
 std::vector<std::pair<int, int>> SurfacePair::near(Positions x0, Positions x1, double within) const {
+  std::vector<std::pair<int, int>> out = near_by_boxes(x0, x1, within);
+  if (hangs) leave_out_what_cannot_meet(out, x0, x1, within >= margin);
+  return out;
+}
+
+std::vector<std::pair<int, int>> SurfacePair::near_by_boxes(Positions x0, Positions x1, double within) const {
   std::vector<AxisBox> box[2];
   AxisBox all[2];
   for (int s = 0; s < 2; ++s)

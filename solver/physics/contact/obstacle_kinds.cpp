@@ -117,7 +117,9 @@ std::vector<Param> contact_keys() {
   return {
       keys::name,
       {"a", text, "", "!", "an obstacle; or a region or a set of facets, which meets b; or all: every obstacle and region"},
-      {"b", text, "", "!", "what meets it: a region, a set of facets, or an obstacle of kind sphere or box on a body; or all"},
+      {"b", text, "", "!",
+       "what meets it: a region, a set of facets, or an obstacle of kind sphere or box on a body; the same name as a: it meets itself; or "
+       "all"},
       {"friction", number, "1", "0", "coefficient of friction", from_to(0, 5)},
       {"restitution", number, "1", "1", "speed after an impact, divided by that before it; 1 gives the energy back exactly", from_to(0, 1)},
       {"rest_speed", number, "m/s", "1e-3", "slower impacts lose no smaller part of their speed than they would at this one", above(0)},
