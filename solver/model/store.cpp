@@ -22,8 +22,12 @@ void start_library() {
   static const bool once = [] {
     setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);  // a growing file may be read while it is written
     H5dont_atexit();  // every file is closed here; one that could not be closed (full disk) would crash the library's own closing
-    H5open();
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    const int told = fcntl(2, F_DUPFD_CLOEXEC, 3), nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (nowhere >= 0) dup2(nowhere, 2);  // the library is silent only once it has started
+    const bool started = H5open() >= 0 && H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+    if (told >= 0) dup2(told, 2);
+    for (const int file : {told, nowhere}) ::close(file);
+    if (!started) throw Error("", "the HDF5 library cannot start: not enough memory", "raise the limit (ulimit -v)", Exit::resources);
     return true;
   }();
   (void)once;

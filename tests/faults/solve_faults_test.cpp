@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bad scenes: hilo-solve says in one line what is wrong and where, on any number of ranks, and leaves nothing behind.
+#include <algorithm>
+
 #include "faults.hpp"
 
 using namespace hilo::test;
@@ -140,7 +142,9 @@ TEST_F(BadScene, MadeGoodEndsInSecondsWithAMessageWhereARankIsKilledOnTheWay) {
                         folder);
   EXPECT_EQ(o.exit, 91) << o.out << o.err;
   EXPECT_LE(std::atoi(o.out.c_str()), 5);
-  EXPECT_NE(o.out.find("exited on signal 9"), o.out.npos) << o.out;
+  std::string on_a_line = o.out;  // Open MPI 5 breaks it
+  std::ranges::replace(on_a_line, '\n', ' ');
+  EXPECT_NE(on_a_line.find("exited on signal 9"), o.out.npos) << o.out;
 }
 
 TEST_F(BadScene, WithResultsThatCannotBeWrittenLeavesNothingBehind) {
