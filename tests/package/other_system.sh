@@ -26,7 +26,7 @@ inside 'command -v make git > /dev/null || { apt-get update -q && apt-get instal
 began=$SECONDS failed=0
 inside "make -C tests built" > "$log/build.log" 2>&1 || failed=1
 built=$((SECONDS - began))
-inside "ctest --test-dir build -j2 -R '$only'" > "$log/test.log" 2>&1 || failed=1
+inside "ctest --test-dir build -j2 --output-on-failure -R '$only'" > "$log/test.log" 2>&1 || failed=1
 row() { printf '%-10s %s\n' "$1" "$2"; }
 version() { inside "dpkg-query -W -f '\${Version}' $1"; }
 row Debian "$(cat "$root/etc/debian_version") ($suite)"
