@@ -42,13 +42,14 @@ std::vector<double> pose_of(const System& system, int body, const Config& q) {
   return out;
 }
 
-/// Largest u at which the unit matrix and K_sigma u are singular together   (n n x m)
-double largest_share(const Matrix& stress, const Vector& eta) {
+/// Largest u at which the unit matrix and K_sigma u are singular together, and the same of the opposite stress   (n n x m)
+std::array<double, 2> largest_shares(const Matrix& stress, const Vector& eta) {
   const auto n = static_cast<Index>(std::lround(std::sqrt(static_cast<double>(stress.rows()))));
-  if (n == 0) return 0;
+  if (n == 0) return {0, 0};
   const Vector entries = -stress * eta;
   const Matrix K = entries.reshaped(n, n);
-  return std::max(0.0, Eigen::SelfAdjointEigenSolver<Matrix>((K + K.transpose()) / 2, Eigen::EigenvaluesOnly).eigenvalues()[n - 1]);
+  const Vector u = Eigen::SelfAdjointEigenSolver<Matrix>((K + K.transpose()) / 2, Eigen::EigenvaluesOnly).eigenvalues();
+  return {std::max(0.0, u[n - 1]), std::max(0.0, -u[0])};
 }
 
 /// The symmetric matrix whose entries i <= j are those of a row of pairs.
@@ -164,14 +165,13 @@ void RegionMeasures::observe(const Sight& seen) {
     for (Index j = 0; j < s.size(); ++j) pairs.segment(QuadraticStrain::pair(0, j), j + 1) = s[j] * s.head(j + 1);
     const Vector f = at.second_order * pairs;
     const double quadratic = std::max(0.0, f.dot(at.held * f) / 2), energy = r.stiffness.dot(eta.cwiseAbs2()) / 2;
-    const double share = largest_share(at.stress, eta);
-    const double growth = share < least_share ? 1
-                          : share < 1         ? (1 - std::min(share, largest_share(at.axes, eta))) / (1 - share)
-                                              : without_end;
+    const auto [share, pull] = largest_shares(at.stress, eta);
+    const auto [share_axes, pull_axes] =
+        share < least_share && pull < least_share ? std::array<double, 2>{0, 0} : largest_shares(at.axes, eta);
+    const double growth = share < least_share ? 1 : share < 1 ? (1 - std::min(share, share_axes)) / (1 - share) : without_end;
     at.energy.look(energy, t), at.quadratic.look(quadratic, t), at.share.look(share, t);
     at.growth.look(growth, t);
-    const double pull = largest_share(at.stress, -eta);
-    at.tension.look(pull < least_share ? 1 : (1 + pull) / (1 + std::min(pull, largest_share(at.axes, -eta))), t);
+    at.tension.look(pull < least_share ? 1 : (1 + pull) / (1 + std::min(pull, pull_axes)), t);
     at.shortening.look(2 * std::numbers::sqrt3 * shortening(at, t, s, r.soft.transpose() * amplitudes(m, seen.v)) / std::sqrt(r.A(0, 0)),
                        t);
     out.push_back(quadratic), out.push_back(share), out.push_back(growth);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "system/region_support.hpp"
 
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 
@@ -45,6 +46,7 @@ Mat3 inertia(const Body& b, const Mat3& R) { return R * (b.J.trace() * Mat3::Ide
 }  // namespace
 
 /// Turns are taken times the scene's length, amplitudes over the root of the mass: as metres, so that the rows are of one size.
+/// A patch or rigid neighbour moves with the region that its first weld names, x = T y: rows of joints and of other welds are left.
 RegionSupport support_of(const System& system, const LinearRegion& region, const Config& q) {
   const Modes& modes = system.modes[region.modes];
   const std::vector<int> bodies = connected(system, modes.body);
@@ -63,23 +65,33 @@ RegionSupport support_of(const System& system, const LinearRegion& region, const
   M.bottomRightCorner(S, S).diagonal().setConstant(amplitude * amplitude);
 
   std::vector<Vector> rows;
+  Matrix T = Matrix::Identity(n, n);
+  std::vector<bool> follows(static_cast<size_t>(n), false);  // a column
   for (const Weld& w : system.part<Welds>().list) {
     const int body = system.modes[w.modes].body;
     const Index a = of_body[static_cast<size_t>(body)], b = of_body[static_cast<size_t>(w.body)];
     if ((a < 0 && b < 0) || w.yields) continue;  // nonlinear neighbours hold nothing
     const Matrix G = system.part<Welds>().gradient(w, q);
-    for (Index r = 0; r < G.rows(); ++r) {
-      Vector row = Vector::Zero(n);
-      const auto add = [&](Index to, Index from) {
-        if (to >= 0)
-          row.segment<3>(to) += G.row(r).segment<3>(from).transpose(),
-              row.segment<3>(to + 3) += G.row(r).segment<3>(from + 3).transpose() / length;
-      };
-      add(a, 0), add(b, G.cols() - 6);
-      if (body == modes.body) row.tail(S) = amplitude * (G.row(r).segment(6, modes.n_modes) * region.soft).transpose();
-      if (body != modes.body && r >= 6) continue;  // rigid, it has no stretches
-      rows.push_back(std::move(row));
+    const Index most = body == modes.body ? G.rows() : 6;  // others are rigid, they have no stretches
+    Matrix its = Matrix::Zero(most, n);
+    const auto add = [&](Index to, Index from) {
+      if (to < 0) return;
+      its.middleCols(to, 3) += G.block(0, from, most, 3), its.middleCols(to + 3, 3) += G.block(0, from + 3, most, 3) / length;
+    };
+    add(a, 0), add(b, G.cols() - 6);
+    if (body == modes.body) its.rightCols(S) = amplitude * G.block(0, 6, most, modes.n_modes) * region.soft;
+    Index first = 0;
+    if (b >= 0 && a != b && !follows[static_cast<size_t>(b)] && !system.bodies[w.body].linear) {
+      const Eigen::FullPivLU<Matrix> own(its.block(0, b, 6, 6));
+      if (own.rcond() > 1e-9) {
+        const Matrix inverse = own.inverse();
+        T.block(b, b, 6, 6).setZero();
+        if (a >= 0) T.block(b, a, 6, 6) = -inverse * its.block(0, a, 6, 6);
+        if (body == modes.body) T.block(b, at_shapes, 6, S) = -inverse * its.topRightCorner(6, S);
+        std::fill_n(follows.begin() + b, 6, true), first = 6;
+      }
     }
+    for (Index r = first; r < most; ++r) rows.emplace_back(its.row(r).transpose());
   }
   const Stage stage = stage_at(q, 0);
   for (const auto& c : system.constraints()) {
@@ -96,13 +108,16 @@ RegionSupport support_of(const System& system, const LinearRegion& region, const
     }
   }
 
-  Matrix free = Matrix::Identity(n, n);
+  Index own = 0;  // columns that follow no others
+  for (Index k = 0; k < n; ++k)
+    if (!follows[static_cast<size_t>(k)]) T.col(own++) = Vector(T.col(k));
+  Matrix free = T.leftCols(own);
   if (!rows.empty()) {
     Matrix G(n, static_cast<Index>(rows.size()));
     for (size_t r = 0; r < rows.size(); ++r) G.col(static_cast<Index>(r)) = rows[r];
-    Eigen::ColPivHouseholderQR<Matrix> qr(G);
+    Eigen::ColPivHouseholderQR<Matrix> qr(free.transpose() * G);
     qr.setThreshold(1e-8);
-    free = Matrix(qr.householderQ()).rightCols(n - qr.rank());
+    free *= Matrix(qr.householderQ()).rightCols(own - qr.rank());
   }
   RegionSupport out;
   if (free.cols() == 0 || S == 0) {  // held from all sides, or nothing of it is soft

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "about.hpp"
 #include "advise/processes.hpp"
@@ -88,6 +89,23 @@ Candidates::Candidates(Options options)
       if (r != s) std::set_intersection(nodes[r].begin(), nodes[r].end(), nodes[s].begin(), nodes[s].end(), std::back_inserter(shared));
       if (!shared.empty()) neighbours_[r].push_back(s);
     }
+  find_folds();
+}
+
+void Candidates::find_folds() {
+  std::vector<size_t> group(names().size());
+  std::iota(group.begin(), group.end(), 0);
+  std::vector<std::set<size_t>> at(mesh().block_name.size());
+  for (std::int64_t c = 0; c < mesh().n_cells() && !at.empty(); ++c)
+    for (const std::int64_t i : mesh().cell(c))
+      if (const std::int64_t block = mesh().block[i]; block >= 0) at[block].insert(static_cast<size_t>(mesh().region[c]));
+  for (const std::set<size_t>& meet : at)
+    for (const size_t r : meet)
+      if (const size_t from = group[r], to = group[*meet.begin()]; from != to) std::replace(group.begin(), group.end(), from, to);
+  folded_.resize(group.size());
+  for (size_t r = 0; r < group.size(); ++r)
+    for (size_t s = 0; s < group.size(); ++s)
+      if (group[r] == group[s]) folded_[r].push_back(s);
 }
 
 Assignment Candidates::consistent(Assignment levels) const {
@@ -96,6 +114,15 @@ Assignment Candidates::consistent(Assignment levels) const {
     for (size_t r = 0; r < levels.size(); ++r)
       for (const size_t s : neighbours_[r])
         if (levels[r] == Level::stiffening && levels[s] == Level::linear) levels[s] = Level::stiffening, more = true;
+    for (const std::vector<size_t>& meet : folded_) {
+      const auto is_linear = [&](size_t r) { return fidelity(levels[r]) == Fidelity::linear; };
+      const auto level = [&](size_t r) { return levels[r]; };
+      if (std::ranges::none_of(meet, is_linear)) continue;
+      const bool has_rigid = std::ranges::any_of(meet, [&](size_t r) { return kept_rigid_.contains(r); });
+      const Level most = has_rigid ? Level::nonlinear : levels[*std::ranges::max_element(meet, {}, level)];  // each meets itself
+      for (const size_t r : meet)
+        if (levels[r] != most && !kept_rigid_.contains(r)) levels[r] = most, more = true;
+    }
   }
   return levels;
 }
@@ -104,6 +131,7 @@ Candidates::Job Candidates::job(const Request& request) const {
   const Entry& time = scene_.table("time");
   std::vector<std::string> more;
   if (request.step != 1) more.push_back(fmt::format("time.step={:.17g}", time.number("step") * request.step));
+  if (!time.given("error_estimate") && !time.given("tolerance")) more.push_back("time.error_estimate=\"never\"");  // a third of the time
   bool stress = false;
   for (const Entry& q : scene_.entries("quantity")) stress = stress || q.has("stress");
   const double end = time.number("end");
@@ -134,6 +162,34 @@ Candidates::Job Candidates::job(const Request& request) const {
   for (const std::vector<std::string>* list : {&o_.overrides, static_cast<const std::vector<std::string>*>(&more)})
     for (const std::string& text : *list) job.command.insert(job.command.end(), {"--set", text});
   return job;
+}
+
+std::set<size_t> Candidates::named_in(const std::string& message) const {
+  std::set<size_t> out;
+  const std::vector<std::string> sets = mesh().all_names();
+  for (size_t begin = message.find('"'), end = 0; begin != std::string::npos; begin = message.find('"', end + 1)) {
+    end = message.find('"', begin + 1);
+    if (end == std::string::npos) break;
+    const std::string name = message.substr(begin + 1, end - begin - 1);
+    const size_t before = out.size();
+    for (size_t r = 0; r < names().size(); ++r)
+      if (is_of(name, names()[r])) out.insert(r);
+    if (out.size() > before) continue;
+    std::vector<std::int64_t> its, folded;
+    if (std::find(sets.begin(), sets.end(), name) != sets.end()) its = mesh().nodes_of(name, o_.mesh);
+    const auto block = std::find(mesh().block_name.begin(), mesh().block_name.end(), name) - mesh().block_name.begin();
+    for (size_t i = 0; its.empty() && i < mesh().block.size(); ++i)
+      if (mesh().block[i] == block) folded.push_back(static_cast<std::int64_t>(i));
+    if (its.empty()) its = std::move(folded);
+    std::vector<std::int64_t> shared;
+    for (size_t r = 0; r < names().size(); ++r) {
+      const std::vector<std::int64_t> mine = mesh().nodes_of(names()[r], o_.mesh);
+      shared.clear();
+      std::set_intersection(mine.begin(), mine.end(), its.begin(), its.end(), std::back_inserter(shared));
+      if (!shared.empty()) out.insert(r);
+    }
+  }
+  return out;
 }
 
 void Candidates::run(const std::vector<Request>& list, const Beyond& beyond) {
@@ -169,7 +225,20 @@ void Candidates::run(const std::vector<Request>& list, const Beyond& beyond) {
     if (is_complete(name) || is_beyond(name, beyond))
       read(c, name);
     else
-      c.failure = last_line(name + ".log");
+      fail(c, name, processes);
+  }
+}
+
+/// The last line that a run wrote, without the name of its program, and the exit with which it ended.
+void Candidates::fail(Candidate& c, const std::string& name, const std::vector<Process>& processes) {
+  c.failure = last_line(name + ".log");
+  if (const std::string program = "hilo-solve: "; c.failure.starts_with(program)) c.failure.erase(0, program.size());
+  for (const Process& p : processes) {
+    if (p.log != name + ".log") continue;
+    if (p.status > 0 && p.status <= static_cast<int>(Exit::stopped)) c.exit = static_cast<Exit>(p.status);
+    if (p.status > 128 || c.failure.empty())  // it could not say why
+      c.failure =
+          fmt::format("it ended with {}", p.status > 128 ? fmt::format("signal {}", p.status - 128) : fmt::format("status {}", p.status));
   }
 }
 

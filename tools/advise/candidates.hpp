@@ -3,8 +3,11 @@
 #pragma once
 #include <functional>
 #include <map>
+#include <set>
 
 #include "advise/levels.hpp"
+#include "advise/processes.hpp"
+#include "base/error.hpp"
 #include "post/quantity/quantity.hpp"
 
 namespace hilo {
@@ -21,6 +24,7 @@ struct Request {
 struct Candidate : Request {
   std::string run;                       // run.h5
   std::string failure;                   // why there is none
+  Exit exit = Exit::not_converged;       // with which that one ended
   std::vector<QuantityValue> values;     // of the quantities of a run in time
   double seconds = 0, unknowns = 0;      // seconds of processors
   double cost = 0;                       // seconds of a whole run
@@ -54,8 +58,15 @@ class Candidates {
   double refinement() const { return refinement_; }
   /// Regions that share nodes with region r.
   const std::vector<size_t>& neighbours(size_t r) const { return neighbours_[r]; }
-  /// Where one of the linear regions that share nodes has stiffening, all of these have.
+  /// Regions that meet region r at folds of shells, itself among them: all of these are linear or none is.
+  const std::vector<size_t>& folded_with(size_t r) const { return folded_[r]; }
+  /// Where one of the linear regions that share nodes has stiffening, all of these have; where one of several that meet at a fold is
+  /// linear, all have the largest of their levels, or are nonlinear where one is kept rigid.
   Assignment consistent(Assignment levels) const;
+  void keep_rigid(size_t r) { kept_rigid_.insert(r); }
+
+  /// Regions that a message names in quotation marks: by their names, as parts of a body of several ("a+b"), or by a set of their nodes.
+  std::set<size_t> named_in(const std::string& message) const;
 
   /// Is stiffening cheaper than cells?  It takes about as long as a thousand unknowns of these.
   bool is_large(size_t r) const { return 3 * nodes_[r] > 2000; }
@@ -83,6 +94,7 @@ class Candidates {
   /// Does what there is of a run that has not ended say that it is `beyond`?
   bool is_beyond(const std::string& name, const Beyond& beyond) const;
   void read(Candidate& c, const std::string& name) const;
+  static void fail(Candidate& c, const std::string& name, const std::vector<Process>& processes);
   double unknowns(const Request& request) const;
   double work(const Request& request) const;
   const Options o_;
@@ -90,7 +102,9 @@ class Candidates {
   const MeshFile mesh_;
   std::string mesh_digest_, finer_digest_;
   double refinement_ = 0;
-  std::vector<std::vector<size_t>> neighbours_;
+  std::vector<std::vector<size_t>> neighbours_, folded_;
+  std::set<size_t> kept_rigid_;
+  void find_folds();
   std::vector<double> nodes_;  // by region
   std::map<std::string, Candidate> done_;
 };

@@ -2,6 +2,7 @@
 #include "advise/search.hpp"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +29,11 @@ std::vector<double> part(const Candidate& c, const Candidate& finer, double fact
 
 class Search {
  public:
-  Search(Candidates& all, const SearchOptions& o) : all_(all), o_(o), n_(all.names().size()) {}
+  Search(Candidates& all, const SearchOptions& o) : all_(all), o_(o), n_(all.names().size()) {
+    for (const auto& [r, level] : o_.kept)
+      if (level == Level::rigid) all_.keep_rigid(r);
+    find_contacts();
+  }
 
   Advice found() {
     find_base();
@@ -36,10 +41,12 @@ class Search {
     find_step();
     a_.all_cells = all_.price({cells()});
     tell_plan();
-    if (serves(*a_.base))
+    if (serves(*a_.base)) {
+      find_what_deforms();
       climb(rigid(), *a_.base, by_energy());
-    else
+    } else {
       climb(a_.base->levels, *a_.reference, sorted([&](size_t r) { return doubt_[r]; }));
+    }
     demote();
     choose();
     check_step();
@@ -102,29 +109,29 @@ class Search {
     return all_.spent() + planned + all_.price(next) + step > o_.at_most * a_.all_cells;
   }
 
-  /// The region that a failed run names, and what to do about it: rigid where it has to be one body, else one level more.
+  /// The regions that a failed run names, as themselves, as bodies of several ("a+b") or by sets of the mesh, and what to do about them:
+  /// rigid where the scene wants one body, else one level more.
   bool mend(const Candidate& c, Assignment& levels) {
     bool mended = false;
     for (size_t r = 0; r < n_; ++r) {
       const std::string& name = all_.names()[r];
-      if (c.failure.find("region \"" + name + "\" is flexible") != std::string::npos) {
-        a_.kept_rigid[r] = "a joint or spring names it as a whole";
-        if (o_.kept.contains(r) && o_.kept.at(r) != Level::rigid)
-          throw Error("--keep", fmt::format("\"{}\" cannot be {}: {}", name, word(o_.kept.at(r)), a_.kept_rigid[r]),
-                      "let the joint name a set of its nodes", Exit::usage);
-        warn(name, "a joint or spring names it as a whole, so it stays rigid (a set of its nodes would let it deform)");
-        levels[r] = Level::rigid, mended = true;
-      }
+      const auto says = [&](const char* text) { return c.failure.find('"' + name + text) != std::string::npos; };
+      const bool whole = says("\" is flexible") || says("\" is a linear region: it has no single position"), stop = says("\" is not rigid");
+      if (!whole && !stop) continue;
+      const char* why = whole ? "a joint or spring names it as a whole" : "a contact gives its stiffness as that of a rigid part";
+      a_.kept_rigid[r] = why, all_.keep_rigid(r);
+      if (o_.kept.contains(r) && o_.kept.at(r) != Level::rigid)
+        throw Error("--keep", fmt::format("\"{}\" cannot be {}: {}", name, word(o_.kept.at(r)), why),
+                    whole ? "let the joint name a set of its nodes" : "leave out modulus and layer of the contact", Exit::usage);
+      warn(name, fmt::format("{}, so it stays rigid ({})", why,
+                             whole ? "a set of its nodes would let it deform" : "without modulus and layer it may deform"));
+      levels[r] = Level::rigid, mended = true;
     }
     if (mended) return true;
-    for (size_t r = 0; r < n_; ++r) {
+    for (const size_t r : all_.named_in(c.failure)) {
       if (is_kept(r) || levels[r] == Level::rigid || levels[r] == Level::nonlinear) continue;
-      const size_t begin = c.failure.find("linear region \"");
-      if (begin == std::string::npos) continue;
-      const size_t from = begin + 15;
-      const std::string body = "+" + c.failure.substr(from, c.failure.find('"', from) - from) + "+";
-      if (body.find("+" + all_.names()[r] + "+") == std::string::npos) continue;
-      levels[r] = levels[r] == Level::linear && all_.is_large(r) ? Level::stiffening : Level::nonlinear, mended = true;
+      const bool stiffens = levels[r] == Level::linear && all_.is_large(r) && c.failure.find("stiffening = true") != std::string::npos;
+      levels[r] = stiffens ? Level::stiffening : Level::nonlinear, mended = true;
     }
     return mended;
   }
@@ -138,9 +145,9 @@ class Search {
       a_.base = a_.reference = &c;
       if (c.failure.empty()) break;
       const Assignment before = levels;
-      if (mend(c, levels)) continue;
+      if (mend(c, levels) && all_.consistent(levels) != before) continue;
       levels = cells();
-      if (levels == before) throw Error("", "no model runs: " + c.failure, "", Exit::not_converged);
+      if (levels == before) throw Error("", "no model to judge by runs: " + c.failure, "", c.exit);
       warn("", fmt::format("{} does not run, and nothing says why: {}", label(before, all_.names()), c.failure));
     }
     const double end = all_.scene().table("time").number("end");
@@ -149,6 +156,21 @@ class Search {
         throw Error("", v.why,
                     v.of.starts_with("von Mises") ? fmt::format("output.interval = {:.2g}: fields at 50 instants", end / 50) : "");
     window_ = window_of(*a_.base);
+  }
+
+  /// Regions with a surface in a contact: a linear one gives way there by few modes, and no measure tells what it lacks.
+  void find_contacts() {
+    const auto take = [&](const std::string& name) {
+      for (size_t r = 0; name == "all" && r < n_; ++r) touched_.insert(r);
+      touched_.merge(all_.named_in('"' + name + '"'));
+      for (const Entry& set : all_.scene().entries("set"))
+        for (size_t r = 0; set.name == name && r < n_; ++r)
+          if (!set.has("of") || std::ranges::any_of(set.texts("of"), [&](const std::string& of) {
+                return fnmatch(of.c_str(), all_.names()[r].c_str(), 0) == 0;
+              }))
+            touched_.insert(r);
+    };
+    for (const Entry& e : all_.scene().entries("contact")) take(e.text("a")), take(e.text("b"));
   }
 
   /// Until when a run has to go for the values of a model: the last instant of these, and what a filter sees behind it; 0: to its end.
@@ -174,7 +196,8 @@ class Search {
       a_.doubt = 0;
       for (size_t r = 0; r < n_; ++r) {
         const auto at = c.doubt.find(r);
-        const double doubt = (c.beyond.contains(r) ? 1 : 0) + (at == c.doubt.end() ? 0 : at->second / o_.tightest);
+        const bool pressed = touched_.contains(r) && fidelity(levels[r]) == Fidelity::linear;
+        const double doubt = (c.beyond.contains(r) || pressed ? 1 : 0) + (at == c.doubt.end() ? 0 : at->second / o_.tightest);
         doubt_[r] = std::max(doubt_[r], doubt);
         const bool wanted = o_.check == Check::always || (o_.check == Check::where_in_doubt && doubt > 0.5);
         if (wanted && !is_kept(r))
@@ -190,11 +213,19 @@ class Search {
     for (bool early = window_ > 0; more;) {
       const Request next = request(levels);
       if (!is_quiet())
-        fmt::print(stderr, "linear strains of some regions are in doubt: a run to judge by, to {:.4g} s, takes about {:.2g} s\n",
+        fmt::print(stderr,
+                   "linear strains of some regions, or how they give way in contacts, are in doubt: a run to judge by, to {:.4g} s, takes "
+                   "about {:.2g} s\n",
                    window_ > 0 ? window_ : all_.scene().table("time").number("end"), all_.price(next));
       const Candidate& c = of(next);
-      if (!c.failure.empty()) {
-        warn("", fmt::format("{} does not run, so nothing checks linear strains: {}", label(levels, all_.names()), c.failure));
+      const auto lacking = std::ranges::find_if(c.values, [](const QuantityValue& v) { return !v.why.empty(); });
+      if (early && lacking != c.values.end()) {
+        early = false, window_ = 0, more = true;
+        continue;
+      }
+      if (!c.failure.empty() || lacking != c.values.end()) {
+        warn("", fmt::format("{} {}, so nothing checks linear strains: {}", label(levels, all_.names()),
+                             c.failure.empty() ? "lacks a value" : "does not run", c.failure.empty() ? lacking->why : c.failure));
         a_.doubt = 1;
         break;
       }
@@ -245,7 +276,7 @@ class Search {
     const auto is_linear = [](Level l) { return fidelity(l) == Fidelity::linear; };
     while (std::any_of(a_.chosen->levels.begin(), a_.chosen->levels.end(), is_linear)) {
       const Candidate& c = *a_.chosen;
-      const Candidate& more = of({c.levels, 1, c.end, 2 * c.modes});  // which may be chosen
+      const Candidate& more = of({c.levels, 1, end_beside(c), 2 * c.modes});  // which may be chosen
       if (!more.failure.empty())
         return a_.modes.clear(), warn("", "more modes do not run, so the error of those left out is unknown: " + more.failure);
       a_.modes = part(c, more, 1);
@@ -297,7 +328,7 @@ class Search {
     for (size_t r = 0; r < n_; ++r) {
       if (const auto at = a_.base->energy.find(r); at != a_.base->energy.end()) of[r] = at->second;
       if (a_.base->levels[r] == Level::nonlinear) of[r] += 1e150;
-      if (wants_stress(r)) of[r] += 1e200;
+      if (must_deform(r)) of[r] += 1e200;
     }
     return sorted([&](size_t r) { return of[r]; });
   }
@@ -310,6 +341,21 @@ class Search {
     return out;
   }
 
+  /// Regions that the scene does not take as rigid, by what a run says that ends before its first step.
+  void find_what_deforms() {
+    for (bool more = true; more;) {
+      Assignment levels = rigid();
+      for (size_t r = 0; r < n_; ++r)
+        if (must_deform(r) && !is_kept(r)) levels[r] = a_.base->levels[r];
+      const Candidate& c = of(request(levels), beyond());
+      more = false;
+      for (size_t r = 0; r < n_ && !c.failure.empty(); ++r)
+        if (c.failure.find("region \"" + all_.names()[r] + "\" is rigid") != std::string::npos && !is_kept(r))
+          more = deform_.insert(r).second || more;
+    }
+  }
+  bool must_deform(size_t r) const { return wants_stress(r) || deform_.contains(r); }
+
   /// The shortest head of `order` that, at the levels of `high` and the rest at those of `low`, serves; all of it is `top`, which does.
   void climb(const Assignment& low, const Candidate& top, const std::vector<size_t>& order) {
     const Assignment& high = top.levels;
@@ -319,7 +365,7 @@ class Search {
       return levels;
     };
     size_t least = 0, most = order.size();
-    while (least < most && low[order[least]] == Level::rigid && wants_stress(order[least])) ++least;
+    while (least < most && low[order[least]] == Level::rigid && must_deform(order[least])) ++least;
     a_.chosen = &top;
     size_t stride = 1;  // small models are cheap: from the start on by 1, 2, 4, ..., then halving
     for (size_t k = least; least < most;) {
@@ -350,7 +396,8 @@ class Search {
     for (const size_t r : by_energy()) {
       if (to(from[r]) == from[r] || (to(from[r]) == Level::rigid && wants_stress(r)) || (large_alone && !all_.is_large(r))) continue;
       Assignment levels = from;
-      levels[r] = to(from[r]);
+      for (const size_t s : all_.folded_with(r))
+        if (!is_kept(s) && !(to(from[s]) == Level::rigid && wants_stress(s))) levels[s] = to(from[s]);
       const Request single = request(levels);
       if (too_dear(single, planned)) continue;
       planned += all_.price(single);
@@ -367,7 +414,8 @@ class Search {
     Assignment now = from;
     const auto take = [&](size_t first, size_t last) {
       Assignment levels = now;
-      for (size_t i = first; i < last; ++i) levels[which[good[i].second]] = singles[good[i].second].levels[which[good[i].second]];
+      for (size_t i = first; i < last; ++i)
+        for (const size_t r : all_.folded_with(which[good[i].second])) levels[r] = std::min(levels[r], singles[good[i].second].levels[r]);
       const Request next = request(levels);
       if (next.levels == now || too_dear(next)) return false;
       const Candidate& c = of(next, beyond());
@@ -397,6 +445,8 @@ class Search {
   const size_t n_;
   Advice a_;
   double window_ = 0;               // in which all quantities have their values, 0: the whole run  [s]
+  std::set<size_t> deform_;         // regions that may not be rigid
+  std::set<size_t> touched_;        // regions with a surface in a contact
   std::map<size_t, double> doubt_;  // by region, the largest so far, over the tightest tolerance
 };
 
