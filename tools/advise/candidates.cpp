@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "about.hpp"
 #include "advise/processes.hpp"
@@ -89,23 +88,6 @@ Candidates::Candidates(Options options)
       if (r != s) std::set_intersection(nodes[r].begin(), nodes[r].end(), nodes[s].begin(), nodes[s].end(), std::back_inserter(shared));
       if (!shared.empty()) neighbours_[r].push_back(s);
     }
-  find_folds();
-}
-
-void Candidates::find_folds() {
-  std::vector<size_t> group(names().size());
-  std::iota(group.begin(), group.end(), 0);
-  std::vector<std::set<size_t>> at(mesh().block_name.size());
-  for (std::int64_t c = 0; c < mesh().n_cells() && !at.empty(); ++c)
-    for (const std::int64_t i : mesh().cell(c))
-      if (const std::int64_t block = mesh().block[i]; block >= 0) at[block].insert(static_cast<size_t>(mesh().region[c]));
-  for (const std::set<size_t>& meet : at)
-    for (const size_t r : meet)
-      if (const size_t from = group[r], to = group[*meet.begin()]; from != to) std::replace(group.begin(), group.end(), from, to);
-  folded_.resize(group.size());
-  for (size_t r = 0; r < group.size(); ++r)
-    for (size_t s = 0; s < group.size(); ++s)
-      if (group[r] == group[s]) folded_[r].push_back(s);
 }
 
 Assignment Candidates::consistent(Assignment levels) const {
@@ -114,15 +96,6 @@ Assignment Candidates::consistent(Assignment levels) const {
     for (size_t r = 0; r < levels.size(); ++r)
       for (const size_t s : neighbours_[r])
         if (levels[r] == Level::stiffening && levels[s] == Level::linear) levels[s] = Level::stiffening, more = true;
-    for (const std::vector<size_t>& meet : folded_) {
-      const auto is_linear = [&](size_t r) { return fidelity(levels[r]) == Fidelity::linear; };
-      const auto level = [&](size_t r) { return levels[r]; };
-      if (std::ranges::none_of(meet, is_linear)) continue;
-      const bool has_rigid = std::ranges::any_of(meet, [&](size_t r) { return kept_rigid_.contains(r); });
-      const Level most = has_rigid ? Level::nonlinear : levels[*std::ranges::max_element(meet, {}, level)];  // each meets itself
-      for (const size_t r : meet)
-        if (levels[r] != most && !kept_rigid_.contains(r)) levels[r] = most, more = true;
-    }
   }
   return levels;
 }

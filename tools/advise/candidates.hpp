@@ -58,12 +58,8 @@ class Candidates {
   double refinement() const { return refinement_; }
   /// Regions that share nodes with region r.
   const std::vector<size_t>& neighbours(size_t r) const { return neighbours_[r]; }
-  /// Regions that meet region r at folds of shells, itself among them: all of these are linear or none is.
-  const std::vector<size_t>& folded_with(size_t r) const { return folded_[r]; }
-  /// Where one of the linear regions that share nodes has stiffening, all of these have; where one of several that meet at a fold is
-  /// linear, all have the largest of their levels, or are nonlinear where one is kept rigid.
+  /// Where one of the linear regions that share nodes has stiffening, all of these have.
   Assignment consistent(Assignment levels) const;
-  void keep_rigid(size_t r) { kept_rigid_.insert(r); }
 
   /// Regions that a message names in quotation marks: by their names, as parts of a body of several ("a+b"), or by a set of their nodes.
   std::set<size_t> named_in(const std::string& message) const;
@@ -102,9 +98,7 @@ class Candidates {
   const MeshFile mesh_;
   std::string mesh_digest_, finer_digest_;
   double refinement_ = 0;
-  std::vector<std::vector<size_t>> neighbours_, folded_;
-  std::set<size_t> kept_rigid_;
-  void find_folds();
+  std::vector<std::vector<size_t>> neighbours_;
   std::vector<double> nodes_;  // by region
   std::map<std::string, Candidate> done_;
 };

@@ -30,8 +30,6 @@ std::vector<double> part(const Candidate& c, const Candidate& finer, double fact
 class Search {
  public:
   Search(Candidates& all, const SearchOptions& o) : all_(all), o_(o), n_(all.names().size()) {
-    for (const auto& [r, level] : o_.kept)
-      if (level == Level::rigid) all_.keep_rigid(r);
     find_contacts();
   }
 
@@ -119,7 +117,7 @@ class Search {
       const bool whole = says("\" is flexible") || says("\" is a linear region: it has no single position"), stop = says("\" is not rigid");
       if (!whole && !stop) continue;
       const char* why = whole ? "a joint or spring names it as a whole" : "a contact gives its stiffness as that of a rigid part";
-      a_.kept_rigid[r] = why, all_.keep_rigid(r);
+      a_.kept_rigid[r] = why;
       if (o_.kept.contains(r) && o_.kept.at(r) != Level::rigid)
         throw Error("--keep", fmt::format("\"{}\" cannot be {}: {}", name, word(o_.kept.at(r)), why),
                     whole ? "let the joint name a set of its nodes" : "leave out modulus and layer of the contact", Exit::usage);
@@ -396,8 +394,7 @@ class Search {
     for (const size_t r : by_energy()) {
       if (to(from[r]) == from[r] || (to(from[r]) == Level::rigid && wants_stress(r)) || (large_alone && !all_.is_large(r))) continue;
       Assignment levels = from;
-      for (const size_t s : all_.folded_with(r))
-        if (!is_kept(s) && !(to(from[s]) == Level::rigid && wants_stress(s))) levels[s] = to(from[s]);
+      levels[r] = to(from[r]);
       const Request single = request(levels);
       if (too_dear(single, planned)) continue;
       planned += all_.price(single);
@@ -415,7 +412,7 @@ class Search {
     const auto take = [&](size_t first, size_t last) {
       Assignment levels = now;
       for (size_t i = first; i < last; ++i)
-        for (const size_t r : all_.folded_with(which[good[i].second])) levels[r] = std::min(levels[r], singles[good[i].second].levels[r]);
+        levels[which[good[i].second]] = singles[good[i].second].levels[which[good[i].second]];
       const Request next = request(levels);
       if (next.levels == now || too_dear(next)) return false;
       const Candidate& c = of(next, beyond());
