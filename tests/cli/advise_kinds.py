@@ -13,7 +13,7 @@ BIN = os.path.abspath(sys.argv[1])
 
 
 class Deck:
-    """Blocks of hexahedra of 8 nodes, with sets of their ends along x: NAME0, NAME1."""
+    """Blocks of hexahedra of 8 nodes, with sets of their ends and middle along x: NAME0, NAME1, NAMEm."""
 
     def __init__(self):
         self.nodes, self.text, self.cells = [], "", 0
@@ -30,8 +30,8 @@ class Deck:
                     self.cells += 1
                     corners = [ids[i + a, j + b, k + c] for c in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
                     self.text += ", ".join(map(str, [self.cells] + corners)) + "\n"
-        for end in (0, 1):
-            self.text += f"*NSET, NSET={name}{end}\n" + ", ".join(str(v) for p, v in ids.items() if p[0] == end * n[0]) + "\n"
+        for end, i in (("0", 0), ("m", n[0] // 2), ("1", n[0])):
+            self.text += f"*NSET, NSET={name}{end}\n" + ", ".join(str(v) for p, v in ids.items() if p[0] == i) + "\n"
         self.text += f"*MATERIAL, NAME=m{name}\n*ELASTIC\n2e9, .3\n*DENSITY\n1000\n*SOLID SECTION, ELSET={name}, MATERIAL=m{name}\n"
         return self
 
@@ -82,7 +82,7 @@ with tempfile.TemporaryDirectory() as folder:
 
     # a support of one component is none of a linear or rigid region: that of the set, no other
     joints = hinge("knee", "a1", "b0", 0.6) + tip
-    levels, advice = advise(scene(joints + '[[motion]]\nkind = "fixed"\nname = "shelf"\non = "b1"\ncomponents = "z"\n'))
+    levels, advice = advise(scene(joints + '[[motion]]\nkind = "fixed"\nname = "shelf"\non = "bm"\ncomponents = "z"\n', step=4e-4))
     assert [levels[r][0] for r in "abc"] == ["linear", "nonlinear", "linear"] and levels["b"][1] == "nonlinear", levels
 
     # a contact that gives its stiffness wants its region rigid; without, it may not be
@@ -102,6 +102,6 @@ with tempfile.TemporaryDirectory() as folder:
     # shells have no strains of the second degree in modes: nonlinear, by their names
     plates = Deck()
     plates.block("a", (0, 0, 0), (0.4, 0.05, 0.004), (4, 1, 1)).block("b", (0.4, 0, 0), (0.4, 0.05, 0.004), (4, 1, 1)).write()
-    levels, advice = advise(scene(hinge("knee", "a1", "b0", 0.4) + '[region.a]\nshell = true\nstiffening = true\n[region.b]\nshell = true\n', 0.05))
+    levels, advice = advise(scene(hinge("knee", "a1", "b0", 0.4) + '[region.a]\nshell = true\nstiffening = true\n[region.b]\nshell = true\n', 0.05, 2.5e-4))
     assert levels["a"][0] == "nonlinear" and levels["b"][0] == "linear", levels
 print("advise_kinds: well")

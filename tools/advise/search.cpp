@@ -104,7 +104,8 @@ class Search {
   bool serves(const Candidate& c) const { return &c == a_.reference || error(c) <= 1; }
   bool too_dear(const Request& next, double planned = 0) const {
     const double step = serves(*a_.base) ? 0 : all_.price({a_.reference->levels, 0.5, window_});  // check_step may want it
-    return all_.spent() + planned + all_.price(next) + step > o_.at_most * a_.all_cells;
+    constexpr double never_below = 2;  // seconds: nobody waits for these
+    return all_.spent() + planned + all_.price(next) + step > std::max(o_.at_most * a_.all_cells, never_below);
   }
 
   /// The regions that a failed run names, as themselves, as bodies of several ("a+b") or by sets of the mesh, and what to do about them:
