@@ -81,7 +81,7 @@ void Store::Impl::fail_write(const std::string& what) {
 
 void Store::Impl::fail_read(const std::string& array) const {
   const Cause cause = last_cause();
-  throw Error(path, fmt::format("{} cannot be read: {}", array, cause.text), "damaged or truncated?");
+  throw Error(path, fmt::format("{} cannot be read{}{}", array, cause.text.empty() ? "" : ": ", cause.text), "damaged or truncated?");
 }
 
 Store::Store(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -34,7 +34,7 @@ def write(name, *parts):
 def table(section, **keys):
     """[[section]] with its keys; a text that begins with { or [ stands as it is."""
     def value(v):
-        return f'"{v}"' if isinstance(v, str) and v[:1] not in "{[" else str(v)
+        return f'"{v}"' if isinstance(v, str) and v[:1] not in "{[" else str([float(c) for c in v] if isinstance(v, list) and not isinstance(v[0], str) else v)
     return f"[[{section}]]\n" + "".join(f"{key} = {value(v)}\n" for key, v in keys.items())
 
 

@@ -521,7 +521,9 @@ with tempfile.TemporaryDirectory() as work:
 
     # gmsh-doc: volume, box and number of cells of each physical volume, and the area of each physical surface, in what gmsh saves
     def read_doc(script):
-        source = pathlib.Path("/usr/share/doc/gmsh-doc/doc/gmsh") / script
+        folder = pathlib.Path("/usr/share/doc/gmsh-doc/doc/gmsh")
+        here, there = script.split("/", 1)  # gmsh 4.13 calls its folders otherwise
+        source = folder / ({"tutorial": "tutorials", "demos": "examples"}[here] if not (folder / here).exists() else here) / there
         return source.read_text() if source.exists() else gzip.decompress(source.with_suffix(".geo.gz").read_bytes()).decode()
 
     pathlib.Path("t1.geo").write_text(read_doc("tutorial/t1.geo"))  # which t2 includes
