@@ -69,6 +69,11 @@ class MedFile {
     if (!is_med) throw Error(path, "a MED file of another version than 3 or 4, or an HDF5 file that is none", "Salome saves it anew");
     id_ = MEDfileOpen(path.c_str(), MED_ACC_RDONLY);
     if (id_ < 0) throw Error(path, "cannot be opened as MED: the file is damaged");
+    med_int major = 0, minor = 0, release = 0;
+    if (MEDfileNumVersionRd(id_, &major, &minor, &release) < 0 || major < 3) {
+      MEDfileClose(id_);
+      throw Error(path, fmt::format("a MED file of version {}.{}.{}", major, minor, release), "from version 3 on: Salome saves it anew");
+    }
   }
   ~MedFile() { MEDfileClose(id_); }
   MedFile(const MedFile&) = delete;
