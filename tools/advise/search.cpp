@@ -397,7 +397,9 @@ class Search {
       Assignment levels = from;
       levels[r] = to(from[r]);
       const Request single = request(levels);
-      if (too_dear(single, planned)) continue;
+      // what saves little is tried within the price of one run of all cells
+      const double price = all_.price(single), all = all_.price(request(from));
+      if (too_dear(single, planned) || (price > 2. / 3 * all && all_.spent() + planned + price > a_.all_cells)) continue;
       planned += all_.price(single);
       singles.push_back(single), which.push_back(r);
     }
