@@ -74,6 +74,7 @@ void run(const Options& o) {
   search.kept = kept_levels(o, all.names());
   search.check = o.full ? Check::always : o.no_full ? Check::never : Check::where_in_doubt;
   search.at_most = o.at_most;
+  search.each_region = !o.regions.empty();
   const Advice advice = advise(all, search);
   fmt::print("{}", o.json ? report_json(all, advice) : report_text(all, advice));
   if (!o.csv.empty()) write_text_file(o.csv, models_csv(all, advice));

@@ -73,6 +73,8 @@ class Candidates {
   void run(const std::vector<Request>& list, const Beyond& beyond = {});
   /// A run, or the one that is there of the same scene, mesh and levels.
   const Candidate& of(const Request& request, const Beyond& beyond = {});
+  /// Has it run, in this call?
+  bool knows(const Request& request) const { return done_.contains(job(request).name); }
   /// Seconds that such a run will take, by the unknowns and steps, as far as runs of this scene tell how fast it goes.
   double price(const Request& request) const;
   /// What all runs have cost, also those of earlier calls.

@@ -29,9 +29,7 @@ std::vector<double> part(const Candidate& c, const Candidate& finer, double fact
 
 class Search {
  public:
-  Search(Candidates& all, const SearchOptions& o) : all_(all), o_(o), n_(all.names().size()) {
-    find_contacts();
-  }
+  Search(Candidates& all, const SearchOptions& o) : all_(all), o_(o), n_(all.names().size()) { find_contacts(); }
 
   Advice found() {
     find_base();
@@ -104,7 +102,7 @@ class Search {
   bool serves(const Candidate& c) const { return &c == a_.reference || error(c) <= 1; }
   bool too_dear(const Request& next, double planned = 0) const {
     const double step = serves(*a_.base) ? 0 : all_.price({a_.reference->levels, 0.5, window_});  // check_step may want it
-    constexpr double never_below = 2;  // seconds: nobody waits for these
+    constexpr double never_below = 2;                                                             // seconds: nobody waits for these
     return all_.spent() + planned + all_.price(next) + step > std::max(o_.at_most * a_.all_cells, never_below);
   }
 
@@ -397,8 +395,13 @@ class Search {
       Assignment levels = from;
       levels[r] = to(from[r]);
       const Request single = request(levels);
-      if (too_dear(single, planned)) continue;
-      planned += all_.price(single);
+      if (!all_.knows(single)) {
+        // what saves little is tried within the price of one run of all cells
+        const double price = all_.price(single), all = all_.price(request(from));
+        const bool little = !o_.each_region && price > 2. / 3 * all;
+        if (too_dear(single, planned) || (little && all_.spent() + planned + price > a_.all_cells)) continue;
+        planned += price;
+      }
       singles.push_back(single), which.push_back(r);
     }
     all_.run(singles, beyond());
@@ -412,8 +415,7 @@ class Search {
     Assignment now = from;
     const auto take = [&](size_t first, size_t last) {
       Assignment levels = now;
-      for (size_t i = first; i < last; ++i)
-        levels[which[good[i].second]] = singles[good[i].second].levels[which[good[i].second]];
+      for (size_t i = first; i < last; ++i) levels[which[good[i].second]] = singles[good[i].second].levels[which[good[i].second]];
       const Request next = request(levels);
       if (next.levels == now || too_dear(next)) return false;
       const Candidate& c = of(next, beyond());

@@ -11,7 +11,8 @@ struct SearchOptions {
   double tightest = 0.02;        // of all tolerances, relative
   std::map<size_t, Level> kept;  // regions whose level is not tried
   Check check = Check::where_in_doubt;
-  double at_most = 3;  // what all of it may cost, in runs of all cells
+  bool each_region = false;  // is it asked what each region is worth?
+  double at_most = 3;        // what all of it may cost, in runs of all cells
 };
 
 /// What decided, and what of it is known.
