@@ -46,6 +46,7 @@ class Search {
     demote();
     choose();
     check_step();
+    step_is_known_ = true;
     check_modes();
     find_mesh();
     return std::move(a_);
@@ -99,10 +100,11 @@ class Search {
       return false;
     };
   }
-  bool serves(const Candidate& c) const { return &c == a_.reference || error(c) <= 1; }
+  bool serves(const Candidate& c) const { return &c == a_.reference || (!rejected_.contains(&c) && error(c) <= 1); }
   bool too_dear(const Request& next, double planned = 0) const {
-    const double step = serves(*a_.base) ? 0 : all_.price({a_.reference->levels, 0.5, window_});  // check_step may want it
-    constexpr double never_below = 2;                                                             // seconds: nobody waits for these
+    const double step =
+        serves(*a_.base) || step_is_known_ ? 0 : all_.price({a_.reference->levels, 0.5, window_});  // check_step may want it
+    constexpr double never_below = 2;                                                               // seconds: nobody waits for these
     return all_.spent() + planned + all_.price(next) + step > std::max(o_.at_most * a_.all_cells, never_below);
   }
 
@@ -277,19 +279,36 @@ class Search {
       if (!more.failure.empty())
         return a_.modes.clear(), warn("", "more modes do not run, so the error of those left out is unknown: " + more.failure);
       a_.modes = part(c, more, 1);
-      double largest = 0;
-      for (size_t k = 0; k < c.values.size(); ++k) {
-        const QuantityValue& its = a_.reference->values[k];
-        const double levels = c.levels == a_.reference->levels ? 0 : over(c.values[k].value - its.value, its.allowed);
-        largest = std::max(largest, over(a_.modes[k], its.allowed) + step_over(k) + levels);
+      const auto sum = [&](const Candidate& of, bool with_modes) {
+        double largest = 0;
+        for (size_t k = 0; k < c.values.size(); ++k) {
+          const QuantityValue& its = a_.reference->values[k];
+          const double levels = c.levels == a_.reference->levels ? 0 : over(of.values[k].value - its.value, its.allowed);
+          largest = std::max(largest, levels + step_over(k) + (with_modes ? over(a_.modes[k], its.allowed) : 0));
+        }
+        return largest;
+      };
+      if (sum(c, true) <= 1) return;
+      if (sum(more, false) > 1) {  // more modes are no help
+        reject(c);
+        continue;
       }
-      if (largest <= 1) return;
       if (c.modes >= 8)
         return warn("",
                     fmt::format("with {} times the modes of the scene the error of those left out is still above the tolerance", c.modes));
       a_.chosen = &more;
       if (a_.reference->levels == c.levels) a_.reference = &more;
     }
+  }
+  /// A model that does not serve with all parts of its error: the next one.
+  void reject(const Candidate& c) {
+    rejected_.insert(&c);
+    a_.modes.clear();
+    if (&c == a_.base && a_.reference != a_.base)
+      climb(c.levels, *a_.reference, sorted([&](size_t r) { return doubt_[r]; }));
+    else
+      a_.chosen = a_.reference;
+    choose();
   }
   /// Error of the mesh by the chosen model on a finer one; it falls with the square of the size of cells.
   void find_mesh() {
@@ -444,7 +463,9 @@ class Search {
   const SearchOptions& o_;
   const size_t n_;
   Advice a_;
-  double window_ = 0;               // in which all quantities have their values, 0: the whole run  [s]
+  double window_ = 0;           // in which all quantities have their values, 0: the whole run  [s]
+  bool step_is_known_ = false;  // of the chosen model
+  std::set<const Candidate*> rejected_;
   std::set<size_t> deform_;         // regions that may not be rigid
   std::set<size_t> touched_;        // regions with a surface in a contact
   std::map<size_t, double> doubt_;  // by region, the largest so far, over the tightest tolerance
