@@ -163,7 +163,8 @@ int main(int argc, char** argv) {
     app->add_option("--size", o.size, "cell edge when CAD is meshed, at most this when a .geo script is; in the unit of the file")
         ->type_name("H");
     app->add_option("--thickness", r.thickness,
-                    "surfaces become solid-shells of this thickness about them, in the unit of the file (geo, CAD, msh, unv, med, exo); NAME=T: one group of "
+                    "surfaces become solid-shells of this thickness about them, in the unit of the file (geo, CAD, msh, unv, med, exo); "
+                    "NAME=T: one group of "
                     "them, beside volumes too, may be repeated")
         ->type_name("[NAME=]T")
         ->allow_extra_args(false);
