@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 #include "base/error.hpp"
@@ -68,7 +69,8 @@ CrashGuard::~CrashGuard() {
   for (size_t i = 0; i < signals_.size(); ++i) sigaction(signals_[i], &before_[i], nullptr);
 }
 
-MemoryLimit::MemoryLimit(std::uint64_t bytes) {
+MemoryLimit::MemoryLimit(const std::string& path) {
+  const std::uint64_t bytes = (std::uint64_t{1} << 30) + 50 * std::filesystem::file_size(path);
   rlimit room{};
   getrlimit(RLIMIT_AS, &room);
   before_ = room.rlim_cur;

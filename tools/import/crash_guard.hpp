@@ -26,10 +26,11 @@ class CrashGuard {
   int stderr_ = -1;  // the true one, where it is silent
 };
 
-/// While this lives the process may take this much more memory than it has: a library that believes a damaged count fails there.
+/// While this lives the process may take a gigabyte and fifty times the file more memory than it has: a library that believes a damaged
+/// count fails there.
 class MemoryLimit {
  public:
-  explicit MemoryLimit(std::uint64_t bytes);
+  explicit MemoryLimit(const std::string& path);
   ~MemoryLimit();
   MemoryLimit(const MemoryLimit&) = delete;
   MemoryLimit& operator=(const MemoryLimit&) = delete;

@@ -216,7 +216,7 @@ void add_block(GroupedMesh& mesh, const ExodusFile& file, const ex_block& b, std
 
 Imported read_exodus(const std::string& path, const ImportOptions& options) {
   const CrashGuard guard(path, "the Exodus library", true);
-  const MemoryLimit limit((std::uint64_t{1} << 30) + 50 * std::filesystem::file_size(path));
+  const MemoryLimit limit(path);
   const ExodusFile file(path);
   const auto& all = file.all();
   GroupedMesh mesh;

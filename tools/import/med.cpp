@@ -181,7 +181,7 @@ class MedFile {
 
 Imported read_med(const std::string& path, const ImportOptions& options) {
   const CrashGuard guard(path, "the MED library", true);
-  const MemoryLimit limit((std::uint64_t{1} << 30) + 50 * std::filesystem::file_size(path));
+  const MemoryLimit limit(path);
   MedFile file(path);
   GroupedMesh mesh;
   for (const auto& other : file.open_mesh()) mesh.in.skip(fmt::format("mesh \"{}\"", other), path);
