@@ -209,7 +209,9 @@ class Run {
     if (run_.talk && !redundancy.dropped.empty()) {
       fmt::print(stderr, "{} of {} joint rows are redundant; reactions are the minimum-norm share:\n", redundancy.rows - redundancy.rank,
                  redundancy.rows);
-      for (const auto& d : redundancy.dropped) fmt::print(stderr, "  {}\n", d);
+      constexpr size_t shown = 12;
+      for (size_t k = 0; k < std::min(shown, redundancy.dropped.size()); ++k) fmt::print(stderr, "  {}\n", redundancy.dropped[k]);
+      if (redundancy.dropped.size() > shown) fmt::print(stderr, "  and {} more\n", redundancy.dropped.size() - shown);
     }
     if (run_.talk && redundancy.singular())
       fmt::print(stderr, "a singular position: {} more joint rows depend on others at the start alone\n",

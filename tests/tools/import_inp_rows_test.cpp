@@ -44,6 +44,13 @@ class ImportInpRows : public test::Import {
   }
 };
 
+// Truth: the sum of two displacements is that of the node that stands for it, though it lies on theirs.
+TEST_F(ImportInpRows, ANodeOnAnotherStandsForItsSum) {
+  const std::string stands = "*NODE\n101, 2, 0, 0\n*EQUATION\n3\n9, 1, 1., 9, 2, 1., 101, 1, -1.\n";
+  solve(bar + stands + held + statics + "*BOUNDARY\n101, 1, 1, 1e-5\n" + end);
+  EXPECT_NEAR(moved(9).x() + moved(9).y(), 1e-5, 1e-9);
+}
+
 // Truth: all of the end moves by F L/(E A), whichever of its nodes, or of the node that they follow, is pulled with F.
 TEST_F(ImportInpRows, EqualDisplacementsMoveTogether) {
   const std::string tie = "*EQUATION\n2\nhead, 1, 1., 100, 1, -1.\n",

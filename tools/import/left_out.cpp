@@ -40,10 +40,19 @@ constexpr std::pair<std::string_view, const char*> losses[] = {
     {"*RELEASE", tie},
     {"*NETWORK MPC", tie},
     {"*TIE", tie},
+    {"*CONTACT DAMPING", other},
+    {"*CONTACT CONTROLS", other},
     {"*CONTACT PAIR", tie},
     {"*CONTACT", tie},
     {"*CONTACT INCLUSIONS", tie},
     {"*CLEARANCE", tie},
+    {"*SURFACE INTERACTION", tie},
+    {"*SURFACE BEHAVIOR", tie},
+    {"*FRICTION", tie},
+    {"*MODEL CHANGE", tie},
+    {"*MATRIX ASSEMBLE", tie},
+    {"*GAP CONDUCTANCE", not_missed},
+    {"*GAP HEAT GENERATION", not_missed},
     {"*GAP", tie},
     {"*COUPLING", tie},
     {"*KINEMATIC", tie},
@@ -178,8 +187,9 @@ std::string_view loss_of(const NotRead& n) {
   if (n.output || n.what.find(": numbers after its ") != std::string::npos) return not_missed;
   for (const char* unused : {" of a set that the first subcase does not use", " of a set that no subcase uses"})
     if (n.what.find(unused) != std::string::npos) return not_missed;
+  const bool of_later_steps = n.what.ends_with(" and later");  // which are not in the scene at all
   for (const auto& [words, lost] : losses)
-    if (begins_with(n.what, words)) return lost;
+    if (begins_with(n.what, words)) return of_later_steps && lost != not_missed ? other : lost;
   return other;
 }
 

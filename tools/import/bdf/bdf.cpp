@@ -63,12 +63,13 @@ void join_told(const BdfDeck& deck, const std::vector<BdfCase>& cases, Imported&
       if (n.what.find(" of a set that the first subcase does not use") == std::string::npos && said.insert({n.what, n.place}).second)
         all.push_back(n);
   in.not_read = std::move(all);
-  std::set<std::int64_t> load, spc, mpc, glue;
-  for (const BdfCase& c : cases) load.insert(c.load), spc.insert(c.spc), mpc.insert(c.mpc), glue.insert(c.glue);
+  std::set<std::int64_t> load, spc, mpc, glue, contact;
+  for (const BdfCase& c : cases) load.insert(c.load), spc.insert(c.spc), mpc.insert(c.mpc), glue.insert(c.glue), contact.insert(c.contact);
   tell_unused(deck.loads, deck.load_sums, load, "loads", in);
   tell_unused(deck.supports, deck.support_sums, spc, "supports", in);
   tell_unused(deck.ties, deck.tie_sums, mpc, "MPC", in);
   tell_unused(deck.glue, deck.glue_sums, glue, "BGSET", in);
+  tell_unused(deck.contacts, deck.contact_sums, contact, "BCTSET", in);
   std::set<std::string> notes;
   std::erase_if(in.notes, [&](const std::string& note) { return !notes.insert(note).second; });
 }

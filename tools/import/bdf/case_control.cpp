@@ -105,6 +105,8 @@ void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& i
       c.mpc = number_in(value, line);
     else if (word == "BGSET")
       c.glue = number_in(value, line);
+    else if (word == "BCSET")
+      c.contact = number_in(value, line);
     else if (word == "LOAD")
       c.load = number_in(value, line);
     else if (word == "METHOD")

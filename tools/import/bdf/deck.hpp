@@ -99,16 +99,17 @@ struct BdfGlueFace {
   std::array<std::int64_t, 3> grids;
   std::string place;
 };
-/// BGSET: regions that are glued, and how far apart they may be; 0: not said.
+/// BGSET: regions that are glued, and how far apart they may be; 0: not said.  BCTSET: regions that may meet.
 struct BdfGlue {
   std::int64_t source, target;
   double distance;
   std::string place;
+  double friction = 0;
 };
 /// What the first subcase takes; -1: none named.
 struct BdfCase {
   std::string title, subtitle, label, solution;  // "101"
-  std::int64_t spc = -1, load = -1, mpc = -1, glue = -1, method = -1, step = -1, number = -1;
+  std::int64_t spc = -1, load = -1, mpc = -1, glue = -1, contact = -1, method = -1, step = -1, number = -1;
   bool any = false;  // case control is there: CEND is said
 };
 
@@ -175,6 +176,8 @@ struct BdfDeck {
   std::map<std::int64_t, std::vector<BdfGlueFace>> glue_faces;  // BSURFS
   std::map<std::int64_t, std::vector<BdfGlue>> glue;            // BGSET by GSID
   std::map<std::int64_t, BdfSupportSum> glue_sums;              // BGADD
+  std::map<std::int64_t, std::vector<BdfGlue>> contacts;        // BCTSET by CSID
+  std::map<std::int64_t, BdfSupportSum> contact_sums;           // BCTADD
   std::map<std::int64_t, std::vector<BdfLoad>> loads;           // by SID
   std::map<std::int64_t, BdfSum> load_sums;                     // LOAD
   std::map<std::int64_t, int> modes;                            // EIGRL, EIGR: how many, 0 not said

@@ -185,6 +185,16 @@ void read_bgset(const BdfEntry& e, BdfDeck& deck, Imported&) {
   for (size_t i = 1; i < d.fields.size(); i += 8)
     if (!d.empty(i)) deck.glue[d.integer(0)].push_back({d.integer(i), d.integer(i + 1), d.number(i + 2), d.place(i)});
 }
+/// CSID SID TID FRIC MIND MAXD - -, and more pairs behind, a line each; distances are of that program's search.
+void read_bctset(const BdfEntry& e, BdfDeck& deck, Imported&) {
+  const auto& d = e.data;
+  for (size_t i = 1; i < d.fields.size(); i += 8) {
+    if (d.empty(i)) continue;
+    const double friction = d.number(i + 2);
+    if (!(friction >= 0 && friction <= 5)) throw Error(d.place(i + 2), fmt::format("BCTSET: a friction of {:g}", friction), "0 to 5");
+    deck.contacts[d.integer(0)].push_back({d.integer(i), d.integer(i + 1), 0, d.place(i), friction});
+  }
+}
 
 }  // namespace
 
@@ -193,7 +203,7 @@ std::span<const BdfCard> bdf_link_cards() {
       {"RBE2", read_rbe2},       {"RBAR", read_rbar},     {"RBAR1", read_rbar1},   {"RROD", read_rrod},     {"RBE3", read_rbe3},
       {"CONM2", read_conm2},     {"CELAS1", read_scalar}, {"CELAS2", read_scalar}, {"CDAMP1", read_scalar}, {"CDAMP2", read_scalar},
       {"CBUSH", read_bush},      {"CBUSH1D", read_bush},  {"PELAS", read_pelas},   {"PDAMP", read_pelas},   {"PBUSH", read_pbush},
-      {"PBUSH1D", read_pbush1d}, {"BSURFS", read_bsurfs}, {"BGSET", read_bgset},
+      {"PBUSH1D", read_pbush1d}, {"BSURFS", read_bsurfs}, {"BGSET", read_bgset},   {"BCTSET", read_bctset},
   };
   return cards;
 }

@@ -29,6 +29,7 @@ void read_sum(const BdfEntry& e, std::map<std::int64_t, BdfSupportSum>& sums) {
 void read_spcadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.support_sums); }
 void read_mpcadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.tie_sums); }
 void read_bgadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.glue_sums); }
+void read_bctadd(const BdfEntry& e, BdfDeck& deck, Imported&) { read_sum(e, deck.contact_sums); }
 void read_mpc(const BdfEntry& e, BdfDeck& deck, Imported&) {
   const auto& d = e.data;
   BdfEquation m{{}, d.place()};
@@ -176,7 +177,7 @@ std::span<const BdfCard> bdf_load_cards() {
       {"FORCE1", read_force},  {"MOMENT", read_force},  {"MOMENT1", read_force}, {"GRAV", read_gravity},  {"RFORCE", read_rforce},
       {"PLOAD1", read_pload1}, {"PLOAD4", read_pload4}, {"PLOAD", read_pload},   {"PLOAD2", read_pload2}, {"LOAD", read_load},
       {"EIGRL", read_modes},   {"EIGR", read_modes},    {"TSTEP", read_tstep},   {"MPC", read_mpc},       {"MPCADD", read_mpcadd},
-      {"BGADD", read_bgadd},
+      {"BGADD", read_bgadd},   {"BCTADD", read_bctadd},
   };
   return cards;
 }

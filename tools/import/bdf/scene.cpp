@@ -40,7 +40,7 @@ std::string BdfScene::text() {
   nodal_loads();
   pressures();
   line_loads();
-  glue();
+  pairs();
   time();
   if (tables_.empty() && head_.empty()) return "";
   std::string s = "units = \"m-kg-s\"\n";

@@ -48,8 +48,8 @@ class BdfScene {
   void beam(const BdfDeck::Thin& b);
   std::string section_name(std::int64_t property) const;
   // scene_glue.cpp
-  std::string glue_surface(std::int64_t region);
-  void glue();
+  std::string pair_surface(std::int64_t region);
+  void pairs();
   // scene_springs.cpp
   void springs();
   void scalar_spring(const BdfSpring& s, double k, double c);

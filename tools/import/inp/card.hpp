@@ -43,6 +43,7 @@ std::span<const InpCard> inp_material_cards();  // *MATERIAL and what follows it
 std::span<const InpCard> inp_load_cards();      // supports, loads, histories
 std::span<const InpCard> inp_motion_cards();    // *BASE MOTION
 std::span<const InpCard> inp_tie_cards();       // couplings, rigid bodies, masses, springs
+std::span<const InpCard> inp_contact_cards();   // contact pairs, and what happens between them
 std::span<const InpCard> inp_step_cards();      // heading, parts, steps, procedures
 std::span<const InpCard> inp_modal_cards();     // what sums modes
 std::span<const InpCard> inp_unread_cards();    // requests for output, and cards without which the mesh would be another

@@ -12,7 +12,7 @@ InpCards& inp_cards() {
   static InpCards all = [] {
     InpCards list("card of .inp decks", {});
     for (const auto& family : {inp_mesh_cards(), inp_generate_cards(), inp_material_cards(), inp_load_cards(), inp_motion_cards(),
-                               inp_tie_cards(), inp_step_cards(), inp_modal_cards(), inp_unread_cards()})
+                               inp_tie_cards(), inp_contact_cards(), inp_step_cards(), inp_modal_cards(), inp_unread_cards()})
       for (const InpCard& card : family) list.add(card);
     return list;
   }();

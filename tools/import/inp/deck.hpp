@@ -216,11 +216,18 @@ struct InpTie {
   bool left_out = false;                                   // told already
   unsigned components = 0;                                 // bits 0 to 5
 };
-/// *TIE of two surfaces, by upper-case name.
-struct InpTied {
+/// *TIE or *CONTACT PAIR of two surfaces, by upper-case name.
+struct InpPair {
   std::string name, slave, master, place;
-  double tolerance = -1;  // POSITION TOLERANCE; below 0: none
-  bool adjust = true;
+  double tolerance = -1;         // of *TIE, POSITION TOLERANCE; below 0: none
+  bool adjust = true;            // of *TIE: nodes are moved onto the other surface
+  std::string interaction = {};  // of *CONTACT PAIR
+};
+/// *SURFACE INTERACTION: what happens between two surfaces that meet.
+struct InpInteraction {
+  std::string name;
+  std::string law = {};  // its pressure against overclosure, as named: LINEAR, EXPONENTIAL, TIED; HARD is ""
+  double friction = 0;
 };
 /// *ELEMENT of one or two points: MASS, SPRINGA, SPRING1, DASHPOTA and their like; and the values of *MASS, *SPRING, *DASHPOT.
 struct InpPoint {
@@ -285,10 +292,13 @@ struct InpDeck {
   std::string material;                      // the one that *ELASTIC and *DENSITY speak of
   std::vector<InpSection> sections;
   std::vector<InpTie> ties;
-  std::vector<InpTied> tied;
-  std::map<std::int64_t, InpBeam> beams;        // by number; empty where they are cells
-  std::unordered_set<std::int64_t> beam_cells;  // elements of bars that are beams
-  std::map<std::int64_t, InpPoint> points;      // by number of the element
+  std::vector<InpPair> tied, contacts;
+  std::map<std::string, InpInteraction> interactions;  // by upper-case name
+  std::string interaction;                             // the one that *SURFACE BEHAVIOR and *FRICTION speak of
+  std::string every_pair, every_interaction;           // place of *CONTACT INCLUSIONS, ALL EXTERIOR; what happens there
+  std::map<std::int64_t, InpBeam> beams;               // by number; empty where they are cells
+  std::unordered_set<std::int64_t> beam_cells;         // elements of bars that are beams
+  std::map<std::int64_t, InpPoint> points;             // by number of the element
   std::vector<InpPointValue> point_values;
   std::unordered_map<std::int64_t, Vec3> loose;  // nodes of no cell
   std::map<std::int64_t, InpBody> bodies;        // by node, as found

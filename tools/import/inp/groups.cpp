@@ -235,7 +235,8 @@ void unqualify(InpDeck& d) {
   std::int64_t none;
   for (InpTie& t : d.ties)
     t.kind == InpTie::Of::nodes ? own(t.of, none, nset) : t.kind == InpTie::Of::cells ? own(t.of, none, elset) : own(t.of, none, surface);
-  for (InpTied& t : d.tied) own(t.slave, none, surface), own(t.master, none, surface);
+  for (auto* pairs : {&d.tied, &d.contacts})
+    for (InpPair& t : *pairs) own(t.slave, none, surface), own(t.master, none, surface);
   for (InpSection& s : d.sections) own(s.elset, none, elset);
   for (InpTransform& t : d.transformed) own(t.target, t.id, nset);
   for (InpEquation& e : d.equations)

@@ -360,8 +360,9 @@ Imported read_inp(const std::string& path, const ImportOptions& options) {
       const auto more = inp_nodes(d, line.target, line.id, line.place);
       nodes.insert(nodes.end(), more.begin(), more.end());
     }
-    // whole faces of them are what a *TIE can speak of
-    if (std::ranges::any_of(d.tied, [&](const InpTied& t) { return t.slave == upper(s.name) || t.master == upper(s.name); }))
+    // whole faces of them are what a *TIE or *CONTACT PAIR can speak of
+    const auto names_it = [key = upper(s.name)](const InpPair& t) { return t.slave == key || t.master == key; };
+    if (std::ranges::any_of(d.tied, names_it) || std::ranges::any_of(d.contacts, names_it))
       surface[upper(s.name)] = names.facets(s.name + "_faces", facets_within(in.mesh, nodes));
     names.nodes(s.name, std::move(nodes));
   }

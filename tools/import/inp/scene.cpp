@@ -42,6 +42,7 @@ std::string InpScene::text() {
   line_loads();
   centrifugal();
   tied();
+  contacts();
   velocities();
   histories();
   time();
@@ -165,7 +166,8 @@ void InpScene::time() {
     if (!wanted_.empty()) tables_ += fmt::format("end = {}\n", num(end));
     int steps = plan.steps;
     const bool yields = std::ranges::any_of(d_.laws, [](const auto& law) { return law.second.kind == "j2"; });
-    if (yields && plan.increment > 0)  // what yields remembers how it came there
+    if ((yields || !d_.contacts.empty() || !d_.every_pair.empty()) &&
+        plan.increment > 0)  // what yields or rubs remembers how it came there
       steps = std::max(steps, static_cast<int>(std::ceil(std::min(100., deck_end / plan.increment - 1e-9))));
     if (steps > 1) tables_ += fmt::format("steps = {}\n", steps);
   } else if (plan.procedure == "*DYNAMIC") {

@@ -32,7 +32,10 @@ class InpScene {
   void slides();
   double length() const;
   void sums();
+  // scene_pairs.cpp
+  const std::string* facets_of(const InpPair& pair, const std::string& surface, const char* card);
   void tied();
+  void contacts();
   // scene_loads.cpp
   void gravity();
   std::vector<std::int64_t> elements_of(const InpDistributed& p) const;

@@ -192,23 +192,4 @@ void InpScene::supports_of_ties() {
                                 [this](const std::string& section, const std::string& wish) { return unique(section, wish); });
   }
 }
-
-void InpScene::tied() {
-  for (const InpTied& t : d_.tied) {
-    const auto a = surface_.find(t.master), b = surface_.find(t.slave);
-    if (a == surface_.end() || b == surface_.end()) {
-      in_.skip(fmt::format("*TIE: no surface \"{}\"", a == surface_.end() ? t.master : t.slave), t.place);
-      continue;
-    }
-    if (a->second.empty() || b->second.empty()) {
-      in_.skip("*TIE of a surface of no face", t.place);
-      continue;
-    }
-    if (!t.adjust)
-      in_.notes.push_back(fmt::format("{}: *TIE, ADJUST=NO: nodes off the other surface are moved onto it all the same", t.place));
-    tables_ += fmt::format("\n[[tie]]   # {}\nname = {}\na = {}\nb = {}\n", t.place, toml_text(unique("tie", clean_name(t.name))),
-                           toml_text(a->second), toml_text(b->second));
-    if (t.tolerance > 0) tables_ += fmt::format("gap = {}\n", num(t.tolerance * si("m") * o_.scale));
-  }
-}
 }  // namespace hilo

@@ -129,7 +129,7 @@ void read_tie(InpReading& r) {
   bool any = false;
   DataLine l;
   while (r.lines.next_data(l)) {
-    InpTied t;
+    InpPair t;
     t.name = r.card.has("NAME") ? r.card.need("NAME") : "tie", t.place = l.place();
     t.slave = upper(l.text(0)), t.master = upper(l.text(1)), t.adjust = r.card.word("ADJUST") != "NO";
     t.tolerance = tolerance;
