@@ -6,6 +6,7 @@
 #include <med.h>
 
 #include <array>
+#include <exception>
 #include <filesystem>
 #include <map>
 #include <vector>
@@ -75,7 +76,10 @@ class MedFile {
       throw Error(path, fmt::format("a MED file of version {}.{}.{}", major, minor, release), "from version 3 on: Salome saves it anew");
     }
   }
-  ~MedFile() { MEDfileClose(id_); }
+  ~MedFile() {
+    MEDfileClose(id_);
+    if (std::uncaught_exceptions() > 0) H5close();  // what a damaged file left open, while nobody hears what the library says of it
+  }
   MedFile(const MedFile&) = delete;
   MedFile& operator=(const MedFile&) = delete;
 
