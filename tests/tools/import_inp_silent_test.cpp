@@ -43,6 +43,28 @@ TEST_F(ImportInpSilent, APressureSaidTwiceCountsTwice) {
   for (const auto& loads : two) EXPECT_NEAR(foot(bar + held + statics + loads + end)[0], 10, 1e-6) << loads;
 }
 
+TEST_F(ImportInpSilent, DataThatNoReaderAsksForIsTold) {
+  const std::string deck = bar + held + "*AMPLITUDE, NAME=a\n0, 0, 1, 1\n" + statics + "*CLOAD\n9, 1, 4.\n" + end;
+  scene(deck);
+  EXPECT_EQ(err.find("not read"), std::string::npos) << err;
+  const std::pair<std::string, std::string> more[] = {
+      {"9, 1, 4.", "9, 1, 4., 5."},
+      {"foot, 1, 3", "foot, 1, 3, 0., 7."},
+      {"*END STEP\n", "*END STEP\n1, 2, 3\n"},
+      {"1, 0, 0, 0\n", "1, 0, 0, 0, 0, 0, 0, 9\n"},
+      {"*SOLID SECTION, ELSET=bar, MATERIAL=m\n", "*SOLID SECTION, ELSET=bar, MATERIAL=m\n1., 2., 3.\n"}};
+  for (const auto& [part, longer] : more) {
+    std::string text = deck;
+    text.replace(text.find(part), part.size(), longer);
+    expect_told("not read: some data of *", text);
+    EXPECT_NE(test::text_of(place / "s.toml").find("card = \"some data of *"), std::string::npos);
+  }
+  expect_told("text before the first keyword", "1, 2\n" + deck);
+  place.write("modes.inp", bar + held + "*STEP\n*FREQUENCY\n2, , , 1e-3\n" + end);
+  imported("modes.inp");
+  EXPECT_NE(err.find("*FREQUENCY: its fourth number"), std::string::npos) << err;
+}
+
 TEST_F(ImportInpSilent, NamesInLatin1BecomeUtf8) {
   std::string text = bar + held + statics + end;
   for (size_t at; (at = text.find("ELSET=bar")) != text.npos;) text.replace(at, 9, "ELSET=K\xF6rper");

@@ -25,7 +25,8 @@ struct InpReading {
   bool in_part = false;             // read once more
   bool several = false;             // instances or parts: each instance is its part, read once more
   std::map<std::string, InpLines::Mark> part_at = {};
-  void skip(const std::string& what) { in.skip(what, card.place()); }
+  bool skipped = false;  // the card at hand, as a whole: told already
+  void skip(const std::string& what) { in.skip(what, card.place()), skipped = true; }
 };
 
 struct InpCard {

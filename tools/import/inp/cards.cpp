@@ -20,6 +20,7 @@ InpCards& inp_cards() {
 }
 
 std::string unknown_param(const Card& card, std::initializer_list<const char*> known) {
+  for (const char* key : known) card.find(key);
   for (const auto& [key, p] : card.params)
     if (std::find_if(known.begin(), known.end(), [&key = key](const char* k) { return key == k; }) == known.end())
       return fmt::format("{}, {}{}", card.name, key, p.value.empty() ? "" : "=" + p.value);

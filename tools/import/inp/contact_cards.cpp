@@ -59,6 +59,7 @@ void read_behavior(InpReading& r) {
     return r.skip(odd);
   const std::string law = r.card.word("PRESSURE-OVERCLOSURE");
   of->law = law == "HARD" ? "" : law;
+  for (DataLine l; r.lines.next_data(l);) l.ignore_rest();  // the stiffness, of which contacts() tells
 }
 
 void read_friction(InpReading& r) {
@@ -68,7 +69,7 @@ void read_friction(InpReading& r) {
   constexpr double most = 5;  // that [[contact]] takes
   DataLine l;
   double mu = r.card.has("ROUGH") ? std::numeric_limits<double>::infinity() : 0;
-  if (r.lines.next_data(l) && !r.card.has("ROUGH")) mu = l.number(0, 0);
+  if (r.lines.next_data(l) && !r.card.has("ROUGH")) mu = l.number(0, 0), l.ignore_rest();
   if (!(mu >= 0)) throw Error(l.place(0), fmt::format("*FRICTION: a coefficient of {:g}", mu), "one of zero or above");
   if (mu > most)
     r.in.notes.push_back(fmt::format("{}: a friction of {:g} becomes {:g}, the largest that a [[contact]] has", r.card.place(), mu, most));

@@ -243,20 +243,30 @@ void parse_inp(const std::string& path, InpDeck& d, Imported& in, const InpCards
   InpReading r{InpLines(path), d, in};
   bool any = false;
   r.several = r.lines.count("*INSTANCE") > 1 || r.lines.count("*PART") > 1;
-  while (r.lines.next_card(r.card)) {
+  const auto tell_unread = [&r](const std::string& of) {
+    const auto [lines, place] = r.lines.take_unread();
+    if (lines > 0 && !r.skipped) r.in.skip(of.empty() ? "text before the first keyword" : "some data of " + of, place, lines);
+    r.skipped = false;
+  };
+  for (std::string before; r.lines.next_card(r.card); before = r.card.name) {
+    tell_unread(before);
     any = true;
     const auto known = by_key.find(r.card.key);
     if (r.step > 1 && (known == by_key.end() || known->second->first_step_only)) {
       r.skip(r.card.name + " in step 2 and later");
       if (r.card.key != "CONTROLS" && d.steps.back().not_read.empty()) d.steps.back().not_read = r.card.name;
     } else if (known == by_key.end())
-      in.skip(r.card.name, r.card.place(), 1, false, slip_of(r.card.key, cards));
+      in.skip(r.card.name, r.card.place(), 1, false, slip_of(r.card.key, cards)), r.skipped = true;
     else {
       if (!d.prefix.empty()) qualify(r.card, d.prefix);
       if (r.step > 1 && known->second->of_step) d.step_cards.push_back({r.card.name, r.card.place(), r.step});
       known->second->read(r);
+      for (const auto& [key, p] : r.card.params)
+        if (!p.asked && !r.skipped)
+          in.skip(fmt::format("{}, {}{}", r.card.name, key, p.value.empty() ? "" : "=" + p.value), r.card.place(key));
     }
   }
+  tell_unread(r.card.name);
   if (!any) throw Error(path, "no keyword in it", "an Abaqus or CalculiX deck has lines such as *NODE");
 }
 

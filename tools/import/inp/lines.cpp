@@ -43,19 +43,25 @@ std::string unquote(std::string_view s) {
 }  // namespace
 
 std::string Card::place() const { return fmt::format("{}:{}", *file, line); }
-std::string Card::place(const std::string& param) const {
+const Card::Param* Card::find(const std::string& param) const {
   const auto p = params.find(param);
-  return fmt::format("{}:{}:{}", *file, line, p == params.end() ? 1 : p->second.column);
+  if (p == params.end()) return nullptr;
+  p->second.asked = true;
+  return &p->second;
+}
+std::string Card::place(const std::string& param) const {
+  const Param* p = find(param);
+  return fmt::format("{}:{}:{}", *file, line, p ? p->column : 1);
 }
 std::string Card::value(const std::string& param, const std::string& fallback) const {
-  const auto p = params.find(param);
-  return p == params.end() ? fallback : p->second.value;
+  const Param* p = find(param);
+  return p ? p->value : fallback;
 }
 std::string Card::word(const std::string& param) const { return upper(value(param)); }
 std::string Card::need(const std::string& param) const {
-  const auto p = params.find(param);
-  if (p == params.end() || p->second.value.empty()) throw Error(fmt::format("{}:1", place()), fmt::format("{} lacks {}=", name, param));
-  return p->second.value;
+  const Param* p = find(param);
+  if (!p || p->value.empty()) throw Error(fmt::format("{}:1", place()), fmt::format("{} lacks {}=", name, param));
+  return p->value;
 }
 
 InpLines::InpLines(const std::string& path) : folder_(std::filesystem::path(path).parent_path().string()) { open(path, ""); }
@@ -165,7 +171,18 @@ bool InpLines::next_text(std::string_view& text, std::string& place) {
   return true;
 }
 
+void InpLines::count_unread() {
+  if (unread_.lines++ == 0) unread_.place = fmt::format("{}:{}", *stack_.back().path, stack_.back().line);
+}
+
+/// The data line at hand is done with.
+void InpLines::settle() {
+  if ((given_ & ~asked_) != 0) count_unread();
+  given_ = asked_ = 0;
+}
+
 bool InpLines::next_data(DataLine& data) {
+  settle();
   std::string_view line;
   if (!next_line(line)) return false;
   if (strip(line).front() == '*') {
@@ -175,14 +192,19 @@ bool InpLines::next_data(DataLine& data) {
   data.file = stack_.back().path.get();
   data.line = stack_.back().line;
   cut(line, data.fields);
+  data.asked = &asked_;
+  for (size_t i = 0; i < std::min<size_t>(data.fields.size(), 64); ++i)
+    if (!data.fields[i].text.empty()) given_ |= std::uint64_t{1} << i;
   return true;
 }
 
 bool InpLines::next_card(Card& card) {
+  settle();
   std::string_view line;
   for (;;) {
     if (!next_line(line)) return false;
     if (strip(line).front() == '*') break;
+    count_unread();
   }
   card.file = stack_.back().path.get();
   card.line = stack_.back().line;

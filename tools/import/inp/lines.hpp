@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "import/data_line.hpp"
@@ -19,6 +20,7 @@ struct Card {
   struct Param {
     std::string value;
     int column;
+    mutable bool asked = false;  // by a reader
   };
   std::string key;                      // "SOLIDSECTION": upper case, blanks removed
   std::string name;                     // "*SOLID SECTION": as listed to the user
@@ -28,7 +30,9 @@ struct Card {
 
   std::string place() const;
   std::string place(const std::string& param) const;
-  bool has(const std::string& param) const { return params.count(param) > 0; }
+  /// Null where the card has it not.
+  const Param* find(const std::string& param) const;
+  bool has(const std::string& param) const { return find(param) != nullptr; }
   std::string value(const std::string& param, const std::string& fallback = "") const;
   /// The value upper case without blanks: what keywords are compared with.
   std::string word(const std::string& param) const;
@@ -44,6 +48,12 @@ class InpLines {
   bool next_card(Card& card);
   /// The next data line before the next card.
   bool next_data(DataLine& line);
+  /// Data of the card before that nobody asked for: how many lines have some, and the first of them.  Known once the next card is there.
+  struct Unread {
+    std::int64_t lines = 0;
+    std::string place = {};
+  };
+  Unread take_unread() { return std::exchange(unread_, {}); }
   /// The same as a whole, with its place.
   bool next_text(std::string_view& text, std::string& place);
   /// How many lines of the deck's file begin with this word, "*INSTANCE".
@@ -65,6 +75,8 @@ class InpLines {
     int line = 0;
   };
   bool next_line(std::string_view& line);
+  void settle();
+  void count_unread();
   void put_values(std::string_view& line);
   void open(const std::string& path, const std::string& place);
   /// Goes on with the file that an *INCLUDE line names, seen from the folder of the deck, then returns to this one.
@@ -74,6 +86,8 @@ class InpLines {
   std::vector<Source> kept_;  // texts and names that fields and places point into
   std::string folder_;
   std::optional<std::string_view> ahead_;
+  std::uint64_t given_ = 0, asked_ = 0;  // fields of the last data line, as bits
+  Unread unread_;
   std::map<std::string, std::string> values_;
   std::deque<std::string> replaced_;  // lines with values, which fields point into
 };

@@ -38,7 +38,8 @@ void read_no_law(InpReading& r) { no_law(r, material_of(r), r.card.name); }
 
 /// Lines behind the first are for further temperatures.
 void skip_temperatures(InpReading& r, DataLine& l) {
-  while (r.lines.next_data(l)) r.in.skip(fmt::format("{} at further temperatures", r.card.name), l.place());
+  l.ignore_rest();  // the temperature, where it is the only one
+  while (r.lines.next_data(l)) r.in.skip(fmt::format("{} at further temperatures", r.card.name), l.place()), l.ignore_rest();
 }
 
 /// `count` numbers, eight on a line.

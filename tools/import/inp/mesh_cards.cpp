@@ -105,6 +105,7 @@ size_t nodes_of_beam(const std::string& type) {
 }
 
 void read_elements(InpReading& r) {
+  r.card.find("PARENT");  // the cell that it was divided from
   if (read_points(r, upper(r.card.need("TYPE")))) return;
   const Card& card = r.card;
   InpLines& lines = r.lines;

@@ -67,11 +67,13 @@ std::vector<std::string> names_of(const std::map<std::string, InpLines::Mark>& p
 /// A part that stands alone is read where it is; of several, each instance reads its part once more.
 void read_part(InpReading& r) {
   if (!r.several && ++r.parts > 1) refuse_included(r, "*PART");
+  r.card.find("NAME");
   if (!r.several) return;
   const std::string name = upper(r.card.need("NAME")), place = r.card.place();
   r.part_at.emplace(name, r.lines.mark());
   while (r.card.key != "ENDPART")
     if (!r.lines.next_card(r.card)) throw Error(place, "*PART without *END PART");
+  r.lines.take_unread();  // by its instances
 }
 void end_part(InpReading& r) {
   if (!r.several) return;
@@ -104,6 +106,7 @@ void read_instance(InpReading& r) {
 /// What follows is of the assembly.
 void read_assembly(InpReading& r) {
   r.deck.in_assembly = true;
+  r.card.find("NAME");
   for (const auto& [key, set] : r.deck.nset) r.deck.part_nsets.insert(key);
   for (const auto& [key, set] : r.deck.elset) r.deck.part_elsets.insert(key);
 }
@@ -124,6 +127,7 @@ void end_instance(InpReading& r) {
 void read_step(InpReading& r) {
   r.supports_before_step = r.deck.supports.size();
   ++r.step;
+  for (const char* of_no_effect : {"INC", "NAME", "UNSYMM", "EXTRAPOLATION", "CONVERTSDI", "SOLVER"}) r.card.find(of_no_effect);
   InpStep& s = r.deck.steps.emplace_back();
   s.place = r.card.place(), s.nlgeom = r.card.has("NLGEOM") && r.card.word("NLGEOM") != "NO", s.perturbation = r.card.has("PERTURBATION");
   if (r.card.has("AMPLITUDE")) s.ramps = r.card.word("AMPLITUDE") != "STEP", s.ramps_said = true;
@@ -141,20 +145,24 @@ void read_procedure(InpReading& r) {
   s.procedure = r.card.name;
   if (!s.ramps_said) s.ramps = r.card.key == "STATIC";
   DataLine l;
-  if (r.lines.next_data(l)) s.increment = l.number(0), s.end = l.number(1);
+  if (r.lines.next_data(l)) s.increment = l.number(0), s.end = l.number(1), l.ignore_rest();
   s.direct = r.card.has("DIRECT") || r.card.has("EXPLICIT");
-  for (const auto& [key, p] : r.card.params)
-    if (key != "DIRECT" && key != "EXPLICIT" && key != "SOLVER") r.skip(fmt::format("{}, {}", r.card.name, key));
+  r.card.find("SOLVER");  // of no effect here
 }
 /// How many modes; a band of frequencies is not asked for.
 void read_frequency(InpReading& r) {
   step_of(r).procedure = r.card.name;
+  for (const char* of_no_effect : {"SOLVER", "STORAGE", "EIGENSOLVER", "NORMALIZATION"}) r.card.find(of_no_effect);
   DataLine l;
-  if (r.lines.next_data(l)) step_of(r).n_modes = static_cast<int>(std::clamp(l.number(0), 0.0, 1000.0));
+  if (!r.lines.next_data(l)) return;
+  step_of(r).n_modes = static_cast<int>(std::clamp(l.number(0), 0.0, 1000.0));
+  if (l.number(3) != 0) r.in.skip("*FREQUENCY: its fourth number (it scales masses, or is a shift)", l.place(3));
+  l.ignore_rest();
 }
 void other_procedure(InpReading& r) {
   step_of(r).procedure = r.card.name;
   if (r.step < 2) r.skip(r.card.name);
+  r.skipped = true;
 }
 void end_assembly(InpReading& r) { r.deck.in_assembly = false; }
 void nothing(InpReading&) {}

@@ -9,6 +9,7 @@ namespace {
 
 void output(InpReading& r) {
   r.in.skip(r.card.name, r.card.place(), 1, true);
+  r.skipped = true;
   if (r.card.key == "NODEPRINT" && r.card.has("NSET")) r.deck.printed.push_back(r.card.word("NSET"));
 }
 
