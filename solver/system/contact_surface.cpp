@@ -8,34 +8,52 @@
 namespace hilo {
 namespace {
 
+constexpr int pieces = 4;  // along an edge of a quadratic facet: within a sixteenth of its sag
+
+/// Plain facets as they are, those of four nodes about their middle; quadratic ones by a grid of `pieces` along each edge.
 FacetCut cut(size_t n) {
   FacetCut out;
-  const auto node = [](int i) {
+  for (size_t a = 0; a < n; ++a) out.corner.push_back({}), out.corner.back()[a] = 1;  // its nodes come first
+  const auto corner = [&](double r, double s) {
+    const FacetShape shape = facet_shape(n, r, s);
+    const auto node = std::find_if(shape.N, shape.N + n, [](double N) { return N > 1 - 1e-9; });
+    if (node != shape.N + n) return static_cast<int>(node - shape.N);
     std::array<double, 8> share{};
-    share[i] = 1;
-    return share;
+    std::copy_n(shape.N, n, share.begin());
+    out.corner.push_back(share);
+    return static_cast<int>(out.corner.size()) - 1;
   };
-  const int corners = n == 3 || n == 6 ? 3 : 4, m = static_cast<int>(n);
-  for (int i = 0; i < m; ++i) out.corner.push_back(node(i));
-  if (n == 3) {
-    out.triangle = {{0, 1, 2}}, out.on_edge = {{0, 1, 2}};
-  } else if (n == 6) {
-    out.triangle = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}, out.on_edge = {{0, -1, 2}, {0, 1, -1}, {-1, 1, 2}, {-1, -1, -1}};
-  } else {  // about the middle
-    std::array<double, 8> middle{};
-    const FacetShape shape = facet_shape(n, 0, 0);
-    std::copy_n(shape.N, n, middle.begin());
-    out.corner.push_back(middle);
-    for (int e = 0; e < corners; ++e) {
-      const int next = (e + 1) % corners;
-      if (n == 4) {
-        out.triangle.push_back({e, next, m}), out.on_edge.push_back({e, -1, -1});
-      } else {
-        out.triangle.push_back({e, 4 + e, m}), out.on_edge.push_back({e, -1, -1});
-        out.triangle.push_back({4 + e, next, m}), out.on_edge.push_back({e, -1, -1});
-      }
-    }
+  if (n == 4) {
+    corner(0, 0);
+    for (int e = 0; e < 4; ++e) out.triangle.push_back({e, (e + 1) % 4, 4}), out.on_edge.push_back({e, -1, -1});
+    return out;
   }
+  const bool three = n == 3 || n == 6;
+  const int k = n == 3 ? 1 : pieces;
+  std::array<std::array<int, pieces + 1>, pieces + 1> at{};
+  for (int j = 0; j <= k; ++j)
+    for (int i = 0; i <= (three ? k - j : k); ++i) {
+      const double r = static_cast<double>(i) / k, s = static_cast<double>(j) / k;
+      at[i][j] = three ? corner(r, s) : corner(2 * r - 1, 2 * s - 1);
+    }
+  const auto edge_of = [&](std::array<int, 2> a, std::array<int, 2> b) {
+    if (a[1] == 0 && b[1] == 0) return 0;
+    if (three) return a[0] + a[1] == k && b[0] + b[1] == k ? 1 : a[0] == 0 && b[0] == 0 ? 2 : -1;
+    return a[0] == k && b[0] == k ? 1 : a[1] == k && b[1] == k ? 2 : a[0] == 0 && b[0] == 0 ? 3 : -1;
+  };
+  const auto add = [&](std::array<int, 2> a, std::array<int, 2> b, std::array<int, 2> c) {
+    out.triangle.push_back({at[a[0]][a[1]], at[b[0]][b[1]], at[c[0]][c[1]]});
+    out.on_edge.push_back({edge_of(a, b), edge_of(b, c), edge_of(c, a)});
+  };
+  for (int j = 0; j < k; ++j)
+    for (int i = 0; i < (three ? k - j : k); ++i) {
+      if (!three && (2 * i < k) == (2 * j < k)) {  // diagonals about the middle, the same seen from each corner
+        add({i, j}, {i + 1, j}, {i + 1, j + 1}), add({i, j}, {i + 1, j + 1}, {i, j + 1});
+        continue;
+      }
+      add({i, j}, {i + 1, j}, {i, j + 1});
+      if (!three || i + j + 2 <= k) add({i + 1, j}, {i + 1, j + 1}, {i, j + 1});
+    }
   return out;
 }
 

@@ -10,7 +10,7 @@ namespace hilo {
 
 /// How a facet of n nodes is cut: its corners (and what lies between) are means of its nodes, so that forces on them are forces on nodes.
 struct FacetCut {
-  std::vector<std::array<double, 8>> corner;  // shares of the nodes
+  std::vector<std::array<double, 8>> corner;  // shares of the nodes, which come first
   std::vector<std::array<int, 3>> triangle;   // outward
   std::vector<std::array<int, 3>> on_edge;    // of each side of a triangle, from corner k to k + 1: the edge of the facet, or -1
 };
