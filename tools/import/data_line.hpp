@@ -14,23 +14,31 @@ struct DataField {
   int column = 1;
 };
 
+/// Where a reader of lines counts the fields that are asked for, as bits; a copy of a line counts no more.
+struct Asked {
+  std::uint64_t* bits = nullptr;
+  Asked() = default;
+  Asked(const Asked&) {}
+  Asked& operator=(const Asked&) { return bits = nullptr, *this; }
+};
+
 /// A data line.  Fields are views into the file's text, which the reader keeps.
 struct DataLine {
   const std::string* file = nullptr;
   int line = 0;
   std::vector<DataField> fields;
-  std::uint64_t* asked = nullptr;  // bits of the fields that were asked for, where the reader wants to know
+  Asked asked = {};
 
   std::string place() const;              // file:line
   std::string place(size_t field) const;  // file:line:column
   /// The text of a field, "" behind the last one.
   std::string_view text(size_t field) const {
-    if (asked && field < 64) *asked |= std::uint64_t{1} << field;
+    if (asked.bits && field < 64) *asked.bits |= std::uint64_t{1} << field;
     return field < fields.size() ? fields[field].text : std::string_view{};
   }
   /// What nobody asked for is of no effect here.
   void ignore_rest() const {
-    if (asked) *asked = ~std::uint64_t{0};
+    if (asked.bits) *asked.bits = ~std::uint64_t{0};
   }
   bool empty(size_t field) const { return text(field).empty(); }
   /// A number; an empty field is `fallback`.  Throws Error with the place.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <unordered_set>
 
 #include "base/error.hpp"
@@ -179,11 +180,25 @@ void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards&
   std::map<std::string_view, const BdfCard*> by_name;
   for (const auto& c : cards) by_name[c.name] = &c;
   BdfEntry e;
-  while (entries.next(e))
-    if (const auto known = by_name.find(e.name); known != by_name.end())
-      known->second->read(e, deck, in);
-    else
+  std::uint64_t asked;
+  while (entries.next(e)) {
+    const auto known = by_name.find(e.name);
+    if (known == by_name.end()) {
       in.skip(e.name.substr(0, 40), e.data.place());
+      continue;
+    }
+    const auto told = [&in] {
+      return std::accumulate(in.not_read.begin(), in.not_read.end(), std::int64_t{0}, [](auto n, const NotRead& r) { return n + r.count; });
+    };
+    const auto before = told();
+    asked = 0, e.data.asked.bits = &asked;
+    known->second->read(e, deck, in);
+    for (size_t i = 0; i < std::min<size_t>(e.data.fields.size(), 64); ++i)
+      if (!e.data.fields[i].text.empty() && (asked >> i & 1) == 0 && told() == before) {
+        in.skip(fmt::format("{}: its field {}", e.name, i + 2), e.data.place(i));
+        break;
+      }
+  }
 }
 
 /// Of ranges of grids the grids that are there.

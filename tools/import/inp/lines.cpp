@@ -192,7 +192,7 @@ bool InpLines::next_data(DataLine& data) {
   data.file = stack_.back().path.get();
   data.line = stack_.back().line;
   cut(line, data.fields);
-  data.asked = &asked_;
+  data.asked.bits = &asked_;
   for (size_t i = 0; i < std::min<size_t>(data.fields.size(), 64); ++i)
     if (!data.fields[i].text.empty()) given_ |= std::uint64_t{1} << i;
   return true;
