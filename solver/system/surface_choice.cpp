@@ -53,26 +53,50 @@ double crossing(const Vec3& x0, const Vec3& x1, const std::array<Vec3, 3>& v0, c
 
 }  // namespace
 
-/// Balls about the facets and their way, and their normals.
+/// About a facet and its way, and its normal.
+SurfacePair::Ball SurfacePair::ball_of(int s, int f, Positions x0, Positions x1) const {
+  const ContactSurface::Face& face = side[s].faces[f];
+  Vec3 c = Vec3::Zero();
+  for (int a = 0; a < face.n; ++a) c += (x0[face.node[a]] + x1[face.node[a]]) / (2 * face.n);
+  double r = 0;
+  for (int a = 0; a < face.n; ++a) r = std::max({r, (x0[face.node[a]] - c).squaredNorm(), (x1[face.node[a]] - c).squaredNorm()});
+  Vec3 n = Vec3::Zero();
+  for (int t = 0; t < static_cast<int>(cut_of(face.n).triangle.size()); ++t)
+    for (const Positions x : {x0, x1}) {
+      const auto v = side[s].triangle(f, t, x);
+      n += (v[1] - v[0]).cross(v[2] - v[0]);
+    }
+  return {c, n.normalized(), 1.1 * std::sqrt(r)};
+}
+
 void SurfacePair::look(Positions x0, Positions x1) {
   for (int s = 0; s < 2; ++s) {
     ball_[s].resize(side[s].faces.size());
-    for (size_t f = 0; f < side[s].faces.size(); ++f) {
-      if (partners_[s][f].empty()) continue;
-      const ContactSurface::Face& face = side[s].faces[f];
-      Vec3 c = Vec3::Zero();
-      for (int a = 0; a < face.n; ++a) c += (x0[face.node[a]] + x1[face.node[a]]) / (2 * face.n);
-      double r = 0;
-      for (int a = 0; a < face.n; ++a) r = std::max({r, (x0[face.node[a]] - c).squaredNorm(), (x1[face.node[a]] - c).squaredNorm()});
-      Vec3 n = Vec3::Zero();
-      for (int t = 0; t < static_cast<int>(cut_of(face.n).triangle.size()); ++t)
-        for (const Positions x : {x0, x1}) {
-          const auto v = side[s].triangle(static_cast<int>(f), t, x);
-          n += (v[1] - v[0]).cross(v[2] - v[0]);
-        }
-      ball_[s][f] = {c, n.normalized(), 1.1 * std::sqrt(r)};
+    for (size_t f = 0; f < side[s].faces.size(); ++f)
+      if (!partners_[s][f].empty()) ball_[s][f] = ball_of(s, static_cast<int>(f), x0, x1);
+  }
+}
+
+/// Whether points of two facets that are not on the list meet: one comes through a triangle of the other, or ends over one and behind it,
+/// by no more than what meets may be.
+bool SurfacePair::meets_unlisted(const std::pair<int, int>& pair, Positions x0, Positions x1) const {
+  const int f[2] = {pair.first, pair.second};
+  const Ball ball[2] = {ball_of(0, f[0], x0, x1), ball_of(1, f[1], x0, x1)};
+  if (hangs && ball[0].normal.dot(ball[1].normal) > aside) return false;
+  for (int s = 0; s < 2; ++s) {
+    const ContactSurface::Face &own = side[s].faces[f[s]], &other = side[1 - s].faces[f[1 - s]];
+    const double cell = std::min(own.cell, other.cell), deep = hangs ? shallow * cell : margin / 2;
+    for (int i = own.first; i < own.first + own.n_points; ++i) {
+      const SurfacePoint& point = side[s].points[i];
+      const Vec3 p0 = side[s].at(point, x0), p1 = side[s].at(point, x1);
+      for (int t = 0; t < static_cast<int>(cut_of(other.n).triangle.size()); ++t) {
+        const auto v1 = side[1 - s].triangle(f[1 - s], t, x1);
+        if (const Beside at = beside(p1, v1); at.edge < 0 && at.gap < touch(point) && at.gap > -deep) return true;
+        if (crossing(p0, p1, side[1 - s].triangle(f[1 - s], t, x0), v1) <= 1) return true;
+      }
     }
   }
+  return false;
 }
 
 /// The triangle that a point which is open crosses first on its straight way; else the nearest one in the mean, of load steps at the end,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 
@@ -80,7 +81,9 @@ std::string SurfacePair::advance(const Stage& s) {
   };
   if (!std::all_of(nodes_[0].begin(), nodes_[0].end(), is_foreseen) || !std::all_of(nodes_[1].begin(), nodes_[1].end(), is_foreseen)) {
     const auto met = near(x0, x1, 0);
-    if (!std::includes(near_.begin(), near_.end(), met.begin(), met.end()))
+    std::vector<std::pair<int, int>> unlisted;
+    std::ranges::set_difference(met, near_, std::back_inserter(unlisted));
+    if (std::ranges::any_of(unlisted, [&](const auto& pair) { return meets_unlisted(pair, x0, x1); }))
       why = fmt::format("contact \"{}\": facets meet that were not foreseen", name);
   }
   double pressing = 0, slid = 0;
