@@ -112,11 +112,24 @@ SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Pos
   Target nearest, first;
   double least = 1e300, gap = 0, soonest = 2;
   bool at_border = false;
+  const auto between = [&](int face, int t) {
+    const auto v0 = other.triangle(face, t, x0), v1 = other.triangle(face, t, x1);
+    return std::array<Vec3, 3>{(1 - f) * v0[0] + f * v1[0], (1 - f) * v0[1] + f * v1[1], (1 - f) * v0[2] + f * v1[2]};
+  };
+  double bound = 1e300;  // of what need be looked at: the distance of the partner whose middle is nearest
+  if (!hangs) {
+    int face = -1;
+    double near = 1e300;
+    for (const Partner& partner : partners_[s][point.face])
+      if (const double d = (middle - ball_[1 - s][partner.face].centre).squaredNorm(); d < near) near = d, face = partner.face;
+    for (int t = 0; face >= 0 && t < static_cast<int>(cut_of(other.faces[face].n).triangle.size()); ++t)
+      bound = std::min(bound, (1 + 1e-6) * beside(middle, between(face, t)).distance);
+  }
   for (const Partner& partner : partners_[s][point.face]) {
     if (hangs && !may_meet(s, point, partner.face)) continue;
     const Ball& ball = ball_[1 - s][partner.face];
     const double away = (middle - ball.centre).norm() - ball.radius;
-    if (away > least && away > way) continue;
+    if (away > std::min(least, bound) && away > way) continue;
     const ContactSurface::Face& face = other.faces[partner.face];
     const FacetCut& cut = cut_of(face.n);
     for (int t = 0; t < static_cast<int>(cut.triangle.size()); ++t) {

@@ -66,8 +66,7 @@ TEST(ContactPath, OfABallThatMeetsAWall) {
   ASSERT_EQ(ran.exit, 0) << ran.err;
   const Results r = c.results();
   const auto x = r.history("probe/cart"), p = r.history("path");
-  for (Eigen::Index k = 0; k < x.rows(); ++k)
-    EXPECT_NEAR(100 * x(k, 0) + 300 * std::max(0., x(k, 0) - 1), 200 * p(k, 0), 1e-6) << k;
+  for (Eigen::Index k = 0; k < x.rows(); ++k) EXPECT_NEAR(100 * x(k, 0) + 300 * std::max(0., x(k, 0) - 1), 200 * p(k, 0), 1e-6) << k;
   EXPECT_NEAR(x(x.rows() - 1, 0), 1.25, 1e-9);
   EXPECT_NEAR(r.history("contact/c")(x.rows() - 1, 0), 75, 1e-6);
 }

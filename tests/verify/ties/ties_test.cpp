@@ -97,8 +97,13 @@ TEST(Ties, CurvedOnesKeepEnergyAndMomenta) {
 // The same for linear regions: nodes by themselves, and where they are many by smooth functions.
 TEST(Ties, OfLinearRegionsKeepEnergyAndMomenta) {
   using enum Fidelity;
-  for (const auto& [n, a, b] : {std::tuple{2, linear, nonlinear}, {2, nonlinear, linear}, {2, linear, linear}, {2, rigid, linear},
-                                {2, linear, rigid}, {9, nonlinear, linear}, {9, linear, linear}}) {
+  for (const auto& [n, a, b] : {std::tuple{2, linear, nonlinear},
+                                {2, nonlinear, linear},
+                                {2, linear, linear},
+                                {2, rigid, linear},
+                                {2, linear, rigid},
+                                {9, nonlinear, linear},
+                                {9, linear, linear}}) {
     Case c("ties");
     c.use(bent(Shape::hex8, Shape::hex8, n), {a, b});
     const Results r = c.solved("", "run.h5", "flight");
@@ -114,8 +119,12 @@ TEST(Ties, OfLinearRegionsKeepEnergyAndMomenta) {
 // Truth: uniform stress is a linear field.  Strain is 1e-7, by which that of Green and Lagrange differs.
 TEST(Ties, PatchOfLinearRegions) {
   using enum Fidelity;
-  for (const auto& [n, a, b] : {std::tuple{2, linear, nonlinear}, {2, nonlinear, linear}, {2, linear, linear}, {9, linear, nonlinear},
-                                {9, nonlinear, linear}, {9, linear, linear}}) {
+  for (const auto& [n, a, b] : {std::tuple{2, linear, nonlinear},
+                                {2, nonlinear, linear},
+                                {2, linear, linear},
+                                {9, linear, nonlinear},
+                                {9, nonlinear, linear},
+                                {9, linear, linear}}) {
     Case c("ties");
     const Mesh mesh = stack(Shape::hex8, Shape::hex8, n, n + 1);
     c.use(mesh, {a, b});
@@ -213,6 +222,34 @@ TEST(Ties, ACantileverOfTwoMeshesBendsAsOne) {
   EXPECT_NEAR(tip(true, Shape::hex20, Shape::hex20) / one, 1, 2e-3);
   EXPECT_NEAR(tip(true, Shape::tet10, Shape::hex20) / one, 1, 1e-2);
   EXPECT_NEAR(tip(true, Shape::hex20, Shape::wedge15) / one, 1, 1e-2);
+}
+
+// Truth: the same beam by cells alone.  Where all motions of tied nodes are modes, what is left out is that of high modes.
+TEST(Ties, LinearRegionsRingAsCellsDo) {
+  using enum Fidelity;
+  for (const int n : {2, 8}) {
+    BlockOptions A, B;
+    A.regions = {"A"}, B.regions = {"B"};
+    A.n[0] = A.n[1] = n, B.n[0] = B.n[1] = n + 1, A.n[2] = B.n[2] = 4;
+    A.high = Vec3(0.1, 0.1, 0.5), B.low = Vec3(0, 0, 0.5), B.high = Vec3(0.1, 0.1, 1);
+    const Mesh m = together(block_mesh(A), block_mesh(B));
+    const auto frequencies = [&](Fidelity a, Fidelity b) {
+      Case c("ties");
+      c.use(m, {a, b});
+      std::string text = text_of(c.source("bar.toml"));
+      const size_t guide = text.rfind("[[motion]]");
+      text.erase(guide, text.find("[time]") - guide);
+      c.write("scene.toml", text);
+      const Ran ran = c.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5");
+      EXPECT_EQ(ran.exit, 0) << ran.err;
+      return Eigen::VectorXd(c.results().history("mode").bottomRows(3).col(0));
+    };
+    const Eigen::VectorXd cells = frequencies(nonlinear, nonlinear);
+    for (const auto& [a, b] : {std::pair{linear, nonlinear}, {nonlinear, linear}, {linear, linear}}) {
+      const Eigen::VectorXd f = frequencies(a, b);
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(f[k] / cells[k], 1, n == 2 ? 1e-7 : 2e-5) << n << word(a) << word(b) << k;
+    }
+  }
 }
 
 // Three blocks about an edge: its nodes are of two ties, and some of them are held.  Truth: uniform stress.
