@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which triangle a point meets in a step, and what it begins with there.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "system/surface_pair.hpp"
@@ -117,13 +118,14 @@ SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Pos
     return std::array<Vec3, 3>{(1 - f) * v0[0] + f * v1[0], (1 - f) * v0[1] + f * v1[1], (1 - f) * v0[2] + f * v1[2]};
   };
   double bound = 1e300;  // of what need be looked at: the distance of the partner whose middle is nearest
+  int closest = -1;
+  std::array<Beside, 8> known;  // of its triangles
   if (!hangs) {
-    int face = -1;
     double near = 1e300;
     for (const Partner& partner : partners_[s][point.face])
-      if (const double d = (middle - ball_[1 - s][partner.face].centre).squaredNorm(); d < near) near = d, face = partner.face;
-    for (int t = 0; face >= 0 && t < static_cast<int>(cut_of(other.faces[face].n).triangle.size()); ++t)
-      bound = std::min(bound, (1 + 1e-6) * beside(middle, between(face, t)).distance);
+      if (const double d = (middle - ball_[1 - s][partner.face].centre).squaredNorm(); d < near) near = d, closest = partner.face;
+    for (int t = 0; closest >= 0 && t < static_cast<int>(cut_of(other.faces[closest].n).triangle.size()); ++t)
+      known[t] = beside(middle, between(closest, t)), bound = std::min(bound, (1 + 1e-6) * known[t].distance);
   }
   for (const Partner& partner : partners_[s][point.face]) {
     if (hangs && !may_meet(s, point, partner.face)) continue;
@@ -133,10 +135,10 @@ SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Pos
     const ContactSurface::Face& face = other.faces[partner.face];
     const FacetCut& cut = cut_of(face.n);
     for (int t = 0; t < static_cast<int>(cut.triangle.size()); ++t) {
-      const auto v0 = other.triangle(partner.face, t, x0), v1 = other.triangle(partner.face, t, x1);
       if (!held && away <= way)
-        if (const double when = crossing(p0, p1, v0, v1); when < soonest) soonest = when, first = {partner.face, t, true, true};
-      const Beside at = beside(middle, {(1 - f) * v0[0] + f * v1[0], (1 - f) * v0[1] + f * v1[1], (1 - f) * v0[2] + f * v1[2]});
+        if (const double when = crossing(p0, p1, other.triangle(partner.face, t, x0), other.triangle(partner.face, t, x1)); when < soonest)
+          soonest = when, first = {partner.face, t, true, true};
+      const Beside at = partner.face == closest ? known[t] : beside(middle, between(partner.face, t));
       if (hangs && !may_meet_there(s, point, partner.face, at.distance, at.gap)) continue;
       const double slack = 1e-9 * least + 1e-12 * ball.radius;
       if (at.distance > least + slack || (at.distance > least - slack && std::abs(at.gap) <= std::abs(gap) + slack)) continue;

@@ -101,6 +101,13 @@ std::string SurfacePair::advance(const Stage& s) {
     }
     next.dissipated += released(point);
     if (held) return;
+    const Vec3 p0 = side[k].at(point, x0), p1 = side[k].at(point, x1), middle = at_end_alone() ? p1 : Vec3((p0 + p1) / 2);
+    const double way = (p1 - p0).norm() / 2;
+    if (std::ranges::all_of(partners_[k][point.face], [&](const Partner& partner) {  // too far off to be crossed
+          const Ball& ball = ball_[1 - k][partner.face];
+          return (middle - ball.centre).norm() - ball.radius > way;
+        }))
+      return;
     if (target_of(k, point, x0, x1).crossed) why = fmt::format("contact \"{}\": a point goes through a facet within one step", name);
   });
   next.add(pressing, slid);

@@ -102,8 +102,8 @@ TEST(Ties, OfLinearRegionsKeepEnergyAndMomenta) {
                                 {2, linear, linear},
                                 {2, rigid, linear},
                                 {2, linear, rigid},
-                                {9, nonlinear, linear},
-                                {9, linear, linear}}) {
+                                {8, nonlinear, linear},
+                                {8, linear, linear}}) {
     Case c("ties");
     c.use(bent(Shape::hex8, Shape::hex8, n), {a, b});
     const Results r = c.solved("", "run.h5", "flight");
@@ -122,9 +122,9 @@ TEST(Ties, PatchOfLinearRegions) {
   for (const auto& [n, a, b] : {std::tuple{2, linear, nonlinear},
                                 {2, nonlinear, linear},
                                 {2, linear, linear},
-                                {9, linear, nonlinear},
-                                {9, nonlinear, linear},
-                                {9, linear, linear}}) {
+                                {8, linear, nonlinear},
+                                {8, nonlinear, linear},
+                                {8, linear, linear}}) {
     Case c("ties");
     const Mesh mesh = stack(Shape::hex8, Shape::hex8, n, n + 1);
     c.use(mesh, {a, b});
