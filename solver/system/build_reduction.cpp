@@ -85,7 +85,7 @@ RegionParcel Builder::parcel_of(int number) {
       for (const int i : w.nodes) rows.push_back(mesh_->node_global[i]);
       out.interfaces.push_back(to_first(rows));
     }
-  for (const TiedGroup& group : out_->part<TiedSurfaces>().groups)
+  for (const TiedGroup& group : tied_groups(*out_))
     if (group.body == body) {
       auto& [name, its] = out.tied.emplace_back(group.name, std::vector<std::int64_t>());
       for (const int i : group.nodes) its.push_back(mesh_->node_global[i]);

@@ -10,6 +10,7 @@
 #include "linear/sparse_qr.hpp"
 #include "system/collocation.hpp"
 #include "system/mode_forces.hpp"
+#include "system/system.hpp"
 
 namespace hilo {
 namespace {
@@ -407,5 +408,7 @@ void TiedSurfaces::add_to_report(std::vector<std::pair<std::string, std::string>
                         text.empty() ? "" : ",", json_text(tie.name), tie.n_nodes, tie.n_tied, tie.covered, tie.largest_move, tie.n_off);
   report.emplace_back("ties", "{" + text + "}");
 }
+
+const std::vector<TiedGroup>& tied_groups(const System& system) { return system.part<TiedSurfaces>().groups; }
 
 }  // namespace hilo

@@ -106,4 +106,8 @@ class TiedSurfaces final : public Contribution, public Equations, public Constra
   std::vector<Place> place_;  // by row, of all ties one after the other
 };
 
+class System;
+/// Nodes of linear regions that ties hold, on rank 0.
+const std::vector<TiedGroup>& tied_groups(const System& system);
+
 }  // namespace hilo
