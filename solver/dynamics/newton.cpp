@@ -252,12 +252,16 @@ bool Newton::is_rounding() const {
          report_.residual <= 10 * options_.tolerance;
 }
 
+/// Corrections by the factors of the choice before count where they are smaller than a tenth of this.
+constexpr double first_after_revision = 1e-3;
+
 /// Whether the answer makes other equations: what a point meets.  After six times they stay as they are; any choice keeps energy and
 /// momenta.
 bool Newton::is_revised() {
   constexpr int most = 6;
   if (revisions_ == most || !revise(system_, stage_(u_))) return false;
   ++revisions_, damped_ = false, last_.reset();
+  report_.correction = first_after_revision, last_residual_ = 0;
   return true;
 }
 
@@ -271,7 +275,8 @@ NewtonReport Newton::take() {
       repeat_with_old_factors();
       if (is_small_enough() || is_rounding()) {
         if (!is_revised()) return polish(), report_;
-        near = moved = false, previous = 1e300;
+        moved = false, previous = 1e300;
+        continue;
       }
     }
     if (it == options_.max_iterations * (1 + revisions_)) return fail("no convergence within the iterations allowed");
@@ -284,7 +289,7 @@ NewtonReport Newton::take() {
     if (!std::isfinite(report_.residual)) return fail("the residual is not finite");
     if (is_small_enough() && it > 0) {
       if (!is_revised()) return accept(), report_;
-      near = moved = false, previous = 1e300;
+      near = true, moved = false, previous = 1e300;
       continue;
     }
     const SolveReport solved = solve(false);
@@ -310,7 +315,7 @@ NewtonReport Newton::take() {
     if (!damped_ && report_.correction <= options_.tolerance * 1e-2) {  // far below what the next one could change
       evaluate(false);
       if (!is_revised()) return accept(), report_;
-      near = moved = false, previous = 1e300;
+      near = true, moved = false, previous = 1e300;
       continue;
     }
     near = report_.correction < 1e-3, moved = true;

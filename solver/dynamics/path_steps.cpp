@@ -41,8 +41,6 @@ std::string as_json(const std::vector<Turn>& turns) {
 class PathSteps final : public Steps {
  public:
   PathSteps(RunParts& run, Pause pause) : Steps(run, std::move(pause)), time_(run.scene.table("time")) {
-    if (run.system.traits().searches || revises(run.system))
-      throw Error(time_.where("analysis"), "a path does not follow what meets and parts on its way", "use analysis = \"static\"");
     n_ = time_.number("steps");
     end_ = time_.has("end") ? time_.number("end") : 1;
     reach_ = time_.has("reach") ? time_.number("reach") : 0;
@@ -61,6 +59,7 @@ class PathSteps final : public Steps {
       put_out({0, 1, 0}, [&] { run_.recorder->first(state, run_.audit->ledger()); });
       at_.before = state.q;
     }
+    system.commit(state.q), system.settle(false);  // where the first step begins, also of a run that goes on
     Progress progress(run_.options.quiet || system.comm->rank != 0, 0, reach_ > 0 ? reach_ : 1);
     while (!at_.done) {
       std::string why;
@@ -196,6 +195,13 @@ class PathSteps final : public Steps {
     move(z);
     const double unit2 = at_.unit * at_.unit;
     double last = 1e300;
+    int revisions = 0;
+    const auto is_settled = [&] {  // or what meets is chosen again by this answer
+      constexpr int most_revisions = 6;
+      if (revisions == most_revisions || !revise(system, stage(u.q, p))) return true;
+      ++revisions, last = 1e300, foreseen.reset(), foresees = false;
+      return false;
+    };
     for (iterations_ = 0;; ++iterations_, ++run_.report.iterations) {
       Residual r;
       if (!foresees) foreseen.reset();
@@ -204,8 +210,11 @@ class PathSteps final : public Steps {
       if (r.least_det.det <= 0) return why_ = system.inside_out(r.least_det), false;
       report_.residual = system.comm->max(relative_residual(system, r));
       if (!std::isfinite(report_.residual)) return why_ = "the residual is not finite", false;
-      if (iterations_ > 0 && (report_.residual <= options.tolerance || last <= 1e-2 * options.tolerance)) break;
-      if (iterations_ == most_iterations) return why_ = "no convergence within the iterations allowed", false;
+      if (iterations_ > 0 && (report_.residual <= options.tolerance || last <= 1e-2 * options.tolerance)) {
+        if (is_settled()) break;
+        continue;
+      }
+      if (iterations_ >= most_iterations * (1 + revisions)) return why_ = "no convergence within the iterations allowed", false;
       Numbers z_p;
       if (!solve(r.r, z) || !solve(by_load(u.q, lambda, p, r), z_p)) return false;
       const double slant = dot(across.z, z_p) + unit2 * across.p, dp = -dot(across.z, z) / slant;
@@ -216,7 +225,10 @@ class PathSteps final : public Steps {
         foresees = false;
         continue;
       }
-      if (last < 1e-8 && correction > 0.2 * last && report_.residual < 1e-6) break;  // round-off of positions amplified by stiffness
+      if (last < 1e-8 && correction > 0.2 * last && report_.residual < 1e-6) {  // round-off of positions amplified by stiffness
+        if (is_settled()) break;
+        continue;
+      }
       if (!(correction <= 2 * last && correction <= options.reach)) return why_ = "the corrections grow", false;
       last = correction;
       p += dp;
@@ -224,6 +236,12 @@ class PathSteps final : public Steps {
       system.prescribe(moved, p * end_, p), system.place(moved);
       u.start(system, from.q, moved), move(z);
       add_multipliers(system, r.sigma, z, lambda);
+    }
+    if (system.traits().slides) {  // friction fixed, as in dynamics/stability: the tangent is symmetric
+      Stage s = stage(u.q, p);
+      s.fixed_friction = true;
+      Residual r;
+      assemble(system, *run_.solver, s, lambda, r, true);
     }
     const std::optional<int> below = run_.solver->eigenvalues_below_zero(system.first_joint_block());
     to.so_far = so_far;
@@ -242,6 +260,7 @@ class PathSteps final : public Steps {
 
   /// The next state: at the radius, at the whole load where that is passed, or at a limit of the loads where one is.  Why not, or "".
   std::string step(Point& to) {
+    search(0);
     Way way;
     if (!way_ahead(way) || !find(way, at_.radius, way, to)) return why_;
     at_.turn.clear();

@@ -58,7 +58,7 @@ void Builder::add_contributions() {
   s.add<Welds>(s);
   const Joints& joints = s.add<Joints>(s);
   s.add<Springs>(s, joints);
-  s.add<Contacts>(s, is_static());
+  s.add<Contacts>(s, is_static()).plain = scene_.table("time").text("integrator") != "energy-momentum";
   s.add<TiedSurfaces>(s);
   s.add<Loads>(s);
   s.add<Motions>(s, beams, [&joints](const Moment& at, int j) { return joints.held_points(at, j); });
@@ -114,10 +114,10 @@ std::unique_ptr<System> Builder::build() {
   add_springs();
   add_joint_forces();
   add_contacts();
-  add_ties();
   add_loads();
   add_stations();
   make_blocks();
+  add_ties();
   drop_spinning_torques();
   for (const OutsideKind& kind : outside_kinds()) kind.make(scene_, *out_);
   if (!mesh_) {  // size of a scene of bodies: what its points span

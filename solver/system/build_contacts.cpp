@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <numeric>
 #include <set>
@@ -42,20 +43,39 @@ std::shared_ptr<const HeightField> height_field_of(const Entry& e, const Scene& 
   return out;
 }
 
+/// Methods that take the force of a gap at an instant, as that of any spring.
+constexpr std::array plain_methods{"generalized-alpha", "newmark", "hht", "wbz", "mid-point", "bdf2", "bathe"};
+
+void refuse_plain_methods(const Scene& scene, const Entry& e, std::string_view what) {
+  const Entry& time = scene.table("time");
+  if (time.text("analysis") == "dynamic" && time.text("integrator") != "energy-momentum")
+    throw Error(time.where("integrator"), fmt::format("{}: {} are for integrator = \"energy-momentum\"", e.label(), what));
+}
+
 /// What contacts are not right for, by name.
 void refuse_what_is_not_there(const Scene& scene, const Entry& e) {
   const Entry& time = scene.table("time");
   const std::string label = e.label();
-  if (time.text("analysis") == "static") {
+  if (time.text("analysis") == "static" || time.text("analysis") == "path") {
     if (e.given("restitution")) e.refuse("restitution", "load steps have no impacts", "leave it out");
     return;
   }
   if (time.text("analysis") == "modes") return;
   if (time.text("analysis") != "dynamic")
-    throw Error(time.where("analysis"), fmt::format("{}: contacts are for load steps, steps in time and modes, not for analysis = \"{}\"",
-                                                    label, time.text("analysis")));
-  if (time.text("integrator") != "energy-momentum")
-    throw Error(time.where("integrator"), fmt::format("{}: contacts are for integrator = \"energy-momentum\"", label));
+    throw Error(time.where("analysis"),
+                fmt::format("{}: contacts are for load steps, paths, steps in time and modes, not for analysis = \"{}\"", label,
+                            time.text("analysis")));
+  const std::string& method = time.text("integrator");
+  if (method != "energy-momentum") {
+    if (std::ranges::find(plain_methods, method) == plain_methods.end())
+      throw Error(time.where("integrator"), fmt::format("{}: contacts are not for integrator = \"{}\"", label, method),
+                  fmt::format("energy-momentum takes all contacts; {} those with obstacles, without friction and restitution",
+                              fmt::join(plain_methods, ", ")));
+    for (const char* key : {"friction", "restitution"})
+      if (e.number(key) != (key[0] == 'f' ? 0 : 1))
+        throw Error(time.where("integrator"), fmt::format("{}: {} is for integrator = \"energy-momentum\"", label, key),
+                    fmt::format("leave {} out, or the integrator", key));
+  }
   if (time.given("tolerance"))
     throw Error(time.where("tolerance"), fmt::format("{}: contacts are for equal steps, not for a tolerance that chooses them", label),
                 "give time.step");
@@ -145,6 +165,7 @@ void Builder::add_contacts() {
         for (size_t i = 0; i < list.size(); ++i)
           for (size_t j = 0; j < i; ++j) leave_out(list[j], list[i]);
       std::ranges::sort(heap.never);
+      refuse_plain_methods(scene_, e, "contacts of many balls");
       look_at_start(e, heap, balls, out_->part<Contacts>(), out_->start);
       heap.is_mine = comm_.rank == 0;
       double largest = 0;
@@ -160,6 +181,7 @@ void Builder::add_contacts() {
       ++taken;
     }
     if (a == obstacles.end()) {
+      refuse_plain_methods(scene_, e, "contacts of two surfaces");
       add_surfaces(e, names);
       continue;
     }

@@ -20,6 +20,7 @@
 #include "system/joints.hpp"
 #include "system/linear_regions.hpp"
 #include "system/region_parcel.hpp"
+#include "system/tied_surfaces.hpp"
 
 namespace hilo {
 namespace {
@@ -83,6 +84,11 @@ RegionParcel Builder::parcel_of(int number) {
       rows.clear();
       for (const int i : w.nodes) rows.push_back(mesh_->node_global[i]);
       out.interfaces.push_back(to_first(rows));
+    }
+  for (const TiedGroup& group : tied_groups(*out_))
+    if (group.body == body) {
+      auto& [name, its] = out.tied.emplace_back(group.name, std::vector<std::int64_t>());
+      for (const int i : group.nodes) its.push_back(mesh_->node_global[i]);
     }
   std::vector<NodalForces> forces;
   for (const Loading* part : out_->all<Loading>()) part->add_reference_forces(forces);
@@ -175,6 +181,16 @@ ReductionInput Builder::reduction_input(const RegionParcel& parcel, const Body& 
       if (const auto i = parcel.local.find(list[k]); i != parcel.local.end()) blocks[list[k + 1]].insert(i->second);
   for (const auto& [block, nodes] : blocks)
     if (!std::ranges::all_of(nodes, [&](int i) { return taken[i] == 1; })) in.blocks.emplace_back(nodes.begin(), nodes.end());
+  for (const auto& [name, of_tie] : parcel.tied) {
+    std::vector<int> set;
+    for (const std::int64_t row : of_tie)
+      if (const int i = parcel.local.at(row); taken[i] == 0) set.push_back(i), taken[i] = 3;
+    std::sort(set.begin(), set.end());
+    if (set.size() > most_free)
+      warn(axes.name,
+           fmt::format("linear, {} nodes of it are of {}: they move together by polynomials of the fifth degree", set.size(), name));
+    if (!set.empty()) in.tied.push_back(std::move(set)), in.tied_names.push_back(name);
+  }
   in.free = parcel.nodes_of(0);
   std::erase_if(in.free, [&](int i) { return taken[i] != 0; });
   if (in.free.size() > most_free)

@@ -8,7 +8,9 @@
 #include "model/region_surface.hpp"
 #include "system/builder.hpp"
 #include "system/mortar.hpp"
+#include "system/reduction.hpp"
 #include "system/tied_surfaces.hpp"
+#include "system/welds.hpp"
 
 namespace hilo {
 namespace {
@@ -38,15 +40,25 @@ std::vector<MortarFacet> Builder::tied_facets(const Entry& e, std::string_view k
   std::vector<MortarFacet> out;
   for (const PairFacet& f : facets) {
     const Region& region = regions_[f.region];
-    if (region.fidelity == Fidelity::linear)
-      e.refuse(key, fmt::format("region \"{}\" is linear: its modes are not those of a tied surface", region.name),
-               fmt::format("tag it nonlinear or rigid: hilo-tag --nonlinear '{}'", region.name));
+    if (region.fidelity == Fidelity::linear && !region.shapes.empty())
+      e.refuse(key, fmt::format("region \"{}\" has shapes of a file: its nodes cannot each follow another surface", region.name),
+               fmt::format("leave shapes out, or hilo-tag --nonlinear '{}'", region.name));
     if (region.fidelity == Fidelity::rigid && key == "b")
       e.refuse(key, fmt::format("region \"{}\" is rigid, and so is the other side", region.name), "weld rigid parts by a joint");
     out.push_back({f.n, f.node});
   }
   if (out.empty()) e.refuse(key, fmt::format("\"{}\" has no facets", name), "name a region of solid cells or a set of their facets");
   return out;
+}
+
+/// Whether one side is of linear regions that move by smooth functions, and the other of cells: nodes of cells follow what is smooth.
+bool Builder::is_smoother(const std::vector<PairFacet>& one, const std::vector<PairFacet>& other) const {
+  const auto all = [&](const std::vector<PairFacet>& facets, Fidelity level) {
+    return std::ranges::all_of(facets, [&](const PairFacet& f) { return regions_[f.region].fidelity == level; });
+  };
+  std::set<int> nodes;
+  for (const PairFacet& f : one) nodes.insert(f.node.begin(), f.node.begin() + f.n);
+  return nodes.size() > most_free && all(one, Fidelity::linear) && all(other, Fidelity::nonlinear);
 }
 
 /// The rows of a tie, on rank 0.
@@ -86,7 +98,8 @@ void Builder::find_tie(const Entry& e, const std::array<std::vector<PairFacet>, 
   for (const auto& [i, others] : tie.beside) tie.b_nodes.push_back(i);
   for (const MortarRow& row : found.rows) {
     TiedRow& to = tie.rows.emplace_back();
-    to.node = row.node, to.term = row.term;
+    to.node = row.node, to.term = row.term, to.own = row.own;
+    tie.tied.push_back(row.node);
   }
   mortar_.push_back(found.rows);
   if (mesh.facet_sets.contains(e.text("b")) && found.rows.size() < static_cast<size_t>(found.n_nodes))
@@ -113,8 +126,14 @@ void Builder::close_ties() {
       tie.turned = true;
       std::swap(of_a, of_b), std::swap(e.values.at("a"), e.values.at("b"));
     }
-    const std::array<std::vector<PairFacet>, 2> facets{on_first_rank(of_a), on_first_rank(of_b)};
-    comm_.on_first([&] { find_tie(e, facets, tie); });
+    std::array<std::vector<PairFacet>, 2> facets{on_first_rank(of_a), on_first_rank(of_b)};
+    comm_.on_first([&] {
+      if (!tie.turned && is_smoother(facets[1], facets[0])) {
+        tie.turned = true;
+        std::swap(facets[0], facets[1]), std::swap(e.values.at("a"), e.values.at("b"));
+      }
+      find_tie(e, facets, tie);
+    });
   }
   if (list.empty()) return;
   std::vector<Vec3>& X = mesh_->mesh.X;
@@ -176,17 +195,42 @@ void Builder::close_ties() {
   out_->start.x.assign(X.begin(), X.begin() + n_active_);
 }
 
+/// Nodes of linear regions that are tied, as interfaces of their modes: of each tie, those of both sides, where no weld and no tie before
+/// has them.
+void Builder::group_tied_nodes(TiedSurfaces& ties) const {
+  for (const Weld& w : out_->part<Welds>().list)
+    for (const int i : w.nodes) ties.welded_to[i] = w.body;
+  for (const SurfaceTie& tie : ties.list) {
+    std::map<std::pair<bool, int>, std::map<std::int64_t, int>> found;  // by side and body: nodes in the order of the mesh
+    for (const TiedRow& row : tie.rows)
+      for (const auto& [i, w] : row.term)
+        if (const int b = out_->follower[i]; b >= 0 && out_->bodies[b].linear && !ties.welded_to.contains(i) && !ties.group_of.contains(i))
+          found[{std::ranges::binary_search(tie.b_nodes, i), b}][mesh_->node_global[i]] = i;
+    for (const auto& [key, nodes] : found) {
+      TiedGroup& group = ties.groups.emplace_back();
+      group.name = fmt::format("tie \"{}\" side {}", tie.name, key.first != tie.turned ? "b" : "a"), group.body = key.second;
+      std::vector<Vec3> at;
+      for (const auto& [row, i] : nodes) {
+        group.nodes.push_back(i), at.push_back(out_->X[i]);
+        ties.group_of[i] = static_cast<int>(ties.groups.size()) - 1;
+      }
+      if (at.size() > most_free) group.functions = smooth_functions(at);
+    }
+  }
+}
+
 void Builder::add_ties() {
   TiedSurfaces& ties = out_->part<TiedSurfaces>();
   if (ties.list.empty()) return;
   comm_.on_first([&] {
+    group_tied_nodes(ties);
     ties.choose_rows();
     for (size_t k = 0; k < ties.list.size(); ++k) {
       const SurfaceTie& tie = ties.list[k];
       std::set<int> bodies;
       for (const TiedRow& row : tie.rows)
         for (const auto& [i, w] : row.term) bodies.insert(out_->follower[i]);
-      if (bodies.size() == 1 && *bodies.begin() >= 0)
+      if (bodies.size() == 1 && *bodies.begin() >= 0 && !out_->bodies[*bodies.begin()].linear)
         throw Error(tied_[k].first, fmt::format("{}: both sides are of one body", tied_[k].second));
       if (std::ranges::none_of(tie.rows, [](const TiedRow& row) { return row.on[0] || row.on[1] || row.on[2]; }))
         warn(tied_[k].first, fmt::format("{}: it does nothing, both sides are held or tied already", tied_[k].second));

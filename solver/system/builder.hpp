@@ -23,6 +23,7 @@ struct RegionParcel;
 struct Obstacle;
 struct ContactPair;
 struct SurfaceTie;
+class TiedSurfaces;
 struct Load;
 class SurfacePair;
 
@@ -170,6 +171,8 @@ class Builder {
   std::vector<MortarFacet> tied_facets(const Entry& entry, std::string_view key, const std::vector<PairFacet>& facets) const;
   void find_tie(const Entry& entry, const std::array<std::vector<PairFacet>, 2>& facets, SurfaceTie& tie);
   void close_ties();
+  bool is_smoother(const std::vector<PairFacet>& one, const std::vector<PairFacet>& other) const;
+  void group_tied_nodes(TiedSurfaces& ties) const;
   void add_ties();
 
   /// A beam whose sections are known, but for those that ride on what is made later.

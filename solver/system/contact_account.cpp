@@ -43,7 +43,6 @@ std::string Contacts::fault(const Config&) const { return jumped_; }
 
 Contacts::Did Contacts::advance(ContactPair& pair, const Stage& s) {
   Did out;
-  const double within = pair.shape.least_extent();
   for (ContactPoint& point : pair.points) {
     const Place at = place(pair, point, s);
     point.next = values(at.force.u);
@@ -53,10 +52,30 @@ Contacts::Did Contacts::advance(ContactPair& pair, const Stage& s) {
           Approach{s.h, point.approach}.after(pair.shape.at(at.x0) - point.law.radius, pair.shape.at(at.x1) - point.law.radius);
     out.dissipated += at.force.dissipated;
     out.pressing += at.force.pressing, out.slid += at.force.pressing * at.force.slid;
-    if (at.force.acts || within == 0) continue;
-    for (const double part : {0.25, 0.5, 0.75})
-      if (pair.shape.at((1 - part) * at.x0 + part * at.x1) < point.law.radius - 0.1 * (within + point.law.radius))
-        out.why = fmt::format("contact \"{}\": a point goes through the obstacle within one step", pair.name);
+    if (at.force.acts) continue;
+    if (const std::string why = gone_through(pair, point, at.x0, at.x1); !why.empty()) out.why = why;
+  }
+  return out;
+}
+
+/// Of a point that is open at both ends of a step.
+std::string Contacts::gone_through(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Vec3& x1) const {
+  const double within = pair.shape.least_extent();
+  for (const double part : {0.25, 0.5, 0.75})
+    if (within > 0 && pair.shape.at((1 - part) * x0 + part * x1) < point.law.radius - 0.1 * (within + point.law.radius))
+      return fmt::format("contact \"{}\": a point goes through the obstacle within one step", pair.name);
+  return "";
+}
+
+/// Where forces are those at an instant: of the end of the step.
+Contacts::Did Contacts::look_at_way(const ContactPair& pair, const Stage& s) const {
+  Did out;
+  for (const ContactPoint& point : pair.points) {
+    const Vec3 &x0 = point.last, x1 = measures(pair, position(pair, point, *s.end), *s.end);
+    const double radius = point.law.radius;
+    if (const Place at = place(pair, point, s); at.force.acts) out.pressing += at.force.pressing;
+    if (pair.shape.at(x0) < radius || pair.shape.at(x1) < radius) continue;
+    if (const std::string why = gone_through(pair, point, x0, x1); !why.empty()) out.why = why;
   }
   return out;
 }
@@ -86,9 +105,10 @@ void Contacts::advance(const Stage& s) {
     }
     if (pressing > 0) heap.next.slip += slid / pressing;
   }
+  const bool at_instant = plain && is_start(s) && !is_static_;
   for (ContactPair& pair : list) {
-    if (is_start(s)) break;
-    const Did did = advance(pair, s);
+    if (is_start(s) && !at_instant) break;
+    const Did did = at_instant ? look_at_way(pair, s) : advance(pair, s);
     if (settles(s)) continue;
     tell(did.why);
     sums.insert(sums.end(), {did.pressing, did.slid, did.dissipated, double(outside(pair, *s.e1))});
@@ -110,6 +130,10 @@ void Contacts::advance(const Stage& s) {
 
 void Contacts::commit(const Config& q, const Config*) {
   if (is_static_ && touches()) committed_ = q;
+  if (plain)
+    each_pair([&](ContactPair& pair) {
+      for (ContactPoint& point : pair.points) point.last = measures(pair, position(pair, point, q), q);
+    });
   for (SurfacePair& pair : surfaces) pair.commit(q);
 }
 
@@ -130,10 +154,16 @@ void Contacts::archive(Archive& a) {
   for (ContactPair& pair : list) {
     a("contact " + pair.name, pair.sums);
     std::vector<double> bristles;
-    for (const ContactPoint& point : pair.points) bristles.insert(bristles.end(), {point.u[0], point.u[1], point.u[2], point.approach});
-    a.spread({*points_.comm, pair.number}, bristles, 4);
-    for (size_t k = 0; k < pair.points.size(); ++k)
-      pair.points[k].u = Eigen::Map<const Vec3>(bristles.data() + 4 * k), pair.points[k].approach = bristles[4 * k + 3];
+    for (const ContactPoint& point : pair.points) {
+      const Vec3 &u = point.u, &x = point.last;
+      bristles.insert(bristles.end(), {u[0], u[1], u[2], point.approach, x[0], x[1], x[2]});
+    }
+    a.spread({*points_.comm, pair.number}, bristles, 7);
+    for (size_t k = 0; k < pair.points.size(); ++k) {
+      const double* its = bristles.data() + 7 * k;
+      pair.points[k].u = Eigen::Map<const Vec3>(its), pair.points[k].approach = its[3],
+      pair.points[k].last = Eigen::Map<const Vec3>(its + 4);
+    }
   }
   for (SurfacePair& pair : surfaces) pair.archive(a);
   for (BallHeap& heap : heaps) heap.archive(a, *points_.comm);
@@ -259,8 +289,9 @@ void Contacts::add_to_report(std::vector<std::pair<std::string, std::string>>& r
   const auto tell = [&](const std::string& name, size_t points, const std::string& told, const ContactSums& sums, bool loses) {
     if (sums.impacts > 0 && sums.shortest < resolved)
       warn(fmt::format("contact \"{}\"", name), fmt::format("the shortest of {} impacts lasted {} steps: {}", sums.impacts, sums.shortest,
-                                                            loses ? "its force and its restitution are not resolved"
-                                                                  : "it gave its energy back, but its force is not resolved"));
+                                                            plain   ? "neither its force nor its energy is resolved"
+                                                            : loses ? "its force and its restitution are not resolved"
+                                                                    : "it gave its energy back, but its force is not resolved"));
     text += fmt::format(
         "{}\n    {}: {{\"points\": {}, \"stiffness\": {}, \"slip\": {:.6g}, \"dissipated\": {:.6g}, \"impacts\": {}, \"shortest\": {}}}",
         text.empty() ? "" : ",", json_text(name), points, json_text(told), sums.slip, sums.dissipated, sums.impacts, sums.shortest);

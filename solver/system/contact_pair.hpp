@@ -23,6 +23,7 @@ struct ContactPoint {
   Vec3 u = Vec3::Zero();                   // the bristle, in axes of the obstacle [m]
   Vec3 next = Vec3::Zero();                // at the end of the step tried last
   double approach = 0, next_approach = 0;  // speed at which the contact began; after the step tried last [m/s]
+  Vec3 last = Vec3::Zero();                // measures of the state accepted last, where forces are those at an instant [m]
   HeldPoint held;                          // in small motions about a state
   int clique = -1;
 };

@@ -20,6 +20,7 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
   std::vector<ContactPair> list;
   std::vector<SurfacePair> surfaces;
   std::vector<BallHeap> heaps;
+  bool plain = false;  // of methods that take the force of a gap at an instant
 
   Traits traits() const override;
   std::string count() const override;
@@ -74,6 +75,8 @@ class Contacts final : public Contribution, public Equations, public Stateful, p
     std::string why;                                // the step cannot be
   };
   Did advance(ContactPair& pair, const Stage& s);
+  Did look_at_way(const ContactPair& pair, const Stage& s) const;
+  std::string gone_through(const ContactPair& pair, const ContactPoint& point, const Vec3& x0, const Vec3& x1) const;
   template <class Visit>
   void each_pair(Visit&& visit) {
     for (ContactPair& pair : list) visit(pair);

@@ -48,7 +48,12 @@ SharedCholesky::Told time_left(const std::function<void(const std::string&)>& pr
 
 Flexibility::Flexibility(const ReductionInput& in, const RegionCells& cells, const Matrix& rigid, const Matrix& M_rigid,
                          SharedCholesky& factor)
-    : in_(in), cells_(cells), factor_(factor), rigid_(rigid), M_rigid_(M_rigid), free_(in.rigid.empty() && in.free.empty()) {
+    : in_(in),
+      cells_(cells),
+      factor_(factor),
+      rigid_(rigid),
+      M_rigid_(M_rigid),
+      free_(in.rigid.empty() && in.free.empty() && in.tied.empty()) {
   number(in);
   if (n_blocks_ == 0) return;
   add_cells();
@@ -68,6 +73,8 @@ void Flexibility::number(const ReductionInput& in) {
   for (const auto& set : in.rigid)
     for (const int i : set) block_[i] = -1;
   for (const int i : in.free) block_[i] = -1;
+  for (const auto& set : in.tied)
+    for (const int i : set) block_[i] = -1;
   std::vector<const std::vector<int>*> first(in.X.size(), nullptr);
   for (const auto& set : in.blocks) {
     const auto n = std::ranges::count_if(set, [&](int i) { return block_[i] < 0; });
@@ -170,7 +177,9 @@ Flexibility::Matrix Flexibility::at_nodes(const Matrix& z) const {
 void Flexibility::find_room() {
   const double GB = 1e9, whole = 8 * factor_.entries(), half = 4 * factor_.entries();
   // the modes, and what is computed with them, in turn
-  const double vectors = static_cast<double>(6 * in_.rigid.size() + 3 * std::min(in_.free.size(), most_free) + 12 + in_.loads.size());
+  size_t n_moved = std::min(in_.free.size(), most_free);
+  for (const auto& set : in_.tied) n_moved += std::min(set.size(), most_free);
+  const double vectors = static_cast<double>(6 * in_.rigid.size() + 3 * n_moved + 12 + in_.loads.size());
   const double beside =
       24 * static_cast<double>(in_.X.size()) * std::max(3 * vectors + 4.0 * in_.n_vibrations, vectors + 60 + 3.0 * in_.n_vibrations);
   const double room = in_.memory >= 0 ? in_.memory : 0.9 * free_memory() - beside;

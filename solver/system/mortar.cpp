@@ -243,8 +243,8 @@ Mortar mortar(std::span<const Vec3> X, std::span<const MortarFacet> slave, std::
       if (sum.open < 1e299 && sum.open > out.open) out.open = sum.open, out.open_node = node, out.open_limit = sum.limit;
       continue;
     }
-    MortarRow row{node, {}, 0};
     const double own = sum.slave.at(node);
+    MortarRow row{node, {}, 0, own};
     double total = 0;
     for (const auto& [s, w] : sum.slave) row.term.emplace_back(s, w / own), total += w / own;
     row.n_slave = static_cast<int>(row.term.size());

@@ -23,6 +23,7 @@ struct MortarRow {
   int node = -1;                             // of the slave side, whose weight is 1
   std::vector<std::pair<int, double>> term;  // node, weight; those of the slave side, then those of the other with their sign; sum 0
   int n_slave = 0;                           // so many of them are of the slave side
+  double own = 1;                            // n_ii, by which weights were divided [m^2]
 };
 
 struct Mortar {

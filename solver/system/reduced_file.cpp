@@ -89,6 +89,8 @@ ReductionKey key_of(const ReductionInput& in) {
     key.interfaces.push_back(in.rigid_names[k]), key.digests.push_back(Digest().add(of_nodes(in.rigid[k])).text());
   if (!in.free.empty())
     key.interfaces.emplace_back("nodes of nonlinear regions"), key.digests.push_back(Digest().add(of_nodes(in.free)).text());
+  for (size_t k = 0; k < in.tied.size(); ++k)
+    key.interfaces.push_back(in.tied_names[k]), key.digests.push_back(Digest().add(of_nodes(in.tied[k])).text());
   Digest folds;
   for (const auto& block : in.blocks) folds.add(of_nodes(block));
   if (!in.blocks.empty()) key.interfaces.emplace_back("nodes of folds"), key.digests.push_back(folds.text());

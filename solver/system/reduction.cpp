@@ -21,6 +21,29 @@
 #include "system/stiffening.hpp"
 
 namespace hilo {
+
+Eigen::MatrixXd smooth_functions(const std::vector<Vec3>& at) {
+  constexpr int degree = 5;
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : at) box.extend(x);
+  const auto n = static_cast<Eigen::Index>(at.size());
+  Eigen::MatrixXd P(n, 56);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    Eigen::Index column = 0;
+    double T[3][degree + 1];  // Chebyshev polynomials over the box
+    for (int k = 0; k < 3; ++k) {
+      const double x = box.sizes()[k] > 0 ? 2 * (at[static_cast<size_t>(i)][k] - box.center()[k]) / box.sizes()[k] : 0;
+      T[k][0] = 1, T[k][1] = x;
+      for (int d = 2; d <= degree; ++d) T[k][d] = 2 * x * T[k][d - 1] - T[k][d - 2];
+    }
+    for (int a = 0; a <= degree; ++a)
+      for (int b = 0; a + b <= degree; ++b)
+        for (int c = 0; a + b + c <= degree; ++c) P(i, column++) = T[0][a] * T[1][b] * T[2][c];
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(P);
+  qr.setThreshold(1e-6);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(n, qr.rank());
+}
 namespace {
 
 using Eigen::Index;
@@ -39,30 +62,6 @@ Matrix rigid_motions(const std::vector<Vec3>& X, const Vec3& about) {
     out.block<3, 3>(at, 3) = -skew(Vec3(X[i] - about));
   }
   return out;
-}
-
-/// Smooth functions of many points: orthonormal combinations of the polynomials of degree up to five   (n x k, k <= 56).
-Matrix smooth_functions(const std::vector<Vec3>& at) {
-  constexpr int degree = 5;
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : at) box.extend(x);
-  const auto n = static_cast<Index>(at.size());
-  Matrix P(n, 56);
-  for (Index i = 0; i < n; ++i) {
-    Index column = 0;
-    double T[3][degree + 1];  // Chebyshev polynomials over the box
-    for (int k = 0; k < 3; ++k) {
-      const double x = box.sizes()[k] > 0 ? 2 * (at[static_cast<size_t>(i)][k] - box.center()[k]) / box.sizes()[k] : 0;
-      T[k][0] = 1, T[k][1] = x;
-      for (int d = 2; d <= degree; ++d) T[k][d] = 2 * x * T[k][d - 1] - T[k][d - 2];
-    }
-    for (int a = 0; a <= degree; ++a)
-      for (int b = 0; a + b <= degree; ++b)
-        for (int c = 0; a + b + c <= degree; ++c) P(i, column++) = T[0][a] * T[1][b] * T[2][c];
-  }
-  Eigen::ColPivHouseholderQR<Matrix> qr(P);
-  qr.setThreshold(1e-6);
-  return qr.householderQ() * Matrix::Identity(n, qr.rank());
 }
 
 /// Motions of the interfaces, zero elsewhere, rigid ones first.
@@ -140,16 +139,20 @@ InterfaceMotions interface_motions(const ReductionInput& in) {
   }
   if (!many.empty()) add_smooth_blocks(in, many, columns);
   out.n_rigid = in.stiffening ? 6 * static_cast<Index>(in.rigid.size()) : static_cast<Index>(columns.size());
-  std::vector<Vec3> free;
-  for (const int i : in.free) free.push_back(in.X[i]);
-  const auto n_free = static_cast<Index>(free.size());
-  const Matrix functions = in.free.size() > most_free ? smooth_functions(free) : Matrix::Identity(n_free, n_free);
-  for (Index j = 0; j < functions.cols(); ++j)
-    for (int k = 0; k < 3; ++k) {
-      Vector v = Vector::Zero(rows);
-      for (Index i = 0; i < n_free; ++i) v[3 * in.free[i] + k] = functions(i, j);
-      columns.push_back(std::move(v));
-    }
+  std::vector<const std::vector<int>*> moved{&in.free};
+  for (const auto& set : in.tied) moved.push_back(&set);
+  for (const auto* set : moved) {
+    std::vector<Vec3> free;
+    for (const int i : *set) free.push_back(in.X[i]);
+    const auto n_free = static_cast<Index>(free.size());
+    const Matrix functions = free.size() > most_free ? smooth_functions(free) : Matrix::Identity(n_free, n_free);
+    for (Index j = 0; j < functions.cols(); ++j)
+      for (int k = 0; k < 3; ++k) {
+        Vector v = Vector::Zero(rows);
+        for (Index i = 0; i < n_free; ++i) v[3 * (*set)[i] + k] = functions(i, j);
+        columns.push_back(std::move(v));
+      }
+  }
   out.columns.resize(rows, static_cast<Index>(columns.size()));
   for (size_t k = 0; k < columns.size(); ++k) out.columns.col(static_cast<Index>(k)) = columns[k];
   return out;

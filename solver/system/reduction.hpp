@@ -23,6 +23,9 @@ namespace hilo {
 /// Nodes of an interface whose every motion is a mode, at most; more move by polynomials of the fifth degree [docs/fidelity.md].
 inline constexpr size_t most_free = 66;
 
+/// Smooth functions of many points: orthonormal combinations of the polynomials of degree up to five   (n x k, k <= 56).
+Eigen::MatrixXd smooth_functions(const std::vector<Vec3>& at);
+
 struct ReductionInput {
   std::vector<Vec3> X;                                   // nodes of the region
   std::vector<SolidBatch> cells;                         // over these nodes
@@ -30,6 +33,8 @@ struct ReductionInput {
   std::vector<std::vector<int>> rigid;                   // interfaces that move as rigid bodies,
   std::vector<std::string> rigid_names;                  // and their names
   std::vector<int> free;                                 // nodes of an interface that move freely
+  std::vector<std::vector<int>> tied;                    // nodes that ties hold, each list like `free`,
+  std::vector<std::string> tied_names;                   // and their names
   std::vector<std::vector<int>> blocks;                  // nodes that move as one
   Vec3 centre = Vec3::Zero();                            // of mass
   std::vector<std::vector<std::pair<int, Vec3>>> loads;  // on nodes

@@ -6,6 +6,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "system/welds.hpp"
@@ -21,14 +22,15 @@ struct RegionParcel {
   bool stiffening = false;
   std::string shapes, shapes_where;  // file of modes that are given, or ""
   std::vector<Weld*> welds;
-  std::vector<std::vector<std::int64_t>> words;                    // cells: region, shape, rows of nodes
-  std::vector<std::vector<double>> places;                         // of these nodes
-  std::vector<std::vector<std::vector<std::int64_t>>> interfaces;  // rows: of nonlinear neighbours, then of each weld
-  std::vector<std::vector<std::int64_t>> load_sizes;               // how many forces of each load, the same loads on all ranks
-  std::vector<std::vector<double>> loads;                          // rows and forces
-  std::vector<std::vector<std::int64_t>> numbers;                  // rows and numbers in the deck, where shapes are given
-  std::vector<std::vector<std::int64_t>> blocks;                   // rows and numbers of blocks, of nodes that move as one
-  std::map<std::int64_t, int> local;                               // of rows, in the order of their numbers
+  std::vector<std::vector<std::int64_t>> words;                         // cells: region, shape, rows of nodes
+  std::vector<std::vector<double>> places;                              // of these nodes
+  std::vector<std::vector<std::vector<std::int64_t>>> interfaces;       // rows: of nonlinear neighbours, then of each weld
+  std::vector<std::pair<std::string, std::vector<std::int64_t>>> tied;  // rows of nodes that ties hold, and their names; on rank 0
+  std::vector<std::vector<std::int64_t>> load_sizes;                    // how many forces of each load, the same loads on all ranks
+  std::vector<std::vector<double>> loads;                               // rows and forces
+  std::vector<std::vector<std::int64_t>> numbers;                       // rows and numbers in the deck, where shapes are given
+  std::vector<std::vector<std::int64_t>> blocks;                        // rows and numbers of blocks, of nodes that move as one
+  std::map<std::int64_t, int> local;                                    // of rows, in the order of their numbers
 
   /// Numbers of the nodes in the region, rising.
   std::vector<int> nodes_of(size_t interface) const {

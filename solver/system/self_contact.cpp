@@ -12,13 +12,6 @@
 #include "system/surface_pair.hpp"
 
 namespace hilo {
-namespace {
-
-constexpr double aside = 0.5;     // largest cosine between normals of what can meet
-constexpr double shallow = 0.25;  // depth of what meets, as a share of the cell
-
-}  // namespace
-
 /// The same facet as f of side s, or a neighbour: the other side's g.
 bool SurfacePair::is_beside(int s, int f, int g) const {
   const ContactSurface::Face &mine = side[s].faces[f], &its = side[1 - s].faces[g];

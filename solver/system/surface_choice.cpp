@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which triangle a point meets in a step, and what it begins with there.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "system/surface_pair.hpp"
@@ -53,26 +54,50 @@ double crossing(const Vec3& x0, const Vec3& x1, const std::array<Vec3, 3>& v0, c
 
 }  // namespace
 
-/// Balls about the facets and their way, and their normals.
+/// About a facet and its way, and its normal.
+SurfacePair::Ball SurfacePair::ball_of(int s, int f, Positions x0, Positions x1) const {
+  const ContactSurface::Face& face = side[s].faces[f];
+  Vec3 c = Vec3::Zero();
+  for (int a = 0; a < face.n; ++a) c += (x0[face.node[a]] + x1[face.node[a]]) / (2 * face.n);
+  double r = 0;
+  for (int a = 0; a < face.n; ++a) r = std::max({r, (x0[face.node[a]] - c).squaredNorm(), (x1[face.node[a]] - c).squaredNorm()});
+  Vec3 n = Vec3::Zero();
+  for (int t = 0; t < static_cast<int>(cut_of(face.n).triangle.size()); ++t)
+    for (const Positions x : {x0, x1}) {
+      const auto v = side[s].triangle(f, t, x);
+      n += (v[1] - v[0]).cross(v[2] - v[0]);
+    }
+  return {c, n.normalized(), 1.1 * std::sqrt(r)};
+}
+
 void SurfacePair::look(Positions x0, Positions x1) {
   for (int s = 0; s < 2; ++s) {
     ball_[s].resize(side[s].faces.size());
-    for (size_t f = 0; f < side[s].faces.size(); ++f) {
-      if (partners_[s][f].empty()) continue;
-      const ContactSurface::Face& face = side[s].faces[f];
-      Vec3 c = Vec3::Zero();
-      for (int a = 0; a < face.n; ++a) c += (x0[face.node[a]] + x1[face.node[a]]) / (2 * face.n);
-      double r = 0;
-      for (int a = 0; a < face.n; ++a) r = std::max({r, (x0[face.node[a]] - c).squaredNorm(), (x1[face.node[a]] - c).squaredNorm()});
-      Vec3 n = Vec3::Zero();
-      for (int t = 0; t < static_cast<int>(cut_of(face.n).triangle.size()); ++t)
-        for (const Positions x : {x0, x1}) {
-          const auto v = side[s].triangle(static_cast<int>(f), t, x);
-          n += (v[1] - v[0]).cross(v[2] - v[0]);
-        }
-      ball_[s][f] = {c, n.normalized(), 1.1 * std::sqrt(r)};
+    for (size_t f = 0; f < side[s].faces.size(); ++f)
+      if (!partners_[s][f].empty()) ball_[s][f] = ball_of(s, static_cast<int>(f), x0, x1);
+  }
+}
+
+/// Whether points of two facets that are not on the list meet: one comes through a triangle of the other, or ends over one and behind it,
+/// by no more than what meets may be.
+bool SurfacePair::meets_unlisted(const std::pair<int, int>& pair, Positions x0, Positions x1) const {
+  const int f[2] = {pair.first, pair.second};
+  const Ball ball[2] = {ball_of(0, f[0], x0, x1), ball_of(1, f[1], x0, x1)};
+  if (hangs && ball[0].normal.dot(ball[1].normal) > aside) return false;
+  for (int s = 0; s < 2; ++s) {
+    const ContactSurface::Face &own = side[s].faces[f[s]], &other = side[1 - s].faces[f[1 - s]];
+    const double cell = std::min(own.cell, other.cell), deep = hangs ? shallow * cell : margin / 2;
+    for (int i = own.first; i < own.first + own.n_points; ++i) {
+      const SurfacePoint& point = side[s].points[i];
+      const Vec3 p0 = side[s].at(point, x0), p1 = side[s].at(point, x1);
+      for (int t = 0; t < static_cast<int>(cut_of(other.n).triangle.size()); ++t) {
+        const auto v1 = side[1 - s].triangle(f[1 - s], t, x1);
+        if (const Beside at = beside(p1, v1); at.edge < 0 && at.gap < touch(point) && at.gap > -deep) return true;
+        if (crossing(p0, p1, side[1 - s].triangle(f[1 - s], t, x0), v1) <= 1) return true;
+      }
     }
   }
+  return false;
 }
 
 /// The triangle that a point which is open crosses first on its straight way; else the nearest one in the mean, of load steps at the end,
@@ -88,18 +113,32 @@ SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Pos
   Target nearest, first;
   double least = 1e300, gap = 0, soonest = 2;
   bool at_border = false;
+  const auto between = [&](int face, int t) {
+    const auto v0 = other.triangle(face, t, x0), v1 = other.triangle(face, t, x1);
+    return std::array<Vec3, 3>{(1 - f) * v0[0] + f * v1[0], (1 - f) * v0[1] + f * v1[1], (1 - f) * v0[2] + f * v1[2]};
+  };
+  double bound = 1e300;  // of what need be looked at: the distance of the partner whose middle is nearest
+  int closest = -1;
+  std::array<Beside, 8> known;  // of its triangles
+  if (!hangs) {
+    double near = 1e300;
+    for (const Partner& partner : partners_[s][point.face])
+      if (const double d = (middle - ball_[1 - s][partner.face].centre).squaredNorm(); d < near) near = d, closest = partner.face;
+    for (int t = 0; closest >= 0 && t < static_cast<int>(cut_of(other.faces[closest].n).triangle.size()); ++t)
+      known[t] = beside(middle, between(closest, t)), bound = std::min(bound, (1 + 1e-6) * known[t].distance);
+  }
   for (const Partner& partner : partners_[s][point.face]) {
     if (hangs && !may_meet(s, point, partner.face)) continue;
     const Ball& ball = ball_[1 - s][partner.face];
     const double away = (middle - ball.centre).norm() - ball.radius;
-    if (away > least && away > way) continue;
+    if (away > std::min(least, bound) && away > way) continue;
     const ContactSurface::Face& face = other.faces[partner.face];
     const FacetCut& cut = cut_of(face.n);
     for (int t = 0; t < static_cast<int>(cut.triangle.size()); ++t) {
-      const auto v0 = other.triangle(partner.face, t, x0), v1 = other.triangle(partner.face, t, x1);
       if (!held && away <= way)
-        if (const double when = crossing(p0, p1, v0, v1); when < soonest) soonest = when, first = {partner.face, t, true, true};
-      const Beside at = beside(middle, {(1 - f) * v0[0] + f * v1[0], (1 - f) * v0[1] + f * v1[1], (1 - f) * v0[2] + f * v1[2]});
+        if (const double when = crossing(p0, p1, other.triangle(partner.face, t, x0), other.triangle(partner.face, t, x1)); when < soonest)
+          soonest = when, first = {partner.face, t, true, true};
+      const Beside at = partner.face == closest ? known[t] : beside(middle, between(partner.face, t));
       if (hangs && !may_meet_there(s, point, partner.face, at.distance, at.gap)) continue;
       const double slack = 1e-9 * least + 1e-12 * ball.radius;
       if (at.distance > least + slack || (at.distance > least - slack && std::abs(at.gap) <= std::abs(gap) + slack)) continue;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 
@@ -80,7 +81,9 @@ std::string SurfacePair::advance(const Stage& s) {
   };
   if (!std::all_of(nodes_[0].begin(), nodes_[0].end(), is_foreseen) || !std::all_of(nodes_[1].begin(), nodes_[1].end(), is_foreseen)) {
     const auto met = near(x0, x1, 0);
-    if (!std::includes(near_.begin(), near_.end(), met.begin(), met.end()))
+    std::vector<std::pair<int, int>> unlisted;
+    std::ranges::set_difference(met, near_, std::back_inserter(unlisted));
+    if (std::ranges::any_of(unlisted, [&](const auto& pair) { return meets_unlisted(pair, x0, x1); }))
       why = fmt::format("contact \"{}\": facets meet that were not foreseen", name);
   }
   double pressing = 0, slid = 0;
@@ -98,6 +101,13 @@ std::string SurfacePair::advance(const Stage& s) {
     }
     next.dissipated += released(point);
     if (held) return;
+    const Vec3 p0 = side[k].at(point, x0), p1 = side[k].at(point, x1), middle = at_end_alone() ? p1 : Vec3((p0 + p1) / 2);
+    const double way = (p1 - p0).norm() / 2;
+    if (std::ranges::all_of(partners_[k][point.face], [&](const Partner& partner) {  // too far off to be crossed
+          const Ball& ball = ball_[1 - k][partner.face];
+          return (middle - ball.centre).norm() - ball.radius > way;
+        }))
+      return;
     if (target_of(k, point, x0, x1).crossed) why = fmt::format("contact \"{}\": a point goes through a facet within one step", name);
   });
   next.add(pressing, slid);

@@ -82,6 +82,8 @@ class SurfacePair {
 
  private:
   using Positions = std::span<const Vec3>;
+  static constexpr double aside = 0.5;     // of what hangs together: largest cosine between normals of what can meet
+  static constexpr double shallow = 0.25;  // and depth of what meets, as a share of the cell
   struct Target {
     int face = -1, triangle = -1;
     bool crossed = false, inside = false;  // inside: over the triangle and behind it
@@ -113,7 +115,9 @@ class SurfacePair {
   template <class T>
   FacetForce<T> force(const SurfacePoint& point, const Stage& s, const OverTriangle<double>& z0, const OverTriangle<T>& z1) const;
   bool would_act(int side, const SurfacePoint& point, const FacetState& now, Positions x0, Positions x1) const;
+  Ball ball_of(int side, int face, Positions x0, Positions x1) const;
   void look(Positions x0, Positions x1);
+  bool meets_unlisted(const std::pair<int, int>& pair, Positions x0, Positions x1) const;
   std::vector<std::pair<int, int>> near(Positions x0, Positions x1, double within) const;
   std::vector<std::pair<int, int>> near_by_boxes(Positions x0, Positions x1, double within) const;
   bool is_closed(int s) const;
