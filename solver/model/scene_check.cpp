@@ -29,7 +29,7 @@ void check_directions(const Entry& e) {
 /// The two ends of a joint or spring are two things, and two points where the line between them matters.
 void check_ends(const Entry& e) {
   if (e.has("a") && e.text("a") == e.text("b")) fail(e, "b", fmt::format("both ends are \"{}\"", e.text("b")));
-  if (e.has("at_a") && (e.vector3("at_b") - e.vector3("at_a")).norm() == 0)
+  if (e.has("at_a") && e.kind != "weighted-sum" && (e.vector3("at_b") - e.vector3("at_a")).norm() == 0)
     fail(e, "at_b", "at_a and at_b are the same point", "the direction is the line between them");
   if (e.has("preload") && e.number("preload") != 0 && e.number("stiffness") == 0)
     fail(e, "preload", "a preload needs a stiffness", "it is added by shifting the free length");
