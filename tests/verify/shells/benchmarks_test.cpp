@@ -80,11 +80,11 @@ TEST_F(ShellBenchmarks, ACylinderVibratesAsLovesDoes) {
   for (int m = 1; m < 4; ++m)
     for (int n = 0; n < 14; n += 2) expected.push_back(love(m, n));
   std::sort(expected.begin(), expected.end());
-  use(shell_mesh(cylinder(R, pi / 2, L), 32, 24, h));
+  use(shell_mesh(cylinder(R, pi / 2, L), 24, 18, h));
   const Eigen::VectorXd f = frequencies(shell_of(E, nu, "density = 7800") + held("ymin", "\"x\", \"z\"") + held("ymax", "\"x\", \"z\"") +
                                             held("xmin", "\"x\"") + held("xmax", "\"z\""),
                                         5);
-  near(f, {expected[0], expected[1], expected[2], expected[3]}, 0.02, 1);
+  near(f, {expected[0], expected[1], expected[2], expected[3]}, 0.035, 1);
 }
 
 // Raasch's hook, clamped at one end, sheared across at the other by 1: 4.9352 [knight-1997].
@@ -122,7 +122,7 @@ TEST_F(ShellBenchmarks, ARingWithASlitIsLifted) {
     add_stack(m, "out", 32, 0, 32, 6), add_stack(m, "in", 32, 6, 32, 6);
     return m;
   }());
-  const Results r = solved(shell_of(21e6, 0) + held("xmin") + push("xmax", Vec3(0, 0, 3.2)) + probe("in") + probe("out") + in_steps(10));
+  const Results r = solved(shell_of(21e6, 0) + held("xmin") + push("xmax", Vec3(0, 0, 3.2)) + probe("in") + probe("out") + in_steps(5));
   std::printf("%.3f %.3f of 13.891 17.528\n", way(r, "in")[2], way(r, "out")[2]);
   EXPECT_NEAR(way(r, "in")[2] / 13.891, 1, 0.025);
   EXPECT_NEAR(way(r, "out")[2] / 17.528, 1, 0.02);
@@ -159,31 +159,31 @@ TEST_F(ShellBenchmarks, ALongCylinderBucklesUnderPressure) {
   EXPECT_NEAR(parts / vanishes, 1, 0.01);
 }
 
-// A narrow strip loaded across at its end, in its plane, turns out of it at 4.013 sqrt(EI GJ)/L^2 [timoshenko-gere-1961]; pressed at its
-// end it buckles at Euler's load.  Plates have J = b h^3/3; the held root, where it cannot warp, makes it 1 to 3 % stiffer.
-TEST_F(ShellBenchmarks, AStripBucklesSidewaysAndAsEulers) {
-  const double E = 2e11, L = 1, b = 0.05;
-  for (const auto& [k, h, limit] : {std::tuple{0, 0.004, 0.035}, std::tuple{1, 0.005, 0.002}}) {
-    const double EI = E * b * h * h * h / 12, GJ = E / 2 * b * h * h * h / 3,
-                 critical = k == 0 ? 4.013 * std::sqrt(EI * GJ) / (L * L) : pi * pi * EI / (4 * L * L);
-    use(shell_mesh(plate(L, b), 40, 4, h));
-    const auto scene = [&, k = k](double share) {
-      return shell_of(E, 0, "density = 7800") + held("xmin") + push("xmax", -share * critical * Vec3::Unit(1 - k));
-    };
-    const double vanishes = by_frequency(scene, 0.98, 0.995), parts = 1.2 * by_path(scene(1.2));
-    std::printf("%s: %.4f by frequency, %.4f by path\n", k ? "Euler" : "sideways", vanishes, parts);
-    EXPECT_NEAR(vanishes, 1, limit);
-    EXPECT_NEAR(parts / vanishes, 1, 0.003);
-  }
+// A narrow strip loaded across at its end, in its plane, turns out of it at 4.013 sqrt(EI GJ)/L^2 [timoshenko-gere-1961].  Plates have
+// J = b h^3/3; the held root, where it cannot warp, makes it 1 to 3 % stiffer.
+TEST_F(ShellBenchmarks, AStripBucklesSideways) {
+  const double E = 2e11, L = 1, b = 0.05, h = 0.004, EI = E * b * h * h * h / 12, GJ = E / 2 * b * h * h * h / 3,
+               critical = 4.013 * std::sqrt(EI * GJ) / (L * L);
+  use(shell_mesh(plate(L, b), 40, 4, h));
+  const auto scene = [&](double share) {
+    return shell_of(E, 0, "density = 7800") + held("xmin") + push("xmax", Vec3(0, -share * critical, 0));
+  };
+  const double vanishes = by_frequency(scene, 0.98, 0.995), parts = 1.2 * by_path(scene(1.2));
+  std::printf("sideways: %.4f by frequency, %.4f by path\n", vanishes, parts);
+  EXPECT_NEAR(vanishes, 1, 0.035);
+  EXPECT_NEAR(parts / vanishes, 1, 0.003);
 }
 
-// Of a strip as thin as 1/1000 of its length the load shortens it by less than the round-off of its thickness's stiffness bends it.
-TEST_F(ShellBenchmarks, AVeryThinStripBucklesAsEulers) {
-  const double E = 2e11, b = 0.05, h = 0.001, critical = pi * pi * E * b * h * h * h / 48;
-  use(shell_mesh(plate(1, b), 40, 4, h));
-  const double parts = 1.2 * by_path(shell_of(E, 0, "density = 7800") + held("xmin") + push("xmax", Vec3(-1.2 * critical, 0, 0)));
-  std::printf("L/h 1000: %.4f by path\n", parts);
-  EXPECT_NEAR(parts, 1, 0.02);
+// Pressed at its end: Euler's load.  With 1/1000 of its length, the load shortens it by less than round-off of positions, times the
+// stiffness across, bends it.
+TEST_F(ShellBenchmarks, AStripBucklesAsEulersHoweverThin) {
+  for (const auto& [h, limit] : {std::pair{0.005, 0.002}, std::pair{0.001, 0.02}}) {
+    const double E = 2e11, b = 0.05, critical = pi * pi * E * b * h * h * h / 48;
+    use(shell_mesh(plate(1, b), 40, 4, h));
+    const double parts = 1.2 * by_path(shell_of(E, 0, "density = 7800") + held("xmin") + push("xmax", Vec3(-1.2 * critical, 0, 0)));
+    std::printf("L/h %.0f: %.4f by path\n", 1 / h, parts);
+    EXPECT_NEAR(parts, 1, limit);
+  }
 }
 
 }  // namespace
