@@ -25,6 +25,16 @@ std::vector<Vec3> thinned(const Mesh& mesh, const std::vector<std::int64_t>& nod
   return x;
 }
 
+/// The section next to the middle of the part of a beam that a load by length is on.
+size_t middle(const BeamLine& line, const Entry& load) {
+  double whole = 0, s = 0;
+  for (const auto& cell : line.cells) whole += cell.length;
+  const double half = ((load.has("from") ? load.number("from") : 0) + (load.has("to") ? load.number("to") : whole)) / 2;
+  size_t k = 0;
+  while (k < line.cells.size() && s + line.cells[k].length / 2 <= half) s += line.cells[k++].length;
+  return k;
+}
+
 struct Symbol {
   std::string_view section, kind;
   Glyph glyph;
@@ -192,15 +202,15 @@ class Collector {
       item.at = centre(e, "on"), item.along = e.vector3("torque");
       return;
     }
-    if (e.kind == "line") {  // in the middle of each beam
+    if (e.kind == "line") {  // in the middle of what it is on of each beam
       for (const Entry& beam : scene_.entries("beam")) {
         if (fnmatch(e.text("on").c_str(), beam.name.c_str(), 0) != 0) continue;
         const BeamLine line = beam_line(beam);
-        const size_t k = line.at.size() / 2;
+        const size_t k = middle(line, e);
         SceneItem& item = add(glyph, e, "force per length", load_colour);
         item.at = line.at[k], item.along = e.vector3("force_per_length");
         if (e.has("force_per_length_end")) item.along = (item.along + e.vector3("force_per_length_end")) / 2;
-        if (e.boolean("follower")) item.along = line.cells[k - 1].frame_b * item.along;
+        if (e.boolean("follower")) item.along = (k > 0 ? line.cells[k - 1].frame_b : line.cells[0].frame_a) * item.along;
       }
       return;
     }

@@ -220,12 +220,13 @@ class PathSteps final : public Steps {
       const double slant = dot(across.z, z_p) + unit2 * across.p, dp = -dot(across.z, z) / slant;
       for (size_t i = 0; i < z.size(); ++i) z[i] += dp * z_p[i];
       to.on.rise = std::copysign(1 / std::sqrt(dot(z_p, z_p) / unit2 + 1), dot(way.z, z_p) + unit2 * way.p);
-      const double correction = std::max(system.comm->max(relative_correction(system, z)), std::abs(dp));
+      const double moves = system.comm->max(relative_correction(system, z)), correction = std::max(moves, std::abs(dp));
       if (foreseen && !(correction <= 0.5 * last)) {
         foresees = false;
         continue;
       }
-      if (last < 1e-8 && correction > 0.2 * last && report_.residual < 1e-6) {  // round-off of positions amplified by stiffness
+      // what is left is the round-off of positions, amplified by stiffness, which may be a large share of the small load of a thin part
+      if (last < 1e-8 && correction > 0.2 * last && (report_.residual < 1e-6 || moves < 1e-12)) {
         if (is_settled()) break;
         continue;
       }

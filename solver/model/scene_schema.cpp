@@ -215,16 +215,19 @@ std::vector<KindSchema> make_schema() {
                 {"follower", boolean, "", "false", "the moment turns with the body"},
                 keys::history}});
 
-  s.push_back({"load",
-               "line",
-               "force per length along a beam, in inertial axes or in those of its sections",
-               {kind_of("the kind of load"),
-                name,
-                {"on", text, "", "!", "beam it acts on, or a glob"},
-                {"force_per_length", vector3, "N/m", "!", "force per length of the beam as drawn; at its first point where it varies"},
-                {"force_per_length_end", vector3, "N/m", "", "at its last point, even between; absent: the same all along"},
-                {"follower", boolean, "", "false", "along axes 1, 2 and 3 of the sections, with which it turns"},
-                keys::history}});
+  s.push_back(
+      {"load",
+       "line",
+       "force per length along a beam, in inertial axes or in those of its sections",
+       {kind_of("the kind of load"),
+        name,
+        {"on", text, "", "!", "beam it acts on, or a glob"},
+        {"force_per_length", vector3, "N/m", "!", "force per length of the beam as drawn; where it begins, if it varies"},
+        {"force_per_length_end", vector3, "N/m", "", "where it ends, even between; absent: the same all along"},
+        {"from", number, "m", "", "distance along the beam as drawn at which it begins, a section; absent: the first point", at_least(0)},
+        {"to", number, "m", "", "distance at which it ends, a section; absent: the last point", above(0)},
+        {"follower", boolean, "", "false", "along axes 1, 2 and 3 of the sections, with which it turns"},
+        keys::history}});
 
   const Param part{"on", text, "", "!", "region or set of cells it acts on; for an acceleration a rigid region or a body too"};
   s.push_back({"load",

@@ -25,14 +25,30 @@ void Builder::add_line_load(const Entry& e, const Load& load) {
   for (const Beam& beam : beams.beams) {
     names.push_back(beam.name);
     if (fnmatch(on.c_str(), beam.name.c_str(), 0) != 0) continue;
-    double length = 0, s = 0;
-    for (int k = 0; k < beam.n_cells; ++k) length += beams.cells[beam.first + k].law->length();
+    std::vector<double> sections{0};
+    for (int k = 0; k < beam.n_cells; ++k) sections.push_back(sections.back() + beams.cells[beam.first + k].law->length());
+    const auto section = [&](const char* key, size_t otherwise) {
+      if (!e.has(key)) return otherwise;
+      const double s = e.number(key), whole = sections.back();
+      const auto near = std::ranges::min_element(sections, {}, [&](double x) { return std::abs(x - s); });
+      if (std::abs(*near - s) > 1e-6 * whole)
+        throw Error(
+            e.where(key),
+            fmt::format("{}: no section of beam \"{}\" stands {:.6g} m along it, the nearest at {:.6g} m", e.label(), beam.name, s, *near),
+            "a point or more cells of the beam there");
+      return static_cast<size_t>(near - sections.begin());
+    };
+    const size_t first = section("from", 0), last = section("to", sections.size() - 1);
+    if (first >= last)
+      throw Error(e.where(e.has("to") ? "to" : "from"), fmt::format("{}: it ends where it begins, or before", e.label()), "to beyond from");
+    const double begin = sections[first], length = sections[last] - begin;
+    const auto value = [&](double s) -> Vec3 { return from + (s - begin) / length * (end - from); };
     LineLoad line{load, beam.first, {}};
-    for (int k = 0; k < beam.n_cells; ++k) {
-      const double to = s + beams.cells[beam.first + k].law->length();
-      line.at.push_back({from + s / length * (end - from), from + to / length * (end - from)});
-      s = to;
-    }
+    for (size_t k = 0; k + 1 < sections.size(); ++k)
+      if (k >= first && k < last)
+        line.at.push_back({value(sections[k]), value(sections[k + 1])});
+      else
+        line.at.push_back({Vec3::Zero(), Vec3::Zero()});
     beams.lines.push_back(std::move(line));
     any = true;
   }

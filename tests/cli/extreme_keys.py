@@ -40,7 +40,7 @@ NUMBERS = {"E": "2e9", "nu": "0.3", "density": "1000", "mass": "1", "com": "[0.5
             "diameter": "0.1", "thickness": "0.02", "width": "0.1", "height": "0.1", "flange": "0.02", "web": "0.02", "I1": "1e-5", "I2": "1e-5", "J": "1e-5",
            "bending": "[100, 100, 100]", "line_mass": "1", "cells": "[2]", "orientation": "[0, 1, 0]", "shear": "[1, 1]",
            "axis_1": "[1, 0, 0]", "axis_2": "[0, 1, 0]", "hardening_strain": "[0, 0.1]", "hardening_stress": "[1e6, 2e6]",
-           "factors": "[1, 1]", "extension": "[0, 1]", "acceleration": "[1, 0, 0]", "force_per_length": "[1, 0, 0]", "speed": "1", "size": "[1, 1, 1]", "tube": "0.05", "modulus": "1e7", "layer": "0.1", "gap": "0.1", "factor": "1", "friction": "0.1", "fibres": "[[0.05, 0.1]]"}
+           "factors": "[1, 1]", "extension": "[0, 1]", "acceleration": "[1, 0, 0]", "force_per_length": "[1, 0, 0]", "from": "0", "to": "1", "speed": "1", "size": "[1, 1, 1]", "tube": "0.05", "modulus": "1e7", "layer": "0.1", "gap": "0.1", "factor": "1", "friction": "0.1", "fibres": "[[0.05, 0.1]]"}
 BODIES = """[[body]]
 name = "arm"
 mass = 1

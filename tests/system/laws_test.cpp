@@ -82,6 +82,8 @@ std::string value_of(const KindSchema& kind, const Param& p) {
       {"acceleration", "[30, 20, -50]"},
       {"force_per_length", "[30, 20, -50]"},
       {"force_per_length_end", "[-20, 60, 10]"},
+      {"from", "0.757384492638955"},  // the middle of `arc`, below
+      {"to", "0.757384492638955"},
       {"speed", "7"},
       {"axle", "[0.2, 1, 0.3]"},
       {"edge", "[0.2, 1, 0.3]"},

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/error.hpp"
+#include "physics/section_mesh.hpp"
 
 namespace hilo {
 namespace {
@@ -58,6 +60,55 @@ DeckSection general_section(double A, double I1, double I2, double J) {
   return out;
 }
 
+DeckSection section_of_rectangles(const std::vector<DeckRectangle>& parts, const std::string& place) {
+  constexpr int most = 12;  // cells between two edges
+  std::vector<double> edges[2];
+  for (const DeckRectangle& r : parts) {
+    if (!(r.to_1 > r.from_1 && r.to_2 > r.from_2)) return {};
+    edges[0].insert(edges[0].end(), {r.from_1, r.to_1}), edges[1].insert(edges[1].end(), {r.from_2, r.to_2});
+  }
+  std::vector<double> lines[2];  // of cells
+  double thin = 1e300;
+  for (auto& e : edges) {
+    std::ranges::sort(e);
+    const double size = e.back() - e.front();
+    e.erase(std::unique(e.begin(), e.end(), [&](double a, double b) { return b - a < 1e-9 * size; }), e.end());
+    for (size_t i = 1; i < e.size(); ++i) thin = std::min(thin, e[i] - e[i - 1]);
+  }
+  for (int k = 0; k < 2; ++k)
+    for (size_t i = 1; i < edges[k].size(); ++i) {
+      const double length = edges[k][i] - edges[k][i - 1];
+      const int n = static_cast<int>(std::clamp(std::ceil(2 * length / thin), 2., static_cast<double>(most)));
+      for (int j = 0; j < n; ++j) lines[k].push_back(edges[k][i - 1] + length * j / n);
+      if (i + 1 == edges[k].size()) lines[k].push_back(edges[k][i]);
+    }
+  SectionMesh mesh;
+  std::map<std::pair<size_t, size_t>, int> number;  // by half lines
+  const auto node = [&](size_t i, size_t j) {
+    const auto at = [](const std::vector<double>& l, size_t h) { return h % 2 ? (l[h / 2] + l[h / 2 + 1]) / 2 : l[h / 2]; };
+    const auto [it, fresh] = number.try_emplace({i, j}, static_cast<int>(mesh.X.size()));
+    if (fresh) mesh.X.emplace_back(at(lines[0], i), at(lines[1], j));
+    return it->second;
+  };
+  for (size_t i = 0; i + 1 < lines[0].size(); ++i)
+    for (size_t j = 0; j + 1 < lines[1].size(); ++j) {
+      const double x = (lines[0][i] + lines[0][i + 1]) / 2, y = (lines[1][j] + lines[1][j + 1]) / 2;
+      if (std::ranges::none_of(parts, [&](const auto& r) { return x > r.from_1 && x < r.to_1 && y > r.from_2 && y < r.to_2; })) continue;
+      const auto at = [&](size_t a, size_t b) { return node(2 * i + a, 2 * j + b); };
+      mesh.cells.push_back({at(0, 0), at(2, 0), at(2, 2), at(0, 2), at(1, 0), at(2, 1), at(1, 2), at(0, 1), at(1, 1)});
+    }
+  try {
+    const SectionArea a = meshed_face(mesh, 0.3).area;
+    DeckSection out = general_section(a.A, a.I1, a.I2, a.J);
+    const bool askew = std::abs(a.I12) > 1e-9 * (a.I1 + a.I2);
+    out.I12 = askew ? a.I12 : 0;
+    out.shear = {a.shear_1, a.shear_2};
+    return out;
+  } catch (const Error& e) {
+    throw Error(place, std::string("a section of beams: ") + e.what());
+  }
+}
+
 bool has_scene_material(const DeckSection& s, const DeckMaterial& m) {
   const bool isotropic = m.elastic() && m.data.E > 0 && m.data.nu > -1 && m.data.density > 0 &&
                          std::abs(shear_modulus(m) * 2 * (1 + m.data.nu) / m.data.E - 1) < 1e-3;
@@ -104,7 +155,7 @@ std::string beam_table(const DeckBeam& b) {
   for (const Vec3& x : b.points) points += fmt::format("{}{}", points.empty() ? "" : ", ", toml_list({x.x(), x.y(), x.z()}));
   std::string out = fmt::format("\n[beam.{}]   # {}\npoints = [{}]\ncells = [1]\nsection = {}\n", toml_text(b.name), b.place, points,
                                 toml_text(b.section));
-  if (b.points.size() == 3) out += "path = \"arc\"\n";
+  if (b.arc) out += "path = \"arc\"\n";
   if (!b.material.empty()) out += fmt::format("material = {}\n", toml_text(b.material));
   out += fmt::format("orientation = {}\n", toml_list({b.up.x(), b.up.y(), b.up.z()}));
   if (!b.a.empty()) out += fmt::format("a = {}\n", toml_text(b.a));

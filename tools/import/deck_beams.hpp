@@ -29,6 +29,14 @@ struct DeckSection {
 /// One that is given by its area, second moments about axes 1 and 2, and J.
 DeckSection general_section(double A, double I1, double I2, double J);
 
+/// A rectangle of a section, along axes 1 and 2.
+struct DeckRectangle {
+  double from_1, to_1, from_2, to_2;
+};
+/// What these cover together, about its centre of area, with torsion and shear by a mesh (physics/section_mesh).  Not given where a size
+/// is not above zero; Error at `place` where the parts do not hang together.
+DeckSection section_of_rectangles(const std::vector<DeckRectangle>& parts, const std::string& place);
+
 /// Whether the section is written with a material of the scene; else as stiffnesses, for what the material or its kind cannot say.
 bool has_scene_material(const DeckSection& section, const DeckMaterial& material);
 /// [section.NAME] in SI, its lengths times `scale` as those of the geometry; Error at `place` where the material says no moduli.
@@ -38,9 +46,10 @@ std::string section_table(const std::string& name, DeckSection section, const De
 /// An element between two bodies.
 struct DeckBeam {
   std::string name, place, section, material;  // material: "" where the section has none
-  std::vector<Vec3> points;                    // [m]; three: an arc
+  std::vector<Vec3> points;                    // [m]
   Vec3 up;                                     // near axis 2
   std::string a, b;                            // bodies; "" for an end with a section of its own
+  bool arc = false;                            // through three points; else straight, a section at each
 };
 std::string beam_table(const DeckBeam& beam);
 

@@ -52,11 +52,16 @@ TEST_F(BeamDynamics, TheFlyingSpaghettiKeepsThemInStepsOfHalfASecond) {
   EXPECT_LT(k.angular, 1e-10);
 }
 
-TEST_F(BeamDynamics, TheRightAngleKeepsItsEnergy) {
-  const Results r =
-      solved(plain_section(1e6, 1e6, 1e3, 1e3, "line_mass = 1\ninertia = [10, 10]") + beam_of("[[0, 0, 0], [10, 0, 0], [10, 10, 0]]", 8) +
-             push("arm.8", Vec3(0, 0, 50), "history = {t = [0, 1, 2], value = [0, 1, 0]}") + tip_probe() + in_time(100, 0.25));
-  EXPECT_LT(kept(r, 2.05).energy, 1e-10);
+std::string right_angle(int steps) {
+  return plain_section(1e6, 1e6, 1e3, 1e3, "line_mass = 1\ninertia = [10, 10]") + beam_of("[[0, 0, 0], [10, 0, 0], [10, 10, 0]]", 8) +
+         push("arm.8", Vec3(0, 0, 50), "history = {t = [0, 1, 2], value = [0, 1, 0]}") + tip_probe() + in_time(0.25 * steps, 0.25);
+}
+TEST_F(BeamDynamics, TheRightAngleKeepsItsEnergy) { EXPECT_LT(kept(solved(right_angle(400)), 2.05).energy, 1e-10); }
+class DISABLED_LongThinBeams : public BeamDynamics {};  // half a minute
+TEST_F(DISABLED_LongThinBeams, TheRightAngleKeepsItsEnergyOverTenThousandSteps) {
+  const double change = kept(solved(right_angle(10000)), 2.05).energy;
+  std::printf("E %.2g\n", change);
+  EXPECT_LT(change, 1e-10);
 }
 
 // A beam that rides on a rigid body off its axis and turned: no rows, nothing lost.

@@ -244,6 +244,25 @@ TEST_F(BeamStatics, ALoadThatVariesBendsAsItsTriangle) {
   }
 }
 
+// On a part of the beam, between sections: P a^2 (3 L - a)/(6 E I) + P a/GA summed; where no section is, refused.
+TEST_F(BeamStatics, ALoadOnAPartOfABeamBendsIt) {
+  const double EI = 900, GA = 4e4, w = 1e-3;
+  const std::string beam = plain_section(GA, 2e6, EI, 700) + beam_of("[[0, 0, 0], [2, 0, 0]]", 5) + tip_probe() + in_steps(1),
+                    load = "[[load]]\nkind = \"line\"\nname = \"wind\"\non = \"arm\"\nforce_per_length = [0, 0, 1e-3]\n";
+  const auto up_to = [&](double a) { return w * (a * a * a * (8 - a) / (24 * EI) + a * a / (2 * GA)); };
+  EXPECT_NEAR(tip(beam + load + "to = 0.8\n")[2], up_to(0.8), 1e-6 * up_to(2));
+  EXPECT_NEAR(tip(beam + load + "from = 0.8\n")[2], up_to(2) - up_to(0.8), 1e-6 * up_to(2));
+  EXPECT_NEAR(tip(beam + load + "from = 0.4\nto = 1.6\n")[2], up_to(1.6) - up_to(0.4), 1e-6 * up_to(2));
+  for (const auto& [keys, why] : {std::pair{"from = 0.5\n", "no section of beam \"arm\" stands 0.5 m along it, the nearest at 0.4 m"},
+                                  std::pair{"to = 2.4\n", "no section of beam \"arm\" stands 2.4 m along it, the nearest at 2 m"},
+                                  std::pair{"from = 0.8\nto = 0.4\n", "it ends where it begins, or before"}}) {
+    work.write("scene.toml", beam + load + keys);
+    const Ran r = work.run("hilo-solve --quiet scene.toml -o run.h5");
+    EXPECT_EQ(r.exit, 2);
+    EXPECT_NE(r.err.find(why), std::string::npos) << r.err;
+  }
+}
+
 // A load across the sections that turns with them and falls from 1 to 0.4, until the tip has turned by about half a turn.  Along the
 // deformed axis N' = k V, V' = -k N - p, M' = -V with k = M/EI, from N = V = M = 0 at the tip on: integrated here with fine steps.
 TEST_F(BeamStatics, ALoadThatTurnsWithTheSectionsRollsTheBeam) {

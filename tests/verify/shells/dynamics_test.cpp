@@ -49,11 +49,20 @@ TEST_F(ShellDynamics, AThrownHalfCylinderKeepsEnergyAndMomenta) {
                                          std::tuple{"kind = \"neo-hookean\"\nE = 2e7\nnu = 0.3\n", 0.02, 100}}) {
     const Change c = change(solved(thrown(law, step, steps)), 20.5 * step);
     std::printf("%.17s: E %.1e, P %.1e, L %.1e, strained %.2f\n", law, c.energy, c.momentum, c.angular, c.strained);
-    EXPECT_LT(c.energy, 1e-10);
-    EXPECT_LT(c.momentum, 1e-10);
-    EXPECT_LT(c.angular, 1e-10);
+    EXPECT_LT(c.energy, 1e-12);
+    EXPECT_LT(c.momentum, 1e-12);
+    EXPECT_LT(c.angular, 1e-12);
     EXPECT_GT(c.strained, 0.02);
   }
+}
+
+class DISABLED_LongThinShells : public ShellDynamics {};  // a minute and a half
+TEST_F(DISABLED_LongThinShells, AThrownHalfCylinderKeepsThemOverTenThousandSteps) {
+  const Change c = change(solved(thrown("kind = \"stvk\"\nE = 2e7\nnu = 0.3\n", 0.03, 10000)), 20.5 * 0.03);
+  std::printf("E %.1e, P %.1e, L %.1e, strained %.2f\n", c.energy, c.momentum, c.angular, c.strained);
+  EXPECT_LT(c.energy, 1e-10);
+  EXPECT_LT(c.momentum, 1e-10);
+  EXPECT_LT(c.angular, 1e-10);
 }
 
 // What flow takes is in the balance, and momenta stay.

@@ -42,8 +42,8 @@ struct BdfLoad {
   std::array<std::int64_t, 2> face{};        // PLOAD4 on solids: G1, and G3 or G4
   std::vector<std::int64_t> corners = {};    // PLOAD: a face by its grids
   bool own_axes = false, projected = false;  // PLOAD1: in axes of the beam; per length across the load
-  std::array<double, 2> from_to{};           // PLOAD1: where it begins and ends, of the length or in units of the deck
-  bool as_share = false;                     // the former
+  std::array<double, 2> from_to{};           // PLOAD1: where it begins and ends, of the length or in units of the deck; equal: at a point
+  bool as_share = false, turns = false;      // the former; a moment
   std::string place = {};
 };
 /// LOAD: sets of loads with factors.

@@ -152,7 +152,7 @@ void read_tstep(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   deck.steps[d.integer(0)] = {end, d.number(2)};
 }
 
-/// A force per length of a beam; what is no uniform one is told.
+/// A force per length of a beam or of a part of it; a force or moment at a point of it.
 void read_pload1(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
   const std::string type = upper(d.text(2)), scale = upper(d.text(3));
@@ -160,12 +160,14 @@ void read_pload1(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   if (type.size() < 2 || (type[0] != 'F' && type[0] != 'M') || type[1] < 'X' || type[1] > 'Z' || (type.size() > 2 && type.substr(2) != "E"))
     throw Error(d.place(2), fmt::format("PLOAD1: no type \"{}\"", d.text(2)), "FX, FY, FZ, FXE, FYE, FZE or moments");
   if (!known_scale) throw Error(d.place(3), fmt::format("PLOAD1: no scale \"{}\"", d.text(3)), "LE, FR, LEPR or FRPR");
-  if (type[0] == 'M') return in.skip("PLOAD1 of moments", d.place());
-  if (d.empty(6) || d.number(6) == d.number(4)) return in.skip("PLOAD1 at a point of a beam", d.place());
+  const double from = d.number(4), to = d.empty(6) ? from : d.number(6);
   BdfLoad l{BdfLoad::Kind::line};
-  l.elements = {d.integer(1)}, l.size = d.number(5), l.size_end = d.number(7), l.place = d.place(), l.direction = Vec3::Unit(type[1] - 'X');
-  l.own_axes = type.size() > 2, l.projected = scale.size() > 2, l.as_share = scale.starts_with("FR"),
-  l.from_to = {d.number(4), d.number(6)};
+  l.turns = type[0] == 'M';
+  if (l.turns && from != to) return in.skip("PLOAD1 of moments per length", d.place());
+  if (to < from) throw Error(d.place(6), fmt::format("PLOAD1: it ends at {:g}, before it begins at {:g}", to, from), "X2 from X1 on");
+  l.elements = {d.integer(1)}, l.size = d.number(5), l.size_end = from == to ? l.size : d.number(7), l.place = d.place(),
+  l.direction = Vec3::Unit(type[1] - 'X');
+  l.own_axes = type.size() > 2, l.projected = scale.size() > 2, l.as_share = scale.starts_with("FR"), l.from_to = {from, to};
   deck.loads[d.integer(0)].push_back(l);
 }
 

@@ -46,6 +46,7 @@ class BdfScene {
   // scene_beams.cpp
   void beams();
   void beam(const BdfDeck::Thin& b);
+  std::vector<double> sections_of(const BdfDeck::Thin& b, double length) const;
   std::string section_name(std::int64_t property) const;
   // scene_glue.cpp
   std::string pair_surface(std::int64_t region);
@@ -126,10 +127,16 @@ class BdfScene {
   std::map<std::int64_t, std::string> on_beam_;  // row of a grid of beams -> place
   struct MadeBeam {
     std::string name;
-    Mat3 axes;      // x along, y in plane 1
-    double length;  // in units of the deck
+    Mat3 axes;                        // x along, y in plane 1
+    Vec3 start;                       // of its first section, as lengths below in units of the deck
+    std::vector<double> sections;     // where they stand along it
+    std::array<std::string, 2> ends;  // bodies that its ends are fixed to; "" at a pin
+    double length() const { return sections.back(); }
+    size_t section(double s) const;
+    std::string body(size_t section) const;
   };
-  std::map<std::int64_t, MadeBeam> made_beams_;  // by element
+  std::multimap<std::int64_t, const BdfLoad*> by_beam_;  // PLOAD1
+  std::map<std::int64_t, MadeBeam> made_beams_;          // by element
   std::vector<std::pair<double, const BdfLoad*>> loads_;
   std::map<std::int64_t, std::pair<Vec3, std::string>> force_, moment_;  // row -> sum and first place
   std::map<std::int64_t, std::string> glue_name_;                        // region -> set

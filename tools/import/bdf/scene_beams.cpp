@@ -10,6 +10,8 @@ namespace hilo {
 
 /// Sections and materials, the beams, and a common point of each grid that is a node of solids too, which does not turn.
 void BdfScene::beams() {
+  for (const auto& [factor, l] : loads_)
+    if (l->kind == BdfLoad::Kind::line) by_beam_.emplace(l->elements.front(), l);
   std::set<std::int64_t> properties, materials;
   for (const auto& b : deck_.beams) {
     if (properties.insert(b.property).second) {
@@ -36,18 +38,42 @@ std::string BdfScene::section_name(std::int64_t property) const {
   return clean_name(name == deck_.property_name.end() ? fmt::format("pid_{}", property) : name->second);
 }
 
+size_t BdfScene::MadeBeam::section(double s) const {
+  return static_cast<size_t>(std::ranges::min_element(sections, {}, [&](double x) { return std::abs(x - s); }) - sections.begin());
+}
+
+/// The body that a section is.
+std::string BdfScene::MadeBeam::body(size_t section) const {
+  if (section == 0) return ends[0].empty() ? name + ".0" : ends[0];
+  if (section + 1 == sections.size()) return ends[1].empty() ? name + ".end" : ends[1];
+  return fmt::format("{}.{}", name, section);
+}
+
+/// Both ends, and between them where a PLOAD1 begins, ends or acts at a point.
+std::vector<double> BdfScene::sections_of(const BdfDeck::Thin& b, double length) const {
+  std::vector<double> out{0, length};
+  const auto [first, behind] = by_beam_.equal_range(b.id);
+  for (auto it = first; it != behind; ++it) {
+    const BdfLoad* l = it->second;
+    for (const double x : l->from_to) {
+      const double s = l->as_share ? x * length : x, least = 1e-6 * length;
+      if (!(s >= -least && s <= length + least))
+        throw Error(l->place, fmt::format("PLOAD1: {:g} is not on the beam, which is {:g} long", x, l->as_share ? 1 : length));
+      if (std::ranges::none_of(out, [&](double y) { return std::abs(y - s) <= least; })) out.push_back(s);
+    }
+  }
+  std::ranges::sort(out);
+  return out;
+}
+
 void BdfScene::beam(const BdfDeck::Thin& b) {
   const BdfBeamPlace at = place_of_beam(deck_, b);
+  const double length = (at.b - at.a).norm();
+  const std::vector<double> sections = sections_of(b, length);
   const DeckMaterial& m = deck_.materials.at(deck_.material_of.at(b.property));
   const double metre = si("m") * options_.scale;
-  DeckBeam out{unique("beam", fmt::format("{}_{}", b.card, b.id)),
-               b.place,
-               section_name(b.property),
-               "",
-               {at.a * metre, at.b * metre},
-               at.up,
-               "",
-               ""};
+  DeckBeam out{unique("beam", fmt::format("{}_{}", b.card, b.id)), b.place, section_name(b.property), "", {}, at.up, "", ""};
+  for (const double s : sections) out.points.push_back(Vec3(s == length ? at.b : Vec3(at.a + s / length * (at.b - at.a))) * metre);
   if (has_scene_material(section_of_beam(deck_, b).section, m)) out.material = clean_name(m.name);
   for (size_t k = 0; k < 2; ++k)
     if (!b.pins[k]) (k == 0 ? out.a : out.b) = end_name(row(b.nodes[k], b.place, b.card));
@@ -56,7 +82,7 @@ void BdfScene::beam(const BdfDeck::Thin& b) {
   own.col(0) = (at.b - at.a).normalized();
   own.col(2) = own.col(0).cross(at.up).normalized();
   own.col(1) = own.col(2).cross(own.col(0));
-  made_beams_[b.id] = {out.name, own, (at.b - at.a).norm()};
+  made_beams_[b.id] = {out.name, own, at.a, sections, {out.a, out.b}};
   for (size_t k = 0; k < 2; ++k)
     if (b.pins[k])
       joint(63 & ~b.pins[k], own, out.name + (k == 0 ? "_pin_a" : "_pin_b"), end_name(row(b.nodes[k], b.place, b.card)),

@@ -186,28 +186,38 @@ void BdfScene::nodal_loads() {
   }
 }
 
-/// PLOAD1 over whole beams.
+/// PLOAD1: over a beam or a part of it, or at a point.
 void BdfScene::line_loads() {
   for (const auto& [factor, l] : loads_) {
     if (l->kind != BdfLoad::Kind::line) continue;
-    const auto beam = made_beams_.find(l->elements.front());
-    if (beam == made_beams_.end()) {
+    const auto made = made_beams_.find(l->elements.front());
+    if (made == made_beams_.end()) {
       in_.skip("PLOAD1 on an element that is no beam of the scene", l->place);
       continue;
     }
-    const auto& [name, axes, length] = beam->second;
-    const double whole = l->as_share ? 1 : length;
-    if (std::abs(l->from_to[0]) > 1e-6 * whole || std::abs(l->from_to[1] - whole) > 1e-6 * whole) {
-      in_.skip("PLOAD1 on a part of a beam", l->place);
+    const MadeBeam& beam = made->second;
+    const double whole = beam.length(), unit = l->as_share ? whole : 1;
+    const size_t from = beam.section(l->from_to[0] * unit), to = beam.section(l->from_to[1] * unit);
+    const Vec3 way = l->own_axes ? Vec3(beam.axes * l->direction) : l->direction;
+    if (factor == 0 || (l->size == 0 && l->size_end == 0)) continue;
+    if (from == to) {  // at a point
+      const Vec3 value = factor * l->size * way;
+      const std::string on = beam.body(from), name = toml_text(unique("load", beam.name + "_point"));
+      if (l->turns)
+        tables_ += fmt::format("\n[[load]]   # {}\nkind = \"torque\"\nname = {}\non = {}\ntorque = {}\n", l->place, name, toml_text(on),
+                               list(value, "N m"));
+      else
+        tables_ += fmt::format("\n[[load]]   # {}\nkind = \"force\"\nname = {}\non = {}\nforce = {}\nat = {}\n", l->place, name,
+                               toml_text(on), list(value, "N"), point(beam.start + beam.sections[from] * beam.axes.col(0)));
       continue;
     }
-    const Vec3 way = l->own_axes ? Vec3(axes * l->direction) : l->direction;
-    const double across = l->projected ? axes.col(0).cross(way).norm() : 1;
-    const Vec3 one = factor * across * way;
-    if (one.norm() == 0 || (l->size == 0 && l->size_end == 0)) continue;
+    const Vec3 one = factor * (l->projected ? beam.axes.col(0).cross(way).norm() : 1) * way;
+    if (one.norm() == 0) continue;
     tables_ += fmt::format("\n[[load]]   # {}\nkind = \"line\"\nname = {}\non = {}\nforce_per_length = {}\n", l->place,
-                           toml_text(unique("load", name + "_line")), toml_text(name), list(l->size * one, "N/m"));
+                           toml_text(unique("load", beam.name + "_line")), toml_text(beam.name), list(l->size * one, "N/m"));
     if (l->size_end != l->size) tables_ += fmt::format("force_per_length_end = {}\n", list(l->size_end * one, "N/m"));
+    if (from > 0) tables_ += fmt::format("from = {}\n", number(beam.sections[from] * options_.scale, "m"));
+    if (to + 1 < beam.sections.size()) tables_ += fmt::format("to = {}\n", number(beam.sections[to] * options_.scale, "m"));
   }
 }
 

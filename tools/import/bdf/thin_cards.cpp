@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/error.hpp"
 #include "import/bdf/card.hpp"
@@ -165,7 +166,10 @@ DeckSection without_shear_centre(const char* kind, const std::vector<double>& v)
   return out;
 }
 
-/// Shapes that [section.NAME] has too: DIM1 is across plane 1 where the shape has a width.
+/// Shapes that [section.NAME] does not have; those that are askew are left to PBAR, for which way they lean.
+DeckSection rectangles(const std::vector<DeckRectangle>& parts) { return section_of_rectangles(parts, "a TYPE of sections"); }
+
+/// Shapes that [section.NAME] has too, and others of rectangles: DIM1 is across plane 1 where the shape has a width.
 struct BeamShape {
   size_t dims;
   DeckSection (*of)(const std::vector<double>& dim);
@@ -199,7 +203,9 @@ const std::map<std::string, BeamShape> beam_shapes{
     {"I",
      {6,
       [](const std::vector<double>& v) {
-        if (v[1] != v[2] || v[4] != v[5]) return DeckSection{};
+        if (v[1] != v[2] || v[4] != v[5])  // the flange below is the first
+          return rectangles(
+              {{-v[1] / 2, v[1] / 2, 0, v[4]}, {-v[3] / 2, v[3] / 2, v[4], v[0] - v[5]}, {-v[2] / 2, v[2] / 2, v[0] - v[5], v[0]}});
         return DeckSection{"I", {{"width", v[1]}, {"height", v[0]}, {"flange", v[4]}, {"web", v[3]}}};
       }}},
     {"T", {4, [](const std::vector<double>& v) { return without_shear_centre("T", v); }}},
@@ -213,7 +219,54 @@ const std::map<std::string, BeamShape> beam_shapes{
       [](const std::vector<double>& v) {  // flanges beyond the web, web, height of the web, whole height
         return DeckSection{"I", {{"width", v[0] + v[1]}, {"height", v[3]}, {"flange", (v[3] - v[2]) / 2}, {"web", v[1]}}};
       }}},
+    {"TUBE2",
+     {2,
+      [](const std::vector<double>& v) {
+        return DeckSection{"tube", {{"diameter", 2 * v[0]}, {"thickness", v[1]}}};
+      }}},
+    {"H",
+     {4,
+      [](const std::vector<double>& v) {  // width between the flanges, width of both, their height, thickness of the web between
+        const double w = v[0] / 2, out = (v[0] + v[1]) / 2;
+        return rectangles({{-out, -w, -v[2] / 2, v[2] / 2}, {-w, w, -v[3] / 2, v[3] / 2}, {w, out, -v[2] / 2, v[2] / 2}});
+      }}},
+    {"CROSS",
+     {4,
+      [](const std::vector<double>& v) {  // width of both arms, width of the upright, its height, thickness of the arms
+        const double w = v[1] / 2, out = (v[0] + v[1]) / 2;
+        return rectangles({{-w, w, -v[2] / 2, v[2] / 2}, {-out, -w, -v[3] / 2, v[3] / 2}, {w, out, -v[3] / 2, v[3] / 2}});
+      }}},
+    {"T1",
+     {4,
+      [](const std::vector<double>& v) {  // height of the flange, length of the web across, thickness of the flange, of the web
+        return rectangles({{0, v[2], -v[0] / 2, v[0] / 2}, {v[2], v[2] + v[1], -v[3] / 2, v[3] / 2}});
+      }}},
+    {"T2",
+     {4,
+      [](const std::vector<double>& v) {  // width of the flange below, whole height, thickness of the flange, of the web
+        return rectangles({{-v[0] / 2, v[0] / 2, 0, v[2]}, {-v[3] / 2, v[3] / 2, v[2], v[1]}});
+      }}},
+    {"CHAN1",
+     {4,
+      [](const std::vector<double>& v) {  // flanges beyond the web, web, height of the web between them, whole height
+        return rectangles(
+            {{0, v[1], -v[3] / 2, v[3] / 2}, {v[1], v[1] + v[0], -v[3] / 2, -v[2] / 2}, {v[1], v[1] + v[0], v[2] / 2, v[3] / 2}});
+      }}},
+    {"CHAN2",
+     {4,
+      [](const std::vector<double>& v) {  // thickness of the legs, of the web across, whole height, whole width
+        const double w = v[3] / 2, in = w - v[0];
+        return rectangles({{-w, -in, 0, v[2]}, {in, w, 0, v[2]}, {-in, in, v[2] - v[1], v[2]}});
+      }}},
+    {"BOX1",
+     {6,
+      [](const std::vector<double>& v) {  // width, height, walls above, below, left, right
+        if (v[2] != v[3] && v[4] != v[5]) return DeckSection{};
+        const double w = v[0], h = v[1];
+        return rectangles({{0, v[4], 0, h}, {w - v[5], w, 0, h}, {v[4], w - v[5], 0, v[3]}, {v[4], w - v[5], h - v[2], h}});
+      }}},
 };
+const std::set<std::string> off_centre{"T", "CHAN", "T1", "T2", "CHAN1", "CHAN2", "BOX1"};  // of which the shear centre is elsewhere
 
 /// PID MID GROUP TYPE; DIM1 DIM2 ... NSM
 void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
@@ -222,7 +275,7 @@ void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto shape = beam_shapes.find(type);
   const auto refuse = [&](const std::string& what) {
     return Error(d.place(3), fmt::format("{} {}: {} is not read", e.name, d.integer(0), what),
-                 "ROD, TUBE, BAR, BOX, I, I1, T and CHAN are; write the others as PBAR");
+                 "ROD, TUBE, TUBE2, BAR, BOX, BOX1, I, I1, H, CROSS, T, T1, T2, CHAN, CHAN1 and CHAN2 are; write the others as PBAR");
   };
   if (shape == beam_shapes.end()) throw refuse("TYPE " + type);
   std::vector<double> dims;
@@ -232,8 +285,10 @@ void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   }
   BdfThin s;
   s.section = shape->second.of(dims);
-  if (!s.section.given()) throw refuse("TYPE " + type + (type == "BOX" ? " with such walls" : " of two different flanges"));
-  if (e.name == "PBEAML" && (type == "T" || type == "CHAN")) in.skip("PBEAML: neutral axis off the shear centre", d.place(3));
+  if (!s.section.given())
+    throw refuse("TYPE " + type + (type == "BOX1" && dims[2] != dims[3] && dims[4] != dims[5] ? " that is askew" : " with such walls"));
+  if (e.name == "PBEAML" && (off_centre.contains(type) || (type == "I" && s.section.kind == "general")))
+    in.skip("PBEAML: neutral axis off the shear centre", d.place(3));
   s.section.line_mass = d.number(8 + dims.size());
   const auto differs = [&](size_t at, double from) { return !d.empty(at) && d.number(at) != from; };
   for (size_t station = 11 + dims.size(); e.name == "PBEAML" && station < d.fields.size(); station += dims.size() + 3) {  // behind SO, X/XB

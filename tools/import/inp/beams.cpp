@@ -108,6 +108,7 @@ std::string write_beams(const InpDeck& d, Imported& in, SetNames& names, const I
                     Vec3::Zero(),
                     body_name(d, b.nodes[k]),
                     body_name(d, b.nodes[k + 1])};
+      beam.arc = beam.points.size() == 3;
       if (n == 2) beam.name += k == 0 ? "a" : "b";
       const Vec3 along = beam.points.back() - beam.points.front();
       if (!(along.norm() > 0)) throw Error(b.place, fmt::format("element {} has no length", id));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "base/error.hpp"
 #include "import/inp/equations.hpp"
@@ -218,6 +219,22 @@ void InpScene::line_loads() {
   }
 }
 
+namespace {
+/// Of facets in planes that are parallel; a shell is a facet itself.
+std::optional<Vec3> normal_of(const Mesh& mesh, const std::vector<Facet>& facets) {
+  std::optional<Vec3> out;
+  for (const Facet& f : facets) {
+    const auto cell = mesh.cell(f.cell);
+    const auto X = [&](int a) { return mesh.X[static_cast<size_t>(cell[static_cast<size_t>(a)])]; };
+    const ShapeInfo& shape = info(mesh.shape[static_cast<size_t>(f.cell)]);
+    const Vec3 area = shape.dimension == 2 ? Vec3((X(1) - X(0)).cross(X(2) - X(0))) : facet_area(mesh, f), n = area.normalized();
+    if (out && !((n - *out).norm() < 1e-6)) return std::nullopt;
+    out = n;
+  }
+  return out;
+}
+}  // namespace
+
 void InpScene::pressures() {
   struct Group {
     std::string wish, name, amplitude, place;
@@ -279,6 +296,16 @@ void InpScene::pressures() {
     if (g.name.empty()) g.name = names_.facets(g.wish.empty() ? fmt::format("pressure_{}", ++made_["pressure"]) : g.wish, g.facets);
     if (g.name.empty()) continue;
     if (g.below) in_.below.insert(g.name);
+    if (d_.plan.sweep.points > 0) {  // what shakes follows no face: with a stiffness of its own it would change the modes
+      if (const std::optional<Vec3> n = normal_of(in_.mesh, g.facets)) {
+        tables_ +=
+            fmt::format("\n[[load]]   # {}\nkind = \"traction\"\nname = {}\non = {}\ntraction = {}\n", g.place,
+                        toml_text(unique("load", g.name)), toml_text(g.name), list(Vec3((g.below ? g.value : -g.value) * si("Pa") * *n))) +
+            past;
+        continue;
+      }
+      in_.notes.push_back(fmt::format("{}: a pressure on faces that are not plane follows them, which changes the modes", g.place));
+    }
     tables_ += fmt::format("\n[[load]]   # {}\nkind = \"pressure\"\nname = {}\non = {}\npressure = {}\n", g.place,
                            toml_text(unique("load", g.name)), toml_text(g.name), num(g.value * si("Pa"))) +
                past;
