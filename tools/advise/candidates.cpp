@@ -252,12 +252,14 @@ void Candidates::read(Candidate& c, const std::string& name) const {
     for (const Json& b : j.value("beyond_linear", Json::array()))
       if (is_of(b.at("region"), names()[r])) c.beyond.emplace(r, b.at("said"));
     if (c.levels[r] != Level::linear && c.levels[r] != Level::stiffening) continue;
-    if (c.levels[r] == Level::linear)
-      for (const Measure& m : measures) {
-        const Json by_body = j.value(m.name, Json::object());
-        for (const auto& [body, value] : by_body.items())
-          if (is_of(body, names()[r])) c.doubt[r] = std::max(c.doubt[r], m.error(value));
-      }
+    const auto each = [&](const char* measure, auto&& take) {
+      const Json by_body = j.value(measure, Json::object());
+      for (const auto& [body, value] : by_body.items())
+        if (is_of(body, names()[r])) take(value.template get<double>());
+    };
+    each("modes_left_out", [&](double v) { c.lack[r] = std::max(c.lack[r], v); });
+    for (const Measure& m : measures)
+      if (c.levels[r] == Level::linear) each(m.name, [&](double v) { c.doubt[r] = std::max(c.doubt[r], m.error(v)); });
     for (const std::string& series : run.series_names())
       if (series.starts_with("left_out.") && is_of(series.substr(9), names()[r])) {
         const Series s = run.series(series);
@@ -297,15 +299,19 @@ double Candidates::work(const Request& r) const {
   return 6.9e-3 * std::pow(unknowns(r) / 1000, 0.76) * end / (time.number("step") * r.step);
 }
 
+/// By the nearest run of its kind.  Modes are dearer or cheaper than as many cells: without a run of cells these cost what the fit says, or
+/// more by as much as the other runs do.
 double Candidates::price(const Request& request) const {
+  const auto has_cells = [](const Request& r) { return std::ranges::find(r.levels, Level::nonlinear) != r.levels.end(); };
   const double wanted = work(request);
-  double nearest = HUGE_VAL, factor = 1;
+  double nearest[2] = {HUGE_VAL, HUGE_VAL}, factor[2] = {1, 1};  // of other runs and of its kind
   for (const auto& [name, c] : done_) {
     if (!c.failure.empty() || c.seconds <= 0) continue;
     const double its = work(c), far = std::abs(std::log(wanted / its));
-    if (far < nearest) nearest = far, factor = c.seconds / its;
+    const int kind = has_cells(c) == has_cells(request) ? 1 : 0;
+    if (far < nearest[kind]) nearest[kind] = far, factor[kind] = c.seconds / its;
   }
-  return factor * wanted;
+  return wanted * (std::isfinite(nearest[1]) ? factor[1] : has_cells(request) ? std::max(1.0, factor[0]) : factor[0]);
 }
 
 double Candidates::spent() const {

@@ -31,6 +31,7 @@ struct Candidate : Request {
   double ended = 0;                      // when it was ended since it cannot serve, its peaks are at least `values`; 0: it was not  [s]
   std::map<size_t, std::string> beyond;  // linear regions that left their range, and what the run said of it
   std::map<size_t, double> doubt;        // of linear regions: what strains of the second degree may change, a share of the answer
+  std::map<size_t, double> lack;         // of linear regions: share of the strain that their modes lack
   std::map<size_t, double> energy;       // of linear regions: the largest strain energy  [J]
 };
 
