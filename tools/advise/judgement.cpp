@@ -111,6 +111,7 @@ void Judgement::find_base() {
     const Assignment before = levels;
     if (mend(c, levels) && all.consistent(levels) != before) continue;
     levels = with(Level::nonlinear);
+    if (c.failure.find(": no file ") != std::string::npos) throw Error("", c.failure, "", c.exit);
     if (levels == before) throw Error("", "no model to judge by runs: " + c.failure, "", c.exit);
     warn("", fmt::format("{} does not run, and nothing says why: {}", label(before, all.names()), c.failure));
   }

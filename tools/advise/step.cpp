@@ -32,9 +32,10 @@ std::string Judgement::take_step(const Candidate& c) {
 /// half the truth where it told less than `most_step` (docs/advise.md), so it serves as far as twice as much would not be too large.
 /// `a.step` is of the base when it comes in.
 bool Judgement::is_fine_by_twice() {
-  const double base = step_over(largest_step());
+  const Entry& time = all.scene().table("time");
+  if (time.text("integrator") != "energy-momentum" || !all.scene().entries("contact").empty()) return false;  // not measured
+  const double base = step_over(largest_step()), twice_step = 2 * time.number("step");
   if (base <= 0.02) return true;
-  const double twice_step = 2 * all.scene().table("time").number("step");
   for (const Entry& q : all.scene().entries("quantity"))
     if (q.kind != "injury" && q.has("cfc") && 10 * twice_step * q.number("cfc") > 1) return false;  // its filter needs shorter ones
   if (base > 0.25) return false;
@@ -61,12 +62,14 @@ void Judgement::refuse_step() const {
   const size_t k = largest_step();
   const QuantityValue& v = a.reference->values[k];
   const Entry& time = all.scene().table("time");
+  const std::string or_else =
+      std::abs(a.step[k]) > std::abs(v.value) ? fmt::format("a tolerance in {} where it is about zero", v.unit) : "a larger tolerance";
   throw Error(
       time.where("step"),
       fmt::format("the step alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(a.step[k]), v.unit, v.name, v.allowed, v.unit),
       v.of.find(", raw") != std::string::npos
           ? "a raw acceleration holds all frequencies: give it a cfc"
-          : fmt::format("time.step = {:.2g}, or a larger tolerance", time.number("step") * std::sqrt(most_step / 2 / step_over(k))));
+          : fmt::format("time.step = {:.2g}, or {}", time.number("step") * std::sqrt(most_step / 2 / step_over(k)), or_else));
 }
 
 }  // namespace hilo
