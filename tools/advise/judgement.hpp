@@ -62,8 +62,8 @@ class Judgement {
   bool mend(const Candidate& c, Assignment& levels);
   double window_of(const Candidate& c) const;
   std::string take_step(const Candidate& c);
-  bool may_be_twice() const;
-  bool is_fine_by_twice();
+  double coarser() const;
+  bool is_known_by_coarser();
   size_t largest_step() const;
   [[noreturn]] void refuse_step() const;
 
