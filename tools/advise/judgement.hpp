@@ -62,8 +62,8 @@ class Judgement {
   bool mend(const Candidate& c, Assignment& levels);
   double window_of(const Candidate& c) const;
   std::string take_step(const Candidate& c);
-  double coarser() const;
-  bool is_known_by_coarser();
+  bool may_be_twice() const;
+  bool is_known_by_twice(double off);
   size_t largest_step() const;
   [[noreturn]] void refuse_step() const;
 

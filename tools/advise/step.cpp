@@ -27,34 +27,33 @@ std::string Judgement::take_step(const Candidate& c) {
   return half.failure;
 }
 
-/// How many times the step may be for a run to tell something of it: 2, 1.5 where filters need shorter ones than that, or 0: none may.
-/// Measured are scenes without contacts, by the default method.
-double Judgement::coarser() const {
-  const Entry& time = all.scene().table("time");
-  if (time.text("integrator") != "energy-momentum" || !all.scene().entries("contact").empty()) return 0;
-  double most = 2;
-  for (const Entry& q : all.scene().entries("quantity"))
-    if (q.kind != "injury" && q.has("cfc")) most = std::min(most, 0.1 / q.number("cfc") / time.number("step"));
-  return most >= 2 ? 2 : most >= 1.5 ? 1.5 : 0;
+/// Do the filters of what is asked let a run have twice the step?
+bool Judgement::may_be_twice() const {
+  return std::ranges::none_of(all.scene().entries("quantity"), [&](const Entry& q) {
+    return q.kind != "injury" && q.has("cfc") && 2 * all.scene().table("time").number("step") > 0.1 / q.number("cfc");
+  });
 }
 
 /// Half the step of the reference costs twice as much as the reference, twice the step half.  Of a machine that rings it alone may tell .1
-/// of a tolerance where .9 is true, and so may the base alone, beyond its range.  Of 27 scenes the larger of both told at least .88 of the
-/// largest error where that was above .17, and half of it below (docs/advise.md): the error is known where they tell at most .65.
-bool Judgement::is_known_by_coarser() {
+/// of a tolerance where .9 is true, and so may the base alone, which is `off` by so many tolerances.  Of 27 scenes the larger of both told
+/// at least .88 of the largest error where that was above .17, and half of it below (docs/advise.md): the error is known where they tell at
+/// most .65.  Measured are scenes without contacts, by the default method.
+bool Judgement::is_known_by_twice(double off) {
   constexpr double most_told = 0.65;
-  const double times = coarser();
-  if (times == 0 || !take_step(*a.base).empty()) return false;
+  const Entry& time = all.scene().table("time");
+  const bool base_alone = off < 15;  // it tells something of small errors
+  if (time.text("integrator") != "energy-momentum" || !all.scene().entries("contact").empty() || !(base_alone || may_be_twice()))
+    return false;
+  if (!take_step(*a.base).empty()) return false;
   const double base = step_over(largest_step());
-  if (base > most_told) return false;
-  if (base <= 0.02) {  // it alone: the truth was up to twice as much then, but for one scene with ten times as much, of .12
+  if (base_alone && base <= 0.02) {  // the truth was up to twice as much then
     for (double& change : a.step) change *= 3;
     return true;
   }
-  const double end = end_beside(*a.reference), coarse_step = times * all.scene().table("time").number("step");
-  const Candidate& coarse = all.of({a.reference->levels, times, std::ceil(end / coarse_step - 1e-9) * coarse_step});
-  if (!coarse.failure.empty()) return false;
-  const std::vector<double> change = part(coarse, *a.reference, 1 / (times * times - 1));
+  if (base > most_told || !may_be_twice()) return false;
+  const Candidate& twice = all.of({a.reference->levels, 2, end_beside(*a.reference)});
+  if (!twice.failure.empty()) return false;
+  const std::vector<double> change = part(twice, *a.reference, 1. / 3);
   for (size_t k = 0; k < change.size(); ++k)
     if (std::abs(change[k]) > std::abs(a.step[k])) a.step[k] = change[k];
   return step_over(largest_step()) <= most_told;
@@ -66,7 +65,8 @@ void Judgement::find_step() {
     if (const std::string why = take_step(c); !why.empty()) throw Error("", "half the step does not run: " + why, "", Exit::not_converged);
     return step_over(largest_step()) <= most_step;
   };
-  if (difference(*a.base, *a.reference) < 1 ? by_half(*a.base) : is_known_by_coarser()) return;
+  const double off = difference(*a.base, *a.reference);
+  if (off < 1 ? by_half(*a.base) : is_known_by_twice(off)) return;
   if (!by_half(*a.reference)) refuse_step();
 }
 
