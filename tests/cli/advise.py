@@ -110,6 +110,16 @@ with tempfile.TemporaryDirectory() as folder:
     assert {**again, "spent_seconds": 0} == {**advice, "spent_seconds": 0}
     assert before == {f: os.stat("advise.work/" + f).st_mtime_ns for f in os.listdir("advise.work")}  # nothing ran again
 
+    # kept runs that are damaged run again
+    for f in before:
+        if f.endswith(".json"):
+            open("advise.work/" + f, "w").write('{"complete": true, "bend": 3, "processor_seconds": "x"}')
+            open("advise.work/" + f.replace(".json", ".h5"), "r+b").truncate(3000)
+            break
+    again = json.loads(run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json").stdout)
+    assert {r["region"]: r["level"] for r in again["regions"]} == level and again["quantities"] == advice["quantities"], again
+    before = {f: os.stat("advise.work/" + f).st_mtime_ns for f in os.listdir("advise.work")}
+
     # the error of the mesh, by cells half as long: as four times as many say
     for n in (2, 4, 8):
         open("deck.inp", "w").write(deck(n))
@@ -200,6 +210,9 @@ with tempfile.TemporaryDirectory() as folder:
     refused("output.interval = 0.008")
     open("scene.toml", "w").write(scene())
     refused("no region", "--keep-rigid", "d")
+    refused("says twice", "--keep", "a=linear", "--keep-rigid", "a")
+    done = run("hilo-advise", "scene.toml", "mesh.h5", "--work", "scene.toml")
+    assert done.returncode == 4 and "cannot make the folder" in done.stderr, done.stderr
     refused("no level", "--keep", "a=soft")
     refused("has no level", "--keep", "a")
     refused("contradicts", "--full", "--no-full")

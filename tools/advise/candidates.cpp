@@ -36,7 +36,7 @@ Json json_of_file(const std::string& path) {
 
 bool is_complete(const std::string& name) {
   const Json j = json_of_file(name + ".json");
-  return j.is_object() && j.value("complete", false) && std::filesystem::exists(name + ".h5");
+  return j.is_object() && j.contains("complete") && j["complete"] == true && std::filesystem::exists(name + ".h5");
 }
 
 /// Bodies of several regions are named by all of them, with + between.
@@ -77,7 +77,9 @@ Candidates::Candidates(Options options)
                   "half as large is right");
     finer_digest_ = digest(o_.finer);
   }
-  std::filesystem::create_directories(o_.folder + "/modes");
+  std::error_code failed;
+  std::filesystem::create_directories(o_.folder + "/modes", failed);
+  if (failed) throw Error(o_.folder, "cannot make the folder: " + failed.message(), "--work FOLDER", Exit::resources);
   std::vector<std::vector<std::int64_t>> nodes;
   for (const std::string& name : names()) nodes.push_back(mesh().nodes_of(name, o_.mesh)), nodes_.push_back(nodes.back().size());
   neighbours_.resize(nodes.size());
@@ -127,8 +129,7 @@ Candidates::Job Candidates::job(const Request& request) const {
     if (!value.starts_with("quantity.") && !value.starts_with("scene.title")) key.add(value);
   for (const Level l : request.levels) key.add(word(l));
   for (const std::string& m : more) key.add(m);
-  Job job{fmt::format("{}/{:016x}", o_.folder, key.value()), {}, false};
-  job.done = is_complete(job.name);
+  Job job{fmt::format("{}/{:016x}", o_.folder, key.value()), {}};
   job.command = {solver(), "--quiet", o_.scene, job.name + "-tags.h5", "-o", job.name + ".h5", "--checkpoint", "none"};
   const bool has_modes = std::any_of(request.levels.begin(), request.levels.end(), [](Level l) { return fidelity(l) == Fidelity::linear; });
   if (has_modes) job.command.insert(job.command.end(), {"--modes", o_.folder + "/modes"});
@@ -171,11 +172,11 @@ void Candidates::run(const std::vector<Request>& list, const Beyond& beyond) {
   for (const Request& request : list) {
     const Job j = job(request);
     if (done_.contains(j.name) || std::any_of(of.begin(), of.end(), [&](const auto& other) { return other.first == j.name; })) continue;
-    of.emplace_back(j.name, request);
-    if (j.done || is_beyond(j.name, beyond)) {
+    if (take(j.name, request, beyond)) {
       ++known;
       continue;
     }
+    of.emplace_back(j.name, request);
     std::vector<Fidelity> tags;
     for (const Level l : request.levels) tags.push_back(fidelity(l));
     write_tags(j.name + "-tags.h5", request.finer ? o_.finer : o_.mesh, tags, {"hilo-advise"});
@@ -189,25 +190,36 @@ void Candidates::run(const std::vector<Request>& list, const Beyond& beyond) {
                  request.end > 0 ? fmt::format(", to {:.4g} s", request.end) : "", price(request));
   }
   run_processes(processes, o_.at_once);
-  for (const auto& [name, request] : of) {
-    Candidate& c = done_[name];
-    static_cast<Request&>(c) = request;
-    c.run = name + ".h5";
-    for (const Process& p : processes)
-      if (p.log == name + ".log") c.seconds = p.seconds;
-    if (is_complete(name) || is_beyond(name, beyond))
-      read(c, name);
-    else
-      fail(c, name, processes);
+  for (const auto& [name, request] : of)
+    if (!take(name, request, beyond)) fail(request, name, processes);
+}
+
+/// Takes what a run says that has ended; false where there is none, or where its files are damaged.
+bool Candidates::take(const std::string& name, const Request& request, const Beyond& beyond) {
+  if (!is_complete(name) && !is_beyond(name, beyond)) return false;
+  Candidate c;
+  static_cast<Request&>(c) = request;
+  c.run = name + ".h5";
+  try {
+    read(c, name);
+  } catch (const Error&) {
+    return false;
+  } catch (const Json::exception&) {
+    return false;
   }
+  done_[name] = std::move(c);
+  return true;
 }
 
 /// The last line that a run wrote, without the name of its program, and the exit with which it ended.
-void Candidates::fail(Candidate& c, const std::string& name, const std::vector<Process>& processes) {
+void Candidates::fail(const Request& request, const std::string& name, const std::vector<Process>& processes) {
+  Candidate& c = done_[name];
+  static_cast<Request&>(c) = request;
   c.failure = last_line(name + ".log");
   if (const std::string program = "hilo-solve: "; c.failure.starts_with(program)) c.failure.erase(0, program.size());
   for (const Process& p : processes) {
     if (p.log != name + ".log") continue;
+    c.seconds = p.seconds;
     if (p.status > 0 && p.status <= static_cast<int>(Exit::stopped)) c.exit = static_cast<Exit>(p.status);
     if (p.status > 128 || c.failure.empty())  // it could not say why
       c.failure =

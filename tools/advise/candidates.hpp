@@ -86,14 +86,14 @@ class Candidates {
   struct Job {
     std::string name;  // of its files, without ending
     std::vector<std::string> command;
-    bool done;
   };
   Job job(const Request& request) const;
   std::vector<QuantityValue> values_of(RunFile& run) const;
   /// Does what there is of a run that has not ended say that it is `beyond`?
   bool is_beyond(const std::string& name, const Beyond& beyond) const;
   void read(Candidate& c, const std::string& name) const;
-  static void fail(Candidate& c, const std::string& name, const std::vector<Process>& processes);
+  bool take(const std::string& name, const Request& request, const Beyond& beyond);
+  void fail(const Request& request, const std::string& name, const std::vector<Process>& processes);
   double unknowns(const Request& request) const;
   double work(const Request& request) const;
   const Options o_;
