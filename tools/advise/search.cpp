@@ -39,10 +39,12 @@ class Search : Judgement {
     return all.spent() + planned + all.price(next) > std::max(o.at_most * a.all_cells, never_below);
   }
 
-  /// What saves less than a third of another model is tried within half the price of a run of all cells.
+  /// What saves less than a third of another model is tried within half the price of a run of all cells; where many regions deform, and
+  /// such savings add up, within all of it.
   bool saves_little(const Request& next, const Request& than, double planned = 0) const {
     const double price = all.price(next);
-    return !o.each_region && price > 2. / 3 * all.price(than) && all.spent() + planned + price > 0.5 * a.all_cells;
+    const auto deform = std::ranges::count_if(than.levels, [](Level l) { return l != Level::rigid; });
+    return !o.each_region && price > 2. / 3 * all.price(than) && all.spent() + planned + price > (deform > 3 ? 1 : 0.5) * a.all_cells;
   }
   /// Is it vain to try it linear?  Regions that could be had measures of up to 12 tolerances.
   bool needs_cells(size_t r) const { return !serves(*a.base) && doubt(r) > 15; }
