@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "base/interrupt.hpp"
 #include "model/inputs.hpp"
-#include "model/store.hpp"
+#include "post/files/output.hpp"
 
 namespace hilo {
 namespace {
@@ -43,7 +43,8 @@ std::map<size_t, Level> kept_levels(const Options& o, const std::vector<std::str
   const auto keep = [&](const char* option, const std::string& name, Level level) {
     const auto at = std::find(regions.begin(), regions.end(), name);
     if (at == regions.end()) throw Error(option, fmt::format("no region \"{}\"", name), suggest(name, regions), Exit::usage);
-    out[static_cast<size_t>(at - regions.begin())] = level;
+    if (!out.emplace(static_cast<size_t>(at - regions.begin()), level).second)
+      throw Error(option, fmt::format("says twice how region \"{}\" is kept", name), "once is enough", Exit::usage);
   };
   for (const std::string& name : o.kept_rigid) keep("--keep-rigid", name, Level::rigid);
   for (const std::string& text : o.kept) {
@@ -77,9 +78,9 @@ void run(const Options& o) {
   search.each_region = !o.regions.empty();
   const Advice advice = advise(all, search);
   fmt::print("{}", o.json ? report_json(all, advice) : report_text(all, advice));
-  if (!o.csv.empty()) write_text_file(o.csv, models_csv(all, advice));
-  if (!o.regions.empty()) write_text_file(o.regions, regions_csv(all, advice));
-  if (!o.apply.empty()) write_text_file(o.apply, rules(all, advice, "hilo-advise --tol " + o.tolerance));
+  if (!o.csv.empty()) write_out(o.csv, models_csv(all, advice));
+  if (!o.regions.empty()) write_out(o.regions, regions_csv(all, advice));
+  if (!o.apply.empty()) write_out(o.apply, rules(all, advice, "hilo-advise --tol " + o.tolerance));
 }
 
 }  // namespace

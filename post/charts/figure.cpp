@@ -137,7 +137,7 @@ void draw_guides(Painter& p, const Panel& panel, const Scale& sx, const Scale& s
 void draw_curve(Painter& p, const ChartCurve& c, const Scale& sx, const Scale& sy, const Box& box) {
   std::vector<Vec2> stretch;
   const auto flush = [&] {
-    p.line(stretch, c.colour, c.width, c.opacity, c.dashed);
+    if (c.width > 0) p.line(stretch, c.colour, c.width, c.opacity, c.dashed);
     stretch.clear();
   };
   // Many samples per pixel column: its first, lowest, highest and last point show the same picture.
@@ -221,7 +221,7 @@ void draw_legend(Painter& p, const Panel& panel, const Box& box) {
   double y = box.y + box.h - row / 2;
   for (const ChartCurve& c : panel.curves) {
     if (c.label.empty()) continue;
-    p.line(std::array{Vec2(x, y), Vec2(x + 30 * p.scale, y)}, c.colour, c.width, c.opacity, c.dashed);
+    if (c.width > 0) p.line(std::array{Vec2(x, y), Vec2(x + 30 * p.scale, y)}, c.colour, c.width, c.opacity, c.dashed);
     if (c.marker >= 0) draw_marker(p, c.marker, {x + 15 * p.scale, y}, c.colour);
     p.text({x + 38 * p.scale, y}, c.label, legend_size);
     y -= row;

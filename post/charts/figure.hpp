@@ -16,7 +16,7 @@ struct ChartCurve {
   std::string label;
   std::vector<double> x, y;
   Rgb colour;
-  double width = 2;  // [unit of text, see Painter]
+  double width = 2;  // of its line, 0: none, its marks alone  [unit of text, see Painter]
   double opacity = 1;
   int marker = -1;  // the n-th of an endless row of shapes, none when negative
   bool dashed = false;

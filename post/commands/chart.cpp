@@ -21,7 +21,7 @@ struct ChartOptions {
   std::vector<std::string> files, y;
   std::string x, by, log, title, x_label, y_label, size = "1280x720", png;
   std::vector<double> x_range, y_range, slopes;
-  bool markers = false;
+  bool markers = false, points = false;
 };
 
 /// The rows of a table that share a name in column `by`; all rows where there is none.
@@ -93,7 +93,8 @@ void run(const ChartOptions& o) {
         if (columns.size() > 1 || curve.label.empty()) curve.label = join(curve.label, plain(table.header[c]));
         for (const size_t row : rows) curve.x.push_back(xs[row]), curve.y.push_back(ys[row]);
         const int n = n_curves++;
-        curve.marker = o.markers ? n : -1;
+        curve.marker = o.markers || o.points ? n : -1;
+        if (o.points) curve.width = 0;
         curve.colour = curve_colour(n);
         curve.dashed = n % 2 != 0 && !o.by.empty();
         panel.curves.push_back(std::move(curve));
@@ -121,6 +122,7 @@ Command chart_command(CLI::App& app) {
   sub->add_option("--by", o->by, "column of names: one curve for each name");
   sub->add_option("--log", o->log, "logarithmic axes: x, y or xy")->check(CLI::IsMember({"x", "y", "xy"}));
   sub->add_flag("--markers", o->markers, "mark the points, each curve by a shape of its own");
+  sub->add_flag("--points", o->points, "marks alone, without lines between them: rows that are no course");
   sub->add_option("--xrange", o->x_range, "LOW,HIGH: what the abscissa shows")->delimiter(',')->expected(2);
   sub->add_option("--yrange", o->y_range, "LOW,HIGH: what the ordinate shows")->delimiter(',')->expected(2);
   sub->add_option("--slope", o->slopes, "guide y ~ x^SLOPE, --slope once for each; needs --log xy")->allow_extra_args(false);

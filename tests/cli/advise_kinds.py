@@ -97,7 +97,9 @@ with tempfile.TemporaryDirectory() as folder:
 
     # what no model takes is refused as the solver refuses it
     refused(scene(joints + floor.replace("0.05", "0.05\nfriction = 1").replace('kind = "plane"', 'kind = "height-field"\nfile = "none.csv"')
-                  .replace("axis = [0, 0, 1]\n", "")), 2, "no model to judge by runs", "none.csv")
+                  .replace("axis = [0, 0, 1]\n", "")), 2, "no file none.csv")
+    refused(scene(joints.replace('"b0"', '"b7"')), 2, "no model to judge by runs", "b7")
+    refused(scene(joints).replace("shapes", "") + '[region.a]\nshapes = "none.csv"\n', 2, "no file none.csv")  # cells would not read it
 
     # shells have no strains of the second degree in modes: nonlinear, by their names
     plates = Deck()

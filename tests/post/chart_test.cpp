@@ -111,6 +111,31 @@ TEST(Chart, one_curve_for_each_name_of_a_column) {
   EXPECT_GT(red, 500);
 }
 
+// Points that are no course: the marks are there, no line between them.
+TEST(Chart, points_without_lines) {
+  const Workplace place;
+  place.write("models.csv", "cost [s],error,choice\n1,0.1,other\n9,0.9,other\n5,0.1,chosen\n");
+  ASSERT_EQ(place
+                .run("unset DISPLAY\nhilo-post chart models.csv -y error --by choice --points -o points.png\n"
+                     "hilo-post chart models.csv -y error --by choice --markers -o lines.png")
+                .exit,
+            0);
+  const auto blue = [&](const std::string& file) {  // in the middle of the panel, and in all of it
+    const PictureFile picture(place / file);
+    std::array<int, 2> n{};
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < picture.width * 3 / 4; ++x) {
+        const auto c = picture.at(x, y);
+        if (c[2] > c[0] + 100) ++n[1], n[0] += std::abs(x - picture.width / 2) < 200;
+      }
+    return n;
+  };
+  const auto points = blue("points.png"), lines = blue("lines.png");
+  EXPECT_EQ(points[0], 0);
+  EXPECT_GT(points[1], 60);
+  EXPECT_GT(lines[0], 200);
+}
+
 // 250 MPa and 250 kN stood at one height: each unit has a panel, and there the curve that falls and the one that rises.
 TEST(Chart, each_unit_has_a_panel_of_its_own) {
   const Workplace place;

@@ -36,7 +36,7 @@ Json json_of_file(const std::string& path) {
 
 bool is_complete(const std::string& name) {
   const Json j = json_of_file(name + ".json");
-  return j.is_object() && j.value("complete", false) && std::filesystem::exists(name + ".h5");
+  return j.is_object() && j.contains("complete") && j["complete"] == true && std::filesystem::exists(name + ".h5");
 }
 
 /// Bodies of several regions are named by all of them, with + between.
@@ -77,7 +77,9 @@ Candidates::Candidates(Options options)
                   "half as large is right");
     finer_digest_ = digest(o_.finer);
   }
-  std::filesystem::create_directories(o_.folder + "/modes");
+  std::error_code failed;
+  std::filesystem::create_directories(o_.folder + "/modes", failed);
+  if (failed) throw Error(o_.folder, "cannot make the folder: " + failed.message(), "--work FOLDER", Exit::resources);
   std::vector<std::vector<std::int64_t>> nodes;
   for (const std::string& name : names()) nodes.push_back(mesh().nodes_of(name, o_.mesh)), nodes_.push_back(nodes.back().size());
   neighbours_.resize(nodes.size());
@@ -127,8 +129,7 @@ Candidates::Job Candidates::job(const Request& request) const {
     if (!value.starts_with("quantity.") && !value.starts_with("scene.title")) key.add(value);
   for (const Level l : request.levels) key.add(word(l));
   for (const std::string& m : more) key.add(m);
-  Job job{fmt::format("{}/{:016x}", o_.folder, key.value()), {}, false};
-  job.done = is_complete(job.name);
+  Job job{fmt::format("{}/{:016x}", o_.folder, key.value()), {}};
   job.command = {solver(), "--quiet", o_.scene, job.name + "-tags.h5", "-o", job.name + ".h5", "--checkpoint", "none"};
   const bool has_modes = std::any_of(request.levels.begin(), request.levels.end(), [](Level l) { return fidelity(l) == Fidelity::linear; });
   if (has_modes) job.command.insert(job.command.end(), {"--modes", o_.folder + "/modes"});
@@ -171,11 +172,11 @@ void Candidates::run(const std::vector<Request>& list, const Beyond& beyond) {
   for (const Request& request : list) {
     const Job j = job(request);
     if (done_.contains(j.name) || std::any_of(of.begin(), of.end(), [&](const auto& other) { return other.first == j.name; })) continue;
-    of.emplace_back(j.name, request);
-    if (j.done || is_beyond(j.name, beyond)) {
+    if (take(j.name, request, beyond)) {
       ++known;
       continue;
     }
+    of.emplace_back(j.name, request);
     std::vector<Fidelity> tags;
     for (const Level l : request.levels) tags.push_back(fidelity(l));
     write_tags(j.name + "-tags.h5", request.finer ? o_.finer : o_.mesh, tags, {"hilo-advise"});
@@ -189,25 +190,36 @@ void Candidates::run(const std::vector<Request>& list, const Beyond& beyond) {
                  request.end > 0 ? fmt::format(", to {:.4g} s", request.end) : "", price(request));
   }
   run_processes(processes, o_.at_once);
-  for (const auto& [name, request] : of) {
-    Candidate& c = done_[name];
-    static_cast<Request&>(c) = request;
-    c.run = name + ".h5";
-    for (const Process& p : processes)
-      if (p.log == name + ".log") c.seconds = p.seconds;
-    if (is_complete(name) || is_beyond(name, beyond))
-      read(c, name);
-    else
-      fail(c, name, processes);
+  for (const auto& [name, request] : of)
+    if (!take(name, request, beyond)) fail(request, name, processes);
+}
+
+/// Takes what a run says that has ended; false where there is none, or where its files are damaged.
+bool Candidates::take(const std::string& name, const Request& request, const Beyond& beyond) {
+  if (!is_complete(name) && !is_beyond(name, beyond)) return false;
+  Candidate c;
+  static_cast<Request&>(c) = request;
+  c.run = name + ".h5";
+  try {
+    read(c, name);
+  } catch (const Error&) {
+    return false;
+  } catch (const Json::exception&) {
+    return false;
   }
+  done_[name] = std::move(c);
+  return true;
 }
 
 /// The last line that a run wrote, without the name of its program, and the exit with which it ended.
-void Candidates::fail(Candidate& c, const std::string& name, const std::vector<Process>& processes) {
+void Candidates::fail(const Request& request, const std::string& name, const std::vector<Process>& processes) {
+  Candidate& c = done_[name];
+  static_cast<Request&>(c) = request;
   c.failure = last_line(name + ".log");
   if (const std::string program = "hilo-solve: "; c.failure.starts_with(program)) c.failure.erase(0, program.size());
   for (const Process& p : processes) {
     if (p.log != name + ".log") continue;
+    c.seconds = p.seconds;
     if (p.status > 0 && p.status <= static_cast<int>(Exit::stopped)) c.exit = static_cast<Exit>(p.status);
     if (p.status > 128 || c.failure.empty())  // it could not say why
       c.failure =
@@ -252,12 +264,14 @@ void Candidates::read(Candidate& c, const std::string& name) const {
     for (const Json& b : j.value("beyond_linear", Json::array()))
       if (is_of(b.at("region"), names()[r])) c.beyond.emplace(r, b.at("said"));
     if (c.levels[r] != Level::linear && c.levels[r] != Level::stiffening) continue;
-    if (c.levels[r] == Level::linear)
-      for (const Measure& m : measures) {
-        const Json by_body = j.value(m.name, Json::object());
-        for (const auto& [body, value] : by_body.items())
-          if (is_of(body, names()[r])) c.doubt[r] = std::max(c.doubt[r], m.error(value));
-      }
+    const auto each = [&](const char* measure, auto&& take) {
+      const Json by_body = j.value(measure, Json::object());
+      for (const auto& [body, value] : by_body.items())
+        if (is_of(body, names()[r])) take(value.template get<double>());
+    };
+    each("modes_left_out", [&](double v) { c.lack[r] = std::max(c.lack[r], v); });
+    for (const Measure& m : measures)
+      if (c.levels[r] == Level::linear) each(m.name, [&](double v) { c.doubt[r] = std::max(c.doubt[r], m.error(v)); });
     for (const std::string& series : run.series_names())
       if (series.starts_with("left_out.") && is_of(series.substr(9), names()[r])) {
         const Series s = run.series(series);
@@ -290,22 +304,27 @@ double Candidates::unknowns(const Request& request) const {
   return n;
 }
 
-/// Microseconds a step, 6900 (N/1000)^0.76, as fitted to 237 runs with flexible regions.
+/// Microseconds a step, 4600 (N/1000)^0.76: two thirds of a fit to 237 runs with flexible regions, which had a second solution to estimate
+/// their error.
 double Candidates::work(const Request& r) const {
   const Entry& time = scene_.table("time");
   const double end = r.end > 0 ? r.end : time.number("end");
-  return 6.9e-3 * std::pow(unknowns(r) / 1000, 0.76) * end / (time.number("step") * r.step);
+  return 4.6e-3 * std::pow(unknowns(r) / 1000, 0.76) * end / (time.number("step") * r.step);
 }
 
+/// By the nearest run of its kind.  Modes are dearer or cheaper than as many cells: without a run of cells these cost what the fit says, or
+/// more by as much as the other runs do.
 double Candidates::price(const Request& request) const {
+  const auto has_cells = [](const Request& r) { return std::ranges::find(r.levels, Level::nonlinear) != r.levels.end(); };
   const double wanted = work(request);
-  double nearest = HUGE_VAL, factor = 1;
+  double nearest[2] = {HUGE_VAL, HUGE_VAL}, factor[2] = {1, 1};  // of other runs and of its kind
   for (const auto& [name, c] : done_) {
     if (!c.failure.empty() || c.seconds <= 0) continue;
     const double its = work(c), far = std::abs(std::log(wanted / its));
-    if (far < nearest) nearest = far, factor = c.seconds / its;
+    const int kind = has_cells(c) == has_cells(request) ? 1 : 0;
+    if (far < nearest[kind]) nearest[kind] = far, factor[kind] = c.seconds / its;
   }
-  return factor * wanted;
+  return wanted * (std::isfinite(nearest[1]) ? factor[1] : has_cells(request) ? std::max(1.0, factor[0]) : factor[0]);
 }
 
 double Candidates::spent() const {

@@ -31,6 +31,7 @@ struct Candidate : Request {
   double ended = 0;                      // when it was ended since it cannot serve, its peaks are at least `values`; 0: it was not  [s]
   std::map<size_t, std::string> beyond;  // linear regions that left their range, and what the run said of it
   std::map<size_t, double> doubt;        // of linear regions: what strains of the second degree may change, a share of the answer
+  std::map<size_t, double> lack;         // of linear regions: share of the strain that their modes lack
   std::map<size_t, double> energy;       // of linear regions: the largest strain energy  [J]
 };
 
@@ -85,14 +86,14 @@ class Candidates {
   struct Job {
     std::string name;  // of its files, without ending
     std::vector<std::string> command;
-    bool done;
   };
   Job job(const Request& request) const;
   std::vector<QuantityValue> values_of(RunFile& run) const;
   /// Does what there is of a run that has not ended say that it is `beyond`?
   bool is_beyond(const std::string& name, const Beyond& beyond) const;
   void read(Candidate& c, const std::string& name) const;
-  static void fail(Candidate& c, const std::string& name, const std::vector<Process>& processes);
+  bool take(const std::string& name, const Request& request, const Beyond& beyond);
+  void fail(const Request& request, const std::string& name, const std::vector<Process>& processes);
   double unknowns(const Request& request) const;
   double work(const Request& request) const;
   const Options o_;

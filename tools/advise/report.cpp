@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace hilo {
 namespace {
@@ -102,6 +103,9 @@ std::string told_of_raw(const Advice& a) {
 }
 
 std::string what_is_known(const Candidates& all, const Advice& a) {
+  std::string modes;
+  if (a.modes.empty() && a.modes_at_most > 0 && a.modes_at_most < 1)
+    modes = fmt::format("; what its modes lack of the strain may change {:.2g} of it", a.modes_at_most);
   std::string mesh = a.mesh.empty() ? "; the error of the mesh is unknown (--finer)" : "";
   for (size_t k = 0; k < a.mesh.size(); ++k)
     if (const QuantityValue& v = a.reference->values[k]; std::abs(a.mesh[k]) > v.allowed)
@@ -109,7 +113,7 @@ std::string what_is_known(const Candidates& all, const Advice& a) {
                           v.allowed, v.unit);
   return fmt::format("judged by {}; what linear strains leave out of it may be {:.2g} of the tightest tolerance, by their own measures{}{}",
                      label(a.reference->levels, all.names()), a.doubt, a.doubt > 0.5 ? ": more than half, and nothing checked it" : "",
-                     told_of_raw(a) + mesh);
+                     modes + told_of_raw(a) + mesh);
 }
 
 }  // namespace
@@ -125,14 +129,15 @@ std::string report_text(const Candidates& all, const Advice& a) {
 }
 
 std::string report_json(const Candidates& all, const Advice& a) {
+  using Json = nlohmann::ordered_json;
   double step = 0;
   for (size_t k = 0; k < a.step.size(); ++k) step = std::max(step, std::abs(a.step[k]) / a.reference->values[k].allowed);
-  return fmt::format(
-      "{{\n  \"step_over_allowed\": {},\n  \"doubt_over_allowed\": {},\n  \"checked\": {},\n  \"all_cells_seconds\": {},\n  "
-      "\"spent_seconds\": "
-      "{},\n  \"quantities\": {},\n  \"regions\": {},\n  \"models\": {}\n}}\n",
-      json_number(step), json_number(a.doubt), a.reference != a.base ? "true" : "false", json_number(a.all_cells), json_number(all.spent()),
-      budget(a).json("    "), regions(all, a).json("    "), models(all, a).json("    "));
+  const auto rows = [](const Table& t) { return Json::parse(t.json()); };
+  return Json{{"step_over_allowed", step},        {"doubt_over_allowed", a.doubt},    {"modes_at_most_over_allowed", a.modes_at_most},
+              {"checked", a.reference != a.base}, {"all_cells_seconds", a.all_cells}, {"spent_seconds", all.spent()},
+              {"quantities", rows(budget(a))},    {"regions", rows(regions(all, a))}, {"models", rows(models(all, a))}}
+             .dump(2) +
+         "\n";
 }
 
 std::string models_csv(const Candidates& all, const Advice& a) {

@@ -21,6 +21,7 @@ struct Advice {
   // parts of the error of the chosen model by quantity, each in its unit; empty where that is not known
   std::vector<double> step;                    // what a step of none would change
   std::vector<double> modes;                   // what all modes of its linear regions would
+  double modes_at_most = 0;                    // what they may change, over the tightest tolerance, by the strain they lack
   std::vector<double> mesh;                    // what cells of no size would
   double doubt = 0;                            // what strains of the second degree may change of the reference, over the tightest tolerance
   std::map<size_t, const Candidate*> without;  // the chosen model with this region rigid

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "advise/judgement.hpp"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace hilo {
+
+double over(double difference, double allowed) { return std::abs(difference) / std::max(allowed, 1e-300); }
+
+std::vector<double> part(const Candidate& c, const Candidate& other, double factor) {
+  std::vector<double> out;
+  for (size_t k = 0; k < c.values.size(); ++k) {
+    const double change = factor * (other.values[k].value - c.values[k].value);
+    out.push_back(std::isfinite(change) ? change : HUGE_VAL);
+  }
+  return out;
+}
+
+Judgement::Judgement(Candidates& all_models, const SearchOptions& options) : all(all_models), o(options), n(all_models.names().size()) {
+  find_contacts();
+  find_base();
+  find_reference();
+}
+
+Assignment Judgement::with(Level level) const {
+  Assignment out(n, level);
+  for (const auto& [r, kept] : o.kept) out[r] = kept;
+  for (const auto& [r, why] : a.kept_rigid) out[r] = Level::rigid;
+  return all.consistent(out);
+}
+
+/// A run of cells ends where all quantities have their values.
+Request Judgement::request(const Assignment& levels) const {
+  const bool cells = std::any_of(levels.begin(), levels.end(), [](Level l) { return l == Level::nonlinear; });
+  return {all.consistent(levels), 1, cells ? window_ : 0};
+}
+
+const Candidate& Judgement::of(const Request& request, const Candidates::Beyond& beyond) {
+  const Candidate& c = all.of(request, beyond);
+  if (request.step == 1 && !request.finer && std::find(a.tried.begin(), a.tried.end(), &c) == a.tried.end()) a.tried.push_back(&c);
+  return c;
+}
+
+double Judgement::error(const Candidate& c) const {
+  if (!c.failure.empty()) return HUGE_VAL;
+  double largest = 0;
+  for (size_t k = 0; k < c.values.size(); ++k) {
+    const QuantityValue &mine = c.values[k], &its = a.reference->values[k];
+    if (!its.why.empty()) continue;
+    if (!mine.why.empty() || c.ended > 0) return HUGE_VAL;
+    largest = std::max(largest, over(mine.value - its.value, its.allowed) + over(a.step[k], its.allowed));
+  }
+  return largest + std::min(a.doubt, 0.5);
+}
+
+Candidates::Beyond Judgement::beyond() const {
+  return [this](const std::vector<QuantityValue>& so_far) {
+    size_t k = 0;
+    for (const Entry& q : all.scene().entries("quantity")) {
+      if (q.kind == "frequency") continue;
+      const QuantityValue &mine = so_far[k], &its = a.reference->values[k];
+      const double excess = std::abs(mine.value) - std::abs(its.value);
+      if (q.kind == "peak" && !q.has("cfc") && mine.why.empty() && its.why.empty() && excess > 1.2 * its.allowed) return true;
+      ++k;
+    }
+    return false;
+  };
+}
+
+/// The regions that a failed run names, as themselves, as bodies of several ("a+b") or by sets of the mesh, and what to do about them:
+/// rigid where the scene wants one body, else one level more.
+bool Judgement::mend(const Candidate& c, Assignment& levels) {
+  bool mended = false;
+  for (size_t r = 0; r < n; ++r) {
+    const std::string& name = all.names()[r];
+    const auto says = [&](const char* text) { return c.failure.find('"' + name + text) != std::string::npos; };
+    const bool whole = says("\" is flexible") || says("\" is a linear region: it has no single position"), stop = says("\" is not rigid");
+    if (!whole && !stop) continue;
+    const char* why = whole ? "a joint or spring names it as a whole" : "a contact gives its stiffness as that of a rigid part";
+    a.kept_rigid[r] = why;
+    if (o.kept.contains(r) && o.kept.at(r) != Level::rigid)
+      throw Error("--keep", fmt::format("\"{}\" cannot be {}: {}", name, word(o.kept.at(r)), why),
+                  whole ? "let the joint name a set of its nodes" : "leave out modulus and layer of the contact", Exit::usage);
+    warn(name, fmt::format("{}, so it stays rigid ({})", why,
+                           whole ? "a set of its nodes would let it deform" : "without modulus and layer it may deform"));
+    levels[r] = Level::rigid, mended = true;
+  }
+  if (mended) return true;
+  for (const size_t r : all.named_in(c.failure)) {
+    if (is_kept(r) || levels[r] == Level::rigid || levels[r] == Level::nonlinear) continue;
+    const bool stiffens = levels[r] == Level::linear && all.is_large(r) && c.failure.find("stiffening = true") != std::string::npos;
+    levels[r] = stiffens ? Level::stiffening : Level::nonlinear, mended = true;
+  }
+  return mended;
+}
+
+/// All regions linear, where a model like that runs.
+void Judgement::find_base() {
+  Assignment levels = with(Level::linear);
+  while (true) {
+    levels = all.consistent(levels);
+    const Candidate& c = of({levels});
+    a.base = a.reference = &c;
+    if (c.failure.empty()) break;
+    const Assignment before = levels;
+    if (mend(c, levels) && all.consistent(levels) != before) continue;
+    levels = with(Level::nonlinear);
+    if (c.failure.find(": no file ") != std::string::npos) throw Error("", c.failure, "", c.exit);
+    if (levels == before) throw Error("", "no model to judge by runs: " + c.failure, "", c.exit);
+    warn("", fmt::format("{} does not run, and nothing says why: {}", label(before, all.names()), c.failure));
+  }
+  const double end = all.scene().table("time").number("end");
+  for (const QuantityValue& v : a.base->values)
+    if (!v.why.empty())
+      throw Error("", v.why, v.of.starts_with("von Mises") ? fmt::format("output.interval = {:.2g}: fields at 50 instants", end / 50) : "");
+  window_ = window_of(*a.base);
+}
+
+/// Regions with a surface in a contact: a linear one gives way there by few modes, and no measure tells what it lacks.
+void Judgement::find_contacts() {
+  const auto take = [&](const std::string& name) {
+    for (size_t r = 0; name == "all" && r < n; ++r) touched_.insert(r);
+    touched_.merge(all.named_in('"' + name + '"'));
+    for (const Entry& set : all.scene().entries("set"))
+      for (size_t r = 0; set.name == name && r < n; ++r)
+        if (!set.has("of") || std::ranges::any_of(set.texts("of"), [&](const std::string& of) {
+              return fnmatch(of.c_str(), all.names()[r].c_str(), 0) == 0;
+            }))
+          touched_.insert(r);
+  };
+  for (const Entry& e : all.scene().entries("contact")) take(e.text("a")), take(e.text("b"));
+}
+
+/// Until when a run has to go for the values of a model: the last instant of these, and what a filter sees behind it; 0: to its end.
+double Judgement::window_of(const Candidate& c) const {
+  double last = 0;
+  size_t k = 0;
+  for (const Entry& q : all.scene().entries("quantity")) {
+    if (q.kind == "frequency") continue;
+    const double t = c.values[k++].t;
+    last = std::max(last, std::isfinite(t) ? 1.1 * t + (q.kind != "injury" && q.has("cfc") ? 1.2 / q.number("cfc") : 0) : HUGE_VAL);
+  }
+  const Entry& time = all.scene().table("time");
+  const double step = time.number("step");
+  return last < 0.9 * time.number("end") ? std::max(10.0, 2 * std::ceil(last / step / 2)) * step : 0;
+}
+
+/// Where a run ends that is compared with a model's: at its window, but not after the run itself; 0: at the end.
+double Judgement::end_beside(const Candidate& c) const {
+  const double window = window_of(c);
+  return c.end > 0 && (window == 0 || c.end < window) ? c.end : window;
+}
+
+/// Makes regions nonlinear of which a run says that linear strains are in doubt, or that left their range; the doubt of the others remains.
+bool Judgement::doubts(const Candidate& c, Assignment& levels) {
+  const Assignment before = levels;
+  a.doubt = 0;
+  for (size_t r = 0; r < n; ++r) {
+    const auto at = c.doubt.find(r);
+    const bool pressed = is_touched(r) && fidelity(levels[r]) == Fidelity::linear;
+    const double doubt = (c.beyond.contains(r) || pressed ? 1 : 0) + (at == c.doubt.end() ? 0 : at->second / o.tightest);
+    doubt_[r] = std::max(doubt_[r], doubt);
+    const bool wanted = o.check == Check::always || (o.check == Check::where_in_doubt && doubt > 0.5);
+    if (wanted && !is_kept(r))
+      levels[r] = Level::nonlinear;
+    else
+      a.doubt = std::max(a.doubt, doubt);
+  }
+  levels = all.consistent(levels);
+  return levels != before;
+}
+
+/// The base with cells where its linear strains are in doubt, as far as quantities have their values.
+void Judgement::find_reference() {
+  Assignment levels = a.base->levels;
+  bool more = doubts(*a.base, levels);
+  if (!a.base->beyond.empty()) window_ = 0;  // its instants tell nothing
+  for (bool early = window_ > 0; more;) {
+    const Request next = request(levels);
+    if (!is_quiet())
+      fmt::print(stderr,
+                 "linear strains of some regions, or how they give way in contacts, are in doubt: a run to judge by, to {:.4g} s, takes "
+                 "about {:.2g} s\n",
+                 window_ > 0 ? window_ : all.scene().table("time").number("end"), all.price(next));
+    const Candidate& c = of(next);
+    const auto lacking = std::ranges::find_if(c.values, [](const QuantityValue& v) { return !v.why.empty(); });
+    const bool lacks = lacking != c.values.end(), runs = c.failure.empty() && !lacks;
+    if (!runs && !(early && lacks)) {
+      warn("", fmt::format("{} {}, so nothing checks linear strains: {}", label(levels, all.names()),
+                           c.failure.empty() ? "lacks a value" : "does not run", c.failure.empty() ? lacking->why : c.failure));
+      a.doubt = 1;
+      break;
+    }
+    if (runs) a.reference = &c;
+    if (early && (!runs || difference(*a.base, c) > 0.5)) {  // nor are the instants those of the base
+      early = false, window_ = 0;
+      continue;
+    }
+    if (!early && c.end == 0) window_ = window_of(c);
+    more = doubts(c, levels);
+  }
+}
+
+}  // namespace hilo
