@@ -139,6 +139,7 @@ void read_load(const BdfEntry& e, BdfDeck& deck, Imported&) {
 void read_modes(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
   const size_t field = e.name == "EIGRL" ? 3 : 5, band = e.name == "EIGRL" ? 2 : 3;
+  e.data.ignore_rest();  // how they are found and scaled
   const auto n = d.empty(field) ? 0 : d.integer(field);
   if (n == 0 && !d.empty(band)) in.skip(e.name + " up to a frequency", d.place(band));
   deck.modes[d.integer(0)] = static_cast<int>(std::min<std::int64_t>(std::max<std::int64_t>(n, 0), 1000));

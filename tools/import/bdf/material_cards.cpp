@@ -55,6 +55,7 @@ void read_mat1(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   if (E && !G && !nu) in.notes.push_back(fmt::format("{}: MAT1 {} has neither G nor NU: no Poisson's ratio", d.place(), d.integer(0)));
   if (d.number(5) != 0) in.skip("MAT1: thermal expansion", d.place(5));
   if (d.number(7) != 0) in.skip("MAT1: structural damping GE", d.place(7));
+  d.ignore_rest();  // its reference temperature, and limits of stress
   DeckMaterial& material = material_of(e, deck);
   material.data = m;
   if (E && G) material.G = d.number(2);

@@ -138,8 +138,12 @@ void read_conrod(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   add(deck, {Shape::bar2, d.integer(0), property, {d.integer(1), d.integer(2)}, d.place(0)});
 }
 
-void read_property(const BdfEntry& e, BdfDeck& deck, Imported&) {
+void read_property(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
+  if (e.name == "PSOLID") {
+    if (!d.empty(2) && d.text(2) != "0") in.skip("PSOLID: axes of its material CORDM", d.place(2));
+    d.ignore_rest();  // how it is integrated there, and where stresses are asked for
+  }
   if (e.name == "PSOLID" && !d.empty(6) && upper(d.text(6)) != "SMECH")
     throw Error(d.place(6), fmt::format("PSOLID {}: cells of {} are no solids", d.integer(0), d.text(6)), "remove them");
   if (!deck.material_of.try_emplace(d.integer(0), d.integer(1)).second)

@@ -77,6 +77,10 @@ void read_pshell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
     s.no_solid = "PSHELL with another material in bending, or none";
   else if ((!d.empty(4) && d.number(4) != 1) || !d.empty(10))
     s.no_solid = "PSHELL with 12I/T^3 other than 1, or MID4";
+  else if (!d.empty(5) && d.integer(5) != d.integer(3))
+    s.no_solid = "PSHELL with another material in transverse shear";
+  if (!d.empty(6) && std::abs(d.number(6) - 5. / 6) > 0.01) in.skip("PSHELL: TS/T, other than 5/6", d.place(6));
+  d.ignore_rest();  // where stresses are asked for
   add_property(e, deck, s);
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }
