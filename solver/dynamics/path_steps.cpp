@@ -155,6 +155,7 @@ class PathSteps final : public Steps {
       Residual r;
       evaluate(state.q, state.lambda, 0, r, true);
       if (!solve(by_load(state.q, state.lambda, 0, r), way.z)) return false;
+      if (const std::optional<int> below = run_.solver->eigenvalues_below_zero(run_.system.first_joint_block())) at_.below = *below;
       at_.unit = std::sqrt(dot(way.z, way.z)), way.p = 1;
       if (!(at_.unit > 0)) return why_ = "nothing loads or moves the scene", false;
       std::fill(way.z.begin() + 3 * run_.system.first_joint_block(), way.z.end(), 0.0);
@@ -279,7 +280,7 @@ class PathSteps final : public Steps {
     if (changes(to)) approach(way, to.so_far, way, to);
     return "";
   }
-  bool changes(const Point& to) const { return std::abs(to.on.below - at_.below) > 0 && !at_.after_turn && run_.report.steps > 0; }
+  bool changes(const Point& to) const { return std::abs(to.on.below - at_.below) > 0 && !at_.after_turn; }
 
   /// Where stability changes without a limit, the state behind that, which is `whole` ahead in a plane across, is moved up to it; where
   /// none is found between, looked for behind that.
