@@ -182,7 +182,7 @@ std::vector<KindSchema> make_schema() {
                "two surfaces that stay together though their meshes do not match",
                {name,
                 {"a", text, "", "!", "a region or set of facets: the stiffer, coarser or rigid side"},
-                {"b", text, "", "!", "a region or set of facets, nonlinear: its nodes follow a; the finer side; or rigid, where a is not"},
+                {"b", text, "", "!", "a region or set of facets: the finer side, whose nodes follow a; rigid where a is not"},
                 {"gap", number, "m", "", "largest gap that is closed; absent: a twentieth of a facet of b", above(0)}}});
   obstacle_kinds().close(), joint_kinds().close(), spring_kinds().close(), joint_force_kinds().close();
 
