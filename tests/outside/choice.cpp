@@ -104,7 +104,7 @@ TEST(OutsideChoice, IsAskedAgainThoughNothingSearches) {
 TEST(OutsideChoice, IsAskedAgainAlongAPath) {
   const test::Workplace place;
   const auto r = run_scene(place, scene("analysis = \"path\"\nsteps = 4\n"));
-  const auto x = r.history("probe/cart").col(0), share = r.history("path").col(0);
+  const Eigen::VectorXd x = r.history("probe/cart").col(0), share = r.history("path").col(0);
   for (Eigen::Index k = 0; k < x.rows(); ++k) EXPECT_NEAR(100 * x[k] + 300 * std::max(0., x[k] - 1), 200 * share[k], 1e-7) << k;
   EXPECT_NEAR(x[x.rows() - 1], 1.25, 1e-9);
 }
