@@ -8,9 +8,7 @@
 namespace hilo {
 namespace {
 
-constexpr int pieces = 4;  // along an edge of a quadratic facet: within a sixteenth of its sag
-
-/// Plain facets as they are, those of four nodes about their middle; quadratic ones by a grid of `pieces` along each edge.
+/// Plain facets as they are, those of four nodes about their middle; quadratic ones by a grid of `facet_pieces` along each edge.
 FacetCut cut(size_t n) {
   FacetCut out;
   for (size_t a = 0; a < n; ++a) out.corner.push_back({}), out.corner.back()[a] = 1;  // its nodes come first
@@ -29,8 +27,8 @@ FacetCut cut(size_t n) {
     return out;
   }
   const bool three = n == 3 || n == 6;
-  const int k = n == 3 ? 1 : pieces;
-  std::array<std::array<int, pieces + 1>, pieces + 1> at{};
+  const int k = n == 3 ? 1 : facet_pieces;
+  std::array<std::array<int, facet_pieces + 1>, facet_pieces + 1> at{};
   for (int j = 0; j <= k; ++j)
     for (int i = 0; i <= (three ? k - j : k); ++i) {
       const double r = static_cast<double>(i) / k, s = static_cast<double>(j) / k;

@@ -8,6 +8,10 @@
 
 namespace hilo {
 
+/// Along an edge of a quadratic facet, which the triangles follow within a sixteenth of its sag; and most triangles of a facet.
+constexpr int facet_pieces = 4;
+constexpr size_t most_triangles = size_t{2} * facet_pieces * facet_pieces;
+
 /// How a facet of n nodes is cut: its corners (and what lies between) are means of its nodes, so that forces on them are forces on nodes.
 struct FacetCut {
   std::vector<std::array<double, 8>> corner;  // shares of the nodes, which come first

@@ -119,7 +119,7 @@ SurfacePair::Target SurfacePair::target_of(int s, const SurfacePoint& point, Pos
   };
   double bound = 1e300;  // of what need be looked at: the distance of the partner whose middle is nearest
   int closest = -1;
-  std::array<Beside, 8> known;  // of its triangles
+  std::array<Beside, most_triangles> known;  // of its triangles
   if (!hangs) {
     double near = 1e300;
     for (const Partner& partner : partners_[s][point.face])
