@@ -61,6 +61,13 @@ std::string trimmed(const char* text, size_t width) {
   return s.substr(std::min(s.find_first_not_of(' '), s.size()));
 }
 
+/// Closes what a damaged file left open, while nobody hears what the library says of it.
+struct LeftOpen {
+  ~LeftOpen() {
+    if (std::uncaught_exceptions() > 0) H5close();
+  }
+};
+
 class MedFile {
  public:
   explicit MedFile(const std::string& path) : path_(path), room_(static_cast<std::int64_t>(std::filesystem::file_size(path)) * 2000) {
@@ -76,10 +83,7 @@ class MedFile {
       throw Error(path, fmt::format("a MED file of version {}.{}.{}", major, minor, release), "from version 3 on: Salome saves it anew");
     }
   }
-  ~MedFile() {
-    MEDfileClose(id_);
-    if (std::uncaught_exceptions() > 0) H5close();  // what a damaged file left open, while nobody hears what the library says of it
-  }
+  ~MedFile() { MEDfileClose(id_); }
   MedFile(const MedFile&) = delete;
   MedFile& operator=(const MedFile&) = delete;
 
@@ -186,6 +190,7 @@ class MedFile {
 Imported read_med(const std::string& path, const ImportOptions& options) {
   const CrashGuard guard(path, "the MED library", true);
   const MemoryLimit limit(path);
+  const LeftOpen left;
   MedFile file(path);
   GroupedMesh mesh;
   for (const auto& other : file.open_mesh()) mesh.in.skip(fmt::format("mesh \"{}\"", other), path);
