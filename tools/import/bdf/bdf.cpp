@@ -181,15 +181,15 @@ void parse_bdf(BdfEntries& entries, BdfDeck& deck, Imported& in, const BdfCards&
   for (const auto& c : cards) by_name[c.name] = &c;
   BdfEntry e;
   std::uint64_t asked;
+  const auto told = [&in] {
+    return std::accumulate(in.not_read.begin(), in.not_read.end(), std::int64_t{0}, [](auto n, const NotRead& r) { return n + r.count; });
+  };
   while (entries.next(e)) {
     const auto known = by_name.find(e.name);
     if (known == by_name.end()) {
       in.skip(e.name.substr(0, 40), e.data.place());
       continue;
     }
-    const auto told = [&in] {
-      return std::accumulate(in.not_read.begin(), in.not_read.end(), std::int64_t{0}, [](auto n, const NotRead& r) { return n + r.count; });
-    };
     const auto before = told();
     asked = 0, e.data.asked.bits = &asked;
     known->second->read(e, deck, in);

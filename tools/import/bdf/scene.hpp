@@ -48,7 +48,7 @@ class BdfScene {
   void beam(const BdfDeck::Thin& b);
   std::vector<double> sections_of(const BdfDeck::Thin& b, double length) const;
   std::string section_name(std::int64_t property) const;
-  // scene_glue.cpp
+  // scene_pairs.cpp
   std::string pair_surface(std::int64_t region);
   void pairs();
   // scene_springs.cpp
