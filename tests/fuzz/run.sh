@@ -7,7 +7,7 @@
 set -euo pipefail
 repo=$(realpath "$1") bin=$(realpath "$2") folder=$(realpath -m "$3") seconds=$4
 shift 4
-[ -n "${BUILT:-}" ] || cmake -S "$repo" -B "$folder" -G Ninja -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Debug \
+[ -n "${BUILT:-}" ] || cmake -S "$repo" -B "$folder" -G Ninja -DCMAKE_C_COMPILER=clang-19 -DCMAKE_CXX_COMPILER=clang++-19 -DCMAKE_BUILD_TYPE=Debug \
   -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1 -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined -Wno-error -w" \
   > "$folder.log" || { cat "$folder.log"; exit 1; }
 [ -n "${BUILT:-}" ] || cmake --build "$folder" --target fuzz
