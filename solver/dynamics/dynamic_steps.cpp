@@ -75,6 +75,7 @@ class DynamicSteps final : public Steps {
   /// By what the error is estimated, or why by nothing.
   void take_estimate() {
     ErrorEstimate& estimate = run_.estimate;
+    estimate.at_rest_below(1e-13 * run_.system.length);
     const std::string& word = time_.text("error_estimate");
     const bool large = run_.system.layout.map.n_global > largest_estimated, searches = run_.system.traits().searches;
     if (word == "never") return estimate.give_up("time.error_estimate has none");

@@ -80,7 +80,7 @@ double ErrorEstimate::rounding(double t) const {
 
 double ErrorEstimate::meaningless_from() const {
   const double nothing = small_part * motion_, never = std::numeric_limits<double>::infinity();
-  if (!(motion_ > 0)) return never;
+  if (!(motion_ > rest_)) return never;
   for (const Sample& s : samples_)
     if (error(s.most, s.t) >= nothing) return s.t;
   return never;

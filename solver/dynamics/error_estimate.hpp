@@ -40,8 +40,10 @@ class ErrorEstimate {
   double largest() const { return error(most_, most_t_); }
   double largest_t() const { return most_t_; }
   double motion() const { return motion_; }  // the longest way of a point from its start [m]
+  /// What moves less than this is at rest [m]: rounding of positions.
+  void at_rest_below(double way) { rest_ = way; }
   /// Of the motion, where anything moves.
-  double share(double error) const { return motion_ > 0 ? error / motion_ : 0; }
+  double share(double error) const { return motion_ > rest_ ? error / motion_ : 0; }
   /// Whether the motion made distances, small beside it, grow exponentially.
   bool is_chaotic() const { return growth() > 0; }
   /// What the motion makes of the rounding of the start until t, where it is chaotic, else 0 [m].
@@ -59,7 +61,7 @@ class ErrorEstimate {
   double trusted() const;  // until then distances are small beside the motion [s]
   double grown(double t) const;
   int order_ = 99, splits_ = 0;
-  double t_ = 0, apart_ = 0, most_ = 0, most_t_ = 0, motion_ = 0, spacing_ = 0;
+  double t_ = 0, apart_ = 0, most_ = 0, most_t_ = 0, motion_ = 0, rest_ = 0, spacing_ = 0;
   std::vector<Sample> samples_;
   std::string why_ = "";
   bool is_lost_ = false, is_sum_ = false;

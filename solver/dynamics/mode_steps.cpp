@@ -98,18 +98,21 @@ class ModeSteps final : public Steps {
     for (const char on : system.rows_on()) held += on != 0;
     return n > held;
   }
-  /// What is not at rest would move, before it swings, by about a/omega^2.
+  /// What is not at rest would come to rest where each mode has given way to its share of the forces.
   void check_rest(const std::vector<FoundMode>& modes) const {
     const System& system = run_.system;
-    const double a = system.largest_rate(run_.state.a);
-    double slowest = 1e300;
-    for (const FoundMode& m : modes)
-      if (m.figures.omega2 > 1e-9 * modes.back().figures.omega2) slowest = std::min(slowest, m.figures.omega2);
-    const double away = a / slowest;
-    if (away > 1e-2 * system.length)
+    Config way;
+    combine(way, {{0, &run_.state.q}});
+    for (const FoundMode& m : modes) {
+      if (std::abs(m.figures.omega2) <= 1e-9 * modes.back().figures.omega2) continue;
+      std::vector<double> z = m.x;
+      for (double& value : z) value *= m.figures.pull / std::abs(m.figures.omega2);
+      system.add_rates(way, run_.state.q, z);
+    }
+    if (const double away = system.largest_rate(way); away > 1e-2 * system.length)
       warn(time_.where("analysis"),
-           fmt::format("the state is not at rest: it accelerates by up to {:.3g} m/s^2, and rests about {:.2g} m away ({})", a, away,
-                       "start = \"equilibrium\" goes there"));
+           fmt::format("the state is not at rest: it accelerates by up to {:.3g} m/s^2, and rests about {:.2g} m away ({})",
+                       system.largest_rate(run_.state.a), away, "start = \"equilibrium\" goes there"));
   }
 
   /// The shape, of a hundred thousandth of the scene at most, on the state of rest; forces as they are at its turning point.

@@ -123,6 +123,7 @@ std::vector<FoundMode> find_modes(const System& system, KktSolver& solver, const
   if (!modes.converged) throw Error("", fmt::format("{} modes were not found", found), "ask for fewer: time.modes", Exit::not_converged);
   const RigidMotions rigid(system, at, rest.q);
   const Vector loads = at.loads();
+  const Vector pull = system.largest_rate(rest.a) > 0 ? at.mass_of(rest.a) : Vector::Zero(at.n());
   // Once more through the inverse, for the multipliers and to see what changes; what rounding brings of other modes goes.
   const Eigen::Index m = modes.omega2.size();
   Eigen::MatrixXd M(at.n(), m), x(at.n(), m);
@@ -156,6 +157,7 @@ std::vector<FoundMode> find_modes(const System& system, KktSolver& solver, const
     f.figures.error += std::sqrt(std::abs(change.dot(at.mass(change))));  // not a number remains one
     f.figures.part = rigid.part_of(shape), f.figures.mass = f.figures.part.cwiseAbs2();
     f.figures.drag = rigid.drag.transpose() * shape, f.figures.load = loads.dot(shape);
+    f.figures.pull = pull.dot(shape);
     f.x.assign(shape.begin(), shape.end());
     for (double& value : mu) value /= norm;
     clean.push_back(std::move(mu));

@@ -13,11 +13,13 @@
 #include <cmath>
 
 #include "dynamics/held.hpp"
+#include "dynamics/jump.hpp"
 #include "dynamics/linear_step.hpp"
 #include "dynamics/run_parts.hpp"
 #include "dynamics/start.hpp"
 #include "system/load_path.hpp"
 #include "system/revising.hpp"
+#include "system/touching.hpp"
 
 namespace hilo {
 namespace {
@@ -196,7 +198,7 @@ class PathSteps final : public Steps {
     move(z);
     const double unit2 = at_.unit * at_.unit;
     double last = 1e300;
-    int revisions = 0;
+    int revisions = 0, growths = 0;
     const auto is_settled = [&] {  // or what meets is chosen again by this answer
       constexpr int most_revisions = 6;
       if (revisions == most_revisions || !revise(system, stage(u.q, p))) return true;
@@ -231,7 +233,9 @@ class PathSteps final : public Steps {
         if (is_settled()) break;
         continue;
       }
-      if (!(correction <= 2 * last && correction <= options.reach)) return why_ = "the corrections grow", false;
+      const bool grows = !(correction <= 2 * last);
+      if (!(correction <= options.reach) || (grows && ++growths > (touching(system) ? most_growths : 0)))
+        return why_ = "the corrections grow", false;
       last = correction;
       p += dp;
       Config moved = u.q;
@@ -239,17 +243,24 @@ class PathSteps final : public Steps {
       u.start(system, from.q, moved), move(z);
       add_multipliers(system, r.sigma, z, lambda);
     }
+    to.so_far = so_far;
+    return look_at(u.q, lambda, p, to);
+  }
+  /// The state with q and lambda at the share p of the loads, its stability, and what the audit says; false, and `why_`.
+  bool look_at(const Config& q, const Numbers& lambda, double p, Point& to) {
+    System& system = run_.system;
+    const State& from = run_.state;
     if (system.traits().slides) {  // friction fixed, as in dynamics/stability: the tangent is symmetric
-      Stage s = stage(u.q, p);
+      Stage s = stage(q, p);
       s.fixed_friction = true;
       Residual r;
       assemble(system, *run_.solver, s, lambda, r, true);
     }
     const std::optional<int> below = run_.solver->eigenvalues_below_zero(system.first_joint_block());
-    to.so_far = so_far;
     to.on.share = p, to.on.below = below ? *below : std::nan("");
-    to.state = from;
-    to.state.q = u.q, to.state.lambda = lambda, to.state.t = p * end_;
+    State reached = from;
+    reached.q = q, reached.lambda = lambda, reached.t = p * end_;
+    to.state = std::move(reached);
     system.commit(to.state.q);
     taken_ = {stage(to.state.q, p), to.state.lambda};
     system.advance(taken_.stage);
@@ -258,13 +269,38 @@ class PathSteps final : public Steps {
     if (why_.empty()) why_ = run_.audit->look(from.q, to.state, {&taken_, 1}, report_, p);
     return why_.empty();
   }
+  /// Where points of contact come and go so that a step along the path does not converge: a load step, damped.
+  bool find_by_loads(Point& to) {
+    give_up();
+    const double p = std::min(1.0, at_.share + at_.radius / std::sqrt(2.0));
+    Config q = run_.state.q;
+    Numbers lambda = run_.state.lambda;
+    NewtonOptions options = run_.newton;
+    options.least_share = 0.03;  // as load steps
+    report_ = equilibrium(run_.system, *run_.solver, q, lambda, p * end_, p, false, options);
+    run_.report.iterations += iterations_ = report_.iterations;
+    to.on.rise = at_.rise, to.so_far = at_.radius;
+    if (!report_.converged) return why_ = report_.reason, false;
+    const State& from = run_.state;
+    if (BranchJump(run_.system, *run_.solver, run_.newton)
+            .between({from.q, from.lambda, from.t, at_.share}, {q, lambda, p * end_, p}, false) > 0)
+      return why_ = "a load step jumps to another branch", false;
+    Residual r;
+    evaluate(q, lambda, p, r, true);
+    return look_at(q, lambda, p, to);
+  }
   void give_up() { run_.system.commit(run_.state.q), run_.system.settle(false); }
 
   /// The next state: at the radius, at the whole load where that is passed, or at a limit of the loads where one is.  Why not, or "".
   std::string step(Point& to) {
     search(0);
     Way way;
-    if (!way_ahead(way) || !find(way, at_.radius, way, to)) return why_;
+    if (!way_ahead(way)) return why_;
+    if (!find(way, at_.radius, way, to)) {
+      const bool grows = touching(run_.system) && reach_ == 0 && at_.share < 1 && at_.rise > 0;
+      at_.turn.clear();
+      return grows && find_by_loads(to) ? "" : why_;
+    }
     at_.turn.clear();
     if (reach_ == 0 && at_.share < 1 && to.on.share >= 1) {  // the share is given
       give_up();
@@ -358,6 +394,7 @@ class PathSteps final : public Steps {
   }
 
   static constexpr int most_iterations = 12;
+  static constexpr int most_growths = 4;  // of corrections in one step: points of contact come and go
   const Entry& time_;
   double n_ = 1;                // states that the whole load would take along the first tangent
   double end_ = 1, reach_ = 0;  // time of the whole load [s]; displacement at which the path ends [m], 0: where it has the whole load

@@ -120,7 +120,7 @@ std::vector<KindSchema> make_schema() {
                "`b` name",
                {{"points", numbers, "m", "!", "of its axis, [[x, y, z], ...]: legs meet at them; equal first and last ones close it"},
                 {"path", text, "", "line", "between the points: line, or arc: circles through three, each beginning where one ends"},
-                {"cells", numbers, "1", "[8]", "of each leg: one number for all of them, or one for each", at_least(1)},
+                {"cells", numbers, "1", "[8]", "of each leg; a list of one number is for all of them", at_least(1)},
                 {"section", text, "", "!", "a name of [section.NAME]"},
                 {"material", text, "", "", "a name of [material.NAME], of kind stvk; none where the section is a matrix"},
                 {"orientation", vector3, "1", "",
@@ -146,11 +146,11 @@ std::vector<KindSchema> make_schema() {
                 {"axes", numbers, "1", "", "nine numbers: rows are the body axes in which `inertia` is given", any_number, {9}}}});
   s.push_back({"point_mass",
                "",
-               "mass added to the nodes of a set (shared equally) or to a body",
+               "mass added to a body, to the nodes of a set (shared equally), or to a region (shared as its own mass is)",
                {name,
                 {"on", text, "", "!", "region, set or body"},
                 {"mass", number, "kg", "!", "total mass added", above(0)},
-                {"at", vector3, "m", "", "where on a body; its centre when absent"}}});
+                {"at", vector3, "m", "", "where on a body or rigid region; its centre, or shared by the nodes, when absent"}}});
 
   const auto with = [](std::vector<Param> keys, const std::vector<Param>& more) {
     keys.insert(keys.end(), more.begin(), more.end());
@@ -189,12 +189,12 @@ std::vector<KindSchema> make_schema() {
   const Param on{"on", text, "", "!", "set, region or body it acts on"};
   s.push_back({"load",
                "force",
-               "total force shared by the nodes of a set, or on a body's point",
+               "total force on a body's point, shared by the nodes of a set, or by a region as its mass is",
                {kind_of("the kind of load"),
                 name,
                 on,
                 {"force", vector3, "N", "!", "total force, inertial axes"},
-                {"at", vector3, "m", "", "point of a body it acts at; the set's nodes, or the centre of mass, when absent"},
+                {"at", vector3, "m", "", "point of a body or rigid region it acts at; its centre of mass when absent"},
                 {"per_node", boolean, "", "false", "the force is that of each node, as in a deck's *CLOAD"},
                 keys::history}});
   s.push_back({"load",
@@ -229,7 +229,7 @@ std::vector<KindSchema> make_schema() {
         {"follower", boolean, "", "false", "along axes 1, 2 and 3 of the sections, with which it turns"},
         keys::history}});
 
-  const Param part{"on", text, "", "!", "region or set of cells it acts on; for an acceleration a rigid region or a body too"};
+  const Param part{"on", text, "", "!", "region or set of cells it acts on; for an acceleration a body too"};
   s.push_back({"load",
                "acceleration",
                "what gravity is, for a part of the model: mass times this acceleration, inertial axes",
@@ -279,13 +279,16 @@ std::vector<KindSchema> make_schema() {
                "accelerometer triad on a set, region or body",
                {name,
                 on,
-                {"at", vector3, "m", "", "point on a body; mean of the nodes when absent"},
+                {"at", vector3, "m", "", "point on a body; mean of the nodes, of a region its centre of mass, when absent"},
                 {"x", vector3, "1", "[1, 0, 0]", "forward axis at the start (ISO 8855)"},
                 {"z", vector3, "1", "[0, 0, 1]", "upward axis at the start (ISO 8855)"}}});
   s.push_back({"probe",
                "",
                "position, velocity and acceleration of a point",
-               {name, on, {"at", vector3, "m", "", "point on a body, or nearest node of the set; mean of the nodes when absent"}}});
+               {name,
+                on,
+                {"at", vector3, "m", "",
+                 "point on a body, or nearest node of the set; mean of the nodes, of a region its centre of mass, when absent"}}});
   for (KindSchema& quantity : quantity_schema()) s.push_back(std::move(quantity));
   s.push_back(
       {"history",

@@ -22,27 +22,43 @@ const History& Builder::use_history(const Entry& e, Acts acts) {
   return h;
 }
 
+/// Mass at points of a body: its sum, centre and inertia with theirs.
+void Builder::add_mass(Body& body, const std::vector<std::pair<Vec3, double>>& points) {
+  double m = 0;
+  Vec3 first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();  // about the centre of the body, sum m d d^T
+  for (const auto& [at, mass] : points) {
+    const Vec3 d = at - body.Xc;
+    m += mass, first += mass * d, second += mass * d * d.transpose();
+  }
+  m = comm_.sum(m), comm_.sum(std::span<double>(first.data(), 3)), comm_.sum(std::span<double>(second.data(), 9));
+  const double total = body.mass + m;
+  const Vec3 shift = first / total;
+  body.J += second - total * shift * shift.transpose();
+  body.mass = total;
+  body.Xc += shift;
+}
+
 void Builder::add_point_masses() {
   for (const Entry& e : scene_.entries("point_mass")) {
     const Found found = find(e.text("on"), e.where("on"));
     const double m = e.number("mass");
     out_->mass += m;
+    if (found.body == 0) throw Error(e.where("on"), e.label() + ": the ground has no mass");
+    if (found.body < 0 && e.has("at"))
+      throw Error(e.where("at"), fmt::format("{}: \"{}\" is flexible, its nodes share the mass", e.label(), e.text("on")),
+                  "name a set of nodes there");
+    const bool has_nodes = found.n_global > 0 && !e.has("at");
+    const auto shares = has_nodes ? shares_of(found) : std::vector<std::pair<int, double>>{};
     if (found.body > 0) {
       Body& body = out_->bodies[found.body];
-      const Vec3 at = e.has("at") ? e.vector3("at") : found.n_global == 0 || found.is_region ? body.Xc : mean_of(found.nodes);
-      const double total = body.mass + m;
-      const Vec3 d = at - body.Xc, shift = m / total * d;
-      // about the new centre: J + mu d d^T with the reduced mass mu
-      body.J += body.mass * m / total * d * d.transpose();
-      body.mass = total;
-      body.Xc += shift;
+      std::vector<std::pair<Vec3, double>> points;
+      for (const auto& [node, share] : shares) points.emplace_back(out_->X[node], m * share);
+      if (!has_nodes && comm_.rank == 0) points.emplace_back(e.has("at") ? e.vector3("at") : body.Xc, m);
+      add_mass(body, points);
       out_->start.c[found.body] = body.Xc;
-    } else if (found.body == 0) {
-      throw Error(e.where("on"), e.label() + ": the ground has no mass");
     } else {
-      const double share = m / static_cast<double>(std::max<std::int64_t>(1, found.n_global));
-      for (int i : found.nodes)
-        if (out_->node_owned[i]) out_->part<PointMasses>().add(i, share);
+      for (const auto& [node, share] : shares) out_->part<PointMasses>().add(node, m * share);
     }
   }
 }
@@ -62,17 +78,15 @@ void Builder::add_stations() {
       if (found.body >= 0) {
         s.body = found.body;
         const Body& body = out_->bodies[s.body];
-        const Vec3 at = e.has("at") ? e.vector3("at") : found.n_global == 0 || found.is_region ? body.Xc : mean_of(found.nodes);
+        const Vec3 at = e.has("at") ? e.vector3("at") : found.n_global == 0 ? body.Xc : centre_of(shares_of(found));
         s.arm = at - body.Xc;
       } else if (e.has("at") && !s.sensor) {
-        if (const int nearest = nearest_owned(found.nodes, e.vector3("at")); nearest >= 0) s.nodes.push_back(nearest);
-        s.n_nodes = 1;
+        if (const int nearest = nearest_owned(found.nodes, e.vector3("at")); nearest >= 0) s.nodes.emplace_back(nearest, 1);
         s.mean = e.vector3("at");
       } else {
-        for (int i : found.nodes)
-          if (out_->node_owned[i]) s.nodes.push_back(i);
-        s.n_nodes = static_cast<double>(found.n_global);
-        s.mean = mean_of(found.nodes);
+        s.nodes = shares_of(found);
+        s.turns = found.n_global > 2;
+        s.mean = centre_of(s.nodes);
       }
       out_->part<Stations>().list.push_back(std::move(s));
     }

@@ -94,21 +94,28 @@ void Builder::add_loads() {
     };
     const auto force = [&] {
       load.value = e.vector3("force");
-      if (found.body >= 0 && (found.n_global == 0 || e.has("at") || found.is_region)) {
+      if (found.body >= 0 && (found.n_global == 0 || e.has("at") || (found.is_region && !e.boolean("per_node")))) {
         load.kind = Load::Kind::body_force;
         load.body = found.body;
-        if (e.has("at")) load.arm = e.vector3("at") - out_->bodies[found.body].Xc;
+        const Vec3& centre = out_->bodies[found.body].Xc;
+        if (e.has("at"))
+          load.arm = e.vector3("at") - centre;
+        else if (found.is_region)
+          load.arm = centre_of(shares_of(found)) - centre;
       } else {
-        if (e.has("at")) throw Error(e.where("at"), fmt::format("{}: \"{}\" is flexible, its force is shared by its nodes", e.label(), on));
+        if (e.has("at"))
+          throw Error(e.where("at"), fmt::format("{}: \"{}\" is flexible, its force is shared by its nodes", e.label(), on),
+                      "name a set of nodes there");
         load.kind = Load::Kind::nodal;
         if (has_facets && !e.boolean("per_node")) {
           double area = 0;
           share_by_area(area);
           for (double& w : load.weight) w /= area;
-        } else {
+        } else if (e.boolean("per_node")) {
           for (int i : found.nodes)
-            if (out_->node_owned[i])
-              load.nodes.push_back(i), load.weight.push_back(e.boolean("per_node") ? 1.0 : 1.0 / static_cast<double>(found.n_global));
+            if (out_->node_owned[i]) load.nodes.push_back(i), load.weight.push_back(1);
+        } else {
+          for (const auto& [i, share] : shares_of(found)) load.nodes.push_back(i), load.weight.push_back(share);
         }
       }
     };
@@ -132,7 +139,8 @@ void Builder::add_loads() {
     // each component is a load of its own
     const auto of_mass = [&](const std::function<Vec3(const Vec3&)>& acceleration) {
       load.kind = Load::Kind::nodal;
-      const auto force = forces_of_mass(e, acceleration);
+      std::map<int, Vec3> force = forces_of_mass(e, acceleration);
+      for (Load& one : take_rigid_share(force, load)) out_->part<Loads>().list.push_back(std::move(one));
       for (int k = 0; k < 3; ++k) {
         Load one = load;
         one.value = Vec3::Unit(k);
@@ -146,7 +154,7 @@ void Builder::add_loads() {
     };
     const auto of_acceleration = [&] {
       const Vec3 a = e.vector3("acceleration");
-      if (found.body < 0 || !(found.is_region || found.n_global == 0)) return of_mass([a](const Vec3&) { return a; });
+      if (found.body < 0 || found.n_global > 0) return of_mass([a](const Vec3&) { return a; });
       load.kind = Load::Kind::body_force, load.body = found.body;
       load.value = out_->bodies[found.body].mass * a;
     };

@@ -126,14 +126,25 @@ class Builder {
   void drop_spinning_torques();
   void add_line_load(const Entry& e, const Load& load);
   // build_mass_loads.cpp
-  /// Forces of the mass of the cells that an entry names, at accelerations that are linear in the reference position; by node.
+  std::vector<std::int64_t> cells_of(int region) const;
+  /// Forces of the mass of cells, at accelerations that are linear in the reference position; by node.
+  std::map<int, Vec3> forces_of_mass(const std::vector<std::int64_t>& cells, const std::function<double(const Region&)>& density,
+                                     const std::function<Vec3(const Vec3&)>& acceleration) const;
+  /// Those of the cells that an entry names.  Collective.
   std::map<int, Vec3> forces_of_mass(const Entry& e, const std::function<Vec3(const Vec3&)>& acceleration) const;
+  /// The loads on rigid bodies that forces of nodes which follow them make; these nodes are taken out of `force`.  Collective.
+  std::vector<Load> take_rigid_share(std::map<int, Vec3>& force, const Load& like) const;
+  /// How what acts on a set or region as a whole, or is measured there, is divided among local nodes; all ranks' sum is one.  Nodes of a
+  /// set count alike, those of a region by its mass, so that it means the same at every fidelity.  Collective.
+  std::vector<std::pair<int, double>> shares_of(const Found& found) const;
+  Vec3 centre_of(const std::vector<std::pair<int, double>>& shares) const;
   // build_entries.cpp
   /// The history of an entry; every one that acts on the system is taken through here, so that its jumps and kinks are known.
   const History& use_history(const Entry& entry, Acts acts);
   /// Nothing has inertia, nothing needs mass.
   bool is_static() const;
   void add_stations();
+  void add_mass(Body& body, const std::vector<std::pair<Vec3, double>>& points);
   void add_point_masses();
   // build_springs.cpp
   void add_springs();

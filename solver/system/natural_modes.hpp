@@ -15,6 +15,7 @@ struct NaturalMode {
   double amplitude = 0;      // with which a mode of unit mass is put out [m kg^0.5]
   Vec6 drag = Vec6::Zero();  // phi.C i along x, y, z: of mass-proportional damping, and of dampers to what stands still too  [kg^0.5/s]
   double load = 0;           // phi.F of the loads at the start; 0 of a whirl  [N kg^-0.5]
+  double pull = 0;           // phi.M a, a the acceleration of a state that is not at rest; 0 of a whirl  [N kg^-0.5]
   std::vector<double> coupling;  // phi.C phi_k of all modes [1/s]
   /// [Hz]; of an unstable mode minus its rate of growth over 2 pi.
   double frequency() const;

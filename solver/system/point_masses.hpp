@@ -8,7 +8,7 @@ namespace hilo {
 class PointMasses final : public Contribution, public Equations, public Clocked {
  public:
   explicit PointMasses(const Points& points) : points_(points) {}
-  /// At an owned node [kg].
+  /// At a local node [kg]; all ranks' masses there add up.
   void add(int node, double mass) { masses_.emplace_back(node, mass); }
   Traits traits() const override { return {.lumps_masses = !masses_.empty()}; }
   void evaluate(Pass& p) const override;

@@ -8,7 +8,7 @@ namespace hilo {
 Vec3 Stations::mean(const Station& s, const Config& of) const {
   if (s.body >= 0) return of.c[s.body] + of.R[s.body] * s.arm;
   Vec3 sum = Vec3::Zero();
-  for (int n : s.nodes) sum += of.x[n] / s.n_nodes;
+  for (const auto& [n, share] : s.nodes) sum += share * of.x[n];
   points_.comm->sum(std::span<double>(sum.data(), 3));
   return sum;
 }
@@ -16,9 +16,9 @@ Vec3 Stations::mean(const Station& s, const Config& of) const {
 /// Of a patch of nodes, by the polar fit of its motion.
 Mat3 Stations::axes(const Station& s, const Config& q, const Vec3& centre) const {
   if (s.body >= 0) return q.R[s.body] * s.axes;
-  if (s.n_nodes <= 2) return s.axes;
+  if (!s.turns) return s.axes;
   Mat3 F = Mat3::Zero();
-  for (int n : s.nodes) F += (q.x[n] - centre) * (points_.X[n] - s.mean).transpose();
+  for (const auto& [n, share] : s.nodes) F += share * (q.x[n] - centre) * (points_.X[n] - s.mean).transpose();
   points_.comm->sum(std::span<double>(F.data(), 9));
   const Eigen::JacobiSVD<Mat3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Mat3 D = Mat3::Identity();

@@ -10,11 +10,11 @@ struct Station {
   std::string name;
   bool sensor = false;
   int body = -1;
-  Vec3 arm = Vec3::Zero();       // body axes
-  std::vector<int> nodes;        // owned ones
-  double n_nodes = 0;            // on all ranks
-  Vec3 mean = Vec3::Zero();      // reference mean of the nodes
-  Mat3 axes = Mat3::Identity();  // sensor axes at the start, columns
+  Vec3 arm = Vec3::Zero();                    // body axes
+  std::vector<std::pair<int, double>> nodes;  // of this rank, and their shares of the mean
+  bool turns = false;                         // nodes enough, on all ranks, for axes that turn with them
+  Vec3 mean = Vec3::Zero();                   // of the nodes at the start
+  Mat3 axes = Mat3::Identity();               // sensor axes at the start, columns
 };
 
 class Stations final : public Contribution, public Observer {

@@ -60,6 +60,17 @@ TEST_F(BeamModes, OfACantileverAreTimoshenkos) {
   EXPECT_NEAR(f[7] * 2 * pi, pi / 2 * std::sqrt(E / rho), 2e-3 * f[7] * 2 * pi) << "stretch";
 }
 
+// Truth: F L^3/(3 EI) + F L/GA, the way from the drawn beam to its rest under a force that the analysis finds unbalanced.
+TEST_F(BeamModes, SayHowFarAwayTheStateOfRestIs) {
+  work.write("scene.toml", plain_section(4e6, 1e7, 50, 40, "line_mass = 1.6\ninertia = [1e-5, 1e-5]") +
+                               beam_of("[[0, 0, 0], [1, 0, 0]]", 8) + push("arm.end", {0, 0, 5}) +
+                               "[time]\nanalysis = \"modes\"\nmodes = 12\n");
+  ran = work.run("hilo-solve scene.toml -o run.h5");
+  const size_t at = ran.err.find("rests about ");
+  ASSERT_NE(at, std::string::npos) << ran.err;
+  EXPECT_NEAR(std::stod(ran.err.substr(at + 12)), 5 / (3 * 50.0) + 5 / 4e6, 5e-4);
+}
+
 TEST_F(BeamModes, OfAFreeBeamAreSixRigidMotionsFirst) {
   const std::string beam =
       "[section.s]\nkind = \"tube\"\ndiameter = 0.02\nthickness = 0.002\n[material.m]\nE = 7e10\nnu = 0.3\ndensity = 2700\n" +

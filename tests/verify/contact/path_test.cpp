@@ -111,6 +111,32 @@ solver.tolerance = 1e-11
   }
 }
 
+// Truth: weight and push, whatever share of its points slides before the others hold it.
+TEST(ContactPath, ABlockIsPushedAndHeldByFriction) {
+  BlockOptions o;
+  o.n[0] = o.n[1] = o.n[2] = 2, o.high = Vec3(0.1, 0.1, 0.05);
+  Case c("contact");
+  c.use(block_mesh(o));
+  const double weight = 7800 * 0.1 * 0.1 * 0.05 * 981;
+  for (const double push : {0.2, 0.28}) {
+    c.write("scene.toml", fmt::format(R"(
+gravity = [0, 0, -981]
+material.m = {{E = 2e9, nu = 0.3, density = 7800}}
+region."*" = {{material = "m"}}
+obstacle = [{{kind = "plane", name = "ground"}}]
+contact = [{{name = "c", a = "ground", b = "block", friction = 0.3}}]
+load = [{{kind = "force", name = "f", on = "block", force = [{}, 0, 0]}}]
+time = {{analysis = "path", steps = 4}}
+)",
+                                      push * weight));
+    const Ran ran = c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5");
+    ASSERT_EQ(ran.exit, 0) << push << ran.err;
+    const Eigen::MatrixXd force = Results(c / "run.h5").history("contact/c").bottomRows(1);
+    EXPECT_NEAR(force(0, 0) / weight, -push, 1e-6);
+    EXPECT_NEAR(force(0, 2) / weight, 1, 1e-6);
+  }
+}
+
 // Truth: a ball that falls from 0.05 m on a spring is back there after 2 sqrt(2 H/g) + the time of the contact, 2 (pi - atan(v w/g))/w.
 TEST(ContactAtAnInstant, ABallFallsAndComesBack) {
   constexpr double g = 9.81, H = 0.05, k = 1e4, m = 1;

@@ -315,7 +315,7 @@ void tell_off(Imported& in, const std::array<double, 2>& of, const ImportOptions
 }
 
 Imported read_geometry(const std::string& path, const std::string& format, const ImportOptions& options) {
-  if (format == "geo" && !options.trust) refuse_commands(path);
+  if (format == "geo") options.trust ? refuse_lost_statements(path) : refuse_commands(path);
   const auto meshed_with = [&](double per_turn, std::optional<std::array<double, 2>>& of) {
     GmshMesh mesh;
     std::string note;
@@ -382,7 +382,7 @@ std::string face_of(const std::string& path, const ImportOptions& options) {
   if (format == formats.end())
     throw Error(path, "no geometry that a face can be meshed of", "a .geo, .step, .brep or .iges file; a scene names a .msh file itself");
   (void)read_text_file(path);  // says what is wrong with it
-  if (ending == ".geo" && !options.trust) refuse_commands(path);
+  if (ending == ".geo") options.trust ? refuse_lost_statements(path) : refuse_commands(path);
   ImportOptions o = options;
   o.face = true;
   GmshMesh mesh;

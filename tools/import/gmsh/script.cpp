@@ -60,6 +60,14 @@ bool among(const List& list, string_view word) {
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool is_of_word(char c) { return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)); }
 
+/// gmsh stops at the end of the file, wherever in the last line it then is.
+void require_line_end(const std::string& path, const std::string& text) {
+  const size_t begin = text.find_last_of('\n') + 1;
+  if (std::count(text.begin() + static_cast<std::ptrdiff_t>(begin), text.end(), ';') < 2) return;
+  throw Error(fmt::format("{}:{}", path, std::count(text.begin(), text.end(), '\n') + 1),
+              "the file ends within a line of several statements, and gmsh may leave out the last of them", "end it with a line break");
+}
+
 class Script {
  public:
   Script(const std::string& path, const fs::path& folder, std::set<fs::path>& seen)
@@ -67,6 +75,7 @@ class Script {
 
   void check() {
     if (text_.find('\0') != text_.npos) throw Error(path_, "a script with a zero byte in it", trust);
+    require_line_end(path_, text_);
     if (text_.starts_with('$')) fail(1, "it begins as a mesh, not as a script", "name it .msh");
     look_beside(path_);
     tokens();
@@ -220,6 +229,8 @@ class Script {
 };
 
 }  // namespace
+
+void refuse_lost_statements(const std::string& path) { require_line_end(path, read_text_file(path)); }
 
 void refuse_commands(const std::string& path) {
   std::set<fs::path> seen{fs::weakly_canonical(fs::absolute(path))};

@@ -9,5 +9,7 @@ namespace hilo {
 /// or reads a file that is not in its folder.  gmsh sees the same words: the lexer is gmsh's, and where texts could make the two disagree
 /// the script is refused.
 void refuse_commands(const std::string& path);
+/// Error with file:line where gmsh would leave out statements of the script: those behind the first of a last line without a line break.
+void refuse_lost_statements(const std::string& path);
 
 }  // namespace hilo
