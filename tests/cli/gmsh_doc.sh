@@ -5,7 +5,7 @@
 set -euo pipefail
 bin=$(realpath "$2")
 export PATH=$bin:$PATH
-tutorial=/usr/share/doc/gmsh-doc/doc/gmsh/tutorial
+for tutorial in /usr/share/doc/gmsh-doc/doc/gmsh/tutorial{,s}; do [ ! -d "$tutorial" ] || break; done  # of Debian 12, 13
 [ -d "$tutorial" ] || { echo "gmsh_doc: no $tutorial (apt-get install gmsh-doc)" >&2; exit 1; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
