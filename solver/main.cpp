@@ -135,7 +135,7 @@ void solve(int argc, char** argv, Comm& comm) {
   if (!from && !o.accept_left_out) refuse_left_out(scene);
   if (!o.output.ends_with(".h5")) throw Error(o.output, "the results file must end in .h5", "-o run.h5", Exit::usage);
   const auto folder = std::filesystem::path(o.output).parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder))
+  if (std::error_code error; !folder.empty() && !std::filesystem::is_directory(folder, error))
     throw Error(o.output, "no such folder", fmt::format("mkdir -p {}", folder.string()), Exit::resources);
 
   for (const char* ending : {".h5", ".xdmf", ".json"}) check_output(o.output.substr(0, o.output.size() - 3) + ending);
@@ -158,6 +158,7 @@ void solve(int argc, char** argv, Comm& comm) {
   if (from) options.provenance = from->command.provenance;
   options.provenance.push_back(command_line(argc, argv));
   const auto system = build_system(scene, mesh.get(), comm, {.from = o.modes, .to = "", .provenance = {}});
+  for (const std::string& key : scene.unread()) warn("", key);
   print_plan(*system, talk);
   if (scene.table("time").text("analysis") == "dynamic")  // the others say themselves what is free
     for (const std::string& part : untouched(*system)) warn("", part + ": nothing holds, moves, loads or touches it");

@@ -18,6 +18,12 @@ std::string compose(const std::string& where, const std::string& what, const std
   return (where.empty() ? "" : where + ": ") + what + (hint.empty() ? "" : " (" + hint + ")");
 }
 
+/// Keys, options and texts of files may hold line breaks.
+std::string one_line(std::string text) {
+  std::ranges::replace_if(text, [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
+  return text;
+}
+
 /// Damerau-Levenshtein distance (optimal string alignment).
 size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<size_t>> d(a.size() + 1, std::vector<size_t>(b.size() + 1));
@@ -37,10 +43,10 @@ std::string current_tool = "hilo";
 }  // namespace
 
 Error::Error(std::string where_, std::string what_, std::string hint_, Exit exit_)
-    : std::runtime_error(compose(where_, what_, hint_)),
-      where(std::move(where_)),
-      message(std::move(what_)),
-      hint(std::move(hint_)),
+    : std::runtime_error(one_line(compose(where_, what_, hint_))),
+      where(one_line(std::move(where_))),
+      message(one_line(std::move(what_))),
+      hint(one_line(std::move(hint_))),
       exit(exit_) {}
 
 std::string suggest(std::string_view name, std::span<const std::string> candidates) {

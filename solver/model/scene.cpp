@@ -16,10 +16,17 @@
 namespace hilo {
 namespace {
 
-const Value& value_of(const Entry& e, std::string_view key) {
+/// The value, which now counts as read, or null.
+const Value* look(const Entry& e, std::string_view key) {
   const auto v = e.values.find(key);
-  if (v == e.values.end()) throw Error(e.where(""), fmt::format("{}: \"{}\" is missing", e.label(), key));
-  return v->second;
+  if (v == e.values.end()) return nullptr;
+  *v->second.read = true;
+  return &v->second;
+}
+
+const Value& value_of(const Entry& e, std::string_view key) {
+  if (const Value* v = look(e, key)) return *v;
+  throw Error(e.where(""), fmt::format("{}: \"{}\" is missing", e.label(), key));
 }
 
 /// Standard input on every rank; mpirun gives it to the first alone.
@@ -34,13 +41,6 @@ std::string standard_input(const Comm& comm) {
   });
   if (comm.size > 1) text = comm.exchange(std::vector<std::vector<char>>(comm.size, text))[0];
   return {text.begin(), text.end()};
-}
-
-/// Keys and options may hold line breaks; a message is one line.
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 32; }, ' ');
-  return text;
 }
 
 }  // namespace
@@ -60,8 +60,8 @@ const std::vector<std::string>& Entry::texts(std::string_view key) const { retur
 bool Entry::boolean(std::string_view key) const { return value_of(*this, key).boolean.value(); }
 const History& Entry::history(std::string_view key) const {
   static const History one{{0}, {1}};
-  const auto v = values.find(key);
-  return v != values.end() && v->second.history ? *v->second.history : one;
+  const Value* v = look(*this, key);
+  return v && v->history ? *v->history : one;
 }
 std::string Entry::where(std::string_view key) const {
   const auto v = values.find(key);
@@ -85,18 +85,28 @@ Scene Scene::parse(const std::string& text, const std::string& path, std::span<c
   scene.folder = path == "-" || parent.empty() ? std::string(".") : parent;
   around.file = path == "-" ? std::string("<stdin>") : path;
   around.folder = scene.folder;
-  try {
-    toml::table root = parse_toml(scene.text, around.file);
-    for (const auto& option : overrides) apply_override(root, option);
-    if (!overrides.empty()) scene.text = toml_text(root);
-    scene.entries_ = read_sections(root, around);
-    check_entries(scene.entries_);
-  } catch (const Error& e) {
-    throw Error(one_line(e.where), one_line(e.message), one_line(e.hint), e.exit);
-  }
+  toml::table root = parse_toml(scene.text, around.file);
+  for (const auto& option : overrides) apply_override(root, option);
+  if (!overrides.empty()) scene.text = toml_text(root);
+  scene.entries_ = read_sections(root, around);
+  check_entries(scene.entries_);
   scene.units = around.units;
   scene.warnings = find_implausible(scene.entries_);
   return scene;
+}
+
+std::vector<std::string> Scene::unread() const {
+  std::vector<std::string> out;
+  for (const auto& [section, entries] : entries_) {
+    if (is_single_section(section)) continue;  // of other analyses
+    for (const Entry& e : entries) {
+      const auto is_read = [](const auto& v) { return *v.second.read; };
+      if (std::none_of(e.values.begin(), e.values.end(), is_read)) continue;
+      for (const auto& [key, value] : e.values)
+        if (value.given && !*value.read && key != "kind" && key != "name") out.push_back(fmt::format("{}: {}: {} has no effect here", value.place.text(), e.label(), key));
+    }
+  }
+  return out;
 }
 
 std::span<const Entry> Scene::entries(std::string_view section) const {

@@ -3,6 +3,7 @@
 #pragma once
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -32,6 +33,7 @@ struct Value {
   std::optional<bool> boolean;
   std::optional<History> history;
   bool given = true;  // false: the default is in force
+  std::shared_ptr<bool> read = std::make_shared<bool>(false);  // whether its value was asked for, of a copy too
 };
 
 /// A table of the scene: [material.steel] has section "material" and name "steel"; [[joint]] has its kind and name as keys.
@@ -82,6 +84,8 @@ class Scene {
   std::string explain() const;
   /// The same as "section.name.key = value", values in full, of tables and files that they name their digests.
   std::vector<std::string> values() const;
+  /// Of entries that something has asked for values: keys that stand in the scene and that nothing has asked for, one line each, with place.
+  std::vector<std::string> unread() const;
   /// Entries of each section in the order in which such lines name them, those they do not name last: what is kept goes by this order.
   void put_in_order(std::span<const std::string> values);
   std::vector<std::string> warnings;  // implausible values, one line each, with place

@@ -93,8 +93,9 @@ std::vector<std::string> Scene::values() const {
       for (const double value : v.history->value) digest.add(value);
       text += fmt::format(" {}", digest.text());
     }
+    std::error_code ignored;
     if (p.key == "file" || p.key == "shapes")
-      if (const auto file = std::filesystem::path(folder) / v.texts.front(); std::filesystem::is_regular_file(file))
+      if (const auto file = std::filesystem::path(folder) / v.texts.front(); std::filesystem::is_regular_file(file, ignored))
         text += fmt::format(" {}", digest(file.string()));
     out.push_back(fmt::format("{} = {}", key, text));
   });

@@ -80,7 +80,10 @@ void Builder::add_stations() {
         const Body& body = out_->bodies[s.body];
         const Vec3 at = e.has("at") ? e.vector3("at") : found.n_global == 0 ? body.Xc : centre_of(shares_of(found));
         s.arm = at - body.Xc;
-      } else if (e.has("at") && !s.sensor) {
+      } else if (e.has("at")) {
+        if (s.sensor)
+          throw Error(e.where("at"), fmt::format("{}: \"{}\" is flexible, and a single point of it has no axes", e.label(), e.text("on")),
+                      "name a set of nodes there");
         if (const int nearest = nearest_owned(found.nodes, e.vector3("at")); nearest >= 0) s.nodes.emplace_back(nearest, 1);
         s.mean = e.vector3("at");
       } else {

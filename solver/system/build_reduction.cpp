@@ -248,9 +248,10 @@ Reduction Builder::reduction_of(const ReductionInput& in, const Body& axes, cons
   };
   const ReductionKey key = key_of(in);
   std::optional<Reduction> out;
-  const bool grows = std::filesystem::is_directory(files_.from);
+  std::error_code ignored;
+  const bool grows = std::filesystem::is_directory(files_.from, ignored);
   const std::string from = grows ? kept_place(axes.name, key) : files_.from;
-  if (!from.empty() && (!grows || std::filesystem::exists(from))) {
+  if (!from.empty() && (!grows || std::filesystem::exists(from, ignored))) {
     const ReducedFile file(from);
     const std::string unfit = file.unfit(axes.name, key);
     if (unfit.empty())

@@ -62,12 +62,13 @@ std::int64_t DataLine::integer(size_t field) const {
   if (bad != std::errc()) throw Error(place(field), fmt::format("expected a whole number, found \"{}\"", text(field)));
   if (end == s.data() + s.size()) return n;
   const double x = number(field);  // "3." is read by CalculiX as 3
-  if (x != std::floor(x)) throw Error(place(field), fmt::format("expected a whole number, found \"{}\"", text(field)));
+  if (x != std::floor(x) || !(std::abs(x) < 1e15)) throw Error(place(field), fmt::format("expected a whole number, found \"{}\"", text(field)));
   return static_cast<std::int64_t>(x);
 }
 
 std::string read_gz(const std::string& path, const std::string& place) {
-  if (!std::filesystem::exists(path))
+  std::error_code too_long;
+  if (!std::filesystem::exists(path, too_long))
     throw Error(place.empty() ? path : place, place.empty() ? "no such file" : fmt::format("no file \"{}\"", path));
   if (std::filesystem::is_directory(path)) throw Error(place.empty() ? path : place, "a folder, not a file");
   note_input(path);

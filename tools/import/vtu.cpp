@@ -58,10 +58,7 @@ class Vtu {
  private:
   [[noreturn]] void fail(const std::string& what) const {
     const auto line = 1 + std::count(s_.begin(), s_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, s_.size())), '\n');
-    std::string one_line = what;
-    std::replace_if(
-        one_line.begin(), one_line.end(), [](unsigned char c) { return c < 32; }, ' ');
-    throw Error(fmt::format("{}:{}", path_, line), one_line);
+    throw Error(fmt::format("{}:{}", path_, line), what);
   }
 
   bool next(Tag& t) {
@@ -257,6 +254,8 @@ class Vtu {
       g.not_read.insert(fmt::format("{} array \"{}\"", section == "CellData" ? "cell" : "node", name));
     else if (section == "Cells") {
       const auto v = values(t);
+      const double most = name == "types" ? 255 : 1e15;
+      if (!std::ranges::all_of(v, [&](double x) { return x >= 0 && x <= most; })) fail(fmt::format("{} of a cell are no such numbers", name));
       if (name == "connectivity") g.connectivity.assign(v.begin(), v.end());
       if (name == "types") g.types.assign(v.begin(), v.end());
       if (name == "offsets") {

@@ -152,7 +152,7 @@ void BdfScene::hold() {
       Held& h = held_[static_cast<std::int64_t>(a)];
       h.place = deck_.grids[a].place;
       for (const char c : always)
-        if (c != '0') h.bits |= 1u << (c - '1');
+        if (c >= '1' && c <= '6') h.bits |= 1u << (c - '1');
     }
   for (const auto id : sets) {
     const auto lines = deck_.supports.find(id);

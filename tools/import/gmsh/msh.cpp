@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -200,6 +201,13 @@ class MshReader {
   /// An integer of the kind that counts are: 4.0 and 4.1 have 8 bytes.
   std::int64_t big() { return in_.next<std::int64_t>(); }
 
+  /// Of a physical group; its sign is an orientation.
+  int group() {
+    const int number = in_.next<std::int32_t>();
+    if (number == std::numeric_limits<int>::min()) in_.fail(fmt::format("{} is no number of a group", number));
+    return std::abs(number);
+  }
+
   void entities() {
     std::array<size_t, 4> n{};
     for (auto& one : n) one = in_.count<std::int64_t>(1);
@@ -208,7 +216,7 @@ class MshReader {
         const int tag = in_.next<std::int32_t>();
         auto& entity = mesh_.entities[{dim, tag, 0}];
         for (int x = dim == 0 && version_ > 4 ? 3 : 6; x > 0; --x) in_.next<double>();
-        for (size_t groups = in_.count<std::int64_t>(1); groups > 0; --groups) entity.groups.push_back(std::abs(in_.next<std::int32_t>()));
+        for (size_t groups = in_.count<std::int64_t>(1); groups > 0; --groups) entity.groups.push_back(group());
         if (dim > 0)
           for (size_t bounds = in_.count<std::int64_t>(1); bounds > 0; --bounds) in_.next<std::int32_t>();
       }
@@ -321,9 +329,10 @@ class MshReader {
         if (in_.binary) id = in_.next<std::int32_t>();
         int group = 0, tag = 0;
         for (size_t i = 0; i < tags; ++i) {
-          const int value = in_.next<std::int32_t>();
-          if (i == 0) group = std::abs(value);
-          if (i == 1) tag = value;
+          if (i == 0)
+            group = this->group();
+          else if (const int value = in_.next<std::int32_t>(); i == 1)
+            tag = value;
         }
         auto& entity = mesh_.entities[{t.dimension, tag, group}];
         if (group > 0 && entity.groups.empty()) entity.groups = {group};

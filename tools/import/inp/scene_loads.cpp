@@ -32,7 +32,7 @@ void InpScene::gravity() {
   }
   const size_t n_cells = g.size();
   for (const auto& [id, x] : beside) g.push_back(x);
-  if (!any) return;
+  if (!any || g.empty()) return;
   if (!in_time && std::ranges::all_of(g, [&](const Vec3& x) { return x == g.front(); })) {
     head_ += fmt::format("gravity = {}\n", list(Vec3(g.front() * si("m/s^2"))));
     return;
