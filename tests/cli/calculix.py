@@ -2,6 +2,7 @@
 """What the comparisons with CalculiX share: the decks of calculix-ccx-test, cards of a deck, what ccx writes, and the same deck through hilo."""
 import gzip
 import os
+import pathlib
 import re
 import shutil
 import subprocess
@@ -44,6 +45,13 @@ def stored(name):
     if os.path.exists(path):
         return open(path, errors="replace").read()
     return gzip.open(path + ".gz", "rt", errors="replace").read() if os.path.exists(path + ".gz") else ""
+
+
+def unpack(folder):
+    """All decks of the package."""
+    for source in pathlib.Path(FOLDER).glob("*.inp*"):
+        data = source.read_bytes()
+        (folder / source.name.removesuffix(".gz")).write_bytes(gzip.decompress(data) if source.suffix == ".gz" else data)
 
 
 def write(path, text):
