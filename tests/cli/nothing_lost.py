@@ -5,7 +5,6 @@ hilo-import has are those of the deck, or it says which kind of thing it left ou
 Usage: nothing_lost.py REPO BIN [DECK...]"""
 import collections
 import json
-import os
 import pathlib
 import subprocess
 import sys
