@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Every .inp deck of the Debian package calculix-ccx-test through hilo-import, and docs/ccx-decks.md, which tells what comes of them.
 # Each deck is imported, or refused with exit code 2, one line and no file left behind.
