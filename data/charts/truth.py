@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where the probes of the charts' scenes are at the end: closed forms, published values, and Runge-Kutta on one to six coordinates
 that know neither joints nor multipliers.  Lengths in m; each returns (x, y, z), NaN where nothing is known."""
-from math import asin, atan2, cos, nan, pi, sin, sqrt
+from math import asin, cos, pi, sin, sqrt
 
 
 def rk4(rate, y, end, n):

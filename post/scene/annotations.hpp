@@ -28,7 +28,6 @@ std::vector<ForceArrow> force_arrows(RunFile& run, const std::vector<std::string
 class Annotations {
  public:
   Annotations(const FrameOptions& o, RunFile& run);
-  bool has_forces() const { return !arrows_.empty(); }
   /// The largest force drawn at these times  [N].
   double largest_force(const std::vector<double>& times) const;
   /// What the picture must hold besides the model: the ways up to t.

@@ -8,6 +8,7 @@
 #include <queue>
 #include <set>
 
+#include "base/joined.hpp"
 #include "linear/sparse_qr.hpp"
 
 namespace hilo {
@@ -173,20 +174,16 @@ Independence independent_columns(const Eigen::SparseMatrix<double>& A, Eigen::In
 }
 
 std::vector<std::vector<int>> connected_columns(const Eigen::SparseMatrix<double>& A, const std::vector<int>& columns) {
-  std::vector<int> parent(columns.size()), first(A.rows(), -1);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int k) {
-    while (parent[k] != k) k = parent[k] = parent[parent[k]];
-    return k;
-  };
+  Joined joined(columns.size());
+  std::vector<int> first(A.rows(), -1);
   for (int k = 0; k < static_cast<int>(columns.size()); ++k)
     for (ColumnEntry it(A, columns[k]); it; ++it)
       if (int& other = first[it.row()]; other < 0)
         other = k;
       else
-        parent[root(k)] = root(other);
+        joined.join(k, other);
   std::vector<std::vector<int>> groups(columns.size());
-  for (int k = 0; k < static_cast<int>(columns.size()); ++k) groups[root(k)].push_back(columns[k]);
+  for (int k = 0; k < static_cast<int>(columns.size()); ++k) groups[joined.root(k)].push_back(columns[k]);
   std::erase_if(groups, [](const auto& g) { return g.empty(); });
   return groups;
 }

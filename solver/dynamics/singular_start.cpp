@@ -6,11 +6,10 @@
 #include <algorithm>
 
 #include "dynamics/start.hpp"
+#include "system/collocation.hpp"
 
 namespace hilo {
 namespace {
-
-Vec3 axial(const Mat3& S) { return Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)) / 2; }
 
 /// Velocities at `from`, taken to `to`: the spins stay.
 Config carried(const System& system, const Config& v, const Config& from, const Config& to) {

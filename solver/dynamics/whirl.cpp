@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "dynamics/about_state.hpp"
 #include "linear/eigen_pairs.hpp"
+#include "system/collocation.hpp"
 #include "system/uneven.hpp"
 
 namespace hilo {
@@ -63,7 +64,6 @@ class SpinTerms : AboutState {
 
  private:
   static constexpr double step = 1e-4;
-  static Vec3 axial(const Mat3& S) { return Vec3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)) / 2; }
   /// The residual at increments z, and what moving and accelerating add to it where they change with z'.
   std::pair<Vector, Vector> residual(const Config& q0, const Config& v0, const Config& a0, const Vector& z, const Vector& rate) const {
     Config q = q0, v = v0, a = a0;

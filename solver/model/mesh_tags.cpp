@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <numeric>
 
 #include "base/error.hpp"
+#include "base/joined.hpp"
 #include "model/scene_toml.hpp"
 #include "model/store.hpp"
 
@@ -190,27 +190,20 @@ std::vector<std::optional<Fidelity>> apply_tag_rules(const Mesh& mesh, const Tag
 }
 
 std::vector<int> body_of_region(const Mesh& mesh, std::span<const Fidelity> fidelity) {
-  std::vector<int> parent(fidelity.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int r) {
-    while (parent[r] != r) r = parent[r] = parent[parent[r]];
-    return r;
-  };
+  Joined regions(fidelity.size());
   std::vector<int> owner(mesh.X.size(), -1);  // a rigid region that has the node
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c) {
     const int r = mesh.region[c];
     if (fidelity[r] != Fidelity::rigid) continue;
     for (const auto n : mesh.cell(c)) {
       if (owner[n] < 0) owner[n] = r;
-      const int a = root(owner[n]), b = root(r);
-      parent[std::max(a, b)] = std::min(a, b);
+      regions.join(owner[n], r);
     }
   }
   std::vector<int> body(fidelity.size(), -1);
   int count = 0;
-  for (size_t r = 0; r < body.size(); ++r)
-    if (fidelity[r] == Fidelity::rigid)
-      body[r] = root(static_cast<int>(r)) == static_cast<int>(r) ? count++ : body[root(static_cast<int>(r))];
+  for (int r = 0; r < static_cast<int>(body.size()); ++r)
+    if (fidelity[r] == Fidelity::rigid) body[r] = regions.root(r) == r ? count++ : body[regions.root(r)];
   return body;
 }
 

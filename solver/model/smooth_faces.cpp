@@ -7,8 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
+
+#include "base/joined.hpp"
 
 namespace hilo {
 namespace {
@@ -67,14 +68,14 @@ class Cylinder {
 using Edges = std::map<std::pair<std::int64_t, std::int64_t>, std::vector<size_t>>;
 
 /// Faces of coarse cells on one cylinder, whose facets turn by more than the angle, become one.
-template <class Find>
-void join_cylinders(std::span<const SurfaceFacet> facets, const Edges& edges, std::vector<size_t>& root, const Find& find) {
+void join_cylinders(std::span<const SurfaceFacet> facets, const Edges& edges, Joined<size_t>& joined) {
   constexpr size_t most = 5000;  // a cylinder of more facets is not coarse
   std::map<size_t, std::vector<size_t>> face;
-  for (size_t i = 0; i < facets.size(); ++i) face[find(i)].push_back(i);
+  for (size_t i = 0; i < facets.size(); ++i) face[joined.root(i)].push_back(i);
   std::map<size_t, std::set<size_t>> beside;
   for (const auto& [edge, of] : edges)
-    if (of.size() == 2 && find(of[0]) != find(of[1])) beside[find(of[0])].insert(find(of[1])), beside[find(of[1])].insert(find(of[0]));
+    if (of.size() == 2)
+      if (const size_t a = joined.root(of[0]), b = joined.root(of[1]); a != b) beside[a].insert(b), beside[b].insert(a);
   std::vector<std::pair<double, size_t>> seeds;
   std::map<size_t, FaceShape> shape;
   for (const auto& [id, its] : face) {
@@ -94,8 +95,7 @@ void join_cylinders(std::span<const SurfaceFacet> facets, const Edges& edges, st
         if (taken.contains(other) || face[other].size() > most) continue;
         if (!std::ranges::all_of(face[other], [&](size_t i) { return cylinder.has(facets[i]); })) continue;
         taken.insert(other), open.push_back(other);
-        const size_t a = find(seed), b = find(other);
-        root[std::max(a, b)] = std::min(a, b);
+        joined.join(seed, other);
       }
   }
 }
@@ -113,12 +113,7 @@ Vec3 SurfaceFacet::area() const {
 }
 
 std::vector<int> smooth_faces(std::span<const SurfaceFacet> facets, double angle) {
-  std::vector<size_t> root(facets.size());
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](size_t i) {
-    while (root[i] != i) i = root[i] = root[root[i]];
-    return i;
-  };
+  Joined<size_t> joined(facets.size());
   Edges edges;
   std::vector<Vec3> normal;
   for (size_t i = 0; i < facets.size(); ++i) {
@@ -128,14 +123,11 @@ std::vector<int> smooth_faces(std::span<const SurfaceFacet> facets, double angle
   }
   const double least = std::cos(angle);
   for (const auto& [edge, of] : edges)
-    if (of.size() == 2 && normal[of[0]].dot(normal[of[1]]) > least) {
-      const size_t a = find(of[0]), b = find(of[1]);
-      root[std::max(a, b)] = std::min(a, b);
-    }
-  join_cylinders(facets, edges, root, find);
+    if (of.size() == 2 && normal[of[0]].dot(normal[of[1]]) > least) joined.join(of[0], of[1]);
+  join_cylinders(facets, edges, joined);
   std::vector<int> face(facets.size(), -1);
   int n_faces = 0;
-  for (size_t i = 0; i < facets.size(); ++i) face[i] = find(i) == i ? n_faces++ : face[find(i)];
+  for (size_t i = 0; i < facets.size(); ++i) face[i] = joined.root(i) == i ? n_faces++ : face[joined.root(i)];
   return face;
 }
 

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <unordered_set>
 
+#include "base/joined.hpp"
 #include "system/bodies.hpp"
 #include "system/builder.hpp"
 
@@ -16,19 +17,11 @@ namespace hilo {
 std::vector<std::vector<int>> Builder::joined_regions(Fidelity fidelity, Pairs& shared) const {
   agree(shared, comm_);
   const int n = static_cast<int>(regions_.size());
-  std::vector<int> root(n);
-  std::iota(root.begin(), root.end(), 0);
-  const auto find_root = [&](int r) {
-    while (root[r] != r) r = root[r] = root[root[r]];
-    return r;
-  };
-  for (const auto& [one, other] : shared) {
-    const int a = find_root(one), b = find_root(other);
-    root[std::max(a, b)] = std::min(a, b);
-  }
+  Joined joined(n);
+  for (const auto& [one, other] : shared) joined.join(one, other);
   std::map<int, std::vector<int>> groups;
   for (int r = 0; r < n; ++r)
-    if (regions_[r].fidelity == fidelity) groups[find_root(r)].push_back(r);
+    if (regions_[r].fidelity == fidelity) groups[joined.root(r)].push_back(r);
   std::vector<std::vector<int>> out;
   for (auto& [r, members] : groups) out.push_back(std::move(members));
   return out;

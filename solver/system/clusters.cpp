@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/joined.hpp"
 #include "system/solids.hpp"
 
 namespace hilo {
@@ -22,10 +23,10 @@ int Solids::clusters(std::vector<std::int64_t>& cluster_of) const {
         visit(cell, b, std::span<const int>(b.nodes.data() + e * n, n));
       }
   };
-  std::vector<int> parent;
+  int n_cells = 0;
   std::vector<std::pair<std::uint64_t, int>> faces;  // digest of the corners, cell
   for_cells([&](int cell, const SolidBatch& b, std::span<const int> nodes) {
-    parent.push_back(cell);
+    ++n_cells;
     for (const auto& corners : info(b.shape).facets) {
       std::uint64_t sum = 0;
       for (const int i : corners) {  // splitmix64 of each: any order gives the same sum
@@ -36,21 +37,18 @@ int Solids::clusters(std::vector<std::int64_t>& cluster_of) const {
       if (info(b.shape).dimension == 3) faces.emplace_back(sum, cell);
     }
   });
-  const auto root = [&](int k) {
-    while (parent[k] != k) k = parent[k] = parent[parent[k]];
-    return k;
-  };
+  Joined joined(n_cells);
   std::sort(faces.begin(), faces.end());
   for (size_t k = 1; k < faces.size(); ++k)
-    if (faces[k].first == faces[k - 1].first) parent[root(faces[k].second)] = root(faces[k - 1].second);
+    if (faces[k].first == faces[k - 1].first) joined.join(faces[k].second, faces[k - 1].second);
   faces = {};
   constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
   cluster_of.assign(points_.X.size(), none);
-  std::vector<int> number(parent.size(), -1);
+  std::vector<int> number(n_cells, -1);
   int n_own = 0;
   for_cells([&](int cell, const SolidBatch& b, std::span<const int> nodes) {
     if (info(b.shape).dimension < 3) return;
-    int& k = number[root(cell)];
+    int& k = number[joined.root(cell)];
     if (k < 0) k = n_own++;
     for (const int i : nodes)
       if (follower[i] < 0) cluster_of[i] = std::min<std::int64_t>(cluster_of[i], k);

@@ -7,10 +7,10 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/joined.hpp"
 #include "system/linear_regions.hpp"
 
 namespace hilo {
@@ -91,24 +91,19 @@ void ModalDamping::find_groups(const Cliques& cliques) {
       }
   }
   system_.comm->sum(meet);  // cells are on their ranks
-  std::vector<int> root(n);
-  std::iota(root.begin(), root.end(), 0);
-  const auto find_root = [&](int b) {
-    while (root[static_cast<size_t>(b)] != b) b = root[static_cast<size_t>(b)];
-    return b;
-  };
+  Joined joined(n);
   for (size_t a = 0; a < n; ++a)
     for (size_t b = 0; b < n; ++b)
-      if (meet[a * n + b] > 0) root[static_cast<size_t>(find_root(static_cast<int>(b)))] = find_root(static_cast<int>(a));
+      if (meet[a * n + b] > 0) joined.join(static_cast<int>(a), static_cast<int>(b));
   for (int b = 0; b < static_cast<int>(n); ++b) {
-    if (find_root(b) != b) continue;
+    if (joined.root(b) != b) continue;
     Group group;
     bool damps = false;
     for (int k = 0; k < static_cast<int>(n); ++k)
-      if (find_root(k) == b) group.bodies.push_back(k);
+      if (joined.root(k) == b) group.bodies.push_back(k);
     for (size_t k = 0; k < system_.modes.size(); ++k) {
       const Modes& m = system_.modes[k];
-      if (find_root(m.body) != b) continue;
+      if (joined.root(m.body) != b) continue;
       group.regions.push_back(static_cast<int>(k)), damps = damps || (ratio[k] > 0 && m.n_modes > 0);
     }
     if (!damps) continue;

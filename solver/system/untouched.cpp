@@ -8,9 +8,9 @@
 #include <array>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 
+#include "base/joined.hpp"
 #include "system/contacts.hpp"
 #include "system/loads.hpp"
 #include "system/solids.hpp"
@@ -21,25 +21,21 @@ namespace {
 /// Clusters of cells, then the bodies; those that cells join are one piece.
 class Pieces {
  public:
-  explicit Pieces(const System& system) : system_(system) {
-    n_clusters_ = system.part<Solids>().clusters(cluster_of_);
-    parent_.resize(static_cast<size_t>(n_clusters_) + system.bodies.size());
-    std::iota(parent_.begin(), parent_.end(), 0);
-    reached_.assign(parent_.size(), 0);
-  }
-  int size() const { return static_cast<int>(parent_.size()); }
+  explicit Pieces(const System& system)
+      : system_(system),
+        n_clusters_(system.part<Solids>().clusters(cluster_of_)),
+        joined_(static_cast<size_t>(n_clusters_) + system.bodies.size()),
+        reached_(joined_.size(), 0.0) {}
+  int size() const { return static_cast<int>(joined_.size()); }
   int of_body(int b) const { return n_clusters_ + b; }
   /// -1: of no cell.
   int of_node(int i) const {
     if (system_.follower[i] >= 0) return of_body(system_.follower[i]);
     return cluster_of_[i] < n_clusters_ ? static_cast<int>(cluster_of_[i]) : -1;
   }
-  int root(int k) {
-    while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
-    return k;
-  }
+  int root(int k) { return joined_.root(k); }
   void join(int a, int b) {
-    if (a >= 0 && b >= 0) parent_[std::max(root(a), root(b))] = std::min(root(a), root(b));
+    if (a >= 0 && b >= 0) joined_.join(a, b);
   }
   void reach(int k) {
     if (k >= 0) reached_[k] = 1;
@@ -61,9 +57,9 @@ class Pieces {
 
  private:
   const System& system_;
-  int n_clusters_;
   std::vector<std::int64_t> cluster_of_;
-  std::vector<int> parent_;
+  int n_clusters_;
+  Joined<int> joined_;
   std::vector<double> reached_;
 };
 

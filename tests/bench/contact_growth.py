@@ -16,10 +16,12 @@ import json
 import math
 import os
 import random
-import resource
-import subprocess
 import sys
 import tempfile
+
+from costs import cost, slope
+
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 
 def balls(n, steps):
@@ -92,13 +94,10 @@ os.chdir(folder.name)
 
 def command(*words):
     """Processor seconds."""
-    with open("words", "w") as said:
-        child = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=said, env=dict(os.environ, OPENBLAS_NUM_THREADS="1"),
-                                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (o.limit, o.limit + 1)))
-        _, status, used = os.wait4(child.pid, 0)
-    if status != 0:
+    took = cost(words, o.limit)
+    if not took:
         sys.exit(f"{' '.join(words)}: fails or takes more than {o.limit} s: {open('words').read().strip()[-300:]}")
-    return used.ru_utime + used.ru_stime
+    return took[0]
 
 
 def step_of(scene):
@@ -110,13 +109,6 @@ def step_of(scene):
         cost.append(command(f"{binaries}/hilo-solve", "--quiet", "scene.toml", "-o", "run.h5", *(w for s in o.set for w in ("--set", s))))
         count.append(json.load(open("run.json"))["newton_iterations"])
     return [(x[1] - x[0]) / o.steps for x in (cost, count)]
-
-
-def slope(points):
-    points = [(math.log(n), math.log(y)) for n, y in points if y > 0]
-    mx, my = (sum(p[k] for p in points) / len(points) for k in (0, 1))
-    over = sum((x - mx)**2 for x, _ in points)
-    return sum((x - mx) * (y - my) for x, y in points) / over if over > 0 else math.nan
 
 
 def tell(family, n, step, each):

@@ -16,10 +16,10 @@ A step's cost is that of runs of 2 and of 2 + STEPS steps, start-up the rest of 
 import argparse
 import math
 import os
-import resource
-import subprocess
 import sys
 import tempfile
+
+from costs import cost, slope
 
 
 def body(name, x, y, z=0.0, mass=1.0):
@@ -114,15 +114,6 @@ FAMILIES = {"chain": chain, "star": star, "four-bars": four_bars, "grid": grid, 
 MOST = {"flexible": 55000}  # a million unknowns
 
 
-def command(words, limit):
-    """Processor seconds and the largest memory of a process, or None where it fails; what it said is in `words`."""
-    with open("words", "w") as said:
-        child = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=said,
-                                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 1)))
-        _, status, used = os.wait4(child.pid, 0)
-    return (used.ru_utime + used.ru_stime, used.ru_maxrss * 1024.0) if status == 0 else None
-
-
 def scene_of(family, n, steps=2):
     with open("scene.toml", "w") as f:
         if family == "flexible":
@@ -134,13 +125,10 @@ def scene_of(family, n, steps=2):
             flexible_mesh(n, "mesh.inp")
 
 
-def slope(points):
-    points = [(math.log(n), math.log(y)) for n, y in points if y > 0]
-    points = points[len(points) // 2 - (len(points) > 1):] if len(points) > 2 else points
-    if len(points) < 2:
-        return math.nan
-    mx, my = (sum(p[k] for p in points) / len(points) for k in (0, 1))
-    return sum((x - mx) * (y - my) for x, y in points) / sum((x - mx) ** 2 for x, _ in points)
+def end_slope(points):
+    """Of the larger half of the sizes."""
+    points = [p for p in points if p[1] > 0]
+    return slope(points[len(points) // 2 - (len(points) > 1):] if len(points) > 2 else points)
 
 
 arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -162,16 +150,16 @@ for family in o.families.split(","):
     start, step = [], []
     for n in (min(int(size), MOST.get(family, 10**9)) for size in o.sizes.split(",")):
         scene_of(family, n)
-        if family == "flexible" and not command([f"{binaries}/hilo-import", "--quiet", "mesh.inp", "-o", "mesh.h5"], o.limit):
+        if family == "flexible" and not cost([f"{binaries}/hilo-import", "--quiet", "mesh.inp", "-o", "mesh.h5"], o.limit):
             sys.exit("hilo-import: " + open("words").read())
         steps = max(o.steps, 5000 // n)
-        few = command(solve, o.limit)
+        few = cost(solve, o.limit)
         scene_of(family, n, 2 + steps)
-        more = few and command(solve, o.limit)
+        more = few and cost(solve, o.limit)
         if not more:
             print(f"{family:10} {n:7} fails or takes more than {o.limit} s: {open('words').read().strip()[-200:]}", flush=True)
             break
         each = (more[0] - few[0]) / steps
         start.append((n, few[0] - 2 * each)), step.append((n, each))
         print(f"{family:10} {n:7} {start[-1][1]:11.3f} {each:10.5f} {1e6 * each / n:12.2f} {few[1] / 1000 / n:8.2f}", flush=True)
-    print(f"{family:10}   slope {slope(start):11.2f} {slope(step):10.2f}", flush=True)
+    print(f"{family:10}   slope {end_slope(start):11.2f} {end_slope(step):10.2f}", flush=True)

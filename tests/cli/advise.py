@@ -10,35 +10,18 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "bench"))
+from advice import Deck  # noqa: E402
+
 BIN = os.path.abspath(sys.argv[1])
-N, SIDE = 4, 0.05
 
 
-def deck(N=N):
-    """Bars a, b, c of 1 m along x, one behind the other, N hexahedra of 20 nodes each, with the sets of their ends: a0, a1, ..."""
-    nodes, text, sets, number = [], "", "", 0
+def deck(n=4):
+    """Bars a, b, c of 1 m along x, one behind the other, n hexahedra of 20 nodes each, with the sets of their ends: a0, a1, ..."""
+    bars = Deck()
     for k, name in enumerate("abc"):
-        ids = {}
-
-        def node(place):
-            if place not in ids:
-                i, y, z = place
-                nodes.append((k + i / (2 * N), (y / 2 - 0.5) * SIDE, (z / 2 - 0.5) * SIDE))
-                ids[place] = len(nodes)
-            return ids[place]
-
-        text += f"*ELEMENT, TYPE=C3D20, ELSET={name}\n"
-        for i in range(0, 2 * N, 2):
-            corner = [(i, 0, 0), (i + 2, 0, 0), (i + 2, 2, 0), (i, 2, 0), (i, 0, 2), (i + 2, 0, 2), (i + 2, 2, 2), (i, 2, 2)]
-            edges = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
-            middle = [tuple((p + q) // 2 for p, q in zip(corner[a], corner[b])) for a, b in edges]
-            number += 1
-            row = [number] + [node(p) for p in corner + middle]
-            text += ", ".join(map(str, row[:16])) + ",\n" + ", ".join(map(str, row[16:])) + "\n"
-        for end in (0, 1):
-            sets += f"*NSET, NSET={name}{end}\n" + ", ".join(str(v) for p, v in ids.items() if p[0] == end * 2 * N) + "\n"
-        sets += f"*MATERIAL, NAME=m{name}\n*ELASTIC\n2e11, .3\n*DENSITY\n7850\n*SOLID SECTION, ELSET={name}, MATERIAL=m{name}\n"
-    return "*NODE\n" + "".join(f"{i + 1}, {x:.9g}, {y:.9g}, {z:.9g}\n" for i, (x, y, z) in enumerate(nodes)) + text + sets
+        bars.beam(name, (k, 0, 0), (k + 1, 0, 0), 0.05, 2e11, n)
+    return bars.text()
 
 
 def scene(more=""):

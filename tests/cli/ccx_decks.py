@@ -1,10 +1,9 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Every .inp deck of the Debian package calculix-ccx-test through hilo-import, and docs/ccx-decks.md, which tells what comes of them.
 # Each deck is imported, or refused with exit code 2, one line and no file left behind.
 # Usage: ccx_decks.py REPO BIN [--write]     without --write it compares with the page, where that is of the installed version
 import collections
-import gzip
 import json
 import pathlib
 import re
@@ -12,18 +11,16 @@ import subprocess
 import sys
 import tempfile
 
+import calculix
+
 repo, tools = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
 page = repo / "docs/ccx-decks.md"
-folder = pathlib.Path("/usr/share/doc/calculix-ccx-test/examples/test")
-if not folder.is_dir():
-    sys.exit(f"ccx_decks: no {folder} (apt-get install calculix-ccx-test)")
+calculix.tools(need_ccx=False)
 version = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", "calculix-ccx-test"], capture_output=True, text=True).stdout.split("-")[0]
 imported, refused, faults = {}, {}, []
 with tempfile.TemporaryDirectory() as work:
     work = pathlib.Path(work)
-    for source in sorted([*folder.glob("*.inp"), *folder.glob("*.inp.gz")]):
-        name = source.name.removesuffix(".gz")
-        (work / name).write_bytes(gzip.open(source).read() if source.suffix == ".gz" else source.read_bytes())
+    calculix.unpack(work)
     for deck in sorted(work.glob("*.inp")):
         mesh = deck.with_suffix(".h5")
         ran = subprocess.run([tools / "hilo-import", deck.name, "-o", mesh.name, "--json"], cwd=work, capture_output=True, text=True)

@@ -9,26 +9,18 @@ Total force and moment about the origin are compared, in relation to the area of
 takes pressure on the quadrangles of C3D6 and C3D8R at one point, so that their moments are those of equal forces at the corners: of these kinds
 the force alone says which face it is."""
 import os
-import shutil
-import subprocess
 import sys
 import tempfile
 
-import h5py
 import numpy as np
 
-if shutil.which("ccx") is None:
-    print("this system has no CalculiX to compare with")
-    sys.exit(77)
+import calculix as ccx
 
-tools = os.path.abspath(sys.argv[2])
+ccx.tools(need_decks=False)
 STIFF, PRESSURE, LIMIT = 1e6, 1.0, 1e-4
 TET = [(0, 0, 0), (1.1, .1, 0), (.2, 1.3, .1), (.1, .2, .9)]
 WEDGE = [(0, 0, 0), (1.1, .1, 0), (.2, 1.3, .1), (.1, 0, 1.2), (1.2, .1, 1.3), (.3, 1.2, 1.1)]
 HEX = [(0, 0, 0), (1.1, .1, 0), (1.2, 1.3, .1), (.1, 1, .05), (.1, 0, 1.2), (1.2, .1, 1.3), (1.3, 1.25, 1.1), (.15, 1.1, 1)]
-EDGES = {4: [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
-         6: [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)],
-         8: [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]}
 KINDS = {"C3D4": (TET, 4), "C3D6": (WEDGE, 5), "C3D8": (HEX, 6), "C3D8R": (HEX, 6), "C3D8I": (HEX, 6), "C3D10": (TET, 4), "C3D15": (WEDGE, 5),
          "C3D20": (HEX, 6), "C3D20R": (HEX, 6)}
 
@@ -38,25 +30,16 @@ ONE_POINT = ("C3D6", "C3D8R")
 def points(kind):
     corners = [np.array(x, float) for x in KINDS[kind][0]]
     quadratic = kind[3:5] in ("10", "15", "20")
-    return np.array(corners + ([(corners[a] + corners[b]) / 2 for a, b in EDGES[len(corners)]] if quadratic else []))
+    return np.array(corners + ([(corners[a] + corners[b]) / 2 for a, b in ccx.EDGES[len(corners)]] if quadratic else []))
 
 
 def deck(kind, face, X):
-    numbers = [1] + list(range(1, len(X) + 1))
-    lines = ["*NODE, NSET=ALL"] + [f"{i + 1}, {x[0]:.12g}, {x[1]:.12g}, {x[2]:.12g}" for i, x in enumerate(X)]
-    lines += [f"*ELEMENT, TYPE={kind}, ELSET=E", ", ".join(map(str, numbers[:11])) + ("," if len(numbers) > 11 else "")]
-    lines += [", ".join(map(str, numbers[11:]))] if len(numbers) > 11 else []
+    lines = ccx.node_cards(X) + ccx.cell_cards(kind, "E", [range(1, len(X) + 1)])
     lines += ["*MATERIAL, NAME=M", "*ELASTIC", "1e4, .3", "*SOLID SECTION, ELSET=E, MATERIAL=M"]
     for dof in (1, 2, 3):
         lines += [f"*ELEMENT, TYPE=SPRING1, ELSET=S{dof}"] + [f"{100 * dof + i}, {i + 1}" for i in range(len(X))]
         lines += [f"*SPRING, ELSET=S{dof}", str(dof), f"{STIFF:.1f}"]
     return "\n".join(lines + ["*STEP", "*STATIC", "*DLOAD", f"E, P{face}, {PRESSURE:g}", "*NODE PRINT, NSET=ALL", "U", "*END STEP", ""])
-
-
-def run(*command):
-    ran = subprocess.run(command, capture_output=True, text=True)
-    if ran.returncode:
-        sys.exit(f"ccx_faces: {os.path.basename(command[0])} exit {ran.returncode}: {ran.stderr.strip()}")
 
 
 def resultant(X, u):
@@ -69,13 +52,11 @@ with tempfile.TemporaryDirectory() as folder:
     for kind, (_, n_faces) in KINDS.items():
         X = points(kind)
         for face in range(1, n_faces + 1):
-            open("a.inp", "w").write(deck(kind, face, X))
-            run("ccx", "a")
-            theirs = np.array([[float(x) for x in line.split()[1:]] for line in open("a.dat") if len(line.split()) == 4 and line.split()[0].isdigit()])
-            run(tools + "/hilo-import", "--quiet", "a.inp", "-o", "a.h5", "--scene-out", "a.toml")
-            run(tools + "/hilo-solve", "--quiet", "a.toml", "a.h5", "-o", "run.h5")
-            with h5py.File("run.h5") as f:
-                ours = f["field"][sorted(f["field"])[-1]]["displacement"][:]
+            ccx.write("a.inp", deck(kind, face, X))
+            ccx.run("ccx", "a")
+            theirs = np.array(list(ccx.last(ccx.printed(open("a.dat"))).values()))
+            ccx.imported("a")
+            ours = np.array(list(ccx.solved().values()))
             a, b = resultant(X, ours), resultant(X, theirs)
             if kind in ONE_POINT:
                 a, b = a[:3], b[:3]

@@ -9,21 +9,17 @@ Compared are the displacements of all nodes and the von Mises stress of nodes, a
 wood are the same law in both: printed digits.  A metal's elasticity is of logarithmic strain here and of another finite-strain law there:
 apart by the order of the elastic strain, and nodal stress is extrapolated otherwise."""
 import os
-import shutil
-import subprocess
 import sys
 import tempfile
 
 import h5py
 import numpy as np
 
-if shutil.which("ccx") is None:
-    print("this system has no CalculiX to compare with")
-    sys.exit(77)
+import calculix as ccx
 
-tools = os.path.abspath(sys.argv[2])
+ccx.tools(need_decks=False)
 TET = ((0, 1, 3, 7), (0, 1, 7, 5), (0, 5, 7, 4), (1, 2, 3, 7), (1, 2, 7, 6), (1, 5, 6, 7))
-EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
+EDGES = ccx.EDGES[4]
 METAL = "*ELASTIC\n2e11, .3\n*PLASTIC%s\n2.5e8, 0.\n%s"
 MOONEY = "*HYPERELASTIC, MOONEY-RIVLIN\n.3e6, .1e6, 1e-6\n"
 DECKS = {  # cards of the material, pull over the length, let go again, limits: displacements, stress; cards for CalculiX where they are others
@@ -44,7 +40,7 @@ def bar(n=(8, 2, 2)):
     for k in range(n[2]):
         for j in range(n[1]):
             for i in range(n[0]):
-                c = np.array([2 * i, 2 * j, 2 * k]) + 2 * np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
+                c = np.array([2 * i, 2 * j, 2 * k]) + 2 * np.array(ccx.HEXAHEDRON)
                 for t in TET:
                     corners = c[list(t)]
                     if np.linalg.det(corners[1:] - corners[0]) < 0:
@@ -74,10 +70,8 @@ def steps(back):
 
 def deck(X, cells, cards, pull, back):
     left, right = np.where(abs(X[:, 0]) < 1e-9)[0], np.where(abs(X[:, 0] - 0.4) < 1e-9)[0]
-    lines = ["*NODE, NSET=ALL"] + [f"{i + 1}, {x[0]:.15g}, {x[1]:.15g}, {x[2]:.15g}" for i, x in enumerate(X)]
-    lines += ["*ELEMENT, TYPE=C3D10, ELSET=BAR"] + [f"{i + 1}, " + ", ".join(str(k + 1) for k in c) for i, c in enumerate(cells)]
-    for name, nodes in (("LEFT", left), ("RIGHT", right)):
-        lines += [f"*NSET, NSET={name}"] + [f"{k + 1}," for k in nodes]
+    lines = ccx.node_cards(X.tolist()) + ccx.cell_cards("C3D10", "BAR", (np.array(cells) + 1).tolist())
+    lines += ccx.set_cards("LEFT", left + 1) + ccx.set_cards("RIGHT", right + 1)
     lines += ["*ORIENTATION, NAME=GRAIN", "2., 1., 0., -1., 2., 0."]
     lines += ["*MATERIAL, NAME=M"] + cards.strip().split("\n") + ["*DENSITY", "1000."]
     lines += ["*SOLID SECTION, ELSET=BAR, MATERIAL=M" + (", ORIENTATION=GRAIN" if "ENGINEERING" in cards else "")]
@@ -87,36 +81,13 @@ def deck(X, cells, cards, pull, back):
     return "\n".join(lines + ["*NODE FILE", "U", "*EL FILE", "S", "*END STEP", ""])
 
 
-def plotted(path):
-    """{time: {field: {node: values}}} of a .frd file: twelve columns for a number."""
-    all_of, field, time = {}, None, 0.0
-    for line in open(path):
-        if line.startswith("  100CL"):
-            time = round(float(line[12:24]), 6)
-        elif line.startswith(" -4"):
-            field = all_of.setdefault(time, {}).setdefault(line.split()[1], {})
-        elif line.startswith(" -1") and field is not None:
-            field[int(line[3:13])] = [float(line[k:k + 12]) for k in range(13, len(line.rstrip()), 12)]
-        elif line.startswith(" -3"):
-            field = None
-    return all_of
-
-
-def run(*command):
-    ran = subprocess.run(command, capture_output=True, text=True)
-    if ran.returncode:
-        sys.exit(f"{' '.join(command)}: exit {ran.returncode}\n{ran.stdout[-2000:]}{ran.stderr[-2000:]}")
-
-
 def compared(X, cells, cards, pull, back, their_cards):
-    open("their.inp", "w").write(deck(X, cells, their_cards, pull, back))
-    run("ccx", "their")
-    theirs = plotted("their.frd")
-    open("bar.inp", "w").write(deck(X, cells, cards, pull, back))
-    run(tools + "/hilo-import", "--quiet", "bar.inp", "-o", "mesh.h5", "--scene-out", "scene.toml")
-    scene = open("scene.toml").read() + "\n[solver]\ntolerance = 1e-12\n[output]\ninterval = 1\n"
-    open("scene.toml", "w").write(scene)
-    run(tools + "/hilo-solve", "--quiet", "scene.toml", "mesh.h5", "-o", "run.h5", "--set", f"time.steps={(2 if back else 1) * steps(back)}")
+    ccx.write("their.inp", deck(X, cells, their_cards, pull, back))
+    ccx.run("ccx", "their")
+    theirs = {round(t, 6): fields for t, fields in ccx.plotted(open("their.frd")).items()}
+    ccx.write("bar.inp", deck(X, cells, cards, pull, back))
+    ccx.imported("bar")
+    ccx.solved("\n[solver]\ntolerance = 1e-12\n[output]\ninterval = 1\n", 1.0, "--set", f"time.steps={(2 if back else 1) * steps(back)}")
     apart = [0.0, 0.0]
     with h5py.File("run.h5") as f:
         for name in f["field"]:
@@ -124,7 +95,7 @@ def compared(X, cells, cards, pull, back, their_cards):
             if t not in theirs:
                 continue
             u, s = (np.array([theirs[t][k][i + 1] for i in range(len(X))]) for k in ("DISP", "STRESS"))
-            mises = np.sqrt(((s[:, 0] - s[:, 1])**2 + (s[:, 1] - s[:, 2])**2 + (s[:, 2] - s[:, 0])**2) / 2 + 3 * (s[:, 3:]**2).sum(1))
+            mises = ccx.von_mises(s)
             ours, stress = f["field"][name]["displacement"][:], f["field"][name]["von_mises"][:]
             apart[0] = max(apart[0], abs(ours - u).max() / abs(u).max())
             inside = abs(X[:, 0] - 0.2) < 0.1  # away from the clamped ends, where it is singular

@@ -7,32 +7,20 @@ analysis of modes and the command that hilo-import names.  Displacements of the 
 
 C3D20R becomes C3D20, which both programs integrate alike.  ccx gets more modes than the deck asks for, as a run in time has all of
 them, and loads of a thousandth, as it knows small motions alone.  The runs in time are those of linear regions."""
-import gzip, os, re, shutil, subprocess, sys, tempfile
+import os, re, subprocess, sys, tempfile
 import h5py
 import numpy as np
 
-FOLDER = "/usr/share/doc/calculix-ccx-test/examples/test/"
+import calculix as ccx
+
 LIMIT = 1e-2
-binaries = os.path.abspath(sys.argv[2])
-if not os.path.isdir(FOLDER):
-    sys.exit("ccx_modal: no decks (apt-get install calculix-ccx-test)")
-if not shutil.which("ccx"):
-    print("ccx_modal: no ccx (apt-get install calculix-ccx)")
-    sys.exit(77)
-os.environ["PATH"] = binaries + ":" + os.environ["PATH"]
+ccx.tools()
 
 
-def run(*command):
-    ran = subprocess.run(command, capture_output=True, text=True, timeout=200)
-    if ran.returncode:
-        sys.exit(f"{' '.join(command)}: exit {ran.returncode}\n{ran.stdout[-500:]}{ran.stderr[-500:]}")
-    return ran.stderr
-
-
-def printed(text):
+def printed(path):
     """Time or frequency, and displacements of the one node, of each block."""
     rows, at = [], None
-    for line in text.splitlines():
+    for line in open(path):
         if "displacements" in line:
             at = float(line.split()[-1])
         elif at is not None and len(line.split()) == 4:
@@ -46,23 +34,21 @@ with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     for deck, modes, kind, step, ratio in (("beamdy1", 30, "linear", 2e-7, 0), ("beamdy5", 30, "linear", 2e-7, 0), ("beamdy5", 30, "linear", 2e-7, 0.05),
                                            ("beamdy8", 10, "nonlinear", 0, 0)):
-        path = FOLDER + deck + ".inp"
-        text = open(path).read() if os.path.exists(path) else gzip.open(path + ".gz", "rt").read()
-        text = text.replace("C3D20R", "C3D20").replace("\n10,0.01", f"\n{modes},")
+        text = ccx.stored(deck + ".inp").replace("C3D20R", "C3D20").replace("\n10,0.01", f"\n{modes},")
         if ratio:
             text = text.replace("*MODAL DAMPING,RAYLEIGH\n,,5000.,0.", f"*MODAL DAMPING\n1,10,{ratio}\n11,{modes},{ratio}")
-        open(deck + ".inp", "w").write(text)
-        run("ccx", deck)
-        theirs = printed(open(deck + ".dat").read())
-        talk = run("hilo-import", deck + ".inp", "--units", "mm-t-s", "-o", "mesh.h5", "--scene-out", "scene.toml")
-        lost = [line for line in talk.splitlines() if "not read" in line and "*NODE PRINT" not in line and "*EL PRINT" not in line]
+        ccx.write(deck + ".inp", text)
+        ccx.run("ccx", deck)
+        theirs = printed(deck + ".dat")
+        talk = ccx.run("hilo-import", deck + ".inp", "--units", "mm-t-s", "-o", "mesh.h5", "--scene-out", "scene.toml")
+        lost = ccx.not_read(talk)
         command = re.search(r"`(hilo-post response [^`]*)`", talk)
         scene = open("scene.toml").read()
         if not command:
             scene = re.sub(r"^force = .*$", "force = [0, -1e-3, 0]", re.sub(r"^step = .*$", f"step = {step}", scene, flags=re.M), flags=re.M) + '\n[[probe]]\nname = "N1"\non = "N1"\n'
         open("scene.toml", "w").write(scene)
-        run("hilo-tag", "--quiet", "mesh.h5", "--rest", kind, "-o", "tags.h5")
-        run("hilo-solve", "--quiet", "scene.toml", "tags.h5", "-o", "modes.h5" if command else "run.h5")
+        ccx.run("hilo-tag", "--quiet", "mesh.h5", "--rest", kind, "-o", "tags.h5")
+        ccx.run("hilo-solve", "--quiet", "scene.toml", "tags.h5", "-o", "modes.h5" if command else "run.h5")
         if command:
             table = []
             for f in theirs[::2, 0]:  # ccx prints the real part, then the imaginary one

@@ -5,25 +5,16 @@ rigid body, a kinematic and a distributing coupling, and held by a spring.  Load
 And its beamptied2, two meshes of C3D20R that *TIE holds together: there nodes follow faces, here the rows are integrals.
 
   ccx_ties.py REPO BIN"""
-import gzip
 import os
 import re
-import shutil
-import subprocess
 import sys
 import tempfile
 
-import h5py
-import numpy as np
+import calculix as ccx
 
-if shutil.which("ccx") is None:
-    print("this system has no CalculiX to compare with")
-    sys.exit(77)
-
-tools = os.path.abspath(sys.argv[2])
+ccx.tools()
 LIMIT = 2e-5  # of the largest displacement: printed digits, and what a thousandth of the load leaves of nonlinear terms
 OF_TIES = 3e-4  # of the same, where the rows of a tie are others
-FOLDER = "/usr/share/doc/calculix-ccx-test/examples/test/"
 SMALL = 1e-3
 FACES = [(0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 4, 5), (1, 2, 5, 6), (2, 3, 6, 7), (0, 3, 4, 7)]  # S1.. of a hexahedron
 COUPLING = "*SURFACE, NAME=END, TYPE=NODE\nN1,\n*COUPLING, REF NODE=262, SURFACE=END, CONSTRAINT NAME=C1\n*{}\n"
@@ -33,11 +24,6 @@ TIES = {
     "distributing": ("*SURFACE, NAME=END\nFACES" + COUPLING[COUPLING.index("*COUPLING"):].format("DISTRIBUTING\n1,6"), "262,1,.2\n262,2,.1\n262,3,.7\n"),
     "spring": ("*ELEMENT, TYPE=SPRINGA, ELSET=ES\n900,5,1\n*SPRING, ELSET=ES\n\n300.\n", "5,1,.2\n6,3,.3\n"),
 }
-
-
-def source(deck):
-    path = FOLDER + deck + ".inp"
-    return open(path).read() if os.path.exists(path) else gzip.open(path + ".gz", "rt").read()
 
 
 def end_faces(text):
@@ -52,50 +38,23 @@ def end_faces(text):
     return lines
 
 
-def run(*command):
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-
-
-def displacements(path):
-    u = {}
-    for line in open(path):
-        f = line.split()
-        if len(f) == 4 and f[0].isdigit():
-            u[int(f[0])] = [float(x) for x in f[1:]]
-    return u
-
-
 def hanging(tie, loads):
-    text = source("beamprb").replace("C3D20R", "C3D20")
+    text = ccx.stored("beamprb.inp").replace("C3D20R", "C3D20")
     text = re.sub(r"\*RIGID BODY.*\n", lambda _: tie.replace("FACES", end_faces(text)), text)
     text = re.sub(r"\*CLOAD\n.*\n", lambda _: "*CLOAD\n" + loads, text)
     return re.sub(r"\*NODE FILE\nU\n", lambda _: "*NODE PRINT, NSET=Nall\nU\n", text)
 
 
 def compare(name, text, limit):
-    open("deck.inp", "w").write(text)
-    run("ccx", "deck")
-    truth = displacements("deck.dat")
-    run(f"{tools}/hilo-import", "deck.inp", "-o", "mesh.h5", "--scene-out", "scene.toml")
-    scene = open("scene.toml").read()
-    scene = re.sub(r"^((?:force|torque) = )\[(.*)\]$",
-                   lambda m: m[1] + str([SMALL * float(x) for x in m[2].split(",")]), scene, flags=re.M)
-    open("scene.toml", "w").write(scene)
-    run(f"{tools}/hilo-solve", "--quiet", "scene.toml", "-o", "run.h5")
-    with h5py.File("mesh.h5") as m, h5py.File("run.h5") as r:
-        ids = m["mesh/nodes/id"][:]
-        u = r["field"][sorted(r["field"])[-1]]["displacement"][:] / SMALL
-    expected = np.array([truth[i] for i in ids])
-    largest = abs(expected).max()
-    difference = abs(u - expected).max() / largest
-    print(f"{name:<16}{len(ids):>7}{largest:>14.4g}{difference:>12.1e}{limit:>9.0e}  {'agrees' if difference < limit else 'DIFFERS'}")
+    ccx.write("deck.inp", text)
+    ccx.run("ccx", "deck")
+    ccx.imported("deck")
+    nodes, largest, difference = ccx.apart(ccx.solved("", SMALL), ccx.last(ccx.printed(open("deck.dat"))))
+    print(f"{name:<16}{nodes:>7}{largest:>14.4g}{difference:>12.1e}{limit:>9.0e}  {'agrees' if difference < limit else 'DIFFERS'}")
     return difference < limit
 
 
-if not os.path.isdir(FOLDER):
-    print("ccx_ties: calculix-ccx-test is not installed", file=sys.stderr)
-    sys.exit(4)
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     print(f"{'tie':<16}{'nodes':>7}{'largest u':>14}{'difference':>12}{'limit':>9}")
-    sys.exit(0 if all([compare(name, hanging(*case), LIMIT) for name, case in TIES.items()] + [compare("surfaces", source("beamptied2"), OF_TIES)]) else 1)
+    sys.exit(0 if all([compare(name, hanging(*case), LIMIT) for name, case in TIES.items()] + [compare("surfaces", ccx.stored("beamptied2.inp"), OF_TIES)]) else 1)

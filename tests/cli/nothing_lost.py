@@ -4,9 +4,7 @@
 hilo-import has are those of the deck, or it says which kind of thing it left out.
 Usage: nothing_lost.py REPO BIN [DECK...]"""
 import collections
-import gzip
 import json
-import os
 import pathlib
 import subprocess
 import sys
@@ -16,10 +14,10 @@ import tomllib
 import h5py
 import numpy as np
 
+import calculix
+
 repo, tools, wanted = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), sys.argv[3:]
-folder = pathlib.Path("/usr/share/doc/calculix-ccx-test/examples/test")
-if not folder.is_dir():
-    sys.exit(f"nothing_lost: no {folder} (apt-get install calculix-ccx-test)")
+calculix.tools(need_ccx=False)
 MISREAD = {"scheibejc"}  # a keyword line ends with a comma, and its data follow
 NODES = {"C3D4": 4, "C3D6": 6, "C3D8": 8, "C3D8R": 8, "C3D8I": 8, "C3D10": 10, "C3D10T": 10, "C3D15": 15, "C3D20": 20, "C3D20R": 20, "C3D20RI": 20}
 BESIDE = {"SPRINGA": 2, "SPRING1": 1, "SPRING2": 2, "DASHPOTA": 2, "MASS": 1, "DCOUP3D": 1}
@@ -260,9 +258,7 @@ def judge(deck, scene, mesh, told, said):
 counts, faults = collections.Counter(), []
 with tempfile.TemporaryDirectory() as work:
     work = pathlib.Path(work)
-    for source in sorted([*folder.glob("*.inp"), *folder.glob("*.inp.gz")]):
-        name = source.name.removesuffix(".gz")
-        (work / name).write_bytes(gzip.open(source).read() if source.suffix == ".gz" else source.read_bytes())
+    calculix.unpack(work)
     for path in sorted(work.glob("*.inp")):
         if wanted and path.stem not in wanted:
             continue

@@ -13,13 +13,12 @@ What must hold: run.h5, where it is there, is sound, with the rows of the last c
 byte; with --restart the run goes on to the same numbers bit by bit, and it can wherever a checkpoint was synced."""
 import os
 import random
-import shutil
 import sys
 import tempfile
 
 import h5py
 
-from drill import SCENES, command, numbers, run, same, scene_files
+from drill import command, numbers, run, same, scene_files
 
 repo, tools, library = (os.path.abspath(a) for a in sys.argv[1:4])
 stride = int(sys.argv[4]) if len(sys.argv) > 4 else 101

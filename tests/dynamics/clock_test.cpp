@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "dynamics/scenes.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -15,8 +16,7 @@ const std::string pendulum = "gravity = [0, -9.81, 0]\n" + body("rod", 1, {-0.5,
 std::string timed(const std::string& scene, const std::string& options = "") {
   const Workplace w;
   w.write("scene.toml", scene);
-  const Ran ran = w.run("hilo-solve --quiet scene.toml -o run.h5 " + options);
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5 " + options));
   const std::string text = text_of(w / "run.json");
   const auto at = text.find("\"clocks\": ") + 10;
   return text.substr(at, text.find("\n", at) - at - 1);
@@ -49,8 +49,7 @@ TEST(Clock, TwoScenesThatMeanTheSameHaveTheSameAnswer) {
   const Workplace w;
   const auto end = [&](const std::string& more, const std::string& options = "") {
     w.write("scene.toml", pendulum + more + "[[probe]]\nname = \"tip\"\non = \"rod\"\nat = [-1, 0, 0]\n[time]\nend = 2\nstep = 0.02\n");
-    const Ran ran = w.run("hilo-solve --quiet scene.toml -o run.h5 " + options);
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5 " + options));
     return Vec3(Results(w / "run.h5").at("probe/tip", 2).head<3>());
   };
   const Vec3 alone = end(""), truth = end("", integrator("radau") + "--set time.step=2e-3"), without = end("", integrator("mid-point"));
@@ -85,8 +84,7 @@ TEST(Clock, DoesLittleHarmWhereWorkIsNotExact) {
                                             c, torque) +
                                 "[[probe]]\nname = \"tip\"\non = \"rod\"\nat = [-1, 0, 0]\n[time]\nend = 2\n");
       const auto end = [&](const std::string& options) {
-        const Ran ran = w.run("hilo-solve --quiet scene.toml -o run.h5 " + options);
-        EXPECT_EQ(ran.exit, 0) << ran.err;
+        succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5 " + options));
         const auto x = Results(w / "run.h5").history("probe/tip");
         Eigen::MatrixXd places(20, 3);  // every tenth of a second
         for (int k = 0; k < 20; ++k) places.row(k) = x.row((k + 1) * (x.rows() - 1) / 20).head(3);
@@ -123,8 +121,7 @@ TEST(Clock, TakesASpringToFourthOrder) {
                             "[[spring]]\nkind = \"torsion\"\nname = \"spring\"\na = \"ground\"\nb = \"disc\"\naxis = [0, 0, 1]\n"
                             "stiffness = 0.8\nangle = 0.5\n[[probe]]\nname = \"rim\"\non = \"disc\"\nat = [1, 0, 0]\n[time]\nend = 10\n");
   const auto error = [&](const char* step, const char* method) {
-    const Ran ran = w.run(std::string("hilo-solve --quiet scene.toml -o run.h5 --set time.step=") + step + " " + integrator(method));
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(w.run(std::string("hilo-solve --quiet scene.toml -o run.h5 --set time.step=") + step + " " + integrator(method)));
     const auto x = Results(w / "run.h5").at("probe/rim", 10);
     return std::abs(std::atan2(x[1], x[0]) - 0.5 * (1 - std::cos(2 * 10.0)));
   };
@@ -137,8 +134,7 @@ TEST(Clock, TakesASpringToFourthOrder) {
 TEST(Clock, LeavesEnergyAloneAtLongSteps) {
   const Workplace w;
   w.write("scene.toml", pendulum + "[time]\nend = 40\nstep = 0.2\n");
-  const Ran ran = w.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5"));
   const auto e = Results(w / "run.h5").history("energy");
   EXPECT_LT((e.col(0) + e.col(2)).array().abs().maxCoeff(), 1e-10 * e.col(0).maxCoeff());
 }

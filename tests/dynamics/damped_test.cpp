@@ -2,6 +2,7 @@
 // Damping: what the matrix of Newton forgets costs iterations, and what the balance forgets looks like energy from nowhere.
 #include "dynamics/scenes.hpp"
 #include "model/scene.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -20,8 +21,7 @@ double displacement(double t) {
 TEST(Damped, RadauGoesThroughAStiffDamperInTheStepsAskedFor) {
   const Workplace w;
   w.write("scene.toml", damped);
-  const Ran ran = w.run("hilo-solve --quiet scene.toml -o run.h5 " + integrator("radau"));
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5 " + integrator("radau")));
   EXPECT_EQ(number_of(w, "run.json", "steps"), 10);
   EXPECT_EQ(number_of(w, "run.json", "cuts"), 0);
   EXPECT_LT(number_of(w, "run.json", "newton_iterations"), 40) << "linear: a matrix and what its rounding leaves";
@@ -39,8 +39,7 @@ TEST(Damped, RadauGoesThroughStiffnessProportionalDamping) {
           "\"soft\"\ndamping = 1e-3\n[[motion]]\nkind = \"fixed\"\nname = \"clamp\"\non = \"xmin\"\n[[probe]]\nname = \"tip\"\non = "
           "\"xmax\"\n[time]\nend = 0.2\nstep = 0.01\n");
   const auto tip = [&](const std::string& options) {
-    const Ran ran = w.run("hilo-solve --quiet scene.toml -o run.h5 " + options);
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5 " + options));
     return Results(w / "run.h5").at("probe/tip", 0.2)[2];
   };
   const double radau = tip(integrator("radau"));
@@ -54,8 +53,7 @@ TEST(Damped, RadauGoesThroughStiffnessProportionalDamping) {
 void expect_balance(const Workplace& w, const std::string& scene, const std::string& method, const char* coarse_step,
                     const char* fine_step) {
   const auto balance = [&](const char* step) {
-    const Ran ran = w.run("hilo-solve --quiet " + scene + " -o run.h5 " + integrator(method) + "--set time.step=" + step);
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(w.run("hilo-solve --quiet " + scene + " -o run.h5 " + integrator(method) + "--set time.step=" + step));
     return number_of(w, "run.json", "energy_balance");
   };
   const double coarse = balance(coarse_step), fine = balance(fine_step);
@@ -81,8 +79,7 @@ TEST(Damped, WhatAFlexibleRegionTakesIsInTheBalanceOfEveryMethod) {
           "[[motion]]\nkind = \"fixed\"\nname = \"clamp\"\non = \"xmin\"\n"
           "[[initial]]\non = [\"block\"]\nvelocity = [0, 0, 0.3]\n[time]\nend = 1\n");
   for (const char* level : {"nonlinear", "linear"}) {
-    const Ran ran = w.run(std::string("hilo-tag --quiet beam.h5 --") + level + " block -o " + level + ".h5");
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(w.run(std::string("hilo-tag --quiet beam.h5 --") + level + " block -o " + level + ".h5"));
     for (const std::string& method : choices("time", "integrator"))
       if (method != "gauss" || std::string(level) == "linear")
         expect_balance(w, std::string("scene.toml ") + level + ".h5", method, "4e-3", "1e-3");

@@ -7,6 +7,7 @@
 #include "dynamics/integrator/make.hpp"
 #include "dynamics/scenes.hpp"
 #include "dynamics/start.hpp"
+#include "succeeded.hpp"
 #include "verify/block_mesh.hpp"
 
 namespace hilo::test {
@@ -86,8 +87,7 @@ TEST(Gauss, TheWorkOfMotionsAndMomentsIsExact) {
   const Workplace w;
   w.write("scene.toml", moved());
   for (const std::string h : {"0.01", "0.04"}) {
-    const Ran ran = w.run("hilo-solve --quiet scene.toml -o run.h5 --set time.step=" + h + " " + integrator("gauss"));
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5 --set time.step=" + h + " " + integrator("gauss")));
     const auto energy = Results(w / "run.h5").history("energy");
     EXPECT_GT(energy.col(3).cwiseAbs().maxCoeff(), 1);
     EXPECT_LT(energy.col(5).cwiseAbs().maxCoeff(), 1e-12 * energy.col(0).maxCoeff()) << h;
@@ -113,9 +113,8 @@ TEST(Gauss, IsOfOrderSixWithEveryKindOfRow) {
   for (const auto& [name, text] : {std::pair<std::string, std::string>{"shaft", shaft}, {"disc", disc}, {"moved", moved()}}) {
     w.write(name + ".toml", text);
     const auto end = [&](const std::string& method, const std::string& h) {
-      const Ran ran = w.run("hilo-solve --quiet " + name + ".toml -o run.h5 --set solver.tolerance=1e-12 --set time.step=" + h + " " +
-                            integrator(method));
-      EXPECT_EQ(ran.exit, 0) << ran.err;
+      succeeded(w.run("hilo-solve --quiet " + name + ".toml -o run.h5 --set solver.tolerance=1e-12 --set time.step=" + h + " " +
+                      integrator(method)));
       return Vec3(Results(w / "run.h5").at("probe/tip", 0.4).head<3>());
     };
     const Vec3 truth = end("radau", "0.0004");
@@ -128,9 +127,8 @@ TEST(Gauss, IsOfOrderSixWithEveryKindOfRow) {
 TEST(Gauss, HoldsAtNearlyTwoRadiansAStep) {
   const Workplace w;
   const OrderCase c = top(w);
-  const Ran ran =
-      w.run("hilo-solve --quiet top.toml -o run.h5 --set time.step=0.012 --set time.end=0.06 --set solver.cuts=0 " + integrator("gauss"));
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(
+      w.run("hilo-solve --quiet top.toml -o run.h5 --set time.step=0.012 --set time.end=0.06 --set solver.cuts=0 " + integrator("gauss")));
   const Results r(w / "run.h5");
   EXPECT_LT((r.at("probe/tip", c.t[0]).head<3>() - c.truth[0].x).norm(), 1e-4);  // 4e-5 of an arm of 1 m
   const auto e = r.history("energy");

@@ -2,6 +2,7 @@
 // Orders of position, velocity, acceleration and reaction of a brick hung at its corner (stability.md, PEND3D), against RK4 on Euler's
 // equations in the test itself, which has neither joints nor multipliers.
 #include "dynamics/scenes.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -20,8 +21,7 @@ struct Errors {
 
 Errors errors(const Workplace& w, double t, const std::string& h, const std::string& options) {
   pend3d(w);
-  const Ran ran = w.run("hilo-solve --quiet pend3d.toml -o run.h5 --set time.step=" + h + " " + options);
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  succeeded(w.run("hilo-solve --quiet pend3d.toml -o run.h5 --set time.step=" + h + " " + options));
   const Results r(w / "run.h5");
   const auto p = r.at("probe/far", t);
   const auto [truth, felt] = integrate(t);
@@ -55,34 +55,11 @@ TEST(EnergyMomentum, IsOfSecondOrderInTheFirstRowToo) { expect_second_order(0, "
 // Truth: a mass under a force that jumps has the acceleration F/m from the jump on and not a mean of before and after.
 TEST(Recorder, TakesTheValueAfterALoadJump) {
   const Workplace w;
-  w.write("scene.toml", R"(
-[[body]]
-name = "mass"
-mass = 2
-com = [0, 0, 0]
-inertia = [1, 1, 1]
-[[spring]]
-kind = "axial"
-name = "spring"
-b = "mass"
-at_a = [-3, 0, 0]
-at_b = [0, 0, 0]
-stiffness = 50
-[[load]]
-kind = "force"
-name = "push"
-on = "mass"
-force = [10, 0, 0]
-history = {t = [0.5, 0.5], value = [0, 1]}
-[[probe]]
-name = "mass"
-on = "mass"
-[time]
-end = 1
-step = 2e-3
-)");
-  const Ran ran = w.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  w.write("scene.toml", body("mass", 2, Vec3::Zero(), {1, 1, 1}) +
+                            spring("axial", "spring", "ground", "mass", "at_a = [-3, 0, 0]\nat_b = [0, 0, 0]\nstiffness = 50") +
+                            force("push", "mass", {10, 0, 0}, "history = {t = [0.5, 0.5], value = [0, 1]}") + probe("mass") +
+                            in_time(1, 2e-3));
+  succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5"));
   const Results r(w / "run.h5");
   EXPECT_NEAR(r.at("probe/mass", 0.498)[6], 0, 1e-10);
   EXPECT_NEAR(r.at("probe/mass", 0.5)[6], 5, 1e-3) << "5 cos 5 (t - 0.5) to second order";
@@ -93,29 +70,10 @@ step = 2e-3
 // Truth: a velocity along the rod cannot be; the projection takes exactly that part away (mass norm, point mass) and says how much.
 TEST(InitialVelocities, AreProjectedOnTheJointsAndTheChangeIsReported) {
   const Workplace w;
-  w.write("scene.toml", R"(
-[[body]]
-name = "bob"
-mass = 2
-com = [1, 0, 0]
-[[joint]]
-kind = "revolute"
-name = "pin"
-b = "bob"
-at = [0, 0, 0]
-axis = [0, 0, 1]
-[[initial]]
-on = ["bob"]
-velocity = [0.25, 3, 0]
-[[probe]]
-name = "bob"
-on = "bob"
-[time]
-end = 0.1
-step = 0.01
-)");
-  const Ran ran = w.run("hilo-solve scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  w.write("scene.toml", "[[body]]\nname = \"bob\"\nmass = 2\ncom = [1, 0, 0]\n" +
+                            axial("revolute", "pin", "ground", "bob", Vec3::Zero(), {0, 0, 1}) + initial("bob", "velocity = [0.25, 3, 0]") +
+                            probe("bob") + in_time(0.1, 0.01));
+  const Ran ran = succeeded(w.run("hilo-solve scene.toml -o run.h5"));
   EXPECT_NE(ran.err.find("initial velocities changed"), std::string::npos) << ran.err;
   const auto p = Results(w / "run.h5").at("probe/bob", 0);
   EXPECT_NEAR(p[3], 0, 1e-12);
@@ -126,30 +84,10 @@ step = 0.01
 // afterwards.
 TEST(Equilibrium, IsAStateTheRunStaysIn) {
   const Workplace w;
-  w.write("scene.toml", R"(
-gravity = [0, 0, -9.81]
-[[body]]
-name = "weight"
-mass = 4
-com = [0, 0, -1]
-inertia = [0.1, 0.1, 0.1]
-[[spring]]
-kind = "axial"
-name = "rope"
-b = "weight"
-at_a = [0, 0, 0]
-at_b = [0, 0, -1]
-stiffness = 1000
-[[probe]]
-name = "weight"
-on = "weight"
-[time]
-start = "equilibrium"
-end = 1
-step = 0.01
-)");
-  const Ran ran = w.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  w.write("scene.toml", "gravity = [0, 0, -9.81]\n" + body("weight", 4, {0, 0, -1}, {0.1, 0.1, 0.1}) +
+                            spring("axial", "rope", "ground", "weight", "at_a = [0, 0, 0]\nat_b = [0, 0, -1]\nstiffness = 1000") +
+                            probe("weight") + in_time(1, 0.01, "start = \"equilibrium\""));
+  succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5"));
   const auto x = Results(w / "run.h5").history("probe/weight");
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     ASSERT_NEAR(x(i, 2), -1 - 4 * 9.81 / 1000, 1e-9);

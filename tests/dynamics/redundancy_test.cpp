@@ -3,6 +3,7 @@
 #include <map>
 
 #include "dynamics/scenes.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -27,8 +28,7 @@ TEST(Redundancy, EveryLoopOfALongRowOfFourBarsHasThreeRowsTooMany) {
     pin("R" + std::to_string(i), crank, rod, {1. * i, 1, 0});
   }
   w.write("row.toml", scene);
-  const Ran ran = w.run("hilo-solve --quiet row.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(w.run("hilo-solve --quiet row.toml -o run.h5"));
   const std::string json = text_of(w / "run.json");
   EXPECT_NE(json.find("\"joint_rows\": " + std::to_string(5 * (3 * n + 1))), std::string::npos);
   EXPECT_NE(json.find("\"redundant_rows\": " + std::to_string(3 * n) + ","), std::string::npos) << json;
@@ -72,8 +72,7 @@ TEST(Redundancy, EveryMeshOfANetHasThreeRowsTooMany) {
           ++n_pins;
   }
   w.write("net.toml", scene);
-  const Ran ran = w.run("hilo-solve --quiet net.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(w.run("hilo-solve --quiet net.toml -o run.h5"));
   const std::string json = text_of(w / "run.json");
   EXPECT_NE(json.find("\"joint_rows\": " + std::to_string(5 * n_pins)), std::string::npos);
   EXPECT_NE(json.find("\"redundant_rows\": " + std::to_string(3 * m * m) + ","), std::string::npos) << json;

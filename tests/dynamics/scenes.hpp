@@ -4,6 +4,8 @@
 #include <sstream>
 
 #include "dynamics/truth.hpp"
+#include "scene_parts.hpp"
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -25,10 +27,8 @@ struct Errors {
 
 /// Root of the sum of squares over the instants: a single one may be where an error changes sign.
 inline Errors errors(const Workplace& w, const OrderCase& c, const std::string& options, double h) {
-  const Ran ran = w.run("hilo-solve --quiet " + c.scene + " -o run.h5 --set time.step=" + std::to_string(h) +
-                        " --set time.end=" + std::to_string(c.t[2] + 10 * h) + " --set solver.tolerance=1e-12 " + options);
-  EXPECT_EQ(ran.exit, 0) << ran.err;
-  if (ran.exit != 0) return {};
+  succeeded(w.run("hilo-solve --quiet " + c.scene + " -o run.h5 --set time.step=" + std::to_string(h) +
+                  " --set time.end=" + std::to_string(c.t[2] + 10 * h) + " --set solver.tolerance=1e-12 " + options));
   const Results r(w / "run.h5");
   Errors e{};
   for (int i = 0; i < 3; ++i) {
@@ -47,24 +47,6 @@ inline double number_of(const Workplace& w, const std::string& file, const std::
   const std::string text = text_of(w / file);
   const auto at = text.find("\"" + key + "\": ");
   return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + key.size() + 4));
-}
-
-inline std::string body(const std::string& name, double mass, const Vec3& com, const Vec3& J, const std::string& more = "") {
-  std::ostringstream s;
-  s.precision(17);
-  s << "[[body]]\nname = \"" << name << "\"\nmass = " << mass << "\ncom = [" << com[0] << ", " << com[1] << ", " << com[2]
-    << "]\ninertia = [" << J[0] << ", " << J[1] << ", " << J[2] << "]\n"
-    << more;
-  return s.str();
-}
-inline std::string joint(const std::string& kind, const std::string& name, const std::string& a, const std::string& b, const Vec3& at,
-                         const std::string& more = "") {
-  std::ostringstream s;
-  s.precision(17);
-  s << "[[joint]]\nkind = \"" << kind << "\"\nname = \"" << name << "\"\na = \"" << a << "\"\nb = \"" << b << "\"\nat = [" << at[0] << ", "
-    << at[1] << ", " << at[2] << "]\n"
-    << more;
-  return s.str();
 }
 
 inline OrderCase pend3d(const Workplace& w) {

@@ -8,6 +8,7 @@
 #include "dynamics/kept_run.hpp"
 #include "dynamics/scenes.hpp"
 #include "ranks.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -32,8 +33,7 @@ struct Told {
 
 Told run_of(const Workplace& w, const std::string& options, const Results& truth, int ranks = 1) {
   const std::string command = "hilo-solve scene.toml " + std::string(ranks > 1 ? "parts.h5" : "mesh.h5") + " -o run.h5 " + options;
-  const Ran ran = ranks > 1 ? mpirun(ranks, command, w.path()) : w.run(command);
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  const Ran ran = succeeded(ranks > 1 ? mpirun(ranks, command, w.path()) : w.run(command));
   const Results r(w / "run.h5");
   double error = 0;  // the largest: at the end it may be about to change its sign
   for (Eigen::Index i = 1; i < r.t().size(); ++i)
@@ -47,9 +47,8 @@ Told run_of(const Workplace& w, const std::string& options, const Results& truth
 }
 
 Results truth_of(const Workplace& w, const std::string& step) {
-  const Ran ran = w.run("hilo-solve --quiet scene.toml mesh.h5 -o truth.h5 --set time.error_estimate='\"never\"' --set time.step=" + step +
-                        " " + integrator("bathe"));
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  succeeded(w.run("hilo-solve --quiet scene.toml mesh.h5 -o truth.h5 --set time.error_estimate='\"never\"' --set time.step=" + step + " " +
+                  integrator("bathe")));
   return Results(w / "truth.h5");
 }
 
@@ -105,35 +104,15 @@ TEST(StepErrors, AreNotThoseOfVibrationsThatStayAsSmallAsTheyAre) {
           "[[load]]\nkind = \"force\"\nname = \"knock\"\non = \"xmax\"\nforce = [2e5, 0, 0]\n"
           "history = {t = [0, 2e-3, 2e-3, 1], value = [1, 1, 0, 0]}\n"
           "[[probe]]\nname = \"tip\"\non = \"xmax\"\n[time]\nend = 2\nstep = 2e-3\n");
-  const Ran ran = w.run("hilo-solve scene.toml mesh.h5 -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Ran ran = succeeded(w.run("hilo-solve scene.toml mesh.h5 -o run.h5"));
   EXPECT_LT(number_of(w, "run.json", "largest_share"), 0.01) << text_of(w / "run.json");
   EXPECT_EQ(ran.err.find("positions are off"), std::string::npos) << ran.err;
 }
 
 /// A mass on a spring, from the middle at 1 m/s: (v/w) sin(w t), w of 10 rad/s.
-constexpr const char* mass_on_a_spring = R"([[body]]
-name = "mass"
-mass = 1
-com = [0, 0, 0]
-inertia = [1, 1, 1]
-[[spring]]
-kind = "bushing"
-name = "spring"
-b = "mass"
-at = [0, 0, 0]
-stiffness = [100, 0, 0]
-[[initial]]
-on = ["mass"]
-velocity = [1, 0, 0]
-[[probe]]
-name = "mass"
-on = "mass"
-[time]
-end = 3
-step = 0.01
-error_estimate = "steps"
-)";
+const std::string mass_on_a_spring =
+    body("mass", 1, Vec3::Zero(), {1, 1, 1}) + spring("bushing", "spring", "ground", "mass", "at = [0, 0, 0]\nstiffness = [100, 0, 0]") +
+    initial("mass", "velocity = [1, 0, 0]") + probe("mass") + in_time(3, 0.01, "error_estimate = \"steps\"");
 
 double error_of_the_mass(const Workplace& w) {
   const Results r(w / "run.h5");
@@ -153,8 +132,7 @@ TEST(StepErrors, AreThoseOfTheMethod) {
         "\"wbz\" --set time.rho=0", "\"U0\" --set time.rho=0.5", "\"U0\" --set time.rho=0 --set time.rho3=1", "\"V0\" --set time.rho=0.5",
         "\"V0\" --set time.rho=0 --set time.averaged=false", "\"bathe\"", "\"bdf2\""}) {
     const std::string quoted = "'" + method.substr(0, method.find('"', 1) + 1) + "'" + method.substr(method.find('"', 1) + 1);
-    const Ran ran = w.run("hilo-solve scene.toml -o run.h5 --set time.integrator=" + quoted);
-    ASSERT_EQ(ran.exit, 0) << method << ran.err;
+    succeeded(w.run("hilo-solve scene.toml -o run.h5 --set time.integrator=" + quoted), method);
     const double error = error_of_the_mass(w), told = number_of(w, "run.json", "end");
     fmt::print("{}: true {:.3g} m, told {:.3g} m\n", method, error, told);
     EXPECT_GT(told, 0.5 * error) << method;
@@ -168,8 +146,7 @@ TEST(StepErrors, AreSeenWhereAPeriodIsAStride) {
   w.write("scene.toml", mass_on_a_spring);
   for (const double steps : {2., 2.05, 4., 7.9, 8., 16., 30., 32., 33., 64.}) {
     const double h = M_PI / 5 / steps;
-    const Ran ran = w.run(fmt::format("hilo-solve scene.toml -o run.h5 --set time.step={} --set time.end={}", h, 300 * h));
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(w.run(fmt::format("hilo-solve scene.toml -o run.h5 --set time.step={} --set time.end={}", h, 300 * h)));
     const double error = error_of_the_mass(w), told = number_of(w, "run.json", "end");
     fmt::print("a period of {} steps: true {:.3g} m, told {:.3g} m\n", steps, error, told);
     EXPECT_GT(told, 0.1 * error) << steps;
@@ -183,8 +160,7 @@ TEST(StepErrors, OfOtherOrdersAreNotTold) {
     w.write("scene.toml", strip(w.path(), 2, 1,
                                 fmt::format("end = 0.1\nstep = 0.005\nintegrator = \"{}\"\nerror_estimate = \"steps\"\n{}", method,
                                             method[0] == 'n' ? "gamma = 0.6\n" : "")));
-    const Ran ran = w.run("hilo-solve scene.toml mesh.h5 -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(w.run("hilo-solve scene.toml mesh.h5 -o run.h5"));
     EXPECT_NE(
         text_of(w / "run.json").find("\"why_not\": \"steps alone tell the error of methods of second order, not of " + std::string(method)),
         std::string::npos)

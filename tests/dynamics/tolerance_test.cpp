@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "dynamics/scenes.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -48,8 +49,7 @@ TEST_P(Tolerance, BoundsTheTrueErrorAndDoesNotWasteIt) {
   const auto& [name, end, step, first] = GetParam();
   write_scene(w, name);
   const auto run = [&](const std::string& options, const std::string& out) {
-    const Ran ran = w.run("hilo-solve --quiet " + name + ".toml -o " + out + " --set time.end=" + end + " " + options);
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(w.run("hilo-solve --quiet " + name + ".toml -o " + out + " --set time.end=" + end + " " + options));
     return Results(w / out);
   };
   const bool flexible = name == "dpsmooth";
@@ -82,12 +82,10 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Tolerance,
 TEST(ErrorEstimate, OfAFixedStepIsToldAndWarnedOf) {
   const Workplace w;
   write_scene(w, "tolerance_48");
-  const Ran fine = w.run("hilo-solve --quiet tolerance_48.toml -o truth.h5 --set time.step=2e-3 " + integrator("gauss"));
-  ASSERT_EQ(fine.exit, 0) << fine.err;
+  succeeded(w.run("hilo-solve --quiet tolerance_48.toml -o truth.h5 --set time.step=2e-3 " + integrator("gauss")));
   const auto truth = last_points(Results(w / "truth.h5"), false);
   for (const char* step : {"0.02296733552", "2e-3", "2.5e-4"}) {
-    const Ran ran = w.run(std::string("hilo-solve tolerance_48.toml -o run.h5 --set time.step=") + step);
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const Ran ran = succeeded(w.run(std::string("hilo-solve tolerance_48.toml -o run.h5 --set time.step=") + step));
     const auto points = last_points(Results(w / "run.h5"), false);
     double error = 0;
     for (size_t i = 0; i < truth.size(); ++i) error = std::max(error, (points[i] - truth[i]).norm());
@@ -101,8 +99,7 @@ TEST(ErrorEstimate, OfAFixedStepIsToldAndWarnedOf) {
 // A closed chain that two joints hit hard: steps are cut, those twice as long fail, and what cannot be estimated is told.
 TEST(ErrorEstimate, ThatIsLostIsTold) {
   const Workplace w;
-  const Ran ran = w.run("hilo-solve " + std::string(HILO_SOURCE) + "/tests/cases/lost_estimate.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Ran ran = succeeded(w.run("hilo-solve " + std::string(HILO_SOURCE) + "/tests/cases/lost_estimate.toml -o run.h5"));
   EXPECT_NE(ran.err.find("the error of positions is not known: a step twice as long fails"), std::string::npos) << ran.err;
 }
 
@@ -118,11 +115,9 @@ spin = [3, 0.5, 1]
 end = 100
 tolerance = 1e-6
 )");
-  const Ran ran = w.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
-  const Ran fine =
-      w.run("hilo-solve --quiet scene.toml -o truth.h5 --set time.step=0.02 --set time.error_estimate='\"never\"' " + integrator("gauss"));
-  ASSERT_EQ(fine.exit, 0) << fine.err;
+  succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5"));
+  succeeded(
+      w.run("hilo-solve --quiet scene.toml -o truth.h5 --set time.step=0.02 --set time.error_estimate='\"never\"' " + integrator("gauss")));
   const auto points = last_points(Results(w / "run.h5"), false), truth = last_points(Results(w / "truth.h5"), false);
   double error = 0;
   for (size_t i = 0; i < truth.size(); ++i) error = std::max(error, (points[i] - truth[i]).norm());
@@ -172,8 +167,7 @@ TEST(Chaos, IsToldWithTheTimeAfterWhichPositionsMeanNothing) {
   for (const char* steps : {"--set time.tolerance=1e-4", "--set time.step=5e-4"}) {
     const Workplace w;
     write_double_pendulum(w);
-    const Ran ran = w.run(std::string("hilo-solve scene.toml -o run.h5 ") + steps);
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const Ran ran = succeeded(w.run(std::string("hilo-solve scene.toml -o run.h5 ") + steps));
     EXPECT_NE(ran.err.find("the motion is chaotic"), std::string::npos) << ran.err;
     const double told = number_of(w, "run.json", "meaningless_from"), motion = number_of(w, "run.json", "motion");
     const Results r(w / "run.h5");
@@ -190,8 +184,7 @@ TEST(Chaos, IsToldWithTheTimeAfterWhichPositionsMeanNothing) {
   for (const char* end : {"2", "10"}) {
     const Workplace w;
     write_double_pendulum(w);
-    const Ran ran = w.run(std::string("hilo-solve scene.toml -o run.h5 --set time.tolerance=1e-4 --set time.end=") + end);
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const Ran ran = succeeded(w.run(std::string("hilo-solve scene.toml -o run.h5 --set time.tolerance=1e-4 --set time.end=") + end));
     EXPECT_EQ(ran.err.find("not met"), std::string::npos) << ran.err;
     const Vec3 centre = last_points(Results(w / "run.h5"), false)[0];  // of the lower one, the first by name
     EXPECT_LT((centre - DoublePendulum().at(std::stod(end))).norm(), 2e-4 * number_of(w, "run.json", "length")) << end;
@@ -205,12 +198,10 @@ TEST(SingularStart, ByTolerance) {
     std::filesystem::copy_file(std::string(HILO_SOURCE) + "/tests/cases/" + file, w / file);
   for (const char* command : {"hilo-import --quiet tolerance_singular_start.inp --regions b0,b1,b2 -o mesh.h5",
                               "hilo-tag --quiet mesh.h5 --rest nonlinear -o tags.h5"}) {
-    const Ran ran = w.run(command);
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(w.run(command));
   }
   const auto ends = [&](const std::string& more) {
-    const Ran ran = w.run("hilo-solve --quiet tolerance_singular_start.toml tags.h5 -o run.h5 --set time.end=0.02 " + more);
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(w.run("hilo-solve --quiet tolerance_singular_start.toml tags.h5 -o run.h5 --set time.end=0.02 " + more));
     std::vector<Vec3> out;
     const Results r(w / "run.h5");
     for (const char* probe : {"pb0", "pb1", "pb2"}) {
@@ -242,9 +233,8 @@ TEST(VariableSteps, KeepSecondOrderInPositionVelocityAccelerationAndReaction) {
                                     std::string("hht"), std::string("wbz"), std::string("U0"), std::string("bdf2")}) {
     double e[2][4] = {}, steps[2] = {};
     for (int k = 0; k < 2; ++k) {
-      const Ran ran = w.run("hilo-solve --quiet pend3d.toml -o run.h5 --set time.end=1 --set time.step=0.05 --set time.rho=0.6 " +
-                            integrator(method) + "--set time.tolerance=" + (k ? "1e-6" : "1e-4"));
-      ASSERT_EQ(ran.exit, 0) << ran.err;
+      succeeded(w.run("hilo-solve --quiet pend3d.toml -o run.h5 --set time.end=1 --set time.step=0.05 --set time.rho=0.6 " +
+                      integrator(method) + "--set time.tolerance=" + (k ? "1e-6" : "1e-4")));
       const Results r(w / "run.h5");
       const auto p = r.history("probe/far"), f = r.history("joint/corner");
       std::vector<double> times(r.t().begin(), r.t().end());
@@ -272,23 +262,14 @@ TEST(VariableSteps, KeepSecondOrderInPositionVelocityAccelerationAndReaction) {
 // Truth: a table with a jump at 0.5 and a kink at 0.73 has rows at exactly these times, whatever the steps.
 TEST(Events, OfLoadTablesAreHitExactly) {
   const Workplace w;
-  w.write("scene.toml", body("mass", 2, Vec3::Zero(), Vec3::Ones()) + R"(
-[[load]]
-kind = "force"
-name = "push"
-on = "mass"
-force = [10, 0, 0]
-history = {t = [0.5, 0.5, 0.73, 1], value = [0, 1, 1, 0]}
-[[probe]]
-name = "mass"
-on = "mass"
-[time]
+  w.write("scene.toml", body("mass", 2, Vec3::Zero(), Vec3::Ones()) +
+                            force("push", "mass", {10, 0, 0}, "history = {t = [0.5, 0.5, 0.73, 1], value = [0, 1, 1, 0]}") + probe("mass") +
+                            R"([time]
 end = 1
 )");
   for (const char* steps : {"--set time.step=0.03", "--set time.tolerance=1e-4"})
     for (const char* method : {"energy-momentum", "generalized-alpha", "U0", "bathe", "bdf2", "radau"}) {
-      const Ran ran = w.run("hilo-solve --quiet scene.toml -o run.h5 " + integrator(method) + steps);
-      ASSERT_EQ(ran.exit, 0) << ran.err;
+      succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5 " + integrator(method) + steps));
       const Results r(w / "run.h5");
       EXPECT_NO_THROW(r.index(0.5)) << steps;
       EXPECT_NO_THROW(r.index(0.73)) << steps;
@@ -301,19 +282,11 @@ end = 1
 // Truth: the times of a table, multiples of ten steps rounded to six digits, are hit by ten steps each and not by eleven.
 TEST(Events, RoundedTimesKeepTheStep) {
   const Workplace w;
-  w.write("scene.toml", body("mass", 2, Vec3::Zero(), Vec3::Ones()) + R"(
-[[load]]
-kind = "force"
-name = "push"
-on = "mass"
-force = [10, 0, 0]
-history = {t = [0.033333, 0.066667, 0.100000, 0.133333, 0.166667], value = [0, 2, 1, 2, 0]}
-[time]
-end = 0.2
-step = 3.3333333333333333e-3
-)");
-  const Ran ran = w.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  w.write("scene.toml", body("mass", 2, Vec3::Zero(), Vec3::Ones()) +
+                            force("push", "mass", {10, 0, 0},
+                                  "history = {t = [0.033333, 0.066667, 0.100000, 0.133333, 0.166667], value = [0, 2, 1, 2, 0]}") +
+                            in_time(0.2, 3.3333333333333333e-3));
+  succeeded(w.run("hilo-solve --quiet scene.toml -o run.h5"));
   const Results r(w / "run.h5");
   EXPECT_EQ(r.t().size(), 61);
   for (const double t : {0.033333, 0.066667, 0.1, 0.133333, 0.166667}) EXPECT_NO_THROW(r.index(t)) << t;

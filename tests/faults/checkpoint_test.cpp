@@ -2,6 +2,7 @@
 // Runs that are stopped from outside say how to go on, and go on to the same numbers; what does not belong together is refused.
 #include "faults.hpp"
 #include "model/store.hpp"
+#include "scene_parts.hpp"
 
 using namespace hilo::test;
 
@@ -10,25 +11,9 @@ namespace {
 constexpr int usage = 1, input = 2, resources = 4, stopped = 6;
 
 /// A pendulum that takes a while.
-const char* const pendulum = R"(gravity = [0, 0, -9.81]
-[[body]]
-name = "arm"
-mass = 2
-com = [0.3, 0, 0]
-inertia = [0.01, 0.05, 0.05]
-[[joint]]
-kind = "revolute"
-name = "pin"
-a = "ground"
-b = "arm"
-at = [0, 0, 0]
-axis = [0, 1, 0]
-[time]
-end = 1000
-step = 1e-3
-[output]
-interval = 1
-)";
+const std::string pendulum = "gravity = [0, 0, -9.81]\n" + body("arm", 2, {0.3, 0, 0}, {0.01, 0.05, 0.05}) +
+                             axial("revolute", "pin", "ground", "arm", {0, 0, 0}, {0, 1, 0}) + in_time(1000, 1e-3) +
+                             "[output]\ninterval = 1\n";
 
 class Stopped : public testing::Test {
  protected:

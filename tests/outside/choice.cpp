@@ -45,36 +45,11 @@ class Buffer final : public Contribution, public Equations, public Revising {
 };
 
 std::string scene(const std::string& time) {
-  return R"([[body]]
-name = "cart"
-mass = 1
-com = [0, 0, 0]
-inertia = [1, 1, 1]
-[[joint]]
-kind = "prismatic"
-name = "rail"
-b = "cart"
-at = [0, 0, 0]
-axis = [1, 0, 0]
-[[spring]]
-kind = "bushing"
-name = "soft"
-b = "cart"
-at = [0, 0, 0]
-stiffness = [100, 0, 0]
-[[load]]
-kind = "force"
-name = "push"
-on = "cart"
-force = [200, 0, 0]
-[[buffer]]
+  return pushed_cart(200) + R"([[buffer]]
 name = "end"
 on = "cart"
 gap = 1
 stiffness = 300
-[[probe]]
-name = "cart"
-on = "cart"
 [time]
 )" + time;
 }

@@ -68,33 +68,10 @@ void add_integrator() { hilo::add_integrator<Theta>(); }
 
 namespace {
 
-const char* const oscillator = R"(
-[[body]]
-name = "mass"
-mass = 2
-com = [0, 0, 0]
-inertia = [1, 1, 1]
-[[joint]]
-kind = "prismatic"
-name = "guide"
-b = "mass"
-at = [0, 0, 0]
-axis = [1, 0, 0]
-[[spring]]
-kind = "axial"
-name = "coil"
-b = "mass"
-at_a = [-1, 0, 0]
-at_b = [0, 0, 0]
-stiffness = 50
-[[initial]]
-on = ["mass"]
-velocity = [0.5, 0, 0]
-[time]
-integrator = "theta"
-end = 1
-step = 0.02
-)";
+const std::string oscillator = body("mass", 2, Vec3::Zero(), {1, 1, 1}) +
+                               axial("prismatic", "guide", "ground", "mass", Vec3::Zero(), {1, 0, 0}) +
+                               spring("axial", "coil", "ground", "mass", "at_a = [-1, 0, 0]\nat_b = [0, 0, 0]\nstiffness = 50") +
+                               initial("mass", "velocity = [0.5, 0, 0]") + in_time(1, 0.02, "integrator = \"theta\"");
 
 /// Energy at the end over that at the start.
 double kept(const std::string& more) {

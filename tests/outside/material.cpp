@@ -112,16 +112,7 @@ void add_materials() {
 
 namespace {
 
-const char* const tissue = R"(
-[material.tissue]
-kind = "fung"
-E = 2e5
-nu = 0.3
-stiffening = 4
-density = 1000
-[region."*"]
-material = "tissue"
-)";
+const std::string tissue = test::solid(2e5, 0.3, 1000, "*", "kind = \"fung\"\nstiffening = 4");
 
 Mesh block(Shape shape, std::array<int, 3> n = {1, 1, 1}, const Vec3& high = Vec3(2, 1, 1)) {
   test::BlockOptions o;
@@ -139,34 +130,10 @@ TEST(OutsideMaterial, BlockIsPulledByTheForceOfItsLaw) {
     const test::Workplace place;
     const Mesh mesh = block(shape);
     write_mesh(place / "mesh.h5", mesh, {"test"});
-    const auto r = run_scene(place, std::string(tissue) + R"(
-[[motion]]
-kind = "fixed"
-name = "x"
-on = "xmin"
-components = ["x"]
-[[motion]]
-kind = "fixed"
-name = "y"
-on = "ymin"
-components = ["y"]
-[[motion]]
-kind = "fixed"
-name = "z"
-on = "zmin"
-components = ["z"]
-[[motion]]
-kind = "translation"
-name = "pull"
-on = "xmax"
-components = ["x"]
-displacement = [0.8, 0, 0]
-[time]
-analysis = "static"
-steps = 4
-[output]
-fields = ["displacement", "stress", "von_mises"]
-)",
+    const auto r = run_scene(place,
+                             tissue + held("xmin", "x") + held("ymin", "y") + held("zmin", "z") +
+                                 motion("translation", "pull", "xmax", "components = [\"x\"]\ndisplacement = [0.8, 0, 0]") + in_steps(4) +
+                                 "[output]\nfields = [\"displacement\", \"stress\", \"von_mises\"]\n",
                              "mesh.h5");
     EXPECT_NEAR(std::abs(r.at("motion/pull", 1)[0]), force, 1e-8 * force) << info(shape).name;
     const auto stress = r.table("/field/" + r.steps().back() + "/stress");
@@ -182,17 +149,8 @@ TEST(OutsideMaterial, TumblingBarKeepsItsEnergyAndMomentum) {
   for (const Shape shape : solids) {
     const test::Workplace place;
     write_mesh(place / "mesh.h5", block(shape, {4, 1, 1}, Vec3(1, 0.1, 0.1)), {"test"});
-    const auto r = run_scene(place, std::string(tissue) + R"(
-[[initial]]
-on = ["block"]
-spin = [1, 4, 3]
-[time]
-end = 0.5
-step = 0.01
-[solver]
-tolerance = 1e-12
-)",
-                             "mesh.h5");
+    const auto r =
+        run_scene(place, tissue + initial("block", "spin = [1, 4, 3]") + in_time(0.5, 0.01) + "[solver]\ntolerance = 1e-12\n", "mesh.h5");
     const auto energy = r.history("energy"), momentum = r.history("momentum");
     EXPECT_LT(energy.col(5).cwiseAbs().maxCoeff(), 1e-10 * energy(0, 0)) << info(shape).name;
     EXPECT_GT(energy.col(1).maxCoeff(), 1e-3 * energy(0, 0)) << info(shape).name;
@@ -212,7 +170,7 @@ TEST(OutsideMaterial, BarCarriesTheForceOfItsLaw) {
   write_mesh(place / "mesh.h5", rod, {"test"});
   const double l = 1.3, e = (l * l - 1) / 2, force = 1e-3 * l * 2e5 * e * std::exp(4 * e * e);
   const auto r = run_scene(place,
-                           std::string(tissue) + R"(
+                           tissue + R"(
 area = 1e-3
 [[motion]]
 kind = "fixed"

@@ -44,27 +44,10 @@ TEST(OutsideField, IsWrittenWhereItIsAskedFor) {
   const Mesh mesh = test::block_mesh(o);
   write_mesh(place / "mesh.h5", mesh, {"test"});
   write_tags(place / "tags.h5", place / "mesh.h5", {Fidelity::rigid}, {"test"});
-  const std::string scene = R"(
-[material.m]
-density = 1000
-[region."*"]
-material = "m"
-[[joint]]
-kind = "revolute"
-name = "pin"
-b = "block"
-at = [0, 0, 0]
-axis = [0, 0, 1]
-[[initial]]
-on = ["block"]
-spin = [0, 0, 3]
-about = [0, 0, 0]
-[time]
-end = 0.1
-step = 0.01
-[output]
-fields = ["displacement", "liveliness"]
-)";
+  const std::string scene = "[material.m]\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n" +
+                            axial("revolute", "pin", "ground", "block", Vec3::Zero(), {0, 0, 1}) +
+                            initial("block", "spin = [0, 0, 3]\nabout = [0, 0, 0]") + in_time(0.1, 0.01) +
+                            "[output]\nfields = [\"displacement\", \"liveliness\"]\n";
   const auto r = run_scene(place, scene, "tags.h5");
   for (const std::string& step : r.steps()) {
     const auto field = r.table("/field/" + step + "/liveliness");

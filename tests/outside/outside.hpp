@@ -2,9 +2,12 @@
 // What this program adds to hilo's lists, and a run of a scene in it.
 #pragma once
 #include "dynamics/run.hpp"
+#include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
 namespace outside {
+
+using namespace hilo::test;  // parts of scenes
 
 // each in the file of its name; main() calls them all before the first scene is read
 void add_deck_card();

@@ -102,29 +102,8 @@ Mesh pyramids(std::array<int, 3> n, const Vec3& high, double bend, bool mixed) {
   return m;
 }
 
-const char* const rollers = R"(
-[region."*"]
-material = "m"
-[[motion]]
-kind = "fixed"
-name = "x"
-on = "xmin"
-components = ["x"]
-[[motion]]
-kind = "fixed"
-name = "y"
-on = "ymin"
-components = ["y"]
-[[motion]]
-kind = "fixed"
-name = "z"
-on = "zmin"
-components = ["z"]
-[[load]]
-kind = "traction"
-name = "pull"
-on = "xmax"
-)";
+const std::string rollers =
+    "[region.\"*\"]\nmaterial = \"m\"\n" + held("xmin", "x") + held("ymin", "y") + held("zmin", "z") + load("traction", "pull", "xmax");
 
 TEST(OutsideShape, MeshFileKeepsItAndItsVolumeAndFacetsAreRight) {
   const test::Workplace place;
@@ -184,21 +163,10 @@ TEST(OutsideShape, TumblingBarKeepsMomentumAndEnergy) {
       const Mesh m = pyramids({4, 1, 1}, Vec3(1, 0.1, 0.1), 0, false);
       write_mesh(place / "mesh.h5", m, {"test"});
       write_tags(place / "tags.h5", place / "mesh.h5", {rigid ? Fidelity::rigid : Fidelity::nonlinear}, {"test"});
-      const auto r = run_scene(place, std::string("[material.m]\n") + law + R"(
-density = 1000
-[region."*"]
-material = "m"
-[[initial]]
-on = ["block"]
-spin = [3, 15, 10]
-[time]
-end = 0.2
-step = 0.01
-[output]
-fields = ["displacement", "von_mises"]
-[solver]
-tolerance = 1e-12
-)",
+      const auto r = run_scene(place,
+                               std::string("[material.m]\n") + law + "\ndensity = 1000\n[region.\"*\"]\nmaterial = \"m\"\n" +
+                                   initial("block", "spin = [3, 15, 10]") + in_time(0.2, 0.01) +
+                                   "[output]\nfields = [\"displacement\", \"von_mises\"]\n[solver]\ntolerance = 1e-12\n",
                                "tags.h5");
       const Vec3 box = Vec3(0.02, 1.01, 1.01) * 10 / 12, L(3 * box[0], 15 * box[1], 10 * box[2]);
       const auto energy = r.history("energy"), momentum = r.history("momentum");
@@ -217,10 +185,8 @@ TEST(OutsideShape, LawFromOutsideThatItWasNotAddedWithIsRefusedByName) {
   const test::Workplace place;
   write_mesh(place / "mesh.h5", pyramids({1, 1, 1}, Vec3(1, 1, 1), 0, false), {"test"});
   try {
-    run_scene(
-        place,
-        "[material.m]\nkind = \"fung\"\nE = 1e5\nnu = 0.3\nstiffening = 1\ndensity = 1\n" + std::string(rollers) + "traction = [1, 0, 0]\n",
-        "mesh.h5");
+    run_scene(place, "[material.m]\nkind = \"fung\"\nE = 1e5\nnu = 0.3\nstiffening = 1\ndensity = 1\n" + rollers + "traction = [1, 0, 0]\n",
+              "mesh.h5");
     FAIL() << "ran";
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("region \"block\" is made of pyramid5: kind = \"fung\" has none (kinds that have: stvk, "),

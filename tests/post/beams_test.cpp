@@ -12,6 +12,7 @@
 #include "cli.hpp"
 #include "post/run/playback.hpp"
 #include "post/run/run_beams.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -22,8 +23,7 @@ class DrawnBeams : public testing::Test {
  protected:
   RunFile solved(const std::string& scene) {
     work.write("scene.toml", scene);
-    const Ran ran = work.run("hilo-solve --quiet scene.toml -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(work.run("hilo-solve --quiet scene.toml -o run.h5"));
     RunFile run(work / "run.h5");
     run.stand_in_bodies();
     run.draw_beams();
@@ -83,8 +83,7 @@ TEST_F(DrawnBeams, HaveTheirPeaksInTheTable) {
                "[beam.one]\npoints = [[0, 0, 0], [2, 0, 0]]\nsection = \"s\"\nmaterial = \"m\"\na = \"ground\"\n"
                "[[load]]\nkind = \"force\"\nname = \"f\"\non = \"one.end\"\nforce = [0, 0, 100]\n");
   for (const char* field : {"axial_stress", "von_mises"}) {
-    const Ran ran = work.run(std::string("hilo-post peak run.h5 --unit Pa --field ") + field);
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const Ran ran = succeeded(work.run(std::string("hilo-post peak run.h5 --unit Pa --field ") + field));
     char name[20];
     double value = 0, t = 0, X = 0, Y = 0, Z = 0;
     ASSERT_EQ(std::sscanf(ran.out.substr(ran.out.find('\n') + 1).c_str(), "%19s %lf %lf - %lf %lf %lf", name, &value, &t, &X, &Y, &Z), 6)
@@ -138,8 +137,7 @@ TEST_F(DrawnBeams, FollowTheHelixOfEachCell) {
     EXPECT_NEAR(stress.value[n], -2e11 * up / R, 1e-5 * 2e11 * h / 2 / R);
   }
   // an export holds what the pictures draw
-  const Ran ran = work.run("hilo-post export run.h5 --deformed -o run.vtu");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(work.run("hilo-post export run.h5 --deformed -o run.vtu"));
   const auto reader = vtkSmartPointer<vtkXMLUnstructuredGridReader>::New();
   reader->SetFileName((work / "run.vtu").c_str());
   reader->Update();

@@ -9,6 +9,7 @@
 #include "post/charts/ticks.hpp"
 #include "post/files/csv.hpp"
 #include "post/scene/names.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -76,8 +77,7 @@ TEST(Chart, has_the_curve_where_its_numbers_are) {
   std::string text = "x,y\n";
   for (int i = 0; i <= 100; ++i) text += std::to_string(i / 100.0) + "," + std::to_string(i < 50 ? 0 : 1) + "\n";
   place.write("step.csv", text);
-  const Ran ran = place.run("unset DISPLAY\nhilo-post chart step.csv -o step.png");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("unset DISPLAY\nhilo-post chart step.csv -o step.png"));
   const PictureFile picture(place / "step.png");
   const auto coloured = [&](int x0, int x1, int y0, int y1) {
     int n = 0;
@@ -98,8 +98,7 @@ TEST(Chart, has_the_curve_where_its_numbers_are) {
 TEST(Chart, one_curve_for_each_name_of_a_column) {
   const Workplace place;
   place.write("work.csv", "method,cpu [s],error [m]\na,1,0.1\na,10,0.01\nb,1,0.3\nb,10,0.003\n");
-  const Ran ran = place.run("unset DISPLAY\nhilo-post chart work.csv -x cpu -y error --by method --log xy --markers -o work.png");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("unset DISPLAY\nhilo-post chart work.csv -x cpu -y error --by method --log xy --markers -o work.png"));
   const PictureFile picture(place / "work.png");
   int blue = 0, red = 0;
   for (int y = 0; y < picture.height; ++y)
@@ -167,8 +166,7 @@ TEST(Chart, shows_the_range_that_was_asked_for) {
   std::string text = "x,y\n";
   for (int i = 0; i <= 100; ++i) text += std::to_string(i / 100.0) + "," + std::to_string(i < 50 ? 0 : 1) + "\n";
   place.write("step.csv", text);
-  const Ran ran = place.run("unset DISPLAY\nhilo-post chart step.csv --yrange 0.5,1.5 -o step.png");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("unset DISPLAY\nhilo-post chart step.csv --yrange 0.5,1.5 -o step.png"));
   const PictureFile picture(place / "step.png");
   const auto blue = [&](int x0, int x1, int y0, int y1) {
     int n = 0;
@@ -186,8 +184,7 @@ TEST(Chart, shows_the_range_that_was_asked_for) {
 TEST(Chart, draws_guides_of_a_slope) {
   const Workplace place;
   place.write("work.csv", "steps,error\n10,1e-2\n100,1e-4\n1000,1e-6\n");
-  const Ran ran = place.run("unset DISPLAY\nhilo-post chart work.csv --log xy --slope -2 -o work.png");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("unset DISPLAY\nhilo-post chart work.csv --log xy --slope -2 -o work.png"));
   const PictureFile picture(place / "work.png");
   // rows of the curve (blue) and of the guide (grey, to the right of it): mean columns at two heights
   const auto column = [&](int y0, bool curve) {

@@ -8,6 +8,7 @@
 
 #include "cli.hpp"
 #include "sample_run.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -16,8 +17,7 @@ TEST(Export, vtu_is_read_by_VTK_with_all_fields) {
   const Workplace place;
   const Mesh mesh = sample::machine();
   sample::write_run(place.path(), mesh, 3);
-  const Ran ran = place.run("hilo-post export run.h5 --step 2 -o out/run.vtu");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("hilo-post export run.h5 --step 2 -o out/run.vtu"));
   const auto reader = vtkSmartPointer<vtkXMLUnstructuredGridReader>::New();
   reader->SetFileName((place / "out/run.vtu").c_str());
   reader->Update();

@@ -13,6 +13,7 @@
 #include "model/store.hpp"
 #include "post/files/csv.hpp"
 #include "sample_run.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -111,8 +112,7 @@ TEST(Compare, FindsWhereTablesAreFarthestApartAtSharedInstantsOnly) {
   const Workplace place;
   place.write("truth.csv", "t [s],a [N],b [m]\n0,1,2\n1,-4,2\n2,3,2\n");
   place.write("run.csv", "t [s],b [m],a [N]\n0,2,1\n0.5,9,9\n1,2.5,-3\n1.5,9,9\n2.0001,2,3.5\n");
-  const Ran ran = place.run("hilo-post compare truth.csv run.csv --json");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Ran ran = succeeded(place.run("hilo-post compare truth.csv run.csv --json"));
   EXPECT_NE(ran.err.find("run.csv: 3 of its 5 rows"), std::string::npos) << ran.err;
   EXPECT_NE(ran.out.find(R"({"column": "a [N]", "of": "truth", "start": 1, "peak": 4, "off by": null)"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find(R"("of": "run", "start": 1, "peak": 9, "off by": 1, "in % of peak": 25, "at t [s]": 1})"), std::string::npos);

@@ -10,50 +10,20 @@
 #include "picture_file.hpp"
 #include "post/scene/scene_items.hpp"
 #include "sample_run.hpp"
+#include "scene_parts.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
 
-constexpr const char* scene_text = R"(title = "Sample"
-mesh = "mesh.h5"
-gravity = [0, 0, -9.81]
-[material.steel]
-E = 2.1e11
-nu = 0.3
-density = 7850
-[region."*"]
-material = "steel"
-[[joint]]
-kind = "revolute"
-name = "trunnion"
-a = "support"
-b = "breech"
-at = [0.6, 0, 0.55]
-axis = [0, 1, 0]
-[[spring]]
-kind = "torsion"
-name = "bar_spring"
-a = "support"
-b = "breech"
-axis = [0, 1, 0]
-stiffness = 1e4
-[[load]]
-kind = "pressure"
-name = "gas"
-on = "muzzle"
-pressure = 1e6
-[[motion]]
-kind = "fixed"
-name = "floor"
-on = "ground_side"
-[[sensor]]
+const std::string scene_text = "title = \"Sample\"\nmesh = \"mesh.h5\"\ngravity = [0, 0, -9.81]\n" + solid(2.1e11, 0.3, 7850) +
+                               axial("revolute", "trunnion", "support", "breech", {0.6, 0, 0.55}, {0, 1, 0}) +
+                               spring("torsion", "bar_spring", "support", "breech", "axis = [0, 1, 0]\nstiffness = 1e4") +
+                               load("pressure", "gas", "muzzle", "pressure = 1e6") + held("ground_side") + R"([[sensor]]
 name = "driver"
 on = "hull"
 at = [0, 0.3, 0]
-[time]
-end = 0.1
-step = 1e-4
-)";
+)" + in_time(0.1, 1e-4);
 
 TEST(Model, things_of_the_scene_are_where_it_says) {
   const Workplace place;
@@ -155,8 +125,7 @@ TEST(Model, obstacles_have_their_outlines) {
     ++outlines;
   }
   EXPECT_EQ(outlines, 7);
-  const Ran ran = place.run("hilo-post model scene.toml -o model.png");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("hilo-post model scene.toml -o model.png"));
 }
 
 TEST(Model, an_ellipsoid_has_the_inertia_of_its_body) {
@@ -177,8 +146,7 @@ TEST(Model, draws_regions_symbols_and_legend_without_a_display) {
   const Workplace place;
   write_mesh(place / "mesh.h5", sample::machine(), {"sample"});
   place.write("scene.toml", scene_text);
-  const Ran ran = place.run("unset DISPLAY\nhilo-post model scene.toml -o model.png");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("unset DISPLAY\nhilo-post model scene.toml -o model.png"));
   const PictureFile picture(place / "model.png");
   EXPECT_EQ(picture.width, 1600);
   EXPECT_GT(picture.ink(20, 100, 1260, 880), 0.15);

@@ -8,6 +8,7 @@
 #include "cli.hpp"
 #include "model/mesh.hpp"
 #include "model/store.hpp"
+#include "scene_parts.hpp"
 
 namespace hilo::test {
 
@@ -55,44 +56,15 @@ inline std::string write_moving_run(const Workplace& place, const Law& law, int 
   run.set("/", "complete", std::int64_t{1});
   run.set("/", "title", std::string("Two blocks"));
   run.link("/mesh", place / "mesh.h5", "/mesh");
-  run.write_text("/scene", R"(
-[material.steel]
-E = 2e11
-nu = 0.3
-density = 7850
-[region."*"]
-material = "steel"
-[[joint]]
-kind = "revolute"
-name = "pin"
-a = "arm"
-b = "base"
-at = [0.5, 0.5, 1]
-axis = [0, 0, 1]
-x = [0, 1, 0]
-[[spring]]
-kind = "axial"
-name = "pull"
-a = "ground"
-b = "tip"
-at_a = [4, 0.25, -3]
-at_b = [4, 0.25, 0.25]
-stiffness = 1
-[[sensor]]
+  run.write_text("/scene", solid(2e11, 0.3, 7850) + axial("revolute", "pin", "arm", "base", {0.5, 0.5, 1}, {0, 0, 1}, "x = [0, 1, 0]") +
+                               spring("axial", "pull", "ground", "tip", "at_a = [4, 0.25, -3]\nat_b = [4, 0.25, 0.25]\nstiffness = 1") +
+                               R"([[sensor]]
 name = "eye"
 on = "tip"
 [history.gone]
 file = "gone.csv"
-[[load]]
-kind = "force"
-name = "push"
-on = "tip"
-force = [1, 0, 0]
-history = "gone"
-[time]
-end = 1
-step = 0.1
-)");
+)" + force("push", "tip", {1, 0, 0}, "history = \"gone\"") +
+                               in_time(1, 0.1));
   run.start_rows<double>("/history/t", {}, "s");
   for (const char* name : {"joint/pin", "spring/pull"}) run.start_rows<double>(std::string("/history/") + name, {6}, "N, N m");
   run.start_rows<double>("/history/sensor/eye", {3}, "1");

@@ -5,6 +5,7 @@
 
 #include "cli.hpp"
 #include "sample_run.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -13,8 +14,7 @@ TEST(Peak, is_the_largest_value_of_each_flexible_region_with_its_place_and_time)
   const Workplace place;
   const Mesh mesh = sample::machine();
   sample::write_run(place.path(), mesh, 5);
-  const Ran ran = place.run("hilo-post peak run.h5 --unit MPa --show barrel");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Ran ran = succeeded(place.run("hilo-post peak run.h5 --unit MPa --show barrel"));
   std::istringstream lines(ran.out);
   std::string header, region, more;
   double value = 0, t = 0, node = 0, x = 0;
@@ -41,8 +41,7 @@ TEST(Peak, of_rigid_regions_has_no_stress_but_a_displacement) {
 
 TEST(Chart, reads_a_pipe) {
   const Workplace place;
-  const Ran ran = place.run("printf 't [s],x [m]\\n0,0\\n1,2\\n' | hilo-post chart - -o a.png");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("printf 't [s],x [m]\\n0,0\\n1,2\\n' | hilo-post chart - -o a.png"));
   EXPECT_TRUE(std::filesystem::exists(place / "a.png"));
   const Ran bad = place.run("printf 't [s],x [m]\\n0\\n' | hilo-post chart - -o b.png");
   EXPECT_EQ(bad.exit, 2);

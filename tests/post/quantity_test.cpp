@@ -8,42 +8,16 @@
 
 #include "cli.hpp"
 #include "sample_run.hpp"
+#include "scene_parts.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
 
-const std::string bodies = R"([[body]]
-name = "held"
-mass = 2
-com = [0, 0, 0]
-inertia = [1, 1, 1]
-[[body]]
-name = "flies"
-mass = 1
-com = [3, 4, 0]
-inertia = [1, 1, 1]
-[[joint]]
-kind = "fixed"
-name = "root"
-a = "ground"
-b = "held"
-at = [0, 0, 0]
-[[load]]
-kind = "force"
-name = "push"
-on = "held"
-force = [0, 0, 100]
-history = {t = [0, 0.05, 0.1], value = [0, 1, 0]}
-[[initial]]
-on = "flies"
-velocity = [0.6, 0.8, 0]
-[[probe]]
-name = "here"
-on = "held"
-[[probe]]
-name = "there"
-on = "flies"
-[[sensor]]
+const std::string bodies = body("held", 2, Vec3::Zero(), {1, 1, 1}) + body("flies", 1, {3, 4, 0}, {1, 1, 1}) +
+                           joint("fixed", "root", "ground", "held", Vec3::Zero()) +
+                           force("push", "held", {0, 0, 100}, "history = {t = [0, 0.05, 0.1], value = [0, 1, 0]}") +
+                           initial("flies", "velocity = [0.6, 0.8, 0]") + probe("here", "held") + probe("there", "flies") + R"([[sensor]]
 name = "seat"
 on = "held"
 )";
@@ -73,12 +47,10 @@ TEST(Quantity, meets_closed_forms_and_run_json_has_it) {
                   quantity("apart", "kind = \"peak\"\nbetween = [\"here\", \"there\"]\ntolerance = \"1 mm\"") +
                   quantity("half", "kind = \"peak\"\nformula = \"half [kN] = joint.root.Fz/2e3\"\ntolerance = \"1 N\"") +
                   quantity("felt", "kind = \"peak\"\nsensor = \"seat\"\ncfc = 60") + quantity("pitch", "kind = \"frequency\"\nmode = 1"));
-  const Ran solved = place.run("hilo-solve scene.toml -o run.h5");
-  ASSERT_EQ(solved.exit, 0) << solved.err;
+  const Ran solved = succeeded(place.run("hilo-solve scene.toml -o run.h5"));
   EXPECT_NE(solved.out.find("joint root: force"), std::string::npos) << solved.out;  // every run prints them
   EXPECT_NE(solved.err.find("quantity \"pitch\": the run is no analysis of modes"), std::string::npos) << solved.err;
-  const Ran ran = place.run("hilo-post quantity run.h5 --json");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Ran ran = succeeded(place.run("hilo-post quantity run.h5 --json"));
   auto v = values(ran.out);
   ASSERT_EQ(v.size(), 8u) << ran.out;
   EXPECT_NEAR(v["peak"], 100, 0.51);  // of the mean over a step of 1/100 of the ramp
@@ -142,8 +114,7 @@ TEST(Quantity, stress_is_the_peak_of_hilo_post_and_of_rigid_regions_there_is_non
   place.write("ask.toml", quantity("barrel", "kind = \"peak\"\nstress = \"barrel\"\ntolerance = \"10 MPa\"") +
                               quantity("hull", "kind = \"peak\"\nstress = \"hull\"") +
                               quantity("none", "kind = \"peak\"\nstress = \"barel\""));
-  const Ran ran = place.run("hilo-post quantity run.h5 --scene ask.toml --json");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Ran ran = succeeded(place.run("hilo-post quantity run.h5 --scene ask.toml --json"));
   auto v = values(ran.out);
   EXPECT_NEAR(v["barrel"], 200e6, 1e3);  // the sample's stress at the front at the end
   EXPECT_TRUE(std::isnan(v["hull"]));

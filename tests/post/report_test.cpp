@@ -8,6 +8,7 @@
 #include "picture_file.hpp"
 #include "post/files/csv.hpp"
 #include "sample_run.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 namespace {
@@ -21,8 +22,7 @@ const Workplace& sample_place() {
 // The sample's seat feels a half sine of 100 g and 20 ms along x from 10 ms on.
 TEST(InjuryReport, csv_and_json_hold_the_closed_forms_of_a_half_sine) {
   const auto& place = sample_place();
-  const Ran ran = place.run("hilo-post injury run.h5 --cfc 1000 --json -o injury.csv");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Ran ran = succeeded(place.run("hilo-post injury run.h5 --cfc 1000 --json -o injury.csv"));
   const CsvTable table = read_csv(place / "injury.csv");
   const auto value = [&](const std::string& key) { return table.numbers(table.find(key)).front(); };
   EXPECT_NEAR(value("peak_x"), 100, 0.5);
@@ -46,8 +46,7 @@ TEST(InjuryReport, a_measured_signal_is_judged_as_that_of_a_run_is) {
   }
   place.write("metric.csv", csv_text({"t [ms]", "x (m/s^2)", "y (m/s^2)", "z (m/s^2)"}, columns));
   const auto table = [&](const std::string& command) {
-    const Ran ran = place.run("hilo-post --quiet " + command + " -o out.csv");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(place.run("hilo-post --quiet " + command + " -o out.csv"));
     return read_csv(place / "out.csv");
   };
   for (const std::string command : {"injury", "gload"}) {
@@ -73,8 +72,7 @@ TEST(InjuryReport, a_measured_signal_is_judged_as_that_of_a_run_is) {
 TEST(InjuryReport, tells_how_far_a_pulse_leaves_its_corridor) {
   const auto& place = sample_place();
   place.write("corridor.csv", "t [s],x_low [g],x_high [g]\n0,-1,1\n0.0199,-1,80\n0.0201,-1,80\n");  // over by the time of the peak
-  const Ran ran = place.run("hilo-post --quiet injury run.h5 --cfc 1000 --corridor corridor.csv --png within.png -o out.csv");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("hilo-post --quiet injury run.h5 --cfc 1000 --corridor corridor.csv --png within.png -o out.csv"));
   const CsvTable table = read_csv(place / "out.csv");
   // half sine 100 sin(pi (t - 0.01)/0.02) over 1 + 79 t/0.0199: farthest at 17.2 ms
   double most = 0;
@@ -86,8 +84,7 @@ TEST(InjuryReport, tells_how_far_a_pulse_leaves_its_corridor) {
 
 TEST(InjuryReport, page_has_the_ratio_of_A4_and_white_margins) {
   const auto& place = sample_place();
-  const Ran ran = place.run("unset DISPLAY\nhilo-post injury run.h5 --png page.png --eiband eiband.png");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("unset DISPLAY\nhilo-post injury run.h5 --png page.png --eiband eiband.png"));
   const PictureFile page(place / "page.png");
   EXPECT_NEAR(static_cast<double>(page.height) / page.width, std::sqrt(2), 1e-3);
   const int edge = page.width / 60;

@@ -5,50 +5,17 @@
 #include <gtest/gtest.h>
 
 #include "dynamics/integrator/make.hpp"
+#include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
 namespace {
 
-const char* const scene = R"(
-gravity = [0, 0, -9.81]
-[[body]]
-name = "arm"
-mass = 2
-com = [0.3, 0, 0]
-inertia = [0.01, 0.05, 0.05]
-[[body]]
-name = "nut"
-mass = 1
-com = [0, 0, 1]
-inertia = [0.02, 0.02, 0.02]
-[[body]]
-name = "bead"
-mass = 0.5
-com = [1, 1, 0]
-inertia = [0.001, 0.001, 0.001]
-[[initial]]
-on = ["arm"]
-spin = [0, 9, 0]
-about = [0, 0, 0]
-[[initial]]
-on = ["nut"]
-spin = [0, 0, 20]
-velocity = [0, 0, 1]
-[[joint]]
-kind = "revolute"
-name = "pin"
-b = "arm"
-at = [0, 0, 0]
-axis = [0, 1, 0]
-[[spring]]
-kind = "torsion"
-name = "coil"
-a = "ground"
-b = "arm"
-axis = [0, 1, 0]
-stiffness = 3
-[[stop]]
+const std::string scene =
+    "gravity = [0, 0, -9.81]\n" + body("arm", 2, {0.3, 0, 0}, {0.01, 0.05, 0.05}) + body("nut", 1, {0, 0, 1}, {0.02, 0.02, 0.02}) +
+    body("bead", 0.5, {1, 1, 0}, {0.001, 0.001, 0.001}) + initial("arm", "spin = [0, 9, 0]\nabout = [0, 0, 0]") +
+    initial("nut", "spin = [0, 0, 20]\nvelocity = [0, 0, 1]") + axial("revolute", "pin", "ground", "arm", Vec3::Zero(), {0, 1, 0}) +
+    spring("torsion", "coil", "ground", "arm", "axis = [0, 1, 0]\nstiffness = 3") + R"([[stop]]
 kind = "angle"
 name = "limit"
 joint = "pin"
@@ -56,23 +23,10 @@ lower = -0.4
 upper = 0.4
 stiffness = 5e3
 restitution = 0.6
-[[joint]]
-kind = "screw"
-name = "thread"
-b = "nut"
-at = [0, 0, 1]
-axis = [0, 0, 1]
-pitch = 0.31415926535897931
-[[joint]]
-kind = "point-on-curve"
-name = "wire"
-b = "bead"
-at = [1, 1, 0]
-points = [[1, 1, 0], [1.4, 1.2, -0.3], [1.8, 1, -0.5], [2.4, 0.7, -0.9], [3, 1, -1.2]]
-[time]
-end = 1
-step = 0.005
-)";
+)" + axial("screw", "thread", "ground", "nut", {0, 0, 1}, {0, 0, 1}, "pitch = 0.31415926535897931") +
+    joint("point-on-curve", "wire", "ground", "bead", {1, 1, 0},
+          "points = [[1, 1, 0], [1.4, 1.2, -0.3], [1.8, 1, -0.5], [2.4, 0.7, -0.9], [3, 1, -1.2]]") +
+    in_time(1, 0.005);
 
 /// Steps from a state, with a method that has no history yet.
 State go_on(System& system, State s, int n) {

@@ -9,6 +9,7 @@
 #include "import_case.hpp"
 #include "model/scene.hpp"
 #include "model/store.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::import_bdf_scene_test {
 namespace {
@@ -35,8 +36,7 @@ class ImportBdfScene : public test::Import {
     place.write("a.bdf", text);
     imported("a.bdf", "--scene-out s.toml " + options);
     EXPECT_EQ(err.find("not read") != std::string::npos, not_read) << err;
-    const auto ran = place.run("hilo-solve --quiet s.toml -o run.h5");
-    ASSERT_EQ(ran.exit, 0) << ran.err << test::text_of(place / "s.toml");
+    succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"), test::text_of(place / "s.toml"));
   }
   /// The last row of a history.
   std::vector<double> last(const std::string& history, size_t width) const {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "import_case.hpp"
+#include "succeeded.hpp"
 
 namespace hilo {
 namespace {
@@ -18,16 +19,14 @@ class ImportBeam : public test::Import {
   /// Imports and runs a deck.
   void solve(const std::string& text, const std::string& file = "a.bdf", const std::string& options = "") {
     place.write(file, text);
-    const auto ran =
-        place.run("hilo-import --quiet " + file + " -o out.h5 --scene-out a.toml " + options + " && hilo-solve a.toml -o run.h5");
-    ASSERT_EQ(ran.exit, 0) << ran.err << '\n' << text;
+    const auto ran = test::succeeded(
+        place.run("hilo-import --quiet " + file + " -o out.h5 --scene-out a.toml " + options + " && hilo-solve a.toml -o run.h5"));
     table = ran.out;
     told = ran.err;
   }
   /// Of columns of the histories, last row less first row.
   std::vector<double> change(const std::string& columns) {
-    const auto ran = place.run("hilo-post series run.h5 '" + columns + "' -o -");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    const auto ran = test::succeeded(place.run("hilo-post series run.h5 '" + columns + "' -o -"));
     std::vector<std::vector<double>> rows;
     std::istringstream lines(ran.out);
     std::string line, word;
@@ -372,8 +371,7 @@ TEST_F(ImportBeam, BarsHoldABlockOfSolidsByItsNodes) {
 TEST_F(ImportBeam, ARunWithTheMeshOfNoCellsGoesWithoutIt) {
   solve(stat + "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCBAR,1,5,1,2,0.,0.,1.\nPBARL,5,1,,I,,,,,+\n+,.2,.1,.1,.01,.02,.02\n" + steel +
         "SPC1,1,123456,1\nFORCE,2,2,,1.,0.,0.,1.\n");
-  const auto ran = place.run("hilo-solve a.toml out.h5 -o b.h5");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  const auto ran = test::succeeded(place.run("hilo-solve a.toml out.h5 -o b.h5"));
   EXPECT_NE(ran.err.find("out.h5 has no cells: the run goes without it"), std::string::npos) << ran.err;
 }
 
@@ -430,14 +428,12 @@ TEST_F(ImportBeam, AFaceOfAScriptBecomesASection) {
       "Circle(1) = {2, 1, 3}; Circle(2) = {3, 1, 2}; Circle(3) = {4, 1, 5}; Circle(4) = {5, 1, 4};\n"
       "Curve Loop(1) = {1, 2}; Curve Loop(2) = {3, 4}; Plane Surface(1) = {1, 2};\n";
   place.write("ring.geo", ring);
-  const auto face = place.run("hilo-import ring.geo --face -o ring.msh --size 12 --json");
-  ASSERT_EQ(face.exit, 0) << face.err;
+  const auto face = test::succeeded(place.run("hilo-import ring.geo --face -o ring.msh --size 12 --json"));
   place.write(
       "s.toml",
       "section.ring = {kind = \"mesh\", file = \"ring.msh\", scale = 1e-3}\nmaterial.m = {E = 2e11, nu = 0.3}\n"
       "beam.b = {points = [[0, 0, 0], [1, 0, 0]], section = \"ring\", material = \"m\", a = \"ground\"}\ntime.analysis = \"static\"\n");
-  const auto solved = place.run("hilo-solve --quiet s.toml -o s.h5 && hilo-post beam s.h5 --sections");
-  ASSERT_EQ(solved.exit, 0) << solved.err;
+  const auto solved = test::succeeded(place.run("hilo-solve --quiet s.toml -o s.h5 && hilo-post beam s.h5 --sections"));
   double A = 0, I1 = 0, I2 = 0, I12 = 0, J = 0;
   ASSERT_EQ(std::sscanf(solved.out.substr(solved.out.find('\n') + 1).c_str(), "b %lf %lf %lf %lf %lf", &A, &I1, &I2, &I12, &J), 5)
       << solved.out;

@@ -5,6 +5,7 @@
 #include "import/gmsh/cad.hpp"
 #include "import_case.hpp"
 #include "model/scaled_jacobian.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::import_cad_test {
 namespace {
@@ -18,8 +19,7 @@ class ImportCad : public test::Import {
   /// gmsh writes a script's OpenCASCADE shapes as `file`.
   std::string made(const std::string& script, const std::string& file) {
     place.write("made.geo", "SetFactory(\"OpenCASCADE\");\n" + script + "Save \"" + file + "\";\n");
-    const auto ran = place.run("hilo-import made.geo --trust -o made.h5 --size 1000 && rm made.geo made.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(place.run("hilo-import made.geo --trust -o made.h5 --size 1000 && rm made.geo made.h5"));
     return test::text_of(place / file);
   }
   bool said(const std::string& text) const { return err.find(text) != std::string::npos; }

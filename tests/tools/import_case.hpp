@@ -7,6 +7,7 @@
 
 #include "../cli.hpp"
 #include "model/mesh.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test {
 
@@ -37,10 +38,9 @@ class Import : public testing::Test {
  protected:
   /// Imports `file` with `options` and reads the mesh back.
   Mesh imported(const std::string& file, const std::string& options = "") {
-    const auto ran = place.run("hilo-import " + file + " -o out.h5 " + options);
-    EXPECT_EQ(ran.exit, 0) << file << ' ' << options << ": " << ran.err;
+    const auto ran = succeeded(place.run("hilo-import " + file + " -o out.h5 " + options), file + ' ' + options);
     out = ran.out, err = ran.err;
-    return ran.exit == 0 ? read_mesh_file(place / "out.h5").mesh : Mesh{};
+    return read_mesh_file(place / "out.h5").mesh;
   }
   /// The command must fail with this code and line, say nothing on stdout and leave the folder as it was.
   void refused(const std::string& arguments, int exit, const std::string& message) {

@@ -2,6 +2,7 @@
 // The command itself: options, tables, exit codes, and a damaged CAD file.
 #include "import_case.hpp"
 #include "model/scene.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::import_cli_test {
 namespace {
@@ -47,8 +48,7 @@ TEST_F(ImportCommand, JsonHoldsTheSameFigures) {
 TEST_F(ImportCommand, TheSceneFindsItsMeshFromItsOwnFolder) {
   std::filesystem::create_directories(place.path() / "scenes");
   std::filesystem::create_directories(place.path() / "meshes");
-  const auto ran = place.run("hilo-import bar.inp -o meshes/bar.h5 --units mm-t-s --scene-out scenes/bar.toml");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("hilo-import bar.inp -o meshes/bar.h5 --units mm-t-s --scene-out scenes/bar.toml"));
   const Scene s = Scene::load(place / "scenes/bar.toml");
   EXPECT_EQ(s.table("scene").text("mesh"), "../meshes/bar.h5");
   const Mesh m = read_mesh_file(place / "meshes/bar.h5").mesh;
@@ -107,8 +107,7 @@ TEST_F(ImportCommand, ADamagedStepFileIsBadInputEvenWhereTheReaderCrashes) {
 }
 
 TEST_F(ImportCommand, HelpEndsWithAnExample) {
-  const auto ran = place.run("hilo-import --help");
-  EXPECT_EQ(ran.exit, 0);
+  const auto ran = succeeded(place.run("hilo-import --help"));
   EXPECT_NE(ran.out.find("Example:\n  hilo-import "), std::string::npos);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "fold_frames.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::import_folds_test {
 namespace {
@@ -37,8 +38,7 @@ TEST_F(ImportFolds, AFoldIsAsStiffInALinearRegion) {
     if (free) scene.erase(scene.find("[[motion]]"), scene.find("[[load]]") - scene.find("[[motion]]"));
     scene.erase(scene.find("[[load]]"), scene.find("[time]") - scene.find("[[load]]"));
     place.write("modes.toml", scene);
-    const auto ran = place.run("hilo-solve --quiet modes.toml " + mesh + " -o modes.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err << scene;
+    succeeded(place.run("hilo-solve --quiet modes.toml " + mesh + " -o modes.h5"), scene);
     const auto all = Store::open(place / "modes.h5").read<double>("/history/mode");
     std::vector<double> out;
     for (size_t k = all.size() / 10 - 3; k < all.size() / 10; ++k) out.push_back(all[10 * k]);
@@ -47,8 +47,7 @@ TEST_F(ImportFolds, AFoldIsAsStiffInALinearRegion) {
   const auto held = first_modes("out.h5", false), free = first_modes("out.h5", true);
   ASSERT_EQ(place.run("hilo-tag out.h5 --rest linear -o tags.h5").exit, 0);
   for (const int ranks : {1, 2}) {
-    const auto ran = place.run(test::for_ranks + fmt::format(" mpirun -n {} hilo-solve --quiet run.toml tags.h5 -o run.h5", ranks));
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(place.run(test::for_ranks + fmt::format(" mpirun -n {} hilo-solve --quiet run.toml tags.h5 -o run.h5", ranks)));
     const auto x = Store::open(place / "run.h5").read<double>("/history/probe/TIP");
     const size_t n = x.size() - 9;
     EXPECT_LT((Vec3(x[n] - x[0], x[n + 1] - x[1], x[n + 2] - x[2]) - way).norm(), 1e-5 * way.norm());
@@ -215,8 +214,7 @@ TEST_F(ImportFolds, ASquareTubeBuckles) {
               "[[motion]]\nkind = \"fixed\"\nname = \"end\"\non = \"end\"\ncomponents = [\"y\", \"z\"]\n"
               "[[load]]\nkind = \"traction\"\nname = \"press\"\non = \"end\"\ntraction = [-8e7, 0, 0]\n"
               "[time]\nanalysis = \"path\"\nsteps = 4\n");
-  const auto ran = place.run("hilo-solve tube.toml out.h5 -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const auto ran = succeeded(place.run("hilo-solve tube.toml out.h5 -o run.h5"));
   const std::string lost = "stability is lost at ";
   const size_t at = (ran.out + ran.err).find(lost);
   ASSERT_NE(at, std::string::npos) << ran.out << ran.err;
@@ -246,8 +244,7 @@ TEST_F(ImportFolds, ComponentsOfALineAreHeldOnceAndTheirReactionIsWhole) {
                                "[[load]]\nkind = \"traction\"\nname = \"pull\"\non = \"back\"\ntraction = [0, 1000, 0]\n"
                                "[[probe]]\nname = \"back\"\non = \"back\"\n[time]\nanalysis = \"static\"\n");
   for (const int ranks : {1, 3}) {
-    const auto ran = place.run(test::for_ranks + fmt::format(" mpirun -n {} hilo-solve --quiet pull.toml out.h5 -o run.h5", ranks));
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(place.run(test::for_ranks + fmt::format(" mpirun -n {} hilo-solve --quiet pull.toml out.h5 -o run.h5", ranks)));
     const Store run = Store::open(place / "run.h5");
     const auto x = run.read<double>("/history/probe/back"), f = run.read<double>("/history/motion/front");
     EXPECT_NEAR((x[x.size() - 8] - x[1]) / (1000 / 2e7), 1, 1e-3);
@@ -263,8 +260,7 @@ TEST_F(ImportFolds, AThrownTeeKeepsItsEnergyAndMomenta) {
                                 "[[initial]]\non = [\"left\", \"right\"]\nvelocity = [0, 1, 0]\n[[probe]]\nname = \"top\"\non = \"top\"\n"
                                 "[time]\nend = 0.2\nstep = 0.01\n");
   const auto end = [&](const std::string& command) {
-    const auto ran = place.run(command + " -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(place.run(command + " -o run.h5"));
     const Store run = Store::open(place / "run.h5");
     const auto E = run.read<double>("/history/energy"), p = run.read<double>("/history/momentum"),
                x = run.read<double>("/history/probe/top");
@@ -288,8 +284,7 @@ TEST_F(ImportFolds, WhatBlocksJoinIsNoLoosePiece) {
   f.strip(0, 0, 0, 1, "LEGS"), f.strip(0, 1, 1, 1, "ROOF"), f.strip(1, 1, 1, 0, "LEGS");
   place.write("deck.inp", f.deck("*NSET, NSET=ROOT\n" + f.nodes_at(0, 0), "ROOT,1,6\n", f.load(1, 0, 3, 1.0)));
   imported("deck.inp", "--thicken --scene-out scene.toml");
-  const auto ran = place.run("hilo-tag out.h5 --linear '*' -o tags.h5");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  const auto ran = succeeded(place.run("hilo-tag out.h5 --linear '*' -o tags.h5"));
   EXPECT_EQ(ran.err.find("pieces"), std::string::npos) << ran.err;
 }
 
@@ -301,8 +296,7 @@ TEST_F(ImportFolds, ABlockHasAName) {
                             "[[load]]\nkind = \"force\"\nname = \"f\"\nforce = [0, 0, 0.01]\non = ";
   place.write("f.toml", scene + "\"block_2\"\n[[probe]]\nname = \"p\"\non = \"block_2\"\n");
   for (const char* launcher : {"", "mpirun -n 2 "}) {
-    const auto ran = place.run("export " + test::for_ranks + "\n" + launcher + "hilo-solve --quiet f.toml out.h5 -o run.h5");
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(place.run("export " + test::for_ranks + "\n" + launcher + "hilo-solve --quiet f.toml out.h5 -o run.h5"));
     const Store run = Store::open(place / "run.h5");
     const auto x = run.read<double>("/history/probe/p"), f = run.read<double>("/history/motion/side");
     EXPECT_LT((Vec3(x[0], x[1], x[2]) - Vec3(0, 1, 0)).norm(), 1e-12) << "node 2 of the mesh";
@@ -321,8 +315,7 @@ TEST_F(ImportFolds, APartOfALinearBodyHasAVelocityOfItsOwn) {
   imported("tee.geo", "--thickness 0.05");
   ASSERT_EQ(place.run("hilo-tag out.h5 --rest linear -o tags.h5").exit, 0);
   place.write("part.toml", rubber + "[[initial]]\non = [\"up\"]\nvelocity = [0, 0, 1]\n[time]\nend = 0.01\nstep = 0.01\n");
-  const auto ran = place.run("hilo-solve --quiet part.toml tags.h5 -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("hilo-solve --quiet part.toml tags.h5 -o run.h5"));
   EXPECT_NEAR(Store::open(place / "run.h5").read<double>("/history/momentum")[2], 50, 1e-9);
 }
 

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "import_case.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::import_gmsh_test {
 namespace {
@@ -53,8 +54,7 @@ class ImportGmsh : public test::Import {
                                  ";\nMesh.MshFileVersion = " + std::to_string(version) +
                                  ";\nMesh.Binary = " + std::to_string(binary ? 1 : 0) + ";\n";
     place.write("made.geo", script + settings + "Mesh 3;\nSetOrder " + std::to_string(order) + ";\nSave \"" + file + "\";\n");
-    const auto ran = place.run("hilo-import made.geo --trust -o made.h5 && rm made.geo made.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(place.run("hilo-import made.geo --trust -o made.h5 && rm made.geo made.h5"));
   }
   /// Mid-side nodes of a facet stand behind its corners, each in the middle of its edge (gmsh places nodes to 1e-12).
   void expect_middles(const Mesh& m, const std::string& where) {

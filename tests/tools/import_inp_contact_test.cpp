@@ -5,6 +5,7 @@
 #include "import_case.hpp"
 #include "model/scene.hpp"
 #include "model/store.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_contact_test {
 namespace {
@@ -28,8 +29,7 @@ class ImportInpContact : public test::Import {
   std::vector<double> last_of_contact(const std::string& text, const std::string& name = "contact") {
     place.write("a.inp", text);
     imported("a.inp", "--scene-out s.toml");
-    const auto ran = place.run("hilo-solve --quiet s.toml -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err << test::text_of(place / "s.toml");
+    succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"), test::text_of(place / "s.toml"));
     const auto all = Store::open(place / "run.h5").read<double>("/history/contact/" + name);
     return {all.end() - 8, all.end()};  // force on b, depth, its share, slip, work, pressing
   }

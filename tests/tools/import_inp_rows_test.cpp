@@ -10,6 +10,7 @@
 #include "model/block.hpp"
 #include "model/scene.hpp"
 #include "model/store.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_rows_test {
 namespace {
@@ -27,8 +28,7 @@ class ImportInpRows : public test::Import {
   void solve(const std::string& text, const std::string& options = "") {
     place.write("a.inp", text);
     imported("a.inp", "--scene-out s.toml " + options);
-    const auto ran = place.run("hilo-solve --quiet s.toml -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err << test::text_of(place / "s.toml");
+    succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"), test::text_of(place / "s.toml"));
   }
   /// Displacement at the end of the node with this number in the deck [m].
   Vec3 moved(std::int64_t id) const {
@@ -100,8 +100,7 @@ TEST_F(ImportInpRows, AnMpcOfEqualDisplacementsMovesGridsTogether) {
               "MPC,5,5,3,1.,7,3,-1.\nMPC,5,6,3,-3.,7,3,3.\nMPC,5,8,3,1.,5,3,-1.\nENDDATA\n");
   imported("a.bdf", "--quiet --scene-out s.toml");
   EXPECT_EQ(err, "");
-  const auto ran = place.run("hilo-solve --quiet s.toml -o run.h5");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"), test::text_of(place / "s.toml"));
   for (const int node : {5, 6, 7, 8}) EXPECT_NEAR(moved(node).z(), 4e-6, 1e-10) << node;
 }
 
@@ -178,8 +177,7 @@ TEST_F(ImportInpRows, AnMpcOfAnyFactorsHolds) {
   place.write("a.bdf", text + "MPC,5,1,1,1.,3,1,2.,\n,,5,1,-3.,7,1,.5\nENDDATA\n");
   imported("a.bdf", "--quiet --scene-out s.toml");
   EXPECT_EQ(err, "");
-  const auto ran = place.run("hilo-solve --quiet s.toml -o run.h5");
-  EXPECT_EQ(ran.exit, 0) << ran.err << test::text_of(place / "s.toml");
+  succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"), test::text_of(place / "s.toml"));
   const auto u = rods_under({1, 2, -3, .5});
   for (size_t i = 0; i < 4; ++i) EXPECT_NEAR(moved(static_cast<std::int64_t>(2 * i + 1)).x(), u[i], 1e-5 * 4e-6) << i;
 }
@@ -227,8 +225,7 @@ TEST_F(ImportInpRows, RforceTurnsTheWhole) {
               "PSOLID,1,1\nMAT1,1,1.+9,,0.,1000.\nSPC1,1,123,1,2,3,4\nRFORCE,2,9,,.25,0.,0.,2.\nENDDATA\n");
   imported("a.bdf", "--scene-out s.toml");
   EXPECT_EQ(err.find("not read"), std::string::npos) << err;
-  const auto ran = place.run("hilo-solve --quiet s.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"), test::text_of(place / "s.toml"));
   const double omega = 2 * std::acos(-1) * .5;
   const Store run = Store::open(place / "run.h5");
   Vec3 sum = Vec3::Zero();

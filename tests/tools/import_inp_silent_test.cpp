@@ -5,6 +5,7 @@
 #include "import_case.hpp"
 #include "model/scene.hpp"
 #include "model/store.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_silent_test {
 namespace {
@@ -27,8 +28,7 @@ class ImportInpSilent : public test::Import {
   }
   std::vector<double> foot(const std::string& text) {
     scene(text);
-    const auto ran = place.run("hilo-solve --quiet s.toml -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"));
     const auto all = Store::open(place / "run.h5").read<double>("/history/motion/foot");
     return {all.end() - 6, all.end()};
   }

@@ -7,6 +7,7 @@
 
 #include "import_case.hpp"
 #include "model/store.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_springs_test {
 namespace {
@@ -30,9 +31,7 @@ class ImportInpSprings : public test::Import {
     place.write("a.inp", cube(component) + text + "*STEP\n" + step + "*END STEP\n");
     imported("a.inp", "--scene-out s.toml");
     EXPECT_EQ(err.find("not read"), std::string::npos) << err;
-    const auto ran = place.run("hilo-solve --quiet s.toml -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err << test::text_of(place / "s.toml");
-    if (ran.exit != 0) return {0};
+    succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"), test::text_of(place / "s.toml"));
     const auto x = Store::open(place / "run.h5").read<double>("/history/body/node_11");
     std::vector<double> out;
     for (size_t i = 0; i < x.size(); i += 12)
@@ -103,8 +102,7 @@ TEST_F(ImportInpSprings, DecksOfSpringsAndMassesAloneAreScenesOfBodies) {
               "SOL 103\nCEND\nSPC = 1\nMETHOD = 4\nBEGIN BULK\nGRID,1,,0.,0.,0.,,23456\nGRID,2,,1.,0.,0.\nSPC1,1,123456,2\n"
               "CONM2,5,1,,2.\nCELAS2,6,800.,1,1,2,1\nEIGRL,4,,,1\nENDDATA\n");
   imported("a.inp", "--scene-out s.toml");
-  auto ran = place.run("hilo-solve --quiet s.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err << test::text_of(place / "s.toml");
+  auto ran = succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"), test::text_of(place / "s.toml"));
   const auto x = Store::open(place / "run.h5").read<double>("/history/body/node_2");
   EXPECT_NEAR(x[x.size() - 12] - x[0], 1 + 19 / 90., 1e-9);
   imported("b.bdf", "--scene-out s.toml");

@@ -7,6 +7,7 @@
 #include "import_case.hpp"
 #include "model/scene.hpp"
 #include "model/store.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_steps_test {
 namespace {
@@ -24,8 +25,7 @@ class ImportInpSteps : public test::Import {
   void solve(const std::string& text, const std::string& options = "") {
     place.write("a.inp", text);
     imported("a.inp", "--scene-out s.toml");
-    const auto ran = place.run("hilo-solve --quiet s.toml -o run.h5 " + options);
-    EXPECT_EQ(ran.exit, 0) << ran.err << test::text_of(place / "s.toml");
+    succeeded(place.run("hilo-solve --quiet s.toml -o run.h5 " + options), test::text_of(place / "s.toml"));
   }
   std::vector<double> read(const std::string& array) const { return Store::open(place / "run.h5").read<double>(array); }
   /// Force along x that holds the foot at each of these times.

@@ -9,6 +9,7 @@
 #include "import_case.hpp"
 #include "model/scene.hpp"
 #include "model/store.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::import_inp_ties_test {
 namespace {
@@ -36,8 +37,7 @@ class ImportInpTies : public test::Import {
     place.write("a.inp", text);
     imported("a.inp", "--scene-out s.toml");
     EXPECT_EQ(err.find("not read"), std::string::npos) << err;
-    const auto ran = place.run("hilo-solve --quiet s.toml -o run.h5");
-    ASSERT_EQ(ran.exit, 0) << ran.err << test::text_of(place / "s.toml");
+    succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"), test::text_of(place / "s.toml"));
   }
   std::vector<double> foot() const {
     const auto all = Store::open(place / "run.h5").read<double>("/history/motion/foot");

@@ -5,6 +5,7 @@
 
 #include "import_case.hpp"
 #include "model/store.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::import_shell_test {
 namespace {
@@ -150,8 +151,7 @@ TEST_F(ImportShell, AClampedDeckOfS4BendsAsItsBeam) {
   imported("strip.inp", "--thicken --scene-out scene.toml");
   EXPECT_NE(err.find("20 quadrangles became solid-shells, 42 nodes pairs"), std::string::npos) << err;
   place.write("scene.toml", test::text_of(place / "scene.toml") + "\n[[probe]]\nname = \"END\"\non = \"END\"\n");
-  const auto ran = place.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("hilo-solve --quiet scene.toml -o run.h5"));
   EXPECT_NEAR(way("END").z() / strip_tip, 1, 2e-3);
 }
 
@@ -177,8 +177,7 @@ void write_strip(const Workplace& place, const std::function<std::string(int, co
 TEST_F(ImportShell, TrianglesAndMidSideNodesBendAsTheBeam) {
   const auto solved_tip = [&] {
     place.write("scene.toml", test::text_of(place / "scene.toml") + "\n[[probe]]\nname = \"END\"\non = \"END\"\n");
-    const auto ran = place.run("hilo-solve --quiet scene.toml -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    const auto ran = succeeded(place.run("hilo-solve --quiet scene.toml -o run.h5"));
     return ran.exit == 0 ? way("END").z() / strip_tip : 0.;
   };
   const std::string t = "*ELEMENT, TYPE=S3, ELSET=T\n", q = "*ELEMENT, TYPE=S4, ELSET=Q\n";
@@ -230,8 +229,7 @@ TEST_F(ImportShell, APlateOfTrianglesIsAsExactWhenThin) {
                            std::string(components).size());
     place.write("scene.toml", scene + fmt::format("[[load]]\nkind = \"pressure\"\nname = \"p\"\non = \"plate_top\"\npressure = {}\n", p) +
                                   "[[probe]]\nname = \"middle\"\non = \"middle\"\n[time]\nanalysis = \"static\"\nsteps = 1\n");
-    const auto ran = place.run("hilo-solve --quiet scene.toml -o run.h5");
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(place.run("hilo-solve --quiet scene.toml -o run.h5"));
     const double share = std::abs(way("middle").z()) / w;
     std::printf("h %g: %.4f of Kirchhoff's, %d cells\n", h, share, static_cast<int>(m.n_cells()));
     EXPECT_NEAR(share, 1, 0.01);
@@ -254,8 +252,7 @@ TEST_F(ImportShell, AClampedDeckOfCquad4BendsAsItsBeam) {
     if (std::abs(m.X[m.facet_nodes(set[0])[0]].x() - 10) < 1e-9 && set.size() == 1) end = name;
   ASSERT_NE(end, "");
   place.write("scene.toml", test::text_of(place / "scene.toml") + "\n[[probe]]\nname = \"end\"\non = \"" + end + "\"\n");
-  const auto ran = place.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("hilo-solve --quiet scene.toml -o run.h5"));
   EXPECT_NEAR(way("end").z() / strip_tip, 1, 2e-3);
 }
 
@@ -298,8 +295,7 @@ TEST_F(ImportShell, AQuarterOfAPlateOfCtria3HasTheSymmetryOfTheWhole) {
   place.write("scene.toml", scene +
                                 "\n[set.middle]\nkind = \"ball\"\nat = [0, 0, 0]\nradius = 0.006\n[[probe]]\nname = \"middle\"\non = "
                                 "\"middle\"\n");
-  const auto ran = place.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run("hilo-solve --quiet scene.toml -o run.h5"));
   const double share = way("middle").z() / (0.0056 * 100 * 12 * (1 - 0.09) / (2.1e11 * 1e-6));
   std::printf("middle %.4f of Timoshenko's\n", share);
   EXPECT_NEAR(share, 1, 0.02);

@@ -4,6 +4,7 @@
 
 #include "import_case.hpp"
 #include "model/thin_regions.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::import_thin_test {
 namespace {
@@ -140,11 +141,9 @@ TEST_F(ImportThin, OnlyRigidMayBeSaidOfThemAndAPlateSwingsAsItShould) {
   const auto bare = place.run("hilo-solve scene.toml out.h5 -o run.h5");
   EXPECT_EQ(bare.exit, 2);
   EXPECT_NE(bare.err.find("there is no element of them, it can be rigid alone (hilo-tag --rigid 'pid_7')"), std::string::npos) << bare.err;
-  const auto tagged = place.run("hilo-tag out.h5 -o tags.h5");
-  EXPECT_EQ(tagged.exit, 0);
+  const auto tagged = succeeded(place.run("hilo-tag out.h5 -o tags.h5"));
   EXPECT_NE(tagged.err.find("region \"pid_7\" has shells or beams, so it is rigid"), std::string::npos) << tagged.err;
-  const auto ran = place.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5 && hilo-post series run.h5 probe.edge.z -o -");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const auto ran = succeeded(place.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5 && hilo-post series run.h5 probe.edge.z -o -"));
   const double z = std::strtod(ran.out.substr(ran.out.rfind(',') + 1).c_str(), nullptr);  // at the end
   // angle = M/(m g s) (1 - cos w t) with the force's moment M = 1 N m, s = 1/2 m
   const double mass = 7850 * .4, J = mass * (1. / 3 + .01 / 12), w = std::sqrt(mass * 9.81 * .5 / J);

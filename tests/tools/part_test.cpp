@@ -7,6 +7,7 @@
 
 #include "../cli.hpp"
 #include "../model/block.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::part_test {
 namespace {
@@ -38,8 +39,7 @@ class Part : public testing::Test {
     write_tags(place / "tags.h5", place / "mesh.h5", {Fidelity::rigid, Fidelity::nonlinear}, {"hilo-import bar.msh", "hilo-tag"});
   }
   MeshFile parted(const std::string& arguments) {
-    const auto ran = place.run("hilo-part " + arguments + " -o parts.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(place.run("hilo-part " + arguments + " -o parts.h5"));
     return read_mesh_file(place / "parts.h5");
   }
   void expect_refused(const std::string& command, int exit, const std::string& message) {
@@ -114,8 +114,7 @@ TEST_F(Part, FiringSceneIsBalancedFromTwoTo128Parts) {
   for (const char* size : {"0", "1"}) {
     ASSERT_EQ(place.run("hilo-import --quiet " + scene + "vehicle.geo -o vehicle.h5 --define SIZE=" + size).exit, 0);
     ASSERT_EQ(place.run("hilo-tag --quiet vehicle.h5 " HILO_SOURCE "/data/scaling/tags.toml -o vehicle-tags.h5").exit, 0);
-    const auto ran = place.run("hilo-part vehicle-tags.h5 " + scene + "scene.toml --table -o table.csv");
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(place.run("hilo-part vehicle-tags.h5 " + scene + "scene.toml --table -o table.csv"));
     std::istringstream lines(place.run("cat table.csv").out);
     std::string line;
     std::getline(lines, line);
@@ -196,8 +195,7 @@ TEST_F(Part, JointsOfASceneKeepTheirEndsTogether) {
   place.write("scene.toml",
               "[[joint]]\nkind = \"spherical\"\nname = \"pin\"\na = \"a\"\nb = \"b\"\nat = [8.5, 0.5, 0.5]\n[time]\nend = 1.0\nstep = 0.1\n"
               "[material.steel]\nE = 2e11\nnu = 0.3\ndensity = 7800\n[region.\"*\"]\nmaterial = \"steel\"\n");
-  const auto ran = place.run("hilo-part two.h5 scene.toml -n 2 --quiet --json");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  const auto ran = succeeded(place.run("hilo-part two.h5 scene.toml -n 2 --quiet --json"));
   EXPECT_NE(ran.out.find("\"joints\": 1"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("\"pieces\": 1"), std::string::npos) << ran.out;
   EXPECT_EQ(ran.out.find("\"pieces\": 2", ran.out.find("\"parts\": [")), std::string::npos) << ran.out;

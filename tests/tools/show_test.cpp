@@ -6,6 +6,7 @@
 #include "model/scene.hpp"
 #include "model/schema.hpp"
 #include "model/store.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::show_test {
 namespace {
@@ -68,8 +69,7 @@ class Show : public testing::Test {
 };
 
 TEST_F(Show, MeshShowsRegionsWithVolumeAndBoxAndSets) {
-  const auto ran = place.run("hilo-show mesh.h5");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  const auto ran = succeeded(place.run("hilo-show mesh.h5"));
   EXPECT_EQ(line(ran.out, "hull "), "hull 6 0.75 7850 2.1e+11 0.3 [0, 0, 0] to [1.5, 1, 0.5]");
   EXPECT_EQ(line(ran.out, "barrel "), "barrel 2 0.25 - - - [1.5, 0, 0] to [2, 1, 0.5]");
   EXPECT_EQ(line(ran.out, "left "), "left nodes 6 - [0, 0, 0] to [0, 1, 0.5]");
@@ -89,8 +89,7 @@ TEST_F(Show, PartsShowWhatTheyLinkTo) {
 
 TEST_F(Show, RunShowsBodiesFieldsAndTheLargestValueOfEachHistory) {
   write_run(true);
-  const auto ran = place.run("hilo-show run.h5");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  const auto ran = succeeded(place.run("hilo-show run.h5"));
   EXPECT_EQ(line(ran.out, "complete"), "complete yes");
   EXPECT_NE(ran.out.find("\nhull       12.5            1            2            3    0.5   0.25      0      2\n"), std::string::npos)
       << ran.out;
@@ -106,8 +105,7 @@ TEST_F(Show, SceneShowsItsEntriesWithTheirPlaces) {
       "scene.toml",
       "[material.steel]\nE = 2e11\nnu = 0.3\ndensity = 7800\n[region.\"*\"]\nmaterial = \"steel\"\n"
       "[[joint]]\nkind = \"spherical\"\nname = \"pin\"\na = \"ground\"\nb = \"hull\"\nat = [0, 0, 0]\n[time]\nend = 1.0\nstep = 0.1\n");
-  const auto ran = place.run("hilo-show scene.toml");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  const auto ran = succeeded(place.run("hilo-show scene.toml"));
   EXPECT_EQ(line(ran.out, "joint "), "joint spherical pin ground - hull scene.toml:7:1");
   EXPECT_EQ(line(ran.out, "time.step"), "time.step [s] 0.1");
   EXPECT_EQ(place.run("hilo-show - < scene.toml").exit, 0);
@@ -116,8 +114,7 @@ TEST_F(Show, SceneShowsItsEntriesWithTheirPlaces) {
 }
 
 TEST_F(Show, CheckPassesWholeFiles) {
-  const auto ran = place.run("hilo-show --check mesh.h5 tags.h5 parts.h5");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  const auto ran = succeeded(place.run("hilo-show --check mesh.h5 tags.h5 parts.h5"));
   EXPECT_EQ(ran.out, "mesh.h5: ok, 16 arrays\ntags.h5: ok, 3 arrays\nparts.h5: ok, 2 arrays\n");
 }
 
@@ -133,8 +130,7 @@ TEST_F(Show, CheckFindsEveryTruncation) {
 
 TEST_F(Show, CheckFindsFilesThatAreIncompleteOrDoNotFit) {
   write_run(false);
-  const auto on_its_way = place.run("hilo-show --check run.h5");
-  EXPECT_EQ(on_its_way.exit, 0);
+  const auto on_its_way = succeeded(place.run("hilo-show --check run.h5"));
   EXPECT_TRUE(on_its_way.out.starts_with("run.h5: incomplete, sound up to t = ")) << on_its_way.out;
   EXPECT_EQ(place.run("hilo-show run.h5").exit, 0);  // it can be looked at all the same
   place.run("cp tags.h5 keep.h5; head -c 3000 tags.h5 > cut.h5; mv cut.h5 tags.h5");

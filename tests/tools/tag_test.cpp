@@ -3,6 +3,7 @@
 
 #include "../cli.hpp"
 #include "../model/block.hpp"
+#include "succeeded.hpp"
 
 namespace hilo::test::tag_test {
 namespace {
@@ -31,8 +32,7 @@ class Tag : public testing::Test {
 };
 
 TEST_F(Tag, TableCountsThreeUnknownsPerFreeNodeAndSixPerBody) {
-  const auto ran = place.run("hilo-tag mesh.h5 --rigid hull wheel_1 --nonlinear wheel_2 barrel -o tags.h5");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  const auto ran = succeeded(place.run("hilo-tag mesh.h5 --rigid hull wheel_1 --nonlinear wheel_2 barrel -o tags.h5"));
   EXPECT_EQ(ran.err, "");
   // 20 nodes; hull and wheel_1 share nodes, so one body; wheel_2 has 4 free nodes, barrel 4 more.
   EXPECT_EQ(ran.out,
@@ -138,8 +138,7 @@ TEST_F(Tag, HelpEndsWithAnExampleThatRuns) {
   const auto at = help.rfind("Example:\n");
   ASSERT_NE(at, std::string::npos);
   write_mesh(place / "mesh.h5", row(), {});
-  const auto ran = place.run(help.substr(at + 9));
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  succeeded(place.run(help.substr(at + 9)));
 }
 
 TEST_F(Tag, CompletionAndManPageKnowEveryOption) {

@@ -2,6 +2,7 @@
 // Lee's frame of hexahedra, one through the section: two legs of 1.2 m and a section of 20 x 30 mm, hinged at both feet; node set `load`
 // beside its corner.
 #pragma once
+#include "scene_parts.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -22,38 +23,12 @@ inline Mesh lee_frame() {
 
 /// With what pushes it, and [time].
 inline std::string lee_frame_scene(const std::string& rest) {
-  return R"(
-[material.frame]
-E = 70.608e9
-nu = 0.3
-density = 2700
-[region."*"]
-material = "frame"
-[[joint]]
-kind = "revolute"
-name = "foot"
-a = "ground"
-b = "xmin"
-at = [0, 0, 0.015]
-axis = [0, 0, 1]
-[[joint]]
-kind = "revolute"
-name = "far"
-a = "ground"
-b = "xmax"
-at = [1.2, 1.2, 0.015]
-axis = [0, 0, 1]
-)" + rest;
+  return solid(70.608e9, 0.3, 2700) + axial("revolute", "foot", "ground", "xmin", {0, 0, 0.015}, {0, 0, 1}) +
+         axial("revolute", "far", "ground", "xmax", {1.2, 1.2, 0.015}, {0, 0, 1}) + rest;
 }
 
 /// Moved down by 0.45 m while t goes to 1.
-inline const std::string pushed_by_a_law = R"([[motion]]
-kind = "translation"
-name = "push"
-on = "load"
-components = ["y"]
-displacement = [0, -0.45, 0]
-history = {t = [0, 1], value = [0, 1]}
-)";
+inline const std::string pushed_by_a_law =
+    motion("translation", "push", "load", "components = [\"y\"]\ndisplacement = [0, -0.45, 0]\nhistory = {t = [0, 1], value = [0, 1]}");
 
 }  // namespace hilo::test

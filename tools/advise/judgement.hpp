@@ -41,7 +41,6 @@ class Judgement {
   /// Error of a model by the reference, the step and what is in doubt of the reference, over what is allowed; 1 is all of it.
   double error(const Candidate& c) const;
   bool serves(const Candidate& c) const { return &c == a.reference || (!rejected.contains(&c) && error(c) <= 1); }
-  bool base_serves() const { return serves(*a.base); }
   double step_over(size_t k) const { return over(a.step[k], a.reference->values[k].allowed); }
   /// Of a model that is not the reference: a raw peak that is too large stays so.
   Candidates::Beyond beyond() const;

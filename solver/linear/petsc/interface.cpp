@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <set>
 
+#include "base/joined.hpp"
 #include "linear/petsc/session.hpp"
 
 namespace hilo::petsc {
@@ -151,19 +151,14 @@ std::vector<int> connected_parts(const SubdomainMatrix& F) {
   const std::vector<PetscInt> all = comm().gather(mine);
   std::map<std::pair<PetscInt, PetscInt>, int> number;
   for (size_t k = 0; k < all.size(); k += 4) number.try_emplace({all[k], all[k + 1]}, static_cast<int>(number.size()));
-  std::vector<int> parent(number.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int a) {
-    while (parent[a] != a) a = parent[a] = parent[parent[a]];
-    return a;
-  };
-  for (size_t k = 0; k < all.size(); k += 4) parent[root(number.at({all[k], all[k + 1]}))] = root(number.at({all[k + 2], all[k + 3]}));
+  Joined pieces(number.size());
+  for (size_t k = 0; k < all.size(); k += 4) pieces.join(number.at({all[k], all[k + 1]}), number.at({all[k + 2], all[k + 3]}));
   std::map<int, int> part_of_root;
-  for (size_t a = 0; a < parent.size(); ++a) part_of_root.try_emplace(root(static_cast<int>(a)), static_cast<int>(part_of_root.size()));
+  for (int a = 0; a < static_cast<int>(pieces.size()); ++a) part_of_root.try_emplace(pieces.root(a), static_cast<int>(part_of_root.size()));
   // an owned block may lie in another rank's subdomain only: its holders tell
   std::vector<std::vector<PetscInt>> tell(size());
   for (PetscInt i = 0; i < F.n_blocks(); ++i)
-    tell[F.owner(i)].insert(tell[F.owner(i)].end(), {F.global(i), part_of_root.at(root(number.at({rank(), piece[i]})))});
+    tell[F.owner(i)].insert(tell[F.owner(i)].end(), {F.global(i), part_of_root.at(pieces.root(number.at({rank(), piece[i]})))});
   std::vector<int> part(F.n_owned(), 0);
   for (const auto& list : comm().exchange(tell))
     for (size_t k = 0; k < list.size(); k += 2) part[list[k] - F.first_owned()] = list[k + 1];

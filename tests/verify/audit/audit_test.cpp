@@ -5,6 +5,7 @@
 // contradicts itself is refused.
 #include <sstream>
 
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::audit_test {
@@ -131,8 +132,7 @@ TEST(Audit, DrivesThatPartCompanyStopTheRun) {
   };
   const std::string first = "history = {t = [0, 0.5, 1], value = [0, 0.5, 1]}\n";
   c.write("same.toml", arm + first + second("1"));
-  Ran ran = c.run("hilo-solve --quiet same.toml -o run.h5");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  Ran ran = succeeded(c.run("hilo-solve --quiet same.toml -o run.h5"));
   EXPECT_LT(c.reported("constraint_violation"), 1e-12);
   c.write("apart.toml", arm + first + second("0.9"));
   ran = c.run("hilo-solve --quiet apart.toml -o run.h5");

@@ -2,6 +2,7 @@
 // Beams in motion: what a step keeps however long it is, and published motions.
 #include <Eigen/Geometry>
 
+#include "succeeded.hpp"
 #include "verify/beams/beam_scene.hpp"
 
 namespace hilo::test::beams_dynamics_test {
@@ -113,8 +114,7 @@ TEST_F(BeamDynamics, ALineLoadThatTurnsIsInTheBalance) {
   const Eigen::MatrixXd E = one.history("energy");
   EXPECT_GT(E.col(0).maxCoeff(), 10) << "it moves";
   EXPECT_LT(E.col(5).cwiseAbs().maxCoeff(), 1e-8 * E.col(0).maxCoeff());
-  const Ran ran = mpirun(2, "hilo-solve --quiet scene.toml -o two.h5", work.path());
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(mpirun(2, "hilo-solve --quiet scene.toml -o two.h5", work.path()));
   EXPECT_LT((Results(work / "two.h5").history("beam/arm") - one.history("beam/arm")).cwiseAbs().maxCoeff(), 1e-6);
 }
 
@@ -163,8 +163,7 @@ TEST_F(BeamDynamics, EveryIntegratorFliesTheSameWay) {
 TEST_F(BeamDynamics, IsTheSameOnRanks) {
   work.write("scene.toml", spaghetti(6, 0.1));
   for (const int n : {1, 2, 3}) {
-    const Ran r = mpirun(n, fmt::format("hilo-solve --quiet scene.toml -o r{}.h5", n), work.path());
-    ASSERT_EQ(r.exit, 0) << r.err;
+    succeeded(mpirun(n, fmt::format("hilo-solve --quiet scene.toml -o r{}.h5", n), work.path()));
   }
   const Results one(work / "r1.h5");
   for (const char* n : {"r2.h5", "r3.h5"})

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The ladder frame of data/frame: what its tyres carry at rest, its energy over the bump, and modes of a joint of it.
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::beams_frame_test {
@@ -10,8 +11,7 @@ const std::string data = std::string(HILO_SOURCE) + "/data/frame/";
 // Weights and moments about the front axle, by hand, say what each axle carries; frame and wheels are alike on the left and on the right.
 TEST(LadderFrame, TyresCarryTheWeight) {
   const Workplace work;
-  const Ran ran = work.run("hilo-solve --quiet " + data + "scene.toml -o run.h5 --set time.end=0.3");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(work.run("hilo-solve --quiet " + data + "scene.toml -o run.h5 --set time.end=0.3"));
   const Results r(work / "run.h5");
   const double rail = 7850 * (0.08 * 0.16 - 0.068 * 0.148) * 5, cross = 7850 * M_PI / 4 * (0.09 * 0.09 - 0.08 * 0.08) * 0.696,
                plates = 2 * 1.85;

@@ -3,6 +3,7 @@
 #include <map>
 #include <sstream>
 
+#include "succeeded.hpp"
 #include "verify/beams/beam_scene.hpp"
 
 namespace hilo::test::beams_stress_test {
@@ -15,8 +16,7 @@ class BeamStress : public BeamPlace {
   /// Columns of `hilo-post beam run.h5 WHAT -o -` by their first word.
   std::map<std::string, std::vector<double>> along(const std::string& scene, const std::string& what = "arm") {
     (void)solved(scene);
-    const Ran post = work.run("hilo-post beam run.h5 " + what + " -o -");
-    EXPECT_EQ(post.exit, 0) << post.err;
+    const Ran post = succeeded(work.run("hilo-post beam run.h5 " + what + " -o -"));
     std::istringstream lines(post.out);
     std::string line, cell;
     std::getline(lines, line);
@@ -90,8 +90,7 @@ TEST_F(BeamStress, HistoriesEnvelopesAndQuantitiesAreOfTheSameStress) {
   const double most = std::max({f.col(2).maxCoeff(), f.col(8).maxCoeff(), f.col(14).maxCoeff(), f.col(20).maxCoeff()});
   EXPECT_GT(most, 1.9 * 50 * 9.81) << "twice the weight, which falls onto an unloaded bar";
   EXPECT_LT(most, 2.1 * 52 * 9.81);
-  const Ran series = work.run("hilo-post series run.h5 beam_stress.arm.high beam_stress.arm.cell1.b.low -o -");
-  ASSERT_EQ(series.exit, 0) << series.err;
+  const Ran series = succeeded(work.run("hilo-post series run.h5 beam_stress.arm.high beam_stress.arm.cell1.b.low -o -"));
   double high = 0, low = 0;
   std::istringstream lines(series.out);
   std::string line;
@@ -170,8 +169,7 @@ TEST_F(BeamStress, AMeshedSectionBendsTwistsAndHasItsStress) {
     const Ran table = work.run("hilo-post beam run.h5 --sections --json");
     EXPECT_NE(table.out.find("arm"), std::string::npos) << table.err;
     for (const int n : {2, 3}) {
-      const Ran on = mpirun(n, fmt::format("hilo-solve --quiet scene.toml -o r{}.h5", n), work.path());
-      ASSERT_EQ(on.exit, 0) << on.err;
+      succeeded(mpirun(n, fmt::format("hilo-solve --quiet scene.toml -o r{}.h5", n), work.path()));
       EXPECT_LT((Results(work / fmt::format("r{}.h5", n)).history("beam/arm") - r.history("beam/arm")).cwiseAbs().maxCoeff(), 1e-6);
     }
   }

@@ -3,6 +3,7 @@
 // so that the answer is the linear one.
 #include <fmt/format.h>
 
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::bending_test {
@@ -50,9 +51,8 @@ double beam_ratio(const Mesh& m, const Vec3& size, const std::string& nu, const 
   scene += "\n[[motion]]\nkind = \"fixed\"\nname = \"y\"\non = \"side\"\ncomponents = [\"y\"]\n";
   scene += "\n[[motion]]\nkind = \"fixed\"\nname = \"z\"\non = \"edge\"\ncomponents = [\"z\"]\n";
   c.write("scene.toml", scene);
-  const Ran ran =
-      c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5 --set material.solid.nu=" + nu + " --set load.end.force=[0,0," + P + "]");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  succeeded(
+      c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5 --set material.solid.nu=" + nu + " --set load.end.force=[0,0," + P + "]"));
   const Results r = c.results();
   return (r.at("probe/tip", 1) - r.at("probe/tip", 0))[2] / timoshenko(std::stod(P), 1e7, std::stod(nu), size);
 }
@@ -129,8 +129,7 @@ TEST(Bending, CooksMembraneIsThatOfItsPeers) {
         "[\"z\"]\n";
     c.write("scene.toml", scene);
     const auto moved = [&](const std::string& probe, const std::string& options) {
-      const Ran ran = c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5 " + options);
-      EXPECT_EQ(ran.exit, 0) << ran.err;
+      succeeded(c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5 " + options));
       const Results r = c.results();
       return (r.at("probe/" + probe, 1) - r.at("probe/" + probe, 0))[1];
     };
@@ -160,8 +159,7 @@ Mesh curved_block(BlockOptions o, const std::function<Vec3(const Vec3&)>& map) {
 double elastic_energy(Case& c, const Mesh& m, const std::string& scene, std::string* talk = nullptr) {
   write_mesh(c / "mesh.h5", m, {"test"});
   c.write("scene.toml", scene);
-  const Ran ran = c.run("hilo-solve scene.toml mesh.h5 -o run.h5 --set solver.tolerance=1e-9");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  const Ran ran = succeeded(c.run("hilo-solve scene.toml mesh.h5 -o run.h5 --set solver.tolerance=1e-9"));
   if (talk) *talk = ran.err;
   const auto e = c.results().history("energy");
   return e(e.rows() - 1, 1);
@@ -297,8 +295,7 @@ TEST(Compression, BeyondWhatALawOrACellStandsForIsTold) {
         pressed);
     c.write("scene.toml", scene);
     const Ran ran =
-        c.run("hilo-solve scene.toml mesh.h5 -o run.h5 --set time.steps=10 --set 'motion.clamp.components=[\"x\",\"y\",\"z\"]'");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+        succeeded(c.run("hilo-solve scene.toml mesh.h5 -o run.h5 --set time.steps=10 --set 'motion.clamp.components=[\"x\",\"y\",\"z\"]'"));
     return ran.err;
   };
   EXPECT_EQ(talk_of(Shape::hex20, "stvk", 0.2).find("compressed to"), std::string::npos);

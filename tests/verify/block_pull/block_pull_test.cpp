@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // FEBio ri01: with lambda = 0 the block stretches uniformly, l - 1/l = 0.1, so the rigid body moves by 4 (l - 1) =
 // 0.2049969.
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::block_pull_test {
@@ -22,8 +23,7 @@ TEST(BlockPull, BodyFixedToTheEndFaceMovesByTheClosedForm) {
                             "\n[[body]]\nname = \"plate\"\nmass = 1\ncom = [2, 0.5, 0.5]\ninertia = [1, 1, 1]\n\n[[joint]]\nkind = "
                             "\"fixed\"\nname = \"glue\"\na = \"plate\"\nb "
                             "= \"xmax\"\nat = [2, 0.5, 0.5]\n");
-  const Ran ran = c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5"));
   const Results r = c.results();
   EXPECT_NEAR(r.at("probe/plate", 1)[0] - 2, exact, 1e-8);
   EXPECT_LT((r.at("joint/glue", 1).head<3>() - Vec3(0.05, 0, 0)).norm(), 1e-9) << "the glue carries the force on to b";
@@ -41,8 +41,7 @@ TEST(BlockPull, RigidRegionThatSharesTheFaceMovesByTheClosedForm) {
     c.use(block_mesh(o), {Fidelity::nonlinear, Fidelity::rigid});
     const std::string scene = text_of(c.source("scene.toml"));
     c.write("scene.toml", scene + "\n[region.plate]\nmaterial = \"rubber\"\n");
-    const Ran ran = c.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5");
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(c.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5"));
     EXPECT_NEAR(c.results().at("probe/plate", 1)[0] - 2.25, exact, 1e-6) << info(shape).name;
   }
 }

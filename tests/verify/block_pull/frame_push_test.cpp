@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lee's frame pushed down by what moves by a law, to more than a third of its height.
+#include "succeeded.hpp"
 #include "verify/lee_frame.hpp"
 
 namespace hilo::test::frame_push_test {
@@ -14,8 +15,7 @@ TEST(FramePush, TakesFewIterationsAndCuts) {
   c.write("scene.toml", lee_frame_scene(pushed_by_a_law + "[time]\nanalysis = \"static\"\nend = 1\n"));
   std::vector<double> force;
   for (const int steps : {60, 120}) {
-    const Ran ran = c.run("hilo-solve scene.toml mesh.h5 -o run.h5 --set time.steps=" + std::to_string(steps));
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const Ran ran = succeeded(c.run("hilo-solve scene.toml mesh.h5 -o run.h5 --set time.steps=" + std::to_string(steps)));
     EXPECT_LE(c.reported("cuts"), 2) << ran.err;
     EXPECT_LE(c.reported("newton_iterations"), 280);
     force.push_back(c.results().at("motion/push", 1)[1]);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Joints that give way: springs along the rows of the joint.
+#include "scene_parts.hpp"
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::compliant_test {
@@ -38,42 +40,16 @@ TEST(CompliantJoint, TendsToTheRigidJoint) {
   EXPECT_LT(apart[1], 0.2 * apart[0]);
 }
 
-const std::string disc = R"([[body]]
-name = "d"
-mass = 1
-com = [0, 0, 0]
-inertia = [0.1, 0.1, 0.1]
-[[load]]
-kind = "torque"
-name = "T"
-on = "d"
-torque = [0, 0, TORQUE]
-[[probe]]
-name = "p"
-on = "d"
-at = [1, 0, 0]
-)";
-const std::string on_bushing = R"([[spring]]
-kind = "bushing"
-name = "b"
-b = "d"
-at = [0, 0, 0]
-stiffness = [1e5, 1e5, 1e5]
-angular_stiffness = [100, 100, 100]
-)";
+const std::string disc =
+    body("d", 1, Vec3::Zero(), {0.1, 0.1, 0.1}) + load("torque", "T", "d", "torque = [0, 0, TORQUE]") + probe("p", "d", "at = [1, 0, 0]");
+const std::string on_bushing =
+    spring("bushing", "b", "ground", "d", "at = [0, 0, 0]\nstiffness = [1e5, 1e5, 1e5]\nangular_stiffness = [100, 100, 100]");
 
 // Truth: Hooke: the angle is the moment over the stiffness, at any angle below half a turn; beyond, a bushing that is stiff about three
 // axes says so.
 TEST(CompliantJoint, TurnsByTheMomentOverTheStiffness) {
   const Case c("compliant");
-  const std::string fixed = R"([[joint]]
-kind = "fixed"
-name = "b"
-b = "d"
-at = [0, 0, 0]
-stiffness = 1e5
-angular_stiffness = 100
-)";
+  const std::string fixed = joint("fixed", "b", "ground", "d", Vec3::Zero(), "stiffness = 1e5\nangular_stiffness = 100");
   const std::string single = std::string(on_bushing).replace(on_bushing.find("[100, 100, 100]"), 15, "[0, 0, 100]");
   for (const double torque : {50.0, 95.0, 300.0, 400.0}) {
     for (const std::string& holder : {on_bushing, fixed, single}) {
@@ -83,8 +59,7 @@ angular_stiffness = 100
                                                    "\"d\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n"
                                                  : "") +
                                "[time]\nanalysis = \"static\"\nsteps = 10\n");
-      const Ran ran = c.run("hilo-solve turn.toml -o turn.h5");
-      ASSERT_EQ(ran.exit, 0) << ran.err;
+      const Ran ran = succeeded(c.run("hilo-solve turn.toml -o turn.h5"));
       const auto p = c.results("turn.h5").history("probe/p");
       if (torque < 100 * M_PI) {
         EXPECT_NEAR(p(10, 0), std::cos(torque / 100), 1e-9) << torque;
@@ -99,26 +74,8 @@ angular_stiffness = 100
 // that keeps them.
 TEST(CompliantJoint, KeepsEnergyAndMomentaAtLargeAngles) {
   const Case c("compliant");
-  const std::string bodies = R"([[body]]
-name = "one"
-mass = 2
-com = [0, 0, 0]
-inertia = [0.2, 0.3, 0.4]
-[[body]]
-name = "two"
-mass = 1
-com = [0.5, 0.1, 0]
-inertia = [0.1, 0.15, 0.2]
-[[initial]]
-on = "two"
-spin = [3, -2, 5]
-[[initial]]
-on = "one"
-spin = [-1, 1, -3]
-[time]
-end = 3
-step = 0.01
-)";
+  const std::string bodies = body("one", 2, Vec3::Zero(), {0.2, 0.3, 0.4}) + body("two", 1, {0.5, 0.1, 0}, {0.1, 0.15, 0.2}) +
+                             initial("two", "spin = [3, -2, 5]") + initial("one", "spin = [-1, 1, -3]") + in_time(3, 0.01);
   const char* holders[] = {
       "[[spring]]\nkind = \"bushing\"\nname = \"h\"\na = \"one\"\nb = "
       "\"two\"\nat = [0.3, 0, 0.1]\nstiffness = [200, 300, 250]\n"

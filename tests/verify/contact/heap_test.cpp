@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "succeeded.hpp"
 #include "verify/contact/collision.hpp"
 #include "verify/verify.hpp"
 
@@ -108,8 +109,7 @@ TEST(Heap, GoesOnAndIsTheSameOnRanks) {
   const std::string often = "--checkpoint 5steps";
   const Results whole = c.solved(c.all, "whole.h5", "", often);
   c.solved(c.all, "half.h5", "", often + " --set time.end=0.04");
-  const Ran on = c.run("hilo-solve --quiet --restart half.h5 --accept --set time.end=0.1 " + often);
-  ASSERT_EQ(on.exit, 0) << on.err;
+  succeeded(c.run("hilo-solve --quiet --restart half.h5 --accept --set time.end=0.1 " + often));
   EXPECT_LT(apart(whole, Results(c / "half.h5"), c.n), 1e-12);
 }
 
@@ -159,8 +159,7 @@ TEST(Heap, AColumnStands) {
   std::ofstream(c / "scene.toml") << text;
   const double F = (n - 1) * m * 9.81, depth = std::pow(F / (4. / 3 * E * std::sqrt(r / 2)), 2. / 3);
   for (const char* analysis : {"", "--set 'time.analysis=\"static\"' --set 'time.start=\"as given\"'"}) {
-    const Ran ran = c.run(fmt::format("hilo-solve --quiet scene.toml -o run.h5 {}", analysis));
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(c.run(fmt::format("hilo-solve --quiet scene.toml -o run.h5 {}", analysis)));
     const auto heap = Results(c / "run.h5").history("heap/c");
     const auto last = heap.row(heap.rows() - 1);
     EXPECT_EQ(last(0), n - 1);
@@ -186,8 +185,7 @@ TEST(Heap, OfSimBenchmarkKeepsItsEnergy) {
         k, at);
   }
   std::ofstream(c / "scene.toml") << text;
-  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(c.run("hilo-solve --quiet scene.toml -o run.h5"));
   const Results r(c / "run.h5");
   const auto e = r.history("energy"), p = r.history("momentum");
   EXPECT_GT(r.history("heap/c").col(0).maxCoeff(), 30) << "balls press each other";
@@ -219,8 +217,7 @@ TEST(Heap, OfSimBenchmarkRolls) {
         "0.8\nmodulus = 1e11\n",
         i, fmt::format("[{}, {}, {:.17g}]", 2. * (i % 5 - 2), 2. * (i / 5 - 2), 0.1 - low + r - lower));
   std::ofstream(c / "scene.toml") << text;
-  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(c.run("hilo-solve --quiet scene.toml -o run.h5"));
   const Results results(c / "run.h5");
   const double f1 = 0.4 * 35 * g, f2 = (F - f1) / M / (3.5 + 25 / M), a1 = (F - f1 - 25 * f2) / M;
   const auto t = results.history("t"), plate = results.history("probe/plate"), ball = results.history("probe/ball");

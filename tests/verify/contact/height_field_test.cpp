@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "dynamics/kept_run.hpp"
+#include "succeeded.hpp"
 #include "verify/block_mesh.hpp"
 #include "verify/contact/collision.hpp"
 #include "verify/verify.hpp"
@@ -49,8 +50,7 @@ struct Road : Case {
   Road() : Case("contact") {}
   Results run(const std::string& scene, const std::string& options = "") const {
     std::ofstream(*this / "scene.toml") << scene;
-    const Ran ran = Case::run("hilo-solve --quiet scene.toml " + options + " -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(Case::run("hilo-solve --quiet scene.toml " + options + " -o run.h5"));
     return Results(*this / "run.h5");
   }
 };
@@ -204,8 +204,7 @@ TEST(HeightField, EndsAtItsBorder) {
   const Road c;
   write_grid(c / "road.csv", 0.5, 0.5, 3, 3, [](double, double) { return 0; });
   std::ofstream(c / "scene.toml") << ball(field, {0.4, 0, 0.0999}, {1, 0, 0}, 0.1, "stiffness = 1e5", "end = 0.6\nstep = 0.005");
-  const Ran ran = c.Case::run("hilo-solve scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Ran ran = succeeded(c.Case::run("hilo-solve scene.toml -o run.h5"));
   const Results r(c / "run.h5");
   const auto x = r.history("probe/p"), f = r.history("contact/c"), e = r.history("energy");
   EXPECT_LT(x(x.rows() - 1, 2), -0.5);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "dynamics/kept_run.hpp"
+#include "succeeded.hpp"
 #include "verify/block_mesh.hpp"
 #include "verify/contact/collision.hpp"
 #include "verify/verify.hpp"
@@ -50,8 +51,7 @@ struct OnPlane : Case {
   }
   Mesh mesh;
   Results run(const std::string& options = "") const {
-    const Ran ran = Case::run("hilo-solve --quiet scene.toml tags.h5 " + options + " -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(Case::run("hilo-solve --quiet scene.toml tags.h5 " + options + " -o run.h5"));
     return Results(*this / "run.h5");
   }
 };
@@ -163,8 +163,7 @@ TEST(LoadSteps, ABodyStandsOnThreeBalls) {
         "[[contact]]\nname = \"{0}\"\na = \"ground\"\nb = \"ball {0}\"\nmodulus = 1e9\nfriction = 0.3\n",
         k, at[k][0], at[k][1], at[k][2]);
   std::ofstream(c / "scene.toml") << text;
-  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(c.run("hilo-solve --quiet scene.toml -o run.h5"));
   Eigen::Matrix3d lever;
   for (int k = 0; k < 3; ++k) lever.col(k) << 1, at[k][0], at[k][1];
   const Vec3 weight = lever.inverse() * (30 * g * Vec3(1, 0.1, 0.2));
@@ -207,8 +206,7 @@ TEST(LoadSteps, ABallBearing) {
       text += fmt::format("[[contact]]\nname = \"{0} {1}\"\na = \"{0}\"\nb = \"surface {1}\"\nstiffness = 1e8\nfriction = 0.1\n", race, i);
   }
   c.write("scene.toml", text);
-  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(c.run("hilo-solve --quiet scene.toml -o run.h5"));
   const Results run(c / "run.h5");
   for (int i = 0; i < Z; ++i)
     for (const char* race : {"outer", "inner"})

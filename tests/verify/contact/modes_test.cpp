@@ -7,6 +7,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "succeeded.hpp"
 #include "verify/block_mesh.hpp"
 #include "verify/contact/collision.hpp"
 #include "verify/verify.hpp"
@@ -21,8 +22,7 @@ struct Place : Case {
   Place() : Case("contact") {}
   Results run(const std::string& scene, const std::string& options = "") const {
     std::ofstream(*this / "scene.toml") << scene;
-    const Ran ran = Case::run("hilo-solve --quiet scene.toml " + options + " -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(Case::run("hilo-solve --quiet scene.toml " + options + " -o run.h5"));
     return Results(*this / "run.h5");
   }
   Eigen::VectorXd frequencies(const std::string& scene, const std::string& options = "") const {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "succeeded.hpp"
 #include "verify/contact/clip.hpp"
 
 namespace hilo::test::on_ranks_test {
@@ -87,13 +88,11 @@ class OnRanks {
   }
   Results solved(int ranks, const std::string& mesh, const std::string& output, const std::string& more = "") const {
     const std::string launcher = ranks == 1 ? "" : fmt::format("timeout 120 mpirun -n {} ", ranks);
-    const Ran ran = case_.run(
-        "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
-        "OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_hwloc_base_binding_policy=none OPENBLAS_NUM_THREADS=1\n" +
-        launcher + "hilo-solve --quiet scene.toml " + (scene_.mesh.n_cells() ? mesh + " " : "") + scene_.options + " " + more + " -o " +
-        output);
-    EXPECT_EQ(ran.exit, 0) << launcher << ran.err;
-    if (ran.exit != 0) throw std::runtime_error(ran.err);
+    succeeded(
+        case_.run("export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
+                  "OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_hwloc_base_binding_policy=none OPENBLAS_NUM_THREADS=1\n" +
+                  launcher + "hilo-solve --quiet scene.toml " + (scene_.mesh.n_cells() ? mesh + " " : "") + scene_.options + " " + more +
+                  " -o " + output));
     return Results(case_ / output);
   }
   const Case& place() const { return case_; }

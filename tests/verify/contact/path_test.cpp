@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "dynamics/kept_run.hpp"
+#include "scene_parts.hpp"
+#include "succeeded.hpp"
 #include "verify/block_mesh.hpp"
 #include "verify/contact/collision.hpp"
 #include "verify/verify.hpp"
@@ -16,30 +18,7 @@ namespace hilo::test::contact_path_test {
 namespace {
 
 /// A ball of 0.1 m on a rail along x, which a spring of 100 N/m holds and a force of 200 N pushes, before a wall of 300 N/m.
-constexpr const char* cart = R"(
-[[body]]
-name = "cart"
-mass = 1
-com = [0, 0, 0]
-inertia = [1, 1, 1]
-[[joint]]
-kind = "prismatic"
-name = "rail"
-b = "cart"
-at = [0, 0, 0]
-axis = [1, 0, 0]
-[[spring]]
-kind = "bushing"
-name = "soft"
-b = "cart"
-at = [0, 0, 0]
-stiffness = [100, 0, 0]
-[[load]]
-kind = "force"
-name = "push"
-on = "cart"
-force = [200, 0, 0]
-[[obstacle]]
+const std::string cart = pushed_cart(200) + R"([[obstacle]]
 kind = "plane"
 name = "wall"
 at = [1.1, 0, 0]
@@ -54,17 +33,13 @@ name = "c"
 a = "wall"
 b = "skin"
 stiffness = 300
-[[probe]]
-name = "cart"
-on = "cart"
 )";
 
 // Truth: 100 x + 300 (x - 1) = 200 p behind the wall.
 TEST(ContactPath, OfABallThatMeetsAWall) {
   const Case c("contact");
-  c.write("scene.toml", std::string(cart) + "[time]\nanalysis = \"path\"\nsteps = 7\n");
-  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  c.write("scene.toml", cart + "[time]\nanalysis = \"path\"\nsteps = 7\n");
+  succeeded(c.run("hilo-solve --quiet scene.toml -o run.h5"));
   const Results r = c.results();
   const auto x = r.history("probe/cart"), p = r.history("path");
   for (Eigen::Index k = 0; k < x.rows(); ++k) EXPECT_NEAR(100 * x(k, 0) + 300 * std::max(0., x(k, 0) - 1), 200 * p(k, 0), 1e-6) << k;
@@ -98,8 +73,7 @@ solver.tolerance = 1e-11
     };
     c.write("static.toml", text("static", 4)), c.write("path.toml", text("path", 6));
     for (const char* name : {"static", "path"}) {
-      const Ran ran = c.run(fmt::format("hilo-solve --quiet {}.toml mesh.h5 -o {}.h5", name, name));
-      ASSERT_EQ(ran.exit, 0) << name << ran.err;
+      succeeded(c.run(fmt::format("hilo-solve --quiet {}.toml mesh.h5 -o {}.h5", name, name)), name);
     }
     const Results loads(c / "static.h5"), path(c / "path.h5");
     const double force = loads.history("contact/c").bottomRows(1)(0, 2), most = friction > 0 ? 2e-3 : 1e-7;
@@ -152,8 +126,7 @@ probe = [{{name = "p", on = "ball"}}]
   for (const char* method : {"generalized-alpha", "newmark", "hht", "wbz", "mid-point", "bdf2", "bathe"}) {
     const Case c("contact");
     c.write("scene.toml", ball + fmt::format("time = {{end = {}, step = 1e-4, integrator = \"{}\"}}\n", there, method));
-    const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
-    ASSERT_EQ(ran.exit, 0) << method << ran.err;
+    succeeded(c.run("hilo-solve --quiet scene.toml -o run.h5"), method);
     const Results r = c.results();
     EXPECT_NEAR(r.history("probe/p").bottomRows(1)(0, 2), 0.1 + H, 0.01 * H) << method;
     EXPECT_NEAR(r.history("contact/c").col(2).minCoeff(), -0, 1e-9) << method << ": it never pulls";

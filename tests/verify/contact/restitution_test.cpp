@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "dynamics/kept_run.hpp"
+#include "succeeded.hpp"
 #include "verify/block_mesh.hpp"
 #include "verify/contact/collision.hpp"
 #include "verify/verify.hpp"
@@ -20,8 +21,7 @@ struct Place : Case {
   Place() : Case("contact") {}
   Results solved(const std::string& scene, const std::string& options = "") const {
     std::ofstream(*this / "scene.toml") << scene;
-    const Ran ran = Case::run("hilo-solve --quiet scene.toml " + options + " -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(Case::run("hilo-solve --quiet scene.toml " + options + " -o run.h5"));
     return Results(*this / "run.h5");
   }
 };

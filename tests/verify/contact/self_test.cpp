@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "dynamics/kept_run.hpp"
+#include "succeeded.hpp"
 #include "verify/contact/clip.hpp"
 
 namespace hilo::test::self_test {
@@ -20,9 +21,7 @@ constexpr const char* itself = "[[contact]]\nname = \"c\"\na = \"block\"\nb = \"
 Results ran(const Case& c, const std::string& text, const std::string& options = "", const std::string& output = "run.h5") {
   c.write("scene.toml", text);
   const char* mesh = std::filesystem::exists(c / "tags.h5") ? "tags.h5 " : "mesh.h5 ";
-  const Ran run = c.run("hilo-solve --quiet scene.toml " + std::string(mesh) + options + " -o " + output);
-  EXPECT_EQ(run.exit, 0) << options << run.err;
-  if (run.exit != 0) throw std::runtime_error(run.err);
+  succeeded(c.run("hilo-solve --quiet scene.toml " + std::string(mesh) + options + " -o " + output));
   return Results(c / output);
 }
 

@@ -5,6 +5,7 @@
 //
 // The reactions of a Radau run are of second order, so the error falls by four with half the step, and (4 r(h/2) - r(h))/3 is left with
 // the next order: 3e-7 of the peak.
+#include "succeeded.hpp"
 #include "verify/truth.hpp"
 #include "verify/verify.hpp"
 
@@ -17,15 +18,13 @@ using Forces = Eigen::Matrix<double, 8, 1>;
 TEST(Crank, BearingForcesOfTheRigidDriveAreTheClosedForm) {
   Case c("crank");
   const std::string data = std::string(HILO_SOURCE) + "/data/crank/";
-  const Ran made = c.run("mkdir out && '" + data + "truth.py' gas > out/gas.csv && cp '" + data + "scene.toml' . && hilo-import --quiet '" +
-                         data + "crank.geo' -o mesh.h5 && hilo-tag --quiet mesh.h5 '" + data + "tags-rigid.toml' -o tags.h5");
-  ASSERT_EQ(made.exit, 0) << made.err;
+  succeeded(c.run("mkdir out && '" + data + "truth.py' gas > out/gas.csv && cp '" + data + "scene.toml' . && hilo-import --quiet '" + data +
+                  "crank.geo' -o mesh.h5 && hilo-tag --quiet mesh.h5 '" + data + "tags-rigid.toml' -o tags.h5"));
   std::vector<Results> runs;
   for (const char* step : {"2.7777777777777778e-5", "1.3888888888888889e-5"}) {  // pressure is linear between degrees: 1 and 1/2
     const std::string name = "run" + std::to_string(runs.size()) + ".h5";
-    const Ran ran = c.run("hilo-solve --quiet scene.toml tags.h5 --set 'time.integrator=\"radau\"' --set time.end=0.0155 --set time.step=" +
-                          std::string(step) + " --set output.interval=0.01 -o " + name);
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(c.run("hilo-solve --quiet scene.toml tags.h5 --set 'time.integrator=\"radau\"' --set time.end=0.0155 --set time.step=" +
+                    std::string(step) + " --set output.interval=0.01 -o " + name));
     runs.push_back(c.results(name));
   }
   const Eigen::MatrixXd truth =

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::dissipation_test {
@@ -70,8 +71,7 @@ class Dissipation : public testing::TestWithParam<Kind> {
   Results solved(const std::string& scene, double end, double step, double chi) {
     place_.write("scene.toml", parts_ + scene + fmt::format("[time]\nend = {}\nstep = {}\ndissipation = {}\n", end, step, chi) +
                                    "[output]\ninterval = 10\n[solver]\ntolerance = 1e-12\n");
-    const Ran ran = place_.run("hilo-solve --quiet scene.toml " + mesh_ + " -o run.h5");
-    if (ran.exit != 0) throw std::runtime_error(ran.err);
+    succeeded(place_.run("hilo-solve --quiet scene.toml " + mesh_ + " -o run.h5"));
     return Results(place_ / "run.h5");
   }
   /// Hung up at its root, pulled aside at its tip and let go; damped, so that steps of 10 ms resolve what is left.
@@ -142,8 +142,7 @@ TEST(DissipationBehindAFront, TakesTheRinging) {
                 "name = \"wall\"\non = \"xmin\"\n[[initial]]\non = [\"block\"]\nvelocity = [-0.01, 0, 0]\n[[probe]]\n"
                 "name = \"middle\"\non = \"middle\"\n[output]\ninterval = 1\n" +
                     fmt::format("[time]\nend = {}\nstep = {}\ndissipation = {}\n", 1.4 / c, 0.005 / c, chi));
-    const Ran ran = place.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5");
-    if (ran.exit != 0) throw std::runtime_error(ran.err);
+    succeeded(place.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5"));
     const Results r(place / "run.h5");
     const auto probe = r.history("probe/middle");
     double most = 0;

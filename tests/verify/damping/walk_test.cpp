@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::walk_test {
@@ -86,8 +87,7 @@ class EveryDamping : public testing::TestWithParam<One> {
     work.write(
         "scene.toml",
         one.scene + "[[probe]]\nname = \"p\"\non = \"xmax\"\n[[probe]]\nname = \"corner\"\non = \"block\"\nat = [0.1, 0.1, 0]\n" + time);
-    const Ran ran = work.run("hilo-solve scene.toml tags.h5 -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    const Ran ran = succeeded(work.run("hilo-solve scene.toml tags.h5 -o run.h5"));
     return ran.err;
   }
   Workplace work;
@@ -109,9 +109,8 @@ TEST_P(EveryDamping, IsThatOfOneFreedomAtEveryFidelity) {
     EXPECT_NEAR(modes(which, 1) / zeta(), 1, 1e-5);
     // response
     if (!one.turns) {
-      const Ran ran = work.run("hilo-post response run.h5 --force p.x --points 5 --from " + std::to_string(0.5 * omega() / (2 * pi)) +
-                               " --to " + std::to_string(1.5 * omega() / (2 * pi)));
-      ASSERT_EQ(ran.exit, 0) << ran.err;
+      const Ran ran = succeeded(work.run("hilo-post response run.h5 --force p.x --points 5 --from " +
+                                         std::to_string(0.5 * omega() / (2 * pi)) + " --to " + std::to_string(1.5 * omega() / (2 * pi))));
       std::istringstream rows(ran.out);
       std::string line;
       std::getline(rows, line);
@@ -150,8 +149,7 @@ INSTANTIATE_TEST_SUITE_P(Keys, EveryDamping, testing::ValuesIn(all_of_them()), n
 // The schema has no key of damping that the walk above leaves out, but those of contact (`damping` of a support acts while it is closed).
 TEST(Damping, NoKeyIsLeftOutOfTheWalk) {
   const Workplace work;
-  const Ran ran = work.run("hilo-show --schema");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Ran ran = succeeded(work.run("hilo-show --schema"));
   std::set<std::string> keys;
   for (size_t i = ran.out.find("damping` |"); i != ran.out.npos; i = ran.out.find("damping` |", i + 1)) {
     const size_t from = ran.out.rfind('`', i) + 1;
@@ -189,8 +187,7 @@ class ModalDamping : public testing::Test {
     work.run("hilo-tag --quiet mesh.h5 --linear '*' -o tags.h5");
     work.write("scene.toml", "[material.m]\nE = 7e9\nnu = 0.3\ndensity = 2700\n[region.\"*\"]\nmaterial = \"m\"\nmodal_damping = 0.02\n" +
                                  keys + scene + "[time]\nanalysis = \"modes\"\nmodes = " + std::to_string(wanted) + "\n");
-    const Ran ran = work.run("hilo-solve scene.toml tags.h5 -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(work.run("hilo-solve scene.toml tags.h5 -o run.h5"));
     const Eigen::MatrixXd modes = Results(work / "run.h5").history("mode");
     std::vector<double> out;
     for (Eigen::Index j = 1; j < modes.rows(); ++j)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Driven joints: the course is kept to round-off, the reaction is what the motion asks for, the work is accounted for.
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::drives_test {
@@ -51,8 +52,7 @@ TEST(DrivenPrismatic, IntegratesAVelocity) {
   std::string scene = text_of(c.source("lift.toml"));
   scene.replace(scene.find("displacement ="), 12, "velocity");
   c.write("scene.toml", scene);
-  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(c.run("hilo-solve --quiet scene.toml -o run.h5"));
   const Results r = c.results();
   EXPECT_NEAR(r.at("probe/lift", 2)[2], 1.5, 1e-13);
   EXPECT_NEAR(r.at("probe/lift", 2.5)[2], 2.25, 1e-13);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Histories of the slide and the angle of joints, against what probes and closed forms say of the same motion.
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::joint_coordinates_test {
@@ -32,8 +33,7 @@ TEST(Coordinate, OfAScrewIsItsPitchATurn) {
                             "angle = -20\nhistory = {t = [0, 2], value = [0, 1], interpolation = \"smoother\"}\n[[probe]]\nname = \"nut\"\n"
                             "on = \"nut\"\n" +
                             time_of);
-  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(c.run("hilo-solve --quiet scene.toml -o run.h5"));
   const Results r = c.results();
   const Eigen::VectorXd end = r.at("coordinate/thread", 2);
   EXPECT_NEAR(end[1], -20, 1e-9);
@@ -53,8 +53,7 @@ TEST(Coordinate, OfACompliantJointIsTheAngleBetweenItsEnds) {
                             "[[joint]]\nkind = \"revolute\"\nname = \"bush\"\na = \"a\"\nb = \"b\"\nat = [0, 0, 0]\naxis = [0, -1, 0]\n"
                             "stiffness = 1e5\nangular_stiffness = 1e3\n" +
                             time_of);
-  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(c.run("hilo-solve --quiet scene.toml -o run.h5"));
   const Results r = c.results();
   for (const double t : {0.5, 1.0, 1.99}) EXPECT_NEAR(r.at("coordinate/bush", t)[1], -10 * t / 2, 1e-9) << t;
   const Ran list = c.run("hilo-post series run.h5 coordinate.bush.angle --times 1:1.001");

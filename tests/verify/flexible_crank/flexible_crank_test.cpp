@@ -11,6 +11,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "succeeded.hpp"
 #include "verify/truth.hpp"
 #include "verify/verify.hpp"
 
@@ -51,9 +52,8 @@ Course run(const std::string& scene, Fidelity fidelity = Fidelity::nonlinear, in
   const Mesh m = rod_mesh(n);
   c.use(m, {fidelity});
   if (!shapes.empty()) std::ofstream(c / "shapes.csv") << shapes;
-  const Ran ran = c.run("{ cat '" + scene + "'; '" + data + "o17.py' start " + std::to_string(n) +
-                        "; } > scene.toml && hilo-solve --quiet scene.toml tags.h5 -o run.h5 " + options);
-  if (ran.exit != 0) throw std::runtime_error("hilo-solve: " + ran.err);
+  succeeded(c.run("{ cat '" + scene + "'; '" + data + "o17.py' start " + std::to_string(n) +
+                  "; } > scene.toml && hilo-solve --quiet scene.toml tags.h5 -o run.h5 " + options));
   const Results r = c.results();
   const auto pin = r.history("probe/pin"), middle = r.history("probe/middle"), slider = r.history("probe/slider");
   const Eigen::Index last = r.index(0.1);

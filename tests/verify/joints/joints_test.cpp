@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Positions, rates and reactions of single-joint pendulums as ADAMS gives them (Chrono data/testing/joints).  Rforce is
 // the force on the ground, minus ours, which is on b in the joint frame.  Chrono accepts 1e-3 m, 1e-4 m/s and 2e-2 N; here h = 1e-3 s.
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::joints_test {
@@ -23,8 +24,7 @@ Results run_case(const Case& c, const std::string& kind, const std::string& at, 
   replace("com = [2, 0, 0]", "com = " + com);
   replace("inertia = [0.04, 0.1, 0.1]", "inertia = " + inertia);
   c.write("scene.toml", scene);
-  const Ran ran = c.run("hilo-solve --quiet scene.toml -o run.h5");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  succeeded(c.run("hilo-solve --quiet scene.toml -o run.h5"));
   return c.results();
 }
 
@@ -110,8 +110,7 @@ TEST(FixedJoint, CarriesWeightAndMomentWithTheirSigns) {
     const std::string ends = swapped ? "a = \"pendulum\"\nb = \"ground\"\n" : "a = \"ground\"\nb = \"pendulum\"\n";
     c.write("scene.toml",
             scene.substr(0, at) + "[[joint]]\nkind = \"fixed\"\nname = \"joint\"\n" + ends + "at = [0.5, 0, 0]\n\n" + scene.substr(end));
-    const Ran ran = c.run("hilo-solve --quiet scene.toml --set time.end=0.01 -o run.h5");
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(c.run("hilo-solve --quiet scene.toml --set time.end=0.01 -o run.h5"));
     const auto f = c.results().history("joint/joint");
     Eigen::Matrix<double, 6, 1> exact;
     exact << 0, 0, 9.80665, 0, -1.5 * 9.80665, 0;

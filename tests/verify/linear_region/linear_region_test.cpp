@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::linear_region_test {
@@ -123,8 +124,7 @@ TEST(LinearRegion, IsTheSameOnTwoRanks) {
   c.use(both(bar(0, 1, 4), bar(1, 2, 4)), {Fidelity::linear, Fidelity::linear});
   const std::string end = "--set time.end=0.316";
   const auto serial = c.solved(end, "run.h5", "pair").field("displacement");
-  const Ran ran = mpirun(2, "hilo-solve --quiet '" + c.source("pair.toml") + "' tags.h5 " + end + " -o ranks.h5", c.path());
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(mpirun(2, "hilo-solve --quiet '" + c.source("pair.toml") + "' tags.h5 " + end + " -o ranks.h5", c.path()));
   const auto ranks = c.results("ranks.h5").field("displacement");
   ASSERT_EQ(ranks.size(), serial.size());
   for (size_t i = 0; i < serial.size(); ++i) EXPECT_LT((ranks[i] - serial[i]).norm(), 1e-11) << i;
@@ -203,8 +203,7 @@ TEST(LinearRegion, StartsAsItsSectionsDo) {
     for (const int ranks : {1, 2}) {
       if (f == Fidelity::nonlinear && ranks == 2) continue;
       const std::string command = "hilo-solve --quiet scene.toml tags.h5 --set time.end=0.05 -o run.h5";
-      const Ran ran = ranks == 1 ? c.run(command) : mpirun(ranks, command, c.path());
-      ASSERT_EQ(ran.exit, 0) << ran.err;
+      succeeded(ranks == 1 ? c.run(command) : mpirun(ranks, command, c.path()));
       tip[f == Fidelity::linear] = c.results().history("probe/tip");
       if (f == Fidelity::linear) {
         const Eigen::MatrixXd off = tip[1].leftCols(6) - tip[0].leftCols(6);
@@ -260,8 +259,7 @@ TEST(LinearRegion, EightTurnFarTogether) {
   Case c("linear_region");
   c.use(together(parts), std::vector<Fidelity>(n, Fidelity::linear));
   c.write("bend.toml", scene);
-  const Ran ran = c.run("hilo-solve --quiet bend.toml tags.h5 -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(c.run("hilo-solve --quiet bend.toml tags.h5 -o run.h5"));
   const auto tip = c.results().history("probe/tip");
   const Vec3 end = tip.row(tip.rows() - 1).head<3>();
   EXPECT_LT((end - Vec3(47.23, 15.79, 53.37)).norm(), 0.03 * 53.37) << end.transpose();
@@ -282,8 +280,7 @@ TEST(LinearRegion, SetsThatOverlapAreOne) {
   double sag[2];
   for (const Fidelity f : {Fidelity::nonlinear, Fidelity::linear}) {
     c.use(m, {f});
-    const Ran ran = c.run("hilo-solve --quiet overlap.toml tags.h5 -o run.h5");
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(c.run("hilo-solve --quiet overlap.toml tags.h5 -o run.h5"));
     const auto tip = c.results().history("probe/tip");
     sag[f == Fidelity::linear] = tip(tip.rows() - 1, 2) - tip(0, 2);
   }

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::measures_test {
@@ -31,8 +32,7 @@ class LinearMeasures : public testing::Test {
     std::ofstream(c / "scene.toml") << fmt::format("{}\n[material.m]\nE = {}\nnu = 0\ndensity = 1000\n[region.block]\nmaterial = \"m\"\n",
                                                    sag_by, E)
                                     << supports << "[time]\nanalysis = \"static\"\n[output]\nfields = [\"displacement\"]\n";
-    const Ran ran = c.run("hilo-solve scene.toml tags.h5 -o run.h5 " + options);
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    const Ran ran = succeeded(c.run("hilo-solve scene.toml tags.h5 -o run.h5 " + options));
     const Results r = c.results();
     Answer out{0, 0, 0, 0, 0, ran.err};
     for (const Vec3& u : r.field("displacement")) out.sag = std::max(out.sag, -u[2]);
@@ -128,8 +128,7 @@ TEST_F(LinearMeasures, ABeamThatBendsFastTellsWhatItsShorteningPulls) {
           "= "
           "{}\n[output]\ninterval = 1\nfields = [\"displacement\"]\n",
           -g, E, pins, 2 * pi / w, 2 * pi / w / 100);
-      const Ran ran = c.run("hilo-solve scene.toml tags.h5 -o run.h5");
-      ASSERT_EQ(ran.exit, 0) << ran.err;
+      const Ran ran = succeeded(c.run("hilo-solve scene.toml tags.h5 -o run.h5"));
       const auto force = c.results().history("joint/left");
       along[fidelity == Fidelity::nonlinear] = force.col(1).cwiseAbs().maxCoeff();
       if (fidelity == Fidelity::linear) said = ran.err, json = text_of(c / "run.json");

@@ -8,38 +8,15 @@ namespace {
 // Exact: a load on what moves by a law changes nothing but the hand, which takes over its work.
 TEST_F(Motions, DoNotFeelALoadOnWhatTheyMove) {
   write_mesh(*this / "mesh.h5", block_mesh({}), {"test"});
-  const std::string scene = R"([material.soft]
-E = 1e5
-nu = 0.3
-density = 1000
-[region."*"]
-material = "soft"
-[[motion]]
-kind = "fixed"
-name = "held"
-on = "xmin"
-components = ["x", "y", "z"]
-[[motion]]
-kind = "translation"
-name = "pull"
-on = "xmax"
-components = ["x"]
-displacement = [0.1, 0, 0]
-history = {t = [0, 0.2], value = [0, 1], interpolation = "smooth"}
-[time]
-end = 0.2
-step = 0.005
-)";
+  const std::string scene =
+      solid(1e5, 0.3, 1000) + held("xmin") +
+      motion("translation", "pull", "xmax",
+             "components = [\"x\"]\ndisplacement = [0.1, 0, 0]\nhistory = {t = [0, 0.2], value = [0, 1], interpolation = \"smooth\"}") +
+      in_time(0.2, 0.005);
   write("scene.toml", scene);
   const Results alone = solved("", "mesh.h5");
   const Eigen::VectorXd work = alone.history("energy").col(3);
-  write("scene.toml", scene + R"([[load]]
-kind = "force"
-name = "push"
-on = "xmax"
-force = [3e4, 0, 0]
-history = {t = [0, 0.2], value = [1, 0.5]}
-)");
+  write("scene.toml", scene + force("push", "xmax", {3e4, 0, 0}, "history = {t = [0, 0.2], value = [1, 0.5]}"));
   const Results pushed = solved("", "mesh.h5");
   EXPECT_GT(work.cwiseAbs().maxCoeff(), 1);
   EXPECT_LT((pushed.history("energy").col(3) - work).cwiseAbs().maxCoeff(), 1e-10 * 3e4 * 0.1);
@@ -56,31 +33,9 @@ Mesh bar() {
   return block_mesh(o);
 }
 
-const std::string steel = R"([material.steel]
-E = 2e11
-nu = 0.3
-density = 7800
-[region.bar]
-material = "steel"
-[[probe]]
-name = "tip"
-on = "xmax"
-[[probe]]
-name = "root"
-on = "xmin"
-[time]
-end = 0.003
-step = 1e-4
-[output]
-interval = 0.001
-)";
-const std::string moved_root = R"([[motion]]
-kind = "translation"
-name = "drive"
-on = "xmin"
-displacement = [1, 0, 0]
-history = {t = [0, 1], value = [0, 1]}
-)";
+const std::string steel =
+    solid(2e11, 0.3, 7800, "bar") + probe("tip", "xmax") + probe("root", "xmin") + in_time(0.003, 1e-4) + "[output]\ninterval = 0.001\n";
+const std::string moved_root = motion("translation", "drive", "xmin", "displacement = [1, 0, 0]\nhistory = {t = [0, 1], value = [0, 1]}");
 
 /// The scene as parts for two ranks.
 void share(const Workplace& place) { ASSERT_EQ(place.run("hilo-part mesh.h5 -n 2 -o parts.h5").exit, 0); }
@@ -119,30 +74,8 @@ TEST_F(Motions, OfASetOfABarThatMovesAlongLeaveItWithoutStress) {
 // Exact: what is held stays where it is, though the bar swings far and its first guess of a step is a turn; two components are not all.
 TEST_F(Motions, ThatHoldTwoComponentsOfNodesHoldThemInTheFirstGuessToo) {
   write_mesh(*this / "mesh.h5", bar(), {"test"});
-  const std::string swing = R"(
-gravity = [0, 0, -9.81]
-[material.test]
-kind = "neo-hookean"
-E = 1e6
-nu = 0.3
-density = 1000
-[region.bar]
-material = "test"
-[[motion]]
-kind = "fixed"
-name = "root"
-on = "xmin"
-components = ["x", "z"]
-[[probe]]
-name = "root"
-on = "xmin"
-[[probe]]
-name = "tip"
-on = "xmax"
-[time]
-end = 0.3
-step = 0.01
-)";
+  const std::string swing = "gravity = [0, 0, -9.81]\n" + solid(1e6, 0.3, 1000, "bar", "kind = \"neo-hookean\"") + held("xmin", "xz") +
+                            probe("root", "xmin") + probe("tip", "xmax") + in_time(0.3, 0.01);
   write("scene.toml", swing);
   for (const std::string& kind : integrators()) {
     if (kind == "gauss") continue;  // no nonlinear regions
@@ -203,7 +136,7 @@ TEST_F(Motions, TurnAFlexibleSetThroughLargeAngles) {
   share(*this);
   const std::string spin = "[[initial]]\non = [\"bar\"]\nspin = [0, 0, 30]\nabout = [0, 0.05, 0.05]\n";
   const std::string history = "history = {t = [0, 1], value = [0, 30]}\n";
-  const std::string soft = "--set material.steel.E=2e8 --set time.step=1e-3 --set time.end=0.16 --set output.interval=0.08 ";
+  const std::string soft = "--set material.of_bar.E=2e8 --set time.step=1e-3 --set time.end=0.16 --set output.interval=0.08 ";
   write("scene.toml",
         steel + spin +
             "[[motion]]\nkind = \"rotation\"\nname = \"drive\"\non = \"xmin\"\nat = [0, 0.05, 0.05]\naxis = [0, 0, 1]\nangle = 1\n" +
@@ -260,42 +193,12 @@ TEST_F(Motions, RefuseAHistoryThatJumpsAndComponentsMovedTwice) {
 // A node of a rigid patch that is to be held in y alone goes with the patch: not without a word.
 TEST_F(Motions, OfNodesThatArePartOfAPatchAreNotLeftOut) {
   write_mesh(*this / "mesh.h5", bar(), {"test"});
-  write("scene.toml", R"([material.steel]
-E = 2e11
-nu = 0.3
-density = 7800
-[region.bar]
-material = "steel"
-[[motion]]
-kind = "fixed"
-name = "root"
-on = "xmin"
-components = ["x"]
-[[motion]]
-kind = "fixed"
-name = "floor"
-on = "zmin"
-components = ["z"]
-[[motion]]
-kind = "fixed"
-name = "side"
-on = "ymin"
-components = ["y"]
-[[spring]]
-kind = "axial"
-name = "pull"
-b = "xmax"
-at_a = [1, 1, 0]
-at_b = [1, 0, 0]
-stiffness = 1e6
-preload = 1e3
-[time]
-analysis = "static"
-steps = 1
-)");
+  write("scene.toml", solid(2e11, 0.3, 7800, "bar") + held("xmin", "x") + held("zmin", "z") + held("ymin", "y") +
+                          spring("axial", "pull", "ground", "xmax", "at_a = [1, 1, 0]\nat_b = [1, 0, 0]\nstiffness = 1e6\npreload = 1e3") +
+                          in_steps(1));
   const Ran ran = run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5");
   EXPECT_EQ(ran.exit, 3);
-  EXPECT_NE(ran.err.find("motion \"side\" holds have left their places, with the rigid patch"), std::string::npos) << ran.err;
+  EXPECT_NE(ran.err.find("motion \"ymin y\" holds have left their places, with the rigid patch"), std::string::npos) << ran.err;
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <numbers>
 #include <sstream>
 
+#include "scene_parts.hpp"
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -18,8 +20,7 @@ class NaturalModes : public testing::Test {
   Eigen::MatrixXd modes(const std::string& scene, int wanted, const std::string& options = "") {
     work.write("scene.toml", scene + "[time]\nanalysis = \"modes\"\nmodes = " + std::to_string(wanted) + "\n");
     ran = work.run("hilo-solve scene.toml " + mesh + " -o run.h5 " + options);
-    EXPECT_EQ(ran.exit, 0) << ran.err;
-    if (ran.exit != 0) return Eigen::MatrixXd::Zero(wanted, 10);
+    succeeded(ran);
     const Eigen::MatrixXd all = Results(work / "run.h5").history("mode");
     EXPECT_LT(all.col(8).maxCoeff(), 1e-5) << "shapes satisfy the equations";
     return all.bottomRows(all.rows() - 1);
@@ -36,12 +37,6 @@ class NaturalModes : public testing::Test {
   std::string mesh;
   Ran ran;
 };
-
-inline std::string body(const std::string& name, double mass, const Vec3& com, const Vec3& inertia) {
-  return "[[body]]\nname = \"" + name + "\"\nmass = " + std::to_string(mass) + "\ncom = [" + std::to_string(com[0]) + ", " +
-         std::to_string(com[1]) + ", " + std::to_string(com[2]) + "]\ninertia = [" + std::to_string(inertia[0]) + ", " +
-         std::to_string(inertia[1]) + ", " + std::to_string(inertia[2]) + "]\n";
-}
 
 inline Mesh beam(const Vec3& size, int n) {
   BlockOptions o;

@@ -3,6 +3,7 @@
 #include <complex>
 #include <tuple>
 
+#include "succeeded.hpp"
 #include "verify/natural_modes/natural_modes.hpp"
 
 namespace hilo::test::response_test {
@@ -20,8 +21,7 @@ TEST_F(NaturalModes, GiveTheResponseToAHarmonicForce) {
             "[[joint]]\nkind = \"planar\"\nname = \"road\"\nb = \"car\"\nat = [0, 0, 0]\naxis = [0, 1, 0]\n",
         3);
   const Ran response =
-      work.run("hilo-post response run.h5 --force at_front.z --at at_front.z --at at_rear.z --from 0.2 --to 5 --points 50");
-  ASSERT_EQ(response.exit, 0) << response.err;
+      succeeded(work.run("hilo-post response run.h5 --force at_front.z --at at_front.z --at at_rear.z --from 0.2 --to 5 --points 50"));
   std::istringstream rows(response.out);
   std::string line;
   std::getline(rows, line);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "succeeded.hpp"
 #include "verify/everything/half_rigid.hpp"
 
 namespace hilo::test::envelope_test {
@@ -54,9 +55,8 @@ TEST(Envelope, IsTheSameOnRanks) {
   const Everything c;
   const Results one = c.solved(run + "--set solver.tolerance=1e-12");
   for (const int ranks : {2, 3}) {
-    const Ran ran = mpirun(
-        ranks, "hilo-solve --quiet '" + c.source("scene.toml") + "' tags.h5 -o ranks.h5 --set solver.tolerance=1e-12 " + run, c.path());
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(mpirun(ranks, "hilo-solve --quiet '" + c.source("scene.toml") + "' tags.h5 -o ranks.h5 --set solver.tolerance=1e-12 " + run,
+                     c.path()));
     const Results other(c / "ranks.h5");
     for (const char* name : {"displacement", "acceleration", "von_mises"}) {
       const Array a = envelope(one, name), b = envelope(other, name);
@@ -73,8 +73,7 @@ TEST(Envelope, GoesOnFromACheckpointBitByBit) {
     ASSERT_EQ(mpirun(ranks, solve + "-o whole.h5", c.path()).exit, 0);
     ASSERT_EQ(mpirun(ranks, solve + "--set time.end=0.03125 -o run.h5", c.path()).exit, 0);
     const Array half = envelope(Results(c / "run.h5"), "displacement");
-    const Ran ran = mpirun(ranks, "hilo-solve --quiet --restart run.h5 --checkpoint 15steps --set time.end=0.0625", c.path());
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(mpirun(ranks, "hilo-solve --quiet --restart run.h5 --checkpoint 15steps --set time.end=0.0625", c.path()));
     const Results whole(c / "whole.h5"), parts(c / "run.h5");
     ASSERT_TRUE((whole.t().array() == parts.t().array()).all());
     for (const char* name : {"displacement", "acceleration", "von_mises"})
@@ -127,8 +126,7 @@ step = 1e-3
 interval = 0.2
 envelope = true
 )";
-  const Ran ran = c.run("hilo-solve --quiet spin.toml tags.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(c.run("hilo-solve --quiet spin.toml tags.h5"));
   const Results r(c / "run.h5");
   const Array u = envelope(r, "displacement"), a = envelope(r, "acceleration"), t = envelope(r, "displacement_time");
   for (size_t i = 0; i < mesh.X.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "model/block.hpp"
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::output_test {
@@ -20,9 +21,7 @@ void use_two_blocks(Case& c) {
 Results on_ranks(const Case& c, int ranks, const std::string& options, const std::string& output) {
   const std::string parts = fmt::format("parts-{}.h5", ranks);
   EXPECT_EQ(c.run(fmt::format("hilo-part --quiet mesh.h5 -n {} -o {}", ranks, parts)).exit, 0);
-  const Ran ran =
-      mpirun(ranks, fmt::format("hilo-solve --quiet '{}' {} {} -o {}", c.source("scene.toml"), parts, options, output), c.path());
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  succeeded(mpirun(ranks, fmt::format("hilo-solve --quiet '{}' {} {} -o {}", c.source("scene.toml"), parts, options, output), c.path()));
   return c.results(output);
 }
 
@@ -74,13 +73,11 @@ TEST(Output, OfTheSkinIsEnoughForPicturesAndPeaksOfRegionsButNotForCuts) {
   Case c("output");
   use_two_blocks(c);
   c.solved("", "all.h5"), c.solved("--set 'output.nodes=\"skin\"'", "skin.h5");
-  const Ran peak = c.run("hilo-post peak skin.h5 --field displacement --hide front");
-  EXPECT_EQ(peak.exit, 0) << peak.err;
+  const Ran peak = succeeded(c.run("hilo-post peak skin.h5 --field displacement --hide front"));
   EXPECT_EQ(peak.out, c.run("hilo-post peak all.h5 --field displacement --hide front").out) << "the largest displacement is at the surface";
   const std::string picture = "hilo-post render --steps last --hide back --size 200x150 ";
   ASSERT_EQ(c.run(picture + "all.h5 -o all.png").exit, 0);
-  const Ran drawn = c.run(picture + "skin.h5 -o skin.png");
-  ASSERT_EQ(drawn.exit, 0) << drawn.err;
+  succeeded(c.run(picture + "skin.h5 -o skin.png"));
   EXPECT_EQ(c.run("cmp all.png skin.png").exit, 0) << "every pixel";
   const Ran cut = c.run("hilo-post render skin.h5 --cut y=5 -o cut.png");
   EXPECT_EQ(cut.exit, 2);

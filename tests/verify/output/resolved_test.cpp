@@ -2,6 +2,7 @@
 // What cells, modes and steps resolve: the told frequency against errors of frequencies known in closed form, and the marks on raw peaks.
 #include <numbers>
 
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::resolved_test {
@@ -21,8 +22,7 @@ TEST(Resolved, CellsRunShearWavesToOnePercentUpToTheToldFrequency) {
         "scene.toml",
         "[material.m]\nE = 2e11\nnu = 0\ndensity = 8000\n[region.\"*\"]\nmaterial = \"m\"\n[[motion]]\nkind = \"fixed\"\nname = \"guide\"\n"
         "on = \"surface\"\ncomponents = [\"x\", \"z\"]\n[time]\nanalysis = \"modes\"\nmodes = 9\n");
-    const Ran ran = w.run("hilo-solve scene.toml mesh.h5 -o run.h5");
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(w.run("hilo-solve scene.toml mesh.h5 -o run.h5"));
     const Results r(w / "run.h5");
     const Eigen::MatrixXd mode = r.history("mode");
     const double c = std::sqrt(1e11 / 8000), told = r.table("/resolved")(0, 0);
@@ -50,13 +50,11 @@ TEST(Resolved, ModesAndRigidRegionsCount) {
   w.write("scene.toml",
           "[material.m]\nE = 2e11\nnu = 0.3\ndensity = 8000\n[region.\"*\"]\nmaterial = \"m\"\n[region.bar]\nmaterial = \"m\"\nmodes = 6\n"
           "[time]\nend = 1e-5\nstep = 1e-5\n");
-  const Ran ran = w.run("hilo-solve scene.toml tags.h5 -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(w.run("hilo-solve scene.toml tags.h5 -o run.h5"));
   const Results r(w / "run.h5");
   const double first_left_out = r.table("/resolved")(0, 0);
   EXPECT_TRUE(std::isinf(r.table("/resolved")(1, 0)));
-  const Ran more = w.run("hilo-solve scene.toml tags.h5 -o run.h5 --set region.bar.modes=12");
-  ASSERT_EQ(more.exit, 0) << more.err;
+  succeeded(w.run("hilo-solve scene.toml tags.h5 -o run.h5 --set region.bar.modes=12"));
   EXPECT_GT(Results(w / "run.h5").table("/resolved")(0, 0), 1.2 * first_left_out);
 }
 
@@ -75,8 +73,8 @@ TEST(Resolved, PeaksThatStepsDoNotResolveAreMarked) {
   for (const int steps : {13, 15, 24, 40}) {  // a period
     const std::string h = std::to_string(0.02 / steps);
     ASSERT_EQ(w.run("hilo-solve --quiet scene.toml -o run.h5 --set time.step=" + h).exit, 0);
-    const Ran load = w.run("hilo-post gload run.h5 --cfc 60"), row = w.run("hilo-post series run.h5 'sensor.*' -o all.csv");
-    ASSERT_EQ(load.exit, 0) << load.err;
+    const Ran load = succeeded(w.run("hilo-post gload run.h5 --cfc 60"));
+    const Ran row = w.run("hilo-post series run.h5 'sensor.*' -o all.csv");
     EXPECT_EQ(load.out.find('*') != std::string::npos, steps < 18) << steps << load.out;
     EXPECT_EQ(load.err.find("the most that steps of") != std::string::npos, steps < 18) << load.err;
     EXPECT_EQ(row.err.find("sensor.seat") != std::string::npos, steps < 18) << row.err;

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <set>
 
+#include "succeeded.hpp"
 #include "verify/contact/collision.hpp"
 #include "verify/everything/half_rigid.hpp"
 
@@ -116,8 +117,7 @@ on = "zmax"
   std::set<std::string> met;
   for (const char* options : {"", "--set output.precision=single", "--set output.nodes=skin", "--set output.envelope=true",
                               "--set 'material.soft.kind=\"j2\"' --set material.soft.yield=1e3"}) {
-    const Ran ran = c.run(std::string("hilo-solve --quiet more.toml tags.h5 --set time.end=0.003 --set output.interval=0.001 ") + options);
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(c.run(std::string("hilo-solve --quiet more.toml tags.h5 --set time.end=0.003 --set output.interval=0.001 ") + options));
     hold_against_schema(Store::open(c / "run.h5"), met);
   }
   Case linear("linear_region");
@@ -135,16 +135,14 @@ on = "zmax"
                                        "tie = [{name = \"weld\", a = \"blockzmax\", b = \"platezmin\"}]\n"
                                        "motion = [{kind = \"fixed\", name = \"foot\", on = \"blockzmin\"}]\n"
                                        "output.fields = [\"displacement\", \"shell\"]\ntime.analysis = \"static\"\n";
-  const Ran of_tied = tied.run("hilo-solve --quiet tied.toml mesh.h5 -o run.h5");
-  ASSERT_EQ(of_tied.exit, 0) << of_tied.err;
+  succeeded(tied.run("hilo-solve --quiet tied.toml mesh.h5 -o run.h5"));
   hold_against_schema(tied.results().file(), met);
   std::ofstream(tied / "face.msh") << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
                                       "$Elements\n1\n1 2 2 0 1 1 2 3\n$EndElements\n";
   std::ofstream(tied / "beam.toml") << "material.m = {E = 1e6, nu = 0.3}\nsection.s = {kind = \"mesh\", file = \"face.msh\"}\n"
                                        "beam.b = {points = [[0, 0, 0], [9, 0, 0]], section = \"s\", material = \"m\", a = \"ground\"}\n"
                                        "time.analysis = \"static\"\n";
-  const Ran of_beam = tied.run("hilo-solve --quiet beam.toml -o beam.h5");
-  ASSERT_EQ(of_beam.exit, 0) << of_beam.err;
+  succeeded(tied.run("hilo-solve --quiet beam.toml -o beam.h5"));
   hold_against_schema(Store::open(tied / "beam.h5"), met);
   std::string many = "[time]\nend = 0.002\nstep = 0.001\n";
   for (int k = 0; k < 300; ++k)
@@ -186,8 +184,7 @@ TEST(Schema, ATableGoesOnWithItsOwnNames) {
   const Ran refused = work.run("hilo-solve --quiet --accept --restart run.h5 --set time.end=0.04 more.toml");
   EXPECT_EQ(refused.exit, 2) << refused.err;
   EXPECT_EQ(text_of(work / "run.h5"), before);
-  const Ran ran = work.run("hilo-solve --quiet --restart run.h5 --set time.end=0.04 turned.toml");
-  EXPECT_EQ(ran.exit, 0) << ran.err;
+  succeeded(work.run("hilo-solve --quiet --restart run.h5 --set time.end=0.04 turned.toml"));
   const Store file = Store::open(work / "run.h5");
   const auto x = file.read<double>("/history/probe/p7");
   EXPECT_EQ(x.size() / static_cast<size_t>(file.shape("/history/probe/p7")[1]), 41u);

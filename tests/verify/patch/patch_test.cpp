@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A patch of bent cells under a homogeneous state: every cell must have exactly that state, whatever its shape (Irons' patch test).
 #include "physics/stress.hpp"
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::patch_test {
@@ -59,8 +60,7 @@ TEST_P(Patch, LinearDisplacementOfTheSurfaceIsTakenByEveryInnerNode) {
   write_mesh(c / "mesh.h5", m, {"test"});
   for (const char* law : {"stvk", "neo-hookean"}) {
     c.write("scene.toml", scene);
-    const Ran ran = c.run(std::string("hilo-solve --quiet scene.toml mesh.h5 -o run.h5 --set 'material.block.kind=\"") + law + "\"'");
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(c.run(std::string("hilo-solve --quiet scene.toml mesh.h5 -o run.h5 --set 'material.block.kind=\"") + law + "\"'"));
     const Results r = c.results();
     const auto u = r.field("displacement");
     double worst = 0;
@@ -99,8 +99,7 @@ TEST_P(Patch, UniformTractionStretchesTheBlockUniformly) {
                 "\"pull\"\non = \"xmax\"\ntraction = [%.17g, 0, 0]\n",
                 T);
   c.write("scene.toml", text_of(c.source("scene.toml")) + text);
-  const Ran ran = c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5"));
   const Results r = c.results();
   const auto u = r.field("displacement");
   for (std::int64_t a = 0; a < m.n_nodes(); ++a) {

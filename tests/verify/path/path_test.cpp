@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Paths of equilibrium past limits of load and of displacement: bars whose path is known in closed form, and Lee's frame.
+#include "scene_parts.hpp"
+#include "succeeded.hpp"
 #include "verify/lee_frame.hpp"
 
 namespace hilo::test::path_test {
@@ -11,53 +13,10 @@ constexpr double EA = 2e6, height = 0.3;  // of two bars from (-1, 0), (1, 0) to
 double truss_force(double y) { return EA * y * (height * height - y * y) / std::pow(1 + height * height, 1.5); }
 const double limit = truss_force(height / std::sqrt(3.0));
 
-std::string scene(const std::string& loaded, double force, const std::string& time) {
-  return R"([material.bar]
-kind = "stvk"
-E = 2e9
-nu = 0
-density = 1000
-[region.legs]
-material = "bar"
-area = 1e-3
-[region.spring]
-material = "soft"
-area = 1e-3
-[material.soft]
-kind = "stvk"
-E = 4e8
-nu = 0
-density = 1000
-[[motion]]
-kind = "fixed"
-name = "feet"
-on = "feet"
-[[motion]]
-kind = "fixed"
-name = "guide"
-on = "apex"
-components = ["z"]
-[[motion]]
-kind = "fixed"
-name = "rail"
-on = "top"
-components = ["x", "z"]
-[[load]]
-kind = "force"
-name = "push"
-on = ")" +
-         loaded + R"("
-force = [0, -)" +
-         std::to_string(force) + R"(, 0]
-[[probe]]
-name = "apex"
-on = "apex"
-[[probe]]
-name = "top"
-on = "top"
-[time]
-analysis = "path"
-)" + time;
+std::string scene(const std::string& loaded, double pushes, const std::string& time) {
+  return solid(2e9, 0, 1000, "legs", "kind = \"stvk\"", "area = 1e-3") + solid(4e8, 0, 1000, "spring", "kind = \"stvk\"", "area = 1e-3") +
+         held("feet") + held("apex", "z") + held("top", "xz") + force("push", loaded, {0, -pushes, 0}) + probe("apex") + probe("top") +
+         "[time]\nanalysis = \"path\"\n" + time;
 }
 
 /// The truss, and a bar of 4 m that stands on its apex.
@@ -71,8 +30,7 @@ struct Truss : Case {
   }
   Results follow(const std::string& text, const std::string& options = "") {
     write("scene.toml", text);
-    const Ran ran = run("hilo-solve scene.toml mesh.h5 -o run.h5 " + options);
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(run("hilo-solve scene.toml mesh.h5 -o run.h5 " + options));
     return results();
   }
 };
@@ -142,41 +100,16 @@ TEST(LoadPath, IsTheSameBySmallAndLargeSteps) {
 // which the largest is k L (1 - sin(theta_0)^(2/3))^(3/2).
 TEST(LoadPath, OfALeaningStrutIsThatOfKoiter) {
   Case c("path");
-  c.write("scene.toml", R"([[body]]
-name = "strut"
-mass = 1
-com = [0.05, 0, 0.5]
-inertia = [0.1, 0.1, 0.1]
-[[joint]]
-kind = "revolute"
-name = "foot"
-b = "strut"
-at = [0, 0, 0]
-axis = [0, 1, 0]
-[[spring]]
-kind = "bushing"
-name = "side"
-a = "ground"
-b = "strut"
-at = [0.1, 0, 0.99498743710662]
-stiffness = [1000, 0, 0]
-[[load]]
-kind = "force"
-name = "weight"
-on = "strut"
-at = [0.1, 0, 0.99498743710662]
-force = [0, 0, -1000]
-[[probe]]
-name = "tip"
-on = "strut"
-at = [0.1, 0, 0.99498743710662]
-[time]
+  c.write("scene.toml", body("strut", 1, {0.05, 0, 0.5}, {0.1, 0.1, 0.1}) +
+                            axial("revolute", "foot", "ground", "strut", Vec3::Zero(), {0, 1, 0}) +
+                            spring("bushing", "side", "ground", "strut", "at = [0.1, 0, 0.99498743710662]\nstiffness = [1000, 0, 0]") +
+                            force("weight", "strut", {0, 0, -1000}, "at = [0.1, 0, 0.99498743710662]") +
+                            probe("tip", "strut", "at = [0.1, 0, 0.99498743710662]") + R"([time]
 analysis = "path"
 steps = 30
 reach = 0.9
 )");
-  const Ran ran = c.run("hilo-solve scene.toml -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Ran ran = succeeded(c.run("hilo-solve scene.toml -o run.h5"));
   const Results r = c.results();
   const auto path = r.history("path"), tip = r.history("probe/tip");
   Eigen::Index top = 0;
@@ -197,8 +130,7 @@ TEST(LoadPath, OfLeesFrameIsThatOfDisplacementControl) {
   c.write("scene.toml", lee_frame_scene("[[load]]\nkind = \"force\"\nname = \"push\"\non = \"load\"\nforce = [0, -30e3, 0]\n"
                                         "[[probe]]\nname = \"load\"\non = \"load\"\n"
                                         "[time]\nanalysis = \"path\"\nsteps = 20\n"));
-  Ran ran = c.run("hilo-solve scene.toml mesh.h5 -o path.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  Ran ran = succeeded(c.run("hilo-solve scene.toml mesh.h5 -o path.h5"));
   const Results found = c.results("path.h5");
   const auto path = found.history("path"), probe = found.history("probe/load");
   c.write("scene.toml", lee_frame_scene(pushed_by_a_law + "[time]\nanalysis = \"static\"\nend = 1\nsteps = 90\n"));

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "model/scene_sets.hpp"
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::placed_sets_test {
@@ -95,8 +96,7 @@ TEST(PlacedSets, GiveTheRunOfSetsOfTheMeshBitByBitAndOnRanks) {
     EXPECT_GT(placed.history("energy").col(1).maxCoeff(), 0);
     for (const int ranks : {2, 3}) {
       ASSERT_EQ(c.run(fmt::format("hilo-part --quiet tags.h5 {} -n {} -o parts.h5", c.source("scene.toml"), ranks)).exit, 0);
-      const Ran ran = mpirun(ranks, "hilo-solve --quiet " + c.source("scene.toml") + " parts.h5 -o ranks.h5", c.path());
-      ASSERT_EQ(ran.exit, 0) << ran.err;
+      succeeded(mpirun(ranks, "hilo-solve --quiet " + c.source("scene.toml") + " parts.h5 -o ranks.h5", c.path()));
       const auto apart = (c.results("ranks.h5").history("probe/tip") - placed.history("probe/tip")).leftCols(3).cwiseAbs().maxCoeff();
       EXPECT_LT(apart, 1e-9) << ranks << " ranks";
     }
@@ -158,8 +158,7 @@ const std::string hinge = "[[joint]]\nkind = \"revolute\"\nname = \"hinge\"\nb =
 TEST(PlacedSets, ThatAJointHoldsMakeRigidRegionsOneBodyAndSaySo) {
   for (const int ranks : {1, 2}) {
     Case c("placed_sets");
-    const Ran ran = row_run(c, hinge, {Fidelity::rigid, Fidelity::nonlinear, Fidelity::rigid}, ranks);
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const Ran ran = succeeded(row_run(c, hinge, {Fidelity::rigid, Fidelity::nonlinear, Fidelity::rigid}, ranks));
     EXPECT_NE(ran.err.find("\"ends\" has nodes of the rigid regions \"left\" and \"right\", which move as one body"), std::string::npos)
         << ran.err;
     EXPECT_EQ(c.reported("bodies"), 1);
@@ -188,8 +187,7 @@ TEST(PlacedSets, ALinearRegionHeldWholeIsHeld) {
   std::vector<double> fell;
   for (const Fidelity left : {Fidelity::linear, Fidelity::rigid, Fidelity::nonlinear}) {
     Case c("placed_sets");
-    const Ran ran = row_run(c, hold, {left, Fidelity::nonlinear, Fidelity::nonlinear});
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(row_run(c, hold, {left, Fidelity::nonlinear, Fidelity::nonlinear}));
     fell.push_back(c.results().history("probe/end")(100, 2));
   }
   EXPECT_LT(fell[0], -5e-4);
@@ -204,8 +202,7 @@ TEST(PlacedSets, ManyNodesSharedWithNonlinearCellsMoveBySmoothFunctions) {
   std::vector<double> fell;
   for (const Fidelity left : {Fidelity::linear, Fidelity::nonlinear}) {
     Case c("placed_sets");
-    const Ran ran = row_run(c, hold + "[output]\ninterval = 1\n", {left, Fidelity::nonlinear, Fidelity::rigid}, 1, 8);
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const Ran ran = succeeded(row_run(c, hold + "[output]\ninterval = 1\n", {left, Fidelity::nonlinear, Fidelity::rigid}, 1, 8));
     if (left == Fidelity::linear) {
       EXPECT_NE(ran.err.find("it shares 81 nodes with nonlinear cells: they move together by polynomials"), std::string::npos) << ran.err;
     }
@@ -219,9 +216,8 @@ TEST(PlacedSets, ManyNodesSharedWithNonlinearCellsMoveBySmoothFunctions) {
 TEST(PlacedSets, ARunInWhichNothingCanMoveEnds) {
   for (const int ranks : {1, 2}) {
     Case c("placed_sets");
-    const Ran ran = row_run(c, "[[motion]]\nkind = \"fixed\"\nname = \"stand\"\non = \"right\"\n",
-                            {Fidelity::rigid, Fidelity::rigid, Fidelity::rigid}, ranks);
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    const Ran ran = succeeded(row_run(c, "[[motion]]\nkind = \"fixed\"\nname = \"stand\"\non = \"right\"\n",
+                                      {Fidelity::rigid, Fidelity::rigid, Fidelity::rigid}, ranks));
     EXPECT_NE(ran.err.find("nothing is free to move"), std::string::npos) << ran.err;
     EXPECT_TRUE(c.results().complete());
     for (const Vec3& u : c.results().field("displacement")) EXPECT_LT(u.norm(), 1e-15);

@@ -2,6 +2,7 @@
 // hilo-reduce: modes on file serve as if they were found anew, or are refused by name.
 #include <fmt/format.h>
 
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::reduced_file_test {
@@ -76,8 +77,7 @@ TEST_F(ReducedFile, GivesTheRunThatFindsThemBitByBit) {
 
 TEST_F(ReducedFile, ServesOnRanks) {
   ASSERT_EQ(c.run("hilo-part --quiet tags.h5 " + c.source("scene.toml") + " -n 3 -o parts.h5").exit, 0);
-  const Ran ran = mpirun(3, "hilo-solve --quiet " + c.source("scene.toml") + " parts.h5 --modes reduced.h5 -o ranks.h5", c.path());
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(mpirun(3, "hilo-solve --quiet " + c.source("scene.toml") + " parts.h5 --modes reduced.h5 -o ranks.h5", c.path()));
   const auto ranks = c.results("ranks.h5"), serial = c.solved("--modes reduced.h5", "serial.h5");
   EXPECT_LT((ranks.history("modes/left") - serial.history("modes/left")).cwiseAbs().maxCoeff(),
             1e-7 * serial.history("modes/left").cwiseAbs().maxCoeff());
@@ -134,8 +134,7 @@ TEST_F(ReducedFile, NeedsRoomForAFactorOrSaysHowMuch) {
 
 TEST_F(ReducedFile, IsTheSameFromRanks) {
   for (const int ranks : {2, 3}) {
-    const Ran ran = mpirun(ranks, "hilo-reduce " + c.source("scene.toml") + " tags.h5 -o ranks.h5 --shapes shapes.h5", c.path());
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    succeeded(mpirun(ranks, "hilo-reduce " + c.source("scene.toml") + " tags.h5 -o ranks.h5 --shapes shapes.h5", c.path()));
     expect_same_modes("ranks.h5");
     EXPECT_EQ(c.solve("--quiet --modes ranks.h5").exit, 0);
     std::filesystem::remove(c / "ranks.h5");
@@ -186,8 +185,7 @@ TEST_F(ReducedFile, ThatIsNoneOrDamagedIsRefused) {
 
 /// Its held bar is a cantilever at both ends of its vibrations: what they carry of the mass is known.
 TEST_F(ReducedFile, TellsTheMassThatVibrationsCarry) {
-  const Ran ran = c.run("hilo-show --json reduced.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Ran ran = succeeded(c.run("hilo-show --json reduced.h5"));
   EXPECT_NE(ran.out.find("\"interfaces\": \"left_xmax\""), std::string::npos) << ran.out;
   const Store store = Store::open(c / "reduced.h5");
   const auto held = store.read<double>("/reduced/left/held");

@@ -5,6 +5,8 @@
 
 #include <numbers>
 
+#include "scene_parts.hpp"
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -48,16 +50,6 @@ inline Surface sphere(double R) {
 inline std::string shell_of(double E, double nu, const std::string& more = "density = 1") {
   return fmt::format("[material.m]\nE = {}\nnu = {}\n{}\n[region.shell]\nmaterial = \"m\"\nshell = true\n", E, nu, more);
 }
-inline std::string held(const std::string& on, const std::string& components = "\"x\", \"y\", \"z\"") {
-  return fmt::format("[[motion]]\nkind = \"fixed\"\nname = \"{0} {2}\"\non = \"{0}\"\ncomponents = [{1}]\n", on, components,
-                     components.size() < 4 ? components.substr(1, 1) : std::to_string(components.size()));
-}
-inline std::string push(const std::string& on, const Vec3& force, const std::string& more = "") {
-  return fmt::format("[[load]]\nkind = \"force\"\nname = \"on {0}\"\non = \"{0}\"\nforce = [{1}, {2}, {3}]\n{4}\n", on, force[0], force[1],
-                     force[2], more);
-}
-inline std::string probe(const std::string& on) { return fmt::format("[[probe]]\nname = \"{0}\"\non = \"{0}\"\n", on); }
-inline std::string in_steps(int n) { return fmt::format("[time]\nanalysis = \"static\"\nsteps = {}\n", n); }
 
 class ShellPlace : public testing::Test {
  protected:
@@ -71,7 +63,7 @@ class ShellPlace : public testing::Test {
   Results solved(const std::string& scene, const std::string& options = "") {
     work.write("scene.toml", scene);
     ran = work.run("hilo-solve --quiet scene.toml " + mesh + " -o run.h5 " + options);
-    if (ran.exit != 0) throw std::runtime_error(ran.err);
+    succeeded(ran);
     return Results(work / "run.h5");
   }
   /// How far a probe has gone at the end.

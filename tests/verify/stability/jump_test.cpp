@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "scene_parts.hpp"
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::jump_test {
@@ -27,46 +29,8 @@ double truss_height(double force, bool through) {
   return low;
 }
 
-const char* const truss = R"([material.bar]
-kind = "stvk"
-E = 2e9
-nu = 0
-density = 1000
-[region.legs]
-material = "bar"
-area = 1e-3
-[region.far]
-material = "bar"
-area = 1e-3
-[[motion]]
-kind = "fixed"
-name = "feet"
-on = "feet"
-[[motion]]
-kind = "fixed"
-name = "guide"
-on = "apex"
-components = ["z"]
-[[motion]]
-kind = "fixed"
-name = "rail"
-on = "end"
-components = ["y", "z"]
-[[probe]]
-name = "apex"
-on = "apex"
-[[probe]]
-name = "end"
-on = "end"
-)";
-
-std::string push(const std::string& on, const Vec3& force, const std::string& more = "") {
-  return fmt::format("[[load]]\nkind = \"force\"\nname = \"push_{}\"\non = \"{}\"\nforce = [{:.17g}, {:.17g}, {:.17g}]\n{}", on, on,
-                     force[0], force[1], force[2], more);
-}
-std::string statics(int steps, const std::string& more = "") {
-  return fmt::format("[time]\nanalysis = \"static\"\nsteps = {}\n{}", steps, more);
-}
+const std::string truss = solid(2e9, 0, 1000, "*", "kind = \"stvk\"", "area = 1e-3") + held("feet") + held("apex", "z") +
+                          held("end", "yz") + probe("apex") + probe("end");
 
 struct JumpTold {
   double from, to, way;
@@ -85,8 +49,7 @@ struct Snap : Case {
   Ran solve(const std::string& text, int ranks = 1, const std::string& options = "") {
     write("scene.toml", text);
     const std::string command = fmt::format("hilo-solve scene.toml {} -o run.h5 {}", ranks == 1 ? "mesh.h5" : "parts.h5", options);
-    const Ran ran = ranks == 1 ? run(command) : mpirun(ranks, command, path());
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    const Ran ran = succeeded(ranks == 1 ? run(command) : mpirun(ranks, command, path()));
     return ran;
   }
   double last(const std::string& probe, Eigen::Index column) const {
@@ -111,7 +74,7 @@ struct Snap : Case {
 TEST(SnapThrough, OfTwoBarsIsToldWithItsLoad) {
   Snap c;
   for (const int steps : {1, 2, 3, 4, 7, 20, 50}) {
-    const Ran ran = c.solve(truss + push("apex", {0, -1.5 * limit, 0}) + statics(steps));
+    const Ran ran = c.solve(truss + force("push", "apex", {0, -1.5 * limit, 0}) + in_steps(steps));
     SCOPED_TRACE(fmt::format("{} steps\n{}", steps, ran.err));
     EXPECT_NEAR(c.last("apex", 1), truss_height(1.5 * limit, true), 1e-8);
     const auto jumps = c.jumps();
@@ -128,7 +91,7 @@ TEST(SnapThrough, OfTwoBarsIsToldWithItsLoad) {
 // Where no iteration comes from just below the limit to the other branch, the run stops and says what goes on.
 TEST(SnapThrough, OrStopsAndNamesThePath) {
   Snap c;
-  c.write("scene.toml", truss + push("apex", {0, -1.5 * limit, 0}) + statics(100));
+  c.write("scene.toml", truss + force("push", "apex", {0, -1.5 * limit, 0}) + in_steps(100));
   const Ran ran = c.run("hilo-solve scene.toml mesh.h5 -o run.h5");
   EXPECT_TRUE(ran.exit == 3 || c.jumps().size() == 1) << ran.err;
   EXPECT_NE(ran.err.find("analysis = \"path\""), std::string::npos) << ran.err;
@@ -138,7 +101,7 @@ TEST(SnapThrough, OrStopsAndNamesThePath) {
 TEST(SnapThrough, FromJustBelowTheLimitIsTold) {
   Snap c;
   for (const double near : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
-    const Ran ran = c.solve(truss + push("apex", {0, -2 * (1 - near) * limit, 0}) + statics(2));
+    const Ran ran = c.solve(truss + force("push", "apex", {0, -2 * (1 - near) * limit, 0}) + in_steps(2));
     EXPECT_EQ(c.jumps().size(), 1u) << near << ran.err;
     EXPECT_NEAR(c.last("apex", 1), truss_height(2 * (1 - near) * limit, true), 1e-8) << near;
   }
@@ -149,14 +112,14 @@ TEST(SnapThrough, IsNotToldWhereThereIsNone) {
   Snap c;
   for (const int steps : {1, 2, 5, 20})
     for (const double share : {-10., -1., 0.5, 0.9, 0.999}) {
-      const Ran ran = c.solve(truss + push("apex", {0, -share * limit, 0}) + statics(steps));
+      const Ran ran = c.solve(truss + force("push", "apex", {0, -share * limit, 0}) + in_steps(steps));
       EXPECT_NEAR(c.last("apex", 1), truss_height(share * limit, false), 1e-8) << share << " in " << steps << ran.err;
       EXPECT_EQ(c.jumps().size(), 0u) << share << " in " << steps << ran.err;
     }
   std::string moved = truss;
   moved += "[[motion]]\nkind = \"translation\"\nname = \"ram\"\non = \"apex\"\ncomponents = [\"y\"]\ndisplacement = [0, -0.5, 0]\n";
   for (const int steps : {2, 5, 20}) {
-    const Ran ran = c.solve(moved + statics(steps));
+    const Ran ran = c.solve(moved + in_steps(steps));
     EXPECT_NEAR(c.last("apex", 1), -0.2, 1e-12);
     EXPECT_EQ(c.jumps().size(), 0u) << steps << ran.err;
   }
@@ -167,7 +130,7 @@ TEST(SnapThrough, BesideWhatMovesFartherIsTold) {
   Snap c;
   const double far = EA * ((25. / 16) - 1) / 2 * 5 / 4;  // of the strain (l^2 - L^2)/(2 L^2) at 5 m
   for (const int steps : {5, 20}) {
-    const Ran ran = c.solve(truss + push("apex", {0, -1.5 * limit, 0}) + push("end", {far, 0, 0}) + statics(steps));
+    const Ran ran = c.solve(truss + force("push", "apex", {0, -1.5 * limit, 0}) + force("pull", "end", {far, 0, 0}) + in_steps(steps));
     EXPECT_NEAR(c.last("end", 0), 5, 1e-8);
     EXPECT_EQ(c.jumps().size(), 1u) << steps << ran.err;
   }
@@ -176,8 +139,8 @@ TEST(SnapThrough, BesideWhatMovesFartherIsTold) {
 // Truth: loads by a history: down through, and up again at the limit of the other side.
 TEST(SnapThrough, OnTheWayBackIsToldToo) {
   Snap c;
-  const Ran ran =
-      c.solve(truss + push("apex", {0, -1.5 * limit, 0}, "history = {t = [0, 1, 3], value = [0, 1, -1]}\n") + statics(60, "end = 3\n"));
+  const Ran ran = c.solve(truss + force("push", "apex", {0, -1.5 * limit, 0}, "history = {t = [0, 1, 3], value = [0, 1, -1]}") +
+                          in_steps(60, "end = 3"));
   EXPECT_NEAR(c.last("apex", 1), truss_height(-1.5 * limit, false), 1e-8);
   const auto jumps = c.jumps();
   ASSERT_EQ(jumps.size(), 2u) << ran.err;
@@ -190,12 +153,12 @@ TEST(SnapThrough, IsToldOnRanks) {
   Snap c;
   for (const char* solver : {"direct", "iterative"}) {
     const std::string options = fmt::format("--set solver.kind='\"{}\"'", solver);
-    const Ran ran = c.solve(truss + push("apex", {0, -1.5 * limit, 0}) + statics(7), 2, options);
+    const Ran ran = c.solve(truss + force("push", "apex", {0, -1.5 * limit, 0}) + in_steps(7), 2, options);
     SCOPED_TRACE(ran.err);
     EXPECT_NEAR(c.last("apex", 1), truss_height(1.5 * limit, true), 1e-7) << solver;
     ASSERT_EQ(c.jumps().size(), 1u) << solver;
     EXPECT_NEAR(c.jumps()[0].to, 2 / 3., 1 / 100.) << solver;
-    const Ran calm = c.solve(truss + push("apex", {0, -0.9 * limit, 0}) + statics(7), 2, options);
+    const Ran calm = c.solve(truss + force("push", "apex", {0, -0.9 * limit, 0}) + in_steps(7), 2, options);
     EXPECT_EQ(c.jumps().size(), 0u) << solver << calm.err;
   }
 }
@@ -220,35 +183,12 @@ TEST(SnapThrough, OfAnArchOfSolidsIsToldAtThePathsLimit) {
   c.use(arch());
   ASSERT_EQ(c.run("hilo-part --quiet mesh.h5 -n 2 -o parts.h5").exit, 0);
   const auto scene = [](const std::string& law, const std::string& time) {
-    return "[material.steel]\n" + law + R"(E = 2e11
-nu = 0.3
-density = 7800
-[region.block]
-material = "steel"
-[[motion]]
-kind = "fixed"
-name = "foot"
-on = "xmin"
-[[motion]]
-kind = "fixed"
-name = "middle"
-on = "xmax"
-components = ["x", "z"]
-[[load]]
-kind = "force"
-name = "push"
-on = "xmax"
-force = [0, -2000, 0]
-[[probe]]
-name = "middle"
-on = "xmax"
-[time]
-)" + time;
+    return solid(2e11, 0.3, 7800, "*", law) + held("xmin") + held("xmax", "xz") + force("push", "xmax", {0, -2000, 0}) +
+           probe("middle", "xmax") + "[time]\n" + time;
   };
   for (const std::string law : {"kind = \"stvk\"\n", "kind = \"j2\"\nyield = 1e13\n"}) {
     c.write("scene.toml", scene(law, "analysis = \"path\"\nsteps = 20\n"));
-    const Ran path = c.run("hilo-solve scene.toml mesh.h5 -o path.h5");
-    ASSERT_EQ(path.exit, 0) << path.err;
+    const Ran path = succeeded(c.run("hilo-solve scene.toml mesh.h5 -o path.h5"));
     const size_t at = (path.out + path.err).find("largest load at ");
     ASSERT_NE(at, std::string::npos) << path.out << path.err;
     const double largest = std::stod((path.out + path.err).substr(at + 16));
@@ -282,35 +222,10 @@ TEST(SnapThrough, IsNotToldOfAPlasticHinge) {
   c.use(block_mesh(o));
   const double yields = 250e6 * std::pow(0.1, 3) / 6;  // N, at the tip
   for (const int steps : {2, 4, 16}) {
-    c.write("scene.toml", fmt::format(R"([material.steel]
-kind = "j2"
-yield = 250e6
-E = 2e11
-nu = 0.3
-density = 7800
-[region.block]
-material = "steel"
-[[motion]]
-kind = "fixed"
-name = "foot"
-on = "xmin"
-[[load]]
-kind = "force"
-name = "push"
-on = "xmax"
-force = [0, 0, {}]
-history = {{t = [0, 1, 2], value = [0, 1, 0]}}
-[[probe]]
-name = "tip"
-on = "xmax"
-[time]
-analysis = "static"
-end = 2
-steps = {}
-)",
-                                      1.45 * yields, steps));
-    const Ran ran = c.run("hilo-solve scene.toml mesh.h5 -o run.h5");
-    ASSERT_EQ(ran.exit, 0) << ran.err;
+    c.write("scene.toml", solid(2e11, 0.3, 7800, "*", "kind = \"j2\"\nyield = 250e6") + held("xmin") +
+                              force("push", "xmax", {0, 0, 1.45 * yields}, "history = {t = [0, 1, 2], value = [0, 1, 0]}") +
+                              probe("tip", "xmax") + in_steps(steps, "end = 2"));
+    const Ran ran = succeeded(c.run("hilo-solve scene.toml mesh.h5 -o run.h5"));
     const auto tip = c.results().history("probe/tip");
     EXPECT_GT(tip(tip.rows() - 1, 2), 1e-3) << "what is left of the hinge";
     EXPECT_EQ(ran.err.find("jump"), std::string::npos) << steps << ran.err;
@@ -321,48 +236,18 @@ steps = {}
 TEST(SnapThrough, IsNotToldOfStops) {
   Case c("stability");
   for (const int steps : {1, 3, 10})
-    for (const double force : {200., -200.}) {
-      c.write("scene.toml", fmt::format(R"([[body]]
-name = "cart"
-mass = 1.0
-com = [0, 0, 0]
-inertia = [1, 1, 1]
-[[joint]]
-kind = "prismatic"
-name = "rail"
-b = "cart"
-at = [0, 0, 0]
-axis = [1, 0, 0]
-[[spring]]
-kind = "bushing"
-name = "soft"
-b = "cart"
-at = [0, 0, 0]
-stiffness = [100, 0, 0]
-[[stop]]
+    for (const double pushes : {200., -200.}) {
+      c.write("scene.toml", pushed_cart(pushes) + R"([[stop]]
 kind = "slide"
 name = "gap"
 joint = "rail"
 lower = -1.0
 upper = 1.0
 stiffness = 4000.0
-[[load]]
-kind = "force"
-name = "push"
-on = "cart"
-force = [{}, 0, 0]
-[[probe]]
-name = "cart"
-on = "cart"
-[time]
-analysis = "static"
-steps = {}
-)",
-                                        force, steps));
-      const Ran ran = c.run("hilo-solve scene.toml -o run.h5");
-      ASSERT_EQ(ran.exit, 0) << ran.err;
+)" + in_steps(steps));
+      const Ran ran = succeeded(c.run("hilo-solve scene.toml -o run.h5"));
       const auto x = c.results().history("probe/cart");
-      EXPECT_NEAR(x(x.rows() - 1, 0), std::copysign(1 + 100 / 4100., force), 1e-8);
+      EXPECT_NEAR(x(x.rows() - 1, 0), std::copysign(1 + 100 / 4100., pushes), 1e-8);
       EXPECT_EQ(ran.err.find("jump"), std::string::npos) << steps << ran.err;
     }
 }

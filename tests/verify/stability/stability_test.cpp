@@ -2,6 +2,8 @@
 // What statics, starts from equilibrium and paths say of stability: a bar on a torsion spring under a load that buckles it, and columns.
 #include <fmt/format.h>
 
+#include "scene_parts.hpp"
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::stability_test {
@@ -9,36 +11,9 @@ namespace {
 
 /// A bar of 1 m on a torsion spring of 100 N m/rad, upright: it buckles at 100 N.
 std::string bar(double side, const std::string& time) {
-  return R"([[body]]
-name = "bar"
-mass = 1.0
-com = [0, 0, 0.5]
-inertia = [0.1, 0.1, 0.1]
-[[joint]]
-kind = "revolute"
-name = "pin"
-b = "bar"
-at = [0, 0, 0]
-axis = [0, 1, 0]
-[[spring]]
-kind = "torsion"
-name = "k"
-b = "bar"
-axis = [0, 1, 0]
-stiffness = 100.0
-[[load]]
-kind = "force"
-name = "P"
-on = "bar"
-at = [0, 0, 1]
-force = [)" +
-         std::to_string(side) + R"(, 0, -150.0]
-[[probe]]
-name = "tip"
-on = "bar"
-at = [0, 0, 1]
-[time]
-)" + time;
+  return body("bar", 1, {0, 0, 0.5}, {0.1, 0.1, 0.1}) + axial("revolute", "pin", "ground", "bar", Vec3::Zero(), {0, 1, 0}) +
+         spring("torsion", "k", "ground", "bar", "axis = [0, 1, 0]\nstiffness = 100") +
+         force("P", "bar", {side, 0, -150}, "at = [0, 0, 1]") + probe("tip", "bar", "at = [0, 0, 1]") + "[time]\n" + time;
 }
 
 /// 100 angle = 150 sin(angle) + side cos(angle) on the side that the side load pushes to, by halving.
@@ -55,8 +30,7 @@ struct Bar : Case {
   Bar() : Case("stability") {}
   double tip(const std::string& text, std::string& said) {
     write("bar.toml", text);
-    const Ran ran = run("hilo-solve bar.toml -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    const Ran ran = succeeded(run("hilo-solve bar.toml -o run.h5"));
     said = ran.err;
     const auto x = results().history("probe/tip");
     return x(x.rows() - 1, 0);
@@ -97,27 +71,10 @@ TEST(StaticStability, AStartFromEquilibriumTakesAStableOne) {
   std::string said;
   const double x = c.tip(bar(0.15, "start = \"equilibrium\"\nend = 0.1\nstep = 0.01\n"), said);
   EXPECT_NEAR(x, std::sin(leaning(0.15)), 1e-7) << said;
-  const double hanging = c.tip(R"([[body]]
-name = "bob"
-mass = 2
-com = [0, 0, 1]
-inertia = [0.1, 0.1, 0.1]
-[[joint]]
-kind = "revolute"
-name = "pin"
-b = "bob"
-at = [0, 0, 0]
-axis = [0, 1, 0]
-[[probe]]
-name = "tip"
-on = "bob"
-at = [0.2, 0, 1]
-[time]
-start = "equilibrium"
-end = 0.1
-step = 0.01
-)",
-                               said);
+  const double hanging =
+      c.tip(body("bob", 2, {0, 0, 1}, {0.1, 0.1, 0.1}) + axial("revolute", "pin", "ground", "bob", Vec3::Zero(), {0, 1, 0}) +
+                probe("tip", "bob", "at = [0.2, 0, 1]") + in_time(0.1, 0.01, "start = \"equilibrium\""),
+            said);
   EXPECT_NEAR(hanging, 0.2, 1e-9) << "no weight: any attitude will do";
   EXPECT_EQ(said.find("not stable"), std::string::npos) << said;
 }
@@ -136,24 +93,8 @@ namespace {
 
 /// A steel column of 1 m x 20 mm x 20 mm, ten hexahedra of 20 nodes on end, clamped at one end.
 std::string column(const std::string& force, const std::string& analysis, int steps) {
-  return R"([material.steel]
-kind = "stvk"
-E = 2e11
-nu = 0.3
-density = 7800
-[region.bar]
-material = "steel"
-[[motion]]
-kind = "fixed"
-name = "foot"
-on = "left"
-[[load]]
-kind = "force"
-name = "P"
-on = "right"
-force = )" +
-         force + "\n[[probe]]\nname = \"tip\"\non = \"right\"\n[time]\nanalysis = \"" + analysis + "\"\nsteps = " + std::to_string(steps) +
-         "\n";
+  return solid(2e11, 0.3, 7800, "bar", "kind = \"stvk\"") + held("left") + load("force", "P", "right", "force = " + force + "") +
+         probe("tip", "right") + in_steps(steps, "", analysis);
 }
 /// How far aside the tip of a column of 1 m stands under P times Euler's load: P = (2 K(k)/pi)^2, 2 k/K(k) [timoshenko-gere-1961].
 double elastica(double P) {
@@ -234,51 +175,12 @@ Transfinite Curve {1:4} = 2; Curve Loop(1) = {1:4}; Plane Surface(1) = {1}; Tran
 b[] = Extrude {1, 0, 0} {Surface{1}; Layers{10}; Recombine;};
 Physical Volume("bar") = {b[1]}; Physical Surface("left") = {1}; Physical Surface("right") = {b[0]};
 )");
-  c.write("bar.toml", R"([material.steel]
-kind = "j2"
-yield = 250e6
-E = 2e11
-nu = 0.0
-density = 1.0
-[region.bar]
-material = "steel"
-[[motion]]
-kind = "fixed"
-name = "foot"
-on = "left"
-[[body]]
-name = "mass"
-mass = 100
-com = [1, 0, 0]
-inertia = [1, 1, 1]
-[[joint]]
-kind = "fixed"
-name = "head"
-a = "right"
-b = "mass"
-at = [1, 0, 0]
-[[joint]]
-kind = "prismatic"
-name = "guide"
-b = "mass"
-at = [1, 0, 0]
-axis = [1, 0, 0]
-[[load]]
-kind = "force"
-name = "force"
-on = "mass"
-force = [50000, 0, 0]
-[[probe]]
-name = "mass"
-on = "mass"
-[time]
-analysis = "path"
-steps = 20
-reach = 0.02
-)");
+  c.write("bar.toml", solid(2e11, 0.0, 1.0, "bar", "kind = \"j2\"\nyield = 250e6") + held("left") +
+                          body("mass", 100, {1, 0, 0}, {1, 1, 1}) + joint("fixed", "head", "right", "mass", {1, 0, 0}) +
+                          axial("prismatic", "guide", "ground", "mass", {1, 0, 0}, {1, 0, 0}) + force("force", "mass", {50000, 0, 0}) +
+                          probe("mass") + in_steps(20, "reach = 0.02", "path"));
   ASSERT_EQ(c.run("hilo-import --quiet bar.geo -o mesh.h5").exit, 0);
-  const Ran ran = c.run("hilo-solve bar.toml mesh.h5 -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const Ran ran = succeeded(c.run("hilo-solve bar.toml mesh.h5 -o run.h5"));
   const auto path = c.results().history("path"), mass = c.results().history("probe/mass");
   const double yields = 250e6 / 2e11, largest = 0.5 * std::exp(-yields);
   EXPECT_NEAR(path.col(0).maxCoeff(), largest, 1e-3 * largest);
@@ -329,24 +231,8 @@ TEST(StaticStability, IsTheSameOnRanksWithJoints) {
   const auto capped = [](const std::string& time) {  // its head is welded to a body that bears the load
     std::string text = column("[0, 0, 0]", "static", 4);
     text.erase(text.find("[time]"));
-    return text + R"([[body]]
-name = "head"
-mass = 1.0
-com = [1, 0, 0]
-inertia = [1e-4, 1e-4, 1e-4]
-[[joint]]
-kind = "fixed"
-name = "weld"
-a = "right"
-b = "head"
-at = [1, 0, 0]
-[[load]]
-kind = "force"
-name = "Q"
-on = "head"
-force = [-1, 0, 0]
-[time]
-)" + time;
+    return text + body("head", 1.0, {1, 0, 0}, {1e-4, 1e-4, 1e-4}) + joint("fixed", "weld", "right", "head", {1, 0, 0}) +
+           force("Q", "head", {-1, 0, 0}) + "[time]\n" + time;
   };
   const auto load = [](double share) { return fmt::format(" --set 'load.Q.force=[{}, 0, 0]'", -share * euler); };
   for (const int ranks : {1, 2, 3}) {
@@ -354,8 +240,7 @@ force = [-1, 0, 0]
     ASSERT_EQ(c.run(fmt::format("hilo-part --quiet mesh.h5 -n {} -o {}", ranks, parts)).exit, 0);
     const auto solve = [&](const std::string& time, double share) {
       c.write("scene.toml", capped(time));
-      const Ran ran = mpirun(ranks, "hilo-solve scene.toml " + parts + " -o run.h5" + load(share), c.path());
-      EXPECT_EQ(ran.exit, 0) << ran.err;
+      const Ran ran = succeeded(mpirun(ranks, "hilo-solve scene.toml " + parts + " -o run.h5" + load(share), c.path()));
       return ran;
     };
     const Ran stable = solve("analysis = \"static\"\nsteps = 4\n", 0.95);

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <map>
 
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test::suspension_test {
@@ -160,10 +161,9 @@ class Corner {
 Results solved(const std::string& options) {
   static const Case c("suspension");
   const std::string data = std::string(HILO_SOURCE) + "/data/suspension/";
-  const Ran ran = c.run("[ -f tags.h5 ] || { hilo-import --quiet '" + data + "suspension.geo' -o mesh.h5 && hilo-tag --quiet mesh.h5 '" +
-                        data + "tags-rigid.toml' -o tags.h5; } && hilo-solve --quiet '" + data +
-                        "scene.toml' tags.h5 --set solver.tolerance=1e-12 --set output.interval=10 " + options + " -o run.h5");
-  if (ran.exit != 0) throw std::runtime_error(ran.err);
+  succeeded(c.run("[ -f tags.h5 ] || { hilo-import --quiet '" + data + "suspension.geo' -o mesh.h5 && hilo-tag --quiet mesh.h5 '" + data +
+                  "tags-rigid.toml' -o tags.h5; } && hilo-solve --quiet '" + data +
+                  "scene.toml' tags.h5 --set solver.tolerance=1e-12 --set output.interval=10 " + options + " -o run.h5"));
   return c.results();
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "model/integrators.hpp"
+#include "succeeded.hpp"
 #include "verify/contact/collision.hpp"
 
 namespace hilo::test::ties_test {
@@ -153,8 +154,7 @@ TEST(Ties, OfARigidBAreThoseOfARigidA) {
   text.replace(text.find("\"Azmax\""), 7, "\"x\""), text.replace(text.find("\"Bzmin\""), 7, "\"Azmax\""),
       text.replace(text.find("\"x\""), 3, "\"Bzmin\"");
   c.write("turned.toml", text);
-  const Ran ran = c.run("hilo-solve --quiet turned.toml tags.h5 -o turned.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(c.run("hilo-solve --quiet turned.toml tags.h5 -o turned.h5"));
   const Results turned(c / "turned.h5");
   const auto e = r.history("energy"), f = r.history("tie/weld");
   EXPECT_GT(f.cwiseAbs().maxCoeff(), 1);
@@ -204,8 +204,7 @@ TEST(Ties, ACantileverOfTwoMeshesBendsAsOne) {
     std::string text = text_of(c.source("cantilever.toml"));
     if (tied) text += "[[tie]]\nname = \"weld\"\na = \"Azmax\"\nb = \"Bzmin\"\n";
     c.write("scene.toml", text);
-    const Ran ran = c.run("hilo-solve scene.toml mesh.h5 -o run.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(c.run("hilo-solve scene.toml mesh.h5 -o run.h5"));
     if (tied) {  // the law of the lever
       const Eigen::VectorXd carried = c.results().at("tie/weld", 1);
       EXPECT_NEAR(carried[0], -1e3, 1e-5) << info(a).name << " " << info(b).name;
@@ -240,8 +239,7 @@ TEST(Ties, LinearRegionsRingAsCellsDo) {
       const size_t guide = text.rfind("[[motion]]");
       text.erase(guide, text.find("[time]") - guide);
       c.write("scene.toml", text);
-      const Ran ran = c.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5");
-      EXPECT_EQ(ran.exit, 0) << ran.err;
+      succeeded(c.run("hilo-solve --quiet scene.toml tags.h5 -o run.h5"));
       return Eigen::VectorXd(c.results().history("mode").bottomRows(3).col(0));
     };
     const Eigen::VectorXd cells = frequencies(nonlinear, nonlinear);
@@ -268,8 +266,7 @@ TEST(Ties, OfAnEdgeAndOfHeldNodes) {
     text = fmt::format("[[tie]]\nname = \"{}\"\na = \"{}\"\nb = \"{}\"\n", name, a, b) + text;
   text += "[[load]]\nkind = \"traction\"\nname = \"q\"\non = \"Czmax\"\ntraction = [0, 0, 1]\n";
   c.write("scene.toml", text);
-  const Ran ran = c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5");
-  ASSERT_EQ(ran.exit, 0) << ran.err;
+  succeeded(c.run("hilo-solve --quiet scene.toml mesh.h5 -o run.h5"));
   const auto [off, slope] = off_linear(m.X, c.results().field("displacement"));
   EXPECT_LT(off, 1e-9);
   EXPECT_NEAR(slope, 1e-4, 5e-8);

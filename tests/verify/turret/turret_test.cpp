@@ -4,6 +4,7 @@
 // (truth.py); with a support made stiffer the bearing force comes to that of the rigid run as 1/E.
 #include <cmath>
 
+#include "succeeded.hpp"
 #include "verify/truth.hpp"
 #include "verify/verify.hpp"
 
@@ -14,13 +15,11 @@ namespace {
 class Turret : public Workplace {
  public:
   Turret() {
-    const Ran ran = run("hilo-import --quiet " + folder_ + "/turret.geo --trust -o mesh.h5 && hilo-tag --quiet mesh.h5 " + folder_ +
-                        "/tags-rigid.toml -o rigid.h5 && hilo-tag --quiet mesh.h5 " + folder_ + "/tags-flexible.toml -o flexible.h5");
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(run("hilo-import --quiet " + folder_ + "/turret.geo --trust -o mesh.h5 && hilo-tag --quiet mesh.h5 " + folder_ +
+                  "/tags-rigid.toml -o rigid.h5 && hilo-tag --quiet mesh.h5 " + folder_ + "/tags-flexible.toml -o flexible.h5"));
   }
   Results solved(const std::string& tags, const std::string& options) const {
-    const Ran ran = run("hilo-solve --quiet " + folder_ + "/scene.toml " + tags + ".h5 -o run.h5 " + options);
-    EXPECT_EQ(ran.exit, 0) << ran.err;
+    succeeded(run("hilo-solve --quiet " + folder_ + "/scene.toml " + tags + ".h5 -o run.h5 " + options));
     if (tags == "rigid") {
       EXPECT_EQ(run("hilo-show --json run.h5 > bodies.json").exit, 0);
     }

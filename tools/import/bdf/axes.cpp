@@ -109,12 +109,6 @@ void resolve_axes(BdfDeck& deck) {
   for (const auto& [id, s] : deck.systems) r.system(id, s.place, "");
 }
 
-Vec3 point_in(const BdfDeck& deck, std::int64_t system, const Vec3& x, const std::string& place) {
-  if (system == 0) return x;
-  const BdfSystem& s = known(deck, system, place);
-  return s.origin + s.axes * rectangular(s.kind, x);
-}
-
 Mat3 axes_at(const BdfDeck& deck, std::int64_t system, const Vec3& at, const std::string& place) {
   if (system == 0) return Mat3::Identity();
   const BdfSystem& s = known(deck, system, place);

@@ -37,7 +37,5 @@ struct BdfGrid {
 void resolve_axes(BdfDeck& deck);
 /// The axes of a system at a point of the basic system, as columns: those of curved systems turn with the point.
 Mat3 axes_at(const BdfDeck& deck, std::int64_t system, const Vec3& at, const std::string& place);
-/// A point given in a system, in the basic one.
-Vec3 point_in(const BdfDeck& deck, std::int64_t system, const Vec3& x, const std::string& place);
 
 }  // namespace hilo

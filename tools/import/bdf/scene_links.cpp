@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/joined.hpp"
 #include "import/bdf/scene.hpp"
 #include "import/links.hpp"
 
@@ -14,28 +15,22 @@ namespace hilo {
 /// Elements that share a node of solids share its turn too, where both give it one: they are one rigid body.  Grids of no cell are bodies
 /// of their own, which joints tie.
 void BdfScene::join_rigid() {
-  std::vector<size_t> first(deck_.rigid.size());  // an earlier element of the same body, or itself
-  const auto root = [&](size_t i) {
-    while (first[i] != i) i = first[i] = first[first[i]];
-    return i;
-  };
+  Joined<size_t> joined(deck_.rigid.size());
   std::map<std::int64_t, size_t> turned_by;  // node of solids -> element
   for (size_t i = 0; i < deck_.rigid.size(); ++i) {
     const BdfRigid& r = deck_.rigid[i];
-    first[i] = i;
     if ((r.components & 7) != 7) continue;
     const auto turns = [&](std::int64_t grid) {
       const auto a = row(grid, r.place, r.name);
       if (!used_[static_cast<size_t>(a)]) return;
       const auto [at, fresh] = turned_by.try_emplace(a, i);
-      const size_t one = root(i), other = root(at->second);
-      if (!fresh) first[std::max(one, other)] = std::min(one, other);
+      if (!fresh) joined.join(i, at->second);
     };
     turns(r.hub);
     if (r.components == 63) std::for_each(r.grids.begin(), r.grids.end(), turns);
   }
   std::map<size_t, std::vector<const BdfRigid*>> groups;
-  for (size_t i = 0; i < deck_.rigid.size(); ++i) groups[root(i)].push_back(&deck_.rigid[i]);
+  for (size_t i = 0; i < deck_.rigid.size(); ++i) groups[joined.root(i)].push_back(&deck_.rigid[i]);
   for (const auto& [i, group] : groups) {
     if (group.size() == 1) {
       rigid_.push_back(*group[0]);
