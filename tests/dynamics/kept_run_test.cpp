@@ -89,9 +89,7 @@ TEST_P(KeptRuns, GoOnBitByBitWithBodies) {
   expect_goes_on(folder.path(), machine(GetParam() != "gauss"), "", {1, 2, 5, 21, 30}, {method(GetParam())});
 }
 
-class KeptFlexibleRuns : public KeptRuns {};  // gauss knows no cells
-
-TEST_P(KeptFlexibleRuns, GoOnBitByBit) {
+TEST_P(KeptRuns, GoOnBitByBit) {
   const Folder folder;
   const Scene scene = Scene::parse("[time]\nend = 1\nstep = 1\n", "scene.toml", std::vector{method(GetParam())});
   const bool remembers = integrator_kind(scene.table("time")).carries_state;
@@ -114,13 +112,7 @@ const auto name_of = [](const testing::TestParamInfo<std::string>& p) {
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 };
-std::vector<std::string> without_gauss() {
-  auto list = choices("time", "integrator");
-  std::erase(list, "gauss");
-  return list;
-}
 INSTANTIATE_TEST_SUITE_P(Integrators, KeptRuns, testing::ValuesIn(choices("time", "integrator")), name_of);
-INSTANTIATE_TEST_SUITE_P(Integrators, KeptFlexibleRuns, testing::ValuesIn(without_gauss()), name_of);
 
 // Steps of all lengths, so that less is recalled of longer ones.
 TEST(KeptRun, GoesOnWithWhatDissipationRecalls) {

@@ -407,7 +407,7 @@ TEST_P(Laws, EveryMatrixOfNewtonIsTheDerivativeOfItsEquations) {
 
 std::vector<std::string> integrators() {
   auto list = choices("time", "integrator");
-  std::erase(list, "gauss");  // knows no cells; its matrix: tests/dynamics/gauss_test.cpp
+  std::erase(list, "gauss");  // its matrix: tests/dynamics/gauss_test.cpp
   for (const char* averaged : {"averaged U0", "averaged V0"}) list.emplace_back(averaged);
   return list;
 }

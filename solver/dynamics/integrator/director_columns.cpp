@@ -4,6 +4,7 @@
 #include "dynamics/integrator/stage_directors.hpp"
 #include "dynamics/profile.hpp"
 #include "dynamics/state.hpp"
+#include "system/solids.hpp"
 
 namespace hilo {
 namespace {
@@ -63,6 +64,11 @@ void DirectorColumns::add(int clique, const double* K) {
   }
 }
 
+void DirectorColumns::add_diagonal(int block, const double d[3]) {  // of held components, once for each stage
+  const double scale = sigma_ / sigma_here_, own[3] = {scale * d[0], scale * d[1], scale * d[2]};
+  if (with_multipliers_) whole_.add_diagonal(block + row_ * system_.n_blocks(), own);
+}
+
 void CoupledTangent::add(const System& system, SerialKktSolver& whole, const Stage (&stages)[3], const std::vector<double> (&lambda)[3],
                          const Residual (&r)[3], const Eigen::Matrix3d& W, const std::function<Moves(int)>& moves) {
   const double h = stages[0].h;
@@ -87,6 +93,21 @@ void CoupledTangent::add(const System& system, SerialKktSolver& whole, const Sta
         system.evaluate(s, lambda[i], unused_, &columns);
       }
   phases().evaluations += 27, phases().tangents += 27;
+  if (system.part<Solids>().batches.empty()) return;
+  // strains of cells at stage i follow the positions of all stages; of another one, its pair of rate terms says which
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k)
+      for (int base = 0; base < 3 && k != i; ++base) {
+        Stage s = stages[i];
+        s.end = &bases_[base], s.w0 = stages[k].w0, s.w1 = stages[k].w1;
+        s.slope = s.chain = s.alpha_slope = s.mass_slope = s.h = 0;
+        s.v = nullptr, s.rates_alone = true;
+        DirectorColumns::Change change;
+        for (int j = 0; j < 3; ++j) change.factor[j] = j == k, change.directors[j] = &changes_[0][k][j];
+        DirectorColumns columns(whole, system, body_of_, i, change, base, false, r[i].sigma, unused_.sigma);
+        system.evaluate(s, lambda[i], unused_, &columns);
+      }
+  phases().evaluations += 18, phases().tangents += 18;
 }
 
 /// Changes of directors, of their ways and second derivatives at stage i by turns of stage j.

@@ -47,7 +47,7 @@ class DirectorColumns final : public KktSolver {
   void structure(const Cliques&, const BlockMap&) override {}
   void zero() override {}
   void add(int clique, const double* K) override;
-  void add_diagonal(int, const double*) override {}
+  void add_diagonal(int block, const double d[3]) override;
   void sum_shared(std::span<double>) override {}
   SolveReport solve(std::span<const double>, std::span<double>, double) override { return {}; }
   std::string name() const override { return "director columns"; }

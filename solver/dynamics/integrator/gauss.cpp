@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/shell_shape.hpp"
 #include "dynamics/integrator/coupled_stages.hpp"
 #include "dynamics/integrator/director_columns.hpp"
 #include "dynamics/integrator/given_stages.hpp"
@@ -137,7 +138,8 @@ class GaussIntegrator final : public CoupledStages {
   void check(const System& system) const override {
     const auto refuse = [](const std::string& what, const std::string& hint) { throw Error("", "gauss does not know " + what, hint); };
     const std::string others = "use energy-momentum, or radau for references";
-    if (!system.part<Solids>().batches.empty()) refuse("nonlinear regions yet", "make them linear or rigid, or " + others);
+    for (const SolidBatch& b : system.part<Solids>().batches)
+      if (b.shape == shell8) refuse("shells yet", "make their regions linear or rigid, or " + others);
   }
 
   /// The polynomials of the step before go on; without one, constant velocities, or none.

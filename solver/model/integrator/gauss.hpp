@@ -7,7 +7,7 @@ namespace hilo {
 
 struct Gauss : Method {
   static constexpr std::string_view name = "gauss",
-                                    meaning = "keeps energy and momentum, of sixth order; rigid parts, joints and springs, serial";
+                                    meaning = "keeps energy and momentum, of sixth order; no contact, shells or plasticity, serial";
   static constexpr bool keeps_energy = true;
   static std::unique_ptr<Integrator> make(const Entry& time);
   static std::string weakness(const Entry& time, const System& system);
