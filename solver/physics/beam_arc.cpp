@@ -53,11 +53,11 @@ const Function f_of_c{arc::by_x.f, far_f, slope_f}, k_of_c{arc::by_x.k, far_k, s
 arc::Measures<double> measures_of(const SpringLaw::Values& e) { return {{e[0], e[1], e[2]}, e[3], {e[4], e[5], e[6]}}; }
 
 using Matrix = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-Eigen::Map<const Matrix> matrix_of(const arc::Stiffness<double>& s) { return Eigen::Map<const Matrix>(&s.C[0][0]); }
+Eigen::Map<const Matrix> matrix_of(const arc::ArcStiffness<double>& s) { return Eigen::Map<const Matrix>(&s.C[0][0]); }
 
 }  // namespace
 
-arc::Turning<double> arc::far_turning(double c0, double c1) {
+arc::TurnFunctions<double> arc::far_turning(double c0, double c1) {
   const Dual start{c0, 0}, end{c1, 1};
   const Dual f1 = f_of_c.at(end), k1 = k_of_c.at(end), df = f_of_c.quotient(start, end), dk = k_of_c.quotient(start, end);
   return {f_of_c.at(start).v, k_of_c.at(start).v, f1.v, k1.v, f1.d, k1.d, df.v, dk.v, df.d, dk.d};
@@ -69,7 +69,7 @@ ArcStrain arc_strain(const arc::Measures<double>& e) {
   return x;
 }
 
-arc::Stiffness<double> arc_stiffness(const arc::Measures<double>& e, const Mat6& C) {
+arc::ArcStiffness<double> arc_stiffness(const arc::Measures<double>& e, const Mat6& C) {
   const ArcStrain at_length_one = arc_strain(e);
   const double L = at_length_one.head<3>().norm();
   const ArcStrain reference = at_length_one / L;
@@ -77,19 +77,19 @@ arc::Stiffness<double> arc_stiffness(const arc::Measures<double>& e, const Mat6&
   Z.topLeftCorner<3, 3>() = Z.bottomRightCorner<3, 3>() = skew(Vec3(reference.tail<3>()));
   Z.bottomLeftCorner<3, 3>() = skew(Vec3::UnitZ());
   const Mat6 F = C.inverse(), stiff = (F + L * L / 12 * Z.transpose() * F * Z).inverse();
-  arc::Stiffness<double> out;
+  arc::ArcStiffness<double> out;
   Eigen::Map<Matrix>(&out.C[0][0]) = 0.5 * (stiff + stiff.transpose());
   Eigen::Map<ArcStrain>(out.reference) = reference;
   out.length = L;
   return out;
 }
 
-double arc_energy(const arc::Stiffness<double>& of, const ArcStrain& x) {
+double arc_energy(const arc::ArcStiffness<double>& of, const ArcStrain& x) {
   const ArcStrain strain = x / of.length - Eigen::Map<const ArcStrain>(of.reference);
   return of.length / 2 * strain.dot(matrix_of(of) * strain);
 }
 
-double arc_taken(const arc::Stiffness<double>& of, const ArcStrain& x0, const ArcStrain& x1, const ArcStrain& recalled) {
+double arc_taken(const arc::ArcStiffness<double>& of, const ArcStrain& x0, const ArcStrain& x1, const ArcStrain& recalled) {
   const ArcStrain change = x1 - x0;
   return (matrix_of(of) * (change - recalled)).dot(change) / of.length;
 }

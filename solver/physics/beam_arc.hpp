@@ -18,18 +18,18 @@ namespace hilo {
 using ArcStrain = Eigen::Matrix<double, 6, 1>;
 ArcStrain arc_strain(const arc::Measures<double>& e);
 /// Without strain at the measures e.  C (6 x 6) [N, N m, N m^2] by shear along 1 and 2, stretch, bending about 1 and 2, twist.
-arc::Stiffness<double> arc_stiffness(const arc::Measures<double>& e, const Mat6& C);
+arc::ArcStiffness<double> arc_stiffness(const arc::Measures<double>& e, const Mat6& C);
 /// Of L times the strains [J].
-double arc_energy(const arc::Stiffness<double>& of, const ArcStrain& x);
+double arc_energy(const arc::ArcStiffness<double>& of, const ArcStrain& x);
 /// What C* (eps1 - eps0 - recalled/L) takes, of L times the strains [J]; without what is recalled it never pays in.
-double arc_taken(const arc::Stiffness<double>& of, const ArcStrain& x0, const ArcStrain& x1, const ArcStrain& recalled);
+double arc_taken(const arc::ArcStiffness<double>& of, const ArcStrain& x0, const ArcStrain& x1, const ArcStrain& recalled);
 
 class ArcLaw final : public SpringLaw {
  public:
   static constexpr int n_measures = arc::n_measures;  // a, t, p
   static constexpr double largest_turn = 2.5;         // of an element [rad]; at pi the helix is not one
   /// beta [s].
-  ArcLaw(const arc::Stiffness<double>& of, double beta) : of_(of), beta_(beta) {}
+  ArcLaw(const arc::ArcStiffness<double>& of, double beta) : of_(of), beta_(beta) {}
   void elastic(const Values& e0, const Values& e1, Response& out) const override;
   void viscous(const Values& r0, const Values& r1, const Interval& step, Response& out) const override;
   bool conserves() const override { return beta_ == 0; }
@@ -38,11 +38,12 @@ class ArcLaw final : public SpringLaw {
 
  private:
   void add(const Values& e0, const Values& e1, double elastic, double rate, Response& out) const;
-  const arc::Stiffness<double>& of_;
+  const arc::ArcStiffness<double>& of_;
   double beta_;
 };
 
-/// The measures of the arc, of sections at `at` with directors by columns, of a connector whose ends are joined.
+/// The measures of the arc, of sections at `at` with directors by columns, of a connector whose ends are joined.  Entities are the origins
+/// of A and of B, then of each director that of A and that of B.
 void add_arc_measures(Connector& c, const Config& q, const Vec3& at_a, const Mat3& frame_a, const Vec3& at_b, const Mat3& frame_b);
 
 }  // namespace hilo

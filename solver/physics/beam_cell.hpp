@@ -14,33 +14,33 @@ namespace hilo::arc {
 
 /// What a cell has for good.
 template <class T>
-struct Cell {
-  Vector<T> arm[2], axis[2][3];  // of the sections, in axes of their bodies [m, 1]
-  Stiffness<T> law;
+struct ArcCell {
+  LaneVector<T> arm[2], axis[2][3];  // of the sections, in axes of their bodies [m, 1]
+  ArcStiffness<T> law;
   T linked[4][4];  // mass of c_A, d3_A, c_B, d3_B [kg, kg m, kg m^2]
   T across[3];     // a twelfth of L times J11, J22 and J12 [kg m^2]
   T alpha, beta;   // [1/s], [s]
 };
 /// A body's centre and directors, or rates of these.
 template <class T>
-struct Pose {
-  Vector<T> c, R[3];
+struct BodyPose {
+  LaneVector<T> c, R[3];
 };
 
 /// The points of both sections, and the arms of their origins.
 template <class T>
-struct Points {
-  Vector<T> y[8], arm[2];
-  const Vector<T>& lever(int i) const { return i % 4 == 0 ? arm[i / 4] : y[i]; }
+struct SectionPoints {
+  LaneVector<T> y[8], arm[2];
+  const LaneVector<T>& lever(int i) const { return i % 4 == 0 ? arm[i / 4] : y[i]; }
 };
 template <class T>
-[[gnu::always_inline]] inline Vector<T> turned(const Pose<T>& q, const Vector<T>& r) {
-  Vector<T> out = r[0] * q.R[0];
+[[gnu::always_inline]] inline LaneVector<T> turned(const BodyPose<T>& q, const LaneVector<T>& r) {
+  LaneVector<T> out = r[0] * q.R[0];
   add_to(out, r[1], q.R[1]), add_to(out, r[2], q.R[2]);
   return out;
 }
 template <class T>
-[[gnu::always_inline]] inline void points_of(const Cell<T>& cell, const Pose<T>* q, Points<T>& out) {
+[[gnu::always_inline]] inline void points_of(const ArcCell<T>& cell, const BodyPose<T>* q, SectionPoints<T>& out) {
   for (int e = 0; e < 2; ++e) {
     out.arm[e] = turned(q[e], cell.arm[e]);
     out.y[4 * e] = q[e].c + out.arm[e];
@@ -49,8 +49,8 @@ template <class T>
 }
 
 template <class T>
-[[gnu::always_inline]] inline Measures<T> measures_of(const Vector<T>* y) {
-  const Vector<T>*A = y + 1, *B = y + 5, way = y[4] - y[0];
+[[gnu::always_inline]] inline Measures<T> measures_of(const LaneVector<T>* y) {
+  const LaneVector<T>*A = y + 1, *B = y + 5, way = y[4] - y[0];
   Measures<T> m;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -64,12 +64,12 @@ template <class T>
 /// Gradients of the measures by the turns of both bodies, and of p by the way of B; by the way of A it is the opposite.
 template <class T>
 struct Gradient {
-  Vector<T> turn[n_measures][2], way[3];
+  LaneVector<T> turn[n_measures][2], way[3];
 };
 /// At points y; `l` are those whose levers turn.
 template <class T>
-[[gnu::always_inline]] inline void gradient(const Points<T>& at, const Points<T>& l, Gradient<T>& g) {
-  const Vector<T>*A = at.y + 1, *B = at.y + 5, *LA = l.y + 1, *LB = l.y + 5, way = at.y[4] - at.y[0];
+[[gnu::always_inline]] inline void gradient(const SectionPoints<T>& at, const SectionPoints<T>& l, Gradient<T>& g) {
+  const LaneVector<T>*A = at.y + 1, *B = at.y + 5, *LA = l.y + 1, *LB = l.y + 5, way = at.y[4] - at.y[0];
   g.turn[3][0] = cross(LA[0], B[0]) + cross(LA[1], B[1]) + cross(LA[2], B[2]);
   g.turn[3][1] = cross(LB[0], A[0]) + cross(LB[1], A[1]) + cross(LB[2], A[2]);
   for (int i = 0; i < 3; ++i) {
@@ -84,8 +84,8 @@ template <class T>
 
 /// Adds s dy to the forces on the points.
 template <class T>
-[[gnu::always_inline]] inline void add_forces(const Vector<T>* y, const T* s, Vector<T>* F) {
-  const Vector<T>*A = y + 1, *B = y + 5, way = y[4] - y[0];
+[[gnu::always_inline]] inline void add_forces(const LaneVector<T>* y, const T* s, LaneVector<T>* F) {
+  const LaneVector<T>*A = y + 1, *B = y + 5, way = y[4] - y[0];
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     const T h = 0.5 * s[i];
@@ -111,10 +111,10 @@ template <class T>
 inline constexpr int linked_points[] = {0, 3, 4, 7};
 /// Inertia of accelerations on the points, added.
 template <class T>
-[[gnu::always_inline]] inline void add_inertia(const Cell<T>& cell, const Vector<T>* a, Vector<T>* F) {
+[[gnu::always_inline]] inline void add_inertia(const ArcCell<T>& cell, const LaneVector<T>* a, LaneVector<T>* F) {
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) add_to(F[linked_points[i]], cell.linked[i][j], a[linked_points[j]]);
-  const Vector<T> one[2] = {5. * a[1] + a[5], a[1] + 5. * a[5]}, two[2] = {5. * a[2] + a[6], a[2] + 5. * a[6]};
+  const LaneVector<T> one[2] = {5. * a[1] + a[5], a[1] + 5. * a[5]}, two[2] = {5. * a[2] + a[6], a[2] + 5. * a[6]};
   for (int e = 0; e < 2; ++e) {
     add_to(F[4 * e + 1], cell.across[0], one[e]), add_to(F[4 * e + 1], cell.across[2], two[e]);
     add_to(F[4 * e + 2], cell.across[2], one[e]), add_to(F[4 * e + 2], cell.across[1], two[e]);
@@ -122,7 +122,7 @@ template <class T>
 }
 /// The mass on the points times f, added.
 template <class T>
-[[gnu::always_inline]] inline void add_mass(const Cell<T>& cell, const T& f, T (*S)[8]) {
+[[gnu::always_inline]] inline void add_mass(const ArcCell<T>& cell, const T& f, T (*S)[8]) {
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) S[linked_points[i]][linked_points[j]] += f * cell.linked[i][j];
   for (const int a : {0, 4})
@@ -164,26 +164,26 @@ template <class T>
 
 /// K += sum_ij L_i^T S_ij L_j + slope sum_i [F_i]x [l_i]x, levers of the left and of the end.
 template <class T>
-[[gnu::always_inline]] inline void add_points(const T (*S)[8], const Vector<T>* F, double slope, const Points<T>& left,
-                                              const Points<T>& end, T* K) {
-  const auto skew = [&](int row, int column, const Vector<T>& a) {
+[[gnu::always_inline]] inline void add_points(const T (*S)[8], const LaneVector<T>* F, double slope, const SectionPoints<T>& left,
+                                              const SectionPoints<T>& end, T* K) {
+  const auto skew = [&](int row, int column, const LaneVector<T>& a) {
     T* k = K + 12 * row + column;
     k[1] -= a[2], k[12] += a[2], k[2] += a[1], k[24] -= a[1], k[14] -= a[0], k[25] += a[0];
   };
   for (int a = 0; a < 2; ++a)
     for (int b = 0; b < 2; ++b) {
       Matrix<T> X{};
-      Vector<T> of_left{};  // sum_i S_ic l_i
+      LaneVector<T> of_left{};  // sum_i S_ic l_i
       for (int i = 4 * a; i < 4 * a + 4; ++i) {
-        Vector<T> u{};  // sum_j S_ij l_j
+        LaneVector<T> u{};  // sum_j S_ij l_j
         for (int j = 4 * b; j < 4 * b + 4; ++j) add_to(u, S[i][j], end.lever(j));
-        const Vector<T>& l = left.lever(i);
+        const LaneVector<T>& l = left.lever(i);
         add_to(of_left, S[i][4 * b], l);
         for (int r = 0; r < 3; ++r)
           for (int c = 0; c < 3; ++c) X.m[r][c] -= u[r] * l[c];
         if (i == 4 * a) skew(6 * a, 6 * b + 3, -1. * u);
         if (a != b) continue;
-        const Vector<T> f = slope * F[i];
+        const LaneVector<T> f = slope * F[i];
         for (int r = 0; r < 3; ++r)
           for (int c = 0; c < 3; ++c) X.m[r][c] += end.lever(i)[r] * f[c];
       }
@@ -201,10 +201,10 @@ template <class T>
 template <class T>
 inline void run(const ArcCall& call) {
   const auto lanes_of = [](const double* p) { return reinterpret_cast<const T*>(p); };
-  const auto pose_of = [](const double* p) { return reinterpret_cast<const Pose<T>*>(p); };
-  const Cell<T>& cell = *reinterpret_cast<const Cell<T>*>(call.cells);
+  const auto pose_of = [](const double* p) { return reinterpret_cast<const BodyPose<T>*>(p); };
+  const ArcCell<T>& cell = *reinterpret_cast<const ArcCell<T>*>(call.cells);
   T *f = reinterpret_cast<T*>(call.f), *K = reinterpret_cast<T*>(call.K);
-  Points<T> left, end;
+  SectionPoints<T> left, end;
   points_of(cell, pose_of(call.left), left);
   if (K) {
     points_of(cell, pose_of(call.end), end);
@@ -220,16 +220,16 @@ inline void run(const ArcCall& call) {
     const T* s = s_pair;
     const T(*D)[n_measures] = D_pair;
     double slope = pair.slope;
-    Points<T> at1;
+    SectionPoints<T> at1;
     const bool at_end = K && pair.q1 == call.end;
     if (!at_end) points_of(cell, pose_of(pair.q1), at1);
-    const Points<T>& p1 = at_end ? end : at1;
+    const SectionPoints<T>& p1 = at_end ? end : at1;
     if (pair.s) {
       s = lanes_of(pair.s), D = reinterpret_cast<const T(*)[n_measures]>(pair.D);
     } else {
       Measures<T> m1 = measures_of(p1.y), m0 = m1;
       if (pair.q0 != pair.q1) {
-        Points<T> at0;
+        SectionPoints<T> at0;
         points_of(cell, pose_of(pair.q0), at0);
         m0 = measures_of(at0.y);
       }
@@ -245,7 +245,7 @@ inline void run(const ArcCall& call) {
       if (recalls) {
         T x[3][n_strains];
         for (int k = 0; k < 3; ++k) {
-          Points<T> then;
+          SectionPoints<T> then;
           points_of(cell, pose_of(k == 0 ? pair.q0 : pair.past[k - 1]), then);
           strain(measures_of(then.y), x[k]);
         }
@@ -264,33 +264,33 @@ inline void run(const ArcCall& call) {
     }
   }
 
-  Vector<T> F[8]{}, inertia[8]{};
+  LaneVector<T> F[8]{}, inertia[8]{};
   add_forces(left.y, s_all, F);
-  Vector<T> y[8];  // accelerations of the points, with weight and drag
+  LaneVector<T> y[8];  // accelerations of the points, with weight and drag
   {
-    Pose<T> rates[2] = {pose_of(call.a)[0], pose_of(call.a)[1]};
+    BodyPose<T> rates[2] = {pose_of(call.a)[0], pose_of(call.a)[1]};
     for (int e = 0; e < 2; ++e)
       for (int i = 0; i < 3; ++i) {
         rates[e].c[i] -= call.gravity[i];
         if (!call.v) continue;
-        const Pose<T>& v = pose_of(call.v)[e];
+        const BodyPose<T>& v = pose_of(call.v)[e];
         rates[e].c[i] += cell.alpha * v.c[i];
         for (int k = 0; k < 3; ++k) rates[e].R[k][i] += cell.alpha * v.R[k][i];
       }
-    Points<T> of_rates;
+    SectionPoints<T> of_rates;
     points_of(cell, rates, of_rates);
     for (int i = 0; i < 8; ++i) y[i] = of_rates.y[i];
   }
   add_inertia(cell, y, inertia);
   if (call.line_F)
     for (int i = 0; i < 8; ++i) {
-      inertia[i] = inertia[i] - reinterpret_cast<const Vector<T>*>(call.line_F)[i];
+      inertia[i] = inertia[i] - reinterpret_cast<const LaneVector<T>*>(call.line_F)[i];
       for (int j = 0; j < 8; ++j) add_to(inertia[i], T(-lanes_of(call.line_K)[8 * i + j]), left.y[j]);
     }
   T* scale2 = reinterpret_cast<T*>(call.scale2);
   for (int e = 0; e < 2; ++e) scale2[2 * e] = dot(F[4 * e], F[4 * e]), scale2[2 * e + 1] = dot(inertia[4 * e], inertia[4 * e]);
   for (int e = 0; e < 2; ++e) {
-    Vector<T> moment{};
+    LaneVector<T> moment{};
     for (int i = 4 * e; i < 4 * e + 4; ++i) F[i] = F[i] + inertia[i], moment = moment + cross(left.lever(i), F[i]);
     for (int i = 0; i < 3; ++i) f[6 * e + i] = F[4 * e][i], f[6 * e + 3 + i] = moment[i];
   }

@@ -20,7 +20,7 @@ struct ArcCall {
     double recall[2] = {0, 0};
     const double *s = nullptr, *D = nullptr;  // forces (7) and their slopes (7 x 7) where they are known
   };
-  const double* cells;               // arc::Cell
+  const double* cells;               // arc::ArcCell
   const double *left, *end, *a, *v;  // poses of a stage; v null: no drag
   double gravity[3];
   double slope, mass_slope, alpha_slope;

@@ -22,33 +22,33 @@ template <class T>
 }
 
 template <class T>
-struct Vector {
+struct LaneVector {
   T v[3];
   T& operator[](int i) { return v[i]; }
   const T& operator[](int i) const { return v[i]; }
 };
 template <class T>
-[[gnu::always_inline]] inline Vector<T> operator+(const Vector<T>& a, const Vector<T>& b) {
+[[gnu::always_inline]] inline LaneVector<T> operator+(const LaneVector<T>& a, const LaneVector<T>& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
 template <class T>
-[[gnu::always_inline]] inline Vector<T> operator-(const Vector<T>& a, const Vector<T>& b) {
+[[gnu::always_inline]] inline LaneVector<T> operator-(const LaneVector<T>& a, const LaneVector<T>& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 template <class S, class T>
-[[gnu::always_inline]] inline Vector<T> operator*(const S& s, const Vector<T>& a) {
+[[gnu::always_inline]] inline LaneVector<T> operator*(const S& s, const LaneVector<T>& a) {
   return {s * a[0], s * a[1], s * a[2]};
 }
 template <class T>
-[[gnu::always_inline]] inline void add_to(Vector<T>& to, const T& s, const Vector<T>& a) {
+[[gnu::always_inline]] inline void add_to(LaneVector<T>& to, const T& s, const LaneVector<T>& a) {
   for (int i = 0; i < 3; ++i) to[i] += s * a[i];
 }
 template <class T>
-[[gnu::always_inline]] inline T dot(const Vector<T>& a, const Vector<T>& b) {
+[[gnu::always_inline]] inline T dot(const LaneVector<T>& a, const LaneVector<T>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 template <class T>
-[[gnu::always_inline]] inline Vector<T> cross(const Vector<T>& a, const Vector<T>& b) {
+[[gnu::always_inline]] inline LaneVector<T> cross(const LaneVector<T>& a, const LaneVector<T>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
@@ -59,14 +59,14 @@ struct Matrix {
 };
 /// M += s [a]x.
 template <class T>
-[[gnu::always_inline]] inline void add_skew(Matrix<T>& M, const T& s, const Vector<T>& a) {
+[[gnu::always_inline]] inline void add_skew(Matrix<T>& M, const T& s, const LaneVector<T>& a) {
   const T x = s * a[0], y = s * a[1], z = s * a[2];
   M.m[0][1] -= z, M.m[1][0] += z, M.m[0][2] += y, M.m[2][0] -= y, M.m[1][2] -= x, M.m[2][1] += x;
 }
 /// M += s [a]x [b]x.
 template <class T>
-[[gnu::always_inline]] inline void add_skew2(Matrix<T>& M, const T& s, const Vector<T>& a, const Vector<T>& b) {
-  const Vector<T> sb = s * b;
+[[gnu::always_inline]] inline void add_skew2(Matrix<T>& M, const T& s, const LaneVector<T>& a, const LaneVector<T>& b) {
+  const LaneVector<T> sb = s * b;
   const T trace = dot(a, sb);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) M.m[i][j] += sb[i] * a[j];
@@ -77,9 +77,9 @@ template <class T>
 // f and k as power series in x = 1 - c below `series`, in closed form above
 inline constexpr int n_terms = 26;
 inline constexpr double series = 0.3;
-struct Series {
+struct TurnSeries {
   std::array<double, n_terms> f{}, k{};
-  constexpr Series() {
+  constexpr TurnSeries() {
     f[0] = 1;
     for (int n = 1; n < n_terms; ++n) f[n] = f[n - 1] * n / (2 * n + 1);
     for (int i = 0; i < n_terms - 1; ++i) {  // of q(x)/(2 - x)
@@ -88,17 +88,17 @@ struct Series {
     }
   }
 };
-inline constexpr Series by_x;
+inline constexpr TurnSeries by_x;
 
 /// f and k at both ends of a step.
 template <class T>
-struct Turning {
+struct TurnFunctions {
   T f0, k0, f1, k1;
   T f1_c, k1_c;          // slopes by c at the second end
   T df, dk, df_c, dk_c;  // divided differences by c, and their slopes by c at the second end
 };
 /// Where a series will not do.
-Turning<double> far_turning(double c0, double c1);
+TurnFunctions<double> far_turning(double c0, double c1);
 
 /// Terms of the series by the largest x: what is left out is below 1e-17 of the sum, in slopes of divided differences too.
 [[gnu::always_inline]] inline int terms_for(double x) { return x < 0.01 ? 10 : x < 0.08 ? 16 : n_terms; }
@@ -115,7 +115,7 @@ template <class T>
 }
 
 template <class T>
-[[gnu::always_inline]] inline Turning<T> turning(const T& c0, const T& c1) {
+[[gnu::always_inline]] inline TurnFunctions<T> turning(const T& c0, const T& c1) {
   constexpr unsigned W = sizeof(T) / sizeof(double);
   const T x0 = 1 - c0, x1 = 1 - c1;
   double most = 0;
@@ -126,14 +126,14 @@ template <class T>
       most = std::max(most, std::abs(x));
     }
   const int terms = terms_for(most);
-  Turning<T> t;
+  TurnFunctions<T> t;
   expand(by_x.f, terms, x0, x1, t.f0, t.f1, t.f1_c, t.df, t.df_c);
   expand(by_x.k, terms, x0, x1, t.k0, t.k1, t.k1_c, t.dk, t.dk_c);
   t.f1_c = -t.f1_c, t.k1_c = -t.k1_c, t.df = -t.df, t.dk = -t.dk;  // dx = -dc
   if (far)
     for (unsigned l = 0; l < W; ++l) {
       if (lane(x0, l) < series && lane(x1, l) < series) continue;
-      const Turning<double> of = far_turning(lane(c0, l), lane(c1, l));
+      const TurnFunctions<double> of = far_turning(lane(c0, l), lane(c1, l));
       lane(t.f0, l) = of.f0, lane(t.k0, l) = of.k0, lane(t.f1, l) = of.f1, lane(t.k1, l) = of.k1;
       lane(t.f1_c, l) = of.f1_c, lane(t.k1_c, l) = of.k1_c;
       lane(t.df, l) = of.df, lane(t.dk, l) = of.dk, lane(t.df_c, l) = of.df_c, lane(t.dk_c, l) = of.dk_c;
@@ -143,18 +143,18 @@ template <class T>
 
 template <class T>
 struct Measures {
-  Vector<T> a;
+  LaneVector<T> a;
   T t;
-  Vector<T> p;
+  LaneVector<T> p;
 };
 
 /// Products of measures that strains are made of.
 template <class T>
 struct End {
-  Vector<T> a, p, w, b;  // w = a x p, b = a x w
+  LaneVector<T> a, p, w, b;  // w = a x p, b = a x w
   T c;
   [[gnu::always_inline]] explicit End(const Measures<T>& m) : a(m.a), p(m.p), w(cross(m.a, m.p)), b(cross(m.a, w)), c(0.5 * (m.t - 1)) {}
-  End(const Vector<T>& a, const Vector<T>& p, const Vector<T>& w, const Vector<T>& b) : a(a), p(p), w(w), b(b), c(T{}) {}
+  End(const LaneVector<T>& a, const LaneVector<T>& p, const LaneVector<T>& w, const LaneVector<T>& b) : a(a), p(p), w(w), b(b), c(T{}) {}
   /// L times the strains.
   [[gnu::always_inline]] void strain(const T& f, const T& k, T* x) const {
     for (int i = 0; i < 3; ++i) x[i] = p[i] - 0.5 * (f * w[i]) + k * b[i], x[3 + i] = f * a[i];
@@ -162,7 +162,7 @@ struct End {
 };
 /// Half the sum.
 template <class T>
-[[gnu::always_inline]] inline Vector<T> mean(const Vector<T>& a, const Vector<T>& b) {
+[[gnu::always_inline]] inline LaneVector<T> mean(const LaneVector<T>& a, const LaneVector<T>& b) {
   return 0.5 * (a + b);
 }
 
@@ -170,20 +170,20 @@ template <class T>
 template <class T>
 [[gnu::always_inline]] inline void strain(const Measures<T>& m, T* x) {
   const End<T> e(m);
-  const Turning<T> t = turning(e.c, e.c);
+  const TurnFunctions<T> t = turning(e.c, e.c);
   e.strain(t.f1, t.k1, x);
 }
 
 /// What an element is made of: C* [N, N m, N m^2], its strains without stress [1, 1/m], its length [m].
 template <class T>
-struct Stiffness {
+struct ArcStiffness {
   T C[n_strains][n_strains], reference[n_strains], length;
 };
 
 /// d (L Gamma)/d a and d (L Gamma)/d p of f, k, a, p, w.
 template <class T>
-[[gnu::always_inline]] inline void strain_slopes(const T& f, const T& k, const Vector<T>& a, const Vector<T>& p, const Vector<T>& w,
-                                                 Matrix<T>& by_a, Matrix<T>& by_p) {
+[[gnu::always_inline]] inline void strain_slopes(const T& f, const T& k, const LaneVector<T>& a, const LaneVector<T>& p,
+                                                 const LaneVector<T>& w, Matrix<T>& by_a, Matrix<T>& by_p) {
   by_a = {}, by_p = {};
   const T half_f = 0.5 * f;
   add_skew(by_a, half_f, p), add_skew(by_a, T(-k), w), add_skew2(by_a, T(-k), a, p);
@@ -200,10 +200,10 @@ struct Resultants {
 /// The forces s and, where D is wanted, ds/de1, set: by the resultants C* (elastic (mean eps - reference) + rate (eps1 - eps0 - recalled)).
 /// `recalled`: L times strains; null: none.
 template <class T>
-[[gnu::always_inline]] inline void respond(const Stiffness<T>& law, const Measures<T>& m0, const Measures<T>& m1, double elastic,
+[[gnu::always_inline]] inline void respond(const ArcStiffness<T>& law, const Measures<T>& m0, const Measures<T>& m1, double elastic,
                                            const T& rate, const T* recalled, Resultants<T>& r, T* s, T (*D)[n_measures]) {
   const End<T> e0(m0), e1(m1);
-  const Turning<T> turn = turning(e0.c, e1.c);
+  const TurnFunctions<T> turn = turning(e0.c, e1.c);
   e0.strain(turn.f0, turn.k0, r.x0), e1.strain(turn.f1, turn.k1, r.x1);
   const T by_L = 1 / law.length, half = (0.5 * elastic) * by_L, rate_L = rate * by_L;
   T strain[n_strains];
@@ -215,11 +215,11 @@ template <class T>
     r.n[i] = law.C[i][0] * strain[0];
     for (int j = 1; j < n_strains; ++j) r.n[i] += law.C[i][j] * strain[j];
   }
-  const Vector<T> N{r.n[0], r.n[1], r.n[2]}, M{r.n[3], r.n[4], r.n[5]};
+  const LaneVector<T> N{r.n[0], r.n[1], r.n[2]}, M{r.n[3], r.n[4], r.n[5]};
 
-  const Vector<T> a = mean(e0.a, e1.a), p = mean(e0.p, e1.p), w = mean(e0.w, e1.w), b = mean(e0.b, e1.b);
+  const LaneVector<T> a = mean(e0.a, e1.a), p = mean(e0.p, e1.p), w = mean(e0.w, e1.w), b = mean(e0.b, e1.b);
   const T f = 0.5 * (turn.f0 + turn.f1), k = 0.5 * (turn.k0 + turn.k1);
-  const Vector<T> aN = cross(a, N), Np = cross(N, p), wN = cross(w, N) - cross(p, aN), aaN = cross(a, aN);
+  const LaneVector<T> aN = cross(a, N), Np = cross(N, p), wN = cross(w, N) - cross(p, aN), aaN = cross(a, aN);
   const T bN = dot(b, N), wdN = dot(w, N), aM = dot(a, M);
   for (int i = 0; i < 3; ++i) {
     s[i] = 0.5 * (f * Np[i]) + k * wN[i] + f * M[i];
@@ -234,8 +234,8 @@ template <class T>
   add_skew2(aa, k_half, N, e1.p), add_skew2(aa, k_half, p, N);
   add_skew(ap, f_quarter, N), add_skew2(ap, T(-k_half), N, e1.a), add_skew(ap, k_half, aN);
   add_skew(pa, T(-f_quarter), N), add_skew(pa, T(-k_half), aN), add_skew2(pa, T(-k_half), a, N);
-  const Vector<T> Na = cross(N, e1.a), pN = cross(e1.p, N);
-  const Vector<T> of_b = cross(e1.w, N) + cross(e1.p, Na), aNa = cross(e1.a, Na);
+  const LaneVector<T> Na = cross(N, e1.a), pN = cross(e1.p, N);
+  const LaneVector<T> of_b = cross(e1.w, N) + cross(e1.p, Na), aNa = cross(e1.a, Na);
   const T dk_quarter = 0.25 * turn.dk, df_quarter = 0.25 * turn.df, df_eighth = 0.125 * turn.df;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -254,7 +254,7 @@ template <class T>
   strain_slopes(f, k, a, p, w, Ba, Bp);
   strain_slopes(turn.f1, turn.k1, e1.a, e1.p, e1.w, Ja, Jp);
   const T f1_t = 0.5 * turn.f1_c, k1_t = 0.5 * turn.k1_c, dk_half = 0.5 * turn.dk, df_half = 0.5 * turn.df, share = half + rate_L;
-  Vector<T> Bt, Jt;
+  LaneVector<T> Bt, Jt;
   for (int i = 0; i < 3; ++i) {
     Bt[i] = dk_half * b[i] - 0.5 * (df_half * w[i]);
     Jt[i] = k1_t * e1.b[i] - 0.5 * (f1_t * e1.w[i]);

@@ -13,23 +13,23 @@ namespace hilo {
 namespace {
 
 using arc::dot, arc::cross, arc::add_to;
-using Vector = arc::Vector<double>;
+using Vector = arc::LaneVector<double>;
 
 Vec3 vec3(const Vector& v) { return Vec3(v[0], v[1], v[2]); }
 
 /// Centre and directors of the bodies at both ends.
-std::array<arc::Pose<double>, 2> poses_of(const BeamCell& cell, const Config& q) {
-  std::array<arc::Pose<double>, 2> out;
+std::array<arc::BodyPose<double>, 2> poses_of(const BeamCell& cell, const Config& q) {
+  std::array<arc::BodyPose<double>, 2> out;
   for (int e = 0; e < 2; ++e) {
-    const int body = cell.ends.end[e].body;
+    const int body = cell.body[e];
     std::copy_n(q.c[body].data(), 3, out[e].c.v);
     for (int i = 0; i < 3; ++i) std::copy_n(q.R[body].data() + 3 * i, 3, out[e].R[i].v);
   }
   return out;
 }
 /// The points of both sections, or rates of these.
-arc::Points<double> points_of(const BeamCell& cell, const Config& q) {
-  arc::Points<double> out;
+arc::SectionPoints<double> points_of(const BeamCell& cell, const Config& q) {
+  arc::SectionPoints<double> out;
   arc::points_of(cell.arc, poses_of(cell, q).data(), out);
   return out;
 }
@@ -37,16 +37,34 @@ arc::Measures<double> measures_of(const BeamCell& cell, const Config& q) { retur
 ArcStrain strain_of(const BeamCell& cell, const Config& q) { return arc_strain(measures_of(cell, q)); }
 
 /// M times rates of the points.
-std::array<Vector, 8> momenta_of(const BeamCell& cell, const arc::Points<double>& rates) {
+std::array<Vector, 8> momenta_of(const BeamCell& cell, const arc::SectionPoints<double>& rates) {
   std::array<Vector, 8> out{};
   arc::add_inertia(cell.arc, rates.y, out.data());
   return out;
 }
 template <class Forces>
-double work(const Forces& F, const arc::Points<double>& from, const arc::Points<double>& to) {
+double work(const Forces& F, const arc::SectionPoints<double>& from, const arc::SectionPoints<double>& to) {
   double sum = 0;
   for (int i = 0; i < 8; ++i) sum += dot(F[i], to.y[i] - from.y[i]);
   return sum;
+}
+
+/// A cell as joints and springs are, with its measures.
+const Connector& connector_of(const BeamCell& cell) {
+  thread_local Connector c = [] {
+    Connector made;
+    Config rest;
+    rest.c.assign(2, Vec3::Zero()), rest.R.assign(2, Mat3::Identity());
+    made.end[0].body = 0, made.end[1].body = 1;
+    add_arc_measures(made, rest, Vec3::Zero(), Mat3::Identity(), Vec3::Zero(), Mat3::Identity());
+    return made;
+  }();
+  for (int e = 0; e < 2; ++e) {
+    c.end[e].body = cell.body[e];
+    c.entities[e].r = vec3(cell.arc.arm[e]);
+    for (int i = 0; i < 3; ++i) c.entities[2 + 2 * i + e].r = vec3(cell.arc.axis[e][i]);
+  }
+  return c;
 }
 
 /// Shares of c, d1, d2, d3 of both ends in points of the axis of an element of a section by itself: use(t, shares, ds).
@@ -63,7 +81,7 @@ void each_share(const BeamSection& s, double L, const Use& use) {
 }
 
 /// Linked mass of an element of a section by itself, on c, d1, d2, d3 of both ends.
-void set_linked_mass(const BeamSection& s, double L, arc::Cell<double>& cell) {
+void set_linked_mass(const BeamSection& s, double L, arc::ArcCell<double>& cell) {
   for (auto& row : cell.linked)
     for (double& m : row) m = 0;
   each_share(s, L, [&](double, const Eigen::Matrix<double, 8, 1>& u, double ds) {
@@ -160,8 +178,7 @@ std::vector<StagePair> pairs_of(const Stage& s, bool has_beta) {
 void Beams::add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSection& section, double beta, double alpha) {
   const Config& q = points_.start;
   BeamCell cell;
-  cell.ends.join({a.body, -1}, {b.body, -1}, q, b.at, b.frame);
-  add_arc_measures(cell.ends, q, a.at, a.frame, b.at, b.frame);
+  cell.body = {a.body, b.body};
   for (int e = 0; e < 2; ++e) {
     const SectionPlace& place = e == 0 ? a : b;
     const Mat3 to_body = q.R[place.body].transpose(), axes = to_body * place.frame;
@@ -177,29 +194,33 @@ void Beams::add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSec
 }
 
 void Beams::prepare() {
-  constexpr size_t n = sizeof(arc::Cell<double>) / sizeof(double);
-  lanes_ = {};
-  lanes_.kernel = arc_kernel();
-  const auto W = static_cast<size_t>(lanes_.kernel.width);
-  for (const bool own : {true, false}) {
-    for (size_t k = 0; k < cells.size(); ++k)
-      if (points_.counts(static_cast<int>(k)) == own) lanes_.cell.push_back(static_cast<int>(k));
-    while (lanes_.cell.size() % W > 0) lanes_.cell.push_back(-1);
-    if (own) lanes_.n_own = lanes_.cell.size();
+  std::vector<int> own, all;
+  for (size_t k = 0; k < cells.size(); ++k) {
+    all.push_back(static_cast<int>(k));
+    if (points_.counts(all.back())) own.push_back(all.back());
   }
-  lanes_.data.resize((lanes_.cell.size() * n + 7) / 8);
-  double* data = lanes_.data.empty() ? nullptr : lanes_.data.front().v;
-  int last = -1;
-  for (size_t slot = 0; slot < lanes_.cell.size(); ++slot) {
-    if (lanes_.cell[slot] >= 0) last = lanes_.cell[slot];
-    const BeamCell& cell = cells[last];
-    lanes_.bodies.push_back({cell.ends.end[0].body, cell.ends.end[1].body});
-    lanes_.has_beta = lanes_.has_beta || cell.arc.beta > 0;
-    lanes_.has_alpha = lanes_.has_alpha || cell.arc.alpha > 0;
+  own_ = packed(own);
+  if (own.size() < all.size()) all_ = packed(all);
+}
+
+Beams::Lanes Beams::packed(const std::vector<int>& list) const {
+  constexpr size_t n = sizeof(arc::ArcCell<double>) / sizeof(double);
+  Lanes out;
+  out.kernel = arc_kernel();
+  out.cell = list;
+  const auto W = static_cast<size_t>(out.kernel.width);
+  while (out.cell.size() % W > 0) out.cell.push_back(-1);
+  out.data.resize((out.cell.size() * n + 7) / 8);
+  for (size_t slot = 0; slot < out.cell.size(); ++slot) {
+    const BeamCell& cell = cells[out.cell[slot] >= 0 ? out.cell[slot] : list.back()];
+    out.bodies.push_back(cell.body);
+    out.has_beta = out.has_beta || cell.arc.beta > 0;
+    out.has_alpha = out.has_alpha || cell.arc.alpha > 0;
     const double* from = reinterpret_cast<const double*>(&cell.arc);
-    double* to = data + slot / W * W * n + slot % W;
+    double* to = out.data.front().v + slot / W * W * n + slot % W;
     for (size_t i = 0; i < n; ++i) to[i * W] = from[i];
   }
+  return out;
 }
 
 std::string Beams::count() const {
@@ -210,7 +231,7 @@ std::string Beams::count() const {
 
 void Beams::number(Layout& layout) {
   clique_.clear();
-  for (const BeamCell& cell : cells) clique_.push_back(layout.cliques.add(blocks_of_ends(points_, cell.ends)));
+  for (const BeamCell& cell : cells) clique_.push_back(layout.cliques.add(blocks_of_ends(points_, connector_of(cell))));
 }
 
 std::vector<Beams::LineForces> Beams::line_forces(const Stage& s) const {
@@ -236,12 +257,14 @@ std::vector<Beams::LineForces> Beams::line_forces(const Stage& s) const {
 
 template <class Use>
 void Beams::each_cell(const Stage& s, const std::vector<LineForces>& line, bool with_tangent, bool on_all, const Use& use) const {
+  const Lanes& lanes = on_all && !all_.cell.empty() ? all_ : own_;
+  if (lanes.cell.empty()) return;
   thread_local std::vector<Line> scratch;
-  const int W = lanes_.kernel.width;
+  const int W = lanes.kernel.width;
   Poses poses;
-  const std::vector<StagePair> pairs = pairs_of(s, lanes_.has_beta);
+  const std::vector<StagePair> pairs = pairs_of(s, lanes.has_beta);
   const bool known = !s.rates_alone && s.step;  // the first pair's forces, by stages that share a step
-  const bool drags = s.v && lanes_.has_alpha;
+  const bool drags = s.v && lanes.has_alpha;
   poses.slot(s.left), poses.slot(s.end), poses.slot(s.a);
   if (drags) poses.slot(s.v);
   for (const StagePair& pair : pairs) {
@@ -267,15 +290,15 @@ void Beams::each_cell(const Stage& s, const std::vector<LineForces>& line, bool 
   if (known) call.pairs[0].s = forces, call.pairs[0].D = slopes;
   if (!line.empty()) call.line_F = line_F, call.line_K = line_K;
   call.f = f, call.scale2 = scale2, call.K = with_tangent ? K : nullptr;
-  constexpr size_t n = sizeof(arc::Cell<double>) / sizeof(double);
-  for (size_t first = 0; first < (on_all ? lanes_.cell.size() : lanes_.n_own); first += W) {
-    poses.gather(lanes_.bodies.data() + first, W, gathered);
-    const int* cell = lanes_.cell.data() + first;
+  constexpr size_t n = sizeof(arc::ArcCell<double>) / sizeof(double);
+  for (size_t first = 0; first < lanes.cell.size(); first += W) {
+    poses.gather(lanes.bodies.data() + first, W, gathered);
+    const int* cell = lanes.cell.data() + first;
     for (int l = 0, k = 0; l < W && (known || !line.empty()); ++l) {
       k = cell[l] >= 0 ? cell[l] : k;
       if (known) {
         Response r;
-        elastic_along(ArcLaw(cells[k].arc.law, cells[k].arc.beta), MeasurePath(cells[k].ends, *s.step), *s.step, s.member, r);
+        elastic_along(ArcLaw(cells[k].arc.law, cells[k].arc.beta), MeasurePath(connector_of(cells[k]), *s.step), *s.step, s.member, r);
         for (size_t i = 0; i < n_s; ++i) {
           forces[i * W + l] = r.s[i];
           for (size_t j = 0; j < n_s; ++j) slopes[(i * n_s + j) * W + l] = r.D[i][j];
@@ -285,8 +308,8 @@ void Beams::each_cell(const Stage& s, const std::vector<LineForces>& line, bool 
       for (int i = 0; i < 24; ++i) line_F[i * W + l] = line[k].F.data()[i];
       for (int i = 0; i < 64; ++i) line_K[i * W + l] = line[k].K.data()[i];
     }
-    call.cells = lanes_.data.front().v + first * n;
-    lanes_.kernel.call(call);
+    call.cells = lanes.data.front().v + first * n;
+    lanes.kernel.call(call);
     for (int l = 0; l < W; ++l)
       if (cell[l] >= 0) use(cell[l], Found{W, f + l, scale2 + l, K + l});
   }
@@ -296,10 +319,9 @@ void Beams::evaluate(Pass& p) const {
   const Stage& s = p.s;
   const std::vector<LineForces> line = p.loads ? line_forces(s) : std::vector<LineForces>{};
   each_cell(s, line, p.K != nullptr, false, [&](int k, const Found& found) {
-    const Connector& c = cells[k].ends;
     int kept[12], n = 0;  // rows of bodies that are free
     for (int e = 0; e < 2; ++e) {
-      const int body = c.end[e].body;
+      const int body = cells[k].body[e];
       for (int i = 0; i < 6; ++i) p.body[body][i] += found.f[(6 * e + i) * found.width];
       if (points_.body_block[body] >= 0)
         for (int i = 0; i < 6; ++i) kept[n++] = 6 * e + i;
@@ -319,13 +341,13 @@ void Beams::evaluate(Pass& p) const {
 }
 
 void Beams::add_energy(const Config& q, const Config& v, Energy& sum) const {
-  arc::Points<double> weight{};
+  arc::SectionPoints<double> weight{};
   for (const int c : {0, 4})
     for (int i = 0; i < 3; ++i) weight.y[c][i] = points_.gravity[i];
   for (size_t k = 0; k < cells.size(); ++k) {
     if (!points_.counts(static_cast<int>(k))) continue;
     const BeamCell& cell = cells[k];
-    const arc::Points<double> x = points_of(cell, q), V = points_of(cell, v);
+    const arc::SectionPoints<double> x = points_of(cell, q), V = points_of(cell, v);
     sum.elastic += arc_energy(cell.arc.law, arc_strain(arc::measures_of(x.y)));
     const std::array<Vector, 8> momenta = momenta_of(cell, V), weights = momenta_of(cell, weight);
     Vector angular{};
@@ -342,13 +364,13 @@ void Beams::add_energy(const Config& q, const Config& v, Energy& sum) const {
 void Beams::add_work(const Moment& m, Work& sum) const {
   const Stage& s = m.s;
   const std::vector<LineForces> line = line_forces(s);
-  const bool rates = s.h > 0 && lanes_.has_beta, drags = s.v && lanes_.has_alpha;
+  const bool rates = s.h > 0 && own_.has_beta, drags = s.v && own_.has_alpha;
   if (line.empty() && !rates && !drags && !s.dissipation) return;
   for (size_t k = 0; k < cells.size(); ++k) {
     if (!points_.counts(static_cast<int>(k))) continue;
     const BeamCell& cell = cells[k];
     if (!line.empty()) {
-      const arc::Points<double> left = points_of(cell, *s.left);
+      const arc::SectionPoints<double> left = points_of(cell, *s.left);
       std::array<Vector, 8> F;
       for (int i = 0; i < 8; ++i) {
         for (int j = 0; j < 3; ++j) F[i][j] = line[k].F(i, j);
@@ -369,16 +391,16 @@ void Beams::add_work(const Moment& m, Work& sum) const {
 
 double Beams::inertia(int body, const Config& v, const Vec3& w, const Mat3& W) const {
   double sum = 0;
-  arc::Pose<double> of_w[2];
+  arc::BodyPose<double> of_w[2];
   for (int e = 0; e < 2; ++e) {
     std::copy_n(w.data(), 3, of_w[e].c.v);
     for (int i = 0; i < 3; ++i) std::copy_n(W.data() + 3 * i, 3, of_w[e].R[i].v);
   }
   for (const BeamCell& cell : cells)
     for (int e = 0; e < 2; ++e)
-      if (cell.ends.end[e].body == body) {
+      if (cell.body[e] == body) {
         const std::array<Vector, 8> F = momenta_of(cell, points_of(cell, v));
-        arc::Points<double> rates;
+        arc::SectionPoints<double> rates;
         arc::points_of(cell.arc, of_w, rates);
         for (int i = 4 * e; i < 4 * e + 4; ++i) sum += dot(F[i], rates.y[i]);
       }
@@ -409,7 +431,7 @@ void Beams::observe(const Sight& sight) {
   sight.mid.resize(first + 12 * cells.size());
   each_cell(s, line_forces(s), false, true, [&](int k, const Found& found) {
     double* out = sight.mid.data() + first + 12 * static_cast<size_t>(k);
-    const arc::Points<double> at = points_of(cells[k], *s.left);
+    const arc::SectionPoints<double> at = points_of(cells[k], *s.left);
     for (int end = 0; end < 2; ++end) {
       Vector F, M;
       for (int i = 0; i < 3; ++i) F[i] = found.f[(6 * end + i) * found.width], M[i] = found.f[(6 * end + 3 + i) * found.width];
@@ -423,7 +445,7 @@ void Beams::observe(const Sight& sight) {
 
 void Beams::tie(Ties& ties) const {
   for (const BeamCell& cell : cells)
-    if (const int body = tie_ends(points_, cell.ends, ties); body >= 0) ties.exclude(body);
+    if (const int body = tie_ends(points_, connector_of(cell), ties); body >= 0) ties.exclude(body);
 }
 
 }  // namespace hilo

@@ -18,8 +18,8 @@
 namespace hilo {
 
 struct BeamCell {
-  Connector ends;
-  arc::Cell<double> arc;
+  std::array<int, 2> body{};
+  arc::ArcCell<double> arc;
   /// int u (1 - t)^2 ds, int u t (1 - t) ds, int u t^2 ds, u the shares of the points of the sections in a point at t [m, m^2]
   std::array<Eigen::Matrix<double, 8, 1>, 3> line;
   double size = 0;  // of the section [m]
@@ -95,16 +95,16 @@ class Beams final : public Contribution, public Equations, public Stateful, publ
   struct alignas(64) Line {
     double v[8];
   };
-  /// Cells as the kernel takes them, `width` at once: first those of this rank, then the others, each filled up by the last.
+  /// Cells as the kernel takes them, `width` at once, filled up by the last.
   struct Lanes {
     ArcKernel kernel{};
-    std::vector<Line> data;                  // arc::Cell of each batch
+    std::vector<Line> data;                  // arc::ArcCell of each batch
     std::vector<std::array<int, 2>> bodies;  // of each lane
     std::vector<int> cell;                   // of each lane; -1: fills up
-    size_t n_own = 0;                        // lanes
     bool has_beta = false, has_alpha = false;
   };
-  Lanes lanes_;
+  Lanes packed(const std::vector<int>& list) const;
+  Lanes own_, all_;  // of this rank; of all, where these are more: what a lane rounds may depend on its neighbours
   const Points& points_;
   std::vector<int> clique_;
 };

@@ -42,7 +42,7 @@ struct Step {
   std::mt19937 random;
   Config q0, q1;
   Connector ends;
-  arc::Cell<double> cell{};
+  arc::ArcCell<double> cell{};
   Vec3 vector(double size) {
     std::uniform_real_distribution<double> u(-size, size);
     return Vec3(u(random), u(random), u(random));
@@ -198,7 +198,7 @@ TEST(BeamCell, EveryLaneIsTheCellAlone) {
     struct alignas(64) Block {
       double v[8];
     };
-    constexpr size_t n_cell = sizeof(arc::Cell<double>) / sizeof(double);
+    constexpr size_t n_cell = sizeof(arc::ArcCell<double>) / sizeof(double);
     std::vector<Block> cells(n_cell), left(24), end(24), start(24), a(24), v(24), w0(24), w1(24), f(12), scale2(4), K(144);
     const auto lane_of = [](std::vector<Block>& b) { return b.front().v; };
     std::vector<Found> want;
