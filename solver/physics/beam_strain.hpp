@@ -154,7 +154,6 @@ struct End {
   LaneVector<T> a, p, w, b;  // w = a x p, b = a x w
   T c;
   [[gnu::always_inline]] explicit End(const Measures<T>& m) : a(m.a), p(m.p), w(cross(m.a, m.p)), b(cross(m.a, w)), c(0.5 * (m.t - 1)) {}
-  End(const LaneVector<T>& a, const LaneVector<T>& p, const LaneVector<T>& w, const LaneVector<T>& b) : a(a), p(p), w(w), b(b), c(T{}) {}
   /// L times the strains.
   [[gnu::always_inline]] void strain(const T& f, const T& k, T* x) const {
     for (int i = 0; i < 3; ++i) x[i] = p[i] - 0.5 * (f * w[i]) + k * b[i], x[3 + i] = f * a[i];
