@@ -9,38 +9,41 @@
 // element, (n, m)' = -Z (n, m) with Z = [K0x 0; e3x K0x].  The forces s = L D^T C* (mean eps - eps_ref), D (e1 - e0) = eps1 - eps0 to
 // round-off, keep energy and momenta.
 #pragma once
+#include "physics/beam_strain.hpp"
 #include "physics/force_law.hpp"
 
 namespace hilo {
 
+/// L times the strains [m, 1].
+using ArcStrain = Eigen::Matrix<double, 6, 1>;
+ArcStrain arc_strain(const arc::Measures<double>& e);
+/// Without strain at the measures e.  C (6 x 6) [N, N m, N m^2] by shear along 1 and 2, stretch, bending about 1 and 2, twist.
+arc::ArcStiffness<double> arc_stiffness(const arc::Measures<double>& e, const Mat6& C);
+/// Of L times the strains [J].
+double arc_energy(const arc::ArcStiffness<double>& of, const ArcStrain& x);
+/// What C* (eps1 - eps0 - recalled/L) takes, of L times the strains [J]; without what is recalled it never pays in.
+double arc_taken(const arc::ArcStiffness<double>& of, const ArcStrain& x0, const ArcStrain& x1, const ArcStrain& recalled);
+
 class ArcLaw final : public SpringLaw {
  public:
-  static constexpr int n_measures = 7;         // a, t, p
-  static constexpr double largest_turn = 2.5;  // of an element [rad]; at pi the helix is not one
-  using Stiffness = Eigen::Matrix<double, 6, 6>;
-  /// Without strain at the measures e.  C (6 x 6) [N, N m, N m^2] by shear along 1 and 2, stretch, bending about 1 and 2, twist; beta [s].
-  ArcLaw(const Values& e, const Stiffness& C, double beta);
-  double length() const { return L_; }
+  static constexpr int n_measures = arc::n_measures;  // a, t, p
+  static constexpr double largest_turn = 2.5;         // of an element [rad]; at pi the helix is not one
+  /// beta [s].
+  ArcLaw(const arc::ArcStiffness<double>& of, double beta) : of_(of), beta_(beta) {}
   void elastic(const Values& e0, const Values& e1, Response& out) const override;
-  using Strain = Eigen::Matrix<double, 6, 1>;
-  /// L eps [m, 1].
-  static Strain strain(const Values& e);
-  /// Adds `factor` C* (eps1 - eps0 - recalled/L); without what is recalled [m, 1] it never pays in.
-  void resist(const Values& e0, const Values& e1, double factor, const Strain& recalled, Response& out) const;
-  void viscous(const Values& r0, const Values& r1, const Interval& step, Response& out) const override {
-    if (beta_ > 0) resist(r0, r1, beta_ / step.h, Strain::Zero(), out);
-  }
+  void viscous(const Values& r0, const Values& r1, const Interval& step, Response& out) const override;
   bool conserves() const override { return beta_ == 0; }
   /// Turn of section B against A [rad]; beyond pi it comes back.
-  static double turn(const Values& e);
+  static double turn(const arc::Measures<double>& e);
 
  private:
-  double L_, beta_;
-  Stiffness C_;  // C*
-  Eigen::Matrix<double, 6, 1> ref_;
+  void add(const Values& e0, const Values& e1, double elastic, double rate, Response& out) const;
+  const arc::ArcStiffness<double>& of_;
+  double beta_;
 };
 
-/// The measures of the arc, of sections at `at` with directors by columns, of a connector whose ends are joined.
+/// The measures of the arc, of sections at `at` with directors by columns, of a connector whose ends are joined.  Entities are the origins
+/// of A and of B, then of each director that of A and that of B.
 void add_arc_measures(Connector& c, const Config& q, const Vec3& at_a, const Mat3& frame_a, const Vec3& at_b, const Mat3& frame_b);
 
 }  // namespace hilo

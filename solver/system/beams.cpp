@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "system/collocation.hpp"
@@ -11,21 +12,59 @@
 namespace hilo {
 namespace {
 
-using Rows = Eigen::Matrix<double, 8, 3>;  // a row for each of the points of M
+using arc::dot, arc::cross, arc::add_to;
+using Vector = arc::LaneVector<double>;
+
+Vec3 vec3(const Vector& v) { return Vec3(v[0], v[1], v[2]); }
 
 /// Centre and directors of the bodies at both ends.
-Rows rows_of(const Config& q, const Connector& c) {
-  Rows out;
-  out << q.c[c.end[0].body].transpose(), q.R[c.end[0].body].transpose(), q.c[c.end[1].body].transpose(), q.R[c.end[1].body].transpose();
+std::array<arc::BodyPose<double>, 2> poses_of(const BeamCell& cell, const Config& q) {
+  std::array<arc::BodyPose<double>, 2> out;
+  for (int e = 0; e < 2; ++e) {
+    const int body = cell.body[e];
+    std::copy_n(q.c[body].data(), 3, out[e].c.v);
+    for (int i = 0; i < 3; ++i) std::copy_n(q.R[body].data() + 3 * i, 3, out[e].R[i].v);
+  }
   return out;
 }
-Vec3 row(const Rows& rows, int i) { return rows.row(i).transpose(); }
-
-/// Rows of an acceleration that is the same everywhere.
-Rows everywhere(const Vec3& g) {
-  Rows out = Rows::Zero();
-  out.row(0) = out.row(4) = g.transpose();
+/// The points of both sections, or rates of these.
+arc::SectionPoints<double> points_of(const BeamCell& cell, const Config& q) {
+  arc::SectionPoints<double> out;
+  arc::points_of(cell.arc, poses_of(cell, q).data(), out);
   return out;
+}
+arc::Measures<double> measures_of(const BeamCell& cell, const Config& q) { return arc::measures_of(points_of(cell, q).y); }
+ArcStrain strain_of(const BeamCell& cell, const Config& q) { return arc_strain(measures_of(cell, q)); }
+
+/// M times rates of the points.
+std::array<Vector, 8> momenta_of(const BeamCell& cell, const arc::SectionPoints<double>& rates) {
+  std::array<Vector, 8> out{};
+  arc::add_inertia(cell.arc, rates.y, out.data());
+  return out;
+}
+template <class Forces>
+double work(const Forces& F, const arc::SectionPoints<double>& from, const arc::SectionPoints<double>& to) {
+  double sum = 0;
+  for (int i = 0; i < 8; ++i) sum += dot(F[i], to.y[i] - from.y[i]);
+  return sum;
+}
+
+/// A cell as joints and springs are, with its measures.
+const Connector& connector_of(const BeamCell& cell) {
+  thread_local Connector c = [] {
+    Connector made;
+    Config rest;
+    rest.c.assign(2, Vec3::Zero()), rest.R.assign(2, Mat3::Identity());
+    made.end[0].body = 0, made.end[1].body = 1;
+    add_arc_measures(made, rest, Vec3::Zero(), Mat3::Identity(), Vec3::Zero(), Mat3::Identity());
+    return made;
+  }();
+  for (int e = 0; e < 2; ++e) {
+    c.end[e].body = cell.body[e];
+    c.entities[e].r = vec3(cell.arc.arm[e]);
+    for (int i = 0; i < 3; ++i) c.entities[2 + 2 * i + e].r = vec3(cell.arc.axis[e][i]);
+  }
+  return c;
 }
 
 /// Shares of c, d1, d2, d3 of both ends in points of the axis of an element of a section by itself: use(t, shares, ds).
@@ -42,16 +81,14 @@ void each_share(const BeamSection& s, double L, const Use& use) {
 }
 
 /// Linked mass of an element of a section by itself, on c, d1, d2, d3 of both ends.
-BeamCell::Mass linked_mass(const BeamSection& s, double L) {
-  BeamCell::Mass M = BeamCell::Mass::Zero();
-  each_share(s, L, [&](double, const Eigen::Matrix<double, 8, 1>& u, double ds) { M += ds * s.mass * u * u.transpose(); });
-  for (const int a : {0, 4})
-    for (const int b : {0, 4}) {
-      const double share = L * (a == b ? 5.0 : 1.0) / 12;
-      M(a + 1, b + 1) += s.J11 * share, M(a + 2, b + 2) += s.J22 * share;
-      M(a + 1, b + 2) += s.J12 * share, M(a + 2, b + 1) += s.J12 * share;
-    }
-  return M;
+void set_linked_mass(const BeamSection& s, double L, arc::ArcCell<double>& cell) {
+  for (auto& row : cell.linked)
+    for (double& m : row) m = 0;
+  each_share(s, L, [&](double, const Eigen::Matrix<double, 8, 1>& u, double ds) {
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) cell.linked[i][j] += ds * s.mass * u[arc::linked_points[i]] * u[arc::linked_points[j]];
+  });
+  cell.across[0] = s.J11 * L / 12, cell.across[1] = s.J22 * L / 12, cell.across[2] = s.J12 * L / 12;
 }
 
 /// int u (1 - t)^2 ds, int u t (1 - t) ds, int u t^2 ds of the shares u of an element of a section by itself.
@@ -65,44 +102,75 @@ std::array<Eigen::Matrix<double, 8, 1>, 3> line_shares(const BeamSection& s, dou
 }
 
 /// Changes of strain over the steps before that dissipation recalls.
-ArcLaw::Strain recalled(const BeamCell& cell, const Dissipation& d, const Config& from, double last, double before) {
-  if (last == 0 && before == 0) return ArcLaw::Strain::Zero();
-  const auto at = [&](const Config& q) { return ArcLaw::strain(cell.ends.values(q)); };
-  const ArcLaw::Strain one = at(*d.one);
-  return last * (at(from) - one) + before * (one - at(*d.two));
+ArcStrain recalled(const BeamCell& cell, const Dissipation& d, const Config& from, double last, double before) {
+  if (last == 0 && before == 0) return ArcStrain::Zero();
+  const ArcStrain one = strain_of(cell, *d.one);
+  return last * (strain_of(cell, from) - one) + before * (one - strain_of(cell, *d.two));
 }
 
-/// Elastic response at a stage with what dissipation takes, D by the measures at e1; rate forces, D by those at w1, and `before` by those
-/// at w0.
-void respond(const BeamCell& cell, const Stage& s, Response& elastic, Response& viscous, Response& before) {
-  const auto e0 = cell.ends.values(*s.e0), e1 = cell.ends.values(*s.e1);
-  if (!s.rates_alone) {
-    if (s.step) {
-      elastic_along(*cell.law, MeasurePath(cell.ends, *s.step), *s.step, s.member, elastic);
-    } else if (s.conserving()) {
-      cell.law->elastic(e0, e1, elastic);
-    } else {
-      SpringLaw::Values mean{};
-      for (int m = 0; m < ArcLaw::n_measures; ++m) mean[m] = (1 - s.weight) * e0[m] + s.weight * e1[m];
-      cell.law->elastic(mean, mean, elastic);
-      for (auto& of : elastic.D)  // so far the derivative by the second argument alone
-        for (double& d : of) d *= 2 * s.weight;
+/// Poses of the bodies of W cells, a slot for each configuration that a stage names.
+class Poses {
+ public:
+  /// The slot of a configuration.
+  size_t slot(const Config* q) {
+    const auto known = std::find(configs_.begin(), configs_.end(), q);
+    if (known != configs_.end()) return static_cast<size_t>(known - configs_.begin());
+    configs_.push_back(q);
+    return configs_.size() - 1;
+  }
+  size_t size() const { return configs_.size(); }
+  void gather(const std::array<int, 2>* bodies, int W, double* to) const {
+    for (const Config* q : configs_) {
+      for (int l = 0; l < W; ++l) {
+        double* lane = to + l;
+        for (const int body : bodies[l]) {
+          const double *c = q->c[body].data(), *R = q->R[body].data();
+          for (int i = 0; i < 3; ++i) lane[i * W] = c[i];
+          for (int i = 0; i < 9; ++i) lane[(3 + i) * W] = R[i];
+          lane += 12 * W;
+        }
+      }
+      to += 24 * W;
     }
-    if (const Dissipation* d = s.dissipation)
-      cell.law->resist(e0, e1, d->kappa, recalled(cell, *d, *s.e0, d->last(), d->before()), elastic);
   }
-  if (s.h > 0) {
-    const auto w0 = cell.ends.values(*s.w0), w1 = cell.ends.values(*s.w1);
-    cell.law->viscous(w0, w1, {s.h}, viscous);
-    if (s.slope0() != 0) cell.law->viscous(w1, w0, {-s.h}, before);
-  }
-}
 
-/// Inertia, weight and drag on the points.
-Rows forces_of_mass(const BeamCell& cell, const Stage& s, const Vec3& gravity) {
-  Rows a = rows_of(*s.a, cell.ends) - everywhere(gravity * s.load_factor);
-  if (s.v && cell.alpha > 0) a += cell.alpha * rows_of(*s.v, cell.ends);
-  return cell.M * a;
+ private:
+  std::vector<const Config*> configs_;
+};
+
+/// A pair of configurations between which strains act, and what else a pair of the kernel has.
+struct StagePair {
+  const Config *q0, *q1;
+  ArcCall::Pair of;
+};
+
+/// What acts between which configurations of a stage: elastic forces with what dissipation takes, and rate forces.
+std::vector<StagePair> pairs_of(const Stage& s, bool has_beta) {
+  std::vector<StagePair> out;
+  bool rates_are_in = !has_beta || !(s.h > 0);
+  const Dissipation* d = s.dissipation;
+  if (!s.rates_alone) {
+    ArcCall::Pair elastic{.elastic = 1, .slope = s.chain}, loss{.kappa = d ? d->kappa : 0, .slope = s.chain};
+    if (d) loss.recall[0] = d->last(), loss.recall[1] = d->before();
+    if (s.conserving() && !s.step) {
+      const bool same = s.w0 == s.e0 && s.w1 == s.e1 && s.slope0() == 0 && std::abs(s.slope1() - s.chain) < 1e-12;
+      if (d) {
+        elastic.kappa = loss.kappa, elastic.recall[0] = loss.recall[0], elastic.recall[1] = loss.recall[1];
+      } else if (!rates_are_in && same) {
+        elastic.by_beta = 1 / s.h, rates_are_in = true;
+      }
+      d = nullptr;
+    } else if (!s.step) {
+      elastic.mean = true, elastic.weight = s.weight;
+    }
+    out.push_back({s.e0, s.e1, elastic});
+    if (d) out.push_back({s.e0, s.e1, loss});
+  }
+  if (!rates_are_in) {
+    out.push_back({s.w0, s.w1, {.by_beta = 1 / s.h, .slope = s.slope1()}});
+    if (s.slope0() != 0) out.push_back({s.w1, s.w0, {.by_beta = -1 / s.h, .slope = s.slope0(), .acts = false}});
+  }
+  return out;
 }
 
 }  // namespace
@@ -110,22 +178,49 @@ Rows forces_of_mass(const BeamCell& cell, const Stage& s, const Vec3& gravity) {
 void Beams::add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSection& section, double beta, double alpha) {
   const Config& q = points_.start;
   BeamCell cell;
-  cell.ends.join({a.body, -1}, {b.body, -1}, q, b.at, b.frame);
-  add_arc_measures(cell.ends, q, a.at, a.frame, b.at, b.frame);
-  cell.law = std::make_unique<ArcLaw>(cell.ends.values(q), section.C, beta);
-  cell.alpha = alpha, cell.size = section.size;
-  BeamCell::Mass T = BeamCell::Mass::Zero();  // points of the sections from those of the bodies
-  for (int k = 0; k < 2; ++k) {
-    const SectionPlace& place = k == 0 ? a : b;
-    const Mat3 to_body = q.R[place.body].transpose();
-    T(4 * k, 4 * k) = 1;
-    T.block<1, 3>(4 * k, 4 * k + 1) = (to_body * (place.at - q.c[place.body])).transpose();
-    T.block<3, 3>(4 * k + 1, 4 * k + 1) = (to_body * place.frame).transpose();
+  cell.body = {a.body, b.body};
+  for (int e = 0; e < 2; ++e) {
+    const SectionPlace& place = e == 0 ? a : b;
+    const Mat3 to_body = q.R[place.body].transpose(), axes = to_body * place.frame;
+    const Vec3 arm = to_body * (place.at - q.c[place.body]);
+    std::copy_n(arm.data(), 3, cell.arc.arm[e].v);
+    for (int i = 0; i < 3; ++i) std::copy_n(axes.data() + 3 * i, 3, cell.arc.axis[e][i].v);
   }
-  cell.M = T.transpose() * linked_mass(section, cell.law->length()) * T;
-  cell.sections = T;
-  cell.line = line_shares(section, cell.law->length());
+  cell.arc.law = arc_stiffness(measures_of(cell, q), section.C);
+  cell.arc.alpha = alpha, cell.arc.beta = beta, cell.size = section.size;
+  set_linked_mass(section, cell.arc.law.length, cell.arc);
+  cell.line = line_shares(section, cell.arc.law.length);
   cells.push_back(std::move(cell));
+}
+
+void Beams::prepare() {
+  std::vector<int> own, all;
+  for (size_t k = 0; k < cells.size(); ++k) {
+    all.push_back(static_cast<int>(k));
+    if (points_.counts(all.back())) own.push_back(all.back());
+  }
+  own_ = packed(own);
+  if (own.size() < all.size()) all_ = packed(all);
+}
+
+Beams::Lanes Beams::packed(const std::vector<int>& list) const {
+  constexpr size_t n = sizeof(arc::ArcCell<double>) / sizeof(double);
+  Lanes out;
+  out.kernel = arc_kernel();
+  out.cell = list;
+  const auto W = static_cast<size_t>(out.kernel.width);
+  while (out.cell.size() % W > 0) out.cell.push_back(-1);
+  out.data.resize((out.cell.size() * n + 7) / 8);
+  for (size_t slot = 0; slot < out.cell.size(); ++slot) {
+    const BeamCell& cell = cells[out.cell[slot] >= 0 ? out.cell[slot] : list.back()];
+    out.bodies.push_back(cell.body);
+    out.has_beta = out.has_beta || cell.arc.beta > 0;
+    out.has_alpha = out.has_alpha || cell.arc.alpha > 0;
+    const double* from = reinterpret_cast<const double*>(&cell.arc);
+    double* to = out.data.front().v + slot / W * W * n + slot % W;
+    for (size_t i = 0; i < n; ++i) to[i * W] = from[i];
+  }
+  return out;
 }
 
 std::string Beams::count() const {
@@ -136,7 +231,7 @@ std::string Beams::count() const {
 
 void Beams::number(Layout& layout) {
   clique_.clear();
-  for (const BeamCell& cell : cells) clique_.push_back(layout.cliques.add(blocks_of_ends(points_, cell.ends)));
+  for (const BeamCell& cell : cells) clique_.push_back(layout.cliques.add(blocks_of_ends(points_, connector_of(cell))));
 }
 
 std::vector<Beams::LineForces> Beams::line_forces(const Stage& s) const {
@@ -148,131 +243,166 @@ std::vector<Beams::LineForces> Beams::line_forces(const Stage& s) const {
       const BeamCell& cell = cells[l.first + k];
       const auto& [a, b] = l.at[k];
       if (!l.load.follower) {
-        out[l.first + k].F += factor * cell.sections.transpose() *
-                              ((cell.line[0] + cell.line[1]) * a.transpose() + (cell.line[1] + cell.line[2]) * b.transpose());
+        out[l.first + k].F += factor * ((cell.line[0] + cell.line[1]) * a.transpose() + (cell.line[1] + cell.line[2]) * b.transpose());
         continue;
       }
-      BeamCell::Mass of_directors = BeamCell::Mass::Zero();  // (p_A (1 - t) + p_B t) along directors that are linear between the ends
-      for (int i = 0; i < 3; ++i) {
-        of_directors.col(1 + i) = a[i] * cell.line[0] + b[i] * cell.line[1];
-        of_directors.col(5 + i) = a[i] * cell.line[1] + b[i] * cell.line[2];
+      for (int i = 0; i < 3; ++i) {  // (p_A (1 - t) + p_B t) along directors that are linear between the ends
+        out[l.first + k].K.col(1 + i) += factor * (a[i] * cell.line[0] + b[i] * cell.line[1]);
+        out[l.first + k].K.col(5 + i) += factor * (a[i] * cell.line[1] + b[i] * cell.line[2]);
       }
-      out[l.first + k].K += factor * cell.sections.transpose() * of_directors * cell.sections;
     }
   }
   return out;
 }
 
-void Beams::evaluate(Pass& p) const {
-  thread_local ConnectorGradient left, right;
-  const Stage& s = p.s;
-  const std::vector<LineForces> line = p.loads ? line_forces(s) : std::vector<LineForces>{};
-  for (size_t k = 0; k < cells.size(); ++k) {
-    if (!points_.counts(static_cast<int>(k))) continue;
-    const BeamCell& cell = cells[k];
-    const Connector& c = cell.ends;
-    gradient(c, *s.left, left);
-    Response elastic, viscous, before;
-    respond(cell, s, elastic, viscous, before);
-    double force[max_measures];
-    for (int m = 0; m < max_measures; ++m) force[m] = elastic.s[m] + viscous.s[m];
-    add_force(p, c, left, force);
-
-    Rows F = forces_of_mass(cell, s, points_.gravity);
-    const Rows at_left = rows_of(*s.left, c);
-    if (!line.empty()) F -= line[k].F + line[k].K * at_left;
-    for (int e = 0; e < 2; ++e) {
-      Vec6& body = p.body[c.end[e].body];
-      body.head<3>() += row(F, 4 * e);
-      for (int i = 4 * e + 1; i < 4 * e + 4; ++i) body.tail<3>() += row(at_left, i).cross(row(F, i));
-      p.scale(row(F, 4 * e).norm());
-    }
-    if (!p.K) continue;
-    ConnectorMatrix K = ConnectorMatrix::Zero(12, 12);
-    const auto add_slope = [&](const Config& at, double f, const Response& response) {
-      if (f == 0) return;
-      gradient(c, at, *s.end, right);
-      const Eigen::Matrix<double, 7, 7> D =
-          Eigen::Map<const Eigen::Matrix<double, max_measures, max_measures, Eigen::RowMajor>>(response.D.front().data())
-              .topLeftCorner<7, 7>();
-      K += f * left.G.topLeftCorner<7, 12>().transpose() * D * right.G.topLeftCorner<7, 12>();
-    };
-    if (s.h > 0) add_slope(*s.w0, s.slope0(), before), add_slope(*s.w1, s.slope1(), viscous);
-    add_slope(*s.e1, s.chain, elastic);
-    add_geometric(c, left, right, force, s.slope, K);
-
-    BeamCell::Mass slope = (s.mass_slope + (s.v ? cell.alpha * s.alpha_slope : 0)) * cell.M;
-    if (!line.empty()) slope -= s.slope * line[k].K;
-    const Rows at_end = rows_of(*s.end, c);
-    for (int a = 0; a < 8; ++a) {
-      const bool turns_a = a % 4 > 0;
-      const Mat3 lever = turns_a ? skew(row(at_left, a)) : Mat3::Identity();
-      const int row_a = 6 * (a / 4) + (turns_a ? 3 : 0);
-      for (int b = 0; b < 8; ++b) {
-        const bool turns_b = b % 4 > 0;
-        const int column = 6 * (b / 4) + (turns_b ? 3 : 0);
-        if (slope(a, b) == 0) continue;
-        if (turns_b)
-          K.block<3, 3>(row_a, column) -= slope(a, b) * lever * skew(row(at_end, b));
-        else
-          K.block<3, 3>(row_a, column) += slope(a, b) * lever;
+template <class Use>
+void Beams::each_cell(const Stage& s, const std::vector<LineForces>& line, bool with_tangent, bool on_all, const Use& use) const {
+  const Lanes& lanes = on_all && !all_.cell.empty() ? all_ : own_;
+  if (lanes.cell.empty()) return;
+  thread_local std::vector<Line> scratch;
+  const int W = lanes.kernel.width;
+  Poses poses;
+  const std::vector<StagePair> pairs = pairs_of(s, lanes.has_beta);
+  const bool known = !s.rates_alone && s.step;  // the first pair's forces, by stages that share a step
+  const bool drags = s.v && lanes.has_alpha;
+  poses.slot(s.left), poses.slot(s.end), poses.slot(s.a);
+  if (drags) poses.slot(s.v);
+  for (const StagePair& pair : pairs) {
+    poses.slot(pair.q1);
+    if (pair.of.s == nullptr) poses.slot(pair.q0);
+    if (pair.of.recall[0] != 0 || pair.of.recall[1] != 0) poses.slot(s.dissipation->one), poses.slot(s.dissipation->two);
+  }
+  constexpr size_t n_f = 12, n_scale = 4, n_K = 144, n_s = ArcLaw::n_measures, n_D = n_s * n_s, n_line = 24 + 64;
+  const size_t n_poses = 24 * poses.size();
+  scratch.resize((n_poses + n_f + n_scale + n_K + n_s + n_D + n_line) * static_cast<size_t>(W) / 8 + 1);
+  double *gathered = scratch.front().v, *f = gathered + n_poses * W, *scale2 = f + n_f * W, *K = scale2 + n_scale * W,
+         *forces = K + n_K * W, *slopes = forces + n_s * W, *line_F = slopes + n_D * W, *line_K = line_F + 24 * W;
+  const auto pose = [&](const Config* q) { return gathered + 24 * poses.slot(q) * W; };
+  ArcCall call{};
+  call.left = pose(s.left), call.end = pose(s.end), call.a = pose(s.a), call.v = drags ? pose(s.v) : nullptr;
+  for (int i = 0; i < 3; ++i) call.gravity[i] = points_.gravity[i] * s.load_factor;
+  call.slope = s.slope, call.mass_slope = s.mass_slope, call.alpha_slope = s.v ? s.alpha_slope : 0;
+  for (const StagePair& pair : pairs) {
+    ArcCall::Pair& of = call.pairs[call.n_pairs++] = pair.of;
+    of.q0 = pose(pair.q0), of.q1 = pose(pair.q1);
+    if (of.recall[0] != 0 || of.recall[1] != 0) of.past[0] = pose(s.dissipation->one), of.past[1] = pose(s.dissipation->two);
+  }
+  if (known) call.pairs[0].s = forces, call.pairs[0].D = slopes;
+  if (!line.empty()) call.line_F = line_F, call.line_K = line_K;
+  call.f = f, call.scale2 = scale2, call.K = with_tangent ? K : nullptr;
+  constexpr size_t n = sizeof(arc::ArcCell<double>) / sizeof(double);
+  for (size_t first = 0; first < lanes.cell.size(); first += W) {
+    poses.gather(lanes.bodies.data() + first, W, gathered);
+    const int* cell = lanes.cell.data() + first;
+    for (int l = 0, k = 0; l < W && (known || !line.empty()); ++l) {
+      k = cell[l] >= 0 ? cell[l] : k;
+      if (known) {
+        Response r;
+        elastic_along(ArcLaw(cells[k].arc.law, cells[k].arc.beta), MeasurePath(connector_of(cells[k]), *s.step), *s.step, s.member, r);
+        for (size_t i = 0; i < n_s; ++i) {
+          forces[i * W + l] = r.s[i];
+          for (size_t j = 0; j < n_s; ++j) slopes[(i * n_s + j) * W + l] = r.D[i][j];
+        }
       }
-      if (turns_a) K.block<3, 3>(row_a, row_a) += s.slope * skew(row(F, a)) * skew(row(at_end, a));
+      if (line.empty()) continue;
+      for (int i = 0; i < 24; ++i) line_F[i * W + l] = line[k].F.data()[i];
+      for (int i = 0; i < 64; ++i) line_K[i * W + l] = line[k].K.data()[i];
     }
-    add_clique(p, points_, c, clique_[k], K, {});
+    call.cells = lanes.data.front().v + first * n;
+    lanes.kernel.call(call);
+    for (int l = 0; l < W; ++l)
+      if (cell[l] >= 0) use(cell[l], Found{W, f + l, scale2 + l, K + l});
   }
 }
 
+void Beams::evaluate(Pass& p) const {
+  const Stage& s = p.s;
+  const std::vector<LineForces> line = p.loads ? line_forces(s) : std::vector<LineForces>{};
+  each_cell(s, line, p.K != nullptr, false, [&](int k, const Found& found) {
+    int kept[12], n = 0;  // rows of bodies that are free
+    for (int e = 0; e < 2; ++e) {
+      const int body = cells[k].body[e];
+      for (int i = 0; i < 6; ++i) p.body[body][i] += found.f[(6 * e + i) * found.width];
+      if (points_.body_block[body] >= 0)
+        for (int i = 0; i < 6; ++i) kept[n++] = 6 * e + i;
+    }
+    double largest = found.scale2[0];
+    for (int i = 1; i < 4; ++i) largest = std::max(largest, found.scale2[i * found.width]);
+    p.scale(std::sqrt(largest));
+    if (!p.K) return;
+    double dense[144];
+    if (n == 12)
+      for (int i = 0; i < 144; ++i) dense[i] = found.K[i * found.width];
+    else
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) dense[i * n + j] = found.K[(12 * kept[i] + kept[j]) * found.width];
+    p.K->add(clique_[k], dense);
+  });
+}
+
 void Beams::add_energy(const Config& q, const Config& v, Energy& sum) const {
+  arc::SectionPoints<double> weight{};
+  for (const int c : {0, 4})
+    for (int i = 0; i < 3; ++i) weight.y[c][i] = points_.gravity[i];
   for (size_t k = 0; k < cells.size(); ++k) {
     if (!points_.counts(static_cast<int>(k))) continue;
     const BeamCell& cell = cells[k];
-    const auto e = cell.ends.values(q);
-    Response r;
-    cell.law->elastic(e, e, r);
-    sum.elastic += r.energy;
-    const Rows x = rows_of(q, cell.ends), V = rows_of(v, cell.ends), momenta = cell.M * V;
-    sum.kinetic += momenta.cwiseProduct(V).sum() / 2;
-    sum.momentum += row(momenta, 0) + row(momenta, 4);
-    for (int i = 0; i < 8; ++i) sum.angular += row(x, i).cross(row(momenta, i));
-    sum.gravity -= (cell.M * everywhere(points_.gravity)).cwiseProduct(x).sum();
+    const arc::SectionPoints<double> x = points_of(cell, q), V = points_of(cell, v);
+    sum.elastic += arc_energy(cell.arc.law, arc_strain(arc::measures_of(x.y)));
+    const std::array<Vector, 8> momenta = momenta_of(cell, V), weights = momenta_of(cell, weight);
+    Vector angular{};
+    for (int i = 0; i < 8; ++i) {
+      sum.kinetic += dot(momenta[i], V.y[i]) / 2;
+      sum.gravity -= dot(weights[i], x.y[i]);
+      angular = angular + cross(x.y[i], momenta[i]);
+    }
+    sum.momentum += vec3(momenta[0] + momenta[4]);
+    sum.angular += vec3(angular);
   }
 }
 
 void Beams::add_work(const Moment& m, Work& sum) const {
   const Stage& s = m.s;
   const std::vector<LineForces> line = line_forces(s);
+  const bool rates = s.h > 0 && own_.has_beta, drags = s.v && own_.has_alpha;
+  if (line.empty() && !rates && !drags && !s.dissipation) return;
   for (size_t k = 0; k < cells.size(); ++k) {
     if (!points_.counts(static_cast<int>(k))) continue;
     const BeamCell& cell = cells[k];
-    if (!line.empty())
-      sum.external += (line[k].F + line[k].K * rows_of(*s.left, cell.ends))
-                          .cwiseProduct(rows_of(*s.end, cell.ends) - rows_of(s.from(), cell.ends))
-                          .sum();
-    sum.add(s, [&](const Config& from, const Config& to, double last, double before) {
-      Response taken;
-      cell.law->resist(cell.ends.values(from), cell.ends.values(to), 1, recalled(cell, *s.dissipation, from, last, before), taken);
-      return taken.dissipated;
-    });
-    if (s.h > 0) {
-      Response rate;
-      cell.law->viscous(cell.ends.values(*s.w0), cell.ends.values(*s.w1), {s.h}, rate);
-      sum.dissipated += s.share() * rate.dissipated;
+    if (!line.empty()) {
+      const arc::SectionPoints<double> left = points_of(cell, *s.left);
+      std::array<Vector, 8> F;
+      for (int i = 0; i < 8; ++i) {
+        for (int j = 0; j < 3; ++j) F[i][j] = line[k].F(i, j);
+        for (int j = 0; j < 8; ++j) add_to(F[i], line[k].K(i, j), left.y[j]);
+      }
+      sum.external += work(F, points_of(cell, s.from()), points_of(cell, *s.end));
     }
-    if (s.v && cell.alpha > 0)
+    sum.add(s, [&](const Config& from, const Config& to, double last, double before) {
+      return arc_taken(cell.arc.law, strain_of(cell, from), strain_of(cell, to), recalled(cell, *s.dissipation, from, last, before));
+    });
+    if (rates && cell.arc.beta > 0)
       sum.dissipated +=
-          cell.alpha * (cell.M * rows_of(*s.v, cell.ends)).cwiseProduct(rows_of(*s.end, cell.ends) - rows_of(s.from(), cell.ends)).sum();
+          s.share() * cell.arc.beta / s.h * arc_taken(cell.arc.law, strain_of(cell, *s.w0), strain_of(cell, *s.w1), ArcStrain::Zero());
+    if (drags && cell.arc.alpha > 0)
+      sum.dissipated += cell.arc.alpha * work(momenta_of(cell, points_of(cell, *s.v)), points_of(cell, s.from()), points_of(cell, *s.end));
   }
 }
 
 double Beams::inertia(int body, const Config& v, const Vec3& w, const Mat3& W) const {
   double sum = 0;
+  arc::BodyPose<double> of_w[2];
+  for (int e = 0; e < 2; ++e) {
+    std::copy_n(w.data(), 3, of_w[e].c.v);
+    for (int i = 0; i < 3; ++i) std::copy_n(W.data() + 3 * i, 3, of_w[e].R[i].v);
+  }
   for (const BeamCell& cell : cells)
     for (int e = 0; e < 2; ++e)
-      if (cell.ends.end[e].body == body) {
-        const Rows F = cell.M * rows_of(v, cell.ends);
-        sum += row(F, 4 * e).dot(w);
-        for (int i = 0; i < 3; ++i) sum += row(F, 4 * e + 1 + i).dot(W.col(i));
+      if (cell.body[e] == body) {
+        const std::array<Vector, 8> F = momenta_of(cell, points_of(cell, v));
+        arc::SectionPoints<double> rates;
+        arc::points_of(cell.arc, of_w, rates);
+        for (int i = 4 * e; i < 4 * e + 4; ++i) sum += dot(F[i], rates.y[i]);
       }
   return sum;
 }
@@ -280,7 +410,7 @@ double Beams::inertia(int body, const Config& v, const Vec3& w, const Mat3& W) c
 std::string Beams::fault(const Config& q) const {
   for (const Beam& beam : beams)
     for (int k = 0; k < beam.n_cells; ++k)
-      if (const double turn = ArcLaw::turn(cells[beam.first + k].ends.values(q)); !(turn < ArcLaw::largest_turn))
+      if (const double turn = ArcLaw::turn(measures_of(cells[beam.first + k], q)); !(turn < ArcLaw::largest_turn))
         return fmt::format("beam \"{}\" turns by {:.3g} rad in its cell {}, more than {}: give it more cells", beam.name, turn, k,
                            ArcLaw::largest_turn);
   return "";
@@ -296,34 +426,26 @@ std::vector<Output> Beams::outputs() const {
 /// on from cell to cell.
 void Beams::observe(const Sight& sight) {
   if (!sight.step) return;
-  ConnectorGradient g;
   const Stage& s = sight.step->s;
-  std::vector<double>& out = sight.mid;
-  const std::vector<LineForces> line = line_forces(s);
-  for (size_t k = 0; k < cells.size(); ++k) {
-    const BeamCell& cell = cells[k];
-    gradient(cell.ends, *s.left, g);
-    Response elastic, viscous, before;
-    respond(cell, s, elastic, viscous, before);
-    Rows F = forces_of_mass(cell, s, points_.gravity);
-    const Rows at = rows_of(*s.left, cell.ends);
-    if (!line.empty()) F -= line[k].F + line[k].K * at;
+  const size_t first = sight.mid.size();
+  sight.mid.resize(first + 12 * cells.size());
+  each_cell(s, line_forces(s), false, true, [&](int k, const Found& found) {
+    double* out = sight.mid.data() + first + 12 * static_cast<size_t>(k);
+    const arc::SectionPoints<double> at = points_of(cells[k], *s.left);
     for (int end = 0; end < 2; ++end) {
-      Vec6 f = Vec6::Zero();
-      for (int m = 0; m < ArcLaw::n_measures; ++m) f += (elastic.s[m] + viscous.s[m]) * g.G.block<1, 6>(m, 6 * end).transpose();
-      f.head<3>() += row(F, 4 * end);
-      for (int i = 4 * end + 1; i < 4 * end + 4; ++i) f.tail<3>() += row(at, i).cross(row(F, i));
-      f.tail<3>() -= g.arm[end].cross(f.head<3>().eval());
+      Vector F, M;
+      for (int i = 0; i < 3; ++i) F[i] = found.f[(6 * end + i) * found.width], M[i] = found.f[(6 * end + 3 + i) * found.width];
+      M = M - cross(at.arm[end], F);
       const double side = end == 0 ? -1 : 1;
-      for (const bool moment : {false, true})
-        for (int i = 1; i < 4; ++i) out.push_back(side * g.y[end + 2 * i].dot(moment ? f.tail<3>() : f.head<3>()));  // d1, d2, d3
+      for (const Vector& f : {F, M})
+        for (int i = 1; i < 4; ++i) *out++ = side * dot(at.y[4 * end + i], f);  // d1, d2, d3
     }
-  }
+  });
 }
 
 void Beams::tie(Ties& ties) const {
   for (const BeamCell& cell : cells)
-    if (const int body = tie_ends(points_, cell.ends, ties); body >= 0) ties.exclude(body);
+    if (const int body = tie_ends(points_, connector_of(cell), ties); body >= 0) ties.exclude(body);
 }
 
 }  // namespace hilo

@@ -5,9 +5,11 @@
 // momenta: along the axis  c = (1 - t + g) c_A + (t - g) c_B + L (t - t^2)/2 (d3A - d3B) + L g/2 (d3A + d3B)  with
 // g = (2 t^3 - 3 t^2 + t)/(1 + Phi), Phi = 12 EI/(GA L^2); of d1 and d2 the mean of a consistent and a lumped one.
 #pragma once
-#include <memory>
+#include <array>
+#include <vector>
 
 #include "physics/beam_arc.hpp"
+#include "physics/beam_cell.hpp"
 #include "physics/beam_section.hpp"
 #include "physics/section_mesh.hpp"
 #include "system/contribution.hpp"
@@ -16,15 +18,11 @@
 namespace hilo {
 
 struct BeamCell {
-  using Mass = Eigen::Matrix<double, 8, 8>;  // of c, R e_1, R e_2, R e_3 of the bodies at both ends
-  Connector ends;
-  std::unique_ptr<ArcLaw> law;
-  Mass M = Mass::Zero();  // [kg, kg m, kg m^2]
-  Mass sections;          // c, d1, d2, d3 of both sections from these points
+  std::array<int, 2> body{};
+  arc::ArcCell<double> arc;
   /// int u (1 - t)^2 ds, int u t (1 - t) ds, int u t^2 ds, u the shares of the points of the sections in a point at t [m, m^2]
   std::array<Eigen::Matrix<double, 8, 1>, 3> line;
-  double alpha = 0;  // mass-proportional damping [1/s]
-  double size = 0;   // of the section [m]
+  double size = 0;  // of the section [m]
 };
 
 struct Beam {
@@ -66,6 +64,7 @@ class Beams final : public Contribution, public Equations, public Stateful, publ
 
   Traits traits() const override { return {.deforms = !cells.empty(), .has_rates = !cells.empty()}; }
   std::string count() const override;
+  void prepare() override;
   void number(Layout& layout) override;
   void evaluate(Pass& p) const override;
   void add_energy(const Config& q, const Config& v, Energy& sum) const override;
@@ -76,13 +75,36 @@ class Beams final : public Contribution, public Equations, public Stateful, publ
   void tie(Ties& ties) const override;
 
  private:
-  /// What loads by length exert on the points of a cell: F + K x, of the points x.
+  /// What loads by length exert on the points of a cell's sections: F + K y, of the points y.
   struct LineForces {
-    Eigen::Matrix<double, 8, 3> F = Eigen::Matrix<double, 8, 3>::Zero();
-    BeamCell::Mass K = BeamCell::Mass::Zero();
+    Eigen::Matrix<double, 8, 3, Eigen::RowMajor> F = Eigen::Matrix<double, 8, 3, Eigen::RowMajor>::Zero();
+    Eigen::Matrix<double, 8, 8, Eigen::RowMajor> K = Eigen::Matrix<double, 8, 8, Eigen::RowMajor>::Zero();
   };
   /// On each cell; empty without such loads.
   std::vector<LineForces> line_forces(const Stage& s) const;
+  /// What the kernel found of a cell, one number in every `width`: see ArcCall.
+  struct Found {
+    int width;
+    const double *f, *scale2, *K;
+  };
+  /// Calls use(cell, found) for the cells of this rank, or for all.
+  template <class Use>
+  void each_cell(const Stage& s, const std::vector<LineForces>& line, bool with_tangent, bool on_all, const Use& use) const;
+
+  /// A cache line.
+  struct alignas(64) Line {
+    double v[8];
+  };
+  /// Cells as the kernel takes them, `width` at once, filled up by the last.
+  struct Lanes {
+    ArcKernel kernel{};
+    std::vector<Line> data;                  // arc::ArcCell of each batch
+    std::vector<std::array<int, 2>> bodies;  // of each lane
+    std::vector<int> cell;                   // of each lane; -1: fills up
+    bool has_beta = false, has_alpha = false;
+  };
+  Lanes packed(const std::vector<int>& list) const;
+  Lanes own_, all_;  // of this rank; of all, where these are more: what a lane rounds may depend on its neighbours
   const Points& points_;
   std::vector<int> clique_;
 };

@@ -124,7 +124,7 @@ std::unique_ptr<System> Builder::build() {
     Eigen::AlignedBox3d box;
     for (size_t b = 1; b < out_->bodies.size(); ++b) box.extend(out_->bodies[b].Xc);
     for (const BeamCell& cell : out_->part<Beams>().cells)
-      for (int e = 0; e < 2; ++e) box.extend(Vec3(out_->bodies[cell.ends.end[e].body].Xc + cell.ends.entities[e].r));
+      for (int e = 0; e < 2; ++e) box.extend(Vec3(out_->bodies[cell.body[e]].Xc + Eigen::Map<const Vec3>(cell.arc.arm[e].v)));
     for (const Joint& j : out_->part<Joints>())
       for (const Entity& e : j.entities)
         if (e.point && j.end[e.end].body >= 0) box.extend(Vec3(out_->bodies[j.end[e.end].body].Xc + e.r));

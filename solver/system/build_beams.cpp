@@ -133,7 +133,7 @@ void Builder::add_beams() {
                  fmt::format("\"{}\" is a linear region: it has no single position", body.name), "a set of its nodes");
       beams.add_cell({plan.line.at[k], cell.frame_a, plan.body[k]}, {plan.line.at[k + 1], cell.frame_b, plan.body[k + 1]}, section,
                      e.number("damping"), e.number("mass_damping"));
-      const double L = beams.cells.back().law->length();
+      const double L = beams.cells.back().arc.law.length;
       out_->mass += section.mass * L;
       out_->stiffness = std::max(out_->stiffness, section.C(2, 2) / L);
     }

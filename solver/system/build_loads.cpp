@@ -26,7 +26,7 @@ void Builder::add_line_load(const Entry& e, const Load& load) {
     names.push_back(beam.name);
     if (fnmatch(on.c_str(), beam.name.c_str(), 0) != 0) continue;
     std::vector<double> sections{0};
-    for (int k = 0; k < beam.n_cells; ++k) sections.push_back(sections.back() + beams.cells[beam.first + k].law->length());
+    for (int k = 0; k < beam.n_cells; ++k) sections.push_back(sections.back() + beams.cells[beam.first + k].arc.law.length);
     const auto section = [&](const char* key, size_t otherwise) {
       if (!e.has(key)) return otherwise;
       const double s = e.number(key), whole = sections.back();

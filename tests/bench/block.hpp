@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "../model/block.hpp"
+#include "base/shell_shape.hpp"
 #include "physics/solid_kernel.hpp"
 #include "system/solids.hpp"
 #include "system/system.hpp"
@@ -44,6 +45,9 @@ inline std::vector<std::array<Vec3, 4>> cells_of_cube(int n_corners) {
   return out;
 }
 
+/// Nodes of the reference cell; those of a shell lie as in hex8.
+inline std::vector<Vec3> reference_nodes(Shape shape) { return test::reference_nodes(shape == shell8 ? Shape::hex8 : shape); }
+
 inline const Material laws[] = {StVenantKirchhoff{lame(1e9, 0.3)}, NeoHookean{lame(1e9, 0.3)}};
 
 /// n x n x n cubes filled with cells of one shape and law, as a system.
@@ -53,7 +57,7 @@ struct Block {
   Block(Shape shape, const Material& law, int n) {
     SolidBatch b{};
     b.shape = shape, b.material = law, b.density = 1000, b.area = 0.1, b.kernel = solid_kernel(shape, law.index());
-    const auto reference = test::reference_nodes(shape);
+    const auto reference = reference_nodes(shape);
     std::map<std::tuple<int, int, int>, int> node;  // by twice the position
     for (int k = 0; k < n; ++k)
       for (int j = 0; j < n; ++j)

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The solid kernels and their assembly against what one core can do.  By shape and material, microseconds per cell: force alone, tangent
-// and force, the same with its insertion into the light solver's matrix; flops of the tangent and force, counted by running the kernel on
-// numbers that count; fractions of the peak of fused multiply-adds in the same vectors and of the memory bandwidth, both measured here.
-// HILO_LANES=2|4 asks for narrower vectors; an argument names the only shape.
+// The kernels of solids, shells and beams and their assembly against what one core can do.  By shape and material, microseconds per cell:
+// force alone, tangent and force, the same with its insertion into the light solver's matrix; flops of the tangent and force, counted by
+// running the kernel on numbers that count; fractions of the peak of fused multiply-adds in the same vectors and of the memory bandwidth,
+// both measured here. HILO_LANES=2|4 asks for narrower vectors; an argument names the only shape.
 #include <fmt/format.h>
 
+#include "base/shell_shape.hpp"
 #include "block.hpp"
+#include "physics/beam_cell.hpp"
 #include "physics/solid_kernel_lanes.hpp"
+#include "system/beams.hpp"
 
 namespace hilo {
 
@@ -94,7 +97,7 @@ struct Cell {
     return reinterpret_cast<double*>((reinterpret_cast<std::uintptr_t>(v.data()) + 63) / 64 * 64);
   }
   Cell(Shape shape, const Material& law, int W) {
-    const auto nodes = test::reference_nodes(shape);
+    const auto nodes = reference_nodes(shape);
     const size_t n3 = 3 * nodes.size();
     for (auto* v : {&X, &x1, &f, &a}) v->assign(n3 * W + 8, 1);
     K.resize(n3 * n3 * W + 8), least.resize(W + 8);
@@ -107,6 +110,18 @@ struct Cell {
 struct Machine {
   double peak, triad;
 };
+
+void print_row(std::string_view name, std::string_view law, double force, double both, double flops, const System& system, double cells,
+               double bytes, const Machine& machine) {
+  const auto solver = make_light_solver();
+  solver->structure(system.layout.cliques, system.layout.map);
+  AtRest r(system);
+  const double assembled = microseconds(3, [&] { system.evaluate(r.stage, r.lambda, r.residual, solver.get()); }) / cells;
+  const double residual = microseconds(1, [&] { system.evaluate(r.stage, r.lambda, r.residual, nullptr); }) / cells;
+  fmt::print("{:8} {:12} {:7.2f} {:7.2f} {:8.1f} {:8.1f} {:5.0f}%  {:8.2f} {:8.2f} {:7.1f} {:7.1f} {:5.0f}%\n", name, law, force, both,
+             flops / 1e3, flops / both / 1e3, 100 * flops / both / machine.peak, residual, assembled, bytes / 1e3, bytes / assembled / 1e3,
+             100 * bytes / assembled / machine.triad);
+}
 
 void measure(Shape shape, const Material& law, int n, const Machine& machine) {
   Cell one(shape, law, 1), cell(shape, law, lanes());
@@ -121,16 +136,82 @@ void measure(Shape shape, const Material& law, int n, const Machine& machine) {
 
   const Block block(shape, law, n);
   const auto cells = static_cast<double>(block.system.part<Solids>().batches[0].cells.size());
-  const auto solver = make_light_solver();
-  solver->structure(block.system.layout.cliques, block.system.layout.map);
-  AtRest r(block.system);
-  const double assembled = microseconds(3, [&] { block.system.evaluate(r.stage, r.lambda, r.residual, solver.get()); }) / cells;
-  const double residual = microseconds(1, [&] { block.system.evaluate(r.stage, r.lambda, r.residual, nullptr); }) / cells;
   // read and written: blocks of the matrix; read: their places, four vectors of each node and its number; twice: nodal forces
   const double nodes = info(shape).n_nodes, bytes = nodes * nodes * (2 * 72 + 4) + nodes * (4 * 24 + 4 + 2 * 24);
-  fmt::print("{:8} {:12} {:7.2f} {:7.2f} {:8.1f} {:8.1f} {:5.0f}%  {:8.2f} {:8.2f} {:7.1f} {:7.1f} {:5.0f}%\n", info(shape).name,
-             kind_of(law).name, force, both, flops / 1e3, flops / both / 1e3, 100 * flops / both / machine.peak, residual, assembled,
-             bytes / 1e3, bytes / assembled / 1e3, 100 * bytes / assembled / machine.triad);
+  print_row(info(shape).name, kind_of(law).name, force, both, flops, block.system, cells, bytes, machine);
+}
+
+/// Straight beams along a helix of bodies, of which the first is fixed.
+struct Frame {
+  System system;
+  explicit Frame(int n) {
+    system.comm = &Comm::world();
+    for (int k = 0; k <= n; ++k) {
+      Body section;
+      section.ground = k == 0, section.size = 0.1;
+      system.bodies.push_back(section);
+      const double turn = 0.05 * k;
+      Mat3 R;
+      R.col(2) = Vec3(-std::sin(turn), std::cos(turn), 0.2).normalized();
+      R.col(0) = Vec3(std::cos(turn), std::sin(turn), 0), R.col(1) = R.col(2).cross(R.col(0));
+      system.start.c.push_back(Vec3(2 * std::cos(turn), 2 * std::sin(turn), 0.4 * turn)), system.start.R.push_back(R);
+      system.bodies.back().Xc = system.start.c.back();
+    }
+    BeamSection tube;
+    tube.C.setZero();
+    tube.C.diagonal() << 2e7, 2e7, 1e8, 5e4, 5e4, 4e4;
+    tube.mass = 4, tube.J11 = tube.J22 = 2e-3;
+    Beams& beams = system.add<Beams>(system);
+    for (int k = 0; k < n; ++k)
+      beams.add_cell({system.start.c[k], system.start.R[k], k}, {system.start.c[k + 1], system.start.R[k + 1], k + 1}, tube, 0, 0);
+    system.prepare();
+  }
+};
+
+void measure_beams(int n, const Machine& machine) {
+  const auto call_of = [](const auto& cells, const auto& q0, const auto& q1, auto& out) {
+    ArcCall call{};
+    call.cells = cells.data(), call.left = q0.data(), call.end = q1.data(), call.a = q1.data();
+    call.slope = 0.5, call.mass_slope = 1e6, call.n_pairs = 1;
+    call.pairs[0].q0 = q0.data(), call.pairs[0].q1 = q1.data(), call.pairs[0].elastic = 1;
+    call.f = out.data(), call.scale2 = out.data() + 16 * 8, call.K = out.data() + 32 * 8;
+    return call;
+  };
+  const Frame frame(n);
+  const Beams& beams = frame.system.part<Beams>();
+  struct alignas(64) Line {
+    double v[8];
+  };
+  const ArcKernel kernel = arc_kernel();
+  constexpr size_t n_cell = sizeof(arc::ArcCell<double>) / sizeof(double);
+  const auto W = static_cast<size_t>(kernel.width);
+  std::vector<Line> cells(n_cell), q0(24), q1(24), out(200);
+  double* const lanes[] = {cells.front().v, q0.front().v, q1.front().v};
+  for (size_t l = 0; l < W; ++l)
+    for (size_t i = 0; i < n_cell; ++i) lanes[0][i * W + l] = reinterpret_cast<const double*>(&beams.cells[l].arc)[i];
+  for (size_t l = 0; l < W; ++l)
+    for (int e = 0; e < 2; ++e)
+      for (size_t i = 0; i < 12; ++i) {
+        const double x = i < 3 ? frame.system.start.c[l + e][i] : frame.system.start.R[l + e].data()[i - 3];
+        lanes[1][(12 * e + i) * W + l] = x, lanes[2][(12 * e + i) * W + l] = x * (i < 3 ? 1 + 1e-3 * e : 1);
+      }
+  std::vector<double> one(n_cell), p0(24), p1(24), f(2000);
+  for (size_t i = 0; i < n_cell; ++i) one[i] = lanes[0][i * W];
+  for (size_t i = 0; i < 24; ++i) p0[i] = lanes[1][i * W], p1[i] = lanes[2][i * W];
+  Counted::flops = 0;
+  arc::run<Counted>(call_of(one, p0, p1, f));
+  const auto flops = static_cast<double>(Counted::flops);
+  struct View {
+    double* at;
+    double* data() const { return at; }
+  };
+  View result{out.front().v};
+  ArcCall call = call_of(View{lanes[0]}, View{lanes[1]}, View{lanes[2]}, result);
+  const double both = microseconds(20000, [&] { kernel.call(call); }) / kernel.width;
+  call.K = nullptr;
+  const double force = microseconds(50000, [&] { kernel.call(call); }) / kernel.width;
+  // as above, with four configurations of two bodies and what a cell has
+  print_row("beam", "", force, both, flops, frame.system, n, 16 * (2 * 72 + 4) + 4 * 192 + n_cell * 8 + 2 * 96, machine);
 }
 
 }  // namespace
@@ -148,7 +229,9 @@ int main(int argc, char** argv) {
                                  {Shape::wedge6, 32},
                                  {Shape::wedge15, 13},
                                  {Shape::hex20, 14},
-                                 {Shape::hex20r, 14}})
+                                 {Shape::hex20r, 14},
+                                 {shell8, 32}})
     for (const Material& law : bench::laws)
-      if (argc < 2 || argv[1] == info(shape).name) measure(shape, law, n, machine);
+      if ((argc < 2 || argv[1] == info(shape).name) && solid_kernel(shape, law.index()).n_state == 0) measure(shape, law, n, machine);
+  if (argc < 2 || argv[1] == std::string_view("beam")) measure_beams(20000, machine);
 }

@@ -7,7 +7,7 @@ whose nodes stand on springs to the ground, so that the displacements are the fo
 
 Total force and moment about the origin are compared, in relation to the area of the face; 1e-4 is what the digits printed leave.  CalculiX
 takes pressure on the quadrangles of C3D6 and C3D8R at one point, so that their moments are those of equal forces at the corners: of these kinds
-the force alone says which face it is."""
+the force alone says which face it is.  A shell has one face, and P1 to P6 of it are P: in CalculiX by its displacements, here by the scene."""
 import os
 import sys
 import tempfile
@@ -46,6 +46,12 @@ def resultant(X, u):
     return np.concatenate([STIFF * u.sum(0), STIFF * np.cross(X, u).sum(0)])
 
 
+def shell(label):
+    return "\n".join(["*NODE, NSET=ALL", "1, 0, 0, 0", "2, 1, 0, 0", "3, 1, 1, 0", "4, 0, 1, 0", "*ELEMENT, TYPE=S4, ELSET=E", "1, 1, 2, 3, 4",
+                      "*BOUNDARY", "1, 1, 6", "4, 1, 6", "*MATERIAL, NAME=M", "*ELASTIC", "1e4, .3", "*SHELL SECTION, ELSET=E, MATERIAL=M", ".1",
+                      "*STEP", "*STATIC", "*DLOAD", f"E, {label}, {PRESSURE:g}", "*NODE PRINT, NSET=ALL", "U", "*END STEP", ""])
+
+
 worst, count = 0.0, 0
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
@@ -63,5 +69,16 @@ with tempfile.TemporaryDirectory() as folder:
             off = abs(a - b).max() / np.linalg.norm(b[:3])
             print(f"{kind:<7} P{face}  {b.round(4)}  off {off:.1e}{'' if off < LIMIT else '  DIFFERS'}")
             worst, count = max(worst, off), count + 1
+    answers, scenes = set(), set()
+    for label in ("P", "P1", "P6"):
+        open("a.inp", "w").write(shell(label))
+        run("ccx", "a")
+        answers.add("".join(line for line in open("a.dat") if len(line.split()) == 4))
+        run(tools + "/hilo-import", "--quiet", "a.inp", "--thicken", "-o", "a.h5", "--scene-out", "a.toml")
+        scenes.add(open("a.toml").read())
+    if len(answers) > 1 or len(scenes) > 1:
+        sys.exit(f"ccx_faces: P, P1 and P6 of a shell: {len(answers)} answers of CalculiX, {len(scenes)} scenes")
+    if "pressure" not in scenes.pop():
+        sys.exit("ccx_faces: the pressure of a shell is lost")
 print(f"{count} faces, worst {worst:.1e}")
 sys.exit(0 if worst < LIMIT else 1)

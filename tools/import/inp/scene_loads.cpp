@@ -270,19 +270,27 @@ void InpScene::pressures() {
         set != d_.elset.end() && std::ranges::any_of(set->second.members, [&](auto id) { return d_.beams.contains(id); });
     if (cells.empty() || has_beams) in_.skip("*DLOAD on elements that are no cells", p.place);
     const std::string of_set = p.target.empty() ? std::string() : d_.elset.at(p.target).name + "_P";
-    if (p.face == -3) {  // along the normal of a shell: half of it on each face is that on the middle
+    const auto is_shell = [&](auto c) { return info(in_.mesh.shape[static_cast<size_t>(c)]).dimension == 2; };
+    const auto on_shell = [&](auto c) {  // along its normal: half of it on each face is that on the middle
       const double half = in_.sheets ? 0.5 : 1;
+      add({of_set, "", p.amplitude, p.place, -half * p.value, {}}, {c, 0});
+      if (in_.sheets) add({of_set.empty() ? "" : of_set + "_below", "", p.amplitude, p.place, half * p.value, {}, true}, {c, 0});
+    };
+    if (p.face == -3) {
       for (const auto c : cells) {
-        if (info(in_.mesh.shape[static_cast<size_t>(c)]).dimension != 2)
+        if (!is_shell(c))
           throw Error(p.place, fmt::format("*DLOAD: element {} is no shell", in_.mesh.cell_id[static_cast<size_t>(c)]),
                       "P1 to P6 of a solid");
-        add({of_set, "", p.amplitude, p.place, -half * p.value, {}}, {c, 0});
-        if (in_.sheets) add({of_set.empty() ? "" : of_set + "_below", "", p.amplitude, p.place, half * p.value, {}, true}, {c, 0});
+        on_shell(c);
       }
       continue;
     }
     const Group g{of_set.empty() ? "" : fmt::format("{}{}", of_set, p.face), "", p.amplitude, p.place, p.value, {}};
     for (const auto c : cells) {
+      if (is_shell(c)) {  // CalculiX takes P1 to P6 of a shell as P
+        on_shell(c);
+        continue;
+      }
       if (d_.pyramids.contains(in_.mesh.cell_id[c]))
         throw Error(p.place, fmt::format("*DLOAD: element {} is a pyramid, whose faces by number are not read", in_.mesh.cell_id[c]));
       const int f = inp_facet(static_cast<Shape>(in_.mesh.shape[c]), p.face);
