@@ -20,7 +20,8 @@ std::string compose(const std::string& where, const std::string& what, const std
 
 /// Keys, options and texts of files may hold line breaks.
 std::string one_line(std::string text) {
-  std::ranges::replace_if(text, [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
   return text;
 }
 

@@ -92,18 +92,23 @@ Scene Scene::parse(const std::string& text, const std::string& path, std::span<c
   check_entries(scene.entries_);
   scene.units = around.units;
   scene.warnings = find_implausible(scene.entries_);
+  for (auto& [section, entries] : scene.entries_)  // what was looked at here has had no effect yet
+    for (Entry& e : entries)
+      for (auto& [key, value] : e.values) *value.read = false;
   return scene;
 }
 
 std::vector<std::string> Scene::unread() const {
   std::vector<std::string> out;
   for (const auto& [section, entries] : entries_) {
-    if (is_single_section(section)) continue;  // of other analyses
+    // [time] has keys of other analyses, a material those of other fidelities; quantities are asked for when the run is over
+    if (!is_list_section(section) || section == "quantity") continue;
     for (const Entry& e : entries) {
       const auto is_read = [](const auto& v) { return *v.second.read; };
       if (std::none_of(e.values.begin(), e.values.end(), is_read)) continue;
       for (const auto& [key, value] : e.values)
-        if (value.given && !*value.read && key != "kind" && key != "name") out.push_back(fmt::format("{}: {}: {} has no effect here", value.place.text(), e.label(), key));
+        if (value.given && !*value.read && key != "kind" && key != "name")
+          out.push_back(fmt::format("{}: {}: {} has no effect here", value.place.text(), e.label(), key));
     }
   }
   return out;

@@ -32,7 +32,7 @@ struct Value {
   std::vector<std::string> texts;  // a text is a list of one
   std::optional<bool> boolean;
   std::optional<History> history;
-  bool given = true;  // false: the default is in force
+  bool given = true;                                           // false: the default is in force
   std::shared_ptr<bool> read = std::make_shared<bool>(false);  // whether its value was asked for, of a copy too
 };
 
@@ -84,7 +84,8 @@ class Scene {
   std::string explain() const;
   /// The same as "section.name.key = value", values in full, of tables and files that they name their digests.
   std::vector<std::string> values() const;
-  /// Of entries that something has asked for values: keys that stand in the scene and that nothing has asked for, one line each, with place.
+  /// Of entries that something has asked for values: keys that stand in the scene and that nothing has asked for, one line each, with
+  /// place.
   std::vector<std::string> unread() const;
   /// Entries of each section in the order in which such lines name them, those they do not name last: what is kept goes by this order.
   void put_in_order(std::span<const std::string> values);

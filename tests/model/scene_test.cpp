@@ -229,5 +229,19 @@ TEST_F(Override, ThatCannotBeReadIsAUsageError) {
   }
 }
 
+// Truth: of the load all but `at` was asked for; nobody asked for the other one, or for the table of time.
+TEST_F(SceneText, TellsWhichKeysNothingAskedFor) {
+  const Scene s = load(
+      "[[load]]\nkind = \"force\"\nname = \"f\"\non = \"wheel\"\nforce = [0, 0, 1]\nat = [0, 0, 0]\n"
+      "[[load]]\nkind = \"force\"\nname = \"g\"\non = \"wheel\"\nforce = [0, 0, 1]\n[time]\nend = 1\nstep = 1e-2\n");
+  const Entry copy = s.entries("load")[0];
+  EXPECT_EQ(copy.text("on"), "wheel");
+  EXPECT_EQ(copy.vector3("force"), Vec3(0, 0, 1));
+  EXPECT_TRUE(copy.has("at")) << "this asks for no value";
+  const std::vector<std::string> unread = s.unread();
+  ASSERT_EQ(unread.size(), 1u);
+  EXPECT_EQ(without_folder(unread[0]), "scene.toml:6:1: load \"f\": at has no effect here");
+}
+
 }  // namespace
 }  // namespace hilo::test

@@ -62,7 +62,8 @@ std::int64_t DataLine::integer(size_t field) const {
   if (bad != std::errc()) throw Error(place(field), fmt::format("expected a whole number, found \"{}\"", text(field)));
   if (end == s.data() + s.size()) return n;
   const double x = number(field);  // "3." is read by CalculiX as 3
-  if (x != std::floor(x) || !(std::abs(x) < 1e15)) throw Error(place(field), fmt::format("expected a whole number, found \"{}\"", text(field)));
+  if (x != std::floor(x) || !(std::abs(x) < 1e15))
+    throw Error(place(field), fmt::format("expected a whole number, found \"{}\"", text(field)));
   return static_cast<std::int64_t>(x);
 }
 

@@ -255,7 +255,8 @@ class Vtu {
     else if (section == "Cells") {
       const auto v = values(t);
       const double most = name == "types" ? 255 : 1e15;
-      if (!std::ranges::all_of(v, [&](double x) { return x >= 0 && x <= most; })) fail(fmt::format("{} of a cell are no such numbers", name));
+      if (!std::ranges::all_of(v, [&](double x) { return x >= 0 && x <= most; }))
+        fail(fmt::format("{} of a cell are no such numbers", name));
       if (name == "connectivity") g.connectivity.assign(v.begin(), v.end());
       if (name == "types") g.types.assign(v.begin(), v.end());
       if (name == "offsets") {

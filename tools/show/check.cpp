@@ -75,7 +75,8 @@ std::string check_file(const std::string& path) {
     const auto link = store.linked(fmt::format("/{}", what));
     if (!link) continue;
     const std::string target = resolved_from(path, link->first);
-    if (std::error_code error; !std::filesystem::exists(target, error)) throw Error(path, fmt::format("{} is in {}, which is missing", what, target));
+    if (std::error_code error; !std::filesystem::exists(target, error))
+      throw Error(path, fmt::format("{} is in {}, which is missing", what, target));
     check_file(target);
     const auto then = store.text_attribute("/", what + "_digest");
     if (then && *then != digest(target)) throw Error(path, fmt::format("{} has changed since this file was made", target), "make it again");
