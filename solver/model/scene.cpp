@@ -101,8 +101,9 @@ Scene Scene::parse(const std::string& text, const std::string& path, std::span<c
 std::vector<std::string> Scene::unread() const {
   std::vector<std::string> out;
   for (const auto& [section, entries] : entries_) {
-    // [time] has keys of other analyses, a material those of other fidelities; quantities are asked for when the run is over
-    if (!is_list_section(section) || section == "quantity") continue;
+    // [time] has keys of other analyses, a material those of other fidelities; quantities are asked for when the run is over, and what
+    // import left out is no part of the model
+    if (!is_list_section(section) || section == "quantity" || section == "left_out") continue;
     for (const Entry& e : entries) {
       const auto is_read = [](const auto& v) { return *v.second.read; };
       if (std::none_of(e.values.begin(), e.values.end(), is_read)) continue;
