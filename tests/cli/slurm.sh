@@ -70,12 +70,16 @@ sed 's/-o run.h5/-o alone.h5/g; s/run\./alone./g; s/--time-limit [0-9hms]*//; /s
 began=$SECONDS
 sbatch --wait --output=slurm-alone.out alone.sh > /dev/null || fail "the run by one job ended with $?"
 took=$((SECONDS - began))
-limit=$((took * 2 / 5))s
-sed -i "s/3h50m/$limit/" page.sh
-sbatch page.sh > /dev/null
-for _ in $(seq 300); do [ -z "$(squeue --noheader)" ] && break; sleep 1; done
-jobs=$(ls slurm-[0-9]*.out | wc -l)
-echo "slurm: one job took $took s; with a limit of $limit the run took $jobs jobs"
+for share in 40 20 10; do  # percent: other work may have slowed that one
+  limit=$((took * share / 100 + 1))s
+  rm -f slurm-[0-9]*.out run.*
+  sed "s/3h50m/$limit/; s/page\.sh/limited.sh/" page.sh > limited.sh
+  sbatch limited.sh > /dev/null
+  for _ in $(seq 300); do [ -z "$(squeue --noheader)" ] && break; sleep 1; done
+  jobs=$(ls slurm-[0-9]*.out | wc -l)
+  echo "slurm: one job took $took s; with a limit of $limit the run took $jobs jobs"
+  [ "$jobs" -lt 3 ] || break
+done
 [ "$jobs" -ge 3 ] || fail "it took $jobs jobs, not three or more"
 /usr/bin/python3 - << 'END' || fail "the numbers differ"
 import json
