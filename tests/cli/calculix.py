@@ -149,7 +149,7 @@ def imported(deck, *options):
 
 def solved(more="", small=1.0, *options):
     """Displacements by node at the end of scene.toml and `more`: of loads multiplied by `small`, then divided by it, as ccx answers linearly."""
-    scale = lambda m: m[1] + re.sub(r"[-+.\deE]+", lambda number: repr(float(number[0]) * small), m[2])
+    scale = lambda m: m[1] + re.sub(r"[-+.\deE]+", lambda number: repr(float(float(number[0]) * small)), m[2])
     scene = open("scene.toml").read()
     if small != 1:
         scene = re.sub(r"^((?:force|torque|pressure|gravity|displacement) = )(.*)$", scale, scene, flags=re.M)
