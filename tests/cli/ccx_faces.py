@@ -71,10 +71,10 @@ with tempfile.TemporaryDirectory() as folder:
             worst, count = max(worst, off), count + 1
     answers, scenes = set(), set()
     for label in ("P", "P1", "P6"):
-        open("a.inp", "w").write(shell(label))
-        run("ccx", "a")
+        ccx.write("a.inp", shell(label))
+        ccx.run("ccx", "a")
         answers.add("".join(line for line in open("a.dat") if len(line.split()) == 4))
-        run(tools + "/hilo-import", "--quiet", "a.inp", "--thicken", "-o", "a.h5", "--scene-out", "a.toml")
+        ccx.run("hilo-import", "--quiet", "a.inp", "--thicken", "-o", "a.h5", "--scene-out", "a.toml")
         scenes.add(open("a.toml").read())
     if len(answers) > 1 or len(scenes) > 1:
         sys.exit(f"ccx_faces: P, P1 and P6 of a shell: {len(answers)} answers of CalculiX, {len(scenes)} scenes")
