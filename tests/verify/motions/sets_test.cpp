@@ -47,7 +47,7 @@ TEST_F(Motions, OfASetOfABarThatMovesAlongLeaveItWithoutStress) {
   const std::string along = "[[initial]]\non = [\"bar\"]\nvelocity = [1, 0, 0]\n";
   for (const std::string components : {"", "components = [\"x\"]\n"})
     for (const std::string& kind : integrators()) {
-      if (kind == "gauss") continue;  // no nonlinear regions
+      if (kind == "gauss") continue;  // cells of it: tests/dynamics/gauss_test
       SCOPED_TRACE(kind + components);
       write("scene.toml", steel + moved_root + components + along);
       for (const int ranks : {1, 2}) {
@@ -78,7 +78,7 @@ TEST_F(Motions, ThatHoldTwoComponentsOfNodesHoldThemInTheFirstGuessToo) {
                             probe("root", "xmin") + probe("tip", "xmax") + in_time(0.3, 0.01);
   write("scene.toml", swing);
   for (const std::string& kind : integrators()) {
-    if (kind == "gauss") continue;  // no nonlinear regions
+    if (kind == "gauss") continue;  // cells of it: tests/dynamics/gauss_test
     SCOPED_TRACE(kind);
     const Results r = solved(with(kind), "mesh.h5");
     EXPECT_LT(r.history("probe/tip").col(2).minCoeff(), -0.1);

@@ -167,9 +167,8 @@ TEST(Ties, EveryIntegratorHoldsThem) {
   for (const std::string method : {"mid-point", "bdf2", "generalized-alpha", "bathe", "U0", "V0", "radau", "gauss"}) {
     Case c("ties");
     c.use(bent(Shape::hex8, Shape::hex8, 2));
-    const Ran ran =
-        c.solve("--set time.end=0.04 --set 'time.integrator=\"" + method + "\"'", "run.h5", method == "gauss" ? 2 : 0, "flight");
-    if (ran.exit != 0) continue;
+    const std::string end = method == "gauss" ? "0.01" : "0.04";  // it is slow where no step resolves the waves
+    c.solve("--set time.end=" + end + " --set 'time.integrator=\"" + method + "\"'", "run.h5", 0, "flight");
     const Kept kept(c.results());
     EXPECT_LT(kept.momentum, 1e-9) << method;
   }
