@@ -28,7 +28,7 @@ double tightest(const Scene& scene, const QuantityTolerance& tol) {
   double least = tol.value;
   bool asked = false;
   for (const Entry& q : scene.entries("quantity")) {
-    if (q.kind == "frequency") continue;
+    if (is_of_shapes(q.kind)) continue;
     asked = true;
     const QuantityTolerance own =
         q.has("tolerance") ? parse_tolerance(q.text("tolerance"), unit_of(q).value_or(""), q.where("tolerance")) : tol;

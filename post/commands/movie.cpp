@@ -71,7 +71,7 @@ void run(MovieOptions o) {
   const auto [from, to] = parse_times(o.times, all);
   std::vector<double> times, outputs, seen;
   const double slack = 1e-9 * (to - from), swing = 0.4;  // modes in a second
-  const bool modes = !frames.run().frequencies.empty();
+  const bool modes = !frames.run().shapes.empty();
   for (const Step& s : frames.run().steps)
     if (s.t >= from - slack && s.t <= to + slack) outputs.push_back(s.t);
   if (!frames.run().has_mesh())  // a row for each step is more than the frame of the picture needs

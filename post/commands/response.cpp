@@ -154,7 +154,7 @@ Base::Base(const RunFile& run, const std::vector<std::string>& bases, const Mode
 
 void run(const ResponseOptions& o) {
   const RunFile file(o.run);
-  if (file.frequencies.size() < 2) throw Error(o.run, "holds no modes", "run the scene with time.analysis = \"modes\"");
+  if (file.buckles || file.shapes.size() < 2) throw Error(o.run, "holds no modes", "run the scene with time.analysis = \"modes\"");
   const Modes modes = modes_of(file, o.damping);
   const double highest = std::sqrt(std::max(0.0, *std::max_element(modes.omega2.begin(), modes.omega2.end()))) / (2 * std::numbers::pi);
   const double from = o.from > 0 ? o.from : highest / 1000, to = o.to > 0 ? o.to : highest;

@@ -90,16 +90,18 @@ double rms(const Column& c) {
 }
 
 void evaluate(const Entry& q, RunFile& run, QuantityValue& v) {
-  if (q.kind == "frequency") {
+  if (is_of_shapes(q.kind)) {
+    const bool buckles = q.kind == "load_factor";
     const auto mode = static_cast<size_t>(q.number("mode"));
-    v.of = fmt::format("mode {}", mode);
-    if (run.frequencies.empty()) throw Error(q.where("mode"), "the run is no analysis of modes", "time.analysis = \"modes\"");
-    if (mode >= run.frequencies.size())
-      throw Error(q.where("mode"), fmt::format("{} modes were found", run.frequencies.size() - 1), "raise time.modes");
-    v.value = run.frequencies[mode];  // the first is the state of rest
+    v.of = fmt::format("{} {}", buckles ? "shape" : "mode", mode);
+    if (run.shapes.empty() || run.buckles != buckles)
+      throw Error(q.where("mode"), fmt::format("the run is no analysis of {}", buckles ? "buckling" : "modes"),
+                  fmt::format("time.analysis = \"{}\"", buckles ? "buckling" : "modes"));
+    if (mode >= run.shapes.size()) throw Error(q.where("mode"), fmt::format("{} were found", run.shapes.size() - 1), "raise time.modes");
+    v.value = run.shapes[mode];  // the first is the state of rest
     return;
   }
-  if (!run.frequencies.empty()) throw Error(q.place.text(), "an analysis of modes has no histories in time");
+  if (!run.shapes.empty()) throw Error(q.place.text(), "an analysis of modes or buckling has no histories in time");
   if (q.kind == "injury") {
     v.of = fmt::format("sensor {}: {}", q.text("sensor"), q.text("measure"));
     const Crew crew = crew_of(read_sensors(run.path, {q.text("sensor")}, q.number("cfc")).records.front(), q.number("cfc"));

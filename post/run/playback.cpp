@@ -67,8 +67,10 @@ RunFile::Field Playback::of_mode(double t, const std::string& array, double larg
 
 std::string Playback::caption(double t) const {
   const auto k = static_cast<size_t>(t + 1e-6);
-  if (has_modes() && k < run_.frequencies.size())
-    return k == 0 ? "state of rest" : fmt::format("mode {}, {:.5g} Hz", k, run_.frequencies[k]);
+  if (has_modes() && k < run_.shapes.size())
+    return k == 0         ? "state of rest"
+           : run_.buckles ? fmt::format("shape {}, {:.5g} of the loads", k, run_.shapes[k])
+                          : fmt::format("mode {}, {:.5g} Hz", k, run_.shapes[k]);
   return last() < 1 ? fmt::format("t = {:.3f} ms", 1e3 * t) : fmt::format("t = {:.4f} s", t);
 }
 

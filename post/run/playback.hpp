@@ -21,7 +21,7 @@ class Playback {
 
   RunFile& run() const { return run_; }
   static constexpr double drawn_larger = 6000;
-  bool has_modes() const { return !run_.frequencies.empty(); }
+  bool has_modes() const { return !run_.shapes.empty(); }
   double first() const { return run_.steps[has_modes() && run_.steps.size() > 1 ? 1 : 0].t; }  // [s]
   double last() const { return run_.steps.back().t + (has_modes() ? 1 - 1e-6 : 0); }
   /// "t = 3.200 ms", or "mode 3, 51.2 Hz".

@@ -51,9 +51,10 @@ RunFile::RunFile(const std::string& path) : path(path), store_(Store::open(path)
   if (title.empty()) title = fs::path(path).stem().string();
   for (const std::string& key : store_->list("/field"))
     if (const auto t = store_->number_attribute("/field/" + key, "t")) steps.push_back({key, *t});
-  if (store_->has("/history/mode")) {
-    const Series modes = series("mode");
-    for (size_t row = 0; row < modes.rows(); ++row) frequencies.push_back(modes.at(row, 0));
+  buckles = store_->has("/history/buckling");
+  if (buckles || store_->has("/history/mode")) {
+    const Series all = series(buckles ? "buckling" : "mode");
+    for (size_t row = 0; row < all.rows(); ++row) shapes.push_back(all.at(row, 0));
   }
 }
 

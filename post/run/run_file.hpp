@@ -42,7 +42,9 @@ class RunFile {
   bool complete = false;  // false while the run goes on, and for a run that was stopped
   std::string title;      // of the scene, or its file's name
   std::vector<Step> steps;
-  std::vector<double> frequencies;  // of an analysis of modes, whose steps are the state of rest and the modes; empty: a run in time  [Hz]
+  std::vector<double>
+      shapes;            // of an analysis of modes [Hz] or of buckling [1], whose steps are the state of rest and the shapes; else empty
+  bool buckles = false;  // one of buckling
 
   /// Mesh with the fidelity it was run at and the ranks of a parallel run; read at the first call.  Error for a scene of bodies alone.
   const MeshFile& mesh_file();

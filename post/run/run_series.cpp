@@ -45,6 +45,7 @@ const std::vector<Layout>& layouts() {
        {"Fx", "Fy", "Fz", "depth", "share_of_cell", "slip", "friction_work", "pressing"},
        {"N", "N", "N", "m", "1", "m", "J", "N"}},
       {"heap", {"pairs", "depth", "share_of_radius", "slip", "friction_work", "force"}, {"1", "m", "1", "m", "J", "N"}},
+      {"buckling", {"factor", "error"}, {"1", "1"}},
       {"path", {"load", "rise", "negative_eigenvalues"}, {"1", "1", "1"}},
       {"mode_stiffness", {"omega2"}, {"1/s^2"}},
       {"mode_load", {"force"}, {"N kg^-0.5"}},

@@ -64,7 +64,7 @@ RunView::RunView(const FrameOptions& o, const std::string& path)
     field_.label += ", difference";
   }
   make_skins();
-  if (o.deformed != 1) run_.frequencies.empty() ? find_parts() : void(rest_ = playback_->positions(run_.steps.front().t));
+  if (o.deformed != 1) run_.shapes.empty() ? find_parts() : void(rest_ = playback_->positions(run_.steps.front().t));
   const bool enlarged = o.scale != 1 || o.deformed != 1;
   if (const std::string& name = o.track.empty() ? o.ride : o.track; !name.empty()) {
     leader_ = std::make_unique<Marker>(run_, name, o.track.empty() ? "--ride" : "--track");

@@ -14,8 +14,9 @@ namespace hilo {
 class Linearized : AboutState {
  public:
   using Vector = Eigen::VectorXd;
-  Linearized(const System& system, KktSolver& solver, const State& rest)
-      : AboutState(system, solver, rest), none_(rest.lambda.size(), 0.0), base_mass_(mass_residual(zero_)) {}
+  /// `load_factor`: of the loads that act at the state.
+  Linearized(const System& system, KktSolver& solver, const State& rest, double load_factor = 1)
+      : AboutState(system, solver, rest), load_factor_(load_factor), none_(rest.lambda.size(), 0.0), base_mass_(mass_residual(zero_)) {}
   Eigen::Index n() const { return n_; }
   const System& system() const { return system_; }
 
@@ -57,6 +58,14 @@ class Linearized : AboutState {
     }
     return (out[1] - out[0]) / (2 * step);
   }
+
+  /// What pushes at the state, of the loads their share.
+  Vector forces() const {
+    Residual r;
+    system_.evaluate(stage(state_.q), state_.lambda, r, nullptr);
+    return -free_part(r.r);
+  }
+  Config rates_of(const Vector& x) const { return rates(state_.q, x); }
 
   /// What loads and gravity push with at the state.
   Vector loads() const {
@@ -113,7 +122,7 @@ class Linearized : AboutState {
  private:
   Stage stage(const Config& q) const {
     Stage s = stage_at(q, state_.t);
-    s.a = &zero_;
+    s.a = &zero_, s.load_factor = load_factor_;
     return s;
   }
   Vector mass_residual(const Config& acceleration) const {
@@ -126,6 +135,7 @@ class Linearized : AboutState {
     system_.evaluate(s, none_, r, nullptr);
     return free_part(r.r);
   }
+  double load_factor_;
   std::vector<double> none_;
   Vector base_mass_;
   double sigma_ = 1, typical_acceleration_ = 1;

@@ -27,7 +27,11 @@ double peak_memory() {
 
 Analysis analysis_of(const Scene& scene) {
   const std::string& word = scene.table("time").text("analysis");
-  return word == "static" ? Analysis::statics : word == "path" ? Analysis::path : word == "modes" ? Analysis::modes : Analysis::dynamic;
+  return word == "static"     ? Analysis::statics
+         : word == "path"     ? Analysis::path
+         : word == "modes"    ? Analysis::modes
+         : word == "buckling" ? Analysis::buckling
+                              : Analysis::dynamic;
 }
 
 class Run {
@@ -60,10 +64,11 @@ class Run {
     if (!options_.from.empty()) archive_start(from);
     for (bool goes_on = !options_.from.empty();; goes_on = false) {
       take_method();
-      steps_ = run_.analysis == Analysis::statics ? static_steps(run_, pause)
-               : run_.analysis == Analysis::path  ? path_steps(run_, pause)
-               : run_.analysis == Analysis::modes ? mode_steps(run_, pause)
-                                                  : dynamic_steps(run_, pause);
+      steps_ = run_.analysis == Analysis::statics    ? static_steps(run_, pause)
+               : run_.analysis == Analysis::path     ? path_steps(run_, pause)
+               : run_.analysis == Analysis::modes    ? mode_steps(run_, pause)
+               : run_.analysis == Analysis::buckling ? buckling_steps(run_, pause)
+                                                     : dynamic_steps(run_, pause);
       if (!goes_on) prepare();
       run_.audit.emplace(run_.system, run_.energy_unchecked, run_.newton.tolerance);
       open_recorder();
@@ -189,7 +194,7 @@ class Run {
     const IntegratorKind& method = integrator_kinds().at(run_.plan.now().method, time.where("integrator"));
     run_.integrator = method.make(time);
     run_.energy_unchecked = is_static()                          ? "a static analysis counts the work of a step with the loads at its end"
-                            : run_.analysis != Analysis::dynamic ? "an analysis of modes has no steps"
+                            : run_.analysis != Analysis::dynamic ? "an analysis of modes or buckling has no steps"
                             : method.keeps_energy                ? ""
                                                                  : "the method does not keep it";
     return method;
@@ -232,8 +237,8 @@ class Run {
     setup.envelope = output.boolean("envelope");
     if (setup.envelope && !run_.system.mesh)
       throw Error(output.where("envelope"), "a scene of bodies alone has no nodes to take the largest values of");
-    if (setup.envelope && run_.analysis == Analysis::modes)
-      throw Error(output.where("envelope"), "an analysis of modes has no steps", "leave output.envelope out");
+    if (setup.envelope && (run_.analysis == Analysis::modes || run_.analysis == Analysis::buckling))
+      throw Error(output.where("envelope"), "an analysis of modes or buckling has no steps", "leave output.envelope out");
     for (const Event& e : run_.events)
       if (e.jump) setup.jumps.push_back(e.t);
     setup.provenance = options_.provenance;

@@ -72,6 +72,7 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   if (run.analysis == Analysis::dynamic) add("error_estimate", error_json(run));
   if (run.plan.asked > 0) add("rejected_steps", fmt::format("{}", figures.rejected));
   if (!figures.modes.empty()) add("modes", figures.modes);
+  if (!figures.buckling.empty()) add("buckling", figures.buckling);
   if (!figures.path.empty()) add("turns", figures.path);
   if (!figures.jumps.empty()) add("jumps", "[" + figures.jumps + "\n  ]");
   if (figures.unstable >= 0) add("unstable_states", fmt::format("{}", figures.unstable));

@@ -22,13 +22,14 @@ struct RunFigures {
   double assembled = 0, projected = 0;  // changes of positions at the start [m], of velocities [m/s]
   double local = -1;                    // sum of local position errors [m], where the tolerance chooses steps of a method of second order
   std::string modes;                    // of an analysis of modes, JSON
+  std::string buckling;                 // of one of buckling, JSON
   std::string path;                     // of one of a path: where it turns, JSON
   std::string jumps;                    // of a static run to other branches, JSON
   long rejected = 0;                    // steps
   long unstable = -1;                   // states of a static run that were kept though not stable
 };
 
-enum class Analysis { dynamic, statics, path, modes };
+enum class Analysis { dynamic, statics, path, modes, buckling };
 
 struct RunParts {
   const Scene& scene;
@@ -83,6 +84,7 @@ class Steps {
 bool settle_down(RunParts& run);
 
 std::unique_ptr<Steps> mode_steps(RunParts& run, Pause pause);
+std::unique_ptr<Steps> buckling_steps(RunParts& run, Pause pause);
 std::unique_ptr<Steps> static_steps(RunParts& run, Pause pause);
 std::unique_ptr<Steps> path_steps(RunParts& run, Pause pause);
 std::unique_ptr<Steps> dynamic_steps(RunParts& run, Pause pause);

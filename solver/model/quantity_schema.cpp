@@ -68,14 +68,17 @@ std::vector<KindSchema> quantity_schema() {
   };
   std::vector<Param> at{{"t", number, "s", "!", "the time", at_least(0)}};
   at.insert(at.end(), source.begin(), source.end());
-  return {kind("peak", "the value largest in size, with its sign", source), kind("at", "the value at a time", at),
+  return {kind("peak", "the value largest in size, with its sign", source),
+          kind("at", "the value at a time", at),
           kind("rms", "root of the mean square during the run", source),
           kind("injury", "a measure of hilo-post injury",
                {{"sensor", text, "", "!", "what this sensor felt"},
                 {"measure", text, "", "!", "DRI, HIC15, clip_3ms, peak_x and the others of hilo-post injury"},
                 {"cfc", number, "", "60", "channel frequency class of the pulses", above(0)}}),
           kind("frequency", "a natural frequency, of an analysis of modes",
-               {{"mode", number, "", "!", "its number, from 1 on", from_to(1, 1e6)}})};
+               {{"mode", number, "", "!", "its number, from 1 on", from_to(1, 1e6)}}),
+          kind("load_factor", "a factor of the loads, of an analysis of buckling",
+               {{"mode", number, "", "!", "number of the shape, from 1 on", from_to(1, 1e6)}})};
 }
 
 QuantityTolerance parse_tolerance(const std::string& text, const std::string& unit, const std::string& where) {
@@ -97,7 +100,10 @@ QuantityTolerance parse_tolerance(const std::string& text, const std::string& un
   return {x * have->si / want->si, false};
 }
 
+bool is_of_shapes(const std::string& kind) { return kind == "frequency" || kind == "load_factor"; }
+
 std::optional<std::string> unit_of(const Entry& q) {
+  if (q.kind == "load_factor") return "1";
   if (q.kind == "frequency") return "Hz";
   if (q.kind == "injury") return {};
   if (q.has("joint")) return q.has("component") && q.text("component").front() != 'F' && q.text("component") != "force" ? "N m" : "N";

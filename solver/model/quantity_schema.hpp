@@ -20,6 +20,8 @@ struct QuantityTolerance {
 /// Error (at `where`) for what is no positive number with % or a unit of the kind of `unit`.  Accelerations in g are of the kind m/s^2.
 QuantityTolerance parse_tolerance(const std::string& text, const std::string& unit, const std::string& where);
 
+/// Whether a kind asks for a figure of a mode or of a shape that buckles, and not of a run in time.
+bool is_of_shapes(const std::string& kind);
 /// The unit of a quantity, from its keys alone: "N", "Pa", "g"; of an injury measure nothing.
 std::optional<std::string> unit_of(const Entry& quantity);
 

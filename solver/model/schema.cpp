@@ -172,6 +172,10 @@ std::vector<ArraySchema>& arrays() {
        "mass-proportional damping alone), and where that stands still"},
       {"run.h5", "/history/mode_load", "f8", "(n_t, 1)", "N kg^-0.5",
        "of an analysis of modes: share of each mode of unit mass in the loads and gravity of the scene at t = 0 (0: a whirl)"},
+      {"run.h5", "/history/buckling", "f8", "(n_t, 2)", "1",
+       "of an analysis of buckling, in which t is the number of the shape and the first row the drawn state: factor of the loads (below "
+       "zero: "
+       "reversed), error of the shape; all other arrays are of the drawn state with the shape added"},
       {"run.h5", "/history/path", "f8", "(n_t, 3)", "1",
        "of an analysis of a path, in which t is the number of the state: share of the loads; its rise along the path, 1 where all of a "
        "step is "

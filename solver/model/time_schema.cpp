@@ -60,10 +60,12 @@ KindSchema time_schema() {
   keys.push_back({"steps", number, "1", "1",
                   "load steps of a static analysis; of a path, about how many the whole load would need at first", from_to(1, 1e6)});
   keys.push_back({"reach", number, "m", "", "displacement at which a path ends; without, it ends where it has the whole load", above(0)});
-  keys.push_back({"modes", number, "1", "10", "how many modes an analysis of modes looks for, the lowest", from_to(1, 1000)});
+  keys.push_back({"modes", number, "1", "10", "how many modes an analysis of modes or buckling looks for, the lowest", from_to(1, 1000)});
   keys.push_back({"analysis", text, "", "dynamic",
                   "dynamic; static (histories then run from 0 to `end`, 1 when absent); path: static, loads grow and shrink as the path of "
-                  "equilibrium has it; modes: natural frequencies about the state at the start"});
+                  "equilibrium has it; modes: natural frequencies about the state at the start; buckling: factors of the loads at which "
+                  "the drawn state gives way, as a "
+                  "linear problem of eigenvalues"});
   integrator_words().close();
   return {"time", "", "the time axis", std::move(keys)};
 }

@@ -15,7 +15,7 @@ Registry<Word>* words_of(std::string_view section, std::string_view key) {
       {{"history", "ends"}, {"ends of a spline", {{"natural"}, {"clamped"}, {"periodic"}}}},
       {{"time", "start"}, {"start", {{"as given"}, {"equilibrium"}}}},
       {{"time", "error_estimate"}, {"word for the error estimate", {{"auto"}, {"always"}, {"steps"}, {"never"}}}},
-      {{"time", "analysis"}, {"analysis", {{"dynamic"}, {"static"}, {"path"}, {"modes"}}}},
+      {{"time", "analysis"}, {"analysis", {{"dynamic"}, {"static"}, {"path"}, {"modes"}, {"buckling"}}}},
       {{"solver", "kind"},
        {"solver", {{"auto"}, {"light"}, {"klu"}, {"cholesky"}, {"umfpack"}, {"direct"}, {"cg"}, {"iterative"}, {"bddc"}, {"feti-dp"}}}},
       {{"output", "fields"},

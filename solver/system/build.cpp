@@ -11,6 +11,7 @@
 #include "system/joint_coordinates.hpp"
 #include "system/joints.hpp"
 #include "system/linear_regions.hpp"
+#include "system/buckling_modes.hpp"
 #include "system/load_path.hpp"
 #include "system/loads.hpp"
 #include "system/modal_damping.hpp"
@@ -68,12 +69,13 @@ void Builder::add_contributions() {
   s.add<ModalDamping>(s);
   const std::string& analysis = scene_.table("time").text("analysis");
   if (analysis == "modes") s.add<NaturalModes>(static_cast<int>(scene_.table("time").number("modes")));
+  if (analysis == "buckling") s.add<BucklingModes>();
   if (analysis == "path") s.add<LoadPath>();
 }
 
 bool Builder::is_static() const {
   const std::string& analysis = scene_.table("time").text("analysis");
-  return analysis == "static" || analysis == "path";
+  return analysis == "static" || analysis == "path" || analysis == "buckling";
 }
 
 std::unique_ptr<System> Builder::build() {

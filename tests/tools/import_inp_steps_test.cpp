@@ -130,7 +130,7 @@ TEST_F(ImportInpSteps, WhatOneRunCannotSayIsToldAndTheStepsBeforeItStay) {
        "*BOUNDARY in step 2 and later", 1},
       {statics + pull + end + statics + side + end + statics + "*BOUNDARY\nhead, 3, 3\n" + end,
        "a support that is not there from the first step on", "*BOUNDARY in step 3 and later", 2},
-      {statics + pull + end + "*STEP\n*BUCKLE\n2\n" + side + end, "*BUCKLE is not read", "*CLOAD in step 2 and later", 1},
+      {statics + pull + end + "*STEP\n*BUCKLE\n2\n" + side + end, "*BUCKLE is another run", "*CLOAD in step 2 and later", 1},
       {statics + pull + end + "*STEP\n*FREQUENCY\n2\n" + end, "that of the unloaded model", "*FREQUENCY in step 2 and later", 1},
       {"*EQUATION\n2\n9, 1, 1., 10, 1, -1.\n" + statics + pull + end + statics + side + "*EQUATION, REMOVE\n9, 1\n" + end,
        "*EQUATION, REMOVE is not read", "*CLOAD in step 2 and later", 1},

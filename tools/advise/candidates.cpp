@@ -235,7 +235,7 @@ const Candidate& Candidates::of(const Request& request, const Beyond& beyond) {
 std::vector<QuantityValue> Candidates::values_of(RunFile& run) const {
   std::vector<QuantityValue> out;
   for (QuantityValue& v : quantities(scene_, run)) {
-    if (v.kind == "frequency") continue;
+    if (is_of_shapes(v.kind)) continue;
     if (v.tolerance.empty()) v.allowed = o_.tolerance * std::abs(v.value);
     out.push_back(std::move(v));
   }

@@ -63,7 +63,7 @@ Candidates::Beyond Judgement::beyond() const {
   return [this](const std::vector<QuantityValue>& so_far) {
     size_t k = 0;
     for (const Entry& q : all.scene().entries("quantity")) {
-      if (q.kind == "frequency") continue;
+      if (is_of_shapes(q.kind)) continue;
       const QuantityValue &mine = so_far[k], &its = a.reference->values[k];
       const double excess = std::abs(mine.value) - std::abs(its.value);
       if (q.kind == "peak" && !q.has("cfc") && mine.why.empty() && its.why.empty() && excess > 1.2 * its.allowed) return true;
@@ -142,7 +142,7 @@ double Judgement::window_of(const Candidate& c) const {
   double last = 0;
   size_t k = 0;
   for (const Entry& q : all.scene().entries("quantity")) {
-    if (q.kind == "frequency") continue;
+    if (is_of_shapes(q.kind)) continue;
     const double t = c.values[k++].t;
     last = std::max(last, std::isfinite(t) ? 1.1 * t + (q.kind != "injury" && q.has("cfc") ? 1.2 / q.number("cfc") : 0) : HUGE_VAL);
   }

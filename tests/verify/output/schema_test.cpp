@@ -125,6 +125,13 @@ on = "zmax"
   hold_against_schema(linear.solved("--set time.end=0.0158 --set material.soft.E=1e9", "run.h5", "free").file(), met);
   hold_against_schema(linear.solved("--set 'time.analysis=\"modes\"'", "run.h5", "cantilever").file(), met);
   hold_against_schema(linear.solved("--set 'time.analysis=\"path\"'", "run.h5", "cantilever").file(), met);
+  std::ofstream(linear / "rod.toml")
+      << "material.m = {E = 1e6, nu = 0.3, density = 1000}\nsection.s = {kind = \"circle\", diameter = 0.01}\n"
+         "beam.b = {points = [[0, 0, 0], [0, 0, 1]], cells = [2], section = \"s\", material = \"m\", a = \"ground\"}\n"
+         "load = [{name = \"F\", kind = \"force\", on = \"b.end\", force = [0, 0, -1]}]\n"
+         "time = {analysis = \"buckling\", modes = 1}\n";
+  succeeded(linear.run("hilo-solve --quiet rod.toml -o run.h5"));
+  hold_against_schema(Store::open(linear / "run.h5"), met);
   Case tied("output");  // a plate on a block
   BlockOptions block, plate;
   block.regions = {"block"}, plate.regions = {"plate"};

@@ -76,6 +76,7 @@ std::vector<std::int64_t> subcases_of(const std::vector<BdfCaseLine>& lines, con
 void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& in, std::optional<std::int64_t> subcase) {
   BdfCase& c = deck.chosen;
   bool others = false, goes_on = false;
+  std::string buckles;                // place of the SUBCASE of SOL 105 that buckles under the loads of the one before
   std::vector<std::int64_t> numbers;  // of subcases
   for (const BdfCaseLine& line : lines) {
     const bool rest = goes_on, comma = line.text.back() == ',';  // of a request that goes on behind a comma
@@ -88,9 +89,18 @@ void read_case(const std::vector<BdfCaseLine>& lines, BdfDeck& deck, Imported& i
       const std::int64_t number = !is_case ? -1 : value.empty() ? 1 : number_in(value, line);
       if (is_case) numbers.push_back(number);
       others = !is_case || c.number >= 0 || (subcase && number != *subcase);
-      if (others) in.skip(!is_case ? word : subcase ? fmt::format("SUBCASE but {}", *subcase) : "SUBCASE after the first", line.place);
+      buckles = others && buckles.empty() && is_case && !subcase && c.buckles() ? line.place : "";
+      if (others && buckles.empty())
+        in.skip(!is_case ? word : subcase ? fmt::format("SUBCASE but {}", *subcase) : "SUBCASE after the first", line.place);
       if (!others) c.number = number;
       continue;
+    }
+    if (!buckles.empty()) {
+      if (word == "METHOD" && c.method < 0)
+        c.method = number_in(value, line);
+      else if (!(word == "SPC" && number_in(value, line) == c.spc) && word != "STATSUB" && word != "LABEL" && word != "SUBTITLE" &&
+               !is_request(word))
+        in.skip("SUBCASE after the first", std::exchange(buckles, ""));
     }
     if (others) continue;
     if (word == "SOL")

@@ -111,6 +111,7 @@ struct BdfCase {
   std::string title, subtitle, label, solution;  // "101"
   std::int64_t spc = -1, load = -1, mpc = -1, glue = -1, contact = -1, method = -1, step = -1, number = -1;
   bool any = false;  // case control is there: CEND is said
+  bool buckles() const { return solution == "105" || solution == "5" || solution == "SEBUCKL" || solution == "BUCKLING"; }
 };
 
 /// PSHELL, PCOMP: thickness, offset of the mid-surface.  PBAR, PBEAM and their like: a section, axis 2 in plane 1.

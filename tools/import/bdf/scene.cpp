@@ -300,12 +300,10 @@ void BdfScene::time() {
   } else if (is({"109", "9", "SEDTRAN", "129", "NLTRAN"}) && deck_.steps.contains(c.step)) {
     const auto& [end, step] = deck_.steps.at(c.step);
     if (end > 0 && step > 0) tables_ += fmt::format("\n[time]\nend = {}\nstep = {}\n", number(end, "s"), number(step, "s"));
-  } else if (is({"105", "5", "SEBUCKL", "BUCKLING"})) {
-    tables_ += "\n[time]\nanalysis = \"path\"\nsteps = 20\n";
-    in_.notes.push_back(
-        fmt::format("SOL {}: the run follows the path of equilibrium up to the loads of the deck, and tells the share of them at "
-                    "which stability is lost; scale the loads above that (of no linear problem of eigenvalues)",
-                    c.solution));
+  } else if (c.buckles()) {
+    tables_ += "\n[time]\nanalysis = \"buckling\"\n";
+    const auto n = deck_.modes.find(c.method);
+    if (n != deck_.modes.end() && n->second > 0) tables_ += fmt::format("modes = {}\n", n->second);
   } else if (!c.solution.empty())
     in_.skip("SOL " + c.solution.substr(0, 20), "executive control");
 }

@@ -173,6 +173,10 @@ void InpScene::time() {
   } else if (plan.procedure == "*DYNAMIC") {
     tables_ += fmt::format("\n[time]\nend = {}\n", num(end));
     tables_ += fmt::format("step = {}\n{}", num(dynamic_step(deck_end) * si("s")), start);
+  } else if (plan.procedure == "*BUCKLE") {
+    tables_ += "\n[time]\nanalysis = \"buckling\"\n";
+    if (!wanted_.empty()) tables_ += fmt::format("end = {}\n", num(end));
+    if (plan.n_modes > 0) tables_ += fmt::format("modes = {}\n", plan.n_modes);
   } else if (plan.procedure == "*FREQUENCY") {
     tables_ += fmt::format("\n[time]\nanalysis = \"modes\"\n{}", start);
     if (plan.n_modes > 0) tables_ += fmt::format("modes = {}\n", plan.n_modes);

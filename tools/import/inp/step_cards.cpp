@@ -159,6 +159,15 @@ void read_frequency(InpReading& r) {
   if (l.number(3) != 0) r.in.skip("*FREQUENCY: its fourth number (it scales masses, or is a shift)", l.place(3));
   l.ignore_rest();
 }
+/// How many shapes; the accuracy of the search is ours.
+void read_buckle(InpReading& r) {
+  step_of(r).procedure = r.card.name;
+  for (const char* of_no_effect : {"SOLVER", "EIGENSOLVER"}) r.card.find(of_no_effect);
+  DataLine l;
+  if (!r.lines.next_data(l)) return;
+  step_of(r).n_modes = static_cast<int>(std::clamp(l.number(0), 0.0, 1000.0));
+  l.ignore_rest();
+}
 void other_procedure(InpReading& r) {
   step_of(r).procedure = r.card.name;
   if (r.step < 2) r.skip(r.card.name);
@@ -185,7 +194,7 @@ std::span<const InpCard> inp_step_cards() {
       {"DYNAMIC", read_procedure, false, true},
       {"FREQUENCY", read_frequency, false, true},
       {"COMPLEXFREQUENCY", other_procedure, false, true},
-      {"BUCKLE", other_procedure, false, true},
+      {"BUCKLE", read_buckle, false, true},
       {"HEATTRANSFER", other_procedure, false, true},
       {"VISCO", other_procedure, false, true},
       {"COUPLEDTEMPERATURE-DISPLACEMENT", other_procedure, false, true},

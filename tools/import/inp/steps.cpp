@@ -237,6 +237,8 @@ size_t longest(const InpDeck& d, std::string& why) {
     why.clear();
     if (!s.not_read.empty())
       why = s.not_read + " is not read";
+    else if (s.procedure == "*BUCKLE")
+      why = "*BUCKLE is another run, without the loads of the steps before it";
     else if (!is_static && !is_dynamic && !is_modes)
       why = s.procedure.empty() ? "it computes what is not read" : s.procedure + " is not read";
     else if (before.procedure != "*STATIC" && !(before.procedure == "*DYNAMIC" && is_dynamic))
