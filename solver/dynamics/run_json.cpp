@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
+#include <stdexcept>
 
 #include "base/table.hpp"
 #include "dynamics/profile.hpp"
@@ -51,7 +53,11 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   const RunFigures& figures = run.figures;
   const Phases& p = phases();
   std::string j = "{\n";
-  const auto add = [&](const char* key, const std::string& value) { j += fmt::format("  \"{}\": {},\n", key, value); };
+  std::set<std::string> keys;
+  const auto add = [&](const char* key, const std::string& value) {
+    if (!keys.insert(key).second) throw std::logic_error(fmt::format("run.json has {} twice", key));
+    j += fmt::format("  \"{}\": {},\n", key, value);
+  };
   add("complete", report.complete ? "true" : "false");
   if (!report.complete) add("reason", json_text(report.reason));
   add("t", fmt::format("{:.12g}", report.t));
@@ -72,7 +78,7 @@ void write_run_json(const RunParts& run, const Profile& profile, double peak_mem
   if (run.analysis == Analysis::dynamic) add("error_estimate", error_json(run));
   if (run.plan.asked > 0) add("rejected_steps", fmt::format("{}", figures.rejected));
   if (!figures.modes.empty()) add("modes", figures.modes);
-  if (!figures.buckling.empty()) add("buckling", figures.buckling);
+  if (!figures.buckling.empty()) add("load_factors", figures.buckling);
   if (!figures.path.empty()) add("turns", figures.path);
   if (!figures.jumps.empty()) add("jumps", "[" + figures.jumps + "\n  ]");
   if (figures.unstable >= 0) add("unstable_states", fmt::format("{}", figures.unstable));

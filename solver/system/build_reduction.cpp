@@ -45,7 +45,7 @@ RegionParcel Builder::parcel_of(int number) {
       out.n_vibrations = std::max(out.n_vibrations, region.n_vibrations);
       out.modes_given = out.modes_given || region.modes_given;
       out.stiffening = out.stiffening || region.stiffening;
-      out.where = region.where;
+      out.where = region.place;
       if (!region.shapes.empty()) out.shapes = region.shapes, out.shapes_where = region.shapes_where;
     }
   const auto to_first = [&](const auto& list) {

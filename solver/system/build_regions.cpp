@@ -102,7 +102,7 @@ void Builder::read_regions() {
     std::sort(its.begin(), its.end());
     for (const size_t k : its) {
       const Entry& e = entries[k];
-      used[k] = 1;
+      used[k] = 1, region.place = e.place.text();
       if (e.given("material")) material = e.text("material"), region.where = e.where("material");
       if (e.given("mass")) region.mass_wanted = e.number("mass");
       if (e.given("area")) region.area = e.number("area");
@@ -130,6 +130,7 @@ void Builder::read_regions() {
       region.where = found->place.text();
     }
     if (region.where.empty()) region.where = scene_.path;
+    if (region.place.empty()) region.place = scene_.path;
     regions_.push_back(std::move(region));
   }
   for (size_t k = 0; k < entries.size(); ++k) {

@@ -43,7 +43,7 @@ class Builder {
     std::string shapes, shapes_where;     // file of its modes, where they are given
     int n_vibrations = 40;
     bool modes_given = false, stiffening = false, shell = false;
-    std::string where, shell_where;  // of its material, and of `shell`, for errors
+    std::string where, place, shell_where;  // of its material, of its entry, and of `shell`, for errors
     Fidelity fidelity = Fidelity::nonlinear;
     int body = -1;               // rigid: its body; linear: its mean axes
     double mass = 0;             // integrals over its cells, all ranks
