@@ -16,7 +16,8 @@ namespace {
 constexpr double aim = 0.5, most = 1.4;  // of what is asked: error that a pass aims at, and that is good enough
 constexpr double most_high = 0.8;        // the same of a high order, whose estimate is less exact
 constexpr double most_before = 3;        // the same before the end
-constexpr double sure = 12;              // times what is asked: distance of two solutions of one pass that needs no other
+constexpr double sure = 12,              // times what is asked: distance of two solutions of one pass that needs no other,
+    sure_of_springs = 1.5;               // and where something may vibrate
 constexpr double other = 0.4;            // of a demand: another run than that, which may confirm it
 constexpr double far_off = 50;           // of what is asked: a run with such an error confirms nothing
 constexpr double much_better = 0.1;      // an error at the end that needs a reason
@@ -101,9 +102,11 @@ bool plan_another(StepPlan& plan, const RunReport& report, const Config& q, cons
 
   if (estimate.rounding(end) > plan.asked) return says("the motion is chaotic: by the end it makes more of rounding alone, at any step");
   // The leading term of a high order rules late: two passes tell whether their estimates hold.  One is enough where the distance of its two
-  // solutions is small whatever the order, from the third on: there it is 7 times the error.
+  // solutions is small whatever the order, from the third on: there it is 7 times the error.  A vibration that steps do not resolve has no
+  // order: there it is the error.
+  const double enough = system.part<Springs>().list.empty() ? sure : sure_of_springs;
   const bool is_whole = estimate.is_there() && estimate.splits() == 0;
-  const double at_worst = std::max(now.error, estimate.largest() / most_before) * (std::pow(2.0, order) - 1) / sure;
+  const double at_worst = std::max(now.error, estimate.largest() / most_before) * (std::pow(2.0, order) - 1) / enough;
   const bool is_sure = is_whole && at_worst <= plan.asked;
   const bool agrees =
       before && now.demand <= other * before->demand && before->error <= far_off * plan.asked && changed <= 2 * (before->error + now.error);
