@@ -21,6 +21,7 @@ class Companion {
   }
   Integrator& integrator() { return *integrator_; }
   bool has_begun() const { return begun_; }
+  int waiting() const { return waiting_; }  // steps of the run that it has not followed yet
   /// From the state of the run.
   void begin(const State& s);
   /// The run has taken a step, to s.  Every second one is followed.
@@ -44,7 +45,7 @@ class Companion {
   bool begun_ = false;
   State state_, reached_;
   Config start_;     // of the run
-  int waiting_ = 0;  // steps of the run not followed yet
+  int waiting_ = 0;
   Kept memory_;      // what the contributions remember, of the other solution
   Impulses untold_;
 };

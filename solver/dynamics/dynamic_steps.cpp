@@ -29,7 +29,7 @@ class DynamicSteps final : public Steps {
       : Steps(run, std::move(pause)),
         time_(run.scene.table("time")),
         end_(time_.number("end")),
-        step_(time_.has("step") ? time_.number("step") : end_ / 20),
+        step_(longest_step(time_)),
         progress_(run.options.quiet || run.system.comm->rank != 0, 0, end_) {
     const StepPlan& plan = run_.plan;
     if (plan.asked > 0) control_.emplace(run_.system, run_.integrator->order(), plan.now().demand, end_, step_);
@@ -184,13 +184,17 @@ class DynamicSteps final : public Steps {
   }
 
   /// Steps chosen by the error they make, the last of them ending at `to`.  The last thirty are fitted in: one short step at the end would
-  /// cost accelerations and multipliers their order there.
+  /// cost accelerations and multipliers their order there.  They are as many as make pairs for the second solution: a last one that both
+  /// take says nothing of its error.
   bool controlled_steps(double to) {
     int failures = 0;
     StepControl& control = *control_;
     while (run_.state.t < to) {
-      const double t = run_.state.t, left = to - t, pieces = std::ceil(left / control.step() - 1e-6),
-                   h = pieces < 30 ? left / pieces : control.step();
+      const double t = run_.state.t, left = to - t;
+      double pieces = std::ceil(left / control.step() - 1e-6);
+      if (pieces < 30 && companion_ && companion_->has_begun() && (std::lround(pieces) + companion_->waiting()) % 2 != 0)
+        pieces += pieces > 8 && left / (pieces - 1) <= step_ ? -1 : 1;
+      const double h = pieces < 30 ? left / pieces : control.step();
       if (!(t + h > t)) return failure_ = fmt::format("time.tolerance asks for steps of {:.2g} s", h), false;
       if (!try_step(h)) {
         if (++failures > run_.max_cuts) return false;

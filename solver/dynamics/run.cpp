@@ -129,6 +129,8 @@ class Run {
     if (e.is_lost() && run_.plan.asked == 0)
       tell("the error of positions is not known: " + e.why() + ": choose a shorter time.step, or time.tolerance");
     if (!e.is_there()) return;
+    if (const std::string why = run_.why_better(); !why.empty() && !options_.quiet)
+      fmt::print(stderr, "the error at the end is about {:.2g} m, where {:.2g} m are asked: {}\n", e.end(), run_.plan.asked, why);
     if (!run_.plan.unmet.empty()) tell("time.tolerance is not met: " + run_.plan.unmet);
     if (const double t = e.meaningless_from(); t < run_.report.t && e.is_chaotic())
       tell(fmt::format(
@@ -174,7 +176,7 @@ class Run {
       if (revises(system) && (method.name == Radau::name || method.name == Gauss::name))  // the others solve each stage by `newton`
         throw Error(time.where("integrator"), run_.integrator->name() + " does not choose again what meets when a step is solved",
                     "energy-momentum does, and all methods that solve their stages one after another");
-      const double end = time.number("end"), step = time.has("step") ? time.number("step") : end / 20;
+      const double end = time.number("end"), step = longest_step(time);
       run_.events = events(system, end, step), system.same_time = 1e-9 * step;
       run_.events.push_back({end, false});
     }
@@ -323,6 +325,10 @@ void RunParts::follow(const Carry& carry) {
 void Steps::search(double h) {
   const bool moves = run_.analysis == Analysis::dynamic;
   if (const auto carry = run_.system.search(run_.state.q, moves ? &run_.state.v : nullptr, h)) run_.follow(*carry);
+}
+
+std::string RunParts::why_better() const {
+  return hilo::why_better(plan, report, estimate, integrator->order(), system.length, scene.table("time"));
 }
 
 void RunParts::stop(const std::string& reason) {

@@ -41,6 +41,7 @@ std::string error_json(const RunParts& run) {
       passes += fmt::format("{}{{\"integrator\": {}, \"steps\": {}, \"end\": {}}}", passes.empty() ? "" : ", ", json_text(p.method),
                             p.steps, number(p.error));
     add("passes", "[" + passes + "]");
+    if (const std::string why = run.why_better(); !why.empty()) add("why_better", json_text(why));
   }
   return out + "\n  }";
 }

@@ -55,6 +55,8 @@ struct RunParts {
 
   /// The system has another structure: the solver, the state and the integrator follow.
   void follow(const Carry& carry);
+  /// Why its error is far below what was asked, or "".
+  std::string why_better() const;
   /// The run ends here for this reason.
   void stop(const std::string& reason);
 };

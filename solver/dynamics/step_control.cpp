@@ -65,7 +65,7 @@ void StepControl::restart(const State& s) {
   fade_ = first_third_ > 0 ? 1 / -system_.comm->max(top[0] == first_third_ ? -top[1] : -1e300) : 0;
   const double worst = std::max(system_.comm->max(third), first_third_);
   const double wish = worst > 0 ? std::pow(12 * demand_ / worst, order_ == 2 ? 1. / 2 : 1. / 3) : 1e300;
-  step_ = std::min({wish / 2, largest_, end_ / 200});  // half: forces may grow at once
+  step_ = std::min({wish / 2, largest_, end_ / 16, largest_ / 4});  // half: forces may grow at once
   for (double back : {2 * step_, step_, 0.0}) {
     Past p{s.t - back, {}};
     combine(p.q, {{1, &s.q}, {-back, &s.v}, {back * back / 2, &s.a}, {-back * back * back / 6, &s.jerk}});
@@ -118,7 +118,7 @@ bool StepControl::accept(const Config& q1, double h) {
   past_.pop_front();
   past_.push_back({t_, q1});
   // a smooth sequence of steps keeps the order: two thirds of the exponent, and a bound on growth, tighter after a cut
-  const double most = ++calm_ < 4 ? 1.0 : 1.2;
+  const double most = ++calm_ < 4 ? 1.0 : ratio > 16 ? 2.0 : 1.2;
   step_ = std::min(largest_, h * std::clamp(0.97 * std::pow(ratio, power * 2 / 3), 0.6, calm_ < 2 && ratio > 4 ? 1.2 : most));
   return true;
 }

@@ -14,7 +14,13 @@ namespace hilo {
 namespace {
 
 constexpr double aim = 0.5, most = 1.4;  // of what is asked: error that a pass aims at, and that is good enough
+constexpr double most_high = 0.8;        // the same of a high order, whose estimate is less exact
 constexpr double most_before = 3;        // the same before the end
+constexpr double sure = 12,              // times what is asked: distance of two solutions of one pass that needs no other,
+    sure_of_springs = 1.5;               // and where something may vibrate
+constexpr double other = 0.4;            // of a demand: another run than that, which may confirm it
+constexpr double far_off = 50;           // of what is asked: a run with such an error confirms nothing
+constexpr double much_better = 0.1;      // an error at the end that needs a reason
 constexpr size_t most_passes = 12;
 constexpr double steep = 64,
                  steepest = 1000;     // by which a demand falls at most, where an error is no small part of the motion, and where it is
@@ -22,6 +28,7 @@ constexpr double loosest = 1e-4;      // of the length: where a method may be ch
 constexpr double many_steps = 5000;   // of second order: gauss is tried first,
 constexpr double dear = 10;           // a step of it costs as much as this many of them: so long as it may be cheaper
 constexpr double most_steps = 100;    // of a pass, over those of the first by the same method
+constexpr double starting_steps = 6;  // until steps have grown to the longest
 constexpr double least_step = 1e-14;  // of the length: smaller local errors of second order are round-off
 constexpr double least_share = 1e-7;  // of the length: demands of methods above second order below it ask for round-off
 
@@ -94,12 +101,19 @@ bool plan_another(StepPlan& plan, const RunReport& report, const Config& q, cons
   if (plan.passes.size() >= most_passes) return says(fmt::format("{} runs with ever shorter steps did not reach it", plan.passes.size()));
 
   if (estimate.rounding(end) > plan.asked) return says("the motion is chaotic: by the end it makes more of rounding alone, at any step");
-  // The leading term of a high order rules late: two passes tell whether their estimates hold.
-  const bool holds = order == 2 ? estimate.is_there()
-                                : estimate.is_there() && estimate.splits() == 0 && before && changed <= 2 * (before->error + now.error);
-  const bool is_met = now.error <= most * plan.asked && estimate.largest() <= most_before * plan.asked;
+  // The leading term of a high order rules late: two passes tell whether their estimates hold.  One is enough where the distance of its two
+  // solutions is small whatever the order, from the third on: there it is 7 times the error.  A vibration that steps do not resolve has no
+  // order: there it is the error.
+  const double enough = system.part<Springs>().list.empty() ? sure : sure_of_springs;
+  const bool is_whole = estimate.is_there() && estimate.splits() == 0;
+  const double at_worst = std::max(now.error, estimate.largest() / most_before) * (std::pow(2.0, order) - 1) / enough;
+  const bool is_sure = is_whole && at_worst <= plan.asked;
+  const bool agrees =
+      before && now.demand <= other * before->demand && before->error <= far_off * plan.asked && changed <= 2 * (before->error + now.error);
+  const bool holds = order == 2 ? estimate.is_there() : is_sure || (is_whole && agrees);
+  const bool is_met = now.error <= (order == 2 ? most : most_high) * plan.asked && estimate.largest() <= most_before * plan.asked;
   if (!holds) {
-    const double less = is_met && estimate.is_there() && estimate.splits() == 0 ? 0.35 : 0.1;
+    const double less = is_whole ? std::clamp(std::pow(0.8 * plan.asked / at_worst, 1 / power), 0.1, 0.7) : 0.1;
     const double steps = static_cast<double>(now.steps) * std::pow(less, -1. / 3);
     // of second order, from its own pass
     const double others = second_order ? static_cast<double>(second_order->steps) * std::sqrt(second_order->error / (aim * plan.asked)) : 0;
@@ -123,6 +137,24 @@ bool plan_another(StepPlan& plan, const RunReport& report, const Config& q, cons
   if (steps > most_steps * static_cast<double>(first->steps))
     return says(fmt::format("{}: that would need about {:.2g} steps instead of {}", lack, steps, now.steps));
   return again(now.method, demand);
+}
+
+double longest_step(const Entry& time) { return time.has("step") ? time.number("step") : time.number("end") / 20; }
+
+std::string why_better(const StepPlan& plan, const RunReport& report, const ErrorEstimate& estimate, int order, double length,
+                       const Entry& time) {
+  if (plan.asked == 0 || !report.complete || !plan.unmet.empty() || !estimate.is_there()) return "";
+  if (estimate.end() >= much_better * plan.asked) return "";
+  if (estimate.largest() < 1e-12 * length) return "the method makes no error in this motion but rounding";
+  if (estimate.largest() >= much_better * plan.asked)
+    return fmt::format("it was {:.2g} m at t = {:.3g} s and is smaller at the end", estimate.largest(), estimate.largest_t());
+  if (static_cast<double>(report.steps) <= 1.5 * time.number("end") / longest_step(time) + starting_steps)
+    return "steps are as long as time.step allows";
+  if (order > 2 && plan.passes.size() > 1 && plan.passes[plan.passes.size() - 2].method == plan.now().method)
+    return fmt::format("steps by {} that resolve the motion are this good, and {} longer ones did not resolve it", plan.now().method,
+                       plan.passes[plan.passes.size() - 2].steps);
+  return order > 2 ? fmt::format("the longest steps by {} that were tried are this good", plan.now().method)
+                   : "the errors of single steps, which chose their length, cancel";
 }
 
 }  // namespace hilo

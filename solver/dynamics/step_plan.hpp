@@ -38,5 +38,11 @@ StepPlan first_plan(const Scene& scene, const System& system);
 /// method.
 bool plan_another(StepPlan& plan, const RunReport& report, const Config& q, const ErrorEstimate& estimate, int order, const System& system,
                   double end);
+/// Step that a run in time may take at most [s].
+double longest_step(const Entry& time);
+/// Why a run that met what was asked has an error at the end of less than a tenth of that, or "".  `order`: of its method; `length`: of the
+/// scene [m].
+std::string why_better(const StepPlan& plan, const RunReport& report, const ErrorEstimate& estimate, int order, double length,
+                       const Entry& time);
 
 }  // namespace hilo

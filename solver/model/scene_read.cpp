@@ -24,6 +24,31 @@ std::string one_of(const std::string& name, const std::vector<std::string>& cand
   return near.empty() ? fmt::format("{}: {}", plural, fmt::join(candidates, ", ")) : near;
 }
 
+/// How a scene begins an entry of a section.
+std::string begins(std::string_view section) {
+  if (is_single_section(section)) return fmt::format("[{}]", section);
+  return is_list_section(section) ? fmt::format("[[{}]]", section) : fmt::format("[{}.NAME]", section);
+}
+
+/// What is said of a key that a table, one of `section`, does not have: the nearest of its keys or all of them, and the few other
+/// tables that have it.
+std::string not_among(const std::string& key, const std::vector<std::string>& keys, std::string_view section, std::string_view plural) {
+  std::vector<std::string> owners;
+  for (const auto& s : scene_schema()) {
+    if (s.section == "scene" || std::none_of(s.params.begin(), s.params.end(), [&](const Param& p) { return p.key == key; })) continue;
+    std::string owner = begins(s.section);
+    if (s.section == section && !s.kind.empty()) owner += fmt::format(" of kind \"{}\"", s.kind);
+    if (owners.empty() || owners.back() != owner) owners.push_back(owner);
+  }
+  const std::string usual = one_of(key, keys, plural);
+  constexpr size_t few = 4;
+  if (owners.empty() || owners.size() > few) return usual;
+  const std::string last = owners.back();
+  owners.pop_back();
+  const std::string has = fmt::format("is a key of {}{}{}", fmt::join(owners, ", "), owners.empty() ? "" : " and ", last);
+  return suggest(key, keys).empty() ? fmt::format("it {}; {}", has, usual) : fmt::format("{} \"{}\" {}", usual, key, has);
+}
+
 /// The kind a table says it is, among those its section has.
 const KindSchema& kind_of(std::string_view section, const toml::table& table, const std::string& label, const Place& place) {
   const auto& all = scene_schema();
@@ -128,7 +153,7 @@ Entry read_entry(std::string_view section, const toml::table& table, const std::
     if (param == schema.params.end()) {
       std::vector<std::string> keys;
       for (const auto& p : schema.params) keys.emplace_back(p.key);
-      throw Error(item.place.text(), fmt::format("{}: unknown key \"{}\"", label, item.key), one_of(item.key, keys, "keys"));
+      throw Error(item.place.text(), fmt::format("{}: unknown key \"{}\"", label, item.key), not_among(item.key, keys, section, "keys"));
     }
     entry.values.emplace(item.key, read_value(section, *param, item, label, around));
   }
@@ -160,7 +185,8 @@ Entries read_sections(const toml::table& root, Surroundings& around) {
     } else if (!known) {
       std::vector<std::string> keys;
       for (const auto& p : scene) keys.emplace_back(p.key);
-      throw Error(item.place.text(), fmt::format("unknown key \"{}\"", item.key), one_of(item.key, keys, "keys at the top of a scene"));
+      throw Error(item.place.text(), fmt::format("unknown key \"{}\"", item.key),
+                  not_among(item.key, keys, "scene", "keys at the top of a scene"));
     }
     const auto& units = *std::find_if(scene.begin(), scene.end(), [](const Param& p) { return p.key == "units"; });
     if (item.key == "units") around.units = read_value("scene", units, item, "", around).texts.front();

@@ -103,7 +103,7 @@ TEST_P(KeptRuns, GoOnBitByBitWithLinearRegions) {
 
 TEST_P(KeptRuns, GoOnBitByBitWithStepsByTolerance) {
   const Folder folder;
-  expect_goes_on(folder.path(), machine(GetParam() != "gauss"), "", {1, 3, 20, 45},
+  expect_goes_on(folder.path(), machine(GetParam() != "gauss"), "", {1, 3, 20, 30},
                  {method(GetParam()), "time.tolerance=1e-5", "time.end=0.12"});
 }
 

@@ -125,6 +125,31 @@ tolerance = 1e-6
   EXPECT_LT(number_of(w, "run.json", "processor_seconds"), 20);
 }
 
+// Truth: a parabola, in which the method errs by rounding alone, and a slow turn about an axis of inertia, for which four steps are more
+// than enough.  Such runs take no more steps than time.step asks for, and say why they are better than asked; one that is as good as asked
+// does not.
+TEST(ErrorEstimate, FarBelowWhatIsAskedHasAReason) {
+  const Workplace w;
+  const auto run = [&](const std::string& spin, double tolerance) {
+    w.write("scene.toml", "gravity = [0, 0, -10]\n" + body("brick", 2, Vec3::Zero(), Vec3(0.02, 0.05, 0.06)) +
+                              "[[initial]]\non = [\"brick\"]\nvelocity = [3, 0, 0]\nspin = [0, 0, " + spin + "]\n" +
+                              "[time]\nend = 1\nstep = 0.25\ntolerance = " + std::to_string(tolerance) + "\n");
+    const Ran ran = succeeded(w.run("hilo-solve scene.toml -o run.h5"));
+    const std::string json = text_of(w / "run.json"), key = "\"why_better\": \"";
+    const size_t at = json.find(key);
+    const std::string why = at == json.npos ? "" : json.substr(at + key.size(), json.find('"', at + key.size()) - at - key.size());
+    EXPECT_EQ(why.empty(), ran.err.find("the error at the end is about") == std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find(why), std::string::npos) << ran.err;
+    return why;
+  };
+  EXPECT_EQ(run("0", 1e-4), "the method makes no error in this motion but rounding");
+  EXPECT_LT((last_points(Results(w / "run.h5"), false)[0] - Vec3(3, 0, -5)).norm(), 1e-13);
+  EXPECT_LE(number_of(w, "run.json", "steps"), 8);
+  EXPECT_EQ(run("0.2", 0.5), "steps are as long as time.step allows");
+  EXPECT_LE(number_of(w, "run.json", "steps"), 8);
+  EXPECT_EQ(run("6", 1e-3), "");
+}
+
 /// Two equal rods that hang on each other in a plane, from the horizontal at rest: the centre of the lower one, by RK4 on their angles.
 class DoublePendulum {
  public:

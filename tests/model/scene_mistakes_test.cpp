@@ -44,6 +44,21 @@ TEST_F(Mistake, UnknownKey) {
       "angular_stiffness, damping, angular_damping, reactions)");
 }
 
+// The tables that have the key are named where they are few: other sections, or other kinds of the same one.
+TEST_F(Mistake, KeyOfAnotherTable) {
+  const std::string steel = "[material.steel]\nkind = \"stvk\"\nE = 2e11\nnu = 0.3\ndensity = 7800\n";
+  EXPECT_NE(refusal(steel + "damping = 1e-4\n")
+                .find(":6:1: material \"steel\": unknown key \"damping\" (it is a key of [region.NAME], [beam.NAME], [[joint]] and "
+                      "[[spring]]; keys: "),
+            std::string::npos)
+      << refusal(steel + "damping = 1e-4\n");
+  EXPECT_NE(refusal(hinge + "pitch = 0.01\n").find("(it is a key of [[joint]] of kind \"screw\"; keys: kind, "), std::string::npos);
+  EXPECT_NE(refusal("integrator = \"gauss\"\n").find("unknown key \"integrator\" (it is a key of [time]; keys at the top of a scene: "),
+            std::string::npos);
+  EXPECT_NE(refusal(hinge + "axes = [0, 0, 1]\n").find("(did you mean \"axis\"? \"axes\" is a key of [[body]])"), std::string::npos);
+  EXPECT_NE(refusal("[output]\nname = \"a\"\n").find("unknown key \"name\" (keys: "), std::string::npos);  // too many have it
+}
+
 TEST_F(Mistake, UnknownKind) {
   EXPECT_EQ(refusal("[[joint]]\nkind = \"revolut\"\nname = \"j\"\n"),
             "scene.toml:2:1: joint \"j\": unknown kind \"revolut\" (did you mean \"revolute\"?)");

@@ -210,7 +210,8 @@ TEST_F(Override, OfSomethingThatIsNotThereNamesWhatIs) {
   EXPECT_EQ(refusal(hinge, {"joint.elevator.at=[0, 0, 0]"}),
             "--set joint.elevator.at=[0, 0, 0]: no joint \"elevator\" (there are: trunnion)");
   EXPECT_EQ(refusal(hinge, {"joint.trunnion.axes=[0, 0, 1]"}),
-            "--set joint.trunnion.axes=[0, 0, 1]: joint \"trunnion\": unknown key \"axes\" (did you mean \"axis\"?)");
+            "--set joint.trunnion.axes=[0, 0, 1]: joint \"trunnion\": unknown key \"axes\" (did you mean \"axis\"? \"axes\" is a key of "
+            "[[body]])");
   EXPECT_EQ(refusal(hinge, {"jint.trunnion.at=1"}), "--set jint.trunnion.at=1: no section \"jint\" (did you mean \"joint\"?)");
   EXPECT_EQ(refusal(hinge, {"material.steel.E=1"}), "--set material.steel.E=1: no material \"steel\" (the scene has no material)");
   EXPECT_EQ(refusal("[material.steel]\nE = 1e9\n", {"material.steel.nu=0.5"}),

@@ -100,6 +100,7 @@ The audit looks at every step before it is accepted and refuses what fails: the 
 | `amplification` | error at the end, divided by the sum of what steps added, where `time.tolerance` chooses steps of energy-momentum: what the motion made of early errors |
 | `chaotic`, `meaningless_from` | by a second solution: whether distances, small beside the motion, grew exponentially; from when on the error is a fifth of the motion and more, or null [s] |
 | `asked`, `met`, `passes` | what `time.tolerance` asks [m], whether it is so by this estimate, and method, steps and error of every pass |
+| `why_better` | why the error at the end is less than a tenth of what `time.tolerance` asks; absent where it is not |
 | `why_not` | why there is no estimate; then the keys above, but for the last row, are absent |
 `left_out` lists what import did not carry over from a deck, as the scene's `[[left_out]]` say it.
 )";

@@ -47,7 +47,6 @@ TEST_F(Motions, OfASetOfABarThatMovesAlongLeaveItWithoutStress) {
   const std::string along = "[[initial]]\non = [\"bar\"]\nvelocity = [1, 0, 0]\n";
   for (const std::string components : {"", "components = [\"x\"]\n"})
     for (const std::string& kind : integrators()) {
-      if (kind == "gauss") continue;  // cells of it: tests/dynamics/gauss_test
       SCOPED_TRACE(kind + components);
       write("scene.toml", steel + moved_root + components + along);
       for (const int ranks : {1, 2}) {
@@ -64,7 +63,8 @@ TEST_F(Motions, OfASetOfABarThatMovesAlongLeaveItWithoutStress) {
         const Results r(*this / "run.h5");
         // round-off of positions of 1 m in cells of 2e11 Pa
         EXPECT_LT(r.table("/field/" + r.steps().back() + "/von_mises").maxCoeff(), 0.05);
-        EXPECT_LT(r.peak("probe/tip", 6, 3), 1e-4);
+        // gauss solves for accelerations from the forces there: 0.05 Pa on half a cell of 0.1 m are 1.3e-4 m/s^2
+        EXPECT_LT(r.peak("probe/tip", 6, 3), kind == "gauss" ? 3e-4 : 1e-4);
         EXPECT_NEAR(r.history("probe/root").col(3).minCoeff(), 1, 1e-14);
         EXPECT_LT(reported("energy_balance"), 1e-10);
       }
@@ -78,7 +78,6 @@ TEST_F(Motions, ThatHoldTwoComponentsOfNodesHoldThemInTheFirstGuessToo) {
                             probe("root", "xmin") + probe("tip", "xmax") + in_time(0.3, 0.01);
   write("scene.toml", swing);
   for (const std::string& kind : integrators()) {
-    if (kind == "gauss") continue;  // cells of it: tests/dynamics/gauss_test
     SCOPED_TRACE(kind);
     const Results r = solved(with(kind), "mesh.h5");
     EXPECT_LT(r.history("probe/tip").col(2).minCoeff(), -0.1);
