@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "post/charts/ticks.hpp"
 #include "post/picture/picture.hpp"

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
-
 namespace hilo {
 namespace {
 

@@ -7,8 +7,6 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "post/charts/ticks.hpp"
-#include "post/scene/overlay.hpp"
 
 namespace hilo {
 namespace {

@@ -9,8 +9,6 @@
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "post/surface/skin_builder.hpp"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/spline.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hilo {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "dynamics/about_state.hpp"
 #include "dynamics/record/recorder.hpp"
 #include "system/linear_regions.hpp"
 

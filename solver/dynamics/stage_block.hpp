@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "linear/kkt.hpp"
+#include "linear/tangent_reader.hpp"
 #include "system/system.hpp"
 
 namespace hilo {
@@ -13,7 +13,7 @@ namespace hilo {
 /// Takes the blocks of one evaluation into rows of stage `row` and columns of stage `column` of the coupled matrix, whose cliques are those
 /// of the system once for each stage.  Off the diagonal only what couples positions counts, and rows that hold velocities, times
 /// share/`scale` of the evaluation: other constraints belong to their own stage.
-class StageBlock final : public KktSolver {
+class StageBlock final : public TangentReader {
  public:
   StageBlock(SerialKktSolver& whole, const System& system, int row, int column, double share, const double& scale)
       : whole_(whole), system_(system), row_(row), column_(column), share_(share), scale_(scale) {
@@ -22,8 +22,6 @@ class StageBlock final : public KktSolver {
     for (const auto& c : system.constraints())
       for (int r = c->n_position_rows(); r < c->n_rows(); ++r) holds_velocity_[c->row() + r] = c->active()[r];
   }
-  void structure(const Cliques&, const BlockMap&) override {}
-  void zero() override {}
   void add(int clique, const double* K) override {
     const auto blocks = system_.layout.cliques[clique];
     const int n = static_cast<int>(blocks.size()), width = 3 * n, first_joint = system_.first_joint_block();
@@ -46,9 +44,6 @@ class StageBlock final : public KktSolver {
     if (row_ == column_) return whole_.add_diagonal(block + row_ * system_.n_blocks(), d);
     // held components are diagonal in their own stage; point masses are refused before
   }
-  void sum_shared(std::span<double>) override {}
-  SolveReport solve(std::span<const double>, std::span<double>, double) override { return {}; }
-  std::string name() const override { return "stage block"; }
 
  private:
   SerialKktSolver& whole_;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "linear/eigen_pairs.hpp"
 
-#include <vector>
-
 #include "base/error.hpp"
 #include "linear/lapack.hpp"
 

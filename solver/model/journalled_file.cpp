@@ -15,7 +15,6 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
-#include <span>
 
 #include "base/digest.hpp"
 #include "base/error.hpp"

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
 #include "base/keys.hpp"
 #include "base/units.hpp"

@@ -310,11 +310,4 @@ void Store::publish() {
   }
 }
 
-void Store::discard() {
-  if (!impl_->file.ok()) return;
-  impl_->abandon();
-  impl_->close();
-  if (std::exchange(impl_->temporary, false)) ::unlink(impl_->on_disk.c_str());
-}
-
 }  // namespace hilo

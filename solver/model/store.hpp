@@ -95,7 +95,6 @@ class Store {
   /// What was written survives a killed run, and where `safe` a power cut; a growing file has its name, which it takes after `before`.
   void flush(bool safe = true, const std::function<void()>& before = {});
   void publish();  // flush, fsync, rename to the final name, close
-  void discard();  // close and remove; of a growing file that has its name: close, as the last flush left it
   const std::string& path() const;
 
   struct Impl;

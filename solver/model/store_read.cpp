@@ -2,8 +2,6 @@
 // Store: reading.
 #include <fmt/format.h>
 
-#include <cstring>
-
 #include "base/digest.hpp"
 #include "base/error.hpp"
 #include "model/store_impl.hpp"

@@ -16,7 +16,6 @@ namespace hilo {
 /// Shapes of shells, numbered behind those of base/shape.hpp.
 inline constexpr auto tri3 = static_cast<Shape>(8), tri6 = static_cast<Shape>(9), quad4 = static_cast<Shape>(10),
                       quad8 = static_cast<Shape>(11);
-inline constexpr int n_shapes_with_shells = 12;
 
 struct ThinRegion {
   std::array<double, 10> moments{};                             // V, int x y z, int xx yy zz yz xz xy, about the origin  [m^3, m^4, m^5]

@@ -4,7 +4,6 @@
 #include "physics/spring.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "physics/joint_rows.hpp"
 

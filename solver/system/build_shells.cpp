@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <map>
 
 #include "base/shell_shape.hpp"
 #include "model/facet_key.hpp"

@@ -14,6 +14,7 @@
 #include <bit>
 #include <cmath>
 
+#include "linear/tangent_reader.hpp"
 #include "system/rigid_motion.hpp"
 #include "system/solids.hpp"
 #include "system/touching.hpp"
@@ -30,15 +31,13 @@ struct Block {
 
 /// Takes a tangent, and finds how far from a body's centre what resists its turns acts: of a point mass on a beam, this is no small part of
 /// the beam, though the body itself has no size.
-class Reach final : public KktSolver {
+class Reach final : public TangentReader {
  public:
   explicit Reach(const System& system) : system_(system), arm(system.bodies.size(), 0.0) {
     centre_of_.assign(system.first_joint_block(), -1);
     for (size_t b = 0; b < system.bodies.size(); ++b)
       if (system.body_block[b] >= 0) centre_of_[system.body_block[b] + 1] = static_cast<int>(b);
   }
-  void structure(const Cliques&, const BlockMap&) override {}
-  void zero() override {}
   void add(int clique, const double* dense) override {
     const auto list = system_.layout.cliques[clique];
     const auto n = static_cast<Eigen::Index>(list.size());
@@ -57,10 +56,6 @@ class Reach final : public KktSolver {
           take(K.block<3, 3>(3 * row, 3 * turn).norm(), K.block<3, 3>(3 * row, 3 * centre).norm());
     }
   }
-  void add_diagonal(int, const double*) override {}
-  void sum_shared(std::span<double>) override {}
-  SolveReport solve(std::span<const double>, std::span<double>, double) override { return {}; }
-  std::string name() const override { return "reach"; }
 
  private:
   const System& system_;
@@ -71,11 +66,10 @@ class Reach final : public KktSolver {
 };
 
 /// Takes a tangent, and keeps the sum N.
-class Resistance final : public KktSolver {
+class Resistance final : public TangentReader {
  public:
   Resistance(const System& system, const std::vector<Block>& blocks) : system_(system), blocks_(blocks) {}
   std::vector<Eigen::Triplet<double>> entries;
-  void structure(const Cliques&, const BlockMap&) override {}
   void zero() override { entries.clear(); }
   void add(int clique, const double* dense) override {
     const auto list = system_.layout.cliques[clique];
@@ -114,10 +108,6 @@ class Resistance final : public KktSolver {
         if (sum(i, j) != 0)
           entries.emplace_back(6 * parts[i / 6] + static_cast<int>(i % 6), 6 * parts[j / 6] + static_cast<int>(j % 6), sum(i, j));
   }
-  void add_diagonal(int, const double*) override {}  // held components, masses
-  void sum_shared(std::span<double>) override {}
-  SolveReport solve(std::span<const double>, std::span<double>, double) override { return {}; }
-  std::string name() const override { return "resistance"; }
   int n_clusters = 0;        // parts of nodes; bodies follow
   bool of_contacts = false;  // which hold a part from outside
 

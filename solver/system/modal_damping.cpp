@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/joined.hpp"
+#include "linear/tangent_reader.hpp"
 #include "system/linear_regions.hpp"
 
 namespace hilo {
@@ -23,13 +24,11 @@ using Vector = Eigen::VectorXd;
 constexpr Index most_unknowns = 2000;  // of what hangs together
 
 /// Takes the entries of some unknowns, and of constraint rows over them, from an evaluation.
-class Entries final : public KktSolver {
+class Entries final : public TangentReader {
  public:
   /// `place`: of the first of three unknowns of a block, or -1.
   Entries(const System& system, const std::vector<Index>& place, Index n)
       : system_(system), place_(place), matrix(Matrix::Zero(n, n)), rows(Matrix::Zero(3 * system.n_joint_blocks(), n)) {}
-  void structure(const Cliques&, const BlockMap&) override {}
-  void zero() override {}
   void add(int clique, const double* K) override {
     const auto blocks = system_.layout.cliques[clique];
     const size_t n = blocks.size();
@@ -48,10 +47,6 @@ class Entries final : public KktSolver {
       }
     }
   }
-  void add_diagonal(int, const double*) override {}
-  void sum_shared(std::span<double>) override {}
-  SolveReport solve(std::span<const double>, std::span<double>, double) override { return {}; }
-  std::string name() const override { return "entries"; }
 
  private:
   const System& system_;

@@ -2,47 +2,19 @@
 // Flexible cells: gather, kernel on as many cells as there are lanes, scatter.
 #include "system/solids.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
 #include <optional>
 
 #include "base/shell_shape.hpp"
-#include "system/collocation.hpp"
+#include "system/cell_stages.hpp"
 
 namespace hilo {
 namespace {
-
-/// Cache-line aligned scratch that grows.
-class Scratch {
- public:
-  double* get(size_t n) {
-    if (n + 8 > store_.size()) store_.resize(n + 8);
-    const auto at = reinterpret_cast<std::uintptr_t>(store_.data());
-    return reinterpret_cast<double*>((at + 63) / 64 * 64);
-  }
-
- private:
-  std::vector<double> store_;
-};
 
 /// Arrays of one call, (entry x lanes).
 struct Lanes {
   Scratch X, x0, x1, a, f, K, f2, K2, h0, h1, before, along, one, two, scalar[3];
 };
-
-void gather(const SolidBatch& b, int first, int W, const std::vector<Vec3>& from, double* to) {
-  const int n = info(b.shape).n_nodes, count = static_cast<int>(b.cells.size());
-  for (int l = 0; l < W; ++l) {
-    const int* nodes = b.nodes.data() + static_cast<size_t>(std::min(first + l, count - 1)) * n;
-    for (int k = 0; k < n; ++k) {
-      const Vec3& v = from[nodes[k]];
-      for (int i = 0; i < 3; ++i) to[(3 * k + i) * W + l] = v[i];
-    }
-  }
-}
 
 /// States of W cells, (entry x lanes).
 void gather_state(const SolidBatch& b, int first, int W, const std::vector<double>& from, double* to) {
@@ -52,135 +24,6 @@ void gather_state(const SolidBatch& b, int first, int W, const std::vector<doubl
     for (int k = 0; k < n; ++k) to[k * W + l] = cell[k];
   }
 }
-
-bool is_linear(const Material& m) { return std::holds_alternative<StVenantKirchhoff>(m) || std::holds_alternative<Orthotropic>(m); }
-
-/// W cells at the stages of a step that these share (system/collocation): the strain is a variable of its own, and stress
-///   S_i = dW(e(Q_i)) + C (E_i - e(Q_i)) + c C way_i,   E_i = e(q0) + sum a_ij way_j,   way_j = h G(Q_j) V_j = e(after_j) - e(before_j)
-/// with the law's moduli C at small strain.  Where stress is linear in strain the first two are C E_i, and c is none; elsewhere
-///   c = (W1 - W0 - sum b_j S_j.way_j)/(sum b_j way_j.C way_j)
-/// of the cell makes the work of the step the change of W; c way_i is of order h^6.
-class CellStages {
- public:
-  CellStages(const SolidBatch& b, const Collocation& step) : b_(b), step_(step), W_(b.kernel.width), size_(3 * info(b.shape).n_nodes * W_) {
-    call_.law = parameters(b.material), call_.area = b.area;
-  }
-  void gather_cells(int first, const double* X) {
-    call_.X = X;
-    start_ = put(store_.start, first, *step_.start);
-    for (int j = 0; j < n; ++j) {
-      before_[j] = put(store_.before[j], first, *step_.before[j]), after_[j] = put(store_.after[j], first, *step_.after[j]);
-      double* at = store_.at[j].get(size_);
-      for (int k = 0; k < size_; ++k) at[k] = (before_[j][k] + after_[j][k]) / 2;
-      at_[j] = at;
-    }
-  }
-  /// What is not dW(e(Q_i)), to the forces f of stage i.
-  void add_rest(int i, double* f) {
-    add_variable(i, f);
-    if (is_linear(b_.material)) return;
-    double *all = store_.all.get(size_), *missed = store_.missed.get(W_), *length = store_.length.get(W_);
-    find_energy_change(missed, length);
-    for (int l = 0; l < W_; ++l) length[l] *= rounding;
-    for (int j = 0; j < n; ++j) {
-      std::fill_n(all, size_, 0.0);
-      add(KernelCall{call_.X, at_[j], at_[j], 1, 0, call_.law, nullptr, nullptr, nullptr, nullptr, nullptr, 0, nullptr, 0, b_.area}, all);
-      add_variable(j, all);
-      add_product(-step_.b[j], all, j, missed);
-      std::fill_n(all, size_, 0.0);
-      add(along(j, 1), all);
-      add_product(step_.b[j], all, j, length);
-    }
-    std::fill_n(all, size_, 0.0);
-    add(along(i, 1), all);
-    for (int k = 0; k < size_; ++k)
-      if (length[k % W_] > 1e-280) f[k] += missed[k % W_] / length[k % W_] * all[k];
-  }
-  /// The derivative of C (E_i - e(Q_i)) at Q_i by Q_k, but for the factor c:  B(Q_i)^T C B(Y) with Y = sum a_ij W_jk Q_j + a_ik h V_k, as
-  /// B is linear, W = a^-1.
-  void add_slope(int i, int k, double* K) {
-    const Eigen::Map<const Eigen::Matrix<double, n, n, Eigen::RowMajor>> A(step_.a[0]);
-    const Eigen::Matrix3d W = A.inverse();
-    double *to = store_.to.get(size_), *from = store_.from.get(size_);
-    for (int x = 0; x < size_; ++x) {
-      to[x] = A(i, k) * (after_[k][x] - before_[k][x]);
-      for (int j = 0; j < n; ++j) to[x] += A(i, j) * W(j, k) * at_[j][x];
-    }
-    if (i == k) {  // calls have half of what is geometric, and B(after_i) to the right
-      for (const KernelCall& c : variable(i)) add_tangent(2, c, K);
-      for (int x = 0; x < size_; ++x) to[x] -= at_[i][x] + 2 * A(i, i) * after_[i][x];
-    }
-    for (int x = 0; x < size_; ++x) from[x] = 2 * at_[i][x] - to[x];
-    KernelCall c = call_;  // without stress: e(to) - e(from) is recalled
-    c.x0 = from, c.x1 = to, c.viscous = 1, c.past[0] = to, c.past[1] = from, c.recall[1] = 1;
-    add_tangent(1, c, K);
-  }
-
- private:
-  static constexpr int n = Collocation::n;
-  static constexpr double rounding = 1e-9;  // of the energy: ways below its root are too short to do work that was missed
-  struct Store {
-    Scratch start, before[n], after[n], at[n], end, f, all, missed, length, energy, to, from, K;
-  };
-  const double* put(Scratch& to, int first, const Config& from) {
-    gather(b_, first, W_, from.x, to.get(size_));
-    return to.get(size_);
-  }
-  /// v C (way_i + share (e(to) - e(from))) at Q_i.
-  KernelCall along(int i, double v, double share = 0, const double* from = nullptr, const double* to = nullptr) const {
-    KernelCall c = call_;
-    c.x0 = before_[i], c.x1 = after_[i], c.viscous = v;
-    if (from) c.past[0] = from, c.past[1] = to, c.recall[1] = share;
-    return c;
-  }
-  void add(KernelCall c, double* f) {
-    c.f = store_.f.get(size_);
-    b_.kernel.call(c);
-    for (int k = 0; k < size_; ++k) f[k] += c.f[k];
-  }
-  /// C (E_i - e(Q_i)), in three calls that each take a third of a_ii way_i.
-  std::array<KernelCall, n> variable(int i) const {
-    const double v = step_.a[i][i] / 3;
-    std::array<KernelCall, n> calls;
-    for (int j = 0; j < n; ++j)
-      calls[j] = j == i ? along(i, v, 1 / v, at_[i], start_) : along(i, v, step_.a[i][j] / v, before_[j], after_[j]);
-    return calls;
-  }
-  void add_variable(int i, double* f) {
-    for (const KernelCall& c : variable(i)) add(c, f);
-  }
-  /// factor times the K of a call.
-  void add_tangent(double factor, KernelCall c, double* K) {
-    const int size = size_ * (size_ / W_);
-    c.K = store_.K.get(size);
-    b_.kernel.call(c);
-    for (int k = 0; k < size; ++k) K[k] += factor * c.K[k];
-  }
-  /// factor f.h V_j of each cell to `sum`.
-  void add_product(double factor, const double* f, int j, double* sum) const {
-    for (int k = 0; k < size_; ++k) sum[k % W_] += factor * f[k] * (after_[j][k] - before_[j][k]);
-  }
-  /// W1 - W0 and |W1| + |W0| of each cell.
-  void find_energy_change(double* change, double* size) {
-    double *end = store_.end.get(size_), *energy = store_.energy.get(W_);
-    for (int k = 0; k < size_; ++k) {
-      end[k] = start_[k];
-      for (int j = 0; j < n; ++j) end[k] += step_.b[j] * (after_[j][k] - before_[j][k]);
-    }
-    std::fill_n(change, W_, 0.0), std::fill_n(size, W_, 0.0);
-    for (const double* x : {static_cast<const double*>(end), start_}) {
-      b_.kernel.call({call_.X, x, x, 0, 0, call_.law, nullptr, nullptr, energy, nullptr, nullptr, 0, nullptr, 0, b_.area});
-      for (int l = 0; l < W_; ++l) change[l] += x == start_ ? -energy[l] : energy[l], size[l] += std::abs(energy[l]);
-    }
-  }
-  const SolidBatch& b_;
-  const Collocation& step_;
-  int W_, size_;
-  KernelCall call_{};
-  const double *start_ = nullptr, *before_[n]{}, *after_[n]{}, *at_[n]{};
-  static thread_local Store store_;
-};
-thread_local CellStages::Store CellStages::store_;
 
 /// Stage whose positions the derivatives are by: that of the pair of the rate terms.
 int columns_of(const Stage& s) {

@@ -44,12 +44,6 @@ std::optional<Carry> System::search(const Config& q, const Config* v, double h) 
   return number();
 }
 
-const Constraint& System::constraint_of(int multiplier_block) const {
-  for (const auto& c : constraints_)
-    if (const int k = 3 * multiplier_block - c->row(); k >= 0 && k < c->n_padded()) return *c;
-  throw Error("", "multipliers belong to no constraint", "", Exit::fault);
-}
-
 void System::evaluate(const Stage& stage, std::span<const double> lambda, Residual& out, KktSolver* K) const {
   thread_local std::vector<Vec3> node;
   thread_local std::vector<Vec6> body;

@@ -54,8 +54,6 @@ class System : public Points {
   }
   /// All constraint rows, by the things that have them; there from prepare() on.
   std::span<const std::unique_ptr<Constraint>> constraints() const { return constraints_; }
-  /// The one that multipliers in a block belong to, counted from the first block of multipliers.
-  const Constraint& constraint_of(int multiplier_block) const;
 
   /// Number the unknowns and list the cliques; call once after everything is filled in.  Collective.
   void prepare();

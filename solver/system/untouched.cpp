@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <map>
 #include <set>
 
 #include "base/joined.hpp"
+#include "linear/tangent_reader.hpp"
 #include "system/contacts.hpp"
 #include "system/loads.hpp"
 #include "system/solids.hpp"
@@ -64,23 +64,17 @@ class Pieces {
 };
 
 /// Marks the pieces whose blocks a contribution has in its tangent: it holds them, or something beside them.
-class Marks final : public KktSolver {
+class Marks final : public TangentReader {
  public:
   Marks(const System& system, const std::vector<int>& piece_of_block, Pieces& pieces)
       : system_(system), piece_of_block_(piece_of_block), pieces_(pieces), own_(system.body_clique.begin(), system.body_clique.end()) {
     for (const Modes& m : system.modes) own_.insert(m.clique);
   }
-  void structure(const Cliques&, const BlockMap&) override {}
-  void zero() override {}
   void add(int clique, const double*) override {
     if (own_.contains(clique)) return;
     for (const int b : system_.layout.cliques[clique])
       if (b >= 0 && b < system_.first_joint_block() && piece_of_block_[b] >= 0) pieces_.reach(piece_of_block_[b]);
   }
-  void add_diagonal(int, const double*) override {}
-  void sum_shared(std::span<double>) override {}
-  SolveReport solve(std::span<const double>, std::span<double>, double) override { return {}; }
-  std::string name() const override { return "marks"; }
 
  private:
   const System& system_;

@@ -20,57 +20,23 @@ import share
 everything = "all" in sys.argv[2:]
 on_ranks.use()
 SECONDS = int(os.environ.get("SECONDS_EACH", 60))
-BLOCK = """[material.plain]
-E = 2e9
-nu = 0.3
-density = 1000
-[region."*"]
-material = "plain"
-[[motion]]
-kind = "fixed"
-name = "held"
-on = "base"
-"""
-TIMES = "[time]\nend = 0.05\nstep = 0.01\n"
-SETS = """[set.plane]
-kind = "plane"
-at = [0, 0, 1]
-axis = [0, 0, 1]
-[set.box]
-kind = "box"
-low = [0.9, -0.1, 0.9]
-high = [1.1, 1.1, 1.1]
-[set.ball]
-kind = "ball"
-at = [0, 0, 1]
-radius = 1.1
-[set.cylinder]
-kind = "cylinder"
-at = [0.5, 0.5, 0.5]
-axis = [0, 0, 1]
-radius = 0.7071
-tolerance = 0.01
-[set.near]
-kind = "near"
-at = [0.5, 0.5, 1]
+PLAIN = """material.plain = {E = 2e9, nu = 0.3, density = 1000}
+region."*" = {material = "plain"}
+set.plane = {kind = "plane", at = [0, 0, 1], axis = [0, 0, 1]}
+set.box = {kind = "box", low = [0.9, -0.1, 0.9], high = [1.1, 1.1, 1.1]}
+set.ball = {kind = "ball", at = [0, 0, 1], radius = 1.1}
+set.cylinder = {kind = "cylinder", at = [0.5, 0.5, 0.5], axis = [0, 0, 1], radius = 0.7071, tolerance = 0.01}
+set.near = {kind = "near", at = [0.5, 0.5, 1]}
+motion = [{kind = "fixed", name = "held", on = "base"}]
+sensor = [{name = "felt", on = "plane"}]
+probe = [{name = "p", on = "ball"}, {name = "q", on = "top"}, {name = "r", on = "cylinder"}]
 [[load]]
 kind = "traction"
 name = "pull"
 on = "near"
 traction = [0, 0, 10]
-[[sensor]]
-name = "felt"
-on = "plane"
-[[probe]]
-name = "p"
-on = "ball"
-[[probe]]
-name = "q"
-on = "top"
-[[probe]]
-name = "r"
-on = "cylinder"
 """
+TIMES = "[time]\nend = 0.05\nstep = 0.01\n"
 QUANTITIES = ('kind = "peak"\nstress = "block"', 'kind = "peak"\nsensor = "felt"', 'kind = "peak"\nsensor = "felt"\ncfc = 60',
               'kind = "at"\nt = 0.03\nbetween = ["p", "q"]', 'kind = "rms"\nbetween = ["p", "q", "r"]', 'kind = "peak"\nformula = "w [m] = probe.p.x"',
               'kind = "injury"\nsensor = "felt"\ncfc = 60\nmeasure = "DRI"', 'kind = "peak"\nstress = "block"\ntolerance = "2%"')
@@ -85,26 +51,25 @@ def allowed(section, key):
 
 def word_scenes():
     """What is tried, and the scene: on the block, with sets by place."""
-    plain = BLOCK + SETS
     for q in QUANTITIES:
-        yield "quantity " + q.replace("\n", ", "), plain + TIMES + f'[[quantity]]\nname = "q"\n{q}\n'
+        yield "quantity " + q.replace("\n", ", "), PLAIN + TIMES + f'[[quantity]]\nname = "q"\n{q}\n'
     for word in allowed("time", "integrator"):
-        yield "integrator " + word, plain + TIMES + f'integrator = "{word}"\n'
+        yield "integrator " + word, PLAIN + TIMES + f'integrator = "{word}"\n'
     for word in allowed("time", "analysis"):
-        yield "analysis " + word, plain + "[time]\n" + ("steps = 2\n" if word in ("static", "path") else "") + (
+        yield "analysis " + word, PLAIN + "[time]\n" + ("steps = 2\n" if word in ("static", "path") else "") + (
             "end = 0.05\nstep = 0.01\n" if word == "dynamic" else "") + f'analysis = "{word}"\n[[quantity]]\nname = "s"\nkind = "peak"\nstress = "block"\n'
     for word in allowed("solver", "kind"):
-        yield "solver " + word, plain + TIMES + f'[solver]\nkind = "{word}"\n'
+        yield "solver " + word, PLAIN + TIMES + f'[solver]\nkind = "{word}"\n'
     for word in allowed("output", "fields"):
-        yield "field " + word, plain + TIMES + f'[output]\nfields = ["{word}"]\n'
+        yield "field " + word, PLAIN + TIMES + f'[output]\nfields = ["{word}"]\n'
     for what in ('start = "equilibrium"', "tolerance = 1e-3"):
-        yield what, plain + TIMES + what + "\n"
+        yield what, PLAIN + TIMES + what + "\n"
     for what in ('nodes = "skin"', "envelope = true", 'precision = "single"', 'nodes = "skin"\nenvelope = true\nprecision = "single"'):
-        yield what, plain + TIMES + f'[output]\n{what}\n[[quantity]]\nname = "s"\nkind = "peak"\nstress = "block"\n'
+        yield what, PLAIN + TIMES + f'[output]\n{what}\n[[quantity]]\nname = "s"\nkind = "peak"\nstress = "block"\n'
     for word in allowed("history", "interpolation"):
-        yield word, plain + TIMES + f'[[load]]\nkind = "pressure"\nname = "push"\non = "top"\npressure = 10\nhistory = "h"\n[history.h]\nfile = "h.csv"\ninterpolation = "{word}"\n'
-    yield "stiffening", (plain + TIMES).replace('material = "plain"\n[[', 'material = "plain"\nstiffening = true\n[[')
-    yield "a redundant joint", plain + TIMES + "".join(
+        yield word, PLAIN + TIMES + f'[[load]]\nkind = "pressure"\nname = "push"\non = "top"\npressure = 10\nhistory = "h"\n[history.h]\nfile = "h.csv"\ninterpolation = "{word}"\n'
+    yield "stiffening", (PLAIN + TIMES).replace('material = "plain"', 'material = "plain", stiffening = true')
+    yield "a redundant joint", PLAIN + TIMES + "".join(
         f'[[joint]]\nkind = "fixed"\nname = "j{k}"\nb = "near"\nat = [0.5, 0.5, 1]\n' for k in (1, 2)).replace('b = "near"', 'b = "plane"')
 
 

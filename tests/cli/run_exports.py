@@ -59,52 +59,18 @@ def write_deck():
 
 
 SCENE = """gravity = [0, 0, -9.81]
-[material.soft]
-E = 1e7
-nu = 0.3
-density = 1000
-[region."*"]
-material = "soft"
-[[body]]
-name = "bob"
-mass = 1
-com = [0, 5, 0]
-inertia = [0.1, 0.2, 0.25]
-[[initial]]
-on = "bob"
-spin = [0, 0, 3]
-[[probe]]
-name = "tip"
-on = "bob"
-at = [0.5, 5, 0]
-[section.rod]
-kind = "box"
-width = 0.1
-height = 0.2
-thickness = 0.01
-[beam.whip]
-points = [[0, 5, 0], [0, 5, 1]]
-cells = [2]
-section = "rod"
-material = "soft"
-a = "bob"
-[set.top]
-kind = "box"
-low = [-0.1, -0.1, 1.9]
-high = [1.1, 1.1, 2.1]
-[[load]]
-kind = "force"
-name = "pull"
-on = "top"
-force = [3e5, 0, 1e5]
-[[sensor]]
-name = "felt"
-on = "top"
-[time]
-end = 0.02
-step = 1e-3
-[output]
-interval = 0.004
+material.soft = {E = 1e7, nu = 0.3, density = 1000}
+region."*" = {material = "soft"}
+body = [{name = "bob", mass = 1, com = [0, 5, 0], inertia = [0.1, 0.2, 0.25]}]
+initial = [{on = "bob", spin = [0, 0, 3]}]
+probe = [{name = "tip", on = "bob", at = [0.5, 5, 0]}]
+section.rod = {kind = "box", width = 0.1, height = 0.2, thickness = 0.01}
+beam.whip = {points = [[0, 5, 0], [0, 5, 1]], cells = [2], section = "rod", material = "soft", a = "bob"}
+set.top = {kind = "box", low = [-0.1, -0.1, 1.9], high = [1.1, 1.1, 2.1]}
+load = [{kind = "force", name = "pull", on = "top", force = [3e5, 0, 1e5]}]
+sensor = [{name = "felt", on = "top"}]
+time = {end = 0.02, step = 1e-3}
+output = {interval = 0.004}
 """
 write = lambda path, text: open(path, "w").write(text)
 VOLUMES = {"c3d8": 2, "c3d20r": 1, "c3d6": 1 / 2, "c3d15": 1 / 2, "c3d10": 1 / 6, "whip": 0.1 * 0.2 - 0.08 * 0.18}

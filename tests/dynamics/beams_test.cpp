@@ -13,49 +13,15 @@ namespace {
 std::string scene(const std::string& method) {
   return R"(
 gravity = [0, 0, -9.81]
-[section.s]
-kind = "matrix"
-stiffness = [3e4, 3e4, 5e4]
-bending = [40, 30, 25]
-line_mass = 0.5
-inertia = [1e-3, 2e-3]
-[section.rod]
-kind = "circle"
-diameter = 0.02
-[material.m]
-E = 1e9
-nu = 0.3
-density = 1200
-[[body]]
-name = "hub"
-mass = 2
-com = [0, 0, 0]
-inertia = [0.1, 0.1, 0.1]
-[[joint]]
-kind = "revolute"
-name = "axle"
-b = "hub"
-at = [0, 0, 0]
-axis = [0, 1, 0]
-[beam.bow]
-path = "arc"
-points = [[0.1, 0, 0], [0.4, 0.1, 0], [0.8, 0, 0]]
-cells = [4]
-section = "s"
-a = "hub"
-damping = 1e-3
-[beam.tail]
-points = [[0.8, 0, 0], [0.8, 0.3, -0.2]]
-cells = [2]
-section = "rod"
-material = "m"
-a = "bow.end"
-mass_damping = 0.1
-[time]
-end = 0.2
-step = 0.005
-integrator = ")" +
-         method + "\"\n";
+section.s = {kind = "matrix", stiffness = [3e4, 3e4, 5e4], bending = [40, 30, 25], line_mass = 0.5, inertia = [1e-3, 2e-3]}
+section.rod = {kind = "circle", diameter = 0.02}
+material.m = {E = 1e9, nu = 0.3, density = 1200}
+body = [{name = "hub", mass = 2, com = [0, 0, 0], inertia = [0.1, 0.1, 0.1]}]
+joint = [{kind = "revolute", name = "axle", b = "hub", at = [0, 0, 0], axis = [0, 1, 0]}]
+beam.bow = {path = "arc", points = [[0.1, 0, 0], [0.4, 0.1, 0], [0.8, 0, 0]], cells = [4], section = "s", a = "hub", damping = 1e-3}
+beam.tail = {points = [[0.8, 0, 0], [0.8, 0.3, -0.2]], cells = [2], section = "rod", material = "m", a = "bow.end", mass_damping = 0.1}
+time = {end = 0.2, step = 0.005, integrator = ")" +
+         method + "\"}\n";
 }
 
 class KeptBeams : public testing::TestWithParam<std::string> {};

@@ -4,7 +4,6 @@
 
 #include "dynamics/integrator/make.hpp"
 #include "dynamics/scenes.hpp"
-#include "dynamics/start.hpp"
 #include "succeeded.hpp"
 
 namespace hilo::test {

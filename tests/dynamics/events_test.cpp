@@ -16,22 +16,10 @@ namespace {
 constexpr double odd = 0.0153, end_of_run = 0.05, step = 0.01;
 
 /// A block with a facet set and two bodies, the joint "axle" between them for what acts along one.
-const std::string surroundings = R"([material.m]
-E = 1e7
-nu = 0.3
-density = 1000
-[region.block]
-material = "m"
-[[body]]
-name = "wheel"
-mass = 1
-com = [0, 0, 2]
-inertia = [1, 1, 1]
-[[body]]
-name = "other"
-mass = 1
-com = [3, 0, 2]
-inertia = [1, 1, 1]
+const std::string surroundings = R"(material.m = {E = 1e7, nu = 0.3, density = 1000}
+region.block = {material = "m"}
+body = [{name = "wheel", mass = 1, com = [0, 0, 2], inertia = [1, 1, 1]},
+  {name = "other", mass = 1, com = [3, 0, 2], inertia = [1, 1, 1]}]
 )";
 
 std::string axle(const std::string& kind) {

@@ -3,14 +3,13 @@
 // differences, and what it refuses.
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
-
 #include "base/registry.hpp"
 #include "base/shell_shape.hpp"
 #include "dynamics/integrator/make.hpp"
 #include "dynamics/scenes.hpp"
-#include "dynamics/start.hpp"
+#include "linear/tangent_reader.hpp"
 #include "succeeded.hpp"
+#include "system/along.hpp"
 #include "verify/block_mesh.hpp"
 
 namespace hilo::test {
@@ -228,54 +227,11 @@ TEST(Gauss, RefusesWhatItDoesNotKnow) {
   EXPECT_NE(ran.err.find("gauss does not know shells yet"), std::string::npos) << ran.err;
 }
 
-/// Keeps the first matrix of all stages and answers with steps along a direction, 1, then 1/10.
-class Along final : public SerialKktSolver {
- public:
-  Eigen::MatrixXd A;
-  Eigen::VectorXd d;
-  std::vector<Eigen::VectorXd> b;
-  static constexpr double step = 1e-7;
-  void structure(const Cliques& cliques, const BlockMap& map) override {
-    cliques_ = cliques;
-    const auto n = 3 * static_cast<Eigen::Index>(map.global.size());
-    A = Eigen::MatrixXd::Zero(n, n), d.resize(n);
-    for (Eigen::Index i = 0; i < n; ++i) d[i] = i % 30 == 26 ? 0 : std::sin(1.7 * static_cast<double>(i * i + 3));
-  }
-  void zero() override {
-    if (b.empty()) A.setZero();
-  }
-  void add(int, const double*) override {}
-  void add_part(int clique, int row, int column, int n, const double* K) override {
-    const auto blocks = cliques_[clique];
-    for (int i = 0; i < 3 * n && b.empty(); ++i)
-      for (int j = 0; j < 3 * n; ++j)
-        if (const int r = blocks[row + i / 3], c = blocks[column + j / 3]; r >= 0 && c >= 0)
-          A(3 * r + i % 3, 3 * c + j % 3) += K[3 * n * i + j];
-  }
-  void add_diagonal(int, const double*) override {}
-  void sum_shared(std::span<double>) override {}
-  SolveReport solve(std::span<const double> rhs, std::span<double> x, double) override {
-    b.emplace_back(Eigen::Map<const Eigen::VectorXd>(rhs.data(), static_cast<Eigen::Index>(rhs.size())));
-    const double along = b.size() == 1 ? step : -0.9 * step;
-    for (size_t i = 0; i < x.size(); ++i) x[i] = along * d[static_cast<Eigen::Index>(i)];
-    return {b.size() < 3, 0, 0, "enough"};
-  }
-  std::string name() const override { return "along"; }
-
- private:
-  Cliques cliques_;
-};
-
 /// Refuses every solve, so that the matrix of all stages is tried.
-class Unwilling final : public KktSolver {
+class Unwilling final : public TangentReader {
  public:
-  void structure(const Cliques&, const BlockMap&) override {}
-  void zero() override {}
   void add(int, const double*) override {}
-  void add_diagonal(int, const double*) override {}
-  void sum_shared(std::span<double>) override {}
   SolveReport solve(std::span<const double>, std::span<double>, double) override { return {false, 0, 0, "unwilling"}; }
-  std::string name() const override { return "unwilling"; }
 };
 
 /// Differences of the residuals of all three stages, over a step of 0.1 s.
@@ -283,7 +239,7 @@ void expect_matrix(const System& system, Eigen::Index rows, double limit) {
   State s;
   s.q = system.start, s.v = system.start_velocity;
   s.lambda.assign(3 * system.n_joint_blocks(), 5.0);
-  auto solver = std::make_unique<Along>();
+  auto solver = std::make_unique<Along>([](int i) { return i % 30 == 26 ? 0 : std::sin(1.7 * (static_cast<double>(i) * i + 3)); });
   Along& along = *solver;
   Unwilling none;
   const StepTools tools{system, none, {.tolerance = 1e-300}};

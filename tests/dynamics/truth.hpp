@@ -59,9 +59,6 @@ struct FixedPoint {
 struct SliderCrank {
   double r = 0.5, l = 1, m1 = 1, m2 = 2, m3 = 0.5, theta = 0.5, rate = 6;
 
-  struct Kinematics {
-    double x, xc, yc, phi;
-  };
   /// Block x, centre of the rod, rod angle at crank angle t.
   template <class T>
   static void place(T r, T l, T t, T& x, T& xc, T& yc, T& phi) {

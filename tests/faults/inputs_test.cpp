@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // No command destroys what it was given, under whatever name; a run that is refused leaves the former result.
-#include "base/error.hpp"
 #include "faults.hpp"
 #include "model/store.hpp"
 

@@ -18,20 +18,10 @@ Box(1) = {0, 0, 0, 1, 0.1, 0.1};
 Physical Volume("bar") = {1};
 Physical Surface("root") = Surface In BoundingBox {-0.01, -0.01, -0.01, 0.01, 0.11, 0.11};
 )");
-    place.write("scene.toml", R"([material.steel]
-E = 205e9
-nu = 0.29
-density = 7850
-[region.bar]
-material = "steel"
-[[joint]]
-kind = "fixed"
-name = "wall"
-b = "root"
-at = [0, 0.05, 0.05]
-[time]
-end = 5e-4
-step = 1e-4
+    place.write("scene.toml", R"(material.steel = {E = 205e9, nu = 0.29, density = 7850}
+region.bar = {material = "steel"}
+joint = [{kind = "fixed", name = "wall", b = "root", at = [0, 0.05, 0.05]}]
+time = {end = 5e-4, step = 1e-4}
 )");
     EXPECT_EQ(place.run("hilo-import bar.geo --size 0.025 -o mesh.h5").exit, 0);
     EXPECT_EQ(place.run("hilo-tag mesh.h5 --nonlinear bar -o tags.h5").exit, 0);

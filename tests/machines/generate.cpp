@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Random machines by family.  Every joint is put together in the configuration in which it is drawn, so a scene needs no assembly.
-#include <algorithm>
 #include <numbers>
-#include <stdexcept>
 
 #include "machines/maker.hpp"
 

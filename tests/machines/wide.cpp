@@ -2,7 +2,6 @@
 // Attacks beyond the suite: what supplies power or takes it in jumps, and machines drawn where their joints' rows depend on each other.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <numbers>
 #include <stdexcept>
 

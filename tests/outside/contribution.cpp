@@ -9,7 +9,6 @@
 #include "system/contribution.hpp"
 
 #include <Eigen/Core>
-#include <numeric>
 
 #include "base/keys.hpp"
 #include "dynamics/kept_run.hpp"

@@ -9,7 +9,6 @@
 namespace hilo::test {
 
 using Vec12 = Eigen::Matrix<double, 12, 1>;
-using Mat12 = Eigen::Matrix<double, 12, 12>;
 
 inline Vec3 scattered(int seed) { return {scatter(seed), scatter(seed + 1), scatter(seed + 2)}; }
 inline Mat3 turn(const Vec3& rotation_vector) {

@@ -11,7 +11,6 @@
 
 #include "cli.hpp"
 #include "post/run/playback.hpp"
-#include "post/run/run_beams.hpp"
 #include "succeeded.hpp"
 
 namespace hilo::test {

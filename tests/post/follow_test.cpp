@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "base/error.hpp"
 #include "moving_run.hpp"
 #include "picture_file.hpp"
 #include "post/scene/annotations.hpp"
@@ -182,19 +181,9 @@ TEST(Bodies, without_a_mesh_fall_as_they_should_and_are_drawn) {
   const Workplace place;
   place.write("scene.toml", R"(
 gravity = [0, 0, -10]
-[[body]]
-name = "ball"
-mass = 5
-com = [1, 2, 3]
-inertia = [0.5, 0.4, 0.3]
-[[body]]
-name = "stone"
-mass = 1
-com = [0, 0, 0]
-inertia = [1e-3, 1e-3, 1e-3]
-[time]
-end = 0.5
-step = 0.01
+body = [{name = "ball", mass = 5, com = [1, 2, 3], inertia = [0.5, 0.4, 0.3]},
+  {name = "stone", mass = 1, com = [0, 0, 0], inertia = [1e-3, 1e-3, 1e-3]}]
+time = {end = 0.5, step = 0.01}
 )");
   ASSERT_EQ(place.run("hilo-solve --quiet scene.toml -o run.h5").exit, 0);
   RunFile run(place / "run.h5");

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 
-#include "base/error.hpp"
 #include "cli.hpp"
 #include "picture_file.hpp"
 #include "sample_run.hpp"

@@ -7,7 +7,6 @@
 
 #include <cmath>
 
-#include "base/error.hpp"
 #include "moving_run.hpp"
 #include "post/surface/iso_surface.hpp"
 #include "post/surface/pieces.hpp"

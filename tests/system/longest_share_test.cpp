@@ -20,16 +20,9 @@ class LongestShare : public testing::TestWithParam<Shape> {
     write_mesh(place / "mesh.h5", block_mesh(o), {"test"});
     local = read_local_mesh(place / "mesh.h5", Comm::world());
     const Scene scene = Scene::parse(R"(
-[material.soft]
-kind = "neo-hookean"
-E = 2e5
-nu = 0.3
-density = 1000
-[region."*"]
-material = "soft"
-[time]
-end = 1
-step = 1
+material.soft = {kind = "neo-hookean", E = 2e5, nu = 0.3, density = 1000}
+region."*" = {material = "soft"}
+time = {end = 1, step = 1}
 )",
                                      "scene.toml");
     system = build_system(scene, &local, Comm::world());

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "dynamics/integrator/make.hpp"
-#include "dynamics/start.hpp"
 #include "model/local_mesh.hpp"
 #include "system/dense_kkt.hpp"
 #include "system/somewhere_off.hpp"
@@ -14,273 +13,48 @@ namespace {
 
 const char* const everything = R"(
 gravity = [1, -2, -9.81]
-[material.soft]
-kind = "neo-hookean"
-E = 2e5
-nu = 0.3
-density = 1000
-[region."*"]
-material = "soft"
-damping = 0.02
-mass_damping = 0.7
-[[body]]
-name = "top"
-mass = 3
-com = [0.2, 0.1, 2]
-inertia = [0.2, 0.3, 0.4, 0.02, -0.01, 0.03]
-[[body]]
-name = "side"
-mass = 2
-com = [0.2, 1.5, 1]
-inertia = [0.1, 0.1, 0.1]
-[[body]]
-name = "slider"
-mass = 1
-com = [0.2, 1.9, 1.1]
-inertia = [0.02, 0.03, 0.04]
-[[point_mass]]
-name = "lump"
-on = "ymax"
-mass = 5
-[[joint]]
-kind = "revolute"
-name = "hinge"
-a = "zmax"
-b = "top"
-at = [0.2, 0.15, 1.2]
-axis = [1, 0.3, 0]
-[[joint]]
-kind = "universal"
-name = "cross"
-a = "top"
-b = "side"
-at = [0.2, 0.8, 1.5]
-axis = [0, 1, 0]
-x = [1, 0, 0]
-[[joint]]
-kind = "distance"
-name = "rod"
-a = "ground"
-b = "side"
-at_a = [2, 1.5, 1]
-at_b = [0.2, 1.6, 1]
-[[joint]]
-kind = "planar"
-name = "table"
-b = "top"
-at = [0.1, 0.1, 2]
-axis = [0, 0.2, 1]
-[[joint]]
-kind = "in-plane"
-name = "foot"
-a = "zmax"
-b = "side"
-at = [0.3, 1, 1]
-axis = [1, 0.2, 1]
-[[joint]]
-kind = "in-line"
-name = "pin"
-a = "top"
-b = "side"
-at = [0.3, 1, 1]
-axis = [1, 0.2, 1]
-[[joint]]
-kind = "constant-velocity"
-name = "bent"
-a = "top"
-b = "side"
-at = [0.3, 1, 1.2]
-axis = [1, 0.2, 1]
-axis_b = [1, 0.5, 0.5]
-[[joint]]
-kind = "screw"
-name = "spindle"
-a = "side"
-b = "top"
-at = [0.3, 1, 1.2]
-axis = [1, 0.2, 1]
-pitch = 0.4
-angle = 0.3
-history = {t = [0, 1], value = [0, 1], interpolation = "smooth"}
-[[joint]]
-kind = "cylindrical"
-name = "ram"
-a = "zmax"
-b = "side"
-at = [0.3, 1, 1.2]
-axis = [1, 0.2, 1]
-velocity = 0.2
-[[joint]]
-kind = "gear"
-name = "mesh"
-a = "top"
-b = "side"
-at = [0.3, 1, 1.2]
-axis = [1, 0.2, 1]
-axis_b = [0, 0.2, 1]
-ratio = -1.7
-carrier = "zmax"
-[[joint]]
-kind = "rack"
-name = "teeth"
-a = "side"
-b = "top"
-at = [0.1, 1, 2.2]
-axis = [0, 0.2, 1]
-direction = [0, 1, 0.1]
-radius = 0.3
-[[joint]]
-kind = "weighted-sum"
-name = "rope"
-a = "zmax"
-b = "top"
-carrier = "side"
-at_a = [0.3, 0.1, 2]
-at_b = [0.1, 0.2, 2.2]
-at_carrier = [0.3, 1, 1.2]
-axis_a = [1, 0.2, 0]
-axis_carrier = [0, 1, 1]
-factors = [2, -1.5]
-factor_carrier = 0.7
-[[joint]]
-kind = "point-on-curve"
-name = "cam"
-a = "top"
-b = "side"
-at = [0.3, 1, 1.2]
-points = [[0, 0.8, 1], [0.2, 0.9, 1.2], [0.4, 1.1, 1.1], [0.5, 1.5, 1.3], [0.2, 1.7, 1.2]]
-[[joint]]
-kind = "distance"
-name = "long"
-a = "top"
-b = "side"
-at_a = [2, 1.5, 1]
-at_b = [0.2, 1.6, 1]
-length = 1.7
-[[spring]]
-kind = "axial"
-name = "strut"
-a = "heavy"
-b = "side"
-at_a = [0.1, 0.1, 0.2]
-at_b = [0.2, 1.5, 0.9]
-stiffness = 4000
-damping = 50
-length = 1
-[[spring]]
-kind = "torsion"
-name = "coil"
-a = "zmax"
-b = "top"
-axis = [1, 0.3, 0]
-stiffness = 300
-damping = 4
-[[spring]]
-kind = "bushing"
-name = "mount"
-b = "heavy"
-at = [0.2, 0.15, 0]
-stiffness = [3000, 4000, 5000]
-damping = [10, 20, 30]
-angular_stiffness = [100, 200, 300]
-angular_damping = [1, 2, 3]
-[[joint]]
-kind = "cylindrical"
-name = "sleeve"
-a = "side"
-b = "slider"
-at = [0.2, 1.9, 1.1]
-axis = [0.2, 1, 0.3]
-[[body]]
-name = "coin"
-mass = 1
-com = [0.3, 0.2, 2.3]
-inertia = [0.02, 0.04, 0.03]
-[[joint]]
-kind = "rolling"
-name = "coin"
-a = "top"
-b = "coin"
-at = [0.3, 0.25, 2.3]
-axis = [0.1, 0, 1]
-radius = 0.3
-axle = [0.2, 1, 0.3]
-[[joint]]
-kind = "knife-edge"
-name = "blade"
-a = "side"
-b = "coin"
-at = [0.1, 0.4, 1.2]
-axis = [0.1, 0, 1]
-edge = [0.2, 1, 0.3]
-[[friction]]
-name = "hinge"
-joint = "hinge"
-coefficient = 0.3
-radius = 0.05
-preload = 4
-slip_velocity = 0.4
-[[friction]]
-name = "sleeve"
-joint = "sleeve"
-coefficient = 0.2
-radius = 0.04
-slip_velocity = 0.7
-[[stop]]
-kind = "angle"
-name = "hinge"
-joint = "hinge"
-upper = -0.02
-stiffness = 500
-restitution = 0.4
-[[stop]]
-kind = "slide"
-name = "sleeve"
-joint = "sleeve"
-lower = 0.04
-stiffness = 900
-restitution = 0.6
-rest_speed = 0.5
-[[motor]]
-kind = "rotary"
-name = "sleeve"
-joint = "sleeve"
-rate = [-3, 5]
-torque = [7, -2]
-history = {t = [0, 1], value = [1, 2]}
-[[load]]
-kind = "pressure"
-name = "air"
-on = "xmax"
-pressure = 3000
-[[load]]
-kind = "torque"
-name = "follower"
-on = "top"
-torque = [5, -7, 3]
-follower = true
-[[load]]
-kind = "force"
-name = "push"
-on = "side"
-force = [50, 20, -30]
-at = [0.3, 1.7, 1.2]
-[[motion]]
-kind = "fixed"
-name = "held"
-on = "corner"
-components = ["x", "z"]
-[[motion]]
-kind = "rotation"
-name = "turned"
-on = "line"
-at = [0, 0, 0.6]
-axis = [0, 0, 1]
-angle = 0.5
-history = {t = [0, 1], value = [0, 1]}
-[time]
-end = 1
-step = 0.02
+material.soft = {kind = "neo-hookean", E = 2e5, nu = 0.3, density = 1000}
+region."*" = {material = "soft", damping = 0.02, mass_damping = 0.7}
+body = [{name = "top", mass = 3, com = [0.2, 0.1, 2], inertia = [0.2, 0.3, 0.4, 0.02, -0.01, 0.03]},
+  {name = "side", mass = 2, com = [0.2, 1.5, 1], inertia = [0.1, 0.1, 0.1]},
+  {name = "slider", mass = 1, com = [0.2, 1.9, 1.1], inertia = [0.02, 0.03, 0.04]},
+  {name = "coin", mass = 1, com = [0.3, 0.2, 2.3], inertia = [0.02, 0.04, 0.03]}]
+point_mass = [{name = "lump", on = "ymax", mass = 5}]
+joint = [{kind = "revolute", name = "hinge", a = "zmax", b = "top", at = [0.2, 0.15, 1.2], axis = [1, 0.3, 0]},
+  {kind = "universal", name = "cross", a = "top", b = "side", at = [0.2, 0.8, 1.5], axis = [0, 1, 0], x = [1, 0, 0]},
+  {kind = "distance", name = "rod", a = "ground", b = "side", at_a = [2, 1.5, 1], at_b = [0.2, 1.6, 1]},
+  {kind = "planar", name = "table", b = "top", at = [0.1, 0.1, 2], axis = [0, 0.2, 1]},
+  {kind = "in-plane", name = "foot", a = "zmax", b = "side", at = [0.3, 1, 1], axis = [1, 0.2, 1]},
+  {kind = "in-line", name = "pin", a = "top", b = "side", at = [0.3, 1, 1], axis = [1, 0.2, 1]},
+  {kind = "constant-velocity", name = "bent", a = "top", b = "side", at = [0.3, 1, 1.2], axis = [1, 0.2, 1], axis_b = [1, 0.5, 0.5]},
+  {kind = "screw", name = "spindle", a = "side", b = "top", at = [0.3, 1, 1.2], axis = [1, 0.2, 1], pitch = 0.4, angle = 0.3, history = {t = [0, 1], value = [
+    0, 1], interpolation = "smooth"}},
+  {kind = "cylindrical", name = "ram", a = "zmax", b = "side", at = [0.3, 1, 1.2], axis = [1, 0.2, 1], velocity = 0.2},
+  {kind = "gear", name = "mesh", a = "top", b = "side", at = [0.3, 1, 1.2], axis = [1, 0.2, 1], axis_b = [0, 0.2, 1], ratio = -1.7, carrier = "zmax"},
+  {kind = "rack", name = "teeth", a = "side", b = "top", at = [0.1, 1, 2.2], axis = [0, 0.2, 1], direction = [0, 1, 0.1], radius = 0.3},
+  {kind = "weighted-sum", name = "rope", a = "zmax", b = "top", carrier = "side", at_a = [0.3, 0.1, 2], at_b = [0.1, 0.2, 2.2], at_carrier = [
+    0.3, 1, 1.2], axis_a = [1, 0.2, 0], axis_carrier = [0, 1, 1], factors = [2, -1.5], factor_carrier = 0.7},
+  {kind = "point-on-curve", name = "cam", a = "top", b = "side", at = [0.3, 1, 1.2], points = [[0, 0.8, 1], [0.2, 0.9, 1.2], [0.4, 1.1, 1.1], [0.5, 1.5, 1.3], [
+    0.2, 1.7, 1.2]]},
+  {kind = "distance", name = "long", a = "top", b = "side", at_a = [2, 1.5, 1], at_b = [0.2, 1.6, 1], length = 1.7},
+  {kind = "cylindrical", name = "sleeve", a = "side", b = "slider", at = [0.2, 1.9, 1.1], axis = [0.2, 1, 0.3]},
+  {kind = "rolling", name = "coin", a = "top", b = "coin", at = [0.3, 0.25, 2.3], axis = [0.1, 0, 1], radius = 0.3, axle = [0.2, 1, 0.3]},
+  {kind = "knife-edge", name = "blade", a = "side", b = "coin", at = [0.1, 0.4, 1.2], axis = [0.1, 0, 1], edge = [0.2, 1, 0.3]}]
+spring = [{kind = "axial", name = "strut", a = "heavy", b = "side", at_a = [0.1, 0.1, 0.2], at_b = [0.2, 1.5, 0.9], stiffness = 4000, damping = 50, length = 1},
+  {kind = "torsion", name = "coil", a = "zmax", b = "top", axis = [1, 0.3, 0], stiffness = 300, damping = 4},
+  {kind = "bushing", name = "mount", b = "heavy", at = [0.2, 0.15, 0], stiffness = [3000, 4000, 5000], damping = [10, 20, 30], angular_stiffness = [
+    100, 200, 300], angular_damping = [1, 2, 3]}]
+friction = [{name = "hinge", joint = "hinge", coefficient = 0.3, radius = 0.05, preload = 4, slip_velocity = 0.4},
+  {name = "sleeve", joint = "sleeve", coefficient = 0.2, radius = 0.04, slip_velocity = 0.7}]
+stop = [{kind = "angle", name = "hinge", joint = "hinge", upper = -0.02, stiffness = 500, restitution = 0.4},
+  {kind = "slide", name = "sleeve", joint = "sleeve", lower = 0.04, stiffness = 900, restitution = 0.6, rest_speed = 0.5}]
+motor = [{kind = "rotary", name = "sleeve", joint = "sleeve", rate = [-3, 5], torque = [7, -2], history = {t = [0, 1], value = [1, 2]}}]
+load = [{kind = "pressure", name = "air", on = "xmax", pressure = 3000},
+  {kind = "torque", name = "follower", on = "top", torque = [5, -7, 3], follower = true},
+  {kind = "force", name = "push", on = "side", force = [50, 20, -30], at = [0.3, 1.7, 1.2]}]
+motion = [{kind = "fixed", name = "held", on = "corner", components = ["x", "z"]},
+  {kind = "rotation", name = "turned", on = "line", at = [0, 0, 0.6], axis = [0, 0, 1], angle = 0.5, history = {t = [0, 1], value = [0, 1]}}]
+time = {end = 1, step = 0.02}
 )";
 
 std::unique_ptr<StageIntegrator> made(const std::string& name) {
@@ -315,7 +89,7 @@ class Tangent : public testing::TestWithParam<std::tuple<const char*, const char
                {Fidelity::rigid, Fidelity::nonlinear, upper == "nonlinear" ? Fidelity::nonlinear : Fidelity::linear}, {"test"});
     local = read_local_mesh(place / "tags.h5", Comm::world());
     scene = Scene::parse(
-        everything + std::string(upper == "stiffening" ? "[region.upper]\nmaterial = \"soft\"\nmodes = 4\nstiffening = true\n" : ""),
+        everything + std::string(upper == "stiffening" ? "region.upper = {material = \"soft\", modes = 4, stiffening = true}\n" : ""),
         "scene.toml");
     system = build_system(scene, &local, Comm::world());
   }

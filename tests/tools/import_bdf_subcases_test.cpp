@@ -27,7 +27,7 @@ TEST_F(ImportBdfSubcases, EachRunsAsTheOneTakenAlone) {
   for (const char* row : {"1        s_1.toml      1        1         1  ", "4        s_4.toml      1        1         1  ",
                           "9        s_9.toml      1        1         1  "})
     EXPECT_NE(out.find(row), std::string::npos) << out;
-  EXPECT_NE(err.find("not read: loads of a set that no subcase uses (1, a.bdf:34)"), std::string::npos) << err;  // set 77
+  expect_said("not read: loads of a set that no subcase uses (1, a.bdf:34)");  // set 77
   EXPECT_EQ(err.find("not read: SUBCASE"), std::string::npos) << err;
   EXPECT_EQ(err.find("not read: PLOAD"), std::string::npos) << err;
   const std::vector<double> forces[] = {{-4, 0, 0}, {0, 0, -10}, {0, 0, 100}};

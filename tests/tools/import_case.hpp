@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What tests of hilo-import share: a folder, runs, and areas and volumes of what was read.
 #pragma once
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
 
-#include "../cli.hpp"
 #include "model/mesh.hpp"
+#include "model/store.hpp"
 #include "succeeded.hpp"
+#include "tool_case.hpp"
 
 namespace hilo::test {
 
@@ -34,7 +33,7 @@ inline std::int64_t cells_of(const Mesh& m, const std::string& region) {
   return r < 0 ? -1 : std::count(m.region.begin(), m.region.end(), r);
 }
 
-class Import : public testing::Test {
+class Import : public ToolCase {
  protected:
   /// Imports `file` with `options` and reads the mesh back.
   Mesh imported(const std::string& file, const std::string& options = "") {
@@ -42,18 +41,24 @@ class Import : public testing::Test {
     out = ran.out, err = ran.err;
     return read_mesh_file(place / "out.h5").mesh;
   }
-  /// The command must fail with this code and line, say nothing on stdout and leave the folder as it was.
-  void refused(const std::string& arguments, int exit, const std::string& message) {
-    const auto before = place.files();
-    const auto ran = place.run("hilo-import " + arguments);
-    EXPECT_EQ(ran.exit, exit) << arguments;
-    EXPECT_EQ(ran.out, "") << arguments;
-    EXPECT_EQ(ran.err, "hilo-import: " + message + "\n") << arguments;
-    EXPECT_EQ(place.files(), before) << arguments;
+  /// Imports a deck with its scene, and runs the scene.
+  void solve(const std::string& text, const std::string& file = "a.inp", const std::string& options = "", const std::string& to_run = "") {
+    place.write(file, text);
+    imported(file, "--scene-out s.toml " + options);
+    succeeded(place.run("hilo-solve --quiet s.toml -o run.h5 " + to_run), text_of(place / "s.toml"));
   }
+  /// The last row of a history of the run.
+  std::vector<double> last(const std::string& history, std::ptrdiff_t width) const {
+    const auto all = Store::open(place / "run.h5").read<double>("/history/" + history);
+    return {all.end() - width, all.end()};
+  }
+  void refused(const std::string& arguments, int exit, const std::string& message) {
+    expect_refused("hilo-import " + arguments, exit, message);
+  }
+  /// The import has these words among its messages.
+  void expect_said(const std::string& words) const { EXPECT_NE(err.find(words), std::string::npos) << words << '\n' << err; }
   static std::string deck(const std::string& name) { return std::string(HILO_SOURCE) + "/tests/tools/decks/" + name; }
 
-  Workplace place;
   std::string out, err;
 };
 

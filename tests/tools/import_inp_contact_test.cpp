@@ -27,11 +27,8 @@ constexpr double force = 1e9 * 2e-3 / 2.02;  // of what remains of 3 mm, over tw
 class ImportInpContact : public test::Import {
  protected:
   std::vector<double> last_of_contact(const std::string& text, const std::string& name = "contact") {
-    place.write("a.inp", text);
-    imported("a.inp", "--scene-out s.toml");
-    succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"), test::text_of(place / "s.toml"));
-    const auto all = Store::open(place / "run.h5").read<double>("/history/contact/" + name);
-    return {all.end() - 8, all.end()};  // force on b, depth, its share, slip, work, pressing
+    solve(text);
+    return last("contact/" + name, 8);  // force on b, depth, its share, slip, work, pressing
   }
 };
 
@@ -66,9 +63,9 @@ TEST_F(ImportInpContact, LawsOfOtherProgramsAreTold) {
   };
   const std::string pair = "*CONTACT PAIR, INTERACTION=dry\nunder, table\n*SURFACE INTERACTION, NAME=dry\n";
   EXPECT_NE(scene(pair + "*FRICTION, ROUGH\n").find("friction = 5"), std::string::npos);
-  EXPECT_NE(err.find("becomes 5"), std::string::npos) << err;
+  expect_said("becomes 5");
   scene(pair + "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n1e7\n");
-  EXPECT_NE(err.find("hilo's own"), std::string::npos) << err;
+  expect_said("hilo's own");
   EXPECT_NE(scene(pair + "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TIED\n1e7\n").find("[[tie]]"), std::string::npos);
   EXPECT_NE(scene("*CONTACT PAIR, INTERACTION=dry\nunder,\n*SURFACE INTERACTION, NAME=dry\n").find("a = \"under\"\nb = \"under\""),
             std::string::npos);

@@ -25,11 +25,6 @@ const std::string held = "*BOUNDARY\nfoot, 1, 3\n", statics = "*STEP\n*STATIC\n"
 
 class ImportInpRows : public test::Import {
  protected:
-  void solve(const std::string& text, const std::string& options = "") {
-    place.write("a.inp", text);
-    imported("a.inp", "--scene-out s.toml " + options);
-    succeeded(place.run("hilo-solve --quiet s.toml -o run.h5"), test::text_of(place / "s.toml"));
-  }
   /// Displacement at the end of the node with this number in the deck [m].
   Vec3 moved(std::int64_t id) const {
     const Store run = Store::open(place / "run.h5");
@@ -208,7 +203,7 @@ TEST_F(ImportInpRows, PyramidsAreTwoTetrahedraEach) {
   EXPECT_EQ(test::cells_of(m, "p"), 2);
   EXPECT_EQ(m.node_sets.at("all").size(), 5U);
   EXPECT_EQ(m.cell_sets.at("again").size(), 2U);
-  EXPECT_NE(err.find("1 pyramids are two tetrahedra each"), std::string::npos) << err;
+  expect_said("1 pyramids are two tetrahedra each");
   place.write("a.inp", points + "*SURFACE, NAME=s\np, S1\n" + rest);
   refused("a.inp -o b.h5", 2, "a.inp:10: element 7 is a pyramid, whose faces by number are not read (a surface of element sets)");
   place.write("a.bdf",
@@ -288,7 +283,7 @@ TEST_F(ImportInpRows, ADistributingCouplingElementSharesItsForce) {
   for (const int node : {9, 10, 11, 12}) EXPECT_NEAR(moved(node).x(), 8e-6, 1e-10) << node;
   place.write("a.inp", bar + element + held + statics + end);
   imported("a.inp");
-  EXPECT_NE(err.find("*ELEMENT, TYPE=DCOUP3D without a value"), std::string::npos) << err;
+  expect_said("*ELEMENT, TYPE=DCOUP3D without a value");
 }
 
 // Truth: the second cell is rigid, so that the first alone lengthens: F/(E A) of 1 m.
@@ -338,7 +333,7 @@ TEST_F(ImportInpRows, NodesOnEdgesThatTurnACellInsideOutAreStraightened) {
   const Mesh m = imported("a.inp");
   const Vec3 size = Vec3(reference[6][0], reference[6][1], reference[6][2]) - Vec3(reference[0][0], reference[0][1], reference[0][2]);
   EXPECT_NEAR(volume(m), size.prod(), 1e-12);
-  EXPECT_NE(err.find("1 cells that the nodes on their edges turned inside out have straight edges"), std::string::npos) << err;
+  expect_said("1 cells that the nodes on their edges turned inside out have straight edges");
 }
 
 // A part of one cube, three times: as it is, moved along x, and moved and turned by 90 degrees about z.  Its sets, sections and supports

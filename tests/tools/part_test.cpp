@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <numeric>
 #include <sstream>
 
-#include "../cli.hpp"
 #include "../model/block.hpp"
 #include "succeeded.hpp"
+#include "tool_case.hpp"
 
 namespace hilo::test::part_test {
 namespace {
 
 using test::block;
-using test::Workplace;
 
 /// 20 x 4 x 4 hexahedra; the last quarter, `barrel`, is flexible.
 Mesh bar() {
@@ -32,7 +29,7 @@ std::vector<int> cells_of_parts(const MeshFile& f) {
   return count;
 }
 
-class Part : public testing::Test {
+class Part : public ToolCase {
  protected:
   void SetUp() override {
     write_mesh(place / "mesh.h5", bar(), {"hilo-import bar.msh"});
@@ -42,15 +39,6 @@ class Part : public testing::Test {
     succeeded(place.run("hilo-part " + arguments + " -o parts.h5"));
     return read_mesh_file(place / "parts.h5");
   }
-  void expect_refused(const std::string& command, int exit, const std::string& message) {
-    const auto before = place.files();
-    const auto ran = place.run(command);
-    EXPECT_EQ(ran.exit, exit) << command;
-    EXPECT_EQ(ran.out, "") << command;
-    EXPECT_EQ(ran.err, "hilo-part: " + message + "\n") << command;
-    EXPECT_EQ(place.files(), before) << command;
-  }
-  Workplace place;
 };
 
 TEST_F(Part, FlexibleAndRigidWorkAreBothBalanced) {

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
-
-#include "../cli.hpp"
 #include "../model/block.hpp"
 #include "model/scene.hpp"
 #include "model/schema.hpp"
 #include "model/store.hpp"
 #include "succeeded.hpp"
+#include "tool_case.hpp"
 
 namespace hilo::test::show_test {
 namespace {
 
 using test::block;
-using test::Workplace;
 
-class Show : public testing::Test {
+class Show : public ToolCase {
  protected:
   void SetUp() override {
     Mesh m = block(4, 2, 1, {"hull", "barrel"}, [](int i) { return i == 3; });
@@ -49,13 +46,6 @@ class Show : public testing::Test {
     if (closed) run.set("/", "complete", std::int64_t{1});
     run.flush();
   }
-  void expect_refused(const std::string& command, int exit, const std::string& message) {
-    const auto before = place.files();
-    const auto ran = place.run(command);
-    EXPECT_EQ(ran.exit, exit) << command;
-    EXPECT_EQ(ran.err, "hilo-show: " + message + "\n") << command;
-    EXPECT_EQ(place.files(), before) << command;
-  }
   /// The line of `text` that begins with `start`, blanks squeezed.
   static std::string line(const std::string& text, const std::string& start) {
     const auto at = ("\n" + text).find("\n" + start);
@@ -65,7 +55,6 @@ class Show : public testing::Test {
       if (c != ' ' || out.empty() || out.back() != ' ') out += c;
     return out;
   }
-  Workplace place;
 };
 
 TEST_F(Show, MeshShowsRegionsWithVolumeAndBoxAndSets) {

@@ -1,34 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
-
-#include "../cli.hpp"
 #include "../model/block.hpp"
 #include "succeeded.hpp"
+#include "tool_case.hpp"
 
 namespace hilo::test::tag_test {
 namespace {
 
 using test::block;
-using test::Workplace;
 
 /// Four cubes in a row; neighbours share four of 20 nodes.
 Mesh row() {
   return block(4, 1, 1, {"hull", "wheel_1", "wheel_2", "barrel"}, [](int i) { return i; });
 }
 
-class Tag : public testing::Test {
+class Tag : public ToolCase {
  protected:
   void SetUp() override { write_mesh(place / "mesh.h5", row(), {"hilo-import row.msh"}); }
-  /// Exit code and message of a run that must fail and leave nothing.
-  void expect_refused(const std::string& command, int exit, const std::string& message) {
-    const auto before = place.files();
-    const auto ran = place.run(command);
-    EXPECT_EQ(ran.exit, exit) << command;
-    EXPECT_EQ(ran.out, "") << command;
-    EXPECT_EQ(ran.err, "hilo-tag: " + message + "\n") << command;
-    EXPECT_EQ(place.files(), before) << command;
-  }
-  Workplace place;
 };
 
 TEST_F(Tag, TableCountsThreeUnknownsPerFreeNodeAndSixPerBody) {

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs a scene of tests/verify as a user would, and reads what it wrote with a reader that shares nothing with the integrator.
 #pragma once
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <string>
 
 #include "base/math.hpp"
 #include "cli.hpp"
 #include "model/mesh.hpp"
 #include "model/store.hpp"
+#include "succeeded.hpp"
 #include "verify/block_mesh.hpp"
 
 namespace hilo::test {
@@ -61,6 +62,55 @@ class Results {
   Eigen::VectorXd t_;
 };
 
+/// Largest changes of energy and momenta from an instant on, by their sizes there, and the largest share of strain energy.
+struct Drift {
+  double energy, momentum, angular, strained;
+};
+inline Drift drift(const Results& r, double from) {
+  const Eigen::MatrixXd E = r.history("energy"), p = r.history("momentum");
+  Eigen::Index first = 0;
+  while (r.t()[first] < from) ++first;
+  const Eigen::Index n = E.rows() - first;
+  const Eigen::VectorXd sum = E.bottomRows(n).leftCols(3).rowwise().sum();
+  const auto change = [&](Eigen::Index column) {
+    const Eigen::MatrixXd part = p.bottomRows(n).middleCols(column, 3);
+    return (part.rowwise() - part.row(0)).rowwise().norm().maxCoeff() / std::max(part.row(0).norm(), 1e-300);
+  };
+  return {(sum.array() - sum[0]).abs().maxCoeff() / sum[0], change(0), change(3), E.bottomRows(n).col(1).maxCoeff() / sum[0]};
+}
+
+/// A number of the JSON report of the last run in a folder; NaN where it is not there.
+inline double reported_in(const Workplace& place, const std::string& key) {
+  const std::string text = text_of(place / "run.json");
+  const auto at = text.find("\"" + key + "\": ");
+  return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + key.size() + 4));
+}
+
+/// A scene of the test, on a mesh or on none.
+class ScenePlace : public testing::Test {
+ protected:
+  void use(const Mesh& m, const std::vector<Fidelity>& fidelity = {}) {
+    write_mesh(work / "mesh.h5", m, {"test"});
+    mesh = "mesh.h5";
+    if (fidelity.empty()) return;
+    write_tags(work / "tags.h5", work / "mesh.h5", fidelity, {"test"});
+    mesh = "tags.h5";
+  }
+  Results solved(const std::string& scene, const std::string& options = "") {
+    work.write("scene.toml", scene);
+    ran = succeeded(work.run("hilo-solve --quiet scene.toml " + mesh + " -o run.h5 " + options));
+    return Results(work / "run.h5");
+  }
+  /// Natural frequencies [Hz]; below zero: growth.
+  Eigen::VectorXd frequencies(const std::string& scene, int n, const std::string& more = "") {
+    const Eigen::MatrixXd all = solved(scene + fmt::format("[time]\nanalysis = \"modes\"\nmodes = {}\n{}\n", n, more)).history("mode");
+    return all.col(0).tail(all.rows() - 1);
+  }
+  Workplace work;
+  std::string mesh;
+  Ran ran;
+};
+
 /// A case: the folder tests/verify/<name> and a place to run it in.
 class Case : public Workplace {
  public:
@@ -75,11 +125,11 @@ class Case : public Workplace {
     return ran;
   }
   Results results(const std::string& output = "run.h5") const { return Results(*this / output); }
-  /// A number of the last run's JSON report; NaN where it is not there.
-  double reported(const std::string& key) const {
-    const std::string text = text_of(*this / "run.json");
-    const auto at = text.find("\"" + key + "\": ");
-    return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + key.size() + 4));
+  double reported(const std::string& key) const { return reported_in(*this, key); }
+  /// With this change of its scene the case is refused, with these words.
+  void expect_mistake(const std::string& change, const std::string& words, const std::string& scene = "scene") const {
+    const Ran ran = solve("--quiet --set " + change, "bad.h5", 2, scene);
+    EXPECT_NE(ran.err.find(words), std::string::npos) << ran.err;
   }
   /// Run and read.
   Results solved(const std::string& options = "", const std::string& output = "run.h5", const std::string& scene = "scene") const {

@@ -11,9 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "about.hpp"
-#include "advise/processes.hpp"
 #include "base/digest.hpp"
-#include "base/error.hpp"
 #include "model/store.hpp"
 
 namespace hilo {

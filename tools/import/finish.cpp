@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <unordered_map>
 
 #include "base/error.hpp"
+#include "base/joined.hpp"
 #include "base/param.hpp"
 #include "import/imported.hpp"
 #include "model/scaled_jacobian.hpp"
@@ -60,12 +60,7 @@ std::string first_of(const std::vector<std::int64_t>& ids) {
 std::int64_t merge_nodes(Imported& in, double distance) {
   const Mesh& m = in.mesh;
   const auto n = m.n_nodes();
-  std::vector<std::int64_t> root(n);
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](std::int64_t a) {
-    while (root[a] != a) a = root[a] = root[root[a]];
-    return a;
-  };
+  Joined<std::int64_t> nodes(static_cast<size_t>(n));
   // boxes as wide as the distance: a near node is in the same box or one beside it
   struct Box {
     std::int64_t i, j, k;
@@ -88,15 +83,12 @@ std::int64_t merge_nodes(Imported& in, double distance) {
         for (int k = -1; k <= 1; ++k)
           if (const auto it = boxes.find({b.i + i, b.j + j, b.k + k}); it != boxes.end())
             for (const auto c : it->second)
-              if ((m.X[c] - m.X[a]).norm() <= distance) {
-                const auto low = std::min(find(a), find(c)), high = std::max(find(a), find(c));
-                root[high] = low;
-              }
+              if ((m.X[c] - m.X[a]).norm() <= distance) nodes.join(a, c);
     boxes[b].push_back(a);
   }
   std::vector<std::int64_t> row(n);
   std::int64_t kept = 0;
-  for (std::int64_t a = 0; a < n; ++a) row[a] = find(a) == a ? kept++ : row[find(a)];  // a root comes before its members
+  for (std::int64_t a = 0; a < n; ++a) row[a] = nodes.root(a) == a ? kept++ : row[nodes.root(a)];  // a root comes before its members
   if (kept < n) renumber(in, row, kept);
   return n - kept;
 }

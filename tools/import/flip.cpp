@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // --flip: cells whose nodes are numbered as in a mirror, inside out, are turned.
-#include <array>
-#include <utility>
 #include <vector>
 
 #include "import/imported.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/shell_rows.hpp"
 
-#include <array>
 #include <map>
 #include <set>
 

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/table.hpp"
-
 namespace hilo {
 namespace {
 

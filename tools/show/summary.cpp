@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "model/schema.hpp"
 
 namespace hilo {
 

@@ -3,30 +3,26 @@
 
 #include <fmt/format.h>
 
-#include <numeric>
 #include <set>
+
+#include "base/joined.hpp"
 
 namespace hilo {
 
 std::vector<std::string> loose_pieces(const Mesh& mesh, const std::vector<Fidelity>& fidelity) {
-  std::vector<std::int64_t> parent(mesh.X.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::int64_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  Joined<std::int64_t> nodes(mesh.X.size());
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c)
-    for (const std::int64_t i : mesh.cell(c)) parent[root(i)] = root(mesh.cell(c)[0]);
+    for (const std::int64_t i : mesh.cell(c)) nodes.join(i, mesh.cell(c)[0]);
   std::vector<std::int64_t> of_block(mesh.block_name.size(), -1);
   for (size_t i = 0; i < mesh.block.size(); ++i)
     if (mesh.block[i] >= 0) {
       auto& first = of_block[static_cast<size_t>(mesh.block[i])];
       if (first < 0) first = static_cast<std::int64_t>(i);
-      parent[root(static_cast<std::int64_t>(i))] = root(first);
+      nodes.join(static_cast<std::int64_t>(i), first);
     }
   std::vector<std::set<std::int64_t>> pieces(mesh.region_name.size());
   for (std::int64_t c = 0; c < mesh.n_cells(); ++c)
-    if (fidelity[mesh.region[c]] != Fidelity::rigid) pieces[mesh.region[c]].insert(root(mesh.cell(c)[0]));
+    if (fidelity[mesh.region[c]] != Fidelity::rigid) pieces[mesh.region[c]].insert(nodes.root(mesh.cell(c)[0]));
   std::vector<std::string> out;
   for (size_t r = 0; r < pieces.size(); ++r)
     if (pieces[r].size() > 1)

@@ -4,8 +4,6 @@
 //   v1 = c0 q0 + cg q_g + c1 q1,  a1 = c0 v0 + cg v_g + c1 v1,   c0 = (1-g)/(g h), cg = -1/((1-g) g h), c1 = (2-g)/((1-g) h)
 #include "model/integrator/bathe.hpp"
 
-#include <cmath>
-
 #include "dynamics/integrator/make.hpp"
 
 namespace hilo {

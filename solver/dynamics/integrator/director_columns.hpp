@@ -9,7 +9,7 @@
 #include <functional>
 #include <vector>
 
-#include "linear/kkt.hpp"
+#include "linear/tangent_reader.hpp"
 #include "system/system.hpp"
 
 namespace hilo {
@@ -23,7 +23,7 @@ extern const std::array<Mat3, 3> director_bases;
 DirectorSums director_sums(const std::array<Mat3, 3>& N);
 
 /// Takes the blocks of one evaluation into the rows of stage `row` and the columns of all stages.
-class DirectorColumns final : public KktSolver {
+class DirectorColumns final : public TangentReader {
  public:
   static constexpr int n_stages = 3;
   /// What a stage's increments do to what the evaluation is by.
@@ -44,13 +44,8 @@ class DirectorColumns final : public KktSolver {
         with_multipliers_(with_multipliers),
         sigma_(sigma),
         sigma_here_(sigma_here) {}
-  void structure(const Cliques&, const BlockMap&) override {}
-  void zero() override {}
   void add(int clique, const double* K) override;
   void add_diagonal(int block, const double d[3]) override;
-  void sum_shared(std::span<double>) override {}
-  SolveReport solve(std::span<const double>, std::span<double>, double) override { return {}; }
-  std::string name() const override { return "director columns"; }
 
  private:
   SerialKktSolver& whole_;

@@ -6,7 +6,6 @@
 
 #include "dynamics/profile.hpp"
 #include "system/resolved.hpp"
-#include "system/solids.hpp"
 
 namespace hilo {
 

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "dynamics/profile.hpp"
-
 namespace hilo {
 
 std::string stem(const std::string& path) { return path.ends_with(".h5") ? path.substr(0, path.size() - 3) : path; }

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "linear/petsc/session.hpp"
 
 namespace hilo::petsc {
 

@@ -5,8 +5,6 @@
 #include <new>
 #include <numeric>
 
-#include "linear/supernodal.hpp"
-
 namespace hilo::petsc {
 
 SubdomainFactor::SubdomainFactor(const SubdomainMatrix& F, const Interface& interface) {

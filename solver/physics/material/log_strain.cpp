@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "physics/material/log_strain.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "physics/material/principal_axes.hpp"

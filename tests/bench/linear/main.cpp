@@ -10,7 +10,6 @@
 // the peak of the rank with most grew over what it had before the solver was made.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <ctime>
 #include <fstream>
 #include <span>

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes of beams, run as a user would.
 #pragma once
-#include <fmt/format.h>
-
-#include <cmath>
 #include <numbers>
 
 #include "scene_parts.hpp"
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -24,21 +20,13 @@ inline std::string twist(const std::string& on, const Vec3& torque, const std::s
 }
 inline std::string tip_probe(const std::string& on = "arm.end") { return probe("tip", on); }
 
-class BeamPlace : public testing::Test {
+class BeamPlace : public ScenePlace {
  protected:
-  Results solved(const std::string& scene, const std::string& options = "") {
-    work.write("scene.toml", scene);
-    ran = work.run("hilo-solve --quiet scene.toml -o run.h5 " + options);
-    succeeded(ran);
-    return Results(work / "run.h5");
-  }
   /// Where the tip is at the end.
   Vec3 tip(const std::string& scene, const std::string& options = "") {
     const Eigen::MatrixXd x = solved(scene, options).history("probe/tip");
     return x.bottomRows(1).leftCols<3>().transpose();
   }
-  Workplace work;
-  Ran ran;
 };
 
 }  // namespace hilo::test

@@ -12,11 +12,6 @@ constexpr double pi = std::numbers::pi;
 
 class BeamModes : public BeamPlace {
  protected:
-  /// Frequencies [Hz]; below zero: growth.
-  Eigen::VectorXd frequencies(const std::string& scene, int n, const std::string& more = "") {
-    const Eigen::MatrixXd all = solved(scene + fmt::format("[time]\nanalysis = \"modes\"\nmodes = {}\n{}\n", n, more)).history("mode");
-    return all.bottomRows(all.rows() - 1).col(0);
-  }
   /// The load at which the lowest frequency about the equilibrium vanishes: its square is nearly linear just below.
   double critical(const std::function<std::string(double)>& scene, double a, double b) {
     const auto square = [&](double load) { return std::pow(frequencies(scene(load), 1, "start = \"equilibrium\"")[0], 2); };

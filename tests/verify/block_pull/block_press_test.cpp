@@ -8,26 +8,11 @@ namespace hilo::test::block_press_test {
 namespace {
 
 const std::string scene = R"(
-[material.rubber]
-kind = "neo-hookean"
-E = 1e6
-density = 1000
-[region."*"]
-material = "rubber"
-[[motion]]
-kind = "fixed"
-name = "bottom"
-on = "zmin"
-[[motion]]
-kind = "translation"
-name = "top"
-on = "zmax"
-displacement = [0, 0, -0.2]
-history = {t = [0, 1], value = [0, 1]}
-[time]
-analysis = "static"
-steps = 4
-end = 1
+material.rubber = {kind = "neo-hookean", E = 1e6, density = 1000}
+region."*" = {material = "rubber"}
+motion = [{kind = "fixed", name = "bottom", on = "zmin"},
+  {kind = "translation", name = "top", on = "zmax", displacement = [0, 0, -0.2], history = {t = [0, 1], value = [0, 1]}}]
+time = {analysis = "static", steps = 4, end = 1}
 )";
 
 struct Press {

@@ -75,14 +75,10 @@ TEST(Bounce, RopeHoldsWhatFalls) {
 
 TEST(Bounce, MistakesAreNamed) {
   const Case c("bounce");
-  const auto says = [&](const std::string& option, const std::string& text) {
-    const Ran ran = c.solve("--quiet --set " + option, "bad.h5", 2);
-    EXPECT_NE(ran.err.find(text), std::string::npos) << ran.err;
-  };
-  says("'stop.floor.joint=\"gide\"'", "did you mean \"guide\"");
-  says("'stop.floor.kind=\"angle\"'", "no free angle");
-  says("stop.floor.restitution=1.5", "restitution");
-  says("stop.floor.upper=-0.6", "lower is not below upper");
+  c.expect_mistake("'stop.floor.joint=\"gide\"'", "did you mean \"guide\"");
+  c.expect_mistake("'stop.floor.kind=\"angle\"'", "no free angle");
+  c.expect_mistake("stop.floor.restitution=1.5", "restitution");
+  c.expect_mistake("stop.floor.upper=-0.6", "lower is not below upper");
 }
 
 }  // namespace

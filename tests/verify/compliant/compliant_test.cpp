@@ -108,13 +108,9 @@ TEST(CompliantJoint, KeepsEnergyAndMomentaAtLargeAngles) {
 
 TEST(CompliantJoint, MistakesAreNamed) {
   const Case c("compliant");
-  const auto says = [&](const std::string& option, const std::string& text) {
-    const Ran ran = c.solve("--quiet --set " + option, "bad.h5", 2);
-    EXPECT_NE(ran.err.find(text), std::string::npos) << ran.err;
-  };
-  says("'joint.pin.stiffness=[1,2]'", "2 numbers, not 1 or 3");
-  says("'joint.pin.angular_stiffness=[1,0,1]'", "leaves a row of the joint without a spring");
-  says("joint.pin.spin=3", "cannot be driven");
+  c.expect_mistake("'joint.pin.stiffness=[1,2]'", "2 numbers, not 1 or 3");
+  c.expect_mistake("'joint.pin.angular_stiffness=[1,0,1]'", "leaves a row of the joint without a spring");
+  c.expect_mistake("joint.pin.spin=3", "cannot be driven");
 }
 
 }  // namespace

@@ -94,14 +94,10 @@ TEST(Friction, TopInABallJointSpinsDownAlongALine) {
 
 TEST(Friction, MistakesAreNamed) {
   const Case c("friction");
-  const auto says = [&](const std::string& option, const std::string& text) {
-    const Ran ran = c.solve("--quiet --set " + option, "bad.h5", 2);
-    EXPECT_NE(ran.err.find(text), std::string::npos) << ran.err;
-  };
-  says("'friction.rub.joint=\"giude\"'", "did you mean \"guide\"");
-  says("'joint.guide.kind=\"cylindrical\"'", "needs a radius");
-  says("'joint.guide.kind=\"in-line\"'", "no friction in a joint of kind in-line");
-  says("friction.rub.slip_velocity=0", "slip_velocity");
+  c.expect_mistake("'friction.rub.joint=\"giude\"'", "did you mean \"guide\"");
+  c.expect_mistake("'joint.guide.kind=\"cylindrical\"'", "needs a radius");
+  c.expect_mistake("'joint.guide.kind=\"in-line\"'", "no friction in a joint of kind in-line");
+  c.expect_mistake("friction.rub.slip_velocity=0", "slip_velocity");
 }
 
 }  // namespace

@@ -37,11 +37,7 @@ class Motions : public Workplace, public testing::Test {
     if (ran.exit != 0) throw std::runtime_error("hilo-solve: " + ran.err);
     return Results(*this / "run.h5");
   }
-  double reported(const std::string& key) const {
-    const std::string text = text_of(*this / "run.json");
-    const auto at = text.find("\"" + key + "\": ");
-    return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + key.size() + 4));
-  }
+  double reported(const std::string& key) const { return reported_in(*this, key); }
   std::string err;
 };
 

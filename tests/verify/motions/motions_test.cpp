@@ -93,30 +93,12 @@ TEST_F(Motions, LeaveAVelocityGivenBesideThemAsItIs) {
 // Exact: m a, with the centripetal and the tangential part, about any axis and over more than a turn; of second order in the step for all,
 // of a higher one for Radau.
 TEST_F(Motions, AreMovedByMassTimesAcceleration) {
-  const std::string scene = R"([[body]]
-name = "free"
-mass = 1
-com = [0, 0, 0]
-inertia = [1, 1, 1]
-[[body]]
-name = "arm"
-mass = 2
-com = [0.5, 0.2, 0.1]
-inertia = [0.3, 0.2, 0.4]
-[[motion]]
-kind = "rotation"
-name = "drive"
-on = "arm"
-at = [0, 0, 1]
-axis = [1, 2, 2]
-angle = 9
-history = {t = [0, 1], value = [0, 1], interpolation = "smoother"}
-[[probe]]
-name = "arm"
-on = "arm"
-[time]
-end = 1
-step = 0.01
+  const std::string scene = R"(body = [{name = "free", mass = 1, com = [0, 0, 0], inertia = [1, 1, 1]},
+  {name = "arm", mass = 2, com = [0.5, 0.2, 0.1], inertia = [0.3, 0.2, 0.4]}]
+motion = [{kind = "rotation", name = "drive", on = "arm", at = [0, 0, 1], axis = [1, 2, 2], angle = 9, history = {t = [0, 1], value = [
+    0, 1], interpolation = "smoother"}}]
+probe = [{name = "arm", on = "arm"}]
+time = {end = 1, step = 0.01}
 )";
   write("scene.toml", scene);
   const Vec3 axis = Vec3(1, 2, 2) / 3, arm(0.5, 0.2, -0.9);

@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "scene_parts.hpp"
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -14,7 +13,7 @@ constexpr double pi = std::numbers::pi;
 inline const std::string steel = "[material.m]\nE = 2e11\nnu = 0\ndensity = 8000\n[region.\"*\"]\nmaterial = \"m\"\n";
 
 /// A scene of the test, and what modes it has.
-class NaturalModes : public testing::Test {
+class NaturalModes : public ScenePlace {
  protected:
   /// Rows of /history/mode, the state of rest left out.
   Eigen::MatrixXd modes(const std::string& scene, int wanted, const std::string& options = "") {
@@ -26,16 +25,6 @@ class NaturalModes : public testing::Test {
     return all.bottomRows(all.rows() - 1);
   }
   Eigen::VectorXd frequencies(const std::string& scene, int wanted) { return modes(scene, wanted).col(0); }
-  void use(const Mesh& m, const std::vector<Fidelity>& fidelity = {}) {
-    write_mesh(work / "mesh.h5", m, {"test"});
-    mesh = "mesh.h5";
-    if (fidelity.empty()) return;
-    write_tags(work / "tags.h5", work / "mesh.h5", fidelity, {"test"});
-    mesh = "tags.h5";
-  }
-  Workplace work;
-  std::string mesh;
-  Ran ran;
 };
 
 inline Mesh beam(const Vec3& size, int n) {

@@ -2,9 +2,6 @@
 // Natural frequencies against closed forms: `analysis = "modes"` of bodies, cells, linear regions, preloads and what nothing holds.
 #include "verify/natural_modes/natural_modes.hpp"
 
-#include <complex>
-#include <tuple>
-
 namespace hilo::test::natural_modes_test {
 namespace {
 

@@ -3,7 +3,6 @@
 // some run.  docs/format.md is printed from the same table.
 #include "model/schema.hpp"
 
-#include <filesystem>
 #include <fstream>
 #include <set>
 

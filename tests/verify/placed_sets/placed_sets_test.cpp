@@ -125,25 +125,11 @@ Mesh row_of_blocks(int across = 2) {
 }
 
 const std::string row_scene = R"(gravity = [0, 0, -9.81]
-[material.m]
-E = 1e7
-nu = 0.3
-density = 1000
-[region."*"]
-material = "m"
-[set.ends]
-kind = "plane"
-of = ["left", "right"]
-at = [0, 0.1, 0]
-axis = [0, 0, 1]
-[set.crown]
-kind = "plane"
-of = ["left"]
-at = [0, 0.1, 0.2]
-axis = [0, 0, 1]
-[time]
-end = 0.1
-step = 1e-3
+material.m = {E = 1e7, nu = 0.3, density = 1000}
+region."*" = {material = "m"}
+set.ends = {kind = "plane", of = ["left", "right"], at = [0, 0.1, 0], axis = [0, 0, 1]}
+set.crown = {kind = "plane", of = ["left"], at = [0, 0.1, 0.2], axis = [0, 0, 1]}
+time = {end = 0.1, step = 1e-3}
 )";
 
 Ran row_run(Case& c, const std::string& more, const std::vector<Fidelity>& fidelity, int ranks = 1, int across = 2) {

@@ -140,13 +140,9 @@ TEST(Rolling, StartThatSlipsIsMadeToRoll) {
 
 TEST(Rolling, MistakesAreNamed) {
   const Case c("rolling");
-  const auto says = [&](const std::string& scene, const std::string& option, const std::string& text) {
-    const Ran ran = c.solve("--quiet --set " + option, "bad.h5", 2, scene);
-    EXPECT_NE(ran.err.find(text), std::string::npos) << ran.err;
-  };
-  says("incline", "'joint.contact.axle=[0,0,1]'", "axle is parallel to the axis");
-  says("incline", "joint.contact.radius=0", "radius");
-  says("sleigh", "'joint.edge.edge=[0,0,2]'", "edge is parallel to the axis");
+  c.expect_mistake("'joint.contact.axle=[0,0,1]'", "axle is parallel to the axis", "incline");
+  c.expect_mistake("joint.contact.radius=0", "radius", "incline");
+  c.expect_mistake("'joint.edge.edge=[0,0,2]'", "edge is parallel to the axis", "sleigh");
 }
 
 }  // namespace

@@ -13,11 +13,6 @@ constexpr double pi = std::numbers::pi;
 
 class ShellBenchmarks : public ShellPlace {
  protected:
-  /// Natural frequencies [Hz].
-  Eigen::VectorXd frequencies(const std::string& scene, int wanted, const std::string& more = "") {
-    const Eigen::MatrixXd all = solved(scene + fmt::format("[time]\nanalysis = \"modes\"\nmodes = {}\n{}", wanted, more)).history("mode");
-    return all.col(0).tail(all.rows() - 1);
-  }
   void near(const Eigen::VectorXd& f, std::initializer_list<double> published, double limit, int rigid = 0) {
     Eigen::Index k = rigid;
     for (const double p : published) {

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shells over a patch of a surface, run as a user would.
 #pragma once
-#include <fmt/format.h>
-
-#include <numbers>
-
 #include "scene_parts.hpp"
-#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -51,29 +46,13 @@ inline std::string shell_of(double E, double nu, const std::string& more = "dens
   return fmt::format("[material.m]\nE = {}\nnu = {}\n{}\n[region.shell]\nmaterial = \"m\"\nshell = true\n", E, nu, more);
 }
 
-class ShellPlace : public testing::Test {
+class ShellPlace : public ScenePlace {
  protected:
-  void use(const Mesh& m, const std::vector<Fidelity>& fidelity = {}) {
-    write_mesh(work / "mesh.h5", m, {"test"});
-    mesh = "mesh.h5";
-    if (fidelity.empty()) return;
-    write_tags(work / "tags.h5", work / "mesh.h5", fidelity, {"test"});
-    mesh = "tags.h5";
-  }
-  Results solved(const std::string& scene, const std::string& options = "") {
-    work.write("scene.toml", scene);
-    ran = work.run("hilo-solve --quiet scene.toml " + mesh + " -o run.h5 " + options);
-    succeeded(ran);
-    return Results(work / "run.h5");
-  }
   /// How far a probe has gone at the end.
   static Vec3 way(const Results& r, const std::string& probe) {
     const Eigen::MatrixXd x = r.history("probe/" + probe);
     return (x.bottomRows(1) - x.topRows(1)).leftCols<3>().transpose();
   }
-  Workplace work;
-  std::string mesh;
-  Ran ran;
 };
 
 }  // namespace hilo::test

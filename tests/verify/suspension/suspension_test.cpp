@@ -4,7 +4,6 @@
 //   at rest    the work of strut, tyre and weights along both is zero: the strut carries the corner load divided by its motion ratio
 //   small      M q'' + K q = 0 with M and K on these two: bounce of the body and hop of the wheel
 #include <Eigen/Eigenvalues>
-#include <map>
 
 #include "succeeded.hpp"
 #include "verify/verify.hpp"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/integrators.hpp"
 #include "succeeded.hpp"
 #include "verify/contact/collision.hpp"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What acts on a region as a whole, or is measured there, means the same at every fidelity and on every mesh.
-#include <numbers>
 
 #include "verify/verify.hpp"
 

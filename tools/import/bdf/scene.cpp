@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "import/links.hpp"
 
 namespace hilo {
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
 #include "base/joined.hpp"
 #include "import/bdf/scene.hpp"
 #include "import/links.hpp"

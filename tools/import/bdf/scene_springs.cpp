@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // CELAS, CDAMP and CBUSH as scene lines: a [[spring]] between bodies, along the line of its grids, or a plane that gives way to a node.
 #include <Eigen/Geometry>
-#include <cmath>
 
 #include "base/error.hpp"
 #include "import/bdf/scene.hpp"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/gmsh/element_types.hpp"
 
-#include <string>
-
 namespace hilo {
 
 const GmshKind* gmsh_kind(int type) {

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "model/inputs.hpp"
 #include "model/store.hpp"
 
 namespace hilo {

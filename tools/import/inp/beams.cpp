@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <numbers>
 
 #include "base/error.hpp"
 #include "base/param.hpp"

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 
-#include "base/error.hpp"
 #include "import/inp/equations.hpp"
 #include "import/inp/groups.hpp"
-#include "import/inp/ties.hpp"
 #include "import/links.hpp"
 #include "import/sheets.hpp"
 
