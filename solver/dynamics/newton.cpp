@@ -256,11 +256,11 @@ bool Newton::is_rounding() const {
 /// Corrections by the factors of the choice before count where they are smaller than a tenth of this.
 constexpr double first_after_revision = 1e-3;
 
-/// Near the answer what is chosen by it is mostly what the answer itself makes: chosen there, it costs no iterations of its own.  Where old
-/// factors end soon, the end is soon enough.
+/// Where the correction to come is next to nothing, what is chosen is what the answer itself would choose: chosen there, it costs no
+/// iterations of its own.  Where old factors end soon, the end is soon enough.
 bool Newton::is_time_to_choose() const {
-  constexpr double near_answer = 1e-2;
-  return revisions_ == 0 && report_.residual < near_answer && report_.residual > 1e3 * options_.tolerance && revises(system_);
+  return revisions_ == 0 && report_.correction * report_.residual < 1e-9 * last_residual_ && report_.residual > 1e3 * options_.tolerance &&
+         revises(system_);
 }
 
 /// Whether the answer makes other equations: what a point meets.  After six times they stay as they are; any choice keeps energy and
