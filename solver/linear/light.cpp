@@ -24,6 +24,7 @@ constexpr int net_from = 600;           // unknowns of a net of bodies, without 
 constexpr double thin_net = 25;         // unless its factors are thinner than this
 constexpr int dense_at_most = 1200;     // unknowns of bodies and multipliers beside a Cholesky factor
 constexpr int least_iterations = 10;    // that lagged factors are given
+constexpr double many_more = 4;         // iterations than with fresh factors: what the factors can follow is more than round-off
 
 /// What a factorisation by columns takes for each of its entries, by the pattern: some tens for chains, trees and rows of loops, hundreds
 /// for nets, which a multifrontal one does faster.
@@ -63,7 +64,7 @@ class LightSolver final : public SerialKktSolver {
     factors_ = is_klu_ ? make_klu(n_dense == A_.n()) : kind == "umfpack" ? make_umfpack() : make_cholesky(is_dense_, joined(cliques));
     is_definite_ = kind == "cholesky";
     aside_.reset(), rest_ = 0;
-    factored_ = ready_ = false;
+    factored_ = ready_ = lags_ = false;
     fresh_.reset();
     weight_.clear();
   }
@@ -136,13 +137,15 @@ class LightSolver final : public SerialKktSolver {
     }
     if (weight_.empty()) find_weights();
     int before = 0;
-    if (std::exchange(changed_, false) && ready_) ready_ = factors_->follow(A_);
+    if (std::exchange(changed_, false) && ready_ && lags_) ready_ = factors_->follow(A_);
     if (ready_) {
       const int allowed = least_iterations + static_cast<int>(factors_->cost());
       SolveReport report = iterate(b, x, tolerance, allowed);
       // new factors once what lagging has cost is what they cost
       const double decades = -std::log10(std::clamp(report.residual, 1e-12, 0.5));
-      excess_ += std::max(0.0, report.iterations - rate_ * decades);
+      const double excess = std::max(0.0, report.iterations - rate_ * decades);
+      excess_ += excess;
+      if (excess > many_more) lags_ = true;
       ready_ = report.ok && excess_ < factors_->cost();
       if (report.ok) return report;
       before = report.iterations;
@@ -279,6 +282,7 @@ class LightSolver final : public SerialKktSolver {
   bool factored_ = false;              // the factors at hand are those of the matrix
   mutable bool changed_ = false;       // the matrix, since the last solve or count
   bool ready_ = false;                 // the factors at hand serve it preconditioning
+  bool lags_ = false;                  // factors of earlier matrices have been far from these: they are to follow
   mutable std::optional<bool> fresh_;  // since the last solve a count of eigenvalues made the factors, or found that there are none
   double rate_ = 0, excess_ = 0;       // iterations per decade with fresh factors; those lagging has cost since
   std::vector<double> residual_, correction_, weight_;
