@@ -5,6 +5,10 @@
 // F's factor is kept in single precision: a solve reads it at memory speed, and what it preconditions mends the digits.
 // F is positive definite with a factor half as large as that of an LU.  All of the matrix is symmetrised, not F alone: where a flexible
 // part floats with its bodies, D and B^T F^-1 B cancel, and halves of different matrices would leave a large stiffness in their place.
+//
+// Where there are no bodies, what contact joins comes last in F.  The end E of its factor, E E^T = F_ee less what the rest takes away, is
+// made anew for a later matrix by the change of F_ee alone: contacts change from iteration to iteration, cells little.
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <new>
@@ -19,7 +23,7 @@ namespace {
 
 class Cholesky final : public Factors {
  public:
-  explicit Cholesky(const std::vector<char>& is_dense) : number_(is_dense.size()) {
+  Cholesky(const std::vector<char>& is_dense, const std::vector<char>& joined) : number_(is_dense.size()) {
     make_room_for_blas();
     cholmod_start(&common_);
     common_.print = 0;
@@ -31,6 +35,8 @@ class Cholesky final : public Factors {
       list.push_back(static_cast<int>(i));
     }
     is_dense_ = is_dense;
+    for (size_t i = 0; i < joined.size() && dense_.empty(); ++i)
+      if (joined[i]) last_.push_back(number_[i]);
   }
   ~Cholesky() override {
     cholmod_free_dense(&y_, &common_), cholmod_free_dense(&e_, &common_), cholmod_free_dense(&u_, &common_);
@@ -41,6 +47,7 @@ class Cholesky final : public Factors {
   bool factor(const BlockCsr& A) override {
     if (start_.empty()) find_pattern(A);
     fill(A);
+    follows_ = false;
     single_values_.clear();
     cholmod_sparse F{};
     F.nrow = F.ncol = 3 * flexible_.size();
@@ -53,6 +60,7 @@ class Cholesky final : public Factors {
       return false;
     }
     if (common_.status != CHOLMOD_OK || L_->minor != L_->n || !L_->is_super || !factor_schur(A)) return false;
+    if (!last_.empty()) take_end(A);
     if (single_) single_values_.take_from(L_, common_);
     return true;
   }
@@ -81,6 +89,30 @@ class Cholesky final : public Factors {
     for (size_t k = 0; k < dense_.size(); ++k) std::copy_n(g_.data() + 3 * k, 3, x + 3 * dense_[k]);
   }
 
+  /// The end of the factor, of what is joined, is made anew by what has changed there.
+  bool follow(const BlockCsr& A) override {
+    if (last_.empty()) return true;
+    const auto m = static_cast<Eigen::Index>(3 * last_.size());
+    if (end_schur_.size() == 0) {
+      end_schur_.setZero(m, m);
+      lapack::gram(static_cast<int>(m), static_cast<int>(m), end_factor_.data(), end_schur_.data());
+      end_schur_ -= end_;
+    }
+    end_factor_ = end_of(A);
+    end_factor_ += end_schur_;
+    follows_ = lapack::factor(static_cast<int>(m), end_factor_.data(), static_cast<int>(m));
+    return follows_;
+  }
+
+  /// Those of the Schur complement, as F has none.
+  std::optional<int> below_zero() const override {
+    constexpr size_t few = 100;  // blocks, whose eigenvalues cost less than F's factor
+    if (dense_.empty()) return 0;
+    if (dense_.size() > few) return {};
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> S(schur_.reconstructedMatrix(), Eigen::EigenvaluesOnly);
+    return static_cast<int>((S.eigenvalues().array() < 0).count());
+  }
+
   bool sharpen() override { return std::exchange(single_, false); }
   double cost() const override {
     return factor_cost(common_.fl, 2 * common_.lnz) + 0.2 * static_cast<double>(touching_.size());  // columns together cost a fifth of one
@@ -88,7 +120,7 @@ class Cholesky final : public Factors {
   std::string name() const override { return "CHOLMOD"; }
   double bytes() const override {
     if (!L_) return 0;
-    return supernodal::bytes_of(L_, single_values_) + 8. * static_cast<double>(values_.size() + Z_.size()) +
+    return supernodal::bytes_of(L_, single_values_) + 8. * static_cast<double>(values_.size() + Z_.size() + 3 * end_.size()) +
            4. * static_cast<double>(rows_.size());
   }
 
@@ -130,25 +162,97 @@ class Cholesky final : public Factors {
     }
   }
 
-  /// Nested dissection of the blocks, kept together.
+  /// Nested dissection of the blocks, kept together.  What is joined comes last, where its part of the factor costs little beside the rest.
   void analyse(const BlockCsr& A, cholmod_sparse& F) {
-    std::vector<int> p{0}, i;
-    for (size_t k = 0; k < flexible_.size(); ++k) {
+    const auto m = static_cast<double>(3 * last_.size()), n = static_cast<double>(F.nrow);
+    constexpr double share = 0.25, likely = 10;  // of the work; of cells in space it is about ten times n^2
+    constexpr double most = 2000;                // unknowns there: 100 MB
+    if (m > most || m * m * m > share * likely * n * n) last_.clear();
+    std::vector<char> is_last(flexible_.size(), 0);
+    for (const int b : last_) is_last[b] = 1;
+    std::vector<int> p{0}, i, before, place(flexible_.size(), -1);
+    for (size_t k = 0; k < flexible_.size(); ++k)
+      if (!is_last[k]) place[k] = static_cast<int>(before.size()), before.push_back(static_cast<int>(k));
+    for (const int k : before) {
       for (const int j : A.neighbours(flexible_[k]))
-        if (!is_dense_[j] && number_[j] >= static_cast<int>(k)) i.push_back(number_[j]);
+        if (!is_dense_[j] && number_[j] >= k && !is_last[number_[j]]) i.push_back(place[number_[j]]);
       p.push_back(static_cast<int>(i.size()));
     }
     cholmod_sparse graph{};
-    graph.nrow = graph.ncol = flexible_.size();
+    graph.nrow = graph.ncol = before.size();
     graph.nzmax = i.size();
     graph.p = p.data(), graph.i = i.data();
     graph.stype = -1, graph.itype = CHOLMOD_INT, graph.xtype = CHOLMOD_PATTERN, graph.dtype = CHOLMOD_DOUBLE, graph.packed = 1;
-    std::vector<int> order(flexible_.size()), scalar;
-    if (!cholmod_metis(&graph, nullptr, 0, 1, order.data(), &common_)) return;
+    std::vector<int> order(before.size()), scalar;
+    if (!before.empty() && !cholmod_metis(&graph, nullptr, 0, 1, order.data(), &common_)) return;
+    for (int& b : order) b = before[b];
+    order.insert(order.end(), last_.begin(), last_.end());
     for (const int b : order)
       for (int c = 0; c < 3; ++c) scalar.push_back(3 * b + c);
     common_.nmethods = 1, common_.method[0].ordering = CHOLMOD_GIVEN, common_.postorder = 1;
-    L_ = cholmod_analyze_p(&F, scalar.data(), nullptr, 0, &common_);
+    if (last_.empty()) {
+      L_ = cholmod_analyze_p(&F, scalar.data(), nullptr, 0, &common_);
+      return;
+    }
+    std::vector<int> start{0}, rows;  // of F, with all that is joined coupled, so that it stays last
+    for (int k = 0; k < static_cast<int>(F.ncol); ++k) {
+      for (size_t b = 0; b < last_.size() && is_last[k / 3]; ++b)
+        for (int r = std::max(k, 3 * last_[b]); r < 3 * last_[b] + 3; ++r) rows.push_back(r);
+      for (int at = start_[k]; at < start_[k + 1]; ++at)
+        if (!is_last[k / 3] || !is_last[rows_[at] / 3]) rows.push_back(rows_[at]);
+      std::sort(rows.begin() + start.back(), rows.end());
+      start.push_back(static_cast<int>(rows.size()));
+    }
+    cholmod_sparse pattern = F;
+    pattern.nzmax = rows.size(), pattern.p = start.data(), pattern.i = rows.data(), pattern.x = nullptr, pattern.xtype = CHOLMOD_PATTERN;
+    L_ = cholmod_analyze_p(&pattern, scalar.data(), nullptr, 0, &common_);
+    if (!L_) return;
+    const auto* at = static_cast<const int*>(L_->Perm) + L_->n - 3 * last_.size();
+    const bool stays = std::all_of(at, at + 3 * last_.size(), [&](int k) { return is_last[k / 3] != 0; });
+    if (stays && m * m * m <= share * common_.fl) {
+      place_.assign(F.nrow, -1);
+      for (size_t k = 0; k < 3 * last_.size(); ++k) place_[at[k]] = static_cast<int>(k);
+      return;
+    }
+    last_.clear();
+    cholmod_free_factor(&L_, &common_);
+    analyse(A, F);
+  }
+
+  /// The part of sym(A) of what is joined, in the factor's order: its lower triangle.
+  Eigen::MatrixXd end_of(const BlockCsr& A) const {
+    const auto m = static_cast<Eigen::Index>(3 * last_.size());
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(m, m);
+    for (const int k : last_) {
+      const int i = flexible_[k];
+      const auto list = A.neighbours(i);
+      for (size_t n = 0; n < list.size(); ++n) {
+        const int j = list[n];
+        if (place_[3 * number_[j]] < 0 || number_[j] < k) continue;
+        const int back = A.place(j, i);
+        for (int c = 0; c < 3; ++c)
+          for (int r = j == i ? c : 0; r < 3; ++r) {
+            const auto [low, high] = std::minmax(place_[3 * k + c], place_[3 * number_[j] + r]);
+            out(high, low) = (A.entry(i, static_cast<int>(n), c, r) + A.entry(j, back, r, c)) / 2;
+          }
+      }
+    }
+    return out;
+  }
+
+  /// What `follow` starts from.
+  void take_end(const BlockCsr& A) {
+    const int m = static_cast<int>(3 * last_.size()), first = static_cast<int>(L_->n) - m;
+    const auto *super = static_cast<const int*>(L_->super), *pi = static_cast<const int*>(L_->pi), *rows = static_cast<const int*>(L_->s);
+    const supernodal::DoubleValues values(L_);
+    end_ = end_of(A), end_schur_.resize(0, 0);
+    end_factor_.setZero(m, m);
+    for (int s = static_cast<int>(L_->nsuper) - 1; s >= 0 && super[s + 1] > first; --s) {
+      const int stride = pi[s + 1] - pi[s];
+      for (int j = std::max(first, super[s]); j < super[s + 1]; ++j)
+        for (int r = j - super[s]; r < stride; ++r)
+          end_factor_(rows[pi[s] + r] - first, j - first) = values[s][r + static_cast<size_t>(j - super[s]) * stride];
+    }
   }
 
   /// Z = F^-1 B and the factors of S = D - B^T Z, scaled to equal rows: those of bodies and of constraints differ by many orders.
@@ -204,8 +308,14 @@ class Cholesky final : public Factors {
     const int n = static_cast<int>(u.size());
     work.resize(n);
     for (int i = 0; i < n; ++i) work[i] = static_cast<T>(u[order[i]] / largest);  // within the range of single precision
-    supernodal::forward(L_, values, 0, n, work.data(), scratch);
-    supernodal::backward(L_, values, 0, n, work.data(), scratch);
+    const int end = follows_ ? n - static_cast<int>(end_factor_.rows()) : n;
+    supernodal::forward(L_, values, 0, end, work.data(), scratch);
+    if (follows_) {
+      at_end_ = Eigen::Map<const Eigen::Matrix<T, Eigen::Dynamic, 1>>(work.data() + end, n - end).template cast<double>();
+      lapack::solve(n - end, 1, end_factor_.data(), at_end_.data());
+      for (int i = end; i < n; ++i) work[i] = static_cast<T>(at_end_[i - end]);
+    }
+    supernodal::backward(L_, values, 0, end, work.data(), scratch);
     for (int i = 0; i < n; ++i) u[order[i]] = largest * work[i];
   }
 
@@ -226,6 +336,10 @@ class Cholesky final : public Factors {
   Eigen::MatrixXd Z_;
   Eigen::VectorXd scale_, f_, g_, p_;
   Eigen::PartialPivLU<Eigen::MatrixXd> schur_;
+  std::vector<int> last_, place_;                 // flexible blocks that are joined, and where in the end of the factor each unknown is
+  Eigen::MatrixXd end_, end_schur_, end_factor_;  // sym(A) there when factored; what the rest adds to it; its factor
+  Eigen::VectorXd at_end_;
+  bool follows_ = false;  // the end is a later matrix's
   bool single_ = true;
   supernodal::SingleValues single_values_;  // of L
   std::vector<float> single_work_, single_scratch_;
@@ -237,6 +351,8 @@ class Cholesky final : public Factors {
 
 }  // namespace
 
-std::unique_ptr<Factors> make_cholesky(const std::vector<char>& is_dense) { return std::make_unique<Cholesky>(is_dense); }
+std::unique_ptr<Factors> make_cholesky(const std::vector<char>& is_dense, const std::vector<char>& joined) {
+  return std::make_unique<Cholesky>(is_dense, joined);
+}
 
 }  // namespace hilo

@@ -2,6 +2,7 @@
 // Serial factors of a saddle-point matrix.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,10 @@ class Factors {
   virtual void solve(const double* b, double* x) = 0;
   /// Whether there is a more accurate form, which the next factorisation takes.
   virtual bool sharpen() { return false; }
+  /// The matrix has become A: takes up what costs little, so that the factors serve it better.  False: they serve no more.
+  virtual bool follow(const BlockCsr& /*A*/) { return true; }
+  /// Eigenvalues below zero of the matrix's symmetric part, factored last; nothing where this kind does not tell.
+  virtual std::optional<int> below_zero() const { return {}; }
   /// What a factorisation costs, in solves.
   virtual double cost() const = 0;
   virtual std::string name() const = 0;
@@ -35,7 +40,8 @@ std::unique_ptr<Factors> make_klu(bool of_bodies = false);
 /// Unsymmetric multifrontal LU [davis-2004].
 std::unique_ptr<Factors> make_umfpack();
 /// Cholesky factors of the flexible blocks [chen-2008] and the Schur complement of the others, of the matrix's symmetric part.
-/// `is_dense`: of each block, whether it is a body's or a multiplier's.
-std::unique_ptr<Factors> make_cholesky(const std::vector<char>& is_dense);
+/// `is_dense`: of each block, whether it is a body's or a multiplier's; `joined`: whether what changes more than cells do, as contact,
+/// joins it to others.
+std::unique_ptr<Factors> make_cholesky(const std::vector<char>& is_dense, const std::vector<char>& joined = {});
 
 }  // namespace hilo

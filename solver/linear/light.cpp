@@ -24,6 +24,7 @@ constexpr int net_from = 600;           // unknowns of a net of bodies, without 
 constexpr double thin_net = 25;         // unless its factors are thinner than this
 constexpr int dense_at_most = 1200;     // unknowns of bodies and multipliers beside a Cholesky factor
 constexpr int least_iterations = 10;    // that lagged factors are given
+constexpr double many_more = 4;         // iterations than with fresh factors: what the factors can follow is more than round-off
 
 /// What a factorisation by columns takes for each of its entries, by the pattern: some tens for chains, trees and rows of loops, hundreds
 /// for nets, which a multifrontal one does faster.
@@ -60,14 +61,15 @@ class LightSolver final : public SerialKktSolver {
                                                                 : "umfpack";
     is_klu_ = kind == "klu";
     may_be_net_ = is_klu_ && kind_ == "light" && n_dense == A_.n() && A_.n() >= net_from && A_.n() < rigid_klu_below;
-    factors_ = is_klu_ ? make_klu(n_dense == A_.n()) : kind == "umfpack" ? make_umfpack() : make_cholesky(is_dense_);
+    factors_ = is_klu_ ? make_klu(n_dense == A_.n()) : kind == "umfpack" ? make_umfpack() : make_cholesky(is_dense_, joined(cliques));
     is_definite_ = kind == "cholesky";
     aside_.reset(), rest_ = 0;
-    factored_ = ready_ = false;
+    factored_ = ready_ = lags_ = false;
+    fresh_.reset();
     weight_.clear();
   }
 
-  void zero() override { A_.zero(), factored_ = false; }
+  void zero() override { A_.zero(), factored_ = false, changed_ = true; }
   void add(int clique, const double* K) override { A_.add(clique, K); }
   void add_part(int clique, int row, int column, int n, const double* K) override { A_.add_part(clique, row, column, n, K); }
   void add_diagonal(int block, const double d[3]) override { A_.add_diagonal(block, d); }
@@ -80,12 +82,28 @@ class LightSolver final : public SerialKktSolver {
     return is_klu_ ? solve_refined(b, x) : solve_iterated(b, x, tolerance);
   }
   bool repeats_cheaply() const override { return is_klu_; }
-  std::optional<int> eigenvalues_below_zero(int first_row) const override { return hilo::eigenvalues_below_zero(A_, first_row); }
+  /// Where there are no rows, Cholesky factors tell, and then serve the solves to come.
+  std::optional<int> eigenvalues_below_zero(int first_row) const override {
+    if (is_definite_ && first_row == A_.n_blocks()) {
+      fresh_ = factors_->factor(A_), changed_ = false;
+      if (const std::optional<int> known = *fresh_ ? factors_->below_zero() : std::nullopt) return known;
+    }
+    return hilo::eigenvalues_below_zero(A_, first_row);
+  }
   std::string name() const override { return fmt::format("light ({})", factors_->name()); }
   double bytes() const override { return A_.bytes() + factors_->bytes(); }
   double set_up_seconds() const override { return set_up_; }
 
  private:
+  /// Blocks that joints, contacts and the like couple, beside cells.
+  std::vector<char> joined(const Cliques& cliques) const {
+    std::vector<char> out(is_dense_.size(), 0);
+    for (int i = 0; i < cliques.size(); ++i)
+      for (const int b : cliques[i])
+        if (b >= 0 && !cliques.own[i] && !is_dense_[b]) out[b] = 1;
+    return out;
+  }
+
   SolveReport solve_refined(std::span<const double> b, std::span<double> x) {
     if (factored_) return factors_->solve(b.data(), x.data()), SolveReport{};
     factored_ = true;
@@ -112,14 +130,22 @@ class LightSolver final : public SerialKktSolver {
   /// GMRES on the matrix, with the factors of this one or an earlier one.
   SolveReport solve_iterated(std::span<const double> b, std::span<double> x, double tolerance) {
     tolerance = std::max(tolerance, 1e-10);  // about what round-off leaves of stiff scenes
+    if (fresh_) {
+      ready_ = *fresh_, excess_ = 0;
+      if (ready_) find_weights();
+      fresh_.reset();
+    }
     if (weight_.empty()) find_weights();
     int before = 0;
+    if (std::exchange(changed_, false) && ready_ && lags_) ready_ = factors_->follow(A_);
     if (ready_) {
       const int allowed = least_iterations + static_cast<int>(factors_->cost());
       SolveReport report = iterate(b, x, tolerance, allowed);
       // new factors once what lagging has cost is what they cost
       const double decades = -std::log10(std::clamp(report.residual, 1e-12, 0.5));
-      excess_ += std::max(0.0, report.iterations - rate_ * decades);
+      const double excess = std::max(0.0, report.iterations - rate_ * decades);
+      excess_ += excess;
+      if (excess > many_more) lags_ = true;
       ready_ = report.ok && excess_ < factors_->cost();
       if (report.ok) return report;
       before = report.iterations;
@@ -253,9 +279,12 @@ class LightSolver final : public SerialKktSolver {
   std::unique_ptr<Factors> aside_;  // Cholesky factors that failed as the matrix was not definite; matrices until they try again
   int waits_ = 0, rest_ = 0;
   bool indefinite_ = false, told_ = false;
-  bool factored_ = false;         // the factors at hand are those of the matrix
-  bool ready_ = false;            // the factors at hand serve it preconditioning
-  double rate_ = 0, excess_ = 0;  // iterations per decade with fresh factors; those lagging has cost since
+  bool factored_ = false;              // the factors at hand are those of the matrix
+  mutable bool changed_ = false;       // the matrix, since the last solve or count
+  bool ready_ = false;                 // the factors at hand serve it preconditioning
+  bool lags_ = false;                  // factors of earlier matrices have been far from these: they are to follow
+  mutable std::optional<bool> fresh_;  // since the last solve a count of eigenvalues made the factors, or found that there are none
+  double rate_ = 0, excess_ = 0;       // iterations per decade with fresh factors; those lagging has cost since
   std::vector<double> residual_, correction_, weight_;
   Gmres gmres_;
 };
