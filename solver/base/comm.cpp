@@ -52,7 +52,10 @@ Comm::Comm() {
   if (!n || std::atoi(n) < 2) return;
   int runs = 0;
   MPI_Initialized(&runs);  // a module with a copy of this object (libhilo-petsc.so) finds it running
-  if (!runs) MPI_Init(nullptr, nullptr);
+  if (!runs) {
+    setenv("HWLOC_COMPONENTS", "-gl", 0);  // hwloc asks an X server for its screens: seconds where names are not resolved
+    MPI_Init(nullptr, nullptr);
+  }
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &size);
   if (runs) return;

@@ -20,6 +20,7 @@
 #include "dynamics/start.hpp"
 #include "linear/block_csr.hpp"
 #include "linear/block_krylov.hpp"
+#include "physics/material/materials.hpp"
 #include "system/buckling_modes.hpp"
 #include "system/linear_regions.hpp"
 
@@ -157,8 +158,8 @@ class Loaded {
       s.figures.factor = factor, s.x = x;
       s.figures.error = std::sqrt(std::abs(left.dot(K.times(left))));
     }
-    double skew = 0,
-           all = 0;  // loads that follow are symmetric but for free rims and their cells: the other part changes factors by its square
+    // loads that follow are symmetric but for free rims and their cells: the other part changes factors by its square
+    double skew = 0, all = 0;
     for (const FoundShape& a : out) {
       const Vector of_skew = (after.skew(a.x) - before.skew(a.x)) / apart, of_all = change(a.x);
       for (const FoundShape& b : out) skew = std::max(skew, std::abs(b.x.dot(of_skew))), all = std::max(all, std::abs(b.x.dot(of_all)));
@@ -227,12 +228,20 @@ class BucklingSteps final : public Steps {
     const std::string where = time_.where("analysis");
     drawn.t = time_.has("end") ? time_.number("end") : 1;  // histories have their values at the end
     set_rows(system, run_.redundancy.at_pose);
+    if (system.violation(drawn.q, drawn.t).worst() > 1e-6 * system.length)
+      throw Error(where, "a drive moves its joint by the end: buckling knows loads alone",
+                  "leave out the drive, or use analysis = \"path\"");
+    for (const Entry& m : run_.scene.entries("material"))
+      if (system.traits().remembers && material_kinds().at(m.kind).n_state > 0)
+        throw Error(m.place.text(), fmt::format("material \"{}\" is plastic: buckling knows elastic laws", m.name),
+                    "kind = \"stvk\", or analysis = \"path\"");
     require_held(system, drawn.q, drawn.t, 1, where);
     system.commit(drawn.q);
     for (const LinearRegion& r : system.part<LinearRegions>().regions)
       if (!r.strain.used())
-        warn(where, fmt::format("linear region \"{}\" without stiffening = true: its stresses change no stiffness, so factors are too large",
-                                system.bodies[system.modes[static_cast<size_t>(r.modes)].body].name));
+        warn(where,
+             fmt::format("linear region \"{}\" without stiffening = true: its stresses change no stiffness, so factors are too large",
+                         system.bodies[system.modes[static_cast<size_t>(r.modes)].body].name));
     run_.audit->start(drawn);
     run_.recorder->first(drawn, run_.audit->ledger());
     Progress progress(run_.options.quiet, 0, time_.number("modes"));

@@ -104,6 +104,9 @@ TEST_F(Buckling, OfCellsAndOfStiffeningRegionsIsEulers) {
   }
   factors(solid(E, 0, 1000) + held("zmin") + push("zmax", Vec3(0, 0, -1)), 2);
   EXPECT_NE(ran.err.find("its stresses change no stiffness"), ran.err.npos) << ran.err;
+  write_tags(work / "tags.h5", work / "mesh.h5", {Fidelity::nonlinear}, {"test"});
+  const std::string metal = refused(solid(E, 0, 1000, "*", "kind = \"j2\"\nyield = 1e6") + held("zmin") + push("zmax", Vec3(0, 0, -1)));
+  EXPECT_NE(metal.find("is plastic: buckling knows elastic laws"), metal.npos) << metal;
   ASSERT_EQ(work.run("hilo-post render run.h5 --steps 1 --field displacement -o shape.png").exit, 0);
   EXPECT_NE(work.run("hilo-post response run.h5 --base z --at x.z").exit, 0) << "it has no frequencies";
 }
@@ -119,6 +122,10 @@ TEST_F(Buckling, IsRefusedByName) {
   says(refused(column() + push_end +
                motion("translation", "lift", "arm.end", "displacement = [0.1, 0, 0]\nhistory = {t = [0, 1], value = [0, 1]}\n")),
        "buckling knows loads alone");
+  says(refused(rod("a", 0.3) + hinge("p", "ground", "a", 0, 10) + down("a", 0.8) + rod("b", 0.3) +
+               "[[joint]]\nkind = \"prismatic\"\nname = \"jack\"\na = \"ground\"\nb = \"b\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n"
+               "displacement = 0.1\nhistory = {t = [0, 1], value = [0, 1]}\n"),
+       "a drive moves its joint");
   says(refused(rod("a", 0.3) + hinge("p", "ground", "a", 0, 10) + down("a", 0.8) +
                spring("axial", "tight", "ground", "a", "at_a = [1, 0, 0.3]\nat_b = [0, 0, 0.3]\nstiffness = 1\nlength = 0.2\n")),
        "is not at rest without the loads");
