@@ -8,7 +8,7 @@
 
 #include "dynamics/run.hpp"
 #include "model/integrators.hpp"
-#include "system/springs.hpp"
+#include "system/sprung.hpp"
 
 namespace hilo {
 namespace {
@@ -104,7 +104,7 @@ bool plan_another(StepPlan& plan, const RunReport& report, const Config& q, cons
   // The leading term of a high order rules late: two passes tell whether their estimates hold.  One is enough where the distance of its two
   // solutions is small whatever the order, from the third on: there it is 7 times the error.  A vibration that steps do not resolve has no
   // order: there it is the error.
-  const double enough = system.part<Springs>().list.empty() ? sure : sure_of_springs;
+  const double enough = is_sprung(system) ? sure_of_springs : sure;
   const bool is_whole = estimate.is_there() && estimate.splits() == 0;
   const double at_worst = std::max(now.error, estimate.largest() / most_before) * (std::pow(2.0, order) - 1) / enough;
   const bool is_sure = is_whole && at_worst <= plan.asked;

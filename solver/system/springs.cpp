@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "system/collocation.hpp"
+#include "system/sprung.hpp"
+#include "system/system.hpp"
 
 namespace hilo {
 namespace {
@@ -89,5 +91,7 @@ void Springs::evaluate(Pass& p) const {
     add_clique(p, points_, c, clique_[j], K, rows);
   }
 }
+
+bool is_sprung(const System& system) { return !system.part<Springs>().list.empty(); }
 
 }  // namespace hilo
