@@ -8,7 +8,7 @@
 
 #include "dynamics/run.hpp"
 #include "model/integrators.hpp"
-#include "system/sprung.hpp"
+#include "system/springs.hpp"
 
 namespace hilo {
 namespace {

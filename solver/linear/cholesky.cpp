@@ -8,7 +8,6 @@
 //
 // Where there are no bodies, what contact joins comes last in F.  The end E of its factor, E E^T = F_ee less what the rest takes away, is
 // made anew for a later matrix by the change of F_ee alone: contacts change from iteration to iteration, cells little.
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <new>
@@ -102,15 +101,6 @@ class Cholesky final : public Factors {
     end_factor_ += end_schur_;
     follows_ = lapack::factor(static_cast<int>(m), end_factor_.data(), static_cast<int>(m));
     return follows_;
-  }
-
-  /// Those of the Schur complement, as F has none.
-  std::optional<int> below_zero() const override {
-    constexpr size_t few = 100;  // blocks, whose eigenvalues cost less than F's factor
-    if (dense_.empty()) return 0;
-    if (dense_.size() > few) return {};
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> S(schur_.reconstructedMatrix(), Eigen::EigenvaluesOnly);
-    return static_cast<int>((S.eigenvalues().array() < 0).count());
   }
 
   bool sharpen() override { return std::exchange(single_, false); }

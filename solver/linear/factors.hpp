@@ -2,7 +2,6 @@
 // Serial factors of a saddle-point matrix.
 #pragma once
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,8 +22,6 @@ class Factors {
   virtual bool sharpen() { return false; }
   /// The matrix has become A: takes up what costs little, so that the factors serve it better.  False: they serve no more.
   virtual bool follow(const BlockCsr& /*A*/) { return true; }
-  /// Eigenvalues below zero of the matrix's symmetric part, factored last; nothing where this kind does not tell.
-  virtual std::optional<int> below_zero() const { return {}; }
   /// What a factorisation costs, in solves.
   virtual double cost() const = 0;
   virtual std::string name() const = 0;

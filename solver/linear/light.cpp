@@ -65,7 +65,6 @@ class LightSolver final : public SerialKktSolver {
     is_definite_ = kind == "cholesky";
     aside_.reset(), rest_ = 0;
     factored_ = ready_ = lags_ = false;
-    fresh_.reset();
     weight_.clear();
   }
 
@@ -82,14 +81,7 @@ class LightSolver final : public SerialKktSolver {
     return is_klu_ ? solve_refined(b, x) : solve_iterated(b, x, tolerance);
   }
   bool repeats_cheaply() const override { return is_klu_; }
-  /// Where there are no rows, Cholesky factors tell, and then serve the solves to come.
-  std::optional<int> eigenvalues_below_zero(int first_row) const override {
-    if (is_definite_ && first_row == A_.n_blocks()) {
-      fresh_ = factors_->factor(A_), changed_ = false;
-      if (const std::optional<int> known = *fresh_ ? factors_->below_zero() : std::nullopt) return known;
-    }
-    return hilo::eigenvalues_below_zero(A_, first_row);
-  }
+  std::optional<int> eigenvalues_below_zero(int first_row) const override { return hilo::eigenvalues_below_zero(A_, first_row); }
   std::string name() const override { return fmt::format("light ({})", factors_->name()); }
   double bytes() const override { return A_.bytes() + factors_->bytes(); }
   double set_up_seconds() const override { return set_up_; }
@@ -130,11 +122,6 @@ class LightSolver final : public SerialKktSolver {
   /// GMRES on the matrix, with the factors of this one or an earlier one.
   SolveReport solve_iterated(std::span<const double> b, std::span<double> x, double tolerance) {
     tolerance = std::max(tolerance, 1e-10);  // about what round-off leaves of stiff scenes
-    if (fresh_) {
-      ready_ = *fresh_, excess_ = 0;
-      if (ready_) find_weights();
-      fresh_.reset();
-    }
     if (weight_.empty()) find_weights();
     int before = 0;
     if (std::exchange(changed_, false) && ready_ && lags_) ready_ = factors_->follow(A_);
@@ -279,12 +266,11 @@ class LightSolver final : public SerialKktSolver {
   std::unique_ptr<Factors> aside_;  // Cholesky factors that failed as the matrix was not definite; matrices until they try again
   int waits_ = 0, rest_ = 0;
   bool indefinite_ = false, told_ = false;
-  bool factored_ = false;              // the factors at hand are those of the matrix
-  mutable bool changed_ = false;       // the matrix, since the last solve or count
-  bool ready_ = false;                 // the factors at hand serve it preconditioning
-  bool lags_ = false;                  // factors of earlier matrices have been far from these: they are to follow
-  mutable std::optional<bool> fresh_;  // since the last solve a count of eigenvalues made the factors, or found that there are none
-  double rate_ = 0, excess_ = 0;       // iterations per decade with fresh factors; those lagging has cost since
+  bool factored_ = false;         // the factors at hand are those of the matrix
+  bool changed_ = false;          // the matrix, since the last solve
+  bool ready_ = false;            // the factors at hand serve it preconditioning
+  bool lags_ = false;             // factors of earlier matrices have been far from these: they are to follow
+  double rate_ = 0, excess_ = 0;  // iterations per decade with fresh factors; those lagging has cost since
   std::vector<double> residual_, correction_, weight_;
   Gmres gmres_;
 };

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "system/collocation.hpp"
-#include "system/sprung.hpp"
 #include "system/system.hpp"
 
 namespace hilo {

@@ -45,5 +45,7 @@ void spring_elastic(const Spring& c, const Stage& s, Response& out);
 
 /// Whether the forces of all springs keep energy, without dampers and kinks.
 bool springs_conserve(const System& system);
+/// Whether there are springs or compliant joints, on which bodies may vibrate.
+bool is_sprung(const System& system);
 
 }  // namespace hilo

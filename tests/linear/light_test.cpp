@@ -2,8 +2,6 @@
 // The serial solver's factors: what they are chosen for, and what happens where they do not suit.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-
 #include "problem.hpp"
 
 namespace hilo {
@@ -153,28 +151,6 @@ TEST(Light, FactorsFollowWhatContactChanges) {
     EXPECT_LT(light.solve(1), 1e-9);
     EXPECT_LE(light.report.iterations, fresh + 2) << k;
     EXPECT_EQ(light.solver->set_up_seconds(), set_up) << k << ": new factors";
-  }
-}
-
-// Truth: the eigenvalues of the whole matrix.
-TEST(Light, CountsEigenvaluesBelowZeroByItsFactors) {
-  const Problem whole = elastic_bar(10, 4, 4, 30);
-  for (const int bodies : {0, 2}) {
-    Problem p = cut(whole, whole.n_flexible + 2 * bodies);
-    p.cliques.resize(10 * 4 * 4);  // the cells
-    for (const double less : {0., 30., 1e4}) {
-      if (bodies > 0) p.diagonal[p.n_flexible + 1] = Eigen::Vector3d(-less, 0, -2 * less);
-      Light light(p, "cholesky");
-      light.solve(1);
-      light.share.fill(light.p, *light.solver, 0, 1);
-      const Eigen::MatrixXd A = assembled(p);
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A, Eigen::EigenvaluesOnly);
-      const auto truth = (eigen.eigenvalues().array() < 0).count();
-      EXPECT_EQ(truth > 0, bodies > 0 && less > 0);
-      EXPECT_EQ(light.solver->eigenvalues_below_zero(p.n_blocks()), truth) << bodies << " " << less;
-      EXPECT_LT(light.solve(1), 1e-9);
-      EXPECT_LE(light.report.iterations, 4);
-    }
   }
 }
 
