@@ -75,7 +75,8 @@ void blank(RunFile& run, const std::string& name, bool of_cells, RunFile::Field&
 
 void export_gltf(const ExportOptions& o, RunFile& file, std::vector<Step> steps) {
   if (steps.size() > 1 && !file.shapes.empty())
-    throw Error("--steps", "steps of an analysis of modes or buckling are shapes, not instants", "one of them, or hilo-post movie", Exit::usage);
+    throw Error("--steps", "steps of an analysis of modes or buckling are shapes, not instants", "one of them, or hilo-post movie",
+                Exit::usage);
   const double span = steps.back().t - steps.front().t;
   GltfOptions g{std::move(steps), o.field.empty() ? "region" : o.field,
                 o.range,          o.show,

@@ -44,9 +44,9 @@ class Companion {
   NewtonOptions newton_;
   bool begun_ = false;
   State state_, reached_;
-  Config start_;     // of the run
+  Config start_;  // of the run
   int waiting_ = 0;
-  Kept memory_;      // what the contributions remember, of the other solution
+  Kept memory_;  // what the contributions remember, of the other solution
   Impulses untold_;
 };
 
