@@ -296,7 +296,7 @@ class Judge:
             got = {q["quantity"]: q["value"] for q in run["quantities"]}
             return max(abs(got[q] / want[q] - 1) for q in want) / self.part()
 
-        models = [(m["s"], error(m["run"]), m) for m in advice["models"] if m["s"] is not None]
+        models = [(m["s"], error(m["run"]), m) for m in advice["models"] if m["s"] is not None and "twice the step" not in m["model"]]
         chosen = next(row for row in models if "chosen" in row[2]["choice"])
         rigid = next((e for c, e, m in models if m["model"] == "all rigid"), math.nan)
         linear = next((e for c, e, m in models if m["model"] in ("linear all", "linear " + ", ".join(s.regions))), math.nan)

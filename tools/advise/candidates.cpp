@@ -310,7 +310,7 @@ double Candidates::work(const Request& r) const {
   return 4.6e-3 * std::pow(unknowns(r) / 1000, 0.76) * end / (time.number("step") * r.step);
 }
 
-/// By the nearest run of its kind.  Modes are dearer or cheaper than as many cells: without a run of cells these cost what the fit says, or
+/// By the nearest run of its kind, with the same step if there is one.  Modes are dearer or cheaper than as many cells: without a run of cells these cost what the fit says, or
 /// more by as much as the other runs do.
 double Candidates::price(const Request& request) const {
   const auto has_cells = [](const Request& r) { return std::ranges::find(r.levels, Level::nonlinear) != r.levels.end(); };
@@ -318,7 +318,7 @@ double Candidates::price(const Request& request) const {
   double nearest[2] = {HUGE_VAL, HUGE_VAL}, factor[2] = {1, 1};  // of other runs and of its kind
   for (const auto& [name, c] : done_) {
     if (!c.failure.empty() || c.seconds <= 0) continue;
-    const double its = work(c), far = std::abs(std::log(wanted / its));
+    const double its = work(c), far = std::abs(std::log(wanted / its)) + (c.step == request.step ? 0 : 3);  // starts count as well
     const int kind = has_cells(c) == has_cells(request) ? 1 : 0;
     if (far < nearest[kind]) nearest[kind] = far, factor[kind] = c.seconds / its;
   }

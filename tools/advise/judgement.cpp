@@ -22,6 +22,11 @@ std::vector<double> part(const Candidate& c, const Candidate& other, double fact
   return out;
 }
 
+double Advice::with_step(double off, size_t k) const {
+  const double apart = std::abs(off) + std::abs(step[k]);
+  return is_by_half && reference->step == 1 ? std::min(apart, std::abs(off - step[k]) + 0.25 * std::abs(step[k])) : apart;
+}
+
 Judgement::Judgement(Candidates& all_models, const SearchOptions& options) : all(all_models), o(options), n(all_models.names().size()) {
   find_contacts();
   find_base();
@@ -54,7 +59,7 @@ double Judgement::error(const Candidate& c) const {
     const QuantityValue &mine = c.values[k], &its = a.reference->values[k];
     if (!its.why.empty()) continue;
     if (!mine.why.empty() || c.ended > 0) return HUGE_VAL;
-    largest = std::max(largest, over(mine.value - its.value, its.allowed) + over(a.step[k], its.allowed));
+    largest = std::max(largest, over(a.with_step(mine.value - its.value, k), its.allowed));
   }
   return largest + std::min(a.doubt, 0.5);
 }
@@ -66,7 +71,8 @@ Candidates::Beyond Judgement::beyond() const {
       if (is_of_shapes(q.kind)) continue;
       const QuantityValue &mine = so_far[k], &its = a.reference->values[k];
       const double excess = std::abs(mine.value) - std::abs(its.value);
-      if (q.kind == "peak" && !q.has("cfc") && mine.why.empty() && its.why.empty() && excess > 1.2 * its.allowed) return true;
+      if (q.kind == "peak" && !q.has("cfc") && mine.why.empty() && its.why.empty() && excess > 1.2 * its.allowed + std::abs(a.step[k]))
+        return true;
       ++k;
     }
     return false;
@@ -176,6 +182,32 @@ bool Judgement::doubts(const Candidate& c, Assignment& levels) {
   return levels != before;
 }
 
+/// The base and what cells change of it, by a run of each at twice the step, at half the price of cells; none where that would not do: the
+/// base's own step is to be known as small, and what cells change too.
+const Candidate* Judgement::by_twice(const Request& cells) {
+  constexpr double most_step = 0.3, most_change = 0.9;  // of a tolerance
+  if (!is_measured_method() || !may_be_twice() || !a.base->beyond.empty() || o.check == Check::always) return nullptr;
+  const Candidate& before = all.of({a.base->levels, 2, cells.end});
+  const auto largest = [&](const Candidate& c, const Candidate& other) {
+    double out = 0;
+    for (size_t k = 0; k < a.base->values.size(); ++k) {
+      const QuantityValue &its = c.values[k], &others = other.values[k];
+      if (!its.why.empty() || !others.why.empty()) return HUGE_VAL;
+      out = std::max(out, over(its.value - others.value, a.base->values[k].allowed));
+    }
+    return out;
+  };
+  if (!before.failure.empty() || largest(before, *a.base) > 3 * most_step) return nullptr;
+  const Candidate& after = all.of({cells.levels, 2, cells.end});
+  if (!after.failure.empty() || largest(after, before) > most_change) return nullptr;
+  Candidate& made = a.made.emplace_back(after);
+  for (size_t k = 0; k < made.values.size(); ++k) {
+    made.values[k].value += a.base->values[k].value - before.values[k].value;
+    made.values[k].allowed = a.base->values[k].allowed;
+  }
+  return &made;
+}
+
 /// The base with cells where its linear strains are in doubt, as far as quantities have their values.
 void Judgement::find_reference() {
   Assignment levels = a.base->levels;
@@ -188,7 +220,8 @@ void Judgement::find_reference() {
                  "linear strains of some regions, or how they give way in contacts, are in doubt: a run to judge by, to {:.4g} s, takes "
                  "about {:.2g} s\n",
                  window_ > 0 ? window_ : all.scene().table("time").number("end"), all.price(next));
-    const Candidate& c = of(next);
+    const Candidate* twice = by_twice(next);
+    const Candidate& c = twice ? *twice : of(next);
     const auto lacking = std::ranges::find_if(c.values, [](const QuantityValue& v) { return !v.why.empty(); });
     const bool lacks = lacking != c.values.end(), runs = c.failure.empty() && !lacks;
     if (!runs && !(early && lacks)) {

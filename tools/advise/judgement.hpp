@@ -58,6 +58,8 @@ class Judgement {
   void find_base();
   void find_reference();
   bool doubts(const Candidate& c, Assignment& levels);
+  const Candidate* by_twice(const Request& cells);
+  bool is_measured_method() const;
   bool mend(const Candidate& c, Assignment& levels);
   double window_of(const Candidate& c) const;
   std::string take_step(const Candidate& c);

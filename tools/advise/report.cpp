@@ -35,7 +35,7 @@ Table budget(const Advice& a) {
     const QuantityValue &mine = a.chosen->values[k], &base = a.base->values[k], &its = a.reference->values[k];
     const double levels = mine.value - base.value, strains = base.value - its.value, step = -a.step[k];
     const double modes = a.modes.empty() ? 0 : -a.modes[k], mesh = a.mesh.empty() ? 0 : -a.mesh[k];
-    const double sum = std::abs(mine.value - its.value) + std::abs(step) + std::abs(modes) + std::abs(mesh);
+    const double sum = a.with_step(mine.value - its.value, k) + std::abs(modes) + std::abs(mesh);
     t.rows.push_back({mine.name, mine.unit, number(mine.value), number(its.allowed), number(levels),
                       a.reference == a.base ? "-" : number(strains), number(step), a.modes.empty() ? "-" : number(modes),
                       a.mesh.empty() ? "-" : number(mesh), number(sum / its.allowed),
@@ -65,6 +65,7 @@ Table regions(const Candidates& all, const Advice& a) {
 /// The smallest first, in the same order in every call.
 std::vector<const Candidate*> by_unknowns(const Advice& a) {
   auto out = a.tried;
+  if (a.reference->step != 1) out.push_back(a.reference);
   std::stable_sort(out.begin(), out.end(), [](const Candidate* x, const Candidate* y) {
     return std::tuple(x->unknowns, x->levels, x->end, x->modes) < std::tuple(y->unknowns, y->levels, y->end, y->modes);
   });
@@ -78,6 +79,7 @@ Table models(const Candidates& all, const Advice& a) {
     const double d = difference(*c, *a.reference, &in);
     if (!c->failure.empty()) in = "does not run: " + c->failure;
     t.rows.push_back({label(c->levels, all.names()) + (c->modes != 1 ? fmt::format(", {} times the modes", c->modes) : "") +
+                          (c->step != 1 ? ", by twice the step" : "") +
                           (c->ended > 0 ? fmt::format(", ended at {:.4g} s", c->ended)
                            : c->end > 0 ? fmt::format(", to {:.4g} s", c->end)
                                         : ""),
@@ -111,9 +113,10 @@ std::string what_is_known(const Candidates& all, const Advice& a) {
     if (const QuantityValue& v = a.reference->values[k]; std::abs(a.mesh[k]) > v.allowed)
       mesh += fmt::format("; the mesh alone makes {:.3g} {} of \"{}\", of {:.3g} {} allowed", std::abs(a.mesh[k]), v.unit, v.name,
                           v.allowed, v.unit);
-  return fmt::format("judged by {}; what linear strains leave out of it may be {:.2g} of the tightest tolerance, by their own measures{}{}",
-                     label(a.reference->levels, all.names()), a.doubt, a.doubt > 0.5 ? ": more than half, and nothing checked it" : "",
-                     modes + told_of_raw(a) + mesh);
+  return fmt::format(
+      "judged by {}{}; what linear strains leave out of it may be {:.2g} of the tightest tolerance, by their own measures{}{}",
+      label(a.reference->levels, all.names()), a.reference->step != 1 ? ", by what it changes at twice the step" : "", a.doubt,
+      a.doubt > 0.5 ? ": more than half, and nothing checked it" : "", modes + told_of_raw(a) + mesh);
 }
 
 }  // namespace

@@ -79,8 +79,8 @@ class Search : Judgement {
         double largest = 0;
         for (size_t k = 0; k < c.values.size(); ++k) {
           const QuantityValue& its = a.reference->values[k];
-          const double levels = c.levels == a.reference->levels ? 0 : over(of.values[k].value - its.value, its.allowed);
-          largest = std::max(largest, levels + step_over(k) + (with_modes ? over(a.modes[k], its.allowed) : 0));
+          const double levels = c.levels == a.reference->levels ? 0 : of.values[k].value - its.value;
+          largest = std::max(largest, over(a.with_step(levels, k), its.allowed) + (with_modes ? over(a.modes[k], its.allowed) : 0));
         }
         return largest;
       };
@@ -100,6 +100,9 @@ class Search : Judgement {
   void reject(const Candidate& c) {
     rejected.insert(&c);
     a.modes.clear();
+    if (a.reference->step != 1) a.reference = &of(request(a.reference->levels));  // itself, not only what it changes
+    if (!a.reference->failure.empty())
+      throw Error("", "the model to judge by does not run: " + a.reference->failure, "", a.reference->exit);
     if (&c == a.base && &c != a.reference)
       climb(c.levels, *a.reference, by_doubt());
     else

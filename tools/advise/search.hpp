@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The search for the cheapest model that answers as a base does.
 #pragma once
+#include <deque>
+
 #include "advise/candidates.hpp"
 
 namespace hilo {
@@ -20,14 +22,20 @@ struct Advice {
   const Candidate *base = nullptr, *reference = nullptr, *chosen = nullptr;  // reference: the base, or it with some regions nonlinear
   // parts of the error of the chosen model by quantity, each in its unit; empty where that is not known
   std::vector<double> step;                    // what a step of none would change
+  bool is_by_half = false;                     // is that known by half the step?
   std::vector<double> modes;                   // what all modes of its linear regions would
   double modes_at_most = 0;                    // what they may change, over the tightest tolerance, by the strain they lack
   std::vector<double> mesh;                    // what cells of no size would
   double doubt = 0;                            // what strains of the second degree may change of the reference, over the tightest tolerance
   std::map<size_t, const Candidate*> without;  // the chosen model with this region rigid
   std::vector<const Candidate*> tried;
+  std::deque<Candidate> made;                // references that are no runs
   std::map<size_t, std::string> kept_rigid;  // regions that cannot deform, and why
   double all_cells = 0;                      // what a run of all cells costs  [s]
+
+  /// Error of a model that is `off` the reference in quantity k, the step's included, in its unit.  Where half the step told what a step of
+  /// none makes of the reference, the model is judged against that, and told a quarter of the step's part in case the estimate is off.
+  double with_step(double off, size_t k) const;
 };
 
 /// Errors: no model runs; no output of fields where stress is asked for; a step that no model can be judged with.

@@ -34,6 +34,11 @@ bool Judgement::may_be_twice() const {
   });
 }
 
+/// Were steps of other lengths measured with such scenes? (docs/advise.md)
+bool Judgement::is_measured_method() const {
+  return all.scene().table("time").text("integrator") == "energy-momentum" && all.scene().entries("contact").empty();
+}
+
 /// Half the step of the reference costs twice as much as the reference, twice the step half.  Of a machine that rings it alone may tell .1
 /// of a tolerance where .9 is true, and so may the base alone, which is `off` by so many tolerances.  Of 27 scenes the larger of both told
 /// at least .88 of the largest error where that was above .17, and half of it below (docs/advise.md): the error is known where they tell at
@@ -41,8 +46,7 @@ bool Judgement::may_be_twice() const {
 /// contacts, by the default method.
 bool Judgement::is_known_by_twice(double off) {
   constexpr double most_told = 0.65, least_told = 0.2;
-  const Entry& time = all.scene().table("time");
-  if (time.text("integrator") != "energy-momentum" || !all.scene().entries("contact").empty()) return false;
+  if (!is_measured_method()) return false;
   const bool base_tells = off < 15;
   if (base_tells) {
     if (!take_step(*a.base).empty()) return false;
@@ -69,6 +73,7 @@ bool Judgement::is_known_by_twice(double off) {
 void Judgement::find_step() {
   const auto by_half = [&](const Candidate& c) {
     if (const std::string why = take_step(c); !why.empty()) throw Error("", "half the step does not run: " + why, "", Exit::not_converged);
+    a.is_by_half = true;
     return step_over(largest_step()) <= most_step;
   };
   const double off = difference(*a.base, *a.reference);
