@@ -186,7 +186,7 @@ bool Judgement::doubts(const Candidate& c, Assignment& levels) {
 /// base's own step is to be known as small, and what cells change too.
 const Candidate* Judgement::by_twice(const Request& cells) {
   constexpr double most_step = 0.3, most_change = 0.9;  // of a tolerance
-  if (!is_measured_method() || !may_be_twice() || !a.base->beyond.empty() || o.check == Check::always) return nullptr;
+  if (!is_measured_method() || !may_be_twice() || o.check == Check::always) return nullptr;
   const Candidate& before = all.of({a.base->levels, 2, cells.end});
   const auto largest = [&](const Candidate& c, const Candidate& other) {
     double out = 0;
