@@ -81,6 +81,13 @@ with tempfile.TemporaryDirectory() as folder:
     assert all(q["modes"] != 0 for q in advice["quantities"]), advice["quantities"]  # there were more modes to find
     assert advice["checked"] and "nonlinear a; linear b, c" in " ".join(errors), errors  # it bends enough for doubt of linear strains
 
+    assert "nonlinear a; linear b, c, by twice the step" in " ".join(errors), errors  # what cells change is known at half the price
+    done = run("hilo-advise", "scene.toml", "mesh.h5", "--tol", "2%", "--json", "--full", "--work", "full.work")
+    whole = {q["quantity"]: q for q in json.loads(done.stdout)["quantities"]}
+    for q in advice["quantities"]:
+        print(f"{q['quantity']}: cells change {-q['linear strains']:.4g} at twice the step, {-whole[q['quantity']]['linear strains']:.4g} at the step")
+        assert abs(q["linear strains"] - whole[q["quantity"]]["linear strains"]) < 0.02 * q["allowed"], (q, whole)
+
     truth = values(tagged("--rest", "nonlinear"), "--set", "time.step=5e-4")
     chosen, rigid = values(tagged("choice.toml")), values(tagged("--rest", "rigid"))
     off = {q: abs(chosen[q] / truth[q] - 1) for q in truth}
