@@ -78,7 +78,9 @@ class Stiffness final : public KktSolver {
 ///
 ///   K1 = K + S + d(G)^T D G + G^T D d(G),   K2 = w (K + S + d(G)^T D G),   S = (K2 + K2^T)/w - K1 - K
 ///
-/// S has no displacements: to first order, stiff parts that turn would seem to lose the stiffness across that is small beside.
+/// S has no displacements: to first order, stiff parts that turn would seem to lose the stiffness across that is small beside.  Strains
+/// that are not of the second degree in the points (beams, springs) have their slopes from the right at the end: those at d would bring
+/// displacements back.
 class Stressed {
  public:
   Stressed(const System& system, const State& drawn, const State& far, double share)
@@ -88,7 +90,7 @@ class Stressed {
     Stage s = stage_at(near_, drawn.t);
     s.a = &none_, s.load_factor = (1 - w) * share;
     whole_.emplace(system, s, lambda_);
-    s.end = &drawn.q, s.e0 = &from_, s.e1 = &to_, s.slope = s.weight = w;
+    s.end = &drawn.q, s.e0 = &from_, s.e1 = &to_, s.slope = s.weight = w, s.slopes_of_end = true;
     half_.emplace(system, s, lambda_);
   }
   static constexpr double w = 0.25;

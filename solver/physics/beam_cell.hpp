@@ -235,9 +235,10 @@ inline void run(const ArcCall& call) {
       }
       if (pair.mean) {
         const double w = pair.weight;
-        for (int i = 0; i < 3; ++i) m1.a[i] = (1 - w) * m0.a[i] + w * m1.a[i], m1.p[i] = (1 - w) * m0.p[i] + w * m1.p[i];
-        m1.t = (1 - w) * m0.t + w * m1.t;
-        m0 = m1;
+        const double by0 = pair.end_slopes ? 2 * (1 - w) : 1 - w, by1 = pair.end_slopes ? 2 * w - 1 : w;  // m1 stays: 2 mean - m1
+        for (int i = 0; i < 3; ++i) m0.a[i] = by0 * m0.a[i] + by1 * m1.a[i], m0.p[i] = by0 * m0.p[i] + by1 * m1.p[i];
+        m0.t = by0 * m0.t + by1 * m1.t;
+        if (!pair.end_slopes) m1 = m0;
         slope *= 2 * w;  // so far the derivative by the second argument alone
       }
       T recalled[n_strains];

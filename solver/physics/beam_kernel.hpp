@@ -16,6 +16,7 @@ struct ArcCall {
     bool acts = true;                           // false: in the tangent alone
     bool mean = false;                          // the forces at the mean of the measures, by the share `weight` of q1
     double weight = 0.5;
+    bool end_slopes = false;                     // from the right, slopes of the strains at q1 and not at the mean
     const double* past[2] = {nullptr, nullptr};  // poses before q0, or null: kappa C* recalls changes of strain times `recall`
     double recall[2] = {0, 0};
     const double *s = nullptr, *D = nullptr;  // forces (7) and their slopes (7 x 7) where they are known

@@ -161,7 +161,7 @@ std::vector<StagePair> pairs_of(const Stage& s, bool has_beta) {
       }
       d = nullptr;
     } else if (!s.step) {
-      elastic.mean = true, elastic.weight = s.weight;
+      elastic.mean = true, elastic.weight = s.weight, elastic.end_slopes = s.slopes_of_end;
     }
     out.push_back({s.e0, s.e1, elastic});
     if (d) out.push_back({s.e0, s.e1, loss});

@@ -27,7 +27,11 @@ void spring_elastic(const Spring& c, const Stage& s, Response& out) {
   if (s.step) return elastic_along(*c.law, MeasurePath(c, *s.step), *s.step, s.member, out);
   SpringLaw::Values e0 = c.values(*s.e0), e1 = c.values(*s.e1);
   if (s.conserving()) return c.law->elastic(e0, e1, out);
-  for (size_t m = 0; m < c.measures.size(); ++m) e0[m] = e1[m] = (1 - s.weight) * e0[m] + s.weight * e1[m];
+  for (size_t m = 0; m < c.measures.size(); ++m) {
+    const double mean = (1 - s.weight) * e0[m] + s.weight * e1[m];
+    e0[m] = s.slopes_of_end ? 2 * mean - e1[m] : mean;
+    if (!s.slopes_of_end) e1[m] = mean;
+  }
   c.law->elastic(e0, e1, out);
   for (auto& row : out.D)  // so far the derivative by the second argument alone
     for (double& d : row) d *= 2 * s.weight;

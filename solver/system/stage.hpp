@@ -56,6 +56,7 @@ struct Stage {
   double load_factor = 1;                            // of gravity and of loads without a history, for static load steps
   const Collocation* step = nullptr;  // of a stage that shares its step with others: rows hold increments, forces keep energy
   int member = 0;                     // which of them this is
+  bool slopes_of_end = false;         // of strains that are not of the second degree, where `weight` takes a mean: for buckling
   bool fixed_friction = false;        // tangents without what the pressure adds to friction: for eigenvalues
   /// Derivatives of w0 and w1 by `end`.
   double slope0() const {

@@ -18,6 +18,7 @@ class Search : Judgement {
 
   Advice found() {
     find_step();
+    if (!serves(*a.base) && a.reference->step != 1) run_reference(), find_step();
     a.all_cells = all.price({with(Level::nonlinear)});
     tell_plan();
     if (serves(*a.base)) {
@@ -96,13 +97,17 @@ class Search : Judgement {
       if (a.reference->levels == c.levels) a.reference = &more;
     }
   }
+  /// The reference itself, where only what it changes has run.
+  void run_reference() {
+    if (a.reference->step != 1) a.reference = &of(request(a.reference->levels));
+    if (!a.reference->failure.empty())
+      throw Error("", "the model to judge by does not run: " + a.reference->failure, "", a.reference->exit);
+  }
   /// A model that does not serve with all parts of its error: the next one.
   void reject(const Candidate& c) {
     rejected.insert(&c);
     a.modes.clear();
-    if (a.reference->step != 1) a.reference = &of(request(a.reference->levels));  // itself, not only what it changes
-    if (!a.reference->failure.empty())
-      throw Error("", "the model to judge by does not run: " + a.reference->failure, "", a.reference->exit);
+    run_reference();
     if (&c == a.base && &c != a.reference)
       climb(c.levels, *a.reference, by_doubt());
     else

@@ -38,7 +38,8 @@ std::string hinge(const std::string& name, const std::string& a, const std::stri
   return axial("revolute", name, a, b, Vec3(0, 0, z), Vec3::UnitY()) +
          spring("torsion", "k" + name, a, b, fmt::format("axis = [0, 1, 0]\nstiffness = {}\n", k));
 }
-std::string rod(const std::string& name, double z) { return body(name, 1, Vec3(0, 0, z), Vec3::Constant(0.1)); }
+std::string rod_at(const Vec3& com, const std::string& name = "rod") { return body(name, 1, com, Vec3::Constant(0.1)); }
+std::string rod(const std::string& name, double z) { return rod_at(Vec3(0, 0, z), name); }
 std::string down(const std::string& on, double z) { return push(on, Vec3(0, 0, -1), fmt::format("at = [0, 0, {}]\n", z)); }
 
 TEST_F(Buckling, OfAColumnIsEulers) {
@@ -65,6 +66,31 @@ TEST_F(Buckling, OfRigidRodsIsThatOfTheirSprings) {
   EXPECT_NEAR(heavy[0], 10 / (9.81 * 0.3), 1e-5);
 }
 
+// A rod on a hinge whose tip e moves, between springs along n of length l that take N as it moves, and their and the load's share T of
+// tension: sum k (n.e)^2 + f (sum N/l (1 - (n.e)^2) + T/L) = 0.
+TEST_F(Buckling, OfARodBetweenObliqueSpringsIsThatOfTheirTension) {
+  const double L = 1.2, k[] = {300, 900};
+  for (const Vec3& F : {Vec3(20, 0, -60), Vec3(-35, 0, -10)}) {
+    const Vec3 tip(L * std::sin(0.3), 0, L * std::cos(0.3)), e(std::cos(0.3), 0, -std::sin(0.3));
+    std::string scene = rod_at(tip / 2) + axial("revolute", "foot", "ground", "rod", Vec3::Zero(), Vec3::UnitY()) +
+                        push("rod", F, fmt::format("at = {}\n", list(tip)));
+    double K = 0, pulled = 0, T = F.dot(tip) / L;
+    for (int pass = 0; pass < 2; ++pass)
+      for (int i = 0; i < 2; ++i) {
+        const Vec3 from = i == 0 ? Vec3(1.5, 0, 0.2) : Vec3(-0.8, 0, 2), way = tip - from, n = way.normalized();
+        if (pass == 0) {
+          K += k[i] * n.dot(e) * n.dot(e);
+          scene += spring("axial", fmt::format("s{}", i), "ground", "rod",
+                          fmt::format("at_a = {}\nat_b = {}\nstiffness = {}\n", list(from), list(tip), k[i]));
+        } else {
+          const double N = k[i] * n.dot(e) * F.dot(e) / K;
+          pulled += N / way.norm() * (1 - n.dot(e) * n.dot(e)), T -= N * n.dot(tip) / L;
+        }
+      }
+    EXPECT_NEAR(factors(scene, 1)[0] / (-K / (pulled + T / L)), 1, 1e-5) << F.transpose();
+  }
+}
+
 // Levy: 3 EI/R^3, under a pressure that turns with the ring.
 TEST_F(Buckling, OfARingUnderPressureIsLevys) {
   const auto f = factors(
@@ -86,6 +112,26 @@ TEST_F(Buckling, OfAFrameOfAStripIsNearThatOfItsPath) {
       2);
   EXPECT_NEAR(f[0], -0.6791, 5e-3);
   EXPECT_NEAR(f[1], 1.0843, 1e-2);
+}
+
+// Three legs that their loads bend more than they press them, in their plane: factors of Bernoulli beams, 80 a leg, with the linear
+// stiffness of their normal forces.  (Slopes of the strains where the loads had moved a cell gave legs of eight cells 26.8.)
+TEST_F(Buckling, OfAFrameThatItsLoadsBendIsThatOfItsNormalForces) {
+  const std::string tube =
+      "[section.s]\nkind = \"tube\"\ndiameter = 0.012\nthickness = 0.002\n[material.m]\nE = 2e11\nnu = 0.3\ndensity = 8000\n";
+  for (const int n : {5, 10}) {
+    const auto f = factors(tube +
+                               beam_of("[[0, 0, 0], [0.53, 0, 0.55], [1.05, 0, 0.66], [2.07, 0, 0.35]]", n,
+                                       "a = \"ground\"\nb = \"ground\"\nmaterial = \"m\"") +
+                               push(fmt::format("arm.{}", n), Vec3(-6, 0, -12.7)) + push(fmt::format("arm.{}", 2 * n), Vec3(-0.75, 0, -45)),
+                           6);
+    for (const double plane : {46.918, 84.434}) {
+      const auto nearest = std::ranges::min(f, {}, [&](double x) { return std::abs(x / plane - 1); });
+      EXPECT_NEAR(nearest / plane, 1, 6e-3) << n;
+    }
+    EXPECT_EQ(f.size(), 6u);
+    for (const double x : f) EXPECT_GT(x, 14) << "pushed as they are, none buckles where the loads are reversed";
+  }
 }
 
 // The same column of cells, and of a linear region whose stiffness follows its stress.
