@@ -59,6 +59,8 @@ class Stiffness final : public KktSolver {
     return Eigen::Map<const Vector>(y.data(), x.size());
   }
 
+  void subtract(const Stiffness& other) { A_.subtract(other.A_); }
+
   void structure(const Cliques& cliques, const BlockMap& map) override { A_.structure(cliques, static_cast<int>(map.global.size())); }
   void zero() override { A_.zero(); }
   void add(int clique, const double* K) override { A_.add(clique, K); }
@@ -94,6 +96,8 @@ class Stressed {
     half_.emplace(system, s, lambda_);
   }
   static constexpr double w = 0.25;
+  /// Entry by entry, before products round what is nearly alike.
+  void subtract(const Stressed& other) { whole_->subtract(*other.whole_), half_->subtract(*other.half_); }
   /// K + S, of its symmetric part.
   Vector times(const Vector& x) const {
     return (half_->times(x) + half_->times(x, true)) / w - (whole_->times(x) + whole_->times(x, true)) / 2;
@@ -135,9 +139,10 @@ class Loaded {
     Stage s0 = stage_at(drawn_.q, drawn_.t);
     s0.a = &none, s0.load_factor = 0;
     const Stiffness K(system_, s0, drawn_.lambda);
-    const Stressed after(system_, drawn_, along(share_), share_), before(system_, drawn_, along(-share_), -share_);
+    Stressed stressed(system_, drawn_, along(share_), share_);
+    stressed.subtract(Stressed(system_, drawn_, along(-share_), -share_));
     const double apart = 2 * (1 - Stressed::w) * share_;
-    const auto change = [&](const Vector& x) { return Vector((after.times(x) - before.times(x)) / apart); };
+    const auto change = [&](const Vector& x) { return Vector(stressed.times(x) / apart); };
     const auto by_columns = [](const Matrix& X, auto&& product) {
       Matrix out(X.rows(), X.cols());
       for (Eigen::Index j = 0; j < X.cols(); ++j) out.col(j) = product(Vector(X.col(j)));
@@ -163,7 +168,7 @@ class Loaded {
     // loads that follow are symmetric but for free rims and their cells: the other part changes factors by its square
     double skew = 0, all = 0;
     for (const FoundShape& a : out) {
-      const Vector of_skew = (after.skew(a.x) - before.skew(a.x)) / apart, of_all = change(a.x);
+      const Vector of_skew = stressed.skew(a.x) / apart, of_all = change(a.x);
       for (const FoundShape& b : out) skew = std::max(skew, std::abs(b.x.dot(of_skew))), all = std::max(all, std::abs(b.x.dot(of_all)));
     }
     if (skew > 0.05 * all)

@@ -35,6 +35,10 @@ class BlockCsr {
   const std::vector<int>& row_start() const { return row_start_; }
   const std::vector<int>& column() const { return column_; }
   const std::vector<double>& values() const { return values_; }
+  /// Of a matrix with the same structure.
+  void subtract(const BlockCsr& other) {
+    for (size_t i = 0; i < values_.size(); ++i) values_[i] -= other.values_[i];
+  }
   double bytes() const { return 12. * static_cast<double>(values_.size()) + 4. * static_cast<double>(position_.size()); }
 
  private:
