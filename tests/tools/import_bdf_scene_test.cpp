@@ -83,6 +83,11 @@ TEST_F(ImportBdfScene, EveryCardThatPullsTheHeadStretchesTheBarByTheClosedForm) 
        hub + "RBE3,60,,100,123,1.,123,17,18\n,3.,123,19,20\nFORCE,2,100,,400.,1.,0.,0.\n"},
       {"RBAR from hub to hub",
        hub + "GRID,101,,6.,.5,.5\nRBE2,60,100,123456,17,18,19,20\nRBAR,61,100,101,123456\nFORCE,2,101,,400.,1.,0.,0.\n"},
+      {"RBAR1s from one node",
+       "RBAR1,60,17,18,123456\nRBAR1,61,17,19\nRBAR1,62,17,20,123456\nFORCE,2,17,,400.,1.,0.,0.\nMOMENT,2,17,,200.,0.,1.,0.\n"
+       "MOMENT,2,17,,-200.,0.,0.,1.\n"},
+      {"RBAR1 from hub to hub, with an expansion of nothing",
+       hub + "GRID,101,,6.,.5,.5\nRBE2,60,100,123456,17,18,19,20\nRBAR1,61,100,101,,0.\nFORCE,2,101,,400.,1.,0.,0.\n"},
       {"RROD", hub + "GRID,101,,6.,.5,.5\nRBE2,60,100,123456,17,18,19,20\nRROD,61,100,101\nSPC,1,101,23456\nFORCE,2,101,,400.,1.,0.,0.\n"},
   };
   for (const auto& [name, text] : cases) {
@@ -113,6 +118,7 @@ TEST_F(ImportBdfScene, RigidElementsThatShareANodeKeepItsTurn) {
 // A hub outside the head's axis: the foot answers with the moment of statics, for a force, a moment, a mass under gravity.
 TEST_F(ImportBdfScene, WhatHangsOnAHubIsInBalanceAtTheFoot) {
   const std::string hub = "GRID,100,,5.,2.,.5\n";
+  const std::string end = "GRID,101,,6.,2.,.5\n";
   const std::string rbe2 = hub + "RBE2,60,100,123456,17,18,19,20\n", rbe3 = hub + "RBE3,60,,100,123456,1.,123,17,18\n,19,20\n";
   const struct {
     const char* name;
@@ -123,6 +129,11 @@ TEST_F(ImportBdfScene, WhatHangsOnAHubIsInBalanceAtTheFoot) {
       {"RBE3, force", rbe3 + "FORCE,2,100,,10.,0.,0.,1.\n", {0, 0, 10}, {15, -50, 0}},
       {"RBE2, moment", rbe2 + "MOMENT,2,100,,10.,1.,2.,3.\n", {0, 0, 0}, {10, 20, 30}},
       {"RBE3, moment", rbe3 + "MOMENT,2,100,,10.,1.,2.,3.\n", {0, 0, 0}, {10, 20, 30}},
+      {"RBAR1, force at its second grid", rbe2 + end + "RBAR1,61,100,101,123456\nFORCE,2,101,,10.,0.,0.,1.\n", {0, 0, 10}, {15, -60, 0}},
+      {"RBAR1 of displacements, whose second grid does not turn",  // held whole it would bear a part of the moment
+       rbe2 + end + "RBAR1,61,100,101,123\nSPC1,1,456,101\nFORCE,2,101,,10.,0.,0.,1.\n",
+       {0, 0, 10},
+       {15, -60, 0}},
       {"RBE2, mass beside its grid", rbe2 + "CONM2,70,100,,3.,1.,0.,0.\nGRAV,2,,5.,0.,0.,-2.\n", {0, 0, -30}, {-45, 180, 0}},
       {"RBE2, mass at a point", rbe2 + "CONM2,70,100,-1,3.,6.,2.,.5\nGRAV,2,,5.,0.,0.,-2.\n", {0, 0, -30}, {-45, 180, 0}},
       {"two masses at a grid",

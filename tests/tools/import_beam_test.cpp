@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "import_case.hpp"
+#include "model/scene.hpp"
 #include "succeeded.hpp"
 
 namespace hilo {

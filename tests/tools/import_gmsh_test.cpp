@@ -137,6 +137,30 @@ TEST_F(ImportGmsh, UnvKeepsGroupsShapesAndMiddles) {
     }
 }
 
+// Parabolic beams (22, and 24) are lines on an edge of the cell: their corner nodes are the set, and the middle is passed over.
+TEST_F(ImportGmsh, LinesOfThreeNodesOfAUniversalFileAreTheirCorners) {
+  std::string nodes;
+  const int y[] = {0, 0, 1, 1}, x[] = {0, 1, 1, 0};
+  for (int a = 0; a < 8; ++a) nodes += fmt::format("{} 1 1 11\n{} {} {}\n", a + 1, x[a % 4], y[a % 4], a / 4);
+  nodes += "9 1 1 11\n0.5 0 0\n";
+  const auto file = [&](int descriptor, const std::string& line) {
+    return "    -1\n  2411\n" + nodes + "    -1\n    -1\n  2412\n1 115 1 1 7 8\n1 2 3 4 5 6 7 8\n" +
+           fmt::format("2 {} 1 1 7 {}\n0 1 1\n{}\n", descriptor, std::count(line.begin(), line.end(), ' ') + 1, line) +
+           "    -1\n    -1\n  2467\n1 0 0 0 0 0 0 1\nrail\n8 2 0 0\n    -1\n";
+  };
+  for (const int descriptor : {22, 24}) {
+    place.write("a.unv", file(descriptor, "1 9 2"));
+    const Mesh m = imported("a.unv");
+    ASSERT_TRUE(m.node_sets.contains("rail")) << descriptor << err;
+    const auto& rail = m.node_sets.at("rail");
+    ASSERT_EQ(rail.size(), 2u) << descriptor;
+    EXPECT_EQ(m.X[rail[0]], Vec3(0, 0, 0)) << descriptor;
+    EXPECT_EQ(m.X[rail[1]], Vec3(1, 0, 0)) << descriptor << ": the middle is of no cell";
+    place.write("a.unv", file(descriptor, "1 2"));
+    refused("a.unv -o b.h5", 2, fmt::format("a.unv:26:1: element 2: descriptor {} has 3 nodes, not 2", descriptor));
+  }
+}
+
 TEST_F(ImportGmsh, UnitsOfAUniversalFileAreTakenAndEmptyGroupsAreTold) {
   mesh(boxes("hex"), "a.unv");
   const std::string text = test::text_of(place / "a.unv");

@@ -111,6 +111,27 @@ TEST_F(ImportThin, ShellsAndBeamsOfInpDecksToo) {
   EXPECT_LT((beam.J - box(.16, .2, .4, 2)).norm(), 1e-14) << ".2 along direction 1, x";
   place.write("b.inp", deck + "*SHELL SECTION, ELSET=PLATE, MATERIAL=M\n.1\n");
   refused("b.inp -o b.h5", 2, "b.inp:15: element 2 has no section (shells need *SHELL SECTION, beams *BEAM SECTION)");
+  // the section of another kind of element, each way around
+  const std::string solid = "*NODE\n21,0,0,9\n22,1,0,9\n23,0,1,9\n24,0,0,10\n*ELEMENT, TYPE=C3D4, ELSET=SOLID\n3,21,22,23,24\n",
+                    beam_section = "*BEAM SECTION, ELSET=BEAM, MATERIAL=M, SECTION=RECT\n.2,.4\n1,0,0\n",
+                    plate_section = "*SHELL SECTION, ELSET=PLATE, MATERIAL=M\n.1\n";
+  const std::pair<std::string, const char*> wrong[] = {
+      {"*SHELL SECTION, ELSET=SOLID, MATERIAL=M\n.1\n" + plate_section + beam_section,
+       "*SHELL SECTION on element 3 (it needs *SOLID SECTION)"},
+      {"*SOLID SECTION, ELSET=PLATE, MATERIAL=M\n" + beam_section, "*SOLID SECTION on element 1 (it needs *SHELL SECTION)"},
+  };
+  for (const auto& [sections, message] : wrong) {
+    place.write("c.inp", deck + solid + sections);
+    refused("c.inp -o c.h5", 2, std::string("c.inp:28:23: ") + message);
+  }
+  for (const char* type : {"S8", "S8R"}) {
+    std::string text = deck;
+    text.replace(text.find("S8R"), 3, type);
+    place.write("c.inp", text + solid + "*SOLID SECTION, ELSET=SOLID, MATERIAL=M\n" + plate_section + beam_section);
+    const Mesh all = imported("c.inp");
+    EXPECT_EQ(cells_of(all, "PLATE"), 1) << type;
+    EXPECT_EQ(cells_of(all, "SOLID"), 1) << type;
+  }
 }
 
 TEST_F(ImportThin, ShellsOnSolidsStaySetsOfFacets) {

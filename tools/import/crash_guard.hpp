@@ -10,8 +10,9 @@
 
 namespace hilo {
 
-/// A damaged file can crash the library that reads it.  While this lives a crash says so in one line and ends with "bad input"; of what the
-/// library itself says on stderr nothing is heard if it is `silent`.
+/// A damaged file can crash the library that reads it.  While this lives a crash says so in one line and ends with "bad input".  What the
+/// library itself says on stderr is kept apart: a crash quotes its last error, a line "Error : ...".  Without a crash these lines are
+/// dropped, as who asks the library has them, and the others follow on stderr where this is not `silent`.
 class CrashGuard {
  public:
   CrashGuard(const std::string& path, std::string_view library, bool silent = false);
@@ -23,7 +24,8 @@ class CrashGuard {
   static constexpr std::array<int, 4> signals_{SIGSEGV, SIGABRT, SIGBUS, SIGFPE};
   std::array<struct sigaction, 4> before_{};
   std::terminate_handler terminate_;
-  int stderr_ = -1;  // the true one, where it is silent
+  int stderr_ = -1;  // the true one, while the library has another
+  bool silent_;
 };
 
 /// While this lives the process may take a gigabyte and fifty times the file more memory than it has: a library that believes a damaged

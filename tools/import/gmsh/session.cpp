@@ -24,7 +24,8 @@ GmshSession::GmshSession(const ImportOptions& o) {
   for (auto& w : words) argv.push_back(w.data());
   argv.push_back(nullptr);
   gmsh::initialize(static_cast<int>(words.size()), argv.data(), false);
-  gmsh::option::setNumber("General.Terminal", 0);
+  gmsh::option::setNumber("General.Verbosity", 1);  // errors alone, which it writes to stderr too: a CrashGuard quotes the last one
+  gmsh::option::setNumber("General.Terminal", 1);
   gmsh::option::setNumber("Mesh.SecondOrderIncomplete", 1);
   gmsh::logger::start();
 }

@@ -185,6 +185,12 @@ struct InpSum {
   std::vector<OfBody> bodies = {};
   std::string place;
 };
+/// *MPC: nodes that keep their distance (BEAM, LINK) or stay on a line (STRAIGHT) or in a plane (PLANE), wherever these go.
+struct InpMpc {
+  std::string kind;
+  std::vector<InpTarget> nodes;
+  std::string place;
+};
 /// A card of a later step that becomes scene lines only where one run can say that step too.
 struct InpStepCard {
   std::string name, place;
@@ -329,6 +335,7 @@ struct InpDeck {
   std::vector<InpTransform> transformed;          // nodes with axes of their own
   std::vector<InpThickness> thicknesses;
   std::vector<InpEquation> equations;
+  std::vector<InpMpc> mpcs;
   std::vector<InpSlide> slides;
   std::map<std::pair<std::int64_t, int>, int> slide_of;  // node and component
   std::vector<InpSum> sums;

@@ -36,6 +36,7 @@ std::string InpScene::text() {
   supports_of_ties();
   slides();
   sums();
+  mpcs();
   forces();
   forces_of_ties();
   pressures();

@@ -32,6 +32,18 @@ class InpScene {
   void slides();
   double length() const;
   void sums();
+  // scene_mpcs.cpp
+  struct MpcEnd {
+    std::string name;
+    Vec3 X;
+    std::int64_t row;  // of a node of a cell, or -1
+  };
+  std::string why_no_end(const InpMpc& mpc, std::int64_t id) const;
+  std::vector<MpcEnd> ends_of(const InpMpc& mpc, const std::vector<std::int64_t>& ids);
+  void keep_distances(const InpMpc& mpc);
+  void stay_together(const InpMpc& mpc);
+  std::int64_t row_beside(const std::vector<MpcEnd>& ends, const Vec3& along);
+  void mpcs();
   // scene_pairs.cpp
   const std::string* facets_of(const InpPair& pair, const std::string& surface, const char* card);
   void tied();
@@ -70,6 +82,7 @@ class InpScene {
   std::set<std::int64_t> of_solids_;     // rows, beside shells that become pairs
   std::set<std::int64_t> of_beams_;      // numbers of nodes
   std::set<std::string> used_, wanted_;  // names given; amplitudes that a line scales by
+  std::vector<std::int64_t> a_cell_;     // a solid one of each node, or -1; empty until asked for
   std::map<std::string, int> made_;      // sets made of single nodes or elements
   std::string head_, tables_;
 };

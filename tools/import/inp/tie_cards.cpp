@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cards of an .inp deck that tie nodes together: *COUPLING, *RIGID BODY, *TIE, and the values of elements of points: *MASS, *SPRING,
-// *DASHPOT.
+// The cards of an .inp deck that tie nodes together: *COUPLING, *RIGID BODY, *MPC, *TIE, and the values of elements of points: *MASS,
+// *SPRING, *DASHPOT.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -89,14 +89,25 @@ void read_distributing(InpReading& r) {
   r.deck.ties.push_back(t);
 }
 
+/// Rows of the model stand before its steps and have no parameters; others are told.
+bool tell_odd_rows(InpReading& r) {
+  const auto odd = unknown_param(r.card, {});
+  if (odd.empty() && r.step == 0) return false;
+  const std::string what = odd.empty() ? r.card.name : odd;
+  r.skip(r.step > 0 ? what + " in a step" : what);
+  if (r.step > 0) r.deck.steps.back().not_read = what;
+  return true;
+}
+
+/// A node or set of a field.
+InpTarget target_of_field(const InpReading& r, const DataLine& l, size_t i) {
+  const bool number = l.is_integer(i);
+  return {number ? "" : upper(r.deck.prefix) + upper(l.text(i)), number ? l.integer(i) + r.deck.node_shift() : 0, l.place(i)};
+}
+
 /// How many terms; and then node or set, component and factor of each, on as many lines as they need.
 void read_equation(InpReading& r) {
-  if (const auto odd = unknown_param(r.card, {}); !odd.empty() || r.step > 0) {
-    const std::string what = odd.empty() ? r.card.name : odd;
-    r.skip(r.step > 0 ? what + " in a step" : what);
-    if (r.step > 0) r.deck.steps.back().not_read = what;
-    return;
-  }
+  if (tell_odd_rows(r)) return;
   DataLine l;
   while (r.lines.next_data(l)) {
     InpEquation e{{}, l.place()};
@@ -105,15 +116,35 @@ void read_equation(InpReading& r) {
     while (e.terms.size() < static_cast<size_t>(n)) {
       if (!r.lines.next_data(l)) throw Error(e.place, fmt::format("*EQUATION has {} of its {} terms", e.terms.size(), n));
       for (size_t i = 0; i < l.fields.size() && e.terms.size() < static_cast<size_t>(n); i += 3) {
-        const bool number = l.is_integer(i);
-        e.terms.push_back(
-            {{number ? "" : upper(r.deck.prefix) + upper(l.text(i)), number ? l.integer(i) + r.deck.node_shift() : 0, l.place(i)},
-             static_cast<int>(l.integer(i + 1)),
-             l.number(i + 2)});
+        e.terms.push_back({target_of_field(r, l, i), static_cast<int>(l.integer(i + 1)), l.number(i + 2)});
       }
     }
     r.deck.equations.push_back(std::move(e));
   }
+}
+
+/// A kind, and then nodes or sets, on as many lines as they need: a line that begins with a number goes on with the last kind.
+void read_mpc(InpReading& r) {
+  if (tell_odd_rows(r)) return;
+  InpMpc* last = nullptr;  // the one at hand, where it is read
+  bool any = false;
+  DataLine l;
+  while (r.lines.next_data(l)) {
+    size_t first = 0;
+    if (!l.is_integer(0)) {
+      InpMpc mpc{upper(l.text(0)), {}, l.place()};
+      any = true, first = 1;
+      if (mpc.kind == "BEAM" || mpc.kind == "LINK" || mpc.kind == "PLANE" || mpc.kind == "STRAIGHT")
+        last = &r.deck.mpcs.emplace_back(std::move(mpc));
+      else
+        last = nullptr, r.skip("*MPC, " + mpc.kind.substr(0, 20));
+    } else if (!any) {
+      throw Error(l.place(0), fmt::format("*MPC: a kind is expected, found \"{}\"", l.text(0)), "PLANE, STRAIGHT or BEAM, and then nodes");
+    }
+    for (size_t i = first; i < l.fields.size() && last; ++i)
+      if (!l.empty(i) && !(l.is_integer(i) && l.integer(i) == 0)) last->nodes.push_back(target_of_field(r, l, i));
+  }
+  if (!any) r.skip("*MPC of nothing");
 }
 
 /// Pairs of surfaces that stay together, the one whose nodes follow first.
@@ -183,6 +214,7 @@ std::span<const InpCard> inp_tie_cards() {
       {"DISTRIBUTING", read_coupling_kind},
       {"DISTRIBUTINGCOUPLING", read_distributing},
       {"EQUATION", read_equation},
+      {"MPC", read_mpc},
       {"RIGIDBODY", read_rigid_body},
       {"TIE", read_tie},
       {"MASS", read_value},
