@@ -18,7 +18,7 @@ tools = pathlib.Path(names[1]).resolve() if len(names) > 1 and not check else No
 pictures = repo / "docs/pictures/examples"
 # folder of data/: its picture in docs/pictures
 DATA = {
-    "firing": "firing-soft-stress-0.0875", "tour": "tour-stress", "turret": "turret-acceleration", "crank": "crank-von_mises-0.0165",
+    "firing": "firing-soft-stress-0.0875", "tour": "tour-stress", "turret": "turret-acceleration", "loader": "loader-lifted", "crank": "crank-von_mises-0.0165",
     "suspension": "suspension-von_mises-0.15", "arm": "arm-von_mises", "design-loop": "design-loop-stress", "frame": "frame-stress", "rotor": None, "taylor": None,
     "contact": "examples/contact", "advise": "advise-arm", "stability": "stability-tumbling_bar", "charts": "charts-squeezer-time",
     "scaling": "scaling-iterations"}

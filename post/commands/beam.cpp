@@ -17,14 +17,14 @@
 #include "post/files/output.hpp"
 #include "post/picture/picture.hpp"
 #include "post/run/run_beams.hpp"
+#include "post/run/times.hpp"
 
 namespace hilo {
 namespace {
 
 struct BeamOptions {
-  std::string run, csv, png, size = "1280x900", title;
+  std::string run, csv, png, size = "1280x900", title, times;
   std::vector<std::string> names;
-  std::vector<double> times;
   bool envelope = false, json = false, sections = false;
 };
 
@@ -79,20 +79,6 @@ Chain chain_of(const RunFile& run, const std::vector<std::string>& globs) {
     throw Error(run.path, fmt::format("no beam \"{}\"", glob), near.empty() ? fmt::format("there is {}", all.front()) : near);
   }
   return chain;
-}
-
-std::vector<size_t> beam_rows(const BeamOptions& o, const Series& s, const std::string& path) {
-  if (s.rows() == 0) throw Error(path, "holds no step yet");
-  if (o.times.empty()) return {s.rows() - 1};
-  std::vector<size_t> rows;
-  for (const double t : o.times) {
-    const double slack = 1e-9 * (s.t.back() - s.t.front());
-    if (t < s.t.front() - slack || t > s.t.back() + slack)
-      throw Error("--times", fmt::format("no step near t = {:g} s", t), fmt::format("there are {:g} to {:g} s", s.t.front(), s.t.back()));
-    const auto nearer = [&](double a, double b) { return std::abs(a - t) < std::abs(b - t); };
-    rows.push_back(static_cast<size_t>(std::min_element(s.t.begin(), s.t.end(), nearer) - s.t.begin()));
-  }
-  return rows;
 }
 
 std::string header_of(size_t k, const std::string& more = "") { return fmt::format("{}{} [{}]", value_words[k], more, value_units[k]); }
@@ -184,8 +170,8 @@ void run(const BeamOptions& o) {
   const Series& first = chain.forces.begin()->second;
   size_t n_rows = first.rows();  // a run in progress may be a row ahead in one array
   for (const auto& [name, forces] : chain.forces) n_rows = std::min(n_rows, forces.rows());
-  std::vector<size_t> rows = beam_rows(o, first, run.path);
-  for (size_t& row : rows) row = std::min(row, n_rows - 1);
+  const std::vector<double> instants(first.t.begin(), first.t.begin() + static_cast<std::ptrdiff_t>(n_rows));
+  const std::vector<size_t> rows = choose_instants(instants, "last", o.times, run.path, "step");
   std::vector<double> s;
   for (const Station& p : chain.stations) s.push_back(p.s);
   std::vector<BeamCurves> curves(o.envelope ? 2 : rows.size());
@@ -245,7 +231,7 @@ Command beam_command(CLI::App& app) {
   const auto o = std::make_shared<BeamOptions>();
   sub->add_option("run", o->run, "run.h5 of hilo-solve")->required();
   sub->add_option("names", o->names, "beams by name or glob, one after the other; without any: the largest values of every beam");
-  sub->add_option("--times", o->times, "times in s, the nearest steps; the last step by default")->delimiter(',');
+  sub->add_option("--times", o->times, "times in s, the nearest steps, or FROM:TO, all steps within; the last step by default");
   sub->add_flag("--envelope", o->envelope, "the least and the largest of all steps")->excludes("--times");
   sub->add_flag("--sections", o->sections,
                 "the numbers of each section: area, second moments, torsion constant, factors of shear, shear centre")

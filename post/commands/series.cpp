@@ -47,14 +47,13 @@ Picked pick(const SeriesOptions& o, const RunFile& run) {
                   "write them to two files");
   std::vector<size_t> kept;
   if (rows > 0) {
-    const double first = p.x.t.front(), last = p.x.t[rows - 1], slack = 1e-9 * (last - first);
-    const auto [from, to] = parse_times(o.times, {first, last});
-    for (size_t i = 0; i < rows; ++i)
-      if (p.x.t[i] >= from - slack && p.x.t[i] <= to + slack) kept.push_back(i);
+    const std::vector<double> instants(p.x.t.begin(), p.x.t.begin() + static_cast<std::ptrdiff_t>(rows));
+    kept = choose_instants(instants, "all", o.times, run.path, "step");
   }
   const auto cut = [&](Column& c) {
-    for (size_t i = 0; i < kept.size(); ++i) c.t[i] = c.t[kept[i]], c.value[i] = c.value[kept[i]];
-    c.t.resize(kept.size()), c.value.resize(kept.size());
+    Column all = c;
+    c.t.clear(), c.value.clear();
+    for (const size_t i : kept) c.t.push_back(all.t[i]), c.value.push_back(all.value[i]);
   };
   cut(p.x);
   for (Column& c : p.y) cut(c);
@@ -182,7 +181,7 @@ Command series_command(CLI::App& app) {
   sub->add_option("--let", o->lets, "NAME = FORMULA: a name for the formulas after it, no column; --let once for each")
       ->allow_extra_args(false);
   sub->add_option("-x", o->x, "abscissa: a column or a formula, \"angle [deg] = 360*t\"; the time by default");
-  sub->add_option("--times", o->times, "FROM:TO in s; the whole run by default");
+  sub->add_option("--times", o->times, "times in s, the nearest steps, or FROM:TO, all steps within; the whole run by default");
   sub->add_option("-o,--output", o->csv,
                   "CSV file, or a universal file where the ending is .unv or .uff; CSV on stdout when neither this nor --png is given");
   sub->add_option("--png", o->png, "chart, one panel for each unit");

@@ -6,10 +6,8 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 
 #include "base/error.hpp"
 #include "model/mesh_source.hpp"
@@ -21,21 +19,6 @@ namespace hilo {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<std::string> split(const std::string& text, char at) {
-  std::vector<std::string> parts;
-  std::stringstream stream(text);
-  for (std::string part; std::getline(stream, part, at);) parts.push_back(part);
-  return parts;
-}
-
-double number(const std::string& text, const std::string& option) {
-  double x = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw Error(option, fmt::format("\"{}\" is no number", text), "write all, first, last, or numbers with commas", Exit::usage);
-  return x;
-}
 
 }  // namespace
 
@@ -186,45 +169,10 @@ void RunFile::draw_beams() {
 std::vector<Step> RunFile::select_steps(const std::string& numbers, const std::string& times) const {
   if (steps.empty())
     throw Error(path, "holds no field output yet", complete ? "see output.interval of the scene" : "the run is in progress");
-  if (times.find(':') != times.npos) {
-    const auto [from, to] = parse_times(times, {steps.front().t, steps.back().t});
-    const double slack = 1e-9 * (steps.back().t - steps.front().t);
-    std::vector<Step> chosen;
-    for (const Step& s : steps)
-      if (s.t >= from - slack && s.t <= to + slack) chosen.push_back(s);
-    if (chosen.empty()) throw Error("--times", fmt::format("{} holds no output of the run", times), "see output.interval of the scene");
-    return chosen;
-  }
-  if (!times.empty()) {
-    double spacing = 0;
-    for (size_t k = 1; k < steps.size(); ++k) spacing = std::max(spacing, steps[k].t - steps[k - 1].t);
-    std::vector<Step> chosen;
-    for (const std::string& text : split(times, ',')) {
-      const double t = number(text, "--times");
-      if (t < steps.front().t - 0.5 * spacing || t > steps.back().t + 0.5 * spacing)
-        throw Error(path, fmt::format("no output near t = {} s", text),
-                    fmt::format("there are {} to {} s", steps.front().t, steps.back().t));
-      const auto nearer = [&](const Step& a, const Step& b) { return std::abs(a.t - t) < std::abs(b.t - t); };
-      chosen.push_back(*std::min_element(steps.begin(), steps.end(), nearer));
-    }
-    return chosen;
-  }
-  if (numbers == "all") return steps;
-  if (numbers == "first") return {steps.front()};
-  if (numbers == "last") return {steps.back()};
+  std::vector<double> t;
+  for (const Step& s : steps) t.push_back(s.t);
   std::vector<Step> chosen;
-  for (const std::string& text : split(numbers, ',')) {
-    const auto one = [&](const std::string& part) {
-      const double k = number(part, "--steps");
-      if (k < 0 || k >= static_cast<double>(steps.size()) || k != std::floor(k))
-        throw Error(path, fmt::format("no step {}", part), fmt::format("there are 0 to {}", steps.size() - 1));
-      return static_cast<size_t>(k);
-    };
-    const auto colon = text.find(':');
-    const size_t first = one(text.substr(0, colon)), last = colon == text.npos ? first : one(text.substr(colon + 1));
-    if (last < first) throw Error("--steps", fmt::format("\"{}\" goes backwards", text), "write FROM:TO", Exit::usage);
-    for (size_t k = first; k <= last; ++k) chosen.push_back(steps[k]);
-  }
+  for (const size_t k : choose_instants(t, numbers, times, path, "output")) chosen.push_back(steps[k]);
   return chosen;
 }
 

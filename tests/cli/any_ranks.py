@@ -43,6 +43,7 @@ SCENES = {
     "turret-rigid": ("turret/scene.toml", ["turret/turret.geo", "--trust", "--define", "SIZE=0"], ["turret/tags-rigid.toml"], ["time.end=0.025"]),
     "design-loop": ("design-loop/scene.toml", ["design-loop/gun.geo", "--define", "thickness=8e-3"],
                     ["--nonlinear", "cheeks", "--rest", "rigid"], ["time.end=2.5e-3"]),
+    "loader-rigid": ("loader/scene.toml", ["loader/loader.geo"], ["loader/tags.toml"], ["time.end=0.6"]),
     "tour": ("tour.toml", ["tour/arm.step"], ["--nonlinear", "arm", "--rigid", "block"], ["time.end=0.01"]),
     "scaling-bar": ("scaling/bar.toml", ["bar.inp", "--regions", "bar"], ["--rest", "nonlinear"], ["time.end=0.004"]),
     "scaling-tube": ("scaling/tube.toml", ["tube.inp", "--regions", "tube"], ["--rest", "nonlinear"], ["time.end=3e-5"]),

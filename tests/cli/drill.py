@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scenes that the drills stop in the middle (fault_drill.py, power_cuts.py), and what their results have in common."""
+import os
 import subprocess
+import sys
 
 import h5py
 
@@ -41,26 +43,26 @@ def short(step=5e-3, steps=60):
     return END.format(end=step * steps, step=step, interval=step * steps / 9)
 
 
-# name: scene, whether with the bar's mesh, numbers of ranks
+# name: scene, its mesh if any, numbers of ranks
 SCENES = {
-    "rigid": (PENDULUM + body("bob", [0.6, -0.3, 0]) + joint("spherical", "link", "arm", "bob", [0.6, 0, 0]) + short(), False, [1]),
+    "rigid": (PENDULUM + body("bob", [0.6, -0.3, 0]) + joint("spherical", "link", "arm", "bob", [0.6, 0, 0]) + short(), "", [1]),
     "friction and stops": (
         PENDULUM + '[[stop]]\nkind = "angle"\nname = "limit"\njoint = "pin"\nlower = -0.4\nupper = 0.4\nstiffness = 2e3\nrestitution = 0.6\n'
-        '[[friction]]\nname = "rub"\njoint = "pin"\ncoefficient = 0.2\nradius = 0.05\nslip_velocity = 1e-2\n' + short(), False, [1]),
+        '[[friction]]\nname = "rub"\njoint = "pin"\ncoefficient = 0.2\nradius = 0.05\nslip_velocity = 1e-2\n' + short(), "", [1]),
     "driven": (
         GRAVITY + body("arm", [0.3, 0, 0]) + body("bob", [0.6, -0.3, 0]) + joint("spherical", "link", "arm", "bob", [0.6, 0, 0]) +
         joint("revolute", "pin", "ground", "arm", [0, 0, 0],
-              Z + '\nangle = 2\nhistory = {t = [0, 0.1, 0.2, 1], value = [0, 0.2, 1, 1], interpolation = "smooth"}') + short(), False, [1, 2]),
+              Z + '\nangle = 2\nhistory = {t = [0, 0.1, 0.2, 1], value = [0, 0.2, 1, 1], interpolation = "smooth"}') + short(), "", [1, 2]),
     "redundant": (
         GRAVITY + body("crank", [0, 0.5, 0]) + body("rocker", [1, 0.5, 0]) + body("coupler", [0.5, 1, 0]) +
         joint("revolute", "A0", "ground", "crank", [0, 0, 0], Z) + joint("revolute", "B0", "crank", "coupler", [0, 1, 0], Z) +
         joint("revolute", "A1", "ground", "rocker", [1, 0, 0], Z) + joint("revolute", "B1", "rocker", "coupler", [1, 1, 0], Z) +
-        '[[initial]]\non = ["crank"]\nspin = [0, 0, -3]\n' + short(), False, [1]),
-    "flexible": (MESH.format(law="", pull=-200) + short(1e-3), True, [1, 2]),
-    "plastic": (MESH.format(law='kind = "j2"\nyield = 2e4\nhardening = 1e6\n', pull=-400) + short(1e-3), True, [1]),
+        '[[initial]]\non = ["crank"]\nspin = [0, 0, -3]\n' + short(), "", [1]),
+    "flexible": (MESH.format(law="", pull=-200) + short(1e-3), "bar.h5", [1, 2]),
+    "plastic": (MESH.format(law='kind = "j2"\nyield = 2e4\nhardening = 1e6\n', pull=-400) + short(1e-3), "bar.h5", [1]),
     "parallel": (
         MESH.format(law="", pull=-200) + body("bob", [1, 0.05, -0.3]) +
-        joint("spherical", "hang", "tip", "bob", [1, 0.05, 0.05]) + short(1e-3), True, [3, 2]),
+        joint("spherical", "hang", "tip", "bob", [1, 0.05, 0.05]) + short(1e-3), "bar.h5", [3, 2]),
 }
 
 
@@ -86,15 +88,70 @@ SCENES |= {
     "contact": (
         GRAVITY + body("ball", [0.1, 0.15, 0]) +
         '[[initial]]\non = ["ball"]\nvelocity = [1.5, -1, 0]\n' +
-        CONTACT + short(2e-3), False, [1, 2]),
+        CONTACT + short(2e-3), "", [1, 2]),
     "gauss": (PENDULUM + body("bob", [0.6, -0.3, 0]) + joint("spherical", "link", "arm", "bob", [0.6, 0, 0]) +
-              short(2e-2).replace("[time]\n", '[time]\nintegrator = "gauss"\n'), False, [1]),
+              short(2e-2).replace("[time]\n", '[time]\nintegrator = "gauss"\n'), "", [1]),
     "static, plastic": (MESH.format(law='kind = "j2"\nyield = 2e4\nhardening = 1e6\n', pull=-40).replace("damping = 1e-4\n", "") +
-                        '[time]\nanalysis = "static"\nend = 0.01\nsteps = 30\n[solver]\ntolerance = 1e-10\n', True, [1]),
+                        '[time]\nanalysis = "static"\nend = 0.01\nsteps = 30\n[solver]\ntolerance = 1e-10\n', "bar.h5", [1]),
     "path": (MESH.format(law="", pull=-200).replace("damping = 1e-4\n", "").split("history")[0] +
-             '[time]\nanalysis = "path"\nsteps = 30\n[solver]\ntolerance = 1e-10\n', True, [1]),
-    "modes": (MESH.format(law="", pull=-200).split("[[load]]")[0] + '[time]\nanalysis = "modes"\nmodes = 12\n', True, [1]),
+             '[time]\nanalysis = "path"\nsteps = 30\n[solver]\ntolerance = 1e-10\n', "bar.h5", [1]),
+    "modes": (MESH.format(law="", pull=-200).split("[[load]]")[0] + '[time]\nanalysis = "modes"\nmodes = 12\n', "bar.h5", [1]),
 }
+
+
+# Two blocks of other meshes, "high" on "low", that rub on each other or are tied.  On ranks such runs are solved by `direct`, whose last bits
+# differ from run to run, so that nothing is equal bit by bit.
+BLOCKS = """gravity = [0, 0, -200]
+[material.m]
+E = 1e7
+nu = 0.3
+density = 1000
+[region."*"]
+material = "m"
+damping = 1e-4
+[[motion]]
+kind = "fixed"
+name = "base"
+on = "base"
+"""
+SCENES |= {
+    "surface contact": (BLOCKS + '[[contact]]\nname = "rub"\na = "low"\nb = "high"\nfriction = 0.3\n'
+                        '[[initial]]\non = ["high"]\nvelocity = [0.4, 0.1, -0.1]\n' + short(1e-3), "blocks.h5", [1]),
+    "tie": (BLOCKS + '[[tie]]\nname = "weld"\na = "low"\nb = "high"\n[[load]]\nkind = "force"\nname = "shake"\non = "top"\nforce = [300, 0, 0]\n'
+            "history = {t = [0, 0.01, 0.03, 1], value = [0, 1, -1, 0]}\n" + short(1e-3), "blocks.h5", [1]),
+}
+
+
+def block(name, at, size, cells, first):
+    """Lines of nodes and of elements of a block of hexahedra in an .inp deck, its nodes numbered from `first` on."""
+    nx, ny, nz = cells
+    number = {}
+    nodes, elements = [], []
+    for k in range(nz + 1):
+        for j in range(ny + 1):
+            for i in range(nx + 1):
+                number[i, j, k] = first + len(nodes)
+                place = [a + s * n / c for a, s, n, c in zip(at, size, (i, j, k), cells)]
+                nodes.append(f"{number[i, j, k]}, {place[0]}, {place[1]}, {place[2]}")
+    for k in range(nz):
+        for j in range(ny):
+            for i in range(nx):
+                corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
+                elements.append(", ".join(str(n) for n in [first + len(elements)] + [number[c + (z,)] for z in (k, k + 1) for c in corners]))
+    ends = [", ".join(str(number[i, j, k]) for j in range(ny + 1) for i in range(nx + 1)) for k in (0, nz)]
+    return nodes, [f"*ELEMENT, TYPE=C3D8, ELSET={name}"] + elements, ends
+
+
+def make_meshes(repo):
+    """bar.h5 and blocks.h5 in this folder."""
+    low, high = block("low", (0, 0, 0), (0.3, 0.3, 0.1), (2, 2, 1), 1), block("high", (0.04, 0.03, 0.1), (0.2, 0.2, 0.1), (3, 3, 1), 101)
+    with open("blocks.inp", "w") as f:
+        f.write("\n".join(["*NODE", *low[0], *high[0], *low[1], *high[1], "*NSET, NSET=base", low[2][0], "*NSET, NSET=top", high[2][1],
+                           "*SOLID SECTION, ELSET=low, MATERIAL=m", "*SOLID SECTION, ELSET=high, MATERIAL=m", "*MATERIAL, NAME=m"]) + "\n")
+    for deck, mesh in ((os.path.join(repo, "tests/cases/bar.inp"), "bar.h5"), ("blocks.inp", "blocks.h5")):
+        made = run(["hilo-import", deck, "-o", mesh])
+        if made.returncode:
+            sys.exit(made.stderr)
 
 
 def command(name, ranks, *more):
@@ -107,7 +164,7 @@ def scene_files(name):
     scene, mesh, _ = SCENES[name]
     with open("scene.toml", "w") as f:
         f.write(scene)
-    return ["scene.toml"] + (["bar.h5"] if mesh else [])
+    return ["scene.toml"] + ([mesh] if mesh else [])
 
 
 def run(line, **more):

@@ -23,7 +23,7 @@ import h5py
 
 import on_ranks
 import share
-from drill import SCENES, command, numbers, run, same, scene_files
+from drill import SCENES, command, make_meshes, numbers, run, same, scene_files
 
 repo, tools, library = (os.path.abspath(a) for a in sys.argv[1:4])
 stride = int(sys.argv[4]) if len(sys.argv) > 4 else 97
@@ -229,9 +229,7 @@ def jumping_clock(name, ranks):
 
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    made = run(["hilo-import", os.path.join(repo, "tests/cases/bar.inp"), "-o", "bar.h5"])
-    if made.returncode:
-        sys.exit(made.stderr)
+    make_meshes(repo)
     for number, (name, (_, _, all_ranks)) in enumerate(SCENES.items()):
         if not all_of_it and not share.today(number, 5):
             continue

@@ -18,7 +18,7 @@ import tempfile
 
 import h5py
 
-from drill import command, numbers, run, same, scene_files
+from drill import command, make_meshes, numbers, run, same, scene_files
 
 repo, tools, library = (os.path.abspath(a) for a in sys.argv[1:4])
 stride = int(sys.argv[4]) if len(sys.argv) > 4 else 101
@@ -184,9 +184,7 @@ def judge(name, what, whole, least, has_checkpoint, former):
 
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    made = run(["hilo-import", os.path.join(repo, "tests/cases/bar.inp"), "-o", "bar.h5"])
-    if made.returncode:
-        sys.exit(made.stderr)
+    make_meshes(repo)
     for scene in ("friction and stops", "driven", "plastic"):
         power_cuts(scene, None)
         power_cuts(scene, b"what was there before")

@@ -3,6 +3,7 @@
 #include "faults.hpp"
 #include "model/store.hpp"
 #include "scene_parts.hpp"
+#include "succeeded.hpp"
 
 using namespace hilo::test;
 
@@ -95,6 +96,61 @@ TEST_F(Stopped, GoesOnToTheSameNumbersAndToALaterEnd) {
   for (size_t i = 0; i < one.size(); ++i) ASSERT_NEAR(one[i], other[i], 1e-9) << "value " << i << ": the old end was a step like any other";
   EXPECT_NE(work.run("hilo-show run.h5").out.find("--set time.end=1"), std::string::npos) << "provenance of all of it";
   EXPECT_NE(work.run("hilo-show run.h5").out.find("--set time.end=0.5"), std::string::npos);
+}
+
+// The preconditioner of cg is made again after each checkpoint, so this run's last digits show where its checkpoints were.
+TEST_F(Stopped, WithoutTheOptionCheckpointsGoOnAsTheRunHadThem) {
+  work.write("deck.inp", deck);
+  work.write("scene.toml", R"(gravity = [0.5, 0, -9.81]
+[material.soft]
+E = 1e6
+nu = 0.3
+density = 1000
+[region."*"]
+material = "soft"
+[[motion]]
+kind = "fixed"
+name = "held"
+on = "top"
+[time]
+end = 1
+step = 1e-3
+[solver]
+kind = "cg"
+[output]
+interval = 0.5
+)");
+  succeeded(work.run("hilo-import deck.inp -o mesh.h5 && hilo-tag mesh.h5 --nonlinear hull --nonlinear mast -o tags.h5"));
+  const std::string run = "hilo-solve scene.toml tags.h5 --quiet ";
+  succeeded(work.run(run + "-o whole.h5 --checkpoint 150steps"));
+  succeeded(work.run(run + "-o none.h5 --checkpoint none"));
+  // a crash: no checkpoint at the stop, as after kill -9
+  const auto killed = work.run(run +
+                               "--checkpoint 150steps & p=$!; for k in $(seq 3000); do [ -e run.checkpoint-1.h5 ] && break; sleep 0.01; "
+                               "done; kill -9 $p; wait $p; [ $? = 137 ]");
+  ASSERT_EQ(killed.exit, 0) << "the run ended before it was killed\n" << killed.err;
+  const auto all = [&](const std::string& file) {
+    std::map<std::string, std::vector<double>> found;
+    const hilo::Store store = hilo::Store::open(work / file);
+    for (const char* name : {"/history/t", "/history/energy", "/history/momentum", "/history/motion/held"})
+      found[name] = store.read<double>(name);
+    for (const std::string& step : store.list("/field")) found[step] = store.read<double>("/field/" + step + "/displacement");
+    return found;
+  };
+  const auto whole = all("whole.h5");
+  ASSERT_EQ(whole.at("/history/t").size(), 1001u);
+  ASSERT_NE(all("none.h5"), whole) << "the scene does not show where checkpoints are";
+  // on from the crash without the option, then without the last checkpoint and with another one
+  const std::string kept = "for k in '' -1; do cp run.checkpoint$k.h5 kept$k.h5; done; cp run.h5 kept-run.h5; ";
+  succeeded(work.run(kept + "hilo-solve --restart run.h5 --quiet"));
+  EXPECT_EQ(all("run.h5"), whole);
+  for (const char* which : {".checkpoint", ".checkpoint-1"})
+    EXPECT_EQ(hilo::Store::open(work / ("run" + std::string(which) + ".h5")).number_attribute("/", "t"),
+              hilo::Store::open(work / ("whole" + std::string(which) + ".h5")).number_attribute("/", "t"));
+  succeeded(
+      work.run("for k in '' -1; do cp kept$k.h5 run.checkpoint$k.h5; done; cp kept-run.h5 run.h5; hilo-solve --restart run.h5 --quiet "
+               "--checkpoint none"));
+  EXPECT_NE(all("run.h5"), whole) << "--checkpoint none was given, and is not what the run had";
 }
 
 TEST_F(Stopped, WhatDiffersIsRefusedByTheKey) {

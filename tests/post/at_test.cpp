@@ -2,13 +2,16 @@
 // hilo-post at: fields that the shape functions hold exactly, at points of all kinds of cells; what is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <random>
 #include <sstream>
 
+#include "base/error.hpp"
 #include "moving_run.hpp"
 #include "post/files/csv.hpp"
 #include "post/run/locate.hpp"
+#include "post/run/times.hpp"
 #include "sample_run.hpp"
 #include "succeeded.hpp"
 
@@ -202,6 +205,74 @@ TEST(At, StressIsThatOfFlexibleRegions) {
   EXPECT_EQ(rigid.exit, 2);
   EXPECT_NE(rigid.err.find("rigid"), std::string::npos) << rigid.err;
   EXPECT_EQ(place.run("hilo-post at run.h5 displacement --point -0.5,0,0").exit, 0);
+}
+
+// Words of --steps and --times against the instants that they stand for, at even and uneven steps.
+TEST(Instants, AreThoseThatWordsAskFor) {
+  const std::vector<double> even{0, 0.01, 0.02, 0.03, 0.04, 0.05}, uneven{0, 1e-3, 0.1, 0.4};
+  const auto chosen = [](const std::vector<double>& t, const char* steps, const char* times) {
+    return choose_instants(t, steps, times, "run.h5", "step");
+  };
+  using Rows = std::vector<size_t>;
+  EXPECT_EQ(chosen(even, "all", ""), (Rows{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(chosen(even, "first", ""), (Rows{0}));
+  EXPECT_EQ(chosen(even, "last", ""), (Rows{5}));
+  EXPECT_EQ(chosen(even, "4,0,2:3", ""), (Rows{4, 0, 2, 3}));
+  EXPECT_EQ(chosen(even, "all", "0.02"), (Rows{2})) << "times go before numbers";
+  EXPECT_EQ(chosen(even, "all", "0.031,0.008"), (Rows{3, 1})) << "the nearest ones, in the order asked for";
+  EXPECT_EQ(chosen(even, "all", "0.054,-0.004"), (Rows{5, 0})) << "up to half a step beyond the ends";
+  EXPECT_EQ(chosen(even, "last", "0.01:0.03"), (Rows{1, 2, 3})) << "ends included";
+  EXPECT_EQ(chosen(even, "last", "0.035:"), (Rows{4, 5}));
+  EXPECT_EQ(chosen(even, "last", ":0.015"), (Rows{0, 1}));
+  EXPECT_EQ(chosen(uneven, "all", "0.06,0.049,0.54"), (Rows{2, 1, 3}));
+  EXPECT_EQ(chosen({0.3}, "all", "0.3"), (Rows{0})) << "one instant";
+  struct Refused {
+    const char *steps, *times, *words;
+    Exit exit;
+  };
+  for (const Refused& r :
+       {Refused{"all", "0.056", "no step near t = 0.056 s", Exit::input}, Refused{"all", "soon", "\"soon\" is no number", Exit::usage},
+        Refused{"all", "nan", "\"nan\" is no number", Exit::usage}, Refused{"all", "0.01,,0.02", "\"\" is no number", Exit::usage},
+        Refused{"all", "0.1:0.2", "0.1:0.2 is not within the run", Exit::input},
+        Refused{"all", "0.03:0.01", "\"0.03:0.01\" is no span of time", Exit::usage},
+        Refused{"all", "0.012:0.018", "0.012:0.018 holds no step of the run", Exit::input}, Refused{"6", "", "no step 6", Exit::input},
+        Refused{"-1", "", "no step -1", Exit::input}, Refused{"1.5", "", "no step 1.5", Exit::input},
+        Refused{"nan", "", "\"nan\" is no number", Exit::usage}, Refused{"3:1", "", "\"3:1\" goes backwards", Exit::usage}}) {
+    try {
+      (void)chosen(even, r.steps, r.times);
+      ADD_FAILURE() << r.steps << ' ' << r.times << " is taken";
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(r.words), std::string::npos) << e.what();
+      EXPECT_EQ(static_cast<int>(e.exit), static_cast<int>(r.exit)) << e.what();
+    }
+  }
+}
+
+// One block that shakes beside a beam, an output at every step: histories and fields have the same instants, 0, 0.01 ... 0.05 s.
+// --times chooses the same ones of them in every command, and refuses the same.
+TEST(Instants, OfTimesAreThoseOfEveryCommand) {
+  const Workplace place;
+  write_mesh(place / "mesh.h5", sample::cube(1), {"test"});
+  write_tags(place / "tags.h5", place / "mesh.h5", {Fidelity::nonlinear}, {"test"});
+  place.write("scene.toml",
+              "gravity = [0, 0, -9.81]\n[material.m]\nE = 1e8\nnu = 0.3\ndensity = 1000\n[region.cube]\nmaterial = \"m\"\n"
+              "[section.s]\nkind = \"circle\"\ndiameter = 0.1\n[beam.one]\npoints = [[5, 0, 0], [7, 0, 0]]\nsection = \"s\"\n"
+              "material = \"m\"\na = \"ground\"\n[time]\nend = 0.05\nstep = 0.01\n[output]\ninterval = 0.01\n");
+  succeeded(place.run("hilo-solve --quiet scene.toml tags.h5"));
+  for (const std::string command : {"series run.h5 energy", "beam run.h5 one", "at run.h5 displacement --node 0"}) {
+    for (const auto& [times, expected] : {std::pair{"0.031,0.008", std::vector{0.03, 0.01}}, {"0.01:0.03", {0.01, 0.02, 0.03}}}) {
+      SCOPED_TRACE(command + " --times " + times);
+      succeeded(place.run("hilo-post " + command + " --times " + times + " -o out.csv"));
+      std::vector<double> t = read_csv(place / "out.csv").numbers(0);
+      t.erase(std::unique(t.begin(), t.end()), t.end());  // beam: a row for each place
+      ASSERT_EQ(t.size(), expected.size());
+      for (size_t k = 0; k < t.size(); ++k) EXPECT_NEAR(t[k], expected[k], 1e-12);
+    }
+    const Ran ran = place.run("hilo-post " + command + " --times 0.06 -o no.csv");
+    EXPECT_EQ(ran.exit, 2) << command;
+    EXPECT_NE(ran.err.find(" near t = 0.06 s (there are 0 to 0.05 s)"), std::string::npos) << ran.err;
+    EXPECT_FALSE(std::filesystem::exists(place / "no.csv"));
+  }
 }
 
 }  // namespace
