@@ -8,6 +8,7 @@
 
 #include "import_case.hpp"
 #include "model/scene.hpp"
+#include "model/thin_regions.hpp"
 #include "succeeded.hpp"
 
 namespace hilo {
@@ -220,6 +221,75 @@ TEST_F(ImportBeam, ShapesOfRectanglesHaveTheirMoments) {
   }
 }
 
+// A cantilever of 3 m under a force at its tip, then under its weight, by the sums of rectangles in y and z of the element.
+TEST_F(ImportBeam, ShapesThatLeanBendAskewAndWeighTheirArea) {
+  struct Shape {
+    const char *type, *dims;
+    std::vector<std::array<double, 4>> parts;  // from y, to y, from z, to z
+  };
+  const double t = .002;
+  const Shape shapes[] = {
+      {"L", ".06,.04,.002,.002", {{0, .04, 0, t}, {0, t, t, .06}}},
+      {"Z", ".03,.002,.036,.04", {{0, .04, 0, t}, {.04 - t, .04, -.03, 0}, {0, t, t, .03 + t}}},
+      {"HAT",
+       ".04,.002,.05,.02",
+       {{.04 - t, .04, -.025, .025},
+        {t, .04 - t, -.025, -.025 + t},
+        {t, .04 - t, .025 - t, .025},
+        {0, t, -.045, -.025 + t},
+        {0, t, .025 - t, .045}}},
+      {"HAT1",
+       ".09,.044,.05,.002,.004",
+       {{0, .004, -.045, .045},
+        {.004, .004 + t, -.045, -.025 + t},
+        {.004, .004 + t, .025 - t, .045},
+        {.004 + t, .042, -.025, -.025 + t},
+        {.004 + t, .042, .025 - t, .025},
+        {.042, .044, -.025, .025}}},
+  };
+  for (const Shape& s : shapes) {
+    double A = 0;
+    Eigen::Vector2d S = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d I = Eigen::Matrix2d::Zero();
+    for (const auto& [y0, y1, z0, z1] : s.parts) {
+      const double a = (y1 - y0) * (z1 - z0);
+      const Eigen::Vector2d c((y0 + y1) / 2, (z0 + z1) / 2);
+      A += a, S += a * c, I += a * c * c.transpose();
+      I.diagonal() += a / 12 * Eigen::Vector2d((y1 - y0) * (y1 - y0), (z1 - z0) * (z1 - z0));
+    }
+    I -= S * S.transpose() / A;
+    const auto tip = [&](const std::string& load) {
+      solve(stat + "GRID,1,,0.,0.,0.\nGRID,2,,3.,0.,0.\nCBAR,1,5,1,2,0.,1.,0.\nPBARL,5,1,," + s.type + ",,,,,+\n+," + s.dims + "\n" +
+            steel + "SPC1,1,123456,1\n" + load);
+      const Vec3 u = moved("grid_2");
+      return Eigen::Vector2d(u.y(), u.z());
+    };
+    for (const auto& along : {Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1)}) {
+      const Eigen::Vector2d pushed = I.inverse() * along * .01 * 9 / E, sags = I.inverse() * along * 7850 * A * 1e-3 * 81 / (8 * E);
+      EXPECT_LT((tip(fmt::format("FORCE,2,2,,.01,0.,{:.1f},{:.1f}\n", along[0], along[1])) - pushed).norm(), .005 * pushed.norm())
+          << s.type;
+      EXPECT_LT((tip(fmt::format("GRAV,2,,1.-3,0.,{:.1f},{:.1f}\n", along[0], along[1])) - sags).norm(), .005 * sags.norm()) << s.type;
+    }
+  }
+}
+
+// Offsets in axes of the element, x from grid to grid, y in its plane 1: a beam along Y, its y along Z and its z along X, carries a pull at
+// arms of .1 and .2.
+TEST_F(ImportBeam, OffsetsInAxesOfTheElementAreTurned) {
+  const auto tip = [&](const std::string& offsets) {
+    solve(stat + "GRID,1,,0.,0.,0.\nGRID,2,,0.,3.,0.\nCBAR,1,5,1,2,0.,0.,1.," + offsets + "\nPBAR,5,1,1.-3,4.-7,4.-7,2.-7\n" + steel +
+          "SPC1,1,123456,1\nFORCE,2,2,,1.,0.,1.,0.\n");
+    return moved("grid_2");
+  };
+  const double stretch = 3 / (E * 1e-3), bend = 3 / (E * 4e-7);
+  for (const char* offsets : {"GOO,+\n+,,,0.,.1,.2,0.,.1,.2", "GOG,+\n+,,,0.,.1,.2,.2,0.,.1", "BGO,+\n+,,,.2,0.,.1,0.,.1,.2"}) {
+    const Vec3 u = tip(offsets);
+    EXPECT_NEAR(u.y() / (stretch + (.01 + .04) * bend), 1, 1e-4) << offsets;
+    EXPECT_NEAR(u.x() / (.2 * bend * 1.5), 1, 1e-4) << offsets;
+    EXPECT_NEAR(u.z() / (.1 * bend * 1.5), 1, 1e-4) << offsets;
+  }
+}
+
 TEST_F(ImportBeam, SecondMomentsBendInTheirPlanesAndI12CouplesThem) {
   const auto run = [&](const std::string& force) {
     solve(stat + "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCBAR,1,5,1,2,0.,0.,1.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7,,,+\n+,,,,,,,,,+\n+,,,1.-7\n" +
@@ -359,6 +429,49 @@ TEST_F(ImportBeam, SectionsOfInpDecksBendInTheirDirections) {
   EXPECT_NE(told.find("its one number is the radius, as in Abaqus"), std::string::npos) << told;
 }
 
+// A node beside an element says its direction 1, before the direction of its section.
+TEST_F(ImportBeam, ANodeOfTheOrientationTurnsTheSection) {
+  const std::string deck =
+      "*NODE,NSET=ALL\n1,0,0,0\n2,.5,0,0\n3,1,0,0\n9,0,1,0\n*ELEMENT,TYPE=B31,ELSET=E\n1,1,2,9\n2,2,3,9\n*MATERIAL,NAME=M\n*ELASTIC\n"
+      "2.1e11,.3\n*DENSITY\n7850\n*BEAM SECTION,ELSET=E,MATERIAL=M,SECTION=RECT\n.02,.05\n0,0,-1\n*BOUNDARY\n1,1,6\n*STEP\n*STATIC\n";
+  solve(deck + "*CLOAD\n3,2,1e-3\n3,3,1e-3\n*END STEP\n", "a.inp");
+  const Vec3 u = moved("node_3");
+  EXPECT_NEAR(u.y() / (1e-3 / (3 * E * .05 * 8e-6 / 12)), 1, 5e-3) << "shear";
+  EXPECT_NEAR(u.z() / (1e-3 / (3 * E * .02 * 125e-6 / 12)), 1, 5e-3);
+  // as a rigid region: the second moment about x and y of .02 along y, .05 along z
+  place.write("b.inp", deck + "*END STEP\n");
+  test::succeeded(place.run("hilo-import --quiet b.inp -o b.h5 --rigid-beams"));
+  const auto moments = read_thin_regions(place / "b.h5").at(0).moments;
+  EXPECT_NEAR(moments[0], 1e-3, 1e-12);
+  EXPECT_NEAR(moments[5], 1e-3 * .0004 / 12, 1e-6 * 1e-3 * .0004 / 12) << "yy";
+  EXPECT_NEAR(moments[6], 1e-3 * .0025 / 12, 1e-6 * 1e-3 * .0025 / 12) << "zz";
+}
+
+// I of two flanges, a T, and an I whose nodes lie below it: a pull along the nodes bends by the arm of the centre of area; weight.
+TEST_F(ImportBeam, AnIOfTwoFlangesLiesWhereItsOriginSays) {
+  const double t = .002, h = .06;
+  struct Shape {
+    double origin, b1, b2;
+  };
+  for (const auto& [origin, b1, b2] : {Shape{.01, .03, .05}, Shape{0, 0, .05}, Shape{.05, .04, 0}, Shape{0, .04, .04}}) {
+    const double t1 = b1 > 0 ? t : 0, t2 = b2 > 0 ? t : 0, hw = h - t1 - t2, A = b1 * t1 + b2 * t2 + hw * t,
+                 c = (b1 * t1 * t1 / 2 + b2 * t2 * (h - t2 / 2) + hw * t * (t1 + hw / 2)) / A,
+                 I1 = b1 * std::pow(t1, 3) / 12 + b1 * t1 * std::pow(c - t1 / 2, 2) + b2 * std::pow(t2, 3) / 12 +
+                      b2 * t2 * std::pow(h - t2 / 2 - c, 2) + t * hw * hw * hw / 12 + t * hw * std::pow(t1 + hw / 2 - c, 2);
+    const auto tip = [&](const std::string& load) {
+      solve(fmt::format("*NODE,NSET=ALL\n1,0,0,0\n2,1.5,0,0\n3,3,0,0\n*ELEMENT,TYPE=B31,ELSET=E\n1,1,2\n2,2,3\n*MATERIAL,NAME=M\n"
+                        "*ELASTIC\n2.1e11,.3\n*DENSITY\n7850\n*BEAM SECTION,ELSET=E,MATERIAL=M,SECTION=I\n{},{},{},{},{},{},{}\n"
+                        "0,1,0\n*BOUNDARY\n1,1,6\n*STEP\n*STATIC\n",
+                        origin, h, b1, b2, t1, t2, t) +
+                load + "*END STEP\n",
+            "a.inp");
+      return moved("node_3").z();
+    };
+    EXPECT_NEAR(tip("*CLOAD\n3,1,.1\n") / (.1 * (c - origin) * 9 / (2 * E * I1)), 1, .003) << b1 << " " << b2;
+    EXPECT_NEAR(tip("*DLOAD\nE,GRAV,1e-3,0,0,1\n") / (7850 * A * 1e-3 * 81 / (8 * E * I1)), 1, .005) << b1 << " " << b2;
+  }
+}
+
 TEST_F(ImportBeam, BarsHoldABlockOfSolidsByItsNodes) {
   // four bars along x pull at the corners of a stiff block: 4 E A/L, and the block does not turn with them
   std::string deck = stat + "MAT1,2,1.+15,,.3,1.\nPSOLID,2,2\nPBAR,5,1,1.-5,2.-8,2.-8,4.-8\n" + steel;
@@ -387,22 +500,27 @@ TEST_F(ImportBeam, ARunWithTheMeshOfNoCellsGoesWithoutIt) {
 
 TEST_F(ImportBeam, WhatABeamCannotCarryIsRefusedOrTold) {
   const std::string those =
-      " (ROD, TUBE, TUBE2, BAR, BOX, BOX1, I, I1, H, CROSS, T, T1, T2, CHAN, CHAN1 and CHAN2 are; write the others as PBAR)";
+      " (ROD, TUBE, TUBE2, BAR, BOX, BOX1, I, I1, H, CROSS, T, T1, T2, CHAN, CHAN1, CHAN2, L, Z, HAT and HAT1 are; write the others as "
+      "PBAR)";
   const std::string grids = "GRID,1,,0.,0.,0.\nGRID,2,,3.,0.,0.\n" + steel;
-  place.write("a.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBARL,5,1,,HAT,,,,,+\n+,.2,.4\n");
-  refused("a.bdf -o b.h5", 2, "a.bdf:5:12: PBARL 5: TYPE HAT is not read" + those);
+  place.write("a.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBARL,5,1,,DBOX,,,,,+\n+,.2,.4\n");
+  refused("a.bdf -o b.h5", 2, "a.bdf:5:12: PBARL 5: TYPE DBOX is not read" + those);
   place.write("a.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBARL,5,1,,BOX,,,,,+\n+,.1,.2,.12,.06\n");
   refused("a.bdf -o b.h5", 2, "a.bdf:5:12: PBARL 5: TYPE BOX with such walls is not read" + those);
   place.write("a.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBARL,5,1,,BOX1,,,,,+\n+,.1,.2,.02,.01,.02,.01\n");
   refused("a.bdf -o b.h5", 2, "a.bdf:5:12: PBARL 5: TYPE BOX1 that is askew is not read" + those);
+  place.write("a.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBARL,5,1,,HAT,,,,,+\n+,.2,.03,.05,.1\n");
+  refused("a.bdf -o b.h5", 2, "a.bdf:5:12: PBARL 5: TYPE HAT with such walls is not read" + those);
   for (const auto& [type, dims, blank] : {std::tuple{"TUBE", ".1", 2}, std::tuple{"I1", ",.1,.2,.3", 1}}) {
     place.write("a.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBARL,5,1,," + type + ",,,,,+\n+," + dims + "\n");
     refused("a.bdf -o b.h5", 2, fmt::format("a.bdf:5:12: PBARL 5: TYPE {} without DIM{} is not read{}", type, blank, those));
   }
   place.write("b.bdf", grids + "CBAR,1,5,1,2,1.,0.,0.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7\n");
   refused("b.bdf -o b.h5", 2, "b.bdf:4:6: beam 1: its orientation lies along it, or is none");
-  place.write("c.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.,GOG,+\n+,,,1.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7\n");
-  refused("c.bdf -o b.h5", 2, "c.bdf:4:6: CBAR 1: OFFT GOG, offsets in axes of the beam, are not read (GGG)");
+  place.write("c.bdf", grids + "CBAR,1,5,1,2,1.,0.,0.,GOG,+\n+,,,,1.\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7\n");
+  refused("c.bdf -o b.h5", 2, "c.bdf:4:6: CBAR 1: OFFT GOG, and its orientation lies along the line of its grids, or is none");
+  place.write("c.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.,OGG\nPBAR,5,1,1.-3,4.-7,1.-7,2.-7\n");
+  refused("c.bdf -o b.h5", 2, "c.bdf:4:23: CBAR: OFFT OGG is not three of G, B, O, the first of them G or B");
   place.write("d.bdf", grids + "CBAR,1,5,1,2,0.,1.,0.\nPBAR,5,9,1.-3,4.-7,1.-7,2.-7\n");
   refused("d.bdf -o b.h5", 2, "d.bdf:5: property 5 of beams has no material (MAT1)");
   place.write("f.bdf", grids + "CBEAM,1,5,1,2,0.,1.,0.\nPBEAM,5,1,1.-3,4.-7,1.-7,,2.-7,,+\n+,,,,,,,,,+\n+,NO,1.,2.-3,8.-7,2.-7,,4.-7\n");
@@ -411,11 +529,18 @@ TEST_F(ImportBeam, WhatABeamCannotCarryIsRefusedOrTold) {
   EXPECT_EQ(place.run("grep -c 'area = 0.0015' f.toml").out, "1\n");
   place.write("g.bdf", grids + "CBEAM,1,5,1,2,0.,1.,0.\nPBEAML,5,1,,BAR,,,,,+\n+,.1,.1,0.,YES,.5,.1,.1,0.,+\n+,YES,1.,.05,.05,0.\n");
   imported("g.bdf", "--scene-out g.toml");
-  expect_said("not read: PBEAML that tapers: the section of end A is taken");
+  expect_said("not read: PBEAML that tapers: the mean of the sections at its ends is taken");
+  EXPECT_EQ(place.run("grep -c 'area = 0.00625' g.toml").out, "1\n");
   const std::string nodes = "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n";
-  place.write("a.inp", nodes + "*ELEMENT,TYPE=B31,ELSET=E\n1,1,2,3\n");
+  const std::string beam_section = "*MATERIAL,NAME=M\n*ELASTIC\n2e11,.3\n*BEAM SECTION,ELSET=E,MATERIAL=M,SECTION=";
+  place.write("a.inp", nodes + "*ELEMENT,TYPE=B31,ELSET=E\n1,1,2,7\n" + beam_section + "RECT\n.1,.2\n");
+  refused("a.inp -o b.h5", 2, "a.inp:10:21: element 1 is turned towards node 7, which does not exist");
+  place.write("a.inp", nodes + "*ELEMENT,TYPE=B31,ELSET=E\n1,1,2,3\n*ELGEN,ELSET=E\n1,2,1,1\n" + beam_section + "RECT\n.1,.2\n");
   refused("a.inp -o b.h5", 2,
-          "a.inp:6:1: B31 1: a node of its orientation is not read (the direction n1 on the second line of its section)");
+          "a.inp:8:1: *ELGEN of element 1, which has a node of its orientation: that of its copies is not clear (write the elements out)");
+  place.write("a.inp", nodes + "*ELEMENT,TYPE=B31,ELSET=E\n1,1,2\n" + beam_section + "L\n.1,.1,.01,.01\n");
+  refused("a.inp -o b.h5", 2,
+          "a.inp:10:42: *BEAM SECTION, SECTION=L is not read (RECT, CIRC, PIPE, BOX and I are; a T is an I with one flange of no width)");
   place.write("b.inp", nodes + "*ELEMENT,TYPE=B31,ELSET=E\n1,1,2\n");
   refused("b.inp -o b.h5", 2, "b.inp:6:1: element 1 has no section (beams need *BEAM SECTION)");
   const std::string both = "*NODE\n1,0,0,0\n99,0,3,0\n" + block + "*ELEMENT,TYPE=B31,ELSET=E\n1,1,11\n*ELSET,ELSET=ALL\n1,50\n" + section;

@@ -3,8 +3,11 @@
 // is refused by name.
 #include <fmt/format.h>
 
+#include <sstream>
+
 #include "import_case.hpp"
 #include "model/store.hpp"
+#include "model/thin_regions.hpp"
 #include "succeeded.hpp"
 
 namespace hilo::test::import_shell_test {
@@ -252,6 +255,85 @@ TEST_F(ImportShell, AClampedDeckOfCquad4BendsAsItsBeam) {
   place.write("scene.toml", test::text_of(place / "scene.toml") + "\n[[probe]]\nname = \"end\"\non = \"" + end + "\"\n");
   succeeded(place.run("hilo-solve --quiet scene.toml -o run.h5"));
   EXPECT_NEAR(way("end").z() / strip_tip, 1, 2e-3);
+}
+
+// The hull of the firing vehicle in plates of the thicknesses that data/firing/Makefile names, beside its solid of tetrahedra: of equal
+// density, so the masses are as the volumes.
+TEST_F(ImportShell, TheHullOfTheVehicleWeighsWhatItsSolidDoes) {
+  const std::string folder = std::string(HILO_SOURCE) + "/data/firing/", make = test::text_of(folder + "Makefile"), key = "PLATES := ";
+  const size_t at = make.find(key);
+  ASSERT_NE(at, make.npos);
+  std::istringstream plates(make.substr(at + key.size(), make.find('\n', at) - at - key.size()));
+  std::string options = folder + "vehicle.geo --quiet --define SIZE=0 --define HULL=1";
+  for (std::string plate; plates >> plate;) {
+    options += " --thickness hull_" + plate;
+    if (!plate.starts_with("side")) options += " --thickness hull_rim_" + plate;
+  }
+  const auto hull = [](const Mesh& m) {
+    double V = 0;
+    for (std::int64_t c = 0; c < m.n_cells(); ++c)
+      if (m.region_name[m.region[c]].starts_with("hull")) V += quality(m, c).volume;
+    return V;
+  };
+  const double of_plates = hull(imported(options)), of_solid = hull(imported(folder + "vehicle.geo --quiet --define SIZE=0"));
+  std::printf("%.4f and %.4f m^3\n", of_plates, of_solid);
+  EXPECT_GT(of_solid, 2);
+  EXPECT_NEAR(of_plates / of_solid, 1, 0.01);
+}
+
+// T1 to T4, as numbers, as shares of the property's and of triangles: a strip whose thickness falls to half from root to end.  Volume,
+// centre, and what a force at its end does: the integral of P (L - x)^2/(E I(x)).
+TEST_F(ImportShell, ThicknessesAtCornersTaperAStrip) {
+  const double L = 10, h = .1, P = 2, E = 1e9;
+  double tip = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const double x = (i + .5) * L / 1000;
+    tip += P * (L - x) * (L - x) / (E * std::pow(h * (1 - x / 20), 3) / 12) * L / 1000;
+  }
+  const std::string plain = cquad4_strip("SPC1,1,123456,1,2\n");
+  for (const std::string form : {"numbers", "shares", "triangles"}) {
+    std::string deck;
+    std::istringstream lines(plain);
+    for (std::string line; std::getline(lines, line);) {
+      int e = 0, n[4];
+      if (std::sscanf(line.c_str(), "CQUAD4,%d,7,%d,%d,%d,%d", &e, n, n + 1, n + 2, n + 3) != 5) {
+        deck += line + "\n";
+        continue;
+      }
+      const auto t = [&](int grid) { return (form == "shares" ? 1 : h) * (1 - (grid - 1) / 2 / 40.); };
+      if (form == "triangles")
+        for (const auto& [id, a, b, c] : {std::array{e, n[0], n[1], n[2]}, std::array{100 + e, n[0], n[2], n[3]}})
+          deck += fmt::format("CTRIA3,{},7,{},{},{},,,,+\n+,,,{:.6f},{:.6f},{:.6f}\n", id, a, b, c, t(a), t(b), t(c));
+      else
+        deck +=
+            line + fmt::format(",,,+\n+,,{},{:.6f},{:.6f},{:.6f},{:.6f}\n", form == "shares" ? 1 : 0, t(n[0]), t(n[1]), t(n[2]), t(n[3]));
+    }
+    place.write("strip.bdf", deck);
+    test::succeeded(place.run("hilo-import --quiet strip.bdf -o rigid.h5"));
+    const auto moments = read_thin_regions(place / "rigid.h5").at(0).moments;
+    EXPECT_NEAR(moments[0], .75 * h * L, 1e-7) << form;
+    EXPECT_NEAR(moments[1], h * (L * L / 2 - L * L * L / 60), 1e-6) << form;
+    const Mesh m = imported("strip.bdf", "--thicken --scene-out scene.toml");
+    double across = 0;
+    EXPECT_NEAR(volume(m), .75 * h * L, 1e-6) << form;
+    for (const Vec3& X : m.X) across = std::max(across, std::abs(std::abs(X.z()) - h / 2 * (1 - X.x() / 20)));
+    EXPECT_LT(across, 1e-6) << form;
+    EXPECT_TRUE(m.block.empty()) << form << ": it is one sheet";
+    place.write("scene.toml",
+                test::text_of(place / "scene.toml") +
+                    "\n[set.end]\nkind = \"box\"\nlow = [9.99, -1, -1]\nhigh = [10.01, 2, 1]\n[[probe]]\nname = \"end\"\non = \"end\"\n");
+    succeeded(place.run("hilo-solve --quiet scene.toml -o run.h5"));
+    std::printf("%s: %.4f\n", form.c_str(), way("end").z() / tip);
+    EXPECT_NEAR(way("end").z() / tip, 1, form == "triangles" ? 1e-2 : 5e-3) << form;
+  }
+  const std::string head = plain.substr(0, plain.find("CQUAD4"));
+  for (const auto& [entry, why] : {std::pair{"CQUAD4,1,7,1,3,4,2,,,+\n+,,,.1,-.1,.1,.1\n", "CQUAD4 1: T2 -0.1 is not above 0"},
+                                   std::pair{"CQUAD4,1,7,1,3,4,2,,,+\n+,,2,.1\n", "CQUAD4 1: TFLAG 2 is neither 0 nor 1"}}) {
+    place.write("bad.bdf", head + entry);
+    const auto ran = place.run("hilo-import bad.bdf -o bad.h5");
+    EXPECT_EQ(ran.exit, 2);
+    EXPECT_NE(ran.err.find(why), std::string::npos) << ran.err;
+  }
 }
 
 // A quarter of a clamped square under a force in its middle, in CTRIA3: 0.00560 P a^2/D [timoshenko-1959].  Nodes between the supports of

@@ -90,6 +90,17 @@ class Dividing {
     n_made_ += corners;
   }
 
+  /// The section of child k, of as many as the parent has corners.
+  static ThinSection child(const ThinSection& parent, size_t k, size_t corners) {
+    ThinSection out = parent;
+    if (parent.own[0] == 0) return out;
+    double centre = 0;
+    for (size_t i = 0; i < corners; ++i) centre += parent.own[i] / static_cast<double>(corners);
+    out.own = {parent.own[k], parent.thickness_at(corners + k, corners), centre,
+               parent.thickness_at(corners + (k + corners - 1) % corners, corners)};
+    return out;
+  }
+
   /// The first child stands where its parent stood, the others behind all cells.
   void rebuild() {
     Mesh& m = m_;
@@ -105,14 +116,17 @@ class Dividing {
       else
         add(m.cell(c));
     std::int64_t id = *std::ranges::max_element(m.cell_id);
-    for (auto& [c, of] : children_)
+    for (auto& [c, of] : children_) {
+      const ThinSection whole = in_.thin.at(c);
+      in_.thin.at(c) = child(whole, 0, of.size());
       for (size_t k = 1; k < of.size(); ++k) {
         behind_[c].push_back(static_cast<std::int64_t>(offset.size()) - 1);
         add(of[k]);
         m.shape.push_back(static_cast<std::uint8_t>(quad4));
         m.region.push_back(m.region[c]), m.cell_id.push_back(++id);
-        in_.thin.emplace(behind_[c].back(), in_.thin.at(c));
+        in_.thin.emplace(behind_[c].back(), child(whole, k, of.size()));
       }
+    }
     m.nodes = std::move(nodes), m.offset = std::move(offset);
     for (auto& [name, set] : m.cell_sets)
       for (size_t k = 0, n = set.size(); k < n; ++k)

@@ -76,11 +76,21 @@ class Finding {
   double cosine(const std::vector<Side>& sides) const {
     return (against(sides) ? -1 : 1) * shells_[sides[0].shell].normal.dot(shells_[sides[1].shell].normal);
   }
+  double thickness(size_t shell, int local) const {
+    return shells_[shell].section->thickness_at(static_cast<size_t>(local), static_cast<size_t>(shells_[shell].corners));
+  }
+  /// First and last node of an edge, as its numbers say, and the middle.
+  int local(const Side& s, int which) const {
+    const int n = shells_[s.shell].corners;
+    if (which == 2) return n + s.k;
+    return (which == 0) == s.forward ? s.k : (s.k + 1) % n;
+  }
   bool is_smooth(const std::vector<Side>& sides) const {
     if (sides.size() != 2) return false;
     const Shell &a = shells_[sides[0].shell], &b = shells_[sides[1].shell];
-    return a.section->thickness == b.section->thickness && a.section->offset == (against(sides) ? -1 : 1) * b.section->offset &&
-           cosine(sides) > std::cos(most_bend);
+    for (int which = 0; which < 2; ++which)
+      if (thickness(sides[0].shell, local(sides[0], which)) != thickness(sides[1].shell, local(sides[1], which))) return false;
+    return a.section->offset == (against(sides) ? -1 : 1) * b.section->offset && cosine(sides) > std::cos(most_bend);
   }
 
   /// Neighbours across smooth edges get their normals on the same side; where a sheet has one side alone, as a Moebius strip, an edge stays
@@ -113,11 +123,6 @@ class Finding {
   }
   size_t slot(size_t shell, int local) const { return first_[shell] + static_cast<size_t>(local); }
   void join(const Side& a, const Side& b) {
-    const auto local = [&](const Side& s, int which) {  // first and last node of the edge as a has them, and the middle
-      const int n = shells_[s.shell].corners;
-      if (which == 2) return n + s.k;
-      return (which == 0) == s.forward ? s.k : (s.k + 1) % n;
-    };
     for (int which = 0; which < 3; ++which) {
       if (which == 2 && (first_[a.shell + 1] - first_[a.shell] == static_cast<size_t>(shells_[a.shell].corners) ||
                          first_[b.shell + 1] - first_[b.shell] == static_cast<size_t>(shells_[b.shell].corners)))
@@ -139,7 +144,8 @@ class Finding {
           Sheets::Part p;
           for (const size_t s : of) p.cells.push_back(shells_[s].cell), p.normal += (turned_[s] ? -1 : 1) * shells_[s].normal;
           p.normal.normalize();
-          p.thickness = shells_[of[0]].section->thickness;
+          const auto n = m_.cell(shells_[of[0]].cell);
+          p.thickness = thickness(of[0], static_cast<int>(std::ranges::find(n, node) - n.begin()));
           p.offset = (turned_[of[0]] ? -1 : 1) * shells_[of[0]].section->offset;
           return p;
         };

@@ -13,7 +13,7 @@ namespace hilo {
 
 struct Imported;
 
-/// Two shells are of one sheet where they share an edge with no third one, are as thick as each other, lie on the same side of their nodes,
+/// Two shells are of one sheet where they share an edge with no third one, are as thick as each other there, lie on the same side of it,
 /// and their normals are at most 40 degrees apart.  A node has one pair of nodes for each sheet that it is in.
 class Sheets {
  public:

@@ -27,10 +27,21 @@ void add_thin_moments(Imported& in, double factor) {
       for (size_t k = 0; k < 10; ++k) data.moments[k] += values[k];
     };
     if (info(m.shape[static_cast<size_t>(cell)]).dimension == 2) {
-      const double t = section.thickness * factor;
-      data.thickness = t;
+      data.thickness = section.thickness * factor;
+      // thickness at the points of the rule: x of the same facet whose nodes have theirs for x
+      const size_t corners = static_cast<size_t>(info(m.shape[static_cast<size_t>(cell)]).n_corners);
+      Mesh alike;
+      std::vector<std::int64_t> numbers(nodes.size());
+      for (size_t k = 0; k < nodes.size(); ++k) {
+        numbers[k] = static_cast<std::int64_t>(k);
+        alike.X.emplace_back(section.thickness_at(k, corners) * factor, 0, 0);
+      }
+      alike.add_cell(static_cast<Shape>(m.shape[static_cast<size_t>(cell)]), numbers, 0, 0);
+      std::vector<double> thickness;
+      over_facet(alike, {0, 0}, [&](const Vec3& at, const Vec3&) { thickness.push_back(at.x()); });
+      size_t point = 0;
       over_facet(m, {cell, 0}, [&](const Vec3& at, const Vec3& dA) {
-        const double area = dA.norm();
+        const double area = dA.norm(), t = thickness[point++];
         const Vec3 n = dA / area, x = at + section.offset * factor * n;
         add(t * area, t * area * x, area * (t * x * x.transpose() + t * t * t / 12 * n * n.transpose()));
       });

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes of beams, run as a user would.
 #pragma once
+#include <Eigen/LU>
+#include <complex>
 #include <numbers>
 
 #include "scene_parts.hpp"
@@ -19,6 +21,16 @@ inline std::string twist(const std::string& on, const Vec3& torque, const std::s
   return load("torque", "t" + on, on, "torque = " + list(torque) + "\n" + more);
 }
 inline std::string tip_probe(const std::string& on = "arm.end") { return probe("tip", on); }
+
+/// What a cantilever of a metre does at x under 1 N of circular frequency w at its tip: EI (1 + i w beta) d4u/dx4 = m (w^2 - i w alpha) u.
+inline std::complex<double> damped_cantilever(double EI, double m, double beta, double alpha, double x, double w) {
+  using C = std::complex<double>;
+  const C stiff = EI * C(1, w * beta), k = std::pow(m * C(w * w, -w * alpha) / stiff, 0.25);
+  Eigen::Matrix2cd ends;  // of cosh - cos and sinh - sin: no moment, the force
+  ends << std::cosh(k) + std::cos(k), std::sinh(k) + std::sin(k), std::sinh(k) - std::sin(k), std::cosh(k) + std::cos(k);
+  const Eigen::Vector2cd c = ends.inverse() * Eigen::Vector2cd(0, -1.0 / (stiff * k * k * k));
+  return c[0] * (std::cosh(k * x) - std::cos(k * x)) + c[1] * (std::sinh(k * x) - std::sin(k * x));
+}
 
 class BeamPlace : public ScenePlace {
  protected:

@@ -2,6 +2,7 @@
 // Beams in motion: what a step keeps however long it is, and published motions.
 #include <Eigen/Geometry>
 
+#include "physics/joint.hpp"
 #include "succeeded.hpp"
 #include "verify/beams/beam_scene.hpp"
 
@@ -59,6 +60,66 @@ TEST_F(BeamDynamics, ABodyWithABeamOffItsAxisKeepsThemToo) {
   EXPECT_LT(k.energy, 1e-11);
   EXPECT_LT(k.momentum, 1e-11);
   EXPECT_LT(k.angular, 1e-11);
+}
+
+// Every kind of joints at the section in the middle of a free beam, by turns as end a and b: a hundred thousand times stiffer, the beam
+// moves what hangs on it as a rigid bar does; soft, it keeps energy, and momenta where nothing holds to the ground.
+TEST_F(BeamDynamics, JointsOfEveryKindActOnSections) {
+  const double mu = 3, inertia = 2e-3;
+  const std::string at = "at = [1, 0, 0.05]\n";
+  struct Kind {
+    const char* name;
+    std::string keys;
+    bool on_ground = false;
+  };
+  const Kind kinds[] = {
+      {"fixed", at},
+      {"spherical", at},
+      {"revolute", at + "axis = [1, 0.5, 0]"},
+      {"cylindrical", at + "axis = [1, 0, 0.3]"},
+      {"prismatic", at + "axis = [1, 0.2, 0]"},
+      {"universal", at + "axis = [0, 0, 1]\nx = [1, 0, 0]"},
+      {"constant-velocity", at + "axis = [0, 0, 1]\naxis_b = [0, 0, 1]"},
+      {"screw", at + "axis = [0.3, 0, 1]\npitch = 0.1"},
+      {"planar", at + "axis = [0, 0, 1]"},
+      {"in-plane", at + "axis = [0, 0, 1]"},
+      {"in-line", at + "axis = [0, 0, 1]"},
+      {"gear", at + "axis = [0, 0, 1]\nratio = -2", true},
+      {"rack", at + "axis = [0, 0, 1]\ndirection = [1, 0, 0]\nradius = 0.1", true},
+      {"distance", "at_a = [1, 0, 0]\nat_b = [1.1, 0.1, 0.2]"},
+      {"weighted-sum", "at_a = [1, 0, 0]\nat_b = [1.1, 0.1, 0.2]\nfactors = [1, -2]\naxis_a = [0.2, 0, 1]", true},
+      {"point-on-curve", at + "points = [[1, -1, 0.05], [1.2, -0.5, 0.05], [1.1, -0.1, 0.05], [1, 0, 0.05], [1.1, 0.5, 0.05]]"},
+      {"rolling", at + "axis = [0, 0, 1]\nradius = 0.05"},
+      {"knife-edge", at + "axis = [0, 0, 1]\nedge = [1, 0.2, 0]"}};
+  ASSERT_EQ(std::size(kinds), joint_kinds().size());
+  const auto scene = [&](const Kind& kind, double stiff, bool swap) {  // stiff 0: a rigid bar
+    const double J = 2 * mu * 4 / 12 + 2 * inertia;
+    const std::string beam = plain_section(2e3 * stiff, 4e3 * stiff, 5 * stiff, 5 * stiff, "line_mass = 3\ninertia = [2e-3, 2e-3]") +
+                             beam_of("[[0, 0, 0], [2, 0, 0]]", 4, ""),
+                      on = stiff == 0 ? "arm" : "arm.2";
+    return (stiff == 0 ? body("arm", 2 * mu, {1, 0, 0}, {4 * inertia, J, J}) : beam) +
+           body("bob", 0.5, {1.1, 0.1, 0.2}, {0.01, 0.012, 0.008}) +
+           fmt::format("[[joint]]\nkind = \"{}\"\nname = \"j\"\na = \"{}\"\nb = \"{}\"\n{}\n", kind.name, swap ? "bob" : on,
+                       swap ? on : "bob", kind.keys) +
+           initial("*", "velocity = [1, 2, -1]\nspin = [2, 3, 1]\nabout = [0.5, 0, 0]") +
+           force("kick", "bob", {3, -4, 5}, "history = {t = [0, 0.05, 0.1], value = [0, 1, 0]}") + in_time(0.2, 0.004);
+  };
+  bool swap = false;
+  for (const Kind& kind : kinds) {
+    const Drift k = drift(solved(scene(kind, 1, swap)), 0.102);
+    EXPECT_GT(k.strained, 1e-3) << kind.name;
+    EXPECT_LT(k.energy, 1e-12) << kind.name;
+    if (!kind.on_ground) {
+      EXPECT_LT(k.momentum, 1e-12) << kind.name;
+      EXPECT_LT(k.angular, 1e-12) << kind.name;
+    }
+    swap = !swap;
+    const Eigen::MatrixXd rigid = solved(scene(kind, 0, swap)).history("body/bob"),
+                          stiff = solved(scene(kind, 1e5, swap)).history("body/bob");
+    const double off = (stiff - rigid).cwiseAbs().maxCoeff();
+    std::printf("%s%s: %.1e m\n", kind.name, swap ? ", swapped" : "", off);
+    EXPECT_LT(off, 2e-4) << kind.name;
+  }
 }
 
 // What damping takes is in the balance, and it never pays in.

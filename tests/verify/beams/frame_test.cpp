@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The ladder frame of data/frame: what its tyres carry at rest, its energy over the bump, and modes of a joint of it.
+#include <sstream>
+
 #include "succeeded.hpp"
 #include "verify/verify.hpp"
 
@@ -27,6 +29,25 @@ TEST(LadderFrame, TyresCarryTheWeight) {
   const Eigen::MatrixXd energy = r.history("energy");
   EXPECT_GT(energy.col(0).maxCoeff(), 100) << "the bump was met";
   EXPECT_LT(energy.col(5).cwiseAbs().maxCoeff(), 1e-6 * energy.col(0).maxCoeff());
+}
+
+// The joint of data/frame: fore and aft, up and down, as its table says; bolted, whose give is that of the solid, and without give.
+TEST(LadderFrame, AJointOfItVibratesAsItsTableSays) {
+  const Workplace work;
+  const std::string bolted = text_of(data + "joint.toml");
+  std::string rigid;
+  std::istringstream lines(bolted);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("stiffness = ") == line.npos) rigid += line + "\n";
+  for (const auto& [scene, first, second] : {std::tuple{bolted, 299., 560.}, std::tuple{rigid, 485., 847.}}) {
+    work.write("scene.toml", scene);
+    succeeded(work.run("hilo-solve --quiet scene.toml -o run.h5"));
+    const Eigen::VectorXd f = Results(work / "run.h5").history("mode").col(0);
+    ASSERT_GE(f.size(), 9);  // the state of rest, six rigid motions
+    EXPECT_LT(f.segment<6>(1).cwiseAbs().maxCoeff(), 1);
+    EXPECT_NEAR(f[7], first, 1);
+    EXPECT_NEAR(f[8], second, 1);
+  }
 }
 
 }  // namespace

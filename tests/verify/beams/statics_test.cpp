@@ -3,6 +3,7 @@
 #include <map>
 
 #include "verify/beams/beam_scene.hpp"
+#include "verify/shells/shell_scene.hpp"
 
 namespace hilo::test::beams_statics_test {
 namespace {
@@ -149,6 +150,34 @@ TEST_F(BeamStatics, ABeamRidesOnASetOfARegionOfEveryFidelity) {
   EXPECT_LT((at[Fidelity::linear] - at[Fidelity::nonlinear]).norm(), 1e-6);
   EXPECT_GT((at[Fidelity::rigid] - at[Fidelity::nonlinear]).norm(), 1e-6);
   EXPECT_LT((at[Fidelity::rigid] - at[Fidelity::nonlinear]).norm(), 1e-4);
+}
+
+// A strip of shells goes on as a beam from the facets of its end, and carries a post on facets of its face: sums of cantilevers.
+TEST_F(BeamStatics, ABeamRidesOnASetOfShellsOfEveryFidelity) {
+  const double E = 1e9, L = 1, b = 0.1, h = 0.01, EI = E * b * h * h * h / 12, beam = 40, P = 1e-3;
+  const int n = 40;
+  Mesh m = shell_mesh(plate(L, b), n, 4, h);
+  for (const Facet& f : m.facet_sets.at("zmax")) {
+    Vec3 centre = Vec3::Zero();
+    for (const auto a : m.cell(f.cell)) centre += m.X[static_cast<size_t>(a)] / 8;
+    if (centre.x() > L - L / n) m.facet_sets["foot"].push_back(f);
+  }
+  const std::string strip = shell_of(E, 0) + held("xmin") + plain_section(1e8, 1e8, beam, beam) + tip_probe() + in_steps(1),
+                    ahead = beam_of("[[1, 0.05, 0], [1.5, 0.05, 0]]", 2, "a = \"xmax\""),
+                    post = beam_of("[[0.9875, 0.05, 0.005], [0.9875, 0.05, 0.505]]", 2, "a = \"foot\"");
+  const double B = 0.5,
+               goes_on =
+                   P * (L * L * L / (3 * EI) + B * L * L / (2 * EI)) + B * P * (L * L / (2 * EI) + B * L / EI) + P * B * B * B / (3 * beam),
+               stands = P * ((B + h / 2) * (B + h / 2) * (L - L / n) / EI +
+                             B * B * B / (3 * beam));  // up to the cell of the foot, from its middle
+  for (const Fidelity level : {Fidelity::nonlinear, Fidelity::linear}) {
+    use(m, {level});
+    const double up = tip(strip + ahead + push("arm.end", {0, 0, P}))[2],
+                 along = tip(strip + post + push("arm.end", {P, 0, 0}))[0] - 0.9875;
+    std::printf("%.5f, %.5f\n", up / goes_on, along / stands);
+    EXPECT_NEAR(up / goes_on, 1, 2e-3);
+    EXPECT_NEAR(along / stands, 1, 5e-3);
+  }
 }
 
 /// The turn about its line and the displacement of the tip of a metre of a section of thin walls, loaded in its centre of area.

@@ -108,22 +108,37 @@ TEST_F(ShellBenchmarks, RaaschsHook) {
 }
 
 // [sze-2004] 3.3: a ring with a slit, 6 and 10 m in radius, 0.03 m thick, one edge of the slit held, the other lifted by 3.2 N: 13.891 m
-// inside and 17.528 outside.  10 x 80 cells come within 0.9 % (verification).
-TEST_F(ShellBenchmarks, ARingWithASlitIsLifted) {
-  use([&] {
-    Mesh m = shell_mesh(
-        [](double u, double v) {
-          const double a = 2 * pi * u;
-          return std::pair(Vec3((10 - 4 * v) * Vec3(std::cos(a), std::sin(a), 0)), Vec3(0, 0, 1));
-        },
-        32, 6, 0.03);
-    add_stack(m, "out", 32, 0, 32, 6), add_stack(m, "in", 32, 6, 32, 6);
-    return m;
-  }());
-  const Results r = solved(shell_of(21e6, 0) + held("xmin") + push("xmax", Vec3(0, 0, 3.2)) + probe("in") + probe("out") + in_steps(5));
-  std::printf("%.3f %.3f of 13.891 17.528\n", way(r, "in")[2], way(r, "out")[2]);
-  EXPECT_NEAR(way(r, "in")[2] / 13.891, 1, 0.025);
-  EXPECT_NEAR(way(r, "out")[2] / 17.528, 1, 0.02);
+// inside and 17.528 outside.
+class ShellRing : public ShellBenchmarks {
+ protected:
+  /// The ways of the inner and the outer corner, of the published ones.
+  std::pair<double, double> lifted(int across, int around) {
+    use([&] {
+      Mesh m = shell_mesh(
+          [](double u, double v) {
+            const double a = 2 * pi * u;
+            return std::pair(Vec3((10 - 4 * v) * Vec3(std::cos(a), std::sin(a), 0)), Vec3(0, 0, 1));
+          },
+          around, across, 0.03);
+      add_stack(m, "out", around, 0, around, across), add_stack(m, "in", around, across, around, across);
+      return m;
+    }());
+    const Results r = solved(shell_of(21e6, 0) + held("xmin") + push("xmax", Vec3(0, 0, 3.2)) + probe("in") + probe("out") + in_steps(5));
+    std::printf("%.3f %.3f of 13.891 17.528\n", way(r, "in")[2], way(r, "out")[2]);
+    return {way(r, "in")[2] / 13.891, way(r, "out")[2] / 17.528};
+  }
+};
+TEST_F(ShellRing, WithASlitIsLifted) {
+  const auto [in, out] = lifted(6, 32);
+  EXPECT_NEAR(in, 1, 0.025);
+  EXPECT_NEAR(out, 1, 0.02);
+}
+
+class DISABLED_LongThinRing : public ShellRing {};
+TEST_F(DISABLED_LongThinRing, WithASlitIsLifted) {
+  const auto [in, out] = lifted(10, 80);
+  EXPECT_NEAR(in, 1, 0.015);
+  EXPECT_NEAR(out, 1, 0.015);
 }
 
 // Pressed along its axis: sigma = E h/(R sqrt 3) without nu [timoshenko-gere-1961], R/h 100; a quarter, from a plane of symmetry to an end
@@ -174,16 +189,22 @@ TEST_F(ShellBenchmarks, AStripBucklesSideways) {
 }
 
 // Pressed at its end: Euler's load.  With 1/1000 of its length, the load shortens it by less than round-off of positions, times the
-// stiffness across, bends it.
+// stiffness across, bends it; so the frequency vanishes on the way with 1/200 alone.
 TEST_F(ShellBenchmarks, AStripBucklesAsEulersHoweverThin) {
   for (const auto& [h, limit] : {std::pair{0.005, 0.002}, std::pair{0.001, 0.02}}) {
     const double E = 2e11, b = 0.05, critical = pi * pi * E * b * h * h * h / 48;
     use(shell_mesh(plate(1, b), 40, 4, h));
-    const double parts = 1.2 * by_path(shell_of(E, 0, "density = 7800") + held("xmin") + push("xmax", Vec3(-1.2 * critical, 0, 0)));
-    const double factor = 1.2 * by_factor(shell_of(E, 0, "density = 7800") + held("xmin") + push("xmax", Vec3(-1.2 * critical, 0, 0)));
+    const auto scene = [&, h = h](double share) {
+      return shell_of(E, 0, "density = 7800") + held("xmin") + push("xmax", Vec3(-share * critical, 0, 0));
+    };
+    const double parts = 1.2 * by_path(scene(1.2)), factor = 1.2 * by_factor(scene(1.2));
     std::printf("L/h %.0f: %.4f by path, %.4f by factor\n", 1 / h, parts, factor);
     EXPECT_NEAR(parts, 1, limit);
     EXPECT_NEAR(factor, 1, limit);
+    if (h < 0.005) continue;
+    const double vanishes = by_frequency(scene, 0.98, 0.995);
+    std::printf("%.4f by frequency\n", vanishes);
+    EXPECT_NEAR(vanishes, 1, limit);
   }
 }
 

@@ -2,6 +2,8 @@
 // Solid-shells in motion: natural frequencies against closed forms, what coarse steps keep, linear regions, several ranks.
 #include "base/shell_shape.hpp"
 #include "succeeded.hpp"
+#include "verify/beams/beam_scene.hpp"
+#include "verify/natural_modes/natural_modes.hpp"
 #include "verify/shells/shell_scene.hpp"
 
 namespace hilo::test::shells_dynamics_test {
@@ -55,6 +57,23 @@ TEST_F(ShellDynamics, AThrownSheetOfMetalKeepsItsBalance) {
   EXPECT_LT(E.col(5).cwiseAbs().maxCoeff(), 1e-9 * E.col(0).maxCoeff());
   EXPECT_LT(c.momentum, 1e-10);
   EXPECT_LT(c.angular, 1e-10);
+}
+
+// A strip of L/h 100, clamped, pushed at its end, with both dampings: the damped cantilever.
+TEST_F(ShellDynamics, ADampedStripRespondsByItsClosedForm) {
+  const double E = 2e9, b = 0.05, h = 0.01, rho = 1000, beta = 2e-3, alpha = 3;
+  use(shell_mesh(plate(1, b), 40, 2, h));
+  solved(shell_of(E, 0, "density = 1000") + fmt::format("damping = {}\nmass_damping = {}\n", beta, alpha) + held("xmin") +
+         probe("tip", "xmax") + "[time]\nanalysis = \"modes\"\nmodes = 14\n");
+  const std::vector<Answer> found = answers(work.run("hilo-post response run.h5 --force tip.z --at tip.z --from 0.3 --to 20 --points 60"));
+  double most = 0;
+  for (const Answer& a : found)
+    most = std::max(most, std::abs(std::polar(a.size, a.phase * M_PI / 180) /
+                                       damped_cantilever(E * b * h * h * h / 12, rho * b * h, beta, alpha, 1, 2 * M_PI * a.f) -
+                                   1.0));
+  std::printf("%.1e\n", most);
+  EXPECT_EQ(found.size(), 60U);
+  EXPECT_LT(most, 0.025);
 }
 
 // All nodes of a face move along its normal alone: Navier's plate, with Mindlin's shear and rotary inertia.

@@ -143,6 +143,8 @@ struct BdfDeck {
   struct Thin : Cell {
     std::vector<std::int64_t> middles = {};
     double offset = 0;                        // of a shell, along its normal
+    std::array<double, 4> own = {};           // of a shell: T1 to T4, 0 where that of its property is taken
+    bool own_are_shares = false;              // TFLAG 1: they are factors of that
     std::int64_t towards = 0;                 // of a beam: G0
     Vec3 v = Vec3::Zero();                    // of a beam: in its plane 1
     Vec3 start = Vec3::Zero(), end = start;   // of a beam: offsets of its ends

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 
 #include "base/error.hpp"
 #include "import/bdf/card.hpp"
@@ -20,8 +22,8 @@ void add(BdfDeck& deck, BdfDeck::Thin c, std::vector<BdfDeck::Thin>& to) {
   to.push_back(std::move(c));
 }
 
-/// `offset`, `thickness`: where a shell entry has its offset and its own thicknesses.
-template <size_t corners, size_t middles, size_t offset, size_t thickness>
+/// `offset`, `thickness`, `flag`: where a shell entry has its offset, its own thicknesses and what they mean.
+template <size_t corners, size_t middles, size_t offset, size_t thickness, size_t flag>
 void read_shell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
   BdfDeck::Thin s{{corners == 3 ? tri3 : quad4, d.integer(0), property_of(d, 1), {}, d.place(0)}};
@@ -34,11 +36,16 @@ void read_shell(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   } else if (there > 0)
     in.skip(e.name + ": mid-side nodes on some edges only", d.place());
   if (!d.empty(offset)) s.offset = d.number(offset);
-  for (size_t i = 0; i < corners; ++i)
-    if (!d.empty(thickness + i)) {
-      in.skip(e.name + ": thickness of its own, T1 to T4", d.place(thickness + i));
-      break;
-    }
+  for (size_t i = 0; i < corners; ++i) {
+    if (d.empty(thickness + i)) continue;
+    s.own[i] = d.number(thickness + i);
+    if (!(s.own[i] > 0)) throw Error(d.place(thickness + i), fmt::format("{} {}: T{} {:g} is not above 0", e.name, s.id, i + 1, s.own[i]));
+  }
+  if (!d.empty(flag)) {
+    if (d.integer(flag) != 0 && d.integer(flag) != 1)
+      throw Error(d.place(flag), fmt::format("{} {}: TFLAG {} is neither 0 nor 1", e.name, s.id, d.integer(flag)));
+    s.own_are_shares = d.integer(flag) == 1;
+  }
   add(deck, std::move(s), deck.shells);
 }
 
@@ -52,8 +59,8 @@ void read_beam(const BdfEntry& e, BdfDeck& deck, Imported& in) {
     b.v = Vec3(d.number(4), d.number(5), d.number(6));
   b.card = e.name;
   if (!d.empty(7) && !d.is_integer(7)) b.axes = upper(d.text(7));
-  if (b.axes.size() != 3 || b.axes.find_first_not_of("GBO") != b.axes.npos)
-    throw Error(d.place(7), fmt::format("{}: OFFT {} is not three of G, B, O", e.name, b.axes));
+  if (b.axes.size() != 3 || b.axes.find_first_not_of("GBO") != b.axes.npos || b.axes[0] == 'O')
+    throw Error(d.place(7), fmt::format("{}: OFFT {} is not three of G, B, O, the first of them G or B", e.name, b.axes));
   for (size_t k = 0; k < 2; ++k)
     if (!d.empty(8 + k) && d.text(8 + k) != "0") b.pins[k] = components(d, 8 + k);
   for (int i = 0; i < 3; ++i) b.start[i] = d.number(10 + static_cast<size_t>(i)), b.end[i] = d.number(13 + static_cast<size_t>(i));
@@ -170,7 +177,7 @@ DeckSection without_shear_centre(const char* kind, const std::vector<double>& v)
   return out;
 }
 
-/// Shapes that [section.NAME] does not have; those that are askew are left to PBAR, for which way they lean.
+/// Shapes that [section.NAME] does not have, along axes 1, against z of the element, and 2, along its y.
 DeckSection rectangles(const std::vector<DeckRectangle>& parts) { return section_of_rectangles(parts, "a TYPE of sections"); }
 
 /// Shapes that [section.NAME] has too, and others of rectangles: DIM1 is across plane 1 where the shape has a width.
@@ -264,13 +271,54 @@ const std::map<std::string, BeamShape> beam_shapes{
       }}},
     {"BOX1",
      {6,
-      [](const std::vector<double>& v) {  // width, height, walls above, below, left, right
-        if (v[2] != v[3] && v[4] != v[5]) return DeckSection{};
+      [](const std::vector<double>& v) {                         // width, height, walls above, below, left, right
+        if (v[2] != v[3] && v[4] != v[5]) return DeckSection{};  // askew, and which is left not the same in all sources
         const double w = v[0], h = v[1];
         return rectangles({{0, v[4], 0, h}, {w - v[5], w, 0, h}, {v[4], w - v[5], 0, v[3]}, {v[4], w - v[5], h - v[2], h}});
       }}},
+    {"L",
+     {4,
+      [](const std::vector<double>& v) {  // width, towards +z, height, towards +y, thickness of the leg along z, of that along y
+        return rectangles({{-v[3], 0, 0, v[1]}, {-v[0], -v[3], 0, v[2]}});
+      }}},
+    {"Z",
+     {4,
+      [](const std::vector<double>& v) {  // flanges beyond the web, web, height of the web between them, whole height; above towards -z
+        const double t = (v[3] - v[2]) / 2;
+        return rectangles({{-v[1], 0, 0, v[3]}, {0, v[0], v[3] - t, v[3]}, {-v[1] - v[0], -v[1], 0, t}});
+      }}},
+    {"HAT",
+     {4,
+      [](const std::vector<double>& v) {  // height, thickness, width of the top, brims beyond it
+        const double w = v[2] / 2, t = v[1], h = v[0];
+        if (!(w > t)) return DeckSection{};
+        return rectangles(
+            {{-w, w, h - t, h}, {-w, -w + t, t, h - t}, {w - t, w, t, h - t}, {-w - v[3], -w + t, 0, t}, {w - t, w + v[3], 0, t}});
+      }}},
+    {"HAT1",
+     {5,
+      [](const std::vector<double>& v) {  // width of the plate below, whole height, width of the top, thickness of the hat, of the plate
+        const double w = v[2] / 2, out = v[0] / 2, t = v[3], h = v[1], p = v[4];
+        if (!(w > t)) return DeckSection{};
+        return rectangles({{-out, out, 0, p},
+                           {-out, -w + t, p, p + t},
+                           {w - t, out, p, p + t},
+                           {-w, -w + t, p + t, h - t},
+                           {w - t, w, p + t, h - t},
+                           {-w, w, h - t, h}});
+      }}},
 };
-const std::set<std::string> off_centre{"T", "CHAN", "T1", "T2", "CHAN1", "CHAN2", "BOX1"};  // of which the shear centre is elsewhere
+const std::set<std::string> off_centre{"T", "CHAN", "T1", "T2", "CHAN1", "CHAN2", "BOX1", "L", "HAT", "HAT1"};  // shear centre elsewhere
+
+/// As PBEAM takes the numbers of its ends.
+DeckSection mean_of(const DeckSection& a, const DeckSection& b, double line_mass, const std::string& place) {
+  const SectionArea A = a.area(0.3, place), B = b.area(0.3, place);
+  DeckSection out = general_section((A.A + B.A) / 2, (A.I1 + B.I1) / 2, (A.I2 + B.I2) / 2, (A.J + B.J) / 2);
+  out.I12 = (a.I12 + b.I12) / 2;
+  out.line_mass = line_mass;
+  out.shear = {(A.shear_1 + B.shear_1) / 2, (A.shear_2 + B.shear_2) / 2};
+  return out;
+}
 
 /// PID MID GROUP TYPE; DIM1 DIM2 ... NSM
 void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
@@ -279,7 +327,8 @@ void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto shape = beam_shapes.find(type);
   const auto refuse = [&](const std::string& what) {
     return Error(d.place(3), fmt::format("{} {}: {} is not read", e.name, d.integer(0), what),
-                 "ROD, TUBE, TUBE2, BAR, BOX, BOX1, I, I1, H, CROSS, T, T1, T2, CHAN, CHAN1 and CHAN2 are; write the others as PBAR");
+                 "ROD, TUBE, TUBE2, BAR, BOX, BOX1, I, I1, H, CROSS, T, T1, T2, CHAN, CHAN1, CHAN2, L, Z, HAT and HAT1 are; write the "
+                 "others as PBAR");
   };
   if (shape == beam_shapes.end()) throw refuse("TYPE " + type);
   std::vector<double> dims;
@@ -294,13 +343,23 @@ void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   if (e.name == "PBEAML" && (off_centre.contains(type) || (type == "I" && s.section.kind == "general")))
     in.skip("PBEAML: neutral axis off the shear centre", d.place(3));
   s.section.line_mass = d.number(8 + dims.size());
-  const auto differs = [&](size_t at, double from) { return !d.empty(at) && d.number(at) != from; };
+  bool tapers = false;
+  std::vector<double> at_b = dims;
+  double mass_at_b = s.section.line_mass;
   for (size_t station = 11 + dims.size(); e.name == "PBEAML" && station < d.fields.size(); station += dims.size() + 3) {  // behind SO, X/XB
-    bool tapers = differs(station + dims.size(), s.section.line_mass);
-    for (size_t i = 0; i < dims.size(); ++i) tapers = tapers || differs(station + i, dims[i]);
-    if (!tapers) continue;
-    in.skip("PBEAML that tapers: the section of end A is taken", d.place(station));
-    break;
+    const bool is_end = d.number(station - 1) == 1;
+    for (size_t i = 0; i <= dims.size(); ++i) {
+      double& b = i < dims.size() ? at_b[i] : mass_at_b;
+      const double a = i < dims.size() ? dims[i] : s.section.line_mass, here = d.number(station + i, a);
+      tapers = tapers || here != a;
+      if (is_end) b = here;
+    }
+  }
+  if (tapers) {
+    in.skip("PBEAML that tapers: the mean of the sections at its ends is taken", d.place());
+    const DeckSection end = shape->second.of(at_b);
+    if (!end.given()) throw refuse("TYPE " + type + " with such walls at end B");
+    s.section = mean_of(s.section, end, (s.section.line_mass + mass_at_b) / 2, d.place());
   }
   add_property(e, deck, s);
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
@@ -327,17 +386,26 @@ BdfBeamPlace place_of_beam(const BdfDeck& deck, const BdfDeck::Thin& b) {
   const auto X = [&](size_t k) { return deck.X[static_cast<size_t>(rows[k])]; };
   const auto turned = [&](size_t letter, size_t k, const Vec3& v) -> Vec3 {
     if (v.norm() == 0 || b.axes[letter] == 'B') return v;
-    if (b.axes[letter] == 'O')
-      throw Error(b.place, fmt::format("{} {}: OFFT {}, offsets in axes of the beam, are not read", b.card, b.id, b.axes), "GGG");
     const BdfGrid& g = deck.grids[static_cast<size_t>(rows[k])];
     return axes_at(deck, g.output.value_or(0), X(k), g.place) * v;
   };
-  BdfBeamPlace out{X(0) + turned(1, 0, b.start), X(1) + turned(2, 1, b.end), turned(0, 0, b.v)};
+  BdfBeamPlace out{X(0), X(1), turned(0, 0, b.v)};
   if (b.towards != 0) {
     const auto grid = deck.row.find(b.towards);
     if (grid == deck.row.end()) throw Error(b.place, fmt::format("beam {} names node {}, which does not exist", b.id, b.towards));
     out.up = deck.X[static_cast<size_t>(grid->second)] - X(0);
   }
+  const auto offset = [&](size_t letter, size_t k, const Vec3& v) -> Vec3 {
+    if (b.axes[letter] != 'O' || v.norm() == 0) return turned(letter, k, v);
+    const Vec3 x = X(1) - X(0), z = x.cross(out.up);  // x from grid to grid
+    if (!(z.norm() > 1e-9 * x.norm() * out.up.norm()))
+      throw Error(b.place,
+                  fmt::format("{} {}: OFFT {}, and its orientation lies along the line of its grids, or is none", b.card, b.id, b.axes));
+    Mat3 own;
+    own << x.normalized(), z.cross(x).normalized(), z.normalized();
+    return own * v;
+  };
+  out.a += offset(1, 0, b.start), out.b += offset(2, 1, b.end);
   const Vec3 along = out.b - out.a;
   if (!(along.norm() > 0)) throw Error(b.place, fmt::format("beam {} has no length", b.id));
   if (!(along.cross(out.up).norm() > 1e-9 * along.norm() * out.up.norm())) {
@@ -365,9 +433,18 @@ void add_thin_cell(const BdfDeck& deck, const BdfDeck::Thin& c, std::span<const 
     const auto found = deck.thin.find(c.property);
     if (found == deck.thin.end()) throw Error(c.place, fmt::format("shell {}: no property {}", c.id, c.property), "PSHELL, PCOMP");
     const BdfThin& p = found->second;
-    if (!(p.thickness > 0)) throw Error(p.place, fmt::format("property {} has no thickness", c.property));
+    const size_t corners = static_cast<size_t>(info(c.shape).n_corners);
+    const bool needs_property = c.own_are_shares || std::ranges::count(std::span(c.own).first(corners), 0.) > 0;
+    if (needs_property && !(p.thickness > 0)) throw Error(p.place, fmt::format("property {} has no thickness", c.property));
     s.no_solid = p.no_solid;
     s.thickness = p.thickness, s.offset = p.offset + c.offset;
+    if (std::ranges::any_of(c.own, [](double t) { return t > 0; })) {
+      s.thickness = 0;
+      for (size_t i = 0; i < corners; ++i) {
+        s.own[i] = c.own[i] == 0 ? p.thickness : c.own[i] * (c.own_are_shares ? p.thickness : 1);
+        s.thickness += s.own[i] / static_cast<double>(corners);
+      }
+    }
   }
   in.thin[in.mesh.n_cells()] = s;
   in.mesh.add_cell(c.shape, rows, -1, c.id);
@@ -375,12 +452,12 @@ void add_thin_cell(const BdfDeck& deck, const BdfDeck::Thin& c, std::span<const 
 
 std::span<const BdfCard> bdf_thin_cards() {
   static constexpr BdfCard cards[] = {
-      {"CTRIA3", read_shell<3, 0, 6, 10>},
-      {"CTRIAR", read_shell<3, 0, 6, 10>},
-      {"CTRIA6", read_shell<3, 3, 9, 10>},
-      {"CQUAD4", read_shell<4, 0, 7, 10>},
-      {"CQUADR", read_shell<4, 0, 7, 10>},
-      {"CQUAD8", read_shell<4, 4, 15, 10>},
+      {"CTRIA3", read_shell<3, 0, 6, 10, 9>},
+      {"CTRIAR", read_shell<3, 0, 6, 10, 9>},
+      {"CTRIA6", read_shell<3, 3, 9, 10, 13>},
+      {"CQUAD4", read_shell<4, 0, 7, 10, 9>},
+      {"CQUADR", read_shell<4, 0, 7, 10, 9>},
+      {"CQUAD8", read_shell<4, 4, 15, 10, 16>},
       {"CBAR", read_beam},
       {"CBEAM", read_beam},
       {"PSHELL", read_pshell},

@@ -38,6 +38,16 @@ std::map<std::int64_t, const InpSection*> sections_of(const InpDeck& d) {
 
 }  // namespace
 
+Vec3 direction_1(const InpDeck& d, const Mesh& m, const InpSection& s, std::int64_t element, const Vec3& from) {
+  const auto towards = d.towards.find(element);
+  if (towards == d.towards.end()) return s.n1;
+  const auto a = d.node.find(towards->second);
+  const auto x = d.loose.find(towards->second);
+  if (a == d.node.end() && x == d.loose.end())
+    throw Error(s.place, fmt::format("element {} is turned towards node {}, which does not exist", element, towards->second));
+  return (a != d.node.end() ? m.X[static_cast<size_t>(a->second)] : x->second) - from;
+}
+
 void beams_as_cells(InpDeck& d) {
   for (const auto& [id, b] : d.beams) {
     if (b.nodes.size() != 2)
@@ -111,9 +121,10 @@ std::string write_beams(const InpDeck& d, Imported& in, SetNames& names, const I
       if (n == 2) beam.name += k == 0 ? "a" : "b";
       const Vec3 along = beam.points.back() - beam.points.front();
       if (!(along.norm() > 0)) throw Error(b.place, fmt::format("element {} has no length", id));
-      if (!(along.cross(s.n1).norm() > 1e-6 * along.norm() * s.n1.norm()))
+      const Vec3 v = direction_1(d, in.mesh, s, id, X[0]);
+      if (!(along.cross(v).norm() > 1e-6 * along.norm() * v.norm()))
         throw Error(s.place, fmt::format("{}: element {} lies along the direction 1 of its section", s.card, id));
-      const Vec3 n1 = (s.n1 - along * along.dot(s.n1) / along.squaredNorm()).normalized(), n2 = along.normalized().cross(n1);
+      const Vec3 n1 = (v - along * along.dot(v) / along.squaredNorm()).normalized(), n2 = along.normalized().cross(n1);
       beam.up = s.along_n2 ? n2 : n1;
       for (Vec3& x : beam.points) x = (x + s.off[0] * n1 + s.off[1] * n2) * metre;
       out += beam_table(beam);

@@ -304,6 +304,7 @@ struct InpDeck {
   std::string every_pair, every_interaction;           // place of *CONTACT INCLUSIONS, ALL EXTERIOR; what happens there
   std::map<std::int64_t, InpBeam> beams;               // by number; empty where they are cells
   std::unordered_set<std::int64_t> beam_cells;         // elements of bars that are beams
+  std::map<std::int64_t, std::int64_t> towards;        // of beams: the node to which direction 1 points from their first, not their section
   std::map<std::int64_t, InpPoint> points;             // by number of the element
   std::vector<InpPointValue> point_values;
   std::unordered_map<std::int64_t, Vec3> loose;  // nodes of no cell
@@ -366,6 +367,8 @@ void write_inp_scene(const InpDeck& deck, Imported& in, SetNames& names, const s
                      const std::map<std::string, std::string>& surface, const ImportOptions& options);
 /// Beams as cells of bars; an Error where one has three nodes.
 void beams_as_cells(InpDeck& deck);
+/// Of a beam that begins at `from`: towards a node, or as its section says.
+Vec3 direction_1(const InpDeck& deck, const Mesh& mesh, const InpSection& section, std::int64_t element, const Vec3& from);
 /// Nodes of beams are bodies.
 void find_beams(InpDeck& deck, Imported& in);
 /// Nodes of shells that pairs of nodes cannot stand for are bodies.

@@ -232,6 +232,11 @@ void copy_element(InpReading& r, std::int64_t from, std::int64_t by, std::int64_
                 "number each element once");
   const std::string* file = &*d.files.insert(*l.file).first;
   if (const auto b = d.beams.find(from); b != d.beams.end()) {
+    if (d.towards.contains(from))
+      throw Error(l.place(0),
+                  fmt::format("{} of element {}, which has a node of its orientation: that of its copies is not clear", r.card.name,
+                              from - d.shift),
+                  "write the elements out");
     InpBeam beam = b->second;
     beam.id = id, beam.place = l.place(0), beam.file = file, beam.line = l.line;
     for (auto& node : beam.nodes) node += nodes_by;

@@ -98,6 +98,7 @@ void resolve_cells(InpDeck& d, Imported& in) {
   std::set<std::int64_t> dropped(d.unused.begin(), d.unused.end());
   for (const auto& [id, b] : d.beams)
     for (const auto node : b.nodes) dropped.erase(node);
+  for (const auto& [id, node] : d.towards) dropped.erase(node);
   if (d.shape.empty() && d.beams.empty())
     in.notes.push_back("masses, springs and dampers stand in the scene lines alone (--scene-out)");
   else if (!dropped.empty())
@@ -127,11 +128,11 @@ void thin_sections(const InpDeck& d, Imported& in, bool thicken) {
         const SectionArea area = s.beam.area(0.3, s.place);
         t.area = area.A;
         const Vec3 along = m.X[m.cell(c)[1]] - m.X[m.cell(c)[0]];
-        if (!(along.cross(s.n1).norm() > 1e-6 * along.norm() * s.n1.norm()))
+        const Vec3 v = direction_1(d, m, s, id, m.X[m.cell(c)[0]]);
+        if (!(along.cross(v).norm() > 1e-6 * along.norm() * v.norm()))
           throw Error(s.place, fmt::format("{}: element {} lies along the direction 1 of its section", s.card, id));
-        // n1 may be askew: its part across the beam counts
-        const Vec3 up = s.along_n2 ? Vec3(along.cross(s.n1)) : s.n1,
-                   n1 = (s.n1 - along * along.dot(s.n1) / along.squaredNorm()).normalized();
+        // it may be askew: its part across the beam counts
+        const Vec3 up = s.along_n2 ? Vec3(along.cross(v)) : v, n1 = (v - along * along.dot(v) / along.squaredNorm()).normalized();
         t.second = second_of_section(along, up, area.I1, area.I2, -s.beam.I12);
         t.start = t.end = s.off[0] * n1 + s.off[1] * along.normalized().cross(n1);
       }

@@ -285,8 +285,9 @@ void read_nodal_thickness(InpReading& r) {
   }
 }
 
-/// The shape of a section by its sizes; extents along directions 1 and 2 to `extent`.
-DeckSection beam_shape(InpReading& r, const DataLine& l, bool& along_n2, std::array<double, 2>& extent) {
+/// The shape of a section by its sizes; extents along directions 1 and 2 to `extent`, how far its centre of area lies off its nodes along
+/// direction 2 to `above`.
+DeckSection beam_shape(InpReading& r, const DataLine& l, bool& along_n2, std::array<double, 2>& extent, double& above) {
   const Card& card = r.card;
   const std::string type = card.word("SECTION").starts_with("RECT") ? "RECT" : card.word("SECTION");
   const auto v = [&](size_t i) { return l.number(i, i == 1 && type == "RECT" ? l.number(0) : 0); };
@@ -309,14 +310,31 @@ DeckSection beam_shape(InpReading& r, const DataLine& l, bool& along_n2, std::ar
   if (type == "PIPE") return {"tube", {{"diameter", 2 * v(0)}, {"thickness", v(1)}}};
   const bool equal = v(2) == v(3) && v(3) == v(4) && v(4) == v(5);
   if (type == "BOX" && equal) return {"box", {{"width", v(1)}, {"height", v(0)}, {"thickness", v(2)}}};
-  along_n2 = type == "I" && v(0) == v(1) / 2 && v(2) == v(3) && v(4) == v(5);
-  if (along_n2) return {"I", {{"width", v(2)}, {"height", v(1)}, {"flange", v(4)}, {"web", v(6)}}};
+  along_n2 = type == "I";
+  if (along_n2 && v(2) == v(3) && v(4) == v(5)) {
+    above = v(1) / 2 - v(0);
+    return {"I", {{"width", v(2)}, {"height", v(1)}, {"flange", v(4)}, {"web", v(6)}}};
+  }
+  if (along_n2) {  // origin from below, height, widths below and above, their thicknesses, web; a flange of no width makes a T
+    const double h = v(1), below = v(2) > 0 ? v(4) : 0, top = v(3) > 0 ? v(5) : 0;
+    std::vector<DeckRectangle> parts{{-v(6) / 2, v(6) / 2, below, h - top}};
+    if (v(2) > 0) parts.push_back({-v(2) / 2, v(2) / 2, 0, below});
+    if (v(3) > 0) parts.push_back({-v(3) / 2, v(3) / 2, h - top, h});
+    double A = 0, moment = 0;
+    for (const DeckRectangle& p : parts) {
+      const double a = (p.to_1 - p.from_1) * (p.to_2 - p.from_2);
+      A += a, moment += a * (p.from_2 + p.to_2) / 2;
+    }
+    DeckSection s = section_of_rectangles(parts, l.place(0));
+    if (!s.given())
+      throw Error(l.place(0), fmt::format("{}, SECTION=I: these sizes make no section", card.name), "l, h, b1, b2, t1, t2, t3");
+    r.skip("*BEAM SECTION, SECTION=I of two flanges that differ: its shear centre off its centre of area");
+    above = moment / A - v(0);
+    return s;
+  }
   throw Error(card.place("SECTION"),
-              fmt::format("{}, SECTION={} is not read{}", card.name, type,
-                          type == "BOX" ? " with several thicknesses"
-                          : type == "I" ? " but with equal flanges, about its middle"
-                                        : ""),
-              "RECT, CIRC, PIPE, BOX and I are");
+              fmt::format("{}, SECTION={} is not read{}", card.name, type, type == "BOX" ? " with several thicknesses" : ""),
+              "RECT, CIRC, PIPE, BOX and I are; a T is an I with one flange of no width");
 }
 
 /// Sizes of the section, then its direction 1.
@@ -328,7 +346,8 @@ void read_beam_section(InpReading& r) {
   if (!r.lines.next_data(l)) throw Error(r.card.place() + ":1", r.card.name + " lacks its data line", "the sizes of the section");
   r.card.need("SECTION");
   std::array<double, 2> extent;
-  s.beam = beam_shape(r, l, s.along_n2, extent);
+  double above = 0;
+  s.beam = beam_shape(r, l, s.along_n2, extent, above);
   s.beam.area(0.3, l.place(0));
   if (r.lines.next_data(l)) s.n1 = Vec3(l.number(0), l.number(1), l.number(2));
   for (int k = 0; k < 2; ++k)
@@ -338,6 +357,7 @@ void read_beam_section(InpReading& r) {
       s.off[k] = -std::strtod(word.c_str(), &end) * extent[static_cast<size_t>(k)];
       if (*end || end == word.c_str()) throw Error(r.card.place(key), fmt::format("{}={} is no number", key, word));
     }
+  s.off[1] += above;
   r.deck.sections.push_back(s);
 }
 

@@ -131,9 +131,7 @@ void read_elements(InpReading& r) {
       for (size_t i = 0; i < l.fields.size(); ++i) row.push_back(l.integer(i));
     }
     for (auto& number : row) number += d.shift;
-    if (of_beam && row.size() > n + 1)
-      throw Error(place, fmt::format("{} {}: a node of its orientation is not read", type, row[0]),
-                  "the direction n1 on the second line of its section");
+    if (of_beam && row.size() == n + 2) d.towards[row[0]] = row.back(), row.pop_back();
     if (row.size() > n + 1) {  // as CalculiX reads it
       in.skip(fmt::format("*ELEMENT, TYPE={}: numbers after its {} nodes", upper(card.value("TYPE")), n), l.place());
       row.resize(n + 1);
