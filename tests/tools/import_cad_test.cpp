@@ -352,15 +352,14 @@ TEST_F(ImportCad, ConeTorusAndSphereHaveTheVolumeAndAreaOfTheirClosedForms) {
     for (std::int64_t c = 0; c < m.n_cells(); ++c) v.at(static_cast<size_t>(m.region[c])) += quality(m, c).volume * 1e9;
     return v;
   };
-  const Mesh fine = imported("a.step", "--order 2");
+  const Mesh fine = imported("a.step", "--size 5 --per-turn 12 --order 2");
   ASSERT_EQ(fine.region_name.size(), 3u);
   const auto v2 = volumes(fine);
   for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(v2[i] / exact[i], 1, 0.005) << fine.region_name[i];
-  const Mesh m = imported("a.step");
+  const Mesh m = imported("a.step", "--size 5 --per-turn 12");
   const auto v = volumes(m);
   const double all = exact[0] + exact[1] + exact[2], missing = 1 - (v[0] + v[1] + v[2]) / all;
-  EXPECT_LT(missing, 0.01);
-  EXPECT_GT(missing, 0) << "chords cut off";
+  EXPECT_GT(missing, 0.01) << "chords cut off";
   std::vector<std::int64_t> cells(static_cast<size_t>(m.n_cells()));
   std::iota(cells.begin(), cells.end(), 0);
   double area = 0;
