@@ -47,7 +47,7 @@ TEST_F(LeftOut, IsToldByImportAndBeforeTheRunAlsoWhenQuietAndIsInRunJson) {
 
 TEST_F(LeftOut, ATieThatWasLostIsRefusedUnlessAccepted) {
   for (const char* tie : {"*EQUATION\n2\n9, 4, 1., 10, 4, -2.\n", "*CONTACT PAIR, GEOMETRIC CORRECTION=g\nend, end\n",
-                          "*TIE, CYCLIC SYMMETRY, NAME=t\nend, end\n", "*MPC\nPLANE, 9, 10, 11, 12\n"}) {
+                          "*TIE, CYCLIC SYMMETRY, NAME=t\nend, end\n", "*MPC\nMEANROT, 9, 10, 11, 12\n"}) {
     import(bar + tie + held + statics + pull + end);
     const std::string card = std::string(tie).substr(0, std::string(tie).find_first_of(",\n"));
     const std::string said = solved(2);
