@@ -310,8 +310,8 @@ double Candidates::work(const Request& r) const {
   return 4.6e-3 * std::pow(unknowns(r) / 1000, 0.76) * end / (time.number("step") * r.step);
 }
 
-/// By the nearest run of its kind, with the same step if there is one.  Modes are dearer or cheaper than as many cells: without a run of cells these cost what the fit says, or
-/// more by as much as the other runs do.
+/// By the nearest run of its kind, with the same step if there is one.  Modes are dearer or cheaper than as many cells: without a run of
+/// cells these cost what the fit says, or more by as much as the other runs do.
 double Candidates::price(const Request& request) const {
   const auto has_cells = [](const Request& r) { return std::ranges::find(r.levels, Level::nonlinear) != r.levels.end(); };
   const double wanted = work(request);
