@@ -188,18 +188,9 @@ const Candidate* Judgement::by_twice(const Request& cells) {
   constexpr double most_step = 0.3, most_change = 0.9;  // of a tolerance
   if (!is_measured_method() || !may_be_twice() || o.check == Check::always) return nullptr;
   const Candidate& before = all.of({a.base->levels, 2, cells.end});
-  const auto largest = [&](const Candidate& c, const Candidate& other) {
-    double out = 0;
-    for (size_t k = 0; k < a.base->values.size(); ++k) {
-      const QuantityValue &its = c.values[k], &others = other.values[k];
-      if (!its.why.empty() || !others.why.empty()) return HUGE_VAL;
-      out = std::max(out, over(its.value - others.value, a.base->values[k].allowed));
-    }
-    return out;
-  };
-  if (!before.failure.empty() || largest(before, *a.base) > 3 * most_step) return nullptr;
+  if (difference(before, *a.base) > 3 * most_step) return nullptr;
   const Candidate& after = all.of({cells.levels, 2, cells.end});
-  if (!after.failure.empty() || largest(after, before) > most_change) return nullptr;
+  if (difference(after, before) > most_change) return nullptr;
   Candidate& made = a.made.emplace_back(after);
   for (size_t k = 0; k < made.values.size(); ++k) {
     made.values[k].value += a.base->values[k].value - before.values[k].value;
