@@ -34,12 +34,12 @@ constexpr size_t n_beam_values = std::size(value_words);
 
 /// The values at a section: forces and moments, and stress where the section has a face, else not a number.
 using BeamValues = std::array<double, n_beam_values>;
-BeamValues values_at(const RunBeam& beam, const Vec6& f) {
+BeamValues values_at(const RunBeam::Section& section, const Vec6& f) {
   BeamValues v;
   std::copy_n(f.data(), 6, v.begin());
   std::fill_n(v.begin() + 6, 3, std::nan(""));
-  if (!beam.face) return v;
-  const StressRange r = stress_range(*beam.face, f);
+  if (!section.face) return v;
+  const StressRange r = stress_range(*section.face, f);
   v[6] = r.high, v[7] = r.low, v[8] = r.von_mises;
   return v;
 }
@@ -50,12 +50,15 @@ struct Station {
   size_t cell;
   int end;
   double s;
+  size_t section() const { return cell + static_cast<size_t>(end); }
 };
 
 struct Chain {
   std::vector<Station> stations;
   std::map<std::string, Series> forces;
-  BeamValues at(const Station& p, size_t row) const { return values_at(*p.beam, beam_forces(forces.at(p.beam->name), row, p.cell, p.end)); }
+  BeamValues at(const Station& p, size_t row) const {
+    return values_at(p.beam->section(p.section()), beam_forces(forces.at(p.beam->name), row, p.cell, p.end));
+  }
 };
 
 Chain chain_of(const RunFile& run, const std::vector<std::string>& globs) {
@@ -71,8 +74,8 @@ Chain chain_of(const RunFile& run, const std::vector<std::string>& globs) {
       any = true;
       if (!chain.forces.emplace(b.name, run.series("beam." + b.name)).second) continue;
       for (size_t k = 0; k < b.line.cells.size(); ++k)
-        for (const int end : {0, 1}) chain.stations.push_back({&b, k, end, from + b.s[k + static_cast<size_t>(end)]});
-      from += b.s.back();
+        for (const int end : {0, 1}) chain.stations.push_back({&b, k, end, from + b.line.s[k + static_cast<size_t>(end)]});
+      from += b.line.s.back();
     }
     if (any) continue;
     const std::string near = suggest(glob, all);
@@ -101,27 +104,29 @@ void overview(const BeamOptions& o, const RunFile& run) {
         V = std::max(V, std::hypot(v[0], v[1])), M = std::max(M, std::hypot(v[3], v[4]));
         if (std::abs(v[5]) > std::abs(T)) T = v[5];
         most.high = std::max(most.high, v[6]), most.low = std::min(most.low, v[7]);
-        if (v[8] > most.von_mises) most.von_mises = v[8], s = b.s[p.cell + static_cast<size_t>(p.end)], t = forces.t[row];
+        if (v[8] > most.von_mises) most.von_mises = v[8], s = b.line.s[p.section()], t = forces.t[row];
       }
     }
     std::vector<std::string> row{b.name, fmt::format("{}", b.line.cells.size())};
     for (const double x : {N, V, M, T}) row.push_back(fmt::format("{:.6g}", x));
-    for (const double x : {most.high, most.low, most.von_mises, s, t}) row.push_back(b.face ? fmt::format("{:.6g}", x) : "-");
+    for (const double x : {most.high, most.low, most.von_mises, s, t}) row.push_back(b.has_face() ? fmt::format("{:.6g}", x) : "-");
     table.rows.push_back(row);
   }
   write_out("-", o.json ? table.json("") + "\n" : table.text());
 }
 
-/// The numbers of the section of every beam.
+/// The numbers of the section of every beam; of a taper those of each section.
 void sections(const BeamOptions& o, const RunFile& run) {
   Table table{{"beam", "A [m^2]", "I1 [m^4]", "I2 [m^4]", "I12 [m^4]", "J [m^4]", "k1", "k2", "k12", "s1 [m]", "s2 [m]"}, {}, 1, 6};
   const Chain chain = chain_of(run, o.names);
   for (const RunBeam& b : run.beams()) {
     if (!chain.forces.contains(b.name)) continue;
-    auto& row = table.rows.emplace_back(std::vector<std::string>{b.name});
-    const SectionArea a = b.area.value_or(SectionArea{});
-    for (const double x : {a.A, a.I1, a.I2, a.I12, a.J, a.shear_1, a.shear_2, a.shear_12, a.s1, a.s2})
-      row.push_back(b.area ? fmt::format("{:.6g}", x) : "-");
+    for (size_t k = 0; k < b.sections.size(); ++k) {
+      auto& row = table.rows.emplace_back(std::vector<std::string>{b.sections.size() > 1 ? fmt::format("{}.{}", b.name, k) : b.name});
+      const SectionArea a = b.section(k).area.value_or(SectionArea{});
+      for (const double x : {a.A, a.I1, a.I2, a.I12, a.J, a.shear_1, a.shear_2, a.shear_12, a.s1, a.s2})
+        row.push_back(b.section(k).area ? fmt::format("{:.6g}", x) : "-");
+    }
   }
   write_out("-", o.json ? table.json("") + "\n" : table.text());
 }

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "base/values_between.hpp"
 #include "physics/section_mesh.hpp"
 
 namespace hilo {
@@ -45,39 +46,54 @@ class KeptFaces {
   std::map<std::pair<std::string, double>, SectionFace> faces_;
 };
 
-RunBeam beam_of(const Scene& scene, const Entry& e, KeptFaces& meshed) {
-  RunBeam b{e.name, beam_line(e), {0}, {}, {}, {}, Vec3::Zero()};
-  for (const BeamLine::Cell& cell : b.line.cells) {
-    const double half = Eigen::AngleAxisd(cell.frame_a.transpose() * cell.frame_b).angle() / 2;
-    b.s.push_back(b.s.back() + cell.length * (half > 1e-6 ? half / std::sin(half) : 1));
+/// Poisson's ratio of its material, or 0.
+double ratio_of(const Scene& scene, const Entry& beam) {
+  const Entry* material = beam.has("material") ? find(scene, "material", beam.text("material")) : nullptr;
+  return material && material->has("nu") ? material->number("nu") : 0;
+}
+
+RunBeam::Section section_of(const SectionKind& kind, const EntryValues& values, double nu, const SectionFace* meshed) {
+  RunBeam::Section out;
+  SectionArea area{.A = 1};
+  if (meshed) {
+    out.face = *meshed, area = meshed->area;
+  } else if (!kind.area) {
+    const BeamSection s = section_of_stiffness(values);
+    area.I1 = s.C(3, 3) / s.C(2, 2), area.I2 = s.C(4, 4) / s.C(2, 2);
+  } else {
+    area = kind.area(values, nu);
   }
+  if (kind.area || meshed) out.area = area;
+  if (out.area && values.given("shear"))
+    out.area->shear_1 = values.numbers("shear").front(), out.area->shear_2 = values.numbers("shear").back(), out.area->shear_12 = 0;
+  out.radii = Vec3(std::sqrt(area.I1 / area.A), std::sqrt(area.I2 / area.A), 0);
+  if (kind.face) out.face = kind.face(values, nu);
+  if (out.face && out.face->points.empty()) out.face.reset();
+  return out;
+}
+
+std::vector<RunBeam::Section> sections_of(const Scene& scene, const Entry& e, const BeamLine& line, KeptFaces& meshed) {
+  const Entry* first = find(scene, "section", e.text("section"));
+  if (!first) return {{}};
+  const SectionKind& kind = section_kinds().at(first->kind, first->place.text());
+  if (kind.meshed && !meshed.contains(first->name)) return {{}};
+  const double nu = ratio_of(scene, e);
+  const Entry* last = e.given("section_end") ? find(scene, "section", e.text("section_end")) : nullptr;
+  if (!last) return {section_of(kind, *first, nu, kind.meshed ? &meshed.face(first->name, nu) : nullptr)};
+  std::vector<RunBeam::Section> out;
+  for (const double s : line.s) out.push_back(section_of(kind, ValuesBetween(*first, *last, s / line.s.back()), nu, nullptr));
+  return out;
+}
+
+RunBeam beam_of(const Scene& scene, const Entry& e, KeptFaces& meshed) {
+  RunBeam b{e.name, beam_line(e), {}, {}};
+  b.sections = sections_of(scene, e, b.line, meshed);
   b.on.resize(b.line.at.size());
   for (const auto& [name, k] : section_names(e, b.line))
     if (b.on[k].empty()) b.on[k] = name;
   if (e.given("a")) b.on.front() = e.text("a");
   if (e.given("b")) b.on.back() = e.text("b");
   if (b.line.closed) b.on.back() = b.on.front();
-  const Entry *section = find(scene, "section", e.text("section")),
-              *material = e.has("material") ? find(scene, "material", e.text("material")) : nullptr;
-  if (!section) return b;
-  const SectionKind& kind = section_kinds().at(section->kind, section->place.text());
-  const double nu = material && material->has("nu") ? material->number("nu") : 0;
-  SectionArea area{.A = 1};
-  if (kind.meshed) {
-    if (!meshed.contains(section->name)) return b;
-    b.face = meshed.face(section->name, nu), area = b.face->area;
-  } else if (!kind.area) {
-    const BeamSection s = section_of_stiffness(*section);
-    area.I1 = s.C(3, 3) / s.C(2, 2), area.I2 = s.C(4, 4) / s.C(2, 2);
-  } else {
-    area = kind.area(*section, nu);
-  }
-  if (kind.area || kind.meshed) b.area = area;
-  if (b.area && section->given("shear"))
-    b.area->shear_1 = section->numbers("shear").front(), b.area->shear_2 = section->numbers("shear").back(), b.area->shear_12 = 0;
-  b.radii = Vec3(std::sqrt(area.I1 / area.A), std::sqrt(area.I2 / area.A), 0);
-  if (kind.face) b.face = kind.face(*section, nu);
-  if (b.face && b.face->points.empty()) b.face.reset();
   return b;
 }
 
@@ -122,7 +138,7 @@ std::vector<double> beam_stress(const RunBeam& beam, const Series& forces) {
     StressRange all{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), 0};
     for (size_t k = 0; k < beam.line.cells.size(); ++k)
       for (const int end : {0, 1}) {
-        const StressRange r = stress_range(*beam.face, beam_forces(forces, row, k, end));
+        const StressRange r = stress_range(*beam.section(k + static_cast<size_t>(end)).face, beam_forces(forces, row, k, end));
         all.high = std::max(all.high, r.high), all.low = std::min(all.low, r.low), all.von_mises = std::max(all.von_mises, r.von_mises);
         out.insert(out.end(), {r.high, r.low, r.von_mises});
       }

@@ -14,12 +14,16 @@ namespace hilo {
 struct RunBeam {
   std::string name;
   BeamLine line;
-  std::vector<double> s;            // way of the sections along the axis before the run (n_cells + 1) [m]
-  std::vector<std::string> on;      // what each section rides on: a body of its own, or what `a` and `b` name
-  std::optional<SectionFace> face;  // none: its numbers are all that is known of the section
-  std::optional<SectionArea> area;  // none of a section that is given by its stiffness
-  bool has_outline() const { return face && !face->cells.empty(); }  // else points with stress alone, or none
-  Vec3 radii;                                                        // of gyration about axes 1 and 2, and 0 [m]
+  std::vector<std::string> on;     // what each section rides on: a body of its own, or what `a` and `b` name
+  struct Section {
+    std::optional<SectionFace> face = {};  // none: its numbers are all that is known of the section
+    std::optional<SectionArea> area = {};  // none of a section that is given by its stiffness
+    Vec3 radii = Vec3::Zero();             // of gyration about axes 1 and 2, and 0 [m]
+  };
+  std::vector<Section> sections;  // one, or those of a taper (n_cells + 1)
+  const Section& section(size_t k) const { return sections[sections.size() > 1 ? k : 0]; }
+  bool has_face() const { return sections.front().face.has_value(); }
+  bool has_outline() const { return has_face() && !sections.front().face->cells.empty(); }  // else points with stress alone, or none
 };
 /// Of the scene that a run keeps.
 std::vector<RunBeam> beams_of(const RunFile& run);

@@ -8,8 +8,8 @@ namespace hilo {
 namespace {
 
 /// The rectangle of the same radii of gyration.
-SectionFace stand_in_face(const RunBeam& b) {
-  const double w = std::sqrt(3.0) * b.radii[1], h = std::sqrt(3.0) * b.radii[0];
+SectionFace stand_in_face(const RunBeam::Section& section) {
+  const double w = std::sqrt(3.0) * section.radii[1], h = std::sqrt(3.0) * section.radii[0];
   SectionFace face;
   for (const auto& [x, y] : {std::pair{-w, -h}, {w, -h}, {w, h}, {-w, h}}) face.points.push_back({{x, y}, {}});
   face.cells.push_back({0, 1, 2, 3});
@@ -47,13 +47,14 @@ SweptBeams::SweptBeams(const RunFile& run, MeshFile& file)
   const auto names = run.store().read_strings("/body/name");
   const auto points = run.store().read<double>("/body/points");
   size_t n_points = 0;
-  for (const RunBeam& b : beams_) n_points += b.line.cells.size() * (b.has_outline() ? b.face->points.size() : 4);
+  for (const RunBeam& b : beams_) n_points += b.line.cells.size() * (b.has_outline() ? b.sections.front().face->points.size() : 4);
   const int slices = n_points <= 15'000 ? 4 : n_points <= 150'000 ? 2 : 1;
   for (size_t k = 0; k < beams_.size(); ++k) {
     const RunBeam& b = beams_[k];
-    drawn_.push_back(b.has_outline() ? *b.face : stand_in_face(b));
+    auto& faces = drawn_.emplace_back();
+    for (const RunBeam::Section& section : b.sections) faces.push_back(b.has_outline() ? *section.face : stand_in_face(section));
     forces_.push_back(b.has_outline() ? run.series("beam." + b.name) : Series{});
-    const SectionFace& face = drawn_.back();
+    const SectionFace& face = faces.front();
     const auto region = static_cast<std::int32_t>(mesh.region_name.size());
     mesh.region_name.push_back(b.name);
     mesh.region_data.emplace_back();
@@ -126,7 +127,8 @@ std::vector<Vec3> SweptBeams::positions(const Poses& poses) const {
       const BeamLine::Cell& cell = b.line.cells[n.cell];
       at = on_helix(place(b, n.cell, cell.frame_a), place(b, n.cell + 1, cell.frame_b), n.s);
     }
-    const Eigen::Vector2d& x = drawn_[n.beam].points[n.point].at;
+    const auto [first, last] = faces(n);
+    const Eigen::Vector2d x = (1 - n.s) * first->points[n.point].at + n.s * last->points[n.point].at;
     out.emplace_back(at.at + at.frame * Vec3(x.x(), x.y(), 0));
   }
   return out;
@@ -141,13 +143,15 @@ std::vector<double> SweptBeams::stress(const std::string& name, size_t wanted) c
     }
     const Series& forces = forces_[n.beam];
     const size_t row = std::min(wanted, forces.rows() - 1);
-    const auto value = [&](const Vec6& f) {
-      const SectionStress s = stress_at(drawn_[n.beam], drawn_[n.beam].points[n.point], f);
+    const auto [a, b] = faces(n);
+    const auto value = [&](const SectionFace& face, const Vec6& f) {
+      const SectionStress s = stress_at(face, face.points[n.point], f);
       return name == "von_mises" ? s.von_mises() : s.axial;
     };
-    double x = value((1 - n.s) * beam_forces(forces, row, n.cell, 0) + n.s * beam_forces(forces, row, n.cell, 1));
+    const Vec6 here = (1 - n.s) * beam_forces(forces, row, n.cell, 0) + n.s * beam_forces(forces, row, n.cell, 1);
+    double x = (1 - n.s) * value(*a, here) + n.s * value(*b, here);
     if (n.last)  // where a force acts on a section, the larger of both sides
-      if (const double other = value(beam_forces(forces, row, n.cell + 1, 0)); std::abs(other) > std::abs(x)) x = other;
+      if (const double other = value(*b, beam_forces(forces, row, n.cell + 1, 0)); std::abs(other) > std::abs(x)) x = other;
     out.push_back(x);
   }
   return out;

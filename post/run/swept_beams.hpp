@@ -33,6 +33,11 @@ class SweptBeams {
     double s;   // from 0 to 1 along the cell
     bool last;  // of a cell after which another goes on
   };
+  /// The faces at both ends of the cell of a node.
+  std::array<const SectionFace*, 2> faces(const Node& n) const {
+    const auto& all = drawn_[n.beam];
+    return {&all[all.size() > 1 ? n.cell : 0], &all[all.size() > 1 ? n.cell + 1 : 0]};
+  }
   using Poses = std::map<std::string, Pose>;
   Poses poses(const RunFile::Field& own, size_t row) const;
   std::vector<Vec3> positions(const Poses& poses) const;
@@ -41,8 +46,8 @@ class SweptBeams {
   size_t first_node_, first_region_;
   std::int64_t n_cells_ = 0;
   std::vector<RunBeam> beams_;
-  std::vector<SectionFace> drawn_;  // of each beam
-  std::vector<Series> forces_;      // of those that have a face
+  std::vector<std::vector<SectionFace>> drawn_;  // of the sections of each beam
+  std::vector<Series> forces_;                   // of those that have a face
   std::vector<Node> nodes_;
   std::vector<Vec3> X_;
   std::vector<double> t_;  // of the histories

@@ -27,11 +27,9 @@ std::vector<Vec3> thinned(const Mesh& mesh, const std::vector<std::int64_t>& nod
 
 /// The section next to the middle of the part of a beam that a load by length is on.
 size_t middle(const BeamLine& line, const Entry& load) {
-  double whole = 0, s = 0;
-  for (const auto& cell : line.cells) whole += cell.length;
-  const double half = ((load.has("from") ? load.number("from") : 0) + (load.has("to") ? load.number("to") : whole)) / 2;
+  const double half = ((load.has("from") ? load.number("from") : 0) + (load.has("to") ? load.number("to") : line.s.back())) / 2;
   size_t k = 0;
-  while (k < line.cells.size() && s + line.cells[k].length / 2 <= half) s += line.cells[k++].length;
+  while (k < line.cells.size() && (line.s[k] + line.s[k + 1]) / 2 <= half) ++k;
   return k;
 }
 

@@ -77,9 +77,12 @@ BeamLine beam_line(const Entry& e) {
     arcs ? add_arc(e, points[2 * leg + 1], points[2 * leg + 2], n, line) : add_straight(e, points[leg + 1], n, line);
   }
   line.closed = (points.back() - points.front()).norm() <= 1e-9 * size;
-  for (size_t k = 0; k < line.cells.size(); ++k)
-    if (const double turn = Eigen::AngleAxisd(line.cells[k].frame_a.transpose() * line.cells[k].frame_b).angle(); turn > 1.6)
-      e.refuse("cells", fmt::format("cell {} turns by {:.3g} rad before it is loaded", k, turn), "more cells");
+  line.s.push_back(0);
+  for (size_t k = 0; k < line.cells.size(); ++k) {
+    const double turn = Eigen::AngleAxisd(line.cells[k].frame_a.transpose() * line.cells[k].frame_b).angle(), half = turn / 2;
+    if (turn > 1.6) e.refuse("cells", fmt::format("cell {} turns by {:.3g} rad before it is loaded", k, turn), "more cells");
+    line.s.push_back(line.s.back() + line.cells[k].length * (half > 1e-6 ? half / std::sin(half) : 1));
+  }
   return line;
 }
 

@@ -16,6 +16,7 @@ struct BeamLine {
   };
   std::vector<Vec3> at;     // sections                              (n_cells + 1)  [m]
   std::vector<Cell> cells;  // between one section and the next
+  std::vector<double> s;    // way of the sections along the axis   (n_cells + 1)  [m]
   bool closed = false;      // the last section is the first
 };
 

@@ -122,6 +122,7 @@ std::vector<KindSchema> make_schema() {
                 {"path", text, "", "line", "between the points: line, or arc: circles through three, each beginning where one ends"},
                 {"cells", numbers, "1", "[8]", "of each leg; a list of one number is for all of them", at_least(1)},
                 {"section", text, "", "!", "a name of [section.NAME]"},
+                {"section_end", text, "", "", "where the beam ends, of the same kind: its sizes vary evenly between both"},
                 {"material", text, "", "", "a name of [material.NAME], of kind stvk; none where the section is a matrix"},
                 {"orientation", vector3, "1", "",
                  "direction of axis 2 of the section, made normal to the beam at the start of each leg; absent: z, or y where it runs "

@@ -69,14 +69,19 @@ ArcStrain arc_strain(const arc::Measures<double>& e) {
   return x;
 }
 
-arc::ArcStiffness<double> arc_stiffness(const arc::Measures<double>& e, const Mat6& C) {
+arc::ArcStiffness<double> arc_stiffness(const arc::Measures<double>& e, const std::array<Mat6, 4>& C) {
   const ArcStrain at_length_one = arc_strain(e);
   const double L = at_length_one.head<3>().norm();
   const ArcStrain reference = at_length_one / L;
   Mat6 Z = Mat6::Zero();
   Z.topLeftCorner<3, 3>() = Z.bottomRightCorner<3, 3>() = skew(Vec3(reference.tail<3>()));
   Z.bottomLeftCorner<3, 3>() = skew(Vec3::UnitZ());
-  const Mat6 F = C.inverse(), stiff = (F + L * L / 12 * Z.transpose() * F * Z).inverse();
+  Mat6 compliance = Mat6::Zero();
+  for (size_t k = 0; k < C.size(); ++k) {
+    const Mat6 at = Mat6::Identity() - L * (along_arc[k].t - 0.5) * Z;  // forces and moments here of those in the middle
+    compliance += along_arc[k].weight * at.transpose() * C[k].inverse() * at;
+  }
+  const Mat6 stiff = compliance.inverse();
   arc::ArcStiffness<double> out;
   Eigen::Map<Matrix>(&out.C[0][0]) = 0.5 * (stiff + stiff.transpose());
   Eigen::Map<ArcStrain>(out.reference) = reference;

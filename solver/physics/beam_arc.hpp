@@ -5,10 +5,12 @@
 //   a_i = (d_kA.d_jB - d_jA.d_kB)/2,   t = sum d_iA.d_iB,   p_i = d_iA.(c_B - c_A)
 // With c = (t - 1)/2 = cos(th), f = th/sin(th) and k = (1 - f (1 + c)/2)/(1 - c^2) the strains are the logarithm of the relative motion,
 //   K = f a / L,   Gamma = (p - f/2 a x p + k a x (a x p)) / L,   W = L/2 (eps - eps_ref) C* (eps - eps_ref),   eps = (Gamma, K)
-// exact where they are constant.  C* = (C^-1 + L^2/12 Z^T C^-1 Z)^-1 adds the compliance of what varies of the resultants along the
-// element, (n, m)' = -Z (n, m) with Z = [K0x 0; e3x K0x].  The forces s = L D^T C* (mean eps - eps_ref), D (e1 - e0) = eps1 - eps0 to
+// exact where they are constant.  C* = (mean of (1 - s Z)^T C(s)^-1 (1 - s Z))^-1, s from the middle, has the compliance of resultants that
+// vary along the element, (n, m)' = -Z (n, m) with Z = [K0x 0; e3x K0x], and of a section that does.  The forces s = L D^T C* (mean eps - eps_ref), D (e1 - e0) = eps1 - eps0 to
 // round-off, keep energy and momenta.
 #pragma once
+#include <array>
+
 #include "physics/beam_strain.hpp"
 #include "physics/force_law.hpp"
 
@@ -17,8 +19,17 @@ namespace hilo {
 /// L times the strains [m, 1].
 using ArcStrain = Eigen::Matrix<double, 6, 1>;
 ArcStrain arc_strain(const arc::Measures<double>& e);
-/// Without strain at the measures e.  C (6 x 6) [N, N m, N m^2] by shear along 1 and 2, stretch, bending about 1 and 2, twist.
-arc::ArcStiffness<double> arc_stiffness(const arc::Measures<double>& e, const Mat6& C);
+/// Places along an element, 0 at section A and 1 at B, and weights that sum to 1: Gauss, 4 points.
+struct AlongArc {
+  double t, weight;
+};
+inline constexpr std::array<AlongArc, 4> along_arc{{{0.0694318442029737, 0.1739274225687269},
+                                                    {0.3300094782075719, 0.3260725774312731},
+                                                    {0.6699905217924281, 0.3260725774312731},
+                                                    {0.9305681557970263, 0.1739274225687269}}};
+/// Without strain at the measures e.  C at the places along the element (6 x 6) [N, N m, N m^2] by shear along 1 and 2, stretch, bending
+/// about 1 and 2, twist.
+arc::ArcStiffness<double> arc_stiffness(const arc::Measures<double>& e, const std::array<Mat6, 4>& C);
 /// Of L times the strains [J].
 double arc_energy(const arc::ArcStiffness<double>& of, const ArcStrain& x);
 /// What C* (eps1 - eps0 - recalled/L) takes, of L times the strains [J]; without what is recalled it never pays in.

@@ -67,35 +67,34 @@ const Connector& connector_of(const BeamCell& cell) {
   return c;
 }
 
-/// Shares of c, d1, d2, d3 of both ends in points of the axis of an element of a section by itself: use(t, shares, ds).
+/// Shares of c, d1, d2, d3 of both ends in points of the axis of an element by itself: use(k, t, shares, ds) at its places along_arc.
 template <class Use>
-void each_share(const BeamSection& s, double L, const Use& use) {
-  constexpr double x[] = {0.8611363115940526, 0.3399810435848563}, w[] = {0.3478548451374538, 0.6521451548625461};  // Gauss, 4 points
-  const double phi = 12 / (L * L) * std::max(s.C(3, 3) / s.C(1, 1), s.C(4, 4) / s.C(0, 0));
-  for (int k = 0; k < 4; ++k) {
-    const double t = (1 + (k % 2 ? -1 : 1) * x[k / 2]) / 2, g = (2 * t * t * t - 3 * t * t + t) / (1 + phi), bow = (t - t * t) / 2;
+void each_share(const BeamSection& mean, double L, const Use& use) {
+  const double phi = 12 / (L * L) * std::max(mean.C(3, 3) / mean.C(1, 1), mean.C(4, 4) / mean.C(0, 0));
+  for (size_t k = 0; k < along_arc.size(); ++k) {
+    const double t = along_arc[k].t, g = (2 * t * t * t - 3 * t * t + t) / (1 + phi), bow = (t - t * t) / 2;
     Eigen::Matrix<double, 8, 1> u = Eigen::Matrix<double, 8, 1>::Zero();
     u[0] = 1 - t + g, u[4] = t - g, u[3] = L * (g / 2 + bow), u[7] = L * (g / 2 - bow);
-    use(t, u, w[k / 2] * L / 2);
+    use(k, t, u, along_arc[k].weight * L);
   }
 }
 
-/// Linked mass of an element of a section by itself, on c, d1, d2, d3 of both ends.
-void set_linked_mass(const BeamSection& s, double L, arc::ArcCell<double>& cell) {
+/// Linked mass of an element by itself, on c, d1, d2, d3 of both ends.
+void set_linked_mass(const SectionsAlong& sections, const BeamSection& mean, double L, arc::ArcCell<double>& cell) {
   for (auto& row : cell.linked)
     for (double& m : row) m = 0;
-  each_share(s, L, [&](double, const Eigen::Matrix<double, 8, 1>& u, double ds) {
+  each_share(mean, L, [&](size_t k, double, const Eigen::Matrix<double, 8, 1>& u, double ds) {
     for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) cell.linked[i][j] += ds * s.mass * u[arc::linked_points[i]] * u[arc::linked_points[j]];
+      for (int j = 0; j < 4; ++j) cell.linked[i][j] += ds * sections[k].mass * u[arc::linked_points[i]] * u[arc::linked_points[j]];
   });
-  cell.across[0] = s.J11 * L / 12, cell.across[1] = s.J22 * L / 12, cell.across[2] = s.J12 * L / 12;
+  cell.across[0] = mean.J11 * L / 12, cell.across[1] = mean.J22 * L / 12, cell.across[2] = mean.J12 * L / 12;
 }
 
-/// int u (1 - t)^2 ds, int u t (1 - t) ds, int u t^2 ds of the shares u of an element of a section by itself.
-std::array<Eigen::Matrix<double, 8, 1>, 3> line_shares(const BeamSection& s, double L) {
+/// int u (1 - t)^2 ds, int u t (1 - t) ds, int u t^2 ds of the shares u of an element by itself.
+std::array<Eigen::Matrix<double, 8, 1>, 3> line_shares(const BeamSection& mean, double L) {
   std::array<Eigen::Matrix<double, 8, 1>, 3> out;
   for (auto& column : out) column.setZero();
-  each_share(s, L, [&](double t, const Eigen::Matrix<double, 8, 1>& u, double ds) {
+  each_share(mean, L, [&](size_t, double t, const Eigen::Matrix<double, 8, 1>& u, double ds) {
     out[0] += ds * (1 - t) * (1 - t) * u, out[1] += ds * t * (1 - t) * u, out[2] += ds * t * t * u;
   });
   return out;
@@ -175,7 +174,17 @@ std::vector<StagePair> pairs_of(const Stage& s, bool has_beta) {
 
 }  // namespace
 
-void Beams::add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSection& section, double beta, double alpha) {
+BeamSection mean_of(const SectionsAlong& sections) {
+  BeamSection out;
+  for (size_t k = 0; k < sections.size(); ++k) {
+    const double w = along_arc[k].weight;
+    const BeamSection& s = sections[k];
+    out.C += w * s.C, out.mass += w * s.mass, out.J11 += w * s.J11, out.J22 += w * s.J22, out.J12 += w * s.J12, out.size += w * s.size;
+  }
+  return out;
+}
+
+void Beams::add_cell(const SectionPlace& a, const SectionPlace& b, const SectionsAlong& sections, double beta, double alpha) {
   const Config& q = points_.start;
   BeamCell cell;
   cell.body = {a.body, b.body};
@@ -186,10 +195,13 @@ void Beams::add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSec
     std::copy_n(arm.data(), 3, cell.arc.arm[e].v);
     for (int i = 0; i < 3; ++i) std::copy_n(axes.data() + 3 * i, 3, cell.arc.axis[e][i].v);
   }
-  cell.arc.law = arc_stiffness(measures_of(cell, q), section.C);
-  cell.arc.alpha = alpha, cell.arc.beta = beta, cell.size = section.size;
-  set_linked_mass(section, cell.arc.law.length, cell.arc);
-  cell.line = line_shares(section, cell.arc.law.length);
+  const BeamSection mean = mean_of(sections);
+  std::array<Mat6, 4> C;
+  for (size_t k = 0; k < C.size(); ++k) C[k] = sections[k].C;
+  cell.arc.law = arc_stiffness(measures_of(cell, q), C);
+  cell.arc.alpha = alpha, cell.arc.beta = beta, cell.size = mean.size;
+  set_linked_mass(sections, mean, cell.arc.law.length, cell.arc);
+  cell.line = line_shares(mean, cell.arc.law.length);
   cells.push_back(std::move(cell));
 }
 

@@ -30,6 +30,10 @@ struct Beam {
   int first = 0, n_cells = 0;  // of the list
 };
 
+/// Sections at the places along_arc of a cell.
+using SectionsAlong = std::array<BeamSection, along_arc.size()>;
+BeamSection mean_of(const SectionsAlong& sections);
+
 /// A meshed section of the scene.
 struct NamedSection {
   std::string name;
@@ -58,7 +62,7 @@ class Beams final : public Contribution, public Equations, public Stateful, publ
   std::vector<BeamCell> cells;
   std::vector<LineLoad> lines;
   std::vector<NamedSection> meshes;
-  void add_cell(const SectionPlace& a, const SectionPlace& b, const BeamSection& section, double beta, double alpha);
+  void add_cell(const SectionPlace& a, const SectionPlace& b, const SectionsAlong& sections, double beta, double alpha);
   /// w.M v of what is at a body [J].
   double inertia(int body, const Config& v, const Vec3& w, const Mat3& W) const;
 

@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
+#include "base/values_between.hpp"
 #include "model/section_file.hpp"
 #include "model/store.hpp"
 #include "system/beams.hpp"
@@ -69,26 +71,61 @@ class Faces {
   std::map<std::pair<std::string, double>, SectionArea> areas_;
 };
 
-BeamSection section_of(const Scene& scene, const Entry& beam, bool is_static, Faces& faces) {
-  const Entry& section = named(scene, "section", beam, "section");
-  const SectionKind& kind = section_kinds().at(section.kind, section.place.text());
-  if (!kind.area && !kind.meshed) {
-    if (beam.given("material"))
-      beam.refuse("material", fmt::format("section \"{}\" is given by its stiffness, without a material", section.name));
-    return section_of_stiffness(section);
+/// What varies along a beam has the same keys at both ends.
+void check_taper(const Entry& beam, const SectionKind& kind, const Entry& first, const Entry& last) {
+  const std::string both = fmt::format("sections \"{}\" and \"{}\"", first.name, last.name);
+  if (first.kind != last.kind)
+    beam.refuse("section_end", fmt::format("{} are of the kinds {} and {}", both, first.kind, last.kind), "a beam tapers between two of one kind");
+  if (kind.meshed) beam.refuse("section_end", "meshed sections have no sizes to taper by", "several beams, each with a section of its own");
+  std::vector<Param> keys = kind.keys;
+  keys.push_back({"shear", Type::numbers, "", "", ""});
+  for (const auto& [key, type, unit, fallback, meaning, range, counts] : keys) {
+    if (first.given(key) != last.given(key))
+      last.refuse(last.given(key) ? key : "", fmt::format("{} are the ends of beam \"{}\", and one alone has {}", both, beam.name, key));
+    if (type == Type::numbers && first.given(key) && first.numbers(key).size() != last.numbers(key).size())
+      last.refuse(key, fmt::format("{} are the ends of beam \"{}\", and have {} of different lengths", both, beam.name, key));
   }
-  if (!beam.given("material")) beam.refuse("", "no material", "material = \"a name of [material.NAME]\"");
-  const Entry& material = named(scene, "material", beam, "material");
-  if (material.kind != "stvk")
-    beam.refuse("material", fmt::format("a beam is linear elastic, and material \"{}\" is of kind \"{}\"", material.name, material.kind),
-                "kind = \"stvk\", or a section of kind \"matrix\"");
-  for (const char* key : {"E", "nu"})
-    if (!material.has(key)) beam.refuse("material", fmt::format("material \"{}\" has no {}", material.name, key));
-  if (!material.has("density") && !is_static) beam.refuse("material", fmt::format("material \"{}\" has no density", material.name));
-  const double nu = material.number("nu");
-  return section_of_area(section, kind.meshed ? faces.area(section, nu) : kind.area(section, nu), material.number("E"), nu,
-                         material.has("density") ? material.number("density") : 0);
 }
+
+/// Sections along a beam.
+class Sections {
+ public:
+  Sections(const Scene& scene, const Entry& beam, bool is_static, Faces& faces)
+      : first_(named(scene, "section", beam, "section")), kind_(section_kinds().at(first_.kind, first_.place.text())) {
+    if (beam.given("section_end")) {
+      last_ = &named(scene, "section", beam, "section_end");
+      check_taper(beam, kind_, first_, *last_);
+    }
+    if (!kind_.area && !kind_.meshed) {
+      if (beam.given("material"))
+        beam.refuse("material", fmt::format("section \"{}\" is given by its stiffness, without a material", first_.name));
+      return;
+    }
+    if (!beam.given("material")) beam.refuse("", "no material", "material = \"a name of [material.NAME]\"");
+    const Entry& material = named(scene, "material", beam, "material");
+    if (material.kind != "stvk")
+      beam.refuse("material", fmt::format("a beam is linear elastic, and material \"{}\" is of kind \"{}\"", material.name, material.kind),
+                  "kind = \"stvk\", or a section of kind \"matrix\"");
+    for (const char* key : {"E", "nu"})
+      if (!material.has(key)) beam.refuse("material", fmt::format("material \"{}\" has no {}", material.name, key));
+    if (!material.has("density") && !is_static)
+      beam.refuse("material", fmt::format("material \"{}\" has no density", material.name));
+    E_ = material.number("E"), nu_ = material.number("nu"), density_ = material.has("density") ? material.number("density") : 0;
+    if (kind_.meshed) meshed_ = &faces.area(first_, nu_);
+  }
+  /// At a share of the length.
+  BeamSection at(double share) const { return last_ ? of(ValuesBetween(first_, *last_, share)) : of(first_); }
+
+ private:
+  BeamSection of(const EntryValues& section) const {
+    if (!kind_.area && !kind_.meshed) return section_of_stiffness(section);
+    return section_of_area(section, meshed_ ? *meshed_ : kind_.area(section, nu_), E_, nu_, density_);
+  }
+  const Entry &first_, *last_ = nullptr;
+  const SectionKind& kind_;
+  double E_ = 0, nu_ = 0, density_ = 0;
+  const SectionArea* meshed_ = nullptr;
+};
 
 }  // namespace
 
@@ -98,7 +135,8 @@ void Builder::add_sections() {
     BeamPlan plan{&e, beam_line(e), {}};
     const BeamLine& line = plan.line;
     const size_t last = line.at.size() - 1;
-    if (line.closed && (e.given("a") || e.given("b"))) e.refuse(e.given("a") ? "a" : "b", "the beam is closed: it has no ends");
+    for (const char* key : {"a", "b", "section_end"})
+      if (line.closed && e.given(key)) e.refuse(key, "the beam is closed: it has no ends");
     plan.body.assign(last + 1, -1);
     for (const auto& [name, k] : section_names(e, line)) {
       if (body_by_name_.contains(name) || (mesh_ && mesh_->mesh.find_region(name) >= 0))
@@ -121,7 +159,8 @@ void Builder::add_beams() {
     const Entry& e = *plan.entry;
     for (const char* key : {"a", "b"})
       if (e.given(key)) (key[0] == 'a' ? plan.body.front() : plan.body.back()) = carrier(e, key, true).body;
-    const BeamSection section = section_of(scene_, e, is_static(), faces);
+    const Sections sections(scene_, e, is_static(), faces);
+    const std::vector<double>& s = plan.line.s;
     beams.beams.push_back({e.name, static_cast<int>(beams.cells.size()), static_cast<int>(plan.line.cells.size())});
     for (size_t k = 0; k < plan.line.cells.size(); ++k) {
       const BeamLine::Cell& cell = plan.line.cells[k];
@@ -130,11 +169,14 @@ void Builder::add_beams() {
       if (out_->bodies[plan.body[k]].linear || out_->bodies[plan.body[k + 1]].linear)
         e.refuse(out_->bodies[plan.body[k]].linear ? "a" : "b",
                  fmt::format("\"{}\" is a linear region: it has no single position", body.name), "a set of its nodes");
-      beams.add_cell({plan.line.at[k], cell.frame_a, plan.body[k]}, {plan.line.at[k + 1], cell.frame_b, plan.body[k + 1]}, section,
+      SectionsAlong along;
+      for (size_t i = 0; i < along.size(); ++i) along[i] = sections.at(std::lerp(s[k], s[k + 1], along_arc[i].t) / s.back());
+      beams.add_cell({plan.line.at[k], cell.frame_a, plan.body[k]}, {plan.line.at[k + 1], cell.frame_b, plan.body[k + 1]}, along,
                      e.number("damping"), e.number("mass_damping"));
+      const BeamSection mean = mean_of(along);
       const double L = beams.cells.back().arc.law.length;
-      out_->mass += section.mass * L;
-      out_->stiffness = std::max(out_->stiffness, section.C(2, 2) / L);
+      out_->mass += mean.mass * L;
+      out_->stiffness = std::max(out_->stiffness, mean.C(2, 2) / L);
     }
   }
 }

@@ -115,8 +115,8 @@ bool has_scene_material(const DeckSection& s, const DeckMaterial& m) {
   return isotropic && s.I12 == 0 && s.line_mass == 0 && std::ranges::all_of(s.sizes, [](const auto& size) { return size.second > 0; });
 }
 
-std::string section_table(const std::string& name, DeckSection s, const DeckMaterial& m, const std::string& units, double scale,
-                          const std::string& place) {
+std::string section_table(const std::string& name, DeckSection s, bool with_material, const DeckMaterial& m, const std::string& units,
+                          double scale, const std::string& place) {
   const auto power = [](const std::string& key) { return key == "area" ? 2 : key[0] == 'I' || key[0] == 'J' ? 4 : 1; };  // of a length
   for (auto& [key, value] : s.sizes) value *= std::pow(scale, power(key));
   s.I12 *= std::pow(scale, 4);
@@ -127,7 +127,7 @@ std::string section_table(const std::string& name, DeckSection s, const DeckMate
   const SectionArea area = s.area(m.data.nu, place);
   const double k[2] = {s.no_shear_strain[0] ? stiff_in_shear * E / G : area.shear_1,
                        s.no_shear_strain[1] ? stiff_in_shear * E / G : area.shear_2};
-  if (has_scene_material(s, m)) {
+  if (with_material) {
     out += fmt::format("kind = \"{}\"\n", s.kind);
     for (const auto& [key, value] : s.sizes) out += fmt::format("{} = {}\n", key, toml_number(value * std::pow(si("m"), power(key))));
     if (s.shear || s.no_shear_strain[0] || s.no_shear_strain[1]) out += fmt::format("shear = {}\n", toml_list({k[0], k[1]}));
@@ -155,6 +155,7 @@ std::string beam_table(const DeckBeam& b) {
   for (const Vec3& x : b.points) points += fmt::format("{}{}", points.empty() ? "" : ", ", toml_list({x.x(), x.y(), x.z()}));
   std::string out = fmt::format("\n[beam.{}]   # {}\npoints = [{}]\ncells = [1]\nsection = {}\n", toml_text(b.name), b.place, points,
                                 toml_text(b.section));
+  if (!b.section_end.empty()) out += fmt::format("section_end = {}\n", toml_text(b.section_end));
   if (b.arc) out += "path = \"arc\"\n";
   if (!b.material.empty()) out += fmt::format("material = {}\n", toml_text(b.material));
   out += fmt::format("orientation = {}\n", toml_list({b.up.x(), b.up.y(), b.up.z()}));

@@ -3,9 +3,12 @@
 #pragma once
 #include <Eigen/LU>
 #include <complex>
+#include <map>
 #include <numbers>
+#include <sstream>
 
 #include "scene_parts.hpp"
+#include "succeeded.hpp"
 #include "verify/verify.hpp"
 
 namespace hilo::test {
@@ -38,6 +41,23 @@ class BeamPlace : public ScenePlace {
   Vec3 tip(const std::string& scene, const std::string& options = "") {
     const Eigen::MatrixXd x = solved(scene, options).history("probe/tip");
     return x.bottomRows(1).leftCols<3>().transpose();
+  }
+  /// Columns of `hilo-post beam run.h5 WHAT -o -` by their first word.
+  std::map<std::string, std::vector<double>> along(const std::string& scene, const std::string& what = "arm") {
+    (void)solved(scene);
+    const Ran post = succeeded(work.run("hilo-post beam run.h5 " + what + " -o -"));
+    std::istringstream lines(post.out);
+    std::string line, cell;
+    std::getline(lines, line);
+    std::vector<std::string> names;
+    for (std::istringstream header(line); std::getline(header, cell, ',');) names.push_back(cell.substr(0, cell.find(' ')));
+    std::map<std::string, std::vector<double>> out;
+    while (std::getline(lines, line)) {
+      size_t c = 0;
+      for (std::istringstream row(line); std::getline(row, cell, ',');)
+        out[names.at(c++)].push_back(cell.empty() ? std::nan("") : std::stod(cell));
+    }
+    return out;
   }
 };
 

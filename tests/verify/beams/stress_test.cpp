@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Forces, moments and stress along beams, as hilo-post shows them, against closed forms.
-#include <map>
-#include <sstream>
-
-#include "succeeded.hpp"
 #include "verify/beams/beam_scene.hpp"
 
 namespace hilo::test::beams_stress_test {
@@ -11,26 +7,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-class BeamStress : public BeamPlace {
- protected:
-  /// Columns of `hilo-post beam run.h5 WHAT -o -` by their first word.
-  std::map<std::string, std::vector<double>> along(const std::string& scene, const std::string& what = "arm") {
-    (void)solved(scene);
-    const Ran post = succeeded(work.run("hilo-post beam run.h5 " + what + " -o -"));
-    std::istringstream lines(post.out);
-    std::string line, cell;
-    std::getline(lines, line);
-    std::vector<std::string> names;
-    for (std::istringstream header(line); std::getline(header, cell, ',');) names.push_back(cell.substr(0, cell.find(' ')));
-    std::map<std::string, std::vector<double>> out;
-    while (std::getline(lines, line)) {
-      size_t c = 0;
-      for (std::istringstream row(line); std::getline(row, cell, ',');)
-        out[names.at(c++)].push_back(cell.empty() ? std::nan("") : std::stod(cell));
-    }
-    return out;
-  }
-};
+class BeamStress : public BeamPlace {};
 
 constexpr const char* steel = "[material.m]\nE = 2e11\nnu = 0.3\n";
 

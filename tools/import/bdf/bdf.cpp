@@ -28,7 +28,7 @@ std::vector<std::int64_t> rows(const BdfDeck& deck, const std::vector<std::int64
 /// Materials without a density are told once; PARAM WTMASS turns weights into masses.
 void settle_densities(BdfDeck& deck, Imported& in) {
   for (auto& [id, m] : deck.materials) m.data.density *= deck.mass_factor;
-  for (auto& [id, p] : deck.thin) p.section.line_mass *= deck.mass_factor;
+  for (auto& [id, p] : deck.thin) p.section.line_mass *= deck.mass_factor, p.end.line_mass *= deck.mass_factor;
   for (auto& m : deck.masses) m.mass *= deck.mass_factor, m.inertia *= deck.mass_factor;
   if (deck.without_density.empty()) return;
   std::string ids;

@@ -117,7 +117,7 @@ struct BdfCase {
 /// PSHELL, PCOMP: thickness, offset of the mid-surface.  PBAR, PBEAM and their like: a section, axis 2 in plane 1.
 struct BdfThin {
   double thickness = 0, offset = 0;
-  DeckSection section = {};
+  DeckSection section = {}, end = {};  // of beams; end: of those that taper
   std::string no_solid;  // why a solid-shell cannot stand for it
   std::string place = {};
 };

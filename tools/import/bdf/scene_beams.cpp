@@ -7,6 +7,13 @@
 #include "import/links.hpp"
 
 namespace hilo {
+namespace {
+
+bool has_scene_material(const BdfThin& p, const DeckMaterial& m) {
+  return hilo::has_scene_material(p.section, m) && (!p.end.given() || hilo::has_scene_material(p.end, m));
+}
+
+}  // namespace
 
 /// Sections and materials, the beams, and a common point of each grid that is a node of solids too, which does not turn.
 void BdfScene::beams() {
@@ -23,8 +30,13 @@ void BdfScene::beams() {
       if (m.kind != "stvk" || !m.no_law.empty()) in_.skip("MATS1 of beams, which are linear elastic", p.place);
       if (p.section.kind == "general" && !(p.section.area(0.3, p.place).J > 0))
         in_.notes.push_back(fmt::format("{}: property {} has no J: a millionth of I1 + I2 is taken", p.place, b.property));
-      if (has_scene_material(p.section, m) && materials.insert(mat->first).second) tables_ += m.table(m.name, options_.units);
-      tables_ += section_table(section_name(b.property), p.section, m, options_.units, options_.scale, p.place);
+      const bool with_material = has_scene_material(p, m);
+      if (with_material && materials.insert(mat->first).second) tables_ += m.table(m.name, options_.units);
+      const auto add = [&](const std::string& name, const DeckSection& section) {
+        tables_ += section_table(name, section, with_material, m, options_.units, options_.scale, p.place);
+      };
+      add(section_name(b.property), p.section);
+      if (p.end.given()) add(section_name(b.property) + "_end", p.end);
     }
     beam(b);
   }
@@ -72,9 +84,12 @@ void BdfScene::beam(const BdfDeck::Thin& b) {
   const std::vector<double> sections = sections_of(b, length);
   const DeckMaterial& m = deck_.materials.at(deck_.material_of.at(b.property));
   const double metre = si("m") * options_.scale;
-  DeckBeam out{unique("beam", fmt::format("{}_{}", b.card, b.id)), b.place, section_name(b.property), "", {}, at.up, "", ""};
+  DeckBeam out{
+      .name = unique("beam", fmt::format("{}_{}", b.card, b.id)), .place = b.place, .section = section_name(b.property), .up = at.up};
   for (const double s : sections) out.points.push_back(Vec3(s == length ? at.b : Vec3(at.a + s / length * (at.b - at.a))) * metre);
-  if (has_scene_material(section_of_beam(deck_, b).section, m)) out.material = clean_name(m.name);
+  const BdfThin& p = section_of_beam(deck_, b);
+  if (has_scene_material(p, m)) out.material = clean_name(m.name);
+  if (p.end.given()) out.section_end = out.section + "_end";
   for (size_t k = 0; k < 2; ++k)
     if (!b.pins[k]) (k == 0 ? out.a : out.b) = end_name(row(b.nodes[k], b.place, b.card));
   tables_ += beam_table(out);

@@ -136,27 +136,41 @@ void read_pbar(const BdfEntry& e, BdfDeck& deck, Imported&) {
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));
 }
 
+/// A taper is even between the ends; tells where stations between them say otherwise.
+template <class Numbers>
+void check_even(const std::vector<std::pair<double, Numbers>>& stations, const Numbers& a, const Numbers& b, const std::string& card,
+                const std::string& place, Imported& in) {
+  for (const auto& [x, there] : stations)
+    for (size_t i = 0; i < a.size(); ++i)
+      if (std::abs(there[i] - std::lerp(a[i], b[i], x)) > 1e-3 * std::max(std::abs(a[i]), std::abs(b[i])))
+        return in.skip(card + " with stations between its ends: it varies evenly from end to end", place);
+}
+
 /// PID MID A I1 I2 I12 J NSM, stress points; stations of SO X/XB A I1 I2 I12 J NSM, with stress points where SO is YES; K1 K2 S1 S2 NSI CW;
 /// M1 M2 of both ends, N1 N2 of both ends.
 void read_pbeam(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   const auto& d = e.data;
-  std::array<double, 6> at_a, middle;
-  for (size_t i = 0; i < 6; ++i) at_a[i] = middle[i] = d.number(2 + i);
+  std::array<double, 6> at_a, at_b;
+  for (size_t i = 0; i < 6; ++i) at_a[i] = at_b[i] = d.number(2 + i);
   const auto word = [&](size_t i) { return upper(d.text(i)); };
   const auto is_station = [&](size_t i) { return word(i) == "YES" || word(i) == "YESA" || word(i) == "NO"; };
   size_t line = is_station(8) ? 8 : 16;
-  bool tapers = false;
-  for (; is_station(line); line += word(line) == "YES" ? 16 : 8)
-    for (size_t i = 0; i < 6; ++i) {
-      const double there = d.number(line + 2 + i, at_a[i]);
-      tapers = tapers || std::abs(there - at_a[i]) > 1e-6 * std::abs(at_a[i]);
-      if (d.number(line + 1) == 1) middle[i] = (at_a[i] + there) / 2;
-    }
-  if (tapers) in.skip("PBEAM that tapers: the mean of the sections at its ends is taken", d.place());
+  std::vector<std::pair<double, std::array<double, 6>>> stations;  // X/XB, and the section there
+  for (; is_station(line); line += word(line) == "YES" ? 16 : 8) {
+    auto& there = stations.emplace_back(d.number(line + 1), at_a).second;
+    for (size_t i = 0; i < 6; ++i) there[i] = d.number(line + 2 + i, at_a[i]);
+    if (stations.back().first == 1) at_b = there;
+  }
+  check_even(stations, at_a, at_b, "PBEAM", d.place(), in);
+  const auto section = [&](const std::array<double, 6>& v) {
+    DeckSection out = general_section(v[0], v[1], v[2], v[4]);
+    out.line_mass = v[5], out.I12 = -v[3];
+    set_shear(out, d.number(line, 1), d.number(line + 1, 1), true);
+    return out;
+  };
   BdfThin s;
-  s.section = general_section(middle[0], middle[1], middle[2], middle[4]);
-  s.section.line_mass = middle[5], s.section.I12 = -middle[3];
-  set_shear(s.section, d.number(line, 1), d.number(line + 1, 1), true);
+  s.section = section(at_a);
+  if (at_b != at_a) s.end = section(at_b);
   for (size_t i = 4; i < 8; ++i)
     if (d.number(line + i) != 0) in.skip(i < 6 ? "PBEAM: inertia NSI of its NSM" : "PBEAM: warping CW", d.place(line + i));
   for (size_t i = 8; i < 16; ++i)
@@ -310,13 +324,11 @@ const std::map<std::string, BeamShape> beam_shapes{
 };
 const std::set<std::string> off_centre{"T", "CHAN", "T1", "T2", "CHAN1", "CHAN2", "BOX1", "L", "HAT", "HAT1"};  // shear centre elsewhere
 
-/// As PBEAM takes the numbers of its ends.
-DeckSection mean_of(const DeckSection& a, const DeckSection& b, double line_mass, const std::string& place) {
-  const SectionArea A = a.area(0.3, place), B = b.area(0.3, place);
-  DeckSection out = general_section((A.A + B.A) / 2, (A.I1 + B.I1) / 2, (A.I2 + B.I2) / 2, (A.J + B.J) / 2);
-  out.I12 = (a.I12 + b.I12) / 2;
-  out.line_mass = line_mass;
-  out.shear = {(A.shear_1 + B.shear_1) / 2, (A.shear_2 + B.shear_2) / 2};
+/// The same by its numbers.
+DeckSection general_of(const DeckSection& s, const std::string& place) {
+  const SectionArea a = s.area(0.3, place);
+  DeckSection out = general_section(a.A, a.I1, a.I2, a.J);
+  out.I12 = s.I12, out.line_mass = s.line_mass, out.shear = {a.shear_1, a.shear_2};
   return out;
 }
 
@@ -343,23 +355,21 @@ void read_shape_of_section(const BdfEntry& e, BdfDeck& deck, Imported& in) {
   if (e.name == "PBEAML" && (off_centre.contains(type) || (type == "I" && s.section.kind == "general")))
     in.skip("PBEAML: neutral axis off the shear centre", d.place(3));
   s.section.line_mass = d.number(8 + dims.size());
-  bool tapers = false;
-  std::vector<double> at_b = dims;
-  double mass_at_b = s.section.line_mass;
+  std::vector<double> at_a = dims;
+  at_a.push_back(s.section.line_mass);
+  std::vector<double> at_b = at_a;
+  std::vector<std::pair<double, std::vector<double>>> stations;  // X/XB, and the numbers there
   for (size_t station = 11 + dims.size(); e.name == "PBEAML" && station < d.fields.size(); station += dims.size() + 3) {  // behind SO, X/XB
-    const bool is_end = d.number(station - 1) == 1;
-    for (size_t i = 0; i <= dims.size(); ++i) {
-      double& b = i < dims.size() ? at_b[i] : mass_at_b;
-      const double a = i < dims.size() ? dims[i] : s.section.line_mass, here = d.number(station + i, a);
-      tapers = tapers || here != a;
-      if (is_end) b = here;
-    }
+    auto& there = stations.emplace_back(d.number(station - 1), at_a).second;
+    for (size_t i = 0; i < at_a.size(); ++i) there[i] = d.number(station + i, at_a[i]);
+    if (stations.back().first == 1) at_b = there;
   }
-  if (tapers) {
-    in.skip("PBEAML that tapers: the mean of the sections at its ends is taken", d.place());
-    const DeckSection end = shape->second.of(at_b);
-    if (!end.given()) throw refuse("TYPE " + type + " with such walls at end B");
-    s.section = mean_of(s.section, end, (s.section.line_mass + mass_at_b) / 2, d.place());
+  check_even(stations, at_a, at_b, "PBEAML", d.place(), in);
+  if (at_b != at_a) {
+    s.end = shape->second.of({at_b.begin(), at_b.end() - 1});
+    if (!s.end.given()) throw refuse("TYPE " + type + " with such walls at end B");
+    s.end.line_mass = at_b.back();
+    if (s.end.kind != s.section.kind) s.section = general_of(s.section, d.place()), s.end = general_of(s.end, d.place());
   }
   add_property(e, deck, s);
   if (!d.empty(1)) deck.material_of.try_emplace(d.integer(0), d.integer(1));

@@ -102,21 +102,21 @@ std::string write_beams(const InpDeck& d, Imported& in, SetNames& names, const I
       if (m.alpha != 0 || m.beta != 0) in.skip("*DAMPING of beams", s.place);
       if (m.kind != "stvk" || !m.no_law.empty()) in.skip("*PLASTIC of beams, which are linear elastic", s.place);
       if (with_material && !of_cells.contains(s.law) && materials.insert(s.law).second) out += m.table(m.name, o.units);
-      out += section_table(name, section, m, o.units, o.scale, s.place);
+      out += section_table(name, section, with_material, m, o.units, o.scale, s.place);
     }
     std::vector<Vec3> X;
     for (const auto node : b.nodes) X.push_back(d.bodies.at(node).X);
     const auto lines = b.nodes.size() == 3 ? halves(X[0], X[1], X[2]) : std::array<std::vector<Vec3>, 2>{X, {}};
     const size_t n = b.nodes.size() - 1;
     for (size_t k = 0; k < n; ++k) {
-      DeckBeam beam{fmt::format("{}_{}", b.type, id),
-                    b.place,
-                    name,
-                    with_material ? clean_name(m.name) : "",
-                    lines[k],
-                    Vec3::Zero(),
-                    body_name(d, b.nodes[k]),
-                    body_name(d, b.nodes[k + 1])};
+      DeckBeam beam{.name = fmt::format("{}_{}", b.type, id),
+                    .place = b.place,
+                    .section = name,
+                    .material = with_material ? clean_name(m.name) : "",
+                    .points = lines[k],
+                    .up = Vec3::Zero(),
+                    .a = body_name(d, b.nodes[k]),
+                    .b = body_name(d, b.nodes[k + 1])};
       beam.arc = beam.points.size() == 3;
       if (n == 2) beam.name += k == 0 ? "a" : "b";
       const Vec3 along = beam.points.back() - beam.points.front();
