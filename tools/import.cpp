@@ -194,6 +194,11 @@ int main(int argc, char** argv) {
                     "bore=cylinder:at=[0,0,0],axis=[0,0,1],radius=8, foot=plane:..., pin=near:1,2,3, rim=box:...")
         ->type_name("NAME=KIND:KEY=VALUE,...")
         ->allow_extra_args(false);
+    app->add_option("--beams", o.beams,
+                    "a curve group (geo, CAD, msh) becomes beams of the scene, with the words of [section.NAME], in the unit of the file; "
+                    "may be repeated: rail=tube:diameter=60,thickness=3")
+        ->type_name("GROUP=KIND:KEY=VALUE,...")
+        ->allow_extra_args(false);
     app->add_option("--merge-nodes", o.merge, "nodes nearer than this become one, in the unit of the file")->type_name("TOL");
     app->add_option("--regions", o.regions, "element sets that become regions, before what the file says")
         ->delimiter(',')

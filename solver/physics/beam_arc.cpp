@@ -104,7 +104,8 @@ double ArcLaw::turn(const arc::Measures<double>& e) { return std::acos(std::clam
 void ArcLaw::add(const Values& e0, const Values& e1, double elastic, double rate, Response& out) const {
   arc::Resultants<double> r;
   double s[n_measures], D[n_measures][n_measures];
-  arc::respond(of_, measures_of(e0), measures_of(e1), elastic, rate, static_cast<const double*>(nullptr), r, s, D);
+  arc::respond(of_, measures_of(e0), measures_of(e1), elastic, rate, static_cast<const double*>(nullptr),
+               static_cast<const double*>(nullptr), r, s, D);
   for (int i = 0; i < n_measures; ++i) {
     out.s[i] += s[i];
     for (int j = 0; j < n_measures; ++j) out.D[i][j] += D[i][j];

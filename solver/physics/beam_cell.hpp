@@ -61,6 +61,21 @@ template <class T>
   return m;
 }
 
+/// How fast the measures change at rates dy of the points.
+template <class T>
+[[gnu::always_inline]] inline Measures<T> rates_of(const LaneVector<T>* y, const LaneVector<T>* dy) {
+  const LaneVector<T>*A = y + 1, *B = y + 5, *dA = dy + 1, *dB = dy + 5, way = y[4] - y[0], dway = dy[4] - dy[0];
+  Measures<T> m;
+  m.t = T{};
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    m.a[i] = 0.5 * (dot(dA[k], B[j]) + dot(A[k], dB[j]) - dot(dA[j], B[k]) - dot(A[j], dB[k]));
+    m.p[i] = dot(dA[i], way) + dot(A[i], dway);
+    m.t += dot(dA[i], B[i]) + dot(A[i], dB[i]);
+  }
+  return m;
+}
+
 /// Gradients of the measures by the turns of both bodies, and of p by the way of B; by the way of A it is the opposite.
 template <class T>
 struct Gradient {
@@ -213,7 +228,16 @@ inline void run(const ArcCall& call) {
   Gradient<T> g;
   if (K) gradient(left, left, g);
 
-  T s_all[n_measures]{};
+  // Newton on measures and resultants as independent unknowns, of which the resultants are eliminated (physics/solid_stress has why)
+  T x_ahead[n_strains];
+  const bool foresees = K && call.before;
+  if (foresees) {
+    SectionPoints<T> before, along;
+    points_of(cell, pose_of(call.before), before), points_of(cell, pose_of(call.along), along);
+    strain_ahead(measures_of(before.y), rates_of(before.y, along.y), x_ahead);
+  }
+
+  T s_all[n_measures]{}, s_change[n_measures]{};  // and what the foreseen resultants change of it in the tangent
   for (int n = 0; n < call.n_pairs; ++n) {
     const ArcCall::Pair& pair = call.pairs[n];
     T s_pair[n_measures], D_pair[n_measures][n_measures];
@@ -254,7 +278,15 @@ inline void run(const ArcCall& call) {
       }
       const T rate = pair.by_beta * cell.beta + pair.kappa;
       Resultants<T> r;
-      respond(cell.law, m0, m1, pair.elastic, rate, recalls ? recalled : nullptr, r, s_pair, K ? D_pair : nullptr);
+      const bool ahead = foresees && pair.q0 == pair.q1;
+      respond(cell.law, m0, m1, pair.elastic, rate, recalls ? recalled : nullptr, ahead ? x_ahead : nullptr, r, s_pair,
+              K ? D_pair : nullptr);
+      if (ahead) {
+        for (int m = 0; m < n_measures; ++m) s_change[m] += s_pair[m];
+        respond(cell.law, m0, m1, pair.elastic, rate, recalls ? recalled : nullptr, static_cast<const T*>(nullptr), r, s_pair,
+                static_cast<T(*)[n_measures]>(nullptr));
+        for (int m = 0; m < n_measures; ++m) s_change[m] -= s_pair[m];
+      }
     }
     if (pair.acts)
       for (int m = 0; m < n_measures; ++m) s_all[m] += s[m];
@@ -296,6 +328,10 @@ inline void run(const ArcCall& call) {
     for (int i = 0; i < 3; ++i) f[6 * e + i] = F[4 * e][i], f[6 * e + 3 + i] = moment[i];
   }
   if (!K) return;
+  if (foresees) {
+    add_forces(left.y, s_change, F);
+    for (int m = 0; m < n_measures; ++m) s_all[m] += s_change[m];
+  }
   T S[8][8]{};
   add_second(s_all, call.slope, S);
   add_mass(cell, T(call.alpha_slope * cell.alpha + call.mass_slope), S);

@@ -23,6 +23,8 @@ struct ArcCall {
   };
   const double* cells;               // arc::ArcCell
   const double *left, *end, *a, *v;  // poses of a stage; v null: no drag
+  // poses before Newton's last correction, and that to first order, for the resultants of K where a pair is one configuration; null: none
+  const double *before, *along;
   double gravity[3];
   double slope, mass_slope, alpha_slope;
   int n_pairs;

@@ -190,6 +190,22 @@ template <class T>
   for (int i = 0; i < 3; ++i) by_p.m[i][i] += 1;
 }
 
+/// L times the strains at m and what dm changes of them to first order.
+template <class T>
+[[gnu::always_inline]] inline void strain_ahead(const Measures<T>& m, const Measures<T>& dm, T* x) {
+  const End<T> e(m);
+  const TurnFunctions<T> turn = turning(e.c, e.c);
+  e.strain(turn.f1, turn.k1, x);
+  Matrix<T> by_a, by_p;
+  strain_slopes(turn.f1, turn.k1, e.a, e.p, e.w, by_a, by_p);
+  const T dc = 0.5 * dm.t;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) x[i] += by_a.m[i][j] * dm.a[j] + by_p.m[i][j] * dm.p[j];
+    x[i] += dc * (turn.k1_c * e.b[i] - 0.5 * (turn.f1_c * e.w[i]));
+    x[3 + i] += turn.f1 * dm.a[i] + dc * (turn.f1_c * e.a[i]);
+  }
+}
+
 /// What an element has over a step: L times the strains at both ends, and the forces and moments.
 template <class T>
 struct Resultants {
@@ -197,17 +213,17 @@ struct Resultants {
 };
 
 /// The forces s and, where D is wanted, ds/de1, set: by the resultants C* (elastic (mean eps - reference) + rate (eps1 - eps0 - recalled)).
-/// `recalled`: L times strains; null: none.
+/// `recalled`: L times strains; null: none.  `ahead`: L times strains that take the place of their mean; null: none.
 template <class T>
 [[gnu::always_inline]] inline void respond(const ArcStiffness<T>& law, const Measures<T>& m0, const Measures<T>& m1, double elastic,
-                                           const T& rate, const T* recalled, Resultants<T>& r, T* s, T (*D)[n_measures]) {
+                                           const T& rate, const T* recalled, const T* ahead, Resultants<T>& r, T* s, T (*D)[n_measures]) {
   const End<T> e0(m0), e1(m1);
   const TurnFunctions<T> turn = turning(e0.c, e1.c);
   e0.strain(turn.f0, turn.k0, r.x0), e1.strain(turn.f1, turn.k1, r.x1);
   const T by_L = 1 / law.length, half = (0.5 * elastic) * by_L, rate_L = rate * by_L;
   T strain[n_strains];
   for (int i = 0; i < n_strains; ++i) {
-    strain[i] = half * (r.x0[i] + r.x1[i]) - elastic * law.reference[i] + rate_L * (r.x1[i] - r.x0[i]);
+    strain[i] = half * (ahead ? 2. * ahead[i] : r.x0[i] + r.x1[i]) - elastic * law.reference[i] + rate_L * (r.x1[i] - r.x0[i]);
     if (recalled) strain[i] -= rate_L * recalled[i];
   }
   for (int i = 0; i < n_strains; ++i) {

@@ -174,7 +174,7 @@ std::vector<StagePair> pairs_of(const Stage& s, bool has_beta) {
 
 }  // namespace
 
-BeamSection mean_of(const SectionsAlong& sections) {
+BeamSection mean_section(const SectionsAlong& sections) {
   BeamSection out;
   for (size_t k = 0; k < sections.size(); ++k) {
     const double w = along_arc[k].weight;
@@ -195,7 +195,7 @@ void Beams::add_cell(const SectionPlace& a, const SectionPlace& b, const Section
     std::copy_n(arm.data(), 3, cell.arc.arm[e].v);
     for (int i = 0; i < 3; ++i) std::copy_n(axes.data() + 3 * i, 3, cell.arc.axis[e][i].v);
   }
-  const BeamSection mean = mean_of(sections);
+  const BeamSection mean = mean_section(sections);
   std::array<Mat6, 4> C;
   for (size_t k = 0; k < C.size(); ++k) C[k] = sections[k].C;
   cell.arc.law = arc_stiffness(measures_of(cell, q), C);
@@ -279,6 +279,7 @@ void Beams::each_cell(const Stage& s, const std::vector<LineForces>& line, bool 
   const bool drags = s.v && lanes.has_alpha;
   poses.slot(s.left), poses.slot(s.end), poses.slot(s.a);
   if (drags) poses.slot(s.v);
+  if (s.before) poses.slot(s.before), poses.slot(s.along);
   for (const StagePair& pair : pairs) {
     poses.slot(pair.q1);
     if (pair.of.s == nullptr) poses.slot(pair.q0);
@@ -292,6 +293,7 @@ void Beams::each_cell(const Stage& s, const std::vector<LineForces>& line, bool 
   const auto pose = [&](const Config* q) { return gathered + 24 * poses.slot(q) * W; };
   ArcCall call{};
   call.left = pose(s.left), call.end = pose(s.end), call.a = pose(s.a), call.v = drags ? pose(s.v) : nullptr;
+  if (s.before) call.before = pose(s.before), call.along = pose(s.along);
   for (int i = 0; i < 3; ++i) call.gravity[i] = points_.gravity[i] * s.load_factor;
   call.slope = s.slope, call.mass_slope = s.mass_slope, call.alpha_slope = s.v ? s.alpha_slope : 0;
   for (const StagePair& pair : pairs) {

@@ -32,7 +32,7 @@ struct Beam {
 
 /// Sections at the places along_arc of a cell.
 using SectionsAlong = std::array<BeamSection, along_arc.size()>;
-BeamSection mean_of(const SectionsAlong& sections);
+BeamSection mean_section(const SectionsAlong& sections);
 
 /// A meshed section of the scene.
 struct NamedSection {

@@ -75,7 +75,8 @@ class Faces {
 void check_taper(const Entry& beam, const SectionKind& kind, const Entry& first, const Entry& last) {
   const std::string both = fmt::format("sections \"{}\" and \"{}\"", first.name, last.name);
   if (first.kind != last.kind)
-    beam.refuse("section_end", fmt::format("{} are of the kinds {} and {}", both, first.kind, last.kind), "a beam tapers between two of one kind");
+    beam.refuse("section_end", fmt::format("{} are of the kinds {} and {}", both, first.kind, last.kind),
+                "a beam tapers between two of one kind");
   if (kind.meshed) beam.refuse("section_end", "meshed sections have no sizes to taper by", "several beams, each with a section of its own");
   std::vector<Param> keys = kind.keys;
   keys.push_back({"shear", Type::numbers, "", "", ""});
@@ -108,8 +109,7 @@ class Sections {
                   "kind = \"stvk\", or a section of kind \"matrix\"");
     for (const char* key : {"E", "nu"})
       if (!material.has(key)) beam.refuse("material", fmt::format("material \"{}\" has no {}", material.name, key));
-    if (!material.has("density") && !is_static)
-      beam.refuse("material", fmt::format("material \"{}\" has no density", material.name));
+    if (!material.has("density") && !is_static) beam.refuse("material", fmt::format("material \"{}\" has no density", material.name));
     E_ = material.number("E"), nu_ = material.number("nu"), density_ = material.has("density") ? material.number("density") : 0;
     if (kind_.meshed) meshed_ = &faces.area(first_, nu_);
   }
@@ -173,7 +173,7 @@ void Builder::add_beams() {
       for (size_t i = 0; i < along.size(); ++i) along[i] = sections.at(std::lerp(s[k], s[k + 1], along_arc[i].t) / s.back());
       beams.add_cell({plan.line.at[k], cell.frame_a, plan.body[k]}, {plan.line.at[k + 1], cell.frame_b, plan.body[k + 1]}, along,
                      e.number("damping"), e.number("mass_damping"));
-      const BeamSection mean = mean_of(along);
+      const BeamSection mean = mean_section(along);
       const double L = beams.cells.back().arc.law.length;
       out_->mass += mean.mass * L;
       out_->stiffness = std::max(out_->stiffness, mean.C(2, 2) / L);

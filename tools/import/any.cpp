@@ -116,6 +116,9 @@ Imported read_any(const std::string& path, const ImportOptions& options, const R
       if (!options.thickness.empty() && !f.geometry && !f.has_surfaces)
         throw Error("", fmt::format("--thickness is for surfaces of a geometry, .msh, .unv, .med or Exodus file, {} is none", path),
                     deck ? "--thicken makes shells of a deck, with the deck's thickness" : "", Exit::usage);
+      if (!options.beams.empty() && !f.geometry && f.read != read_msh && f.read != read_medit)
+        throw Error("", fmt::format("--beams is for curves of a geometry or .msh file, {} is none", path),
+                    deck ? "beams of a deck stand in its scene" : "", Exit::usage);
       if ((options.subcase || options.every_subcase) && !deck)
         throw Error("", fmt::format("--subcase is for a Nastran file, {} is none", path), "", Exit::usage);
       if (options.thicken && !deck)

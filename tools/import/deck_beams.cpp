@@ -158,7 +158,7 @@ std::string beam_table(const DeckBeam& b) {
   if (!b.section_end.empty()) out += fmt::format("section_end = {}\n", toml_text(b.section_end));
   if (b.arc) out += "path = \"arc\"\n";
   if (!b.material.empty()) out += fmt::format("material = {}\n", toml_text(b.material));
-  out += fmt::format("orientation = {}\n", toml_list({b.up.x(), b.up.y(), b.up.z()}));
+  if (b.up.norm() > 0) out += fmt::format("orientation = {}\n", toml_list({b.up.x(), b.up.y(), b.up.z()}));
   if (!b.a.empty()) out += fmt::format("a = {}\n", toml_text(b.a));
   if (!b.b.empty()) out += fmt::format("b = {}\n", toml_text(b.b));
   return out;

@@ -44,6 +44,7 @@ struct ImportOptions {
   bool face = false;                    // the surface is a section of beams, not the border of solids
   bool keep_apart = false;              // solids of a CAD file that touch share no nodes
   std::vector<std::string> sets;        // NAME=KIND:KEY=VALUE,..., as [set.NAME] of a scene    [unit of the file]
+  std::vector<std::string> beams;       // GROUP=KIND:KEY=VALUE,...: curves become beams with this section  [unit of the file]
 };
 
 /// A keyword or item of the deck that has no place in the mesh or the scene lines.

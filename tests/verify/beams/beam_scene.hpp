@@ -43,7 +43,7 @@ class BeamPlace : public ScenePlace {
     return x.bottomRows(1).leftCols<3>().transpose();
   }
   /// Columns of `hilo-post beam run.h5 WHAT -o -` by their first word.
-  std::map<std::string, std::vector<double>> along(const std::string& scene, const std::string& what = "arm") {
+  std::map<std::string, std::vector<double>> curves(const std::string& scene, const std::string& what = "arm") {
     (void)solved(scene);
     const Ran post = succeeded(work.run("hilo-post beam run.h5 " + what + " -o -"));
     std::istringstream lines(post.out);

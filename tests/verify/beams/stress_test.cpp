@@ -14,9 +14,9 @@ constexpr const char* steel = "[material.m]\nE = 2e11\nnu = 0.3\n";
 // A cantilever with a force at its tip: m = F (L - x), its stress m c/I = 6 m/(b h^2), that of the force 1.5 F/(b h).
 TEST_F(BeamStress, ACantileverHasTheMomentAndStressOfItsTipForce) {
   const double F = 2, L = 1.2, b = 0.02, h = 0.05;
-  const auto at = along(fmt::format("[section.s]\nkind = \"rectangle\"\nwidth = {}\nheight = {}\n", b, h) + steel +
-                        beam_of(fmt::format("[[0, 0, 0], [{}, 0, 0]]", L), 4, "a = \"ground\"\nmaterial = \"m\"") +
-                        push("arm.end", Vec3(0, 0, F)) + in_steps(1));
+  const auto at = curves(fmt::format("[section.s]\nkind = \"rectangle\"\nwidth = {}\nheight = {}\n", b, h) + steel +
+                         beam_of(fmt::format("[[0, 0, 0], [{}, 0, 0]]", L), 4, "a = \"ground\"\nmaterial = \"m\"") +
+                         push("arm.end", Vec3(0, 0, F)) + in_steps(1));
   ASSERT_EQ(at.at("s").size(), 8u);
   for (size_t i = 0; i < 8; ++i) {
     const double s = L / 4 * std::ceil(i / 2.0), m = F * (L - s), stress = 6 * m / (b * h * h), room = 1e-6 * 6 * F * L / (b * h * h);
@@ -38,8 +38,8 @@ TEST_F(BeamStress, AnArchBearsWhatEquilibriumAsks) {
   const std::string arch = fmt::format("[section.s]\nkind = \"circle\"\ndiameter = {}\n", 2 * r) + steel +
                            beam_of(fmt::format("[[{0}, 0, 0], [{1:.17g}, {1:.17g}, 0], [0, {0}, 0]]", R, h), 6,
                                    "a = \"ground\"\nmaterial = \"m\"\npath = \"arc\"");
-  const auto flat = along(arch + push("arm.end", Vec3(F, 0, 0)) + in_steps(1));
-  const auto out = along(arch + push("arm.end", Vec3(0, 0, F)) + in_steps(1));
+  const auto flat = curves(arch + push("arm.end", Vec3(F, 0, 0)) + in_steps(1));
+  const auto out = curves(arch + push("arm.end", Vec3(0, 0, F)) + in_steps(1));
   for (size_t i = 0; i < 12; ++i) {
     const double a = pi / 12 * std::ceil(i / 2.0), m = F * R * (1 - std::sin(a)), n = -F * std::sin(a), bending = m * r / I;
     EXPECT_NEAR(flat.at("s")[i], R * a, 1e-9);
@@ -88,7 +88,7 @@ TEST_F(BeamStress, HistoriesEnvelopesAndQuantitiesAreOfTheSameStress) {
 // Where nothing is known of the shape there is no stress, and no number stands for it.
 TEST_F(BeamStress, ASectionWithoutShapeHasNone) {
   const auto at =
-      along(plain_section(1e6, 2e6, 900, 700) + beam_of("[[0, 0, 0], [1, 0, 0]]", 1) + push("arm.end", Vec3(0, 3, 0)) + in_steps(1));
+      curves(plain_section(1e6, 2e6, 900, 700) + beam_of("[[0, 0, 0], [1, 0, 0]]", 1) + push("arm.end", Vec3(0, 3, 0)) + in_steps(1));
   EXPECT_NEAR(at.at("M2")[0], 3, 1e-4);
   EXPECT_TRUE(std::isnan(at.at("high")[0]));
   EXPECT_EQ(work.run("hilo-post series run.h5 beam_stress.arm").exit, 2);
@@ -125,7 +125,7 @@ TEST_F(BeamStress, AMeshedSectionBendsTwistsAndHasItsStress) {
                               beam_of(fmt::format("[[0, 0, 0], [{}, 0, 0]]", L), 4,
                                       std::string("a = \"ground\"\nmaterial = \"m\"") + (lying ? "\norientation = [0, 1, 0]" : "")) +
                               push("arm.end", Vec3(0, 0, F)) + twist("arm.end", Vec3(T, 0, 0)) + tip_probe() + in_steps(1);
-    const auto at = along(scene);
+    const auto at = curves(scene);
     const Results r(work / "run.h5");
     const double w = r.history("probe/tip").bottomRows(1)(0, 2);
     EXPECT_NEAR(w, F * L * L * L / (3 * E * I) + F * L / (0.832 * G * b * h), 1e-4 * w);
@@ -168,9 +168,9 @@ TEST_F(BeamStress, AMeshedSectionWithoutItsFileIsRefused) {
 // Of a section given by its numbers, the stress at the points that it names: N/A + M1 x2/I1 - M2 x1/I2.
 TEST_F(BeamStress, FibresOfASectionGivenByNumbersHaveAxialStress) {
   const auto at =
-      along("[section.s]\nkind = \"general\"\narea = 1e-3\nI1 = 2e-6\nI2 = 1e-6\nJ = 1e-6\nfibres = [[0.03, 0.05], [-0.02, -0.04]]\n" +
-            std::string(steel) + beam_of("[[0, 0, 0], [1, 0, 0]]", 1, "a = \"ground\"\nmaterial = \"m\"") + push("arm.end", Vec3(5, 0, 3)) +
-            in_steps(1));
+      curves("[section.s]\nkind = \"general\"\narea = 1e-3\nI1 = 2e-6\nI2 = 1e-6\nJ = 1e-6\nfibres = [[0.03, 0.05], [-0.02, -0.04]]\n" +
+             std::string(steel) + beam_of("[[0, 0, 0], [1, 0, 0]]", 1, "a = \"ground\"\nmaterial = \"m\"") +
+             push("arm.end", Vec3(5, 0, 3)) + in_steps(1));
   const double M1 = at.at("M1")[0], one = 5 / 1e-3 + M1 * 0.05 / 2e-6, other = 5 / 1e-3 - M1 * 0.04 / 2e-6;
   EXPECT_NEAR(M1, -3, 1e-4);
   EXPECT_NEAR(at.at("high")[0], std::max(one, other), 1e-3 * std::abs(other));

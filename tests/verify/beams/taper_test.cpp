@@ -32,12 +32,10 @@ TEST_F(BeamTaper, EndLoadsMeetTheIntegralsOfCompliance) {
   const double L = 1.5, k = 13.0 / (12 + 3.3);
   const auto b = [](double s) { return 0.03 - 0.01 * s; };
   const auto h = [](double s) { return 0.06 - 0.03 * s; };
-  const double up = integral([&](double s) {
-    return L * (std::pow(L * (1 - s), 2) / (E * b(s) * std::pow(h(s), 3) / 12) + 1 / (k * G * b(s) * h(s)));
-  });
-  const double across = integral([&](double s) {
-    return L * (std::pow(L * (1 - s), 2) / (E * h(s) * std::pow(b(s), 3) / 12) + 1 / (k * G * b(s) * h(s)));
-  });
+  const double up =
+      integral([&](double s) { return L * (std::pow(L * (1 - s), 2) / (E * b(s) * std::pow(h(s), 3) / 12) + 1 / (k * G * b(s) * h(s))); });
+  const double across =
+      integral([&](double s) { return L * (std::pow(L * (1 - s), 2) / (E * h(s) * std::pow(b(s), 3) / 12) + 1 / (k * G * b(s) * h(s))); });
   const double stretch = integral([&](double s) { return L / (E * b(s) * h(s)); });
   const Vec3 along = Vec3(1, 2, -0.5).normalized(), axis2 = (Vec3::UnitZ() - along.z() * along).normalized(), axis1 = axis2.cross(along);
   const std::string end = fmt::format("[[0, 0, 0], [{:.17g}, {:.17g}, {:.17g}]]", L * along.x(), L * along.y(), L * along.z());
@@ -79,8 +77,8 @@ TEST_F(BeamTaper, WedgeAndConeHaveKirchhoffsFrequencies) {
 // Stress by the section where it is: 32 F (L - x)/(pi d(x)^3), largest where d is half as large again as at the tip.
 TEST_F(BeamTaper, StressIsThatOfTheSectionThere) {
   const double F = 2, L = 1.2, d0 = 0.04, d1 = 0.02;
-  const auto at = along(taper_of(circle(d0), circle(d1), fmt::format("[[0, 0, 0], [{}, 0, 0]]", L), 4) + push("arm.end", Vec3(0, 0, F)) +
-                        in_steps(1));
+  const auto at =
+      curves(taper_of(circle(d0), circle(d1), fmt::format("[[0, 0, 0], [{}, 0, 0]]", L), 4) + push("arm.end", Vec3(0, 0, F)) + in_steps(1));
   ASSERT_EQ(at.at("s").size(), 8u);
   for (size_t i = 0; i < 8; ++i) {
     const double x = at.at("s")[i], d = d0 + (d1 - d0) * x / L;

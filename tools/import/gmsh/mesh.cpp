@@ -11,6 +11,7 @@
 #include <unordered_set>
 
 #include "base/error.hpp"
+#include "import/gmsh/curve_beams.hpp"
 #include "import/gmsh/element_types.hpp"
 #include "import/shell_groups.hpp"
 
@@ -26,7 +27,8 @@ int family(int type) {
 
 class GmshReading {
  public:
-  GmshReading(const std::string& path, const GmshMesh& mesh, const ImportOptions& o, bool curved) : path_(path), from_(mesh), o_(o) {
+  GmshReading(const std::string& path, const GmshMesh& mesh, const ImportOptions& o, bool curved)
+      : path_(path), from_(mesh), o_(o), beams_(o) {
     in_.curved = curved;
     in_.notes = from_.notes;
     in_.metre = from_.metre;
@@ -43,8 +45,8 @@ class GmshReading {
       for (const auto& b : entity.blocks)
         if (std::get<0>(key) == 2) flat += static_cast<std::int64_t>(b.tags.size());
     refuse_flat(path_, flat, in_.mesh.n_cells());
-    if (o_.thickness.empty()) read_curves();
-    if (in_.mesh.n_cells() == 0) throw Error(path_, "no volume cells and no bars");
+    if (o_.thickness.empty() || !o_.beams.empty()) read_curves();
+    if (beams_.n_lines() == 0 && in_.mesh.n_cells() == 0) throw Error(path_, "no volume cells and no bars");
     tell_pyramids(in_, n_pyramids_);
     for (const auto& w : reduced_) in_.notes.push_back(fmt::format("{} read without the nodes inside faces and cells", w));
     assign_regions(in_, path_, regions_, false, {}, o_);
@@ -57,6 +59,13 @@ class GmshReading {
     }
     surface_groups(), tell_loose();
     node_groups();
+    if (!o_.beams.empty()) {
+      std::map<std::int64_t, std::vector<std::string>> points;
+      for (const auto& [tag, keys] : groups_[0])
+        for (const auto node : group_nodes(keys)) points[node].push_back(group_name(0, tag));
+      in_.mesh.deck_scene = beams_.scene(in_, points);
+      in_.n_beams = static_cast<std::int64_t>(beams_.n_lines());
+    }
     for (const auto& [key, name] : from_.group_name)
       if (!groups_[key.first].count(key.second)) in_.notes.push_back(fmt::format("group \"{}\" has no elements: left out", name));
     return std::move(in_);
@@ -222,20 +231,33 @@ class GmshReading {
     add("shell", all, shells.thickness_of_all());
   }
 
-  /// Curve groups: bars where none of the lines is an edge of a solid cell.
+  /// Curve groups: beams where --beams says so, bars where none of the lines is an edge of a solid cell.
   void read_curves() {
     using Lines = std::vector<std::pair<std::int64_t, std::int64_t>>;
     std::map<int, Lines> of_group;
     Lines lines;
     for (const auto& [tag, keys] : groups_[1]) {
-      Lines& one = of_group[tag];
+      const std::string name = group_name(1, tag);
+      const bool is_beam = beams_.wants(name);
+      if (is_beam) bar_groups_.insert(tag);
+      if (!is_beam && !o_.thickness.empty()) continue;
+      Lines one;
       for (const auto& key : keys)
         for (const auto& b : from_.entities.at(key).blocks)
           for (size_t e = 0; e < b.tags.size(); ++e) {
-            const size_t at = e * (b.nodes.size() / b.tags.size());
-            one.emplace_back(row(b.nodes[at], b.tags[e]), row(b.nodes[at + 1], b.tags[e]));
+            const size_t per = b.nodes.size() / b.tags.size(), at = e * per;
+            const auto first = row(b.nodes[at], b.tags[e]), last = row(b.nodes[at + 1], b.tags[e]);
+            if (is_beam && per > 2) {
+              const auto middle = row(b.nodes[at + 2], b.tags[e]);
+              beams_.add(name, first, middle), beams_.add(name, middle, last);
+            } else if (is_beam) {
+              beams_.add(name, first, last);
+            } else {
+              one.emplace_back(first, last);
+            }
           }
       lines.insert(lines.end(), one.begin(), one.end());
+      if (!is_beam) of_group[tag] = std::move(one);
     }
     if (lines.empty()) return;
     const auto on_solids = lines_on_solids(in_.mesh, lines);
@@ -348,7 +370,8 @@ class GmshReading {
   std::map<Key, std::vector<std::int64_t>> of_volume_;
   std::set<Key> of_surface_;  // that became shells
   std::vector<CellGroup> regions_;
-  std::unordered_set<int> bar_groups_;
+  std::unordered_set<int> bar_groups_;  // and groups of beams
+  CurveBeams beams_;
   std::set<std::string> reduced_;
   bool in_several_groups_ = false;                             // this entity: its elements may be listed several times
   int tag_ = 0;                                                // of this entity
