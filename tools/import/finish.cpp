@@ -106,7 +106,7 @@ std::int64_t drop_unused(Imported& in) {
   auto& sets = in.mesh.node_sets;
   for (auto it = sets.begin(); it != sets.end();)
     if (it->second.empty()) {
-      in.notes.push_back(fmt::format("node set \"{}\" holds only nodes of no cell: left out", it->first));
+      if (in.n_beams == 0) in.notes.push_back(fmt::format("node set \"{}\" holds only nodes of no cell: left out", it->first));
       it = sets.erase(it);
     } else
       ++it;
