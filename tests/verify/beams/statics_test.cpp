@@ -54,6 +54,20 @@ TEST_F(BeamStatics, ACantileverBendsAsReissnersBeam) {
   EXPECT_LT((u(8) - Vec3(-3.28946, 0, 6.70011)).norm() / 7.46, 1e-5);
 }
 
+// Tangents have the forces that the last correction foresaw: thinner beams take no more corrections (147 and 541 without).
+TEST_F(BeamStatics, ThinBeamsSettleAsFastAsThickOnes) {
+  const auto corrections = [&](double thickness, const std::string& more) {
+    const double EA = 1200 / (thickness * thickness);
+    (void)solved(plain_section(EA / 3, EA, 100, 100) + beam_of("[[0, 0, 0], [10, 0, 0]]", 8) + more);
+    return reported_in(work, "newton_iterations");
+  };
+  const std::string bent = push("arm.end", Vec3(0, 0, 4)) + in_steps(5), rolled = twist("arm.end", Vec3(0, 20 * pi, 0)) + in_steps(8);
+  EXPECT_LE(corrections(0.1, bent), 35);
+  EXPECT_LE(corrections(0.01, bent), 35);
+  EXPECT_LE(corrections(0.1, rolled), 120);
+  EXPECT_LE(corrections(0.01, rolled), 120);
+}
+
 // q L^4/8EI and q L^2/2GA, and the forces q (L - x) and q (L - x)^2/2 at each section, whatever the number of cells.
 TEST_F(BeamStatics, AUniformLoadBendsACantilever) {
   const double EI = 1e4, GA = 1e5, L = 10, q = 1e-3;
