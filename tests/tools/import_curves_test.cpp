@@ -80,6 +80,8 @@ TEST_F(ImportCurves, WhatIsNoBeamIsRefused) {
   refused_by("rail", "--beams rail: expected GROUP=KIND:KEY=VALUE,... (as in 'rail=tube:diameter=60,thickness=3')");
   refused_by("rail=tube:diameter=1", "--beams rail=tube:diameter=1: section \"rail\": \"thickness\" is missing (of the walls)");
   refused_by("rail=cube:width=1", "--beams rail=cube:width=1: section \"rail\": unknown kind \"cube\" (did you mean \"tube\"?)");
+  refused_by("rail=circle:diameter=1,shear=[0.9]",
+             "--beams rail=circle:diameter=1,shear=[0.9]: shear is written into the scene (leave it out here)");
   refused_by("beam=circle:diameter=1", "--beams beam: no curve group of this name has lines");
   place.write("a.inp", "*NODE\n1,0,0,0\n");
   refused("a.inp -o b.h5 --beams rail=circle:diameter=1", 1,

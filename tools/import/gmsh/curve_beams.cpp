@@ -27,11 +27,13 @@ std::string section_lines(const std::string& group, const std::string& words, do
         fmt::format("[section]\n{} = {{kind = {}{}{}}}\n", toml_text(group), toml_text(kind), keys.empty() ? "" : ", ", keys), "--beams");
     const Entry& e = scene.entries("section").front();
     const SectionKind& of = section_kinds().at(e.kind, option);
-    if (!of.area) throw Error("", fmt::format("a section of kind {} is written into the scene", e.kind));
+    if (!of.area) throw Error("", fmt::format("a section of kind {} is written into the scene", e.kind), "any kind with sizes here");
     std::string out = fmt::format("\n[section.{}]\nkind = {}\n", toml_text(group), toml_text(e.kind));
-    for (const Param& key : of.keys) {
+    std::vector<Param> keys_of = of.keys;
+    keys_of.push_back({"shear", Type::numbers, "", "", ""});
+    for (const Param& key : keys_of) {
       if (!e.given(key.key)) continue;
-      if (key.type != Type::number) throw Error("", fmt::format("{} is written into the scene", key.key));
+      if (key.type != Type::number) throw Error("", fmt::format("{} is written into the scene", key.key), "leave it out here");
       const double power = key.unit == "m" ? 1 : key.unit == "m^2" ? 2 : key.unit == "m^4" ? 4 : 0;
       out += fmt::format("{} = {}\n", key.key, toml_number(e.number(key.key) * std::pow(metre, power)));
     }
@@ -89,7 +91,7 @@ size_t CurveBeams::n_lines() const {
   return sum;
 }
 
-std::string CurveBeams::scene(const Imported& in, const std::map<std::int64_t, std::vector<std::string>>& points) const {
+std::string CurveBeams::scene(Imported& in, const std::map<std::int64_t, std::vector<std::string>>& points) const {
   const double metre = options_.scale * in.metre.value_or(to_si("m", options_.units));
   std::map<std::int64_t, std::vector<const std::string*>> groups_at;  // of each line end
   std::set<std::array<std::int64_t, 2>> known;
@@ -104,6 +106,9 @@ std::string CurveBeams::scene(const Imported& in, const std::map<std::int64_t, s
     }
     out += section_lines(group, words, metre);
   }
+  const std::set<std::int64_t> of_cells(in.mesh.nodes.begin(), in.mesh.nodes.end());
+  if (const auto n = std::ranges::count_if(groups_at, [&](const auto& node) { return of_cells.contains(node.first); }))
+    in.notes.push_back(fmt::format("{} nodes of beams belong to cells too: nothing joins them there, but `a` and `b` of a beam can", n));
   std::set<std::int64_t> stops;
   for (const auto& [node, groups] : groups_at)
     if (groups.size() != 2 || *groups[0] != *groups[1]) stops.insert(node);
