@@ -97,7 +97,7 @@ std::string told_of_raw(const Advice& a) {
     if (!c->failure.empty() || c->unknowns >= a.chosen->unknowns || difference(*c, *a.reference, &in) <= 1) continue;
     const auto& values = a.reference->values;
     const auto found = std::find_if(values.begin(), values.end(), [&](const QuantityValue& v) { return v.name == in; });
-    if (found == values.end() || found->of.find(", raw") == std::string::npos || (lost && lost != &*found)) return "";
+    if (found == values.end() || found->measured != Measured::raw_acceleration || (lost && lost != &*found)) return "";
     lost = &*found;
   }
   return lost ? fmt::format("; smaller models lose \"{}\" alone: a raw acceleration holds all frequencies (give it a cfc)", lost->name)
