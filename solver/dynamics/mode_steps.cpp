@@ -134,7 +134,7 @@ class ModeSteps final : public Steps {
     system.add_rates(a, rest.q, z);
     Taken taken{stage_at(at.q, rest.t), at.lambda};
     taken.stage.a = &a;
-    NaturalMode& now = system.part<NaturalModes>().now;
+    NaturalMode& now = system.part<ModeOutput>().now;
     now = m.figures;
     now.amplitude = m.is_real ? amplitude : 0;
     Ledger ledger = run_.audit->ledger();
