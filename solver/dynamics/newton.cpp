@@ -131,7 +131,7 @@ void Newton::evaluate(bool tangent) {
       combine(last_->along, {{0, &last_->before}});
       system_.add_rates(last_->along, last_->before, by_);
     }
-    s.before = &last_->before, s.along = &last_->along;
+    s.last = &*last_;
   }
   assemble(system_, solver_, s, lambda_, r_, tangent);
   report_.least_det = r_.least_det;

@@ -127,7 +127,7 @@ class PathSteps final : public Steps {
   /// The residual at q, with what a law moves where it is under the share p; with a tangent the solver has it.
   void evaluate(const Config& q, const Numbers& lambda, double p, Residual& r, bool tangent, const Correction* last = nullptr) {
     Stage s = stage(q, p);
-    if (last) s.before = &last->before, s.along = &last->along;
+    s.last = last;
     assemble(run_.system, *run_.solver, s, lambda, r, tangent);
   }
   /// dR/dp, where the residual is r.
