@@ -33,11 +33,13 @@ struct Turn {
   std::string kind;
 };
 
-std::string as_json(const std::vector<Turn>& turns) {
-  std::string out;
-  for (const Turn& t : turns)
-    out += fmt::format("{}\n    {{\"kind\": \"{}\", \"load\": {:.12g}, \"step\": {}}}", out.empty() ? "" : ",", t.kind, t.share, t.step);
-  return out.empty() ? "[]" : "[" + out + "\n  ]";
+Json as_json(const std::vector<Turn>& turns) {
+  return Json::list_of(
+      turns,
+      [](const Turn& t) -> Json {
+        return {{"kind", t.kind}, {"load", {t.share, 12}}, {"step", t.step}};
+      },
+      Json::In::lines);
 }
 
 class PathSteps final : public Steps {
@@ -88,7 +90,7 @@ class PathSteps final : public Steps {
     progress.done();
     run_.report.t = run_.report.steps;
     run_.report.table = table();
-    run_.figures.path = as_json(at_.turns);
+    run_.figures.lists.emplace_back("turns", as_json(at_.turns));
     run_.report.complete = true;
   }
 

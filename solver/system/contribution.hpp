@@ -17,6 +17,7 @@
 
 #include "base/archive.hpp"
 #include "base/joined.hpp"
+#include "base/json.hpp"
 #include "system/constraint.hpp"
 #include "system/pass.hpp"
 
@@ -266,8 +267,8 @@ class Observer {
   virtual std::vector<Output> outputs() const = 0;
   /// Called once for the start of a run and for every accepted step: its numbers, and what it keeps of the whole run.  Collective.
   virtual void observe(const Sight& at) = 0;
-  /// What it has to say of the whole run, for run.json: keys and values; warnings besides.  On rank 0.
-  virtual void add_to_report(std::vector<std::pair<std::string, std::string>>& /*report*/) const {}
+  /// What it has to say of the whole run, to run.json; warnings besides.  On rank 0.
+  virtual void add_to_report(Json& /*run*/) const {}
 };
 
 /// What clocks of mechanisms ask; `group`: of each body, or -1.
